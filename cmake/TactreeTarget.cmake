@@ -1,0 +1,25 @@
+# What every target of ours shares: language level, warnings, sanitizers. Nothing is set globally,
+# so a parent project that adds Tactree keeps its own flags.
+
+# tactree_target(<target> [FREESTANDING])
+#   FREESTANDING  code that also runs on a controller: no exceptions, no RTTI, no libm errno.
+function(tactree_target target)
+  cmake_parse_arguments(arg "FREESTANDING" "" "" ${ARGN})
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  target_compile_options(${target} PRIVATE
+    -Wall -Wextra -Wconversion -Wsign-conversion -Wdouble-promotion -Wshadow
+    $<$<BOOL:${TACTREE_WERROR}>:-Werror>)
+  # Forces must be the same to the bit on every compiler and core, so a product and a sum are
+  # never fused into one rounding. This is part of the libraries' contract, hence PUBLIC.
+  target_compile_options(${target} PUBLIC -ffp-contract=off)
+  if(arg_FREESTANDING)
+    target_compile_options(${target} PRIVATE
+      -fno-exceptions -fno-rtti -fno-threadsafe-statics -fno-math-errno
+      -ffunction-sections -fdata-sections)
+  endif()
+  if(TACTREE_SANITIZE)
+    target_compile_options(${target} PRIVATE
+      -fsanitize=${TACTREE_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+    target_link_options(${target} PUBLIC -fsanitize=${TACTREE_SANITIZE})
+  endif()
+endfunction()
