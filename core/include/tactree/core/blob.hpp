@@ -1,0 +1,147 @@
+#pragma once
+// The one way from bytes to a model: open_blob() checks everything a query relies on, once, and
+// hands out a BlobView that reads the bytes in place.
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "tactree/core/blob_format.hpp"
+#include "tactree/core/vec3.hpp"
+
+namespace tactree::core {
+
+enum class BlobStatus : std::uint8_t {
+  kOk = 0,
+  kMisaligned,     ///< the bytes do not start on a 4-byte boundary
+  kTooShort,       ///< fewer bytes than a header
+  kBadMagic,       ///< not a blob
+  kBadVersion,     ///< a newer major version, or none
+  kBadSize,        ///< total_bytes is not the number of bytes given
+  kBadChecksum,    ///< damaged
+  kBadHeader,      ///< a count, name or reserved field is impossible
+  kBadFigures,     ///< a length, bound or lattice figure is impossible or contradicts another
+  kBadSections,    ///< sections do not tile the blob, or disagree with the counts
+  kBadTree,        ///< a node does not follow the canonical order, or is too deep
+  kBadLeaves,      ///< a leaf is empty, too full or out of order
+  kBadPoints,      ///< points of a leaf are not in ascending order
+  kBadNeighbours,  ///< a neighbour entry names no node or leaf
+  kBadMaterials,   ///< a material is impossible, or an index names none
+};
+
+/// The status as a word for people: "checksum does not match", ...
+[[nodiscard]] const char* describe(BlobStatus status);
+
+/// A leaf of the octree and where its points are.
+struct Leaf {
+  std::uint32_t number = 0;  ///< depth-first
+  std::uint32_t first_point = 0;
+  std::uint32_t point_count = 0;
+  std::uint32_t level = 0;  ///< 0 is the root
+  Int3 min{};               ///< lattice coordinates of its lower corner
+};
+
+/// A decoded point.
+struct SurfacePoint {
+  Vec3 position{};  ///< m, model frame; exactly step_m * an integer on each axis
+  Vec3 normal{};    ///< unit length, outward
+};
+
+class LeafCursor;
+
+/// A checked model, read in place. Copyable; the bytes must outlive it and not change.
+/// A default-constructed view is the empty model: every query finds nothing.
+class BlobView {
+ public:
+  BlobView() = default;
+
+  [[nodiscard]] bool empty() const { return header_ == nullptr; }
+  /// Precondition of all that follow, but the queries: !empty().
+  [[nodiscard]] const BlobHeader& header() const { return *header_; }
+  [[nodiscard]] std::uint32_t point_count() const { return empty() ? 0 : header_->point_count; }
+  [[nodiscard]] float step_m() const { return step_m_; }
+  [[nodiscard]] std::uint32_t depth() const { return depth_; }
+  /// Largest radius for which a query is exact.
+  [[nodiscard]] float reach_m() const { return reach_m_; }
+
+  [[nodiscard]] const BlobNode* nodes() const { return nodes_; }
+  [[nodiscard]] Leaf leaf(std::uint32_t number, std::uint32_t level, Int3 min) const {
+    const std::uint32_t first = leaves_[number];
+    return {number, first, leaves_[number + 1] - first, level, min};
+  }
+  [[nodiscard]] const std::uint32_t* point_words() const { return points_; }
+
+  /// Position and normal of point `index` of `leaf`. Preconditions: the leaf is this view's, and
+  /// holds the index. Cost: constant (one square root and one division for the normal).
+  [[nodiscard]] Vec3 position(const Leaf& leaf, std::uint32_t index) const;
+  [[nodiscard]] Vec3 normal(std::uint32_t index) const;
+  [[nodiscard]] SurfacePoint surface_point(const Leaf& leaf, std::uint32_t index) const {
+    return {position(leaf, index), normal(index)};
+  }
+
+  [[nodiscard]] bool has_neighbours() const { return neighbours_ != nullptr; }
+  /// The six entries of a leaf (-x +x -y +y -z +z). Precondition: has_neighbours().
+  [[nodiscard]] const std::uint32_t* neighbours(std::uint32_t leaf_number) const {
+    return neighbours_ + 6U * leaf_number;
+  }
+
+  [[nodiscard]] std::uint32_t material_count() const {
+    return empty() ? 0 : header_->material_count;
+  }
+  /// Precondition: index < material_count().
+  [[nodiscard]] const BlobMaterial& material(std::uint32_t index) const {
+    return materials_[index];
+  }
+  /// Which material a point carries; 0 in a blob with at most one.
+  [[nodiscard]] std::uint32_t material_of(std::uint32_t point) const {
+    return material_indices_ == nullptr ? 0U : material_indices_[point];
+  }
+
+ private:
+  friend BlobStatus open_blob(std::span<const std::byte> bytes, BlobView& view);
+  friend class BlobValidator;
+
+  const BlobHeader* header_ = nullptr;
+  const BlobNode* nodes_ = nullptr;
+  const std::uint32_t* leaves_ = nullptr;
+  const std::uint32_t* points_ = nullptr;
+  const std::uint16_t* normals_ = nullptr;
+  const std::uint32_t* neighbours_ = nullptr;
+  const BlobMaterial* materials_ = nullptr;
+  const std::uint8_t* material_indices_ = nullptr;
+  float step_m_ = 0.0F;
+  float reach_m_ = 0.0F;
+  std::uint32_t depth_ = 0;
+};
+
+/// Checks `bytes` and, when all is well, points `view` at them; else `view` becomes empty.
+/// After kOk no query can read outside `bytes`, whatever they hold, as long as they do not change.
+/// Cost: one pass, about 30 instructions a byte word; no recursion; at most 256 bytes of stack.
+/// Not for interrupts (long), though it touches no shared state.
+[[nodiscard]] BlobStatus open_blob(std::span<const std::byte> bytes, BlobView& view);
+
+/// All leaves of a model in depth-first order, which is the order of their numbers and points.
+///   for (LeafCursor c(view); !c.done(); c.next()) use(c.leaf());
+/// Cost of a full walk: nodes + leaves steps. Stack: 13 levels of 8 bytes.
+class LeafCursor {
+ public:
+  explicit LeafCursor(const BlobView& view);
+  [[nodiscard]] bool done() const { return done_; }
+  [[nodiscard]] const Leaf& leaf() const { return leaf_; }
+  void next();
+
+ private:
+  struct Level {
+    std::uint32_t node;
+    std::uint32_t octants_left;
+  };
+
+  BlobView view_;
+  Level stack_[kMaxDepth + 1] = {};
+  std::uint32_t level_ = 0;
+  Int3 cell_{};  // of the node on top of the stack, in cells of its level
+  Leaf leaf_{};
+  bool done_ = true;
+};
+
+}  // namespace tactree::core

@@ -1,0 +1,145 @@
+#pragma once
+// The bytes of a blob: docs/FORMAT.md in C++. Little-endian, position-independent, 4-byte aligned.
+//
+// A blob is a header followed by sections that tile the rest of it without gaps:
+//   nodes, leaves, points, normals [, neighbours] [, materials [, material indices]]
+//
+// All positions lie on one integer lattice: metres = step_m * integer. The step has so few
+// significant bits that this product is exact in float32 for every lattice site of the root cube,
+// so every reader, on any core, in float or double, decodes the very same number.
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+namespace tactree::core {
+
+static_assert(std::endian::native == std::endian::little, "blobs are read in place, little-endian");
+
+inline constexpr std::uint8_t kBlobMagic[8] = {'T', 'A', 'C', 'T', 'R', 'E', 'E', 0};
+inline constexpr std::uint16_t kBlobMajor = 1;
+inline constexpr std::uint16_t kBlobMinor = 0;
+
+inline constexpr std::uint32_t kMaxDepth = 12;        ///< octree levels below the root
+inline constexpr std::int32_t kLeafUnits = 1024;      ///< lattice sites along the edge of a finest leaf
+inline constexpr std::int32_t kMaxCoordinate = 1 << 22;  ///< |lattice coordinate| of the root cube
+inline constexpr std::uint32_t kMaxLeaves = 1U << 24;
+inline constexpr std::uint32_t kMaxNodes = 1U << 24;
+inline constexpr std::uint32_t kMaxMaterials = 255;
+inline constexpr std::uint32_t kLeavesPerQuery = 8;   ///< the eight-corner rule
+
+enum class Profile : std::uint32_t {
+  kSurface = 0,  ///< every leaf at full depth, leaf edge >= 2 reach: exact neighbour queries
+  kPaper = 1,    ///< at most 10 points a leaf where the tree can split, with a neighbour table
+};
+
+/// Byte range of a section, counted from the start of the blob. An absent section is {end, 0}.
+struct BlobSection {
+  std::uint32_t offset;
+  std::uint32_t bytes;
+};
+
+/// An IEEE double, kept as two words so that the blob needs no more than 4-byte alignment.
+struct BlobDouble {
+  std::uint32_t low;
+  std::uint32_t high;
+};
+
+struct BlobHeader {
+  std::uint8_t magic[8];
+  std::uint16_t version_major;
+  std::uint16_t version_minor;
+  std::uint32_t header_bytes;
+  std::uint32_t total_bytes;
+  std::uint32_t checksum;  ///< CRC-32 of every byte of the blob but these four
+
+  std::uint32_t profile;  ///< Profile
+  std::uint32_t depth;    ///< levels below the root; the root's edge is 1024 << depth lattice units
+  float step_m;           ///< lattice unit
+  std::int32_t root_min[3];  ///< lattice units, multiples of 1024
+
+  std::uint32_t point_count;
+  std::uint32_t leaf_count;
+  std::uint32_t node_count;
+  std::uint32_t material_count;
+
+  std::uint32_t points_per_leaf_max;   ///< checked by open_blob()
+  std::uint32_t points_per_ball_max;   ///< in any ball of radius reach_m: proven by the builder
+  std::uint32_t points_per_query_max;  ///< in any eight leaves one query visits: proven by the builder
+  std::uint32_t leaves_per_query_max;  ///< 8
+
+  float spacing_m;           ///< h: what the points were resampled to
+  float support_radius_m;    ///< R: of the surface fit
+  float reach_m;             ///< R + slack: largest radius of an exact query
+  float leaf_edge_min_m;     ///< E = 1024 step_m
+  float aabb_edge_m;         ///< a: vertex box of the paper's collision test
+  float six_point_offset_m;  ///< s
+  float largest_gap_m;       ///< widest hole or gap the builder found; 0 when not known
+  float bounds_min_m[3];     ///< of the decoded points
+  float bounds_max_m[3];
+
+  BlobSection nodes;
+  BlobSection leaves;
+  BlobSection points;
+  BlobSection normals;
+  BlobSection neighbours;
+  BlobSection materials;
+  BlobSection material_indices;
+
+  BlobDouble source_scale;      ///< metres of the model frame per unit of the source file
+  BlobDouble source_origin[3];  ///< source coordinates of the model frame's origin
+
+  char name[32];                    ///< UTF-8, zero-padded, zero-terminated
+  std::uint8_t source_digest[32];   ///< SHA-256 of the input bytes
+  char tool_version[16];            ///< zero-padded, zero-terminated
+  std::uint32_t reserved[5];        ///< 0
+};
+
+/// An inner node: eight octants, each empty, an inner node or a leaf. Octant = x | y << 1 | z << 2,
+/// a bit being set for the upper half. Children of one kind are consecutive, in octant order.
+struct BlobNode {
+  std::uint32_t nodes;   ///< bits 0-23: index of the first child node; bits 24-31: which octants
+  std::uint32_t leaves;  ///< bits 0-23: number of the first child leaf; bits 24-31: which octants
+};
+
+/// What the hand feels of the points that carry this material.
+struct BlobMaterial {
+  float stiffness_N_m;
+  float damping_Ns_m;
+  float static_friction;
+  float dynamic_friction;
+  float texture_height_m;
+  float texture_wavelength_m;
+  std::uint32_t reserved[2];  ///< 0
+};
+
+// A point is one word and one half word:
+//   word  bits 31-29: octant within the leaf (z9 y9 x9)  28-20: z8..z0  19-11: y8..y0  10-2: x8..x0
+//         bits 1-0: bits 17-16 of the normal
+//   half  bits 15-0 of the normal; the normal's bits 17-9 and 8-0 are the octahedral v and u.
+// Within a leaf the words ascend, so points come octant by octant.
+inline constexpr std::uint32_t kPointPositionMask = 0xFFFFFFFCU;
+
+/// Entries of the neighbour table: six a leaf (-x +x -y +y -z +z).
+inline constexpr std::uint32_t kNeighbourNone = 0xFFFFFFFFU;     ///< empty space or outside the root
+inline constexpr std::uint32_t kNeighbourIsNode = 0x80000000U;   ///< else a leaf number
+
+static_assert(sizeof(BlobSection) == 8);
+static_assert(sizeof(BlobDouble) == 8);
+static_assert(sizeof(BlobNode) == 8);
+static_assert(sizeof(BlobMaterial) == 32);
+static_assert(sizeof(BlobHeader) == 320);
+static_assert(alignof(BlobHeader) == 4);
+static_assert(offsetof(BlobHeader, checksum) == 20);
+static_assert(offsetof(BlobHeader, profile) == 24);
+static_assert(offsetof(BlobHeader, point_count) == 48);
+static_assert(offsetof(BlobHeader, points_per_leaf_max) == 64);
+static_assert(offsetof(BlobHeader, spacing_m) == 80);
+static_assert(offsetof(BlobHeader, nodes) == 132);
+static_assert(offsetof(BlobHeader, source_scale) == 188);
+static_assert(offsetof(BlobHeader, name) == 220);
+static_assert(offsetof(BlobHeader, tool_version) == 284);
+static_assert(std::is_trivially_copyable_v<BlobHeader>);
+
+}  // namespace tactree::core

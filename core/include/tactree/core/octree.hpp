@@ -1,0 +1,41 @@
+#pragma once
+// Point location, and the eight-corner rule.
+
+#include <cstdint>
+
+#include "tactree/core/blob.hpp"
+
+namespace tactree::core {
+
+/// Number of set bits of an octant mask (0-255).
+constexpr std::uint32_t count_octants(std::uint32_t mask) {
+  std::uint32_t pairs = mask - ((mask >> 1) & 0x55U);
+  pairs = (pairs & 0x33U) + ((pairs >> 2) & 0x33U);
+  return (pairs + (pairs >> 4)) & 0x0FU;
+}
+
+/// Lattice coordinates of the site at or below `position` on each axis: floor(position / step_m),
+/// exactly. False when the position is not finite or outside the root cube.
+[[nodiscard]] bool to_lattice(const BlobView& view, Vec3 position, Int3& site);
+
+/// The leaf that contains a lattice site inside the root cube. False: empty space there.
+/// Cost: one descent, at most depth() levels, about 20 instructions each.
+[[nodiscard]] bool find_leaf(const BlobView& view, Int3 site, Leaf& leaf);
+
+/// The leaf that contains a position: to_lattice() and find_leaf().
+[[nodiscard]] bool find_leaf(const BlobView& view, Vec3 position, Leaf& leaf);
+
+/// Every leaf that can hold a point within a cube or ball of half-width r.
+struct LeafSet {
+  Leaf leaves[kLeavesPerQuery];
+  std::uint32_t count = 0;
+};
+
+/// The eight-corner rule: where no leaf is smaller than the cube centre +- r, the leaves that hold
+/// its eight corners are all the leaves it touches. (On each axis the cube is no longer than a
+/// leaf, so a leaf that meets it contains one of its two ends.) The leaf of the centre comes first.
+/// Precondition: 0 <= r <= view.reach_m(); a larger or NaN r finds nothing.
+/// Cost: at most 8 descents and 8 leaves.
+void find_leaves_within(const BlobView& view, Vec3 centre, float r, LeafSet& found);
+
+}  // namespace tactree::core

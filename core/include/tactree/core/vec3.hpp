@@ -1,0 +1,59 @@
+#pragma once
+// Three float32 components and the few operations the control loop needs. No libm.
+
+#include <cstdint>
+
+namespace tactree::core {
+
+struct Vec3 {
+  float x = 0.0F;
+  float y = 0.0F;
+  float z = 0.0F;
+
+  friend constexpr Vec3 operator+(Vec3 a, Vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+  friend constexpr Vec3 operator-(Vec3 a, Vec3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+  friend constexpr Vec3 operator-(Vec3 a) { return {-a.x, -a.y, -a.z}; }
+  friend constexpr Vec3 operator*(float s, Vec3 a) { return {s * a.x, s * a.y, s * a.z}; }
+  friend constexpr Vec3 operator*(Vec3 a, float s) { return s * a; }
+  constexpr Vec3& operator+=(Vec3 b) { return *this = *this + b; }
+  constexpr Vec3& operator-=(Vec3 b) { return *this = *this - b; }
+  friend constexpr bool operator==(Vec3, Vec3) = default;
+};
+
+/// Three integers: coordinates on a blob's lattice, or of an octree cell.
+struct Int3 {
+  std::int32_t x = 0;
+  std::int32_t y = 0;
+  std::int32_t z = 0;
+  friend constexpr bool operator==(Int3, Int3) = default;
+};
+
+constexpr float dot(Vec3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+
+constexpr Vec3 cross(Vec3 a, Vec3 b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+constexpr float length_squared(Vec3 a) { return dot(a, a); }
+
+/// Correctly rounded square root: one instruction on every supported core. Precondition: v >= 0.
+inline float square_root(float v) { return __builtin_sqrtf(v); }
+
+inline float length(Vec3 a) { return square_root(length_squared(a)); }
+
+constexpr float absolute(float v) { return v < 0.0F ? -v : v; }
+
+/// False for NaN and infinity.
+constexpr bool is_finite(float v) { return v - v == 0.0F; }
+constexpr bool is_finite(Vec3 v) { return is_finite(v.x) && is_finite(v.y) && is_finite(v.z); }
+
+/// `v` scaled to unit length, or `fallback` when it has no direction.
+inline Vec3 normalized_or(Vec3 v, Vec3 fallback) {
+  const float squared = length_squared(v);
+  if (!(squared > 1e-30F) || !is_finite(squared)) {
+    return fallback;
+  }
+  return (1.0F / square_root(squared)) * v;
+}
+
+}  // namespace tactree::core
