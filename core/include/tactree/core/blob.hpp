@@ -60,6 +60,7 @@ class BlobView {
   [[nodiscard]] const BlobHeader& header() const { return *header_; }
   [[nodiscard]] std::uint32_t point_count() const { return empty() ? 0 : header_->point_count; }
   [[nodiscard]] float step_m() const { return step_m_; }
+  [[nodiscard]] float inverse_step() const { return inverse_step_; }
   [[nodiscard]] std::uint32_t depth() const { return depth_; }
   /// Largest radius for which a query is exact.
   [[nodiscard]] float reach_m() const { return reach_m_; }
@@ -110,6 +111,7 @@ class BlobView {
   const BlobMaterial* materials_ = nullptr;
   const std::uint8_t* material_indices_ = nullptr;
   float step_m_ = 0.0F;
+  float inverse_step_ = 0.0F;
   float reach_m_ = 0.0F;
   std::uint32_t depth_ = 0;
 };

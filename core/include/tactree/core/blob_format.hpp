@@ -21,13 +21,13 @@ inline constexpr std::uint8_t kBlobMagic[8] = {'T', 'A', 'C', 'T', 'R', 'E', 'E'
 inline constexpr std::uint16_t kBlobMajor = 1;
 inline constexpr std::uint16_t kBlobMinor = 0;
 
-inline constexpr std::uint32_t kMaxDepth = 12;        ///< octree levels below the root
-inline constexpr std::int32_t kLeafUnits = 1024;      ///< lattice sites along the edge of a finest leaf
+inline constexpr std::uint32_t kMaxDepth = 12;    ///< octree levels below the root
+inline constexpr std::int32_t kLeafUnits = 1024;  ///< lattice sites along the edge of a finest leaf
 inline constexpr std::int32_t kMaxCoordinate = 1 << 22;  ///< |lattice coordinate| of the root cube
 inline constexpr std::uint32_t kMaxLeaves = 1U << 24;
 inline constexpr std::uint32_t kMaxNodes = 1U << 24;
 inline constexpr std::uint32_t kMaxMaterials = 255;
-inline constexpr std::uint32_t kLeavesPerQuery = 8;   ///< the eight-corner rule
+inline constexpr std::uint32_t kLeavesPerQuery = 8;  ///< the eight-corner rule
 
 enum class Profile : std::uint32_t {
   kSurface = 0,  ///< every leaf at full depth, leaf edge >= 2 reach: exact neighbour queries
@@ -64,9 +64,10 @@ struct BlobHeader {
   std::uint32_t node_count;
   std::uint32_t material_count;
 
-  std::uint32_t points_per_leaf_max;   ///< checked by open_blob()
-  std::uint32_t points_per_ball_max;   ///< in any ball of radius reach_m: proven by the builder
-  std::uint32_t points_per_query_max;  ///< in any eight leaves one query visits: proven by the builder
+  std::uint32_t points_per_leaf_max;  ///< checked by open_blob()
+  std::uint32_t points_per_ball_max;  ///< in any ball of radius reach_m: proven by the builder
+  std::uint32_t
+      points_per_query_max;  ///< in any eight leaves one query visits: proven by the builder
   std::uint32_t leaves_per_query_max;  ///< 8
 
   float spacing_m;           ///< h: what the points were resampled to
@@ -90,10 +91,10 @@ struct BlobHeader {
   BlobDouble source_scale;      ///< metres of the model frame per unit of the source file
   BlobDouble source_origin[3];  ///< source coordinates of the model frame's origin
 
-  char name[32];                    ///< UTF-8, zero-padded, zero-terminated
-  std::uint8_t source_digest[32];   ///< SHA-256 of the input bytes
-  char tool_version[16];            ///< zero-padded, zero-terminated
-  std::uint32_t reserved[5];        ///< 0
+  char name[32];                   ///< UTF-8, zero-padded, zero-terminated
+  std::uint8_t source_digest[32];  ///< SHA-256 of the input bytes
+  char tool_version[16];           ///< zero-padded, zero-terminated
+  std::uint32_t reserved[5];       ///< 0
 };
 
 /// An inner node: eight octants, each empty, an inner node or a leaf. Octant = x | y << 1 | z << 2,
@@ -121,9 +122,13 @@ struct BlobMaterial {
 // Within a leaf the words ascend, so points come octant by octant.
 inline constexpr std::uint32_t kPointPositionMask = 0xFFFFFFFCU;
 
-/// Entries of the neighbour table: six a leaf (-x +x -y +y -z +z).
-inline constexpr std::uint32_t kNeighbourNone = 0xFFFFFFFFU;     ///< empty space or outside the root
-inline constexpr std::uint32_t kNeighbourIsNode = 0x80000000U;   ///< else a leaf number
+// The neighbour table has six entries a leaf (-x +x -y +y -z +z), each the cell of the leaf's own
+// size on that side: the leaf that is or contains it, or the node that divides it.
+//   bits 0-23: leaf number or node index   bits 24-27: its level   bit 31: it is a node
+inline constexpr std::uint32_t kNeighbourNone = 0xFFFFFFFFU;  ///< empty space or outside the root
+inline constexpr std::uint32_t kNeighbourIsNode = 0x80000000U;
+inline constexpr std::uint32_t kNeighbourIndexMask = 0x00FFFFFFU;
+inline constexpr std::uint32_t kNeighbourLevelShift = 24;
 
 static_assert(sizeof(BlobSection) == 8);
 static_assert(sizeof(BlobDouble) == 8);

@@ -1,5 +1,6 @@
 #pragma once
-// CRC-32 (IEEE 802.3, reflected, polynomial 0xEDB88320): guards blobs and messages against accidents.
+// CRC-32 (IEEE 802.3, reflected, polynomial 0xEDB88320): guards blobs and messages against
+// accidents.
 
 #include <cstddef>
 #include <cstdint>

@@ -33,8 +33,9 @@ struct PointsWithin {
 [[nodiscard]] PointsWithin points_within(const BlobView& view, Vec3 probe, float r,
                                          std::span<std::uint32_t> out);
 
-/// Is `probe` in the axis-aligned box, edge header().aabb_edge_m, of any point? Exact, closed boxes.
-/// Precondition: aabb_edge_m / 2 <= reach_m(), which holds in every `surface` blob; else false.
+/// Is `probe` in the axis-aligned box, edge header().aabb_edge_m, of any point? Exact, closed
+/// boxes. Precondition: aabb_edge_m / 2 <= reach_m(), which holds in every `surface` blob; else
+/// false.
 [[nodiscard]] bool in_any_vertex_box(const BlobView& view, Vec3 probe);
 
 }  // namespace tactree::core

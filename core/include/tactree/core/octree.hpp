@@ -22,6 +22,10 @@ constexpr std::uint32_t count_octants(std::uint32_t mask) {
 /// Cost: one descent, at most depth() levels, about 20 instructions each.
 [[nodiscard]] bool find_leaf(const BlobView& view, Int3 site, Leaf& leaf);
 
+/// The same, starting at node `node` of level `level`, whose cell holds the site.
+[[nodiscard]] bool find_leaf_below(const BlobView& view, std::uint32_t node, std::uint32_t level,
+                                   Int3 site, Leaf& leaf);
+
 /// The leaf that contains a position: to_lattice() and find_leaf().
 [[nodiscard]] bool find_leaf(const BlobView& view, Vec3 position, Leaf& leaf);
 

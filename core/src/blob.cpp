@@ -1,0 +1,446 @@
+#include "tactree/core/blob.hpp"
+
+#include "tactree/core/crc32.hpp"
+#include "tactree/core/octree.hpp"
+
+namespace tactree::core {
+namespace {
+
+constexpr std::size_t kHeaderBytes = sizeof(BlobHeader);
+constexpr std::size_t kChecksumEnd = offsetof(BlobHeader, checksum) + sizeof(std::uint32_t);
+
+std::uint32_t checksum_of(std::span<const std::byte> bytes) {
+  Crc32 crc;
+  crc.update(bytes.first(offsetof(BlobHeader, checksum)));
+  crc.update(bytes.subspan(kChecksumEnd));
+  return crc.value();
+}
+
+bool is_terminated(const char* text, std::uint32_t size) {
+  bool ended = false;
+  for (std::uint32_t i = 0; i < size; ++i) {  // bound: 32
+    if (text[i] == 0) {
+      ended = true;
+    } else if (ended) {
+      return false;
+    }
+  }
+  return ended;
+}
+
+// NaN and infinity fail, as every figure does that the comparison cannot vouch for.
+bool in_range(float v, float low, float high) { return v >= low && v <= high; }
+
+// Significant bits of a positive normal float: 1 for a power of two, 24 at the most.
+std::uint32_t significant_bits(float v) {
+  std::uint32_t fraction = (std::bit_cast<std::uint32_t>(v) & 0x7FFFFFU) | 0x800000U;
+  std::uint32_t bits = 24;
+  while ((fraction & 1U) == 0) {  // bound: 23
+    fraction >>= 1;
+    --bits;
+  }
+  return bits;
+}
+
+bool is_multiple_of_leaf(std::int32_t v) { return (v & (kLeafUnits - 1)) == 0; }
+
+}  // namespace
+
+// The checks in the order in which each may rely on the ones before it.
+class BlobValidator {
+ public:
+  BlobValidator(std::span<const std::byte> bytes, BlobView& view) : bytes_(bytes), view_(view) {}
+
+  BlobStatus run() {
+    BlobStatus status = check_envelope();
+    if (status == BlobStatus::kOk && !header_is_sane()) status = BlobStatus::kBadHeader;
+    if (status == BlobStatus::kOk && !figures_are_sane()) status = BlobStatus::kBadFigures;
+    if (status == BlobStatus::kOk && !sections_tile()) status = BlobStatus::kBadSections;
+    if (status != BlobStatus::kOk) return status;
+    attach();
+    if (!leaves_are_sane()) return BlobStatus::kBadLeaves;
+    if (!tree_is_canonical()) return BlobStatus::kBadTree;
+    if (!points_ascend()) return BlobStatus::kBadPoints;
+    if (!neighbours_exist()) return BlobStatus::kBadNeighbours;
+    if (!materials_are_sane()) return BlobStatus::kBadMaterials;
+    return BlobStatus::kOk;
+  }
+
+ private:
+  BlobStatus check_envelope() {
+    if ((reinterpret_cast<std::uintptr_t>(bytes_.data()) & 3U) != 0) return BlobStatus::kMisaligned;
+    if (bytes_.size() < kHeaderBytes) return BlobStatus::kTooShort;
+    header_ = reinterpret_cast<const BlobHeader*>(bytes_.data());
+    for (std::uint32_t i = 0; i < sizeof kBlobMagic; ++i) {  // bound: 8
+      if (header_->magic[i] != kBlobMagic[i]) return BlobStatus::kBadMagic;
+    }
+    if (header_->version_major != kBlobMajor) return BlobStatus::kBadVersion;
+    if (header_->total_bytes != bytes_.size()) return BlobStatus::kBadSize;
+    if (header_->checksum != checksum_of(bytes_)) return BlobStatus::kBadChecksum;
+    return BlobStatus::kOk;
+  }
+
+  bool header_is_sane() const {
+    const BlobHeader& h = *header_;
+    if (h.header_bytes < kHeaderBytes || h.header_bytes > h.total_bytes) return false;
+    if ((h.header_bytes & 3U) != 0) return false;
+    if (h.profile > static_cast<std::uint32_t>(Profile::kPaper)) return false;
+    if (h.depth < 1 || h.depth > kMaxDepth) return false;
+    if (h.point_count == 0 || h.leaf_count == 0 || h.node_count == 0) return false;
+    if (h.leaf_count > kMaxLeaves || h.node_count > kMaxNodes) return false;
+    if (h.leaf_count > h.point_count || h.material_count > kMaxMaterials) return false;
+    if (h.points_per_leaf_max == 0 || h.points_per_leaf_max > h.point_count) return false;
+    if (h.points_per_ball_max == 0 || h.points_per_ball_max > h.point_count) return false;
+    if (h.points_per_query_max < h.points_per_leaf_max) return false;
+    if (h.points_per_query_max > h.point_count) return false;
+    if (h.leaves_per_query_max != kLeavesPerQuery) return false;
+    for (const std::uint32_t word : h.reserved) {  // bound: 5
+      if (word != 0) return false;
+    }
+    return is_terminated(h.name, sizeof h.name) &&
+           is_terminated(h.tool_version, sizeof h.tool_version);
+  }
+
+  bool figures_are_sane() const {
+    const BlobHeader& h = *header_;
+    if (!in_range(h.step_m, 1e-12F, 1e6F)) return false;
+    const std::int32_t edge = kLeafUnits << h.depth;
+    std::int32_t largest = 1;
+    for (const std::int32_t low : h.root_min) {  // bound: 3
+      if (low < -kMaxCoordinate || low > kMaxCoordinate - edge) return false;
+      if (!is_multiple_of_leaf(low)) return false;
+      if (-low > largest) largest = -low;
+      if (low + edge > largest) largest = low + edge;
+    }
+    // step * integer must be exact: see blob_format.hpp.
+    if (largest > 1 << (24U - significant_bits(h.step_m))) return false;
+    return lengths_are_sane() && bounds_are_sane();
+  }
+
+  bool lengths_are_sane() const {
+    const BlobHeader& h = *header_;
+    const float leaf_edge = h.step_m * static_cast<float>(kLeafUnits);
+    if (h.leaf_edge_min_m != leaf_edge) return false;
+    if (!in_range(h.spacing_m, h.step_m, 1e9F)) return false;
+    if (!in_range(h.support_radius_m, 0.0F, 1e9F)) return false;
+    if (!in_range(h.aabb_edge_m, 0.0F, 1e9F)) return false;
+    if (!in_range(h.six_point_offset_m, 0.0F, 1e9F)) return false;
+    if (!in_range(h.largest_gap_m, 0.0F, 1e9F)) return false;
+    // The eight-corner rule, with the units that find_leaves_within() adds for rounding.
+    const float reach_max = h.step_m * static_cast<float>(kLeafUnits / 2 - 4);
+    if (!in_range(h.reach_m, 0.0F, reach_max)) return false;
+    const bool surface = h.profile == static_cast<std::uint32_t>(Profile::kSurface);
+    return !surface || (h.support_radius_m > 0.0F && h.support_radius_m <= h.reach_m &&
+                        0.5F * h.aabb_edge_m <= h.reach_m);
+  }
+
+  bool bounds_are_sane() const {
+    const BlobHeader& h = *header_;
+    const std::int32_t edge = kLeafUnits << h.depth;
+    for (std::uint32_t i = 0; i < 3; ++i) {  // bound: 3
+      const float low = h.step_m * static_cast<float>(h.root_min[i]);
+      const float high = h.step_m * static_cast<float>(h.root_min[i] + edge);
+      if (!in_range(h.bounds_min_m[i], low, high)) return false;
+      if (!in_range(h.bounds_max_m[i], h.bounds_min_m[i], high)) return false;
+    }
+    return true;
+  }
+
+  // Takes the next section off the front of what is left. Sizes are compared, never added: the
+  // sum of two counts from outside could wrap.
+  bool take(const BlobSection& section, std::uint64_t expected_bytes) {
+    const std::uint32_t left = header_->total_bytes - cursor_;
+    if (section.offset != cursor_ || section.bytes != expected_bytes) return false;
+    if (section.bytes > left) return false;
+    const std::uint32_t padding = (4U - (section.bytes & 3U)) & 3U;
+    if (padding > left - section.bytes) return false;
+    for (std::uint32_t i = 0; i < padding; ++i) {  // bound: 3
+      if (bytes_[section.offset + section.bytes + i] != std::byte{0}) return false;
+    }
+    cursor_ += section.bytes + padding;
+    return true;
+  }
+
+  bool sections_tile() {
+    const BlobHeader& h = *header_;
+    cursor_ = h.header_bytes;
+    const std::uint64_t neighbour_bytes = h.neighbours.bytes == 0 ? 0 : 24ULL * h.leaf_count;
+    const std::uint64_t index_bytes = h.material_count > 1 ? h.point_count : 0;
+    return take(h.nodes, sizeof(BlobNode) * std::uint64_t{h.node_count}) &&
+           take(h.leaves, 4ULL * (std::uint64_t{h.leaf_count} + 1U)) &&
+           take(h.points, 4ULL * h.point_count) && take(h.normals, 2ULL * h.point_count) &&
+           take(h.neighbours, neighbour_bytes) &&
+           take(h.materials, sizeof(BlobMaterial) * std::uint64_t{h.material_count}) &&
+           take(h.material_indices, index_bytes) && cursor_ == h.total_bytes;
+  }
+
+  template <typename T>
+  const T* at(const BlobSection& section) const {
+    if (section.bytes == 0) return nullptr;
+    return reinterpret_cast<const T*>(bytes_.data() + section.offset);
+  }
+
+  void attach() {
+    const BlobHeader& h = *header_;
+    view_.header_ = header_;
+    view_.nodes_ = at<BlobNode>(h.nodes);
+    view_.leaves_ = at<std::uint32_t>(h.leaves);
+    view_.points_ = at<std::uint32_t>(h.points);
+    view_.normals_ = at<std::uint16_t>(h.normals);
+    view_.neighbours_ = at<std::uint32_t>(h.neighbours);
+    view_.materials_ = at<BlobMaterial>(h.materials);
+    view_.material_indices_ = at<std::uint8_t>(h.material_indices);
+    view_.step_m_ = h.step_m;
+    view_.inverse_step_ = 1.0F / h.step_m;
+    view_.reach_m_ = h.reach_m;
+    view_.depth_ = h.depth;
+  }
+
+  bool leaves_are_sane() const {
+    const std::uint32_t* first = view_.leaves_;
+    if (first[0] != 0 || first[header_->leaf_count] != header_->point_count) return false;
+    for (std::uint32_t i = 0; i < header_->leaf_count; ++i) {  // bound: leaves
+      if (first[i] >= first[i + 1]) return false;
+      if (first[i + 1] - first[i] > header_->points_per_leaf_max) return false;
+    }
+    return true;
+  }
+
+  // A depth-first walk in which each group of children must be the next one not yet given out:
+  // so every node but the root has one parent, before it, and every leaf has its number.
+  bool tree_is_canonical() const {
+    struct Frame {
+      std::uint32_t node;
+      std::uint32_t octants_left;
+    };
+    Frame stack[kMaxDepth];
+    std::uint32_t next_node = 1;
+    std::uint32_t next_leaf = 0;
+    std::uint32_t deepest = 0;
+    std::uint32_t level = 0;
+    stack[0] = {0, 0xFFU};
+    if (!opens_canonically(0, next_node)) return false;
+    // Every turn finishes an octant of a node, and every node is entered once.
+    while (true) {  // bound: 9 nodes
+      Frame& frame = stack[level];
+      if (frame.octants_left == 0) {
+        if (level == 0) break;
+        --level;
+        continue;
+      }
+      const auto octant = static_cast<std::uint32_t>(std::countr_zero(frame.octants_left));
+      frame.octants_left &= frame.octants_left - 1U;
+      const BlobNode node = view_.nodes_[frame.node];
+      const std::uint32_t below = (1U << octant) - 1U;
+      if (((node.leaves >> 24 >> octant) & 1U) != 0) {
+        const std::uint32_t number =
+            (node.leaves & 0xFFFFFFU) + count_octants((node.leaves >> 24) & below);
+        if (number != next_leaf || next_leaf == header_->leaf_count) return false;
+        ++next_leaf;
+        if (level + 1 > deepest) deepest = level + 1;
+        if (!leaf_level_is_allowed(level + 1)) return false;
+      } else if (((node.nodes >> 24 >> octant) & 1U) != 0) {
+        if (level + 1 >= header_->depth) return false;
+        const std::uint32_t child =
+            (node.nodes & 0xFFFFFFU) + count_octants((node.nodes >> 24) & below);
+        if (!opens_canonically(child, next_node)) return false;
+        ++level;
+        stack[level] = {child, 0xFFU};
+      }
+    }
+    return next_node == header_->node_count && next_leaf == header_->leaf_count &&
+           deepest == header_->depth;
+  }
+
+  bool leaf_level_is_allowed(std::uint32_t level) const {
+    return level == header_->depth ||
+           header_->profile == static_cast<std::uint32_t>(Profile::kPaper);
+  }
+
+  bool opens_canonically(std::uint32_t index, std::uint32_t& next_node) const {
+    const BlobNode node = view_.nodes_[index];
+    const std::uint32_t node_mask = node.nodes >> 24;
+    const std::uint32_t leaf_mask = node.leaves >> 24;
+    if ((node_mask & leaf_mask) != 0 || (node_mask | leaf_mask) == 0) return false;
+    const std::uint32_t children = count_octants(node_mask);
+    if (children == 0) {
+      if ((node.nodes & 0xFFFFFFU) != 0) return false;
+    } else {
+      if ((node.nodes & 0xFFFFFFU) != next_node) return false;
+      if (children > header_->node_count - next_node) return false;
+      next_node += children;
+    }
+    return leaf_mask != 0 || (node.leaves & 0xFFFFFFU) == 0;
+  }
+
+  bool points_ascend() const {
+    for (std::uint32_t i = 0; i < header_->leaf_count; ++i) {  // bound: leaves
+      std::uint32_t previous = view_.points_[view_.leaves_[i]] & kPointPositionMask;
+      for (std::uint32_t p = view_.leaves_[i] + 1; p < view_.leaves_[i + 1];
+           ++p) {  // bound: points_per_leaf
+        const std::uint32_t here = view_.points_[p] & kPointPositionMask;
+        if (here <= previous) return false;
+        previous = here;
+      }
+    }
+    return true;
+  }
+
+  bool neighbours_exist() const {
+    if (!view_.has_neighbours()) return true;
+    for (std::uint32_t i = 0; i < 6U * header_->leaf_count; ++i) {  // bound: 6 leaves
+      const std::uint32_t entry = view_.neighbours_[i];
+      if (entry == kNeighbourNone) continue;
+      const bool is_node = (entry & kNeighbourIsNode) != 0;
+      const std::uint32_t level = (entry & ~kNeighbourIsNode) >> kNeighbourLevelShift;
+      if (level > header_->depth || (is_node && level == header_->depth)) return false;
+      const std::uint32_t limit = is_node ? header_->node_count : header_->leaf_count;
+      if ((entry & kNeighbourIndexMask) >= limit) return false;
+    }
+    return true;
+  }
+
+  bool materials_are_sane() const {
+    for (std::uint32_t i = 0; i < header_->material_count; ++i) {  // bound: 255
+      const BlobMaterial& m = view_.materials_[i];
+      if (!in_range(m.stiffness_N_m, 0.0F, 1e6F) || !in_range(m.damping_Ns_m, 0.0F, 1e4F)) {
+        return false;
+      }
+      if (!in_range(m.static_friction, 0.0F, 4.0F)) return false;
+      if (!in_range(m.dynamic_friction, 0.0F, m.static_friction)) return false;
+      if (!in_range(m.texture_height_m, 0.0F, 1.0F)) return false;
+      if (!in_range(m.texture_wavelength_m, 0.0F, 1e3F)) return false;
+      if (m.reserved[0] != 0 || m.reserved[1] != 0) return false;
+    }
+    if (header_->material_count <= 1) return true;
+    for (std::uint32_t i = 0; i < header_->point_count; ++i) {  // bound: points
+      if (view_.material_indices_[i] >= header_->material_count) return false;
+    }
+    return true;
+  }
+
+  std::span<const std::byte> bytes_;
+  BlobView& view_;
+  const BlobHeader* header_ = nullptr;
+  std::uint32_t cursor_ = 0;
+};
+
+BlobStatus open_blob(std::span<const std::byte> bytes, BlobView& view) {
+  view = BlobView{};
+  const BlobStatus status = BlobValidator(bytes, view).run();
+  if (status != BlobStatus::kOk) {
+    view = BlobView{};
+  }
+  return status;
+}
+
+const char* describe(BlobStatus status) {
+  switch (status) {
+    case BlobStatus::kOk:
+      return "valid";
+    case BlobStatus::kMisaligned:
+      return "the bytes do not start on a 4-byte boundary";
+    case BlobStatus::kTooShort:
+      return "shorter than a blob's header";
+    case BlobStatus::kBadMagic:
+      return "not a Tactree blob";
+    case BlobStatus::kBadVersion:
+      return "made for another major version of Tactree";
+    case BlobStatus::kBadSize:
+      return "cut short, or something was appended";
+    case BlobStatus::kBadChecksum:
+      return "damaged: the checksum does not match";
+    case BlobStatus::kBadHeader:
+      return "the header holds an impossible count, text or reserved field";
+    case BlobStatus::kBadFigures:
+      return "the header's lengths contradict each other";
+    case BlobStatus::kBadSections:
+      return "the sections do not tile the blob";
+    case BlobStatus::kBadTree:
+      return "the octree is not well-formed";
+    case BlobStatus::kBadLeaves:
+      return "a leaf is empty, too full or out of order";
+    case BlobStatus::kBadPoints:
+      return "the points of a leaf are out of order";
+    case BlobStatus::kBadNeighbours:
+      return "the neighbour table names a cell that does not exist";
+    case BlobStatus::kBadMaterials:
+      return "a material is impossible or missing";
+  }
+  return "unknown status";
+}
+
+Vec3 BlobView::position(const Leaf& leaf, std::uint32_t index) const {
+  const std::uint32_t word = points_[index];
+  const std::uint32_t scale = depth_ - leaf.level;
+  const auto site = [scale](std::int32_t low, std::uint32_t octant, std::uint32_t rest) {
+    return static_cast<float>(
+        low + static_cast<std::int32_t>(((octant & 1U) << 9 | (rest & 511U)) << scale));
+  };
+  return {step_m_ * site(leaf.min.x, word >> 29, word >> 2),
+          step_m_ * site(leaf.min.y, word >> 30, word >> 11),
+          step_m_ * site(leaf.min.z, word >> 31, word >> 20)};
+}
+
+// Octahedral map: Meyer, Suessmuth, Sussner and Stamminger, "On Floating-Point Normal Vectors",
+// Eurographics Symposium on Rendering 2010.
+Vec3 BlobView::normal(std::uint32_t index) const {
+  const std::uint32_t code = static_cast<std::uint32_t>(normals_[index]) | (points_[index] & 3U)
+                                                                               << 16;
+  const float u = static_cast<float>(static_cast<std::int32_t>(code & 511U) - 255);
+  const float v = static_cast<float>(static_cast<std::int32_t>(code >> 9) - 255);
+  const float w = 255.0F - absolute(u) - absolute(v);
+  Vec3 n{u, v, w};
+  if (w < 0.0F) {
+    const float fold = -w;
+    n.x += u < 0.0F ? fold : -fold;
+    n.y += v < 0.0F ? fold : -fold;
+  }
+  return (1.0F / length(n)) * n;
+}
+
+LeafCursor::LeafCursor(const BlobView& view) : view_(view), done_(view.empty()) {
+  if (!done_) {
+    stack_[0] = {0, 0xFFU};
+    next();
+  }
+}
+
+void LeafCursor::next() {
+  while (true) {  // bound: 9 depth
+    Level& top = stack_[level_];
+    if (top.octants_left == 0) {
+      if (level_ == 0) {
+        done_ = true;
+        return;
+      }
+      --level_;
+      cell_ = {cell_.x >> 1, cell_.y >> 1, cell_.z >> 1};
+      continue;
+    }
+    const auto octant = static_cast<std::uint32_t>(std::countr_zero(top.octants_left));
+    top.octants_left &= top.octants_left - 1U;
+    const BlobNode node = view_.nodes()[top.node];
+    const std::uint32_t below = (1U << octant) - 1U;
+    const Int3 cell{cell_.x << 1 | static_cast<std::int32_t>(octant & 1U),
+                    cell_.y << 1 | static_cast<std::int32_t>((octant >> 1) & 1U),
+                    cell_.z << 1 | static_cast<std::int32_t>(octant >> 2)};
+    if (((node.leaves >> 24 >> octant) & 1U) != 0) {
+      const std::int32_t edge = kLeafUnits << (view_.depth() - level_ - 1U);
+      const std::int32_t* const root = view_.header().root_min;
+      leaf_ = view_.leaf(
+          (node.leaves & 0xFFFFFFU) + count_octants((node.leaves >> 24) & below), level_ + 1U,
+          {root[0] + cell.x * edge, root[1] + cell.y * edge, root[2] + cell.z * edge});
+      return;
+    }
+    if (((node.nodes >> 24 >> octant) & 1U) != 0) {
+      const std::uint32_t child =
+          (node.nodes & 0xFFFFFFU) + count_octants((node.nodes >> 24) & below);
+      ++level_;
+      stack_[level_] = {child, 0xFFU};
+      cell_ = cell;
+    }
+  }
+}
+
+}  // namespace tactree::core

@@ -1,0 +1,182 @@
+#include "tactree/core/octree.hpp"
+
+namespace tactree::core {
+namespace {
+
+// floor(v / step) as an exact integer. The quotient by multiplication is off by less than one
+// unit (|v| < 2^23 steps), and step * integer is exact by the blob's contract, so one comparison
+// on each side settles it.
+bool floor_to_lattice(float v, float step, float inverse_step, std::int32_t& units) {
+  const float quotient = v * inverse_step;
+  constexpr float kLimit = 2.0F * static_cast<float>(kMaxCoordinate);
+  if (!(quotient > -kLimit && quotient < kLimit)) {
+    return false;
+  }
+  units = static_cast<std::int32_t>(quotient);
+  if (step * static_cast<float>(units) > v) {
+    --units;
+  }
+  if (step * static_cast<float>(units) > v) {
+    --units;
+  }
+  if (step * static_cast<float>(units + 1) <= v) {
+    ++units;
+  }
+  return true;
+}
+
+constexpr std::uint32_t octant_of(std::uint32_t x, std::uint32_t y, std::uint32_t z,
+                                  std::uint32_t level_below) {
+  return ((x >> level_below) & 1U) | (((y >> level_below) & 1U) << 1) |
+         (((z >> level_below) & 1U) << 2);
+}
+
+// A cell of the finest level, counted from the root's lower corner.
+struct Cell {
+  std::uint32_t x;
+  std::uint32_t y;
+  std::uint32_t z;
+};
+
+bool descend(const BlobView& view, std::uint32_t node, std::uint32_t level, Cell cell, Leaf& leaf) {
+  const BlobNode* const nodes = view.nodes();
+  const Int3 root{view.header().root_min[0], view.header().root_min[1], view.header().root_min[2]};
+  std::uint32_t level_below = view.depth() - level;
+  while (level_below > 0) {  // bound: depth
+    --level_below;
+    const std::uint32_t octant = octant_of(cell.x, cell.y, cell.z, level_below);
+    const std::uint32_t below = (1U << octant) - 1U;
+    const BlobNode here = nodes[node];
+    const std::uint32_t leaf_mask = here.leaves >> 24;
+    if (((leaf_mask >> octant) & 1U) != 0) {
+      const std::uint32_t number = (here.leaves & 0xFFFFFFU) + count_octants(leaf_mask & below);
+      const auto corner = [level_below](std::uint32_t c) {
+        return static_cast<std::int32_t>((c >> level_below) << (level_below + 10U));
+      };
+      leaf = view.leaf(number, view.depth() - level_below,
+                       {root.x + corner(cell.x), root.y + corner(cell.y), root.z + corner(cell.z)});
+      return true;
+    }
+    const std::uint32_t node_mask = here.nodes >> 24;
+    if (((node_mask >> octant) & 1U) == 0) {
+      return false;
+    }
+    node = (here.nodes & 0xFFFFFFU) + count_octants(node_mask & below);
+  }
+  return false;
+}
+
+// First and last finest cell on one axis that [low, high] lattice units touch, cut to the root.
+struct CellRange {
+  std::uint32_t first = 0;
+  std::uint32_t count = 0;
+};
+
+CellRange cells_touched(std::int32_t low, std::int32_t high, std::uint32_t depth) {
+  const std::int32_t edge = kLeafUnits << depth;
+  if (high < 0 || low >= edge) {
+    return {};
+  }
+  const auto first = static_cast<std::uint32_t>(low < 0 ? 0 : low) >> 10;
+  const auto last = static_cast<std::uint32_t>(high >= edge ? edge - 1 : high) >> 10;
+  return {first, last - first + 1U};
+}
+
+bool contains(const LeafSet& set, std::uint32_t number) {
+  for (std::uint32_t i = 0; i < set.count; ++i) {  // bound: 8
+    if (set.leaves[i].number == number) {
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+bool to_lattice(const BlobView& view, Vec3 position, Int3& site) {
+  if (view.empty()) {
+    return false;
+  }
+  const BlobHeader& header = view.header();
+  const float step = view.step_m();
+  const float inverse = view.inverse_step();
+  if (!floor_to_lattice(position.x, step, inverse, site.x) ||
+      !floor_to_lattice(position.y, step, inverse, site.y) ||
+      !floor_to_lattice(position.z, step, inverse, site.z)) {
+    return false;
+  }
+  const std::uint32_t edge = static_cast<std::uint32_t>(kLeafUnits) << view.depth();
+  return static_cast<std::uint32_t>(site.x - header.root_min[0]) < edge &&
+         static_cast<std::uint32_t>(site.y - header.root_min[1]) < edge &&
+         static_cast<std::uint32_t>(site.z - header.root_min[2]) < edge;
+}
+
+bool find_leaf(const BlobView& view, Int3 site, Leaf& leaf) {
+  return find_leaf_below(view, 0, 0, site, leaf);
+}
+
+bool find_leaf_below(const BlobView& view, std::uint32_t node, std::uint32_t level, Int3 site,
+                     Leaf& leaf) {
+  const BlobHeader& header = view.header();
+  return descend(view, node, level,
+                 {static_cast<std::uint32_t>(site.x - header.root_min[0]) >> 10,
+                  static_cast<std::uint32_t>(site.y - header.root_min[1]) >> 10,
+                  static_cast<std::uint32_t>(site.z - header.root_min[2]) >> 10},
+                 leaf);
+}
+
+bool find_leaf(const BlobView& view, Vec3 position, Leaf& leaf) {
+  Int3 site;
+  return to_lattice(view, position, site) && find_leaf(view, site, leaf);
+}
+
+void find_leaves_within(const BlobView& view, Vec3 centre, float r, LeafSet& found) {
+  found.count = 0;
+  if (view.empty() || !(r >= 0.0F && r <= view.reach_m())) {
+    return;
+  }
+  const BlobHeader& header = view.header();
+  const float step = view.step_m();
+  const float inverse = view.inverse_step();
+  const float c[3] = {centre.x, centre.y, centre.z};
+  CellRange range[3];
+  std::uint32_t centre_in_upper[3] = {};
+  for (std::uint32_t axis = 0; axis < 3; ++axis) {  // bound: 3
+    // centre +- r is rounded, by less than one unit: hence one unit more on each side, for which
+    // open_blob() has checked that there is room.
+    std::int32_t low;
+    std::int32_t high;
+    std::int32_t middle;
+    if (!floor_to_lattice(c[axis] - r, step, inverse, low) ||
+        !floor_to_lattice(c[axis] + r, step, inverse, high) ||
+        !floor_to_lattice(c[axis], step, inverse, middle)) {
+      return;
+    }
+    const std::int32_t root = header.root_min[axis];
+    range[axis] = cells_touched(low - 1 - root, high + 1 - root, view.depth());
+    if (range[axis].count == 0) {
+      return;
+    }
+    const std::int32_t middle_cell = (middle - root) >> 10;
+    centre_in_upper[axis] =
+        range[axis].count == 2U && middle_cell == static_cast<std::int32_t>(range[axis].first + 1U)
+            ? 1U
+            : 0U;
+  }
+  for (std::uint32_t corner = 0; corner < kLeavesPerQuery; ++corner) {  // bound: 8
+    const std::uint32_t dx = (corner & 1U) ^ centre_in_upper[0];
+    const std::uint32_t dy = ((corner >> 1) & 1U) ^ centre_in_upper[1];
+    const std::uint32_t dz = (corner >> 2) ^ centre_in_upper[2];
+    if (dx >= range[0].count || dy >= range[1].count || dz >= range[2].count) {
+      continue;
+    }
+    Leaf leaf;
+    if (descend(view, 0, 0, {range[0].first + dx, range[1].first + dy, range[2].first + dz},
+                leaf) &&
+        !contains(found, leaf.number)) {
+      found.leaves[found.count++] = leaf;
+    }
+  }
+}
+
+}  // namespace tactree::core
