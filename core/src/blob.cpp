@@ -374,8 +374,8 @@ Vec3 BlobView::position(const Leaf& leaf, std::uint32_t index) const {
   const std::uint32_t word = points_[index];
   const std::uint32_t scale = depth_ - leaf.level;
   const auto site = [scale](std::int32_t low, std::uint32_t octant, std::uint32_t rest) {
-    return static_cast<float>(
-        low + static_cast<std::int32_t>(((octant & 1U) << 9 | (rest & 511U)) << scale));
+    const std::uint32_t q = (octant & 1U) << 9 | (rest & 511U);
+    return static_cast<float>(low + static_cast<std::int32_t>((2U * q + 1U) << scale));
   };
   return {step_m_ * site(leaf.min.x, word >> 29, word >> 2),
           step_m_ * site(leaf.min.y, word >> 30, word >> 11),

@@ -10,10 +10,9 @@ class LeafScan {
  public:
   LeafScan(const BlobView& view, const Leaf& leaf, Vec3 probe)
       : words_(view.point_words()),
-        scale_(view.step_m() * static_cast<float>(1U << (view.depth() - leaf.level))),
-        local_{probe.x - view.step_m() * static_cast<float>(leaf.min.x),
-               probe.y - view.step_m() * static_cast<float>(leaf.min.y),
-               probe.z - view.step_m() * static_cast<float>(leaf.min.z)} {}
+        scale_(view.step_m() * static_cast<float>(2U << (view.depth() - leaf.level))),
+        local_{local(view, leaf, probe.x, leaf.min.x), local(view, leaf, probe.y, leaf.min.y),
+               local(view, leaf, probe.z, leaf.min.z)} {}
 
   /// From the point to the probe, m.
   [[nodiscard]] Vec3 offset(std::uint32_t index) const {
@@ -23,14 +22,19 @@ class LeafScan {
             local_.z - scale_ * coordinate(word >> 31, word >> 20)};
   }
 
-  /// Squared distance from the probe to the leaf's cube, m^2; rounded down, never up.
+  /// Squared distance from the probe to the cube around the leaf's sites, m^2; not rounded up.
   [[nodiscard]] float distance_squared_to_cube() const {
-    const float edge = scale_ * static_cast<float>(kLeafUnits);
+    const float edge = scale_ * static_cast<float>(kLeafUnits / 2 - 1);
     const Vec3 outside{beyond(local_.x, edge), beyond(local_.y, edge), beyond(local_.z, edge)};
     return 0.999999F * length_squared(outside);
   }
 
  private:
+  // Counted from the leaf's first site, so that a site's coordinate is scale * 0 ... 1023.
+  static float local(const BlobView& view, const Leaf& leaf, float v, std::int32_t low) {
+    const std::int32_t first_site = low + (1 << (view.depth() - leaf.level));
+    return v - view.step_m() * static_cast<float>(first_site);
+  }
   static float coordinate(std::uint32_t octant, std::uint32_t rest) {
     return static_cast<float>(static_cast<std::int32_t>((octant & 1U) << 9 | (rest & 511U)));
   }

@@ -51,7 +51,7 @@ bool descend(const BlobView& view, std::uint32_t node, std::uint32_t level, Cell
     if (((leaf_mask >> octant) & 1U) != 0) {
       const std::uint32_t number = (here.leaves & 0xFFFFFFU) + count_octants(leaf_mask & below);
       const auto corner = [level_below](std::uint32_t c) {
-        return static_cast<std::int32_t>((c >> level_below) << (level_below + 10U));
+        return static_cast<std::int32_t>((c >> level_below) << (level_below + kLeafShift));
       };
       leaf = view.leaf(number, view.depth() - level_below,
                        {root.x + corner(cell.x), root.y + corner(cell.y), root.z + corner(cell.z)});
@@ -77,8 +77,8 @@ CellRange cells_touched(std::int32_t low, std::int32_t high, std::uint32_t depth
   if (high < 0 || low >= edge) {
     return {};
   }
-  const auto first = static_cast<std::uint32_t>(low < 0 ? 0 : low) >> 10;
-  const auto last = static_cast<std::uint32_t>(high >= edge ? edge - 1 : high) >> 10;
+  const auto first = static_cast<std::uint32_t>(low < 0 ? 0 : low) >> kLeafShift;
+  const auto last = static_cast<std::uint32_t>(high >= edge ? edge - 1 : high) >> kLeafShift;
   return {first, last - first + 1U};
 }
 
@@ -119,9 +119,9 @@ bool find_leaf_below(const BlobView& view, std::uint32_t node, std::uint32_t lev
                      Leaf& leaf) {
   const BlobHeader& header = view.header();
   return descend(view, node, level,
-                 {static_cast<std::uint32_t>(site.x - header.root_min[0]) >> 10,
-                  static_cast<std::uint32_t>(site.y - header.root_min[1]) >> 10,
-                  static_cast<std::uint32_t>(site.z - header.root_min[2]) >> 10},
+                 {static_cast<std::uint32_t>(site.x - header.root_min[0]) >> kLeafShift,
+                  static_cast<std::uint32_t>(site.y - header.root_min[1]) >> kLeafShift,
+                  static_cast<std::uint32_t>(site.z - header.root_min[2]) >> kLeafShift},
                  leaf);
 }
 
@@ -157,7 +157,7 @@ void find_leaves_within(const BlobView& view, Vec3 centre, float r, LeafSet& fou
     if (range[axis].count == 0) {
       return;
     }
-    const std::int32_t middle_cell = (middle - root) >> 10;
+    const std::int32_t middle_cell = (middle - root) >> kLeafShift;
     centre_in_upper[axis] =
         range[axis].count == 2U && middle_cell == static_cast<std::int32_t>(range[axis].first + 1U)
             ? 1U

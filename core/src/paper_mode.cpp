@@ -36,7 +36,7 @@ std::int32_t cell_corner(std::int32_t site, std::int32_t root, std::uint32_t shi
 // else (s longer than the leaf, or the probe outside it) from the root. Both find the same leaf.
 bool find_neighbour(const BlobView& view, const Leaf& from, std::uint32_t direction, Int3 site,
                     Leaf& found) {
-  const std::uint32_t shift = view.depth() - from.level + 10U;
+  const std::uint32_t shift = view.depth() - from.level + kLeafShift;
   Int3 next_to = from.min;
   const std::int32_t edge = (direction & 1U) != 0 ? 1 << shift : -(1 << shift);
   (direction < 2 ? next_to.x : direction < 4 ? next_to.y : next_to.z) += edge;
@@ -57,7 +57,7 @@ bool find_neighbour(const BlobView& view, const Leaf& from, std::uint32_t direct
   if ((entry & kNeighbourIsNode) != 0) {
     return find_leaf_below(view, index, level, site, found);
   }
-  found = view.leaf(index, level, corner_at(view.depth() - level + 10U));
+  found = view.leaf(index, level, corner_at(view.depth() - level + kLeafShift));
   return true;
 }
 

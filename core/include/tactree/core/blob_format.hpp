@@ -5,8 +5,10 @@
 //   nodes, leaves, points, normals [, neighbours] [, materials [, material indices]]
 //
 // All positions lie on one integer lattice: metres = step_m * integer. The step has so few
-// significant bits that this product is exact in float32 for every lattice site of the root cube,
-// so every reader, on any core, in float or double, decodes the very same number.
+// significant bits that this product is exact in float32 for every lattice coordinate of the root
+// cube, so every reader, on any core, in float or double, decodes the very same number.
+// A finest leaf is 2048 units wide and has 1024 sites on each axis, in the middle of two units
+// each; so a point is within one unit of its site, and strictly inside its leaf.
 
 #include <bit>
 #include <cstddef>
@@ -21,8 +23,10 @@ inline constexpr std::uint8_t kBlobMagic[8] = {'T', 'A', 'C', 'T', 'R', 'E', 'E'
 inline constexpr std::uint16_t kBlobMajor = 1;
 inline constexpr std::uint16_t kBlobMinor = 0;
 
-inline constexpr std::uint32_t kMaxDepth = 12;    ///< octree levels below the root
-inline constexpr std::int32_t kLeafUnits = 1024;  ///< lattice sites along the edge of a finest leaf
+inline constexpr std::uint32_t kMaxDepth = 11;  ///< octree levels below the root
+inline constexpr std::uint32_t kLeafShift = 11;
+inline constexpr std::int32_t kLeafUnits = 1
+                                           << kLeafShift;  ///< edge of a finest leaf, lattice units
 inline constexpr std::int32_t kMaxCoordinate = 1 << 22;  ///< |lattice coordinate| of the root cube
 inline constexpr std::uint32_t kMaxLeaves = 1U << 24;
 inline constexpr std::uint32_t kMaxNodes = 1U << 24;
@@ -55,9 +59,9 @@ struct BlobHeader {
   std::uint32_t checksum;  ///< CRC-32 of every byte of the blob but these four
 
   std::uint32_t profile;  ///< Profile
-  std::uint32_t depth;    ///< levels below the root; the root's edge is 1024 << depth lattice units
-  float step_m;           ///< lattice unit
-  std::int32_t root_min[3];  ///< lattice units, multiples of 1024
+  std::uint32_t depth;    ///< levels below the root; the root's edge is 2048 << depth lattice units
+  float step_m;           ///< lattice unit: half a quantisation step
+  std::int32_t root_min[3];  ///< lattice units, multiples of 2048
 
   std::uint32_t point_count;
   std::uint32_t leaf_count;
@@ -73,7 +77,7 @@ struct BlobHeader {
   float spacing_m;           ///< h: what the points were resampled to
   float support_radius_m;    ///< R: of the surface fit
   float reach_m;             ///< R + slack: largest radius of an exact query
-  float leaf_edge_min_m;     ///< E = 1024 step_m
+  float leaf_edge_min_m;     ///< E = 2048 step_m
   float aabb_edge_m;         ///< a: vertex box of the paper's collision test
   float six_point_offset_m;  ///< s
   float largest_gap_m;       ///< widest hole or gap the builder found; 0 when not known
