@@ -1,0 +1,59 @@
+#include "test_files.hpp"
+
+namespace tactree::builder {
+namespace {
+
+using Colour = std::array<std::uint8_t, 3>;
+using Triangle = std::array<std::uint32_t, 3>;
+
+class OffTest : public TestFiles {};
+
+TEST_F(OffTest, Plain) {
+  const Scan scan = read(
+      "OFF # a square\n# comment\n\n4 1 0\n0 0 0\n1 0 0 # here\n\n1 1 5648349.895035\n0 1 0\n"
+      "4 0 1 2 3 255 0 0\n");
+  EXPECT_EQ(scan.format, "OFF");
+  EXPECT_EQ(scan.positions.at(2).z(), 5648349.895035);
+  ASSERT_EQ(scan.triangles.size(), 2U);
+  EXPECT_EQ(scan.triangles[1], (Triangle{0, 2, 3}));
+  EXPECT_TRUE(scan.colours.empty());
+}
+
+TEST_F(OffTest, CountsBesideTheKeywordAndPointsOnly) {
+  const Scan scan = read("OFF 2 0\n1 2 3\n4 5 6");
+  EXPECT_EQ(scan.positions.size(), 2U);
+  EXPECT_FALSE(scan.is_mesh());
+}
+
+TEST_F(OffTest, ColoursAndNormals) {
+  const Scan coff =
+      read("COFF\n3 1 0\n0 0 0 255 128 0 255\n1 0 0 1 2 3 255\n0 1 0 0 0 0 255\n3 0 1 2\n");
+  EXPECT_EQ(coff.colours.at(0), (Colour{255, 128, 0}));
+  EXPECT_EQ(coff.colours.at(1), (Colour{1, 2, 3}));
+  const Scan unnamed = read("OFF\n3 1\n0 0 0 1.0 0.5 0\n1 0 0 0 0 1\n0 1 0 0 0 0\n3 0 1 2\n");
+  EXPECT_EQ(unnamed.colours.at(0), (Colour{255, 128, 0}));
+  const Scan noff = read("NOFF\n3 1 0\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 1 0\n3 0 1 2\n");
+  EXPECT_EQ(noff.normals.at(2), Eigen::Vector3f(0, 1, 0));
+  EXPECT_TRUE(noff.colours.empty());
+}
+
+TEST_F(OffTest, CountsAreNotTrusted) {
+  expect_parts(refusal_of("OFF\n353535235358 6 0\n0 0 0\n", "m.off"), "m.off", "line 2",
+               "353535235358 points", "room");
+  expect_parts(refusal_of("OFF\n1 99999999999 0\n0 0 0\n"), "line 2", "99999999999 faces");
+  expect_parts(refusal_of("OFF\n-1 6 0\n0 0 0\n"), "line 2", "\"-1\"");
+  expect_parts(refusal_of("OFF\n0 0 0\n"), "holds no point");
+  expect_parts(refusal_of("OFF\n"), "before its counts");
+}
+
+TEST_F(OffTest, DamageNamesTheLine) {
+  expect_parts(refusal_of("OFF\n3 1 0\n0 0 0\n1 0\n0 1 0\n3 0 1 2\n"), "line 4", "fewer than 3");
+  expect_parts(refusal_of("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1\n"), "line 6", "corner 3 of 3");
+  expect_parts(refusal_of("OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"), "1 of 2 faces");
+  expect_parts(refusal_of("OFF\n4 1 0\n0 0 0\n1 0 0\n0 1 0 #####\n"), "3 of 4 points");
+  expect_parts(refusal_of("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n"), "none of the 1 faces",
+               "line 6");
+}
+
+}  // namespace
+}  // namespace tactree::builder
