@@ -95,6 +95,17 @@ TEST_F(ObjTest, BrokenFaces) {
                "line 5", "none of the 2 faces");
 }
 
+TEST_F(ObjTest, FacesWithoutEndAreRefused) {
+  std::string text = kFour;
+  for (int i = 0; i < 5000; ++i) text += i % 2 == 0 ? "f 1 2 3 4\n" : "f 1 2 3\n";
+  const auto path = write("faces.obj", text);
+  ReadOptions options;
+  options.scan_memory_bytes = 200'000;
+  EXPECT_EQ(read_scan(path, options).triangles.size(), 7500U);
+  options.scan_memory_bytes = 80'000;
+  expect_parts(refusal(path, options), "too large", "4 points");
+}
+
 TEST_F(ObjTest, BrokenPointIsRefused) {
   expect_parts(refusal_of("v 0 0 0\nv 1 0\nv 1 1 0\nf 1 2 3\n", "m.obj"), "m.obj", "line 2",
                "fewer than three numbers");

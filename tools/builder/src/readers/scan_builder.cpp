@@ -14,6 +14,7 @@ namespace tactree::builder {
 namespace {
 
 constexpr std::uint32_t kDropped = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint64_t kMaxEntries = kDropped - 1;
 constexpr const char* kNonFinite = "non_finite";
 constexpr const char* kDegenerateFace = "degenerate_face";
 constexpr const char* kFaceIndexOutOfRange = "face_index_out_of_range";
@@ -97,15 +98,15 @@ std::uint64_t ScanBuilder::points_that_fit() const {
   const std::uint64_t other = bytes_for(0, scan_.triangles.capacity());
   const std::uint64_t per_point = bytes_for(1, 0) - bytes_for(0, 0);
   const std::uint64_t fit = other >= memory_bytes_ ? 0 : (memory_bytes_ - other) / per_point;
-  return std::min<std::uint64_t>(fit, kDropped - 1);
+  return std::min(fit, kMaxEntries);
 }
 
-void ScanBuilder::throw_too_large(std::uint64_t points, std::uint64_t triangles) const {
+void ScanBuilder::throw_too_large(std::uint64_t points) const {
   throw ReadError(
       file_, "",
-      fmt::format("the scan is too large: {} points and {} triangles need more than the {} that "
+      fmt::format("the scan is too large: {} points and {} faces need more than the {} that "
                   "a scan may take",
-                  points, triangles, mebibytes(memory_bytes_)),
+                  std::max(points, points_read_), faces_read_, mebibytes(memory_bytes_)),
       "thin it out first, for example in CloudCompare with Edit > Subsample");
 }
 
@@ -117,7 +118,7 @@ void ScanBuilder::set_point_capacity(std::uint64_t count) {
 }
 
 void ScanBuilder::reserve_points(std::uint64_t count) {
-  if (count > points_that_fit()) throw_too_large(count, scan_.triangles.size());
+  if (count > points_that_fit()) throw_too_large(count);
   set_point_capacity(count);
 }
 
@@ -128,16 +129,28 @@ void ScanBuilder::expect_points(std::uint64_t count) {
 void ScanBuilder::charge(std::uint64_t bytes) {
   extra_bytes_ += bytes;
   if (bytes_for(scan_.positions.capacity(), scan_.triangles.capacity()) > memory_bytes_) {
-    throw_too_large(scan_.positions.size(), scan_.triangles.size());
+    throw_too_large();
   }
+}
+
+std::uint64_t ScanBuilder::grown_capacity(std::uint64_t size, std::uint64_t more,
+                                          std::uint64_t entry_bytes,
+                                          std::uint64_t other_bytes) const {
+  const std::uint64_t needed = size + more;
+  const std::uint64_t fit =
+      other_bytes >= memory_bytes_ ? 0 : (memory_bytes_ - other_bytes) / entry_bytes;
+  const std::uint64_t capacity =
+      std::min({std::max({std::uint64_t{1024}, 2 * size, needed}), fit, kMaxEntries});
+  // While the list moves, its old place is taken as well; a quarter above the limit is for that.
+  const std::uint64_t while_moving = other_bytes + 2 * size * entry_bytes;
+  if (capacity < needed || while_moving > memory_bytes_ + memory_bytes_ / 4) throw_too_large();
+  return capacity;
 }
 
 void ScanBuilder::grow_points() {
   const std::uint64_t size = scan_.positions.size();
-  const std::uint64_t wanted = std::max<std::uint64_t>(1024, 2 * size);
-  const std::uint64_t capacity = std::min(wanted, points_that_fit());
-  if (capacity <= size) throw_too_large(size + 1, scan_.triangles.size());
-  set_point_capacity(capacity);
+  const std::uint64_t other = bytes_for(0, scan_.triangles.capacity());
+  set_point_capacity(grown_capacity(size, 1, bytes_for(1, 0) - bytes_for(0, 0), other));
 }
 
 void ScanBuilder::add_point(const PointRow& row) {
@@ -153,7 +166,12 @@ void ScanBuilder::add_point(const PointRow& row) {
 }
 
 void ScanBuilder::drop_point() {
-  if (dropped_.size() == dropped_.capacity()) charge(0);
+  if (dropped_.size() == dropped_.capacity()) {
+    const std::uint64_t entry_bytes = sizeof(std::uint32_t);
+    const std::uint64_t all = bytes_for(scan_.positions.capacity(), scan_.triangles.capacity());
+    dropped_.reserve(static_cast<std::size_t>(
+        grown_capacity(dropped_.size(), 1, entry_bytes, all - entry_bytes * dropped_.size())));
+  }
   dropped_.push_back(static_cast<std::uint32_t>(points_read_));
   ++points_read_;
 }
@@ -225,22 +243,26 @@ void ScanBuilder::add_face(std::span<const std::int64_t> corners, std::uint64_t 
     add_triangle(triangle);
     return;
   }
-  if (polygons_.capacity() - polygons_.size() <= corners.size()) {
-    polygons_.reserve(2 * polygons_.size() + corners.size() + 1024);
-    charge(0);
+  add_polygon(corners);
+}
+
+void ScanBuilder::add_polygon(std::span<const std::int64_t> corners) {
+  const std::size_t size = polygons_.size();
+  if (polygons_.capacity() - size <= corners.size()) {
+    const std::uint64_t entry_bytes = sizeof(std::uint32_t);
+    const std::uint64_t all = bytes_for(scan_.positions.capacity(), scan_.triangles.capacity());
+    polygons_.reserve(static_cast<std::size_t>(grown_capacity(
+        size, corners.size() + 1, entry_bytes, all - entry_bytes * polygons_.capacity())));
   }
   polygons_.push_back(static_cast<std::uint32_t>(corners.size()));
   for (const std::int64_t corner : corners) polygons_.push_back(static_cast<std::uint32_t>(corner));
 }
 
 void ScanBuilder::add_triangle(const std::array<std::uint32_t, 3>& triangle) {
-  const std::uint64_t size = scan_.triangles.size();
-  if (size == scan_.triangles.capacity()) {
+  if (scan_.triangles.size() == scan_.triangles.capacity()) {
     const std::uint64_t other = bytes_for(scan_.positions.capacity(), 0);
-    const std::uint64_t fit = other >= memory_bytes_ ? 0 : (memory_bytes_ - other) / 12;
-    const std::uint64_t capacity = std::min(std::max<std::uint64_t>(1024, 2 * size), fit);
-    if (capacity <= size) throw_too_large(scan_.positions.size(), size + 1);
-    scan_.triangles.reserve(static_cast<std::size_t>(capacity));
+    scan_.triangles.reserve(static_cast<std::size_t>(
+        grown_capacity(scan_.triangles.size(), 1, sizeof triangle, other)));
   }
   scan_.triangles.push_back(triangle);
 }

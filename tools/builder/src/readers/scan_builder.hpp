@@ -69,13 +69,20 @@ class ScanBuilder {
  private:
   [[nodiscard]] std::uint64_t bytes_for(std::uint64_t points, std::uint64_t triangles) const;
   [[nodiscard]] std::uint64_t points_that_fit() const;
-  [[noreturn]] void throw_too_large(std::uint64_t points, std::uint64_t triangles) const;
+  /// points: how many are promised, when they are known to be too many.
+  [[noreturn]] void throw_too_large(std::uint64_t points = 0) const;
   void set_point_capacity(std::uint64_t count);
+  /// The capacity that a list of `size` entries moves to for `more` of them. Throws ReadError when
+  /// that is above the limit; other_bytes is all that is taken besides.
+  [[nodiscard]] std::uint64_t grown_capacity(std::uint64_t size, std::uint64_t more,
+                                             std::uint64_t entry_bytes,
+                                             std::uint64_t other_bytes) const;
   void grow_points();
   void add_normal(const PointRow& row);
   void add_colour(const PointRow& row);
   void leave_unit_colours();
   void drop_point();
+  void add_polygon(std::span<const std::int64_t> corners);
   void add_triangle(const std::array<std::uint32_t, 3>& triangle);
   void count_bad_face(const char* cause, std::uint64_t place);
 
