@@ -101,7 +101,12 @@ int import(const char* file, const char* hint) {
   constexpr unsigned kSteps = aiProcess_ValidateDataStructure | aiProcess_RemoveComponent |
                               aiProcess_Triangulate | aiProcess_JoinIdenticalVertices;
   const aiScene* scene = importer.ReadFile(files->alias(), kSteps);
-  if (scene == nullptr) return refuse(importer.GetErrorString());
+  if (scene == nullptr) {
+    std::string reason = importer.GetErrorString();
+    const std::size_t alias = reason.find(files->alias());
+    if (alias != std::string::npos) reason.replace(alias, files->alias().size(), file);
+    return refuse(reason.c_str());
+  }
   std::FILE* to = ::fdopen(output, "wb");
   SceneWriter writer(*scene, to);
   if (writer.write()) return 0;
