@@ -3,7 +3,9 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -41,5 +43,8 @@ struct WrittenBlob {
 /// Deterministic. Throws std::runtime_error with a sentence for the user when the model cannot be
 /// represented (too large for its spacing, no points).
 [[nodiscard]] WrittenBlob write_blob(const Model& model);
+
+/// Writes the checksum that a blob's other bytes call for. Precondition: at least a header long.
+void seal(std::span<std::byte> blob);
 
 }  // namespace tactree::builder

@@ -1,0 +1,35 @@
+#pragma once
+// Quantised points in depth-first leaf order, and the octree over them.
+
+#include <cstdint>
+#include <vector>
+
+#include "lattice.hpp"
+
+namespace tactree::builder {
+
+struct BuiltLeaf {
+  core::Int3 min{};         ///< lattice units
+  std::uint32_t level = 0;
+  std::uint32_t first = 0;  ///< into Octree::order
+  std::uint32_t count = 0;
+};
+
+struct Octree {
+  Lattice lattice;
+  std::vector<core::BlobNode> nodes;
+  std::vector<BuiltLeaf> leaves;         ///< by leaf number
+  std::vector<std::uint32_t> order;      ///< position indices, leaf by leaf, words ascending
+  std::vector<std::uint32_t> words;      ///< position bits of the point words, beside `order`
+  std::uint64_t merged = 0;              ///< points that fell on an occupied site
+};
+
+/// Splits the root until a leaf holds at most `leaf_points` points or has the lattice's finest
+/// edge; 0 splits every leaf down to the finest edge. Of points on one site the first is kept.
+[[nodiscard]] Octree build_octree(const std::vector<Eigen::Vector3d>& positions,
+                                  const Lattice& lattice, std::uint32_t leaf_points);
+
+/// Six entries a leaf: see blob_format.hpp.
+[[nodiscard]] std::vector<std::uint32_t> neighbour_table(const Octree& tree);
+
+}  // namespace tactree::builder
