@@ -1,0 +1,89 @@
+#pragma once
+// Everything a board or a user can set about the control loop: unit, range and default of each.
+
+#include <cstdint>
+
+#include "tactree/core/kinematics.hpp"
+#include "tactree/core/safety_gate.hpp"
+#include "tactree/core/vec3.hpp"
+
+namespace tactree::core {
+
+enum class RenderMode : std::uint8_t {
+  kSurface = 0,  ///< fitted surface, proxy, friction
+  kPaper = 1,    ///< the paper's collision boxes and nearest point
+};
+
+/// The defaults are safe for a PHANTOM Premium class device at 1 kHz.
+struct Configuration {
+  float rate_hz = 1000.0F;  ///< ticks per second: 100 .. 20 000
+  RenderMode mode = RenderMode::kSurface;
+  DeviceModel device{};   ///< kinematics.hpp
+  Vec3 model_origin_m{};  ///< origin of the model in the device's frame: within +-10 m
+
+  // What the hand feels, where the model carries no materials of its own.
+  float stiffness_N_m = 500.0F;       ///< 0 .. 1e5, and below the stability limit with a hand
+  float damping_Ns_m = 0.5F;          ///< 0 .. 1000
+  float static_friction = 0.4F;       ///< 0 .. 2
+  float dynamic_friction = 0.3F;      ///< 0 .. static_friction
+  float velocity_cutoff_hz = 200.0F;  ///< low-pass filter of the velocity: 1 .. rate_hz / 2
+  /// Follow the blob's materials where it has any, each stiffness at most the limit above.
+  bool use_materials = true;
+
+  // The device and the hand, for the stability limit.
+  float device_damping_Ns_m = 0.05F;  ///< 0 .. 1000
+  float hand_damping_Ns_m = 1.0F;     ///< 0 .. 1000: a light hand
+  float delay_s = 0.0F;               ///< from encoder to force, beyond the sampling: 0 .. 0.1
+
+  // Limits.
+  float force_max_N = 8.0F;  ///< 0.01 .. 1000
+  float slew_N_s = 2000.0F;  ///< such that a tick's share is force_max_N * (1e-4 .. 2)
+  float effort_max[kAxes] = {8.5F, 8.5F, 8.5F};              ///< N or Nm: 1e-4 .. 1000
+  float effort_slew_s[kAxes] = {2000.0F, 2000.0F, 2000.0F};  ///< N/s or Nm/s, as slew_N_s
+  float ramp_s = 0.25F;         ///< from 0 to the whole force: 2 ticks .. 10 s
+  float speed_max_m_s = 10.0F;  ///< of the probe; faster is an encoder fault: 0.1 .. 100
+
+  // Hand-shakes.
+  bool link_required = false;      ///< true: the session dies with its link
+  float link_timeout_s = 0.02F;    ///< 0.005 .. 0.1; cannot be disabled
+  bool dead_man_required = true;   ///< false: a second arm command takes its place
+  float enable_timeout_s = 0.05F;  ///< for the enable line's read-back to follow: 0.001 .. 1
+};
+
+enum class ConfigurationStatus : std::uint8_t {
+  kOk = 0,
+  kBusy,  ///< armed or active: stop first
+  kBadRate,
+  kBadMode,
+  kBadDevice,
+  kBadOrigin,
+  kBadStiffness,
+  kBadDamping,
+  kBadFriction,
+  kBadFilter,
+  kBadLimit,  ///< force_max_N, slew_N_s, effort_max, effort_slew_s
+  kBadRamp,
+  kBadSpeed,
+  kBadTimeout,
+  kUnstable,  ///< stiffness beyond the stability limit even with a hand
+};
+
+/// The status as words for people: "rate_hz is outside 100 .. 20000", ...
+[[nodiscard]] const char* describe(ConfigurationStatus status);
+
+/// Is every figure finite, in its range and consistent with the others? Cost: constant.
+[[nodiscard]] ConfigurationStatus check(const Configuration& configuration);
+
+/// Stiffest stable wall, N/m: (b + B + b_hand) / (T / 2 + t_d), after Colgate and Brown, "Factors
+/// affecting the Z-width of a haptic display", ICRA 1994, with the delay and the hand; within 1 %
+/// of the simulated limit. Half of it is a design value.
+struct StabilityLimit {
+  float without_hand_N_m = 0.0F;
+  float with_hand_N_m = 0.0F;
+};
+[[nodiscard]] StabilityLimit stability_limit(const Configuration& configuration);
+
+/// The gate's share of a configuration, per tick. Precondition: rate_hz > 0.
+[[nodiscard]] GateLimits gate_limits(const Configuration& configuration);
+
+}  // namespace tactree::core

@@ -1,0 +1,143 @@
+#pragma once
+// One tick of the control loop, from encoder counts to motor command:
+//   counts -> probe, velocity -> faults, state -> contact, force -> SafetyGate -> motor command
+//
+// Interrupt safe as a whole: one context owns a Controller; nothing is shared. Time is an input:
+// one call of step() is one tick of 1 / rate_hz. RAM: sizeof(Controller), about 5 KiB.
+
+#include <cstdint>
+
+#include "tactree/core/blob.hpp"
+#include "tactree/core/configuration.hpp"
+#include "tactree/core/faults.hpp"
+#include "tactree/core/renderer.hpp"
+#include "tactree/core/safety_gate.hpp"
+#include "tactree/core/state_machine.hpp"
+#include "tactree/core/surface.hpp"
+#include "tactree/core/velocity.hpp"
+
+namespace tactree::core {
+
+/// At most one command a tick.
+enum class Command : std::uint8_t {
+  kNone = 0,
+  kArm,
+  kStop,
+  kClearFault,
+};
+
+/// What one read of the encoders gives.
+struct EncoderReading {
+  std::int32_t counts[kAxes] = {0, 0, 0};  ///< wrap around at 2^32
+  bool valid[kAxes] = {false, false, false};
+};
+
+struct Input {
+  EncoderReading encoders{};
+  bool emergency_stop = true;     ///< true: pressed, or its wire is open
+  bool dead_man = false;          ///< true: held
+  bool enable_read_back = false;  ///< true: the amplifiers have power
+  bool motors_ok = false;         ///< false: the motor bank reports a failure
+  bool link_alive = false;        ///< a valid message came in since the last tick
+  std::uint32_t overruns = 0;     ///< deadlines missed since the last tick
+  Command command = Command::kNone;
+};
+
+/// What a tick did: for telemetry, plots and tests. Positions in the model's frame.
+struct Status {
+  std::uint32_t tick = 0;  ///< wraps around
+  State state = State::kBoot;
+  FaultMask faults = 0;        ///< latched
+  LimitMask limits = 0;        ///< that held the force back in this tick
+  std::uint32_t overruns = 0;  ///< since the start; stays at its maximum
+  Vec3 probe{};                ///< m
+  Vec3 velocity{};             ///< m/s
+  Rendering rendering{};       ///< contact, proxy, normal, force wanted
+  Vec3 force{};                ///< N, after the gate: what the hand is to feel
+  /// Non-zero exactly when a fault is latched or a limit acts.
+  [[nodiscard]] bool summary() const { return faults != 0U || limits != 0U; }
+};
+
+struct Output {
+  MotorCommand motors;
+  bool enable = false;  ///< what the enable line must be
+  Status status{};
+};
+
+enum class ModelStatus : std::uint8_t {
+  kOk = 0,
+  kBusy,           ///< armed or active: stop first
+  kNotConfigured,  ///< configure() first
+  kEmpty,          ///< no model in the view
+  kNoReach,        ///< built without the guarantees that surface mode needs
+  kTooManyPoints,  ///< a ball may hold more than kMaxCandidates points
+};
+[[nodiscard]] const char* describe(ModelStatus status);
+
+class Controller {
+ public:
+  /// Takes a configuration when it is valid and the motors are off; else changes nothing.
+  [[nodiscard]] ConfigurationStatus configure(const Configuration& configuration);
+
+  /// Takes a model when the mode can render it and the motors are off; else keeps the old one.
+  /// Precondition: configured. The blob must outlive its use and not change.
+  [[nodiscard]] ModelStatus load_model(const BlobView& view);
+
+  /// Gives the model up; refused (false) while armed or active.
+  [[nodiscard]] bool unload_model();
+
+  /// One tick. Accepts every input. Cost: Renderer::update() and some 1000 instructions.
+  Output step(const Input& input);
+
+  [[nodiscard]] State state() const { return state_; }
+  [[nodiscard]] FaultMask faults() const { return latched_; }
+  [[nodiscard]] const Configuration& configuration() const { return configuration_; }
+
+ private:
+  [[nodiscard]] bool motors_off() const {
+    return state_ != State::kArmed && state_ != State::kActive;
+  }
+  [[nodiscard]] FaultMask sense(const EncoderReading& encoders);
+  [[nodiscard]] FaultMask watch(const Input& input);
+  [[nodiscard]] FaultMask watch_overruns(const Input& input);
+  [[nodiscard]] FaultMask watch_link(const Input& input);
+  [[nodiscard]] FaultMask watch_enable(const Input& input);
+  void obey(const Input& input);
+  void render();
+  void confirm(const Input& input, bool was_armed);
+  void happen(Event event);
+  void raise(FaultMask faults);
+  void recover();
+  void forget_motion();
+  [[nodiscard]] ModelStatus suitability(const BlobView& view) const;
+  SafetyGate::Result apply_force();
+  [[nodiscard]] Status report(const SafetyGate::Result& gated) const;
+
+  Configuration configuration_{};
+  BlobView model_{};
+  State state_ = State::kBoot;
+  FaultMask present_ = 0;  // causes there in this tick
+  FaultMask latched_ = 0;
+  bool waiting_ = false;  // armed, and not yet allowed to be active
+
+  DevicePose pose_{};
+  Vec3 probe_{};
+  bool located_ = false;  // probe_ is of the last tick
+  VelocityEstimator velocity_{};
+  Renderer renderer_{};
+  Rendering rendering_{};
+  SafetyGate gate_{};
+
+  std::uint32_t tick_ = 0;
+  std::uint32_t overruns_ = 0;
+  std::uint32_t ticks_since_overrun_ = 0;
+  std::uint32_t ticks_since_link_ = 0;
+  std::uint32_t ticks_of_mismatch_ = 0;
+  std::uint32_t link_timeout_ticks_ = 0;
+  std::uint32_t enable_timeout_ticks_ = 0;
+  bool configured_ = false;
+  bool enable_ = false;
+  bool dead_man_released_ = false;  // since arming: a control tied down does not count
+};
+
+}  // namespace tactree::core

@@ -1,0 +1,48 @@
+#pragma once
+// Why the force is off. Each code has a page in docs/faults/.
+
+#include <cstdint>
+
+namespace tactree::core {
+
+enum class Fault : std::uint8_t {
+  kNone = 0,
+  kEmergencyStop = 1,     ///< the emergency stop input is open
+  kEncoderInvalid = 2,    ///< an encoder reports no valid count, or the device cannot be there
+  kEncoderJump = 3,       ///< the probe moved faster than speed_max_m_s
+  kNotFinite = 4,         ///< a force or effort came out as NaN or infinity
+  kDeadlineMissed = 5,    ///< two overruns within 100 ticks
+  kLinkLost = 6,          ///< no message for longer than link_timeout_s while the link is required
+  kEnableMismatch = 7,    ///< the enable line's read-back contradicts the command
+  kUnexpectedEvent = 8,   ///< a command the state does not allow
+  kMotorFault = 9,        ///< the motor bank reports a failure
+  kModelIncomplete = 10,  ///< the model holds more points in a ball than it declares
+};
+inline constexpr std::uint32_t kFaultCodes = 11;
+
+/// A set of faults: bit n is the fault with code n.
+using FaultMask = std::uint32_t;
+
+constexpr FaultMask fault_bit(Fault fault) {
+  return fault == Fault::kNone ? 0U : 1U << static_cast<std::uint32_t>(fault);
+}
+
+constexpr bool has_fault(FaultMask mask, Fault fault) { return (mask & fault_bit(fault)) != 0U; }
+
+/// The name as in docs/faults/: "emergency-stop", ...; "unknown" for a code that is none.
+[[nodiscard]] const char* name_of(Fault fault);
+
+/// What held the force back in a tick without stopping it.
+enum class Limit : std::uint32_t {
+  kForce = 1U << 0,    ///< the force was longer than force_max_N
+  kSlew = 1U << 1,     ///< the force changed faster than slew_N_s
+  kRamp = 1U << 2,     ///< armed a moment ago
+  kAxis = 1U << 3,     ///< an axis would have passed its effort_max or effort_slew_s
+  kRim = 1U << 4,      ///< the surface ends here: the force fades
+  kWaiting = 1U << 5,  ///< armed, but the probe is inside the object or the enable line not up
+};
+using LimitMask = std::uint32_t;
+
+constexpr LimitMask limit_bit(Limit limit) { return static_cast<LimitMask>(limit); }
+
+}  // namespace tactree::core

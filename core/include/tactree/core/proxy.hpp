@@ -1,0 +1,74 @@
+#pragma once
+// The god-object: a point that stays on the surface while the probe goes through it. The force on
+// the hand pulls the probe to the proxy. (Zilles and Salisbury, "A constraint-based god-object
+// method for haptic display", IROS 1995; friction after Harwin and Melder, EuroHaptics 2002.)
+//
+// FREE:    the way of the probe is swept in steps of half a support radius, so that nothing is
+//          crossed unnoticed; where the signed distance turns negative, contact begins.
+// CONTACT: the proxy sticks within the friction cone of the probe, or slips to its rim.
+
+#include <cstdint>
+
+#include "tactree/core/blob.hpp"
+#include "tactree/core/surface.hpp"
+
+namespace tactree::core {
+
+/// Surface steps of one tick. Half a support radius each: at h = 1 mm, R = 2.5 mm and 1 kHz the
+/// sweep keeps up with 5 m/s; a faster probe is followed with a delay, never lost.
+inline constexpr std::uint32_t kSweepSteps = 4;
+/// Two evaluations a step of slip, and two that project onto the surface where contact begins.
+inline constexpr std::uint32_t kEvaluationsPerTick = kSweepSteps + 2;
+
+/// Coefficients, 0 <= dynamic <= static.
+struct Friction {
+  float static_coefficient = 0.0F;
+  float dynamic_coefficient = 0.0F;
+};
+
+class Proxy {
+ public:
+  /// Forgets model, contact and side; the proxy is at `probe`. Call it when the model changes.
+  void reset(Vec3 probe);
+
+  /// Follows the probe for one tick. Cost: at most kEvaluationsPerTick gathers and as many fits.
+  void update(const BlobView& view, Vec3 probe, const Friction& friction);
+
+  [[nodiscard]] bool in_contact() const { return in_contact_; }
+  [[nodiscard]] bool slipping() const { return slipping_; }
+  /// In contact: on the surface. Free: where the sweep has got to, the probe as a rule.
+  [[nodiscard]] Vec3 position() const { return position_; }
+  /// In contact: of the surface, towards the side the probe came from.
+  [[nodiscard]] Vec3 normal() const { return side_ * reference_; }
+  /// Share of the contact force to display: less than 1 where the surface ends.
+  [[nodiscard]] float strength() const { return strength_; }
+  /// Point of the blob nearest to the proxy; kNoPoint when free.
+  [[nodiscard]] std::uint32_t nearest_point() const { return nearest_point_; }
+  /// False once a gather had to leave points out; reset() makes it true.
+  [[nodiscard]] bool complete() const { return complete_; }
+
+ private:
+  [[nodiscard]] SurfaceFit evaluate(const BlobView& view, Vec3 x, Vec3 reference);
+  void sweep(const BlobView& view, Vec3 probe);
+  void visit(const BlobView& view, Vec3 x);
+  void begin_contact(const BlobView& view, const SurfaceFit& fit);
+  void slide(const BlobView& view, Vec3 probe, const Friction& friction);
+  [[nodiscard]] bool slip_by(const BlobView& view, Vec3 step);
+  [[nodiscard]] bool settle(const BlobView& view);
+  void release();
+  void lose_support();
+
+  CandidateSet candidates_;
+  Vec3 position_{};
+  Vec3 reference_{};   // normal of the last fit, as stored: towards the side of the points' normals
+  float side_ = 1.0F;  // +1 or -1: on which side of the points' normals the probe is
+  float strength_ = 0.0F;
+  std::uint32_t nearest_point_ = 0xFFFFFFFFU;
+  std::uint32_t budget_ = 0;  // evaluations left in this tick
+  bool tracked_ = false;      // reference_ and side_ hold
+  bool in_contact_ = false;
+  bool slipping_ = false;
+  bool complete_ = true;
+};
+
+}  // namespace tactree::core

@@ -1,0 +1,51 @@
+#pragma once
+// The speed of a quantised position: the longest window of past samples whose straight line passes
+// within the quantisation of every one of them, then a low-pass filter. Slow motion gets a long
+// window and little noise, fast motion a short one and little delay. (Janabi-Sharifi, Hayward and
+// Chen, "Discrete-time adaptive windowing for velocity estimation", IEEE T-CST 8(6), 2000,
+// end-fit variant.)
+
+#include <cstdint>
+
+#include "tactree/core/vec3.hpp"
+
+namespace tactree::core {
+
+/// Samples of the longest window, less one.
+inline constexpr std::uint32_t kVelocityWindow = 15;
+
+/// Interrupt safe: no shared state.
+class VelocityEstimator {
+ public:
+  /// period_s > 0: between two samples; quantum_m >= 0: largest step of the position;
+  /// cutoff_hz > 0: of the first-order low-pass filter.
+  void configure(float period_s, float quantum_m, float cutoff_hz);
+
+  /// Forgets the past; the velocity is 0.
+  void reset();
+
+  /// Takes the position of this tick and returns the velocity, m/s; bounded for finite positions
+  /// by the largest difference of two samples over the period.
+  /// Cost: at most 3 * 15 * 14 / 2 comparisons.
+  Vec3 update(Vec3 position);
+
+  [[nodiscard]] Vec3 velocity() const { return velocity_; }
+
+ private:
+  [[nodiscard]] const Vec3& past(std::uint32_t age) const {
+    return samples_[(newest_ - age) & (kSlots - 1U)];
+  }
+
+  static constexpr std::uint32_t kSlots = 16;
+  static_assert(kSlots == kVelocityWindow + 1);
+
+  Vec3 samples_[kSlots]{};
+  std::uint32_t newest_ = 0;
+  std::uint32_t count_ = 0;
+  float period_s_ = 1e-3F;
+  float quantum_m_ = 0.0F;
+  float share_ = 1.0F;  // of a new estimate in the filtered one
+  Vec3 velocity_{};
+};
+
+}  // namespace tactree::core

@@ -1,0 +1,296 @@
+#include "tactree/core/controller.hpp"
+
+namespace tactree::core {
+namespace {
+
+// Two overruns closer than this are a fault.
+constexpr std::uint32_t kOverrunWindow = 100;
+
+constexpr std::uint32_t kForever = 0xFFFFFFFFU;
+
+constexpr std::uint32_t add_saturating(std::uint32_t a, std::uint32_t b) {
+  return b > kForever - a ? kForever : a + b;
+}
+
+float quantum_of(const DeviceModel& device) {
+  float coarsest = device.counts_per_m[0];
+  for (const float counts : device.counts_per_m) {  // bound: kAxes
+    coarsest = counts < coarsest ? counts : coarsest;
+  }
+  return 1.0F / coarsest;
+}
+
+constexpr const char* kModelWords[] = {
+    "ok",
+    "the controller is armed: stop first",
+    "the controller is not configured",
+    "there is no model",
+    "the blob was built without the guarantees that surface mode needs",
+    "a ball of the model may hold more points than the controller has room for",
+};
+constexpr std::uint32_t kModelWordCount = sizeof(kModelWords) / sizeof(kModelWords[0]);
+
+}  // namespace
+
+const char* describe(ModelStatus status) {
+  const auto index = static_cast<std::uint32_t>(status);
+  return index < kModelWordCount ? kModelWords[index] : "unknown status";
+}
+
+ConfigurationStatus Controller::configure(const Configuration& configuration) {
+  if (!motors_off()) {
+    return ConfigurationStatus::kBusy;
+  }
+  const ConfigurationStatus status = check(configuration);
+  if (status != ConfigurationStatus::kOk) {
+    return status;
+  }
+  if (!gate_.configure(gate_limits(configuration))) {
+    return ConfigurationStatus::kBadLimit;
+  }
+  configuration_ = configuration;
+  configured_ = true;
+  link_timeout_ticks_ =
+      static_cast<std::uint32_t>(configuration.link_timeout_s * configuration.rate_hz);
+  enable_timeout_ticks_ =
+      static_cast<std::uint32_t>(configuration.enable_timeout_s * configuration.rate_hz);
+  ticks_since_overrun_ = kForever;
+  velocity_.configure(1.0F / configuration.rate_hz, quantum_of(configuration.device),
+                      configuration.velocity_cutoff_hz);
+  forget_motion();
+  happen(Event::kConfigured);
+  if (!model_.empty() && suitability(model_) != ModelStatus::kOk) {
+    model_ = {};
+    happen(Event::kModelRemoved);
+  }
+  return ConfigurationStatus::kOk;
+}
+
+ModelStatus Controller::suitability(const BlobView& view) const {
+  const SurfaceSupport support = surface_support(view);
+  if (support == SurfaceSupport::kEmpty) {
+    return ModelStatus::kEmpty;
+  }
+  if (support == SurfaceSupport::kOk || configuration_.mode == RenderMode::kPaper) {
+    return ModelStatus::kOk;
+  }
+  return support == SurfaceSupport::kNoReach ? ModelStatus::kNoReach : ModelStatus::kTooManyPoints;
+}
+
+ModelStatus Controller::load_model(const BlobView& view) {
+  if (!motors_off()) {
+    return ModelStatus::kBusy;
+  }
+  if (!configured_) {
+    return ModelStatus::kNotConfigured;
+  }
+  const ModelStatus status = suitability(view);
+  if (status != ModelStatus::kOk) {
+    return status;
+  }
+  model_ = view;
+  forget_motion();
+  happen(Event::kModelLoaded);
+  return ModelStatus::kOk;
+}
+
+bool Controller::unload_model() {
+  if (!motors_off()) {
+    return false;
+  }
+  model_ = {};
+  forget_motion();
+  happen(Event::kModelRemoved);
+  return true;
+}
+
+Output Controller::step(const Input& input) {
+  ++tick_;
+  present_ = watch(input);
+  if (configured_) {
+    present_ |= sense(input.encoders);
+  }
+  if (present_ != 0U) {
+    raise(present_);
+  }
+  const bool was_armed = state_ == State::kArmed;
+  obey(input);
+  render();
+  confirm(input, was_armed);
+  const SafetyGate::Result gated = apply_force();
+  enable_ = !motors_off();
+  return {gated.command, enable_, report(gated)};
+}
+
+FaultMask Controller::sense(const EncoderReading& encoders) {
+  bool valid = true;
+  for (const bool axis_valid : encoders.valid) {  // bound: kAxes
+    valid = valid && axis_valid;
+  }
+  pose_ = locate(configuration_.device, encoders.counts);
+  if (!valid || !pose_.valid) {
+    forget_motion();
+    return fault_bit(Fault::kEncoderInvalid);
+  }
+  const Vec3 probe = pose_.probe - configuration_.model_origin_m;
+  const float furthest = configuration_.speed_max_m_s / configuration_.rate_hz;
+  const bool jumped = located_ && !(length_squared(probe - probe_) <= furthest * furthest);
+  if (jumped || !located_) {
+    velocity_.reset();
+    renderer_.reset(probe);
+  }
+  probe_ = probe;
+  located_ = true;
+  velocity_.update(probe);
+  return jumped ? fault_bit(Fault::kEncoderJump) : 0U;
+}
+
+void Controller::forget_motion() {
+  located_ = false;
+  velocity_.reset();
+  renderer_.reset(probe_);
+  rendering_ = {};
+}
+
+FaultMask Controller::watch(const Input& input) {
+  FaultMask faults = watch_overruns(input) | watch_link(input) | watch_enable(input);
+  faults |= input.emergency_stop ? fault_bit(Fault::kEmergencyStop) : 0U;
+  faults |= input.motors_ok ? 0U : fault_bit(Fault::kMotorFault);
+  return faults;
+}
+
+FaultMask Controller::watch_overruns(const Input& input) {
+  ticks_since_overrun_ = add_saturating(ticks_since_overrun_, 1);
+  if (input.overruns == 0U) {
+    return 0U;
+  }
+  const bool again = input.overruns > 1U || ticks_since_overrun_ <= kOverrunWindow;
+  overruns_ = add_saturating(overruns_, input.overruns);
+  ticks_since_overrun_ = 0;
+  return again ? fault_bit(Fault::kDeadlineMissed) : 0U;
+}
+
+FaultMask Controller::watch_link(const Input& input) {
+  ticks_since_link_ = input.link_alive ? 0U : add_saturating(ticks_since_link_, 1);
+  const bool needed = configuration_.link_required && !motors_off();
+  return needed && ticks_since_link_ > link_timeout_ticks_ ? fault_bit(Fault::kLinkLost) : 0U;
+}
+
+// While there may be force a drop-out counts at once: when the power came back, the force would
+// come back with it, without a ramp.
+FaultMask Controller::watch_enable(const Input& input) {
+  const bool agrees = input.enable_read_back == enable_;
+  ticks_of_mismatch_ = agrees ? 0U : add_saturating(ticks_of_mismatch_, 1);
+  const bool dropped = state_ == State::kActive && !input.enable_read_back;
+  const bool late = configured_ && ticks_of_mismatch_ > enable_timeout_ticks_;
+  return dropped || late ? fault_bit(Fault::kEnableMismatch) : 0U;
+}
+
+void Controller::obey(const Input& input) {
+  if (input.command == Command::kNone) {
+    return;
+  }
+  if (input.command == Command::kArm) {
+    happen(Event::kArm);
+  } else if (input.command == Command::kStop) {
+    if (state_ == State::kFault && latched_ == 0U) {
+      recover();
+    } else {
+      happen(Event::kStop);
+    }
+  } else if (input.command == Command::kClearFault) {
+    latched_ = present_;
+    happen(Event::kClear);
+  } else {
+    raise(fault_bit(Fault::kUnexpectedEvent));
+  }
+}
+
+void Controller::recover() {
+  happen(Event::kRecover);
+  if (configured_) {
+    happen(Event::kConfigured);
+  }
+  if (configured_ && !model_.empty()) {
+    happen(Event::kModelLoaded);
+  }
+}
+
+// The proxy follows in every state: when the motors come on, contact is already known.
+void Controller::render() {
+  if (!located_) {
+    rendering_ = {};
+    return;
+  }
+  rendering_ = renderer_.update(model_, configuration_, probe_, velocity_.velocity());
+  if (!rendering_.complete) {
+    raise(fault_bit(Fault::kModelIncomplete));
+  }
+}
+
+void Controller::confirm(const Input& input, bool was_armed) {
+  waiting_ = false;
+  if (state_ == State::kActive && configuration_.dead_man_required && !input.dead_man) {
+    happen(Event::kUnready);
+  }
+  if (state_ != State::kArmed || !was_armed) {
+    return;
+  }
+  dead_man_released_ = dead_man_released_ || !input.dead_man;
+  const bool hand = configuration_.dead_man_required ? input.dead_man && dead_man_released_
+                                                     : input.command == Command::kArm;
+  const bool device = input.enable_read_back && !rendering_.in_contact;
+  waiting_ = hand && !device;
+  if (hand && device) {
+    happen(Event::kReady);
+  }
+}
+
+void Controller::happen(Event event) {
+  const State before = state_;
+  state_ = next_state(before, event);
+  if (state_ == State::kFault && before != State::kFault && event != Event::kFault) {
+    present_ |= fault_bit(Fault::kUnexpectedEvent);
+    latched_ |= fault_bit(Fault::kUnexpectedEvent);
+  }
+  if (state_ == State::kArmed && before != State::kArmed) {
+    dead_man_released_ = false;
+  }
+}
+
+void Controller::raise(FaultMask faults) {
+  present_ |= faults;
+  latched_ |= faults;
+  happen(Event::kFault);
+}
+
+SafetyGate::Result Controller::apply_force() {
+  if (state_ != State::kActive) {
+    return gate_.release();
+  }
+  const SafetyGate::Result gated = gate_.command(rendering_.force, pose_.effort_per_force);
+  if (gated.not_finite) {
+    raise(fault_bit(Fault::kNotFinite));
+  }
+  return gated;
+}
+
+Status Controller::report(const SafetyGate::Result& gated) const {
+  Status status;
+  status.tick = tick_;
+  status.state = state_;
+  status.faults = latched_;
+  status.limits = gated.limits;
+  const bool fading =
+      state_ == State::kActive && rendering_.in_contact && rendering_.strength < 1.0F;
+  status.limits |= fading ? limit_bit(Limit::kRim) : 0U;
+  status.limits |= waiting_ ? limit_bit(Limit::kWaiting) : 0U;
+  status.overruns = overruns_;
+  status.probe = probe_;
+  status.velocity = velocity_.velocity();
+  status.rendering = rendering_;
+  status.force = gated.force;
+  return status;
+}
+
+}  // namespace tactree::core

@@ -1,0 +1,164 @@
+#include "tactree/core/proxy.hpp"
+
+#include "tactree/core/nearest.hpp"
+
+namespace tactree::core {
+namespace {
+
+// Evaluations that the sweep leaves for the projection where contact begins.
+constexpr std::uint32_t kReserved = kEvaluationsPerTick - kSweepSteps;
+constexpr std::uint32_t kSlipSteps = kSweepSteps / 2;
+
+float step_length(const BlobView& view) { return 0.5F * view.header().support_radius_m; }
+
+}  // namespace
+
+void Proxy::reset(Vec3 probe) {
+  candidates_.clear();
+  position_ = probe;
+  complete_ = true;
+  lose_support();
+}
+
+void Proxy::update(const BlobView& view, Vec3 probe, const Friction& friction) {
+  if (surface_support(view) != SurfaceSupport::kOk) {
+    reset(probe);
+    return;
+  }
+  budget_ = kEvaluationsPerTick;
+  if (in_contact_) {
+    slide(view, probe, friction);
+  }
+  if (!in_contact_) {
+    sweep(view, probe);
+  }
+  if (in_contact_) {
+    const std::uint32_t slot =
+        nearest_candidate(candidates_, position_, view.header().support_radius_m);
+    nearest_point_ = slot == kNoCandidate ? kNoPoint : candidates_.point(slot);
+  }
+}
+
+SurfaceFit Proxy::evaluate(const BlobView& view, Vec3 x, Vec3 reference) {
+  --budget_;
+  candidates_.cover(view, x);
+  complete_ = complete_ && candidates_.complete();
+  return fit_surface(candidates_, x, view.header().support_radius_m, reference);
+}
+
+void Proxy::sweep(const BlobView& view, Vec3 probe) {
+  const float step = step_length(view);
+  for (std::uint32_t i = 0; i < kSweepSteps; ++i) {  // bound: kSweepSteps
+    if (budget_ <= kReserved) {
+      return;
+    }
+    const Vec3 way = probe - position_;
+    const float distance = length(way);
+    const bool last = !(distance > step);
+    visit(view, last ? probe : position_ + (step / distance) * way);
+    if (in_contact_ || last) {
+      return;
+    }
+  }
+}
+
+void Proxy::visit(const BlobView& view, Vec3 x) {
+  position_ = x;
+  Vec3 reference = reference_;
+  if (!tracked_) {
+    candidates_.cover(view, x);
+    const std::uint32_t nearest = nearest_candidate(candidates_, x, view.header().support_radius_m);
+    if (nearest == kNoCandidate) {
+      --budget_;
+      return;
+    }
+    reference = candidates_.normal(nearest);
+  }
+  const SurfaceFit fit = evaluate(view, x, reference);
+  if (!fit.supported) {
+    lose_support();
+    return;
+  }
+  if (!tracked_) {
+    side_ = fit.distance < 0.0F ? -1.0F : 1.0F;
+    tracked_ = true;
+  }
+  reference_ = fit.normal;
+  if (side_ * fit.distance < 0.0F) {
+    begin_contact(view, fit);
+  }
+}
+
+void Proxy::begin_contact(const BlobView& view, const SurfaceFit& fit) {
+  position_ -= fit.distance * fit.normal;
+  strength_ = fit.strength;
+  slipping_ = false;
+  in_contact_ = true;
+  if (!settle(view)) {
+    lose_support();  // the way led past the rim
+  }
+}
+
+bool Proxy::settle(const BlobView& view) {
+  const SurfaceFit fit = evaluate(view, position_, reference_);
+  if (!fit.supported) {
+    return false;
+  }
+  position_ -= fit.distance * fit.normal;
+  reference_ = fit.normal;
+  strength_ = fit.strength;
+  return true;
+}
+
+void Proxy::slide(const BlobView& view, Vec3 probe, const Friction& friction) {
+  const float step = step_length(view);
+  for (std::uint32_t i = 0; i < kSlipSteps; ++i) {  // bound: kSlipSteps
+    const Vec3 way = probe - position_;
+    const float height = dot(way, normal());
+    if (height > 0.0F) {
+      release();
+      return;
+    }
+    const Vec3 along = way - height * normal();
+    const float distance = length(along);
+    const float coefficient =
+        slipping_ ? friction.dynamic_coefficient : friction.static_coefficient;
+    if (!(distance > coefficient * -height)) {
+      slipping_ = false;
+      return;
+    }
+    slipping_ = true;
+    const float excess = distance - friction.dynamic_coefficient * -height;
+    const bool last = !(excess > step);
+    if (!slip_by(view, ((last ? excess : step) / distance) * along)) {
+      lose_support();
+      return;
+    }
+    if (last) {
+      return;
+    }
+  }
+}
+
+bool Proxy::slip_by(const BlobView& view, Vec3 step) {
+  position_ += step;
+  return settle(view) && settle(view);
+}
+
+// The probe is on the outer side again: what was tracked stays, so that the sweep which follows
+// knows on which side it starts.
+void Proxy::release() {
+  in_contact_ = false;
+  slipping_ = false;
+  strength_ = 0.0F;
+  nearest_point_ = kNoPoint;
+}
+
+void Proxy::lose_support() {
+  release();
+  tracked_ = false;
+  reference_ = {};
+  side_ = 1.0F;
+}
+
+}  // namespace tactree::core
