@@ -1,0 +1,164 @@
+#pragma once
+// Does a board keep the contracts of board.hpp? A port calls run_conformance() on its hardware and
+// prints the report. Nothing moves: every command is zero. Takes a few hundred ticks.
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "tactree/core/crc32.hpp"
+#include "tactree/core/safety_gate.hpp"
+#include "tactree/hal/board.hpp"
+
+namespace tactree::hal {
+
+/// What the board under test is like while the test runs: nobody touches it.
+struct ConformanceSetup {
+  std::uint32_t period_us = 1000;           ///< of a tick
+  std::uint32_t enable_timeout_ticks = 50;  ///< for the read-back to follow
+  std::int32_t count_noise = 2;             ///< counts an axis at rest may wander
+};
+
+struct ConformanceReport {
+  static constexpr std::uint32_t kMaxFailures = 16;
+  std::uint32_t checks = 0;
+  std::uint32_t failures = 0;
+  const char* failed[kMaxFailures] = {};  ///< what was found, one sentence each
+
+  [[nodiscard]] bool passed() const { return checks > 0U && failures == 0U; }
+
+  void check(bool good, const char* sentence) {
+    ++checks;
+    if (good) {
+      return;
+    }
+    if (failures < kMaxFailures) {
+      failed[failures] = sentence;
+    }
+    ++failures;
+  }
+};
+
+namespace conformance {
+
+inline constexpr std::uint32_t kTicks = 100;
+
+/// Ticks until the read-back agrees; more than `limit`: it did not.
+template <Board B>
+std::uint32_t ticks_to_follow(B& board, bool on, std::uint32_t limit) {
+  board.enable_line().set(on);
+  std::uint32_t ticks = 0;
+  while (board.enable_line().read_back() != on && ticks <= limit) {
+    (void)board.ticker().wait();
+    ++ticks;
+  }
+  return ticks;
+}
+
+template <Board B>
+void check_ticker(B& board, const ConformanceSetup& setup, ConformanceReport& report) {
+  (void)board.ticker().wait();
+  const std::uint32_t begin = board.ticker().now_us();
+  std::uint32_t overruns = 0;
+  bool forward = true;
+  std::uint32_t last = begin;
+  for (std::uint32_t i = 0; i < kTicks; ++i) {
+    overruns += board.ticker().wait().overruns;
+    const std::uint32_t now = board.ticker().now_us();
+    forward = forward && now - last < 0x80000000U;
+    last = now;
+  }
+  const std::uint32_t expected = kTicks * setup.period_us;
+  const std::uint32_t elapsed = last - begin;
+  report.check(forward, "the clock went back");
+  report.check(overruns == 0U, "an empty loop missed a deadline");
+  report.check(elapsed >= expected - expected / 50U && elapsed <= expected + expected / 50U,
+               "100 ticks took more or less than 100 periods by the clock, 2 % allowed");
+}
+
+template <Board B>
+void check_encoders(B& board, const ConformanceSetup& setup, ConformanceReport& report) {
+  const core::EncoderReading first = board.encoders().read();
+  bool valid = true;
+  bool still = true;
+  for (std::uint32_t i = 0; i < kTicks; ++i) {
+    (void)board.ticker().wait();
+    const core::EncoderReading reading = board.encoders().read();
+    for (std::uint32_t axis = 0; axis < core::kAxes; ++axis) {
+      const auto moved =
+          static_cast<std::int32_t>(static_cast<std::uint32_t>(reading.counts[axis]) -
+                                    static_cast<std::uint32_t>(first.counts[axis]));
+      valid = valid && reading.valid[axis];
+      still = still && moved <= setup.count_noise && moved >= -setup.count_noise;
+    }
+  }
+  report.check(valid, "an encoder at rest is not valid");
+  report.check(still, "an encoder at rest counts");
+}
+
+template <Board B>
+void check_enable_line(B& board, const ConformanceSetup& setup, ConformanceReport& report) {
+  const std::uint32_t limit = setup.enable_timeout_ticks;
+  report.check(!board.enable_line().read_back(), "the enable line is on at the start");
+  report.check(ticks_to_follow(board, true, limit) <= limit,
+               "the read-back does not follow when the enable line goes on");
+  report.check(ticks_to_follow(board, false, limit) <= limit,
+               "the read-back does not follow when the enable line goes off");
+}
+
+template <Board B>
+void check_motors(B& board, ConformanceReport& report) {
+  core::SafetyGate gate;
+  bool healthy = true;
+  for (std::uint32_t i = 0; i < kTicks; ++i) {
+    (void)board.ticker().wait();
+    board.motors().write(gate.release().command);
+    healthy = healthy && board.motors().healthy();
+  }
+  report.check(healthy, "the motor bank fails on commands of zero");
+}
+
+template <Board B>
+void check_inputs(B& board, ConformanceReport& report) {
+  report.check(!board.safety_inputs().emergency_stop(), "the emergency stop reads as pressed");
+  report.check(!board.safety_inputs().dead_man(), "the dead-man control reads as held");
+  core::Command command = core::Command::kNone;
+  for (std::uint32_t i = 0; i < kTicks; ++i) {
+    (void)board.ticker().wait();
+    board.link().send(core::Status{});
+    const LinkInput input = board.link().receive();
+    command = input.command == core::Command::kNone ? command : input.command;
+  }
+  report.check(command == core::Command::kNone, "the link gives commands nobody sent");
+}
+
+template <Board B>
+void check_storage(B& board, ConformanceReport& report) {
+  const std::span<const std::byte> bytes = board.storage().active();
+  const auto address = reinterpret_cast<std::uintptr_t>(bytes.data());
+  report.check(address % 4U == 0U, "the model does not start on a 4-byte boundary");
+  const std::uint32_t before = core::crc32(bytes);
+  (void)board.ticker().wait();
+  const std::span<const std::byte> again = board.storage().active();
+  report.check(again.data() == bytes.data() && again.size() == bytes.size(),
+               "the model moved or changed its size");
+  report.check(core::crc32(again) == before, "the bytes of the model changed");
+}
+
+}  // namespace conformance
+
+/// Runs every check. Precondition: emergency stop released, dead-man control let go, no host
+/// connected, device at rest, motors off.
+template <Board B>
+[[nodiscard]] ConformanceReport run_conformance(B& board, const ConformanceSetup& setup = {}) {
+  ConformanceReport report;
+  conformance::check_ticker(board, setup, report);
+  conformance::check_encoders(board, setup, report);
+  conformance::check_motors(board, report);
+  conformance::check_enable_line(board, setup, report);
+  conformance::check_inputs(board, report);
+  conformance::check_storage(board, report);
+  return report;
+}
+
+}  // namespace tactree::hal

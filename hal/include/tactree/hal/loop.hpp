@@ -1,0 +1,75 @@
+#pragma once
+// The control loop: moves data between a board and the controller, and decides nothing.
+//
+//   MyBoard board;
+//   core::Controller controller;
+//   hal::Loop loop(board, controller);
+//   if (!loop.start(configuration).ok()) { /* tell, and stay: tick() keeps the motors off */ }
+//   while (true) loop.tick();
+
+#include "tactree/core/blob.hpp"
+#include "tactree/core/controller.hpp"
+#include "tactree/hal/board.hpp"
+
+namespace tactree::hal {
+
+/// Why there is no model to touch.
+struct StartResult {
+  core::ConfigurationStatus configuration = core::ConfigurationStatus::kOk;
+  core::BlobStatus blob = core::BlobStatus::kOk;
+  core::ModelStatus model = core::ModelStatus::kOk;
+  [[nodiscard]] bool ok() const {
+    return configuration == core::ConfigurationStatus::kOk && blob == core::BlobStatus::kOk &&
+           model == core::ModelStatus::kOk;
+  }
+};
+
+template <Board B>
+class Loop {
+ public:
+  Loop(B& board, core::Controller& controller) : board_(board), controller_(controller) {}
+
+  /// Configures the controller and gives it the model in the board's storage. Not bounded by a
+  /// tick: call it before the first. The state stays boot or no-model when something is refused.
+  [[nodiscard]] StartResult start(const core::Configuration& configuration) {
+    board_.enable_line().set(false);
+    StartResult result;
+    result.configuration = controller_.configure(configuration);
+    if (result.configuration != core::ConfigurationStatus::kOk) {
+      return result;
+    }
+    core::BlobView view;
+    result.blob = core::open_blob(board_.storage().active(), view);
+    if (result.blob == core::BlobStatus::kOk) {
+      result.model = controller_.load_model(view);
+    }
+    return result;
+  }
+
+  /// One tick: waits for it, reads, steps, writes. Returns what the controller said.
+  core::Output tick() {
+    const Tick tick = board_.ticker().wait();
+    core::Input input;
+    input.encoders = board_.encoders().read();
+    input.emergency_stop = board_.safety_inputs().emergency_stop();
+    input.dead_man = board_.safety_inputs().dead_man();
+    input.enable_read_back = board_.enable_line().read_back();
+    input.motors_ok = board_.motors().healthy();
+    input.overruns = tick.overruns;
+    const LinkInput link = board_.link().receive();
+    input.link_alive = link.alive;
+    input.command = link.command;
+
+    const core::Output output = controller_.step(input);
+    board_.motors().write(output.motors);
+    board_.enable_line().set(output.enable);
+    board_.link().send(output.status);
+    return output;
+  }
+
+ private:
+  B& board_;
+  core::Controller& controller_;
+};
+
+}  // namespace tactree::hal

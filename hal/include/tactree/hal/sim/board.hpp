@@ -1,0 +1,149 @@
+#pragma once
+// A board in software: every part keeps the contract of board.hpp, and has the faults and delays
+// of the real thing as parameters. Whoever simulates calls sample() with the position before each
+// tick of the loop and takes effort() after it.
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "tactree/hal/board.hpp"
+#include "tactree/hal/sim/encoder_bank.hpp"
+#include "tactree/hal/sim/motor_bank.hpp"
+
+namespace tactree::hal::sim {
+
+struct BoardParameters {
+  EncoderParameters encoders{};
+  MotorParameters motors{};
+  std::uint32_t period_us = 1000;        ///< of a tick: 1 .. 1e6
+  std::uint32_t enable_delay_ticks = 5;  ///< for the amplifiers' power to follow the line
+};
+
+/// A relay: follows after a delay, unless it sticks.
+class SimEnableLine {
+ public:
+  explicit SimEnableLine(std::uint32_t delay_ticks) : line_(delay_ticks, false) {}
+  void set(bool on) noexcept { wanted_ = on; }
+  [[nodiscard]] bool read_back() noexcept { return stuck_ ? stuck_at_ : line_.value(); }
+
+  /// Once a tick.
+  void advance() { line_.push(wanted_); }
+  void stick(bool at) {
+    stuck_ = true;
+    stuck_at_ = at;
+  }
+  void unstick() { stuck_ = false; }
+
+ private:
+  DelayLine<bool> line_;
+  bool wanted_ = false;
+  bool stuck_ = false;
+  bool stuck_at_ = false;
+};
+
+class SimSafetyInputs {
+ public:
+  [[nodiscard]] bool emergency_stop() noexcept { return emergency_stop_; }
+  [[nodiscard]] bool dead_man() noexcept { return dead_man_; }
+  void press_emergency_stop(bool pressed) { emergency_stop_ = pressed; }
+  void hold_dead_man(bool held) { dead_man_ = held; }
+
+ private:
+  bool emergency_stop_ = false;
+  bool dead_man_ = false;
+};
+
+/// Simulated time: a wait takes exactly one period, or more where an overrun is injected.
+class SimTicker {
+ public:
+  /// `line` moves on with the time and must outlive the ticker.
+  SimTicker(std::uint32_t period_us, SimEnableLine& line) : period_us_(period_us), line_(line) {}
+  [[nodiscard]] Tick wait() noexcept {
+    const Tick tick{overruns_};
+    now_us_ += period_us_ * (1U + overruns_);
+    overruns_ = 0;
+    line_.advance();
+    return tick;
+  }
+  [[nodiscard]] std::uint32_t now_us() noexcept { return now_us_; }
+
+  /// The next wait finds this many deadlines missed.
+  void miss(std::uint32_t deadlines) { overruns_ = deadlines; }
+
+ private:
+  std::uint32_t period_us_;
+  SimEnableLine& line_;
+  std::uint32_t now_us_ = 0;
+  std::uint32_t overruns_ = 0;
+};
+
+/// An application on the other end of a wire.
+class SimLink {
+ public:
+  [[nodiscard]] LinkInput receive() noexcept {
+    const LinkInput input = next_;
+    next_ = {};
+    return input;
+  }
+  void send(const core::Status& status) noexcept { last_ = status; }
+
+  /// The next receive() finds a message with this command (kNone: a sign of life).
+  void post(core::Command command) { next_ = {true, command}; }
+  [[nodiscard]] const core::Status& last() const { return last_; }
+
+ private:
+  LinkInput next_{};
+  core::Status last_{};
+};
+
+class SimStorage {
+ public:
+  explicit SimStorage(std::span<const std::byte> bytes) : bytes_(bytes) {}
+  [[nodiscard]] std::span<const std::byte> active() const noexcept { return bytes_; }
+
+ private:
+  std::span<const std::byte> bytes_;
+};
+
+class SimBoard {
+ public:
+  /// `blob` is kept by reference and must outlive the board.
+  SimBoard(const BoardParameters& parameters, std::span<const std::byte> blob)
+      : encoders_(parameters.encoders),
+        motors_(parameters.motors),
+        enable_line_(parameters.enable_delay_ticks),
+        ticker_(parameters.period_us, enable_line_),
+        storage_(blob) {}
+
+  SimBoard(const SimBoard&) = delete;
+  SimBoard& operator=(const SimBoard&) = delete;
+
+  [[nodiscard]] SimEncoderBank& encoders() noexcept { return encoders_; }
+  [[nodiscard]] SimMotorBank& motors() noexcept { return motors_; }
+  [[nodiscard]] SimEnableLine& enable_line() noexcept { return enable_line_; }
+  [[nodiscard]] SimSafetyInputs& safety_inputs() noexcept { return inputs_; }
+  [[nodiscard]] SimTicker& ticker() noexcept { return ticker_; }
+  [[nodiscard]] SimLink& link() noexcept { return link_; }
+  [[nodiscard]] SimStorage& storage() noexcept { return storage_; }
+
+  /// Once a tick, before the loop's: positions of the axes, m.
+  void sample(const double (&position_m)[core::kAxes]) { encoders_.sample(position_m); }
+  /// Effort of an axis, N. Precondition: axis < kAxes.
+  [[nodiscard]] double effort(std::uint32_t axis) {
+    return motors_.effort(axis, enable_line_.read_back());
+  }
+
+ private:
+  SimEncoderBank encoders_;
+  SimMotorBank motors_;
+  SimEnableLine enable_line_;
+  SimSafetyInputs inputs_;
+  SimTicker ticker_;
+  SimLink link_;
+  SimStorage storage_;
+};
+
+static_assert(Board<SimBoard>);
+
+}  // namespace tactree::hal::sim

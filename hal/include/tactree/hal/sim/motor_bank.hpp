@@ -1,0 +1,69 @@
+#pragma once
+// Motors of a simulated device: force limit, latency, faults.
+
+#include <cstdint>
+
+#include "tactree/core/safety_gate.hpp"
+#include "tactree/hal/sim/delay_line.hpp"
+
+namespace tactree::hal::sim {
+
+enum class MotorFault : std::uint8_t {
+  kNone = 0,
+  kDead,      ///< no effort
+  kStuck,     ///< holds the effort it had
+  kReversed,  ///< the wrong sign
+};
+
+struct MotorParameters {
+  double effort_max = 8.5;          ///< N or Nm per axis: what the motor saturates at
+  std::uint32_t latency_ticks = 0;  ///< from the write to the effort: 0 .. kMaxLatencyTicks
+};
+
+class SimMotorBank {
+ public:
+  explicit SimMotorBank(const MotorParameters& parameters)
+      : parameters_(parameters), line_(parameters.latency_ticks, Efforts{}) {}
+
+  void write(const core::MotorCommand& command) noexcept {
+    Efforts efforts;
+    for (std::uint32_t i = 0; i < core::kAxes; ++i) {
+      efforts.axis[i] = static_cast<double>(command.effort(i));
+    }
+    line_.push(efforts);
+  }
+
+  [[nodiscard]] bool healthy() noexcept { return healthy_; }
+
+  /// Effort of an axis at the moment, N or Nm; zero while `powered` is false.
+  /// Precondition: axis < kAxes.
+  [[nodiscard]] double effort(std::uint32_t axis, bool powered) {
+    double wanted = line_.value().axis[axis];
+    wanted = fault_[axis] == MotorFault::kDead ? 0.0 : wanted;
+    wanted = fault_[axis] == MotorFault::kReversed ? -wanted : wanted;
+    wanted = fault_[axis] == MotorFault::kStuck ? held_[axis] : wanted;
+    held_[axis] = wanted;
+    if (!powered) {
+      return 0.0;
+    }
+    const double limit = parameters_.effort_max;
+    return wanted > limit ? limit : (wanted < -limit ? -limit : wanted);
+  }
+
+  /// Precondition: axis < kAxes.
+  void inject(std::uint32_t axis, MotorFault fault) { fault_[axis] = fault; }
+  void set_healthy(bool healthy) { healthy_ = healthy; }
+
+ private:
+  struct Efforts {
+    double axis[core::kAxes] = {0.0, 0.0, 0.0};
+  };
+
+  MotorParameters parameters_;
+  DelayLine<Efforts> line_;
+  MotorFault fault_[core::kAxes] = {};
+  double held_[core::kAxes] = {0.0, 0.0, 0.0};
+  bool healthy_ = true;
+};
+
+}  // namespace tactree::hal::sim
