@@ -42,8 +42,6 @@ std::uint32_t significant_bits(float v) {
   return bits;
 }
 
-bool is_multiple_of_leaf(std::int32_t v) { return (v & (kLeafUnits - 1)) == 0; }
-
 }  // namespace
 
 // The checks in the order in which each may rely on the ones before it.
@@ -108,7 +106,6 @@ class BlobValidator {
     std::int32_t largest = 1;
     for (const std::int32_t low : h.root_min) {  // bound: 3
       if (low < -kMaxCoordinate || low > kMaxCoordinate - edge) return false;
-      if (!is_multiple_of_leaf(low)) return false;
       if (-low > largest) largest = -low;
       if (low + edge > largest) largest = low + edge;
     }
@@ -214,63 +211,55 @@ class BlobValidator {
       std::uint32_t octants_left;
     };
     Frame stack[kMaxDepth];
-    std::uint32_t next_node = 1;
-    std::uint32_t next_leaf = 0;
-    std::uint32_t deepest = 0;
+    TreeCounts seen;
+    if (!open_node(0, 0, seen)) return false;
+    stack[0] = {0, view_.nodes_[0].nodes >> 24};
     std::uint32_t level = 0;
-    stack[0] = {0, 0xFFU};
-    if (!opens_canonically(0, next_node)) return false;
-    // Every turn finishes an octant of a node, and every node is entered once.
-    while (true) {  // bound: 9 nodes
+    while (true) {  // bound: 2 nodes (each is entered once and left once)
       Frame& frame = stack[level];
       if (frame.octants_left == 0) {
         if (level == 0) break;
         --level;
         continue;
       }
-      const auto octant = static_cast<std::uint32_t>(std::countr_zero(frame.octants_left));
+      if (level + 1 >= header_->depth) return false;
+      const std::uint32_t octant = lowest_octant(frame.octants_left);
       frame.octants_left &= frame.octants_left - 1U;
-      const BlobNode node = view_.nodes_[frame.node];
-      const std::uint32_t below = (1U << octant) - 1U;
-      if (((node.leaves >> 24 >> octant) & 1U) != 0) {
-        const std::uint32_t number =
-            (node.leaves & 0xFFFFFFU) + count_octants((node.leaves >> 24) & below);
-        if (number != next_leaf || next_leaf == header_->leaf_count) return false;
-        ++next_leaf;
-        if (level + 1 > deepest) deepest = level + 1;
-        if (!leaf_level_is_allowed(level + 1)) return false;
-      } else if (((node.nodes >> 24 >> octant) & 1U) != 0) {
-        if (level + 1 >= header_->depth) return false;
-        const std::uint32_t child =
-            (node.nodes & 0xFFFFFFU) + count_octants((node.nodes >> 24) & below);
-        if (!opens_canonically(child, next_node)) return false;
-        ++level;
-        stack[level] = {child, 0xFFU};
-      }
+      const std::uint32_t child = child_node(view_.nodes_[frame.node], octant);
+      ++level;
+      if (!open_node(child, level, seen)) return false;
+      stack[level] = {child, view_.nodes_[child].nodes >> 24};
     }
-    return next_node == header_->node_count && next_leaf == header_->leaf_count &&
-           deepest == header_->depth;
+    return seen.nodes == header_->node_count && seen.leaves == header_->leaf_count &&
+           seen.depth == header_->depth;
   }
 
-  bool leaf_level_is_allowed(std::uint32_t level) const {
-    return level == header_->depth ||
-           header_->profile == static_cast<std::uint32_t>(Profile::kPaper);
-  }
+  struct TreeCounts {
+    std::uint32_t nodes = 1;
+    std::uint32_t leaves = 0;
+    std::uint32_t depth = 0;
+  };
 
-  bool opens_canonically(std::uint32_t index, std::uint32_t& next_node) const {
+  bool open_node(std::uint32_t index, std::uint32_t level, TreeCounts& seen) const {
     const BlobNode node = view_.nodes_[index];
     const std::uint32_t node_mask = node.nodes >> 24;
     const std::uint32_t leaf_mask = node.leaves >> 24;
     if ((node_mask & leaf_mask) != 0 || (node_mask | leaf_mask) == 0) return false;
-    const std::uint32_t children = count_octants(node_mask);
-    if (children == 0) {
-      if ((node.nodes & 0xFFFFFFU) != 0) return false;
-    } else {
-      if ((node.nodes & 0xFFFFFFU) != next_node) return false;
-      if (children > header_->node_count - next_node) return false;
-      next_node += children;
-    }
-    return leaf_mask != 0 || (node.leaves & 0xFFFFFFU) == 0;
+    if (!take_group(node.nodes, header_->node_count, seen.nodes)) return false;
+    if (!take_group(node.leaves, header_->leaf_count, seen.leaves)) return false;
+    if (leaf_mask == 0) return true;
+    if (level + 1 > seen.depth) seen.depth = level + 1;
+    return level + 1 == header_->depth ||
+           header_->profile == static_cast<std::uint32_t>(Profile::kPaper);
+  }
+
+  // A group of children is the next `children` of `limit`; an empty one names index 0.
+  static bool take_group(std::uint32_t group, std::uint32_t limit, std::uint32_t& next) {
+    const std::uint32_t children = count_octants(group >> 24);
+    if (children == 0) return group == 0;
+    if ((group & 0xFFFFFFU) != next || children > limit - next) return false;
+    next += children;
+    return true;
   }
 
   bool points_ascend() const {
@@ -401,45 +390,44 @@ Vec3 BlobView::normal(std::uint32_t index) const {
 
 LeafCursor::LeafCursor(const BlobView& view) : view_(view), done_(view.empty()) {
   if (!done_) {
-    stack_[0] = {0, 0xFFU};
+    enter(0, {});
     next();
   }
 }
 
+void LeafCursor::enter(std::uint32_t node, Int3 cell) {
+  cell_ = cell;
+  stack_[level_] = {node, view_.nodes()[node].leaves >> 24, view_.nodes()[node].nodes >> 24};
+}
+
 void LeafCursor::next() {
-  while (true) {  // bound: 9 depth
-    Level& top = stack_[level_];
-    if (top.octants_left == 0) {
-      if (level_ == 0) {
-        done_ = true;
-        return;
-      }
-      --level_;
-      cell_ = {cell_.x >> 1, cell_.y >> 1, cell_.z >> 1};
-      continue;
-    }
-    const auto octant = static_cast<std::uint32_t>(std::countr_zero(top.octants_left));
-    top.octants_left &= top.octants_left - 1U;
-    const BlobNode node = view_.nodes()[top.node];
-    const std::uint32_t below = (1U << octant) - 1U;
-    const Int3 cell{cell_.x << 1 | static_cast<std::int32_t>(octant & 1U),
-                    cell_.y << 1 | static_cast<std::int32_t>((octant >> 1) & 1U),
-                    cell_.z << 1 | static_cast<std::int32_t>(octant >> 2)};
-    if (((node.leaves >> 24 >> octant) & 1U) != 0) {
+  while (true) {  // bound: 2 depth
+    Frame& top = stack_[level_];
+    if (top.leaves_left != 0) {
+      const std::uint32_t octant = lowest_octant(top.leaves_left);
+      top.leaves_left &= top.leaves_left - 1U;
+      const Int3 cell = child_cell(cell_, octant);
       const std::int32_t edge = kLeafUnits << (view_.depth() - level_ - 1U);
       const std::int32_t* const root = view_.header().root_min;
-      leaf_ = view_.leaf(
-          (node.leaves & 0xFFFFFFU) + count_octants((node.leaves >> 24) & below), level_ + 1U,
-          {root[0] + cell.x * edge, root[1] + cell.y * edge, root[2] + cell.z * edge});
+      leaf_ =
+          view_.leaf(child_leaf(view_.nodes()[top.node], octant), level_ + 1U,
+                     {root[0] + cell.x * edge, root[1] + cell.y * edge, root[2] + cell.z * edge});
       return;
     }
-    if (((node.nodes >> 24 >> octant) & 1U) != 0) {
-      const std::uint32_t child =
-          (node.nodes & 0xFFFFFFU) + count_octants((node.nodes >> 24) & below);
+    if (top.nodes_left != 0) {
+      const std::uint32_t octant = lowest_octant(top.nodes_left);
+      top.nodes_left &= top.nodes_left - 1U;
+      const std::uint32_t child = child_node(view_.nodes()[top.node], octant);
       ++level_;
-      stack_[level_] = {child, 0xFFU};
-      cell_ = cell;
+      enter(child, child_cell(cell_, octant));
+      continue;
     }
+    if (level_ == 0) {
+      done_ = true;
+      return;
+    }
+    --level_;
+    cell_ = {cell_.x >> 1, cell_.y >> 1, cell_.z >> 1};
   }
 }
 

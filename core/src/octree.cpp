@@ -45,23 +45,19 @@ bool descend(const BlobView& view, std::uint32_t node, std::uint32_t level, Cell
   while (level_below > 0) {  // bound: depth
     --level_below;
     const std::uint32_t octant = octant_of(cell.x, cell.y, cell.z, level_below);
-    const std::uint32_t below = (1U << octant) - 1U;
     const BlobNode here = nodes[node];
-    const std::uint32_t leaf_mask = here.leaves >> 24;
-    if (((leaf_mask >> octant) & 1U) != 0) {
-      const std::uint32_t number = (here.leaves & 0xFFFFFFU) + count_octants(leaf_mask & below);
+    if (((here.leaves >> 24 >> octant) & 1U) != 0) {
       const auto corner = [level_below](std::uint32_t c) {
         return static_cast<std::int32_t>((c >> level_below) << (level_below + kLeafShift));
       };
-      leaf = view.leaf(number, view.depth() - level_below,
+      leaf = view.leaf(child_leaf(here, octant), view.depth() - level_below,
                        {root.x + corner(cell.x), root.y + corner(cell.y), root.z + corner(cell.z)});
       return true;
     }
-    const std::uint32_t node_mask = here.nodes >> 24;
-    if (((node_mask >> octant) & 1U) == 0) {
+    if (((here.nodes >> 24 >> octant) & 1U) == 0) {
       return false;
     }
-    node = (here.nodes & 0xFFFFFFU) + count_octants(node_mask & below);
+    node = child_node(here, octant);
   }
   return false;
 }

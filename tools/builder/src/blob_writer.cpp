@@ -44,24 +44,27 @@ std::uint32_t fullest(const Octree& tree) {
   return count;
 }
 
-// The paper's tree: a cubic root around the model, split until no leaf holds more than m points.
-// A leaf cannot become narrower than half the point spacing: points closer than that stay together.
-Octree build_paper_octree(const Model& model, const Eigen::Vector3d& low,
-                          const Eigen::Vector3d& high) {
-  const double extent = std::max((high - low).maxCoeff(), model.spacing_m);
-  for (std::uint32_t depth = 1;; ++depth) {
-    const double leaf_edge = extent / (std::ldexp(1.0, static_cast<int>(depth)) - 1.0);
-    Octree tree = build_octree(model.positions, choose_lattice(low, high, leaf_edge),
-                               model.points_per_leaf_wanted);
-    const bool finest = depth + 1 == core::kMaxDepth || leaf_edge < model.spacing_m;
-    if ((fullest(tree) <= model.points_per_leaf_wanted || finest) &&
-        deepest(tree) == tree.lattice.depth) {
-      return tree;
-    }
-    if (finest) {
-      throw std::runtime_error("the points cannot be divided into an octree of the paper's kind");
-    }
+// The paper's tree: the smallest cubic root, split until no leaf holds more than m points. Leaves
+// get no narrower than half the spacing: points closer than that to each other stay together.
+Octree build_paper_octree(const Model& model, Eigen::Vector3d low, Eigen::Vector3d high) {
+  const Eigen::Vector3d middle = 0.5 * (low + high);
+  low = low.cwiseMin(middle.array().matrix() - Eigen::Vector3d::Constant(model.spacing_m));
+  high = high.cwiseMax(middle.array().matrix() + Eigen::Vector3d::Constant(model.spacing_m));
+  const double extent = (high - low).maxCoeff();
+  std::uint32_t depth = 1;
+  while (depth < core::kMaxDepth &&
+         std::ldexp(extent, -static_cast<int>(depth)) > model.spacing_m) {
+    ++depth;
   }
+  Octree tree = build_octree(model.positions, bounding_lattice(low, high, depth),
+                             model.points_per_leaf_wanted);
+  // Where no leaf needs the finest level, a coarser lattice gives the same leaves.
+  for (std::uint32_t used = deepest(tree); used < depth; used = deepest(tree)) {
+    depth = used;
+    tree = build_octree(model.positions, bounding_lattice(low, high, depth),
+                        model.points_per_leaf_wanted);
+  }
+  return tree;
 }
 
 Eigen::Vector3d decode(const Octree& tree, const BuiltLeaf& leaf, std::uint32_t word) {
@@ -313,8 +316,8 @@ WrittenBlob write_blob(const Model& model) {
   core::BlobView view;
   const core::BlobStatus status = core::open_blob(written.bytes, view);
   if (status != core::BlobStatus::kOk) {
-    throw std::logic_error(fmt::format("the blob just written fails its own check: {}",
-                                       core::describe(status)));
+    throw std::logic_error(
+        fmt::format("the blob just written fails its own check: {}", core::describe(status)));
   }
   return written;
 }

@@ -39,7 +39,8 @@ bool place_root(const Eigen::Vector3d& low, const Eigen::Vector3d& high, Lattice
   const Eigen::Array3d last = (high.array() / leaf + 0.001).floor();
   const double cells = (last - first).maxCoeff() + 1.0;
   lattice.depth = 1;
-  while (lattice.depth < core::kMaxDepth && std::ldexp(1.0, static_cast<int>(lattice.depth)) < cells) {
+  while (lattice.depth < core::kMaxDepth &&
+         std::ldexp(1.0, static_cast<int>(lattice.depth)) < cells) {
     ++lattice.depth;
   }
   const double across = std::ldexp(1.0, static_cast<int>(lattice.depth));
@@ -47,7 +48,8 @@ bool place_root(const Eigen::Vector3d& low, const Eigen::Vector3d& high, Lattice
     return false;
   }
   // The model sits in the middle of the root, so that coordinates stay small.
-  const Eigen::Array3d corner = (first - ((across - 1.0 - (last - first)) / 2.0).floor()) * core::kLeafUnits;
+  const Eigen::Array3d corner =
+      (first - ((across - 1.0 - (last - first)) / 2.0).floor()) * core::kLeafUnits;
   const double limit = core::kMaxCoordinate;
   if (corner.minCoeff() < -limit || corner.maxCoeff() + across * core::kLeafUnits > limit) {
     return false;
@@ -57,21 +59,50 @@ bool place_root(const Eigen::Vector3d& low, const Eigen::Vector3d& high, Lattice
   return true;
 }
 
+[[noreturn]] void refuse(const Eigen::Vector3d& low, const Eigen::Vector3d& high,
+                         double leaf_edge) {
+  throw std::runtime_error(fmt::format(
+      "the model spans {:.6g} m, at up to {:.6g} m from the origin: too much for octree leaves of "
+      "{:.3g} m; choose a larger spacing, or crop or centre the model",
+      (high - low).maxCoeff(), low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff(), leaf_edge));
+}
+
 }  // namespace
 
-Lattice choose_lattice(const Eigen::Vector3d& low, const Eigen::Vector3d& high, double leaf_edge_m) {
-  const double wanted = leaf_edge_m / core::kLeafUnits;
+Lattice choose_lattice(const Eigen::Vector3d& low, const Eigen::Vector3d& high,
+                       double leaf_edge_m) {
   for (int bits = kMostStepBits; bits >= 1; --bits) {
     Lattice lattice;
-    lattice.step_m = round_up(wanted, bits);
+    lattice.step_m = round_up(leaf_edge_m / core::kLeafUnits, bits);
     if (place_root(low, high, lattice) && coordinate_bits(lattice) + bits <= 24) {
       return lattice;
     }
   }
-  throw std::runtime_error(fmt::format(
-      "the model spans {:.6g} m, too much for octree leaves of {:.3g} m (at most {} across); "
-      "choose a larger spacing, or crop or centre the model",
-      (high - low).maxCoeff(), leaf_edge_m, 1U << core::kMaxDepth));
+  refuse(low, high, leaf_edge_m);
+}
+
+Lattice bounding_lattice(const Eigen::Vector3d& low, const Eigen::Vector3d& high,
+                         std::uint32_t depth) {
+  // Two units more than the extent: the corner is rounded to whole units.
+  const double units = std::ldexp(core::kLeafUnits, static_cast<int>(depth));
+  const double extent = (high - low).maxCoeff();
+  for (int bits = kMostStepBits; bits >= 1; --bits) {
+    Lattice lattice;
+    lattice.depth = depth;
+    lattice.step_m = round_up(extent / (units - 2.0), bits);
+    const Eigen::Array3d middle = 0.5 * (low + high).array() / lattice.step_m;
+    const Eigen::Array3d corner = (middle - 0.5 * units).round();
+    if (corner.abs().maxCoeff() + units > core::kMaxCoordinate) {
+      continue;
+    }
+    lattice.root_min = {static_cast<std::int32_t>(corner.x()),
+                        static_cast<std::int32_t>(corner.y()),
+                        static_cast<std::int32_t>(corner.z())};
+    if (coordinate_bits(lattice) + bits <= 24) {
+      return lattice;
+    }
+  }
+  refuse(low, high, extent / units * core::kLeafUnits);
 }
 
 }  // namespace tactree::builder

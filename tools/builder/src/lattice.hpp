@@ -21,4 +21,9 @@ struct Lattice {
 [[nodiscard]] Lattice choose_lattice(const Eigen::Vector3d& low, const Eigen::Vector3d& high,
                                      double leaf_edge_m);
 
+/// The lattice whose root is, but for rounding, the smallest cube around [low, high].
+/// Throws std::runtime_error when the model lies too far from the origin for that.
+[[nodiscard]] Lattice bounding_lattice(const Eigen::Vector3d& low, const Eigen::Vector3d& high,
+                                       std::uint32_t depth);
+
 }  // namespace tactree::builder

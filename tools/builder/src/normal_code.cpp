@@ -32,8 +32,10 @@ std::uint32_t encode_normal(const Eigen::Vector3f& normal) {
   std::uint32_t best = 0;
   double best_dot = -2.0;
   for (int corner = 0; corner < 4; ++corner) {
-    const auto cu = static_cast<std::uint32_t>(std::clamp(fu + (corner & 1), -255.0, 255.0) + 255.0);
-    const auto cv = static_cast<std::uint32_t>(std::clamp(fv + (corner >> 1), -255.0, 255.0) + 255.0);
+    const auto cu =
+        static_cast<std::uint32_t>(std::clamp(fu + (corner & 1), -255.0, 255.0) + 255.0);
+    const auto cv =
+        static_cast<std::uint32_t>(std::clamp(fv + (corner >> 1), -255.0, 255.0) + 255.0);
     const std::uint32_t code = cu | cv << 9;
     const double alignment = decode_normal(code).dot(normal.cast<double>());
     if (alignment > best_dot) {

@@ -45,7 +45,8 @@ std::uint64_t cell_on_axis(double v, double step, std::int32_t root, std::uint32
   return static_cast<std::uint64_t>(std::clamp(units, 0.0, last)) >> 1;
 }
 
-std::vector<Keyed> sorted_keys(const std::vector<Eigen::Vector3d>& positions, const Lattice& lattice) {
+std::vector<Keyed> sorted_keys(const std::vector<Eigen::Vector3d>& positions,
+                               const Lattice& lattice) {
   std::vector<Keyed> keys(positions.size());
   for (std::size_t i = 0; i < positions.size(); ++i) {
     const auto& p = positions[i];
@@ -81,7 +82,8 @@ class OctreeBuilder {
   };
 
   // Children of one node: leaves first, so that their numbers are consecutive.
-  void split(std::uint32_t node, std::uint32_t level, Int3 cell, std::size_t begin, std::size_t end) {
+  void split(std::uint32_t node, std::uint32_t level, Int3 cell, std::size_t begin,
+             std::size_t end) {
     const std::uint32_t shift = 3U * (tree_.lattice.depth - level - 1U + core::kLeafShift - 1U);
     std::vector<Child> inner;
     std::vector<Child> leaf;
@@ -109,7 +111,8 @@ class OctreeBuilder {
     }
   }
 
-  static void set_group(std::uint32_t& group, const std::vector<Child>& children, std::size_t first) {
+  static void set_group(std::uint32_t& group, const std::vector<Child>& children,
+                        std::size_t first) {
     if (children.empty()) {
       return;
     }
@@ -175,7 +178,9 @@ std::uint32_t find_cell(const Octree& tree, Int3 corner, std::uint32_t level) {
   std::uint32_t node = 0;
   for (std::uint32_t here = 1; here <= level; ++here) {
     const std::uint32_t shift = lattice.depth - here + core::kLeafShift;
-    const auto bit = [shift](std::int32_t v) { return (static_cast<std::uint32_t>(v) >> shift) & 1U; };
+    const auto bit = [shift](std::int32_t v) {
+      return (static_cast<std::uint32_t>(v) >> shift) & 1U;
+    };
     const std::uint32_t octant = bit(local.x) | bit(local.y) << 1 | bit(local.z) << 2;
     const core::BlobNode& parent = tree.nodes[node];
     if ((parent.leaves >> 24 >> octant & 1U) != 0) {
@@ -203,7 +208,9 @@ std::vector<std::uint32_t> neighbour_table(const Octree& tree) {
     const std::int32_t edge = core::kLeafUnits << (tree.lattice.depth - leaf.level);
     for (int direction = 0; direction < 6; ++direction) {
       Int3 corner = leaf.min;
-      (direction < 2 ? corner.x : direction < 4 ? corner.y : corner.z) += (direction & 1) != 0 ? edge : -edge;
+      (direction < 2   ? corner.x
+       : direction < 4 ? corner.y
+                       : corner.z) += (direction & 1) != 0 ? edge : -edge;
       table.push_back(find_cell(tree, corner, leaf.level));
     }
   }

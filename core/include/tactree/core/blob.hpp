@@ -122,9 +122,10 @@ class BlobView {
 /// Not for interrupts (long), though it touches no shared state.
 [[nodiscard]] BlobStatus open_blob(std::span<const std::byte> bytes, BlobView& view);
 
-/// All leaves of a model in depth-first order, which is the order of their numbers and points.
+/// All leaves of a model in depth-first order (of a node's children, leaves before inner nodes),
+/// which is the order of their numbers and points.
 ///   for (LeafCursor c(view); !c.done(); c.next()) use(c.leaf());
-/// Cost of a full walk: nodes + leaves steps. Stack: 13 levels of 8 bytes.
+/// Cost of a full walk: nodes + leaves steps. Stack: 11 levels of 12 bytes.
 class LeafCursor {
  public:
   explicit LeafCursor(const BlobView& view);
@@ -133,13 +134,16 @@ class LeafCursor {
   void next();
 
  private:
-  struct Level {
+  struct Frame {
     std::uint32_t node;
-    std::uint32_t octants_left;
+    std::uint32_t leaves_left;  // masks of octants
+    std::uint32_t nodes_left;
   };
 
+  void enter(std::uint32_t node, Int3 cell);
+
   BlobView view_;
-  Level stack_[kMaxDepth + 1] = {};
+  Frame stack_[kMaxDepth] = {};
   std::uint32_t level_ = 0;
   Int3 cell_{};  // of the node on top of the stack, in cells of its level
   Leaf leaf_{};

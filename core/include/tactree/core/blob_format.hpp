@@ -61,7 +61,7 @@ struct BlobHeader {
   std::uint32_t profile;  ///< Profile
   std::uint32_t depth;    ///< levels below the root; the root's edge is 2048 << depth lattice units
   float step_m;           ///< lattice unit: half a quantisation step
-  std::int32_t root_min[3];  ///< lattice units, multiples of 2048
+  std::int32_t root_min[3];  ///< lower corner of the root cube, lattice units
 
   std::uint32_t point_count;
   std::uint32_t leaf_count;

@@ -14,7 +14,27 @@ constexpr std::uint32_t count_octants(std::uint32_t mask) {
   return (pairs + (pairs >> 4)) & 0x0FU;
 }
 
-/// Lattice coordinates of the site at or below `position` on each axis: floor(position / step_m),
+/// The lowest octant of a non-empty mask.
+constexpr std::uint32_t lowest_octant(std::uint32_t mask) {
+  return count_octants((mask & (~mask + 1U)) - 1U);
+}
+
+/// Index of a node's child in `octant`. Precondition: that child is an inner node (a leaf).
+constexpr std::uint32_t child_node(BlobNode node, std::uint32_t octant) {
+  return (node.nodes & 0xFFFFFFU) + count_octants((node.nodes >> 24) & ((1U << octant) - 1U));
+}
+constexpr std::uint32_t child_leaf(BlobNode node, std::uint32_t octant) {
+  return (node.leaves & 0xFFFFFFU) + count_octants((node.leaves >> 24) & ((1U << octant) - 1U));
+}
+
+/// Cell of a child, in cells of its level.
+constexpr Int3 child_cell(Int3 cell, std::uint32_t octant) {
+  return {cell.x << 1 | static_cast<std::int32_t>(octant & 1U),
+          cell.y << 1 | static_cast<std::int32_t>((octant >> 1) & 1U),
+          cell.z << 1 | static_cast<std::int32_t>(octant >> 2)};
+}
+
+/// Lattice coordinates of the unit at or below `position` on each axis: floor(position / step_m),
 /// exactly. False when the position is not finite or outside the root cube.
 [[nodiscard]] bool to_lattice(const BlobView& view, Vec3 position, Int3& site);
 
