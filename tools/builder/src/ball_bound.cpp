@@ -19,7 +19,10 @@ namespace {
 // 0.027 r, which on a surface adds 6 % of points to a ball.
 constexpr std::uint32_t kLevels = 5;
 // A cube is not looked into once its bound is within this factor of a count that does occur.
+// The closer, the more scratch memory is saved and the more cubes are looked into.
 constexpr double kTolerance = 1.1;
+constexpr double kToleranceOfLarge = 1.2;
+constexpr std::size_t kLargeModel = 200000;  // points; more than most boards can store
 constexpr std::size_t kSamples = 200000;
 // More than the rounding of a float32 distance between points a few r apart (below 1e-6), far less
 // than anything that matters.
@@ -30,8 +33,8 @@ struct Cube {
   Eigen::Vector3f centre;
   float edge;
 
+  [[nodiscard]] float half_edge() const { return 0.5F * edge; }
   [[nodiscard]] float half_diagonal() const { return 0.8660255F * edge; }
-  [[nodiscard]] float reach() const { return kRadiusMargin * (1.0F + half_diagonal()); }
   [[nodiscard]] Cube octant(unsigned which) const {
     const float quarter = 0.25F * edge;
     return {centre + Eigen::Vector3f((which & 1U) != 0 ? quarter : -quarter,
@@ -41,8 +44,8 @@ struct Cube {
   }
 };
 
-std::uint32_t tolerated(std::uint32_t count) {
-  return std::max(count, static_cast<std::uint32_t>(kTolerance * count));
+std::uint32_t tolerated(std::uint32_t count, double tolerance) {
+  return std::max(count, static_cast<std::uint32_t>(tolerance * count));
 }
 
 std::uint32_t count_within(std::span<const Eigen::Vector3d> positions, const PointGrid& grid,
@@ -132,19 +135,22 @@ class Candidates {
     block.index[lane] = index;
   }
 
-  [[nodiscard]] std::uint32_t count_within(const Eigen::Vector3f& centre, float radius) const {
+  // How many lie within 1 of the cube centre +- half_edge.
+  [[nodiscard]] std::uint32_t count_near(const Eigen::Vector3f& centre, float half_edge) const {
     Integers count = {0, 0, 0, 0};
     for (const Block& block : blocks_) {
-      count -= squared_distances(block, centre) <= radius * radius;  // true is -1
+      count -= near(block, centre, half_edge);  // true is -1
     }
     return static_cast<std::uint32_t>(count[0] + count[1] + count[2] + count[3]);
   }
-  // What lies within the radius, added to `found`.
-  void filter(const Eigen::Vector3f& centre, float radius, Candidates& found) const {
-    for (std::uint32_t i = 0; i < size_; ++i) {
-      const Eigen::Vector3f p = position(i);
-      if ((p - centre).squaredNorm() <= radius * radius) {
-        found.add(p, index(i));
+  // The same points, added to `found`.
+  void filter(const Eigen::Vector3f& centre, float half_edge, Candidates& found) const {
+    for (std::uint32_t b = 0; b < blocks_.size(); ++b) {
+      const Integers is_near = near(blocks_[b], centre, half_edge);
+      for (std::uint32_t lane = 0; lane < 4; ++lane) {
+        if (is_near[lane] != 0) {
+          found.add(position(4 * b + lane), index(4 * b + lane));
+        }
       }
     }
   }
@@ -176,11 +182,18 @@ class Candidates {
   };
   static constexpr float kAway = 1e30F;  // its square is infinite: within no radius
 
-  static Floats squared_distances(const Block& block, const Eigen::Vector3f& centre) {
-    const Floats x = block.x - centre.x();
-    const Floats y = block.y - centre.y();
-    const Floats z = block.z - centre.z();
-    return x * x + y * y + z * z;
+  // How far the coordinates lie beyond the interval centre +- half_edge; 0 inside.
+  static Floats beyond(const Floats& coordinates, float centre, float half_edge) {
+    const Floats zero = {0.0F, 0.0F, 0.0F, 0.0F};
+    const Floats offset = coordinates - centre;
+    const Floats distance = (offset < zero ? -offset : offset) - half_edge;
+    return distance < zero ? zero : distance;
+  }
+  static Integers near(const Block& block, const Eigen::Vector3f& centre, float half_edge) {
+    const Floats x = beyond(block.x, centre.x(), half_edge);
+    const Floats y = beyond(block.y, centre.y(), half_edge);
+    const Floats z = beyond(block.z, centre.z(), half_edge);
+    return x * x + y * y + z * z <= kRadiusMargin * kRadiusMargin;
   }
 
   std::vector<Block> blocks_;
@@ -199,32 +212,32 @@ class CandidateLists {
   Cube gather(const Eigen::Vector3i& cell) {
     const Eigen::Vector3d centre = grid_.cell_centre(cell);
     const Cube cube{Eigen::Vector3f::Zero(), static_cast<float>(grid_.cell_edge() / radius_)};
-    const double reach = radius_ * static_cast<double>(cube.reach());
-    lists_[0].clear();
-    grid_.visit_near(centre, reach, [&](std::uint32_t i) {
-      const Eigen::Vector3d p = positions_[i] - centre;
-      if (p.squaredNorm() <= reach * reach) {
-        lists_[0].add((p / radius_).cast<float>(), i);
-      }
+    gathered_.clear();
+    grid_.visit_near(centre, radius_ + 0.50001 * grid_.cell_edge(), [&](std::uint32_t i) {
+      gathered_.add(((positions_[i] - centre) / radius_).cast<float>(), i);
     });
+    lists_[0].clear();
+    gathered_.filter(cube.centre, cube.half_edge(), lists_[0]);
     return cube;
   }
   void filter(const Cube& cube, std::uint32_t level) {
     lists_[level].clear();
-    lists_[level - 1].filter(cube.centre, cube.reach(), lists_[level]);
+    lists_[level - 1].filter(cube.centre, cube.half_edge(), lists_[level]);
   }
 
  private:
   std::span<const Eigen::Vector3d> positions_;
   const PointGrid& grid_;
   double radius_;
+  Candidates gathered_;
   std::array<Candidates, kLevels + 1> lists_;
 };
 
 // Bounds the balls centred in one cube of the grid, depth first.
 class BoundSearch {
  public:
-  explicit BoundSearch(CandidateLists lists) : lists_(std::move(lists)) {}
+  BoundSearch(CandidateLists lists, double tolerance)
+      : lists_(std::move(lists)), tolerance_(tolerance) {}
 
   // An upper bound for the cell; what is known to be at most `enough` is not looked into.
   std::uint32_t bound(const Eigen::Vector3i& cell, std::uint32_t enough) {
@@ -243,15 +256,15 @@ class BoundSearch {
     }
     // Of the balls that hold a set of points, the smallest has its centre amid them. So a cube is
     // no place for the centre of a fullest ball when all of its points lie to one side of it.
-    if (all.all_to_one_side(cube.centre, cube.half_diagonal())) {
+    if (all.all_to_one_side(cube.centre, kRadiusMargin * cube.half_diagonal())) {
       return 0;
     }
     std::uint32_t best = 0;
     for (unsigned octant = 0; octant < 8; ++octant) {
       const Cube child = cube.octant(octant);
-      std::uint32_t count = all.count_within(child.centre, child.reach());
+      std::uint32_t count = all.count_near(child.centre, child.half_edge());
       if (count > enough_) {
-        enough_ = std::max(enough_, tolerated(all.count_within(child.centre, 1.0F)));
+        enough_ = std::max(enough_, tolerated(all.count_near(child.centre, 0.0F), tolerance_));
       }
       if (count > enough_) {
         lists_.filter(child, level + 1);
@@ -263,6 +276,7 @@ class BoundSearch {
   }
 
   CandidateLists lists_;
+  double tolerance_;
   std::uint32_t enough_ = 0;
 };
 
@@ -327,12 +341,13 @@ std::uint32_t max_points_in_ball(std::span<const Eigen::Vector3d> positions, dou
   }
   const PointGrid grid(positions, radius);
   const std::uint32_t occurring = occurring_maximum(positions, grid, radius);
-  const std::uint32_t enough = tolerated(occurring);
+  const double tolerance = positions.size() > kLargeModel ? kToleranceOfLarge : kTolerance;
+  const std::uint32_t enough = tolerated(occurring, tolerance);
   const std::vector<Eigen::Vector3i> cells = cells_of_centres(grid);
   return tbb::parallel_reduce(
       tbb::blocked_range<std::size_t>(0, cells.size(), 64), occurring,
       [&](const tbb::blocked_range<std::size_t>& range, std::uint32_t best) {
-        BoundSearch search(CandidateLists(positions, grid, radius));
+        BoundSearch search(CandidateLists(positions, grid, radius), tolerance);
         for (std::size_t i = range.begin(); i < range.end(); ++i) {
           best = std::max(best, search.bound(cells[i], enough));
         }

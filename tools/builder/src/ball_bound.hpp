@@ -2,8 +2,8 @@
 // How many points can a ball of a given radius hold, wherever its centre is?
 //
 // The controller's scratch for candidate points has a fixed size, so the answer has to be a proven
-// bound and not a sample. Branch and bound over cubes of centres: no ball whose centre lies in a
-// cube holds more points than the ball of radius r + (half the cube's diagonal) around its middle.
+// bound and not a sample. Branch and bound over cubes of centres: a ball whose centre lies in a
+// cube holds no point farther than its radius from the cube.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -13,9 +13,9 @@
 namespace tactree::builder {
 
 /// An upper bound of the number of `positions` in any closed ball of `radius`, centred anywhere.
-/// At most about 1.2 times the true maximum on surfaces; never below it. Deterministic, whatever
-/// the number of threads. Preconditions: finite positions, radius > 0.
-/// Cost: about 1 s per million points of a surface with 30 points in a ball, on one core.
+/// At most 1.1 times the true maximum or so (1.2 above 200 000 points); never below it.
+/// Deterministic, whatever the number of threads. Preconditions: finite positions, radius > 0.
+/// Cost: with 30 points in a ball, on one core, about 10 us a point (3 us above 200 000 points).
 [[nodiscard]] std::uint32_t max_points_in_ball(std::span<const Eigen::Vector3d> positions,
                                                double radius);
 
