@@ -1,0 +1,96 @@
+#pragma once
+// The controller of the firmware, on a simulated board, with a simulated device and hand.
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "tactree/core/controller.hpp"
+#include "tactree/core/crc32.hpp"
+#include "tactree/hal/loop.hpp"
+#include "tactree/hal/sim/board.hpp"
+#include "tactree/plant/plant.hpp"
+#include "tactree/simulation/hand_path.hpp"
+
+namespace tactree::simulation {
+
+struct Setup {
+  core::Configuration controller{};
+  hal::sim::BoardParameters board{};  ///< period_us follows controller.rate_hz
+  plant::PlantParameters plant{};
+};
+
+/// One tick, for traces and plots.
+struct Sample {
+  double t_s = 0.0;                                 ///< 0 is the first tick after arming
+  Eigen::Vector3d tip_m = Eigen::Vector3d::Zero();  ///< where the device truly is, model frame
+  core::Status status{};
+};
+
+struct FaultEvent {
+  core::Fault fault = core::Fault::kNone;
+  std::uint64_t tick = 0;  ///< when it was latched
+};
+
+struct Summary {
+  std::uint64_t ticks = 0;
+  std::uint64_t contact_ticks = 0;
+  std::uint64_t overruns = 0;
+  double force_max_N = 0.0;
+  double force_step_max_N = 0.0;  ///< from one tick to the next
+  double penetration_max_m = 0.0;
+  std::uint32_t trace_crc32 = 0;  ///< of the force's three float32 of every tick, little-endian
+  std::vector<FaultEvent> faults;
+};
+
+/// The session: power-up, arming, then ticks along the hand's path.
+class Simulation {
+ public:
+  /// `blob` must be 4-byte aligned and outlive the simulation. Throws std::invalid_argument where
+  /// the plant's parameters are out of range.
+  Simulation(std::span<const std::byte> blob, const Setup& setup, HandPath path);
+
+  /// What start-up said; when it is not ok() the force stays zero.
+  [[nodiscard]] const hal::StartResult& start_result() const { return start_; }
+
+  /// Arms and waits until the ramp is over, the hand resting at the begin of its path.
+  /// False: the controller is not active. Not part of the trace.
+  [[nodiscard]] bool arm();
+
+  /// One tick.
+  Sample step();
+
+  [[nodiscard]] hal::sim::SimBoard& board() { return board_; }
+  [[nodiscard]] const core::Controller& controller() const { return controller_; }
+  [[nodiscard]] const plant::Plant& plant() const { return plant_; }
+
+ private:
+  core::Status tick(double t_s);
+
+  Setup setup_;
+  HandPath path_;
+  double period_s_;
+  hal::sim::SimBoard board_;
+  core::Controller controller_;
+  hal::Loop<hal::sim::SimBoard> loop_;
+  hal::StartResult start_;
+  plant::Plant plant_;
+  std::uint64_t ticks_ = 0;
+};
+
+/// Adds samples up to a Summary.
+class Recorder {
+ public:
+  void add(const Sample& sample);
+  [[nodiscard]] Summary summary() const;
+
+ private:
+  Summary summary_{};
+  core::Crc32 crc_{};
+  core::Vec3 last_force_{};
+  core::FaultMask known_ = 0;
+  bool first_ = true;
+};
+
+}  // namespace tactree::simulation

@@ -1,0 +1,104 @@
+#include "tactree/simulation/simulation.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace tactree::simulation {
+namespace {
+
+// The person at the device: presses "arm", then holds the dead-man control.
+constexpr std::uint64_t kArmAtTick = 2;
+constexpr double kHoldAfterS = 0.08;
+constexpr double kSettleS = 0.05;
+
+hal::sim::BoardParameters with_rate(hal::sim::BoardParameters board, float rate_hz) {
+  board.period_us = static_cast<std::uint32_t>(std::lround(1e6 / static_cast<double>(rate_hz)));
+  return board;
+}
+
+Eigen::Vector3d widen(core::Vec3 v) {
+  return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
+}
+
+}  // namespace
+
+Simulation::Simulation(std::span<const std::byte> blob, const Setup& setup, HandPath path)
+    : setup_(setup),
+      path_(std::move(path)),
+      period_s_(1.0 / static_cast<double>(setup.controller.rate_hz)),
+      board_(with_rate(setup.board, setup.controller.rate_hz), blob),
+      loop_(board_, controller_),
+      start_(loop_.start(setup.controller)),
+      plant_(setup.plant, path_.at(0.0).position_m + widen(setup.controller.model_origin_m)) {}
+
+bool Simulation::arm() {
+  const double begin = path_.waypoints().front().t_s;
+  const double wait_s = kHoldAfterS + static_cast<double>(setup_.controller.ramp_s) + kSettleS;
+  const auto ticks = static_cast<std::uint64_t>(std::ceil(wait_s / period_s_));
+  const auto hold_at = static_cast<std::uint64_t>(std::ceil(kHoldAfterS / period_s_));
+  for (std::uint64_t i = 0; i < ticks; ++i) {
+    const bool dead_man = setup_.controller.dead_man_required;
+    const bool arm_now = i == kArmAtTick || (!dead_man && i == hold_at);
+    board_.link().post(arm_now ? core::Command::kArm : core::Command::kNone);
+    board_.safety_inputs().hold_dead_man(i >= hold_at);
+    tick(std::min(begin, 0.0));
+  }
+  return controller_.state() == core::State::kActive;
+}
+
+Sample Simulation::step() {
+  const double t_s = static_cast<double>(ticks_) * period_s_;
+  board_.link().post(core::Command::kNone);
+  Sample sample;
+  sample.t_s = t_s;
+  sample.tip_m = plant_.position_m() - widen(setup_.controller.model_origin_m);
+  sample.status = tick(t_s);
+  ++ticks_;
+  return sample;
+}
+
+core::Status Simulation::tick(double t_s) {
+  const Eigen::Vector3d& p = plant_.position_m();
+  board_.sample({p.x(), p.y(), p.z()});
+  const core::Status status = loop_.tick().status;
+  plant::HandTarget target = path_.at(t_s);
+  target.position_m += widen(setup_.controller.model_origin_m);
+  plant_.advance({board_.effort(0), board_.effort(1), board_.effort(2)}, target, period_s_);
+  return status;
+}
+
+void Recorder::add(const Sample& sample) {
+  const core::Status& status = sample.status;
+  const core::Vec3 force = status.force;
+  const float components[3] = {force.x, force.y, force.z};
+  crc_.update(std::as_bytes(std::span(components)));
+
+  const double step = first_ ? 0.0 : (widen(force) - widen(last_force_)).norm();
+  summary_.force_max_N = std::max(summary_.force_max_N, widen(force).norm());
+  summary_.force_step_max_N = std::max(summary_.force_step_max_N, step);
+  if (status.rendering.in_contact) {
+    ++summary_.contact_ticks;
+    summary_.penetration_max_m =
+        std::max(summary_.penetration_max_m, static_cast<double>(status.rendering.penetration_m));
+  }
+  for (std::uint32_t code = 1; code < core::kFaultCodes; ++code) {
+    const auto fault = static_cast<core::Fault>(code);
+    if (core::has_fault(status.faults & ~known_, fault)) {
+      summary_.faults.push_back({fault, summary_.ticks});
+    }
+  }
+  known_ = status.faults;
+  last_force_ = force;
+  first_ = false;
+  summary_.overruns = status.overruns;
+  ++summary_.ticks;
+}
+
+Summary Recorder::summary() const {
+  Summary summary = summary_;
+  summary.trace_crc32 = crc_.value();
+  return summary;
+}
+
+}  // namespace tactree::simulation
