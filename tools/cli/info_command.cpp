@@ -1,0 +1,173 @@
+#include "info_command.hpp"
+
+#include <fmt/core.h>
+
+#include <bit>
+#include <cmath>
+#include <iterator>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "blob_file.hpp"
+#include "output_file.hpp"
+
+namespace tactree::cli {
+namespace {
+
+using core::BlobHeader;
+using core::BlobView;
+
+struct InfoOptions {
+  std::string blob;
+  std::string json;
+  std::string points;
+};
+
+const char* profile_name(const BlobHeader& header) {
+  return header.profile == static_cast<std::uint32_t>(core::Profile::kPaper) ? "paper" : "surface";
+}
+
+double to_double(core::BlobDouble words) {
+  return std::bit_cast<double>(std::uint64_t{words.high} << 32 | words.low);
+}
+
+// A float32 as the shortest decimal number that reads back as it: 0.0005, not 0.00050000002.
+double shortest(float v) { return std::strtod(fmt::format("{}", v).c_str(), nullptr); }
+
+double millimetres(float metres) { return 1e3 * shortest(metres); }
+
+double bytes_per_point(const BlobHeader& header) {
+  return static_cast<double>(header.total_bytes) / header.point_count;
+}
+
+std::string digest(const BlobHeader& header) {
+  std::string text;
+  for (const std::uint8_t byte : header.source_digest) {
+    fmt::format_to(std::back_inserter(text), "{:02x}", byte);
+  }
+  return text;
+}
+
+nlohmann::json to_json(const BlobHeader& h) {
+  const auto triple = [](const float* v) {
+    return nlohmann::json::array({shortest(v[0]), shortest(v[1]), shortest(v[2])});
+  };
+  return {
+      {"name", h.name},
+      {"profile", profile_name(h)},
+      {"points", h.point_count},
+      {"leaves", h.leaf_count},
+      {"nodes", h.node_count},
+      {"materials", h.material_count},
+      {"depth", h.depth},
+      {"bytes", h.total_bytes},
+      {"bytes_per_point", bytes_per_point(h)},
+      {"section_bytes",
+       {{"header", h.header_bytes},
+        {"nodes", h.nodes.bytes},
+        {"leaves", h.leaves.bytes},
+        {"points", h.points.bytes},
+        {"normals", h.normals.bytes},
+        {"neighbours", h.neighbours.bytes},
+        {"materials", h.materials.bytes + h.material_indices.bytes}}},
+      {"spacing_m", shortest(h.spacing_m)},
+      {"support_radius_m", shortest(h.support_radius_m)},
+      {"reach_m", shortest(h.reach_m)},
+      {"leaf_edge_min_m", shortest(h.leaf_edge_min_m)},
+      {"aabb_edge_m", shortest(h.aabb_edge_m)},
+      {"six_point_offset_m", shortest(h.six_point_offset_m)},
+      {"largest_gap_m", shortest(h.largest_gap_m)},
+      {"quantisation_step_m", 2.0 * shortest(h.step_m)},
+      {"points_per_leaf_max", h.points_per_leaf_max},
+      {"points_per_ball_max", h.points_per_ball_max},
+      {"points_per_query_max", h.points_per_query_max},
+      {"leaves_per_query_max", h.leaves_per_query_max},
+      {"bounds_min_m", triple(h.bounds_min_m)},
+      {"bounds_max_m", triple(h.bounds_max_m)},
+      {"source_scale", to_double(h.source_scale)},
+      {"source_origin",
+       {to_double(h.source_origin[0]), to_double(h.source_origin[1]),
+        to_double(h.source_origin[2])}},
+      {"source_sha256", digest(h)},
+      {"checksum", fmt::format("{:08x}", h.checksum)},
+      {"format", fmt::format("{}.{}", h.version_major, h.version_minor)},
+      {"tool", h.tool_version},
+  };
+}
+
+void print_sizes(const BlobHeader& h) {
+  fmt::print("size          {} bytes, {:.3f} bytes a point\n", h.total_bytes, bytes_per_point(h));
+  const auto row = [&](const char* name, std::uint32_t bytes) {
+    if (bytes != 0) {
+      fmt::print("  {:<12}{:>10}  {:>5.1f} %  {:.3f} a point\n", name, bytes,
+                 100.0 * bytes / h.total_bytes, static_cast<double>(bytes) / h.point_count);
+    }
+  };
+  row("header", h.header_bytes);
+  row("octree", h.nodes.bytes);
+  row("leaves", h.leaves.bytes);
+  row("positions", h.points.bytes);
+  row("normals", h.normals.bytes);
+  row("neighbours", h.neighbours.bytes);
+  row("materials", h.materials.bytes + h.material_indices.bytes);
+}
+
+void print(const BlobHeader& h) {
+  fmt::print("model         {} ({} profile, format {}.{}, {})\n", h.name, profile_name(h),
+             h.version_major, h.version_minor, h.tool_version);
+  fmt::print("points        {} in {} leaves, {} nodes, depth {}\n", h.point_count, h.leaf_count,
+             h.node_count, h.depth);
+  fmt::print("bounds        x {:.6g} ... {:.6g}  y {:.6g} ... {:.6g}  z {:.6g} ... {:.6g} m\n",
+             h.bounds_min_m[0], h.bounds_max_m[0], h.bounds_min_m[1], h.bounds_max_m[1],
+             h.bounds_min_m[2], h.bounds_max_m[2]);
+  fmt::print("spacing       {:.6g} mm; positions rounded to {:.3g} um\n", millimetres(h.spacing_m),
+             2e3 * millimetres(h.step_m));
+  fmt::print("largest gap   {:.6g} mm\n", millimetres(h.largest_gap_m));
+  fmt::print("support       {:.6g} mm; exact queries up to {:.6g} mm; leaf edge {:.6g} mm\n",
+             millimetres(h.support_radius_m), millimetres(h.reach_m),
+             millimetres(h.leaf_edge_min_m));
+  fmt::print(
+      "guarantees    at most {} points a leaf, {} in a ball of {:.6g} mm, {} leaves and {} "
+      "points a query\n",
+      h.points_per_leaf_max, h.points_per_ball_max, millimetres(h.reach_m), h.leaves_per_query_max,
+      h.points_per_query_max);
+  print_sizes(h);
+}
+
+// Positions are exact: a site's decimal expansion to 9 digits reads back as the same float32.
+void write_points(const BlobView& view, const std::string& file) {
+  std::string text = "index,x,y,z,nx,ny,nz\n";
+  std::size_t index = 0;
+  for (const core::SurfacePoint& p : decode_points(view)) {
+    fmt::format_to(std::back_inserter(text), "{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}\n",
+                   index++, p.position.x, p.position.y, p.position.z, p.normal.x, p.normal.y,
+                   p.normal.z);
+  }
+  write_file(file, text);
+}
+
+void info(const InfoOptions& options) {
+  const BlobFile blob(options.blob);
+  print(blob.view().header());
+  if (!options.json.empty()) {
+    write_file(options.json, to_json(blob.view().header()).dump(2) + "\n");
+  }
+  if (!options.points.empty()) {
+    write_points(blob.view(), options.points);
+  }
+}
+
+}  // namespace
+
+void add_info_command(CLI::App& app, int&) {
+  auto options = std::make_shared<InfoOptions>();
+  CLI::App* verb = app.add_subcommand(
+      "info", "Tells what a blob holds, what it guarantees and where its bytes go");
+  verb->add_option("BLOB", options->blob, "the blob to look into")->required();
+  verb->add_option("--json", options->json, "write the figures to this file");
+  verb->add_option("--points", options->points,
+                   "write every decoded point to this CSV file: index,x,y,z,nx,ny,nz (m)");
+  verb->callback([options] { info(*options); });
+}
+
+}  // namespace tactree::cli
