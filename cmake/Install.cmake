@@ -1,0 +1,47 @@
+# Installation, for find_package(tactree) from other projects.
+#
+# Each component has its own export file, and finds its own dependencies: a firmware project that
+# wants core and hal needs neither Eigen nor anything else.
+#   core        tactree::core, tactree::hal           depends on nothing; always there
+#   builder     tactree::builder                      Eigen, fmt, TBB, liblzf
+#   simulation  tactree::plant, tactree::simulation   Eigen
+include(CMakePackageConfigHelpers)
+
+set(tactree_cmake_dir ${CMAKE_INSTALL_LIBDIR}/cmake/tactree)
+
+# tactree_install_component(<component> <headers>... TARGETS <target>...)
+#   headers  folders whose content goes into the include folder
+function(tactree_install_component component)
+  cmake_parse_arguments(arg "" "" "HEADERS;TARGETS" ${ARGN})
+  install(TARGETS ${arg_TARGETS} EXPORT tactree-${component}
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(EXPORT tactree-${component} NAMESPACE tactree:: DESTINATION ${tactree_cmake_dir}
+    FILE tactree-${component}-targets.cmake)
+  foreach(folder IN LISTS arg_HEADERS)
+    install(DIRECTORY ${folder}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
+      FILES_MATCHING PATTERN "*.hpp")
+  endforeach()
+endfunction()
+
+tactree_install_component(core
+  TARGETS tactree_core tactree_hal
+  HEADERS core/include hal/include)
+if(TACTREE_BUILD_TOOLS)
+  tactree_install_component(builder
+    TARGETS tactree_builder
+    HEADERS tools/builder/include ${CMAKE_CURRENT_BINARY_DIR}/tools/builder/include)
+  tactree_install_component(simulation
+    TARGETS tactree_plant tactree_simulation
+    HEADERS host/plant/include host/simulation/include)
+endif()
+
+configure_package_config_file(cmake/tactree-config.cmake.in
+  ${CMAKE_CURRENT_BINARY_DIR}/tactree-config.cmake
+  INSTALL_DESTINATION ${tactree_cmake_dir})
+# Before 1.0 a minor version may break its users.
+write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/tactree-config-version.cmake
+  COMPATIBILITY SameMinorVersion)
+install(FILES
+  ${CMAKE_CURRENT_BINARY_DIR}/tactree-config.cmake
+  ${CMAKE_CURRENT_BINARY_DIR}/tactree-config-version.cmake
+  DESTINATION ${tactree_cmake_dir})
