@@ -13,7 +13,8 @@ namespace {
 
 constexpr double kSampleS = 0.002;    // between two waypoints
 constexpr double kRubSpeed = 0.1;     // m/s at the middle of a stroke
-constexpr double kClimbSpeed = 0.25;  // m/s: how fast the hand follows a relief
+constexpr double kClimbSpeed = 0.25;  // m/s: how fast the hand follows a relief upwards
+constexpr double kSinkSpeed = 0.1;    // m/s: and downwards, touching down included
 constexpr double kRubDepth = 0.004;   // m: how far below the surface the hand aims
 constexpr double kTraceDepth = 0.0015;
 constexpr double kPressDepth = 0.008;
@@ -49,8 +50,7 @@ HandPath follow(const Relief& relief, double seconds, const Motion& motion) {
     // Over a hole the hand keeps the height it had.
     (void)relief.height(stroke.place.x(), stroke.place.y(), surface);
     const double wanted = t < lift_at ? surface - stroke.depth_m : above;
-    const double furthest = kClimbSpeed * kSampleS;
-    w += std::clamp(wanted - w, -furthest, furthest);
+    w += std::clamp(wanted - w, -kSinkSpeed * kSampleS, kClimbSpeed * kSampleS);
     waypoints.push_back({t, relief.to_model({stroke.place.x(), stroke.place.y(), w})});
   }
   return HandPath(std::move(waypoints));
@@ -58,7 +58,7 @@ HandPath follow(const Relief& relief, double seconds, const Motion& motion) {
 
 HandPath rub(const Relief& relief, double seconds) {
   const Eigen::Vector2d extent = (relief.high() - relief.low()).head<2>();
-  const Eigen::Vector2d amplitude = 0.35 * extent;
+  const Eigen::Vector2d amplitude = 0.25 * extent;
   const double rate = stroke_rate(amplitude.maxCoeff());
   // The short side goes slower, at a ratio that does not repeat soon: the whole surface is met.
   const double ratio = 0.5 * (std::sqrt(5.0) - 1.0) * 0.5;

@@ -99,21 +99,27 @@ void Relief::fill(const core::BlobView& view) {
   });
 }
 
+double Relief::cell(std::ptrdiff_t column, std::ptrdiff_t row) const {
+  const bool inside = row >= 0 && row < rows_ && column >= 0 && column < columns_;
+  return inside ? heights_[static_cast<std::size_t>(row * columns_ + column)]
+                : std::numeric_limits<double>::quiet_NaN();
+}
+
 bool Relief::height(double u, double v, double& w) const {
-  bool found = false;
-  for (std::ptrdiff_t r = row(v) - 1; r <= row(v) + 1; ++r) {
-    for (std::ptrdiff_t c = column(u) - 1; c <= column(u) + 1; ++c) {
-      if (r < 0 || r >= rows_ || c < 0 || c >= columns_) {
-        continue;
-      }
-      const double cell = heights_[static_cast<std::size_t>(r * columns_ + c)];
-      if (!std::isnan(cell) && (!found || cell > w)) {
-        w = cell;
-        found = true;
-      }
+  const std::ptrdiff_t c = column(u);
+  const std::ptrdiff_t r = row(v);
+  double best = cell(c, r);
+  if (std::isnan(best)) {
+    for (std::ptrdiff_t i = 0; i < 9; ++i) {
+      const double beside = cell(c - 1 + i % 3, r - 1 + i / 3);
+      best = std::isnan(best) || beside > best ? beside : best;
     }
   }
-  return found;
+  if (std::isnan(best)) {
+    return false;
+  }
+  w = best;
+  return true;
 }
 
 void Relief::find_middle() {

@@ -14,8 +14,9 @@ class Relief {
   /// Throws std::invalid_argument for an empty model. Cost: three passes over the points.
   explicit Relief(const core::BlobView& view);
 
-  /// Height of the surface over (u, v), m; false where nothing faces the viewer. Rather too high
-  /// than too low: the highest point in about 3 spacings around.
+  /// Height of the surface over (u, v), m: the highest point in a cell of about two spacings, or
+  /// where that is empty in the cells beside it; false (and w as it was) where nothing faces the
+  /// viewer.
   [[nodiscard]] bool height(double u, double v, double& w) const;
 
   /// From the relief's frame to the model's.
@@ -32,6 +33,8 @@ class Relief {
   void choose_view(const core::BlobView& view);
   void fill(const core::BlobView& view);
   void find_middle();
+  /// NaN: nothing there.
+  [[nodiscard]] double cell(std::ptrdiff_t column, std::ptrdiff_t row) const;
   [[nodiscard]] std::ptrdiff_t column(double u) const;
   [[nodiscard]] std::ptrdiff_t row(double v) const;
 

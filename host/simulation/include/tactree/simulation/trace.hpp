@@ -1,0 +1,22 @@
+#pragma once
+// What a simulation did, as a table for programs and as a picture for people.
+
+#include <span>
+#include <string>
+
+#include "tactree/simulation/simulation.hpp"
+
+namespace tactree::simulation {
+
+/// The first row of a trace: the names of its columns, units in the names.
+[[nodiscard]] std::string trace_heading();
+
+/// One row per sample. Every float32 is written so that reading it gives the same bits.
+void append_trace(std::string& csv, const Sample& sample);
+
+/// An SVG page: the force's components and size, and the penetration, over time. `title` is told
+/// above. Long runs are drawn as the band between the lowest and the highest value of each column
+/// of pixels, so that no spike is lost.
+[[nodiscard]] std::string plot_svg(std::span<const Sample> samples, const std::string& title);
+
+}  // namespace tactree::simulation

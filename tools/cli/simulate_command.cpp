@@ -1,0 +1,276 @@
+#include "simulate_command.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "blob_file.hpp"
+#include "command.hpp"
+#include "output_file.hpp"
+#include "tactree/simulation/hand_script.hpp"
+#include "tactree/simulation/simulation.hpp"
+#include "tactree/simulation/trace.hpp"
+
+namespace tactree::cli {
+namespace {
+
+constexpr double kMaxTicks = 1e8;
+// A trace or plot keeps every sample in memory.
+constexpr double kMaxTracedTicks = 5e6;
+
+struct SimulateOptions {
+  std::string blob;
+  std::string board = "host";
+  std::string device = "cartesian";
+  std::string script = "rub";
+  std::string path;
+  std::string mode = "surface";
+  std::string trace;
+  std::string plot;
+  std::string json;
+  double seconds = 10.0;
+  double latency_ticks = 0.0;
+  double encoder_step_m = 30e-6;
+  simulation::Setup setup;
+};
+
+/// Where the controller or the simulation refuses what the user asked for.
+[[noreturn]] void refuse(const std::string& what, const std::string& remedy) {
+  throw CommandError(fmt::format("{} ({})", what, remedy));
+}
+
+simulation::HandPath hand_path(const SimulateOptions& options, const core::BlobView& view) {
+  if (!options.path.empty()) {
+    return simulation::read_hand_path(options.path);
+  }
+  return simulation::make_script(options.script, view, options.seconds);
+}
+
+simulation::Setup make_setup(const SimulateOptions& options) {
+  simulation::Setup setup = options.setup;
+  core::Configuration& controller = setup.controller;
+  controller.mode = options.mode == "paper" ? core::RenderMode::kPaper : core::RenderMode::kSurface;
+  for (float& counts : controller.device.counts_per_m) {
+    counts = static_cast<float>(1.0 / options.encoder_step_m);
+  }
+  // One figure for both sides: the device the controller believes in is the simulated one.
+  setup.board.encoders.counts_per_m = static_cast<double>(controller.device.counts_per_m[0]);
+  setup.board.encoders.latency_ticks = static_cast<std::uint32_t>(options.latency_ticks);
+  controller.delay_s = static_cast<float>(options.latency_ticks) / controller.rate_hz;
+  controller.velocity_cutoff_hz =
+      std::min(controller.velocity_cutoff_hz, 0.5F * controller.rate_hz);
+  return setup;
+}
+
+void check_start(const SimulateOptions& options, const simulation::Setup& setup,
+                 const hal::StartResult& start) {
+  if (start.configuration == core::ConfigurationStatus::kUnstable) {
+    const core::StabilityLimit limit = core::stability_limit(setup.controller);
+    refuse(
+        fmt::format("--stiffness: {:.6g} N/m is beyond the stability limit of {:.6g} N/m with a "
+                    "hand at {:.6g} Hz",
+                    setup.controller.stiffness_N_m, limit.with_hand_N_m, setup.controller.rate_hz),
+        "lower --stiffness, or raise --rate or --damping");
+  }
+  if (start.configuration != core::ConfigurationStatus::kOk) {
+    refuse(fmt::format("configuration: {}", core::describe(start.configuration)),
+           "give a value in that range");
+  }
+  if (start.blob != core::BlobStatus::kOk) {
+    refuse(fmt::format("{}: refused: {}", options.blob, core::describe(start.blob)),
+           "build it again from the scan");
+  }
+  if (start.model != core::ModelStatus::kOk) {
+    refuse(fmt::format("{}: {}", options.blob, core::describe(start.model)),
+           "build it with --profile surface, or use --mode paper");
+  }
+}
+
+struct Outcome {
+  simulation::Summary summary;
+  std::vector<simulation::Sample> samples;
+};
+
+Outcome run(const SimulateOptions& options, const BlobFile& blob) {
+  const simulation::Setup setup = make_setup(options);
+  const double count = std::round(options.seconds * static_cast<double>(setup.controller.rate_hz));
+  const bool keep = !options.trace.empty() || !options.plot.empty();
+  const double most = keep ? kMaxTracedTicks : kMaxTicks;
+  if (!(count >= 1.0 && count <= most)) {
+    refuse(fmt::format("--seconds: {:.6g} ticks are outside 1 .. {:.0f}", count, most),
+           keep ? "shorten it, or leave --trace and --plot out" : "choose another --seconds");
+  }
+  simulation::Simulation sim(blob.bytes(), setup, hand_path(options, blob.view()));
+  check_start(options, setup, sim.start_result());
+  if (!sim.arm()) {
+    refuse(fmt::format("the controller did not become active, it is in state {}",
+                       core::name_of(sim.controller().state())),
+           "begin the path outside the object");
+  }
+  Outcome outcome;
+  simulation::Recorder recorder;
+  for (double i = 0.0; i < count; i += 1.0) {
+    const simulation::Sample sample = sim.step();
+    recorder.add(sample);
+    if (keep) {
+      outcome.samples.push_back(sample);
+    }
+  }
+  outcome.summary = recorder.summary();
+  return outcome;
+}
+
+void write_trace(const std::string& file, const std::vector<simulation::Sample>& samples) {
+  std::string csv = simulation::trace_heading();
+  for (const simulation::Sample& sample : samples) {
+    simulation::append_trace(csv, sample);
+  }
+  write_file(file, csv);
+}
+
+nlohmann::json to_json(const SimulateOptions& options, const simulation::Summary& s) {
+  nlohmann::json faults = nlohmann::json::array();
+  for (const simulation::FaultEvent& event : s.faults) {
+    faults.push_back({{"code", static_cast<int>(event.fault)},
+                      {"name", core::name_of(event.fault)},
+                      {"tick", event.tick}});
+  }
+  return {{"board", options.board},
+          {"device", options.device},
+          {"mode", options.mode},
+          {"rate_hz", options.setup.controller.rate_hz},
+          {"ticks", s.ticks},
+          {"contact_ticks", s.contact_ticks},
+          {"overruns", s.overruns},
+          {"force_max_N", s.force_max_N},
+          {"force_step_max_N", s.force_step_max_N},
+          {"penetration_max_m", s.penetration_max_m},
+          {"trace_crc32", s.trace_crc32},
+          {"faults", faults},
+          {"instructions", {{"max", nullptr}, {"mean", nullptr}, {"bound", nullptr}}}};
+}
+
+void print_summary(const SimulateOptions& options, const simulation::Summary& s) {
+  fmt::print("board {}, device {}, mode {}, {:.6g} Hz\n", options.board, options.device,
+             options.mode, options.setup.controller.rate_hz);
+  fmt::print("ticks              {}\n", s.ticks);
+  fmt::print("in contact         {} ({:.1f} %)\n", s.contact_ticks,
+             100.0 * static_cast<double>(s.contact_ticks) / static_cast<double>(s.ticks));
+  fmt::print("largest force      {:.4f} N\n", s.force_max_N);
+  fmt::print("largest step       {:.4f} N per tick\n", s.force_step_max_N);
+  fmt::print("deepest            {:.4f} mm\n", 1e3 * s.penetration_max_m);
+  fmt::print("overruns           {}\n", s.overruns);
+  fmt::print("trace checksum     {:08x}\n", s.trace_crc32);
+  for (const simulation::FaultEvent& event : s.faults) {
+    fmt::print("fault {:2} {} at tick {}\n", static_cast<int>(event.fault),
+               core::name_of(event.fault), event.tick);
+  }
+}
+
+void simulate(const SimulateOptions& options, int& exit_code) {
+  const BlobFile blob(options.blob);
+  const Outcome outcome = run(options, blob);
+  const std::string title = fmt::format("{}: {} mode, {:.6g} Hz", options.blob, options.mode,
+                                        options.setup.controller.rate_hz);
+  if (!options.trace.empty()) {
+    write_trace(options.trace, outcome.samples);
+  }
+  if (!options.plot.empty()) {
+    write_file(options.plot, simulation::plot_svg(outcome.samples, title));
+  }
+  if (!options.json.empty()) {
+    write_file(options.json, to_json(options, outcome.summary).dump(2) + "\n");
+  }
+  print_summary(options, outcome.summary);
+  exit_code = outcome.summary.faults.empty() ? kExitOk : kExitFailed;
+}
+
+void add_controller_options(CLI::App& verb, core::Configuration& c) {
+  verb.add_option("--rate", c.rate_hz, "ticks per second, Hz")
+      ->check(CLI::Range(100.0, 20000.0))
+      ->capture_default_str();
+  verb.add_option("--stiffness", c.stiffness_N_m, "of the surface, N/m")
+      ->check(CLI::Range(0.0, 1e5))
+      ->capture_default_str();
+  verb.add_option("--damping", c.damping_Ns_m, "of the surface, Ns/m")
+      ->check(CLI::Range(0.0, 1e3))
+      ->capture_default_str();
+  verb.add_option("--static-friction", c.static_friction, "coefficient")
+      ->check(CLI::Range(0.0, 2.0))
+      ->capture_default_str();
+  verb.add_option("--dynamic-friction", c.dynamic_friction, "coefficient, at most the static one")
+      ->check(CLI::Range(0.0, 2.0))
+      ->capture_default_str();
+  verb.add_option("--force-max", c.force_max_N, "largest force, N")
+      ->check(CLI::Range(0.01, 1000.0))
+      ->capture_default_str();
+}
+
+void add_plant_options(CLI::App& verb, SimulateOptions& options) {
+  plant::PlantParameters& plant = options.setup.plant;
+  verb.add_option("--device-mass", plant.device.mass_kg, "apparent mass at the tip, kg")
+      ->check(CLI::Range(1e-4, 100.0))
+      ->capture_default_str();
+  verb.add_option("--device-friction", plant.device.coulomb_N, "dry friction of each axis, N")
+      ->check(CLI::Range(0.0, 100.0))
+      ->capture_default_str();
+  verb.add_option("--encoder-step", options.encoder_step_m, "travel of one count, m")
+      ->check(CLI::Range(1e-8, 1e-2))
+      ->capture_default_str();
+  verb.add_option("--latency-ticks", options.latency_ticks, "age of an encoder reading, ticks")
+      ->check(CLI::Range(0, static_cast<int>(hal::sim::kMaxLatencyTicks)))
+      ->capture_default_str();
+  verb.add_option("--hand-stiffness", plant.hand.stiffness_N_m, "spring of the hand, N/m")
+      ->check(CLI::Range(0.0, 1e5))
+      ->capture_default_str();
+  verb.add_option("--hand-damping", plant.hand.damping_Ns_m, "damper of the hand, Ns/m")
+      ->check(CLI::Range(0.0, 1e3))
+      ->capture_default_str();
+  verb.add_option("--hand-mass", plant.hand.mass_kg, "mass that moves with the device, kg")
+      ->check(CLI::Range(0.0, 100.0))
+      ->capture_default_str();
+}
+
+void add_output_options(CLI::App& verb, SimulateOptions& options) {
+  verb.add_option("--trace", options.trace, "write every tick to this CSV file");
+  verb.add_option("--plot", options.plot, "draw force and penetration into this SVG file");
+  verb.add_option("--json", options.json, "write the summary to this file");
+}
+
+}  // namespace
+
+void add_simulate_command(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<SimulateOptions>();
+  CLI::App* verb = app.add_subcommand(
+      "simulate", "Runs the controller of the firmware against a simulated device and hand");
+  verb->add_option("BLOB", options->blob, "the blob to touch")->required();
+  verb->add_option("--board", options->board, "where the controller runs")
+      ->check(CLI::IsMember({"host"}))
+      ->capture_default_str();
+  verb->add_option("--device", options->device, "the device's kinematics")
+      ->check(CLI::IsMember({"cartesian"}))
+      ->capture_default_str();
+  verb->add_option("--mode", options->mode, "how contact is rendered")
+      ->check(CLI::IsMember({"surface", "paper"}))
+      ->capture_default_str();
+  verb->add_option("--seconds", options->seconds, "length of the run, s")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  CLI::Option* script = verb->add_option("--script", options->script, "what the hand does")
+                            ->check(CLI::IsMember(simulation::script_names()))
+                            ->capture_default_str();
+  verb->add_option("--path", options->path, "CSV file with the hand's way: t_s,x,y,z (s, m)")
+      ->excludes(script);
+  add_controller_options(*verb, options->setup.controller);
+  add_plant_options(*verb, *options);
+  add_output_options(*verb, *options);
+  verb->callback([options, &exit_code] { simulate(*options, exit_code); });
+}
+
+}  // namespace tactree::cli
