@@ -59,6 +59,20 @@ bool place_root(const Eigen::Vector3d& low, const Eigen::Vector3d& high, Lattice
   return true;
 }
 
+// Centres a root cube of the given depth and step on the bounds; false when they stick out.
+bool place_around(const Eigen::Vector3d& low, const Eigen::Vector3d& high, Lattice& lattice) {
+  const double units = std::ldexp(core::kLeafUnits, static_cast<int>(lattice.depth));
+  const Eigen::Array3d first = low.array() / lattice.step_m;
+  const Eigen::Array3d last = high.array() / lattice.step_m;
+  const Eigen::Array3d corner = (0.5 * (first + last - units)).round();
+  if (corner.abs().maxCoeff() + units > core::kMaxCoordinate) {
+    return false;
+  }
+  lattice.root_min = {static_cast<std::int32_t>(corner.x()), static_cast<std::int32_t>(corner.y()),
+                      static_cast<std::int32_t>(corner.z())};
+  return (first >= corner).all() && (last <= corner + units).all();
+}
+
 [[noreturn]] void refuse(const Eigen::Vector3d& low, const Eigen::Vector3d& high,
                          double leaf_edge) {
   throw std::runtime_error(fmt::format(
@@ -83,23 +97,18 @@ Lattice choose_lattice(const Eigen::Vector3d& low, const Eigen::Vector3d& high,
 
 Lattice bounding_lattice(const Eigen::Vector3d& low, const Eigen::Vector3d& high,
                          std::uint32_t depth) {
-  // Two units more than the extent: the corner is rounded to whole units.
   const double units = std::ldexp(core::kLeafUnits, static_cast<int>(depth));
   const double extent = (high - low).maxCoeff();
   for (int bits = kMostStepBits; bits >= 1; --bits) {
-    Lattice lattice;
-    lattice.depth = depth;
-    lattice.step_m = round_up(extent / (units - 2.0), bits);
-    const Eigen::Array3d middle = 0.5 * (low + high).array() / lattice.step_m;
-    const Eigen::Array3d corner = (middle - 0.5 * units).round();
-    if (corner.abs().maxCoeff() + units > core::kMaxCoordinate) {
-      continue;
-    }
-    lattice.root_min = {static_cast<std::int32_t>(corner.x()),
-                        static_cast<std::int32_t>(corner.y()),
-                        static_cast<std::int32_t>(corner.z())};
-    if (coordinate_bits(lattice) + bits <= 24) {
-      return lattice;
+    // A root as wide as the model, when the lattice allows it, else two units wider: its corner
+    // is rounded to whole units.
+    for (const double across : {units, units - 2.0}) {
+      Lattice lattice;
+      lattice.depth = depth;
+      lattice.step_m = round_up(extent / across, bits);
+      if (place_around(low, high, lattice) && coordinate_bits(lattice) + bits <= 24) {
+        return lattice;
+      }
     }
   }
   refuse(low, high, extent / units * core::kLeafUnits);
