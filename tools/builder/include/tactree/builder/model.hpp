@@ -14,9 +14,9 @@
 namespace tactree::builder {
 
 struct Model {
-  std::vector<Eigen::Vector3d> positions;          ///< m, model frame
-  std::vector<Eigen::Vector3f> normals;            ///< unit length, outward; one per position
-  std::vector<std::uint8_t> material_indices;      ///< empty, or one per position
+  std::vector<Eigen::Vector3d> positions;      ///< m, model frame
+  std::vector<Eigen::Vector3f> normals;        ///< unit length, outward; one per position
+  std::vector<std::uint8_t> material_indices;  ///< empty, or one per position
   std::vector<core::BlobMaterial> materials;
 
   double spacing_m = 0.0;         ///< h
@@ -26,7 +26,7 @@ struct Model {
   core::Profile profile = core::Profile::kSurface;
   std::uint32_t points_per_leaf_wanted = 10;  ///< `paper` profile: a fuller leaf is split
 
-  double source_scale = 1.0;                          ///< model metres per source unit
+  double source_scale = 1.0;                                ///< model metres per source unit
   Eigen::Vector3d source_origin = Eigen::Vector3d::Zero();  ///< of the model frame, source units
   std::string name;
   std::array<std::uint8_t, 32> source_digest{};
@@ -34,9 +34,9 @@ struct Model {
 
 /// A blob, and for each of its points the index of the model's position it encodes.
 struct WrittenBlob {
-  std::vector<std::byte> bytes;              ///< 4-byte aligned storage
-  std::vector<std::uint32_t> source_index;   ///< blob point -> model position
-  std::uint64_t merged = 0;                  ///< points that shared a lattice site with another
+  std::vector<std::byte> bytes;             ///< 4-byte aligned storage
+  std::vector<std::uint32_t> source_index;  ///< blob point -> model position
+  std::uint64_t merged = 0;                 ///< points that shared a lattice site with another
 };
 
 /// Quantises, builds the octree and serialises; the result has passed core::open_blob().

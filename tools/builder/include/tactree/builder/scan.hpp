@@ -15,13 +15,14 @@ namespace tactree::builder {
 
 struct Scan {
   std::vector<Eigen::Vector3d> positions;
-  std::vector<Eigen::Vector3f> normals;                ///< empty, or one per position (any length)
-  std::vector<std::array<std::uint8_t, 3>> colours;    ///< empty, or one per position (R, G, B)
-  std::vector<std::array<std::uint32_t, 3>> triangles; ///< empty: a cloud; else a mesh over positions
+  std::vector<Eigen::Vector3f> normals;              ///< empty, or one per position (any length)
+  std::vector<std::array<std::uint8_t, 3>> colours;  ///< empty, or one per position (R, G, B)
+  std::vector<std::array<std::uint32_t, 3>>
+      triangles;  ///< empty: a cloud; else a mesh over positions
 
-  std::string format;                          ///< what was recognised, e.g. "PLY binary little endian"
-  std::map<std::string, std::uint64_t> dropped; ///< cause -> count, e.g. "non_finite" -> 3
-  std::vector<std::string> warnings;           ///< one sentence each, for the user
+  std::string format;  ///< what was recognised, e.g. "PLY binary little endian"
+  std::map<std::string, std::uint64_t> dropped;  ///< cause -> count, e.g. "non_finite" -> 3
+  std::vector<std::string> warnings;             ///< one sentence each, for the user
 
   [[nodiscard]] bool is_mesh() const { return !triangles.empty(); }
 };
