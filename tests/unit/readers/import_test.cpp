@@ -229,6 +229,10 @@ TEST_F(ImportTest, AnswersAreNotTrusted) {
   const std::string three = wire_point(0, 0, 0) + wire_point(1, 0, 0) + wire_point(0, 1, 0);
   importer_answers(std::string(100, 'x'));
   expect_parts(refusal(model()), "makes no sense");
+  std::string other_magic = wire_header(3, 0) + three + wire_end();
+  other_magic[7] = '2';
+  importer_answers(other_magic);
+  expect_parts(refusal(model()), "makes no sense");
   importer_answers(wire_header(1ULL << 60, 0) + three);
   expect_parts(refusal(model()), "ended before its result was complete");
   importer_answers(wire_header(3, 1ULL << 60) + three);

@@ -127,7 +127,7 @@ TEST_F(PcdTest, CountsAreNotTrusted) {
   expect_parts(refusal_of(with_points("0", "binary") + point), "holds no point");
   // As many points as the 64-bit product of their bytes wraps around to the true size.
   expect_parts(
-      refusal_of(with_points("1537228672809129302", "binary_compressed") + compressed(point)),
+      refusal_of(with_points("4611686018427387905", "binary_compressed") + compressed(point)),
       "when unpacked");
   expect_parts(refusal_of("VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\n"
                           "WIDTH 9223372036854775807\nHEIGHT 9223372036854775807\nDATA ascii\n"),

@@ -230,12 +230,13 @@ TEST_F(PlyTest, NonFinitePointsTakeTheirFacesAlong) {
 }
 
 TEST_F(PlyTest, TriangleStrips) {
-  std::string text = square("7 0 1 2 3 -1 0 1\n", 1);
+  std::string text = square("9 0 1 2 3 3 2 -1 0 1\n", 1);
   text.replace(text.find("element face"), 12, "element tristrips");
   const Scan scan = read(text);
   ASSERT_EQ(scan.triangles.size(), 2U);
   EXPECT_EQ(scan.triangles[0], (Triangle{0, 1, 2}));
   EXPECT_EQ(scan.triangles[1], (Triangle{2, 1, 3}));
+  EXPECT_TRUE(scan.dropped.empty());
 }
 
 std::string with_colour_type(const std::string& type, const std::string& rows) {

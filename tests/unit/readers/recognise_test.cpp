@@ -92,6 +92,10 @@ TEST_F(RecogniseTest, MeshesForTheImporter) {
   EXPECT_EQ(recognise("MM\x40\0\0\0\2\0\x0a\0\0\0\3\0\0\0"s, 64).hint, "3ds");
 }
 
+TEST_F(RecogniseTest, TextWithBinaryDamageIsStillPlaced) {
+  expect_parts(refusal_of("v 0 0 0\nv 1 \0 0\nv 1 1 0\nf 1 2 3\n"s), "line 2", "the point");
+}
+
 TEST_F(RecogniseTest, ProseIsNotObj) {
   EXPECT_EQ(recognise("o how the wind blows\nv. the sea\n", 100).kind, FileKind::kText);
   EXPECT_EQ(recognise("g An f Three Other Things\nv 388.0 778.0 347.1", 100).kind, FileKind::kObj);

@@ -75,10 +75,7 @@ bool ChildProcess::wait_for_output() {
     const int ready = ::poll(&waiting, 1, wait);
     if (ready > 0) return true;
     if (ready < 0 && errno != EINTR) return false;
-    if (left.count() <= 0) {
-      timed_out_ = true;
-      return false;
-    }
+    if (left.count() <= 0) return false;
   }
 }
 
@@ -108,25 +105,20 @@ bool ChildProcess::read(void* into, std::size_t size) {
 }
 
 std::string ChildProcess::wait_and_describe_end() {
-  if (timed_out_) {
-    kill_and_reap();
-    return fmt::format("took more than {:g} seconds and was stopped", seconds_);
-  }
-  // Its output has ended; it may linger a moment, but not for ever.
+  const std::string too_slow = fmt::format("took more than {:g} seconds and was stopped", seconds_);
   int status = 0;
   pid_t ended = 0;
   while ((ended = ::waitpid(pid_, &status, WNOHANG)) == 0) {
-    if (std::chrono::steady_clock::now() > deadline_) {
-      timed_out_ = true;
-      return wait_and_describe_end();
+    if (std::chrono::steady_clock::now() >= deadline_) {
+      kill_and_reap();
+      return too_slow;
     }
     ::poll(nullptr, 0, 1);
   }
   pid_ = -1;
   if (ended > 0 && WIFSIGNALED(status)) {
     const int signal = WTERMSIG(status);
-    if (signal == SIGXCPU)
-      return fmt::format("took more than {:g} seconds and was stopped", seconds_);
+    if (signal == SIGXCPU) return too_slow;
     return fmt::format("crashed (signal {}, {})", signal, ::strsignal(signal));
   }
   if (ended > 0 && WIFEXITED(status)) {

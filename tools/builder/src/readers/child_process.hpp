@@ -23,8 +23,6 @@ class ChildProcess {
   /// the time is over.
   [[nodiscard]] bool read(void* into, std::size_t size);
 
-  [[nodiscard]] bool timed_out() const { return timed_out_; }
-
   /// After read() gave false: waits for the end, and says in words how it came about.
   [[nodiscard]] std::string wait_and_describe_end();
 
@@ -37,7 +35,6 @@ class ChildProcess {
   int output_ = -1;
   double seconds_;
   std::chrono::steady_clock::time_point deadline_;
-  bool timed_out_ = false;
   std::vector<char> buffer_;
   std::size_t begin_ = 0;
   std::size_t end_ = 0;

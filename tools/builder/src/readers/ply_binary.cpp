@@ -32,7 +32,9 @@ class BinaryBody {
     if (role_of(element) == PlyRole::kVertex) {
       return element.has_list() ? read_list_vertices() : read_fixed_vertices();
     }
-    if (role_of(element) == PlyRole::kOther && !element.has_list()) return skip_fixed_rows();
+    if (role_of(element) == PlyRole::kOther && !element.has_list()) {
+      return file_.skip(element.count * element.min_row_bytes());  // or to the end
+    }
     if (element.properties.empty()) return;
     for (row_ = 0; row_ < element.count; ++row_) read_row();
   }
@@ -88,14 +90,6 @@ class BinaryBody {
       }
       builder_.add_point(row);
     }
-  }
-
-  void skip_fixed_rows() {
-    const std::uint64_t row_bytes = element_->min_row_bytes();
-    if (row_bytes == 0) return;
-    const std::uint64_t there = file_.remaining() / row_bytes;
-    if (there < element_->count) throw_truncated(file_, *element_, there);
-    file_.skip(element_->count * row_bytes);
   }
 
   void read_row() {

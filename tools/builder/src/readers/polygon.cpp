@@ -52,19 +52,13 @@ void PolygonCutter::project(std::span<const std::uint32_t> corners) {
   }
 }
 
-/// Every turn to the left, and one turn in all (a five-pointed star turns left twice).
+/// Every turn to the left.
 bool PolygonCutter::is_convex() const {
   const std::size_t count = flat_.size();
-  int direction_changes = 0;
-  double last_step = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    const Eigen::Vector2d& here = flat_[(i + 1) % count];
-    if (turn(flat_[i], here, flat_[(i + 2) % count]) < 0) return false;
-    const double step = here.x() - flat_[i].x();
-    if (step * last_step < 0) ++direction_changes;
-    if (step != 0) last_step = step;
+    if (turn(flat_[i], flat_[(i + 1) % count], flat_[(i + 2) % count]) < 0) return false;
   }
-  return direction_changes <= 2;
+  return true;
 }
 
 void PolygonCutter::cut_fan(std::span<const std::uint32_t> corners) {

@@ -223,7 +223,7 @@ void ScanBuilder::count_bad_face(const char* cause, std::uint64_t place) {
 void ScanBuilder::add_face(std::span<const std::int64_t> corners, std::uint64_t place) {
   ++faces_read_;
   for (const std::int64_t corner : corners) {
-    if (corner < 0 || static_cast<std::uint64_t>(corner) >= face_index_limit_) {
+    if (static_cast<std::uint64_t>(corner) >= face_index_limit_) {  // negative ones as well
       count_bad_face(kFaceIndexOutOfRange, place);
       return;
     }
