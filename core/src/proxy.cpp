@@ -9,6 +9,10 @@ namespace {
 constexpr std::uint32_t kReserved = kEvaluationsPerTick - kSweepSteps;
 constexpr std::uint32_t kSlipSteps = kSweepSteps / 2;
 
+// Slip ends below this share of the dynamic cone, not at its rim: a slow probe whose encoder did
+// not count in this tick has not stopped, and would stick and slip in turn.
+constexpr float kStickShare = 0.9F;
+
 float step_length(const BlobView& view) { return 0.5F * view.header().support_radius_m; }
 
 }  // namespace
@@ -121,14 +125,13 @@ void Proxy::slide(const BlobView& view, Vec3 probe, const Friction& friction) {
     }
     const Vec3 along = way - height * normal();
     const float distance = length(along);
-    const float coefficient =
-        slipping_ ? friction.dynamic_coefficient : friction.static_coefficient;
-    if (!(distance > coefficient * -height)) {
-      slipping_ = false;
+    const float cone = friction.dynamic_coefficient * -height;
+    if (!(distance > (slipping_ ? cone : friction.static_coefficient * -height))) {
+      slipping_ = slipping_ && distance > kStickShare * cone;
       return;
     }
     slipping_ = true;
-    const float excess = distance - friction.dynamic_coefficient * -height;
+    const float excess = distance - cone;
     const bool last = !(excess > step);
     if (!slip_by(view, ((last ? excess : step) / distance) * along)) {
       lose_support();

@@ -36,11 +36,32 @@ double stroke_rate(double amplitude_m) {
   return std::min(kTau * 1.5, kRubSpeed / std::max(amplitude_m, 1e-6));
 }
 
+/// The relief is in steps of its cells, a hand is not: mean over a tenth of a second.
+std::vector<double> smoothed(const std::vector<double>& values) {
+  constexpr std::size_t kHalf = 25;
+  std::vector<double> result;
+  result.reserve(values.size());
+  double sum = 0.0;
+  std::size_t begin = 0;
+  std::size_t end = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    for (; end < std::min(values.size(), i + kHalf + 1); ++end) {
+      sum += values[end];
+    }
+    for (; begin + kHalf < i; ++begin) {
+      sum -= values[begin];
+    }
+    result.push_back(sum / static_cast<double>(end - begin));
+  }
+  return result;
+}
+
 /// Follows the relief from a rest above it: down, along the motion, and up again at the end.
 HandPath follow(const Relief& relief, double seconds, const Motion& motion) {
   const double above = relief.high().z() + clearance(relief);
   const double lift_at = seconds - std::min(0.5, 0.2 * seconds);
-  std::vector<Waypoint> waypoints;
+  std::vector<Eigen::Vector2d> places;
+  std::vector<double> heights;
   double w = above;
   double surface = above;
   const auto count = static_cast<std::size_t>(std::ceil(seconds / kSampleS)) + 1;
@@ -51,7 +72,14 @@ HandPath follow(const Relief& relief, double seconds, const Motion& motion) {
     (void)relief.height(stroke.place.x(), stroke.place.y(), surface);
     const double wanted = t < lift_at ? surface - stroke.depth_m : above;
     w += std::clamp(wanted - w, -kSinkSpeed * kSampleS, kClimbSpeed * kSampleS);
-    waypoints.push_back({t, relief.to_model({stroke.place.x(), stroke.place.y(), w})});
+    places.push_back(stroke.place);
+    heights.push_back(w);
+  }
+  const std::vector<double> heights_smoothed = smoothed(heights);
+  std::vector<Waypoint> waypoints;
+  for (std::size_t i = 0; i < count; ++i) {
+    waypoints.push_back({static_cast<double>(i) * kSampleS,
+                         relief.to_model({places[i].x(), places[i].y(), heights_smoothed[i]})});
   }
   return HandPath(std::move(waypoints));
 }
