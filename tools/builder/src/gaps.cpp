@@ -1,0 +1,218 @@
+#include "gaps.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+
+namespace tactree::builder {
+namespace {
+
+constexpr double kNeighbourSpacings = 1.7;
+constexpr double kBorderAngle = 2.0 * std::numbers::pi / 3.0;
+// Points that face away from this one are the other side of a plate.
+constexpr float kOtherSideCosine = -0.3F;
+// The chord from a border to the middle half of its wedge.
+constexpr double kWedgeCosine = 0.866;
+// Border points stand back from the hole by this much on average, both ends together.
+constexpr double kStandBackSpacings = 0.5;
+// How clearly wedges have to face the opening's middle to call it a hole.
+constexpr double kInwardCosine = 0.25;
+
+struct TangentFrame {
+  Eigen::Vector3d u;
+  Eigen::Vector3d v;
+};
+
+TangentFrame tangents_of(const Eigen::Vector3d& normal) {
+  const Eigen::Vector3d u = normal.unitOrthogonal();
+  return {u, normal.cross(u)};
+}
+
+// The widest angle between neighbouring directions, and the direction amid it.
+struct Wedge {
+  double angle = 2.0 * std::numbers::pi;
+  double middle = 0.0;
+};
+
+Wedge widest_wedge(std::vector<double>& directions) {
+  if (directions.empty()) {
+    return {};
+  }
+  std::sort(directions.begin(), directions.end());
+  Wedge widest{0.0, 0.0};
+  for (std::size_t i = 0; i < directions.size(); ++i) {
+    const bool last = i + 1 == directions.size();
+    const double next = last ? directions.front() + 2.0 * std::numbers::pi : directions[i + 1];
+    if (next - directions[i] > widest.angle) {
+      widest = {next - directions[i], 0.5 * (next + directions[i])};
+    }
+  }
+  return widest;
+}
+
+struct BorderPoint {
+  std::uint32_t index;
+  Eigen::Vector3d away;  // unit, in the tangent plane: where the surface is missing
+};
+
+// What one point tells about gaps.
+class PointProbe {
+ public:
+  PointProbe(const ZOrderedCloud& points, double spacing, double radius)
+      : points_(points), spacing_(spacing), radius_(radius) {}
+
+  // True at a border. Else `gap` is how wide an empty ball beside the point is.
+  bool is_border(std::uint32_t i, Eigen::Vector3d& away, double& gap) {
+    const Eigen::Vector3d& p = points_.positions()[i];
+    const TangentFrame frame = tangents_of(points_.normals()[i].cast<double>());
+    directions_.clear();
+    points_.visit_within(p, kNeighbourSpacings * spacing_, [&](std::uint32_t j, double) {
+      const Eigen::Vector3d d = points_.positions()[j] - p;
+      if (j != i && points_.normals()[i].dot(points_.normals()[j]) > kOtherSideCosine) {
+        directions_.push_back(std::atan2(d.dot(frame.v), d.dot(frame.u)));
+      }
+    });
+    const Wedge wedge = widest_wedge(directions_);
+    away = std::cos(wedge.middle) * frame.u + std::sin(wedge.middle) * frame.v;
+    if (wedge.angle > kBorderAngle && !wedge_holds_point(i, away)) {
+      return true;
+    }
+    gap = empty_ball(p + 0.85 * spacing_ * away);
+    return false;
+  }
+
+ private:
+  [[nodiscard]] bool wedge_holds_point(std::uint32_t i, const Eigen::Vector3d& away) const {
+    const Eigen::Vector3d& p = points_.positions()[i];
+    bool found = false;
+    points_.visit_within(p, radius_, [&](std::uint32_t j, double squared) {
+      const double along = (points_.positions()[j] - p).dot(away);
+      found = found || (along > 0.0 && along * along > kWedgeCosine * kWedgeCosine * squared &&
+                        points_.normals()[i].dot(points_.normals()[j]) > kOtherSideCosine);
+    });
+    return found;
+  }
+
+  [[nodiscard]] double empty_ball(const Eigen::Vector3d& centre) const {
+    double least = radius_ * radius_;
+    points_.visit_within(centre, radius_,
+                         [&](std::uint32_t, double squared) { least = std::min(least, squared); });
+    return 2.0 * std::sqrt(least);
+  }
+
+  const ZOrderedCloud& points_;
+  double spacing_;
+  double radius_;
+  std::vector<double> directions_;
+};
+
+std::uint32_t find_root(std::vector<std::uint32_t>& parent, std::uint32_t i) {
+  while (parent[i] != i) {
+    parent[i] = parent[parent[i]];
+    i = parent[i];
+  }
+  return i;
+}
+
+// Border points within `radius` of each other are one opening's.
+std::map<std::uint32_t, std::vector<std::uint32_t>> group(const ZOrderedCloud& border,
+                                                          double radius) {
+  const auto count = static_cast<std::uint32_t>(border.size());
+  std::vector<std::uint32_t> parent(count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    parent[i] = i;
+  }
+  for (std::uint32_t i = 0; i < count; ++i) {
+    border.visit_within(border.positions()[i], radius, [&](std::uint32_t j, double) {
+      const std::uint32_t a = find_root(parent, i);
+      const std::uint32_t b = find_root(parent, j);
+      parent[std::max(a, b)] = std::min(a, b);
+    });
+  }
+  std::map<std::uint32_t, std::vector<std::uint32_t>> groups;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    groups[find_root(parent, i)].push_back(i);
+  }
+  return groups;
+}
+
+std::uint32_t farthest_from(const ZOrderedCloud& border, const std::vector<std::uint32_t>& members,
+                            const Eigen::Vector3d& place) {
+  return *std::max_element(members.begin(), members.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return (border.positions()[a] - place).squaredNorm() <
+           (border.positions()[b] - place).squaredNorm();
+  });
+}
+
+// `border`: its normals are the directions away from the surface.
+Opening measure(const ZOrderedCloud& border, const std::vector<std::uint32_t>& members,
+                double spacing) {
+  Opening opening;
+  opening.points = static_cast<std::uint32_t>(members.size());
+  for (const std::uint32_t i : members) {
+    opening.centre += border.positions()[i];
+  }
+  opening.centre /= static_cast<double>(members.size());
+  double inward = 0.0;
+  for (const std::uint32_t i : members) {
+    const Eigen::Vector3d to_centre = (opening.centre - border.positions()[i]).normalized();
+    inward += border.normals()[i].cast<double>().dot(to_centre);
+  }
+  const bool hole = inward > kInwardCosine * static_cast<double>(members.size());
+  opening.kind = hole ? Opening::Kind::kHole : Opening::Kind::kRim;
+  const std::uint32_t one = farthest_from(border, members, opening.centre);
+  const std::uint32_t other = farthest_from(border, members, border.positions()[one]);
+  const double across = (border.positions()[one] - border.positions()[other]).norm();
+  opening.diameter_m = std::max(0.0, across - (hole ? kStandBackSpacings * spacing : 0.0));
+  return opening;
+}
+
+}  // namespace
+
+Gaps find_gaps(const ZOrderedCloud& points, double spacing, double radius) {
+  const auto count = static_cast<std::uint32_t>(points.size());
+  std::vector<Eigen::Vector3f> away(count, Eigen::Vector3f::Zero());
+  std::vector<float> gap(count, 0.0F);
+  tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, count, 256), [&](auto range) {
+    PointProbe probe(points, spacing, radius);
+    for (std::uint32_t i = range.begin(); i < range.end(); ++i) {
+      Eigen::Vector3d direction;
+      double width = 0.0;
+      if (probe.is_border(i, direction, width)) {
+        away[i] = direction.cast<float>();
+      }
+      gap[i] = static_cast<float>(width);
+    }
+  });
+  std::vector<std::uint32_t> at_border;
+  std::vector<Eigen::Vector3f> directions;
+  Gaps gaps;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    gaps.largest_m = std::max(gaps.largest_m, static_cast<double>(gap[i]));
+    if (!away[i].isZero()) {
+      at_border.push_back(i);
+      directions.push_back(away[i]);
+    }
+  }
+  ZOrderedCloud border = points.subset(at_border);
+  border.set_normals(std::move(directions));
+  for (const auto& [root, members] : group(border, radius)) {
+    const Opening opening = measure(border, members, spacing);
+    if (opening.kind == Opening::Kind::kHole) {
+      gaps.largest_m = std::max(gaps.largest_m, opening.diameter_m);
+    }
+    if (opening.diameter_m > radius) {
+      gaps.openings.push_back(opening);
+    }
+  }
+  std::stable_sort(gaps.openings.begin(), gaps.openings.end(),
+                   [](const Opening& a, const Opening& b) { return a.diameter_m > b.diameter_m; });
+  return gaps;
+}
+
+}  // namespace tactree::builder
