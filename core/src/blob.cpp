@@ -362,13 +362,12 @@ const char* describe(BlobStatus status) {
 Vec3 BlobView::position(const Leaf& leaf, std::uint32_t index) const {
   const std::uint32_t word = points_[index];
   const std::uint32_t scale = depth_ - leaf.level;
-  const auto site = [scale](std::int32_t low, std::uint32_t octant, std::uint32_t rest) {
-    const std::uint32_t q = (octant & 1U) << 9 | (rest & 511U);
-    return static_cast<float>(low + static_cast<std::int32_t>((2U * q + 1U) << scale));
+  const auto coordinate = [scale](std::int32_t low, std::uint32_t site) {
+    return static_cast<float>(low + static_cast<std::int32_t>((2U * site + 1U) << scale));
   };
-  return {step_m_ * site(leaf.min.x, word >> 29, word >> 2),
-          step_m_ * site(leaf.min.y, word >> 30, word >> 11),
-          step_m_ * site(leaf.min.z, word >> 31, word >> 20)};
+  return {step_m_ * coordinate(leaf.min.x, (word >> 2) & 1023U),
+          step_m_ * coordinate(leaf.min.y, (word >> 12) & 1023U),
+          step_m_ * coordinate(leaf.min.z, word >> 22)};
 }
 
 // Octahedral map: Meyer, Suessmuth, Sussner and Stamminger, "On Floating-Point Normal Vectors",

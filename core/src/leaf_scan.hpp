@@ -17,16 +17,23 @@ class LeafScan {
   /// From the point to the probe, m.
   [[nodiscard]] Vec3 offset(std::uint32_t index) const {
     const std::uint32_t word = words_[index];
-    return {local_.x - scale_ * coordinate(word >> 29, word >> 2),
-            local_.y - scale_ * coordinate(word >> 30, word >> 11),
-            local_.z - scale_ * coordinate(word >> 31, word >> 20)};
+    return {local_.x - scale_ * coordinate((word >> 2) & 1023U),
+            local_.y - scale_ * coordinate((word >> 12) & 1023U),
+            local_.z - scale_ * coordinate(word >> 22)};
   }
 
-  /// Squared distance from the probe to the cube around the leaf's sites, m^2; not rounded up.
-  [[nodiscard]] float distance_squared_to_cube() const {
-    const float edge = scale_ * static_cast<float>(kLeafUnits / 2 - 1);
-    const Vec3 outside{beyond(local_.x, edge), beyond(local_.y, edge), beyond(local_.z, edge)};
-    return 0.999999F * length_squared(outside);
+  /// Squared distances of kLanes consecutive points, m^2; a fixed count, which compilers turn into
+  /// vector code where the core has any. Each lane rounds as length_squared(offset()) does.
+  static constexpr std::uint32_t kLanes = 8;
+  void distances_squared(std::uint32_t first, float (&squared)[kLanes]) const {
+    const std::uint32_t* const words = words_ + first;
+    for (std::uint32_t k = 0; k < kLanes; ++k) {  // bound: 8
+      const std::uint32_t word = words[k];
+      const float x = local_.x - scale_ * coordinate((word >> 2) & 1023U);
+      const float y = local_.y - scale_ * coordinate((word >> 12) & 1023U);
+      const float z = local_.z - scale_ * coordinate(word >> 22);
+      squared[k] = x * x + y * y + z * z;
+    }
   }
 
  private:
@@ -35,14 +42,9 @@ class LeafScan {
     const std::int32_t first_site = low + (1 << (view.depth() - leaf.level));
     return v - view.step_m() * static_cast<float>(first_site);
   }
-  static float coordinate(std::uint32_t octant, std::uint32_t rest) {
-    return static_cast<float>(static_cast<std::int32_t>((octant & 1U) << 9 | (rest & 511U)));
+  static float coordinate(std::uint32_t site) {
+    return static_cast<float>(static_cast<std::int32_t>(site));
   }
-  static float beyond(float v, float edge) {
-    if (v < 0.0F) return -v;
-    return v > edge ? v - edge : 0.0F;
-  }
-
   const std::uint32_t* words_;
   float scale_;
   Vec3 local_;

@@ -69,12 +69,11 @@ Octree build_paper_octree(const Model& model, Eigen::Vector3d low, Eigen::Vector
 
 Eigen::Vector3d decode(const Octree& tree, const BuiltLeaf& leaf, std::uint32_t word) {
   const std::uint32_t scale = tree.lattice.depth - leaf.level;
-  const auto axis = [&](std::int32_t low, std::uint32_t octant, std::uint32_t rest) {
-    const std::uint32_t q = (octant & 1U) << 9 | (rest & 511U);
-    return tree.lattice.step_m * (low + static_cast<std::int32_t>((2U * q + 1U) << scale));
+  const auto axis = [&](std::int32_t low, std::uint32_t site) {
+    return tree.lattice.step_m * (low + static_cast<std::int32_t>((2U * site + 1U) << scale));
   };
-  return {axis(leaf.min.x, word >> 29, word >> 2), axis(leaf.min.y, word >> 30, word >> 11),
-          axis(leaf.min.z, word >> 31, word >> 20)};
+  return {axis(leaf.min.x, (word >> 2) & 1023U), axis(leaf.min.y, (word >> 12) & 1023U),
+          axis(leaf.min.z, word >> 22)};
 }
 
 std::vector<Eigen::Vector3d> decode_all(const Octree& tree) {

@@ -128,11 +128,7 @@ class OctreeBuilder {
     const auto axis = [&](std::uint32_t a) {
       return static_cast<std::uint32_t>(gather_bits(key >> a) >> drop) & 1023U;
     };
-    const std::uint32_t x = axis(0);
-    const std::uint32_t y = axis(1);
-    const std::uint32_t z = axis(2);
-    return (z >> 9) << 31 | (y >> 9) << 30 | (x >> 9) << 29 | (z & 511U) << 20 | (y & 511U) << 11 |
-           (x & 511U) << 2;
+    return axis(2) << 22 | axis(1) << 12 | axis(0) << 2;
   }
 
   void add_leaf(std::uint32_t level, Int3 cell, const Child& range) {

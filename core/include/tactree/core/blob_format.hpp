@@ -120,10 +120,10 @@ struct BlobMaterial {
 };
 
 // A point is one word and one half word:
-//   word  bits 31-29: octant within the leaf (z9 y9 x9)  28-20: z8..z0  19-11: y8..y0  10-2: x8..x0
-//         bits 1-0: bits 17-16 of the normal
-//   half  bits 15-0 of the normal; the normal's bits 17-9 and 8-0 are the octahedral v and u.
-// Within a leaf the words ascend, so points come octant by octant.
+//   word  bits 31-22: z   21-12: y   11-2: x   (sites within the leaf)   1-0: bits 17-16 of the
+//   normal half  bits 15-0 of the normal; the normal's bits 17-9 and 8-0 are the octahedral v and
+//   u.
+// Within a leaf the words ascend.
 inline constexpr std::uint32_t kPointPositionMask = 0xFFFFFFFCU;
 
 // The neighbour table has six entries a leaf (-x +x -y +y -z +z), each the cell of the leaf's own

@@ -49,17 +49,47 @@ constexpr Int3 child_cell(Int3 cell, std::uint32_t octant) {
 /// The leaf that contains a position: to_lattice() and find_leaf().
 [[nodiscard]] bool find_leaf(const BlobView& view, Vec3 position, Leaf& leaf);
 
-/// Every leaf that can hold a point within a cube or ball of half-width r.
+/// The eight-corner rule, leaf by leaf: where no leaf is smaller than the cube centre +- r, the
+/// leaves that hold its eight corners are all the leaves it touches. (On each axis the cube is no
+/// longer than a leaf, so a leaf that meets it contains one of its two ends.)
+/// The leaf of the centre comes first, so that a search can narrow as it goes.
+/// Precondition: 0 <= r <= view.reach_m(); for a larger or NaN r, or a centre that is not finite,
+/// there are no leaves. Cost: at most 8 descents, which share the way to their common ancestor.
+class CornerLeaves {
+ public:
+  CornerLeaves(const BlobView& view, Vec3 centre, float r);
+
+  /// The next leaf whose cell is no further than the square root of `limit_squared` (m^2) from the
+  /// centre; false: there is none. The limit may shrink from call to call.
+  [[nodiscard]] bool next(float limit_squared, Leaf& leaf);
+
+ private:
+  struct Axis {
+    std::uint32_t own = 0;    // finest cell on the centre's side, counted from the root
+    std::uint32_t other = 0;  // the one beyond the nearest face, when the cube reaches into it
+    bool reaches_other = false;
+    float squared_to_other = 0.0F;  // m^2, not rounded up
+  };
+
+  bool set_axis(std::uint32_t axis, float centre, float r);
+  bool find_common_node();
+  bool is_repeated(std::uint32_t number);
+
+  const BlobView* view_;
+  Axis axes_[3];
+  std::uint32_t node_ = 0;  // deepest node that holds all eight corners
+  std::uint32_t level_ = 0;
+  std::uint32_t corners_left_ = 0;  // bit = which axes take the other cell
+  float away_squared_[kLeavesPerQuery] = {};
+  std::uint32_t seen_[kLeavesPerQuery] = {};
+  std::uint32_t seen_count_ = 0;
+};
+
+/// All leaves that CornerLeaves finds within r.
 struct LeafSet {
   Leaf leaves[kLeavesPerQuery];
   std::uint32_t count = 0;
 };
-
-/// The eight-corner rule: where no leaf is smaller than the cube centre +- r, the leaves that hold
-/// its eight corners are all the leaves it touches. (On each axis the cube is no longer than a
-/// leaf, so a leaf that meets it contains one of its two ends.) The leaf of the centre comes first.
-/// Precondition: 0 <= r <= view.reach_m(); a larger or NaN r finds nothing.
-/// Cost: at most 8 descents and 8 leaves.
 void find_leaves_within(const BlobView& view, Vec3 centre, float r, LeafSet& found);
 
 }  // namespace tactree::core
