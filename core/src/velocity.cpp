@@ -5,6 +5,9 @@ namespace {
 
 constexpr float kTwoPi = 6.2831853F;
 
+// Two samples can be a whole quantum off the line, and their float32 a little more.
+constexpr float kTolerance = 1.1F;
+
 /// Does the line from `from` (age `window`) to `to` (age 0) pass every sample between within the
 /// quantum?
 struct Axis {
@@ -39,7 +42,7 @@ struct Axis {
 
 void VelocityEstimator::configure(float period_s, float quantum_m, float cutoff_hz) {
   period_s_ = period_s;
-  quantum_m_ = quantum_m;
+  quantum_m_ = kTolerance * quantum_m;
   const float turn = kTwoPi * cutoff_hz * period_s;
   share_ = turn / (1.0F + turn);
   reset();

@@ -30,7 +30,17 @@ Simulation::Simulation(std::span<const std::byte> blob, const Setup& setup, Hand
       board_(with_rate(setup.board, setup.controller.rate_hz), blob),
       loop_(board_, controller_),
       start_(loop_.start(setup.controller)),
-      plant_(setup.plant, path_.at(0.0).position_m + widen(setup.controller.model_origin_m)) {}
+      plant_(setup.plant, path_.at(0.0).position_m + widen(setup.controller.model_origin_m)) {
+  // The readings on their way when the session begins are already of the device at rest.
+  for (std::uint32_t i = 0; i <= hal::sim::kMaxLatencyTicks; ++i) {
+    sample_device();
+  }
+}
+
+void Simulation::sample_device() {
+  const Eigen::Vector3d& p = plant_.position_m();
+  board_.sample({p.x(), p.y(), p.z()});
+}
 
 bool Simulation::arm() {
   const double begin = path_.waypoints().front().t_s;
@@ -59,8 +69,7 @@ Sample Simulation::step() {
 }
 
 core::Status Simulation::tick(double t_s) {
-  const Eigen::Vector3d& p = plant_.position_m();
-  board_.sample({p.x(), p.y(), p.z()});
+  sample_device();
   const core::Status status = loop_.tick().status;
   plant::HandTarget target = path_.at(t_s);
   target.position_m += widen(setup_.controller.model_origin_m);

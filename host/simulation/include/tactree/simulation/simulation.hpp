@@ -66,6 +66,7 @@ class Simulation {
   [[nodiscard]] const plant::Plant& plant() const { return plant_; }
 
  private:
+  void sample_device();
   core::Status tick(double t_s);
 
   Setup setup_;

@@ -1,0 +1,105 @@
+// Whatever comes in tick after tick: the force is finite, within its limit and its slew, and zero
+// outside the active state.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "session.hpp"
+
+namespace tactree::test {
+namespace {
+
+using core::Command;
+using core::State;
+
+struct Counts {
+  std::uint64_t broken = 0;
+  std::uint64_t active = 0;
+  std::uint64_t with_force = 0;
+};
+
+void inspect(const core::Output& output, const core::Output& last, const core::Configuration& c,
+             Counts& counts) {
+  double now = 0.0;
+  double step = 0.0;
+  for (std::uint32_t axis = 0; axis < core::kAxes; ++axis) {
+    const double effort = static_cast<double>(output.motors.effort(axis));
+    const double before = static_cast<double>(last.motors.effort(axis));
+    counts.broken += std::isfinite(effort) ? 0U : 1U;
+    now += effort * effort;
+    step += (effort - before) * (effort - before);
+  }
+  const bool active = output.status.state == State::kActive;
+  const double slew = static_cast<double>(c.slew_N_s) / static_cast<double>(c.rate_hz);
+  counts.broken += std::sqrt(now) <= static_cast<double>(c.force_max_N) ? 0U : 1U;
+  counts.broken += !active || std::sqrt(step) <= slew ? 0U : 1U;
+  counts.broken += active || output.motors.is_zero() ? 0U : 1U;
+  counts.broken += output.enable || output.motors.is_zero() ? 0U : 1U;
+  counts.broken += output.status.state != State::kFault || !output.enable ? 0U : 1U;
+  counts.active += active ? 1U : 0U;
+  counts.with_force += output.motors.is_zero() ? 0U : 1U;
+}
+
+TEST(AnyInput, RandomEncodersAndSwitchesKeepThePromises) {
+  core::Configuration configuration;
+  configuration.ramp_s = 0.01F;
+  Session session(configuration);
+  core::Output last = session.step();
+  Counts counts;
+  std::mt19937 random(11);
+  for (std::uint32_t i = 0; i < 1'000'000U; ++i) {
+    for (std::uint32_t axis = 0; axis < core::kAxes; ++axis) {
+      session.input.encoders.counts[axis] = static_cast<std::int32_t>(random());
+      session.input.encoders.valid[axis] = random() % 16U != 0U;
+    }
+    session.input.emergency_stop = random() % 8U == 0U;
+    session.input.dead_man = random() % 2U == 0U;
+    session.input.motors_ok = random() % 8U != 0U;
+    session.input.link_alive = random() % 2U == 0U;
+    session.input.enable_read_back = random() % 2U == 0U;
+    session.enable_follows = random() % 2U == 0U;
+    session.input.overruns = random() % 64U == 0U ? static_cast<std::uint32_t>(random()) : 0U;
+    const core::Output output = session.step(static_cast<Command>(random() % 6U));
+    inspect(output, last, configuration, counts);
+    last = output;
+  }
+  EXPECT_EQ(counts.broken, 0U);
+}
+
+// Mostly plausible, so that there is force to watch: a wild hand in and about the object.
+TEST(AnyInput, AWildHandKeepsThePromises) {
+  core::Configuration configuration;
+  configuration.ramp_s = 0.01F;
+  configuration.stiffness_N_m = 3000.0F;
+  configuration.force_max_N = 3.0F;
+  configuration.slew_N_s = 500.0F;
+  configuration.speed_max_m_s = 20.0F;
+  Session session(configuration);
+  ASSERT_EQ(session.status, core::ConfigurationStatus::kOk);
+  core::Output last = session.step();
+  Counts counts;
+  std::mt19937 random(12);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  double z = 0.01;
+  double x = 0.0;
+  for (std::uint32_t i = 0; i < 300'000U; ++i) {
+    z = std::clamp(z + 2e-3 * unit(random), -8e-3, 8e-3);
+    x = std::clamp(x + 2e-3 * unit(random), -0.025, 0.025);
+    session.move(x, 1e-3, z);
+    session.input.dead_man = i % 1000U > 20U && random() % 4096U != 0U;
+    session.input.emergency_stop = random() % 4096U == 0U;
+    const Command commands[] = {Command::kClearFault, Command::kStop, Command::kArm};
+    const std::uint32_t phase = i % 1000U;
+    const core::Output output = session.step(phase < 3U ? commands[phase] : Command::kNone);
+    inspect(output, last, configuration, counts);
+    last = output;
+  }
+  EXPECT_EQ(counts.broken, 0U);
+  EXPECT_GT(counts.active, 100'000U);
+  EXPECT_GT(counts.with_force, 50'000U);
+}
+
+}  // namespace
+}  // namespace tactree::test

@@ -1,0 +1,240 @@
+// Everything that can go wrong around the controller, in every state.
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "session.hpp"
+
+namespace tactree::test {
+namespace {
+
+using core::Command;
+using core::Fault;
+using core::State;
+
+/// A controller brought into a state.
+struct InState {
+  const char* name;
+  State state;
+  std::function<void(Session&)> enter;
+};
+
+const std::vector<InState>& states() {
+  static const std::vector<InState> all = {
+      {"no-model", State::kNoModel,
+       [](Session& s) {
+         ASSERT_TRUE(s.controller.unload_model());
+         s.step();
+       }},
+      {"idle", State::kIdle, [](Session& s) { s.step(); }},
+      {"armed", State::kArmed, [](Session& s) { s.step(Command::kArm); }},
+      {"active", State::kActive,
+       [](Session& s) {
+         s.activate();
+         for (int i = 0; i < 300; ++i) {
+           s.step();
+         }
+         s.press(1e-3);
+       }},
+      {"fault", State::kFault, [](Session& s) { s.step(static_cast<Command>(77)); }},
+  };
+  return all;
+}
+
+/// Something that must be noticed in the very tick it happens.
+struct Trouble {
+  Fault fault;
+  std::function<void(Session&)> happen;
+};
+
+const std::vector<Trouble>& troubles() {
+  static const std::vector<Trouble> all = {
+      {Fault::kEmergencyStop, [](Session& s) { s.input.emergency_stop = true; }},
+      {Fault::kEncoderInvalid, [](Session& s) { s.input.encoders.valid[1] = false; }},
+      {Fault::kEncoderJump, [](Session& s) { s.input.encoders.counts[2] += 1000; }},
+      {Fault::kDeadlineMissed, [](Session& s) { s.input.overruns = 2; }},
+      {Fault::kMotorFault, [](Session& s) { s.input.motors_ok = false; }},
+  };
+  return all;
+}
+
+TEST(Faults, EachWinsInEveryStateInTheSameTickAndLatches) {
+  for (const InState& in : states()) {
+    for (const Trouble& trouble : troubles()) {
+      Session session;
+      session.step();
+      in.enter(session);
+      ASSERT_EQ(session.state(), in.state) << in.name;
+      const core::Input before = session.input;
+      trouble.happen(session);
+      const core::Output output = session.step();
+      const std::string what = std::string(in.name) + " x " + core::name_of(trouble.fault);
+      EXPECT_EQ(session.state(), State::kFault) << what;
+      EXPECT_TRUE(core::has_fault(output.status.faults, trouble.fault)) << what;
+      EXPECT_TRUE(output.motors.is_zero()) << what;
+      EXPECT_FALSE(output.enable) << what;
+      EXPECT_TRUE(output.status.summary()) << what;
+      session.input = before;
+      for (int i = 0; i < 200; ++i) {
+        EXPECT_TRUE(session.step().motors.is_zero()) << what;
+      }
+      EXPECT_TRUE(core::has_fault(session.controller.faults(), trouble.fault)) << what;
+    }
+  }
+}
+
+TEST(Faults, TheEmergencyStopWinsBeforeAnythingIsConfigured) {
+  core::Controller controller;
+  core::Input input;  // defaults: pressed
+  const core::Output output = controller.step(input);
+  EXPECT_EQ(output.status.state, State::kFault);
+  EXPECT_TRUE(core::has_fault(output.status.faults, Fault::kEmergencyStop));
+  EXPECT_TRUE(output.motors.is_zero());
+  EXPECT_FALSE(output.enable);
+}
+
+TEST(Faults, NoCommandLeavesAPressedEmergencyStop) {
+  for (const InState& in : states()) {
+    Session session;
+    in.enter(session);
+    session.input.emergency_stop = true;
+    session.input.dead_man = true;
+    for (int round = 0; round < 20; ++round) {
+      for (const Command command :
+           {Command::kClearFault, Command::kStop, Command::kArm, Command::kArm}) {
+        const core::Output output = session.step(command);
+        ASSERT_EQ(output.status.state, State::kFault) << in.name;
+        ASSERT_FALSE(output.enable) << in.name;
+        ASSERT_TRUE(output.motors.is_zero()) << in.name;
+      }
+    }
+  }
+}
+
+TEST(Faults, OneOverrunIsCountedTwoWithinAHundredTicksLatch) {
+  for (const int apart : {1, 50, 100, 101, 200}) {
+    Session session;
+    session.activate();
+    session.input.overruns = 1;
+    session.step();
+    EXPECT_EQ(session.state(), State::kActive);
+    session.input.overruns = 0;
+    for (int i = 1; i < apart; ++i) {
+      session.step();
+    }
+    session.input.overruns = 1;
+    const core::Output output = session.step();
+    EXPECT_EQ(session.state(), apart <= 100 ? State::kFault : State::kActive) << apart;
+    EXPECT_EQ(output.status.overruns, 2U);
+  }
+}
+
+TEST(Faults, AStaleLinkEndsASessionThatNeedsIt) {
+  for (const bool required : {false, true}) {
+    core::Configuration configuration;
+    configuration.link_required = required;
+    configuration.link_timeout_s = 0.02F;
+    Session session(configuration);
+    session.activate();
+    ASSERT_EQ(session.state(), State::kActive);
+    session.input.link_alive = false;
+    int ticks = 0;
+    while (session.state() == State::kActive && ticks < 500) {
+      session.step();
+      ++ticks;
+    }
+    EXPECT_EQ(session.state(), required ? State::kFault : State::kActive);
+    if (required) {
+      EXPECT_LE(ticks, 21);
+      EXPECT_GE(ticks, 19);
+      EXPECT_TRUE(core::has_fault(session.controller.faults(), Fault::kLinkLost));
+    }
+  }
+}
+
+TEST(Faults, ADeadLinkMattersOnlyWhileThereMayBeForce) {
+  core::Configuration configuration;
+  configuration.link_required = true;
+  Session session(configuration);
+  session.input.link_alive = false;
+  for (int i = 0; i < 1000; ++i) {
+    session.step();
+  }
+  EXPECT_EQ(session.state(), State::kIdle);
+  session.step(Command::kArm);
+  session.step();
+  EXPECT_EQ(session.state(), State::kFault);
+}
+
+TEST(Faults, EnableLineMustFollow) {
+  Session stuck_off;
+  stuck_off.enable_follows = false;
+  stuck_off.step(Command::kArm);
+  int ticks = 0;
+  while (stuck_off.state() == State::kArmed && ticks < 500) {
+    stuck_off.step();
+    ++ticks;
+  }
+  EXPECT_TRUE(core::has_fault(stuck_off.controller.faults(), Fault::kEnableMismatch));
+  EXPECT_GE(ticks, 49);
+  EXPECT_LE(ticks, 52);
+
+  Session welded;  // power although nobody asked for it
+  welded.enable_follows = false;
+  welded.input.enable_read_back = true;
+  for (int i = 0; i < 60; ++i) {
+    welded.step();
+  }
+  EXPECT_TRUE(core::has_fault(welded.controller.faults(), Fault::kEnableMismatch));
+}
+
+TEST(Faults, PowerThatDropsOutInActionCountsAtOnce) {
+  Session session;
+  session.activate();
+  ASSERT_EQ(session.state(), State::kActive);
+  session.enable_follows = false;
+  session.input.enable_read_back = false;
+  EXPECT_TRUE(session.step().motors.is_zero());
+  EXPECT_EQ(session.state(), State::kFault);
+}
+
+TEST(Faults, AnUnknownCommandIsUnexpected) {
+  Session session;
+  session.step(static_cast<Command>(4));
+  EXPECT_EQ(session.state(), State::kFault);
+  EXPECT_TRUE(core::has_fault(session.controller.faults(), Fault::kUnexpectedEvent));
+}
+
+TEST(Faults, CountersMayWrapAround) {
+  core::Configuration configuration;
+  configuration.device.home_count[0] = 0x7FFFFFFF;
+  Session session(configuration);
+  session.activate();
+  for (int i = -50; i < 50; ++i) {
+    session.move(i * 3e-5, 0.0, 0.01);
+    const core::Output output = session.step();
+    ASSERT_EQ(session.state(), State::kActive);
+    ASSERT_NEAR(output.status.probe.x, static_cast<float>(i) * 3e-5F, 4e-5F);
+  }
+}
+
+TEST(Faults, EveryCodeHasItsOwnName) {
+  std::vector<std::string> names;
+  for (std::uint32_t code = 0; code < core::kFaultCodes; ++code) {
+    names.emplace_back(core::name_of(static_cast<Fault>(code)));
+  }
+  EXPECT_EQ(names[1], "emergency-stop");
+  EXPECT_EQ(names[10], "model-incomplete");
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    for (std::size_t k = i + 1; k < names.size(); ++k) {
+      EXPECT_NE(names[i], names[k]);
+    }
+  }
+  EXPECT_EQ(std::string(core::name_of(static_cast<Fault>(99))), "unknown");
+}
+
+}  // namespace
+}  // namespace tactree::test
