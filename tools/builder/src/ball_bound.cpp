@@ -15,9 +15,10 @@
 namespace tactree::builder {
 namespace {
 
-// Cubes of centres are halved from an edge of r down to r / 2^kLevels: the last half diagonal is
-// 0.027 r, which on a surface adds 6 % of points to a ball.
-constexpr std::uint32_t kLevels = 5;
+// Cubes of centres are halved from an edge of 2 r down to r / 32: on a surface that adds 4 % of
+// points to a ball.
+constexpr double kCubeRadii = 2.0;
+constexpr std::uint32_t kLevels = 6;
 // A cube is not looked into once its bound is within this factor of a count that does occur.
 // The closer, the more scratch memory is saved and the more cubes are looked into.
 constexpr double kTolerance = 1.1;
@@ -80,7 +81,7 @@ void sort_unique(std::vector<std::uint64_t>& codes) {
 }
 
 // The cells whose cubes of centres cover every ball that holds a point: those of the grid (edge at
-// least r) that are occupied or next to an occupied one; each once, in a fixed order.
+// least 2 r) that are occupied or next to an occupied one; each once, in a fixed order.
 std::vector<Eigen::Vector3i> cells_of_centres(const PointGrid& grid) {
   const Eigen::Vector3i shift = Eigen::Vector3i::Constant(1);  // keeps coordinates positive
   std::vector<std::uint64_t> codes;
@@ -339,7 +340,7 @@ std::uint32_t max_points_in_ball(std::span<const Eigen::Vector3d> positions, dou
   if (positions.empty()) {
     return 0;
   }
-  const PointGrid grid(positions, radius);
+  const PointGrid grid(positions, kCubeRadii * radius);
   const std::uint32_t occurring = occurring_maximum(positions, grid, radius);
   const double tolerance = positions.size() > kLargeModel ? kToleranceOfLarge : kTolerance;
   const std::uint32_t enough = tolerated(occurring, tolerance);
@@ -359,10 +360,21 @@ std::uint32_t max_points_in_ball(std::span<const Eigen::Vector3d> positions, dou
 std::vector<bool> thin_to_ball_bound(std::span<const Eigen::Vector3d> positions,
                                      std::span<const std::uint64_t> rank, double radius,
                                      std::uint32_t most) {
-  const PointGrid grid(positions, radius);
+  const PointGrid grid(positions, kCubeRadii * radius);
+  const std::vector<Eigen::Vector3i> cells = cells_of_centres(grid);
+  // Most cells are well, which is found in parallel.
+  std::vector<std::uint8_t> crowded(cells.size(), 0);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, cells.size(), 64), [&](auto range) {
+    BoundSearch search(CandidateLists(positions, grid, radius), 1.0);
+    for (std::size_t i = range.begin(); i < range.end(); ++i) {
+      crowded[i] = search.bound(cells[i], most) > most ? 1 : 0;
+    }
+  });
   Thinner thinner(CandidateLists(positions, grid, radius), rank, most);
-  for (const Eigen::Vector3i& cell : cells_of_centres(grid)) {
-    thinner.thin(cell);
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (crowded[i] != 0) {
+      thinner.thin(cells[i]);
+    }
   }
   return thinner.take();
 }

@@ -208,7 +208,7 @@ class Cleaner {
     }
     input_.points = ZOrderedCloud(std::move(cloud_));
     drop("duplicate", drop_duplicates(input_.points));
-    input_.points_spacing = estimate_spacing(input_.points);
+    input_.points_spacing = estimate_spacing(input_.points).median_m;
     if (!options_.keep_outliers && input_.points_spacing > 0.0) {
       const std::vector<std::uint32_t> kept =
           points_in_company(input_.points, input_.points_spacing);

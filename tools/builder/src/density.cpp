@@ -114,7 +114,7 @@ class DensityChooser {
     } else {
       choice.points = dense_;
     }
-    const double own = is_mesh() ? 0.0 : estimate_spacing(choice.points);
+    const double own = is_mesh() ? 0.0 : estimate_spacing(choice.points).mean_m;
     if (own > kSparser * wanted) {
       choice.spacing_m = own;
     }

@@ -20,8 +20,18 @@ constexpr float kOtherSideCosine = -0.3F;
 constexpr double kWedgeCosine = 0.866;
 // Border points stand back from the hole by this much on average, both ends together.
 constexpr double kStandBackSpacings = 0.5;
-// How clearly wedges have to face the opening's middle to call it a hole.
-constexpr double kInwardCosine = 0.25;
+// Border points belong together when they are within the first of each other, and so are the places
+// the second away into the open, to the third; in support radii.
+constexpr double kNearRadii = 1.3;
+constexpr double kLookRadii = 0.4;
+constexpr double kSameLookRadii = 0.75;
+// A border point looks across its opening within 45 degrees of its wedge's middle.
+constexpr double kAcrossCosine = 0.707;
+// This part of the looks has to meet the same opening's other side to call it a hole.
+constexpr double kHolePart = 0.5;
+constexpr std::size_t kLooks = 64;
+// An opening's border goes there and back; fewer points a spacing of diameter are chance.
+constexpr double kLeastPointsPerSpacing = 1.0;
 
 struct TangentFrame {
   Eigen::Vector3d u;
@@ -69,14 +79,14 @@ class PointProbe {
   // True at a border. Else `gap` is how wide an empty ball beside the point is.
   bool is_border(std::uint32_t i, Eigen::Vector3d& away, double& gap) {
     const Eigen::Vector3d& p = points_.positions()[i];
-    const TangentFrame frame = tangents_of(points_.normals()[i].cast<double>());
+    gather(i);
+    // The plane of the mean normal shows both faces of an edge.
+    const TangentFrame frame = tangents_of(mean_normal_);
     directions_.clear();
-    points_.visit_within(p, kNeighbourSpacings * spacing_, [&](std::uint32_t j, double) {
+    for (const std::uint32_t j : near_) {
       const Eigen::Vector3d d = points_.positions()[j] - p;
-      if (j != i && points_.normals()[i].dot(points_.normals()[j]) > kOtherSideCosine) {
-        directions_.push_back(std::atan2(d.dot(frame.v), d.dot(frame.u)));
-      }
-    });
+      directions_.push_back(std::atan2(d.dot(frame.v), d.dot(frame.u)));
+    }
     const Wedge wedge = widest_wedge(directions_);
     away = std::cos(wedge.middle) * frame.u + std::sin(wedge.middle) * frame.v;
     if (wedge.angle > kBorderAngle && !wedge_holds_point(i, away)) {
@@ -87,6 +97,21 @@ class PointProbe {
   }
 
  private:
+  // The neighbours on this side of the body, and the mean normal of all.
+  void gather(std::uint32_t i) {
+    const Eigen::Vector3f& normal = points_.normals()[i];
+    Eigen::Vector3f sum = normal;
+    near_.clear();
+    points_.visit_within(points_.positions()[i], kNeighbourSpacings * spacing_,
+                         [&](std::uint32_t j, double) {
+                           if (j != i && normal.dot(points_.normals()[j]) > kOtherSideCosine) {
+                             near_.push_back(j);
+                             sum += points_.normals()[j];
+                           }
+                         });
+    mean_normal_ = (sum.norm() > 0.1F ? sum : normal).cast<double>().normalized();
+  }
+
   [[nodiscard]] bool wedge_holds_point(std::uint32_t i, const Eigen::Vector3d& away) const {
     const Eigen::Vector3d& p = points_.positions()[i];
     bool found = false;
@@ -108,6 +133,8 @@ class PointProbe {
   const ZOrderedCloud& points_;
   double spacing_;
   double radius_;
+  std::vector<std::uint32_t> near_;
+  Eigen::Vector3d mean_normal_ = Eigen::Vector3d::UnitZ();
   std::vector<double> directions_;
 };
 
@@ -119,7 +146,8 @@ std::uint32_t find_root(std::vector<std::uint32_t>& parent, std::uint32_t i) {
   return i;
 }
 
-// Border points within `radius` of each other are one opening's.
+// Border points near each other whose looks into the open end near each other are one opening's.
+// `border`: its normals are the directions away from the surface.
 std::map<std::uint32_t, std::vector<std::uint32_t>> group(const ZOrderedCloud& border,
                                                           double radius) {
   const auto count = static_cast<std::uint32_t>(border.size());
@@ -127,11 +155,16 @@ std::map<std::uint32_t, std::vector<std::uint32_t>> group(const ZOrderedCloud& b
   for (std::uint32_t i = 0; i < count; ++i) {
     parent[i] = i;
   }
+  const auto look = [&](std::uint32_t i) -> Eigen::Vector3d {
+    return border.positions()[i] + kLookRadii * radius * border.normals()[i].cast<double>();
+  };
   for (std::uint32_t i = 0; i < count; ++i) {
-    border.visit_within(border.positions()[i], radius, [&](std::uint32_t j, double) {
-      const std::uint32_t a = find_root(parent, i);
-      const std::uint32_t b = find_root(parent, j);
-      parent[std::max(a, b)] = std::min(a, b);
+    border.visit_within(border.positions()[i], kNearRadii * radius, [&](std::uint32_t j, double) {
+      if ((look(i) - look(j)).norm() < kSameLookRadii * radius) {
+        const std::uint32_t a = find_root(parent, i);
+        const std::uint32_t b = find_root(parent, j);
+        parent[std::max(a, b)] = std::min(a, b);
+      }
     });
   }
   std::map<std::uint32_t, std::vector<std::uint32_t>> groups;
@@ -149,7 +182,27 @@ std::uint32_t farthest_from(const ZOrderedCloud& border, const std::vector<std::
   });
 }
 
+// Whether most border points see the other side of their opening across from them, facing back.
 // `border`: its normals are the directions away from the surface.
+bool is_hole(const ZOrderedCloud& border, const std::vector<std::uint32_t>& members) {
+  const auto sees = [&](std::uint32_t i, std::uint32_t j) {
+    const Eigen::Vector3d chord = border.positions()[j] - border.positions()[i];
+    const double cosine = kAcrossCosine * chord.norm();
+    return border.normals()[i].cast<double>().dot(chord) > cosine &&
+           border.normals()[j].cast<double>().dot(-chord) > cosine;
+  };
+  const std::size_t stride = 1 + (members.size() - 1) / kLooks;
+  std::size_t looks = 0;
+  std::size_t met = 0;
+  for (std::size_t k = 0; k < members.size(); k += stride, ++looks) {
+    const std::uint32_t i = members[k];
+    met += std::any_of(members.begin(), members.end(), [&](std::uint32_t j) { return sees(i, j); })
+               ? 1U
+               : 0U;
+  }
+  return static_cast<double>(met) > kHolePart * static_cast<double>(looks);
+}
+
 Opening measure(const ZOrderedCloud& border, const std::vector<std::uint32_t>& members,
                 double spacing) {
   Opening opening;
@@ -158,12 +211,7 @@ Opening measure(const ZOrderedCloud& border, const std::vector<std::uint32_t>& m
     opening.centre += border.positions()[i];
   }
   opening.centre /= static_cast<double>(members.size());
-  double inward = 0.0;
-  for (const std::uint32_t i : members) {
-    const Eigen::Vector3d to_centre = (opening.centre - border.positions()[i]).normalized();
-    inward += border.normals()[i].cast<double>().dot(to_centre);
-  }
-  const bool hole = inward > kInwardCosine * static_cast<double>(members.size());
+  const bool hole = is_hole(border, members);
   opening.kind = hole ? Opening::Kind::kHole : Opening::Kind::kRim;
   const std::uint32_t one = farthest_from(border, members, opening.centre);
   const std::uint32_t other = farthest_from(border, members, border.positions()[one]);
@@ -203,6 +251,10 @@ Gaps find_gaps(const ZOrderedCloud& points, double spacing, double radius) {
   border.set_normals(std::move(directions));
   for (const auto& [root, members] : group(border, radius)) {
     const Opening opening = measure(border, members, spacing);
+    if (static_cast<double>(members.size()) * spacing <
+        kLeastPointsPerSpacing * opening.diameter_m) {
+      continue;
+    }
     if (opening.kind == Opening::Kind::kHole) {
       gaps.largest_m = std::max(gaps.largest_m, opening.diameter_m);
     }

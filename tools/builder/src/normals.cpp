@@ -87,7 +87,7 @@ std::vector<Edge> neighbour_graph(const ZOrderedCloud& points,
       [&](auto range) {
         std::vector<Neighbour> found;
         for (std::uint32_t i = range.begin(); i < range.end(); ++i) {
-          points.find_nearest(points.positions()[i], kGraphNeighbours + 1, 1.8 * spacing, found);
+          points.find_nearest(points.positions()[i], kGraphNeighbours + 1, 2.3 * spacing, found);
           nearest[i].fill(i);
           std::size_t count = 0;
           for (const Neighbour& n : found) {

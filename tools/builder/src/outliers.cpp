@@ -21,7 +21,7 @@ std::size_t count_around(const ZOrderedCloud& points, const Eigen::Vector3i& cel
 }
 
 std::vector<std::uint32_t> in_company_at(const ZOrderedCloud& points, int level) {
-  const std::size_t company = std::min(kCompany, points.size() / 4);
+  const std::size_t company = std::min(kCompany, points.size() / 32);
   std::vector<std::uint32_t> kept;
   kept.reserve(points.size());
   for (const CellRange& range : points.cells(level)) {

@@ -15,10 +15,10 @@ namespace tactree::builder {
 /// one place. Strays outside it, however far, have no influence on it.
 [[nodiscard]] Box plausible_box(std::span<const Eigen::Vector3d> positions, double margin);
 
-/// Indices (ascending) of the points that are not alone: at least 8 others lie in the 27 cells
-/// around them, of edge 10 to 20 `spacing`. Where that would drop more than 1 % of the points (and
-/// more than 10), the scan is merely uneven: cells are doubled until it does not. For fewer than
-/// 32 points a quarter of them has to be near.
+/// Indices (ascending) of the points that are not alone: at least 8 others (of fewer than 256
+/// points: one in 32) lie in the 27 cells around them, of edge 10 to 20 `spacing`. Where that would
+/// drop more than 1 % of the points (and more than 10), the scan is merely uneven: cells are
+/// doubled until it does not.
 [[nodiscard]] std::vector<std::uint32_t> points_in_company(const ZOrderedCloud& points,
                                                            double spacing);
 

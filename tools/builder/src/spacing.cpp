@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::size_t kSamples = 4096;
 constexpr std::size_t kNeighbours = 16;
+constexpr double kTrusted = 0.98;  // of the sample; the rest may be strays
 
 }  // namespace
 
@@ -24,28 +25,33 @@ double coarse_cell_edge(const ZOrderedCloud& points) {
   return points.cell_edge(level);
 }
 
-double estimate_spacing(const ZOrderedCloud& points) {
+SpacingEstimate estimate_spacing(const ZOrderedCloud& points) {
   if (points.size() < 2) {
-    return 0.0;
+    return {};
   }
   const double guess = coarse_cell_edge(points);
-  const std::size_t neighbours = std::min(kNeighbours, points.size() - 1);
+  const bool few = points.size() < 2 * kNeighbours;
+  const std::size_t neighbours = few ? 1 : kNeighbours;
   const std::size_t stride = 1 + (points.size() - 1) / kSamples;
-  std::vector<double> spacings((points.size() + stride - 1) / stride);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, spacings.size(), 16), [&](auto range) {
+  std::vector<double> areas((points.size() + stride - 1) / stride);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, areas.size(), 16), [&](auto range) {
     std::vector<Neighbour> found;
     for (std::size_t s = range.begin(); s < range.end(); ++s) {
-      const Eigen::Vector3d& centre = points.positions()[s * stride];
-      points.find_nearest(centre, neighbours + 1, guess, found);
+      points.find_nearest(points.positions()[s * stride], neighbours + 1, guess, found);
       // The disc up to the last neighbour holds the point itself, all others but the last, and
       // half of that one.
-      const double area = std::numbers::pi * found.back().squared_distance;
-      spacings[s] = std::sqrt(area / (static_cast<double>(neighbours) + 0.5));
+      const double per_square = few ? 1.0 : std::numbers::pi / (kNeighbours + 0.5);
+      areas[s] = per_square * found.back().squared_distance;
     }
   });
-  const auto middle = spacings.begin() + static_cast<std::ptrdiff_t>(spacings.size() / 2);
-  std::nth_element(spacings.begin(), middle, spacings.end());
-  return *middle;
+  std::sort(areas.begin(), areas.end());
+  const auto trusted = static_cast<std::size_t>(kTrusted * static_cast<double>(areas.size()));
+  double sum = 0.0;
+  for (std::size_t s = 0; s <= trusted && s < areas.size(); ++s) {
+    sum += areas[s];
+  }
+  const auto counted = static_cast<double>(std::min(trusted + 1, areas.size()));
+  return {std::sqrt(areas[(areas.size() - 1) / 2]), std::sqrt(sum / counted)};
 }
 
 }  // namespace tactree::builder

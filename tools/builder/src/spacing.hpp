@@ -5,10 +5,14 @@
 
 namespace tactree::builder {
 
-/// The edge of the square that one point of the surface has to itself: the median over a regular
-/// sample of points, each from the area its 16 nearest neighbours cover. A square grid of edge h
-/// gives h within 5 %. 0 for fewer than two points. Deterministic. Cost: a few ms.
-[[nodiscard]] double estimate_spacing(const ZOrderedCloud& points);
+/// How far apart points are, of a regular sample of them, each from the area that its 16 nearest
+/// neighbours cover (of fewer than 32 points: the distance to the nearest). A square grid of edge h
+/// gives h within 5 %. Deterministic. Cost: a few ms.
+struct SpacingEstimate {
+  double median_m = 0.0;  ///< of the points: half of them are closer; 0 for fewer than two points
+  double mean_m = 0.0;    ///< of the surface: sqrt(area / points), without the sparsest 2 %
+};
+[[nodiscard]] SpacingEstimate estimate_spacing(const ZOrderedCloud& points);
 
 /// The edge of the cells that hold about 16 points each: a scale to begin a search with.
 [[nodiscard]] double coarse_cell_edge(const ZOrderedCloud& points);

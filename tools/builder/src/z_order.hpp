@@ -67,7 +67,8 @@ class ZOrderedCloud {
   /// visit(index, squared_distance) for every point within `radius` of `centre`. Fixed order.
   template <typename Visit>
   void visit_within(const Eigen::Vector3d& centre, double radius, Visit&& visit) const {
-    const int level = level_for_edge(radius);
+    // Cells this wide make few searches, and few points to look at in vain.
+    const int level = level_for_edge(2.0 * radius);
     const int shift = kFinestLevel - level;
     const Eigen::Vector3i low = finest_cell(centre.array() - radius);
     const Eigen::Vector3i high = finest_cell(centre.array() + radius);
