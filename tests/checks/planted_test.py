@@ -1,0 +1,399 @@
+"""The checkers of scripts/, each on planted violations: it must refuse them, and name them.
+
+usage: planted_test.py [CLASS...]        environment: CXX, the compiler to plant with
+"""
+import json
+import os
+import pathlib
+import platform
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+CXX = os.environ.get("CXX", "c++")
+
+
+def check(name, *arguments):
+    """Exit code and output of a checker."""
+    done = subprocess.run([ROOT / "scripts" / name, *map(str, arguments)], capture_output=True,
+                          text=True, check=False)
+    return done.returncode, done.stdout + done.stderr
+
+
+class Planted(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name).resolve()
+
+    def write(self, name, text):
+        path = self.folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+        return path
+
+    def accepts(self, name, *arguments):
+        code, output = check(name, *arguments)
+        self.assertEqual(code, 0, output)
+
+    def refuses(self, words, name, *arguments):
+        code, output = check(name, *arguments)
+        self.assertEqual(code, 1, output)
+        self.assertIn(words, output)
+
+
+class Layers(Planted):
+    def setUp(self):
+        super().setUp()
+        for folder in ("core", "hal", "host", "tools"):
+            shutil.copytree(ROOT / folder, self.folder / folder)
+        self.accepts("check-layers", "--root", self.folder)
+
+    def refuses_line(self, words, name, line):
+        with open(self.folder / name, "a", encoding="utf-8") as file:
+            file.write("\n" + line + "\n")
+        self.refuses(words, "check-layers", "--root", self.folder)
+        self.refuses(name + ":", "check-layers", "--root", self.folder)
+
+    def test_core_includes_hal(self):
+        self.refuses_line("core includes tactree/hal/board.hpp of hal",
+                          "core/include/tactree/core/octree.hpp", '#include "tactree/hal/board.hpp"')
+
+    def test_core_includes_hosted_header(self):
+        self.refuses_line("<vector>, which is not freestanding", "core/src/octree.cpp",
+                          "#  include <vector>")
+
+    def test_core_includes_builder_by_path(self):
+        self.refuses_line("of builder", "core/src/octree.cpp",
+                          '#include "../../tools/builder/src/lattice.hpp"')
+
+    def test_core_includes_builder_by_name(self):
+        self.refuses_line("core includes lattice.hpp of builder", "core/src/octree.cpp",
+                          '#include "lattice.hpp"')
+
+    def test_hal_includes_simulation(self):
+        self.refuses_line("hal includes tactree/simulation/simulation.hpp of host",
+                          "hal/include/tactree/hal/board.hpp",
+                          '#include <tactree/simulation/simulation.hpp>')
+
+    def test_hal_contract_includes_hosted_header(self):
+        self.refuses_line("hal includes <chrono>", "hal/include/tactree/hal/loop.hpp",
+                          "#include <chrono>")
+
+    def test_builder_includes_host(self):
+        self.refuses_line("builder includes tactree/plant/plant.hpp of host",
+                          "tools/builder/src/lattice.cpp", '#include "tactree/plant/plant.hpp"')
+
+    def test_builder_includes_hal(self):
+        self.refuses_line("builder includes tactree/hal/loop.hpp of hal",
+                          "tools/builder/src/lattice.cpp", '#include "tactree/hal/loop.hpp"')
+
+    def test_host_includes_builder(self):
+        self.refuses_line("host includes tactree/builder/model.hpp of builder",
+                          "host/simulation/src/simulation.cpp",
+                          '#include "tactree/builder/model.hpp"')
+
+    def test_tools_include_unknown_library(self):
+        self.refuses_line("of unknown", "tools/cli/main.cpp", '#include "tactree/zebra/zebra.hpp"')
+
+    def test_firmware_includes_host(self):
+        self.write("firmware/main.cpp", '#include "tactree/core/controller.hpp"\n')
+        self.accepts("check-layers", "--root", self.folder)
+        self.refuses_line("firmware includes tactree/plant/plant.hpp of host", "firmware/main.cpp",
+                          '#include "tactree/plant/plant.hpp"')
+
+    def test_core_links_library(self):
+        self.refuses_line("core links Eigen3::Eigen", "core/CMakeLists.txt",
+                          "target_link_libraries(tactree_core PUBLIC Eigen3::Eigen)")
+
+    def test_core_links_hal(self):
+        self.refuses_line("core uses tactree::hal of hal", "core/CMakeLists.txt",
+                          "target_link_libraries(tactree_core\n  PUBLIC tactree::hal)")
+
+    def test_host_links_builder(self):
+        self.refuses_line("host uses tactree_builder of builder", "host/plant/CMakeLists.txt",
+                          "target_link_libraries(tactree_plant PRIVATE tactree_builder)")
+
+    def test_builder_takes_include_folder_of_host(self):
+        self.refuses_line("of host", "tools/builder/CMakeLists.txt",
+                          "target_include_directories(tactree_builder PRIVATE\n"
+                          "  ${CMAKE_CURRENT_SOURCE_DIR}/../../host/plant/include)")
+
+    def test_empty_tree(self):
+        self.refuses("nothing to check", "check-layers", "--root", self.write("a/b", "").parent)
+
+
+class Loops(Planted):
+    def accepts_code(self, code):
+        self.write("a.cpp", code)
+        self.accepts("check-loops", self.folder)
+
+    def refuses_code(self, code, line):
+        self.write("a.cpp", code)
+        self.refuses(f"a.cpp:{line}:", "check-loops", self.folder)
+
+    def test_bounded(self):
+        self.accepts_code("void f(int n) {\n"
+                          "  for (int i = 0; i < 8; ++i) {  // bound: 8\n"
+                          "    while (n > (i + 1)) --n;  // bound: n\n"
+                          "  }\n"
+                          "  do {  // bound: 3\n"
+                          "    ++n;\n"
+                          "  } while (n < 3);\n"
+                          "  for (int i = 0; i < 8 &&\n"
+                          "       n > i;\n"
+                          "       ++i) {  // bound: 8\n"
+                          "  }\n"
+                          "}\n")
+
+    def test_for(self):
+        self.refuses_code("void f() {\n  for (int i = 0; i < 8; ++i) {\n  }\n}\n", 2)
+
+    def test_while(self):
+        self.refuses_code("void f(int n) {\n  while (n > 0) {\n    --n;\n  }\n}\n", 2)
+
+    def test_while_without_body(self):
+        self.refuses_code("void f(int n) {\n  {\n  }\n  while (n-- > 0);\n}\n", 4)
+
+    def test_do(self):
+        self.refuses_code("void f(int n) {\n  do {\n    --n;\n  } while (n > 0);  // bound: n\n}\n", 2)
+
+    def test_goto(self):
+        self.refuses_code("void f(int n) {\nagain:\n  if (--n) goto again;  // bound: n\n}\n", 3)
+
+    def test_bound_within_the_body(self):
+        self.refuses_code("void f(int n) {\n  while (n > 0) {\n    --n;  // bound: n\n  }\n}\n", 2)
+
+    def test_empty_bound(self):
+        self.refuses_code("void f(int n) {\n  while (n > 0) --n;  // bound:\n}\n", 2)
+
+    def test_bound_in_a_string(self):
+        self.refuses_code('void f(int n) {\n  while (n > 0) n = g("x \\" // no b", n);\n}\n', 2)
+
+    def test_words_that_are_no_loops(self):
+        self.write("b.cpp", '// for ever, while (it lasts)\nconst char* s = "do while (1) for (;;)";\n'
+                            "int forward = 1'000; char c = '\"';  // for\n")
+        self.accepts_code("void f() {\n  for (;;) {  // bound: none\n  }\n}\n")
+
+    def test_nothing_to_check(self):
+        self.refuses("0 loops", "check-loops", self.write("c.txt", "").parent)
+
+
+class Symbols(Planted):
+    def archive(self, code, *flags):
+        source = self.write("a.cpp", code)
+        target = self.folder / "liba.a"
+        subprocess.run([CXX, "-std=c++20", "-O2", "-ffp-contract=off", "-fno-exceptions",
+                        "-fno-math-errno", *flags, "-c", source, "-o", self.folder / "a.o"], check=True)
+        target.unlink(missing_ok=True)
+        subprocess.run(["ar", "rcs", target, self.folder / "a.o"], check=True)
+        return target
+
+    def refuses_code(self, words, code, *flags):
+        self.refuses(words, "check-symbols", self.archive(code, *flags))
+
+    def test_clean(self):
+        self.accepts("check-symbols", self.archive(
+            "#include <cstring>\nextern const float kTable[4];\nconst float kTable[4] = {1, 2, 3, 4};\n"
+            "float f(float a, float b, int n) { return __builtin_sqrtf(a * b + kTable[n & 3]); }\n"
+            "void g(void* a, const void* b, unsigned n) { std::memcpy(a, b, n); }\n"))
+
+    def test_heap(self):
+        self.refuses_code("needs _Zna", "int* f(unsigned n) { return new int[n]; }\n")
+
+    def test_libm(self):
+        self.refuses_code("needs sinf", "#include <cmath>\nfloat f(float a) { return std::sin(a); }\n")
+
+    def test_printing(self):
+        self.refuses_code("needs puts", '#include <cstdio>\nvoid f() { std::puts("x"); }\n')
+
+    def test_mutable_global(self):
+        self.refuses_code(".data", "int counter = 7;\nint f() { return ++counter; }\n")
+
+    def test_zeroed_global(self):
+        self.refuses_code(".bss", "static int counter;\nint f() { return ++counter; }\n")
+
+    def test_global_in_its_own_section(self):
+        self.refuses_code(".bss", "static int counter;\nint f() { return ++counter; }\n",
+                          "-fdata-sections")
+
+    def test_constructor(self):
+        self.refuses_code(".init_array", "int g(int);\nint f(int n) { return n; }\n"
+                                         "extern int x;\nint x = f(__builtin_ia32_rdtsc() & 1);\n"
+                          if platform.machine() == "x86_64" else
+                          "struct A { A(); int n; };\nA::A() : n(1) { asm volatile(\"\"); }\nA a;\n")
+
+    @unittest.skipUnless(platform.machine() == "x86_64", "instructions are only read on x86")
+    def test_double(self):
+        self.refuses_code("is not single precision", "float f(float a) { return float(a * 0.1); }\n")
+
+    @unittest.skipUnless(platform.machine() == "x86_64", "instructions are only read on x86")
+    def test_double_parameter(self):
+        self.refuses_code("is not single precision", "bool f(double a, double b) { return a < b; }\n")
+
+    @unittest.skipUnless(platform.machine() == "x86_64", "instructions are only read on x86")
+    def test_extended(self):
+        self.refuses_code("is not single precision",
+                          "float f(float a) { return float(a * 0.1L); }\n")
+
+    @unittest.skipUnless(platform.machine() == "x86_64", "instructions are only read on x86")
+    def test_fused(self):
+        self.refuses_code("fuses a product and a sum",
+                          "float f(float a, float b, float c) { return a * b + c; }\n",
+                          "-mfma", "-ffp-contract=fast")
+
+    def test_empty_archive(self):
+        self.refuses("0 symbols defined", "check-symbols", self.archive(""))
+
+
+class FormatDoc(Planted):
+    def setUp(self):
+        super().setUp()
+        self.doc = (ROOT / "docs/FORMAT.md").read_text()
+
+    def refuses_doc(self, words, old, new):
+        self.assertIn(old, self.doc)
+        path = self.write("FORMAT.md", self.doc.replace(old, new, 1))
+        self.refuses(words, "check-format-doc", "--doc", path, "--compiler", CXX)
+
+    def refuses_header(self, words, file, old, new):
+        shutil.copytree(ROOT / "core/include", self.folder / "include")
+        path = self.folder / "include/tactree/core" / file
+        self.assertIn(old, path.read_text())
+        path.write_text(path.read_text().replace(old, new, 1))
+        self.refuses(words, "check-format-doc", "--include", self.folder / "include",
+                     "--compiler", CXX)
+
+    def test_offset(self):
+        self.refuses_doc("the document says (84, 4, 'u32', 'points_per_leaf_max')",
+                         "| 64 | 4 | u32 | `points_per_leaf_max`",
+                         "| 84 | 4 | u32 | `points_per_leaf_max`")
+
+    def test_size(self):
+        self.refuses_doc("the document says (220, 31", "| 220 | 32 |", "| 220 | 31 |")
+
+    def test_type(self):
+        self.refuses_doc("'u32', 'step_m'", "f32 | `step_m`", "u32 | `step_m`")
+
+    def test_missing_field(self):
+        line = next(l for l in self.doc.splitlines(True) if "`texture_height_m`" in l)
+        self.refuses_doc("the header says (16, 4, 'f32', 'texture_height_m')", line, "")
+
+    def test_struct_size(self):
+        self.refuses_doc("BlobHeader: the header has 320 bytes", "`BlobHeader`, 320", "`BlobHeader`, 324")
+
+    def test_constant(self):
+        self.refuses_doc("('kMaxDepth', 12)", "| `kMaxDepth` | 11 |", "| `kMaxDepth` | 12 |")
+
+    def test_magic(self):
+        self.refuses_doc("kBlobMagic", "54 41 43 54", "54 41 43 55")
+
+    def test_status(self):
+        self.refuses_doc("BlobStatus: the document says (7, 'kBadHeaders')", "| 7 | `kBadHeader` |",
+                         "| 7 | `kBadHeaders` |")
+
+    def test_order(self):
+        first, second = "| 0 | `kSurface`", "| 1 | `kPaper`"
+        lines = self.doc.splitlines()
+        i = next(n for n, l in enumerate(lines) if l.startswith(first))
+        self.assertTrue(lines[i + 1].startswith(second))
+        both = "\n".join(lines[i:i + 2])
+        self.refuses_doc("another order", both, "\n".join(reversed(lines[i:i + 2])))
+
+    def test_new_field(self):
+        self.refuses_header("the header says (300, 4, 'u32', 'colour')", "blob_format.hpp",
+                            "std::uint32_t reserved[5];",
+                            "std::uint32_t colour; std::uint32_t reserved[4];")
+
+    def test_new_constant(self):
+        self.refuses_header("('kMore', 3)", "blob_format.hpp", "inline constexpr std::uint16_t kBlobMajor",
+                            "inline constexpr int kMore = 3;\ninline constexpr std::uint16_t kBlobMajor")
+
+    def test_new_status(self):
+        self.refuses_header("(15, 'kBadMood')", "blob.hpp", "  kBadMaterials,", "  kBadMaterials, kBadMood,")
+
+
+class Style(Planted):
+    def tidy(self, code):
+        source = self.write("a.cpp", code)
+        self.write("compile_commands.json", json.dumps(
+            [{"directory": str(self.folder), "file": str(source),
+              "command": f"c++ -std=c++20 -c {source}"}]))
+        return "check-style", "tidy", self.folder, source
+
+    def test_layout(self):
+        self.accepts("check-style", "format", self.write("a.cpp", "int f(int a) { return a; }\n"))
+        self.refuses("clang-format-violations", "check-style", "format",
+                     self.write("a.cpp", "int  f( int a ){return a;}\n"))
+
+    def test_habits_kept(self):
+        self.accepts(*self.tidy("constexpr int kMost = 3;\nint at_most(int value) {\n"
+                                "  return value < kMost ? value : kMost;\n}\n"))
+
+    def test_function_name(self):
+        self.refuses("readability-identifier-naming", *self.tidy("int AtMost(int value) { return value; }\n"))
+
+    def test_constant_name(self):
+        self.refuses("readability-identifier-naming", *self.tidy("constexpr int most = 3;\n"))
+
+    def test_type_name(self):
+        self.refuses("readability-identifier-naming", *self.tidy("struct some_type {};\n"))
+
+    def test_private_member_name(self):
+        self.refuses("readability-identifier-naming",
+                     *self.tidy("class A {\n public:\n  int get() const { return value; }\n\n"
+                                " private:\n  int value = 0;\n};\n"))
+
+    def test_bug(self):
+        self.refuses("bugprone-", *self.tidy("int f(int a) {\n  if (a > 0 && a > 0) return 1;\n"
+                                             "  return a == 3 ? 2 : 2;\n}\n"))
+
+    def test_else_after_return(self):
+        self.refuses("readability-else-after-return",
+                     *self.tidy("int f(int a) {\n  if (a > 0) {\n    return 1;\n  } else {\n"
+                                "    return 2;\n  }\n}\n"))
+
+    def test_long_function(self):
+        self.refuses("readability-function-size",
+                     *self.tidy("int f(int a) {\n" + "  ++a;\n" * 62 + "  return a;\n}\n"))
+
+    def test_knotted_function(self):
+        body = "".join(f"{'  ' * d}if (a > {d}) {{\n" for d in range(1, 9)) + "a = 0;\n" + "}" * 8
+        self.refuses("readability-function-cognitive-complexity",
+                     *self.tidy(f"int f(int a) {{\n{body}\n  return a;\n}}\n"))
+
+
+class Tracked(Planted):
+    # In pieces, so that this file does not trip the checker itself.
+    PATH = "/" + "home/somebody/tactree"
+
+    def test_clean(self):
+        self.write("a.txt", "https://example.org/" + "home/page and ${root}/" + "work/x\n")
+        self.accepts("check-tracked", "--root", self.folder)
+
+    def test_machine_path(self):
+        self.write("b.md", f"first\nlook into {self.PATH}/core\n")
+        self.refuses("b.md:2: path of a machine: /" + "home/somebody", "check-tracked", "--root", self.folder)
+
+    def test_machine_path_in_a_repository(self):
+        subprocess.run(["git", "init", "-q", self.folder], check=True)
+        self.write("b.md", f"in `{self.PATH}`\n")
+        self.write(".gitignore", "build/\n")
+        self.write("build/c.md", self.PATH)
+        code, output = check("check-tracked", "--root", self.folder)
+        self.assertEqual(code, 1)
+        self.assertIn("2 files, 1 violations", output)
+
+    def test_large_file(self):
+        self.write("a.bin", "x" * (1 << 20))
+        self.accepts("check-tracked", "--root", self.folder)
+        self.write("a.bin", "x" * ((1 << 20) + 1))
+        self.refuses("a.bin: 1048577 bytes", "check-tracked", "--root", self.folder)
+
+
+if __name__ == "__main__":
+    sys.argv[0] = "planted_test.py"
+    unittest.main()

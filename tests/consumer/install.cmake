@@ -1,0 +1,16 @@
+# Installs BUILD to an empty PREFIX and looks whether all is there.
+file(REMOVE_RECURSE ${PREFIX})
+execute_process(COMMAND ${CMAKE_COMMAND} --install ${BUILD} --prefix ${PREFIX}
+  OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
+foreach(file
+    bin/tactree
+    libexec/tactree/tactree-import-mesh
+    include/tactree/core/blob.hpp
+    include/tactree/hal/board.hpp
+    include/tactree/builder/model.hpp
+    include/tactree/builder/version.hpp
+    include/tactree/simulation/simulation.hpp)
+  if(NOT EXISTS ${PREFIX}/${file})
+    message(FATAL_ERROR "not installed: ${file}")
+  endif()
+endforeach()

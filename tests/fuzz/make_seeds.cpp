@@ -1,0 +1,269 @@
+// Writes the seeds of the fuzz targets: make_seeds FOLDER
+//   open_blob/<status>.<what>   small blobs, valid and with one rule broken; all but the unsealed
+//                               ones have a right checksum
+//   read_scan/<what>            a few points in every format that is read in-process
+
+#include <bit>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tactree/builder/model.hpp"
+#include "tactree/core/blob.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using tactree::builder::Model;
+using tactree::core::BlobHeader;
+using tactree::core::BlobMaterial;
+using tactree::core::Profile;
+using Bytes = std::vector<std::byte>;
+
+void write(const fs::path& path, std::span<const std::byte> bytes) {
+  std::ofstream out(path, std::ios::binary | std::ios::trunc);
+  out.write(reinterpret_cast<const char*>(bytes.data()),
+            static_cast<std::streamsize>(bytes.size()));
+  if (!out.flush()) {
+    throw std::runtime_error(path.string() + " cannot be written");
+  }
+}
+
+void write(const fs::path& path, const std::string& text) {
+  write(path, std::as_bytes(std::span(text)));
+}
+
+// Points on a sphere along a spiral, evenly.
+Model sphere(int points, Profile profile, Eigen::Vector3d centre, double radius) {
+  Model model;
+  for (int i = 0; i < points; ++i) {
+    const double z = 1.0 - (2.0 * i + 1.0) / points;
+    const double ring = std::sqrt(1.0 - z * z);
+    const double angle = 2.399963229728653 * i;
+    const Eigen::Vector3d normal(ring * std::cos(angle), ring * std::sin(angle), z);
+    model.positions.push_back(centre + radius * normal);
+    model.normals.push_back(normal.cast<float>());
+  }
+  model.profile = profile;
+  model.spacing_m = 3.5 * radius / std::sqrt(points);
+  model.support_radius_m = 2.5 * model.spacing_m;
+  model.reach_m = 3.0 * model.spacing_m;
+  model.name = "sphere";
+  return model;
+}
+
+void give_materials(Model& model, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) {
+    BlobMaterial material{};
+    material.stiffness_N_m = 300.0F + 100.0F * static_cast<float>(i);
+    material.static_friction = 0.4F;
+    material.dynamic_friction = 0.3F;
+    model.materials.push_back(material);
+  }
+  for (std::size_t i = 0; i < model.positions.size(); ++i) {
+    model.material_indices.push_back(static_cast<std::uint8_t>(i % count));
+  }
+}
+
+Bytes blob_of(const Model& model) { return tactree::builder::write_blob(model).bytes; }
+
+void write_valid_blobs(const fs::path& folder) {
+  Model materials = sphere(60, Profile::kSurface, {0.01, 0.02, 0.0}, 0.02);
+  give_materials(materials, 3);
+  write(folder / "kOk.surface_materials", blob_of(materials));
+  Model material = sphere(20, Profile::kSurface, {0.0, 0.0, 0.5}, 0.02);
+  give_materials(material, 1);
+  write(folder / "kOk.surface_one_material", blob_of(material));
+  write(folder / "kOk.surface", blob_of(sphere(40, Profile::kSurface, {0, 0, 0}, 0.05)));
+  write(folder / "kOk.surface_point", blob_of(sphere(1, Profile::kSurface, {0, 0, 0}, 0.05)));
+  Model paper = sphere(120, Profile::kPaper, {0.0, -0.3, 0.0}, 0.04);
+  give_materials(paper, 2);
+  write(folder / "kOk.paper_materials", blob_of(paper));
+  write(folder / "kOk.paper", blob_of(sphere(30, Profile::kPaper, {0, 0, 0}, 0.04)));
+  write(folder / "kOk.paper_point", blob_of(sphere(1, Profile::kPaper, {0, 0, 0}, 0.04)));
+
+  // Two clusters far apart: a deep tree.
+  Model deep = sphere(12, Profile::kSurface, {0, 0, 0}, 0.001);
+  const Model other = sphere(12, Profile::kSurface, {0.3, 0.2, 0.1}, 0.001);
+  deep.positions.insert(deep.positions.end(), other.positions.begin(), other.positions.end());
+  deep.normals.insert(deep.normals.end(), other.normals.begin(), other.normals.end());
+  write(folder / "kOk.surface_deep", blob_of(deep));
+  deep.profile = Profile::kPaper;
+  write(folder / "kOk.paper_deep", blob_of(deep));
+}
+
+BlobHeader& header_of(Bytes& blob) { return *reinterpret_cast<BlobHeader*>(blob.data()); }
+
+template <typename T>
+T* items_of(Bytes& blob, const tactree::core::BlobSection& section) {
+  return reinterpret_cast<T*>(blob.data() + section.offset);
+}
+
+// One rule each, in the order of the validator.
+void write_broken_blobs(const fs::path& folder) {
+  Model model = sphere(120, Profile::kPaper, {0, 0, 0}, 0.04);
+  give_materials(model, 3);
+  const Bytes good = blob_of(model);
+  const auto broken = [&](const char* name,
+                          const std::function<void(Bytes&, BlobHeader&)>& breaks) {
+    Bytes bad = good;
+    breaks(bad, header_of(bad));
+    if (bad.size() >= sizeof(BlobHeader)) {
+      tactree::builder::seal(bad);
+    }
+    write(folder / name, bad);
+  };
+  broken("kTooShort.header", [](Bytes& b, BlobHeader&) { b.resize(sizeof(BlobHeader) - 1); });
+  broken("kBadMagic.letter", [](Bytes&, BlobHeader& h) { h.magic[3] = 'X'; });
+  broken("kBadVersion.newer", [](Bytes&, BlobHeader& h) { ++h.version_major; });
+  broken("kBadSize.prefix", [](Bytes& b, BlobHeader&) { b.resize(b.size() - 4); });
+  broken("kBadHeader.depth", [](Bytes&, BlobHeader& h) { h.depth = 12; });
+  broken("kBadHeader.counts", [](Bytes&, BlobHeader& h) { h.leaf_count = h.point_count + 1; });
+  broken("kBadFigures.step",
+         [](Bytes&, BlobHeader& h) { h.step_m = std::nextafter(h.step_m, 1.0F); });
+  broken("kBadFigures.root", [](Bytes&, BlobHeader& h) { h.root_min[1] = -(1 << 22) - 1; });
+  broken("kBadSections.gap", [](Bytes&, BlobHeader& h) { h.leaves.offset += 4; });
+  broken("kBadSections.size", [](Bytes&, BlobHeader& h) { h.points.bytes = 0xFFFFFFFC; });
+  broken("kBadLeaves.empty_leaf",
+         [](Bytes& b, BlobHeader& h) { items_of<std::uint32_t>(b, h.leaves)[1] = 0; });
+  broken("kBadTree.cycle", [](Bytes& b, BlobHeader& h) {
+    auto& root = items_of<tactree::core::BlobNode>(b, h.nodes)[0];
+    root.nodes &= 0xFF000000U;
+  });
+  broken("kBadTree.both", [](Bytes& b, BlobHeader& h) {
+    auto& root = items_of<tactree::core::BlobNode>(b, h.nodes)[0];
+    root.leaves |= root.nodes & 0xFF000000U;
+  });
+  broken("kBadPoints.order",
+         [](Bytes& b, BlobHeader& h) { items_of<std::uint32_t>(b, h.points)[0] = 0xFFFFFFFF; });
+  broken("kBadNeighbours.leaf", [](Bytes& b, BlobHeader& h) {
+    items_of<std::uint32_t>(b, h.neighbours)[5] = h.leaf_count;
+  });
+  broken("kBadMaterials.friction", [](Bytes& b, BlobHeader& h) {
+    items_of<BlobMaterial>(b, h.materials)[1].dynamic_friction = 0.5F;
+  });
+  broken("kBadMaterials.index",
+         [](Bytes& b, BlobHeader& h) { items_of<std::uint8_t>(b, h.material_indices)[0] = 3; });
+  Bytes flipped = good;
+  flipped.back() ^= std::byte{1};
+  write(folder / "kBadChecksum.bit", flipped);
+  write(folder / "kTooShort.nothing", Bytes{});
+}
+
+template <typename T>
+void append(std::string& out, T value, bool swap = false) {
+  char bytes[sizeof value];
+  std::memcpy(bytes, &value, sizeof value);
+  for (std::size_t i = 0; i < sizeof value; ++i) {
+    out += bytes[swap ? sizeof value - 1 - i : i];
+  }
+}
+
+std::string ply_binary(bool big_endian) {
+  std::string out = std::string("ply\nformat ") +
+                    (big_endian ? "binary_big_endian" : "binary_little_endian") +
+                    " 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+                    "property uchar red\nelement face 2\n"
+                    "property list uchar int vertex_indices\nend_header\n";
+  for (const auto& [x, y, z] : {std::array{0.0F, 0.0F, 0.0F}, std::array{1.0F, 0.0F, 0.0F},
+                                std::array{1.0F, 1.0F, 0.0F}, std::array{0.0F, 1.0F, 0.5F}}) {
+    append(out, x, big_endian);
+    append(out, y, big_endian);
+    append(out, z, big_endian);
+    out += static_cast<char>(200);
+  }
+  for (const auto& corners : {std::array{0, 1, 2}, std::array{0, 2, 3}}) {
+    out += static_cast<char>(3);
+    for (const std::int32_t corner : corners) {
+      append(out, corner, big_endian);
+    }
+  }
+  return out;
+}
+
+std::string stl_binary() {
+  std::string out(80, ' ');
+  append(out, std::uint32_t{2});
+  for (int triangle = 0; triangle < 2; ++triangle) {
+    for (int i = 0; i < 12; ++i) {
+      append(out, static_cast<float>((triangle + i * i) % 5));
+    }
+    append(out, std::uint16_t{0});
+  }
+  return out;
+}
+
+std::string pcd(const std::string& data, const std::string& body) {
+  return "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 3\n"
+         "HEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 3\nDATA " +
+         data + "\n" + body;
+}
+
+void write_scans(const fs::path& folder) {
+  std::string floats;
+  for (int i = 0; i < 9; ++i) {
+    append(floats, 0.25F * static_cast<float>(i));
+  }
+  // A compressed body that holds the bytes as they are: LZF literal runs.
+  std::string runs;
+  append(runs, static_cast<std::uint8_t>(31));
+  runs += floats.substr(0, 32);
+  append(runs, static_cast<std::uint8_t>(3));
+  runs += floats.substr(32);
+  std::string compressed;
+  append(compressed, static_cast<std::uint32_t>(runs.size()));
+  append(compressed, static_cast<std::uint32_t>(floats.size()));
+  compressed += runs;
+
+  write(
+      folder / "ply_ascii",
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+      "property float z\nproperty float nx\nproperty float ny\nproperty float nz\nelement face 1\n"
+      "property list uchar int vertex_indices\nend_header\n0 0 0 0 0 1\n1 0 0 0 0 1\n"
+      "0 1 0 0 0 1\n3 0 1 2\n");
+  write(folder / "ply_little_endian", ply_binary(false));
+  write(folder / "ply_big_endian", ply_binary(true));
+  write(folder / "pcd_ascii", pcd("ascii", "0 0 0\n1 0 0\nnan nan nan\n"));
+  write(folder / "pcd_binary", pcd("binary", floats));
+  write(folder / "pcd_compressed", pcd("binary_compressed", compressed));
+  write(folder / "xyz", "0 0 0\n1 0 0\n0 1 0\n1 1 0.5\n");
+  write(folder / "pts", "3\n0 0 0 12 255 0 0\n1 0 0 12 0 255 0\n0 1 0 12 0 0 255\n");
+  write(folder / "csv", "x,y,z,red,green,blue\n0,0,0,1,2,3\n1,0,0,1,2,3\n0,1,0,1,2,3\n");
+  write(folder / "csv_semicolon", "\"X\";\"Y\";\"Z\"\r\n0,5;1,5;2,5\r\n1,5;1,5;2,5\r\n2,5;1;2\r\n");
+  write(folder / "obj",
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\nf -4 -2 -1\n");
+  write(folder / "off", "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n4 0 1 2 3\n");
+  write(folder / "stl_ascii",
+        "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
+        "endloop\nendfacet\nendsolid a\n");
+  write(folder / "stl_binary", stl_binary());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::fprintf(stderr, "usage: make_seeds FOLDER\n");
+    return 2;
+  }
+  try {
+    const fs::path folder = argv[1];
+    fs::remove_all(folder);
+    fs::create_directories(folder / "open_blob");
+    fs::create_directories(folder / "read_scan");
+    write_valid_blobs(folder / "open_blob");
+    write_broken_blobs(folder / "open_blob");
+    write_scans(folder / "read_scan");
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "make_seeds: %s\n", error.what());
+    return 1;
+  }
+  return 0;
+}
