@@ -9,7 +9,7 @@
 namespace tactree::builder {
 
 struct BuiltLeaf {
-  core::Int3 min{};         ///< lattice units
+  core::Int3 min{};  ///< lattice units
   std::uint32_t level = 0;
   std::uint32_t first = 0;  ///< into Octree::order
   std::uint32_t count = 0;
@@ -18,10 +18,10 @@ struct BuiltLeaf {
 struct Octree {
   Lattice lattice;
   std::vector<core::BlobNode> nodes;
-  std::vector<BuiltLeaf> leaves;         ///< by leaf number
-  std::vector<std::uint32_t> order;      ///< position indices, leaf by leaf, words ascending
-  std::vector<std::uint32_t> words;      ///< position bits of the point words, beside `order`
-  std::uint64_t merged = 0;              ///< points that fell on an occupied site
+  std::vector<BuiltLeaf> leaves;     ///< by leaf number
+  std::vector<std::uint32_t> order;  ///< position indices, leaf by leaf, words ascending
+  std::vector<std::uint32_t> words;  ///< position bits of the point words, beside `order`
+  std::uint64_t merged = 0;          ///< points that fell on an occupied site
 };
 
 /// Splits the root until a leaf holds at most `leaf_points` points or has the lattice's finest
