@@ -13,6 +13,17 @@ constexpr std::uint32_t kSlipSteps = kSweepSteps / 2;
 // not count in this tick has not stopped, and would stick and slip in turn.
 constexpr float kStickShare = 0.9F;
 
+// Change of the strength over a way of one support radius. A rim takes most of it; where points are
+// so sparse that one more or less makes a rim, it keeps the force from flickering.
+constexpr float kStrengthPerRadius = 4.0F;
+
+// First support on a point that nearly all others contradict: a stray normal, not the other side.
+constexpr float kContradicted = 0.2F;
+
+float clamp(float value, float low, float high) {
+  return value < low ? low : (value > high ? high : value);
+}
+
 float step_length(const BlobView& view) { return 0.5F * view.header().support_radius_m; }
 
 }  // namespace
@@ -78,7 +89,12 @@ void Proxy::visit(const BlobView& view, Vec3 x) {
     }
     reference = candidates_.normal(nearest);
   }
-  const SurfaceFit fit = evaluate(view, x, reference);
+  SurfaceFit fit = evaluate(view, x, reference);
+  const bool crossed = tracked_ && fit.supported && side_ * fit.distance < 0.0F;
+  if (!crossed && fit.facing < kContradicted) {
+    tracked_ = false;
+    fit = evaluate(view, x, -reference);
+  }
   if (!fit.supported) {
     lose_support();
     return;
@@ -144,8 +160,16 @@ void Proxy::slide(const BlobView& view, Vec3 probe, const Friction& friction) {
 }
 
 bool Proxy::slip_by(const BlobView& view, Vec3 step) {
+  const Vec3 position_before = position_;
+  const float strength_before = strength_;
   position_ += step;
-  return settle(view) && settle(view);
+  if (!settle(view) || !settle(view)) {
+    return false;
+  }
+  const float change =
+      kStrengthPerRadius * length(position_ - position_before) / view.header().support_radius_m;
+  strength_ = clamp(strength_, strength_before - change, strength_before + change);
+  return true;
 }
 
 // The probe is on the outer side again: what was tracked stays, so that the sweep which follows

@@ -13,35 +13,104 @@ constexpr float kFadeEnds = 0.95F;
 // Below this share of A the points are as good as one point: fit a plane.
 constexpr float kFlatShare = 1e-3F;
 
-/// The weighted sums of the fit; q counts from the query position.
+// Two faces meet in a crease where normals differ by 60 to 120 degrees; more is the other side of a
+// plate, which never counts.
+constexpr float kCreaseCosine = 0.5F;
+// Of the normals on a face: within 30 degrees of it.
+constexpr float kFaceCosine = 0.87F;
+// Largest share of points between two faces; more, and the edge is round, not sharp.
+constexpr float kRoundShare = 0.25F;
+// How far, in support radii, each face's centroid must lie off the plane of the other, and how many
+// points each must have: a stray normal in the middle of a face makes no crease.
+constexpr float kApart = 0.04F;
+constexpr std::uint32_t kFacePoints = 3;
+
+/// The weighted sums of a fit; q counts from the query position.
 struct Moments {
   float w = 0.0F;
   Vec3 p{};
   Vec3 n{};
   float a = 0.0F;
   float b = 0.0F;
+  std::uint32_t count = 0;
+
+  /// A weight of 0 adds nothing.
+  void add(Vec3 q, float qq, Vec3 normal, float weight) {
+    w += weight;
+    p += weight * q;
+    n += weight * normal;
+    a += weight * qq;
+    b += weight * dot(q, normal);
+    count += weight > 0.0F ? 1U : 0U;
+  }
 };
 
-Moments sum_moments(const CandidateSet& set, Vec3 x, float radius, Vec3 reference) {
+/// Weight of a point at squared distance qq; 0 outside the support.
+float weight_of(float qq, float inverse_squared) {
+  const float u = 1.0F - qq * inverse_squared;
+  if (!(u > 0.0F)) {
+    return 0.0F;
+  }
+  const float u2 = u * u;
+  return u2 * u2;
+}
+
+/// What lies around, seen from one face.
+struct Surroundings {
+  Moments face;                         // of all points that face the reference
+  float averted = 0.0F;                 // weight of all others
+  std::uint32_t crease = kNoCandidate;  // nearest point of another face
+};
+
+Surroundings look_around(const CandidateSet& set, Vec3 x, float radius, Vec3 reference) {
   const float inverse_squared = 1.0F / (radius * radius);
-  Moments m;
+  Surroundings found;
+  float nearest = radius * radius;
   for (std::uint32_t i = 0; i < set.count(); ++i) {  // bound: kMaxCandidates
     const Vec3 q = set.position(i) - x;
     const float qq = length_squared(q);
-    const float u = 1.0F - qq * inverse_squared;
-    const Vec3 n = set.normal(i);
-    if (!(u > 0.0F) || !(dot(n, reference) > 0.0F)) {
+    const float weight = weight_of(qq, inverse_squared);
+    const Vec3 normal = set.normal(i);
+    const float cosine = dot(normal, reference);
+    if (cosine > 0.0F) {
+      found.face.add(q, qq, normal, weight);
+    } else {
+      found.averted += weight;
+    }
+    if (qq < nearest && cosine < kCreaseCosine && cosine > -kCreaseCosine) {
+      nearest = qq;
+      found.crease = i;
+    }
+  }
+  return found;
+}
+
+/// The points around a crease, each with the face whose normal is closer to its own.
+struct Faces {
+  Moments own;
+  Moments other;
+  float between = 0.0F;  // weight of the points that are of neither
+};
+
+Faces divide(const CandidateSet& set, Vec3 x, float radius, Vec3 own, Vec3 other) {
+  const float inverse_squared = 1.0F / (radius * radius);
+  Faces faces;
+  for (std::uint32_t i = 0; i < set.count(); ++i) {  // bound: kMaxCandidates
+    const Vec3 q = set.position(i) - x;
+    const float qq = length_squared(q);
+    const float weight = weight_of(qq, inverse_squared);
+    const Vec3 normal = set.normal(i);
+    const float to_own = dot(normal, own);
+    const float to_other = dot(normal, other);
+    const bool is_own = to_own >= to_other;
+    const float closer = is_own ? to_own : to_other;
+    if (!(weight > 0.0F) || !(closer > 0.0F)) {
       continue;
     }
-    const float u2 = u * u;
-    const float w = u2 * u2;
-    m.w += w;
-    m.p += w * q;
-    m.n += w * n;
-    m.a += w * qq;
-    m.b += w * dot(q, n);
+    (is_own ? faces.own : faces.other).add(q, qq, normal, weight);
+    faces.between += closer < kFaceCosine ? weight : 0.0F;
   }
-  return m;
+  return faces;
 }
 
 /// 1 below kFadeBegins, 0 from kFadeEnds on, smooth between.
@@ -54,6 +123,63 @@ float strength_of(float offset) {
   }
   const float s = (kFadeEnds - offset) * (1.0F / (kFadeEnds - kFadeBegins));
   return s * s * (3.0F - 2.0F * s);
+}
+
+/// The algebraic sphere through weighted points and normals.
+SurfaceFit solve(const Moments& m, float radius) {
+  SurfaceFit fit;
+  if (!(m.w > 0.0F)) {
+    return fit;
+  }
+  const float inverse_w = 1.0F / m.w;
+  const float spread = m.a - dot(m.p, m.p) * inverse_w;
+  float uq = 0.0F;
+  if (spread > kFlatShare * m.a) {
+    uq = 0.5F * (m.b - dot(m.p, m.n) * inverse_w) / spread;
+  }
+  const Vec3 l = inverse_w * (m.n - (2.0F * uq) * m.p);
+  const float uc = -inverse_w * (dot(l, m.p) + uq * m.a);
+  const float ll = length_squared(l);
+  if (!(ll > 1e-12F) || !is_finite(ll) || !is_finite(uc)) {
+    return fit;
+  }
+  const float l_length = square_root(ll);
+  const float root = ll - 4.0F * uc * uq;
+  const float distance = 2.0F * uc / (l_length + square_root(root > 0.0F ? root : 0.0F));
+  const Vec3 normal = (1.0F / l_length) * l;
+
+  const Vec3 centroid = inverse_w * m.p;
+  const Vec3 along = centroid - dot(centroid, normal) * normal;
+  const float strength = strength_of(length(along) / radius);
+  if (!(strength > 0.0F) || !is_finite(distance)) {
+    return fit;
+  }
+  return {true, distance, normal, strength, 1.0F};
+}
+
+/// The surface at a crease: inside a convex edge is what is inside both faces, inside a concave one
+/// what is inside either. Where the points do not look like two faces, the smooth fit stays.
+SurfaceFit combine(const SurfaceFit& smooth, const Faces& faces, float radius) {
+  const float lesser = faces.own.w < faces.other.w ? faces.own.w : faces.other.w;
+  if (faces.other.count < kFacePoints || faces.between > kRoundShare * lesser) {
+    return smooth;
+  }
+  const SurfaceFit own = solve(faces.own, radius);
+  const SurfaceFit other = solve(faces.other, radius);
+  if (!own.supported || !other.supported) {
+    return other.supported ? other : smooth;  // round the corner, or along the rim of a face
+  }
+  const Vec3 way = (1.0F / faces.other.w) * faces.other.p - (1.0F / faces.own.w) * faces.own.p;
+  const float other_above_own = dot(way, own.normal);
+  const float own_above_other = -dot(way, other.normal);
+  const float apart = kApart * radius;
+  if (other_above_own < -apart && own_above_other < -apart) {
+    return own.distance >= other.distance ? own : other;
+  }
+  if (other_above_own > apart && own_above_other > apart) {
+    return own.distance <= other.distance ? own : other;
+  }
+  return smooth;
 }
 
 }  // namespace
@@ -117,35 +243,15 @@ std::uint32_t nearest_candidate(const CandidateSet& set, Vec3 x, float radius) {
 }
 
 SurfaceFit fit_surface(const CandidateSet& set, Vec3 x, float radius, Vec3 reference) {
-  const Moments m = sum_moments(set, x, radius, reference);
-  SurfaceFit fit;
-  if (!(m.w > 0.0F)) {
-    return fit;
+  const Surroundings around = look_around(set, x, radius, reference);
+  SurfaceFit fit = solve(around.face, radius);
+  if (around.crease != kNoCandidate) {
+    const Faces faces = divide(set, x, radius, reference, set.normal(around.crease));
+    fit = combine(fit, faces, radius);
   }
-  const float inverse_w = 1.0F / m.w;
-  const float spread = m.a - dot(m.p, m.p) * inverse_w;
-  float uq = 0.0F;
-  if (spread > kFlatShare * m.a) {
-    uq = 0.5F * (m.b - dot(m.p, m.n) * inverse_w) / spread;
-  }
-  const Vec3 l = inverse_w * (m.n - (2.0F * uq) * m.p);
-  const float uc = -inverse_w * (dot(l, m.p) + uq * m.a);
-  const float ll = length_squared(l);
-  if (!(ll > 1e-12F) || !is_finite(ll) || !is_finite(uc)) {
-    return fit;
-  }
-  const float l_length = square_root(ll);
-  const float root = ll - 4.0F * uc * uq;
-  const float distance = 2.0F * uc / (l_length + square_root(root > 0.0F ? root : 0.0F));
-  const Vec3 normal = (1.0F / l_length) * l;
-
-  const Vec3 centroid = inverse_w * m.p;
-  const Vec3 along = centroid - dot(centroid, normal) * normal;
-  const float strength = strength_of(length(along) / radius);
-  if (!(strength > 0.0F) || !is_finite(distance)) {
-    return fit;
-  }
-  return {true, distance, normal, strength};
+  const float all = around.face.w + around.averted;
+  fit.facing = all > 0.0F ? around.face.w / all : 1.0F;
+  return fit;
 }
 
 SurfaceProjection project_to_surface(const BlobView& view, Vec3 x, CandidateSet& scratch) {

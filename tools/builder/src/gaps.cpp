@@ -20,11 +20,13 @@ constexpr float kOtherSideCosine = -0.3F;
 constexpr double kWedgeCosine = 0.866;
 // Border points stand back from the hole by this much on average, both ends together.
 constexpr double kStandBackSpacings = 0.5;
-// Border points belong together when they are within the first of each other, and so are the places
-// the second away into the open, to the third; in support radii.
-constexpr double kNearRadii = 1.3;
+// Border points belong together when they are near each other, in support radii, and face the same
+// way; or when the places a look away into the open are near each other, which join the opposite
+// sides of a small hole.
+constexpr double kNearRadii = 1.0;
+constexpr double kSameWayCosine = 0.3;
 constexpr double kLookRadii = 0.4;
-constexpr double kSameLookRadii = 0.75;
+constexpr double kSameLookRadii = 0.6;
 // A border point looks across its opening within 45 degrees of its wedge's middle.
 constexpr double kAcrossCosine = 0.707;
 // This part of the looks has to meet the same opening's other side to call it a hole.
@@ -146,7 +148,7 @@ std::uint32_t find_root(std::vector<std::uint32_t>& parent, std::uint32_t i) {
   return i;
 }
 
-// Border points near each other whose looks into the open end near each other are one opening's.
+// The border points of each opening.
 // `border`: its normals are the directions away from the surface.
 std::map<std::uint32_t, std::vector<std::uint32_t>> group(const ZOrderedCloud& border,
                                                           double radius) {
@@ -159,8 +161,12 @@ std::map<std::uint32_t, std::vector<std::uint32_t>> group(const ZOrderedCloud& b
     return border.positions()[i] + kLookRadii * radius * border.normals()[i].cast<double>();
   };
   for (std::uint32_t i = 0; i < count; ++i) {
-    border.visit_within(border.positions()[i], kNearRadii * radius, [&](std::uint32_t j, double) {
-      if ((look(i) - look(j)).norm() < kSameLookRadii * radius) {
+    const double farthest = (2.0 * kLookRadii + kSameLookRadii) * radius;
+    border.visit_within(border.positions()[i], farthest, [&](std::uint32_t j, double squared) {
+      const bool same_edge =
+          squared <= kNearRadii * kNearRadii * radius * radius &&
+          static_cast<double>(border.normals()[i].dot(border.normals()[j])) > kSameWayCosine;
+      if (same_edge || (look(i) - look(j)).norm() < kSameLookRadii * radius) {
         const std::uint32_t a = find_root(parent, i);
         const std::uint32_t b = find_root(parent, j);
         parent[std::max(a, b)] = std::min(a, b);

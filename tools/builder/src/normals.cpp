@@ -47,9 +47,13 @@ struct Edge {
   float weight;  // 0: certain
   std::uint32_t from;
   std::uint32_t to;
-  bool opposite;  // the normals' signs disagree
+  bool opposite;   // the normals' signs disagree
+  bool uncertain;  // too little agreement to tell that
 
   bool operator<(const Edge& other) const {
+    if (uncertain != other.uncertain) {
+      return other.uncertain;
+    }
     if (weight != other.weight) {
       return weight < other.weight;
     }
@@ -60,7 +64,10 @@ struct Edge {
 constexpr std::size_t kGraphNeighbours = 10;
 // Steeper than an edge of 90 degrees, a chord leads through the body and not along its surface.
 constexpr float kSteepestChord = 0.75F;
-constexpr double kFarthestEdgeSpacings = 4.0;
+// Normals that agree less tell nothing of each other's sign: only a few stray points follow them.
+constexpr float kLeastAgreement = 0.7F;
+constexpr std::uint32_t kStrayPoints = 10;
+constexpr double kFarthestEdgeSpacings = 3.0;
 
 // Whether the normals of two points agree across a chord, and how certain that is.
 bool make_edge(const ZOrderedCloud& points, std::span<const Eigen::Vector3f> normals,
@@ -74,7 +81,8 @@ bool make_edge(const ZOrderedCloud& points, std::span<const Eigen::Vector3f> nor
   }
   const float agreement = normals[to].dot(normals[from] - 2.0F * rise_from * chord);
   const float steepness = 0.5F * std::abs(rise_from * rise_to);
-  edge = {1.0F - std::abs(agreement) + steepness, from, to, agreement < 0.0F};
+  edge = {1.0F - std::abs(agreement) + steepness, from, to, agreement < 0.0F,
+          std::abs(agreement) < kLeastAgreement};
   return true;
 }
 
@@ -118,7 +126,7 @@ std::vector<Edge> neighbour_graph(const ZOrderedCloud& points,
 class SignedSets {
  public:
   explicit SignedSets(const std::vector<bool>& fixed, std::size_t size)
-      : parent_(size), flipped_(size, 0), fixed_(size, 0) {
+      : parent_(size), members_(size, 1), flipped_(size, 0), fixed_(size, 0) {
     for (std::uint32_t i = 0; i < size; ++i) {
       parent_[i] = i;
       fixed_[i] = !fixed.empty() && fixed[i] ? 1 : 0;
@@ -148,11 +156,15 @@ class SignedSets {
     return place;
   }
 
-  // Joins two sets, unless the signs of both are fixed already.
+  // Joins two sets, unless the signs of both are fixed already, or both have a side of their own
+  // and the edge cannot tell how they relate.
   void join(const Edge& edge) {
     const Place a = find(edge.from);
     const Place b = find(edge.to);
     if (a.root == b.root || (fixed_[a.root] != 0 && fixed_[b.root] != 0)) {
+      return;
+    }
+    if (edge.uncertain && members_[a.root] > kStrayPoints && members_[b.root] > kStrayPoints) {
       return;
     }
     const bool flip = a.flipped ^ b.flipped ^ edge.opposite;
@@ -160,12 +172,14 @@ class SignedSets {
     const std::uint32_t root = a_leads ? a.root : b.root;
     const std::uint32_t joined = a_leads ? b.root : a.root;
     parent_[joined] = root;
+    members_[root] += members_[joined];
     flipped_[joined] = flip ? 1 : 0;
   }
   [[nodiscard]] bool is_fixed(std::uint32_t root) const { return fixed_[root] != 0; }
 
  private:
   std::vector<std::uint32_t> parent_;
+  std::vector<std::uint32_t> members_;  // of a root's set
   std::vector<std::uint8_t> flipped_;
   std::vector<std::uint8_t> fixed_;
 };

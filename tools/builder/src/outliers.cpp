@@ -67,7 +67,7 @@ Box plausible_box(std::span<const Eigen::Vector3d> positions, double margin) {
 }
 
 std::vector<std::uint32_t> points_in_company(const ZOrderedCloud& points, double spacing) {
-  const std::size_t few = std::max<std::size_t>(10, points.size() / 100);
+  const std::size_t few = std::max<std::size_t>(10, points.size() / 1000);
   std::vector<std::uint32_t> kept;
   for (int level = points.level_for_edge(kCellSpacings * spacing);; --level) {
     kept = in_company_at(points, level);

@@ -17,7 +17,7 @@ namespace tactree::builder {
 
 /// Indices (ascending) of the points that are not alone: at least 8 others (of fewer than 256
 /// points: one in 32) lie in the 27 cells around them, of edge 10 to 20 `spacing`. Where that would
-/// drop more than 1 % of the points (and more than 10), the scan is merely uneven: cells are
+/// drop more than 0.1 % of the points (and more than 10), the scan is merely uneven: cells are
 /// doubled until it does not.
 [[nodiscard]] std::vector<std::uint32_t> points_in_company(const ZOrderedCloud& points,
                                                            double spacing);

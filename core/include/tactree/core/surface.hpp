@@ -50,12 +50,14 @@ class CandidateSet {
 
 /// What the fitted sphere says at one position.
 struct SurfaceFit {
-  bool supported = false;  ///< points enough around; else all that follows is zero
+  bool supported = false;  ///< points enough around; else distance, normal, strength are zero
   float distance = 0.0F;   ///< m, signed, along the normals
   Vec3 normal{};           ///< unit length
   /// 1 where points lie all around, falling smoothly to 0 where the surface ends: the distance of
   /// the weighted centroid from the foot of the query, measured in support radii.
   float strength = 0.0F;
+  /// Share of the weight around that faces the reference.
+  float facing = 1.0F;
 };
 
 /// Slot of the candidate nearest to `x` within `radius`; kNoCandidate: none.
@@ -63,7 +65,10 @@ struct SurfaceFit {
 
 /// The fit at `x`, weights (1 - d^2/radius^2)^4, of the candidates whose normal has a positive
 /// component along `reference`: that keeps the two sides of a thin plate apart.
-/// Cost: one pass over the set, at most kMaxCandidates points, then about 60 operations.
+/// Where two faces meet in a sharp edge or corner each gets a fit of its own, and the surface is
+/// where they intersect: the edge stays sharp, and the faces beside it true.
+/// Cost: one pass over the set, two at a crease, at most kMaxCandidates points each, then about 60
+/// operations a fit.
 [[nodiscard]] SurfaceFit fit_surface(const CandidateSet& set, Vec3 x, float radius, Vec3 reference);
 
 /// A position brought onto the surface.

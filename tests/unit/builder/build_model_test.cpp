@@ -1,0 +1,226 @@
+#include "tactree/builder/build_model.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+
+#include "sha256.hpp"
+#include "shapes.hpp"
+#include "tactree/core/blob.hpp"
+
+namespace tactree::builder {
+namespace {
+
+Scan cloud_scan(Cloud cloud) {
+  Scan scan;
+  scan.positions = std::move(cloud.positions);
+  scan.normals = std::move(cloud.normals);
+  return scan;
+}
+
+Scan box_scan(const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
+  Mesh mesh = box_mesh(low, high);
+  Scan scan;
+  scan.positions = std::move(mesh.positions);
+  scan.triangles = std::move(mesh.triangles);
+  return scan;
+}
+
+BuildResult build(Scan scan, const BuildOptions& options = {}) {
+  std::vector<Scan> scans;
+  scans.push_back(std::move(scan));
+  Progress quiet;
+  return build_model(std::move(scans), options, quiet);
+}
+
+struct DecodedPoint {
+  Eigen::Vector3d position;
+  Eigen::Vector3d normal;
+};
+
+std::vector<DecodedPoint> decode(const BuildResult& result) {
+  core::BlobView view;
+  EXPECT_EQ(core::open_blob(result.blob.bytes, view), core::BlobStatus::kOk);
+  std::vector<DecodedPoint> points;
+  const auto wide = [](core::Vec3 v) {
+    return Eigen::Vector3d(static_cast<double>(v.x), static_cast<double>(v.y),
+                           static_cast<double>(v.z));
+  };
+  for (core::LeafCursor cursor(view); !cursor.done(); cursor.next()) {
+    const core::Leaf& leaf = cursor.leaf();
+    for (std::uint32_t i = 0; i < leaf.point_count; ++i) {
+      const core::SurfacePoint p = view.surface_point(leaf, leaf.first_point + i);
+      points.push_back({wide(p.position), wide(p.normal)});
+    }
+  }
+  return points;
+}
+
+TEST(BuildModel, PointsOfASphereLieOnItWithinTwoPercentOfTheSpacing) {
+  const double radius = 0.03;
+  for (const bool with_normals : {true, false}) {
+    Cloud cloud = random_sphere(100000, radius);
+    if (!with_normals) {
+      cloud.normals.clear();
+    }
+    BuildOptions options;
+    options.spacing_m = 0.001;
+    const BuildResult result = build(cloud_scan(std::move(cloud)), options);
+    const std::vector<DecodedPoint> points = decode(result);
+    EXPECT_EQ(points.size(), result.report.output_points);
+    EXPECT_NEAR(static_cast<double>(points.size()), 0.83 * 11310.0, 300.0);  // of 9 a square
+    for (const DecodedPoint& p : points) {
+      ASSERT_LT(std::abs(p.position.norm() - radius), 0.02 * 0.001);
+      ASSERT_GT(p.normal.dot(p.position.normalized()), 0.998);
+    }
+    EXPECT_TRUE(result.report.openings.empty());
+    EXPECT_LT(result.report.largest_gap_m, 0.0025);
+  }
+}
+
+TEST(BuildModel, PointsOfABoxMeshLieOnItsFaces) {
+  const Eigen::Vector3d low(-0.03, -0.02, -0.01);
+  const Eigen::Vector3d high(0.03, 0.02, 0.01);
+  BuildOptions options;
+  options.spacing_m = 0.001;
+  const BuildResult result = build(box_scan(low, high), options);
+  const Box box(low, high);
+  std::size_t off_their_face = 0;
+  for (const DecodedPoint& p : decode(result)) {
+    ASSERT_LT(std::abs(box.exteriorDistance(p.position)), 0.02 * 0.001);
+    const Eigen::Vector3d face = box_face_at(p.position, low, high, 0.02 * 0.001);
+    off_their_face += face.isZero() || p.normal.dot(face) < 0.9999 ? 1U : 0U;
+  }
+  EXPECT_LT(off_their_face, 30U);  // within 2 % of the spacing of an edge
+}
+
+TEST(BuildModel, IsTheSameForAnyNumberOfThreads) {
+  for (const bool mesh : {false, true}) {
+    BuildOptions options;
+    std::vector<std::byte> bytes[3];
+    for (unsigned threads = 1; threads <= 3; ++threads) {
+      options.threads = threads;
+      options.name = "same";
+      bytes[threads - 1] = build(mesh ? box_scan({0, 0, 0}, {0.05, 0.03, 0.02})
+                                      : cloud_scan(without_normals(random_sphere(40000, 0.03))),
+                                 options)
+                               .blob.bytes;
+    }
+    EXPECT_EQ(bytes[0], bytes[1]);
+    EXPECT_EQ(bytes[0], bytes[2]);
+  }
+}
+
+TEST(BuildModel, NoBallHoldsMoreThanABoardTakes) {
+  BuildOptions options;
+  options.resample = false;  // 40 times as many as the spacing is for
+  Cloud cloud = even_sphere(4000, 0.03);
+  const Cloud dense = random_sphere(400000, 0.03);
+  for (std::size_t i = 0; i < dense.size(); ++i) {
+    if (dense.positions[i].z() > 0.025) {
+      cloud.positions.push_back(dense.positions[i]);
+      cloud.normals.push_back(dense.normals[i]);
+    }
+  }
+  options.spacing_m = 0.002;
+  const BuildResult result = build(cloud_scan(std::move(cloud)), options);
+  EXPECT_GT(result.report.thinned, 0U);
+  core::BlobView view;
+  ASSERT_EQ(core::open_blob(result.blob.bytes, view), core::BlobStatus::kOk);
+  EXPECT_LE(view.header().points_per_ball_max, 128U);
+  EXPECT_GT(view.header().points_per_ball_max, 64U);
+}
+
+TEST(BuildModel, BuildsTinyInputs) {
+  const std::vector<Eigen::Vector3d> corners = box_mesh({0, 0, 0}, {0.1, 0.1, 0.1}).positions;
+  for (std::size_t n = 1; n <= 8; ++n) {
+    Scan scan;
+    scan.positions.assign(corners.begin(), corners.begin() + static_cast<std::ptrdiff_t>(n));
+    const BuildResult result = build(std::move(scan));
+    EXPECT_EQ(result.report.output_points, n);
+    EXPECT_FALSE(result.report.warnings.empty());
+  }
+}
+
+TEST(BuildModel, TellsWhereItCameFrom) {
+  Cloud cloud = random_sphere(5000, 40.0);
+  for (Eigen::Vector3d& p : cloud.positions) {
+    p += Eigen::Vector3d(1000.0, 2000.0, 3000.0);
+  }
+  BuildOptions options;
+  options.unit_m = 0.001;
+  options.name = "ball";
+  const BuildResult result = build(cloud_scan(std::move(cloud)), options);
+  EXPECT_NEAR(result.report.source_origin.z(), 3000.0, 1.0);
+  EXPECT_EQ(result.report.source_scale, 0.001);
+  EXPECT_LT(result.report.bounds.center().norm(), 1e-4);
+  core::BlobView view;
+  ASSERT_EQ(core::open_blob(result.blob.bytes, view), core::BlobStatus::kOk);
+  EXPECT_STREQ(view.header().name, "ball");
+}
+
+TEST(BuildModel, RefusesNothingness) {
+  EXPECT_THROW((void)build(Scan()), BuildError);
+  Progress quiet;
+  EXPECT_THROW((void)build_model(std::span<const std::filesystem::path>(), {}, quiet), BuildError);
+}
+
+class BuildFromFiles : public testing::Test {
+ protected:
+  BuildFromFiles()
+      : folder_(std::filesystem::temp_directory_path() /
+                ("tactree_build_test_" + std::to_string(::getpid()))) {
+    std::filesystem::create_directory(folder_);
+  }
+  ~BuildFromFiles() override { std::filesystem::remove_all(folder_); }
+
+  std::filesystem::path write(const std::string& name, const Cloud& cloud) {
+    std::ofstream out(folder_ / name);
+    out.precision(17);
+    for (const Eigen::Vector3d& p : cloud.positions) {
+      out << p.x() << ' ' << p.y() << ' ' << p.z() << '\n';
+    }
+    return folder_ / name;
+  }
+
+  std::filesystem::path folder_;
+};
+
+TEST_F(BuildFromFiles, JoinsThemAndDigestsTheirBytes) {
+  const std::vector<std::filesystem::path> files = {write("one.xyz", even_sphere(2000, 0.03)),
+                                                    write("two.xyz", even_sphere(3000, 0.05))};
+  Progress quiet;
+  const BuildResult result = build_model(files, {}, quiet);
+  EXPECT_EQ(result.report.input_points, 5000U);
+  ASSERT_EQ(result.report.inputs.size(), 2U);
+  EXPECT_EQ(result.report.inputs[1].points, 3000U);
+  core::BlobView view;
+  ASSERT_EQ(core::open_blob(result.blob.bytes, view), core::BlobStatus::kOk);
+  EXPECT_STREQ(view.header().name, "one");
+  Sha256 sha;
+  for (const std::filesystem::path& file : files) {
+    std::ifstream in(file, std::ios::binary);
+    const std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+    sha.update(std::as_bytes(std::span(text)));
+  }
+  const Sha256Digest digest = sha.digest();
+  EXPECT_TRUE(std::equal(digest.begin(), digest.end(), view.header().source_digest));
+}
+
+TEST_F(BuildFromFiles, NamesTheFileThatCannotBeBuilt) {
+  const std::vector<std::filesystem::path> files = {write("ball.xyz", even_sphere(2000, 0.03))};
+  BuildOptions options;
+  options.crop = Eigen::AlignedBox3d(Eigen::Vector3d(1, 1, 1), Eigen::Vector3d(2, 2, 2));
+  Progress quiet;
+  try {
+    (void)build_model(files, options, quiet);
+    FAIL() << "a cropped-away scan was built";
+  } catch (const BuildError& error) {
+    EXPECT_EQ(std::string(error.what()).rfind(files[0].string() + ": ", 0), 0U) << error.what();
+    EXPECT_NE(std::string(error.what()).find("2000 outside_crop"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace tactree::builder

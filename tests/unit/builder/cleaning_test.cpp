@@ -1,0 +1,230 @@
+#include "cleaning.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "shapes.hpp"
+
+namespace tactree::builder {
+namespace {
+
+Scan to_scan(Cloud cloud) {
+  Scan scan;
+  scan.positions = std::move(cloud.positions);
+  scan.normals = std::move(cloud.normals);
+  return scan;
+}
+
+Scan to_scan(Mesh mesh) {
+  Scan scan;
+  scan.positions = std::move(mesh.positions);
+  scan.triangles = std::move(mesh.triangles);
+  return scan;
+}
+
+struct Cleaned {
+  CleanInput input;
+  BuildReport report;
+};
+
+Cleaned clean_one(Scan scan, const BuildOptions& options = {}) {
+  Cleaned cleaned;
+  std::vector<Scan> scans;
+  scans.push_back(std::move(scan));
+  cleaned.input = clean(std::move(scans), options, cleaned.report);
+  return cleaned;
+}
+
+// model = source_scale * turn * (source - source_origin), for whatever the options do.
+void expect_recorded(const BuildOptions& options, const Eigen::Vector3d& place) {
+  Cloud cloud = without_normals(even_sphere(500, 2.0));
+  for (Eigen::Vector3d& p : cloud.positions) {
+    p += place;
+  }
+  const std::vector<Eigen::Vector3d> source = cloud.positions;
+  const Cleaned cleaned = clean_one(to_scan(std::move(cloud)), options);
+  const Frame& frame = cleaned.input.frame;
+  ASSERT_EQ(cleaned.input.points.size(), source.size());
+  for (const Eigen::Vector3d& p : source) {
+    const Eigen::Vector3d expected =
+        cleaned.report.source_scale * (frame.turn * (p - cleaned.report.source_origin));
+    double nearest = 1e300;
+    for (const Eigen::Vector3d& q : cleaned.input.points.positions()) {
+      nearest = std::min(nearest, (q - expected).norm());
+    }
+    ASSERT_LT(nearest, 1e-12 * (1.0 + place.norm()));
+  }
+}
+
+TEST(Frame, IsRecordedWhateverTheOptions) {
+  BuildOptions options;
+  expect_recorded(options, {0, 0, 0});
+  expect_recorded(options, {500000.0, 5600000.0, 300.0});
+  options.unit_m = 0.001;
+  options.scale = 3.0;
+  expect_recorded(options, {1.0, 2.0, 3.0});
+  options.centre = true;
+  options.up = UpAxis::kY;
+  expect_recorded(options, {1.0, 2.0, 3.0});
+  options.scale = 1.0;
+  options.fit_m = 0.2;
+  options.up = UpAxis::kX;
+  expect_recorded(options, {100.0, 2.0, 3.0});
+}
+
+TEST(Frame, OfAScanNearItsOriginIsKept) {
+  const Cleaned cleaned = clean_one(to_scan(random_sphere(1000, 0.05)));
+  EXPECT_EQ(cleaned.report.source_origin, Eigen::Vector3d(0, 0, 0));
+  EXPECT_EQ(cleaned.report.source_scale, 1.0);
+  EXPECT_TRUE(cleaned.report.notes.empty());
+}
+
+TEST(Frame, OfAFarScanIsShiftedAndSaid) {
+  Cloud cloud = plane_grid(30, 1e-3);
+  for (Eigen::Vector3d& p : cloud.positions) {
+    p += Eigen::Vector3d(665187.522, 5648349.895, 241.75);
+  }
+  const Cleaned cleaned = clean_one(to_scan(std::move(cloud)));
+  EXPECT_EQ(cleaned.report.notes.size(), 1U);
+  EXPECT_LT(cleaned.input.bounds.center().norm(), 1e-8);
+  EXPECT_NEAR(cleaned.report.source_origin.y(), 5648349.895 + 0.0145, 1e-6);
+  EXPECT_EQ(cleaned.input.points.size(), 900U);
+}
+
+TEST(Frame, FitMakesTheLongestEdgeThatAndCentres) {
+  BuildOptions options;
+  options.fit_m = 0.25;
+  const Cleaned cleaned =
+      clean_one(to_scan(box_mesh({10.0, 20.0, 30.0}, {14.0, 22.0, 31.0})), options);
+  EXPECT_NEAR(cleaned.input.bounds.sizes().x(), 0.25, 1e-12);
+  EXPECT_NEAR(cleaned.input.bounds.sizes().y(), 0.125, 1e-12);
+  EXPECT_LT(cleaned.input.bounds.center().norm(), 1e-12);
+  EXPECT_NEAR(cleaned.report.source_scale, 0.0625, 1e-12);
+}
+
+TEST(Frame, TurnsKeepHandednessAndTurnNormals) {
+  for (const UpAxis up : {UpAxis::kX, UpAxis::kY, UpAxis::kZ}) {
+    BuildOptions options;
+    options.up = up;
+    const Cleaned cleaned = clean_one(to_scan(even_sphere(300, 1.0)), options);
+    const Eigen::Vector3d source_up = Eigen::Vector3d::Unit(static_cast<int>(up));
+    EXPECT_NEAR(cleaned.input.frame.turn.determinant(), 1.0, 1e-15);
+    EXPECT_EQ(Eigen::Vector3d(cleaned.input.frame.turn * source_up), Eigen::Vector3d(0, 0, 1));
+    for (std::size_t i = 0; i < cleaned.input.points.size(); ++i) {
+      ASSERT_GT(
+          cleaned.input.points.normals()[i].cast<double>().dot(cleaned.input.points.positions()[i]),
+          0.999);
+    }
+  }
+}
+
+TEST(Cleaning, CropsCloudsAndMeshesInTheSourcesUnits) {
+  BuildOptions options;
+  options.unit_m = 0.001;
+  options.up = UpAxis::kY;
+  options.crop = Eigen::AlignedBox3d(Eigen::Vector3d(-20, -20, 0), Eigen::Vector3d(20, 20, 20));
+  const Cleaned cloud = clean_one(to_scan(random_sphere(2000, 10.0)), options);
+  EXPECT_EQ(cloud.report.kept_points + cloud.report.dropped.at("outside_crop"), 2000U);
+  EXPECT_NEAR(static_cast<double>(cloud.report.kept_points), 1000.0, 100.0);
+  for (const Eigen::Vector3d& p : cloud.input.points.positions()) {
+    ASSERT_LE(p.y(), 0.0);  // the source's +z is the model's -y
+  }
+  const Cleaned mesh = clean_one(to_scan(box_mesh({-30, -30, -30}, {10, 10, 10})), options);
+  EXPECT_NEAR(mesh.input.bounds.sizes().y(), 0.010, 1e-12);
+  EXPECT_NEAR(mesh.input.bounds.sizes().x(), 0.030, 1e-12);
+  options.crop = Eigen::AlignedBox3d(Eigen::Vector3d(90, 90, 90), Eigen::Vector3d(99, 99, 99));
+  EXPECT_THROW((void)clean_one(to_scan(random_sphere(2000, 10.0)), options), std::runtime_error);
+}
+
+TEST(Cleaning, CountsEveryPointItDrops) {
+  Cloud cloud = even_sphere(3000, 0.1);
+  cloud.positions[7].x() = std::numeric_limits<double>::quiet_NaN();
+  cloud.positions[8].z() = std::numeric_limits<double>::infinity();
+  cloud.positions.push_back(cloud.positions[20]);
+  cloud.positions.emplace_back(3.0e4, -1.0e5, 0.0);
+  cloud.positions.emplace_back(0.0, 0.5, 0.0);
+  cloud.normals.resize(cloud.size(), Eigen::Vector3f::UnitX());
+  Scan scan = to_scan(std::move(cloud));
+  scan.dropped["non_finite"] = 5;  // by the reader
+  scan.dropped["bad_row"] = 2;
+  const Cleaned cleaned = clean_one(std::move(scan));
+  const std::map<std::string, std::uint64_t> expected = {
+      {"non_finite", 7}, {"bad_row", 2}, {"duplicate", 1}, {"outlier", 2}};
+  EXPECT_EQ(cleaned.report.dropped, expected);
+  EXPECT_EQ(cleaned.report.input_points, 3010U);
+  EXPECT_EQ(cleaned.report.kept_points, 2998U);
+  EXPECT_NEAR(cleaned.input.bounds.sizes().maxCoeff(), 0.2, 0.001);
+}
+
+TEST(Cleaning, StraysAtAnyDistanceDoNotChangeTheEstimates) {
+  const Cleaned clean_cloud = clean_one(to_scan(random_sphere(20000, 0.1)));
+  for (const double far : {0.4, 1.0, 30.0, 1e5}) {
+    Cloud strayed = random_sphere(20000, 0.1);
+    for (int k = 0; k < 10; ++k) {
+      strayed.positions.emplace_back(far * (1.0 + 0.3 * k), far * (k % 3 - 1.0), -far * k);
+      strayed.normals.push_back(Eigen::Vector3f::UnitX());
+    }
+    const Cleaned cleaned = clean_one(to_scan(std::move(strayed)));
+    EXPECT_EQ(cleaned.report.dropped.at("outlier"), 10U) << far;
+    EXPECT_NEAR(cleaned.input.points_spacing, clean_cloud.input.points_spacing,
+                0.01 * clean_cloud.input.points_spacing);
+    EXPECT_NEAR(cleaned.input.bounds.sizes().x(), clean_cloud.input.bounds.sizes().x(), 1e-12);
+  }
+}
+
+TEST(Cleaning, KeepsOutliersWhenTold) {
+  Cloud cloud = random_sphere(2000, 0.1);
+  cloud.positions.emplace_back(50.0, 0.0, 0.0);
+  cloud.normals.push_back(Eigen::Vector3f::UnitX());
+  BuildOptions options;
+  options.keep_outliers = true;
+  EXPECT_EQ(clean_one(to_scan(std::move(cloud)), options).report.kept_points, 2001U);
+}
+
+TEST(Cleaning, NormalisesNormalsAndForgetsUselessOnes) {
+  Cloud cloud = even_sphere(1000, 0.1);
+  cloud.normals[1] *= 7.0F;
+  cloud.normals[2].setZero();
+  cloud.normals[3].x() = std::numeric_limits<float>::quiet_NaN();
+  const Cleaned cleaned = clean_one(to_scan(std::move(cloud)));
+  std::size_t unknown = 0;
+  for (const Eigen::Vector3f& normal : cleaned.input.points.normals()) {
+    unknown += normal.isZero() ? 1U : 0U;
+    ASSERT_TRUE(normal.isZero() || std::abs(normal.norm() - 1.0F) < 1e-6F);
+  }
+  EXPECT_EQ(unknown, 2U);
+}
+
+TEST(Cleaning, DropsUnusedCornersAndStrayFacesOfAMesh) {
+  Mesh mesh = box_mesh({-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1});
+  mesh.positions.emplace_back(1.0, 1.0, 1.0);    // no face names it
+  mesh.positions.emplace_back(1.0e5, 0.0, 0.0);  // a spike
+  mesh.triangles.push_back({0, 1, 9});
+  const Cleaned cleaned = clean_one(to_scan(std::move(mesh)));
+  EXPECT_EQ(cleaned.report.dropped.at("not_in_a_face"), 1U);
+  EXPECT_EQ(cleaned.report.dropped.at("outlier"), 1U);
+  EXPECT_EQ(cleaned.report.dropped.at("outlier_face"), 1U);
+  EXPECT_EQ(cleaned.report.kept_points, 8U);
+  EXPECT_NEAR(cleaned.input.bounds.sizes().x(), 0.2, 1e-12);
+}
+
+TEST(Cleaning, JoinsScansWithAndWithoutNormals) {
+  std::vector<Scan> scans;
+  scans.push_back(to_scan(without_normals(even_sphere(500, 0.1))));
+  scans.push_back(to_scan(even_sphere(700, 0.11)));
+  scans.push_back(to_scan(box_mesh({-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2})));
+  BuildReport report;
+  const CleanInput input = clean(std::move(scans), {}, report);
+  EXPECT_EQ(input.points.size(), 1200U);
+  EXPECT_EQ(input.mesh.triangles.size(), 12U);
+  EXPECT_NEAR(input.bounds.sizes().x(), 0.4, 1e-12);
+  std::size_t known = 0;
+  for (const Eigen::Vector3f& normal : input.points.normals()) {
+    known += normal.isZero() ? 0U : 1U;
+  }
+  EXPECT_EQ(known, 700U);
+}
+
+}  // namespace
+}  // namespace tactree::builder

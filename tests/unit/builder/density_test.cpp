@@ -1,0 +1,125 @@
+#include "density.hpp"
+
+#include <gtest/gtest.h>
+
+#include "shapes.hpp"
+
+namespace tactree::builder {
+namespace {
+
+struct Chosen {
+  DensityChoice choice;
+  BuildReport report;
+};
+
+Scan cloud_scan(Cloud cloud) {
+  Scan scan;
+  scan.positions = std::move(cloud.positions);
+  scan.normals = std::move(cloud.normals);
+  return scan;
+}
+
+Scan box_scan() {
+  Mesh mesh = box_mesh({-0.03, -0.02, -0.01}, {0.03, 0.02, 0.01});
+  Scan scan;
+  scan.positions = std::move(mesh.positions);
+  scan.triangles = std::move(mesh.triangles);
+  return scan;
+}
+
+Chosen choose(Scan scan, const BuildOptions& options) {
+  Chosen chosen;
+  std::vector<Scan> scans;
+  scans.push_back(std::move(scan));
+  CleanInput input = clean(std::move(scans), options, chosen.report);
+  Progress quiet;
+  chosen.choice = choose_density(input, options, quiet, chosen.report);
+  return chosen;
+}
+
+TEST(Density, AGridOfTheSpacingAskedForIsKeptWhole) {
+  for (const core::Profile profile : {core::Profile::kSurface, core::Profile::kPaper}) {
+    BuildOptions options;
+    options.profile = profile;
+    options.spacing_m = 0.0025;
+    const Chosen chosen = choose(cloud_scan(plane_grid(100, 0.0025)), options);
+    EXPECT_EQ(chosen.choice.points.size(), 10000U);
+    EXPECT_EQ(chosen.choice.spacing_m, 0.0025);
+    EXPECT_TRUE(chosen.report.warnings.empty());
+  }
+}
+
+TEST(Density, ACloudIsNotMadeFinerThanItIs) {
+  BuildOptions options;
+  options.spacing_m = 0.0005;
+  const Chosen chosen = choose(cloud_scan(plane_grid(100, 0.0025)), options);
+  EXPECT_NEAR(chosen.choice.spacing_m, 0.0025, 0.1 * 0.0025);
+  ASSERT_EQ(chosen.report.warnings.size(), 1U);
+  EXPECT_NE(chosen.report.warnings[0].find("0.5 mm"), std::string::npos);
+}
+
+TEST(Density, ADenseCloudGetsTheSpacingAskedFor) {
+  BuildOptions options;
+  options.spacing_m = 0.002;
+  const Chosen chosen = choose(cloud_scan(random_sphere(200000, 0.03)), options);
+  EXPECT_EQ(chosen.choice.spacing_m, 0.002);
+  const double per_square = static_cast<double>(chosen.choice.points.size()) * 0.002 * 0.002 /
+                            (4.0 * std::numbers::pi * 0.03 * 0.03);
+  EXPECT_NEAR(per_square, 1.0, 0.06);
+}
+
+TEST(Density, WithoutResamplingEveryPointStays) {
+  BuildOptions options;
+  options.resample = false;
+  options.profile = core::Profile::kPaper;
+  EXPECT_EQ(choose(cloud_scan(random_sphere(5000, 0.03)), options).choice.points.size(), 5000U);
+  EXPECT_THROW((void)choose(box_scan(), options), std::runtime_error);
+}
+
+TEST(Density, AMeshGetsATwoHundredthOfItsSize) {
+  const Chosen chosen = choose(box_scan(), {});
+  EXPECT_NEAR(chosen.choice.spacing_m, 0.06 / 200.0, 1e-12);
+  EXPECT_GT(chosen.report.sampled_points, 6U * chosen.choice.points.size());
+}
+
+TEST(Density, ABudgetIsUsedAndNotExceeded) {
+  for (const core::Profile profile : {core::Profile::kSurface, core::Profile::kPaper}) {
+    for (const std::uint64_t budget : {20000U, 200000U}) {
+      BuildOptions options;
+      options.profile = profile;
+      options.flash_budget_bytes = budget;
+      for (const bool mesh : {true, false}) {
+        const Chosen chosen =
+            choose(mesh ? box_scan() : cloud_scan(random_sphere(300000, 0.03)), options);
+        Model model;
+        model.positions = chosen.choice.points.positions();
+        model.normals.assign(model.positions.size(), Eigen::Vector3f::UnitX());
+        model.spacing_m = chosen.choice.spacing_m;
+        model.support_radius_m = kSupportSpacings * model.spacing_m;
+        model.reach_m = kReachSpacings * model.spacing_m;
+        model.profile = profile;
+        const std::size_t bytes = write_blob(model).bytes.size();
+        EXPECT_LE(bytes, budget);
+        EXPECT_GT(static_cast<double>(bytes), 0.9 * static_cast<double>(budget));
+      }
+    }
+  }
+}
+
+TEST(Density, ABudgetBeyondTheScanKeepsTheScan) {
+  BuildOptions options;
+  options.flash_budget_bytes = 10000000;
+  const Chosen chosen = choose(cloud_scan(plane_grid(100, 0.0025)), options);
+  EXPECT_EQ(chosen.choice.points.size(), 10000U);
+  ASSERT_EQ(chosen.report.notes.size(), 1U);
+  EXPECT_NE(chosen.report.notes[0].find("no finer detail"), std::string::npos);
+}
+
+TEST(Density, ABudgetSmallerThanAHeaderIsRefused) {
+  BuildOptions options;
+  options.flash_budget_bytes = 300;
+  EXPECT_THROW((void)choose(box_scan(), options), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace tactree::builder

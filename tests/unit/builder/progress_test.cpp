@@ -1,0 +1,54 @@
+#include "tactree/builder/progress.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+namespace tactree::builder {
+namespace {
+
+std::string told(ProgressStyle style) {
+  std::FILE* file = std::tmpfile();
+  {
+    const auto progress = make_progress(style, file);
+    progress->begin("reading \"a\\b\"");
+    for (int i = 0; i <= 1000; ++i) {
+      progress->advance(0.001 * i);
+    }
+    progress->end();
+  }
+  std::rewind(file);
+  std::string text;
+  for (int c = std::fgetc(file); c != EOF; c = std::fgetc(file)) {
+    text += static_cast<char>(c);
+  }
+  std::fclose(file);
+  return text;
+}
+
+std::size_t count_lines(const std::string& text) {
+  return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+}
+
+TEST(Progress, KeepsQuietInAPipeAndWhenOff) {
+  EXPECT_EQ(told(ProgressStyle::kAuto), "");
+  EXPECT_EQ(told(ProgressStyle::kOff), "");
+}
+
+TEST(Progress, IsALineAStepWhenPlain) {
+  const std::string text = told(ProgressStyle::kPlain);
+  EXPECT_EQ(count_lines(text), 1U);
+  EXPECT_NE(text.find("reading \"a\\b\""), std::string::npos);
+}
+
+TEST(Progress, IsAFewObjectsALineAsJson) {
+  const std::string text = told(ProgressStyle::kJson);
+  EXPECT_GT(count_lines(text), 10U);
+  EXPECT_LT(count_lines(text), 30U);
+  EXPECT_EQ(text.rfind("{\"step\": \"reading \\\"a\\\\b\\\"\", \"fraction\": 0.00", 0), 0U);
+  EXPECT_NE(text.find("\"fraction\": 1.00"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace tactree::builder

@@ -1,0 +1,105 @@
+#include "z_order.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "shapes.hpp"
+
+namespace tactree::builder {
+namespace {
+
+TEST(ZOrder, CellsOfEveryLevelTileThePoints) {
+  const ZOrderedCloud points(random_sphere(5000, 0.1));
+  const std::vector<std::size_t> counts = points.count_cells();
+  for (int level = 0; level <= 12; ++level) {
+    std::uint32_t next = 0;
+    std::set<std::tuple<int, int, int>> seen;
+    for (const CellRange& range : points.cells(level)) {
+      ASSERT_EQ(range.first, next);
+      next = range.last;
+      const Eigen::Vector3i cell = points.cell_of(range.first, level);
+      ASSERT_TRUE(seen.emplace(cell.x(), cell.y(), cell.z()).second);
+      const CellRange found = points.find(cell, level);
+      ASSERT_EQ(found.first, range.first);
+      ASSERT_EQ(found.last, range.last);
+      const Box box(points.cell_corner(cell, level),
+                    (points.cell_corner(cell, level).array() + points.cell_edge(level)).matrix());
+      ASSERT_LT(box.exteriorDistance(points.positions()[range.first]), 1e-12);
+    }
+    EXPECT_EQ(next, points.size());
+    EXPECT_EQ(counts[static_cast<std::size_t>(level)], seen.size());
+  }
+}
+
+TEST(ZOrder, VisitsExactlyThePointsWithin) {
+  const ZOrderedCloud points(random_sphere(3000, 1.0));
+  for (std::uint64_t q = 0; q < 200; ++q) {
+    const Eigen::Vector3d centre(3.0 * unit_random(3 * q) - 1.5, 3.0 * unit_random(3 * q + 1) - 1.5,
+                                 3.0 * unit_random(3 * q + 2) - 1.5);
+    const double radius = std::pow(10.0, 2.5 * unit_random(q + 999) - 2.0);
+    std::multiset<std::uint32_t> visited;
+    points.visit_within(centre, radius, [&](std::uint32_t i, double) { visited.insert(i); });
+    std::multiset<std::uint32_t> expected;
+    for (std::uint32_t i = 0; i < points.size(); ++i) {
+      if ((points.positions()[i] - centre).norm() <= radius) {
+        expected.insert(i);
+      }
+    }
+    ASSERT_EQ(visited, expected) << "query " << q;
+  }
+}
+
+TEST(ZOrder, FindsTheNearestWhateverTheGuess) {
+  const ZOrderedCloud points(random_sphere(2000, 1.0));
+  std::vector<Neighbour> all;
+  std::vector<Neighbour> found;
+  for (std::uint64_t q = 0; q < 60; ++q) {
+    const Eigen::Vector3d centre(4.0 * unit_random(3 * q) - 2.0, unit_random(3 * q + 1),
+                                 unit_random(3 * q + 2));
+    all.clear();
+    for (std::uint32_t i = 0; i < points.size(); ++i) {
+      all.push_back({(points.positions()[i] - centre).squaredNorm(), i});
+    }
+    std::sort(all.begin(), all.end());
+    for (const double guess : {0.0, 1e-9, 0.1, 1e9}) {
+      points.find_nearest(centre, 17, guess, found);
+      ASSERT_EQ(found.size(), 17U);
+      for (std::size_t k = 0; k < found.size(); ++k) {
+        ASSERT_EQ(found[k].index, all[k].index) << "guess " << guess;
+      }
+    }
+  }
+  points.find_nearest(Eigen::Vector3d::Zero(), 5000, 0.1, found);
+  EXPECT_EQ(found.size(), points.size());
+}
+
+TEST(ZOrder, DropsDuplicatesAndKeepsTheKnownNormal) {
+  Cloud cloud = random_sphere(500, 1.0);
+  const Cloud original = cloud;
+  for (std::size_t i = 0; i < 100; ++i) {
+    cloud.positions.push_back(cloud.positions[i]);
+    cloud.normals.push_back(cloud.normals[i]);
+    cloud.normals[i].setZero();
+  }
+  ZOrderedCloud points(std::move(cloud));
+  EXPECT_EQ(drop_duplicates(points), 100U);
+  EXPECT_EQ(points.size(), original.size());
+  for (const Eigen::Vector3f& normal : points.normals()) {
+    EXPECT_FALSE(normal.isZero());
+  }
+  EXPECT_EQ(drop_duplicates(points), 0U);
+}
+
+TEST(ZOrder, StandsCloudsWithoutExtentOrPoints) {
+  const ZOrderedCloud none;
+  EXPECT_TRUE(none.cells(3).empty());
+  Cloud one;
+  one.positions.assign(5, Eigen::Vector3d(1.0, 2.0, 3.0));
+  ZOrderedCloud points(std::move(one));
+  EXPECT_EQ(points.cells(21).size(), 1U);
+  EXPECT_EQ(drop_duplicates(points), 4U);
+}
+
+}  // namespace
+}  // namespace tactree::builder
