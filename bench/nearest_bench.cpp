@@ -34,7 +34,7 @@ constexpr std::size_t kPathProbes = 6820;
 constexpr std::size_t kRandomProbes = 100000;
 constexpr int kPathPasses = 15;
 constexpr int kRandomPasses = 5;
-constexpr std::size_t kCountEvery = 4;  // of the path, for instructions
+constexpr std::size_t kCountEvery = 31;  // of the path, for instructions
 
 struct Options {
   double spacing = 0.0025;
