@@ -141,7 +141,7 @@ class BlobValidator {
     const float reach_max = h.step_m * static_cast<float>(kLeafUnits / 2 - 4);
     if (!in_range(h.reach_m, 0.0F, reach_max)) return false;
     return !is_surface() || (h.support_radius_m > 0.0F && h.support_radius_m <= h.reach_m &&
-                        0.5F * h.aabb_edge_m <= h.reach_m);
+                             0.5F * h.aabb_edge_m <= h.reach_m);
   }
 
   bool bounds_are_sane() const {
@@ -177,7 +177,8 @@ class BlobValidator {
     const std::uint64_t neighbour_bytes = h.neighbours.bytes == 0 ? 0 : 24ULL * h.leaf_count;
     const std::uint64_t index_bytes = h.material_count > 1 ? h.point_count : 0;
     const std::uint64_t node_bytes = is_surface() ? sizeof(std::uint32_t) : sizeof(BlobNode);
-    const std::uint64_t directory_bytes = h.directory_level == 0 ? 0 : 4ULL << 3U * h.directory_level;
+    const std::uint64_t directory_bytes =
+        h.directory_level == 0 ? 0 : 4ULL << 3U * h.directory_level;
     const std::uint64_t leaf_groups = (h.leaf_count >> h.leaf_group_shift) + 1ULL;
     return take(h.nodes, node_bytes * h.node_count) && take(h.directory, directory_bytes) &&
            take(h.leaf_bases, 4ULL * leaf_groups) &&

@@ -9,18 +9,21 @@ NearLeaf near_leaf(const BlobView& view, const Leaf& leaf, Vec3 place) {
   const auto local = [&](float v, std::int32_t low) {
     return v - step * static_cast<float>(low + half_site);
   };
-  return {leaf.number, leaf.first_point, leaf.first_point + leaf.point_count, 0,
+  return {leaf.number,
+          leaf.first_point,
+          leaf.first_point + leaf.point_count,
+          0,
           step * static_cast<float>(2 * half_site),
           {local(place.x, leaf.min.x), local(place.y, leaf.min.y), local(place.z, leaf.min.z)}};
 }
 
 CornerLeaves::CornerLeaves(const BlobView& view, Vec3 centre, float r)
     : view_(view), centre_(centre), below_(view.depth() - view.directory_level()) {
-  if (view.empty() || !(r >= 0.0F && r <= view.reach_m()) || !set_axes(centre, r)) {
-    corner_ = 0;
-    axes_left_ = 0;
-  }
+  is_valid_ = !view.empty() && r >= 0.0F && r <= view.reach_m() && set_axes(centre, r);
 }
+
+// What brings the bits of each coordinate to their place, exactly: they are less than 2^10.
+constexpr float kPlaceOfBits[4] = {1.0F, 1024.0F, 1048576.0F, 0.0F};
 
 // A leaf is wider than the cube, so the cube reaches beyond one face of the centre's cell at most.
 // The cell's number is found by a rounded product, which is mended by comparing with the faces:
@@ -30,7 +33,8 @@ bool CornerLeaves::set_axes(Vec3 centre, float r) {
   const float edge = view_.leaf_edge_m();
   const float step = view_.step_m();
   const auto last_cell = static_cast<std::int32_t>((1U << view_.depth()) - 1U);
-  const float place[4] = {centre.x, centre.y, centre.z, 0.5F * edge};  // the fourth: within reach of none
+  const float place[4] = {centre.x, centre.y, centre.z, 0.5F * edge};  // the fourth reaches none
+  const auto low_bits = static_cast<std::int32_t>((1U << below_) - 1U);
   std::uint32_t outside_axes = 0;
   for (std::uint32_t axis = 0; axis < 3; axis += kLanes) {  // bound: 3
     const auto at = load<Floats>(place + axis);
@@ -62,14 +66,22 @@ bool CornerLeaves::set_axes(Vec3 centre, float r) {
     const auto outside = (own < 0) | (own > last_cell);
     axes_left_ |= mask_bits(reaches) << axis;
     outside_axes |= mask_bits(outside) << axis;
+    const Floats place_of_bits = load<Floats>(kPlaceOfBits + axis);
+    axes_across_ |= mask_bits(((own ^ other) & ~low_bits) != 0) << axis;
     store(own, cell_[0] + axis);
     store(other, cell_[1] + axis);
+    store(to_integers(to_floats(own & low_bits) * place_of_bits), packed_[0] + axis);
+    store(to_integers(to_floats(other & low_bits) * place_of_bits), packed_[1] + axis);
     store(local, local_[0] + axis);
     store(local - shift, local_[1] + axis);
     store(all(0.0F), gap_squared_[0] + axis);
     store(gap_or_0 * gap_or_0, gap_squared_[1] + axis);
   }
-  return outside_axes == 0 || reach_in(outside_axes);
+  if (outside_axes != 0 && !reach_in(outside_axes)) {
+    return false;
+  }
+  own_packed_ = packed_[0][0] | packed_[0][1] | packed_[0][2];
+  return true;
 }
 
 // The centre is outside the root, but the cube may reach in.
@@ -80,6 +92,7 @@ bool CornerLeaves::reach_in(std::uint32_t outside_axes) {
   for (std::uint32_t axis = 0; axis < 3; ++axis) {  // bound: 3
     const std::uint32_t from = outside_axes >> axis & 1U;
     cell_[0][axis] = cell_[from][axis];
+    packed_[0][axis] = packed_[from][axis];
     local_[0][axis] = local_[from][axis];
   }
   axes_left_ &= ~outside_axes;
@@ -88,35 +101,34 @@ bool CornerLeaves::reach_in(std::uint32_t outside_axes) {
 
 std::uint32_t CornerLeaves::directory_entry(std::uint32_t corner) const {
   const std::uint32_t level = view_.directory_level();
-  return view_.directory()[pick(cell_, corner, 0) >> below_ |
-                           pick(cell_, corner, 1) >> below_ << level |
-                           pick(cell_, corner, 2) >> below_ << 2U * level];
+  return view_
+      .directory()[pick(cell_, corner, 0) >> below_ | pick(cell_, corner, 1) >> below_ << level |
+                   pick(cell_, corner, 2) >> below_ << 2U * level];
 }
 
 Int3 CornerLeaves::lower_corner(std::uint32_t corner) const {
   const std::int32_t* const root = view_.header().root_min;
   const auto units = [&](std::uint32_t axis) {
-    return root[axis] +
-           static_cast<std::int32_t>(pick(cell_, corner, axis) << kLeafShift);
+    return root[axis] + static_cast<std::int32_t>(pick(cell_, corner, axis) << kLeafShift);
   };
   return {units(0), units(1), units(2)};
 }
 
 // A leaf larger than the finest may hold several corners; it is found once.
-bool CornerLeaves::find_mixed(std::uint32_t corner, NearLeaf& found) {
+NearLeaf CornerLeaves::find_mixed(std::uint32_t corner) {
   Leaf leaf;
   if (!find_leaf(view_, lower_corner(corner), leaf)) {
-    return false;
+    return {};
   }
   for (std::uint32_t i = 0; i < seen_count_; ++i) {  // bound: 8
     if (seen_[i] == leaf.number) {
-      return false;
+      return {};
     }
   }
   seen_[seen_count_++] = leaf.number;
-  found = near_leaf(view_, leaf, centre_);
+  NearLeaf found = near_leaf(view_, leaf, centre_);
   found.corner = corner;
-  return true;
+  return found;
 }
 
 Leaf CornerLeaves::leaf(std::uint32_t number, std::uint32_t corner) const {
@@ -126,29 +138,6 @@ Leaf CornerLeaves::leaf(std::uint32_t number, std::uint32_t corner) const {
     (void)find_leaf(view_, site, leaf);
   }
   return leaf;
-}
-
-bool CornerLeaves::next_mixed(float limit_squared, NearLeaf& leaf) {
-  if (corner_ == kBegin) {
-    corner_ = 0;
-    if (find_mixed(0, leaf)) {
-      return true;
-    }
-  }
-  if (corner_ == 0) {
-    drop_axes(limit_squared);
-  }
-  while (corner_ != axes_left_) {  // bound: 7
-    corner_ = (corner_ - axes_left_) & axes_left_;
-    if (!is_beyond(corner_, limit_squared) && find_mixed(corner_, leaf)) {
-      return true;
-    }
-  }
-  return false;
-}
-
-bool CornerLeaves::next(float limit_squared, NearLeaf& leaf) {
-  return next_inlined(limit_squared, leaf);
 }
 
 }  // namespace tactree::core

@@ -41,7 +41,8 @@ class LeafScan {
       index += static_cast<std::int32_t>(kLanes);
     }
     if (p != end_) {
-      visit(squared(load<Words>(words_ + (end_ - kLanes))), index - static_cast<std::int32_t>(p + kLanes - end_));
+      visit(squared(load<Words>(words_ + (end_ - kLanes))),
+            index - static_cast<std::int32_t>(p + kLanes - end_));
     }
   }
 

@@ -49,15 +49,15 @@ bool nearest_in_leaf(const LeafScan& scan, Nearest& best) {
 NearestPoint nearest_within(const BlobView& view, Vec3 probe, float r) {
   CornerLeaves corners(view, probe, r);
   Nearest best{r * r, kNone};
-  NearLeaf leaf;
   std::uint32_t number = 0;
   std::uint32_t corner = 0;
-  while (corners.next_inlined(best.squared, leaf)) {  // bound: 8
+  corners.each(best.squared, [&](const NearLeaf& leaf) {
     if (nearest_in_leaf(LeafScan(view, leaf), best)) {
       number = leaf.number;
       corner = leaf.corner;
     }
-  }
+    return best.squared;
+  });
   if (best.index == kNone) {
     return {};
   }
@@ -67,22 +67,17 @@ NearestPoint nearest_within(const BlobView& view, Vec3 probe, float r) {
 
 PointsWithin points_within(const BlobView& view, Vec3 probe, float r,
                            std::span<std::uint32_t> out) {
-  CornerLeaves corners(view, probe, r);
   PointsWithin result;
   const float limit = r * r;
-  NearLeaf leaf;
-  while (corners.next(limit, leaf)) {  // bound: 8
+  CornerLeaves(view, probe, r).each(limit, [&](const NearLeaf& leaf) {
     auto next = static_cast<std::int32_t>(leaf.first_point);
     LeafScan(view, leaf).each_block([&](Floats squared, Integers index) {
       for (std::uint32_t k = 0; k < kLanes; ++k) {  // bound: 4
         const std::int32_t point = lane(index, k);
-        if (point < next) {
+        if (point < next || lane(squared, k) > limit) {
           continue;
         }
         next = point + 1;
-        if (lane(squared, k) > limit) {
-          continue;
-        }
         if (result.count == out.size()) {
           result.complete = false;
           continue;
@@ -90,7 +85,8 @@ PointsWithin points_within(const BlobView& view, Vec3 probe, float r,
         out[result.count++] = static_cast<std::uint32_t>(point);
       }
     });
-  }
+    return result.complete ? limit : -1.0F;
+  });
   return result;
 }
 
@@ -99,14 +95,13 @@ bool in_any_vertex_box(const BlobView& view, Vec3 probe) {
     return false;
   }
   const float half = 0.5F * view.header().aabb_edge_m;
-  CornerLeaves corners(view, probe, half);
-  NearLeaf leaf;
-  while (corners.next(4.0F * half * half, leaf)) {  // bound: 8
-    if (leaf_has_box_around(view, leaf, half)) {
-      return true;
-    }
-  }
-  return false;
+  const float everything = 4.0F * half * half;
+  bool found = false;
+  CornerLeaves(view, probe, half).each(everything, [&](const NearLeaf& leaf) {
+    found = leaf_has_box_around(view, leaf, half);
+    return found ? -1.0F : everything;
+  });
+  return found;
 }
 
 }  // namespace tactree::core

@@ -104,12 +104,12 @@ bool find_leaf(const BlobView& view, Vec3 position, Leaf& leaf) {
 
 void find_leaves_within(const BlobView& view, Vec3 centre, float r, LeafSet& found) {
   CornerLeaves corners(view, centre, r);
-  NearLeaf leaf;
   found.count = 0;
   const float everything = 4.0F * view.reach_m() * view.reach_m();
-  while (found.count < kLeavesPerQuery && corners.next(everything, leaf)) {  // bound: 8
+  corners.each(everything, [&](const NearLeaf& leaf) {
     found.leaves[found.count++] = corners.leaf(leaf.number, leaf.corner);
-  }
+    return everything;
+  });
 }
 
 }  // namespace tactree::core

@@ -32,9 +32,9 @@ inline constexpr std::int32_t kMaxCoordinate = 1 << 22;  ///< |lattice coordinat
 inline constexpr std::uint32_t kMaxLeaves = 1U << 24;
 inline constexpr std::uint32_t kMaxNodes = 1U << 24;
 inline constexpr std::uint32_t kMaxMaterials = 255;
-inline constexpr std::uint32_t kLeavesPerQuery = 8;  ///< the eight-corner rule
-inline constexpr std::uint32_t kMaxLevelsBelow = 10;     ///< between the directory and the leaves
-inline constexpr std::uint32_t kMaxLeafGroupShift = 5;   ///< log2 of the leaves that share a base
+inline constexpr std::uint32_t kLeavesPerQuery = 8;     ///< the eight-corner rule
+inline constexpr std::uint32_t kMaxLevelsBelow = 10;    ///< between the directory and the leaves
+inline constexpr std::uint32_t kMaxLeafGroupShift = 5;  ///< log2 of the leaves that share a base
 
 enum class Profile : std::uint32_t {
   kSurface = 0,  ///< every leaf at full depth, leaf edge >= 2 reach: exact neighbour queries
@@ -77,7 +77,7 @@ struct BlobHeader {
       points_per_query_max;  ///< in any eight leaves one query visits: proven by the builder
   std::uint32_t leaves_per_query_max;  ///< 8
 
-  std::uint32_t directory_level;   ///< level of the nodes that the directory lists; 0: the root only
+  std::uint32_t directory_level;  ///< level of the nodes that the directory lists; 0: the root only
   std::uint32_t leaf_group_shift;  ///< 2^this leaves share a base
 
   float spacing_m;           ///< h: what the points were resampled to
