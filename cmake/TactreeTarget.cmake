@@ -21,5 +21,9 @@ function(tactree_target target)
     target_compile_options(${target} PRIVATE
       -fsanitize=${TACTREE_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
     target_link_options(${target} PUBLIC -fsanitize=${TACTREE_SANITIZE})
+    if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+      # Coverage counters, for the fuzz targets to see their way.
+      target_compile_options(${target} PRIVATE -fsanitize=fuzzer-no-link)
+    endif()
   endif()
 endfunction()
