@@ -17,6 +17,11 @@ function(tactree_target target)
       -fno-exceptions -fno-rtti -fno-threadsafe-statics -fno-math-errno
       -ffunction-sections -fdata-sections)
   endif()
+  if(CMAKE_CROSSCOMPILING)
+    # No path of the build machine in an image: two builds in two folders are alike.
+    target_compile_options(${target} PRIVATE
+      -ffile-prefix-map=${PROJECT_SOURCE_DIR}=. -ffile-prefix-map=${PROJECT_BINARY_DIR}=build)
+  endif()
   if(TACTREE_SANITIZE)
     target_compile_options(${target} PRIVATE
       -fsanitize=${TACTREE_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
