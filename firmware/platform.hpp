@@ -40,7 +40,8 @@ void prepare_board();
 extern "C" {
 /// One tick of the control loop, in the context of an interrupt of low priority.
 void tactree_tick();
-/// Sleeps for ever, between the ticks. The instruction counter takes a tick as over when it is here.
+/// Sleeps for ever, between the ticks. Of the core: the instruction counter takes a tick as over
+/// when the core is in here.
 [[noreturn]] void tactree_idle();
 int main();
 }

@@ -11,8 +11,7 @@ using Handler = void (*)();
 
 [[noreturn]] void start() {
   cortex_m::coprocessor_access() = cortex_m::coprocessor_access() | cortex_m::kFpuFullAccess;
-  cortex_m::handler_control() =
-      cortex_m::handler_control() | cortex_m::kMemoryBusUsageFaults;
+  cortex_m::handler_control() = cortex_m::handler_control() | cortex_m::kMemoryBusUsageFaults;
   cortex_m::synchronise();
   start_image();
 }
@@ -41,9 +40,7 @@ struct VectorTable {
         tactree_fault,  // bus
         tactree_fault,  // usage
         tactree_fault,  // secure (Armv8-M)
-        tactree_fault,
-        tactree_fault,
-        tactree_fault,
+        tactree_fault, tactree_fault, tactree_fault,
         tactree_fault,  // supervisor call
         tactree_fault,  // debug monitor
         tactree_fault,

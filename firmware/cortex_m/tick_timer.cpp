@@ -41,8 +41,17 @@ void wait_for_interrupt() { __asm volatile("wfi" ::: "memory"); }
 
 }  // namespace tactree::firmware
 
-extern "C" void tactree_deadline();
-extern "C" void tactree_deadline() {
+extern "C" {
+
+void tactree_deadline();
+void tactree_deadline() {
   tactree::firmware::counted = tactree::firmware::counted + 1U;
   tactree::firmware::cortex_m::interrupt_control() = tactree::firmware::cortex_m::kPendPendsv;
+}
+
+void tactree_idle() {
+  while (true) {
+    __asm volatile("wfi" ::: "memory");
+  }
+}
 }

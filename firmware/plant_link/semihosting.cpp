@@ -62,8 +62,8 @@ int open(std::span<const char> zero_terminated_name, Access access) {
 bool read(int file, std::span<std::byte> bytes) {
   while (!bytes.empty()) {
     const auto wanted = static_cast<std::uint32_t>(bytes.size());
-    const std::uint32_t left =
-        call(Operation::kRead, {static_cast<std::uint32_t>(file), address_of(bytes.data()), wanted});
+    const std::uint32_t left = call(
+        Operation::kRead, {static_cast<std::uint32_t>(file), address_of(bytes.data()), wanted});
     if (left >= wanted) {
       return false;
     }

@@ -22,9 +22,3 @@ void start_image() {
 }
 
 }  // namespace tactree::firmware
-
-extern "C" void tactree_idle() {
-  while (true) {
-    tactree::firmware::wait_for_interrupt();
-  }
-}

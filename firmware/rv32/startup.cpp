@@ -1,8 +1,8 @@
 // From reset to start_image(): stack, global pointer, trap handler and FPU.
 
 #include "platform.hpp"
-#include "rv32/registers.hpp"
 #include "runtime/image.hpp"
+#include "rv32/registers.hpp"
 
 extern "C" {
 void tactree_trap();

@@ -65,4 +65,10 @@ extern "C" {
   set_next_deadline(last_deadline + period);
   tactree_tick();
 }
+
+void tactree_idle() {
+  while (true) {
+    __asm volatile("wfi" ::: "memory");
+  }
+}
 }

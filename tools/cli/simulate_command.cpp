@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "blob_file.hpp"
 #include "command.hpp"
 #include "output_file.hpp"
+#include "tactree/emulation/emulated_target.hpp"
 #include "tactree/simulation/hand_script.hpp"
 #include "tactree/simulation/simulation.hpp"
 #include "tactree/simulation/trace.hpp"
@@ -27,6 +29,7 @@ constexpr double kMaxTracedTicks = 5e6;
 struct SimulateOptions {
   std::string blob;
   std::string board = "host";
+  std::string firmware;
   std::string device = "cartesian";
   std::string script = "rub";
   std::string path;
@@ -92,10 +95,36 @@ void check_start(const SimulateOptions& options, const simulation::Setup& setup,
   }
 }
 
+// Functions the report names, of those the ticks' instructions are in.
+constexpr std::size_t kReportedFunctions = 10;
+
 struct Outcome {
   simulation::Summary summary;
+  std::optional<emulation::InstructionCounts> instructions;  // of an emulated board
   std::vector<simulation::Sample> samples;
 };
+
+std::vector<std::string> board_names() {
+  std::vector<std::string> names{"host"};
+  for (const emulation::BoardDescription& board : emulation::boards()) {
+    names.emplace_back(board.name);
+  }
+  return names;
+}
+
+/// Null: the controller runs in this process.
+std::unique_ptr<emulation::EmulatedTarget> boot_board(const SimulateOptions& options,
+                                                      const simulation::Setup& setup,
+                                                      const BlobFile& blob) {
+  const emulation::BoardDescription* board = emulation::find_board(options.board);
+  if (board == nullptr) {
+    return nullptr;
+  }
+  emulation::EmulationOptions emulation;
+  emulation.image = emulation::find_image(*board, options.firmware);
+  emulation.uncounted_ticks = simulation::Simulation::arming_ticks(setup);
+  return std::make_unique<emulation::EmulatedTarget>(*board, blob.bytes(), emulation);
+}
 
 Outcome run(const SimulateOptions& options, const BlobFile& blob) {
   const simulation::Setup setup = make_setup(options);
@@ -106,11 +135,17 @@ Outcome run(const SimulateOptions& options, const BlobFile& blob) {
     refuse(fmt::format("--seconds: {:.6g} ticks are outside 1 .. {:.0f}", count, most),
            keep ? "shorten it, or leave --trace and --plot out" : "choose another --seconds");
   }
-  simulation::Simulation sim(blob.bytes(), setup, hand_path(options, blob.view()));
+  std::unique_ptr<simulation::Target> target = boot_board(options, setup, blob);
+  const auto* emulated = static_cast<const emulation::EmulatedTarget*>(target.get());
+  if (target == nullptr) {
+    target = std::make_unique<simulation::HostTarget>();
+  }
+  simulation::Simulation sim(blob.bytes(), setup, hand_path(options, blob.view()),
+                             std::move(target));
   check_start(options, setup, sim.start_result());
   if (!sim.arm()) {
     refuse(fmt::format("the controller did not become active, it is in state {}",
-                       core::name_of(sim.controller().state())),
+                       core::name_of(sim.state())),
            "begin the path outside the object");
   }
   Outcome outcome;
@@ -122,7 +157,11 @@ Outcome run(const SimulateOptions& options, const BlobFile& blob) {
       outcome.samples.push_back(sample);
     }
   }
+  sim.finish();
   outcome.summary = recorder.summary();
+  if (emulated != nullptr) {
+    outcome.instructions = emulated->instruction_counts();
+  }
   return outcome;
 }
 
@@ -134,7 +173,24 @@ void write_trace(const std::string& file, const std::vector<simulation::Sample>&
   write_file(file, csv);
 }
 
-nlohmann::json to_json(const SimulateOptions& options, const simulation::Summary& s) {
+nlohmann::json to_json(const std::optional<emulation::InstructionCounts>& counts) {
+  if (!counts) {
+    return {{"max", nullptr}, {"mean", nullptr}, {"bound", nullptr}};
+  }
+  nlohmann::json functions = nlohmann::json::array();
+  for (const emulation::FunctionCount& f : counts->functions) {
+    const double mean = static_cast<double>(f.total) / static_cast<double>(counts->ticks);
+    functions.push_back({{"name", f.name}, {"max", f.max}, {"mean", mean}});
+    if (functions.size() == kReportedFunctions) {
+      break;
+    }
+  }
+  return {{"max", counts->max},     {"mean", counts->mean()},       {"bound", nullptr},
+          {"start", counts->start}, {"checksum", counts->checksum}, {"functions", functions}};
+}
+
+nlohmann::json to_json(const SimulateOptions& options, const Outcome& outcome) {
+  const simulation::Summary& s = outcome.summary;
   nlohmann::json faults = nlohmann::json::array();
   for (const simulation::FaultEvent& event : s.faults) {
     faults.push_back({{"code", static_cast<int>(event.fault)},
@@ -153,10 +209,21 @@ nlohmann::json to_json(const SimulateOptions& options, const simulation::Summary
           {"penetration_max_m", s.penetration_max_m},
           {"trace_crc32", s.trace_crc32},
           {"faults", faults},
-          {"instructions", {{"max", nullptr}, {"mean", nullptr}, {"bound", nullptr}}}};
+          {"instructions", to_json(outcome.instructions)}};
 }
 
-void print_summary(const SimulateOptions& options, const simulation::Summary& s) {
+void print_instructions(const emulation::InstructionCounts& counts) {
+  fmt::print("instructions       {:.0f} per tick on average, {} at most, {} before the first\n",
+             counts.mean(), counts.max, counts.start);
+  for (std::size_t i = 0; i < std::min(kReportedFunctions, counts.functions.size()); ++i) {
+    const emulation::FunctionCount& f = counts.functions[i];
+    fmt::print("  {:8.0f} {:8}  {}\n",
+               static_cast<double>(f.total) / static_cast<double>(counts.ticks), f.max, f.name);
+  }
+}
+
+void print_summary(const SimulateOptions& options, const Outcome& outcome) {
+  const simulation::Summary& s = outcome.summary;
   fmt::print("board {}, device {}, mode {}, {:.6g} Hz\n", options.board, options.device,
              options.mode, options.setup.controller.rate_hz);
   fmt::print("ticks              {}\n", s.ticks);
@@ -170,6 +237,9 @@ void print_summary(const SimulateOptions& options, const simulation::Summary& s)
   for (const simulation::FaultEvent& event : s.faults) {
     fmt::print("fault {:2} {} at tick {}\n", static_cast<int>(event.fault),
                core::name_of(event.fault), event.tick);
+  }
+  if (outcome.instructions) {
+    print_instructions(*outcome.instructions);
   }
 }
 
@@ -185,9 +255,9 @@ void simulate(const SimulateOptions& options, int& exit_code) {
     write_file(options.plot, simulation::plot_svg(outcome.samples, title));
   }
   if (!options.json.empty()) {
-    write_file(options.json, to_json(options, outcome.summary).dump(2) + "\n");
+    write_file(options.json, to_json(options, outcome).dump(2) + "\n");
   }
-  print_summary(options, outcome.summary);
+  print_summary(options, outcome);
   exit_code = outcome.summary.faults.empty() ? kExitOk : kExitFailed;
 }
 
@@ -251,8 +321,11 @@ void add_simulate_command(CLI::App& app, int& exit_code) {
       "simulate", "Runs the controller of the firmware against a simulated device and hand");
   verb->add_option("BLOB", options->blob, "the blob to touch")->required();
   verb->add_option("--board", options->board, "where the controller runs")
-      ->check(CLI::IsMember({"host"}))
+      ->check(CLI::IsMember(board_names()))
       ->capture_default_str();
+  verb->add_option("--firmware", options->firmware,
+                   "folder with the images of the emulated boards (default: $TACTREE_FIRMWARE, the "
+                   "installation, or the build tree)");
   verb->add_option("--device", options->device, "the device's kinematics")
       ->check(CLI::IsMember({"cartesian"}))
       ->capture_default_str();

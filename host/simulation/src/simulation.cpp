@@ -23,13 +23,14 @@ Eigen::Vector3d widen(core::Vec3 v) {
 
 }  // namespace
 
-Simulation::Simulation(std::span<const std::byte> blob, const Setup& setup, HandPath path)
+Simulation::Simulation(std::span<const std::byte> blob, const Setup& setup, HandPath path,
+                       std::unique_ptr<Target> target)
     : setup_(setup),
       path_(std::move(path)),
       period_s_(1.0 / static_cast<double>(setup.controller.rate_hz)),
       board_(with_rate(setup.board, setup.controller.rate_hz), blob),
-      loop_(board_, controller_),
-      start_(loop_.start(setup.controller)),
+      target_(std::move(target)),
+      start_(target_->start(board_, setup.controller)),
       plant_(setup.plant, path_.at(0.0).position_m + widen(setup.controller.model_origin_m)) {
   // The readings on their way when the session begins are already of the device at rest.
   for (std::uint32_t i = 0; i <= hal::sim::kMaxLatencyTicks; ++i) {
@@ -42,10 +43,15 @@ void Simulation::sample_device() {
   board_.sample({p.x(), p.y(), p.z()});
 }
 
+std::uint64_t Simulation::arming_ticks(const Setup& setup) {
+  const double wait_s = kHoldAfterS + static_cast<double>(setup.controller.ramp_s) + kSettleS;
+  const double period_s = 1.0 / static_cast<double>(setup.controller.rate_hz);
+  return static_cast<std::uint64_t>(std::ceil(wait_s / period_s));
+}
+
 bool Simulation::arm() {
   const double begin = path_.waypoints().front().t_s;
-  const double wait_s = kHoldAfterS + static_cast<double>(setup_.controller.ramp_s) + kSettleS;
-  const auto ticks = static_cast<std::uint64_t>(std::ceil(wait_s / period_s_));
+  const std::uint64_t ticks = arming_ticks(setup_);
   const auto hold_at = static_cast<std::uint64_t>(std::ceil(kHoldAfterS / period_s_));
   for (std::uint64_t i = 0; i < ticks; ++i) {
     const bool dead_man = setup_.controller.dead_man_required;
@@ -54,7 +60,7 @@ bool Simulation::arm() {
     board_.safety_inputs().hold_dead_man(i >= hold_at);
     tick(std::min(begin, 0.0));
   }
-  return controller_.state() == core::State::kActive;
+  return state_ == core::State::kActive;
 }
 
 Sample Simulation::step() {
@@ -70,7 +76,8 @@ Sample Simulation::step() {
 
 core::Status Simulation::tick(double t_s) {
   sample_device();
-  const core::Status status = loop_.tick().status;
+  const core::Status status = target_->tick(board_);
+  state_ = status.state;
   plant::HandTarget target = path_.at(t_s);
   target.position_m += widen(setup_.controller.model_origin_m);
   plant_.advance({board_.effort(0), board_.effort(1), board_.effort(2)}, target, period_s_);

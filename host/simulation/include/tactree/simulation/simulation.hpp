@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "tactree/hal/sim/board.hpp"
 #include "tactree/plant/plant.hpp"
 #include "tactree/simulation/hand_path.hpp"
+#include "tactree/simulation/target.hpp"
 
 namespace tactree::simulation {
 
@@ -48,8 +50,12 @@ struct Summary {
 class Simulation {
  public:
   /// `blob` must be 4-byte aligned and outlive the simulation. Throws std::invalid_argument where
-  /// the plant's parameters are out of range.
-  Simulation(std::span<const std::byte> blob, const Setup& setup, HandPath path);
+  /// the plant's parameters are out of range, and what the target throws.
+  Simulation(std::span<const std::byte> blob, const Setup& setup, HandPath path,
+             std::unique_ptr<Target> target = std::make_unique<HostTarget>());
+
+  /// Ticks that arm() takes.
+  [[nodiscard]] static std::uint64_t arming_ticks(const Setup& setup);
 
   /// What start-up said; when it is not ok() the force stays zero.
   [[nodiscard]] const hal::StartResult& start_result() const { return start_; }
@@ -61,8 +67,12 @@ class Simulation {
   /// One tick.
   Sample step();
 
+  /// Ends the session.
+  void finish() { target_->finish(); }
+
   [[nodiscard]] hal::sim::SimBoard& board() { return board_; }
-  [[nodiscard]] const core::Controller& controller() const { return controller_; }
+  /// State of the controller after the last tick.
+  [[nodiscard]] core::State state() const { return state_; }
   [[nodiscard]] const plant::Plant& plant() const { return plant_; }
 
  private:
@@ -73,9 +83,9 @@ class Simulation {
   HandPath path_;
   double period_s_;
   hal::sim::SimBoard board_;
-  core::Controller controller_;
-  hal::Loop<hal::sim::SimBoard> loop_;
+  std::unique_ptr<Target> target_;
   hal::StartResult start_;
+  core::State state_ = core::State::kBoot;
   plant::Plant plant_;
   std::uint64_t ticks_ = 0;
 };
