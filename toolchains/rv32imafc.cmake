@@ -5,7 +5,9 @@ set(CMAKE_CXX_COMPILER riscv64-unknown-elf-g++)
 # Debian's compiler for RISC-V comes without C++ headers; those of the Arm compiler of the same
 # version do for what a freestanding program includes.
 file(GLOB headers /usr/include/newlib/c++/*)
-set(CMAKE_CXX_FLAGS_INIT "-march=rv32imafc_zicsr -mabi=ilp32f -nostdinc++ \
+# Version 2.2 of the specification has the control registers in the base set; by a later one the
+# compiler finds no libgcc for this core.
+set(CMAKE_CXX_FLAGS_INIT "-march=rv32imafc -misa-spec=2.2 -mabi=ilp32f -nostdinc++ \
 -isystem ${headers} -isystem ${headers}/arm-none-eabi/thumb/v7e-m+fp/hard -isystem /usr/include/newlib")
 set(CMAKE_CROSSCOMPILING_EMULATOR qemu-system-riscv32 -M virt -cpu sifive-e34 -nodefaults
   -display none -bios none -semihosting-config enable=on,target=native -icount shift=3,sleep=off

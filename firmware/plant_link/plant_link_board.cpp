@@ -62,11 +62,15 @@ hal::Tick PlantLinkBoard::Ticker::wait() noexcept {
   const std::uint32_t now = deadlines();
   const std::uint32_t missed = now - seen_ - 1U;
   seen_ = now;
-  board_.take_input();
+  board_.exchange();
   return {missed + board_.input_.input.overruns};
 }
 
-void PlantLinkBoard::take_input() {
+void PlantLinkBoard::exchange() {
+  if (in_session_) {
+    send_message(to_host_, output_);
+  }
+  in_session_ = true;
   receive_message(from_host_, input_);
   if (input_.kind != link::Kind::kTickInput) {
     semihosting::exit(kFinished);
@@ -84,11 +88,6 @@ hal::LinkInput PlantLinkBoard::receive() noexcept {
   input_.input.link_alive = false;
   input_.input.command = core::Command::kNone;
   return received;
-}
-
-void PlantLinkBoard::send(const core::Status& status) noexcept {
-  output_.status = status;
-  send_message(to_host_, output_);
 }
 
 // The header tells the size; open_blob() finds out when that is a lie.

@@ -14,8 +14,8 @@ namespace tactree::firmware {
 
 class PlantLinkBoard {
  public:
-  /// Waits for a deadline when none has gone by, which is never so in a tick; then takes the
-  /// plant's message of this tick.
+  /// Waits for a deadline when none has gone by, which is never so in a tick; then gives the plant
+  /// what the last tick brought, and takes its message for this one.
   class Ticker {
    public:
     explicit Ticker(PlantLinkBoard& board) : board_(board) {}
@@ -53,16 +53,16 @@ class PlantLinkBoard {
   [[nodiscard]] bool emergency_stop() noexcept { return input_.input.emergency_stop; }
   [[nodiscard]] bool dead_man() noexcept { return input_.input.dead_man; }
   [[nodiscard]] hal::LinkInput receive() noexcept;
-  /// Ends the tick: all that it gave goes to the plant.
-  void send(const core::Status& status) noexcept;
+  void send(const core::Status& status) noexcept { output_.status = status; }
   [[nodiscard]] std::span<const std::byte> active() const noexcept;
 
  private:
-  void take_input();
+  void exchange();
 
   Ticker ticker_;
   int from_host_ = -1;
   int to_host_ = -1;
+  bool in_session_ = false;  // a tick has begun, the plant waits for its output
   hal::plant_link::TickInput input_{};
   hal::plant_link::TickOutput output_{};
 };

@@ -8,7 +8,7 @@
 //   host -> board   Session
 //   board -> host   Started            the model was taken, or why not
 //   host -> board   TickInput          each tick; the last one has kFinish: the board ends
-//   board -> host   TickOutput         each tick
+//   board -> host   TickOutput         each tick, when the board waits for the next
 //
 // Every message begins with its kind.
 
