@@ -21,6 +21,8 @@ function(tactree_target target)
     # No path of the build machine in an image: two builds in two folders are alike.
     target_compile_options(${target} PRIVATE
       -ffile-prefix-map=${PROJECT_SOURCE_DIR}=. -ffile-prefix-map=${PROJECT_BINARY_DIR}=build)
+    # Beside each object: its functions' stack frames and calls, for scripts/check-image.
+    target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fcallgraph-info=su>)
   endif()
   if(TACTREE_SANITIZE)
     target_compile_options(${target} PRIVATE

@@ -1,7 +1,6 @@
 // The conformance program on a board. It ends the emulation with its verdict.
 
 #include "board.hpp"
-#include "check.hpp"
 #include "plant_link/semihosting.hpp"
 #include "tactree/hal/conformance.hpp"
 

@@ -79,7 +79,9 @@ std::vector<std::string> command_line(const BoardDescription& board, const std::
   for (const std::string& word :
        {std::string("-nodefaults"), std::string("-display"), std::string("none"),
         std::string("-semihosting-config"), std::string("enable=on,target=native"),
-        std::string("-icount"), fmt::format("shift={},sleep=off", board.instruction_shift),
+        std::string("-icount"),
+        fmt::format("shift={},sleep=off",
+                    options.instruction_shift.value_or(board.instruction_shift)),
         std::string("-kernel"), image.string(), std::string("-device"),
         fmt::format("loader,file=/dev/fd/{},addr={:#x},force-raw=on", kBlob, board.blob_address)}) {
     line.push_back(word);
