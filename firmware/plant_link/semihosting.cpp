@@ -20,22 +20,18 @@ std::uint32_t address_of(const void* pointer) {
 }
 
 #if defined(__riscv)
-// The three instructions must not be compressed, nor lie on two pages.
-std::uint32_t call(Operation operation, std::uint32_t argument) {
-  register std::uint32_t a0 __asm("a0") = static_cast<std::uint32_t>(operation);
-  register std::uint32_t a1 __asm("a1") = argument;
+// Both arguments are in the registers the call wants. The first three instructions must not be
+// compressed, nor lie on two pages.
+[[gnu::naked, gnu::noinline, gnu::aligned(16)]] std::uint32_t call(Operation /*a0*/,
+                                                                   std::uint32_t /*a1*/) {
   __asm volatile(
       ".option push\n\t"
       ".option norvc\n\t"
-      ".balign 16\n\t"
       "slli x0, x0, 0x1f\n\t"
       "ebreak\n\t"
       "srai x0, x0, 7\n\t"
-      ".option pop"
-      : "+r"(a0)
-      : "r"(a1)
-      : "memory");
-  return a0;
+      "ret\n\t"
+      ".option pop");
 }
 #else
 std::uint32_t call(Operation operation, std::uint32_t argument) {
