@@ -26,7 +26,7 @@ class VelocityEstimator {
 
   /// Takes the position of this tick and returns the velocity, m/s; bounded for finite positions
   /// by the largest difference of two samples over the period.
-  /// Cost: at most 3 * 15 * 14 / 2 comparisons.
+  /// Cost: one pass over the window on each axis, about 15 operations a sample.
   Vec3 update(Vec3 position);
 
   [[nodiscard]] Vec3 velocity() const { return velocity_; }
