@@ -18,7 +18,7 @@ enum class RenderMode : std::uint8_t {
 struct Configuration {
   float rate_hz = 1000.0F;  ///< ticks per second: 100 .. 20 000
   RenderMode mode = RenderMode::kSurface;
-  DeviceModel device{};   ///< kinematics.hpp
+  DeviceModel device{};   ///< device_model.hpp
   Vec3 model_origin_m{};  ///< origin of the model in the device's frame: within +-10 m
 
   // What the hand feels, where the model carries no materials of its own.
@@ -29,6 +29,8 @@ struct Configuration {
   float velocity_cutoff_hz = 200.0F;  ///< low-pass filter of the velocity: 1 .. rate_hz / 2
   /// Follow the blob's materials where it has any, each stiffness at most the limit above.
   bool use_materials = true;
+
+  bool compensate_gravity = true;  ///< the motors hold the device's own weight
 
   // The device and the hand, for the stability limit.
   float device_damping_Ns_m = 0.05F;  ///< 0 .. 1000
