@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::uint32_t kNewtonSteps = 3;
 // The last step of Newton is longer only where there is no solution.
-constexpr float kConverged_m = 2e-5F;
+constexpr float kConverged = 2e-5F;  // m
 
 /// What stays the same while the plate is searched for.
 struct Leg {
@@ -135,7 +135,7 @@ KindPose locate_delta(const DeviceModel& device, Vec3 joints) {
     pose.probe -= step;
     all = close_all(g, legs, pose.probe);
   }
-  pose.valid = all.valid && length_squared(step) <= kConverged_m * kConverged_m;
+  pose.valid = all.valid && length_squared(step) <= kConverged * kConverged;
   pose.openness = all.openness;
   float link_effort[kAxes];
   for (std::uint32_t i = 0; i < kAxes; ++i) {  // bound: kAxes

@@ -54,7 +54,7 @@ bool is_valid_axis(const DeviceModel& d, std::uint32_t i) {
                      in_range(d.home_position[i], d.joint_min[i], d.joint_max[i]) &&
                      in_range(d.joint_margin[i], 0.0F, 0.5F * (d.joint_max[i] - d.joint_min[i]));
   const bool motor = in_range(d.ratio[i] < 0.0F ? -d.ratio[i] : d.ratio[i], 1e-3F, 1e5F) &&
-                     in_range(d.torque_constant_Nm_A[i], 1e-6F, 1e3F);
+                     in_range(d.torque_constant_Nm_per_ampere[i], 1e-6F, 1e3F);
   const bool masses =
       in_range(d.link_mass_kg[i], 0.0F, 100.0F) && in_range(d.link_centre_m[i], -10.0F, 10.0F);
   return counts && range && motor && masses;
@@ -92,8 +92,8 @@ float counts_per_unit(const DeviceModel& device, std::uint32_t axis) {
   return device.counts_per_revolution[axis] * device.ratio[axis] / kTwoPi;
 }
 
-float motor_current_A(const DeviceModel& device, std::uint32_t axis, float effort) {
-  return effort / (device.ratio[axis] * device.torque_constant_Nm_A[axis]);
+float motor_current(const DeviceModel& device, std::uint32_t axis, float effort) {
+  return effort / (device.ratio[axis] * device.torque_constant_Nm_per_ampere[axis]);
 }
 
 }  // namespace tactree::core

@@ -104,7 +104,7 @@ struct DeviceModel {
   float tip_mass_kg = 0.0F;                         ///< what moves with the probe: 0 .. 100
 
   /// Torque of a motor per current: 1e-6 .. 1000.
-  float torque_constant_Nm_A[kAxes] = {0.025F, 0.025F, 0.025F};
+  float torque_constant_Nm_per_ampere[kAxes] = {0.025F, 0.025F, 0.025F};
 };
 
 /// Axes the kind has: 3, 2 or 1; the inputs of the others do not matter and they get no effort.
@@ -119,6 +119,6 @@ struct DeviceModel {
 
 /// Current, A, through the motor of an axis for an effort (N or Nm) at its joint.
 /// Precondition: is_valid(device), axis < kAxes.
-[[nodiscard]] float motor_current_A(const DeviceModel& device, std::uint32_t axis, float effort);
+[[nodiscard]] float motor_current(const DeviceModel& device, std::uint32_t axis, float effort);
 
 }  // namespace tactree::core

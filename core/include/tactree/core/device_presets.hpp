@@ -47,8 +47,8 @@ constexpr DevicePreset cartesian() {
   DevicePreset p;
   p.name = "cartesian";
   p.about = "three linear axes: the textbook case";
-  set(p.model.joint_min, -0.25F, -0.25F, -0.25F);
-  set(p.model.joint_max, 0.25F, 0.25F, 0.25F);
+  set(p.model.joint_min, -0.5F, -0.5F, -0.5F);
+  set(p.model.joint_max, 0.5F, 0.5F, 0.5F);
   set(p.model.joint_margin, 0.01F, 0.01F, 0.01F);
   return p;
 }
@@ -72,8 +72,8 @@ constexpr DevicePreset premium() {
   set(m.link_mass_kg, 0.0F, 0.30F, 0.045F);
   set(m.link_centre_m, 0.0F, -0.040F, -0.060F);
   m.tip_mass_kg = 0.030F;
-  set(m.torque_constant_Nm_A, 0.0235F, 0.0235F, 0.0235F);  // estimate: 20 W brushed motors
-  p.drive = {8.5F, {1.9F, 1.8F, 1.5F}, 0.0125F};           // efforts: estimate, 8.5 N at home
+  set(m.torque_constant_Nm_per_ampere, 0.0235F, 0.0235F, 0.0235F);  // estimate: 20 W brushed motors
+  p.drive = {8.5F, {1.9F, 1.8F, 1.5F}, 0.0125F};  // efforts: estimate, 8.5 N at home
   // 0.075 kg and 0.04 N at the probe at home, as the maker says of the class.
   p.dynamics = {
       {2.0e-3F, 2.0e-3F, 1.3e-3F}, {5.5e-4F, 5.5e-4F, 3.6e-4F}, {8.4e-3F, 8.4e-3F, 6.8e-3F}};
@@ -99,7 +99,7 @@ constexpr DevicePreset wooden() {
   set(m.link_mass_kg, 0.0F, 0.30F, 0.12F);
   set(m.link_centre_m, 0.0F, 0.08F, 0.09F);
   m.tip_mass_kg = 0.05F;
-  set(m.torque_constant_Nm_A, 0.0259F, 0.0259F, 0.0259F);
+  set(m.torque_constant_Nm_per_ampere, 0.0259F, 0.0259F, 0.0259F);
   p.drive = {6.0F, {1.5F, 1.4F, 1.4F}, 0.05F};  // estimate: 4 A a motor
   p.dynamics = {
       {6.0e-3F, 5.0e-3F, 3.0e-3F}, {3.0e-3F, 2.5e-3F, 3.0e-3F}, {2.5e-2F, 2.0e-2F, 2.0e-2F}};
@@ -128,8 +128,8 @@ constexpr DevicePreset falcon() {
   set(m.link_mass_kg, 0.03F, 0.03F, 0.03F);
   set(m.link_centre_m, 0.03F, 0.03F, 0.03F);
   m.tip_mass_kg = 0.10F;
-  set(m.torque_constant_Nm_A, 0.027F, 0.027F, 0.027F);  // estimate
-  p.drive = {8.0F, {0.40F, 0.40F, 0.40F}, 0.3F};        // efforts: estimate
+  set(m.torque_constant_Nm_per_ampere, 0.027F, 0.027F, 0.027F);  // estimate
+  p.drive = {8.0F, {0.40F, 0.40F, 0.40F}, 0.3F};                 // efforts: estimate
   p.dynamics = {
       {2.0e-4F, 2.0e-4F, 2.0e-4F}, {1.0e-3F, 1.0e-3F, 1.0e-3F}, {8.0e-3F, 8.0e-3F, 8.0e-3F}};
   return p;
@@ -153,8 +153,8 @@ constexpr DevicePreset pantograph() {
   set(m.link_mass_kg, 0.015F, 0.015F, 0.0F);
   set(m.link_centre_m, 0.03F, 0.03F, 0.0F);
   m.tip_mass_kg = 0.02F;
-  set(m.torque_constant_Nm_A, 0.05F, 0.05F, 0.05F);  // estimate
-  p.drive = {3.0F, {0.20F, 0.20F, 0.20F}, 0.04F};    // estimate
+  set(m.torque_constant_Nm_per_ampere, 0.05F, 0.05F, 0.05F);  // estimate
+  p.drive = {3.0F, {0.20F, 0.20F, 0.20F}, 0.04F};             // estimate
   p.dynamics = {
       {5.0e-5F, 5.0e-5F, 5.0e-5F}, {1.0e-4F, 1.0e-4F, 1.0e-4F}, {2.0e-3F, 2.0e-3F, 2.0e-3F}};
   return p;
@@ -178,8 +178,8 @@ constexpr DevicePreset hapkit() {
   set(m.link_mass_kg, 0.03F, 0.0F, 0.0F);
   set(m.link_centre_m, 0.02F, 0.0F, 0.0F);
   m.tip_mass_kg = 0.01F;
-  set(m.torque_constant_Nm_A, 0.0185F, 0.0185F, 0.0185F);  // estimate
-  p.drive = {5.0F, {0.40F, 0.40F, 0.40F}, 0.1F};           // estimate
+  set(m.torque_constant_Nm_per_ampere, 0.0185F, 0.0185F, 0.0185F);  // estimate
+  p.drive = {5.0F, {0.40F, 0.40F, 0.40F}, 0.1F};                    // estimate
   p.dynamics = {
       {2.0e-4F, 2.0e-4F, 2.0e-4F}, {5.0e-4F, 5.0e-4F, 5.0e-4F}, {5.0e-3F, 5.0e-3F, 5.0e-3F}};
   return p;
