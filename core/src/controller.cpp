@@ -59,6 +59,8 @@ ConfigurationStatus Controller::configure(const Configuration& configuration) {
   ticks_since_overrun_ = kForever;
   joint_velocity_.configure(1.0F / configuration.rate_hz, quantum_of(configuration.device),
                             configuration.velocity_cutoff_hz);
+  passivity_.configure(1.0F / configuration.rate_hz, configuration.passivity_Ns_m,
+                       configuration.delay_s);
   homing_.begin(configuration.device);
   forget_motion();
   happen(Event::kConfigured);
@@ -291,13 +293,32 @@ void Controller::raise(FaultMask faults) {
   happen(Event::kFault);
 }
 
+// Of the rendered force: what the place of the device allows, and what keeps the wall passive.
+// Damping may take the push away, but never pulls the hand into the object.
+Vec3 Controller::wanted_force() {
+  const Vec3 rendered = pose_.reach * rendering_.force;
+  if (!rendering_.in_contact || !whole_ || !(configuration_.passivity_Ns_m > 0.0F)) {
+    passivity_.reset();
+    return rendered;
+  }
+  const Vec3 added =
+      passivity_.update(shown_, probe_, velocity_, pose_.reach * rendering_.stored_energy);
+  const Vec3 force = rendered + added;
+  const float push = dot(force, rendering_.normal);
+  return push < 0.0F ? force - push * rendering_.normal : force;
+}
+
 SafetyGate::Result Controller::apply_force() {
   if (state_ != State::kActive) {
+    passivity_.reset();
+    shown_ = {};
+    whole_ = false;
     return gate_.release();
   }
   const Vec3 weight = configuration_.compensate_gravity ? pose_.gravity_effort : Vec3{};
-  const SafetyGate::Result gated =
-      gate_.command(pose_.reach * rendering_.force, pose_.effort_per_force, weight);
+  const SafetyGate::Result gated = gate_.command(wanted_force(), pose_.effort_per_force, weight);
+  shown_ = gated.force;
+  whole_ = (gated.limits & limit_bit(Limit::kRamp)) == 0U;
   if (gated.not_finite) {
     raise(fault_bit(Fault::kNotFinite));
   }

@@ -340,6 +340,10 @@ void add_controller_options(CLI::App& verb, SimulateOptions& options) {
   verb.add_option("--damping", c.damping_Ns_m, "of the surface, Ns/m")
       ->check(CLI::Range(0.0, 1e3))
       ->capture_default_str();
+  verb.add_option("--passivity", c.passivity_Ns_m,
+                  "most damping that the passivity controller may add, Ns/m; 0: off")
+      ->check(CLI::Range(0.0, 100.0))
+      ->capture_default_str();
   verb.add_option("--static-friction", c.static_friction, "coefficient")
       ->check(CLI::Range(0.0, 2.0))
       ->capture_default_str();

@@ -11,6 +11,7 @@
 #include "tactree/core/configuration.hpp"
 #include "tactree/core/faults.hpp"
 #include "tactree/core/homing.hpp"
+#include "tactree/core/passivity.hpp"
 #include "tactree/core/renderer.hpp"
 #include "tactree/core/safety_gate.hpp"
 #include "tactree/core/state_machine.hpp"
@@ -109,6 +110,7 @@ class Controller {
   void recover();
   void forget_motion();
   [[nodiscard]] ModelStatus suitability(const BlobView& view) const;
+  [[nodiscard]] Vec3 wanted_force();
   SafetyGate::Result apply_force();
   [[nodiscard]] Status report(const SafetyGate::Result& gated) const;
 
@@ -127,6 +129,9 @@ class Controller {
   Vec3 velocity_{};  // of the probe, m/s
   Renderer renderer_{};
   Rendering rendering_{};
+  PassivityController passivity_{};
+  Vec3 shown_{};        // force of the last tick, N
+  bool whole_ = false;  // that force was not held back by the ramp
   SafetyGate gate_{};
 
   std::uint32_t tick_ = 0;
