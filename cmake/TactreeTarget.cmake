@@ -17,9 +17,20 @@ function(tactree_target target)
       -fno-exceptions -fno-rtti -fno-threadsafe-statics -fno-math-errno
       -ffunction-sections -fdata-sections)
   endif()
+  if(CMAKE_CROSSCOMPILING)
+    # No path of the build machine in an image: two builds in two folders are alike.
+    target_compile_options(${target} PRIVATE
+      -ffile-prefix-map=${PROJECT_SOURCE_DIR}=. -ffile-prefix-map=${PROJECT_BINARY_DIR}=build)
+    # Beside each object: its functions' stack frames and calls, for scripts/check-image.
+    target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fcallgraph-info=su>)
+  endif()
   if(TACTREE_SANITIZE)
     target_compile_options(${target} PRIVATE
       -fsanitize=${TACTREE_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
     target_link_options(${target} PUBLIC -fsanitize=${TACTREE_SANITIZE})
+    if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+      # Coverage counters, for the fuzz targets to see their way.
+      target_compile_options(${target} PRIVATE -fsanitize=fuzzer-no-link)
+    endif()
   endif()
 endfunction()

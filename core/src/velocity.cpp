@@ -8,31 +8,30 @@ constexpr float kTwoPi = 6.2831853F;
 // Two samples can be a whole quantum off the line, and their float32 a little more.
 constexpr float kTolerance = 1.1F;
 
-/// Does the line from `from` (age `window`) to `to` (age 0) pass every sample between within the
-/// quantum?
+constexpr float kOneOver[kVelocityWindow + 1] = {
+    0.0F,     1.0F,     1.0F / 2,  1.0F / 3,  1.0F / 4,  1.0F / 5,  1.0F / 6,  1.0F / 7,
+    1.0F / 8, 1.0F / 9, 1.0F / 10, 1.0F / 11, 1.0F / 12, 1.0F / 13, 1.0F / 14, 1.0F / 15};
+
 struct Axis {
   float history[kVelocityWindow + 1];  // newest first
   std::uint32_t count;                 // valid entries, at least 2
 
-  [[nodiscard]] bool line_fits(std::uint32_t window, float slope, float quantum) const {
-    for (std::uint32_t age = 1; age < window; ++age) {  // bound: kVelocityWindow
-      const float expected = history[0] - slope * static_cast<float>(age);
-      if (!(absolute(history[age] - expected) <= quantum)) {
-        return false;
-      }
-    }
-    return true;
-  }
-
-  /// Change per sample over the longest window that fits.
+  /// Change per sample over the longest window whose line, from its oldest sample to the newest,
+  /// passes every sample between within the quantum. Each sample allows the line a range of slopes;
+  /// their common part is carried along, so that one pass is enough.
   [[nodiscard]] float slope(float quantum) const {
     float best = history[0] - history[1];
+    float lowest = best - quantum;
+    float highest = best + quantum;
     for (std::uint32_t window = 2; window < count; ++window) {  // bound: kVelocityWindow
-      const float candidate = (history[0] - history[window]) / static_cast<float>(window);
-      if (!line_fits(window, candidate, quantum)) {
+      const float candidate = (history[0] - history[window]) * kOneOver[window];
+      if (!(candidate >= lowest && candidate <= highest)) {
         break;
       }
       best = candidate;
+      const float play = quantum * kOneOver[window];
+      lowest = candidate - play > lowest ? candidate - play : lowest;
+      highest = candidate + play < highest ? candidate + play : highest;
     }
     return best;
   }
@@ -40,9 +39,9 @@ struct Axis {
 
 }  // namespace
 
-void VelocityEstimator::configure(float period_s, float quantum_m, float cutoff_hz) {
+void VelocityEstimator::configure(float period_s, Vec3 quantum, float cutoff_hz) {
   period_s_ = period_s;
-  quantum_m_ = kTolerance * quantum_m;
+  quantum_ = kTolerance * quantum;
   const float turn = kTwoPi * cutoff_hz * period_s;
   share_ = turn / (1.0F + turn);
   reset();
@@ -68,7 +67,7 @@ Vec3 VelocityEstimator::update(Vec3 position) {
     y.history[age] = past(age).y;
     z.history[age] = past(age).z;
   }
-  const Vec3 per_sample = {x.slope(quantum_m_), y.slope(quantum_m_), z.slope(quantum_m_)};
+  const Vec3 per_sample = {x.slope(quantum_.x), y.slope(quantum_.y), z.slope(quantum_.z)};
   const Vec3 estimate = (1.0F / period_s_) * per_sample;
   velocity_ += share_ * (estimate - velocity_);
   return velocity_;

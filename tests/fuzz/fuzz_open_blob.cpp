@@ -106,7 +106,8 @@ class Examination {
     if (view_.material_count() > 0) {
       require(view_.material_of(index) < view_.material_count(), "a point has no such material");
     }
-    points_.push_back({point.position.x, point.position.y, point.position.z, index});
+    points_.push_back({static_cast<double>(point.position.x), static_cast<double>(point.position.y),
+                       static_cast<double>(point.position.z), index});
   }
 
   float unit_random() { return std::uniform_real_distribution<float>(0.0F, 1.0F)(random_); }

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <cstring>
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -31,7 +31,7 @@ BlobStatus open(const fs::path& path) {
   const std::vector<char> bytes{std::istreambuf_iterator<char>(in),
                                 std::istreambuf_iterator<char>()};
   std::vector<std::uint32_t> words(bytes.size() / 4 + 1);
-  std::memcpy(words.data(), bytes.data(), bytes.size());
+  std::copy(bytes.begin(), bytes.end(), reinterpret_cast<char*>(words.data()));
   tactree::core::BlobView view;
   return open_blob(std::as_bytes(std::span(words)).first(bytes.size()), view);
 }

@@ -84,13 +84,13 @@ TEST(Density, AMeshGetsATwoHundredthOfItsSize) {
 
 TEST(Density, ABudgetIsUsedAndNotExceeded) {
   for (const core::Profile profile : {core::Profile::kSurface, core::Profile::kPaper}) {
-    for (const std::uint64_t budget : {20000U, 200000U}) {
+    for (const std::uint64_t budget : {10000U, 60000U}) {
       BuildOptions options;
       options.profile = profile;
       options.flash_budget_bytes = budget;
       for (const bool mesh : {true, false}) {
         const Chosen chosen =
-            choose(mesh ? box_scan() : cloud_scan(random_sphere(300000, 0.03)), options);
+            choose(mesh ? box_scan() : cloud_scan(random_sphere(50000, 0.03)), options);
         Model model;
         model.positions = chosen.choice.points.positions();
         model.normals.assign(model.positions.size(), Eigen::Vector3f::UnitX());

@@ -32,8 +32,8 @@ TEST_P(BlobContents, PositionsAreWithinHalfAStepOfTheModels) {
       const core::Leaf& leaf = cursor.leaf();
       for (std::uint32_t p = leaf.first_point; p < leaf.first_point + leaf.point_count; ++p) {
         const core::Vec3 at = blob.view().position(leaf, p);
-        const Eigen::Vector3d error =
-            Eigen::Vector3d(at.x, at.y, at.z) - model.positions[blob.written().source_index[p]];
+        const Eigen::Vector3d error = Eigen::Vector3f(at.x, at.y, at.z).cast<double>() -
+                                      model.positions[blob.written().source_index[p]];
         worst = std::max(worst,
                          error.cwiseAbs().maxCoeff() / quantisation_step(blob.view(), leaf.level));
       }
@@ -62,7 +62,8 @@ TEST_P(BlobContents, NormalsAreWithinAThirdOfADegree) {
     const core::Vec3 n = blob.view().normal(p);
     EXPECT_NEAR(core::length(n), 1.0, 1e-6);
     smallest =
-        std::min(smallest, Eigen::Vector3d(n.x, n.y, n.z)
+        std::min(smallest, Eigen::Vector3f(n.x, n.y, n.z)
+                               .cast<double>()
                                .dot(model.normals[blob.written().source_index[p]].cast<double>()));
   }
   const double degrees = std::acos(smallest) * 180.0 / M_PI;

@@ -26,9 +26,14 @@ class SimMotorBank {
       : parameters_(parameters), line_(parameters.latency_ticks, Efforts{}) {}
 
   void write(const core::MotorCommand& command) noexcept {
+    hold({command.effort(0), command.effort(1), command.effort(2)});
+  }
+
+  /// What a board elsewhere has commanded.
+  void hold(const float (&effort)[core::kAxes]) noexcept {
     Efforts efforts;
     for (std::uint32_t i = 0; i < core::kAxes; ++i) {
-      efforts.axis[i] = static_cast<double>(command.effort(i));
+      efforts.axis[i] = static_cast<double>(effort[i]);
     }
     line_.push(efforts);
   }

@@ -3,6 +3,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -10,16 +12,23 @@
 #include "tactree/core/crc32.hpp"
 #include "tactree/hal/loop.hpp"
 #include "tactree/hal/sim/board.hpp"
+#include "tactree/plant/device_plant.hpp"
 #include "tactree/plant/plant.hpp"
 #include "tactree/simulation/hand_path.hpp"
+#include "tactree/simulation/target.hpp"
 
 namespace tactree::simulation {
 
 struct Setup {
   core::Configuration controller{};
   hal::sim::BoardParameters board{};  ///< period_us follows controller.rate_hz
-  plant::PlantParameters plant{};
+  plant::PlantParameters plant{};     ///< hand and sub-step; and, without dynamics, the masses
+  /// Of the joints of controller.device; without them the device is plant.device on each axis.
+  std::optional<core::DeviceDynamics> dynamics{};
 };
+
+/// Takes a device's figures over for the controller and for the simulated mechanics alike.
+void use_device(const core::DevicePreset& device, Setup& setup);
 
 /// One tick, for traces and plots.
 struct Sample {
@@ -44,12 +53,17 @@ struct Summary {
   std::vector<FaultEvent> faults;
 };
 
-/// The session: power-up, arming, then ticks along the hand's path.
+/// The session, with a device that has been homed: power-up, arming, then ticks along the hand's
+/// path.
 class Simulation {
  public:
   /// `blob` must be 4-byte aligned and outlive the simulation. Throws std::invalid_argument where
-  /// the plant's parameters are out of range.
-  Simulation(std::span<const std::byte> blob, const Setup& setup, HandPath path);
+  /// the plant's parameters are out of range, and what the target throws.
+  Simulation(std::span<const std::byte> blob, const Setup& setup, HandPath path,
+             std::unique_ptr<Target> target = std::make_unique<HostTarget>());
+
+  /// Ticks that arm() takes.
+  [[nodiscard]] static std::uint64_t arming_ticks(const Setup& setup);
 
   /// What start-up said; when it is not ok() the force stays zero.
   [[nodiscard]] const hal::StartResult& start_result() const { return start_; }
@@ -61,9 +75,13 @@ class Simulation {
   /// One tick.
   Sample step();
 
+  /// Ends the session.
+  void finish() { target_->finish(); }
+
   [[nodiscard]] hal::sim::SimBoard& board() { return board_; }
-  [[nodiscard]] const core::Controller& controller() const { return controller_; }
-  [[nodiscard]] const plant::Plant& plant() const { return plant_; }
+  /// State of the controller after the last tick.
+  [[nodiscard]] core::State state() const { return state_; }
+  [[nodiscard]] const plant::DevicePlant& plant() const { return plant_; }
 
  private:
   void sample_device();
@@ -73,10 +91,10 @@ class Simulation {
   HandPath path_;
   double period_s_;
   hal::sim::SimBoard board_;
-  core::Controller controller_;
-  hal::Loop<hal::sim::SimBoard> loop_;
+  std::unique_ptr<Target> target_;
   hal::StartResult start_;
-  plant::Plant plant_;
+  core::State state_ = core::State::kBoot;
+  plant::DevicePlant plant_;
   std::uint64_t ticks_ = 0;
 };
 

@@ -1,0 +1,8 @@
+#pragma once
+// Arm MPS2 with the Cortex-M4 image AN386, in QEMU.
+
+#include "plant_link/plant_link_board.hpp"
+
+namespace tactree::firmware {
+using Board = PlantLinkBoard;
+}

@@ -1,0 +1,10 @@
+#include "board.hpp"
+
+namespace tactree::firmware {
+
+const char kBoardName[] = "mps2-an500";
+const std::uint32_t kTimerClockHz = 25000000;
+
+void prepare_board() {}  // the emulator starts with its clocks running
+
+}  // namespace tactree::firmware

@@ -1,0 +1,57 @@
+// SysTick counts the deadlines at the highest priority and asks for PendSV, at the lowest; that one
+// runs the tick. So a deadline is counted also while a tick runs late, and none is lost.
+
+#include "cortex_m/registers.hpp"
+#include "platform.hpp"
+
+namespace tactree::firmware {
+namespace {
+
+constexpr std::uint32_t kMegahertz = 1000000;
+
+volatile std::uint32_t counted = 0;
+std::uint32_t period_cycles = 0;
+std::uint32_t period_us = 0;
+
+}  // namespace
+
+void start_ticks(float rate_hz) {
+  period_cycles = static_cast<std::uint32_t>(static_cast<float>(kTimerClockHz) / rate_hz + 0.5F);
+  period_us = period_cycles / (kTimerClockHz / kMegahertz);
+  cortex_m::handler_priority_3() = cortex_m::kPendsvLowest;
+  cortex_m::systick_reload() = period_cycles - 1U;
+  cortex_m::systick_value() = 0;  // any write clears it
+  cortex_m::systick_control() = cortex_m::kSystickOn;
+}
+
+std::uint32_t deadlines() { return counted; }
+
+// Again where a deadline goes by between the two readings.
+std::uint32_t now_us() {
+  std::uint32_t before;
+  std::uint32_t cycles;
+  do {
+    before = counted;
+    cycles = period_cycles - 1U - cortex_m::systick_value();
+  } while (before != counted);
+  return before * period_us + cycles / (kTimerClockHz / kMegahertz);
+}
+
+void wait_for_interrupt() { __asm volatile("wfi" ::: "memory"); }
+
+}  // namespace tactree::firmware
+
+extern "C" {
+
+void tactree_deadline();
+void tactree_deadline() {
+  tactree::firmware::counted = tactree::firmware::counted + 1U;
+  tactree::firmware::cortex_m::interrupt_control() = tactree::firmware::cortex_m::kPendPendsv;
+}
+
+void tactree_idle() {
+  while (true) {
+    __asm volatile("wfi" ::: "memory");
+  }
+}
+}

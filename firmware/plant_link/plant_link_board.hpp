@@ -1,0 +1,75 @@
+#pragma once
+// A board in an emulator: encoders, motors, lines and the application's link are at the other end
+// of the plant link; timer, flash and core are the emulated ones. To the emulated program an
+// exchange takes no time.
+
+#include <cstddef>
+#include <span>
+
+#include "platform.hpp"
+#include "tactree/hal/board.hpp"
+#include "tactree/hal/plant_link.hpp"
+
+namespace tactree::firmware {
+
+class PlantLinkBoard {
+ public:
+  /// Waits for a deadline when none has gone by, which is never so in a tick; then gives the plant
+  /// what the last tick brought, and takes its message for this one.
+  class Ticker {
+   public:
+    explicit Ticker(PlantLinkBoard& board) : board_(board) {}
+    [[nodiscard]] hal::Tick wait() noexcept;
+    [[nodiscard]] std::uint32_t now_us() noexcept { return firmware::now_us(); }
+
+   private:
+    PlantLinkBoard& board_;
+    std::uint32_t seen_ = 0;
+  };
+
+  PlantLinkBoard() : ticker_(*this) {}
+  PlantLinkBoard(const PlantLinkBoard&) = delete;
+  PlantLinkBoard& operator=(const PlantLinkBoard&) = delete;
+
+  /// Says hello and waits for the session's configuration.
+  [[nodiscard]] core::Configuration connect(const hal::CapturedFault& last_fault);
+  /// Tells whether there is a model to touch.
+  void report(const hal::StartResult& result);
+
+  // The parts of a board: here one object plays all of them but the ticker.
+  [[nodiscard]] PlantLinkBoard& encoders() noexcept { return *this; }
+  [[nodiscard]] PlantLinkBoard& motors() noexcept { return *this; }
+  [[nodiscard]] PlantLinkBoard& enable_line() noexcept { return *this; }
+  [[nodiscard]] PlantLinkBoard& safety_inputs() noexcept { return *this; }
+  [[nodiscard]] PlantLinkBoard& link() noexcept { return *this; }
+  [[nodiscard]] const PlantLinkBoard& storage() const noexcept { return *this; }
+  [[nodiscard]] Ticker& ticker() noexcept { return ticker_; }
+
+  [[nodiscard]] core::EncoderReading read() noexcept { return input_.input.encoders; }
+  void write(const core::MotorCommand& command) noexcept;
+  [[nodiscard]] bool healthy() noexcept { return input_.input.motors_ok; }
+  void set(bool on) noexcept { output_.enable = on; }
+  [[nodiscard]] bool read_back() noexcept { return input_.input.enable_read_back; }
+  [[nodiscard]] bool emergency_stop() noexcept { return input_.input.emergency_stop; }
+  [[nodiscard]] bool dead_man() noexcept { return input_.input.dead_man; }
+  [[nodiscard]] hal::LinkInput receive() noexcept;
+  void send(const core::Status& status) noexcept { output_.status = status; }
+  [[nodiscard]] std::span<const std::byte> active() const noexcept;
+
+ private:
+  void exchange();
+
+  Ticker ticker_;
+  int from_host_ = -1;
+  int to_host_ = -1;
+  bool in_session_ = false;  // a tick has begun, the plant waits for its output
+  hal::plant_link::TickInput input_{};
+  hal::plant_link::TickOutput output_{};
+};
+
+static_assert(hal::Board<PlantLinkBoard>);
+
+/// Name of the board, from its board.cpp: at most 23 characters.
+extern const char kBoardName[];
+
+}  // namespace tactree::firmware

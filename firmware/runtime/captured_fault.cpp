@@ -1,0 +1,44 @@
+// The record lies in RAM that start-up leaves alone. Its checksum tells it from what RAM holds
+// after power-up.
+
+#include <cstddef>
+#include <span>
+
+#include "platform.hpp"
+#include "tactree/core/crc32.hpp"
+
+namespace tactree::firmware {
+namespace {
+
+struct Kept {
+  hal::CapturedFault fault;
+  std::uint32_t checksum;
+};
+
+// A plain array: an object would be initialised.
+[[gnu::section(".noinit")]] alignas(Kept) std::byte kept_bytes[sizeof(Kept)];
+
+Kept& kept() { return *reinterpret_cast<Kept*>(kept_bytes); }
+
+std::uint32_t checksum_of(const hal::CapturedFault& fault) {
+  return core::crc32(std::as_bytes(std::span(&fault, 1)));
+}
+
+}  // namespace
+
+void capture(const hal::CapturedFault& fault) {
+  kept().fault = fault;
+  kept().checksum = checksum_of(fault);
+  reset();
+}
+
+hal::CapturedFault take_captured_fault() {
+  hal::CapturedFault fault;
+  if (kept().checksum == checksum_of(kept().fault)) {
+    fault = kept().fault;
+  }
+  kept().checksum = ~checksum_of(kept().fault);
+  return fault;
+}
+
+}  // namespace tactree::firmware

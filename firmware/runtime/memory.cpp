@@ -1,0 +1,74 @@
+// The four functions a compiler calls of its own accord. Compiled so that it does not turn these
+// loops into calls of themselves.
+
+#include <cstddef>
+#include <cstdint>
+
+namespace {
+
+bool aligned(const void* a, const void* b) {
+  return ((reinterpret_cast<std::uintptr_t>(a) | reinterpret_cast<std::uintptr_t>(b)) & 3U) == 0U;
+}
+
+// Words of whatever type the bytes have.
+using Word [[gnu::may_alias]] = std::uint32_t;
+
+}  // namespace
+
+extern "C" {
+
+void* memcpy(void* __restrict to, const void* __restrict from, std::size_t bytes) {
+  auto* target = static_cast<unsigned char*>(to);
+  const auto* source = static_cast<const unsigned char*>(from);
+  if (aligned(to, from)) {
+    for (; bytes >= 4; bytes -= 4, target += 4, source += 4) {
+      *reinterpret_cast<Word*>(target) = *reinterpret_cast<const Word*>(source);
+    }
+  }
+  for (; bytes > 0; --bytes) {
+    *target++ = *source++;
+  }
+  return to;
+}
+
+void* memmove(void* to, const void* from, std::size_t bytes) {
+  auto* target = static_cast<unsigned char*>(to);
+  const auto* source = static_cast<const unsigned char*>(from);
+  if (reinterpret_cast<std::uintptr_t>(target) - reinterpret_cast<std::uintptr_t>(source) >=
+      bytes) {
+    return memcpy(to, from, bytes);  // the target does not begin within the source
+  }
+  while (bytes > 0) {
+    --bytes;
+    target[bytes] = source[bytes];
+  }
+  return to;
+}
+
+void* memset(void* to, int value, std::size_t bytes) {
+  auto* target = static_cast<unsigned char*>(to);
+  const auto byte = static_cast<unsigned char>(value);
+  if (aligned(to, nullptr)) {
+    const std::uint32_t word = byte * 0x01010101U;
+    for (; bytes >= 4; bytes -= 4, target += 4) {
+      *reinterpret_cast<Word*>(target) = word;
+    }
+  }
+  for (; bytes > 0; --bytes) {
+    *target++ = byte;
+  }
+  return to;
+}
+
+int memcmp(const void* a, const void* b, std::size_t bytes) {
+  const auto* left = static_cast<const unsigned char*>(a);
+  const auto* right = static_cast<const unsigned char*>(b);
+  for (; bytes > 0; --bytes, ++left, ++right) {
+    if (*left != *right) {
+      return *left < *right ? -1 : 1;
+    }
+  }
+  return 0;
+}
+
+}  // extern "C"

@@ -1,0 +1,74 @@
+// The machine timer runs freely; the next deadline stands in its compare register. A tick that ends
+// late finds how many deadlines went by from the time alone.
+
+#include "platform.hpp"
+#include "rv32/registers.hpp"
+
+namespace tactree::firmware {
+namespace {
+
+constexpr std::uint32_t kMegahertz = 1000000;
+
+std::uint32_t period = 0;  // of the timer's clock
+std::uint32_t period_us = 0;
+volatile std::uint32_t counted = 0;
+volatile std::uint32_t last_deadline = 0;  // low word of the time
+
+// A comparison in between must not strike: first to the far end, then the low word.
+void set_next_deadline(std::uint32_t low) {
+  std::uint32_t high = rv32::timer_high();
+  high += low < rv32::timer_low() ? 1U : 0U;
+  rv32::timer_compare_high() = 0xFFFFFFFFU;
+  rv32::timer_compare_low() = low;
+  rv32::timer_compare_high() = high;
+}
+
+// Counts the deadlines that have gone by, also while a tick runs.
+void count_deadlines() {
+  const std::uint32_t passed = (rv32::timer_low() - last_deadline) / period;
+  last_deadline = last_deadline + passed * period;
+  counted = counted + passed;
+}
+
+}  // namespace
+
+void start_ticks(float rate_hz) {
+  period = static_cast<std::uint32_t>(static_cast<float>(kTimerClockHz) / rate_hz + 0.5F);
+  period_us = period / (kTimerClockHz / kMegahertz);
+  last_deadline = rv32::timer_low();
+  set_next_deadline(last_deadline + period);
+  __asm volatile("csrs mie, %0" ::"r"(rv32::kTimerInterrupt));
+  __asm volatile("csrs mstatus, %0" ::"r"(rv32::kStatusInterrupts));
+}
+
+std::uint32_t deadlines() { return counted; }
+
+std::uint32_t now_us() {
+  std::uint32_t before;
+  std::uint32_t cycles;
+  do {
+    before = counted;
+    cycles = rv32::timer_low() - last_deadline;
+  } while (before != counted);
+  return before * period_us + cycles / (kTimerClockHz / kMegahertz);
+}
+
+void wait_for_interrupt() { __asm volatile("wfi" ::: "memory"); }
+
+}  // namespace tactree::firmware
+
+extern "C" {
+// The tick is called after the deadline is counted and the next one set, interrupts still off.
+[[gnu::interrupt("machine"), gnu::used]] void tactree_timer_interrupt() {
+  using namespace tactree::firmware;
+  count_deadlines();
+  set_next_deadline(last_deadline + period);
+  tactree_tick();
+}
+
+void tactree_idle() {
+  while (true) {
+    __asm volatile("wfi" ::: "memory");
+  }
+}
+}

@@ -1,0 +1,65 @@
+// One handler for all traps: the timer's interrupt runs the tick; everything else is a fault, which
+// is written down before a reset. Motors are off after a reset.
+
+#include "platform.hpp"
+#include "rv32/registers.hpp"
+
+extern "C" {
+void tactree_timer_interrupt();
+
+// Registers as the handler below stores them.
+struct StoredRegisters {
+  std::uint32_t ra;
+  std::uint32_t sp;
+  std::uint32_t a0_to_a7[8];
+  std::uint32_t t0_to_t4[5];
+};
+
+[[noreturn, gnu::used]] void tactree_capture_fault(const StoredRegisters* stored) {
+  tactree::hal::CapturedFault fault;
+  __asm volatile("csrr %0, mcause" : "=r"(fault.cause));
+  __asm volatile("csrr %0, mstatus" : "=r"(fault.status));
+  __asm volatile("csrr %0, mtval" : "=r"(fault.address));
+  __asm volatile("csrr %0, mepc" : "=r"(fault.pc));
+  ++fault.cause;  // 0 is a cause of its own, and means none in the record
+  fault.lr = stored->ra;
+  fault.sp = stored->sp;
+  for (std::uint32_t i = 0; i < 8; ++i) {
+    fault.registers[i] = stored->a0_to_a7[i];
+  }
+  for (std::uint32_t i = 0; i < 5; ++i) {
+    fault.registers[8 + i] = stored->t0_to_t4[i];
+  }
+  tactree::firmware::capture(fault);
+}
+
+// 64 bytes below the stack pointer are free: nothing lies below it.
+[[gnu::naked, gnu::aligned(4)]] void tactree_trap() {
+  __asm volatile(
+      "addi sp, sp, -64\n\t"
+      "sw t0, 40(sp)\n\t"
+      "csrr t0, mcause\n\t"
+      "bgez t0, 1f\n\t"
+      "lw t0, 40(sp)\n\t"
+      "addi sp, sp, 64\n\t"
+      "j tactree_timer_interrupt\n"
+      "1:\n\t"
+      "sw ra, 0(sp)\n\t"
+      "addi t0, sp, 64\n\t"
+      "sw t0, 4(sp)\n\t"
+      "sw a0, 8(sp)\n\t"
+      "sw a1, 12(sp)\n\t"
+      "sw a2, 16(sp)\n\t"
+      "sw a3, 20(sp)\n\t"
+      "sw a4, 24(sp)\n\t"
+      "sw a5, 28(sp)\n\t"
+      "sw a6, 32(sp)\n\t"
+      "sw a7, 36(sp)\n\t"
+      "sw t1, 44(sp)\n\t"
+      "sw t2, 48(sp)\n\t"
+      "sw t3, 52(sp)\n\t"
+      "sw t4, 56(sp)\n\t"
+      "mv a0, sp\n\t"
+      "j tactree_capture_fault\n\t");
+}
+}

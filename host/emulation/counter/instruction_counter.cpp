@@ -1,0 +1,181 @@
+// A plugin of QEMU: counts the instructions a board executes in each tick, by function.
+//   -plugin file=tactree_instruction_counter.so,out=FILE[,skip=TICKS]
+//
+// A tick is everything from the moment the board leaves tactree_idle() until it is back there, when
+// tactree_tick() was called in between. The first TICKS of them do not count.
+//
+// The report:  ticks <count> <max> <total> <checksum> <instructions before the first tick>
+//              function <max in a tick> <total> <name>      for each that was in a tick
+//              end
+
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <deque>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+
+#include "qemu_plugin_api.hpp"
+
+namespace {
+
+struct Function {
+  std::string name;
+  std::uint64_t executed = 0;  // the emulator adds to this
+  std::uint64_t before = 0;    // executed when the tick began
+  std::uint64_t max = 0;
+  std::uint64_t total = 0;
+};
+
+// FNV-1a.
+class Checksum {
+ public:
+  void add(std::uint64_t value) {
+    for (int byte = 0; byte < 8; ++byte) {
+      state_ = (state_ ^ static_cast<std::uint32_t>((value >> (8 * byte)) & 0xFFU)) * 16777619U;
+    }
+  }
+  [[nodiscard]] std::uint32_t value() const { return state_; }
+
+ private:
+  std::uint32_t state_ = 2166136261U;
+};
+
+// One board, one core, one thread that runs it: no locks.
+struct Counter {
+  std::deque<Function> functions;  // stays in place as it grows: the emulator holds addresses
+  std::unordered_map<std::string, Function*> by_name;
+  std::string report_file;
+  std::uint64_t skip = 0;
+  std::uint64_t seen = 0;
+  std::uint64_t ticks = 0;
+  std::uint64_t max = 0;
+  std::uint64_t total = 0;
+  std::uint64_t start = 0;
+  Checksum checksum;
+  bool in_tick = false;
+
+  Function& function(const char* name) {
+    const std::string key = name == nullptr || *name == 0 ? "(no name)" : name;
+    Function*& entry = by_name[key];
+    if (entry == nullptr) {
+      functions.emplace_back().name = key;
+      entry = &functions.back();
+    }
+    return *entry;
+  }
+
+  void begin_tick() {
+    if (in_tick) {
+      end_tick();  // late: the board did not idle in between
+    }
+    in_tick = true;
+  }
+
+  void idle() {
+    if (in_tick) {
+      end_tick();
+    } else {
+      forget();
+    }
+    in_tick = false;
+  }
+
+ private:
+  // What was executed outside the ticks.
+  void forget() {
+    for (Function& f : functions) {
+      start += seen == 0 ? f.executed - f.before : 0U;
+      f.before = f.executed;
+    }
+  }
+
+  void end_tick() {
+    const bool counts = seen >= skip;
+    ++seen;
+    std::uint64_t sum = 0;
+    for (Function& f : functions) {
+      const std::uint64_t own = f.executed - f.before;
+      f.before = f.executed;
+      f.max = counts && own > f.max ? own : f.max;
+      f.total += counts ? own : 0U;
+      sum += own;
+    }
+    if (counts) {
+      ++ticks;
+      max = sum > max ? sum : max;
+      total += sum;
+      checksum.add(sum);
+    }
+  }
+};
+
+// Never destroyed: the report is written after static objects are.
+Counter& counter = *new Counter;
+
+void translated(qemu_plugin_id_t, qemu_plugin_tb* block) {
+  const std::size_t count = qemu_plugin_tb_n_insns(block);
+  for (std::size_t i = 0; i < count; ++i) {
+    qemu_plugin_insn* instruction = qemu_plugin_tb_get_insn(block, i);
+    const char* name = qemu_plugin_insn_symbol(instruction);
+    const std::string_view symbol = name == nullptr ? "" : name;
+    if (symbol == "tactree_idle") {
+      qemu_plugin_register_vcpu_insn_exec_cb(
+          instruction, [](unsigned, void*) { counter.idle(); }, QEMU_PLUGIN_CB_NO_REGS, nullptr);
+      continue;
+    }
+    Function& function = counter.function(name);
+    // The first block of the function that is ever translated begins at its entry.
+    static std::uint64_t entry = 0;
+    const std::uint64_t address = qemu_plugin_insn_vaddr(instruction);
+    if (symbol == "tactree_tick" && (entry == 0 || entry == address)) {
+      entry = address;
+      qemu_plugin_register_vcpu_insn_exec_cb(
+          instruction, [](unsigned, void*) { counter.begin_tick(); }, QEMU_PLUGIN_CB_NO_REGS,
+          nullptr);
+    }
+    qemu_plugin_register_vcpu_insn_exec_inline(instruction, QEMU_PLUGIN_INLINE_ADD_U64,
+                                               &function.executed, 1);
+  }
+}
+
+void write_report(qemu_plugin_id_t, void*) {
+  std::FILE* file = std::fopen(counter.report_file.c_str(), "w");
+  if (file == nullptr) {
+    return;
+  }
+  std::fprintf(
+      file, "ticks %llu %llu %llu %u %llu\n", static_cast<unsigned long long>(counter.ticks),
+      static_cast<unsigned long long>(counter.max), static_cast<unsigned long long>(counter.total),
+      counter.checksum.value(), static_cast<unsigned long long>(counter.start));
+  for (const Function& f : counter.functions) {
+    if (f.total > 0) {
+      std::fprintf(file, "function %llu %llu %s\n", static_cast<unsigned long long>(f.max),
+                   static_cast<unsigned long long>(f.total), f.name.c_str());
+    }
+  }
+  std::fprintf(file, "end\n");
+  std::fclose(file);
+}
+
+}  // namespace
+
+int qemu_plugin_version = 1;
+
+int qemu_plugin_install(qemu_plugin_id_t id, const qemu_info_t*, int count, char** arguments) {
+  for (int i = 0; i < count; ++i) {
+    const std::string_view argument = arguments[i];
+    if (argument.starts_with("out=")) {
+      counter.report_file = argument.substr(4);
+    } else if (argument.starts_with("skip=")) {
+      counter.skip = std::strtoull(arguments[i] + 5, nullptr, 10);
+    } else {
+      std::fprintf(stderr, "tactree_instruction_counter: unknown argument %s\n", arguments[i]);
+      return 1;
+    }
+  }
+  qemu_plugin_register_vcpu_tb_trans_cb(id, translated);
+  qemu_plugin_register_atexit_cb(id, write_report, nullptr);
+  return 0;
+}

@@ -1,0 +1,61 @@
+#pragma once
+// What the tests of emulated boards share.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "analytic_shapes.hpp"
+#include "tactree/emulation/emulated_target.hpp"
+
+namespace tactree::test {
+
+/// The cos sheet of the paper: contact, rims and slopes.
+inline const Shape& touched_shape() {
+  static const Shape shape = cos_sheet();
+  return shape;
+}
+
+/// A file of the firmware's builds: folder "firmware" or "tests/on_target".
+inline std::filesystem::path built(const emulation::BoardDescription& board,
+                                   const std::string& folder, const std::string& name) {
+  return std::filesystem::path(TACTREE_BUILD) / board.toolchain / folder / (name + ".elf");
+}
+
+inline std::vector<const emulation::BoardDescription*> all_boards() {
+  std::vector<const emulation::BoardDescription*> boards;
+  for (const emulation::BoardDescription& board : emulation::boards()) {
+    boards.push_back(&board);
+  }
+  return boards;
+}
+
+/// A test for each board; skipped where the board's image is not built.
+class OnBoard : public testing::TestWithParam<const emulation::BoardDescription*> {
+ protected:
+  void SetUp() override {
+    if (!std::filesystem::exists(built(board(), "firmware", board().name))) {
+      GTEST_SKIP() << "no image for " << board().name;
+    }
+  }
+  [[nodiscard]] static const emulation::BoardDescription& board() { return *GetParam(); }
+  [[nodiscard]] static emulation::EmulationOptions options() {
+    emulation::EmulationOptions options;
+    options.image = built(board(), "firmware", board().name);
+    return options;
+  }
+};
+
+inline std::string name_of_board(
+    const testing::TestParamInfo<const emulation::BoardDescription*>& info) {
+  std::string name = info.param->name;
+  std::erase(name, '-');
+  return name;
+}
+
+#define TACTREE_ON_EVERY_BOARD(suite) \
+  INSTANTIATE_TEST_SUITE_P(Boards, suite, testing::ValuesIn(all_boards()), name_of_board)
+
+}  // namespace tactree::test

@@ -1,0 +1,114 @@
+"""`tactree simulate --board NAME` as a user meets it: options, report, exit codes, nothing left over.
+
+usage: simulate_command_test.py TACTREE BLOB
+"""
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+TACTREE, BLOB = sys.argv[1:3]
+BOARD = "mps2-an500"
+
+
+def tactree(*arguments, **options):
+    return subprocess.run([TACTREE, "simulate", *map(str, arguments)], capture_output=True, text=True,
+                          check=False, **options)
+
+
+def emulators_of(parent):
+    """Process ids of the children of a process."""
+    return pathlib.Path(f"/proc/{parent}/task/{parent}/children").read_text().split()
+
+
+def runs(pid):
+    try:
+        return pathlib.Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+class SimulateOnABoard(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def report(self, *arguments):
+        file = self.folder / "report.json"
+        done = tactree(BLOB, "--seconds", 1, "--json", file, *arguments)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return json.loads(file.read_text()), done.stdout
+
+    def test_report_and_trace_are_those_of_the_host(self):
+        for mode in ("surface", "paper"):
+            common = ("--mode", mode, "--rate", 2000, "--stiffness", 345.6, "--static-friction", 0.5)
+            host, _ = self.report(*common, "--trace", self.folder / "host.csv")
+            board, told = self.report(*common, "--trace", self.folder / "board.csv", "--board", BOARD,
+                                      "--plot", self.folder / "board.svg")
+            self.assertEqual((self.folder / "host.csv").read_text(),
+                             (self.folder / "board.csv").read_text())
+            self.assertIn("<svg", (self.folder / "board.svg").read_text())
+            counts = board.pop("instructions")
+            self.assertIsNone(host.pop("instructions")["max"])
+            self.assertEqual(board.pop("board"), BOARD)
+            self.assertEqual(host.pop("board"), "host")
+            self.assertEqual(host, board)
+            self.assertIsNone(counts["bound"])
+            self.assertGreater(counts["max"], counts["mean"])
+            self.assertGreater(counts["mean"], 500)
+            self.assertIn(f"{counts['max']} at most", told)
+            self.assertIn("tactree::core::", counts["functions"][0]["name"])
+
+    def test_image_missing(self):
+        done = tactree(BLOB, "--board", BOARD, "--firmware", self.folder)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("cmake --build --preset cortex-m7", done.stderr)
+        done = tactree(BLOB, "--board", BOARD,
+                       env={**os.environ, "TACTREE_FIRMWARE": str(self.folder)})
+        self.assertEqual(done.returncode, 1)
+        self.assertIn(str(self.folder), done.stderr)
+
+    def test_emulator_missing(self):
+        done = tactree(BLOB, "--board", BOARD, env={**os.environ, "PATH": str(self.folder)})
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("apt-get install qemu-system-arm", done.stderr)
+
+    def test_unknown_board_is_bad_usage(self):
+        done = tactree(BLOB, "--board", "abacus")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn(BOARD, done.stderr)
+
+    def test_configuration_refused_as_on_the_host(self):
+        arguments = (BLOB, "--seconds", 1, "--stiffness", 50000)
+        host = tactree(*arguments)
+        board = tactree(*arguments, "--board", BOARD)
+        self.assertEqual(board.returncode, 1)
+        self.assertIn("stability limit", board.stderr)
+        self.assertEqual(board.stderr, host.stderr)
+
+    def test_killed_it_takes_the_emulator_along(self):
+        with subprocess.Popen([TACTREE, "simulate", BLOB, "--seconds", "3000", "--board", BOARD],
+                              stdout=subprocess.DEVNULL) as process:
+            children = []
+            for _ in range(200):
+                children = emulators_of(process.pid)
+                if children:
+                    break
+                time.sleep(0.05)
+            self.assertEqual(len(children), 1)
+            process.send_signal(signal.SIGKILL)
+        for _ in range(200):
+            if not runs(children[0]):
+                return
+            time.sleep(0.05)
+        self.fail("the emulator goes on")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])

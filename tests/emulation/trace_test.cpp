@@ -1,0 +1,119 @@
+// The controller of a board does what that of the host does, to the bit, and always the same.
+
+#include <memory>
+
+#include "boards_for_test.hpp"
+#include "tactree/simulation/hand_script.hpp"
+#include "tactree/simulation/simulation.hpp"
+
+namespace tactree::test {
+namespace {
+
+constexpr int kTicks = 2000;
+
+struct RunResult {
+  simulation::Summary summary;
+  emulation::InstructionCounts counts;
+};
+
+simulation::Summary record(simulation::Simulation& sim) {
+  EXPECT_TRUE(sim.start_result().ok());
+  EXPECT_TRUE(sim.arm());
+  simulation::Recorder recorder;
+  for (int i = 0; i < kTicks; ++i) {
+    recorder.add(sim.step());
+  }
+  sim.finish();
+  return recorder.summary();
+}
+
+simulation::HandPath path() { return simulation::make_script("rub", touched_shape().view(), 2.0); }
+
+simulation::Setup setup_of(core::RenderMode mode) {
+  simulation::Setup setup;
+  setup.controller.mode = mode;
+  setup.controller.stiffness_N_m = 612.3F;  // what does not arrive to the bit shows
+  setup.controller.static_friction = 0.37F;
+  setup.board.encoders.latency_ticks = 1;
+  setup.board.motors.latency_ticks = 1;
+  return setup;
+}
+
+simulation::Summary run_on_host(const simulation::Setup& setup) {
+  simulation::Simulation sim(touched_shape().bytes(), setup, path());
+  return record(sim);
+}
+
+RunResult run_on(const emulation::BoardDescription& board, emulation::EmulationOptions options,
+                 const simulation::Setup& setup) {
+  options.uncounted_ticks = simulation::Simulation::arming_ticks(setup);
+  auto target =
+      std::make_unique<emulation::EmulatedTarget>(board, touched_shape().bytes(), options);
+  const emulation::EmulatedTarget& emulated = *target;
+  simulation::Simulation sim(touched_shape().bytes(), setup, path(), std::move(target));
+  RunResult run;
+  run.summary = record(sim);
+  run.counts = emulated.instruction_counts().value();
+  return run;
+}
+
+class Trace : public OnBoard {};
+TACTREE_ON_EVERY_BOARD(Trace);
+
+TEST_P(Trace, IsTheHostsInBothModes) {
+  for (const core::RenderMode mode : {core::RenderMode::kSurface, core::RenderMode::kPaper}) {
+    const simulation::Setup setup = setup_of(mode);
+    const simulation::Summary expected = run_on_host(setup);
+    const simulation::Summary found = run_on(board(), options(), setup).summary;
+    EXPECT_GT(expected.contact_ticks, 10U);
+    EXPECT_EQ(found.trace_crc32, expected.trace_crc32);
+    EXPECT_EQ(found.contact_ticks, expected.contact_ticks);
+    EXPECT_EQ(found.penetration_max_m, expected.penetration_max_m);
+    EXPECT_EQ(found.overruns, 0U);
+    EXPECT_TRUE(found.faults.empty());
+  }
+}
+
+TEST_P(Trace, IsTheHostsAtFourKilohertz) {
+  simulation::Setup setup = setup_of(core::RenderMode::kSurface);
+  setup.controller.rate_hz = 4000.0F;
+  simulation::Simulation on_host(touched_shape().bytes(), setup, path());
+  EXPECT_EQ(run_on(board(), options(), setup).summary.trace_crc32, record(on_host).trace_crc32);
+}
+
+TEST_P(Trace, AgainTakesTheSameInstructionsInEveryTick) {
+  const simulation::Setup setup = setup_of(core::RenderMode::kSurface);
+  const RunResult first = run_on(board(), options(), setup);
+  const RunResult second = run_on(board(), options(), setup);
+  EXPECT_EQ(first.counts.ticks, static_cast<std::uint64_t>(kTicks));
+  EXPECT_GT(first.counts.mean(), 500.0);
+  EXPECT_GE(first.counts.max, first.counts.mean());
+  EXPECT_GT(first.counts.start, 10000U);
+  EXPECT_EQ(second.counts.checksum, first.counts.checksum);
+  EXPECT_EQ(second.counts.total, first.counts.total);
+  EXPECT_EQ(second.counts.max, first.counts.max);
+  EXPECT_EQ(second.counts.start, first.counts.start);
+  std::uint64_t sum = 0;
+  for (const emulation::FunctionCount& function : first.counts.functions) {
+    sum += function.total;
+  }
+  EXPECT_EQ(sum, first.counts.total);
+}
+
+// A core a hundred times too slow: the ticks run late, which is a fault, and there is no force.
+TEST_P(Trace, OfABoardThatIsTooSlowIsAFault) {
+  emulation::EmulationOptions slow = options();
+  slow.instruction_shift = 10;
+  auto target = std::make_unique<emulation::EmulatedTarget>(board(), touched_shape().bytes(), slow);
+  simulation::Simulation sim(touched_shape().bytes(), {}, path(), std::move(target));
+  EXPECT_FALSE(sim.arm());
+  const core::Status status = sim.step().status;
+  EXPECT_EQ(status.state, core::State::kFault);
+  EXPECT_TRUE(core::has_fault(status.faults, core::Fault::kDeadlineMissed));
+  EXPECT_GT(status.overruns, 10U);
+  EXPECT_EQ(status.force, core::Vec3{});
+  sim.finish();
+}
+
+}  // namespace
+}  // namespace tactree::test
