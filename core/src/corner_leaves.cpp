@@ -1,9 +1,7 @@
 #include "corner_leaves.hpp"
 
-#include "lanes.hpp"
-
 namespace tactree::core {
-NearLeaf near_leaf(const BlobView& view, const Leaf& leaf, Vec3 place) {
+NearLeaf near_leaf(const BlobView& view, const Leaf& leaf, Vec3 place, std::uint32_t corner) {
   const float step = view.step_m();
   const std::int32_t half_site = 1 << (view.depth() - leaf.level);
   const auto local = [&](float v, std::int32_t low) {
@@ -12,7 +10,7 @@ NearLeaf near_leaf(const BlobView& view, const Leaf& leaf, Vec3 place) {
   return {leaf.number,
           leaf.first_point,
           leaf.first_point + leaf.point_count,
-          0,
+          corner,
           step * static_cast<float>(2 * half_site),
           {local(place.x, leaf.min.x), local(place.y, leaf.min.y), local(place.z, leaf.min.z)}};
 }
@@ -114,21 +112,21 @@ Int3 CornerLeaves::lower_corner(std::uint32_t corner) const {
   return {units(0), units(1), units(2)};
 }
 
-// A leaf larger than the finest may hold several corners; it is found once.
-NearLeaf CornerLeaves::find_mixed(std::uint32_t corner) {
-  Leaf leaf;
-  if (!find_leaf(view_, lower_corner(corner), leaf)) {
-    return {};
+// A leaf larger than the finest may hold several corners: it is told for the first of them, from
+// which no step along one axis to the centre's side stays in the leaf.
+bool CornerLeaves::find_mixed(std::uint32_t corner, Leaf& leaf) const {
+  const Cell cell{pick(cell_, corner, 0), pick(cell_, corner, 1), pick(cell_, corner, 2)};
+  if (!descend(view_, 0, 0, cell, leaf)) {
+    return false;
   }
-  for (std::uint32_t i = 0; i < seen_count_; ++i) {  // bound: 8
-    if (seen_[i] == leaf.number) {
-      return {};
+  const std::uint32_t finer_levels = view_.depth() - leaf.level;
+  for (std::uint32_t axis = 0; axis < 3; ++axis) {  // bound: 3
+    const bool is_across = (corner >> axis & 1U) != 0;
+    if (is_across && cell_[0][axis] >> finer_levels == cell_[1][axis] >> finer_levels) {
+      return false;
     }
   }
-  seen_[seen_count_++] = leaf.number;
-  NearLeaf found = near_leaf(view_, leaf, centre_);
-  found.corner = corner;
-  return found;
+  return true;
 }
 
 Leaf CornerLeaves::leaf(std::uint32_t number, std::uint32_t corner) const {

@@ -3,9 +3,20 @@
 // its eight corners are all the leaves it touches. (On each axis the cube is no longer than a leaf,
 // so a leaf that meets it contains one of its two ends.)
 
+#include "lanes.hpp"
 #include "tactree/core/octree.hpp"
 
 namespace tactree::core {
+
+/// A cell of the finest level, counted from the root's lower corner.
+struct Cell {
+  std::uint32_t x;
+  std::uint32_t y;
+  std::uint32_t z;
+};
+/// The leaf that holds the cell, below a node of that level which does, too. False: empty space.
+[[nodiscard]] bool descend(const BlobView& view, std::uint32_t node, std::uint32_t level, Cell cell,
+                           Leaf& leaf);
 
 /// A leaf as seen from a place; what a search through its points needs.
 struct NearLeaf {
@@ -18,7 +29,8 @@ struct NearLeaf {
 
   [[nodiscard]] bool empty() const { return end_point == first_point; }
 };
-[[nodiscard]] NearLeaf near_leaf(const BlobView& view, const Leaf& leaf, Vec3 place);
+[[nodiscard]] NearLeaf near_leaf(const BlobView& view, const Leaf& leaf, Vec3 place,
+                                 std::uint32_t corner = 0);
 
 /// The leaves that the cube centre +- r touches.
 /// Precondition: 0 <= r <= view.reach_m(); for a larger or NaN r, or a centre that is not finite,
@@ -38,8 +50,10 @@ class CornerLeaves {
   [[nodiscard]] Leaf leaf(std::uint32_t number, std::uint32_t corner) const;
 
  private:
+  static constexpr std::uint32_t kAxes = kLanes > 1 ? kLanes : 3;  // room for whole lanes
+
   template <typename T>
-  [[nodiscard]] static T pick(const T (&of)[2][4], std::uint32_t corner, std::uint32_t axis) {
+  [[nodiscard]] static T pick(const T (&of)[2][kAxes], std::uint32_t corner, std::uint32_t axis) {
     return of[corner >> axis & 1U][axis];
   }
 
@@ -48,7 +62,7 @@ class CornerLeaves {
   [[nodiscard]] std::uint32_t axes_within(float limit_squared) const;
   [[nodiscard]] bool is_beyond(std::uint32_t corner, float limit_squared) const;
   [[nodiscard]] NearLeaf find(std::uint32_t corner);
-  [[nodiscard]] NearLeaf find_mixed(std::uint32_t corner);
+  [[nodiscard]] bool find_mixed(std::uint32_t corner, Leaf& leaf) const;
   [[nodiscard]] std::uint32_t find_own();
   [[nodiscard]] std::uint32_t find_other(std::uint32_t corner) const;
   [[nodiscard]] std::uint32_t directory_entry(std::uint32_t corner) const;
@@ -60,17 +74,15 @@ class CornerLeaves {
   std::uint32_t below_;          // levels between the directory and the leaves
   std::uint32_t axes_left_ = 0;  // bit = an axis whose other cell is in reach
   // On each axis the centre's finest cell, and the one beyond its nearest face:
-  std::uint32_t cell_[2][4];    // counted from the root
-  std::uint32_t packed_[2][4];  // the bits below the directory, where octant_of() wants them
-  float local_[2][4];           // of the centre, m, counted from the cell's first site
-  float gap_squared_[2][4];     // m^2 from the centre to the cell, rounded down
+  std::uint32_t cell_[2][kAxes];    // counted from the root
+  std::uint32_t packed_[2][kAxes];  // the bits below the directory, where octant_of() wants them
+  float local_[2][kAxes];           // of the centre, m, counted from the cell's first site
+  float gap_squared_[2][kAxes];     // m^2 from the centre to the cell, rounded down
   std::uint32_t own_packed_ = 0;
   std::uint32_t axes_across_ = 0;  // bit = an axis whose two cells are below different nodes there
   // The centre's descent, by levels below: the nodes, then the leaf's number.
   std::uint32_t path_[kMaxLevelsBelow + 1];
   std::uint32_t path_end_ = 0;  // where it ends: 0 is the leaf
-  std::uint32_t seen_count_ = 0;
-  std::uint32_t seen_[kLeavesPerQuery];
 };
 
 // The bits of three coordinates side by side, ten each: one product brings those of a level, 0, 10
@@ -129,7 +141,8 @@ inline std::uint32_t step_down(const BlobView& view, std::uint32_t node, std::ui
 
 [[gnu::always_inline]] inline NearLeaf CornerLeaves::find(std::uint32_t corner) {
   if (!view_.is_uniform()) {
-    return find_mixed(corner);
+    Leaf leaf;
+    return find_mixed(corner, leaf) ? near_leaf(view_, leaf, centre_, corner) : NearLeaf{};
   }
   const std::uint32_t number = corner == 0 ? find_own() : find_other(corner);
   if (number == kNoNode) {

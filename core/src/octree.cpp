@@ -33,12 +33,7 @@ constexpr std::uint32_t octant_of(std::uint32_t x, std::uint32_t y, std::uint32_
          (((z >> level_below) & 1U) << 2);
 }
 
-// A cell of the finest level, counted from the root's lower corner.
-struct Cell {
-  std::uint32_t x;
-  std::uint32_t y;
-  std::uint32_t z;
-};
+}  // namespace
 
 bool descend(const BlobView& view, std::uint32_t node, std::uint32_t level, Cell cell, Leaf& leaf) {
   const Int3 root{view.header().root_min[0], view.header().root_min[1], view.header().root_min[2]};
@@ -62,8 +57,6 @@ bool descend(const BlobView& view, std::uint32_t node, std::uint32_t level, Cell
   }
   return false;
 }
-
-}  // namespace
 
 bool to_lattice(const BlobView& view, Vec3 position, Int3& site) {
   if (view.empty()) {
