@@ -1,19 +1,6 @@
 #include "corner_leaves.hpp"
 
 namespace tactree::core {
-NearLeaf near_leaf(const BlobView& view, const Leaf& leaf, Vec3 place, std::uint32_t corner) {
-  const float step = view.step_m();
-  const std::int32_t half_site = 1 << (view.depth() - leaf.level);
-  const auto local = [&](float v, std::int32_t low) {
-    return v - step * static_cast<float>(low + half_site);
-  };
-  return {leaf.number,
-          leaf.first_point,
-          leaf.first_point + leaf.point_count,
-          corner,
-          step * static_cast<float>(2 * half_site),
-          {local(place.x, leaf.min.x), local(place.y, leaf.min.y), local(place.z, leaf.min.z)}};
-}
 
 CornerLeaves::CornerLeaves(const BlobView& view, Vec3 centre, float r)
     : view_(view), centre_(centre), below_(view.depth() - view.directory_level()) {

@@ -29,8 +29,20 @@ struct NearLeaf {
 
   [[nodiscard]] bool empty() const { return end_point == first_point; }
 };
-[[nodiscard]] NearLeaf near_leaf(const BlobView& view, const Leaf& leaf, Vec3 place,
-                                 std::uint32_t corner = 0);
+[[nodiscard]] inline NearLeaf near_leaf(const BlobView& view, const Leaf& leaf, Vec3 place,
+                                        std::uint32_t corner = 0) {
+  const float step = view.step_m();
+  const std::int32_t half_site = 1 << (view.depth() - leaf.level);
+  const auto local = [&](float v, std::int32_t low) {
+    return v - step * static_cast<float>(low + half_site);
+  };
+  return {leaf.number,
+          leaf.first_point,
+          leaf.first_point + leaf.point_count,
+          corner,
+          step * static_cast<float>(2 * half_site),
+          {local(place.x, leaf.min.x), local(place.y, leaf.min.y), local(place.z, leaf.min.z)}};
+}
 
 /// The leaves that the cube centre +- r touches.
 /// Precondition: 0 <= r <= view.reach_m(); for a larger or NaN r, or a centre that is not finite,
