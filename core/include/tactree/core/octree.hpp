@@ -21,9 +21,17 @@ constexpr std::uint32_t lowest_octant(std::uint32_t mask) {
 
 /// The same of a mask without its highest octant (0-127): the factor puts copies of the seven bits
 /// seven apart, so that each of them meets the lowest bit of a nibble once.
-constexpr std::uint32_t count_low_octants(std::uint32_t mask) {
-  return ((mask * 0x00204081U) & 0x11111111U) * 0x11111111U >> 28;
-}
+struct OctantCounts {
+  std::uint8_t of[128];
+};
+inline constexpr OctantCounts kOctantCounts = [] {
+  OctantCounts counts{};
+  for (std::uint32_t mask = 0; mask < 128; ++mask) {
+    counts.of[mask] = static_cast<std::uint8_t>(count_octants(mask));
+  }
+  return counts;
+}();
+constexpr std::uint32_t count_low_octants(std::uint32_t mask) { return kOctantCounts.of[mask]; }
 
 /// Index of the child in `octant` from a word of a node. Precondition: that child exists.
 constexpr std::uint32_t child_of(std::uint32_t group, std::uint32_t octant) {
