@@ -2,7 +2,6 @@
 // Four floats or integers that one instruction works on, where the core has such instructions; one
 // elsewhere. The arithmetic is IEEE either way, so results are the same to the bit.
 
-#include <bit>
 #include <cstdint>
 
 namespace tactree::core {
@@ -63,17 +62,10 @@ inline float smallest(Floats v) {
   const float high = v[2] < v[3] ? v[2] : v[3];
   return low < high ? low : high;
 }
-inline std::int32_t lowest_where(Mask mask,
-                                 Integers v) {  // of the lanes that the mask has, not none
-  std::int32_t lanes[kLanes];
-  store(v, lanes);
-  std::uint32_t bits = mask_bits(mask);
-  std::int32_t low = lanes[std::countr_zero(bits)];
-  while ((bits &= bits - 1U) != 0) {  // bound: kLanes
-    const std::int32_t next = lanes[std::countr_zero(bits)];
-    low = next < low ? next : low;
-  }
-  return low;
+inline std::int32_t smallest(Integers v) {
+  const std::int32_t low = v[0] < v[1] ? v[0] : v[1];
+  const std::int32_t high = v[2] < v[3] ? v[2] : v[3];
+  return low < high ? low : high;
 }
 inline float lane(Floats v, std::uint32_t k) { return v[k]; }
 inline std::int32_t lane(Integers v, std::uint32_t k) { return v[k]; }
@@ -114,7 +106,7 @@ inline Integers ones_if(Mask mask) { return mask ? -1 : 0; }
 inline Integers select(Mask mask, Integers a, Integers b) { return mask ? a : b; }
 
 inline Floats smallest(Floats v) { return v; }
-inline std::int32_t lowest_where(Mask, Integers v) { return v; }
+inline Integers smallest(Integers v) { return v; }
 inline float lane(Floats v, std::uint32_t) { return v; }
 inline std::int32_t lane(Integers v, std::uint32_t) { return v; }
 

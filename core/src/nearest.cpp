@@ -36,7 +36,7 @@ bool nearest_in_leaf(const LeafScan& scan, Nearest& best) {
   if (squared > best.squared) {
     return false;
   }
-  const std::int32_t index = lowest_where(lanes.squared == squared, lanes.index);
+  const std::int32_t index = smallest(select(lanes.squared == squared, lanes.index, all(kNone)));
   if (squared == best.squared && index > best.index) {
     return false;
   }

@@ -19,14 +19,14 @@ constexpr std::uint32_t lowest_octant(std::uint32_t mask) {
   return count_octants((mask & (~mask + 1U)) - 1U);
 }
 
-/// The same of a mask without its highest octant (0-127): the factor puts copies of the seven bits
-/// seven apart, so that each of them meets the lowest bit of a nibble once.
+/// The same of a mask without its highest octant (0-127), by a table: it is what every step down
+/// the tree waits for.
 struct OctantCounts {
   std::uint8_t of[128];
 };
 inline constexpr OctantCounts kOctantCounts = [] {
   OctantCounts counts{};
-  for (std::uint32_t mask = 0; mask < 128; ++mask) {
+  for (std::uint32_t mask = 0; mask < 128; ++mask) {  // bound: 128
     counts.of[mask] = static_cast<std::uint8_t>(count_octants(mask));
   }
   return counts;
