@@ -31,6 +31,7 @@ std::vector<Case> cases() {
   all.push_back({"sheet", test::cos_sheet(0.25, 0.0025, Profile::kSurface)});
   all.push_back({"sphere", test::sphere(0.03, 0.001)});
   all.push_back({"cloud", test::random_cloud(20000, 1.0, 0.02, Profile::kSurface, 21)});
+  all.push_back({"leaves of many sizes", test::random_cloud(3000, 1.0, 0.02, Profile::kPaper, 22)});
   return all;
 }
 
