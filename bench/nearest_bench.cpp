@@ -32,8 +32,9 @@ constexpr double kHalfWidth = 2.5;
 constexpr double kMiddleHeight = 0.2;  // of cos x + cos y over the square
 constexpr std::size_t kPathProbes = 6820;
 constexpr std::size_t kRandomProbes = 100000;
-constexpr int kPathPasses = 15;
-constexpr int kRandomPasses = 5;
+constexpr std::size_t kWarmUpProbes = 100;
+constexpr int kPathPasses = 101;
+constexpr int kRandomPasses = 15;
 constexpr std::size_t kCountEvery = 31;  // of the path, for instructions
 
 struct Options {
@@ -217,15 +218,21 @@ double nanoseconds_per_count() {
 
 volatile std::uint32_t sink;
 
+// The last probes come first, untimed: a hand was there before, and the other structure's turn has
+// left the caches cold. Times are written one behind the other, to disturb them little.
 template <class Query>
-void time_pass(const Query& query, const std::vector<Vec3>& probes,
-               std::vector<std::vector<std::uint64_t>>& times) {
+std::vector<std::uint64_t> time_pass(const Query& query, const std::vector<Vec3>& probes) {
+  std::vector<std::uint64_t> times(probes.size());
+  for (std::size_t i = probes.size() - kWarmUpProbes; i < probes.size(); ++i) {
+    sink = query(probes[i]).index;
+  }
   for (std::size_t i = 0; i < probes.size(); ++i) {
     const std::uint64_t begin = clock_now();
     const Answer answer = query(probes[i]);
     sink = answer.index;
-    times[i].push_back(clock_now() - begin);
+    times[i] = clock_now() - begin;
   }
+  return times;
 }
 
 // The mean of the faster half: what the rest of the machine does only ever slows a call down, and
@@ -256,10 +263,15 @@ struct Pair {
   Distribution peer;
 };
 
-std::vector<double> to_nanoseconds(const std::vector<std::vector<std::uint64_t>>& times,
-                                   double per_count, double overhead) {
+using Passes = std::vector<std::vector<std::uint64_t>>;
+
+std::vector<double> to_nanoseconds(const Passes& passes, double per_count, double overhead) {
   std::vector<double> result;
-  for (const auto& repeats : times) {
+  std::vector<std::uint64_t> repeats(passes.size());
+  for (std::size_t i = 0; i < passes.front().size(); ++i) {
+    for (std::size_t pass = 0; pass < passes.size(); ++pass) {
+      repeats[pass] = passes[pass][i];
+    }
     result.push_back(std::max(0.0, per_count * typical(repeats) - overhead));
   }
   return result;
@@ -268,14 +280,14 @@ std::vector<double> to_nanoseconds(const std::vector<std::vector<std::uint64_t>>
 // Passes take turns, so that a slow moment of the machine meets both.
 Pair time_both(const Ours& ours, const Nanoflann& peer, const std::vector<Vec3>& probes,
                int passes) {
-  std::vector<std::vector<std::uint64_t>> ours_times(probes.size());
-  std::vector<std::vector<std::uint64_t>> peer_times(probes.size());
-  std::vector<std::vector<std::uint64_t>> empty_times(probes.size());
+  Passes ours_times;
+  Passes peer_times;
+  Passes empty_times;
   const auto nothing = [](Vec3) { return Answer{}; };
   for (int pass = 0; pass < passes; ++pass) {
-    time_pass(ours, probes, ours_times);
-    time_pass(peer, probes, peer_times);
-    time_pass(nothing, probes, empty_times);
+    ours_times.push_back(time_pass(ours, probes));
+    peer_times.push_back(time_pass(peer, probes));
+    empty_times.push_back(time_pass(nothing, probes));
   }
   const double per_count = nanoseconds_per_count();
   const double overhead = distribution_of(to_nanoseconds(empty_times, per_count, 0.0)).median;
