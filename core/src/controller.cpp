@@ -27,6 +27,7 @@ constexpr const char* kModelWords[] = {
     "there is no model",
     "the blob was built without the guarantees that surface mode needs",
     "a ball of the model may hold more points than the controller has room for",
+    "a material is stiffer than device, hand and rate allow",
 };
 constexpr std::uint32_t kModelWordCount = sizeof(kModelWords) / sizeof(kModelWords[0]);
 
@@ -71,10 +72,12 @@ ModelStatus Controller::suitability(const BlobView& view) const {
   if (support == SurfaceSupport::kEmpty) {
     return ModelStatus::kEmpty;
   }
-  if (support == SurfaceSupport::kOk || configuration_.mode == RenderMode::kPaper) {
-    return ModelStatus::kOk;
+  if (support != SurfaceSupport::kOk && configuration_.mode != RenderMode::kPaper) {
+    return support == SurfaceSupport::kNoReach ? ModelStatus::kNoReach
+                                               : ModelStatus::kTooManyPoints;
   }
-  return support == SurfaceSupport::kNoReach ? ModelStatus::kNoReach : ModelStatus::kTooManyPoints;
+  const bool stable = find_unstable_material(view, configuration_) == kNoMaterial;
+  return stable ? ModelStatus::kOk : ModelStatus::kTooStiff;
 }
 
 ModelStatus Controller::load_model(const BlobView& view) {

@@ -71,8 +71,20 @@ simulation::Setup make_setup(const SimulateOptions& options) {
   return setup;
 }
 
+[[noreturn]] void refuse_material(const std::string& file, const core::BlobView& view,
+                                  const core::Configuration& controller) {
+  const std::uint32_t index = core::find_unstable_material(view, controller);
+  const core::BlobMaterial& material = view.material(index);
+  refuse(fmt::format("{}: material {}: its stiffness of {:.6g} N/m is beyond the stability limit "
+                     "of {:.6g} N/m with a hand at {:.6g} Hz",
+                     file, index, material.stiffness_N_m,
+                     core::material_limit(controller, material), controller.rate_hz),
+         "build the blob with a softer or more damped --material, raise --rate, or simulate with "
+         "--no-materials");
+}
+
 void check_start(const SimulateOptions& options, const simulation::Setup& setup,
-                 const hal::StartResult& start) {
+                 const core::BlobView& view, const hal::StartResult& start) {
   if (start.configuration == core::ConfigurationStatus::kUnstable) {
     const core::StabilityLimit limit = core::stability_limit(setup.controller);
     refuse(
@@ -88,6 +100,9 @@ void check_start(const SimulateOptions& options, const simulation::Setup& setup,
   if (start.blob != core::BlobStatus::kOk) {
     refuse(fmt::format("{}: refused: {}", options.blob, core::describe(start.blob)),
            "build it again from the scan");
+  }
+  if (start.model == core::ModelStatus::kTooStiff) {
+    refuse_material(options.blob, view, setup.controller);
   }
   if (start.model != core::ModelStatus::kOk) {
     refuse(fmt::format("{}: {}", options.blob, core::describe(start.model)),
@@ -142,7 +157,7 @@ Outcome run(const SimulateOptions& options, const BlobFile& blob) {
   }
   simulation::Simulation sim(blob.bytes(), setup, hand_path(options, blob.view()),
                              std::move(target));
-  check_start(options, setup, sim.start_result());
+  check_start(options, setup, blob.view(), sim.start_result());
   if (!sim.arm()) {
     refuse(fmt::format("the controller did not become active, it is in state {}",
                        core::name_of(sim.state())),
@@ -277,6 +292,8 @@ void add_controller_options(CLI::App& verb, core::Configuration& c) {
   verb.add_option("--dynamic-friction", c.dynamic_friction, "coefficient, at most the static one")
       ->check(CLI::Range(0.0, 2.0))
       ->capture_default_str();
+  verb.add_flag("!--no-materials", c.use_materials,
+                "feel the options above everywhere, whatever materials the blob has");
   verb.add_option("--force-max", c.force_max_N, "largest force, N")
       ->check(CLI::Range(0.01, 1000.0))
       ->capture_default_str();

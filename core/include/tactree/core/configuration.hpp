@@ -27,7 +27,7 @@ struct Configuration {
   float static_friction = 0.4F;       ///< 0 .. 2
   float dynamic_friction = 0.3F;      ///< 0 .. static_friction
   float velocity_cutoff_hz = 200.0F;  ///< low-pass filter of the velocity: 1 .. rate_hz / 2
-  /// Follow the blob's materials where it has any, each stiffness at most the limit above.
+  /// Follow the blob's materials where it has any; each must be below the stability limit.
   bool use_materials = true;
 
   // The device and the hand, for the stability limit.

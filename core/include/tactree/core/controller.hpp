@@ -71,6 +71,7 @@ enum class ModelStatus : std::uint8_t {
   kEmpty,          ///< no model in the view
   kNoReach,        ///< built without the guarantees that surface mode needs
   kTooManyPoints,  ///< a ball may hold more than kMaxCandidates points
+  kTooStiff,       ///< a material is stiffer than material_limit(): see find_unstable_material()
 };
 [[nodiscard]] const char* describe(ModelStatus status);
 

@@ -40,6 +40,10 @@ class Proxy {
   [[nodiscard]] Vec3 position() const { return position_; }
   /// In contact: of the surface, towards the side the probe came from.
   [[nodiscard]] Vec3 normal() const { return side_ * reference_; }
+  /// In contact: of the surface, towards the side of the points' normals.
+  [[nodiscard]] Vec3 stored_normal() const { return reference_; }
+  /// The points around, good for position().
+  [[nodiscard]] const CandidateSet& candidates() const { return candidates_; }
   /// Share of the contact force to display: less than 1 where the surface ends.
   [[nodiscard]] float strength() const { return strength_; }
   /// Point of the blob nearest to the proxy; kNoPoint when free.

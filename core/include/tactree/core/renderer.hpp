@@ -5,6 +5,7 @@
 
 #include "tactree/core/blob.hpp"
 #include "tactree/core/configuration.hpp"
+#include "tactree/core/material.hpp"
 #include "tactree/core/nearest.hpp"
 #include "tactree/core/proxy.hpp"
 #include "tactree/core/vec3.hpp"
@@ -22,7 +23,7 @@ struct Rendering {
   Vec3 normal{};                 ///< outward; zero when free
   Vec3 force{};                  ///< N
   float strength = 0.0F;         ///< share of the force displayed; below 1 on a rim
-  float penetration_m = 0.0F;    ///< from the probe to the proxy, along the normal
+  float penetration_m = 0.0F;    ///< from the probe to the proxy, along the normal; no texture
   std::uint32_t leaf = kNoLeaf;  ///< of the nearest point of the contact
   std::uint32_t point = kNoPoint;  ///< nearest point of the contact
 };
@@ -43,6 +44,7 @@ class Renderer {
                            Vec3 velocity);
 
   Proxy proxy_;
+  Friction friction_{};  // at the contact of the last tick
 };
 
 }  // namespace tactree::core
