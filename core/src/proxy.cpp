@@ -32,6 +32,7 @@ void Proxy::reset(Vec3 probe) {
   candidates_.clear();
   position_ = probe;
   complete_ = true;
+  lost_contact_ = false;
   lose_support();
 }
 
@@ -41,6 +42,7 @@ void Proxy::update(const BlobView& view, Vec3 probe, const Friction& friction) {
     return;
   }
   budget_ = kEvaluationsPerTick;
+  lost_contact_ = false;
   if (in_contact_) {
     slide(view, probe, friction);
   }
@@ -150,6 +152,7 @@ void Proxy::slide(const BlobView& view, Vec3 probe, const Friction& friction) {
     const float excess = distance - cone;
     const bool last = !(excess > step);
     if (!slip_by(view, ((last ? excess : step) / distance) * along)) {
+      lost_contact_ = true;
       lose_support();
       return;
     }

@@ -60,6 +60,7 @@ Rendering Renderer::update_surface(const BlobView& view, const Configuration& c,
   Rendering r;
   r.proxy = proxy_.position();
   r.complete = proxy_.complete();
+  r.lost = proxy_.lost_contact();
   if (!proxy_.in_contact()) {
     return r;
   }

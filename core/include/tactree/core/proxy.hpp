@@ -48,6 +48,8 @@ class Proxy {
   [[nodiscard]] float strength() const { return strength_; }
   /// Point of the blob nearest to the proxy; kNoPoint when free.
   [[nodiscard]] std::uint32_t nearest_point() const { return nearest_point_; }
+  /// True in the tick in which contact ended because the surface did, not because the probe left.
+  [[nodiscard]] bool lost_contact() const { return lost_contact_; }
   /// False once a gather had to leave points out; reset() makes it true.
   [[nodiscard]] bool complete() const { return complete_; }
 
@@ -72,6 +74,7 @@ class Proxy {
   bool tracked_ = false;      // reference_ and side_ hold
   bool in_contact_ = false;
   bool slipping_ = false;
+  bool lost_contact_ = false;
   bool complete_ = true;
 };
 

@@ -13,6 +13,7 @@
 namespace tactree::core {
 
 inline constexpr std::uint32_t kNoLeaf = 0xFFFFFFFFU;
+inline constexpr std::uint32_t kNoBody = 0xFFFFFFFFU;
 
 /// What the rendering of one tick found. Model frame.
 struct Rendering {
@@ -26,6 +27,8 @@ struct Rendering {
   float penetration_m = 0.0F;    ///< from the probe to the proxy, along the normal; no texture
   std::uint32_t leaf = kNoLeaf;  ///< of the nearest point of the contact
   std::uint32_t point = kNoPoint;  ///< nearest point of the contact
+  std::uint32_t body = kNoBody;    ///< in a Scene: whose contact it is
+  bool lost = false;               ///< the surface ended under the contact of the last tick
 };
 
 /// Interrupt safe: no shared state. RAM: about 4 KiB, the proxy's scratch.
