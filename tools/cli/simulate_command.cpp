@@ -14,6 +14,7 @@
 #include "blob_file.hpp"
 #include "command.hpp"
 #include "output_file.hpp"
+#include "scene_file.hpp"
 #include "tactree/emulation/emulated_target.hpp"
 #include "tactree/simulation/hand_script.hpp"
 #include "tactree/simulation/simulation.hpp"
@@ -27,7 +28,9 @@ constexpr double kMaxTicks = 1e8;
 constexpr double kMaxTracedTicks = 5e6;
 
 struct SimulateOptions {
-  std::string blob;
+  std::vector<std::string> blobs;
+  std::string scene;
+  std::string blob;  // of the first body
   std::string board = "host";
   std::string firmware;
   std::string device = "cartesian";
@@ -48,11 +51,17 @@ struct SimulateOptions {
   throw CommandError(fmt::format("{} ({})", what, remedy));
 }
 
-simulation::HandPath hand_path(const SimulateOptions& options, const core::BlobView& view) {
+/// A script touches the first body where that begins.
+simulation::HandPath hand_path(const SimulateOptions& options, const SceneFile& scene) {
   if (!options.path.empty()) {
     return simulation::read_hand_path(options.path);
   }
-  return simulation::make_script(options.script, view, options.seconds);
+  std::vector<simulation::Waypoint> waypoints =
+      simulation::make_script(options.script, scene.files[0]->view(), options.seconds).waypoints();
+  for (simulation::Waypoint& waypoint : waypoints) {
+    waypoint.position_m = scene.bodies[0].path.first() * waypoint.position_m;
+  }
+  return simulation::HandPath(std::move(waypoints));
 }
 
 simulation::Setup make_setup(const SimulateOptions& options) {
@@ -83,8 +92,8 @@ simulation::Setup make_setup(const SimulateOptions& options) {
          "--no-materials");
 }
 
-void check_start(const SimulateOptions& options, const simulation::Setup& setup,
-                 const core::BlobView& view, const hal::StartResult& start) {
+void check_start(const std::string& file, const core::BlobView& view,
+                 const simulation::Setup& setup, const hal::StartResult& start) {
   if (start.configuration == core::ConfigurationStatus::kUnstable) {
     const core::StabilityLimit limit = core::stability_limit(setup.controller);
     refuse(
@@ -98,14 +107,14 @@ void check_start(const SimulateOptions& options, const simulation::Setup& setup,
            "give a value in that range");
   }
   if (start.blob != core::BlobStatus::kOk) {
-    refuse(fmt::format("{}: refused: {}", options.blob, core::describe(start.blob)),
+    refuse(fmt::format("{}: refused: {}", file, core::describe(start.blob)),
            "build it again from the scan");
   }
   if (start.model == core::ModelStatus::kTooStiff) {
-    refuse_material(options.blob, view, setup.controller);
+    refuse_material(file, view, setup.controller);
   }
   if (start.model != core::ModelStatus::kOk) {
-    refuse(fmt::format("{}: {}", options.blob, core::describe(start.model)),
+    refuse(fmt::format("{}: {}", file, core::describe(start.model)),
            "build it with --profile surface, or use --mode paper");
   }
 }
@@ -141,7 +150,30 @@ std::unique_ptr<emulation::EmulatedTarget> boot_board(const SimulateOptions& opt
   return std::make_unique<emulation::EmulatedTarget>(*board, blob.bytes(), emulation);
 }
 
-Outcome run(const SimulateOptions& options, const BlobFile& blob) {
+bool is_scene(const SimulateOptions& options) {
+  return !options.scene.empty() || options.blobs.size() > 1;
+}
+
+/// The controller in this process; null: on an emulated board.
+std::unique_ptr<simulation::Target> host_target(const SimulateOptions& options,
+                                                const simulation::Setup& setup,
+                                                const SceneFile& scene) {
+  if (emulation::find_board(options.board) != nullptr) {
+    if (is_scene(options)) {
+      refuse("--board: a board has one blob in its flash and renders no scene",
+             "use --board host, or give one blob and no --scene");
+    }
+    return nullptr;
+  }
+  if (!is_scene(options)) {
+    return std::make_unique<simulation::HostTarget>();
+  }
+  return std::make_unique<simulation::SceneTarget>(scene.bodies,
+                                                   simulation::Simulation::arming_ticks(setup));
+}
+
+Outcome run(const SimulateOptions& options, const SceneFile& scene) {
+  const BlobFile& blob = *scene.files[0];
   const simulation::Setup setup = make_setup(options);
   const double count = std::round(options.seconds * static_cast<double>(setup.controller.rate_hz));
   const bool keep = !options.trace.empty() || !options.plot.empty();
@@ -150,14 +182,18 @@ Outcome run(const SimulateOptions& options, const BlobFile& blob) {
     refuse(fmt::format("--seconds: {:.6g} ticks are outside 1 .. {:.0f}", count, most),
            keep ? "shorten it, or leave --trace and --plot out" : "choose another --seconds");
   }
-  std::unique_ptr<simulation::Target> target = boot_board(options, setup, blob);
-  const auto* emulated = static_cast<const emulation::EmulatedTarget*>(target.get());
+  std::unique_ptr<simulation::Target> target = host_target(options, setup, scene);
+  const emulation::EmulatedTarget* emulated = nullptr;
   if (target == nullptr) {
-    target = std::make_unique<simulation::HostTarget>();
+    auto board = boot_board(options, setup, blob);
+    emulated = board.get();
+    target = std::move(board);
   }
-  simulation::Simulation sim(blob.bytes(), setup, hand_path(options, blob.view()),
-                             std::move(target));
-  check_start(options, setup, blob.view(), sim.start_result());
+  const auto* with_bodies =
+      is_scene(options) ? static_cast<const simulation::SceneTarget*>(target.get()) : nullptr;
+  simulation::Simulation sim(blob.bytes(), setup, hand_path(options, scene), std::move(target));
+  const std::size_t refused = with_bodies == nullptr ? 0 : with_bodies->refused_body();
+  check_start(scene.names[refused], scene.files[refused]->view(), setup, sim.start_result());
   if (!sim.arm()) {
     refuse(fmt::format("the controller did not become active, it is in state {}",
                        core::name_of(sim.state())),
@@ -204,7 +240,19 @@ nlohmann::json to_json(const std::optional<emulation::InstructionCounts>& counts
           {"start", counts->start}, {"checksum", counts->checksum}, {"functions", functions}};
 }
 
-nlohmann::json to_json(const SimulateOptions& options, const Outcome& outcome) {
+nlohmann::json to_json(const SceneFile& scene, const simulation::Summary& s) {
+  nlohmann::json bodies = nlohmann::json::array();
+  for (std::size_t i = 0; i < scene.names.size(); ++i) {
+    bodies.push_back({{"blob", scene.names[i]},
+                      {"contact_ticks", s.bodies[i].contact_ticks},
+                      {"force_max_N", s.bodies[i].force_max_N},
+                      {"torque_max_Nm", s.bodies[i].torque_max_Nm}});
+  }
+  return bodies;
+}
+
+nlohmann::json to_json(const SimulateOptions& options, const SceneFile& scene,
+                       const Outcome& outcome) {
   const simulation::Summary& s = outcome.summary;
   nlohmann::json faults = nlohmann::json::array();
   for (const simulation::FaultEvent& event : s.faults) {
@@ -224,6 +272,8 @@ nlohmann::json to_json(const SimulateOptions& options, const Outcome& outcome) {
           {"penetration_max_m", s.penetration_max_m},
           {"trace_crc32", s.trace_crc32},
           {"faults", faults},
+          {"bodies", to_json(scene, s)},
+          {"crowded_ticks", s.crowded_ticks},
           {"instructions", to_json(outcome.instructions)}};
 }
 
@@ -237,7 +287,19 @@ void print_instructions(const emulation::InstructionCounts& counts) {
   }
 }
 
-void print_summary(const SimulateOptions& options, const Outcome& outcome) {
+void print_bodies(const SceneFile& scene, const simulation::Summary& s) {
+  for (std::size_t i = 0; i < scene.names.size(); ++i) {
+    const simulation::BodySummary& body = s.bodies[i];
+    fmt::print("body {:<14}{}: in contact {}, largest force {:.4f} N, torque {:.4g} Nm\n", i,
+               scene.names[i], body.contact_ticks, body.force_max_N, body.torque_max_Nm);
+  }
+  if (s.crowded_ticks > 0) {
+    fmt::print("crowded            {} ticks: more than {} bodies within reach, some not felt\n",
+               s.crowded_ticks, core::kMaxReachableBodies);
+  }
+}
+
+void print_summary(const SimulateOptions& options, const SceneFile& scene, const Outcome& outcome) {
   const simulation::Summary& s = outcome.summary;
   fmt::print("board {}, device {}, mode {}, {:.6g} Hz\n", options.board, options.device,
              options.mode, options.setup.controller.rate_hz);
@@ -249,6 +311,9 @@ void print_summary(const SimulateOptions& options, const Outcome& outcome) {
   fmt::print("deepest            {:.4f} mm\n", 1e3 * s.penetration_max_m);
   fmt::print("overruns           {}\n", s.overruns);
   fmt::print("trace checksum     {:08x}\n", s.trace_crc32);
+  if (is_scene(options)) {
+    print_bodies(scene, s);
+  }
   for (const simulation::FaultEvent& event : s.faults) {
     fmt::print("fault {:2} {} at tick {}\n", static_cast<int>(event.fault),
                core::name_of(event.fault), event.tick);
@@ -258,9 +323,10 @@ void print_summary(const SimulateOptions& options, const Outcome& outcome) {
   }
 }
 
-void simulate(const SimulateOptions& options, int& exit_code) {
-  const BlobFile blob(options.blob);
-  const Outcome outcome = run(options, blob);
+void simulate(SimulateOptions& options, int& exit_code) {
+  const SceneFile scene = read_scene(options.scene, options.blobs);
+  options.blob = scene.names[0];
+  const Outcome outcome = run(options, scene);
   const std::string title = fmt::format("{}: {} mode, {:.6g} Hz", options.blob, options.mode,
                                         options.setup.controller.rate_hz);
   if (!options.trace.empty()) {
@@ -270,9 +336,9 @@ void simulate(const SimulateOptions& options, int& exit_code) {
     write_file(options.plot, simulation::plot_svg(outcome.samples, title));
   }
   if (!options.json.empty()) {
-    write_file(options.json, to_json(options, outcome).dump(2) + "\n");
+    write_file(options.json, to_json(options, scene, outcome).dump(2) + "\n");
   }
-  print_summary(options, outcome);
+  print_summary(options, scene, outcome);
   exit_code = outcome.summary.faults.empty() ? kExitOk : kExitFailed;
 }
 
@@ -336,7 +402,11 @@ void add_simulate_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<SimulateOptions>();
   CLI::App* verb = app.add_subcommand(
       "simulate", "Runs the controller of the firmware against a simulated device and hand");
-  verb->add_option("BLOB", options->blob, "the blob to touch")->required();
+  CLI::Option* blobs = verb->add_option("BLOB", options->blobs, "the blob to touch, or several");
+  verb->add_option(
+          "--scene", options->scene,
+          "JSON file that says where each body is, of which of the blobs, and how it moves")
+      ->check(CLI::ExistingFile);
   verb->add_option("--board", options->board, "where the controller runs")
       ->check(CLI::IsMember(board_names()))
       ->capture_default_str();
@@ -360,7 +430,12 @@ void add_simulate_command(CLI::App& app, int& exit_code) {
   add_controller_options(*verb, options->setup.controller);
   add_plant_options(*verb, *options);
   add_output_options(*verb, *options);
-  verb->callback([options, &exit_code] { simulate(*options, exit_code); });
+  verb->callback([options, blobs, &exit_code] {
+    if (blobs->count() == 0 && options->scene.empty()) {
+      throw CLI::RequiredError("BLOB");
+    }
+    simulate(*options, exit_code);
+  });
 }
 
 }  // namespace tactree::cli
