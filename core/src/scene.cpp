@@ -231,6 +231,7 @@ SceneRendering Scene::update(const Configuration& configuration, Vec3 probe, Vec
     const Slot& slot = slots_[i];
     if (slot.in_contact && slot.body != all.contact.body) {
       all.contact.force += slot.force;
+      all.contact.stored_energy += slot.stored_energy;
     }
   }
   for (Slot& slot : slots_) {  // bound: kMaxReachableBodies
@@ -252,8 +253,8 @@ void Scene::render(Slot& slot, const Configuration& configuration, Vec3 probe, V
     let_go(slot, fade_ticks_);
     lend(slot, slot.body, seen_probe);
   }
-  const Vec3 seen_velocity =
-      direction_to_body(body.pose, relative_velocity(body.pose, body.motion, probe, velocity));
+  const Vec3 relative = relative_velocity(body.pose, body.motion, probe, velocity);
+  const Vec3 seen_velocity = direction_to_body(body.pose, relative);
   Rendering r = to_scene(body.pose,
                          slot.renderer.update(body.view, configuration, seen_probe, seen_velocity));
   r.body = slot.body;
@@ -262,11 +263,13 @@ void Scene::render(Slot& slot, const Configuration& configuration, Vec3 probe, V
   }
   slot.in_contact = r.in_contact;
   slot.force = r.force;
+  slot.stored_energy = r.stored_energy;
   const bool complete = all.contact.complete && r.complete;
   const bool stronger =
       all.contact.body == kNoBody || length_squared(r.force) > length_squared(all.contact.force);
   if (stronger) {
     all.contact = r;
+    all.wall_velocity = velocity - relative;
   }
   all.contact.complete = complete;
   if (r.in_contact) {

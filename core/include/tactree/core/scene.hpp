@@ -51,8 +51,10 @@ struct Reaction {
 
 /// What the bodies do to the probe in one tick.
 struct SceneRendering {
-  /// The contact with the largest force, in the scene's frame; `force` is that of all of them.
+  /// The contact with the largest force, in the scene's frame; `force` and `stored_energy` are those
+  /// of all of them.
   Rendering contact{};
+  Vec3 wall_velocity{};  ///< m/s, of that contact's body where the probe is
   Reaction reactions[kMaxReachableBodies]{};  ///< of the bodies in contact
   bool crowded = false;                       ///< more bodies within reach than kMaxReachableBodies
   bool fading = false;  ///< a contact has disappeared: its force is on its way to 0
@@ -102,6 +104,7 @@ class Scene {
     Renderer renderer{};
     bool in_contact = false;
     Vec3 force{};  // of the last tick
+    float stored_energy = 0.0F;
     ForceFade fade{};
   };
 
