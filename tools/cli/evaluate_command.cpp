@@ -89,7 +89,7 @@ void evaluate(EvaluateOptions& options, int& exit_code) {
   if (!options.report.empty()) {
     write_report(options.report, result);
   }
-  fmt::print("{}", evaluation::target_lines(result));
+  fmt::print("{}", evaluation::to_markdown(result, ""));
   exit_code = options.require_targets && !result.all_met() ? kExitFailed : kExitOk;
 }
 

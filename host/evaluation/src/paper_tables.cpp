@@ -104,11 +104,36 @@ DetectionRow::Count count_errors(const core::BlobView& view, Mode mode, double s
   return count;
 }
 
-/// The leaf in which the paper's detection finds the spot above or below the probe.
-core::Leaf octant_at(const core::BlobView& view, double x, double y) {
-  core::Leaf leaf;
-  const core::PaperContact contact = core::paper_collision(view, narrow(on_sheet(x, y)));
-  return contact.in_contact ? contact.leaf : leaf;
+/// The leaves that the paper searches when it remembers where the contact was found: the octant of
+/// the detection, and those that the six points reached from there.
+std::vector<core::Leaf> remembered_leaves(const core::BlobView& view, const Vector3d& spot) {
+  std::vector<core::Leaf> leaves;
+  const core::PaperContact contact = core::paper_collision(view, narrow(spot));
+  if (!contact.in_contact) {
+    return leaves;
+  }
+  leaves.push_back(contact.leaf);
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double s : {-kFinest, kFinest}) {
+      core::Leaf leaf;
+      if (core::find_leaf(view, narrow(spot + s * Vector3d::Unit(axis)), leaf)) {
+        leaves.push_back(leaf);
+      }
+    }
+  }
+  return leaves;
+}
+
+double nearest_in(const core::BlobView& view, const std::vector<core::Leaf>& leaves,
+                  const Vector3d& probe) {
+  double best = 1e30;
+  for (const core::Leaf& leaf : leaves) {
+    for (std::uint32_t i = 0; i < leaf.point_count; ++i) {
+      const Vector3d point = widen(view.position(leaf, leaf.first_point + i));
+      best = std::min(best, (point - probe).squaredNorm());
+    }
+  }
+  return std::sqrt(best);
 }
 
 /// Does any leaf hold the probe or one of the six points around it?
@@ -177,15 +202,13 @@ void paper_distances(int probes, std::mt19937_64 random, DistanceTable& table) {
   for (int i = 0; i < probes; ++i) {
     without += any_leaf(view, draw(random, kHalf).probe()) ? 0 : 1;
     const Crisscross c = draw(random, kTop);
-    const core::Leaf octant = octant_at(view, c.x, c.y);
-    if (octant.point_count == 0) {
+    const std::vector<core::Leaf> leaves = remembered_leaves(view, on_sheet(c.x, c.y));
+    if (leaves.empty()) {
       continue;
     }
-    const core::NearestPoint found = core::paper_nearest(view, narrow(c.probe()), {true, octant});
-    const double excess = std::sqrt(static_cast<double>(found.distance_squared)) -
-                          brute_force(points, widen(narrow(c.probe())));
-    sum += std::abs(excess);
-    table.paper_max_m = std::max(table.paper_max_m, std::abs(excess));
+    const double excess = nearest_in(view, leaves, c.probe()) - brute_force(points, c.probe());
+    sum += excess;
+    table.paper_max_m = std::max(table.paper_max_m, excess);
     ++measured;
   }
   table.literal_without_point = static_cast<double>(without) / probes;

@@ -100,11 +100,25 @@ ReferenceSurface::Projection ReferenceSurface::project(const Vector3d& x) const 
   result.point = at;
   result.normal = normal;
   result.signed_distance = std::copysign((x - at).norm(), side);
-  for (const std::size_t i : around) {
-    const bool near = (positions_[i] - x).norm() < radius_ || (positions_[i] - at).norm() < radius_;
-    result.creased = result.creased || (near && normals_[i].dot(normal) < 0.5);
-  }
+  result.creased = is_creased(around, x) || is_creased(around, at);
   return result;
+}
+
+bool ReferenceSurface::is_creased(const std::vector<std::size_t>& around, const Vector3d& x) const {
+  std::vector<std::size_t> close;
+  for (const std::size_t i : around) {
+    if ((positions_[i] - x).norm() < radius_) {
+      close.push_back(i);
+    }
+  }
+  for (const std::size_t i : close) {
+    for (const std::size_t j : close) {
+      if (normals_[i].dot(normals_[j]) < 0.5) {
+        return true;
+      }
+    }
+  }
+  return false;
 }
 
 }  // namespace tactree::evaluation

@@ -16,7 +16,7 @@ class ReferenceSurface {
 
   struct Projection {
     bool supported = false;
-    bool creased = false;  ///< faces that differ by 60 to 120 degrees meet in the support
+    bool creased = false;  ///< normals in the support differ by more than 60 degrees
     Eigen::Vector3d point = Eigen::Vector3d::Zero();
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
     double signed_distance = 0.0;
@@ -29,6 +29,8 @@ class ReferenceSurface {
 
  private:
   struct Fit;
+  [[nodiscard]] bool is_creased(const std::vector<std::size_t>& around,
+                                const Eigen::Vector3d& x) const;
   [[nodiscard]] Fit fit(const std::vector<std::size_t>& around, const Eigen::Vector3d& x,
                         const Eigen::Vector3d& reference) const;
 

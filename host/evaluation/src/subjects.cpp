@@ -253,25 +253,35 @@ Subject two_sided_sheet() {
 }  // namespace
 
 std::vector<Subject> make_subjects(std::uint32_t seed, int lines) {
-  Random random(seed);
+  // A stream each, so that a cloud does not depend on how many lines were drawn before it.
+  std::uint32_t stream = 0;
+  const auto next = [&] { return Random((std::uint64_t{seed} << 8) + ++stream); };
+  const int few = lines / 4;
   std::vector<Subject> all;
-  all.push_back(over_cos("cos", "cosine sheet", cos_sheet(), random, lines / 4));
+  const auto add_cos = [&](const char* name, const char* title, Shape shape, int count) {
+    Random random = next();
+    all.push_back(over_cos(name, title, std::move(shape), random, count));
+  };
+  const auto add_sphere = [&](const char* name, const char* title, double spacing_m) {
+    Random random = next();
+    all.push_back(on_sphere(name, title, spacing_m, random, few));
+  };
+  const auto uneven = [&](double shift, double noise, double kept) {
+    Random random = next();
+    return uneven_cos(random, shift, noise, kept);
+  };
+  const double coarse = 2.5 * kSpacing;
+  add_cos("cos", "cosine sheet", cos_sheet(), few);
   all.back().friction = true;
-  all.push_back(on_sphere("sphere", "sphere, r = 30 mm", kSpacing, random, lines / 4));
+  add_sphere("sphere", "sphere, r = 30 mm", kSpacing);
   add_boxes(all);
   all.push_back(thin_plate());
   all.push_back(two_sided_sheet());
-  all.push_back(over_cos("irregular", "cosine sheet, points moved by up to 0.4 h",
-                         uneven_cos(random, 0.4, 0.0, 1.0), random, lines));
-  all.push_back(over_cos("thinned", "the same, 60 % of the points taken out",
-                         uneven_cos(random, 0.4, 0.0, 0.4), random, lines));
-  all.push_back(over_cos("noisy", "cosine sheet, points off by 5 % of h rms",
-                         uneven_cos(random, 0.0, 0.05, 1.0), random, lines / 4));
-  const double coarse = 2.5 * kSpacing;
-  all.push_back(over_cos("cos_coarse", "cosine sheet, h = 2.5 mm",
-                         cos_sheet(CosSheet{}, 0.05, coarse), random, lines / 4));
-  all.push_back(on_sphere("sphere_coarse", "sphere, r = 30 mm, h = 2.5 mm", coarse, random,
-                          lines / 4));
+  add_cos("irregular", "cosine sheet, points moved by up to 0.4 h", uneven(0.4, 0.0, 1.0), lines);
+  add_cos("thinned", "the same, 60 % of the points taken out", uneven(0.4, 0.0, 0.4), lines);
+  add_cos("noisy", "cosine sheet, points off by 5 % of h rms", uneven(0.0, 0.05, 1.0), few);
+  add_cos("cos_coarse", "cosine sheet, h = 2.5 mm", cos_sheet(CosSheet{}, 0.05, coarse), few);
+  add_sphere("sphere_coarse", "sphere, r = 30 mm, h = 2.5 mm", coarse);
   return all;
 }
 

@@ -126,13 +126,10 @@ struct Result {
 /// The result as JSON: tables, shapes, loop, scans, targets.
 [[nodiscard]] std::string to_json(const Result& result);
 
-/// The result as a page of Markdown that shows the pictures of plots() from `picture_folder`.
+/// The result as a page of Markdown that shows the pictures of plots() from `picture_folder`, or
+/// none where that is empty.
 [[nodiscard]] std::string to_markdown(const Result& result, const std::string& picture_folder);
 
 /// SVG pictures by file name.
 [[nodiscard]] std::map<std::string, std::string> plots(const Result& result);
-
-/// What was promised, one line each, for a terminal.
-[[nodiscard]] std::string target_lines(const Result& result);
-
 }  // namespace tactree::evaluation
