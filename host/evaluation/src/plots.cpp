@@ -24,7 +24,7 @@ class Svg {
         kWidth, height);
     text(kLeft, 26.0, "start", title, " font-size=\"16\" font-weight=\"bold\"");
     for (const Mode mode : {kSurface, kPaper}) {
-      const double x = kRight - 180.0 + 100.0 * mode;
+      const double x = kRight - (mode == kSurface ? 180.0 : 80.0);
       bar(x, 38.0, 14.0, mode);
       text(x + 20.0, 50.0, "start", kModeNames[mode]);
     }
@@ -107,7 +107,7 @@ std::string score_plot(const Result& result, const std::string& score, const std
     for (const Mode mode : {kSurface, kPaper}) {
       const double value = shape.modes[mode].get(score);
       if (std::isfinite(value)) {
-        svg.bar(kLeft, y + 14.0 * mode, x_of(value) - kLeft, mode);
+        svg.bar(kLeft, mode == kSurface ? y : y + 14.0, x_of(value) - kLeft, mode);
       }
     }
     y += kRow;

@@ -1,5 +1,6 @@
 #include "tactree/evaluation/shapes.hpp"
 
+#include <random>
 #include <stdexcept>
 
 namespace tactree::evaluation {
@@ -96,8 +97,11 @@ Shape cos_sheet(const CosSheet& sheet, double half_m, double spacing_m) {
   return shape;
 }
 
-Shape box(double half_m) {
+Shape box(double half_m, double shift, unsigned seed) {
   Shape shape;
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  const auto place = [&](int i, double h) { return (i + 0.5 + shift * unit(random)) * h - half_m; };
   const double h = shape.model().spacing_m;
   const int n = static_cast<int>(std::lround(2.0 * half_m / h));
   for (int axis = 0; axis < 3; ++axis) {
@@ -106,8 +110,8 @@ Shape box(double half_m) {
         for (int j = 0; j < n; ++j) {
           Eigen::Vector3d p;
           p[axis] = side * half_m;
-          p[(axis + 1) % 3] = (i + 0.5) * h - half_m;
-          p[(axis + 2) % 3] = (j + 0.5) * h - half_m;
+          p[(axis + 1) % 3] = place(i, h);
+          p[(axis + 2) % 3] = place(j, h);
           Eigen::Vector3d normal = Eigen::Vector3d::Zero();
           normal[axis] = side;
           shape.add(p, normal);

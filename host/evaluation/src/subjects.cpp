@@ -11,6 +11,7 @@ using Eigen::Vector3d;
 
 constexpr double kDepth = 1e-3;  // of all slides, m
 constexpr double kBoxHalf = 0.02;
+constexpr double kBoxShift = 0.3;  // spacings: no row is parallel to an edge
 constexpr double kBoxZone = 2.5 * kSpacing;   // the support radius: what an edge disturbs
 constexpr double kOnEdge = 0.03 * kSpacing;   // closer than this to two faces: on both
 constexpr double kPlateThickness = 0.5 * kSpacing;
@@ -154,7 +155,7 @@ Vector3d box_normal(const Vector3d& p, const Vector3d& answer) {
 /// Spots on the faces: `across` tells how far from the middle of the face on each of its axes.
 Subject on_box(std::string name, std::string title,
                std::function<std::pair<double, double>(Random&)> across) {
-  Subject made = subject(std::move(name), std::move(title), box(kBoxHalf));
+  Subject made = subject(std::move(name), std::move(title), box(kBoxHalf, kBoxShift));
   made.distance = box_distance;
   made.normal = box_normal;
   made.spot = [across = std::move(across)](Random& r) {
@@ -185,7 +186,7 @@ double on_face(Random& r) { return uniform(r, 0.0, kBoxHalf - 2.0 * kBoxZone); }
 double near_rim(Random& r) { return uniform(r, kBoxHalf - kBoxZone, kBoxHalf); }
 
 void add_boxes(std::vector<Subject>& all) {
-  Subject face = on_box("box_face", "box, faces",
+  Subject face = on_box("box_face", "box, irregular points: faces",
                         [](Random& r) { return std::pair{on_face(r), on_face(r)}; });
   for (const double y : {-0.0123, 0.0031}) {
     face.paths.push_back({[=](double s) {

@@ -81,7 +81,8 @@ struct CosSheet {
 [[nodiscard]] Shape cos_sheet(const CosSheet& sheet = {}, double half_m = 0.04,
                               double spacing_m = kSpacing);
 
-/// Cube about the origin with sharp edges; points on the faces, half a spacing from the edges.
-[[nodiscard]] Shape box(double half_m);
+/// Cube about the origin with sharp edges; points on the faces, half a spacing from the edges, each
+/// moved along its face by up to `shift` spacings, at random.
+[[nodiscard]] Shape box(double half_m, double shift = 0.0, unsigned seed = 1);
 
 }  // namespace tactree::evaluation
