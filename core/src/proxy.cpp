@@ -92,12 +92,12 @@ void Proxy::visit(const BlobView& view, Vec3 x) {
     reference = candidates_.normal(nearest);
   }
   SurfaceFit fit = evaluate(view, x, reference);
-  const bool crossed = tracked_ && fit.supported && side_ * fit.distance < 0.0F;
+  const bool crossed = tracked_ && fit.firm() && side_ * fit.distance < 0.0F;
   if (!crossed && fit.facing < kContradicted) {
     tracked_ = false;
     fit = evaluate(view, x, -reference);
   }
-  if (!fit.supported) {
+  if (!fit.firm()) {
     lose_support();
     return;
   }

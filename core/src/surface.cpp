@@ -151,7 +151,7 @@ SurfaceFit solve(const Moments& m, float radius) {
   const Vec3 centroid = inverse_w * m.p;
   const Vec3 along = centroid - dot(centroid, normal) * normal;
   const float strength = strength_of(length(along) / radius);
-  if (!(strength > 0.0F) || !is_finite(distance)) {
+  if (!is_finite(distance) || !is_finite(strength)) {
     return fit;
   }
   return {true, distance, normal, strength, 1.0F};
@@ -166,8 +166,8 @@ SurfaceFit combine(const SurfaceFit& smooth, const Faces& faces, float radius) {
   }
   const SurfaceFit own = solve(faces.own, radius);
   const SurfaceFit other = solve(faces.other, radius);
-  if (!own.supported || !other.supported) {
-    return other.supported ? other : smooth;  // round the corner, or along the rim of a face
+  if (!own.firm() || !other.firm()) {
+    return other.firm() ? other : smooth;  // round the corner, or along the rim of a face
   }
   const Vec3 way = (1.0F / faces.other.w) * faces.other.p - (1.0F / faces.own.w) * faces.own.p;
   const float other_above_own = dot(way, own.normal);
@@ -267,13 +267,13 @@ SurfaceProjection project_to_surface(const BlobView& view, Vec3 x, CandidateSet&
     return result;
   }
   const SurfaceFit first = fit_surface(scratch, x, radius, scratch.normal(nearest));
-  if (!first.supported) {
+  if (!first.firm()) {
     return result;
   }
   const Vec3 near = x - first.distance * first.normal;
   scratch.cover(view, near);
   const SurfaceFit second = fit_surface(scratch, near, radius, first.normal);
-  if (!second.supported) {
+  if (!second.firm()) {
     return result;
   }
   result.supported = true;
