@@ -335,9 +335,8 @@ Vec3 Controller::wanted_force() {
     passivity_.reset();
     return rendered;
   }
-  const Vec3 added =
-      passivity_.update(shown_, {probe_, velocity_, rendering_.wall_velocity},
-                        pose_.reach * contact.stored_energy);
+  const Vec3 added = passivity_.update(shown_, {probe_, velocity_, rendering_.wall_velocity},
+                                       pose_.reach * contact.stored_energy);
   const Vec3 force = rendered + added;
   const float push = dot(force, contact.normal);
   const float pull = dot(rendered, contact.normal);  // of other bodies, at most

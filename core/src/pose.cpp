@@ -19,13 +19,12 @@ Quaternion unit(Quaternion q) {
 
 bool is_valid(const Pose& pose) {
   const Quaternion& q = pose.rotation;
-  return within(pose.translation_m, kMaxTranslation_m) && within(q.v, 2.0F) &&
+  return within(pose.translation_m, kMaxTranslation) && within(q.v, 2.0F) &&
          absolute(q.w) <= 2.0F && absolute(length_squared(q) - 1.0F) <= kQuaternionTolerance;
 }
 
 bool is_valid(const Motion& motion) {
-  return within(motion.linear_m_s, kMaxBodySpeed_m_s) &&
-         within(motion.angular_rad_s, kMaxBodyTurn_rad_s);
+  return within(motion.linear_m_s, kMaxBodySpeed) && within(motion.angular_rad_s, kMaxBodyTurn);
 }
 
 Pose normalized(const Pose& pose) {
@@ -42,7 +41,7 @@ Pose advanced(const Pose& pose, const Motion& motion, float seconds) {
   Pose next;
   next.rotation = unit({q.w - dot(half_turn, q.v), q.v + q.w * half_turn + cross(half_turn, q.v)});
   next.translation_m = pose.translation_m + seconds * motion.linear_m_s;
-  if (!within(next.translation_m, kMaxTranslation_m)) {
+  if (!within(next.translation_m, kMaxTranslation)) {
     next.translation_m = pose.translation_m;
   }
   return next;

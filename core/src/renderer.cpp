@@ -93,7 +93,8 @@ Rendering Renderer::update_surface(const BlobView& view, const Configuration& c,
   r.normal = normal;
   r.strength = proxy_.strength();
   r.force = r.strength * repelling;
-  r.stored_energy = r.strength * spring_energy(feel.stiffness_N_m, share * length(way), c.force_max_N);
+  r.stored_energy =
+      r.strength * spring_energy(feel.stiffness_N_m, share * length(way), c.force_max_N);
   r.point = proxy_.nearest_point();
   Leaf leaf;
   if (find_leaf(view, r.proxy, leaf)) {

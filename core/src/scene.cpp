@@ -216,7 +216,7 @@ bool Scene::lend_slots(Vec3 probe) {
 }
 
 SceneRendering Scene::update(const Configuration& configuration, Vec3 probe, Vec3 velocity) {
-  const auto fade_ticks = static_cast<std::uint32_t>(kFade_s * configuration.rate_hz);
+  const auto fade_ticks = static_cast<std::uint32_t>(kFadeSeconds * configuration.rate_hz);
   fade_ticks_ = fade_ticks > 0U ? fade_ticks : 1U;
   SceneRendering all;
   all.contact.proxy = probe;

@@ -13,6 +13,11 @@ constexpr float kFadeEnds = 0.95F;
 // Below this share of A the points are as good as one point: fit a plane.
 constexpr float kFlatShare = 1e-3F;
 
+// The next gather, in slacks: how far ahead of the query, less than 1; and from which stride on the
+// query has jumped, so that nobody knows where it goes.
+constexpr float kAhead = 0.6F;
+constexpr float kStride = 1.5F;
+
 // Two faces meet in a crease where normals differ by 60 to 120 degrees; more is the other side of a
 // plate, which never counts.
 constexpr float kCreaseCosine = 0.5F;
@@ -34,7 +39,6 @@ struct Moments {
   float b = 0.0F;
   std::uint32_t count = 0;
 
-  /// A weight of 0 adds nothing.
   void add(Vec3 q, float qq, Vec3 normal, float weight) {
     w += weight;
     p += weight * q;
@@ -63,12 +67,16 @@ struct Surroundings {
 };
 
 Surroundings look_around(const CandidateSet& set, Vec3 x, float radius, Vec3 reference) {
-  const float inverse_squared = 1.0F / (radius * radius);
+  const float radius_squared = radius * radius;
+  const float inverse_squared = 1.0F / radius_squared;
   Surroundings found;
-  float nearest = radius * radius;
+  float nearest = radius_squared;
   for (std::uint32_t i = 0; i < set.count(); ++i) {  // bound: kMaxCandidates
     const Vec3 q = set.position(i) - x;
     const float qq = length_squared(q);
+    if (!(qq < radius_squared)) {
+      continue;
+    }
     const float weight = weight_of(qq, inverse_squared);
     const Vec3 normal = set.normal(i);
     const float cosine = dot(normal, reference);
@@ -93,18 +101,22 @@ struct Faces {
 };
 
 Faces divide(const CandidateSet& set, Vec3 x, float radius, Vec3 own, Vec3 other) {
-  const float inverse_squared = 1.0F / (radius * radius);
+  const float radius_squared = radius * radius;
+  const float inverse_squared = 1.0F / radius_squared;
   Faces faces;
   for (std::uint32_t i = 0; i < set.count(); ++i) {  // bound: kMaxCandidates
     const Vec3 q = set.position(i) - x;
     const float qq = length_squared(q);
+    if (!(qq < radius_squared)) {
+      continue;
+    }
     const float weight = weight_of(qq, inverse_squared);
     const Vec3 normal = set.normal(i);
     const float to_own = dot(normal, own);
     const float to_other = dot(normal, other);
     const bool is_own = to_own >= to_other;
     const float closer = is_own ? to_own : to_other;
-    if (!(weight > 0.0F) || !(closer > 0.0F)) {
+    if (!(closer > 0.0F)) {
       continue;
     }
     (is_own ? faces.own : faces.other).add(q, qq, normal, weight);
@@ -191,10 +203,14 @@ void CandidateSet::cover(const BlobView& view, Vec3 x) {
     return;
   }
   const float slack = view.reach_m() - view.header().support_radius_m;
-  const bool inside = length_squared(x - centre_) <= slack * slack;
-  if (!valid_ || !inside) {
-    gather(view, x);
+  const Vec3 way = x - centre_;
+  const float squared = length_squared(way);
+  if (valid_ && squared <= slack * slack) {
+    return;
   }
+  // Ahead of a query that walks: it is then good for twice as long.
+  const bool walks = valid_ && squared <= kStride * slack * (kStride * slack);
+  gather(view, walks ? x + (kAhead * slack / square_root(squared)) * way : x);
 }
 
 void CandidateSet::gather(const BlobView& view, Vec3 centre) {

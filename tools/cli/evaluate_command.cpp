@@ -99,9 +99,11 @@ void add_evaluate_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<EvaluateOptions>();
   CLI::App* verb = app.add_subcommand(
       "evaluate",
-      "Measures how good the touch is, in both modes: the paper's Tables 1 and 2, distance, normal\n"
+      "Measures how good the touch is, in both modes: the paper's Tables 1 and 2, distance, "
+      "normal\n"
       "and force on shapes whose truth is known, the closed loop, and real scans against a double\n"
-      "precision reference. Deterministic; some minutes, or seconds with --quick. Prints the tables\n"
+      "precision reference. Deterministic; some minutes, or seconds with --quick. Prints the "
+      "tables\n"
       "and each target with its figure.");
   verb->add_flag("--quick", options->evaluation.quick, "fewer probes: all figures, less precise");
   verb->add_option("--seed", options->evaluation.seed, "of every random choice")

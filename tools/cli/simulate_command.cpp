@@ -166,7 +166,7 @@ void check_start(const std::string& file, const core::BlobView& view,
   }
 }
 
-// Functions the report names, of those the ticks' instructions are in.
+// Functions the summary names, of those the ticks' instructions are in.
 constexpr std::size_t kReportedFunctions = 10;
 
 struct Outcome {
@@ -279,9 +279,6 @@ nlohmann::json to_json(const std::optional<emulation::InstructionCounts>& counts
   for (const emulation::FunctionCount& f : counts->functions) {
     const double mean = static_cast<double>(f.total) / static_cast<double>(counts->ticks);
     functions.push_back({{"name", f.name}, {"max", f.max}, {"mean", mean}});
-    if (functions.size() == kReportedFunctions) {
-      break;
-    }
   }
   return {{"max", counts->max},     {"mean", counts->mean()},       {"bound", nullptr},
           {"start", counts->start}, {"checksum", counts->checksum}, {"functions", functions}};

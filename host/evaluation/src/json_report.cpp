@@ -35,8 +35,10 @@ Json detection_row(const DetectionRow& row) {
                {"false_positives", row.paper_false_positives},
                {"false_negatives", row.paper_false_negatives}};
   }
-  return {{"separation_m", row.separation_m}, {"dynamic", row.dynamic},
-          {"printed", printed},               {"tracing", counts(row.tracing)},
+  return {{"separation_m", row.separation_m},
+          {"dynamic", row.dynamic},
+          {"printed", printed},
+          {"tracing", counts(row.tracing)},
           {"hovering", counts(row.hovering)}};
 }
 

@@ -55,10 +55,9 @@ void add_detection(Page& page, const Result& result) {
       "surface mode, tracing | surface mode, hovering |\n|---|---|---|---|---|---|---|\n");
   for (const DetectionRow& row : result.detection) {
     const std::string printed =
-        row.paper_accuracy > 0.0
-            ? fmt::format("{:.2f} % ({} / {})", 100.0 * row.paper_accuracy,
-                          row.paper_false_positives, row.paper_false_negatives)
-            : "-";
+        row.paper_accuracy > 0.0 ? fmt::format("{:.2f} % ({} / {})", 100.0 * row.paper_accuracy,
+                                               row.paper_false_positives, row.paper_false_negatives)
+                                 : "-";
     page.add("| {:.4g} m | {} | {} | {} | {} | {} | {} |\n", row.separation_m,
              row.dynamic ? "dynamic" : "static", printed, detection(row.tracing[kPaper]),
              detection(row.hovering[kPaper]), detection(row.tracing[kSurface]),
@@ -90,7 +89,8 @@ void add_distances(Page& page, const Result& result) {
   page.add(
       "**What does not reproduce.** Read literally, the experiment leaves {} of the probes without "
       "any point: neither the\nprobe nor its six points are in a leaf that has one. It needs the "
-      "octant of the detection to be remembered, and the\nflat top of the sheet, |x|, |y| <= 75 mm. "
+      "octant of the detection to be remembered, and the\nflat top of the sheet, |x|, |y| <= 75 "
+      "mm. "
       "The text's \"0.3 micrometre\" is 34 um in its own table, and its \"25 mm\"\nis 2.5 mm. The "
       "run times of both tables are of another machine and are not compared here.\n\n",
       percent(d.literal_without_point));
@@ -100,7 +100,8 @@ void add_geometry(Page& page, const Result& result, const std::string& pictures)
   page.add(
       "## Where is the surface?\n"
       "h = 1 mm unless said; probes up to h above and below. *Off the surface*: of the point "
-      "answered (rms / largest);\n*distance*: error of the distance answered, rms; *normal*: error, "
+      "answered (rms / largest);\n*distance*: error of the distance answered, rms; *normal*: "
+      "error, "
       "rms; *answered*: share of the probes. Paper mode answers\nwith a point of the cloud: on the "
       "surface, but not where it is nearest.\n\n"
       "| shape | mode | off the surface, um | distance, um | normal, deg | answered |\n"
@@ -127,20 +128,20 @@ void add_forces(Page& page, const Result& result, const std::string& pictures) {
       "0.0033 N), ticks without contact. *Pulled in*: share of probes\n1 mm outside that feel a "
       "force towards the surface. *Missed*: crossings at 0.05 to 6 m/s, 60 degrees at most, that "
       "were\nnot noticed. *Friction*: tangential over normal force while slipping, for 0.3.\n\n"
-      "| shape | mode | error, N rms | step, N | lost, of ticks | pulled in | missed, of | friction "
+      "| shape | mode | error, N rms | step, N | lost, of ticks | pulled in | missed, of | "
+      "friction "
       "|\n|---|---|---|---|---|---|---|---|\n");
   for (const ShapeResult& shape : result.shapes) {
     for (const Mode mode : {kSurface, kPaper}) {
       const Scores& s = shape.modes[mode];
       const bool friction = std::isfinite(s.get("friction_min"));
-      page.add("| {} | {} | {} | {} | {} of {} | {} | {} of {} | {} |\n", shape.title,
-               kModeNames[mode], figure(s.get("force_error_rms_N")),
-               figure(s.get("force_step_max_N")), count(s.get("contact_lost")),
-               count(s.get("slide_ticks")), percent(s.get("sticky")),
-               count(s.get("crossings_missed")), count(s.get("crossings")),
-               friction ? fmt::format("{:.3f} .. {:.3f}", s.get("friction_min"),
-                                      s.get("friction_max"))
-                        : "-");
+      page.add(
+          "| {} | {} | {} | {} | {} of {} | {} | {} of {} | {} |\n", shape.title, kModeNames[mode],
+          figure(s.get("force_error_rms_N")), figure(s.get("force_step_max_N")),
+          count(s.get("contact_lost")), count(s.get("slide_ticks")), percent(s.get("sticky")),
+          count(s.get("crossings_missed")), count(s.get("crossings")),
+          friction ? fmt::format("{:.3f} .. {:.3f}", s.get("friction_min"), s.get("friction_max"))
+                   : "-");
     }
   }
   page.add(
@@ -157,7 +158,8 @@ void add_loop(Page& page, const Result& result) {
       "*Vibration*: acceleration of the tip above 20 Hz, rms, while a hand presses with 1 N and "
       "draws it at 10 mm/s over\nthe cosine sheet, h = 2.5 mm: 1 kHz, 1 N/mm, encoder 20 um. "
       "*Stiffness*: the largest stable one of a device with\nb = 0.5 Ns/m, no hand, no delay; "
-      "2 b / T is Colgate and Brown's limit.\n\n| | surface | paper | 2 b / T |\n|---|---|---|---|\n");
+      "2 b / T is Colgate and Brown's limit.\n\n| | surface | paper | 2 b / T "
+      "|\n|---|---|---|---|\n");
   const LoopResult& loop = result.loop;
   page.add("| vibration, m/s2 | {} | {} | - |\n", figure(loop.vibration_m_s2[kSurface]),
            figure(loop.vibration_m_s2[kPaper]));
@@ -178,7 +180,8 @@ void add_scans(Page& page, const Result& result) {
       "Built with the default options and compared with a double precision APSS over all decoded "
       "points, projected until it stands\nstill; probes within a spacing of the surface; lengths "
       "in thousandths of the spacing h. *Smooth*: where no two normals\nin the support differ by "
-      "more than 60 degrees. Elsewhere surface mode keeps edges sharp that the reference rounds.\n\n"
+      "more than 60 degrees. Elsewhere surface mode keeps edges sharp that the reference "
+      "rounds.\n\n"
       "| scan | points | smooth | point, rms / largest | normal, deg rms | all: point, rms / "
       "largest | normal, deg rms | answered |\n|---|---|---|---|---|---|---|---|\n");
   for (const ScanResult& scan : result.scans) {

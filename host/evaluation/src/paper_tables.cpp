@@ -16,10 +16,10 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr int kProbes = 6820;
-constexpr double kHalf = 0.25;          // m, of the domain
-constexpr double kMargin = 5e-6;        // m, what the paper allows a device's resolution
-constexpr double kOnSurface = 0.235;    // share of the probes of a path that traces and hovers
-constexpr double kFinest = 0.0025;      // m
+constexpr double kHalf = 0.25;        // m, of the domain
+constexpr double kMargin = 5e-6;      // m, what the paper allows a device's resolution
+constexpr double kOnSurface = 0.235;  // share of the probes of a path that traces and hovers
+constexpr double kFinest = 0.0025;    // m
 
 // Moved down, so that the sheet lies about the origin and float32 keeps more of it.
 constexpr double kOffset = 1.9689;
@@ -56,8 +56,7 @@ bool in_contact(const core::BlobView& view, Mode mode, const Vector3d& probe) {
     return core::paper_collision(view, narrow(probe)).in_contact;
   }
   const core::SurfaceProjection p = core::project_to_surface(view, narrow(probe));
-  return p.supported &&
-         std::abs(static_cast<double>(p.signed_distance)) <= resolution_of(view);
+  return p.supported && std::abs(static_cast<double>(p.signed_distance)) <= resolution_of(view);
 }
 
 /// A rigid pose that changes from probe to probe, as float32 matrices.
@@ -156,9 +155,7 @@ struct Crisscross {
   double x = 0.0;
   double y = 0.0;
   double above = 0.0;
-  [[nodiscard]] Vector3d probe() const {
-    return on_sheet(x, y) + Vector3d(0.0, 0.0, above);
-  }
+  [[nodiscard]] Vector3d probe() const { return on_sheet(x, y) + Vector3d(0.0, 0.0, above); }
 };
 
 Crisscross draw(std::mt19937_64& random, double half_m) {
@@ -249,8 +246,7 @@ void surface_distances(int probes, std::mt19937_64 random, DistanceTable& table)
     const double error = std::abs(proxy_error(view, c));
     sum += error;
     table.surface_max_m = std::max(table.surface_max_m, error);
-    const core::NearestPoint found =
-        core::nearest_within(view, narrow(c.probe()), view.reach_m());
+    const core::NearestPoint found = core::nearest_within(view, narrow(c.probe()), view.reach_m());
     if (found.found()) {
       const double excess = std::sqrt(static_cast<double>(found.distance_squared)) -
                             brute_force(points, widen(narrow(c.probe())));
@@ -263,12 +259,10 @@ void surface_distances(int probes, std::mt19937_64 random, DistanceTable& table)
 }  // namespace
 
 std::vector<DetectionRow> measure_detection(std::uint32_t seed) {
-  std::vector<DetectionRow> rows = {{0.01, false, 0.77889, 100, 1408, {}, {}},
-                                    {0.005, false, 0.89633, 291, 416, {}, {}},
-                                    {0.0025, false, 0.98431, 1, 106, {}, {}},
-                                    {0.0025, true, 0.9818, 3, 179, {}, {}},
-                                    {0.01, true, 0.0, 0, 0, {}, {}},
-                                    {0.005, true, 0.0, 0, 0, {}, {}}};
+  std::vector<DetectionRow> rows = {
+      {0.01, false, 0.77889, 100, 1408, {}, {}}, {0.005, false, 0.89633, 291, 416, {}, {}},
+      {0.0025, false, 0.98431, 1, 106, {}, {}},  {0.0025, true, 0.9818, 3, 179, {}, {}},
+      {0.01, true, 0.0, 0, 0, {}, {}},           {0.005, true, 0.0, 0, 0, {}, {}}};
   for (DetectionRow& row : rows) {
     const Shape surface = sheet_blob(row.separation_m, core::Profile::kSurface);
     const Shape paper = sheet_blob(row.separation_m, core::Profile::kPaper);

@@ -41,9 +41,10 @@ class Svg {
                    x, y, width, kColours[mode]);
   }
   void line(double x1, double y1, double x2, double y2, const char* colour) {
-    fmt::format_to(std::back_inserter(out_),
-                   "<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"{}\"/>\n",
-                   x1, y1, x2, y2, colour);
+    fmt::format_to(
+        std::back_inserter(out_),
+        "<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"{}\"/>\n", x1, y1,
+        x2, y2, colour);
   }
   void curve(const std::string& points, Mode mode) {
     out_ += fmt::format("<polyline fill=\"none\" stroke=\"{}\" points=\"{}\"/>\n", kColours[mode],
@@ -121,11 +122,11 @@ std::map<std::string, std::string> plots(const Result& result) {
   return {{"force.svg", force_plot(result.trace)},
           {"depth.svg", score_plot(result, "depth_rms_m", "Error of the distance answered, rms",
                                    1e-7, 1e-3, "&#181;m", 1e6)},
-          {"normal.svg", score_plot(result, "normal_rms_deg", "Error of the normal, rms", 1e-3,
-                                    1e2, "&#176;", 1.0)},
-          {"force_error.svg", score_plot(result, "force_error_rms_N",
-                                         "Error of the force of 1 N while sliding, rms", 1e-4, 1.0,
-                                         "N", 1.0)}};
+          {"normal.svg", score_plot(result, "normal_rms_deg", "Error of the normal, rms", 1e-3, 1e2,
+                                    "&#176;", 1.0)},
+          {"force_error.svg",
+           score_plot(result, "force_error_rms_N", "Error of the force of 1 N while sliding, rms",
+                      1e-4, 1.0, "N", 1.0)}};
 }
 
 }  // namespace tactree::evaluation

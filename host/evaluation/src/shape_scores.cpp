@@ -12,11 +12,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kDepth = 1e-3;          // m, of the slides
-constexpr double kPerTick = 1e-4;        // m: 0.1 m/s at 1 kHz
-constexpr double kLift = 4e-3;           // m, where a hand begins above the surface
-constexpr double kDescent = 5e-5;        // m a tick
-constexpr double kSlipped = 2e-3;        // m, after which friction has left its static part
+constexpr double kDepth = 1e-3;    // m, of the slides
+constexpr double kPerTick = 1e-4;  // m: 0.1 m/s at 1 kHz
+constexpr double kLift = 4e-3;     // m, where a hand begins above the surface
+constexpr double kDescent = 5e-5;  // m a tick
+constexpr double kSlipped = 2e-3;  // m, after which friction has left its static part
 constexpr core::Friction kRough{0.4F, 0.3F};
 
 const core::BlobView& blob_of(const Subject& subject, Mode mode) {
@@ -169,8 +169,7 @@ bool notices_crossing(const Subject& subject, Mode mode, const Vector3d& entry,
   return noticed;
 }
 
-void score_crossings(const Subject& subject, Mode mode, int each, Random& random,
-                     Scores& scores) {
+void score_crossings(const Subject& subject, Mode mode, int each, Random& random, Scores& scores) {
   if (!subject.crossings) {
     return;
   }
@@ -185,8 +184,7 @@ void score_crossings(const Subject& subject, Mode mode, int each, Random& random
         spot = subject.spot(random);  // a sheet ends: keep away from its rim
       }
       const Vector3d inward = slanted(random, -spot.normal);
-      missed += notices_crossing(subject, mode, spot.point, inward, speed * kPeriodS,
-                                 unit(random))
+      missed += notices_crossing(subject, mode, spot.point, inward, speed * kPeriodS, unit(random))
                     ? 0
                     : 1;
       ++tried;

@@ -9,9 +9,9 @@ namespace tactree::evaluation {
 
 /// How much is tried.
 struct Effort {
-  int probes = 20'000;       // distance and normal
-  int sticky = 1000;         // descents to 1 mm above
-  int crossings = 200;       // at each speed
+  int probes = 20'000;  // distance and normal
+  int sticky = 1000;    // descents to 1 mm above
+  int crossings = 200;  // at each speed
 };
 
 /// All scores of one mode on one shape:

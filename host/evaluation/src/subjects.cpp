@@ -11,9 +11,9 @@ using Eigen::Vector3d;
 
 constexpr double kDepth = 1e-3;  // of all slides, m
 constexpr double kBoxHalf = 0.02;
-constexpr double kBoxShift = 0.3;  // spacings: no row is parallel to an edge
-constexpr double kBoxZone = 2.5 * kSpacing;   // the support radius: what an edge disturbs
-constexpr double kOnEdge = 0.03 * kSpacing;   // closer than this to two faces: on both
+constexpr double kBoxShift = 0.3;            // spacings: no row is parallel to an edge
+constexpr double kBoxZone = 2.5 * kSpacing;  // the support radius: what an edge disturbs
+constexpr double kOnEdge = 0.03 * kSpacing;  // closer than this to two faces: on both
 constexpr double kPlateThickness = 0.5 * kSpacing;
 
 double uniform(Random& random, double low, double high) {
@@ -186,8 +186,9 @@ double on_face(Random& r) { return uniform(r, 0.0, kBoxHalf - 2.0 * kBoxZone); }
 double near_rim(Random& r) { return uniform(r, kBoxHalf - kBoxZone, kBoxHalf); }
 
 void add_boxes(std::vector<Subject>& all) {
-  Subject face = on_box("box_face", "box, irregular points: faces",
-                        [](Random& r) { return std::pair{on_face(r), on_face(r)}; });
+  Subject face = on_box("box_face", "box, irregular points: faces", [](Random& r) {
+    return std::pair{on_face(r), on_face(r)};
+  });
   for (const double y : {-0.0123, 0.0031}) {
     face.paths.push_back({[=](double s) {
                             return Spot{{s - 0.015, y + 0.3 * s, kBoxHalf}, Vector3d::UnitZ()};
@@ -197,13 +198,15 @@ void add_boxes(std::vector<Subject>& all) {
   face.friction = true;
   all.push_back(std::move(face));
 
-  Subject edge = on_box("box_edge", "box, within R of an edge",
-                        [](Random& r) { return std::pair{near_rim(r), on_face(r)}; });
+  Subject edge = on_box("box_edge", "box, within R of an edge", [](Random& r) {
+    return std::pair{near_rim(r), on_face(r)};
+  });
   edge.paths = {to_the_edge(Vector3d::UnitX(), 0.0031), to_the_edge(Vector3d::UnitX(), -0.00687)};
   all.push_back(std::move(edge));
 
-  Subject corner = on_box("box_corner", "box, within R of a corner",
-                          [](Random& r) { return std::pair{near_rim(r), near_rim(r)}; });
+  Subject corner = on_box("box_corner", "box, within R of a corner", [](Random& r) {
+    return std::pair{near_rim(r), near_rim(r)};
+  });
   corner.paths = {to_the_edge(Vector3d(1.0, 1.0, 0.0).normalized(), 0.0)};
   all.push_back(std::move(corner));
 }

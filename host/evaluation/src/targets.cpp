@@ -30,7 +30,8 @@ class Checker {
 double lowest_accuracy(const Result& result) {
   double lowest = 1.0;
   for (const DetectionRow& row : result.detection) {
-    lowest = std::min({lowest, row.tracing[kSurface].accuracy(), row.hovering[kSurface].accuracy()});
+    lowest =
+        std::min({lowest, row.tracing[kSurface].accuracy(), row.hovering[kSurface].accuracy()});
   }
   return lowest;
 }
@@ -46,8 +47,8 @@ std::vector<Target> check_targets(const Result& result) {
   }
   check.at_most("box_edge", "distance_rms_m", 25e-6, "m");
   check.at_most("box_edge", "distance_max_m", 120e-6, "m");
-  for (const char* shape : {"cos", "sphere", "box_face", "plate", "sheet", "cos_coarse",
-                            "sphere_coarse"}) {
+  for (const char* shape :
+       {"cos", "sphere", "box_face", "plate", "sheet", "cos_coarse", "sphere_coarse"}) {
     check.at_most(shape, "force_step_max_N", 0.005, "N");
   }
   for (const ShapeResult& shape : result.shapes) {
@@ -58,8 +59,10 @@ std::vector<Target> check_targets(const Result& result) {
   check.at_most("irregular", "contact_lost", 0.0, "");
   check.at_most("thinned", "contact_lost", 0.0, "");
   for (const char* flat : {"box_face", "plate", "sheet"}) {
-    check.add({std::string(flat) + ".friction_min", check.get(flat, "friction_min"), 0.295, 0.305, ""});
-    check.add({std::string(flat) + ".friction_max", check.get(flat, "friction_max"), 0.295, 0.305, ""});
+    check.add(
+        {std::string(flat) + ".friction_min", check.get(flat, "friction_min"), 0.295, 0.305, ""});
+    check.add(
+        {std::string(flat) + ".friction_max", check.get(flat, "friction_max"), 0.295, 0.305, ""});
   }
   check.at_most("cos", "friction_max", 0.32, "");
   check.at_most("sphere", "friction_max", 0.32, "");

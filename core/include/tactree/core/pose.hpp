@@ -36,9 +36,9 @@ struct Motion {
   friend constexpr bool operator==(const Motion&, const Motion&) = default;
 };
 
-inline constexpr float kMaxTranslation_m = 10.0F;       ///< of each component
-inline constexpr float kMaxBodySpeed_m_s = 10.0F;       ///< of each component
-inline constexpr float kMaxBodyTurn_rad_s = 100.0F;     ///< of each component
+inline constexpr float kMaxTranslation = 10.0F;         ///< m, of each component
+inline constexpr float kMaxBodySpeed = 10.0F;           ///< m/s, of each component
+inline constexpr float kMaxBodyTurn = 100.0F;           ///< rad/s, of each component
 inline constexpr float kQuaternionTolerance = 1.0e-3F;  ///< of the squared length from 1
 
 /// Finite, of unit length within the tolerance, and within the limits?
@@ -49,7 +49,7 @@ inline constexpr float kQuaternionTolerance = 1.0e-3F;  ///< of the squared leng
 [[nodiscard]] Pose normalized(const Pose& pose);
 
 /// Where the body is after `seconds`, to first order in the turn: at 10 rad/s and 1 kHz it errs by
-/// less than 1e-7 rad. At kMaxTranslation_m the body stays where it is.
+/// less than 1e-7 rad. At kMaxTranslation the body stays where it is.
 [[nodiscard]] Pose advanced(const Pose& pose, const Motion& motion, float seconds);
 
 // At the identity, positions, directions and velocities keep their very bits.

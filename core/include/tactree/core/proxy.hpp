@@ -17,7 +17,8 @@ namespace tactree::core {
 /// Surface steps of one tick. Half a support radius each: at h = 1 mm, R = 2.5 mm and 1 kHz the
 /// sweep keeps up with 5 m/s; a faster probe is followed with a delay, never lost.
 inline constexpr std::uint32_t kSweepSteps = 4;
-/// Two evaluations a step of slip, and two that project onto the surface where contact begins.
+/// At most two evaluations a step of slip, and two that project onto the surface where contact
+/// begins.
 inline constexpr std::uint32_t kEvaluationsPerTick = kSweepSteps + 2;
 
 /// Coefficients, 0 <= dynamic <= static.
@@ -60,7 +61,8 @@ class Proxy {
   void begin_contact(const BlobView& view, const SurfaceFit& fit);
   void slide(const BlobView& view, Vec3 probe, const Friction& friction);
   [[nodiscard]] bool slip_by(const BlobView& view, Vec3 step);
-  [[nodiscard]] bool settle(const BlobView& view);
+  /// A Newton step onto the surface, where there is one.
+  SurfaceFit settle(const BlobView& view);
   void release();
   void lose_support();
 

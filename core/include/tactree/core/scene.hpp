@@ -24,7 +24,7 @@ inline constexpr std::uint32_t kMaxBodies = 8;
 inline constexpr std::uint32_t kMaxReachableBodies = 2;  ///< rendered at the same time
 
 /// How long the force of a contact that disappears takes to fade.
-inline constexpr float kFade_s = 0.05F;
+inline constexpr float kFadeSeconds = 0.05F;
 
 /// Why a model or a change of a body was refused.
 enum class ModelStatus : std::uint8_t {
@@ -51,10 +51,10 @@ struct Reaction {
 
 /// What the bodies do to the probe in one tick.
 struct SceneRendering {
-  /// The contact with the largest force, in the scene's frame; `force` and `stored_energy` are those
-  /// of all of them.
+  /// The contact with the largest force, in the scene's frame; `force` and `stored_energy` are
+  /// those of all of them.
   Rendering contact{};
-  Vec3 wall_velocity{};  ///< m/s, of that contact's body where the probe is
+  Vec3 wall_velocity{};                       ///< m/s, of that contact's body where the probe is
   Reaction reactions[kMaxReachableBodies]{};  ///< of the bodies in contact
   bool crowded = false;                       ///< more bodies within reach than kMaxReachableBodies
   bool fading = false;  ///< a contact has disappeared: its force is on its way to 0

@@ -23,7 +23,8 @@ class CandidateSet {
   /// Forgets the last gather; needed whenever the blob changes.
   void clear() { valid_ = false; }
 
-  /// Makes the set good for a query at `x`: gathers anew when x lies outside the slack.
+  /// Makes the set good for a query at `x`: gathers anew when x lies outside the slack, ahead of x
+  /// in the direction it has moved.
   /// Precondition: the view is the one of the last gather, or clear() was called in between.
   void cover(const BlobView& view, Vec3 x);
 
