@@ -1,0 +1,14 @@
+// Compiled once for each image; the build says for which board.
+
+#include "runtime/identity.hpp"
+
+#include "runtime/image.hpp"
+
+namespace tactree::firmware {
+
+static_assert(sizeof(Identity) == 48);
+
+[[gnu::used]] const Identity kIdentity = {"TACTIMG", TACTREE_BOARD, code_begin,
+                                          code_end,  blob_begin,    blob_end};
+
+}  // namespace tactree::firmware
