@@ -17,7 +17,7 @@ ConfigurationStatus check_rendering(const Configuration& c) {
     return ConfigurationStatus::kBadStiffness;
   }
   if (!in_range(c.damping_Ns_m, 0.0F, 1e3F) || !in_range(c.device_damping_Ns_m, 0.0F, 1e3F) ||
-      !in_range(c.hand_damping_Ns_m, 0.0F, 1e3F)) {
+      !in_range(c.hand_damping_Ns_m, 0.0F, 1e3F) || !in_range(c.passivity_Ns_m, 0.0F, 100.0F)) {
     return ConfigurationStatus::kBadDamping;
   }
   if (!in_range(c.static_friction, 0.0F, 2.0F) ||

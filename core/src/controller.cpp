@@ -12,12 +12,14 @@ constexpr std::uint32_t add_saturating(std::uint32_t a, std::uint32_t b) {
   return b > kForever - a ? kForever : a + b;
 }
 
-float quantum_of(const DeviceModel& device) {
-  float coarsest = device.counts_per_m[0];
-  for (const float counts : device.counts_per_m) {  // bound: kAxes
-    coarsest = counts < coarsest ? counts : coarsest;
+/// What one count is for each joint.
+Vec3 quantum_of(const DeviceModel& device) {
+  float quantum[kAxes] = {0.0F, 0.0F, 0.0F};
+  const std::uint32_t axes = axes_of(device.kind);
+  for (std::uint32_t i = 0; i < axes; ++i) {  // bound: kAxes
+    quantum[i] = 1.0F / absolute(counts_per_unit(device, i));
   }
-  return 1.0F / coarsest;
+  return {quantum[0], quantum[1], quantum[2]};
 }
 
 constexpr const char* kModelWords[] = {
@@ -55,8 +57,11 @@ ConfigurationStatus Controller::configure(const Configuration& configuration) {
   enable_timeout_ticks_ =
       static_cast<std::uint32_t>(configuration.enable_timeout_s * configuration.rate_hz);
   ticks_since_overrun_ = kForever;
-  velocity_.configure(1.0F / configuration.rate_hz, quantum_of(configuration.device),
-                      configuration.velocity_cutoff_hz);
+  joint_velocity_.configure(1.0F / configuration.rate_hz, quantum_of(configuration.device),
+                            configuration.velocity_cutoff_hz);
+  passivity_.configure(1.0F / configuration.rate_hz, configuration.passivity_Ns_m,
+                       configuration.delay_s);
+  homing_.begin(configuration.device);
   forget_motion();
   happen(Event::kConfigured);
   if (!model_.empty() && suitability(model_) != ModelStatus::kOk) {
@@ -108,7 +113,7 @@ Output Controller::step(const Input& input) {
   ++tick_;
   present_ = watch(input);
   if (configured_) {
-    present_ |= sense(input.encoders);
+    present_ |= sense(input);
   }
   if (present_ != 0U) {
     raise(present_);
@@ -122,13 +127,29 @@ Output Controller::step(const Input& input) {
   return {gated.command, enable_, report(gated)};
 }
 
-FaultMask Controller::sense(const EncoderReading& encoders) {
+// A counter that could not be trusted for a moment has lost its place.
+FaultMask Controller::find_joints(const Input& input) {
+  const std::uint32_t axes = axes_of(configuration_.device.kind);
   bool valid = true;
-  for (const bool axis_valid : encoders.valid) {  // bound: kAxes
-    valid = valid && axis_valid;
+  for (std::uint32_t i = 0; i < axes; ++i) {  // bound: kAxes
+    valid = valid && input.encoders.valid[i];
   }
-  pose_ = locate(configuration_.device, encoders.counts);
-  if (!valid || !pose_.valid) {
+  const bool take_pose = input.command == Command::kHome && motors_off();
+  if (valid && homing_.update(input.encoders, take_pose, configuration_.device)) {
+    return 0U;
+  }
+  homing_.begin(configuration_.device);
+  return fault_bit(Fault::kEncoderInvalid);
+}
+
+FaultMask Controller::sense(const Input& input) {
+  const FaultMask lost = find_joints(input);
+  if (lost != 0U || !homing_.done()) {
+    forget_motion();
+    return lost;
+  }
+  pose_ = locate(configuration_.device, input.encoders.counts);
+  if (!pose_.valid) {
     forget_motion();
     return fault_bit(Fault::kEncoderInvalid);
   }
@@ -136,18 +157,24 @@ FaultMask Controller::sense(const EncoderReading& encoders) {
   const float furthest = configuration_.speed_max_m_s / configuration_.rate_hz;
   const bool jumped = located_ && !(length_squared(probe - probe_) <= furthest * furthest);
   if (jumped || !located_) {
-    velocity_.reset();
+    joint_velocity_.reset();
     renderer_.reset(probe);
   }
   probe_ = probe;
   located_ = true;
-  velocity_.update(probe);
-  return jumped ? fault_bit(Fault::kEncoderJump) : 0U;
+  // In the joints each count is one step; at the probe the steps of all of them mix.
+  velocity_ = transposed_times(pose_.effort_per_force, joint_velocity_.update(pose_.joints));
+  if (!jumped) {
+    return 0U;
+  }
+  homing_.begin(configuration_.device);
+  return fault_bit(Fault::kEncoderJump);
 }
 
 void Controller::forget_motion() {
   located_ = false;
-  velocity_.reset();
+  joint_velocity_.reset();
+  velocity_ = {};
   renderer_.reset(probe_);
   rendering_ = {};
 }
@@ -201,6 +228,8 @@ void Controller::obey(const Input& input) {
   } else if (input.command == Command::kClearFault) {
     latched_ = present_;
     happen(Event::kClear);
+  } else if (input.command == Command::kHome && motors_off()) {
+    return;  // find_joints() took it
   } else {
     raise(fault_bit(Fault::kUnexpectedEvent));
   }
@@ -222,7 +251,7 @@ void Controller::render() {
     rendering_ = {};
     return;
   }
-  rendering_ = renderer_.update(model_, configuration_, probe_, velocity_.velocity());
+  rendering_ = renderer_.update(model_, configuration_, probe_, velocity_);
   if (!rendering_.complete) {
     raise(fault_bit(Fault::kModelIncomplete));
   }
@@ -239,7 +268,7 @@ void Controller::confirm(const Input& input, bool was_armed) {
   dead_man_released_ = dead_man_released_ || !input.dead_man;
   const bool hand = configuration_.dead_man_required ? input.dead_man && dead_man_released_
                                                      : input.command == Command::kArm;
-  const bool device = input.enable_read_back && !rendering_.in_contact;
+  const bool device = input.enable_read_back && located_ && !rendering_.in_contact;
   waiting_ = hand && !device;
   if (hand && device) {
     happen(Event::kReady);
@@ -264,11 +293,32 @@ void Controller::raise(FaultMask faults) {
   happen(Event::kFault);
 }
 
+// Of the rendered force: what the place of the device allows, and what keeps the wall passive.
+// Damping may take the push away, but never pulls the hand into the object.
+Vec3 Controller::wanted_force() {
+  const Vec3 rendered = pose_.reach * rendering_.force;
+  if (!rendering_.in_contact || !whole_ || !(configuration_.passivity_Ns_m > 0.0F)) {
+    passivity_.reset();
+    return rendered;
+  }
+  const Vec3 added =
+      passivity_.update(shown_, probe_, velocity_, pose_.reach * rendering_.stored_energy);
+  const Vec3 force = rendered + added;
+  const float push = dot(force, rendering_.normal);
+  return push < 0.0F ? force - push * rendering_.normal : force;
+}
+
 SafetyGate::Result Controller::apply_force() {
   if (state_ != State::kActive) {
+    passivity_.reset();
+    shown_ = {};
+    whole_ = false;
     return gate_.release();
   }
-  const SafetyGate::Result gated = gate_.command(rendering_.force, pose_.effort_per_force);
+  const Vec3 weight = configuration_.compensate_gravity ? pose_.gravity_effort : Vec3{};
+  const SafetyGate::Result gated = gate_.command(wanted_force(), pose_.effort_per_force, weight);
+  shown_ = gated.force;
+  whole_ = (gated.limits & limit_bit(Limit::kRamp)) == 0U;
   if (gated.not_finite) {
     raise(fault_bit(Fault::kNotFinite));
   }
@@ -284,10 +334,13 @@ Status Controller::report(const SafetyGate::Result& gated) const {
   const bool fading =
       state_ == State::kActive && rendering_.in_contact && rendering_.strength < 1.0F;
   status.limits |= fading ? limit_bit(Limit::kRim) : 0U;
+  const bool at_end = state_ == State::kActive && rendering_.in_contact && pose_.reach < 1.0F;
+  status.limits |= at_end ? limit_bit(Limit::kWorkspace) : 0U;
+  status.limits |= configured_ && !homing_.done() ? limit_bit(Limit::kNotHomed) : 0U;
   status.limits |= waiting_ ? limit_bit(Limit::kWaiting) : 0U;
   status.overruns = overruns_;
   status.probe = probe_;
-  status.velocity = velocity_.velocity();
+  status.velocity = velocity_;
   status.rendering = rendering_;
   status.force = gated.force;
   return status;

@@ -1,41 +1,96 @@
 #include "tactree/core/kinematics.hpp"
 
+#include "kinds.hpp"
+
 namespace tactree::core {
 namespace {
 
 constexpr Mat3 kIdentity{{{1.0F, 0.0F, 0.0F}, {0.0F, 1.0F, 0.0F}, {0.0F, 0.0F, 1.0F}}};
 
-/// Travel of one axis, as if the counter had no end.
-float travel(const DeviceModel& device, std::uint32_t axis, std::int32_t count) {
+// Nearer to a singular pose than the first there is no place and no effort to trust; from the
+// second on the force is whole.
+constexpr float kSingular = 0.05F;
+constexpr float kOpen = 0.15F;
+
+constexpr float lower(float a, float b) { return a < b ? a : b; }
+
+/// Position of one joint, as if the counter had no end.
+float joint_of(const DeviceModel& device, std::uint32_t axis, std::int32_t count) {
   const std::uint32_t difference =
       static_cast<std::uint32_t>(count) - static_cast<std::uint32_t>(device.home_count[axis]);
-  return static_cast<float>(static_cast<std::int32_t>(difference)) / device.counts_per_m[axis];
+  return device.home_position[axis] +
+         static_cast<float>(static_cast<std::int32_t>(difference)) / counts_per_unit(device, axis);
 }
 
-DevicePose locate_cartesian(const DeviceModel& device, const std::int32_t (&counts)[kAxes]) {
-  const Vec3 probe = {travel(device, 0, counts[0]), travel(device, 1, counts[1]),
-                      travel(device, 2, counts[2])};
-  return {is_finite(probe), probe, kIdentity};
+/// Share of the force that the range of one joint allows; negative: it cannot be there.
+float share_of_range(const DeviceModel& device, std::uint32_t axis, float joint) {
+  const float margin = device.joint_margin[axis];
+  const float inside = lower(joint - device.joint_min[axis], device.joint_max[axis] - joint);
+  if (!(inside >= -margin)) {
+    return -1.0F;
+  }
+  if (inside >= margin) {
+    return 1.0F;
+  }
+  return inside > 0.0F ? inside / margin : 0.0F;
+}
+
+float share_of_ranges(const DeviceModel& device, Vec3 joints) {
+  const float all[kAxes] = {joints.x, joints.y, joints.z};
+  const std::uint32_t axes = axes_of(device.kind);
+  float share = 1.0F;
+  for (std::uint32_t i = 0; i < axes; ++i) {  // bound: kAxes
+    share = lower(share, share_of_range(device, i, all[i]));
+  }
+  return share;
+}
+
+KindPose locate_kind(const DeviceModel& device, Vec3 joints) {
+  if (device.kind == DeviceKind::kCartesian) {
+    return {true, joints, kIdentity, {}, 1.0F};
+  }
+  if (device.kind == DeviceKind::kArm) {
+    return locate_arm(device, joints);
+  }
+  if (device.kind == DeviceKind::kDelta) {
+    return locate_delta(device, joints);
+  }
+  if (device.kind == DeviceKind::kFiveBar) {
+    return locate_five_bar(device, joints);
+  }
+  return device.kind == DeviceKind::kPaddle ? locate_paddle(device, joints) : KindPose{};
 }
 
 }  // namespace
 
-bool is_valid(const DeviceModel& device) {
-  if (device.kind != DeviceKind::kCartesian) {
-    return false;
+Vec3 joints_of(const DeviceModel& device, const std::int32_t (&counts)[kAxes]) {
+  const std::uint32_t axes = axes_of(device.kind);
+  return {joint_of(device, 0, counts[0]), axes > 1 ? joint_of(device, 1, counts[1]) : 0.0F,
+          axes > 2 ? joint_of(device, 2, counts[2]) : 0.0F};
+}
+
+DevicePose locate_joints(const DeviceModel& device, Vec3 joints) {
+  DevicePose pose;
+  pose.joints = joints;
+  const float share = share_of_ranges(device, joints);
+  if (!(share >= 0.0F)) {
+    return pose;
   }
-  bool valid = true;
-  for (const float counts : device.counts_per_m) {  // bound: kAxes
-    valid = valid && counts >= 1.0F && counts <= 1e9F;
+  const KindPose place = locate_kind(device, joints);
+  if (!place.valid || !(place.openness > kSingular) || !is_finite(place.probe)) {
+    return pose;
   }
-  return valid;
+  pose.valid = true;
+  pose.reach = lower(share, lower(1.0F, (place.openness - kSingular) / (kOpen - kSingular)));
+  pose.probe = place.probe - device.origin_m;
+  pose.effort_per_force = place.effort_per_force;
+  pose.gravity_effort =
+      place.link_effort + place.effort_per_force * Vec3{0.0F, 0.0F, kGravity * device.tip_mass_kg};
+  return pose;
 }
 
 DevicePose locate(const DeviceModel& device, const std::int32_t (&counts)[kAxes]) {
-  if (device.kind == DeviceKind::kCartesian) {
-    return locate_cartesian(device, counts);
-  }
-  return {};
+  return locate_joints(device, joints_of(device, counts));
 }
 
 }  // namespace tactree::core

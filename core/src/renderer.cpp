@@ -35,6 +35,15 @@ Vec3 damping(float damping_Ns_m, Vec3 velocity, Vec3 spring) {
   return size > allowed ? (allowed / size) * wanted : wanted;
 }
 
+/// Of the spring with its force limited, as the gate does.
+float spring_energy(float stiffness_N_m, float length_m, float force_max_N) {
+  const float force = stiffness_N_m * length_m;
+  if (!(force > force_max_N)) {
+    return 0.5F * force * length_m;
+  }
+  return force_max_N * (length_m - 0.5F * force_max_N / stiffness_N_m);
+}
+
 Rendering update_paper(const BlobView& view, const Configuration& c, Vec3 probe) {
   Rendering r;
   r.proxy = probe;
@@ -50,9 +59,11 @@ Rendering update_paper(const BlobView& view, const Configuration& c, Vec3 probe)
   r.in_contact = true;
   r.proxy = nearest.position;
   r.normal = normalized_or(way, {});
-  r.force = feel_of(view, c, nearest.index).stiffness_N_m * way;
+  const float stiffness_N_m = feel_of(view, c, nearest.index).stiffness_N_m;
+  r.force = stiffness_N_m * way;
   r.strength = 1.0F;
   r.penetration_m = length(way);
+  r.stored_energy = spring_energy(stiffness_N_m, r.penetration_m, c.force_max_N);
   r.leaf = nearest.leaf;
   r.point = nearest.index;
   return r;
@@ -90,6 +101,7 @@ Rendering Renderer::update_surface(const BlobView& view, const Configuration& c,
   r.normal = normal;
   r.strength = proxy_.strength();
   r.force = r.strength * repelling;
+  r.stored_energy = r.strength * spring_energy(feel.stiffness_N_m, length(way), c.force_max_N);
   r.penetration_m = dot(way, normal);
   r.point = proxy_.nearest_point();
   Leaf leaf;

@@ -61,10 +61,10 @@ SafetyGate::Result SafetyGate::release() {
   return {};
 }
 
-SafetyGate::Result SafetyGate::command(Vec3 force, const Mat3& effort_per_force) {
+SafetyGate::Result SafetyGate::command(Vec3 force, const Mat3& effort_per_force, Vec3 own_effort) {
   const bool finite_map = is_finite(effort_per_force.row[0]) &&
                           is_finite(effort_per_force.row[1]) && is_finite(effort_per_force.row[2]);
-  if (!is_finite(force) || !finite_map) {
+  if (!is_finite(force) || !finite_map || !is_finite(own_effort)) {
     Result none = release();
     none.not_finite = true;
     return none;
@@ -85,7 +85,7 @@ SafetyGate::Result SafetyGate::command(Vec3 force, const Mat3& effort_per_force)
     none.not_finite = true;
     return none;
   }
-  limit_axes(wanted, result);
+  limit_axes(gain * own_effort, wanted, result);
   last_force_ = result.force;
   for (std::uint32_t i = 0; i < kAxes; ++i) {  // bound: kAxes
     last_effort_[i] = result.command.effort_[i];
@@ -119,27 +119,45 @@ Vec3 SafetyGate::limit_slew(Vec3 force, LimitMask& limits) const {
   return last_force_ + (allowed / size) * change;
 }
 
-// All axes are scaled by the same share, so that the direction stays; then each within its slew.
-void SafetyGate::limit_axes(Vec3 wanted, Result& result) const {
-  const float target[kAxes] = {wanted.x, wanted.y, wanted.z};
+// The device's own weight comes first, as far as an axis can; what it leaves is for the force,
+// whose efforts are scaled by the same share, so that its direction stays.
+void SafetyGate::limit_axes(Vec3 own, Vec3 wanted, Result& result) const {
+  const float base[kAxes] = {own.x, own.y, own.z};
+  const float effort[kAxes] = {wanted.x, wanted.y, wanted.z};
+  float target[kAxes];
   float share = 1.0F;
   for (std::uint32_t i = 0; i < kAxes; ++i) {  // bound: kAxes
     const float allowed = kInside * limits_.effort_max[i];
-    const float size = absolute(target[i]);
-    if (size * share > allowed) {
-      share = allowed / size;
+    target[i] = clamp(base[i], allowed);
+    result.limits |= target[i] != base[i] ? limit_bit(Limit::kAxis) : 0U;
+    const float room = allowed - (effort[i] < 0.0F ? -target[i] : target[i]);
+    const float size = absolute(effort[i]);
+    if (size * share > room) {
+      share = room / size;
     }
   }
-  bool limited = share < 1.0F;
+  for (std::uint32_t i = 0; i < kAxes; ++i) {  // bound: kAxes
+    target[i] += share * effort[i];
+  }
+  result.limits |= share < 1.0F ? limit_bit(Limit::kAxis) : 0U;
+  limit_axis_slew(target, result);
+}
+
+void SafetyGate::limit_axis_slew(const float (&target)[kAxes], Result& result) const {
+  float share = 1.0F;
   for (std::uint32_t i = 0; i < kAxes; ++i) {  // bound: kAxes
     const float allowed =
         kInside * limits_.effort_slew_per_tick[i] - kRounding * limits_.effort_max[i];
-    const float change = share * target[i] - last_effort_[i];
-    const float kept = clamp(change, allowed);
-    limited = limited || kept != change;
-    result.command.effort_[i] = clamp(last_effort_[i] + kept, kInside * limits_.effort_max[i]);
+    const float change = absolute(target[i] - last_effort_[i]);
+    if (change * share > allowed) {
+      share = allowed / change;
+    }
   }
-  result.limits |= limited ? limit_bit(Limit::kAxis) : 0U;
+  result.limits |= share < 1.0F ? limit_bit(Limit::kAxis) : 0U;
+  for (std::uint32_t i = 0; i < kAxes; ++i) {  // bound: kAxes
+    const float effort = last_effort_[i] + share * (target[i] - last_effort_[i]);
+    result.command.effort_[i] = clamp(effort, kInside * limits_.effort_max[i]);
+  }
 }
 
 }  // namespace tactree::core

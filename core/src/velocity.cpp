@@ -39,9 +39,9 @@ struct Axis {
 
 }  // namespace
 
-void VelocityEstimator::configure(float period_s, float quantum_m, float cutoff_hz) {
+void VelocityEstimator::configure(float period_s, Vec3 quantum, float cutoff_hz) {
   period_s_ = period_s;
-  quantum_m_ = kTolerance * quantum_m;
+  quantum_ = kTolerance * quantum;
   const float turn = kTwoPi * cutoff_hz * period_s;
   share_ = turn / (1.0F + turn);
   reset();
@@ -67,7 +67,7 @@ Vec3 VelocityEstimator::update(Vec3 position) {
     y.history[age] = past(age).y;
     z.history[age] = past(age).z;
   }
-  const Vec3 per_sample = {x.slope(quantum_m_), y.slope(quantum_m_), z.slope(quantum_m_)};
+  const Vec3 per_sample = {x.slope(quantum_.x), y.slope(quantum_.y), z.slope(quantum_.z)};
   const Vec3 estimate = (1.0F / period_s_) * per_sample;
   velocity_ += share_ * (estimate - velocity_);
   return velocity_;

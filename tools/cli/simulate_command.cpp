@@ -13,6 +13,7 @@
 
 #include "blob_file.hpp"
 #include "command.hpp"
+#include "device_file.hpp"
 #include "output_file.hpp"
 #include "tactree/emulation/emulated_target.hpp"
 #include "tactree/simulation/hand_script.hpp"
@@ -30,16 +31,21 @@ struct SimulateOptions {
   std::string blob;
   std::string board = "host";
   std::string firmware;
-  std::string device = "cartesian";
+  std::string device = "premium";
+  bool dump_device = false;
+  std::vector<double> origin_m;  // of the model, device frame; empty: its middle at the origin
   std::string script = "rub";
   std::string path;
   std::string mode = "surface";
   std::string trace;
   std::string plot;
+  bool compare = false;
   std::string json;
   double seconds = 10.0;
   double latency_ticks = 0.0;
   double encoder_step_m = 30e-6;
+  std::vector<CLI::Option*> cartesian_only;
+  CLI::Option* force_max = nullptr;
   simulation::Setup setup;
 };
 
@@ -55,15 +61,53 @@ simulation::HandPath hand_path(const SimulateOptions& options, const core::BlobV
   return simulation::make_script(options.script, view, options.seconds);
 }
 
-simulation::Setup make_setup(const SimulateOptions& options) {
+/// The device, for controller and mechanics alike; what the options say of it goes before.
+void choose_device(const SimulateOptions& options, simulation::Setup& setup) {
+  const Device device = load_device(options.device);
+  const float force_max_N = setup.controller.force_max_N;
+  simulation::use_device(device.figures, setup);
+  if (options.force_max->count() != 0) {
+    setup.controller.force_max_N = force_max_N;
+  }
+  if (setup.controller.device.kind != core::DeviceKind::kCartesian) {
+    for (const CLI::Option* option : options.cartesian_only) {
+      if (option->count() != 0) {
+        refuse(fmt::format("{}: the device '{}' is not cartesian", option->get_name(), device.name),
+               "change its file: --dump-device writes one");
+      }
+    }
+    return;
+  }
+  for (float& counts : setup.controller.device.counts_per_m) {
+    counts = static_cast<float>(1.0 / options.encoder_step_m);
+  }
+  if (device.name == "cartesian") {
+    setup.dynamics.reset();  // the options' mass and friction
+  }
+}
+
+/// What --origin says, or else the model's middle at the device's origin. Devices of one or two
+/// axes do not reach far: they get the middle of its top.
+core::Vec3 place_model(const SimulateOptions& options, const core::BlobView& view,
+                       core::DeviceKind kind) {
+  if (!options.origin_m.empty()) {
+    return {static_cast<float>(options.origin_m[0]), static_cast<float>(options.origin_m[1]),
+            static_cast<float>(options.origin_m[2])};
+  }
+  const core::BlobHeader& h = view.header();
+  const auto middle = [&h](int axis) {
+    return 0.5F * (h.bounds_min_m[axis] + h.bounds_max_m[axis]);
+  };
+  const bool spatial = core::axes_of(kind) == core::kAxes;
+  return {-middle(0), -middle(1), spatial ? -middle(2) : -h.bounds_max_m[2]};
+}
+
+simulation::Setup make_setup(const SimulateOptions& options, const core::BlobView& view) {
   simulation::Setup setup = options.setup;
   core::Configuration& controller = setup.controller;
   controller.mode = options.mode == "paper" ? core::RenderMode::kPaper : core::RenderMode::kSurface;
-  for (float& counts : controller.device.counts_per_m) {
-    counts = static_cast<float>(1.0 / options.encoder_step_m);
-  }
-  // One figure for both sides: the device the controller believes in is the simulated one.
-  setup.board.encoders.counts_per_m = static_cast<double>(controller.device.counts_per_m[0]);
+  choose_device(options, setup);
+  controller.model_origin_m = place_model(options, view, controller.device.kind);
   setup.board.encoders.latency_ticks = static_cast<std::uint32_t>(options.latency_ticks);
   controller.delay_s = static_cast<float>(options.latency_ticks) / controller.rate_hz;
   controller.velocity_cutoff_hz =
@@ -127,7 +171,7 @@ std::unique_ptr<emulation::EmulatedTarget> boot_board(const SimulateOptions& opt
 }
 
 Outcome run(const SimulateOptions& options, const BlobFile& blob) {
-  const simulation::Setup setup = make_setup(options);
+  const simulation::Setup setup = make_setup(options, blob.view());
   const double count = std::round(options.seconds * static_cast<double>(setup.controller.rate_hz));
   const bool keep = !options.trace.empty() || !options.plot.empty();
   const double most = keep ? kMaxTracedTicks : kMaxTicks;
@@ -243,16 +287,40 @@ void print_summary(const SimulateOptions& options, const Outcome& outcome) {
   }
 }
 
+void write_plot(const SimulateOptions& options, const BlobFile& blob, const Outcome& outcome) {
+  const double rate_hz = static_cast<double>(options.setup.controller.rate_hz);
+  if (!options.compare) {
+    const std::string title = fmt::format("{}: {}, {} mode, {:.6g} Hz", options.blob,
+                                          options.device, options.mode, rate_hz);
+    write_file(options.plot, simulation::plot_svg(outcome.samples, title));
+    return;
+  }
+  SimulateOptions other = options;
+  other.mode = options.mode == "paper" ? "surface" : "paper";
+  const Outcome beside = run(other, blob);
+  const bool paper_first = options.mode == "paper";
+  const std::string title =
+      fmt::format("{}: {}, both modes, {:.6g} Hz", options.blob, options.device, rate_hz);
+  write_file(options.plot,
+             simulation::plot_modes_svg(paper_first ? beside.samples : outcome.samples,
+                                        paper_first ? outcome.samples : beside.samples, title));
+}
+
 void simulate(const SimulateOptions& options, int& exit_code) {
+  if (options.dump_device) {
+    fmt::print("{}", device_json(load_device(options.device)));
+    return;
+  }
+  if (options.blob.empty()) {
+    throw CLI::RequiredError("BLOB");
+  }
   const BlobFile blob(options.blob);
   const Outcome outcome = run(options, blob);
-  const std::string title = fmt::format("{}: {} mode, {:.6g} Hz", options.blob, options.mode,
-                                        options.setup.controller.rate_hz);
   if (!options.trace.empty()) {
     write_trace(options.trace, outcome.samples);
   }
   if (!options.plot.empty()) {
-    write_file(options.plot, simulation::plot_svg(outcome.samples, title));
+    write_plot(options, blob, outcome);
   }
   if (!options.json.empty()) {
     write_file(options.json, to_json(options, outcome).dump(2) + "\n");
@@ -261,7 +329,8 @@ void simulate(const SimulateOptions& options, int& exit_code) {
   exit_code = outcome.summary.faults.empty() ? kExitOk : kExitFailed;
 }
 
-void add_controller_options(CLI::App& verb, core::Configuration& c) {
+void add_controller_options(CLI::App& verb, SimulateOptions& options) {
+  core::Configuration& c = options.setup.controller;
   verb.add_option("--rate", c.rate_hz, "ticks per second, Hz")
       ->check(CLI::Range(100.0, 20000.0))
       ->capture_default_str();
@@ -271,28 +340,34 @@ void add_controller_options(CLI::App& verb, core::Configuration& c) {
   verb.add_option("--damping", c.damping_Ns_m, "of the surface, Ns/m")
       ->check(CLI::Range(0.0, 1e3))
       ->capture_default_str();
+  verb.add_option("--passivity", c.passivity_Ns_m,
+                  "most damping that the passivity controller may add, Ns/m; 0: off")
+      ->check(CLI::Range(0.0, 100.0))
+      ->capture_default_str();
   verb.add_option("--static-friction", c.static_friction, "coefficient")
       ->check(CLI::Range(0.0, 2.0))
       ->capture_default_str();
   verb.add_option("--dynamic-friction", c.dynamic_friction, "coefficient, at most the static one")
       ->check(CLI::Range(0.0, 2.0))
       ->capture_default_str();
-  verb.add_option("--force-max", c.force_max_N, "largest force, N")
-      ->check(CLI::Range(0.01, 1000.0))
-      ->capture_default_str();
+  options.force_max =
+      verb.add_option("--force-max", c.force_max_N, "largest force, N (default: the device's)")
+          ->check(CLI::Range(0.01, 1000.0));
 }
 
 void add_plant_options(CLI::App& verb, SimulateOptions& options) {
   plant::PlantParameters& plant = options.setup.plant;
-  verb.add_option("--device-mass", plant.device.mass_kg, "apparent mass at the tip, kg")
-      ->check(CLI::Range(1e-4, 100.0))
-      ->capture_default_str();
-  verb.add_option("--device-friction", plant.device.coulomb_N, "dry friction of each axis, N")
-      ->check(CLI::Range(0.0, 100.0))
-      ->capture_default_str();
-  verb.add_option("--encoder-step", options.encoder_step_m, "travel of one count, m")
-      ->check(CLI::Range(1e-8, 1e-2))
-      ->capture_default_str();
+  options.cartesian_only = {
+      verb.add_option("--device-mass", plant.device.mass_kg, "cartesian: apparent mass, kg")
+          ->check(CLI::Range(1e-4, 100.0))
+          ->capture_default_str(),
+      verb.add_option("--device-friction", plant.device.coulomb_N,
+                      "cartesian: dry friction of each axis, N")
+          ->check(CLI::Range(0.0, 100.0))
+          ->capture_default_str(),
+      verb.add_option("--encoder-step", options.encoder_step_m, "cartesian: travel of one count, m")
+          ->check(CLI::Range(1e-8, 1e-2))
+          ->capture_default_str()};
   verb.add_option("--latency-ticks", options.latency_ticks, "age of an encoder reading, ticks")
       ->check(CLI::Range(0, static_cast<int>(hal::sim::kMaxLatencyTicks)))
       ->capture_default_str();
@@ -307,9 +382,30 @@ void add_plant_options(CLI::App& verb, SimulateOptions& options) {
       ->capture_default_str();
 }
 
+void add_device_options(CLI::App& verb, SimulateOptions& options) {
+  std::string names;
+  for (const std::string& name : device_names()) {
+    names += (names.empty() ? "" : ", ") + name;
+  }
+  verb.add_option("--device", options.device, names + ", or a JSON file that describes another")
+      ->capture_default_str();
+  verb.add_flag("--dump-device", options.dump_device,
+                "print the device as such a file, to begin one's own with, and do nothing else");
+  verb.add_option("--origin", options.origin_m,
+                  "where the model's origin is in the device's frame (x to the user, y right, z "
+                  "up), m; default: the model's middle at the device's origin, "
+                  "with a device of one or two axes the middle of its top")
+      ->expected(3)
+      ->check(CLI::Range(-10.0, 10.0));
+}
+
 void add_output_options(CLI::App& verb, SimulateOptions& options) {
   verb.add_option("--trace", options.trace, "write every tick to this CSV file");
-  verb.add_option("--plot", options.plot, "draw force and penetration into this SVG file");
+  CLI::Option* plot =
+      verb.add_option("--plot", options.plot, "draw force and penetration into this SVG file");
+  verb.add_flag("--compare", options.compare,
+                "draw the force of both modes into the plot, along the same path")
+      ->needs(plot);
   verb.add_option("--json", options.json, "write the summary to this file");
 }
 
@@ -319,16 +415,14 @@ void add_simulate_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<SimulateOptions>();
   CLI::App* verb = app.add_subcommand(
       "simulate", "Runs the controller of the firmware against a simulated device and hand");
-  verb->add_option("BLOB", options->blob, "the blob to touch")->required();
+  verb->add_option("BLOB", options->blob, "the blob to touch");
   verb->add_option("--board", options->board, "where the controller runs")
       ->check(CLI::IsMember(board_names()))
       ->capture_default_str();
   verb->add_option("--firmware", options->firmware,
                    "folder with the images of the emulated boards (default: $TACTREE_FIRMWARE, the "
                    "installation, or the build tree)");
-  verb->add_option("--device", options->device, "the device's kinematics")
-      ->check(CLI::IsMember({"cartesian"}))
-      ->capture_default_str();
+  add_device_options(*verb, *options);
   verb->add_option("--mode", options->mode, "how contact is rendered")
       ->check(CLI::IsMember({"surface", "paper"}))
       ->capture_default_str();
@@ -340,7 +434,7 @@ void add_simulate_command(CLI::App& app, int& exit_code) {
                             ->capture_default_str();
   verb->add_option("--path", options->path, "CSV file with the hand's way: t_s,x,y,z (s, m)")
       ->excludes(script);
-  add_controller_options(*verb, options->setup.controller);
+  add_controller_options(*verb, *options);
   add_plant_options(*verb, *options);
   add_output_options(*verb, *options);
   verb->callback([options, &exit_code] { simulate(*options, exit_code); });

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
+#include <span>
 #include <vector>
 
 #include "tactree/simulation/trace.hpp"
@@ -20,6 +21,7 @@ struct Curve {
   const char* name;
   const char* colour;
   double width;
+  std::span<const Sample> samples;
   std::function<double(const Sample&)> value;
 };
 
@@ -102,8 +104,8 @@ void draw_axes(std::string& svg, const Panel& p, bool time_label) {
 }
 
 /// Lowest and highest value of each column of pixels, joined to one line.
-void draw_curve(std::string& svg, const Panel& p, std::span<const Sample> samples,
-                const Curve& curve) {
+void draw_curve(std::string& svg, const Panel& p, const Curve& curve) {
+  const std::span<const Sample> samples = curve.samples;
   fmt::format_to(std::back_inserter(svg),
                  "<polyline fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" "
                  "stroke-linejoin=\"round\" points=\"",
@@ -139,10 +141,9 @@ void draw_legend(std::string& svg, double y, const std::vector<Curve>& curves) {
   }
 }
 
-void draw_panel(std::string& svg, Panel panel, std::span<const Sample> samples,
-                const std::vector<Curve>& curves, bool time_label) {
+void draw_panel(std::string& svg, Panel panel, const std::vector<Curve>& curves, bool time_label) {
   for (const Curve& curve : curves) {
-    for (const Sample& sample : samples) {
+    for (const Sample& sample : curve.samples) {
       panel.low = std::min(panel.low, curve.value(sample));
       panel.high = std::max(panel.high, curve.value(sample));
     }
@@ -152,7 +153,7 @@ void draw_panel(std::string& svg, Panel panel, std::span<const Sample> samples,
   panel.low -= panel.low < 0.0 ? margin : 0.0;
   draw_axes(svg, panel, time_label);
   for (const Curve& curve : curves) {
-    draw_curve(svg, panel, samples, curve);
+    draw_curve(svg, panel, curve);
   }
   draw_legend(svg, panel.top - 10.0, curves);
 }
@@ -161,39 +162,79 @@ double size_of(core::Vec3 v) {
   return std::hypot(static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z));
 }
 
-std::vector<Curve> force_curves() {
-  return {{"force x", "#0072b2", 1.0,
+using Samples = std::span<const Sample>;
+
+double force_size(const Sample& sample) { return size_of(sample.status.force); }
+
+std::vector<Curve> force_curves(Samples samples) {
+  return {{"force x", "#0072b2", 1.0, samples,
            [](const Sample& s) { return static_cast<double>(s.status.force.x); }},
-          {"force y", "#009e73", 1.0,
+          {"force y", "#009e73", 1.0, samples,
            [](const Sample& s) { return static_cast<double>(s.status.force.y); }},
-          {"force z", "#d55e00", 1.0,
+          {"force z", "#d55e00", 1.0, samples,
            [](const Sample& s) { return static_cast<double>(s.status.force.z); }},
-          {"force size", "#222222", 1.3, [](const Sample& s) { return size_of(s.status.force); }}};
+          {"force size", "#222222", 1.3, samples, force_size}};
 }
 
-std::vector<Curve> depth_curves() {
-  return {{"penetration", "#cc79a7", 1.3, [](const Sample& s) {
+std::vector<Curve> depth_curves(Samples samples) {
+  return {{"penetration", "#cc79a7", 1.3, samples, [](const Sample& s) {
              const core::Rendering& r = s.status.rendering;
              return r.in_contact ? 1e3 * static_cast<double>(r.penetration_m) : 0.0;
            }}};
 }
 
-}  // namespace
-
-std::string plot_svg(std::span<const Sample> samples, const std::string& title) {
+std::string begin_page(const std::string& title) {
   std::string svg = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" "
       "viewBox=\"0 0 {0:.0f} {1:.0f}\" font-family=\"sans-serif\" font-size=\"13\">\n"
       "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n",
       kWidth, kHeight);
   text(svg, kLeft, 28.0, "start", escaped(title), " font-size=\"16\" font-weight=\"bold\"");
+  return svg;
+}
+
+/// A panel over the time that the samples take.
+Panel panel_over(Samples samples, double top, double bottom, const char* label) {
   const double t_min = samples.empty() ? 0.0 : samples.front().t_s;
   const double t_last = samples.empty() ? 1.0 : samples.back().t_s;
-  const double t_max = t_last > t_min ? t_last : t_min + 1.0;
-  draw_panel(svg, {70.0, 340.0, t_min, t_max, 0.0, 1e-3, "force / N"}, samples, force_curves(),
-             false);
-  draw_panel(svg, {400.0, 580.0, t_min, t_max, 0.0, 1e-3, "penetration / mm"}, samples,
-             depth_curves(), true);
+  return {top, bottom, t_min, t_last > t_min ? t_last : t_min + 1.0, 0.0, 1e-3, label};
+}
+
+/// The middle of a run: from the first sample at or after half its time.
+Samples cut(Samples samples, double begin_s, double end_s) {
+  const auto later = [](const Sample& s, double t_s) { return s.t_s < t_s; };
+  const auto first = std::lower_bound(samples.begin(), samples.end(), begin_s, later);
+  const auto last = std::lower_bound(first, samples.end(), end_s, later);
+  return {first, last};
+}
+
+std::vector<Curve> mode_curves(Samples surface, Samples paper) {
+  return {{"paper mode", "#d55e00", 0.8, paper, force_size},
+          {"surface mode", "#0072b2", 1.6, surface, force_size}};
+}
+
+}  // namespace
+
+std::string plot_svg(std::span<const Sample> samples, const std::string& title) {
+  std::string svg = begin_page(title);
+  draw_panel(svg, panel_over(samples, 70.0, 340.0, "force / N"), force_curves(samples), false);
+  draw_panel(svg, panel_over(samples, 400.0, 580.0, "penetration / mm"), depth_curves(samples),
+             true);
+  svg += "</svg>\n";
+  return svg;
+}
+
+std::string plot_modes_svg(std::span<const Sample> surface, std::span<const Sample> paper,
+                           const std::string& title) {
+  constexpr double kZoomS = 0.25;
+  std::string svg = begin_page(title);
+  const Panel whole = panel_over(surface, 70.0, 300.0, "force / N");
+  draw_panel(svg, whole, mode_curves(surface, paper), false);
+  const double middle = 0.5 * (whole.t_min + whole.t_max);
+  const Samples near_surface = cut(surface, middle, middle + kZoomS);
+  const Samples near_paper = cut(paper, middle, middle + kZoomS);
+  draw_panel(svg, panel_over(near_surface, 360.0, 580.0, "force / N, a moment of it"),
+             mode_curves(near_surface, near_paper), true);
   svg += "</svg>\n";
   return svg;
 }

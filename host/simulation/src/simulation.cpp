@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <iterator>
 
 namespace tactree::simulation {
 namespace {
@@ -21,17 +22,58 @@ Eigen::Vector3d widen(core::Vec3 v) {
   return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
 }
 
+/// The board passes counts on: what a count is, the device says.
+hal::sim::BoardParameters counting(hal::sim::BoardParameters board, float rate_hz) {
+  board = with_rate(board, rate_hz);
+  board.encoders.counts_per_m = 1.0;
+  return board;
+}
+
+Setup homed(Setup setup) {
+  setup.controller.device.homing = core::HomingMethod::kAbsolute;
+  return setup;
+}
+
+bool has_mass(const core::DeviceModel& model) {
+  const auto heavy = [](float mass) { return mass > 0.0F; };
+  return heavy(model.tip_mass_kg) ||
+         std::any_of(std::begin(model.link_mass_kg), std::end(model.link_mass_kg), heavy);
+}
+
+plant::DevicePlantParameters mechanics(const Setup& setup) {
+  plant::DevicePlantParameters p;
+  p.model = setup.controller.device;
+  p.hand = setup.plant.hand;
+  p.substep_s = setup.plant.substep_s;
+  p.has_weight = has_mass(p.model);
+  const plant::DeviceParameters& same = setup.plant.device;
+  for (std::uint32_t i = 0; i < core::kAxes; ++i) {
+    p.dynamics.inertia[i] = static_cast<float>(same.mass_kg);
+    p.dynamics.viscous[i] = static_cast<float>(same.viscous_Ns_m);
+    p.dynamics.coulomb[i] = static_cast<float>(same.coulomb_N);
+  }
+  p.dynamics = setup.dynamics.value_or(p.dynamics);
+  return p;
+}
+
 }  // namespace
+
+void use_device(const core::DevicePreset& device, Setup& setup) {
+  core::use_device(device, setup.controller);
+  setup.dynamics = device.dynamics;
+  setup.board.motors.effort_max = static_cast<double>(
+      *std::max_element(std::begin(device.drive.effort_max), std::end(device.drive.effort_max)));
+}
 
 Simulation::Simulation(std::span<const std::byte> blob, const Setup& setup, HandPath path,
                        std::unique_ptr<Target> target)
-    : setup_(setup),
+    : setup_(homed(setup)),
       path_(std::move(path)),
       period_s_(1.0 / static_cast<double>(setup.controller.rate_hz)),
-      board_(with_rate(setup.board, setup.controller.rate_hz), blob),
+      board_(counting(setup.board, setup.controller.rate_hz), blob),
       target_(std::move(target)),
-      start_(target_->start(board_, setup.controller)),
-      plant_(setup.plant, path_.at(0.0).position_m + widen(setup.controller.model_origin_m)) {
+      start_(target_->start(board_, setup_.controller)),
+      plant_(mechanics(setup), path_.at(0.0).position_m + widen(setup.controller.model_origin_m)) {
   // The readings on their way when the session begins are already of the device at rest.
   for (std::uint32_t i = 0; i <= hal::sim::kMaxLatencyTicks; ++i) {
     sample_device();
@@ -39,8 +81,14 @@ Simulation::Simulation(std::span<const std::byte> blob, const Setup& setup, Hand
 }
 
 void Simulation::sample_device() {
-  const Eigen::Vector3d& p = plant_.position_m();
-  board_.sample({p.x(), p.y(), p.z()});
+  const core::DeviceModel& device = setup_.controller.device;
+  double counts[core::kAxes] = {0.0, 0.0, 0.0};
+  for (std::uint32_t i = 0; i < core::axes_of(device.kind); ++i) {
+    const double way = plant_.joints()[i] - static_cast<double>(device.home_position[i]);
+    counts[i] = way * static_cast<double>(core::counts_per_unit(device, i)) +
+                static_cast<double>(device.home_count[i]);
+  }
+  board_.sample(counts);
 }
 
 std::uint64_t Simulation::arming_ticks(const Setup& setup) {

@@ -30,6 +30,7 @@ const std::vector<std::pair<Field, ConfigurationStatus>>& fields() {
       {&Configuration::velocity_cutoff_hz, ConfigurationStatus::kBadFilter},
       {&Configuration::device_damping_Ns_m, ConfigurationStatus::kBadDamping},
       {&Configuration::hand_damping_Ns_m, ConfigurationStatus::kBadDamping},
+      {&Configuration::passivity_Ns_m, ConfigurationStatus::kBadDamping},
       {&Configuration::delay_s, ConfigurationStatus::kBadTimeout},
       {&Configuration::force_max_N, ConfigurationStatus::kBadLimit},
       {&Configuration::slew_N_s, ConfigurationStatus::kBadLimit},
@@ -124,6 +125,7 @@ TEST(Configuration, StiffnessBeyondTheStabilityLimitIsRefused) {
   c.device_damping_Ns_m = 0.1F;
   c.hand_damping_Ns_m = 1.0F;
   c.damping_Ns_m = 0.0F;
+  c.passivity_Ns_m = 0.0F;
   EXPECT_NEAR(core::stability_limit(c).with_hand_N_m, 2200.0F, 1.0F);
   EXPECT_NEAR(core::stability_limit(c).without_hand_N_m, 200.0F, 0.1F);
   c.delay_s = 0.3e-3F;

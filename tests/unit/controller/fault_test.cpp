@@ -203,7 +203,7 @@ TEST(Faults, PowerThatDropsOutInActionCountsAtOnce) {
 
 TEST(Faults, AnUnknownCommandIsUnexpected) {
   Session session;
-  session.step(static_cast<Command>(4));
+  session.step(static_cast<Command>(5));
   EXPECT_EQ(session.state(), State::kFault);
   EXPECT_TRUE(core::has_fault(session.controller.faults(), Fault::kUnexpectedEvent));
 }

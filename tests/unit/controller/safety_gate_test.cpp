@@ -249,5 +249,76 @@ TEST(SafetyGate, BadLimitsAreRefusedAndTheOldOnesStay) {
   EXPECT_TRUE(refused([](core::GateLimits& l) { l.ramp_ticks = 1000001; }));
 }
 
+// An arm that is at its limit on one axis pushes less, not elsewhere.
+TEST(SafetyGate, SaturationKeepsTheDirectionOfTheForceNextToTheOwnWeight) {
+  core::GateLimits limits;
+  limits.ramp_ticks = 2;
+  limits.force_max_N = 100.0F;
+  limits.slew_N_per_tick = 200.0F;
+  for (std::uint32_t i = 0; i < core::kAxes; ++i) {
+    limits.effort_max[i] = 1.0F;
+    limits.effort_slew_per_tick[i] = 2.0F;
+  }
+  constexpr Mat3 kMap{{{0.2F, 0.1F, 0.0F}, {0.0F, 0.15F, -0.1F}, {0.05F, 0.0F, 0.2F}}};
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> unit(-1.0F, 1.0F);
+  SafetyGate gate;
+  ASSERT_TRUE(gate.configure(limits));
+  gate.command({}, kMap);
+  gate.command({}, kMap);
+  int saturated = 0;
+  for (int i = 0; i < 10000; ++i) {
+    const Vec3 force = 20.0F * Vec3{unit(random), unit(random), unit(random)};
+    const Vec3 own = 0.5F * Vec3{unit(random), unit(random), unit(random)};
+    const SafetyGate::Result result = gate.command(force, kMap, own);
+    const Vec3 wanted = kMap * result.force;
+    const Vec3 shown =
+        Vec3{result.command.effort(0), result.command.effort(1), result.command.effort(2)} - own;
+    const Vec3 turn = core::cross(wanted, shown);
+    ASSERT_LE(core::length(turn), 2e-5F * core::length(wanted));
+    ASSERT_GE(core::dot(wanted, shown), 0.0F);
+    saturated += core::length(shown) < 0.99F * core::length(wanted) ? 1 : 0;
+    const bool told = (result.limits & core::limit_bit(core::Limit::kAxis)) != 0U;
+    ASSERT_TRUE(told || core::length(shown) > 0.9999F * core::length(wanted));
+  }
+  EXPECT_GT(saturated, 3000);
+  EXPECT_LT(saturated, 9900);
+}
+
+TEST(SafetyGate, TheAxesSlewTogether) {
+  core::GateLimits limits;
+  limits.ramp_ticks = 2;
+  limits.slew_N_per_tick = 16.0F;
+  for (float& slew : limits.effort_slew_per_tick) {
+    slew = 0.5F;
+  }
+  SafetyGate gate;
+  ASSERT_TRUE(gate.configure(limits));
+  gate.command({}, kIdentity);
+  gate.command({}, kIdentity);
+  const SafetyGate::Result result = gate.command({4.0F, -2.0F, 1.0F}, kIdentity);
+  EXPECT_NEAR(result.command.effort(0), 0.5F, 1e-4F);
+  EXPECT_NEAR(result.command.effort(1), -0.25F, 1e-4F);
+  EXPECT_NEAR(result.command.effort(2), 0.125F, 1e-4F);
+}
+
+TEST(SafetyGate, AnOwnEffortBeyondTheAxisIsClipped) {
+  core::GateLimits limits;
+  limits.ramp_ticks = 2;
+  limits.slew_N_per_tick = 16.0F;
+  for (float& slew : limits.effort_slew_per_tick) {
+    slew = 16.0F;
+  }
+  SafetyGate gate;
+  ASSERT_TRUE(gate.configure(limits));
+  for (int i = 0; i < 4; ++i) {
+    const SafetyGate::Result result =
+        gate.command({5.0F, 0.0F, 0.0F}, kIdentity, {99.0F, 0.0F, 0.0F});
+    ASSERT_LE(result.command.effort(0), 8.5F);
+    ASSERT_EQ((result.limits & core::limit_bit(core::Limit::kAxis)) != 0U, i > 0);
+  }
+  EXPECT_TRUE(gate.command({}, kIdentity, {kInfinity, 0.0F, 0.0F}).not_finite);
+}
+
 }  // namespace
 }  // namespace tactree::test

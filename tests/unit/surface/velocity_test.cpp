@@ -19,7 +19,8 @@ core::Vec3 quantised(double x) {
 
 core::VelocityEstimator estimator() {
   core::VelocityEstimator e;
-  e.configure(static_cast<float>(kPeriod), static_cast<float>(kQuantum), 200.0F);
+  const auto quantum = static_cast<float>(kQuantum);
+  e.configure(static_cast<float>(kPeriod), {quantum, quantum, quantum}, 200.0F);
   return e;
 }
 

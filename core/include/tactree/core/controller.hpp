@@ -10,6 +10,8 @@
 #include "tactree/core/blob.hpp"
 #include "tactree/core/configuration.hpp"
 #include "tactree/core/faults.hpp"
+#include "tactree/core/homing.hpp"
+#include "tactree/core/passivity.hpp"
 #include "tactree/core/renderer.hpp"
 #include "tactree/core/safety_gate.hpp"
 #include "tactree/core/state_machine.hpp"
@@ -24,12 +26,7 @@ enum class Command : std::uint8_t {
   kArm,
   kStop,
   kClearFault,
-};
-
-/// What one read of the encoders gives.
-struct EncoderReading {
-  std::int32_t counts[kAxes] = {0, 0, 0};  ///< wrap around at 2^32
-  bool valid[kAxes] = {false, false, false};
+  kHome,  ///< the device is in its home pose; for HomingMethod::kGivenPose, motors off
 };
 
 struct Input {
@@ -91,13 +88,16 @@ class Controller {
 
   [[nodiscard]] State state() const { return state_; }
   [[nodiscard]] FaultMask faults() const { return latched_; }
+  /// Are the joints' positions known?
+  [[nodiscard]] bool homed() const { return homing_.done(); }
   [[nodiscard]] const Configuration& configuration() const { return configuration_; }
 
  private:
   [[nodiscard]] bool motors_off() const {
     return state_ != State::kArmed && state_ != State::kActive;
   }
-  [[nodiscard]] FaultMask sense(const EncoderReading& encoders);
+  [[nodiscard]] FaultMask sense(const Input& input);
+  [[nodiscard]] FaultMask find_joints(const Input& input);
   [[nodiscard]] FaultMask watch(const Input& input);
   [[nodiscard]] FaultMask watch_overruns(const Input& input);
   [[nodiscard]] FaultMask watch_link(const Input& input);
@@ -110,6 +110,7 @@ class Controller {
   void recover();
   void forget_motion();
   [[nodiscard]] ModelStatus suitability(const BlobView& view) const;
+  [[nodiscard]] Vec3 wanted_force();
   SafetyGate::Result apply_force();
   [[nodiscard]] Status report(const SafetyGate::Result& gated) const;
 
@@ -123,9 +124,14 @@ class Controller {
   DevicePose pose_{};
   Vec3 probe_{};
   bool located_ = false;  // probe_ is of the last tick
-  VelocityEstimator velocity_{};
+  Homing homing_{};
+  VelocityEstimator joint_velocity_{};
+  Vec3 velocity_{};  // of the probe, m/s
   Renderer renderer_{};
   Rendering rendering_{};
+  PassivityController passivity_{};
+  Vec3 shown_{};        // force of the last tick, N
+  bool whole_ = false;  // that force was not held back by the ramp
   SafetyGate gate_{};
 
   std::uint32_t tick_ = 0;

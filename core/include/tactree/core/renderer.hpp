@@ -21,6 +21,7 @@ struct Rendering {
   Vec3 proxy{};                  ///< m; the probe when free
   Vec3 normal{};                 ///< outward; zero when free
   Vec3 force{};                  ///< N
+  float stored_energy = 0.0F;    ///< J, in the spring between probe and proxy
   float strength = 0.0F;         ///< share of the force displayed; below 1 on a rim
   float penetration_m = 0.0F;    ///< from the probe to the proxy, along the normal
   std::uint32_t leaf = kNoLeaf;  ///< of the nearest point of the contact

@@ -55,16 +55,20 @@ class SafetyGate {
   /// The command of a tick in which no force may be. Ramp and slew start anew.
   Result release();
 
-  /// The command of an active tick. `force` at the probe, N; `effort_per_force` maps it to axes.
-  /// Cost: constant, about 100 operations.
-  Result command(Vec3 force, const Mat3& effort_per_force);
+  /// The command of an active tick. `force` at the probe, N; `effort_per_force` maps it to axes;
+  /// `own_effort`, N or Nm, holds the device's weight, ramps up as the force does, and has the
+  /// limits of the axes only. Where these do not leave room for both, the force shrinks and keeps
+  /// its direction; the efforts' change in a tick shrinks as a whole, too.
+  /// Cost: constant, about 150 operations.
+  Result command(Vec3 force, const Mat3& effort_per_force, Vec3 own_effort = {});
 
   [[nodiscard]] const GateLimits& limits() const { return limits_; }
 
  private:
   [[nodiscard]] Vec3 limit_force(Vec3 force, LimitMask& limits) const;
   [[nodiscard]] Vec3 limit_slew(Vec3 force, LimitMask& limits) const;
-  void limit_axes(Vec3 wanted, Result& result) const;
+  void limit_axes(Vec3 own, Vec3 wanted, Result& result) const;
+  void limit_axis_slew(const float (&target)[kAxes], Result& result) const;
 
   GateLimits limits_{};
   Vec3 last_force_{};

@@ -17,15 +17,15 @@ inline constexpr std::uint32_t kVelocityWindow = 15;
 /// Interrupt safe: no shared state.
 class VelocityEstimator {
  public:
-  /// period_s > 0: between two samples; quantum_m >= 0: largest step of the position;
+  /// period_s > 0: between two samples; quantum >= 0: step of each component, m or rad;
   /// cutoff_hz > 0: of the first-order low-pass filter.
-  void configure(float period_s, float quantum_m, float cutoff_hz);
+  void configure(float period_s, Vec3 quantum, float cutoff_hz);
 
   /// Forgets the past; the velocity is 0.
   void reset();
 
-  /// Takes the position of this tick and returns the velocity, m/s; bounded for finite positions
-  /// by the largest difference of two samples over the period.
+  /// Takes the position of this tick and returns the velocity, m/s or rad/s; bounded for finite
+  /// positions by the largest difference of two samples over the period.
   /// Cost: one pass over the window on each axis, about 15 operations a sample.
   Vec3 update(Vec3 position);
 
@@ -43,7 +43,7 @@ class VelocityEstimator {
   std::uint32_t newest_ = 0;
   std::uint32_t count_ = 0;
   float period_s_ = 1e-3F;
-  float quantum_m_ = 0.0F;
+  Vec3 quantum_{};
   float share_ = 1.0F;  // of a new estimate in the filtered one
   Vec3 velocity_{};
 };

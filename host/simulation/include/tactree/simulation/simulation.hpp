@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "tactree/core/crc32.hpp"
 #include "tactree/hal/loop.hpp"
 #include "tactree/hal/sim/board.hpp"
+#include "tactree/plant/device_plant.hpp"
 #include "tactree/plant/plant.hpp"
 #include "tactree/simulation/hand_path.hpp"
 #include "tactree/simulation/target.hpp"
@@ -20,8 +22,13 @@ namespace tactree::simulation {
 struct Setup {
   core::Configuration controller{};
   hal::sim::BoardParameters board{};  ///< period_us follows controller.rate_hz
-  plant::PlantParameters plant{};
+  plant::PlantParameters plant{};     ///< hand and sub-step; and, without dynamics, the masses
+  /// Of the joints of controller.device; without them the device is plant.device on each axis.
+  std::optional<core::DeviceDynamics> dynamics{};
 };
+
+/// Takes a device's figures over for the controller and for the simulated mechanics alike.
+void use_device(const core::DevicePreset& device, Setup& setup);
 
 /// One tick, for traces and plots.
 struct Sample {
@@ -46,7 +53,8 @@ struct Summary {
   std::vector<FaultEvent> faults;
 };
 
-/// The session: power-up, arming, then ticks along the hand's path.
+/// The session, with a device that has been homed: power-up, arming, then ticks along the hand's
+/// path.
 class Simulation {
  public:
   /// `blob` must be 4-byte aligned and outlive the simulation. Throws std::invalid_argument where
@@ -73,7 +81,7 @@ class Simulation {
   [[nodiscard]] hal::sim::SimBoard& board() { return board_; }
   /// State of the controller after the last tick.
   [[nodiscard]] core::State state() const { return state_; }
-  [[nodiscard]] const plant::Plant& plant() const { return plant_; }
+  [[nodiscard]] const plant::DevicePlant& plant() const { return plant_; }
 
  private:
   void sample_device();
@@ -86,7 +94,7 @@ class Simulation {
   std::unique_ptr<Target> target_;
   hal::StartResult start_;
   core::State state_ = core::State::kBoot;
-  plant::Plant plant_;
+  plant::DevicePlant plant_;
   std::uint64_t ticks_ = 0;
 };
 

@@ -19,4 +19,9 @@ void append_trace(std::string& csv, const Sample& sample);
 /// of pixels, so that no spike is lost.
 [[nodiscard]] std::string plot_svg(std::span<const Sample> samples, const std::string& title);
 
+/// An SVG page with the force of two runs along the same path, one in each mode: all of it, and a
+/// quarter of a second from the middle.
+[[nodiscard]] std::string plot_modes_svg(std::span<const Sample> surface,
+                                         std::span<const Sample> paper, const std::string& title);
+
 }  // namespace tactree::simulation

@@ -1,0 +1,51 @@
+#include "tactree/core/passivity.hpp"
+
+namespace tactree::core {
+
+void PassivityController::configure(float period_s, float damping_max_Ns_m, float delay_s) {
+  constexpr float kMost = static_cast<float>(kHistory) - 1.001F;
+  period_s_ = period_s;
+  damping_max_ = damping_max_Ns_m;
+  const float ticks = delay_s < kMost * period_s ? delay_s / period_s : kMost;
+  whole_ticks_ = static_cast<std::uint32_t>(ticks);
+  rest_ = ticks - static_cast<float>(whole_ticks_);
+  reset();
+}
+
+void PassivityController::reset() {
+  balance_ = 0.0F;
+  stored_ = 0.0F;
+  following_ = false;
+  for (Vec3& force : sent_) {  // bound: kHistory
+    force = {};
+  }
+}
+
+/// The mean force that acted at the hand since the last tick.
+Vec3 PassivityController::acted() const {
+  const Vec3 newer = sent_[(newest_ + kHistory - whole_ticks_) % kHistory];
+  const Vec3 older = sent_[(newest_ + kHistory - whole_ticks_ - 1U) % kHistory];
+  return rest_ * older + (1.0F - rest_) * newer;
+}
+
+// A force is constant from tick to tick, so that its work is exactly its product with the way.
+Vec3 PassivityController::update(Vec3 shown, Vec3 probe, Vec3 velocity, float stored) {
+  newest_ = (newest_ + 1U) % kHistory;
+  sent_[newest_] = shown;
+  const Vec3 way = following_ ? probe - last_ : Vec3{};
+  const float taken = -dot(acted(), way);
+  const float balance = following_ ? balance_ + taken - (stored - stored_) : 0.0F;
+  last_ = probe;
+  stored_ = stored;
+  following_ = true;
+  balance_ = balance < 0.0F ? balance : 0.0F;
+  // As much damping as takes the debt back, if the probe moves on as it does.
+  const float squared = length_squared(velocity);
+  if (!(balance_ < 0.0F && squared > 0.0F)) {
+    return {};
+  }
+  const float wanted = -balance_ / (period_s_ * squared);
+  return (wanted < damping_max_ ? -wanted : -damping_max_) * velocity;
+}
+
+}  // namespace tactree::core

@@ -1,0 +1,281 @@
+#include "device_file.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "command.hpp"
+
+namespace tactree::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kKindNames[core::kDeviceKinds] = {"cartesian", "arm", "delta", "five-bar",
+                                                        "paddle"};
+constexpr const char* kHomingNames[core::kHomingMethods] = {"absolute", "given-pose", "index",
+                                                            "hard-stop"};
+// A device file is a page of text.
+constexpr std::uintmax_t kMaxBytes = 1U << 20U;
+
+template <std::size_t N>
+std::string listed(const char* const (&names)[N]) {
+  std::string all;
+  for (const char* name : names) {
+    all += (all.empty() ? "" : ", ") + std::string(name);
+  }
+  return all;
+}
+
+std::string known_names() {
+  std::string all;
+  for (const std::string& name : device_names()) {
+    all += (all.empty() ? "" : ", ") + name;
+  }
+  return all;
+}
+
+/// Every figure of a device with its key and range, for reading and writing alike.
+///   figures.one(key, value, low, high)    a number
+///   figures.each(key, values, low, high)  one number for each of three axes
+template <class Figures>
+void visit_geometry(core::DeviceModel& m, Figures& figures) {
+  switch (m.kind) {
+    case core::DeviceKind::kCartesian:
+      figures.each("counts_per_m", m.counts_per_m, 1.0, 1e9);
+      return;
+    case core::DeviceKind::kArm:
+      figures.one("arm_m", m.arm.arm_m, 0.01, 10.0);
+      figures.one("forearm_m", m.arm.forearm_m, 0.01, 10.0);
+      figures.one("coupling", m.arm.coupling, 0.0, 1.0);
+      break;
+    case core::DeviceKind::kDelta:
+      figures.one("a_m", m.delta.a, 1e-3, 1.0);
+      figures.one("b_m", m.delta.b, 1e-3, 1.0);
+      figures.one("c_m", m.delta.c, -1.0, 1.0);
+      figures.one("d_m", m.delta.d, 0.0, 1.0);
+      figures.one("e_m", m.delta.e, 0.0, 1.0);
+      figures.one("f_m", m.delta.f, -1.0, 1.0);
+      figures.one("r_m", m.delta.r, -1.0, 1.0);
+      figures.one("s_m", m.delta.s, -1.0, 1.0);
+      figures.each("leg_rad", m.delta.leg_rad, -6.2831853, 6.2831853);
+      break;
+    case core::DeviceKind::kFiveBar:
+      figures.one("arm_m", m.five_bar.arm_m, 1e-3, 10.0);
+      figures.one("forearm_m", m.five_bar.forearm_m, 1e-3, 10.0);
+      figures.one("base_m", m.five_bar.base_m, 0.0, 10.0);
+      break;
+    case core::DeviceKind::kPaddle:
+      figures.one("paddle_m", m.paddle_m, 1e-3, 10.0);
+      break;
+  }
+  figures.each("counts_per_revolution", m.counts_per_revolution, 1.0, 1e7);
+}
+
+template <class Figures>
+void visit_figures(core::DevicePreset& device, Figures& figures) {
+  core::DeviceModel& m = device.model;
+  const double furthest = m.kind == core::DeviceKind::kCartesian ? 1e12 : 100.0;
+  visit_geometry(m, figures);
+  figures.each("ratio", m.ratio, -1e5, 1e5);
+  figures.each("home_position", m.home_position, -furthest, furthest);
+  figures.each("joint_min", m.joint_min, -furthest, furthest);
+  figures.each("joint_max", m.joint_max, -furthest, furthest);
+  figures.each("joint_margin", m.joint_margin, 0.0, furthest);
+  float origin[core::kAxes] = {m.origin_m.x, m.origin_m.y, m.origin_m.z};
+  figures.each("origin_m", origin, -10.0, 10.0);
+  m.origin_m = {origin[0], origin[1], origin[2]};
+  figures.each("link_mass_kg", m.link_mass_kg, 0.0, 100.0);
+  figures.each("link_centre_m", m.link_centre_m, -10.0, 10.0);
+  figures.one("tip_mass_kg", m.tip_mass_kg, 0.0, 100.0);
+  figures.each("torque_constant_Nm_per_ampere", m.torque_constant_Nm_per_ampere, 1e-6, 1e3);
+  figures.one("force_max_N", device.drive.force_max_N, 0.01, 1e3);
+  figures.each("effort_max", device.drive.effort_max, 1e-4, 1e3);
+  figures.one("damping_Ns_m", device.drive.damping_Ns_m, 0.0, 1e3);
+  figures.each("inertia", device.dynamics.inertia, 1e-9, 1e3);
+  figures.each("viscous", device.dynamics.viscous, 0.0, 1e3);
+  figures.each("coulomb", device.dynamics.coulomb, 0.0, 1e3);
+}
+
+/// The double with the fewest digits that is the same float: 0.2, not 0.20000000298.
+double shortest(float value) { return std::stod(fmt::format("{}", value)); }
+
+class Writer {
+ public:
+  explicit Writer(Json& json) : json_(json) {}
+  void one(const char* key, const float& value, double, double) { json_[key] = shortest(value); }
+  void each(const char* key, const float (&values)[core::kAxes], double, double) {
+    json_[key] = {shortest(values[0]), shortest(values[1]), shortest(values[2])};
+  }
+
+ private:
+  Json& json_;
+};
+
+class Reader {
+ public:
+  Reader(std::string file, const Json& json) : file_(std::move(file)), json_(json) {}
+
+  [[noreturn]] void refuse(const std::string& key, const std::string& cause,
+                           const std::string& remedy) const {
+    throw CommandError(fmt::format("{}: {}: {} ({})", file_, key, cause, remedy));
+  }
+
+  void one(const char* key, float& value, double low, double high) {
+    value = number(key, get(key), low, high);
+  }
+  void each(const char* key, float (&values)[core::kAxes], double low, double high) {
+    const Json& array = get(key);
+    if (!array.is_array() || array.size() != core::kAxes) {
+      refuse(key, "is not a list of three numbers", "one for each axis; 0 or 1 for an unused one");
+    }
+    for (std::size_t i = 0; i < core::kAxes; ++i) {
+      values[i] = number(fmt::format("{}[{}]", key, i), array[i], low, high);
+    }
+  }
+  template <std::size_t N>
+  std::uint8_t choice(const char* key, const char* const (&names)[N]) {
+    const std::string name = text(key);
+    for (std::size_t i = 0; i < N; ++i) {
+      if (name == names[i]) {
+        return static_cast<std::uint8_t>(i);
+      }
+    }
+    refuse(key, fmt::format("'{}' is unknown", name), "one of: " + listed(names));
+  }
+  std::string text(const char* key) {
+    const Json& value = get(key);
+    if (!value.is_string()) {
+      refuse(key, "is not a text", "write it in quotes");
+    }
+    return value.get<std::string>();
+  }
+  /// After everything was read: a key that nobody asked for is a typing error.
+  void finish() const {
+    for (const auto& [key, value] : json_.items()) {
+      if (std::find(known_.begin(), known_.end(), key) == known_.end()) {
+        refuse(key, "is unknown for this kind of device", "see --dump-device for the keys");
+      }
+    }
+  }
+
+ private:
+  const Json& get(const char* key) {
+    known_.emplace_back(key);
+    const auto found = json_.find(key);
+    if (found == json_.end()) {
+      refuse(key, "is missing", "begin with a file of --dump-device");
+    }
+    return *found;
+  }
+  [[nodiscard]] float number(const std::string& key, const Json& value, double low,
+                             double high) const {
+    if (!value.is_number()) {
+      refuse(key, "is not a number", fmt::format("give {:.6g} .. {:.6g}", low, high));
+    }
+    const double figure = value.get<double>();
+    // The narrowing may round a limit outwards by half a unit.
+    if (!(figure >= low - 1e-7 * std::abs(low) && figure <= high + 1e-7 * std::abs(high))) {
+      refuse(key, fmt::format("{:.6g} is out of range", figure),
+             fmt::format("give {:.6g} .. {:.6g}", low, high));
+    }
+    return static_cast<float>(figure);
+  }
+
+  std::string file_;
+  const Json& json_;
+  std::vector<std::string> known_;
+};
+
+Json read_json(const std::string& file) {
+  std::error_code error;
+  const std::uintmax_t bytes = std::filesystem::file_size(file, error);
+  if (error) {
+    throw CommandError(
+        fmt::format("--device: '{}' is neither a device nor a readable file "
+                    "(devices: {}; or write one with --dump-device)",
+                    file, known_names()));
+  }
+  if (bytes > kMaxBytes) {
+    throw CommandError(fmt::format("{}: is too large for a device (at most 1 MiB)", file));
+  }
+  std::ifstream stream(file);
+  const Json json = Json::parse(stream, nullptr, false);
+  if (!json.is_object()) {
+    throw CommandError(
+        fmt::format("{}: is not a JSON object (begin with a file of --dump-device)", file));
+  }
+  return json;
+}
+
+Device read_device(const std::string& file) {
+  const Json json = read_json(file);
+  Reader reader(file, json);
+  Device device;
+  device.name = reader.text("name");
+  device.about = reader.text("about");
+  core::DeviceModel& model = device.figures.model;
+  model.kind = static_cast<core::DeviceKind>(reader.choice("kind", kKindNames));
+  model.homing = static_cast<core::HomingMethod>(reader.choice("homing", kHomingNames));
+  visit_figures(device.figures, reader);
+  reader.finish();
+  for (std::uint32_t i = 0; i < core::axes_of(model.kind); ++i) {
+    const std::string axis = fmt::format("[{}]", i);
+    if (!(model.joint_min[i] < model.joint_max[i])) {
+      reader.refuse("joint_min" + axis, "is not below joint_max", "exchange them");
+    }
+    if (!(model.home_position[i] >= model.joint_min[i] &&
+          model.home_position[i] <= model.joint_max[i])) {
+      reader.refuse("home_position" + axis, "is outside the joint's range",
+                    "between joint_min and joint_max");
+    }
+    if (!(model.joint_margin[i] <= 0.5F * (model.joint_max[i] - model.joint_min[i]))) {
+      reader.refuse("joint_margin" + axis, "is more than half the joint's range", "lower it");
+    }
+    if (std::abs(model.ratio[i]) < 1e-3F) {
+      reader.refuse("ratio" + axis, "is nearly 0", "at least 0.001, negative when reversed");
+    }
+  }
+  if (!core::is_valid(model)) {
+    reader.refuse("kind", "the figures do not make a device", "begin with a file of --dump-device");
+  }
+  return device;
+}
+
+}  // namespace
+
+std::vector<std::string> device_names() {
+  std::vector<std::string> names;
+  for (const core::DevicePreset& preset : core::kDevicePresets) {
+    names.emplace_back(preset.name);
+  }
+  return names;
+}
+
+Device load_device(const std::string& name_or_file) {
+  for (const core::DevicePreset& preset : core::kDevicePresets) {
+    if (name_or_file == preset.name) {
+      return {preset.name, preset.about, preset};
+    }
+  }
+  return read_device(name_or_file);
+}
+
+std::string device_json(const Device& device) {
+  Json json;
+  json["name"] = device.name;
+  json["about"] = device.about;
+  json["kind"] = kKindNames[static_cast<std::size_t>(device.figures.model.kind)];
+  json["homing"] = kHomingNames[static_cast<std::size_t>(device.figures.model.homing)];
+  core::DevicePreset figures = device.figures;
+  Writer writer(json);
+  visit_figures(figures, writer);
+  return json.dump(2) + "\n";
+}
+
+}  // namespace tactree::cli
