@@ -31,7 +31,9 @@ inline constexpr std::uint32_t kSecurityOn = 1U << 19;
 inline constexpr std::uint32_t kPllOn = 1U << 24;
 inline constexpr std::uint32_t kPllReady = 1U << 25;
 
-// PLLCFGR: crystal / M = 1 MHz, * N = 336 MHz, / P = 168 MHz for the core; / Q = 48 MHz.
+// PLLCFGR: crystal / M = 1 MHz, * N = 336 MHz, / P = 168 MHz for the core; / Q = 48 MHz. What is
+// not in the mask is reserved and keeps its value.
+inline constexpr std::uint32_t kPllMask = 0x0F437FFFU;
 inline constexpr std::uint32_t kPllTimes336 = 336U << 6;
 inline constexpr std::uint32_t kPllFromHse = 1U << 22;
 inline constexpr std::uint32_t kPllQ7 = 7U << 24;
@@ -78,7 +80,8 @@ ClockFailure try_full_speed(RccBlock<Word>& rcc_block, FlashBlock<Word>& flash,
     return ClockFailure::kWaitStates;
   }
   change(rcc_block.cfgr, rcc::kPrescalerMask, rcc::kPrescalers);
-  rcc_block.pllcfgr = crystal_MHz | rcc::kPllTimes336 | rcc::kPllFromHse | rcc::kPllQ7;
+  change(rcc_block.pllcfgr, rcc::kPllMask,
+         crystal_MHz | rcc::kPllTimes336 | rcc::kPllFromHse | rcc::kPllQ7);
   set(rcc_block.cr, rcc::kPllOn);
   if (!wait_until(rcc_block.cr, rcc::kPllReady, rcc::kPllReady, kClockPolls)) {
     return ClockFailure::kPll;

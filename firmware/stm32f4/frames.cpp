@@ -17,7 +17,7 @@ bool CommandReader::push(std::byte byte, core::Command& command) {
   }
   const auto frame = std::bit_cast<CommandFrame>(bytes);
   if (frame.mark != kFrameMark || frame.kind != kCommandKind ||
-      frame.command > core::Command::kClearFault || frame.checksum != checksum_of(frame)) {
+      frame.command > core::Command::kHome || frame.checksum != checksum_of(frame)) {
     return false;
   }
   const bool repeated = !first_ && frame.sequence == last_sequence_;

@@ -95,4 +95,31 @@ Block<HardwareWord>& block_at(std::uint32_t address) {
   return *reinterpret_cast<Block<HardwareWord>*>(static_cast<std::uintptr_t>(address));
 }
 
+/// All blocks a board of ours uses.
+template <class Word>
+struct Chip {
+  RccBlock<Word>& rcc;
+  FlashBlock<Word>& flash;
+  GpioBlock<Word>& gpio_a;
+  GpioBlock<Word>& gpio_b;
+  GpioBlock<Word>& gpio_c;
+  TimerBlock<Word>& tim2;
+  TimerBlock<Word>& tim4;
+  TimerBlock<Word>& tim5;
+  TimerBlock<Word>& tim8;
+  UsartBlock<Word>& usart1;
+  DmaBlock<Word>& dma2;
+  WatchdogBlock<Word>& watchdog;
+};
+
+/// The chip this program runs on.
+inline Chip<HardwareWord> this_chip() {
+  return {block_at<RccBlock>(address::kRcc),    block_at<FlashBlock>(address::kFlash),
+          block_at<GpioBlock>(address::kGpioA), block_at<GpioBlock>(address::kGpioB),
+          block_at<GpioBlock>(address::kGpioC), block_at<TimerBlock>(address::kTim2),
+          block_at<TimerBlock>(address::kTim4), block_at<TimerBlock>(address::kTim5),
+          block_at<TimerBlock>(address::kTim8), block_at<UsartBlock>(address::kUsart1),
+          block_at<DmaBlock>(address::kDma2),   block_at<WatchdogBlock>(address::kWatchdog)};
+}
+
 }  // namespace tactree::firmware::stm32f4

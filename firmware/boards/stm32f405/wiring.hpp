@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "tactree/core/configuration.hpp"
+#include "tactree/core/device_presets.hpp"
 
 namespace tactree::firmware::wiring {
 
@@ -24,12 +25,13 @@ inline constexpr std::uint32_t kTim8Function = 3;
 inline constexpr std::uint32_t kUsart1Function = 7;
 
 /// Effort of an axis at the full pulse width, N or Nm.
-inline constexpr float kEffortAtFullWidth[core::kAxes] = {8.5F, 8.5F, 8.5F};
+inline constexpr float kEffortAtFullWidth[core::kAxes] = {1.9F, 1.8F, 1.5F};
 
-/// Of the device the board is in. The application's link is a must: without it nobody could stop
-/// it.
+/// Of the device the board is in; it is homed by hand (HomingMethod::kGivenPose). The application's
+/// link is a must: without it nobody could stop it.
 inline core::Configuration configuration() {
   core::Configuration configuration;
+  core::use_device(core::presets::premium(), configuration);
   configuration.rate_hz = 1000.0F;  // the watchdog expects no less
   configuration.link_required = true;
   configuration.link_timeout_s = 0.1F;
