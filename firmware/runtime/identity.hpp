@@ -1,6 +1,6 @@
 #pragma once
 // Which board an image is for, and where it and its blob may lie: in the image itself, so that
-// tools refuse to flash the wrong one (scripts/make-image).
+// `tactree image` can refuse the wrong one. tools/cli/firmware_image.hpp reads it.
 
 #include <cstddef>
 #include <cstdint>
@@ -14,6 +14,8 @@ struct Identity {
   const std::byte* code_end;
   const std::byte* blob_begin;
   const std::byte* blob_end;
+  const std::byte* uf2_family;  ///< a number, not a place: of the chip, in UF2 files; 0: none
+  std::uint32_t reserved;
 };
 
 [[gnu::section(".identity")]] extern const Identity kIdentity;

@@ -18,6 +18,7 @@ extern const std::byte code_begin[];
 extern const std::byte code_end[];
 extern const std::byte blob_begin[];
 extern const std::byte blob_end[];
+extern const std::byte uf2_family[];
 }
 
 namespace tactree::firmware {

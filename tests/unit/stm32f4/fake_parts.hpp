@@ -119,6 +119,9 @@ class FakeTimer {
     return at >= block.arr.value ? 1.0 : static_cast<double>(at) / block.arr.value;
   }
 
+  /// Outputs are off, and nobody holds their wires low.
+  [[nodiscard]] bool floats() const { return (block.bdtr.value & ((1U << 15) | (1U << 10))) == 0U; }
+
   void gate_by(const std::function<bool()>& clocked) {
     for (FakeWord* word :
          {&block.cr1, &block.cr2, &block.smcr, &block.egr, &block.ccmr1, &block.ccmr2, &block.ccer,

@@ -185,6 +185,7 @@ TEST(Motors, NothingMovesBeforeTheLineConnectsThem) {
   bench.motors.write(command_of({4.0F, 4.0F, 2.0F}));
   bench.timer.take_over();
   EXPECT_EQ(bench.timer.duty(0), 0.0);
+  EXPECT_FALSE(bench.timer.floats());
   bench.motors.connect(true);
   EXPECT_EQ(bench.timer.duty(0), 1.0);
   bench.motors.connect(false);
