@@ -61,7 +61,7 @@ struct BootFrame {
   std::uint8_t failed_parts = 0;
   bool reset_by_watchdog = false;
   hal::StartResult result{};
-  std::uint8_t reserved[3] = {};
+  std::uint8_t reserved[2] = {};
   hal::CapturedFault last_fault{};
   std::uint32_t checksum = 0;
 };

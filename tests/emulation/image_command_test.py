@@ -88,17 +88,20 @@ def from_elf(data, sections=False):
 
 # ---- a firmware image as small as one can be
 
-def identity(board=b"stm32f405", code=(CODE, CODE_END), place=(PLACE, PLACE_END), family=FAMILY):
-    return struct.pack("<8s24s6I", b"TACTIMG", board, *code, *place, family, 0)
+def identity(mark=b"TACTIMG", board=b"stm32f405", place=(PLACE, PLACE_END)):
+    """But for the checksum at its end."""
+    return struct.pack("<8s24s5I", mark, board, CODE, CODE_END, *place, FAMILY)
 
 
-def firmware(code=None, address=CODE, machine=40):
+def firmware(code=None, address=CODE, machine=40, **identities):
     code = bytes(range(256)) * 5 + b"xyz" if code is None else code
-    code += bytes(-len(code) % 4)
-    program = code + identity()
+    code += bytes(-len(code) % 4) + identity(**identities)
+    program = code + struct.pack("<I", zlib.crc32(b"vars", zlib.crc32(code))) + b"vars"
     header = struct.pack("<4s5B7x2H5I6H", b"\x7fELF", 1, 1, 1, 0, 0, 2, machine, 1, address | 1, 52, 0, 0,
-                         52, 32, 2, 40, 0, 0)
-    table = struct.pack("<8I", 1, 116, address, address, len(program), len(program), 5, 4)
+                         52, 32, 3, 40, 0, 0)
+    size = len(program) - 4
+    table = struct.pack("<8I", 1, 148, address, address, size, size, 5, 4)
+    table += struct.pack("<8I", 1, 148 + size, 0x20000000, address + size, 4, 4, 6, 4)  # .data
     table += struct.pack("<8I", 1, 0, 0x20000000, 0x20000000, 0, 64, 6, 4)  # .bss: nothing to load
     return header + table + program
 
@@ -186,10 +189,9 @@ class Image(unittest.TestCase):
 
     def test_blob_too_large(self):
         room = len(GOOD_BLOB) - 1
-        small = firmware().replace(identity(), identity(place=(PLACE, PLACE + room)))
+        small = firmware(place=(PLACE, PLACE + room))
         self.refused("too large for stm32f405", f"--flash-budget {room}", elf=small)
-        exact = firmware().replace(identity(), identity(place=(PLACE, PLACE + len(GOOD_BLOB))))
-        self.make("hex", elf=exact)
+        self.make("hex", elf=firmware(place=(PLACE, PLACE + len(GOOD_BLOB))))
 
     def test_blob_cut_or_corrupt(self):
         self.refused("refused", "shorter than a blob's header", blob=GOOD_BLOB[:16])
@@ -203,19 +205,28 @@ class Image(unittest.TestCase):
         for size in [*range(0, 130), len(whole) // 2, len(whole) - 1]:
             self.refused("firmware.elf", "cut", elf=whole[:size])
 
+    def test_image_with_a_wrong_bit_anywhere_in_its_program(self):
+        whole = firmware()
+        for at in range(148, len(whole), 7):
+            wrong = bytearray(whole)
+            wrong[at] ^= 1 << at % 8
+            self.refused("firmware.elf", elf=wrong)
+        wrong = bytearray(whole)
+        wrong[200] ^= 1
+        self.refused("damaged: its checksum does not match", elf=wrong)
+
     def test_image_that_is_none(self):
         self.refused("not an ELF file", elf=b"\x7fELG" + firmware()[4:])
         self.refused("not a program for", elf=firmware(machine=62))
-        self.refused("does not tell which board", elf=firmware().replace(b"TACTIMG", b"TACTICS"))
-        self.refused("more than once", elf=firmware(identity()))
-        self.refused("more than once, or wrongly", elf=firmware().replace(
-            identity(), identity(board=b"b" * 24)))
-        self.refused("damaged", elf=firmware().replace(identity(), identity(place=(PLACE_END, PLACE))))
+        self.refused("does not tell which board", elf=firmware(mark=b"TACTICS"))
+        self.refused("more than once", elf=firmware(identity() + bytes(4)))
+        self.refused("more than once, or wrongly", elf=firmware(board=b"b" * 24))
+        self.refused("are impossible", elf=firmware(place=(PLACE_END, PLACE)))
         self.refused("outside the board's code", elf=firmware(address=CODE - 4))
         self.refused("outside the board's code", elf=firmware(bytes(0x20000)))
 
     def test_a_gap_no_flat_file_can_hold(self):
-        far = firmware().replace(identity(), identity(place=(0x60000000, 0x61000000)))
+        far = firmware(place=(0x60000000, 0x61000000))
         for ending in ("bin", "dfu"):
             self.refused("use .elf, .hex or .uf2", elf=far, ending=ending)
         self.make("hex", elf=far)
@@ -264,7 +275,7 @@ class Image(unittest.TestCase):
                 boot = emulator.stdout.read(92)
                 emulator.kill()
             self.assertEqual(boot[:2], b"Tb")
-            self.assertEqual(boot[6:9], bytes(3))  # configuration, blob and model are fine
+            self.assertEqual(boot[6:10], bytes(4))  # configuration, blob, model and image are fine
 
 
 if __name__ == "__main__":

@@ -23,6 +23,7 @@ CRYSTAL = 1
 ENCODERS, MOTORS, ENABLE_LINE, SAFETY_INPUTS, WATCHDOG = 1, 2, 4, 8, 16
 STATES = ["boot", "no-model", "idle", "armed", "active", "fault"]
 BLOB_OK = 0
+IMAGE_OK, IMAGE_DAMAGED = 0, 1
 STATUS_FRAMES = 20
 
 
@@ -39,10 +40,10 @@ def frames_of(data):
 
 
 class Stm32f405(unittest.TestCase):
-    def boot(self, blob):
+    def boot(self, blob, image=IMAGE):
         """Boot frame and status frames of a run with these bytes where the blob should be."""
         with tempfile.TemporaryDirectory() as folder:
-            command = [*EMULATOR, "-serial", "stdio", "-kernel", IMAGE]
+            command = [*EMULATOR, "-serial", "stdio", "-kernel", image]
             if blob:
                 file = pathlib.Path(folder, "blob")
                 file.write_bytes(blob)
@@ -68,7 +69,7 @@ class Stm32f405(unittest.TestCase):
         boot, statuses = self.boot(pathlib.Path(BLOB).read_bytes())
         self.assertEqual(boot[3], CRYSTAL)
         self.assertEqual(boot[4], MOTORS | ENABLE_LINE | SAFETY_INPUTS | WATCHDOG)
-        self.assertEqual(boot[6:9], bytes([0, BLOB_OK, 0]))
+        self.assertEqual(boot[6:10], bytes([0, BLOB_OK, 0, IMAGE_OK]))
         self.no_force(statuses)
         faults = struct.unpack("<I", statuses[-1][8:12])[0]
         self.assertEqual(faults, 1 << 1 | 1 << 9)  # emergency stop, motors
@@ -87,6 +88,16 @@ class Stm32f405(unittest.TestCase):
             refusals.add(boot[7])
             self.no_force(statuses)
         self.assertEqual(len(refusals), 4)  # too short, magic, checksum, size
+
+    def test_a_damaged_image_is_told(self):
+        data = bytearray(pathlib.Path(IMAGE).read_bytes())
+        data[data.index(b"TACTIMG\0") + 30] ^= 1  # behind the board's name: in no one's way
+        with tempfile.TemporaryDirectory() as folder:
+            damaged = pathlib.Path(folder, "damaged.elf")
+            damaged.write_bytes(data)
+            boot, statuses = self.boot(pathlib.Path(BLOB).read_bytes(), damaged)
+        self.assertEqual(boot[9], IMAGE_DAMAGED)
+        self.no_force(statuses)
 
     def test_the_conformance_program_finds_the_missing_parts(self):
         done = subprocess.run([*EMULATOR, "-semihosting-config", "enable=on,target=native", "-serial",

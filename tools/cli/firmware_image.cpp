@@ -10,6 +10,7 @@
 #include <span>
 
 #include "command.hpp"
+#include "tactree/core/crc32.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -23,7 +24,7 @@ struct Identity {
   std::uint32_t blob_begin;
   std::uint32_t blob_end;
   std::uint32_t uf2_family;
-  std::uint32_t reserved;
+  std::uint32_t checksum;
 };
 static_assert(sizeof(Identity) == 56);
 constexpr char kMark[8] = "TACTIMG";
@@ -133,6 +134,22 @@ Identity find_identity(const Reader& reader, const std::vector<Segment>& segment
   return identity;
 }
 
+// The identity is the last of the code; what comes behind are initial values of variables.
+void check_checksum(const Reader& reader, const Identity& identity,
+                    const std::vector<Segment>& segments) {
+  core::Crc32 checksum;
+  for (const Segment& segment : segments) {
+    const std::span<const std::byte> bytes(segment.bytes);
+    const bool last_of_code =
+        bytes.size() >= sizeof identity &&
+        std::memcmp(bytes.last(sizeof identity).data(), &identity, sizeof identity) == 0;
+    checksum.update(last_of_code ? bytes.first(bytes.size() - sizeof identity.checksum) : bytes);
+  }
+  if (checksum.value() != identity.checksum) {
+    reader.fail("damaged: its checksum does not match", Reader::kRemedy);
+  }
+}
+
 void check_ranges(const Reader& reader, const FirmwareImage& image) {
   if (image.code_begin >= image.code_end || image.blob_begin >= image.blob_end ||
       image.blob_begin % 4U != 0U) {
@@ -165,6 +182,7 @@ FirmwareImage read_firmware(const std::filesystem::path& file) {
   image.blob_end = identity.blob_end;
   image.uf2_family = identity.uf2_family;
   check_ranges(reader, image);
+  check_checksum(reader, identity, image.segments);
   image.file = reader.take();
   return image;
 }

@@ -29,7 +29,8 @@ struct FirmwareImage {
 };
 
 /// Reads and checks: a whole 32-bit little-endian ELF program, one identity, every byte of it in
-/// the room for code. Throws CommandError that names the file, the cause and the remedy.
+/// the room for code, the checksum right. Throws CommandError that names the file, the cause and
+/// the remedy.
 [[nodiscard]] FirmwareImage read_firmware(const std::filesystem::path& file);
 
 }  // namespace tactree::cli

@@ -125,6 +125,10 @@ void check_start(const SimulateOptions& options, const simulation::Setup& setup,
                     setup.controller.stiffness_N_m, limit.with_hand_N_m, setup.controller.rate_hz),
         "lower --stiffness, or raise --rate or --damping");
   }
+  if (start.image != hal::ImageStatus::kOk) {
+    refuse(fmt::format("board {}: a byte of its image is not as it was built", options.board),
+           "build the image again");
+  }
   if (start.configuration != core::ConfigurationStatus::kOk) {
     refuse(fmt::format("configuration: {}", core::describe(start.configuration)),
            "give a value in that range");
