@@ -174,6 +174,10 @@ class Image(unittest.TestCase):
             elf = firmware(bytes(range(size)))
             self.assertEqual(from_hex(self.make("hex", elf=elf)), self.expected(elf))
 
+    def test_code_across_64_kib_off_the_grid_of_16(self):
+        elf = firmware(bytes(range(256)) * 300, address=CODE + 4)
+        self.assertEqual(from_hex(self.make("hex", elf=elf)), self.expected(elf))
+
     def test_format_by_option_and_report(self):
         data = self.make("image", "--format", "uf2", "--json", self.folder / "r.json", "--board", "stm32f405")
         from_uf2(data, FAMILY)
