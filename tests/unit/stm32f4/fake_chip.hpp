@@ -12,7 +12,7 @@ namespace tactree::test {
 class FakeChip {
  public:
   FakeChip() : clocks(flash), serial(nullptr) {
-    const auto clocked = [this](const FakeWord& word, std::uint32_t bit) {
+    const auto clocked = [](const FakeWord& word, std::uint32_t bit) {
       return [&word, bit] { return (word.value & (1U << bit)) != 0U; };
     };
     gpio_a.gate_by(clocked(clocks.rcc.ahb1enr, 0));
