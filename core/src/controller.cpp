@@ -22,22 +22,7 @@ Vec3 quantum_of(const DeviceModel& device) {
   return {quantum[0], quantum[1], quantum[2]};
 }
 
-constexpr const char* kModelWords[] = {
-    "ok",
-    "the controller is armed: stop first",
-    "the controller is not configured",
-    "there is no model",
-    "the blob was built without the guarantees that surface mode needs",
-    "a ball of the model may hold more points than the controller has room for",
-};
-constexpr std::uint32_t kModelWordCount = sizeof(kModelWords) / sizeof(kModelWords[0]);
-
 }  // namespace
-
-const char* describe(ModelStatus status) {
-  const auto index = static_cast<std::uint32_t>(status);
-  return index < kModelWordCount ? kModelWords[index] : "unknown status";
-}
 
 ConfigurationStatus Controller::configure(const Configuration& configuration) {
   if (!motors_off()) {
@@ -64,11 +49,25 @@ ConfigurationStatus Controller::configure(const Configuration& configuration) {
   homing_.begin(configuration.device);
   forget_motion();
   happen(Event::kConfigured);
-  if (!model_.empty() && suitability(model_) != ModelStatus::kOk) {
-    model_ = {};
+  remove_unsuitable_bodies();
+  return ConfigurationStatus::kOk;
+}
+
+void Controller::remove_unsuitable_bodies() {
+  for (std::uint32_t i = 0; i < kMaxBodies; ++i) {  // bound: kMaxBodies
+    const BlobView& view = scene_.view(i);
+    if (!view.empty() && suitability(view) != ModelStatus::kOk) {
+      (void)scene_.remove(i);
+    }
+  }
+  notice_empty_scene();
+}
+
+// The last body may be removed while there is force: then the state waits for the motors.
+void Controller::notice_empty_scene() {
+  if (state_ == State::kIdle && scene_.empty()) {
     happen(Event::kModelRemoved);
   }
-  return ConfigurationStatus::kOk;
 }
 
 ModelStatus Controller::suitability(const BlobView& view) const {
@@ -76,10 +75,12 @@ ModelStatus Controller::suitability(const BlobView& view) const {
   if (support == SurfaceSupport::kEmpty) {
     return ModelStatus::kEmpty;
   }
-  if (support == SurfaceSupport::kOk || configuration_.mode == RenderMode::kPaper) {
-    return ModelStatus::kOk;
+  if (support != SurfaceSupport::kOk && configuration_.mode != RenderMode::kPaper) {
+    return support == SurfaceSupport::kNoReach ? ModelStatus::kNoReach
+                                               : ModelStatus::kTooManyPoints;
   }
-  return support == SurfaceSupport::kNoReach ? ModelStatus::kNoReach : ModelStatus::kTooManyPoints;
+  const bool stable = find_unstable_material(view, configuration_) == kNoMaterial;
+  return stable ? ModelStatus::kOk : ModelStatus::kTooStiff;
 }
 
 ModelStatus Controller::load_model(const BlobView& view) {
@@ -93,17 +94,48 @@ ModelStatus Controller::load_model(const BlobView& view) {
   if (status != ModelStatus::kOk) {
     return status;
   }
-  model_ = view;
-  forget_motion();
-  happen(Event::kModelLoaded);
-  return ModelStatus::kOk;
+  scene_.clear();
+  std::uint32_t number = 0;
+  return add_body(view, {}, number);
+}
+
+ModelStatus Controller::add_body(const BlobView& view, const Pose& pose, std::uint32_t& number) {
+  if (!motors_off()) {
+    return ModelStatus::kBusy;
+  }
+  if (!configured_) {
+    return ModelStatus::kNotConfigured;
+  }
+  ModelStatus status = suitability(view);
+  if (status == ModelStatus::kOk) {
+    status = scene_.add(view, pose, number);
+  }
+  if (status == ModelStatus::kOk) {
+    forget_motion();
+    happen(Event::kModelLoaded);
+  }
+  return status;
+}
+
+ModelStatus Controller::move_body(std::uint32_t number, const Pose& pose, const Motion& motion) {
+  return scene_.move(number, pose, motion);
+}
+
+ModelStatus Controller::enable_body(std::uint32_t number, bool enabled) {
+  return scene_.enable(number, enabled);
+}
+
+ModelStatus Controller::remove_body(std::uint32_t number) {
+  const ModelStatus status = scene_.remove(number);
+  notice_empty_scene();
+  return status;
 }
 
 bool Controller::unload_model() {
   if (!motors_off()) {
     return false;
   }
-  model_ = {};
+  scene_.clear();
   forget_motion();
   happen(Event::kModelRemoved);
   return true;
@@ -120,6 +152,7 @@ Output Controller::step(const Input& input) {
   }
   const bool was_armed = state_ == State::kArmed;
   obey(input);
+  notice_empty_scene();
   render();
   confirm(input, was_armed);
   const SafetyGate::Result gated = apply_force();
@@ -158,7 +191,7 @@ FaultMask Controller::sense(const Input& input) {
   const bool jumped = located_ && !(length_squared(probe - probe_) <= furthest * furthest);
   if (jumped || !located_) {
     joint_velocity_.reset();
-    renderer_.reset(probe);
+    scene_.reset(probe);
   }
   probe_ = probe;
   located_ = true;
@@ -175,8 +208,8 @@ void Controller::forget_motion() {
   located_ = false;
   joint_velocity_.reset();
   velocity_ = {};
-  renderer_.reset(probe_);
-  rendering_ = {};
+  scene_.reset(probe_);
+  rendering_ = SceneRendering{};
 }
 
 FaultMask Controller::watch(const Input& input) {
@@ -240,7 +273,7 @@ void Controller::recover() {
   if (configured_) {
     happen(Event::kConfigured);
   }
-  if (configured_ && !model_.empty()) {
+  if (configured_ && !scene_.empty()) {
     happen(Event::kModelLoaded);
   }
 }
@@ -248,11 +281,11 @@ void Controller::recover() {
 // The proxy follows in every state: when the motors come on, contact is already known.
 void Controller::render() {
   if (!located_) {
-    rendering_ = {};
+    rendering_ = SceneRendering{};
     return;
   }
-  rendering_ = renderer_.update(model_, configuration_, probe_, velocity_);
-  if (!rendering_.complete) {
+  rendering_ = scene_.update(configuration_, probe_, velocity_);
+  if (!rendering_.contact.complete) {
     raise(fault_bit(Fault::kModelIncomplete));
   }
 }
@@ -268,7 +301,7 @@ void Controller::confirm(const Input& input, bool was_armed) {
   dead_man_released_ = dead_man_released_ || !input.dead_man;
   const bool hand = configuration_.dead_man_required ? input.dead_man && dead_man_released_
                                                      : input.command == Command::kArm;
-  const bool device = input.enable_read_back && located_ && !rendering_.in_contact;
+  const bool device = input.enable_read_back && located_ && !rendering_.contact.in_contact;
   waiting_ = hand && !device;
   if (hand && device) {
     happen(Event::kReady);
@@ -296,16 +329,19 @@ void Controller::raise(FaultMask faults) {
 // Of the rendered force: what the place of the device allows, and what keeps the wall passive.
 // Damping may take the push away, but never pulls the hand into the object.
 Vec3 Controller::wanted_force() {
-  const Vec3 rendered = pose_.reach * rendering_.force;
-  if (!rendering_.in_contact || !whole_ || !(configuration_.passivity_Ns_m > 0.0F)) {
+  const Rendering& contact = rendering_.contact;
+  const Vec3 rendered = pose_.reach * contact.force;
+  if (!contact.in_contact || !whole_ || !(configuration_.passivity_Ns_m > 0.0F)) {
     passivity_.reset();
     return rendered;
   }
-  const Vec3 added =
-      passivity_.update(shown_, probe_, velocity_, pose_.reach * rendering_.stored_energy);
+  const Vec3 added = passivity_.update(shown_, {probe_, velocity_, rendering_.wall_velocity},
+                                       pose_.reach * contact.stored_energy);
   const Vec3 force = rendered + added;
-  const float push = dot(force, rendering_.normal);
-  return push < 0.0F ? force - push * rendering_.normal : force;
+  const float push = dot(force, contact.normal);
+  const float pull = dot(rendered, contact.normal);  // of other bodies, at most
+  const float least = pull < 0.0F ? pull : 0.0F;
+  return push < least ? force + (least - push) * contact.normal : force;
 }
 
 SafetyGate::Result Controller::apply_force() {
@@ -331,19 +367,36 @@ Status Controller::report(const SafetyGate::Result& gated) const {
   status.state = state_;
   status.faults = latched_;
   status.limits = gated.limits;
-  const bool fading =
-      state_ == State::kActive && rendering_.in_contact && rendering_.strength < 1.0F;
-  status.limits |= fading ? limit_bit(Limit::kRim) : 0U;
-  const bool at_end = state_ == State::kActive && rendering_.in_contact && pose_.reach < 1.0F;
+  const Rendering& contact = rendering_.contact;
+  const bool at_rim = rendering_.fading || (contact.in_contact && contact.strength < 1.0F);
+  status.limits |= state_ == State::kActive && at_rim ? limit_bit(Limit::kRim) : 0U;
+  const bool at_end = state_ == State::kActive && contact.in_contact && pose_.reach < 1.0F;
   status.limits |= at_end ? limit_bit(Limit::kWorkspace) : 0U;
   status.limits |= configured_ && !homing_.done() ? limit_bit(Limit::kNotHomed) : 0U;
+  status.limits |= rendering_.crowded ? limit_bit(Limit::kBodies) : 0U;
   status.limits |= waiting_ ? limit_bit(Limit::kWaiting) : 0U;
   status.overruns = overruns_;
   status.probe = probe_;
   status.velocity = velocity_;
-  status.rendering = rendering_;
+  status.rendering = contact;
   status.force = gated.force;
+  report_reactions(gated.force, status);
   return status;
+}
+
+// The gate may give less than was rendered, or nothing; the bodies take it in proportion.
+void Controller::report_reactions(Vec3 force, Status& status) const {
+  const Vec3 rendered = rendering_.contact.force;
+  const float whole = length_squared(rendered);
+  const float share = whole > 0.0F ? dot(force, rendered) / whole : 0.0F;
+  const bool displayed = share > 0.0F && is_finite(share);
+  for (std::uint32_t i = 0; i < kMaxReachableBodies; ++i) {  // bound: kMaxReachableBodies
+    const Reaction& r = rendering_.reactions[i];
+    if (displayed && r.body != kNoBody) {
+      const float part = share < 1.0F ? share : 1.0F;
+      status.reactions[i] = {r.body, part * r.force_N, part * r.torque_Nm};
+    }
+  }
 }
 
 }  // namespace tactree::core

@@ -29,17 +29,18 @@ Vec3 PassivityController::acted() const {
 }
 
 // A force is constant from tick to tick, so that its work is exactly its product with the way.
-Vec3 PassivityController::update(Vec3 shown, Vec3 probe, Vec3 velocity, float stored) {
+Vec3 PassivityController::update(Vec3 shown, const WallMotion& motion, float stored) {
   newest_ = (newest_ + 1U) % kHistory;
   sent_[newest_] = shown;
-  const Vec3 way = following_ ? probe - last_ : Vec3{};
+  const Vec3 way = following_ ? motion.probe - last_ - period_s_ * motion.wall : Vec3{};
   const float taken = -dot(acted(), way);
   const float balance = following_ ? balance_ + taken - (stored - stored_) : 0.0F;
-  last_ = probe;
+  last_ = motion.probe;
   stored_ = stored;
   following_ = true;
   balance_ = balance < 0.0F ? balance : 0.0F;
   // As much damping as takes the debt back, if the probe moves on as it does.
+  const Vec3 velocity = motion.velocity - motion.wall;
   const float squared = length_squared(velocity);
   if (!(balance_ < 0.0F && squared > 0.0F)) {
     return {};

@@ -20,6 +20,10 @@ constexpr float kStrengthPerRadius = 4.0F;
 // First support on a point that nearly all others contradict: a stray normal, not the other side.
 constexpr float kContradicted = 0.2F;
 
+// Within this share of the support radius of the surface one Newton step leaves an error below
+// 1e-4 of the radius, whatever the curvature: a second is for longer ways around a bend.
+constexpr float kOneStepIsEnough = 0.01F;
+
 float clamp(float value, float low, float high) {
   return value < low ? low : (value > high ? high : value);
 }
@@ -32,6 +36,7 @@ void Proxy::reset(Vec3 probe) {
   candidates_.clear();
   position_ = probe;
   complete_ = true;
+  lost_contact_ = false;
   lose_support();
 }
 
@@ -41,6 +46,7 @@ void Proxy::update(const BlobView& view, Vec3 probe, const Friction& friction) {
     return;
   }
   budget_ = kEvaluationsPerTick;
+  lost_contact_ = false;
   if (in_contact_) {
     slide(view, probe, friction);
   }
@@ -90,12 +96,12 @@ void Proxy::visit(const BlobView& view, Vec3 x) {
     reference = candidates_.normal(nearest);
   }
   SurfaceFit fit = evaluate(view, x, reference);
-  const bool crossed = tracked_ && fit.supported && side_ * fit.distance < 0.0F;
+  const bool crossed = tracked_ && fit.firm() && side_ * fit.distance < 0.0F;
   if (!crossed && fit.facing < kContradicted) {
     tracked_ = false;
     fit = evaluate(view, x, -reference);
   }
-  if (!fit.supported) {
+  if (!fit.firm()) {
     lose_support();
     return;
   }
@@ -114,20 +120,19 @@ void Proxy::begin_contact(const BlobView& view, const SurfaceFit& fit) {
   strength_ = fit.strength;
   slipping_ = false;
   in_contact_ = true;
-  if (!settle(view)) {
+  if (!settle(view).supported) {
     lose_support();  // the way led past the rim
   }
 }
 
-bool Proxy::settle(const BlobView& view) {
+SurfaceFit Proxy::settle(const BlobView& view) {
   const SurfaceFit fit = evaluate(view, position_, reference_);
-  if (!fit.supported) {
-    return false;
+  if (fit.supported) {
+    position_ -= fit.distance * fit.normal;
+    reference_ = fit.normal;
+    strength_ = fit.strength;
   }
-  position_ -= fit.distance * fit.normal;
-  reference_ = fit.normal;
-  strength_ = fit.strength;
-  return true;
+  return fit;
 }
 
 void Proxy::slide(const BlobView& view, Vec3 probe, const Friction& friction) {
@@ -150,6 +155,7 @@ void Proxy::slide(const BlobView& view, Vec3 probe, const Friction& friction) {
     const float excess = distance - cone;
     const bool last = !(excess > step);
     if (!slip_by(view, ((last ? excess : step) / distance) * along)) {
+      lost_contact_ = true;
       lose_support();
       return;
     }
@@ -163,11 +169,16 @@ bool Proxy::slip_by(const BlobView& view, Vec3 step) {
   const Vec3 position_before = position_;
   const float strength_before = strength_;
   position_ += step;
-  if (!settle(view) || !settle(view)) {
+  const float radius = view.header().support_radius_m;
+  const SurfaceFit fit = settle(view);
+  if (!fit.supported) {
     return false;
   }
-  const float change =
-      kStrengthPerRadius * length(position_ - position_before) / view.header().support_radius_m;
+  const bool close = absolute(fit.distance) <= kOneStepIsEnough * radius;
+  if (!close && !settle(view).supported) {
+    return false;
+  }
+  const float change = kStrengthPerRadius * length(position_ - position_before) / radius;
   strength_ = clamp(strength_, strength_before - change, strength_before + change);
   return true;
 }

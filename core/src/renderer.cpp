@@ -6,33 +6,20 @@
 namespace tactree::core {
 namespace {
 
-struct Feel {
-  float stiffness_N_m;
-  float damping_Ns_m;
-  Friction friction;
-};
-
-float lower(float a, float b) { return a < b ? a : b; }
-
-/// The material under the contact, or the configuration's where there is none.
-Feel feel_of(const BlobView& view, const Configuration& c, std::uint32_t point) {
-  if (!c.use_materials || view.material_count() == 0U) {
-    return {c.stiffness_N_m, c.damping_Ns_m, {c.static_friction, c.dynamic_friction}};
-  }
-  const std::uint32_t index = point == kNoPoint ? 0U : view.material_of(point);
-  const BlobMaterial& material = view.material(index);
-  // More than the configured stiffness or damping was not checked for stability.
-  return {lower(material.stiffness_N_m, c.stiffness_N_m),
-          lower(material.damping_Ns_m, c.damping_Ns_m),
-          {material.static_friction, material.dynamic_friction}};
-}
-
 /// Never more than the spring, so that contact begins and ends without a step.
 Vec3 damping(float damping_Ns_m, Vec3 velocity, Vec3 spring) {
   const Vec3 wanted = damping_Ns_m * velocity;
   const float size = length(wanted);
   const float allowed = length(spring);
   return size > allowed ? (allowed / size) * wanted : wanted;
+}
+
+/// What the texture leaves of a contact that is so deep: friction shrinks with the force.
+float share_of(float penetration_m, float texture_depth_m) {
+  if (!(texture_depth_m > 0.0F)) {
+    return 1.0F;
+  }
+  return penetration_m > texture_depth_m ? 1.0F - texture_depth_m / penetration_m : 0.0F;
 }
 
 /// Of the spring with its force limited, as the gate does.
@@ -59,7 +46,7 @@ Rendering update_paper(const BlobView& view, const Configuration& c, Vec3 probe)
   r.in_contact = true;
   r.proxy = nearest.position;
   r.normal = normalized_or(way, {});
-  const float stiffness_N_m = feel_of(view, c, nearest.index).stiffness_N_m;
+  const float stiffness_N_m = feel_of(view, c, material_at(view, c, nearest.index)).stiffness_N_m;
   r.force = stiffness_N_m * way;
   r.strength = 1.0F;
   r.penetration_m = length(way);
@@ -80,18 +67,23 @@ Rendering Renderer::update(const BlobView& view, const Configuration& configurat
 
 Rendering Renderer::update_surface(const BlobView& view, const Configuration& c, Vec3 probe,
                                    Vec3 velocity) {
-  const Friction friction = feel_of(view, c, proxy_.nearest_point()).friction;
-  proxy_.update(view, probe, friction);
+  proxy_.update(view, probe, friction_);
   Rendering r;
   r.proxy = proxy_.position();
   r.complete = proxy_.complete();
+  r.lost = proxy_.lost_contact();
   if (!proxy_.in_contact()) {
     return r;
   }
-  const Feel feel = feel_of(view, c, proxy_.nearest_point());
   const Vec3 normal = proxy_.normal();
   const Vec3 way = r.proxy - probe;
-  const Vec3 spring = feel.stiffness_N_m * way;
+  const MaterialBlend materials =
+      blend_materials(view, c, proxy_.candidates(), r.proxy, proxy_.stored_normal());
+  const Feel feel = feel_of(view, c, materials);
+  friction_ = feel.friction;
+  r.penetration_m = dot(way, normal);
+  const float share = share_of(r.penetration_m, texture_depth(view, materials, r.proxy, normal));
+  const Vec3 spring = (share * feel.stiffness_N_m) * way;
   const Vec3 force = spring - damping(feel.damping_Ns_m, velocity, spring);
   // Damping may take the push away, but never pulls the hand into the object.
   const float push = dot(force, normal);
@@ -101,8 +93,8 @@ Rendering Renderer::update_surface(const BlobView& view, const Configuration& c,
   r.normal = normal;
   r.strength = proxy_.strength();
   r.force = r.strength * repelling;
-  r.stored_energy = r.strength * spring_energy(feel.stiffness_N_m, length(way), c.force_max_N);
-  r.penetration_m = dot(way, normal);
+  r.stored_energy =
+      r.strength * spring_energy(feel.stiffness_N_m, share * length(way), c.force_max_N);
   r.point = proxy_.nearest_point();
   Leaf leaf;
   if (find_leaf(view, r.proxy, leaf)) {

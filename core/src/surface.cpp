@@ -13,6 +13,11 @@ constexpr float kFadeEnds = 0.95F;
 // Below this share of A the points are as good as one point: fit a plane.
 constexpr float kFlatShare = 1e-3F;
 
+// The next gather, in slacks: how far ahead of the query, less than 1; and from which stride on the
+// query has jumped, so that nobody knows where it goes.
+constexpr float kAhead = 0.6F;
+constexpr float kStride = 1.5F;
+
 // Two faces meet in a crease where normals differ by 60 to 120 degrees; more is the other side of a
 // plate, which never counts.
 constexpr float kCreaseCosine = 0.5F;
@@ -34,7 +39,6 @@ struct Moments {
   float b = 0.0F;
   std::uint32_t count = 0;
 
-  /// A weight of 0 adds nothing.
   void add(Vec3 q, float qq, Vec3 normal, float weight) {
     w += weight;
     p += weight * q;
@@ -63,12 +67,16 @@ struct Surroundings {
 };
 
 Surroundings look_around(const CandidateSet& set, Vec3 x, float radius, Vec3 reference) {
-  const float inverse_squared = 1.0F / (radius * radius);
+  const float radius_squared = radius * radius;
+  const float inverse_squared = 1.0F / radius_squared;
   Surroundings found;
-  float nearest = radius * radius;
+  float nearest = radius_squared;
   for (std::uint32_t i = 0; i < set.count(); ++i) {  // bound: kMaxCandidates
     const Vec3 q = set.position(i) - x;
     const float qq = length_squared(q);
+    if (!(qq < radius_squared)) {
+      continue;
+    }
     const float weight = weight_of(qq, inverse_squared);
     const Vec3 normal = set.normal(i);
     const float cosine = dot(normal, reference);
@@ -93,18 +101,22 @@ struct Faces {
 };
 
 Faces divide(const CandidateSet& set, Vec3 x, float radius, Vec3 own, Vec3 other) {
-  const float inverse_squared = 1.0F / (radius * radius);
+  const float radius_squared = radius * radius;
+  const float inverse_squared = 1.0F / radius_squared;
   Faces faces;
   for (std::uint32_t i = 0; i < set.count(); ++i) {  // bound: kMaxCandidates
     const Vec3 q = set.position(i) - x;
     const float qq = length_squared(q);
+    if (!(qq < radius_squared)) {
+      continue;
+    }
     const float weight = weight_of(qq, inverse_squared);
     const Vec3 normal = set.normal(i);
     const float to_own = dot(normal, own);
     const float to_other = dot(normal, other);
     const bool is_own = to_own >= to_other;
     const float closer = is_own ? to_own : to_other;
-    if (!(weight > 0.0F) || !(closer > 0.0F)) {
+    if (!(closer > 0.0F)) {
       continue;
     }
     (is_own ? faces.own : faces.other).add(q, qq, normal, weight);
@@ -151,7 +163,7 @@ SurfaceFit solve(const Moments& m, float radius) {
   const Vec3 centroid = inverse_w * m.p;
   const Vec3 along = centroid - dot(centroid, normal) * normal;
   const float strength = strength_of(length(along) / radius);
-  if (!(strength > 0.0F) || !is_finite(distance)) {
+  if (!is_finite(distance) || !is_finite(strength)) {
     return fit;
   }
   return {true, distance, normal, strength, 1.0F};
@@ -166,8 +178,8 @@ SurfaceFit combine(const SurfaceFit& smooth, const Faces& faces, float radius) {
   }
   const SurfaceFit own = solve(faces.own, radius);
   const SurfaceFit other = solve(faces.other, radius);
-  if (!own.supported || !other.supported) {
-    return other.supported ? other : smooth;  // round the corner, or along the rim of a face
+  if (!own.firm() || !other.firm()) {
+    return other.firm() ? other : smooth;  // round the corner, or along the rim of a face
   }
   const Vec3 way = (1.0F / faces.other.w) * faces.other.p - (1.0F / faces.own.w) * faces.own.p;
   const float other_above_own = dot(way, own.normal);
@@ -191,10 +203,14 @@ void CandidateSet::cover(const BlobView& view, Vec3 x) {
     return;
   }
   const float slack = view.reach_m() - view.header().support_radius_m;
-  const bool inside = length_squared(x - centre_) <= slack * slack;
-  if (!valid_ || !inside) {
-    gather(view, x);
+  const Vec3 way = x - centre_;
+  const float squared = length_squared(way);
+  if (valid_ && squared <= slack * slack) {
+    return;
   }
+  // Ahead of a query that walks: it is then good for twice as long.
+  const bool walks = valid_ && squared <= kStride * slack * (kStride * slack);
+  gather(view, walks ? x + (kAhead * slack / square_root(squared)) * way : x);
 }
 
 void CandidateSet::gather(const BlobView& view, Vec3 centre) {
@@ -267,13 +283,13 @@ SurfaceProjection project_to_surface(const BlobView& view, Vec3 x, CandidateSet&
     return result;
   }
   const SurfaceFit first = fit_surface(scratch, x, radius, scratch.normal(nearest));
-  if (!first.supported) {
+  if (!first.firm()) {
     return result;
   }
   const Vec3 near = x - first.distance * first.normal;
   scratch.cover(view, near);
   const SurfaceFit second = fit_surface(scratch, near, radius, first.normal);
-  if (!second.supported) {
+  if (!second.firm()) {
     return result;
   }
   result.supported = true;

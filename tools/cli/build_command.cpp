@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "command.hpp"
+#include "material_file.hpp"
 #include "output_file.hpp"
 #include "tactree/builder/build_model.hpp"
 
@@ -88,42 +89,6 @@ std::uint64_t to_bytes(const std::string& text) {
   return static_cast<std::uint64_t>(bytes);
 }
 
-// stiffness=800,damping=1.5,static=0.5,dynamic=0.4,texture_height=1e-4,texture_wavelength=2e-3
-core::BlobMaterial to_material(const std::string& text) {
-  core::BlobMaterial material{};
-  const std::map<std::string, float*> fields = {
-      {"stiffness", &material.stiffness_N_m},
-      {"damping", &material.damping_Ns_m},
-      {"static", &material.static_friction},
-      {"dynamic", &material.dynamic_friction},
-      {"texture_height", &material.texture_height_m},
-      {"texture_wavelength", &material.texture_wavelength_m}};
-  std::size_t from = 0;
-  while (from <= text.size()) {
-    const std::size_t to = std::min(text.find(',', from), text.size());
-    const std::string item = text.substr(from, to - from);
-    const std::size_t equals = item.find('=');
-    const auto field = fields.find(item.substr(0, equals));
-    if (equals == std::string::npos || field == fields.end()) {
-      misuse("--material", "'" + item + "' is none of stiffness=, damping=, static=, dynamic=, " +
-                               "texture_height=, texture_wavelength=");
-    }
-    const double value = to_number("--material", item.substr(equals + 1));
-    if (!(value >= 0.0)) {
-      misuse("--material", "'" + item + "' is negative");
-    }
-    *field->second = static_cast<float>(value);
-    from = to + 1;
-  }
-  if (!(material.stiffness_N_m > 0.0F)) {
-    misuse("--material", "stiffness= (N/m) is needed");
-  }
-  if (material.dynamic_friction > material.static_friction) {
-    misuse("--material", "dynamic= must not exceed static=");
-  }
-  return material;
-}
-
 void require_positive(const std::string& option, const std::optional<double>& value) {
   if (value && !(*value > 0.0 && std::isfinite(*value))) {
     misuse(option, "must be positive");
@@ -161,7 +126,7 @@ void complete(BuildArguments& arguments) {
     }
   }
   if (!arguments.material.empty()) {
-    build.material = to_material(arguments.material);
+    build.materials = read_materials(arguments.material);
   }
 }
 
@@ -203,7 +168,19 @@ double bytes_per_point(const BuildReport& report) {
   return static_cast<double>(report.bytes) / static_cast<double>(report.output_points);
 }
 
-ordered_json to_json(const BuildReport& report) {
+std::string material_name(const BuildOptions& build, std::size_t index) {
+  return index == 0 ? "default" : build.materials->colours[index - 1].name;
+}
+
+ordered_json materials_json(const BuildReport& report, const BuildOptions& build) {
+  ordered_json list = ordered_json::array();
+  for (std::size_t i = 0; i < report.material_points.size(); ++i) {
+    list.push_back({{"name", material_name(build, i)}, {"points", report.material_points[i]}});
+  }
+  return list;
+}
+
+ordered_json to_json(const BuildReport& report, const BuildOptions& build) {
   ordered_json inputs = ordered_json::array();
   for (const builder::InputReport& input : report.inputs) {
     inputs.push_back({{"file", input.file},
@@ -227,6 +204,7 @@ ordered_json to_json(const BuildReport& report) {
           {"largest_gap_m", report.largest_gap_m},
           {"openings", openings_json(report)},
           {"pieces", report.pieces},
+          {"materials", materials_json(report, build)},
           {"bounds_min_m", triple(report.bounds.min())},
           {"bounds_max_m", triple(report.bounds.max())},
           {"source_scale", report.source_scale},
@@ -277,12 +255,15 @@ void print_gaps(const BuildReport& report) {
   }
 }
 
-void print(const BuildReport& report, const std::string& output) {
+void print(const BuildReport& report, const BuildOptions& build, const std::string& output) {
   print_input(report);
   const Eigen::Vector3d size = report.bounds.sizes();
   fmt::print("model     {:.4g} x {:.4g} x {:.4g} m, {} points, spacing {:.4g} mm\n", size.x(),
              size.y(), size.z(), report.output_points, 1e3 * report.spacing_m);
   print_gaps(report);
+  for (std::size_t i = 0; i < report.material_points.size(); ++i) {
+    fmt::print("material  {}: {} points\n", material_name(build, i), report.material_points[i]);
+  }
   for (const std::string& note : report.notes) {
     fmt::print("note      {}\n", note);
   }
@@ -305,13 +286,13 @@ void build(const BuildArguments& arguments) {
     throw;
   }
   write_file(arguments.output, std::span<const std::byte>(result.blob.bytes));
-  const std::string json = to_json(result.report).dump(2) + "\n";
+  const std::string json = to_json(result.report, arguments.build).dump(2) + "\n";
   for (const std::string& file : {arguments.report, arguments.json}) {
     if (!file.empty()) {
       write_file(file, json);
     }
   }
-  print(result.report, arguments.output);
+  print(result.report, arguments.build, arguments.output);
   for (const std::string& warning : result.report.warnings) {
     fmt::print(stderr, "tactree: warning: {}\n", warning);
   }
@@ -363,7 +344,8 @@ void add_quality_options(CLI::App& verb, BuildArguments& arguments) {
   verb.add_flag("--flip-normals", build.flip_normals, "swap inside and outside")->group(kGroup);
   verb.add_option("--material", arguments.material,
                   "stiffness=N/m,damping=Ns/m,static=,dynamic=,texture_height=m,"
-                  "texture_wavelength=m of the whole model")
+                  "texture_wavelength=m of the whole model, or a JSON file that tells them, also "
+                  "by the colours of the points")
       ->group(kGroup);
 }
 

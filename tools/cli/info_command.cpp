@@ -48,7 +48,33 @@ std::string digest(const BlobHeader& header) {
   return text;
 }
 
-nlohmann::json to_json(const BlobHeader& h) {
+/// How many points each material has.
+std::vector<std::uint32_t> points_of_materials(const BlobView& view) {
+  std::vector<std::uint32_t> counts(view.material_count(), 0);
+  for (std::uint32_t i = 0; i < view.point_count() && !counts.empty(); ++i) {
+    ++counts[view.material_of(i)];
+  }
+  return counts;
+}
+
+nlohmann::json materials_json(const BlobView& view) {
+  nlohmann::json list = nlohmann::json::array();
+  const std::vector<std::uint32_t> points = points_of_materials(view);
+  for (std::uint32_t i = 0; i < view.material_count(); ++i) {
+    const core::BlobMaterial& m = view.material(i);
+    list.push_back({{"points", points[i]},
+                    {"stiffness_N_m", shortest(m.stiffness_N_m)},
+                    {"damping_Ns_m", shortest(m.damping_Ns_m)},
+                    {"static_friction", shortest(m.static_friction)},
+                    {"dynamic_friction", shortest(m.dynamic_friction)},
+                    {"texture_height_m", shortest(m.texture_height_m)},
+                    {"texture_wavelength_m", shortest(m.texture_wavelength_m)}});
+  }
+  return list;
+}
+
+nlohmann::json to_json(const BlobView& view) {
+  const BlobHeader& h = view.header();
   const auto triple = [](const float* v) {
     return nlohmann::json::array({shortest(v[0]), shortest(v[1]), shortest(v[2])});
   };
@@ -59,6 +85,7 @@ nlohmann::json to_json(const BlobHeader& h) {
       {"leaves", h.leaf_count},
       {"nodes", h.node_count},
       {"materials", h.material_count},
+      {"material_list", materials_json(view)},
       {"depth", h.depth},
       {"bytes", h.total_bytes},
       {"bytes_per_point", bytes_per_point(h)},
@@ -112,7 +139,22 @@ void print_sizes(const BlobHeader& h) {
   row("materials", h.materials.bytes + h.material_indices.bytes);
 }
 
-void print(const BlobHeader& h) {
+void print_materials(const BlobView& view) {
+  const std::vector<std::uint32_t> points = points_of_materials(view);
+  for (std::uint32_t i = 0; i < view.material_count(); ++i) {
+    const core::BlobMaterial& m = view.material(i);
+    fmt::print("material {:<4} {} points: {:.6g} N/m, {:.6g} Ns/m, friction {:.6g} / {:.6g}", i,
+               points[i], m.stiffness_N_m, m.damping_Ns_m, m.static_friction, m.dynamic_friction);
+    if (m.texture_height_m > 0.0F) {
+      fmt::print(", texture {:.6g} mm every {:.6g} mm", millimetres(m.texture_height_m),
+                 millimetres(m.texture_wavelength_m));
+    }
+    fmt::print("\n");
+  }
+}
+
+void print(const BlobView& view) {
+  const BlobHeader& h = view.header();
   fmt::print("model         {} ({} profile, format {}.{}, {})\n", h.name, profile_name(h),
              h.version_major, h.version_minor, h.tool_version);
   fmt::print("points        {} in {} leaves, {} nodes, depth {}\n", h.point_count, h.leaf_count,
@@ -131,6 +173,7 @@ void print(const BlobHeader& h) {
       "points a query\n",
       h.points_per_leaf_max, h.points_per_ball_max, millimetres(h.reach_m), h.leaves_per_query_max,
       h.points_per_query_max);
+  print_materials(view);
   print_sizes(h);
 }
 
@@ -148,9 +191,9 @@ void write_points(const BlobView& view, const std::string& file) {
 
 void info(const InfoOptions& options) {
   const BlobFile blob(options.blob);
-  print(blob.view().header());
+  print(blob.view());
   if (!options.json.empty()) {
-    write_file(options.json, to_json(blob.view().header()).dump(2) + "\n");
+    write_file(options.json, to_json(blob.view()).dump(2) + "\n");
   }
   if (!options.points.empty()) {
     write_points(blob.view(), options.points);

@@ -7,6 +7,7 @@
 #include "build_command.hpp"
 #include "check_command.hpp"
 #include "command.hpp"
+#include "evaluate_command.hpp"
 #include "image_command.hpp"
 #include "info_command.hpp"
 #include "query_command.hpp"
@@ -24,6 +25,7 @@ int main(int argc, char** argv) {
   add_query_command(app, exit_code);
   add_image_command(app, exit_code);
   add_simulate_command(app, exit_code);
+  add_evaluate_command(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -15,6 +15,7 @@
 #include "command.hpp"
 #include "device_file.hpp"
 #include "output_file.hpp"
+#include "scene_file.hpp"
 #include "tactree/emulation/emulated_target.hpp"
 #include "tactree/simulation/hand_script.hpp"
 #include "tactree/simulation/simulation.hpp"
@@ -28,7 +29,9 @@ constexpr double kMaxTicks = 1e8;
 constexpr double kMaxTracedTicks = 5e6;
 
 struct SimulateOptions {
-  std::string blob;
+  std::vector<std::string> blobs;
+  std::string scene;
+  std::string blob;  // of the first body
   std::string board = "host";
   std::string firmware;
   std::string device = "premium";
@@ -54,11 +57,17 @@ struct SimulateOptions {
   throw CommandError(fmt::format("{} ({})", what, remedy));
 }
 
-simulation::HandPath hand_path(const SimulateOptions& options, const core::BlobView& view) {
+/// A script touches the first body where that begins.
+simulation::HandPath hand_path(const SimulateOptions& options, const SceneFile& scene) {
   if (!options.path.empty()) {
     return simulation::read_hand_path(options.path);
   }
-  return simulation::make_script(options.script, view, options.seconds);
+  std::vector<simulation::Waypoint> waypoints =
+      simulation::make_script(options.script, scene.files[0]->view(), options.seconds).waypoints();
+  for (simulation::Waypoint& waypoint : waypoints) {
+    waypoint.position_m = scene.bodies[0].path.first() * waypoint.position_m;
+  }
+  return simulation::HandPath(std::move(waypoints));
 }
 
 /// The device, for controller and mechanics alike; what the options say of it goes before.
@@ -86,28 +95,31 @@ void choose_device(const SimulateOptions& options, simulation::Setup& setup) {
   }
 }
 
-/// What --origin says, or else the model's middle at the device's origin. Devices of one or two
-/// axes do not reach far: they get the middle of its top.
-core::Vec3 place_model(const SimulateOptions& options, const core::BlobView& view,
+/// What --origin says, or else the first body's middle at the device's origin. Devices of one or
+/// two axes do not reach far: they get the middle of its top.
+core::Vec3 place_model(const SimulateOptions& options, const SceneFile& scene,
                        core::DeviceKind kind) {
   if (!options.origin_m.empty()) {
     return {static_cast<float>(options.origin_m[0]), static_cast<float>(options.origin_m[1]),
             static_cast<float>(options.origin_m[2])};
   }
-  const core::BlobHeader& h = view.header();
-  const auto middle = [&h](int axis) {
-    return 0.5F * (h.bounds_min_m[axis] + h.bounds_max_m[axis]);
-  };
-  const bool spatial = core::axes_of(kind) == core::kAxes;
-  return {-middle(0), -middle(1), spatial ? -middle(2) : -h.bounds_max_m[2]};
+  const core::BlobHeader& h = scene.files[0]->view().header();
+  const Eigen::Vector3f low(h.bounds_min_m);
+  const Eigen::Vector3f high(h.bounds_max_m);
+  Eigen::Vector3f held = 0.5F * (low + high);
+  if (core::axes_of(kind) != core::kAxes) {
+    held.z() = high.z();
+  }
+  held = scene.bodies[0].path.first().cast<float>() * held;
+  return {-held.x(), -held.y(), -held.z()};
 }
 
-simulation::Setup make_setup(const SimulateOptions& options, const core::BlobView& view) {
+simulation::Setup make_setup(const SimulateOptions& options, const SceneFile& scene) {
   simulation::Setup setup = options.setup;
   core::Configuration& controller = setup.controller;
   controller.mode = options.mode == "paper" ? core::RenderMode::kPaper : core::RenderMode::kSurface;
   choose_device(options, setup);
-  controller.model_origin_m = place_model(options, view, controller.device.kind);
+  controller.model_origin_m = place_model(options, scene, controller.device.kind);
   setup.board.encoders.latency_ticks = static_cast<std::uint32_t>(options.latency_ticks);
   controller.delay_s = static_cast<float>(options.latency_ticks) / controller.rate_hz;
   controller.velocity_cutoff_hz =
@@ -115,8 +127,20 @@ simulation::Setup make_setup(const SimulateOptions& options, const core::BlobVie
   return setup;
 }
 
-void check_start(const SimulateOptions& options, const simulation::Setup& setup,
-                 const hal::StartResult& start) {
+[[noreturn]] void refuse_material(const std::string& file, const core::BlobView& view,
+                                  const core::Configuration& controller) {
+  const std::uint32_t index = core::find_unstable_material(view, controller);
+  const core::BlobMaterial& material = view.material(index);
+  refuse(fmt::format("{}: material {}: its stiffness of {:.6g} N/m is beyond the stability limit "
+                     "of {:.6g} N/m with a hand at {:.6g} Hz",
+                     file, index, material.stiffness_N_m,
+                     core::material_limit(controller, material), controller.rate_hz),
+         "build the blob with a softer or more damped --material, raise --rate, or simulate with "
+         "--no-materials");
+}
+
+void check_start(const std::string& file, const core::BlobView& view,
+                 const simulation::Setup& setup, const hal::StartResult& start) {
   if (start.configuration == core::ConfigurationStatus::kUnstable) {
     const core::StabilityLimit limit = core::stability_limit(setup.controller);
     refuse(
@@ -134,16 +158,19 @@ void check_start(const SimulateOptions& options, const simulation::Setup& setup,
            "give a value in that range");
   }
   if (start.blob != core::BlobStatus::kOk) {
-    refuse(fmt::format("{}: refused: {}", options.blob, core::describe(start.blob)),
+    refuse(fmt::format("{}: refused: {}", file, core::describe(start.blob)),
            "build it again from the scan");
   }
+  if (start.model == core::ModelStatus::kTooStiff) {
+    refuse_material(file, view, setup.controller);
+  }
   if (start.model != core::ModelStatus::kOk) {
-    refuse(fmt::format("{}: {}", options.blob, core::describe(start.model)),
+    refuse(fmt::format("{}: {}", file, core::describe(start.model)),
            "build it with --profile surface, or use --mode paper");
   }
 }
 
-// Functions the report names, of those the ticks' instructions are in.
+// Functions the summary names, of those the ticks' instructions are in.
 constexpr std::size_t kReportedFunctions = 10;
 
 struct Outcome {
@@ -174,8 +201,31 @@ std::unique_ptr<emulation::EmulatedTarget> boot_board(const SimulateOptions& opt
   return std::make_unique<emulation::EmulatedTarget>(*board, blob.bytes(), emulation);
 }
 
-Outcome run(const SimulateOptions& options, const BlobFile& blob) {
-  const simulation::Setup setup = make_setup(options, blob.view());
+bool is_scene(const SimulateOptions& options) {
+  return !options.scene.empty() || options.blobs.size() > 1;
+}
+
+/// The controller in this process; null: on an emulated board.
+std::unique_ptr<simulation::Target> host_target(const SimulateOptions& options,
+                                                const simulation::Setup& setup,
+                                                const SceneFile& scene) {
+  if (emulation::find_board(options.board) != nullptr) {
+    if (is_scene(options)) {
+      refuse("--board: a board has one blob in its flash and renders no scene",
+             "use --board host, or give one blob and no --scene");
+    }
+    return nullptr;
+  }
+  if (!is_scene(options)) {
+    return std::make_unique<simulation::HostTarget>();
+  }
+  return std::make_unique<simulation::SceneTarget>(scene.bodies,
+                                                   simulation::Simulation::arming_ticks(setup));
+}
+
+Outcome run(const SimulateOptions& options, const SceneFile& scene) {
+  const BlobFile& blob = *scene.files[0];
+  const simulation::Setup setup = make_setup(options, scene);
   const double count = std::round(options.seconds * static_cast<double>(setup.controller.rate_hz));
   const bool keep = !options.trace.empty() || !options.plot.empty();
   const double most = keep ? kMaxTracedTicks : kMaxTicks;
@@ -183,14 +233,18 @@ Outcome run(const SimulateOptions& options, const BlobFile& blob) {
     refuse(fmt::format("--seconds: {:.6g} ticks are outside 1 .. {:.0f}", count, most),
            keep ? "shorten it, or leave --trace and --plot out" : "choose another --seconds");
   }
-  std::unique_ptr<simulation::Target> target = boot_board(options, setup, blob);
-  const auto* emulated = static_cast<const emulation::EmulatedTarget*>(target.get());
+  std::unique_ptr<simulation::Target> target = host_target(options, setup, scene);
+  const emulation::EmulatedTarget* emulated = nullptr;
   if (target == nullptr) {
-    target = std::make_unique<simulation::HostTarget>();
+    auto board = boot_board(options, setup, blob);
+    emulated = board.get();
+    target = std::move(board);
   }
-  simulation::Simulation sim(blob.bytes(), setup, hand_path(options, blob.view()),
-                             std::move(target));
-  check_start(options, setup, sim.start_result());
+  const auto* with_bodies =
+      is_scene(options) ? static_cast<const simulation::SceneTarget*>(target.get()) : nullptr;
+  simulation::Simulation sim(blob.bytes(), setup, hand_path(options, scene), std::move(target));
+  const std::size_t refused = with_bodies == nullptr ? 0 : with_bodies->refused_body();
+  check_start(scene.names[refused], scene.files[refused]->view(), setup, sim.start_result());
   if (!sim.arm()) {
     refuse(fmt::format("the controller did not become active, it is in state {}",
                        core::name_of(sim.state())),
@@ -229,15 +283,24 @@ nlohmann::json to_json(const std::optional<emulation::InstructionCounts>& counts
   for (const emulation::FunctionCount& f : counts->functions) {
     const double mean = static_cast<double>(f.total) / static_cast<double>(counts->ticks);
     functions.push_back({{"name", f.name}, {"max", f.max}, {"mean", mean}});
-    if (functions.size() == kReportedFunctions) {
-      break;
-    }
   }
   return {{"max", counts->max},     {"mean", counts->mean()},       {"bound", nullptr},
           {"start", counts->start}, {"checksum", counts->checksum}, {"functions", functions}};
 }
 
-nlohmann::json to_json(const SimulateOptions& options, const Outcome& outcome) {
+nlohmann::json to_json(const SceneFile& scene, const simulation::Summary& s) {
+  nlohmann::json bodies = nlohmann::json::array();
+  for (std::size_t i = 0; i < scene.names.size(); ++i) {
+    bodies.push_back({{"blob", scene.names[i]},
+                      {"contact_ticks", s.bodies[i].contact_ticks},
+                      {"force_max_N", s.bodies[i].force_max_N},
+                      {"torque_max_Nm", s.bodies[i].torque_max_Nm}});
+  }
+  return bodies;
+}
+
+nlohmann::json to_json(const SimulateOptions& options, const SceneFile& scene,
+                       const Outcome& outcome) {
   const simulation::Summary& s = outcome.summary;
   nlohmann::json faults = nlohmann::json::array();
   for (const simulation::FaultEvent& event : s.faults) {
@@ -257,6 +320,8 @@ nlohmann::json to_json(const SimulateOptions& options, const Outcome& outcome) {
           {"penetration_max_m", s.penetration_max_m},
           {"trace_crc32", s.trace_crc32},
           {"faults", faults},
+          {"bodies", to_json(scene, s)},
+          {"crowded_ticks", s.crowded_ticks},
           {"instructions", to_json(outcome.instructions)}};
 }
 
@@ -270,7 +335,19 @@ void print_instructions(const emulation::InstructionCounts& counts) {
   }
 }
 
-void print_summary(const SimulateOptions& options, const Outcome& outcome) {
+void print_bodies(const SceneFile& scene, const simulation::Summary& s) {
+  for (std::size_t i = 0; i < scene.names.size(); ++i) {
+    const simulation::BodySummary& body = s.bodies[i];
+    fmt::print("body {:<14}{}: in contact {}, largest force {:.4f} N, torque {:.4g} Nm\n", i,
+               scene.names[i], body.contact_ticks, body.force_max_N, body.torque_max_Nm);
+  }
+  if (s.crowded_ticks > 0) {
+    fmt::print("crowded            {} ticks: more than {} bodies within reach, some not felt\n",
+               s.crowded_ticks, core::kMaxReachableBodies);
+  }
+}
+
+void print_summary(const SimulateOptions& options, const SceneFile& scene, const Outcome& outcome) {
   const simulation::Summary& s = outcome.summary;
   fmt::print("board {}, device {}, mode {}, {:.6g} Hz\n", options.board, options.device,
              options.mode, options.setup.controller.rate_hz);
@@ -282,6 +359,9 @@ void print_summary(const SimulateOptions& options, const Outcome& outcome) {
   fmt::print("deepest            {:.4f} mm\n", 1e3 * s.penetration_max_m);
   fmt::print("overruns           {}\n", s.overruns);
   fmt::print("trace checksum     {:08x}\n", s.trace_crc32);
+  if (is_scene(options)) {
+    print_bodies(scene, s);
+  }
   for (const simulation::FaultEvent& event : s.faults) {
     fmt::print("fault {:2} {} at tick {}\n", static_cast<int>(event.fault),
                core::name_of(event.fault), event.tick);
@@ -291,7 +371,7 @@ void print_summary(const SimulateOptions& options, const Outcome& outcome) {
   }
 }
 
-void write_plot(const SimulateOptions& options, const BlobFile& blob, const Outcome& outcome) {
+void write_plot(const SimulateOptions& options, const SceneFile& scene, const Outcome& outcome) {
   const double rate_hz = static_cast<double>(options.setup.controller.rate_hz);
   if (!options.compare) {
     const std::string title = fmt::format("{}: {}, {} mode, {:.6g} Hz", options.blob,
@@ -301,7 +381,7 @@ void write_plot(const SimulateOptions& options, const BlobFile& blob, const Outc
   }
   SimulateOptions other = options;
   other.mode = options.mode == "paper" ? "surface" : "paper";
-  const Outcome beside = run(other, blob);
+  const Outcome beside = run(other, scene);
   const bool paper_first = options.mode == "paper";
   const std::string title =
       fmt::format("{}: {}, both modes, {:.6g} Hz", options.blob, options.device, rate_hz);
@@ -310,26 +390,27 @@ void write_plot(const SimulateOptions& options, const BlobFile& blob, const Outc
                                         paper_first ? outcome.samples : beside.samples, title));
 }
 
-void simulate(const SimulateOptions& options, int& exit_code) {
+void simulate(SimulateOptions& options, int& exit_code) {
   if (options.dump_device) {
     fmt::print("{}", device_json(load_device(options.device)));
     return;
   }
-  if (options.blob.empty()) {
+  if (options.blobs.empty() && options.scene.empty()) {
     throw CLI::RequiredError("BLOB");
   }
-  const BlobFile blob(options.blob);
-  const Outcome outcome = run(options, blob);
+  const SceneFile scene = read_scene(options.scene, options.blobs);
+  options.blob = scene.names[0];
+  const Outcome outcome = run(options, scene);
   if (!options.trace.empty()) {
     write_trace(options.trace, outcome.samples);
   }
   if (!options.plot.empty()) {
-    write_plot(options, blob, outcome);
+    write_plot(options, scene, outcome);
   }
   if (!options.json.empty()) {
-    write_file(options.json, to_json(options, outcome).dump(2) + "\n");
+    write_file(options.json, to_json(options, scene, outcome).dump(2) + "\n");
   }
-  print_summary(options, outcome);
+  print_summary(options, scene, outcome);
   exit_code = outcome.summary.faults.empty() ? kExitOk : kExitFailed;
 }
 
@@ -354,6 +435,8 @@ void add_controller_options(CLI::App& verb, SimulateOptions& options) {
   verb.add_option("--dynamic-friction", c.dynamic_friction, "coefficient, at most the static one")
       ->check(CLI::Range(0.0, 2.0))
       ->capture_default_str();
+  verb.add_flag("!--no-materials", c.use_materials,
+                "feel the options above everywhere, whatever materials the blob has");
   options.force_max =
       verb.add_option("--force-max", c.force_max_N, "largest force, N (default: the device's)")
           ->check(CLI::Range(0.01, 1000.0));
@@ -419,7 +502,11 @@ void add_simulate_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<SimulateOptions>();
   CLI::App* verb = app.add_subcommand(
       "simulate", "Runs the controller of the firmware against a simulated device and hand");
-  verb->add_option("BLOB", options->blob, "the blob to touch");
+  verb->add_option("BLOB", options->blobs, "the blob to touch, or several");
+  verb->add_option(
+          "--scene", options->scene,
+          "JSON file that says where each body is, of which of the blobs, and how it moves")
+      ->check(CLI::ExistingFile);
   verb->add_option("--board", options->board, "where the controller runs")
       ->check(CLI::IsMember(board_names()))
       ->capture_default_str();

@@ -146,6 +146,7 @@ void Recorder::add(const Sample& sample) {
     summary_.penetration_max_m =
         std::max(summary_.penetration_max_m, static_cast<double>(status.rendering.penetration_m));
   }
+  add_reactions(status);
   for (std::uint32_t code = 1; code < core::kFaultCodes; ++code) {
     const auto fault = static_cast<core::Fault>(code);
     if (core::has_fault(status.faults & ~known_, fault)) {
@@ -157,6 +158,19 @@ void Recorder::add(const Sample& sample) {
   first_ = false;
   summary_.overruns = status.overruns;
   ++summary_.ticks;
+}
+
+void Recorder::add_reactions(const core::Status& status) {
+  const core::LimitMask crowded = core::limit_bit(core::Limit::kBodies);
+  summary_.crowded_ticks += (status.limits & crowded) != 0U ? 1 : 0;
+  for (const core::Reaction& reaction : status.reactions) {
+    if (reaction.body < core::kMaxBodies) {
+      BodySummary& body = summary_.bodies[reaction.body];
+      ++body.contact_ticks;
+      body.force_max_N = std::max(body.force_max_N, widen(reaction.force_N).norm());
+      body.torque_max_Nm = std::max(body.torque_max_Nm, widen(reaction.torque_Nm).norm());
+    }
+  }
 }
 
 Summary Recorder::summary() const {

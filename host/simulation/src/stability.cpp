@@ -62,7 +62,7 @@ class Wall {
     double wanted = -stiffness_ * seen - case_.wall_damping_Ns_m * static_cast<double>(velocity.x);
     if (case_.passivity_Ns_m > 0.0) {
       const auto stored = static_cast<float>(0.5 * stiffness_ * seen * seen);
-      const core::Vec3 added = passivity_.update(shown_, probe, velocity, stored);
+      const core::Vec3 added = passivity_.update(shown_, {probe, velocity, {}}, stored);
       wanted += static_cast<double>(added.x);
     }
     shown_ = {static_cast<float>(wanted), 0.0F, 0.0F};

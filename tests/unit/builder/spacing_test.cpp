@@ -36,8 +36,8 @@ TEST(Spacing, TheMeanTellsOfSparserParts) {
 
 TEST(Spacing, OfAFewPointsIsTheDistanceToTheNext) {
   EXPECT_NEAR(
-      estimate_spacing(ZOrderedCloud({box_mesh({0, 0, 0}, {2, 2, 2}).positions, {}})).median_m, 2.0,
-      1e-9);
+      estimate_spacing(ZOrderedCloud({box_mesh({0, 0, 0}, {2, 2, 2}).positions, {}, {}})).median_m,
+      2.0, 1e-9);
   EXPECT_EQ(estimate_spacing(ZOrderedCloud()).median_m, 0.0);
 }
 

@@ -24,31 +24,8 @@ double box_distance(const Eigen::Vector3d& p) {
   return outside > 0.0 ? outside : beyond.maxCoeff();
 }
 
-/// Faces moved by a part of a spacing each, so that edges cut the rows anywhere.
-Shape irregular_box(unsigned seed) {
-  Shape shape;
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> unit(-0.3, 0.3);
-  const double h = kSpacing;
-  const int n = static_cast<int>(std::lround(2.0 * kHalf / h));
-  for (int axis = 0; axis < 3; ++axis) {
-    for (const double side : {-1.0, 1.0}) {
-      for (int i = 0; i < n; ++i) {
-        for (int j = 0; j < n; ++j) {
-          Eigen::Vector3d p;
-          p[axis] = side * kHalf;
-          p[(axis + 1) % 3] = (i + 0.5 + unit(random)) * h - kHalf;
-          p[(axis + 2) % 3] = (j + 0.5 + unit(random)) * h - kHalf;
-          Eigen::Vector3d normal = Eigen::Vector3d::Zero();
-          normal[axis] = side;
-          shape.add(p, normal);
-        }
-      }
-    }
-  }
-  shape.seal();
-  return shape;
-}
+/// Points moved by a part of a spacing each, so that edges cut the rows anywhere.
+Shape irregular_box(unsigned seed) { return box(kHalf, 0.3, seed); }
 
 /// A floor z = 0 and a wall x = 0 that meet in a concave edge; free space is x < 0, z > 0.
 Shape floor_and_wall(unsigned seed) {

@@ -60,8 +60,8 @@ class Pipeline {
     model_.source_digest = digest;
     model_.source_scale = report_.source_scale;
     model_.source_origin = report_.source_origin;
-    if (options_.material) {
-      model_.materials.push_back(*options_.material);
+    if (options_.materials) {
+      model_.materials = options_.materials->list();
     }
     progress_.begin("resampling");
     DensityChoice choice = choose_density(input_, options_, progress_, report_);
@@ -123,8 +123,10 @@ class Pipeline {
     progress_.begin("writing the octree");
     model_.positions = choice.points.positions();
     model_.normals = choice.points.normals();
+    model_.material_indices = choice.points.cloud().materials;
     WrittenBlob blob = write_blob(model_);
     check(blob);
+    count_materials(blob);
     report_.spacing_m = model_.spacing_m;
     report_.largest_gap_m = model_.largest_gap_m;
     report_.merged = blob.merged;
@@ -132,6 +134,24 @@ class Pipeline {
     report_.bounds = bounds_of(model_.positions);
     report_.bytes = blob.bytes.size();
     return blob;
+  }
+
+  void count_materials(const WrittenBlob& blob) {
+    report_.material_points.assign(model_.materials.size(), 0);
+    for (const std::uint32_t source : blob.source_index) {
+      if (!model_.materials.empty()) {
+        ++report_
+              .material_points[model_.material_indices.empty() ? 0
+                                                               : model_.material_indices[source]];
+      }
+    }
+    for (std::size_t i = 1; i < report_.material_points.size(); ++i) {
+      if (report_.material_points[i] == 0) {
+        report_.warnings.push_back(
+            fmt::format("no point has the colour of the material '{}' (raise its tolerance)",
+                        options_.materials->colours[i - 1].name));
+      }
+    }
   }
 
   // Reads the blob back the way the board will, and compares.

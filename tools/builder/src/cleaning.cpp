@@ -42,6 +42,7 @@ class Cleaner {
   }
 
   CleanInput run(std::vector<Scan> scans) {
+    require_colours(scans);
     for (Scan& scan : scans) {
       count_input(scan);
       if (scan.is_mesh()) {
@@ -77,6 +78,26 @@ class Cleaner {
     report_.warnings.insert(report_.warnings.end(), scan.warnings.begin(), scan.warnings.end());
   }
 
+  [[nodiscard]] bool by_colour() const {
+    return options_.materials && options_.materials->by_colour();
+  }
+
+  void require_colours(const std::vector<Scan>& scans) const {
+    const bool coloured = std::any_of(scans.begin(), scans.end(),
+                                      [](const Scan& scan) { return !scan.colours.empty(); });
+    if (by_colour() && !coloured) {
+      throw std::runtime_error(
+          "the materials go by colour, and no input has colours at its points (export the scan "
+          "with vertex colours, or give one material for the whole model)");
+    }
+  }
+
+  /// What a scan without colours holds is of the base material.
+  [[nodiscard]] std::uint8_t material_of(const Scan& scan, std::size_t point) const {
+    return scan.colours.empty() ? std::uint8_t{0}
+                                : options_.materials->index_of(scan.colours[point]);
+  }
+
   void add_cloud(Scan&& scan) {
     const bool normals = scan.normals.size() == scan.positions.size();
     std::uint64_t non_finite = 0;
@@ -94,6 +115,9 @@ class Cleaner {
         ++outside;
       } else {
         cloud_.positions.push_back(p);
+        if (by_colour()) {
+          cloud_.materials.push_back(material_of(scan, i));
+        }
         if (normals) {
           cloud_.normals.push_back(usable_normal(scan.normals[i]));
         } else if (cloud_.has_normals()) {
@@ -116,8 +140,11 @@ class Cleaner {
 
   void add_mesh(Scan&& scan) {
     const auto base = static_cast<std::uint32_t>(input_.mesh.positions.size());
-    for (const Eigen::Vector3d& p : scan.positions) {
-      input_.mesh.positions.push_back(input_.frame.turned(p));
+    for (std::size_t i = 0; i < scan.positions.size(); ++i) {
+      input_.mesh.positions.push_back(input_.frame.turned(scan.positions[i]));
+      if (by_colour()) {
+        input_.mesh.materials.push_back(material_of(scan, i));
+      }
     }
     for (auto [i, j, k] : scan.triangles) {
       if (options_.flip_normals) {

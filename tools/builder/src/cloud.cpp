@@ -16,10 +16,14 @@ Cloud select(const Cloud& cloud, std::span<const std::uint32_t> order) {
   Cloud chosen;
   chosen.positions.reserve(order.size());
   chosen.normals.reserve(cloud.has_normals() ? order.size() : 0);
+  chosen.materials.reserve(cloud.has_materials() ? order.size() : 0);
   for (const std::uint32_t i : order) {
     chosen.positions.push_back(cloud.positions[i]);
     if (cloud.has_normals()) {
       chosen.normals.push_back(cloud.normals[i]);
+    }
+    if (cloud.has_materials()) {
+      chosen.materials.push_back(cloud.materials[i]);
     }
   }
   return chosen;

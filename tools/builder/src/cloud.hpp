@@ -15,9 +15,11 @@ struct Cloud {
   std::vector<Eigen::Vector3d> positions;
   std::vector<Eigen::Vector3f>
       normals;  ///< empty, or one per position: unit length, or 0 if unknown
+  std::vector<std::uint8_t> materials;  ///< empty, or one per position: index in the material map
 
   [[nodiscard]] std::size_t size() const { return positions.size(); }
   [[nodiscard]] bool has_normals() const { return !normals.empty(); }
+  [[nodiscard]] bool has_materials() const { return !materials.empty(); }
 };
 
 [[nodiscard]] Box bounds_of(std::span<const Eigen::Vector3d> positions);

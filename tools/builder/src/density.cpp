@@ -92,6 +92,8 @@ class DensityChooser {
                              points.positions.end());
     samples.normals.insert(samples.normals.end(), points.normals.begin(), points.normals.end());
     samples.normals.resize(samples.size(), Eigen::Vector3f::Zero());
+    samples.materials.insert(samples.materials.end(), points.materials.begin(),
+                             points.materials.end());
     if (samples.size() == 0) {
       throw std::runtime_error(
           fmt::format("a spacing of {} is too coarse for this mesh: no point falls on it (lower "
@@ -154,8 +156,9 @@ class DensityChooser {
     model.support_radius_m = kSupportSpacings * choice.spacing_m;
     model.reach_m = kReachSpacings * choice.spacing_m;
     model.profile = options_.profile;
-    if (options_.material) {
-      model.materials.push_back(*options_.material);
+    if (options_.materials) {
+      model.materials = options_.materials->list();
+      model.material_indices.assign(model.positions.size(), 0);
     }
     return write_blob(model).bytes.size();
   }

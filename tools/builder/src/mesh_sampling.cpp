@@ -51,6 +51,16 @@ Eigen::Vector2d spread_in_square(std::uint64_t i, std::uint64_t seed) {
   return {x - std::floor(x), y - std::floor(y)};
 }
 
+/// The corner with the largest of the barycentric coordinates (1 - u - v, u, v).
+std::uint32_t nearest_corner(const std::array<std::uint32_t, 3>& triangle,
+                             const Eigen::Vector2d& at) {
+  const double first = 1.0 - at.sum();
+  if (first >= at.x() && first >= at.y()) {
+    return triangle[0];
+  }
+  return at.x() >= at.y() ? triangle[1] : triangle[2];
+}
+
 }  // namespace
 
 std::array<std::uint64_t, 2> drop_faces(Mesh& mesh, const std::vector<bool>& keep) {
@@ -95,6 +105,7 @@ Cloud sample_faces(const Mesh& mesh, double spacing) {
   Cloud cloud;
   cloud.positions.resize(first.back());
   cloud.normals.resize(first.back());
+  cloud.materials.resize(mesh.materials.empty() ? 0 : first.back());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mesh.triangles.size(), 64), [&](auto range) {
     for (std::size_t t = range.begin(); t < range.end(); ++t) {
       const Corners c = corners_of(mesh, t);
@@ -106,6 +117,9 @@ Cloud sample_faces(const Mesh& mesh, double spacing) {
         }
         cloud.positions[i] = c.a + at.x() * c.ab + at.y() * c.ac;
         cloud.normals[i] = normal;
+        if (!mesh.materials.empty()) {
+          cloud.materials[i] = mesh.materials[nearest_corner(mesh.triangles[t], at)];
+        }
       }
     }
   });

@@ -12,6 +12,7 @@ namespace tactree::builder {
 struct Mesh {
   std::vector<Eigen::Vector3d> positions;
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices into positions, all valid
+  std::vector<std::uint8_t> materials;  ///< empty, or one per position, as in a Cloud
 };
 
 /// Mean distance of candidates, in spacings: 7 of them for each point that will be kept.

@@ -29,7 +29,7 @@ struct Configuration {
   float velocity_cutoff_hz = 200.0F;  ///< low-pass filter of the velocity: 1 .. rate_hz / 2
   /// Most that the passivity controller may add where the wall gives energy: 0 .. 100; 0: off.
   float passivity_Ns_m = 2.0F;
-  /// Follow the blob's materials where it has any, each stiffness at most the limit above.
+  /// Follow the blob's materials where it has any; each must be below the stability limit.
   bool use_materials = true;
 
   bool compensate_gravity = true;  ///< the motors hold the device's own weight

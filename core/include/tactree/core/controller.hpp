@@ -1,9 +1,10 @@
 #pragma once
 // One tick of the control loop, from encoder counts to motor command:
-//   counts -> probe, velocity -> faults, state -> contact, force -> SafetyGate -> motor command
+//   counts -> probe, velocity -> faults, state -> bodies, contact, force -> SafetyGate -> motor
+//   command
 //
 // Interrupt safe as a whole: one context owns a Controller; nothing is shared. Time is an input:
-// one call of step() is one tick of 1 / rate_hz. RAM: sizeof(Controller), about 5 KiB.
+// one call of step() is one tick of 1 / rate_hz. RAM: sizeof(Controller), about 9 KiB.
 
 #include <cstdint>
 
@@ -12,10 +13,9 @@
 #include "tactree/core/faults.hpp"
 #include "tactree/core/homing.hpp"
 #include "tactree/core/passivity.hpp"
-#include "tactree/core/renderer.hpp"
 #include "tactree/core/safety_gate.hpp"
+#include "tactree/core/scene.hpp"
 #include "tactree/core/state_machine.hpp"
-#include "tactree/core/surface.hpp"
 #include "tactree/core/velocity.hpp"
 
 namespace tactree::core {
@@ -40,7 +40,8 @@ struct Input {
   Command command = Command::kNone;
 };
 
-/// What a tick did: for telemetry, plots and tests. Positions in the model's frame.
+/// What a tick did: for telemetry, plots and tests. Positions in the scene's frame, which is that
+/// of a model which was not moved.
 struct Status {
   std::uint32_t tick = 0;  ///< wraps around
   State state = State::kBoot;
@@ -51,6 +52,8 @@ struct Status {
   Vec3 velocity{};             ///< m/s
   Rendering rendering{};       ///< contact, proxy, normal, force wanted
   Vec3 force{};                ///< N, after the gate: what the hand is to feel
+  /// Of the force that the hand feels, on the bodies in contact.
+  Reaction reactions[kMaxReachableBodies]{};
   /// Non-zero exactly when a fault is latched or a limit acts.
   [[nodiscard]] bool summary() const { return faults != 0U || limits != 0U; }
 };
@@ -61,29 +64,28 @@ struct Output {
   Status status{};
 };
 
-enum class ModelStatus : std::uint8_t {
-  kOk = 0,
-  kBusy,           ///< armed or active: stop first
-  kNotConfigured,  ///< configure() first
-  kEmpty,          ///< no model in the view
-  kNoReach,        ///< built without the guarantees that surface mode needs
-  kTooManyPoints,  ///< a ball may hold more than kMaxCandidates points
-};
-[[nodiscard]] const char* describe(ModelStatus status);
-
 class Controller {
  public:
   /// Takes a configuration when it is valid and the motors are off; else changes nothing.
   [[nodiscard]] ConfigurationStatus configure(const Configuration& configuration);
 
-  /// Takes a model when the mode can render it and the motors are off; else keeps the old one.
+  /// Makes a model the only body, number 0, at the scene's origin, when the mode can render it and
+  /// the motors are off; else keeps the old ones.
   /// Precondition: configured. The blob must outlive its use and not change.
   [[nodiscard]] ModelStatus load_model(const BlobView& view);
 
-  /// Gives the model up; refused (false) while armed or active.
+  /// Adds a body to those that are there, on the same conditions. `number` tells which it is.
+  [[nodiscard]] ModelStatus add_body(const BlobView& view, const Pose& pose, std::uint32_t& number);
+
+  /// Gives all models up; refused (false) while armed or active.
   [[nodiscard]] bool unload_model();
 
-  /// One tick. Accepts every input. Cost: Renderer::update() and some 1000 instructions.
+  // At any time, also while there is force; see Scene. Cost: constant.
+  [[nodiscard]] ModelStatus move_body(std::uint32_t number, const Pose& pose, const Motion& motion);
+  [[nodiscard]] ModelStatus enable_body(std::uint32_t number, bool enabled);
+  [[nodiscard]] ModelStatus remove_body(std::uint32_t number);
+
+  /// One tick. Accepts every input. Cost: Scene::update() and some 1000 instructions.
   Output step(const Input& input);
 
   [[nodiscard]] State state() const { return state_; }
@@ -110,12 +112,14 @@ class Controller {
   void recover();
   void forget_motion();
   [[nodiscard]] ModelStatus suitability(const BlobView& view) const;
+  void remove_unsuitable_bodies();
+  void notice_empty_scene();
   [[nodiscard]] Vec3 wanted_force();
   SafetyGate::Result apply_force();
   [[nodiscard]] Status report(const SafetyGate::Result& gated) const;
+  void report_reactions(Vec3 force, Status& status) const;
 
   Configuration configuration_{};
-  BlobView model_{};
   State state_ = State::kBoot;
   FaultMask present_ = 0;  // causes there in this tick
   FaultMask latched_ = 0;
@@ -127,8 +131,8 @@ class Controller {
   Homing homing_{};
   VelocityEstimator joint_velocity_{};
   Vec3 velocity_{};  // of the probe, m/s
-  Renderer renderer_{};
-  Rendering rendering_{};
+  Scene scene_{};
+  SceneRendering rendering_{};
   PassivityController passivity_{};
   Vec3 shown_{};        // force of the last tick, N
   bool whole_ = false;  // that force was not held back by the ramp

@@ -38,10 +38,11 @@ enum class Limit : std::uint32_t {
   kSlew = 1U << 1,       ///< the force changed faster than slew_N_s
   kRamp = 1U << 2,       ///< armed a moment ago
   kAxis = 1U << 3,       ///< an axis would have passed its effort_max or effort_slew_s
-  kRim = 1U << 4,        ///< the surface ends here: the force fades
+  kRim = 1U << 4,        ///< the surface ends here, or its body is gone: the force fades
   kWaiting = 1U << 5,    ///< armed, but the probe is inside the object or the enable line not up
   kWorkspace = 1U << 6,  ///< near the end of a joint's range or a singular pose: the force fades
   kNotHomed = 1U << 7,   ///< the joints' positions are not known yet: no force (homing.hpp)
+  kBodies = 1U << 8,     ///< more bodies within reach than kMaxReachableBodies: some are not felt
 };
 using LimitMask = std::uint32_t;
 

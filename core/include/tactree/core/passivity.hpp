@@ -15,6 +15,13 @@
 
 namespace tactree::core {
 
+/// Of the probe and of the wall that it touches. What a wall gives because it moves is no leak.
+struct WallMotion {
+  Vec3 probe{};     ///< m, where the probe is now
+  Vec3 velocity{};  ///< m/s, of the probe as estimated: an encoder that toggles is no motion
+  Vec3 wall{};      ///< m/s, of the wall where the probe is
+};
+
 class PassivityController {
  public:
   /// period_s > 0: of a tick; damping_max_Ns_m >= 0: most that it may add; delay_s >= 0: from a
@@ -27,11 +34,9 @@ class PassivityController {
 
   /// The force to add in this tick, N; against the motion, and zero while the wall gives nothing.
   ///   shown   N, the force that was sent in the last tick
-  ///   probe   m, where the probe is now
-  ///   velocity  m/s, of the probe as estimated: an encoder that toggles is no motion
   ///   stored  J, what the wall's spring holds for this place of the probe
   /// Cost: constant, about 30 operations.
-  [[nodiscard]] Vec3 update(Vec3 shown, Vec3 probe, Vec3 velocity, float stored);
+  [[nodiscard]] Vec3 update(Vec3 shown, const WallMotion& motion, float stored);
 
   /// Taken minus stored since contact began, J, at most 0: what was lost before does not count.
   [[nodiscard]] float balance() const { return balance_; }

@@ -17,7 +17,8 @@ namespace tactree::core {
 /// Surface steps of one tick. Half a support radius each: at h = 1 mm, R = 2.5 mm and 1 kHz the
 /// sweep keeps up with 5 m/s; a faster probe is followed with a delay, never lost.
 inline constexpr std::uint32_t kSweepSteps = 4;
-/// Two evaluations a step of slip, and two that project onto the surface where contact begins.
+/// At most two evaluations a step of slip, and two that project onto the surface where contact
+/// begins.
 inline constexpr std::uint32_t kEvaluationsPerTick = kSweepSteps + 2;
 
 /// Coefficients, 0 <= dynamic <= static.
@@ -40,10 +41,16 @@ class Proxy {
   [[nodiscard]] Vec3 position() const { return position_; }
   /// In contact: of the surface, towards the side the probe came from.
   [[nodiscard]] Vec3 normal() const { return side_ * reference_; }
+  /// In contact: of the surface, towards the side of the points' normals.
+  [[nodiscard]] Vec3 stored_normal() const { return reference_; }
+  /// The points around, good for position().
+  [[nodiscard]] const CandidateSet& candidates() const { return candidates_; }
   /// Share of the contact force to display: less than 1 where the surface ends.
   [[nodiscard]] float strength() const { return strength_; }
   /// Point of the blob nearest to the proxy; kNoPoint when free.
   [[nodiscard]] std::uint32_t nearest_point() const { return nearest_point_; }
+  /// True in the tick in which contact ended because the surface did, not because the probe left.
+  [[nodiscard]] bool lost_contact() const { return lost_contact_; }
   /// False once a gather had to leave points out; reset() makes it true.
   [[nodiscard]] bool complete() const { return complete_; }
 
@@ -54,7 +61,8 @@ class Proxy {
   void begin_contact(const BlobView& view, const SurfaceFit& fit);
   void slide(const BlobView& view, Vec3 probe, const Friction& friction);
   [[nodiscard]] bool slip_by(const BlobView& view, Vec3 step);
-  [[nodiscard]] bool settle(const BlobView& view);
+  /// A Newton step onto the surface, where there is one.
+  SurfaceFit settle(const BlobView& view);
   void release();
   void lose_support();
 
@@ -68,6 +76,7 @@ class Proxy {
   bool tracked_ = false;      // reference_ and side_ hold
   bool in_contact_ = false;
   bool slipping_ = false;
+  bool lost_contact_ = false;
   bool complete_ = true;
 };
 

@@ -23,7 +23,8 @@ class CandidateSet {
   /// Forgets the last gather; needed whenever the blob changes.
   void clear() { valid_ = false; }
 
-  /// Makes the set good for a query at `x`: gathers anew when x lies outside the slack.
+  /// Makes the set good for a query at `x`: gathers anew when x lies outside the slack, ahead of x
+  /// in the direction it has moved.
   /// Precondition: the view is the one of the last gather, or clear() was called in between.
   void cover(const BlobView& view, Vec3 x);
 
@@ -50,12 +51,15 @@ class CandidateSet {
 
 /// What the fitted sphere says at one position.
 struct SurfaceFit {
-  bool supported = false;  ///< points enough around; else distance, normal, strength are zero
+  bool supported = false;  ///< points around; else distance, normal, strength are zero
   float distance = 0.0F;   ///< m, signed, along the normals
   Vec3 normal{};           ///< unit length
   /// 1 where points lie all around, falling smoothly to 0 where the surface ends: the distance of
   /// the weighted centroid from the foot of the query, measured in support radii.
   float strength = 0.0F;
+  /// Points on enough sides to say where the surface is. Else, where a surface ends or has a hole,
+  /// the fit still tells a proxy that is in contact where to go on.
+  [[nodiscard]] bool firm() const { return supported && strength > 0.0F; }
   /// Share of the weight around that faces the reference.
   float facing = 1.0F;
 };

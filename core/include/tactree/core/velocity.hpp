@@ -32,14 +32,14 @@ class VelocityEstimator {
   [[nodiscard]] Vec3 velocity() const { return velocity_; }
 
  private:
-  [[nodiscard]] const Vec3& past(std::uint32_t age) const {
-    return samples_[(newest_ - age) & (kSlots - 1U)];
-  }
-
   static constexpr std::uint32_t kSlots = 16;
   static_assert(kSlots == kVelocityWindow + 1);
 
-  Vec3 samples_[kSlots]{};
+  /// Change per sample over the longest window whose line, from its oldest sample to the newest,
+  /// passes every sample between within the quantum.
+  [[nodiscard]] float slope(const float (&samples)[kSlots], float quantum) const;
+
+  float samples_[3][kSlots]{};  // rings, one a component
   std::uint32_t newest_ = 0;
   std::uint32_t count_ = 0;
   float period_s_ = 1e-3F;

@@ -1,6 +1,7 @@
 #pragma once
 // The controller of the firmware, on a simulated board, with a simulated device and hand.
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -42,6 +43,13 @@ struct FaultEvent {
   std::uint64_t tick = 0;  ///< when it was latched
 };
 
+/// What the hand did to one body.
+struct BodySummary {
+  std::uint64_t contact_ticks = 0;
+  double force_max_N = 0.0;
+  double torque_max_Nm = 0.0;
+};
+
 struct Summary {
   std::uint64_t ticks = 0;
   std::uint64_t contact_ticks = 0;
@@ -51,6 +59,8 @@ struct Summary {
   double penetration_max_m = 0.0;
   std::uint32_t trace_crc32 = 0;  ///< of the force's three float32 of every tick, little-endian
   std::vector<FaultEvent> faults;
+  std::array<BodySummary, core::kMaxBodies> bodies{};  ///< by the controller's numbers
+  std::uint64_t crowded_ticks = 0;  ///< more bodies within reach than are rendered
 };
 
 /// The session, with a device that has been homed: power-up, arming, then ticks along the hand's
@@ -105,6 +115,8 @@ class Recorder {
   [[nodiscard]] Summary summary() const;
 
  private:
+  void add_reactions(const core::Status& status);
+
   Summary summary_{};
   core::Crc32 crc_{};
   core::Vec3 last_force_{};

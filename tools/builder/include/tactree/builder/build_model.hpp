@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "tactree/builder/materials.hpp"
 #include "tactree/builder/model.hpp"
 #include "tactree/builder/progress.hpp"
 #include "tactree/builder/scan.hpp"
@@ -45,9 +46,9 @@ struct BuildOptions {
       flash_budget_bytes;  ///< finest spacing whose blob fits; not with spacing_m
 
   core::Profile profile = core::Profile::kSurface;
-  std::optional<core::BlobMaterial> material;  ///< of the whole model
-  std::string name;                            ///< default: of the first input file
-  unsigned threads = 0;                        ///< 0: as many as there are cores
+  std::optional<MaterialMap> materials;  ///< none: the controller's configuration decides
+  std::string name;                      ///< default: of the first input file
+  unsigned threads = 0;                  ///< 0: as many as there are cores
 };
 
 /// A place where the surface ends.
@@ -84,6 +85,8 @@ struct BuildReport {
   double largest_gap_m = 0.0;
   std::vector<Opening> openings;  ///< wider than the support radius, widest first
   std::uint32_t pieces = 0;       ///< connected pieces, where normals had to be estimated; else 0
+
+  std::vector<std::uint64_t> material_points;  ///< points of the blob of each material
 
   double source_scale = 1.0;  ///< model metres per source unit
   Eigen::Vector3d source_origin = Eigen::Vector3d::Zero();

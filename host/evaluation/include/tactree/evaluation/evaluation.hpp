@@ -1,0 +1,135 @@
+#pragma once
+// How good is what a hand feels? Both modes, on shapes whose truth is known, on the paper's
+// experiments, in the closed loop, and on real scans.
+//
+// Everything is a function of the options alone: the same options give the same figures.
+// A figure that does not apply is NaN (null in JSON).
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "tactree/builder/progress.hpp"
+
+namespace tactree::evaluation {
+
+struct Options {
+  bool quick = false;      ///< fewer probes and lines: all figures in seconds, for tests
+  std::uint32_t seed = 1;  ///< of every random choice
+  std::vector<std::filesystem::path> scans;
+};
+
+/// The two modes, in the order of every array below.
+enum Mode : std::uint8_t { kSurface = 0, kPaper = 1 };
+inline constexpr std::array<const char*, 2> kModeNames = {"surface", "paper"};
+
+/// Named figures in the order they were added.
+class Scores {
+ public:
+  void set(const std::string& name, double value) { figures_.emplace_back(name, value); }
+  /// NaN when there is none.
+  [[nodiscard]] double get(const std::string& name) const;
+  [[nodiscard]] const std::vector<std::pair<std::string, double>>& all() const { return figures_; }
+
+ private:
+  std::vector<std::pair<std::string, double>> figures_;
+};
+
+struct ShapeResult {
+  std::string name;
+  std::string title;
+  std::array<Scores, 2> modes;
+};
+
+/// A row of the paper's Table 1, measured again.
+struct DetectionRow {
+  double separation_m = 0.0;
+  bool dynamic = false;
+  double paper_accuracy = 0.0;  ///< as printed there, 0 .. 1
+  int paper_false_positives = 0;
+  int paper_false_negatives = 0;
+  struct Count {
+    int probes = 0;
+    int false_positives = 0;
+    int false_negatives = 0;
+    [[nodiscard]] double accuracy() const {
+      return 1.0 - static_cast<double>(false_positives + false_negatives) / probes;
+    }
+  };
+  std::array<Count, 2> tracing;   ///< every probe on the surface
+  std::array<Count, 2> hovering;  ///< 23.5 % on the surface, the others 2 to 10 mm above it
+};
+
+/// Table 2: distances found, against a brute-force search.
+struct DistanceTable {
+  double literal_without_point = 0.0;  ///< share of the probes for which no leaf is in reach
+  double paper_mean_m = 0.0;           ///< with the detection octant remembered
+  double paper_max_m = 0.0;
+  double surface_mean_m = 0.0;  ///< the proxy's distance against that of the true surface
+  double surface_max_m = 0.0;
+  double nearest_max_m = 0.0;  ///< the exact query against brute force, within its reach
+};
+
+struct LoopResult {
+  std::array<double, 2> vibration_m_s2{};  ///< above 20 Hz, rms
+  struct Stiffness {
+    double rate_hz = 0.0;
+    double expected_N_m = 0.0;  ///< (b + b_hand) / (T / 2 + t_d)
+    std::array<double, 2> max_N_m{};
+  };
+  std::vector<Stiffness> stiffness;
+};
+
+struct ScanResult {
+  std::string name;
+  std::string error;  ///< not empty: why it could not be evaluated
+  std::uint64_t points = 0;
+  double spacing_m = 0.0;
+  Scores scores;
+};
+
+/// A figure that was promised.
+struct Target {
+  std::string name;
+  double value = 0.0;
+  double low = 0.0;  ///< met: low <= value <= high
+  double high = 0.0;
+  std::string unit;
+  [[nodiscard]] bool met() const { return value >= low && value <= high; }
+};
+
+/// For a plot: force along one slide.
+struct ForceTrace {
+  std::string title;
+  std::vector<double> way_m;
+  std::array<std::vector<double>, 2> force_N;  ///< size, per mode
+};
+
+struct Result {
+  Options options;
+  std::vector<DetectionRow> detection;
+  DistanceTable distances;
+  std::vector<ShapeResult> shapes;
+  LoopResult loop;
+  std::vector<ScanResult> scans;
+  std::vector<Target> targets;
+  ForceTrace trace;
+  [[nodiscard]] bool all_met() const;
+};
+
+/// Minutes on one core; seconds when quick, plus the scans.
+[[nodiscard]] Result evaluate(const Options& options, builder::Progress& progress);
+
+/// The result as JSON: tables, shapes, loop, scans, targets.
+[[nodiscard]] std::string to_json(const Result& result);
+
+/// The result as a page of Markdown that shows the pictures of plots() from `picture_folder`, or
+/// none where that is empty.
+[[nodiscard]] std::string to_markdown(const Result& result, const std::string& picture_folder);
+
+/// SVG pictures by file name.
+[[nodiscard]] std::map<std::string, std::string> plots(const Result& result);
+}  // namespace tactree::evaluation

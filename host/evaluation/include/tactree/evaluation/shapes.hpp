@@ -1,0 +1,88 @@
+#pragma once
+// Surfaces whose every distance and normal is known, sampled and written as blobs.
+
+#include <Eigen/Core>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <span>
+
+#include "tactree/builder/model.hpp"
+#include "tactree/core/blob.hpp"
+
+namespace tactree::evaluation {
+
+inline constexpr double kSpacing = 1e-3;  // m, h
+
+inline core::Vec3 narrow(const Eigen::Vector3d& v) {
+  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
+}
+
+inline Eigen::Vector3d widen(core::Vec3 v) {
+  return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
+}
+
+/// A model and the blob made of it. Moves only: the view points into the blob's bytes.
+class Shape {
+ public:
+  explicit Shape(double spacing_m = kSpacing);
+  Shape(Shape&&) = default;
+  Shape& operator=(Shape&&) = default;
+
+  void add(const Eigen::Vector3d& position, const Eigen::Vector3d& normal);
+  builder::Model& model() { return model_; }
+  /// Writes and opens the blob; throws std::runtime_error when it is refused.
+  void seal();
+  /// The same points in a blob for paper mode, sealed.
+  [[nodiscard]] Shape paper_twin() const;
+
+  [[nodiscard]] const core::BlobView& view() const { return view_; }
+  [[nodiscard]] std::span<const std::byte> bytes() const { return written_.bytes; }
+
+ private:
+  builder::Model model_;
+  builder::WrittenBlob written_;
+  core::BlobView view_;
+};
+
+/// A square sheet z = height on a grid, normal up or down; not yet sealed.
+void add_sheet(Shape& shape, double half_m, double height_m, double up);
+
+[[nodiscard]] Shape plane(double half_m = 0.03);
+
+/// Two sheets facing away from each other, about z = 0.
+[[nodiscard]] Shape plate(double thickness_m, double half_m = 0.02);
+
+inline constexpr double kSphereRadius = 0.03;
+
+/// Golden spiral: even, without rows.
+[[nodiscard]] Shape sphere(double radius_m = kSphereRadius, double spacing_m = kSpacing);
+
+/// z = a (cos kx + cos ky): every curvature from -2ak^2 to 2ak^2.
+struct CosSheet {
+  double amplitude_m = 2.5e-3;
+  double wave_number = 2.0 * std::numbers::pi / 0.06;  // 1/m
+
+  [[nodiscard]] double height(double x, double y) const {
+    return amplitude_m * (std::cos(wave_number * x) + std::cos(wave_number * y));
+  }
+  [[nodiscard]] Eigen::Vector3d normal(double x, double y) const {
+    const double slope = amplitude_m * wave_number;
+    return Eigen::Vector3d(slope * std::sin(wave_number * x), slope * std::sin(wave_number * y),
+                           1.0)
+        .normalized();
+  }
+  [[nodiscard]] Eigen::Vector3d point(double x, double y) const { return {x, y, height(x, y)}; }
+  /// The point of the sheet nearest to `p`; p within half of the smallest radius of curvature.
+  [[nodiscard]] Eigen::Vector3d nearest(const Eigen::Vector3d& p) const;
+};
+
+/// On a grid.
+[[nodiscard]] Shape cos_sheet(const CosSheet& sheet = {}, double half_m = 0.04,
+                              double spacing_m = kSpacing);
+
+/// Cube about the origin with sharp edges; points on the faces, half a spacing from the edges, each
+/// moved along its face by up to `shift` spacings, at random.
+[[nodiscard]] Shape box(double half_m, double shift = 0.0, unsigned seed = 1);
+
+}  // namespace tactree::evaluation

@@ -1,0 +1,71 @@
+#include <algorithm>
+#include <limits>
+
+#include "closed_loop.hpp"
+#include "errors.hpp"
+#include "paper_tables.hpp"
+#include "scan_scores.hpp"
+#include "shape_scores.hpp"
+#include "subjects.hpp"
+#include "tactree/evaluation/evaluation.hpp"
+#include "targets.hpp"
+
+namespace tactree::evaluation {
+
+double Scores::get(const std::string& name) const {
+  const auto found = std::find_if(figures_.begin(), figures_.end(),
+                                  [&](const auto& figure) { return figure.first == name; });
+  return found == figures_.end() ? kNotMeasured : found->second;
+}
+
+bool Result::all_met() const {
+  return std::all_of(targets.begin(), targets.end(), [](const Target& t) { return t.met(); });
+}
+
+namespace {
+
+// 58 lines of about 540 ticks and 16 mm make the 30 000 ticks that lost contact is looked for on.
+constexpr int kLines = 64;
+
+void evaluate_shapes(const Options& options, builder::Progress& progress, Result& result) {
+  const Effort effort = options.quick ? Effort{2000, 50, 10} : Effort{};
+  const std::vector<Subject> subjects = make_subjects(options.seed, options.quick ? 16 : kLines);
+  for (const Subject& subject : subjects) {
+    progress.begin("touching: " + subject.title);
+    ShapeResult shape{subject.name, subject.title, {}};
+    for (const Mode mode : {kSurface, kPaper}) {
+      shape.modes[mode] = score_shape(subject, mode, effort, options.seed);
+    }
+    result.shapes.push_back(std::move(shape));
+    if (subject.name == "cos_coarse") {
+      result.trace = trace_force(subject);
+    }
+  }
+}
+
+void evaluate_scans(const Options& options, builder::Progress& progress, Result& result) {
+  for (const std::filesystem::path& scan : options.scans) {
+    progress.begin("comparing: " + scan.filename().string());
+    result.scans.push_back(score_scan(scan, options.quick ? 500 : 5000, options.seed));
+  }
+}
+
+}  // namespace
+
+Result evaluate(const Options& options, builder::Progress& progress) {
+  Result result;
+  result.options = options;
+  progress.begin("the paper's Table 1");
+  result.detection = measure_detection(options.seed);
+  progress.begin("the paper's Table 2");
+  result.distances = measure_distances(options.seed, options.quick ? 300 : 3000);
+  evaluate_shapes(options, progress, result);
+  progress.begin("the closed loop");
+  result.loop = measure_loop(options.quick);
+  evaluate_scans(options, progress, result);
+  progress.end();
+  result.targets = check_targets(result);
+  return result;
+}
+
+}  // namespace tactree::evaluation

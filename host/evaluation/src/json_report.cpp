@@ -1,0 +1,121 @@
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "tactree/evaluation/evaluation.hpp"
+
+namespace tactree::evaluation {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json scores_json(const Scores& scores) {
+  Json json = Json::object();
+  for (const auto& [name, value] : scores.all()) {
+    json[name] = number(value);
+  }
+  return json;
+}
+
+Json counts(const std::array<DetectionRow::Count, 2>& modes) {
+  Json json;
+  for (const Mode mode : {kSurface, kPaper}) {
+    json[kModeNames[mode]] = {{"accuracy", modes[mode].accuracy()},
+                              {"false_positives", modes[mode].false_positives},
+                              {"false_negatives", modes[mode].false_negatives}};
+  }
+  return json;
+}
+
+Json detection_row(const DetectionRow& row) {
+  Json printed = nullptr;
+  if (row.paper_accuracy > 0.0) {
+    printed = {{"accuracy", row.paper_accuracy},
+               {"false_positives", row.paper_false_positives},
+               {"false_negatives", row.paper_false_negatives}};
+  }
+  return {{"separation_m", row.separation_m},
+          {"dynamic", row.dynamic},
+          {"printed", printed},
+          {"tracing", counts(row.tracing)},
+          {"hovering", counts(row.hovering)}};
+}
+
+Json tables(const Result& result) {
+  Json rows = Json::array();
+  for (const DetectionRow& row : result.detection) {
+    rows.push_back(detection_row(row));
+  }
+  const DistanceTable& d = result.distances;
+  const Json two = {
+      {"printed", {{"smallest_m", 0.0}, {"biggest_m", 34.1795e-6}, {"mean_m", 1.9716e-6}}},
+      {"paper", {{"biggest_m", d.paper_max_m}, {"mean_m", d.paper_mean_m}}},
+      {"paper_literal_without_point", d.literal_without_point},
+      {"surface", {{"biggest_m", d.surface_max_m}, {"mean_m", d.surface_mean_m}}},
+      {"nearest_query", {{"biggest_m", d.nearest_max_m}}}};
+  return {{"1", rows}, {"2", two}};
+}
+
+Json loop(const LoopResult& l) {
+  Json json = {{"vibration_m_s2", number(l.vibration_m_s2[kSurface])}};
+  Json stiffness = Json::object();
+  Json modes = {{"surface", Json::object()}, {"paper", Json::object()}};
+  Json expected = Json::object();
+  for (const LoopResult::Stiffness& row : l.stiffness) {
+    const std::string rate = std::to_string(std::lround(row.rate_hz));
+    stiffness[rate] = number(row.max_N_m[kSurface]);
+    expected[rate] = number(row.expected_N_m);
+    for (const Mode mode : {kSurface, kPaper}) {
+      modes[kModeNames[mode]]["stiffness_max_N_m"][rate] = number(row.max_N_m[mode]);
+    }
+  }
+  json["stiffness_max_N_m"] = stiffness;
+  json["stiffness_expected_N_m"] = expected;
+  for (const Mode mode : {kSurface, kPaper}) {
+    modes[kModeNames[mode]]["vibration_m_s2"] = number(l.vibration_m_s2[mode]);
+    json[kModeNames[mode]] = modes[kModeNames[mode]];
+  }
+  return json;
+}
+
+Json scans(const Result& result) {
+  Json json = Json::object();
+  for (const ScanResult& scan : result.scans) {
+    Json entry = scores_json(scan.scores);
+    entry["points"] = scan.points;
+    entry["spacing_m"] = scan.spacing_m;
+    json[scan.name] = scan.error.empty() ? entry : Json{{"error", scan.error}};
+  }
+  return json;
+}
+
+}  // namespace
+
+std::string to_json(const Result& result) {
+  Json shapes = Json::object();
+  for (const ShapeResult& shape : result.shapes) {
+    for (const Mode mode : {kSurface, kPaper}) {
+      shapes[shape.name][kModeNames[mode]] = scores_json(shape.modes[mode]);
+    }
+  }
+  Json targets = Json::array();
+  for (const Target& target : result.targets) {
+    targets.push_back({{"name", target.name},
+                       {"value", number(target.value)},
+                       {"low", target.low},
+                       {"high", target.high},
+                       {"met", target.met()}});
+  }
+  const Json json = {{"quick", result.options.quick},
+                     {"seed", result.options.seed},
+                     {"tables", tables(result)},
+                     {"shapes", shapes},
+                     {"loop", loop(result.loop)},
+                     {"scans", scans(result)},
+                     {"targets", targets},
+                     {"targets_met", result.all_met()}};
+  return json.dump(2) + "\n";
+}
+
+}  // namespace tactree::evaluation

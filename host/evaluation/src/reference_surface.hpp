@@ -1,0 +1,42 @@
+#pragma once
+// The surface by the book: APSS in double precision over all points, projected until it stands
+// still. Slow, and independent of the code it judges.
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "tactree/core/blob.hpp"
+
+namespace tactree::evaluation {
+
+class ReferenceSurface {
+ public:
+  /// Over the points a blob decodes to, with its support radius.
+  explicit ReferenceSurface(const core::BlobView& view);
+
+  struct Projection {
+    bool supported = false;
+    bool creased = false;  ///< normals in the support differ by more than 60 degrees
+    Eigen::Vector3d point = Eigen::Vector3d::Zero();
+    Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+    double signed_distance = 0.0;
+  };
+  /// The reference normal is that of the nearest point. Cost: all points, then about ten fits.
+  [[nodiscard]] Projection project(const Eigen::Vector3d& x) const;
+
+  [[nodiscard]] const std::vector<Eigen::Vector3d>& positions() const { return positions_; }
+  [[nodiscard]] const std::vector<Eigen::Vector3d>& normals() const { return normals_; }
+
+ private:
+  struct Fit;
+  [[nodiscard]] bool is_creased(const std::vector<std::size_t>& around,
+                                const Eigen::Vector3d& x) const;
+  [[nodiscard]] Fit fit(const std::vector<std::size_t>& around, const Eigen::Vector3d& x,
+                        const Eigen::Vector3d& reference) const;
+
+  std::vector<Eigen::Vector3d> positions_;
+  std::vector<Eigen::Vector3d> normals_;
+  double radius_;
+};
+
+}  // namespace tactree::evaluation

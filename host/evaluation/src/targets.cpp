@@ -1,0 +1,73 @@
+#include "targets.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactree::evaluation {
+namespace {
+
+class Checker {
+ public:
+  explicit Checker(const Result& result) : result_(result) {}
+
+  void at_most(const std::string& shape, const std::string& score, double high,
+               const std::string& unit) {
+    targets_.push_back({shape + "." + score, get(shape, score), 0.0, high, unit});
+  }
+  void add(Target target) { targets_.push_back(std::move(target)); }
+  [[nodiscard]] double get(const std::string& shape, const std::string& score) const {
+    const auto found = std::find_if(result_.shapes.begin(), result_.shapes.end(),
+                                    [&](const ShapeResult& s) { return s.name == shape; });
+    return found == result_.shapes.end() ? std::nan("") : found->modes[kSurface].get(score);
+  }
+  [[nodiscard]] std::vector<Target> take() { return std::move(targets_); }
+
+ private:
+  const Result& result_;
+  std::vector<Target> targets_;
+};
+
+double lowest_accuracy(const Result& result) {
+  double lowest = 1.0;
+  for (const DetectionRow& row : result.detection) {
+    lowest =
+        std::min({lowest, row.tracing[kSurface].accuracy(), row.hovering[kSurface].accuracy()});
+  }
+  return lowest;
+}
+
+}  // namespace
+
+std::vector<Target> check_targets(const Result& result) {
+  Checker check(result);
+  check.add({"detection, all rows of Table 1", lowest_accuracy(result), 0.999, 1.0, ""});
+  for (const char* shape : {"cos", "sphere"}) {
+    check.at_most(shape, "distance_rms_m", 1.0e-6, "m");
+    check.at_most(shape, "normal_rms_deg", 0.25, "deg");
+  }
+  check.at_most("box_edge", "distance_rms_m", 25e-6, "m");
+  check.at_most("box_edge", "distance_max_m", 120e-6, "m");
+  for (const char* shape :
+       {"cos", "sphere", "box_face", "plate", "sheet", "cos_coarse", "sphere_coarse"}) {
+    check.at_most(shape, "force_step_max_N", 0.005, "N");
+  }
+  for (const ShapeResult& shape : result.shapes) {
+    if (!std::isnan(shape.modes[kSurface].get("crossings"))) {
+      check.at_most(shape.name, "crossings_missed", 0.0, "");
+    }
+  }
+  check.at_most("irregular", "contact_lost", 0.0, "");
+  check.at_most("thinned", "contact_lost", 0.0, "");
+  for (const char* flat : {"box_face", "plate", "sheet"}) {
+    check.add(
+        {std::string(flat) + ".friction_min", check.get(flat, "friction_min"), 0.295, 0.305, ""});
+    check.add(
+        {std::string(flat) + ".friction_max", check.get(flat, "friction_max"), 0.295, 0.305, ""});
+  }
+  check.at_most("cos", "friction_max", 0.32, "");
+  check.at_most("sphere", "friction_max", 0.32, "");
+  check.add({"loop.vibration_m_s2", result.loop.vibration_m_s2[kSurface], 0.0, 0.06, "m/s2"});
+  return check.take();
+}
+
+}  // namespace tactree::evaluation

@@ -1,0 +1,47 @@
+#pragma once
+// One hand that touches one blob in one mode, tick by tick, as the controller would.
+
+#include <Eigen/Core>
+
+#include "tactree/core/configuration.hpp"
+#include "tactree/core/renderer.hpp"
+#include "tactree/evaluation/shapes.hpp"
+
+namespace tactree::evaluation {
+
+inline constexpr double kStiffness_N_m = 1000.0;
+inline constexpr double kPeriodS = 1e-3;
+
+struct Touched {
+  bool in_contact = false;
+  bool slipping = false;
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  // N
+  Eigen::Vector3d proxy = Eigen::Vector3d::Zero();  // m
+};
+
+class Touch {
+ public:
+  /// Begins in free space at `probe`. `view` must outlive it.
+  Touch(const core::BlobView& view, core::RenderMode mode, const Eigen::Vector3d& probe,
+        const core::Friction& friction = {})
+      : view_(view) {
+    configuration_.mode = mode;
+    configuration_.stiffness_N_m = static_cast<float>(kStiffness_N_m);
+    configuration_.damping_Ns_m = 0.0F;
+    configuration_.static_friction = friction.static_coefficient;
+    configuration_.dynamic_friction = friction.dynamic_coefficient;
+    renderer_.reset(narrow(probe));
+  }
+
+  Touched to(const Eigen::Vector3d& probe) {
+    const core::Rendering r = renderer_.update(view_, configuration_, narrow(probe), {});
+    return {r.in_contact, r.slipping, widen(r.force), widen(r.proxy)};
+  }
+
+ private:
+  const core::BlobView& view_;
+  core::Configuration configuration_{};
+  core::Renderer renderer_{};
+};
+
+}  // namespace tactree::evaluation

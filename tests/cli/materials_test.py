@@ -1,0 +1,154 @@
+"""Materials end to end: a coloured scan -> build --material -> info -> simulate.
+
+usage: materials_test.py TACTREE
+"""
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
+RED, BLUE = (250, 10, 5), (20, 30, 240)
+FORMATS = ("ply", "obj", "pcd", "off", "csv")
+
+
+def points():
+    """A sheet of 6 cm: red where x > 0, blue elsewhere."""
+    return [(i * 5e-4, j * 5e-4, 0.0, RED if i > 0 else BLUE)
+            for i in range(-60, 61) for j in range(-60, 61)]
+
+
+def scan(suffix):
+    rows = points()
+    if suffix == "ply":
+        head = ["ply", "format ascii 1.0", f"element vertex {len(rows)}"]
+        head += [f"property float {name}" for name in "xyz"]
+        head += [f"property uchar {name}" for name in ("red", "green", "blue")] + ["end_header"]
+        body = [f"{x} {y} {z} {c[0]} {c[1]} {c[2]}" for x, y, z, c in rows]
+    elif suffix == "obj":
+        head = []
+        body = [f"v {x} {y} {z} {c[0] / 255} {c[1] / 255} {c[2] / 255}" for x, y, z, c in rows]
+    elif suffix == "pcd":
+        head = ["VERSION 0.7", "FIELDS x y z rgb", "SIZE 4 4 4 4", "TYPE F F F U", "COUNT 1 1 1 1",
+                f"WIDTH {len(rows)}", "HEIGHT 1", f"POINTS {len(rows)}", "DATA ascii"]
+        body = [f"{x} {y} {z} {c[0] << 16 | c[1] << 8 | c[2]}" for x, y, z, c in rows]
+    elif suffix == "off":
+        head = ["COFF", f"{len(rows)} 0 0"]
+        body = [f"{x} {y} {z} {c[0]} {c[1]} {c[2]} 255" for x, y, z, c in rows]
+    else:
+        head = ["x,y,z,red,green,blue"]
+        body = [f"{x},{y},{z},{c[0]},{c[1]},{c[2]}" for x, y, z, c in rows]
+    return "\n".join(head + body) + "\n"
+
+
+class Materials(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.path = pathlib.Path(self.folder.name)
+
+    def write(self, name, content):
+        text = content if isinstance(content, str) else json.dumps(content)
+        (self.path / name).write_text(text)
+        return name
+
+    def run_tool(self, *arguments):
+        return subprocess.run([TACTREE, *arguments], cwd=self.path, capture_output=True, text=True,
+                              check=False)
+
+    def ok(self, *arguments):
+        done = self.run_tool(*arguments)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done.stdout
+
+    def build(self, material, suffix="ply", blob="model.blob"):
+        self.write("scan." + suffix, scan(suffix))
+        self.ok("build", "scan." + suffix, "--material", material, "-o", blob, "--progress", "off",
+                "--report", "report.json")
+        self.ok("info", blob, "--json", "info.json")
+        return json.loads((self.path / "info.json").read_text())
+
+    def two_colours(self):
+        return self.write("map.json", {
+            "default": {"stiffness_N_m": 800, "damping_Ns_m": 0.5},
+            "colours": [{"name": "felt", "rgb": [255, 0, 0], "tolerance": 30,
+                         "stiffness_N_m": 200, "static_friction": 0.2}]})
+
+    def test_colours_of_every_format_become_materials(self):
+        for suffix in FORMATS:
+            with self.subTest(suffix):
+                info = self.build(self.two_colours(), suffix)
+                self.assertEqual(info["materials"], 2)
+                base, felt = info["material_list"]
+                self.assertEqual((base["stiffness_N_m"], felt["stiffness_N_m"]), (800, 200))
+                self.assertEqual((base["damping_Ns_m"], felt["damping_Ns_m"]), (0.5, 0.5))
+                self.assertEqual((base["static_friction"], felt["static_friction"]), (0, 0.2))
+                self.assertEqual(base["points"] + felt["points"], info["points"])
+                self.assertAlmostEqual(felt["points"] / info["points"], 60 / 121, delta=0.02)
+                report = json.loads((self.path / "report.json").read_text())
+                self.assertEqual([(m["name"], m["points"]) for m in report["materials"]],
+                                 [("default", base["points"]), ("felt", felt["points"])])
+
+    def force_at(self, x, *options):
+        """Held 2 mm below the surface by a spring of 300 N/m."""
+        self.write("path.csv", f"t_s,x,y,z\n0,{x},0,0.005\n0.2,{x},0,-0.002\n1,{x},0,-0.002\n")
+        self.ok("simulate", "model.blob", "--path", "path.csv", "--seconds", "1", "--device",
+                "cartesian", "--device-friction", "0", "--json", "run.json", *options)
+        return json.loads((self.path / "run.json").read_text())
+
+    def test_each_side_feels_its_own_stiffness(self):
+        self.build(self.two_colours())
+        for x, stiffness in ((-0.015, 800), (0.015, 200)):
+            depth = self.force_at(x)["penetration_max_m"]
+            self.assertGreater(depth, 0.002 * 300 / (300 + stiffness) * 0.95)
+            self.assertLess(depth, 0.002 * 300 / (300 + stiffness) * 1.5)
+        soft = self.force_at(-0.015, "--no-materials", "--stiffness", "100")
+        self.assertGreater(soft["penetration_max_m"], 0.00142)
+
+    def test_one_material_for_the_whole_model(self):
+        for option in (self.write("one.json", {"stiffness_N_m": 321}), "stiffness=321"):
+            info = self.build(option)
+            self.assertEqual([m["stiffness_N_m"] for m in info["material_list"]], [321])
+
+    def test_too_stiff_for_the_device_is_refused_with_the_limit(self):
+        self.build("stiffness=20000")
+        done = self.run_tool("simulate", "model.blob", "--seconds", "1")
+        self.assertEqual(done.returncode, 1)
+        self.assertRegex(done.stderr, r"material 0.*20000 N/m.*limit of \d+.* N/m.*1000 Hz")
+        self.ok("simulate", "model.blob", "--seconds", "1", "--no-materials")
+
+    def test_wrong_files_are_refused_with_place_and_remedy(self):
+        self.write("scan.ply", scan("ply"))
+        cases = [
+            ('{"stiffness_N_m": 1e9}', "stiffness_N_m: 1e+09 is outside"),
+            ('{"stiffness_N_m": -1}', "stiffness_N_m: -1 is outside"),
+            ('{"stiffness_N_m": NaN}', "is not JSON"),
+            ('{"stiffness_N_m": "500"}', "is not a number"),
+            ('{"stiffness": 500}', "material.stiffness: is no figure"),
+            ('{"damping_Ns_m": 1}', "stiffness_N_m is missing"),
+            ('{"stiffness_N_m": 5, "dynamic_friction": 0.3}', "dynamic_friction: 0.3 is more"),
+            ('{"stiffness_N_m": 5, "texture_height_m": 1e-3}', "texture_height_m: 0.001 is more"),
+            ('[1]', "is not an object"),
+            ('{"colours": []}', '"default" is missing'),
+            ('{"default": {"stiffness_N_m": 5}, "colors": []}', "colors: is neither"),
+            ('{"default": {"stiffness_N_m": 5}, "colours": [{"rgb": [1, 2]}]}', "colours[0].rgb"),
+            ('{"default": {"stiffness_N_m": 5}, "colours": [{"rgb": [1, 2, 300]}]}',
+             "colours[0].rgb[2]: 300 is outside"),
+            ('{"default": {"stiffness_N_m": 5}, "colours": [{"rgb": [1, 2, 3], "tolerance": -1}]}',
+             "colours[0].tolerance"),
+        ]
+        for text, cause in cases:
+            with self.subTest(text):
+                done = self.run_tool("build", "scan.ply", "--material",
+                                     self.write("bad.json", text), "-o", "bad.blob")
+                self.assertEqual(done.returncode, 1)
+                self.assertIn("bad.json: ", done.stderr)
+                self.assertIn(cause, done.stderr)
+                self.assertRegex(done.stderr, r"\(.*\)")
+                self.assertFalse((self.path / "bad.blob").exists())
+
+
+if __name__ == "__main__":
+    unittest.main()

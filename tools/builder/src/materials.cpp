@@ -1,0 +1,41 @@
+#include "tactree/builder/materials.hpp"
+
+#include <cstddef>
+
+namespace tactree::builder {
+namespace {
+
+double squared_distance(const Colour& a, const Colour& b) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const double difference = static_cast<double>(a[i]) - static_cast<double>(b[i]);
+    sum += difference * difference;
+  }
+  return sum;
+}
+
+}  // namespace
+
+std::uint8_t MaterialMap::index_of(const Colour& colour) const {
+  std::size_t best = 0;
+  double best_squared = 0.0;
+  for (std::size_t i = 0; i < colours.size(); ++i) {
+    const double squared = squared_distance(colour, colours[i].colour);
+    const bool meant = squared <= colours[i].tolerance * colours[i].tolerance;
+    if (meant && (best == 0 || squared < best_squared)) {
+      best = i + 1;
+      best_squared = squared;
+    }
+  }
+  return static_cast<std::uint8_t>(best);
+}
+
+std::vector<core::BlobMaterial> MaterialMap::list() const {
+  std::vector<core::BlobMaterial> all = {base};
+  for (const ColourMaterial& entry : colours) {
+    all.push_back(entry.material);
+  }
+  return all;
+}
+
+}  // namespace tactree::builder
