@@ -150,8 +150,7 @@ void check_start(const std::string& file, const core::BlobView& view,
         "lower --stiffness, or raise --rate or --damping");
   }
   if (start.image != hal::ImageStatus::kOk) {
-    refuse(fmt::format("board {}: a byte of its image is not as it was built", options.board),
-           "build the image again");
+    refuse("the board's image: a byte of it is not as it was built", "build the image again");
   }
   if (start.configuration != core::ConfigurationStatus::kOk) {
     refuse(fmt::format("configuration: {}", core::describe(start.configuration)),

@@ -163,7 +163,7 @@ TEST_F(Stm32f405, EachPartThatDoesNotStartIsToldAndThereIsNoForce) {
     EXPECT_FALSE(other.motors().healthy());
     for (int i = 0; i < 200; ++i) {
       (void)other.ticker().wait();
-      other.link().send({});
+      other.link().send(core::Status{});
     }
     BootFrame frame;
     ASSERT_GE(broken.serial.sent.size(), sizeof frame);
@@ -178,7 +178,7 @@ TEST_F(Stm32f405, WithoutItsCrystalItTellsAndGivesNoForce) {
   board->report({});
   for (int i = 0; i < 200; ++i) {
     (void)board->ticker().wait();
-    board->link().send({});
+    board->link().send(core::Status{});
   }
   EXPECT_EQ(boot_frame().clocks, ClockFailure::kCrystal);
   EXPECT_FALSE(board->motors().healthy());
