@@ -149,6 +149,9 @@ void check_start(const std::string& file, const core::BlobView& view,
                     setup.controller.stiffness_N_m, limit.with_hand_N_m, setup.controller.rate_hz),
         "lower --stiffness, or raise --rate or --damping");
   }
+  if (start.image != hal::ImageStatus::kOk) {
+    refuse("the board's image: a byte of it is not as it was built", "build the image again");
+  }
   if (start.configuration != core::ConfigurationStatus::kOk) {
     refuse(fmt::format("configuration: {}", core::describe(start.configuration)),
            "give a value in that range");

@@ -13,14 +13,21 @@
 
 namespace tactree::hal {
 
+/// What the self-test of the program found.
+enum class ImageStatus : std::uint8_t {
+  kOk = 0,
+  kDamaged,  ///< a byte of it is not as it was built
+};
+
 /// Why there is no model to touch.
 struct StartResult {
   core::ConfigurationStatus configuration = core::ConfigurationStatus::kOk;
   core::BlobStatus blob = core::BlobStatus::kOk;
   core::ModelStatus model = core::ModelStatus::kOk;
+  ImageStatus image = ImageStatus::kOk;  ///< filled in by the firmware, ahead of Loop::start()
   [[nodiscard]] bool ok() const {
     return configuration == core::ConfigurationStatus::kOk && blob == core::BlobStatus::kOk &&
-           model == core::ModelStatus::kOk;
+           model == core::ModelStatus::kOk && image == ImageStatus::kOk;
   }
 };
 
