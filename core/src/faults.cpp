@@ -3,10 +3,11 @@
 namespace tactree::core {
 namespace {
 
-constexpr const char* kNames[kFaultCodes] = {"none",         "emergency-stop",  "encoder-invalid",
-                                             "encoder-jump", "not-finite",      "deadline-missed",
-                                             "link-lost",    "enable-mismatch", "unexpected-event",
-                                             "motor-fault",  "model-incomplete"};
+constexpr const char* kNames[kFaultCodes] = {"none",         "emergency-stop",   "encoder-invalid",
+                                             "encoder-jump", "not-finite",       "deadline-missed",
+                                             "link-lost",    "enable-mismatch",  "unexpected-event",
+                                             "motor-fault",  "model-incomplete", "encoder-stuck",
+                                             "supply"};
 
 }  // namespace
 

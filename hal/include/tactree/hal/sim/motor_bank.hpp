@@ -59,6 +59,9 @@ class SimMotorBank {
   void inject(std::uint32_t axis, MotorFault fault) { fault_[axis] = fault; }
   void set_healthy(bool healthy) { healthy_ = healthy; }
 
+  [[nodiscard]] float supply_V() noexcept { return supply_V_; }
+  void set_supply(float volts) { supply_V_ = volts; }
+
  private:
   struct Efforts {
     double axis[core::kAxes] = {0.0, 0.0, 0.0};
@@ -69,6 +72,7 @@ class SimMotorBank {
   MotorFault fault_[core::kAxes] = {};
   double held_[core::kAxes] = {0.0, 0.0, 0.0};
   bool healthy_ = true;
+  float supply_V_ = 24.0F;
 };
 
 }  // namespace tactree::hal::sim
