@@ -8,14 +8,14 @@ bool EncoderWatch::update(const std::int32_t (&counts)[kAxes], const float (&sha
                           std::uint32_t axes) {
   bool fine = true;
   for (std::uint32_t i = 0; i < axes; ++i) {  // bound: kAxes
-    if (!following_ || counts[i] != count_[i]) {
-      count_[i] = counts[i];
-      still_[i] = 0;
+    const bool moved = !following_ || counts[i] != count_[i];
+    still_[i] = moved ? 0U : still_[i] + (still_[i] < ticks_ ? 1U : 0U);
+    count_[i] = counts[i];
+    if (still_[i] <= ticks_ / kSettling) {
       lowest_[i] = share[i];
       highest_[i] = share[i];
       continue;
     }
-    still_[i] += still_[i] < ticks_ ? 1U : 0U;
     lowest_[i] = share[i] < lowest_[i] ? share[i] : lowest_[i];
     highest_[i] = share[i] > highest_[i] ? share[i] : highest_[i];
     fine = fine && !(still_[i] >= ticks_ && highest_[i] - lowest_[i] > kChange);

@@ -15,6 +15,8 @@ class EncoderWatch {
  public:
   /// Change of an axis's effort, as a share of its effort_max, that must move it.
   static constexpr float kChange = 0.25F;
+  /// One part of so many of the time: the effort may still follow the motion that has ended.
+  static constexpr std::uint32_t kSettling = 4;
 
   /// ticks: that an axis may stand still while its effort changes; at least 1.
   void configure(std::uint32_t ticks) { ticks_ = ticks; }

@@ -48,7 +48,11 @@ enum class Limit : std::uint32_t {
   kThermal = 1U << 9,    ///< a motor is warm: its peak effort falls to the continuous one
 };
 using LimitMask = std::uint32_t;
+inline constexpr std::uint32_t kLimits = 10;
 
 constexpr LimitMask limit_bit(Limit limit) { return static_cast<LimitMask>(limit); }
+
+/// The name as in docs/faults/, without "limit-"; "unknown" for a value that is none.
+[[nodiscard]] const char* name_of(Limit limit);
 
 }  // namespace tactree::core
