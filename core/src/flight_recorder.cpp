@@ -1,19 +1,23 @@
 #include "tactree/core/flight_recorder.hpp"
 
+#include <limits>
+
 namespace tactree::core {
 namespace {
 
-std::int16_t rounded(float value) {
-  constexpr float kMost = 32767.0F;
+template <class T>
+T rounded(float value) {
+  constexpr auto kMost = static_cast<float>(std::numeric_limits<T>::max());
   const float inside = value < kMost ? (value > -kMost ? value : -kMost) : kMost;
-  return static_cast<std::int16_t>(inside + (inside < 0.0F ? -0.5F : 0.5F));
+  return static_cast<T>(inside + (inside < 0.0F ? -0.5F : 0.5F));
 }
 
-void put(Vec3 v, float scale, std::int16_t (&to)[3]) {
+template <class T>
+void put(Vec3 v, float scale, T (&to)[3]) {
   const Vec3 units = is_finite(v) ? scale * v : Vec3{};
-  to[0] = rounded(units.x);
-  to[1] = rounded(units.y);
-  to[2] = rounded(units.z);
+  to[0] = rounded<T>(units.x);
+  to[1] = rounded<T>(units.y);
+  to[2] = rounded<T>(units.z);
 }
 
 }  // namespace
@@ -33,7 +37,7 @@ void FlightRecorder::add(const Moment& moment) {
   left_ -= moment.faults != 0U ? 1U : 0U;
   FlightRecord& record = records_[next_];
   put(moment.probe, FlightRecord::kMetre, record.probe);
-  put(moment.rendering.proxy, FlightRecord::kMetre, record.proxy);
+  put(moment.rendering.proxy - moment.probe, FlightRecord::kDepth, record.proxy);
   put(moment.force, FlightRecord::kNewton, record.force);
   record.state = static_cast<std::uint8_t>(static_cast<std::uint32_t>(moment.state) |
                                            (moment.rendering.in_contact ? 8U : 0U) |

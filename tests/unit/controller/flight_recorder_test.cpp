@@ -28,7 +28,8 @@ TEST(FlightRecorder, KeepsTheLastTicksRounded) {
   EXPECT_EQ(recorder.last_tick(), pressed.status.tick);
   const FlightRecord& last = recorder.record(0);
   EXPECT_NEAR(last.probe[2] / FlightRecord::kMetre, pressed.status.probe.z, 1.1e-5F);
-  EXPECT_NEAR(last.proxy[2] / FlightRecord::kMetre, pressed.status.rendering.proxy.z, 1.1e-5F);
+  EXPECT_NEAR(last.proxy[2] / FlightRecord::kDepth,
+              pressed.status.rendering.proxy.z - pressed.status.probe.z, 2.6e-5F);
   EXPECT_NEAR(last.force[2] / FlightRecord::kNewton, pressed.status.force.z, 6e-4F);
   EXPECT_EQ(last.state_of(), core::State::kActive);
   EXPECT_TRUE(last.in_contact());

@@ -13,22 +13,23 @@
 
 namespace tactree::core {
 
-/// One tick, rounded: 20 bytes.
+/// One tick, rounded: 18 bytes.
 struct FlightRecord {
   static constexpr float kMetre = 50000.0F;  ///< units of 20 um; beyond +-0.65 m: the end of it
   static constexpr float kNewton = 1000.0F;  ///< units of 1 mN; beyond +-32 N: the end of it
+  static constexpr float kDepth = 20000.0F;  ///< units of 50 um; beyond +-6.3 mm: the end of it
 
   std::int16_t probe[3] = {0, 0, 0};
-  std::int16_t proxy[3] = {0, 0, 0};
   std::int16_t force[3] = {0, 0, 0};
-  std::uint8_t state = 0;  ///< bits 0-2: State; bit 3: in contact; bit 4: slipping
-  std::uint8_t load = 0;   ///< time the tick took, in 1/128 of its period; 255: two or more
+  std::int8_t proxy[3] = {0, 0, 0};  ///< from the probe, in units of kDepth
+  std::uint8_t state = 0;            ///< bits 0-2: State; bit 3: in contact; bit 4: slipping
+  std::uint8_t load = 0;  ///< time the tick took, in 1/128 of its period; 255: two or more
 
   [[nodiscard]] State state_of() const { return static_cast<State>(state & 7U); }
   [[nodiscard]] bool in_contact() const { return (state & 8U) != 0U; }
   [[nodiscard]] bool slipping() const { return (state & 16U) != 0U; }
 };
-static_assert(sizeof(FlightRecord) == 20);
+static_assert(sizeof(FlightRecord) == 18);
 
 /// The tick in which the first fault since the last clear was latched.
 struct FaultSnapshot {
