@@ -42,6 +42,8 @@ ConfigurationStatus Controller::configure(const Configuration& configuration) {
   enable_timeout_ticks_ =
       static_cast<std::uint32_t>(configuration.enable_timeout_s * configuration.rate_hz);
   ticks_since_overrun_ = kForever;
+  encoder_watch_.configure(
+      static_cast<std::uint32_t>(configuration.stuck_s * configuration.rate_hz));
   joint_velocity_.configure(1.0F / configuration.rate_hz, quantum_of(configuration.device),
                             configuration.velocity_cutoff_hz);
   passivity_.configure(1.0F / configuration.rate_hz, configuration.passivity_Ns_m,
@@ -146,6 +148,7 @@ Output Controller::step(const Input& input) {
   present_ = watch(input);
   if (configured_) {
     present_ |= sense(input);
+    present_ |= watch_stuck(input);
   }
   if (present_ != 0U) {
     raise(present_);
@@ -157,7 +160,9 @@ Output Controller::step(const Input& input) {
   confirm(input, was_armed);
   const SafetyGate::Result gated = apply_force();
   enable_ = !motors_off();
-  return {gated.command, enable_, report(gated)};
+  const Output output = {gated.command, enable_, report(gated)};
+  record(input, output.status);
+  return output;
 }
 
 // A counter that could not be trusted for a moment has lost its place.
@@ -213,7 +218,8 @@ void Controller::forget_motion() {
 }
 
 FaultMask Controller::watch(const Input& input) {
-  FaultMask faults = watch_overruns(input) | watch_link(input) | watch_enable(input);
+  FaultMask faults =
+      watch_overruns(input) | watch_link(input) | watch_enable(input) | watch_supply(input);
   faults |= input.emergency_stop ? fault_bit(Fault::kEmergencyStop) : 0U;
   faults |= input.motors_ok ? 0U : fault_bit(Fault::kMotorFault);
   return faults;
@@ -244,6 +250,34 @@ FaultMask Controller::watch_enable(const Input& input) {
   const bool dropped = state_ == State::kActive && !input.enable_read_back;
   const bool late = configured_ && ticks_of_mismatch_ > enable_timeout_ticks_;
   return dropped || late ? fault_bit(Fault::kEnableMismatch) : 0U;
+}
+
+FaultMask Controller::watch_supply(const Input& input) const {
+  const bool good = input.supply_V >= configuration_.supply_min_V &&
+                    input.supply_V <= configuration_.supply_max_V;
+  const bool watched = configuration_.supply_monitored && !motors_off();
+  return watched && !good ? fault_bit(Fault::kSupply) : 0U;
+}
+
+FaultMask Controller::watch_stuck(const Input& input) {
+  if (state_ != State::kActive || !located_) {
+    encoder_watch_.reset();
+    return 0U;
+  }
+  const Vec3 effort = pose_.effort_per_force * shown_;
+  const float share[kAxes] = {effort.x / configuration_.effort_max[0],
+                              effort.y / configuration_.effort_max[1],
+                              effort.z / configuration_.effort_max[2]};
+  if (encoder_watch_.update(input.encoders.counts, share, axes_of(configuration_.device.kind))) {
+    return 0U;
+  }
+  homing_.begin(configuration_.device);
+  return fault_bit(Fault::kEncoderStuck);
+}
+
+void Controller::record(const Input& input, const Status& status) {
+  recorder_.add({status.state, status.faults, status.tick, status.probe, status.velocity,
+                 status.force, status.rendering, input.load});
 }
 
 void Controller::obey(const Input& input) {

@@ -47,6 +47,7 @@ class PlantLinkBoard {
   [[nodiscard]] core::EncoderReading read() noexcept { return input_.input.encoders; }
   void write(const core::MotorCommand& command) noexcept;
   [[nodiscard]] bool healthy() noexcept { return input_.input.motors_ok; }
+  [[nodiscard]] float supply_V() noexcept { return input_.input.supply_V; }
   void set(bool on) noexcept { output_.enable = on; }
   [[nodiscard]] bool read_back() noexcept { return input_.input.enable_read_back; }
   [[nodiscard]] bool emergency_stop() noexcept { return input_.input.emergency_stop; }

@@ -63,20 +63,28 @@ class Loop {
     input.enable_read_back = board_.enable_line().read_back();
     input.motors_ok = board_.motors().healthy();
     input.overruns = tick.overruns;
+    input.load = load_;
+    if constexpr (requires { board_.motors().supply_V(); }) {
+      input.supply_V = board_.motors().supply_V();
+    }
     const LinkInput link = board_.link().receive();
     input.link_alive = link.alive;
     input.command = link.command;
 
+    const std::uint32_t begin_us = board_.ticker().now_us();
     const core::Output output = controller_.step(input);
     board_.motors().write(output.motors);
     board_.enable_line().set(output.enable);
     board_.link().send(output.status);
+    const std::uint32_t took_us = board_.ticker().now_us() - begin_us;
+    load_ = static_cast<float>(took_us) * 1e-6F * controller_.configuration().rate_hz;
     return output;
   }
 
  private:
   B& board_;
   core::Controller& controller_;
+  float load_ = 0.0F;  // of the last tick
 };
 
 }  // namespace tactree::hal

@@ -22,7 +22,7 @@
 namespace tactree::hal::plant_link {
 
 /// Changes with every change of what follows, or of the structs in it.
-inline constexpr std::uint32_t kVersion = 2;
+inline constexpr std::uint32_t kVersion = 3;
 
 enum class Kind : std::uint32_t {
   kHello = 0x54414331,  ///< no message begins with these bytes by chance
@@ -75,6 +75,6 @@ static_assert(std::is_trivially_copyable_v<core::Configuration> &&
               std::is_trivially_copyable_v<core::Input> &&
               std::is_trivially_copyable_v<core::Status>);
 static_assert(alignof(Session) == 4 && alignof(TickInput) == 4 && alignof(TickOutput) == 4);
-static_assert(sizeof(Hello) == 124 && sizeof(Started) == 8 && sizeof(TickInput) == 52);
+static_assert(sizeof(Hello) == 124 && sizeof(Started) == 8 && sizeof(TickInput) == 60);
 
 }  // namespace tactree::hal::plant_link

@@ -90,6 +90,8 @@ class SimLink {
 
   /// The next receive() finds a message with this command (kNone: a sign of life).
   void post(core::Command command) { next_ = {true, command}; }
+  /// What is on its way is lost.
+  void cut() { next_ = {}; }
   [[nodiscard]] const core::Status& last() const { return last_; }
 
  private:
