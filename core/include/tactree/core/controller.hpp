@@ -141,7 +141,6 @@ class Controller {
   VelocityEstimator joint_velocity_{};
   Vec3 velocity_{};  // of the probe, m/s
   Scene scene_{};
-  SceneRendering rendering_{};
   PassivityController passivity_{};
   Vec3 shown_{};        // force of the last tick, N
   bool whole_ = false;  // that force was not held back by the ramp
