@@ -24,6 +24,14 @@ struct StartResult {
   }
 };
 
+/// What the controller refuses of an update stays as it is. Cost: constant.
+inline void apply(const BodyUpdate& update, core::Controller& controller) {
+  if (update.body != core::kNoBody) {
+    (void)controller.move_body(update.body, update.pose, update.motion);
+    (void)controller.enable_body(update.body, update.enabled);
+  }
+}
+
 template <Board B>
 class Loop {
  public:
@@ -59,6 +67,7 @@ class Loop {
     const LinkInput link = board_.link().receive();
     input.link_alive = link.alive;
     input.command = link.command;
+    apply(link.body, controller_);
 
     const core::Output output = controller_.step(input);
     board_.motors().write(output.motors);

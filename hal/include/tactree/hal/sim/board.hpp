@@ -89,7 +89,9 @@ class SimLink {
   void send(const core::Status& status) noexcept { last_ = status; }
 
   /// The next receive() finds a message with this command (kNone: a sign of life).
-  void post(core::Command command) { next_ = {true, command}; }
+  void post(core::Command command) { next_ = {true, command, next_.body}; }
+  /// It carries this update as well.
+  void post(const BodyUpdate& update) { next_ = {true, next_.command, update}; }
   [[nodiscard]] const core::Status& last() const { return last_; }
 
  private:

@@ -1,0 +1,154 @@
+// A contact that disappears under the hand leaves no step: whatever took the body away, the force
+// goes down within kFadeSeconds.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "scene_rig.hpp"
+
+namespace tactree::test {
+namespace {
+
+using core::ModelStatus;
+
+constexpr int kFadeTicks = 50;  // kFadeSeconds at 1 kHz
+static_assert(core::kFadeSeconds == 0.05F);
+
+/// Pressed 2 mm into body 0; nobody else is near.
+SceneRig pressed() {
+  SceneRig rig;
+  rig.add(sheet());
+  rig.add(sheet(), isometry({0.0, 0.0, -1.0}));
+  rig.tick({0.0, 0.0, 0.005});
+  rig.go({0.0, 0.0, -0.002});
+  EXPECT_NEAR(rig.force().z(), 1.0, 0.01);
+  return rig;
+}
+
+/// From the force of the last tick to zero in a straight line, while the probe rests.
+void expect_fade(SceneRig& rig) {
+  const Eigen::Vector3d whole = rig.force();
+  for (int left = kFadeTicks - 1; left >= 0; --left) {
+    rig.rest(1);
+    ASSERT_LT((rig.force() - (static_cast<double>(left) / kFadeTicks) * whole).norm(), 1e-5);
+    ASSERT_TRUE(rig.last.fading);
+    ASSERT_FALSE(rig.last.contact.in_contact);
+    ASSERT_EQ(rig.last.reactions[0].body, core::kNoBody);
+  }
+  rig.rest(1);
+  EXPECT_EQ(rig.force().norm(), 0.0);
+  EXPECT_FALSE(rig.last.fading);
+}
+
+TEST(SceneFade, OfABodyThatIsRemoved) {
+  SceneRig rig = pressed();
+  ASSERT_EQ(rig.scene.remove(0), ModelStatus::kOk);
+  expect_fade(rig);
+}
+
+TEST(SceneFade, OfABodyThatIsDisabled) {
+  SceneRig rig = pressed();
+  ASSERT_EQ(rig.scene.enable(0, false), ModelStatus::kOk);
+  expect_fade(rig);
+}
+
+TEST(SceneFade, OfABodyThatJumpsAway) {
+  SceneRig rig = pressed();
+  ASSERT_EQ(rig.scene.move(0, to_core(isometry({0.1, 0.0, 0.0})), {}), ModelStatus::kOk);
+  expect_fade(rig);
+}
+
+// It does not snatch the hand to where the proxy went.
+TEST(SceneFade, OfABodyThatJumpsWithTheProbeStillInIt) {
+  SceneRig rig = pressed();
+  const auto turned = isometry({0.0, 0.0, 0.05}, {0.0, EIGEN_PI, 0.0});
+  ASSERT_EQ(rig.scene.move(0, to_core(turned), {}), ModelStatus::kOk);
+  expect_fade(rig);
+}
+
+TEST(SceneFade, OfASurfaceThatEndsUnderTheProbe) {
+  SceneRig rig = pressed();
+  Eigen::Vector3d before = rig.force();
+  double furthest_step = 0.0;
+  for (double x = 0.0; x < 0.03; x += 2e-5) {
+    rig.tick({x, 0.0, -0.002});
+    furthest_step = std::max(furthest_step, (rig.force() - before).norm());
+    before = rig.force();
+  }
+  rig.rest(kFadeTicks);
+  EXPECT_EQ(rig.force().norm(), 0.0);
+  EXPECT_LT(furthest_step, 0.05);
+}
+
+TEST(SceneFade, GoesOnWhenAnotherBodyTakesThePlace) {
+  SceneRig rig = pressed();
+  ASSERT_EQ(rig.scene.remove(0), ModelStatus::kOk);
+  rig.rest(10);
+  EXPECT_EQ(rig.add(sheet()), 0U);  // the same number, around the probe
+  const double left = rig.force().z();
+  EXPECT_NEAR(left, 0.8, 0.01);
+  rig.rest(20);
+  EXPECT_NEAR(rig.force().z(), 0.4, 0.01);
+  rig.rest(kFadeTicks);
+  EXPECT_EQ(rig.force().norm(), 0.0);
+}
+
+// Whoever appears around the probe is felt once the probe has left it and comes again.
+TEST(SceneFade, ABodyThatAppearsAroundTheProbeDoesNotThrowItOut) {
+  const std::function<void(SceneRig&)> appear[] = {
+      [](SceneRig& rig) { rig.add(sheet()); },
+      [](SceneRig& rig) { EXPECT_EQ(rig.scene.enable(0, true), ModelStatus::kOk); },
+      [](SceneRig& rig) {
+        EXPECT_EQ(rig.scene.enable(0, true), ModelStatus::kOk);
+        EXPECT_EQ(rig.scene.move(0, to_core(isometry({0.0, 0.0, 0.0005})), {}), ModelStatus::kOk);
+      }};
+  for (const auto& how : appear) {
+    SceneRig rig;
+    rig.add(sheet());
+    ASSERT_EQ(rig.scene.enable(0, false), ModelStatus::kOk);
+    rig.tick({0.0, 0.0, 0.01});
+    rig.go({0.0, 0.0, -0.002});
+    EXPECT_EQ(rig.force().norm(), 0.0);
+    how(rig);
+    EXPECT_LT(rig.rest(1).contact.force.z, 0.01F);
+    rig.rest(10);
+    EXPECT_EQ(rig.force().norm(), 0.0);
+    rig.go({0.0, 0.0, 0.005});
+    rig.go({0.0, 0.0, -0.001});
+    EXPECT_GT(rig.force().z(), 0.4);
+  }
+}
+
+TEST(SceneFade, AResetForgetsForcesButNotBodies) {
+  SceneRig rig = pressed();
+  ASSERT_EQ(rig.scene.enable(0, false), ModelStatus::kOk);
+  rig.rest(1);
+  rig.scene.reset({});
+  rig.rest(1);
+  EXPECT_EQ(rig.force().norm(), 0.0);
+  EXPECT_FALSE(rig.scene.empty());
+  rig = pressed();
+  rig.scene.clear();
+  rig.rest(1);
+  EXPECT_EQ(rig.force().norm(), 0.0);
+  EXPECT_TRUE(rig.scene.empty());
+}
+
+TEST(SceneFade, TakesAsLongAtEveryRate) {
+  for (const float rate_hz : {500.0F, 4000.0F}) {
+    SceneRig rig = pressed();
+    rig.configuration.rate_hz = rate_hz;
+    rig.rest(1);
+    ASSERT_EQ(rig.scene.remove(0), ModelStatus::kOk);
+    const auto ticks = static_cast<int>(std::lround(0.05F * rate_hz));
+    rig.rest(ticks - 1);
+    EXPECT_GT(rig.force().norm(), 0.0);
+    rig.rest(1);
+    EXPECT_EQ(rig.force().norm(), 0.0);
+  }
+}
+
+}  // namespace
+}  // namespace tactree::test
