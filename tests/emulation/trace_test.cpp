@@ -58,8 +58,7 @@ simulation::SceneBody moving_body() {
   return body;
 }
 
-simulation::Summary run_on_host(const simulation::Setup& setup,
-                                const simulation::SceneBody& body) {
+simulation::Summary run_on_host(const simulation::Setup& setup, const simulation::SceneBody& body) {
   auto target = std::make_unique<simulation::SceneTarget>(
       std::vector{body}, simulation::Simulation::arming_ticks(setup));
   simulation::Simulation sim(touched_shape().bytes(), setup, path(), std::move(target));

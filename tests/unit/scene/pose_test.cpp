@@ -154,8 +154,8 @@ TEST(Pose, RelativeVelocityIsTheChangeOfThePositionInTheBody) {
     };
     const Eigen::Vector3d expected =
         pose.linear() * (in_body(kStep) - in_body(-kStep)) / (2.0 * kStep);
-    const Vec3 found = core::relative_velocity(
-        to_core(pose), {narrow(linear), narrow(angular)}, narrow(p), narrow(velocity));
+    const Vec3 found = core::relative_velocity(to_core(pose), {narrow(linear), narrow(angular)},
+                                               narrow(p), narrow(velocity));
     EXPECT_LT((widen(found) - expected).norm(), 1e-5);
   }
 }

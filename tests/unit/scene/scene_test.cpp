@@ -74,9 +74,9 @@ TEST(Scene, ABodyFeelsTheSameWhereverItIs) {
       elsewhere.tick(pose * probe);
       ASSERT_EQ(at_origin.last.contact.in_contact, elsewhere.last.contact.in_contact);
       ASSERT_LT((pose.linear() * at_origin.force() - elsewhere.force()).norm(), 2e-3);
-      ASSERT_LT((pose * widen(at_origin.last.contact.proxy) - widen(elsewhere.last.contact.proxy))
-                    .norm(),
-                2e-6);
+      ASSERT_LT(
+          (pose * widen(at_origin.last.contact.proxy) - widen(elsewhere.last.contact.proxy)).norm(),
+          2e-6);
       ASSERT_LT((pose.linear() * widen(at_origin.last.contact.normal) -
                  widen(elsewhere.last.contact.normal))
                     .norm(),
@@ -375,11 +375,16 @@ TEST(Scene, NumbersOfRemovedBodiesAreGivenAgain) {
   }
   rig.add(sheet());
   EXPECT_EQ(rig.status, ModelStatus::kTooManyBodies);
+  ASSERT_EQ(rig.scene.move(3, to_core(kFar), {{0.0F, 1.0F, 0.0F}, {}}), ModelStatus::kOk);
+  ASSERT_EQ(rig.scene.enable(3, false), ModelStatus::kOk);
   ASSERT_EQ(rig.scene.remove(3), ModelStatus::kOk);
   EXPECT_EQ(rig.scene.remove(3), ModelStatus::kNoSuchBody);
   EXPECT_EQ(rig.add(sheet()), 3U);
-  EXPECT_EQ(rig.scene.pose(3), Pose{});
   EXPECT_EQ(rig.status, ModelStatus::kOk);
+  rig.tick({0.0, 0.0, 0.01});
+  rig.go({0.0, 0.0, -0.001});
+  EXPECT_EQ(rig.scene.pose(3), Pose{});  // at rest
+  EXPECT_NEAR(force_on(rig.last, 3).z(), -kWall * 1e-3, 0.01);
 }
 
 TEST(Scene, StatusesHaveWordsOfTheirOwn) {

@@ -117,8 +117,9 @@ TEST(SceneTarget, TellsWhichBodyIsRefused) {
 }
 
 TEST(SceneTarget, ABodyThatLeavesTheSpaceStaysAtItsBorder) {
-  Simulation sim(sheet().bytes(), {}, still(0.01),
-                 scene_of({body_on(BodyPath(isometry({9.0, 0.0, 0.0}), {9.0, 0.0, 0.0}, kNoTurn))}));
+  Simulation sim(
+      sheet().bytes(), {}, still(0.01),
+      scene_of({body_on(BodyPath(isometry({9.0, 0.0, 0.0}), {9.0, 0.0, 0.0}, kNoTurn))}));
   ASSERT_TRUE(sim.arm());
   for (int i = 0; i < 1000; ++i) {
     ASSERT_EQ(sim.step().status.faults, 0U);
