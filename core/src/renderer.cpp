@@ -31,7 +31,8 @@ float spring_energy(float stiffness_N_m, float length_m, float force_max_N) {
   return force_max_N * (length_m - 0.5F * force_max_N / stiffness_N_m);
 }
 
-Rendering update_paper(const BlobView& view, const Configuration& c, Vec3 probe) {
+// Not inlined, as render_proxy(): their frames would lie under the deepest calls of all.
+[[gnu::noinline]] Rendering update_paper(const BlobView& view, const Configuration& c, Vec3 probe) {
   Rendering r;
   r.proxy = probe;
   const PaperContact contact = paper_collision(view, probe);
@@ -60,14 +61,15 @@ Rendering update_paper(const BlobView& view, const Configuration& c, Vec3 probe)
 
 Rendering Renderer::update(const BlobView& view, const Configuration& configuration, Vec3 probe,
                            Vec3 velocity) {
-  return configuration.mode == RenderMode::kPaper
-             ? update_paper(view, configuration, probe)
-             : update_surface(view, configuration, probe, velocity);
+  if (configuration.mode == RenderMode::kPaper) {
+    return update_paper(view, configuration, probe);
+  }
+  proxy_.update(view, probe, friction_);
+  return render_proxy(view, configuration, probe, velocity);
 }
 
-Rendering Renderer::update_surface(const BlobView& view, const Configuration& c, Vec3 probe,
-                                   Vec3 velocity) {
-  proxy_.update(view, probe, friction_);
+Rendering Renderer::render_proxy(const BlobView& view, const Configuration& c, Vec3 probe,
+                                 Vec3 velocity) {
   Rendering r;
   r.proxy = proxy_.position();
   r.complete = proxy_.complete();

@@ -281,6 +281,7 @@ core::Status EmulatedTarget::tick(hal::sim::SimBoard& board) {
   input.enable_read_back = board.enable_line().read_back();
   input.motors_ok = board.motors().healthy();
   input.overruns = tick.overruns;
+  input.supply_V = board.motors().supply_V();
   const hal::LinkInput received = board.link().receive();
   input.link_alive = received.alive;
   input.command = received.command;

@@ -70,7 +70,7 @@ hal::StartResult LinkedBodyTarget::start(hal::sim::SimBoard& board,
 }
 
 core::Status LinkedBodyTarget::tick(hal::sim::SimBoard& board) {
-  board.link().post(update_at(body_, 0, tick_ * period_s_));
+  board.link().attach(update_at(body_, 0, tick_ * period_s_));
   tick_ += 1.0;
   return target_->tick(board);
 }

@@ -59,12 +59,14 @@ TEST_F(LoopTest, BringsTheMoveOfABodyToTheController) {
     tick(z);
   }
   const core::Pose higher{{}, {0.0F, 0.0F, 1e-3F}};
-  board_.link().post(hal::BodyUpdate{.body = 0, .pose = higher});
+  board_.link().post(core::Command::kNone);
+  board_.link().attach(hal::BodyUpdate{.body = 0, .pose = higher});
   for (int i = 0; i < 10; ++i) {
     tick(-1e-3);
   }
   EXPECT_NEAR(board_.effort(2), 1.0, 0.06);
-  board_.link().post(hal::BodyUpdate{.body = 0, .enabled = false, .pose = higher});
+  board_.link().post(core::Command::kNone);
+  board_.link().attach(hal::BodyUpdate{.body = 0, .enabled = false, .pose = higher});
   EXPECT_FALSE(tick(-1e-3).status.rendering.in_contact);
   EXPECT_FALSE(tick(-1e-3).status.rendering.in_contact);
 }
@@ -80,9 +82,11 @@ TEST_F(LoopTest, WhatIsRefusedOfAMoveChangesNothing) {
     tick(-1e-3);
   }
   const float before = tick(-1e-3).status.force.z;
-  board_.link().post(hal::BodyUpdate{.body = 0, .pose = {{0.5F, {}}, {}}});
+  board_.link().post(core::Command::kNone);
+  board_.link().attach(hal::BodyUpdate{.body = 0, .pose = {{0.5F, {}}, {}}});
   EXPECT_NEAR(tick(-1e-3).status.force.z, before, 1e-3F);
-  board_.link().post(hal::BodyUpdate{.body = 7});
+  board_.link().post(core::Command::kNone);
+  board_.link().attach(hal::BodyUpdate{.body = 7});
   EXPECT_NEAR(tick(-1e-3).status.force.z, before, 1e-3F);
   EXPECT_EQ(controller_.state(), State::kActive);
 }

@@ -155,24 +155,21 @@ TEST(SimLink, GivesEachMessageOnce) {
   EXPECT_EQ(link.receive().command, core::Command::kNone);
 }
 
-TEST(SimLink, CarriesACommandAndABodyTogether) {
+TEST(SimLink, AMessageCarriesAnUpdateUnlessItIsLost) {
   SimLink link;
-  link.post(hal::BodyUpdate{.body = 3, .enabled = false});
-  EXPECT_TRUE(link.receive().alive);
-  for (const bool command_first : {true, false}) {
-    if (command_first) {
-      link.post(core::Command::kStop);
-    }
-    link.post(hal::BodyUpdate{.body = 3, .enabled = false});
-    if (!command_first) {
-      link.post(core::Command::kStop);
-    }
-    const hal::LinkInput input = link.receive();
-    EXPECT_EQ(input.command, core::Command::kStop);
-    EXPECT_EQ(input.body.body, 3U);
-    EXPECT_FALSE(input.body.enabled);
-    EXPECT_EQ(link.receive().body.body, core::kNoBody);
-  }
+  const hal::BodyUpdate gone{.body = 3, .enabled = false};
+  link.post(core::Command::kStop);
+  link.attach(gone);
+  const hal::LinkInput input = link.receive();
+  EXPECT_EQ(input.command, core::Command::kStop);
+  EXPECT_EQ(input.body.body, 3U);
+  EXPECT_FALSE(input.body.enabled);
+  EXPECT_EQ(link.receive().body.body, core::kNoBody);
+  link.post(core::Command::kStop);
+  link.cut();
+  link.attach(gone);
+  EXPECT_FALSE(link.receive().alive);
+  EXPECT_EQ(link.receive().body.body, core::kNoBody);
 }
 
 }  // namespace

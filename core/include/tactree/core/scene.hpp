@@ -87,8 +87,9 @@ class Scene {
 
   /// One tick; `probe` and `velocity` in the scene's frame. Preconditions: as Renderer::update().
   /// Cost: kMaxReachableBodies times Renderer::update(), kMaxBodies times about 100 operations.
-  [[nodiscard]] SceneRendering update(const Configuration& configuration, Vec3 probe,
-                                      Vec3 velocity);
+  const SceneRendering& update(const Configuration& configuration, Vec3 probe, Vec3 velocity);
+  /// What update() returned last; nothing after reset().
+  [[nodiscard]] const SceneRendering& rendering() const { return rendering_; }
 
  private:
   struct Body {
@@ -117,12 +118,12 @@ class Scene {
   void release(std::uint32_t number);
   static void let_go(Slot& slot, std::uint32_t fade_ticks);
   [[nodiscard]] bool lend_slots(Vec3 probe);
-  void render(Slot& slot, const Configuration& configuration, Vec3 probe, Vec3 velocity,
-              SceneRendering& all);
+  void render(Slot& slot, const Configuration& configuration, Vec3 probe, Vec3 velocity);
   void move_on(Vec3 probe, float period_s);
 
   Body bodies_[kMaxBodies]{};
   Slot slots_[kMaxReachableBodies]{};
+  SceneRendering rendering_{};
   std::uint32_t fade_ticks_ = 1;
 };
 

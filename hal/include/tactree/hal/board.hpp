@@ -29,6 +29,8 @@ concept EncoderBank = requires(T& bank) {
 ///   write(command)  the efforts to hold from now on, N or Nm per axis. Before the first write and
 ///                   whenever the enable line is off, the effort is zero.
 ///   healthy()       false: an amplifier reports a failure, or a command could not be delivered.
+/// A bank that can measure its supply also has, for Configuration::supply_monitored:
+///   supply_V()      float, of now.
 template <class T>
 concept MotorBank = requires(T& bank, const core::MotorCommand& command) {
   { bank.write(command) }

@@ -49,7 +49,8 @@ class SceneTarget : public Target {
   std::size_t refused_body_ = 0;
 };
 
-/// Moves the one body of another target, in each tick over the link; so it may be on a board.
+/// Moves the one body of another target, in each tick over the link; so it may be on a board. When
+/// the link is cut the body moves on as it was last told.
 class LinkedBodyTarget : public Target {
  public:
   /// As SceneTarget.
