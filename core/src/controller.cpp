@@ -57,7 +57,7 @@ ConfigurationStatus Controller::configure(const Configuration& configuration) {
 
 void Controller::remove_unsuitable_bodies() {
   for (std::uint32_t i = 0; i < kMaxBodies; ++i) {  // bound: kMaxBodies
-    const BlobView& view = scene_.view(i);
+    const BlobView view = scene_.view(i);
     if (!view.empty() && suitability(view) != ModelStatus::kOk) {
       (void)scene_.remove(i);
     }

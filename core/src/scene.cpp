@@ -70,7 +70,6 @@ ModelStatus Scene::add(const BlobView& view, const Pose& pose, std::uint32_t& nu
   if (free == kMaxBodies) {
     return ModelStatus::kTooManyBodies;
   }
-  bodies_[free] = {};
   bodies_[free].view = view;
   bodies_[free].pose = normalized(pose);
   number = free;
@@ -125,8 +124,8 @@ bool Scene::empty() const {
   return none;
 }
 
-const BlobView& Scene::view(std::uint32_t number) const {
-  return bodies_[number < kMaxBodies ? number : 0U].view;
+BlobView Scene::view(std::uint32_t number) const {
+  return number < kMaxBodies ? bodies_[number].view : BlobView{};
 }
 
 Pose Scene::pose(std::uint32_t number) const {

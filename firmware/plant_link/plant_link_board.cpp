@@ -82,9 +82,10 @@ void PlantLinkBoard::write(const core::MotorCommand& command) noexcept {
 }
 
 hal::LinkInput PlantLinkBoard::receive() noexcept {
-  const hal::LinkInput received{input_.input.link_alive, input_.input.command};
+  const hal::LinkInput received{input_.input.link_alive, input_.input.command, input_.body};
   input_.input.link_alive = false;
   input_.input.command = core::Command::kNone;
+  input_.body = {};
   return received;
 }
 

@@ -198,40 +198,60 @@ std::vector<std::string> board_names() {
   return names;
 }
 
-/// Null: the controller runs in this process.
-std::unique_ptr<emulation::EmulatedTarget> boot_board(const SimulateOptions& options,
+std::unique_ptr<emulation::EmulatedTarget> boot_board(const emulation::BoardDescription& board,
+                                                      const SimulateOptions& options,
                                                       const simulation::Setup& setup,
                                                       const BlobFile& blob) {
-  const emulation::BoardDescription* board = emulation::find_board(options.board);
-  if (board == nullptr) {
-    return nullptr;
-  }
   emulation::EmulationOptions emulation;
-  emulation.image = emulation::find_image(*board, options.firmware);
+  emulation.image = emulation::find_image(board, options.firmware);
   emulation.uncounted_ticks = simulation::Simulation::arming_ticks(setup);
-  return std::make_unique<emulation::EmulatedTarget>(*board, blob.bytes(), emulation);
+  return std::make_unique<emulation::EmulatedTarget>(board, blob.bytes(), emulation);
 }
 
 bool is_scene(const SimulateOptions& options) {
   return !options.scene.empty() || options.blobs.size() > 1;
 }
 
-/// The controller in this process; null: on an emulated board.
-std::unique_ptr<simulation::Target> host_target(const SimulateOptions& options,
-                                                const simulation::Setup& setup,
-                                                const SceneFile& scene) {
-  if (emulation::find_board(options.board) != nullptr) {
-    if (is_scene(options)) {
-      refuse("--board: a board has one blob in its flash and renders no scene",
-             "use --board host, or give one blob and no --scene");
-    }
-    return nullptr;
-  }
+/// Where the controller runs, and what of it is there.
+struct ChosenTarget {
+  std::unique_ptr<simulation::Target> target;
+  const simulation::SceneTarget* scene = nullptr;
+  const emulation::EmulatedTarget* emulated = nullptr;
+};
+
+ChosenTarget host_target(const SimulateOptions& options, const simulation::Setup& setup,
+                         const SceneFile& scene) {
   if (!is_scene(options)) {
-    return std::make_unique<simulation::HostTarget>();
+    return {std::make_unique<simulation::HostTarget>()};
   }
-  return std::make_unique<simulation::SceneTarget>(scene.bodies,
-                                                   simulation::Simulation::arming_ticks(setup));
+  auto target = std::make_unique<simulation::SceneTarget>(
+      scene.bodies, simulation::Simulation::arming_ticks(setup));
+  const simulation::SceneTarget* const bodies = target.get();
+  return {std::move(target), bodies};
+}
+
+ChosenTarget board_target(const emulation::BoardDescription& board, const SimulateOptions& options,
+                          const simulation::Setup& setup, const SceneFile& scene) {
+  if (scene.bodies.size() > 1) {
+    refuse(fmt::format("--board {}: a board has one blob in its flash, the scene has {} bodies",
+                       board.name, scene.bodies.size()),
+           "use --board host, or leave one body");
+  }
+  auto target = boot_board(board, options, setup, *scene.files[0]);
+  const emulation::EmulatedTarget* const emulated = target.get();
+  if (!is_scene(options)) {
+    return {std::move(target), nullptr, emulated};
+  }
+  return {std::make_unique<simulation::LinkedBodyTarget>(
+              std::move(target), scene.bodies[0], simulation::Simulation::arming_ticks(setup)),
+          nullptr, emulated};
+}
+
+ChosenTarget choose_target(const SimulateOptions& options, const simulation::Setup& setup,
+                           const SceneFile& scene) {
+  const emulation::BoardDescription* board = emulation::find_board(options.board);
+  return board == nullptr ? host_target(options, setup, scene)
+                          : board_target(*board, options, setup, scene);
 }
 
 std::vector<simulation::InjectedFault> injections(const SimulateOptions& options) {
@@ -287,17 +307,10 @@ Outcome run(const SimulateOptions& options, const SceneFile& scene) {
     refuse(fmt::format("--seconds: {:.6g} ticks are outside 1 .. {:.0f}", count, most),
            keep ? "shorten it, or leave --trace and --plot out" : "choose another --seconds");
   }
-  std::unique_ptr<simulation::Target> target = host_target(options, setup, scene);
-  const emulation::EmulatedTarget* emulated = nullptr;
-  if (target == nullptr) {
-    auto board = boot_board(options, setup, blob);
-    emulated = board.get();
-    target = std::move(board);
-  }
-  const auto* with_bodies =
-      is_scene(options) ? static_cast<const simulation::SceneTarget*>(target.get()) : nullptr;
-  simulation::Simulation sim(blob.bytes(), setup, hand_path(options, scene), std::move(target));
-  const std::size_t refused = with_bodies == nullptr ? 0 : with_bodies->refused_body();
+  ChosenTarget chosen = choose_target(options, setup, scene);
+  simulation::Simulation sim(blob.bytes(), setup, hand_path(options, scene),
+                             std::move(chosen.target));
+  const std::size_t refused = chosen.scene == nullptr ? 0 : chosen.scene->refused_body();
   check_start(scene.names[refused], scene.files[refused]->view(), setup, sim.start_result());
   if (!sim.arm()) {
     refuse(fmt::format("the controller did not become active, it is in state {}",
@@ -327,8 +340,8 @@ Outcome run(const SimulateOptions& options, const SceneFile& scene) {
   if (comparison) {
     outcome.harm = comparison->harm();
   }
-  if (emulated != nullptr) {
-    outcome.instructions = emulated->instruction_counts();
+  if (chosen.emulated != nullptr) {
+    outcome.instructions = chosen.emulated->instruction_counts();
   }
   return outcome;
 }

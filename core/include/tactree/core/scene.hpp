@@ -7,6 +7,7 @@
 //
 // Of the bodies whose box the probe touches, kMaxReachableBodies are rendered: those touched first,
 // then those added first. The others are as if they were not there, and SceneRendering tells so.
+// A body that appears around the probe does not throw it out: its surface is felt from within.
 //
 // Interrupt safe: no shared state; one context owns a Scene.
 
@@ -77,7 +78,8 @@ class Scene {
 
   [[nodiscard]] bool empty() const;
   /// The empty view where there is no such body.
-  [[nodiscard]] const BlobView& view(std::uint32_t number) const;
+  [[nodiscard]] BlobView view(std::uint32_t number) const;
+  /// Likewise the pose at the origin.
   [[nodiscard]] Pose pose(std::uint32_t number) const;
 
   /// Forgets contacts and fading forces, not bodies: the probe is somewhere else now.
@@ -91,7 +93,7 @@ class Scene {
 
  private:
   struct Body {
-    BlobView view{};  // empty: the number is free
+    BlobView view{};  // empty: the number is free, and all the rest as here
     Pose pose{};
     Motion motion{};
     Vec3 probe{};  // of the last tick, in the body's frame; where `seen`

@@ -123,13 +123,16 @@ void check_inputs(B& board, ConformanceReport& report) {
   report.check(!board.safety_inputs().emergency_stop(), "the emergency stop reads as pressed");
   report.check(!board.safety_inputs().dead_man(), "the dead-man control reads as held");
   core::Command command = core::Command::kNone;
+  bool moved = false;
   for (std::uint32_t i = 0; i < kTicks; ++i) {
     (void)board.ticker().wait();
     board.link().send(core::Status{});
     const LinkInput input = board.link().receive();
     command = input.command == core::Command::kNone ? command : input.command;
+    moved = moved || input.body.body != core::kNoBody;
   }
   report.check(command == core::Command::kNone, "the link gives commands nobody sent");
+  report.check(!moved, "the link moves bodies though nobody said so");
 }
 
 /// Checksum in 256 slices, a tick between two of them: a board's watchdog may want its ticks.

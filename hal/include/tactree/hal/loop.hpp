@@ -31,6 +31,14 @@ struct StartResult {
   }
 };
 
+/// What the controller refuses of an update stays as it is. Cost: constant.
+inline void apply(const BodyUpdate& update, core::Controller& controller) {
+  if (update.body != core::kNoBody) {
+    (void)controller.move_body(update.body, update.pose, update.motion);
+    (void)controller.enable_body(update.body, update.enabled);
+  }
+}
+
 template <Board B>
 class Loop {
  public:
@@ -67,9 +75,7 @@ class Loop {
     if constexpr (requires { board_.motors().supply_V(); }) {
       input.supply_V = board_.motors().supply_V();
     }
-    const LinkInput link = board_.link().receive();
-    input.link_alive = link.alive;
-    input.command = link.command;
+    listen(input);
 
     const std::uint32_t begin_us = board_.ticker().now_us();
     const core::Output output = controller_.step(input);
@@ -82,6 +88,14 @@ class Loop {
   }
 
  private:
+  /// A function of its own: a message takes no stack while the controller steps.
+  void listen(core::Input& input) {
+    const LinkInput link = board_.link().receive();
+    input.link_alive = link.alive;
+    input.command = link.command;
+    apply(link.body, controller_);
+  }
+
   B& board_;
   core::Controller& controller_;
   float load_ = 0.0F;  // of the last tick

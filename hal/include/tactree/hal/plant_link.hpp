@@ -61,6 +61,7 @@ struct Started {
 struct TickInput {
   Kind kind = Kind::kTickInput;
   core::Input input{};
+  BodyUpdate body{};
 };
 
 struct TickOutput {
@@ -73,8 +74,9 @@ struct TickOutput {
 // Alike on every core: no pointer, nothing wider than four bytes.
 static_assert(std::is_trivially_copyable_v<core::Configuration> &&
               std::is_trivially_copyable_v<core::Input> &&
+              std::is_trivially_copyable_v<BodyUpdate> &&
               std::is_trivially_copyable_v<core::Status>);
 static_assert(alignof(Session) == 4 && alignof(TickInput) == 4 && alignof(TickOutput) == 4);
-static_assert(sizeof(Hello) == 124 && sizeof(Started) == 8 && sizeof(TickInput) == 60);
+static_assert(sizeof(Hello) == 124 && sizeof(Started) == 8 && sizeof(TickInput) == 120);
 
 }  // namespace tactree::hal::plant_link
