@@ -73,7 +73,8 @@ TEST(SessionWithBodies, BodiesThatComeAndGoNeverPassTheSlew) {
     const auto z = static_cast<float>((i % 40) * 2e-4 - 4e-3);
     (void)session.controller.move_body(0, {{}, {0.0F, 0.0F, z}}, {});
     (void)session.controller.enable_body(0, i % 170 < 150);
-    session.move(0.0, 0.0, -2e-3 - 1e-4 * (i % 2));  // no hand stands still while it is pushed about
+    session.move(0.0, 0.0,
+                 -2e-3 - 1e-4 * (i % 2));  // no hand stands still while it is pushed about
     const core::Vec3 force = session.step().status.force;
     furthest = std::max(furthest, core::length(force - before));
     before = force;
