@@ -1,0 +1,78 @@
+#pragma once
+// The worst-case bound of a tick: the longest way through the machine code of an image that the
+// bounds beside the loops of its source allow. (Implicit path enumeration: Li and Malik,
+// "Performance analysis of embedded software using implicit path enumeration", DAC 1995.)
+//
+// How often each block is executed is a variable; flow in is flow out; a loop's header is executed
+// so often as its bound says for each time the loop is entered; the weighted sum is maximised.
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "tactree/core/blob_format.hpp"
+
+namespace tactree::bound {
+
+/// What the names in the bounds stand for, but for constants of the source.
+using Parameters = std::map<std::string, std::int64_t>;
+
+/// Those of the models that a board has loaded.
+[[nodiscard]] Parameters parameters_of(const core::BlobHeader& header, std::uint32_t bodies);
+/// Those of every model that a controller accepts.
+[[nodiscard]] Parameters largest_parameters(std::uint32_t bodies);
+
+/// A function the processor enters by itself, and how often in one tick.
+struct EntryPoint {
+  std::string function;
+  std::uint32_t times = 1;
+};
+
+/// Those of a tick: its interrupt, and that of the timer, which begins the tick and may come once
+/// more before it ends.
+[[nodiscard]] std::vector<EntryPoint> tick_entries();
+
+struct BoundOptions {
+  std::filesystem::path image;
+  /// The folder that the names of the image's sources are below.
+  std::filesystem::path sources;
+  std::vector<EntryPoint> entries;
+  Parameters parameters;
+};
+
+struct LoopOnPath {
+  std::string file;
+  std::uint32_t line = 0;
+  std::string function;     ///< whose machine code it is in
+  std::uint32_t address = 0;
+  std::string bound;        ///< as it is written
+  std::int64_t passes = 0;  ///< what that comes to, each time the loop is entered
+  double total = 0.0;       ///< passes of its header in the worst tick
+};
+
+struct FunctionOnPath {
+  std::string name;
+  double calls = 0.0;         ///< in the worst tick
+  double instructions = 0.0;  ///< its own
+};
+
+struct BlockOnPath {
+  std::uint32_t address = 0;
+  std::uint32_t instructions = 0;
+  double times = 0.0;
+};
+
+struct Bound {
+  std::uint64_t instructions = 0;         ///< of one tick, at most
+  std::vector<FunctionOnPath> functions;  ///< the costliest first
+  std::vector<LoopOnPath> loops;
+  std::vector<BlockOnPath> blocks;  ///< all that were analysed, on the path or not
+};
+
+/// Throws BoundError on what has no bound: a loop without an annotation, recursion, an indirect
+/// call, an unknown instruction; each named with file and line.
+[[nodiscard]] Bound worst_case(const BoundOptions& options);
+
+}  // namespace tactree::bound

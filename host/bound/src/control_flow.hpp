@@ -1,0 +1,71 @@
+#pragma once
+// The blocks of a function's machine code, the ways between them, and its loops.
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "image.hpp"
+
+namespace tactree::bound {
+
+struct Instruction {
+  std::uint32_t address = 0;
+  std::uint32_t bytes = 0;
+  std::string text;    ///< mnemonic and operands
+  bool store = false;  ///< to memory, but not relative to the stack pointer
+  bool conditional_branch = false;
+  /// A constant put into one of the registers r0 to r3.
+  std::optional<std::pair<int, std::uint32_t>> constant;
+  std::set<int> written;  ///< of r0 to r3
+};
+
+/// Instructions that are executed one after the other. A call ends a block; what it calls is
+/// executed between this block and the next.
+struct Block {
+  std::uint32_t first = 0;  ///< index of its first instruction
+  std::uint32_t count = 0;  ///< 0: a jump to another function, as a block of its own
+  std::vector<std::uint32_t> next;
+  bool returns = false;
+  std::optional<std::uint32_t> calls;  ///< entry of a function
+};
+
+using Edge = std::pair<std::uint32_t, std::uint32_t>;
+
+/// A natural loop: all that can reach its back edges without passing its header.
+struct Loop {
+  std::uint32_t header = 0;
+  std::set<std::uint32_t> blocks;
+  std::vector<Edge> back;
+  std::vector<Edge> entries;
+  std::optional<std::uint32_t> parent;  ///< the smallest loop around it
+};
+
+/// Of one function. Block 0 is the entry.
+struct ControlFlow {
+  Function function;
+  std::vector<Instruction> instructions;
+  std::vector<Block> blocks;
+  std::vector<Loop> loops;  ///< a loop comes before those within it
+
+  [[nodiscard]] std::vector<Edge> entries_of(std::uint32_t block) const;
+  /// What r<number> holds when the block's call begins, if that is a constant.
+  [[nodiscard]] std::optional<std::uint32_t> argument(std::uint32_t block, int number) const;
+};
+
+/// Blocks and edges, without the loops. Throws BoundError, naming file and line, on what it cannot
+/// follow: an unknown instruction, an indirect call or jump.
+[[nodiscard]] ControlFlow control_flow(const Image& image, const Function& function);
+
+/// Takes away what follows calls of functions that never return, then finds the loops. Throws
+/// BoundError on a loop with two entries.
+void find_loops(const Image& image, ControlFlow& flow, const std::set<std::uint32_t>& never_return);
+
+/// "file:line (function+offset)" of an instruction, for messages.
+[[nodiscard]] std::string describe_place(const Image& image, std::uint32_t address);
+
+}  // namespace tactree::bound
