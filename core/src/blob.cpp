@@ -7,6 +7,9 @@ namespace tactree::core {
 namespace {
 
 constexpr std::size_t kHeaderBytes = sizeof(BlobHeader);
+// The directory of a blob without one.
+constexpr std::uint32_t kRootNode = 0;
+
 constexpr std::size_t kChecksumEnd = offsetof(BlobHeader, checksum) + sizeof(std::uint32_t);
 
 std::uint32_t checksum_of(std::span<const std::byte> bytes) {
@@ -57,7 +60,7 @@ class BlobValidator {
     if (status != BlobStatus::kOk) return status;
     attach();
     if (!leaves_are_sane()) return BlobStatus::kBadLeaves;
-    if (!tree_is_canonical()) return BlobStatus::kBadTree;
+    if (!tree_is_canonical() || !directory_lists_nodes()) return BlobStatus::kBadTree;
     if (!points_ascend()) return BlobStatus::kBadPoints;
     if (!neighbours_exist()) return BlobStatus::kBadNeighbours;
     if (!materials_are_sane()) return BlobStatus::kBadMaterials;
@@ -92,11 +95,22 @@ class BlobValidator {
     if (h.points_per_query_max < h.points_per_leaf_max) return false;
     if (h.points_per_query_max > h.point_count) return false;
     if (h.leaves_per_query_max != kLeavesPerQuery) return false;
+    if (h.leaf_group_shift > kMaxLeafGroupShift || !directory_level_is_sane()) return false;
     for (const std::uint32_t word : h.reserved) {  // bound: 5
       if (word != 0) return false;
     }
     return is_terminated(h.name, sizeof h.name) &&
            is_terminated(h.tool_version, sizeof h.tool_version);
+  }
+
+  [[nodiscard]] bool is_surface() const {
+    return header_->profile == static_cast<std::uint32_t>(Profile::kSurface);
+  }
+
+  bool directory_level_is_sane() const {
+    const std::uint32_t level = header_->directory_level;
+    if (!is_surface()) return level == 0;
+    return level < header_->depth && header_->depth - level <= kMaxLevelsBelow;
   }
 
   bool figures_are_sane() const {
@@ -126,9 +140,8 @@ class BlobValidator {
     // The eight-corner rule, with the units that find_leaves_within() adds for rounding.
     const float reach_max = h.step_m * static_cast<float>(kLeafUnits / 2 - 4);
     if (!in_range(h.reach_m, 0.0F, reach_max)) return false;
-    const bool surface = h.profile == static_cast<std::uint32_t>(Profile::kSurface);
-    return !surface || (h.support_radius_m > 0.0F && h.support_radius_m <= h.reach_m &&
-                        0.5F * h.aabb_edge_m <= h.reach_m);
+    return !is_surface() || (h.support_radius_m > 0.0F && h.support_radius_m <= h.reach_m &&
+                             0.5F * h.aabb_edge_m <= h.reach_m);
   }
 
   bool bounds_are_sane() const {
@@ -163,8 +176,13 @@ class BlobValidator {
     cursor_ = h.header_bytes;
     const std::uint64_t neighbour_bytes = h.neighbours.bytes == 0 ? 0 : 24ULL * h.leaf_count;
     const std::uint64_t index_bytes = h.material_count > 1 ? h.point_count : 0;
-    return take(h.nodes, sizeof(BlobNode) * std::uint64_t{h.node_count}) &&
-           take(h.leaves, 4ULL * (std::uint64_t{h.leaf_count} + 1U)) &&
+    const std::uint64_t node_bytes = is_surface() ? sizeof(std::uint32_t) : sizeof(BlobNode);
+    const std::uint64_t directory_bytes =
+        h.directory_level == 0 ? 0 : 4ULL << 3U * h.directory_level;
+    const std::uint64_t leaf_groups = (h.leaf_count >> h.leaf_group_shift) + 1ULL;
+    return take(h.nodes, node_bytes * h.node_count) && take(h.directory, directory_bytes) &&
+           take(h.leaf_bases, 4ULL * leaf_groups) &&
+           take(h.leaf_offsets, 2ULL * (std::uint64_t{h.leaf_count} + 1U)) &&
            take(h.points, 4ULL * h.point_count) && take(h.normals, 2ULL * h.point_count) &&
            take(h.neighbours, neighbour_bytes) &&
            take(h.materials, sizeof(BlobMaterial) * std::uint64_t{h.material_count}) &&
@@ -180,8 +198,10 @@ class BlobValidator {
   void attach() {
     const BlobHeader& h = *header_;
     view_.header_ = header_;
-    view_.nodes_ = at<BlobNode>(h.nodes);
-    view_.leaves_ = at<std::uint32_t>(h.leaves);
+    view_.nodes_ = at<std::uint32_t>(h.nodes);
+    view_.directory_ = h.directory_level == 0 ? &kRootNode : at<std::uint32_t>(h.directory);
+    view_.leaf_bases_ = at<std::uint32_t>(h.leaf_bases);
+    view_.leaf_offsets_ = at<std::uint16_t>(h.leaf_offsets);
     view_.points_ = at<std::uint32_t>(h.points);
     view_.normals_ = at<std::uint16_t>(h.normals);
     view_.neighbours_ = at<std::uint32_t>(h.neighbours);
@@ -190,17 +210,31 @@ class BlobValidator {
     view_.step_m_ = h.step_m;
     view_.inverse_step_ = 1.0F / h.step_m;
     view_.reach_m_ = h.reach_m;
+    view_.leaf_edge_m_ = h.leaf_edge_min_m;
+    view_.inverse_leaf_edge_ = 1.0F / h.leaf_edge_min_m;
+    view_.cells_and_one_ = static_cast<float>((1U << h.depth) + 1U);
+    for (std::uint32_t axis = 0; axis < 3; ++axis) {  // bound: 3
+      view_.root_min_m_[axis] = h.step_m * static_cast<float>(h.root_min[axis]);
+    }
     view_.depth_ = h.depth;
+    view_.directory_level_ = h.directory_level;
+    view_.leaf_group_shift_ = h.leaf_group_shift;
+    view_.uniform_ = is_surface();
   }
 
   bool leaves_are_sane() const {
-    const std::uint32_t* first = view_.leaves_;
-    if (first[0] != 0 || first[header_->leaf_count] != header_->point_count) return false;
+    const std::uint32_t in_group = (1U << header_->leaf_group_shift) - 1U;
+    std::uint32_t first = 0;
     for (std::uint32_t i = 0; i < header_->leaf_count; ++i) {  // bound: leaves
-      if (first[i] >= first[i + 1]) return false;
-      if (first[i + 1] - first[i] > header_->points_per_leaf_max) return false;
+      if (view_.first_point(i) != first) return false;
+      if ((i & in_group) == 0 && view_.leaf_offsets_[i] != 0) return false;
+      const std::uint32_t next = view_.first_point(i + 1);
+      if (next <= first || next - first > header_->points_per_leaf_max) return false;
+      first = next;
     }
-    return true;
+    const bool last_begins_group = (header_->leaf_count & in_group) == 0;
+    return first == header_->point_count &&
+           !(last_begins_group && view_.leaf_offsets_[header_->leaf_count] != 0);
   }
 
   // A depth-first walk in which each group of children must be the next one not yet given out:
@@ -213,7 +247,7 @@ class BlobValidator {
     Frame stack[kMaxDepth];
     TreeCounts seen;
     if (!open_node(0, 0, seen)) return false;
-    stack[0] = {0, view_.nodes_[0].nodes >> 24};
+    stack[0] = {0, view_.node(0, 0).nodes >> 24};
     std::uint32_t level = 0;
     while (true) {  // bound: 2 nodes (each is entered once and left once)
       Frame& frame = stack[level];
@@ -225,10 +259,10 @@ class BlobValidator {
       if (level + 1 >= header_->depth) return false;
       const std::uint32_t octant = lowest_octant(frame.octants_left);
       frame.octants_left &= frame.octants_left - 1U;
-      const std::uint32_t child = child_node(view_.nodes_[frame.node], octant);
+      const std::uint32_t child = child_node(view_.node(frame.node, level), octant);
       ++level;
       if (!open_node(child, level, seen)) return false;
-      stack[level] = {child, view_.nodes_[child].nodes >> 24};
+      stack[level] = {child, view_.node(child, level).nodes >> 24};
     }
     return seen.nodes == header_->node_count && seen.leaves == header_->leaf_count &&
            seen.depth == header_->depth;
@@ -241,7 +275,7 @@ class BlobValidator {
   };
 
   bool open_node(std::uint32_t index, std::uint32_t level, TreeCounts& seen) const {
-    const BlobNode node = view_.nodes_[index];
+    const BlobNode node = view_.node(index, level);
     const std::uint32_t node_mask = node.nodes >> 24;
     const std::uint32_t leaf_mask = node.leaves >> 24;
     if ((node_mask & leaf_mask) != 0 || (node_mask | leaf_mask) == 0) return false;
@@ -249,8 +283,35 @@ class BlobValidator {
     if (!take_group(node.leaves, header_->leaf_count, seen.leaves)) return false;
     if (leaf_mask == 0) return true;
     if (level + 1 > seen.depth) seen.depth = level + 1;
-    return level + 1 == header_->depth ||
-           header_->profile == static_cast<std::uint32_t>(Profile::kPaper);
+    return level + 1 == header_->depth || !is_surface();
+  }
+
+  // Entry by entry what a walk from the root finds.
+  bool directory_lists_nodes() const {
+    const std::uint32_t level = header_->directory_level;
+    const std::uint32_t side_mask = (1U << level) - 1U;
+    const std::uint32_t entries = 1U << 3U * level;
+    for (std::uint32_t i = 0; i < entries; ++i) {  // bound: directory entries
+      const Int3 cell{static_cast<std::int32_t>(i & side_mask),
+                      static_cast<std::int32_t>(i >> level & side_mask),
+                      static_cast<std::int32_t>(i >> 2U * level)};
+      if (view_.directory_[i] != node_of_cell(cell, level)) return false;
+    }
+    return true;
+  }
+
+  std::uint32_t node_of_cell(Int3 cell, std::uint32_t level) const {
+    std::uint32_t node = 0;
+    for (std::uint32_t above = 0; above < level; ++above) {  // bound: depth
+      const std::uint32_t shift = level - above - 1U;
+      const std::uint32_t octant = (static_cast<std::uint32_t>(cell.x) >> shift & 1U) |
+                                   (static_cast<std::uint32_t>(cell.y) >> shift & 1U) << 1 |
+                                   (static_cast<std::uint32_t>(cell.z) >> shift & 1U) << 2;
+      const BlobNode here = view_.node(node, above);
+      if ((here.nodes >> 24 >> octant & 1U) == 0) return kNoNode;
+      node = child_node(here, octant);
+    }
+    return node;
   }
 
   // A group of children is the next `children` of `limit`; an empty one names index 0.
@@ -264,9 +325,10 @@ class BlobValidator {
 
   bool points_ascend() const {
     for (std::uint32_t i = 0; i < header_->leaf_count; ++i) {  // bound: leaves
-      std::uint32_t previous = view_.points_[view_.leaves_[i]] & kPointPositionMask;
-      for (std::uint32_t p = view_.leaves_[i] + 1; p < view_.leaves_[i + 1];
-           ++p) {  // bound: points_per_leaf
+      std::uint32_t p = view_.first_point(i);
+      const std::uint32_t end = view_.first_point(i + 1);
+      std::uint32_t previous = view_.points_[p] & kPointPositionMask;
+      for (++p; p < end; ++p) {  // bound: points_per_leaf
         const std::uint32_t here = view_.points_[p] & kPointPositionMask;
         if (here <= previous) return false;
         previous = here;
@@ -396,7 +458,8 @@ LeafCursor::LeafCursor(const BlobView& view) : view_(view), done_(view.empty()) 
 
 void LeafCursor::enter(std::uint32_t node, Int3 cell) {
   cell_ = cell;
-  stack_[level_] = {node, view_.nodes()[node].leaves >> 24, view_.nodes()[node].nodes >> 24};
+  const BlobNode here = view_.node(node, level_);
+  stack_[level_] = {node, here.leaves >> 24, here.nodes >> 24};
 }
 
 void LeafCursor::next() {
@@ -409,14 +472,14 @@ void LeafCursor::next() {
       const std::int32_t edge = kLeafUnits << (view_.depth() - level_ - 1U);
       const std::int32_t* const root = view_.header().root_min;
       leaf_ =
-          view_.leaf(child_leaf(view_.nodes()[top.node], octant), level_ + 1U,
+          view_.leaf(child_leaf(view_.node(top.node, level_), octant), level_ + 1U,
                      {root[0] + cell.x * edge, root[1] + cell.y * edge, root[2] + cell.z * edge});
       return;
     }
     if (top.nodes_left != 0) {
       const std::uint32_t octant = lowest_octant(top.nodes_left);
       top.nodes_left &= top.nodes_left - 1U;
-      const std::uint32_t child = child_node(view_.nodes()[top.node], octant);
+      const std::uint32_t child = child_node(view_.node(top.node, level_), octant);
       ++level_;
       enter(child, child_cell(cell_, octant));
       continue;

@@ -2,17 +2,19 @@
 // Distances from a probe to the points of one leaf, in the leaf's own frame: there the probe's
 // coordinates are small, so float32 keeps them to about 1e-7 of a leaf edge.
 
-#include "tactree/core/blob.hpp"
+#include "corner_leaves.hpp"
+#include "lanes.hpp"
 
 namespace tactree::core {
 
 class LeafScan {
  public:
-  LeafScan(const BlobView& view, const Leaf& leaf, Vec3 probe)
+  LeafScan(const BlobView& view, const NearLeaf& leaf)
       : words_(view.point_words()),
-        scale_(view.step_m() * static_cast<float>(2U << (view.depth() - leaf.level))),
-        local_{local(view, leaf, probe.x, leaf.min.x), local(view, leaf, probe.y, leaf.min.y),
-               local(view, leaf, probe.z, leaf.min.z)} {}
+        first_(leaf.first_point),
+        end_(leaf.end_point),
+        scale_(leaf.site_m),
+        local_(leaf.local) {}
 
   /// From the point to the probe, m.
   [[nodiscard]] Vec3 offset(std::uint32_t index) const {
@@ -22,39 +24,52 @@ class LeafScan {
             local_.z - scale_ * coordinate(word >> 22)};
   }
 
-  /// Squared distances of kLanes consecutive points, m^2; a fixed count, which compilers turn into
-  /// vector code where the core has any. Each lane rounds as length_squared(offset()) does.
-  static constexpr std::uint32_t kLanes = 8;
-  void distances_squared(std::uint32_t first, float (&squared)[kLanes]) const {
-    const std::uint32_t* const words = words_ + first;
-    for (std::uint32_t k = 0; k < kLanes; ++k) {  // bound: 8
-      const std::uint32_t word = words[k];
-      const float x = local_.x - scale_ * coordinate((word >> 2) & 1023U);
-      const float y = local_.y - scale_ * coordinate((word >> 12) & 1023U);
-      const float z = local_.z - scale_ * coordinate(word >> 22);
-      squared[k] = x * x + y * y + z * z;
+  /// visit(squared, index) for kLanes points at a time, squared distances in m^2, until each was
+  /// among them: lane by lane the indices ascend, but for the last points, which may come twice.
+  template <typename Visit>
+  void each_block(Visit&& visit) const {
+    const auto first = static_cast<std::int32_t>(first_);
+    if (end_ - first_ < kLanes) {
+      const Integers index = ascending_to(first, static_cast<std::int32_t>(end_ - 1U));
+      visit(squared(gather(words_, index)), index);
+      return;
+    }
+    Integers index = ascending_from(first);
+    std::uint32_t p = first_;
+    for (; end_ - p >= kLanes; p += kLanes) {  // bound: points_per_leaf
+      visit(squared(load<Words>(words_ + p)), index);
+      index += static_cast<std::int32_t>(kLanes);
+    }
+    if (p != end_) {
+      visit(squared(load<Words>(words_ + (end_ - kLanes))),
+            index - static_cast<std::int32_t>(p + kLanes - end_));
     }
   }
 
  private:
-  // Counted from the leaf's first site, so that a site's coordinate is scale * 0 ... 1023.
-  static float local(const BlobView& view, const Leaf& leaf, float v, std::int32_t low) {
-    const std::int32_t first_site = low + (1 << (view.depth() - leaf.level));
-    return v - view.step_m() * static_cast<float>(first_site);
+  // A coordinate is converted where it stands in the word; the power of two is the scale's. Rounds
+  // as length_squared(offset()) does.
+  [[nodiscard]] Floats squared(Words words) const {
+    const Floats x = (0.25F * scale_) * to_floats(words & 0xFFCU) - local_.x;
+    const Floats y = (0.25F / 1024.0F * scale_) * to_floats(words & 0x3FF000U) - local_.y;
+    const Floats z = scale_ * to_floats(words >> 22) - local_.z;
+    return x * x + y * y + z * z;
   }
   static float coordinate(std::uint32_t site) {
     return static_cast<float>(static_cast<std::int32_t>(site));
   }
+
   const std::uint32_t* words_;
+  std::uint32_t first_;
+  std::uint32_t end_;
   float scale_;
   Vec3 local_;
 };
 
 /// Does the axis-aligned box, half-width `half`, of any of the leaf's points hold the probe?
-inline bool leaf_has_box_around(const BlobView& view, const Leaf& leaf, Vec3 probe, float half) {
-  const LeafScan scan(view, leaf, probe);
-  const std::uint32_t end = leaf.first_point + leaf.point_count;
-  for (std::uint32_t p = leaf.first_point; p < end; ++p) {  // bound: points_per_leaf
+inline bool leaf_has_box_around(const BlobView& view, const NearLeaf& leaf, float half) {
+  const LeafScan scan(view, leaf);
+  for (std::uint32_t p = leaf.first_point; p < leaf.end_point; ++p) {  // bound: points_per_leaf
     const Vec3 d = scan.offset(p);
     if (absolute(d.x) <= half && absolute(d.y) <= half && absolute(d.z) <= half) {
       return true;

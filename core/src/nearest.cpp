@@ -1,98 +1,92 @@
 #include "tactree/core/nearest.hpp"
 
+#include <bit>
+
 #include "leaf_scan.hpp"
-#include "tactree/core/octree.hpp"
 
 namespace tactree::core {
 
 namespace {
 
-void keep_nearer(float squared, std::uint32_t index, NearestPoint& best) {
-  if (squared < best.distance_squared || (squared == best.distance_squared && index < best.index)) {
-    best.distance_squared = squared;
-    best.index = index;
-  }
+constexpr std::int32_t kNone = 0x7FFFFFFF;  // more than any index of a point
+
+struct Nearest {
+  float squared;
+  std::int32_t index;
+};
+
+struct NearestOfLanes {
+  Floats squared;
+  Integers index;
+};
+
+float next_above(float positive) {
+  return std::bit_cast<float>(std::bit_cast<std::uint32_t>(positive) + 1U);
 }
 
-float smallest(const float (&v)[LeafScan::kLanes]) {
-  float half[LeafScan::kLanes / 2];
-  for (std::uint32_t k = 0; k < LeafScan::kLanes / 2; ++k) {  // bound: 4
-    half[k] = v[k] < v[k + 4] ? v[k] : v[k + 4];
+// True when a point of the leaf became the best. A lane keeps the first of equally near points,
+// which has the lowest index; one as near as the best so far counts as nearer here.
+bool nearest_in_leaf(const LeafScan& scan, Nearest& best) {
+  NearestOfLanes lanes{all(next_above(best.squared)), all(kNone)};
+  scan.each_block([&lanes](Floats squared, Integers index) {
+    lanes.index = select(squared < lanes.squared, index, lanes.index);
+    lanes.squared = smaller(squared, lanes.squared);
+  });
+  const float squared = smallest(lanes.squared);
+  if (squared > best.squared) {
+    return false;
   }
-  const float left = half[0] < half[2] ? half[0] : half[2];
-  const float right = half[1] < half[3] ? half[1] : half[3];
-  return left < right ? left : right;
-}
-
-// True when a point of the leaf became the best. Eight at a time; the last eight may overlap the
-// ones before, which changes nothing.
-bool nearest_in_leaf(const Leaf& leaf, const LeafScan& scan, NearestPoint& best) {
-  constexpr std::uint32_t kLanes = LeafScan::kLanes;
-  const std::uint32_t before = best.index;
-  const std::uint32_t end = leaf.first_point + leaf.point_count;
-  if (leaf.point_count < kLanes) {
-    for (std::uint32_t p = leaf.first_point; p < end; ++p) {  // bound: 8
-      keep_nearer(length_squared(scan.offset(p)), p, best);
-    }
-    return best.index != before;
+  const std::int32_t index = smallest(select(lanes.squared == squared, lanes.index, all(kNone)));
+  if (squared == best.squared && index > best.index) {
+    return false;
   }
-  for (std::uint32_t p = leaf.first_point; p < end;
-       p += kLanes) {  // bound: points_per_leaf / 8 + 1
-    const std::uint32_t first = p < end - kLanes ? p : end - kLanes;
-    float squared[kLanes];
-    scan.distances_squared(first, squared);
-    if (smallest(squared) > best.distance_squared) {
-      continue;
-    }
-    for (std::uint32_t k = 0; k < kLanes; ++k) {  // bound: 8
-      keep_nearer(squared[k], first + k, best);
-    }
-  }
-  return best.index != before;
+  best = {squared, index};
+  return true;
 }
 
 }  // namespace
 
 NearestPoint nearest_within(const BlobView& view, Vec3 probe, float r) {
-  CornerLeaves leaves(view, probe, r);
-  NearestPoint best;
-  best.distance_squared = r * r;
-  Leaf leaf;
-  Leaf best_leaf;
-  while (leaves.next(best.distance_squared, leaf)) {  // bound: 8
-    if (nearest_in_leaf(leaf, LeafScan(view, leaf, probe), best)) {
-      best_leaf = leaf;
+  CornerLeaves corners(view, probe, r);
+  Nearest best{r * r, kNone};
+  std::uint32_t number = 0;
+  std::uint32_t corner = 0;
+  corners.each(best.squared, [&](const NearLeaf& leaf) {
+    if (nearest_in_leaf(LeafScan(view, leaf), best)) {
+      number = leaf.number;
+      corner = leaf.corner;
     }
+    return best.squared;
+  });
+  if (best.index == kNone) {
+    return {};
   }
-  if (best.found()) {
-    best.position = view.position(best_leaf, best.index);
-    best.leaf = best_leaf.number;
-  } else {
-    best.distance_squared = 0.0F;
-  }
-  return best;
+  const auto index = static_cast<std::uint32_t>(best.index);
+  return {index, best.squared, view.position(corners.leaf(number, corner), index), number};
 }
 
 PointsWithin points_within(const BlobView& view, Vec3 probe, float r,
                            std::span<std::uint32_t> out) {
-  CornerLeaves leaves(view, probe, r);
   PointsWithin result;
   const float limit = r * r;
-  Leaf leaf;
-  while (leaves.next(limit, leaf)) {  // bound: 8
-    const LeafScan scan(view, leaf, probe);
-    const std::uint32_t end = leaf.first_point + leaf.point_count;
-    for (std::uint32_t p = leaf.first_point; p < end; ++p) {  // bound: points_per_leaf
-      if (length_squared(scan.offset(p)) > limit) {
-        continue;
+  CornerLeaves(view, probe, r).each(limit, [&](const NearLeaf& leaf) {
+    auto next = static_cast<std::int32_t>(leaf.first_point);
+    LeafScan(view, leaf).each_block([&](Floats squared, Integers index) {
+      for (std::uint32_t k = 0; k < kLanes; ++k) {  // bound: 4
+        const std::int32_t point = lane(index, k);
+        if (point < next || lane(squared, k) > limit) {
+          continue;
+        }
+        next = point + 1;
+        if (result.count == out.size()) {
+          result.complete = false;
+          continue;
+        }
+        out[result.count++] = static_cast<std::uint32_t>(point);
       }
-      if (result.count == out.size()) {
-        result.complete = false;
-        return result;
-      }
-      out[result.count++] = p;
-    }
-  }
+    });
+    return result.complete ? limit : -1.0F;
+  });
   return result;
 }
 
@@ -101,14 +95,13 @@ bool in_any_vertex_box(const BlobView& view, Vec3 probe) {
     return false;
   }
   const float half = 0.5F * view.header().aabb_edge_m;
-  CornerLeaves leaves(view, probe, half);
-  Leaf leaf;
-  while (leaves.next(4.0F * half * half, leaf)) {  // bound: 8
-    if (leaf_has_box_around(view, leaf, probe, half)) {
-      return true;
-    }
-  }
-  return false;
+  const float everything = 4.0F * half * half;
+  bool found = false;
+  CornerLeaves(view, probe, half).each(everything, [&](const NearLeaf& leaf) {
+    found = leaf_has_box_around(view, leaf, half);
+    return found ? -1.0F : everything;
+  });
+  return found;
 }
 
 }  // namespace tactree::core

@@ -63,7 +63,7 @@ bool find_neighbour(const BlobView& view, const Leaf& from, std::uint32_t direct
 
 // Keeps the nearest of a leaf's points; ties go to the lower index.
 void nearest_in_leaf(const BlobView& view, const Leaf& leaf, Vec3 probe, NearestPoint& best) {
-  const LeafScan scan(view, leaf, probe);
+  const LeafScan scan(view, near_leaf(view, leaf, probe));
   const std::uint32_t end = leaf.first_point + leaf.point_count;
   for (std::uint32_t p = leaf.first_point; p < end; ++p) {  // bound: points_per_leaf
     const float squared = length_squared(scan.offset(p));
@@ -83,14 +83,14 @@ PaperContact paper_collision(const BlobView& view, Vec3 probe) {
   }
   const float half = 0.5F * view.header().aabb_edge_m;
   if (find_leaf(view, probe, contact.leaf) &&
-      leaf_has_box_around(view, contact.leaf, probe, half)) {
+      leaf_has_box_around(view, near_leaf(view, contact.leaf, probe), half)) {
     contact.in_contact = true;
     return contact;
   }
   for (std::uint32_t direction = 0; direction < 6; ++direction) {  // bound: 6
     const Vec3 moved = six_point(probe, view.header().six_point_offset_m, direction);
     if (find_leaf(view, moved, contact.leaf) &&
-        leaf_has_box_around(view, contact.leaf, probe, half)) {
+        leaf_has_box_around(view, near_leaf(view, contact.leaf, probe), half)) {
       contact.in_contact = true;
       return contact;
     }

@@ -1,6 +1,6 @@
 #include "tactree/core/surface.hpp"
 
-#include "tactree/core/octree.hpp"
+#include "corner_leaves.hpp"
 
 namespace tactree::core {
 namespace {
@@ -218,12 +218,12 @@ void CandidateSet::gather(const BlobView& view, Vec3 centre) {
   complete_ = true;
   centre_ = centre;
   valid_ = true;
-  LeafSet found;
-  find_leaves_within(view, centre, view.reach_m(), found);
   const float reach_squared = view.reach_m() * view.reach_m();
-  for (std::uint32_t i = 0; i < found.count; ++i) {  // bound: kLeavesPerQuery
-    gather_leaf(view, found.leaves[i], reach_squared);
-  }
+  CornerLeaves corners(view, centre, view.reach_m());
+  corners.each(reach_squared, [&](const NearLeaf& leaf) {
+    gather_leaf(view, corners.leaf(leaf.number, leaf.corner), reach_squared);
+    return reach_squared;
+  });
 }
 
 void CandidateSet::gather_leaf(const BlobView& view, const Leaf& leaf, float reach_squared) {

@@ -37,6 +37,7 @@ class IndependentReader(unittest.TestCase):
                 self.assertEqual(single(float(text)), v, "positions are the same to the bit")
             for text, v in zip(row[4:7], normal):
                 self.assertAlmostEqual(float(text), v, delta=2e-7)
+        self.assertEqual(list(blob.directory), read_blob.expected_directory(blob))
         if blob.neighbours:
             self.assertEqual(list(blob.neighbours), list(read_blob.expected_neighbours(blob)))
         return bool(blob.neighbours)

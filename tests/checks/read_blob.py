@@ -15,7 +15,9 @@ class Blob:
     step_m: float
     root_min: tuple
     counts: dict
-    nodes: list
+    nodes: list  # (children that are nodes, children that are leaves)
+    directory_level: int
+    directory: list
     leaves: list
     points: list
     normals: list
@@ -33,11 +35,13 @@ def parse(data):
     refuse_unless(major == 1, "kBadVersion")
     refuse_unless(total == len(data), "kBadSize")
     refuse_unless(checksum == zlib.crc32(data[24:], zlib.crc32(data[:20])), "kBadChecksum")
-    refuse_unless(header_bytes % 4 == 0 and 320 <= header_bytes <= total, "kBadHeader")
-    _, depth, step = struct.unpack_from("<IIf", data, 24)
+    refuse_unless(header_bytes % 4 == 0 and 344 <= header_bytes <= total, "kBadHeader")
+    profile, depth, step = struct.unpack_from("<IIf", data, 24)
+    directory_level, group_shift = struct.unpack_from("<2I", data, 80)
     counts = dict(zip(("points", "leaves", "nodes", "materials"), struct.unpack_from("<4I", data, 48)))
-    names = ("nodes", "leaves", "points", "normals", "neighbours", "materials", "indices")
-    sections = {name: struct.unpack_from("<2I", data, 132 + 8 * i) for i, name in enumerate(names)}
+    names = ("nodes", "directory", "leaf_bases", "leaf_offsets", "points", "normals", "neighbours",
+             "materials", "indices")
+    sections = {name: struct.unpack_from("<2I", data, 140 + 8 * i) for i, name in enumerate(names)}
     cursor = header_bytes
     for name in names:
         offset, size = sections[name]
@@ -49,9 +53,21 @@ def parse(data):
         offset, size = sections[name]
         return struct.unpack_from(f"<{size // struct.calcsize(letter)}{letter}", data, offset)
 
-    return Blob(depth, step, struct.unpack_from("<3i", data, 36), counts, words("nodes", "I"),
-                words("leaves", "I"), words("points", "I"), words("normals", "H"),
+    nodes = words("nodes", "I")
+    nodes = list(zip(nodes[::2], nodes[1::2])) if profile == 1 else nodes
+    bases, offsets = words("leaf_bases", "I"), words("leaf_offsets", "H")
+    leaves = [bases[i >> group_shift] + offset for i, offset in enumerate(offsets)]
+    return Blob(depth, step, struct.unpack_from("<3i", data, 36), counts, nodes, directory_level,
+                words("directory", "I"), leaves, words("points", "I"), words("normals", "H"),
                 words("neighbours", "I"))
+
+
+def children(blob, node, level):
+    """(group of nodes, group of leaves) below a node."""
+    word = blob.nodes[node]
+    if isinstance(word, tuple):
+        return word
+    return (word, 0) if level + 1 < blob.depth else (0, word)
 
 
 def walk(blob):
@@ -69,9 +85,10 @@ def walk(blob):
 
     def enter(node, level, low):
         nonlocal next_leaf, next_node
-        leaves = group(blob.nodes[2 * node + 1], next_leaf)
+        node_group, leaf_group = children(blob, node, level)
+        leaves = group(leaf_group, next_leaf)
         first_leaf, next_leaf = next_leaf, next_leaf + len(leaves)
-        inner = group(blob.nodes[2 * node], next_node)
+        inner = group(node_group, next_node)
         first_node, next_node = next_node, next_node + len(inner)
         for i, octant in enumerate(leaves):
             yield first_leaf + i, level + 1, corner(low, octant, level + 1)
@@ -117,6 +134,26 @@ def cell_of(table, root_min, depth, low, level):
     return 0xFFFFFFFF
 
 
+def expected_directory(blob):
+    """The directory, made from the octree alone."""
+    level = blob.directory_level
+    entries = [0xFFFFFFFF] * (8 ** level if level else 0)
+
+    def enter(node, above, cell):
+        if above == level:
+            entries[cell[0] | cell[1] << level | cell[2] << 2 * level] = node
+            return
+        word = children(blob, node, above)[0]
+        octants = [o for o in range(8) if word >> (24 + o) & 1]
+        for i, octant in enumerate(octants):
+            enter((word & 0xFFFFFF) + i, above + 1,
+                  tuple(cell[a] << 1 | octant >> a & 1 for a in range(3)))
+
+    if level:
+        enter(0, 0, (0, 0, 0))
+    return entries
+
+
 def expected_neighbours(blob):
     """The neighbour table, made from the octree alone."""
     leaves = sorted(walk(blob))
@@ -125,7 +162,7 @@ def expected_neighbours(blob):
 
     def enter(node, level, low):
         table[level, low] = node | level << 24 | 0x80000000
-        octants = [o for o in range(8) if blob.nodes[2 * node] >> (24 + o) & 1]
+        octants = [o for o in range(8) if children(blob, node, level)[0] >> (24 + o) & 1]
         first = next_node[0]
         next_node[0] += len(octants)
         edge = 2048 << (blob.depth - level - 1)

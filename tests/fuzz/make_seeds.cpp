@@ -82,6 +82,7 @@ void write_valid_blobs(const fs::path& folder) {
   give_materials(material, 1);
   write(folder / "kOk.surface_one_material", blob_of(material));
   write(folder / "kOk.surface", blob_of(sphere(40, Profile::kSurface, {0, 0, 0}, 0.05)));
+  write(folder / "kOk.surface_directory", blob_of(sphere(600, Profile::kSurface, {0, 0, 0}, 0.05)));
   write(folder / "kOk.surface_point", blob_of(sphere(1, Profile::kSurface, {0, 0, 0}, 0.05)));
   Model paper = sphere(120, Profile::kPaper, {0.0, -0.3, 0.0}, 0.04);
   give_materials(paper, 2);
@@ -129,10 +130,10 @@ void write_broken_blobs(const fs::path& folder) {
   broken("kBadFigures.step",
          [](Bytes&, BlobHeader& h) { h.step_m = std::nextafter(h.step_m, 1.0F); });
   broken("kBadFigures.root", [](Bytes&, BlobHeader& h) { h.root_min[1] = -(1 << 22) - 1; });
-  broken("kBadSections.gap", [](Bytes&, BlobHeader& h) { h.leaves.offset += 4; });
+  broken("kBadSections.gap", [](Bytes&, BlobHeader& h) { h.leaf_bases.offset += 4; });
   broken("kBadSections.size", [](Bytes&, BlobHeader& h) { h.points.bytes = 0xFFFFFFFC; });
   broken("kBadLeaves.empty_leaf",
-         [](Bytes& b, BlobHeader& h) { items_of<std::uint32_t>(b, h.leaves)[1] = 0; });
+         [](Bytes& b, BlobHeader& h) { items_of<std::uint16_t>(b, h.leaf_offsets)[1] = 0; });
   broken("kBadTree.cycle", [](Bytes& b, BlobHeader& h) {
     auto& root = items_of<tactree::core::BlobNode>(b, h.nodes)[0];
     root.nodes &= 0xFF000000U;
@@ -151,6 +152,10 @@ void write_broken_blobs(const fs::path& folder) {
   });
   broken("kBadMaterials.index",
          [](Bytes& b, BlobHeader& h) { items_of<std::uint8_t>(b, h.material_indices)[0] = 3; });
+  Bytes listed = blob_of(sphere(600, Profile::kSurface, {0, 0, 0}, 0.05));
+  items_of<std::uint32_t>(listed, header_of(listed).directory)[0] ^= 1U;
+  tactree::builder::seal(listed);
+  write(folder / "kBadTree.directory", listed);
   Bytes flipped = good;
   flipped.back() ^= std::byte{1};
   write(folder / "kBadChecksum.bit", flipped);

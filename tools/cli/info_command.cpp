@@ -92,7 +92,8 @@ nlohmann::json to_json(const BlobView& view) {
       {"section_bytes",
        {{"header", h.header_bytes},
         {"nodes", h.nodes.bytes},
-        {"leaves", h.leaves.bytes},
+        {"directory", h.directory.bytes},
+        {"leaves", h.leaf_bases.bytes + h.leaf_offsets.bytes},
         {"points", h.points.bytes},
         {"normals", h.normals.bytes},
         {"neighbours", h.neighbours.bytes},
@@ -132,7 +133,8 @@ void print_sizes(const BlobHeader& h) {
   };
   row("header", h.header_bytes);
   row("octree", h.nodes.bytes);
-  row("leaves", h.leaves.bytes);
+  row("directory", h.directory.bytes);
+  row("leaves", h.leaf_bases.bytes + h.leaf_offsets.bytes);
   row("positions", h.points.bytes);
   row("normals", h.normals.bytes);
   row("neighbours", h.neighbours.bytes);

@@ -9,6 +9,7 @@
 #include "tactree/evaluation/shapes.hpp"
 #include "tactree/plant/plant.hpp"
 #include "tactree/simulation/simulation.hpp"
+#include "tactree/simulation/stability.hpp"
 
 namespace tactree::evaluation {
 namespace {
@@ -156,6 +157,25 @@ double largest_stable(const Shape& wall, Mode mode, double rate_hz, double expec
   return low;
 }
 
+LoopResult::Limit measure_limit(double rate_hz, double delay_s, double hand_Ns_m,
+                                double wall_Ns_m) {
+  simulation::StabilityCase c;
+  c.rate_hz = rate_hz;
+  c.delay_s = delay_s;
+  c.mass_kg = hand_Ns_m > 0.0 ? 0.175 : 0.1;
+  c.device_damping_Ns_m = hand_Ns_m > 0.0 ? 0.1 : 0.5;
+  c.hand_damping_Ns_m = hand_Ns_m;
+  c.wall_damping_Ns_m = wall_Ns_m;
+  // Well above the wall's own frequency, or its damping comes too late to count in full.
+  c.velocity_cutoff_hz = std::max(c.velocity_cutoff_hz, rate_hz / 20.0);
+  LoopResult::Limit limit{rate_hz, delay_s, hand_Ns_m, wall_Ns_m, 0.0, 0.0, 0.0};
+  limit.formula_N_m = simulation::predicted_stiffness(c);
+  limit.measured_N_m = simulation::largest_stable_stiffness(c);
+  c.passivity_Ns_m = static_cast<double>(core::Configuration{}.passivity_Ns_m);
+  limit.passive_N_m = simulation::largest_stable_stiffness(c);
+  return limit;
+}
+
 }  // namespace
 
 LoopResult measure_loop(bool quick) {
@@ -175,6 +195,13 @@ LoopResult measure_loop(bool quick) {
     row.max_N_m[kSurface] = largest_stable(wall, kSurface, rate_hz, row.expected_N_m);
     row.max_N_m[kPaper] = largest_stable(paper_wall, kPaper, rate_hz, row.expected_N_m);
     result.stiffness.push_back(row);
+  }
+  for (const double rate_hz : {1000.0, 4000.0, 10000.0}) {
+    for (const double delay_s : {0.0, 0.3e-3}) {
+      result.limits.push_back(measure_limit(rate_hz, delay_s, 1.0, 0.0));
+      result.limits.push_back(measure_limit(rate_hz, delay_s, 0.0, 0.0));
+    }
+    result.limits.push_back(measure_limit(rate_hz, 0.0, 0.0, 1.0));
   }
   return result;
 }

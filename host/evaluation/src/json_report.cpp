@@ -76,6 +76,16 @@ Json loop(const LoopResult& l) {
     modes[kModeNames[mode]]["vibration_m_s2"] = number(l.vibration_m_s2[mode]);
     json[kModeNames[mode]] = modes[kModeNames[mode]];
   }
+  json["limits"] = Json::array();
+  for (const LoopResult::Limit& c : l.limits) {
+    json["limits"].push_back({{"rate_hz", c.rate_hz},
+                              {"delay_s", c.delay_s},
+                              {"hand_Ns_m", c.hand_Ns_m},
+                              {"wall_Ns_m", c.wall_Ns_m},
+                              {"formula_N_m", number(c.formula_N_m)},
+                              {"measured_N_m", number(c.measured_N_m)},
+                              {"passive_N_m", number(c.passive_N_m)}});
+  }
   return json;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace tactree::evaluation {
 namespace {
@@ -36,6 +37,22 @@ double lowest_accuracy(const Result& result) {
   return lowest;
 }
 
+/// The measured limits against the formula: the furthest below and above; and the smallest gain by
+/// passivity control where a hand holds the device.
+void add_limits(const LoopResult& loop, Checker& check) {
+  double lowest = std::numeric_limits<double>::infinity();
+  double highest = 0.0;
+  double gain = std::numeric_limits<double>::infinity();
+  for (const LoopResult::Limit& c : loop.limits) {
+    lowest = std::min(lowest, c.measured_N_m / c.formula_N_m);
+    highest = std::max(highest, c.measured_N_m / c.formula_N_m);
+    gain = c.hand_Ns_m > 0.0 ? std::min(gain, c.passive_N_m / c.measured_N_m) : gain;
+  }
+  check.add({"loop.stiffness over formula, least", lowest, 0.9, 1.1, ""});
+  check.add({"loop.stiffness over formula, most", highest, 0.9, 1.1, ""});
+  check.add({"loop.stiffness gained by passivity", gain, 1.7, 1e3, ""});
+}
+
 }  // namespace
 
 std::vector<Target> check_targets(const Result& result) {
@@ -67,6 +84,7 @@ std::vector<Target> check_targets(const Result& result) {
   check.at_most("cos", "friction_max", 0.32, "");
   check.at_most("sphere", "friction_max", 0.32, "");
   check.add({"loop.vibration_m_s2", result.loop.vibration_m_s2[kSurface], 0.0, 0.06, "m/s2"});
+  add_limits(result.loop, check);
   return check.take();
 }
 

@@ -191,6 +191,12 @@ TEST_P(Corruption, EveryHeaderFieldIsChecked) {
       {"query max large", BlobStatus::kBadHeader,
        [](BlobHeader& h) { h.points_per_query_max = h.point_count + 1; }},
       {"leaves a query", BlobStatus::kBadHeader, [](BlobHeader& h) { h.leaves_per_query_max = 7; }},
+      {"leaf groups", BlobStatus::kBadHeader,
+       [](BlobHeader& h) { h.leaf_group_shift = core::kMaxLeafGroupShift + 1; }},
+      {"directory of leaves", BlobStatus::kBadHeader,
+       [](BlobHeader& h) { h.directory_level = h.depth; }},
+      {"directory level huge", BlobStatus::kBadHeader,
+       [](BlobHeader& h) { h.directory_level = 0xFFFFFFFFU; }},
       {"reserved", BlobStatus::kBadHeader, [](BlobHeader& h) { h.reserved[4] = 1; }},
       {"name unterminated", BlobStatus::kBadHeader,
        [](BlobHeader& h) { std::memset(h.name, 'x', 32); }},
@@ -228,7 +234,11 @@ TEST_P(Corruption, EveryHeaderFieldIsChecked) {
       {"bounds outside", BlobStatus::kBadFigures,
        [](BlobHeader& h) { h.bounds_min_m[2] -= 100.0F; }},
       {"nodes offset", BlobStatus::kBadSections, [](BlobHeader& h) { h.nodes.offset += 4; }},
-      {"leaves bytes", BlobStatus::kBadSections, [](BlobHeader& h) { h.leaves.bytes += 4; }},
+      {"directory bytes", BlobStatus::kBadSections, [](BlobHeader& h) { h.directory.bytes += 4; }},
+      {"leaf bases bytes", BlobStatus::kBadSections,
+       [](BlobHeader& h) { h.leaf_bases.bytes += 4; }},
+      {"leaf offsets bytes", BlobStatus::kBadSections,
+       [](BlobHeader& h) { h.leaf_offsets.bytes -= 2; }},
       {"points bytes", BlobStatus::kBadSections, [](BlobHeader& h) { h.points.bytes -= 4; }},
       {"normals offset wraps", BlobStatus::kBadSections,
        [](BlobHeader& h) { h.normals.offset = 0xFFFFFFFCU; }},
@@ -255,8 +265,9 @@ TEST_P(Corruption, NewerMinorWithALongerHeaderIsRead) {
   header.version_minor = 9;
   header.header_bytes += 8;
   header.total_bytes += 8;
-  for (core::BlobSection* s : {&header.nodes, &header.leaves, &header.points, &header.normals,
-                               &header.neighbours, &header.materials, &header.material_indices}) {
+  for (core::BlobSection* s :
+       {&header.nodes, &header.directory, &header.leaf_bases, &header.leaf_offsets, &header.points,
+        &header.normals, &header.neighbours, &header.materials, &header.material_indices}) {
     s->offset += 8;
   }
   bytes.insert(bytes.begin() + sizeof header, 8, std::byte{0x5A});
@@ -277,13 +288,16 @@ TEST_P(Corruption, EveryStructureIsChecked) {
   const auto set = [](std::uint32_t n) { return [n](std::uint32_t) { return n; }; };
   const WordCase cases[] = {
       {"first leaf does not start at 0", BlobStatus::kBadLeaves,
-       [](const BlobHeader& h) { return h.leaves.offset; }, plus(1)},
+       [](const BlobHeader& h) { return h.leaf_bases.offset; }, plus(1)},
+      {"group does not start at its base", BlobStatus::kBadLeaves,
+       [](const BlobHeader& h) { return h.leaf_offsets.offset; }, plus(1)},
       {"empty leaf", BlobStatus::kBadLeaves,
-       [](const BlobHeader& h) { return h.leaves.offset + 4; }, set(0)},
+       [](const BlobHeader& h) { return h.leaf_offsets.offset; }, set(0)},
       {"leaf past the points", BlobStatus::kBadLeaves,
-       [](const BlobHeader& h) { return h.leaves.offset + 4; }, set(0xFFFFFFFFU)},
-      {"last leaf end", BlobStatus::kBadLeaves,
-       [](const BlobHeader& h) { return h.leaves.offset + 4 * h.leaf_count; }, plus(0xFFFFFFFFU)},
+       [](const BlobHeader& h) { return h.leaf_offsets.offset; }, set(0xFFFF0000U)},
+      {"base past the points", BlobStatus::kBadLeaves,
+       [](const BlobHeader& h) { return h.leaf_bases.offset + h.leaf_bases.bytes - 4; },
+       set(0xFFFFFFF0U)},
       {"root is its own child", BlobStatus::kBadTree,
        [](const BlobHeader& h) { return h.nodes.offset; },
        [](std::uint32_t v) { return v & 0xFF000000U; }},
@@ -292,8 +306,8 @@ TEST_P(Corruption, EveryStructureIsChecked) {
       {"child past the nodes", BlobStatus::kBadTree,
        [](const BlobHeader& h) { return h.nodes.offset; },
        [](std::uint32_t v) { return v | 0x00FFFFFFU; }},
-      {"octant both node and leaf", BlobStatus::kBadTree,
-       [](const BlobHeader& h) { return h.nodes.offset + 4; }, set(0xFF000000U)},
+      {"second node's group is not the next", BlobStatus::kBadTree,
+       [](const BlobHeader& h) { return h.nodes.offset + 4; }, plus(1)},
       {"point out of order", BlobStatus::kBadPoints,
        [](const BlobHeader& h) { return h.points.offset; }, set(0xFFFFFFFCU)},
       {"material past the table", BlobStatus::kBadMaterials,
@@ -325,6 +339,41 @@ TEST_P(Corruption, EveryStructureIsChecked) {
     builder::seal(bytes);
     EXPECT_EQ(open(bytes), word.expected) << word.name;
   }
+}
+
+TEST(Corruption, NoOctantIsBothNodeAndLeaf) {
+  Bytes bytes = golden(Profile::kPaper);
+  const std::uint32_t value = 0xFF000000U;
+  std::memcpy(&bytes[header_of(bytes).nodes.offset + 4], &value, 4);
+  builder::seal(bytes);
+  EXPECT_EQ(open(bytes), BlobStatus::kBadTree);
+}
+
+TEST(Corruption, EveryDirectoryEntryIsChecked) {
+  const Bytes whole = golden(Profile::kSurface);
+  const BlobHeader header = header_of(whole);
+  ASSERT_GE(header.directory_level, 1U);
+  ASSERT_EQ(header.directory.bytes, 4U << 3U * header.directory_level);
+  for (std::uint32_t at = 0; at < header.directory.bytes; at += 4) {
+    std::uint32_t entry;
+    std::memcpy(&entry, &whole[header.directory.offset + at], 4);
+    for (const std::uint32_t value : {entry + 1U, entry - 1U, 0U, core::kNoNode}) {
+      if (value == entry) continue;
+      Bytes bytes = whole;
+      std::memcpy(&bytes[header.directory.offset + at], &value, 4);
+      builder::seal(bytes);
+      ASSERT_EQ(open(bytes), BlobStatus::kBadTree) << at;
+    }
+  }
+}
+
+TEST(Corruption, PaperBlobsHaveNoDirectory) {
+  Bytes bytes = golden(Profile::kPaper);
+  BlobHeader header = header_of(bytes);
+  header.directory_level = 1;
+  std::memcpy(bytes.data(), &header, sizeof header);
+  builder::seal(bytes);
+  EXPECT_EQ(open(bytes), BlobStatus::kBadHeader);
 }
 
 TEST(Corruption, NeighbourEntriesAreChecked) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "tactree/core/nearest.hpp"
 #include "test_models.hpp"
 
 namespace tactree {
@@ -87,6 +88,34 @@ TEST(Blob, SurfaceProfileTakesAtMostSixAndAHalfBytesAPoint) {
     const TestBlob blob(model);
     ASSERT_GE(blob.view().point_count(), 30000U);
     EXPECT_LE(static_cast<double>(blob.written().bytes.size()) / blob.view().point_count(), 6.5);
+  }
+}
+
+TEST(Blob, ADirectoryTakesLittleAndLeavesFewLevels) {
+  const TestBlob blob(test::cos_sheet(0.25, 0.0025, Profile::kSurface));
+  const core::BlobHeader& header = blob.view().header();
+  EXPECT_LE(header.directory.bytes, header.points.bytes / 32);
+  EXPECT_GT(8 * header.directory.bytes, header.points.bytes / 32);
+  EXPECT_LE(header.depth - header.directory_level, 4U);
+}
+
+// More points in 32 leaves than 16 bits count: fewer leaves share a base.
+TEST(Blob, CrowdedLeavesAreCountedToo) {
+  builder::Model model;
+  for (int i = 0; i < 90000; ++i) {
+    model.positions.emplace_back(1e-5 * (i % 300), 1e-5 * (i / 300), 0.0);
+    model.normals.emplace_back(0.0F, 0.0F, 1.0F);
+  }
+  model.positions.emplace_back(0.05, 0.05, 0.05);
+  model.normals.emplace_back(0.0F, 0.0F, 1.0F);
+  model.spacing_m = 0.001;
+  model.reach_m = 0.003;
+  model.support_radius_m = 0.003;
+  const TestBlob blob(model);
+  const core::BlobHeader& header = blob.view().header();
+  EXPECT_LT(header.leaf_group_shift, core::kMaxLeafGroupShift);
+  for (std::uint32_t i = 0; i < header.point_count; i += 97) {
+    EXPECT_EQ(core::nearest_within(blob.view(), blob.points()[i], 0.003F).index, i);
   }
 }
 

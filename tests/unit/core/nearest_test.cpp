@@ -6,6 +6,7 @@
 #include <random>
 #include <set>
 
+#include "tactree/core/octree.hpp"
 #include "test_models.hpp"
 
 namespace tactree::core {
@@ -30,6 +31,7 @@ std::vector<Case> cases() {
   all.push_back({"sheet", test::cos_sheet(0.25, 0.0025, Profile::kSurface)});
   all.push_back({"sphere", test::sphere(0.03, 0.001)});
   all.push_back({"cloud", test::random_cloud(20000, 1.0, 0.02, Profile::kSurface, 21)});
+  all.push_back({"leaves of many sizes", test::random_cloud(3000, 1.0, 0.02, Profile::kPaper, 22)});
   return all;
 }
 
@@ -89,6 +91,48 @@ TEST(Nearest, AgreesWithBruteForce) {
     }
     EXPECT_GT(found, 200U) << c.name;
   }
+}
+
+// A lattice of points: a probe in the middle between some is as far from all of them, exactly, even
+// where they are in different leaves.
+TEST(Nearest, OfEquallyNearPointsTheLowestIndexWins) {
+  builder::Model model;
+  constexpr double kSpacing = 0.015625;
+  for (int i = 0; i < 20 * 20 * 20; ++i) {
+    model.positions.emplace_back(kSpacing * (i % 20 + 8), kSpacing * (i / 20 % 20 + 8),
+                                 kSpacing * (i / 400 + 8));
+    model.normals.emplace_back(0.0F, 0.0F, 1.0F);
+  }
+  model.spacing_m = kSpacing;
+  model.reach_m = 1020.0 / 32768.0;  // makes the lattice's step 2^-15: equal gaps between points
+  model.support_radius_m = model.reach_m;
+  const TestBlob blob(model);
+  ASSERT_EQ(blob.view().step_m(), 1.0F / 32768.0F);
+  std::mt19937 random(3);
+  std::uniform_int_distribution<std::uint32_t> pick(0, 8000 - 421 - 1);
+  std::size_t across_leaves = 0;
+  for (int i = 0; i < 2000; ++i) {
+    // Between a point and one beside, behind or above it, or any corner of such a cube.
+    const Vec3 a = blob.points()[pick(random)];
+    const float half = 0.5F * static_cast<float>(kSpacing);
+    const Vec3 probe{a.x + (i % 2 == 0 ? half : 0.0F), a.y + (i % 4 < 2 ? half : 0.0F),
+                     a.z + (i % 8 < 4 ? half : 0.0F)};
+    double best = 1e30;
+    for (const Vec3 p : blob.points()) best = std::min(best, distance_squared(p, probe));
+    std::uint32_t lowest = kNoPoint;
+    std::set<std::uint32_t> leaves;
+    for (std::uint32_t p = 0; p < blob.points().size(); ++p) {
+      if (distance_squared(blob.points()[p], probe) == best) {
+        lowest = std::min(lowest, p);
+        Leaf leaf;
+        ASSERT_TRUE(find_leaf(blob.view(), blob.points()[p], leaf));
+        leaves.insert(leaf.number);
+      }
+    }
+    across_leaves += leaves.size() > 1 ? 1U : 0U;
+    ASSERT_EQ(nearest_within(blob.view(), probe, blob.view().reach_m()).index, lowest);
+  }
+  EXPECT_GT(across_leaves, 100U);
 }
 
 TEST(Nearest, PointsWithinAreAllOfThemAndNoOther) {

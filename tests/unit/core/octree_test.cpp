@@ -21,6 +21,9 @@ TEST(Octree, CountsOctants) {
     if (mask != 0) {
       EXPECT_EQ(lowest_octant(mask), static_cast<std::uint32_t>(std::countr_zero(mask)));
     }
+    if (mask < 128) {
+      EXPECT_EQ(count_low_octants(mask), count_octants(mask));
+    }
   }
 }
 

@@ -15,6 +15,7 @@
 #include "tactree/builder/version.hpp"
 #include "tactree/core/blob.hpp"
 #include "tactree/core/crc32.hpp"
+#include "tactree/core/octree.hpp"
 
 namespace tactree::builder {
 namespace {
@@ -121,6 +122,60 @@ std::uint32_t points_per_query(const Octree& tree, core::Profile profile) {
   return most;
 }
 
+// The deepest level whose directory takes at most 1/32 of what the point words take, or no more
+// levels below it than a query can walk.
+std::uint32_t directory_level(const Octree& tree) {
+  const std::uint32_t depth = tree.lattice.depth;
+  std::uint32_t level = depth > core::kMaxLevelsBelow ? depth - core::kMaxLevelsBelow : 0U;
+  while (level + 1U < depth && std::size_t{32} << 3U * (level + 1U) <= tree.words.size()) {
+    ++level;
+  }
+  return level;
+}
+
+// The nodes of a level by their cells; nothing for level 0, the root.
+std::vector<std::uint32_t> directory(const Octree& tree, std::uint32_t level) {
+  std::vector<std::uint32_t> entries;
+  if (level == 0) {
+    return entries;
+  }
+  entries.assign(std::size_t{1} << 3U * level, core::kNoNode);
+  const auto fill = [&](const auto& self, std::uint32_t node, std::uint32_t above,
+                        core::Int3 cell) -> void {
+    if (above == level) {
+      entries[static_cast<std::size_t>(cell.x) | static_cast<std::size_t>(cell.y) << level |
+              static_cast<std::size_t>(cell.z) << 2U * level] = node;
+      return;
+    }
+    for (std::uint32_t octant = 0; octant < 8; ++octant) {
+      if ((tree.nodes[node].nodes >> 24 >> octant & 1U) != 0) {
+        self(self, core::child_node(tree.nodes[node], octant), above + 1U,
+             core::child_cell(cell, octant));
+      }
+    }
+  };
+  fill(fill, 0, 0, {});
+  return entries;
+}
+
+// The largest group of leaves whose points 16 bits can count from its first one, everywhere.
+std::uint32_t leaf_group_shift(const std::vector<std::uint32_t>& first_points) {
+  std::uint32_t shift = core::kMaxLeafGroupShift;
+  const auto fits = [&] {
+    const std::size_t in_group = (std::size_t{1} << shift) - 1U;
+    for (std::size_t i = 0; i < first_points.size(); ++i) {
+      if (first_points[i] - first_points[i & ~in_group] > 0xFFFFU) {
+        return false;
+      }
+    }
+    return true;
+  };
+  while (!fits()) {
+    --shift;
+  }
+  return shift;
+}
+
 class Serialiser {
  public:
   core::BlobSection append(const void* data, std::size_t bytes) {
@@ -221,6 +276,43 @@ core::BlobHeader make_header(const Model& model, const Octree& tree) {
   return header;
 }
 
+// In the surface profile each node has children of one kind, and the other word is 0.
+void append_nodes(Serialiser& out, core::BlobHeader& header, core::Profile profile,
+                  const Octree& tree) {
+  if (profile == core::Profile::kPaper) {
+    header.nodes = out.append(tree.nodes);
+    header.directory = out.append(std::vector<std::uint32_t>{});
+    return;
+  }
+  std::vector<std::uint32_t> groups;
+  groups.reserve(tree.nodes.size());
+  for (const core::BlobNode& node : tree.nodes) {
+    groups.push_back(node.nodes | node.leaves);
+  }
+  header.nodes = out.append(groups);
+  header.directory_level = directory_level(tree);
+  header.directory = out.append(directory(tree, header.directory_level));
+}
+
+void append_leaves(Serialiser& out, core::BlobHeader& header, const Octree& tree) {
+  std::vector<std::uint32_t> first_points;
+  for (const BuiltLeaf& leaf : tree.leaves) {
+    first_points.push_back(leaf.first);
+  }
+  first_points.push_back(header.point_count);
+  header.leaf_group_shift = leaf_group_shift(first_points);
+  std::vector<std::uint32_t> bases;
+  std::vector<std::uint16_t> offsets;
+  for (std::size_t i = 0; i < first_points.size(); ++i) {
+    if (i >> header.leaf_group_shift == bases.size()) {
+      bases.push_back(first_points[i]);
+    }
+    offsets.push_back(static_cast<std::uint16_t>(first_points[i] - bases.back()));
+  }
+  header.leaf_bases = out.append(bases);
+  header.leaf_offsets = out.append(offsets);
+}
+
 void append_points(Serialiser& out, core::BlobHeader& header, const Model& model,
                    const Octree& tree) {
   std::vector<std::uint32_t> words = tree.words;
@@ -250,13 +342,8 @@ std::vector<std::byte> serialise(const Model& model, const Octree& tree) {
   core::BlobHeader header = make_header(model, tree);
   Serialiser out;
   out.append(&header, sizeof header);
-  header.nodes = out.append(tree.nodes);
-  std::vector<std::uint32_t> first_points;
-  for (const BuiltLeaf& leaf : tree.leaves) {
-    first_points.push_back(leaf.first);
-  }
-  first_points.push_back(header.point_count);
-  header.leaves = out.append(first_points);
+  append_nodes(out, header, model.profile, tree);
+  append_leaves(out, header, tree);
   append_points(out, header, model, tree);
   const bool paper = model.profile == core::Profile::kPaper;
   header.neighbours = out.append(paper ? neighbour_table(tree) : std::vector<std::uint32_t>{});

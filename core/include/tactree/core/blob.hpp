@@ -22,7 +22,7 @@ enum class BlobStatus : std::uint8_t {
   kBadHeader,      ///< a count, name or reserved field is impossible
   kBadFigures,     ///< a length, bound or lattice figure is impossible or contradicts another
   kBadSections,    ///< sections do not tile the blob, or disagree with the counts
-  kBadTree,        ///< a node does not follow the canonical order, or is too deep
+  kBadTree,        ///< a node does not follow the canonical order, or the directory the nodes
   kBadLeaves,      ///< a leaf is empty, too full or out of order
   kBadPoints,      ///< points of a leaf are not in ascending order
   kBadNeighbours,  ///< a neighbour entry names no node or leaf
@@ -62,13 +62,36 @@ class BlobView {
   [[nodiscard]] float step_m() const { return step_m_; }
   [[nodiscard]] float inverse_step() const { return inverse_step_; }
   [[nodiscard]] std::uint32_t depth() const { return depth_; }
+  /// Lower corner of the root cube and edge of a finest leaf; exact.
+  [[nodiscard]] const float* root_min_m() const { return root_min_m_; }  // x y z 0
+  [[nodiscard]] float leaf_edge_m() const { return leaf_edge_m_; }
+  [[nodiscard]] float inverse_leaf_edge() const { return inverse_leaf_edge_; }
+  /// One more than there are finest cells along an edge of the root.
+  [[nodiscard]] float cells_and_one() const { return cells_and_one_; }
   /// Largest radius for which a query is exact.
   [[nodiscard]] float reach_m() const { return reach_m_; }
 
-  [[nodiscard]] const BlobNode* nodes() const { return nodes_; }
+  /// True in the surface profile: every leaf is of the deepest level, and a node is one word, the
+  /// group of its children: leaves below a node of level depth() - 1, else nodes.
+  [[nodiscard]] bool is_uniform() const { return uniform_; }
+  [[nodiscard]] const std::uint32_t* node_words() const { return nodes_; }
+  [[nodiscard]] BlobNode node(std::uint32_t index, std::uint32_t level) const {
+    if (!uniform_) {
+      return {nodes_[2U * index], nodes_[2U * index + 1U]};
+    }
+    return level + 1U < depth_ ? BlobNode{nodes_[index], 0} : BlobNode{0, nodes_[index]};
+  }
+  /// The nodes of level directory_level() by their cells, kNoNode where there is none.
+  [[nodiscard]] std::uint32_t directory_level() const { return directory_level_; }
+  [[nodiscard]] const std::uint32_t* directory() const { return directory_; }
+
+  /// Index of the first point of a leaf; for leaf_count, the number of points.
+  [[nodiscard]] std::uint32_t first_point(std::uint32_t leaf_number) const {
+    return leaf_bases_[leaf_number >> leaf_group_shift_] + leaf_offsets_[leaf_number];
+  }
   [[nodiscard]] Leaf leaf(std::uint32_t number, std::uint32_t level, Int3 min) const {
-    const std::uint32_t first = leaves_[number];
-    return {number, first, leaves_[number + 1] - first, level, min};
+    const std::uint32_t first = first_point(number);
+    return {number, first, first_point(number + 1) - first, level, min};
   }
   [[nodiscard]] const std::uint32_t* point_words() const { return points_; }
 
@@ -103,8 +126,10 @@ class BlobView {
   friend class BlobValidator;
 
   const BlobHeader* header_ = nullptr;
-  const BlobNode* nodes_ = nullptr;
-  const std::uint32_t* leaves_ = nullptr;
+  const std::uint32_t* nodes_ = nullptr;
+  const std::uint32_t* directory_ = nullptr;
+  const std::uint32_t* leaf_bases_ = nullptr;
+  const std::uint16_t* leaf_offsets_ = nullptr;
   const std::uint32_t* points_ = nullptr;
   const std::uint16_t* normals_ = nullptr;
   const std::uint32_t* neighbours_ = nullptr;
@@ -113,7 +138,14 @@ class BlobView {
   float step_m_ = 0.0F;
   float inverse_step_ = 0.0F;
   float reach_m_ = 0.0F;
+  float leaf_edge_m_ = 0.0F;
+  float inverse_leaf_edge_ = 0.0F;
+  float cells_and_one_ = 0.0F;
+  float root_min_m_[4] = {};
   std::uint32_t depth_ = 0;
+  std::uint32_t directory_level_ = 0;
+  std::uint32_t leaf_group_shift_ = 0;
+  bool uniform_ = false;
 };
 
 /// Checks `bytes` and, when all is well, points `view` at them; else `view` becomes empty.

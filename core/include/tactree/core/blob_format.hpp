@@ -2,7 +2,8 @@
 // The bytes of a blob: docs/FORMAT.md in C++. Little-endian, position-independent, 4-byte aligned.
 //
 // A blob is a header followed by sections that tile the rest of it without gaps:
-//   nodes, leaves, points, normals [, neighbours] [, materials [, material indices]]
+//   nodes [, directory], leaf bases, leaf offsets, points, normals [, neighbours]
+//   [, materials [, material indices]]
 //
 // All positions lie on one integer lattice: metres = step_m * integer. The step has so few
 // significant bits that this product is exact in float32 for every lattice coordinate of the root
@@ -31,7 +32,9 @@ inline constexpr std::int32_t kMaxCoordinate = 1 << 22;  ///< |lattice coordinat
 inline constexpr std::uint32_t kMaxLeaves = 1U << 24;
 inline constexpr std::uint32_t kMaxNodes = 1U << 24;
 inline constexpr std::uint32_t kMaxMaterials = 255;
-inline constexpr std::uint32_t kLeavesPerQuery = 8;  ///< the eight-corner rule
+inline constexpr std::uint32_t kLeavesPerQuery = 8;     ///< the eight-corner rule
+inline constexpr std::uint32_t kMaxLevelsBelow = 10;    ///< between the directory and the leaves
+inline constexpr std::uint32_t kMaxLeafGroupShift = 5;  ///< log2 of the leaves that share a base
 
 enum class Profile : std::uint32_t {
   kSurface = 0,  ///< every leaf at full depth, leaf edge >= 2 reach: exact neighbour queries
@@ -74,6 +77,9 @@ struct BlobHeader {
       points_per_query_max;  ///< in any eight leaves one query visits: proven by the builder
   std::uint32_t leaves_per_query_max;  ///< 8
 
+  std::uint32_t directory_level;  ///< level of the nodes that the directory lists; 0: the root only
+  std::uint32_t leaf_group_shift;  ///< 2^this leaves share a base
+
   float spacing_m;           ///< h: what the points were resampled to
   float support_radius_m;    ///< R: of the surface fit
   float reach_m;             ///< R + slack: largest radius of an exact query
@@ -85,7 +91,9 @@ struct BlobHeader {
   float bounds_max_m[3];
 
   BlobSection nodes;
-  BlobSection leaves;
+  BlobSection directory;
+  BlobSection leaf_bases;
+  BlobSection leaf_offsets;
   BlobSection points;
   BlobSection normals;
   BlobSection neighbours;
@@ -103,6 +111,8 @@ struct BlobHeader {
 
 /// An inner node: eight octants, each empty, an inner node or a leaf. Octant = x | y << 1 | z << 2,
 /// a bit being set for the upper half. Children of one kind are consecutive, in octant order.
+/// In the surface profile, where a node's level tells which kind its children are, only that word
+/// is stored.
 struct BlobNode {
   std::uint32_t nodes;   ///< bits 0-23: index of the first child node; bits 24-31: which octants
   std::uint32_t leaves;  ///< bits 0-23: number of the first child leaf; bits 24-31: which octants
@@ -118,6 +128,9 @@ struct BlobMaterial {
   float texture_wavelength_m;
   std::uint32_t reserved[2];  ///< 0
 };
+
+// The directory lists the nodes of one level by their cells: x + y << level + z << 2 level.
+inline constexpr std::uint32_t kNoNode = 0xFFFFFFFFU;  ///< directory entry: empty space
 
 // A point is one word and one half word:
 //   word  bits 31-22: z   21-12: y   11-2: x   (sites within the leaf)   1-0: bits 17-16 of the
@@ -138,17 +151,17 @@ static_assert(sizeof(BlobSection) == 8);
 static_assert(sizeof(BlobDouble) == 8);
 static_assert(sizeof(BlobNode) == 8);
 static_assert(sizeof(BlobMaterial) == 32);
-static_assert(sizeof(BlobHeader) == 320);
+static_assert(sizeof(BlobHeader) == 344);
 static_assert(alignof(BlobHeader) == 4);
 static_assert(offsetof(BlobHeader, checksum) == 20);
 static_assert(offsetof(BlobHeader, profile) == 24);
 static_assert(offsetof(BlobHeader, point_count) == 48);
 static_assert(offsetof(BlobHeader, points_per_leaf_max) == 64);
-static_assert(offsetof(BlobHeader, spacing_m) == 80);
-static_assert(offsetof(BlobHeader, nodes) == 132);
-static_assert(offsetof(BlobHeader, source_scale) == 188);
-static_assert(offsetof(BlobHeader, name) == 220);
-static_assert(offsetof(BlobHeader, tool_version) == 284);
+static_assert(offsetof(BlobHeader, spacing_m) == 88);
+static_assert(offsetof(BlobHeader, nodes) == 140);
+static_assert(offsetof(BlobHeader, source_scale) == 212);
+static_assert(offsetof(BlobHeader, name) == 244);
+static_assert(offsetof(BlobHeader, tool_version) == 308);
 static_assert(std::is_trivially_copyable_v<BlobHeader>);
 
 }  // namespace tactree::core

@@ -1,5 +1,5 @@
 #pragma once
-// Point location, and the eight-corner rule.
+// Point location.
 
 #include <cstdint>
 
@@ -19,12 +19,29 @@ constexpr std::uint32_t lowest_octant(std::uint32_t mask) {
   return count_octants((mask & (~mask + 1U)) - 1U);
 }
 
-/// Index of a node's child in `octant`. Precondition: that child is an inner node (a leaf).
+/// The same of a mask without its highest octant (0-127), by a table: it is what every step down
+/// the tree waits for.
+struct OctantCounts {
+  std::uint8_t of[128];
+};
+inline constexpr OctantCounts kOctantCounts = [] {
+  OctantCounts counts{};
+  for (std::uint32_t mask = 0; mask < 128; ++mask) {  // bound: 128
+    counts.of[mask] = static_cast<std::uint8_t>(count_octants(mask));
+  }
+  return counts;
+}();
+constexpr std::uint32_t count_low_octants(std::uint32_t mask) { return kOctantCounts.of[mask]; }
+
+/// Index of the child in `octant` from a word of a node. Precondition: that child exists.
+constexpr std::uint32_t child_of(std::uint32_t group, std::uint32_t octant) {
+  return (group & 0xFFFFFFU) + count_low_octants((group >> 24) & ((1U << octant) - 1U));
+}
 constexpr std::uint32_t child_node(BlobNode node, std::uint32_t octant) {
-  return (node.nodes & 0xFFFFFFU) + count_octants((node.nodes >> 24) & ((1U << octant) - 1U));
+  return child_of(node.nodes, octant);
 }
 constexpr std::uint32_t child_leaf(BlobNode node, std::uint32_t octant) {
-  return (node.leaves & 0xFFFFFFU) + count_octants((node.leaves >> 24) & ((1U << octant) - 1U));
+  return child_of(node.leaves, octant);
 }
 
 /// Cell of a child, in cells of its level.
@@ -49,43 +66,9 @@ constexpr Int3 child_cell(Int3 cell, std::uint32_t octant) {
 /// The leaf that contains a position: to_lattice() and find_leaf().
 [[nodiscard]] bool find_leaf(const BlobView& view, Vec3 position, Leaf& leaf);
 
-/// The eight-corner rule, leaf by leaf: where no leaf is smaller than the cube centre +- r, the
-/// leaves that hold its eight corners are all the leaves it touches. (On each axis the cube is no
-/// longer than a leaf, so a leaf that meets it contains one of its two ends.)
-/// The leaf of the centre comes first, so that a search can narrow as it goes.
+/// The leaves that the cube centre +- r touches. The leaf of the centre, if there is one, is first.
 /// Precondition: 0 <= r <= view.reach_m(); for a larger or NaN r, or a centre that is not finite,
-/// there are no leaves. Cost: at most 8 descents, which share the way to their common ancestor.
-class CornerLeaves {
- public:
-  CornerLeaves(const BlobView& view, Vec3 centre, float r);
-
-  /// The next leaf whose cell is no further than the square root of `limit_squared` (m^2) from the
-  /// centre; false: there is none. The limit may shrink from call to call.
-  [[nodiscard]] bool next(float limit_squared, Leaf& leaf);
-
- private:
-  struct Axis {
-    std::uint32_t own = 0;    // finest cell on the centre's side, counted from the root
-    std::uint32_t other = 0;  // the one beyond the nearest face, when the cube reaches into it
-    bool reaches_other = false;
-    float squared_to_other = 0.0F;  // m^2, not rounded up
-  };
-
-  bool set_axis(std::uint32_t axis, float centre, float r);
-  bool find_common_node();
-  bool is_repeated(std::uint32_t number);
-
-  const BlobView* view_;
-  Axis axes_[3];
-  std::uint32_t node_ = 0;  // deepest node that holds all eight corners
-  std::uint32_t level_ = 0;
-  std::uint32_t corners_left_ = 0;  // bit = which axes take the other cell
-  float away_squared_[kLeavesPerQuery] = {};
-  std::uint32_t seen_[kLeavesPerQuery] = {};
-  std::uint32_t seen_count_ = 0;
-};
-
-/// All leaves that CornerLeaves finds within r.
+/// there are none. Cost: at most 8 descents of at most depth() levels.
 struct LeafSet {
   Leaf leaves[kLeavesPerQuery];
   std::uint32_t count = 0;

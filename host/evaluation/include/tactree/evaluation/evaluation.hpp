@@ -81,6 +81,17 @@ struct LoopResult {
     std::array<double, 2> max_N_m{};
   };
   std::vector<Stiffness> stiffness;
+  /// The controller's own parts against a wall: velocity estimate, damping, passivity control.
+  struct Limit {
+    double rate_hz = 0.0;
+    double delay_s = 0.0;
+    double hand_Ns_m = 0.0;
+    double wall_Ns_m = 0.0;
+    double formula_N_m = 0.0;   ///< core::stability_limit()
+    double measured_N_m = 0.0;  ///< passivity control off
+    double passive_N_m = 0.0;   ///< and on, as configured by default
+  };
+  std::vector<Limit> limits;
 };
 
 struct ScanResult {

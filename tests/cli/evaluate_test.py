@@ -1,0 +1,63 @@
+"""tactree evaluate: every target is met, twice the same, and told as table, JSON and page.
+
+usage: evaluate_test.py TACTREE
+"""
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
+RATES = {"1000", "4000", "10000"}
+
+
+class Evaluate(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.path = pathlib.Path(folder.name)
+        cls.first = cls.evaluate("first", "--require-targets")
+
+    @classmethod
+    def evaluate(cls, name, *options):
+        return subprocess.run(
+            [TACTREE, "evaluate", "--quick", "--no-scans", "--json", f"{name}.json", "--report",
+             f"{name}.md", *options], cwd=cls.path, capture_output=True, text=True, check=False)
+
+    def read(self, name):
+        return json.loads((self.path / name).read_text())
+
+    def test_meets_every_target(self):
+        self.assertEqual(self.first.returncode, 0, self.first.stdout[-2000:] + self.first.stderr)
+        self.assertIn("All targets are met.", self.first.stdout)
+        self.assertNotIn("missed**", self.first.stdout)
+
+    def test_reports_both_tables_of_the_paper_and_the_closed_loop(self):
+        report = self.read("first.json")
+        self.assertEqual(len(report["tables"]["1"]), 6)
+        self.assertIn("2", report["tables"])
+        self.assertEqual(set(report["loop"]["stiffness_max_N_m"]), RATES)
+        for limit in report["loop"]["limits"]:
+            self.assertAlmostEqual(limit["measured_N_m"] / limit["formula_N_m"], 1.0, delta=0.1)
+
+    def test_the_page_shows_its_plots(self):
+        page = (self.path / "first.md").read_text()
+        pictures = list((self.path / "first").glob("*.svg"))
+        self.assertGreaterEqual(len(pictures), 4)
+        for picture in pictures:
+            self.assertIn(f"(first/{picture.name})", page)
+
+    def test_is_the_same_every_time(self):
+        self.assertEqual(self.evaluate("second").returncode, 0)
+        self.assertEqual(self.read("second.json"), self.read("first.json"))
+
+    def test_another_seed_has_other_probes(self):
+        self.evaluate("other", "--seed", "2")
+        self.assertNotEqual(self.read("other.json"), self.read("first.json"))
+
+
+if __name__ == "__main__":
+    unittest.main()
