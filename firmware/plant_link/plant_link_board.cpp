@@ -38,7 +38,7 @@ core::Configuration PlantLinkBoard::connect(const hal::CapturedFault& last_fault
   link::Hello hello;
   hello.blob_address = static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(blob_begin));
   hello.blob_bytes_max = static_cast<std::uint32_t>(blob_end - blob_begin);
-  for (std::uint32_t i = 0; i + 1U < sizeof hello.board && kBoardName[i] != 0; ++i) {
+  for (std::uint32_t i = 0; i + 1U < sizeof hello.board && kBoardName[i] != 0; ++i) {  // bound: 23
     hello.board[i] = kBoardName[i];
   }
   hello.last_fault = last_fault;
@@ -56,7 +56,7 @@ void PlantLinkBoard::report(const hal::StartResult& result) {
 }
 
 hal::Tick PlantLinkBoard::Ticker::wait() noexcept {
-  while (deadlines() == seen_) {
+  while (deadlines() == seen_) {  // bound: 0 (a deadline has begun this tick)
     wait_for_interrupt();
   }
   const std::uint32_t now = deadlines();
@@ -78,7 +78,7 @@ void PlantLinkBoard::exchange() {
 }
 
 void PlantLinkBoard::write(const core::MotorCommand& command) noexcept {
-  for (std::uint32_t axis = 0; axis < core::kAxes; ++axis) {
+  for (std::uint32_t axis = 0; axis < core::kAxes; ++axis) {  // bound: kAxes
     output_.effort[axis] = command.effort(axis);
   }
 }

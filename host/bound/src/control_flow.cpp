@@ -276,6 +276,12 @@ class Builder {
       flow_.instructions.push_back(std::move(decoded.instruction));
     }
     drop_unreachable(flow_);
+    for (const Block& block : flow_.blocks) {
+      if (block.runs_out) {
+        refuse(image_, flow_.instructions[block.first].address,
+               "runs past the end of its function (correct it)");
+      }
+    }
     return std::move(flow_);
   }
 
@@ -382,7 +388,7 @@ class Builder {
     if (falls_through && next != block_of_.end()) {
       add_edge(b, next->second);
     } else if (falls_through && d.kind != Kind::kCall) {
-      refuse(image_, d.instruction.address, "runs past the end of its function (correct it)");
+      flow_.blocks[b].runs_out = true;
     }
   }
 
@@ -437,11 +443,11 @@ class LoopFinder {
   void find() {
     find_dominators();
     std::map<std::uint32_t, Loop> by_header;
+    std::vector<Edge> irregular;
     for (const Edge& edge : retreating_edges()) {
       if (!dominators_[edge.first].contains(edge.second)) {
-        const Block& block = flow_.blocks[edge.second];
-        refuse(image_, flow_.instructions[block.first].address,
-               "a loop that is entered in two places (write it as one loop)");
+        irregular.push_back(edge);
+        continue;
       }
       Loop& loop = by_header[edge.second];
       loop.header = edge.second;
@@ -450,6 +456,9 @@ class LoopFinder {
     }
     for (auto& [header, loop] : by_header) {
       flow_.loops.push_back(std::move(loop));
+    }
+    for (const Edge& edge : irregular) {
+      add_irregular(edge);
     }
     nest();
   }
@@ -513,6 +522,94 @@ class LoopFinder {
     }
   }
 
+  /// A loop that is entered in several places. It needs a block that is on every way around.
+  void add_irregular(const Edge& edge) {
+    for (const Loop& known : flow_.loops) {
+      if (known.irregular && known.blocks.contains(edge.first)) {
+        return;
+      }
+    }
+    Loop loop;
+    loop.irregular = true;
+    loop.blocks = round_trip(edge.first, room_of(edge));
+    std::erase_if(flow_.loops,
+                  [&](const Loop& inner) { return includes(loop.blocks, inner.blocks); });
+    for (const std::uint32_t b : loop.blocks) {
+      if (is_on_every_round(b, loop.blocks)) {
+        loop.header = b;
+        for (const std::uint32_t from : before_[b]) {
+          if (loop.blocks.contains(from)) {
+            loop.back.emplace_back(from, b);
+          }
+        }
+        flow_.loops.push_back(std::move(loop));
+        return;
+      }
+    }
+    refuse(image_, flow_.instructions[flow_.blocks[edge.second].first].address,
+           "loops that are entered in several places (write them as one loop each)");
+  }
+
+  static bool includes(const std::set<std::uint32_t>& all, const std::set<std::uint32_t>& some) {
+    return std::includes(all.begin(), all.end(), some.begin(), some.end());
+  }
+
+  /// The blocks that a loop through this edge may consist of: those of the smallest loop around,
+  /// without its header.
+  [[nodiscard]] std::set<std::uint32_t> room_of(const Edge& edge) const {
+    std::set<std::uint32_t> room;
+    for (std::uint32_t b = 0; b < flow_.blocks.size(); ++b) {
+      room.insert(b);
+    }
+    for (const Loop& loop : flow_.loops) {
+      std::set<std::uint32_t> inner = loop.blocks;
+      inner.erase(loop.header);
+      if (inner.contains(edge.first) && inner.contains(edge.second) && inner.size() < room.size()) {
+        room = std::move(inner);
+      }
+    }
+    return room;
+  }
+
+  /// The blocks of `room` that lead to `block` and that it leads to.
+  [[nodiscard]] std::set<std::uint32_t> round_trip(std::uint32_t block,
+                                                   const std::set<std::uint32_t>& room) const {
+    const auto reached = [&](const auto& next_of) {
+      std::set<std::uint32_t> seen{block};
+      std::vector<std::uint32_t> open{block};
+      while (!open.empty()) {
+        const std::uint32_t here = open.back();
+        open.pop_back();
+        for (const std::uint32_t next : next_of(here)) {
+          if (room.contains(next) && seen.insert(next).second) {
+            open.push_back(next);
+          }
+        }
+      }
+      return seen;
+    };
+    std::set<std::uint32_t> both = reached([&](std::uint32_t b) { return flow_.blocks[b].next; });
+    const std::set<std::uint32_t> to = reached([&](std::uint32_t b) { return before_[b]; });
+    std::erase_if(both, [&](std::uint32_t b) { return !to.contains(b); });
+    return both;
+  }
+
+  [[nodiscard]] bool is_on_every_round(std::uint32_t block,
+                                       const std::set<std::uint32_t>& blocks) const {
+    std::set<std::uint32_t> left = blocks;
+    left.erase(block);
+    // Takes away, again and again, the blocks that nothing which is left leads to.
+    for (bool changed = true; changed;) {
+      const std::size_t count = left.size();
+      std::erase_if(left, [&](std::uint32_t b) {
+        return std::none_of(before_[b].begin(), before_[b].end(),
+                            [&](std::uint32_t from) { return left.contains(from); });
+      });
+      changed = left.size() != count;
+    }
+    return left.empty();
+  }
+
   void nest() {
     auto& loops = flow_.loops;
     std::sort(loops.begin(), loops.end(), [](const Loop& a, const Loop& b) {
@@ -524,9 +621,11 @@ class LoopFinder {
           loops[i].parent = outer;  // the last is the smallest
         }
       }
-      for (const std::uint32_t p : before_[loops[i].header]) {
-        if (!loops[i].blocks.contains(p)) {
-          loops[i].entries.emplace_back(p, loops[i].header);
+      for (const std::uint32_t b : loops[i].blocks) {
+        for (const std::uint32_t from : before_[b]) {
+          if (!loops[i].blocks.contains(from)) {
+            loops[i].entries.emplace_back(from, b);
+          }
         }
       }
     }

@@ -31,14 +31,18 @@ struct Block {
   std::uint32_t count = 0;  ///< 0: a jump to another function, as a block of its own
   std::vector<std::uint32_t> next;
   bool returns = false;
+  bool runs_out = false;  ///< past the end of its function; of blocks that nothing leads to
   std::optional<std::uint32_t> calls;  ///< entry of a function
 };
 
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
-/// A natural loop: all that can reach its back edges without passing its header.
+/// A natural loop: all that can reach its back edges without passing its header. Or an irregular
+/// one, which compilers make when they know the way through the first pass: it is entered anywhere,
+/// and its header is a block that is on every way around.
 struct Loop {
   std::uint32_t header = 0;
+  bool irregular = false;
   std::set<std::uint32_t> blocks;
   std::vector<Edge> back;
   std::vector<Edge> entries;
@@ -62,7 +66,7 @@ struct ControlFlow {
 [[nodiscard]] ControlFlow control_flow(const Image& image, const Function& function);
 
 /// Takes away what follows calls of functions that never return, then finds the loops. Throws
-/// BoundError on a loop with two entries.
+/// BoundError on loops that cannot be told apart.
 void find_loops(const Image& image, ControlFlow& flow, const std::set<std::uint32_t>& never_return);
 
 /// "file:line (function+offset)" of an instruction, for messages.

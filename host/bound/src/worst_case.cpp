@@ -239,7 +239,7 @@ class Model {
   /// How often a loop is entered; with its function when its header is the function's entry.
   [[nodiscard]] Terms entered(std::uint32_t entry, const Loop& loop) const {
     Terms terms = edges(entry, loop.entries);
-    if (loop.header == 0) {
+    if (loop.blocks.contains(0)) {
       terms[variables_.at(entry).entry] += 1.0;
     }
     return terms;
@@ -262,8 +262,13 @@ class Model {
         }
         return edges(entry, inwards);
       }
-      default:
-        return edges(entry, loop.back);
+      default: {
+        Terms terms = edges(entry, loop.back);
+        if (loop.irregular) {  // it may come to its header before the first pass is done
+          subtract(terms, entered(entry, loop));
+        }
+        return terms;
+      }
     }
   }
 
