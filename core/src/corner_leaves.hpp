@@ -118,7 +118,7 @@ inline std::uint32_t step_down(const BlobView& view, std::uint32_t node, std::ui
   std::uint32_t node = directory_entry(0);
   std::uint32_t left = below_;
   path_[left] = node;
-  while (left != 0 && node != kNoNode) {  // bound: depth
+  while (left != 0 && node != kNoNode) {  // bound: levels_below
     --left;
     node = step_down(view_, node, octant_of(own_packed_, left));
     path_[left] = node;
@@ -139,12 +139,12 @@ inline std::uint32_t step_down(const BlobView& view, std::uint32_t node, std::ui
     const std::uint32_t each = packed ^ own_packed_;
     const std::uint32_t differing = (each | each >> 10 | each >> 20) & 1023U;
     left = 1;
-    while (differing >> left != 0) {  // bound: depth
+    while (differing >> left != 0) {  // bound: levels_below
       ++left;
     }
     node = left < path_end_ ? kNoNode : path_[left];
   }
-  while (left != 0 && node != kNoNode) {  // bound: depth
+  while (left != 0 && node != kNoNode) {  // bound: levels_below
     --left;
     node = step_down(view_, node, octant_of(packed, left));
   }
@@ -154,7 +154,8 @@ inline std::uint32_t step_down(const BlobView& view, std::uint32_t node, std::ui
 [[gnu::always_inline]] inline NearLeaf CornerLeaves::find(std::uint32_t corner) {
   if (!view_.is_uniform()) {
     Leaf leaf;
-    return find_mixed(corner, leaf) ? near_leaf(view_, leaf, centre_, corner) : NearLeaf{};
+    const bool found = find_mixed(corner, leaf);  // at most: 8 * mixed per CandidateSet::gather
+    return found ? near_leaf(view_, leaf, centre_, corner) : NearLeaf{};
   }
   const std::uint32_t number = corner == 0 ? find_own() : find_other(corner);
   if (number == kNoNode) {

@@ -64,7 +64,9 @@ SurfaceFit Proxy::evaluate(const BlobView& view, Vec3 x, Vec3 reference) {
   --budget_;
   candidates_.cover(view, x);
   complete_ = complete_ && candidates_.complete();
-  return fit_surface(candidates_, x, view.header().support_radius_m, reference);
+  const float radius = view.header().support_radius_m;
+  // at most: kEvaluationsPerTick per Proxy::update
+  return fit_surface(candidates_, x, radius, reference);
 }
 
 void Proxy::sweep(const BlobView& view, Vec3 probe) {

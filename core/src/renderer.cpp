@@ -60,9 +60,11 @@ Rendering update_paper(const BlobView& view, const Configuration& c, Vec3 probe)
 
 Rendering Renderer::update(const BlobView& view, const Configuration& configuration, Vec3 probe,
                            Vec3 velocity) {
-  return configuration.mode == RenderMode::kPaper
-             ? update_paper(view, configuration, probe)
-             : update_surface(view, configuration, probe, velocity);
+  if (configuration.mode == RenderMode::kPaper) {
+    return update_paper(view, configuration, probe);  // at most: paper per Scene::render
+  }
+  // at most: 1 - paper per Scene::render
+  return update_surface(view, configuration, probe, velocity);
 }
 
 Rendering Renderer::update_surface(const BlobView& view, const Configuration& c, Vec3 probe,

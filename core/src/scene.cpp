@@ -223,7 +223,7 @@ SceneRendering Scene::update(const Configuration& configuration, Vec3 probe, Vec
   all.crowded = lend_slots(probe);
   for (Slot& slot : slots_) {  // bound: kMaxReachableBodies
     if (slot.body != kNoBody) {
-      render(slot, configuration, probe, velocity, all);
+      render(slot, configuration, probe, velocity, all);  // at most: bodies per Scene::update
     }
   }
   // Adding nothing must not change the bits of a force, nor the sign of a zero.

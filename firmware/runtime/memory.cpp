@@ -10,8 +10,7 @@ bool aligned(const void* a, const void* b) {
   return ((reinterpret_cast<std::uintptr_t>(a) | reinterpret_cast<std::uintptr_t>(b)) & 3U) == 0U;
 }
 
-// The bounds hold for what is copied in a tick: structures, whose size is a multiple of four where
-// they lie on words.
+// The bounds are those of structures that lie on words: a tick copies and clears nothing else.
 
 // Words of whatever type the bytes have.
 using Word [[gnu::may_alias]] = std::uint32_t;
@@ -38,7 +37,7 @@ void* memcpy(void* __restrict to, const void* __restrict from, std::size_t bytes
       *reinterpret_cast<Word*>(target) = *reinterpret_cast<const Word*>(source);
     }
   }
-  for (; bytes > 0; --bytes) {  // bound: min(bytes % 4, 1) * bytes
+  for (; bytes > 0; --bytes) {  // bound: bytes % 4
     *target++ = *source++;
   }
   return to;
@@ -71,7 +70,7 @@ void* memset(void* to, int value, std::size_t bytes) {
       *reinterpret_cast<Word*>(target) = word;
     }
   }
-  for (; bytes > 0; --bytes) {  // bound: min(bytes % 4, 1) * bytes
+  for (; bytes > 0; --bytes) {  // bound: bytes % 4
     *target++ = byte;
   }
   return to;

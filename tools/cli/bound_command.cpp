@@ -25,15 +25,18 @@ struct BoundCommandOptions {
   std::string blob;
   std::string sources = TACTREE_SOURCES;
   std::string json;
+  std::string mode = "surface";
   std::uint32_t bodies = 1;
 };
 
 bound::Parameters parameters(const BoundCommandOptions& options) {
+  const auto mode =
+      options.mode == "paper" ? core::RenderMode::kPaper : core::RenderMode::kSurface;
   if (options.blob.empty()) {
-    return bound::largest_parameters(options.bodies);
+    return bound::largest_parameters(mode, options.bodies);
   }
   const BlobFile blob(options.blob);
-  return bound::parameters_of(blob.view().header(), options.bodies);
+  return bound::parameters_of(blob.view().header(), mode, options.bodies);
 }
 
 nlohmann::json to_json(const BoundCommandOptions& options, const bound::Parameters& parameters,
@@ -60,6 +63,9 @@ void print(const bound::Parameters& parameters, const bound::Bound& bound) {
   fmt::print("instructions       {} in one tick at most\n", bound.instructions);
   for (const auto& [name, value] : parameters) {
     fmt::print("  {:<22} {}\n", name, value);
+  }
+  for (const std::string& fact : bound.unused_facts) {
+    fmt::print("without effect     {}: 'at most' on a line without a call or store\n", fact);
   }
   fmt::print("functions\n");
   for (std::size_t i = 0; i < std::min(kReported, bound.functions.size()); ++i) {
@@ -95,6 +101,8 @@ void add_bound_command(CLI::App& app, int&) {
   verb->add_option("IMAGE", options->image, "the image: <board>.elf")->required();
   verb->add_option("--blob", options->blob,
                    "the model on the board; without it: every model that a controller accepts");
+  verb->add_option("--mode", options->mode, "surface or paper")
+      ->check(CLI::IsMember({"surface", "paper"}));
   verb->add_option("--bodies", options->bodies, "models within reach of the probe at a time")
       ->check(CLI::Range(1U, core::kMaxReachableBodies));
   verb->add_option("--sources", options->sources, "the sources that the image was built from");

@@ -131,10 +131,11 @@ class Reader {
     do_ends_.push_back(again);
     const std::size_t end = closing(again, '(', ')');
     SourceLoop loop = loop_at(begin, end);
+    loop.tests_last = true;
     for (std::uint32_t line = line_of(again); line <= line_of(end); ++line) {
       loop.head.push_back(line);
     }
-    read_bound(loop, {line_of(begin)});
+    read_bound(loop, {loop.line, loop.line - 1});
     file_.loops.push_back(std::move(loop));
   }
 
@@ -145,7 +146,7 @@ class Reader {
       loop.head.push_back(line);
     }
     loop.simple = is_simple(code_.substr(begin, head_end - begin), is_for);
-    read_bound(loop, {loop.line, line_of(head_end)});
+    read_bound(loop, {loop.line, line_of(head_end), loop.line - 1});
     file_.loops.push_back(std::move(loop));
   }
 
@@ -180,10 +181,17 @@ class Reader {
                                    : std::string_view(text).substr(at + word.size());
   }
 
+  /// A comment on a line of its own is about the next line.
+  [[nodiscard]] bool stands_alone(std::uint32_t line) const {
+    const std::string& text = lines_[line - 1];
+    return text.compare(text.find_first_not_of(' '), 2, "//") == 0;
+  }
+
   void read_bound(SourceLoop& loop, const std::vector<std::uint32_t>& places) const {
     for (const std::uint32_t line : places) {
       std::string_view text = said(line, "bound:");
-      if (text.empty()) {
+      const bool is_before_the_head = line + 1 == loop.line;
+      if (text.empty() || (is_before_the_head && !stands_alone(line))) {
         continue;
       }
       loop.bound = Expression::read(text, place(line));
@@ -224,6 +232,7 @@ class Reader {
       std::string_view text = said(line, "at most:");
       if (!text.empty()) {
         SourceFact fact{name_, line, read_total(text, line)};
+        fact.line += stands_alone(line) ? 1U : 0U;
         check_remark(text, line);
         file_.facts.push_back(std::move(fact));
       }

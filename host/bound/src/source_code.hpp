@@ -26,6 +26,7 @@ struct SourceLoop {
   std::uint32_t line = 0;  ///< where its head begins
   std::uint32_t last = 0;  ///< where its body ends
   std::vector<std::uint32_t> head;
+  bool tests_last = false;  ///< do {} while ()
   /// The condition is one comparison: it is evaluated by one branch.
   bool simple = false;
   std::optional<Expression> bound;

@@ -48,6 +48,7 @@ struct Solved {
   std::map<std::uint32_t, FunctionOnPath> functions;
   std::vector<LoopOnPath> loops;
   std::map<std::uint32_t, BlockOnPath> blocks;
+  std::set<const SourceFact*> facts;  // that hold on to code
 };
 
 Solved solve(const Analysis& analysis, const Entries& entries, const Parameters& arguments);
@@ -267,6 +268,9 @@ class Model {
         if (loop.irregular) {  // it may come to its header before the first pass is done
           subtract(terms, entered(entry, loop));
         }
+        if (own.bounds[number].source->tests_last) {  // once around less than passes
+          add(terms, entered(entry, loop));
+        }
         return terms;
       }
     }
@@ -366,6 +370,9 @@ class Model {
       }
     }
     const std::string where = fmt::format("{}:{}", fact.file, fact.line);
+    if (!calls.empty() || !stores.empty()) {
+      held_.insert(&fact);
+    }
     if (calls.empty() && !stores.empty()) {
       limit_total(stores, fact.total, fact.file, where);
     }
@@ -402,6 +409,7 @@ class Model {
 
   Solved read(const LinearProgram::Solution& solution) {
     Solved solved;
+    solved.facts = held_;
     solved.instructions = solution.gain;
     for (const auto& [entry, own] : variables_) {
       const AnalysedFunction& f = function(entry);
@@ -466,6 +474,7 @@ class Model {
   const Analysis& analysis_;
   const Parameters& arguments_;
   LinearProgram program_;
+  std::set<const SourceFact*> held_;
   std::map<std::uint32_t, FunctionVariables> variables_;
   std::map<std::pair<std::uint32_t, std::uint32_t>, Solved> calls_;
 };
@@ -474,8 +483,15 @@ Solved solve(const Analysis& analysis, const Entries& entries, const Parameters&
   return Model(analysis, arguments).solve(entries);
 }
 
-Bound to_bound(Solved solved) {
+Bound to_bound(const SourceCode& sources, Solved solved) {
   Bound bound;
+  for (const auto& [name, file] : sources.files()) {
+    for (const SourceFact& fact : file.facts) {
+      if (!solved.facts.contains(&fact)) {
+        bound.unused_facts.push_back(fmt::format("{}:{}", name, fact.line));
+      }
+    }
+  }
   bound.instructions = static_cast<std::uint64_t>(std::floor(solved.instructions + kRounding));
   for (auto& [entry, function] : solved.functions) {
     bound.functions.push_back(std::move(function));
@@ -518,25 +534,33 @@ Bound worst_case(const BoundOptions& options) {
   }
   Program program(image, sources, addresses);
   const Analysis analysis{image, sources, program, options.parameters, image.inlined_functions()};
-  return to_bound(solve(analysis, entries, {}));
+  return to_bound(sources, solve(analysis, entries, {}));
 }
 
-Parameters parameters_of(const core::BlobHeader& header, std::uint32_t bodies) {
+Parameters parameters_of(const core::BlobHeader& header, core::RenderMode mode,
+                         std::uint32_t bodies) {
+  const bool is_mixed = header.profile == static_cast<std::uint32_t>(core::Profile::kPaper);
   return {{"depth", header.depth},
           {"points_per_leaf_max", header.points_per_leaf_max},
           {"points_per_ball_max", header.points_per_ball_max},
           {"points_per_query_max", header.points_per_query_max},
+          {"levels_below", header.depth - header.directory_level},
+          {"materials", header.material_count},
+          {"mixed", is_mixed ? 1 : 0},
+          {"paper", mode == core::RenderMode::kPaper ? 1 : 0},
           {"bodies", bodies}};
 }
 
-Parameters largest_parameters(std::uint32_t bodies) {
+Parameters largest_parameters(core::RenderMode mode, std::uint32_t bodies) {
   // A query's eight leaves hold no more than a ball of their size: no more than that is known.
   core::BlobHeader header{};
+  header.profile = static_cast<std::uint32_t>(core::Profile::kPaper);
   header.depth = core::kMaxDepth;
+  header.material_count = core::kMaxMaterials;
   header.points_per_leaf_max = core::kMaxCandidates;
   header.points_per_ball_max = core::kMaxCandidates;
   header.points_per_query_max = core::kLeavesPerQuery * core::kMaxCandidates;
-  return parameters_of(header, bodies);
+  return parameters_of(header, mode, bodies);
 }
 
 }  // namespace tactree::bound

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "tactree/core/blob_format.hpp"
+#include "tactree/core/configuration.hpp"
 
 namespace tactree::bound {
 
@@ -20,9 +21,10 @@ namespace tactree::bound {
 using Parameters = std::map<std::string, std::int64_t>;
 
 /// Those of the models that a board has loaded.
-[[nodiscard]] Parameters parameters_of(const core::BlobHeader& header, std::uint32_t bodies);
+[[nodiscard]] Parameters parameters_of(const core::BlobHeader& header, core::RenderMode mode,
+                                       std::uint32_t bodies);
 /// Those of every model that a controller accepts.
-[[nodiscard]] Parameters largest_parameters(std::uint32_t bodies);
+[[nodiscard]] Parameters largest_parameters(core::RenderMode mode, std::uint32_t bodies);
 
 /// A function the processor enters by itself, and how often in one tick.
 struct EntryPoint {
@@ -68,7 +70,8 @@ struct Bound {
   std::uint64_t instructions = 0;         ///< of one tick, at most
   std::vector<FunctionOnPath> functions;  ///< the costliest first
   std::vector<LoopOnPath> loops;
-  std::vector<BlockOnPath> blocks;  ///< all that were analysed, on the path or not
+  std::vector<std::string> unused_facts;  ///< `at most:` that the compiler left nothing of, file:line
+  std::vector<BlockOnPath> blocks;        ///< all that were analysed, on the path or not
 };
 
 /// Throws BoundError on what has no bound: a loop without an annotation, recursion, an indirect
