@@ -276,12 +276,6 @@ class Builder {
       flow_.instructions.push_back(std::move(decoded.instruction));
     }
     drop_unreachable(flow_);
-    for (const Block& block : flow_.blocks) {
-      if (block.runs_out) {
-        refuse(image_, flow_.instructions[block.first].address,
-               "runs past the end of its function (correct it)");
-      }
-    }
     return std::move(flow_);
   }
 
@@ -689,6 +683,12 @@ void find_loops(const Image& image, ControlFlow& flow,
     }
   }
   drop_unreachable(flow);
+  for (const Block& block : flow.blocks) {
+    if (block.runs_out) {
+      refuse(image, flow.instructions[block.first].address,
+             "runs past the end of its function (correct it)");
+    }
+  }
   LoopFinder(image, flow).find();
 }
 
