@@ -196,6 +196,7 @@ bool Scene::lend_slots(Vec3 probe) {
   for (std::uint32_t i = 0; i < kMaxBodies; ++i) {  // bound: kMaxBodies
     const Body& body = bodies_[i];
     if (exists(i) && body.enabled) {
+      // at most: bodies per Scene::lend_slots
       const Vec3 now = position_to_body(body.pose, probe);
       within_reach[i] = comes_near(body.view, body.seen ? body.probe : now, now);
     }
@@ -208,6 +209,7 @@ bool Scene::lend_slots(Vec3 probe) {
     }
     Slot* const slot = within_reach[i] ? free_slot(within_reach) : slot_of(kNoBody);
     if (slot != nullptr) {
+      // at most: bodies per Scene::lend_slots
       lend(*slot, i, body.seen ? body.probe : position_to_body(body.pose, probe));
     }
     crowded = crowded || (within_reach[i] && slot == nullptr);
@@ -223,7 +225,7 @@ SceneRendering Scene::update(const Configuration& configuration, Vec3 probe, Vec
   all.crowded = lend_slots(probe);
   for (Slot& slot : slots_) {  // bound: kMaxReachableBodies
     if (slot.body != kNoBody) {
-      render(slot, configuration, probe, velocity, all);  // at most: bodies per Scene::update
+      render(slot, configuration, probe, velocity, all);  // at most: min(bodies, kMaxReachableBodies) per Scene::update
     }
   }
   // Adding nothing must not change the bits of a force, nor the sign of a zero.
@@ -282,8 +284,9 @@ void Scene::render(Slot& slot, const Configuration& configuration, Vec3 probe, V
 void Scene::move_on(Vec3 probe, float period_s) {
   for (Body& body : bodies_) {  // bound: kMaxBodies
     if (!body.view.empty()) {
-      body.probe = position_to_body(body.pose, probe);
+      body.probe = position_to_body(body.pose, probe);  // at most: bodies per Scene::move_on
       body.seen = body.enabled;
+      // at most: bodies per Scene::move_on
       body.pose = advanced(body.pose, body.motion, period_s);
     }
   }

@@ -33,6 +33,8 @@ class Program {
     return functions_.at(entry);
   }
   [[nodiscard]] bool returns(std::uint32_t entry) const { return !never_return_.contains(entry); }
+  /// Entries of those that never return.
+  [[nodiscard]] const std::set<std::uint32_t>& endings() const { return never_return_; }
   [[nodiscard]] Lines& lines() { return lines_; }
 
  private:

@@ -241,7 +241,7 @@ class Reader {
 
   void read_constants() {
     static const std::regex kConstant(
-        R"(constexpr\s+(?:std::)?u?(?:int(?:8|16|32|64)_t|int|size_t)\s+(k\w+)\s*=([^;{]*);)");
+        R"(constexpr\s+(?:std::)?u?(?:int(?:8|16|32|64)_t|int|nsigned|size_t)\s+(k\w+)\s*=([^;{]*);)");
     for (std::sregex_iterator it(code_.begin(), code_.end(), kConstant), end; it != end; ++it) {
       const std::string value = std::regex_replace(it->str(2), std::regex(R"((\d)[uUlL]+\b|\n)"), "$1");
       std::string_view text = value;

@@ -436,6 +436,8 @@ class Model {
     if (block.count > 0) {
       BlockOnPath& on_path = solved.blocks[flow.instructions[block.first].address];
       on_path.address = flow.instructions[block.first].address;
+      const Instruction& last = flow.instructions[block.first + block.count - 1];
+      on_path.end = last.address + last.bytes;
       on_path.instructions = block.count;
       on_path.times += times;
     }
@@ -462,6 +464,7 @@ class Model {
     for (const auto& [address, block] : call.blocks) {
       BlockOnPath& on_path = solved.blocks[address];
       on_path.address = address;
+      on_path.end = block.end;
       on_path.instructions = block.instructions;
       on_path.times += times * block.times;
     }
@@ -534,7 +537,11 @@ Bound worst_case(const BoundOptions& options) {
   }
   Program program(image, sources, addresses);
   const Analysis analysis{image, sources, program, options.parameters, image.inlined_functions()};
-  return to_bound(sources, solve(analysis, entries, {}));
+  Bound bound = to_bound(sources, solve(analysis, entries, {}));
+  for (const std::uint32_t entry : program.endings()) {
+    bound.endings.push_back({entry, image.functions().at(entry).end, 0, 0.0});
+  }
+  return bound;
 }
 
 Parameters parameters_of(const core::BlobHeader& header, core::RenderMode mode,

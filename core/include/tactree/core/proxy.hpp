@@ -60,6 +60,7 @@ class Proxy {
 
  private:
   [[nodiscard]] SurfaceFit evaluate(const BlobView& view, Vec3 x, Vec3 reference);
+  [[nodiscard]] std::uint32_t find_nearest(const BlobView& view, Vec3 x) const;
   void sweep(const BlobView& view, Vec3 probe);
   void visit(const BlobView& view, Vec3 x);
   void begin_contact(const BlobView& view, const SurfaceFit& fit);

@@ -62,6 +62,7 @@ struct FunctionOnPath {
 
 struct BlockOnPath {
   std::uint32_t address = 0;
+  std::uint32_t end = 0;
   std::uint32_t instructions = 0;
   double times = 0.0;
 };
@@ -71,6 +72,7 @@ struct Bound {
   std::vector<FunctionOnPath> functions;  ///< the costliest first
   std::vector<LoopOnPath> loops;
   std::vector<std::string> unused_facts;  ///< `at most:` that the compiler left nothing of, file:line
+  std::vector<BlockOnPath> endings;       ///< functions that never return: no tick leads there
   std::vector<BlockOnPath> blocks;        ///< all that were analysed, on the path or not
 };
 

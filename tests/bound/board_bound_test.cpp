@@ -1,0 +1,187 @@
+// The proof holds: no tick of an emulated board takes more instructions than the bound of its
+// image, and none executes code that was not analysed.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "boards_for_test.hpp"
+#include "tactree/bound/bound.hpp"
+#include "tactree/core/device_presets.hpp"
+#include "tactree/simulation/hand_script.hpp"
+#include "test_models.hpp"
+#include "worst_seeking.hpp"
+
+namespace tactree::test {
+namespace {
+
+// Of the images, those that can be analysed and whose cores the emulator models.
+const char* const kProven[] = {"mps2-an386", "netduinoplus2", "mps2-an500", "mps2-an505"};
+
+std::vector<const emulation::BoardDescription*> proven_boards() {
+  std::vector<const emulation::BoardDescription*> boards;
+  for (const char* name : kProven) {
+    boards.push_back(emulation::find_board(name));
+  }
+  return boards;
+}
+
+bound::Bound bound_of(const emulation::BoardDescription& board, const core::BlobView& view,
+                      core::RenderMode mode,
+                      const std::filesystem::path& sources = TACTREE_SOURCES) {
+  bound::BoundOptions options;
+  options.image = built(board, "firmware", board.name);
+  options.sources = sources;
+  options.entries = bound::tick_entries();
+  options.parameters = bound::parameters_of(view.header(), mode, 1);
+  return bound::worst_case(options);
+}
+
+/// Is all of the range in blocks that were analysed, or in what ends the emulation after the ticks?
+bool analysed(const bound::Bound& bound, emulation::CodeRange range) {
+  std::map<std::uint32_t, std::uint32_t> known;
+  for (const auto* blocks : {&bound.blocks, &bound.endings}) {
+    for (const bound::BlockOnPath& block : *blocks) {
+      known[block.address] = block.end;
+    }
+  }
+  std::uint32_t at = range.begin;
+  while (at < range.end) {
+    const auto after = known.upper_bound(at);
+    if (after == known.begin() || std::prev(after)->second <= at) {
+      return false;
+    }
+    at = std::prev(after)->second;
+  }
+  return true;
+}
+
+std::string read_text(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+class Proof : public OnBoard {
+ protected:
+  void expect_all_analysed(const bound::Bound& bound,
+                           const std::vector<emulation::CodeRange>& code) {
+    EXPECT_FALSE(code.empty());
+    for (const emulation::CodeRange& range : code) {
+      EXPECT_TRUE(analysed(bound, range))
+          << std::hex << "executed, but not analysed: within " << range.begin << " .. " << range.end;
+    }
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Boards, Proof, testing::ValuesIn(proven_boards()), name_of_board);
+
+TEST_P(Proof, EveryFactOfTheSourcesHoldsOnToCode) {
+  const TestBlob blob(nasty_model(Nastiness::kEdge));
+  EXPECT_EQ(bound_of(board(), blob.view(), core::RenderMode::kSurface).unused_facts,
+            std::vector<std::string>{});
+}
+
+// How far from the origin it makes sense to look for the worst tick: some supports of the model.
+constexpr float kSize_m = 2e-3F;
+constexpr int kRuns = 12;
+
+// Seeking on these cores reaches so much of the bound: it is no idle one.
+bool is_tight(const emulation::BoardDescription& board) {
+  return std::string(board.toolchain) == "cortex-m4f";
+}
+constexpr double kTightness = 0.8;
+
+TEST_P(Proof, SeekingFindsNoTickBeyondTheBound) {
+  double reached = 0.0;
+  for (const Nastiness kind : {Nastiness::kEdge, Nastiness::kRandomNormals}) {
+    const TestBlob blob(nasty_model(kind));
+    const bound::Bound bound = bound_of(board(), blob.view(), core::RenderMode::kSurface);
+    emulation::EmulationOptions noting = options();
+    noting.note_code = true;
+    const Found found = seek_worst(board(), noting, blob.written().bytes, kSize_m, kRuns,
+                                   core::RenderMode::kSurface, 1);
+    EXPECT_LE(found.instructions, bound.instructions);
+    expect_all_analysed(bound, found.code);
+    const double share =
+        static_cast<double>(found.instructions) / static_cast<double>(bound.instructions);
+    reached = std::max(reached, share);
+    std::printf("%s: worst tick found %llu instructions, bound %llu, %.1f %%\n", board().name,
+                static_cast<unsigned long long>(found.instructions),
+                static_cast<unsigned long long>(bound.instructions), 100.0 * share);
+  }
+  if (is_tight(board())) {
+    EXPECT_GE(reached, kTightness);
+  }
+}
+
+TEST_P(Proof, HoldsInPaperMode) {
+  for (const core::Profile profile : {core::Profile::kSurface, core::Profile::kPaper}) {
+    const TestBlob blob(random_cloud(2000, 0.01, 0.2e-3, profile, 3));
+    const bound::Bound bound = bound_of(board(), blob.view(), core::RenderMode::kPaper);
+    emulation::EmulationOptions noting = options();
+    noting.note_code = true;
+    const Found found = seek_worst(board(), noting, blob.written().bytes, 6e-3F, kRuns / 2,
+                                   core::RenderMode::kPaper, 1);
+    EXPECT_LE(found.instructions, bound.instructions);
+    expect_all_analysed(bound, found.code);
+  }
+}
+
+// Scripts as people run them, with every device: armed, in contact, with faults of the device.
+TEST_P(Proof, HoldsForEveryDevice) {
+  const core::BlobView& view = touched_shape().view();
+  const bound::Bound bound = bound_of(board(), view, core::RenderMode::kSurface);
+  for (const core::DevicePreset& device : core::kDevicePresets) {
+    simulation::Setup setup;
+    simulation::use_device(device, setup);
+    emulation::EmulationOptions noting = options();
+    noting.note_code = true;
+    auto target =
+        std::make_unique<emulation::EmulatedTarget>(board(), touched_shape().bytes(), noting);
+    const emulation::EmulatedTarget& emulated = *target;
+    simulation::Simulation sim(touched_shape().bytes(), setup,
+                               simulation::make_script("rub", view, 1.0), std::move(target));
+    (void)sim.arm();
+    for (int i = 0; i < 300; ++i) {
+      (void)sim.step();
+    }
+    sim.finish();
+    const emulation::InstructionCounts& counts = emulated.instruction_counts().value();
+    EXPECT_GT(counts.ticks, 300U) << device.name;
+    EXPECT_LE(counts.max, bound.instructions) << device.name;
+    expect_all_analysed(bound, counts.code);
+  }
+}
+
+// The test of the tests: where an annotation says less than the code does, a run shows it.
+TEST_P(Proof, ATooSmallBoundIsFound) {
+  const std::filesystem::path folder =
+      std::filesystem::path(testing::TempDir()) / ("too_small_" + std::string(board().name));
+  std::filesystem::create_directories(folder);
+  for (const char* part : {"core", "hal", "firmware"}) {
+    std::filesystem::copy(std::filesystem::path(TACTREE_SOURCES) / part, folder / part,
+                          std::filesystem::copy_options::recursive |
+                              std::filesystem::copy_options::overwrite_existing);
+  }
+  const std::filesystem::path file = folder / "core/src/surface.cpp";
+  std::string text = read_text(file);
+  const std::string honest = "// bound: points_per_ball_max";
+  for (std::size_t at = 0; (at = text.find(honest, at)) != std::string::npos; ++at) {
+    text.replace(at, honest.size(), "// bound: points_per_ball_max / 2");
+  }
+  std::ofstream(file) << text;
+
+  const TestBlob blob(nasty_model(Nastiness::kEdge));
+  const bound::Bound bound = bound_of(board(), blob.view(), core::RenderMode::kSurface, folder);
+  const Found found = seek_worst(board(), options(), blob.written().bytes, kSize_m, kRuns,
+                                 core::RenderMode::kSurface, 1);
+  EXPECT_GT(found.instructions, bound.instructions);
+  std::filesystem::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace tactree::test
