@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -22,7 +23,9 @@ constexpr std::size_t kReported = 12;
 
 struct BoundCommandOptions {
   std::string image;
+  std::string board;
   std::string blob;
+  double rate_hz = 0.0;
   std::string sources = TACTREE_SOURCES;
   std::string json;
   std::string mode = "surface";
@@ -39,7 +42,11 @@ bound::Parameters parameters(const BoundCommandOptions& options) {
   return bound::parameters_of(blob.view().header(), mode, options.bodies);
 }
 
-nlohmann::json to_json(const BoundCommandOptions& options, const bound::Parameters& parameters,
+double highest_rate(const bound::BoardTiming& timing, const bound::Bound& bound) {
+  return std::floor(timing.clock_hz / static_cast<double>(bound.cycles));
+}
+
+nlohmann::json to_json(const BoundCommandOptions& options, const bound::BoundOptions& analysis,
                        const bound::Bound& bound) {
   nlohmann::json functions = nlohmann::json::array();
   for (const bound::FunctionOnPath& f : bound.functions) {
@@ -55,8 +62,19 @@ nlohmann::json to_json(const BoundCommandOptions& options, const bound::Paramete
                      {"passes", loop.passes},
                      {"total", loop.total}});
   }
-  return {{"image", options.image},     {"blob", options.blob},   {"parameters", parameters},
-          {"instructions", bound.instructions}, {"functions", functions}, {"loops", loops}};
+  nlohmann::json result{{"image", options.image},
+                        {"blob", options.blob},
+                        {"parameters", analysis.parameters},
+                        {"instructions", bound.instructions},
+                        {"cycles", nullptr},
+                        {"functions", functions},
+                        {"loops", loops}};
+  if (analysis.timing != nullptr) {
+    result["cycles"] = bound.cycles;
+    result["cycles_are_an_estimate"] = analysis.timing->is_estimate;
+    result["rate_max_hz"] = highest_rate(*analysis.timing, bound);
+  }
+  return result;
 }
 
 void print(const bound::Parameters& parameters, const bound::Bound& bound) {
@@ -79,16 +97,48 @@ void print(const bound::Parameters& parameters, const bound::Bound& bound) {
   }
 }
 
+void print_timing(const bound::BoardTiming& timing, const bound::Bound& bound) {
+  fmt::print("cycles             {} at most{}: at {:.0f} MHz {:.1f} us, {:.0f} Hz ({})\n",
+             bound.cycles, timing.is_estimate ? ", an estimate" : "", 1e-6 * timing.clock_hz,
+             1e6 * static_cast<double>(bound.cycles) / timing.clock_hz,
+             highest_rate(timing, bound), timing.source);
+}
+
+/// Exit code 1 where the board cannot keep the rate.
+void check_rate(const BoundCommandOptions& options, const bound::BoardTiming& timing,
+                const bound::Bound& bound) {
+  const double highest = highest_rate(timing, bound);
+  if (options.rate_hz > highest) {
+    throw CommandError(
+        fmt::format("--rate: {} keeps {:.0f} Hz with this model, not {:.0f}: a tick takes up to {} "
+                    "cycles of {:.0f} (lower --rate, or build a model with fewer points in a ball)",
+                    timing.board, highest, options.rate_hz, bound.cycles,
+                    timing.clock_hz / options.rate_hz));
+  }
+}
+
 void bound_tick(const BoundCommandOptions& options) {
   bound::BoundOptions analysis;
   analysis.image = options.image;
   analysis.sources = options.sources;
   analysis.entries = bound::tick_entries();
   analysis.parameters = parameters(options);
+  analysis.timing = options.board.empty() ? nullptr : bound::find_timing(options.board);
+  if (!options.board.empty() && analysis.timing == nullptr) {
+    throw CommandError(fmt::format("--board: nothing is known about the memories of {} (leave it "
+                                   "out: the bound is in instructions then)",
+                                   options.board));
+  }
   const bound::Bound result = bound::worst_case(analysis);
   print(analysis.parameters, result);
+  if (analysis.timing != nullptr) {
+    print_timing(*analysis.timing, result);
+  }
   if (!options.json.empty()) {
-    write_file(options.json, to_json(options, analysis.parameters, result).dump(2) + "\n");
+    write_file(options.json, to_json(options, analysis, result).dump(2) + "\n");
+  }
+  if (options.rate_hz > 0.0 && analysis.timing != nullptr) {
+    check_rate(options, *analysis.timing, result);
   }
 }
 
@@ -99,6 +149,10 @@ void add_bound_command(CLI::App& app, int&) {
   CLI::App* verb = app.add_subcommand(
       "bound", "Proves from a board's image how many instructions a tick takes at most");
   verb->add_option("IMAGE", options->image, "the image: <board>.elf")->required();
+  CLI::Option* board = verb->add_option(
+      "--board", options->board, "the board: also says how many cycles, and the highest rate");
+  verb->add_option("--rate", options->rate_hz, "fails where the board cannot keep this rate, Hz")
+      ->needs(board);
   verb->add_option("--blob", options->blob,
                    "the model on the board; without it: every model that a controller accepts");
   verb->add_option("--mode", options->mode, "surface or paper")

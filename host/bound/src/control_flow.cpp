@@ -8,6 +8,7 @@
 #include <bit>
 #include <cstring>
 
+#include "cortex_m4_cycles.hpp"
 #include "tactree/bound/bound_error.hpp"
 
 namespace tactree::bound {
@@ -83,6 +84,7 @@ class Decoder {
         refuse(image_, address, "unknown instruction (the analysis does not know it)");
       }
       Decoded decoded = classify(address);
+      count_cycles(*instruction_, decoded.instruction);
       if (it.next(bytes.data(), instruction_->size)) {
         decoded.conditional = true;
         decoded.instruction.constant.reset();

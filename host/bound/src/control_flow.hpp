@@ -19,6 +19,9 @@ struct Instruction {
   std::string text;    ///< mnemonic and operands
   bool store = false;  ///< to memory, but not relative to the stack pointer
   bool conditional_branch = false;
+  std::uint32_t cycles = 0;       ///< of a Cortex-M4 at most, where no memory makes it wait
+  std::uint32_t stack_words = 0;  ///< it loads or stores relative to the stack pointer
+  std::uint32_t other_words = 0;  ///< and anywhere else
   /// A constant put into one of the registers r0 to r3.
   std::optional<std::pair<int, std::uint32_t>> constant;
   std::set<int> written;  ///< of r0 to r3

@@ -38,13 +38,34 @@ struct Analysis {
   Program& program;
   const Parameters& parameters;
   std::set<std::string> inlined;
+  const BoardTiming* timing;  ///< what is maximised are cycles; nullptr: instructions
 };
+
+/// What the processor does by itself when it enters a function and comes back: registers to the
+/// stack and from it, those of the FPU included, whose turn comes with the first instruction that
+/// uses them ("lazy stacking").
+constexpr double kEntryCycles = 2.0 * (12.0 + 17.0);
+constexpr double kEntryWords = 2.0 * 26.0;
+
+double cycles_of(const BoardTiming& timing, const ControlFlow& flow, const Block& block) {
+  const Instruction& first = flow.instructions[block.first];
+  double cycles = 0.0;
+  for (std::uint32_t i = 0; i < block.count; ++i) {
+    const Instruction& instruction = flow.instructions[block.first + i];
+    cycles += instruction.cycles + timing.stack_wait * instruction.stack_words +
+              timing.data_wait * instruction.other_words;
+  }
+  const Instruction& last = flow.instructions[block.first + block.count - 1];
+  const std::uint32_t lines = (last.address + last.bytes - 1) / timing.line_bytes -
+                              first.address / timing.line_bytes + 1;
+  return cycles + timing.fetch_wait * lines;
+}
 
 class Model;
 
 /// The worst case of entry points, or of one call with constant arguments.
 struct Solved {
-  double instructions = 0.0;
+  double cost = 0.0;
   std::map<std::uint32_t, FunctionOnPath> functions;
   std::vector<LoopOnPath> loops;
   std::map<std::uint32_t, BlockOnPath> blocks;
@@ -130,11 +151,18 @@ class Model {
   /// Instructions of one pass of a block, those of a call with constant arguments included.
   double gain_of(std::uint32_t entry, std::uint32_t b) {
     const Block& block = function(entry).flow.blocks[b];
-    double gain = block.count;
+    double gain = cost_of(function(entry).flow, block);
     if (calls_one_that_returns(block) && !shares_callee(block)) {
-      gain += call_with_arguments(entry, b).instructions;
+      gain += call_with_arguments(entry, b).cost;
     }
     return gain;
+  }
+
+  [[nodiscard]] double cost_of(const ControlFlow& flow, const Block& block) const {
+    if (analysis_.timing == nullptr || block.count == 0) {
+      return block.count;
+    }
+    return cycles_of(*analysis_.timing, flow, block);
   }
 
   /// Each call is analysed by itself, for the values its arguments have there.
@@ -410,7 +438,7 @@ class Model {
   Solved read(const LinearProgram::Solution& solution) {
     Solved solved;
     solved.facts = held_;
-    solved.instructions = solution.gain;
+    solved.cost = solution.gain;
     for (const auto& [entry, own] : variables_) {
       const AnalysedFunction& f = function(entry);
       FunctionOnPath& on_path = solved.functions[entry];
@@ -495,7 +523,7 @@ Bound to_bound(const SourceCode& sources, Solved solved) {
       }
     }
   }
-  bound.instructions = static_cast<std::uint64_t>(std::floor(solved.instructions + kRounding));
+  bound.instructions = static_cast<std::uint64_t>(std::floor(solved.cost + kRounding));
   for (auto& [entry, function] : solved.functions) {
     bound.functions.push_back(std::move(function));
   }
@@ -536,10 +564,18 @@ Bound worst_case(const BoundOptions& options) {
     entries[function->begin] += entry.times;
   }
   Program program(image, sources, addresses);
-  const Analysis analysis{image, sources, program, options.parameters, image.inlined_functions()};
+  Analysis analysis{image, sources, program, options.parameters, image.inlined_functions(), nullptr};
   Bound bound = to_bound(sources, solve(analysis, entries, {}));
   for (const std::uint32_t entry : program.endings()) {
     bound.endings.push_back({entry, image.functions().at(entry).end, 0, 0.0});
+  }
+  if (options.timing != nullptr) {
+    analysis.timing = options.timing;
+    double cycles = solve(analysis, entries, {}).cost;
+    for (const EntryPoint& entry : options.entries) {
+      cycles += entry.times * (kEntryCycles + kEntryWords * options.timing->stack_wait);
+    }
+    bound.cycles = static_cast<std::uint64_t>(std::ceil(cycles));
   }
   return bound;
 }

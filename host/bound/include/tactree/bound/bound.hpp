@@ -36,12 +36,28 @@ struct EntryPoint {
 /// more before it ends.
 [[nodiscard]] std::vector<EntryPoint> tick_entries();
 
+/// How long the memories of a board make its core wait.
+struct BoardTiming {
+  const char* board;
+  double clock_hz;
+  std::uint32_t fetch_wait;        ///< cycles for each line of code, fetched anew in each block
+  std::uint32_t line_bytes;        ///< of such a line
+  std::uint32_t stack_wait;        ///< cycles for each word on the stack
+  std::uint32_t data_wait;         ///< for each other word, wherever it is
+  bool is_estimate;                ///< the core is no Cortex-M4, or its board publishes no figures
+  const char* source;
+};
+/// nullptr: nothing is known about the board.
+[[nodiscard]] const BoardTiming* find_timing(const std::string& board);
+
 struct BoundOptions {
   std::filesystem::path image;
   /// The folder that the names of the image's sources are below.
   std::filesystem::path sources;
   std::vector<EntryPoint> entries;
   Parameters parameters;
+  /// Also what the tick takes in cycles; nullptr: instructions only.
+  const BoardTiming* timing = nullptr;
 };
 
 struct LoopOnPath {
@@ -69,6 +85,7 @@ struct BlockOnPath {
 
 struct Bound {
   std::uint64_t instructions = 0;         ///< of one tick, at most
+  std::uint64_t cycles = 0;               ///< the same, where the board's timing is known
   std::vector<FunctionOnPath> functions;  ///< the costliest first
   std::vector<LoopOnPath> loops;
   std::vector<std::string> unused_facts;  ///< `at most:` that the compiler left nothing of, file:line
