@@ -4,6 +4,7 @@
 
 #include "board.hpp"
 #include "platform.hpp"
+#include "runtime/identity.hpp"
 #include "tactree/hal/loop.hpp"
 
 namespace {
@@ -14,6 +15,16 @@ Board board;
 tactree::core::Controller controller;
 tactree::hal::Loop<Board> loop(board, controller);
 
+// A program with a wrong byte gets no model: it cannot give a force.
+tactree::hal::StartResult start(const tactree::core::Configuration& configuration) {
+  if (tactree::firmware::image_is_whole()) {
+    return loop.start(configuration);
+  }
+  tactree::hal::StartResult damaged;
+  damaged.image = tactree::hal::ImageStatus::kDamaged;
+  return damaged;
+}
+
 }  // namespace
 
 void tactree_tick() { loop.tick(); }
@@ -21,7 +32,7 @@ void tactree_tick() { loop.tick(); }
 int main() {
   const tactree::core::Configuration configuration =
       board.connect(tactree::firmware::take_captured_fault());
-  board.report(loop.start(configuration));
+  board.report(start(configuration));
   tactree::firmware::start_ticks(configuration.rate_hz);
   tactree_idle();
 }

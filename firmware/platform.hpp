@@ -30,8 +30,8 @@ void wait_for_interrupt();
 
 // ---- provided by boards/<name>/board.cpp
 
-/// Frequency of the tick timer's clock, Hz; a multiple of 1 MHz.
-extern const std::uint32_t kTimerClockHz;
+/// Frequency of the tick timer's clock, Hz; a multiple of 1 MHz. Asked in start_ticks().
+[[nodiscard]] std::uint32_t timer_clock_hz();
 /// Clocks and pins; before main(), with nothing initialised yet.
 void prepare_board();
 

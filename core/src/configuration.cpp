@@ -50,7 +50,12 @@ ConfigurationStatus check_safety(const Configuration& c) {
   if (!in_range(c.link_timeout_s, 0.005F, 0.1F) || !in_range(c.enable_timeout_s, 0.001F, 1.0F)) {
     return ConfigurationStatus::kBadTimeout;
   }
-  return ConfigurationStatus::kOk;
+  if (!in_range(c.stuck_s, 0.01F, 1.0F)) {
+    return ConfigurationStatus::kBadTimeout;
+  }
+  const bool supply =
+      in_range(c.supply_min_V, 1.0F, 1000.0F) && in_range(c.supply_max_V, c.supply_min_V, 1000.0F);
+  return c.supply_monitored && !supply ? ConfigurationStatus::kBadSupply : ConfigurationStatus::kOk;
 }
 
 constexpr const char* kWords[] = {
@@ -68,6 +73,7 @@ constexpr const char* kWords[] = {
     "ramp_s is outside 2 ticks .. 10 s",
     "speed_max_m_s is outside 0.1 .. 100",
     "a timeout or delay is outside its range",
+    "supply_min_V or supply_max_V is outside its range",
     "stiffness_N_m is beyond the stability limit of device, hand and rate",
 };
 constexpr std::uint32_t kWordCount = sizeof(kWords) / sizeof(kWords[0]);
@@ -111,6 +117,8 @@ GateLimits gate_limits(const Configuration& c) {
     limits.effort_max[i] = c.effort_max[i];
     limits.effort_slew_per_tick[i] = c.effort_slew_s[i] * period_s;
   }
+  limits.continuous_share = c.continuous_share;
+  limits.heat_share_per_tick = period_s / c.thermal_time_s;
   limits.ramp_ticks = static_cast<std::uint32_t>(c.ramp_s * c.rate_hz);
   return limits;
 }

@@ -42,6 +42,8 @@ ConfigurationStatus Controller::configure(const Configuration& configuration) {
   enable_timeout_ticks_ =
       static_cast<std::uint32_t>(configuration.enable_timeout_s * configuration.rate_hz);
   ticks_since_overrun_ = kForever;
+  encoder_watch_.configure(
+      static_cast<std::uint32_t>(configuration.stuck_s * configuration.rate_hz));
   joint_velocity_.configure(1.0F / configuration.rate_hz, quantum_of(configuration.device),
                             configuration.velocity_cutoff_hz);
   passivity_.configure(1.0F / configuration.rate_hz, configuration.passivity_Ns_m,
@@ -55,7 +57,7 @@ ConfigurationStatus Controller::configure(const Configuration& configuration) {
 
 void Controller::remove_unsuitable_bodies() {
   for (std::uint32_t i = 0; i < kMaxBodies; ++i) {  // bound: kMaxBodies
-    const BlobView& view = scene_.view(i);
+    const BlobView view = scene_.view(i);
     if (!view.empty() && suitability(view) != ModelStatus::kOk) {
       (void)scene_.remove(i);
     }
@@ -146,6 +148,7 @@ Output Controller::step(const Input& input) {
   present_ = watch(input);
   if (configured_) {
     present_ |= sense(input);
+    present_ |= watch_stuck(input);
   }
   if (present_ != 0U) {
     raise(present_);
@@ -157,7 +160,9 @@ Output Controller::step(const Input& input) {
   confirm(input, was_armed);
   const SafetyGate::Result gated = apply_force();
   enable_ = !motors_off();
-  return {gated.command, enable_, report(gated)};
+  const Output output = {gated.command, enable_, report(gated)};
+  record(input, output.status);
+  return output;
 }
 
 // A counter that could not be trusted for a moment has lost its place.
@@ -209,11 +214,11 @@ void Controller::forget_motion() {
   joint_velocity_.reset();
   velocity_ = {};
   scene_.reset(probe_);
-  rendering_ = SceneRendering{};
 }
 
 FaultMask Controller::watch(const Input& input) {
-  FaultMask faults = watch_overruns(input) | watch_link(input) | watch_enable(input);
+  FaultMask faults =
+      watch_overruns(input) | watch_link(input) | watch_enable(input) | watch_supply(input);
   faults |= input.emergency_stop ? fault_bit(Fault::kEmergencyStop) : 0U;
   faults |= input.motors_ok ? 0U : fault_bit(Fault::kMotorFault);
   return faults;
@@ -244,6 +249,34 @@ FaultMask Controller::watch_enable(const Input& input) {
   const bool dropped = state_ == State::kActive && !input.enable_read_back;
   const bool late = configured_ && ticks_of_mismatch_ > enable_timeout_ticks_;
   return dropped || late ? fault_bit(Fault::kEnableMismatch) : 0U;
+}
+
+FaultMask Controller::watch_supply(const Input& input) const {
+  const bool good = input.supply_V >= configuration_.supply_min_V &&
+                    input.supply_V <= configuration_.supply_max_V;
+  const bool watched = configuration_.supply_monitored && !motors_off();
+  return watched && !good ? fault_bit(Fault::kSupply) : 0U;
+}
+
+FaultMask Controller::watch_stuck(const Input& input) {
+  if (state_ != State::kActive || !located_) {
+    encoder_watch_.reset();
+    return 0U;
+  }
+  const Vec3 effort = pose_.effort_per_force * shown_;
+  const float share[kAxes] = {effort.x / configuration_.effort_max[0],
+                              effort.y / configuration_.effort_max[1],
+                              effort.z / configuration_.effort_max[2]};
+  if (encoder_watch_.update(input.encoders.counts, share, axes_of(configuration_.device.kind))) {
+    return 0U;
+  }
+  homing_.begin(configuration_.device);
+  return fault_bit(Fault::kEncoderStuck);
+}
+
+void Controller::record(const Input& input, const Status& status) {
+  recorder_.add({status.state, status.faults, status.tick, status.probe, status.velocity,
+                 status.force, status.rendering, input.load});
 }
 
 void Controller::obey(const Input& input) {
@@ -280,12 +313,7 @@ void Controller::recover() {
 
 // The proxy follows in every state: when the motors come on, contact is already known.
 void Controller::render() {
-  if (!located_) {
-    rendering_ = SceneRendering{};
-    return;
-  }
-  rendering_ = scene_.update(configuration_, probe_, velocity_);
-  if (!rendering_.contact.complete) {
+  if (located_ && !scene_.update(configuration_, probe_, velocity_).contact.complete) {
     raise(fault_bit(Fault::kModelIncomplete));
   }
 }
@@ -301,7 +329,7 @@ void Controller::confirm(const Input& input, bool was_armed) {
   dead_man_released_ = dead_man_released_ || !input.dead_man;
   const bool hand = configuration_.dead_man_required ? input.dead_man && dead_man_released_
                                                      : input.command == Command::kArm;
-  const bool device = input.enable_read_back && located_ && !rendering_.contact.in_contact;
+  const bool device = input.enable_read_back && located_ && !scene_.rendering().contact.in_contact;
   waiting_ = hand && !device;
   if (hand && device) {
     happen(Event::kReady);
@@ -329,14 +357,15 @@ void Controller::raise(FaultMask faults) {
 // Of the rendered force: what the place of the device allows, and what keeps the wall passive.
 // Damping may take the push away, but never pulls the hand into the object.
 Vec3 Controller::wanted_force() {
-  const Rendering& contact = rendering_.contact;
+  const Rendering& contact = scene_.rendering().contact;
   const Vec3 rendered = pose_.reach * contact.force;
   if (!contact.in_contact || !whole_ || !(configuration_.passivity_Ns_m > 0.0F)) {
     passivity_.reset();
     return rendered;
   }
-  const Vec3 added = passivity_.update(shown_, {probe_, velocity_, rendering_.wall_velocity},
-                                       pose_.reach * contact.stored_energy);
+  const Vec3 added =
+      passivity_.update(shown_, {probe_, velocity_, scene_.rendering().wall_velocity},
+                        pose_.reach * contact.stored_energy);
   const Vec3 force = rendered + added;
   const float push = dot(force, contact.normal);
   const float pull = dot(rendered, contact.normal);  // of other bodies, at most
@@ -367,13 +396,13 @@ Status Controller::report(const SafetyGate::Result& gated) const {
   status.state = state_;
   status.faults = latched_;
   status.limits = gated.limits;
-  const Rendering& contact = rendering_.contact;
-  const bool at_rim = rendering_.fading || (contact.in_contact && contact.strength < 1.0F);
+  const Rendering& contact = scene_.rendering().contact;
+  const bool at_rim = scene_.rendering().fading || (contact.in_contact && contact.strength < 1.0F);
   status.limits |= state_ == State::kActive && at_rim ? limit_bit(Limit::kRim) : 0U;
   const bool at_end = state_ == State::kActive && contact.in_contact && pose_.reach < 1.0F;
   status.limits |= at_end ? limit_bit(Limit::kWorkspace) : 0U;
   status.limits |= configured_ && !homing_.done() ? limit_bit(Limit::kNotHomed) : 0U;
-  status.limits |= rendering_.crowded ? limit_bit(Limit::kBodies) : 0U;
+  status.limits |= scene_.rendering().crowded ? limit_bit(Limit::kBodies) : 0U;
   status.limits |= waiting_ ? limit_bit(Limit::kWaiting) : 0U;
   status.overruns = overruns_;
   status.probe = probe_;
@@ -386,12 +415,12 @@ Status Controller::report(const SafetyGate::Result& gated) const {
 
 // The gate may give less than was rendered, or nothing; the bodies take it in proportion.
 void Controller::report_reactions(Vec3 force, Status& status) const {
-  const Vec3 rendered = rendering_.contact.force;
+  const Vec3 rendered = scene_.rendering().contact.force;
   const float whole = length_squared(rendered);
   const float share = whole > 0.0F ? dot(force, rendered) / whole : 0.0F;
   const bool displayed = share > 0.0F && is_finite(share);
   for (std::uint32_t i = 0; i < kMaxReachableBodies; ++i) {  // bound: kMaxReachableBodies
-    const Reaction& r = rendering_.reactions[i];
+    const Reaction& r = scene_.rendering().reactions[i];
     if (displayed && r.body != kNoBody) {
       const float part = share < 1.0F ? share : 1.0F;
       status.reactions[i] = {r.body, part * r.force_N, part * r.torque_Nm};

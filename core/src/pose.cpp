@@ -18,9 +18,8 @@ Quaternion unit(Quaternion q) {
 }  // namespace
 
 bool is_valid(const Pose& pose) {
-  const Quaternion& q = pose.rotation;
-  return within(pose.translation_m, kMaxTranslation) && within(q.v, 2.0F) &&
-         absolute(q.w) <= 2.0F && absolute(length_squared(q) - 1.0F) <= kQuaternionTolerance;
+  return within(pose.translation_m, kMaxTranslation) &&
+         absolute(length_squared(pose.rotation) - 1.0F) <= kQuaternionTolerance;
 }
 
 bool is_valid(const Motion& motion) {

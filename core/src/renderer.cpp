@@ -31,7 +31,8 @@ float spring_energy(float stiffness_N_m, float length_m, float force_max_N) {
   return force_max_N * (length_m - 0.5F * force_max_N / stiffness_N_m);
 }
 
-Rendering update_paper(const BlobView& view, const Configuration& c, Vec3 probe) {
+// Not inlined, as render_proxy(): their frames would lie under the deepest calls of all.
+[[gnu::noinline]] Rendering update_paper(const BlobView& view, const Configuration& c, Vec3 probe) {
   Rendering r;
   r.proxy = probe;
   const PaperContact contact = paper_collision(view, probe);
@@ -63,13 +64,13 @@ Rendering Renderer::update(const BlobView& view, const Configuration& configurat
   if (configuration.mode == RenderMode::kPaper) {
     return update_paper(view, configuration, probe);  // at most: paper per Scene::render
   }
+  proxy_.update(view, probe, friction_);  // at most: 1 - paper per Scene::render
   // at most: 1 - paper per Scene::render
-  return update_surface(view, configuration, probe, velocity);
+  return render_proxy(view, configuration, probe, velocity);
 }
 
-Rendering Renderer::update_surface(const BlobView& view, const Configuration& c, Vec3 probe,
-                                   Vec3 velocity) {
-  proxy_.update(view, probe, friction_);
+Rendering Renderer::render_proxy(const BlobView& view, const Configuration& c, Vec3 probe,
+                                 Vec3 velocity) {
   Rendering r;
   r.proxy = proxy_.position();
   r.complete = proxy_.complete();

@@ -38,7 +38,9 @@ bool SafetyGate::configure(const GateLimits& limits) {
   bool valid =
       in_range(limits.force_max_N, 0.01F, 1000.0F) &&
       in_range(limits.slew_N_per_tick, 1e-4F * limits.force_max_N, 2.0F * limits.force_max_N) &&
-      limits.ramp_ticks >= 2U && limits.ramp_ticks <= 1000000U;
+      limits.ramp_ticks >= 2U && limits.ramp_ticks <= 1000000U &&
+      in_range(limits.continuous_share, 0.05F, 1.0F) &&
+      in_range(limits.heat_share_per_tick, 1e-8F, 0.1F);
   for (std::uint32_t i = 0; i < kAxes; ++i) {  // bound: kAxes
     valid = valid && in_range(limits.effort_max[i], 1e-4F, 1000.0F) &&
             in_range(limits.effort_slew_per_tick[i], 1e-4F * limits.effort_max[i],
@@ -48,6 +50,7 @@ bool SafetyGate::configure(const GateLimits& limits) {
     return false;
   }
   limits_ = limits;
+  heat_.configure(limits.continuous_share, limits.heat_share_per_tick);
   release();
   return true;
 }
@@ -58,6 +61,7 @@ SafetyGate::Result SafetyGate::release() {
   for (float& effort : last_effort_) {  // bound: kAxes
     effort = 0.0F;
   }
+  warm_up();
   return {};
 }
 
@@ -90,7 +94,14 @@ SafetyGate::Result SafetyGate::command(Vec3 force, const Mat3& effort_per_force,
   for (std::uint32_t i = 0; i < kAxes; ++i) {  // bound: kAxes
     last_effort_[i] = result.command.effort_[i];
   }
+  warm_up();
   return result;
+}
+
+void SafetyGate::warm_up() {
+  for (std::uint32_t i = 0; i < kAxes; ++i) {  // bound: kAxes
+    heat_.add(i, last_effort_[i] / limits_.effort_max[i]);
+  }
 }
 
 Vec3 SafetyGate::limit_force(Vec3 force, LimitMask& limits) const {
@@ -127,7 +138,9 @@ void SafetyGate::limit_axes(Vec3 own, Vec3 wanted, Result& result) const {
   float target[kAxes];
   float share = 1.0F;
   for (std::uint32_t i = 0; i < kAxes; ++i) {  // bound: kAxes
-    const float allowed = kInside * limits_.effort_max[i];
+    const float cool = heat_.allowed(i);
+    result.limits |= cool < 1.0F ? limit_bit(Limit::kThermal) : 0U;
+    const float allowed = kInside * cool * limits_.effort_max[i];
     target[i] = clamp(base[i], allowed);
     result.limits |= target[i] != base[i] ? limit_bit(Limit::kAxis) : 0U;
     const float room = allowed - (effort[i] < 0.0F ? -target[i] : target[i]);

@@ -33,12 +33,10 @@ bool comes_near(const BlobView& view, Vec3 from, Vec3 to) {
          touches(from.z, to.z, h.bounds_min_m[2], h.bounds_max_m[2], margin);
 }
 
-Rendering to_scene(const Pose& pose, const Rendering& in_body) {
-  Rendering r = in_body;
-  r.proxy = position_to_scene(pose, in_body.proxy);
-  r.normal = direction_to_scene(pose, in_body.normal);
-  r.force = direction_to_scene(pose, in_body.force);
-  return r;
+void bring_to_scene(const Pose& pose, Rendering& r) {
+  r.proxy = position_to_scene(pose, r.proxy);
+  r.normal = direction_to_scene(pose, r.normal);
+  r.force = direction_to_scene(pose, r.force);
 }
 
 }  // namespace
@@ -72,7 +70,6 @@ ModelStatus Scene::add(const BlobView& view, const Pose& pose, std::uint32_t& nu
   if (free == kMaxBodies) {
     return ModelStatus::kTooManyBodies;
   }
-  bodies_[free] = {};
   bodies_[free].view = view;
   bodies_[free].pose = normalized(pose);
   number = free;
@@ -127,8 +124,8 @@ bool Scene::empty() const {
   return none;
 }
 
-const BlobView& Scene::view(std::uint32_t number) const {
-  return bodies_[number < kMaxBodies ? number : 0U].view;
+BlobView Scene::view(std::uint32_t number) const {
+  return number < kMaxBodies ? bodies_[number].view : BlobView{};
 }
 
 Pose Scene::pose(std::uint32_t number) const {
@@ -144,6 +141,7 @@ void Scene::reset(Vec3 probe) {
     lend(slot, slot.body, lent ? position_to_body(bodies_[slot.body].pose, probe) : probe);
     slot.fade.stop();
   }
+  rendering_ = SceneRendering{};
 }
 
 void Scene::lend(Slot& slot, std::uint32_t number, Vec3 probe) {
@@ -217,15 +215,17 @@ bool Scene::lend_slots(Vec3 probe) {
   return crowded;
 }
 
-SceneRendering Scene::update(const Configuration& configuration, Vec3 probe, Vec3 velocity) {
+const SceneRendering& Scene::update(const Configuration& configuration, Vec3 probe, Vec3 velocity) {
   const auto fade_ticks = static_cast<std::uint32_t>(kFadeSeconds * configuration.rate_hz);
   fade_ticks_ = fade_ticks > 0U ? fade_ticks : 1U;
-  SceneRendering all;
+  SceneRendering& all = rendering_;
+  all = SceneRendering{};
   all.contact.proxy = probe;
   all.crowded = lend_slots(probe);
   for (Slot& slot : slots_) {  // bound: kMaxReachableBodies
     if (slot.body != kNoBody) {
-      render(slot, configuration, probe, velocity, all);  // at most: min(bodies, kMaxReachableBodies) per Scene::update
+      // at most: min(bodies, kMaxReachableBodies) per Scene::update
+      render(slot, configuration, probe, velocity);
     }
   }
   // Adding nothing must not change the bits of a force, nor the sign of a zero.
@@ -246,8 +246,8 @@ SceneRendering Scene::update(const Configuration& configuration, Vec3 probe, Vec
   return all;
 }
 
-void Scene::render(Slot& slot, const Configuration& configuration, Vec3 probe, Vec3 velocity,
-                   SceneRendering& all) {
+void Scene::render(Slot& slot, const Configuration& configuration, Vec3 probe, Vec3 velocity) {
+  SceneRendering& all = rendering_;
   const Body& body = bodies_[slot.body];
   const Vec3 seen_probe = position_to_body(body.pose, probe);
   const float furthest = 2.0F * configuration.speed_max_m_s / configuration.rate_hz;
@@ -257,8 +257,8 @@ void Scene::render(Slot& slot, const Configuration& configuration, Vec3 probe, V
   }
   const Vec3 relative = relative_velocity(body.pose, body.motion, probe, velocity);
   const Vec3 seen_velocity = direction_to_body(body.pose, relative);
-  Rendering r = to_scene(body.pose,
-                         slot.renderer.update(body.view, configuration, seen_probe, seen_velocity));
+  Rendering r = slot.renderer.update(body.view, configuration, seen_probe, seen_velocity);
+  bring_to_scene(body.pose, r);
   r.body = slot.body;
   if (r.lost) {
     slot.fade.begin(slot.force - r.force, fade_ticks_);

@@ -12,12 +12,14 @@ constexpr std::uint32_t kMegahertz = 1000000;
 volatile std::uint32_t counted = 0;
 std::uint32_t period_cycles = 0;
 std::uint32_t period_us = 0;
+std::uint32_t cycles_per_us = 1;
 
 }  // namespace
 
 void start_ticks(float rate_hz) {
-  period_cycles = static_cast<std::uint32_t>(static_cast<float>(kTimerClockHz) / rate_hz + 0.5F);
-  period_us = period_cycles / (kTimerClockHz / kMegahertz);
+  period_cycles = static_cast<std::uint32_t>(static_cast<float>(timer_clock_hz()) / rate_hz + 0.5F);
+  cycles_per_us = timer_clock_hz() / kMegahertz;
+  period_us = period_cycles / cycles_per_us;
   cortex_m::handler_priority_3() = cortex_m::kPendsvLowest;
   cortex_m::systick_reload() = period_cycles - 1U;
   cortex_m::systick_value() = 0;  // any write clears it
@@ -34,7 +36,7 @@ std::uint32_t now_us() {
     before = counted;
     cycles = period_cycles - 1U - cortex_m::systick_value();
   } while (before != counted);
-  return before * period_us + cycles / (kTimerClockHz / kMegahertz);
+  return before * period_us + cycles / cycles_per_us;
 }
 
 void wait_for_interrupt() { __asm volatile("wfi" ::: "memory"); }

@@ -1,8 +1,11 @@
 #include "plant_link/plant_link_board.hpp"
 
+#include <cstddef>
+#include <span>
+
 #include "plant_link/semihosting.hpp"
+#include "runtime/identity.hpp"
 #include "runtime/image.hpp"
-#include "tactree/core/blob_format.hpp"
 
 namespace tactree::firmware {
 namespace {
@@ -38,8 +41,8 @@ core::Configuration PlantLinkBoard::connect(const hal::CapturedFault& last_fault
   link::Hello hello;
   hello.blob_address = static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(blob_begin));
   hello.blob_bytes_max = static_cast<std::uint32_t>(blob_end - blob_begin);
-  for (std::uint32_t i = 0; i + 1U < sizeof hello.board && kBoardName[i] != 0; ++i) {  // bound: 23
-    hello.board[i] = kBoardName[i];
+  for (std::uint32_t i = 0; i + 1U < sizeof hello.board; ++i) {  // bound: 23
+    hello.board[i] = kIdentity.board[i];
   }
   hello.last_fault = last_fault;
   send_message(to_host_, hello);
@@ -56,12 +59,7 @@ void PlantLinkBoard::report(const hal::StartResult& result) {
 }
 
 hal::Tick PlantLinkBoard::Ticker::wait() noexcept {
-  while (deadlines() == seen_) {  // bound: 0 (a deadline has begun this tick)
-    wait_for_interrupt();
-  }
-  const std::uint32_t now = deadlines();
-  const std::uint32_t missed = now - seen_ - 1U;
-  seen_ = now;
+  const std::uint32_t missed = deadline_.wait();
   board_.exchange();
   return {missed + board_.input_.input.overruns};
 }
@@ -84,17 +82,11 @@ void PlantLinkBoard::write(const core::MotorCommand& command) noexcept {
 }
 
 hal::LinkInput PlantLinkBoard::receive() noexcept {
-  const hal::LinkInput received{input_.input.link_alive, input_.input.command};
+  const hal::LinkInput received{input_.input.link_alive, input_.input.command, input_.body};
   input_.input.link_alive = false;
   input_.input.command = core::Command::kNone;
+  input_.body = {};
   return received;
-}
-
-// The header tells the size; open_blob() finds out when that is a lie.
-std::span<const std::byte> PlantLinkBoard::active() const noexcept {
-  const auto area = static_cast<std::size_t>(blob_end - blob_begin);
-  const auto& header = *reinterpret_cast<const core::BlobHeader*>(blob_begin);
-  return {blob_begin, header.total_bytes < area ? header.total_bytes : area};
 }
 
 }  // namespace tactree::firmware

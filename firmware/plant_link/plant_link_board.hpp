@@ -3,10 +3,9 @@
 // of the plant link; timer, flash and core are the emulated ones. To the emulated program an
 // exchange takes no time.
 
-#include <cstddef>
-#include <span>
-
 #include "platform.hpp"
+#include "runtime/blob_area.hpp"
+#include "runtime/deadline_wait.hpp"
 #include "tactree/hal/board.hpp"
 #include "tactree/hal/plant_link.hpp"
 
@@ -24,7 +23,7 @@ class PlantLinkBoard {
 
    private:
     PlantLinkBoard& board_;
-    std::uint32_t seen_ = 0;
+    DeadlineWait deadline_;
   };
 
   PlantLinkBoard() : ticker_(*this) {}
@@ -36,30 +35,31 @@ class PlantLinkBoard {
   /// Tells whether there is a model to touch.
   void report(const hal::StartResult& result);
 
-  // The parts of a board: here one object plays all of them but the ticker.
+  // The parts of a board: here one object plays most of them.
   [[nodiscard]] PlantLinkBoard& encoders() noexcept { return *this; }
   [[nodiscard]] PlantLinkBoard& motors() noexcept { return *this; }
   [[nodiscard]] PlantLinkBoard& enable_line() noexcept { return *this; }
   [[nodiscard]] PlantLinkBoard& safety_inputs() noexcept { return *this; }
   [[nodiscard]] PlantLinkBoard& link() noexcept { return *this; }
-  [[nodiscard]] const PlantLinkBoard& storage() const noexcept { return *this; }
+  [[nodiscard]] const BlobArea& storage() const noexcept { return storage_; }
   [[nodiscard]] Ticker& ticker() noexcept { return ticker_; }
 
   [[nodiscard]] core::EncoderReading read() noexcept { return input_.input.encoders; }
   void write(const core::MotorCommand& command) noexcept;
   [[nodiscard]] bool healthy() noexcept { return input_.input.motors_ok; }
+  [[nodiscard]] float supply_V() noexcept { return input_.input.supply_V; }
   void set(bool on) noexcept { output_.enable = on; }
   [[nodiscard]] bool read_back() noexcept { return input_.input.enable_read_back; }
   [[nodiscard]] bool emergency_stop() noexcept { return input_.input.emergency_stop; }
   [[nodiscard]] bool dead_man() noexcept { return input_.input.dead_man; }
   [[nodiscard]] hal::LinkInput receive() noexcept;
   void send(const core::Status& status) noexcept { output_.status = status; }
-  [[nodiscard]] std::span<const std::byte> active() const noexcept;
 
  private:
   void exchange();
 
   Ticker ticker_;
+  BlobArea storage_;
   int from_host_ = -1;
   int to_host_ = -1;
   bool in_session_ = false;  // a tick has begun, the plant waits for its output
@@ -68,8 +68,5 @@ class PlantLinkBoard {
 };
 
 static_assert(hal::Board<PlantLinkBoard>);
-
-/// Name of the board, from its board.cpp: at most 23 characters.
-extern const char kBoardName[];
 
 }  // namespace tactree::firmware

@@ -14,8 +14,11 @@ extern std::uint32_t image_stack_top[];
 extern void (*const image_constructors_begin[])();
 extern void (*const image_constructors_end[])();
 
+extern const std::byte code_begin[];
+extern const std::byte code_end[];
 extern const std::byte blob_begin[];
 extern const std::byte blob_end[];
+extern const std::byte uf2_family[];
 }
 
 namespace tactree::firmware {

@@ -11,6 +11,7 @@ constexpr std::uint32_t kMegahertz = 1000000;
 
 std::uint32_t period = 0;  // of the timer's clock
 std::uint32_t period_us = 0;
+std::uint32_t cycles_per_us = 1;
 volatile std::uint32_t counted = 0;
 volatile std::uint32_t last_deadline = 0;  // low word of the time
 
@@ -33,8 +34,9 @@ void count_deadlines() {
 }  // namespace
 
 void start_ticks(float rate_hz) {
-  period = static_cast<std::uint32_t>(static_cast<float>(kTimerClockHz) / rate_hz + 0.5F);
-  period_us = period / (kTimerClockHz / kMegahertz);
+  period = static_cast<std::uint32_t>(static_cast<float>(timer_clock_hz()) / rate_hz + 0.5F);
+  cycles_per_us = timer_clock_hz() / kMegahertz;
+  period_us = period / cycles_per_us;
   last_deadline = rv32::timer_low();
   set_next_deadline(last_deadline + period);
   __asm volatile("csrs mie, %0" ::"r"(rv32::kTimerInterrupt));
@@ -50,7 +52,7 @@ std::uint32_t now_us() {
     before = counted;
     cycles = rv32::timer_low() - last_deadline;
   } while (before != counted);
-  return before * period_us + cycles / (kTimerClockHz / kMegahertz);
+  return before * period_us + cycles / cycles_per_us;
 }
 
 void wait_for_interrupt() { __asm volatile("wfi" ::: "memory"); }

@@ -3,6 +3,7 @@
 
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <functional>
 #include <memory>
 
@@ -38,8 +39,13 @@ class BlobOnBoard : public OnBoard {
  protected:
   /// Boots with these bytes, arms in vain, and returns what the board said of the blob.
   static core::BlobStatus refusal(const Bytes& blob) {
+    return start_without_force(blob, options()).blob;
+  }
+
+  static hal::StartResult start_without_force(const Bytes& blob,
+                                              const emulation::EmulationOptions& options) {
     hal::sim::SimBoard device({}, {});
-    EmulatedTarget target(board(), blob, options());
+    EmulatedTarget target(board(), blob, options);
     const hal::StartResult start = target.start(device, {});
     for (int tick = 0; tick < 300; ++tick) {
       device.sample({0.0, 0.0, -0.001 * tick});
@@ -52,7 +58,7 @@ class BlobOnBoard : public OnBoard {
       EXPECT_FALSE(device.enable_line().read_back());
     }
     target.finish();
-    return start.blob;
+    return start;
   }
 };
 TACTREE_ON_EVERY_BOARD(BlobOnBoard);
@@ -89,6 +95,21 @@ TEST_P(BlobOnBoard, LargerThanTheFlashIsRefusedBeforeBooting) {
   expect_in(board().name, error);
   expect_in(std::to_string(blob.size()) + " bytes", error);
   expect_in("--flash-budget " + std::to_string(board().blob_bytes_max), error);
+}
+
+TEST_P(BlobOnBoard, IsNotTouchedByADamagedProgram) {
+  std::ifstream in(built(board(), "firmware", board().name), std::ios::binary);
+  std::string image((std::istreambuf_iterator<char>(in)), {});
+  const std::size_t identity = image.find(std::string("TACTIMG\0", 8));
+  ASSERT_NE(identity, std::string::npos);
+  image[identity + 30] ^= 1;  // behind the board's name: in no one's way
+  const auto file =
+      std::filesystem::path(testing::TempDir()) / (std::string("damaged-") + board().name + ".elf");
+  std::ofstream(file, std::ios::binary) << image;
+  emulation::EmulationOptions damaged = options();
+  damaged.image = file;
+  EXPECT_EQ(start_without_force(good_blob(), damaged).image, hal::ImageStatus::kDamaged);
+  std::filesystem::remove(file);
 }
 
 class Failure : public OnBoard {};

@@ -65,6 +65,27 @@ class SimulateOnABoard(unittest.TestCase):
             self.assertIn(f"{counts['max']} at most", told)
             self.assertIn("tactree::core::", counts["functions"][0]["name"])
 
+    def test_a_body_that_moves_is_rendered_as_on_the_host(self):
+        scene = self.folder / "scene.json"
+        scene.write_text(json.dumps({"bodies": [
+            {"blob": 0, "angular_velocity_rad_s": [0.2, 0.1, 1.5], "linear_velocity_m_s": [0, 0, 0.004],
+             "until_s": 0.9}]}))
+        at_rest, _ = self.report()
+        host, _ = self.report("--scene", scene)
+        board, told = self.report("--scene", scene, "--board", BOARD)
+        self.assertGreater(host["contact_ticks"], 100)
+        self.assertNotEqual(host["trace_crc32"], at_rest["trace_crc32"])
+        self.assertEqual(board["trace_crc32"], host["trace_crc32"])
+        self.assertEqual(board["bodies"], host["bodies"])
+        self.assertIn("body 0", told)
+        self.assertGreater(board["instructions"]["mean"], 500)
+
+    def test_more_than_one_body_is_refused(self):
+        done = tactree(BLOB, BLOB, "--board", BOARD)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn(f"--board {BOARD}: a board has one blob in its flash, the scene has 2 bodies "
+                      "(use --board host", done.stderr)
+
     def test_image_missing(self):
         done = tactree(BLOB, "--board", BOARD, "--firmware", self.folder)
         self.assertEqual(done.returncode, 1)

@@ -1,9 +1,12 @@
 // The controller of a board does what that of the host does, to the bit, and always the same.
 
 #include <memory>
+#include <optional>
+#include <vector>
 
 #include "boards_for_test.hpp"
 #include "tactree/simulation/hand_script.hpp"
+#include "tactree/simulation/scene_target.hpp"
 #include "tactree/simulation/simulation.hpp"
 
 namespace tactree::test {
@@ -44,12 +47,36 @@ simulation::Summary run_on_host(const simulation::Setup& setup) {
   return record(sim);
 }
 
+/// It turns, moves sideways and into the hand; for a while it is not there.
+simulation::SceneBody moving_body() {
+  const Eigen::Isometry3d begin(Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitY()));
+  simulation::SceneBody body;
+  body.blob = touched_shape().bytes();
+  body.path = simulation::BodyPath(begin, {0.003, -0.002, 0.001}, {0.05, -0.1, 0.8});
+  body.from_s = -10.0;
+  body.until_s = 1.6;
+  return body;
+}
+
+simulation::Summary run_on_host(const simulation::Setup& setup, const simulation::SceneBody& body) {
+  auto target = std::make_unique<simulation::SceneTarget>(
+      std::vector{body}, simulation::Simulation::arming_ticks(setup));
+  simulation::Simulation sim(touched_shape().bytes(), setup, path(), std::move(target));
+  return record(sim);
+}
+
 RunResult run_on(const emulation::BoardDescription& board, emulation::EmulationOptions options,
-                 const simulation::Setup& setup) {
+                 const simulation::Setup& setup,
+                 const std::optional<simulation::SceneBody>& body = std::nullopt) {
   options.uncounted_ticks = simulation::Simulation::arming_ticks(setup);
-  auto target =
+  auto emulator =
       std::make_unique<emulation::EmulatedTarget>(board, touched_shape().bytes(), options);
-  const emulation::EmulatedTarget& emulated = *target;
+  const emulation::EmulatedTarget& emulated = *emulator;
+  std::unique_ptr<simulation::Target> target = std::move(emulator);
+  if (body) {
+    target = std::make_unique<simulation::LinkedBodyTarget>(std::move(target), *body,
+                                                            options.uncounted_ticks);
+  }
   simulation::Simulation sim(touched_shape().bytes(), setup, path(), std::move(target));
   RunResult run;
   run.summary = record(sim);
@@ -70,6 +97,21 @@ TEST_P(Trace, IsTheHostsInBothModes) {
     EXPECT_EQ(found.contact_ticks, expected.contact_ticks);
     EXPECT_EQ(found.penetration_max_m, expected.penetration_max_m);
     EXPECT_EQ(found.overruns, 0U);
+    EXPECT_TRUE(found.faults.empty());
+  }
+}
+
+TEST_P(Trace, OfABodyThatMovesIsTheHostsInBothModes) {
+  for (const core::RenderMode mode : {core::RenderMode::kSurface, core::RenderMode::kPaper}) {
+    const simulation::Setup setup = setup_of(mode);
+    const simulation::Summary expected = run_on_host(setup, moving_body());
+    const simulation::Summary found = run_on(board(), options(), setup, moving_body()).summary;
+    EXPECT_GT(expected.contact_ticks, 100U);
+    EXPECT_NE(expected.trace_crc32, run_on_host(setup).trace_crc32);
+    EXPECT_EQ(found.trace_crc32, expected.trace_crc32);
+    EXPECT_EQ(found.contact_ticks, expected.contact_ticks);
+    EXPECT_EQ(found.penetration_max_m, expected.penetration_max_m);
+    EXPECT_EQ(found.bodies[0].torque_max_Nm, expected.bodies[0].torque_max_Nm);
     EXPECT_TRUE(found.faults.empty());
   }
 }

@@ -31,21 +31,26 @@ const char* remedy(core::BlobStatus status) {
 BlobFile::BlobFile(const std::filesystem::path& file) {
   std::error_code error;
   if (std::filesystem::is_directory(file, error)) {
-    throw CommandError(fmt::format("{}: is a folder, not a blob", file.string()));
+    throw CommandError(
+        fmt::format("{}: is a folder, not a blob (give the file in it)", file.string()));
   }
   std::ifstream in(file, std::ios::binary);
   const std::uintmax_t size = in ? std::filesystem::file_size(file, error) : 0;
   if (!in || error) {
-    throw CommandError(fmt::format("{}: cannot be read: {}", file.string(),
-                                   error ? error.message() : std::strerror(errno)));
+    throw CommandError(
+        fmt::format("{}: cannot be read: {} (give a blob: `tactree build` makes one)",
+                    file.string(), error ? error.message() : std::strerror(errno)));
   }
   if (size > kLargestBlob) {
-    throw CommandError(fmt::format("{}: {} bytes: larger than any blob", file.string(), size));
+    throw CommandError(
+        fmt::format("{}: {} bytes: larger than any blob (give the file that `tactree build` wrote)",
+                    file.string(), size));
   }
   size_ = static_cast<std::size_t>(size);
   words_.resize((size_ + 3) / 4);
   if (!in.read(reinterpret_cast<char*>(words_.data()), static_cast<std::streamsize>(size_))) {
-    throw CommandError(fmt::format("{}: ended while it was read", file.string()));
+    throw CommandError(
+        fmt::format("{}: ended while it was read (wait until it is written)", file.string()));
   }
   const core::BlobStatus status = core::open_blob(bytes(), view_);
   if (status != core::BlobStatus::kOk) {

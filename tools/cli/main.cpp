@@ -9,6 +9,7 @@
 #include "check_command.hpp"
 #include "command.hpp"
 #include "evaluate_command.hpp"
+#include "image_command.hpp"
 #include "info_command.hpp"
 #include "query_command.hpp"
 #include "simulate_command.hpp"
@@ -24,6 +25,7 @@ int main(int argc, char** argv) {
   add_info_command(app, exit_code);
   add_check_command(app, exit_code);
   add_query_command(app, exit_code);
+  add_image_command(app, exit_code);
   add_simulate_command(app, exit_code);
   add_evaluate_command(app, exit_code);
   try {

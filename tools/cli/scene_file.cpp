@@ -117,15 +117,15 @@ class SceneReader {
   SceneReader(const std::filesystem::path& file, const std::vector<std::string>& blobs)
       : file_(file) {
     for (const std::string& blob : blobs) {
-      open(blob);
+      given_.push_back(open(blob));
     }
   }
 
   SceneFile all_at_rest() {
-    for (std::size_t i = 0; i < files_.size(); ++i) {
-      add(i, {});
+    for (const std::size_t blob : given_) {
+      add(blob, {});
     }
-    return finish(fmt::format("{} blobs", files_.size()));
+    return finish(fmt::format("{} blobs", given_.size()));
   }
 
   SceneFile read() {
@@ -171,13 +171,13 @@ class SceneReader {
     if (blob.is_string()) {
       return open((file_.parent_path() / blob.get<std::string>()).string());
     }
-    if (!blob.is_number_unsigned() || blob.get<std::uint64_t>() >= files_.size()) {
+    if (!blob.is_number_unsigned() || blob.get<std::uint64_t>() >= given_.size()) {
       refuse(place + ".blob",
              fmt::format("is neither a file nor the place of one of the {} blobs given",
-                         files_.size()),
+                         given_.size()),
              "count from 0, or give a file name in quotes");
     }
-    return blob.get<std::size_t>();
+    return given_[blob.get<std::size_t>()];
   }
 
   void read_body(const json& body, const std::string& place) {
@@ -213,6 +213,7 @@ class SceneReader {
 
   std::filesystem::path file_;
   std::vector<std::string> files_;  // one per blob
+  std::vector<std::size_t> given_;  // which of them each place on the command line is
   SceneFile scene_;
 };
 

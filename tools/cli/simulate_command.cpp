@@ -1,6 +1,6 @@
 #include "simulate_command.hpp"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -18,6 +18,7 @@
 #include "scene_file.hpp"
 #include "tactree/emulation/emulated_target.hpp"
 #include "tactree/simulation/hand_script.hpp"
+#include "tactree/simulation/injection.hpp"
 #include "tactree/simulation/simulation.hpp"
 #include "tactree/simulation/trace.hpp"
 
@@ -44,6 +45,7 @@ struct SimulateOptions {
   std::string plot;
   bool compare = false;
   std::string json;
+  std::vector<std::string> injections;
   double seconds = 10.0;
   double latency_ticks = 0.0;
   double encoder_step_m = 30e-6;
@@ -121,6 +123,7 @@ simulation::Setup make_setup(const SimulateOptions& options, const SceneFile& sc
   choose_device(options, setup);
   controller.model_origin_m = place_model(options, scene, controller.device.kind);
   setup.board.encoders.latency_ticks = static_cast<std::uint32_t>(options.latency_ticks);
+  controller.supply_monitored = true;
   controller.delay_s = static_cast<float>(options.latency_ticks) / controller.rate_hz;
   controller.velocity_cutoff_hz =
       std::min(controller.velocity_cutoff_hz, 0.5F * controller.rate_hz);
@@ -149,6 +152,9 @@ void check_start(const std::string& file, const core::BlobView& view,
                     setup.controller.stiffness_N_m, limit.with_hand_N_m, setup.controller.rate_hz),
         "lower --stiffness, or raise --rate or --damping");
   }
+  if (start.image != hal::ImageStatus::kOk) {
+    refuse("the board's image: a byte of it is not as it was built", "build the image again");
+  }
   if (start.configuration != core::ConfigurationStatus::kOk) {
     refuse(fmt::format("configuration: {}", core::describe(start.configuration)),
            "give a value in that range");
@@ -169,8 +175,17 @@ void check_start(const std::string& file, const core::BlobView& view,
 // Functions the summary names, of those the ticks' instructions are in.
 constexpr std::size_t kReportedFunctions = 10;
 
+/// What faults on purpose did.
+struct Harm {
+  double from_s = 0.0;               // the first was injected
+  std::optional<double> detected_s;  // after that: the first fault was latched
+  double force_max_N = 0.0;          // from then on
+  double moved_m = 0.0;              // furthest off the way of the same session without them
+};
+
 struct Outcome {
   simulation::Summary summary;
+  std::optional<Harm> harm;
   std::optional<emulation::InstructionCounts> instructions;  // of an emulated board
   std::vector<simulation::Sample> samples;
 };
@@ -183,41 +198,104 @@ std::vector<std::string> board_names() {
   return names;
 }
 
-/// Null: the controller runs in this process.
-std::unique_ptr<emulation::EmulatedTarget> boot_board(const SimulateOptions& options,
+std::unique_ptr<emulation::EmulatedTarget> boot_board(const emulation::BoardDescription& board,
+                                                      const SimulateOptions& options,
                                                       const simulation::Setup& setup,
                                                       const BlobFile& blob) {
-  const emulation::BoardDescription* board = emulation::find_board(options.board);
-  if (board == nullptr) {
-    return nullptr;
-  }
   emulation::EmulationOptions emulation;
-  emulation.image = emulation::find_image(*board, options.firmware);
+  emulation.image = emulation::find_image(board, options.firmware);
   emulation.uncounted_ticks = simulation::Simulation::arming_ticks(setup);
-  return std::make_unique<emulation::EmulatedTarget>(*board, blob.bytes(), emulation);
+  return std::make_unique<emulation::EmulatedTarget>(board, blob.bytes(), emulation);
 }
 
 bool is_scene(const SimulateOptions& options) {
   return !options.scene.empty() || options.blobs.size() > 1;
 }
 
-/// The controller in this process; null: on an emulated board.
-std::unique_ptr<simulation::Target> host_target(const SimulateOptions& options,
-                                                const simulation::Setup& setup,
-                                                const SceneFile& scene) {
-  if (emulation::find_board(options.board) != nullptr) {
-    if (is_scene(options)) {
-      refuse("--board: a board has one blob in its flash and renders no scene",
-             "use --board host, or give one blob and no --scene");
-    }
-    return nullptr;
-  }
+/// Where the controller runs, and what of it is there.
+struct ChosenTarget {
+  std::unique_ptr<simulation::Target> target;
+  const simulation::SceneTarget* scene = nullptr;
+  const emulation::EmulatedTarget* emulated = nullptr;
+};
+
+ChosenTarget host_target(const SimulateOptions& options, const simulation::Setup& setup,
+                         const SceneFile& scene) {
   if (!is_scene(options)) {
-    return std::make_unique<simulation::HostTarget>();
+    return {std::make_unique<simulation::HostTarget>()};
   }
-  return std::make_unique<simulation::SceneTarget>(scene.bodies,
-                                                   simulation::Simulation::arming_ticks(setup));
+  auto target = std::make_unique<simulation::SceneTarget>(
+      scene.bodies, simulation::Simulation::arming_ticks(setup));
+  const simulation::SceneTarget* const bodies = target.get();
+  return {std::move(target), bodies};
 }
+
+ChosenTarget board_target(const emulation::BoardDescription& board, const SimulateOptions& options,
+                          const simulation::Setup& setup, const SceneFile& scene) {
+  if (scene.bodies.size() > 1) {
+    refuse(fmt::format("--board {}: a board has one blob in its flash, the scene has {} bodies",
+                       board.name, scene.bodies.size()),
+           "use --board host, or leave one body");
+  }
+  auto target = boot_board(board, options, setup, *scene.files[0]);
+  const emulation::EmulatedTarget* const emulated = target.get();
+  if (!is_scene(options)) {
+    return {std::move(target), nullptr, emulated};
+  }
+  return {std::make_unique<simulation::LinkedBodyTarget>(
+              std::move(target), scene.bodies[0], simulation::Simulation::arming_ticks(setup)),
+          nullptr, emulated};
+}
+
+ChosenTarget choose_target(const SimulateOptions& options, const simulation::Setup& setup,
+                           const SceneFile& scene) {
+  const emulation::BoardDescription* board = emulation::find_board(options.board);
+  return board == nullptr ? host_target(options, setup, scene)
+                          : board_target(*board, options, setup, scene);
+}
+
+std::vector<simulation::InjectedFault> injections(const SimulateOptions& options) {
+  std::vector<simulation::InjectedFault> faults;
+  for (const std::string& text : options.injections) {
+    faults.push_back(simulation::parse_injection(text));
+  }
+  return faults;
+}
+
+/// The same session, in step, with nothing broken; and what is different in the one that is.
+class Comparison {
+ public:
+  Comparison(const SimulateOptions& options, const SceneFile& scene, const simulation::Setup& setup,
+             const std::vector<simulation::InjectedFault>& faults)
+      : sound_(scene.files[0]->bytes(), setup, hand_path(options, scene),
+               std::make_unique<simulation::SceneTarget>(
+                   scene.bodies, simulation::Simulation::arming_ticks(setup))) {
+    (void)sound_.arm();
+    harm_.from_s = faults.front().from_s;
+    for (const simulation::InjectedFault& fault : faults) {
+      harm_.from_s = std::min(harm_.from_s, fault.from_s);
+    }
+  }
+
+  void add(const simulation::Sample& sample) {
+    const simulation::Sample sound = sound_.step();
+    if (sample.t_s < harm_.from_s) {
+      return;
+    }
+    if (sample.status.faults != 0U && !harm_.detected_s) {
+      harm_.detected_s = sample.t_s - harm_.from_s;
+    }
+    const double force = static_cast<double>(core::length(sample.status.force));
+    harm_.force_max_N = std::max(harm_.force_max_N, force);
+    harm_.moved_m = std::max(harm_.moved_m, (sample.tip_m - sound.tip_m).norm());
+  }
+
+  [[nodiscard]] const Harm& harm() const { return harm_; }
+
+ private:
+  simulation::Simulation sound_;
+  Harm harm_;
+};
 
 Outcome run(const SimulateOptions& options, const SceneFile& scene) {
   const BlobFile& blob = *scene.files[0];
@@ -229,36 +307,41 @@ Outcome run(const SimulateOptions& options, const SceneFile& scene) {
     refuse(fmt::format("--seconds: {:.6g} ticks are outside 1 .. {:.0f}", count, most),
            keep ? "shorten it, or leave --trace and --plot out" : "choose another --seconds");
   }
-  std::unique_ptr<simulation::Target> target = host_target(options, setup, scene);
-  const emulation::EmulatedTarget* emulated = nullptr;
-  if (target == nullptr) {
-    auto board = boot_board(options, setup, blob);
-    emulated = board.get();
-    target = std::move(board);
-  }
-  const auto* with_bodies =
-      is_scene(options) ? static_cast<const simulation::SceneTarget*>(target.get()) : nullptr;
-  simulation::Simulation sim(blob.bytes(), setup, hand_path(options, scene), std::move(target));
-  const std::size_t refused = with_bodies == nullptr ? 0 : with_bodies->refused_body();
+  ChosenTarget chosen = choose_target(options, setup, scene);
+  simulation::Simulation sim(blob.bytes(), setup, hand_path(options, scene),
+                             std::move(chosen.target));
+  const std::size_t refused = chosen.scene == nullptr ? 0 : chosen.scene->refused_body();
   check_start(scene.names[refused], scene.files[refused]->view(), setup, sim.start_result());
   if (!sim.arm()) {
     refuse(fmt::format("the controller did not become active, it is in state {}",
                        core::name_of(sim.state())),
            "begin the path outside the object");
   }
+  const std::vector<simulation::InjectedFault> faults = injections(options);
+  sim.inject(simulation::Injector(faults));
+  std::optional<Comparison> comparison;
+  if (!faults.empty()) {
+    comparison.emplace(options, scene, setup, faults);
+  }
   Outcome outcome;
   simulation::Recorder recorder;
   for (double i = 0.0; i < count; i += 1.0) {
     const simulation::Sample sample = sim.step();
     recorder.add(sample);
+    if (comparison) {
+      comparison->add(sample);
+    }
     if (keep) {
       outcome.samples.push_back(sample);
     }
   }
   sim.finish();
   outcome.summary = recorder.summary();
-  if (emulated != nullptr) {
-    outcome.instructions = emulated->instruction_counts();
+  if (comparison) {
+    outcome.harm = comparison->harm();
+  }
+  if (chosen.emulated != nullptr) {
+    outcome.instructions = chosen.emulated->instruction_counts();
   }
   return outcome;
 }
@@ -284,6 +367,14 @@ nlohmann::json to_json(const std::optional<emulation::InstructionCounts>& counts
           {"start", counts->start}, {"checksum", counts->checksum}, {"functions", functions}};
 }
 
+nlohmann::json to_json(const std::vector<std::string>& injections, const Harm& harm) {
+  return {{"faults", injections},
+          {"from_s", harm.from_s},
+          {"detected_s", harm.detected_s ? nlohmann::json(*harm.detected_s) : nlohmann::json()},
+          {"force_max_N", harm.force_max_N},
+          {"moved_m", harm.moved_m}};
+}
+
 nlohmann::json to_json(const SceneFile& scene, const simulation::Summary& s) {
   nlohmann::json bodies = nlohmann::json::array();
   for (std::size_t i = 0; i < scene.names.size(); ++i) {
@@ -304,21 +395,23 @@ nlohmann::json to_json(const SimulateOptions& options, const SceneFile& scene,
                       {"name", core::name_of(event.fault)},
                       {"tick", event.tick}});
   }
-  return {{"board", options.board},
-          {"device", options.device},
-          {"mode", options.mode},
-          {"rate_hz", options.setup.controller.rate_hz},
-          {"ticks", s.ticks},
-          {"contact_ticks", s.contact_ticks},
-          {"overruns", s.overruns},
-          {"force_max_N", s.force_max_N},
-          {"force_step_max_N", s.force_step_max_N},
-          {"penetration_max_m", s.penetration_max_m},
-          {"trace_crc32", s.trace_crc32},
-          {"faults", faults},
-          {"bodies", to_json(scene, s)},
-          {"crowded_ticks", s.crowded_ticks},
-          {"instructions", to_json(outcome.instructions)}};
+  return {
+      {"board", options.board},
+      {"device", options.device},
+      {"mode", options.mode},
+      {"rate_hz", options.setup.controller.rate_hz},
+      {"ticks", s.ticks},
+      {"contact_ticks", s.contact_ticks},
+      {"overruns", s.overruns},
+      {"force_max_N", s.force_max_N},
+      {"force_step_max_N", s.force_step_max_N},
+      {"penetration_max_m", s.penetration_max_m},
+      {"trace_crc32", s.trace_crc32},
+      {"faults", faults},
+      {"bodies", to_json(scene, s)},
+      {"crowded_ticks", s.crowded_ticks},
+      {"injected", outcome.harm ? to_json(options.injections, *outcome.harm) : nlohmann::json()},
+      {"instructions", to_json(outcome.instructions)}};
 }
 
 void print_instructions(const emulation::InstructionCounts& counts) {
@@ -343,6 +436,18 @@ void print_bodies(const SceneFile& scene, const simulation::Summary& s) {
   }
 }
 
+void print_harm(const SimulateOptions& options, const Harm& harm) {
+  fmt::print("injected           {}\n", fmt::join(options.injections, ", "));
+  if (harm.detected_s) {
+    fmt::print("detected           after {:.1f} ms\n", 1e3 * *harm.detected_s);
+  } else {
+    fmt::print("detected           no fault was latched\n");
+  }
+  fmt::print("largest force      {:.4f} N after it\n", harm.force_max_N);
+  fmt::print("moved the tip      up to {:.2f} mm off the way it takes without\n",
+             1e3 * harm.moved_m);
+}
+
 void print_summary(const SimulateOptions& options, const SceneFile& scene, const Outcome& outcome) {
   const simulation::Summary& s = outcome.summary;
   fmt::print("board {}, device {}, mode {}, {:.6g} Hz\n", options.board, options.device,
@@ -361,6 +466,9 @@ void print_summary(const SimulateOptions& options, const SceneFile& scene, const
   for (const simulation::FaultEvent& event : s.faults) {
     fmt::print("fault {:2} {} at tick {}\n", static_cast<int>(event.fault),
                core::name_of(event.fault), event.tick);
+  }
+  if (outcome.harm) {
+    print_harm(options, *outcome.harm);
   }
   if (outcome.instructions) {
     print_instructions(*outcome.instructions);
@@ -436,6 +544,31 @@ void add_controller_options(CLI::App& verb, SimulateOptions& options) {
   options.force_max =
       verb.add_option("--force-max", c.force_max_N, "largest force, N (default: the device's)")
           ->check(CLI::Range(0.01, 1000.0));
+}
+
+std::string injection_help() {
+  std::string text =
+      "break something: PART:KIND[=VALUE]@FROM[..TO], seconds after arming; may be given again";
+  for (const simulation::InjectionHelp& kind : simulation::injection_kinds()) {
+    text += fmt::format("\n  {:<22} {}", kind.name, kind.about);
+  }
+  return text;
+}
+
+void add_injection_option(CLI::App& verb, SimulateOptions& options) {
+  verb.add_option("--inject", options.injections, injection_help())
+      ->check(CLI::Validator(
+          [](const std::string& text) -> std::string {
+            try {
+              (void)simulation::parse_injection(text);
+              return {};
+            } catch (const std::invalid_argument& error) {
+              return error.what();
+            }
+          },
+          "FAULT"))
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
 void add_plant_options(CLI::App& verb, SimulateOptions& options) {
@@ -523,6 +656,7 @@ void add_simulate_command(CLI::App& app, int& exit_code) {
       ->excludes(script);
   add_controller_options(*verb, *options);
   add_plant_options(*verb, *options);
+  add_injection_option(*verb, *options);
   add_output_options(*verb, *options);
   verb->callback([options, &exit_code] { simulate(*options, exit_code); });
 }

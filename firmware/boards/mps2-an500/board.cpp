@@ -2,8 +2,7 @@
 
 namespace tactree::firmware {
 
-const char kBoardName[] = "mps2-an500";
-const std::uint32_t kTimerClockHz = 25000000;
+std::uint32_t timer_clock_hz() { return 25000000; }
 
 void prepare_board() {}  // the emulator starts with its clocks running
 

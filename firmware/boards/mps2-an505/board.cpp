@@ -2,8 +2,7 @@
 
 namespace tactree::firmware {
 
-const char kBoardName[] = "mps2-an505";
-const std::uint32_t kTimerClockHz = 20000000;
+std::uint32_t timer_clock_hz() { return 20000000; }
 
 void prepare_board() {}  // the emulator starts with its clocks running
 

@@ -2,8 +2,7 @@
 
 namespace tactree::firmware {
 
-const char kBoardName[] = "netduinoplus2";
-const std::uint32_t kTimerClockHz = 168000000;
+std::uint32_t timer_clock_hz() { return 168000000; }
 
 void prepare_board() {}  // the emulator starts with its clocks running
 

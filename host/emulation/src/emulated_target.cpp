@@ -134,9 +134,10 @@ class EmulatedTarget::Session {
     return receive<link::Started>(link::Kind::kStarted, options_.start_limit).result;
   }
 
-  link::TickOutput exchange(const core::Input& input) {
+  link::TickOutput exchange(const core::Input& input, const hal::BodyUpdate& body) {
     link::TickInput message;
     message.input = input;
+    message.body = body;
     send(message);
     return receive<link::TickOutput>(link::Kind::kTickOutput, options_.tick_limit);
   }
@@ -280,11 +281,12 @@ core::Status EmulatedTarget::tick(hal::sim::SimBoard& board) {
   input.enable_read_back = board.enable_line().read_back();
   input.motors_ok = board.motors().healthy();
   input.overruns = tick.overruns;
+  input.supply_V = board.motors().supply_V();
   const hal::LinkInput received = board.link().receive();
   input.link_alive = received.alive;
   input.command = received.command;
 
-  const link::TickOutput output = session_->exchange(input);
+  const link::TickOutput output = session_->exchange(input, received.body);
   board.motors().hold(output.effort);
   board.enable_line().set(output.enable);
   board.link().send(output.status);

@@ -5,6 +5,11 @@
 
 namespace tactree::simulation {
 
+hal::BodyUpdate update_at(const SceneBody& body, std::uint32_t number, double t_s) {
+  const BodyPath::Moment moment = body.path.at(t_s);
+  return {number, t_s >= body.from_s && t_s < body.until_s, moment.pose, moment.motion};
+}
+
 SceneTarget::SceneTarget(std::vector<SceneBody> bodies, std::uint64_t ticks_before)
     : bodies_(std::move(bodies)), tick_(-static_cast<double>(ticks_before)) {
   if (bodies_.empty()) {
@@ -48,11 +53,26 @@ core::Status SceneTarget::tick(hal::sim::SimBoard& board) {
 // Where a body has left the space that a controller accepts, it stays at the border.
 void SceneTarget::move_bodies(double t_s) {
   for (std::size_t i = 0; i < numbers_.size(); ++i) {
-    const BodyPath::Moment moment = bodies_[i].path.at(t_s);
-    (void)controller_.move_body(numbers_[i], moment.pose, moment.motion);
-    (void)controller_.enable_body(numbers_[i],
-                                  t_s >= bodies_[i].from_s && t_s < bodies_[i].until_s);
+    hal::apply(update_at(bodies_[i], numbers_[i], t_s), controller_);
   }
+}
+
+LinkedBodyTarget::LinkedBodyTarget(std::unique_ptr<Target> target, SceneBody body,
+                                   std::uint64_t ticks_before)
+    : target_(std::move(target)),
+      body_(std::move(body)),
+      tick_(-static_cast<double>(ticks_before)) {}
+
+hal::StartResult LinkedBodyTarget::start(hal::sim::SimBoard& board,
+                                         const core::Configuration& configuration) {
+  period_s_ = 1.0 / static_cast<double>(configuration.rate_hz);
+  return target_->start(board, configuration);
+}
+
+core::Status LinkedBodyTarget::tick(hal::sim::SimBoard& board) {
+  board.link().attach(update_at(body_, 0, tick_ * period_s_));
+  tick_ += 1.0;
+  return target_->tick(board);
 }
 
 }  // namespace tactree::simulation

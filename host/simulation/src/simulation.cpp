@@ -114,6 +114,7 @@ bool Simulation::arm() {
 Sample Simulation::step() {
   const double t_s = static_cast<double>(ticks_) * period_s_;
   board_.link().post(core::Command::kNone);
+  injector_.apply(board_, t_s);
   Sample sample;
   sample.t_s = t_s;
   sample.tip_m = plant_.position_m() - widen(setup_.controller.model_origin_m);
@@ -128,7 +129,7 @@ core::Status Simulation::tick(double t_s) {
   state_ = status.state;
   plant::HandTarget target = path_.at(t_s);
   target.position_m += widen(setup_.controller.model_origin_m);
-  plant_.advance({board_.effort(0), board_.effort(1), board_.effort(2)}, target, period_s_);
+  plant_.advance({board_.effort(0), board_.effort(1), board_.effort(2)}, target, period_s_ * injector_.clock_ratio(t_s));
   return status;
 }
 

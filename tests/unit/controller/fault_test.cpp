@@ -2,7 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
 #include <functional>
+#include <iterator>
+#include <limits>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -218,6 +223,53 @@ TEST(Faults, CountersMayWrapAround) {
     const core::Output output = session.step();
     ASSERT_EQ(session.state(), State::kActive);
     ASSERT_NEAR(output.status.probe.x, static_cast<float>(i) * 3e-5F, 4e-5F);
+  }
+}
+
+std::set<std::string> pages() {
+  std::set<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(TACTREE_FAULT_PAGES)) {
+    names.insert(entry.path().stem().string());
+  }
+  names.erase("README");
+  return names;
+}
+
+TEST(Faults, EveryCodeAndLimitHasAPageAndNothingElseHas) {
+  std::set<std::string> wanted;
+  for (std::uint32_t code = 1; code < core::kFaultCodes; ++code) {
+    wanted.insert(core::name_of(static_cast<Fault>(code)));
+  }
+  for (std::uint32_t i = 0; i < core::kLimits; ++i) {
+    wanted.insert(std::string("limit-") + core::name_of(static_cast<core::Limit>(1U << i)));
+  }
+  EXPECT_EQ(pages(), wanted);
+  for (const std::string& name : pages()) {
+    std::ifstream file(std::filesystem::path(TACTREE_FAULT_PAGES) / (name + ".md"));
+    const std::string text((std::istreambuf_iterator<char>(file)), {});
+    EXPECT_NE(text.find("## Likely causes\n- "), std::string::npos) << name;
+    EXPECT_NE(text.find("## What to do\n"), std::string::npos) << name;
+  }
+  EXPECT_EQ(std::string(core::name_of(static_cast<core::Limit>(3))), "unknown");
+}
+
+TEST(Faults, ASupplyOutsideItsRangeIsAFaultWhileMotorsAreOn) {
+  core::Configuration configuration;
+  configuration.supply_monitored = true;
+  for (const float volts : {17.9F, 30.1F, 0.0F, -24.0F, std::numeric_limits<float>::quiet_NaN(),
+                            std::numeric_limits<float>::infinity()}) {
+    Session session(configuration);
+    session.input.supply_V = volts;
+    session.step();
+    EXPECT_EQ(session.state(), State::kIdle);  // off: it may be switched off, too
+    session.input.supply_V = 24.0F;
+    session.activate();
+    ASSERT_EQ(session.state(), State::kActive);
+    session.input.supply_V = volts;
+    const core::Output output = session.step();
+    EXPECT_TRUE(core::has_fault(output.status.faults, Fault::kSupply)) << volts;
+    EXPECT_TRUE(output.motors.is_zero());
+    EXPECT_FALSE(output.enable);
   }
 }
 

@@ -81,6 +81,11 @@ TEST(Conformance, WrongBoardsAreFoundOut) {
             "the dead-man control reads as held; ");
   EXPECT_EQ(failures_when([](SimBoard& b) { b.link().post(core::Command::kArm); }),
             "the link gives commands nobody sent; ");
+  EXPECT_EQ(failures_when([](SimBoard& b) {
+              b.link().post(core::Command::kNone);
+              b.link().attach(hal::BodyUpdate{.body = 0});
+            }),
+            "the link moves bodies though nobody said so; ");
   EXPECT_EQ(failures_when([](SimBoard&) {},
                           [] {
                             BoardParameters slow;

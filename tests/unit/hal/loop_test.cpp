@@ -52,6 +52,45 @@ TEST_F(LoopTest, BringsAForceFromTheModelToTheMotors) {
   EXPECT_EQ(board_.link().last().tick, output.status.tick);
 }
 
+TEST_F(LoopTest, BringsTheMoveOfABodyToTheController) {
+  ASSERT_TRUE(loop_.start({}).ok());
+  activate();
+  for (double z = 0.01; z > -1e-3; z -= 1e-4) {
+    tick(z);
+  }
+  const core::Pose higher{{}, {0.0F, 0.0F, 1e-3F}};
+  board_.link().post(core::Command::kNone);
+  board_.link().attach(hal::BodyUpdate{.body = 0, .pose = higher});
+  for (int i = 0; i < 10; ++i) {
+    tick(-1e-3);
+  }
+  EXPECT_NEAR(board_.effort(2), 1.0, 0.06);
+  board_.link().post(core::Command::kNone);
+  board_.link().attach(hal::BodyUpdate{.body = 0, .enabled = false, .pose = higher});
+  EXPECT_FALSE(tick(-1e-3).status.rendering.in_contact);
+  EXPECT_FALSE(tick(-1e-3).status.rendering.in_contact);
+}
+
+// Moves alone, where there is nobody or nothing that can be: the session goes on.
+TEST_F(LoopTest, WhatIsRefusedOfAMoveChangesNothing) {
+  ASSERT_TRUE(loop_.start({}).ok());
+  activate();
+  for (double z = 0.01; z > -1e-3; z -= 1e-4) {
+    tick(z);
+  }
+  for (int i = 0; i < 50; ++i) {
+    tick(-1e-3);
+  }
+  const float before = tick(-1e-3).status.force.z;
+  board_.link().post(core::Command::kNone);
+  board_.link().attach(hal::BodyUpdate{.body = 0, .pose = {{0.5F, {}}, {}}});
+  EXPECT_NEAR(tick(-1e-3).status.force.z, before, 1e-3F);
+  board_.link().post(core::Command::kNone);
+  board_.link().attach(hal::BodyUpdate{.body = 7});
+  EXPECT_NEAR(tick(-1e-3).status.force.z, before, 1e-3F);
+  EXPECT_EQ(controller_.state(), State::kActive);
+}
+
 TEST_F(LoopTest, NothingIsPoweredBeforeTheSessionIsArmed) {
   ASSERT_TRUE(loop_.start({}).ok());
   for (double z = 0.01; z > -2e-3; z -= 1e-4) {

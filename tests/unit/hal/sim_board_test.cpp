@@ -155,5 +155,22 @@ TEST(SimLink, GivesEachMessageOnce) {
   EXPECT_EQ(link.receive().command, core::Command::kNone);
 }
 
+TEST(SimLink, AMessageCarriesAnUpdateUnlessItIsLost) {
+  SimLink link;
+  const hal::BodyUpdate gone{.body = 3, .enabled = false};
+  link.post(core::Command::kStop);
+  link.attach(gone);
+  const hal::LinkInput input = link.receive();
+  EXPECT_EQ(input.command, core::Command::kStop);
+  EXPECT_EQ(input.body.body, 3U);
+  EXPECT_FALSE(input.body.enabled);
+  EXPECT_EQ(link.receive().body.body, core::kNoBody);
+  link.post(core::Command::kStop);
+  link.cut();
+  link.attach(gone);
+  EXPECT_FALSE(link.receive().alive);
+  EXPECT_EQ(link.receive().body.body, core::kNoBody);
+}
+
 }  // namespace
 }  // namespace tactree::test

@@ -44,8 +44,15 @@ struct Configuration {
   float slew_N_s = 2000.0F;  ///< such that a tick's share is force_max_N * (1e-4 .. 2)
   float effort_max[kAxes] = {8.5F, 8.5F, 8.5F};              ///< N or Nm: 1e-4 .. 1000
   float effort_slew_s[kAxes] = {2000.0F, 2000.0F, 2000.0F};  ///< N/s or Nm/s, as slew_N_s
-  float ramp_s = 0.25F;         ///< from 0 to the whole force: 2 ticks .. 10 s
-  float speed_max_m_s = 10.0F;  ///< of the probe; faster is an encoder fault: 0.1 .. 100
+  float continuous_share = 0.35F;  ///< of effort_max, what the motors bear for ever: 0.05 .. 1
+  float thermal_time_s = 50.0F;    ///< time constant of their windings: 1 .. 1000
+  float ramp_s = 0.25F;            ///< from 0 to the whole force: 2 ticks .. 10 s
+  float speed_max_m_s = 10.0F;     ///< of the probe; faster is an encoder fault: 0.1 .. 100
+
+  float stuck_s = 0.1F;  ///< an encoder stands still while its motor's effort changes: 0.01 .. 1
+  bool supply_monitored = false;  ///< the board measures the amplifiers' supply
+  float supply_min_V = 18.0F;     ///< where monitored: 1 .. supply_max_V
+  float supply_max_V = 30.0F;     ///< where monitored: supply_min_V .. 1000
 
   // Hand-shakes.
   bool link_required = false;      ///< true: the session dies with its link
@@ -69,6 +76,7 @@ enum class ConfigurationStatus : std::uint8_t {
   kBadRamp,
   kBadSpeed,
   kBadTimeout,
+  kBadSupply,
   kUnstable,  ///< stiffness beyond the stability limit even with a hand
 };
 

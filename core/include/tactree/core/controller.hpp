@@ -10,7 +10,9 @@
 
 #include "tactree/core/blob.hpp"
 #include "tactree/core/configuration.hpp"
+#include "tactree/core/encoder_watch.hpp"
 #include "tactree/core/faults.hpp"
+#include "tactree/core/flight_recorder.hpp"
 #include "tactree/core/homing.hpp"
 #include "tactree/core/passivity.hpp"
 #include "tactree/core/safety_gate.hpp"
@@ -37,6 +39,8 @@ struct Input {
   bool motors_ok = false;         ///< false: the motor bank reports a failure
   bool link_alive = false;        ///< a valid message came in since the last tick
   std::uint32_t overruns = 0;     ///< deadlines missed since the last tick
+  float load = 0.0F;              ///< share of the period that the last tick took
+  float supply_V = 0.0F;          ///< of the amplifiers; where Configuration::supply_monitored
   Command command = Command::kNone;
 };
 
@@ -93,6 +97,8 @@ class Controller {
   /// Are the joints' positions known?
   [[nodiscard]] bool homed() const { return homing_.done(); }
   [[nodiscard]] const Configuration& configuration() const { return configuration_; }
+  /// The last ticks, and the one in which the first fault was latched.
+  [[nodiscard]] const FlightRecorder& recorder() const { return recorder_; }
 
  private:
   [[nodiscard]] bool motors_off() const {
@@ -104,6 +110,9 @@ class Controller {
   [[nodiscard]] FaultMask watch_overruns(const Input& input);
   [[nodiscard]] FaultMask watch_link(const Input& input);
   [[nodiscard]] FaultMask watch_enable(const Input& input);
+  [[nodiscard]] FaultMask watch_supply(const Input& input) const;
+  [[nodiscard]] FaultMask watch_stuck(const Input& input);
+  void record(const Input& input, const Status& status);
   void obey(const Input& input);
   void render();
   void confirm(const Input& input, bool was_armed);
@@ -132,11 +141,12 @@ class Controller {
   VelocityEstimator joint_velocity_{};
   Vec3 velocity_{};  // of the probe, m/s
   Scene scene_{};
-  SceneRendering rendering_{};
   PassivityController passivity_{};
   Vec3 shown_{};        // force of the last tick, N
   bool whole_ = false;  // that force was not held back by the ramp
   SafetyGate gate_{};
+  EncoderWatch encoder_watch_{};
+  FlightRecorder recorder_{};
 
   std::uint32_t tick_ = 0;
   std::uint32_t overruns_ = 0;

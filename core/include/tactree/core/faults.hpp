@@ -17,8 +17,10 @@ enum class Fault : std::uint8_t {
   kUnexpectedEvent = 8,   ///< a command the state does not allow
   kMotorFault = 9,        ///< the motor bank reports a failure
   kModelIncomplete = 10,  ///< the model holds more points in a ball than it declares
+  kEncoderStuck = 11,     ///< a motor's effort changes, its encoder does not
+  kSupply = 12,           ///< the amplifiers' supply is outside supply_min_V .. supply_max_V
 };
-inline constexpr std::uint32_t kFaultCodes = 11;
+inline constexpr std::uint32_t kFaultCodes = 13;
 
 /// A set of faults: bit n is the fault with code n.
 using FaultMask = std::uint32_t;
@@ -43,9 +45,14 @@ enum class Limit : std::uint32_t {
   kWorkspace = 1U << 6,  ///< near the end of a joint's range or a singular pose: the force fades
   kNotHomed = 1U << 7,   ///< the joints' positions are not known yet: no force (homing.hpp)
   kBodies = 1U << 8,     ///< more bodies within reach than kMaxReachableBodies: some are not felt
+  kThermal = 1U << 9,    ///< a motor is warm: its peak effort falls to the continuous one
 };
 using LimitMask = std::uint32_t;
+inline constexpr std::uint32_t kLimits = 10;
 
 constexpr LimitMask limit_bit(Limit limit) { return static_cast<LimitMask>(limit); }
+
+/// The name as in docs/faults/, without "limit-"; "unknown" for a value that is none.
+[[nodiscard]] const char* name_of(Limit limit);
 
 }  // namespace tactree::core

@@ -44,8 +44,9 @@ class Renderer {
                    Vec3 velocity);
 
  private:
-  Rendering update_surface(const BlobView& view, const Configuration& configuration, Vec3 probe,
-                           Vec3 velocity);
+  /// What the hand feels of where the proxy is.
+  [[gnu::noinline]] Rendering render_proxy(const BlobView& view, const Configuration& configuration,
+                                           Vec3 probe, Vec3 velocity);
 
   Proxy proxy_;
   Friction friction_{};  // at the contact of the last tick

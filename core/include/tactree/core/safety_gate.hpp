@@ -6,6 +6,7 @@
 
 #include "tactree/core/faults.hpp"
 #include "tactree/core/kinematics.hpp"
+#include "tactree/core/motor_heat.hpp"
 #include "tactree/core/vec3.hpp"
 
 namespace tactree::core {
@@ -32,6 +33,8 @@ struct GateLimits {
   float effort_max[kAxes] = {8.5F, 8.5F, 8.5F};            ///< N or Nm: 1e-4 .. 1000
   float effort_slew_per_tick[kAxes] = {2.0F, 2.0F, 2.0F};  ///< effort_max * 1e-4 .. 2 effort_max
   std::uint32_t ramp_ticks = 250;                          ///< from 0 to the whole force: 2 .. 1e6
+  float continuous_share = 0.35F;     ///< of effort_max, what a motor bears for ever: 0.05 .. 1
+  float heat_share_per_tick = 2e-5F;  ///< period over the windings' time constant: 1e-8 .. 0.1
 };
 
 /// Interrupt safe: no shared state.
@@ -52,7 +55,7 @@ class SafetyGate {
   /// The next command is zero.
   [[nodiscard]] bool configure(const GateLimits& limits);
 
-  /// The command of a tick in which no force may be. Ramp and slew start anew.
+  /// The command of a tick in which no force may be. Ramp and slew start anew; motors cool.
   Result release();
 
   /// The command of an active tick. `force` at the probe, N; `effort_per_force` maps it to axes;
@@ -63,14 +66,17 @@ class SafetyGate {
   Result command(Vec3 force, const Mat3& effort_per_force, Vec3 own_effort = {});
 
   [[nodiscard]] const GateLimits& limits() const { return limits_; }
+  [[nodiscard]] const MotorHeat& heat() const { return heat_; }
 
  private:
   [[nodiscard]] Vec3 limit_force(Vec3 force, LimitMask& limits) const;
   [[nodiscard]] Vec3 limit_slew(Vec3 force, LimitMask& limits) const;
   void limit_axes(Vec3 own, Vec3 wanted, Result& result) const;
   void limit_axis_slew(const float (&target)[kAxes], Result& result) const;
+  void warm_up();
 
   GateLimits limits_{};
+  MotorHeat heat_{};
   Vec3 last_force_{};
   float last_effort_[kAxes] = {0.0F, 0.0F, 0.0F};
   std::uint32_t active_ticks_ = 0;

@@ -7,6 +7,7 @@
 //
 // Of the bodies whose box the probe touches, kMaxReachableBodies are rendered: those touched first,
 // then those added first. The others are as if they were not there, and SceneRendering tells so.
+// A body that appears around the probe does not throw it out: its surface is felt from within.
 //
 // Interrupt safe: no shared state; one context owns a Scene.
 
@@ -77,7 +78,8 @@ class Scene {
 
   [[nodiscard]] bool empty() const;
   /// The empty view where there is no such body.
-  [[nodiscard]] const BlobView& view(std::uint32_t number) const;
+  [[nodiscard]] BlobView view(std::uint32_t number) const;
+  /// Likewise the pose at the origin.
   [[nodiscard]] Pose pose(std::uint32_t number) const;
 
   /// Forgets contacts and fading forces, not bodies: the probe is somewhere else now.
@@ -85,12 +87,13 @@ class Scene {
 
   /// One tick; `probe` and `velocity` in the scene's frame. Preconditions: as Renderer::update().
   /// Cost: kMaxReachableBodies times Renderer::update(), kMaxBodies times about 100 operations.
-  [[nodiscard]] SceneRendering update(const Configuration& configuration, Vec3 probe,
-                                      Vec3 velocity);
+  const SceneRendering& update(const Configuration& configuration, Vec3 probe, Vec3 velocity);
+  /// What update() returned last; nothing after reset().
+  [[nodiscard]] const SceneRendering& rendering() const { return rendering_; }
 
  private:
   struct Body {
-    BlobView view{};  // empty: the number is free
+    BlobView view{};  // empty: the number is free, and all the rest as here
     Pose pose{};
     Motion motion{};
     Vec3 probe{};  // of the last tick, in the body's frame; where `seen`
@@ -115,12 +118,12 @@ class Scene {
   void release(std::uint32_t number);
   static void let_go(Slot& slot, std::uint32_t fade_ticks);
   [[nodiscard]] bool lend_slots(Vec3 probe);
-  void render(Slot& slot, const Configuration& configuration, Vec3 probe, Vec3 velocity,
-              SceneRendering& all);
+  void render(Slot& slot, const Configuration& configuration, Vec3 probe, Vec3 velocity);
   void move_on(Vec3 probe, float period_s);
 
   Body bodies_[kMaxBodies]{};
   Slot slots_[kMaxReachableBodies]{};
+  SceneRendering rendering_{};
   std::uint32_t fade_ticks_ = 1;
 };
 

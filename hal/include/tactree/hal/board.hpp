@@ -29,6 +29,8 @@ concept EncoderBank = requires(T& bank) {
 ///   write(command)  the efforts to hold from now on, N or Nm per axis. Before the first write and
 ///                   whenever the enable line is off, the effort is zero.
 ///   healthy()       false: an amplifier reports a failure, or a command could not be delivered.
+/// A bank that can measure its supply also has, for Configuration::supply_monitored:
+///   supply_V()      float, of now.
 template <class T>
 concept MotorBank = requires(T& bank, const core::MotorCommand& command) {
   { bank.write(command) }
@@ -76,10 +78,19 @@ concept Ticker = requires(T& ticker) {
   noexcept->std::same_as<std::uint32_t>;
 };
 
+/// Where a body of the scene is, how it moves on from there, and whether it is there at all.
+struct BodyUpdate {
+  std::uint32_t body = core::kNoBody;  ///< which; kNoBody: nothing is to change
+  bool enabled = true;
+  core::Pose pose{};
+  core::Motion motion{};
+};
+
 /// What came over the link since the last look.
 struct LinkInput {
   bool alive = false;                            ///< at least one valid message
   core::Command command = core::Command::kNone;  ///< each message gives its command once
+  BodyUpdate body{};                             ///< and its update once
 };
 
 /// The connection to an application.

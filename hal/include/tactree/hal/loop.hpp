@@ -13,16 +13,31 @@
 
 namespace tactree::hal {
 
+/// What the self-test of the program found.
+enum class ImageStatus : std::uint8_t {
+  kOk = 0,
+  kDamaged,  ///< a byte of it is not as it was built
+};
+
 /// Why there is no model to touch.
 struct StartResult {
   core::ConfigurationStatus configuration = core::ConfigurationStatus::kOk;
   core::BlobStatus blob = core::BlobStatus::kOk;
   core::ModelStatus model = core::ModelStatus::kOk;
+  ImageStatus image = ImageStatus::kOk;  ///< filled in by the firmware, ahead of Loop::start()
   [[nodiscard]] bool ok() const {
     return configuration == core::ConfigurationStatus::kOk && blob == core::BlobStatus::kOk &&
-           model == core::ModelStatus::kOk;
+           model == core::ModelStatus::kOk && image == ImageStatus::kOk;
   }
 };
+
+/// What the controller refuses of an update stays as it is. Cost: constant.
+inline void apply(const BodyUpdate& update, core::Controller& controller) {
+  if (update.body != core::kNoBody) {
+    (void)controller.move_body(update.body, update.pose, update.motion);
+    (void)controller.enable_body(update.body, update.enabled);
+  }
+}
 
 template <Board B>
 class Loop {
@@ -56,20 +71,34 @@ class Loop {
     input.enable_read_back = board_.enable_line().read_back();
     input.motors_ok = board_.motors().healthy();
     input.overruns = tick.overruns;
-    const LinkInput link = board_.link().receive();
-    input.link_alive = link.alive;
-    input.command = link.command;
+    input.load = load_;
+    if constexpr (requires { board_.motors().supply_V(); }) {
+      input.supply_V = board_.motors().supply_V();
+    }
+    listen(input);
 
+    const std::uint32_t begin_us = board_.ticker().now_us();
     const core::Output output = controller_.step(input);
     board_.motors().write(output.motors);
     board_.enable_line().set(output.enable);
     board_.link().send(output.status);
+    const std::uint32_t took_us = board_.ticker().now_us() - begin_us;
+    load_ = static_cast<float>(took_us) * 1e-6F * controller_.configuration().rate_hz;
     return output;
   }
 
  private:
+  /// A function of its own: a message takes no stack while the controller steps.
+  void listen(core::Input& input) {
+    const LinkInput link = board_.link().receive();
+    input.link_alive = link.alive;
+    input.command = link.command;
+    apply(link.body, controller_);
+  }
+
   B& board_;
   core::Controller& controller_;
+  float load_ = 0.0F;  // of the last tick
 };
 
 }  // namespace tactree::hal

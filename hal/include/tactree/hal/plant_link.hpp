@@ -22,7 +22,7 @@
 namespace tactree::hal::plant_link {
 
 /// Changes with every change of what follows, or of the structs in it.
-inline constexpr std::uint32_t kVersion = 2;
+inline constexpr std::uint32_t kVersion = 3;
 
 enum class Kind : std::uint32_t {
   kHello = 0x54414331,  ///< no message begins with these bytes by chance
@@ -61,6 +61,7 @@ struct Started {
 struct TickInput {
   Kind kind = Kind::kTickInput;
   core::Input input{};
+  BodyUpdate body{};
 };
 
 struct TickOutput {
@@ -73,8 +74,9 @@ struct TickOutput {
 // Alike on every core: no pointer, nothing wider than four bytes.
 static_assert(std::is_trivially_copyable_v<core::Configuration> &&
               std::is_trivially_copyable_v<core::Input> &&
+              std::is_trivially_copyable_v<BodyUpdate> &&
               std::is_trivially_copyable_v<core::Status>);
 static_assert(alignof(Session) == 4 && alignof(TickInput) == 4 && alignof(TickOutput) == 4);
-static_assert(sizeof(Hello) == 124 && sizeof(Started) == 8 && sizeof(TickInput) == 52);
+static_assert(sizeof(Hello) == 124 && sizeof(Started) == 8 && sizeof(TickInput) == 120);
 
 }  // namespace tactree::hal::plant_link

@@ -89,7 +89,11 @@ class SimLink {
   void send(const core::Status& status) noexcept { last_ = status; }
 
   /// The next receive() finds a message with this command (kNone: a sign of life).
-  void post(core::Command command) { next_ = {true, command}; }
+  void post(core::Command command) { next_ = {true, command, {}}; }
+  /// And it carries this update as well, unless it was lost.
+  void attach(const BodyUpdate& update) { next_.body = next_.alive ? update : BodyUpdate{}; }
+  /// What is on its way is lost.
+  void cut() { next_ = {}; }
   [[nodiscard]] const core::Status& last() const { return last_; }
 
  private:

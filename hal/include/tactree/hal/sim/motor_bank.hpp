@@ -23,7 +23,7 @@ struct MotorParameters {
 class SimMotorBank {
  public:
   explicit SimMotorBank(const MotorParameters& parameters)
-      : parameters_(parameters), line_(parameters.latency_ticks, Efforts{}) {}
+      : parameters_(parameters), weak_(parameters.effort_max), line_(parameters.latency_ticks, Efforts{}) {}
 
   void write(const core::MotorCommand& command) noexcept {
     hold({command.effort(0), command.effort(1), command.effort(2)});
@@ -51,7 +51,7 @@ class SimMotorBank {
     if (!powered) {
       return 0.0;
     }
-    const double limit = parameters_.effort_max;
+    const double limit = weak_ < parameters_.effort_max ? weak_ : parameters_.effort_max;
     return wanted > limit ? limit : (wanted < -limit ? -limit : wanted);
   }
 
@@ -59,16 +59,25 @@ class SimMotorBank {
   void inject(std::uint32_t axis, MotorFault fault) { fault_[axis] = fault; }
   void set_healthy(bool healthy) { healthy_ = healthy; }
 
+  /// All motors give no more than this, N or Nm.
+  void saturate(double effort) { weak_ = effort; }
+  void saturate_as_built() { weak_ = parameters_.effort_max; }
+
+  [[nodiscard]] float supply_V() noexcept { return supply_V_; }
+  void set_supply(float volts) { supply_V_ = volts; }
+
  private:
   struct Efforts {
     double axis[core::kAxes] = {0.0, 0.0, 0.0};
   };
 
   MotorParameters parameters_;
+  double weak_;
   DelayLine<Efforts> line_;
   MotorFault fault_[core::kAxes] = {};
   double held_[core::kAxes] = {0.0, 0.0, 0.0};
   bool healthy_ = true;
+  float supply_V_ = 24.0F;
 };
 
 }  // namespace tactree::hal::sim

@@ -1,10 +1,10 @@
 #pragma once
-// A controller in this process with several bodies around the probe.
+// Controllers with bodies that move: several in this process, or the one of another target.
 
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <optional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -20,6 +20,9 @@ struct SceneBody {
   double from_s = -std::numeric_limits<double>::infinity();  ///< enabled from then
   double until_s = std::numeric_limits<double>::infinity();  ///< to then
 };
+
+/// What the controller is told of a body at a time.
+[[nodiscard]] hal::BodyUpdate update_at(const SceneBody& body, std::uint32_t number, double t_s);
 
 class SceneTarget : public Target {
  public:
@@ -44,6 +47,25 @@ class SceneTarget : public Target {
   double period_s_ = 0.0;
   double tick_ = 0.0;
   std::size_t refused_body_ = 0;
+};
+
+/// Moves the one body of another target, in each tick over the link; so it may be on a board. When
+/// the link is cut the body moves on as it was last told.
+class LinkedBodyTarget : public Target {
+ public:
+  /// As SceneTarget.
+  LinkedBodyTarget(std::unique_ptr<Target> target, SceneBody body, std::uint64_t ticks_before);
+
+  hal::StartResult start(hal::sim::SimBoard& board,
+                         const core::Configuration& configuration) override;
+  core::Status tick(hal::sim::SimBoard& board) override;
+  void finish() override { target_->finish(); }
+
+ private:
+  std::unique_ptr<Target> target_;
+  SceneBody body_;
+  double period_s_ = 0.0;
+  double tick_ = 0.0;
 };
 
 }  // namespace tactree::simulation

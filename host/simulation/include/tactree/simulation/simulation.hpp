@@ -16,6 +16,7 @@
 #include "tactree/plant/device_plant.hpp"
 #include "tactree/plant/plant.hpp"
 #include "tactree/simulation/hand_path.hpp"
+#include "tactree/simulation/injection.hpp"
 #include "tactree/simulation/target.hpp"
 
 namespace tactree::simulation {
@@ -82,6 +83,9 @@ class Simulation {
   /// False: the controller is not active. Not part of the trace.
   [[nodiscard]] bool arm();
 
+  /// Faults to come, by the time of the samples. Call it before the first step().
+  void inject(Injector injector) { injector_ = std::move(injector); }
+
   /// One tick.
   Sample step();
 
@@ -106,6 +110,7 @@ class Simulation {
   core::State state_ = core::State::kBoot;
   plant::DevicePlant plant_;
   std::uint64_t ticks_ = 0;
+  Injector injector_;
 };
 
 /// Adds samples up to a Summary.

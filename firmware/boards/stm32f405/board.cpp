@@ -1,0 +1,20 @@
+#include "board.hpp"
+
+namespace tactree::firmware {
+namespace {
+
+// Written before RAM is initialised, so start-up must leave it alone.
+[[gnu::section(".noinit")]] stm32f4::ClockFailure clock_failure;
+
+}  // namespace
+
+std::uint32_t timer_clock_hz() {
+  return clock_failure == stm32f4::ClockFailure::kNone ? stm32f4::kFullClockHz
+                                                       : stm32f4::kInternalClockHz;
+}
+
+void prepare_board() { clock_failure = prepare_chip(stm32f4::this_chip()); }
+
+Board::Board() : Stm32f405Board(stm32f4::this_chip(), clock_failure) {}
+
+}  // namespace tactree::firmware

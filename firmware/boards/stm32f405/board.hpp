@@ -1,0 +1,15 @@
+#pragma once
+// The board on the chip itself.
+
+#include "stm32f405_board.hpp"
+
+namespace tactree::firmware {
+
+class Board : public Stm32f405Board<stm32f4::HardwareWord> {
+ public:
+  Board();
+};
+
+static_assert(hal::Board<Board>);
+
+}  // namespace tactree::firmware

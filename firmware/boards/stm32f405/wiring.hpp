@@ -1,0 +1,41 @@
+#pragma once
+// What is soldered to which pin, and what is on the other end. All that a board of one's own with
+// this chip changes is in this file.
+
+#include <cstdint>
+
+#include "tactree/core/configuration.hpp"
+#include "tactree/core/device_presets.hpp"
+
+namespace tactree::firmware::wiring {
+
+inline constexpr std::uint32_t kCrystalMHz = 25;  ///< 4 .. 26
+inline constexpr std::uint32_t kBaud = 115200;
+
+// Ports by letter: their bits in AHB1ENR (RM0090, section 7.3.10), DMA2 besides.
+inline constexpr std::uint32_t kAhb1Clocks = (1U << 0) | (1U << 1) | (1U << 2) | (1U << 22);
+inline constexpr std::uint32_t kApb1Clocks = (1U << 0) | (1U << 2) | (1U << 3);  // TIM2, 4, 5
+inline constexpr std::uint32_t kApb2Clocks = (1U << 1) | (1U << 4);              // TIM8, USART1
+
+/// Data sheet, table 9.
+inline constexpr std::uint32_t kTim2Function = 1;
+inline constexpr std::uint32_t kTim4Function = 2;
+inline constexpr std::uint32_t kTim5Function = 2;
+inline constexpr std::uint32_t kTim8Function = 3;
+inline constexpr std::uint32_t kUsart1Function = 7;
+
+/// Effort of an axis at the full pulse width, N or Nm.
+inline constexpr float kEffortAtFullWidth[core::kAxes] = {1.9F, 1.8F, 1.5F};
+
+/// Of the device the board is in; it is homed by hand (HomingMethod::kGivenPose). The application's
+/// link is a must: without it nobody could stop it.
+inline core::Configuration configuration() {
+  core::Configuration configuration;
+  core::use_device(core::presets::premium(), configuration);
+  configuration.rate_hz = 1000.0F;  // the watchdog expects no less
+  configuration.link_required = true;
+  configuration.link_timeout_s = 0.1F;
+  return configuration;
+}
+
+}  // namespace tactree::firmware::wiring

@@ -1,0 +1,92 @@
+#pragma once
+// A board to begin with. It boots, tells that every part is missing, and gives no force: each part
+// is what a part must be that does not work. Go through the CHANGEs from top to bottom and run the
+// conformance program after each: docs/PORTING.md.
+
+#include "platform.hpp"
+#include "runtime/blob_area.hpp"
+#include "runtime/deadline_wait.hpp"
+#include "tactree/hal/board.hpp"
+#include "tactree/hal/loop.hpp"
+
+namespace tactree::firmware {
+
+class Board {
+ public:
+  /// Ready as it is.
+  class Ticker {
+   public:
+    // CHANGE: feed your watchdog here and nowhere else.
+    [[nodiscard]] hal::Tick wait() noexcept { return {deadline_.wait()}; }
+    [[nodiscard]] std::uint32_t now_us() noexcept { return firmware::now_us(); }
+
+   private:
+    DeadlineWait deadline_;
+  };
+
+  class Encoders {
+   public:
+    // CHANGE: latch all counters at one instant; extend them to 32 bits; valid only while a counter
+    // runs as it was told. The index pulse only where the device is homed by it.
+    [[nodiscard]] core::EncoderReading read() noexcept { return {}; }
+  };
+
+  class Motors {
+   public:
+    // CHANGE: command.effort(axis) is N or Nm; hold it until the next write.
+    void write(const core::MotorCommand&) noexcept {}
+    // CHANGE: no amplifier complains, and the last command was delivered.
+    [[nodiscard]] bool healthy() noexcept { return false; }
+  };
+
+  class EnableLine {
+   public:
+    // CHANGE: power of the amplifiers. A broken wire must be off.
+    void set(bool) noexcept {}
+    // CHANGE: measured at the amplifiers, not what was set.
+    [[nodiscard]] bool read_back() noexcept { return false; }
+  };
+
+  class SafetyInputs {
+   public:
+    // CHANGE: a broken wire, or a port that did not start, must read as pressed.
+    [[nodiscard]] bool emergency_stop() noexcept { return true; }
+    // CHANGE: a broken wire must read as let go.
+    [[nodiscard]] bool dead_man() noexcept { return false; }
+  };
+
+  class Link {
+   public:
+    // CHANGE: messages that fail their checks are as if they never came; each command once.
+    [[nodiscard]] hal::LinkInput receive() noexcept { return {}; }
+    // CHANGE: drops the status when there is no room; never waits.
+    void send(const core::Status&) noexcept {}
+  };
+
+  /// Starts every part. CHANGE: use_device() of tactree/core/device_presets.hpp, and your figures.
+  [[nodiscard]] core::Configuration connect(const hal::CapturedFault&) { return {}; }
+  /// What is wrong with configuration or model. CHANGE: tell it. Start the watchdog here: checking
+  /// a large model takes longer than a watchdog waits.
+  void report(const hal::StartResult&) {}
+
+  [[nodiscard]] Encoders& encoders() noexcept { return encoders_; }
+  [[nodiscard]] Motors& motors() noexcept { return motors_; }
+  [[nodiscard]] EnableLine& enable_line() noexcept { return enable_line_; }
+  [[nodiscard]] SafetyInputs& safety_inputs() noexcept { return safety_inputs_; }
+  [[nodiscard]] Link& link() noexcept { return link_; }
+  [[nodiscard]] const BlobArea& storage() const noexcept { return storage_; }
+  [[nodiscard]] Ticker& ticker() noexcept { return ticker_; }
+
+ private:
+  Encoders encoders_;
+  Motors motors_;
+  EnableLine enable_line_;
+  SafetyInputs safety_inputs_;
+  Link link_;
+  BlobArea storage_;
+  Ticker ticker_;
+};
+
+static_assert(hal::Board<Board>);
+
+}  // namespace tactree::firmware

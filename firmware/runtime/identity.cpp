@@ -1,0 +1,30 @@
+// Compiled once for each image; the build says for which board.
+
+#include "runtime/identity.hpp"
+
+#include <cstddef>
+
+#include "runtime/image.hpp"
+#include "tactree/core/crc32.hpp"
+
+namespace tactree::firmware {
+
+static_assert(sizeof(Identity) == 56);
+static_assert(offsetof(Identity, checksum) + 4 == sizeof(Identity));
+
+[[gnu::used]] const Identity kIdentity = {"TACTIMG",  TACTREE_BOARD, code_begin, code_end,
+                                          blob_begin, blob_end,      uf2_family, 0};
+
+bool image_is_whole() {
+  // The compiler knows the constant as it was before it was sealed.
+  const volatile Identity* const sealed = &kIdentity;
+  const auto* const code = reinterpret_cast<const std::byte*>(code_begin);
+  const auto* const end = reinterpret_cast<const std::byte*>(&kIdentity) + sizeof kIdentity - 4;
+  core::Crc32 checksum;
+  checksum.update({code, end});
+  checksum.update({reinterpret_cast<const std::byte*>(image_data_source),
+                   static_cast<std::size_t>(image_data_end - image_data_begin) * 4U});
+  return checksum.value() == sealed->checksum;
+}
+
+}  // namespace tactree::firmware

@@ -1,0 +1,118 @@
+#pragma once
+// From the internal oscillator after reset to 168 MHz from a crystal (RM0090, sections 7.2, 3.5).
+// When a step fails the chip runs on its internal oscillator and the failure has a name.
+
+#include <cstdint>
+
+#include "stm32f4/bits.hpp"
+#include "stm32f4/registers.hpp"
+
+namespace tactree::firmware::stm32f4 {
+
+enum class ClockFailure : std::uint8_t {
+  kNone = 0,
+  kCrystal,     ///< the external oscillator does not get ready
+  kWaitStates,  ///< the flash does not take its wait states
+  kPll,         ///< the multiplier does not lock
+  kSwitch,      ///< the core stays on the internal oscillator
+};
+
+inline constexpr std::uint32_t kFullClockHz = 168000000;     ///< without a failure
+inline constexpr std::uint32_t kInternalClockHz = 16000000;  ///< after one; 1 % at 25 degrees C
+
+/// Clock of the buses APB1 and APB2 at full speed; their timers run at twice as much (section 7.2).
+inline constexpr std::uint32_t kApb1Hz = kFullClockHz / 4;
+inline constexpr std::uint32_t kApb2Hz = kFullClockHz / 2;
+
+namespace rcc {
+inline constexpr std::uint32_t kHseOn = 1U << 16;
+inline constexpr std::uint32_t kHseReady = 1U << 17;
+inline constexpr std::uint32_t kSecurityOn = 1U << 19;
+inline constexpr std::uint32_t kPllOn = 1U << 24;
+inline constexpr std::uint32_t kPllReady = 1U << 25;
+
+// PLLCFGR: crystal / M = 1 MHz, * N = 336 MHz, / P = 168 MHz for the core; / Q = 48 MHz. What is
+// not in the mask is reserved and keeps its value.
+inline constexpr std::uint32_t kPllMask = 0x0F437FFFU;
+inline constexpr std::uint32_t kPllTimes336 = 336U << 6;
+inline constexpr std::uint32_t kPllFromHse = 1U << 22;
+inline constexpr std::uint32_t kPllQ7 = 7U << 24;
+
+inline constexpr std::uint32_t kSwitchMask = 0x3U;
+inline constexpr std::uint32_t kSwitchPll = 0x2U;
+inline constexpr std::uint32_t kSwitchedMask = 0x3U << 2;
+inline constexpr std::uint32_t kSwitchedInternal = 0U;
+inline constexpr std::uint32_t kSwitchedPll = 0x2U << 2;
+inline constexpr std::uint32_t kPrescalerMask = 0xFCF0U;
+inline constexpr std::uint32_t kPrescalers = (0x5U << 10) | (0x4U << 13);  // APB1 / 4, APB2 / 2
+
+inline constexpr std::uint32_t kResetByWatchdog = 1U << 29;
+inline constexpr std::uint32_t kForgetReset = 1U << 24;
+}  // namespace rcc
+
+namespace flash_access {
+// Five wait states at 2.7 .. 3.6 V and 150 .. 168 MHz (table 10); prefetch and both caches.
+inline constexpr std::uint32_t kMask = 0x707U;
+inline constexpr std::uint32_t kFull = 0x705U;
+}  // namespace flash_access
+
+// A poll takes some ten cycles of 16 MHz. A crystal needs a few ms, the multiplier 0.3 ms.
+inline constexpr std::uint32_t kClockPolls = 100000;
+
+template <class Word>
+void fall_back(RccBlock<Word>& rcc_block) {
+  clear(rcc_block.cfgr, rcc::kSwitchMask);
+  (void)wait_until(rcc_block.cfgr, rcc::kSwitchedMask, rcc::kSwitchedInternal, kClockPolls);
+  clear(rcc_block.cr, rcc::kPllOn | rcc::kHseOn);
+  clear(rcc_block.cfgr, rcc::kPrescalerMask);
+}
+
+template <class Word>
+ClockFailure try_full_speed(RccBlock<Word>& rcc_block, FlashBlock<Word>& flash,
+                            std::uint32_t crystal_MHz) {
+  set(rcc_block.cr, rcc::kHseOn);
+  if (!wait_until(rcc_block.cr, rcc::kHseReady, rcc::kHseReady, kClockPolls)) {
+    return ClockFailure::kCrystal;
+  }
+  // The flash must be slow enough before the core is fast, and is to be read back (section 3.5.1).
+  change(flash.acr, flash_access::kMask, flash_access::kFull);
+  if (!wait_until(flash.acr, flash_access::kMask, flash_access::kFull, kClockPolls)) {
+    return ClockFailure::kWaitStates;
+  }
+  change(rcc_block.cfgr, rcc::kPrescalerMask, rcc::kPrescalers);
+  change(rcc_block.pllcfgr, rcc::kPllMask,
+         crystal_MHz | rcc::kPllTimes336 | rcc::kPllFromHse | rcc::kPllQ7);
+  set(rcc_block.cr, rcc::kPllOn);
+  if (!wait_until(rcc_block.cr, rcc::kPllReady, rcc::kPllReady, kClockPolls)) {
+    return ClockFailure::kPll;
+  }
+  change(rcc_block.cfgr, rcc::kSwitchMask, rcc::kSwitchPll);
+  if (!wait_until(rcc_block.cfgr, rcc::kSwitchedMask, rcc::kSwitchedPll, kClockPolls)) {
+    return ClockFailure::kSwitch;
+  }
+  // From here on a crystal that stops is an NMI, thus a captured fault (section 7.2.7).
+  set(rcc_block.cr, rcc::kSecurityOn);
+  return ClockFailure::kNone;
+}
+
+/// 4 <= crystal_MHz <= 26. To be called once after a reset. The voltage scaling that 168 MHz needs
+/// is what the chip starts with (section 5.4.1).
+template <class Word>
+[[nodiscard]] ClockFailure start_clocks(RccBlock<Word>& rcc_block, FlashBlock<Word>& flash,
+                                        std::uint32_t crystal_MHz) {
+  const ClockFailure failure = try_full_speed(rcc_block, flash, crystal_MHz);
+  if (failure != ClockFailure::kNone) {
+    fall_back(rcc_block);
+  }
+  return failure;
+}
+
+/// Did the watchdog cause the last reset? Forgets it: a second call says no (section 7.3.21).
+template <class Word>
+[[nodiscard]] bool take_watchdog_reset(RccBlock<Word>& rcc_block) {
+  const bool by_watchdog = has(rcc_block.csr, rcc::kResetByWatchdog);
+  set(rcc_block.csr, rcc::kForgetReset);
+  return by_watchdog;
+}
+
+}  // namespace tactree::firmware::stm32f4

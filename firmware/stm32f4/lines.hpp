@@ -1,0 +1,63 @@
+#pragma once
+// The wires of safety: enable line with read-back, emergency stop, dead-man control. Each is wired
+// so that a broken wire reads as the safe state.
+
+#include "stm32f4/pins.hpp"
+#include "stm32f4/pwm_motors.hpp"
+
+namespace tactree::firmware::stm32f4 {
+
+/// Gives the amplifiers their power, and takes the pulses away with it. `sense` is high while the
+/// amplifiers have power.
+template <class Word>
+class EnableLine {
+ public:
+  EnableLine(const Pin<Word>& line, const Pin<Word>& sense, PwmMotors<Word>& motors)
+      : line_(line), sense_(sense), motors_(motors) {}
+
+  /// False: a pin did not take its mode.
+  [[nodiscard]] bool start() {
+    line_.make_output();
+    sense_.make_input(Pull::kDown);
+    return line_.is(PinMode::kOutput) && sense_.is(PinMode::kInput) && sense_.pulls(Pull::kDown);
+  }
+
+  void set(bool on) noexcept {
+    motors_.connect(on);
+    line_.drive(on);
+  }
+  [[nodiscard]] bool read_back() noexcept { return sense_.is_high(); }
+
+ private:
+  Pin<Word> line_;
+  Pin<Word> sense_;
+  PwmMotors<Word>& motors_;
+};
+
+/// Both switches are to ground. The stop's is closed until it is pressed, the dead-man control's
+/// open until it is held.
+template <class Word>
+class SafetyInputs {
+ public:
+  SafetyInputs(const Pin<Word>& stop, const Pin<Word>& dead_man)
+      : stop_(stop), dead_man_(dead_man) {}
+
+  /// False: the port did not take its settings. Then both read as the safe state for ever: a port
+  /// without a clock reads as zero, which would mean released and held.
+  [[nodiscard]] bool start() {
+    stop_.make_input(Pull::kUp);
+    dead_man_.make_input(Pull::kUp);
+    trusted_ = stop_.pulls(Pull::kUp) && dead_man_.pulls(Pull::kUp);
+    return trusted_;
+  }
+
+  [[nodiscard]] bool emergency_stop() noexcept { return !trusted_ || stop_.is_high(); }
+  [[nodiscard]] bool dead_man() noexcept { return trusted_ && !dead_man_.is_high(); }
+
+ private:
+  Pin<Word> stop_;
+  Pin<Word> dead_man_;
+  bool trusted_ = false;
+};
+
+}  // namespace tactree::firmware::stm32f4

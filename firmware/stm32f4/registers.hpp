@@ -1,0 +1,125 @@
+#pragma once
+// The register blocks of an STM32F405 that its drivers use, from ST's reference manual RM0090.
+// `Word` is `volatile std::uint32_t` on the chip; in a test it is a type that behaves as the manual
+// says. A driver gets its blocks by reference, so it does not know which of the two it talks to.
+
+#include <cstddef>
+#include <cstdint>
+
+namespace tactree::firmware::stm32f4 {
+
+using HardwareWord = volatile std::uint32_t;
+
+/// Reset and clock control: section 7.3.
+template <class Word>
+struct RccBlock {
+  Word cr, pllcfgr, cfgr, cir;
+  Word ahb1rstr, ahb2rstr, ahb3rstr, reserved_0, apb1rstr, apb2rstr, reserved_1[2];
+  Word ahb1enr, ahb2enr, ahb3enr, reserved_2, apb1enr, apb2enr, reserved_3[2];
+  Word ahb1lpenr, ahb2lpenr, ahb3lpenr, reserved_4, apb1lpenr, apb2lpenr, reserved_5[2];
+  Word bdcr, csr;
+};
+
+/// Flash interface: section 3.9.
+template <class Word>
+struct FlashBlock {
+  Word acr, keyr, optkeyr, sr, cr, optcr;
+};
+
+/// Port of 16 pins: section 8.4.
+template <class Word>
+struct GpioBlock {
+  Word moder, otyper, ospeedr, pupdr, idr, odr, bsrr, lckr, afrl, afrh;
+};
+
+/// Timer: section 17.4 (TIM1 and TIM8), 18.4 (TIM2 to TIM5, which have no rcr and bdtr).
+template <class Word>
+struct TimerBlock {
+  Word cr1, cr2, smcr, dier, sr, egr, ccmr1, ccmr2, ccer, cnt, psc, arr, rcr;
+  Word ccr1, ccr2, ccr3, ccr4, bdtr;
+};
+
+/// Serial port: section 30.6.
+template <class Word>
+struct UsartBlock {
+  Word sr, dr, brr, cr1, cr2, cr3, gtpr;
+};
+
+/// DMA controller: section 10.5, with the first four of its eight streams.
+template <class Word>
+struct DmaBlock {
+  struct Stream {
+    Word cr, ndtr, par, m0ar, m1ar, fcr;
+  };
+  Word lisr, hisr, lifcr, hifcr;
+  Stream stream[4];
+};
+
+/// Independent watchdog: section 21.4.
+template <class Word>
+struct WatchdogBlock {
+  Word kr, pr, rlr, sr;
+};
+
+static_assert(offsetof(RccBlock<HardwareWord>, apb1rstr) == 0x20);
+static_assert(offsetof(RccBlock<HardwareWord>, ahb1enr) == 0x30);
+static_assert(offsetof(RccBlock<HardwareWord>, apb2enr) == 0x44);
+static_assert(offsetof(RccBlock<HardwareWord>, csr) == 0x74);
+static_assert(offsetof(FlashBlock<HardwareWord>, cr) == 0x10);
+static_assert(offsetof(GpioBlock<HardwareWord>, afrh) == 0x24);
+static_assert(offsetof(TimerBlock<HardwareWord>, cnt) == 0x24);
+static_assert(offsetof(TimerBlock<HardwareWord>, bdtr) == 0x44);
+static_assert(offsetof(UsartBlock<HardwareWord>, cr3) == 0x14);
+static_assert(offsetof(DmaBlock<HardwareWord>, stream) + 2 * 0x18 == 0x40);
+static_assert(offsetof(WatchdogBlock<HardwareWord>, sr) == 0x0C);
+
+/// Where the blocks are: section 2.3, table 1.
+namespace address {
+inline constexpr std::uint32_t kTim2 = 0x40000000;
+inline constexpr std::uint32_t kTim4 = 0x40000800;
+inline constexpr std::uint32_t kTim5 = 0x40000C00;
+inline constexpr std::uint32_t kWatchdog = 0x40003000;
+inline constexpr std::uint32_t kTim8 = 0x40010400;
+inline constexpr std::uint32_t kUsart1 = 0x40011000;
+inline constexpr std::uint32_t kGpioA = 0x40020000;
+inline constexpr std::uint32_t kGpioB = 0x40020400;
+inline constexpr std::uint32_t kGpioC = 0x40020800;
+inline constexpr std::uint32_t kRcc = 0x40023800;
+inline constexpr std::uint32_t kFlash = 0x40023C00;
+inline constexpr std::uint32_t kDma2 = 0x40026400;
+}  // namespace address
+
+/// The block at an address of the chip.
+template <template <class> class Block>
+Block<HardwareWord>& block_at(std::uint32_t address) {
+  return *reinterpret_cast<Block<HardwareWord>*>(static_cast<std::uintptr_t>(address));
+}
+
+/// All blocks a board of ours uses.
+template <class Word>
+struct Chip {
+  RccBlock<Word>& rcc;
+  FlashBlock<Word>& flash;
+  GpioBlock<Word>& gpio_a;
+  GpioBlock<Word>& gpio_b;
+  GpioBlock<Word>& gpio_c;
+  TimerBlock<Word>& tim2;
+  TimerBlock<Word>& tim4;
+  TimerBlock<Word>& tim5;
+  TimerBlock<Word>& tim8;
+  UsartBlock<Word>& usart1;
+  DmaBlock<Word>& dma2;
+  WatchdogBlock<Word>& watchdog;
+};
+
+/// The chip this program runs on.
+inline Chip<HardwareWord> this_chip() {
+  return {block_at<RccBlock>(address::kRcc),    block_at<FlashBlock>(address::kFlash),
+          block_at<GpioBlock>(address::kGpioA), block_at<GpioBlock>(address::kGpioB),
+          block_at<GpioBlock>(address::kGpioC), block_at<TimerBlock>(address::kTim2),
+          block_at<TimerBlock>(address::kTim4), block_at<TimerBlock>(address::kTim5),
+          block_at<TimerBlock>(address::kTim8), block_at<UsartBlock>(address::kUsart1),
+          block_at<DmaBlock>(address::kDma2),   block_at<WatchdogBlock>(address::kWatchdog)};
+}
+
+}  // namespace tactree::firmware::stm32f4

@@ -1,0 +1,214 @@
+"""Scenes end to end: two scans -> build -> simulate --scene, and each way to be refused.
+
+usage: scene_test.py TACTREE
+"""
+import json
+import math
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
+IDENTITY = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]
+
+
+def at(x, y, z):
+    pose = list(IDENTITY)
+    pose[3], pose[7], pose[11] = x, y, z
+    return pose
+
+
+def sheet():
+    """6 cm wide, z = 0, normals up."""
+    steps = [i * 1e-3 for i in range(-30, 31)]
+    return "x,y,z,nx,ny,nz\n" + "".join(f"{x},{y},0,0,0,1\n" for x in steps for y in steps)
+
+
+def ball():
+    """Of 2 cm radius, around the origin."""
+    count, radius = 5000, 0.02
+    rows = ["x,y,z,nx,ny,nz"]
+    for i in range(count):
+        z = 1 - (2 * i + 1) / count
+        r, turn = math.sqrt(1 - z * z), i * math.pi * (3 - math.sqrt(5))
+        n = (r * math.cos(turn), r * math.sin(turn), z)
+        rows.append(",".join(str(v) for v in [radius * c for c in n] + list(n)))
+    return "\n".join(rows) + "\n"
+
+
+def run_tool(folder, *arguments):
+    return subprocess.run([TACTREE, *map(str, arguments)], cwd=folder, capture_output=True, text=True,
+                          check=False)
+
+
+class Scenes(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.folder.cleanup)
+        cls.path = pathlib.Path(cls.folder.name)
+        for name, points in (("sheet", sheet()), ("ball", ball())):
+            (cls.path / f"{name}.csv").write_text(points)
+            done = run_tool(cls.path, "build", f"{name}.csv", "-o", f"{name}.blob", "--spacing", 0.001,
+                            "--progress", "off")
+            assert done.returncode == 0, done.stderr
+        # Rests 2 mm below z = 0.
+        (cls.path / "press.csv").write_text("t_s,x,y,z\n0,0,0,0.01\n0.2,0,0,-0.002\n1,0,0,-0.002\n")
+        (cls.path / "still.csv").write_text("t_s,x,y,z\n0,0,0,0.002\n1,0,0,0.002\n")
+
+    def write(self, name, content):
+        text = content if isinstance(content, str) else json.dumps(content)
+        (self.path / name).write_text(text)
+        return name
+
+    def run_scene(self, bodies, *arguments, path="press.csv", blobs=("sheet.blob", "ball.blob")):
+        scene = self.write("scene.json", bodies if isinstance(bodies, str) else {"bodies": bodies})
+        (self.path / "run.json").unlink(missing_ok=True)
+        return run_tool(self.path, "simulate", *blobs, "--scene", scene, "--path", path, "--seconds", 1,
+                        "--device", "cartesian", "--device-friction", 0, "--json", "run.json",
+                        *arguments)
+
+    def report(self, *arguments, **options):
+        done = self.run_scene(*arguments, **options)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return json.loads((self.path / "run.json").read_text()), done.stdout
+
+    def test_each_body_is_reported(self):
+        run, told = self.report([{"blob": 0}, {"blob": 1, "pose": at(0, 0, -0.02)}, {"blob": 0,
+                                                                                  "pose": at(0, 0, -1)}])
+        self.assertEqual([b["blob"] for b in run["bodies"]], ["sheet.blob", "ball.blob", "sheet.blob"])
+        sheet_body, ball_body, far = run["bodies"]
+        self.assertGreater(sheet_body["contact_ticks"], 500)
+        self.assertGreater(ball_body["contact_ticks"], 500)
+        self.assertEqual(far, {"blob": "sheet.blob", "contact_ticks": 0, "force_max_N": 0,
+                               "torque_max_Nm": 0})
+        # The hand is held by both springs.
+        self.assertAlmostEqual(sheet_body["force_max_N"] + ball_body["force_max_N"],
+                               run["force_max_N"], delta=0.05)
+        alone, _ = self.report([{"blob": 0}])
+        self.assertLess(run["penetration_max_m"], 0.8 * alone["penetration_max_m"])
+        self.assertEqual(run["crowded_ticks"], 0)
+        self.assertIn("body 1             ball.blob: in contact", told)
+
+    def test_blobs_without_a_scene_are_bodies_at_the_origin(self):
+        done = run_tool(self.path, "simulate", "sheet.blob", "sheet.blob", "--path", "press.csv",
+                        "--seconds", 1, "--json", "run.json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        bodies = json.loads((self.path / "run.json").read_text())["bodies"]
+        self.assertEqual(len(bodies), 2)
+        self.assertGreater(bodies[0]["force_max_N"], 0.1)
+        self.assertAlmostEqual(bodies[0]["force_max_N"], bodies[1]["force_max_N"], delta=0.01)
+
+    def test_a_blob_is_told_by_its_place_also_when_it_is_given_twice(self):
+        run, _ = self.report([{"blob": 2}, {"blob": 1}], blobs=("sheet.blob", "sheet.blob", "ball.blob"))
+        self.assertEqual([b["blob"] for b in run["bodies"]], ["ball.blob", "sheet.blob"])
+
+    def test_a_body_at_rest_is_a_run_without_a_scene(self):
+        in_a_scene, _ = self.report([{"blob": "sheet.blob"}], blobs=())
+        done = run_tool(self.path, "simulate", "sheet.blob", "--path", "press.csv", "--seconds", 1,
+                        "--device", "cartesian", "--device-friction", 0, "--json", "plain.json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        plain = json.loads((self.path / "plain.json").read_text())
+        self.assertEqual(in_a_scene["trace_crc32"], plain["trace_crc32"])
+        self.assertEqual(in_a_scene["contact_ticks"], plain["contact_ticks"])
+
+    def test_moving_bodies_push_a_hand_that_rests(self):
+        keyframes = [{"t_s": 0, "pose": at(0, 0, -0.01)}, {"t_s": 0.5, "pose": at(0, 0, 0.005)}]
+        for body in ({"blob": 0, "pose": at(0, 0, -0.01), "linear_velocity_m_s": [0, 0, 0.015]},
+                     {"blob": 0, "keyframes": keyframes},
+                     {"blob": 1, "keyframes": [{"t_s": t["t_s"], "pose": at(0, 0, t["pose"][11] - 0.02)}
+                                               for t in keyframes],
+                      "from_s": -1, "until_s": 0.9}):
+            run, _ = self.report([body], path="still.csv")
+            self.assertGreater(run["force_max_N"], 0.5)
+            still, _ = self.report([{**body, "until_s": 0.1}], path="still.csv")
+            self.assertEqual(still["force_max_N"], 0)
+
+    def test_a_ball_that_turns_drags_the_hand(self):
+        turning = {"blob": 1, "pose": at(0, 0, -0.02), "angular_velocity_rad_s": [2, 0, 0]}
+        self.report([turning], "--trace", "trace.csv")
+        heading, *_, last = (self.path / "trace.csv").read_text().splitlines()
+        row = dict(zip(heading.split(","), last.split(",")))
+        force_y = next(float(row[k]) for k in row if k.startswith("force") and k.rstrip("_N").endswith("y"))
+        self.assertLess(force_y, -0.05)
+
+    def test_too_many_within_reach_are_told(self):
+        run, told = self.report([{"blob": 0}] * 3)
+        self.assertGreater(run["crowded_ticks"], 100)
+        self.assertEqual(run["bodies"][2]["contact_ticks"], 0)
+        self.assertIn("more than 2 bodies within reach", told)
+
+    def refused(self, bodies, cause, *arguments, code=1, **options):
+        with self.subTest(cause):
+            done = self.run_scene(bodies, *arguments, **options)
+            self.assertEqual(done.returncode, code, done.stderr)
+            self.assertIn(cause, done.stderr)
+            self.assertRegex(done.stderr, r"\(.+\)\n?$")  # the remedy
+            self.assertFalse((self.path / "run.json").exists())
+
+    def test_wrong_scenes_are_refused_with_place_cause_and_remedy(self):
+        mirrored = [-1, *IDENTITY[1:]]
+        scaled = [2, *IDENTITY[1:]]
+        column = [*IDENTITY[:12], 0.1, 0, 0, 1]
+        one, two = {"t_s": 0, "pose": IDENTITY}, {"t_s": 1, "pose": at(0, 0, 0.1)}
+        for text, cause in (
+                ("{", "scene.json: is not JSON"),
+                ('{"bodies": [{"blob": 0, "from_s": NaN}]}', "scene.json: is not JSON"),
+                ("[]", "scene.json: is not an object"),
+                ('{"bodys": []}', "scene.json.bodys: is not known"),
+                ("{}", "scene.json: bodies: is not a list"),
+                ('{"bodies": 3}', "scene.json: bodies: is not a list"),
+                ('{"bodies": [3]}', "bodies[0]: is not an object")):
+            self.refused(text, cause)
+        for body, cause in (
+                ({}, "bodies[0].blob: is neither a file nor the place of one of the 2 blobs"),
+                ({"blob": 2}, "bodies[0].blob: is neither"),
+                ({"blob": -1}, "bodies[0].blob: is neither"),
+                ({"blob": 0.5}, "bodies[0].blob: is neither"),
+                ({"blob": "no.blob"}, "no.blob: "),
+                ({"blob": 0, "color": 1}, "bodies[0].color: is not known"),
+                ({"blob": 0, "pose": IDENTITY[:12]}, "bodies[0].pose: is not a list of 16 numbers"),
+                ({"blob": 0, "pose": ["1", *IDENTITY[1:]]}, "bodies[0].pose[0]: is not a number"),
+                ({"blob": 0, "pose": mirrored}, "bodies[0].pose: its upper left 3x3 part"),
+                ({"blob": 0, "pose": scaled}, "bodies[0].pose: its upper left 3x3 part"),
+                ({"blob": 0, "pose": column}, "bodies[0].pose: its last row"),
+                ({"blob": 0, "pose": at(11, 0, 0)}, "bodies[0]: a pose is no rotation, or beyond +-10 m"),
+                ({"blob": 0, "linear_velocity_m_s": [0, 0]}, "linear_velocity_m_s: is not a list of 3"),
+                ({"blob": 0, "linear_velocity_m_s": [0, 0, 11]}, "bodies[0]: a body moves faster"),
+                ({"blob": 0, "angular_velocity_rad_s": [0, 0, 101]}, "bodies[0]: a body moves faster"),
+                ({"blob": 0, "from_s": "1"}, "bodies[0].from_s: is not a number"),
+                ({"blob": 0, "until_s": [1]}, "bodies[0].until_s: is not a number"),
+                ({"blob": 0, "keyframes": 1}, "bodies[0].keyframes: is not a list"),
+                ({"blob": 0, "keyframes": [one], "pose": IDENTITY}, "or stands beside a pose"),
+                ({"blob": 0, "keyframes": []}, "bodies[0]: there is no keyframe"),
+                ({"blob": 0, "keyframes": [1]}, "keyframes[0]: is not an object"),
+                ({"blob": 0, "keyframes": [{"pose": IDENTITY}]}, "keyframes[0].t_s: is not a number"),
+                ({"blob": 0, "keyframes": [{"t_s": 0, "pos": IDENTITY}]}, "keyframes[0].pos: is not known"),
+                ({"blob": 0, "keyframes": [one, {"t_s": 1, "pose": scaled}]}, "keyframes[1].pose: its upper"),
+                ({"blob": 0, "keyframes": [two, one]}, "the times of the keyframes do not ascend"),
+                ({"blob": 0, "keyframes": [one, {**two, "t_s": 0.001}]}, "a body moves faster")):
+            self.refused([body], cause)
+            self.refused([{"blob": 1}, body], cause.replace("bodies[0]", "bodies[1]"))
+        self.refused([], "scene.json: bodies: 0 bodies are outside 1 .. 8")
+        self.refused([{"blob": 0}] * 9, "scene.json: bodies: 9 bodies are outside 1 .. 8")
+
+    def test_a_body_that_cannot_be_rendered_is_named(self):
+        done = run_tool(self.path, "build", "ball.csv", "-o", "paper.blob", "--profile", "paper",
+                        "--progress", "off")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.refused([{"blob": 0}, {"blob": "paper.blob"}], "paper.blob: the blob was built without")
+        (self.path / "broken.blob").write_bytes((self.path / "ball.blob").read_bytes()[:-8])
+        self.refused([{"blob": 0}, {"blob": "broken.blob"}], "broken.blob: ")
+
+    def test_wrong_use(self):
+        done = run_tool(self.path, "simulate", "--scene", "none.json")
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("none.json", done.stderr)
+        self.refused([{"blob": 0}, {"blob": 1}], "--board mps2-an386: a board has one blob in its flash, "
+                     "the scene has 2 bodies", "--board", "mps2-an386")
+
+
+if __name__ == "__main__":
+    unittest.main()

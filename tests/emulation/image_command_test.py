@@ -1,0 +1,286 @@
+"""`tactree image`: each format read by decoders of this file's own, and everything it has to refuse.
+
+usage: image_command_test.py TACTREE BLOB BUILD_FOLDER
+BUILD_FOLDER holds the builds of the firmware; what needs them is skipped without.
+"""
+import json
+import pathlib
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+import zlib
+
+TACTREE, BLOB = sys.argv[1:3]
+BUILD = pathlib.Path(sys.argv[3])
+CODE, CODE_END, PLACE, PLACE_END = 0x08000000, 0x08020000, 0x08020000, 0x08100000
+FAMILY = 0x57755A57
+GOOD_BLOB = pathlib.Path(BLOB).read_bytes()
+
+
+# ---- decoders: address -> byte
+
+def from_hex(data):
+    memory, upper, ended = {}, 0, False
+    for line in data.decode("ascii").splitlines():
+        assert not ended and line[0] == ":", line
+        record = bytes.fromhex(line[1:])
+        size, address, kind, body = record[0], int.from_bytes(record[1:3], "big"), record[3], record[4:-1]
+        assert size == len(body) and sum(record) % 256 == 0, line
+        if kind == 0:
+            assert address + size <= 0x10000
+            for i, byte in enumerate(body):
+                assert (upper << 16) + address + i not in memory
+                memory[(upper << 16) + address + i] = byte
+        elif kind == 4:
+            upper = int.from_bytes(body, "big")
+        else:
+            assert kind in (1, 5), line
+            ended = kind == 1
+    assert ended
+    return memory
+
+
+def from_uf2(data, family):
+    memory = {}
+    assert len(data) % 512 == 0
+    for number in range(len(data) // 512):
+        block = data[512 * number:512 * (number + 1)]
+        first, second, flags, address, size, at, count, kind = struct.unpack("<8I", block[:32])
+        assert (first, second, block[-4:]) == (0x0A324655, 0x9E5D5157, struct.pack("<I", 0x0AB16F30))
+        assert (at, count, size, address % 256) == (number, len(data) // 512, 256, 0)
+        assert (flags, kind) == ((0x2000, family) if family else (0, 0))
+        for i in range(size):
+            memory[address + i] = block[32 + i]
+    return memory
+
+
+def from_bin(data, address=CODE):
+    return {address + i: byte for i, byte in enumerate(data)}
+
+
+def from_dfu(data, usb=(0xFFFF, 0xFFFF)):
+    device, product, vendor, version, mark, length, checksum = struct.unpack("<4H3sBI", data[-16:])
+    assert (vendor, product) == usb and (device, version, mark, length) == (0xFFFF, 0x100, b"UFD", 16)
+    assert checksum == zlib.crc32(data[:-4]) ^ 0xFFFFFFFF
+    return from_bin(data[:-16])
+
+
+def from_elf(data, sections=False):
+    """By program headers, or by the sections that are loaded."""
+    memory = {}
+    (phoff, shoff, _, _, phsize, phnum, shsize, shnum, names) = struct.unpack("<3I6H", data[28:52])
+    if sections:
+        headers = [struct.unpack("<10I", data[shoff + i * shsize:][:40]) for i in range(shnum)]
+        text = headers[names][4]
+        for name, kind, flags, address, offset, size, *_ in headers:
+            if kind == 1 and flags & 2:
+                name = data[text + name:data.index(b"\0", text + name)]
+                memory[name.decode()] = from_bin(data[offset:offset + size], address)
+        return memory
+    for i in range(phnum):
+        kind, offset, _, address, size, *_ = struct.unpack("<8I", data[phoff + i * phsize:][:32])
+        if kind == 1:
+            memory.update(from_bin(data[offset:offset + size], address))
+    return memory
+
+
+# ---- a firmware image as small as one can be
+
+def identity(mark=b"TACTIMG", board=b"stm32f405", place=(PLACE, PLACE_END)):
+    """But for the checksum at its end."""
+    return struct.pack("<8s24s5I", mark, board, CODE, CODE_END, *place, FAMILY)
+
+
+def firmware(code=None, address=CODE, machine=40, **identities):
+    code = bytes(range(256)) * 5 + b"xyz" if code is None else code
+    code += bytes(-len(code) % 4) + identity(**identities)
+    program = code + struct.pack("<I", zlib.crc32(b"vars", zlib.crc32(code))) + b"vars"
+    header = struct.pack("<4s5B7x2H5I6H", b"\x7fELF", 1, 1, 1, 0, 0, 2, machine, 1, address | 1, 52, 0, 0,
+                         52, 32, 3, 40, 0, 0)
+    size = len(program) - 4
+    table = struct.pack("<8I", 1, 148, address, address, size, size, 5, 4)
+    table += struct.pack("<8I", 1, 148 + size, 0x20000000, address + size, 4, 4, 6, 4)  # .data
+    table += struct.pack("<8I", 1, 0, 0x20000000, 0x20000000, 0, 64, 6, 4)  # .bss: nothing to load
+    return header + table + program
+
+
+class Image(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def file(self, name, data):
+        (self.folder / name).write_bytes(data)
+        return self.folder / name
+
+    def run_image(self, *arguments):
+        return subprocess.run([TACTREE, "image", *map(str, arguments)], capture_output=True, text=True,
+                              check=False)
+
+    def make(self, ending, *arguments, elf=None, blob=GOOD_BLOB):
+        output = self.folder / f"out.{ending}"
+        blobs = [self.file("model.blob", blob)] if blob else []
+        done = self.run_image(self.file("firmware.elf", elf or firmware()), *blobs, "-o", output, *arguments)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return output.read_bytes()
+
+    def refused(self, *words, elf=None, blob=GOOD_BLOB, arguments=(), ending="hex", code=1):
+        output = self.folder / f"refused.{ending}"
+        done = self.run_image(self.file("firmware.elf", firmware() if elf is None else elf),
+                              self.file("model.blob", blob), "-o", output, *arguments)
+        self.assertEqual(done.returncode, code, done.stderr)
+        self.assertFalse(output.exists())
+        for word in words:
+            self.assertIn(word, done.stderr)
+
+    def expected(self, elf=None):
+        memory = from_elf(elf or firmware())
+        memory.update(from_bin(GOOD_BLOB, PLACE))
+        return memory
+
+    def equal_but_for_erased(self, found, expected):
+        for address, byte in found.items():
+            self.assertEqual(byte, expected.get(address, 0xFF), hex(address))
+        self.assertLessEqual(set(expected), set(found))
+
+    # ---- each format holds every byte at its address, and no other
+
+    def test_hex(self):
+        self.assertEqual(from_hex(self.make("hex")), self.expected())
+
+    def test_uf2(self):
+        self.equal_but_for_erased(from_uf2(self.make("uf2"), FAMILY), self.expected())
+
+    def test_bin(self):
+        self.equal_but_for_erased(from_bin(self.make("bin")), self.expected())
+        self.assertEqual(len(self.make("bin")), PLACE - CODE + len(GOOD_BLOB))
+
+    def test_dfu(self):
+        self.equal_but_for_erased(from_dfu(self.make("dfu")), self.expected())
+        from_dfu(self.make("dfu", "--usb", "0483:df11"), (0x0483, 0xDF11))
+
+    def test_elf(self):
+        self.assertEqual(from_elf(self.make("elf")), self.expected())
+
+    def test_the_firmware_alone(self):
+        self.assertEqual(self.make("elf", blob=None), firmware())
+        self.assertEqual(from_hex(self.make("hex", blob=None)), from_elf(firmware()))
+
+    def test_code_of_every_length(self):
+        for size in range(0, 40):
+            elf = firmware(bytes(range(size)))
+            self.assertEqual(from_hex(self.make("hex", elf=elf)), self.expected(elf))
+
+    def test_code_across_64_kib_off_the_grid_of_16(self):
+        elf = firmware(bytes(range(256)) * 300, address=CODE + 4)
+        self.assertEqual(from_hex(self.make("hex", elf=elf)), self.expected(elf))
+
+    def test_format_by_option_and_report(self):
+        data = self.make("image", "--format", "uf2", "--json", self.folder / "r.json", "--board", "stm32f405")
+        from_uf2(data, FAMILY)
+        report = json.loads((self.folder / "r.json").read_text())
+        self.assertEqual(report["board"], "stm32f405")
+        self.assertEqual(report["blob_bytes"], len(GOOD_BLOB))
+        self.assertEqual(report["file_bytes"], len(data))
+
+    # ---- refused before there is a file to flash
+
+    def test_wrong_board(self):
+        self.refused("wrong board", "for stm32f405, not for mps2-an500", arguments=("--board", "mps2-an500"))
+
+    def test_blob_too_large(self):
+        room = len(GOOD_BLOB) - 1
+        small = firmware(place=(PLACE, PLACE + room))
+        self.refused("too large for stm32f405", f"--flash-budget {room}", elf=small)
+        self.make("hex", elf=firmware(place=(PLACE, PLACE + len(GOOD_BLOB))))
+
+    def test_blob_cut_or_corrupt(self):
+        self.refused("refused", "shorter than a blob's header", blob=GOOD_BLOB[:16])
+        self.refused("refused", blob=GOOD_BLOB[:-1])
+        self.refused("refused", blob=GOOD_BLOB + b"\0")
+        self.refused("refused", "checksum", blob=GOOD_BLOB[:-5] + bytes([GOOD_BLOB[-5] ^ 1]) + GOOD_BLOB[-4:])
+        self.refused("refused", "tactree build", blob=b"ply\nformat ascii 1.0\n" * 100)
+
+    def test_image_cut_at_any_byte(self):
+        whole = firmware()
+        for size in [*range(0, 130), len(whole) // 2, len(whole) - 1]:
+            self.refused("firmware.elf", "cut", elf=whole[:size])
+
+    def test_image_with_a_wrong_bit_anywhere_in_its_program(self):
+        whole = firmware()
+        for at in range(148, len(whole), 7):
+            wrong = bytearray(whole)
+            wrong[at] ^= 1 << at % 8
+            self.refused("firmware.elf", elf=wrong)
+        wrong = bytearray(whole)
+        wrong[200] ^= 1
+        self.refused("damaged: its checksum does not match", elf=wrong)
+
+    def test_image_that_is_none(self):
+        self.refused("not an ELF file", elf=b"\x7fELG" + firmware()[4:])
+        self.refused("not a program for", elf=firmware(machine=62))
+        self.refused("does not tell which board", elf=firmware(mark=b"TACTICS"))
+        self.refused("more than once", elf=firmware(identity() + bytes(4)))
+        self.refused("more than once, or wrongly", elf=firmware(board=b"b" * 24))
+        self.refused("are impossible", elf=firmware(place=(PLACE_END, PLACE)))
+        self.refused("outside the board's code", elf=firmware(address=CODE - 4))
+        self.refused("outside the board's code", elf=firmware(bytes(0x20000)))
+
+    def test_a_gap_no_flat_file_can_hold(self):
+        far = firmware(place=(0x60000000, 0x61000000))
+        for ending in ("bin", "dfu"):
+            self.refused("use .elf, .hex or .uf2", elf=far, ending=ending)
+        self.make("hex", elf=far)
+
+    def test_bad_usage(self):
+        self.refused("its ending tells no format", ending="img", code=2)
+        self.refused("--usb", arguments=("--usb", "0483df11"), code=2)
+        self.refused("--usb", arguments=("--usb", "04:3:df11"), code=2)
+
+    # ---- the boards' own images
+
+    def real(self, core, board):
+        image = BUILD / core / "firmware" / f"{board}.elf"
+        if not image.exists():
+            self.skipTest(f"{image} is not built")
+        return image.read_bytes()
+
+    def test_every_board(self):
+        boards = sorted(BUILD.glob("*/firmware/*.elf"))
+        if not boards:
+            self.skipTest("no firmware is built")
+        for image in boards:
+            elf = image.read_bytes()
+            at = elf.index(b"TACTIMG\0")
+            board, _, _, place, _, family, _ = struct.unpack("<8x24s6I", elf[at:at + 56])
+            self.assertEqual(board.rstrip(b"\0").decode(), image.stem)
+            expected = from_elf(elf)
+            expected.update(from_bin(GOOD_BLOB, place))
+            self.assertEqual(from_hex(self.make("hex", elf=elf)), expected)
+            self.equal_but_for_erased(from_uf2(self.make("uf2", elf=elf), family), expected)
+            merged = self.make("elf", elf=elf)
+            self.assertEqual(from_elf(merged), expected)
+            sections = from_elf(merged, sections=True)
+            self.assertEqual(sections.pop(".blob"), from_bin(GOOD_BLOB, place))
+            self.assertEqual(sections, from_elf(elf, sections=True))
+
+    def test_a_merged_image_boots_and_takes_its_model(self):
+        elf = self.real("cortex-m4f", "stm32f405")
+        for ending, load in (("elf", ["-kernel"]), ("hex", ["-device"])):
+            self.make(ending, elf=elf)
+            file = self.folder / f"out.{ending}"
+            load = [*load, f"loader,file={file}" if ending == "hex" else str(file)]
+            command = ["qemu-system-arm", "-M", "netduinoplus2", "-display", "none", "-monitor", "none",
+                       "-serial", "stdio", "-icount", "shift=3,sleep=off", *load]
+            with subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE) as emulator:
+                boot = emulator.stdout.read(92)
+                emulator.kill()
+            self.assertEqual(boot[:2], b"Tb")
+            self.assertEqual(boot[6:10], bytes(4))  # configuration, blob, model and image are fine
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
