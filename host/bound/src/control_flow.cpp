@@ -172,9 +172,7 @@ class Decoder {
     for (unsigned i = 0; i < writes; ++i) {
       writes_pc = writes_pc || written[i] == ARM_REG_PC;
       const int number = static_cast<int>(written[i]) - static_cast<int>(ARM_REG_R0);
-      if (number >= 0 && number < 4) {
-        d.instruction.written.insert(number);
-      }
+      d.instruction.written.insert(number);
     }
     if (writes_pc) {
       d.kind = Kind::kReturn;
@@ -184,6 +182,7 @@ class Decoder {
       return d;
     }
     note_constants(d);
+    note_words(d.instruction);
     d.instruction.store = is_store();
     return d;
   }
@@ -211,11 +210,31 @@ class Decoder {
     const int number = low_register(0);
     const auto value = immediate(1);
     const bool moves = instruction_->id == ARM_INS_MOV || instruction_->id == ARM_INS_MOVW;
-    if (number >= 0 && number < 4 && value && moves && arm().op_count == 2) {
-      d.instruction.constant = {number, *value};
+    if (value && moves && arm().op_count == 2) {
+      d.instruction.constant = {number_of(arm().operands[0].reg), *value};
     }
     if (instruction_->id == ARM_INS_CMP && number >= 0 && value) {
       d.compared = {number, *value};
+    }
+  }
+
+  // r0 to r12 by their numbers; the others by some that none of those has.
+  static int number_of(int reg) { return reg - static_cast<int>(ARM_REG_R0); }
+
+  // A structure that goes in registers is often written to memory and read again.
+  void note_words(Instruction& instruction) const {
+    const std::string_view name = instruction_->mnemonic;
+    instruction.writes_memory = name.starts_with("st") || name.starts_with("vst") ||
+                                name.starts_with("push") || name.starts_with("vpush");
+    if (instruction_->id == ARM_INS_STRD && arm().op_count == 3 && !arm().writeback) {
+      instruction.stored = {number_of(static_cast<int>(arm().operands[2].mem.base)),
+                            arm().operands[2].mem.disp,
+                            {number_of(arm().operands[0].reg), number_of(arm().operands[1].reg)}};
+    } else if (instruction_->id == ARM_INS_LDM && !arm().writeback) {
+      instruction.loaded = {number_of(arm().operands[0].reg), 0, {}};
+      for (unsigned i = 1; i < arm().op_count; ++i) {
+        instruction.loaded->registers.push_back(number_of(arm().operands[i].reg));
+      }
     }
   }
 
@@ -647,29 +666,86 @@ std::vector<Edge> ControlFlow::entries_of(std::uint32_t block) const {
   return result;
 }
 
-std::optional<std::uint32_t> ControlFlow::argument(std::uint32_t block, int number) const {
-  // Back along the only way here, until something is put into the register.
+namespace {
+
+/// Follows the content of a register backwards, to the constant that was put there.
+class Origin {
+ public:
+  explicit Origin(int number) : number_(number) {}
+
+  [[nodiscard]] bool lost() const { return lost_; }
+  /// The register it is in by now; nothing: it is in memory.
+  [[nodiscard]] std::optional<int> where() const {
+    return in_memory_ ? std::nullopt : std::optional(number_);
+  }
+  [[nodiscard]] std::optional<std::uint32_t> constant() const { return constant_; }
+
+  void pass(const Instruction& instruction) {
+    if (in_memory_) {
+      pass_memory(instruction);
+    } else if (instruction.constant && instruction.constant->first == number_) {
+      constant_ = instruction.constant->second;
+    } else if (instruction.written.contains(number_)) {
+      load(instruction);
+    }
+  }
+
+ private:
+  void load(const Instruction& instruction) {
+    lost_ = !instruction.loaded.has_value();
+    if (lost_) {
+      return;
+    }
+    const auto& registers = instruction.loaded->registers;
+    const auto at = std::find(registers.begin(), registers.end(), number_) - registers.begin();
+    in_memory_ = true;
+    base_ = instruction.loaded->base;
+    offset_ = instruction.loaded->offset + 4 * static_cast<std::int32_t>(at);
+  }
+
+  void pass_memory(const Instruction& instruction) {
+    if (instruction.stored && instruction.stored->base == base_) {
+      const std::int32_t word = (offset_ - instruction.stored->offset) / 4;
+      if (word == 0 || word == 1) {
+        number_ = instruction.stored->registers[static_cast<std::size_t>(word)];
+        in_memory_ = false;
+        return;
+      }
+    }
+    lost_ = instruction.writes_memory || instruction.written.contains(base_);
+  }
+
+  int number_;
+  bool in_memory_ = false;
+  int base_ = 0;
+  std::int32_t offset_ = 0;
+  bool lost_ = false;
+  std::optional<std::uint32_t> constant_;
+};
+
+}  // namespace
+
+Argument ControlFlow::argument(std::uint32_t block, int number) const {
+  Origin origin(number);
+  // Back along the only way here.
   for (std::size_t steps = 0; steps < blocks.size(); ++steps) {
     const Block& here = blocks[block];
     for (std::uint32_t i = here.count; i > 0; --i) {
-      const Instruction& instruction = instructions[here.first + i - 1];
-      if (instruction.constant && instruction.constant->first == number) {
-        return instruction.constant->second;
-      }
-      if (instruction.written.contains(number)) {
-        return std::nullopt;
+      origin.pass(instructions[here.first + i - 1]);
+      if (origin.constant() || origin.lost()) {
+        return {origin.constant(), {}};
       }
     }
     const std::vector<Edge> entries = entries_of(block);
-    if (entries.size() != 1) {
-      return std::nullopt;
+    if (block == 0 && entries.empty()) {
+      return {{}, origin.where()};
+    }
+    if (entries.size() != 1 || blocks[entries[0].first].calls) {
+      return {};
     }
     block = entries[0].first;
-    if (blocks[block].calls) {
-      return std::nullopt;
-    }
   }
-  return std::nullopt;
+  return {};
 }
 
 ControlFlow control_flow(const Image& image, const Function& function) {

@@ -22,9 +22,18 @@ struct Instruction {
   std::uint32_t cycles = 0;       ///< of a Cortex-M4 at most, where no memory makes it wait
   std::uint32_t stack_words = 0;  ///< it loads or stores relative to the stack pointer
   std::uint32_t other_words = 0;  ///< and anywhere else
-  /// A constant put into one of the registers r0 to r3.
+  /// A constant put into a register.
   std::optional<std::pair<int, std::uint32_t>> constant;
-  std::set<int> written;  ///< of r0 to r3
+  std::set<int> written;  ///< of the core's registers
+  /// Words in memory from `base` + `offset` on, and the registers they come from or go to.
+  struct Words {
+    int base = 0;
+    std::int32_t offset = 0;
+    std::vector<int> registers;
+  };
+  std::optional<Words> stored;
+  std::optional<Words> loaded;
+  bool writes_memory = false;
 };
 
 /// Instructions that are executed one after the other. A call ends a block; what it calls is
@@ -52,6 +61,13 @@ struct Loop {
   std::optional<std::uint32_t> parent;  ///< the smallest loop around it
 };
 
+/// What is in a register when a function is called: a constant, or what the caller itself was given
+/// in a register, or something else.
+struct Argument {
+  std::optional<std::uint32_t> constant;
+  std::optional<int> passed_on;
+};
+
 /// Of one function. Block 0 is the entry.
 struct ControlFlow {
   Function function;
@@ -60,8 +76,8 @@ struct ControlFlow {
   std::vector<Loop> loops;  ///< a loop comes before those within it
 
   [[nodiscard]] std::vector<Edge> entries_of(std::uint32_t block) const;
-  /// What r<number> holds when the block's call begins, if that is a constant.
-  [[nodiscard]] std::optional<std::uint32_t> argument(std::uint32_t block, int number) const;
+  /// What r<number> holds when the block's call begins.
+  [[nodiscard]] Argument argument(std::uint32_t block, int number) const;
 };
 
 /// Blocks and edges, without the loops. Throws BoundError, naming file and line, on what it cannot

@@ -235,8 +235,45 @@ std::vector<std::string> Image::source_files() const {
   return {names.begin(), names.end()};
 }
 
-// By the procedure call standard of Arm the first four words of arguments are in r0 to r3; none of
-// the functions whose arguments a bound names has larger ones.
+namespace {
+
+/// An argument's own name; that of the original where the function is a copy.
+std::string name_of(Dwarf_Die& argument) {
+  const char* const name = dwarf_diename(&argument);
+  Dwarf_Attribute attribute;
+  Dwarf_Die origin;
+  if (name != nullptr ||
+      dwarf_formref_die(dwarf_attr(&argument, DW_AT_abstract_origin, &attribute), &origin) ==
+          nullptr) {
+    return name == nullptr ? "" : name;
+  }
+  const char* const original = dwarf_diename(&origin);
+  return original == nullptr ? "" : original;
+}
+
+/// Of an argument's type; a float, which is in no such register, has none.
+int words_of(Dwarf_Die& argument) {
+  Dwarf_Attribute attribute;
+  Dwarf_Die type;
+  Dwarf_Word bytes = 0;
+  Dwarf_Word encoding = 0;
+  if (dwarf_formref_die(dwarf_attr_integrate(&argument, DW_AT_type, &attribute), &type) ==
+          nullptr ||
+      dwarf_aggregate_size(&type, &bytes) != 0) {
+    return 1;
+  }
+  Dwarf_Die plain = type;
+  dwarf_peel_type(&type, &plain);
+  const bool is_float =
+      dwarf_formudata(dwarf_attr(&plain, DW_AT_encoding, &attribute), &encoding) == 0 &&
+      encoding == DW_ATE_float;
+  return is_float ? 0 : static_cast<int>((bytes + 3) / 4);
+}
+
+}  // namespace
+
+// By the procedure call standard of Arm the first four words of arguments are in r0 to r3. Of a
+// span, the first word is where it begins and the second its size: NAME_size.
 std::map<std::string, int> Image::arguments(std::uint32_t entry) const {
   std::map<std::string, int> result;
   Dwarf_Die unit;
@@ -253,15 +290,14 @@ std::map<std::string, int> Image::arguments(std::uint32_t entry) const {
     int number = 0;
     do {
       if (dwarf_tag(&child) == DW_TAG_formal_parameter && number < 4) {
-        const char* const name = dwarf_diename(&child);
-        Dwarf_Attribute attribute;
-        Dwarf_Die origin;
-        const bool copied =
-            name == nullptr &&
-            dwarf_formref_die(dwarf_attr(&child, DW_AT_abstract_origin, &attribute), &origin) !=
-                nullptr;
-        const char* const original = copied ? dwarf_diename(&origin) : name;
-        result[original == nullptr ? "" : original] = number++;
+        const int words = words_of(child);
+        const std::string name = name_of(child);
+        if (words == 1) {
+          result[name] = number;
+        } else if (words == 2) {
+          result[name + "_size"] = number + 1;
+        }
+        number += words;
       }
     } while (dwarf_siblingof(&child, &child) == 0);
     break;

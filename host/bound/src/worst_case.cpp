@@ -165,6 +165,18 @@ class Model {
     return cycles_of(*analysis_.timing, flow, block);
   }
 
+  /// A constant; or what this function itself was called with.
+  [[nodiscard]] std::optional<std::int64_t> argument(std::uint32_t entry, std::uint32_t b,
+                                                     int number) const {
+    const Argument given = function(entry).flow.argument(b, number);
+    for (const auto& [name, own] : function(entry).arguments) {
+      if (given.passed_on == own && arguments_.contains(name)) {
+        return arguments_.at(name);
+      }
+    }
+    return given.constant;
+  }
+
   /// Each call is analysed by itself, for the values its arguments have there.
   const Solved& call_with_arguments(std::uint32_t entry, std::uint32_t b) {
     const auto known = calls_.find({entry, b});
@@ -175,7 +187,7 @@ class Model {
     const std::uint32_t callee = *flow.blocks[b].calls;
     Parameters arguments;
     for (const auto& [name, number] : function(callee).arguments) {
-      const auto value = flow.argument(b, number);
+      const auto value = argument(entry, b, number);
       if (!value) {
         const Block& block = flow.blocks[b];
         const std::uint32_t last = block.first + (block.count == 0 ? 0 : block.count - 1);
