@@ -10,7 +10,7 @@ bool aligned(const void* a, const void* b) {
   return ((reinterpret_cast<std::uintptr_t>(a) | reinterpret_cast<std::uintptr_t>(b)) & 3U) == 0U;
 }
 
-// The bounds are those of structures that lie on words: a tick copies and clears nothing else.
+// The bounds hold where whatever has 16 bytes or more lies on words, as all structures of a tick do.
 
 // Words of whatever type the bytes have.
 using Word [[gnu::may_alias]] = std::uint32_t;
@@ -37,7 +37,7 @@ void* memcpy(void* __restrict to, const void* __restrict from, std::size_t bytes
       *reinterpret_cast<Word*>(target) = *reinterpret_cast<const Word*>(source);
     }
   }
-  for (; bytes > 0; --bytes) {  // bound: bytes % 4
+  for (; bytes > 0; --bytes) {  // bound: max(bytes % 4, (1 - min(bytes / 16, 1)) * bytes)
     *target++ = *source++;
   }
   return to;
@@ -70,7 +70,7 @@ void* memset(void* to, int value, std::size_t bytes) {
       *reinterpret_cast<Word*>(target) = word;
     }
   }
-  for (; bytes > 0; --bytes) {  // bound: bytes % 4
+  for (; bytes > 0; --bytes) {  // bound: max(bytes % 4, (1 - min(bytes / 16, 1)) * bytes)
     *target++ = byte;
   }
   return to;

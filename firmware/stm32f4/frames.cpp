@@ -17,7 +17,8 @@ bool CommandReader::push(std::byte byte, core::Command& command) {
   }
   const auto frame = std::bit_cast<CommandFrame>(bytes);
   if (frame.mark != kFrameMark || frame.kind != kCommandKind ||
-      frame.command > core::Command::kHome || frame.checksum != checksum_of(frame)) {
+      frame.command > core::Command::kHome ||
+      frame.checksum != checksum_of(frame)) {  // with: bytes_size <= 4
     return false;
   }
   const bool repeated = !first_ && frame.sequence == last_sequence_;

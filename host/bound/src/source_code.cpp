@@ -227,6 +227,21 @@ class Reader {
     }
   }
 
+  [[nodiscard]] SourceArgument read_argument(std::string_view text, std::uint32_t line) const {
+    const std::size_t sign = text.find("<=");
+    const std::size_t begin = text.find_first_not_of(' ');
+    if (sign == std::string_view::npos || begin >= sign) {
+      throw BoundError(place(line) + ": no argument can be read (write `with: NAME <= BOUND`)");
+    }
+    const std::string_view name = text.substr(begin, sign - begin);
+    text.remove_prefix(sign + 2);
+    SourceArgument argument{name_, line + (stands_alone(line) ? 1U : 0U),
+                            std::string(name.substr(0, name.find(' '))),
+                            Expression::read(text, place(line))};
+    check_remark(text, line);
+    return argument;
+  }
+
   void read_facts() {
     for (std::uint32_t line = 1; line <= lines_.size(); ++line) {
       std::string_view text = said(line, "at most:");
@@ -235,6 +250,10 @@ class Reader {
         fact.line += stands_alone(line) ? 1U : 0U;
         check_remark(text, line);
         file_.facts.push_back(std::move(fact));
+      }
+      text = said(line, "with:");
+      if (!text.empty()) {
+        file_.arguments.push_back(read_argument(text, line));
       }
     }
   }

@@ -2,6 +2,7 @@
 // What the sources say beside their code:
 //   for (...) {  // bound: EXPRESSION [, total EXPRESSION per FUNCTION]
 //   call(...);   // at most: EXPRESSION per FUNCTION
+//   call(...);   // with: ARGUMENT <= EXPRESSION
 // A remark may follow in parentheses, or after a semicolon.
 
 #include <cstdint>
@@ -40,8 +41,17 @@ struct SourceFact {
   Total total;
 };
 
+/// The largest argument that the calls of one statement give.
+struct SourceArgument {
+  std::string file;
+  std::uint32_t line = 0;
+  std::string name;
+  Expression at_most;
+};
+
 struct SourceFile {
   std::vector<SourceLoop> loops;
+  std::vector<SourceArgument> arguments;
   std::vector<SourceFact> facts;
   std::map<std::string, Expression> constants;  ///< constexpr integers by name
 };

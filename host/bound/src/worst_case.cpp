@@ -165,16 +165,38 @@ class Model {
     return cycles_of(*analysis_.timing, flow, block);
   }
 
-  /// A constant; or what this function itself was called with.
+  /// A constant; or what this function itself was called with; or what the source says.
   [[nodiscard]] std::optional<std::int64_t> argument(std::uint32_t entry, std::uint32_t b,
-                                                     int number) const {
+                                                     int number,
+                                                     const std::string& wanted) const {
     const Argument given = function(entry).flow.argument(b, number);
     for (const auto& [name, own] : function(entry).arguments) {
       if (given.passed_on == own && arguments_.contains(name)) {
         return arguments_.at(name);
       }
     }
-    return given.constant;
+    return given.constant ? std::optional<std::int64_t>(*given.constant)
+                          : said_argument(function(entry).flow, b, wanted);
+  }
+
+  [[nodiscard]] std::optional<std::int64_t> said_argument(const ControlFlow& flow, std::uint32_t b,
+                                                          const std::string& name) const {
+    const Block& block = flow.blocks[b];
+    const std::uint32_t last = block.first + std::max(block.count, 1U) - 1;
+    std::optional<std::int64_t> least;  // where the calls inlined around it say more, that is true too
+    for (const Place& place : analysis_.program.lines().at(flow.instructions[last].address)) {
+      const SourceFile* const file = analysis_.sources.find(place.file);
+      if (file == nullptr) {
+        continue;
+      }
+      for (const SourceArgument& argument : file->arguments) {
+        if (argument.line == place.line && argument.name == name) {
+          const std::int64_t value = value_of(argument.at_most, argument.file);
+          least = std::min(least.value_or(value), value);
+        }
+      }
+    }
+    return least;
   }
 
   /// Each call is analysed by itself, for the values its arguments have there.
@@ -187,14 +209,15 @@ class Model {
     const std::uint32_t callee = *flow.blocks[b].calls;
     Parameters arguments;
     for (const auto& [name, number] : function(callee).arguments) {
-      const auto value = argument(entry, b, number);
+      const auto value = argument(entry, b, number, name);
       if (!value) {
         const Block& block = flow.blocks[b];
         const std::uint32_t last = block.first + (block.count == 0 ? 0 : block.count - 1);
         throw BoundError(fmt::format(
-            "{}: calls {} with an argument '{}' that is no constant (give it one)",
+            "{}: calls {} with an argument '{}' that is no constant (give it one, or say "
+            "`with: {} <= ...` beside the call)",
             describe_place(analysis_.image, flow.instructions[last].address),
-            demangled(function(callee).flow.function.name), name));
+            demangled(function(callee).flow.function.name), name, name));
       }
       arguments[name] = *value;
     }
