@@ -15,6 +15,7 @@ constexpr const char* kWords[] = {
     "there is no body of this number",
     "the pose is not finite, not a rotation, or beyond +-10 m",
     "the motion is not finite, or beyond 10 m/s or 100 rad/s",
+    "a tick with this model may take longer than the rate allows",
 };
 constexpr std::uint32_t kWordCount = sizeof(kWords) / sizeof(kWords[0]);
 

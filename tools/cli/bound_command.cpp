@@ -26,6 +26,7 @@ struct BoundCommandOptions {
   std::string board;
   std::string blob;
   double rate_hz = 0.0;
+  bool embed = false;
   std::string sources = TACTREE_SOURCES;
   std::string json;
   std::string mode = "surface";
@@ -36,7 +37,9 @@ bound::Parameters parameters(const BoundCommandOptions& options) {
   const auto mode =
       options.mode == "paper" ? core::RenderMode::kPaper : core::RenderMode::kSurface;
   if (options.blob.empty()) {
-    return bound::largest_parameters(mode, options.bodies);
+    const auto kind =
+        mode == core::RenderMode::kPaper ? core::TickKind::kPaper : core::TickKind::kMixed;
+    return bound::parameters_of(bound::largest_figures(), kind, options.bodies);
   }
   const BlobFile blob(options.blob);
   return bound::parameters_of(blob.view().header(), mode, options.bodies);
@@ -129,6 +132,9 @@ void bound_tick(const BoundCommandOptions& options) {
                                    "out: the bound is in instructions then)",
                                    options.board));
   }
+  if (options.embed) {
+    bound::embed(options.image, bound::tick_costs(analysis));
+  }
   const bound::Bound result = bound::worst_case(analysis);
   print(analysis.parameters, result);
   if (analysis.timing != nullptr) {
@@ -151,6 +157,10 @@ void add_bound_command(CLI::App& app, int&) {
   verb->add_option("IMAGE", options->image, "the image: <board>.elf")->required();
   CLI::Option* board = verb->add_option(
       "--board", options->board, "the board: also says how many cycles, and the highest rate");
+  verb->add_flag("--embed", options->embed,
+                 "write the cycles into the image, as a formula in the model's figures: its "
+                 "controller then refuses what is not in time (seal it with scripts/seal-image)")
+      ->needs(board);
   verb->add_option("--rate", options->rate_hz, "fails where the board cannot keep this rate, Hz")
       ->needs(board);
   verb->add_option("--blob", options->blob,

@@ -126,6 +126,8 @@ void Image::read_symbols() {
       if (GELF_ST_TYPE(symbol.st_info) == STT_FUNC && symbol.st_size != 0) {
         const std::uint32_t begin = address & ~1U;
         functions_.try_emplace(begin, Function{name, begin, begin + static_cast<std::uint32_t>(symbol.st_size)});
+      } else if (GELF_ST_TYPE(symbol.st_info) == STT_OBJECT) {
+        variables_[name] = address;
       } else if (name == "$t" || name.starts_with("$t.")) {
         code_[address] = true;
       } else if (name == "$d" || name.starts_with("$d.") || name == "$a") {
@@ -154,6 +156,20 @@ const Function* Image::find(std::string_view symbol) const {
     }
   }
   return nullptr;
+}
+
+std::optional<std::uint64_t> Image::offset_of(std::string_view symbol) const {
+  const auto found = variables_.find(std::string(symbol));
+  Elf_Scn* section = nullptr;
+  while (found != variables_.end() && (section = elf_nextscn(debug_->elf(), section)) != nullptr) {
+    GElf_Shdr header;
+    if (gelf_getshdr(section, &header) != nullptr && header.sh_type == SHT_PROGBITS &&
+        (header.sh_flags & SHF_ALLOC) != 0 && found->second >= header.sh_addr &&
+        found->second - header.sh_addr < header.sh_size) {
+      return header.sh_offset + (found->second - header.sh_addr);
+    }
+  }
+  return std::nullopt;
 }
 
 std::span<const std::uint8_t> Image::bytes_at(std::uint32_t address) const {

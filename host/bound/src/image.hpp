@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -43,6 +44,8 @@ class Image {
   [[nodiscard]] bool is_code(std::uint32_t address) const;
   /// The line of an instruction, then the lines of the calls that were inlined around it.
   [[nodiscard]] std::vector<Place> places(std::uint32_t address) const;
+  /// Where in the file a variable is stored; nothing: there is none of this name.
+  [[nodiscard]] std::optional<std::uint64_t> offset_of(std::string_view symbol) const;
   /// Functions that were inlined anywhere, by their symbols' names.
   [[nodiscard]] std::set<std::string> inlined_functions() const;
   /// Every source file of the image.
@@ -59,6 +62,7 @@ class Image {
   std::string name_;
   std::unique_ptr<Debug> debug_;
   std::map<std::uint32_t, Function> functions_;
+  std::map<std::string, std::uint32_t> variables_;
   std::map<std::uint32_t, bool> code_;  // from here on: code, or data
 };
 

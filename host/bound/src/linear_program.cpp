@@ -47,6 +47,9 @@ LinearProgram::Solution LinearProgram::solve() const {
   for (std::size_t i = 0; i < gains_.size(); ++i) {
     solution.x.push_back(glp_get_col_prim(problem.get(), static_cast<int>(i) + 1));
   }
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    solution.price.push_back(glp_get_row_dual(problem.get(), static_cast<int>(i) + 1));
+  }
   return solution;
 }
 

@@ -1,7 +1,9 @@
 #pragma once
 // max c x with x >= 0 and linear constraints, by GLPK.
 
+#include <cstddef>
 #include <map>
+#include <utility>
 #include <vector>
 
 namespace tactree::bound {
@@ -13,15 +15,18 @@ class LinearProgram {
  public:
   /// Its number; x >= 0.
   int add_variable(double gain);
-  void add_gain(int variable, double gain) { gains_[static_cast<std::size_t>(variable)] += gain; }
-  /// sum of the terms == value, or <= value.
-  void equal(const Terms& terms, double value) { rows_.push_back({terms, value, true}); }
-  void at_most(const Terms& terms, double value) { rows_.push_back({terms, value, false}); }
+  [[nodiscard]] const std::vector<double>& gains() const { return gains_; }
+  void set_gains(std::vector<double> gains) { gains_ = std::move(gains); }
+  /// sum of the terms == value, or <= value; the number of the row.
+  std::size_t equal(const Terms& terms, double value) { return add({terms, value, true}); }
+  std::size_t at_most(const Terms& terms, double value) { return add({terms, value, false}); }
+  void replace(std::size_t row, const Terms& terms) { rows_[row].terms = terms; }
 
   struct Solution {
     bool bounded = false;
     double gain = 0.0;
     std::vector<double> x;
+    std::vector<double> price;  ///< by row: what a larger value would gain
   };
   /// The largest gain, over real x: so never less than over integers.
   [[nodiscard]] Solution solve() const;
@@ -32,6 +37,11 @@ class LinearProgram {
     double value;
     bool equal;
   };
+  std::size_t add(Row row) {
+    rows_.push_back(std::move(row));
+    return rows_.size() - 1;
+  }
+
   std::vector<double> gains_;
   std::vector<Row> rows_;
 };

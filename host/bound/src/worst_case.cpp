@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <optional>
 #include <set>
 
@@ -10,6 +11,7 @@
 #include "tactree/bound/bound.hpp"
 #include "tactree/bound/bound_error.hpp"
 #include "tactree/core/surface.hpp"
+#include "tactree/core/tick_cost.hpp"
 
 namespace tactree::bound {
 namespace {
@@ -38,6 +40,8 @@ struct Analysis {
   Program& program;
   const Parameters& parameters;
   std::set<std::string> inlined;
+  /// Names among the parameters whose values a formula leaves open, and their largest values.
+  Parameters open;
   const BoardTiming* timing;  ///< what is maximised are cycles; nullptr: instructions
 };
 
@@ -74,6 +78,12 @@ struct Solved {
 
 Solved solve(const Analysis& analysis, const Entries& entries, const Parameters& arguments);
 
+/// base + the sum over open parameters of per[name] * value, never less than the worst case.
+struct Formula {
+  double base = 0.0;
+  std::map<std::string, double> per;
+};
+
 /// The linear program of one analysis.
 class Model {
  public:
@@ -81,20 +91,133 @@ class Model {
       : analysis_(analysis), arguments_(arguments) {}
 
   Solved solve(const Entries& entries) {
+    write_down(entries);
+    if (!open_.empty()) {
+      throw BoundError(open_[0].where + ": a model's figure in a function whose calls are analysed "
+                                        "one by one (use its arguments only)");
+    }
+    return read(solved_program());
+  }
+
+  // Each open limit, what <= (fixed + sum of per * value) * entered, gets a price: what one more
+  // pass gains at the parameters given. What it limits is paid at that price, and what it grants is
+  // earned at it, whatever the values of the open parameters are. The worst case is then no more
+  // than the largest gain of all that has no open parameter, plus, for each of these, its value
+  // times the largest sum of the grants per unit of it. (Weak duality of linear programming: true
+  // for any prices; good prices make it tight.)
+  Formula solve_open(const Entries& entries) {
+    write_down(entries);
+    const LinearProgram::Solution reference = solved_program();
+    std::vector<double> gains = program_.gains();
+    std::map<std::string, std::vector<double>> grants;
+    for (const OpenLimit& limit : open_) {
+      const double price = std::max(reference.price[limit.row], 0.0);
+      for (const auto& [variable, coefficient] : limit.what) {
+        gains[static_cast<std::size_t>(variable)] -= price * coefficient;
+      }
+      for (const auto& [variable, coefficient] : limit.entered) {
+        gains[static_cast<std::size_t>(variable)] += price * limit.fixed * coefficient;
+        for (const auto& [name, per] : limit.per) {
+          auto& grant = grants[name];
+          grant.resize(gains.size());
+          grant[static_cast<std::size_t>(variable)] += price * per * coefficient;
+        }
+      }
+      widen(limit);
+    }
+    Formula formula;
+    formula.base = largest(gains);
+    for (auto& [name, grant] : grants) {
+      formula.per[name] = largest(std::move(grant));
+    }
+    return formula;
+  }
+
+ private:
+  void write_down(const Entries& entries) {
     add_functions(entries);
     connect_calls(entries);
     limit_loops();
     limit_totals();
     limit_facts();
-    const LinearProgram::Solution solution = program_.solve();
+  }
+
+  [[nodiscard]] LinearProgram::Solution solved_program() const {
+    LinearProgram::Solution solution = program_.solve();
     if (!solution.bounded) {
       throw BoundError(analysis_.image.name() +
                        ": the bounds beside the loops contradict each other (correct them)");
     }
-    return read(solution);
+    return solution;
   }
 
- private:
+  double largest(std::vector<double> gains) {
+    program_.set_gains(std::move(gains));
+    return solved_program().gain;
+  }
+
+  /// A limit that names open parameters.
+  struct OpenLimit {
+    std::string where;
+    std::size_t row = 0;
+    Terms what;
+    Terms entered;
+    double fixed = 0.0;
+    std::map<std::string, double> per;
+  };
+
+  /// In place of the values given: the largest, so that nothing is without a limit.
+  void widen(const OpenLimit& limit) {
+    double most = limit.fixed;
+    for (const auto& [name, per] : limit.per) {
+      most += per * static_cast<double>(analysis_.open.at(name));
+    }
+    Terms terms = limit.what;
+    add(terms, limit.entered, -most);
+    program_.replace(limit.row, terms);
+  }
+
+  /// what <= limit * entered.
+  void limit_to(const Terms& what, const Expression& limit, const std::string& file,
+                const Terms& entered) {
+    Terms terms = what;
+    add(terms, entered, -static_cast<double>(value_of(limit, file)));
+    OpenLimit open{file, program_.at_most(terms, 0.0), what, entered, 0.0, {}};
+    open.fixed = static_cast<double>(value_with(limit, file, {}));
+    for (const auto& [name, largest] : analysis_.open) {
+      if (limit.mentions(name)) {
+        open.per[name] = static_cast<double>(value_with(limit, file, {{name, 1}})) - open.fixed;
+      }
+    }
+    if (!open.per.empty()) {
+      check_linear(open, limit, file);
+      open_.push_back(std::move(open));
+    }
+  }
+
+  void check_linear(const OpenLimit& open, const Expression& limit, const std::string& file) const {
+    double sum = open.fixed;
+    for (const auto& [name, per] : open.per) {
+      sum += per * static_cast<double>(analysis_.open.at(name));
+    }
+    if (sum != static_cast<double>(value_with(limit, file, analysis_.open))) {
+      throw BoundError(fmt::format("{}: '{}' is no sum of multiples of the model's figures (write it "
+                                   "as one)",
+                                   file, limit.text()));
+    }
+  }
+
+  /// With these values of the open parameters; those that are not given are 0.
+  [[nodiscard]] std::int64_t value_with(const Expression& expression, const std::string& file,
+                                        const Parameters& values) const {
+    return std::max<std::int64_t>(
+        0, expression.value([&](const std::string& name) -> std::optional<std::int64_t> {
+          if (analysis_.open.contains(name)) {
+            return values.contains(name) ? values.at(name) : 0;
+          }
+          return named(name, file);
+        }));
+  }
   struct FunctionVariables {
     int entry = 0;
     std::map<Edge, int> edges;
@@ -273,16 +396,20 @@ class Model {
   // ---- what the sources say
 
   [[nodiscard]] std::int64_t value_of(const Expression& expression, const std::string& file) const {
-    const std::int64_t value = expression.value([&](const std::string& name) {
-      for (const Parameters* names : {&arguments_, &analysis_.parameters}) {
-        const auto found = names->find(name);
-        if (found != names->end()) {
-          return std::optional(found->second);
-        }
-      }
-      return analysis_.sources.constant(file, name);
-    });
+    const std::int64_t value =
+        expression.value([&](const std::string& name) { return named(name, file); });
     return std::max<std::int64_t>(value, 0);
+  }
+
+  [[nodiscard]] std::optional<std::int64_t> named(const std::string& name,
+                                                  const std::string& file) const {
+    for (const Parameters* names : {&arguments_, &analysis_.parameters}) {
+      const auto found = names->find(name);
+      if (found != names->end()) {
+        return found->second;
+      }
+    }
+    return analysis_.sources.constant(file, name);
   }
 
   static void add(Terms& to, const Terms& terms, double factor = 1.0) {
@@ -359,16 +486,13 @@ class Model {
       }
     }
     const SourceLoop& source = *f.bounds[number].source;
-    const auto limit = static_cast<double>(value_of(*source.bound, source.file));
-    add(terms, entered(entry, f.flow.loops[number]), -limit);
-    program_.at_most(terms, 0.0);
+    limit_to(terms, *source.bound, source.file, entered(entry, f.flow.loops[number]));
   }
 
   /// sum of `what` <= so often for each call of the function that `total` names.
   void limit_total(const Terms& what, const Total& total, const std::string& file,
                    const std::string& where) {
-    Terms terms = what;
-    const auto limit = static_cast<double>(value_of(total.at_most, file));
+    Terms calls;
     bool found = false;
     for (const auto& [entry, own] : variables_) {
       const std::string& symbol = function(entry).flow.function.name;
@@ -377,7 +501,7 @@ class Model {
           throw BoundError(fmt::format("{}: the compiler has divided {} (mark it gnu::noinline)",
                                        where, total.function));
         }
-        terms[own.entry] -= limit;
+        calls[own.entry] += 1.0;
         found = true;
       }
     }
@@ -389,7 +513,7 @@ class Model {
                                    "gnu::noinline, or correct the name)",
                                    where, total.function));
     }
-    program_.at_most(terms, 0.0);
+    limit_to(what, total.at_most, file, calls);
   }
 
   void limit_totals() {
@@ -541,6 +665,7 @@ class Model {
   const Parameters& arguments_;
   LinearProgram program_;
   std::set<const SourceFact*> held_;
+  std::vector<OpenLimit> open_;
   std::map<std::uint32_t, FunctionVariables> variables_;
   std::map<std::pair<std::uint32_t, std::uint32_t>, Solved> calls_;
 };
@@ -581,64 +706,186 @@ std::vector<EntryPoint> tick_entries() {
   return {{"tactree_tick", 1}, {"tactree_deadline", 2}};
 }
 
-Bound worst_case(const BoundOptions& options) {
-  const Image image(options.image);
-  SourceCode sources(options.sources);
-  for (const std::string& file : image.source_files()) {
-    (void)sources.name_of(file);
-  }
-  std::vector<std::uint32_t> addresses;
-  Entries entries;
-  for (const EntryPoint& entry : options.entries) {
-    const Function* const function = image.find(entry.function);
-    if (function == nullptr) {
-      throw BoundError(fmt::format("{}: has no function {} (give an image of ours)", image.name(),
-                                   entry.function));
+namespace {
+
+/// An image with its sources and entry points, ready to be analysed with any parameters.
+class Task {
+ public:
+  explicit Task(const BoundOptions& options) : image_(options.image), sources_(options.sources) {
+    for (const std::string& file : image_.source_files()) {
+      (void)sources_.name_of(file);
     }
-    addresses.push_back(function->begin);
-    entries[function->begin] += entry.times;
-  }
-  Program program(image, sources, addresses);
-  Analysis analysis{image, sources, program, options.parameters, image.inlined_functions(), nullptr};
-  Bound bound = to_bound(sources, solve(analysis, entries, {}));
-  for (const std::uint32_t entry : program.endings()) {
-    bound.endings.push_back({entry, image.functions().at(entry).end, 0, 0.0});
-  }
-  if (options.timing != nullptr) {
-    analysis.timing = options.timing;
-    double cycles = solve(analysis, entries, {}).cost;
+    std::vector<std::uint32_t> addresses;
     for (const EntryPoint& entry : options.entries) {
-      cycles += entry.times * (kEntryCycles + kEntryWords * options.timing->stack_wait);
+      const Function* const function = image_.find(entry.function);
+      if (function == nullptr) {
+        throw BoundError(fmt::format("{}: has no function {} (give an image of ours)",
+                                     image_.name(), entry.function));
+      }
+      addresses.push_back(function->begin);
+      entries_[function->begin] += entry.times;
+      times_ += entry.times;
     }
-    bound.cycles = static_cast<std::uint64_t>(std::ceil(cycles));
+    program_.emplace(image_, sources_, addresses);
+    inlined_ = image_.inlined_functions();
+  }
+
+  [[nodiscard]] Bound instructions(const Parameters& parameters) {
+    Bound bound = to_bound(sources_, solve(analysis(parameters, {}, nullptr), entries_, {}));
+    for (const std::uint32_t entry : program_->endings()) {
+      bound.endings.push_back({entry, image_.functions().at(entry).end, 0, 0.0});
+    }
+    return bound;
+  }
+
+  [[nodiscard]] std::uint64_t cycles(const Parameters& parameters, const BoardTiming& timing) {
+    const double cost = solve(analysis(parameters, {}, &timing), entries_, {}).cost;
+    return static_cast<std::uint64_t>(std::ceil(cost + entering(timing)));
+  }
+
+  [[nodiscard]] Formula formula(const Parameters& parameters, const Parameters& open,
+                                const BoardTiming& timing) {
+    const Analysis all = analysis(parameters, open, &timing);
+    Formula formula = Model(all, {}).solve_open(entries_);
+    formula.base += entering(timing);
+    return formula;
+  }
+
+ private:
+  [[nodiscard]] Analysis analysis(const Parameters& parameters, const Parameters& open,
+                                  const BoardTiming* timing) {
+    return {image_, sources_, *program_, parameters, inlined_, open, timing};
+  }
+
+  [[nodiscard]] double entering(const BoardTiming& timing) const {
+    return times_ * (kEntryCycles + kEntryWords * timing.stack_wait);
+  }
+
+  Image image_;
+  SourceCode sources_;
+  Entries entries_;
+  std::uint32_t times_ = 0;
+  std::optional<Program> program_;
+  std::set<std::string> inlined_;
+};
+
+/// A typical model: what the prices are made with.
+core::TickFigures usual_figures() { return {46, 270, 50, 7, 3, 46, 4}; }
+
+Parameters open_parameters() {
+  Parameters open = parameters_of(largest_figures(), core::TickKind::kSurface, 1);
+  for (const char* fixed : {"bodies", "mixed", "paper"}) {
+    open.erase(fixed);
+  }
+  return open;
+}
+
+std::uint32_t rounded_up(double value) { return static_cast<std::uint32_t>(std::ceil(value)); }
+
+core::TickCost to_cost(const Formula& formula) {
+  // In the order of TickFigures.
+  const char* const names[] = {"points_per_ball_max", "points_per_query_max", "points_per_leaf_max",
+                               "depth", "levels_below", "blended_points", "blended_materials"};
+  core::TickCost cost;
+  cost.base = rounded_up(formula.base);
+  for (std::uint32_t i = 0; i < core::kTickFigures; ++i) {
+    const auto found = formula.per.find(names[i]);
+    cost.per_figure[i] = found == formula.per.end() ? 0 : rounded_up(found->second);
+  }
+  return cost;
+}
+
+}  // namespace
+
+Bound worst_case(const BoundOptions& options) {
+  Task task(options);
+  Bound bound = task.instructions(options.parameters);
+  if (options.timing != nullptr) {
+    bound.cycles = task.cycles(options.parameters, *options.timing);
   }
   return bound;
 }
 
-Parameters parameters_of(const core::BlobHeader& header, core::RenderMode mode,
-                         std::uint32_t bodies) {
-  const bool is_mixed = header.profile == static_cast<std::uint32_t>(core::Profile::kPaper);
-  return {{"depth", header.depth},
-          {"points_per_leaf_max", header.points_per_leaf_max},
-          {"points_per_ball_max", header.points_per_ball_max},
-          {"points_per_query_max", header.points_per_query_max},
-          {"levels_below", header.depth - header.directory_level},
-          {"materials", header.material_count},
-          {"mixed", is_mixed ? 1 : 0},
-          {"paper", mode == core::RenderMode::kPaper ? 1 : 0},
-          {"bodies", bodies}};
+core::TickCosts tick_costs(const BoundOptions& options) {
+  if (options.timing == nullptr) {
+    throw BoundError(options.image.string() + ": costs need a board's timing (say which board)");
+  }
+  Task task(options);
+  core::TickCosts costs;
+  costs.known = core::kTickCostsKnown;
+  for (std::uint32_t kind = 0; kind < core::kTickKinds; ++kind) {
+    for (std::uint32_t row = 0; row < core::kMaxReachableBodies; ++row) {
+      const bool is_last = row + 1 == core::kMaxReachableBodies;
+      const Parameters parameters =
+          parameters_of(usual_figures(), static_cast<core::TickKind>(kind),
+                        is_last ? core::kMaxBodies : row + 1);
+      costs.of[kind][row] = to_cost(task.formula(parameters, open_parameters(), *options.timing));
+    }
+  }
+  return costs;
 }
 
-Parameters largest_parameters(core::RenderMode mode, std::uint32_t bodies) {
-  // A query's eight leaves hold no more than a ball of their size: no more than that is known.
+namespace {
+
+constexpr const char* kCostsSymbol = "tactree_tick_costs";
+
+std::uint64_t costs_offset(const std::filesystem::path& image) {
+  const std::optional<std::uint64_t> offset = Image(image).offset_of(kCostsSymbol);
+  if (!offset) {
+    throw BoundError(fmt::format("{}: has no {} (give an image of ours)", image.string(),
+                                 kCostsSymbol));
+  }
+  return *offset;
+}
+
+}  // namespace
+
+void embed(const std::filesystem::path& image, const core::TickCosts& costs) {
+  const auto offset = static_cast<std::streamoff>(costs_offset(image));
+  std::fstream file(image, std::ios::in | std::ios::out | std::ios::binary);
+  file.seekp(offset);
+  file.write(reinterpret_cast<const char*>(&costs), sizeof costs);
+  if (!file.flush()) {
+    throw BoundError(image.string() + ": cannot be written (check the file's permissions)");
+  }
+}
+
+core::TickCosts embedded(const std::filesystem::path& image) {
+  const auto offset = static_cast<std::streamoff>(costs_offset(image));
+  std::ifstream file(image, std::ios::binary);
+  core::TickCosts costs;
+  file.seekg(offset);
+  file.read(reinterpret_cast<char*>(&costs), sizeof costs);
+  return costs;
+}
+
+Parameters parameters_of(const core::TickFigures& figures, core::TickKind kind,
+                         std::uint32_t bodies) {
+  return {{"points_per_ball_max", figures.points_per_ball_max},
+          {"points_per_query_max", figures.points_per_query_max},
+          {"points_per_leaf_max", figures.points_per_leaf_max},
+          {"depth", figures.depth},
+          {"levels_below", figures.levels_below},
+          {"blended_points", figures.blended_points},
+          {"blended_materials", figures.blended_materials},
+          {"bodies", bodies},
+          {"mixed", kind == core::TickKind::kSurface ? 0 : 1},
+          {"paper", kind == core::TickKind::kPaper ? 1 : 0}};
+}
+
+Parameters parameters_of(const core::BlobHeader& header, core::RenderMode mode,
+                         std::uint32_t bodies) {
+  return parameters_of(core::tick_figures(header), core::tick_kind(header, mode), bodies);
+}
+
+core::TickFigures largest_figures() {
   core::BlobHeader header{};
-  header.profile = static_cast<std::uint32_t>(core::Profile::kPaper);
   header.depth = core::kMaxDepth;
   header.material_count = core::kMaxMaterials;
   header.points_per_leaf_max = core::kMaxCandidates;
   header.points_per_ball_max = core::kMaxCandidates;
   header.points_per_query_max = core::kLeavesPerQuery * core::kMaxCandidates;
-  return parameters_of(header, mode, bodies);
+  return core::tick_figures(header);
 }
 
 }  // namespace tactree::bound

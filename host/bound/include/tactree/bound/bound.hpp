@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "tactree/core/blob_format.hpp"
-#include "tactree/core/configuration.hpp"
+#include "tactree/core/tick_cost.hpp"
 
 namespace tactree::bound {
 
@@ -23,8 +23,10 @@ using Parameters = std::map<std::string, std::int64_t>;
 /// Those of the models that a board has loaded.
 [[nodiscard]] Parameters parameters_of(const core::BlobHeader& header, core::RenderMode mode,
                                        std::uint32_t bodies);
-/// Those of every model that a controller accepts.
-[[nodiscard]] Parameters largest_parameters(core::RenderMode mode, std::uint32_t bodies);
+[[nodiscard]] Parameters parameters_of(const core::TickFigures& figures, core::TickKind kind,
+                                       std::uint32_t bodies);
+/// Of full leaves and balls at the greatest depth.
+[[nodiscard]] core::TickFigures largest_figures();
 
 /// A function the processor enters by itself, and how often in one tick.
 struct EntryPoint {
@@ -96,5 +98,16 @@ struct Bound {
 /// Throws BoundError on what has no bound: a loop without an annotation, recursion, an indirect
 /// call, an unknown instruction; each named with file and line.
 [[nodiscard]] Bound worst_case(const BoundOptions& options);
+
+/// The worst case in cycles as a formula in the figures of the model. Of `options`, the parameters do
+/// not count. Never less than the cycles of worst_case(), whatever the figures up to
+/// largest_figures().
+[[nodiscard]] core::TickCosts tick_costs(const BoundOptions& options);
+
+/// Writes them into an image, from where its controller reads them. Its checksum is no longer right:
+/// scripts/seal-image.
+void embed(const std::filesystem::path& image, const core::TickCosts& costs);
+/// As compiled they are not known: zeros.
+[[nodiscard]] core::TickCosts embedded(const std::filesystem::path& image);
 
 }  // namespace tactree::bound
