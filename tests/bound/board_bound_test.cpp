@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <map>
 #include <memory>
+#include <random>
 #include <string>
 
 #include "boards_for_test.hpp"
@@ -155,6 +157,101 @@ TEST_P(Proof, HoldsForEveryDevice) {
     EXPECT_LE(counts.max, bound.instructions) << device.name;
     expect_all_analysed(bound, counts.code);
   }
+}
+
+bound::BoundOptions in_cycles(const emulation::BoardDescription& board) {
+  bound::BoundOptions options;
+  options.image = built(board, "firmware", board.name);
+  options.sources = TACTREE_SOURCES;
+  options.entries = bound::tick_entries();
+  options.timing = bound::find_timing(board.name);
+  return options;
+}
+
+core::TickFigures some_figures(std::mt19937& random) {
+  const core::TickFigures most = bound::largest_figures();
+  const auto any = [&](std::uint32_t largest) {
+    return std::uniform_int_distribution<std::uint32_t>(0, largest)(random);
+  };
+  return {any(most.points_per_ball_max), any(most.points_per_query_max),
+          any(most.points_per_leaf_max), any(most.depth),
+          any(most.levels_below),        any(most.blended_points),
+          any(most.blended_materials)};
+}
+
+TEST_P(Proof, TheFormulaIsNeverLessThanTheBound) {
+  bound::BoundOptions options = in_cycles(board());
+  const core::TickCosts costs = bound::tick_costs(options);
+  std::mt19937 random(5);
+  for (std::uint32_t kind = 0; kind < core::kTickKinds; ++kind) {
+    for (std::uint32_t bodies = 1; bodies <= core::kMaxReachableBodies; ++bodies) {
+      for (int i = 0; i < 4; ++i) {
+        const core::TickFigures figures = some_figures(random);
+        options.parameters =
+            bound::parameters_of(figures, static_cast<core::TickKind>(kind), bodies);
+        EXPECT_GE(core::cycles_of(costs.of[kind][bodies - 1], figures),
+                  bound::worst_case(options).cycles)
+            << "kind " << kind << ", " << bodies << " bodies";
+      }
+    }
+  }
+}
+
+TEST_P(Proof, TheFormulaIsCloseForAModelOfAScan) {
+  const core::BlobHeader& header = touched_shape().view().header();
+  bound::BoundOptions options = in_cycles(board());
+  options.parameters = bound::parameters_of(header, core::RenderMode::kSurface, 1);
+  const auto exact = static_cast<double>(bound::worst_case(options).cycles);
+  core::TickLoad load;
+  load.add(header, core::RenderMode::kSurface);
+  const auto formula = static_cast<double>(core::cycles_of(bound::tick_costs(options), load));
+  EXPECT_GE(formula, exact);
+  EXPECT_LE(formula, 1.03 * exact);
+}
+
+/// What a board says that knows its costs.
+hal::StartResult start_at(const emulation::BoardDescription& board,
+                          const std::filesystem::path& image, double rate_hz) {
+  simulation::Setup setup;
+  setup.controller.rate_hz = static_cast<float>(rate_hz);
+  setup.controller.velocity_cutoff_hz = 0.2F * setup.controller.rate_hz;
+  setup.controller.stiffness_N_m = 10.0F;
+  setup.controller.slew_N_s = setup.controller.rate_hz;
+  for (float& slew : setup.controller.effort_slew_s) {
+    slew = setup.controller.rate_hz;
+  }
+  emulation::EmulationOptions options;
+  options.image = image;
+  simulation::Simulation sim(
+      touched_shape().bytes(), setup,
+      simulation::make_script("hover", touched_shape().view(), 1.0),
+      std::make_unique<emulation::EmulatedTarget>(board, touched_shape().bytes(), options));
+  EXPECT_EQ(sim.arm(), sim.start_result().ok());
+  sim.finish();
+  return sim.start_result();
+}
+
+TEST_P(Proof, ABoardThatKnowsItsCostsRefusesARateItCannotKeep) {
+  const std::filesystem::path image =
+      std::filesystem::path(testing::TempDir()) / (std::string(board().name) + "_costs.elf");
+  std::filesystem::copy_file(built(board(), "firmware", board().name), image,
+                             std::filesystem::copy_options::overwrite_existing);
+  const bound::BoundOptions options = in_cycles(board());
+  bound::embed(image, bound::tick_costs(options));
+  EXPECT_EQ(bound::embedded(image).known, core::kTickCostsKnown);
+  ASSERT_EQ(std::system((TACTREE_SOURCES "/scripts/seal-image " + image.string()).c_str()), 0);
+
+  core::TickLoad load;
+  load.add(touched_shape().view().header(), core::RenderMode::kSurface);
+  const double highest = options.timing->clock_hz /
+                         static_cast<double>(core::cycles_of(bound::embedded(image), load));
+  std::printf("%s: highest rate admitted %.0f Hz\n", board().name, highest);
+  const hal::StartResult refused = start_at(board(), image, 1.01 * std::max(highest, 100.0));
+  EXPECT_EQ(refused.model, core::ModelStatus::kTooSlow) << core::describe(refused.configuration);
+  if (highest > 101.0) {  // the lowest rate of all
+    EXPECT_TRUE(start_at(board(), image, 0.99 * highest).ok());
+  }
+  std::filesystem::remove(image);
 }
 
 // The test of the tests: where an annotation says less than the code does, a run shows it.
