@@ -65,7 +65,6 @@ Rendering Renderer::update(const BlobView& view, const Configuration& configurat
     return update_paper(view, configuration, probe);  // at most: paper per Scene::render
   }
   proxy_.update(view, probe, friction_);  // at most: 1 - paper per Scene::render
-  // at most: 1 - paper per Scene::render
   return render_proxy(view, configuration, probe, velocity);
 }
 

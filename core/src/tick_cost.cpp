@@ -5,7 +5,7 @@
 namespace tactree::core {
 namespace {
 
-constexpr std::uint32_t TickFigures::* kFigures[] = {
+constexpr std::uint32_t TickFigures::*kFigures[] = {
     &TickFigures::points_per_ball_max, &TickFigures::points_per_query_max,
     &TickFigures::points_per_leaf_max, &TickFigures::depth,
     &TickFigures::levels_below,        &TickFigures::blended_points,

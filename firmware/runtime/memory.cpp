@@ -10,7 +10,8 @@ bool aligned(const void* a, const void* b) {
   return ((reinterpret_cast<std::uintptr_t>(a) | reinterpret_cast<std::uintptr_t>(b)) & 3U) == 0U;
 }
 
-// The bounds hold where whatever has 16 bytes or more lies on words, as all structures of a tick do.
+// The bounds hold where whatever has 16 bytes or more lies on words, as all structures of a tick
+// do.
 
 // Words of whatever type the bytes have.
 using Word [[gnu::may_alias]] = std::uint32_t;

@@ -1,5 +1,6 @@
-// Of this very image: `tactree bound --embed` writes it here after it was linked. Nothing in this file
-// reads it: a compiler that does not see who does cannot take it for the zeros it is compiled to.
+// Of this very image: `tactree bound --embed` writes it here after it was linked. Nothing in this
+// file reads it: a compiler that does not see who does cannot take it for the zeros it is compiled
+// to.
 
 #include "platform.hpp"
 

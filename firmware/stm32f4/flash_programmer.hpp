@@ -86,8 +86,7 @@ class FlashProgrammer {
       return FlashStatus::kOutside;
     }
     FlashStatus status = open();
-    for (std::size_t i = 0; status == FlashStatus::kOk && i < words.size();
-         ++i) {  // bound: words
+    for (std::size_t i = 0; status == FlashStatus::kOk && i < words.size(); ++i) {  // bound: words
       status = program_word(cells_[offset + i], words[i]);
     }
     close();

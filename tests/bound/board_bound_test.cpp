@@ -74,8 +74,8 @@ class Proof : public OnBoard {
                            const std::vector<emulation::CodeRange>& code) {
     EXPECT_FALSE(code.empty());
     for (const emulation::CodeRange& range : code) {
-      EXPECT_TRUE(analysed(bound, range))
-          << std::hex << "executed, but not analysed: within " << range.begin << " .. " << range.end;
+      EXPECT_TRUE(analysed(bound, range)) << std::hex << "executed, but not analysed: within "
+                                          << range.begin << " .. " << range.end;
     }
   }
 };
@@ -223,8 +223,7 @@ hal::StartResult start_at(const emulation::BoardDescription& board,
   emulation::EmulationOptions options;
   options.image = image;
   simulation::Simulation sim(
-      touched_shape().bytes(), setup,
-      simulation::make_script("hover", touched_shape().view(), 1.0),
+      touched_shape().bytes(), setup, simulation::make_script("hover", touched_shape().view(), 1.0),
       std::make_unique<emulation::EmulatedTarget>(board, touched_shape().bytes(), options));
   EXPECT_EQ(sim.arm(), sim.start_result().ok());
   sim.finish();
@@ -243,8 +242,8 @@ TEST_P(Proof, ABoardThatKnowsItsCostsRefusesARateItCannotKeep) {
 
   core::TickLoad load;
   load.add(touched_shape().view().header(), core::RenderMode::kSurface);
-  const double highest = options.timing->clock_hz /
-                         static_cast<double>(core::cycles_of(bound::embedded(image), load));
+  const double highest =
+      options.timing->clock_hz / static_cast<double>(core::cycles_of(bound::embedded(image), load));
   std::printf("%s: highest rate admitted %.0f Hz\n", board().name, highest);
   const hal::StartResult refused = start_at(board(), image, 1.01 * std::max(highest, 100.0));
   EXPECT_EQ(refused.model, core::ModelStatus::kTooSlow) << core::describe(refused.configuration);

@@ -106,7 +106,8 @@ TEST_F(Bounding, AStatementMayBeLimited) {
 extern "C" void tick() {
   for (unsigned i = 0; i < wanted; ++i) {  // bound: 10
     if (work == 7) {
-      dear();  // )" + comment + R"(
+      dear();  // )" +
+           comment + R"(
     } else {
       leaf();
     }
@@ -135,7 +136,8 @@ TEST_F(Bounding, AnArgumentIsWhatEachCallGives) {
   }
 }
 char buffer[100];
-extern "C" void tick() { )" + calls + " }";
+extern "C" void tick() { )" +
+           calls + " }";
   };
   const std::uint64_t ten = bound_of(clearing("clear(buffer, 10); work = 1;")).instructions;
   const std::uint64_t twenty = bound_of(clearing("clear(buffer, 20); work = 1;")).instructions;

@@ -33,8 +33,8 @@ struct Found {
   std::vector<emulation::CodeRange> code;
 };
 
-/// Climbs on the instruction count: the ways around the worst tick of one run, changed a little, are
-/// the next run. `size_m`: how far from the origin it makes sense to be.
+/// Climbs on the instruction count: the ways around the worst tick of one run, changed a little,
+/// are the next run. `size_m`: how far from the origin it makes sense to be.
 [[nodiscard]] Found seek_worst(const emulation::BoardDescription& board,
                                const emulation::EmulationOptions& options,
                                std::span<const std::byte> blob, float size_m, int runs,

@@ -34,8 +34,7 @@ struct BoundCommandOptions {
 };
 
 bound::Parameters parameters(const BoundCommandOptions& options) {
-  const auto mode =
-      options.mode == "paper" ? core::RenderMode::kPaper : core::RenderMode::kSurface;
+  const auto mode = options.mode == "paper" ? core::RenderMode::kPaper : core::RenderMode::kSurface;
   if (options.blob.empty()) {
     const auto kind =
         mode == core::RenderMode::kPaper ? core::TickKind::kPaper : core::TickKind::kMixed;
@@ -103,8 +102,8 @@ void print(const bound::Parameters& parameters, const bound::Bound& bound) {
 void print_timing(const bound::BoardTiming& timing, const bound::Bound& bound) {
   fmt::print("cycles             {} at most{}: at {:.0f} MHz {:.1f} us, {:.0f} Hz ({})\n",
              bound.cycles, timing.is_estimate ? ", an estimate" : "", 1e-6 * timing.clock_hz,
-             1e6 * static_cast<double>(bound.cycles) / timing.clock_hz,
-             highest_rate(timing, bound), timing.source);
+             1e6 * static_cast<double>(bound.cycles) / timing.clock_hz, highest_rate(timing, bound),
+             timing.source);
 }
 
 /// Exit code 1 where the board cannot keep the rate.
@@ -112,11 +111,10 @@ void check_rate(const BoundCommandOptions& options, const bound::BoardTiming& ti
                 const bound::Bound& bound) {
   const double highest = highest_rate(timing, bound);
   if (options.rate_hz > highest) {
-    throw CommandError(
-        fmt::format("--rate: {} keeps {:.0f} Hz with this model, not {:.0f}: a tick takes up to {} "
-                    "cycles of {:.0f} (lower --rate, or build a model with fewer points in a ball)",
-                    timing.board, highest, options.rate_hz, bound.cycles,
-                    timing.clock_hz / options.rate_hz));
+    throw CommandError(fmt::format(
+        "--rate: {} keeps {:.0f} Hz with this model, not {:.0f}: a tick takes up to {} "
+        "cycles of {:.0f} (lower --rate, or build a model with fewer points in a ball)",
+        timing.board, highest, options.rate_hz, bound.cycles, timing.clock_hz / options.rate_hz));
   }
 }
 
@@ -128,9 +126,10 @@ void bound_tick(const BoundCommandOptions& options) {
   analysis.parameters = parameters(options);
   analysis.timing = options.board.empty() ? nullptr : bound::find_timing(options.board);
   if (!options.board.empty() && analysis.timing == nullptr) {
-    throw CommandError(fmt::format("--board: nothing is known about the memories of {} (leave it "
-                                   "out: the bound is in instructions then)",
-                                   options.board));
+    throw CommandError(
+        fmt::format("--board: nothing is known about the memories of {} (leave it "
+                    "out: the bound is in instructions then)",
+                    options.board));
   }
   if (options.embed) {
     bound::embed(options.image, bound::tick_costs(analysis));

@@ -19,10 +19,10 @@ enum class Kind { kPlain, kBranch, kCall, kReturn, kTable };
 struct Decoded {
   Instruction instruction;
   Kind kind = Kind::kPlain;
-  bool conditional = false;   // it may also do nothing
-  std::uint32_t target = 0;   // of a branch or call
-  int index_register = -1;    // of a table
-  unsigned table_entry = 0;   // bytes
+  bool conditional = false;                               // it may also do nothing
+  std::uint32_t target = 0;                               // of a branch or call
+  int index_register = -1;                                // of a table
+  unsigned table_entry = 0;                               // bytes
   std::optional<std::pair<int, std::uint32_t>> compared;  // register with a constant
 };
 
@@ -89,8 +89,7 @@ class Decoder {
         decoded.conditional = true;
         decoded.instruction.constant.reset();
       }
-      decoded.instruction.conditional_branch =
-          decoded.kind == Kind::kBranch && decoded.conditional;
+      decoded.instruction.conditional_branch = decoded.kind == Kind::kBranch && decoded.conditional;
       result.push_back(std::move(decoded));
       address += instruction_->size;
     }
@@ -367,7 +366,8 @@ class Builder {
   void make_blocks() {
     for (auto leader = leaders_.begin(); leader != leaders_.end(); ++leader) {
       const auto after = std::next(leader);
-      const auto end = after == leaders_.end() ? static_cast<std::uint32_t>(decoded_.size()) : *after;
+      const auto end =
+          after == leaders_.end() ? static_cast<std::uint32_t>(decoded_.size()) : *after;
       block_of_[*leader] = static_cast<std::uint32_t>(flow_.blocks.size());
       Block block;
       block.first = *leader;
@@ -772,10 +772,9 @@ void find_loops(const Image& image, ControlFlow& flow,
 
 std::string describe_place(const Image& image, std::uint32_t address) {
   const Function* const function = image.function_at(address);
-  const std::string where =
-      function == nullptr
-          ? fmt::format("{:#x}", address)
-          : fmt::format("{}+{:#x}", demangled(function->name), address - function->begin);
+  const std::string where = function == nullptr ? fmt::format("{:#x}", address)
+                                                : fmt::format("{}+{:#x}", demangled(function->name),
+                                                              address - function->begin);
   const std::vector<Place> places = image.places(address);
   if (places.empty()) {
     return where;

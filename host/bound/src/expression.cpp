@@ -23,9 +23,10 @@ struct Expression::Node {
     if (operation == 'n') {
       const std::optional<std::int64_t> known = names(name);
       if (!known) {
-        throw BoundError(fmt::format("{}: nobody says what '{}' is (write a constant, a figure of "
-                                     "the blob, or an argument)",
-                                     where, name));
+        throw BoundError(
+            fmt::format("{}: nobody says what '{}' is (write a constant, a figure of "
+                        "the blob, or an argument)",
+                        where, name));
       }
       return *known;
     }
@@ -56,8 +57,7 @@ struct Expression::Node {
   }
 
   [[nodiscard]] bool mentions(std::string_view wanted) const {
-    return name == wanted || (left && left->mentions(wanted)) ||
-           (right && right->mentions(wanted));
+    return name == wanted || (left && left->mentions(wanted)) || (right && right->mentions(wanted));
   }
 };
 
@@ -85,8 +85,7 @@ class ExpressionReader {
 
  private:
   static NodePointer make(char operation, NodePointer left, NodePointer right) {
-    return std::make_shared<Node>(
-        Node{operation, 0, {}, std::move(left), std::move(right)});
+    return std::make_shared<Node>(Node{operation, 0, {}, std::move(left), std::move(right)});
   }
 
   /// The next character that is no space; 0: there is none.

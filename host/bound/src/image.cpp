@@ -29,8 +29,9 @@ class Image::Debug {
     if (elf_ == nullptr || gelf_getehdr(elf_, &header) == nullptr || header.e_machine != EM_ARM ||
         header.e_type != ET_EXEC) {
       close_all();
-      throw BoundError(name_ + ": is no linked image of an Arm core (for others there is no bound "
-                               "yet)");
+      throw BoundError(name_ +
+                       ": is no linked image of an Arm core (for others there is no bound "
+                       "yet)");
     }
     dwarf_ = dwarf_begin_elf(elf_, DWARF_C_READ, nullptr);
     if (dwarf_ == nullptr) {
@@ -125,7 +126,8 @@ void Image::read_symbols() {
       const auto address = static_cast<std::uint32_t>(symbol.st_value);
       if (GELF_ST_TYPE(symbol.st_info) == STT_FUNC && symbol.st_size != 0) {
         const std::uint32_t begin = address & ~1U;
-        functions_.try_emplace(begin, Function{name, begin, begin + static_cast<std::uint32_t>(symbol.st_size)});
+        functions_.try_emplace(
+            begin, Function{name, begin, begin + static_cast<std::uint32_t>(symbol.st_size)});
       } else if (GELF_ST_TYPE(symbol.st_info) == STT_OBJECT) {
         variables_[name] = address;
       } else if (name == "$t" || name.starts_with("$t.")) {
@@ -258,9 +260,8 @@ std::string name_of(Dwarf_Die& argument) {
   const char* const name = dwarf_diename(&argument);
   Dwarf_Attribute attribute;
   Dwarf_Die origin;
-  if (name != nullptr ||
-      dwarf_formref_die(dwarf_attr(&argument, DW_AT_abstract_origin, &attribute), &origin) ==
-          nullptr) {
+  if (name != nullptr || dwarf_formref_die(dwarf_attr(&argument, DW_AT_abstract_origin, &attribute),
+                                           &origin) == nullptr) {
     return name == nullptr ? "" : name;
   }
   const char* const original = dwarf_diename(&origin);

@@ -49,8 +49,9 @@ class Matcher {
     }
     bound.source = outermost(number, heads);
     if (!bound.source->bound) {
-      throw BoundError(fmt::format("{}:{}: a loop without a bound (write `// bound: ...` beside it)",
-                                   bound.source->file, bound.source->line));
+      throw BoundError(
+          fmt::format("{}:{}: a loop without a bound (write `// bound: ...` beside it)",
+                      bound.source->file, bound.source->line));
     }
     bound.shape = shape_of(number, *bound.source);
     return bound;
@@ -72,9 +73,8 @@ class Matcher {
 
   [[nodiscard]] bool exits(std::uint32_t number, std::uint32_t block) const {
     const auto& next = flow_.blocks[block].next;
-    return std::any_of(next.begin(), next.end(), [&](std::uint32_t b) {
-      return !flow_.loops[number].blocks.contains(b);
-    });
+    return std::any_of(next.begin(), next.end(),
+                       [&](std::uint32_t b) { return !flow_.loops[number].blocks.contains(b); });
   }
 
   /// Address of the branch that ends a block; nothing: it ends without one.
@@ -93,8 +93,8 @@ class Matcher {
     std::vector<std::uint32_t> result;
     for (const std::uint32_t b : own) {
       const auto& next = flow_.blocks[b].next;
-      const bool closes = std::find(next.begin(), next.end(), flow_.loops[number].header) !=
-                          next.end();
+      const bool closes =
+          std::find(next.begin(), next.end(), flow_.loops[number].header) != next.end();
       const auto address = branch(b);
       if (address && (closes || exits(number, b))) {
         result.push_back(*address);
@@ -163,8 +163,8 @@ class Matcher {
   const SourceLoop* outermost(std::uint32_t number, const Heads& heads) {
     std::vector<const SourceLoop*> found;
     for (const auto& [loop, of_it] : heads) {
-      const bool within_another =
-          std::any_of(heads.begin(), heads.end(), [&, loop = loop, &of_it = of_it](const auto& other) {
+      const bool within_another = std::any_of(
+          heads.begin(), heads.end(), [&, loop = loop, &of_it = of_it](const auto& other) {
             return other.first != loop && encloses(*other.first, of_it) &&
                    !encloses(*loop, other.second);
           });
@@ -179,16 +179,18 @@ class Matcher {
     const std::string where =
         describe_place(image_, flow_.instructions[flow_.blocks[loop.header].first].address);
     if (found.empty()) {
-      throw BoundError(where + ": a loop that no loop of the source can be found for (write it as "
-                               "one loop, with a bound beside its head)");
+      throw BoundError(where +
+                       ": a loop that no loop of the source can be found for (write it as "
+                       "one loop, with a bound beside its head)");
     }
     std::string names;
     for (const SourceLoop* candidate : found) {
       names += fmt::format(" {}:{}", candidate->file, candidate->line);
     }
-    throw BoundError(fmt::format("{}: a loop that may be one of several:{} (keep them apart, e.g. "
-                                 "with gnu::noinline)",
-                                 where, names));
+    throw BoundError(
+        fmt::format("{}: a loop that may be one of several:{} (keep them apart, e.g. "
+                    "with gnu::noinline)",
+                    where, names));
   }
 
   /// Is the branch that ends the block the condition itself?

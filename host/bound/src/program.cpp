@@ -8,8 +8,7 @@
 
 namespace tactree::bound {
 
-Program::Program(const Image& image, SourceCode& sources,
-                 const std::vector<std::uint32_t>& entries)
+Program::Program(const Image& image, SourceCode& sources, const std::vector<std::uint32_t>& entries)
     : image_(image), lines_(image, sources) {
   collect(entries);
   find_who_returns();

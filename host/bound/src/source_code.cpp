@@ -50,8 +50,7 @@ std::string blanked(const std::string& text) {
 
 class Reader {
  public:
-  Reader(const std::string& name, const std::string& text)
-      : name_(name), code_(blanked(text)) {
+  Reader(const std::string& name, const std::string& text) : name_(name), code_(blanked(text)) {
     std::istringstream stream(text);
     for (std::string line; std::getline(stream, line);) {
       lines_.push_back(line);
@@ -103,7 +102,8 @@ class Reader {
     if (begin != std::string::npos && code_[begin] == '{') {
       return closing(begin, '{', '}');
     }
-    // A loop or branch without braces ends where its own statement does; a brace in it closes first.
+    // A loop or branch without braces ends where its own statement does; a brace in it closes
+    // first.
     const std::size_t end = code_.find(';', from);
     const std::size_t brace = code_.find('{', from);
     return brace < end ? closing(brace, '{', '}') : end;
@@ -262,7 +262,8 @@ class Reader {
     static const std::regex kConstant(
         R"(constexpr\s+(?:std::)?u?(?:int(?:8|16|32|64)_t|int|nsigned|size_t)\s+(k\w+)\s*=([^;{]*);)");
     for (std::sregex_iterator it(code_.begin(), code_.end(), kConstant), end; it != end; ++it) {
-      const std::string value = std::regex_replace(it->str(2), std::regex(R"((\d)[uUlL]+\b|\n)"), "$1");
+      const std::string value =
+          std::regex_replace(it->str(2), std::regex(R"((\d)[uUlL]+\b|\n)"), "$1");
       std::string_view text = value;
       try {
         Expression expression =

@@ -60,8 +60,8 @@ double cycles_of(const BoardTiming& timing, const ControlFlow& flow, const Block
               timing.data_wait * instruction.other_words;
   }
   const Instruction& last = flow.instructions[block.first + block.count - 1];
-  const std::uint32_t lines = (last.address + last.bytes - 1) / timing.line_bytes -
-                              first.address / timing.line_bytes + 1;
+  const std::uint32_t lines =
+      (last.address + last.bytes - 1) / timing.line_bytes - first.address / timing.line_bytes + 1;
   return cycles + timing.fetch_wait * lines;
 }
 
@@ -93,8 +93,9 @@ class Model {
   Solved solve(const Entries& entries) {
     write_down(entries);
     if (!open_.empty()) {
-      throw BoundError(open_[0].where + ": a model's figure in a function whose calls are analysed "
-                                        "one by one (use its arguments only)");
+      throw BoundError(open_[0].where +
+                       ": a model's figure in a function whose calls are analysed "
+                       "one by one (use its arguments only)");
     }
     return read(solved_program());
   }
@@ -201,9 +202,10 @@ class Model {
       sum += per * static_cast<double>(analysis_.open.at(name));
     }
     if (sum != static_cast<double>(value_with(limit, file, analysis_.open))) {
-      throw BoundError(fmt::format("{}: '{}' is no sum of multiples of the model's figures (write it "
-                                   "as one)",
-                                   file, limit.text()));
+      throw BoundError(
+          fmt::format("{}: '{}' is no sum of multiples of the model's figures (write it "
+                      "as one)",
+                      file, limit.text()));
     }
   }
 
@@ -290,8 +292,7 @@ class Model {
 
   /// A constant; or what this function itself was called with; or what the source says.
   [[nodiscard]] std::optional<std::int64_t> argument(std::uint32_t entry, std::uint32_t b,
-                                                     int number,
-                                                     const std::string& wanted) const {
+                                                     int number, const std::string& wanted) const {
     const Argument given = function(entry).flow.argument(b, number);
     for (const auto& [name, own] : function(entry).arguments) {
       if (given.passed_on == own && arguments_.contains(name)) {
@@ -306,7 +307,8 @@ class Model {
                                                           const std::string& name) const {
     const Block& block = flow.blocks[b];
     const std::uint32_t last = block.first + std::max(block.count, 1U) - 1;
-    std::optional<std::int64_t> least;  // where the calls inlined around it say more, that is true too
+    std::optional<std::int64_t>
+        least;  // where the calls inlined around it say more, that is true too
     for (const Place& place : analysis_.program.lines().at(flow.instructions[last].address)) {
       const SourceFile* const file = analysis_.sources.find(place.file);
       if (file == nullptr) {
@@ -509,9 +511,10 @@ class Model {
         std::any_of(analysis_.inlined.begin(), analysis_.inlined.end(),
                     [&](const std::string& symbol) { return is_called(symbol, total.function); });
     if (!found || inlined) {
-      throw BoundError(fmt::format("{}: {} is no function of its own in the image (mark it "
-                                   "gnu::noinline, or correct the name)",
-                                   where, total.function));
+      throw BoundError(
+          fmt::format("{}: {} is no function of its own in the image (mark it "
+                      "gnu::noinline, or correct the name)",
+                      where, total.function));
     }
     limit_to(what, total.at_most, file, calls);
   }
@@ -630,8 +633,8 @@ class Model {
     }
   }
 
-  void note_loop(std::uint32_t entry, std::uint32_t number,
-                 const LinearProgram::Solution& solution, Solved& solved) const {
+  void note_loop(std::uint32_t entry, std::uint32_t number, const LinearProgram::Solution& solution,
+                 Solved& solved) const {
     const AnalysedFunction& f = function(entry);
     const Loop& loop = f.flow.loops[number];
     const SourceLoop& source = *f.bounds[number].source;
@@ -702,9 +705,7 @@ Bound to_bound(const SourceCode& sources, Solved solved) {
 
 }  // namespace
 
-std::vector<EntryPoint> tick_entries() {
-  return {{"tactree_tick", 1}, {"tactree_deadline", 2}};
-}
+std::vector<EntryPoint> tick_entries() { return {{"tactree_tick", 1}, {"tactree_deadline", 2}}; }
 
 namespace {
 
@@ -784,8 +785,9 @@ std::uint32_t rounded_up(double value) { return static_cast<std::uint32_t>(std::
 
 core::TickCost to_cost(const Formula& formula) {
   // In the order of TickFigures.
-  const char* const names[] = {"points_per_ball_max", "points_per_query_max", "points_per_leaf_max",
-                               "depth", "levels_below", "blended_points", "blended_materials"};
+  const char* const names[] = {
+      "points_per_ball_max", "points_per_query_max", "points_per_leaf_max", "depth",
+      "levels_below",        "blended_points",       "blended_materials"};
   core::TickCost cost;
   cost.base = rounded_up(formula.base);
   for (std::uint32_t i = 0; i < core::kTickFigures; ++i) {
@@ -816,9 +818,8 @@ core::TickCosts tick_costs(const BoundOptions& options) {
   for (std::uint32_t kind = 0; kind < core::kTickKinds; ++kind) {
     for (std::uint32_t row = 0; row < core::kMaxReachableBodies; ++row) {
       const bool is_last = row + 1 == core::kMaxReachableBodies;
-      const Parameters parameters =
-          parameters_of(usual_figures(), static_cast<core::TickKind>(kind),
-                        is_last ? core::kMaxBodies : row + 1);
+      const Parameters parameters = parameters_of(
+          usual_figures(), static_cast<core::TickKind>(kind), is_last ? core::kMaxBodies : row + 1);
       costs.of[kind][row] = to_cost(task.formula(parameters, open_parameters(), *options.timing));
     }
   }
@@ -832,8 +833,8 @@ constexpr const char* kCostsSymbol = "tactree_tick_costs";
 std::uint64_t costs_offset(const std::filesystem::path& image) {
   const std::optional<std::uint64_t> offset = Image(image).offset_of(kCostsSymbol);
   if (!offset) {
-    throw BoundError(fmt::format("{}: has no {} (give an image of ours)", image.string(),
-                                 kCostsSymbol));
+    throw BoundError(
+        fmt::format("{}: has no {} (give an image of ours)", image.string(), kCostsSymbol));
   }
   return *offset;
 }

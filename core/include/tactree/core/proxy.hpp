@@ -20,9 +20,9 @@ inline constexpr std::uint32_t kSweepSteps = 4;
 /// At most two evaluations a step of slip, and two that project onto the surface where contact
 /// begins.
 inline constexpr std::uint32_t kEvaluationsPerTick = kSweepSteps + 2;
-/// Where it evaluates: twice in one place is only where the normals around contradict the reference.
-/// Each place of a sweep costs one evaluation at least, a step of slip has two places, and contact
-/// begins with one more.
+/// Where it evaluates: twice in one place is only where the normals around contradict the
+/// reference. Each place of a sweep costs one evaluation at least, a step of slip has two places,
+/// and contact begins with one more.
 inline constexpr std::uint32_t kPlacesPerTick = kSweepSteps + 1;
 
 /// Coefficients, 0 <= dynamic <= static.

@@ -1,6 +1,7 @@
 #pragma once
-// What a tick takes at most, as a formula in the figures that a blob declares; `tactree bound` proves
-// it from the linked image and writes it there. So a controller refuses what would not be in time.
+// What a tick takes at most, as a formula in the figures that a blob declares; `tactree bound`
+// proves it from the linked image and writes it there. So a controller refuses what would not be in
+// time.
 //
 // Interrupt safety of all that follows: pure functions.
 

@@ -23,7 +23,9 @@ struct MotorParameters {
 class SimMotorBank {
  public:
   explicit SimMotorBank(const MotorParameters& parameters)
-      : parameters_(parameters), weak_(parameters.effort_max), line_(parameters.latency_ticks, Efforts{}) {}
+      : parameters_(parameters),
+        weak_(parameters.effort_max),
+        line_(parameters.latency_ticks, Efforts{}) {}
 
   void write(const core::MotorCommand& command) noexcept {
     hold({command.effort(0), command.effort(1), command.effort(2)});

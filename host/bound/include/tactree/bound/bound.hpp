@@ -42,11 +42,11 @@ struct EntryPoint {
 struct BoardTiming {
   const char* board;
   double clock_hz;
-  std::uint32_t fetch_wait;        ///< cycles for each line of code, fetched anew in each block
-  std::uint32_t line_bytes;        ///< of such a line
-  std::uint32_t stack_wait;        ///< cycles for each word on the stack
-  std::uint32_t data_wait;         ///< for each other word, wherever it is
-  bool is_estimate;                ///< the core is no Cortex-M4, or its board publishes no figures
+  std::uint32_t fetch_wait;  ///< cycles for each line of code, fetched anew in each block
+  std::uint32_t line_bytes;  ///< of such a line
+  std::uint32_t stack_wait;  ///< cycles for each word on the stack
+  std::uint32_t data_wait;   ///< for each other word, wherever it is
+  bool is_estimate;          ///< the core is no Cortex-M4, or its board publishes no figures
   const char* source;
 };
 /// nullptr: nothing is known about the board.
@@ -65,7 +65,7 @@ struct BoundOptions {
 struct LoopOnPath {
   std::string file;
   std::uint32_t line = 0;
-  std::string function;     ///< whose machine code it is in
+  std::string function;  ///< whose machine code it is in
   std::uint32_t address = 0;
   std::string bound;        ///< as it is written
   std::int64_t passes = 0;  ///< what that comes to, each time the loop is entered
@@ -90,22 +90,23 @@ struct Bound {
   std::uint64_t cycles = 0;               ///< the same, where the board's timing is known
   std::vector<FunctionOnPath> functions;  ///< the costliest first
   std::vector<LoopOnPath> loops;
-  std::vector<std::string> unused_facts;  ///< `at most:` that the compiler left nothing of, file:line
-  std::vector<BlockOnPath> endings;       ///< functions that never return: no tick leads there
-  std::vector<BlockOnPath> blocks;        ///< all that were analysed, on the path or not
+  std::vector<std::string>
+      unused_facts;                  ///< `at most:` that the compiler left nothing of, file:line
+  std::vector<BlockOnPath> endings;  ///< functions that never return: no tick leads there
+  std::vector<BlockOnPath> blocks;   ///< all that were analysed, on the path or not
 };
 
 /// Throws BoundError on what has no bound: a loop without an annotation, recursion, an indirect
 /// call, an unknown instruction; each named with file and line.
 [[nodiscard]] Bound worst_case(const BoundOptions& options);
 
-/// The worst case in cycles as a formula in the figures of the model. Of `options`, the parameters do
-/// not count. Never less than the cycles of worst_case(), whatever the figures up to
+/// The worst case in cycles as a formula in the figures of the model. Of `options`, the parameters
+/// do not count. Never less than the cycles of worst_case(), whatever the figures up to
 /// largest_figures().
 [[nodiscard]] core::TickCosts tick_costs(const BoundOptions& options);
 
-/// Writes them into an image, from where its controller reads them. Its checksum is no longer right:
-/// scripts/seal-image.
+/// Writes them into an image, from where its controller reads them. Its checksum is no longer
+/// right: scripts/seal-image.
 void embed(const std::filesystem::path& image, const core::TickCosts& costs);
 /// As compiled they are not known: zeros.
 [[nodiscard]] core::TickCosts embedded(const std::filesystem::path& image);
