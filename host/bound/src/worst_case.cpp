@@ -784,14 +784,10 @@ Parameters open_parameters() {
 std::uint32_t rounded_up(double value) { return static_cast<std::uint32_t>(std::ceil(value)); }
 
 core::TickCost to_cost(const Formula& formula) {
-  // In the order of TickFigures.
-  const char* const names[] = {
-      "points_per_ball_max", "points_per_query_max", "points_per_leaf_max", "depth",
-      "levels_below",        "blended_points",       "blended_materials"};
   core::TickCost cost;
   cost.base = rounded_up(formula.base);
   for (std::uint32_t i = 0; i < core::kTickFigures; ++i) {
-    const auto found = formula.per.find(names[i]);
+    const auto found = formula.per.find(core::kTickFigureNames[i]);
     cost.per_figure[i] = found == formula.per.end() ? 0 : rounded_up(found->second);
   }
   return cost;
