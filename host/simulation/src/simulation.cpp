@@ -129,7 +129,8 @@ core::Status Simulation::tick(double t_s) {
   state_ = status.state;
   plant::HandTarget target = path_.at(t_s);
   target.position_m += widen(setup_.controller.model_origin_m);
-  plant_.advance({board_.effort(0), board_.effort(1), board_.effort(2)}, target, period_s_ * injector_.clock_ratio(t_s));
+  plant_.advance({board_.effort(0), board_.effort(1), board_.effort(2)}, target,
+                 period_s_ * injector_.clock_ratio(t_s));
   return status;
 }
 

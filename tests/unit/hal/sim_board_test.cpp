@@ -168,8 +168,9 @@ TEST(SimLink, AMessageCarriesAnUpdateUnlessItIsLost) {
   link.post(core::Command::kStop);
   link.cut();
   link.attach(gone);
-  EXPECT_FALSE(link.receive().alive);
-  EXPECT_EQ(link.receive().body.body, core::kNoBody);
+  const hal::LinkInput nothing = link.receive();
+  EXPECT_FALSE(nothing.alive);
+  EXPECT_EQ(nothing.body.body, core::kNoBody);
 }
 
 }  // namespace
