@@ -66,7 +66,7 @@ bool Controller::is_in_time(TickLoad load, const BlobView& added) const {
   }
   load.add(added.header(), configuration_.mode);
   const float period = static_cast<float>(cycles_per_second_) / configuration_.rate_hz;
-  return cycles_of(*costs_, load) <= static_cast<std::uint64_t>(period);
+  return cycles_of(*costs_, load) <= static_cast<std::uint32_t>(period);
 }
 
 TickLoad Controller::load_of_scene() const {
