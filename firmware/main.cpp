@@ -18,6 +18,7 @@ tactree::hal::Loop<Board> loop(board, controller);
 // A program with a wrong byte gets no model: it cannot give a force.
 tactree::hal::StartResult start(const tactree::core::Configuration& configuration) {
   if (tactree::firmware::image_is_whole()) {
+    controller.know_costs(tactree::firmware::tick_costs(), tactree::firmware::timer_clock_hz());
     return loop.start(configuration);
   }
   tactree::hal::StartResult damaged;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "tactree/core/tick_cost.hpp"
 #include "tactree/hal/captured_fault.hpp"
 
 namespace tactree::firmware {
@@ -27,6 +28,9 @@ void wait_for_interrupt();
 [[noreturn]] void capture(const hal::CapturedFault& fault);
 /// What the last run died of; a second call finds nothing.
 [[nodiscard]] hal::CapturedFault take_captured_fault();
+
+/// What a tick of this image costs at most.
+[[nodiscard]] const core::TickCosts& tick_costs();
 
 // ---- provided by boards/<name>/board.cpp
 

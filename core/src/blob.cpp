@@ -249,7 +249,7 @@ class BlobValidator {
     if (!open_node(0, 0, seen)) return false;
     stack[0] = {0, view_.node(0, 0).nodes >> 24};
     std::uint32_t level = 0;
-    while (true) {  // bound: 2 nodes (each is entered once and left once)
+    while (true) {  // bound: 2 * nodes (each is entered once and left once)
       Frame& frame = stack[level];
       if (frame.octants_left == 0) {
         if (level == 0) break;
@@ -291,7 +291,7 @@ class BlobValidator {
     const std::uint32_t level = header_->directory_level;
     const std::uint32_t side_mask = (1U << level) - 1U;
     const std::uint32_t entries = 1U << 3U * level;
-    for (std::uint32_t i = 0; i < entries; ++i) {  // bound: directory entries
+    for (std::uint32_t i = 0; i < entries; ++i) {  // bound: directory_entries
       const Int3 cell{static_cast<std::int32_t>(i & side_mask),
                       static_cast<std::int32_t>(i >> level & side_mask),
                       static_cast<std::int32_t>(i >> 2U * level)};
@@ -328,7 +328,7 @@ class BlobValidator {
       std::uint32_t p = view_.first_point(i);
       const std::uint32_t end = view_.first_point(i + 1);
       std::uint32_t previous = view_.points_[p] & kPointPositionMask;
-      for (++p; p < end; ++p) {  // bound: points_per_leaf
+      for (++p; p < end; ++p) {  // bound: points_per_leaf_max
         const std::uint32_t here = view_.points_[p] & kPointPositionMask;
         if (here <= previous) return false;
         previous = here;
@@ -339,7 +339,7 @@ class BlobValidator {
 
   bool neighbours_exist() const {
     if (!view_.has_neighbours()) return true;
-    for (std::uint32_t i = 0; i < 6U * header_->leaf_count; ++i) {  // bound: 6 leaves
+    for (std::uint32_t i = 0; i < 6U * header_->leaf_count; ++i) {  // bound: 6 * leaves
       const std::uint32_t entry = view_.neighbours_[i];
       if (entry == kNeighbourNone) continue;
       const bool is_node = (entry & kNeighbourIsNode) != 0;
@@ -463,7 +463,7 @@ void LeafCursor::enter(std::uint32_t node, Int3 cell) {
 }
 
 void LeafCursor::next() {
-  while (true) {  // bound: 2 depth
+  while (true) {  // bound: 2 * depth
     Frame& top = stack_[level_];
     if (top.leaves_left != 0) {
       const std::uint32_t octant = lowest_octant(top.leaves_left);

@@ -55,10 +55,40 @@ ConfigurationStatus Controller::configure(const Configuration& configuration) {
   return ConfigurationStatus::kOk;
 }
 
+void Controller::know_costs(const TickCosts& costs, std::uint32_t cycles_per_second) {
+  costs_ = &costs;
+  cycles_per_second_ = cycles_per_second;
+}
+
+bool Controller::is_in_time(TickLoad load, const BlobView& added) const {
+  if (costs_ == nullptr || costs_->known != kTickCostsKnown) {
+    return true;
+  }
+  load.add(added.header(), configuration_.mode);
+  const float period = static_cast<float>(cycles_per_second_) / configuration_.rate_hz;
+  return cycles_of(*costs_, load) <= static_cast<std::uint32_t>(period);
+}
+
+TickLoad Controller::load_of_scene() const {
+  TickLoad load;
+  for (std::uint32_t i = 0; i < kMaxBodies; ++i) {  // bound: kMaxBodies
+    if (!scene_.view(i).empty()) {
+      load.add(scene_.view(i).header(), configuration_.mode);
+    }
+  }
+  return load;
+}
+
 void Controller::remove_unsuitable_bodies() {
+  TickLoad kept;
   for (std::uint32_t i = 0; i < kMaxBodies; ++i) {  // bound: kMaxBodies
     const BlobView view = scene_.view(i);
-    if (!view.empty() && suitability(view) != ModelStatus::kOk) {
+    if (view.empty()) {
+      continue;
+    }
+    if (suitability(view) == ModelStatus::kOk && is_in_time(kept, view)) {
+      kept.add(view.header(), configuration_.mode);
+    } else {
       (void)scene_.remove(i);
     }
   }
@@ -96,6 +126,9 @@ ModelStatus Controller::load_model(const BlobView& view) {
   if (status != ModelStatus::kOk) {
     return status;
   }
+  if (!is_in_time({}, view)) {
+    return ModelStatus::kTooSlow;
+  }
   scene_.clear();
   std::uint32_t number = 0;
   return add_body(view, {}, number);
@@ -109,6 +142,9 @@ ModelStatus Controller::add_body(const BlobView& view, const Pose& pose, std::ui
     return ModelStatus::kNotConfigured;
   }
   ModelStatus status = suitability(view);
+  if (status == ModelStatus::kOk && !is_in_time(load_of_scene(), view)) {
+    status = ModelStatus::kTooSlow;
+  }
   if (status == ModelStatus::kOk) {
     status = scene_.add(view, pose, number);
   }

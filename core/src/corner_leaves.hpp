@@ -154,7 +154,8 @@ inline std::uint32_t step_down(const BlobView& view, std::uint32_t node, std::ui
 [[gnu::always_inline]] inline NearLeaf CornerLeaves::find(std::uint32_t corner) {
   if (!view_.is_uniform()) {
     Leaf leaf;
-    return find_mixed(corner, leaf) ? near_leaf(view_, leaf, centre_, corner) : NearLeaf{};
+    const bool found = find_mixed(corner, leaf);  // at most: 8 * mixed per CandidateSet::gather
+    return found ? near_leaf(view_, leaf, centre_, corner) : NearLeaf{};
   }
   const std::uint32_t number = corner == 0 ? find_own() : find_other(corner);
   if (number == kNoNode) {

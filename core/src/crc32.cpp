@@ -25,7 +25,7 @@ constexpr auto kTable = make_table();
 
 void Crc32::update(std::span<const std::byte> bytes) {
   std::uint32_t state = state_;
-  for (const std::byte byte : bytes) {  // bound: bytes.size()
+  for (const std::byte byte : bytes) {  // bound: bytes_size
     state ^= static_cast<std::uint32_t>(byte);
     state = (state >> 4) ^ kTable[state & 15U];
     state = (state >> 4) ^ kTable[state & 15U];

@@ -36,7 +36,7 @@ class LeafScan {
     }
     Integers index = ascending_from(first);
     std::uint32_t p = first_;
-    for (; end_ - p >= kLanes; p += kLanes) {  // bound: points_per_leaf
+    for (; end_ - p >= kLanes; p += kLanes) {  // bound: points_per_leaf_max
       visit(squared(load<Words>(words_ + p)), index);
       index += static_cast<std::int32_t>(kLanes);
     }
@@ -69,7 +69,7 @@ class LeafScan {
 /// Does the axis-aligned box, half-width `half`, of any of the leaf's points hold the probe?
 inline bool leaf_has_box_around(const BlobView& view, const NearLeaf& leaf, float half) {
   const LeafScan scan(view, leaf);
-  for (std::uint32_t p = leaf.first_point; p < leaf.end_point; ++p) {  // bound: points_per_leaf
+  for (std::uint32_t p = leaf.first_point; p < leaf.end_point; ++p) {  // bound: points_per_leaf_max
     const Vec3 d = scan.offset(p);
     if (absolute(d.x) <= half && absolute(d.y) <= half && absolute(d.z) <= half) {
       return true;

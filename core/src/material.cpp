@@ -85,20 +85,21 @@ MaterialBlend blend_materials(const BlobView& view, const Configuration& configu
   const float inverse_squared = 1.0F / (radius * radius);
   MaterialBlend blend;
   float sum = 0.0F;
-  for (std::uint32_t i = 0; i < set.count(); ++i) {  // bound: kMaxCandidates
+  // bound: blended_points
+  for (std::uint32_t i = 0; i < set.count(); ++i) {
     const float weight =
         weight_of(set.position(i) - x, inverse_squared, dot(set.normal(i), normal));
     if (weight > 0.0F) {
       add(blend, view.material_of(set.point(i)), weight);
     }
   }
-  for (std::uint32_t i = 0; i < blend.count; ++i) {  // bound: kBlendedMaterials
+  for (std::uint32_t i = 0; i < blend.count; ++i) {  // bound: blended_materials
     sum += blend.share[i];
   }
   if (!(sum > 0.0F)) {
     return whole(0);
   }
-  for (std::uint32_t i = 0; i < blend.count; ++i) {  // bound: kBlendedMaterials
+  for (std::uint32_t i = 0; i < blend.count; ++i) {  // bound: blended_materials
     blend.share[i] /= sum;
   }
   return blend;
@@ -109,7 +110,7 @@ Feel feel_of(const BlobView& view, const Configuration& c, const MaterialBlend& 
     return {c.stiffness_N_m, c.damping_Ns_m, {c.static_friction, c.dynamic_friction}};
   }
   Feel feel;
-  for (std::uint32_t i = 0; i < blend.count; ++i) {  // bound: kBlendedMaterials
+  for (std::uint32_t i = 0; i < blend.count; ++i) {  // bound: blended_materials
     const BlobMaterial& m = view.material(blend.material[i]);
     const float share = blend.share[i];
     feel.stiffness_N_m += share * m.stiffness_N_m;
@@ -122,7 +123,7 @@ Feel feel_of(const BlobView& view, const Configuration& c, const MaterialBlend& 
 
 float texture_depth(const BlobView& view, const MaterialBlend& blend, Vec3 x, Vec3 normal) {
   float depth = 0.0F;
-  for (std::uint32_t i = 0; i < blend.count; ++i) {  // bound: kBlendedMaterials
+  for (std::uint32_t i = 0; i < blend.count; ++i) {  // bound: blended_materials
     depth += blend.share[i] * depth_of(view.material(blend.material[i]), x, normal);
   }
   return depth;

@@ -65,7 +65,7 @@ bool find_neighbour(const BlobView& view, const Leaf& from, std::uint32_t direct
 void nearest_in_leaf(const BlobView& view, const Leaf& leaf, Vec3 probe, NearestPoint& best) {
   const LeafScan scan(view, near_leaf(view, leaf, probe));
   const std::uint32_t end = leaf.first_point + leaf.point_count;
-  for (std::uint32_t p = leaf.first_point; p < end; ++p) {  // bound: points_per_leaf
+  for (std::uint32_t p = leaf.first_point; p < end; ++p) {  // bound: points_per_leaf_max
     const float squared = length_squared(scan.offset(p));
     if (!best.found() || squared < best.distance_squared ||
         (squared == best.distance_squared && p < best.index)) {

@@ -54,8 +54,7 @@ void Proxy::update(const BlobView& view, Vec3 probe, const Friction& friction) {
     sweep(view, probe);
   }
   if (in_contact_) {
-    const std::uint32_t slot =
-        nearest_candidate(candidates_, position_, view.header().support_radius_m);
+    const std::uint32_t slot = find_nearest(view, position_);
     nearest_point_ = slot == kNoCandidate ? kNoPoint : candidates_.point(slot);
   }
 }
@@ -64,7 +63,18 @@ SurfaceFit Proxy::evaluate(const BlobView& view, Vec3 x, Vec3 reference) {
   --budget_;
   candidates_.cover(view, x);
   complete_ = complete_ && candidates_.complete();
-  return fit_surface(candidates_, x, view.header().support_radius_m, reference);
+  const float radius = view.header().support_radius_m;
+  // The last of the budget is never used: a visit begins with three left, and takes one for the fit
+  // and one more either for the other side or for the projection where contact begins.
+  // at most: kEvaluationsPerTick - 1 per Proxy::update
+  return fit_surface(candidates_, x, radius, reference);
+}
+
+// For each visit that does not know its side, and at the end in contact: but contact begins in a
+// visit that knows it.
+std::uint32_t Proxy::find_nearest(const BlobView& view, Vec3 x) const {
+  // at most: kSweepSteps per Proxy::update
+  return nearest_candidate(candidates_, x, view.header().support_radius_m);
 }
 
 void Proxy::sweep(const BlobView& view, Vec3 probe) {
@@ -88,7 +98,7 @@ void Proxy::visit(const BlobView& view, Vec3 x) {
   Vec3 reference = reference_;
   if (!tracked_) {
     candidates_.cover(view, x);
-    const std::uint32_t nearest = nearest_candidate(candidates_, x, view.header().support_radius_m);
+    const std::uint32_t nearest = find_nearest(view, x);
     if (nearest == kNoCandidate) {
       --budget_;
       return;

@@ -62,9 +62,9 @@ float spring_energy(float stiffness_N_m, float length_m, float force_max_N) {
 Rendering Renderer::update(const BlobView& view, const Configuration& configuration, Vec3 probe,
                            Vec3 velocity) {
   if (configuration.mode == RenderMode::kPaper) {
-    return update_paper(view, configuration, probe);
+    return update_paper(view, configuration, probe);  // at most: paper per Scene::render
   }
-  proxy_.update(view, probe, friction_);
+  proxy_.update(view, probe, friction_);  // at most: 1 - paper per Scene::render
   return render_proxy(view, configuration, probe, velocity);
 }
 

@@ -15,6 +15,7 @@ constexpr const char* kWords[] = {
     "there is no body of this number",
     "the pose is not finite, not a rotation, or beyond +-10 m",
     "the motion is not finite, or beyond 10 m/s or 100 rad/s",
+    "a tick with this model may take longer than the rate allows",
 };
 constexpr std::uint32_t kWordCount = sizeof(kWords) / sizeof(kWords[0]);
 
@@ -194,6 +195,7 @@ bool Scene::lend_slots(Vec3 probe) {
   for (std::uint32_t i = 0; i < kMaxBodies; ++i) {  // bound: kMaxBodies
     const Body& body = bodies_[i];
     if (exists(i) && body.enabled) {
+      // at most: bodies per Scene::lend_slots
       const Vec3 now = position_to_body(body.pose, probe);
       within_reach[i] = comes_near(body.view, body.seen ? body.probe : now, now);
     }
@@ -206,6 +208,7 @@ bool Scene::lend_slots(Vec3 probe) {
     }
     Slot* const slot = within_reach[i] ? free_slot(within_reach) : slot_of(kNoBody);
     if (slot != nullptr) {
+      // at most: bodies per Scene::lend_slots
       lend(*slot, i, body.seen ? body.probe : position_to_body(body.pose, probe));
     }
     crowded = crowded || (within_reach[i] && slot == nullptr);
@@ -222,6 +225,7 @@ const SceneRendering& Scene::update(const Configuration& configuration, Vec3 pro
   all.crowded = lend_slots(probe);
   for (Slot& slot : slots_) {  // bound: kMaxReachableBodies
     if (slot.body != kNoBody) {
+      // at most: min(bodies, kMaxReachableBodies) per Scene::update
       render(slot, configuration, probe, velocity);
     }
   }
@@ -281,8 +285,9 @@ void Scene::render(Slot& slot, const Configuration& configuration, Vec3 probe, V
 void Scene::move_on(Vec3 probe, float period_s) {
   for (Body& body : bodies_) {  // bound: kMaxBodies
     if (!body.view.empty()) {
-      body.probe = position_to_body(body.pose, probe);
+      body.probe = position_to_body(body.pose, probe);  // at most: bodies per Scene::move_on
       body.seen = body.enabled;
+      // at most: bodies per Scene::move_on
       body.pose = advanced(body.pose, body.motion, period_s);
     }
   }

@@ -71,7 +71,7 @@ Surroundings look_around(const CandidateSet& set, Vec3 x, float radius, Vec3 ref
   const float inverse_squared = 1.0F / radius_squared;
   Surroundings found;
   float nearest = radius_squared;
-  for (std::uint32_t i = 0; i < set.count(); ++i) {  // bound: kMaxCandidates
+  for (std::uint32_t i = 0; i < set.count(); ++i) {  // bound: points_per_ball_max
     const Vec3 q = set.position(i) - x;
     const float qq = length_squared(q);
     if (!(qq < radius_squared)) {
@@ -104,7 +104,7 @@ Faces divide(const CandidateSet& set, Vec3 x, float radius, Vec3 own, Vec3 other
   const float radius_squared = radius * radius;
   const float inverse_squared = 1.0F / radius_squared;
   Faces faces;
-  for (std::uint32_t i = 0; i < set.count(); ++i) {  // bound: kMaxCandidates
+  for (std::uint32_t i = 0; i < set.count(); ++i) {  // bound: points_per_ball_max
     const Vec3 q = set.position(i) - x;
     const float qq = length_squared(q);
     if (!(qq < radius_squared)) {
@@ -210,7 +210,8 @@ void CandidateSet::cover(const BlobView& view, Vec3 x) {
   }
   // Ahead of a query that walks: it is then good for twice as long.
   const bool walks = valid_ && squared <= kStride * slack * (kStride * slack);
-  gather(view, walks ? x + (kAhead * slack / square_root(squared)) * way : x);
+  const Vec3 centre = walks ? x + (kAhead * slack / square_root(squared)) * way : x;
+  gather(view, centre);  // at most: kPlacesPerTick per Proxy::update
 }
 
 void CandidateSet::gather(const BlobView& view, Vec3 centre) {
@@ -218,6 +219,9 @@ void CandidateSet::gather(const BlobView& view, Vec3 centre) {
   complete_ = true;
   centre_ = centre;
   valid_ = true;
+  most_ = view.header().points_per_ball_max;
+  most_ = most_ < kMaxCandidates ? most_ : kMaxCandidates;
+  unseen_ = view.header().points_per_query_max;
   const float reach_squared = view.reach_m() * view.reach_m();
   CornerLeaves corners(view, centre, view.reach_m());
   corners.each(reach_squared, [&](const NearLeaf& leaf) {
@@ -227,20 +231,24 @@ void CandidateSet::gather(const BlobView& view, Vec3 centre) {
 }
 
 void CandidateSet::gather_leaf(const BlobView& view, const Leaf& leaf, float reach_squared) {
-  const std::uint32_t end = leaf.first_point + leaf.point_count;
-  for (std::uint32_t index = leaf.first_point; index < end;
-       ++index) {  // bound: points_per_leaf_max
+  // A blob that holds more than it declares must not make a tick longer than was proven.
+  complete_ = complete_ && leaf.point_count <= unseen_;
+  const std::uint32_t count = leaf.point_count < unseen_ ? leaf.point_count : unseen_;
+  unseen_ -= count;
+  const std::uint32_t end = leaf.first_point + count;
+  // bound: points_per_leaf_max, total points_per_query_max per CandidateSet::gather
+  for (std::uint32_t index = leaf.first_point; index < end; ++index) {
     const Vec3 position = view.position(leaf, index);
     if (!(length_squared(position - centre_) <= reach_squared)) {
       continue;
     }
-    if (count_ == kMaxCandidates) {
+    if (count_ == most_) {
       complete_ = false;
       return;
     }
     positions_[count_] = position;
     normals_[count_] = view.normal(index);
-    points_[count_] = index;
+    points_[count_] = index;  // at most: points_per_ball_max per CandidateSet::gather
     ++count_;
   }
 }
@@ -248,7 +256,7 @@ void CandidateSet::gather_leaf(const BlobView& view, const Leaf& leaf, float rea
 std::uint32_t nearest_candidate(const CandidateSet& set, Vec3 x, float radius) {
   float best = radius * radius;
   std::uint32_t slot = kNoCandidate;
-  for (std::uint32_t i = 0; i < set.count(); ++i) {  // bound: kMaxCandidates
+  for (std::uint32_t i = 0; i < set.count(); ++i) {  // bound: points_per_ball_max
     const float squared = length_squared(set.position(i) - x);
     if (squared < best) {
       best = squared;

@@ -43,10 +43,10 @@ extern "C" {
   fault.pc = pushed->pc;
   fault.lr = pushed->lr;
   fault.sp = static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(pushed->r0_to_r3));
-  for (std::uint32_t i = 0; i < 4; ++i) {
+  for (std::uint32_t i = 0; i < 4; ++i) {  // bound: 4
     fault.registers[i] = pushed->r0_to_r3[i];
   }
-  for (std::uint32_t i = 0; i < 8; ++i) {
+  for (std::uint32_t i = 0; i < 8; ++i) {  // bound: 8
     fault.registers[4 + i] = pushed->r4_to_r11[i];
   }
   fault.registers[12] = pushed->r12;
@@ -65,7 +65,7 @@ extern "C" {
 void tactree::firmware::reset() {
   cortex_m::synchronise();
   cortex_m::reset_control() = cortex_m::kResetKeyAndRequest;
-  while (true) {
+  while (true) {  // bound: for_ever
     cortex_m::synchronise();
   }
 }

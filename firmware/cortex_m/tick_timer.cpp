@@ -32,7 +32,7 @@ std::uint32_t deadlines() { return counted; }
 std::uint32_t now_us() {
   std::uint32_t before;
   std::uint32_t cycles;
-  do {
+  do {  // bound: 2
     before = counted;
     cycles = period_cycles - 1U - cortex_m::systick_value();
   } while (before != counted);
@@ -52,7 +52,7 @@ void tactree_deadline() {
 }
 
 void tactree_idle() {
-  while (true) {
+  while (true) {  // bound: for_ever
     __asm volatile("wfi" ::: "memory");
   }
 }

@@ -41,7 +41,7 @@ core::Configuration PlantLinkBoard::connect(const hal::CapturedFault& last_fault
   link::Hello hello;
   hello.blob_address = static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(blob_begin));
   hello.blob_bytes_max = static_cast<std::uint32_t>(blob_end - blob_begin);
-  for (std::uint32_t i = 0; i + 1U < sizeof hello.board; ++i) {
+  for (std::uint32_t i = 0; i + 1U < sizeof hello.board; ++i) {  // bound: 23
     hello.board[i] = kIdentity.board[i];
   }
   hello.last_fault = last_fault;
@@ -76,7 +76,7 @@ void PlantLinkBoard::exchange() {
 }
 
 void PlantLinkBoard::write(const core::MotorCommand& command) noexcept {
-  for (std::uint32_t axis = 0; axis < core::kAxes; ++axis) {
+  for (std::uint32_t axis = 0; axis < core::kAxes; ++axis) {  // bound: kAxes
     output_.effort[axis] = command.effort(axis);
   }
 }

@@ -56,7 +56,7 @@ int open(std::span<const char> zero_terminated_name, Access access) {
 
 // Both calls return how many bytes are left to do.
 bool read(int file, std::span<std::byte> bytes) {
-  while (!bytes.empty()) {
+  while (!bytes.empty()) {  // bound: 1 (pipes do not divide messages as short as ours)
     const auto wanted = static_cast<std::uint32_t>(bytes.size());
     const std::uint32_t left = call(
         Operation::kRead, {static_cast<std::uint32_t>(file), address_of(bytes.data()), wanted});
@@ -77,7 +77,7 @@ void print(const char* text) { (void)call(Operation::kPrint, address_of(text)); 
 
 void exit(std::uint32_t code) {
   const std::uint32_t arguments[3] = {kApplicationExit, code, 0};
-  while (true) {
+  while (true) {  // bound: for_ever
     (void)call(Operation::kExit, arguments);
   }
 }

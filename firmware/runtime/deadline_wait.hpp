@@ -12,7 +12,7 @@ class DeadlineWait {
   /// Returns at the next deadline; at once when one has gone by, which is so in every tick. How
   /// many went by besides it.
   [[nodiscard]] std::uint32_t wait() {
-    while (deadlines() == seen_) {
+    while (deadlines() == seen_) {  // bound: 0 (a deadline has begun this tick)
       wait_for_interrupt();
     }
     const std::uint32_t now = deadlines();

@@ -10,6 +10,9 @@ bool aligned(const void* a, const void* b) {
   return ((reinterpret_cast<std::uintptr_t>(a) | reinterpret_cast<std::uintptr_t>(b)) & 3U) == 0U;
 }
 
+// The bounds hold where whatever has 16 bytes or more lies on words, as all structures of a tick
+// do.
+
 // Words of whatever type the bytes have.
 using Word [[gnu::may_alias]] = std::uint32_t;
 
@@ -26,16 +29,16 @@ void* memcpy(void* __restrict to, const void* __restrict from, std::size_t bytes
   auto* target = static_cast<unsigned char*>(to);
   const auto* source = static_cast<const unsigned char*>(from);
   if (aligned(to, from)) {
-    for (; bytes >= sizeof(Block); bytes -= sizeof(Block)) {
+    for (; bytes >= sizeof(Block); bytes -= sizeof(Block)) {  // bound: bytes / 16
       *reinterpret_cast<Block*>(target) = *reinterpret_cast<const Block*>(source);
       target += sizeof(Block);
       source += sizeof(Block);
     }
-    for (; bytes >= 4; bytes -= 4, target += 4, source += 4) {
+    for (; bytes >= 4; bytes -= 4, target += 4, source += 4) {  // bound: bytes % 16 / 4
       *reinterpret_cast<Word*>(target) = *reinterpret_cast<const Word*>(source);
     }
   }
-  for (; bytes > 0; --bytes) {
+  for (; bytes > 0; --bytes) {  // bound: max(bytes % 4, (1 - min(bytes / 16, 1)) * bytes)
     *target++ = *source++;
   }
   return to;
@@ -48,7 +51,7 @@ void* memmove(void* to, const void* from, std::size_t bytes) {
       bytes) {
     return memcpy(to, from, bytes);  // the target does not begin within the source
   }
-  while (bytes > 0) {
+  while (bytes > 0) {  // bound: bytes
     --bytes;
     target[bytes] = source[bytes];
   }
@@ -60,14 +63,15 @@ void* memset(void* to, int value, std::size_t bytes) {
   const auto byte = static_cast<unsigned char>(value);
   if (aligned(to, nullptr)) {
     const std::uint32_t word = byte * 0x01010101U;
-    for (; bytes >= sizeof(Block); bytes -= sizeof(Block), target += sizeof(Block)) {
+    for (; bytes >= sizeof(Block);
+         bytes -= sizeof(Block), target += sizeof(Block)) {  // bound: bytes / 16
       *reinterpret_cast<Block*>(target) = {word, word, word, word};
     }
-    for (; bytes >= 4; bytes -= 4, target += 4) {
+    for (; bytes >= 4; bytes -= 4, target += 4) {  // bound: bytes % 16 / 4
       *reinterpret_cast<Word*>(target) = word;
     }
   }
-  for (; bytes > 0; --bytes) {
+  for (; bytes > 0; --bytes) {  // bound: max(bytes % 4, (1 - min(bytes / 16, 1)) * bytes)
     *target++ = byte;
   }
   return to;
@@ -76,7 +80,7 @@ void* memset(void* to, int value, std::size_t bytes) {
 int memcmp(const void* a, const void* b, std::size_t bytes) {
   const auto* left = static_cast<const unsigned char*>(a);
   const auto* right = static_cast<const unsigned char*>(b);
-  for (; bytes > 0; --bytes, ++left, ++right) {
+  for (; bytes > 0; --bytes, ++left, ++right) {  // bound: bytes
     if (*left != *right) {
       return *left < *right ? -1 : 1;
     }

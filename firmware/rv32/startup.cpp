@@ -28,7 +28,7 @@ void tactree_trap();
 }
 
 void tactree::firmware::reset() {
-  while (true) {
+  while (true) {  // bound: for_ever
     rv32::test_device() = rv32::kTestDeviceReset;
   }
 }

@@ -48,7 +48,7 @@ std::uint32_t deadlines() { return counted; }
 std::uint32_t now_us() {
   std::uint32_t before;
   std::uint32_t cycles;
-  do {
+  do {  // bound: 2
     before = counted;
     cycles = rv32::timer_low() - last_deadline;
   } while (before != counted);
@@ -69,7 +69,7 @@ extern "C" {
 }
 
 void tactree_idle() {
-  while (true) {
+  while (true) {  // bound: for_ever
     __asm volatile("wfi" ::: "memory");
   }
 }

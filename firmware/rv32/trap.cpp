@@ -24,10 +24,10 @@ struct StoredRegisters {
   ++fault.cause;  // 0 is a cause of its own, and means none in the record
   fault.lr = stored->ra;
   fault.sp = stored->sp;
-  for (std::uint32_t i = 0; i < 8; ++i) {
+  for (std::uint32_t i = 0; i < 8; ++i) {  // bound: 8
     fault.registers[i] = stored->a0_to_a7[i];
   }
-  for (std::uint32_t i = 0; i < 5; ++i) {
+  for (std::uint32_t i = 0; i < 5; ++i) {  // bound: 5
     fault.registers[8 + i] = stored->t0_to_t4[i];
   }
   tactree::firmware::capture(fault);

@@ -36,7 +36,7 @@ void clear(Word& word, std::uint32_t mask) {
 template <class Word>
 [[nodiscard]] bool wait_until(const Word& word, std::uint32_t mask, std::uint32_t bits,
                               std::uint32_t polls) {
-  for (std::uint32_t i = 0; i < polls; ++i) {
+  for (std::uint32_t i = 0; i < polls; ++i) {  // bound: polls
     if ((read(word) & mask) == bits) {
       return true;
     }

@@ -86,7 +86,7 @@ class FlashProgrammer {
       return FlashStatus::kOutside;
     }
     FlashStatus status = open();
-    for (std::size_t i = 0; status == FlashStatus::kOk && i < words.size(); ++i) {
+    for (std::size_t i = 0; status == FlashStatus::kOk && i < words.size(); ++i) {  // bound: words
       status = program_word(cells_[offset + i], words[i]);
     }
     close();
@@ -145,7 +145,7 @@ class FlashProgrammer {
 
   bool is_erased(std::uint32_t sector) const {
     const Cell* cells = cells_ + sector * region_.words_per_sector;
-    for (std::uint32_t i = 0; i < region_.words_per_sector; ++i) {
+    for (std::uint32_t i = 0; i < region_.words_per_sector; ++i) {  // bound: words_per_sector
       if (read(cells[i]) != flash::kErased) {
         return false;
       }

@@ -5,19 +5,20 @@
 namespace tactree::firmware::stm32f4 {
 
 bool CommandReader::push(std::byte byte, core::Command& command) {
-  for (std::size_t i = 0; i + 1 < sizeof window_; ++i) {
+  for (std::size_t i = 0; i + 1 < sizeof window_; ++i) {  // bound: 7
     window_[i] = window_[i + 1];
   }
   window_[sizeof window_ - 1] = byte;
   struct Bytes {
     std::byte byte[sizeof(CommandFrame)];
   } bytes;
-  for (std::size_t i = 0; i < sizeof window_; ++i) {
+  for (std::size_t i = 0; i < sizeof window_; ++i) {  // bound: 8
     bytes.byte[i] = window_[i];
   }
   const auto frame = std::bit_cast<CommandFrame>(bytes);
   if (frame.mark != kFrameMark || frame.kind != kCommandKind ||
-      frame.command > core::Command::kHome || frame.checksum != checksum_of(frame)) {
+      frame.command > core::Command::kHome ||
+      frame.checksum != checksum_of(frame)) {  // with: bytes_size <= 4
     return false;
   }
   const bool repeated = !first_ && frame.sequence == last_sequence_;

@@ -73,6 +73,7 @@ static_assert(sizeof(BootFrame) == 92 && offsetof(BootFrame, last_fault) == 12);
 /// Checksum of a frame: of all bytes but its last four.
 template <class Frame>
 std::uint32_t checksum_of(const Frame& frame) {
+  // with: bytes_size <= 88 (of the longest, a BootFrame)
   return core::crc32(std::as_bytes(std::span(&frame, 1)).first(sizeof frame - 4U));
 }
 

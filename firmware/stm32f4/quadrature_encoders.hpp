@@ -73,7 +73,7 @@ class QuadratureEncoders {
   /// False: a timer does not run.
   [[nodiscard]] bool start() {
     bool good = true;
-    for (QuadratureCounter<Word>& counter : axis_) {
+    for (QuadratureCounter<Word>& counter : axis_) {  // bound: kAxes
       counter.start();
       good = counter.runs() && good;
     }
@@ -82,7 +82,7 @@ class QuadratureEncoders {
 
   [[nodiscard]] core::EncoderReading read() noexcept {
     core::EncoderReading reading;
-    for (std::uint32_t i = 0; i < core::kAxes; ++i) {
+    for (std::uint32_t i = 0; i < core::kAxes; ++i) {  // bound: kAxes
       reading.counts[i] = axis_[i].take();
       reading.valid[i] = axis_[i].runs();
     }

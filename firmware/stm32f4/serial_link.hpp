@@ -29,7 +29,7 @@ class SerialLink {
     std::byte byte;
     core::Command command = core::Command::kNone;
     hal::LinkInput input;
-    for (std::uint32_t i = 0; i < kRingBytes && port_.take(byte); ++i) {
+    for (std::uint32_t i = 0; i < kRingBytes && port_.take(byte); ++i) {  // bound: kRingBytes
       if (!reader_.push(byte, command)) {
         continue;
       }

@@ -78,7 +78,7 @@ class SerialPort {
 
   /// Once a tick. Reading the status also clears an overrun, with DMA's next read (section 30.6.1).
   void advance() {
-    for (std::uint32_t i = 0; i < serial::kBytesPerTick; ++i) {
+    for (std::uint32_t i = 0; i < serial::kBytesPerTick; ++i) {  // bound: kBytesPerTick
       if (!has(usart_.sr, serial::kEmpty) || idle()) {
         return;
       }

@@ -173,6 +173,10 @@ class Loops(Planted):
     def test_bound_in_a_string(self):
         self.refuses_code('void f(int n) {\n  while (n > 0) n = g("x \\" // no b", n);\n}\n', 2)
 
+    def test_bound_alone_above(self):
+        self.accepts_code("void f(int n) {\n  // bound: n\n  while (n > 0) --n;\n}\n")
+        self.refuses_code("void f(int n) {\n  n *= 2;  // bound: n\n  while (n > 0) --n;\n}\n", 3)
+
     def test_words_that_are_no_loops(self):
         self.write("b.cpp", '// for ever, while (it lasts)\nconst char* s = "do while (1) for (;;)";\n'
                             "int forward = 1'000; char c = '\"';  // for\n")

@@ -10,10 +10,12 @@
 #include <string>
 #include <vector>
 
+#include "board_costs.hpp"
 #include "command.hpp"
 #include "material_file.hpp"
 #include "output_file.hpp"
 #include "tactree/builder/build_model.hpp"
+#include "tactree/emulation/board_description.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -47,11 +49,22 @@ struct BuildArguments {
   std::vector<double> crop;
   std::string spacing;
   std::string budget;
+  std::string board;
+  double rate_hz = 0.0;
   std::string material;
   bool no_resample = false;
   builder::ProgressStyle progress = builder::ProgressStyle::kAuto;
   BuildOptions build;
 };
+
+/// What fits the board's flash, where nothing else says how fine the model is to be.
+void choose_for_board(BuildArguments& arguments) {
+  const emulation::BoardDescription* const board = emulation::find_board(arguments.board);
+  BuildOptions& build = arguments.build;
+  if (board != nullptr && build.resample && !build.spacing_m && !build.flash_budget_bytes) {
+    build.flash_budget_bytes = board->blob_bytes_max;
+  }
+}
 
 [[noreturn]] void misuse(const std::string& option, const std::string& what) {
   throw CLI::ValidationError(option, what);
@@ -125,6 +138,7 @@ void complete(BuildArguments& arguments) {
       misuse("--flash-budget", "chooses the spacing; it excludes --spacing and --no-resample");
     }
   }
+  choose_for_board(arguments);
   if (!arguments.material.empty()) {
     build.materials = read_materials(arguments.material);
   }
@@ -273,6 +287,27 @@ void print(const BuildReport& report, const BuildOptions& build, const std::stri
       static_cast<double>(report.input_points) / report.seconds, report.peak_rss_bytes >> 20U);
 }
 
+/// A blob that the board cannot render in time is not written.
+void check_time(const BuildArguments& arguments, std::span<const std::byte> blob) {
+  if (arguments.board.empty() || arguments.rate_hz <= 0.0) {
+    return;
+  }
+  core::BlobView view;
+  if (core::open_blob(blob, view) != core::BlobStatus::kOk) {
+    throw CommandError("the blob is not valid (this is a mistake of tactree's)");
+  }
+  const auto mode = view.is_uniform() ? core::RenderMode::kSurface : core::RenderMode::kPaper;
+  const BoardCosts board = costs_of_board(arguments.board);
+  const double highest = board.highest_rate(view.header(), mode);
+  if (arguments.rate_hz > highest) {
+    throw CommandError(fmt::format(
+        "--rate: {} keeps {:.0f} Hz with this model, not {:.6g}: a tick takes up to {:.0f} cycles, "
+        "there are {:.0f} (lower --rate, or take a faster board; {} points in a ball count most)",
+        arguments.board, std::floor(highest), arguments.rate_hz, board.cycles(view.header(), mode),
+        board.timing.clock_hz / arguments.rate_hz, view.header().points_per_ball_max));
+  }
+}
+
 void build(const BuildArguments& arguments) {
   refuse_overwriting_inputs(arguments);
   const std::unique_ptr<builder::Progress> progress =
@@ -285,6 +320,7 @@ void build(const BuildArguments& arguments) {
     progress->end();
     throw;
   }
+  check_time(arguments, result.blob.bytes);
   write_file(arguments.output, std::span<const std::byte>(result.blob.bytes));
   const std::string json = to_json(result.report, arguments.build).dump(2) + "\n";
   for (const std::string& file : {arguments.report, arguments.json}) {
@@ -335,6 +371,14 @@ void add_quality_options(CLI::App& verb, BuildArguments& arguments) {
       ->group(kGroup);
   verb.add_flag("--no-resample", arguments.no_resample, "keep every distinct point of a cloud")
       ->group(kGroup);
+  CLI::Option* board =
+      verb.add_option("--board", arguments.board,
+                      "for this board: the finest model that its flash holds, where neither "
+                      "--spacing nor --flash-budget is given")
+          ->check(CLI::IsMember(boards_with_timing()));
+  verb.add_option("--rate", arguments.rate_hz,
+                  "refuse a model that the board cannot render so often, Hz")
+      ->needs(board);
   verb.add_option("--profile", build.profile, "surface: fitted surface; paper: as published")
       ->transform(CLI::CheckedTransformer(kProfiles).description("surface|paper"))
       ->default_str("surface")

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "blob_file.hpp"
+#include "board_costs.hpp"
 #include "output_file.hpp"
 
 namespace tactree::cli {
@@ -19,6 +20,7 @@ using core::BlobView;
 
 struct InfoOptions {
   std::string blob;
+  std::string board;
   std::string json;
   std::string points;
 };
@@ -191,9 +193,34 @@ void write_points(const BlobView& view, const std::string& file) {
   write_file(file, text);
 }
 
+void print_costs(const core::BlobHeader& header, const std::string& name) {
+  const BoardCosts board = costs_of_board(name);
+  fmt::print("\non {} ({}): {}{}\n", name, board.image,
+             board.embedded ? "the costs in the image" : "analysed now, not in the image",
+             board.timing.is_estimate ? "; an estimate" : "");
+  for (const core::RenderMode mode : {core::RenderMode::kSurface, core::RenderMode::kPaper}) {
+    core::TickLoad load;
+    load.add(header, mode);
+    const core::TickCost& cost = board.costs.of[static_cast<std::uint32_t>(load.kind)][0];
+    fmt::print("{:<8}  at most {:.0f} cycles a tick: {:.0f} Hz at {:.0f} MHz\n",
+               mode == core::RenderMode::kPaper ? "paper" : "surface", board.cycles(header, mode),
+               std::floor(board.highest_rate(header, mode)), 1e-6 * board.timing.clock_hz);
+    fmt::print("          = {}", cost.base);
+    for (std::uint32_t i = 0; i < core::kTickFigures; ++i) {
+      if (cost.per_figure[i] != 0) {
+        fmt::print(" + {} {}", cost.per_figure[i], core::kTickFigureNames[i]);
+      }
+    }
+    fmt::print("\n");
+  }
+}
+
 void info(const InfoOptions& options) {
   const BlobFile blob(options.blob);
   print(blob.view());
+  if (!options.board.empty()) {
+    print_costs(blob.view().header(), options.board);
+  }
   if (!options.json.empty()) {
     write_file(options.json, to_json(blob.view()).dump(2) + "\n");
   }
@@ -209,6 +236,8 @@ void add_info_command(CLI::App& app, int&) {
   CLI::App* verb = app.add_subcommand(
       "info", "Tells what a blob holds, what it guarantees and where its bytes go");
   verb->add_option("BLOB", options->blob, "the blob to look into")->required();
+  verb->add_option("--board", options->board, "also what a tick with it costs on this board")
+      ->check(CLI::IsMember(boards_with_timing()));
   verb->add_option("--json", options->json, "write the figures to this file");
   verb->add_option("--points", options->points,
                    "write every decoded point to this CSV file: index,x,y,z,nx,ny,nz (m)");

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <exception>
 
+#include "bound_command.hpp"
 #include "build_command.hpp"
 #include "check_command.hpp"
 #include "command.hpp"
@@ -19,6 +20,7 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", "tactree " TACTREE_VERSION);
   app.require_subcommand(1);
   int exit_code = kExitOk;
+  add_bound_command(app, exit_code);
   add_build_command(app, exit_code);
   add_info_command(app, exit_code);
   add_check_command(app, exit_code);

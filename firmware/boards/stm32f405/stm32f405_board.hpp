@@ -132,7 +132,7 @@ class Stm32f405Board {
 
   // A pull-down: no pulse while the timer does not drive, none from a broken failure line.
   void prepare_motor_pins() {
-    for (std::uint32_t axis = 0; axis < core::kAxes; ++axis) {
+    for (std::uint32_t axis = 0; axis < core::kAxes; ++axis) {  // bound: kAxes
       pin_c(axis).make_output();
       pin_c(6U + axis).make_alternate(wiring::kTim8Function, stm32f4::Pull::kDown);
     }

@@ -1,17 +1,20 @@
 // A plugin of QEMU: counts the instructions a board executes in each tick, by function.
-//   -plugin file=tactree_instruction_counter.so,out=FILE[,skip=TICKS]
+//   -plugin file=tactree_instruction_counter.so,out=FILE[,skip=TICKS][,code=on]
 //
 // A tick is everything from the moment the board leaves tactree_idle() until it is back there, when
 // tactree_tick() was called in between. The first TICKS of them do not count.
 //
 // The report:  ticks <count> <max> <total> <checksum> <instructions before the first tick>
+//              worst <number of the tick with the most, the first one counted is 0>
 //              function <max in a tick> <total> <name>      for each that was in a tick
+//              code <begin> <end>     with code=on: addresses that were executed in ticks, in hex
 //              end
 
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <deque>
+#include <map>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -26,6 +29,13 @@ struct Function {
   std::uint64_t before = 0;    // executed when the tick began
   std::uint64_t max = 0;
   std::uint64_t total = 0;
+};
+
+struct Instruction {
+  std::uint64_t begin = 0;
+  std::uint64_t end = 0;
+  std::uint64_t executed = 0;  // the emulator adds to this
+  std::uint64_t before = 0;    // executed before the first tick
 };
 
 // FNV-1a.
@@ -46,12 +56,15 @@ class Checksum {
 struct Counter {
   std::deque<Function> functions;  // stays in place as it grows: the emulator holds addresses
   std::unordered_map<std::string, Function*> by_name;
+  std::deque<Instruction> instructions;
+  bool notes_code = false;
   std::string report_file;
   std::uint64_t skip = 0;
   std::uint64_t seen = 0;
   std::uint64_t ticks = 0;
   std::uint64_t max = 0;
   std::uint64_t total = 0;
+  std::uint64_t worst = 0;
   std::uint64_t start = 0;
   Checksum checksum;
   bool in_tick = false;
@@ -69,6 +82,10 @@ struct Counter {
   void begin_tick() {
     if (in_tick) {
       end_tick();  // late: the board did not idle in between
+    } else if (seen == 0) {
+      for (Instruction& instruction : instructions) {
+        instruction.before = instruction.executed;
+      }
     }
     in_tick = true;
   }
@@ -103,6 +120,7 @@ struct Counter {
       sum += own;
     }
     if (counts) {
+      worst = sum > max ? ticks : worst;
       ++ticks;
       max = sum > max ? sum : max;
       total += sum;
@@ -113,6 +131,13 @@ struct Counter {
 
 // Never destroyed: the report is written after static objects are.
 Counter& counter = *new Counter;
+
+void note(qemu_plugin_insn* instruction) {
+  const std::uint64_t begin = qemu_plugin_insn_vaddr(instruction);
+  counter.instructions.push_back({begin, begin + qemu_plugin_insn_size(instruction), 0, 0});
+  qemu_plugin_register_vcpu_insn_exec_inline(instruction, QEMU_PLUGIN_INLINE_ADD_U64,
+                                             &counter.instructions.back().executed, 1);
+}
 
 void translated(qemu_plugin_id_t, qemu_plugin_tb* block) {
   const std::size_t count = qemu_plugin_tb_n_insns(block);
@@ -137,6 +162,28 @@ void translated(qemu_plugin_id_t, qemu_plugin_tb* block) {
     }
     qemu_plugin_register_vcpu_insn_exec_inline(instruction, QEMU_PLUGIN_INLINE_ADD_U64,
                                                &function.executed, 1);
+    if (counter.notes_code) {
+      note(instruction);
+    }
+  }
+}
+
+// Instructions side by side make one range.
+void write_code(std::FILE* file) {
+  std::map<std::uint64_t, std::uint64_t> executed;
+  for (const Instruction& instruction : counter.instructions) {
+    if (instruction.executed > instruction.before) {
+      executed[instruction.begin] = instruction.end;
+    }
+  }
+  for (auto range = executed.begin(); range != executed.end();) {
+    const std::uint64_t begin = range->first;
+    std::uint64_t end = begin;
+    for (; range != executed.end() && range->first == end; ++range) {
+      end = range->second;
+    }
+    std::fprintf(file, "code %llx %llx\n", static_cast<unsigned long long>(begin),
+                 static_cast<unsigned long long>(end));
   }
 }
 
@@ -149,12 +196,14 @@ void write_report(qemu_plugin_id_t, void*) {
       file, "ticks %llu %llu %llu %u %llu\n", static_cast<unsigned long long>(counter.ticks),
       static_cast<unsigned long long>(counter.max), static_cast<unsigned long long>(counter.total),
       counter.checksum.value(), static_cast<unsigned long long>(counter.start));
+  std::fprintf(file, "worst %llu\n", static_cast<unsigned long long>(counter.worst));
   for (const Function& f : counter.functions) {
     if (f.total > 0) {
       std::fprintf(file, "function %llu %llu %s\n", static_cast<unsigned long long>(f.max),
                    static_cast<unsigned long long>(f.total), f.name.c_str());
     }
   }
+  write_code(file);
   std::fprintf(file, "end\n");
   std::fclose(file);
 }
@@ -170,6 +219,8 @@ int qemu_plugin_install(qemu_plugin_id_t id, const qemu_info_t*, int count, char
       counter.report_file = argument.substr(4);
     } else if (argument.starts_with("skip=")) {
       counter.skip = std::strtoull(arguments[i] + 5, nullptr, 10);
+    } else if (argument == "code=on") {
+      counter.notes_code = true;
     } else {
       std::fprintf(stderr, "tactree_instruction_counter: unknown argument %s\n", arguments[i]);
       return 1;

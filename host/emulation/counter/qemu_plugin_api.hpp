@@ -23,6 +23,7 @@ void qemu_plugin_register_atexit_cb(qemu_plugin_id_t id,
 
 std::size_t qemu_plugin_tb_n_insns(const qemu_plugin_tb* block);
 qemu_plugin_insn* qemu_plugin_tb_get_insn(const qemu_plugin_tb* block, std::size_t index);
+std::size_t qemu_plugin_insn_size(const qemu_plugin_insn* instruction);
 std::uint64_t qemu_plugin_insn_vaddr(const qemu_plugin_insn* instruction);
 /// Name of the function the instruction is in, as in the ELF file; nullptr or "" where it is none.
 const char* qemu_plugin_insn_symbol(const qemu_plugin_insn* instruction);

@@ -74,8 +74,8 @@ std::vector<std::string> command_line(const BoardDescription& board, const std::
     line.push_back(word);
   }
   const std::string counter =
-      fmt::format("file={},out=/dev/fd/{},skip={}", quoted(find_counter().string()), kCounts,
-                  options.uncounted_ticks);
+      fmt::format("file={},out=/dev/fd/{},skip={}{}", quoted(find_counter().string()), kCounts,
+                  options.uncounted_ticks, options.note_code ? ",code=on" : "");
   for (const std::string& word :
        {std::string("-nodefaults"), std::string("-display"), std::string("none"),
         std::string("-semihosting-config"), std::string("enable=on,target=native"),

@@ -36,6 +36,12 @@ InstructionCounts parse_instruction_counts(const std::string& report) {
       counts.functions.push_back(function);
     } else if (key == "ticks") {
       words >> counts.ticks >> counts.max >> counts.total >> counts.checksum >> counts.start;
+    } else if (key == "worst") {
+      words >> counts.worst_tick;
+    } else if (key == "code") {
+      CodeRange range;
+      words >> std::hex >> range.begin >> range.end;
+      counts.code.push_back(range);
     } else if (key == "end") {
       complete = true;
     }

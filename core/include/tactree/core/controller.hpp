@@ -18,6 +18,7 @@
 #include "tactree/core/safety_gate.hpp"
 #include "tactree/core/scene.hpp"
 #include "tactree/core/state_machine.hpp"
+#include "tactree/core/tick_cost.hpp"
 #include "tactree/core/velocity.hpp"
 
 namespace tactree::core {
@@ -73,6 +74,11 @@ class Controller {
   /// Takes a configuration when it is valid and the motors are off; else changes nothing.
   [[nodiscard]] ConfigurationStatus configure(const Configuration& configuration);
 
+  /// What a tick costs on this board, of so many cycles a second: from now on a model is refused
+  /// (kTooSlow) when a tick with it may take longer than a period. Costs that are not known refuse
+  /// nothing. `costs` must outlive the controller.
+  void know_costs(const TickCosts& costs, std::uint32_t cycles_per_second);
+
   /// Makes a model the only body, number 0, at the scene's origin, when the mode can render it and
   /// the motors are off; else keeps the old ones.
   /// Precondition: configured. The blob must outlive its use and not change.
@@ -121,6 +127,8 @@ class Controller {
   void recover();
   void forget_motion();
   [[nodiscard]] ModelStatus suitability(const BlobView& view) const;
+  [[nodiscard]] bool is_in_time(TickLoad load, const BlobView& added) const;
+  [[nodiscard]] TickLoad load_of_scene() const;
   void remove_unsuitable_bodies();
   void notice_empty_scene();
   [[nodiscard]] Vec3 wanted_force();
@@ -128,6 +136,8 @@ class Controller {
   [[nodiscard]] Status report(const SafetyGate::Result& gated) const;
   void report_reactions(Vec3 force, Status& status) const;
 
+  const TickCosts* costs_ = nullptr;
+  std::uint32_t cycles_per_second_ = 0;
   Configuration configuration_{};
   State state_ = State::kBoot;
   FaultMask present_ = 0;  // causes there in this tick

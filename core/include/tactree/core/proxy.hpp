@@ -20,6 +20,10 @@ inline constexpr std::uint32_t kSweepSteps = 4;
 /// At most two evaluations a step of slip, and two that project onto the surface where contact
 /// begins.
 inline constexpr std::uint32_t kEvaluationsPerTick = kSweepSteps + 2;
+/// Where it evaluates: twice in one place is only where the normals around contradict the
+/// reference. Each place of a sweep costs one evaluation at least, a step of slip has two places,
+/// and contact begins with one more.
+inline constexpr std::uint32_t kPlacesPerTick = kSweepSteps + 1;
 
 /// Coefficients, 0 <= dynamic <= static.
 struct Friction {
@@ -56,6 +60,7 @@ class Proxy {
 
  private:
   [[nodiscard]] SurfaceFit evaluate(const BlobView& view, Vec3 x, Vec3 reference);
+  [[nodiscard]] std::uint32_t find_nearest(const BlobView& view, Vec3 x) const;
   void sweep(const BlobView& view, Vec3 probe);
   void visit(const BlobView& view, Vec3 x);
   void begin_contact(const BlobView& view, const SurfaceFit& fit);

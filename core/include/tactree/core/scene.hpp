@@ -40,6 +40,7 @@ enum class ModelStatus : std::uint8_t {
   kNoSuchBody,     ///< nothing was added under this number, or it was removed
   kBadPose,        ///< is_valid(Pose) is false
   kBadMotion,      ///< is_valid(Motion) is false
+  kTooSlow,        ///< a tick with it may take longer than the rate allows: see tick_cost.hpp
 };
 [[nodiscard]] const char* describe(ModelStatus status);
 

@@ -29,7 +29,8 @@ class CandidateSet {
   void cover(const BlobView& view, Vec3 x);
 
   [[nodiscard]] std::uint32_t count() const { return count_; }
-  /// False: a ball held more than kMaxCandidates points and some were left out.
+  /// False: the blob held more points than it declares, or than kMaxCandidates, and some were left
+  /// out.
   [[nodiscard]] bool complete() const { return complete_; }
   [[nodiscard]] Vec3 position(std::uint32_t i) const { return positions_[i]; }
   [[nodiscard]] Vec3 normal(std::uint32_t i) const { return normals_[i]; }
@@ -44,6 +45,8 @@ class CandidateSet {
   Vec3 normals_[kMaxCandidates];
   std::uint32_t points_[kMaxCandidates];
   std::uint32_t count_ = 0;
+  std::uint32_t most_ = 0;    // candidates that the blob declares, and there is room for
+  std::uint32_t unseen_ = 0;  // points of this gather that it declares and that were not tested yet
   Vec3 centre_{};
   bool valid_ = false;
   bool complete_ = true;

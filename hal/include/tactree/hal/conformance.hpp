@@ -48,7 +48,7 @@ template <Board B>
 std::uint32_t ticks_to_follow(B& board, bool on, std::uint32_t limit) {
   board.enable_line().set(on);
   std::uint32_t ticks = 0;
-  while (board.enable_line().read_back() != on && ticks <= limit) {
+  while (board.enable_line().read_back() != on && ticks <= limit) {  // bound: limit
     (void)board.ticker().wait();
     ++ticks;
   }
@@ -62,7 +62,7 @@ void check_ticker(B& board, const ConformanceSetup& setup, ConformanceReport& re
   std::uint32_t overruns = 0;
   bool forward = true;
   std::uint32_t last = begin;
-  for (std::uint32_t i = 0; i < kTicks; ++i) {
+  for (std::uint32_t i = 0; i < kTicks; ++i) {  // bound: kTicks
     overruns += board.ticker().wait().overruns;
     const std::uint32_t now = board.ticker().now_us();
     forward = forward && now - last < 0x80000000U;
@@ -81,10 +81,10 @@ void check_encoders(B& board, const ConformanceSetup& setup, ConformanceReport& 
   const core::EncoderReading first = board.encoders().read();
   bool valid = true;
   bool still = true;
-  for (std::uint32_t i = 0; i < kTicks; ++i) {
+  for (std::uint32_t i = 0; i < kTicks; ++i) {  // bound: kTicks
     (void)board.ticker().wait();
     const core::EncoderReading reading = board.encoders().read();
-    for (std::uint32_t axis = 0; axis < core::kAxes; ++axis) {
+    for (std::uint32_t axis = 0; axis < core::kAxes; ++axis) {  // bound: kAxes
       const auto moved =
           static_cast<std::int32_t>(static_cast<std::uint32_t>(reading.counts[axis]) -
                                     static_cast<std::uint32_t>(first.counts[axis]));
@@ -110,7 +110,7 @@ template <Board B>
 void check_motors(B& board, ConformanceReport& report) {
   core::SafetyGate gate;
   bool healthy = true;
-  for (std::uint32_t i = 0; i < kTicks; ++i) {
+  for (std::uint32_t i = 0; i < kTicks; ++i) {  // bound: kTicks
     (void)board.ticker().wait();
     board.motors().write(gate.release().command);
     healthy = healthy && board.motors().healthy();
@@ -124,7 +124,7 @@ void check_inputs(B& board, ConformanceReport& report) {
   report.check(!board.safety_inputs().dead_man(), "the dead-man control reads as held");
   core::Command command = core::Command::kNone;
   bool moved = false;
-  for (std::uint32_t i = 0; i < kTicks; ++i) {
+  for (std::uint32_t i = 0; i < kTicks; ++i) {  // bound: kTicks
     (void)board.ticker().wait();
     board.link().send(core::Status{});
     const LinkInput input = board.link().receive();
@@ -140,7 +140,7 @@ template <Board B>
 std::uint32_t checksum_over_ticks(B& board, std::span<const std::byte> bytes) {
   const std::size_t slice = bytes.size() / 256U + 1U;
   core::Crc32 checksum;
-  while (!bytes.empty()) {
+  while (!bytes.empty()) {  // bound: bytes
     const std::size_t size = slice < bytes.size() ? slice : bytes.size();
     checksum.update(bytes.first(size));
     bytes = bytes.subspan(size);

@@ -15,7 +15,7 @@ class DelayLine {
   /// latency_ticks: 0 .. kMaxLatencyTicks; larger is taken as the largest.
   DelayLine(std::uint32_t latency_ticks, const T& initial)
       : latency_(latency_ticks < kMaxLatencyTicks ? latency_ticks : kMaxLatencyTicks) {
-    for (T& slot : slots_) {
+    for (T& slot : slots_) {  // bound: slots
       slot = initial;
     }
   }

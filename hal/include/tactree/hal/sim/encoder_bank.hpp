@@ -30,7 +30,7 @@ class SimEncoderBank {
   /// Once a tick: where the axes are, m.
   void sample(const double (&position_m)[core::kAxes]) {
     core::EncoderReading reading;
-    for (std::uint32_t i = 0; i < core::kAxes; ++i) {
+    for (std::uint32_t i = 0; i < core::kAxes; ++i) {  // bound: kAxes
       const double counts = std::floor(position_m[i] * parameters_.counts_per_m);
       const auto moving = static_cast<std::uint32_t>(static_cast<std::int64_t>(counts)) +
                           parameters_.start_count + offset_[i];

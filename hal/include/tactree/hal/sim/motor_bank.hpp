@@ -34,7 +34,7 @@ class SimMotorBank {
   /// What a board elsewhere has commanded.
   void hold(const float (&effort)[core::kAxes]) noexcept {
     Efforts efforts;
-    for (std::uint32_t i = 0; i < core::kAxes; ++i) {
+    for (std::uint32_t i = 0; i < core::kAxes; ++i) {  // bound: kAxes
       efforts.axis[i] = static_cast<double>(effort[i]);
     }
     line_.push(efforts);

@@ -23,6 +23,8 @@ struct EmulationOptions {
   /// Ticks the instruction counter leaves out at the begin.
   std::uint64_t uncounted_ticks = 0;
   bool count_instructions = true;
+  /// Also which code the ticks execute; about half as fast.
+  bool note_code = false;
   /// In place of the board's own.
   std::optional<std::uint32_t> instruction_shift;
   /// Longest silence of a board, real time: while it starts, and between two ticks.

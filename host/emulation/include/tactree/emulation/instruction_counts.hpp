@@ -13,14 +13,22 @@ struct FunctionCount {
   std::uint64_t total = 0;  ///< in all ticks
 };
 
+/// Addresses of code, from `begin` to one behind the last.
+struct CodeRange {
+  std::uint32_t begin = 0;
+  std::uint32_t end = 0;
+};
+
 /// Instructions from the tick's interrupt until the board idles again.
 struct InstructionCounts {
   std::uint64_t start = 0;  ///< from reset to the first tick: checking the blob
   std::uint64_t ticks = 0;
   std::uint64_t max = 0;
+  std::uint64_t worst_tick = 0;  ///< the first with that many; counted from 0
   std::uint64_t total = 0;
   std::uint32_t checksum = 0;            ///< over the count of every tick: runs alike have it alike
   std::vector<FunctionCount> functions;  ///< the costliest first
+  std::vector<CodeRange> code;           ///< executed in ticks, where that was asked for
   [[nodiscard]] double mean() const {
     return ticks == 0 ? 0.0 : static_cast<double>(total) / static_cast<double>(ticks);
   }

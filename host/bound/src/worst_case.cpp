@@ -1,0 +1,888 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <optional>
+#include <set>
+
+#include "linear_program.hpp"
+#include "program.hpp"
+#include "tactree/bound/bound.hpp"
+#include "tactree/bound/bound_error.hpp"
+#include "tactree/core/surface.hpp"
+#include "tactree/core/tick_cost.hpp"
+
+namespace tactree::bound {
+namespace {
+
+/// What a solution by simplex may be too small by.
+constexpr double kRounding = 1e-3;
+
+using Entries = std::map<std::uint32_t, double>;  // of functions: how often
+
+/// "tactree::core::Proxy::update(...)" is called Proxy::update in the sources.
+bool is_called(const std::string& symbol, const std::string& name) {
+  const std::string whole = demangled(symbol);
+  const std::string plain = whole.substr(0, whole.find('('));
+  return plain == name || plain.ends_with("::" + name);
+}
+
+/// A part of a function that the compiler has made a function of its own is not all of it.
+bool is_part(const std::string& symbol) {
+  return symbol.find(".part.") != std::string::npos || symbol.find(".cold") != std::string::npos;
+}
+
+/// What all solutions of one analysis share.
+struct Analysis {
+  const Image& image;
+  const SourceCode& sources;
+  Program& program;
+  const Parameters& parameters;
+  std::set<std::string> inlined;
+  /// Names among the parameters whose values a formula leaves open, and their largest values.
+  Parameters open;
+  const BoardTiming* timing;  ///< what is maximised are cycles; nullptr: instructions
+};
+
+/// What the processor does by itself when it enters a function and comes back: registers to the
+/// stack and from it, those of the FPU included, whose turn comes with the first instruction that
+/// uses them ("lazy stacking").
+constexpr double kEntryCycles = 2.0 * (12.0 + 17.0);
+constexpr double kEntryWords = 2.0 * 26.0;
+
+double cycles_of(const BoardTiming& timing, const ControlFlow& flow, const Block& block) {
+  const Instruction& first = flow.instructions[block.first];
+  double cycles = 0.0;
+  for (std::uint32_t i = 0; i < block.count; ++i) {
+    const Instruction& instruction = flow.instructions[block.first + i];
+    cycles += instruction.cycles + timing.stack_wait * instruction.stack_words +
+              timing.data_wait * instruction.other_words;
+  }
+  const Instruction& last = flow.instructions[block.first + block.count - 1];
+  const std::uint32_t lines =
+      (last.address + last.bytes - 1) / timing.line_bytes - first.address / timing.line_bytes + 1;
+  return cycles + timing.fetch_wait * lines;
+}
+
+class Model;
+
+/// The worst case of entry points, or of one call with constant arguments.
+struct Solved {
+  double cost = 0.0;
+  std::map<std::uint32_t, FunctionOnPath> functions;
+  std::vector<LoopOnPath> loops;
+  std::map<std::uint32_t, BlockOnPath> blocks;
+  std::set<const SourceFact*> facts;  // that hold on to code
+};
+
+Solved solve(const Analysis& analysis, const Entries& entries, const Parameters& arguments);
+
+/// base + the sum over open parameters of per[name] * value, never less than the worst case.
+struct Formula {
+  double base = 0.0;
+  std::map<std::string, double> per;
+};
+
+/// The linear program of one analysis.
+class Model {
+ public:
+  Model(const Analysis& analysis, const Parameters& arguments)
+      : analysis_(analysis), arguments_(arguments) {}
+
+  Solved solve(const Entries& entries) {
+    write_down(entries);
+    if (!open_.empty()) {
+      throw BoundError(open_[0].where +
+                       ": a model's figure in a function whose calls are analysed "
+                       "one by one (use its arguments only)");
+    }
+    return read(solved_program());
+  }
+
+  // Each open limit, what <= (fixed + sum of per * value) * entered, gets a price: what one more
+  // pass gains at the parameters given. What it limits is paid at that price, and what it grants is
+  // earned at it, whatever the values of the open parameters are. The worst case is then no more
+  // than the largest gain of all that has no open parameter, plus, for each of these, its value
+  // times the largest sum of the grants per unit of it. (Weak duality of linear programming: true
+  // for any prices; good prices make it tight.)
+  Formula solve_open(const Entries& entries) {
+    write_down(entries);
+    const LinearProgram::Solution reference = solved_program();
+    std::vector<double> gains = program_.gains();
+    std::map<std::string, std::vector<double>> grants;
+    for (const OpenLimit& limit : open_) {
+      const double price = std::max(reference.price[limit.row], 0.0);
+      for (const auto& [variable, coefficient] : limit.what) {
+        gains[static_cast<std::size_t>(variable)] -= price * coefficient;
+      }
+      for (const auto& [variable, coefficient] : limit.entered) {
+        gains[static_cast<std::size_t>(variable)] += price * limit.fixed * coefficient;
+        for (const auto& [name, per] : limit.per) {
+          auto& grant = grants[name];
+          grant.resize(gains.size());
+          grant[static_cast<std::size_t>(variable)] += price * per * coefficient;
+        }
+      }
+      widen(limit);
+    }
+    Formula formula;
+    formula.base = largest(gains);
+    for (auto& [name, grant] : grants) {
+      formula.per[name] = largest(std::move(grant));
+    }
+    return formula;
+  }
+
+ private:
+  void write_down(const Entries& entries) {
+    add_functions(entries);
+    connect_calls(entries);
+    limit_loops();
+    limit_totals();
+    limit_facts();
+  }
+
+  [[nodiscard]] LinearProgram::Solution solved_program() const {
+    LinearProgram::Solution solution = program_.solve();
+    if (!solution.bounded) {
+      throw BoundError(analysis_.image.name() +
+                       ": the bounds beside the loops contradict each other (correct them)");
+    }
+    return solution;
+  }
+
+  double largest(std::vector<double> gains) {
+    program_.set_gains(std::move(gains));
+    return solved_program().gain;
+  }
+
+  /// A limit that names open parameters.
+  struct OpenLimit {
+    std::string where;
+    std::size_t row = 0;
+    Terms what;
+    Terms entered;
+    double fixed = 0.0;
+    std::map<std::string, double> per;
+  };
+
+  /// In place of the values given: the largest, so that nothing is without a limit.
+  void widen(const OpenLimit& limit) {
+    double most = limit.fixed;
+    for (const auto& [name, per] : limit.per) {
+      most += per * static_cast<double>(analysis_.open.at(name));
+    }
+    Terms terms = limit.what;
+    add(terms, limit.entered, -most);
+    program_.replace(limit.row, terms);
+  }
+
+  /// what <= limit * entered.
+  void limit_to(const Terms& what, const Expression& limit, const std::string& file,
+                const Terms& entered) {
+    Terms terms = what;
+    add(terms, entered, -static_cast<double>(value_of(limit, file)));
+    OpenLimit open{file, program_.at_most(terms, 0.0), what, entered, 0.0, {}};
+    open.fixed = static_cast<double>(value_with(limit, file, {}));
+    for (const auto& [name, largest] : analysis_.open) {
+      if (limit.mentions(name)) {
+        open.per[name] = static_cast<double>(value_with(limit, file, {{name, 1}})) - open.fixed;
+      }
+    }
+    if (!open.per.empty()) {
+      check_linear(open, limit, file);
+      open_.push_back(std::move(open));
+    }
+  }
+
+  void check_linear(const OpenLimit& open, const Expression& limit, const std::string& file) const {
+    double sum = open.fixed;
+    for (const auto& [name, per] : open.per) {
+      sum += per * static_cast<double>(analysis_.open.at(name));
+    }
+    if (sum != static_cast<double>(value_with(limit, file, analysis_.open))) {
+      throw BoundError(
+          fmt::format("{}: '{}' is no sum of multiples of the model's figures (write it "
+                      "as one)",
+                      file, limit.text()));
+    }
+  }
+
+  /// With these values of the open parameters; those that are not given are 0.
+  [[nodiscard]] std::int64_t value_with(const Expression& expression, const std::string& file,
+                                        const Parameters& values) const {
+    return std::max<std::int64_t>(
+        0, expression.value([&](const std::string& name) -> std::optional<std::int64_t> {
+          if (analysis_.open.contains(name)) {
+            return values.contains(name) ? values.at(name) : 0;
+          }
+          return named(name, file);
+        }));
+  }
+  struct FunctionVariables {
+    int entry = 0;
+    std::map<Edge, int> edges;
+  };
+
+  [[nodiscard]] const AnalysedFunction& function(std::uint32_t entry) const {
+    return analysis_.program.at(entry);
+  }
+
+  // ---- the flow
+
+  /// The functions below the entry points; those with a cost of their own for each call are not.
+  void add_functions(const Entries& entries) {
+    std::vector<std::uint32_t> open;
+    for (const auto& [entry, times] : entries) {
+      open.push_back(entry);
+    }
+    while (!open.empty()) {
+      const std::uint32_t entry = open.back();
+      open.pop_back();
+      if (variables_.contains(entry)) {
+        continue;
+      }
+      add_function(entry);
+      for (const Block& block : function(entry).flow.blocks) {
+        if (shares_callee(block)) {
+          open.push_back(*block.calls);
+        }
+      }
+    }
+  }
+
+  [[nodiscard]] bool calls_one_that_returns(const Block& block) const {
+    return block.calls && analysis_.program.returns(*block.calls);
+  }
+  [[nodiscard]] bool shares_callee(const Block& block) const {
+    return calls_one_that_returns(block) && function(*block.calls).arguments.empty();
+  }
+
+  void add_function(std::uint32_t entry) {
+    const ControlFlow& flow = function(entry).flow;
+    FunctionVariables& own = variables_[entry];
+    own.entry = program_.add_variable(gain_of(entry, 0));
+    for (std::uint32_t b = 0; b < flow.blocks.size(); ++b) {
+      for (const std::uint32_t next : flow.blocks[b].next) {
+        own.edges[{b, next}] = program_.add_variable(gain_of(entry, next));
+      }
+    }
+    for (std::uint32_t b = 0; b < flow.blocks.size(); ++b) {
+      conserve(entry, b);
+    }
+  }
+
+  /// Instructions of one pass of a block, those of a call with constant arguments included.
+  double gain_of(std::uint32_t entry, std::uint32_t b) {
+    const Block& block = function(entry).flow.blocks[b];
+    double gain = cost_of(function(entry).flow, block);
+    if (calls_one_that_returns(block) && !shares_callee(block)) {
+      gain += call_with_arguments(entry, b).cost;
+    }
+    return gain;
+  }
+
+  [[nodiscard]] double cost_of(const ControlFlow& flow, const Block& block) const {
+    if (analysis_.timing == nullptr || block.count == 0) {
+      return block.count;
+    }
+    return cycles_of(*analysis_.timing, flow, block);
+  }
+
+  /// A constant; or what this function itself was called with; or what the source says.
+  [[nodiscard]] std::optional<std::int64_t> argument(std::uint32_t entry, std::uint32_t b,
+                                                     int number, const std::string& wanted) const {
+    const Argument given = function(entry).flow.argument(b, number);
+    for (const auto& [name, own] : function(entry).arguments) {
+      if (given.passed_on == own && arguments_.contains(name)) {
+        return arguments_.at(name);
+      }
+    }
+    return given.constant ? std::optional<std::int64_t>(*given.constant)
+                          : said_argument(function(entry).flow, b, wanted);
+  }
+
+  [[nodiscard]] std::optional<std::int64_t> said_argument(const ControlFlow& flow, std::uint32_t b,
+                                                          const std::string& name) const {
+    const Block& block = flow.blocks[b];
+    const std::uint32_t last = block.first + std::max(block.count, 1U) - 1;
+    std::optional<std::int64_t>
+        least;  // where the calls inlined around it say more, that is true too
+    for (const Place& place : analysis_.program.lines().at(flow.instructions[last].address)) {
+      const SourceFile* const file = analysis_.sources.find(place.file);
+      if (file == nullptr) {
+        continue;
+      }
+      for (const SourceArgument& argument : file->arguments) {
+        if (argument.line == place.line && argument.name == name) {
+          const std::int64_t value = value_of(argument.at_most, argument.file);
+          least = std::min(least.value_or(value), value);
+        }
+      }
+    }
+    return least;
+  }
+
+  /// Each call is analysed by itself, for the values its arguments have there.
+  const Solved& call_with_arguments(std::uint32_t entry, std::uint32_t b) {
+    const auto known = calls_.find({entry, b});
+    if (known != calls_.end()) {
+      return known->second;
+    }
+    const ControlFlow& flow = function(entry).flow;
+    const std::uint32_t callee = *flow.blocks[b].calls;
+    Parameters arguments;
+    for (const auto& [name, number] : function(callee).arguments) {
+      const auto value = argument(entry, b, number, name);
+      if (!value) {
+        const Block& block = flow.blocks[b];
+        const std::uint32_t last = block.first + (block.count == 0 ? 0 : block.count - 1);
+        throw BoundError(fmt::format(
+            "{}: calls {} with an argument '{}' that is no constant (give it one, or say "
+            "`with: {} <= ...` beside the call)",
+            describe_place(analysis_.image, flow.instructions[last].address),
+            demangled(function(callee).flow.function.name), name, name));
+      }
+      arguments[name] = *value;
+    }
+    return calls_[{entry, b}] = bound::solve(analysis_, {{callee, 1.0}}, arguments);
+  }
+
+  /// How often a block is passed.
+  [[nodiscard]] Terms passes(std::uint32_t entry, std::uint32_t b) const {
+    const FunctionVariables& own = variables_.at(entry);
+    Terms terms;
+    for (const auto& [edge, variable] : own.edges) {
+      if (edge.second == b) {
+        terms[variable] += 1.0;
+      }
+    }
+    if (b == 0) {
+      terms[own.entry] += 1.0;
+    }
+    return terms;
+  }
+
+  // What comes in goes out. Where a function ends it is gone; where one is called that never
+  // returns, nothing comes in: such a way is no tick.
+  void conserve(std::uint32_t entry, std::uint32_t b) {
+    const Block& block = function(entry).flow.blocks[b];
+    Terms terms = passes(entry, b);
+    if (block.returns) {
+      terms[program_.add_variable(0.0)] -= 1.0;
+    }
+    for (const std::uint32_t next : block.next) {
+      terms[variables_.at(entry).edges.at({b, next})] -= 1.0;
+    }
+    program_.equal(terms, 0.0);
+  }
+
+  void connect_calls(const Entries& entries) {
+    std::map<std::uint32_t, Terms> calls;
+    for (const auto& [entry, own] : variables_) {
+      calls[entry][own.entry] += 1.0;
+      const ControlFlow& flow = function(entry).flow;
+      for (std::uint32_t b = 0; b < flow.blocks.size(); ++b) {
+        if (shares_callee(flow.blocks[b])) {
+          subtract(calls[*flow.blocks[b].calls], passes(entry, b));
+        }
+      }
+    }
+    for (const auto& [entry, terms] : calls) {
+      const auto times = entries.find(entry);
+      program_.equal(terms, times == entries.end() ? 0.0 : times->second);
+    }
+  }
+
+  // ---- what the sources say
+
+  [[nodiscard]] std::int64_t value_of(const Expression& expression, const std::string& file) const {
+    const std::int64_t value =
+        expression.value([&](const std::string& name) { return named(name, file); });
+    return std::max<std::int64_t>(value, 0);
+  }
+
+  [[nodiscard]] std::optional<std::int64_t> named(const std::string& name,
+                                                  const std::string& file) const {
+    for (const Parameters* names : {&arguments_, &analysis_.parameters}) {
+      const auto found = names->find(name);
+      if (found != names->end()) {
+        return found->second;
+      }
+    }
+    return analysis_.sources.constant(file, name);
+  }
+
+  static void add(Terms& to, const Terms& terms, double factor = 1.0) {
+    for (const auto& [variable, coefficient] : terms) {
+      to[variable] += factor * coefficient;
+    }
+  }
+  static void subtract(Terms& from, const Terms& terms) { add(from, terms, -1.0); }
+
+  [[nodiscard]] Terms edges(std::uint32_t entry, const std::vector<Edge>& wanted) const {
+    Terms terms;
+    for (const Edge& edge : wanted) {
+      terms[variables_.at(entry).edges.at(edge)] += 1.0;
+    }
+    return terms;
+  }
+
+  /// How often a loop is entered; with its function when its header is the function's entry.
+  [[nodiscard]] Terms entered(std::uint32_t entry, const Loop& loop) const {
+    Terms terms = edges(entry, loop.entries);
+    if (loop.blocks.contains(0)) {
+      terms[variables_.at(entry).entry] += 1.0;
+    }
+    return terms;
+  }
+
+  /// Passes of a loop's body. Where that is not clear, of its back edges: the condition may be
+  /// evaluated once more than the body is passed.
+  [[nodiscard]] Terms bodies(std::uint32_t entry, std::uint32_t number) const {
+    const AnalysedFunction& own = function(entry);
+    const Loop& loop = own.flow.loops[number];
+    switch (own.bounds[number].shape) {
+      case LoopShape::kAtEnd:
+        return passes(entry, loop.header);
+      case LoopShape::kAtStart: {
+        std::vector<Edge> inwards;
+        for (const std::uint32_t next : own.flow.blocks[loop.header].next) {
+          if (loop.blocks.contains(next)) {
+            inwards.emplace_back(loop.header, next);
+          }
+        }
+        return edges(entry, inwards);
+      }
+      default: {
+        Terms terms = edges(entry, loop.back);
+        if (loop.irregular) {  // it may come to its header before the first pass is done
+          subtract(terms, entered(entry, loop));
+        }
+        if (own.bounds[number].source->tests_last) {  // once around less than passes
+          add(terms, entered(entry, loop));
+        }
+        return terms;
+      }
+    }
+  }
+
+  void limit_loops() {
+    for (const auto& [entry, own] : variables_) {
+      const AnalysedFunction& f = function(entry);
+      for (std::uint32_t i = 0; i < f.flow.loops.size(); ++i) {
+        if (f.bounds[i].counts_with == i) {
+          limit_loop(entry, i);
+        }
+      }
+    }
+  }
+
+  void limit_loop(std::uint32_t entry, std::uint32_t number) {
+    const AnalysedFunction& f = function(entry);
+    Terms terms;
+    for (std::uint32_t i = 0; i < f.flow.loops.size(); ++i) {
+      if (f.bounds[i].counts_with == number) {
+        add(terms, bodies(entry, i));
+      }
+    }
+    const SourceLoop& source = *f.bounds[number].source;
+    limit_to(terms, *source.bound, source.file, entered(entry, f.flow.loops[number]));
+  }
+
+  /// sum of `what` <= so often for each call of the function that `total` names.
+  void limit_total(const Terms& what, const Total& total, const std::string& file,
+                   const std::string& where) {
+    Terms calls;
+    bool found = false;
+    for (const auto& [entry, own] : variables_) {
+      const std::string& symbol = function(entry).flow.function.name;
+      if (is_called(symbol, total.function)) {
+        if (is_part(symbol)) {
+          throw BoundError(fmt::format("{}: the compiler has divided {} (mark it gnu::noinline)",
+                                       where, total.function));
+        }
+        calls[own.entry] += 1.0;
+        found = true;
+      }
+    }
+    const bool inlined =
+        std::any_of(analysis_.inlined.begin(), analysis_.inlined.end(),
+                    [&](const std::string& symbol) { return is_called(symbol, total.function); });
+    if (!found || inlined) {
+      throw BoundError(
+          fmt::format("{}: {} is no function of its own in the image (mark it "
+                      "gnu::noinline, or correct the name)",
+                      where, total.function));
+    }
+    limit_to(what, total.at_most, file, calls);
+  }
+
+  void limit_totals() {
+    std::map<const SourceLoop*, Terms> totals;
+    for (const auto& [entry, own] : variables_) {
+      const AnalysedFunction& f = function(entry);
+      for (std::uint32_t i = 0; i < f.flow.loops.size(); ++i) {
+        if (f.bounds[i].source->total) {
+          add(totals[f.bounds[i].source], bodies(entry, i));
+        }
+      }
+    }
+    for (const auto& [loop, terms] : totals) {
+      limit_total(terms, *loop->total, loop->file, fmt::format("{}:{}", loop->file, loop->line));
+    }
+  }
+
+  void limit_facts() {
+    for (const auto& [name, file] : analysis_.sources.files()) {
+      for (const SourceFact& fact : file.facts) {
+        limit_fact(fact);
+      }
+    }
+  }
+
+  // A statement's calls and stores are executed no more often than it is, wherever the compiler has
+  // put its other instructions.
+  void limit_fact(const SourceFact& fact) {
+    std::map<std::uint32_t, Terms> calls;  // by callee: one statement may call several
+    Terms stores;
+    for (const auto& [entry, own] : variables_) {
+      const ControlFlow& flow = function(entry).flow;
+      for (std::uint32_t b = 0; b < flow.blocks.size(); ++b) {
+        const Block& block = flow.blocks[b];
+        if (block.calls && is_of(flow, block.first + std::max(block.count, 1U) - 1, fact)) {
+          add(calls[*block.calls], passes(entry, b));
+        }
+        if (has_store(flow, block, fact)) {
+          add(stores, passes(entry, b));
+        }
+      }
+    }
+    const std::string where = fmt::format("{}:{}", fact.file, fact.line);
+    if (!calls.empty() || !stores.empty()) {
+      held_.insert(&fact);
+    }
+    if (calls.empty() && !stores.empty()) {
+      limit_total(stores, fact.total, fact.file, where);
+    }
+    for (const auto& [callee, terms] : calls) {
+      limit_total(terms, fact.total, fact.file, where);
+    }
+  }
+
+  [[nodiscard]] bool is_of(const ControlFlow& flow, std::uint32_t index,
+                           const SourceFact& fact) const {
+    const auto& places = analysis_.program.lines().at(flow.instructions[index].address);
+    return std::find(places.begin(), places.end(), Place{fact.file, fact.line}) != places.end();
+  }
+
+  [[nodiscard]] bool has_store(const ControlFlow& flow, const Block& block,
+                               const SourceFact& fact) const {
+    for (std::uint32_t i = 0; i < block.count; ++i) {
+      if (flow.instructions[block.first + i].store && is_of(flow, block.first + i, fact)) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  // ---- the answer
+
+  static double sum(const Terms& terms, const LinearProgram::Solution& solution) {
+    double result = 0.0;
+    for (const auto& [variable, coefficient] : terms) {
+      result += coefficient * solution.x[static_cast<std::size_t>(variable)];
+    }
+    return result;
+  }
+
+  Solved read(const LinearProgram::Solution& solution) {
+    Solved solved;
+    solved.facts = held_;
+    solved.cost = solution.gain;
+    for (const auto& [entry, own] : variables_) {
+      const AnalysedFunction& f = function(entry);
+      FunctionOnPath& on_path = solved.functions[entry];
+      on_path.name = demangled(f.flow.function.name);
+      on_path.calls += solution.x[static_cast<std::size_t>(own.entry)];
+      for (std::uint32_t b = 0; b < f.flow.blocks.size(); ++b) {
+        const double times = sum(passes(entry, b), solution);
+        on_path.instructions += times * f.flow.blocks[b].count;
+        note_block(f.flow, b, times, solved);
+        if (calls_.contains({entry, b})) {
+          include(calls_.at({entry, b}), times, solved);
+        }
+      }
+      for (std::uint32_t i = 0; i < f.flow.loops.size(); ++i) {
+        note_loop(entry, i, solution, solved);
+      }
+    }
+    return solved;
+  }
+
+  static void note_block(const ControlFlow& flow, std::uint32_t b, double times, Solved& solved) {
+    const Block& block = flow.blocks[b];
+    if (block.count > 0) {
+      BlockOnPath& on_path = solved.blocks[flow.instructions[block.first].address];
+      on_path.address = flow.instructions[block.first].address;
+      const Instruction& last = flow.instructions[block.first + block.count - 1];
+      on_path.end = last.address + last.bytes;
+      on_path.instructions = block.count;
+      on_path.times += times;
+    }
+  }
+
+  void note_loop(std::uint32_t entry, std::uint32_t number, const LinearProgram::Solution& solution,
+                 Solved& solved) const {
+    const AnalysedFunction& f = function(entry);
+    const Loop& loop = f.flow.loops[number];
+    const SourceLoop& source = *f.bounds[number].source;
+    solved.loops.push_back({source.file, source.line, demangled(f.flow.function.name),
+                            f.flow.instructions[f.flow.blocks[loop.header].first].address,
+                            source.bound->text(), value_of(*source.bound, source.file),
+                            sum(passes(entry, loop.header), solution)});
+  }
+
+  static void include(const Solved& call, double times, Solved& solved) {
+    for (const auto& [entry, f] : call.functions) {
+      FunctionOnPath& on_path = solved.functions[entry];
+      on_path.name = f.name;
+      on_path.calls += times * f.calls;
+      on_path.instructions += times * f.instructions;
+    }
+    for (const auto& [address, block] : call.blocks) {
+      BlockOnPath& on_path = solved.blocks[address];
+      on_path.address = address;
+      on_path.end = block.end;
+      on_path.instructions = block.instructions;
+      on_path.times += times * block.times;
+    }
+    for (LoopOnPath loop : call.loops) {
+      loop.total *= times;
+      solved.loops.push_back(std::move(loop));
+    }
+  }
+
+  const Analysis& analysis_;
+  const Parameters& arguments_;
+  LinearProgram program_;
+  std::set<const SourceFact*> held_;
+  std::vector<OpenLimit> open_;
+  std::map<std::uint32_t, FunctionVariables> variables_;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, Solved> calls_;
+};
+
+Solved solve(const Analysis& analysis, const Entries& entries, const Parameters& arguments) {
+  return Model(analysis, arguments).solve(entries);
+}
+
+Bound to_bound(const SourceCode& sources, Solved solved) {
+  Bound bound;
+  for (const auto& [name, file] : sources.files()) {
+    for (const SourceFact& fact : file.facts) {
+      if (!solved.facts.contains(&fact)) {
+        bound.unused_facts.push_back(fmt::format("{}:{}", name, fact.line));
+      }
+    }
+  }
+  bound.instructions = static_cast<std::uint64_t>(std::floor(solved.cost + kRounding));
+  for (auto& [entry, function] : solved.functions) {
+    bound.functions.push_back(std::move(function));
+  }
+  std::stable_sort(bound.functions.begin(), bound.functions.end(),
+                   [](const FunctionOnPath& a, const FunctionOnPath& b) {
+                     return a.instructions > b.instructions;
+                   });
+  for (auto& [address, block] : solved.blocks) {
+    bound.blocks.push_back(block);
+  }
+  bound.loops = std::move(solved.loops);
+  std::stable_sort(bound.loops.begin(), bound.loops.end(),
+                   [](const LoopOnPath& a, const LoopOnPath& b) { return a.address < b.address; });
+  return bound;
+}
+
+}  // namespace
+
+std::vector<EntryPoint> tick_entries() { return {{"tactree_tick", 1}, {"tactree_deadline", 2}}; }
+
+namespace {
+
+/// An image with its sources and entry points, ready to be analysed with any parameters.
+class Task {
+ public:
+  explicit Task(const BoundOptions& options) : image_(options.image), sources_(options.sources) {
+    for (const std::string& file : image_.source_files()) {
+      (void)sources_.name_of(file);
+    }
+    std::vector<std::uint32_t> addresses;
+    for (const EntryPoint& entry : options.entries) {
+      const Function* const function = image_.find(entry.function);
+      if (function == nullptr) {
+        throw BoundError(fmt::format("{}: has no function {} (give an image of ours)",
+                                     image_.name(), entry.function));
+      }
+      addresses.push_back(function->begin);
+      entries_[function->begin] += entry.times;
+      times_ += entry.times;
+    }
+    program_.emplace(image_, sources_, addresses);
+    inlined_ = image_.inlined_functions();
+  }
+
+  [[nodiscard]] Bound instructions(const Parameters& parameters) {
+    Bound bound = to_bound(sources_, solve(analysis(parameters, {}, nullptr), entries_, {}));
+    for (const std::uint32_t entry : program_->endings()) {
+      bound.endings.push_back({entry, image_.functions().at(entry).end, 0, 0.0});
+    }
+    return bound;
+  }
+
+  [[nodiscard]] std::uint64_t cycles(const Parameters& parameters, const BoardTiming& timing) {
+    const double cost = solve(analysis(parameters, {}, &timing), entries_, {}).cost;
+    return static_cast<std::uint64_t>(std::ceil(cost + entering(timing)));
+  }
+
+  [[nodiscard]] Formula formula(const Parameters& parameters, const Parameters& open,
+                                const BoardTiming& timing) {
+    const Analysis all = analysis(parameters, open, &timing);
+    Formula formula = Model(all, {}).solve_open(entries_);
+    formula.base += entering(timing);
+    return formula;
+  }
+
+ private:
+  [[nodiscard]] Analysis analysis(const Parameters& parameters, const Parameters& open,
+                                  const BoardTiming* timing) {
+    return {image_, sources_, *program_, parameters, inlined_, open, timing};
+  }
+
+  [[nodiscard]] double entering(const BoardTiming& timing) const {
+    return times_ * (kEntryCycles + kEntryWords * timing.stack_wait);
+  }
+
+  Image image_;
+  SourceCode sources_;
+  Entries entries_;
+  std::uint32_t times_ = 0;
+  std::optional<Program> program_;
+  std::set<std::string> inlined_;
+};
+
+/// A typical model: what the prices are made with.
+core::TickFigures usual_figures() { return {46, 270, 50, 7, 3, 46, 4}; }
+
+Parameters open_parameters() {
+  Parameters open = parameters_of(largest_figures(), core::TickKind::kSurface, 1);
+  for (const char* fixed : {"bodies", "mixed", "paper"}) {
+    open.erase(fixed);
+  }
+  return open;
+}
+
+std::uint32_t rounded_up(double value) { return static_cast<std::uint32_t>(std::ceil(value)); }
+
+core::TickCost to_cost(const Formula& formula) {
+  core::TickCost cost;
+  cost.base = rounded_up(formula.base);
+  for (std::uint32_t i = 0; i < core::kTickFigures; ++i) {
+    const auto found = formula.per.find(core::kTickFigureNames[i]);
+    cost.per_figure[i] = found == formula.per.end() ? 0 : rounded_up(found->second);
+  }
+  return cost;
+}
+
+}  // namespace
+
+Bound worst_case(const BoundOptions& options) {
+  Task task(options);
+  Bound bound = task.instructions(options.parameters);
+  if (options.timing != nullptr) {
+    bound.cycles = task.cycles(options.parameters, *options.timing);
+  }
+  return bound;
+}
+
+core::TickCosts tick_costs(const BoundOptions& options) {
+  if (options.timing == nullptr) {
+    throw BoundError(options.image.string() + ": costs need a board's timing (say which board)");
+  }
+  Task task(options);
+  core::TickCosts costs;
+  costs.known = core::kTickCostsKnown;
+  for (std::uint32_t kind = 0; kind < core::kTickKinds; ++kind) {
+    for (std::uint32_t row = 0; row < core::kMaxReachableBodies; ++row) {
+      const bool is_last = row + 1 == core::kMaxReachableBodies;
+      const Parameters parameters = parameters_of(
+          usual_figures(), static_cast<core::TickKind>(kind), is_last ? core::kMaxBodies : row + 1);
+      costs.of[kind][row] = to_cost(task.formula(parameters, open_parameters(), *options.timing));
+    }
+  }
+  return costs;
+}
+
+namespace {
+
+constexpr const char* kCostsSymbol = "tactree_tick_costs";
+
+std::uint64_t costs_offset(const std::filesystem::path& image) {
+  const std::optional<std::uint64_t> offset = Image(image).offset_of(kCostsSymbol);
+  if (!offset) {
+    throw BoundError(
+        fmt::format("{}: has no {} (give an image of ours)", image.string(), kCostsSymbol));
+  }
+  return *offset;
+}
+
+}  // namespace
+
+void embed(const std::filesystem::path& image, const core::TickCosts& costs) {
+  const auto offset = static_cast<std::streamoff>(costs_offset(image));
+  std::fstream file(image, std::ios::in | std::ios::out | std::ios::binary);
+  file.seekp(offset);
+  file.write(reinterpret_cast<const char*>(&costs), sizeof costs);
+  if (!file.flush()) {
+    throw BoundError(image.string() + ": cannot be written (check the file's permissions)");
+  }
+}
+
+core::TickCosts embedded(const std::filesystem::path& image) {
+  const auto offset = static_cast<std::streamoff>(costs_offset(image));
+  std::ifstream file(image, std::ios::binary);
+  core::TickCosts costs;
+  file.seekg(offset);
+  file.read(reinterpret_cast<char*>(&costs), sizeof costs);
+  return costs;
+}
+
+Parameters parameters_of(const core::TickFigures& figures, core::TickKind kind,
+                         std::uint32_t bodies) {
+  return {{"points_per_ball_max", figures.points_per_ball_max},
+          {"points_per_query_max", figures.points_per_query_max},
+          {"points_per_leaf_max", figures.points_per_leaf_max},
+          {"depth", figures.depth},
+          {"levels_below", figures.levels_below},
+          {"blended_points", figures.blended_points},
+          {"blended_materials", figures.blended_materials},
+          {"bodies", bodies},
+          {"mixed", kind == core::TickKind::kSurface ? 0 : 1},
+          {"paper", kind == core::TickKind::kPaper ? 1 : 0}};
+}
+
+Parameters parameters_of(const core::BlobHeader& header, core::RenderMode mode,
+                         std::uint32_t bodies) {
+  return parameters_of(core::tick_figures(header), core::tick_kind(header, mode), bodies);
+}
+
+core::TickFigures largest_figures() {
+  core::BlobHeader header{};
+  header.depth = core::kMaxDepth;
+  header.material_count = core::kMaxMaterials;
+  header.points_per_leaf_max = core::kMaxCandidates;
+  header.points_per_ball_max = core::kMaxCandidates;
+  header.points_per_query_max = core::kLeavesPerQuery * core::kMaxCandidates;
+  return core::tick_figures(header);
+}
+
+}  // namespace tactree::bound

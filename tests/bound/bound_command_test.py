@@ -1,0 +1,83 @@
+#!/usr/bin/env python3
+"""`tactree bound`, and what info and build say of a board's time. Skipped without the board's image.
+
+usage: bound_command_test.py TACTREE BLOB SOURCES
+"""
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+TACTREE, BLOB, SOURCES = sys.argv[1:4]
+BOARD = "netduinoplus2"
+IMAGE = pathlib.Path(SOURCES, "build/cortex-m4f/firmware", BOARD + ".elf")
+
+
+def tactree(*arguments):
+    return subprocess.run([TACTREE, *map(str, arguments)], capture_output=True, text=True)
+
+
+@unittest.skipUnless(IMAGE.exists(), f"no image for {BOARD}")
+class BoundCommand(unittest.TestCase):
+    def setUp(self):
+        self.temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(self.temporary.cleanup)
+        self.folder = pathlib.Path(self.temporary.name)
+
+    def bound(self, *arguments):
+        report = self.folder / "bound.json"
+        run = tactree("bound", IMAGE, "--blob", BLOB, "--json", report, *arguments)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        return json.loads(report.read_text())
+
+    def test_report(self):
+        report = self.bound()
+        self.assertIsNone(report["cycles"])
+        self.assertAlmostEqual(sum(f["instructions"] for f in report["functions"]),
+                               report["instructions"], delta=1)
+        self.assertTrue(all(loop["bound"] and loop["line"] for loop in report["loops"]))
+        self.assertGreater(self.bound("--bodies", 2)["instructions"], report["instructions"])
+        self.assertLess(self.bound("--mode", "paper")["instructions"], report["instructions"])
+
+    def test_rate(self):
+        report = self.bound("--board", BOARD)
+        self.assertGreater(report["cycles"], report["instructions"])
+        highest = report["rate_max_hz"]
+        base = ["bound", IMAGE, "--blob", BLOB, "--board", BOARD, "--rate"]
+        self.assertEqual(tactree(*base, highest).returncode, 0)
+        refused = tactree(*base, highest + 1)
+        self.assertEqual(refused.returncode, 1)
+        self.assertIn(f"keeps {highest:.0f} Hz", refused.stderr)
+
+    def test_info(self):
+        run = tactree("info", BLOB, "--board", BOARD)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertIn("points_per_ball_max", run.stdout)
+        self.assertIn("cycles a tick", run.stdout)
+
+    def test_build(self):
+        points = self.folder / "plane.xyz"
+        points.write_text("".join(f"{x} {y} 0\n" for x in range(40) for y in range(40)))
+        blob = self.folder / "plane.blob"
+        base = ["build", points, "--unit", "mm", "--spacing", "0.001", "--board", BOARD, "-o", blob,
+                "--rate"]
+        refused = tactree(*base, 20000)
+        self.assertEqual(refused.returncode, 1)
+        self.assertIn(f"{BOARD} keeps", refused.stderr)
+        self.assertFalse(blob.exists())
+        built = tactree(*base, 50)
+        self.assertEqual(built.returncode, 0, built.stderr)
+        self.assertTrue(blob.exists())
+
+    def test_refused(self):
+        self.assertIn("cannot be read", tactree("bound", self.folder / "none.elf").stderr)
+        self.assertIn("nothing is known", tactree("bound", IMAGE, "--board", "toaster").stderr)
+        other = tactree("bound", IMAGE, "--sources", self.folder)
+        self.assertEqual(other.returncode, 1)
+        self.assertIn("no loop of the source", other.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])

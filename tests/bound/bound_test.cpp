@@ -1,0 +1,248 @@
+// What the analysis bounds, and what it refuses.
+
+#include "sample_image.hpp"
+
+namespace tactree::test {
+namespace {
+
+// Something that no compiler computes ahead, unrolls or makes a call of.
+const std::string kWork = R"(
+volatile int work;
+[[gnu::noinline]] void leaf() { work = work + 1; }
+volatile unsigned wanted;
+)";
+
+std::string looping(const std::string& bound) {
+  return kWork + R"(
+extern "C" void tick() {
+  const unsigned count = wanted;
+  for (unsigned i = 0; i < count; ++i) {  // bound: )" +
+         bound + R"(
+    leaf();
+  }
+})";
+}
+
+class Bounding : public SampleImage {};
+
+TEST_F(Bounding, StraightCodeTakesItsInstructions) {
+  const bound::Bound bound = bound_of(R"(extern "C" [[gnu::naked]] void tick() {
+    __asm volatile("movs r0, #1\n\t adds r0, #2\n\t bx lr");
+  })");
+  EXPECT_EQ(bound.instructions, 3U);
+}
+
+TEST_F(Bounding, TheLongerOfTwoWaysCounts) {
+  const bound::Bound bound = bound_of(R"(extern "C" [[gnu::naked]] void tick() {
+    __asm volatile("cmp r0, #1\n\t beq 1f\n\t nop\n\t nop\n\t nop\n 1:\n\t bx lr");
+  })");
+  EXPECT_EQ(bound.instructions, 6U);
+}
+
+TEST_F(Bounding, EachPassOfALoopCountsTheSame) {
+  const std::uint64_t ten = bound_of(looping("10")).instructions;
+  const std::uint64_t twenty = bound_of(looping("20")).instructions;
+  const std::uint64_t thirty = bound_of(looping("2 * (10 + 5)")).instructions;
+  EXPECT_EQ(thirty - twenty, twenty - ten);
+  EXPECT_EQ((twenty - ten) % 10, 0U);
+  EXPECT_GE(twenty - ten, 10U * 7U);  // the leaf's load, addition, store and return, and the loop
+}
+
+TEST_F(Bounding, ABoundMayNameAParameterOrAConstant) {
+  const std::uint64_t ten = bound_of(looping("10")).instructions;
+  EXPECT_EQ(bound_of(looping("points"), {{"points", 10}}).instructions, ten);
+  EXPECT_EQ(bound_of("constexpr unsigned kTwo = 2;\nconstexpr unsigned kTen = kTwo * 5U;\n" +
+                     looping("kTen"))
+                .instructions,
+            ten);
+}
+
+TEST_F(Bounding, TheReportNamesLoopsAndFunctions) {
+  const bound::Bound bound = bound_of(looping("10"));
+  ASSERT_EQ(bound.loops.size(), 1U);
+  EXPECT_EQ(bound.loops[0].file, "sample.cpp");
+  EXPECT_EQ(bound.loops[0].line, 8U);
+  EXPECT_EQ(bound.loops[0].passes, 10);
+  ASSERT_EQ(bound.functions.size(), 2U);
+  double sum = 0.0;
+  for (const bound::FunctionOnPath& function : bound.functions) {
+    sum += function.instructions;
+    EXPECT_EQ(function.calls, function.name == "tick" ? 1.0 : 10.0) << function.name;
+  }
+  EXPECT_NEAR(sum, static_cast<double>(bound.instructions), 1e-3);
+}
+
+TEST_F(Bounding, ATotalHoldsOverAllEntriesOfALoop) {
+  const auto nested = [](const std::string& inner) {
+    return kWork + R"(
+extern "C" void tick() {
+  for (unsigned i = 0; i < wanted; ++i) {  // bound: 8
+    // bound: )" +
+           inner + R"(
+    for (unsigned j = 0; j < wanted; ++j) {
+      leaf();
+    }
+  }
+})";
+  };
+  const bound::Bound each = bound_of(nested("50"));
+  const bound::Bound all = bound_of(nested("50, total 60 per tick"));
+  const auto calls = [](const bound::Bound& bound) {
+    for (const bound::FunctionOnPath& function : bound.functions) {
+      if (function.name == "leaf()") {
+        return function.calls;
+      }
+    }
+    return 0.0;
+  };
+  EXPECT_NEAR(calls(each), 400.0, 1e-6);
+  EXPECT_NEAR(calls(all), 60.0, 1e-6);
+}
+
+TEST_F(Bounding, AStatementMayBeLimited) {
+  const auto limited = [](const std::string& comment) {
+    return kWork + R"(
+[[gnu::noinline]] void dear() { leaf(); leaf(); leaf(); leaf(); }
+extern "C" void tick() {
+  for (unsigned i = 0; i < wanted; ++i) {  // bound: 10
+    if (work == 7) {
+      dear();  // )" +
+           comment + R"(
+    } else {
+      leaf();
+    }
+  }
+})";
+  };
+  const bound::Bound free = bound_of(limited(""));
+  const bound::Bound held = bound_of(limited("at most: 3 per tick"));
+  const bound::Bound without = bound_of(limited("at most: 0 per tick"));
+  EXPECT_LT(held.instructions, free.instructions);
+  EXPECT_LT(without.instructions, held.instructions);
+  EXPECT_TRUE(held.unused_facts.empty());
+}
+
+TEST_F(Bounding, AFactOnALineWithoutCodeIsReported) {
+  const bound::Bound bound = bound_of("// at most: 1 per tick\n\n" + looping("10"));
+  EXPECT_EQ(bound.unused_facts, std::vector<std::string>{"sample.cpp:2"});
+}
+
+TEST_F(Bounding, AnArgumentIsWhatEachCallGives) {
+  const auto clearing = [](const std::string& calls) {
+    return kWork + R"(
+[[gnu::noinline, gnu::noclone, gnu::noipa]] void clear(char* to, unsigned bytes) {
+  for (unsigned i = 0; i < bytes; ++i) {  // bound: bytes
+    *const_cast<volatile char*>(to + i) = 0;
+  }
+}
+char buffer[100];
+extern "C" void tick() { )" +
+           calls + " }";
+  };
+  const std::uint64_t ten = bound_of(clearing("clear(buffer, 10); work = 1;")).instructions;
+  const std::uint64_t twenty = bound_of(clearing("clear(buffer, 20); work = 1;")).instructions;
+  const std::uint64_t both =
+      bound_of(clearing("clear(buffer, 10); clear(buffer, 20); work = 1;")).instructions;
+  EXPECT_GT(twenty, ten);
+  EXPECT_GT(both, twenty);
+  EXPECT_LT(both, ten + twenty);
+  const std::string refused = refusal(clearing("clear(buffer, wanted); work = 1;"));
+  EXPECT_NE(refused.find("an argument 'bytes' that is no constant"), std::string::npos) << refused;
+}
+
+TEST_F(Bounding, AJumpTableIsFollowed) {
+  const bound::Bound bound = bound_of(kWork + R"(
+[[gnu::noinline]] void many() { leaf(); leaf(); leaf(); leaf(); leaf(); leaf(); }
+extern "C" void tick() {
+  switch (wanted) {
+    case 0: work = 3; break;
+    case 1: leaf(); work = 7; break;
+    case 2: work = work * 3; break;
+    case 3: many(); break;
+    case 4: work = work - 9; break;
+    case 5: leaf(); leaf(); break;
+    case 6: work = work / 3; break;
+    default: break;
+  }
+})");
+  bool passes_many = false;
+  for (const bound::FunctionOnPath& function : bound.functions) {
+    passes_many = passes_many || (function.name == "many()" && function.calls == 1.0);
+  }
+  EXPECT_TRUE(passes_many);
+}
+
+TEST_F(Bounding, AWayThatNeverReturnsIsNoTick) {
+  const std::string code = kWork + R"(
+[[gnu::noinline, noreturn]] void stop() { while (true) { work = 1; } }  // bound: for_ever
+extern "C" void tick() {
+  if (wanted == 77) {
+    stop();
+  }
+  leaf();
+})";
+  const bound::Bound bound = bound_of(code);
+  EXPECT_EQ(bound.endings.size(), 1U);
+  EXPECT_LT(bound.instructions, 20U);
+}
+
+TEST_F(Bounding, ALoopWithoutABoundIsNamed) {
+  const std::string refused = refusal(kWork + R"(
+extern "C" void tick() {
+  for (unsigned i = 0; i < wanted; ++i) {
+    leaf();
+  }
+})");
+  EXPECT_NE(refused.find("sample.cpp:7: a loop without a bound"), std::string::npos) << refused;
+}
+
+TEST_F(Bounding, WhatCannotBeFollowedIsNamed) {
+  struct Case {
+    const char* code;
+    const char* cause;
+  };
+  const Case cases[] = {
+      {R"(volatile int n; [[gnu::noinline]] int f(int i) { return i < 2 ? n : f(i - 1) * f(i - 2); }
+          extern "C" void tick() { n = f(n); })",
+       "calls itself"},
+      {R"(void (*volatile to)(); volatile int n; extern "C" void tick() { to(); n = 1; })",
+       "indirect call"},
+      {R"(void (*volatile to)(); extern "C" void tick() { to(); })", "indirect jump"},
+      {R"(extern "C" void tick() { __asm volatile(".inst.w 0xfeefffff"); })",
+       "unknown instruction"},
+      {R"(extern "C" void tick() { __asm volatile("svc #0"); })", "calls a handler"},
+  };
+  for (const Case& c : cases) {
+    const std::string refused = refusal(c.code);
+    EXPECT_NE(refused.find(c.cause), std::string::npos) << c.code << "\n" << refused;
+    EXPECT_NE(refused.find("sample.cpp:"), std::string::npos) << refused;
+  }
+}
+
+TEST_F(Bounding, ABoundThatMeansNothingIsNamed) {
+  EXPECT_NE(refusal(looping("points")).find("nobody says what 'points' is"), std::string::npos);
+  EXPECT_NE(refusal(looping("2 points")).find("sample.cpp:8: ' points' is no part of a bound"),
+            std::string::npos);
+  EXPECT_NE(refusal(looping("")).find("no bound can be read"), std::string::npos);
+  EXPECT_NE(refusal(looping("10 / 0")).find("divides by zero"), std::string::npos);
+  EXPECT_NE(refusal(looping("5, total 3 per other")).find("other is no function of its own"),
+            std::string::npos);
+}
+
+TEST_F(Bounding, OtherFilesAreRefused) {
+  const auto refused = [&](const std::filesystem::path& file) {
+    try {
+      (void)bound_of_image(file);
+      return std::string();
+    } catch (const bound::BoundError& error) {
+      return std::string(error.what());
+    }
+  };
+  EXPECT_NE(refused(folder_ / "missing.elf").find("cannot be read"), std::string::npos);
+  EXPECT_NE(refused("/bin/sh").find("no linked image of an Arm core"), std::string::npos);
+  std::ofstream(folder_ / "text.elf") << "hello";
+  EXPECT_NE(refused(folder_ / "text.elf").find("no linked image"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace tactree::test

@@ -1,0 +1,169 @@
+#include "worst_seeking.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "tactree/core/surface.hpp"
+
+namespace tactree::test {
+namespace {
+
+constexpr float kCountsPerMetre = 1e7F;
+constexpr std::size_t kEpisode = 12;  // ticks
+constexpr std::size_t kEpisodes = 60;
+
+double as_double(float v) { return static_cast<double>(v); }
+
+/// Nothing to limit the probe's jumps, and all that costs instructions.
+core::Configuration free_probe(core::RenderMode mode) {
+  core::Configuration c;
+  c.mode = mode;
+  c.speed_max_m_s = 100.0F;
+  c.dead_man_required = false;
+  c.ramp_s = 0.002F;
+  c.device.homing = core::HomingMethod::kAbsolute;
+  for (std::uint32_t i = 0; i < core::kAxes; ++i) {
+    c.device.counts_per_m[i] = kCountsPerMetre;
+  }
+  return c;
+}
+
+core::Status step(emulation::EmulatedTarget& target, hal::sim::SimBoard& board, core::Vec3 at) {
+  board.sample({std::round(as_double(at.x * kCountsPerMetre)),
+                std::round(as_double(at.y * kCountsPerMetre)),
+                std::round(as_double(at.z * kCountsPerMetre))});
+  return target.tick(board);
+}
+
+/// Armed when the place is free; in contact the ticks cost about the same.
+void arm(emulation::EmulatedTarget& target, hal::sim::SimBoard& board, core::Vec3 at) {
+  for (int i = 0; i < 12; ++i) {
+    board.link().post(i == 2 || i == 9 ? core::Command::kArm : core::Command::kNone);
+    (void)step(target, board, at);
+  }
+}
+
+class Climber {
+ public:
+  Climber(float size_m, std::uint32_t seed) : size_m_(size_m), random_(seed) {}
+
+  Way random_episode() {
+    Way way;
+    for (std::size_t i = 0; i < kEpisode; ++i) {
+      way.push_back(place(size_m_));
+    }
+    return way;
+  }
+
+  /// Some ticks elsewhere, or a little beside.
+  Way changed(const Way& way) {
+    Way result = way;
+    const float scale = size_m_ * std::pow(10.0F, -3.0F * uniform());
+    for (core::Vec3& at : result) {
+      const float choice = uniform();
+      if (choice < 0.1F) {
+        at = place(size_m_);
+      } else if (choice < 0.4F) {
+        at += place(scale);
+      }
+    }
+    return result;
+  }
+
+  float uniform() { return std::uniform_real_distribution<float>(0.0F, 1.0F)(random_); }
+
+ private:
+  core::Vec3 place(float size) {
+    const auto one = [&] { return size * (2.0F * uniform() - 1.0F); };
+    const float x = one();
+    const float y = one();
+    return {x, y, one()};
+  }
+
+  float size_m_;
+  std::mt19937 random_;
+};
+
+}  // namespace
+
+builder::Model nasty_model(Nastiness kind) {
+  constexpr double kSupport = 0.5e-3;
+  constexpr double kPatch = 0.05e-3;
+  builder::Model model;
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> place(-1.0, 1.0);
+  for (std::uint32_t i = 0; i < core::kMaxCandidates; ++i) {
+    const double u = place(random);
+    const double v = std::abs(place(random));
+    const bool top = i % 2 == 0;
+    if (kind == Nastiness::kEdge) {
+      model.positions.emplace_back(top ? -kPatch * v : 0.0, kPatch * u, top ? 0.0 : -kPatch * v);
+      model.normals.emplace_back(top ? 0.0F : 1.0F, 0.0F, top ? 1.0F : 0.0F);
+    } else {
+      model.positions.emplace_back(kPatch * u, kPatch * place(random), kPatch * place(random));
+      const Eigen::Vector3d normal(place(random), place(random), place(random));
+      model.normals.push_back((normal + Eigen::Vector3d(1e-3, 0, 0)).normalized().cast<float>());
+    }
+  }
+  // Far away, so that the tree is deep.
+  for (const double side : {-1.0, 1.0}) {
+    model.positions.emplace_back(side * Eigen::Vector3d::Constant(0.3));
+    model.normals.emplace_back(0.0F, 0.0F, 1.0F);
+  }
+  model.spacing_m = 0.4 * kSupport;
+  model.support_radius_m = kSupport;
+  model.reach_m = 1.02 * kSupport;
+  return model;
+}
+
+emulation::InstructionCounts follow(const emulation::BoardDescription& board,
+                                    emulation::EmulationOptions options,
+                                    std::span<const std::byte> blob, const Way& way,
+                                    core::RenderMode mode) {
+  hal::sim::BoardParameters parameters;
+  parameters.encoders.counts_per_m = 1.0;
+  hal::sim::SimBoard plant(parameters, blob);
+  emulation::EmulatedTarget target(board, blob, options);
+  EXPECT_TRUE(target.start(plant, free_probe(mode)).ok());
+  arm(target, plant, way.at(0));
+  for (const core::Vec3& at : way) {
+    plant.link().post(core::Command::kNone);
+    (void)step(target, plant, at);
+  }
+  target.finish();
+  return target.instruction_counts().value();
+}
+
+Found seek_worst(const emulation::BoardDescription& board,
+                 const emulation::EmulationOptions& options, std::span<const std::byte> blob,
+                 float size_m, int runs, core::RenderMode mode, std::uint32_t seed) {
+  Climber climber(size_m, seed);
+  emulation::EmulationOptions counted = options;
+  counted.uncounted_ticks = 12;
+  counted.instruction_shift = 0;  // no tick is so long that it misses a deadline
+  Found found;
+  for (int run = 0; run < runs; ++run) {
+    Way way;
+    for (std::size_t i = 0; i < kEpisodes; ++i) {
+      const bool fresh = found.way.empty() || climber.uniform() < 0.1F;
+      const Way episode = fresh ? climber.random_episode() : climber.changed(found.way);
+      way.insert(way.end(), episode.begin(), episode.end());
+    }
+    const emulation::InstructionCounts counts = follow(board, counted, blob, way, mode);
+    found.code.insert(found.code.end(), counts.code.begin(), counts.code.end());
+    if (counts.max > found.instructions) {
+      found.instructions = counts.max;
+      const auto worst = static_cast<std::size_t>(counts.worst_tick);
+      const std::size_t begin = worst + 1 < kEpisode ? 0 : worst + 1 - kEpisode;
+      found.way.assign(way.begin() + static_cast<std::ptrdiff_t>(begin),
+                       way.begin() + static_cast<std::ptrdiff_t>(worst + 1));
+      found.way.resize(kEpisode, found.way.back());
+    }
+  }
+  return found;
+}
+
+}  // namespace tactree::test

@@ -1,0 +1,176 @@
+#include "bound_command.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "blob_file.hpp"
+#include "command.hpp"
+#include "output_file.hpp"
+#include "tactree/bound/bound.hpp"
+#include "tactree/core/scene.hpp"
+
+namespace tactree::cli {
+namespace {
+
+// Functions and loops the summary names.
+constexpr std::size_t kReported = 12;
+
+struct BoundCommandOptions {
+  std::string image;
+  std::string board;
+  std::string blob;
+  double rate_hz = 0.0;
+  bool embed = false;
+  std::string sources = TACTREE_SOURCES;
+  std::string json;
+  std::string mode = "surface";
+  std::uint32_t bodies = 1;
+};
+
+bound::Parameters parameters(const BoundCommandOptions& options) {
+  const auto mode = options.mode == "paper" ? core::RenderMode::kPaper : core::RenderMode::kSurface;
+  if (options.blob.empty()) {
+    const auto kind =
+        mode == core::RenderMode::kPaper ? core::TickKind::kPaper : core::TickKind::kMixed;
+    return bound::parameters_of(bound::largest_figures(), kind, options.bodies);
+  }
+  const BlobFile blob(options.blob);
+  return bound::parameters_of(blob.view().header(), mode, options.bodies);
+}
+
+double highest_rate(const bound::BoardTiming& timing, const bound::Bound& bound) {
+  return std::floor(timing.clock_hz / static_cast<double>(bound.cycles));
+}
+
+nlohmann::json to_json(const BoundCommandOptions& options, const bound::BoundOptions& analysis,
+                       const bound::Bound& bound) {
+  nlohmann::json functions = nlohmann::json::array();
+  for (const bound::FunctionOnPath& f : bound.functions) {
+    functions.push_back({{"name", f.name}, {"calls", f.calls}, {"instructions", f.instructions}});
+  }
+  nlohmann::json loops = nlohmann::json::array();
+  for (const bound::LoopOnPath& loop : bound.loops) {
+    loops.push_back({{"file", loop.file},
+                     {"line", loop.line},
+                     {"function", loop.function},
+                     {"address", loop.address},
+                     {"bound", loop.bound},
+                     {"passes", loop.passes},
+                     {"total", loop.total}});
+  }
+  nlohmann::json result{{"image", options.image},
+                        {"blob", options.blob},
+                        {"parameters", analysis.parameters},
+                        {"instructions", bound.instructions},
+                        {"cycles", nullptr},
+                        {"functions", functions},
+                        {"loops", loops}};
+  if (analysis.timing != nullptr) {
+    result["cycles"] = bound.cycles;
+    result["cycles_are_an_estimate"] = analysis.timing->is_estimate;
+    result["rate_max_hz"] = highest_rate(*analysis.timing, bound);
+  }
+  return result;
+}
+
+void print(const bound::Parameters& parameters, const bound::Bound& bound) {
+  fmt::print("instructions       {} in one tick at most\n", bound.instructions);
+  for (const auto& [name, value] : parameters) {
+    fmt::print("  {:<22} {}\n", name, value);
+  }
+  for (const std::string& fact : bound.unused_facts) {
+    fmt::print("without effect     {}: 'at most' on a line without a call or store\n", fact);
+  }
+  fmt::print("functions\n");
+  for (std::size_t i = 0; i < std::min(kReported, bound.functions.size()); ++i) {
+    const bound::FunctionOnPath& f = bound.functions[i];
+    fmt::print("  {:8.0f} {:7.0f} x  {}\n", f.instructions, f.calls, f.name);
+  }
+  fmt::print("loops              passes each time, in the worst tick\n");
+  for (const bound::LoopOnPath& loop : bound.loops) {
+    fmt::print("  {:6} {:8.0f}  {}:{}: {}\n", loop.passes, loop.total, loop.file, loop.line,
+               loop.bound);
+  }
+}
+
+void print_timing(const bound::BoardTiming& timing, const bound::Bound& bound) {
+  fmt::print("cycles             {} at most{}: at {:.0f} MHz {:.1f} us, {:.0f} Hz ({})\n",
+             bound.cycles, timing.is_estimate ? ", an estimate" : "", 1e-6 * timing.clock_hz,
+             1e6 * static_cast<double>(bound.cycles) / timing.clock_hz, highest_rate(timing, bound),
+             timing.source);
+}
+
+/// Exit code 1 where the board cannot keep the rate.
+void check_rate(const BoundCommandOptions& options, const bound::BoardTiming& timing,
+                const bound::Bound& bound) {
+  const double highest = highest_rate(timing, bound);
+  if (options.rate_hz > highest) {
+    throw CommandError(fmt::format(
+        "--rate: {} keeps {:.0f} Hz with this model, not {:.0f}: a tick takes up to {} "
+        "cycles of {:.0f} (lower --rate, or build a model with fewer points in a ball)",
+        timing.board, highest, options.rate_hz, bound.cycles, timing.clock_hz / options.rate_hz));
+  }
+}
+
+void bound_tick(const BoundCommandOptions& options) {
+  bound::BoundOptions analysis;
+  analysis.image = options.image;
+  analysis.sources = options.sources;
+  analysis.entries = bound::tick_entries();
+  analysis.parameters = parameters(options);
+  analysis.timing = options.board.empty() ? nullptr : bound::find_timing(options.board);
+  if (!options.board.empty() && analysis.timing == nullptr) {
+    throw CommandError(
+        fmt::format("--board: nothing is known about the memories of {} (leave it "
+                    "out: the bound is in instructions then)",
+                    options.board));
+  }
+  if (options.embed) {
+    bound::embed(options.image, bound::tick_costs(analysis));
+  }
+  const bound::Bound result = bound::worst_case(analysis);
+  print(analysis.parameters, result);
+  if (analysis.timing != nullptr) {
+    print_timing(*analysis.timing, result);
+  }
+  if (!options.json.empty()) {
+    write_file(options.json, to_json(options, analysis, result).dump(2) + "\n");
+  }
+  if (options.rate_hz > 0.0 && analysis.timing != nullptr) {
+    check_rate(options, *analysis.timing, result);
+  }
+}
+
+}  // namespace
+
+void add_bound_command(CLI::App& app, int&) {
+  auto options = std::make_shared<BoundCommandOptions>();
+  CLI::App* verb = app.add_subcommand(
+      "bound", "Proves from a board's image how many instructions a tick takes at most");
+  verb->add_option("IMAGE", options->image, "the image: <board>.elf")->required();
+  CLI::Option* board = verb->add_option(
+      "--board", options->board, "the board: also says how many cycles, and the highest rate");
+  verb->add_flag("--embed", options->embed,
+                 "write the cycles into the image, as a formula in the model's figures: its "
+                 "controller then refuses what is not in time (seal it with scripts/seal-image)")
+      ->needs(board);
+  verb->add_option("--rate", options->rate_hz, "fails where the board cannot keep this rate, Hz")
+      ->needs(board);
+  verb->add_option("--blob", options->blob,
+                   "the model on the board; without it: every model that a controller accepts");
+  verb->add_option("--mode", options->mode, "surface or paper")
+      ->check(CLI::IsMember({"surface", "paper"}));
+  verb->add_option("--bodies", options->bodies, "models within reach of the probe at a time")
+      ->check(CLI::Range(1U, core::kMaxReachableBodies));
+  verb->add_option("--sources", options->sources, "the sources that the image was built from");
+  verb->add_option("--json", options->json, "write the result to this file");
+  verb->callback([options] { bound_tick(*options); });
+}
+
+}  // namespace tactree::cli
