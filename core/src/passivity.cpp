@@ -13,6 +13,9 @@ void PassivityController::configure(float period_s, float damping_max_Ns_m, floa
 }
 
 void PassivityController::reset() {
+  if (!following_) {
+    return;  // nothing was added since the last time
+  }
   balance_ = 0.0F;
   stored_ = 0.0F;
   following_ = false;

@@ -273,15 +273,7 @@ hal::StartResult EmulatedTarget::start(hal::sim::SimBoard& board,
 
 // What hal::Loop::tick() does, with the controller at the other end of the link.
 core::Status EmulatedTarget::tick(hal::sim::SimBoard& board) {
-  const hal::Tick tick = board.ticker().wait();
-  core::Input input;
-  input.encoders = board.encoders().read();
-  input.emergency_stop = board.safety_inputs().emergency_stop();
-  input.dead_man = board.safety_inputs().dead_man();
-  input.enable_read_back = board.enable_line().read_back();
-  input.motors_ok = board.motors().healthy();
-  input.overruns = tick.overruns;
-  input.supply_V = board.motors().supply_V();
+  core::Input input = hal::read_inputs(board);
   const hal::LinkInput received = board.link().receive();
   input.link_alive = received.alive;
   input.command = received.command;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tactree/plant/trigonometry.hpp"
+#include "tactree/plant/vectors.hpp"
 
 namespace tactree::plant {
 namespace {
@@ -17,10 +18,6 @@ constexpr double kGravity = 9.80665;  // m/s2
 constexpr double kDifference = 1e-6;  // rad or m, for gradients of closures
 constexpr int kNewtonSteps = 60;
 constexpr double kConverged_m = 1e-12;
-
-Vector3d widen(core::Vec3 v) {
-  return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
-}
 
 Matrix3d turn_z(double angle_rad) {
   const SineCosine a = sine_cosine(angle_rad);

@@ -4,12 +4,12 @@
 #include <stdexcept>
 #include <utility>
 
+#include "tactree/plant/vectors.hpp"
+
 namespace tactree::simulation {
 namespace {
 
-core::Vec3 narrow(const Eigen::Vector3d& v) {
-  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
-}
+using plant::narrow;
 
 core::Pose to_pose(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& translation) {
   const Eigen::Quaterniond q(rotation);

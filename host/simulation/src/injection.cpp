@@ -13,8 +13,6 @@ using hal::sim::EncoderFault;
 using hal::sim::MotorFault;
 using hal::sim::SimBoard;
 
-constexpr float kNominalSupplyV = 24.0F;
-
 enum class Takes { kNothing, kCounts, kEffort, kVolts, kDeadlines, kMillionths };
 
 struct KindEntry {
@@ -288,7 +286,7 @@ void Injector::end(const InjectedFault& fault, SimBoard& board) {
   } else if (fault.kind == InjectedKind::kMotorWeak) {
     board.motors().saturate_as_built();
   } else if (fault.kind == InjectedKind::kSupplySag) {
-    board.motors().set_supply(kNominalSupplyV);
+    board.motors().supply_as_built();
   } else if (fault.kind == InjectedKind::kEmergencyStop) {
     board.safety_inputs().press_emergency_stop(false);
   } else if (fault.kind == InjectedKind::kDeadManReleased) {

@@ -6,15 +6,15 @@
 #include <limits>
 #include <stdexcept>
 
+#include "tactree/plant/vectors.hpp"
+
 namespace tactree::simulation {
 namespace {
 
+using plant::widen;
+
 constexpr double kFacing = 0.2;       // cosine from which a point faces the viewer
 constexpr double kMaxCells = 1024.0;  // a side
-
-Eigen::Vector3d widen(core::Vec3 v) {
-  return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
-}
 
 template <class Use>
 void for_each_point(const core::BlobView& view, const Use& use) {

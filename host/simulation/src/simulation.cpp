@@ -5,8 +5,12 @@
 #include <cmath>
 #include <iterator>
 
+#include "tactree/plant/vectors.hpp"
+
 namespace tactree::simulation {
 namespace {
+
+using plant::widen;
 
 // The person at the device: presses "arm", then holds the dead-man control.
 constexpr std::uint64_t kArmAtTick = 2;
@@ -16,10 +20,6 @@ constexpr double kSettleS = 0.05;
 hal::sim::BoardParameters with_rate(hal::sim::BoardParameters board, float rate_hz) {
   board.period_us = static_cast<std::uint32_t>(std::lround(1e6 / static_cast<double>(rate_hz)));
   return board;
-}
-
-Eigen::Vector3d widen(core::Vec3 v) {
-  return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
 }
 
 /// The board passes counts on: what a count is, the device says.

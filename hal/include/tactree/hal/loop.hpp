@@ -39,6 +39,23 @@ inline void apply(const BodyUpdate& update, core::Controller& controller) {
   }
 }
 
+/// What a tick reads, in its order: waits for the tick first. All but the link and the load.
+template <Board B>
+[[nodiscard]] core::Input read_inputs(B& board) {
+  const Tick tick = board.ticker().wait();
+  core::Input input;
+  input.encoders = board.encoders().read();
+  input.emergency_stop = board.safety_inputs().emergency_stop();
+  input.dead_man = board.safety_inputs().dead_man();
+  input.enable_read_back = board.enable_line().read_back();
+  input.motors_ok = board.motors().healthy();
+  input.overruns = tick.overruns;
+  if constexpr (requires { board.motors().supply_V(); }) {
+    input.supply_V = board.motors().supply_V();
+  }
+  return input;
+}
+
 template <Board B>
 class Loop {
  public:
@@ -63,18 +80,8 @@ class Loop {
 
   /// One tick: waits for it, reads, steps, writes. Returns what the controller said.
   core::Output tick() {
-    const Tick tick = board_.ticker().wait();
-    core::Input input;
-    input.encoders = board_.encoders().read();
-    input.emergency_stop = board_.safety_inputs().emergency_stop();
-    input.dead_man = board_.safety_inputs().dead_man();
-    input.enable_read_back = board_.enable_line().read_back();
-    input.motors_ok = board_.motors().healthy();
-    input.overruns = tick.overruns;
+    core::Input input = read_inputs(board_);
     input.load = load_;
-    if constexpr (requires { board_.motors().supply_V(); }) {
-      input.supply_V = board_.motors().supply_V();
-    }
     listen(input);
 
     const std::uint32_t begin_us = board_.ticker().now_us();

@@ -67,6 +67,7 @@ class SimMotorBank {
 
   [[nodiscard]] float supply_V() noexcept { return supply_V_; }
   void set_supply(float volts) { supply_V_ = volts; }
+  void supply_as_built() { supply_V_ = kSupplyVolts; }
 
  private:
   struct Efforts {
@@ -79,7 +80,8 @@ class SimMotorBank {
   MotorFault fault_[core::kAxes] = {};
   double held_[core::kAxes] = {0.0, 0.0, 0.0};
   bool healthy_ = true;
-  float supply_V_ = 24.0F;
+  static constexpr float kSupplyVolts = 24.0F;
+  float supply_V_ = kSupplyVolts;
 };
 
 }  // namespace tactree::hal::sim

@@ -9,18 +9,14 @@
 
 #include "tactree/builder/model.hpp"
 #include "tactree/core/blob.hpp"
+#include "tactree/plant/vectors.hpp"
 
 namespace tactree::evaluation {
 
 inline constexpr double kSpacing = 1e-3;  // m, h
 
-inline core::Vec3 narrow(const Eigen::Vector3d& v) {
-  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
-}
-
-inline Eigen::Vector3d widen(core::Vec3 v) {
-  return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
-}
+using plant::narrow;
+using plant::widen;
 
 /// A model and the blob made of it. Moves only: the view points into the blob's bytes.
 class Shape {

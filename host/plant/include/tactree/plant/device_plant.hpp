@@ -42,7 +42,6 @@ class DevicePlant {
   void advance(const Eigen::Vector3d& effort, const HandTarget& target, double duration_s);
 
   [[nodiscard]] const Eigen::Vector3d& joints() const { return joints_; }
-  [[nodiscard]] const Eigen::Vector3d& joint_velocity() const { return joint_velocity_; }
   [[nodiscard]] const Eigen::Vector3d& position_m() const { return pose_.tip_m; }
   [[nodiscard]] const Eigen::Vector3d& velocity_m_s() const { return tip_velocity_; }
   /// kinetic + potential - start = motor + hand - friction, exactly but for the potential, which
