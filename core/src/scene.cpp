@@ -238,8 +238,7 @@ const SceneRendering& Scene::update(const Configuration& configuration, Vec3 pro
   const auto fade_ticks = static_cast<std::uint32_t>(kFadeSeconds * configuration.rate_hz);
   fade_ticks_ = fade_ticks > 0U ? fade_ticks : 1U;
   SceneRendering& all = rendering_;
-  all.contact = Rendering{};
-  all.contact.proxy = probe;
+  all.contact.body = kNoBody;
   all.wall_velocity = {};
   all.fading = false;
   for (Reaction& reaction : all.reactions) {  // bound: kMaxReachableBodies
@@ -252,6 +251,10 @@ const SceneRendering& Scene::update(const Configuration& configuration, Vec3 pro
       // at most: min(bodies, kMaxReachableBodies) per Scene::update
       render(slot, configuration, probe, velocity);
     }
+  }
+  if (all.contact.body == kNoBody) {
+    all.contact = Rendering{};
+    all.contact.proxy = probe;
   }
   // Adding nothing must not change the bits of a force, nor the sign of a zero.
   for (std::uint32_t i = 0; i < kMaxReachableBodies; ++i) {  // bound: kMaxReachableBodies
@@ -296,10 +299,9 @@ void Scene::render(Slot& slot, const Configuration& configuration, Vec3 probe, V
   slot.in_contact = r.in_contact;
   slot.force = r.force;
   slot.stored_energy = r.stored_energy;
-  const bool complete = all.contact.complete && r.complete;
-  const bool stronger =
-      all.contact.body == kNoBody || length_squared(r.force) > length_squared(all.contact.force);
-  if (stronger) {
+  const bool first = all.contact.body == kNoBody;
+  const bool complete = r.complete && (first || all.contact.complete);
+  if (first || length_squared(r.force) > length_squared(all.contact.force)) {
     all.contact = r;
     all.wall_velocity = velocity - relative;
   }

@@ -66,11 +66,14 @@ struct Surroundings {
   const Candidate* crease = nullptr;   // nearest point of another face
 };
 
+// The sums are locals, not members of what is returned: these a compiler keeps in registers.
 Surroundings look_around(const CandidateSet& set, Vec3 x, float radius, Vec3 reference) {
   const float radius_squared = radius * radius;
   const float inverse_squared = 1.0F / radius_squared;
-  Surroundings found;
+  Moments face;
+  float averted = 0.0F;
   float nearest = radius_squared;
+  const Candidate* crease = nullptr;
   for (const Candidate& candidate : set) {  // bound: points_per_ball_max
     const Vec3 q = candidate.position - x;
     const float qq = length_squared(q);
@@ -79,17 +82,19 @@ Surroundings look_around(const CandidateSet& set, Vec3 x, float radius, Vec3 ref
     }
     const float weight = weight_of(qq, inverse_squared);
     const float cosine = dot(candidate.normal, reference);
-    if (cosine > 0.0F) {
-      found.face.add(q, qq, candidate.normal, weight);
-    } else {
-      found.averted += weight;
+    if (cosine < kCreaseCosine) {
+      if (cosine > -kCreaseCosine && qq < nearest) {
+        nearest = qq;
+        crease = &candidate;
+      }
+      if (!(cosine > 0.0F)) {
+        averted += weight;
+        continue;
+      }
     }
-    if (absolute(cosine) < kCreaseCosine && qq < nearest) {
-      nearest = qq;
-      found.crease = &candidate;
-    }
+    face.add(q, qq, candidate.normal, weight);
   }
-  return found;
+  return {face, averted, crease};
 }
 
 /// The points around a crease, each with the face whose normal is closer to its own.

@@ -14,7 +14,7 @@ namespace tactree::core {
 /// Samples of the longest window, less one.
 inline constexpr std::uint32_t kVelocityWindow = 15;
 /// Windows that are tried beyond that of two samples.
-inline constexpr std::uint32_t kVelocityWindows = 4;
+inline constexpr std::uint32_t kVelocityWindows = 3;
 
 /// Interrupt safe: no shared state.
 class VelocityEstimator {
