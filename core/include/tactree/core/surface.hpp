@@ -43,6 +43,9 @@ struct Candidate {
 /// The decoded points around a centre, good for every query within the slack of that centre.
 class CandidateSet {
  public:
+  /// How far from its centre a gather is good, m.
+  [[nodiscard]] static float slack_of(const BlobView& view);
+
   /// Forgets the last gather; needed whenever the blob changes.
   void clear() { valid_ = false; }
 
