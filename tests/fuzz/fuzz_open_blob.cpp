@@ -248,8 +248,7 @@ class Examination {
     renderer.reset(probe);
     for (int tick = 0; tick < 6; ++tick) {
       const Rendering rendering = renderer.update(view_, configuration, probe, {});
-      require(!rendering.in_contact || rendering.point < view_.point_count(),
-              "contact with a point that is none");
+      require(!rendering.in_contact || is_finite(rendering.proxy), "a proxy is nowhere");
       probe = make_probe(tick == 3 ? 2 : 5);
     }
     if (surface) {

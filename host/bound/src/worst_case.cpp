@@ -965,10 +965,10 @@ double highest_rate(double clock_hz, const PaceCycles& cycles) {
   for (std::uint32_t pace = core::kPaces; pace-- > 0;) {
     const double rate = std::min(clock_hz / cycles[pace], below);
     const double lowest = static_cast<double>(core::kPaceRates[pace]);
-    if (rate >= lowest) {
+    if (rate > lowest) {
       return rate;
     }
-    below = lowest - 1.0;
+    below = lowest;
   }
   return 0.0;
 }

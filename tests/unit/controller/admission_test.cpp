@@ -12,9 +12,11 @@ core::TickCosts some_costs() {
   core::TickCosts costs;
   costs.known = core::kTickCostsKnown;
   for (auto& kind : costs.of) {
-    for (std::uint32_t row = 0; row < core::kMaxReachableBodies; ++row) {
-      kind[row].base = 1000U * (row + 1U);
-      kind[row].per_figure[0] = 10U * (row + 1U);
+    for (auto& pace : kind) {
+      for (std::uint32_t row = 0; row < core::kMaxReachableBodies; ++row) {
+        pace[row].base = 1000U * (row + 1U);
+        pace[row].per_figure[0] = 10U * (row + 1U);
+      }
     }
   }
   return costs;

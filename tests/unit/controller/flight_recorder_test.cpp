@@ -95,7 +95,7 @@ TEST(FlightRecorder, TakesEveryFloat) {
                   load});
     EXPECT_EQ(recorder.record(0).load, 255);
   }
-  EXPECT_EQ(recorder.record(0).probe[0], 0);
+  EXPECT_EQ(recorder.record(0).probe[0], 32767);
   EXPECT_EQ(recorder.record(0).force[0], 32767);
   EXPECT_EQ(recorder.record(0).force[1], -32767);
 }

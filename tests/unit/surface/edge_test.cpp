@@ -129,7 +129,7 @@ class SlidingHand {
     lost_ = 0;
     for (double i = 1.0; i <= ticks; i += 1.0) {
       at_ = from + (to - from) * (i / ticks);
-      proxy_.update(view_, narrow(at_), core::Friction{});
+      proxy_.update(view_, narrow(at_), core::Friction{}, core::work_per_tick(1000.0F));
       const Eigen::Vector3d force =
           proxy_.in_contact() ? Eigen::Vector3d(1000.0 * static_cast<double>(proxy_.strength()) *
                                                 (widen(proxy_.position()) - at_))

@@ -25,7 +25,7 @@ class FrictionOnAPlane : public ::testing::Test {
 
   /// Tangential over normal force.
   double move(double x, double z = -kDepth) {
-    proxy_.update(shape_.view(), narrow({x, 0.0, z}), kRough);
+    proxy_.update(shape_.view(), narrow({x, 0.0, z}), kRough, core::work_per_tick(1000.0F));
     const Eigen::Vector3d way = widen(proxy_.position()) - Eigen::Vector3d(x, 0.0, z);
     return std::abs(way.x() / way.z());
   }

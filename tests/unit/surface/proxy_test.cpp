@@ -29,7 +29,7 @@ class Walk {
       proxy_.reset(narrow(probe));
       first_ = false;
     }
-    proxy_.update(view_, narrow(probe), friction);
+    proxy_.update(view_, narrow(probe), friction, core::work_per_tick(1000.0F));
     if (!proxy_.in_contact()) {
       return Eigen::Vector3d::Zero();
     }
