@@ -501,6 +501,25 @@ void write_plot(const SimulateOptions& options, const SceneFile& scene, const Ou
                                         paper_first ? outcome.samples : beside.samples, title));
 }
 
+std::unique_ptr<simulation::Target> served_target(const SimulateOptions& options,
+                                                  const SceneFile& scene, host::Transport& terminal,
+                                                  const serve::ServeOptions& serving) {
+  const BlobFile& blob = *scene.files[0];
+  const emulation::BoardDescription* const board = emulation::find_board(options.board);
+  if (board == nullptr) {
+    return std::make_unique<serve::ServedTarget>(terminal, blob.bytes(), serving);
+  }
+  if (serving.key) {
+    refuse(fmt::format("--require-key: the image of {} has no key", board->name),
+           "use --board host");
+  }
+  emulation::EmulationOptions emulation;
+  emulation.image = emulation::find_image(*board, options.firmware);
+  emulation.count_instructions = false;
+  emulation.served = &terminal;
+  return std::make_unique<emulation::EmulatedTarget>(*board, blob.bytes(), emulation);
+}
+
 void serve(const SimulateOptions& options, const SceneFile& scene) {
   const simulation::Setup setup = make_setup(options, scene);
   host::PseudoTerminal terminal;
@@ -508,9 +527,8 @@ void serve(const SimulateOptions& options, const SceneFile& scene) {
   if (!options.key.empty()) {
     serving.key = read_public_key(options.key);
   }
-  simulation::Simulation sim(
-      scene.files[0]->bytes(), setup, hand_path(options, scene),
-      std::make_unique<serve::ServedTarget>(terminal, scene.files[0]->bytes(), serving));
+  simulation::Simulation sim(scene.files[0]->bytes(), setup, hand_path(options, scene),
+                             served_target(options, scene, terminal, serving));
   check_start(scene.names[0], scene.files[0]->view(), setup, sim.start_result());
   sim.inject(simulation::Injector(injections(options)));
   fmt::print("serving at {}\n", terminal.name());
