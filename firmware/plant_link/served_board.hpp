@@ -64,7 +64,7 @@ class ServedBoard : public PlantLinkBoard {
   static constexpr std::uint32_t kBaud = 115200;
   /// So often the port is asked before the core sleeps to the next tick: while it sleeps, the
   /// emulator lets time pass at once, and nothing comes in.
-  static constexpr std::uint32_t kPatience = 200;
+  static constexpr std::uint32_t kPatience = 2000;
 
   struct Platform {
     [[nodiscard]] std::uint32_t now_us() noexcept { return firmware::now_us(); }
