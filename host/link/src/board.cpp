@@ -53,8 +53,8 @@ std::string names_of(core::FaultMask faults) {
   std::string names;
   for (std::uint32_t code = 1; code < core::kFaultCodes; ++code) {
     if (core::has_fault(faults, static_cast<core::Fault>(code))) {
-      names += std::string(names.empty() ? ": " : ", ") +
-               core::name_of(static_cast<core::Fault>(code));
+      names +=
+          std::string(names.empty() ? ": " : ", ") + core::name_of(static_cast<core::Fault>(code));
     }
   }
   return names;
@@ -156,10 +156,10 @@ void Board::arm(std::chrono::milliseconds patience) {
     }
     if (std::chrono::steady_clock::now() > deadline) {
       stop();
-      throw LinkError(connection_.name() + ": arm: nobody confirms (" +
-                      (hand_confirms ? "let the dead-man control go, then hold it, "
-                                     : "hold the probe ") +
-                      "outside of the object)");
+      throw LinkError(
+          connection_.name() + ": arm: nobody confirms (" +
+          (hand_confirms ? "let the dead-man control go, then hold it, " : "hold the probe ") +
+          "outside of the object)");
     }
     if (!hand_confirms) {
       // Refused while the enable line is on its way, or the probe inside: asked for again.
