@@ -311,9 +311,10 @@ class Model {
     return cycles_of(flow, block) + (is_kept ? 0.0 : fetch_of(flow, block));
   }
 
-  /// Words that an instruction loads or stores in the slowest memory.
+  /// Words that an instruction loads from the slowest memory. Nothing is stored there.
   [[nodiscard]] std::uint32_t slow_words(const Instruction& instruction) const {
-    return is_in_ram(analysis_, instruction) ? 0U : instruction.other_words;
+    const bool is_fast = instruction.store || is_in_ram(analysis_, instruction);
+    return is_fast ? 0U : instruction.other_words;
   }
 
   /// Of one pass of a block, but for its fetch.
@@ -960,16 +961,16 @@ PaceCycles cycles_by_pace(const BoundOptions& options) {
 }
 
 double highest_rate(double clock_hz, const PaceCycles& cycles) {
-  for (std::uint32_t pace = core::kPaces - 1; pace > 0; --pace) {
-    const double slowest = static_cast<double>(core::kPaceRates[pace - 1]);
-    const double fastest = pace + 1 < core::kPaces ? static_cast<double>(core::kPaceRates[pace])
-                                                   : clock_hz;
-    const double rate = std::min(clock_hz / cycles[pace], fastest);
-    if (rate > slowest) {
+  double below = clock_hz;
+  for (std::uint32_t pace = core::kPaces; pace-- > 0;) {
+    const double rate = std::min(clock_hz / cycles[pace], below);
+    const double lowest = static_cast<double>(core::kPaceRates[pace]);
+    if (rate >= lowest) {
       return rate;
     }
+    below = lowest - 1.0;
   }
-  return std::min(clock_hz / cycles[0], static_cast<double>(core::kPaceRates[0]));
+  return 0.0;
 }
 
 core::TickCosts tick_costs(const BoundOptions& options) {
