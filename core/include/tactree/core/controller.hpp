@@ -134,7 +134,8 @@ class Controller {
   [[nodiscard]] ModelStatus remove_body(std::uint32_t number);
   [[nodiscard]] bool has_body(std::uint32_t number) const { return !scene_.view(number).empty(); }
 
-  /// One tick; what it returns holds until the next. Accepts every input. Cost: Scene::update() and some 1000 instructions.
+  /// One tick; what it returns holds until the next. Accepts every input. Cost: Scene::update() and
+  /// some 1000 instructions.
   const Output& step(const Input& input);
 
   [[nodiscard]] State state() const { return state_; }
