@@ -179,7 +179,7 @@ class BlobValidator {
     const std::uint64_t index_bytes = h.material_count > 1 ? h.point_count : 0;
     const std::uint64_t node_bytes = is_surface() ? sizeof(std::uint32_t) : sizeof(BlobNode);
     const std::uint64_t directory_bytes =
-        h.directory_level == 0 ? 0 : 4ULL << 3U * h.directory_level;
+        h.directory_level == 0 ? 0 : 4ULL * (1U << 3U * h.directory_level);
     const std::uint64_t leaf_groups = (h.leaf_count >> h.leaf_group_shift) + 1ULL;
     return take(h.nodes, node_bytes * h.node_count) && take(h.directory, directory_bytes) &&
            take(h.leaf_bases, 4ULL * leaf_groups) &&

@@ -14,9 +14,13 @@
 #include "blob_file.hpp"
 #include "command.hpp"
 #include "device_file.hpp"
+#include "model_signature.hpp"
 #include "output_file.hpp"
 #include "scene_file.hpp"
+#include "serve_session.hpp"
 #include "tactree/emulation/emulated_target.hpp"
+#include "tactree/host/serial_port.hpp"
+#include "tactree/serve/served_target.hpp"
 #include "tactree/simulation/hand_script.hpp"
 #include "tactree/simulation/injection.hpp"
 #include "tactree/simulation/simulation.hpp"
@@ -45,6 +49,9 @@ struct SimulateOptions {
   std::string plot;
   bool compare = false;
   std::string json;
+  bool serve = false;
+  std::string key;  // of who signs models for the served board
+  CLI::Option* seconds_given = nullptr;
   std::vector<std::string> injections;
   double seconds = 10.0;
   double latency_ticks = 0.0;
@@ -494,6 +501,43 @@ void write_plot(const SimulateOptions& options, const SceneFile& scene, const Ou
                                         paper_first ? outcome.samples : beside.samples, title));
 }
 
+std::unique_ptr<simulation::Target> served_target(const SimulateOptions& options,
+                                                  const SceneFile& scene, host::Transport& terminal,
+                                                  const serve::ServeOptions& serving) {
+  const BlobFile& blob = *scene.files[0];
+  const emulation::BoardDescription* const board = emulation::find_board(options.board);
+  if (board == nullptr) {
+    return std::make_unique<serve::ServedTarget>(terminal, blob.bytes(), serving);
+  }
+  if (serving.key) {
+    refuse(fmt::format("--require-key: the image of {} has no key", board->name),
+           "use --board host");
+  }
+  emulation::EmulationOptions emulation;
+  emulation.image = emulation::find_image(*board, options.firmware);
+  emulation.count_instructions = false;
+  emulation.served = &terminal;
+  return std::make_unique<emulation::EmulatedTarget>(*board, blob.bytes(), emulation);
+}
+
+void serve(const SimulateOptions& options, const SceneFile& scene) {
+  const simulation::Setup setup = make_setup(options, scene);
+  host::PseudoTerminal terminal;
+  serve::ServeOptions serving;
+  if (!options.key.empty()) {
+    serving.key = read_public_key(options.key);
+  }
+  simulation::Simulation sim(scene.files[0]->bytes(), setup, hand_path(options, scene),
+                             served_target(options, scene, terminal, serving));
+  check_start(scene.names[0], scene.files[0]->view(), setup, sim.start_result());
+  sim.inject(simulation::Injector(injections(options)));
+  fmt::print("serving at {}\n", terminal.name());
+  std::fflush(stdout);
+  const bool limited = options.seconds_given->count() != 0;
+  serve_session(sim, {static_cast<double>(setup.controller.rate_hz), options.seconds,
+                      limited ? options.seconds : 0.0});
+}
+
 void simulate(SimulateOptions& options, int& exit_code) {
   if (options.dump_device) {
     fmt::print("{}", device_json(load_device(options.device)));
@@ -504,6 +548,10 @@ void simulate(SimulateOptions& options, int& exit_code) {
   }
   const SceneFile scene = read_scene(options.scene, options.blobs);
   options.blob = scene.names[0];
+  if (options.serve) {
+    serve(options, scene);
+    return;
+  }
   const Outcome outcome = run(options, scene);
   if (!options.trace.empty()) {
     write_trace(options.trace, outcome.samples);
@@ -646,9 +694,17 @@ void add_simulate_command(CLI::App& app, int& exit_code) {
   verb->add_option("--mode", options->mode, "how contact is rendered")
       ->check(CLI::IsMember({"surface", "paper"}))
       ->capture_default_str();
-  verb->add_option("--seconds", options->seconds, "length of the run, s")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+  options->seconds_given = verb->add_option("--seconds", options->seconds, "length of the run, s")
+                               ->check(CLI::PositiveNumber)
+                               ->capture_default_str();
+  CLI::Option* serve =
+      verb->add_flag("--serve", options->serve,
+                     "run in real time and let programs talk to the board, at a port that is "
+                     "printed; without --seconds until it is interrupted");
+  verb->add_option("--require-key", options->key,
+                   "with --serve: public key (tactree keygen) whose owner must have signed a model")
+      ->needs(serve)
+      ->check(CLI::ExistingFile);
   CLI::Option* script = verb->add_option("--script", options->script, "what the hand does")
                             ->check(CLI::IsMember(simulation::script_names()))
                             ->capture_default_str();

@@ -91,6 +91,11 @@ struct LinkInput {
   bool alive = false;                            ///< at least one valid message
   core::Command command = core::Command::kNone;  ///< each message gives its command once
   BodyUpdate body{};                             ///< and its update once
+  std::uint16_t age_ticks = 0;                   ///< where alive: see core::Input::link_age_ticks
+  std::uint32_t force_ticks = 0;                 ///< 0: no force is to be added
+  core::Vec3 force_N{};                          ///< see core::Controller::add_force()
+  bool storage_busy = false;  ///< the flash is being written: a late tick is no fault, where
+                              ///< the motors are off
 };
 
 /// The connection to an application.
@@ -102,6 +107,18 @@ concept Link = requires(T& link, const core::Status& status) {
   noexcept->std::same_as<LinkInput>;
   { link.send(status) }
   noexcept->std::same_as<void>;
+};
+
+/// Bytes to and from an application: a serial port, a USB endpoint. What a Session (session.hpp)
+/// talks over.
+///   read(bytes)   what came in, as much as fits; returns how many, 0 when there is nothing.
+///   write(bytes)  as many as there is room for; returns how many.
+template <class T>
+concept BytePort = requires(T& port, std::span<std::byte> in, std::span<const std::byte> out) {
+  { port.read(in) }
+  noexcept->std::same_as<std::size_t>;
+  { port.write(out) }
+  noexcept->std::same_as<std::size_t>;
 };
 
 /// Where the model is kept.

@@ -1,0 +1,78 @@
+#include "devices_command.hpp"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "board_port.hpp"
+#include "command.hpp"
+#include "output_file.hpp"
+#include "tactree/host/link_error.hpp"
+#include "tactree/host/ports.hpp"
+
+namespace tactree::cli {
+namespace {
+
+struct DevicesOptions {
+  BoardPort port;
+  std::string json;
+};
+
+nlohmann::json probe(const std::string& port, unsigned baud) {
+  try {
+    const core::wire::IdentifyReply board = host::Board::identify(host::open_port(port, baud));
+    return {{"port", port},
+            {"board", text_of(board.board)},
+            {"firmware", text_of(board.firmware)},
+            {"serial",
+             fmt::format("{:08x}{:08x}{:08x}", board.serial[0], board.serial[1], board.serial[2])},
+            {"protocol", fmt::format("{}.{}", board.version_major, board.version_minor)}};
+  } catch (const host::LinkError& error) {
+    return {{"port", port}, {"error", error.what()}};
+  }
+}
+
+void print(const nlohmann::json& device) {
+  if (device.contains("error")) {
+    fmt::print("{}\n", device["error"].get<std::string>());
+    return;
+  }
+  fmt::print("{}: {}, firmware {}, serial {}, protocol {}\n", device["port"].get<std::string>(),
+             device["board"].get<std::string>(), device["firmware"].get<std::string>(),
+             device["serial"].get<std::string>(), device["protocol"].get<std::string>());
+}
+
+void list_devices(const DevicesOptions& options, int& exit_code) {
+  std::vector<std::string> ports = host::list_ports();
+  if (!options.port.port.empty()) {
+    ports = {options.port.port};
+  }
+  nlohmann::json devices = nlohmann::json::array();
+  bool found = false;
+  for (const std::string& port : ports) {
+    devices.push_back(probe(port, options.port.baud));
+    found = found || !devices.back().contains("error");
+    print(devices.back());
+  }
+  if (ports.empty()) {
+    fmt::print("no port found that a board may be at\n");
+  }
+  if (!options.json.empty()) {
+    write_file(options.json, nlohmann::json{{"devices", devices}}.dump(2) + "\n");
+  }
+  exit_code = found ? kExitOk : kExitFailed;
+}
+
+}  // namespace
+
+void add_devices_command(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<DevicesOptions>();
+  CLI::App* verb = app.add_subcommand(
+      "devices", "Lists the boards that are connected; exit code 1 = none answers");
+  add_port_options(*verb, options->port);
+  verb->add_option("--json", options->json, "write the list to this file");
+  verb->callback([options, &exit_code] { list_devices(*options, exit_code); });
+}
+
+}  // namespace tactree::cli
