@@ -104,6 +104,18 @@ concept Link = requires(T& link, const core::Status& status) {
   noexcept->std::same_as<void>;
 };
 
+/// Bytes to and from an application: a serial port, a USB endpoint. What a Session (session.hpp)
+/// talks over.
+///   read(bytes)   what came in, as much as fits; returns how many, 0 when there is nothing.
+///   write(bytes)  as many as there is room for; returns how many.
+template <class T>
+concept BytePort = requires(T& port, std::span<std::byte> in, std::span<const std::byte> out) {
+  { port.read(in) }
+  noexcept->std::same_as<std::size_t>;
+  { port.write(out) }
+  noexcept->std::same_as<std::size_t>;
+};
+
 /// Where the model is kept.
 ///   active()  the bytes of the blob in use, 4-byte aligned, readable in place until the next
 ///             reset; empty when there is none. Not trusted: open_blob() checks them.

@@ -1,0 +1,41 @@
+#include "tactree/core/wire/messages.hpp"
+
+namespace tactree::core::wire {
+namespace {
+
+constexpr const char* kWords[kWireStatuses] = {
+    "ok",
+    "the board does not know this message",
+    "the message is too short",
+    "the board speaks another major version of the protocol",
+    "there is no session, or it has ended",
+    "a field is not finite, out of its range, or names nothing",
+    "the controller is armed: stop first",
+    "the state does not allow it",
+    "stiffer than device, hand and rate allow",
+    "not the token that arm gave",
+    "the board has no such part",
+    "no transfer was begun, or it was broken off",
+    "the piece does not follow the one before it",
+    "the model is larger than the slot",
+    "the model was made for another board",
+    "the model's counter is older than that of a model used before",
+    "what was stored is not what was announced",
+    "the model is not valid, or the controller cannot render it",
+    "not signed by the key that the board trusts",
+    "the transfer ended before all bytes had come",
+    "another session writes a model",
+    "the slot holds no model that can be used",
+    "the slot holds the model in use",
+    "the flash did not take it",
+    "too many requests at once",
+};
+
+}  // namespace
+
+const char* describe(WireStatus status) {
+  const auto index = static_cast<std::uint32_t>(status);
+  return index < kWireStatuses ? kWords[index] : "unknown status";
+}
+
+}  // namespace tactree::core::wire
