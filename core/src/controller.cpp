@@ -55,6 +55,64 @@ ConfigurationStatus Controller::configure(const Configuration& configuration) {
   return ConfigurationStatus::kOk;
 }
 
+Adjustment Controller::adjustment() const {
+  const Configuration& c = configuration_;
+  return {c.force_max_N,    c.slew_N_s,      c.ramp_s,       c.use_materials,   c.link_required,
+          c.link_timeout_s, c.stiffness_N_m, c.damping_Ns_m, c.static_friction, c.dynamic_friction};
+}
+
+ConfigurationStatus Controller::adjust(const Adjustment& a) {
+  const Adjustment now = adjustment();
+  const bool limits = a.force_max_N != now.force_max_N || a.slew_N_s != now.slew_N_s ||
+                      a.ramp_s != now.ramp_s || a.use_materials != now.use_materials ||
+                      a.link_required != now.link_required ||
+                      a.link_timeout_s != now.link_timeout_s;
+  if (limits && !motors_off()) {
+    return ConfigurationStatus::kBusy;
+  }
+  Configuration c = configuration_;
+  c.force_max_N = a.force_max_N;
+  c.slew_N_s = a.slew_N_s;
+  c.ramp_s = a.ramp_s;
+  c.use_materials = a.use_materials;
+  c.link_required = a.link_required;
+  c.link_timeout_s = a.link_timeout_s;
+  c.stiffness_N_m = a.stiffness_N_m;
+  c.damping_Ns_m = a.damping_Ns_m;
+  c.static_friction = a.static_friction;
+  c.dynamic_friction = a.dynamic_friction;
+  const ConfigurationStatus status = check(c);
+  if (status != ConfigurationStatus::kOk) {
+    return status;
+  }
+  configuration_ = c;
+  if (limits) {
+    (void)gate_.configure(gate_limits(c));  // check() tried it
+    link_timeout_ticks_ = static_cast<std::uint32_t>(c.link_timeout_s * c.rate_hz);
+    remove_unsuitable_bodies();
+  }
+  return ConfigurationStatus::kOk;
+}
+
+void Controller::add_force(Vec3 force_N, std::uint32_t ticks) {
+  const float squared = length_squared(force_N);
+  const float most = kAddedForceShare * configuration_.force_max_N;
+  const auto longest = static_cast<std::uint32_t>(kAddedForceSeconds * configuration_.rate_hz);
+  given_ticks_ = !is_finite(squared) ? 0U : ticks < longest ? ticks : longest;
+  given_ = squared > most * most ? (most / square_root(squared)) * force_N : force_N;
+}
+
+// Without one the force keeps its very bits: -0 + 0 is +0.
+Vec3 Controller::with_added_force(Vec3 force) {
+  if (given_ticks_ == 0U) {
+    added_ = {};
+    return force;
+  }
+  --given_ticks_;
+  added_ = given_;
+  return force + added_;
+}
+
 void Controller::know_costs(const TickCosts& costs, std::uint32_t cycles_per_second) {
   costs_ = &costs;
   cycles_per_second_ = cycles_per_second;
@@ -196,7 +254,8 @@ Output Controller::step(const Input& input) {
   confirm(input, was_armed);
   const SafetyGate::Result gated = apply_force();
   enable_ = !motors_off();
-  const Output output = {gated.command, enable_, report(gated)};
+  Output output = {gated.command, enable_, report(gated)};
+  output.status.load = input.load;
   record(input, output.status);
   return output;
 }
@@ -272,7 +331,9 @@ FaultMask Controller::watch_overruns(const Input& input) {
 }
 
 FaultMask Controller::watch_link(const Input& input) {
-  ticks_since_link_ = input.link_alive ? 0U : add_saturating(ticks_since_link_, 1);
+  const std::uint32_t longer = add_saturating(ticks_since_link_, 1);
+  const std::uint32_t age = input.link_age_ticks;
+  ticks_since_link_ = input.link_alive && age < longer ? age : longer;
   const bool needed = configuration_.link_required && !motors_off();
   return needed && ticks_since_link_ > link_timeout_ticks_ ? fault_bit(Fault::kLinkLost) : 0U;
 }
@@ -400,7 +461,7 @@ Vec3 Controller::wanted_force() {
     return rendered;
   }
   const Vec3 added =
-      passivity_.update(shown_, {probe_, velocity_, scene_.rendering().wall_velocity},
+      passivity_.update(shown_ - added_, {probe_, velocity_, scene_.rendering().wall_velocity},
                         pose_.reach * contact.stored_energy);
   const Vec3 force = rendered + added;
   const float push = dot(force, contact.normal);
@@ -413,11 +474,14 @@ SafetyGate::Result Controller::apply_force() {
   if (state_ != State::kActive) {
     passivity_.reset();
     shown_ = {};
+    added_ = {};
+    given_ticks_ = 0;
     whole_ = false;
     return gate_.release();
   }
   const Vec3 weight = configuration_.compensate_gravity ? pose_.gravity_effort : Vec3{};
-  const SafetyGate::Result gated = gate_.command(wanted_force(), pose_.effort_per_force, weight);
+  const SafetyGate::Result gated =
+      gate_.command(with_added_force(wanted_force()), pose_.effort_per_force, weight);
   shown_ = gated.force;
   whole_ = (gated.limits & limit_bit(Limit::kRamp)) == 0U;
   if (gated.not_finite) {
@@ -445,7 +509,7 @@ Status Controller::report(const SafetyGate::Result& gated) const {
   status.velocity = velocity_;
   status.rendering = contact;
   status.force = gated.force;
-  report_reactions(gated.force, status);
+  report_reactions(gated.force - added_, status);
   return status;
 }
 

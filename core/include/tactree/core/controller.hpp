@@ -39,9 +39,12 @@ struct Input {
   bool enable_read_back = false;  ///< true: the amplifiers have power
   bool motors_ok = false;         ///< false: the motor bank reports a failure
   bool link_alive = false;        ///< a valid message came in since the last tick
-  std::uint32_t overruns = 0;     ///< deadlines missed since the last tick
-  float load = 0.0F;              ///< share of the period that the last tick took
-  float supply_V = 0.0F;          ///< of the amplifiers; where Configuration::supply_monitored
+  /// Where link_alive: for how long the host may have been gone when it came in. A message that
+  /// was long on its way is a weak sign of life.
+  std::uint16_t link_age_ticks = 0;
+  std::uint32_t overruns = 0;  ///< deadlines missed since the last tick
+  float load = 0.0F;           ///< share of the period that the last tick took
+  float supply_V = 0.0F;       ///< of the amplifiers; where Configuration::supply_monitored
   Command command = Command::kNone;
 };
 
@@ -57,6 +60,7 @@ struct Status {
   Vec3 velocity{};             ///< m/s
   Rendering rendering{};       ///< contact, proxy, normal, force wanted
   Vec3 force{};                ///< N, after the gate: what the hand is to feel
+  float load = 0.0F;           ///< share of the period that the last tick took
   /// Of the force that the hand feels, on the bodies in contact.
   Reaction reactions[kMaxReachableBodies]{};
   /// Non-zero exactly when a fault is latched or a limit acts.
@@ -69,10 +73,44 @@ struct Output {
   Status status{};
 };
 
+/// What may change without homing and loading anew: see Controller::adjust().
+struct Adjustment {
+  // Only while the motors are off.
+  float force_max_N = 0.0F;
+  float slew_N_s = 0.0F;
+  float ramp_s = 0.0F;
+  bool use_materials = true;
+  bool link_required = false;
+  float link_timeout_s = 0.0F;
+  // Also while there is force.
+  float stiffness_N_m = 0.0F;
+  float damping_Ns_m = 0.0F;
+  float static_friction = 0.0F;
+  float dynamic_friction = 0.0F;
+};
+
+/// Longest that a force of the application acts without being given again, and its share of
+/// force_max_N.
+inline constexpr float kAddedForceSeconds = 0.1F;
+inline constexpr float kAddedForceShare = 0.5F;
+
 class Controller {
  public:
   /// Takes a configuration when it is valid and the motors are off; else changes nothing.
   [[nodiscard]] ConfigurationStatus configure(const Configuration& configuration);
+
+  /// The configuration's figures of an Adjustment, as they are now.
+  [[nodiscard]] Adjustment adjustment() const;
+
+  /// Takes them, by the rules of check(); kBusy where one of the first part would change while
+  /// armed or active. Else changes nothing. Precondition: configured.
+  [[nodiscard]] ConfigurationStatus adjust(const Adjustment& adjustment);
+
+  /// Adds a force of the application to that of the contact for so many ticks, until the next one
+  /// is given, or until it is not active any more. Longer than kAddedForceShare of force_max_N it
+  /// is scaled down; for longer than kAddedForceSeconds it does not act; one that is not finite is
+  /// none. The gate limits the sum as any force.
+  void add_force(Vec3 force_N, std::uint32_t ticks);
 
   /// What a tick costs on this board, of so many cycles a second: from now on a model is refused
   /// (kTooSlow) when a tick with it may take longer than a period. Costs that are not known refuse
@@ -94,12 +132,17 @@ class Controller {
   [[nodiscard]] ModelStatus move_body(std::uint32_t number, const Pose& pose, const Motion& motion);
   [[nodiscard]] ModelStatus enable_body(std::uint32_t number, bool enabled);
   [[nodiscard]] ModelStatus remove_body(std::uint32_t number);
+  [[nodiscard]] bool has_body(std::uint32_t number) const { return !scene_.view(number).empty(); }
 
   /// One tick. Accepts every input. Cost: Scene::update() and some 1000 instructions.
   Output step(const Input& input);
 
   [[nodiscard]] State state() const { return state_; }
   [[nodiscard]] FaultMask faults() const { return latched_; }
+  /// Neither armed nor active.
+  [[nodiscard]] bool motors_off() const {
+    return state_ != State::kArmed && state_ != State::kActive;
+  }
   /// Are the joints' positions known?
   [[nodiscard]] bool homed() const { return homing_.done(); }
   [[nodiscard]] const Configuration& configuration() const { return configuration_; }
@@ -107,9 +150,6 @@ class Controller {
   [[nodiscard]] const FlightRecorder& recorder() const { return recorder_; }
 
  private:
-  [[nodiscard]] bool motors_off() const {
-    return state_ != State::kArmed && state_ != State::kActive;
-  }
   [[nodiscard]] FaultMask sense(const Input& input);
   [[nodiscard]] FaultMask find_joints(const Input& input);
   [[nodiscard]] FaultMask watch(const Input& input);
@@ -132,6 +172,7 @@ class Controller {
   void remove_unsuitable_bodies();
   void notice_empty_scene();
   [[nodiscard]] Vec3 wanted_force();
+  [[nodiscard]] Vec3 with_added_force(Vec3 force);
   SafetyGate::Result apply_force();
   [[nodiscard]] Status report(const SafetyGate::Result& gated) const;
   void report_reactions(Vec3 force, Status& status) const;
@@ -152,7 +193,10 @@ class Controller {
   Vec3 velocity_{};  // of the probe, m/s
   Scene scene_{};
   PassivityController passivity_{};
-  Vec3 shown_{};        // force of the last tick, N
+  Vec3 shown_{};  // force of the last tick, N
+  Vec3 added_{};  // the application's share of it, N
+  Vec3 given_{};  // as add_force() took it, N
+  std::uint32_t given_ticks_ = 0;
   bool whole_ = false;  // that force was not held back by the ramp
   SafetyGate gate_{};
   EncoderWatch encoder_watch_{};

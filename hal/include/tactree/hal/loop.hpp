@@ -99,8 +99,15 @@ class Loop {
   void listen(core::Input& input) {
     const LinkInput link = board_.link().receive();
     input.link_alive = link.alive;
+    input.link_age_ticks = link.age_ticks;
     input.command = link.command;
     apply(link.body, controller_);
+    if (link.force_ticks > 0U) {
+      controller_.add_force(link.force_N, link.force_ticks);
+    }
+    if (link.storage_busy && controller_.motors_off()) {
+      input.overruns = 0;
+    }
   }
 
   B& board_;

@@ -128,13 +128,13 @@ struct CapabilitiesReply {
   float stiffness_N_m = 0.0F;        ///< as set now
   float stiffness_limit_N_m = 0.0F;  ///< with a light hand
   std::uint32_t bodies_max = 0;
-  std::uint32_t bodies = 0;       ///< there are: bit n is body n
-  std::uint32_t slots = 0;        ///< for models; 0: the model is part of the image
-  std::uint32_t slot_bytes = 0;   ///< most bytes of a model
-  std::uint32_t flags = 0;        ///< BoardFlag
-  std::uint32_t trace_ticks = 0;  ///< that the flight recorder holds
-  std::uint32_t parameters = 0;   ///< number of them
-  std::uint32_t reserved = 0;
+  std::uint32_t bodies = 0;           ///< there are: bit n is body n
+  std::uint32_t slots = 0;            ///< for models; 0: the model is part of the image
+  std::uint32_t slot_bytes = 0;       ///< most bytes of a model
+  std::uint32_t flags = 0;            ///< BoardFlag
+  std::uint32_t trace_ticks = 0;      ///< that the flight recorder holds
+  std::uint32_t parameters = 0;       ///< number of them
+  std::uint32_t cycles_per_tick = 0;  ///< of the core's clock in a period; 0: not known
 };
 
 enum class BoardFlag : std::uint32_t {
@@ -221,14 +221,14 @@ enum class TelemetryField : std::uint32_t {
   kNormal = 1U << 5,     ///< f32[3]
   kContact = 1U << 6,    ///< f32 penetration m, u32 body, u32 point
   kWanted = 1U << 7,     ///< f32[3] N, before the gate
-  kTiming = 1U << 8,     ///< u32 overruns, f32 load, u32 instructions or cycles of the tick
+  kTiming = 1U << 8,     ///< u32 overruns, f32 share of the period that the last tick took
   kReactions = 1U << 9,  ///< twice: u32 body, f32[3] force N, f32[3] torque Nm
 };
 inline constexpr std::uint32_t kTelemetryFields = 10;
 
 /// Bytes of each field, in the order above.
 inline constexpr std::uint32_t kTelemetryFieldBytes[kTelemetryFields] = {12, 12, 12, 12, 12,
-                                                                         12, 12, 12, 12, 56};
+                                                                         12, 12, 12, 8,  56};
 
 struct SubscribeRequest {
   std::uint32_t fields = 0;      ///< TelemetryField, or of them
