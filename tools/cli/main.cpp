@@ -8,6 +8,7 @@
 #include "build_command.hpp"
 #include "check_command.hpp"
 #include "command.hpp"
+#include "devices_command.hpp"
 #include "evaluate_command.hpp"
 #include "image_command.hpp"
 #include "info_command.hpp"
@@ -26,6 +27,7 @@ int main(int argc, char** argv) {
   add_check_command(app, exit_code);
   add_query_command(app, exit_code);
   add_image_command(app, exit_code);
+  add_devices_command(app, exit_code);
   add_simulate_command(app, exit_code);
   add_evaluate_command(app, exit_code);
   try {

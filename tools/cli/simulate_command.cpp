@@ -21,6 +21,7 @@
 #include "tactree/simulation/injection.hpp"
 #include "tactree/simulation/simulation.hpp"
 #include "tactree/simulation/trace.hpp"
+#include "usb_simulation.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -47,6 +48,9 @@ struct SimulateOptions {
   std::string json;
   std::vector<std::string> injections;
   double seconds = 10.0;
+  bool on_usb = false;
+  UsbSimulationOptions usb;
+  CLI::Option* seconds_option = nullptr;
   double latency_ticks = 0.0;
   double encoder_step_m = 30e-6;
   std::vector<CLI::Option*> cartesian_only;
@@ -494,6 +498,20 @@ void write_plot(const SimulateOptions& options, const SceneFile& scene, const Ou
                                         paper_first ? outcome.samples : beside.samples, title));
 }
 
+/// With an application at the other end of a cable, which arms and stops it.
+void simulate_on_usb(SimulateOptions& options, const SceneFile& scene) {
+  simulation::Setup setup = make_setup(options, scene);
+  setup.controller.dead_man_required = false;  // the application confirms
+  const BlobFile& blob = *scene.files[0];
+  served::UsbBoard board(usb_identity(options.usb), board_identity(options.usb), blob.bytes());
+  simulation::Simulation sim(blob.bytes(), setup, hand_path(options, scene), board.target());
+  check_start(scene.names[0], blob.view(), setup, sim.start_result());
+  if (options.seconds_option->count() != 0) {
+    options.usb.seconds = options.seconds;
+  }
+  run_on_usb(board, sim, setup.controller, options.usb);
+}
+
 void simulate(SimulateOptions& options, int& exit_code) {
   if (options.dump_device) {
     fmt::print("{}", device_json(load_device(options.device)));
@@ -504,6 +522,10 @@ void simulate(SimulateOptions& options, int& exit_code) {
   }
   const SceneFile scene = read_scene(options.scene, options.blobs);
   options.blob = scene.names[0];
+  if (options.on_usb) {
+    simulate_on_usb(options, scene);
+    return;
+  }
   const Outcome outcome = run(options, scene);
   if (!options.trace.empty()) {
     write_trace(options.trace, outcome.samples);
@@ -615,6 +637,14 @@ void add_device_options(CLI::App& verb, SimulateOptions& options) {
       ->check(CLI::Range(-10.0, 10.0));
 }
 
+void add_usb_options(CLI::App& verb, SimulateOptions& options) {
+  CLI::Option* usb = verb.add_flag(
+      "--usb", options.on_usb,
+      "be a USB device of this computer, in real time, until interrupted or for --seconds; needs "
+      "root and `modprobe vhci-hcd`; SIGUSR1 pulls the cable and plugs it in again");
+  verb.add_option("--usb-serial", options.usb.serial, "last digits of its serial number")->needs(usb);
+}
+
 void add_output_options(CLI::App& verb, SimulateOptions& options) {
   verb.add_option("--trace", options.trace, "write every tick to this CSV file");
   CLI::Option* plot =
@@ -646,9 +676,9 @@ void add_simulate_command(CLI::App& app, int& exit_code) {
   verb->add_option("--mode", options->mode, "how contact is rendered")
       ->check(CLI::IsMember({"surface", "paper"}))
       ->capture_default_str();
-  verb->add_option("--seconds", options->seconds, "length of the run, s")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+  options->seconds_option = verb->add_option("--seconds", options->seconds, "length of the run, s")
+                                ->check(CLI::PositiveNumber)
+                                ->capture_default_str();
   CLI::Option* script = verb->add_option("--script", options->script, "what the hand does")
                             ->check(CLI::IsMember(simulation::script_names()))
                             ->capture_default_str();
@@ -658,6 +688,7 @@ void add_simulate_command(CLI::App& app, int& exit_code) {
   add_plant_options(*verb, *options);
   add_injection_option(*verb, *options);
   add_output_options(*verb, *options);
+  add_usb_options(*verb, *options);
   verb->callback([options, &exit_code] { simulate(*options, exit_code); });
 }
 

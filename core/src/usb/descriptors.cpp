@@ -97,8 +97,7 @@ constexpr Writer<kBosBytes> write_bos() {
   constexpr std::uint8_t kPlatform[16] = {0xDF, 0x60, 0xDD, 0xD8, 0x89, 0x45, 0xC7, 0x4C,
                                           0x9C, 0xD2, 0x65, 0x9D, 0x9E, 0x64, 0x8A, 0x9F};
   Writer<kBosBytes> writer;
-  writer.u8(5).u8(15).u16(kBosBytes).u8(2);
-  writer.u8(7).u8(16).u8(2).u32(0);  // USB 2.0 extension: no link power management
+  writer.u8(5).u8(15).u16(kBosBytes).u8(1);
   writer.u8(28).u8(16).u8(5).u8(0).raw(kPlatform);
   writer.u32(kWindows81).u16(kMicrosoftBytes).u8(kMicrosoftRequest).u8(0);
   return writer;

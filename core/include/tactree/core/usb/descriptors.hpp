@@ -62,7 +62,7 @@ struct Identity {
 inline constexpr std::size_t kDeviceDescriptorBytes = 18;
 inline constexpr std::size_t kQualifierBytes = 10;
 inline constexpr std::size_t kConfigurationBytes = 75;
-inline constexpr std::size_t kBosBytes = 40;
+inline constexpr std::size_t kBosBytes = 33;
 inline constexpr std::size_t kMicrosoftBytes = 498;
 inline constexpr std::size_t kStringBytesMax = 64;
 
