@@ -56,8 +56,8 @@ class BoardOnUsb {
   }
 
   void run() {
-    const test::TestBlob blob(test::sphere(0.03, 2e-3));
-    const auto bytes = std::as_bytes(std::span(blob.written().words));
+    static const test::TestBlob blob(test::sphere(0.03, 4e-3));
+    const std::span<const std::byte> bytes = blob.written().bytes;
     core::usb::Identity identity;
     identity.serial = {0x11111111, 0x22222222, 0x33333333};
     served::UsbBoard board(identity, {"test", "1.2.3", {1, 2, 3}, 0}, bytes);
@@ -141,7 +141,11 @@ class Application {
   host::Response ask(core::wire::MessageKind kind) {
     return await(client_.send(kind, std::span<const std::byte>(), now_us()));
   }
-  host::Response open() { return await(client_.open(0, 7, now_us())); }
+  /// As another program than all before: the board tells them by this number.
+  host::Response open() {
+    static std::uint32_t programs = 0;
+    return await(client_.open(0, ++programs, now_us()));
+  }
 
   [[nodiscard]] host::Client& client() { return client_; }
   [[nodiscard]] host::UsbTransport& transport() { return *transport_; }

@@ -222,7 +222,7 @@ TEST(Usb, PullingTheCableAtAnyMomentIsNoticedAndAReplugWorks) {
       const std::array<std::byte, 3000> garbage{std::byte{1}};
       (void)application.transport().write(garbage);
     }
-    const std::uint32_t turns = random() % 20;
+    const auto turns = static_cast<std::uint32_t>(random() % 20);
     for (std::uint32_t i = 0; i < turns; ++i) {
       application.turn(std::chrono::microseconds(200));
     }
@@ -272,6 +272,8 @@ TEST(Usb, ADfuTransferThatIsBrokenOffLeavesTheModel) {
       return libusb_control_transfer(device, type, number, 0, 1, data.data(),
                                      static_cast<std::uint16_t>(data.size()), 60000);
     };
+    ASSERT_EQ(request(0xA1, 3, std::vector<unsigned char>(6)), 6);  // as every tool begins
+    ASSERT_EQ(request(0x21, 6, {}), 0);
     ASSERT_EQ(request(0x21, 1, std::vector<unsigned char>(512)), 512);
     EXPECT_TRUE(eventually([&] { return board.model_state() == core::usb::DfuState::kDownloadSync; }));
     if (pull) {
