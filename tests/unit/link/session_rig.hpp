@@ -2,6 +2,7 @@
 // A board with a session, and a client, over a link that a test spoils; in one thread, in steps of
 // a tick. The board touches a sphere; its device stands still outside of it, or inside on demand.
 
+#include <algorithm>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -102,11 +103,13 @@ class SessionRig {
   }
 
   /// Where the device is held, m along x: 0.05 is outside the sphere of 0.03.
-  void stand_at(double x_m) { place_[0] = x_m; }
+  /// It gets there at 2 m/s.
+  void stand_at(double x_m) { goal_m_ = x_m; }
 
   /// One tick, and what board and client do around it.
   const core::Status& tick() {
     ++tick_;
+    place_[0] += std::clamp(goal_m_ - place_[0], -0.002, 0.002);
     board_.sample(place_);
     status_ = loop_.tick().status;
     while (session_.work()) {
@@ -189,6 +192,7 @@ class SessionRig {
   static constexpr hal::BoardIdentity kIdentity{"test", "1.2.3", {1, 2, 3}, 0};
 
   std::uint64_t tick_ = 0;
+  double goal_m_ = 0.05;
   double place_[core::kAxes] = {0.05, 0.0, 0.0};
   Wire to_board_;
   Wire to_host_;

@@ -43,8 +43,8 @@ inline constexpr std::uint8_t kDelimiter = 0;
 
 /// A message whose fields lie in memory as on the wire.
 template <class T>
-concept Message =
-    std::is_aggregate_v<T> && std::is_trivially_copyable_v<T> && sizeof(T) <= kMaxPayload;
+concept Message = std::is_aggregate_v<T> && std::is_trivially_copyable_v<T> &&
+                  sizeof(T) <= kMaxPayload;
 
 template <Message T>
 [[nodiscard]] std::size_t encode_message(const FrameHeader& header, const T& message,

@@ -361,8 +361,9 @@ class Session {
     const std::uint32_t now_us = parts_.platform.now_us();
     const std::uint32_t age_us = now_us - request.board_time_us;
     const float rate_hz = parts_.controller.configuration().rate_hz;
-    // One more: the tick that takes it may be that late.
-    const float ticks = 1e-6F * static_cast<float>(age_us) * rate_hz + 1.0F;
+    // Rounded up, and two more: the next tick takes it, and the controller lets a link be as old as
+    // its timeout.
+    const float ticks = 1e-6F * static_cast<float>(age_us) * rate_hz + 2.999F;
     if (age_us < 0x80000000U && ticks < 65535.0F) {
       parts_.mailbox.post_sign_of_life(static_cast<std::uint16_t>(ticks));
     }

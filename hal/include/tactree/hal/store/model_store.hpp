@@ -1,0 +1,389 @@
+#pragma once
+// Two slots for models in a board's flash, and a log of records that says which one is in use. A
+// model is written into the slot that is not in use, checked there, and used once the record that
+// says so is complete: a power cut at any moment leaves the old model or the new one.
+//
+//   sector 0, 1   records            record_log.hpp
+//   then          slot 0, slot 1     half of the other sectors each
+//
+// What is read is never trusted: a model is opened by open_blob() each time, its checksum, and
+// where a key is given its signature, are those of its record. A store that makes no sense is
+// damaged: no model, until somebody writes one.
+//
+// Where the board has a key, only signed models are used, and none whose counter is smaller than
+// that of one used before.
+//
+// Not for the tick. One context.
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "tactree/core/blob.hpp"
+#include "tactree/core/signature.hpp"
+#include "tactree/core/wire/messages.hpp"
+#include "tactree/hal/store/record_log.hpp"
+
+namespace tactree::hal {
+
+struct StoreSetup {
+  const char* board = "";                ///< name of this board
+  const std::uint8_t* key = nullptr;     ///< 32 bytes; nullptr: no signature is required
+  std::span<const std::byte> factory{};  ///< model of the image, in use until another is; or none
+};
+
+template <Flash F>
+class ModelStore {
+ public:
+  using WireStatus = core::wire::WireStatus;
+  static constexpr std::uint32_t kSlots = kStoreSlots;
+
+  ModelStore(F& flash, const StoreSetup& setup) : flash_(flash), setup_(setup), log_(flash) {}
+
+  // ---- at start-up
+
+  /// Reads the record. Call it before all else. False: the store is damaged, there is no model.
+  bool mount() {
+    record_ = {};
+    const auto found = log_.find(slot_bytes(), record_);
+    damaged_ = found == RecordLog<F>::Found::kDamaged;
+    if (found != RecordLog<F>::Found::kRecord) {
+      record_ = {};
+    }
+    return !damaged_;
+  }
+
+  /// The model in use, as BlobStorage: empty where there is none that can be used.
+  [[nodiscard]] std::span<const std::byte> active() const noexcept {
+    if (damaged_) {
+      return {};
+    }
+    if (record_.active == kFactorySlot) {
+      return setup_.factory;
+    }
+    core::BlobView view;
+    core::BlobStatus blob = core::BlobStatus::kOk;
+    const bool good = check_slot(record_.active, view, blob) == WireStatus::kOk;
+    return good ? bytes_of(record_.active, record_.slot[record_.active].bytes)
+                : std::span<const std::byte>();
+  }
+
+  /// kParameters values, or nullptr: none were saved.
+  [[nodiscard]] const float* parameters() const {
+    return record_.has_parameters != 0U ? record_.parameter : nullptr;
+  }
+
+  // ---- for ModelTransfer; `owner` is who writes
+
+  [[nodiscard]] std::uint32_t slot_bytes() const {
+    return sectors_per_slot() * flash_.geometry().sector_bytes;
+  }
+  [[nodiscard]] bool signature_required() const { return setup_.key != nullptr; }
+
+  [[nodiscard]] core::wire::ListModelsReply list() const {
+    core::wire::ListModelsReply reply;
+    reply.counter_min = record_.counter_min;
+    reply.slots = kSlots;
+    for (std::uint32_t i = 0; i < kSlots; ++i) {  // bound: kSlots
+      reply.slot[i] = describe_slot(i);
+    }
+    return reply;
+  }
+
+  [[nodiscard]] WireStatus begin(const core::wire::BeginModelRequest& request, const void* owner) {
+    if (owner_ != nullptr && owner_ != owner) {
+      return WireStatus::kOtherWriter;
+    }
+    const WireStatus status = admit(request);
+    if (status != WireStatus::kOk) {
+      return status;
+    }
+    owner_ = owner;
+    announced_ = request;
+    next_offset_ = 0;
+    slot_ = spare_slot();
+    record_.slot[slot_] = {};
+    return start_erasing(announced_.bytes);
+  }
+
+  /// Erases the next sector; while is_erasing().
+  [[nodiscard]] WireStatus erase_next() {
+    if (!is_erasing()) {
+      return WireStatus::kOk;
+    }
+    const std::uint32_t sector = next_sector_;
+    ++next_sector_;
+    if (flash_.erase(sector)) {
+      return WireStatus::kOk;
+    }
+    next_sector_ = end_sector_;
+    owner_ = nullptr;
+    return WireStatus::kStorageFailed;
+  }
+  [[nodiscard]] bool is_erasing() const { return next_sector_ != end_sector_; }
+  [[nodiscard]] std::uint32_t transfer_slot() const { return slot_; }
+  [[nodiscard]] std::uint32_t next_offset() const { return next_offset_; }
+
+  [[nodiscard]] WireStatus write(std::uint32_t offset, std::span<const std::byte> bytes,
+                                 const void* owner) {
+    if (owner_ == nullptr || owner_ != owner) {
+      return owner_ == nullptr ? WireStatus::kNoTransfer : WireStatus::kOtherWriter;
+    }
+    const bool last = next_offset_ + bytes.size() == announced_.bytes;
+    const bool fits = offset == next_offset_ && !bytes.empty() &&
+                      bytes.size() <= announced_.bytes - next_offset_ &&
+                      bytes.size() <= core::wire::kMaxPiece;
+    if (!fits || (bytes.size() % kLargestPiece != 0U && !last)) {
+      return WireStatus::kOutOfOrder;
+    }
+    if (!program(bytes)) {
+      owner_ = nullptr;
+      return WireStatus::kStorageFailed;
+    }
+    next_offset_ += static_cast<std::uint32_t>(bytes.size());
+    return WireStatus::kOk;
+  }
+
+  /// Is what was written what was announced, a model, and signed? Then it is kept in the record.
+  [[nodiscard]] WireStatus finish(const core::wire::FinishModelRequest& request,
+                                  core::BlobStatus& blob, const void* owner) {
+    if (owner_ == nullptr || owner_ != owner) {
+      return owner_ == nullptr ? WireStatus::kNoTransfer : WireStatus::kOtherWriter;
+    }
+    owner_ = nullptr;
+    if (next_offset_ != announced_.bytes) {
+      return WireStatus::kInterrupted;
+    }
+    ModelRecord changed = record_;
+    SlotEntry& entry = changed.slot[slot_];
+    __builtin_memcpy(entry.board, announced_.board, sizeof entry.board);
+    entry.bytes = announced_.bytes;
+    entry.checksum = announced_.checksum;
+    entry.counter = announced_.counter;
+    entry.is_signed = request.is_signed != 0U ? 1U : 0U;
+    __builtin_memcpy(entry.signature, request.signature, sizeof entry.signature);
+    core::BlobView view;
+    const WireStatus status = check(entry, slot_, view, blob);
+    return status == WireStatus::kOk ? commit(changed) : status;
+  }
+
+  /// A transfer that was begun is given up, if it is this owner's.
+  void release(const void* owner) {
+    if (owner_ == owner) {
+      owner_ = nullptr;
+    }
+  }
+
+  /// A view of a slot's model, if it can be used.
+  [[nodiscard]] WireStatus open(std::uint32_t slot, core::BlobView& view,
+                                core::BlobStatus& blob) const {
+    if (slot >= kSlots || record_.slot[slot].bytes == 0U) {
+      return WireStatus::kNoModel;
+    }
+    return check_slot(slot, view, blob);
+  }
+
+  /// Precondition: open(slot) was kOk.
+  [[nodiscard]] WireStatus activate(std::uint32_t slot) {
+    ModelRecord changed = record_;
+    changed.active = slot;
+    const std::uint32_t counter = changed.slot[slot].counter;
+    if (changed.slot[slot].is_signed != 0U && counter > changed.counter_min) {
+      changed.counter_min = counter;
+    }
+    const WireStatus status = commit(changed);
+    damaged_ = damaged_ && status != WireStatus::kOk;
+    return status;
+  }
+
+  /// The slot that is not in use; kSlots where the model of the image is.
+  [[nodiscard]] std::uint32_t other_slot() const {
+    return record_.active < kSlots ? 1U - record_.active : kSlots;
+  }
+
+  [[nodiscard]] WireStatus begin_erase(std::uint32_t slot, const void* owner) {
+    if (slot >= kSlots) {
+      return WireStatus::kBadValue;
+    }
+    if (slot == record_.active) {
+      return WireStatus::kInUse;
+    }
+    if (owner_ != nullptr && owner_ != owner) {
+      return WireStatus::kOtherWriter;
+    }
+    owner_ = nullptr;
+    ModelRecord changed = record_;
+    changed.slot[slot] = {};
+    const WireStatus status = commit(changed);
+    if (status != WireStatus::kOk) {
+      return status;
+    }
+    slot_ = slot;
+    return start_erasing(slot_bytes());
+  }
+
+  [[nodiscard]] WireStatus save_parameters(const float (&values)[core::kParameters]) {
+    ModelRecord changed = record_;
+    changed.has_parameters = 1;
+    __builtin_memcpy(changed.parameter, values, sizeof values);
+    return commit(changed);
+  }
+
+ private:
+  static constexpr std::uint32_t kLargestPiece = 32;  // of program_bytes
+
+  [[nodiscard]] std::uint32_t sectors_per_slot() const {
+    return (flash_.geometry().sectors - 2U) / kSlots;
+  }
+  [[nodiscard]] std::uint32_t first_sector(std::uint32_t slot) const {
+    return 2U + slot * sectors_per_slot();
+  }
+  [[nodiscard]] std::span<const std::byte> bytes_of(std::uint32_t slot, std::uint32_t count) const {
+    return flash_.bytes().subspan(first_sector(slot) * flash_.geometry().sector_bytes, count);
+  }
+
+  [[nodiscard]] std::uint32_t spare_slot() const {
+    if (record_.active < kSlots) {
+      return 1U - record_.active;
+    }
+    return record_.slot[0].bytes == 0U ? 0U : 1U;
+  }
+
+  [[nodiscard]] WireStatus start_erasing(std::uint32_t bytes) {
+    const std::uint32_t sector_bytes = flash_.geometry().sector_bytes;
+    next_sector_ = first_sector(slot_);
+    end_sector_ = next_sector_ + (bytes + sector_bytes - 1U) / sector_bytes;
+    return WireStatus::kOk;
+  }
+
+  [[nodiscard]] bool is_for_this_board(const char (&board)[24]) const {
+    if (board[0] == '\0') {
+      return true;
+    }
+    for (std::uint32_t i = 0; i < sizeof board; ++i) {  // bound: 24
+      if (board[i] != setup_.board[i]) {
+        return false;
+      }
+      if (board[i] == '\0') {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  /// What can be refused before anything is erased.
+  [[nodiscard]] WireStatus admit(const core::wire::BeginModelRequest& request) const {
+    if (request.bytes > slot_bytes()) {
+      return WireStatus::kTooLarge;
+    }
+    if (request.bytes < sizeof(core::BlobHeader)) {
+      return WireStatus::kBadValue;
+    }
+    if (!is_for_this_board(request.board)) {
+      return WireStatus::kWrongBoard;
+    }
+    const bool old = signature_required() && request.counter < record_.counter_min;
+    return old ? WireStatus::kOldCounter : WireStatus::kOk;
+  }
+
+  // The last piece is filled up with bytes that flash has of its own.
+  [[nodiscard]] bool program(std::span<const std::byte> bytes) {
+    alignas(4) std::byte piece[core::wire::kMaxPiece];
+    for (std::byte& byte : piece) {  // bound: kMaxPiece
+      byte = std::byte{0xFF};
+    }
+    __builtin_memcpy(piece, bytes.data(), bytes.size());
+    const std::uint32_t unit = flash_.geometry().program_bytes;
+    const std::size_t size = (bytes.size() + unit - 1U) / unit * unit;
+    const std::uint32_t offset =
+        first_sector(slot_) * flash_.geometry().sector_bytes + next_offset_;
+    return flash_.program(offset, std::span(piece).first(size)) &&
+           __builtin_memcmp(flash_.bytes().data() + offset, piece, size) == 0;
+  }
+
+  [[nodiscard]] WireStatus commit(ModelRecord& changed) {
+    if (!log_.append(changed)) {
+      return WireStatus::kStorageFailed;
+    }
+    record_ = changed;
+    return WireStatus::kOk;
+  }
+
+  [[nodiscard]] WireStatus check_slot(std::uint32_t slot, core::BlobView& view,
+                                      core::BlobStatus& blob) const {
+    return check(record_.slot[slot], slot, view, blob);
+  }
+
+  [[nodiscard]] WireStatus check(const SlotEntry& entry, std::uint32_t slot, core::BlobView& view,
+                                 core::BlobStatus& blob) const {
+    const std::span<const std::byte> bytes = bytes_of(slot, entry.bytes);
+    if (core::crc32(bytes) != entry.checksum) {
+      return WireStatus::kBadChecksum;
+    }
+    if (!is_for_this_board(entry.board)) {
+      return WireStatus::kWrongBoard;
+    }
+    if (signature_required() && entry.counter < record_.counter_min) {
+      return WireStatus::kOldCounter;
+    }
+    if (!is_authentic(entry, bytes)) {
+      return WireStatus::kBadSignature;
+    }
+    blob = core::open_blob(bytes, view);
+    return blob == core::BlobStatus::kOk ? WireStatus::kOk : WireStatus::kBadModel;
+  }
+
+  [[nodiscard]] bool is_authentic(const SlotEntry& entry, std::span<const std::byte> bytes) const {
+    if (setup_.key == nullptr) {
+      return true;
+    }
+    core::wire::ModelManifest manifest;
+    __builtin_memcpy(manifest.board, entry.board, sizeof manifest.board);
+    manifest.counter = entry.counter;
+    manifest.bytes = entry.bytes;
+    return entry.is_signed != 0U &&
+           core::is_signed_by(core::PublicKeyView(setup_.key, core::kPublicKeyBytes),
+                              core::SignatureView(entry.signature),
+                              std::as_bytes(std::span(&manifest, 1)), bytes);
+  }
+
+  [[nodiscard]] core::wire::ModelSlot describe_slot(std::uint32_t slot) const {
+    using core::wire::SlotState;
+    const SlotEntry& entry = record_.slot[slot];
+    core::wire::ModelSlot told;
+    told.bytes = entry.bytes;
+    told.checksum = entry.checksum;
+    told.counter = entry.counter;
+    told.flags = entry.is_signed != 0U ? 1U : 0U;
+    SlotState state = SlotState::kEmpty;
+    if (owner_ != nullptr && slot == slot_) {
+      state = SlotState::kPartial;
+    } else if (entry.bytes != 0U) {
+      core::BlobView view;
+      core::BlobStatus blob = core::BlobStatus::kOk;
+      const bool good = check_slot(slot, view, blob) == WireStatus::kOk;
+      told.blob = static_cast<std::uint8_t>(blob);
+      told.points = good ? view.point_count() : 0U;
+      state = !good                    ? SlotState::kDamaged
+              : slot == record_.active ? SlotState::kActive
+                                       : SlotState::kReady;
+    }
+    told.state = static_cast<std::uint8_t>(state);
+    return told;
+  }
+
+  F& flash_;
+  StoreSetup setup_;
+  RecordLog<F> log_;
+  ModelRecord record_{};
+  bool damaged_ = false;
+
+  const void* owner_ = nullptr;  // of the transfer; nullptr: there is none
+  core::wire::BeginModelRequest announced_{};
+  std::uint32_t slot_ = 0;
+  std::uint32_t next_offset_ = 0;
+  std::uint32_t next_sector_ = 0;
+  std::uint32_t end_sector_ = 0;
+};
+
+}  // namespace tactree::hal

@@ -1,0 +1,126 @@
+#pragma once
+// A board with a haptic device, for an application:
+//
+//   tactree::host::Board board("/dev/ttyACM0");
+//   board.subscribe({.every_ticks = 10});
+//   board.arm();                                     // waits for the dead-man control
+//   while (running) {
+//     board.move_body(0, pose_of_my_object());       // none of these wait
+//     draw(board.latest());
+//   }
+//   board.stop();
+//
+// What is marked "waits" waits for the board's answer, at most a second unless said otherwise, and
+// throws LinkError where the board refuses, is silent or gone. The rest returns at once.
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tactree/core/flight_recorder.hpp"
+#include "tactree/core/pose.hpp"
+#include "tactree/host/connection.hpp"
+
+namespace tactree::host {
+
+struct BoardOptions {
+  unsigned baud = 115200;
+  /// 5 .. 100: force ends when this program does not run for that long. 0: force goes on without
+  /// it.
+  std::uint16_t link_timeout_ms = 0;
+};
+
+struct Subscription {
+  std::uint32_t fields = 0x1FF;    ///< TelemetryField, or of them
+  std::uint32_t every_ticks = 10;  ///< 0: end it
+};
+
+/// A model to be written to a board.
+struct ModelFile {
+  std::span<const std::byte> bytes;
+  std::string board;          ///< only for the board of this name; empty: for any
+  std::uint32_t counter = 0;  ///< anti-rollback
+  bool is_signed = false;
+  std::array<std::uint8_t, 64> signature{};
+};
+
+struct TracedTick {
+  std::uint32_t tick = 0;
+  core::FlightRecord record{};
+};
+
+class Board {
+ public:
+  /// A port by its path. Opens a session; waits.
+  explicit Board(const std::string& port, const BoardOptions& options = {});
+  Board(std::unique_ptr<Transport> transport, const BoardOptions& options);
+  /// Closes the session: the board stops.
+  ~Board();
+  Board(const Board&) = delete;
+  Board& operator=(const Board&) = delete;
+
+  /// Who is there, without a session: disturbs nobody. Waits.
+  [[nodiscard]] static core::wire::IdentifyReply identify(std::unique_ptr<Transport> transport);
+
+  // ---- these wait
+  [[nodiscard]] core::wire::IdentifyReply identify();
+  [[nodiscard]] core::wire::CapabilitiesReply capabilities();
+  [[nodiscard]] core::wire::StateReply state();
+  /// Until there may be force. Where the board has a dead-man control, until it is held, at most
+  /// `patience`. Throws, and stops, where it takes longer.
+  void arm(std::chrono::milliseconds patience = std::chrono::seconds(30));
+  /// Arms and does not wait for the hand. Throws where the state does not allow it.
+  void begin_arming();
+  void stop();
+  void clear_faults();  ///< and stops, so that the board is ready again
+  void home();          ///< the device is in its home pose
+  void set_limits(float force_max_N, float slew_N_s, float ramp_s);
+  void set_material(const core::wire::SetMaterialRequest& material);
+  void subscribe(const Subscription& subscription);
+  [[nodiscard]] std::vector<TracedTick> trace();  ///< oldest first
+  [[nodiscard]] core::wire::ReadFaultReply first_fault();
+  [[nodiscard]] std::vector<core::wire::ParameterReply> parameters();
+  void set_parameter(const std::string& name, float value);
+  void save_parameters();
+
+  // ---- models; these wait, for as long as the flash takes
+  using Progress = std::function<void(std::size_t done, std::size_t all)>;
+  [[nodiscard]] core::wire::ListModelsReply models();
+  /// Writes a model, has it checked and used from now on. The one before stays in the other slot.
+  void flash(const ModelFile& model, const Progress& progress = {});
+  void roll_back();
+  void erase_model(std::uint32_t slot);
+
+  // ---- these do not
+  void move_body(std::uint32_t body, const core::Pose& pose, const core::Motion& motion = {},
+                 bool enabled = true);
+  void add_force(const std::array<float, 3>& force_N, std::uint32_t duration_ms);
+  /// All zero before the first.
+  [[nodiscard]] Telemetry latest() const { return connection_.latest().value_or(Telemetry{}); }
+  [[nodiscard]] std::vector<Telemetry> take_stream() { return connection_.take_stream(); }
+  [[nodiscard]] std::uint64_t dropped() const { return connection_.dropped(); }
+  [[nodiscard]] bool in_session() const { return connection_.in_session(); }
+
+  [[nodiscard]] Connection& connection() { return connection_; }
+
+ private:
+  Response demand(core::wire::MessageKind kind, std::span<const std::byte> payload,
+                  const char* what);
+  template <core::wire::Message T>
+  Response demand(core::wire::MessageKind kind, const T& message, const char* what) {
+    return demand(kind, std::as_bytes(std::span(&message, 1)), what);
+  }
+  template <core::wire::Message Reply>
+  [[nodiscard]] Reply fetch(core::wire::MessageKind kind, const char* what);
+  Response control(core::wire::ControlCode code, std::uint32_t token, const char* what);
+  void write_pieces(std::span<const std::byte> bytes, const Progress& progress);
+
+  Connection connection_;
+};
+
+}  // namespace tactree::host

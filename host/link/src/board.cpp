@@ -1,0 +1,325 @@
+#include "tactree/host/board.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <thread>
+
+#include "tactree/core/controller.hpp"
+#include "tactree/core/crc32.hpp"
+#include "tactree/host/link_error.hpp"
+#include "tactree/host/serial_port.hpp"
+
+namespace tactree::host {
+namespace {
+
+using core::wire::ControlCode;
+using core::wire::MessageKind;
+using core::wire::WireStatus;
+
+// Pieces of a model that are on their way at once: enough to fill the time of a reply.
+constexpr std::size_t kPiecesUnderWay = 6;
+constexpr std::size_t kPiecesPerCall = 64;
+
+const char* remedy_for(WireStatus status) {
+  switch (status) {
+    case WireStatus::kBusy:
+      return " (tactree stop, then again)";
+    case WireStatus::kNoSession:
+      return " (the board was reset, or another program opened a session)";
+    case WireStatus::kTooLarge:
+      return " (build it with a larger --spacing or with --flash-budget)";
+    case WireStatus::kBadSignature:
+      return " (tactree sign, with the key that belongs to the board)";
+    case WireStatus::kOldCounter:
+      return " (sign it with a larger --counter)";
+    default:
+      return "";
+  }
+}
+
+/// What a refused model says besides.
+std::string details(const Response& response) {
+  core::wire::FinishModelReply reply;
+  if (response.status != WireStatus::kBadModel || !response.read(reply)) {
+    return "";
+  }
+  const auto blob = static_cast<core::BlobStatus>(reply.blob);
+  return std::string(": ") + (blob != core::BlobStatus::kOk
+                                  ? core::describe(blob)
+                                  : core::describe(static_cast<core::ModelStatus>(reply.model)));
+}
+
+template <std::size_t N>
+void copy(const std::string& from, char (&to)[N]) {
+  std::memcpy(to, from.data(), std::min(from.size(), N - 1));
+}
+
+}  // namespace
+
+Board::Board(const std::string& port, const BoardOptions& options)
+    : Board(open_serial_port(port, options.baud), options) {}
+
+Board::Board(std::unique_ptr<Transport> transport, const BoardOptions& options)
+    : connection_(std::move(transport)) {
+  connection_.open(options.link_timeout_ms);
+}
+
+Board::~Board() {
+  if (connection_.in_session()) {
+    (void)connection_.call(MessageKind::kClose);
+  }
+}
+
+core::wire::IdentifyReply Board::identify(std::unique_ptr<Transport> transport) {
+  Connection connection(std::move(transport));
+  const Response response = connection.call(MessageKind::kIdentify);
+  core::wire::IdentifyReply reply;
+  if (!response.ok() || !response.read(reply)) {
+    throw LinkError(connection.name() + ": no answer (is it a board with Tactree's firmware?)");
+  }
+  return reply;
+}
+
+Response Board::demand(MessageKind kind, std::span<const std::byte> payload, const char* what) {
+  Response response = connection_.call(kind, payload);
+  const std::string where = connection_.name() + ": " + what + ": ";
+  if (response.timed_out) {
+    throw LinkError(where + (connection_.connected() ? "no answer" : "the board is gone"));
+  }
+  if (!response.ok()) {
+    throw LinkError(where + core::wire::describe(response.status) + details(response) +
+                    remedy_for(response.status));
+  }
+  return response;
+}
+
+template <core::wire::Message Reply>
+Reply Board::fetch(MessageKind kind, const char* what) {
+  const Response response = demand(kind, std::span<const std::byte>(), what);
+  Reply reply;
+  if (!response.read(reply)) {
+    throw LinkError(connection_.name() + ": " + what + ": the reply is too short");
+  }
+  return reply;
+}
+
+core::wire::IdentifyReply Board::identify() {
+  return fetch<core::wire::IdentifyReply>(MessageKind::kIdentify, "identify");
+}
+core::wire::CapabilitiesReply Board::capabilities() {
+  return fetch<core::wire::CapabilitiesReply>(MessageKind::kCapabilities, "capabilities");
+}
+core::wire::StateReply Board::state() {
+  return fetch<core::wire::StateReply>(MessageKind::kState, "state");
+}
+core::wire::ReadFaultReply Board::first_fault() {
+  return fetch<core::wire::ReadFaultReply>(MessageKind::kReadFault, "fault");
+}
+core::wire::ListModelsReply Board::models() {
+  return fetch<core::wire::ListModelsReply>(MessageKind::kListModels, "models");
+}
+
+Response Board::control(ControlCode code, std::uint32_t token, const char* what) {
+  return demand(MessageKind::kControl,
+                core::wire::ControlRequest{static_cast<std::uint8_t>(code), {}, token}, what);
+}
+
+void Board::begin_arming() { (void)control(ControlCode::kArm, 0, "arm"); }
+
+void Board::arm(std::chrono::milliseconds patience) {
+  using core::wire::BoardFlag;
+  const bool hand_confirms =
+      (capabilities().flags & static_cast<std::uint32_t>(BoardFlag::kDeadManRequired)) != 0U;
+  core::wire::ControlReply armed;
+  (void)control(ControlCode::kArm, 0, "arm").read(armed);
+  const auto deadline = std::chrono::steady_clock::now() + patience;
+  while (true) {
+    const auto now = static_cast<core::State>(state().state);
+    if (now == core::State::kActive) {
+      return;
+    }
+    if (now != core::State::kArmed || std::chrono::steady_clock::now() > deadline) {
+      stop();
+      throw LinkError(
+          connection_.name() + ": arm: the controller is in state " + core::name_of(now) + " (" +
+          (hand_confirms ? "let the dead-man control go, then hold it, " : "hold the probe ") +
+          "outside of the object)");
+    }
+    if (!hand_confirms) {
+      // Refused while the enable line is on its way, or the probe inside: asked for again.
+      (void)connection_.call(
+          MessageKind::kControl,
+          core::wire::ControlRequest{
+              static_cast<std::uint8_t>(ControlCode::kConfirm), {}, armed.token});
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+}
+
+void Board::stop() { (void)control(ControlCode::kStop, 0, "stop"); }
+
+void Board::clear_faults() {
+  (void)control(ControlCode::kClearFault, 0, "clear faults");
+  stop();
+}
+
+void Board::home() { (void)control(ControlCode::kHome, 0, "home"); }
+
+void Board::set_limits(float force_max_N, float slew_N_s, float ramp_s) {
+  (void)demand(MessageKind::kSetLimits, core::wire::SetLimitsRequest{force_max_N, slew_N_s, ramp_s},
+               "set limits");
+}
+
+void Board::set_material(const core::wire::SetMaterialRequest& material) {
+  (void)demand(MessageKind::kSetMaterial, material, "set material");
+}
+
+void Board::subscribe(const Subscription& subscription) {
+  (void)demand(MessageKind::kSubscribe,
+               core::wire::SubscribeRequest{subscription.fields, subscription.every_ticks},
+               "subscribe");
+}
+
+std::vector<TracedTick> Board::trace() {
+  std::vector<TracedTick> ticks;
+  std::uint32_t age = 0;
+  while (true) {
+    const Response response =
+        demand(MessageKind::kReadTrace,
+               core::wire::ReadTraceRequest{age, core::wire::kMaxTraceRecords}, "trace");
+    core::wire::ReadTraceReply reply;
+    if (!response.read(reply) ||
+        response.payload.size() < sizeof reply + reply.count * sizeof(core::FlightRecord)) {
+      throw LinkError(connection_.name() + ": trace: the reply is too short");
+    }
+    for (std::uint32_t i = 0; i < reply.count; ++i) {
+      TracedTick tick{reply.last_tick - reply.age - i, {}};
+      std::memcpy(&tick.record, response.payload.data() + sizeof reply + i * sizeof tick.record,
+                  sizeof tick.record);
+      ticks.push_back(tick);
+    }
+    age += reply.count;
+    if (reply.count == 0U || age >= reply.total) {
+      break;
+    }
+  }
+  // The recording may go on while it is read: then ticks are read twice.
+  std::sort(ticks.begin(), ticks.end(), [](const TracedTick& a, const TracedTick& b) {
+    return static_cast<std::int32_t>(a.tick - b.tick) < 0;
+  });
+  ticks.erase(
+      std::unique(ticks.begin(), ticks.end(),
+                  [](const TracedTick& a, const TracedTick& b) { return a.tick == b.tick; }),
+      ticks.end());
+  return ticks;
+}
+
+std::vector<core::wire::ParameterReply> Board::parameters() {
+  std::vector<core::wire::ParameterReply> all(capabilities().parameters);
+  for (std::uint32_t i = 0; i < all.size(); ++i) {
+    if (!demand(MessageKind::kGetParameter, core::wire::GetParameterRequest{i}, "parameter")
+             .read(all[i])) {
+      throw LinkError(connection_.name() + ": parameter: the reply is too short");
+    }
+  }
+  return all;
+}
+
+void Board::set_parameter(const std::string& name, float value) {
+  for (const core::wire::ParameterReply& parameter : parameters()) {
+    if (name == std::string(parameter.name, ::strnlen(parameter.name, sizeof parameter.name))) {
+      (void)demand(MessageKind::kSetParameter,
+                   core::wire::SetParameterRequest{parameter.number, value}, name.c_str());
+      return;
+    }
+  }
+  throw LinkError(connection_.name() + ": no parameter '" + name + "' (tactree params lists them)");
+}
+
+void Board::save_parameters() {
+  (void)demand(MessageKind::kSaveParameters, std::span<const std::byte>(), "save parameters");
+}
+
+void Board::write_pieces(std::span<const std::byte> bytes, const Progress& progress) {
+  std::size_t offset = 0;
+  while (offset < bytes.size()) {
+    std::vector<Connection::Request> pieces;
+    while (offset < bytes.size() && pieces.size() < kPiecesPerCall) {
+      const auto piece = bytes.subspan(
+          offset, std::min<std::size_t>(core::wire::kMaxPiece, bytes.size() - offset));
+      const core::wire::WriteModelRequest head{static_cast<std::uint32_t>(offset)};
+      const auto head_bytes = std::as_bytes(std::span(&head, 1));
+      std::vector<std::byte> payload(head_bytes.begin(), head_bytes.end());
+      payload.insert(payload.end(), piece.begin(), piece.end());
+      pieces.push_back({MessageKind::kWriteModel, std::move(payload)});
+      offset += piece.size();
+    }
+    const Response last = connection_.call_all(pieces, kPiecesUnderWay);
+    core::wire::WriteModelReply reply;
+    const bool knows_place = last.read(reply);
+    if (last.timed_out || last.status == WireStatus::kOutOfOrder) {
+      // A piece was lost on the way: the board says, or is asked, where to go on.
+      if (!knows_place) {
+        const Response asked =
+            connection_.call(MessageKind::kWriteModel, core::wire::WriteModelRequest{0xFFFFFFFFU});
+        if (!asked.read(reply)) {
+          throw LinkError(connection_.name() + ": write model: no answer");
+        }
+      }
+      offset = std::min<std::size_t>(reply.next_offset, bytes.size());
+    } else if (!last.ok()) {
+      throw LinkError(connection_.name() + ": write model: " + core::wire::describe(last.status) +
+                      remedy_for(last.status));
+    }
+    if (progress) {
+      progress(offset, bytes.size());
+    }
+  }
+}
+
+void Board::flash(const ModelFile& model, const Progress& progress) {
+  core::wire::BeginModelRequest begin;
+  copy(model.board, begin.board);
+  begin.counter = model.counter;
+  begin.bytes = static_cast<std::uint32_t>(model.bytes.size());
+  begin.checksum = core::crc32(model.bytes);
+  (void)demand(MessageKind::kBeginModel, begin, "begin model");
+  write_pieces(model.bytes, progress);
+  core::wire::FinishModelRequest finish;
+  finish.is_signed = model.is_signed ? 1U : 0U;
+  std::memcpy(finish.signature, model.signature.data(), sizeof finish.signature);
+  core::wire::FinishModelReply finished;
+  if (!demand(MessageKind::kFinishModel, finish, "check model").read(finished)) {
+    throw LinkError(connection_.name() + ": check model: the reply is too short");
+  }
+  (void)demand(MessageKind::kActivateModel, core::wire::SlotRequest{finished.slot}, "use model");
+}
+
+void Board::roll_back() {
+  (void)demand(MessageKind::kRollBackModel, std::span<const std::byte>(), "roll back");
+}
+
+void Board::erase_model(std::uint32_t slot) {
+  (void)demand(MessageKind::kEraseModel, core::wire::SlotRequest{slot}, "erase");
+}
+
+void Board::move_body(std::uint32_t body, const core::Pose& pose, const core::Motion& motion,
+                      bool enabled) {
+  const core::Quaternion& q = pose.rotation;
+  const core::Vec3& t = pose.translation_m;
+  const core::Vec3& v = motion.linear_m_s;
+  const core::Vec3& w = motion.angular_rad_s;
+  connection_.post(MessageKind::kMoveBody, core::wire::MoveBodyRequest{body,
+                                                                       enabled ? 1U : 0U,
+                                                                       {q.w, q.v.x, q.v.y, q.v.z},
+                                                                       {t.x, t.y, t.z},
+                                                                       {v.x, v.y, v.z},
+                                                                       {w.x, w.y, w.z}});
+}
+
+void Board::add_force(const std::array<float, 3>& force_N, std::uint32_t duration_ms) {
+  connection_.post(MessageKind::kAddForce,
+                   core::wire::AddForceRequest{{force_N[0], force_N[1], force_N[2]}, duration_ms});
+}
+
+}  // namespace tactree::host

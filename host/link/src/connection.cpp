@@ -1,0 +1,220 @@
+#include "tactree/host/connection.hpp"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <random>
+#include <set>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "tactree/host/link_error.hpp"
+
+namespace tactree::host {
+namespace {
+
+using core::wire::MessageKind;
+using core::wire::WireStatus;
+using std::chrono::microseconds;
+
+// Longest time that a posted request waits to be sent, and that a heartbeat may be late.
+constexpr microseconds kWait{500};
+
+Microseconds now_us() {
+  const auto since = std::chrono::steady_clock::now().time_since_epoch();
+  return static_cast<Microseconds>(std::chrono::duration_cast<microseconds>(since).count());
+}
+
+}  // namespace
+
+class Connection::Worker {
+ public:
+  Worker(std::unique_ptr<Transport> transport, const ConnectionOptions& options)
+      : transport_(std::move(transport)), options_(options), client_(options.client) {
+    client_.on_telemetry([this](const Telemetry& telemetry) { keep(telemetry); });
+    thread_ = std::thread([this] { run(); });
+  }
+  ~Worker() {
+    ending_ = true;
+    thread_.join();
+  }
+  Worker(const Worker&) = delete;
+  Worker& operator=(const Worker&) = delete;
+
+  Response open(std::uint16_t link_timeout_ms) {
+    std::unique_lock lock(mutex_);
+    return await(lock, client_.open(link_timeout_ms, std::random_device{}(), now_us()));
+  }
+
+  Response call(MessageKind kind, std::span<const std::byte> payload) {
+    std::unique_lock lock(mutex_);
+    return await(lock, client_.send(kind, payload, now_us()));
+  }
+
+  Response call_all(std::span<const Request> requests, std::size_t window) {
+    std::unique_lock lock(mutex_);
+    std::deque<std::uint16_t> under_way;
+    Response last;
+    std::size_t next = 0;
+    bool good = true;
+    while ((good && next < requests.size()) || !under_way.empty()) {
+      while (good && next < requests.size() && under_way.size() < window) {
+        under_way.push_back(client_.send(requests[next].kind, requests[next].payload, now_us()));
+        ++next;
+      }
+      Response response = await(lock, under_way.front());
+      under_way.pop_front();
+      if (good) {
+        good = response.ok();
+        last = std::move(response);
+      }
+    }
+    return last;
+  }
+
+  void post(MessageKind kind, std::span<const std::byte> payload) {
+    const std::lock_guard lock(mutex_);
+    posted_.insert(client_.send(kind, payload, now_us()));
+  }
+
+  [[nodiscard]] std::uint64_t refusals() const {
+    const std::lock_guard lock(mutex_);
+    return refusals_;
+  }
+  [[nodiscard]] std::optional<Telemetry> latest() const {
+    const std::lock_guard lock(mutex_);
+    return latest_;
+  }
+  [[nodiscard]] std::vector<Telemetry> take_stream() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(stream_, {});
+  }
+  [[nodiscard]] std::uint64_t dropped() const {
+    const std::lock_guard lock(mutex_);
+    return dropped_ + (latest_ ? latest_->header.dropped : 0U);
+  }
+  [[nodiscard]] bool connected() const {
+    const std::lock_guard lock(mutex_);
+    return transport_->connected();
+  }
+  [[nodiscard]] bool in_session() const {
+    const std::lock_guard lock(mutex_);
+    return transport_->connected() && client_.state() == Client::State::kOpen;
+  }
+  [[nodiscard]] std::string name() const { return transport_->name(); }
+
+ private:
+  void run() {
+    while (!ending_) {
+      {
+        const std::lock_guard lock(mutex_);
+        exchange();
+      }
+      arrived_.notify_all();
+      transport_->wait(kWait);
+    }
+    const std::lock_guard lock(mutex_);
+    exchange();  // what was sent last
+  }
+
+  void exchange() {
+    std::array<std::byte, 4096> bytes{};
+    const Microseconds now = now_us();
+    std::size_t count = 0;
+    while ((count = transport_->read(bytes)) > 0U) {
+      client_.receive(std::span(bytes).first(count), now);
+    }
+    client_.advance(now);
+    client_.sent(transport_->write(client_.to_send()));
+    Response response;
+    while (client_.take(response)) {
+      keep(std::move(response));
+    }
+  }
+
+  void keep(Response response) {
+    if (posted_.erase(response.sequence) != 0U) {
+      refusals_ += response.ok() ? 0U : 1U;
+    } else {
+      responses_.push_back(std::move(response));
+    }
+  }
+
+  void keep(const Telemetry& telemetry) {
+    latest_ = telemetry;
+    if (stream_.size() < options_.stream_capacity) {
+      stream_.push_back(telemetry);
+    } else {
+      ++dropped_;
+    }
+  }
+
+  /// The client gives a response for each request, at its timeout at the latest.
+  Response await(std::unique_lock<std::mutex>& lock, std::uint16_t sequence) {
+    const auto is_it = [sequence](const Response& r) { return r.sequence == sequence; };
+    auto found = responses_.end();
+    arrived_.wait(lock, [&] {
+      found = std::find_if(responses_.begin(), responses_.end(), is_it);
+      return found != responses_.end();
+    });
+    Response response = std::move(*found);
+    responses_.erase(found);
+    return response;
+  }
+
+  std::unique_ptr<Transport> transport_;
+  ConnectionOptions options_;
+  mutable std::mutex mutex_;
+  std::condition_variable arrived_;
+  Client client_;
+  std::deque<Response> responses_;
+  std::set<std::uint16_t> posted_;
+  std::optional<Telemetry> latest_;
+  std::vector<Telemetry> stream_;
+  std::uint64_t dropped_ = 0;
+  std::uint64_t refusals_ = 0;
+  std::atomic<bool> ending_ = false;
+  std::thread thread_;
+};
+
+Connection::Connection(std::unique_ptr<Transport> transport, const ConnectionOptions& options)
+    : worker_(std::make_unique<Worker>(std::move(transport), options)) {}
+
+Connection::~Connection() = default;
+
+void Connection::open(std::uint16_t link_timeout_ms) {
+  const Response response = worker_->open(link_timeout_ms);
+  if (response.timed_out) {
+    throw LinkError(name() + ": no answer (is it a board with Tactree's firmware, at this speed?)");
+  }
+  if (response.status == WireStatus::kBusy) {
+    throw LinkError(name() + ": " + core::wire::describe(response.status) +
+                    " (tactree stop, or end the program that armed it)");
+  }
+  if (!response.ok()) {
+    throw LinkError(name() + ": " + core::wire::describe(response.status));
+  }
+}
+
+Response Connection::call(MessageKind kind, std::span<const std::byte> payload) {
+  return worker_->call(kind, payload);
+}
+Response Connection::call_all(std::span<const Request> requests, std::size_t window) {
+  return worker_->call_all(requests, window);
+}
+void Connection::post(MessageKind kind, std::span<const std::byte> payload) {
+  worker_->post(kind, payload);
+}
+std::uint64_t Connection::refusals() const { return worker_->refusals(); }
+std::optional<Telemetry> Connection::latest() const { return worker_->latest(); }
+std::vector<Telemetry> Connection::take_stream() { return worker_->take_stream(); }
+std::uint64_t Connection::dropped() const { return worker_->dropped(); }
+bool Connection::connected() const { return worker_->connected(); }
+bool Connection::in_session() const { return worker_->in_session(); }
+std::string Connection::name() const { return worker_->name(); }
+
+}  // namespace tactree::host
