@@ -1,109 +1,78 @@
 #include "devices_command.hpp"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
-#include <chrono>
-#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
-#include <string>
-#include <thread>
-#include <vector>
 
+#include "board_port.hpp"
 #include "command.hpp"
 #include "output_file.hpp"
-#include "tactree/host/usb_devices.hpp"
+#include "tactree/host/link_error.hpp"
+#include "tactree/host/ports.hpp"
 
 namespace tactree::cli {
 namespace {
 
 struct DevicesOptions {
-  bool install_udev = false;
-  bool print_udev = false;
-  bool watch = false;
-  double seconds = 0.0;
+  BoardPort port;
   std::string json;
 };
 
-void print_device(const host::UsbDeviceInfo& device, const char* what) {
-  if (!device.problem.empty()) {
-    fmt::print("{}{}\n", what, device.problem);
+nlohmann::json probe(const std::string& port, unsigned baud) {
+  try {
+    const core::wire::IdentifyReply board = host::Board::identify(host::open_port(port, baud));
+    return {{"port", port},
+            {"board", text_of(board.board)},
+            {"firmware", text_of(board.firmware)},
+            {"serial",
+             fmt::format("{:08x}{:08x}{:08x}", board.serial[0], board.serial[1], board.serial[2])},
+            {"protocol", fmt::format("{}.{}", board.version_major, board.version_minor)}};
+  } catch (const host::LinkError& error) {
+    return {{"port", port}, {"error", error.what()}};
+  }
+}
+
+void print(const nlohmann::json& device) {
+  if (device.contains("error")) {
+    fmt::print("{}\n", device["error"].get<std::string>());
     return;
   }
-  fmt::print("{}{:<8} {:04x}:{:04x}  {}  {} {}\n", what, device.path, device.vendor, device.product,
-             device.serial, device.maker, device.name);
+  fmt::print("{}: {}, firmware {}, serial {}, protocol {}\n", device["port"].get<std::string>(),
+             device["board"].get<std::string>(), device["firmware"].get<std::string>(),
+             device["serial"].get<std::string>(), device["protocol"].get<std::string>());
 }
 
-nlohmann::json to_json(const host::UsbDeviceInfo& device) {
-  return {{"transport", "usb"},        {"path", device.path},   {"vendor", device.vendor},
-          {"product", device.product}, {"serial", device.serial}, {"maker", device.maker},
-          {"name", device.name},       {"problem", device.problem}};
-}
-
-void watch(const DevicesOptions& options) {
-  using Clock = std::chrono::steady_clock;
-  const Clock::time_point begin = Clock::now();
-  host::UsbWatch watch;
-  while (options.seconds <= 0.0 ||
-         Clock::now() - begin < std::chrono::duration<double>(options.seconds)) {
-    for (const host::UsbWatch::Change& change : watch.poll()) {
-      print_device(change.device, change.arrived ? "+ " : "- ");
-    }
-    std::fflush(stdout);
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+void list_devices(const DevicesOptions& options, int& exit_code) {
+  std::vector<std::string> ports = host::list_ports();
+  if (!options.port.port.empty()) {
+    ports = {options.port.port};
   }
-}
-
-void list(const DevicesOptions& options, int& exit_code) {
-  const std::vector<host::UsbDeviceInfo> devices = host::list_usb_devices();
-  auto json = nlohmann::json::array();
-  bool usable = true;
-  for (const host::UsbDeviceInfo& device : devices) {
-    print_device(device, "");
-    json.push_back(to_json(device));
-    usable = usable && device.problem.empty();
+  nlohmann::json devices = nlohmann::json::array();
+  bool found = false;
+  for (const std::string& port : ports) {
+    devices.push_back(probe(port, options.port.baud));
+    found = found || !devices.back().contains("error");
+    print(devices.back());
   }
-  if (devices.empty()) {
-    fmt::print("no board is plugged in\n");
+  if (ports.empty()) {
+    fmt::print("no port found that a board may be at\n");
   }
   if (!options.json.empty()) {
-    write_file(options.json, nlohmann::json{{"devices", json}}.dump(2) + "\n");
+    write_file(options.json, nlohmann::json{{"devices", devices}}.dump(2) + "\n");
   }
-  exit_code = usable ? kExitOk : kExitFailed;
-}
-
-void devices(const DevicesOptions& options, int& exit_code) {
-  try {
-    if (options.print_udev) {
-      fmt::print("{}", host::udev_rule());
-    } else if (options.install_udev) {
-      fmt::print("wrote {}; plug the board in again, or run: udevadm trigger\n",
-                 host::install_udev_rule());
-    } else if (options.watch) {
-      watch(options);
-    } else {
-      list(options, exit_code);
-    }
-  } catch (const std::runtime_error& error) {
-    throw CommandError(error.what());
-  }
+  exit_code = found ? kExitOk : kExitFailed;
 }
 
 }  // namespace
 
 void add_devices_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<DevicesOptions>();
-  CLI::App* verb = app.add_subcommand("devices", "Lists the boards that are plugged in");
-  CLI::Option* watch = verb->add_flag("--watch", options->watch, "tell boards that come and go");
-  verb->add_option("--seconds", options->seconds, "how long to watch, s (default: until interrupted)")
-      ->check(CLI::PositiveNumber)
-      ->needs(watch);
-  verb->add_flag("--install-udev", options->install_udev,
-                 "as root: let everybody at this computer open boards");
-  verb->add_flag("--print-udev", options->print_udev, "print the rule that does so");
+  CLI::App* verb = app.add_subcommand(
+      "devices", "Lists the boards that are connected; exit code 1 = none answers");
+  add_port_options(*verb, options->port);
   verb->add_option("--json", options->json, "write the list to this file");
-  verb->callback([options, &exit_code] { devices(*options, exit_code); });
+  verb->callback([options, &exit_code] { list_devices(*options, exit_code); });
 }
 
 }  // namespace tactree::cli

@@ -4,7 +4,7 @@
 
 namespace tactree::cli {
 
-/// Adds the verb `devices`. Its errors are thrown as CommandError.
+/// Adds the verb `devices`. Its errors are thrown as CommandError or host::LinkError.
 void add_devices_command(CLI::App& app, int& exit_code);
 
 }  // namespace tactree::cli

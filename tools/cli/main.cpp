@@ -4,16 +4,24 @@
 #include <cstdio>
 #include <exception>
 
+#include "arm_command.hpp"
 #include "bound_command.hpp"
 #include "build_command.hpp"
 #include "check_command.hpp"
 #include "command.hpp"
 #include "devices_command.hpp"
 #include "evaluate_command.hpp"
+#include "flash_command.hpp"
 #include "image_command.hpp"
 #include "info_command.hpp"
+#include "keygen_command.hpp"
+#include "monitor_command.hpp"
+#include "params_command.hpp"
 #include "query_command.hpp"
+#include "sign_command.hpp"
 #include "simulate_command.hpp"
+#include "stop_command.hpp"
+#include "trace_command.hpp"
 
 int main(int argc, char** argv) {
   using namespace tactree::cli;
@@ -30,6 +38,15 @@ int main(int argc, char** argv) {
   add_devices_command(app, exit_code);
   add_simulate_command(app, exit_code);
   add_evaluate_command(app, exit_code);
+  add_devices_command(app, exit_code);
+  add_monitor_command(app, exit_code);
+  add_arm_command(app, exit_code);
+  add_stop_command(app, exit_code);
+  add_flash_command(app, exit_code);
+  add_trace_command(app, exit_code);
+  add_params_command(app, exit_code);
+  add_keygen_command(app, exit_code);
+  add_sign_command(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -14,14 +14,17 @@
 #include "blob_file.hpp"
 #include "command.hpp"
 #include "device_file.hpp"
+#include "model_signature.hpp"
 #include "output_file.hpp"
 #include "scene_file.hpp"
+#include "serve_session.hpp"
 #include "tactree/emulation/emulated_target.hpp"
+#include "tactree/host/serial_port.hpp"
+#include "tactree/serve/served_target.hpp"
 #include "tactree/simulation/hand_script.hpp"
 #include "tactree/simulation/injection.hpp"
 #include "tactree/simulation/simulation.hpp"
 #include "tactree/simulation/trace.hpp"
-#include "usb_simulation.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -46,11 +49,11 @@ struct SimulateOptions {
   std::string plot;
   bool compare = false;
   std::string json;
+  bool serve = false;
+  std::string key;  // of who signs models for the served board
+  CLI::Option* seconds_given = nullptr;
   std::vector<std::string> injections;
   double seconds = 10.0;
-  bool on_usb = false;
-  UsbSimulationOptions usb;
-  CLI::Option* seconds_option = nullptr;
   double latency_ticks = 0.0;
   double encoder_step_m = 30e-6;
   std::vector<CLI::Option*> cartesian_only;
@@ -498,18 +501,23 @@ void write_plot(const SimulateOptions& options, const SceneFile& scene, const Ou
                                         paper_first ? outcome.samples : beside.samples, title));
 }
 
-/// With an application at the other end of a cable, which arms and stops it.
-void simulate_on_usb(SimulateOptions& options, const SceneFile& scene) {
-  simulation::Setup setup = make_setup(options, scene);
-  setup.controller.dead_man_required = false;  // the application confirms
-  const BlobFile& blob = *scene.files[0];
-  served::UsbBoard board(usb_identity(options.usb), board_identity(options.usb), blob.bytes());
-  simulation::Simulation sim(blob.bytes(), setup, hand_path(options, scene), board.target());
-  check_start(scene.names[0], blob.view(), setup, sim.start_result());
-  if (options.seconds_option->count() != 0) {
-    options.usb.seconds = options.seconds;
+void serve(const SimulateOptions& options, const SceneFile& scene) {
+  const simulation::Setup setup = make_setup(options, scene);
+  host::PseudoTerminal terminal;
+  serve::ServeOptions serving;
+  if (!options.key.empty()) {
+    serving.key = read_public_key(options.key);
   }
-  run_on_usb(board, sim, setup.controller, options.usb);
+  simulation::Simulation sim(
+      scene.files[0]->bytes(), setup, hand_path(options, scene),
+      std::make_unique<serve::ServedTarget>(terminal, scene.files[0]->bytes(), serving));
+  check_start(scene.names[0], scene.files[0]->view(), setup, sim.start_result());
+  sim.inject(simulation::Injector(injections(options)));
+  fmt::print("serving at {}\n", terminal.name());
+  std::fflush(stdout);
+  const bool limited = options.seconds_given->count() != 0;
+  serve_session(sim, {static_cast<double>(setup.controller.rate_hz), options.seconds,
+                      limited ? options.seconds : 0.0});
 }
 
 void simulate(SimulateOptions& options, int& exit_code) {
@@ -522,8 +530,8 @@ void simulate(SimulateOptions& options, int& exit_code) {
   }
   const SceneFile scene = read_scene(options.scene, options.blobs);
   options.blob = scene.names[0];
-  if (options.on_usb) {
-    simulate_on_usb(options, scene);
+  if (options.serve) {
+    serve(options, scene);
     return;
   }
   const Outcome outcome = run(options, scene);
@@ -637,14 +645,6 @@ void add_device_options(CLI::App& verb, SimulateOptions& options) {
       ->check(CLI::Range(-10.0, 10.0));
 }
 
-void add_usb_options(CLI::App& verb, SimulateOptions& options) {
-  CLI::Option* usb = verb.add_flag(
-      "--usb", options.on_usb,
-      "be a USB device of this computer, in real time, until interrupted or for --seconds; needs "
-      "root and `modprobe vhci-hcd`; SIGUSR1 pulls the cable and plugs it in again");
-  verb.add_option("--usb-serial", options.usb.serial, "last digits of its serial number")->needs(usb);
-}
-
 void add_output_options(CLI::App& verb, SimulateOptions& options) {
   verb.add_option("--trace", options.trace, "write every tick to this CSV file");
   CLI::Option* plot =
@@ -676,9 +676,17 @@ void add_simulate_command(CLI::App& app, int& exit_code) {
   verb->add_option("--mode", options->mode, "how contact is rendered")
       ->check(CLI::IsMember({"surface", "paper"}))
       ->capture_default_str();
-  options->seconds_option = verb->add_option("--seconds", options->seconds, "length of the run, s")
-                                ->check(CLI::PositiveNumber)
-                                ->capture_default_str();
+  options->seconds_given = verb->add_option("--seconds", options->seconds, "length of the run, s")
+                               ->check(CLI::PositiveNumber)
+                               ->capture_default_str();
+  CLI::Option* serve =
+      verb->add_flag("--serve", options->serve,
+                     "run in real time and let programs talk to the board, at a port that is "
+                     "printed; without --seconds until it is interrupted");
+  verb->add_option("--require-key", options->key,
+                   "with --serve: public key (tactree keygen) whose owner must have signed a model")
+      ->needs(serve)
+      ->check(CLI::ExistingFile);
   CLI::Option* script = verb->add_option("--script", options->script, "what the hand does")
                             ->check(CLI::IsMember(simulation::script_names()))
                             ->capture_default_str();
@@ -688,7 +696,6 @@ void add_simulate_command(CLI::App& app, int& exit_code) {
   add_plant_options(*verb, *options);
   add_injection_option(*verb, *options);
   add_output_options(*verb, *options);
-  add_usb_options(*verb, *options);
   verb->callback([options, &exit_code] { simulate(*options, exit_code); });
 }
 

@@ -7,7 +7,7 @@
 #include "tactree/core/controller.hpp"
 #include "tactree/core/crc32.hpp"
 #include "tactree/host/link_error.hpp"
-#include "tactree/host/serial_port.hpp"
+#include "tactree/host/ports.hpp"
 
 namespace tactree::host {
 namespace {
@@ -57,7 +57,7 @@ void copy(const std::string& from, char (&to)[N]) {
 }  // namespace
 
 Board::Board(const std::string& port, const BoardOptions& options)
-    : Board(open_serial_port(port, options.baud), options) {}
+    : Board(open_port(port, options.baud), options) {}
 
 Board::Board(std::unique_ptr<Transport> transport, const BoardOptions& options)
     : connection_(std::move(transport)) {

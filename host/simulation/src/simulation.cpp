@@ -111,26 +111,28 @@ bool Simulation::arm() {
   return state_ == core::State::kActive;
 }
 
-Sample Simulation::step() {
+Sample Simulation::step() { return step_with_hand_at(static_cast<double>(ticks_) * period_s_); }
+
+Sample Simulation::step_with_hand_at(double path_t_s) {
   const double t_s = static_cast<double>(ticks_) * period_s_;
   board_.link().post(core::Command::kNone);
   injector_.apply(board_, t_s);
   Sample sample;
   sample.t_s = t_s;
   sample.tip_m = plant_.position_m() - widen(setup_.controller.model_origin_m);
-  sample.status = tick(t_s);
+  sample.status = tick(path_t_s);
   ++ticks_;
   return sample;
 }
 
-core::Status Simulation::tick(double t_s) {
+core::Status Simulation::tick(double path_t_s) {
   sample_device();
   const core::Status status = target_->tick(board_);
   state_ = status.state;
-  plant::HandTarget target = path_.at(t_s);
+  plant::HandTarget target = path_.at(path_t_s);
   target.position_m += widen(setup_.controller.model_origin_m);
   plant_.advance({board_.effort(0), board_.effort(1), board_.effort(2)}, target,
-                 period_s_ * injector_.clock_ratio(t_s));
+                 period_s_ * injector_.clock_ratio(static_cast<double>(ticks_) * period_s_));
   return status;
 }
 

@@ -88,6 +88,8 @@ class Simulation {
 
   /// One tick.
   Sample step();
+  /// One tick with the hand where its path is at that time: for a hand that waits, or turns back.
+  Sample step_with_hand_at(double path_t_s);
 
   /// Ends the session.
   void finish() { target_->finish(); }
@@ -99,7 +101,7 @@ class Simulation {
 
  private:
   void sample_device();
-  core::Status tick(double t_s);
+  core::Status tick(double path_t_s);
 
   Setup setup_;
   HandPath path_;

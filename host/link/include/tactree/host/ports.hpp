@@ -1,0 +1,19 @@
+#pragma once
+// Boards by the name of the port they are at, whatever kind of port that is.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tactree/host/transport.hpp"
+
+namespace tactree::host {
+
+/// Ports at which a board may be. Cheap: nothing is opened.
+[[nodiscard]] std::vector<std::string> list_ports();
+
+/// By a name of list_ports(), or the path of any serial port. `baud` is for serial ports. Throws
+/// LinkError.
+[[nodiscard]] std::unique_ptr<Transport> open_port(const std::string& name, unsigned baud);
+
+}  // namespace tactree::host

@@ -1,0 +1,102 @@
+#include "tactree/serve/served_target.hpp"
+
+namespace tactree::serve {
+namespace {
+
+// Of a usual chip, in one size throughout.
+constexpr std::uint32_t kSectorBytes = 16384;
+// Pieces of the session's work between two ticks: a frame takes some of them.
+constexpr int kPiecesPerTick = 64;
+
+constexpr hal::BoardIdentity kIdentity{"host", TACTREE_VERSION, {}, 0};
+
+hal::FlashGeometry geometry(std::uint32_t slot_bytes) {
+  const std::uint32_t sectors = (slot_bytes + kSectorBytes - 1U) / kSectorBytes;
+  return {kSectorBytes, 2U + hal::kStoreSlots * sectors, 8};
+}
+
+/// A transport as the board's end of it.
+class TransportPort {
+ public:
+  explicit TransportPort(host::Transport& transport) : transport_(transport) {}
+  [[nodiscard]] std::size_t read(std::span<std::byte> bytes) noexcept {
+    return transport_.read(bytes);
+  }
+  [[nodiscard]] std::size_t write(std::span<const std::byte> bytes) noexcept {
+    return transport_.write(bytes);
+  }
+
+ private:
+  host::Transport& transport_;
+};
+
+/// Ticks and session are in one thread: nothing is to be held.
+struct SimPlatform {
+  hal::sim::SimTicker& ticker;
+  [[nodiscard]] std::uint32_t now_us() noexcept { return ticker.now_us(); }
+  void hold_ticks(bool) noexcept {}
+};
+
+core::Configuration with_saved_parameters(core::Configuration configuration,
+                                          const ServedBoard::Store& store) {
+  if (store.parameters() != nullptr) {
+    for (std::uint32_t i = 0; i < core::kParameters; ++i) {
+      (void)core::set_parameter(configuration, i, store.parameters()[i]);
+    }
+  }
+  return configuration;
+}
+
+}  // namespace
+
+class ServedTarget::Running {
+ public:
+  Running(hal::sim::SimBoard& board, host::Transport& transport, hal::TickMailbox& mailbox,
+          ServedBoard::Store& store)
+      : port_(transport),
+        platform_{board.ticker()},
+        board_(board, mailbox, store),
+        loop_(board_, controller_),
+        session_({port_, store, platform_, controller_, mailbox, kIdentity}) {}
+
+  hal::StartResult start(const core::Configuration& configuration) {
+    const hal::StartResult result = loop_.start(configuration);
+    session_.started(result, configuration);
+    return result;
+  }
+
+  core::Status tick() {
+    const core::Status status = loop_.tick().status;
+    for (int i = 0; i < kPiecesPerTick && session_.work(); ++i) {
+    }
+    return status;
+  }
+
+ private:
+  TransportPort port_;
+  SimPlatform platform_;
+  core::Controller controller_;
+  ServedBoard board_;
+  hal::Loop<ServedBoard> loop_;
+  hal::Session<TransportPort, ServedBoard::Store, SimPlatform> session_;
+};
+
+ServedTarget::ServedTarget(host::Transport& transport, std::span<const std::byte> model,
+                           const ServeOptions& options)
+    : transport_(transport),
+      options_(options),
+      flash_(geometry(options.slot_bytes)),
+      store_(flash_, {kIdentity.board, options_.key ? options_.key->data() : nullptr, model}) {}
+
+ServedTarget::~ServedTarget() = default;
+
+hal::StartResult ServedTarget::start(hal::sim::SimBoard& board,
+                                     const core::Configuration& configuration) {
+  (void)store_.mount();
+  running_ = std::make_unique<Running>(board, transport_, mailbox_, store_);
+  return running_->start(with_saved_parameters(configuration, store_));
+}
+
+core::Status ServedTarget::tick(hal::sim::SimBoard&) { return running_->tick(); }
+
+}  // namespace tactree::serve

@@ -1,0 +1,10 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace tactree::cli {
+
+/// Adds the verb `arm`. Its errors are thrown as CommandError or host::LinkError.
+void add_arm_command(CLI::App& app, int& exit_code);
+
+}  // namespace tactree::cli

@@ -1,0 +1,36 @@
+#include "board_port.hpp"
+
+#include <fmt/format.h>
+
+#include "command.hpp"
+#include "tactree/host/ports.hpp"
+
+namespace tactree::cli {
+
+void add_port_options(CLI::App& verb, BoardPort& options) {
+  verb.add_option("--port", options.port,
+                  "where the board is: a serial port, or what tactree simulate --serve prints "
+                  "(default: the only one there is)");
+  verb.add_option("--baud", options.baud, "speed of a serial port")->capture_default_str();
+}
+
+std::string chosen_port(const BoardPort& options) {
+  if (!options.port.empty()) {
+    return options.port;
+  }
+  const std::vector<std::string> ports = host::list_ports();
+  if (ports.empty()) {
+    throw CommandError("no board found (plug it in, or give its --port)");
+  }
+  if (ports.size() > 1) {
+    throw CommandError(fmt::format("there are {} ports: {} (choose with --port)", ports.size(),
+                                   fmt::join(ports, ", ")));
+  }
+  return ports.front();
+}
+
+std::unique_ptr<host::Board> connect(const BoardPort& options) {
+  return std::make_unique<host::Board>(chosen_port(options), host::BoardOptions{options.baud, 0});
+}
+
+}  // namespace tactree::cli

@@ -1,0 +1,32 @@
+#pragma once
+// Which board a verb talks to: --port and --baud, or the only one there is.
+
+#include <CLI/CLI.hpp>
+#include <cstring>
+#include <memory>
+#include <string>
+
+#include "tactree/host/board.hpp"
+
+namespace tactree::cli {
+
+struct BoardPort {
+  std::string port;  ///< empty: the only one there is
+  unsigned baud = 115200;
+};
+
+void add_port_options(CLI::App& verb, BoardPort& options);
+
+/// Throws CommandError where there is no board, or more than one to choose from.
+[[nodiscard]] std::string chosen_port(const BoardPort& options);
+
+/// Opens a session. Throws as chosen_port() and host::Board.
+[[nodiscard]] std::unique_ptr<host::Board> connect(const BoardPort& options);
+
+/// A zero-terminated name that may fill its field.
+template <std::size_t N>
+[[nodiscard]] std::string text_of(const char (&field)[N]) {
+  return {field, ::strnlen(field, N)};
+}
+
+}  // namespace tactree::cli

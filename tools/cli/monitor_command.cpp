@@ -1,0 +1,214 @@
+#include "monitor_command.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "board_port.hpp"
+#include "command.hpp"
+#include "output_file.hpp"
+#include "tactree/core/controller.hpp"
+
+namespace tactree::cli {
+namespace {
+
+struct MonitorOptions {
+  BoardPort port;
+  std::string json;
+  bool once = false;
+  double seconds = 0.0;
+};
+
+constexpr int kBarWidth = 40;
+constexpr double kRefreshS = 0.1;
+
+volatile std::sig_atomic_t ending = 0;
+
+void end(int) { ending = 1; }
+
+std::string names_of_faults(std::uint32_t faults) {
+  std::string names;
+  for (std::uint32_t code = 1; code < core::kFaultCodes; ++code) {
+    if (core::has_fault(faults, static_cast<core::Fault>(code))) {
+      names +=
+          std::string(names.empty() ? "" : ", ") + core::name_of(static_cast<core::Fault>(code));
+    }
+  }
+  return names;
+}
+
+std::string names_of_limits(std::uint32_t limits) {
+  std::string names;
+  for (std::uint32_t i = 0; i < core::kLimits; ++i) {
+    if ((limits & (1U << i)) != 0U) {
+      names +=
+          std::string(names.empty() ? "" : ", ") + core::name_of(static_cast<core::Limit>(1U << i));
+    }
+  }
+  return names;
+}
+
+double length(const float (&v)[3]) {
+  return std::hypot(static_cast<double>(v[0]), static_cast<double>(v[1]),
+                    static_cast<double>(v[2]));
+}
+
+/// Ticks a second, by the board's own clock.
+double rate_of(const host::Telemetry& from, const host::Telemetry& to) {
+  const std::uint32_t us = to.header.board_time_us - from.header.board_time_us;
+  return us == 0U ? 0.0 : 1e6 * static_cast<double>(to.header.tick - from.header.tick) / us;
+}
+
+struct View {
+  host::Telemetry now{};
+  double rate_hz = 0.0;
+  double force_max_N = 0.0;
+  std::uint32_t cycles_per_tick = 0;
+  std::uint64_t dropped = 0;
+};
+
+std::string cycles(const View& view) {
+  if (view.cycles_per_tick == 0U) {
+    return "";
+  }
+  return fmt::format(", {:.0f} of {} cycles",
+                     static_cast<double>(view.now.load) * view.cycles_per_tick,
+                     view.cycles_per_tick);
+}
+
+std::string to_text(const View& view) {
+  const host::Telemetry& t = view.now;
+  const double force = length(t.force_N);
+  const double share = view.force_max_N > 0.0 ? std::min(1.0, force / view.force_max_N) : 0.0;
+  const int filled = static_cast<int>(std::lround(share * kBarWidth));
+  const std::string faults = names_of_faults(t.faults);
+  const std::string limits = names_of_limits(t.limits);
+  return fmt::format(
+      "state    {}{}\n"
+      "force    {:7.3f} N [{}{}] {:.3g} N\n"
+      "probe    {:9.4f} {:9.4f} {:9.4f} m   speed {:.3f} m/s\n"
+      "contact  {}\n"
+      "ticks    {:.0f} a second, load {:.1f} %{}, overruns {}, telemetry dropped {}\n"
+      "faults   {}\n",
+      core::name_of(static_cast<core::State>(t.state)),
+      limits.empty() ? "" : " (held back: " + limits + ")", force,
+      std::string(static_cast<std::size_t>(filled), '#'),
+      std::string(static_cast<std::size_t>(kBarWidth - filled), ' '), view.force_max_N,
+      t.probe_m[0], t.probe_m[1], t.probe_m[2], length(t.velocity_m_s),
+      t.body == core::kNoBody ? "none"
+                              : fmt::format("body {}, {:.3f} mm deep", t.body,
+                                            1e3 * static_cast<double>(t.penetration_m)),
+      view.rate_hz, 100.0 * static_cast<double>(t.load), cycles(view), t.overruns, view.dropped,
+      faults.empty() ? "none" : faults);
+}
+
+nlohmann::json to_json(const View& view) {
+  const host::Telemetry& t = view.now;
+  return {{"tick", t.header.tick},
+          {"state", core::name_of(static_cast<core::State>(t.state))},
+          {"faults", t.faults},
+          {"fault_names", names_of_faults(t.faults)},
+          {"limits", t.limits},
+          {"force_N", t.force_N},
+          {"probe_m", t.probe_m},
+          {"velocity_m_s", t.velocity_m_s},
+          {"in_contact", t.body != core::kNoBody},
+          {"penetration_m", t.penetration_m},
+          {"rate_hz", view.rate_hz},
+          {"load", t.load},
+          {"overruns", t.overruns},
+          {"dropped", view.dropped}};
+}
+
+class Monitor {
+ public:
+  explicit Monitor(host::Board& board) : board_(board) {
+    const core::wire::CapabilitiesReply can = board_.capabilities();
+    view_.force_max_N = static_cast<double>(can.force_max_N);
+    view_.cycles_per_tick = can.cycles_per_tick;
+    // Fifty a second are enough to look at, and leave a serial port room.
+    const auto every = static_cast<std::uint32_t>(std::max(1.0F, can.rate_hz / 50.0F));
+    board_.subscribe({0x1FF, every});
+  }
+
+  /// Throws where no telemetry comes.
+  const View& look() {
+    const auto wait_until = std::chrono::steady_clock::now() + std::chrono::seconds(2);
+    std::vector<host::Telemetry> news = board_.take_stream();
+    while (news.size() < 2U) {
+      if (std::chrono::steady_clock::now() > wait_until) {
+        throw CommandError("no telemetry comes (is the board still there?)");
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+      const std::vector<host::Telemetry> more = board_.take_stream();
+      news.insert(news.end(), more.begin(), more.end());
+    }
+    view_.rate_hz = rate_of(news.front(), news.back());
+    view_.now = news.back();
+    view_.dropped = board_.dropped();
+    return view_;
+  }
+
+ private:
+  host::Board& board_;
+  View view_;
+};
+
+void watch(Monitor& monitor, const MonitorOptions& options) {
+  const auto begin = std::chrono::steady_clock::now();
+  const std::chrono::duration<double> limit(options.seconds);
+  bool first = true;
+  while (ending == 0 &&
+         (options.seconds <= 0.0 || std::chrono::steady_clock::now() - begin < limit)) {
+    const std::string text = to_text(monitor.look());
+    // Up over the lines of the last view, and each line anew.
+    fmt::print("{}", first ? "" : "\x1b[6A");
+    for (std::size_t at = 0; at < text.size();) {
+      const std::size_t line_end = text.find('\n', at);
+      fmt::print("\x1b[2K{}\n", text.substr(at, line_end - at));
+      at = line_end + 1;
+    }
+    std::fflush(stdout);
+    first = false;
+    std::this_thread::sleep_for(std::chrono::duration<double>(kRefreshS));
+  }
+}
+
+void show(const MonitorOptions& options, int& exit_code) {
+  std::signal(SIGINT, end);
+  std::signal(SIGTERM, end);
+  const auto board = connect(options.port);
+  Monitor monitor(*board);
+  if (!options.once) {
+    return watch(monitor, options);
+  }
+  const View& view = monitor.look();
+  if (options.json.empty()) {
+    fmt::print("{}", to_text(view));
+  } else {
+    write_file(options.json, to_json(view).dump(2) + "\n");
+  }
+  exit_code = view.now.faults == 0U ? kExitOk : kExitFailed;
+}
+
+}  // namespace
+
+void add_monitor_command(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<MonitorOptions>();
+  CLI::App* verb = app.add_subcommand("monitor", "Shows what a board does, live");
+  add_port_options(*verb, options->port);
+  CLI::Option* once =
+      verb->add_flag("--once", options->once, "look once; exit code 1 = a fault is latched");
+  verb->add_option("--json", options->json, "write what was seen to this file")->needs(once);
+  verb->add_option("--seconds", options->seconds, "end after that time (default: Ctrl-C)")
+      ->check(CLI::PositiveNumber);
+  verb->callback([options, &exit_code] { show(*options, exit_code); });
+}
+
+}  // namespace tactree::cli

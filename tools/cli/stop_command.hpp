@@ -1,0 +1,10 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace tactree::cli {
+
+/// Adds the verb `stop`. Its errors are thrown as CommandError or host::LinkError.
+void add_stop_command(CLI::App& app, int& exit_code);
+
+}  // namespace tactree::cli
