@@ -9,8 +9,9 @@
 #include <thread>
 
 #include "tactree/host/client.hpp"
+#include "tactree/hal/linux/usbip_controller.hpp"
 #include "tactree/host/usb_transport.hpp"
-#include "tactree/served/usb_board.hpp"
+#include "tactree/serve/usb_target.hpp"
 #include "tactree/simulation/simulation.hpp"
 #include "test_models.hpp"
 
@@ -49,6 +50,8 @@ class BoardOnUsb {
   [[nodiscard]] std::uint64_t ticks() const { return ticks_; }
 
  private:
+  using Target = serve::UsbTarget<hal::linux_usb::UsbIpController>;
+
   static simulation::Setup setup() {
     simulation::Setup setup;
     setup.controller.dead_man_required = false;
@@ -60,32 +63,36 @@ class BoardOnUsb {
     const std::span<const std::byte> bytes = blob.written().bytes;
     core::usb::Identity identity;
     identity.serial = {0x11111111, 0x22222222, 0x33333333};
-    served::UsbBoard board(identity, {"test", "1.2.3", {1, 2, 3}, 0}, bytes);
+    serve::ServeOptions options;
+    options.slot_bytes = 1U << 20U;
+    hal::linux_usb::UsbIpController usb;
+    auto owned = std::make_unique<Target>(usb, identity, bytes, options);
+    Target& target = *owned;
     simulation::Simulation sim(bytes, setup(), simulation::HandPath({{0.0, {0.05, 0.0, 0.0}}}),
-                               board.target());
+                               std::move(owned));
     Clock::time_point next = Clock::now();
     while (!end_) {
-      const core::Status status = sim.step().status;
+      (void)sim.step();
       ++ticks_;
       next = std::max(next + std::chrono::milliseconds(1), Clock::now());
       do {
-        move_cable(board);
-        board.serve(status);
-        model_state_ = board.device().model().state();
+        move_cable(usb);
+        target.serve();
+        model_state_ = target.device().model().state();
         std::this_thread::sleep_for(std::chrono::microseconds(50));
       } while (Clock::now() < next && !end_);
     }
   }
 
-  void move_cable(served::UsbBoard& board) {
-    if (wanted_ != board.controller().plugged_in()) {
+  void move_cable(hal::linux_usb::UsbIpController& usb) {
+    if (wanted_ != usb.plugged_in()) {
       if (wanted_) {
-        board.controller().plug_in();
+        usb.plug_in();
       } else {
-        board.controller().unplug();
+        usb.unplug();
       }
     }
-    plugged_ = board.controller().plugged_in();
+    plugged_ = usb.plugged_in();
   }
 
   std::atomic<bool> end_ = false;

@@ -35,7 +35,6 @@ int main(int argc, char** argv) {
   add_check_command(app, exit_code);
   add_query_command(app, exit_code);
   add_image_command(app, exit_code);
-  add_devices_command(app, exit_code);
   add_simulate_command(app, exit_code);
   add_evaluate_command(app, exit_code);
   add_devices_command(app, exit_code);

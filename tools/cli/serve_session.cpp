@@ -68,8 +68,13 @@ void serve_session(simulation::Simulation& simulation, const ServeSchedule& sche
     simulation.board().safety_inputs().hold_dead_man(dead_man.is_held(state, period_s));
     (void)simulation.step_with_hand_at(hand.next(state == core::State::kActive));
     t_s += period_s;
-    std::this_thread::sleep_until(
-        begin + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(t_s)));
+    const Clock::time_point due =
+        begin + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(t_s));
+    if (schedule.wait) {
+      schedule.wait(due);
+    } else {
+      std::this_thread::sleep_until(due);
+    }
   }
   simulation.finish();
 }

@@ -5,7 +5,6 @@
 
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
 
 #include "tactree/core/usb/descriptors.hpp"
@@ -24,7 +23,7 @@ using Handle = std::unique_ptr<libusb_device_handle, FreeHandle>;
 
 [[nodiscard]] Context make_context();
 
-/// Throws std::runtime_error: "usb 1209:0001 3-1.2: cause (remedy: ...)".
+/// Throws LinkError: "usb 1209:0001 3-1.2: cause (remedy: ...)".
 [[noreturn]] void fail(const std::string& label, int error);
 
 /// Calls `visit(device, descriptor, path)` for each device with a link interface.

@@ -25,8 +25,11 @@ struct UsbDeviceInfo {
   friend bool operator==(const UsbDeviceInfo&, const UsbDeviceInfo&) = default;
 };
 
+/// Paths of the boards there are now. Opens nothing; empty also where USB cannot be used.
+[[nodiscard]] std::vector<std::string> usb_paths();
+
 /// All boards there are now, by path. Opens each for a moment; takes some ms. Throws
-/// std::runtime_error when USB cannot be used at all.
+/// LinkError when USB cannot be used at all.
 [[nodiscard]] std::vector<UsbDeviceInfo> list_usb_devices();
 
 /// Tells boards that come and go. Where udev runs it is told by it at once; also looks by itself,
@@ -58,7 +61,7 @@ class UsbWatch {
 
 /// The rule that lets the person at the screen, and the group plugdev, open boards.
 [[nodiscard]] std::string udev_rule();
-/// Writes it below `root` ("/"), and returns the file. Throws std::runtime_error with a remedy.
+/// Writes it below `root` ("/"), and returns the file. Throws LinkError with a remedy.
 std::string install_udev_rule(const std::string& root = "/");
 
 }  // namespace tactree::host

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "libusb.hpp"
+#include "tactree/host/link_error.hpp"
 
 namespace tactree::host {
 namespace {
@@ -269,9 +270,9 @@ std::unique_ptr<UsbTransport> open_usb(const std::string& which) {
     return std::make_unique<UsbTransport>(chosen.front());
   }
   if (devices.empty()) {
-    throw std::runtime_error("usb: no board is plugged in (remedy: `tactree devices` tells what there is)");
+    throw LinkError("usb: no board is plugged in (remedy: `tactree devices` tells what there is)");
   }
-  throw std::runtime_error("usb: " + std::string(chosen.empty() ? "no board is '" + which + "'" : "several boards are plugged in") +
+  throw LinkError("usb: " + std::string(chosen.empty() ? "no board is '" + which + "'" : "several boards are plugged in") +
                            " (remedy: name one by serial number or path)" + there);
 }
 

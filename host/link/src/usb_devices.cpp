@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "libusb.hpp"
+#include "tactree/host/link_error.hpp"
 
 namespace tactree::host {
 namespace {
@@ -24,7 +25,7 @@ void describe(libusb_device* device, const libusb_device_descriptor& descriptor,
   if (error != LIBUSB_SUCCESS) {
     try {
       fail(info.label(), error);
-    } catch (const std::runtime_error& reason) {
+    } catch (const LinkError& reason) {
       info.problem = reason.what();
     }
     return;
@@ -69,14 +70,14 @@ Context make_context() {
   libusb_context* context = nullptr;
   const int error = libusb_init(&context);
   if (error != LIBUSB_SUCCESS) {
-    throw std::runtime_error(std::string("usb: ") + libusb_strerror(error) +
+    throw LinkError(std::string("usb: ") + libusb_strerror(error) +
                              " (remedy: is /dev/bus/usb there?)");
   }
   return Context(context);
 }
 
 void fail(const std::string& label, int error) {
-  throw std::runtime_error(label + ": " + libusb_strerror(error) + remedy(error));
+  throw LinkError(label + ": " + libusb_strerror(error) + remedy(error));
 }
 
 std::string path_of(libusb_device* device) {
@@ -110,6 +111,19 @@ std::string UsbDeviceInfo::label() const {
   std::array<char, 16> numbers{};
   std::snprintf(numbers.data(), numbers.size(), "%04x:%04x", vendor, product);
   return std::string("usb ") + numbers.data() + " " + path;
+}
+
+std::vector<std::string> usb_paths() {
+  std::vector<std::string> paths;
+  try {
+    for_each_board(make_context().get(),
+                   [&](libusb_device*, const libusb_device_descriptor&, const std::string& path) {
+                     paths.push_back(path);
+                   });
+  } catch (const LinkError&) {  // no USB here
+  }
+  std::sort(paths.begin(), paths.end());
+  return paths;
 }
 
 std::vector<UsbDeviceInfo> list_usb_devices() { return list_devices(make_context().get()); }

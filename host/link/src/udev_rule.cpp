@@ -2,8 +2,8 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <stdexcept>
 
+#include "tactree/host/link_error.hpp"
 #include "tactree/host/usb_devices.hpp"
 
 namespace tactree::host {
@@ -24,7 +24,7 @@ std::string install_udev_rule(const std::string& root) {
   out << udev_rule();
   out.close();
   if (!out) {
-    throw std::runtime_error(file.string() + ": " + std::strerror(errno) +
+    throw LinkError(file.string() + ": " + std::strerror(errno) +
                              " (remedy: run it as root, or put the rule there by hand)");
   }
   return file.string();

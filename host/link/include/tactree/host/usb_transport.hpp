@@ -13,7 +13,7 @@ namespace tactree::host {
 
 class UsbTransport : public Transport {
  public:
-  /// Opens the board and its link. Takes some ms, once. Throws std::runtime_error with cause and
+  /// Opens the board and its link. Takes some ms, once. Throws LinkError with cause and
   /// remedy: gone, no permission, in use by another program.
   explicit UsbTransport(const UsbDeviceInfo& device);
   ~UsbTransport() override;
@@ -35,7 +35,7 @@ class UsbTransport : public Transport {
 };
 
 /// Opens the board that `which` names: a serial number, a path ("3-1.2"), or empty where there is
-/// just one. Throws std::runtime_error that lists what there is.
+/// just one. Throws LinkError that lists what there is.
 [[nodiscard]] std::unique_ptr<UsbTransport> open_usb(const std::string& which);
 
 }  // namespace tactree::host
