@@ -46,6 +46,10 @@ class BoardOnUsb {
     wanted_ = in;
     ASSERT_TRUE(eventually([&] { return plugged_ == in; }));
   }
+  [[nodiscard]] static const test::TestBlob& blob() {
+    static const test::TestBlob kBlob(test::sphere(0.03, 4e-3));
+    return kBlob;
+  }
   [[nodiscard]] core::usb::DfuState model_state() const { return model_state_; }
   [[nodiscard]] std::uint64_t ticks() const { return ticks_; }
 
@@ -59,8 +63,7 @@ class BoardOnUsb {
   }
 
   void run() {
-    static const test::TestBlob blob(test::sphere(0.03, 4e-3));
-    const std::span<const std::byte> bytes = blob.written().bytes;
+    const std::span<const std::byte> bytes = blob().written().bytes;
     core::usb::Identity identity;
     identity.serial = {0x11111111, 0x22222222, 0x33333333};
     serve::ServeOptions options;

@@ -261,6 +261,9 @@ TEST(Usb, AWatchTellsWhoComesAndGoesWithoutUdev) {
 /// A program that ends in the middle of a DFU transfer, and a cable that is pulled there.
 TEST(Usb, ADfuTransferThatIsBrokenOffLeavesTheModel) {
   BoardOnUsb board;
+  const auto& model = BoardOnUsb::blob().written().bytes;
+  const auto* const bytes = reinterpret_cast<const unsigned char*>(model.data());
+  const std::vector<unsigned char> first_block(bytes, bytes + 512);
   for (const bool pull : {false, true}) {
     ASSERT_TRUE(open_board());
     libusb_context* context = nullptr;
@@ -274,7 +277,7 @@ TEST(Usb, ADfuTransferThatIsBrokenOffLeavesTheModel) {
     };
     ASSERT_EQ(request(0xA1, 3, std::vector<unsigned char>(6)), 6);  // as every tool begins
     ASSERT_EQ(request(0x21, 6, {}), 0);
-    ASSERT_EQ(request(0x21, 1, std::vector<unsigned char>(512)), 512);
+    ASSERT_EQ(request(0x21, 1, first_block), 512);
     EXPECT_TRUE(eventually([&] { return board.model_state() == core::usb::DfuState::kDownloadSync; }));
     if (pull) {
       board.plug(false);

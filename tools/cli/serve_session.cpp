@@ -14,6 +14,9 @@ using Clock = std::chrono::steady_clock;
 // down, and does not count.
 constexpr double kHandAfterS = 0.08;
 
+// Ticks that may be late and are still made up for.
+constexpr int kLateMax = 10;
+
 volatile std::sig_atomic_t ending = 0;
 
 void end(int) { ending = 1; }
@@ -61,15 +64,17 @@ void serve_session(simulation::Simulation& simulation, const ServeSchedule& sche
   const double period_s = 1.0 / schedule.rate_hz;
   HandTime hand(schedule.path_s, period_s);
   DeadMan dead_man;
-  const Clock::time_point begin = Clock::now();
+  const auto period = std::chrono::duration_cast<Clock::duration>(
+      std::chrono::duration<double>(period_s));
+  Clock::time_point due = Clock::now();
   double t_s = 0.0;
   while (ending == 0 && (schedule.seconds_max <= 0.0 || t_s < schedule.seconds_max)) {
     const core::State state = simulation.state();
     simulation.board().safety_inputs().hold_dead_man(dead_man.is_held(state, period_s));
     (void)simulation.step_with_hand_at(hand.next(state == core::State::kActive));
     t_s += period_s;
-    const Clock::time_point due =
-        begin + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(t_s));
+    // A computer that was too slow for a while does not catch up: the session takes longer then.
+    due = std::max(due + period, Clock::now() - kLateMax * period);
     if (schedule.wait) {
       schedule.wait(due);
     } else {

@@ -33,6 +33,15 @@ void for_each_board(libusb_context* context, Visit visit);
 [[nodiscard]] std::string path_of(libusb_device* device);
 [[nodiscard]] bool has_link(libusb_device* device);
 
+/// Addresses of the link's endpoints: a device controller may number them as it can.
+struct LinkEndpoints {
+  std::uint8_t in = 0;
+  std::uint8_t out = 0;
+  std::uint8_t news = 0;
+};
+/// Nothing: the device has no link.
+[[nodiscard]] std::optional<LinkEndpoints> find_link(libusb_device* device);
+
 template <class Visit>
 void for_each_board(libusb_context* context, Visit visit) {
   libusb_device** list = nullptr;

@@ -90,22 +90,50 @@ std::string path_of(libusb_device* device) {
   return path;
 }
 
-bool has_link(libusb_device* device) {
-  libusb_config_descriptor* configuration = nullptr;
-  if (libusb_get_active_config_descriptor(device, &configuration) != LIBUSB_SUCCESS) {
-    return false;  // not configured yet, or gone
+namespace {
+
+bool is_link(const libusb_interface_descriptor& interface) {
+  return interface.bInterfaceClass == core::usb::kLinkClass &&
+         interface.bInterfaceSubClass == core::usb::kLinkSubclass &&
+         interface.bInterfaceProtocol == core::usb::kLinkProtocol &&
+         interface.bInterfaceNumber == core::usb::kLinkInterface;
+}
+
+LinkEndpoints endpoints_of(const libusb_interface_descriptor& interface) {
+  LinkEndpoints found;
+  for (std::uint8_t i = 0; i < interface.bNumEndpoints; ++i) {
+    const libusb_endpoint_descriptor& endpoint = interface.endpoint[i];
+    const bool in = (endpoint.bEndpointAddress & LIBUSB_ENDPOINT_IN) != 0;
+    const int type = endpoint.bmAttributes & LIBUSB_TRANSFER_TYPE_MASK;
+    if (type == LIBUSB_TRANSFER_TYPE_BULK) {
+      (in ? found.in : found.out) = endpoint.bEndpointAddress;
+    } else if (type == LIBUSB_TRANSFER_TYPE_INTERRUPT && in) {
+      found.news = endpoint.bEndpointAddress;
+    }
   }
-  bool found = false;
-  for (std::uint8_t i = 0; i < configuration->bNumInterfaces; ++i) {
-    const libusb_interface& interface = configuration->interface[i];
-    found = found || (interface.num_altsetting > 0 &&
-                      interface.altsetting[0].bInterfaceClass == core::usb::kLinkClass &&
-                      interface.altsetting[0].bInterfaceSubClass == core::usb::kLinkSubclass &&
-                      interface.altsetting[0].bInterfaceProtocol == core::usb::kLinkProtocol);
-  }
-  libusb_free_config_descriptor(configuration);
   return found;
 }
+
+}  // namespace
+
+std::optional<LinkEndpoints> find_link(libusb_device* device) {
+  libusb_config_descriptor* configuration = nullptr;
+  if (libusb_get_active_config_descriptor(device, &configuration) != LIBUSB_SUCCESS) {
+    return std::nullopt;  // not configured yet, or gone
+  }
+  std::optional<LinkEndpoints> found;
+  for (std::uint8_t i = 0; i < configuration->bNumInterfaces; ++i) {
+    const libusb_interface& interface = configuration->interface[i];
+    if (interface.num_altsetting > 0 && is_link(interface.altsetting[0])) {
+      found = endpoints_of(interface.altsetting[0]);
+    }
+  }
+  libusb_free_config_descriptor(configuration);
+  const bool whole = found && found->in != 0 && found->out != 0 && found->news != 0;
+  return whole ? found : std::nullopt;
+}
+
+bool has_link(libusb_device* device) { return find_link(device).has_value(); }
 
 std::string UsbDeviceInfo::label() const {
   std::array<char, 16> numbers{};

@@ -38,6 +38,7 @@ struct UsbTransport::Impl {
   UsbDeviceInfo info;
   Context context = make_context();
   Handle handle;
+  LinkEndpoints endpoints;
   std::array<Piece, kReads> reads;
   std::array<Piece, kWritesMax> writes;
   Piece news;
@@ -69,6 +70,7 @@ void UsbTransport::Impl::open() {
                                     const std::string& path) {
     libusb_device_handle* opened = nullptr;
     if (path == info.path && !handle) {
+      endpoints = find_link(device).value_or(LinkEndpoints{});
       error = libusb_open(device, &opened);
       handle.reset(opened);
     }
@@ -89,7 +91,7 @@ void UsbTransport::Impl::start() {
   for (Piece& piece : reads) {
     piece.owner = this;
     piece.bytes.resize(kReadBytes);
-    libusb_fill_bulk_transfer(piece.transfer.get(), handle.get(), core::usb::kBulkIn,
+    libusb_fill_bulk_transfer(piece.transfer.get(), handle.get(), endpoints.in,
                               piece.bytes.data(), static_cast<int>(piece.bytes.size()), &on_read,
                               &piece, 0);
     submit(piece);
@@ -100,7 +102,7 @@ void UsbTransport::Impl::start() {
   }
   news.owner = this;
   news.bytes.resize(sizeof(core::usb::NewsPacket));
-  libusb_fill_interrupt_transfer(news.transfer.get(), handle.get(), core::usb::kNewsIn,
+  libusb_fill_interrupt_transfer(news.transfer.get(), handle.get(), endpoints.news,
                                  news.bytes.data(), static_cast<int>(news.bytes.size()), &on_news,
                                  &news, 0);
   submit(news);
@@ -230,7 +232,7 @@ std::size_t UsbTransport::write(std::span<const std::byte> bytes) {
     }
     const std::size_t size = std::min(bytes.size() - count, piece.bytes.size());
     std::memcpy(piece.bytes.data(), bytes.data() + count, size);
-    libusb_fill_bulk_transfer(piece.transfer.get(), impl.handle.get(), core::usb::kBulkOut,
+    libusb_fill_bulk_transfer(piece.transfer.get(), impl.handle.get(), impl.endpoints.out,
                               piece.bytes.data(), static_cast<int>(size), &Impl::on_write, &piece,
                               0);
     impl.submit(piece);

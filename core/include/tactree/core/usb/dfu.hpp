@@ -243,7 +243,7 @@ class Dfu {
     } else if (progress.busy) {
       state_ = manifest ? DfuState::kManifest : DfuState::kDownloadBusy;
       wait_ms_ = progress.wait_ms;
-      wait_us_ = 1000U * wait_ms_;
+      wait_us_ = 750U * wait_ms_;  // the host's clock may be the faster one
       waits_since_us_ = now_us_;
     } else {
       state_ = manifest ? DfuState::kIdle : DfuState::kDownloadIdle;

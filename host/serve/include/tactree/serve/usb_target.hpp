@@ -1,6 +1,8 @@
 #pragma once
 // A served board on USB: link, model and parameters, as the device of a board has them.
 
+#include <chrono>
+
 #include "tactree/core/usb/parameter_storage.hpp"
 #include "tactree/hal/store/dfu_model.hpp"
 #include "tactree/hal/usb_device.hpp"
@@ -32,7 +34,10 @@ class UsbTarget : public ServedTarget {
 
   /// Answers the host; also between ticks.
   void serve() {
-    device_.poll(platform().now_us());
+    // Not the simulation's time, which may be slower: the host waits by its own clock.
+    const auto now = std::chrono::steady_clock::now().time_since_epoch();
+    const auto now_us = std::chrono::duration_cast<std::chrono::microseconds>(now).count();
+    device_.poll(static_cast<std::uint32_t>(now_us));
     work();
     tell();
   }
