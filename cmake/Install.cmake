@@ -5,6 +5,7 @@
 #   core        tactree::core, tactree::hal           depends on nothing; always there
 #   builder     tactree::builder                      Eigen, fmt, TBB, liblzf
 #   simulation  tactree::plant, tactree::simulation   Eigen
+#   host        tactree::host                         threads
 include(CMakePackageConfigHelpers)
 
 set(tactree_cmake_dir ${CMAKE_INSTALL_LIBDIR}/cmake/tactree)
@@ -19,7 +20,7 @@ function(tactree_install_component component)
     FILE tactree-${component}-targets.cmake)
   foreach(folder IN LISTS arg_HEADERS)
     install(DIRECTORY ${folder}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
-      FILES_MATCHING PATTERN "*.hpp")
+      FILES_MATCHING PATTERN "*.hpp" PATTERN "*.h")
   endforeach()
 endfunction()
 
@@ -33,6 +34,9 @@ if(TACTREE_BUILD_TOOLS)
   tactree_install_component(simulation
     TARGETS tactree_plant tactree_simulation
     HEADERS host/plant/include host/simulation/include)
+  tactree_install_component(host
+    TARGETS tactree_host
+    HEADERS host/link/include)
 endif()
 
 configure_package_config_file(cmake/tactree-config.cmake.in

@@ -33,7 +33,11 @@ void tactree_tick() { loop.tick(); }
 int main() {
   const tactree::core::Configuration configuration =
       board.connect(tactree::firmware::take_captured_fault());
-  board.report(start(configuration));
+  const tactree::hal::StartResult started = start(configuration);
+  board.report(started);
   tactree::firmware::start_ticks(configuration.rate_hz);
+  if constexpr (requires { board.serve(controller, started, configuration); }) {
+    board.serve(controller, started, configuration);
+  }
   tactree_idle();
 }

@@ -17,6 +17,8 @@ void start_ticks(float rate_hz);
 [[nodiscard]] std::uint32_t deadlines();
 /// Microseconds since start_ticks(), wrapping at 2^32.
 [[nodiscard]] std::uint32_t now_us();
+/// While held no tick begins; those that fall due meanwhile follow at once. For moments only.
+void hold_ticks(bool hold);
 /// Sleeps until an interrupt.
 void wait_for_interrupt();
 /// Starts anew, as after power-up; RAM that is not initialised keeps its content.

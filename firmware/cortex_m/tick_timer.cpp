@@ -39,6 +39,14 @@ std::uint32_t now_us() {
   return before * period_us + cycles / cycles_per_us;
 }
 
+void hold_ticks(bool hold) {
+  if (hold) {
+    __asm volatile("cpsid i" ::: "memory");
+  } else {
+    __asm volatile("cpsie i" ::: "memory");
+  }
+}
+
 void wait_for_interrupt() { __asm volatile("wfi" ::: "memory"); }
 
 }  // namespace tactree::firmware

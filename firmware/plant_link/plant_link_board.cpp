@@ -49,6 +49,7 @@ core::Configuration PlantLinkBoard::connect(const hal::CapturedFault& last_fault
 
   link::Session session;
   receive_message(from_host_, session);
+  served_ = session.served != 0U;
   return session.configuration;
 }
 

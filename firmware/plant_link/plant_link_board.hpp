@@ -32,6 +32,8 @@ class PlantLinkBoard {
 
   /// Says hello and waits for the session's configuration.
   [[nodiscard]] core::Configuration connect(const hal::CapturedFault& last_fault);
+  /// After connect(): does the host want the board to serve an application?
+  [[nodiscard]] bool is_served() const { return served_; }
   /// Tells whether there is a model to touch.
   void report(const hal::StartResult& result);
 
@@ -62,6 +64,7 @@ class PlantLinkBoard {
   BlobArea storage_;
   int from_host_ = -1;
   int to_host_ = -1;
+  bool served_ = false;
   bool in_session_ = false;  // a tick has begun, the plant waits for its output
   hal::plant_link::TickInput input_{};
   hal::plant_link::TickOutput output_{};

@@ -55,6 +55,14 @@ std::uint32_t now_us() {
   return before * period_us + cycles / cycles_per_us;
 }
 
+void hold_ticks(bool hold) {
+  if (hold) {
+    __asm volatile("csrc mstatus, %0" ::"r"(rv32::kStatusInterrupts) : "memory");
+  } else {
+    __asm volatile("csrs mstatus, %0" ::"r"(rv32::kStatusInterrupts) : "memory");
+  }
+}
+
 void wait_for_interrupt() { __asm volatile("wfi" ::: "memory"); }
 
 }  // namespace tactree::firmware

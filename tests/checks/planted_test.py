@@ -253,6 +253,35 @@ class Symbols(Planted):
         self.refuses("0 symbols defined", "check-symbols", self.archive(""))
 
 
+class ProtocolDoc(Planted):
+    def refuses_doc(self, words, old, new):
+        doc = (ROOT / "docs/PROTOCOL.md").read_text()
+        self.assertIn(old, doc)
+        path = self.write("PROTOCOL.md", doc.replace(old, new, 1))
+        self.refuses(words, "check-protocol-doc", "--doc", path, "--compiler", CXX)
+
+    def test_offset(self):
+        self.refuses_doc("the document says (5, 4, 'u32', 'nonce')", "| 4 | 4 | u32 | `nonce`",
+                         "| 5 | 4 | u32 | `nonce`")
+
+    def test_code(self):
+        self.refuses_doc("the document says (14, 'kOldCounter')", "| 15 | `kOldCounter`",
+                         "| 14 | `kOldCounter`")
+
+    def test_constant(self):
+        self.refuses_doc("('kMaxPiece', 255)", "| `kMaxPiece` | 256 |", "| `kMaxPiece` | 255 |")
+
+    def test_field_that_the_page_does_not_know(self):
+        shutil.copytree(ROOT / "core/include", self.folder / "include")
+        path = self.folder / "include/tactree/core/wire/messages.hpp"
+        old = "  std::uint32_t age_us = 0;"
+        self.assertIn(old, path.read_text())
+        text = path.read_text().replace(old, "  std::uint32_t planted = 0;" + old, 1)
+        path.write_text(text.replace("sizeof(HeartbeatReply) == 8", "sizeof(HeartbeatReply) == 12"))
+        self.refuses("planted", "check-protocol-doc", "--include", self.folder / "include",
+                     "--compiler", CXX)
+
+
 class FormatDoc(Planted):
     def setUp(self):
         super().setUp()

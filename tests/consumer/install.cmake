@@ -9,6 +9,9 @@ foreach(file
     include/tactree/hal/board.hpp
     include/tactree/builder/model.hpp
     include/tactree/builder/version.hpp
+    include/tactree/host/board.hpp
+    include/tactree/host/tactree.h
+    include/tactree/chai3d/device.hpp
     include/tactree/simulation/simulation.hpp)
   if(NOT EXISTS ${PREFIX}/${file})
     message(FATAL_ERROR "not installed: ${file}")

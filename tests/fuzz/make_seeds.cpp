@@ -17,6 +17,7 @@
 
 #include "tactree/builder/model.hpp"
 #include "tactree/core/blob.hpp"
+#include "wire_seeds.hpp"
 
 namespace {
 
@@ -266,6 +267,8 @@ int main(int argc, char** argv) {
     write_valid_blobs(folder / "open_blob");
     write_broken_blobs(folder / "open_blob");
     write_scans(folder / "read_scan");
+    fs::create_directories(folder / "wire_session");
+    write_wire_sessions(folder / "wire_session");
   } catch (const std::exception& error) {
     std::fprintf(stderr, "make_seeds: %s\n", error.what());
     return 1;

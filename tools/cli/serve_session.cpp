@@ -14,9 +14,6 @@ using Clock = std::chrono::steady_clock;
 // down, and does not count.
 constexpr double kHandAfterS = 0.08;
 
-// Ticks that may be late and are still made up for.
-constexpr int kLateMax = 10;
-
 volatile std::sig_atomic_t ending = 0;
 
 void end(int) { ending = 1; }
@@ -56,6 +53,26 @@ class DeadMan {
   double since_s_ = 0.0;
 };
 
+/// Ticks in real time. Where the computer is late the simulated world is slower from then on: ticks
+/// made up for in a burst would leave programs no time to answer, and the link would seem dead.
+class Pace {
+ public:
+  explicit Pace(double period_s)
+      : period_(
+            std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(period_s))) {}
+
+  /// When the next tick is due.
+  Clock::time_point next() {
+    next_ = std::max(next_ + period_, Clock::now() - kMostLate);
+    return next_;
+  }
+
+ private:
+  static constexpr std::chrono::milliseconds kMostLate{2};
+  Clock::duration period_;
+  Clock::time_point next_ = Clock::now();
+};
+
 }  // namespace
 
 void serve_session(simulation::Simulation& simulation, const ServeSchedule& schedule) {
@@ -64,17 +81,14 @@ void serve_session(simulation::Simulation& simulation, const ServeSchedule& sche
   const double period_s = 1.0 / schedule.rate_hz;
   HandTime hand(schedule.path_s, period_s);
   DeadMan dead_man;
-  const auto period = std::chrono::duration_cast<Clock::duration>(
-      std::chrono::duration<double>(period_s));
-  Clock::time_point due = Clock::now();
+  Pace pace(period_s);
   double t_s = 0.0;
   while (ending == 0 && (schedule.seconds_max <= 0.0 || t_s < schedule.seconds_max)) {
     const core::State state = simulation.state();
     simulation.board().safety_inputs().hold_dead_man(dead_man.is_held(state, period_s));
     (void)simulation.step_with_hand_at(hand.next(state == core::State::kActive));
     t_s += period_s;
-    // A computer that was too slow for a while does not catch up: the session takes longer then.
-    due = std::max(due + period, Clock::now() - kLateMax * period);
+    const Clock::time_point due = pace.next();
     if (schedule.wait) {
       schedule.wait(due);
     } else {

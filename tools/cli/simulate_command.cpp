@@ -517,6 +517,26 @@ serve::ServeOptions serve_options(const SimulateOptions& options) {
   return serving;
 }
 
+std::unique_ptr<simulation::Target> served_target(const SimulateOptions& options,
+                                                  const SceneFile& scene,
+                                                  host::Transport& terminal) {
+  const BlobFile& blob = *scene.files[0];
+  const serve::ServeOptions serving = serve_options(options);
+  const emulation::BoardDescription* const board = emulation::find_board(options.board);
+  if (board == nullptr) {
+    return std::make_unique<serve::ServedTarget>(terminal, blob.bytes(), serving);
+  }
+  if (serving.key) {
+    refuse(fmt::format("--require-key: the image of {} has no key", board->name),
+           "use --board host");
+  }
+  emulation::EmulationOptions emulation;
+  emulation.image = emulation::find_image(*board, options.firmware);
+  emulation.count_instructions = false;
+  emulation.served = &terminal;
+  return std::make_unique<emulation::EmulatedTarget>(*board, blob.bytes(), emulation);
+}
+
 void serve_target(const SimulateOptions& options, const SceneFile& scene,
                   std::unique_ptr<simulation::Target> target, ServeSchedule schedule) {
   const simulation::Setup setup = make_setup(options, scene);
@@ -546,6 +566,10 @@ void serve_on_usb(const SimulateOptions& options, const SceneFile& scene,
 }
 
 void serve(const SimulateOptions& options, const SceneFile& scene) {
+  if ((options.on_usb || options.usb_port) && options.board != "host") {
+    refuse(fmt::format("--board {}: an emulated board has no USB port", options.board),
+           "use --board host, or leave --usb out");
+  }
   core::usb::Identity identity;
   identity.name = "Simulated controller";
   identity.serial = {0, 0, options.serial};
@@ -559,10 +583,7 @@ void serve(const SimulateOptions& options, const SceneFile& scene) {
     host::PseudoTerminal terminal;
     fmt::print("serving at {}\n", terminal.name());
     std::fflush(stdout);
-    serve_target(options, scene,
-                 std::make_unique<serve::ServedTarget>(terminal, scene.files[0]->bytes(),
-                                                       serve_options(options)),
-                 {});
+    serve_target(options, scene, served_target(options, scene, terminal), {});
   }
 }
 

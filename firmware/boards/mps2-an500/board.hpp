@@ -1,8 +1,9 @@
 #pragma once
 // Arm MPS2 with the Cortex-M7 image AN500, in QEMU.
 
-#include "plant_link/plant_link_board.hpp"
+#include "plant_link/served_board.hpp"
+#include "uarts/cmsdk_uart.hpp"
 
 namespace tactree::firmware {
-using Board = PlantLinkBoard;
-}
+using Board = ServedBoard<CmsdkUart<0x40004000>, SlotStore>;
+}  // namespace tactree::firmware

@@ -1,8 +1,9 @@
 #pragma once
 // Arm MPS3 with the Cortex-M55 image AN547, in QEMU.
 
-#include "plant_link/plant_link_board.hpp"
+#include "plant_link/served_board.hpp"
+#include "uarts/cmsdk_uart.hpp"
 
 namespace tactree::firmware {
-using Board = PlantLinkBoard;
-}
+using Board = ServedBoard<CmsdkUart<0x59303000>, SlotStore>;
+}  // namespace tactree::firmware

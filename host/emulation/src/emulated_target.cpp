@@ -11,6 +11,7 @@
 #include "child_process.hpp"
 #include "file_descriptor.hpp"
 #include "find_files.hpp"
+#include "serial_bridge.hpp"
 #include "tactree/hal/plant_link.hpp"
 
 namespace tactree::emulation {
@@ -24,6 +25,7 @@ constexpr int kToBoard = 3;
 constexpr int kFromBoard = 4;
 constexpr int kCounts = 5;
 constexpr int kBlob = 6;
+constexpr int kSerial = 7;
 
 constexpr milliseconds kEndLimit{10'000};
 
@@ -86,6 +88,13 @@ std::vector<std::string> command_line(const BoardDescription& board, const std::
         fmt::format("loader,file=/dev/fd/{},addr={:#x},force-raw=on", kBlob, board.blob_address)}) {
     line.push_back(word);
   }
+  if (options.served != nullptr) {
+    for (const std::string& word :
+         {std::string("-chardev"), fmt::format("socket,id=application,fd={}", kSerial),
+          std::string("-serial"), std::string("chardev:application")}) {
+      line.push_back(word);
+    }
+  }
   if (options.count_instructions) {
     line.push_back("-plugin");
     line.push_back(counter);
@@ -114,12 +123,15 @@ class EmulatedTarget::Session {
     }
     const std::filesystem::path image = options.image.empty() ? find_image(board) : options.image;
     write_all(blob_.get(), blob, "the blob for the emulator");
-    process_.emplace(command_line(board, program, image, options),
-                     std::vector<std::pair<int, int>>{{to_board_.read_end.get(), kToBoard},
-                                                      {from_board_.write_end.get(), kFromBoard},
-                                                      {counts_.write_end.get(), kCounts},
-                                                      {blob_.get(), kBlob}},
-                     log_.get());
+    std::vector<std::pair<int, int>> inherited{{to_board_.read_end.get(), kToBoard},
+                                               {from_board_.write_end.get(), kFromBoard},
+                                               {counts_.write_end.get(), kCounts},
+                                               {blob_.get(), kBlob}};
+    if (options.served != nullptr) {
+      bridge_.emplace(*options.served);
+      inherited.emplace_back(bridge_->board_end(), kSerial);
+    }
+    process_.emplace(command_line(board, program, image, options), inherited, log_.get());
     // Only the emulator writes to these; so they end with it. Our own reading end of to_board_
     // stays open: a write to an emulator that has ended is no signal.
     from_board_.write_end.close();
@@ -130,6 +142,7 @@ class EmulatedTarget::Session {
   hal::StartResult start(const core::Configuration& configuration) {
     link::Session message;
     message.configuration = configuration;
+    message.served = options_.served != nullptr ? 1U : 0U;
     send(message);
     return receive<link::Started>(link::Kind::kStarted, options_.start_limit).result;
   }
@@ -138,6 +151,9 @@ class EmulatedTarget::Session {
     link::TickInput message;
     message.input = input;
     message.body = body;
+    if (bridge_) {
+      bridge_->move();
+    }
     send(message);
     return receive<link::TickOutput>(link::Kind::kTickOutput, options_.tick_limit);
   }
@@ -256,6 +272,7 @@ class EmulatedTarget::Session {
   Pipe counts_ = make_pipe();
   FileDescriptor blob_ = make_memory_file("blob");
   FileDescriptor log_ = make_memory_file("log");
+  std::optional<SerialBridge> bridge_;
   std::optional<ChildProcess> process_;
 };
 

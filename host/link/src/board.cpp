@@ -49,6 +49,17 @@ std::string details(const Response& response) {
                                   : core::describe(static_cast<core::ModelStatus>(reply.model)));
 }
 
+std::string names_of(core::FaultMask faults) {
+  std::string names;
+  for (std::uint32_t code = 1; code < core::kFaultCodes; ++code) {
+    if (core::has_fault(faults, static_cast<core::Fault>(code))) {
+      names +=
+          std::string(names.empty() ? ": " : ", ") + core::name_of(static_cast<core::Fault>(code));
+    }
+  }
+  return names;
+}
+
 template <std::size_t N>
 void copy(const std::string& from, char (&to)[N]) {
   std::memcpy(to, from.data(), std::min(from.size(), N - 1));
@@ -134,14 +145,19 @@ void Board::arm(std::chrono::milliseconds patience) {
   (void)control(ControlCode::kArm, 0, "arm").read(armed);
   const auto deadline = std::chrono::steady_clock::now() + patience;
   while (true) {
-    const auto now = static_cast<core::State>(state().state);
+    const core::wire::StateReply told = state();
+    const auto now = static_cast<core::State>(told.state);
     if (now == core::State::kActive) {
       return;
     }
-    if (now != core::State::kArmed || std::chrono::steady_clock::now() > deadline) {
+    if (now != core::State::kArmed) {
+      throw LinkError(connection_.name() + ": arm: the controller is in state " +
+                      core::name_of(now) + names_of(told.faults));
+    }
+    if (std::chrono::steady_clock::now() > deadline) {
       stop();
       throw LinkError(
-          connection_.name() + ": arm: the controller is in state " + core::name_of(now) + " (" +
+          connection_.name() + ": arm: nobody confirms (" +
           (hand_confirms ? "let the dead-man control go, then hold it, " : "hold the probe ") +
           "outside of the object)");
     }

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cstring>
+#include <fstream>
 #include <random>
+#include <string>
 #include <vector>
 
 #include "tactree/core/wire/messages.hpp"
@@ -157,6 +159,22 @@ TEST(Frame, AMessageMayHaveGrownButNotShrunk) {
   EXPECT_TRUE(decode_message(std::span<const std::byte>(payload), request));
   payload.resize(sizeof(OpenRequest) - 1U);
   EXPECT_FALSE(decode_message(std::span<const std::byte>(payload), request));
+}
+
+// Every frame of a session of the first release: read, and written again to the same bytes.
+TEST(Frame, TheGoldenSessionIsEncodedAsEver) {
+  std::ifstream golden(TACTREE_GOLDEN "/session-1.0.txt");
+  int frames = 0;
+  for (std::string line; std::getline(golden, line); ++frames) {
+    Bytes frame;
+    for (std::size_t i = 2; i + 1 < line.size(); i += 2) {
+      frame.push_back(static_cast<std::byte>(std::stoi(line.substr(i, 2), nullptr, 16)));
+    }
+    const Decoded result = decoded(frame);
+    ASSERT_EQ(result.frames.size(), 1U) << line;
+    EXPECT_EQ(encoded(result.frames[0].header, result.frames[0].payload), frame) << line;
+  }
+  EXPECT_GE(frames, 60);
 }
 
 TEST(WireStatus, EachHasWordsOfItsOwn) {

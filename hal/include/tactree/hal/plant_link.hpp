@@ -22,7 +22,7 @@
 namespace tactree::hal::plant_link {
 
 /// Changes with every change of what follows, or of the structs in it.
-inline constexpr std::uint32_t kVersion = 3;
+inline constexpr std::uint32_t kVersion = 4;
 
 enum class Kind : std::uint32_t {
   kHello = 0x54414331,  ///< no message begins with these bytes by chance
@@ -51,6 +51,8 @@ struct Hello {
 struct Session {
   Kind kind = Kind::kSession;
   core::Configuration configuration{};
+  std::uint32_t served = 0;  ///< 1: an application is at the board's serial port; the link of the
+                             ///< messages below is not used
 };
 
 struct Started {

@@ -42,6 +42,9 @@ class ModelStore {
 
   // ---- at start-up
 
+  /// In place of the setup's. Call it before mount().
+  void set_factory(std::span<const std::byte> model) { setup_.factory = model; }
+
   /// Reads the record. Call it before all else. False: the store is damaged, there is no model.
   bool mount() {
     record_ = {};

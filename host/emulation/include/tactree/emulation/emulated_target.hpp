@@ -13,6 +13,7 @@
 #include "tactree/emulation/board_description.hpp"
 #include "tactree/emulation/emulation_error.hpp"
 #include "tactree/emulation/instruction_counts.hpp"
+#include "tactree/host/transport.hpp"
 #include "tactree/simulation/target.hpp"
 
 namespace tactree::emulation {
@@ -25,6 +26,9 @@ struct EmulationOptions {
   bool count_instructions = true;
   /// Also which code the ticks execute; about half as fast.
   bool note_code = false;
+  /// Of programs that talk to the board at its serial port; nullptr: nobody does. Outlives the
+  /// target.
+  host::Transport* served = nullptr;
   /// In place of the board's own.
   std::optional<std::uint32_t> instruction_shift;
   /// Longest silence of a board, real time: while it starts, and between two ticks.

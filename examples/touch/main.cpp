@@ -1,0 +1,57 @@
+// Moves the object that a board's hand touches up and down, and draws the force as a line.
+//   touch PORT [SECONDS]      PORT: a serial port, or what tactree simulate --serve prints
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <string>
+#include <tactree/host/board.hpp>
+#include <thread>
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+void draw(const tactree::host::Telemetry& t) {
+  const double force = std::hypot(t.force_N[0], t.force_N[1], t.force_N[2]);
+  const auto length = static_cast<std::size_t>(std::min(60.0, 20.0 * force));
+  std::printf("%8.3f N |%s\n", force, std::string(length, '=').c_str());
+}
+
+void touch(tactree::host::Board& board, double seconds) {
+  board.subscribe({.every_ticks = 20});
+  board.arm();
+  const Clock::time_point begin = Clock::now();
+  double t_s = 0.0;
+  while (t_s < seconds && board.in_session()) {
+    tactree::core::Pose pose;  // 2 mm up and down, once in two seconds
+    pose.translation_m.z = static_cast<float>(0.002 * std::sin(3.14159 * t_s));
+    tactree::core::Motion motion;
+    motion.linear_m_s.z = static_cast<float>(0.002 * 3.14159 * std::cos(3.14159 * t_s));
+    board.move_body(0, pose, motion);
+    draw(board.latest());
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    t_s = std::chrono::duration<double>(Clock::now() - begin).count();
+  }
+  board.stop();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 2) {
+    std::fprintf(stderr, "usage: touch PORT [SECONDS]\n");
+    return 2;
+  }
+  try {
+    tactree::host::Board board(argv[1], {.link_timeout_ms = 100});
+    touch(board, argc > 2 ? std::atof(argv[2]) : 10.0);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "touch: %s\n", error.what());
+    return 1;
+  }
+  return 0;
+}

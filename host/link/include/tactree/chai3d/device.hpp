@@ -1,0 +1,126 @@
+#pragma once
+// A Tactree board as a haptic device of CHAI3D (https://www.chai3d.org), version 3: see
+// docs/CHAI3D.md. The classes of CHAI3D are parameters, so that this header needs none of its own.
+//
+//   using TactreeDevice = tactree::chai3d::Device<chai3d::cGenericHapticDevice, chai3d::cVector3d,
+//                                                 chai3d::cMatrix3d>;
+//   auto device = std::make_shared<TactreeDevice>("/dev/ttyACM0");
+//
+// Both have the same axes: x to the user, y to the user's right, z up.
+
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "tactree/host/board.hpp"
+#include "tactree/host/link_error.hpp"
+
+namespace tactree::chai3d {
+
+struct DeviceOptions {
+  unsigned baud = 115200;
+  /// CHAI3D's servo loop sends forces all the time: when it ends, so does the force.
+  std::uint16_t link_timeout_ms = 50;
+  std::uint32_t every_ticks = 1;  ///< of telemetry; on a serial port 10 or more
+  std::uint32_t force_ms = 20;    ///< a force acts so long unless there is another
+};
+
+template <class Base, class Vector, class Matrix>
+class Device : public Base {
+ public:
+  explicit Device(std::string port, const DeviceOptions& options = {})
+      : port_(std::move(port)), options_(options) {
+    this->m_deviceReady = false;
+    this->m_deviceAvailable = true;
+    this->m_specifications.m_modelName = "Tactree";
+    this->m_specifications.m_sensedPosition = true;
+    this->m_specifications.m_sensedRotation = false;
+    this->m_specifications.m_actuatedPosition = true;
+    this->m_specifications.m_actuatedRotation = false;
+  }
+
+  /// Waits for the board, and for the hand at its dead-man control. The reason of a failure:
+  /// error().
+  bool open() override {
+    try {
+      board_ = std::make_unique<host::Board>(
+          port_, host::BoardOptions{options_.baud, options_.link_timeout_ms});
+      const core::wire::CapabilitiesReply can = board_->capabilities();
+      this->m_specifications.m_maxLinearForce = static_cast<double>(can.host_force_max_N);
+      this->m_specifications.m_maxLinearStiffness = static_cast<double>(can.stiffness_limit_N_m);
+      board_->subscribe({0x0F, options_.every_ticks});
+      board_->arm();
+    } catch (const host::LinkError& error) {
+      error_ = error.what();
+      board_.reset();
+    }
+    this->m_deviceReady = board_ != nullptr;
+    return this->m_deviceReady;
+  }
+
+  bool close() override {
+    board_.reset();  // stops
+    this->m_deviceReady = false;
+    return true;
+  }
+
+  /// The device is in its home pose.
+  bool calibrate(bool /*a_forceCalibration*/ = false) override {
+    if (board_ == nullptr) {
+      return false;
+    }
+    try {
+      board_->home();
+    } catch (const host::LinkError& error) {
+      error_ = error.what();
+      return false;
+    }
+    return true;
+  }
+
+  bool getPosition(Vector& a_position) override {
+    if (board_ == nullptr) {
+      return false;
+    }
+    const host::Telemetry latest = board_->latest();
+    a_position.set(static_cast<double>(latest.probe_m[0]), static_cast<double>(latest.probe_m[1]),
+                   static_cast<double>(latest.probe_m[2]));
+    this->estimateLinearVelocity(a_position);
+    return true;
+  }
+
+  bool getRotation(Matrix& a_rotation) override {
+    a_rotation.identity();
+    return board_ != nullptr;
+  }
+
+  bool getUserSwitches(unsigned int& a_userSwitches) override {
+    a_userSwitches = 0;
+    return board_ != nullptr;
+  }
+
+  /// Added to what the board renders of its own model; torques are not displayed.
+  bool setForceAndTorqueAndGripperForce(const Vector& a_force, const Vector& /*a_torque*/,
+                                        double /*a_gripperForce*/) override {
+    if (board_ == nullptr || !board_->in_session()) {
+      return false;
+    }
+    this->m_prevForce = a_force;
+    board_->add_force({static_cast<float>(a_force.x()), static_cast<float>(a_force.y()),
+                       static_cast<float>(a_force.z())},
+                      options_.force_ms);
+    return true;
+  }
+
+  [[nodiscard]] const std::string& error() const { return error_; }
+  /// For what CHAI3D has no name for; nullptr: closed.
+  [[nodiscard]] host::Board* board() { return board_.get(); }
+
+ private:
+  std::string port_;
+  DeviceOptions options_;
+  std::unique_ptr<host::Board> board_;
+  std::string error_;
+};
+
+}  // namespace tactree::chai3d

@@ -1,0 +1,34 @@
+/* What a program in C does with a board. */
+#include "tactree/host/tactree.h"
+
+int c_program(const char* port);
+int c_program(const char* port) {
+  tactree_board* board = tactree_open(port, 115200, 0);
+  if (board == NULL) {
+    return 1;
+  }
+  int result =
+      tactree_subscribe(board, 5) != 0 || tactree_set_material(board, 400, 1, 0.3f, 0.2f) != 0;
+  if (result == 0 && tactree_arm(board, 20000) != 0) {
+    result = 2;
+  }
+  tactree_sample sample;
+  long left = 100000000L;
+  do {
+    tactree_latest(board, &sample);
+    left = left - 1;
+  } while (result == 0 && left > 0 && tactree_in_session(board) && !(sample.force_N[2] > 0.05f));
+  const float still[3] = {0, 0, 0};
+  const float upright[4] = {1, 0, 0, 0};
+  tactree_move_body(board, 0, upright, still, still);
+  tactree_add_force(board, still, 20);
+  tactree_sample taken[4];
+  if (result == 0 && (left == 0 || tactree_take(board, taken, 4) == 0)) {
+    result = 3;
+  }
+  if (tactree_stop(board) != 0) {
+    result = 4;
+  }
+  tactree_close(board);
+  return result;
+}

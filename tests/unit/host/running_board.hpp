@@ -1,0 +1,63 @@
+#pragma once
+// A served board in a thread, in real time, and the path of its port.
+
+#include <atomic>
+#include <chrono>
+#include <string>
+#include <thread>
+
+#include "tactree/host/serial_port.hpp"
+#include "tactree/serve/served_target.hpp"
+#include "tactree/simulation/simulation.hpp"
+#include "test_models.hpp"
+
+namespace tactree::test {
+
+/// Touches a sphere of 3 cm; its hand is held at the top, just above or in the surface.
+class RunningBoard {
+ public:
+  explicit RunningBoard(double height_m = 0.04) : thread_([this, height_m] { run(height_m); }) {}
+  ~RunningBoard() {
+    ending_ = true;
+    thread_.join();
+  }
+  RunningBoard(const RunningBoard&) = delete;
+  RunningBoard& operator=(const RunningBoard&) = delete;
+
+  [[nodiscard]] std::string port() const { return terminal_.name(); }
+
+ private:
+  void run(double height_m) {
+    const TestBlob blob(sphere(0.03, 0.002));
+    simulation::Setup setup;
+    setup.controller.dead_man_required = false;
+    simulation::HandPath path({{0.0, {0.0, 0.0, 0.04}}, {1.0, {0.0, 0.0, height_m}}});
+    simulation::Simulation simulation(blob.written().bytes, setup, path,
+                                      std::make_unique<serve::ServedTarget>(
+                                          terminal_, blob.written().bytes, serve::ServeOptions{}));
+    double hand_s = 0.0;
+    while (!ending_) {
+      hand_s = simulation.state() == core::State::kActive ? hand_s + 0.001 : 0.0;
+      (void)simulation.step_with_hand_at(hand_s);
+      std::this_thread::sleep_for(std::chrono::microseconds(500));
+    }
+  }
+
+  host::PseudoTerminal terminal_;
+  std::atomic<bool> ending_ = false;
+  std::thread thread_;
+};
+
+/// Waits for something that comes in real time, as long as it takes a slow machine.
+template <class Condition>
+bool comes_true(Condition condition) {
+  for (int i = 0; i < 3000; ++i) {
+    if (condition()) {
+      return true;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return false;
+}
+
+}  // namespace tactree::test
