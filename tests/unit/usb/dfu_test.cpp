@@ -144,10 +144,13 @@ TEST_F(DfuTest, TheHostWaitsWhileTheMemoryIsBusy) {
   EXPECT_GE(bus.now_us, 3U * 5U * 5000U);
 }
 
-TEST_F(DfuTest, AHostThatDoesNotWaitIsRefused) {
+TEST_F(DfuTest, AHostThatDoesNotWaitIsToldToWaitOnAndRefusedAllElse) {
   bring_to(DfuState::kDownloadBusy);
   bus.now_us += 1000;
-  EXPECT_FALSE(ask(DfuRequest::kAskStatus, 0, 6));
+  const Status early = status();
+  EXPECT_EQ(early.state, DfuState::kDownloadBusy);
+  EXPECT_EQ(early.wait_ms, bus.model.wait_ms);
+  EXPECT_FALSE(request(DfuRequest::kDownload, 1, Bytes(16)));
   EXPECT_EQ(state(), DfuState::kError);
 }
 
@@ -160,6 +163,7 @@ TEST_F(DfuTest, AfterTheTimeADeviceIsInSyncAgain) {
 }
 
 /// Figure A.1 and its tables, with what this device can: download, upload, manifestation tolerant.
+/// The one exception is the status while the host is to wait.
 TEST_F(DfuTest, EveryRequestInEveryState) {
   struct Row {
     DfuState from;
@@ -175,10 +179,10 @@ TEST_F(DfuTest, EveryRequestInEveryState) {
   const Row rows[] = {
       {I, DfuState::kDownloadSync, E, DfuState::kUploadIdle, I, E, I},
       {DfuState::kDownloadSync, E, E, E, DfuState::kDownloadIdle, E, E},
-      {DfuState::kDownloadBusy, E, E, E, E, E, E},
+      {DfuState::kDownloadBusy, E, E, E, DfuState::kDownloadBusy, E, E},
       {DfuState::kDownloadIdle, DfuState::kDownloadSync, DfuState::kManifestSync, E, DfuState::kDownloadIdle, E, I},
       {DfuState::kManifestSync, E, E, E, I, E, E},
-      {DfuState::kManifest, E, E, E, E, E, E},
+      {DfuState::kManifest, E, E, E, DfuState::kManifest, E, E},
       {DfuState::kUploadIdle, E, E, DfuState::kUploadIdle, DfuState::kUploadIdle, E, I},
       {E, E, E, E, E, I, E},
   };

@@ -99,7 +99,9 @@ class Dfu {
   /// A class request to this interface.
   [[nodiscard]] Answer setup(const SetupPacket& setup) {
     const auto request = static_cast<DfuRequest>(setup.bRequest);
-    if (request == DfuRequest::kAskStatus && !is_waiting()) {
+    // While the host is to wait the standard allows no request at all. Two clocks differ, and a
+    // device may be late to look at its own: who asks for the status early is told to wait on.
+    if (request == DfuRequest::kAskStatus) {
       return is_query(setup, kStatusBytes) ? tell_status(setup) : fail(DfuStatus::kStalledPacket);
     }
     if (request == DfuRequest::kAskState && !is_waiting()) {
@@ -243,7 +245,7 @@ class Dfu {
     } else if (progress.busy) {
       state_ = manifest ? DfuState::kManifest : DfuState::kDownloadBusy;
       wait_ms_ = progress.wait_ms;
-      wait_us_ = 750U * wait_ms_;  // the host's clock may be the faster one
+      wait_us_ = 1000U * wait_ms_;
       waits_since_us_ = now_us_;
     } else {
       state_ = manifest ? DfuState::kIdle : DfuState::kDownloadIdle;
@@ -251,8 +253,10 @@ class Dfu {
   }
 
   [[nodiscard]] Answer tell_status(const SetupPacket& setup) {
-    wait_ms_ = 0;
-    proceed();
+    if (!is_waiting()) {
+      wait_ms_ = 0;
+      proceed();
+    }
     buffer_[0] = static_cast<std::byte>(status_);
     buffer_[1] = static_cast<std::byte>(wait_ms_ & 0xFFU);
     buffer_[2] = static_cast<std::byte>((wait_ms_ >> 8U) & 0xFFU);
