@@ -8,8 +8,8 @@
 #include <mutex>
 #include <thread>
 
-#include "tactree/host/client.hpp"
 #include "tactree/hal/linux/usbip_controller.hpp"
+#include "tactree/host/client.hpp"
 #include "tactree/host/usb_transport.hpp"
 #include "tactree/serve/usb_target.hpp"
 #include "tactree/simulation/simulation.hpp"

@@ -23,7 +23,8 @@ using namespace hal::linux_gpio;
 enum Line : std::size_t { kA0, kB0, kA1, kB1, kEnable, kReadBack, kStop, kDeadMan };
 const std::vector<std::string> kNames = {"encoder0-a", "encoder0-b", "encoder1-a", "encoder1-b",
                                          "enable",     "read-back",  "e-stop",     "dead-man"};
-const std::vector<EncoderLines> kAxes = {{"encoder0-a", "encoder0-b"}, {"encoder1-a", "encoder1-b"}};
+const std::vector<EncoderLines> kAxes = {{"encoder0-a", "encoder0-b"},
+                                         {"encoder1-a", "encoder1-b"}};
 
 class Gpio : public testing::Test {
  protected:
@@ -108,8 +109,10 @@ TEST_F(Gpio, ABrokenWireOfTheEmergencyStopReadsAsPressed) {
 }
 
 TEST_F(Gpio, AnEmergencyStopThatIsPressedForAMomentIsSeen) {
-  chip_.pull(kStop, true);
   GpioSafetyInputs inputs("e-stop", "dead-man", "tactree");
+  chip_.pull(kStop, true);
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  (void)inputs.emergency_stop();
   EXPECT_FALSE(inputs.emergency_stop());
   chip_.pull(kStop, false);
   std::this_thread::sleep_for(std::chrono::milliseconds(20));
@@ -150,14 +153,14 @@ TEST_F(Gpio, AProgramThatIsKilledLeavesTheEnableLineFree) {
 
 TEST_F(Gpio, RefusalsNameLineCauseAndRemedy) {
   const GpioLines held = GpioLines::outputs({"enable"}, "somebody", false);
-  const std::string used =
-      refusal([] { GpioEnableLine("enable", "read-back", "tactree"); });
+  const std::string used = refusal([] { GpioEnableLine("enable", "read-back", "tactree"); });
   EXPECT_TRUE(holds(used, "line 'enable': in use by 'somebody'")) << used;
   const std::string wrong = refusal([] { GpioEnableLine("enabel", "read-back", "tactree"); });
   EXPECT_TRUE(holds(wrong, "line 'enabel': no chip has a line of that name")) << wrong;
   const GpioSim other("other", {"far-away", "dead-man"});
-  const std::string apart = refusal(
-      [] { GpioEncoderBank({{"encoder0-a", "far-away"}}, "tactree", 0); });
+  const std::string apart = refusal([] {
+    GpioEncoderBank({{"encoder0-a", "far-away"}}, "tactree", 0);
+  });
   EXPECT_TRUE(holds(apart, "use lines of one chip")) << apart;
   const std::string twice = refusal([] { GpioSafetyInputs("e-stop", "dead-man", "tactree"); });
   EXPECT_TRUE(holds(twice, "line 'dead-man'") && holds(twice, "have one of that name")) << twice;

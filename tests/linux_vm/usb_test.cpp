@@ -154,7 +154,8 @@ TEST(Usb, NoTelemetryIsLostUnnoticed) {
     last_tick = header.tick;
     last_dropped = header.dropped;
   });
-  ASSERT_TRUE(application.ask(MessageKind::kSubscribe, core::wire::SubscribeRequest{0x3FF, 1}).ok());
+  ASSERT_TRUE(
+      application.ask(MessageKind::kSubscribe, core::wire::SubscribeRequest{0x3FF, 1}).ok());
   const std::uint64_t wanted = packets_wanted();
   std::uint64_t at = 0;
   ASSERT_TRUE(eventually([&] {
@@ -213,10 +214,12 @@ TEST(Usb, PullingTheCableAtAnyMomentIsNoticedAndAReplugWorks) {
     Application application(open_board());
     ASSERT_TRUE(application.open().ok()) << "round " << round;
     if (round % 4 >= 2) {
-      ASSERT_TRUE(application.ask(MessageKind::kSubscribe, core::wire::SubscribeRequest{0x3FF, 1}).ok());
+      ASSERT_TRUE(
+          application.ask(MessageKind::kSubscribe, core::wire::SubscribeRequest{0x3FF, 1}).ok());
     }
     if (round % 2 == 1) {
-      application.client().send(MessageKind::kIdentify, std::span<const std::byte>(), Application::now_us());
+      application.client().send(MessageKind::kIdentify, std::span<const std::byte>(),
+                                Application::now_us());
     }
     if (round % 4 == 3) {
       const std::array<std::byte, 3000> garbage{std::byte{1}};
@@ -231,7 +234,8 @@ TEST(Usb, PullingTheCableAtAnyMomentIsNoticedAndAReplugWorks) {
     EXPECT_TRUE(eventually([&] {
       application.turn();
       return !application.transport().connected();
-    })) << "round " << round;
+    })) << "round "
+        << round;
     EXPECT_NE(application.transport().reason(), "");
     std::array<std::byte, 16> bytes{};
     EXPECT_EQ(application.transport().write(bytes), 0U);
@@ -271,7 +275,8 @@ TEST(Usb, ADfuTransferThatIsBrokenOffLeavesTheModel) {
     libusb_device_handle* device = libusb_open_device_with_vid_pid(context, 0x1209, 0x0001);
     ASSERT_NE(device, nullptr);
     ASSERT_EQ(libusb_claim_interface(device, 1), 0);
-    const auto request = [&](std::uint8_t type, std::uint8_t number, std::vector<unsigned char> data) {
+    const auto request = [&](std::uint8_t type, std::uint8_t number,
+                             std::vector<unsigned char> data) {
       return libusb_control_transfer(device, type, number, 0, 1, data.data(),
                                      static_cast<std::uint16_t>(data.size()), 60000);
     };
@@ -279,11 +284,13 @@ TEST(Usb, ADfuTransferThatIsBrokenOffLeavesTheModel) {
     EXPECT_TRUE(eventually([&] {
       std::array<unsigned char, 6> status{};
       const int length = libusb_control_transfer(device, 0xA1, 3, 0, 1, status.data(), 6, 60000);
-      return length == 6 && status[4] != static_cast<unsigned char>(core::usb::DfuState::kDownloadBusy);
+      return length == 6 &&
+             status[4] != static_cast<unsigned char>(core::usb::DfuState::kDownloadBusy);
     }));
     ASSERT_EQ(request(0x21, 6, {}), 0);
     ASSERT_EQ(request(0x21, 1, first_block), 512);
-    EXPECT_TRUE(eventually([&] { return board.model_state() == core::usb::DfuState::kDownloadSync; }));
+    EXPECT_TRUE(
+        eventually([&] { return board.model_state() == core::usb::DfuState::kDownloadSync; }));
     if (pull) {
       board.plug(false);
     }

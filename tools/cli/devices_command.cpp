@@ -107,8 +107,10 @@ void add_devices_command(CLI::App& app, int& exit_code) {
   CLI::App* verb = app.add_subcommand(
       "devices", "Lists the boards that are connected; exit code 1 = none answers");
   add_port_options(*verb, options->port);
-  CLI::Option* watch = verb->add_flag("--watch", options->watch, "tell boards on USB that come and go");
-  verb->add_option("--seconds", options->seconds, "how long to watch, s (default: until interrupted)")
+  CLI::Option* watch =
+      verb->add_flag("--watch", options->watch, "tell boards on USB that come and go");
+  verb->add_option("--seconds", options->seconds,
+                   "how long to watch, s (default: until interrupted)")
       ->check(CLI::PositiveNumber)
       ->needs(watch);
   verb->add_flag("--install-udev", options->install_udev,

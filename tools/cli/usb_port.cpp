@@ -32,8 +32,8 @@ void tell_cable(bool plugged_in) {
 }
 
 void wait_for(int descriptor, std::chrono::steady_clock::time_point due) {
-  const auto left = std::chrono::duration_cast<std::chrono::nanoseconds>(
-      due - std::chrono::steady_clock::now());
+  const auto left =
+      std::chrono::duration_cast<std::chrono::nanoseconds>(due - std::chrono::steady_clock::now());
   if (left.count() <= 0) {
     return;
   }

@@ -47,8 +47,8 @@ constexpr std::uint32_t kDfuMode = 2;
 constexpr std::uint32_t kDfuAttributes = 0x07;
 constexpr std::uint32_t kDfuDetachTimeoutMs = 1000;
 constexpr std::uint32_t kDfuVersion = 0x0110;
-constexpr std::uint32_t kSelfPowered = 0xC0;  // motors are not fed by the bus
-constexpr std::uint32_t kCurrentMax = 50;     // of 2 mA
+constexpr std::uint32_t kSelfPowered = 0xC0;    // motors are not fed by the bus
+constexpr std::uint32_t kCurrentMax = 50;       // of 2 mA
 constexpr std::uint32_t kNewsIntervalFull = 1;  // ms
 constexpr std::uint32_t kNewsIntervalHigh = 4;  // 2^(4-1) microframes: 1 ms
 
@@ -83,7 +83,8 @@ constexpr Writer<kConfigurationBytes> write_configuration(Speed speed, std::uint
                 StringIndex::kLink);
   add_endpoint(writer, kBulkOut, 2, packet, 0);
   add_endpoint(writer, kBulkIn, 2, packet, 0);
-  add_endpoint(writer, kNewsIn, 3, sizeof(NewsPacket), high ? kNewsIntervalHigh : kNewsIntervalFull);
+  add_endpoint(writer, kNewsIn, 3, sizeof(NewsPacket),
+               high ? kNewsIntervalHigh : kNewsIntervalFull);
   add_dfu(writer, kModelInterface, StringIndex::kModel);
   add_dfu(writer, kParameterInterface, StringIndex::kParameters);
   return writer;
@@ -172,7 +173,8 @@ std::array<std::byte, kQualifierBytes> qualifier_descriptor() {
   return writer.done();
 }
 
-std::array<std::byte, kConfigurationBytes> configuration_descriptor(Speed speed, std::uint8_t type) {
+std::array<std::byte, kConfigurationBytes> configuration_descriptor(Speed speed,
+                                                                    std::uint8_t type) {
   return write_configuration(speed, type).done();
 }
 

@@ -148,8 +148,7 @@ void FunctionFsController::Impl::open_function() {
     }
   }
   for (std::size_t i = 0; i < kEndpoints; ++i) {  // bound: kEndpoints
-    plugged->endpoints[i].file =
-        open_file(plugged->gadget.mount() + "/ep" + std::to_string(i + 1));
+    plugged->endpoints[i].file = open_file(plugged->gadget.mount() + "/ep" + std::to_string(i + 1));
   }
   watch();
 }
@@ -207,7 +206,8 @@ void FunctionFsController::Impl::start_reads() {
   for (std::size_t i = 0; i < kEndpoints; ++i) {  // bound: kEndpoints
     Endpoint& endpoint = plugged->endpoints[i];
     const bool room = endpoint.came.size() < kPieces * kPieceBytes;
-    for (std::size_t k = 0; !is_to_host(i) && room && plugged->enabled && k < kPieces; ++k) {  // bound: kPieces
+    for (std::size_t k = 0; !is_to_host(i) && room && plugged->enabled && k < kPieces;
+         ++k) {  // bound: kPieces
       Piece& piece = endpoint.pieces[k];
       if (!piece.under_way) {
         piece.under_way = plugged->async->read(endpoint.file, piece.bytes, i * kPieces + k);

@@ -24,14 +24,15 @@ constexpr char kControllers[] = "/sys/class/udc";
 /// configfs takes what one call writes.
 void write_to(const std::string& file, const std::string& text) {
   const int opened = open(file.c_str(), O_WRONLY | O_CLOEXEC);
-  const bool written = opened >= 0 && write(opened, text.data(), text.size()) ==
-                                          static_cast<ssize_t>(text.size());
+  const bool written =
+      opened >= 0 && write(opened, text.data(), text.size()) == static_cast<ssize_t>(text.size());
   const int error = errno;
   if (opened >= 0) {
     close(opened);
   }
   if (!written) {
-    fail(file, error, error == EBUSY ? "end the other program that uses this port" : "run it as root");
+    fail(file, error,
+         error == EBUSY ? "end the other program that uses this port" : "run it as root");
   }
 }
 

@@ -124,13 +124,13 @@ std::vector<Place> find_all(const std::vector<std::string>& names) {
                       "' (remedy: end that program)");
     }
   }
-  throw GpioError(quoted(names.front()) + ": " + places.front().chip + ": " +
-                  std::strerror(error) + " (remedy: gpioinfo tells what the line can do)");
+  throw GpioError(quoted(names.front()) + ": " + places.front().chip + ": " + std::strerror(error) +
+                  " (remedy: gpioinfo tells what the line can do)");
 }
 
 std::pair<int, std::vector<std::uint32_t>> request(const std::vector<std::string>& names,
-                                                   const std::string& consumer,
-                                                   std::uint64_t flags, std::uint32_t buffer) {
+                                                   const std::string& consumer, std::uint64_t flags,
+                                                   std::uint32_t buffer) {
   if (names.empty() || names.size() > GPIO_V2_LINES_MAX) {
     throw GpioError("no lines, or more than 64, were asked for (remedy: name some)");
   }
@@ -180,7 +180,8 @@ GpioLines GpioLines::inputs(const std::vector<std::string>& names, const std::st
       flag(settings.edges, GPIO_V2_LINE_FLAG_EDGE_RISING | GPIO_V2_LINE_FLAG_EDGE_FALLING) |
       flag(settings.bias == Bias::kPullUp, GPIO_V2_LINE_FLAG_BIAS_PULL_UP) |
       flag(settings.bias == Bias::kPullDown, GPIO_V2_LINE_FLAG_BIAS_PULL_DOWN);
-  auto [file, offsets] = request(names, consumer, flags, settings.edges ? settings.edge_buffer : 0U);
+  auto [file, offsets] =
+      request(names, consumer, flags, settings.edges ? settings.edge_buffer : 0U);
   return {file, std::move(offsets)};
 }
 

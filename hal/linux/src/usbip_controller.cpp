@@ -22,10 +22,10 @@ constexpr std::uint32_t kUnlink = 2;
 constexpr std::uint32_t kSubmitReply = 3;
 constexpr std::uint32_t kUnlinkReply = 4;
 constexpr std::size_t kHeaderBytes = 48;
-constexpr std::size_t kWords = 10;          // of a header, before the setup packet
+constexpr std::size_t kWords = 10;               // of a header, before the setup packet
 constexpr std::size_t kTransferMax = 1U << 20U;  // bytes: more is no sane host
-constexpr std::size_t kOutgoingMax = 4096;  // as much as a controller's memory holds
-constexpr int kHighSpeed = 3;               // USB_SPEED_HIGH
+constexpr std::size_t kOutgoingMax = 4096;       // as much as a controller's memory holds
+constexpr int kHighSpeed = 3;                    // USB_SPEED_HIGH
 constexpr char kHostController[] = "/sys/devices/platform/vhci_hcd.0/";
 
 using Words = std::array<std::uint32_t, kWords>;
@@ -35,7 +35,8 @@ int free_port() {
   std::ifstream status(std::string(kHostController) + "status");
   if (!status) {
     throw std::runtime_error(
-        std::string(kHostController) + "status: there is no virtual USB host controller (remedy: modprobe vhci-hcd)");
+        std::string(kHostController) +
+        "status: there is no virtual USB host controller (remedy: modprobe vhci-hcd)");
   }
   std::string line;
   while (std::getline(status, line)) {  // bound: ports of the controller
@@ -57,18 +58,18 @@ int free_port() {
 struct UsbIpController::Transfer {
   std::uint32_t sequence = 0;
   bool to_host = false;
-  std::size_t length = 0;             // asked for, to the host
-  std::vector<std::byte> data;        // from the host
-  std::size_t taken = 0;              // of data
+  std::size_t length = 0;       // asked for, to the host
+  std::vector<std::byte> data;  // from the host
+  std::size_t taken = 0;        // of data
 };
 
 struct UsbIpController::Impl {
   int socket = -1;
-  std::vector<std::byte> incoming;                   // of the socket, not understood yet
-  std::vector<std::byte> outgoing;                   // to the socket
+  std::vector<std::byte> incoming;  // of the socket, not understood yet
+  std::vector<std::byte> outgoing;  // to the socket
   std::deque<UsbEvent> events;
   std::deque<std::pair<core::usb::SetupPacket, Transfer>> requests;  // of endpoint 0
-  std::optional<Transfer> control;                   // the one in hand
+  std::optional<Transfer> control;                                   // the one in hand
   std::map<std::uint8_t, std::deque<Transfer>> transfers;
   std::map<std::uint8_t, std::deque<std::byte>> waiting;  // to the host, nobody asked yet
   std::map<std::uint8_t, bool> halted;
@@ -185,7 +186,8 @@ bool UsbIpController::Impl::take_message() {
   if (incoming.size() < size) {
     return false;
   }
-  const std::vector<std::byte> message(incoming.begin(), incoming.begin() + static_cast<long>(size));
+  const std::vector<std::byte> message(incoming.begin(),
+                                       incoming.begin() + static_cast<long>(size));
   incoming.erase(incoming.begin(), incoming.begin() + static_cast<long>(size));
   if (words[0] == kUnlink) {
     unlink(words[1], words[5]);
@@ -213,8 +215,8 @@ void UsbIpController::Impl::submit(const Words& words, const std::byte* setup,
 /// The host gives a request up: either it is dropped here, or its reply is on its way already. To
 /// answer it as well would end the connection.
 void UsbIpController::Impl::unlink(std::uint32_t sequence, std::uint32_t which) {
-  std::size_t dropped =
-      std::erase_if(requests, [&](const auto& request) { return request.second.sequence == which; });
+  std::size_t dropped = std::erase_if(
+      requests, [&](const auto& request) { return request.second.sequence == which; });
   for (auto& [endpoint, queue] : transfers) {  // bound: endpoints
     dropped += std::erase_if(queue, [&](const Transfer& t) { return t.sequence == which; });
   }

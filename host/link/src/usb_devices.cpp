@@ -13,8 +13,8 @@ namespace {
 std::string read_string(libusb_device_handle* handle, std::uint8_t index) {
   std::array<unsigned char, 256> text{};
   const int length = index == 0 ? 0
-                                : libusb_get_string_descriptor_ascii(
-                                      handle, index, text.data(), static_cast<int>(text.size()));
+                                : libusb_get_string_descriptor_ascii(handle, index, text.data(),
+                                                                     static_cast<int>(text.size()));
   return length > 0 ? std::string(text.begin(), text.begin() + length) : std::string();
 }
 
@@ -54,7 +54,8 @@ std::vector<UsbDeviceInfo> list_devices(libusb_context* context) {
 
 std::string remedy(int error) {
   if (error == LIBUSB_ERROR_ACCESS) {
-    return " (remedy: as root, `tactree devices --install-udev`, then plug it in again; or put this "
+    return " (remedy: as root, `tactree devices --install-udev`, then plug it in again; or put "
+           "this "
            "into /etc/udev/rules.d/70-tactree.rules:\n" +
            udev_rule() + ")";
   }
@@ -71,7 +72,7 @@ Context make_context() {
   const int error = libusb_init(&context);
   if (error != LIBUSB_SUCCESS) {
     throw LinkError(std::string("usb: ") + libusb_strerror(error) +
-                             " (remedy: is /dev/bus/usb there?)");
+                    " (remedy: is /dev/bus/usb there?)");
   }
   return Context(context);
 }
@@ -144,10 +145,8 @@ std::string UsbDeviceInfo::label() const {
 std::vector<std::string> usb_paths() {
   std::vector<std::string> paths;
   try {
-    for_each_board(make_context().get(),
-                   [&](libusb_device*, const libusb_device_descriptor&, const std::string& path) {
-                     paths.push_back(path);
-                   });
+    for_each_board(make_context().get(), [&](libusb_device*, const libusb_device_descriptor&,
+                                             const std::string& path) { paths.push_back(path); });
   } catch (const LinkError&) {  // no USB here
   }
   std::sort(paths.begin(), paths.end());
@@ -165,8 +164,7 @@ struct UsbWatch::Hotplug {
     if (libusb_has_capability(LIBUSB_CAP_HAS_HOTPLUG) != 0) {
       // Without udev this may fail, and need not work.
       (void)libusb_hotplug_register_callback(
-          context.get(),
-          LIBUSB_HOTPLUG_EVENT_DEVICE_ARRIVED | LIBUSB_HOTPLUG_EVENT_DEVICE_LEFT, 0,
+          context.get(), LIBUSB_HOTPLUG_EVENT_DEVICE_ARRIVED | LIBUSB_HOTPLUG_EVENT_DEVICE_LEFT, 0,
           LIBUSB_HOTPLUG_MATCH_ANY, LIBUSB_HOTPLUG_MATCH_ANY, LIBUSB_HOTPLUG_MATCH_ANY, &notice,
           this, nullptr);
     }

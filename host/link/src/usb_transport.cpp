@@ -13,8 +13,8 @@
 namespace tactree::host {
 namespace {
 
-constexpr std::size_t kReads = 4;          // under way at once: the board never waits for us
-constexpr std::size_t kReadBytes = 2048;   // a multiple of every packet size
+constexpr std::size_t kReads = 4;         // under way at once: the board never waits for us
+constexpr std::size_t kReadBytes = 2048;  // a multiple of every packet size
 constexpr std::size_t kWritesMax = 4;
 constexpr std::size_t kWriteBytes = 2048;
 constexpr std::size_t kBacklogMax = 1U << 20U;  // bytes that nobody read; then the board waits
@@ -91,9 +91,8 @@ void UsbTransport::Impl::start() {
   for (Piece& piece : reads) {
     piece.owner = this;
     piece.bytes.resize(kReadBytes);
-    libusb_fill_bulk_transfer(piece.transfer.get(), handle.get(), endpoints.in,
-                              piece.bytes.data(), static_cast<int>(piece.bytes.size()), &on_read,
-                              &piece, 0);
+    libusb_fill_bulk_transfer(piece.transfer.get(), handle.get(), endpoints.in, piece.bytes.data(),
+                              static_cast<int>(piece.bytes.size()), &on_read, &piece, 0);
     submit(piece);
   }
   for (Piece& piece : writes) {
@@ -274,8 +273,10 @@ std::unique_ptr<UsbTransport> open_usb(const std::string& which) {
   if (devices.empty()) {
     throw LinkError("usb: no board is plugged in (remedy: `tactree devices` tells what there is)");
   }
-  throw LinkError("usb: " + std::string(chosen.empty() ? "no board is '" + which + "'" : "several boards are plugged in") +
-                           " (remedy: name one by serial number or path)" + there);
+  throw LinkError("usb: " +
+                  std::string(chosen.empty() ? "no board is '" + which + "'"
+                                             : "several boards are plugged in") +
+                  " (remedy: name one by serial number or path)" + there);
 }
 
 }  // namespace tactree::host

@@ -5,7 +5,8 @@
 namespace tactree::core {
 namespace {
 
-constexpr QuadratureLevels kForward[] = {{false, false}, {true, false}, {true, true}, {false, true}};
+constexpr QuadratureLevels kForward[] = {
+    {false, false}, {true, false}, {true, true}, {false, true}};
 
 TEST(Quadrature, CountsFourAPeriodEitherWay) {
   QuadratureDecoder decoder;

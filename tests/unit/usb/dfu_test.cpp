@@ -43,7 +43,8 @@ class DfuTest : public testing::Test {
             static_cast<DfuState>((*reply)[4])};
   }
   DfuState state() const {
-    return interface == kModelInterface ? bus.device.model().state() : bus.device.parameters().state();
+    return interface == kModelInterface ? bus.device.model().state()
+                                        : bus.device.parameters().state();
   }
   /// Waits as long as it is told to.
   Status status_when_done() {
@@ -58,7 +59,9 @@ class DfuTest : public testing::Test {
     std::uint16_t block = first_block;
     for (std::size_t at = 0; at < bytes.size(); at += piece) {
       const std::size_t end = std::min(at + piece, bytes.size());
-      ASSERT_TRUE(request(DfuRequest::kDownload, block++, Bytes(bytes.begin() + static_cast<long>(at), bytes.begin() + static_cast<long>(end))));
+      ASSERT_TRUE(request(
+          DfuRequest::kDownload, block++,
+          Bytes(bytes.begin() + static_cast<long>(at), bytes.begin() + static_cast<long>(end))));
       ASSERT_EQ(status_when_done().state, DfuState::kDownloadIdle);
     }
     ASSERT_TRUE(request(DfuRequest::kDownload, block));
@@ -167,9 +170,9 @@ TEST_F(DfuTest, AfterTheTimeADeviceIsInSyncAgain) {
 TEST_F(DfuTest, EveryRequestInEveryState) {
   struct Row {
     DfuState from;
-    DfuState after_download;       // 16 bytes
+    DfuState after_download;  // 16 bytes
     DfuState after_empty_download;
-    DfuState after_upload;         // a full block
+    DfuState after_upload;  // a full block
     DfuState after_status;
     DfuState after_clear;
     DfuState after_abort;
@@ -180,7 +183,8 @@ TEST_F(DfuTest, EveryRequestInEveryState) {
       {I, DfuState::kDownloadSync, E, DfuState::kUploadIdle, I, E, I},
       {DfuState::kDownloadSync, E, E, E, DfuState::kDownloadIdle, E, E},
       {DfuState::kDownloadBusy, E, E, E, DfuState::kDownloadBusy, E, E},
-      {DfuState::kDownloadIdle, DfuState::kDownloadSync, DfuState::kManifestSync, E, DfuState::kDownloadIdle, E, I},
+      {DfuState::kDownloadIdle, DfuState::kDownloadSync, DfuState::kManifestSync, E,
+       DfuState::kDownloadIdle, E, I},
       {DfuState::kManifestSync, E, E, E, I, E, E},
       {DfuState::kManifest, E, E, E, DfuState::kManifest, E, E},
       {DfuState::kUploadIdle, E, E, DfuState::kUploadIdle, DfuState::kUploadIdle, E, I},
@@ -195,11 +199,14 @@ TEST_F(DfuTest, EveryRequestInEveryState) {
       const bool accepted = act().has_value();
       EXPECT_EQ(state(), after) << what << " in state " << static_cast<int>(row.from);
       const bool may_be_told = row.from == E && std::string_view(what) == "status";
-      EXPECT_EQ(accepted, after != E || may_be_told) << what << " in state " << static_cast<int>(row.from);
+      EXPECT_EQ(accepted, after != E || may_be_told)
+          << what << " in state " << static_cast<int>(row.from);
     };
     const std::uint16_t block = row.from == DfuState::kIdle ? 0 : 1;
-    expect(row.after_download, "download", [&] { return request(DfuRequest::kDownload, block, Bytes(16)); });
-    expect(row.after_empty_download, "empty download", [&] { return request(DfuRequest::kDownload, block); });
+    expect(row.after_download, "download",
+           [&] { return request(DfuRequest::kDownload, block, Bytes(16)); });
+    expect(row.after_empty_download, "empty download",
+           [&] { return request(DfuRequest::kDownload, block); });
     expect(row.after_upload, "upload", [&] { return ask(DfuRequest::kUpload, block, 64); });
     expect(row.after_status, "status", [&] { return ask(DfuRequest::kAskStatus, 0, 6); });
     expect(row.after_clear, "clear", [&] { return request(DfuRequest::kClearStatus); });
@@ -299,7 +306,8 @@ TEST_F(DfuTest, WhatTheStorageSaysReachesTheHost) {
 TEST_F(DfuTest, PullingTheCableGivesTheTransferUp) {
   const Bytes before = pattern(100);
   download(before, 64);
-  for (const DfuState wanted : {DfuState::kDownloadSync, DfuState::kDownloadIdle, DfuState::kUploadIdle, DfuState::kError}) {
+  for (const DfuState wanted : {DfuState::kDownloadSync, DfuState::kDownloadIdle,
+                                DfuState::kUploadIdle, DfuState::kError}) {
     bus.model.stored = before;
     bring_to(wanted);
     bus.model.stored = before;

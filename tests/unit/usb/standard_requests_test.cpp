@@ -115,10 +115,12 @@ TEST(UsbDescriptors, OtherSpeedIsTheOtherOneAndOnlyOfTwoSpeedDevices) {
 TEST(UsbDescriptors, StringsAreWhatTheyAreToBe) {
   Bus bus;
   EXPECT_EQ(*bus.in(kIn, kGetDescriptor, 0x0300, 0, 255), (Bytes{4, 3, 0x09, 0x04}));
-  const char* const expected[] = {"",     "Tactree", "Haptic controller", "0123456789ABCDEF00C0FFEE",
-                                  "link", "model",   "parameters"};
+  const char* const expected[] = {
+      "",     "Tactree", "Haptic controller", "0123456789ABCDEF00C0FFEE",
+      "link", "model",   "parameters"};
   for (std::uint16_t i = 1; i < kStrings; ++i) {
-    const Reply string = bus.in(kIn, kGetDescriptor, static_cast<std::uint16_t>(0x0300 + i), 0x0409, 255);
+    const Reply string =
+        bus.in(kIn, kGetDescriptor, static_cast<std::uint16_t>(0x0300 + i), 0x0409, 255);
     ASSERT_TRUE(string);
     EXPECT_EQ((*string)[0], string->size());
     EXPECT_EQ(text_of(*string), expected[i]);
@@ -158,7 +160,9 @@ TEST(UsbDescriptors, BosLeadsWindowsToItsDescriptors) {
     const std::size_t end = at + u16(*set, at + 6);
     ASSERT_LE(end, set->size());
     at += u16(*set, at);
-    EXPECT_EQ(std::string(set->begin() + static_cast<long>(at) + 4, set->begin() + static_cast<long>(at) + 10), "WINUSB");
+    EXPECT_EQ(std::string(set->begin() + static_cast<long>(at) + 4,
+                          set->begin() + static_cast<long>(at) + 10),
+              "WINUSB");
     at += u16(*set, at);
     at += u16(*set, at);
     EXPECT_EQ(at, end);
@@ -179,9 +183,13 @@ TEST(UsbDescriptors, WhatThereIsNotIsRefused) {
   Bus bus;
   for (std::uint32_t type = 0; type < 256; ++type) {
     const bool there = type == 1 || type == 2 || type == 3 || type == 6 || type == 7 || type == 15;
-    EXPECT_EQ(bus.in(kIn, kGetDescriptor, static_cast<std::uint16_t>(type << 8U), 0, 64).has_value(), there) << type;
+    EXPECT_EQ(
+        bus.in(kIn, kGetDescriptor, static_cast<std::uint16_t>(type << 8U), 0, 64).has_value(),
+        there)
+        << type;
     if (there && type != 3) {
-      EXPECT_FALSE(bus.in(kIn, kGetDescriptor, static_cast<std::uint16_t>(type << 8U | 1U), 0, 64)) << type;
+      EXPECT_FALSE(bus.in(kIn, kGetDescriptor, static_cast<std::uint16_t>(type << 8U | 1U), 0, 64))
+          << type;
     }
   }
   EXPECT_FALSE(bus.out(kOut, kGetDescriptor, 0x0100, 0));
@@ -343,7 +351,8 @@ TEST(UsbDevice, AnyRequestGetsExactlyOneAnswerNoLongerThanAsked) {
     constexpr std::uint8_t kTypes[] = {0x00, 0x01, 0x02, 0x21, 0x80, 0x81, 0x82, 0xA1, 0xC0};
     setup.bmRequestType = small(8) == 0 ? static_cast<std::uint8_t>(random()) : kTypes[small(9)];
     setup.bRequest = static_cast<std::uint8_t>(small(4) == 0 ? random() : small(14));
-    setup.wValue = static_cast<std::uint16_t>(small(4) == 0 ? random() : small(3) << (8 * small(2)));
+    setup.wValue =
+        static_cast<std::uint16_t>(small(4) == 0 ? random() : small(3) << (8 * small(2)));
     setup.wIndex = static_cast<std::uint16_t>(small(3) == 0 ? random() : small(4));
     constexpr std::uint16_t kLengths[] = {0, 1, 2, 6, 64};
     setup.wLength = small(4) == 0 ? static_cast<std::uint16_t>(random()) : kLengths[small(5)];

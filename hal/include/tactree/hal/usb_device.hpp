@@ -44,7 +44,8 @@ struct UsbEvent {
 ///   configure(open)           opens the endpoints with fresh data toggles, or closes them
 ///   halt(endpoint, on)        stalls it until it is called with false; fresh data toggle then
 ///   read(endpoint, bytes)     bytes that came in; returns how many
-///   write(endpoint, bytes)    bytes to send; returns how many were taken. A message of an interrupt
+///   write(endpoint, bytes)    bytes to send; returns how many were taken. A message of an
+///   interrupt
 ///                             endpoint is taken whole or not at all
 template <class T>
 concept UsbController = requires(T& usb, std::span<const std::byte> out, std::span<std::byte> in,

@@ -53,10 +53,10 @@ enum class Speed : std::uint8_t { kFull = 0, kHigh };
 struct Identity {
   std::uint16_t vendor = 0x1209;
   std::uint16_t product = 0x0001;
-  std::uint16_t release = 0x0100;         ///< binary-coded decimal
-  const char* maker = "Tactree";          ///< ASCII, up to 31 characters
-  const char* name = "Haptic controller"; ///< ASCII, up to 31 characters
-  std::array<std::uint32_t, 3> serial{};  ///< the chip's unique number
+  std::uint16_t release = 0x0100;          ///< binary-coded decimal
+  const char* maker = "Tactree";           ///< ASCII, up to 31 characters
+  const char* name = "Haptic controller";  ///< ASCII, up to 31 characters
+  std::array<std::uint32_t, 3> serial{};   ///< the chip's unique number
 };
 
 inline constexpr std::size_t kDeviceDescriptorBytes = 18;
@@ -77,12 +77,13 @@ enum class StringIndex : std::uint8_t {
 };
 inline constexpr std::uint8_t kStrings = 7;
 
-[[nodiscard]] std::array<std::byte, kDeviceDescriptorBytes> device_descriptor(const Identity& identity);
+[[nodiscard]] std::array<std::byte, kDeviceDescriptorBytes> device_descriptor(
+    const Identity& identity);
 /// For the speed that the device does not run at now.
 [[nodiscard]] std::array<std::byte, kQualifierBytes> qualifier_descriptor();
 /// All of the configuration; `type` is 2, or 7 for that of the other speed.
-[[nodiscard]] std::array<std::byte, kConfigurationBytes> configuration_descriptor(Speed speed,
-                                                                                  std::uint8_t type = 2);
+[[nodiscard]] std::array<std::byte, kConfigurationBytes> configuration_descriptor(
+    Speed speed, std::uint8_t type = 2);
 /// Of interfaces and endpoints only: what follows the configuration's own nine bytes.
 inline constexpr std::size_t kInterfacesOffset = 9;
 

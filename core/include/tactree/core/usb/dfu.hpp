@@ -27,28 +27,28 @@ enum class DfuRequest : std::uint8_t {
 
 enum class DfuState : std::uint8_t {
   kIdle = 2,
-  kDownloadSync = 3,   ///< a block is there; the host has not asked yet how it went
-  kDownloadBusy = 4,   ///< and is being written: the host waits
-  kDownloadIdle = 5,   ///< for the next block
-  kManifestSync = 6,   ///< all blocks are there
-  kManifest = 7,       ///< and are being checked: the host waits
+  kDownloadSync = 3,  ///< a block is there; the host has not asked yet how it went
+  kDownloadBusy = 4,  ///< and is being written: the host waits
+  kDownloadIdle = 5,  ///< for the next block
+  kManifestSync = 6,  ///< all blocks are there
+  kManifest = 7,      ///< and are being checked: the host waits
   kUploadIdle = 9,
   kError = 10,
 };
 
 enum class DfuStatus : std::uint8_t {
   kOk = 0x00,
-  kTarget = 0x01,        ///< not meant for this device
-  kFile = 0x02,          ///< refused by a check of the vendor's own
-  kWrite = 0x03,         ///< the memory cannot be written
-  kErase = 0x04,         ///< the memory cannot be erased
-  kProgram = 0x06,       ///< programming failed
-  kVerify = 0x07,        ///< what was programmed is not what was sent
-  kAddress = 0x08,       ///< out of range, or a block out of order
-  kNotDone = 0x09,       ///< the host ended too early
-  kFirmware = 0x0A,      ///< what is stored is damaged
+  kTarget = 0x01,    ///< not meant for this device
+  kFile = 0x02,      ///< refused by a check of the vendor's own
+  kWrite = 0x03,     ///< the memory cannot be written
+  kErase = 0x04,     ///< the memory cannot be erased
+  kProgram = 0x06,   ///< programming failed
+  kVerify = 0x07,    ///< what was programmed is not what was sent
+  kAddress = 0x08,   ///< out of range, or a block out of order
+  kNotDone = 0x09,   ///< the host ended too early
+  kFirmware = 0x0A,  ///< what is stored is damaged
   kUnknown = 0x0E,
-  kStalledPacket = 0x0F, ///< a request that the state does not allow
+  kStalledPacket = 0x0F,  ///< a request that the state does not allow
 };
 
 /// How far a storage is with its last piece of work.

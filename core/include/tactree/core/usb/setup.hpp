@@ -52,9 +52,9 @@ struct Answer {
   enum class Effect : std::uint8_t {
     kNone = 0,
     kTakeAddress,  ///< `value`
-    kConfigure,   ///< configuration `value`; 0: none
-    kHalt,        ///< endpoint with address `value`
-    kClearHalt,   ///< and its data toggle
+    kConfigure,    ///< configuration `value`; 0: none
+    kHalt,         ///< endpoint with address `value`
+    kClearHalt,    ///< and its data toggle
   };
   Kind kind = Kind::kStall;
   Effect effect = Effect::kNone;

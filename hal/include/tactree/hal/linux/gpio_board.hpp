@@ -51,8 +51,9 @@ class GpioEncoderBank {
   bool gone_ = false;
 };
 
-/// The line that gives the amplifiers their power, and the one that comes back from them. The kernel
-/// lets go of the lines when the program ends, however it ends; so let the hardware's pull say off.
+/// The line that gives the amplifiers their power, and the one that comes back from them. The
+/// kernel lets go of the lines when the program ends, however it ends; so let the hardware's pull
+/// say off.
 class GpioEnableLine {
  public:
   GpioEnableLine(const std::string& enable, const std::string& read_back,

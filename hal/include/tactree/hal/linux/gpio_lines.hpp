@@ -1,7 +1,7 @@
 #pragma once
-// Lines of a Linux computer's GPIO chips, by their names, through the kernel's own interface (version
-// 2, since 5.10; <linux/gpio.h>): it has everything that is needed here - edges in their order over
-// several lines, with time and sequence number - in one form, where libgpiod has two.
+// Lines of a Linux computer's GPIO chips, by their names, through the kernel's own interface
+// (version 2, since 5.10; <linux/gpio.h>): it has everything that is needed here - edges in their
+// order over several lines, with time and sequence number - in one form, where libgpiod has two.
 
 #include <cstdint>
 #include <stdexcept>
@@ -52,8 +52,8 @@ class GpioLines {
   /// Levels of all lines at one moment: bit n is line n. False: the chip is gone.
   [[nodiscard]] bool levels(std::uint64_t& bits) const noexcept;
   [[nodiscard]] bool set(std::uint64_t bits) noexcept;
-  /// Edges since the last call, oldest first, at most as many as fit; never waits. Returns how many,
-  /// or -1: the chip is gone.
+  /// Edges since the last call, oldest first, at most as many as fit; never waits. Returns how
+  /// many, or -1: the chip is gone.
   [[nodiscard]] int read_edges(Edge* edges, int count) noexcept;
   [[nodiscard]] int descriptor() const { return file_; }
 

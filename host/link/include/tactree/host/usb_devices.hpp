@@ -14,8 +14,8 @@ namespace tactree::host {
 struct UsbDeviceInfo {
   std::uint16_t vendor = 0;
   std::uint16_t product = 0;
-  std::string path;     ///< bus and ports on the way: "3-1.2"; the same after a replug there
-  std::string serial;   ///< empty: it could not be read
+  std::string path;    ///< bus and ports on the way: "3-1.2"; the same after a replug there
+  std::string serial;  ///< empty: it could not be read
   std::string maker;
   std::string name;
   std::string problem;  ///< why it cannot be opened, with a remedy; empty: it can
