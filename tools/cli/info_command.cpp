@@ -10,6 +10,7 @@
 
 #include "blob_file.hpp"
 #include "board_costs.hpp"
+#include "model_signature.hpp"
 #include "output_file.hpp"
 
 namespace tactree::cli {
@@ -215,14 +216,36 @@ void print_costs(const core::BlobHeader& header, const std::string& name) {
   }
 }
 
+/// null where there is none.
+nlohmann::json signature_json(const std::string& file, const BlobFile& blob) {
+  const std::optional<ModelSignature> signature = read_signature(file);
+  if (!signature) {
+    return nullptr;
+  }
+  return {{"board", signature->board},
+          {"counter", signature->counter},
+          {"key", to_hex(signature->key)},
+          {"valid", is_valid(*signature, blob.bytes())}};
+}
+
+void print_signature(const std::string& file, const BlobFile& blob) {
+  if (const std::optional<ModelSignature> signature = read_signature(file)) {
+    fmt::print("signature     {}: {}\n", is_valid(*signature, blob.bytes()) ? "valid" : "NOT VALID",
+               describe(*signature));
+  }
+}
+
 void info(const InfoOptions& options) {
   const BlobFile blob(options.blob);
   print(blob.view());
+  print_signature(options.blob, blob);
   if (!options.board.empty()) {
     print_costs(blob.view().header(), options.board);
   }
   if (!options.json.empty()) {
-    write_file(options.json, to_json(blob.view()).dump(2) + "\n");
+    nlohmann::json json = to_json(blob.view());
+    json["signature"] = signature_json(options.blob, blob);
+    write_file(options.json, json.dump(2) + "\n");
   }
   if (!options.points.empty()) {
     write_points(blob.view(), options.points);

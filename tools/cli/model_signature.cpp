@@ -89,6 +89,12 @@ std::string to_hex(std::span<const std::uint8_t> bytes) {
   return text;
 }
 
+std::string describe(const ModelSignature& signature) {
+  return fmt::format("for {}, counter {}, by {}",
+                     signature.board.empty() ? "any board" : "the board " + signature.board,
+                     signature.counter, to_hex(signature.key));
+}
+
 PublicKey generate_key(const std::filesystem::path& file) {
   prepare_sodium();
   SecretKey seed{};

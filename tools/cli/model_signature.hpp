@@ -39,6 +39,9 @@ void write_signature(const std::filesystem::path& blob, const ModelSignature& si
 /// Of the blob's signature file; nothing where there is none. Throws where it is none of ours.
 [[nodiscard]] std::optional<ModelSignature> read_signature(const std::filesystem::path& blob);
 
+/// "for any board, counter 3, by <hex>"
+[[nodiscard]] std::string describe(const ModelSignature& signature);
+
 [[nodiscard]] std::string to_hex(std::span<const std::uint8_t> bytes);
 
 }  // namespace tactree::cli

@@ -1,0 +1,123 @@
+#!/usr/bin/env python3
+"""The verbs that talk to a board, at a simulated one: exit codes, JSON, refusals; keys and signatures.
+
+usage: link_test.py TACTREE [BOARD]      BOARD: where the controller runs, default host
+"""
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+sys.dont_write_bytecode = True
+from served_board import ServedBoard, build_ball  # noqa: E402
+
+BOARD = sys.argv.pop(2) if len(sys.argv) > 2 else "host"
+TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
+
+
+class Link(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.holder = tempfile.TemporaryDirectory()
+        cls.folder = pathlib.Path(cls.holder.name)
+        cls.blob = build_ball(TACTREE, cls.folder)
+        cls.coarse = build_ball(TACTREE, cls.folder, "coarse", "--spacing", "0.003")
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.holder.cleanup()
+
+    def run_verb(self, *arguments, code=0):
+        run = subprocess.run([TACTREE, *map(str, arguments)], capture_output=True, text=True, timeout=180)
+        self.assertEqual(run.returncode, code, (arguments, run.stdout, run.stderr))
+        return run.stdout + run.stderr
+
+    def read_json(self, *arguments, code=0):
+        path = self.folder / "result.json"
+        path.unlink(missing_ok=True)
+        self.run_verb(*arguments, "--json", path, code=code)
+        return json.loads(path.read_text())
+
+    def test_a_session_from_the_shell(self):
+        with ServedBoard(TACTREE, self.blob, "--board", BOARD) as port:
+            devices = self.read_json("devices", "--port", port)["devices"]
+            self.assertEqual(devices[0]["board"], BOARD)
+            seen = self.read_json("monitor", "--once", "--port", port)
+            self.assertEqual((seen["state"], seen["faults"]), ("idle", 0))
+            # On a slow computer a link of 100 ms may be lost for want of time: that is no failure.
+            armed = subprocess.run([TACTREE, "arm", "--port", port, "--seconds", "1", "--link-timeout", "100"],
+                                   capture_output=True, text=True, timeout=120)
+            self.assertIn("active", armed.stdout + armed.stderr)
+            self.assertIn("stopped", self.run_verb("stop", "--port", port))
+            trace = self.run_verb("trace", "--port", port).splitlines()
+            self.assertTrue(any(line.startswith("tick,state,contact") for line in trace))
+            self.assertGreater(len(trace), 300)
+
+    def test_a_model_is_written_and_rolled_back(self):
+        with ServedBoard(TACTREE, self.blob, "--board", BOARD) as port:
+            points = json.loads(self.info(self.coarse))["points"]
+            for _ in range(2):
+                slots = self.read_json("flash", self.coarse, "--port", port)["slots"]
+            self.assertEqual([s["state"] for s in slots], ["ready", "in use"])
+            self.assertEqual([s["points"] for s in slots], [points, points])
+            slots = self.read_json("flash", "--roll-back", "--port", port)["slots"]
+            self.assertEqual([s["state"] for s in slots], ["in use", "ready"])
+            self.assertIn("in use", self.run_verb("flash", "--erase", 0, "--port", port, code=1))
+            slots = self.read_json("flash", "--erase", 1, "--port", port)["slots"]
+            self.assertEqual(slots[1]["state"], "empty")
+            self.run_verb("flash", "--port", port, code=2)
+
+    def info(self, blob):
+        path = self.folder / "info.json"
+        self.run_verb("info", blob, "--json", path)
+        return path.read_text()
+
+    def test_parameters(self):
+        with ServedBoard(TACTREE, self.blob, "--board", BOARD) as port:
+            all_of_them = self.read_json("params", "delay_s=0.0005", "--port", port)
+            self.assertAlmostEqual(all_of_them["delay_s"]["value"], 0.0005, places=6)
+            self.assertIn("no parameter 'nonsense'", self.run_verb("params", "nonsense=1", "--port", port, code=1))
+            self.assertIn("NAME=NUMBER", self.run_verb("params", "delay_s=x", "--port", port, code=1))
+            self.run_verb("params", "delay_s=7", "--port", port, code=1)
+
+    def test_no_board(self):
+        for verb in (["monitor", "--once"], ["stop"], ["trace"], ["params"], ["flash", "--list"], ["arm"]):
+            self.assertIn("/dev/no-such-port", self.run_verb(*verb, "--port", "/dev/no-such-port", code=1))
+        self.run_verb("devices", "--port", "/dev/no-such-port", code=1)
+
+    @unittest.skipIf(BOARD != "host", "the images of emulated boards have no key")
+    def test_a_board_with_a_key(self):
+        key, other = self.folder / "key", self.folder / "other"
+        for name in (key, other):
+            self.run_verb("keygen", name)
+        self.assertEqual(key.stat().st_mode & 0o77, 0)
+        self.assertIn("File exists", self.run_verb("keygen", key, code=1))
+        self.run_verb("check", self.coarse, "--key", f"{key}.pub", code=1)
+        with ServedBoard(TACTREE, self.blob, "--require-key", f"{key}.pub") as port:
+            self.assertIn("not signed by the key", self.run_verb("flash", self.coarse, "--port", port, code=1))
+            self.run_verb("sign", self.coarse, "--key", other, "--counter", 5)
+            self.assertIn("not signed by the key", self.run_verb("flash", self.coarse, "--port", port, code=1))
+            self.run_verb("sign", self.coarse, "--key", key, "--counter", 5, "--board", "elsewhere")
+            self.assertIn("another board", self.run_verb("flash", self.coarse, "--port", port, code=1))
+            self.run_verb("sign", self.coarse, "--key", key, "--counter", 5, "--board", "host")
+            slots = self.read_json("flash", self.coarse, "--port", port)["slots"]
+            self.assertTrue(slots[0]["signed"])
+            self.run_verb("sign", self.coarse, "--key", key, "--counter", 4)
+            self.assertIn("older", self.run_verb("flash", self.coarse, "--port", port, code=1))
+        self.assertIn("valid", self.run_verb("check", self.coarse, "--key", f"{key}.pub"))
+        self.assertTrue(json.loads(self.info(self.coarse))["signature"]["valid"])
+        self.run_verb("check", self.coarse, "--key", f"{other}.pub", code=1)
+        signature = pathlib.Path(f"{self.coarse}.sig")
+        text = signature.read_text()
+        signature.write_text(text.replace('"counter": 4', '"counter": 5'))
+        self.assertIn("not the signature of this blob", self.run_verb("check", self.coarse, code=1))
+        self.assertFalse(json.loads(self.info(self.coarse))["signature"]["valid"])
+        signature.write_text("{}")
+        self.assertIn("no signature of a model", self.run_verb("check", self.coarse, code=1))
+        signature.unlink()
+
+
+if __name__ == "__main__":
+    unittest.main()
