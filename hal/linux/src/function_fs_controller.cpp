@@ -154,7 +154,8 @@ void FunctionFsController::Impl::open_function() {
 }
 
 bool FunctionFsController::Impl::describe(bool with_dfu) {
-  for (const auto& bytes : {function_fs_descriptors(with_dfu), function_fs_strings(with_dfu)}) {
+  for (const auto& bytes :  // bound: 2
+       {function_fs_descriptors(with_dfu), function_fs_strings(with_dfu)}) {
     if (::write(plugged->control, bytes.data(), bytes.size()) !=
         static_cast<ssize_t>(bytes.size())) {
       return false;
