@@ -11,7 +11,8 @@ namespace tactree::host {
 std::string udev_rule() {
   // The property lists class, subclass and protocol of each interface: one with the link's.
   return "# Tactree: whoever sits at this computer may use haptic controllers.\n"
-         "SUBSYSTEM==\"usb\", ENV{DEVTYPE}==\"usb_device\", ENV{ID_USB_INTERFACES}==\"*:ff5401:*\", "
+         "SUBSYSTEM==\"usb\", ENV{DEVTYPE}==\"usb_device\", "
+         "ENV{ID_USB_INTERFACES}==\"*:ff5401:*\", "
          "MODE=\"0660\", GROUP=\"plugdev\", TAG+=\"uaccess\"\n";
 }
 
@@ -25,7 +26,7 @@ std::string install_udev_rule(const std::string& root) {
   out.close();
   if (!out) {
     throw LinkError(file.string() + ": " + std::strerror(errno) +
-                             " (remedy: run it as root, or put the rule there by hand)");
+                    " (remedy: run it as root, or put the rule there by hand)");
   }
   return file.string();
 }

@@ -3,8 +3,8 @@
 // is whole and the controller takes it. What cannot be said in a blob - for which board, by whom
 // signed - cannot come this way: a board that requires signatures refuses.
 //
-// The blob's header, in the first block, says how long it is, and so what to erase. What takes long is done piece by piece in progress(), while the
-// host waits. Not for the tick; one context.
+// The blob's header, in the first block, says how long it is, and so what to erase. What takes long
+// is done piece by piece in progress(), while the host waits. Not for the tick; one context.
 
 #include <cstddef>
 #include <cstdint>
