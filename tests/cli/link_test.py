@@ -23,6 +23,11 @@ class Link(unittest.TestCase):
         cls.holder = tempfile.TemporaryDirectory()
         cls.folder = pathlib.Path(cls.holder.name)
         cls.blob = build_ball(TACTREE, cls.folder)
+        if BOARD != "host":
+            run = subprocess.run([TACTREE, "simulate", cls.blob, "--board", BOARD, "--seconds", "0.01"],
+                                 capture_output=True, text=True, timeout=120)
+            if run.returncode != 0 and "image" in run.stderr:
+                raise unittest.SkipTest(run.stderr)
         cls.coarse = build_ball(TACTREE, cls.folder, "coarse", "--spacing", "0.003")
 
     @classmethod

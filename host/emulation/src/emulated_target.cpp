@@ -53,9 +53,14 @@ std::string read_to_end(int descriptor) {
   return text;
 }
 
+/// A signal, such as Ctrl-C, is no silence.
 bool readable(int descriptor, milliseconds limit) {
   pollfd wanted{descriptor, POLLIN, 0};
-  return ::poll(&wanted, 1, static_cast<int>(limit.count())) > 0;
+  int found = -1;
+  do {
+    found = ::poll(&wanted, 1, static_cast<int>(limit.count()));
+  } while (found < 0 && errno == EINTR);
+  return found > 0;
 }
 
 /// In the emulator's options a comma separates, unless it is doubled.

@@ -61,7 +61,7 @@ void take_field(FieldReader& in, core::wire::TelemetryField field, Telemetry& t)
     case Field::kContact:
       in.take(t.penetration_m);
       in.take(t.body);
-      return in.take(t.point);
+      return in.take(t.strength);
     case Field::kWanted:
       return in.take(t.wanted_N);
     case Field::kTiming:

@@ -134,8 +134,9 @@ class Controller {
   [[nodiscard]] ModelStatus remove_body(std::uint32_t number);
   [[nodiscard]] bool has_body(std::uint32_t number) const { return !scene_.view(number).empty(); }
 
-  /// One tick. Accepts every input. Cost: Scene::update() and some 1000 instructions.
-  Output step(const Input& input);
+  /// One tick; what it returns holds until the next. Accepts every input. Cost: Scene::update() and
+  /// some 1000 instructions.
+  const Output& step(const Input& input);
 
   [[nodiscard]] State state() const { return state_; }
   [[nodiscard]] FaultMask faults() const { return latched_; }
@@ -174,8 +175,8 @@ class Controller {
   [[nodiscard]] Vec3 wanted_force();
   [[nodiscard]] Vec3 with_added_force(Vec3 force);
   SafetyGate::Result apply_force();
-  [[nodiscard]] Status report(const SafetyGate::Result& gated) const;
-  void report_reactions(Vec3 force, Status& status) const;
+  void report(const SafetyGate::Result& gated);
+  void report_reactions(Vec3 force);
 
   const TickCosts* costs_ = nullptr;
   std::uint32_t cycles_per_second_ = 0;
@@ -212,6 +213,7 @@ class Controller {
   bool configured_ = false;
   bool enable_ = false;
   bool dead_man_released_ = false;  // since arming: a control tied down does not count
+  Output output_{SafetyGate::no_command()};
 };
 
 }  // namespace tactree::core

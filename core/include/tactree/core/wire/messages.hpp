@@ -219,7 +219,7 @@ enum class TelemetryField : std::uint32_t {
   kForce = 1U << 3,      ///< f32[3] N, that the hand feels
   kProxy = 1U << 4,      ///< f32[3] m
   kNormal = 1U << 5,     ///< f32[3]
-  kContact = 1U << 6,    ///< f32 penetration m, u32 body, u32 point
+  kContact = 1U << 6,    ///< f32 penetration m, u32 body, f32 share of the force displayed
   kWanted = 1U << 7,     ///< f32[3] N, before the gate
   kTiming = 1U << 8,     ///< u32 overruns, f32 share of the period that the last tick took
   kReactions = 1U << 9,  ///< twice: u32 body, f32[3] force N, f32[3] torque Nm

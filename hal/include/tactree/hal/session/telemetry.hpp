@@ -33,7 +33,7 @@ inline void put_state(Reply& out, const core::Status& s) {
 inline void put_contact(Reply& out, const core::Status& s) {
   put(out, s.rendering.in_contact ? s.rendering.penetration_m : 0.0F);
   put(out, s.rendering.in_contact ? s.rendering.body : core::kNoBody);
-  put(out, s.rendering.in_contact ? s.rendering.point : core::kNoPoint);
+  put(out, s.rendering.in_contact ? s.rendering.strength : 0.0F);
 }
 
 inline void put_timing(Reply& out, const core::Status& s) {

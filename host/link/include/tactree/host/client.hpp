@@ -52,7 +52,7 @@ struct Telemetry {
   float normal[3] = {};
   float penetration_m = 0.0F;
   std::uint32_t body = 0xFFFFFFFFU;
-  std::uint32_t point = 0xFFFFFFFFU;
+  float strength = 0.0F;  ///< share of the force that is displayed: below 1 on a rim
   float wanted_N[3] = {};
   std::uint32_t overruns = 0;
   float load = 0.0F;
