@@ -2,19 +2,27 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
+#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "board_port.hpp"
 #include "command.hpp"
 #include "output_file.hpp"
 #include "tactree/host/link_error.hpp"
 #include "tactree/host/ports.hpp"
+#include "tactree/host/usb_devices.hpp"
 
 namespace tactree::cli {
 namespace {
 
 struct DevicesOptions {
+  bool install_udev = false;
+  bool print_udev = false;
+  bool watch = false;
+  double seconds = 0.0;
   BoardPort port;
   std::string json;
 };
@@ -64,6 +72,34 @@ void list_devices(const DevicesOptions& options, int& exit_code) {
   exit_code = found ? kExitOk : kExitFailed;
 }
 
+void watch_devices(double seconds) {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point begin = Clock::now();
+  host::UsbWatch watch;
+  while (seconds <= 0.0 || Clock::now() - begin < std::chrono::duration<double>(seconds)) {
+    for (const host::UsbWatch::Change& change : watch.poll()) {
+      const host::UsbDeviceInfo& device = change.device;
+      fmt::print("{} usb:{} {} {} {} {}\n", change.arrived ? '+' : '-', device.path, device.serial,
+                 device.maker, device.name, device.problem);
+    }
+    std::fflush(stdout);
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+}
+
+void devices(const DevicesOptions& options, int& exit_code) {
+  if (options.print_udev) {
+    fmt::print("{}", host::udev_rule());
+  } else if (options.install_udev) {
+    fmt::print("wrote {}; plug the board in again, or run: udevadm trigger\n",
+               host::install_udev_rule());
+  } else if (options.watch) {
+    watch_devices(options.seconds);
+  } else {
+    list_devices(options, exit_code);
+  }
+}
+
 }  // namespace
 
 void add_devices_command(CLI::App& app, int& exit_code) {
@@ -71,8 +107,17 @@ void add_devices_command(CLI::App& app, int& exit_code) {
   CLI::App* verb = app.add_subcommand(
       "devices", "Lists the boards that are connected; exit code 1 = none answers");
   add_port_options(*verb, options->port);
+  CLI::Option* watch =
+      verb->add_flag("--watch", options->watch, "tell boards on USB that come and go");
+  verb->add_option("--seconds", options->seconds,
+                   "how long to watch, s (default: until interrupted)")
+      ->check(CLI::PositiveNumber)
+      ->needs(watch);
+  verb->add_flag("--install-udev", options->install_udev,
+                 "as root: let everybody at this computer open boards on USB");
+  verb->add_flag("--print-udev", options->print_udev, "print the rule that does so");
   verb->add_option("--json", options->json, "write the list to this file");
-  verb->callback([options, &exit_code] { list_devices(*options, exit_code); });
+  verb->callback([options, &exit_code] { devices(*options, exit_code); });
 }
 
 }  // namespace tactree::cli

@@ -61,9 +61,10 @@ class Pace {
       : period_(
             std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(period_s))) {}
 
-  void wait() {
+  /// When the next tick is due.
+  Clock::time_point next() {
     next_ = std::max(next_ + period_, Clock::now() - kMostLate);
-    std::this_thread::sleep_until(next_);
+    return next_;
   }
 
  private:
@@ -87,7 +88,12 @@ void serve_session(simulation::Simulation& simulation, const ServeSchedule& sche
     simulation.board().safety_inputs().hold_dead_man(dead_man.is_held(state, period_s));
     (void)simulation.step_with_hand_at(hand.next(state == core::State::kActive));
     t_s += period_s;
-    pace.wait();
+    const Clock::time_point due = pace.next();
+    if (schedule.wait) {
+      schedule.wait(due);
+    } else {
+      std::this_thread::sleep_until(due);
+    }
   }
   simulation.finish();
 }

@@ -19,12 +19,16 @@
 #include "scene_file.hpp"
 #include "serve_session.hpp"
 #include "tactree/emulation/emulated_target.hpp"
+#include "tactree/hal/linux/function_fs_controller.hpp"
+#include "tactree/hal/linux/usbip_controller.hpp"
 #include "tactree/host/serial_port.hpp"
 #include "tactree/serve/served_target.hpp"
+#include "tactree/serve/usb_target.hpp"
 #include "tactree/simulation/hand_script.hpp"
 #include "tactree/simulation/injection.hpp"
 #include "tactree/simulation/simulation.hpp"
 #include "tactree/simulation/trace.hpp"
+#include "usb_port.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -51,6 +55,9 @@ struct SimulateOptions {
   std::string json;
   bool serve = false;
   std::string key;  // of who signs models for the served board
+  bool on_usb = false;
+  std::optional<std::string> usb_port;  // of this computer, as a device; empty: the only one
+  std::uint32_t serial = 1;
   CLI::Option* seconds_given = nullptr;
   std::vector<std::string> injections;
   double seconds = 10.0;
@@ -501,10 +508,20 @@ void write_plot(const SimulateOptions& options, const SceneFile& scene, const Ou
                                         paper_first ? outcome.samples : beside.samples, title));
 }
 
+serve::ServeOptions serve_options(const SimulateOptions& options) {
+  serve::ServeOptions serving;
+  serving.serial = options.serial;
+  if (!options.key.empty()) {
+    serving.key = read_public_key(options.key);
+  }
+  return serving;
+}
+
 std::unique_ptr<simulation::Target> served_target(const SimulateOptions& options,
-                                                  const SceneFile& scene, host::Transport& terminal,
-                                                  const serve::ServeOptions& serving) {
+                                                  const SceneFile& scene,
+                                                  host::Transport& terminal) {
   const BlobFile& blob = *scene.files[0];
+  const serve::ServeOptions serving = serve_options(options);
   const emulation::BoardDescription* const board = emulation::find_board(options.board);
   if (board == nullptr) {
     return std::make_unique<serve::ServedTarget>(terminal, blob.bytes(), serving);
@@ -520,22 +537,54 @@ std::unique_ptr<simulation::Target> served_target(const SimulateOptions& options
   return std::make_unique<emulation::EmulatedTarget>(*board, blob.bytes(), emulation);
 }
 
-void serve(const SimulateOptions& options, const SceneFile& scene) {
+void serve_target(const SimulateOptions& options, const SceneFile& scene,
+                  std::unique_ptr<simulation::Target> target, ServeSchedule schedule) {
   const simulation::Setup setup = make_setup(options, scene);
-  host::PseudoTerminal terminal;
-  serve::ServeOptions serving;
-  if (!options.key.empty()) {
-    serving.key = read_public_key(options.key);
-  }
   simulation::Simulation sim(scene.files[0]->bytes(), setup, hand_path(options, scene),
-                             served_target(options, scene, terminal, serving));
+                             std::move(target));
   check_start(scene.names[0], scene.files[0]->view(), setup, sim.start_result());
   sim.inject(simulation::Injector(injections(options)));
-  fmt::print("serving at {}\n", terminal.name());
-  std::fflush(stdout);
-  const bool limited = options.seconds_given->count() != 0;
-  serve_session(sim, {static_cast<double>(setup.controller.rate_hz), options.seconds,
-                      limited ? options.seconds : 0.0});
+  schedule.rate_hz = static_cast<double>(setup.controller.rate_hz);
+  schedule.path_s = options.seconds;
+  schedule.seconds_max = options.seconds_given->count() != 0 ? options.seconds : 0.0;
+  serve_session(sim, schedule);
+}
+
+template <class Controller>
+void serve_on_usb(const SimulateOptions& options, const SceneFile& scene,
+                  const core::usb::Identity& identity, Controller& controller) {
+  auto target = std::make_unique<serve::UsbTarget<Controller>>(
+      controller, identity, scene.files[0]->bytes(), serve_options(options));
+  auto& served = *target;
+  watch_cable_signal();
+  controller.plug_in();
+  tell_cable(true);
+  ServeSchedule schedule;
+  schedule.wait = [&](auto due) { serve_until(due, served, controller); };
+  serve_target(options, scene, std::move(target), schedule);
+  controller.unplug();
+}
+
+void serve(const SimulateOptions& options, const SceneFile& scene) {
+  if ((options.on_usb || options.usb_port) && options.board != "host") {
+    refuse(fmt::format("--board {}: an emulated board has no USB port", options.board),
+           "use --board host, or leave --usb out");
+  }
+  core::usb::Identity identity;
+  identity.name = "Simulated controller";
+  identity.serial = {0, 0, options.serial};
+  if (options.on_usb) {
+    hal::linux_usb::UsbIpController controller;
+    serve_on_usb(options, scene, identity, controller);
+  } else if (options.usb_port) {
+    hal::linux_usb::FunctionFsController controller(identity, *options.usb_port);
+    serve_on_usb(options, scene, identity, controller);
+  } else {
+    host::PseudoTerminal terminal;
+    fmt::print("serving at {}\n", terminal.name());
+    std::fflush(stdout);
+    serve_target(options, scene, served_target(options, scene, terminal), {});
+  }
 }
 
 void simulate(SimulateOptions& options, int& exit_code) {
@@ -705,6 +754,20 @@ void add_simulate_command(CLI::App& app, int& exit_code) {
                    "with --serve: public key (tactree keygen) whose owner must have signed a model")
       ->needs(serve)
       ->check(CLI::ExistingFile);
+  CLI::Option* usb = verb->add_flag(
+      "--usb", options->on_usb,
+      "with --serve: be a USB device of this computer (needs root and the module vhci-hcd); "
+      "SIGUSR1 pulls the cable, and plugs it in again");
+  usb->needs(serve);
+  verb->add_option("--usb-gadget", options->usb_port,
+                   "with --serve: be a USB device at this computer's device port, one of "
+                   "/sys/class/udc (default: the only one); needs root and the module usb_f_fs")
+      ->expected(0, 1)
+      ->default_str("")
+      ->needs(serve)
+      ->excludes(usb);
+  verb->add_option("--serial", options->serial, "with --serve: last digits of the serial number")
+      ->needs(serve);
   CLI::Option* script = verb->add_option("--script", options->script, "what the hand does")
                             ->check(CLI::IsMember(simulation::script_names()))
                             ->capture_default_str();

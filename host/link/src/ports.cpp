@@ -1,12 +1,32 @@
 #include "tactree/host/ports.hpp"
 
+#include <string_view>
+
 #include "tactree/host/serial_port.hpp"
+#include "tactree/host/usb_transport.hpp"
 
 namespace tactree::host {
+namespace {
 
-std::vector<std::string> list_ports() { return serial_ports(); }
+constexpr std::string_view kUsb = "usb:";
+
+}  // namespace
+
+std::vector<std::string> list_ports() {
+  std::vector<std::string> ports;
+  for (const std::string& path : usb_paths()) {
+    ports.push_back(std::string(kUsb) + path);
+  }
+  for (std::string& port : serial_ports()) {
+    ports.push_back(std::move(port));
+  }
+  return ports;
+}
 
 std::unique_ptr<Transport> open_port(const std::string& name, unsigned baud) {
+  if (name.starts_with(kUsb)) {
+    return open_usb(name.substr(kUsb.size()));
+  }
   return open_serial_port(name, baud);
 }
 

@@ -8,7 +8,7 @@ constexpr std::uint32_t kSectorBytes = 16384;
 // Pieces of the session's work between two ticks: a frame takes some of them.
 constexpr int kPiecesPerTick = 64;
 
-constexpr hal::BoardIdentity kIdentity{"host", TACTREE_VERSION, {}, 0};
+constexpr char kBoard[] = "host";
 
 hal::FlashGeometry geometry(std::uint32_t slot_bytes) {
   const std::uint32_t sectors = (slot_bytes + kSectorBytes - 1U) / kSectorBytes;
@@ -30,13 +30,6 @@ class TransportPort {
   host::Transport& transport_;
 };
 
-/// Ticks and session are in one thread: nothing is to be held.
-struct SimPlatform {
-  hal::sim::SimTicker& ticker;
-  [[nodiscard]] std::uint32_t now_us() noexcept { return ticker.now_us(); }
-  void hold_ticks(bool) noexcept {}
-};
-
 core::Configuration with_saved_parameters(core::Configuration configuration,
                                           const ServedBoard::Store& store) {
   if (store.parameters() != nullptr) {
@@ -51,13 +44,13 @@ core::Configuration with_saved_parameters(core::Configuration configuration,
 
 class ServedTarget::Running {
  public:
-  Running(hal::sim::SimBoard& board, host::Transport& transport, hal::TickMailbox& mailbox,
-          ServedBoard::Store& store)
-      : port_(transport),
-        platform_{board.ticker()},
-        board_(board, mailbox, store),
-        loop_(board_, controller_),
-        session_({port_, store, platform_, controller_, mailbox, kIdentity}) {}
+  Running(hal::sim::SimBoard& board, ServedTarget& target)
+      : identity_{kBoard, TACTREE_VERSION, {0, 0, target.options_.serial}, 0},
+        port_(target.transport_),
+        board_(board, target.mailbox_, target.store_),
+        loop_(board_, target.controller_),
+        session_({port_, target.store_, target.platform_, target.controller_, target.mailbox_,
+                  identity_}) {}
 
   hal::StartResult start(const core::Configuration& configuration) {
     const hal::StartResult result = loop_.start(configuration);
@@ -65,20 +58,19 @@ class ServedTarget::Running {
     return result;
   }
 
-  core::Status tick() {
-    const core::Status status = loop_.tick().status;
+  core::Status tick() { return loop_.tick().status; }
+
+  void work() {
     for (int i = 0; i < kPiecesPerTick && session_.work(); ++i) {
     }
-    return status;
   }
 
  private:
+  hal::BoardIdentity identity_;
   TransportPort port_;
-  SimPlatform platform_;
-  core::Controller controller_;
   ServedBoard board_;
   hal::Loop<ServedBoard> loop_;
-  hal::Session<TransportPort, ServedBoard::Store, SimPlatform> session_;
+  hal::Session<TransportPort, ServedBoard::Store, ServedPlatform> session_;
 };
 
 ServedTarget::ServedTarget(host::Transport& transport, std::span<const std::byte> model,
@@ -86,17 +78,24 @@ ServedTarget::ServedTarget(host::Transport& transport, std::span<const std::byte
     : transport_(transport),
       options_(options),
       flash_(geometry(options.slot_bytes)),
-      store_(flash_, {kIdentity.board, options_.key ? options_.key->data() : nullptr, model}) {}
+      store_(flash_, {kBoard, options_.key ? options_.key->data() : nullptr, model}) {}
 
 ServedTarget::~ServedTarget() = default;
 
 hal::StartResult ServedTarget::start(hal::sim::SimBoard& board,
                                      const core::Configuration& configuration) {
   (void)store_.mount();
-  running_ = std::make_unique<Running>(board, transport_, mailbox_, store_);
+  platform_.start(board.ticker());
+  running_ = std::make_unique<Running>(board, *this);
   return running_->start(with_saved_parameters(configuration, store_));
 }
 
-core::Status ServedTarget::tick(hal::sim::SimBoard&) { return running_->tick(); }
+core::Status ServedTarget::tick(hal::sim::SimBoard&) {
+  const core::Status status = running_->tick();
+  work();
+  return status;
+}
+
+void ServedTarget::work() { running_->work(); }
 
 }  // namespace tactree::serve

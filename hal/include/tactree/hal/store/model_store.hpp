@@ -147,6 +147,13 @@ class ModelStore {
     return WireStatus::kOk;
   }
 
+  /// Of a transfer that could not tell its checksum when it began.
+  void announce_checksum(std::uint32_t checksum, const void* owner) {
+    if (owner_ != nullptr && owner_ == owner) {
+      announced_.checksum = checksum;
+    }
+  }
+
   /// Is what was written what was announced, a model, and signed? Then it is kept in the record.
   [[nodiscard]] WireStatus finish(const core::wire::FinishModelRequest& request,
                                   core::BlobStatus& blob, const void* owner) {

@@ -50,6 +50,21 @@ struct ServeOptions {
   /// Ed25519 key whose owner has to have signed a model; none: no signature is required.
   std::optional<std::array<std::uint8_t, core::kPublicKeyBytes>> key;
   std::uint32_t slot_bytes = 16U << 20U;
+  std::uint32_t serial = 0;  ///< last word of its unique number
+};
+
+/// Ticks and session are in one thread: nothing is to be held.
+class ServedPlatform {
+ public:
+  void start(hal::sim::SimTicker& ticker) { ticker_ = &ticker; }
+  /// 0 before the start.
+  [[nodiscard]] std::uint32_t now_us() noexcept {
+    return ticker_ == nullptr ? 0U : ticker_->now_us();
+  }
+  void hold_ticks(bool) noexcept {}
+
+ private:
+  hal::sim::SimTicker* ticker_ = nullptr;
 };
 
 class ServedTarget : public simulation::Target {
@@ -63,6 +78,14 @@ class ServedTarget : public simulation::Target {
                          const core::Configuration& configuration) override;
   /// One tick, and what the session has to do until the next.
   core::Status tick(hal::sim::SimBoard& board) override;
+  /// What the session has to do, also between ticks.
+  void work();
+
+  // For what else a board has beside its session.
+  [[nodiscard]] core::Controller& controller() { return controller_; }
+  [[nodiscard]] ServedBoard::Store& store() { return store_; }
+  [[nodiscard]] hal::TickMailbox& mailbox() { return mailbox_; }
+  [[nodiscard]] ServedPlatform& platform() { return platform_; }
 
  private:
   class Running;
@@ -70,6 +93,8 @@ class ServedTarget : public simulation::Target {
   host::Transport& transport_;
   ServeOptions options_;
   hal::sim::SimFlash flash_;
+  core::Controller controller_;
+  ServedPlatform platform_;
   hal::TickMailbox mailbox_;
   ServedBoard::Store store_;
   std::unique_ptr<Running> running_;

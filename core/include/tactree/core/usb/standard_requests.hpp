@@ -1,0 +1,52 @@
+#pragma once
+// The standard requests of endpoint 0 (USB 2.0, section 9.4), and the one vendor request that
+// fetches the Microsoft descriptors. What is not as the standard has it is refused with a stall.
+//
+// Interrupt safe: one context owns it; nothing is shared.
+
+#include "tactree/core/usb/descriptors.hpp"
+#include "tactree/core/usb/setup.hpp"
+
+namespace tactree::core::usb {
+
+class StandardRequests {
+ public:
+  /// `has_high_speed`: the controller can run at either speed.
+  StandardRequests(const Identity& identity, bool has_high_speed)
+      : identity_(identity), has_high_speed_(has_high_speed) {}
+
+  /// The bus was reset, and the device runs at this speed now.
+  void reset(Speed speed);
+  /// The controller has taken a configuration by itself, as Linux's does.
+  void set_configured(bool configured);
+
+  /// Standard and vendor requests. An effect in the answer has happened here already.
+  [[nodiscard]] Answer setup(const SetupPacket& setup);
+
+  [[nodiscard]] bool configured() const { return configured_; }
+  [[nodiscard]] Speed speed() const { return speed_; }
+  [[nodiscard]] std::uint8_t address() const { return address_; }
+  [[nodiscard]] bool is_halted(std::uint8_t endpoint) const;
+
+ private:
+  [[nodiscard]] Answer of_device(const SetupPacket& setup);
+  [[nodiscard]] Answer of_interface(const SetupPacket& setup);
+  [[nodiscard]] Answer of_endpoint(const SetupPacket& setup);
+  [[nodiscard]] Answer take_address(const SetupPacket& setup);
+  [[nodiscard]] Answer take_configuration(const SetupPacket& setup);
+  [[nodiscard]] Answer take_halt(const SetupPacket& setup);
+  [[nodiscard]] Answer descriptor(const SetupPacket& setup);
+  [[nodiscard]] Answer configuration(const SetupPacket& setup, Speed speed, std::uint8_t type);
+  [[nodiscard]] Answer status(const SetupPacket& setup, std::uint8_t value);
+  [[nodiscard]] Answer send_byte(const SetupPacket& setup, std::uint8_t value);
+
+  Identity identity_;
+  bool has_high_speed_;
+  Speed speed_ = Speed::kFull;
+  std::uint8_t address_ = 0;
+  bool configured_ = false;
+  std::uint32_t halted_ = 0;  // bit n: endpoint n of `endpoints` in the source
+  std::array<std::byte, kConfigurationBytes> buffer_{};
+};
+
+}  // namespace tactree::core::usb

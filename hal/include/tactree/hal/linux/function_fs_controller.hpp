@@ -1,0 +1,54 @@
+#pragma once
+// The device controller of a Linux computer (a single-board computer with a USB device port),
+// through FunctionFS: the kernel answers the standard requests, and hands us the rest. Needs the
+// modules libcomposite and usb_f_fs, and root to set it up.
+//
+// Kernels before 6.12 refuse the descriptor that DFU needs: there the device has the link only, and
+// models come over that.
+
+#include <memory>
+#include <string>
+
+#include "tactree/hal/usb_device.hpp"
+
+namespace tactree::hal::linux_usb {
+
+/// A UsbController (usb_device.hpp). Not for several threads at once; transfers are asynchronous.
+class FunctionFsController {
+ public:
+  /// `udc`: the device controller, one of /sys/class/udc; empty: the only one there is.
+  FunctionFsController(const core::usb::Identity& identity, std::string udc);
+  ~FunctionFsController();
+  FunctionFsController(const FunctionFsController&) = delete;
+  FunctionFsController& operator=(const FunctionFsController&) = delete;
+
+  /// Sets the gadget up and pulls the bus's line up. Throws std::runtime_error with file, cause and
+  /// remedy.
+  void plug_in();
+  void unplug();
+  [[nodiscard]] bool plugged_in() const;
+  /// Readable when there is something to do; -1 when unplugged.
+  [[nodiscard]] int descriptor() const;
+  /// Does this kernel take DFU? Known after plug_in().
+  [[nodiscard]] bool has_dfu() const;
+
+  [[nodiscard]] UsbEvent next_event();
+  void control_send(std::span<const std::byte> data, bool end);
+  void control_receive(std::uint16_t bytes);
+  [[nodiscard]] std::span<const std::byte> control_data() const;
+  void control_acknowledge();
+  void control_stall();
+  void set_address(std::uint8_t address);
+  void configure(bool open);
+  void halt(std::uint8_t endpoint, bool on);
+  [[nodiscard]] std::size_t read(std::uint8_t endpoint, std::span<std::byte> bytes);
+  [[nodiscard]] std::size_t write(std::uint8_t endpoint, std::span<const std::byte> bytes);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+static_assert(UsbController<FunctionFsController>);
+
+}  // namespace tactree::hal::linux_usb

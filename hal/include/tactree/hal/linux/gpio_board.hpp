@@ -1,0 +1,91 @@
+#pragma once
+// Parts of a board that are GPIO lines of a Linux computer. Each keeps the contract of board.hpp;
+// constructors throw GpioError, nothing else does.
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tactree/core/quadrature.hpp"
+#include "tactree/hal/board.hpp"
+#include "tactree/hal/linux/gpio_lines.hpp"
+
+namespace tactree::hal::linux_gpio {
+
+struct EncoderLines {
+  std::string a;
+  std::string b;
+};
+
+/// Quadrature by edges. Linux is no counter: edges that it missed, and transitions that cannot be,
+/// are counted, and beyond a limit the axis is not valid any more, until the bank is made anew.
+class GpioEncoderBank {
+ public:
+  /// One for each axis, at most core::kAxes; the other axes read 0. All on one chip.
+  GpioEncoderBank(const std::vector<EncoderLines>& axes, const std::string& consumer,
+                  std::uint32_t faults_max);
+
+  [[nodiscard]] core::EncoderReading read() noexcept;
+
+  [[nodiscard]] std::uint32_t illegal(std::uint32_t axis) const {
+    return decoders_[axis].illegal();
+  }
+  /// Edges that the kernel had no room for, over all axes.
+  [[nodiscard]] std::uint32_t lost() const { return lost_; }
+  /// Of the newest edge; 0: none yet.
+  [[nodiscard]] std::uint64_t last_edge_ns() const { return last_edge_ns_; }
+
+ private:
+  [[nodiscard]] static std::vector<std::string> names_of(const std::vector<EncoderLines>& axes);
+  void take(const Edge& edge) noexcept;
+  [[nodiscard]] bool is_trusted(std::uint32_t axis) const;
+
+  std::uint32_t axes_;
+  std::uint32_t faults_max_;
+  GpioLines lines_;
+  std::array<core::QuadratureDecoder, core::kAxes> decoders_{};
+  std::uint32_t next_sequence_ = 1;
+  std::uint32_t lost_ = 0;
+  std::uint64_t last_edge_ns_ = 0;
+  bool gone_ = false;
+};
+
+/// The line that gives the amplifiers their power, and the one that comes back from them. The
+/// kernel lets go of the lines when the program ends, however it ends; so let the hardware's pull
+/// say off.
+class GpioEnableLine {
+ public:
+  GpioEnableLine(const std::string& enable, const std::string& read_back,
+                 const std::string& consumer);
+  void set(bool on) noexcept { (void)enable_.set(on ? 1U : 0U); }
+  [[nodiscard]] bool read_back() noexcept;
+  ~GpioEnableLine() { set(false); }
+  GpioEnableLine(const GpioEnableLine&) = delete;
+  GpioEnableLine& operator=(const GpioEnableLine&) = delete;
+
+ private:
+  GpioLines enable_;
+  GpioLines read_back_;
+};
+
+/// Emergency stop: a normally closed switch that pulls its line high while it is not pressed.
+/// Dead-man: pulls its line high while it is held. A broken wire is the safe answer for both.
+class GpioSafetyInputs {
+ public:
+  GpioSafetyInputs(const std::string& emergency_stop, const std::string& dead_man,
+                   const std::string& consumer);
+  /// Also when it was pressed for a moment since the last call.
+  [[nodiscard]] bool emergency_stop() noexcept;
+  [[nodiscard]] bool dead_man() noexcept;
+
+ private:
+  GpioLines emergency_stop_;
+  GpioLines dead_man_;
+};
+
+static_assert(EncoderBank<GpioEncoderBank>);
+static_assert(EnableLine<GpioEnableLine>);
+static_assert(SafetyInputs<GpioSafetyInputs>);
+
+}  // namespace tactree::hal::linux_gpio

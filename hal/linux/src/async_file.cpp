@@ -1,0 +1,71 @@
+#include "async_file.hpp"
+
+#include <sys/eventfd.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <stdexcept>
+#include <string>
+
+namespace tactree::hal::linux_usb {
+namespace {
+
+constexpr unsigned kOperationsMax = 64;
+
+}  // namespace
+
+AsyncContext::AsyncContext() : event_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
+  if (event_ < 0 || syscall(SYS_io_setup, kOperationsMax, &context_) != 0) {
+    throw std::runtime_error(std::string("io_setup: ") + std::strerror(errno));
+  }
+}
+
+AsyncContext::~AsyncContext() {
+  syscall(SYS_io_destroy, context_);
+  close(event_);
+}
+
+bool AsyncContext::read(int file, std::span<std::byte> bytes, std::uint64_t tag) {
+  iocb operation{};
+  operation.aio_lio_opcode = IOCB_CMD_PREAD;
+  operation.aio_fildes = static_cast<std::uint32_t>(file);
+  operation.aio_buf = reinterpret_cast<std::uint64_t>(bytes.data());
+  operation.aio_nbytes = bytes.size();
+  operation.aio_data = tag;
+  return submit(operation);
+}
+
+bool AsyncContext::write(int file, std::span<const std::byte> bytes, std::uint64_t tag) {
+  iocb operation{};
+  operation.aio_lio_opcode = IOCB_CMD_PWRITE;
+  operation.aio_fildes = static_cast<std::uint32_t>(file);
+  operation.aio_buf = reinterpret_cast<std::uint64_t>(bytes.data());
+  operation.aio_nbytes = bytes.size();
+  operation.aio_data = tag;
+  return submit(operation);
+}
+
+bool AsyncContext::submit(iocb& operation) {
+  operation.aio_flags = IOCB_FLAG_RESFD;
+  operation.aio_resfd = static_cast<std::uint32_t>(event_);
+  iocb* operations[] = {&operation};
+  return syscall(SYS_io_submit, context_, 1, operations) == 1;
+}
+
+std::vector<AsyncContext::Ended> AsyncContext::ended() {
+  std::uint64_t count = 0;
+  (void)!::read(event_, &count, sizeof(count));
+  std::array<io_event, kOperationsMax> events{};
+  timespec no_time{};
+  const long got = syscall(SYS_io_getevents, context_, 0, events.size(), events.data(), &no_time);
+  std::vector<Ended> ended;
+  for (long i = 0; i < got; ++i) {  // bound: kOperationsMax
+    const io_event& event = events[static_cast<std::size_t>(i)];
+    ended.push_back({event.data, event.res});
+  }
+  return ended;
+}
+
+}  // namespace tactree::hal::linux_usb

@@ -1,0 +1,82 @@
+#pragma once
+// A served board on USB: link, model and parameters, as the device of a board has them.
+
+#include <chrono>
+
+#include "tactree/core/usb/parameter_storage.hpp"
+#include "tactree/hal/store/dfu_model.hpp"
+#include "tactree/hal/usb_device.hpp"
+#include "tactree/serve/served_target.hpp"
+
+namespace tactree::serve {
+
+/// Controller: a UsbController (hal/usb_device.hpp), the caller's, which outlives the target.
+template <hal::UsbController Controller>
+class UsbTarget : public ServedTarget {
+ public:
+  using Model = hal::DfuModel<ServedBoard::Store, ServedPlatform>;
+  using Parameters = core::usb::ParameterStorage<ServedPlatform>;
+  using Device = hal::UsbDevice<Controller, Model, Parameters>;
+
+  UsbTarget(Controller& usb, const core::usb::Identity& identity, std::span<const std::byte> model,
+            const ServeOptions& options)
+      : ServedTarget(port_, model, options),
+        model_(store(), controller(), mailbox(), platform()),
+        parameters_(controller(), platform()),
+        device_(usb, identity, true, model_, parameters_),
+        port_(device_) {}
+
+  core::Status tick(hal::sim::SimBoard& board) override {
+    status_ = ServedTarget::tick(board);
+    serve();
+    return status_;
+  }
+
+  /// Answers the host; also between ticks.
+  void serve() {
+    // Not the simulation's time, which may be slower: the host waits by its own clock.
+    const auto now = std::chrono::steady_clock::now().time_since_epoch();
+    const auto now_us = std::chrono::duration_cast<std::chrono::microseconds>(now).count();
+    device_.poll(static_cast<std::uint32_t>(now_us));
+    work();
+    tell();
+  }
+
+  [[nodiscard]] const Device& device() const { return device_; }
+
+ private:
+  class Port : public host::Transport {
+   public:
+    explicit Port(Device& device) : device_(device) {}
+    [[nodiscard]] std::size_t read(std::span<std::byte> bytes) override {
+      return device_.read(bytes);
+    }
+    [[nodiscard]] std::size_t write(std::span<const std::byte> bytes) override {
+      return device_.write(bytes);
+    }
+    void wait(std::chrono::microseconds) override {}
+    [[nodiscard]] bool connected() const override { return device_.configured(); }
+    [[nodiscard]] std::string name() const override { return "usb device"; }
+
+   private:
+    Device& device_;
+  };
+
+  void tell() {
+    const core::usb::NewsPacket news{status_.tick, static_cast<std::uint32_t>(status_.state),
+                                     status_.faults, status_.limits};
+    const bool same = news.state == told_.state && news.faults == told_.faults;
+    if (!same && device_.tell(news)) {
+      told_ = news;
+    }
+  }
+
+  Model model_;
+  Parameters parameters_;
+  Device device_;
+  Port port_;
+  core::Status status_{};
+  core::usb::NewsPacket told_{};
+};
+
+}  // namespace tactree::serve

@@ -1,0 +1,186 @@
+#pragma once
+// A simulated board on a USB port of this kernel, run by a thread; and an application's end.
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <mutex>
+#include <thread>
+
+#include "tactree/hal/linux/usbip_controller.hpp"
+#include "tactree/host/client.hpp"
+#include "tactree/host/usb_transport.hpp"
+#include "tactree/serve/usb_target.hpp"
+#include "tactree/simulation/simulation.hpp"
+#include "test_models.hpp"
+
+namespace tactree::vm_test {
+
+using Clock = std::chrono::steady_clock;
+inline constexpr std::chrono::seconds kPatience{120};  // machines that build may stand still
+
+/// False: it did not come true in time.
+template <class Condition>
+[[nodiscard]] bool eventually(Condition condition) {
+  const Clock::time_point end = Clock::now() + kPatience;
+  while (!condition()) {
+    if (Clock::now() > end) {
+      return false;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return true;
+}
+
+class BoardOnUsb {
+ public:
+  BoardOnUsb() : thread_([this] { run(); }) {}
+  ~BoardOnUsb() {
+    end_ = true;
+    thread_.join();
+  }
+
+  /// Done when the board has noticed.
+  void plug(bool in) {
+    wanted_ = in;
+    ASSERT_TRUE(eventually([&] { return plugged_ == in; }));
+  }
+  [[nodiscard]] static const test::TestBlob& blob() {
+    static const test::TestBlob kBlob(test::sphere(0.03, 4e-3));
+    return kBlob;
+  }
+  [[nodiscard]] core::usb::DfuState model_state() const { return model_state_; }
+  [[nodiscard]] std::uint64_t ticks() const { return ticks_; }
+
+ private:
+  using Target = serve::UsbTarget<hal::linux_usb::UsbIpController>;
+
+  static simulation::Setup setup() {
+    simulation::Setup setup;
+    setup.controller.dead_man_required = false;
+    return setup;
+  }
+
+  void run() {
+    const std::span<const std::byte> bytes = blob().written().bytes;
+    core::usb::Identity identity;
+    identity.serial = {0x11111111, 0x22222222, 0x33333333};
+    serve::ServeOptions options;
+    options.slot_bytes = 1U << 20U;
+    hal::linux_usb::UsbIpController usb;
+    auto owned = std::make_unique<Target>(usb, identity, bytes, options);
+    Target& target = *owned;
+    simulation::Simulation sim(bytes, setup(), simulation::HandPath({{0.0, {0.05, 0.0, 0.0}}}),
+                               std::move(owned));
+    Clock::time_point next = Clock::now();
+    while (!end_) {
+      (void)sim.step();
+      ++ticks_;
+      next = std::max(next + std::chrono::milliseconds(1), Clock::now());
+      do {
+        move_cable(usb);
+        target.serve();
+        model_state_ = target.device().model().state();
+        std::this_thread::sleep_for(std::chrono::microseconds(50));
+      } while (Clock::now() < next && !end_);
+    }
+  }
+
+  void move_cable(hal::linux_usb::UsbIpController& usb) {
+    if (wanted_ != usb.plugged_in()) {
+      if (wanted_) {
+        usb.plug_in();
+      } else {
+        usb.unplug();
+      }
+    }
+    plugged_ = usb.plugged_in();
+  }
+
+  std::atomic<bool> end_ = false;
+  std::atomic<bool> wanted_ = true;
+  std::atomic<bool> plugged_ = false;
+  std::atomic<std::uint64_t> ticks_ = 0;
+  std::atomic<core::usb::DfuState> model_state_ = core::usb::DfuState::kIdle;
+  std::thread thread_;
+};
+
+/// A client over a transport, moved on by whoever waits.
+class Application {
+ public:
+  explicit Application(std::unique_ptr<host::UsbTransport> transport)
+      : transport_(std::move(transport)) {}
+
+  [[nodiscard]] static host::Microseconds now_us() {
+    return static_cast<host::Microseconds>(
+        std::chrono::duration_cast<std::chrono::microseconds>(Clock::now().time_since_epoch())
+            .count());
+  }
+
+  void turn(std::chrono::microseconds wait = std::chrono::milliseconds(1)) {
+    std::array<std::byte, 4096> bytes{};
+    client_.advance(now_us());
+    const std::size_t sent = transport_->write(client_.to_send());
+    client_.sent(sent);
+    transport_->wait(wait);
+    const std::size_t count = transport_->read(bytes);
+    received_ += count;
+    client_.receive(std::span(bytes).first(count), now_us());
+  }
+
+  host::Response await(std::uint16_t sequence) {
+    host::Response response;
+    const Clock::time_point end = Clock::now() + kPatience;
+    while (Clock::now() < end && transport_->connected()) {
+      while (client_.take(response)) {
+        if (response.sequence == sequence) {
+          return response;
+        }
+      }
+      turn();
+    }
+    response = {};
+    response.timed_out = true;
+    return response;
+  }
+  template <core::wire::Message T>
+  host::Response ask(core::wire::MessageKind kind, const T& message) {
+    return await(client_.send(kind, message, now_us()));
+  }
+  host::Response ask(core::wire::MessageKind kind) {
+    return await(client_.send(kind, std::span<const std::byte>(), now_us()));
+  }
+  /// As another program than all before: the board tells them by this number.
+  host::Response open() {
+    static std::uint32_t programs = 0;
+    return await(client_.open(0, ++programs, now_us()));
+  }
+
+  [[nodiscard]] host::Client& client() { return client_; }
+  [[nodiscard]] host::UsbTransport& transport() { return *transport_; }
+  [[nodiscard]] std::uint64_t received() const { return received_; }
+
+ private:
+  std::unique_ptr<host::UsbTransport> transport_;
+  host::Client client_{{static_cast<host::Microseconds>(60'000'000), 60'000'000}};
+  std::uint64_t received_ = 0;
+};
+
+/// Waits until the board is there, and opens it.
+[[nodiscard]] inline std::unique_ptr<host::UsbTransport> open_board() {
+  std::unique_ptr<host::UsbTransport> transport;
+  std::string why;
+  const bool there = eventually([&] {
+    try {
+      transport = host::open_usb("");
+    } catch (const std::runtime_error& error) {
+      why = error.what();
+    }
+    return transport != nullptr;
+  });
+  EXPECT_TRUE(there) << why;
+  return transport;
+}
+
+}  // namespace tactree::vm_test
