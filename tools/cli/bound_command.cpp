@@ -11,6 +11,7 @@
 
 #include "blob_file.hpp"
 #include "command.hpp"
+#include "json_text.hpp"
 #include "output_file.hpp"
 #include "tactree/bound/bound.hpp"
 #include "tactree/core/scene.hpp"
@@ -140,7 +141,7 @@ void bound_tick(const BoundCommandOptions& options) {
     print_timing(*analysis.timing, result);
   }
   if (!options.json.empty()) {
-    write_file(options.json, to_json(options, analysis, result).dump(2) + "\n");
+    write_file(options.json, json_text(to_json(options, analysis, result)));
   }
   if (options.rate_hz > 0.0 && analysis.timing != nullptr) {
     check_rate(options, *analysis.timing, result);

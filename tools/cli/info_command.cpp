@@ -10,6 +10,7 @@
 
 #include "blob_file.hpp"
 #include "board_costs.hpp"
+#include "json_text.hpp"
 #include "output_file.hpp"
 
 namespace tactree::cli {
@@ -222,7 +223,7 @@ void info(const InfoOptions& options) {
     print_costs(blob.view().header(), options.board);
   }
   if (!options.json.empty()) {
-    write_file(options.json, to_json(blob.view()).dump(2) + "\n");
+    write_file(options.json, json_text(to_json(blob.view())));
   }
   if (!options.points.empty()) {
     write_points(blob.view(), options.points);
