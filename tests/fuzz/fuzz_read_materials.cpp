@@ -15,11 +15,11 @@ void examine(const builder::MaterialMap& map) {
   const std::vector<core::BlobMaterial> list = map.list();
   fuzz::require(!list.empty() && list.size() <= core::kMaxMaterials, "no or too many materials");
   for (const core::BlobMaterial& m : list) {
-    const bool good = in_range(m.stiffness_N_m, 0.0F, 1e6F) && in_range(m.damping_Ns_m, 0.0F, 1e4F) &&
-                      in_range(m.static_friction, 0.0F, 4.0F) &&
-                      in_range(m.dynamic_friction, 0.0F, m.static_friction) &&
-                      in_range(m.texture_height_m, 0.0F, 1.0F) &&
-                      in_range(m.texture_wavelength_m, 0.0F, 1e3F);
+    const bool good =
+        in_range(m.stiffness_N_m, 0.0F, 1e6F) && in_range(m.damping_Ns_m, 0.0F, 1e4F) &&
+        in_range(m.static_friction, 0.0F, 4.0F) &&
+        in_range(m.dynamic_friction, 0.0F, m.static_friction) &&
+        in_range(m.texture_height_m, 0.0F, 1.0F) && in_range(m.texture_wavelength_m, 0.0F, 1e3F);
     fuzz::require(good, "a material that open_blob() would refuse");
   }
   for (const builder::Colour colour : {builder::Colour{0, 0, 0}, builder::Colour{255, 10, 0}}) {

@@ -44,9 +44,9 @@ void parse_fault(std::string_view text) {
   }
   try {
     const simulation::InjectedFault fault = simulation::parse_injection(text);
-    fuzz::require(std::isfinite(fault.value) && std::isfinite(fault.from_s) &&
-                      fault.until_s > fault.from_s,
-                  "a fault at no time");
+    fuzz::require(
+        std::isfinite(fault.value) && std::isfinite(fault.from_s) && fault.until_s > fault.from_s,
+        "a fault at no time");
   } catch (const std::invalid_argument& error) {
     fuzz::require(std::string_view(error.what()).size() > 10, "a refusal without a reason");
   }
