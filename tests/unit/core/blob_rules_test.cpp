@@ -179,6 +179,108 @@ TEST(BlobRules, TheOffsetBehindTheLastFullGroupIsZero) {
   ADD_FAILURE() << "no model fills its last group";
 }
 
+struct Figure {
+  const char* name;
+  std::function<float*(Specimen&)> at;
+  float low;
+  float high;
+  BlobStatus refused;
+};
+
+core::BlobMaterial& second_material(Specimen& blob) {
+  return blob.items<core::BlobMaterial>(blob.header().materials)[1];
+}
+
+// Each end of each range is accepted, the next float beyond it is not.
+TEST(BlobRules, FiguresAreTakenUpToTheirEndsAndNoFurther) {
+  const BlobStatus figures = BlobStatus::kBadFigures;
+  const BlobStatus materials = BlobStatus::kBadMaterials;
+  const Figure cases[] = {
+      {"spacing", [](Specimen& b) { return &b.header().spacing_m; }, 0.0F, 1e9F, figures},
+      {"support", [](Specimen& b) { return &b.header().support_radius_m; }, 0.0F, 1e9F, figures},
+      {"aabb", [](Specimen& b) { return &b.header().aabb_edge_m; }, 0.0F, 1e9F, figures},
+      {"offset", [](Specimen& b) { return &b.header().six_point_offset_m; }, 0.0F, 1e9F, figures},
+      {"gap", [](Specimen& b) { return &b.header().largest_gap_m; }, 0.0F, 1e9F, figures},
+      {"stiffness", [](Specimen& b) { return &second_material(b).stiffness_N_m; }, 0.0F, 1e6F,
+       materials},
+      {"damping", [](Specimen& b) { return &second_material(b).damping_Ns_m; }, 0.0F, 1e4F,
+       materials},
+      {"static", [](Specimen& b) { return &second_material(b).static_friction; }, 0.3F, 4.0F,
+       materials},
+      {"dynamic", [](Specimen& b) { return &second_material(b).dynamic_friction; }, 0.0F, 0.5F,
+       materials},
+      {"texture", [](Specimen& b) { return &second_material(b).texture_height_m; }, 0.0F, 1.0F,
+       materials},
+      {"wavelength", [](Specimen& b) { return &second_material(b).texture_wavelength_m; }, 0.0F,
+       1e3F, materials},
+  };
+  for (const Figure& figure : cases) {
+    const auto with = [&](float value) {
+      Specimen blob(Profile::kPaper);
+      *figure.at(blob) = value;
+      return blob.open();
+    };
+    Specimen untouched(Profile::kPaper);
+    const float low =
+        figure.name[0] == 's' && figure.name[1] == 'p' ? untouched.header().step_m : figure.low;
+    EXPECT_EQ(with(low), BlobStatus::kOk) << figure.name;
+    EXPECT_EQ(with(figure.high), BlobStatus::kOk) << figure.name;
+    EXPECT_EQ(with(std::nextafter(low, -1.0F)), figure.refused) << figure.name;
+    EXPECT_EQ(with(std::nextafter(figure.high, 1e30F)), figure.refused) << figure.name;
+  }
+}
+
+TEST(BlobRules, TheFirstLettersOfTheMagicCountToo) {
+  for (std::size_t i = 0; i < 8; ++i) {
+    Specimen blob(Profile::kSurface);
+    blob.header().magic[i] ^= 1U;
+    EXPECT_EQ(blob.open(), BlobStatus::kBadMagic) << i;
+  }
+}
+
+TEST(BlobRules, TheFirstIndexAndBothReservedWordsOfAMaterialCount) {
+  Specimen index(Profile::kSurface);
+  index.items<std::uint8_t>(index.header().material_indices)[0] = 2;
+  EXPECT_EQ(index.open(), BlobStatus::kBadMaterials);
+  for (int word = 0; word < 2; ++word) {
+    Specimen blob(Profile::kSurface);
+    second_material(blob).reserved[word] = 1;
+    EXPECT_EQ(blob.open(), BlobStatus::kBadMaterials) << word;
+  }
+}
+
+TEST(BlobRules, EveryPointOfALeafIsComparedWithTheOneBefore) {
+  Specimen blob(Profile::kSurface);
+  auto* points = blob.items<std::uint32_t>(blob.header().points);
+  const auto* offsets = blob.items<std::uint16_t>(blob.header().leaf_offsets);
+  ASSERT_GE(offsets[1] - offsets[0], 3);
+  points[2] = points[1];  // above the first, but not above the second
+  EXPECT_EQ(blob.open(), BlobStatus::kBadPoints);
+}
+
+TEST(BlobRules, AHeaderFillsAtMostTheBlob) {
+  Specimen blob(Profile::kSurface);
+  blob.header().header_bytes = static_cast<std::uint32_t>(blob.size());
+  EXPECT_EQ(blob.open(), BlobStatus::kBadSections);
+  blob.header().header_bytes += 4;
+  EXPECT_EQ(blob.open(), BlobStatus::kBadHeader);
+}
+
+TEST(BlobRules, CoordinatesStayWithinWhatAFloatHoldsExactly) {
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const std::int32_t low :
+         {-core::kMaxCoordinate - 1, core::kMaxCoordinate - core::kLeafUnits + 1}) {
+      Specimen blob(Profile::kPaper);
+      blob.header().step_m = 0x1p-20F;
+      blob.header().leaf_edge_min_m = 0x1p-20F * static_cast<float>(core::kLeafUnits);
+      blob.header().root_min[axis] = low;
+      blob.header().bounds_min_m[axis] = 0x1p-20F * static_cast<float>(low);
+      blob.header().bounds_max_m[axis] = blob.header().bounds_min_m[axis];
+      EXPECT_EQ(blob.open(), BlobStatus::kBadFigures) << axis << " " << low;
+    }
+  }
+}
+
 TEST(BlobRules, AStatusThatIsNoneHasWordsToo) {
   EXPECT_STREQ(core::describe(static_cast<BlobStatus>(200)), "unknown status");
 }

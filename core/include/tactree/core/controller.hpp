@@ -99,6 +99,12 @@ class Controller {
   Output step(const Input& input);
 
   [[nodiscard]] State state() const { return state_; }
+  /// Is the state active, by two records of it? For a last look before a command goes to the
+  /// motors: where one instruction of step() fails, as a core's does in a glitch, its command may
+  /// be wrong.
+  [[nodiscard]] bool may_give_force() const {
+    return state_ == State::kActive && inverse_ == inverse_of(State::kActive);
+  }
   [[nodiscard]] FaultMask faults() const { return latched_; }
   /// Are the joints' positions known?
   [[nodiscard]] bool homed() const { return homing_.done(); }
@@ -107,6 +113,9 @@ class Controller {
   [[nodiscard]] const FlightRecorder& recorder() const { return recorder_; }
 
  private:
+  [[nodiscard]] static constexpr std::uint32_t inverse_of(State state) {
+    return ~static_cast<std::uint32_t>(state);
+  }
   [[nodiscard]] bool motors_off() const {
     return state_ != State::kArmed && state_ != State::kActive;
   }
@@ -140,7 +149,8 @@ class Controller {
   std::uint32_t cycles_per_second_ = 0;
   Configuration configuration_{};
   State state_ = State::kBoot;
-  FaultMask present_ = 0;  // causes there in this tick
+  std::uint32_t inverse_ = inverse_of(State::kBoot);  // of state_, to compare it with
+  FaultMask present_ = 0;                             // causes there in this tick
   FaultMask latched_ = 0;
   bool waiting_ = false;  // armed, and not yet allowed to be active
 

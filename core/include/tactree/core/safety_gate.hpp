@@ -65,6 +65,9 @@ class SafetyGate {
   /// Cost: constant, about 150 operations.
   Result command(Vec3 force, const Mat3& effort_per_force, Vec3 own_effort = {});
 
+  /// No effort at all.
+  [[nodiscard]] static MotorCommand no_effort() { return {}; }
+
   [[nodiscard]] const GateLimits& limits() const { return limits_; }
   [[nodiscard]] const MotorHeat& heat() const { return heat_; }
 
