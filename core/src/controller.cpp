@@ -1,3 +1,5 @@
+// memory: RAM
+
 #include "tactree/core/controller.hpp"
 
 namespace tactree::core {
@@ -64,7 +66,7 @@ bool Controller::is_in_time(TickLoad load, const BlobView& added) const {
   if (costs_ == nullptr || costs_->known != kTickCostsKnown) {
     return true;
   }
-  load.add(added.header(), configuration_.mode);
+  load.add(added.header(), configuration_);
   const float period = static_cast<float>(cycles_per_second_) / configuration_.rate_hz;
   return cycles_of(*costs_, load) <= static_cast<std::uint32_t>(period);
 }
@@ -73,7 +75,7 @@ TickLoad Controller::load_of_scene() const {
   TickLoad load;
   for (std::uint32_t i = 0; i < kMaxBodies; ++i) {  // bound: kMaxBodies
     if (!scene_.view(i).empty()) {
-      load.add(scene_.view(i).header(), configuration_.mode);
+      load.add(scene_.view(i).header(), configuration_);
     }
   }
   return load;
@@ -87,7 +89,7 @@ void Controller::remove_unsuitable_bodies() {
       continue;
     }
     if (suitability(view) == ModelStatus::kOk && is_in_time(kept, view)) {
-      kept.add(view.header(), configuration_.mode);
+      kept.add(view.header(), configuration_);
     } else {
       (void)scene_.remove(i);
     }
@@ -179,7 +181,7 @@ bool Controller::unload_model() {
   return true;
 }
 
-Output Controller::step(const Input& input) {
+const Output& Controller::step(const Input& input) {
   ++tick_;
   present_ = watch(input);
   if (configured_) {
@@ -196,9 +198,11 @@ Output Controller::step(const Input& input) {
   confirm(input, was_armed);
   const SafetyGate::Result gated = apply_force();
   enable_ = !motors_off();
-  const Output output = {gated.command, enable_, report(gated)};
-  record(input, output.status);
-  return output;
+  output_.motors = gated.command;
+  output_.enable = enable_;
+  report(gated);
+  record(input, output_.status);
+  return output_;
 }
 
 // A counter that could not be trusted for a moment has lost its place.
@@ -427,8 +431,8 @@ SafetyGate::Result Controller::apply_force() {
   return gated;
 }
 
-Status Controller::report(const SafetyGate::Result& gated) const {
-  Status status;
+void Controller::report(const SafetyGate::Result& gated) {
+  Status& status = output_.status;
   status.tick = tick_;
   status.state = state_;
   status.faults = latched_;
@@ -446,21 +450,23 @@ Status Controller::report(const SafetyGate::Result& gated) const {
   status.velocity = velocity_;
   status.rendering = contact;
   status.force = gated.force;
-  report_reactions(gated.force, status);
-  return status;
+  report_reactions(gated.force);
 }
 
 // The gate may give less than was rendered, or nothing; the bodies take it in proportion.
-void Controller::report_reactions(Vec3 force, Status& status) const {
+void Controller::report_reactions(Vec3 force) {
   const Vec3 rendered = scene_.rendering().contact.force;
   const float whole = length_squared(rendered);
   const float share = whole > 0.0F ? dot(force, rendered) / whole : 0.0F;
   const bool displayed = share > 0.0F && is_finite(share);
+  const float part = share < 1.0F ? share : 1.0F;
   for (std::uint32_t i = 0; i < kMaxReachableBodies; ++i) {  // bound: kMaxReachableBodies
     const Reaction& r = scene_.rendering().reactions[i];
+    Reaction& told = output_.status.reactions[i];
     if (displayed && r.body != kNoBody) {
-      const float part = share < 1.0F ? share : 1.0F;
-      status.reactions[i] = {r.body, part * r.force_N, part * r.torque_Nm};
+      told = {r.body, part * r.force_N, part * r.torque_Nm};
+    } else {
+      told = {};
     }
   }
 }

@@ -1,6 +1,6 @@
-#include "tactree/core/surface.hpp"
+// memory: RAM
 
-#include "corner_leaves.hpp"
+#include "tactree/core/surface.hpp"
 
 namespace tactree::core {
 namespace {
@@ -12,11 +12,6 @@ constexpr float kFadeEnds = 0.95F;
 
 // Below this share of A the points are as good as one point: fit a plane.
 constexpr float kFlatShare = 1e-3F;
-
-// The next gather, in slacks: how far ahead of the query, less than 1; and from which stride on the
-// query has jumped, so that nobody knows where it goes.
-constexpr float kAhead = 0.6F;
-constexpr float kStride = 1.5F;
 
 // Two faces meet in a crease where normals differ by 60 to 120 degrees; more is the other side of a
 // plate, which never counts.
@@ -37,7 +32,6 @@ struct Moments {
   Vec3 n{};
   float a = 0.0F;
   float b = 0.0F;
-  std::uint32_t count = 0;
 
   void add(Vec3 q, float qq, Vec3 normal, float weight) {
     w += weight;
@@ -45,81 +39,82 @@ struct Moments {
     n += weight * normal;
     a += weight * qq;
     b += weight * dot(q, normal);
-    count += weight > 0.0F ? 1U : 0U;
   }
 };
 
-/// Weight of a point at squared distance qq; 0 outside the support.
+/// Weight of a point at squared distance qq, which lies in the support.
 float weight_of(float qq, float inverse_squared) {
   const float u = 1.0F - qq * inverse_squared;
-  if (!(u > 0.0F)) {
-    return 0.0F;
-  }
   const float u2 = u * u;
   return u2 * u2;
 }
 
 /// What lies around, seen from one face.
 struct Surroundings {
-  Moments face;                         // of all points that face the reference
-  float averted = 0.0F;                 // weight of all others
-  std::uint32_t crease = kNoCandidate;  // nearest point of another face
+  Moments face{};                      // of all points that face the reference
+  float averted = 0.0F;                // weight of all others
+  const Candidate* crease = nullptr;   // nearest point of another face
 };
 
-Surroundings look_around(const CandidateSet& set, Vec3 x, float radius, Vec3 reference) {
+// The sums are locals, not members of what is returned: these a compiler keeps in registers.
+[[gnu::noinline]] Surroundings look_around(const CandidateSet& set, Vec3 x, float radius, Vec3 reference) {
   const float radius_squared = radius * radius;
   const float inverse_squared = 1.0F / radius_squared;
-  Surroundings found;
+  Moments face;
+  float averted = 0.0F;
   float nearest = radius_squared;
-  for (std::uint32_t i = 0; i < set.count(); ++i) {  // bound: points_per_ball_max
-    const Vec3 q = set.position(i) - x;
+  const Candidate* crease = nullptr;
+  for (const Candidate& candidate : set) {  // bound: points_per_ball_max
+    const Vec3 q = candidate.position - x;
     const float qq = length_squared(q);
     if (!(qq < radius_squared)) {
       continue;
     }
     const float weight = weight_of(qq, inverse_squared);
-    const Vec3 normal = set.normal(i);
-    const float cosine = dot(normal, reference);
-    if (cosine > 0.0F) {
-      found.face.add(q, qq, normal, weight);
-    } else {
-      found.averted += weight;
+    const float cosine = dot(candidate.normal, reference);
+    if (cosine < kCreaseCosine) {
+      if (cosine > -kCreaseCosine && qq < nearest) {
+        nearest = qq;
+        crease = &candidate;
+      }
+      if (!(cosine > 0.0F)) {
+        averted += weight;
+        continue;
+      }
     }
-    if (qq < nearest && cosine < kCreaseCosine && cosine > -kCreaseCosine) {
-      nearest = qq;
-      found.crease = i;
-    }
+    face.add(q, qq, candidate.normal, weight);
   }
-  return found;
+  return {face, averted, crease};
 }
 
 /// The points around a crease, each with the face whose normal is closer to its own.
 struct Faces {
-  Moments own;
-  Moments other;
+  Moments own{};
+  Moments other{};
+  std::uint32_t others = 0;
   float between = 0.0F;  // weight of the points that are of neither
 };
 
-Faces divide(const CandidateSet& set, Vec3 x, float radius, Vec3 own, Vec3 other) {
+[[gnu::noinline]] Faces divide(const CandidateSet& set, Vec3 x, float radius, Vec3 own, Vec3 other) {
   const float radius_squared = radius * radius;
   const float inverse_squared = 1.0F / radius_squared;
   Faces faces;
-  for (std::uint32_t i = 0; i < set.count(); ++i) {  // bound: points_per_ball_max
-    const Vec3 q = set.position(i) - x;
+  for (const Candidate& candidate : set) {  // bound: points_per_ball_max
+    const Vec3 q = candidate.position - x;
     const float qq = length_squared(q);
     if (!(qq < radius_squared)) {
       continue;
     }
     const float weight = weight_of(qq, inverse_squared);
-    const Vec3 normal = set.normal(i);
-    const float to_own = dot(normal, own);
-    const float to_other = dot(normal, other);
+    const float to_own = dot(candidate.normal, own);
+    const float to_other = dot(candidate.normal, other);
     const bool is_own = to_own >= to_other;
     const float closer = is_own ? to_own : to_other;
     if (!(closer > 0.0F)) {
       continue;
     }
-    (is_own ? faces.own : faces.other).add(q, qq, normal, weight);
+    (is_own ? faces.own : faces.other).add(q, qq, candidate.normal, weight);
+    faces.others += is_own ? 0U : 1U;
     faces.between += closer < kFaceCosine ? weight : 0.0F;
   }
   return faces;
@@ -173,7 +168,7 @@ SurfaceFit solve(const Moments& m, float radius) {
 /// what is inside either. Where the points do not look like two faces, the smooth fit stays.
 SurfaceFit combine(const SurfaceFit& smooth, const Faces& faces, float radius) {
   const float lesser = faces.own.w < faces.other.w ? faces.own.w : faces.other.w;
-  if (faces.other.count < kFacePoints || faces.between > kRoundShare * lesser) {
+  if (faces.others < kFacePoints || faces.between > kRoundShare * lesser) {
     return smooth;
   }
   const SurfaceFit own = solve(faces.own, radius);
@@ -196,82 +191,28 @@ SurfaceFit combine(const SurfaceFit& smooth, const Faces& faces, float radius) {
 
 }  // namespace
 
-void CandidateSet::cover(const BlobView& view, Vec3 x) {
-  if (view.empty()) {
-    count_ = 0;
-    valid_ = false;
-    return;
-  }
-  const float slack = view.reach_m() - view.header().support_radius_m;
-  const Vec3 way = x - centre_;
-  const float squared = length_squared(way);
-  if (valid_ && squared <= slack * slack) {
-    return;
-  }
-  // Ahead of a query that walks: it is then good for twice as long.
-  const bool walks = valid_ && squared <= kStride * slack * (kStride * slack);
-  const Vec3 centre = walks ? x + (kAhead * slack / square_root(squared)) * way : x;
-  gather(view, centre);  // at most: kPlacesPerTick per Proxy::update
-}
-
-void CandidateSet::gather(const BlobView& view, Vec3 centre) {
-  count_ = 0;
-  complete_ = true;
-  centre_ = centre;
-  valid_ = true;
-  most_ = view.header().points_per_ball_max;
-  most_ = most_ < kMaxCandidates ? most_ : kMaxCandidates;
-  unseen_ = view.header().points_per_query_max;
-  const float reach_squared = view.reach_m() * view.reach_m();
-  CornerLeaves corners(view, centre, view.reach_m());
-  corners.each(reach_squared, [&](const NearLeaf& leaf) {
-    gather_leaf(view, corners.leaf(leaf.number, leaf.corner), reach_squared);
-    return reach_squared;
-  });
-}
-
-void CandidateSet::gather_leaf(const BlobView& view, const Leaf& leaf, float reach_squared) {
-  // A blob that holds more than it declares must not make a tick longer than was proven.
-  complete_ = complete_ && leaf.point_count <= unseen_;
-  const std::uint32_t count = leaf.point_count < unseen_ ? leaf.point_count : unseen_;
-  unseen_ -= count;
-  const std::uint32_t end = leaf.first_point + count;
-  // bound: points_per_leaf_max, total points_per_query_max per CandidateSet::gather
-  for (std::uint32_t index = leaf.first_point; index < end; ++index) {
-    const Vec3 position = view.position(leaf, index);
-    if (!(length_squared(position - centre_) <= reach_squared)) {
-      continue;
-    }
-    if (count_ == most_) {
-      complete_ = false;
-      return;
-    }
-    positions_[count_] = position;
-    normals_[count_] = view.normal(index);
-    points_[count_] = index;  // at most: points_per_ball_max per CandidateSet::gather
-    ++count_;
-  }
-}
-
-std::uint32_t nearest_candidate(const CandidateSet& set, Vec3 x, float radius) {
+const Candidate* nearest_candidate(const CandidateSet& set, Vec3 x, float radius) {
   float best = radius * radius;
-  std::uint32_t slot = kNoCandidate;
-  for (std::uint32_t i = 0; i < set.count(); ++i) {  // bound: points_per_ball_max
-    const float squared = length_squared(set.position(i) - x);
+  const Candidate* nearest = nullptr;
+  for (const Candidate& candidate : set) {  // bound: points_per_ball_max
+    const float squared = length_squared(candidate.position - x);
     if (squared < best) {
       best = squared;
-      slot = i;
+      nearest = &candidate;
     }
   }
-  return slot;
+  return nearest;
 }
 
 SurfaceFit fit_surface(const CandidateSet& set, Vec3 x, float radius, Vec3 reference) {
+  // at most: passes per Proxy::update together passes
   const Surroundings around = look_around(set, x, radius, reference);
   SurfaceFit fit = solve(around.face, radius);
-  if (around.crease != kNoCandidate) {
-    const Faces faces = divide(set, x, radius, reference, set.normal(around.crease));
+  if (around.crease != nullptr) {
+    // at most: passes per Proxy::update together passes
+    const Faces faces = divide(set, x, radius, reference, around.crease->normal);
     fit = combine(fit, faces, radius);
+    fit.passes = 2;
   }
   const float all = around.face.w + around.averted;
   fit.facing = all > 0.0F ? around.face.w / all : 1.0F;
@@ -283,14 +224,14 @@ SurfaceProjection project_to_surface(const BlobView& view, Vec3 x, CandidateSet&
   if (surface_support(view) != SurfaceSupport::kOk || !is_finite(x)) {
     return result;
   }
-  const float radius = view.header().support_radius_m;
+  const float radius = view.support_radius_m();
   scratch.clear();
   scratch.cover(view, x);
-  const std::uint32_t nearest = nearest_candidate(scratch, x, radius);
-  if (nearest == kNoCandidate) {
+  const Candidate* const nearest = nearest_candidate(scratch, x, radius);
+  if (nearest == nullptr) {
     return result;
   }
-  const SurfaceFit first = fit_surface(scratch, x, radius, scratch.normal(nearest));
+  const SurfaceFit first = fit_surface(scratch, x, radius, nearest->normal);
   if (!first.firm()) {
     return result;
   }
@@ -317,8 +258,8 @@ SurfaceSupport surface_support(const BlobView& view) {
   if (view.empty()) {
     return SurfaceSupport::kEmpty;
   }
-  const float radius = view.header().support_radius_m;
-  if (!(radius > 0.0F) || !(view.reach_m() >= radius)) {
+  const float radius = view.support_radius_m();
+  if (!(radius > 0.0F) || !(CandidateSet::slack_of(view) > 0.0F)) {
     return SurfaceSupport::kNoReach;
   }
   if (view.header().points_per_ball_max > kMaxCandidates) {

@@ -40,7 +40,8 @@ bound::Bound bound_of(const emulation::BoardDescription& board, const core::Blob
   options.image = built(board, "firmware", board.name);
   options.sources = sources;
   options.entries = bound::tick_entries();
-  options.parameters = bound::parameters_of(view.header(), mode, 1);
+  options.parameters = bound::parameters_of(
+      view.header(), mode, 1, core::DeviceKind::kDelta, core::work_per_tick(1000.0F));
   return bound::worst_case(options);
 }
 
@@ -68,6 +69,13 @@ std::string read_text(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
+/// Flash: the program's, or where the blob is.
+bool touches_flash(const emulation::BoardDescription& board, const emulation::DataRange& range) {
+  constexpr std::uint32_t kRam = 0x20000000U;
+  const std::uint32_t blob_end = board.blob_address + board.blob_bytes_max;
+  return range.lowest < kRam || (range.highest >= board.blob_address && range.lowest < blob_end);
+}
+
 class Proof : public OnBoard {
  protected:
   void expect_all_analysed(const bound::Bound& bound,
@@ -77,6 +85,19 @@ class Proof : public OnBoard {
       EXPECT_TRUE(analysed(bound, range)) << std::hex << "executed, but not analysed: within "
                                           << range.begin << " .. " << range.end;
     }
+  }
+  // What the sources call RAM is none of the blob or the program.
+  void expect_in_ram(const bound::Bound& bound, const std::vector<emulation::DataRange>& data) {
+    std::size_t seen = 0;
+    for (const emulation::DataRange& range : data) {
+      if (bound.in_ram.contains(range.instruction)) {
+        ++seen;
+        EXPECT_FALSE(touches_flash(board(), range))
+            << std::hex << "said to use RAM, but at " << range.instruction << " uses "
+            << range.lowest << " .. " << range.highest;
+      }
+    }
+    EXPECT_GT(seen, 0U);
   }
 };
 INSTANTIATE_TEST_SUITE_P(Boards, Proof, testing::ValuesIn(proven_boards()), name_of_board);
@@ -108,6 +129,7 @@ TEST_P(Proof, SeekingFindsNoTickBeyondTheBound) {
                                    core::RenderMode::kSurface, 1);
     EXPECT_LE(found.instructions, bound.instructions);
     expect_all_analysed(bound, found.code);
+    expect_in_ram(bound, found.data);
     const double share =
         static_cast<double>(found.instructions) / static_cast<double>(bound.instructions);
     reached = std::max(reached, share);
@@ -130,6 +152,7 @@ TEST_P(Proof, HoldsInPaperMode) {
                                    core::RenderMode::kPaper, 1);
     EXPECT_LE(found.instructions, bound.instructions);
     expect_all_analysed(bound, found.code);
+    expect_in_ram(bound, found.data);
   }
 }
 
@@ -156,6 +179,7 @@ TEST_P(Proof, HoldsForEveryDevice) {
     EXPECT_GT(counts.ticks, 300U) << device.name;
     EXPECT_LE(counts.max, bound.instructions) << device.name;
     expect_all_analysed(bound, counts.code);
+    expect_in_ram(bound, counts.data);
   }
 }
 
@@ -174,9 +198,10 @@ core::TickFigures some_figures(std::mt19937& random) {
     return std::uniform_int_distribution<std::uint32_t>(0, largest)(random);
   };
   return {any(most.points_per_ball_max), any(most.points_per_query_max),
-          any(most.points_per_leaf_max), any(most.depth),
-          any(most.levels_below),        any(most.blended_points),
-          any(most.blended_materials)};
+          any(most.points_per_slab_max), any(most.points_per_leaf_max),
+          any(most.depth),               any(most.levels_below),
+          any(most.blended_points),      any(most.blended_materials),
+          any(most.delta)};
 }
 
 TEST_P(Proof, TheFormulaIsNeverLessThanTheBound) {
@@ -185,13 +210,13 @@ TEST_P(Proof, TheFormulaIsNeverLessThanTheBound) {
   std::mt19937 random(5);
   for (std::uint32_t kind = 0; kind < core::kTickKinds; ++kind) {
     for (std::uint32_t bodies = 1; bodies <= core::kMaxReachableBodies; ++bodies) {
-      for (int i = 0; i < 4; ++i) {
+      for (std::uint32_t pace = 0; pace < core::kPaces; ++pace) {
         const core::TickFigures figures = some_figures(random);
-        options.parameters =
-            bound::parameters_of(figures, static_cast<core::TickKind>(kind), bodies);
-        EXPECT_GE(core::cycles_of(costs.of[kind][bodies - 1], figures),
+        options.parameters = bound::parameters_of(figures, static_cast<core::TickKind>(kind),
+                                                  bodies, core::kWorkPerTick[pace]);
+        EXPECT_GE(core::cycles_of(costs.of[kind][pace][bodies - 1], figures),
                   bound::worst_case(options).cycles)
-            << "kind " << kind << ", " << bodies << " bodies";
+            << "kind " << kind << ", pace " << pace << ", " << bodies << " bodies";
       }
     }
   }
@@ -200,10 +225,13 @@ TEST_P(Proof, TheFormulaIsNeverLessThanTheBound) {
 TEST_P(Proof, TheFormulaIsCloseForAModelOfAScan) {
   const core::BlobHeader& header = touched_shape().view().header();
   bound::BoundOptions options = in_cycles(board());
-  options.parameters = bound::parameters_of(header, core::RenderMode::kSurface, 1);
+  core::Configuration configuration;
+  options.parameters =
+      bound::parameters_of(header, configuration.mode, 1, configuration.device.kind,
+                           core::work_per_tick(configuration.rate_hz));
   const auto exact = static_cast<double>(bound::worst_case(options).cycles);
   core::TickLoad load;
-  load.add(header, core::RenderMode::kSurface);
+  load.add(header, configuration);
   const auto formula = static_cast<double>(core::cycles_of(bound::tick_costs(options), load));
   EXPECT_GE(formula, exact);
   EXPECT_LE(formula, 1.03 * exact);
@@ -241,9 +269,12 @@ TEST_P(Proof, ABoardThatKnowsItsCostsRefusesARateItCannotKeep) {
   ASSERT_EQ(std::system((TACTREE_SOURCES "/scripts/seal-image " + image.string()).c_str()), 0);
 
   core::TickLoad load;
-  load.add(touched_shape().view().header(), core::RenderMode::kSurface);
-  const double highest =
-      options.timing->clock_hz / static_cast<double>(core::cycles_of(bound::embedded(image), load));
+  load.add(touched_shape().view().header(), {});
+  bound::PaceCycles cycles{};
+  for (load.pace = 0; load.pace < core::kPaces; ++load.pace) {
+    cycles[load.pace] = static_cast<double>(core::cycles_of(bound::embedded(image), load));
+  }
+  const double highest = bound::highest_rate(options.timing->clock_hz, cycles);
   std::printf("%s: highest rate admitted %.0f Hz\n", board().name, highest);
   const hal::StartResult refused = start_at(board(), image, 1.01 * std::max(highest, 100.0));
   EXPECT_EQ(refused.model, core::ModelStatus::kTooSlow) << core::describe(refused.configuration);

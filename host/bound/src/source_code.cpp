@@ -206,7 +206,7 @@ class Reader {
   }
 
   [[nodiscard]] Total read_total(std::string_view& text, std::uint32_t line) const {
-    Total total{Expression::read(text, place(line)), {}};
+    Total total{Expression::read(text, place(line)), {}, {}};
     static constexpr std::string_view kPer = " per ";
     if (!text.starts_with(kPer)) {
       throw BoundError(place(line) + ": 'per FUNCTION' is missing (say what it is counted in)");
@@ -215,7 +215,19 @@ class Reader {
     const std::size_t end = std::min(text.find_first_of(" ;("), text.size());
     total.function = text.substr(0, end);
     text.remove_prefix(end);
+    total.together = read_word(text, " together ");
     return total;
+  }
+
+  /// The word that follows `before`; empty: something else follows.
+  static std::string read_word(std::string_view& text, std::string_view before) {
+    if (!text.starts_with(before)) {
+      return {};
+    }
+    text.remove_prefix(before.size());
+    const std::string_view word = text.substr(0, text.find_first_of(" ;("));
+    text.remove_prefix(word.size());
+    return std::string(word);
   }
 
   // So that "2 nodes" is not read as 2.
@@ -244,6 +256,7 @@ class Reader {
 
   void read_facts() {
     for (std::uint32_t line = 1; line <= lines_.size(); ++line) {
+      file_.in_ram = file_.in_ram || lines_[line - 1] == "// memory: RAM";
       std::string_view text = said(line, "at most:");
       if (!text.empty()) {
         SourceFact fact{name_, line, read_total(text, line)};

@@ -20,6 +20,7 @@ namespace tactree::bound {
 struct Total {
   Expression at_most;
   std::string function;  ///< qualified, without the outermost namespaces: Proxy::update
+  std::string together;  ///< statements with the same name here are counted together; empty: alone
 };
 
 struct SourceLoop {
@@ -50,6 +51,8 @@ struct SourceArgument {
 };
 
 struct SourceFile {
+  /// All that its code loads and stores is in RAM, but for constants beside the code.
+  bool in_ram = false;
   std::vector<SourceLoop> loops;
   std::vector<SourceArgument> arguments;
   std::vector<SourceFact> facts;

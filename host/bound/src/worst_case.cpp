@@ -51,18 +51,32 @@ struct Analysis {
 constexpr double kEntryCycles = 2.0 * (12.0 + 17.0);
 constexpr double kEntryWords = 2.0 * 26.0;
 
-double cycles_of(const BoardTiming& timing, const ControlFlow& flow, const Block& block) {
-  const Instruction& first = flow.instructions[block.first];
-  double cycles = 0.0;
-  for (std::uint32_t i = 0; i < block.count; ++i) {
-    const Instruction& instruction = flow.instructions[block.first + i];
-    cycles += instruction.cycles + timing.stack_wait * instruction.stack_words +
-              timing.data_wait * instruction.other_words;
+/// Lines of code, by their numbers.
+using CodeLines = std::set<std::uint32_t>;
+
+void add_lines(const BoardTiming& timing, const ControlFlow& flow, const Block& block,
+               CodeLines& lines) {
+  if (block.count == 0) {
+    return;
   }
   const Instruction& last = flow.instructions[block.first + block.count - 1];
-  const std::uint32_t lines =
-      (last.address + last.bytes - 1) / timing.line_bytes - first.address / timing.line_bytes + 1;
-  return cycles + timing.fetch_wait * lines;
+  const std::uint32_t end = (last.address + last.bytes - 1) / timing.line_bytes;
+  for (std::uint32_t line = flow.instructions[block.first].address / timing.line_bytes; line <= end;
+       ++line) {
+    lines.insert(line);
+  }
+}
+
+/// Does the source say so of the instruction, or of what it is inlined into?
+bool is_in_ram(const Analysis& analysis, const Instruction& instruction) {
+  if (instruction.literal || instruction.other_words == 0) {
+    return false;
+  }
+  const auto& places = analysis.program.lines().at(instruction.address);
+  return std::any_of(places.begin(), places.end(), [&](const Place& place) {
+    const SourceFile* const file = analysis.sources.find(place.file);
+    return file != nullptr && file->in_ram;
+  });
 }
 
 class Model;
@@ -223,6 +237,8 @@ class Model {
   struct FunctionVariables {
     int entry = 0;
     std::map<Edge, int> edges;
+    std::vector<std::optional<std::uint32_t>> kept_by;  ///< of each block: the loop below
+    std::map<std::uint32_t, double> fetch;  ///< of loops that the cache holds: cycles, once
   };
 
   [[nodiscard]] const AnalysedFunction& function(std::uint32_t entry) const {
@@ -262,10 +278,12 @@ class Model {
   void add_function(std::uint32_t entry) {
     const ControlFlow& flow = function(entry).flow;
     FunctionVariables& own = variables_[entry];
-    own.entry = program_.add_variable(gain_of(entry, 0));
+    keep_loops(flow, own);
+    own.entry = program_.add_variable(gain_of(entry, 0) + fetch_on_entry(own, std::nullopt, 0));
     for (std::uint32_t b = 0; b < flow.blocks.size(); ++b) {
       for (const std::uint32_t next : flow.blocks[b].next) {
-        own.edges[{b, next}] = program_.add_variable(gain_of(entry, next));
+        own.edges[{b, next}] =
+            program_.add_variable(gain_of(entry, next) + fetch_on_entry(own, b, next));
       }
     }
     for (std::uint32_t b = 0; b < flow.blocks.size(); ++b) {
@@ -276,18 +294,106 @@ class Model {
   /// Instructions of one pass of a block, those of a call with constant arguments included.
   double gain_of(std::uint32_t entry, std::uint32_t b) {
     const Block& block = function(entry).flow.blocks[b];
-    double gain = cost_of(function(entry).flow, block);
+    double gain = cost_of(entry, b);
     if (calls_one_that_returns(block) && !shares_callee(block)) {
       gain += call_with_arguments(entry, b).cost;
     }
     return gain;
   }
 
-  [[nodiscard]] double cost_of(const ControlFlow& flow, const Block& block) const {
+  [[nodiscard]] double cost_of(std::uint32_t entry, std::uint32_t b) const {
+    const ControlFlow& flow = function(entry).flow;
+    const Block& block = flow.blocks[b];
     if (analysis_.timing == nullptr || block.count == 0) {
       return block.count;
     }
-    return cycles_of(*analysis_.timing, flow, block);
+    const bool is_kept = variables_.at(entry).kept_by[b].has_value();
+    return cycles_of(flow, block) + (is_kept ? 0.0 : fetch_of(flow, block));
+  }
+
+  /// Words that an instruction loads from the slowest memory. Nothing is stored there.
+  [[nodiscard]] std::uint32_t slow_words(const Instruction& instruction) const {
+    const bool is_fast = instruction.store || is_in_ram(analysis_, instruction);
+    return is_fast ? 0U : instruction.other_words;
+  }
+
+  /// Of one pass of a block, but for its fetch.
+  [[nodiscard]] double cycles_of(const ControlFlow& flow, const Block& block) const {
+    const BoardTiming& timing = *analysis_.timing;
+    double cycles = 0.0;
+    for (std::uint32_t i = 0; i < block.count; ++i) {
+      const Instruction& instruction = flow.instructions[block.first + i];
+      const std::uint32_t slow = slow_words(instruction);
+      cycles += instruction.cycles + timing.data_wait * slow +
+                timing.ram_wait * (instruction.stack_words + instruction.other_words - slow);
+    }
+    return cycles;
+  }
+
+  // The next line is fetched while the instructions of this one are executed, unless one of them
+  // needs the flash itself.
+  [[nodiscard]] double fetch_of(const ControlFlow& flow, const Block& block) const {
+    const BoardTiming& timing = *analysis_.timing;
+    std::uint32_t line = flow.instructions[block.first].address / timing.line_bytes;
+    double wait = timing.fetch_wait;
+    double hidden = 0.0;
+    for (std::uint32_t i = 0; i < block.count; ++i) {
+      const Instruction& instruction = flow.instructions[block.first + i];
+      const std::uint32_t end = (instruction.address + instruction.bytes - 1) / timing.line_bytes;
+      if (end != line) {
+        line = end;
+        wait += timing.fetch_wait - std::clamp<double>(hidden, 0.0, timing.fetch_wait);
+        hidden = 0.0;
+      }
+      const bool disturbs = !timing.prefetches || slow_words(instruction) > 0;
+      hidden = disturbs ? -1e9 : hidden + 1.0;
+    }
+    return wait;
+  }
+
+  // Code that is used again and again stays where the lines used last do, when the loop and all that
+  // it calls have room there: each line is fetched once, each time the loop is entered.
+  void keep_loops(const ControlFlow& flow, FunctionVariables& own) const {
+    own.kept_by.resize(flow.blocks.size());
+    if (analysis_.timing == nullptr) {
+      return;
+    }
+    for (std::uint32_t i = 0; i < flow.loops.size(); ++i) {  // outer loops come first
+      const Loop& loop = flow.loops[i];
+      if (own.kept_by[loop.header]) {
+        continue;
+      }
+      CodeLines lines;
+      for (const std::uint32_t b : loop.blocks) {
+        add_lines(*analysis_.timing, flow, flow.blocks[b], lines);
+        if (flow.blocks[b].calls) {
+          add_callee(*flow.blocks[b].calls, lines);
+        }
+      }
+      if (lines.size() <= analysis_.timing->cache_lines) {
+        own.fetch[i] = analysis_.timing->fetch_wait * static_cast<double>(lines.size());
+        for (const std::uint32_t b : loop.blocks) {
+          own.kept_by[b] = i;
+        }
+      }
+    }
+  }
+
+  void add_callee(std::uint32_t entry, CodeLines& lines) const {
+    const ControlFlow& flow = function(entry).flow;
+    for (const Block& block : flow.blocks) {
+      add_lines(*analysis_.timing, flow, block, lines);
+      if (block.calls) {
+        add_callee(*block.calls, lines);
+      }
+    }
+  }
+
+  static double fetch_on_entry(const FunctionVariables& own, std::optional<std::uint32_t> from,
+                               std::uint32_t to) {
+    const std::optional<std::uint32_t> loop = own.kept_by[to];
+    const bool enters = loop && (!from || own.kept_by[*from] != loop);
+    return enters ? own.fetch.at(*loop) : 0.0;
   }
 
   /// A constant; or what this function itself was called with; or what the source says.
@@ -534,17 +640,41 @@ class Model {
     }
   }
 
+  /// Statements that are counted together, and what they come to.
+  struct Group {
+    const SourceFact* first = nullptr;
+    Terms terms;
+  };
+
   void limit_facts() {
+    std::map<std::pair<std::string, std::string>, Group> groups;  // by function and name
     for (const auto& [name, file] : analysis_.sources.files()) {
       for (const SourceFact& fact : file.facts) {
-        limit_fact(fact);
+        limit_fact(fact, groups);
       }
     }
+    for (const auto& [name, group] : groups) {
+      const SourceFact& fact = *group.first;
+      limit_total(group.terms, fact.total, fact.file, fmt::format("{}:{}", fact.file, fact.line));
+    }
+  }
+
+  static void join(Group& group, const SourceFact& fact, const Terms& terms) {
+    if (group.first != nullptr && group.first->total.at_most.text() != fact.total.at_most.text()) {
+      throw BoundError(fmt::format("{}:{}: '{}', but '{}' in {}:{}, with which it is counted (make "
+                                   "them equal)",
+                                   fact.file, fact.line, fact.total.at_most.text(),
+                                   group.first->total.at_most.text(), group.first->file,
+                                   group.first->line));
+    }
+    group.first = &fact;
+    add(group.terms, terms);
   }
 
   // A statement's calls and stores are executed no more often than it is, wherever the compiler has
   // put its other instructions.
-  void limit_fact(const SourceFact& fact) {
+  void limit_fact(const SourceFact& fact,
+                  std::map<std::pair<std::string, std::string>, Group>& groups) {
     std::map<std::uint32_t, Terms> calls;  // by callee: one statement may call several
     Terms stores;
     for (const auto& [entry, own] : variables_) {
@@ -564,10 +694,14 @@ class Model {
       held_.insert(&fact);
     }
     if (calls.empty() && !stores.empty()) {
-      limit_total(stores, fact.total, fact.file, where);
+      calls[0] = stores;
     }
     for (const auto& [callee, terms] : calls) {
-      limit_total(terms, fact.total, fact.file, where);
+      if (fact.total.together.empty()) {
+        limit_total(terms, fact.total, fact.file, where);
+      } else {
+        join(groups[{fact.total.function, fact.total.together}], fact, terms);
+      }
     }
   }
 
@@ -732,7 +866,15 @@ class Task {
   }
 
   [[nodiscard]] Bound instructions(const Parameters& parameters) {
-    Bound bound = to_bound(sources_, solve(analysis(parameters, {}, nullptr), entries_, {}));
+    const Analysis all = analysis(parameters, {}, nullptr);
+    Bound bound = to_bound(sources_, solve(all, entries_, {}));
+    for (const auto& [entry, function] : program_->functions()) {
+      for (const Instruction& instruction : function.flow.instructions) {
+        if (is_in_ram(all, instruction)) {
+          bound.in_ram.insert(instruction.address);
+        }
+      }
+    }
     for (const std::uint32_t entry : program_->endings()) {
       bound.endings.push_back({entry, image_.functions().at(entry).end, 0, 0.0});
     }
@@ -758,8 +900,10 @@ class Task {
     return {image_, sources_, *program_, parameters, inlined_, open, timing};
   }
 
+  // What is entered meanwhile may put every line out of the cache.
   [[nodiscard]] double entering(const BoardTiming& timing) const {
-    return times_ * (kEntryCycles + kEntryWords * timing.stack_wait);
+    return times_ * (kEntryCycles + kEntryWords * timing.ram_wait +
+                     static_cast<double>(timing.cache_lines) * timing.fetch_wait);
   }
 
   Image image_;
@@ -771,11 +915,11 @@ class Task {
 };
 
 /// A typical model: what the prices are made with.
-core::TickFigures usual_figures() { return {46, 270, 50, 7, 3, 46, 4}; }
+core::TickFigures usual_figures() { return {46, 270, 170, 50, 7, 3, 46, 4, 0}; }
 
 Parameters open_parameters() {
-  Parameters open = parameters_of(largest_figures(), core::TickKind::kSurface, 1);
-  for (const char* fixed : {"bodies", "mixed", "paper"}) {
+  Parameters open = parameters_of(largest_figures(), core::TickKind::kSurface, 1, {});
+  for (const char* fixed : {"bodies", "mixed", "paper", "gathers", "passes"}) {
     open.erase(fixed);
   }
   return open;
@@ -804,6 +948,31 @@ Bound worst_case(const BoundOptions& options) {
   return bound;
 }
 
+PaceCycles cycles_by_pace(const BoundOptions& options) {
+  Task task(options);
+  PaceCycles cycles{};
+  for (std::uint32_t pace = 0; pace < core::kPaces; ++pace) {
+    Parameters parameters = options.parameters;
+    parameters["gathers"] = core::kWorkPerTick[pace].gathers;
+    parameters["passes"] = core::kWorkPerTick[pace].passes;
+    cycles[pace] = static_cast<double>(task.cycles(parameters, *options.timing));
+  }
+  return cycles;
+}
+
+double highest_rate(double clock_hz, const PaceCycles& cycles) {
+  double below = clock_hz;
+  for (std::uint32_t pace = core::kPaces; pace-- > 0;) {
+    const double rate = std::min(clock_hz / cycles[pace], below);
+    const double lowest = static_cast<double>(core::kPaceRates[pace]);
+    if (rate >= lowest) {
+      return rate;
+    }
+    below = lowest - 1.0;
+  }
+  return 0.0;
+}
+
 core::TickCosts tick_costs(const BoundOptions& options) {
   if (options.timing == nullptr) {
     throw BoundError(options.image.string() + ": costs need a board's timing (say which board)");
@@ -812,11 +981,15 @@ core::TickCosts tick_costs(const BoundOptions& options) {
   core::TickCosts costs;
   costs.known = core::kTickCostsKnown;
   for (std::uint32_t kind = 0; kind < core::kTickKinds; ++kind) {
-    for (std::uint32_t row = 0; row < core::kMaxReachableBodies; ++row) {
-      const bool is_last = row + 1 == core::kMaxReachableBodies;
-      const Parameters parameters = parameters_of(
-          usual_figures(), static_cast<core::TickKind>(kind), is_last ? core::kMaxBodies : row + 1);
-      costs.of[kind][row] = to_cost(task.formula(parameters, open_parameters(), *options.timing));
+    for (std::uint32_t pace = 0; pace < core::kPaces; ++pace) {
+      for (std::uint32_t row = 0; row < core::kMaxReachableBodies; ++row) {
+        const bool is_last = row + 1 == core::kMaxReachableBodies;
+        const Parameters parameters =
+            parameters_of(usual_figures(), static_cast<core::TickKind>(kind),
+                          is_last ? core::kMaxBodies : row + 1, core::kWorkPerTick[pace]);
+        costs.of[kind][pace][row] =
+            to_cost(task.formula(parameters, open_parameters(), *options.timing));
+      }
     }
   }
   return costs;
@@ -857,22 +1030,28 @@ core::TickCosts embedded(const std::filesystem::path& image) {
 }
 
 Parameters parameters_of(const core::TickFigures& figures, core::TickKind kind,
-                         std::uint32_t bodies) {
-  return {{"points_per_ball_max", figures.points_per_ball_max},
+                         std::uint32_t bodies, core::SurfaceWork work) {
+  return {{"gathers", work.gathers},
+          {"passes", work.passes},
+          {"points_per_ball_max", figures.points_per_ball_max},
           {"points_per_query_max", figures.points_per_query_max},
+          {"points_per_slab_max", figures.points_per_slab_max},
           {"points_per_leaf_max", figures.points_per_leaf_max},
           {"depth", figures.depth},
           {"levels_below", figures.levels_below},
           {"blended_points", figures.blended_points},
           {"blended_materials", figures.blended_materials},
+          {"delta", figures.delta},
           {"bodies", bodies},
           {"mixed", kind == core::TickKind::kSurface ? 0 : 1},
           {"paper", kind == core::TickKind::kPaper ? 1 : 0}};
 }
 
 Parameters parameters_of(const core::BlobHeader& header, core::RenderMode mode,
-                         std::uint32_t bodies) {
-  return parameters_of(core::tick_figures(header), core::tick_kind(header, mode), bodies);
+                         std::uint32_t bodies, core::DeviceKind device,
+                         core::SurfaceWork work) {
+  return parameters_of(core::tick_figures(header, device), core::tick_kind(header, mode), bodies,
+                       work);
 }
 
 core::TickFigures largest_figures() {
@@ -882,7 +1061,8 @@ core::TickFigures largest_figures() {
   header.points_per_leaf_max = core::kMaxCandidates;
   header.points_per_ball_max = core::kMaxCandidates;
   header.points_per_query_max = core::kLeavesPerQuery * core::kMaxCandidates;
-  return core::tick_figures(header);
+  header.points_per_slab_max = header.points_per_query_max;
+  return core::tick_figures(header, core::DeviceKind::kDelta);
 }
 
 }  // namespace tactree::bound

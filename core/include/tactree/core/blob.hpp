@@ -70,6 +70,7 @@ class BlobView {
   [[nodiscard]] float cells_and_one() const { return cells_and_one_; }
   /// Largest radius for which a query is exact.
   [[nodiscard]] float reach_m() const { return reach_m_; }
+  [[nodiscard]] float support_radius_m() const { return support_radius_m_; }
 
   /// True in the surface profile: every leaf is of the deepest level, and a node is one word, the
   /// group of its children: leaves below a node of level depth() - 1, else nodes.
@@ -138,6 +139,7 @@ class BlobView {
   float step_m_ = 0.0F;
   float inverse_step_ = 0.0F;
   float reach_m_ = 0.0F;
+  float support_radius_m_ = 0.0F;
   float leaf_edge_m_ = 0.0F;
   float inverse_leaf_edge_ = 0.0F;
   float cells_and_one_ = 0.0F;
@@ -147,6 +149,23 @@ class BlobView {
   std::uint32_t leaf_group_shift_ = 0;
   bool uniform_ = false;
 };
+
+// Octahedral map: Meyer, Suessmuth, Sussner and Stamminger, "On Floating-Point Normal Vectors",
+// Eurographics Symposium on Rendering 2010.
+inline Vec3 BlobView::normal(std::uint32_t index) const {
+  const std::uint32_t code = static_cast<std::uint32_t>(normals_[index]) | (points_[index] & 3U)
+                                                                               << 16;
+  const float u = static_cast<float>(static_cast<std::int32_t>(code & 511U) - 255);
+  const float v = static_cast<float>(static_cast<std::int32_t>(code >> 9) - 255);
+  const float w = 255.0F - absolute(u) - absolute(v);
+  Vec3 n{u, v, w};
+  if (w < 0.0F) {
+    const float fold = -w;
+    n.x += u < 0.0F ? fold : -fold;
+    n.y += v < 0.0F ? fold : -fold;
+  }
+  return (1.0F / length(n)) * n;
+}
 
 /// Checks `bytes` and, when all is well, points `view` at them; else `view` becomes empty.
 /// After kOk no query can read outside `bytes`, whatever they hold, as long as they do not change.

@@ -19,6 +19,13 @@ struct CodeRange {
   std::uint32_t end = 0;
 };
 
+/// What an instruction loaded or stored: the lowest and the highest address.
+struct DataRange {
+  std::uint32_t instruction = 0;
+  std::uint32_t lowest = 0;
+  std::uint32_t highest = 0;
+};
+
 /// Instructions from the tick's interrupt until the board idles again.
 struct InstructionCounts {
   std::uint64_t start = 0;  ///< from reset to the first tick: checking the blob
@@ -29,6 +36,7 @@ struct InstructionCounts {
   std::uint32_t checksum = 0;            ///< over the count of every tick: runs alike have it alike
   std::vector<FunctionCount> functions;  ///< the costliest first
   std::vector<CodeRange> code;           ///< executed in ticks, where that was asked for
+  std::vector<DataRange> data;           ///< likewise
   [[nodiscard]] double mean() const {
     return ticks == 0 ? 0.0 : static_cast<double>(total) / static_cast<double>(ticks);
   }
