@@ -283,9 +283,8 @@ class BlobValidator {
     if ((node_mask & leaf_mask) != 0 || (node_mask | leaf_mask) == 0) return false;
     if (!take_group(node.nodes, header_->node_count, seen.nodes)) return false;
     if (!take_group(node.leaves, header_->leaf_count, seen.leaves)) return false;
-    if (leaf_mask == 0) return true;
-    if (level + 1 > seen.depth) seen.depth = level + 1;
-    return level + 1 == header_->depth || !is_surface();
+    if (leaf_mask != 0 && level + 1 > seen.depth) seen.depth = level + 1;
+    return true;
   }
 
   // Entry by entry what a walk from the root finds.

@@ -440,6 +440,7 @@ void Controller::confirm(const Input& input, bool was_armed) {
 void Controller::happen(Event event) {
   const State before = state_;
   state_ = next_state(before, event);
+  inverse_ = inverse_of(next_state(before, event));
   if (state_ == State::kFault && before != State::kFault && event != Event::kFault) {
     present_ |= fault_bit(Fault::kUnexpectedEvent);
     latched_ |= fault_bit(Fault::kUnexpectedEvent);

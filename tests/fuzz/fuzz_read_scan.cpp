@@ -1,48 +1,18 @@
 // Whatever a file holds, read_scan() gives a usable scan or throws ReadError; it never takes more
 // memory than it may. Meshes for the import process are left out: a process a file is too slow.
 
-#include <sys/mman.h>
-#include <unistd.h>
-
-#include <cstdio>
-#include <cstdlib>
-#include <filesystem>
-#include <string>
+#include <algorithm>
 #include <string_view>
 
+#include "memory_file.hpp"
 #include "recognise.hpp"
 #include "tactree/builder/read_scan.hpp"
 
 namespace {
 
 using namespace tactree::builder;
-
-void require(bool good, const char* sentence) {
-  if (!good) {
-    std::fprintf(stderr, "finding: %s\n", sentence);
-    std::abort();
-  }
-}
-
-/// A file that is only in memory.
-class MemoryFile {
- public:
-  MemoryFile(const std::uint8_t* data, std::size_t size)
-      : descriptor_(::memfd_create("scan", MFD_CLOEXEC)) {
-    require(descriptor_ >= 0, "no file in memory can be made");
-    require(::write(descriptor_, data, size) == static_cast<ssize_t>(size), "it cannot be written");
-  }
-  ~MemoryFile() { ::close(descriptor_); }
-  MemoryFile(const MemoryFile&) = delete;
-  MemoryFile& operator=(const MemoryFile&) = delete;
-
-  [[nodiscard]] std::filesystem::path path() const {
-    return "/proc/self/fd/" + std::to_string(descriptor_);
-  }
-
- private:
-  int descriptor_;
-};
+using tactree::fuzz::MemoryFile;
+using tactree::fuzz::require;
 
 void examine(const Scan& scan) {
   require(!scan.positions.empty(), "a scan without points");

@@ -2,7 +2,12 @@
 //   open_blob/<status>.<what>   small blobs, valid and with one rule broken; all but the unsealed
 //                               ones have a right checksum
 //   read_scan/<what>            a few points in every format that is read in-process
+//   read_device, read_firmware, read_materials, read_rows, read_scene
+//                               accepted files, and texts of options
 
+#include <elf.h>
+
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdio>
@@ -15,8 +20,11 @@
 #include <string>
 #include <vector>
 
+#include "device_file.hpp"
 #include "tactree/builder/model.hpp"
 #include "tactree/core/blob.hpp"
+#include "tactree/core/crc32.hpp"
+#include "tactree/simulation/injection.hpp"
 #include "wire_seeds.hpp"
 
 namespace {
@@ -252,6 +260,78 @@ void write_scans(const fs::path& folder) {
   write(folder / "stl_binary", stl_binary());
 }
 
+void write_devices(const fs::path& folder) {
+  for (const std::string& name : tactree::cli::device_names()) {
+    write(folder / name, tactree::cli::device_json(tactree::cli::load_device(name)));
+  }
+}
+
+// One segment behind the headers; the identity ends it (firmware/runtime/identity.hpp).
+void write_firmware(const fs::path& folder) {
+  constexpr std::uint32_t kCode = 0x08000000;
+  std::string code(256, '\x42');
+  code += std::string("TACTIMG\0", 8) + "board" + std::string(19, '\0');
+  for (const std::uint32_t word : {kCode, kCode + 0x10000, kCode + 0x20000, kCode + 0x40000, 0U}) {
+    append(code, word);
+  }
+  append(code, tactree::core::crc32(std::as_bytes(std::span(code))));
+  for (const int machine : {EM_ARM, EM_RISCV}) {
+    Elf32_Ehdr header{};
+    std::memcpy(header.e_ident, ELFMAG, SELFMAG);
+    header.e_ident[EI_CLASS] = ELFCLASS32;
+    header.e_ident[EI_DATA] = ELFDATA2LSB;
+    header.e_type = ET_EXEC;
+    header.e_machine = static_cast<Elf32_Half>(machine);
+    header.e_phoff = sizeof header;
+    header.e_phentsize = sizeof(Elf32_Phdr);
+    header.e_phnum = 1;
+    Elf32_Phdr segment{};
+    segment.p_type = PT_LOAD;
+    segment.p_offset = sizeof header + sizeof segment;
+    segment.p_paddr = kCode;
+    segment.p_filesz = static_cast<Elf32_Word>(code.size());
+    std::string file;
+    append(file, header);
+    append(file, segment);
+    write(folder / (machine == EM_ARM ? "arm" : "riscv"), file + code);
+  }
+}
+
+void write_materials(const fs::path& folder) {
+  const std::string steel =
+      R"("stiffness_N_m": 800, "damping_Ns_m": 1.5, "static_friction": 0.5, "dynamic_friction": 0.4,)"
+      R"( "texture_height_m": 1e-4, "texture_wavelength_m": 2e-3)";
+  write(folder / "one", "{" + steel + "}");
+  write(folder / "colours", "{\"default\": {" + steel +
+                                "}, \"colours\": [{\"name\": \"felt\", \"rgb\": [255, 0, 0], "
+                                "\"tolerance\": 30, \"stiffness_N_m\": 200}]}");
+  write(folder / "option", std::string("=800,damping=1.5,static=0.5,dynamic=0.4,") +
+                               "texture_height=1e-4,texture_wavelength=2e-3");
+}
+
+void write_rows(const fs::path& folder) {
+  write(folder / "points", "x,y,z\n# a remark\n0.1,0.2,0.3\n1e-3;2;+3\n\n");
+  write(folder / "path", "t_s,x,y,z\n0,0,0,0.01\n0.2,0,0,-0.002\n1 0 0 -0.002\n");
+  for (const auto& kind : tactree::simulation::injection_kinds()) {
+    std::string text(kind.name);
+    const std::size_t value = text.find('=');
+    text = (value == std::string::npos ? text : text.substr(0, value) + "=2") + "@1s..1.5s";
+    std::string name = text;
+    std::replace(name.begin(), name.end(), ':', '_');
+    write(folder / name, text);
+  }
+}
+
+void write_scenes(const fs::path& folder) {
+  const std::string pose = "[1,0,0,0.1, 0,1,0,0, 0,0,1,0, 0,0,0,1]";
+  write(folder / "moving", R"({"bodies": [{"blob": 0, "pose": )" + pose +
+                               R"(, "linear_velocity_m_s": [0, 0, 0.01],)"
+                               R"( "angular_velocity_rad_s": [0, 0, 1]}]})");
+  write(folder / "keyframes",
+        R"({"bodies": [{"blob": 0}, {"blob": "a.blob", "keyframes": [{"t_s": 0, "pose": )" + pose +
+            R"(}, {"t_s": 2, "pose": )" + pose + R"(}], "from_s": 1, "until_s": 3}]})");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -263,12 +343,20 @@ int main(int argc, char** argv) {
     const fs::path folder = argv[1];
     fs::remove_all(folder);
     fs::create_directories(folder / "open_blob");
-    fs::create_directories(folder / "read_scan");
+    for (const char* name : {"read_scan", "read_device", "read_firmware", "read_materials",
+                             "read_rows", "read_scene"}) {
+      fs::create_directories(folder / name);
+    }
     write_valid_blobs(folder / "open_blob");
     write_broken_blobs(folder / "open_blob");
     write_scans(folder / "read_scan");
     fs::create_directories(folder / "wire_session");
     write_wire_sessions(folder / "wire_session");
+    write_devices(folder / "read_device");
+    write_firmware(folder / "read_firmware");
+    write_materials(folder / "read_materials");
+    write_rows(folder / "read_rows");
+    write_scenes(folder / "read_scene");
   } catch (const std::exception& error) {
     std::fprintf(stderr, "make_seeds: %s\n", error.what());
     return 1;

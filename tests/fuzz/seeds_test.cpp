@@ -10,8 +10,14 @@
 #include <string>
 #include <vector>
 
+#include "csv_points.hpp"
+#include "device_file.hpp"
+#include "firmware_image.hpp"
+#include "material_file.hpp"
+#include "scene_file.hpp"
 #include "tactree/builder/read_scan.hpp"
 #include "tactree/core/blob.hpp"
+#include "tactree/simulation/injection.hpp"
 
 namespace {
 
@@ -46,6 +52,32 @@ TEST(Seeds, BlobsAreAcceptedOrRefusedAsNamed) {
   }
   // Every rule but the alignment, which no file can break.
   EXPECT_EQ(seen.size(), static_cast<std::size_t>(BlobStatus::kBadMaterials));
+}
+
+std::vector<fs::path> seeds_of(const char* target) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(fs::path(TACTREE_SEEDS) / target)) {
+    files.push_back(entry.path());
+  }
+  return files;
+}
+
+TEST(Seeds, TheFilesOfTheCommandLineAreRead) {
+  for (const fs::path& file : seeds_of("read_device")) {
+    EXPECT_NO_THROW((void)tactree::cli::load_device(file.string())) << file;
+  }
+  for (const fs::path& file : seeds_of("read_firmware")) {
+    EXPECT_EQ(tactree::cli::read_firmware(file).board, "board");
+  }
+  for (const char* name : {"one", "colours"}) {
+    const std::string file = std::string(TACTREE_SEEDS "/read_materials/") + name;
+    EXPECT_NO_THROW((void)tactree::cli::read_materials(file)) << name;
+  }
+  const fs::path scenes = TACTREE_SEEDS "/read_scene";
+  const std::string blob = TACTREE_SEEDS "/open_blob/kOk.surface";
+  EXPECT_EQ(tactree::cli::read_scene(scenes / "moving", {blob}).bodies.size(), 1U);
+  EXPECT_EQ(tactree::cli::read_csv_rows<3>(TACTREE_SEEDS "/read_rows/points", "x,y,z").size(), 2U);
+  EXPECT_GE(seeds_of("read_rows").size(), 2U + tactree::simulation::injection_kinds().size());
 }
 
 TEST(Seeds, ScansAreRead) {

@@ -12,6 +12,7 @@
 #include "blob_file.hpp"
 #include "board_costs.hpp"
 #include "command.hpp"
+#include "json_text.hpp"
 #include "output_file.hpp"
 #include "tactree/bound/bound.hpp"
 #include "tactree/core/scene.hpp"
@@ -147,7 +148,7 @@ void bound_tick(const BoundCommandOptions& options) {
     print_timing(options, *analysis.timing, result, highest);
   }
   if (!options.json.empty()) {
-    write_file(options.json, to_json(options, analysis, result, highest).dump(2) + "\n");
+    write_file(options.json, json_text(to_json(options, analysis, result, highest)));
   }
   if (options.must_keep_rate && analysis.timing != nullptr) {
     check_rate(options, *analysis.timing, result, highest);

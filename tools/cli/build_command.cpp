@@ -12,6 +12,7 @@
 
 #include "board_costs.hpp"
 #include "command.hpp"
+#include "json_text.hpp"
 #include "material_file.hpp"
 #include "output_file.hpp"
 #include "tactree/builder/build_model.hpp"
@@ -327,7 +328,7 @@ void build(const BuildArguments& arguments) {
   }
   check_time(arguments, result.blob.bytes);
   write_file(arguments.output, std::span<const std::byte>(result.blob.bytes));
-  const std::string json = to_json(result.report, arguments.build).dump(2) + "\n";
+  const std::string json = json_text(to_json(result.report, arguments.build));
   for (const std::string& file : {arguments.report, arguments.json}) {
     if (!file.empty()) {
       write_file(file, json);

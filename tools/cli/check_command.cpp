@@ -7,6 +7,7 @@
 
 #include "blob_file.hpp"
 #include "command.hpp"
+#include "json_text.hpp"
 #include "model_signature.hpp"
 #include "output_file.hpp"
 
@@ -22,7 +23,7 @@ struct CheckOptions {
 void report(const CheckOptions& options, bool valid, const std::string& message) {
   if (!options.json.empty()) {
     const nlohmann::json result{{"file", options.blob}, {"valid", valid}, {"message", message}};
-    write_file(options.json, result.dump(2) + "\n");
+    write_file(options.json, json_text(result));
   }
 }
 

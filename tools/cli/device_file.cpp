@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "command.hpp"
+#include "json_text.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -275,7 +276,7 @@ std::string device_json(const Device& device) {
   core::DevicePreset figures = device.figures;
   Writer writer(json);
   visit_figures(figures, writer);
-  return json.dump(2) + "\n";
+  return json_text(json);
 }
 
 }  // namespace tactree::cli

@@ -11,6 +11,7 @@
 #include "command.hpp"
 #include "firmware_image.hpp"
 #include "image_formats.hpp"
+#include "json_text.hpp"
 #include "output_file.hpp"
 
 namespace tactree::cli {
@@ -129,7 +130,7 @@ void make_image(const ImageOptions& options) {
                                 {"code_bytes", code_bytes},
                                 {"blob_bytes", blob.bytes.size()},
                                 {"file_bytes", bytes.size()}};
-    write_file(options.json, result.dump(2) + "\n");
+    write_file(options.json, json_text(result));
   }
 }
 

@@ -10,6 +10,7 @@
 
 #include "blob_file.hpp"
 #include "board_costs.hpp"
+#include "json_text.hpp"
 #include "model_signature.hpp"
 #include "output_file.hpp"
 
@@ -253,7 +254,7 @@ void info(const InfoOptions& options) {
   if (!options.json.empty()) {
     nlohmann::json json = to_json(blob.view());
     json["signature"] = signature_json(options.blob, blob);
-    write_file(options.json, json.dump(2) + "\n");
+    write_file(options.json, json_text(json));
   }
   if (!options.points.empty()) {
     write_points(blob.view(), options.points);

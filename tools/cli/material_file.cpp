@@ -51,7 +51,10 @@ std::string known_keys(std::string keys) {
 
 double number(const json& value, const std::string& place, double low, double high) {
   if (!value.is_number()) {
-    refuse(place, fmt::format("{} is not a number", value.dump()), "give one, without quotes");
+    refuse(place,
+           fmt::format("{} is not a number",
+                       value.dump(-1, ' ', false, json::error_handler_t::replace)),
+           "give one, without quotes");
   }
   const double v = value.get<double>();
   if (!(v >= low && v <= high)) {

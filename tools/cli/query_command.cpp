@@ -12,6 +12,7 @@
 #include "blob_file.hpp"
 #include "command.hpp"
 #include "csv_points.hpp"
+#include "json_text.hpp"
 #include "output_file.hpp"
 #include "tactree/core/nearest.hpp"
 #include "tactree/core/paper_mode.hpp"
@@ -174,7 +175,7 @@ void query(const QueryOptions& options) {
                                 {"contacts", totals.contacts},
                                 {"nearest_found", totals.found},
                                 {"surface_found", totals.supported}};
-    write_file(options.json, result.dump(2) + "\n");
+    write_file(options.json, json_text(result));
   }
 }
 

@@ -14,6 +14,7 @@
 #include "blob_file.hpp"
 #include "command.hpp"
 #include "device_file.hpp"
+#include "json_text.hpp"
 #include "model_signature.hpp"
 #include "output_file.hpp"
 #include "scene_file.hpp"
@@ -609,7 +610,7 @@ void simulate(SimulateOptions& options, int& exit_code) {
     write_plot(options, scene, outcome);
   }
   if (!options.json.empty()) {
-    write_file(options.json, to_json(options, scene, outcome).dump(2) + "\n");
+    write_file(options.json, json_text(to_json(options, scene, outcome)));
   }
   print_summary(options, scene, outcome);
   exit_code = outcome.summary.faults.empty() ? kExitOk : kExitFailed;

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace tactree::test {
 namespace {
 
@@ -78,6 +80,42 @@ TEST(EncoderWatch, ForgetsOnReset) {
       watch.reset();
     }
   }
+}
+
+TEST(EncoderWatch, EveryAxisIsWatched) {
+  for (std::uint32_t axis = 0; axis < kAxes; ++axis) {
+    EncoderWatch watch;
+    watch.configure(kTicks);
+    bool fine = true;
+    for (int i = 0; i < 200; ++i) {
+      std::int32_t counts[kAxes] = {i, -i, 3 * i};
+      float share[kAxes] = {0.0F, 0.0F, 0.0F};
+      counts[axis] = 7;
+      share[axis] = static_cast<float>(i) / 150.0F;
+      fine = watch.update(counts, share, kAxes) && fine;
+    }
+    EXPECT_FALSE(fine) << axis;
+  }
+}
+
+// The effort steps once, just when its change begins to count, or a tick before that.
+TEST(EncoderWatch, WhatTheMotionLeavesBehindMayChangeTheEffortForAQuarterOfTheTime) {
+  const int settled = static_cast<int>(kTicks / EncoderWatch::kSettling);
+  for (const float sign : {1.0F, -1.0F}) {
+    const auto step_at = [&](int when) {
+      return first_complaint(500, still, [=](int i) { return i < when ? 0.0F : sign * 0.5F; });
+    };
+    EXPECT_EQ(step_at(settled), -1);
+    EXPECT_EQ(step_at(settled + 1), static_cast<int>(kTicks));
+  }
+}
+
+TEST(EncoderWatch, MoreThanAQuarterOfTheEffortHasToMoveAnAxis) {
+  const auto steps_by = [](float change) {
+    return first_complaint(500, still, [=](int i) { return i < 50 ? 0.0F : change; });
+  };
+  EXPECT_EQ(steps_by(EncoderWatch::kChange), -1);
+  EXPECT_EQ(steps_by(std::nextafter(EncoderWatch::kChange, 1.0F)), static_cast<int>(kTicks));
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include <cmath>
 
 #include "tactree/core/safety_gate.hpp"
@@ -102,6 +104,25 @@ TEST(MotorHeat, AnewConfigurationDoesNotCoolThem) {
   const float warm = gate.heat().heat(2);
   ASSERT_TRUE(gate.configure(quick_to_warm()));
   EXPECT_GT(gate.heat().heat(2), 0.99F * warm);
+}
+
+TEST(MotorHeat, ThePeakFallsInAStraightLine) {
+  core::MotorHeat heat;
+  heat.configure(0.5F, 0.01F);
+  float before = 1.0F;
+  bool between = false;
+  for (int tick = 0; tick < 1000; ++tick) {
+    heat.add(0, 1.0F);
+    const float warm = heat.heat(0);
+    const float share = std::clamp((1.0F - warm) / 0.2F, 0.0F, 1.0F);
+    EXPECT_NEAR(heat.allowed(0), 0.5F + 0.5F * share, 1e-6F) << warm;
+    EXPECT_LE(heat.allowed(0), before);
+    before = heat.allowed(0);
+    between = between || (share > 0.4F && share < 0.6F);
+  }
+  EXPECT_TRUE(between);
+  EXPECT_GT(heat.heat(0), 2.0F);
+  EXPECT_EQ(heat.allowed(0), 0.5F);
 }
 
 }  // namespace

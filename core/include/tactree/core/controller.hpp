@@ -139,6 +139,12 @@ class Controller {
   const Output& step(const Input& input);
 
   [[nodiscard]] State state() const { return state_; }
+  /// Is the state active, by two records of it? For a last look before a command goes to the
+  /// motors: where one instruction of step() fails, as a core's does in a glitch, its command may
+  /// be wrong.
+  [[nodiscard]] bool may_give_force() const {
+    return state_ == State::kActive && inverse_ == inverse_of(State::kActive);
+  }
   [[nodiscard]] FaultMask faults() const { return latched_; }
   /// Neither armed nor active.
   [[nodiscard]] bool motors_off() const {
@@ -151,6 +157,9 @@ class Controller {
   [[nodiscard]] const FlightRecorder& recorder() const { return recorder_; }
 
  private:
+  [[nodiscard]] static constexpr std::uint32_t inverse_of(State state) {
+    return ~static_cast<std::uint32_t>(state);
+  }
   [[nodiscard]] FaultMask sense(const Input& input);
   [[nodiscard]] FaultMask find_joints(const Input& input);
   [[nodiscard]] FaultMask watch(const Input& input);
@@ -182,7 +191,8 @@ class Controller {
   std::uint32_t cycles_per_second_ = 0;
   Configuration configuration_{};
   State state_ = State::kBoot;
-  FaultMask present_ = 0;  // causes there in this tick
+  std::uint32_t inverse_ = inverse_of(State::kBoot);  // of state_, to compare it with
+  FaultMask present_ = 0;                             // causes there in this tick
   FaultMask latched_ = 0;
   bool waiting_ = false;  // armed, and not yet allowed to be active
 
@@ -213,7 +223,7 @@ class Controller {
   bool configured_ = false;
   bool enable_ = false;
   bool dead_man_released_ = false;  // since arming: a control tied down does not count
-  Output output_{SafetyGate::no_command()};
+  Output output_{SafetyGate::no_effort()};
 };
 
 }  // namespace tactree::core

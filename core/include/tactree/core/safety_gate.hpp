@@ -40,8 +40,6 @@ struct GateLimits {
 /// Interrupt safe: no shared state.
 class SafetyGate {
  public:
-  [[nodiscard]] static MotorCommand no_command() { return {}; }
-
   struct Result {
     MotorCommand command{};
     Vec3 force{};  ///< N at the probe, before the limits of the axes
@@ -66,6 +64,9 @@ class SafetyGate {
   /// its direction; the efforts' change in a tick shrinks as a whole, too.
   /// Cost: constant, about 150 operations.
   Result command(Vec3 force, const Mat3& effort_per_force, Vec3 own_effort = {});
+
+  /// No effort at all.
+  [[nodiscard]] static MotorCommand no_effort() { return {}; }
 
   [[nodiscard]] const GateLimits& limits() const { return limits_; }
   [[nodiscard]] const MotorHeat& heat() const { return heat_; }

@@ -86,7 +86,8 @@ class Loop {
 
     const std::uint32_t begin_us = board_.ticker().now_us();
     const core::Output& output = controller_.step(input);
-    board_.motors().write(output.motors);
+    const bool active = controller_.may_give_force();  // again: see there
+    board_.motors().write(active ? output.motors : core::SafetyGate::no_effort());
     board_.enable_line().set(output.enable);
     board_.link().send(output.status);
     const std::uint32_t took_us = board_.ticker().now_us() - begin_us;

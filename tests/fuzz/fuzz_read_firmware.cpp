@@ -1,0 +1,59 @@
+// Whatever a firmware image holds, it is refused with a reason, or every byte of it lies where the
+// board has its code.
+//
+// The mutator seals every other result: behind a wrong checksum nothing would be reached.
+
+#include <algorithm>
+#include <cstring>
+#include <random>
+
+#include "command.hpp"
+#include "firmware_image.hpp"
+#include "memory_file.hpp"
+#include "tactree/core/crc32.hpp"
+
+namespace {
+
+using namespace tactree;
+
+void examine(const cli::FirmwareImage& image) {
+  fuzz::require(image.board.size() < 24, "a board without a name's end");
+  fuzz::require(image.code_begin < image.code_end && image.blob_begin < image.blob_end,
+                "a range of nothing");
+  std::uint64_t bytes = 0;
+  for (const cli::Segment& segment : image.segments) {
+    fuzz::require(segment.address >= image.code_begin, "bytes before the code");
+    fuzz::require(std::uint64_t{segment.address} + segment.bytes.size() <= image.code_end,
+                  "bytes behind the code");
+    bytes += segment.bytes.size();
+  }
+  fuzz::require(bytes > 0, "an image without bytes");
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const fuzz::MemoryFile file(data, size);
+  try {
+    examine(cli::read_firmware(file.path()));
+  } catch (const cli::CommandError& error) {
+    fuzz::require_reason(error.what(), file.path().string());
+  }
+  return 0;
+}
+
+extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t max_size);
+
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
+                                               std::size_t max_size, unsigned int seed) {
+  std::minstd_rand random(seed + 1);
+  size = LLVMFuzzerMutate(data, size, max_size);
+  // Seeds are one segment that ends the file, the checksum last: seal it where it still can be.
+  constexpr std::size_t kSegment = 52 + 32;
+  if (random() % 2 == 0 && size > kSegment + 4) {
+    const auto bytes = std::as_bytes(std::span(data + kSegment, size - kSegment - 4));
+    const std::uint32_t checksum = core::crc32(bytes);
+    std::memcpy(data + size - 4, &checksum, 4);
+  }
+  return size;
+}

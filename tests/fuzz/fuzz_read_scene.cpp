@@ -1,0 +1,62 @@
+// Whatever a scene file holds, it is refused with a reason, or gives bodies that a controller takes
+// at every time.
+
+#include <cstdlib>
+#include <fstream>
+
+#include "command.hpp"
+#include "memory_file.hpp"
+#include "scene_file.hpp"
+
+namespace {
+
+using namespace tactree;
+namespace fs = std::filesystem;
+
+// A folder of its own: file names in the scene are looked for there, not among this process's
+// descriptors, of which some would wait for ever.
+class Folder {
+ public:
+  Folder() {
+    std::string name = (fs::temp_directory_path() / "tactree-scene-XXXXXX").string();
+    fuzz::require(::mkdtemp(name.data()) != nullptr, "no folder can be made");
+    path_ = name;
+    fs::copy_file(TACTREE_SEEDS "/open_blob/kOk.surface", path_ / "a.blob");
+  }
+  ~Folder() { fs::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+
+  [[nodiscard]] const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+void examine(const cli::SceneFile& scene) {
+  fuzz::require(!scene.bodies.empty() && scene.bodies.size() <= core::kMaxBodies,
+                "no or too many bodies");
+  fuzz::require(
+      scene.names.size() == scene.bodies.size() && scene.files.size() == scene.bodies.size(),
+      "a body without a blob");
+  for (const simulation::SceneBody& body : scene.bodies) {
+    fuzz::require(!body.blob.empty(), "a body without bytes");
+    const core::Pose first = body.path.at(0.0).pose;
+    fuzz::require(is_valid(first), "a pose that the controller refuses");
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const Folder folder;
+  const fs::path file = folder.path() / "scene.json";
+  std::ofstream(file, std::ios::binary | std::ios::trunc)
+      .write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
+  try {
+    examine(cli::read_scene(file, {(folder.path() / "a.blob").string()}));
+  } catch (const cli::CommandError& error) {
+    fuzz::require_reason(error.what(), folder.path().string());
+  }
+  return 0;
+}

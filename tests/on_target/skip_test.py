@@ -1,0 +1,106 @@
+"""Promise P4: no single instruction of the gate and of the way to force, left out, gives force while
+stopped. Lists the instructions of an image's functions, and lets the image do the rest in an emulator.
+
+usage: skip_test.py IMAGE TOOLS_PREFIX [--every N]
+"""
+import collections
+import os
+import pathlib
+import re
+import select
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+
+EVERY = int(sys.argv.pop(sys.argv.index("--every") + 1)) if "--every" in sys.argv else 1
+if "--every" in sys.argv:
+    sys.argv.remove("--every")
+IMAGE, TOOLS = pathlib.Path(sys.argv[1]).resolve(), sys.argv[2]
+EMULATOR = ["qemu-system-arm", "-M", "mps2-an386", "-display", "none", "-monitor", "none", "-serial",
+            "none", "-no-reboot", "-semihosting-config", "enable=on,target=native", "-icount", "shift=3,sleep=off"]
+SILENCE_S = 20
+# The gate, the states, the watches, and the loop that carries a command to the motors.
+FUNCTIONS = re.compile(
+    r"tactree::core::(SafetyGate|MotorHeat|EncoderWatch)::"
+    r"|tactree::core::Controller::(step|watch|sense|find_joints|obey|recover|confirm|happen|raise"
+    r"|apply_force|wanted_force|report|record|notice|render|forget)"
+    r"|tactree::hal::Loop<.*>::(tick|listen)")
+
+
+def instructions():
+    """(address, bytes, function) of each, as the disassembler sees them; literals left out."""
+    text = subprocess.run([f"{TOOLS}objdump", "-d", "-C", IMAGE], check=True, capture_output=True,
+                          text=True).stdout
+    found, function = [], ""
+    for line in text.splitlines():
+        head = re.match(r"[0-9a-f]+ <(.*)>:$", line)
+        if head:
+            function = head[1]
+            continue
+        code = re.match(r"\s*([0-9a-f]+):\t([0-9a-f]{4})( [0-9a-f]{4})? *\t(\S+)", line)
+        if code and FUNCTIONS.match(function) and not code[4].startswith("."):
+            found.append((int(code[1], 16), 4 if code[3] else 2, function))
+    return found
+
+
+def run_emulator(folder, tried):
+    """The output up to the emulator's end, and whether that came by itself."""
+    data = struct.pack("<I", len(tried))
+    data += b"".join(struct.pack("<II", address, size) for address, size, _ in tried)
+    pathlib.Path(folder, "instructions").write_bytes(data)
+    with subprocess.Popen([*EMULATOR, "-kernel", IMAGE], cwd=folder, stdout=subprocess.PIPE,
+                          stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL) as emulator:
+        output, ended = b"", False
+        while select.select([emulator.stdout], [], [], SILENCE_S)[0]:
+            part = os.read(emulator.stdout.fileno(), 65536)
+            ended = not part
+            if ended:
+                break
+            output += part
+        emulator.kill()
+    return output.decode(errors="replace"), ended
+
+
+def campaign(found):
+    """Address -> what came of leaving out that instruction:
+      same     the session went as ever
+      other    the controller's state differs; no command
+      command  the motors were told something, but had no power: the enable line was off
+      force    both
+      reset    a fault, or the watchdog of the tick
+      hang     only a watchdog outside of the program helps"""
+    outcomes = {}
+    with tempfile.TemporaryDirectory() as folder:
+        while len(outcomes) < len(found):
+            output, ended = run_emulator(folder, found[len(outcomes):])
+            lines = re.findall(r"(\d+) (same|other|command|force)?", output)
+            if not lines:
+                raise AssertionError(f"the campaign does not begin: {output}")
+            for address, outcome in lines:
+                outcomes[int(address)] = outcome or ("reset" if ended else "hang")
+    return outcomes
+
+
+class Skip(unittest.TestCase):
+    def test_no_instruction_left_out_gives_force_while_stopped(self):
+        found = instructions()
+        functions = {f for _, _, f in found}
+        for needed in ("Controller::step", "SafetyGate::command", "SafetyGate::release", "::tick"):
+            self.assertTrue(any(needed in f for f in functions), needed)
+        tried = found[::EVERY]
+        outcomes = campaign(tried)
+        sums = collections.Counter(outcomes.values())
+        print(f"{len(tried)} instructions of {len(functions)} functions: {dict(sums)}")
+        names = {address: f for address, _, f in found}
+        forces = [f"{a:#x} {names[a]}" for a, outcome in outcomes.items() if outcome == "force"]
+        self.assertEqual(forces, [])
+        # Two barriers, the enable line and the command: the second one alone holds all but always.
+        self.assertLess(sums["command"], len(tried) // 200)
+        # What is left out does make a difference.
+        self.assertGreater(len(tried) - sums["same"], len(tried) // 10)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
