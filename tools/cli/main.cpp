@@ -13,6 +13,7 @@
 #include "info_command.hpp"
 #include "query_command.hpp"
 #include "simulate_command.hpp"
+#include "view_command.hpp"
 
 int main(int argc, char** argv) {
   using namespace tactree::cli;
@@ -28,6 +29,7 @@ int main(int argc, char** argv) {
   add_image_command(app, exit_code);
   add_simulate_command(app, exit_code);
   add_evaluate_command(app, exit_code);
+  add_view_command(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
