@@ -21,7 +21,7 @@ export class Orbit {
     this.target.copy(sphere.center);
     const half = THREE.MathUtils.degToRad(this.camera.fov / 2);
     const narrow = Math.min(1, this.camera.aspect);
-    this.distance = (1.15 * sphere.radius) / Math.sin(half) / narrow;
+    this.distance = (1.05 * sphere.radius) / Math.sin(half) / narrow;
     this.place();
   }
   reset(): void {

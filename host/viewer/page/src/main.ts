@@ -12,6 +12,7 @@ import { Strip } from './strips';
 import { View } from './view';
 
 const NOTE_MS = 6000;
+const LOST_SHOWN_MS = 3000;
 
 const view = new View(find<HTMLCanvasElement>('view'));
 const strips = {
@@ -85,10 +86,19 @@ function showFaults(run: Run): void {
   }));
 }
 
+let lost = { s: 0, at_ms: -Infinity };
+
+/** Was simulated time lost in the last seconds? */
+function isLosing(frame: Frame): boolean {
+  const now_s = frame.lost_s ?? 0;
+  if (now_s > lost.s) lost = { s: now_s, at_ms: performance.now() };
+  if (now_s < lost.s) lost = { s: now_s, at_ms: -Infinity }; // another session
+  return performance.now() - lost.at_ms < LOST_SHOWN_MS;
+}
+
 function showTiming(frame: Frame, run: Run): void {
   const rate = frame.settings ? `${frame.settings.rate_hz} ticks a second` : '';
-  const slow = frame.lost_s && frame.lost_s > 0.1
-    ? `${frame.lost_s.toFixed(1)} s lost: this machine is too slow for real time` : '';
+  const slow = isLosing(frame) ? 'this machine is too slow for real time' : '';
   const parts = [rate, `${run.overruns} deadlines missed`, slow].filter((part) => part !== '');
   const text = parts.join(' · ');
   const line = find('timing');

@@ -73,7 +73,7 @@ export class View {
     this.markers = [];
     this.hand.scale.setScalar(0.022 * this.size);
     this.resize();
-    this.orbit.fit(new THREE.Sphere(sphere.center, 1.15 * sphere.radius));
+    this.orbit.fit(sphere);
     this.changed();
   }
 
@@ -93,7 +93,7 @@ export class View {
       this.markers.push(markers);
       this.scene.add(markers.group);
     }
-    this.markers.length > frame.runs.length && this.dropMarkers(frame.runs.length);
+    this.dropMarkers(frame.runs.length);
     frame.runs.forEach((run, i) => this.markers[i]?.show(run, frame.settings?.force_max_N ?? FORCE_N));
     this.hand.visible = frame.hand_m !== undefined;
     if (frame.hand_m) this.hand.position.set(...frame.hand_m);
