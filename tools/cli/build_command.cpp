@@ -14,6 +14,7 @@
 #include "command.hpp"
 #include "material_file.hpp"
 #include "output_file.hpp"
+#include "preview.hpp"
 #include "tactree/builder/build_model.hpp"
 #include "tactree/emulation/board_description.hpp"
 
@@ -45,6 +46,7 @@ struct BuildArguments {
   std::vector<std::string> inputs;
   std::string output;
   std::string report;
+  std::string preview;
   std::string json;
   std::vector<double> crop;
   std::string spacing;
@@ -152,7 +154,8 @@ bool same_file(const fs::path& a, const fs::path& b) {
 }
 
 void refuse_overwriting_inputs(const BuildArguments& arguments) {
-  for (const std::string* output : {&arguments.output, &arguments.report, &arguments.json}) {
+  for (const std::string* output :
+       {&arguments.output, &arguments.report, &arguments.json, &arguments.preview}) {
     for (const std::string& input : arguments.inputs) {
       if (!output->empty() && same_file(*output, input)) {
         throw CommandError(*output +
@@ -287,15 +290,20 @@ void print(const BuildReport& report, const BuildOptions& build, const std::stri
       static_cast<double>(report.input_points) / report.seconds, report.peak_rss_bytes >> 20U);
 }
 
+core::BlobView open_built(std::span<const std::byte> blob) {
+  core::BlobView view;
+  if (core::open_blob(blob, view) != core::BlobStatus::kOk) {
+    throw CommandError("the blob is not valid (this is a mistake of tactree's)");
+  }
+  return view;
+}
+
 /// A blob that the board cannot render in time is not written.
 void check_time(const BuildArguments& arguments, std::span<const std::byte> blob) {
   if (arguments.board.empty() || arguments.rate_hz <= 0.0) {
     return;
   }
-  core::BlobView view;
-  if (core::open_blob(blob, view) != core::BlobStatus::kOk) {
-    throw CommandError("the blob is not valid (this is a mistake of tactree's)");
-  }
+  const core::BlobView view = open_built(blob);
   const auto mode = view.is_uniform() ? core::RenderMode::kSurface : core::RenderMode::kPaper;
   const BoardCosts board = costs_of_board(arguments.board);
   const double highest = board.highest_rate(view.header(), mode);
@@ -327,6 +335,9 @@ void build(const BuildArguments& arguments) {
     if (!file.empty()) {
       write_file(file, json);
     }
+  }
+  if (!arguments.preview.empty()) {
+    write_preview(arguments.preview, open_built(result.blob.bytes), result.report.openings);
   }
   print(result.report, arguments.build, arguments.output);
   for (const std::string& warning : result.report.warnings) {
@@ -415,6 +426,8 @@ void add_build_command(CLI::App& app, int&) {
       ->default_str("auto");
   verb->add_option("--report", arguments->report, "write what was read, dropped and made as JSON");
   verb->add_option("--json", arguments->json, "the same");
+  verb->add_option("--preview", arguments->preview,
+                   "draw the model into this PNG file, with a scale, holes and open rims marked");
   verb->callback([arguments] {
     complete(*arguments);
     build(*arguments);

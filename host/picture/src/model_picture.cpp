@@ -40,6 +40,12 @@ Eye eye_from(float yaw_rad) {
 
 Vec3 vector(const std::array<float, 3>& v) { return {v[0], v[1], v[2]}; }
 
+/// How far a box, `half` of it to each side of its middle, goes in a direction.
+float extent(Vec3 half, Vec3 direction) {
+  return std::abs(half.x * direction.x) + std::abs(half.y * direction.y) +
+         std::abs(half.z * direction.z);
+}
+
 Vec3 unit(Vec3 v) { return (1.0F / core::length(v)) * v; }
 
 /// One view of the model in its part of the picture.
@@ -51,9 +57,10 @@ class Panel {
     const Vec3 low{h.bounds_min_m[0], h.bounds_min_m[1], h.bounds_min_m[2]};
     const Vec3 high{h.bounds_max_m[0], h.bounds_max_m[1], h.bounds_max_m[2]};
     middle_ = 0.5F * (low + high);
-    const int tall = raster.height() - kOver * (2 * kMargin + kCaption);
-    const auto room = static_cast<float>(std::min(width - 2 * kOver * kMargin, tall));
-    scale_ = room / core::length(high - low);
+    const Vec3 half = 0.5F * (high - low);
+    const auto wide = static_cast<float>(width - 2 * kOver * kMargin);
+    const auto tall = static_cast<float>(raster.height() - kOver * (2 * kMargin + kCaption));
+    scale_ = std::min(wide / (2.0F * extent(half, eye.right)), tall / (2.0F * extent(half, eye.up)));
     x_ = static_cast<float>(left) + 0.5F * static_cast<float>(width);
     y_ = 0.5F * static_cast<float>(raster.height() - kOver * kCaption);
   }
@@ -61,7 +68,7 @@ class Panel {
   [[nodiscard]] float pixels_per_metre() const { return scale_; }
 
   void draw_points() {
-    const float radius = std::max(0.75F * view_.header().spacing_m * scale_, 1.0F);
+    const float radius = std::max(0.9F * view_.header().spacing_m * scale_, 1.0F);
     for (core::LeafCursor cursor(view_); !cursor.done(); cursor.next()) {
       const core::Leaf& leaf = cursor.leaf();
       for (std::uint32_t i = 0; i < leaf.point_count; ++i) {
