@@ -40,12 +40,6 @@ Eye eye_from(float yaw_rad) {
 
 Vec3 vector(const std::array<float, 3>& v) { return {v[0], v[1], v[2]}; }
 
-/// How far a box, `half` of it to each side of its middle, goes in a direction.
-float extent(Vec3 half, Vec3 direction) {
-  return std::abs(half.x * direction.x) + std::abs(half.y * direction.y) +
-         std::abs(half.z * direction.z);
-}
-
 Vec3 unit(Vec3 v) { return (1.0F / core::length(v)) * v; }
 
 /// One view of the model in its part of the picture.
@@ -57,10 +51,9 @@ class Panel {
     const Vec3 low{h.bounds_min_m[0], h.bounds_min_m[1], h.bounds_min_m[2]};
     const Vec3 high{h.bounds_max_m[0], h.bounds_max_m[1], h.bounds_max_m[2]};
     middle_ = 0.5F * (low + high);
-    const Vec3 half = 0.5F * (high - low);
     const auto wide = static_cast<float>(width - 2 * kOver * kMargin);
     const auto tall = static_cast<float>(raster.height() - kOver * (2 * kMargin + kCaption));
-    scale_ = std::min(wide / (2.0F * extent(half, eye.right)), tall / (2.0F * extent(half, eye.up)));
+    scale_ = std::min(wide / (2.0F * extent(eye.right)), tall / (2.0F * extent(eye.up)));
     x_ = static_cast<float>(left) + 0.5F * static_cast<float>(width);
     y_ = 0.5F * static_cast<float>(raster.height() - kOver * kCaption);
   }
@@ -88,6 +81,19 @@ class Panel {
   }
 
  private:
+  /// How far the model goes from its middle along a direction, to either side.
+  [[nodiscard]] float extent(Vec3 direction) const {
+    float most = view_.header().spacing_m;
+    for (core::LeafCursor cursor(view_); !cursor.done(); cursor.next()) {
+      const core::Leaf& leaf = cursor.leaf();
+      for (std::uint32_t i = 0; i < leaf.point_count; ++i) {
+        const Vec3 p = view_.position(leaf, leaf.first_point + i) - middle_;
+        most = std::max(most, std::abs(core::dot(p, direction)));
+      }
+    }
+    return most;
+  }
+
   /// x and y in pixels, z the way from the eye in metres.
   [[nodiscard]] Vec3 seen(Vec3 position) const {
     const Vec3 p = position - middle_;
