@@ -36,7 +36,7 @@ export class View {
   private shown = { device: true, patch: true };
 
   constructor(readonly canvas: HTMLCanvasElement) {
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true });
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: !isSoftware(), alpha: true });
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     this.renderer.setScissorTest(true);
     this.scene.add(new THREE.HemisphereLight(0xffffff, 0x667080, 2.2));
@@ -181,6 +181,15 @@ export class View {
     }
     this.onPicture?.();
   }
+}
+
+/** Without a GPU smooth edges cost more than they are worth. */
+function isSoftware(): boolean {
+  const context = document.createElement('canvas').getContext('webgl2');
+  const names = context?.getExtension('WEBGL_debug_renderer_info');
+  const name = names ? (context?.getParameter(names.UNMASKED_RENDERER_WEBGL) as string) : '';
+  context?.getExtension('WEBGL_lose_context')?.loseContext();
+  return /swiftshader|llvmpipe|software/i.test(name);
 }
 
 const micrometres = (v: number): number => Math.round(1e6 * v);
