@@ -18,26 +18,26 @@ KindPose locate_arm(const DeviceModel& device, Vec3 joints) {
   const Vec3 up = {0.0F, 0.0F, 1.0F};
   const auto in_plane = [&](float out, float z) { return out * outwards + z * up; };
 
-  KindPose pose;
-  pose.probe = in_plane(radius, height);
   const Vec3 by_forearm = in_plane(g.forearm_m * forearm.cosine, g.forearm_m * forearm.sine);
   const Vec3 by_arm = in_plane(-g.arm_m * arm.sine, g.arm_m * arm.cosine);
-  pose.effort_per_force.row[0] = radius * Vec3{-base.sine, base.cosine, 0.0F};
-  pose.effort_per_force.row[1] = by_arm + g.coupling * by_forearm;
-  pose.effort_per_force.row[2] = by_forearm;
+  const Vec3 by_base = radius * Vec3{-base.sine, base.cosine, 0.0F};
 
   // Stretched out or folded, the elbow cannot give; over the base's axis, the base cannot.
   const float elbow = arm.cosine * forearm.cosine + arm.sine * forearm.sine;
   const float stand_off = radius / (g.arm_m + g.forearm_m);
-  pose.openness = elbow < stand_off ? elbow : stand_off;
-  pose.valid = true;
+  const float openness = elbow < stand_off ? elbow : stand_off;
 
   const float forearm_weight = kGravity * device.link_mass_kg[2];
   const float arm_lever =
       kGravity * device.link_mass_kg[1] * device.link_centre_m[1] + forearm_weight * g.arm_m;
   const float forearm_effort = forearm_weight * device.link_centre_m[2] * forearm.sine;
-  pose.link_effort = {0.0F, arm_lever * arm.cosine + g.coupling * forearm_effort, forearm_effort};
-  return pose;
+  const Vec3 link_effort = {0.0F, arm_lever * arm.cosine + g.coupling * forearm_effort,
+                            forearm_effort};
+  return {true,
+          in_plane(radius, height),
+          {{by_base, by_arm + g.coupling * by_forearm, by_forearm}},
+          link_effort,
+          openness};
 }
 
 }  // namespace tactree::core

@@ -94,9 +94,10 @@ class BlobValidator {
     if (h.points_per_ball_max == 0 || h.points_per_ball_max > h.point_count) return false;
     if (h.points_per_query_max < h.points_per_leaf_max) return false;
     if (h.points_per_query_max > h.point_count) return false;
+    if (h.points_per_slab_max == 0 || h.points_per_slab_max > h.points_per_query_max) return false;
     if (h.leaves_per_query_max != kLeavesPerQuery) return false;
     if (h.leaf_group_shift > kMaxLeafGroupShift || !directory_level_is_sane()) return false;
-    for (const std::uint32_t word : h.reserved) {  // bound: 5
+    for (const std::uint32_t word : h.reserved) {  // bound: 4
       if (word != 0) return false;
     }
     return is_terminated(h.name, sizeof h.name) &&
@@ -430,23 +431,6 @@ Vec3 BlobView::position(const Leaf& leaf, std::uint32_t index) const {
   return {step_m_ * coordinate(leaf.min.x, (word >> 2) & 1023U),
           step_m_ * coordinate(leaf.min.y, (word >> 12) & 1023U),
           step_m_ * coordinate(leaf.min.z, word >> 22)};
-}
-
-// Octahedral map: Meyer, Suessmuth, Sussner and Stamminger, "On Floating-Point Normal Vectors",
-// Eurographics Symposium on Rendering 2010.
-Vec3 BlobView::normal(std::uint32_t index) const {
-  const std::uint32_t code = static_cast<std::uint32_t>(normals_[index]) | (points_[index] & 3U)
-                                                                               << 16;
-  const float u = static_cast<float>(static_cast<std::int32_t>(code & 511U) - 255);
-  const float v = static_cast<float>(static_cast<std::int32_t>(code >> 9) - 255);
-  const float w = 255.0F - absolute(u) - absolute(v);
-  Vec3 n{u, v, w};
-  if (w < 0.0F) {
-    const float fold = -w;
-    n.x += u < 0.0F ? fold : -fold;
-    n.y += v < 0.0F ? fold : -fold;
-  }
-  return (1.0F / length(n)) * n;
 }
 
 LeafCursor::LeafCursor(const BlobView& view) : view_(view), done_(view.empty()) {

@@ -179,7 +179,7 @@ bool Controller::unload_model() {
   return true;
 }
 
-Output Controller::step(const Input& input) {
+const Output& Controller::step(const Input& input) {
   ++tick_;
   present_ = watch(input);
   if (configured_) {
@@ -196,9 +196,11 @@ Output Controller::step(const Input& input) {
   confirm(input, was_armed);
   const SafetyGate::Result gated = apply_force();
   enable_ = !motors_off();
-  const Output output = {gated.command, enable_, report(gated)};
-  record(input, output.status);
-  return output;
+  output_.motors = gated.command;
+  output_.enable = enable_;
+  report(gated);
+  record(input, output_.status);
+  return output_;
 }
 
 // A counter that could not be trusted for a moment has lost its place.
@@ -426,8 +428,8 @@ SafetyGate::Result Controller::apply_force() {
   return gated;
 }
 
-Status Controller::report(const SafetyGate::Result& gated) const {
-  Status status;
+void Controller::report(const SafetyGate::Result& gated) {
+  Status& status = output_.status;
   status.tick = tick_;
   status.state = state_;
   status.faults = latched_;
@@ -445,21 +447,23 @@ Status Controller::report(const SafetyGate::Result& gated) const {
   status.velocity = velocity_;
   status.rendering = contact;
   status.force = gated.force;
-  report_reactions(gated.force, status);
-  return status;
+  report_reactions(gated.force);
 }
 
 // The gate may give less than was rendered, or nothing; the bodies take it in proportion.
-void Controller::report_reactions(Vec3 force, Status& status) const {
+void Controller::report_reactions(Vec3 force) {
   const Vec3 rendered = scene_.rendering().contact.force;
   const float whole = length_squared(rendered);
   const float share = whole > 0.0F ? dot(force, rendered) / whole : 0.0F;
   const bool displayed = share > 0.0F && is_finite(share);
+  const float part = share < 1.0F ? share : 1.0F;
   for (std::uint32_t i = 0; i < kMaxReachableBodies; ++i) {  // bound: kMaxReachableBodies
     const Reaction& r = scene_.rendering().reactions[i];
+    Reaction& told = output_.status.reactions[i];
     if (displayed && r.body != kNoBody) {
-      const float part = share < 1.0F ? share : 1.0F;
-      status.reactions[i] = {r.body, part * r.force_N, part * r.torque_Nm};
+      told = {r.body, part * r.force_N, part * r.torque_Nm};
+    } else {
+      told = {};
     }
   }
 }

@@ -116,11 +116,21 @@ bool CornerLeaves::find_mixed(std::uint32_t corner, Leaf& leaf) const {
   return true;
 }
 
+Int3 CornerLeaves::min_of(const NearLeaf& near) const {
+  const Int3 site = lower_corner(near.corner);
+  if (view_.is_uniform()) {
+    return site;
+  }
+  Leaf leaf;
+  (void)find_leaf(view_, site, leaf);  // at most: 8 * mixed per CandidateSet::gather
+  return leaf.min;
+}
+
 Leaf CornerLeaves::leaf(std::uint32_t number, std::uint32_t corner) const {
   const Int3 site = lower_corner(corner);
   Leaf leaf = view_.leaf(number, view_.depth(), site);
   if (!view_.is_uniform()) {
-    (void)find_leaf(view_, site, leaf);  // at most: 8 * mixed per CandidateSet::gather
+    (void)find_leaf(view_, site, leaf);
   }
   return leaf;
 }

@@ -25,6 +25,7 @@ struct NearLeaf {
   std::uint32_t end_point = 0;  ///< one behind its last
   std::uint32_t corner = 0;     ///< which of the eight it is of
   float site_m = 0.0F;          ///< length of a site
+  std::int32_t half_site = 1;   ///< half of it, lattice units
   Vec3 local{};                 ///< of the place, m, counted from the leaf's first site
 
   [[nodiscard]] bool empty() const { return end_point == first_point; }
@@ -41,6 +42,7 @@ struct NearLeaf {
           leaf.first_point + leaf.point_count,
           corner,
           step * static_cast<float>(2 * half_site),
+          half_site,
           {local(place.x, leaf.min.x), local(place.y, leaf.min.y), local(place.z, leaf.min.z)}};
 }
 
@@ -58,7 +60,9 @@ class CornerLeaves {
   template <typename Visit>
   void each(float limit_squared, Visit&& visit);
 
-  /// The whole of a leaf that was visited.
+  /// Lower corner of a leaf that was visited, lattice units.
+  [[nodiscard]] Int3 min_of(const NearLeaf& leaf) const;
+  /// The whole of it.
   [[nodiscard]] Leaf leaf(std::uint32_t number, std::uint32_t corner) const;
 
  private:
@@ -166,6 +170,7 @@ inline std::uint32_t step_down(const BlobView& view, std::uint32_t node, std::ui
           view_.first_point(number + 1U),
           corner,
           2.0F * view_.step_m(),
+          1,
           {pick(local_, corner, 0), pick(local_, corner, 1), pick(local_, corner, 2)}};
 }
 

@@ -62,13 +62,6 @@ bool is_valid_axis(const DeviceModel& d, std::uint32_t i) {
 
 }  // namespace
 
-std::uint32_t axes_of(DeviceKind kind) {
-  if (kind == DeviceKind::kPaddle) {
-    return 1;
-  }
-  return kind == DeviceKind::kFiveBar ? 2 : kAxes;
-}
-
 bool is_valid(const DeviceModel& device) {
   if (static_cast<std::uint32_t>(device.kind) >= kDeviceKinds ||
       static_cast<std::uint32_t>(device.homing) >= kHomingMethods) {
@@ -83,17 +76,6 @@ bool is_valid(const DeviceModel& device) {
     valid = valid && is_valid_axis(device, i);
   }
   return valid;
-}
-
-float counts_per_unit(const DeviceModel& device, std::uint32_t axis) {
-  if (device.kind == DeviceKind::kCartesian) {
-    return device.counts_per_m[axis];
-  }
-  return device.counts_per_revolution[axis] * device.ratio[axis] / kTwoPi;
-}
-
-float motor_current(const DeviceModel& device, std::uint32_t axis, float effort) {
-  return effort / (device.ratio[axis] * device.torque_constant_Nm_per_ampere[axis]);
 }
 
 }  // namespace tactree::core

@@ -5,6 +5,7 @@
 namespace tactree::core {
 namespace {
 
+// NaN becomes the largest.
 template <class T>
 T rounded(float value) {
   constexpr auto kMost = static_cast<float>(std::numeric_limits<T>::max());
@@ -14,17 +15,16 @@ T rounded(float value) {
 
 template <class T>
 void put(Vec3 v, float scale, T (&to)[3]) {
-  const Vec3 units = is_finite(v) ? scale * v : Vec3{};
-  to[0] = rounded<T>(units.x);
-  to[1] = rounded<T>(units.y);
-  to[2] = rounded<T>(units.z);
+  to[0] = rounded<T>(scale * v.x);
+  to[1] = rounded<T>(scale * v.y);
+  to[2] = rounded<T>(scale * v.z);
 }
 
 }  // namespace
 
 void FlightRecorder::add(const Moment& moment) {
   if (moment.faults == 0U) {
-    snapshot_ = {};
+    snapshot_.faults = 0;
     left_ = kAfterFault;
   } else if (snapshot_.faults == 0U) {
     snapshot_ = {moment.faults,          moment.tick,     moment.probe,

@@ -26,11 +26,11 @@ float joint_of(const DeviceModel& device, std::uint32_t axis, std::int32_t count
 float share_of_range(const DeviceModel& device, std::uint32_t axis, float joint) {
   const float margin = device.joint_margin[axis];
   const float inside = lower(joint - device.joint_min[axis], device.joint_max[axis] - joint);
-  if (!(inside >= -margin)) {
-    return -1.0F;
-  }
   if (inside >= margin) {
     return 1.0F;
+  }
+  if (!(inside >= -margin)) {
+    return -1.0F;
   }
   return inside > 0.0F ? inside / margin : 0.0F;
 }
@@ -43,6 +43,12 @@ float share_of_ranges(const DeviceModel& device, Vec3 joints) {
     share = lower(share, share_of_range(device, i, all[i]));
   }
   return share;
+}
+
+DevicePose nowhere(Vec3 joints) {
+  DevicePose pose;
+  pose.joints = joints;
+  return pose;
 }
 
 KindPose locate_kind(const DeviceModel& device, Vec3 joints) {
@@ -70,23 +76,22 @@ Vec3 joints_of(const DeviceModel& device, const std::int32_t (&counts)[kAxes]) {
 }
 
 DevicePose locate_joints(const DeviceModel& device, Vec3 joints) {
-  DevicePose pose;
-  pose.joints = joints;
   const float share = share_of_ranges(device, joints);
   if (!(share >= 0.0F)) {
-    return pose;
+    return nowhere(joints);
   }
   const KindPose place = locate_kind(device, joints);
   if (!place.valid || !(place.openness > kSingular) || !is_finite(place.probe)) {
-    return pose;
+    return nowhere(joints);
   }
-  pose.valid = true;
-  pose.reach = lower(share, lower(1.0F, (place.openness - kSingular) / (kOpen - kSingular)));
-  pose.probe = place.probe - device.origin_m;
-  pose.effort_per_force = place.effort_per_force;
-  pose.gravity_effort =
-      place.link_effort + place.effort_per_force * Vec3{0.0F, 0.0F, kGravity * device.tip_mass_kg};
-  return pose;
+  const float open = lower(1.0F, (place.openness - kSingular) / (kOpen - kSingular));
+  const Vec3 tip_weight = {0.0F, 0.0F, kGravity * device.tip_mass_kg};
+  return {true,
+          lower(share, open),
+          joints,
+          place.probe - device.origin_m,
+          place.effort_per_force,
+          place.link_effort + place.effort_per_force * tip_weight};
 }
 
 DevicePose locate(const DeviceModel& device, const std::int32_t (&counts)[kAxes]) {

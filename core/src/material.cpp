@@ -86,11 +86,11 @@ MaterialBlend blend_materials(const BlobView& view, const Configuration& configu
   MaterialBlend blend;
   float sum = 0.0F;
   // bound: blended_points
-  for (std::uint32_t i = 0; i < set.count(); ++i) {
+  for (const Candidate& candidate : set) {
     const float weight =
-        weight_of(set.position(i) - x, inverse_squared, dot(set.normal(i), normal));
+        weight_of(candidate.position - x, inverse_squared, dot(candidate.normal, normal));
     if (weight > 0.0F) {
-      add(blend, view.material_of(set.point(i)), weight);
+      add(blend, view.material_of(candidate.point), weight);
     }
   }
   for (std::uint32_t i = 0; i < blend.count; ++i) {  // bound: blended_materials

@@ -1,13 +1,12 @@
 #include "tactree/core/proxy.hpp"
 
-#include "tactree/core/nearest.hpp"
-
 namespace tactree::core {
 namespace {
 
-// Evaluations that the sweep leaves for the projection where contact begins.
-constexpr std::uint32_t kReserved = kEvaluationsPerTick - kSweepSteps;
-constexpr std::uint32_t kSlipSteps = kSweepSteps / 2;
+// Steps of one tick: each takes a gather, or goes on where the last one was good for.
+constexpr std::uint32_t kSteps = 4;
+// A fit takes one pass, and one more at a crease: none begins without both.
+constexpr std::uint32_t kPassesOfFit = 2;
 
 // Slip ends below this share of the dynamic cone, not at its rim: a slow probe whose encoder did
 // not count in this tick has not stopped, and would stick and slip in turn.
@@ -40,12 +39,13 @@ void Proxy::reset(Vec3 probe) {
   lose_support();
 }
 
-void Proxy::update(const BlobView& view, Vec3 probe, const Friction& friction) {
+void Proxy::update(const BlobView& view, Vec3 probe, const Friction& friction, SurfaceWork work) {
   if (surface_support(view) != SurfaceSupport::kOk) {
     reset(probe);
     return;
   }
-  budget_ = kEvaluationsPerTick;
+  left_ = work;
+  searches_left_ = work.gathers;
   lost_contact_ = false;
   if (in_contact_) {
     slide(view, probe, friction);
@@ -53,40 +53,42 @@ void Proxy::update(const BlobView& view, Vec3 probe, const Friction& friction) {
   if (!in_contact_) {
     sweep(view, probe);
   }
-  if (in_contact_) {
-    const std::uint32_t slot = find_nearest(view, position_);
-    nearest_point_ = slot == kNoCandidate ? kNoPoint : candidates_.point(slot);
+}
+
+// Makes the candidates good for a fit at x; false: not in this tick.
+bool Proxy::go_on(const BlobView& view, Vec3 x) {
+  if (left_.passes < kPassesOfFit || (!tracked_ && searches_left_ == 0U)) {
+    return false;
   }
+  if (candidates_.covers(view, x)) {
+    return true;
+  }
+  if (left_.gathers == 0U) {
+    return false;
+  }
+  --left_.gathers;
+  candidates_.gather_for(view, x);  // at most: gathers per Proxy::update
+  complete_ = complete_ && candidates_.complete();
+  return true;
 }
 
 SurfaceFit Proxy::evaluate(const BlobView& view, Vec3 x, Vec3 reference) {
-  --budget_;
-  candidates_.cover(view, x);
-  complete_ = complete_ && candidates_.complete();
-  const float radius = view.header().support_radius_m;
-  // The last of the budget is never used: a visit begins with three left, and takes one for the fit
-  // and one more either for the other side or for the projection where contact begins.
-  // at most: kEvaluationsPerTick - 1 per Proxy::update
-  return fit_surface(candidates_, x, radius, reference);
-}
-
-// For each visit that does not know its side, and at the end in contact: but contact begins in a
-// visit that knows it.
-std::uint32_t Proxy::find_nearest(const BlobView& view, Vec3 x) const {
-  // at most: kSweepSteps per Proxy::update
-  return nearest_candidate(candidates_, x, view.header().support_radius_m);
+  const SurfaceFit fit = fit_surface(candidates_, x, view.header().support_radius_m, reference);
+  left_.passes -= fit.passes;
+  return fit;
 }
 
 void Proxy::sweep(const BlobView& view, Vec3 probe) {
   const float step = step_length(view);
-  for (std::uint32_t i = 0; i < kSweepSteps; ++i) {  // bound: kSweepSteps
-    if (budget_ <= kReserved) {
-      return;
-    }
+  for (std::uint32_t i = 0; i < kSteps; ++i) {  // bound: kSteps
     const Vec3 way = probe - position_;
     const float distance = length(way);
     const bool last = !(distance > step);
-    visit(view, last ? probe : position_ + (step / distance) * way);
+    const Vec3 x = last ? probe : position_ + (step / distance) * way;
+    if (!go_on(view, x)) {
+      return;
+    }
+    visit(view, x);
     if (in_contact_ || last) {
       return;
     }
@@ -95,19 +97,24 @@ void Proxy::sweep(const BlobView& view, Vec3 probe) {
 
 void Proxy::visit(const BlobView& view, Vec3 x) {
   position_ = x;
+  if (candidates_.count() == 0U) {
+    lose_support();
+    return;
+  }
   Vec3 reference = reference_;
   if (!tracked_) {
-    candidates_.cover(view, x);
-    const std::uint32_t nearest = find_nearest(view, x);
-    if (nearest == kNoCandidate) {
-      --budget_;
+    --searches_left_;
+    const Candidate* const nearest =
+        nearest_candidate(candidates_, x, view.header().support_radius_m);
+    if (nearest == nullptr) {
+      --left_.passes;
       return;
     }
-    reference = candidates_.normal(nearest);
+    reference = nearest->normal;
   }
   SurfaceFit fit = evaluate(view, x, reference);
   const bool crossed = tracked_ && fit.firm() && side_ * fit.distance < 0.0F;
-  if (!crossed && fit.facing < kContradicted) {
+  if (!crossed && fit.facing < kContradicted && left_.passes >= kPassesOfFit) {
     tracked_ = false;
     fit = evaluate(view, x, -reference);
   }
@@ -130,7 +137,7 @@ void Proxy::begin_contact(const BlobView& view, const SurfaceFit& fit) {
   strength_ = fit.strength;
   slipping_ = false;
   in_contact_ = true;
-  if (!settle(view).supported) {
+  if (go_on(view, position_) && !settle(view).supported) {
     lose_support();  // the way led past the rim
   }
 }
@@ -147,7 +154,7 @@ SurfaceFit Proxy::settle(const BlobView& view) {
 
 void Proxy::slide(const BlobView& view, Vec3 probe, const Friction& friction) {
   const float step = step_length(view);
-  for (std::uint32_t i = 0; i < kSlipSteps; ++i) {  // bound: kSlipSteps
+  for (std::uint32_t i = 0; i < kSteps; ++i) {  // bound: kSteps
     const Vec3 way = probe - position_;
     const float height = dot(way, normal());
     if (height > 0.0F) {
@@ -164,7 +171,11 @@ void Proxy::slide(const BlobView& view, Vec3 probe, const Friction& friction) {
     slipping_ = true;
     const float excess = distance - cone;
     const bool last = !(excess > step);
-    if (!slip_by(view, ((last ? excess : step) / distance) * along)) {
+    const Vec3 slip = ((last ? excess : step) / distance) * along;
+    if (!go_on(view, position_ + slip)) {
+      return;
+    }
+    if (!slip_by(view, slip)) {
       lost_contact_ = true;
       lose_support();
       return;
@@ -185,7 +196,7 @@ bool Proxy::slip_by(const BlobView& view, Vec3 step) {
     return false;
   }
   const bool close = absolute(fit.distance) <= kOneStepIsEnough * radius;
-  if (!close && !settle(view).supported) {
+  if (!close && go_on(view, position_) && !settle(view).supported) {
     return false;
   }
   const float change = kStrengthPerRadius * length(position_ - position_before) / radius;
@@ -199,7 +210,6 @@ void Proxy::release() {
   in_contact_ = false;
   slipping_ = false;
   strength_ = 0.0F;
-  nearest_point_ = kNoPoint;
 }
 
 void Proxy::lose_support() {

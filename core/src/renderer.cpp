@@ -1,6 +1,5 @@
 #include "tactree/core/renderer.hpp"
 
-#include "tactree/core/octree.hpp"
 #include "tactree/core/paper_mode.hpp"
 
 namespace tactree::core {
@@ -52,8 +51,6 @@ float spring_energy(float stiffness_N_m, float length_m, float force_max_N) {
   r.strength = 1.0F;
   r.penetration_m = length(way);
   r.stored_energy = spring_energy(stiffness_N_m, r.penetration_m, c.force_max_N);
-  r.leaf = nearest.leaf;
-  r.point = nearest.index;
   return r;
 }
 
@@ -64,7 +61,8 @@ Rendering Renderer::update(const BlobView& view, const Configuration& configurat
   if (configuration.mode == RenderMode::kPaper) {
     return update_paper(view, configuration, probe);  // at most: paper per Scene::render
   }
-  proxy_.update(view, probe, friction_);  // at most: 1 - paper per Scene::render
+  // at most: 1 - paper per Scene::render
+  proxy_.update(view, probe, friction_, work_per_tick(configuration.rate_hz));
   return render_proxy(view, configuration, probe, velocity);
 }
 
@@ -97,11 +95,6 @@ Rendering Renderer::render_proxy(const BlobView& view, const Configuration& c, V
   r.force = r.strength * repelling;
   r.stored_energy =
       r.strength * spring_energy(feel.stiffness_N_m, share * length(way), c.force_max_N);
-  r.point = proxy_.nearest_point();
-  Leaf leaf;
-  if (find_leaf(view, r.proxy, leaf)) {
-    r.leaf = leaf.number;
-  }
   return r;
 }
 

@@ -51,6 +51,7 @@ void Scene::clear() {
   for (Body& body : bodies_) {  // bound: kMaxBodies
     body = {};
   }
+  end_ = 0;
   for (Slot& slot : slots_) {  // bound: kMaxReachableBodies
     slot.body = kNoBody;
   }
@@ -71,9 +72,12 @@ ModelStatus Scene::add(const BlobView& view, const Pose& pose, std::uint32_t& nu
   if (free == kMaxBodies) {
     return ModelStatus::kTooManyBodies;
   }
-  bodies_[free].view = view;
-  bodies_[free].pose = normalized(pose);
+  Body& body = bodies_[free];
+  body.view = view;
+  body.pose = normalized(pose);
+  body.moved = !(body.pose == Pose{});
   number = free;
+  end_ = free < end_ ? end_ : free + 1U;
   return ModelStatus::kOk;
 }
 
@@ -83,6 +87,9 @@ ModelStatus Scene::remove(std::uint32_t number) {
   }
   release(number);
   bodies_[number] = {};
+  while (end_ > 0U && !exists(end_ - 1U)) {  // bound: kMaxBodies
+    --end_;
+  }
   return ModelStatus::kOk;
 }
 
@@ -108,8 +115,10 @@ ModelStatus Scene::move(std::uint32_t number, const Pose& pose, const Motion& mo
   if (!is_valid(motion)) {
     return ModelStatus::kBadMotion;
   }
-  bodies_[number].pose = normalized(pose);
-  bodies_[number].motion = motion;
+  Body& body = bodies_[number];
+  body.pose = normalized(pose);
+  body.motion = motion;
+  body.moved = !(body.pose == Pose{} && motion == Motion{});
   return ModelStatus::kOk;
 }
 
@@ -188,28 +197,37 @@ void Scene::release(std::uint32_t number) {
   }
 }
 
+void Scene::locate_probe(Vec3 probe) {
+  for (std::uint32_t i = 0; i < end_; ++i) {  // bound: kMaxBodies
+    Body& body = bodies_[i];
+    if (!body.view.empty() && body.enabled) {
+      // at most: bodies per Scene::locate_probe
+      body.probe = body.moved ? position_to_body(body.pose, probe) : probe;
+      body.last_probe = body.seen ? body.last_probe : body.probe;
+    }
+  }
+}
+
 /// A slot for each body within reach; and, while there are enough, for the others. True: there are
 /// not enough. A proxy starts where the probe was in the last tick, which was still out of reach.
-bool Scene::lend_slots(Vec3 probe) {
+bool Scene::lend_slots() {
   bool within_reach[kMaxBodies] = {};
-  for (std::uint32_t i = 0; i < kMaxBodies; ++i) {  // bound: kMaxBodies
+  for (std::uint32_t i = 0; i < end_; ++i) {  // bound: kMaxBodies
     const Body& body = bodies_[i];
-    if (exists(i) && body.enabled) {
+    if (!body.view.empty() && body.enabled) {
       // at most: bodies per Scene::lend_slots
-      const Vec3 now = position_to_body(body.pose, probe);
-      within_reach[i] = comes_near(body.view, body.seen ? body.probe : now, now);
+      within_reach[i] = comes_near(body.view, body.last_probe, body.probe);
     }
   }
   bool crowded = false;
-  for (std::uint32_t i = 0; i < kMaxBodies; ++i) {  // bound: kMaxBodies
+  for (std::uint32_t i = 0; i < end_; ++i) {  // bound: kMaxBodies
     const Body& body = bodies_[i];
-    if (!exists(i) || !body.enabled || slot_of(i) != nullptr) {
+    if (body.view.empty() || !body.enabled || slot_of(i) != nullptr) {
       continue;
     }
     Slot* const slot = within_reach[i] ? free_slot(within_reach) : slot_of(kNoBody);
     if (slot != nullptr) {
-      // at most: bodies per Scene::lend_slots
-      lend(*slot, i, body.seen ? body.probe : position_to_body(body.pose, probe));
+      lend(*slot, i, body.last_probe);  // at most: bodies per Scene::lend_slots
     }
     crowded = crowded || (within_reach[i] && slot == nullptr);
   }
@@ -220,14 +238,23 @@ const SceneRendering& Scene::update(const Configuration& configuration, Vec3 pro
   const auto fade_ticks = static_cast<std::uint32_t>(kFadeSeconds * configuration.rate_hz);
   fade_ticks_ = fade_ticks > 0U ? fade_ticks : 1U;
   SceneRendering& all = rendering_;
-  all = SceneRendering{};
-  all.contact.proxy = probe;
-  all.crowded = lend_slots(probe);
+  all.contact.body = kNoBody;
+  all.wall_velocity = {};
+  all.fading = false;
+  for (Reaction& reaction : all.reactions) {  // bound: kMaxReachableBodies
+    reaction.body = kNoBody;
+  }
+  locate_probe(probe);
+  all.crowded = lend_slots();
   for (Slot& slot : slots_) {  // bound: kMaxReachableBodies
     if (slot.body != kNoBody) {
       // at most: min(bodies, kMaxReachableBodies) per Scene::update
       render(slot, configuration, probe, velocity);
     }
+  }
+  if (all.contact.body == kNoBody) {
+    all.contact = Rendering{};
+    all.contact.proxy = probe;
   }
   // Adding nothing must not change the bits of a force, nor the sign of a zero.
   for (std::uint32_t i = 0; i < kMaxReachableBodies; ++i) {  // bound: kMaxReachableBodies
@@ -243,23 +270,28 @@ const SceneRendering& Scene::update(const Configuration& configuration, Vec3 pro
       all.fading = true;
     }
   }
-  move_on(probe, 1.0F / configuration.rate_hz);
+  move_on(1.0F / configuration.rate_hz);
   return all;
 }
 
 void Scene::render(Slot& slot, const Configuration& configuration, Vec3 probe, Vec3 velocity) {
   SceneRendering& all = rendering_;
   const Body& body = bodies_[slot.body];
-  const Vec3 seen_probe = position_to_body(body.pose, probe);
   const float furthest = 2.0F * configuration.speed_max_m_s / configuration.rate_hz;
-  if (body.seen && !(length_squared(seen_probe - body.probe) <= furthest * furthest)) {
+  if (!(length_squared(body.probe - body.last_probe) <= furthest * furthest)) {
     let_go(slot, fade_ticks_);
-    lend(slot, slot.body, seen_probe);
+    lend(slot, slot.body, body.probe);
   }
-  const Vec3 relative = relative_velocity(body.pose, body.motion, probe, velocity);
-  const Vec3 seen_velocity = direction_to_body(body.pose, relative);
-  Rendering r = slot.renderer.update(body.view, configuration, seen_probe, seen_velocity);
-  bring_to_scene(body.pose, r);
+  Vec3 relative = velocity;
+  Vec3 seen_velocity = velocity;
+  if (body.moved) {
+    relative = relative_velocity(body.pose, body.motion, probe, velocity);
+    seen_velocity = direction_to_body(body.pose, relative);
+  }
+  Rendering r = slot.renderer.update(body.view, configuration, body.probe, seen_velocity);
+  if (body.moved) {
+    bring_to_scene(body.pose, r);
+  }
   r.body = slot.body;
   if (r.lost) {
     slot.fade.begin(slot.force - r.force, fade_ticks_);
@@ -267,10 +299,9 @@ void Scene::render(Slot& slot, const Configuration& configuration, Vec3 probe, V
   slot.in_contact = r.in_contact;
   slot.force = r.force;
   slot.stored_energy = r.stored_energy;
-  const bool complete = all.contact.complete && r.complete;
-  const bool stronger =
-      all.contact.body == kNoBody || length_squared(r.force) > length_squared(all.contact.force);
-  if (stronger) {
+  const bool first = all.contact.body == kNoBody;
+  const bool complete = r.complete && (first || all.contact.complete);
+  if (first || length_squared(r.force) > length_squared(all.contact.force)) {
     all.contact = r;
     all.wall_velocity = velocity - relative;
   }
@@ -282,13 +313,13 @@ void Scene::render(Slot& slot, const Configuration& configuration, Vec3 probe, V
   }
 }
 
-void Scene::move_on(Vec3 probe, float period_s) {
-  for (Body& body : bodies_) {  // bound: kMaxBodies
-    if (!body.view.empty()) {
-      body.probe = position_to_body(body.pose, probe);  // at most: bodies per Scene::move_on
-      body.seen = body.enabled;
-      // at most: bodies per Scene::move_on
-      body.pose = advanced(body.pose, body.motion, period_s);
+void Scene::move_on(float period_s) {
+  for (std::uint32_t i = 0; i < end_; ++i) {  // bound: kMaxBodies
+    Body& body = bodies_[i];
+    body.last_probe = body.probe;
+    body.seen = body.enabled;
+    if (body.moved) {
+      body.pose = advanced(body.pose, body.motion, period_s);  // at most: bodies per Scene::move_on
     }
   }
 }

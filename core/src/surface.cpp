@@ -30,6 +30,11 @@ constexpr float kRoundShare = 0.25F;
 constexpr float kApart = 0.04F;
 constexpr std::uint32_t kFacePoints = 3;
 
+// A centre rounded to whole numbers is off by less than kRounding of them. So much less than the
+// reach is gathered, the reach is rounded down, and a point may seem further than it is.
+constexpr std::int32_t kRounding = 1;
+constexpr float kLostToRounding = 3.0F;
+
 /// The weighted sums of a fit; q counts from the query position.
 struct Moments {
   float w = 0.0F;
@@ -37,7 +42,6 @@ struct Moments {
   Vec3 n{};
   float a = 0.0F;
   float b = 0.0F;
-  std::uint32_t count = 0;
 
   void add(Vec3 q, float qq, Vec3 normal, float weight) {
     w += weight;
@@ -45,58 +49,59 @@ struct Moments {
     n += weight * normal;
     a += weight * qq;
     b += weight * dot(q, normal);
-    count += weight > 0.0F ? 1U : 0U;
   }
 };
 
-/// Weight of a point at squared distance qq; 0 outside the support.
+/// Weight of a point at squared distance qq, which lies in the support.
 float weight_of(float qq, float inverse_squared) {
   const float u = 1.0F - qq * inverse_squared;
-  if (!(u > 0.0F)) {
-    return 0.0F;
-  }
   const float u2 = u * u;
   return u2 * u2;
 }
 
 /// What lies around, seen from one face.
 struct Surroundings {
-  Moments face;                         // of all points that face the reference
-  float averted = 0.0F;                 // weight of all others
-  std::uint32_t crease = kNoCandidate;  // nearest point of another face
+  Moments face{};                      // of all points that face the reference
+  float averted = 0.0F;                // weight of all others
+  const Candidate* crease = nullptr;   // nearest point of another face
 };
 
+// The sums are locals, not members of what is returned: these a compiler keeps in registers.
 Surroundings look_around(const CandidateSet& set, Vec3 x, float radius, Vec3 reference) {
   const float radius_squared = radius * radius;
   const float inverse_squared = 1.0F / radius_squared;
-  Surroundings found;
+  Moments face;
+  float averted = 0.0F;
   float nearest = radius_squared;
-  for (std::uint32_t i = 0; i < set.count(); ++i) {  // bound: points_per_ball_max
-    const Vec3 q = set.position(i) - x;
+  const Candidate* crease = nullptr;
+  for (const Candidate& candidate : set) {  // bound: points_per_ball_max
+    const Vec3 q = candidate.position - x;
     const float qq = length_squared(q);
     if (!(qq < radius_squared)) {
       continue;
     }
     const float weight = weight_of(qq, inverse_squared);
-    const Vec3 normal = set.normal(i);
-    const float cosine = dot(normal, reference);
-    if (cosine > 0.0F) {
-      found.face.add(q, qq, normal, weight);
-    } else {
-      found.averted += weight;
+    const float cosine = dot(candidate.normal, reference);
+    if (cosine < kCreaseCosine) {
+      if (cosine > -kCreaseCosine && qq < nearest) {
+        nearest = qq;
+        crease = &candidate;
+      }
+      if (!(cosine > 0.0F)) {
+        averted += weight;
+        continue;
+      }
     }
-    if (qq < nearest && cosine < kCreaseCosine && cosine > -kCreaseCosine) {
-      nearest = qq;
-      found.crease = i;
-    }
+    face.add(q, qq, candidate.normal, weight);
   }
-  return found;
+  return {face, averted, crease};
 }
 
 /// The points around a crease, each with the face whose normal is closer to its own.
 struct Faces {
-  Moments own;
-  Moments other;
+  Moments own{};
+  Moments other{};
+  std::uint32_t others = 0;
   float between = 0.0F;  // weight of the points that are of neither
 };
 
@@ -104,22 +109,22 @@ Faces divide(const CandidateSet& set, Vec3 x, float radius, Vec3 own, Vec3 other
   const float radius_squared = radius * radius;
   const float inverse_squared = 1.0F / radius_squared;
   Faces faces;
-  for (std::uint32_t i = 0; i < set.count(); ++i) {  // bound: points_per_ball_max
-    const Vec3 q = set.position(i) - x;
+  for (const Candidate& candidate : set) {  // bound: points_per_ball_max
+    const Vec3 q = candidate.position - x;
     const float qq = length_squared(q);
     if (!(qq < radius_squared)) {
       continue;
     }
     const float weight = weight_of(qq, inverse_squared);
-    const Vec3 normal = set.normal(i);
-    const float to_own = dot(normal, own);
-    const float to_other = dot(normal, other);
+    const float to_own = dot(candidate.normal, own);
+    const float to_other = dot(candidate.normal, other);
     const bool is_own = to_own >= to_other;
     const float closer = is_own ? to_own : to_other;
     if (!(closer > 0.0F)) {
       continue;
     }
-    (is_own ? faces.own : faces.other).add(q, qq, normal, weight);
+    (is_own ? faces.own : faces.other).add(q, qq, candidate.normal, weight);
+    faces.others += is_own ? 0U : 1U;
     faces.between += closer < kFaceCosine ? weight : 0.0F;
   }
   return faces;
@@ -173,7 +178,7 @@ SurfaceFit solve(const Moments& m, float radius) {
 /// what is inside either. Where the points do not look like two faces, the smooth fit stays.
 SurfaceFit combine(const SurfaceFit& smooth, const Faces& faces, float radius) {
   const float lesser = faces.own.w < faces.other.w ? faces.own.w : faces.other.w;
-  if (faces.other.count < kFacePoints || faces.between > kRoundShare * lesser) {
+  if (faces.others < kFacePoints || faces.between > kRoundShare * lesser) {
     return smooth;
   }
   const SurfaceFit own = solve(faces.own, radius);
@@ -194,84 +199,177 @@ SurfaceFit combine(const SurfaceFit& smooth, const Faces& faces, float radius) {
   return smooth;
 }
 
+constexpr std::uint32_t lower(std::uint32_t a, std::uint32_t b) { return a < b ? a : b; }
+
+/// To the nearest whole number, for |value| < 2^15.
+constexpr std::int32_t rounded(float value) {
+  constexpr float kPositive = 32768.0F;
+  return static_cast<std::int32_t>(value + (kPositive + 0.5F)) -
+         static_cast<std::int32_t>(kPositive);
+}
+
+/// How far from the centre of a gather its candidates are good. A centre that was rounded to the
+/// lattice leaves out what is almost a reach away.
+float slack_of(const BlobView& view) {
+  return view.reach_m() - view.header().support_radius_m - kLostToRounding * view.step_m();
+}
+
+/// Which points of a leaf are near the centre of a gather, in whole numbers: comparing floats takes
+/// longer, and most points are not near enough. Counted in half sites from the leaf's first site,
+/// to which the centre is rounded: where all leaves are of one size these are lattice units, and the
+/// reach is taken smaller by as much. Leaves of several sizes may be coarse: there it is taken
+/// larger, and what is within is compared exactly.
+class LeafBall {
+ public:
+  LeafBall(const BlobView& view, const NearLeaf& leaf, Int3 leaf_min) {
+    const float inverse = view.is_uniform() ? view.inverse_step() : 2.0F / leaf.site_m;
+    const auto reach = static_cast<std::int32_t>(view.reach_m() * inverse);
+    const std::int32_t radius = view.is_uniform() ? reach - kRounding : reach + 2 * kRounding;
+    centre_ = {rounded(leaf.local.x * inverse), rounded(leaf.local.y * inverse),
+               rounded(leaf.local.z * inverse)};
+    radius_squared_ = radius * radius;
+    const std::int32_t half = leaf.half_site;
+    origin_ = {leaf_min.x + half * (1 + centre_.x), leaf_min.y + half * (1 + centre_.y),
+               leaf_min.z + half * (1 + centre_.z)};
+    half_site_ = half;
+    const std::int32_t lowest = (centre_.z - radius + 1) >> 1;
+    const std::int32_t highest = (centre_.z + radius) >> 1;
+    if (lowest <= kLastSite && highest >= 0) {
+      first_word_ = lowest > 0 ? static_cast<std::uint32_t>(lowest) << kZShift : 0U;
+      last_word_ = highest < kLastSite
+                       ? ((static_cast<std::uint32_t>(highest) + 1U) << kZShift) - 1U
+                       : ~0U;
+    }
+  }
+
+  /// Words ascend with z: these are the ends of the slab that the ball touches; none where the
+  /// first is beyond the last.
+  [[nodiscard]] std::uint32_t first_word() const { return first_word_; }
+  [[nodiscard]] std::uint32_t last_word() const { return last_word_; }
+
+  /// From the centre to the point, half sites.
+  [[nodiscard]] Int3 way_to(std::uint32_t word) const {
+    return {2 * static_cast<std::int32_t>(word >> 2 & 1023U) - centre_.x,
+            2 * static_cast<std::int32_t>(word >> 12 & 1023U) - centre_.y,
+            2 * static_cast<std::int32_t>(word >> kZShift) - centre_.z};
+  }
+  [[nodiscard]] bool holds(Int3 way) const {
+    return way.x * way.x + way.y * way.y + way.z * way.z <= radius_squared_;
+  }
+  /// In lattice units; exact.
+  [[nodiscard]] Int3 place_of(Int3 way) const {
+    return {origin_.x + half_site_ * way.x, origin_.y + half_site_ * way.y,
+            origin_.z + half_site_ * way.z};
+  }
+
+ private:
+  static constexpr std::uint32_t kZShift = 22;
+  static constexpr std::int32_t kLastSite = 1023;
+
+  Int3 centre_{};
+  Int3 origin_{};  // the centre, lattice units
+  std::int32_t radius_squared_ = 0;
+  std::int32_t half_site_ = 1;  // lattice units
+  std::uint32_t first_word_ = ~0U;
+  std::uint32_t last_word_ = 0;
+};
+
 }  // namespace
 
-void CandidateSet::cover(const BlobView& view, Vec3 x) {
-  if (view.empty()) {
-    count_ = 0;
-    valid_ = false;
-    return;
-  }
-  const float slack = view.reach_m() - view.header().support_radius_m;
+bool CandidateSet::covers(const BlobView& view, Vec3 x) const {
+  const float slack = slack_of(view);
+  return valid_ && length_squared(x - centre_) <= slack * slack;
+}
+
+// Ahead of a query that walks: it is then good for twice as long.
+void CandidateSet::gather_for(const BlobView& view, Vec3 x) {
+  const float slack = slack_of(view);
   const Vec3 way = x - centre_;
   const float squared = length_squared(way);
-  if (valid_ && squared <= slack * slack) {
-    return;
-  }
-  // Ahead of a query that walks: it is then good for twice as long.
-  const bool walks = valid_ && squared <= kStride * slack * (kStride * slack);
-  const Vec3 centre = walks ? x + (kAhead * slack / square_root(squared)) * way : x;
-  gather(view, centre);  // at most: kPlacesPerTick per Proxy::update
+  const bool walks = valid_ && squared > 0.0F && squared <= kStride * slack * (kStride * slack);
+  gather(view, walks ? x + (kAhead * slack / square_root(squared)) * way : x);
 }
 
 void CandidateSet::gather(const BlobView& view, Vec3 centre) {
+  const BlobHeader& header = view.header();
   count_ = 0;
   complete_ = true;
   centre_ = centre;
   valid_ = true;
-  most_ = view.header().points_per_ball_max;
-  most_ = most_ < kMaxCandidates ? most_ : kMaxCandidates;
-  unseen_ = view.header().points_per_query_max;
+  most_ = header.points_per_ball_max < kMaxCandidates ? header.points_per_ball_max : kMaxCandidates;
+  unseen_ = header.points_per_query_max;
+  untested_ = header.points_per_slab_max;
   const float reach_squared = view.reach_m() * view.reach_m();
   CornerLeaves corners(view, centre, view.reach_m());
   corners.each(reach_squared, [&](const NearLeaf& leaf) {
-    gather_leaf(view, corners.leaf(leaf.number, leaf.corner), reach_squared);
+    gather_leaf(view, leaf, corners.min_of(leaf));
     return reach_squared;
   });
 }
 
-void CandidateSet::gather_leaf(const BlobView& view, const Leaf& leaf, float reach_squared) {
-  // A blob that holds more than it declares must not make a tick longer than was proven.
-  complete_ = complete_ && leaf.point_count <= unseen_;
-  const std::uint32_t count = leaf.point_count < unseen_ ? leaf.point_count : unseen_;
-  unseen_ -= count;
-  const std::uint32_t end = leaf.first_point + count;
+// A blob that holds more than it declares must not make a tick longer than was proven.
+void CandidateSet::gather_leaf(const BlobView& view, const NearLeaf& leaf, Int3 leaf_min) {
+  const std::uint32_t* const words = view.point_words();
+  const LeafBall ball(view, leaf, leaf_min);
+  const std::uint32_t count = leaf.end_point - leaf.first_point;
+  complete_ = complete_ && count <= unseen_;
+  std::uint32_t index = leaf.first_point;
+  const std::uint32_t end = index + lower(count, unseen_);
+  unseen_ -= end - index;
   // bound: points_per_leaf_max, total points_per_query_max per CandidateSet::gather
-  for (std::uint32_t index = leaf.first_point; index < end; ++index) {
-    const Vec3 position = view.position(leaf, index);
-    if (!(length_squared(position - centre_) <= reach_squared)) {
-      continue;
-    }
-    if (count_ == most_) {
-      complete_ = false;
+  while (index < end && words[index] < ball.first_word()) {
+    ++index;
+  }
+  const std::uint32_t first = index;
+  const std::uint32_t last = index + lower(end - index, untested_);
+  // bound: points_per_leaf_max, total points_per_slab_max per CandidateSet::gather
+  for (; index < last && words[index] <= ball.last_word(); ++index) {
+    const Int3 way = ball.way_to(words[index]);
+    if (ball.holds(way) && !add(view, ball.place_of(way), index)) {
       return;
     }
-    positions_[count_] = position;
-    normals_[count_] = view.normal(index);
-    points_[count_] = index;  // at most: points_per_ball_max per CandidateSet::gather
-    ++count_;
   }
+  untested_ -= index - first;
+  complete_ = complete_ && (index == end || words[index] > ball.last_word());
 }
 
-std::uint32_t nearest_candidate(const CandidateSet& set, Vec3 x, float radius) {
+bool CandidateSet::add(const BlobView& view, Int3 place, std::uint32_t point) {
+  const Vec3 position = {view.step_m() * static_cast<float>(place.x),
+                         view.step_m() * static_cast<float>(place.y),
+                         view.step_m() * static_cast<float>(place.z)};
+  const float reach = view.reach_m();
+  if (!view.is_uniform() && !(length_squared(position - centre_) <= reach * reach)) {
+    return true;
+  }
+  if (count_ == most_) {
+    complete_ = false;
+    return false;
+  }
+  candidates_[count_] = {position, view.normal(point), point};
+  ++count_;  // at most: points_per_ball_max per CandidateSet::gather
+  return true;
+}
+
+const Candidate* nearest_candidate(const CandidateSet& set, Vec3 x, float radius) {
   float best = radius * radius;
-  std::uint32_t slot = kNoCandidate;
-  for (std::uint32_t i = 0; i < set.count(); ++i) {  // bound: points_per_ball_max
-    const float squared = length_squared(set.position(i) - x);
+  const Candidate* nearest = nullptr;
+  for (const Candidate& candidate : set) {  // bound: points_per_ball_max
+    const float squared = length_squared(candidate.position - x);
     if (squared < best) {
       best = squared;
-      slot = i;
+      nearest = &candidate;
     }
   }
-  return slot;
+  return nearest;
 }
 
 SurfaceFit fit_surface(const CandidateSet& set, Vec3 x, float radius, Vec3 reference) {
   const Surroundings around = look_around(set, x, radius, reference);
   SurfaceFit fit = solve(around.face, radius);
-  if (around.crease != kNoCandidate) {
-    const Faces faces = divide(set, x, radius, reference, set.normal(around.crease));
+  if (around.crease != nullptr) {
+    const Faces faces = divide(set, x, radius, reference, around.crease->normal);
     fit = combine(fit, faces, radius);
+    fit.passes = 2;
   }
   const float all = around.face.w + around.averted;
   fit.facing = all > 0.0F ? around.face.w / all : 1.0F;
@@ -286,11 +384,11 @@ SurfaceProjection project_to_surface(const BlobView& view, Vec3 x, CandidateSet&
   const float radius = view.header().support_radius_m;
   scratch.clear();
   scratch.cover(view, x);
-  const std::uint32_t nearest = nearest_candidate(scratch, x, radius);
-  if (nearest == kNoCandidate) {
+  const Candidate* const nearest = nearest_candidate(scratch, x, radius);
+  if (nearest == nullptr) {
     return result;
   }
-  const SurfaceFit first = fit_surface(scratch, x, radius, scratch.normal(nearest));
+  const SurfaceFit first = fit_surface(scratch, x, radius, nearest->normal);
   if (!first.firm()) {
     return result;
   }
@@ -318,7 +416,7 @@ SurfaceSupport surface_support(const BlobView& view) {
     return SurfaceSupport::kEmpty;
   }
   const float radius = view.header().support_radius_m;
-  if (!(radius > 0.0F) || !(view.reach_m() >= radius)) {
+  if (!(radius > 0.0F) || !(slack_of(view) > 0.0F)) {
     return SurfaceSupport::kNoReach;
   }
   if (view.header().points_per_ball_max > kMaxCandidates) {

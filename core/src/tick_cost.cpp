@@ -7,9 +7,9 @@ namespace {
 
 constexpr std::uint32_t TickFigures::*kFigures[] = {
     &TickFigures::points_per_ball_max, &TickFigures::points_per_query_max,
-    &TickFigures::points_per_leaf_max, &TickFigures::depth,
-    &TickFigures::levels_below,        &TickFigures::blended_points,
-    &TickFigures::blended_materials};
+    &TickFigures::points_per_slab_max, &TickFigures::points_per_leaf_max,
+    &TickFigures::depth,               &TickFigures::levels_below,
+    &TickFigures::blended_points,      &TickFigures::blended_materials};
 static_assert(sizeof(kFigures) / sizeof(kFigures[0]) == kTickFigures);
 
 constexpr std::uint32_t smaller_of(std::uint32_t a, std::uint32_t b) { return a < b ? a : b; }
@@ -20,6 +20,7 @@ TickFigures tick_figures(const BlobHeader& h) {
   TickFigures figures;
   figures.points_per_ball_max = h.points_per_ball_max;
   figures.points_per_query_max = h.points_per_query_max;
+  figures.points_per_slab_max = h.points_per_slab_max;
   figures.points_per_leaf_max = h.points_per_leaf_max;
   figures.depth = h.depth;
   figures.levels_below = h.depth - h.directory_level;

@@ -8,9 +8,13 @@ constexpr float kTwoPi = 6.2831853F;
 // Two samples can be a whole quantum off the line, and their float32 a little more.
 constexpr float kTolerance = 1.1F;
 
-constexpr float kOneOver[kVelocityWindow + 1] = {
-    0.0F,     1.0F,     1.0F / 2,  1.0F / 3,  1.0F / 4,  1.0F / 5,  1.0F / 6,  1.0F / 7,
-    1.0F / 8, 1.0F / 9, 1.0F / 10, 1.0F / 11, 1.0F / 12, 1.0F / 13, 1.0F / 14, 1.0F / 15};
+// A hand moves so little between these that a line which passes them passes the samples between.
+struct Window {
+  std::uint32_t samples;
+  float inverse;
+};
+constexpr Window kWindows[kVelocityWindows] = {
+    {3, 1.0F / 3}, {7, 1.0F / 7}, {15, 1.0F / 15}};
 
 }  // namespace
 
@@ -45,19 +49,22 @@ Vec3 VelocityEstimator::update(Vec3 position) {
 
 // Each sample allows the line a range of slopes; their common part is carried along, so that one
 // pass is enough.
-float VelocityEstimator::slope(const float (&samples)[kSlots], float quantum) const {
+[[gnu::always_inline]] inline float VelocityEstimator::slope(const float (&samples)[kSlots], float quantum) const {
   const float newest = samples[newest_];
   float best = newest - samples[(newest_ - 1U) & (kSlots - 1U)];
   float lowest = best - quantum;
   float highest = best + quantum;
-  for (std::uint32_t window = 2; window < count_; ++window) {  // bound: kVelocityWindow
-    const float past = samples[(newest_ - window) & (kSlots - 1U)];
-    const float candidate = (newest - past) * kOneOver[window];
+  for (const Window& window : kWindows) {  // bound: kVelocityWindows
+    if (window.samples >= count_) {
+      break;
+    }
+    const float past = samples[(newest_ - window.samples) & (kSlots - 1U)];
+    const float candidate = (newest - past) * window.inverse;
     if (!(candidate >= lowest && candidate <= highest)) {
       break;
     }
     best = candidate;
-    const float play = quantum * kOneOver[window];
+    const float play = quantum * window.inverse;
     lowest = candidate - play > lowest ? candidate - play : lowest;
     highest = candidate + play < highest ? candidate + play : highest;
   }

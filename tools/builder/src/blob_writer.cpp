@@ -5,12 +5,12 @@
 #include <cmath>
 #include <cstring>
 #include <stdexcept>
-#include <unordered_map>
 
 #include "ball_bound.hpp"
 #include "lattice.hpp"
 #include "normal_code.hpp"
 #include "octree_builder.hpp"
+#include "query_bound.hpp"
 #include "tactree/builder/model.hpp"
 #include "tactree/builder/version.hpp"
 #include "tactree/core/blob.hpp"
@@ -86,40 +86,6 @@ std::vector<Eigen::Vector3d> decode_all(const Octree& tree) {
     }
   }
   return decoded;
-}
-
-// The most points that the eight leaves of one query can hold. With leaves of one size these are
-// the leaves of a 2 x 2 x 2 block; else the eight fullest leaves are a bound.
-std::uint32_t points_per_query(const Octree& tree, core::Profile profile) {
-  if (profile == core::Profile::kPaper) {
-    std::vector<std::uint32_t> counts;
-    for (const BuiltLeaf& leaf : tree.leaves) {
-      counts.push_back(leaf.count);
-    }
-    std::sort(counts.rbegin(), counts.rend());
-    counts.resize(std::min<std::size_t>(counts.size(), core::kLeavesPerQuery));
-    std::uint32_t sum = 0;
-    for (const std::uint32_t count : counts) {
-      sum += count;
-    }
-    return sum;
-  }
-  std::unordered_map<std::uint64_t, std::uint32_t> blocks;
-  std::uint32_t most = 0;
-  for (const BuiltLeaf& leaf : tree.leaves) {
-    const auto cell = [&](std::int32_t v, std::int32_t root) {
-      return static_cast<std::uint64_t>((v - root) / core::kLeafUnits);
-    };
-    const std::uint64_t x = cell(leaf.min.x, tree.lattice.root_min.x);
-    const std::uint64_t y = cell(leaf.min.y, tree.lattice.root_min.y);
-    const std::uint64_t z = cell(leaf.min.z, tree.lattice.root_min.z);
-    for (std::uint64_t corner = 0; corner < 8; ++corner) {  // block keyed by its upper cell
-      const std::uint64_t key =
-          (x + (corner & 1U)) | (y + (corner >> 1 & 1U)) << 20 | (z + (corner >> 2)) << 40;
-      most = std::max(most, blocks[key] += leaf.count);
-    }
-  }
-  return most;
 }
 
 // The deepest level whose directory takes at most 1/32 of what the point words take, or no more
@@ -260,7 +226,9 @@ core::BlobHeader make_header(const Model& model, const Octree& tree) {
   header.node_count = static_cast<std::uint32_t>(tree.nodes.size());
   header.material_count = static_cast<std::uint32_t>(model.materials.size());
   header.points_per_leaf_max = fullest(tree);
-  header.points_per_query_max = points_per_query(tree, model.profile);
+  const QueryBound query = query_bound(tree, model.profile, header.reach_m);
+  header.points_per_query_max = query.points;
+  header.points_per_slab_max = query.points_per_slab;
   // A ball of this radius touches no leaf beyond its query's, so their points are a bound too.
   header.points_per_ball_max =
       std::min(header.points_per_query_max,

@@ -148,6 +148,23 @@ class BlobView {
   bool uniform_ = false;
 };
 
+// Octahedral map: Meyer, Suessmuth, Sussner and Stamminger, "On Floating-Point Normal Vectors",
+// Eurographics Symposium on Rendering 2010.
+inline Vec3 BlobView::normal(std::uint32_t index) const {
+  const std::uint32_t code = static_cast<std::uint32_t>(normals_[index]) | (points_[index] & 3U)
+                                                                               << 16;
+  const float u = static_cast<float>(static_cast<std::int32_t>(code & 511U) - 255);
+  const float v = static_cast<float>(static_cast<std::int32_t>(code >> 9) - 255);
+  const float w = 255.0F - absolute(u) - absolute(v);
+  Vec3 n{u, v, w};
+  if (w < 0.0F) {
+    const float fold = -w;
+    n.x += u < 0.0F ? fold : -fold;
+    n.y += v < 0.0F ? fold : -fold;
+  }
+  return (1.0F / length(n)) * n;
+}
+
 /// Checks `bytes` and, when all is well, points `view` at them; else `view` becomes empty.
 /// After kOk no query can read outside `bytes`, whatever they hold, as long as they do not change.
 /// Cost: one pass, about 30 instructions a byte word; no recursion; at most 256 bytes of stack.

@@ -106,7 +106,9 @@ struct BlobHeader {
   char name[32];                   ///< UTF-8, zero-padded, zero-terminated
   std::uint8_t source_digest[32];  ///< SHA-256 of the input bytes
   char tool_version[16];           ///< zero-padded, zero-terminated
-  std::uint32_t reserved[5];       ///< 0
+  std::uint32_t points_per_slab_max;  ///< in the part of these eight leaves that is 2 reach_m thick
+                                      ///< along z: proven by the builder
+  std::uint32_t reserved[4];          ///< 0
 };
 
 /// An inner node: eight octants, each empty, an inner node or a leaf. Octant = x | y << 1 | z << 2,

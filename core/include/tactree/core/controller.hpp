@@ -95,8 +95,8 @@ class Controller {
   [[nodiscard]] ModelStatus enable_body(std::uint32_t number, bool enabled);
   [[nodiscard]] ModelStatus remove_body(std::uint32_t number);
 
-  /// One tick. Accepts every input. Cost: Scene::update() and some 1000 instructions.
-  Output step(const Input& input);
+  /// One tick; what it returns holds until the next. Accepts every input. Cost: Scene::update() and some 1000 instructions.
+  const Output& step(const Input& input);
 
   [[nodiscard]] State state() const { return state_; }
   [[nodiscard]] FaultMask faults() const { return latched_; }
@@ -133,8 +133,8 @@ class Controller {
   void notice_empty_scene();
   [[nodiscard]] Vec3 wanted_force();
   SafetyGate::Result apply_force();
-  [[nodiscard]] Status report(const SafetyGate::Result& gated) const;
-  void report_reactions(Vec3 force, Status& status) const;
+  void report(const SafetyGate::Result& gated);
+  void report_reactions(Vec3 force);
 
   const TickCosts* costs_ = nullptr;
   std::uint32_t cycles_per_second_ = 0;
@@ -168,6 +168,7 @@ class Controller {
   bool configured_ = false;
   bool enable_ = false;
   bool dead_man_released_ = false;  // since arming: a control tied down does not count
+  Output output_{SafetyGate::no_command()};
 };
 
 }  // namespace tactree::core

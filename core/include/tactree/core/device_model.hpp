@@ -108,17 +108,20 @@ struct DeviceModel {
 };
 
 /// Axes the kind has: 3, 2 or 1; the inputs of the others do not matter and they get no effort.
-[[nodiscard]] std::uint32_t axes_of(DeviceKind kind);
+[[nodiscard]] constexpr std::uint32_t axes_of(DeviceKind kind) {
+  return kind == DeviceKind::kPaddle ? 1U : (kind == DeviceKind::kFiveBar ? 2U : kAxes);
+}
 
 /// Is every figure that counts for the kind finite and within its range? Cost: constant.
 [[nodiscard]] bool is_valid(const DeviceModel& device);
 
 /// Encoder counts per unit of the joint (1/m or 1/rad), negative where they run against each
 /// other. Precondition: is_valid(device), axis < kAxes.
-[[nodiscard]] float counts_per_unit(const DeviceModel& device, std::uint32_t axis);
-
-/// Current, A, through the motor of an axis for an effort (N or Nm) at its joint.
-/// Precondition: is_valid(device), axis < kAxes.
-[[nodiscard]] float motor_current(const DeviceModel& device, std::uint32_t axis, float effort);
+[[nodiscard]] constexpr float counts_per_unit(const DeviceModel& device, std::uint32_t axis) {
+  constexpr float kTwoPi = 6.2831853F;
+  return device.kind == DeviceKind::kCartesian
+             ? device.counts_per_m[axis]
+             : device.counts_per_revolution[axis] * device.ratio[axis] / kTwoPi;
+}
 
 }  // namespace tactree::core

@@ -6,6 +6,8 @@
 // FREE:    the way of the probe is swept in steps of half a support radius, so that nothing is
 //          crossed unnoticed; where the signed distance turns negative, contact begins.
 // CONTACT: the proxy sticks within the friction cone of the probe, or slips to its rim.
+// What a tick may cost is given. Each step takes one gather at most: with work_per_tick() and
+// R = 2.5 mm it keeps up with 5 m/s at any rate; a faster probe is followed with a delay, never lost.
 
 #include <cstdint>
 
@@ -13,17 +15,6 @@
 #include "tactree/core/surface.hpp"
 
 namespace tactree::core {
-
-/// Surface steps of one tick. Half a support radius each: at h = 1 mm, R = 2.5 mm and 1 kHz the
-/// sweep keeps up with 5 m/s; a faster probe is followed with a delay, never lost.
-inline constexpr std::uint32_t kSweepSteps = 4;
-/// At most two evaluations a step of slip, and two that project onto the surface where contact
-/// begins.
-inline constexpr std::uint32_t kEvaluationsPerTick = kSweepSteps + 2;
-/// Where it evaluates: twice in one place is only where the normals around contradict the
-/// reference. Each place of a sweep costs one evaluation at least, a step of slip has two places,
-/// and contact begins with one more.
-inline constexpr std::uint32_t kPlacesPerTick = kSweepSteps + 1;
 
 /// Coefficients, 0 <= dynamic <= static.
 struct Friction {
@@ -36,8 +27,9 @@ class Proxy {
   /// Forgets model, contact and side; the proxy is at `probe`. Call it when the model changes.
   void reset(Vec3 probe);
 
-  /// Follows the probe for one tick. Cost: at most kEvaluationsPerTick gathers and as many fits.
-  void update(const BlobView& view, Vec3 probe, const Friction& friction);
+  /// Follows the probe for one tick. Cost: `work`, and for each of its gathers one search for the
+  /// nearest candidate.
+  void update(const BlobView& view, Vec3 probe, const Friction& friction, SurfaceWork work);
 
   [[nodiscard]] bool in_contact() const { return in_contact_; }
   [[nodiscard]] bool slipping() const { return slipping_; }
@@ -47,20 +39,18 @@ class Proxy {
   [[nodiscard]] Vec3 normal() const { return side_ * reference_; }
   /// In contact: of the surface, towards the side of the points' normals.
   [[nodiscard]] Vec3 stored_normal() const { return reference_; }
-  /// The points around, good for position().
+  /// The points around position().
   [[nodiscard]] const CandidateSet& candidates() const { return candidates_; }
   /// Share of the contact force to display: less than 1 where the surface ends.
   [[nodiscard]] float strength() const { return strength_; }
-  /// Point of the blob nearest to the proxy; kNoPoint when free.
-  [[nodiscard]] std::uint32_t nearest_point() const { return nearest_point_; }
   /// True in the tick in which contact ended because the surface did, not because the probe left.
   [[nodiscard]] bool lost_contact() const { return lost_contact_; }
   /// False once a gather had to leave points out; reset() makes it true.
   [[nodiscard]] bool complete() const { return complete_; }
 
  private:
+  [[nodiscard]] bool go_on(const BlobView& view, Vec3 x);
   [[nodiscard]] SurfaceFit evaluate(const BlobView& view, Vec3 x, Vec3 reference);
-  [[nodiscard]] std::uint32_t find_nearest(const BlobView& view, Vec3 x) const;
   void sweep(const BlobView& view, Vec3 probe);
   void visit(const BlobView& view, Vec3 x);
   void begin_contact(const BlobView& view, const SurfaceFit& fit);
@@ -76,9 +66,9 @@ class Proxy {
   Vec3 reference_{};   // normal of the last fit, as stored: towards the side of the points' normals
   float side_ = 1.0F;  // +1 or -1: on which side of the points' normals the probe is
   float strength_ = 0.0F;
-  std::uint32_t nearest_point_ = 0xFFFFFFFFU;
-  std::uint32_t budget_ = 0;  // evaluations left in this tick
-  bool tracked_ = false;      // reference_ and side_ hold
+  SurfaceWork left_{};  // for the rest of this tick
+  std::uint32_t searches_left_ = 0;  // likewise: for the nearest candidate
+  bool tracked_ = false;  // reference_ and side_ hold
   bool in_contact_ = false;
   bool slipping_ = false;
   bool lost_contact_ = false;

@@ -6,30 +6,26 @@
 #include "tactree/core/blob.hpp"
 #include "tactree/core/configuration.hpp"
 #include "tactree/core/material.hpp"
-#include "tactree/core/nearest.hpp"
 #include "tactree/core/proxy.hpp"
 #include "tactree/core/vec3.hpp"
 
 namespace tactree::core {
 
-inline constexpr std::uint32_t kNoLeaf = 0xFFFFFFFFU;
 inline constexpr std::uint32_t kNoBody = 0xFFFFFFFFU;
 
 /// What the rendering of one tick found. Model frame.
 struct Rendering {
   bool in_contact = false;
   bool slipping = false;
-  bool complete = true;          ///< false: the model breaks its own bounds; do not trust the force
+  bool complete = true;        ///< false: the model breaks its own bounds; do not trust the force
+  bool lost = false;           ///< the surface ended under the contact of the last tick
   Vec3 proxy{};                  ///< m; the probe when free
   Vec3 normal{};                 ///< outward; zero when free
   Vec3 force{};                  ///< N
   float stored_energy = 0.0F;    ///< J, in the spring between probe and proxy
   float strength = 0.0F;         ///< share of the force displayed; below 1 on a rim
   float penetration_m = 0.0F;    ///< from the probe to the proxy, along the normal; no texture
-  std::uint32_t leaf = kNoLeaf;  ///< of the nearest point of the contact
-  std::uint32_t point = kNoPoint;  ///< nearest point of the contact
-  std::uint32_t body = kNoBody;    ///< in a Scene: whose contact it is
-  bool lost = false;               ///< the surface ended under the contact of the last tick
+  std::uint32_t body = kNoBody;  ///< in a Scene: whose contact it is
 };
 
 /// Interrupt safe: no shared state. RAM: about 4 KiB, the proxy's scratch.

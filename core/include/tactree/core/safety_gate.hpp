@@ -40,6 +40,8 @@ struct GateLimits {
 /// Interrupt safe: no shared state.
 class SafetyGate {
  public:
+  [[nodiscard]] static MotorCommand no_command() { return {}; }
+
   struct Result {
     MotorCommand command{};
     Vec3 force{};  ///< N at the probe, before the limits of the axes

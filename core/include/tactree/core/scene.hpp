@@ -97,7 +97,9 @@ class Scene {
     BlobView view{};  // empty: the number is free, and all the rest as here
     Pose pose{};
     Motion motion{};
-    Vec3 probe{};  // of the last tick, in the body's frame; where `seen`
+    Vec3 probe{};        // in the body's frame, of this tick; where `enabled`
+    Vec3 last_probe{};   // of the last tick; where `seen`
+    bool moved = false;  // its frame is not the scene's, or will not be
     bool enabled = true;
     bool seen = false;
   };
@@ -118,11 +120,13 @@ class Scene {
   static void lend(Slot& slot, std::uint32_t number, Vec3 probe);
   void release(std::uint32_t number);
   static void let_go(Slot& slot, std::uint32_t fade_ticks);
-  [[nodiscard]] bool lend_slots(Vec3 probe);
+  void locate_probe(Vec3 probe);
+  [[nodiscard]] bool lend_slots();
   void render(Slot& slot, const Configuration& configuration, Vec3 probe, Vec3 velocity);
-  void move_on(Vec3 probe, float period_s);
+  void move_on(float period_s);
 
   Body bodies_[kMaxBodies]{};
+  std::uint32_t end_ = 0;  // one behind the last body
   Slot slots_[kMaxReachableBodies]{};
   SceneRendering rendering_{};
   std::uint32_t fade_ticks_ = 1;

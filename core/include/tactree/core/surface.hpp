@@ -10,43 +10,67 @@
 
 namespace tactree::core {
 
+struct NearLeaf;  // of the search for leaves
+
 /// Decoded points one gather can hold. A blob whose points_per_ball_max is larger is not loaded.
 inline constexpr std::uint32_t kMaxCandidates = 128;
 
-inline constexpr std::uint32_t kNoCandidate = 0xFFFFFFFFU;
+/// What the surface may cost in one tick; what is left waits for the next.
+struct SurfaceWork {
+  std::uint32_t gathers = 0;  ///< of candidates
+  std::uint32_t passes = 0;   ///< over candidates: 1 a fit, 2 at a crease
+};
+/// A tick's share of what a second may cost, so that probe and proxy go as fast at any rate: the
+/// faster the loop, the less there is to do in a tick. At least a gather and two fits at a crease.
+[[nodiscard]] constexpr SurfaceWork work_per_tick(float rate_hz) {
+  return rate_hz > 2000.0F ? SurfaceWork{1, 4}
+                           : (rate_hz > 1000.0F ? SurfaceWork{2, 6} : SurfaceWork{4, 10});
+}
 
-/// The decoded points around a centre, good for every query within the slack of that centre:
-/// slack = reach_m - support_radius_m. A gather costs at most 8 leaves, points_per_query_max
-/// points.
+/// A decoded point.
+struct Candidate {
+  Vec3 position{};
+  Vec3 normal{};
+  std::uint32_t point = 0;  ///< its number in the blob
+};
+
+/// The decoded points around a centre, good for every query within the slack of that centre.
 class CandidateSet {
  public:
   /// Forgets the last gather; needed whenever the blob changes.
   void clear() { valid_ = false; }
 
-  /// Makes the set good for a query at `x`: gathers anew when x lies outside the slack, ahead of x
-  /// in the direction it has moved.
+  /// Is it good for a query at `x`?
   /// Precondition: the view is the one of the last gather, or clear() was called in between.
-  void cover(const BlobView& view, Vec3 x);
+  [[nodiscard]] bool covers(const BlobView& view, Vec3 x) const;
+  /// Makes it so: gathers around a place ahead of x, in the direction the query has moved.
+  /// Cost: at most 8 leaves of points_per_query_max points, of which points_per_slab_max are looked
+  /// at and points_per_ball_max decoded.
+  void gather_for(const BlobView& view, Vec3 x);
+  void cover(const BlobView& view, Vec3 x) {
+    if (!covers(view, x)) {
+      gather_for(view, x);
+    }
+  }
 
   [[nodiscard]] std::uint32_t count() const { return count_; }
   /// False: the blob held more points than it declares, or than kMaxCandidates, and some were left
   /// out.
   [[nodiscard]] bool complete() const { return complete_; }
-  [[nodiscard]] Vec3 position(std::uint32_t i) const { return positions_[i]; }
-  [[nodiscard]] Vec3 normal(std::uint32_t i) const { return normals_[i]; }
-  /// Number of the point in the blob.
-  [[nodiscard]] std::uint32_t point(std::uint32_t i) const { return points_[i]; }
+  [[nodiscard]] const Candidate& operator[](std::uint32_t i) const { return candidates_[i]; }
+  [[nodiscard]] const Candidate* begin() const { return candidates_; }
+  [[nodiscard]] const Candidate* end() const { return candidates_ + count_; }
 
  private:
   void gather(const BlobView& view, Vec3 centre);
-  void gather_leaf(const BlobView& view, const Leaf& leaf, float reach_squared);
+  void gather_leaf(const BlobView& view, const NearLeaf& leaf, Int3 leaf_min);
+  [[nodiscard]] bool add(const BlobView& view, Int3 place, std::uint32_t point);
 
-  Vec3 positions_[kMaxCandidates];
-  Vec3 normals_[kMaxCandidates];
-  std::uint32_t points_[kMaxCandidates];
+  Candidate candidates_[kMaxCandidates];
   std::uint32_t count_ = 0;
-  std::uint32_t most_ = 0;    // candidates that the blob declares, and there is room for
-  std::uint32_t unseen_ = 0;  // points of this gather that it declares and that were not tested yet
+  std::uint32_t most_ = 0;      // candidates that the blob declares, and there is room for
+  std::uint32_t unseen_ = 0;    // points that it declares for a query and that were not met yet
+  std::uint32_t untested_ = 0;  // likewise, for a slab
   Vec3 centre_{};
   bool valid_ = false;
   bool complete_ = true;
@@ -65,10 +89,11 @@ struct SurfaceFit {
   [[nodiscard]] bool firm() const { return supported && strength > 0.0F; }
   /// Share of the weight around that faces the reference.
   float facing = 1.0F;
+  std::uint32_t passes = 1;  ///< that it took
 };
 
-/// Slot of the candidate nearest to `x` within `radius`; kNoCandidate: none.
-[[nodiscard]] std::uint32_t nearest_candidate(const CandidateSet& set, Vec3 x, float radius);
+/// The candidate nearest to `x` within `radius`; null: none. Cost: one pass over the set.
+[[nodiscard]] const Candidate* nearest_candidate(const CandidateSet& set, Vec3 x, float radius);
 
 /// The fit at `x`, weights (1 - d^2/radius^2)^4, of the candidates whose normal has a positive
 /// component along `reference`: that keeps the two sides of a thin plate apart.
@@ -98,7 +123,7 @@ struct SurfaceProjection {
 enum class SurfaceSupport : std::uint8_t {
   kOk = 0,
   kEmpty,          ///< no model
-  kNoReach,        ///< the blob was built without the guarantee reach >= support radius > 0
+  kNoReach,        ///< the blob was built without the guarantee reach > support radius > 0
   kTooManyPoints,  ///< a ball may hold more than kMaxCandidates points
 };
 [[nodiscard]] SurfaceSupport surface_support(const BlobView& view);

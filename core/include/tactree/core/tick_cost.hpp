@@ -17,6 +17,7 @@ namespace tactree::core {
 struct TickFigures {
   std::uint32_t points_per_ball_max = 0;
   std::uint32_t points_per_query_max = 0;
+  std::uint32_t points_per_slab_max = 0;
   std::uint32_t points_per_leaf_max = 0;
   std::uint32_t depth = 0;
   std::uint32_t levels_below = 0;       ///< between the directory and the leaves
@@ -25,8 +26,8 @@ struct TickFigures {
 };
 inline constexpr std::uint32_t kTickFigures = sizeof(TickFigures) / sizeof(std::uint32_t);
 inline constexpr const char* kTickFigureNames[kTickFigures] = {
-    "points_per_ball_max", "points_per_query_max", "points_per_leaf_max", "depth",
-    "levels_below",        "blended_points",       "blended_materials"};
+    "points_per_ball_max", "points_per_query_max", "points_per_slab_max", "points_per_leaf_max",
+    "depth",               "levels_below",         "blended_points",      "blended_materials"};
 
 [[nodiscard]] TickFigures tick_figures(const BlobHeader& header);
 /// cycles = base + the sum over the figures of per_figure * figure.

@@ -1,6 +1,6 @@
 #pragma once
-// The speed of a quantised position: the longest window of past samples whose straight line passes
-// within the quantisation of every one of them, then a low-pass filter. Slow motion gets a long
+// The speed of a quantised position: the longest of a few windows of past samples whose straight line
+// passes the shorter ones within the quantisation, then a low-pass filter. Slow motion gets a long
 // window and little noise, fast motion a short one and little delay. (Janabi-Sharifi, Hayward and
 // Chen, "Discrete-time adaptive windowing for velocity estimation", IEEE T-CST 8(6), 2000,
 // end-fit variant.)
@@ -13,6 +13,8 @@ namespace tactree::core {
 
 /// Samples of the longest window, less one.
 inline constexpr std::uint32_t kVelocityWindow = 15;
+/// Windows that are tried beyond that of two samples.
+inline constexpr std::uint32_t kVelocityWindows = 3;
 
 /// Interrupt safe: no shared state.
 class VelocityEstimator {
@@ -26,7 +28,7 @@ class VelocityEstimator {
 
   /// Takes the position of this tick and returns the velocity, m/s or rad/s; bounded for finite
   /// positions by the largest difference of two samples over the period.
-  /// Cost: one pass over the window on each axis, about 15 operations a sample.
+  /// Cost: kVelocityWindows on each axis, about 15 operations each.
   Vec3 update(Vec3 position);
 
   [[nodiscard]] Vec3 velocity() const { return velocity_; }
@@ -36,7 +38,7 @@ class VelocityEstimator {
   static_assert(kSlots == kVelocityWindow + 1);
 
   /// Change per sample over the longest window whose line, from its oldest sample to the newest,
-  /// passes every sample between within the quantum.
+  /// passes the end of every shorter one within the quantum.
   [[nodiscard]] float slope(const float (&samples)[kSlots], float quantum) const;
 
   float samples_[3][kSlots]{};  // rings, one a component

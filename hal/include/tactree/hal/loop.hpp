@@ -79,13 +79,13 @@ class Loop {
   }
 
   /// One tick: waits for it, reads, steps, writes. Returns what the controller said.
-  core::Output tick() {
+  const core::Output& tick() {
     core::Input input = read_inputs(board_);
     input.load = load_;
     listen(input);
 
     const std::uint32_t begin_us = board_.ticker().now_us();
-    const core::Output output = controller_.step(input);
+    const core::Output& output = controller_.step(input);
     board_.motors().write(output.motors);
     board_.enable_line().set(output.enable);
     board_.link().send(output.status);
