@@ -230,7 +230,7 @@ test('a trace: every figure of a tick is that of its row', async () => {
   const replay = await startServer([blob, '--trace', csv]);
   const page = await openPage(browser, replay.url);
   const names = ['t_s', 'probe_x_m', 'probe_y_m', 'probe_z_m', 'proxy_x_m', 'proxy_y_m', 'proxy_z_m', 'force_x_N',
-    'force_y_N', 'force_z_N', 'normal_x', 'velocity_x_m_s', 'tip_z_m', 'penetration_m', 'strength', 'leaf'];
+    'force_y_N', 'force_z_N', 'normal_x', 'velocity_x_m_s', 'tip_z_m', 'penetration_m', 'strength'];
   const check = async (tick) => {
     await until(page, ['tick'], (shownTick) => shownTick === tick, 'the tick');
     for (const name of names) {

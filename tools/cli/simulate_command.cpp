@@ -468,12 +468,25 @@ void print_summary(const SimulateOptions& options, const SceneFile& scene, const
   }
 }
 
+/// Of an emulated board: how long its ticks were.
+simulation::Histogram histogram(const Outcome& outcome) {
+  simulation::Histogram h;
+  if (outcome.instructions) {
+    h.label = "instructions per tick";
+    h.bar_width = static_cast<double>(emulation::kBucketInstructions);
+    for (const emulation::InstructionBucket& bucket : outcome.instructions->buckets) {
+      h.bars.push_back({static_cast<double>(bucket.fewest), static_cast<double>(bucket.ticks)});
+    }
+  }
+  return h;
+}
+
 void write_plot(const SimulateOptions& options, const SceneFile& scene, const Outcome& outcome) {
   const double rate_hz = static_cast<double>(options.setup.controller.rate_hz);
   if (!options.compare) {
     const std::string title = fmt::format("{}: {}, {} mode, {:.6g} Hz", options.blob,
                                           options.device, options.mode, rate_hz);
-    write_file(options.plot, simulation::plot_svg(outcome.samples, title));
+    write_file(options.plot, simulation::plot_svg(outcome.samples, title, histogram(outcome)));
     return;
   }
   SimulateOptions other = options;

@@ -69,10 +69,10 @@ json candidates_json(const core::Rendering& rendering, const Bodies& bodies,
   scratch.clear();
   scratch.cover(view, centre);
   json points = json::array();
-  for (std::uint32_t i = 0; i < scratch.count(); ++i) {
-    const core::Vec3 away = scratch.position(i) - centre;
+  for (const core::Candidate& candidate : scratch) {
+    const core::Vec3 away = candidate.position - centre;
     if (core::dot(away, away) <= view.header().support_radius_m * view.header().support_radius_m) {
-      points.push_back(drawn(widen(core::position_to_scene(pose, scratch.position(i)))));
+      points.push_back(drawn(widen(core::position_to_scene(pose, candidate.position))));
     }
   }
   return points;
@@ -123,7 +123,6 @@ json run_json(const simulation::Sample& sample, const char* mode, const core::De
               {"in_contact", r.in_contact},
               {"slipping", r.slipping},
               {"strength", r.strength},
-              {"leaf", r.leaf == core::kNoLeaf ? -1 : static_cast<std::int64_t>(r.leaf)},
               {"tip_m", json::array({sample.tip_m.x(), sample.tip_m.y(), sample.tip_m.z()})},
               {"linkage", linkage_json(device, model_origin_m, sample.tip_m, joints)},
               {"candidates", json::array()}};

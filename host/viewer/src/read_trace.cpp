@@ -99,7 +99,6 @@ Sample sample_of(const Row& row) {
   r.normal = row.vector("normal", "");
   r.penetration_m = row.narrow("penetration_m");
   r.strength = row.narrow("strength");
-  r.leaf = row.index("leaf", core::kNoLeaf);
   r.body = row.index("body", core::kNoBody);
   return sample;
 }

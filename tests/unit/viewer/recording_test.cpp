@@ -58,7 +58,6 @@ std::vector<Sample> some_samples() {
     s.rendering.normal = {0.0F, 0.6F, 0.8F};
     s.rendering.penetration_m = 0.001F * x;
     s.rendering.strength = 0.75F;
-    s.rendering.leaf = i == 1 ? core::kNoLeaf : 17U;
     s.rendering.body = 0;
   }
   return samples;

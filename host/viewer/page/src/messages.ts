@@ -48,7 +48,6 @@ export interface Run {
   in_contact: boolean;
   slipping: boolean;
   strength: number;
-  leaf: number;
   tip_m: Triple;
   linkage: Triple[][];
   candidates: Triple[];

@@ -29,7 +29,6 @@ function rows(frame: Frame, run: Run): [string, string][] {
     ...vector('velocity', '_m_s', run.velocity_m_s),
     ...vector('tip', '_m', run.tip_m),
     ['strength', exact(run.strength)],
-    ['leaf', String(run.leaf)],
     ['overruns', String(run.overruns)],
   ];
 }
