@@ -52,8 +52,8 @@ std::vector<viewer::NamedDevice> devices(const std::string& chosen) {
 
 std::unique_ptr<viewer::Source> make_source(const ViewOptions& options, const SceneFile& scene) {
   if (options.trace.empty()) {
-    return std::make_unique<viewer::LiveSession>(
-        bodies_of(scene), devices(options.settings.device), options.settings);
+    return std::make_unique<viewer::LiveSession>(bodies_of(scene), devices(options.settings.device),
+                                                 options.settings);
   }
   const core::DeviceModel device = load_device(options.settings.device).figures.model;
   const core::Vec3 origin_m = simulation::middle_at_origin(
@@ -116,10 +116,12 @@ void add_view_command(CLI::App& app, int&) {
   CLI::App* verb = app.add_subcommand(
       "view", "Shows a page in the browser: the model, and a hand that touches it");
   verb->add_option("BLOB", options->blobs, "the blob to touch, or several");
-  verb->add_option("--scene", options->scene, "JSON file that says where each body is: see simulate")
+  verb->add_option("--scene", options->scene,
+                   "JSON file that says where each body is: see simulate")
       ->check(CLI::ExistingFile);
-  verb->add_option("--trace", options->trace,
-                   "show this recording of simulate --trace, tick by tick, instead of a simulation");
+  verb->add_option(
+      "--trace", options->trace,
+      "show this recording of simulate --trace, tick by tick, instead of a simulation");
   add_session_options(*verb, *options);
   add_server_options(*verb, *options);
   verb->callback([options] { view(*options); });

@@ -109,7 +109,8 @@ class Panel {
   }
 
   [[nodiscard]] Colour shade(Vec3 normal) const {
-    Vec3 n{core::dot(normal, eye_.right), core::dot(normal, eye_.up), -core::dot(normal, eye_.away)};
+    Vec3 n{core::dot(normal, eye_.right), core::dot(normal, eye_.up),
+           -core::dot(normal, eye_.away)};
     const bool outside = n.z >= 0.0F;
     n = outside ? n : -n;
     static const Vec3 kKey = unit({-0.45F, 0.6F, 0.65F});
@@ -132,7 +133,7 @@ class Panel {
 };
 
 std::string length_text(float metres) {
-  return metres >= 1.0F     ? fmt::format("{:g} m", metres)
+  return metres >= 1.0F    ? fmt::format("{:g} m", metres)
          : metres >= 1e-3F ? fmt::format("{:g} mm", std::round(1e4F * metres) * 0.1F)
                            : fmt::format("{:g} um", std::round(1e7F * metres) * 0.1F);
 }
@@ -155,7 +156,8 @@ void draw_scale(Raster& raster, float pixels_per_metre) {
 }
 
 std::string caption(const core::BlobHeader& h, std::span<const Mark> marks) {
-  const auto holes = std::count_if(marks.begin(), marks.end(), [](const Mark& m) { return m.is_hole; });
+  const auto holes =
+      std::count_if(marks.begin(), marks.end(), [](const Mark& m) { return m.is_hole; });
   const auto rims = static_cast<std::ptrdiff_t>(marks.size()) - holes;
   return fmt::format("{} points, {} apart, {} hole{}, {} open rim{}", h.point_count,
                      length_text(h.spacing_m), holes, holes == 1 ? "" : "s", rims,

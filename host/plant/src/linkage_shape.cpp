@@ -31,8 +31,7 @@ Polyline delta_leg(const core::DeltaGeometry& g, double q, std::size_t leg, cons
   const Vector3d aside(0.0, -place.sine, place.cosine);
   const Vector3d hinge = wide(g.r) * outwards + wide(g.s) * aside;
   const SineCosine arm = sine_cosine(q);
-  const Vector3d elbow =
-      hinge + wide(g.a) * (arm.cosine * outwards + arm.sine * Vector3d::UnitX());
+  const Vector3d elbow = hinge + wide(g.a) * (arm.cosine * outwards + arm.sine * Vector3d::UnitX());
   return {hinge, elbow, plate + wide(g.c) * outwards + wide(g.f) * aside, plate};
 }
 

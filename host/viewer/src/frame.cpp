@@ -62,8 +62,8 @@ json linkage_json(const core::DeviceModel& device, const core::Vec3& origin_m,
 }
 
 /// The points that a gather at the proxy finds: what the surface there is made of.
-json candidates_json(const core::Rendering& rendering, const Bodies& bodies,
-                     const core::Pose& pose, core::CandidateSet& scratch) {
+json candidates_json(const core::Rendering& rendering, const Bodies& bodies, const core::Pose& pose,
+                     core::CandidateSet& scratch) {
   const core::BlobView& view = bodies.views[rendering.body];
   const core::Vec3 centre = core::position_to_body(pose, rendering.proxy);
   scratch.clear();

@@ -47,22 +47,22 @@ void HttpConnection::read() {
   parser_->header_limit(kLongestHeader);
   parser_->body_limit(kLongestBody);
   stream_.expires_after(kSlowest);
-  http::async_read(stream_, buffer_, *parser_,
-                   [self = shared_from_this()](beast::error_code error, std::size_t) {
-                     if (!error) {
-                       self->handle(self->parser_->release());
-                       return;
-                     }
-                     const bool ours = error.category() == http::make_error_code(
-                                           http::error::bad_method).category();
-                     if (ours && error != http::error::end_of_stream &&
-                         error != http::error::partial_message) {
-                       Request request;  // unreadable: the answer closes the connection
-                       request.version(11);
-                       request.keep_alive(false);
-                       self->send(plain(400, "not a request: " + error.message() + "\n"), request);
-                     }
-                   });
+  http::async_read(
+      stream_, buffer_, *parser_,
+      [self = shared_from_this()](beast::error_code error, std::size_t) {
+        if (!error) {
+          self->handle(self->parser_->release());
+          return;
+        }
+        const bool ours =
+            error.category() == http::make_error_code(http::error::bad_method).category();
+        if (ours && error != http::error::end_of_stream && error != http::error::partial_message) {
+          Request request;  // unreadable: the answer closes the connection
+          request.version(11);
+          request.keep_alive(false);
+          self->send(plain(400, "not a request: " + error.message() + "\n"), request);
+        }
+      });
 }
 
 bool HttpConnection::is_ours(beast::string_view host) const {
@@ -128,8 +128,8 @@ void HttpConnection::look_up(std::string path, const Request& request) {
 }
 
 void HttpConnection::send(Answer answer, const Request& request) {
-  auto response = std::make_shared<Response>(static_cast<http::status>(answer.status),
-                                             request.version());
+  auto response =
+      std::make_shared<Response>(static_cast<http::status>(answer.status), request.version());
   response->set(http::field::content_type, answer.type);
   response->set(http::field::cache_control, "no-store");
   response->set("X-Content-Type-Options", "nosniff");
@@ -153,7 +153,8 @@ void HttpConnection::send(Answer answer, const Request& request) {
                         return;
                       }
                       beast::error_code ignored;
-                      self->stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
+                      self->stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_send,
+                                                      ignored);
                     });
 }
 

@@ -98,9 +98,10 @@ std::string refusal(const core::BlobView& view, const simulation::Setup& setup,
                     const hal::StartResult& start) {
   const core::Configuration& c = setup.controller;
   if (start.configuration == core::ConfigurationStatus::kUnstable) {
-    return fmt::format("a stiffness of {:.6g} N/m is beyond the stability limit of {:.6g} N/m at "
-                       "{:.6g} Hz (lower it, or raise damping or rate)",
-                       c.stiffness_N_m, core::stability_limit(c).with_hand_N_m, c.rate_hz);
+    return fmt::format(
+        "a stiffness of {:.6g} N/m is beyond the stability limit of {:.6g} N/m at "
+        "{:.6g} Hz (lower it, or raise damping or rate)",
+        c.stiffness_N_m, core::stability_limit(c).with_hand_N_m, c.rate_hz);
   }
   if (start.configuration != core::ConfigurationStatus::kOk) {
     return core::describe(start.configuration);
@@ -225,9 +226,8 @@ LiveSession::Runs LiveSession::make_runs(const Settings& settings,
                                          const Eigen::Vector3d& hand_m) const {
   Runs runs;
   for (const core::RenderMode mode : {core::RenderMode::kSurface, core::RenderMode::kPaper}) {
-    const bool wanted =
-        settings.modes == Modes::kBoth ||
-        (settings.modes == Modes::kPaper) == (mode == core::RenderMode::kPaper);
+    const bool wanted = settings.modes == Modes::kBoth ||
+                        (settings.modes == Modes::kPaper) == (mode == core::RenderMode::kPaper);
     if (!wanted) {
       continue;
     }
@@ -326,9 +326,12 @@ std::string LiveSession::hello() const {
     models.push_back({{"name", view.header().name}, {"points", view.point_count()}});
   }
   const std::lock_guard lock(mutex_);
-  const json hello = {{"type", "hello"},          {"source", "simulation"},
-                      {"models", models},         {"devices", devices},
-                      {"has_materials", materials}, {"injections", injections_json()},
+  const json hello = {{"type", "hello"},
+                      {"source", "simulation"},
+                      {"models", models},
+                      {"devices", devices},
+                      {"has_materials", materials},
+                      {"injections", injections_json()},
                       {"settings", settings_json()}};
   return hello.dump();
 }
@@ -436,9 +439,9 @@ void LiveSession::advance(double seconds) {
 std::string LiveSession::frame() {
   json runs = json::array();
   for (const auto& run : runs_) {
-    json one = run_json(run->last, name_of(run->setup.controller.mode), run->setup.controller.device,
-                        run->setup.controller.model_origin_m, run->sim.plant().joints(), bodies_,
-                        scratch_);
+    json one = run_json(run->last, name_of(run->setup.controller.mode),
+                        run->setup.controller.device, run->setup.controller.model_origin_m,
+                        run->sim.plant().joints(), bodies_, scratch_);
     one["strip"] = run->strip.take();
     runs.push_back(std::move(one));
   }

@@ -109,8 +109,8 @@ std::map<std::string, std::size_t> columns_of(const std::string& heading) {
   for (std::size_t i = 0; i < names.size(); ++i) {
     columns.emplace(names[i], i);
   }
-  for (const char* needed : {"t_s", "probe_x_m", "probe_y_m", "probe_z_m", "force_x_N", "force_y_N",
-                             "force_z_N"}) {
+  for (const char* needed :
+       {"t_s", "probe_x_m", "probe_y_m", "probe_z_m", "force_x_N", "force_y_N", "force_z_N"}) {
     if (columns.count(needed) == 0) {
       throw std::runtime_error(fmt::format("the heading has no column {}", needed));
     }
@@ -142,8 +142,8 @@ std::vector<Sample> read_trace(const std::filesystem::path& file) {
         "{}: line {}: {} (give a file that simulate --trace wrote)", file.string(), number, cause));
   };
   if (!in) {
-    throw std::runtime_error(fmt::format("{}: it cannot be read (check name and rights)",
-                                         file.string()));
+    throw std::runtime_error(
+        fmt::format("{}: it cannot be read (check name and rights)", file.string()));
   }
   std::vector<Sample> samples;
   std::map<std::string, std::size_t> columns;

@@ -6,6 +6,8 @@
 #include <optional>
 #include <utility>
 
+#include "tactree/viewer/markdown.hpp"
+
 namespace tactree::viewer {
 namespace {
 
@@ -66,6 +68,16 @@ bool has_page() {
   return script != nullptr && !script->content.empty();
 }
 
+std::string fault_html(std::string_view title, std::string_view markdown) {
+  MarkdownTargets targets;
+  targets.link = [](std::string_view target) -> std::string {
+    const bool beside = target.ends_with(".md") && target.find('/') == target.npos;
+    return beside ? std::string(kFaults) + std::string(target.substr(0, target.size() - 3)) : "";
+  };
+  return html_page(title, markdown_html(markdown, targets) +
+                              "<p><a href=\"/faults/\">All faults and limits</a></p>\n");
+}
+
 Site::Site(std::vector<core::BlobView> models, const Source& source)
     : models_(std::move(models)), source_(source) {
   for (const core::BlobView& view : models_) {
@@ -85,17 +97,19 @@ Answer Site::answer(std::string_view path) const {
     return answer_model(path.substr(kModel.size()));
   }
   if (path.starts_with(kFaults)) {
-    const std::string_view name = path.size() == kFaults.size() ? "README" : path.substr(kFaults.size());
+    const std::string_view name =
+        path.size() == kFaults.size() ? "README" : path.substr(kFaults.size());
     const Asset* const page = find(fault_pages(), name);
-    return page == nullptr ? not_found()
-                           : Answer{200, "text/html; charset=utf-8",
-                                    fault_html(name, page->content), {}};
+    return page == nullptr
+               ? not_found()
+               : Answer{200, "text/html; charset=utf-8", fault_html(name, page->content), {}};
   }
   const Asset* const asset = find(page_assets(), path);
-  return asset == nullptr
-             ? not_found()
-             : Answer{200, std::string(asset->type) + "; charset=utf-8",
-                      std::string(asset->content), {}};
+  return asset == nullptr ? not_found()
+                          : Answer{200,
+                                   std::string(asset->type) + "; charset=utf-8",
+                                   std::string(asset->content),
+                                   {}};
 }
 
 Answer Site::answer_model(std::string_view path) const {

@@ -51,8 +51,8 @@ TEST(Plot, NamesItsAxesAndCurvesAndKeepsEverySpike) {
 }
 
 TEST(Plot, ShowsASingleLongTickAmongThousands) {
-  simulation::Histogram histogram{"instructions per tick", 128.0, {{1024.0, 9999.0}, {4096.0, 1.0}},
-                                  8000.0};
+  simulation::Histogram histogram{
+      "instructions per tick", 128.0, {{1024.0, 9999.0}, {4096.0, 1.0}}, 8000.0};
   const std::string svg = simulation::plot_svg(samples(100), "t", histogram);
   for (const char* words : {"instructions per tick", "proven bound", ">10000<"}) {
     EXPECT_NE(svg.find(words), std::string::npos) << words;

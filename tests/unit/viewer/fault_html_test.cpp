@@ -11,9 +11,10 @@ namespace {
 using viewer::fault_html;
 
 TEST(FaultHtml, WritesWhatThePagesAreMadeOf) {
-  const std::string html = fault_html("t", "# A\n\ntext `c` *e*\n\n## B\n- one\n- two\n");
+  const std::string html = fault_html("t", "# A\n\ntext `c` *e* **s**\n\n## B\n- one\n- two\n");
   EXPECT_NE(html.find("<h1>A</h1>"), std::string::npos);
-  EXPECT_NE(html.find("<p>\ntext <code>c</code> <em>e</em>\n</p>"), std::string::npos);
+  EXPECT_NE(html.find("<p>\ntext <code>c</code> <em>e</em> <strong>s</strong>\n</p>"),
+            std::string::npos);
   EXPECT_NE(html.find("<h2>B</h2>\n<ul>\n<li>one</li>\n<li>two</li>\n</ul>"), std::string::npos);
 }
 

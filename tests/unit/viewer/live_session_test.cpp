@@ -84,9 +84,8 @@ class LiveSessionTest : public testing::Test {
 TEST_F(LiveSessionTest, TheHandIsHeldOffByTheSurfaceUntilItIsStopped) {
   frames_.wait_for_state("active");
   say({{"do", "hand"}, {"target_m", {0.0, 0.0, kRadius_m - 0.01}}});
-  const json frame = frames_.wait_for([](const json& f) {
-    return f["runs"][0]["force_N"][2].get<double>() > 0.5;
-  });
+  const json frame = frames_.wait_for(
+      [](const json& f) { return f["runs"][0]["force_N"][2].get<double>() > 0.5; });
   const json& run = frame["runs"][0];
   EXPECT_NEAR(core::length({run["proxy_m"][0], run["proxy_m"][1], run["proxy_m"][2]}),
               static_cast<float>(kRadius_m), 2e-4F);
@@ -123,8 +122,7 @@ TEST_F(LiveSessionTest, ARefusalChangesNothing) {
   EXPECT_NE(refusal({{"do", "set"}, {"rate_hz", 1}}).find("rate_hz"), std::string::npos);
   EXPECT_NE(refusal({{"do", "set"}, {"device", "none"}}).find("there is no 'none'"),
             std::string::npos);
-  EXPECT_NE(refusal({{"do", "set"}, {"colour", "red"}}).find("no such setting"),
-            std::string::npos);
+  EXPECT_NE(refusal({{"do", "set"}, {"colour", "red"}}).find("no such setting"), std::string::npos);
   EXPECT_NE(refusal({{"do", "jump"}}).find("none of"), std::string::npos);
   EXPECT_NE(refusal({{"do", "hand"}, {"target_m", {1, 2}}}), "accepted");
   EXPECT_NE(refusal({{"do", "hand"}, {"target_m", {1e30, 0, 0}}}), "accepted");

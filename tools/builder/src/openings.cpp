@@ -13,7 +13,8 @@ std::vector<Opening> find_openings(const core::BlobView& view) {
     const core::Leaf& leaf = cursor.leaf();
     for (std::uint32_t i = 0; i < leaf.point_count; ++i) {
       const core::SurfacePoint p = view.surface_point(leaf, leaf.first_point + i);
-      cloud.positions.push_back(Eigen::Vector3f(p.position.x, p.position.y, p.position.z).cast<double>());
+      cloud.positions.push_back(
+          Eigen::Vector3f(p.position.x, p.position.y, p.position.z).cast<double>());
       cloud.normals.emplace_back(p.normal.x, p.normal.y, p.normal.z);
     }
   }

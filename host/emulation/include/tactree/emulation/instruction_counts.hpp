@@ -36,7 +36,7 @@ struct InstructionCounts {
   std::uint32_t checksum = 0;            ///< over the count of every tick: runs alike have it alike
   std::vector<FunctionCount> functions;  ///< the costliest first
   std::vector<InstructionBucket> buckets;  ///< that are not empty, ascending
-  std::vector<CodeRange> code;           ///< executed in ticks, where that was asked for
+  std::vector<CodeRange> code;             ///< executed in ticks, where that was asked for
   [[nodiscard]] double mean() const {
     return ticks == 0 ? 0.0 : static_cast<double>(total) / static_cast<double>(ticks);
   }

@@ -30,8 +30,8 @@ class Raster {
   /// On top of all, with a share of what is below it.
   void circle(float x, float y, float radius, float width, Colour colour, float opacity = 1.0F);
   void box(int left, int top, int right, int bottom, Colour colour);
-  /// Letters of 5 x 7 dots, each `dot` pixels wide; small letters, digits and . , - ( ). Returns the
-  /// width.
+  /// Letters of 5 x 7 dots, each `dot` pixels wide; small letters, digits and . , - ( ). Returns
+  /// the width.
   int text(int x, int y, std::string_view line, int dot, Colour colour);
 
   /// Half as wide and high: each pixel the mean of four.

@@ -24,8 +24,8 @@ class Recording : public Source {
  public:
   /// The blobs that `bodies` view must outlive the recording. `device` and where the model stood in
   /// its frame: for drawing the linkage. Precondition: there are samples.
-  Recording(std::vector<simulation::Sample> samples, Bodies bodies,
-            const core::DeviceModel& device, const core::Vec3& model_origin_m);
+  Recording(std::vector<simulation::Sample> samples, Bodies bodies, const core::DeviceModel& device,
+            const core::Vec3& model_origin_m);
   ~Recording() override;
 
   void start(Publish publish) override;

@@ -34,8 +34,7 @@ struct Asset {
 /// Was the page built?
 [[nodiscard]] bool has_page();
 
-/// A page of docs/faults as HTML: headings, paragraphs, lists, tables, `code`, *emphasis* and links
-/// to other such pages.
+/// A page of docs/faults as HTML, with its links to other such pages.
 [[nodiscard]] std::string fault_html(std::string_view title, std::string_view markdown);
 
 class Site {
