@@ -61,9 +61,9 @@ float weight_of(float qq, float inverse_squared) {
 
 /// What lies around, seen from one face.
 struct Surroundings {
-  Moments face{};                     // of all points that face the reference
-  float averted = 0.0F;               // weight of all others
-  const Candidate* crease = nullptr;  // nearest point of another face
+  Moments face{};                      // of all points that face the reference
+  float averted = 0.0F;                // weight of all others
+  const Candidate* crease = nullptr;   // nearest point of another face
 };
 
 // The sums are locals, not members of what is returned: these a compiler keeps in registers.
@@ -216,8 +216,8 @@ float slack_of(const BlobView& view) {
 
 /// Which points of a leaf are near the centre of a gather, in whole numbers: comparing floats takes
 /// longer, and most points are not near enough. Counted in half sites from the leaf's first site,
-/// to which the centre is rounded: where all leaves are of one size these are lattice units, and
-/// the reach is taken smaller by as much. Leaves of several sizes may be coarse: there it is taken
+/// to which the centre is rounded: where all leaves are of one size these are lattice units, and the
+/// reach is taken smaller by as much. Leaves of several sizes may be coarse: there it is taken
 /// larger, and what is within is compared exactly.
 class LeafBall {
  public:
@@ -236,8 +236,9 @@ class LeafBall {
     const std::int32_t highest = (centre_.z + radius) >> 1;
     if (lowest <= kLastSite && highest >= 0) {
       first_word_ = lowest > 0 ? static_cast<std::uint32_t>(lowest) << kZShift : 0U;
-      last_word_ =
-          highest < kLastSite ? ((static_cast<std::uint32_t>(highest) + 1U) << kZShift) - 1U : ~0U;
+      last_word_ = highest < kLastSite
+                       ? ((static_cast<std::uint32_t>(highest) + 1U) << kZShift) - 1U
+                       : ~0U;
     }
   }
 

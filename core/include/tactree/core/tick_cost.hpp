@@ -25,14 +25,9 @@ struct TickFigures {
   std::uint32_t blended_materials = 0;  ///< that a contact may be of
 };
 inline constexpr std::uint32_t kTickFigures = sizeof(TickFigures) / sizeof(std::uint32_t);
-inline constexpr const char* kTickFigureNames[kTickFigures] = {"points_per_ball_max",
-                                                               "points_per_query_max",
-                                                               "points_per_slab_max",
-                                                               "points_per_leaf_max",
-                                                               "depth",
-                                                               "levels_below",
-                                                               "blended_points",
-                                                               "blended_materials"};
+inline constexpr const char* kTickFigureNames[kTickFigures] = {
+    "points_per_ball_max", "points_per_query_max", "points_per_slab_max", "points_per_leaf_max",
+    "depth",               "levels_below",         "blended_points",      "blended_materials"};
 
 [[nodiscard]] TickFigures tick_figures(const BlobHeader& header);
 /// cycles = base + the sum over the figures of per_figure * figure.
