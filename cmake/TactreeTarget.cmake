@@ -14,7 +14,7 @@ function(tactree_target target)
   target_compile_options(${target} PUBLIC -ffp-contract=off)
   if(arg_FREESTANDING)
     target_compile_options(${target} PRIVATE
-      -fno-exceptions -fno-rtti -fno-threadsafe-statics -fno-math-errno
+      -fno-exceptions -fno-rtti -fno-threadsafe-statics -fno-math-errno -fno-jump-tables
       -ffunction-sections -fdata-sections)
   endif()
   if(CMAKE_CROSSCOMPILING)

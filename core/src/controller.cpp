@@ -64,7 +64,7 @@ bool Controller::is_in_time(TickLoad load, const BlobView& added) const {
   if (costs_ == nullptr || costs_->known != kTickCostsKnown) {
     return true;
   }
-  load.add(added.header(), configuration_.mode);
+  load.add(added.header(), configuration_);
   const float period = static_cast<float>(cycles_per_second_) / configuration_.rate_hz;
   return cycles_of(*costs_, load) <= static_cast<std::uint32_t>(period);
 }
@@ -73,7 +73,7 @@ TickLoad Controller::load_of_scene() const {
   TickLoad load;
   for (std::uint32_t i = 0; i < kMaxBodies; ++i) {  // bound: kMaxBodies
     if (!scene_.view(i).empty()) {
-      load.add(scene_.view(i).header(), configuration_.mode);
+      load.add(scene_.view(i).header(), configuration_);
     }
   }
   return load;
@@ -87,7 +87,7 @@ void Controller::remove_unsuitable_bodies() {
       continue;
     }
     if (suitability(view) == ModelStatus::kOk && is_in_time(kept, view)) {
-      kept.add(view.header(), configuration_.mode);
+      kept.add(view.header(), configuration_);
     } else {
       (void)scene_.remove(i);
     }

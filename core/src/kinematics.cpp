@@ -59,7 +59,7 @@ KindPose locate_kind(const DeviceModel& device, Vec3 joints) {
     return locate_arm(device, joints);
   }
   if (device.kind == DeviceKind::kDelta) {
-    return locate_delta(device, joints);
+    return locate_delta(device, joints);  // at most: delta per locate_joints
   }
   if (device.kind == DeviceKind::kFiveBar) {
     return locate_five_bar(device, joints);

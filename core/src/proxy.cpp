@@ -104,8 +104,9 @@ void Proxy::visit(const BlobView& view, Vec3 x) {
   Vec3 reference = reference_;
   if (!tracked_) {
     --searches_left_;
-    const Candidate* const nearest =
-        nearest_candidate(candidates_, x, view.header().support_radius_m);
+    const float radius = view.header().support_radius_m;
+    // at most: gathers per Proxy::update
+    const Candidate* const nearest = nearest_candidate(candidates_, x, radius);
     if (nearest == nullptr) {
       --left_.passes;
       return;

@@ -67,14 +67,14 @@ struct Surroundings {
 };
 
 // The sums are locals, not members of what is returned: these a compiler keeps in registers.
-Surroundings look_around(const CandidateSet& set, Vec3 x, float radius, Vec3 reference) {
+[[gnu::noinline]] Surroundings look_around(const CandidateSet& set, Vec3 x, float radius, Vec3 reference) {
   const float radius_squared = radius * radius;
   const float inverse_squared = 1.0F / radius_squared;
   Moments face;
   float averted = 0.0F;
   float nearest = radius_squared;
   const Candidate* crease = nullptr;
-  for (const Candidate& candidate : set) {  // bound: points_per_ball_max
+  for (const Candidate& candidate : set) {  // bound: points_per_ball_max, in RAM
     const Vec3 q = candidate.position - x;
     const float qq = length_squared(q);
     if (!(qq < radius_squared)) {
@@ -105,11 +105,11 @@ struct Faces {
   float between = 0.0F;  // weight of the points that are of neither
 };
 
-Faces divide(const CandidateSet& set, Vec3 x, float radius, Vec3 own, Vec3 other) {
+[[gnu::noinline]] Faces divide(const CandidateSet& set, Vec3 x, float radius, Vec3 own, Vec3 other) {
   const float radius_squared = radius * radius;
   const float inverse_squared = 1.0F / radius_squared;
   Faces faces;
-  for (const Candidate& candidate : set) {  // bound: points_per_ball_max
+  for (const Candidate& candidate : set) {  // bound: points_per_ball_max, in RAM
     const Vec3 q = candidate.position - x;
     const float qq = length_squared(q);
     if (!(qq < radius_squared)) {
@@ -290,7 +290,7 @@ void CandidateSet::gather_for(const BlobView& view, Vec3 x) {
   gather(view, walks ? x + (kAhead * slack / square_root(squared)) * way : x);
 }
 
-void CandidateSet::gather(const BlobView& view, Vec3 centre) {
+[[gnu::noinline]] void CandidateSet::gather(const BlobView& view, Vec3 centre) {
   const BlobHeader& header = view.header();
   count_ = 0;
   complete_ = true;
@@ -305,6 +305,27 @@ void CandidateSet::gather(const BlobView& view, Vec3 centre) {
     gather_leaf(view, leaf, corners.min_of(leaf));
     return reach_squared;
   });
+}
+
+[[gnu::noinline]] bool CandidateSet::is_within(float reach, Vec3 position) const {
+  return length_squared(position - centre_) <= reach * reach;
+}
+
+[[gnu::always_inline]] inline bool CandidateSet::add(const BlobView& view, Int3 place, std::uint32_t point) {
+  const Vec3 position = {view.step_m() * static_cast<float>(place.x),
+                         view.step_m() * static_cast<float>(place.y),
+                         view.step_m() * static_cast<float>(place.z)};
+  // at most: mixed * points_per_slab_max per CandidateSet::gather
+  if (!view.is_uniform() && !is_within(view.reach_m(), position)) {
+    return true;
+  }
+  if (count_ == most_) {
+    complete_ = false;
+    return false;
+  }
+  candidates_[count_] = {position, view.normal(point), point};
+  ++count_;  // at most: points_per_ball_max per CandidateSet::gather
+  return true;
 }
 
 // A blob that holds more than it declares must not make a tick longer than was proven.
@@ -333,27 +354,10 @@ void CandidateSet::gather_leaf(const BlobView& view, const NearLeaf& leaf, Int3 
   complete_ = complete_ && (index == end || words[index] > ball.last_word());
 }
 
-bool CandidateSet::add(const BlobView& view, Int3 place, std::uint32_t point) {
-  const Vec3 position = {view.step_m() * static_cast<float>(place.x),
-                         view.step_m() * static_cast<float>(place.y),
-                         view.step_m() * static_cast<float>(place.z)};
-  const float reach = view.reach_m();
-  if (!view.is_uniform() && !(length_squared(position - centre_) <= reach * reach)) {
-    return true;
-  }
-  if (count_ == most_) {
-    complete_ = false;
-    return false;
-  }
-  candidates_[count_] = {position, view.normal(point), point};
-  ++count_;  // at most: points_per_ball_max per CandidateSet::gather
-  return true;
-}
-
 const Candidate* nearest_candidate(const CandidateSet& set, Vec3 x, float radius) {
   float best = radius * radius;
   const Candidate* nearest = nullptr;
-  for (const Candidate& candidate : set) {  // bound: points_per_ball_max
+  for (const Candidate& candidate : set) {  // bound: points_per_ball_max, in RAM
     const float squared = length_squared(candidate.position - x);
     if (squared < best) {
       best = squared;
@@ -364,9 +368,11 @@ const Candidate* nearest_candidate(const CandidateSet& set, Vec3 x, float radius
 }
 
 SurfaceFit fit_surface(const CandidateSet& set, Vec3 x, float radius, Vec3 reference) {
+  // at most: passes per Proxy::update together passes
   const Surroundings around = look_around(set, x, radius, reference);
   SurfaceFit fit = solve(around.face, radius);
   if (around.crease != nullptr) {
+    // at most: passes per Proxy::update together passes
     const Faces faces = divide(set, x, radius, reference, around.crease->normal);
     fit = combine(fit, faces, radius);
     fit.passes = 2;

@@ -40,7 +40,8 @@ bound::Bound bound_of(const emulation::BoardDescription& board, const core::Blob
   options.image = built(board, "firmware", board.name);
   options.sources = sources;
   options.entries = bound::tick_entries();
-  options.parameters = bound::parameters_of(view.header(), mode, 1);
+  options.parameters = bound::parameters_of(
+      view.header(), mode, 1, core::DeviceKind::kDelta, core::work_per_tick(1000.0F));
   return bound::worst_case(options);
 }
 
@@ -174,9 +175,10 @@ core::TickFigures some_figures(std::mt19937& random) {
     return std::uniform_int_distribution<std::uint32_t>(0, largest)(random);
   };
   return {any(most.points_per_ball_max), any(most.points_per_query_max),
-          any(most.points_per_leaf_max), any(most.depth),
-          any(most.levels_below),        any(most.blended_points),
-          any(most.blended_materials)};
+          any(most.points_per_slab_max), any(most.points_per_leaf_max),
+          any(most.depth),               any(most.levels_below),
+          any(most.blended_points),      any(most.blended_materials),
+          any(most.delta)};
 }
 
 TEST_P(Proof, TheFormulaIsNeverLessThanTheBound) {
@@ -185,13 +187,13 @@ TEST_P(Proof, TheFormulaIsNeverLessThanTheBound) {
   std::mt19937 random(5);
   for (std::uint32_t kind = 0; kind < core::kTickKinds; ++kind) {
     for (std::uint32_t bodies = 1; bodies <= core::kMaxReachableBodies; ++bodies) {
-      for (int i = 0; i < 4; ++i) {
+      for (std::uint32_t pace = 0; pace < core::kPaces; ++pace) {
         const core::TickFigures figures = some_figures(random);
-        options.parameters =
-            bound::parameters_of(figures, static_cast<core::TickKind>(kind), bodies);
-        EXPECT_GE(core::cycles_of(costs.of[kind][bodies - 1], figures),
+        options.parameters = bound::parameters_of(figures, static_cast<core::TickKind>(kind),
+                                                  bodies, core::kWorkPerTick[pace]);
+        EXPECT_GE(core::cycles_of(costs.of[kind][pace][bodies - 1], figures),
                   bound::worst_case(options).cycles)
-            << "kind " << kind << ", " << bodies << " bodies";
+            << "kind " << kind << ", pace " << pace << ", " << bodies << " bodies";
       }
     }
   }
@@ -200,10 +202,13 @@ TEST_P(Proof, TheFormulaIsNeverLessThanTheBound) {
 TEST_P(Proof, TheFormulaIsCloseForAModelOfAScan) {
   const core::BlobHeader& header = touched_shape().view().header();
   bound::BoundOptions options = in_cycles(board());
-  options.parameters = bound::parameters_of(header, core::RenderMode::kSurface, 1);
+  core::Configuration configuration;
+  options.parameters =
+      bound::parameters_of(header, configuration.mode, 1, configuration.device.kind,
+                           core::work_per_tick(configuration.rate_hz));
   const auto exact = static_cast<double>(bound::worst_case(options).cycles);
   core::TickLoad load;
-  load.add(header, core::RenderMode::kSurface);
+  load.add(header, configuration);
   const auto formula = static_cast<double>(core::cycles_of(bound::tick_costs(options), load));
   EXPECT_GE(formula, exact);
   EXPECT_LE(formula, 1.03 * exact);
@@ -241,9 +246,12 @@ TEST_P(Proof, ABoardThatKnowsItsCostsRefusesARateItCannotKeep) {
   ASSERT_EQ(std::system((TACTREE_SOURCES "/scripts/seal-image " + image.string()).c_str()), 0);
 
   core::TickLoad load;
-  load.add(touched_shape().view().header(), core::RenderMode::kSurface);
-  const double highest =
-      options.timing->clock_hz / static_cast<double>(core::cycles_of(bound::embedded(image), load));
+  load.add(touched_shape().view().header(), {});
+  bound::PaceCycles cycles{};
+  for (load.pace = 0; load.pace < core::kPaces; ++load.pace) {
+    cycles[load.pace] = static_cast<double>(core::cycles_of(bound::embedded(image), load));
+  }
+  const double highest = bound::highest_rate(options.timing->clock_hz, cycles);
   std::printf("%s: highest rate admitted %.0f Hz\n", board().name, highest);
   const hal::StartResult refused = start_at(board(), image, 1.01 * std::max(highest, 100.0));
   EXPECT_EQ(refused.model, core::ModelStatus::kTooSlow) << core::describe(refused.configuration);

@@ -3,18 +3,27 @@
 #include <fmt/core.h>
 
 #include "command.hpp"
+#include "device_file.hpp"
 #include "tactree/emulation/emulated_target.hpp"
 
 namespace tactree::cli {
 
-double BoardCosts::cycles(const core::BlobHeader& header, core::RenderMode mode) const {
+double BoardCosts::cycles(const core::BlobHeader& header,
+                          const core::Configuration& configuration) const {
   core::TickLoad load;
-  load.add(header, mode);
+  load.add(header, configuration);
   return static_cast<double>(core::cycles_of(costs, load));
 }
 
-double BoardCosts::highest_rate(const core::BlobHeader& header, core::RenderMode mode) const {
-  return timing.clock_hz / cycles(header, mode);
+double BoardCosts::highest_rate(const core::BlobHeader& header,
+                                const core::Configuration& configuration) const {
+  core::TickLoad load;
+  load.add(header, configuration);
+  bound::PaceCycles cycles{};
+  for (load.pace = 0; load.pace < core::kPaces; ++load.pace) {
+    cycles[load.pace] = static_cast<double>(core::cycles_of(costs, load));
+  }
+  return bound::highest_rate(timing.clock_hz, cycles);
 }
 
 BoardCosts costs_of_board(const std::string& name) {
@@ -37,6 +46,15 @@ BoardCosts costs_of_board(const std::string& name) {
     result.embedded = false;
   }
   return result;
+}
+
+core::DeviceModel slowest_or(const std::string& device) {
+  if (!device.empty()) {
+    return load_device(device).model;
+  }
+  core::DeviceModel slowest;
+  slowest.kind = core::DeviceKind::kDelta;
+  return slowest;
 }
 
 std::vector<std::string> boards_with_timing() {

@@ -15,14 +15,19 @@ struct BoardCosts {
   std::string image;
   bool embedded = false;  ///< by the image itself; else analysed now
 
-  /// Cycles of a tick with this one model.
-  [[nodiscard]] double cycles(const core::BlobHeader& header, core::RenderMode mode) const;
+  /// Cycles of a tick with this one model, and of the configuration mode, rate and kind of device.
+  [[nodiscard]] double cycles(const core::BlobHeader& header,
+                              const core::Configuration& configuration) const;
   /// Highest rate the board keeps with it, Hz.
-  [[nodiscard]] double highest_rate(const core::BlobHeader& header, core::RenderMode mode) const;
+  [[nodiscard]] double highest_rate(const core::BlobHeader& header,
+                                    const core::Configuration& configuration) const;
 };
 
 /// Throws CommandError on a board that is not known, and what bound and emulation throw.
 [[nodiscard]] BoardCosts costs_of_board(const std::string& name);
+
+/// A device of the kind that takes longest, or the one of a name or file where one is given.
+[[nodiscard]] core::DeviceModel slowest_or(const std::string& device);
 
 /// Boards with a known timing.
 [[nodiscard]] std::vector<std::string> boards_with_timing();

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "blob_file.hpp"
+#include "board_costs.hpp"
 #include "command.hpp"
 #include "output_file.hpp"
 #include "tactree/bound/bound.hpp"
@@ -25,31 +26,33 @@ struct BoundCommandOptions {
   std::string image;
   std::string board;
   std::string blob;
-  double rate_hz = 0.0;
+  double rate_hz = 1000.0;
+  bool must_keep_rate = false;
   bool embed = false;
   std::string sources = TACTREE_SOURCES;
   std::string json;
   std::string mode = "surface";
   std::uint32_t bodies = 1;
+  std::string device;
 };
 
 bound::Parameters parameters(const BoundCommandOptions& options) {
   const auto mode = options.mode == "paper" ? core::RenderMode::kPaper : core::RenderMode::kSurface;
-  if (options.blob.empty()) {
-    const auto kind =
-        mode == core::RenderMode::kPaper ? core::TickKind::kPaper : core::TickKind::kMixed;
-    return bound::parameters_of(bound::largest_figures(), kind, options.bodies);
+  const core::DeviceKind device = slowest_or(options.device).kind;
+  const core::SurfaceWork work = core::work_per_tick(static_cast<float>(options.rate_hz));
+  if (!options.blob.empty()) {
+    const BlobFile blob(options.blob);
+    return bound::parameters_of(blob.view().header(), mode, options.bodies, device, work);
   }
-  const BlobFile blob(options.blob);
-  return bound::parameters_of(blob.view().header(), mode, options.bodies);
-}
-
-double highest_rate(const bound::BoardTiming& timing, const bound::Bound& bound) {
-  return std::floor(timing.clock_hz / static_cast<double>(bound.cycles));
+  core::TickFigures figures = bound::largest_figures();
+  figures.delta = device == core::DeviceKind::kDelta ? 1U : 0U;
+  const auto kind =
+      mode == core::RenderMode::kPaper ? core::TickKind::kPaper : core::TickKind::kMixed;
+  return bound::parameters_of(figures, kind, options.bodies, work);
 }
 
 nlohmann::json to_json(const BoundCommandOptions& options, const bound::BoundOptions& analysis,
-                       const bound::Bound& bound) {
+                       const bound::Bound& bound, double highest_rate_hz) {
   nlohmann::json functions = nlohmann::json::array();
   for (const bound::FunctionOnPath& f : bound.functions) {
     functions.push_back({{"name", f.name}, {"calls", f.calls}, {"instructions", f.instructions}});
@@ -74,7 +77,7 @@ nlohmann::json to_json(const BoundCommandOptions& options, const bound::BoundOpt
   if (analysis.timing != nullptr) {
     result["cycles"] = bound.cycles;
     result["cycles_are_an_estimate"] = analysis.timing->is_estimate;
-    result["rate_max_hz"] = highest_rate(*analysis.timing, bound);
+    result["rate_max_hz"] = highest_rate_hz;
   }
   return result;
 }
@@ -99,17 +102,18 @@ void print(const bound::Parameters& parameters, const bound::Bound& bound) {
   }
 }
 
-void print_timing(const bound::BoardTiming& timing, const bound::Bound& bound) {
-  fmt::print("cycles             {} at most{}: at {:.0f} MHz {:.1f} us, {:.0f} Hz ({})\n",
-             bound.cycles, timing.is_estimate ? ", an estimate" : "", 1e-6 * timing.clock_hz,
-             1e6 * static_cast<double>(bound.cycles) / timing.clock_hz, highest_rate(timing, bound),
-             timing.source);
+void print_timing(const BoundCommandOptions& options, const bound::BoardTiming& timing,
+                  const bound::Bound& bound, double highest_rate_hz) {
+  fmt::print("cycles             {} at most{}: {:.1f} us of {:.1f} at {:.0f} MHz ({})\n",
+             bound.cycles, timing.is_estimate ? ", an estimate" : "",
+             1e6 * static_cast<double>(bound.cycles) / timing.clock_hz, 1e6 / options.rate_hz,
+             1e-6 * timing.clock_hz, timing.source);
+  fmt::print("highest rate       {:.0f} Hz\n", highest_rate_hz);
 }
 
 /// Exit code 1 where the board cannot keep the rate.
 void check_rate(const BoundCommandOptions& options, const bound::BoardTiming& timing,
-                const bound::Bound& bound) {
-  const double highest = highest_rate(timing, bound);
+                const bound::Bound& bound, double highest) {
   if (options.rate_hz > highest) {
     throw CommandError(fmt::format(
         "--rate: {} keeps {:.0f} Hz with this model, not {:.0f}: a tick takes up to {} "
@@ -136,14 +140,17 @@ void bound_tick(const BoundCommandOptions& options) {
   }
   const bound::Bound result = bound::worst_case(analysis);
   print(analysis.parameters, result);
+  double highest = 0.0;
   if (analysis.timing != nullptr) {
-    print_timing(*analysis.timing, result);
+    highest = std::floor(
+        bound::highest_rate(analysis.timing->clock_hz, bound::cycles_by_pace(analysis)));
+    print_timing(options, *analysis.timing, result, highest);
   }
   if (!options.json.empty()) {
-    write_file(options.json, to_json(options, analysis, result).dump(2) + "\n");
+    write_file(options.json, to_json(options, analysis, result, highest).dump(2) + "\n");
   }
-  if (options.rate_hz > 0.0 && analysis.timing != nullptr) {
-    check_rate(options, *analysis.timing, result);
+  if (options.must_keep_rate && analysis.timing != nullptr) {
+    check_rate(options, *analysis.timing, result, highest);
   }
 }
 
@@ -160,17 +167,25 @@ void add_bound_command(CLI::App& app, int&) {
                  "write the cycles into the image, as a formula in the model's figures: its "
                  "controller then refuses what is not in time (seal it with scripts/seal-image)")
       ->needs(board);
-  verb->add_option("--rate", options->rate_hz, "fails where the board cannot keep this rate, Hz")
-      ->needs(board);
+  CLI::Option* rate = verb->add_option("--rate", options->rate_hz,
+                                       "Hz; a tick does more at a low rate. With --board it fails "
+                                       "where the board cannot keep it")
+                          ->default_str("1000")
+                          ->check(CLI::Range(1.0, 1e6));
   verb->add_option("--blob", options->blob,
                    "the model on the board; without it: every model that a controller accepts");
   verb->add_option("--mode", options->mode, "surface or paper")
       ->check(CLI::IsMember({"surface", "paper"}));
   verb->add_option("--bodies", options->bodies, "models within reach of the probe at a time")
       ->check(CLI::Range(1U, core::kMaxReachableBodies));
+  verb->add_option("--device", options->device,
+                   "the device, by name or file; without it: the kind that takes longest");
   verb->add_option("--sources", options->sources, "the sources that the image was built from");
   verb->add_option("--json", options->json, "write the result to this file");
-  verb->callback([options] { bound_tick(*options); });
+  verb->callback([options, rate] {
+    options->must_keep_rate = rate->count() > 0;
+    bound_tick(*options);
+  });
 }
 
 }  // namespace tactree::cli

@@ -52,6 +52,7 @@ struct BuildArguments {
   std::string spacing;
   std::string budget;
   std::string board;
+  std::string device;
   double rate_hz = 0.0;
   std::string material;
   bool no_resample = false;
@@ -304,14 +305,18 @@ void check_time(const BuildArguments& arguments, std::span<const std::byte> blob
     return;
   }
   const core::BlobView view = open_built(blob);
-  const auto mode = view.is_uniform() ? core::RenderMode::kSurface : core::RenderMode::kPaper;
+  core::Configuration configuration;
+  configuration.mode = view.is_uniform() ? core::RenderMode::kSurface : core::RenderMode::kPaper;
+  configuration.rate_hz = static_cast<float>(arguments.rate_hz);
+  configuration.device = slowest_or(arguments.device);
   const BoardCosts board = costs_of_board(arguments.board);
-  const double highest = board.highest_rate(view.header(), mode);
+  const double highest = board.highest_rate(view.header(), configuration);
   if (arguments.rate_hz > highest) {
     throw CommandError(fmt::format(
         "--rate: {} keeps {:.0f} Hz with this model, not {:.6g}: a tick takes up to {:.0f} cycles, "
         "there are {:.0f} (lower --rate, or take a faster board; {} points in a ball count most)",
-        arguments.board, std::floor(highest), arguments.rate_hz, board.cycles(view.header(), mode),
+        arguments.board, std::floor(highest), arguments.rate_hz,
+        board.cycles(view.header(), configuration),
         board.timing.clock_hz / arguments.rate_hz, view.header().points_per_ball_max));
   }
 }
@@ -389,7 +394,12 @@ void add_quality_options(CLI::App& verb, BuildArguments& arguments) {
           ->check(CLI::IsMember(boards_with_timing()));
   verb.add_option("--rate", arguments.rate_hz,
                   "refuse a model that the board cannot render so often, Hz")
-      ->needs(board);
+      ->needs(board)
+      ->group(kGroup);
+  verb.add_option("--device", arguments.device,
+                  "the device, by name or file, where it is known: some take longer")
+      ->needs(board)
+      ->group(kGroup);
   verb.add_option("--profile", build.profile, "surface: fitted surface; paper: as published")
       ->transform(CLI::CheckedTransformer(kProfiles).description("surface|paper"))
       ->default_str("surface")

@@ -22,6 +22,7 @@ using core::BlobView;
 
 struct InfoOptions {
   std::string blob;
+  std::string device;
   std::string board;
   std::string json;
   std::string points;
@@ -196,18 +197,25 @@ void write_points(const BlobView& view, const std::string& file) {
   write_file(file, text);
 }
 
-void print_costs(const core::BlobHeader& header, const std::string& name) {
+void print_costs(const core::BlobHeader& header, const std::string& name,
+                 const std::string& device) {
   const BoardCosts board = costs_of_board(name);
   fmt::print("\non {} ({}): {}{}\n", name, board.image,
              board.embedded ? "the costs in the image" : "analysed now, not in the image",
              board.timing.is_estimate ? "; an estimate" : "");
+  core::Configuration configuration;
+  configuration.device = slowest_or(device);
   for (const core::RenderMode mode : {core::RenderMode::kSurface, core::RenderMode::kPaper}) {
+    configuration.mode = mode;
+    const double highest = std::floor(board.highest_rate(header, configuration));
+    configuration.rate_hz = static_cast<float>(highest);
     core::TickLoad load;
-    load.add(header, mode);
-    const core::TickCost& cost = board.costs.of[static_cast<std::uint32_t>(load.kind)][0];
-    fmt::print("{:<8}  at most {:.0f} cycles a tick: {:.0f} Hz at {:.0f} MHz\n",
-               mode == core::RenderMode::kPaper ? "paper" : "surface", board.cycles(header, mode),
-               std::floor(board.highest_rate(header, mode)), 1e-6 * board.timing.clock_hz);
+    load.add(header, configuration);
+    const core::TickCost& cost =
+        board.costs.of[static_cast<std::uint32_t>(load.kind)][load.pace][0];
+    fmt::print("{:<8}  up to {:.0f} Hz: at most {:.0f} cycles a tick at {:.0f} MHz\n",
+               mode == core::RenderMode::kPaper ? "paper" : "surface", highest,
+               board.cycles(header, configuration), 1e-6 * board.timing.clock_hz);
     fmt::print("          = {}", cost.base);
     for (std::uint32_t i = 0; i < core::kTickFigures; ++i) {
       if (cost.per_figure[i] != 0) {
@@ -222,7 +230,7 @@ void info(const InfoOptions& options) {
   const BlobFile blob(options.blob);
   print(blob.view());
   if (!options.board.empty()) {
-    print_costs(blob.view().header(), options.board);
+    print_costs(blob.view().header(), options.board, options.device);
   }
   if (!options.json.empty()) {
     write_file(options.json, to_json(blob.view()).dump(2) + "\n");
@@ -242,8 +250,12 @@ void add_info_command(CLI::App& app, int&) {
   CLI::App* verb = app.add_subcommand(
       "info", "Tells what a blob holds, what it guarantees and where its bytes go");
   verb->add_option("BLOB", options->blob, "the blob to look into")->required();
-  verb->add_option("--board", options->board, "also what a tick with it costs on this board")
-      ->check(CLI::IsMember(boards_with_timing()));
+  CLI::Option* board =
+      verb->add_option("--board", options->board, "also what a tick with it costs on this board")
+          ->check(CLI::IsMember(boards_with_timing()));
+  verb->add_option("--device", options->device,
+                   "with this device, by name or file; without it: the kind that takes longest")
+      ->needs(board);
   verb->add_option("--json", options->json, "write the figures to this file");
   verb->add_option("--points", options->points,
                    "write every decoded point to this CSV file: index,x,y,z,nx,ny,nz (m)");

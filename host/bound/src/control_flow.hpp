@@ -22,6 +22,7 @@ struct Instruction {
   std::uint32_t cycles = 0;       ///< of a Cortex-M4 at most, where no memory makes it wait
   std::uint32_t stack_words = 0;  ///< it loads or stores relative to the stack pointer
   std::uint32_t other_words = 0;  ///< and anywhere else
+  bool literal = false;           ///< these lie beside the code
   /// A constant put into a register.
   std::optional<std::pair<int, std::uint32_t>> constant;
   std::set<int> written;  ///< of the core's registers

@@ -60,7 +60,10 @@ bool count_single(std::string_view name, const cs_arm& arm, Instruction& instruc
   std::uint32_t words = is_any_of(name, {"ldrd", "strd"}) ? 2 : words_of(arm, 0);
   bool sp = false;
   for (unsigned i = 0; i < arm.op_count; ++i) {
-    sp = sp || (arm.operands[i].type == ARM_OP_MEM && arm.operands[i].mem.base == ARM_REG_SP);
+    if (arm.operands[i].type == ARM_OP_MEM) {
+      sp = arm.operands[i].mem.base == ARM_REG_SP;
+      instruction.literal = arm.operands[i].mem.base == ARM_REG_PC;
+    }
   }
   words = words == 0 ? 1 : words;
   (sp ? instruction.stack_words : instruction.other_words) = words;

@@ -200,13 +200,18 @@ class Reader {
         text.remove_prefix(kTotal.size());
         loop.total = read_total(text, line);
       }
+      static constexpr std::string_view kInRam = ", in RAM";
+      if (text.starts_with(kInRam)) {
+        text.remove_prefix(kInRam.size());
+        loop.in_ram = true;
+      }
       check_remark(text, line);
       return;
     }
   }
 
   [[nodiscard]] Total read_total(std::string_view& text, std::uint32_t line) const {
-    Total total{Expression::read(text, place(line)), {}};
+    Total total{Expression::read(text, place(line)), {}, {}};
     static constexpr std::string_view kPer = " per ";
     if (!text.starts_with(kPer)) {
       throw BoundError(place(line) + ": 'per FUNCTION' is missing (say what it is counted in)");
@@ -215,7 +220,19 @@ class Reader {
     const std::size_t end = std::min(text.find_first_of(" ;("), text.size());
     total.function = text.substr(0, end);
     text.remove_prefix(end);
+    total.together = read_word(text, " together ");
     return total;
+  }
+
+  /// The word that follows `before`; empty: something else follows.
+  static std::string read_word(std::string_view& text, std::string_view before) {
+    if (!text.starts_with(before)) {
+      return {};
+    }
+    text.remove_prefix(before.size());
+    const std::string_view word = text.substr(0, text.find_first_of(" ;("));
+    text.remove_prefix(word.size());
+    return std::string(word);
   }
 
   // So that "2 nodes" is not read as 2.

@@ -20,6 +20,7 @@ namespace tactree::bound {
 struct Total {
   Expression at_most;
   std::string function;  ///< qualified, without the outermost namespaces: Proxy::update
+  std::string together;  ///< statements with the same name here are counted together; empty: alone
 };
 
 struct SourceLoop {
@@ -32,6 +33,7 @@ struct SourceLoop {
   bool simple = false;
   std::optional<Expression> bound;
   std::optional<Total> total;
+  bool in_ram = false;  ///< all that it loads and stores is, but for constants beside the code
 };
 
 /// A statement that one call of a function executes so often at most.

@@ -51,18 +51,33 @@ struct Analysis {
 constexpr double kEntryCycles = 2.0 * (12.0 + 17.0);
 constexpr double kEntryWords = 2.0 * 26.0;
 
-double cycles_of(const BoardTiming& timing, const ControlFlow& flow, const Block& block) {
-  const Instruction& first = flow.instructions[block.first];
+/// Of one pass of a block, but for its fetch.
+double cycles_of(const BoardTiming& timing, const ControlFlow& flow, const Block& block,
+                 bool in_ram) {
   double cycles = 0.0;
   for (std::uint32_t i = 0; i < block.count; ++i) {
     const Instruction& instruction = flow.instructions[block.first + i];
-    cycles += instruction.cycles + timing.stack_wait * instruction.stack_words +
-              timing.data_wait * instruction.other_words;
+    const bool is_ram = in_ram && !instruction.literal;
+    cycles += instruction.cycles + timing.ram_wait * instruction.stack_words +
+              (is_ram ? timing.ram_wait : timing.data_wait) * instruction.other_words;
+  }
+  return cycles;
+}
+
+/// Lines of code, by their numbers.
+using CodeLines = std::set<std::uint32_t>;
+
+void add_lines(const BoardTiming& timing, const ControlFlow& flow, const Block& block,
+               CodeLines& lines) {
+  if (block.count == 0) {
+    return;
   }
   const Instruction& last = flow.instructions[block.first + block.count - 1];
-  const std::uint32_t lines =
-      (last.address + last.bytes - 1) / timing.line_bytes - first.address / timing.line_bytes + 1;
-  return cycles + timing.fetch_wait * lines;
+  const std::uint32_t end = (last.address + last.bytes - 1) / timing.line_bytes;
+  for (std::uint32_t line = flow.instructions[block.first].address / timing.line_bytes; line <= end;
+       ++line) {
+    lines.insert(line);
+  }
 }
 
 class Model;
@@ -223,6 +238,8 @@ class Model {
   struct FunctionVariables {
     int entry = 0;
     std::map<Edge, int> edges;
+    std::vector<std::optional<std::uint32_t>> kept_by;  ///< of each block: the loop below
+    std::map<std::uint32_t, double> fetch;  ///< of loops that the cache holds: cycles, once
   };
 
   [[nodiscard]] const AnalysedFunction& function(std::uint32_t entry) const {
@@ -262,10 +279,12 @@ class Model {
   void add_function(std::uint32_t entry) {
     const ControlFlow& flow = function(entry).flow;
     FunctionVariables& own = variables_[entry];
-    own.entry = program_.add_variable(gain_of(entry, 0));
+    keep_loops(flow, own);
+    own.entry = program_.add_variable(gain_of(entry, 0) + fetch_on_entry(own, std::nullopt, 0));
     for (std::uint32_t b = 0; b < flow.blocks.size(); ++b) {
       for (const std::uint32_t next : flow.blocks[b].next) {
-        own.edges[{b, next}] = program_.add_variable(gain_of(entry, next));
+        own.edges[{b, next}] =
+            program_.add_variable(gain_of(entry, next) + fetch_on_entry(own, b, next));
       }
     }
     for (std::uint32_t b = 0; b < flow.blocks.size(); ++b) {
@@ -276,18 +295,82 @@ class Model {
   /// Instructions of one pass of a block, those of a call with constant arguments included.
   double gain_of(std::uint32_t entry, std::uint32_t b) {
     const Block& block = function(entry).flow.blocks[b];
-    double gain = cost_of(function(entry).flow, block);
+    double gain = cost_of(entry, b);
     if (calls_one_that_returns(block) && !shares_callee(block)) {
       gain += call_with_arguments(entry, b).cost;
     }
     return gain;
   }
 
-  [[nodiscard]] double cost_of(const ControlFlow& flow, const Block& block) const {
-    if (analysis_.timing == nullptr || block.count == 0) {
+  [[nodiscard]] double cost_of(std::uint32_t entry, std::uint32_t b) const {
+    const ControlFlow& flow = function(entry).flow;
+    const Block& block = flow.blocks[b];
+    const BoardTiming* const timing = analysis_.timing;
+    if (timing == nullptr || block.count == 0) {
       return block.count;
     }
-    return cycles_of(*analysis_.timing, flow, block);
+    CodeLines lines;
+    if (!variables_.at(entry).kept_by[b]) {
+      add_lines(*timing, flow, block, lines);
+    }
+    return cycles_of(*timing, flow, block, is_in_ram(entry, b)) +
+           timing->fetch_wait * static_cast<double>(lines.size());
+  }
+
+  /// Does the source say so of a loop around the block?
+  [[nodiscard]] bool is_in_ram(std::uint32_t entry, std::uint32_t b) const {
+    const AnalysedFunction& f = function(entry);
+    for (std::uint32_t i = 0; i < f.flow.loops.size(); ++i) {
+      if (f.bounds[i].source->in_ram && f.flow.loops[i].blocks.contains(b)) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  // Code that is used again and again stays where the lines used last do, when the loop and all that
+  // it calls have room there: each line is fetched once, each time the loop is entered.
+  void keep_loops(const ControlFlow& flow, FunctionVariables& own) const {
+    own.kept_by.resize(flow.blocks.size());
+    if (analysis_.timing == nullptr) {
+      return;
+    }
+    for (std::uint32_t i = 0; i < flow.loops.size(); ++i) {  // outer loops come first
+      const Loop& loop = flow.loops[i];
+      if (own.kept_by[loop.header]) {
+        continue;
+      }
+      CodeLines lines;
+      for (const std::uint32_t b : loop.blocks) {
+        add_lines(*analysis_.timing, flow, flow.blocks[b], lines);
+        if (flow.blocks[b].calls) {
+          add_callee(*flow.blocks[b].calls, lines);
+        }
+      }
+      if (lines.size() <= analysis_.timing->cache_lines) {
+        own.fetch[i] = analysis_.timing->fetch_wait * static_cast<double>(lines.size());
+        for (const std::uint32_t b : loop.blocks) {
+          own.kept_by[b] = i;
+        }
+      }
+    }
+  }
+
+  void add_callee(std::uint32_t entry, CodeLines& lines) const {
+    const ControlFlow& flow = function(entry).flow;
+    for (const Block& block : flow.blocks) {
+      add_lines(*analysis_.timing, flow, block, lines);
+      if (block.calls) {
+        add_callee(*block.calls, lines);
+      }
+    }
+  }
+
+  static double fetch_on_entry(const FunctionVariables& own, std::optional<std::uint32_t> from,
+                               std::uint32_t to) {
+    const std::optional<std::uint32_t> loop = own.kept_by[to];
+    const bool enters = loop && (!from || own.kept_by[*from] != loop);
+    return enters ? own.fetch.at(*loop) : 0.0;
   }
 
   /// A constant; or what this function itself was called with; or what the source says.
@@ -534,17 +617,41 @@ class Model {
     }
   }
 
+  /// Statements that are counted together, and what they come to.
+  struct Group {
+    const SourceFact* first = nullptr;
+    Terms terms;
+  };
+
   void limit_facts() {
+    std::map<std::pair<std::string, std::string>, Group> groups;  // by function and name
     for (const auto& [name, file] : analysis_.sources.files()) {
       for (const SourceFact& fact : file.facts) {
-        limit_fact(fact);
+        limit_fact(fact, groups);
       }
     }
+    for (const auto& [name, group] : groups) {
+      const SourceFact& fact = *group.first;
+      limit_total(group.terms, fact.total, fact.file, fmt::format("{}:{}", fact.file, fact.line));
+    }
+  }
+
+  static void join(Group& group, const SourceFact& fact, const Terms& terms) {
+    if (group.first != nullptr && group.first->total.at_most.text() != fact.total.at_most.text()) {
+      throw BoundError(fmt::format("{}:{}: '{}', but '{}' in {}:{}, with which it is counted (make "
+                                   "them equal)",
+                                   fact.file, fact.line, fact.total.at_most.text(),
+                                   group.first->total.at_most.text(), group.first->file,
+                                   group.first->line));
+    }
+    group.first = &fact;
+    add(group.terms, terms);
   }
 
   // A statement's calls and stores are executed no more often than it is, wherever the compiler has
   // put its other instructions.
-  void limit_fact(const SourceFact& fact) {
+  void limit_fact(const SourceFact& fact,
+                  std::map<std::pair<std::string, std::string>, Group>& groups) {
     std::map<std::uint32_t, Terms> calls;  // by callee: one statement may call several
     Terms stores;
     for (const auto& [entry, own] : variables_) {
@@ -564,10 +671,14 @@ class Model {
       held_.insert(&fact);
     }
     if (calls.empty() && !stores.empty()) {
-      limit_total(stores, fact.total, fact.file, where);
+      calls[0] = stores;
     }
     for (const auto& [callee, terms] : calls) {
-      limit_total(terms, fact.total, fact.file, where);
+      if (fact.total.together.empty()) {
+        limit_total(terms, fact.total, fact.file, where);
+      } else {
+        join(groups[{fact.total.function, fact.total.together}], fact, terms);
+      }
     }
   }
 
@@ -758,8 +869,10 @@ class Task {
     return {image_, sources_, *program_, parameters, inlined_, open, timing};
   }
 
+  // What is entered meanwhile may put every line out of the cache.
   [[nodiscard]] double entering(const BoardTiming& timing) const {
-    return times_ * (kEntryCycles + kEntryWords * timing.stack_wait);
+    return times_ * (kEntryCycles + kEntryWords * timing.ram_wait +
+                     static_cast<double>(timing.cache_lines) * timing.fetch_wait);
   }
 
   Image image_;
@@ -771,11 +884,11 @@ class Task {
 };
 
 /// A typical model: what the prices are made with.
-core::TickFigures usual_figures() { return {46, 270, 50, 7, 3, 46, 4}; }
+core::TickFigures usual_figures() { return {46, 270, 170, 50, 7, 3, 46, 4, 0}; }
 
 Parameters open_parameters() {
-  Parameters open = parameters_of(largest_figures(), core::TickKind::kSurface, 1);
-  for (const char* fixed : {"bodies", "mixed", "paper"}) {
+  Parameters open = parameters_of(largest_figures(), core::TickKind::kSurface, 1, {});
+  for (const char* fixed : {"bodies", "mixed", "paper", "gathers", "passes"}) {
     open.erase(fixed);
   }
   return open;
@@ -804,6 +917,31 @@ Bound worst_case(const BoundOptions& options) {
   return bound;
 }
 
+PaceCycles cycles_by_pace(const BoundOptions& options) {
+  Task task(options);
+  PaceCycles cycles{};
+  for (std::uint32_t pace = 0; pace < core::kPaces; ++pace) {
+    Parameters parameters = options.parameters;
+    parameters["gathers"] = core::kWorkPerTick[pace].gathers;
+    parameters["passes"] = core::kWorkPerTick[pace].passes;
+    cycles[pace] = static_cast<double>(task.cycles(parameters, *options.timing));
+  }
+  return cycles;
+}
+
+double highest_rate(double clock_hz, const PaceCycles& cycles) {
+  for (std::uint32_t pace = core::kPaces - 1; pace > 0; --pace) {
+    const double slowest = static_cast<double>(core::kPaceRates[pace - 1]);
+    const double fastest = pace + 1 < core::kPaces ? static_cast<double>(core::kPaceRates[pace])
+                                                   : clock_hz;
+    const double rate = std::min(clock_hz / cycles[pace], fastest);
+    if (rate > slowest) {
+      return rate;
+    }
+  }
+  return std::min(clock_hz / cycles[0], static_cast<double>(core::kPaceRates[0]));
+}
+
 core::TickCosts tick_costs(const BoundOptions& options) {
   if (options.timing == nullptr) {
     throw BoundError(options.image.string() + ": costs need a board's timing (say which board)");
@@ -812,11 +950,15 @@ core::TickCosts tick_costs(const BoundOptions& options) {
   core::TickCosts costs;
   costs.known = core::kTickCostsKnown;
   for (std::uint32_t kind = 0; kind < core::kTickKinds; ++kind) {
-    for (std::uint32_t row = 0; row < core::kMaxReachableBodies; ++row) {
-      const bool is_last = row + 1 == core::kMaxReachableBodies;
-      const Parameters parameters = parameters_of(
-          usual_figures(), static_cast<core::TickKind>(kind), is_last ? core::kMaxBodies : row + 1);
-      costs.of[kind][row] = to_cost(task.formula(parameters, open_parameters(), *options.timing));
+    for (std::uint32_t pace = 0; pace < core::kPaces; ++pace) {
+      for (std::uint32_t row = 0; row < core::kMaxReachableBodies; ++row) {
+        const bool is_last = row + 1 == core::kMaxReachableBodies;
+        const Parameters parameters =
+            parameters_of(usual_figures(), static_cast<core::TickKind>(kind),
+                          is_last ? core::kMaxBodies : row + 1, core::kWorkPerTick[pace]);
+        costs.of[kind][pace][row] =
+            to_cost(task.formula(parameters, open_parameters(), *options.timing));
+      }
     }
   }
   return costs;
@@ -857,22 +999,28 @@ core::TickCosts embedded(const std::filesystem::path& image) {
 }
 
 Parameters parameters_of(const core::TickFigures& figures, core::TickKind kind,
-                         std::uint32_t bodies) {
-  return {{"points_per_ball_max", figures.points_per_ball_max},
+                         std::uint32_t bodies, core::SurfaceWork work) {
+  return {{"gathers", work.gathers},
+          {"passes", work.passes},
+          {"points_per_ball_max", figures.points_per_ball_max},
           {"points_per_query_max", figures.points_per_query_max},
+          {"points_per_slab_max", figures.points_per_slab_max},
           {"points_per_leaf_max", figures.points_per_leaf_max},
           {"depth", figures.depth},
           {"levels_below", figures.levels_below},
           {"blended_points", figures.blended_points},
           {"blended_materials", figures.blended_materials},
+          {"delta", figures.delta},
           {"bodies", bodies},
           {"mixed", kind == core::TickKind::kSurface ? 0 : 1},
           {"paper", kind == core::TickKind::kPaper ? 1 : 0}};
 }
 
 Parameters parameters_of(const core::BlobHeader& header, core::RenderMode mode,
-                         std::uint32_t bodies) {
-  return parameters_of(core::tick_figures(header), core::tick_kind(header, mode), bodies);
+                         std::uint32_t bodies, core::DeviceKind device,
+                         core::SurfaceWork work) {
+  return parameters_of(core::tick_figures(header, device), core::tick_kind(header, mode), bodies,
+                       work);
 }
 
 core::TickFigures largest_figures() {
@@ -882,7 +1030,8 @@ core::TickFigures largest_figures() {
   header.points_per_leaf_max = core::kMaxCandidates;
   header.points_per_ball_max = core::kMaxCandidates;
   header.points_per_query_max = core::kLeavesPerQuery * core::kMaxCandidates;
-  return core::tick_figures(header);
+  header.points_per_slab_max = header.points_per_query_max;
+  return core::tick_figures(header, core::DeviceKind::kDelta);
 }
 
 }  // namespace tactree::bound

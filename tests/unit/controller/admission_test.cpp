@@ -78,11 +78,11 @@ TEST(Admission, TheFiguresOfSeveralModelsAreTheLargest) {
   core::BlobHeader header{};
   header.points_per_ball_max = 7;
   header.depth = 3;
-  load.add(header, core::RenderMode::kSurface);
+  load.add(header, {});
   header.points_per_ball_max = 5;
   header.depth = 4;
   header.profile = static_cast<std::uint32_t>(core::Profile::kPaper);
-  load.add(header, core::RenderMode::kSurface);
+  load.add(header, {});
   EXPECT_EQ(load.figures.points_per_ball_max, 7U);
   EXPECT_EQ(load.figures.depth, 4U);
   EXPECT_EQ(load.kind, core::TickKind::kMixed);

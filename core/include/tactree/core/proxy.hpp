@@ -6,7 +6,7 @@
 // FREE:    the way of the probe is swept in steps of half a support radius, so that nothing is
 //          crossed unnoticed; where the signed distance turns negative, contact begins.
 // CONTACT: the proxy sticks within the friction cone of the probe, or slips to its rim.
-// What a tick may cost is given. Each step takes one gather at most: with work_per_tick() and
+// What a tick may cost is given. No step takes more than one gather: with work_per_tick() and
 // R = 2.5 mm it keeps up with 5 m/s at any rate; a faster probe is followed with a delay, never lost.
 
 #include <cstdint>

@@ -22,9 +22,15 @@ struct SurfaceWork {
 };
 /// A tick's share of what a second may cost, so that probe and proxy go as fast at any rate: the
 /// faster the loop, the less there is to do in a tick. At least a gather and two fits at a crease.
+inline constexpr std::uint32_t kPaces = 3;
+inline constexpr SurfaceWork kWorkPerTick[kPaces] = {{4, 10}, {2, 6}, {1, 4}};
+/// Highest rates of all paces but the last, Hz.
+inline constexpr float kPaceRates[kPaces - 1] = {1000.0F, 2000.0F};
+[[nodiscard]] constexpr std::uint32_t pace_of(float rate_hz) {
+  return rate_hz > kPaceRates[1] ? 2U : (rate_hz > kPaceRates[0] ? 1U : 0U);
+}
 [[nodiscard]] constexpr SurfaceWork work_per_tick(float rate_hz) {
-  return rate_hz > 2000.0F ? SurfaceWork{1, 4}
-                           : (rate_hz > 1000.0F ? SurfaceWork{2, 6} : SurfaceWork{4, 10});
+  return kWorkPerTick[pace_of(rate_hz)];
 }
 
 /// A decoded point.
@@ -64,6 +70,7 @@ class CandidateSet {
  private:
   void gather(const BlobView& view, Vec3 centre);
   void gather_leaf(const BlobView& view, const NearLeaf& leaf, Int3 leaf_min);
+  [[nodiscard]] bool is_within(float reach, Vec3 position) const;
   [[nodiscard]] bool add(const BlobView& view, Int3 place, std::uint32_t point);
 
   Candidate candidates_[kMaxCandidates];

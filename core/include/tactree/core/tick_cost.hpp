@@ -10,6 +10,7 @@
 #include "tactree/core/blob_format.hpp"
 #include "tactree/core/configuration.hpp"
 #include "tactree/core/scene.hpp"
+#include "tactree/core/surface.hpp"
 
 namespace tactree::core {
 
@@ -23,13 +24,15 @@ struct TickFigures {
   std::uint32_t levels_below = 0;       ///< between the directory and the leaves
   std::uint32_t blended_points = 0;     ///< whose materials are looked at in a contact
   std::uint32_t blended_materials = 0;  ///< that a contact may be of
+  std::uint32_t delta = 1;  ///< 0: the device is none, whose kinematics takes longest
 };
 inline constexpr std::uint32_t kTickFigures = sizeof(TickFigures) / sizeof(std::uint32_t);
 inline constexpr const char* kTickFigureNames[kTickFigures] = {
     "points_per_ball_max", "points_per_query_max", "points_per_slab_max", "points_per_leaf_max",
-    "depth",               "levels_below",         "blended_points",      "blended_materials"};
+    "depth",               "levels_below",         "blended_points",      "blended_materials",
+    "delta"};
 
-[[nodiscard]] TickFigures tick_figures(const BlobHeader& header);
+[[nodiscard]] TickFigures tick_figures(const BlobHeader& header, DeviceKind device);
 /// cycles = base + the sum over the figures of per_figure * figure.
 struct TickCost {
   std::uint32_t base = 0;
@@ -51,20 +54,22 @@ struct TickLoad {
   TickFigures figures{};  ///< of all models the largest
   TickKind kind = TickKind::kSurface;
   std::uint32_t bodies = 0;
-  void add(const BlobHeader& header, RenderMode mode);
+  std::uint32_t pace = 0;  ///< of the rate: pace_of()
+  void add(const BlobHeader& header, const Configuration& configuration);
 };
 
 inline constexpr std::uint32_t kTickCostsKnown = 0x4B434954;  // "TICK"
 
-/// Of an image. Zeros, as compiled: nothing is known. By kind, then for one body and for several.
+/// Of an image. Zeros, as compiled: nothing is known. By kind, pace, then for one body and for
+/// several.
 struct TickCosts {
   std::uint32_t known = 0;
-  TickCost of[kTickKinds][kMaxReachableBodies] = {};
+  TickCost of[kTickKinds][kPaces][kMaxReachableBodies] = {};
 };
 /// Precondition: costs.known is kTickCostsKnown, and there is a body.
 [[nodiscard]] std::uint64_t cycles_of(const TickCosts& costs, const TickLoad& load);
 
 static_assert(sizeof(TickCost) == 4 + 4 * kTickFigures);
-static_assert(sizeof(TickCosts) == 4 + sizeof(TickCost) * kTickKinds * kMaxReachableBodies);
+static_assert(sizeof(TickCosts) == 4 + sizeof(TickCost) * kTickKinds * kPaces * kMaxReachableBodies);
 
 }  // namespace tactree::core

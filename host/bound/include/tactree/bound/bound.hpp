@@ -6,6 +6,7 @@
 // How often each block is executed is a variable; flow in is flow out; a loop's header is executed
 // so often as its bound says for each time the loop is entered; the weighted sum is maximised.
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include "tactree/core/blob_format.hpp"
+#include "tactree/core/surface.hpp"
 #include "tactree/core/tick_cost.hpp"
 
 namespace tactree::bound {
@@ -20,11 +22,12 @@ namespace tactree::bound {
 /// What the names in the bounds stand for, but for constants of the source.
 using Parameters = std::map<std::string, std::int64_t>;
 
-/// Those of the models that a board has loaded.
+/// Those of the models that a board has loaded, and of the work that a tick may do.
 [[nodiscard]] Parameters parameters_of(const core::BlobHeader& header, core::RenderMode mode,
-                                       std::uint32_t bodies);
+                                       std::uint32_t bodies, core::DeviceKind device,
+                                       core::SurfaceWork work);
 [[nodiscard]] Parameters parameters_of(const core::TickFigures& figures, core::TickKind kind,
-                                       std::uint32_t bodies);
+                                       std::uint32_t bodies, core::SurfaceWork work);
 /// Of full leaves and balls at the greatest depth.
 [[nodiscard]] core::TickFigures largest_figures();
 
@@ -42,10 +45,12 @@ struct EntryPoint {
 struct BoardTiming {
   const char* board;
   double clock_hz;
-  std::uint32_t fetch_wait;  ///< cycles for each line of code, fetched anew in each block
-  std::uint32_t line_bytes;  ///< of such a line
-  std::uint32_t stack_wait;  ///< cycles for each word on the stack
-  std::uint32_t data_wait;   ///< for each other word, wherever it is
+  std::uint32_t fetch_wait;   ///< cycles for each line of code, fetched anew in each block that is
+                              ///< in no loop which the cache holds
+  std::uint32_t line_bytes;   ///< of such a line
+  std::uint32_t cache_lines;  ///< of code that stay until this many others were used after them
+  std::uint32_t ram_wait;     ///< cycles for each word on the stack, and where RAM is certain
+  std::uint32_t data_wait;    ///< for each other word, wherever it is
   bool is_estimate;          ///< the core is no Cortex-M4, or its board publishes no figures
   const char* source;
 };
@@ -95,6 +100,12 @@ struct Bound {
   std::vector<BlockOnPath> endings;  ///< functions that never return: no tick leads there
   std::vector<BlockOnPath> blocks;   ///< all that were analysed, on the path or not
 };
+
+/// Cycles of a tick of each pace, core::pace_of(); the parameters' own does not count.
+using PaceCycles = std::array<double, core::kPaces>;
+[[nodiscard]] PaceCycles cycles_by_pace(const BoundOptions& options);
+/// Highest rate, Hz, that these leave time for.
+[[nodiscard]] double highest_rate(double clock_hz, const PaceCycles& cycles);
 
 /// Throws BoundError on what has no bound: a loop without an annotation, recursion, an indirect
 /// call, an unknown instruction; each named with file and line.
