@@ -201,6 +201,7 @@ class ServerTest(unittest.TestCase):
         self.assertEqual(self.server.get("/", Host=f"localhost:{self.server.port}")[0], 200)
         self.assertEqual(self.server.get("/trace.csv", Origin="http://evil.example")[0], 403)
         for origin in ("http://evil.example", "", "null", "https://" + self.server.host,
+                       f"http://localhost:{self.server.port}",
                        f"http://{self.server.host}.evil.example"):
             page = Page(self.server, origin=origin)
             self.assertEqual(page.status, 403, origin)
@@ -309,6 +310,18 @@ class ServerTest(unittest.TestCase):
         listening = [row.split()[1] for row in table if row.split()[3] == "0A"]
         port = f"{self.server.port:04X}"
         self.assertEqual([a for a in listening if a.endswith(":" + port)], ["0100007F:" + port])
+
+    def test_listens_elsewhere_when_told_and_answers_to_addresses_alone(self):
+        server = Server(self.blob, "--address", "0.0.0.0")
+        server.host = f"127.0.0.1:{server.port}"
+        self.assertEqual(server.get("/")[0], 200)
+        self.assertEqual(server.get("/", Host=f"192.168.1.2:{server.port}")[0], 200)
+        self.assertEqual(server.get("/", Host=f"evil.example:{server.port}")[0], 421)
+        self.assertEqual(server.get("/", Host="127.0.0.1:1")[0], 421)
+        page = Page(server, origin=f"http://evil.example:{server.port}")
+        self.assertEqual(page.status, 403)
+        page.close()
+        server.stop()
 
     def test_ends_when_told(self):
         server = Server(self.blob)

@@ -1,6 +1,7 @@
 #include "http_connection.hpp"
 
 #include <boost/asio/dispatch.hpp>
+#include <boost/asio/ip/address.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/beast/http/read.hpp>
 #include <boost/beast/http/write.hpp>
@@ -66,6 +67,16 @@ void HttpConnection::read() {
 }
 
 bool HttpConnection::is_ours(beast::string_view host) const {
+  if (!service_.any_host.empty() && host.ends_with(service_.any_host)) {
+    // Which addresses the machine has is not known, but a name is none of them.
+    host.remove_suffix(service_.any_host.size());
+    if (host.starts_with('[') && host.ends_with(']')) {
+      host = host.substr(1, host.size() - 2);
+    }
+    boost::system::error_code error;
+    asio::ip::make_address(text_of(host), error);
+    return !error;
+  }
   return host == service_.host || (!service_.local_host.empty() && host == service_.local_host);
 }
 
@@ -82,7 +93,8 @@ std::optional<Answer> HttpConnection::refusal(const Request& request) const {
   // A page of another site has another origin. Programs have none, and may see what is public, but
   // a WebSocket moves things: it needs one.
   const beast::string_view origin = request[http::field::origin];
-  const bool from_here = origin.starts_with("http://") && is_ours(origin.substr(7));
+  const bool from_here =
+      origin.starts_with("http://") && origin.substr(7) == request[http::field::host];
   const bool upgrade = beast::websocket::is_upgrade(request);
   if ((!origin.empty() || upgrade) && !from_here) {
     return plain(403, "not from http://" + service_.host + "\n");

@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "hub.hpp"
 #include "tactree/viewer/site.hpp"
@@ -27,6 +28,7 @@ struct Service {
   boost::asio::thread_pool& worker;  // for answers that take long
   std::string host;                  // "127.0.0.1:8023"
   std::string local_host;            // the same as "localhost:8023"; empty: not on loopback
+  std::string any_host;              // ":8023" when every address of the machine is listened on
   int connections = 0;
 };
 

@@ -53,10 +53,13 @@ struct Server::Parts {
         acceptor(listen(*context, options)),
         hub(*context),
         source(its_source),
-        service{site, its_source, hub, worker, host_of(acceptor->local_endpoint()), {}},
+        service{site, its_source, hub, worker, host_of(acceptor->local_endpoint()), {}, {}},
         address("http://" + service.host + "/") {
-    if (acceptor->local_endpoint().address().is_loopback()) {
-      service.local_host = "localhost:" + std::to_string(acceptor->local_endpoint().port());
+    const tcp::endpoint own = acceptor->local_endpoint();
+    if (own.address().is_loopback()) {
+      service.local_host = "localhost:" + std::to_string(own.port());
+    } else if (own.address().is_unspecified()) {
+      service.any_host = ":" + std::to_string(own.port());
     }
   }
   // With the context go the connections that are still there, and those know hub and service.
