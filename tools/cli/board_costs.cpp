@@ -50,7 +50,7 @@ BoardCosts costs_of_board(const std::string& name) {
 
 core::DeviceModel slowest_or(const std::string& device) {
   if (!device.empty()) {
-    return load_device(device).model;
+    return load_device(device).figures.model;
   }
   core::DeviceModel slowest;
   slowest.kind = core::DeviceKind::kDelta;
