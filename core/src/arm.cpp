@@ -2,6 +2,8 @@
 // D. Feygin and F. Tendick, "A critical study of the mechanical and electrical properties of the
 // PHANToM haptic interface", Presence 11(6), 2002, section 2.
 
+// memory: RAM
+
 #include "kinds.hpp"
 #include "tactree/core/sine.hpp"
 

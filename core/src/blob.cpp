@@ -211,6 +211,7 @@ class BlobValidator {
     view_.step_m_ = h.step_m;
     view_.inverse_step_ = 1.0F / h.step_m;
     view_.reach_m_ = h.reach_m;
+    view_.support_radius_m_ = h.support_radius_m;
     view_.leaf_edge_m_ = h.leaf_edge_min_m;
     view_.inverse_leaf_edge_ = 1.0F / h.leaf_edge_min_m;
     view_.cells_and_one_ = static_cast<float>((1U << h.depth) + 1U);

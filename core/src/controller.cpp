@@ -1,3 +1,5 @@
+// memory: RAM
+
 #include "tactree/core/controller.hpp"
 
 namespace tactree::core {

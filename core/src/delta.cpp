@@ -9,6 +9,8 @@
 // closure, not taken from the table of a paper.
 // The ring's frame: w is x of the device, its 0 rad is y, a quarter turn from it is z.
 
+// memory: RAM
+
 #include "kinds.hpp"
 #include "tactree/core/sine.hpp"
 

@@ -1,3 +1,5 @@
+// memory: RAM
+
 #include "tactree/core/encoder_watch.hpp"
 
 namespace tactree::core {

@@ -3,6 +3,8 @@
 //   n_i . dP = n_i . dE_i,  so row i of the transposed Jacobian is (n_i . dE_i / dq_i) times
 //   column i of the inverse of (n_0, n_1).
 
+// memory: RAM
+
 #include "kinds.hpp"
 #include "tactree/core/sine.hpp"
 

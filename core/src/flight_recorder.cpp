@@ -1,3 +1,5 @@
+// memory: RAM
+
 #include "tactree/core/flight_recorder.hpp"
 
 #include <limits>

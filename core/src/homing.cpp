@@ -1,3 +1,5 @@
+// memory: RAM
+
 #include "tactree/core/homing.hpp"
 
 namespace tactree::core {

@@ -1,3 +1,5 @@
+// memory: RAM
+
 #include "tactree/core/kinematics.hpp"
 
 #include "kinds.hpp"

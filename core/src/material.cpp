@@ -81,7 +81,7 @@ MaterialBlend blend_materials(const BlobView& view, const Configuration& configu
   if (view.material_count() == 1U) {
     return whole(0);
   }
-  const float radius = view.header().support_radius_m;
+  const float radius = view.support_radius_m();
   const float inverse_squared = 1.0F / (radius * radius);
   MaterialBlend blend;
   float sum = 0.0F;

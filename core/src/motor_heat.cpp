@@ -1,3 +1,5 @@
+// memory: RAM
+
 #include "tactree/core/motor_heat.hpp"
 
 namespace tactree::core {

@@ -1,5 +1,7 @@
 // One lever in the plane x-z.
 
+// memory: RAM
+
 #include "kinds.hpp"
 #include "tactree/core/sine.hpp"
 

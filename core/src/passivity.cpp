@@ -1,3 +1,5 @@
+// memory: RAM
+
 #include "tactree/core/passivity.hpp"
 
 namespace tactree::core {

@@ -1,3 +1,5 @@
+// memory: RAM
+
 #include "tactree/core/pose.hpp"
 
 namespace tactree::core {

@@ -1,3 +1,5 @@
+// memory: RAM
+
 #include "tactree/core/proxy.hpp"
 
 namespace tactree::core {
@@ -27,7 +29,7 @@ float clamp(float value, float low, float high) {
   return value < low ? low : (value > high ? high : value);
 }
 
-float step_length(const BlobView& view) { return 0.5F * view.header().support_radius_m; }
+float step_length(const BlobView& view) { return 0.5F * view.support_radius_m(); }
 
 }  // namespace
 
@@ -73,7 +75,7 @@ bool Proxy::go_on(const BlobView& view, Vec3 x) {
 }
 
 SurfaceFit Proxy::evaluate(const BlobView& view, Vec3 x, Vec3 reference) {
-  const SurfaceFit fit = fit_surface(candidates_, x, view.header().support_radius_m, reference);
+  const SurfaceFit fit = fit_surface(candidates_, x, view.support_radius_m(), reference);
   left_.passes -= fit.passes;
   return fit;
 }
@@ -104,7 +106,7 @@ void Proxy::visit(const BlobView& view, Vec3 x) {
   Vec3 reference = reference_;
   if (!tracked_) {
     --searches_left_;
-    const float radius = view.header().support_radius_m;
+    const float radius = view.support_radius_m();
     // at most: gathers per Proxy::update
     const Candidate* const nearest = nearest_candidate(candidates_, x, radius);
     if (nearest == nullptr) {
@@ -191,7 +193,7 @@ bool Proxy::slip_by(const BlobView& view, Vec3 step) {
   const Vec3 position_before = position_;
   const float strength_before = strength_;
   position_ += step;
-  const float radius = view.header().support_radius_m;
+  const float radius = view.support_radius_m();
   const SurfaceFit fit = settle(view);
   if (!fit.supported) {
     return false;

@@ -1,3 +1,5 @@
+// memory: RAM
+
 #include "tactree/core/safety_gate.hpp"
 
 namespace tactree::core {

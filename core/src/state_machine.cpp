@@ -1,3 +1,5 @@
+// memory: RAM
+
 #include "tactree/core/state_machine.hpp"
 
 namespace tactree::core {

@@ -1,6 +1,6 @@
-#include "tactree/core/surface.hpp"
+// memory: RAM
 
-#include "corner_leaves.hpp"
+#include "tactree/core/surface.hpp"
 
 namespace tactree::core {
 namespace {
@@ -13,11 +13,6 @@ constexpr float kFadeEnds = 0.95F;
 // Below this share of A the points are as good as one point: fit a plane.
 constexpr float kFlatShare = 1e-3F;
 
-// The next gather, in slacks: how far ahead of the query, less than 1; and from which stride on the
-// query has jumped, so that nobody knows where it goes.
-constexpr float kAhead = 0.6F;
-constexpr float kStride = 1.5F;
-
 // Two faces meet in a crease where normals differ by 60 to 120 degrees; more is the other side of a
 // plate, which never counts.
 constexpr float kCreaseCosine = 0.5F;
@@ -29,11 +24,6 @@ constexpr float kRoundShare = 0.25F;
 // points each must have: a stray normal in the middle of a face makes no crease.
 constexpr float kApart = 0.04F;
 constexpr std::uint32_t kFacePoints = 3;
-
-// A centre rounded to whole numbers is off by less than kRounding of them. So much less than the
-// reach is gathered, the reach is rounded down, and a point may seem further than it is.
-constexpr std::int32_t kRounding = 1;
-constexpr float kLostToRounding = 3.0F;
 
 /// The weighted sums of a fit; q counts from the query position.
 struct Moments {
@@ -74,7 +64,7 @@ struct Surroundings {
   float averted = 0.0F;
   float nearest = radius_squared;
   const Candidate* crease = nullptr;
-  for (const Candidate& candidate : set) {  // bound: points_per_ball_max, in RAM
+  for (const Candidate& candidate : set) {  // bound: points_per_ball_max
     const Vec3 q = candidate.position - x;
     const float qq = length_squared(q);
     if (!(qq < radius_squared)) {
@@ -109,7 +99,7 @@ struct Faces {
   const float radius_squared = radius * radius;
   const float inverse_squared = 1.0F / radius_squared;
   Faces faces;
-  for (const Candidate& candidate : set) {  // bound: points_per_ball_max, in RAM
+  for (const Candidate& candidate : set) {  // bound: points_per_ball_max
     const Vec3 q = candidate.position - x;
     const float qq = length_squared(q);
     if (!(qq < radius_squared)) {
@@ -199,165 +189,12 @@ SurfaceFit combine(const SurfaceFit& smooth, const Faces& faces, float radius) {
   return smooth;
 }
 
-constexpr std::uint32_t lower(std::uint32_t a, std::uint32_t b) { return a < b ? a : b; }
-
-/// To the nearest whole number, for |value| < 2^15.
-constexpr std::int32_t rounded(float value) {
-  constexpr float kPositive = 32768.0F;
-  return static_cast<std::int32_t>(value + (kPositive + 0.5F)) -
-         static_cast<std::int32_t>(kPositive);
-}
-
-/// How far from the centre of a gather its candidates are good. A centre that was rounded to the
-/// lattice leaves out what is almost a reach away.
-float slack_of(const BlobView& view) {
-  return view.reach_m() - view.header().support_radius_m - kLostToRounding * view.step_m();
-}
-
-/// Which points of a leaf are near the centre of a gather, in whole numbers: comparing floats takes
-/// longer, and most points are not near enough. Counted in half sites from the leaf's first site,
-/// to which the centre is rounded: where all leaves are of one size these are lattice units, and the
-/// reach is taken smaller by as much. Leaves of several sizes may be coarse: there it is taken
-/// larger, and what is within is compared exactly.
-class LeafBall {
- public:
-  LeafBall(const BlobView& view, const NearLeaf& leaf, Int3 leaf_min) {
-    const float inverse = view.is_uniform() ? view.inverse_step() : 2.0F / leaf.site_m;
-    const auto reach = static_cast<std::int32_t>(view.reach_m() * inverse);
-    const std::int32_t radius = view.is_uniform() ? reach - kRounding : reach + 2 * kRounding;
-    centre_ = {rounded(leaf.local.x * inverse), rounded(leaf.local.y * inverse),
-               rounded(leaf.local.z * inverse)};
-    radius_squared_ = radius * radius;
-    const std::int32_t half = leaf.half_site;
-    origin_ = {leaf_min.x + half * (1 + centre_.x), leaf_min.y + half * (1 + centre_.y),
-               leaf_min.z + half * (1 + centre_.z)};
-    half_site_ = half;
-    const std::int32_t lowest = (centre_.z - radius + 1) >> 1;
-    const std::int32_t highest = (centre_.z + radius) >> 1;
-    if (lowest <= kLastSite && highest >= 0) {
-      first_word_ = lowest > 0 ? static_cast<std::uint32_t>(lowest) << kZShift : 0U;
-      last_word_ = highest < kLastSite
-                       ? ((static_cast<std::uint32_t>(highest) + 1U) << kZShift) - 1U
-                       : ~0U;
-    }
-  }
-
-  /// Words ascend with z: these are the ends of the slab that the ball touches; none where the
-  /// first is beyond the last.
-  [[nodiscard]] std::uint32_t first_word() const { return first_word_; }
-  [[nodiscard]] std::uint32_t last_word() const { return last_word_; }
-
-  /// From the centre to the point, half sites.
-  [[nodiscard]] Int3 way_to(std::uint32_t word) const {
-    return {2 * static_cast<std::int32_t>(word >> 2 & 1023U) - centre_.x,
-            2 * static_cast<std::int32_t>(word >> 12 & 1023U) - centre_.y,
-            2 * static_cast<std::int32_t>(word >> kZShift) - centre_.z};
-  }
-  [[nodiscard]] bool holds(Int3 way) const {
-    return way.x * way.x + way.y * way.y + way.z * way.z <= radius_squared_;
-  }
-  /// In lattice units; exact.
-  [[nodiscard]] Int3 place_of(Int3 way) const {
-    return {origin_.x + half_site_ * way.x, origin_.y + half_site_ * way.y,
-            origin_.z + half_site_ * way.z};
-  }
-
- private:
-  static constexpr std::uint32_t kZShift = 22;
-  static constexpr std::int32_t kLastSite = 1023;
-
-  Int3 centre_{};
-  Int3 origin_{};  // the centre, lattice units
-  std::int32_t radius_squared_ = 0;
-  std::int32_t half_site_ = 1;  // lattice units
-  std::uint32_t first_word_ = ~0U;
-  std::uint32_t last_word_ = 0;
-};
-
 }  // namespace
-
-bool CandidateSet::covers(const BlobView& view, Vec3 x) const {
-  const float slack = slack_of(view);
-  return valid_ && length_squared(x - centre_) <= slack * slack;
-}
-
-// Ahead of a query that walks: it is then good for twice as long.
-void CandidateSet::gather_for(const BlobView& view, Vec3 x) {
-  const float slack = slack_of(view);
-  const Vec3 way = x - centre_;
-  const float squared = length_squared(way);
-  const bool walks = valid_ && squared > 0.0F && squared <= kStride * slack * (kStride * slack);
-  gather(view, walks ? x + (kAhead * slack / square_root(squared)) * way : x);
-}
-
-[[gnu::noinline]] void CandidateSet::gather(const BlobView& view, Vec3 centre) {
-  const BlobHeader& header = view.header();
-  count_ = 0;
-  complete_ = true;
-  centre_ = centre;
-  valid_ = true;
-  most_ = header.points_per_ball_max < kMaxCandidates ? header.points_per_ball_max : kMaxCandidates;
-  unseen_ = header.points_per_query_max;
-  untested_ = header.points_per_slab_max;
-  const float reach_squared = view.reach_m() * view.reach_m();
-  CornerLeaves corners(view, centre, view.reach_m());
-  corners.each(reach_squared, [&](const NearLeaf& leaf) {
-    gather_leaf(view, leaf, corners.min_of(leaf));
-    return reach_squared;
-  });
-}
-
-[[gnu::noinline]] bool CandidateSet::is_within(float reach, Vec3 position) const {
-  return length_squared(position - centre_) <= reach * reach;
-}
-
-[[gnu::always_inline]] inline bool CandidateSet::add(const BlobView& view, Int3 place, std::uint32_t point) {
-  const Vec3 position = {view.step_m() * static_cast<float>(place.x),
-                         view.step_m() * static_cast<float>(place.y),
-                         view.step_m() * static_cast<float>(place.z)};
-  // at most: mixed * points_per_slab_max per CandidateSet::gather
-  if (!view.is_uniform() && !is_within(view.reach_m(), position)) {
-    return true;
-  }
-  if (count_ == most_) {
-    complete_ = false;
-    return false;
-  }
-  candidates_[count_] = {position, view.normal(point), point};
-  ++count_;  // at most: points_per_ball_max per CandidateSet::gather
-  return true;
-}
-
-// A blob that holds more than it declares must not make a tick longer than was proven.
-void CandidateSet::gather_leaf(const BlobView& view, const NearLeaf& leaf, Int3 leaf_min) {
-  const std::uint32_t* const words = view.point_words();
-  const LeafBall ball(view, leaf, leaf_min);
-  const std::uint32_t count = leaf.end_point - leaf.first_point;
-  complete_ = complete_ && count <= unseen_;
-  std::uint32_t index = leaf.first_point;
-  const std::uint32_t end = index + lower(count, unseen_);
-  unseen_ -= end - index;
-  // bound: points_per_leaf_max, total points_per_query_max per CandidateSet::gather
-  while (index < end && words[index] < ball.first_word()) {
-    ++index;
-  }
-  const std::uint32_t first = index;
-  const std::uint32_t last = index + lower(end - index, untested_);
-  // bound: points_per_leaf_max, total points_per_slab_max per CandidateSet::gather
-  for (; index < last && words[index] <= ball.last_word(); ++index) {
-    const Int3 way = ball.way_to(words[index]);
-    if (ball.holds(way) && !add(view, ball.place_of(way), index)) {
-      return;
-    }
-  }
-  untested_ -= index - first;
-  complete_ = complete_ && (index == end || words[index] > ball.last_word());
-}
 
 const Candidate* nearest_candidate(const CandidateSet& set, Vec3 x, float radius) {
   float best = radius * radius;
   const Candidate* nearest = nullptr;
-  for (const Candidate& candidate : set) {  // bound: points_per_ball_max, in RAM
+  for (const Candidate& candidate : set) {  // bound: points_per_ball_max
     const float squared = length_squared(candidate.position - x);
     if (squared < best) {
       best = squared;
@@ -387,7 +224,7 @@ SurfaceProjection project_to_surface(const BlobView& view, Vec3 x, CandidateSet&
   if (surface_support(view) != SurfaceSupport::kOk || !is_finite(x)) {
     return result;
   }
-  const float radius = view.header().support_radius_m;
+  const float radius = view.support_radius_m();
   scratch.clear();
   scratch.cover(view, x);
   const Candidate* const nearest = nearest_candidate(scratch, x, radius);
@@ -421,8 +258,8 @@ SurfaceSupport surface_support(const BlobView& view) {
   if (view.empty()) {
     return SurfaceSupport::kEmpty;
   }
-  const float radius = view.header().support_radius_m;
-  if (!(radius > 0.0F) || !(slack_of(view) > 0.0F)) {
+  const float radius = view.support_radius_m();
+  if (!(radius > 0.0F) || !(CandidateSet::slack_of(view) > 0.0F)) {
     return SurfaceSupport::kNoReach;
   }
   if (view.header().points_per_ball_max > kMaxCandidates) {

@@ -1,3 +1,5 @@
+// memory: RAM
+
 #include "tactree/core/velocity.hpp"
 
 namespace tactree::core {

@@ -69,6 +69,13 @@ std::string read_text(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
+/// Flash: the program's, or where the blob is.
+bool touches_flash(const emulation::BoardDescription& board, const emulation::DataRange& range) {
+  constexpr std::uint32_t kRam = 0x20000000U;
+  const std::uint32_t blob_end = board.blob_address + board.blob_bytes_max;
+  return range.lowest < kRam || (range.highest >= board.blob_address && range.lowest < blob_end);
+}
+
 class Proof : public OnBoard {
  protected:
   void expect_all_analysed(const bound::Bound& bound,
@@ -78,6 +85,19 @@ class Proof : public OnBoard {
       EXPECT_TRUE(analysed(bound, range)) << std::hex << "executed, but not analysed: within "
                                           << range.begin << " .. " << range.end;
     }
+  }
+  // What the sources call RAM is none of the blob or the program.
+  void expect_in_ram(const bound::Bound& bound, const std::vector<emulation::DataRange>& data) {
+    std::size_t seen = 0;
+    for (const emulation::DataRange& range : data) {
+      if (bound.in_ram.contains(range.instruction)) {
+        ++seen;
+        EXPECT_FALSE(touches_flash(board(), range))
+            << std::hex << "said to use RAM, but at " << range.instruction << " uses "
+            << range.lowest << " .. " << range.highest;
+      }
+    }
+    EXPECT_GT(seen, 0U);
   }
 };
 INSTANTIATE_TEST_SUITE_P(Boards, Proof, testing::ValuesIn(proven_boards()), name_of_board);
@@ -109,6 +129,7 @@ TEST_P(Proof, SeekingFindsNoTickBeyondTheBound) {
                                    core::RenderMode::kSurface, 1);
     EXPECT_LE(found.instructions, bound.instructions);
     expect_all_analysed(bound, found.code);
+    expect_in_ram(bound, found.data);
     const double share =
         static_cast<double>(found.instructions) / static_cast<double>(bound.instructions);
     reached = std::max(reached, share);
@@ -131,6 +152,7 @@ TEST_P(Proof, HoldsInPaperMode) {
                                    core::RenderMode::kPaper, 1);
     EXPECT_LE(found.instructions, bound.instructions);
     expect_all_analysed(bound, found.code);
+    expect_in_ram(bound, found.data);
   }
 }
 
@@ -157,6 +179,7 @@ TEST_P(Proof, HoldsForEveryDevice) {
     EXPECT_GT(counts.ticks, 300U) << device.name;
     EXPECT_LE(counts.max, bound.instructions) << device.name;
     expect_all_analysed(bound, counts.code);
+    expect_in_ram(bound, counts.data);
   }
 }
 

@@ -154,6 +154,7 @@ Found seek_worst(const emulation::BoardDescription& board,
     }
     const emulation::InstructionCounts counts = follow(board, counted, blob, way, mode);
     found.code.insert(found.code.end(), counts.code.begin(), counts.code.end());
+    found.data.insert(found.data.end(), counts.data.begin(), counts.data.end());
     if (counts.max > found.instructions) {
       found.instructions = counts.max;
       const auto worst = static_cast<std::size_t>(counts.worst_tick);

@@ -31,6 +31,7 @@ struct Found {
   std::uint64_t instructions = 0;
   Way way;  ///< the ticks that led there
   std::vector<emulation::CodeRange> code;
+  std::vector<emulation::DataRange> data;
 };
 
 /// Climbs on the instruction count: the ways around the worst tick of one run, changed a little,

@@ -11,7 +11,7 @@ import tempfile
 import unittest
 import zlib
 
-TACTREE = sys.argv.pop(1)
+TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
 
 
 def shell(hole):

@@ -3,6 +3,10 @@
 import { join } from 'node:path';
 import { launch, number, openPage, startServer, state } from './setup.mjs';
 
+// From where the model is seen well, and how deep the hand presses without slipping off it.
+const TURNS = 14;
+const DEPTH_M = 0.0009;
+
 const [, , blob, into] = process.argv;
 
 /** Into the object along the keys' way, until it presses. */
@@ -27,20 +31,21 @@ const browser = await launch();
 const server = await startServer([blob, '--stiffness', '800']);
 const page = await openPage(browser, server.url, { colorScheme: 'light' });
 await state(page, 'active');
-await press(page, 0.002);
-await page.keyboard.press('ArrowLeft');
+await page.locator('#view').focus();
+for (let i = 0; i < TURNS; ++i) await page.keyboard.press('Shift+ArrowRight');
+for (let i = 0; i < 3; ++i) await page.keyboard.press('+');
+await press(page, DEPTH_M);
 await take(page, 'page.png');
 
 await page.emulateMedia({ colorScheme: 'dark' });
 await page.locator('#mode').selectOption('both');
 await page.locator('#view').focus();
-for (let i = 0; i < 40; ++i) await page.keyboard.press('ArrowUp');
 await page.waitForTimeout(1500);
 await state(page, 'active');
-await press(page, 0.001);
-for (let i = 0; i < 25; ++i) {
-  await page.keyboard.press(i % 10 < 5 ? 'ArrowLeft' : 'ArrowRight');
-  await page.waitForTimeout(120);
+await press(page, DEPTH_M);
+for (let i = 0; i < 8; ++i) {
+  await page.keyboard.press(i < 4 ? 'ArrowLeft' : 'ArrowRight');
+  await page.waitForTimeout(150);
 }
 await take(page, 'page-both.png');
 await browser.close();

@@ -200,11 +200,6 @@ class Reader {
         text.remove_prefix(kTotal.size());
         loop.total = read_total(text, line);
       }
-      static constexpr std::string_view kInRam = ", in RAM";
-      if (text.starts_with(kInRam)) {
-        text.remove_prefix(kInRam.size());
-        loop.in_ram = true;
-      }
       check_remark(text, line);
       return;
     }
@@ -261,6 +256,7 @@ class Reader {
 
   void read_facts() {
     for (std::uint32_t line = 1; line <= lines_.size(); ++line) {
+      file_.in_ram = file_.in_ram || lines_[line - 1] == "// memory: RAM";
       std::string_view text = said(line, "at most:");
       if (!text.empty()) {
         SourceFact fact{name_, line, read_total(text, line)};

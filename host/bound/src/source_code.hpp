@@ -33,7 +33,6 @@ struct SourceLoop {
   bool simple = false;
   std::optional<Expression> bound;
   std::optional<Total> total;
-  bool in_ram = false;  ///< all that it loads and stores is, but for constants beside the code
 };
 
 /// A statement that one call of a function executes so often at most.
@@ -52,6 +51,8 @@ struct SourceArgument {
 };
 
 struct SourceFile {
+  /// All that its code loads and stores is in RAM, but for constants beside the code.
+  bool in_ram = false;
   std::vector<SourceLoop> loops;
   std::vector<SourceArgument> arguments;
   std::vector<SourceFact> facts;

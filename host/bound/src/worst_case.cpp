@@ -51,19 +51,6 @@ struct Analysis {
 constexpr double kEntryCycles = 2.0 * (12.0 + 17.0);
 constexpr double kEntryWords = 2.0 * 26.0;
 
-/// Of one pass of a block, but for its fetch.
-double cycles_of(const BoardTiming& timing, const ControlFlow& flow, const Block& block,
-                 bool in_ram) {
-  double cycles = 0.0;
-  for (std::uint32_t i = 0; i < block.count; ++i) {
-    const Instruction& instruction = flow.instructions[block.first + i];
-    const bool is_ram = in_ram && !instruction.literal;
-    cycles += instruction.cycles + timing.ram_wait * instruction.stack_words +
-              (is_ram ? timing.ram_wait : timing.data_wait) * instruction.other_words;
-  }
-  return cycles;
-}
-
 /// Lines of code, by their numbers.
 using CodeLines = std::set<std::uint32_t>;
 
@@ -78,6 +65,18 @@ void add_lines(const BoardTiming& timing, const ControlFlow& flow, const Block& 
        ++line) {
     lines.insert(line);
   }
+}
+
+/// Does the source say so of the instruction, or of what it is inlined into?
+bool is_in_ram(const Analysis& analysis, const Instruction& instruction) {
+  if (instruction.literal || instruction.other_words == 0) {
+    return false;
+  }
+  const auto& places = analysis.program.lines().at(instruction.address);
+  return std::any_of(places.begin(), places.end(), [&](const Place& place) {
+    const SourceFile* const file = analysis.sources.find(place.file);
+    return file != nullptr && file->in_ram;
+  });
 }
 
 class Model;
@@ -305,27 +304,51 @@ class Model {
   [[nodiscard]] double cost_of(std::uint32_t entry, std::uint32_t b) const {
     const ControlFlow& flow = function(entry).flow;
     const Block& block = flow.blocks[b];
-    const BoardTiming* const timing = analysis_.timing;
-    if (timing == nullptr || block.count == 0) {
+    if (analysis_.timing == nullptr || block.count == 0) {
       return block.count;
     }
-    CodeLines lines;
-    if (!variables_.at(entry).kept_by[b]) {
-      add_lines(*timing, flow, block, lines);
-    }
-    return cycles_of(*timing, flow, block, is_in_ram(entry, b)) +
-           timing->fetch_wait * static_cast<double>(lines.size());
+    const bool is_kept = variables_.at(entry).kept_by[b].has_value();
+    return cycles_of(flow, block) + (is_kept ? 0.0 : fetch_of(flow, block));
   }
 
-  /// Does the source say so of a loop around the block?
-  [[nodiscard]] bool is_in_ram(std::uint32_t entry, std::uint32_t b) const {
-    const AnalysedFunction& f = function(entry);
-    for (std::uint32_t i = 0; i < f.flow.loops.size(); ++i) {
-      if (f.bounds[i].source->in_ram && f.flow.loops[i].blocks.contains(b)) {
-        return true;
-      }
+  /// Words that an instruction loads from the slowest memory. Nothing is stored there.
+  [[nodiscard]] std::uint32_t slow_words(const Instruction& instruction) const {
+    const bool is_fast = instruction.store || is_in_ram(analysis_, instruction);
+    return is_fast ? 0U : instruction.other_words;
+  }
+
+  /// Of one pass of a block, but for its fetch.
+  [[nodiscard]] double cycles_of(const ControlFlow& flow, const Block& block) const {
+    const BoardTiming& timing = *analysis_.timing;
+    double cycles = 0.0;
+    for (std::uint32_t i = 0; i < block.count; ++i) {
+      const Instruction& instruction = flow.instructions[block.first + i];
+      const std::uint32_t slow = slow_words(instruction);
+      cycles += instruction.cycles + timing.data_wait * slow +
+                timing.ram_wait * (instruction.stack_words + instruction.other_words - slow);
     }
-    return false;
+    return cycles;
+  }
+
+  // The next line is fetched while the instructions of this one are executed, unless one of them
+  // needs the flash itself.
+  [[nodiscard]] double fetch_of(const ControlFlow& flow, const Block& block) const {
+    const BoardTiming& timing = *analysis_.timing;
+    std::uint32_t line = flow.instructions[block.first].address / timing.line_bytes;
+    double wait = timing.fetch_wait;
+    double hidden = 0.0;
+    for (std::uint32_t i = 0; i < block.count; ++i) {
+      const Instruction& instruction = flow.instructions[block.first + i];
+      const std::uint32_t end = (instruction.address + instruction.bytes - 1) / timing.line_bytes;
+      if (end != line) {
+        line = end;
+        wait += timing.fetch_wait - std::clamp<double>(hidden, 0.0, timing.fetch_wait);
+        hidden = 0.0;
+      }
+      const bool disturbs = !timing.prefetches || slow_words(instruction) > 0;
+      hidden = disturbs ? -1e9 : hidden + 1.0;
+    }
+    return wait;
   }
 
   // Code that is used again and again stays where the lines used last do, when the loop and all that
@@ -843,7 +866,15 @@ class Task {
   }
 
   [[nodiscard]] Bound instructions(const Parameters& parameters) {
-    Bound bound = to_bound(sources_, solve(analysis(parameters, {}, nullptr), entries_, {}));
+    const Analysis all = analysis(parameters, {}, nullptr);
+    Bound bound = to_bound(sources_, solve(all, entries_, {}));
+    for (const auto& [entry, function] : program_->functions()) {
+      for (const Instruction& instruction : function.flow.instructions) {
+        if (is_in_ram(all, instruction)) {
+          bound.in_ram.insert(instruction.address);
+        }
+      }
+    }
     for (const std::uint32_t entry : program_->endings()) {
       bound.endings.push_back({entry, image_.functions().at(entry).end, 0, 0.0});
     }
@@ -930,16 +961,16 @@ PaceCycles cycles_by_pace(const BoundOptions& options) {
 }
 
 double highest_rate(double clock_hz, const PaceCycles& cycles) {
-  for (std::uint32_t pace = core::kPaces - 1; pace > 0; --pace) {
-    const double slowest = static_cast<double>(core::kPaceRates[pace - 1]);
-    const double fastest = pace + 1 < core::kPaces ? static_cast<double>(core::kPaceRates[pace])
-                                                   : clock_hz;
-    const double rate = std::min(clock_hz / cycles[pace], fastest);
-    if (rate > slowest) {
+  double below = clock_hz;
+  for (std::uint32_t pace = core::kPaces; pace-- > 0;) {
+    const double rate = std::min(clock_hz / cycles[pace], below);
+    const double lowest = static_cast<double>(core::kPaceRates[pace]);
+    if (rate >= lowest) {
       return rate;
     }
+    below = lowest - 1.0;
   }
-  return std::min(clock_hz / cycles[0], static_cast<double>(core::kPaceRates[0]));
+  return 0.0;
 }
 
 core::TickCosts tick_costs(const BoundOptions& options) {

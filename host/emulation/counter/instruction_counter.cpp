@@ -9,6 +9,7 @@
 //              worst <number of the tick with the most, the first one counted is 0>
 //              function <max in a tick> <total> <name>      for each that was in a tick
 //              code <begin> <end>     with code=on: addresses that were executed in ticks, in hex
+//              data <address> <lowest> <highest>  and what each instruction there loaded or stored
 //              end
 
 #include <cstdio>
@@ -37,6 +38,8 @@ struct Instruction {
   std::uint64_t end = 0;
   std::uint64_t executed = 0;  // the emulator adds to this
   std::uint64_t before = 0;    // executed before the first tick
+  std::uint64_t lowest = ~0ULL;  // addresses of its data in ticks
+  std::uint64_t highest = 0;
 };
 
 // FNV-1a.
@@ -137,11 +140,21 @@ struct Counter {
 // Never destroyed: the report is written after static objects are.
 Counter& counter = *new Counter;
 
+void note_data(unsigned, qemu_plugin_meminfo_t, std::uint64_t address, void* data) {
+  if (counter.in_tick) {
+    auto& instruction = *static_cast<Instruction*>(data);
+    instruction.lowest = address < instruction.lowest ? address : instruction.lowest;
+    instruction.highest = address > instruction.highest ? address : instruction.highest;
+  }
+}
+
 void note(qemu_plugin_insn* instruction) {
   const std::uint64_t begin = qemu_plugin_insn_vaddr(instruction);
-  counter.instructions.push_back({begin, begin + qemu_plugin_insn_size(instruction), 0, 0});
+  counter.instructions.push_back({begin, begin + qemu_plugin_insn_size(instruction)});
   qemu_plugin_register_vcpu_insn_exec_inline(instruction, QEMU_PLUGIN_INLINE_ADD_U64,
                                              &counter.instructions.back().executed, 1);
+  qemu_plugin_register_vcpu_mem_cb(instruction, note_data, QEMU_PLUGIN_CB_NO_REGS,
+                                   QEMU_PLUGIN_MEM_RW, &counter.instructions.back());
 }
 
 void translated(qemu_plugin_id_t, qemu_plugin_tb* block) {
@@ -192,6 +205,17 @@ void write_code(std::FILE* file) {
   }
 }
 
+void write_data(std::FILE* file) {
+  for (const Instruction& instruction : counter.instructions) {
+    if (instruction.lowest <= instruction.highest) {
+      std::fprintf(file, "data %llx %llx %llx\n",
+                   static_cast<unsigned long long>(instruction.begin),
+                   static_cast<unsigned long long>(instruction.lowest),
+                   static_cast<unsigned long long>(instruction.highest));
+    }
+  }
+}
+
 void write_report(qemu_plugin_id_t, void*) {
   std::FILE* file = std::fopen(counter.report_file.c_str(), "w");
   if (file == nullptr) {
@@ -213,6 +237,7 @@ void write_report(qemu_plugin_id_t, void*) {
     }
   }
   write_code(file);
+  write_data(file);
   std::fprintf(file, "end\n");
   std::fclose(file);
 }

@@ -13,6 +13,8 @@ struct qemu_plugin_insn;  // one of them
 struct qemu_info_t;
 
 enum qemu_plugin_cb_flags { QEMU_PLUGIN_CB_NO_REGS = 0 };
+enum qemu_plugin_mem_rw { QEMU_PLUGIN_MEM_RW = 3 };
+using qemu_plugin_meminfo_t = std::uint32_t;
 enum qemu_plugin_op { QEMU_PLUGIN_INLINE_ADD_U64 = 0 };
 
 void qemu_plugin_register_vcpu_tb_trans_cb(qemu_plugin_id_t id,
@@ -33,6 +35,12 @@ void qemu_plugin_register_vcpu_insn_exec_cb(qemu_plugin_insn* instruction,
                                             qemu_plugin_cb_flags flags, void* user);
 void qemu_plugin_register_vcpu_insn_exec_inline(qemu_plugin_insn* instruction, qemu_plugin_op op,
                                                 void* counter, std::uint64_t amount);
+
+void qemu_plugin_register_vcpu_mem_cb(qemu_plugin_insn* instruction,
+                                      void (*accessed)(unsigned vcpu, qemu_plugin_meminfo_t info,
+                                                       std::uint64_t address, void* user),
+                                      qemu_plugin_cb_flags flags, qemu_plugin_mem_rw which,
+                                      void* user);
 
 // What a plugin defines.
 [[gnu::visibility("default")]] extern int qemu_plugin_version;

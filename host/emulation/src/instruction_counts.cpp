@@ -46,6 +46,10 @@ InstructionCounts parse_instruction_counts(const std::string& report) {
       CodeRange range;
       words >> std::hex >> range.begin >> range.end;
       counts.code.push_back(range);
+    } else if (key == "data") {
+      DataRange range;
+      words >> std::hex >> range.instruction >> range.lowest >> range.highest;
+      counts.data.push_back(range);
     } else if (key == "end") {
       complete = true;
     }

@@ -193,9 +193,9 @@ class LiveSession::Hand {
 LiveSession::LiveSession(Bodies bodies, std::vector<NamedDevice> devices, const Settings& settings)
     : bodies_(std::move(bodies)), devices_(std::move(devices)), settings_(settings) {
   const simulation::HandPath way = simulation::make_script("press", bodies_.views[0], 1.0);
-  hand_m_ = bodies_.bodies[0].path.first() * way.waypoints().front().position_m;
-  hand_ = std::make_unique<Hand>(hand_m_);
-  runs_ = make_runs(settings_, hand_m_);
+  start_m_ = bodies_.bodies[0].path.first() * way.waypoints().front().position_m;
+  hand_ = std::make_unique<Hand>(start_m_);
+  runs_ = make_runs(settings_);
 }
 
 LiveSession::~LiveSession() { stop(); }
@@ -222,8 +222,7 @@ simulation::Setup LiveSession::make_setup(const Settings& settings, core::Render
   return setup;
 }
 
-LiveSession::Runs LiveSession::make_runs(const Settings& settings,
-                                         const Eigen::Vector3d& hand_m) const {
+LiveSession::Runs LiveSession::make_runs(const Settings& settings) const {
   Runs runs;
   for (const core::RenderMode mode : {core::RenderMode::kSurface, core::RenderMode::kPaper}) {
     const bool wanted = settings.modes == Modes::kBoth ||
@@ -236,7 +235,7 @@ LiveSession::Runs LiveSession::make_runs(const Settings& settings,
     if (status != core::ConfigurationStatus::kOk) {  // before a simulation is made of it
       throw SessionRefused(refusal(bodies_.views[0], setup, {.configuration = status}));
     }
-    auto run = std::make_unique<Run>(bodies_, setup, hand_m);
+    auto run = std::make_unique<Run>(bodies_, setup, start_m_);
     if (!run->sim.start_result().ok()) {
       throw SessionRefused(refusal(bodies_.views[0], setup, run->sim.start_result()));
     }
@@ -268,13 +267,11 @@ Settings LiveSession::changed(const json& wanted) const {
 
 void LiveSession::begin_anew(const json& wanted) {
   Settings settings;
-  Eigen::Vector3d hand_m;
   {
     const std::lock_guard lock(mutex_);
     settings = changed(wanted);
-    hand_m = hand_m_;
   }
-  Runs runs = make_runs(settings, hand_m);  // takes a while: the loop goes on meanwhile
+  Runs runs = make_runs(settings);  // takes a while: the loop goes on meanwhile
   const std::lock_guard lock(mutex_);
   settings_ = settings;
   next_runs_ = std::move(runs);
@@ -389,10 +386,10 @@ void LiveSession::take_over() {
     const std::lock_guard lock(mutex_);
     commands.swap(commands_);
     next.swap(next_runs_);
-    hand_m_ = hand_->position_m();
   }
   if (!next.empty()) {
     runs_ = std::move(next);
+    hand_ = std::make_unique<Hand>(start_m_);
     ticks_due_ = 0.0;
     log_.clear();
   }

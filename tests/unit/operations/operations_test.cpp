@@ -32,9 +32,8 @@ class Operations : public testing::Test {
   }
 
   /// Of one tick of any body, from the loops of core:
-  ///   gather    per point of the leaves visited: its position and distance; per point kept: its
-  ///             normal; per leaf its distance
-  ///   fit       per candidate: weight, face, sums; twice where faces meet; then three spheres
+  ///   gather    per point kept its position and normal; per leaf where the centre is
+  ///   pass      per candidate: weight, face, sums; then a sphere, or at a crease three for two
   [[nodiscard]] std::uint64_t most() const {
     constexpr std::uint64_t kPosition = 18;
     constexpr std::uint64_t kNormal = 24;
@@ -45,9 +44,10 @@ class Operations : public testing::Test {
     constexpr std::uint64_t kRest = 400;  // of the proxy, the force, the body's frame
     const core::BlobHeader& h = view_.header();
     const std::uint64_t m = h.points_per_ball_max;
-    const std::uint64_t gather = h.points_per_query_max * kPosition + m * kNormal + kLeaves;
-    const std::uint64_t fit = 2U * m * kCandidate + 3U * kSphere;
-    return core::kEvaluationsPerTick * (gather + fit + m * kNearest) + m * kNearest + kRest;
+    const std::uint64_t gather = m * (kPosition + kNormal) + kLeaves;
+    const std::uint64_t pass = m * kCandidate + 2U * kSphere;
+    const core::SurfaceWork work = core::work_per_tick(configuration_.rate_hz);
+    return work.gathers * (gather + m * kNearest) + work.passes * pass + kRest;
   }
 
   core::Configuration configuration_{};

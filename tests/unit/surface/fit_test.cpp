@@ -169,7 +169,7 @@ TEST(Candidates, HoldEveryPointOfTheSupport) {
     ASSERT_TRUE(set.complete());
     std::set<std::uint32_t> points;
     for (std::uint32_t k = 0; k < set.count(); ++k) {
-      points.insert(set.point(k));
+      points.insert(set[k].point);
     }
     ASSERT_EQ(points.size(), set.count());
     for (std::uint32_t k = 0; k < all.size(); ++k) {

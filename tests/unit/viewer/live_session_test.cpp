@@ -116,6 +116,17 @@ TEST_F(LiveSessionTest, BothModesGoSideBySide) {
   EXPECT_EQ(frame["runs"][1]["mode"], "paper");
 }
 
+TEST_F(LiveSessionTest, ChangedSettingsBeginAnewOutsideTheObject) {
+  frames_.wait_for_state("active");
+  say({{"do", "hand"}, {"target_m", {0.0, 0.0, kRadius_m - 0.01}}});
+  frames_.wait_for([](const json& f) { return f["runs"][0]["force_N"][2].get<double>() > 0.5; });
+  say({{"do", "set"}, {"damping_Ns_m", 1.0}});
+  const json frame = frames_.wait_for(
+      [](const json& f) { return f["settings"]["damping_Ns_m"] == 1.0 && f["t_s"] > 0.0; });
+  EXPECT_EQ(frame["runs"][0]["penetration_m"], 0.0);
+  frames_.wait_for_state("active");
+}
+
 TEST_F(LiveSessionTest, ARefusalChangesNothing) {
   EXPECT_NE(refusal({{"do", "set"}, {"stiffness_N_m", 50000}}).find("stability limit"),
             std::string::npos);

@@ -70,6 +70,7 @@ class BlobView {
   [[nodiscard]] float cells_and_one() const { return cells_and_one_; }
   /// Largest radius for which a query is exact.
   [[nodiscard]] float reach_m() const { return reach_m_; }
+  [[nodiscard]] float support_radius_m() const { return support_radius_m_; }
 
   /// True in the surface profile: every leaf is of the deepest level, and a node is one word, the
   /// group of its children: leaves below a node of level depth() - 1, else nodes.
@@ -138,6 +139,7 @@ class BlobView {
   float step_m_ = 0.0F;
   float inverse_step_ = 0.0F;
   float reach_m_ = 0.0F;
+  float support_radius_m_ = 0.0F;
   float leaf_edge_m_ = 0.0F;
   float inverse_leaf_edge_ = 0.0F;
   float cells_and_one_ = 0.0F;

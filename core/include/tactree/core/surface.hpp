@@ -24,10 +24,10 @@ struct SurfaceWork {
 /// faster the loop, the less there is to do in a tick. At least a gather and two fits at a crease.
 inline constexpr std::uint32_t kPaces = 3;
 inline constexpr SurfaceWork kWorkPerTick[kPaces] = {{4, 10}, {2, 6}, {1, 4}};
-/// Highest rates of all paces but the last, Hz.
-inline constexpr float kPaceRates[kPaces - 1] = {1000.0F, 2000.0F};
+/// Lowest rate of each pace, Hz.
+inline constexpr float kPaceRates[kPaces] = {0.0F, 1000.0F, 2000.0F};
 [[nodiscard]] constexpr std::uint32_t pace_of(float rate_hz) {
-  return rate_hz > kPaceRates[1] ? 2U : (rate_hz > kPaceRates[0] ? 1U : 0U);
+  return rate_hz >= kPaceRates[2] ? 2U : (rate_hz >= kPaceRates[1] ? 1U : 0U);
 }
 [[nodiscard]] constexpr SurfaceWork work_per_tick(float rate_hz) {
   return kWorkPerTick[pace_of(rate_hz)];
@@ -43,6 +43,9 @@ struct Candidate {
 /// The decoded points around a centre, good for every query within the slack of that centre.
 class CandidateSet {
  public:
+  /// How far from its centre a gather is good, m.
+  [[nodiscard]] static float slack_of(const BlobView& view);
+
   /// Forgets the last gather; needed whenever the blob changes.
   void clear() { valid_ = false; }
 

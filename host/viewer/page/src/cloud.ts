@@ -30,7 +30,7 @@ export interface Eye {
 const MOST_REQUESTS = 4;
 // Points nearer to each other than this are one on the screen.
 const FINEST_PX = 1.2;
-const OVERLAP = 1.7;
+const OVERLAP = 2.0;
 const UNITS = 65535;
 
 const VERTEX = `

@@ -8,8 +8,12 @@ const TURN_PER_PX = 0.006;
 const NOTCH = 0.006; // of the distance: a step of a wheel or key
 const KEY_TURN = 0.08;
 const ZOOM = 1.12;
+// By then the hand is where it was told to be, but for a long way.
+const SETTLED_MS = 500;
 
 export class Hand {
+  /** When it was told last. */
+  private told_ms = -Infinity;
   /** Where the hand was told to be; in a trace there is none. */
   target: THREE.Vector3 | undefined;
   private readonly pointers = new Map<number, { x: number; y: number }>();
@@ -28,6 +32,11 @@ export class Hand {
     canvas.addEventListener('contextmenu', (event) => event.preventDefault());
     canvas.addEventListener('wheel', (event) => this.wheel(event), { passive: false });
     canvas.addEventListener('keydown', (event) => this.key(event));
+  }
+
+  /** Where the hand is: it goes on from there, unless it is on its way. */
+  follow(at: Triple): void {
+    if (performance.now() - this.told_ms > SETTLED_MS) this.target = new THREE.Vector3(...at);
   }
 
   private down(event: PointerEvent): void {
@@ -113,7 +122,11 @@ export class Hand {
     const { orbit, canvas } = this.view;
     const scale = orbit.metresPerPixel(this.target, canvas.clientHeight);
     this.target.addScaledVector(orbit.right, right_px * scale).addScaledVector(orbit.up, up_px * scale);
-    this.tell(this.target.toArray());
+    this.say();
+  }
+  private say(): void {
+    this.told_ms = performance.now();
+    if (this.target) this.tell(this.target.toArray());
   }
   /** Along the view: positive goes away from the eye. */
   private along(notches: number): void {
@@ -121,6 +134,6 @@ export class Hand {
     const { orbit } = this.view;
     const far = this.target.distanceTo(orbit.camera.position);
     this.target.addScaledVector(orbit.forward, notches * NOTCH * far);
-    this.tell(this.target.toArray());
+    this.say();
   }
 }

@@ -1,7 +1,6 @@
 // The page of `tactree view`: puts its parts together.
 
 import './style.css';
-import * as THREE from 'three';
 import { Connection } from './connection';
 import { Hand } from './hand';
 import { length, type Command, type Frame, type Hello, type Run } from './messages';
@@ -16,9 +15,9 @@ const LOST_SHOWN_MS = 3000;
 
 const view = new View(find<HTMLCanvasElement>('view'));
 const strips = {
-  force: new Strip(find<HTMLCanvasElement>('strip-force'), 'N'),
-  penetration: new Strip(find<HTMLCanvasElement>('strip-penetration'), 'mm'),
-  instructions: new Strip(find<HTMLCanvasElement>('strip-instructions'), ''),
+  force: new Strip(find<HTMLCanvasElement>('strip-force'), 'N', 1),
+  penetration: new Strip(find<HTMLCanvasElement>('strip-penetration'), 'mm', 1),
+  instructions: new Strip(find<HTMLCanvasElement>('strip-instructions'), '', 1000),
 };
 const numbers = new Numbers();
 const panel = new Panel(say);
@@ -125,7 +124,7 @@ let latest: Frame | undefined;
 function frame(message: Frame): void {
   latest = message;
   pushStrips(message);
-  if (message.hand_m && !hand.target) hand.target = new THREE.Vector3(...message.hand_m);
+  if (message.hand_m) hand.follow(message.hand_m);
 }
 
 /** Once a picture: however many frames came in. */

@@ -14,7 +14,12 @@ export class Strip {
   private marked: number | undefined;
   private bound: number | undefined;
 
-  constructor(private readonly canvas: HTMLCanvasElement, private readonly unit: string) {
+  /** `least`: what is always shown, so that noise near nothing does not fill the strip. */
+  constructor(
+    private readonly canvas: HTMLCanvasElement,
+    private readonly unit: string,
+    private readonly least: number,
+  ) {
     this.lines = [{ colour: '--accent', values: [] }, { colour: '--second', values: [] }];
     new ResizeObserver(() => this.draw()).observe(canvas);
   }
@@ -51,7 +56,7 @@ export class Strip {
     const colour = (name: string) => resolve(canvas, style.getPropertyValue(name));
     const shown = this.marked === undefined ? SHOWN : this.lines[0]!.values.length;
     const highest = Math.max(
-      1e-9, this.bound ?? 0, ...this.lines.flatMap((line) => line.values.map((v) => v[1])),
+      this.least, this.bound ?? 0, ...this.lines.flatMap((line) => line.values.map((v) => v[1])),
     );
     const top = nice(highest);
     const y = (value: number) => height - 2 - (value / top) * (height - 6);

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -49,7 +50,8 @@ struct BoardTiming {
                               ///< in no loop which the cache holds
   std::uint32_t line_bytes;   ///< of such a line
   std::uint32_t cache_lines;  ///< of code that stay until this many others were used after them
-  std::uint32_t ram_wait;     ///< cycles for each word on the stack, and where RAM is certain
+  bool prefetches;            ///< the next line, while this one is executed
+  std::uint32_t ram_wait;     ///< cycles for each word on the stack, and where the source says RAM
   std::uint32_t data_wait;    ///< for each other word, wherever it is
   bool is_estimate;          ///< the core is no Cortex-M4, or its board publishes no figures
   const char* source;
@@ -99,6 +101,7 @@ struct Bound {
       unused_facts;                  ///< `at most:` that the compiler left nothing of, file:line
   std::vector<BlockOnPath> endings;  ///< functions that never return: no tick leads there
   std::vector<BlockOnPath> blocks;   ///< all that were analysed, on the path or not
+  std::set<std::uint32_t> in_ram;    ///< instructions whose data are said to be in RAM
 };
 
 /// Cycles of a tick of each pace, core::pace_of(); the parameters' own does not count.

@@ -26,6 +26,13 @@ struct InstructionBucket {
 };
 inline constexpr std::uint64_t kBucketInstructions = 128;
 
+/// What an instruction loaded or stored: the lowest and the highest address.
+struct DataRange {
+  std::uint32_t instruction = 0;
+  std::uint32_t lowest = 0;
+  std::uint32_t highest = 0;
+};
+
 /// Instructions from the tick's interrupt until the board idles again.
 struct InstructionCounts {
   std::uint64_t start = 0;  ///< from reset to the first tick: checking the blob
@@ -37,6 +44,9 @@ struct InstructionCounts {
   std::vector<FunctionCount> functions;  ///< the costliest first
   std::vector<InstructionBucket> buckets;  ///< that are not empty, ascending
   std::vector<CodeRange> code;             ///< executed in ticks, where that was asked for
+
+  std::vector<CodeRange> code;           ///< executed in ticks, where that was asked for
+  std::vector<DataRange> data;           ///< likewise
   [[nodiscard]] double mean() const {
     return ticks == 0 ? 0.0 : static_cast<double>(total) / static_cast<double>(ticks);
   }

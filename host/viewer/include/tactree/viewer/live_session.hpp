@@ -71,7 +71,7 @@ class LiveSession : public Source {
   class Hand;
   using Runs = std::vector<std::unique_ptr<Run>>;
 
-  [[nodiscard]] Runs make_runs(const Settings& settings, const Eigen::Vector3d& hand_m) const;
+  [[nodiscard]] Runs make_runs(const Settings& settings) const;
   [[nodiscard]] simulation::Setup make_setup(const Settings& settings, core::RenderMode mode) const;
   [[nodiscard]] const NamedDevice& device(const std::string& name) const;
   [[nodiscard]] Settings changed(const nlohmann::json& wanted) const;
@@ -86,6 +86,7 @@ class LiveSession : public Source {
 
   Bodies bodies_;
   std::vector<NamedDevice> devices_;
+  Eigen::Vector3d start_m_;  // of the hand: outside the object
 
   // Of the session's thread.
   Runs runs_;
@@ -99,7 +100,6 @@ class LiveSession : public Source {
   Settings settings_;
   Runs next_runs_;  // of changed settings
   std::deque<nlohmann::json> commands_;
-  Eigen::Vector3d hand_m_;
 
   TickLog log_;
   std::atomic<bool> running_{false};
