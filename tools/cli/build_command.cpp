@@ -316,8 +316,8 @@ void check_time(const BuildArguments& arguments, std::span<const std::byte> blob
         "--rate: {} keeps {:.0f} Hz with this model, not {:.6g}: a tick takes up to {:.0f} cycles, "
         "there are {:.0f} (lower --rate, or take a faster board; {} points in a ball count most)",
         arguments.board, std::floor(highest), arguments.rate_hz,
-        board.cycles(view.header(), configuration),
-        board.timing.clock_hz / arguments.rate_hz, view.header().points_per_ball_max));
+        board.cycles(view.header(), configuration), board.timing.clock_hz / arguments.rate_hz,
+        view.header().points_per_ball_max));
   }
 }
 

@@ -36,8 +36,8 @@ struct Function {
 struct Instruction {
   std::uint64_t begin = 0;
   std::uint64_t end = 0;
-  std::uint64_t executed = 0;  // the emulator adds to this
-  std::uint64_t before = 0;    // executed before the first tick
+  std::uint64_t executed = 0;    // the emulator adds to this
+  std::uint64_t before = 0;      // executed before the first tick
   std::uint64_t lowest = ~0ULL;  // addresses of its data in ticks
   std::uint64_t highest = 0;
 };
