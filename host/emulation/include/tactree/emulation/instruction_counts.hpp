@@ -44,9 +44,7 @@ struct InstructionCounts {
   std::vector<FunctionCount> functions;  ///< the costliest first
   std::vector<InstructionBucket> buckets;  ///< that are not empty, ascending
   std::vector<CodeRange> code;             ///< executed in ticks, where that was asked for
-
-  std::vector<CodeRange> code;  ///< executed in ticks, where that was asked for
-  std::vector<DataRange> data;  ///< likewise
+  std::vector<DataRange> data;             ///< likewise
   [[nodiscard]] double mean() const {
     return ticks == 0 ? 0.0 : static_cast<double>(total) / static_cast<double>(ticks);
   }
