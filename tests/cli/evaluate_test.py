@@ -19,7 +19,7 @@ class Evaluate(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         cls.addClassCleanup(folder.cleanup)
         cls.path = pathlib.Path(folder.name)
-        cls.first = cls.evaluate("first", "--require-targets")
+        cls.first = cls.evaluate("first", "--require-targets", "--html", "first.html")
 
     @classmethod
     def evaluate(cls, name, *options):
@@ -49,6 +49,13 @@ class Evaluate(unittest.TestCase):
         self.assertGreaterEqual(len(pictures), 4)
         for picture in pictures:
             self.assertIn(f"(first/{picture.name})", page)
+
+    def test_the_page_for_a_browser_needs_no_other_file(self):
+        page = (self.path / "first.html").read_text()
+        self.assertGreaterEqual(page.count("<svg"), 5)
+        self.assertIn("damping of the wall", page)
+        self.assertGreater(page.count("<tr>"), 30)
+        self.assertNotRegex(page.replace("http://www.w3.org/2000/svg", ""), r"(src|href)=|https?://|@import")
 
     def test_is_the_same_every_time(self):
         self.assertEqual(self.evaluate("second").returncode, 0)

@@ -13,6 +13,8 @@ TEST(InstructionCounts, AReportIsRead) {
   const emulation::InstructionCounts counts = parse_instruction_counts(
       "ticks 4 30 100 77 5000\n"
       "worst 3\n"
+      "bucket 0 3\n"
+      "bucket 256 1\n"
       "function 10 40 memcpy\n"
       "function 20 60 _ZN7tactree4core5crc32ESt4spanIKSt4byteLj4294967295EE\n"
       "code 800 81c\n"
@@ -24,6 +26,9 @@ TEST(InstructionCounts, AReportIsRead) {
   EXPECT_EQ(counts.checksum, 77U);
   EXPECT_EQ(counts.worst_tick, 3U);
   EXPECT_EQ(counts.start, 5000U);
+  ASSERT_EQ(counts.buckets.size(), 2U);
+  EXPECT_EQ(counts.buckets[1].fewest, 256U);
+  EXPECT_EQ(counts.buckets[1].ticks, 1U);
   ASSERT_EQ(counts.functions.size(), 2U);
   EXPECT_EQ(counts.functions[0].name.substr(0, 20), "tactree::core::crc32");
   EXPECT_EQ(counts.functions[1].name, "memcpy");

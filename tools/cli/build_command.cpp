@@ -15,6 +15,7 @@
 #include "json_text.hpp"
 #include "material_file.hpp"
 #include "output_file.hpp"
+#include "preview.hpp"
 #include "tactree/builder/build_model.hpp"
 #include "tactree/emulation/board_description.hpp"
 
@@ -46,6 +47,7 @@ struct BuildArguments {
   std::vector<std::string> inputs;
   std::string output;
   std::string report;
+  std::string preview;
   std::string json;
   std::vector<double> crop;
   std::string spacing;
@@ -154,7 +156,8 @@ bool same_file(const fs::path& a, const fs::path& b) {
 }
 
 void refuse_overwriting_inputs(const BuildArguments& arguments) {
-  for (const std::string* output : {&arguments.output, &arguments.report, &arguments.json}) {
+  for (const std::string* output :
+       {&arguments.output, &arguments.report, &arguments.json, &arguments.preview}) {
     for (const std::string& input : arguments.inputs) {
       if (!output->empty() && same_file(*output, input)) {
         throw CommandError(*output +
@@ -289,15 +292,20 @@ void print(const BuildReport& report, const BuildOptions& build, const std::stri
       static_cast<double>(report.input_points) / report.seconds, report.peak_rss_bytes >> 20U);
 }
 
+core::BlobView open_built(std::span<const std::byte> blob) {
+  core::BlobView view;
+  if (core::open_blob(blob, view) != core::BlobStatus::kOk) {
+    throw CommandError("the blob is not valid (this is a mistake of tactree's)");
+  }
+  return view;
+}
+
 /// A blob that the board cannot render in time is not written.
 void check_time(const BuildArguments& arguments, std::span<const std::byte> blob) {
   if (arguments.board.empty() || arguments.rate_hz <= 0.0) {
     return;
   }
-  core::BlobView view;
-  if (core::open_blob(blob, view) != core::BlobStatus::kOk) {
-    throw CommandError("the blob is not valid (this is a mistake of tactree's)");
-  }
+  const core::BlobView view = open_built(blob);
   core::Configuration configuration;
   configuration.mode = view.is_uniform() ? core::RenderMode::kSurface : core::RenderMode::kPaper;
   configuration.rate_hz = static_cast<float>(arguments.rate_hz);
@@ -309,8 +317,8 @@ void check_time(const BuildArguments& arguments, std::span<const std::byte> blob
         "--rate: {} keeps {:.0f} Hz with this model, not {:.6g}: a tick takes up to {:.0f} cycles, "
         "there are {:.0f} (lower --rate, or take a faster board; {} points in a ball count most)",
         arguments.board, std::floor(highest), arguments.rate_hz,
-        board.cycles(view.header(), configuration),
-        board.timing.clock_hz / arguments.rate_hz, view.header().points_per_ball_max));
+        board.cycles(view.header(), configuration), board.timing.clock_hz / arguments.rate_hz,
+        view.header().points_per_ball_max));
   }
 }
 
@@ -333,6 +341,9 @@ void build(const BuildArguments& arguments) {
     if (!file.empty()) {
       write_file(file, json);
     }
+  }
+  if (!arguments.preview.empty()) {
+    write_preview(arguments.preview, open_built(result.blob.bytes), result.report.openings);
   }
   print(result.report, arguments.build, arguments.output);
   for (const std::string& warning : result.report.warnings) {
@@ -426,6 +437,8 @@ void add_build_command(CLI::App& app, int&) {
       ->default_str("auto");
   verb->add_option("--report", arguments->report, "write what was read, dropped and made as JSON");
   verb->add_option("--json", arguments->json, "the same");
+  verb->add_option("--preview", arguments->preview,
+                   "draw the model into this PNG file, with a scale, holes and open rims marked");
   verb->callback([arguments] {
     complete(*arguments);
     build(*arguments);

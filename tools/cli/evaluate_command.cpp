@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "output_file.hpp"
 #include "tactree/builder/progress.hpp"
 #include "tactree/evaluation/evaluation.hpp"
+#include "tactree/viewer/markdown.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -30,6 +32,7 @@ struct EvaluateOptions {
   bool require_targets = false;
   std::string json;
   std::string report;
+  std::string html;
 };
 
 std::vector<fs::path> files_below(const std::string& folder) {
@@ -79,6 +82,22 @@ void write_report(const fs::path& file, const evaluation::Result& result) {
   write_file(file, evaluation::to_markdown(result, pictures.string()));
 }
 
+/// The same and the Z-width in one file, its pictures within.
+std::string html_report(const evaluation::Result& result) {
+  std::map<std::string, std::string> pictures = evaluation::plots(result);
+  pictures["z_width.svg"] = evaluation::z_width_svg(result.options.quick);
+  viewer::MarkdownTargets targets;
+  targets.picture = [&pictures](std::string_view file) {
+    const auto found = pictures.find(std::string(file.substr(file.rfind('/') + 1)));
+    return found == pictures.end() ? std::string() : found->second;
+  };
+  const std::string text = evaluation::to_markdown(result, "pictures") +
+                           "\n## Z-width\nThe stiffest wall that is stable when nobody holds the "
+                           "device, by its damping and the loop's rate.\n\n"
+                           "![Z-width](z_width.svg)\n";
+  return viewer::html_page("How good is the touch?", viewer::markdown_html(text, targets));
+}
+
 void evaluate(EvaluateOptions& options, int& exit_code) {
   options.evaluation.scans = scans_of(options);
   const auto progress = builder::make_progress(builder::ProgressStyle::kAuto, stderr);
@@ -88,6 +107,9 @@ void evaluate(EvaluateOptions& options, int& exit_code) {
   }
   if (!options.report.empty()) {
     write_report(options.report, result);
+  }
+  if (!options.html.empty()) {
+    write_file(options.html, html_report(result));
   }
   fmt::print("{}", evaluation::to_markdown(result, ""));
   exit_code = options.require_targets && !result.all_met() ? kExitFailed : kExitOk;
@@ -117,6 +139,9 @@ void add_evaluate_command(CLI::App& app, int& exit_code) {
   verb->add_option("--json", options->json, "write all figures to this file");
   verb->add_option("--report", options->report,
                    "write a Markdown page to this file, its plots into a folder of its name");
+  verb->add_option("--html", options->html,
+                   "write all of it to this file, a page for a browser that needs no other file; "
+                   "with a map of the Z-width");
   verb->callback([options, &exit_code] { evaluate(*options, exit_code); });
 }
 

@@ -13,6 +13,8 @@
 #include "json_text.hpp"
 #include "model_signature.hpp"
 #include "output_file.hpp"
+#include "preview.hpp"
+#include "tactree/builder/openings.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -26,6 +28,7 @@ struct InfoOptions {
   std::string board;
   std::string json;
   std::string points;
+  std::string preview;
 };
 
 const char* profile_name(const BlobHeader& header) {
@@ -259,6 +262,9 @@ void info(const InfoOptions& options) {
   if (!options.points.empty()) {
     write_points(blob.view(), options.points);
   }
+  if (!options.preview.empty()) {
+    write_preview(options.preview, blob.view(), builder::find_openings(blob.view()));
+  }
 }
 
 }  // namespace
@@ -277,6 +283,8 @@ void add_info_command(CLI::App& app, int&) {
   verb->add_option("--json", options->json, "write the figures to this file");
   verb->add_option("--points", options->points,
                    "write every decoded point to this CSV file: index,x,y,z,nx,ny,nz (m)");
+  verb->add_option("--preview", options->preview,
+                   "draw the model into this PNG file, with a scale, holes and open rims marked");
   verb->callback([options] { info(*options); });
 }
 

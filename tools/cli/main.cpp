@@ -22,6 +22,7 @@
 #include "simulate_command.hpp"
 #include "stop_command.hpp"
 #include "trace_command.hpp"
+#include "view_command.hpp"
 
 int main(int argc, char** argv) {
   using namespace tactree::cli;
@@ -46,6 +47,7 @@ int main(int argc, char** argv) {
   add_params_command(app, exit_code);
   add_keygen_command(app, exit_code);
   add_sign_command(app, exit_code);
+  add_view_command(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

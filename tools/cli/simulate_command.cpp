@@ -27,6 +27,7 @@
 #include "tactree/serve/usb_target.hpp"
 #include "tactree/simulation/hand_script.hpp"
 #include "tactree/simulation/injection.hpp"
+#include "tactree/simulation/placement.hpp"
 #include "tactree/simulation/simulation.hpp"
 #include "tactree/simulation/trace.hpp"
 #include "usb_port.hpp"
@@ -112,23 +113,15 @@ void choose_device(const SimulateOptions& options, simulation::Setup& setup) {
   }
 }
 
-/// What --origin says, or else the first body's middle at the device's origin. Devices of one or
-/// two axes do not reach far: they get the middle of its top.
+/// What --origin says, or else the first body's middle at the device's origin.
 core::Vec3 place_model(const SimulateOptions& options, const SceneFile& scene,
                        core::DeviceKind kind) {
   if (!options.origin_m.empty()) {
     return {static_cast<float>(options.origin_m[0]), static_cast<float>(options.origin_m[1]),
             static_cast<float>(options.origin_m[2])};
   }
-  const core::BlobHeader& h = scene.files[0]->view().header();
-  const Eigen::Vector3f low(h.bounds_min_m);
-  const Eigen::Vector3f high(h.bounds_max_m);
-  Eigen::Vector3f held = 0.5F * (low + high);
-  if (core::axes_of(kind) != core::kAxes) {
-    held.z() = high.z();
-  }
-  held = scene.bodies[0].path.first().cast<float>() * held;
-  return {-held.x(), -held.y(), -held.z()};
+  return simulation::middle_at_origin(scene.files[0]->view().header(), scene.bodies[0].path.first(),
+                                      kind);
 }
 
 simulation::Setup make_setup(const SimulateOptions& options, const SceneFile& scene) {
@@ -490,12 +483,25 @@ void print_summary(const SimulateOptions& options, const SceneFile& scene, const
   }
 }
 
+/// Of an emulated board: how long its ticks were.
+simulation::Histogram histogram(const Outcome& outcome) {
+  simulation::Histogram h;
+  if (outcome.instructions) {
+    h.label = "instructions per tick";
+    h.bar_width = static_cast<double>(emulation::kBucketInstructions);
+    for (const emulation::InstructionBucket& bucket : outcome.instructions->buckets) {
+      h.bars.push_back({static_cast<double>(bucket.fewest), static_cast<double>(bucket.ticks)});
+    }
+  }
+  return h;
+}
+
 void write_plot(const SimulateOptions& options, const SceneFile& scene, const Outcome& outcome) {
   const double rate_hz = static_cast<double>(options.setup.controller.rate_hz);
   if (!options.compare) {
     const std::string title = fmt::format("{}: {}, {} mode, {:.6g} Hz", options.blob,
                                           options.device, options.mode, rate_hz);
-    write_file(options.plot, simulation::plot_svg(outcome.samples, title));
+    write_file(options.plot, simulation::plot_svg(outcome.samples, title, histogram(outcome)));
     return;
   }
   SimulateOptions other = options;

@@ -5,6 +5,7 @@
 // tactree_tick() was called in between. The first TICKS of them do not count.
 //
 // The report:  ticks <count> <max> <total> <checksum> <instructions before the first tick>
+//              bucket <fewest> <ticks with so many to 128 more>, ascending
 //              worst <number of the tick with the most, the first one counted is 0>
 //              function <max in a tick> <total> <name>      for each that was in a tick
 //              code <begin> <end>     with code=on: addresses that were executed in ticks, in hex
@@ -35,8 +36,8 @@ struct Function {
 struct Instruction {
   std::uint64_t begin = 0;
   std::uint64_t end = 0;
-  std::uint64_t executed = 0;  // the emulator adds to this
-  std::uint64_t before = 0;    // executed before the first tick
+  std::uint64_t executed = 0;    // the emulator adds to this
+  std::uint64_t before = 0;      // executed before the first tick
   std::uint64_t lowest = ~0ULL;  // addresses of its data in ticks
   std::uint64_t highest = 0;
 };
@@ -55,6 +56,8 @@ class Checksum {
   std::uint32_t state_ = 2166136261U;
 };
 
+constexpr std::uint64_t kBucket = 128;  // instructions
+
 // One board, one core, one thread that runs it: no locks.
 struct Counter {
   std::deque<Function> functions;  // stays in place as it grows: the emulator holds addresses
@@ -69,6 +72,7 @@ struct Counter {
   std::uint64_t total = 0;
   std::uint64_t worst = 0;
   std::uint64_t start = 0;
+  std::map<std::uint64_t, std::uint64_t> buckets;  // ticks by their length, rounded down
   Checksum checksum;
   bool in_tick = false;
 
@@ -128,6 +132,7 @@ struct Counter {
       max = sum > max ? sum : max;
       total += sum;
       checksum.add(sum);
+      ++buckets[sum / kBucket * kBucket];
     }
   }
 };
@@ -221,6 +226,10 @@ void write_report(qemu_plugin_id_t, void*) {
       static_cast<unsigned long long>(counter.max), static_cast<unsigned long long>(counter.total),
       counter.checksum.value(), static_cast<unsigned long long>(counter.start));
   std::fprintf(file, "worst %llu\n", static_cast<unsigned long long>(counter.worst));
+  for (const auto& [fewest, ticks] : counter.buckets) {
+    std::fprintf(file, "bucket %llu %llu\n", static_cast<unsigned long long>(fewest),
+                 static_cast<unsigned long long>(ticks));
+  }
   for (const Function& f : counter.functions) {
     if (f.total > 0) {
       std::fprintf(file, "function %llu %llu %s\n", static_cast<unsigned long long>(f.max),

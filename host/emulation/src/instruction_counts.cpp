@@ -36,6 +36,10 @@ InstructionCounts parse_instruction_counts(const std::string& report) {
       counts.functions.push_back(function);
     } else if (key == "ticks") {
       words >> counts.ticks >> counts.max >> counts.total >> counts.checksum >> counts.start;
+    } else if (key == "bucket") {
+      InstructionBucket bucket;
+      words >> bucket.fewest >> bucket.ticks;
+      counts.buckets.push_back(bucket);
     } else if (key == "worst") {
       words >> counts.worst_tick;
     } else if (key == "code") {

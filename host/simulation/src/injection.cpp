@@ -191,7 +191,13 @@ InjectedFault parse_injection(std::string_view text) {
 
 Injector::Injector(std::vector<InjectedFault> faults) {
   for (InjectedFault& fault : faults) {
-    entries_.push_back({std::move(fault), false});
+    add(std::move(fault));
+  }
+}
+
+void Injector::mend(double t_s) {
+  for (Entry& entry : entries_) {
+    entry.fault.until_s = std::min(entry.fault.until_s, t_s);
   }
 }
 

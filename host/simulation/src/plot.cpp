@@ -183,12 +183,54 @@ std::vector<Curve> depth_curves(Samples samples) {
            }}};
 }
 
-std::string begin_page(const std::string& title) {
+/// Bars on a logarithmic scale of counts, where 1 has a height too: a single long tick among
+/// thousands is seen.
+void draw_histogram(std::string& svg, const Histogram& histogram) {
+  constexpr double kTop = kHeight + 30.0;
+  constexpr double kBottom = kHeight + 200.0;
+  const double last = histogram.bars.back().from + histogram.bar_width;
+  const double end = 1.05 * std::max(last, histogram.bound);
+  double most = 1.0;
+  for (const Histogram::Bar& bar : histogram.bars) {
+    most = std::max(most, bar.count);
+  }
+  const double decades = std::ceil(std::log10(most));
+  const auto x_of = [&](double value) { return kLeft + value / end * (kRight - kLeft); };
+  const auto y_of = [&](double count) {
+    return kBottom - (std::log10(count) + 1.0) / (decades + 1.0) * (kBottom - kTop);
+  };
+  for (double decade = 0.0; decade <= decades; decade += 1.0) {
+    const double count = std::pow(10.0, decade);
+    line(svg, kLeft, y_of(count), kRight, y_of(count), "#e4e4e4");
+    text(svg, kLeft - 8.0, y_of(count) + 4.0, "end", fmt::format("{:g}", count));
+  }
+  const double step = tick_step(end, 8.0);
+  for (double value = 0.0; value <= end; value += step) {
+    text(svg, x_of(value), kBottom + 20.0, "middle", fmt::format("{:g}", value));
+  }
+  for (const Histogram::Bar& bar : histogram.bars) {
+    const double width = std::max(1.0, x_of(histogram.bar_width) - x_of(0.0) - 0.5);
+    fmt::format_to(std::back_inserter(svg),
+                   "<rect class=\"bar\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" "
+                   "height=\"{:.1f}\" fill=\"#0072b2\"/>\n",
+                   x_of(bar.from), y_of(bar.count), width, kBottom - y_of(bar.count));
+  }
+  if (histogram.bound > 0.0) {
+    line(svg, x_of(histogram.bound), kTop, x_of(histogram.bound), kBottom, "#d55e00");
+    text(svg, x_of(histogram.bound) - 6.0, kTop + 14.0, "end", "proven bound");
+  }
+  const double middle = 0.5 * (kTop + kBottom);
+  const std::string turn = fmt::format(" transform=\"rotate(-90 22 {:.1f})\"", middle);
+  text(svg, 22.0, middle, "middle", "ticks", turn.c_str());
+  text(svg, 0.5 * (kLeft + kRight), kBottom + 40.0, "middle", histogram.label);
+}
+
+std::string begin_page(const std::string& title, double height = kHeight) {
   std::string svg = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" "
       "viewBox=\"0 0 {0:.0f} {1:.0f}\" font-family=\"sans-serif\" font-size=\"13\">\n"
       "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n",
-      kWidth, kHeight);
+      kWidth, height);
   text(svg, kLeft, 28.0, "start", escaped(title), " font-size=\"16\" font-weight=\"bold\"");
   return svg;
 }
@@ -215,11 +257,16 @@ std::vector<Curve> mode_curves(Samples surface, Samples paper) {
 
 }  // namespace
 
-std::string plot_svg(std::span<const Sample> samples, const std::string& title) {
-  std::string svg = begin_page(title);
+std::string plot_svg(std::span<const Sample> samples, const std::string& title,
+                     const Histogram& histogram) {
+  const bool has_bars = !histogram.bars.empty();
+  std::string svg = begin_page(title, has_bars ? kHeight + 250.0 : kHeight);
   draw_panel(svg, panel_over(samples, 70.0, 340.0, "force / N"), force_curves(samples), false);
   draw_panel(svg, panel_over(samples, 400.0, 580.0, "penetration / mm"), depth_curves(samples),
              true);
+  if (has_bars) {
+    draw_histogram(svg, histogram);
+  }
   svg += "</svg>\n";
   return svg;
 }

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 #include "tactree/plant/vectors.hpp"
 
@@ -111,11 +112,11 @@ bool Simulation::arm() {
   return state_ == core::State::kActive;
 }
 
-Sample Simulation::step() { return step_with_hand_at(static_cast<double>(ticks_) * period_s_); }
+Sample Simulation::step() { return step_with_hand_at(time_s()); }
 
 Sample Simulation::step_with_hand_at(double path_t_s) {
-  const double t_s = static_cast<double>(ticks_) * period_s_;
-  board_.link().post(core::Command::kNone);
+  const double t_s = time_s();
+  board_.link().post(std::exchange(command_, core::Command::kNone));
   injector_.apply(board_, t_s);
   Sample sample;
   sample.t_s = t_s;
@@ -129,10 +130,10 @@ core::Status Simulation::tick(double path_t_s) {
   sample_device();
   const core::Status status = target_->tick(board_);
   state_ = status.state;
-  plant::HandTarget target = path_.at(path_t_s);
+  plant::HandTarget target = steered_ ? *steered_ : path_.at(path_t_s);
   target.position_m += widen(setup_.controller.model_origin_m);
   plant_.advance({board_.effort(0), board_.effort(1), board_.effort(2)}, target,
-                 period_s_ * injector_.clock_ratio(static_cast<double>(ticks_) * period_s_));
+                 period_s_ * injector_.clock_ratio(time_s()));
   return status;
 }
 

@@ -50,6 +50,24 @@ TEST(Plot, NamesItsAxesAndCurvesAndKeepsEverySpike) {
   EXPECT_NO_THROW((void)simulation::plot_svg({}, ""));
 }
 
+TEST(Plot, ShowsASingleLongTickAmongThousands) {
+  simulation::Histogram histogram{
+      "instructions per tick", 128.0, {{1024.0, 9999.0}, {4096.0, 1.0}}, 8000.0};
+  const std::string svg = simulation::plot_svg(samples(100), "t", histogram);
+  for (const char* words : {"instructions per tick", "proven bound", ">10000<"}) {
+    EXPECT_NE(svg.find(words), std::string::npos) << words;
+  }
+  std::vector<double> heights;
+  for (std::size_t at = svg.find("class=\"bar\""); at != std::string::npos;
+       at = svg.find("class=\"bar\"", at + 1)) {
+    heights.push_back(std::stod(svg.substr(svg.find("height=\"", at) + 8)));
+  }
+  ASSERT_EQ(heights.size(), 2U);
+  EXPECT_GT(heights[0], 4.0 * heights[1]);
+  EXPECT_GT(heights[1], 20.0);
+  EXPECT_EQ(simulation::plot_svg(samples(100), "t").find("class=\"bar\""), std::string::npos);
+}
+
 TEST(Recorder, ChecksumIsOverTheForcesBytes) {
   simulation::Recorder recorder;
   std::vector<float> forces;

@@ -19,6 +19,13 @@ struct CodeRange {
   std::uint32_t end = 0;
 };
 
+/// Ticks of `fewest` instructions to kBucketInstructions more.
+struct InstructionBucket {
+  std::uint64_t fewest = 0;
+  std::uint64_t ticks = 0;
+};
+inline constexpr std::uint64_t kBucketInstructions = 128;
+
 /// What an instruction loaded or stored: the lowest and the highest address.
 struct DataRange {
   std::uint32_t instruction = 0;
@@ -35,8 +42,9 @@ struct InstructionCounts {
   std::uint64_t total = 0;
   std::uint32_t checksum = 0;            ///< over the count of every tick: runs alike have it alike
   std::vector<FunctionCount> functions;  ///< the costliest first
-  std::vector<CodeRange> code;           ///< executed in ticks, where that was asked for
-  std::vector<DataRange> data;           ///< likewise
+  std::vector<InstructionBucket> buckets;  ///< that are not empty, ascending
+  std::vector<CodeRange> code;             ///< executed in ticks, where that was asked for
+  std::vector<DataRange> data;             ///< likewise
   [[nodiscard]] double mean() const {
     return ticks == 0 ? 0.0 : static_cast<double>(total) / static_cast<double>(ticks);
   }

@@ -143,4 +143,9 @@ struct Result {
 
 /// SVG pictures by file name.
 [[nodiscard]] std::map<std::string, std::string> plots(const Result& result);
+
+/// An SVG picture: the stiffest wall that is stable without a hand, over its damping, at several
+/// rates; measured in a simulation, and as core::stability_limit() says. Cost: seconds; less when
+/// quick, which leaves rates out.
+[[nodiscard]] std::string z_width_svg(bool quick);
 }  // namespace tactree::evaluation

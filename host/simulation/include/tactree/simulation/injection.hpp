@@ -14,6 +14,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "tactree/core/controller.hpp"
@@ -64,6 +65,10 @@ class Injector {
  public:
   Injector() = default;
   explicit Injector(std::vector<InjectedFault> faults);
+
+  void add(InjectedFault fault) { entries_.push_back({std::move(fault), false}); }
+  /// Ends at `t_s` what would go on beyond it.
+  void mend(double t_s);
 
   /// Before the loop's tick at `t_s`, after the link's message was posted.
   void apply(hal::sim::SimBoard& board, double t_s);

@@ -85,6 +85,13 @@ class Simulation {
 
   /// Faults to come, by the time of the samples. Call it before the first step().
   void inject(Injector injector) { injector_ = std::move(injector); }
+  [[nodiscard]] Injector& injector() { return injector_; }
+
+  /// From now on the hand wants to be there (model frame), whatever its path says.
+  void steer(const plant::HandTarget& target) { steered_ = target; }
+
+  /// The message of the application in the next step().
+  void post(core::Command command) { command_ = command; }
 
   /// One tick.
   Sample step();
@@ -98,6 +105,8 @@ class Simulation {
   /// State of the controller after the last tick.
   [[nodiscard]] core::State state() const { return state_; }
   [[nodiscard]] const plant::DevicePlant& plant() const { return plant_; }
+  /// Of the next sample.
+  [[nodiscard]] double time_s() const { return static_cast<double>(ticks_) * period_s_; }
 
  private:
   void sample_device();
@@ -105,6 +114,8 @@ class Simulation {
 
   Setup setup_;
   HandPath path_;
+  std::optional<plant::HandTarget> steered_;
+  core::Command command_ = core::Command::kNone;
   double period_s_;
   hal::sim::SimBoard board_;
   std::unique_ptr<Target> target_;

@@ -1,0 +1,56 @@
+#pragma once
+// What a page shows of one tick, and of the ticks since the frame before, as JSON.
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tactree/core/surface.hpp"
+#include "tactree/simulation/scene_target.hpp"
+#include "tactree/simulation/simulation.hpp"
+
+namespace tactree::viewer {
+
+/// Lowest and highest of a figure over the ticks of a frame, so that no spike is lost.
+struct Span {
+  double low = 0.0;
+  double high = 0.0;
+  bool empty = true;
+  void add(double value);
+};
+
+/// The ticks since the last frame.
+class Strip {
+ public:
+  void add(const core::Status& status);
+  /// Takes what was added, and begins anew.
+  [[nodiscard]] nlohmann::json take();
+
+ private:
+  Span force_N_;
+  Span penetration_m_;
+  std::uint64_t ticks_ = 0;
+};
+
+/// The bodies, to place a contact's points.
+struct Bodies {
+  std::vector<core::BlobView> views;
+  std::vector<simulation::SceneBody> bodies;
+};
+
+/// A tick of one controller. `joints`: of the device; empty: found from the tip. `scratch` is for
+/// the points gathered around the contact.
+[[nodiscard]] nlohmann::json run_json(const simulation::Sample& sample, const char* mode,
+                                      const core::DeviceModel& device,
+                                      const core::Vec3& model_origin_m,
+                                      const std::optional<Eigen::Vector3d>& joints,
+                                      const Bodies& bodies, core::CandidateSet& scratch);
+
+/// Each body's pose at a time: 12 numbers, the upper rows of its matrix.
+[[nodiscard]] nlohmann::json poses_json(const Bodies& bodies, double t_s);
+
+}  // namespace tactree::viewer

@@ -1,0 +1,58 @@
+#pragma once
+// A trace that simulate or a page wrote, to be looked at tick by tick.
+//
+// Commands of a page:
+//   {"do": "seek", "tick": 120}   {"do": "step", "ticks": -1}
+//   {"do": "play", "speed": 0.1}  of the recorded time; 0 or {"do": "stop"}: stands still
+
+#include <atomic>
+#include <filesystem>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "tactree/viewer/frame.hpp"
+#include "tactree/viewer/source.hpp"
+
+namespace tactree::viewer {
+
+/// The ticks of a trace, a row each, by the names of its columns; those that tell t_s, probe and
+/// force must be there. Throws std::runtime_error: "file: line n: cause (remedy)".
+[[nodiscard]] std::vector<simulation::Sample> read_trace(const std::filesystem::path& file);
+
+class Recording : public Source {
+ public:
+  /// The blobs that `bodies` view must outlive the recording. `device` and where the model stood in
+  /// its frame: for drawing the linkage. Precondition: there are samples.
+  Recording(std::vector<simulation::Sample> samples, Bodies bodies, const core::DeviceModel& device,
+            const core::Vec3& model_origin_m);
+  ~Recording() override;
+
+  void start(Publish publish) override;
+  void stop() override;
+  [[nodiscard]] std::string hello() const override;
+  [[nodiscard]] std::optional<std::string> command(const nlohmann::json& command) override;
+  [[nodiscard]] std::string trace_csv() const override;
+
+ private:
+  void run(const Publish& publish);
+  void play(double seconds);
+  [[nodiscard]] std::string frame(std::size_t tick, double speed);
+  [[nodiscard]] nlohmann::json around(std::size_t tick) const;
+
+  std::vector<simulation::Sample> samples_;
+  Bodies bodies_;
+  core::DeviceModel device_;
+  core::Vec3 model_origin_m_;
+  core::CandidateSet scratch_;
+
+  mutable std::mutex mutex_;  // guards what follows
+  std::size_t tick_ = 0;
+  double speed_ = 0.0;
+  double time_s_ = 0.0;  // while it plays
+
+  std::atomic<bool> running_{false};
+  std::thread thread_;
+};
+
+}  // namespace tactree::viewer

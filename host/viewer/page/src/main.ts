@@ -1,0 +1,225 @@
+// The page of `tactree view`: puts its parts together.
+
+import './style.css';
+import { Connection } from './connection';
+import { Hand } from './hand';
+import { length, type Command, type Frame, type Hello, type Run } from './messages';
+import { Numbers } from './numbers';
+import { find, outputOf, Panel } from './panel';
+import { Player } from './player';
+import { Strip } from './strips';
+import { View } from './view';
+
+const NOTE_MS = 6000;
+const LOST_SHOWN_MS = 3000;
+
+const view = new View(find<HTMLCanvasElement>('view'));
+const strips = {
+  force: new Strip(find<HTMLCanvasElement>('strip-force'), 'N', 1),
+  penetration: new Strip(find<HTMLCanvasElement>('strip-penetration'), 'mm', 1),
+  instructions: new Strip(find<HTMLCanvasElement>('strip-instructions'), '', 1000),
+};
+const numbers = new Numbers();
+const panel = new Panel(say);
+const player = new Player(say);
+const hand = new Hand(view, (target_m) => say({ do: 'hand', target_m }));
+const connection = new Connection({ hello, frame, refused: note, connected });
+let source: Hello['source'] = 'simulation';
+let note_timer = 0;
+
+function say(command: Command): void {
+  if (!connection.send(command)) note('Not connected: nothing was sent.');
+}
+
+function connected(is: boolean): void {
+  find('offline').hidden = is;
+  if (!is) setState('not connected');
+}
+
+function note(text: string): void {
+  panel.refused();
+  const box = find('note');
+  box.textContent = text;
+  box.hidden = false;
+  clearTimeout(note_timer);
+  note_timer = window.setTimeout(() => (box.hidden = true), NOTE_MS);
+}
+
+function hello(message: Hello): void {
+  source = message.source;
+  document.body.dataset.source = source;
+  const points = message.models.reduce((sum, model) => sum + model.points, 0);
+  const names = message.models.map((model) => model.name || 'model').join(', ');
+  find('model-name').textContent = `${names} · ${points.toLocaleString('en')} points`;
+  document.title = `${names} – Tactree`;
+  hand.target = undefined;
+  for (const strip of Object.values(strips)) strip.clear();
+  panel.hello(message);
+  player.hello(message);
+  view.load(message.models.length)
+    .then(() => (find<HTMLInputElement>('octant-level').max = String(view.deepest)))
+    .catch((error: Error) => note(`The model could not be loaded: ${error.message}`));
+}
+
+function setState(state: string): void {
+  const pill = find('state');
+  if (pill.textContent !== state) pill.textContent = state;
+  pill.dataset.state = state;
+}
+
+function showFaults(run: Run): void {
+  find('banner').hidden = run.faults.length === 0;
+  const names = run.faults.map((fault) => fault.name);
+  find('fault-names').textContent = names.join(', ');
+  find<HTMLAnchorElement>('fault-page').href = `/faults/${names[0] ?? ''}`;
+  const limits = find('limits');
+  if (limits.dataset.shown === run.limits.join()) return;
+  limits.dataset.shown = run.limits.join();
+  limits.replaceChildren(...run.limits.map((name) => {
+    const link = document.createElement('a');
+    link.href = `/faults/limit-${name}`;
+    link.target = '_blank';
+    link.rel = 'noopener';
+    link.textContent = name;
+    return link;
+  }));
+}
+
+let lost = { s: 0, at_ms: -Infinity };
+
+/** Was simulated time lost in the last seconds? */
+function isLosing(frame: Frame): boolean {
+  const now_s = frame.lost_s ?? 0;
+  if (now_s > lost.s) lost = { s: now_s, at_ms: performance.now() };
+  if (now_s < lost.s) lost = { s: now_s, at_ms: -Infinity }; // another session
+  return performance.now() - lost.at_ms < LOST_SHOWN_MS;
+}
+
+function showTiming(frame: Frame, run: Run): void {
+  const rate = frame.settings ? `${frame.settings.rate_hz} ticks a second` : '';
+  const slow = isLosing(frame) ? 'this machine is too slow for real time' : '';
+  const parts = [rate, `${run.overruns} deadlines missed`, slow].filter((part) => part !== '');
+  const text = parts.join(' · ');
+  const line = find('timing');
+  if (line.textContent !== text) line.textContent = text;
+}
+
+function pushStrips(frame: Frame): void {
+  frame.runs.forEach((run, i) => {
+    if (!run.strip || run.strip.ticks === 0) return;
+    strips.force.push(i, run.strip.force_N);
+    const [low, high] = run.strip.penetration_m;
+    strips.penetration.push(i, [1e3 * low, 1e3 * high]);
+    const { instructions } = run.strip;
+    find('instructions-row').hidden = !instructions;
+    if (instructions) {
+      strips.instructions.push(i, [instructions.max, instructions.max]);
+      strips.instructions.limit = instructions.bound;
+    }
+  });
+}
+
+let latest: Frame | undefined;
+
+function frame(message: Frame): void {
+  latest = message;
+  pushStrips(message);
+  if (message.hand_m) hand.follow(message.hand_m);
+}
+
+/** Once a picture: however many frames came in. */
+function refresh(): void {
+  requestAnimationFrame(refresh);
+  const message = latest;
+  const run = message?.runs[0];
+  if (!message || !run) return;
+  latest = undefined;
+  view.show(message);
+  document.body.dataset.mode = message.settings?.mode ?? '';
+  setState(run.state);
+  showFaults(run);
+  showTiming(message, run);
+  if (find<HTMLDetailsElement>('numbers-box').open) numbers.show(message);
+  if (message.settings) panel.follow(message.settings);
+  find<HTMLOutputElement>('force-now').value = `${length(run.force_N).toFixed(2)} N`;
+  find<HTMLOutputElement>('penetration-now').value = `${(1e3 * run.penetration_m).toFixed(2)} mm`;
+  player.show(message, strips.force, strips.penetration);
+  strips.force.draw();
+  strips.penetration.draw();
+  if (!find('instructions-row').hidden) strips.instructions.draw();
+}
+requestAnimationFrame(refresh);
+
+view.onPicture = () => {
+  const { dataset } = document.documentElement;
+  if (view.drawn > 0 && !dataset.firstPicture) dataset.firstPicture = String(Math.round(performance.now()));
+  find('detail').textContent = `${view.drawn.toLocaleString('en')} points drawn`;
+};
+
+function stop(): void {
+  say({ do: 'stop' });
+}
+
+// Whatever has the focus, these stop: before any button sees them.
+window.addEventListener('keydown', (event) => {
+  if (event.key === ' ' || event.key === 'Escape') {
+    event.preventDefault();
+    event.stopPropagation();
+    if (!event.repeat) stop();
+  }
+}, { capture: true });
+window.addEventListener('keyup', (event) => {
+  if (event.key === ' ') event.preventDefault(); // or the button in focus is pressed
+}, { capture: true });
+window.addEventListener('keydown', (event) => {
+  if (event.target instanceof HTMLSelectElement || event.ctrlKey || event.metaKey || event.altKey) return;
+  if (event.key === 'a' && source === 'simulation') say({ do: 'arm' });
+  if (source === 'trace' && document.activeElement?.id === 'view') {
+    if (event.key === 'ArrowRight' && !event.shiftKey) player.step(1);
+    if (event.key === 'ArrowLeft' && !event.shiftKey) player.step(-1);
+  }
+});
+
+find('stop').addEventListener('click', stop);
+find('arm').addEventListener('click', () => say({ do: 'arm' }));
+find('clear').addEventListener('click', () => say({ do: 'clear' }));
+find('reset-view').addEventListener('click', () => hand.reset());
+
+const shown = () => view.setShown({
+  device: find<HTMLInputElement>('show-device').checked,
+  patch: find<HTMLInputElement>('show-patch').checked,
+});
+find('show-device').addEventListener('change', shown);
+find('show-patch').addEventListener('change', shown);
+
+const octants = find<HTMLInputElement>('show-octants');
+const level = find<HTMLInputElement>('octant-level');
+function showOctants(): void {
+  find('octant-row').hidden = !octants.checked;
+  outputOf('octant-level').value = level.value;
+  view.showOctants(octants.checked ? Number(level.value) : undefined)
+    .catch((error: Error) => note(error.message));
+}
+octants.addEventListener('change', showOctants);
+level.addEventListener('change', showOctants);
+
+find('save-picture').addEventListener('click', async () => {
+  const picture = await view.picture();
+  if (!picture) return;
+  const link = document.createElement('a');
+  link.href = URL.createObjectURL(picture);
+  link.download = 'tactree.png';
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+});
+
+find('theme').addEventListener('click', () => {
+  const { dataset } = document.documentElement;
+  const dark = dataset.theme ? dataset.theme === 'dark' : matchMedia('(prefers-color-scheme: dark)').matches;
+  dataset.theme = dark ? 'light' : 'dark';
+});
+find('panel-toggle').addEventListener('click', (event) => {
+  const open = document.body.dataset.panel !== 'open';
+  document.body.dataset.panel = open ? 'open' : '';
+  (event.currentTarget as HTMLElement).setAttribute('aria-expanded', String(open));
+});

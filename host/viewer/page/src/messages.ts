@@ -1,0 +1,79 @@
+// What the server and the page say to each other: see source.hpp, live_session.hpp and
+// recording.hpp of host/viewer.
+
+export type Triple = [number, number, number];
+export type Range = [number, number];
+
+export interface Settings {
+  stiffness_N_m: number;
+  damping_Ns_m: number;
+  static_friction: number;
+  dynamic_friction: number;
+  rate_hz: number;
+  mode: 'surface' | 'paper' | 'both';
+  device: string;
+  use_materials: boolean;
+  stiffness_limit_N_m: number;
+  force_max_N: number;
+}
+
+export interface Hello {
+  type: 'hello';
+  source: 'simulation' | 'trace';
+  models: { name: string; points: number }[];
+  // of a simulation
+  devices?: { name: string; about: string }[];
+  injections?: { fault: string; about: string }[];
+  has_materials?: boolean;
+  settings?: Settings;
+  // of a trace
+  ticks?: number;
+  overview?: { force_N: Range[]; penetration_m: Range[] };
+}
+
+/** One controller in one tick. */
+export interface Run {
+  mode: string;
+  state: string;
+  faults: { code: number; name: string }[];
+  limits: string[];
+  overruns: number;
+  t_s: number;
+  probe_m: Triple;
+  proxy_m: Triple;
+  normal: Triple;
+  force_N: Triple;
+  velocity_m_s: Triple;
+  penetration_m: number;
+  in_contact: boolean;
+  slipping: boolean;
+  strength: number;
+  tip_m: Triple;
+  linkage: Triple[][];
+  candidates: Triple[];
+  strip?: {
+    ticks: number;
+    force_N: Range;
+    penetration_m: Range;
+    instructions: { max: number; bound: number } | null;
+  };
+}
+
+export interface Frame {
+  type: 'frame';
+  t_s: number;
+  runs: Run[];
+  bodies: number[][];
+  // of a simulation
+  hand_m?: Triple;
+  lost_s?: number;
+  settings?: Settings;
+  // of a trace
+  tick?: number;
+  playing?: number;
+  around?: { first: number; force_N: number[]; penetration_m: number[] };
+}
+
+export type Command = { do: string; [key: string]: unknown };
+
+export const length = (v: Triple): number => Math.hypot(v[0], v[1], v[2]);

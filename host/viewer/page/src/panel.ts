@@ -1,0 +1,108 @@
+// The controls beside the picture: what they say to the server, and how they follow it.
+
+import type { Command, Hello, Settings } from './messages';
+
+type Say = (command: Command) => void;
+type Slider = 'stiffness_N_m' | 'damping_Ns_m' | 'static_friction' | 'dynamic_friction';
+const SLIDERS: Slider[] = ['stiffness_N_m', 'damping_Ns_m', 'static_friction', 'dynamic_friction'];
+
+export function find<T extends HTMLElement = HTMLElement>(id: string): T {
+  const element = document.getElementById(id);
+  if (!element) throw new Error(`the page has no #${id}`);
+  return element as T;
+}
+
+export function outputOf(id: string): HTMLOutputElement {
+  return document.querySelector<HTMLOutputElement>(`output[for='${id}']`)!;
+}
+
+export class Panel {
+  private said: Partial<Settings> = {};
+
+  constructor(private readonly say: Say) {
+    for (const id of SLIDERS) {
+      const slider = find<HTMLInputElement>(id);
+      slider.addEventListener('input', () => this.label(slider));
+      slider.addEventListener('change', () => this.set(id, Number(slider.value)));
+    }
+    const mode = find<HTMLSelectElement>('mode');
+    mode.addEventListener('change', () => this.set('mode', mode.value));
+    const rate = find<HTMLSelectElement>('rate_hz');
+    rate.addEventListener('change', () => this.set('rate_hz', Number(rate.value)));
+    const device = find<HTMLSelectElement>('device');
+    device.addEventListener('change', () => this.set('device', device.value));
+    const materials = find<HTMLInputElement>('use_materials');
+    materials.addEventListener('change', () => this.set('use_materials', materials.checked));
+    find('mend').addEventListener('click', () => say({ do: 'mend' }));
+  }
+
+  hello(hello: Hello): void {
+    find<HTMLSelectElement>('device').replaceChildren(
+      ...(hello.devices ?? []).map((device) => {
+        const option = new Option(device.name, device.name);
+        option.title = device.about;
+        return option;
+      }),
+    );
+    find('injections').replaceChildren(...(hello.injections ?? []).map((one) => this.injection(one)));
+    find('materials').hidden = !hello.has_materials;
+  }
+
+  /** What holds now; nothing is changed under the user's fingers. */
+  follow(settings: Settings): void {
+    for (const id of SLIDERS) {
+      const slider = find<HTMLInputElement>(id);
+      if (document.activeElement !== slider || this.said[id] === undefined) {
+        slider.value = String(settings[id]);
+        this.label(slider);
+      }
+    }
+    this.choose('mode', settings.mode);
+    this.choose('rate_hz', String(settings.rate_hz));
+    this.choose('device', settings.device);
+    find<HTMLInputElement>('use_materials').checked = settings.use_materials;
+    find('stability').textContent =
+      `Stable up to ${Math.floor(settings.stiffness_limit_N_m)} N/m with a hand`;
+  }
+
+  /** The server took none of it: back to what holds. */
+  refused(): void {
+    this.said = {};
+    if (document.activeElement instanceof HTMLElement) document.activeElement.blur();
+  }
+
+  private choose(id: string, value: string): void {
+    const select = find<HTMLSelectElement>(id);
+    if (document.activeElement === select && select.matches(':open')) return;
+    if (![...select.options].some((option) => option.value === value)) select.add(new Option(value, value));
+    select.value = value;
+  }
+
+  private set(key: keyof Settings, value: unknown): void {
+    this.said = {};
+    const friction: Record<string, unknown> = {};
+    // The dynamic coefficient is at most the static one: the other follows.
+    if (key === 'static_friction' || key === 'dynamic_friction') {
+      const other = key === 'static_friction' ? 'dynamic_friction' : 'static_friction';
+      const slider = find<HTMLInputElement>(other);
+      const bound = key === 'static_friction' ? Math.min : Math.max;
+      friction[other] = bound(Number(slider.value), value as number);
+    }
+    this.say({ do: 'set', [key]: value, ...friction });
+  }
+
+  private label(slider: HTMLInputElement): void {
+    if (document.activeElement === slider) this.said[slider.id as Slider] = Number(slider.value);
+    outputOf(slider.id).value = `${Number(slider.value)} ${slider.dataset.unit ?? ''}`;
+  }
+
+  private injection(one: { fault: string; about: string }): HTMLElement {
+    const button = document.createElement('button');
+    button.textContent = one.fault;
+    const about = document.createElement('small');
+    about.textContent = one.about.replace(/^=\w+: /, '');
+    button.append(about);
+    button.addEventListener('click', () => this.say({ do: 'inject', fault: one.fault }));
+    return button;
+  }
+}

@@ -1,0 +1,202 @@
+// The picture: models, devices and markers; drawn when something has changed, with as many points
+// as the machine keeps up with, and with more once all is still.
+
+import * as THREE from 'three';
+import { Orbit } from './camera';
+import { Cloud, loadOctants } from './cloud';
+import { COLOURS, Markers } from './markers';
+import type { Frame, Run } from './messages';
+
+const FEWEST_POINTS = 60_000;
+const MOST_POINTS = 3_000_000;
+const STILL_MS = 350;
+// Slower than this is a hand that stumbles; faster leaves room for more points.
+const SLOW_MS = 40;
+const FAST_MS = 20;
+const FORCE_N = 8;
+
+export class View {
+  readonly orbit = new Orbit();
+  /** Points that the last picture was made of. */
+  drawn = 0;
+  onPicture: (() => void) | undefined;
+  private readonly renderer: THREE.WebGLRenderer;
+  private readonly scene = new THREE.Scene();
+  private readonly hand: THREE.Mesh;
+  private clouds: Cloud[] = [];
+  private markers: Markers[] = [];
+  private octants: THREE.Object3D[] = [];
+  private size = 0.1;
+  private budget = 250_000;
+  private dirty = true;
+  private moved_ms = 0;
+  private refined = false;
+  private last_ms = 0;
+  private seen = '';
+  private shown = { device: true, patch: true };
+
+  constructor(readonly canvas: HTMLCanvasElement) {
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: !isSoftware(), alpha: true });
+    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+    this.renderer.setScissorTest(true);
+    this.scene.add(new THREE.HemisphereLight(0xffffff, 0x667080, 2.2));
+    const sun = new THREE.DirectionalLight(0xffffff, 1.6);
+    sun.position.set(1, -0.6, 1.5);
+    this.scene.add(sun);
+    this.hand = new THREE.Mesh(
+      new THREE.TorusGeometry(1, 0.12, 8, 32),
+      new THREE.MeshBasicMaterial({ color: COLOURS.hand, depthTest: false, transparent: true }),
+    );
+    this.hand.renderOrder = 3;
+    this.scene.add(this.hand);
+    new ResizeObserver(() => this.resize()).observe(canvas);
+    requestAnimationFrame((now) => this.turn(now));
+  }
+
+  /** Loads the models that a server has. */
+  async load(count: number): Promise<void> {
+    for (const cloud of this.clouds) {
+      this.scene.remove(cloud.group);
+      cloud.dispose();
+    }
+    this.clouds = await Promise.all(
+      Array.from({ length: count }, (_, i) => Cloud.load(i, () => this.changed())),
+    );
+    const box = new THREE.Box3();
+    for (const cloud of this.clouds) {
+      this.scene.add(cloud.group);
+      box.union(cloud.box);
+    }
+    const sphere = box.getBoundingSphere(new THREE.Sphere());
+    this.size = 2 * sphere.radius;
+    for (const markers of this.markers) this.scene.remove(markers.group);
+    this.markers = [];
+    this.hand.scale.setScalar(0.022 * this.size);
+    this.resize();
+    this.orbit.fit(sphere);
+    this.changed();
+  }
+
+  get deepest(): number {
+    return Math.max(0, ...this.clouds.map((cloud) => cloud.tree.depth));
+  }
+
+  show(frame: Frame): void {
+    frame.bodies.forEach((rows, i) => {
+      const m = rows as number[];
+      this.clouds[i]?.group.matrix.set(
+        m[0]!, m[1]!, m[2]!, m[3]!, m[4]!, m[5]!, m[6]!, m[7]!, m[8]!, m[9]!, m[10]!, m[11]!, 0, 0, 0, 1,
+      );
+    });
+    while (this.markers.length < frame.runs.length && this.clouds.length > 0) {
+      const markers = new Markers(this.size);
+      this.markers.push(markers);
+      this.scene.add(markers.group);
+    }
+    this.dropMarkers(frame.runs.length);
+    frame.runs.forEach((run, i) => this.markers[i]?.show(run, frame.settings?.force_max_N ?? FORCE_N));
+    this.hand.visible = frame.hand_m !== undefined;
+    if (frame.hand_m) this.hand.position.set(...frame.hand_m);
+    this.applyShown();
+    // Still pictures are not drawn again: a micrometre is not seen.
+    const seen = JSON.stringify([frame.runs.map(look), frame.hand_m?.map(micrometres), frame.bodies]);
+    if (seen !== this.seen) this.changed();
+    this.seen = seen;
+  }
+
+  private dropMarkers(count: number): void {
+    for (const markers of this.markers.splice(count)) this.scene.remove(markers.group);
+  }
+
+  setShown(shown: { device: boolean; patch: boolean }): void {
+    this.shown = shown;
+    this.applyShown();
+    this.changed();
+  }
+  private applyShown(): void {
+    for (const markers of this.markers) {
+      markers.showDevice = this.shown.device;
+      markers.showPatch = this.shown.patch;
+    }
+  }
+
+  async showOctants(level: number | undefined): Promise<void> {
+    const lines = level === undefined
+      ? []
+      : await Promise.all(this.clouds.map((_, i) => loadOctants(i, level)));
+    for (const old of this.octants) old.removeFromParent();
+    lines.forEach((line, i) => this.clouds[i]?.group.add(line));
+    this.octants = lines;
+    this.changed();
+  }
+
+  changed(): void {
+    this.dirty = true;
+    this.moved_ms = performance.now();
+  }
+
+  /** What is seen, as a PNG file. */
+  picture(): Promise<Blob | null> {
+    this.draw(MOST_POINTS);
+    return new Promise((done) => this.canvas.toBlob(done, 'image/png'));
+  }
+
+  private resize(): void {
+    const { clientWidth, clientHeight } = this.canvas;
+    if (clientWidth === 0 || clientHeight === 0) return;
+    this.renderer.setSize(clientWidth, clientHeight, false);
+    this.changed();
+  }
+
+  private turn(now: number): void {
+    requestAnimationFrame((next) => this.turn(next));
+    const took = now - this.last_ms;
+    this.last_ms = now;
+    if (this.dirty) {
+      this.dirty = false;
+      this.refined = false;
+      this.draw(this.budget);
+      if (took > SLOW_MS && took < 1000) this.budget = Math.max(FEWEST_POINTS, 0.8 * this.budget);
+      if (took < FAST_MS) this.budget = Math.min(MOST_POINTS, 1.05 * this.budget);
+    } else if (!this.refined && now - this.moved_ms > STILL_MS) {
+      this.refined = true;
+      this.draw(Math.max(2 * this.budget, 500_000));
+    }
+  }
+
+  private draw(budget: number): void {
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    if (width === 0 || height === 0) return;
+    const sides = Math.max(1, this.markers.length);
+    this.orbit.resize(width / sides, height);
+    const eye = { camera: this.orbit.camera, height_px: height * this.renderer.getPixelRatio() };
+    for (const cloud of this.clouds) cloud.choose(eye, budget / sides / this.clouds.length);
+    this.drawn = this.clouds.reduce((sum, cloud) => sum + cloud.drawn, 0);
+    this.hand.quaternion.copy(this.orbit.camera.quaternion);
+    for (let side = 0; side < sides; ++side) {
+      this.markers.forEach((markers, i) => (markers.group.visible = i === side));
+      this.renderer.setViewport((side * width) / sides, 0, width / sides, height);
+      this.renderer.setScissor((side * width) / sides, 0, width / sides, height);
+      this.renderer.render(this.scene, this.orbit.camera);
+    }
+    this.onPicture?.();
+  }
+}
+
+/** Without a GPU smooth edges cost more than they are worth. */
+function isSoftware(): boolean {
+  const context = document.createElement('canvas').getContext('webgl2');
+  const names = context?.getExtension('WEBGL_debug_renderer_info');
+  const name = names ? (context?.getParameter(names.UNMASKED_RENDERER_WEBGL) as string) : '';
+  context?.getExtension('WEBGL_lose_context')?.loseContext();
+  return /swiftshader|llvmpipe|software/i.test(name);
+}
+
+const micrometres = (v: number): number => Math.round(1e6 * v);
+
+function look(run: Run): unknown {
+  return [
+    run.probe_m.map(micrometres), run.proxy_m.map(micrometres), run.force_N.map((v) => v.toFixed(3)),
+    run.in_contact, run.linkage.flat().map((point) => point.map(micrometres)),
+  ];
+}

@@ -1,0 +1,59 @@
+#pragma once
+// A client's HTTP requests, one after the other; a request for /live becomes a LiveConnection.
+
+#include <atomic>
+#include <boost/asio/thread_pool.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/core/tcp_stream.hpp>
+#include <boost/beast/http/parser.hpp>
+#include <boost/beast/http/string_body.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "hub.hpp"
+#include "tactree/viewer/site.hpp"
+#include "tactree/viewer/source.hpp"
+
+namespace tactree::viewer {
+
+/// What the connections of a server share.
+struct Service {
+  static constexpr int kMostConnections = 64;
+
+  const Site& site;
+  Source& source;
+  Hub& hub;
+  boost::asio::thread_pool& worker;  // for answers that take long
+  std::string host;                  // "127.0.0.1:8023"
+  std::string local_host;            // the same as "localhost:8023"; empty: not on loopback
+  std::string any_host;              // ":8023" when every address of the machine is listened on
+  int connections = 0;
+};
+
+class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
+ public:
+  using Request = boost::beast::http::request<boost::beast::http::string_body>;
+
+  HttpConnection(boost::asio::ip::tcp::socket socket, Service& service);
+  ~HttpConnection();
+  HttpConnection(const HttpConnection&) = delete;
+  HttpConnection& operator=(const HttpConnection&) = delete;
+
+  void read();
+
+ private:
+  void handle(Request request);
+  [[nodiscard]] std::optional<Answer> refusal(const Request& request) const;
+  [[nodiscard]] bool is_ours(boost::beast::string_view host) const;
+  void look_up(std::string path, const Request& request);
+  void send(Answer answer, const Request& request);
+
+  boost::beast::tcp_stream stream_;
+  Service& service_;
+  boost::beast::flat_buffer buffer_;
+  std::optional<boost::beast::http::request_parser<boost::beast::http::string_body>> parser_;
+};
+
+}  // namespace tactree::viewer

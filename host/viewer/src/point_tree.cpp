@@ -1,0 +1,209 @@
+#include "tactree/viewer/point_tree.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace tactree::viewer {
+namespace {
+
+using core::SurfacePoint;
+
+std::vector<SurfacePoint> decode(const core::BlobView& view) {
+  std::vector<SurfacePoint> points;
+  points.reserve(view.point_count());
+  for (core::LeafCursor cursor(view); !cursor.done(); cursor.next()) {
+    const core::Leaf& leaf = cursor.leaf();
+    for (std::uint32_t i = 0; i < leaf.point_count; ++i) {
+      points.push_back(view.surface_point(leaf, leaf.first_point + i));
+    }
+  }
+  return points;
+}
+
+std::uint16_t to_share(float value, float low, float edge) {
+  const float share = std::clamp((value - low) / edge, 0.0F, 1.0F);
+  return static_cast<std::uint16_t>(std::lround(share * 65535.0F));
+}
+
+std::uint32_t to_byte(float value) {
+  return static_cast<std::uint32_t>(std::lround((std::clamp(value, -1.0F, 1.0F) + 1.0F) * 127.5F));
+}
+
+/// The unit sphere on an octahedron on a square: two numbers for a direction.
+std::uint16_t pack_normal(core::Vec3 n) {
+  const float size = std::abs(n.x) + std::abs(n.y) + std::abs(n.z);
+  float u = n.x / size;
+  float v = n.y / size;
+  if (n.z < 0.0F) {
+    const float folded = (1.0F - std::abs(v)) * (u < 0.0F ? -1.0F : 1.0F);
+    v = (1.0F - std::abs(u)) * (v < 0.0F ? -1.0F : 1.0F);
+    u = folded;
+  }
+  return static_cast<std::uint16_t>(to_byte(u) << 8 | to_byte(v));
+}
+
+std::size_t octant_of(core::Vec3 p, const PointNode& node) {
+  const float half = 0.5F * node.edge_m;
+  return (p.x >= node.min_m[0] + half ? 1U : 0U) | (p.y >= node.min_m[1] + half ? 2U : 0U) |
+         (p.z >= node.min_m[2] + half ? 4U : 0U);
+}
+
+PointNode root_of(const core::BlobView& view) {
+  const core::BlobHeader& h = view.header();
+  PointNode root;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    root.min_m[axis] = h.bounds_min_m[axis];
+    root.edge_m = std::max(root.edge_m, h.bounds_max_m[axis] - h.bounds_min_m[axis]);
+  }
+  root.edge_m = std::max(root.edge_m, h.spacing_m);
+  return root;
+}
+
+PointNode child_of(const PointNode& parent, std::size_t octant) {
+  PointNode child;
+  child.edge_m = 0.5F * parent.edge_m;
+  child.min_m = parent.min_m;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    child.min_m[axis] += (octant >> axis & 1U) != 0U ? child.edge_m : 0.0F;
+  }
+  return child;
+}
+
+}  // namespace
+
+/// A node whose points are still to be chosen.
+struct PointTree::Task {
+  std::uint32_t node = 0;
+  std::uint32_t level = 0;
+  std::vector<std::uint32_t> points;
+};
+
+class PointTree::Build {
+ public:
+  Build(PointTree& tree, const core::BlobView& view)
+      : tree_(tree), points_(decode(view)), spacing_m_(view.header().spacing_m) {
+    Task root;
+    root.points.resize(points_.size());
+    for (std::uint32_t i = 0; i < root.points.size(); ++i) {
+      root.points[i] = i;
+    }
+    tree_.nodes_.push_back(root_of(view));
+    tree_.points_.reserve(points_.size());
+    open_.push_back(std::move(root));
+  }
+
+  // Breadth first, so that the coarse nodes come first.
+  void run() {
+    for (std::size_t i = 0; i < open_.size(); ++i) {
+      Task task = std::move(open_[i]);
+      divide(task);
+    }
+  }
+
+ private:
+  /// Every so many points of the octree's order, which are spread evenly, stay; the rest go down.
+  void divide(Task& task) {
+    const std::size_t all = task.points.size();
+    const bool last = all <= kPointsPerNode || task.level == kDeepestNode;
+    const double stride = last ? 1.0 : static_cast<double>(all) / kPointsPerNode;
+    PointNode& node = tree_.nodes_[task.node];
+    node.first_point = static_cast<std::uint32_t>(tree_.points_.size());
+    node.spacing_m = spacing_m_ * static_cast<float>(std::sqrt(stride));
+    std::array<std::vector<std::uint32_t>, 8> below;
+    double next = 0.0;
+    for (std::size_t i = 0; i < all; ++i) {
+      const std::uint32_t index = task.points[i];
+      if (static_cast<double>(i) >= next) {
+        keep(node, points_[index]);
+        next += stride;
+      } else {
+        below[octant_of(points_[index].position, node)].push_back(index);
+      }
+    }
+    node.point_count = static_cast<std::uint32_t>(tree_.points_.size()) - node.first_point;
+    descend(task, below);
+  }
+
+  void keep(const PointNode& node, const SurfacePoint& point) {
+    tree_.points_.push_back({to_share(point.position.x, node.min_m[0], node.edge_m),
+                             to_share(point.position.y, node.min_m[1], node.edge_m),
+                             to_share(point.position.z, node.min_m[2], node.edge_m),
+                             pack_normal(point.normal)});
+  }
+
+  void descend(const Task& task, std::array<std::vector<std::uint32_t>, 8>& below) {
+    for (std::size_t octant = 0; octant < below.size(); ++octant) {
+      if (below[octant].empty()) {
+        continue;
+      }
+      const auto number = static_cast<std::uint32_t>(tree_.nodes_.size());
+      const PointNode child = child_of(tree_.nodes_[task.node], octant);
+      tree_.nodes_.push_back(child);
+      tree_.nodes_[task.node].children.push_back(number);
+      open_.push_back({number, task.level + 1, std::move(below[octant])});
+    }
+  }
+
+  PointTree& tree_;
+  std::vector<SurfacePoint> points_;
+  float spacing_m_;
+  std::vector<Task> open_;
+};
+
+PointTree::PointTree(const core::BlobView& view) { Build(*this, view).run(); }
+
+std::span<const PackedPoint> PointTree::points(std::size_t node) const {
+  return std::span(points_).subspan(nodes_[node].first_point, nodes_[node].point_count);
+}
+
+std::string tree_json(const PointTree& tree, const core::BlobView& view) {
+  nlohmann::json nodes = nlohmann::json::array();
+  for (const PointNode& node : tree.nodes()) {
+    nodes.push_back({{"min_m", node.min_m},
+                     {"edge_m", node.edge_m},
+                     {"spacing_m", node.spacing_m},
+                     {"points", node.point_count},
+                     {"children", node.children}});
+  }
+  const core::BlobHeader& h = view.header();
+  const nlohmann::json json = {{"name", h.name},
+                               {"points", h.point_count},
+                               {"spacing_m", h.spacing_m},
+                               {"depth", h.depth},
+                               {"bounds_min_m", std::to_array(h.bounds_min_m)},
+                               {"bounds_max_m", std::to_array(h.bounds_max_m)},
+                               {"nodes", nodes}};
+  return json.dump();
+}
+
+OctantBoxes octant_boxes(const core::BlobView& view, std::uint32_t level, std::size_t most) {
+  OctantBoxes boxes;
+  for (boxes.level = std::min(level, view.depth());; --boxes.level) {
+    // Leaves come in the octree's order, so those of one cube are neighbours.
+    boxes.corners_m.clear();
+    boxes.edge_m = view.leaf_edge_m() * static_cast<float>(1U << (view.depth() - boxes.level));
+    for (core::LeafCursor cursor(view); !cursor.done(); cursor.next()) {
+      const core::Int3 min = cursor.leaf().min;
+      const float site[3] = {static_cast<float>(min.x), static_cast<float>(min.y),
+                             static_cast<float>(min.z)};
+      std::array<float, 3> corner{};
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const float low = view.root_min_m()[axis];
+        const float way = site[axis] * view.step_m() - low;
+        corner[axis] = low + boxes.edge_m * std::floor(way / boxes.edge_m + 1e-3F);
+      }
+      if (boxes.corners_m.empty() || boxes.corners_m.back() != corner) {
+        boxes.corners_m.push_back(corner);
+      }
+      if (boxes.corners_m.size() > most && boxes.level > 0) {
+        break;
+      }
+    }
+    if (boxes.corners_m.size() <= most || boxes.level == 0) {
+      return boxes;
+    }
+  }
+}
+
+}  // namespace tactree::viewer

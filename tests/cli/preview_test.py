@@ -1,0 +1,102 @@
+"""Pictures of models without a display: build --preview and info --preview.
+
+usage: preview_test.py TACTREE
+"""
+import math
+import pathlib
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+import zlib
+
+TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
+
+
+def shell(hole):
+    """Points of a sphere of 4 cm, with normals, but for those within `hole` of the +x axis (radii)."""
+    rows = []
+    count = 20000
+    for i in range(count):
+        z, turn = 1 - (2 * i + 1) / count, i * math.pi * (3 - math.sqrt(5))
+        level = math.sqrt(1 - z * z)
+        n = (level * math.cos(turn), level * math.sin(turn), z)
+        if math.dist(n, (1, 0, 0)) > hole:
+            rows.append(" ".join(f"{v:.7f}" for v in (*(0.04 * c for c in n), *n)))
+    return "\n".join(rows) + "\n"
+
+
+def pixels(file):
+    """Width, height and rows of (r, g, b) of an 8-bit PNG without interlacing."""
+    data = file.read_bytes()
+    assert data[:8] == b"\x89PNG\r\n\x1a\n"
+    width, height, depth, kind = struct.unpack(">IIBB", data[16:26])
+    assert (depth, kind) == (8, 2)
+    packed, at = b"", 8
+    while at < len(data):
+        size = struct.unpack(">I", data[at:at + 4])[0]
+        if data[at + 4:at + 8] == b"IDAT":
+            packed += data[at + 8:at + 8 + size]
+        at += size + 12
+    raw = zlib.decompress(packed)
+    rows, above = [], bytes(3 * width)
+    for y in range(height):
+        way, line = raw[y * (3 * width + 1)], bytearray(raw[y * (3 * width + 1) + 1:(y + 1) * (3 * width + 1)])
+        for i in range(3 * width):
+            left = line[i - 3] if i >= 3 else 0
+            corner = above[i - 3] if i >= 3 else 0
+            guess = left + above[i] - corner
+            near = sorted((abs(guess - v), k) for k, v in enumerate((left, above[i], corner)))[0][1]
+            line[i] = (line[i] + (0, left, above[i], (left + above[i]) // 2,
+                                  (left, above[i], corner)[near])[way]) & 255
+        above = bytes(line)
+        rows.append([tuple(line[i:i + 3]) for i in range(0, 3 * width, 3)])
+    return width, height, rows
+
+
+def reds(rows):
+    return [(x, y) for y, row in enumerate(rows) for x, (r, g, b) in enumerate(row)
+            if r > 190 and g < 60 and b < 80]
+
+
+class Preview(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.path = pathlib.Path(self.folder.name)
+
+    def run_verb(self, *arguments):
+        return subprocess.run([TACTREE, *arguments], cwd=self.path, capture_output=True, text=True, check=False)
+
+    def build(self, hole, *options):
+        (self.path / "ball.xyz").write_text(shell(hole))
+        return self.run_verb("build", "ball.xyz", "-o", "ball.blob", "--preview", "built.png", *options)
+
+    def test_a_hole_is_marked_in_front_where_it_is(self):
+        self.assertEqual(self.build(0.25).returncode, 0)
+        self.assertEqual(self.run_verb("info", "ball.blob", "--preview", "known.png").returncode, 0)
+        for name in ("built.png", "known.png"):
+            width, height, rows = pixels(self.path / name)
+            self.assertEqual((width, height), (1280, 720))
+            marked = reds(rows)
+            self.assertGreater(len(marked), 200, name)
+            # The eye is on the side of +x in the left half; behind, the mark is faint.
+            self.assertLess(max(x for x, _ in marked), width // 2, name)
+
+    def test_a_whole_surface_has_no_mark(self):
+        self.assertEqual(self.build(0.0).returncode, 0)
+        _, _, rows = pixels(self.path / "built.png")
+        self.assertEqual(reds(rows), [])
+        shades = {pixel for row in rows[::7] for pixel in row[::7]}
+        self.assertGreater(len(shades), 100)
+
+    def test_a_scan_is_not_overwritten(self):
+        before = shell(0.0)
+        done = self.build(0.0, "--preview", "ball.xyz")
+        self.assertNotEqual(done.returncode, 0)
+        self.assertEqual((self.path / "ball.xyz").read_text(), before)
+
+
+if __name__ == "__main__":
+    unittest.main()

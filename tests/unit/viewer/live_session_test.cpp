@@ -1,0 +1,152 @@
+// A session that a page drives: what it takes, what it refuses, what it does.
+
+#include "tactree/viewer/live_session.hpp"
+
+#include <gtest/gtest.h>
+
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <nlohmann/json.hpp>
+
+#include "test_models.hpp"
+
+namespace tactree::test {
+namespace {
+
+using nlohmann::json;
+using viewer::LiveSession;
+
+/// Waits for frames as a page does.
+class Frames {
+ public:
+  viewer::Source::Publish taker() {
+    return [this](const std::shared_ptr<const std::string>& text) {
+      const std::lock_guard lock(mutex_);
+      newest_ = json::parse(*text);
+      ++count_;
+      changed_.notify_all();
+    };
+  }
+  /// The first frame from now on for which this holds; it has to come.
+  json wait_for(const std::function<bool(const json&)>& holds) {
+    std::unique_lock lock(mutex_);
+    for (int i = 0; i < 3000; ++i) {
+      const auto before = count_;
+      changed_.wait(lock, [&] { return count_ != before; });
+      if (holds(newest_)) {
+        return newest_;
+      }
+    }
+    ADD_FAILURE() << "it never happened: " << newest_.dump().substr(0, 600);
+    return newest_;
+  }
+  json wait_for_state(const std::string& state) {
+    return wait_for([&](const json& frame) { return frame["runs"][0]["state"] == state; });
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  json newest_;
+  std::uint64_t count_ = 0;
+};
+
+class LiveSessionTest : public testing::Test {
+ protected:
+  static constexpr double kRadius_m = 0.04;
+
+  LiveSessionTest() { session_.start(frames_.taker()); }
+  ~LiveSessionTest() override { session_.stop(); }
+
+  static std::vector<viewer::NamedDevice> devices() {
+    std::vector<viewer::NamedDevice> list;
+    for (const core::DevicePreset& preset : core::kDevicePresets) {
+      list.push_back({preset.name, preset.about, preset});
+    }
+    return list;
+  }
+  viewer::Bodies bodies() {
+    simulation::SceneBody body;
+    body.blob = blob_.written().bytes;
+    return {{blob_.view()}, {body}};
+  }
+  void say(const json& command) { EXPECT_EQ(session_.command(command).value_or(""), ""); }
+  std::string refusal(const json& command) {
+    return session_.command(command).value_or("accepted");
+  }
+
+  TestBlob blob_{sphere(kRadius_m, 0.001)};
+  LiveSession session_{bodies(), devices(), {}};
+  Frames frames_;
+};
+
+TEST_F(LiveSessionTest, TheHandIsHeldOffByTheSurfaceUntilItIsStopped) {
+  frames_.wait_for_state("active");
+  say({{"do", "hand"}, {"target_m", {0.0, 0.0, kRadius_m - 0.01}}});
+  const json frame = frames_.wait_for(
+      [](const json& f) { return f["runs"][0]["force_N"][2].get<double>() > 0.5; });
+  const json& run = frame["runs"][0];
+  EXPECT_NEAR(core::length({run["proxy_m"][0], run["proxy_m"][1], run["proxy_m"][2]}),
+              static_cast<float>(kRadius_m), 2e-4F);
+  EXPECT_GT(run["penetration_m"].get<double>(), 5e-4);
+  EXPECT_GT(run["candidates"].size(), 5U);
+  EXPECT_GE(run["strip"]["force_N"][1], run["strip"]["force_N"][0]);
+  say({{"do", "stop"}});
+  const json idle = frames_.wait_for_state("idle");
+  EXPECT_EQ(idle["runs"][0]["force_N"], json({0.0, 0.0, 0.0}));
+}
+
+TEST_F(LiveSessionTest, AFaultStaysUntilItsCauseIsGoneAndItIsCleared) {
+  frames_.wait_for_state("active");
+  say({{"do", "inject"}, {"fault", "estop:pressed"}});
+  const json frame = frames_.wait_for_state("fault");
+  EXPECT_EQ(frame["runs"][0]["faults"][0]["name"], "emergency-stop");
+  say({{"do", "mend"}});
+  say({{"do", "clear"}});
+  frames_.wait_for_state("idle");
+  say({{"do", "arm"}});
+  frames_.wait_for_state("active");
+}
+
+TEST_F(LiveSessionTest, BothModesGoSideBySide) {
+  say({{"do", "set"}, {"mode", "both"}});
+  const json frame = frames_.wait_for([](const json& f) { return f["runs"].size() == 2; });
+  EXPECT_EQ(frame["runs"][0]["mode"], "surface");
+  EXPECT_EQ(frame["runs"][1]["mode"], "paper");
+}
+
+TEST_F(LiveSessionTest, ChangedSettingsBeginAnewOutsideTheObject) {
+  frames_.wait_for_state("active");
+  say({{"do", "hand"}, {"target_m", {0.0, 0.0, kRadius_m - 0.01}}});
+  frames_.wait_for([](const json& f) { return f["runs"][0]["force_N"][2].get<double>() > 0.5; });
+  say({{"do", "set"}, {"damping_Ns_m", 1.0}});
+  const json frame = frames_.wait_for(
+      [](const json& f) { return f["settings"]["damping_Ns_m"] == 1.0 && f["t_s"] > 0.0; });
+  EXPECT_EQ(frame["runs"][0]["penetration_m"], 0.0);
+  frames_.wait_for_state("active");
+}
+
+TEST_F(LiveSessionTest, ARefusalChangesNothing) {
+  EXPECT_NE(refusal({{"do", "set"}, {"stiffness_N_m", 50000}}).find("stability limit"),
+            std::string::npos);
+  EXPECT_NE(refusal({{"do", "set"}, {"rate_hz", 1}}).find("rate_hz"), std::string::npos);
+  EXPECT_NE(refusal({{"do", "set"}, {"device", "none"}}).find("there is no 'none'"),
+            std::string::npos);
+  EXPECT_NE(refusal({{"do", "set"}, {"colour", "red"}}).find("no such setting"), std::string::npos);
+  EXPECT_NE(refusal({{"do", "jump"}}).find("none of"), std::string::npos);
+  EXPECT_NE(refusal({{"do", "hand"}, {"target_m", {1, 2}}}), "accepted");
+  EXPECT_NE(refusal({{"do", "hand"}, {"target_m", {1e30, 0, 0}}}), "accepted");
+  const json hello = json::parse(session_.hello());
+  EXPECT_EQ(hello["settings"]["stiffness_N_m"], 500.0);
+  EXPECT_EQ(hello["settings"]["rate_hz"], 1000.0);
+}
+
+TEST_F(LiveSessionTest, WhatItDidIsATrace) {
+  frames_.wait_for([](const json& f) { return f["t_s"].get<double>() > 0.7; });
+  const std::string csv = session_.trace_csv();
+  EXPECT_GT(std::count(csv.begin(), csv.end(), '\n'), 500);
+}
+
+}  // namespace
+}  // namespace tactree::test

@@ -1,0 +1,72 @@
+// Five million points: the page answers at once with what it has, and is never held up. Times are
+// printed, not judged: they are the machine's.
+import assert from 'node:assert/strict';
+import { writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { test } from 'node:test';
+import { execFileSync } from 'node:child_process';
+import { folder, launch, openPage, startServer, state, tactree } from './setup.mjs';
+
+const COUNT = 5_000_000;
+const RADIUS = 0.3;
+const HEADER = ['ply', 'format binary_little_endian 1.0', `element vertex ${COUNT}`,
+  ...['x', 'y', 'z', 'nx', 'ny', 'nz'].map((name) => `property float ${name}`), 'end_header', ''].join('\n');
+
+/** A sphere; its normals tell where its points are. */
+function scan() {
+  const values = new Float32Array(6 * COUNT);
+  const turn = Math.PI * (3 - Math.sqrt(5));
+  for (let i = 0; i < COUNT; ++i) {
+    const z = 1 - (2 * (i + 0.5)) / COUNT;
+    const level = Math.sqrt(1 - z * z);
+    const normal = [level * Math.cos(i * turn), level * Math.sin(i * turn), z];
+    normal.forEach((n, k) => {
+      values[6 * i + k] = RADIUS * n;
+      values[6 * i + 3 + k] = n;
+    });
+  }
+  return Buffer.concat([Buffer.from(HEADER), Buffer.from(values.buffer)]);
+}
+
+test('five million points', async () => {
+  const ply = join(folder, 'large.ply');
+  const blob = join(folder, 'large.blob');
+  writeFileSync(ply, scan());
+  execFileSync(tactree, ['build', ply, '--unit', 'm', '--no-resample', '-o', blob], { stdio: 'pipe' });
+  const begin = Date.now();
+  const server = await startServer([blob, '--device', 'cartesian']);
+  console.log(`server ready after ${Date.now() - begin} ms`);
+  const browser = await launch();
+  const page = await openPage(browser, server.url);
+  const first = await page.evaluate(() => Number(document.documentElement.dataset.firstPicture));
+  console.log(`first picture after ${first} ms`);
+  assert.match(await page.locator('#model-name').textContent(), /[45],\d{3},\d{3} points/);
+  await state(page, 'active');
+
+  // While points still come in, the view turns and the numbers change.
+  const gaps = await page.evaluate(() => new Promise((done) => {
+    const times = [];
+    const canvas = document.getElementById('view');
+    canvas.focus();
+    const turn = (now) => {
+      times.push(now);
+      canvas.dispatchEvent(new KeyboardEvent('keydown', { key: 'ArrowLeft', shiftKey: true }));
+      if (times.length < 60) requestAnimationFrame(turn);
+      else done(times.slice(1).map((time, i) => time - times[i]));
+    };
+    requestAnimationFrame(turn);
+  }));
+  const sorted = gaps.sort((a, b) => a - b);
+  console.log(`turning: ${sorted[30].toFixed(0)} ms a picture, the longest ${sorted.at(-1).toFixed(0)} ms`);
+  const drawn = () => page.locator('#detail').textContent().then((text) => Number(text.replace(/\D/g, '')));
+  const moving = await drawn();
+  await page.waitForFunction((before) =>
+    Number(document.getElementById('detail').textContent.replace(/\D/g, '')) > before, moving);
+  console.log(`points drawn: ${moving} while turning, ${await drawn()} at rest`);
+  assert.ok(moving < COUNT, 'reduced detail');
+  await page.keyboard.press('Space');
+  await state(page, 'idle');
+  assert.deepEqual(page.troubles, []);
+  await browser.close();
+  await server.stop();
+});

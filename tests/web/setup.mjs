@@ -1,0 +1,121 @@
+// What the tests share: models, the program under test, the browser.
+import { execFileSync, spawn } from 'node:child_process';
+import { existsSync, mkdirSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { mkdtempSync, rmSync } from 'node:fs';
+import { chromium } from 'playwright-core';
+
+export const tactree = process.env.TACTREE;
+export const folder = mkdtempSync(join(tmpdir(), 'tactree-web-'));
+process.on('exit', () => rmSync(folder, { recursive: true, force: true }));
+
+/** Points of a sphere with bumps, spread evenly, with normals: `count` rows x y z nx ny nz. */
+export function bumpySphere(count, radius = 0.04, height = 0.002) {
+  const rows = [];
+  const turn = Math.PI * (3 - Math.sqrt(5));
+  const shape = (u, v) => radius + height * Math.sin(6 * u) * Math.sin(5 * v);
+  const at = (u, v) => {
+    const r = shape(u, v);
+    return [r * Math.cos(u) * Math.sin(v), r * Math.sin(u) * Math.sin(v), r * Math.cos(v)];
+  };
+  for (let i = 0; i < count; ++i) {
+    const v = Math.acos(1 - (2 * (i + 0.5)) / count);
+    const u = (i * turn) % (2 * Math.PI);
+    rows.push([...at(u, v), ...normalAt(at, u, v)].map((x) => x.toPrecision(7)).join(' '));
+  }
+  return rows.join('\n') + '\n';
+}
+
+function normalAt(at, u, v) {
+  const step = 1e-4;
+  const diff = (a, b) => a.map((x, i) => x - b[i]);
+  const along = diff(at(u + step, v), at(u - step, v));
+  const down = diff(at(u, v + step), at(u, v - step));
+  const n = [
+    down[1] * along[2] - down[2] * along[1],
+    down[2] * along[0] - down[0] * along[2],
+    down[0] * along[1] - down[1] * along[0],
+  ];
+  const size = Math.hypot(...n);
+  return n.map((x) => x / size);
+}
+
+export function buildModel(name, points, options = []) {
+  mkdirSync(folder, { recursive: true });
+  const blob = join(folder, `${name}.blob`);
+  if (!existsSync(blob)) {
+    writeFileSync(join(folder, `${name}.xyz`), points);
+    execFileSync(tactree, ['build', join(folder, `${name}.xyz`), '-o', blob, ...options], { stdio: 'pipe' });
+  }
+  return blob;
+}
+
+/** `tactree view` with these arguments: { url, port, stop() }, once it listens. */
+export function startServer(args, port = 0) {
+  const child = spawn(tactree, ['view', '--port', String(port), ...args]);
+  let text = '';
+  child.stderr.on('data', (data) => process.stderr.write(data));
+  return new Promise((done, failed) => {
+    child.on('exit', (code) => failed(new Error(`tactree view ended with ${code}`)));
+    child.stdout.on('data', (data) => {
+      text += data;
+      const url = /http:\/\/[^ ]*\//.exec(text)?.[0];
+      if (!url) return;
+      const stop = () => new Promise((ended) => {
+        child.removeAllListeners('exit');
+        child.on('exit', ended);
+        child.kill('SIGTERM');
+      });
+      done({ url, port: Number(new URL(url).port), stop });
+    });
+  });
+}
+
+export const launch = () => chromium.launch({
+  executablePath: process.env.CHROMIUM,
+  // Without a display or GPU; as root a browser has no sandbox.
+  args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
+});
+
+/** A page that shows the model, and whatever went wrong on it. */
+export async function openPage(browser, url, options = {}) {
+  const page = await browser.newPage({ viewport: { width: 1280, height: 720 }, ...options });
+  page.troubles = [];
+  page.foreign = [];
+  page.on('pageerror', (error) => page.troubles.push(error.message));
+  page.on('console', (message) => message.type() === 'error' && page.troubles.push(message.text()));
+  page.on('request', (request) => {
+    const here = request.url().startsWith(url) || /^(blob|data|ws):/.test(request.url());
+    if (!here) page.foreign.push(request.url());
+  });
+  await page.goto(url);
+  await shown(page);
+  return page;
+}
+
+export const shown = (page) =>
+  page.waitForFunction(() => document.documentElement.dataset.firstPicture, null, { timeout: 60000 });
+
+export const state = (page, name) =>
+  page.waitForFunction((wanted) => document.getElementById('state').textContent === wanted, name,
+    { timeout: 30000 });
+
+/** A figure of the table of numbers. */
+export async function number(page, name) {
+  await page.locator('#numbers-box').evaluate((box) => { box.open = true; });
+  const cell = page.locator(`#numbers td[data-name='${name}']`);
+  return Number(await cell.textContent());
+}
+
+/** Waits until `test` of the numbers with these names is true; the numbers then. */
+export async function until(page, names, test, what) {
+  const end = Date.now() + 30000;
+  for (;;) {
+    const values = [];
+    for (const name of names) values.push(await number(page, name));
+    if (test(...values)) return values;
+    if (Date.now() > end) throw new Error(`${what}: ${names.join(', ')} = ${values.join(', ')}`);
+    await page.waitForTimeout(50);
+  }
+}

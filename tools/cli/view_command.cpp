@@ -1,0 +1,130 @@
+#include "view_command.hpp"
+
+#include <fmt/core.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "command.hpp"
+#include "device_file.hpp"
+#include "scene_file.hpp"
+#include "tactree/simulation/placement.hpp"
+#include "tactree/viewer/live_session.hpp"
+#include "tactree/viewer/recording.hpp"
+#include "tactree/viewer/server.hpp"
+
+namespace tactree::cli {
+namespace {
+
+struct ViewOptions {
+  std::vector<std::string> blobs;
+  std::string scene;
+  std::string trace;
+  std::string mode = "surface";
+  viewer::Settings settings;
+  viewer::ServerOptions server{.address = "127.0.0.1", .port = 8023};
+};
+
+viewer::Bodies bodies_of(const SceneFile& scene) {
+  viewer::Bodies bodies;
+  bodies.bodies = scene.bodies;
+  for (const BlobFile* const file : scene.files) {
+    bodies.views.push_back(file->view());
+  }
+  return bodies;
+}
+
+/// Those that there are, and the user's own.
+std::vector<viewer::NamedDevice> devices(const std::string& chosen) {
+  std::vector<viewer::NamedDevice> list;
+  bool known = false;
+  for (const std::string& name : device_names()) {
+    list.push_back({name, load_device(name).about, load_device(name).figures});
+    known = known || name == chosen;
+  }
+  if (!known) {
+    const Device own = load_device(chosen);
+    list.push_back({chosen, own.about, own.figures});
+  }
+  return list;
+}
+
+std::unique_ptr<viewer::Source> make_source(const ViewOptions& options, const SceneFile& scene) {
+  if (options.trace.empty()) {
+    return std::make_unique<viewer::LiveSession>(bodies_of(scene), devices(options.settings.device),
+                                                 options.settings);
+  }
+  const core::DeviceModel device = load_device(options.settings.device).figures.model;
+  const core::Vec3 origin_m = simulation::middle_at_origin(
+      scene.files[0]->view().header(), scene.bodies[0].path.first(), device.kind);
+  return std::make_unique<viewer::Recording>(viewer::read_trace(options.trace), bodies_of(scene),
+                                             device, origin_m);
+}
+
+void view(ViewOptions& options) {
+  if (!viewer::has_page()) {
+    throw CommandError(
+        "view: this program was built without its page (scripts/install-deps view, then configure "
+        "with -DTACTREE_PAGE=ON and build again)");
+  }
+  if (options.blobs.empty() && options.scene.empty()) {
+    throw CLI::RequiredError("BLOB");
+  }
+  options.settings.modes = viewer::modes_of(options.mode);
+  const SceneFile scene = read_scene(options.scene, options.blobs);
+  const std::unique_ptr<viewer::Source> source = make_source(options, scene);
+  const viewer::Site site(bodies_of(scene).views, *source);
+  viewer::Server server(options.server, site, *source);
+  fmt::print("open {} in a browser; Ctrl+C ends it\n", server.address());
+  std::fflush(stdout);
+  server.run();
+}
+
+void add_server_options(CLI::App& verb, ViewOptions& options) {
+  verb.add_option("--port", options.server.port, "to listen on; 0: any free one")
+      ->capture_default_str();
+  verb.add_option("--address", options.server.address,
+                  "to listen on; whoever reaches another one than this machine's own may move the "
+                  "simulated hand")
+      ->capture_default_str();
+}
+
+void add_session_options(CLI::App& verb, ViewOptions& options) {
+  core::Configuration& c = options.settings.controller;
+  verb.add_option("--device", options.settings.device,
+                  "a device's name, or a JSON file that describes one: see simulate")
+      ->capture_default_str();
+  verb.add_option("--mode", options.mode, "surface, paper, or both side by side")
+      ->check(CLI::IsMember({"surface", "paper", "both"}))
+      ->capture_default_str();
+  verb.add_option("--rate", c.rate_hz, "ticks per second, Hz")
+      ->check(CLI::Range(100.0, 20000.0))
+      ->capture_default_str();
+  verb.add_option("--stiffness", c.stiffness_N_m, "of the surface, N/m")
+      ->check(CLI::Range(0.0, 1e5))
+      ->capture_default_str();
+  verb.add_option("--damping", c.damping_Ns_m, "of the surface, Ns/m")
+      ->check(CLI::Range(0.0, 1e3))
+      ->capture_default_str();
+}
+
+}  // namespace
+
+void add_view_command(CLI::App& app, int&) {
+  auto options = std::make_shared<ViewOptions>();
+  CLI::App* verb = app.add_subcommand(
+      "view", "Shows a page in the browser: the model, and a hand that touches it");
+  verb->add_option("BLOB", options->blobs, "the blob to touch, or several");
+  verb->add_option("--scene", options->scene,
+                   "JSON file that says where each body is: see simulate")
+      ->check(CLI::ExistingFile);
+  verb->add_option(
+      "--trace", options->trace,
+      "show this recording of simulate --trace, tick by tick, instead of a simulation");
+  add_session_options(*verb, *options);
+  add_server_options(*verb, *options);
+  verb->callback([options] { view(*options); });
+}
+
+}  // namespace tactree::cli

@@ -1,0 +1,10 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace tactree::cli {
+
+/// Adds the verb `view`. Its errors are thrown as CommandError.
+void add_view_command(CLI::App& app, int& exit_code);
+
+}  // namespace tactree::cli
