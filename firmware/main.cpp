@@ -26,6 +26,15 @@ tactree::hal::StartResult start(const tactree::core::Configuration& configuratio
   return damaged;
 }
 
+// A board that an application can talk to listens between the ticks, for ever.
+template <class B>
+void serve(B& on, const tactree::hal::StartResult& started,
+           const tactree::core::Configuration& configuration) {
+  if constexpr (requires { on.serve(controller, started, configuration); }) {
+    on.serve(controller, started, configuration);
+  }
+}
+
 }  // namespace
 
 void tactree_tick() { loop.tick(); }
@@ -36,8 +45,6 @@ int main() {
   const tactree::hal::StartResult started = start(configuration);
   board.report(started);
   tactree::firmware::start_ticks(configuration.rate_hz);
-  if constexpr (requires { board.serve(controller, started, configuration); }) {
-    board.serve(controller, started, configuration);
-  }
+  serve(board, started, configuration);
   tactree_idle();
 }

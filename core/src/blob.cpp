@@ -87,14 +87,7 @@ class BlobValidator {
     if ((h.header_bytes & 3U) != 0) return false;
     if (h.profile > static_cast<std::uint32_t>(Profile::kPaper)) return false;
     if (h.depth < 1 || h.depth > kMaxDepth) return false;
-    if (h.point_count == 0 || h.leaf_count == 0 || h.node_count == 0) return false;
-    if (h.leaf_count > kMaxLeaves || h.node_count > kMaxNodes) return false;
-    if (h.leaf_count > h.point_count || h.material_count > kMaxMaterials) return false;
-    if (h.points_per_leaf_max == 0 || h.points_per_leaf_max > h.point_count) return false;
-    if (h.points_per_ball_max == 0 || h.points_per_ball_max > h.point_count) return false;
-    if (h.points_per_query_max < h.points_per_leaf_max) return false;
-    if (h.points_per_query_max > h.point_count) return false;
-    if (h.points_per_slab_max == 0 || h.points_per_slab_max > h.points_per_query_max) return false;
+    if (!counts_are_sane()) return false;
     if (h.leaves_per_query_max != kLeavesPerQuery) return false;
     if (h.leaf_group_shift > kMaxLeafGroupShift || !directory_level_is_sane()) return false;
     for (const std::uint32_t word : h.reserved) {  // bound: 4
@@ -102,6 +95,18 @@ class BlobValidator {
     }
     return is_terminated(h.name, sizeof h.name) &&
            is_terminated(h.tool_version, sizeof h.tool_version);
+  }
+
+  bool counts_are_sane() const {
+    const BlobHeader& h = *header_;
+    if (h.point_count == 0 || h.leaf_count == 0 || h.node_count == 0) return false;
+    if (h.leaf_count > kMaxLeaves || h.node_count > kMaxNodes) return false;
+    if (h.leaf_count > h.point_count || h.material_count > kMaxMaterials) return false;
+    if (h.points_per_leaf_max == 0 || h.points_per_leaf_max > h.point_count) return false;
+    if (h.points_per_ball_max == 0 || h.points_per_ball_max > h.point_count) return false;
+    if (h.points_per_query_max < h.points_per_leaf_max) return false;
+    if (h.points_per_query_max > h.point_count) return false;
+    return h.points_per_slab_max != 0 && h.points_per_slab_max <= h.points_per_query_max;
   }
 
   [[nodiscard]] bool is_surface() const {

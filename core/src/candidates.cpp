@@ -25,8 +25,8 @@ constexpr std::int32_t rounded(float value) {
 
 /// Which points of a leaf are near the centre of a gather, in whole numbers: comparing floats takes
 /// longer, and most points are not near enough. Counted in half sites from the leaf's first site,
-/// to which the centre is rounded: where all leaves are of one size these are lattice units, and the
-/// reach is taken smaller by as much. Leaves of several sizes may be coarse: there it is taken
+/// to which the centre is rounded: where all leaves are of one size these are lattice units, and
+/// the reach is taken smaller by as much. Leaves of several sizes may be coarse: there it is taken
 /// larger, and what is within is compared exactly.
 class LeafBall {
  public:
@@ -45,9 +45,8 @@ class LeafBall {
     const std::int32_t highest = (centre_.z + radius) >> 1;
     if (lowest <= kLastSite && highest >= 0) {
       first_word_ = lowest > 0 ? static_cast<std::uint32_t>(lowest) << kZShift : 0U;
-      last_word_ = highest < kLastSite
-                       ? ((static_cast<std::uint32_t>(highest) + 1U) << kZShift) - 1U
-                       : ~0U;
+      last_word_ =
+          highest < kLastSite ? ((static_cast<std::uint32_t>(highest) + 1U) << kZShift) - 1U : ~0U;
     }
   }
 
@@ -131,7 +130,8 @@ void CandidateSet::gather_for(const BlobView& view, Vec3 x) {
   return length_squared(position - centre_) <= reach * reach;
 }
 
-[[gnu::always_inline]] inline bool CandidateSet::add(const BlobView& view, Int3 place, std::uint32_t point) {
+[[gnu::always_inline]] inline bool CandidateSet::add(const BlobView& view, Int3 place,
+                                                     std::uint32_t point) {
   const Vec3 position = {view.step_m() * static_cast<float>(place.x),
                          view.step_m() * static_cast<float>(place.y),
                          view.step_m() * static_cast<float>(place.z)};

@@ -51,13 +51,14 @@ float weight_of(float qq, float inverse_squared) {
 
 /// What lies around, seen from one face.
 struct Surroundings {
-  Moments face{};                      // of all points that face the reference
-  float averted = 0.0F;                // weight of all others
-  const Candidate* crease = nullptr;   // nearest point of another face
+  Moments face{};                     // of all points that face the reference
+  float averted = 0.0F;               // weight of all others
+  const Candidate* crease = nullptr;  // nearest point of another face
 };
 
 // The sums are locals, not members of what is returned: these a compiler keeps in registers.
-[[gnu::noinline]] Surroundings look_around(const CandidateSet& set, Vec3 x, float radius, Vec3 reference) {
+[[gnu::noinline]] Surroundings look_around(const CandidateSet& set, Vec3 x, float radius,
+                                           Vec3 reference) {
   const float radius_squared = radius * radius;
   const float inverse_squared = 1.0F / radius_squared;
   Moments face;
@@ -95,7 +96,8 @@ struct Faces {
   float between = 0.0F;  // weight of the points that are of neither
 };
 
-[[gnu::noinline]] Faces divide(const CandidateSet& set, Vec3 x, float radius, Vec3 own, Vec3 other) {
+[[gnu::noinline]] Faces divide(const CandidateSet& set, Vec3 x, float radius, Vec3 own,
+                               Vec3 other) {
   const float radius_squared = radius * radius;
   const float inverse_squared = 1.0F / radius_squared;
   Faces faces;

@@ -5,12 +5,15 @@
 namespace tactree::core {
 namespace {
 
-constexpr std::uint32_t TickFigures::*kFigures[] = {
-    &TickFigures::points_per_ball_max, &TickFigures::points_per_query_max,
-    &TickFigures::points_per_slab_max, &TickFigures::points_per_leaf_max,
-    &TickFigures::depth,               &TickFigures::levels_below,
-    &TickFigures::blended_points,      &TickFigures::blended_materials,
-    &TickFigures::delta};
+constexpr std::uint32_t TickFigures::*kFigures[] = {&TickFigures::points_per_ball_max,
+                                                    &TickFigures::points_per_query_max,
+                                                    &TickFigures::points_per_slab_max,
+                                                    &TickFigures::points_per_leaf_max,
+                                                    &TickFigures::depth,
+                                                    &TickFigures::levels_below,
+                                                    &TickFigures::blended_points,
+                                                    &TickFigures::blended_materials,
+                                                    &TickFigures::delta};
 static_assert(sizeof(kFigures) / sizeof(kFigures[0]) == kTickFigures);
 
 constexpr std::uint32_t smaller_of(std::uint32_t a, std::uint32_t b) { return a < b ? a : b; }

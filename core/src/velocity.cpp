@@ -15,8 +15,7 @@ struct Window {
   std::uint32_t samples;
   float inverse;
 };
-constexpr Window kWindows[kVelocityWindows] = {
-    {3, 1.0F / 3}, {7, 1.0F / 7}, {15, 1.0F / 15}};
+constexpr Window kWindows[kVelocityWindows] = {{3, 1.0F / 3}, {7, 1.0F / 7}, {15, 1.0F / 15}};
 
 }  // namespace
 
@@ -51,7 +50,8 @@ Vec3 VelocityEstimator::update(Vec3 position) {
 
 // Each sample allows the line a range of slopes; their common part is carried along, so that one
 // pass is enough.
-[[gnu::always_inline]] inline float VelocityEstimator::slope(const float (&samples)[kSlots], float quantum) const {
+[[gnu::always_inline]] inline float VelocityEstimator::slope(const float (&samples)[kSlots],
+                                                             float quantum) const {
   const float newest = samples[newest_];
   float best = newest - samples[(newest_ - 1U) & (kSlots - 1U)];
   float lowest = best - quantum;

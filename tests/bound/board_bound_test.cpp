@@ -40,8 +40,8 @@ bound::Bound bound_of(const emulation::BoardDescription& board, const core::Blob
   options.image = built(board, "firmware", board.name);
   options.sources = sources;
   options.entries = bound::tick_entries();
-  options.parameters = bound::parameters_of(
-      view.header(), mode, 1, core::DeviceKind::kDelta, core::work_per_tick(1000.0F));
+  options.parameters = bound::parameters_of(view.header(), mode, 1, core::DeviceKind::kDelta,
+                                            core::work_per_tick(1000.0F));
   return bound::worst_case(options);
 }
 
@@ -197,10 +197,14 @@ core::TickFigures some_figures(std::mt19937& random) {
   const auto any = [&](std::uint32_t largest) {
     return std::uniform_int_distribution<std::uint32_t>(0, largest)(random);
   };
-  return {any(most.points_per_ball_max), any(most.points_per_query_max),
-          any(most.points_per_slab_max), any(most.points_per_leaf_max),
-          any(most.depth),               any(most.levels_below),
-          any(most.blended_points),      any(most.blended_materials),
+  return {any(most.points_per_ball_max),
+          any(most.points_per_query_max),
+          any(most.points_per_slab_max),
+          any(most.points_per_leaf_max),
+          any(most.depth),
+          any(most.levels_below),
+          any(most.blended_points),
+          any(most.blended_materials),
           any(most.delta)};
 }
 

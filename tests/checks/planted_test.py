@@ -337,9 +337,9 @@ class FormatDoc(Planted):
         self.refuses_doc("another order", both, "\n".join(reversed(lines[i:i + 2])))
 
     def test_new_field(self):
-        self.refuses_header("the header says (324, 4, 'u32', 'colour')", "blob_format.hpp",
-                            "std::uint32_t reserved[5];",
-                            "std::uint32_t colour; std::uint32_t reserved[4];")
+        self.refuses_header("the header says (328, 4, 'u32', 'colour')", "blob_format.hpp",
+                            "std::uint32_t reserved[4];",
+                            "std::uint32_t colour; std::uint32_t reserved[3];")
 
     def test_new_constant(self):
         self.refuses_header("('kMore', 3)", "blob_format.hpp", "inline constexpr std::uint16_t kBlobMajor",

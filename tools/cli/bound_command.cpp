@@ -143,8 +143,8 @@ void bound_tick(const BoundCommandOptions& options) {
   print(analysis.parameters, result);
   double highest = 0.0;
   if (analysis.timing != nullptr) {
-    highest = std::floor(
-        bound::highest_rate(analysis.timing->clock_hz, bound::cycles_by_pace(analysis)));
+    highest =
+        std::floor(bound::highest_rate(analysis.timing->clock_hz, bound::cycles_by_pace(analysis)));
     print_timing(options, *analysis.timing, result, highest);
   }
   if (!options.json.empty()) {

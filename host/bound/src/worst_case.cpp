@@ -351,8 +351,8 @@ class Model {
     return wait;
   }
 
-  // Code that is used again and again stays where the lines used last do, when the loop and all that
-  // it calls have room there: each line is fetched once, each time the loop is entered.
+  // Code that is used again and again stays where the lines used last do, when the loop and all
+  // that it calls have room there: each line is fetched once, each time the loop is entered.
   void keep_loops(const ControlFlow& flow, FunctionVariables& own) const {
     own.kept_by.resize(flow.blocks.size());
     if (analysis_.timing == nullptr) {
@@ -661,11 +661,11 @@ class Model {
 
   static void join(Group& group, const SourceFact& fact, const Terms& terms) {
     if (group.first != nullptr && group.first->total.at_most.text() != fact.total.at_most.text()) {
-      throw BoundError(fmt::format("{}:{}: '{}', but '{}' in {}:{}, with which it is counted (make "
-                                   "them equal)",
-                                   fact.file, fact.line, fact.total.at_most.text(),
-                                   group.first->total.at_most.text(), group.first->file,
-                                   group.first->line));
+      throw BoundError(
+          fmt::format("{}:{}: '{}', but '{}' in {}:{}, with which it is counted (make "
+                      "them equal)",
+                      fact.file, fact.line, fact.total.at_most.text(),
+                      group.first->total.at_most.text(), group.first->file, group.first->line));
     }
     group.first = &fact;
     add(group.terms, terms);
@@ -1048,8 +1048,7 @@ Parameters parameters_of(const core::TickFigures& figures, core::TickKind kind,
 }
 
 Parameters parameters_of(const core::BlobHeader& header, core::RenderMode mode,
-                         std::uint32_t bodies, core::DeviceKind device,
-                         core::SurfaceWork work) {
+                         std::uint32_t bodies, core::DeviceKind device, core::SurfaceWork work) {
   return parameters_of(core::tick_figures(header, device), core::tick_kind(header, mode), bodies,
                        work);
 }

@@ -62,13 +62,12 @@ TEST(SafetyGateEdges, EachLimitIsTakenUpToItsEndsAndNoFurther) {
       {"force_max_N", 0.01F, 1000.0F, [](GateLimits& l) -> float& { return l.force_max_N; }},
       {"slew_N_per_tick", 1e-4F * 8.0F, 16.0F,
        [](GateLimits& l) -> float& { return l.slew_N_per_tick; }},
-      {"continuous_share", 0.05F, 1.0F,
-       [](GateLimits& l) -> float& { return l.continuous_share; }},
+      {"continuous_share", 0.05F, 1.0F, [](GateLimits& l) -> float& { return l.continuous_share; }},
       {"heat_share_per_tick", 1e-8F, 0.1F,
        [](GateLimits& l) -> float& { return l.heat_share_per_tick; }}};
   for (std::uint32_t i = 0; i < kAxes; ++i) {
-    ranges.push_back({"effort_max", 1e-4F, 1000.0F,
-                      [i](GateLimits& l) -> float& { return l.effort_max[i]; }});
+    ranges.push_back(
+        {"effort_max", 1e-4F, 1000.0F, [i](GateLimits& l) -> float& { return l.effort_max[i]; }});
     ranges.push_back({"effort_slew_per_tick", 1e-4F * 8.5F, 17.0F,
                       [i](GateLimits& l) -> float& { return l.effort_slew_per_tick[i]; }});
   }
@@ -127,8 +126,8 @@ TEST(SafetyGateEdges, ANewConfigurationBeginsAtZero) {
 }
 
 TEST(SafetyGateEdges, EachInputAloneThatIsNotFiniteEndsTheForceAndIsTold) {
-  for (const float bad : {kNan, std::numeric_limits<float>::infinity(),
-                          -std::numeric_limits<float>::infinity()}) {
+  for (const float bad :
+       {kNan, std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()}) {
     for (std::uint32_t i = 0; i < 15; ++i) {
       float in[15] = {0.5F, 0.0F, 0.0F, 1.0F, 0.0F, 0.0F, 0.0F, 1.0F,
                       0.0F, 0.0F, 0.0F, 1.0F, 0.0F, 0.0F, 0.0F};
@@ -235,8 +234,8 @@ TEST(SafetyGateEdges, TheSmallestSlewIsKept) {
     double step = 0.0;
     for (std::uint32_t i = 0; i < kAxes; ++i) {
       const double now = static_cast<double>(result.command.effort(i));
-      excess = std::max(excess, std::abs(now - last[i]) -
-                                    static_cast<double>(limits.effort_slew_per_tick[i]));
+      excess = std::max(
+          excess, std::abs(now - last[i]) - static_cast<double>(limits.effort_slew_per_tick[i]));
       step += (now - last[i]) * (now - last[i]);
       last[i] = now;
     }

@@ -103,9 +103,9 @@ struct BlobHeader {
   BlobDouble source_scale;      ///< metres of the model frame per unit of the source file
   BlobDouble source_origin[3];  ///< source coordinates of the model frame's origin
 
-  char name[32];                   ///< UTF-8, zero-padded, zero-terminated
-  std::uint8_t source_digest[32];  ///< SHA-256 of the input bytes
-  char tool_version[16];           ///< zero-padded, zero-terminated
+  char name[32];                      ///< UTF-8, zero-padded, zero-terminated
+  std::uint8_t source_digest[32];     ///< SHA-256 of the input bytes
+  char tool_version[16];              ///< zero-padded, zero-terminated
   std::uint32_t points_per_slab_max;  ///< in the part of these eight leaves that is 2 reach_m thick
                                       ///< along z: proven by the builder
   std::uint32_t reserved[4];          ///< 0

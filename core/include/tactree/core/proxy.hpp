@@ -67,9 +67,9 @@ class Proxy {
   Vec3 reference_{};   // normal of the last fit, as stored: towards the side of the points' normals
   float side_ = 1.0F;  // +1 or -1: on which side of the points' normals the probe is
   float strength_ = 0.0F;
-  SurfaceWork left_{};  // for the rest of this tick
+  SurfaceWork left_{};               // for the rest of this tick
   std::uint32_t searches_left_ = 0;  // likewise: for the nearest candidate
-  bool tracked_ = false;  // reference_ and side_ hold
+  bool tracked_ = false;             // reference_ and side_ hold
   bool in_contact_ = false;
   bool slipping_ = false;
   bool lost_contact_ = false;

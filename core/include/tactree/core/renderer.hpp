@@ -17,8 +17,8 @@ inline constexpr std::uint32_t kNoBody = 0xFFFFFFFFU;
 struct Rendering {
   bool in_contact = false;
   bool slipping = false;
-  bool complete = true;        ///< false: the model breaks its own bounds; do not trust the force
-  bool lost = false;           ///< the surface ended under the contact of the last tick
+  bool complete = true;          ///< false: the model breaks its own bounds; do not trust the force
+  bool lost = false;             ///< the surface ended under the contact of the last tick
   Vec3 proxy{};                  ///< m; the probe when free
   Vec3 normal{};                 ///< outward; zero when free
   Vec3 force{};                  ///< N

@@ -24,13 +24,18 @@ struct TickFigures {
   std::uint32_t levels_below = 0;       ///< between the directory and the leaves
   std::uint32_t blended_points = 0;     ///< whose materials are looked at in a contact
   std::uint32_t blended_materials = 0;  ///< that a contact may be of
-  std::uint32_t delta = 1;  ///< 0: the device is none, whose kinematics takes longest
+  std::uint32_t delta = 1;              ///< 0: the device is none, whose kinematics takes longest
 };
 inline constexpr std::uint32_t kTickFigures = sizeof(TickFigures) / sizeof(std::uint32_t);
-inline constexpr const char* kTickFigureNames[kTickFigures] = {
-    "points_per_ball_max", "points_per_query_max", "points_per_slab_max", "points_per_leaf_max",
-    "depth",               "levels_below",         "blended_points",      "blended_materials",
-    "delta"};
+inline constexpr const char* kTickFigureNames[kTickFigures] = {"points_per_ball_max",
+                                                               "points_per_query_max",
+                                                               "points_per_slab_max",
+                                                               "points_per_leaf_max",
+                                                               "depth",
+                                                               "levels_below",
+                                                               "blended_points",
+                                                               "blended_materials",
+                                                               "delta"};
 
 [[nodiscard]] TickFigures tick_figures(const BlobHeader& header, DeviceKind device);
 /// cycles = base + the sum over the figures of per_figure * figure.
@@ -70,6 +75,7 @@ struct TickCosts {
 [[nodiscard]] std::uint64_t cycles_of(const TickCosts& costs, const TickLoad& load);
 
 static_assert(sizeof(TickCost) == 4 + 4 * kTickFigures);
-static_assert(sizeof(TickCosts) == 4 + sizeof(TickCost) * kTickKinds * kPaces * kMaxReachableBodies);
+static_assert(sizeof(TickCosts) ==
+              4 + sizeof(TickCost) * kTickKinds * kPaces * kMaxReachableBodies);
 
 }  // namespace tactree::core

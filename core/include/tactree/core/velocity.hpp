@@ -1,8 +1,8 @@
 #pragma once
-// The speed of a quantised position: the longest of a few windows of past samples whose straight line
-// passes the shorter ones within the quantisation, then a low-pass filter. Slow motion gets a long
-// window and little noise, fast motion a short one and little delay. (Janabi-Sharifi, Hayward and
-// Chen, "Discrete-time adaptive windowing for velocity estimation", IEEE T-CST 8(6), 2000,
+// The speed of a quantised position: the longest of a few windows of past samples whose straight
+// line passes the shorter ones within the quantisation, then a low-pass filter. Slow motion gets a
+// long window and little noise, fast motion a short one and little delay. (Janabi-Sharifi, Hayward
+// and Chen, "Discrete-time adaptive windowing for velocity estimation", IEEE T-CST 8(6), 2000,
 // end-fit variant.)
 
 #include <cstdint>

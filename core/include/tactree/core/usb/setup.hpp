@@ -9,11 +9,13 @@ namespace tactree::core::usb {
 
 /// The eight bytes that begin a control transfer.
 struct SetupPacket {
+  // NOLINTBEGIN(readability-identifier-naming): as the standard calls them
   std::uint8_t bmRequestType = 0;
   std::uint8_t bRequest = 0;
   std::uint16_t wValue = 0;
   std::uint16_t wIndex = 0;
   std::uint16_t wLength = 0;
+  // NOLINTEND(readability-identifier-naming)
 
   [[nodiscard]] bool to_host() const { return (bmRequestType & 0x80U) != 0U; }
   [[nodiscard]] std::uint32_t type() const { return (bmRequestType >> 5U) & 3U; }

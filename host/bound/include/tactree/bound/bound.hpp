@@ -53,7 +53,7 @@ struct BoardTiming {
   bool prefetches;            ///< the next line, while this one is executed
   std::uint32_t ram_wait;     ///< cycles for each word on the stack, and where the source says RAM
   std::uint32_t data_wait;    ///< for each other word, wherever it is
-  bool is_estimate;          ///< the core is no Cortex-M4, or its board publishes no figures
+  bool is_estimate;           ///< the core is no Cortex-M4, or its board publishes no figures
   const char* source;
 };
 /// nullptr: nothing is known about the board.
