@@ -174,4 +174,18 @@ void CandidateSet::gather_leaf(const BlobView& view, const NearLeaf& leaf, Int3 
   complete_ = complete_ && (index == end || words[index] > ball.last_word());
 }
 
+SurfaceSupport surface_support(const BlobView& view) {
+  if (view.empty()) {
+    return SurfaceSupport::kEmpty;
+  }
+  const float radius = view.support_radius_m();
+  if (!(radius > 0.0F) || !(CandidateSet::slack_of(view) > 0.0F)) {
+    return SurfaceSupport::kNoReach;
+  }
+  if (view.header().points_per_ball_max > kMaxCandidates) {
+    return SurfaceSupport::kTooManyPoints;
+  }
+  return SurfaceSupport::kOk;
+}
+
 }  // namespace tactree::core

@@ -136,7 +136,7 @@ float strength_of(float offset) {
 
 /// The algebraic sphere through weighted points and normals.
 SurfaceFit solve(const Moments& m, float radius) {
-  SurfaceFit fit;
+  SurfaceFit fit;  // memory: flash
   if (!(m.w > 0.0F)) {
     return fit;
   }
@@ -254,20 +254,6 @@ SurfaceProjection project_to_surface(const BlobView& view, Vec3 x, CandidateSet&
 SurfaceProjection project_to_surface(const BlobView& view, Vec3 x) {
   CandidateSet scratch;
   return project_to_surface(view, x, scratch);
-}
-
-SurfaceSupport surface_support(const BlobView& view) {
-  if (view.empty()) {
-    return SurfaceSupport::kEmpty;
-  }
-  const float radius = view.support_radius_m();
-  if (!(radius > 0.0F) || !(CandidateSet::slack_of(view) > 0.0F)) {
-    return SurfaceSupport::kNoReach;
-  }
-  if (view.header().points_per_ball_max > kMaxCandidates) {
-    return SurfaceSupport::kTooManyPoints;
-  }
-  return SurfaceSupport::kOk;
 }
 
 }  // namespace tactree::core

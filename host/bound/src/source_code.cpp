@@ -257,6 +257,9 @@ class Reader {
   void read_facts() {
     for (std::uint32_t line = 1; line <= lines_.size(); ++line) {
       file_.in_ram = file_.in_ram || lines_[line - 1] == "// memory: RAM";
+      if (said(line, "memory: flash").data() != nullptr) {
+        file_.in_flash.insert(line);
+      }
       std::string_view text = said(line, "at most:");
       if (!text.empty()) {
         SourceFact fact{name_, line, read_total(text, line)};

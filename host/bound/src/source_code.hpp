@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -53,6 +54,7 @@ struct SourceArgument {
 struct SourceFile {
   /// All that its code loads and stores is in RAM, but for constants beside the code.
   bool in_ram = false;
+  std::set<std::uint32_t> in_flash;  ///< but for these lines
   std::vector<SourceLoop> loops;
   std::vector<SourceArgument> arguments;
   std::vector<SourceFact> facts;

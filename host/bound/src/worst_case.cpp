@@ -72,11 +72,15 @@ bool is_in_ram(const Analysis& analysis, const Instruction& instruction) {
   if (instruction.literal || instruction.other_words == 0) {
     return false;
   }
-  const auto& places = analysis.program.lines().at(instruction.address);
-  return std::any_of(places.begin(), places.end(), [&](const Place& place) {
+  bool in_ram = false;
+  for (const Place& place : analysis.program.lines().at(instruction.address)) {
     const SourceFile* const file = analysis.sources.find(place.file);
-    return file != nullptr && file->in_ram;
-  });
+    if (file != nullptr && file->in_flash.contains(place.line)) {
+      return false;
+    }
+    in_ram = in_ram || (file != nullptr && file->in_ram);
+  }
+  return in_ram;
 }
 
 class Model;

@@ -53,8 +53,8 @@ inline constexpr State kNext[kStates][kEvents] = {
 }  // namespace transition_table
 
 constexpr State next_state(State state, Event event) {
-  return transition_table::kNext[static_cast<std::uint32_t>(state)]
-                                [static_cast<std::uint32_t>(event)];
+  const auto row = static_cast<std::uint32_t>(state);
+  return transition_table::kNext[row][static_cast<std::uint32_t>(event)];  // memory: flash
 }
 
 /// "boot", "no-model", ...
