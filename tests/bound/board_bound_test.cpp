@@ -34,14 +34,14 @@ std::vector<const emulation::BoardDescription*> proven_boards() {
 }
 
 bound::Bound bound_of(const emulation::BoardDescription& board, const core::BlobView& view,
-                      core::RenderMode mode,
+                      core::RenderMode mode, core::DeviceKind device = core::DeviceKind::kCartesian,
                       const std::filesystem::path& sources = TACTREE_SOURCES) {
   bound::BoundOptions options;
   options.image = built(board, "firmware", board.name);
   options.sources = sources;
   options.entries = bound::tick_entries();
-  options.parameters = bound::parameters_of(view.header(), mode, 1, core::DeviceKind::kDelta,
-                                            core::work_per_tick(1000.0F));
+  options.parameters = bound::parameters_of(view.header(), mode, 1, device,
+                                            core::work_per_tick(core::Configuration{}.rate_hz));
   return bound::worst_case(options);
 }
 
@@ -110,7 +110,7 @@ TEST_P(Proof, EveryFactOfTheSourcesHoldsOnToCode) {
 
 // How far from the origin it makes sense to look for the worst tick: some supports of the model.
 constexpr float kSize_m = 2e-3F;
-constexpr int kRuns = 12;
+constexpr int kRuns = 24;
 
 // Seeking on these cores reaches so much of the bound: it is no idle one.
 bool is_tight(const emulation::BoardDescription& board) {
@@ -159,7 +159,8 @@ TEST_P(Proof, HoldsInPaperMode) {
 // Scripts as people run them, with every device: armed, in contact, with faults of the device.
 TEST_P(Proof, HoldsForEveryDevice) {
   const core::BlobView& view = touched_shape().view();
-  const bound::Bound bound = bound_of(board(), view, core::RenderMode::kSurface);
+  const bound::Bound bound =
+      bound_of(board(), view, core::RenderMode::kSurface, core::DeviceKind::kDelta);
   for (const core::DevicePreset& device : core::kDevicePresets) {
     simulation::Setup setup;
     simulation::use_device(device, setup);
@@ -307,7 +308,8 @@ TEST_P(Proof, ATooSmallBoundIsFound) {
   std::ofstream(file) << text;
 
   const TestBlob blob(nasty_model(Nastiness::kEdge));
-  const bound::Bound bound = bound_of(board(), blob.view(), core::RenderMode::kSurface, folder);
+  const bound::Bound bound = bound_of(board(), blob.view(), core::RenderMode::kSurface,
+                                      core::DeviceKind::kCartesian, folder);
   const Found found = seek_worst(board(), options(), blob.written().bytes, kSize_m, kRuns,
                                  core::RenderMode::kSurface, 1);
   EXPECT_GT(found.instructions, bound.instructions);

@@ -100,7 +100,9 @@ builder::Model nasty_model(Nastiness kind) {
     const double v = std::abs(place(random));
     const bool top = i % 2 == 0;
     if (kind == Nastiness::kEdge) {
-      model.positions.emplace_back(top ? -kPatch * v : 0.0, kPatch * u, top ? 0.0 : -kPatch * v);
+      // Not at the corner of eight leaves: in most of them.
+      model.positions.emplace_back(kPatch * (top ? 0.4 - v : 0.4), kPatch * u,
+                                   kPatch * (top ? 0.4 : 0.4 - v));
       model.normals.emplace_back(top ? 0.0F : 1.0F, 0.0F, top ? 1.0F : 0.0F);
     } else {
       model.positions.emplace_back(kPatch * u, kPatch * place(random), kPatch * place(random));
