@@ -6,7 +6,7 @@ namespace {
 
 // The next gather, in slacks: how far ahead of the query, less than 1; and from which stride on the
 // query has jumped, so that nobody knows where it goes.
-constexpr float kAhead = 0.6F;
+constexpr float kAhead = 0.7F;
 constexpr float kStride = 1.5F;
 
 // A centre rounded to whole numbers is off by less than kRounding of them. So much less than the

@@ -90,8 +90,8 @@ struct BodyUpdate {
 struct LinkInput {
   bool alive = false;                            ///< at least one valid message
   core::Command command = core::Command::kNone;  ///< each message gives its command once
-  BodyUpdate body{};                             ///< and its update once
   std::uint16_t age_ticks = 0;                   ///< where alive: see core::Input::link_age_ticks
+  BodyUpdate body{};                             ///< each message gives its update once
   std::uint32_t force_ticks = 0;                 ///< 0: no force is to be added
   core::Vec3 force_N{};                          ///< see core::Controller::add_force()
   bool storage_busy = false;  ///< the flash is being written: a late tick is no fault, where
