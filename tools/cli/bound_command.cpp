@@ -115,9 +115,10 @@ void print_timing(const BoundCommandOptions& options, const bound::BoardTiming& 
 /// Exit code 1 where the board cannot keep the rate.
 void check_rate(const BoundCommandOptions& options, const bound::BoardTiming& timing,
                 const bound::Bound& bound, double highest) {
-  if (options.rate_hz > highest) {
+  // A tick does more at a low rate: one below the highest may be too much all the same.
+  if (static_cast<double>(bound.cycles) * options.rate_hz > timing.clock_hz) {
     throw CommandError(fmt::format(
-        "--rate: {} keeps {:.0f} Hz with this model, not {:.0f}: a tick takes up to {} "
+        "--rate: {} keeps up to {:.0f} Hz with this model, but not {:.0f}: a tick takes up to {} "
         "cycles of {:.0f} (lower --rate, or build a model with fewer points in a ball)",
         timing.board, highest, options.rate_hz, bound.cycles, timing.clock_hz / options.rate_hz));
   }

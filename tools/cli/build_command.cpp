@@ -312,9 +312,11 @@ void check_time(const BuildArguments& arguments, std::span<const std::byte> blob
   configuration.device = slowest_or(arguments.device);
   const BoardCosts board = costs_of_board(arguments.board);
   const double highest = board.highest_rate(view.header(), configuration);
-  if (arguments.rate_hz > highest) {
+  // A tick does more at a low rate: one below the highest may be too much all the same.
+  if (board.cycles(view.header(), configuration) * arguments.rate_hz > board.timing.clock_hz) {
     throw CommandError(fmt::format(
-        "--rate: {} keeps {:.0f} Hz with this model, not {:.6g}: a tick takes up to {:.0f} cycles, "
+        "--rate: {} keeps up to {:.0f} Hz with this model, but not {:.6g}: a tick takes up to "
+        "{:.0f} cycles, "
         "there are {:.0f} (lower --rate, or take a faster board; {} points in a ball count most)",
         arguments.board, std::floor(highest), arguments.rate_hz,
         board.cycles(view.header(), configuration), board.timing.clock_hz / arguments.rate_hz,
