@@ -49,7 +49,7 @@ class BoundCommand(unittest.TestCase):
         self.assertEqual(tactree(*base, highest).returncode, 0)
         refused = tactree(*base, highest + 1)
         self.assertEqual(refused.returncode, 1)
-        self.assertIn(f"keeps {highest:.0f} Hz", refused.stderr)
+        self.assertIn(f"keeps up to {highest:.0f} Hz", refused.stderr)
 
     def test_info(self):
         run = tactree("info", BLOB, "--board", BOARD)
