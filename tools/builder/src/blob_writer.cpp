@@ -226,7 +226,7 @@ core::BlobHeader make_header(const Model& model, const Octree& tree) {
   header.node_count = static_cast<std::uint32_t>(tree.nodes.size());
   header.material_count = static_cast<std::uint32_t>(model.materials.size());
   header.points_per_leaf_max = fullest(tree);
-  const QueryBound query = query_bound(tree, model.profile, header.reach_m);
+  const QueryBound query = query_bound(tree, model.profile, static_cast<double>(header.reach_m));
   header.points_per_query_max = query.points;
   header.points_per_slab_max = query.points_per_slab;
   // A ball of this radius touches no leaf beyond its query's, so their points are a bound too.
