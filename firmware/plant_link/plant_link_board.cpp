@@ -82,18 +82,11 @@ void PlantLinkBoard::write(const core::MotorCommand& command) noexcept {
   }
 }
 
-// Field by field: what an initialiser leaves out, or the bytes between, would be cleared one by
-// one.
 hal::LinkInput PlantLinkBoard::receive() noexcept {
-  hal::LinkInput received = nothing_received_;
-  received.alive = input_.input.link_alive;
-  received.command = input_.input.command;
-  if (input_.body.body != core::kNoBody) {
-    received.body = input_.body;
-  }
+  const hal::LinkInput received{input_.input.link_alive, input_.input.command, 0, input_.body};
   input_.input.link_alive = false;
   input_.input.command = core::Command::kNone;
-  input_.body.body = core::kNoBody;
+  input_.body = {};
   return received;
 }
 

@@ -67,7 +67,6 @@ class PlantLinkBoard {
   bool served_ = false;
   bool in_session_ = false;  // a tick has begun, the plant waits for its output
   hal::plant_link::TickInput input_{};
-  hal::LinkInput nothing_received_{};
   hal::plant_link::TickOutput output_{};
 };
 

@@ -10,8 +10,8 @@ bool aligned(const void* a, const void* b) {
   return ((reinterpret_cast<std::uintptr_t>(a) | reinterpret_cast<std::uintptr_t>(b)) & 3U) == 0U;
 }
 
-// The bounds hold where whatever has 16 bytes or more lies on words, as all structures of a tick
-// do.
+// The bounds of copies hold where whatever has 16 bytes or more lies on words, as all structures of
+// a tick do.
 
 // Words of whatever type the bytes have.
 using Word [[gnu::may_alias]] = std::uint32_t;
@@ -61,17 +61,19 @@ void* memmove(void* to, const void* from, std::size_t bytes) {
 void* memset(void* to, int value, std::size_t bytes) {
   auto* target = static_cast<unsigned char*>(to);
   const auto byte = static_cast<unsigned char>(value);
-  if (aligned(to, nullptr)) {
-    const std::uint32_t word = byte * 0x01010101U;
-    for (; bytes >= sizeof(Block);
-         bytes -= sizeof(Block), target += sizeof(Block)) {  // bound: bytes / 16
-      *reinterpret_cast<Block*>(target) = {word, word, word, word};
-    }
-    for (; bytes >= 4; bytes -= 4, target += 4) {  // bound: bytes % 16 / 4
-      *reinterpret_cast<Word*>(target) = word;
-    }
+  const std::uint32_t word = byte * 0x01010101U;
+  // A compiler clears the rest of a structure from wherever it begins.
+  for (; bytes > 0 && !aligned(target, nullptr); --bytes) {  // bound: min(bytes, 3)
+    *target++ = byte;
   }
-  for (; bytes > 0; --bytes) {  // bound: max(bytes % 4, (1 - min(bytes / 16, 1)) * bytes)
+  for (; bytes >= sizeof(Block);
+       bytes -= sizeof(Block), target += sizeof(Block)) {  // bound: bytes / 16
+    *reinterpret_cast<Block*>(target) = {word, word, word, word};
+  }
+  for (; bytes >= 4; bytes -= 4, target += 4) {  // bound: min(bytes / 4, 3)
+    *reinterpret_cast<Word*>(target) = word;
+  }
+  for (; bytes > 0; --bytes) {  // bound: min(bytes, 3)
     *target++ = byte;
   }
   return to;
