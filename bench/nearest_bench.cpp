@@ -174,12 +174,9 @@ class Nanoflann {
 
 Cloud decode(const BlobView& view) {
   Cloud cloud;
-  for (tactree::core::LeafCursor cursor(view); !cursor.done(); cursor.next()) {
-    const auto& leaf = cursor.leaf();
-    for (std::uint32_t i = 0; i < leaf.point_count; ++i) {
-      cloud.points.push_back(view.position(leaf, leaf.first_point + i));
-    }
-  }
+  for_each_point(view, [&](const tactree::core::Leaf& leaf, std::uint32_t index) {
+    cloud.points.push_back(view.position(leaf, index));
+  });
   return cloud;
 }
 

@@ -62,12 +62,9 @@ BlobFile::BlobFile(const std::filesystem::path& file) {
 std::vector<core::SurfacePoint> decode_points(const core::BlobView& view) {
   std::vector<core::SurfacePoint> points;
   points.reserve(view.point_count());
-  for (core::LeafCursor cursor(view); !cursor.done(); cursor.next()) {
-    const core::Leaf& leaf = cursor.leaf();
-    for (std::uint32_t i = 0; i < leaf.point_count; ++i) {
-      points.push_back(view.surface_point(leaf, leaf.first_point + i));
-    }
-  }
+  core::for_each_point(view, [&](const core::Leaf& leaf, std::uint32_t index) {
+    points.push_back(view.surface_point(leaf, index));
+  });
   return points;
 }
 

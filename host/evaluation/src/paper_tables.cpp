@@ -177,12 +177,9 @@ double brute_force(const std::vector<Vector3d>& points, const Vector3d& probe) {
 
 std::vector<Vector3d> points_of(const core::BlobView& view) {
   std::vector<Vector3d> points;
-  for (core::LeafCursor cursor(view); !cursor.done(); cursor.next()) {
-    const core::Leaf& leaf = cursor.leaf();
-    for (std::uint32_t i = 0; i < leaf.point_count; ++i) {
-      points.push_back(widen(view.position(leaf, leaf.first_point + i)));
-    }
-  }
+  core::for_each_point(view, [&](const core::Leaf& leaf, std::uint32_t index) {
+    points.push_back(widen(view.position(leaf, index)));
+  });
   return points;
 }
 

@@ -16,14 +16,11 @@ struct ReferenceSurface::Fit {
 
 ReferenceSurface::ReferenceSurface(const core::BlobView& view)
     : radius_(static_cast<double>(view.header().support_radius_m)) {
-  for (core::LeafCursor cursor(view); !cursor.done(); cursor.next()) {
-    const core::Leaf& leaf = cursor.leaf();
-    for (std::uint32_t i = 0; i < leaf.point_count; ++i) {
-      const core::SurfacePoint point = view.surface_point(leaf, leaf.first_point + i);
-      positions_.push_back(widen(point.position));
-      normals_.push_back(widen(point.normal));
-    }
-  }
+  core::for_each_point(view, [&](const core::Leaf& leaf, std::uint32_t index) {
+    const core::SurfacePoint point = view.surface_point(leaf, index);
+    positions_.push_back(widen(point.position));
+    normals_.push_back(widen(point.normal));
+  });
 }
 
 // Guennebaud and Gross, "Algebraic Point Set Surfaces", section 4.1, in the query's frame.

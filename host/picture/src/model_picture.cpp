@@ -62,14 +62,11 @@ class Panel {
 
   void draw_points() {
     const float radius = std::max(0.9F * view_.header().spacing_m * scale_, 1.0F);
-    for (core::LeafCursor cursor(view_); !cursor.done(); cursor.next()) {
-      const core::Leaf& leaf = cursor.leaf();
-      for (std::uint32_t i = 0; i < leaf.point_count; ++i) {
-        const core::SurfacePoint p = view_.surface_point(leaf, leaf.first_point + i);
-        const Vec3 at = seen(p.position);
-        raster_.disc(at.x, at.y, radius, at.z, shade(p.normal));
-      }
-    }
+    core::for_each_point(view_, [&](const core::Leaf& leaf, std::uint32_t index) {
+      const core::SurfacePoint p = view_.surface_point(leaf, index);
+      const Vec3 at = seen(p.position);
+      raster_.disc(at.x, at.y, radius, at.z, shade(p.normal));
+    });
   }
 
   void draw_mark(const Mark& mark) {
@@ -84,13 +81,10 @@ class Panel {
   /// How far the model goes from its middle along a direction, to either side.
   [[nodiscard]] float extent(Vec3 direction) const {
     float most = view_.header().spacing_m;
-    for (core::LeafCursor cursor(view_); !cursor.done(); cursor.next()) {
-      const core::Leaf& leaf = cursor.leaf();
-      for (std::uint32_t i = 0; i < leaf.point_count; ++i) {
-        const Vec3 p = view_.position(leaf, leaf.first_point + i) - middle_;
-        most = std::max(most, std::abs(core::dot(p, direction)));
-      }
-    }
+    core::for_each_point(view_, [&](const core::Leaf& leaf, std::uint32_t index) {
+      const Vec3 p = view_.position(leaf, index) - middle_;
+      most = std::max(most, std::abs(core::dot(p, direction)));
+    });
     return most;
   }
 

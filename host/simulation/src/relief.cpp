@@ -17,14 +17,11 @@ constexpr double kFacing = 0.2;       // cosine from which a point faces the vie
 constexpr double kMaxCells = 1024.0;  // a side
 
 template <class Use>
-void for_each_point(const core::BlobView& view, const Use& use) {
-  for (core::LeafCursor cursor(view); !cursor.done(); cursor.next()) {
-    const core::Leaf& leaf = cursor.leaf();
-    for (std::uint32_t i = 0; i < leaf.point_count; ++i) {
-      const core::SurfacePoint point = view.surface_point(leaf, leaf.first_point + i);
-      use(widen(point.position), widen(point.normal));
-    }
-  }
+void for_each_surface_point(const core::BlobView& view, const Use& use) {
+  core::for_each_point(view, [&](const core::Leaf& leaf, std::uint32_t index) {
+    const core::SurfacePoint point = view.surface_point(leaf, index);
+    use(widen(point.position), widen(point.normal));
+  });
 }
 
 }  // namespace
@@ -36,7 +33,7 @@ Relief::Relief(const core::BlobView& view) {
   choose_view(view);
   low_.setConstant(std::numeric_limits<double>::infinity());
   high_.setConstant(-std::numeric_limits<double>::infinity());
-  for_each_point(view, [this](const Eigen::Vector3d& position, const Eigen::Vector3d&) {
+  for_each_surface_point(view, [this](const Eigen::Vector3d& position, const Eigen::Vector3d&) {
     const Eigen::Vector3d uvw = to_relief(position);
     low_ = low_.cwiseMin(uvw);
     high_ = high_.cwiseMax(uvw);
@@ -47,7 +44,7 @@ Relief::Relief(const core::BlobView& view) {
 
 void Relief::choose_view(const core::BlobView& view) {
   std::array<double, 6> facing{};  // -x -y -z +x +y +z
-  for_each_point(view, [&facing](const Eigen::Vector3d&, const Eigen::Vector3d& normal) {
+  for_each_surface_point(view, [&facing](const Eigen::Vector3d&, const Eigen::Vector3d& normal) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double component = normal[static_cast<Eigen::Index>(axis)];
       facing[axis] += std::max(0.0, -component);
@@ -89,7 +86,8 @@ void Relief::fill(const core::BlobView& view) {
   rows_ = row(high_.y()) + 1;
   heights_.assign(static_cast<std::size_t>(columns_ * rows_),
                   std::numeric_limits<double>::quiet_NaN());
-  for_each_point(view, [this](const Eigen::Vector3d& position, const Eigen::Vector3d& normal) {
+  for_each_surface_point(view, [this](const Eigen::Vector3d& position,
+                                      const Eigen::Vector3d& normal) {
     if (sign_ * normal[axis_] < kFacing) {
       return;
     }

@@ -162,23 +162,19 @@ class Pipeline {
       throw std::logic_error(
           fmt::format("the blob just written is not valid: {}", core::describe(status)));
     }
-    std::size_t point = 0;
-    for (core::LeafCursor cursor(view); !cursor.done(); cursor.next()) {
-      for (std::uint32_t i = 0; i < cursor.leaf().point_count; ++i, ++point) {
-        const core::Leaf& leaf = cursor.leaf();
-        const core::Vec3 p = view.position(leaf, leaf.first_point + i);
-        const Eigen::Vector3d decoded(static_cast<double>(p.x), static_cast<double>(p.y),
-                                      static_cast<double>(p.z));
-        const double off =
-            (decoded - model_.positions[blob.source_index[point]]).cwiseAbs().maxCoeff();
-        const double cell = std::ldexp(static_cast<double>(view.step_m()),
-                                       static_cast<int>(view.depth() - leaf.level));
-        if (!(off <= 1.0001 * cell)) {
-          throw std::logic_error(
-              fmt::format("point {} of the blob just written is {} m off", point, off));
-        }
+    core::for_each_point(view, [&](const core::Leaf& leaf, std::uint32_t index) {
+      const core::Vec3 p = view.position(leaf, index);
+      const Eigen::Vector3d decoded(static_cast<double>(p.x), static_cast<double>(p.y),
+                                    static_cast<double>(p.z));
+      const double off =
+          (decoded - model_.positions[blob.source_index[index]]).cwiseAbs().maxCoeff();
+      const double cell = std::ldexp(static_cast<double>(view.step_m()),
+                                     static_cast<int>(view.depth() - leaf.level));
+      if (!(off <= 1.0001 * cell)) {
+        throw std::logic_error(
+            fmt::format("point {} of the blob just written is {} m off", index, off));
       }
-    }
+    });
   }
 
   const BuildOptions& options_;

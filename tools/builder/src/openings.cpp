@@ -9,15 +9,12 @@ namespace tactree::builder {
 
 std::vector<Opening> find_openings(const core::BlobView& view) {
   Cloud cloud;
-  for (core::LeafCursor cursor(view); !cursor.done(); cursor.next()) {
-    const core::Leaf& leaf = cursor.leaf();
-    for (std::uint32_t i = 0; i < leaf.point_count; ++i) {
-      const core::SurfacePoint p = view.surface_point(leaf, leaf.first_point + i);
-      cloud.positions.push_back(
-          Eigen::Vector3f(p.position.x, p.position.y, p.position.z).cast<double>());
-      cloud.normals.emplace_back(p.normal.x, p.normal.y, p.normal.z);
-    }
-  }
+  core::for_each_point(view, [&](const core::Leaf& leaf, std::uint32_t index) {
+    const core::SurfacePoint p = view.surface_point(leaf, index);
+    cloud.positions.push_back(
+        Eigen::Vector3f(p.position.x, p.position.y, p.position.z).cast<double>());
+    cloud.normals.emplace_back(p.normal.x, p.normal.y, p.normal.z);
+  });
   return find_gaps(ZOrderedCloud(std::move(cloud)), static_cast<double>(view.header().spacing_m),
                    static_cast<double>(view.header().support_radius_m))
       .openings;

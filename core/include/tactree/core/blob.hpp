@@ -201,4 +201,15 @@ class LeafCursor {
   bool done_ = true;
 };
 
+/// use(leaf, index) for each point of a model, by their numbers. Cost: as a full walk.
+template <typename Use>
+void for_each_point(const BlobView& view, Use&& use) {
+  for (LeafCursor cursor(view); !cursor.done(); cursor.next()) {  // bound: kMaxLeaves
+    const Leaf& leaf = cursor.leaf();
+    for (std::uint32_t i = 0; i < leaf.point_count; ++i) {  // bound: points_per_leaf_max
+      use(leaf, leaf.first_point + i);
+    }
+  }
+}
+
 }  // namespace tactree::core
