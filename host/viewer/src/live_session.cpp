@@ -351,21 +351,9 @@ std::string LiveSession::trace_csv() const { return log_.csv(); }
 
 // The session's thread.
 
-void LiveSession::start(Publish publish) {
-  running_ = true;
-  thread_ = std::thread([this, publish = std::move(publish)] { run(publish); });
-}
-
-void LiveSession::stop() {
-  running_ = false;
-  if (thread_.joinable()) {
-    thread_.join();
-  }
-}
-
 void LiveSession::run(const Publish& publish) {
   Clock::time_point then = Clock::now();
-  for (int turn = 0; running_; ++turn) {
+  for (int turn = 0; running(); ++turn) {
     const Clock::time_point now = Clock::now();
     const double elapsed_s = std::chrono::duration<double>(now - then).count();
     then = now;

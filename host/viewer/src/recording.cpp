@@ -55,18 +55,6 @@ Recording::Recording(Samples samples, Bodies bodies, const core::DeviceModel& de
 
 Recording::~Recording() { stop(); }
 
-void Recording::start(Publish publish) {
-  running_ = true;
-  thread_ = std::thread([this, publish = std::move(publish)] { run(publish); });
-}
-
-void Recording::stop() {
-  running_ = false;
-  if (thread_.joinable()) {
-    thread_.join();
-  }
-}
-
 std::string Recording::hello() const {
   json models = json::array();
   for (const core::BlobView& view : bodies_.views) {
@@ -127,7 +115,7 @@ std::string Recording::trace_csv() const {
 void Recording::run(const Publish& publish) {
   using Clock = std::chrono::steady_clock;
   const std::chrono::duration<double> period(1.0 / kFrameRate_hz);
-  while (running_) {
+  while (running()) {
     const Clock::time_point now = Clock::now();
     std::size_t tick = 0;
     double speed = 0.0;

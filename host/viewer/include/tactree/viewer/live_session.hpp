@@ -13,14 +13,12 @@
 //   {"do": "mend"}                          everything that was injected
 
 #include <Eigen/Core>
-#include <atomic>
 #include <deque>
 #include <memory>
 #include <mutex>
 #include <nlohmann/json_fwd.hpp>
 #include <stdexcept>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "tactree/core/device_presets.hpp"
@@ -60,8 +58,6 @@ class LiveSession : public Source {
   LiveSession(Bodies bodies, std::vector<NamedDevice> devices, const Settings& settings);
   ~LiveSession() override;
 
-  void start(Publish publish) override;
-  void stop() override;
   [[nodiscard]] std::string hello() const override;
   [[nodiscard]] std::optional<std::string> command(const nlohmann::json& command) override;
   [[nodiscard]] std::string trace_csv() const override;
@@ -78,7 +74,7 @@ class LiveSession : public Source {
   [[nodiscard]] nlohmann::json settings_json() const;
   void begin_anew(const nlohmann::json& wanted);
   void enqueue(const nlohmann::json& command);
-  void run(const Publish& publish);
+  void run(const Publish& publish) override;
   void take_over();
   void obey(const nlohmann::json& command);
   void advance(double seconds);
@@ -102,8 +98,6 @@ class LiveSession : public Source {
   std::deque<nlohmann::json> commands_;
 
   TickLog log_;
-  std::atomic<bool> running_{false};
-  std::thread thread_;
 };
 
 }  // namespace tactree::viewer

@@ -5,10 +5,8 @@
 //   {"do": "seek", "tick": 120}   {"do": "step", "ticks": -1}
 //   {"do": "play", "speed": 0.1}  of the recorded time; 0 or {"do": "stop"}: stands still
 
-#include <atomic>
 #include <filesystem>
 #include <mutex>
-#include <thread>
 #include <vector>
 
 #include "tactree/viewer/frame.hpp"
@@ -28,14 +26,12 @@ class Recording : public Source {
             const core::Vec3& model_origin_m);
   ~Recording() override;
 
-  void start(Publish publish) override;
-  void stop() override;
   [[nodiscard]] std::string hello() const override;
   [[nodiscard]] std::optional<std::string> command(const nlohmann::json& command) override;
   [[nodiscard]] std::string trace_csv() const override;
 
  private:
-  void run(const Publish& publish);
+  void run(const Publish& publish) override;
   void play(double seconds);
   [[nodiscard]] std::string frame(std::size_t tick, double speed);
   [[nodiscard]] nlohmann::json around(std::size_t tick) const;
@@ -50,9 +46,6 @@ class Recording : public Source {
   std::size_t tick_ = 0;
   double speed_ = 0.0;
   double time_s_ = 0.0;  // while it plays
-
-  std::atomic<bool> running_{false};
-  std::thread thread_;
 };
 
 }  // namespace tactree::viewer

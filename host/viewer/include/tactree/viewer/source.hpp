@@ -5,11 +5,14 @@
 // display rate, {"type": "frame", ...}, and {"type": "refused", "why": ...} as the answer to a
 // command. From a page: {"do": NAME, ...}; each source documents its own.
 
+#include <atomic>
 #include <functional>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <thread>
+#include <utility>
 
 namespace tactree::viewer {
 
@@ -27,8 +30,17 @@ class Source {
   virtual ~Source() = default;
 
   /// Begins to move, in a thread of its own, and publishes frames until stop().
-  virtual void start(Publish publish) = 0;
-  virtual void stop() = 0;
+  void start(Publish publish) {
+    running_ = true;
+    thread_ = std::thread([this, publish = std::move(publish)] { run(publish); });
+  }
+  /// Waits for the thread. A source calls it before any part of it goes.
+  void stop() {
+    running_ = false;
+    if (thread_.joinable()) {
+      thread_.join();
+    }
+  }
 
   // From any thread:
 
@@ -38,6 +50,16 @@ class Source {
   [[nodiscard]] virtual std::optional<std::string> command(const nlohmann::json& command) = 0;
   /// The ticks there are, as simulation::append_trace() writes them.
   [[nodiscard]] virtual std::string trace_csv() const = 0;
+
+ protected:
+  [[nodiscard]] bool running() const { return running_; }
+
+ private:
+  /// The thread: publishes frames while it is running().
+  virtual void run(const Publish& publish) = 0;
+
+  std::atomic<bool> running_{false};
+  std::thread thread_;
 };
 
 }  // namespace tactree::viewer
