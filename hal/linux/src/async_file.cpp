@@ -28,26 +28,21 @@ AsyncContext::~AsyncContext() {
 }
 
 bool AsyncContext::read(int file, std::span<std::byte> bytes, std::uint64_t tag) {
-  iocb operation{};
-  operation.aio_lio_opcode = IOCB_CMD_PREAD;
-  operation.aio_fildes = static_cast<std::uint32_t>(file);
-  operation.aio_buf = reinterpret_cast<std::uint64_t>(bytes.data());
-  operation.aio_nbytes = bytes.size();
-  operation.aio_data = tag;
-  return submit(operation);
+  return submit(IOCB_CMD_PREAD, file, bytes, tag);
 }
 
 bool AsyncContext::write(int file, std::span<const std::byte> bytes, std::uint64_t tag) {
+  return submit(IOCB_CMD_PWRITE, file, bytes, tag);
+}
+
+bool AsyncContext::submit(std::uint16_t what, int file, std::span<const std::byte> bytes,
+                          std::uint64_t tag) {
   iocb operation{};
-  operation.aio_lio_opcode = IOCB_CMD_PWRITE;
+  operation.aio_lio_opcode = what;
   operation.aio_fildes = static_cast<std::uint32_t>(file);
   operation.aio_buf = reinterpret_cast<std::uint64_t>(bytes.data());
   operation.aio_nbytes = bytes.size();
   operation.aio_data = tag;
-  return submit(operation);
-}
-
-bool AsyncContext::submit(iocb& operation) {
   operation.aio_flags = IOCB_FLAG_RESFD;
   operation.aio_resfd = static_cast<std::uint32_t>(event_);
   iocb* operations[] = {&operation};

@@ -33,7 +33,8 @@ class AsyncContext {
   [[nodiscard]] std::vector<Ended> ended();
 
  private:
-  [[nodiscard]] bool submit(iocb& operation);
+  [[nodiscard]] bool submit(std::uint16_t what, int file, std::span<const std::byte> bytes,
+                            std::uint64_t tag);
 
   aio_context_t context_ = 0;
   int event_ = -1;
