@@ -3,13 +3,13 @@
 // the link of the control loop is a session's mailbox, and the model comes from a store.
 
 #include "plant_link/plant_link_board.hpp"
-#include "plant_link/stores.hpp"
+#include "plant_link/slot_store.hpp"
 #include "runtime/identity.hpp"
 #include "tactree/hal/session/session.hpp"
 
 namespace tactree::firmware {
 
-template <class Uart, class Store>
+template <class Uart>
 class ServedBoard : public PlantLinkBoard {
  public:
   ServedBoard() : store_(kIdentity.board) {}
@@ -31,7 +31,7 @@ class ServedBoard : public PlantLinkBoard {
       return;
     }
     static const hal::BoardIdentity identity{kIdentity.board, TACTREE_FIRMWARE_VERSION, {}, 0};
-    static hal::Session<Uart, Store, Platform> session(
+    static hal::Session<Uart, SlotStore, Platform> session(
         {uart_, store_, platform_, controller, mailbox_, identity});
     session.started(started, configuration);
     std::uint32_t idle = 0;
@@ -80,7 +80,7 @@ class ServedBoard : public PlantLinkBoard {
   }
 
   Uart uart_;
-  Store store_;
+  SlotStore store_;
   Platform platform_;
   hal::TickMailbox mailbox_;
 };

@@ -31,6 +31,7 @@
 #include "tactree/simulation/simulation.hpp"
 #include "tactree/simulation/trace.hpp"
 #include "usb_port.hpp"
+#include "wall_options.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -577,6 +578,12 @@ void serve(const SimulateOptions& options, const SceneFile& scene) {
     refuse(fmt::format("--board {}: an emulated board has no USB port", options.board),
            "use --board host, or leave --usb out");
   }
+  const emulation::BoardDescription* const board = emulation::find_board(options.board);
+  if (board != nullptr && !board->serves) {
+    refuse(fmt::format("--board {}: its image is too small for an application to talk to",
+                       options.board),
+           "choose another board, or leave --serve out");
+  }
   core::usb::Identity identity;
   identity.name = "Simulated controller";
   identity.serial = {0, 0, options.serial};
@@ -624,15 +631,7 @@ void simulate(SimulateOptions& options, int& exit_code) {
 
 void add_controller_options(CLI::App& verb, SimulateOptions& options) {
   core::Configuration& c = options.setup.controller;
-  verb.add_option("--rate", c.rate_hz, "ticks per second, Hz")
-      ->check(CLI::Range(100.0, 20000.0))
-      ->capture_default_str();
-  verb.add_option("--stiffness", c.stiffness_N_m, "of the surface, N/m")
-      ->check(CLI::Range(0.0, 1e5))
-      ->capture_default_str();
-  verb.add_option("--damping", c.damping_Ns_m, "of the surface, Ns/m")
-      ->check(CLI::Range(0.0, 1e3))
-      ->capture_default_str();
+  add_wall_options(verb, c);
   verb.add_option("--passivity", c.passivity_Ns_m,
                   "most damping that the passivity controller may add, Ns/m; 0: off")
       ->check(CLI::Range(0.0, 100.0))

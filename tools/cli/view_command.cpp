@@ -13,6 +13,7 @@
 #include "tactree/viewer/live_session.hpp"
 #include "tactree/viewer/recording.hpp"
 #include "tactree/viewer/server.hpp"
+#include "wall_options.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -91,22 +92,13 @@ void add_server_options(CLI::App& verb, ViewOptions& options) {
 }
 
 void add_session_options(CLI::App& verb, ViewOptions& options) {
-  core::Configuration& c = options.settings.controller;
   verb.add_option("--device", options.settings.device,
                   "a device's name, or a JSON file that describes one: see simulate")
       ->capture_default_str();
   verb.add_option("--mode", options.mode, "surface, paper, or both side by side")
       ->check(CLI::IsMember({"surface", "paper", "both"}))
       ->capture_default_str();
-  verb.add_option("--rate", c.rate_hz, "ticks per second, Hz")
-      ->check(CLI::Range(100.0, 20000.0))
-      ->capture_default_str();
-  verb.add_option("--stiffness", c.stiffness_N_m, "of the surface, N/m")
-      ->check(CLI::Range(0.0, 1e5))
-      ->capture_default_str();
-  verb.add_option("--damping", c.damping_Ns_m, "of the surface, Ns/m")
-      ->check(CLI::Range(0.0, 1e3))
-      ->capture_default_str();
+  add_wall_options(verb, options.settings.controller);
 }
 
 }  // namespace

@@ -5,5 +5,5 @@
 #include "uarts/cmsdk_uart.hpp"
 
 namespace tactree::firmware {
-using Board = ServedBoard<CmsdkUart<0x40004000>, SlotStore>;
+using Board = ServedBoard<CmsdkUart<0x40004000>>;
 }  // namespace tactree::firmware

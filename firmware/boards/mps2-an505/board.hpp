@@ -5,5 +5,5 @@
 #include "uarts/cmsdk_uart.hpp"
 
 namespace tactree::firmware {
-using Board = ServedBoard<CmsdkUart<0x50200000>, SlotStore>;
+using Board = ServedBoard<CmsdkUart<0x50200000>>;
 }  // namespace tactree::firmware

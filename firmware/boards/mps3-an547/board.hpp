@@ -5,5 +5,5 @@
 #include "uarts/cmsdk_uart.hpp"
 
 namespace tactree::firmware {
-using Board = ServedBoard<CmsdkUart<0x59303000>, SlotStore>;
+using Board = ServedBoard<CmsdkUart<0x59303000>>;
 }  // namespace tactree::firmware

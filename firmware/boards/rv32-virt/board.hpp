@@ -5,5 +5,5 @@
 #include "uarts/ns16550_uart.hpp"
 
 namespace tactree::firmware {
-using Board = ServedBoard<Ns16550Uart<0x10000000>, SlotStore>;
+using Board = ServedBoard<Ns16550Uart<0x10000000>>;
 }  // namespace tactree::firmware

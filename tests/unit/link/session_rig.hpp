@@ -60,12 +60,7 @@ class TestPort {
 /// A SimBoard whose link is the session's mailbox.
 class SessionBoard : public hal::sim::SimBoard {
  public:
-  struct Link {
-    hal::TickMailbox& mailbox;
-    hal::sim::SimTicker& ticker;
-    [[nodiscard]] hal::LinkInput receive() noexcept { return mailbox.receive(); }
-    void send(const core::Status& status) noexcept { mailbox.send(status, ticker.now_us()); }
-  };
+  using Link = hal::MailboxLink<hal::sim::SimTicker>;
   SessionBoard(std::span<const std::byte> blob, hal::TickMailbox& mailbox)
       : SimBoard({}, blob), link_{mailbox, ticker()} {}
   [[nodiscard]] Link& link() noexcept { return link_; }

@@ -164,4 +164,13 @@ class TickMailbox {
   TickReport ring_[kWaiting]{};
 };
 
+/// The Link of a board whose ticks talk to nobody but a session.
+template <class Ticker>
+struct MailboxLink {
+  TickMailbox& mailbox;
+  Ticker& ticker;
+  [[nodiscard]] LinkInput receive() noexcept { return mailbox.receive(); }
+  void send(const core::Status& status) noexcept { mailbox.send(status, ticker.now_us()); }
+};
+
 }  // namespace tactree::hal

@@ -19,6 +19,8 @@ struct BoardDescription {
   std::uint32_t blob_bytes_max;
   /// An instruction takes 2^shift ns of the board's time: about as long as on the real core.
   std::uint32_t instruction_shift;
+  /// Can an application talk to it, on a serial port?
+  bool serves;
 };
 
 [[nodiscard]] std::span<const BoardDescription> boards();

@@ -19,12 +19,7 @@ namespace tactree::serve {
 /// A simulated board whose loop listens to a session and takes its model from a store.
 class ServedBoard {
  public:
-  struct Link {
-    hal::TickMailbox& mailbox;
-    hal::sim::SimTicker& ticker;
-    [[nodiscard]] hal::LinkInput receive() noexcept { return mailbox.receive(); }
-    void send(const core::Status& status) noexcept { mailbox.send(status, ticker.now_us()); }
-  };
+  using Link = hal::MailboxLink<hal::sim::SimTicker>;
   using Store = hal::ModelStore<hal::sim::SimFlash>;
 
   ServedBoard(hal::sim::SimBoard& board, hal::TickMailbox& mailbox, const Store& store)
