@@ -144,8 +144,7 @@ void bound_tick(const BoundCommandOptions& options) {
   print(analysis.parameters, result);
   double highest = 0.0;
   if (analysis.timing != nullptr) {
-    highest =
-        std::floor(bound::highest_rate(analysis.timing->clock_hz, bound::cycles_by_pace(analysis)));
+    highest = std::floor(bound::highest_rate(analysis.timing->clock_hz, result.pace_cycles));
     print_timing(options, *analysis.timing, result, highest);
   }
   if (!options.json.empty()) {

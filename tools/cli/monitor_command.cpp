@@ -32,17 +32,6 @@ volatile std::sig_atomic_t ending = 0;
 
 void end(int) { ending = 1; }
 
-std::string names_of_faults(std::uint32_t faults) {
-  std::string names;
-  for (std::uint32_t code = 1; code < core::kFaultCodes; ++code) {
-    if (core::has_fault(faults, static_cast<core::Fault>(code))) {
-      names +=
-          std::string(names.empty() ? "" : ", ") + core::name_of(static_cast<core::Fault>(code));
-    }
-  }
-  return names;
-}
-
 std::string names_of_limits(std::uint32_t limits) {
   std::string names;
   for (std::uint32_t i = 0; i < core::kLimits; ++i) {
@@ -87,7 +76,7 @@ std::string to_text(const View& view) {
   const double force = length(t.force_N);
   const double share = view.force_max_N > 0.0 ? std::min(1.0, force / view.force_max_N) : 0.0;
   const int filled = static_cast<int>(std::lround(share * kBarWidth));
-  const std::string faults = names_of_faults(t.faults);
+  const std::string faults = host::names_of(t.faults);
   const std::string limits = names_of_limits(t.limits);
   return fmt::format(
       "state    {}{}\n"
@@ -113,7 +102,7 @@ nlohmann::json to_json(const View& view) {
   return {{"tick", t.header.tick},
           {"state", core::name_of(static_cast<core::State>(t.state))},
           {"faults", t.faults},
-          {"fault_names", names_of_faults(t.faults)},
+          {"fault_names", host::names_of(t.faults)},
           {"limits", t.limits},
           {"force_N", t.force_N},
           {"probe_m", t.probe_m},

@@ -941,19 +941,7 @@ core::TickCost to_cost(const Formula& formula) {
   return cost;
 }
 
-}  // namespace
-
-Bound worst_case(const BoundOptions& options) {
-  Task task(options);
-  Bound bound = task.instructions(options.parameters);
-  if (options.timing != nullptr) {
-    bound.cycles = task.cycles(options.parameters, *options.timing);
-  }
-  return bound;
-}
-
-PaceCycles cycles_by_pace(const BoundOptions& options) {
-  Task task(options);
+PaceCycles cycles_by_pace(Task& task, const BoundOptions& options) {
   PaceCycles cycles{};
   for (std::uint32_t pace = 0; pace < core::kPaces; ++pace) {
     Parameters parameters = options.parameters;
@@ -962,6 +950,18 @@ PaceCycles cycles_by_pace(const BoundOptions& options) {
     cycles[pace] = static_cast<double>(task.cycles(parameters, *options.timing));
   }
   return cycles;
+}
+
+}  // namespace
+
+Bound worst_case(const BoundOptions& options) {
+  Task task(options);
+  Bound bound = task.instructions(options.parameters);
+  if (options.timing != nullptr) {
+    bound.cycles = task.cycles(options.parameters, *options.timing);
+    bound.pace_cycles = cycles_by_pace(task, options);
+  }
+  return bound;
 }
 
 double highest_rate(double clock_hz, const PaceCycles& cycles) {

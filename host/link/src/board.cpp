@@ -49,23 +49,23 @@ std::string details(const Response& response) {
                                   : core::describe(static_cast<core::ModelStatus>(reply.model)));
 }
 
-std::string names_of(core::FaultMask faults) {
-  std::string names;
-  for (std::uint32_t code = 1; code < core::kFaultCodes; ++code) {
-    if (core::has_fault(faults, static_cast<core::Fault>(code))) {
-      names +=
-          std::string(names.empty() ? ": " : ", ") + core::name_of(static_cast<core::Fault>(code));
-    }
-  }
-  return names;
-}
-
 template <std::size_t N>
 void copy(const std::string& from, char (&to)[N]) {
   std::memcpy(to, from.data(), std::min(from.size(), N - 1));
 }
 
 }  // namespace
+
+std::string names_of(core::FaultMask faults) {
+  std::string names;
+  for (std::uint32_t code = 1; code < core::kFaultCodes; ++code) {
+    const auto fault = static_cast<core::Fault>(code);
+    if (core::has_fault(faults, fault)) {
+      names += std::string(names.empty() ? "" : ", ") + core::name_of(fault);
+    }
+  }
+  return names;
+}
 
 Board::Board(const std::string& port, const BoardOptions& options)
     : Board(open_port(port, options.baud), options) {}
@@ -151,8 +151,9 @@ void Board::arm(std::chrono::milliseconds patience) {
       return;
     }
     if (now != core::State::kArmed) {
+      const std::string faults = names_of(told.faults);
       throw LinkError(connection_.name() + ": arm: the controller is in state " +
-                      core::name_of(now) + names_of(told.faults));
+                      core::name_of(now) + (faults.empty() ? "" : ": " + faults));
     }
     if (std::chrono::steady_clock::now() > deadline) {
       stop();

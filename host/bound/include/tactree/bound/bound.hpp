@@ -92,9 +92,13 @@ struct BlockOnPath {
   double times = 0.0;
 };
 
+/// Cycles of a tick of each pace, core::pace_of().
+using PaceCycles = std::array<double, core::kPaces>;
+
 struct Bound {
   std::uint64_t instructions = 0;         ///< of one tick, at most
   std::uint64_t cycles = 0;               ///< the same, where the board's timing is known
+  PaceCycles pace_cycles{};               ///< and at each pace, whatever that of the parameters is
   std::vector<FunctionOnPath> functions;  ///< the costliest first
   std::vector<LoopOnPath> loops;
   std::vector<std::string>
@@ -104,9 +108,6 @@ struct Bound {
   std::set<std::uint32_t> in_ram;    ///< instructions whose data are said to be in RAM
 };
 
-/// Cycles of a tick of each pace, core::pace_of(); the parameters' own does not count.
-using PaceCycles = std::array<double, core::kPaces>;
-[[nodiscard]] PaceCycles cycles_by_pace(const BoundOptions& options);
 /// Highest rate, Hz, that these leave time for.
 [[nodiscard]] double highest_rate(double clock_hz, const PaceCycles& cycles);
 

@@ -54,6 +54,9 @@ struct TracedTick {
   core::FlightRecord record{};
 };
 
+/// "motor-fault, link-lost"; empty: there is none.
+[[nodiscard]] std::string names_of(core::FaultMask faults);
+
 class Board {
  public:
   /// A port by its path. Opens a session; waits.
