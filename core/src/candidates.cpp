@@ -1,3 +1,5 @@
+// memory: RAM
+
 #include "corner_leaves.hpp"
 #include "tactree/core/surface.hpp"
 
@@ -90,40 +92,65 @@ float CandidateSet::slack_of(const BlobView& view) {
   return view.reach_m() - view.support_radius_m() - kLostToRounding * view.step_m();
 }
 
-bool CandidateSet::covers(const BlobView& view, Vec3 x) const {
+bool CandidateSet::is_near(const BlobView& view, Vec3 x) const {
   const float slack = slack_of(view);
-  return valid_ && length_squared(x - centre_) <= slack * slack;
+  return length_squared(x - centre_) <= slack * slack;
 }
 
 // Ahead of a query that walks: it is then good for twice as long.
-void CandidateSet::gather_for(const BlobView& view, Vec3 x) {
-  if (view.empty()) {
-    clear();
-    count_ = 0;
-    return;
-  }
+void CandidateSet::begin_for(const BlobView& view, Vec3 x) {
   const float slack = slack_of(view);
   const Vec3 way = x - centre_;
   const float squared = length_squared(way);
   const bool walks = valid_ && squared > 0.0F && squared <= kStride * slack * (kStride * slack);
-  gather(view, walks ? x + (kAhead * slack / square_root(squared)) * way : x);
+  centre_ = walks ? x + (kAhead * slack / square_root(squared)) * way : x;
+  valid_ = false;
+  begun_ = true;
+  complete_ = true;
+  count_ = 0;
+  corner_ = 0;
+  in_leaf_ = false;
+  const BlobHeader& header = view.header();
+  most_ = lower(header.points_per_ball_max, kMaxCandidates);  // memory: flash
+  unseen_ = header.points_per_query_max;                      // memory: flash
+  untested_ = header.points_per_slab_max;                     // memory: flash
 }
 
-[[gnu::noinline]] void CandidateSet::gather(const BlobView& view, Vec3 centre) {
-  const BlobHeader& header = view.header();
-  count_ = 0;
-  complete_ = true;
-  centre_ = centre;
-  valid_ = true;
-  most_ = header.points_per_ball_max < kMaxCandidates ? header.points_per_ball_max : kMaxCandidates;
-  unseen_ = header.points_per_query_max;
-  untested_ = header.points_per_slab_max;
-  const float reach_squared = view.reach_m() * view.reach_m();
-  CornerLeaves corners(view, centre, view.reach_m());
-  corners.each(reach_squared, [&](const NearLeaf& leaf) {
-    gather_leaf(view, leaf, corners.min_of(leaf));
-    return reach_squared;
-  });
+[[gnu::noinline]] bool CandidateSet::gather(const BlobView& view, GatherSlice& left) {
+  CornerLeaves corners(view, centre_, view.reach_m());
+  bool done = !corners.begin();
+  // total: slice_corners per Proxy::update
+  // bound: min(8, slice_corners)
+  while (!done && left.corners != 0U) {
+    --left.corners;
+    if (!gather_corner(view, corners, left)) {
+      return false;
+    }
+    corner_ = corners.next(corner_);
+    done = corner_ == 0U;
+  }
+  valid_ = done;
+  begun_ = !done;
+  return done;
+}
+
+bool CandidateSet::gather_corner(const BlobView& view, CornerLeaves& corners, GatherSlice& left) {
+  if (corners.is_beyond(corner_, view.reach_m() * view.reach_m())) {
+    return true;
+  }
+  const NearLeaf leaf = corners.find(corner_);
+  return leaf.empty() || gather_leaf(view, leaf, corners.min_of(leaf), left);
+}
+
+void CandidateSet::cover(const BlobView& view, Vec3 x) {
+  if (view.empty()) {
+    clear();
+    count_ = 0;
+  } else if (!covers(view, x)) {
+    begin_for(view, x);
+    GatherSlice all;
+    (void)gather(view, all);
+  }
 }
 
 [[gnu::noinline]] bool CandidateSet::is_within(float reach, Vec3 position) const {
@@ -131,7 +158,7 @@ void CandidateSet::gather_for(const BlobView& view, Vec3 x) {
 }
 
 [[gnu::always_inline]] inline bool CandidateSet::add(const BlobView& view, Int3 place,
-                                                     std::uint32_t point) {
+                                                     std::uint32_t point, std::uint32_t room) {
   const Vec3 position = {view.step_m() * static_cast<float>(place.x),
                          view.step_m() * static_cast<float>(place.y),
                          view.step_m() * static_cast<float>(place.z)};
@@ -139,39 +166,71 @@ void CandidateSet::gather_for(const BlobView& view, Vec3 x) {
   if (!view.is_uniform() && !is_within(view.reach_m(), position)) {
     return true;
   }
-  if (count_ == most_) {
-    complete_ = false;
+  if (count_ == room) {
     return false;
   }
   candidates_[count_] = {position, view.normal(point), point};
-  ++count_;  // at most: points_per_ball_max per CandidateSet::gather
+  // at most: points_per_ball_max per CandidateSet::gather
+  // at most: slice_candidates per Proxy::update
+  // at most: slice_candidates per CandidateSet::gather
+  ++count_;
   return true;
 }
 
 // A blob that holds more than it declares must not make a tick longer than was proven.
-void CandidateSet::gather_leaf(const BlobView& view, const NearLeaf& leaf, Int3 leaf_min) {
-  const std::uint32_t* const words = view.point_words();
-  const LeafBall ball(view, leaf, leaf_min);
+void CandidateSet::begin_leaf(const BlobView& view, const NearLeaf& leaf,
+                              std::uint32_t first_word) {
   const std::uint32_t count = leaf.end_point - leaf.first_point;
   complete_ = complete_ && count <= unseen_;
-  std::uint32_t index = leaf.first_point;
-  const std::uint32_t end = index + lower(count, unseen_);
-  unseen_ -= end - index;
-  // bound: points_per_leaf_max, total points_per_query_max per CandidateSet::gather
-  while (index < end && words[index] < ball.first_word()) {
+  end_ = leaf.first_point + lower(count, unseen_);
+  unseen_ -= end_ - leaf.first_point;
+  const std::uint32_t* const words = view.point_words();
+  std::uint32_t low = leaf.first_point;
+  std::uint32_t length = end_ - low;
+  while (length != 0U) {  // bound: kLeafHalvings
+    const std::uint32_t half = length / 2U;
+    const bool is_below = words[low + half] < first_word;  // memory: flash
+    low = is_below ? low + half + 1U : low;                // memory: flash
+    length = is_below ? length - half - 1U : half;         // memory: flash
+  }
+  next_ = low;
+}
+
+// False: the slice is used up.
+bool CandidateSet::gather_leaf(const BlobView& view, const NearLeaf& leaf, Int3 leaf_min,
+                               GatherSlice& left) {
+  const LeafBall ball(view, leaf, leaf_min);
+  if (!in_leaf_) {
+    begin_leaf(view, leaf, ball.first_word());
+    in_leaf_ = true;
+  }
+  const std::uint32_t* const words = view.point_words();
+  const std::uint32_t first = next_;
+  const std::uint32_t last = first + lower(lower(end_ - first, untested_), left.points);
+  const std::uint32_t room = lower(most_, count_ + left.candidates);
+  const std::uint32_t count_before = count_;
+  std::uint32_t index = first;
+  bool is_full = false;
+  // total: slice_points per Proxy::update
+  // total: slice_points per CandidateSet::gather
+  // bound: points_per_leaf_max, total points_per_slab_max per CandidateSet::gather
+  while (index < last && words[index] <= ball.last_word()) {  // memory: flash
+    const Int3 way = ball.way_to(words[index]);               // memory: flash
+    is_full = ball.holds(way) && !add(view, ball.place_of(way), index, room);
+    if (is_full) {
+      break;
+    }
     ++index;
   }
-  const std::uint32_t first = index;
-  const std::uint32_t last = index + lower(end - index, untested_);
-  // bound: points_per_leaf_max, total points_per_slab_max per CandidateSet::gather
-  for (; index < last && words[index] <= ball.last_word(); ++index) {
-    const Int3 way = ball.way_to(words[index]);
-    if (ball.holds(way) && !add(view, ball.place_of(way), index)) {
-      return;
-    }
-  }
+  next_ = index;
   untested_ -= index - first;
-  complete_ = complete_ && (index == end || words[index] > ball.last_word());
+  left.points -= index - first;
+  left.candidates -= count_ - count_before;
+  const bool is_done = index == end_ || words[index] > ball.last_word();  // memory: flash
+  const bool is_too_much = !is_done && (is_full ? count_ == most_ : untested_ == 0U);
+  complete_ = complete_ && !is_too_much;
+  in_leaf_ = !is_done && !is_too_much;
+  return !in_leaf_;
 }
 
 SurfaceSupport surface_support(const BlobView& view) {
@@ -182,7 +241,10 @@ SurfaceSupport surface_support(const BlobView& view) {
   if (!(radius > 0.0F) || !(CandidateSet::slack_of(view) > 0.0F)) {
     return SurfaceSupport::kNoReach;
   }
-  if (view.header().points_per_ball_max > kMaxCandidates) {
+  const BlobHeader& header = view.header();
+  const bool is_crowded = header.points_per_ball_max > kMaxCandidates;       // memory: flash
+  const bool is_heaped = header.points_per_leaf_max >= 1U << kLeafHalvings;  // memory: flash
+  if (is_crowded || is_heaped) {                                             // memory: flash
     return SurfaceSupport::kTooManyPoints;
   }
   return SurfaceSupport::kOk;

@@ -295,7 +295,7 @@ FaultMask Controller::sense(const Input& input) {
   const bool jumped = located_ && !(length_squared(probe - probe_) <= furthest * furthest);
   if (jumped || !located_) {
     joint_velocity_.reset();
-    scene_.reset(probe);
+    reset_scene(probe);
   }
   probe_ = probe;
   located_ = true;
@@ -312,7 +312,13 @@ void Controller::forget_motion() {
   located_ = false;
   joint_velocity_.reset();
   velocity_ = {};
-  scene_.reset(probe_);
+  reset_scene(probe_);
+}
+
+// The scene begins anew in the next tick: a tick either forgets or renders.
+void Controller::reset_scene(Vec3 probe) {
+  scene_.reset(probe);  // at most: 1 per Controller::step together scene
+  forgot_ = true;
 }
 
 FaultMask Controller::watch(const Input& input) {
@@ -414,7 +420,15 @@ void Controller::recover() {
 
 // The proxy follows in every state: when the motors come on, contact is already known.
 void Controller::render() {
-  if (located_ && !scene_.update(configuration_, probe_, velocity_).contact.complete) {
+  rendered_ = located_ && !forgot_;
+  forgot_ = false;
+  if (!rendered_) {
+    return;
+  }
+  // at most: 1 per Controller::step together scene
+  // at most: kAxes per Controller::step together ways as 3
+  const SceneRendering& rendering = scene_.update(configuration_, probe_, velocity_);
+  if (!rendering.contact.complete) {
     raise(fault_bit(Fault::kModelIncomplete));
   }
 }
@@ -430,7 +444,7 @@ void Controller::confirm(const Input& input, bool was_armed) {
   dead_man_released_ = dead_man_released_ || !input.dead_man;
   const bool hand = configuration_.dead_man_required ? input.dead_man && dead_man_released_
                                                      : input.command == Command::kArm;
-  const bool device = input.enable_read_back && located_ && !scene_.rendering().contact.in_contact;
+  const bool device = input.enable_read_back && rendered_ && !scene_.rendering().contact.in_contact;
   waiting_ = hand && !device;
   if (hand && device) {
     happen(Event::kReady);

@@ -1,3 +1,5 @@
+// memory: RAM
+
 #include "corner_leaves.hpp"
 
 namespace tactree::core {
@@ -51,7 +53,7 @@ bool CornerLeaves::set_axes(Vec3 centre, float r) {
     const auto outside = (own < 0) | (own > last_cell);
     axes_left_ |= mask_bits(reaches) << axis;
     outside_axes |= mask_bits(outside) << axis;
-    const Floats place_of_bits = load<Floats>(kPlaceOfBits + axis);
+    const Floats place_of_bits = load<Floats>(kPlaceOfBits + axis);  // memory: flash
     axes_across_ |= mask_bits(((own ^ other) & ~low_bits) != 0) << axis;
     store(own, cell_[0] + axis);
     store(other, cell_[1] + axis);
@@ -86,14 +88,17 @@ bool CornerLeaves::reach_in(std::uint32_t outside_axes) {
 
 std::uint32_t CornerLeaves::directory_entry(std::uint32_t corner) const {
   const std::uint32_t level = view_.directory_level();
-  return view_
-      .directory()[pick(cell_, corner, 0) >> below_ | pick(cell_, corner, 1) >> below_ << level |
-                   pick(cell_, corner, 2) >> below_ << 2U * level];
-}
+  // memory: flash
+  const std::uint32_t entry = pick(cell_, corner, 0) >> below_ |
+                              pick(cell_, corner, 1) >> below_ << level |
+                              pick(cell_, corner, 2) >> below_ << 2U * level;
+  return view_.directory()[entry];  // memory: flash
+}  // memory: flash (where the compiler places the load)
 
 Int3 CornerLeaves::lower_corner(std::uint32_t corner) const {
   const std::int32_t* const root = view_.header().root_min;
   const auto units = [&](std::uint32_t axis) {
+    // memory: flash
     return root[axis] + static_cast<std::int32_t>(pick(cell_, corner, axis) << kLeafShift);
   };
   return {units(0), units(1), units(2)};

@@ -60,6 +60,16 @@ class CornerLeaves {
   template <typename Visit>
   void each(float limit_squared, Visit&& visit);
 
+  /// The same in steps: begin(), then find(corner) for 0 and all that next() tells, until it tells
+  /// 0. False: there are no leaves.
+  [[nodiscard]] bool begin();
+  [[nodiscard]] std::uint32_t next(std::uint32_t corner) const {
+    return (corner - axes_left_) & axes_left_;
+  }
+  [[nodiscard]] bool is_beyond(std::uint32_t corner, float limit_squared) const;
+  /// Empty where there is no leaf, or it was told for another corner.
+  [[nodiscard]] NearLeaf find(std::uint32_t corner);
+
   /// Lower corner of a leaf that was visited, lattice units.
   [[nodiscard]] Int3 min_of(const NearLeaf& leaf) const;
   /// The whole of it.
@@ -76,8 +86,6 @@ class CornerLeaves {
   bool set_axes(Vec3 centre, float r);
   bool reach_in(std::uint32_t outside_axes);
   [[nodiscard]] std::uint32_t axes_within(float limit_squared) const;
-  [[nodiscard]] bool is_beyond(std::uint32_t corner, float limit_squared) const;
-  [[nodiscard]] NearLeaf find(std::uint32_t corner);
   [[nodiscard]] bool find_mixed(std::uint32_t corner, Leaf& leaf) const;
   [[nodiscard]] std::uint32_t find_own();
   [[nodiscard]] std::uint32_t find_other(std::uint32_t corner) const;
@@ -98,7 +106,8 @@ class CornerLeaves {
   std::uint32_t axes_across_ = 0;  // bit = an axis whose two cells are below different nodes there
   // The centre's descent, by levels below: the nodes, then the leaf's number.
   std::uint32_t path_[kMaxLevelsBelow + 1];
-  std::uint32_t path_end_ = 0;  // where it ends: 0 is the leaf
+  std::uint32_t path_end_ = 0;   // where it ends: 0 is the leaf
+  std::uint32_t own_ = kNoNode;  // that leaf
 };
 
 // The bits of three coordinates side by side, ten each: one product brings those of a level, 0, 10
@@ -111,7 +120,7 @@ static_assert(octant_of(4U << 10, 2) == 2 && octant_of(7U | 3U << 10 | 4U << 20,
 
 // The child of a node whose children are all of one kind; kNoNode: there is none.
 inline std::uint32_t step_down(const BlobView& view, std::uint32_t node, std::uint32_t octant) {
-  const std::uint32_t group = view.node_words()[node];
+  const std::uint32_t group = view.node_words()[node];  // memory: flash
   const std::uint32_t mask = group >> 24;
   const std::uint32_t bit = 1U << octant;
   return (mask & bit) != 0 ? (group & 0xFFFFFFU) + count_low_octants(mask & (bit - 1U)) : kNoNode;
@@ -155,13 +164,20 @@ inline std::uint32_t step_down(const BlobView& view, std::uint32_t node, std::ui
   return node;
 }
 
+[[gnu::always_inline]] inline bool CornerLeaves::begin() {
+  if (is_valid_ && view_.is_uniform()) {
+    own_ = find_own();
+  }
+  return is_valid_;
+}
+
 [[gnu::always_inline]] inline NearLeaf CornerLeaves::find(std::uint32_t corner) {
   if (!view_.is_uniform()) {
     Leaf leaf;
     const bool found = find_mixed(corner, leaf);  // at most: 8 * mixed per CandidateSet::gather
     return found ? near_leaf(view_, leaf, centre_, corner) : NearLeaf{};
   }
-  const std::uint32_t number = corner == 0 ? find_own() : find_other(corner);
+  const std::uint32_t number = corner == 0 ? own_ : find_other(corner);
   if (number == kNoNode) {
     return {};
   }
@@ -189,7 +205,7 @@ inline bool CornerLeaves::is_beyond(std::uint32_t corner, float limit_squared) c
 
 template <typename Visit>
 [[gnu::always_inline]] inline void CornerLeaves::each(float limit_squared, Visit&& visit) {
-  if (!is_valid_) {
+  if (!begin()) {
     return;
   }
   std::uint32_t axes = axes_left_;

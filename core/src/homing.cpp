@@ -68,6 +68,7 @@ void Homing::see_way(std::int32_t count, std::uint32_t axis, DeviceModel& device
     begin_way(count, axis);
   }
   const std::int32_t way = difference(count, first_[axis]);
+  // at most: kAxes per Controller::step together ways
   lowest_[axis] = way < lowest_[axis] ? way : lowest_[axis];
   highest_[axis] = way > highest_[axis] ? way : highest_[axis];
 

@@ -1,3 +1,5 @@
+// memory: RAM
+
 #include "tactree/core/material.hpp"
 
 #include "tactree/core/sine.hpp"
@@ -7,12 +9,10 @@ namespace {
 
 constexpr float kTurn = 6.28318531F;  // rad
 
-constexpr MaterialBlend whole(std::uint32_t material) {
-  MaterialBlend blend;
+void set_whole(MaterialBlend& blend, std::uint32_t material) {
   blend.count = 1;
   blend.material[0] = material;
   blend.share[0] = 1.0F;
-  return blend;
 }
 
 void add(MaterialBlend& blend, std::uint32_t material, float weight) {
@@ -25,6 +25,7 @@ void add(MaterialBlend& blend, std::uint32_t material, float weight) {
   }
   if (slot == blend.count) {
     blend.material[slot] = material;
+    blend.share[slot] = 0.0F;
     ++blend.count;
   }
   blend.share[slot] += weight;
@@ -59,31 +60,36 @@ float bumps(Vec3 x, float wavelength, Vec3 n) {
 }
 
 float depth_of(const BlobMaterial& m, Vec3 x, Vec3 normal) {
-  if (!(m.texture_height_m > 0.0F) || !(m.texture_wavelength_m > 0.0F)) {
+  if (!(m.texture_height_m > 0.0F) || !(m.texture_wavelength_m > 0.0F)) {  // memory: flash
     return 0.0F;
   }
-  const float level = 1.0F - bumps(x, m.texture_wavelength_m, normal);
-  return level > 0.0F ? m.texture_height_m * level : 0.0F;
+  const float level = 1.0F - bumps(x, m.texture_wavelength_m, normal);  // memory: flash
+  return level > 0.0F ? m.texture_height_m * level : 0.0F;              // memory: flash
 }
 
 }  // namespace
 
 MaterialBlend material_at(const BlobView& view, const Configuration& configuration,
                           std::uint32_t point) {
-  return follows_materials(view, configuration) ? whole(view.material_of(point)) : MaterialBlend{};
+  MaterialBlend blend;
+  if (follows_materials(view, configuration)) {
+    set_whole(blend, view.material_of(point));
+  }
+  return blend;
 }
 
-MaterialBlend blend_materials(const BlobView& view, const Configuration& configuration,
-                              const CandidateSet& set, Vec3 x, Vec3 normal) {
+void blend_materials(const BlobView& view, const Configuration& configuration,
+                     const CandidateSet& set, Vec3 x, Vec3 normal, MaterialBlend& blend) {
+  blend.count = 0;
   if (!follows_materials(view, configuration)) {
-    return {};
+    return;
   }
   if (view.material_count() == 1U) {
-    return whole(0);
+    set_whole(blend, 0);
+    return;
   }
   const float radius = view.support_radius_m();
   const float inverse_squared = 1.0F / (radius * radius);
-  MaterialBlend blend;
   float sum = 0.0F;
   // bound: blended_points
   for (const Candidate& candidate : set) {
@@ -97,12 +103,12 @@ MaterialBlend blend_materials(const BlobView& view, const Configuration& configu
     sum += blend.share[i];
   }
   if (!(sum > 0.0F)) {
-    return whole(0);
+    set_whole(blend, 0);
+    return;
   }
   for (std::uint32_t i = 0; i < blend.count; ++i) {  // bound: blended_materials
     blend.share[i] /= sum;
   }
-  return blend;
 }
 
 Feel feel_of(const BlobView& view, const Configuration& c, const MaterialBlend& blend) {
@@ -113,10 +119,10 @@ Feel feel_of(const BlobView& view, const Configuration& c, const MaterialBlend& 
   for (std::uint32_t i = 0; i < blend.count; ++i) {  // bound: blended_materials
     const BlobMaterial& m = view.material(blend.material[i]);
     const float share = blend.share[i];
-    feel.stiffness_N_m += share * m.stiffness_N_m;
-    feel.damping_Ns_m += share * m.damping_Ns_m;
-    feel.friction.static_coefficient += share * m.static_friction;
-    feel.friction.dynamic_coefficient += share * m.dynamic_friction;
+    feel.stiffness_N_m += share * m.stiffness_N_m;                    // memory: flash
+    feel.damping_Ns_m += share * m.damping_Ns_m;                      // memory: flash
+    feel.friction.static_coefficient += share * m.static_friction;    // memory: flash
+    feel.friction.dynamic_coefficient += share * m.dynamic_friction;  // memory: flash
   }
   return feel;
 }

@@ -57,26 +57,56 @@ void Proxy::update(const BlobView& view, Vec3 probe, const Friction& friction, S
   }
 }
 
-// Makes the candidates good for a fit at x; false: not in this tick.
+bool Proxy::may_fit() const {
+  return left_.passes >= kPassesOfFit && left_.all >= kPassesOfFit &&
+         (tracked_ || searches_left_ != 0U);
+}
+
+bool Proxy::may_gather() const {
+  const GatherSlice& slice = left_.slice;
+  return left_.gathers != 0U && left_.all >= kGatherWork && slice.corners != 0U &&
+         slice.points != 0U && slice.candidates != 0U;
+}
+
+bool Proxy::gather(const BlobView& view, Vec3 x) {
+  --left_.gathers;
+  left_.all -= kGatherWork;
+  if (!candidates_.is_begun()) {
+    candidates_.begin_for(view, x);
+  }
+  // at most: gathers per Proxy::update
+  // at most: work per Proxy::update together work as 2
+  // at most: work / 2 per Proxy::update together beginnings
+  const bool done = candidates_.gather(view, left_.slice);
+  complete_ = complete_ && candidates_.complete();
+  return done;
+}
+
+// Makes the candidates good for a fit at x; false: not in this tick, or that is all there is time
+// for in it, and has_next_ says so.
 bool Proxy::go_on(const BlobView& view, Vec3 x) {
-  if (left_.passes < kPassesOfFit || (!tracked_ && searches_left_ == 0U)) {
+  if (!may_fit()) {
     return false;
   }
   if (candidates_.covers(view, x)) {
     return true;
   }
-  if (left_.gathers == 0U) {
+  if (!may_gather()) {
     return false;
   }
-  --left_.gathers;
-  candidates_.gather_for(view, x);  // at most: gathers per Proxy::update
-  complete_ = complete_ && candidates_.complete();
-  return true;
+  has_next_ = !gather(view, x) || !may_fit();
+  next_ = x;
+  return !has_next_ && candidates_.covers(view, x);
+}
+
+void Proxy::spend(std::uint32_t passes) {
+  left_.passes -= passes;
+  left_.all -= passes;
 }
 
 SurfaceFit Proxy::evaluate(const BlobView& view, Vec3 x, Vec3 reference) {
   const SurfaceFit fit = fit_surface(candidates_, x, view.support_radius_m(), reference);
-  left_.passes -= fit.passes;
+  spend(fit.passes);
   return fit;
 }
 
@@ -85,12 +115,17 @@ void Proxy::sweep(const BlobView& view, Vec3 probe) {
   for (std::uint32_t i = 0; i < kSteps; ++i) {  // bound: kSteps
     const Vec3 way = probe - position_;
     const float distance = length(way);
-    const bool last = !(distance > step);
-    const Vec3 x = last ? probe : position_ + (step / distance) * way;
+    const bool last = !has_next_ && !(distance > step);
+    Vec3 x = last ? probe : position_ + (step / distance) * way;
+    if (has_next_) {
+      x = next_;
+      has_next_ = false;
+    }
+    // at most: work / 2 + 1 per Proxy::sweep
     if (!go_on(view, x)) {
       return;
     }
-    visit(view, x);
+    visit(view, x);  // at most: work / 2 per Proxy::sweep (each takes a pass and leaves another)
     if (in_contact_ || last) {
       return;
     }
@@ -100,27 +135,35 @@ void Proxy::sweep(const BlobView& view, Vec3 probe) {
 void Proxy::visit(const BlobView& view, Vec3 x) {
   position_ = x;
   if (candidates_.count() == 0U) {
+    spend(1U);
     lose_support();
     return;
   }
   Vec3 reference = reference_;
-  if (!tracked_) {
+  if (!tracked_ && !turned_) {
     --searches_left_;
     const float radius = view.support_radius_m();
     // at most: gathers per Proxy::update
+    // at most: work / 2 per Proxy::update together beginnings
     const Candidate* const nearest = nearest_candidate(candidates_, x, radius);
     if (nearest == nullptr) {
-      --left_.passes;
+      spend(1U);
       return;
     }
     reference = nearest->normal;
   }
   SurfaceFit fit = evaluate(view, x, reference);
   const bool crossed = tracked_ && fit.firm() && side_ * fit.distance < 0.0F;
-  if (!crossed && fit.facing < kContradicted && left_.passes >= kPassesOfFit) {
+  if (!crossed && !turned_ && fit.facing < kContradicted) {
     tracked_ = false;
+    if (left_.passes < kPassesOfFit || left_.all < kPassesOfFit) {
+      reference_ = -reference;
+      turned_ = true;
+      return;  // the next tick looks again
+    }
     fit = evaluate(view, x, -reference);
   }
+  turned_ = false;
   if (!fit.firm()) {
     lose_support();
     return;
@@ -140,6 +183,7 @@ void Proxy::begin_contact(const BlobView& view, const SurfaceFit& fit) {
   strength_ = fit.strength;
   slipping_ = false;
   in_contact_ = true;
+  unsettled_ = true;
   if (go_on(view, position_) && !settle(view).supported) {
     lose_support();  // the way led past the rim
   }
@@ -151,6 +195,7 @@ SurfaceFit Proxy::settle(const BlobView& view) {
     position_ -= fit.distance * fit.normal;
     reference_ = fit.normal;
     strength_ = fit.strength;
+    unsettled_ = false;
   }
   return fit;
 }
@@ -167,17 +212,25 @@ void Proxy::slide(const BlobView& view, Vec3 probe, const Friction& friction) {
     const Vec3 along = way - height * normal();
     const float distance = length(along);
     const float cone = friction.dynamic_coefficient * -height;
-    if (!(distance > (slipping_ ? cone : friction.static_coefficient * -height))) {
+    const bool slips = distance > (slipping_ ? cone : friction.static_coefficient * -height);
+    if (!slips && !unsettled_) {
       slipping_ = slipping_ && distance > kStickShare * cone;
       return;
     }
-    slipping_ = true;
-    const float excess = distance - cone;
-    const bool last = !(excess > step);
-    const Vec3 slip = ((last ? excess : step) / distance) * along;
+    const float excess = slips ? distance - cone : 0.0F;
+    bool last = !(excess > step);
+    Vec3 slip = slips ? ((last ? excess : step) / distance) * along : Vec3{};
+    if (unsettled_ && !candidates_.will_cover(view, position_ + slip)) {
+      slip = {};  // first where it is being gathered, else the proxy would glide for ever
+      last = false;
+    }
+    slipping_ = slipping_ || slips;
+    // at most: work / 2 + 1 per Proxy::slide
     if (!go_on(view, position_ + slip)) {
+      glide_by(view, slip);
       return;
     }
+    // at most: work / 2 per Proxy::slide
     if (!slip_by(view, slip)) {
       lost_contact_ = true;
       lose_support();
@@ -189,6 +242,15 @@ void Proxy::slide(const BlobView& view, Vec3 probe, const Friction& friction) {
   }
 }
 
+// While the candidates wait for the next tick.
+void Proxy::glide_by(const BlobView& view, Vec3 step) {
+  if (has_next_ && candidates_.will_cover(view, position_ + step)) {
+    position_ += step;
+    unsettled_ = true;
+  }
+  has_next_ = false;
+}
+
 bool Proxy::slip_by(const BlobView& view, Vec3 step) {
   const Vec3 position_before = position_;
   const float strength_before = strength_;
@@ -198,8 +260,8 @@ bool Proxy::slip_by(const BlobView& view, Vec3 step) {
   if (!fit.supported) {
     return false;
   }
-  const bool close = absolute(fit.distance) <= kOneStepIsEnough * radius;
-  if (!close && go_on(view, position_) && !settle(view).supported) {
+  unsettled_ = absolute(fit.distance) > kOneStepIsEnough * radius;
+  if (unsettled_ && go_on(view, position_) && !settle(view).supported) {
     return false;
   }
   const float change = kStrengthPerRadius * length(position_ - position_before) / radius;
@@ -212,12 +274,15 @@ bool Proxy::slip_by(const BlobView& view, Vec3 step) {
 void Proxy::release() {
   in_contact_ = false;
   slipping_ = false;
+  unsettled_ = false;
   strength_ = 0.0F;
 }
 
 void Proxy::lose_support() {
   release();
   tracked_ = false;
+  turned_ = false;
+  has_next_ = false;
   reference_ = {};
   side_ = 1.0F;
 }

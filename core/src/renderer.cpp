@@ -1,3 +1,5 @@
+// memory: RAM
+
 #include "tactree/core/renderer.hpp"
 
 #include "tactree/core/paper_mode.hpp"
@@ -77,12 +79,13 @@ Rendering Renderer::render_proxy(const BlobView& view, const Configuration& c, V
   }
   const Vec3 normal = proxy_.normal();
   const Vec3 way = r.proxy - probe;
-  const MaterialBlend materials =
-      blend_materials(view, c, proxy_.candidates(), r.proxy, proxy_.stored_normal());
-  const Feel feel = feel_of(view, c, materials);
+  if (!proxy_.candidates().is_begun()) {
+    blend_materials(view, c, proxy_.candidates(), r.proxy, proxy_.stored_normal(), materials_);
+  }
+  const Feel feel = feel_of(view, c, materials_);
   friction_ = feel.friction;
   r.penetration_m = dot(way, normal);
-  const float share = share_of(r.penetration_m, texture_depth(view, materials, r.proxy, normal));
+  const float share = share_of(r.penetration_m, texture_depth(view, materials_, r.proxy, normal));
   const Vec3 spring = (share * feel.stiffness_N_m) * way;
   const Vec3 force = spring - damping(feel.damping_Ns_m, velocity, spring);
   // Damping may take the push away, but never pulls the hand into the object.

@@ -1,3 +1,5 @@
+// memory: RAM
+
 #include "tactree/core/scene.hpp"
 
 namespace tactree::core {
@@ -28,7 +30,8 @@ bool touches(float a, float b, float low, float high, float margin) {
 /// unnoticed between two ticks.
 bool comes_near(const BlobView& view, Vec3 from, Vec3 to) {
   const BlobHeader& h = view.header();
-  const float margin = h.reach_m + h.aabb_edge_m;
+  const float margin = h.reach_m + h.aabb_edge_m;  // memory: flash
+  // memory: flash
   return touches(from.x, to.x, h.bounds_min_m[0], h.bounds_max_m[0], margin) &&
          touches(from.y, to.y, h.bounds_min_m[1], h.bounds_max_m[1], margin) &&
          touches(from.z, to.z, h.bounds_min_m[2], h.bounds_max_m[2], margin);
@@ -225,6 +228,7 @@ bool Scene::lend_slots() {
     if (body.view.empty() || !body.enabled || slot_of(i) != nullptr) {
       continue;
     }
+    // at most: bodies per Scene::lend_slots
     Slot* const slot = within_reach[i] ? free_slot(within_reach) : slot_of(kNoBody);
     if (slot != nullptr) {
       lend(*slot, i, body.last_probe);  // at most: bodies per Scene::lend_slots
@@ -248,11 +252,12 @@ const SceneRendering& Scene::update(const Configuration& configuration, Vec3 pro
   all.crowded = lend_slots();
   for (Slot& slot : slots_) {  // bound: kMaxReachableBodies
     if (slot.body != kNoBody) {
-      // at most: min(bodies, kMaxReachableBodies) per Scene::update
+      // at most: min(bodies, kMaxReachableBodies) per Scene::update together contacts
       render(slot, configuration, probe, velocity);
     }
   }
   if (all.contact.body == kNoBody) {
+    // at most: min(bodies, kMaxReachableBodies) per Scene::update together contacts
     all.contact = Rendering{};
     all.contact.proxy = probe;
   }

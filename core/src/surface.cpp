@@ -100,7 +100,10 @@ struct Faces {
                                Vec3 other) {
   const float radius_squared = radius * radius;
   const float inverse_squared = 1.0F / radius_squared;
-  Faces faces;
+  Moments own_face;  // locals, as above
+  Moments other_face;
+  std::uint32_t others = 0;
+  float between = 0.0F;
   for (const Candidate& candidate : set) {  // bound: points_per_ball_max
     const Vec3 q = candidate.position - x;
     const float qq = length_squared(q);
@@ -115,11 +118,17 @@ struct Faces {
     if (!(closer > 0.0F)) {
       continue;
     }
-    (is_own ? faces.own : faces.other).add(q, qq, candidate.normal, weight);
-    faces.others += is_own ? 0U : 1U;
-    faces.between += closer < kFaceCosine ? weight : 0.0F;
+    if (is_own) {
+      own_face.add(q, qq, candidate.normal, weight);
+    } else {
+      other_face.add(q, qq, candidate.normal, weight);
+      ++others;
+    }
+    if (closer < kFaceCosine) {
+      between += weight;
+    }
   }
-  return faces;
+  return {own_face, other_face, others, between};
 }
 
 /// 1 below kFadeBegins, 0 from kFadeEnds on, smooth between.
@@ -208,10 +217,12 @@ const Candidate* nearest_candidate(const CandidateSet& set, Vec3 x, float radius
 
 SurfaceFit fit_surface(const CandidateSet& set, Vec3 x, float radius, Vec3 reference) {
   // at most: passes per Proxy::update together passes
+  // at most: work per Proxy::update together work
   const Surroundings around = look_around(set, x, radius, reference);
   SurfaceFit fit = solve(around.face, radius);
   if (around.crease != nullptr) {
     // at most: passes per Proxy::update together passes
+    // at most: work per Proxy::update together work
     const Faces faces = divide(set, x, radius, reference, around.crease->normal);
     fit = combine(fit, faces, radius);
     fit.passes = 2;

@@ -12,15 +12,17 @@ namespace tactree::test {
 namespace {
 
 constexpr float kCountsPerMetre = 1e7F;
-constexpr std::size_t kEpisode = 12;  // ticks
-constexpr std::size_t kEpisodes = 60;
+constexpr std::size_t kEpisode = 24;  // ticks
+constexpr std::size_t kEpisodes = 30;
 
 double as_double(float v) { return static_cast<double>(v); }
 
 /// Nothing to limit the probe's jumps, and all that costs instructions.
-core::Configuration free_probe(core::RenderMode mode) {
+core::Configuration free_probe(core::RenderMode mode, float rate_hz) {
   core::Configuration c;
   c.mode = mode;
+  c.rate_hz = rate_hz;
+  c.velocity_cutoff_hz = 0.2F * rate_hz;
   c.speed_max_m_s = 100.0F;
   c.dead_man_required = false;
   c.ramp_s = 0.002F;
@@ -104,6 +106,14 @@ builder::Model nasty_model(Nastiness kind) {
       model.positions.emplace_back(kPatch * (top ? 0.4 - v : 0.4), kPatch * u,
                                    kPatch * (top ? 0.4 : 0.4 - v));
       model.normals.emplace_back(top ? 0.0F : 1.0F, 0.0F, top ? 1.0F : 0.0F);
+    } else if (kind == Nastiness::kAskew) {
+      constexpr double kTilt = 1.2;  // rad
+      const double turn = 1.2 * place(random);
+      model.positions.emplace_back(kPatch * u, kPatch * place(random), kPatch * place(random));
+      const Eigen::Vector3d askew(std::sin(kTilt) * std::cos(turn),
+                                  std::sin(kTilt) * std::sin(turn), std::cos(kTilt));
+      model.normals.push_back(
+          (i % 16 == 0 ? Eigen::Vector3d(Eigen::Vector3d::UnitZ()) : askew).cast<float>());
     } else {
       model.positions.emplace_back(kPatch * u, kPatch * place(random), kPatch * place(random));
       const Eigen::Vector3d normal(place(random), place(random), place(random));
@@ -124,12 +134,12 @@ builder::Model nasty_model(Nastiness kind) {
 emulation::InstructionCounts follow(const emulation::BoardDescription& board,
                                     emulation::EmulationOptions options,
                                     std::span<const std::byte> blob, const Way& way,
-                                    core::RenderMode mode) {
+                                    core::RenderMode mode, float rate_hz) {
   hal::sim::BoardParameters parameters;
   parameters.encoders.counts_per_m = 1.0;
   hal::sim::SimBoard plant(parameters, blob);
   emulation::EmulatedTarget target(board, blob, options);
-  EXPECT_TRUE(target.start(plant, free_probe(mode)).ok());
+  EXPECT_TRUE(target.start(plant, free_probe(mode, rate_hz)).ok());
   arm(target, plant, way.at(0));
   for (const core::Vec3& at : way) {
     plant.link().post(core::Command::kNone);
@@ -141,7 +151,7 @@ emulation::InstructionCounts follow(const emulation::BoardDescription& board,
 
 Found seek_worst(const emulation::BoardDescription& board,
                  const emulation::EmulationOptions& options, std::span<const std::byte> blob,
-                 float size_m, int runs, core::RenderMode mode, std::uint32_t seed) {
+                 float size_m, int runs, core::RenderMode mode, float rate_hz, std::uint32_t seed) {
   Climber climber(size_m, seed);
   emulation::EmulationOptions counted = options;
   counted.uncounted_ticks = 12;
@@ -154,7 +164,7 @@ Found seek_worst(const emulation::BoardDescription& board,
       const Way episode = fresh ? climber.random_episode() : climber.changed(found.way);
       way.insert(way.end(), episode.begin(), episode.end());
     }
-    const emulation::InstructionCounts counts = follow(board, counted, blob, way, mode);
+    const emulation::InstructionCounts counts = follow(board, counted, blob, way, mode, rate_hz);
     found.code.insert(found.code.end(), counts.code.begin(), counts.code.end());
     found.data.insert(found.data.end(), counts.data.begin(), counts.data.end());
     if (counts.max > found.instructions) {

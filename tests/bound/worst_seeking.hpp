@@ -14,8 +14,9 @@ namespace tactree::test {
 
 /// Models made to be expensive: as many points as a controller accepts in one ball, all of which
 /// are within the support of the fit wherever the probe comes near, in eight leaves of a tree of
-/// great depth, and of two faces, or of none.
-enum class Nastiness { kEdge, kRandomNormals };
+/// great depth, and of two faces, or of none, or nearly all on the longest way through a fit: askew
+/// to the face that is looked from, and to each other.
+enum class Nastiness { kEdge, kRandomNormals, kAskew };
 [[nodiscard]] builder::Model nasty_model(Nastiness kind);
 
 /// Where the probe is in successive ticks, m, the model at the origin. It jumps as it likes.
@@ -25,7 +26,7 @@ using Way = std::vector<core::Vec3>;
 [[nodiscard]] emulation::InstructionCounts follow(const emulation::BoardDescription& board,
                                                   emulation::EmulationOptions options,
                                                   std::span<const std::byte> blob, const Way& way,
-                                                  core::RenderMode mode);
+                                                  core::RenderMode mode, float rate_hz);
 
 struct Found {
   std::uint64_t instructions = 0;
@@ -39,6 +40,6 @@ struct Found {
 [[nodiscard]] Found seek_worst(const emulation::BoardDescription& board,
                                const emulation::EmulationOptions& options,
                                std::span<const std::byte> blob, float size_m, int runs,
-                               core::RenderMode mode, std::uint32_t seed);
+                               core::RenderMode mode, float rate_hz, std::uint32_t seed);
 
 }  // namespace tactree::test

@@ -52,6 +52,21 @@ bool count_multiple(std::string_view name, const cs_arm& arm, Instruction& instr
   return true;
 }
 
+/// "STR Rx,[Ry,#imm] is always one cycle" (Arm 100166, 3.3.2): the word goes through a buffer.
+bool is_buffered_store(std::string_view name, const cs_insn& decoded) {
+  const cs_arm& arm = decoded.detail->arm;
+  if (!is_any_of(name, {"str"}) || name.starts_with("strd") || name.starts_with("strex") ||
+      arm.writeback) {
+    return false;
+  }
+  for (unsigned i = 0; i < arm.op_count; ++i) {
+    if (arm.operands[i].type == ARM_OP_MEM) {
+      return arm.operands[i].mem.index == ARM_REG_INVALID;
+    }
+  }
+  return false;
+}
+
 /// ldr, str, vldr, vstr of one or two words: two cycles, three for two words.
 bool count_single(std::string_view name, const cs_arm& arm, Instruction& instruction) {
   if (!is_any_of(name, {"ldr", "str", "vldr", "vstr"})) {
@@ -111,6 +126,9 @@ void count_cycles(const cs_insn& decoded, Instruction& instruction) {
   }
   if (!count_multiple(name, arm, instruction) && !count_single(name, arm, instruction)) {
     instruction.cycles = of_arithmetic(name, arm);
+  }
+  if (is_buffered_store(name, decoded)) {
+    instruction.cycles = 1;
   }
 }
 

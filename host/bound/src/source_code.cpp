@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <charconv>
 #include <fstream>
 #include <iterator>
 #include <regex>
@@ -181,10 +182,11 @@ class Reader {
                                    : std::string_view(text).substr(at + word.size());
   }
 
-  /// A comment on a line of its own is about the next line.
+  /// A comment on a line of its own is about the next line, as are those that stand above it.
   [[nodiscard]] bool stands_alone(std::uint32_t line) const {
     const std::string& text = lines_[line - 1];
-    return text.compare(text.find_first_not_of(' '), 2, "//") == 0;
+    const std::size_t begin = text.find_first_not_of(' ');
+    return begin != std::string::npos && text.compare(begin, 2, "//") == 0;
   }
 
   void read_bound(SourceLoop& loop, const std::vector<std::uint32_t>& places) const {
@@ -198,24 +200,43 @@ class Reader {
       static constexpr std::string_view kTotal = ", total ";
       if (text.starts_with(kTotal)) {
         text.remove_prefix(kTotal.size());
-        loop.total = read_total(text, line);
+        loop.totals.push_back(read_total(text, line));
       }
       check_remark(text, line);
+      read_totals_above(loop);
       return;
     }
   }
 
+  void read_totals_above(SourceLoop& loop) const {
+    for (std::uint32_t line = loop.line - 1; line > 0 && stands_alone(line); --line) {
+      std::string_view text = said(line, "total:");
+      if (!text.empty()) {
+        loop.totals.push_back(read_total(text, line));
+        check_remark(text, line);
+      }
+    }
+  }
+
   [[nodiscard]] Total read_total(std::string_view& text, std::uint32_t line) const {
-    Total total{Expression::read(text, place(line)), {}, {}};
+    Total total{Expression::read(text, place(line)), {}, {}, 1};
     static constexpr std::string_view kPer = " per ";
     if (!text.starts_with(kPer)) {
       throw BoundError(place(line) + ": 'per FUNCTION' is missing (say what it is counted in)");
     }
     text.remove_prefix(kPer.size());
-    const std::size_t end = std::min(text.find_first_of(" ;("), text.size());
+    const std::size_t end = std::min(text.find_first_of(" ,;("), text.size());
     total.function = text.substr(0, end);
     text.remove_prefix(end);
     total.together = read_word(text, " together ");
+    const std::string weight = read_word(text, " as ");
+    if (!weight.empty()) {
+      const auto end_of_number = weight.data() + weight.size();
+      if (std::from_chars(weight.data(), end_of_number, total.weight).ptr != end_of_number) {
+        throw BoundError(
+            fmt::format("{}: '{}' is no weight (write a whole number)", place(line), weight));
+      }
+    }
     return total;
   }
 
@@ -225,7 +246,7 @@ class Reader {
       return {};
     }
     text.remove_prefix(before.size());
-    const std::string_view word = text.substr(0, text.find_first_of(" ;("));
+    const std::string_view word = text.substr(0, text.find_first_of(" ,;("));
     text.remove_prefix(word.size());
     return std::string(word);
   }
@@ -258,12 +279,14 @@ class Reader {
     for (std::uint32_t line = 1; line <= lines_.size(); ++line) {
       file_.in_ram = file_.in_ram || lines_[line - 1] == "// memory: RAM";
       if (said(line, "memory: flash").data() != nullptr) {
-        file_.in_flash.insert(line);
+        add_flash(line);
       }
       std::string_view text = said(line, "at most:");
       if (!text.empty()) {
         SourceFact fact{name_, line, read_total(text, line)};
-        fact.line += stands_alone(line) ? 1U : 0U;
+        while (fact.line < lines_.size() && stands_alone(fact.line)) {
+          ++fact.line;
+        }
         check_remark(text, line);
         file_.facts.push_back(std::move(fact));
       }
@@ -271,6 +294,16 @@ class Reader {
       if (!text.empty()) {
         file_.arguments.push_back(read_argument(text, line));
       }
+    }
+  }
+
+  /// The line; or, of a comment on a line of its own, the statement that follows.
+  void add_flash(std::uint32_t line) {
+    const bool is_whole = stands_alone(line);
+    line += is_whole ? 1U : 0U;
+    file_.in_flash.insert(line);
+    while (is_whole && line < lines_.size() && lines_[line - 1].find(';') == std::string::npos) {
+      file_.in_flash.insert(++line);
     }
   }
 

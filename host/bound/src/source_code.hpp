@@ -1,8 +1,10 @@
 #pragma once
 // What the sources say beside their code:
-//   for (...) {  // bound: EXPRESSION [, total EXPRESSION per FUNCTION]
-//   call(...);   // at most: EXPRESSION per FUNCTION
+//   for (...) {  // bound: EXPRESSION [, total TOTAL]
+//   // total: TOTAL      alone above a loop that is bound: one more
+//   call(...);   // at most: TOTAL
 //   call(...);   // with: ARGUMENT <= EXPRESSION
+// where TOTAL is EXPRESSION per FUNCTION [together NAME [as WEIGHT]].
 // A remark may follow in parentheses, or after a semicolon.
 
 #include <cstdint>
@@ -20,8 +22,9 @@ namespace tactree::bound {
 /// So often in one call of the function, at most.
 struct Total {
   Expression at_most;
-  std::string function;  ///< qualified, without the outermost namespaces: Proxy::update
-  std::string together;  ///< statements with the same name here are counted together; empty: alone
+  std::string function;      ///< qualified, without the outermost namespaces: Proxy::update
+  std::string together;      ///< what has the same name here is counted together; empty: alone
+  std::uint32_t weight = 1;  ///< as so many
 };
 
 struct SourceLoop {
@@ -33,7 +36,7 @@ struct SourceLoop {
   /// The condition is one comparison: it is evaluated by one branch.
   bool simple = false;
   std::optional<Expression> bound;
-  std::optional<Total> total;
+  std::vector<Total> totals;
 };
 
 /// A statement that one call of a function executes so often at most.

@@ -158,7 +158,6 @@ class Model {
     connect_calls(entries);
     limit_loops();
     limit_totals();
-    limit_facts();
   }
 
   [[nodiscard]] LinearProgram::Solution solved_program() const {
@@ -287,7 +286,8 @@ class Model {
     for (std::uint32_t b = 0; b < flow.blocks.size(); ++b) {
       for (const std::uint32_t next : flow.blocks[b].next) {
         own.edges[{b, next}] =
-            program_.add_variable(gain_of(entry, next) + fetch_on_entry(own, b, next));
+            program_.add_variable(gain_of(entry, next) + fetch_on_entry(own, b, next) -
+                                  saved_by_falling(own, flow, b, next));
       }
     }
     for (std::uint32_t b = 0; b < flow.blocks.size(); ++b) {
@@ -353,6 +353,47 @@ class Model {
       hidden = disturbs ? -1e9 : hidden + 1.0;
     }
     return wait;
+  }
+
+  // Into a block that follows without a jump: its first line is there already, or has been fetched
+  // ahead. After a jump that was not taken nothing is counted on: the core may have gone to fetch
+  // where that leads.
+  [[nodiscard]] double saved_by_falling(const FunctionVariables& own, const ControlFlow& flow,
+                                        std::uint32_t from, std::uint32_t to) const {
+    if (analysis_.timing == nullptr || own.kept_by[to] || flow.blocks[to].count == 0 ||
+        flow.blocks[from].count == 0 || flow.blocks[from].calls || !falls_through(flow, from)) {
+      return 0.0;
+    }
+    const BoardTiming& timing = *analysis_.timing;
+    const Block& block = flow.blocks[from];
+    const Instruction& last = flow.instructions[block.first + block.count - 1];
+    const std::uint32_t begin = flow.instructions[flow.blocks[to].first].address;
+    const std::uint32_t line = (last.address + last.bytes - 1) / timing.line_bytes;
+    if (begin != last.address + last.bytes) {
+      return 0.0;
+    }
+    return begin / timing.line_bytes == line ? timing.fetch_wait : hidden_by(flow, block, line);
+  }
+
+  static bool falls_through(const ControlFlow& flow, std::uint32_t b) {
+    const Block& block = flow.blocks[b];
+    const Instruction& last = flow.instructions[block.first + block.count - 1];
+    return block.next.size() == 1 && !last.conditional_branch && !last.text.starts_with('b');
+  }
+
+  // What the last instructions of a block, in this line, hide of fetching the next.
+  [[nodiscard]] double hidden_by(const ControlFlow& flow, const Block& block,
+                                 std::uint32_t line) const {
+    const BoardTiming& timing = *analysis_.timing;
+    double hidden = 0.0;
+    for (std::uint32_t i = block.first; i < block.first + block.count; ++i) {
+      const Instruction& instruction = flow.instructions[i];
+      if ((instruction.address + instruction.bytes - 1) / timing.line_bytes == line) {
+        const bool disturbs = !timing.prefetches || slow_words(instruction) > 0;
+        hidden = disturbs ? -1e9 : hidden + 1.0;
+      }
+    }
+    return std::clamp<double>(hidden, 0.0, timing.fetch_wait);
   }
 
   // Code that is used again and again stays where the lines used last do, when the loop and all
@@ -629,56 +670,65 @@ class Model {
     limit_to(what, total.at_most, file, calls);
   }
 
-  void limit_totals() {
-    std::map<const SourceLoop*, Terms> totals;
-    for (const auto& [entry, own] : variables_) {
-      const AnalysedFunction& f = function(entry);
-      for (std::uint32_t i = 0; i < f.flow.loops.size(); ++i) {
-        if (f.bounds[i].source->total) {
-          add(totals[f.bounds[i].source], bodies(entry, i));
-        }
-      }
-    }
-    for (const auto& [loop, terms] : totals) {
-      limit_total(terms, *loop->total, loop->file, fmt::format("{}:{}", loop->file, loop->line));
-    }
-  }
-
-  /// Statements that are counted together, and what they come to.
+  /// What is counted together, and what it comes to.
   struct Group {
-    const SourceFact* first = nullptr;
+    const Total* first = nullptr;
+    std::string file;
+    std::string where;
     Terms terms;
   };
+  using Groups = std::map<std::pair<std::string, std::string>, Group>;  // by function and name
 
-  void limit_facts() {
-    std::map<std::pair<std::string, std::string>, Group> groups;  // by function and name
+  void limit_totals() {
+    Groups groups;
+    limit_loop_totals(groups);
     for (const auto& [name, file] : analysis_.sources.files()) {
       for (const SourceFact& fact : file.facts) {
         limit_fact(fact, groups);
       }
     }
     for (const auto& [name, group] : groups) {
-      const SourceFact& fact = *group.first;
-      limit_total(group.terms, fact.total, fact.file, fmt::format("{}:{}", fact.file, fact.line));
+      limit_total(group.terms, *group.first, group.file, group.where);
     }
   }
 
-  static void join(Group& group, const SourceFact& fact, const Terms& terms) {
-    if (group.first != nullptr && group.first->total.at_most.text() != fact.total.at_most.text()) {
-      throw BoundError(
-          fmt::format("{}:{}: '{}', but '{}' in {}:{}, with which it is counted (make "
-                      "them equal)",
-                      fact.file, fact.line, fact.total.at_most.text(),
-                      group.first->total.at_most.text(), group.first->file, group.first->line));
+  void limit_loop_totals(Groups& groups) {
+    std::map<const SourceLoop*, Terms> passes;
+    for (const auto& [entry, own] : variables_) {
+      const AnalysedFunction& f = function(entry);
+      for (std::uint32_t i = 0; i < f.flow.loops.size(); ++i) {
+        add(passes[f.bounds[i].source], bodies(entry, i));
+      }
     }
-    group.first = &fact;
-    add(group.terms, terms);
+    for (const auto& [loop, terms] : passes) {
+      for (const Total& total : loop->totals) {
+        limit_alone_or_together(terms, total, loop->file, loop->line, groups);
+      }
+    }
+  }
+
+  void limit_alone_or_together(const Terms& terms, const Total& total, const std::string& file,
+                               std::uint32_t line, Groups& groups) {
+    const std::string where = fmt::format("{}:{}", file, line);
+    if (total.together.empty()) {
+      limit_total(terms, total, file, where);
+      return;
+    }
+    Group& group = groups[{total.function, total.together}];
+    if (group.first != nullptr && group.first->at_most.text() != total.at_most.text()) {
+      throw BoundError(
+          fmt::format("{}: '{}', but '{}' in {}, with which it is counted (make them equal)", where,
+                      total.at_most.text(), group.first->at_most.text(), group.where));
+    }
+    group.first = &total;
+    group.file = file;
+    group.where = where;
+    add(group.terms, terms, total.weight);
   }
 
   // A statement's calls and stores are executed no more often than it is, wherever the compiler has
   // put its other instructions.
-  void limit_fact(const SourceFact& fact,
-                  std::map<std::pair<std::string, std::string>, Group>& groups) {
+  void limit_fact(const SourceFact& fact, Groups& groups) {
     std::map<std::uint32_t, Terms> calls;  // by callee: one statement may call several
     Terms stores;
     for (const auto& [entry, own] : variables_) {
@@ -693,7 +743,6 @@ class Model {
         }
       }
     }
-    const std::string where = fmt::format("{}:{}", fact.file, fact.line);
     if (!calls.empty() || !stores.empty()) {
       held_.insert(&fact);
     }
@@ -701,11 +750,7 @@ class Model {
       calls[0] = stores;
     }
     for (const auto& [callee, terms] : calls) {
-      if (fact.total.together.empty()) {
-        limit_total(terms, fact.total, fact.file, where);
-      } else {
-        join(groups[{fact.total.function, fact.total.together}], fact, terms);
-      }
+      limit_alone_or_together(terms, fact.total, fact.file, fact.line, groups);
     }
   }
 
@@ -744,6 +789,16 @@ class Model {
       FunctionOnPath& on_path = solved.functions[entry];
       on_path.name = demangled(f.flow.function.name);
       on_path.calls += solution.x[static_cast<std::size_t>(own.entry)];
+      double cyc = 0, fet = 0, pipe = 0;
+      for (std::uint32_t b = 0; b < f.flow.blocks.size(); ++b) {
+        if (!analysis_.timing) break;
+        const double t = sum(passes(entry, b), solution);
+        if (f.flow.blocks[b].count == 0) continue;
+        cyc += t * cycles_of(f.flow, f.flow.blocks[b]);
+        fet += own.kept_by[b] ? 0 : t * fetch_of(f.flow, f.flow.blocks[b]);
+        for (std::uint32_t i = 0; i < f.flow.blocks[b].count; ++i)
+          pipe += t * f.flow.instructions[f.flow.blocks[b].first + i].cycles;
+      }
       for (std::uint32_t b = 0; b < f.flow.blocks.size(); ++b) {
         const double times = sum(passes(entry, b), solution);
         on_path.instructions += times * f.flow.blocks[b].count;
@@ -923,7 +978,8 @@ core::TickFigures usual_figures() { return {46, 270, 170, 50, 7, 3, 46, 4, 0}; }
 
 Parameters open_parameters() {
   Parameters open = parameters_of(largest_figures(), core::TickKind::kSurface, 1, {});
-  for (const char* fixed : {"bodies", "mixed", "paper", "gathers", "passes"}) {
+  for (const char* fixed : {"bodies", "mixed", "paper", "gathers", "passes", "work",
+                            "slice_corners", "slice_points", "slice_candidates"}) {
     open.erase(fixed);
   }
   return open;
@@ -941,12 +997,22 @@ core::TickCost to_cost(const Formula& formula) {
   return cost;
 }
 
+Parameters parameters_of(const core::SurfaceWork& work) {
+  return {{"gathers", work.gathers},
+          {"passes", work.passes},
+          {"work", work.all},
+          {"slice_corners", work.slice.corners},
+          {"slice_points", work.slice.points},
+          {"slice_candidates", work.slice.candidates}};
+}
+
 PaceCycles cycles_by_pace(Task& task, const BoundOptions& options) {
   PaceCycles cycles{};
   for (std::uint32_t pace = 0; pace < core::kPaces; ++pace) {
     Parameters parameters = options.parameters;
-    parameters["gathers"] = core::kWorkPerTick[pace].gathers;
-    parameters["passes"] = core::kWorkPerTick[pace].passes;
+    for (const auto& [name, value] : parameters_of(core::kWorkPerTick[pace])) {
+      parameters[name] = value;
+    }
     cycles[pace] = static_cast<double>(task.cycles(parameters, *options.timing));
   }
   return cycles;
@@ -1035,20 +1101,20 @@ core::TickCosts embedded(const std::filesystem::path& image) {
 
 Parameters parameters_of(const core::TickFigures& figures, core::TickKind kind,
                          std::uint32_t bodies, core::SurfaceWork work) {
-  return {{"gathers", work.gathers},
-          {"passes", work.passes},
-          {"points_per_ball_max", figures.points_per_ball_max},
-          {"points_per_query_max", figures.points_per_query_max},
-          {"points_per_slab_max", figures.points_per_slab_max},
-          {"points_per_leaf_max", figures.points_per_leaf_max},
-          {"depth", figures.depth},
-          {"levels_below", figures.levels_below},
-          {"blended_points", figures.blended_points},
-          {"blended_materials", figures.blended_materials},
-          {"delta", figures.delta},
-          {"bodies", bodies},
-          {"mixed", kind == core::TickKind::kSurface ? 0 : 1},
-          {"paper", kind == core::TickKind::kPaper ? 1 : 0}};
+  Parameters parameters = parameters_of(work);
+  parameters.merge(Parameters{{"points_per_ball_max", figures.points_per_ball_max},
+                              {"points_per_query_max", figures.points_per_query_max},
+                              {"points_per_slab_max", figures.points_per_slab_max},
+                              {"points_per_leaf_max", figures.points_per_leaf_max},
+                              {"depth", figures.depth},
+                              {"levels_below", figures.levels_below},
+                              {"blended_points", figures.blended_points},
+                              {"blended_materials", figures.blended_materials},
+                              {"delta", figures.delta},
+                              {"bodies", bodies},
+                              {"mixed", kind == core::TickKind::kSurface ? 0 : 1},
+                              {"paper", kind == core::TickKind::kPaper ? 1 : 0}});
+  return parameters;
 }
 
 Parameters parameters_of(const core::BlobHeader& header, core::RenderMode mode,

@@ -138,8 +138,8 @@ TEST(Material, SharesAddUpToOneAndTakeOneSideOfAPlateOnly) {
     const Vec3 x{0.0F, 0.0F, up * 0.25e-3F};
     set.clear();
     set.cover(shape.view(), x);
-    const core::MaterialBlend blend =
-        core::blend_materials(shape.view(), {}, set, x, {0.0F, 0.0F, up});
+    core::MaterialBlend blend;
+    core::blend_materials(shape.view(), {}, set, x, {0.0F, 0.0F, up}, blend);
     ASSERT_EQ(blend.count, 1U);
     EXPECT_EQ(blend.material[0], up > 0.0F ? 0U : 1U);
     EXPECT_NEAR(static_cast<double>(blend.share[0]), 1.0, 1e-6);
@@ -159,8 +159,8 @@ TEST(Material, MoreMaterialsThanABlendHoldsAreBounded) {
   core::CandidateSet set;
   set.clear();
   set.cover(shape.view(), {});
-  const core::MaterialBlend blend =
-      core::blend_materials(shape.view(), {}, set, {}, {0.0F, 0.0F, 1.0F});
+  core::MaterialBlend blend;
+  core::blend_materials(shape.view(), {}, set, {}, {0.0F, 0.0F, 1.0F}, blend);
   EXPECT_EQ(blend.count, core::kBlendedMaterials);
   const core::Feel feel = core::feel_of(shape.view(), {}, blend);
   EXPECT_GE(feel.stiffness_N_m, 99.99F);

@@ -58,6 +58,7 @@ class BlobView {
   [[nodiscard]] bool empty() const { return header_ == nullptr; }
   /// Precondition of all that follow, but the queries: !empty().
   [[nodiscard]] const BlobHeader& header() const { return *header_; }
+  // memory: flash
   [[nodiscard]] std::uint32_t point_count() const { return empty() ? 0 : header_->point_count; }
   [[nodiscard]] float step_m() const { return step_m_; }
   [[nodiscard]] float inverse_step() const { return inverse_step_; }
@@ -78,8 +79,9 @@ class BlobView {
   [[nodiscard]] const std::uint32_t* node_words() const { return nodes_; }
   [[nodiscard]] BlobNode node(std::uint32_t index, std::uint32_t level) const {
     if (!uniform_) {
-      return {nodes_[2U * index], nodes_[2U * index + 1U]};
+      return {nodes_[2U * index], nodes_[2U * index + 1U]};  // memory: flash
     }
+    // memory: flash
     return level + 1U < depth_ ? BlobNode{nodes_[index], 0} : BlobNode{0, nodes_[index]};
   }
   /// The nodes of level directory_level() by their cells, kNoNode where there is none.
@@ -88,6 +90,7 @@ class BlobView {
 
   /// Index of the first point of a leaf; for leaf_count, the number of points.
   [[nodiscard]] std::uint32_t first_point(std::uint32_t leaf_number) const {
+    // memory: flash
     return leaf_bases_[leaf_number >> leaf_group_shift_] + leaf_offsets_[leaf_number];
   }
   [[nodiscard]] Leaf leaf(std::uint32_t number, std::uint32_t level, Int3 min) const {
@@ -111,7 +114,7 @@ class BlobView {
   }
 
   [[nodiscard]] std::uint32_t material_count() const {
-    return empty() ? 0 : header_->material_count;
+    return empty() ? 0 : header_->material_count;  // memory: flash
   }
   /// Precondition: index < material_count().
   [[nodiscard]] const BlobMaterial& material(std::uint32_t index) const {
@@ -119,7 +122,7 @@ class BlobView {
   }
   /// Which material a point carries; 0 in a blob with at most one.
   [[nodiscard]] std::uint32_t material_of(std::uint32_t point) const {
-    return material_indices_ == nullptr ? 0U : material_indices_[point];
+    return material_indices_ == nullptr ? 0U : material_indices_[point];  // memory: flash
   }
 
  private:
@@ -153,6 +156,7 @@ class BlobView {
 // Octahedral map: Meyer, Suessmuth, Sussner and Stamminger, "On Floating-Point Normal Vectors",
 // Eurographics Symposium on Rendering 2010.
 inline Vec3 BlobView::normal(std::uint32_t index) const {
+  // memory: flash
   const std::uint32_t code = static_cast<std::uint32_t>(normals_[index]) | (points_[index] & 3U)
                                                                                << 16;
   const float u = static_cast<float>(static_cast<std::int32_t>(code & 511U) - 255);

@@ -176,6 +176,7 @@ class Controller {
   void raise(FaultMask faults);
   void recover();
   void forget_motion();
+  void reset_scene(Vec3 probe);
   [[nodiscard]] ModelStatus suitability(const BlobView& view) const;
   [[nodiscard]] bool is_in_time(TickLoad load, const BlobView& added) const;
   [[nodiscard]] TickLoad load_of_scene() const;
@@ -198,7 +199,9 @@ class Controller {
 
   DevicePose pose_{};
   Vec3 probe_{};
-  bool located_ = false;  // probe_ is of the last tick
+  bool located_ = false;   // probe_ is of the last tick
+  bool forgot_ = false;    // the scene was reset in this tick
+  bool rendered_ = false;  // it was updated in this tick
   Homing homing_{};
   VelocityEstimator joint_velocity_{};
   Vec3 velocity_{};  // of the probe, m/s

@@ -33,7 +33,7 @@ struct MaterialBlend {
 
 /// Does the configuration follow this model's own materials?
 [[nodiscard]] constexpr bool follows_materials(const BlobView& view, const Configuration& c) {
-  return c.use_materials && view.material_count() > 0U;
+  return c.use_materials && view.material_count() > 0U;  // memory: flash
 }
 
 /// The material of one point, or of none: precondition: point < point_count().
@@ -44,9 +44,8 @@ struct MaterialBlend {
 /// counts with the weight it has in the surface fit and the cosine between the normals, so the
 /// shares change without steps. Cost: one pass over the set, at most kMaxCandidates points, where
 /// the model has more than one material; else constant.
-[[nodiscard]] MaterialBlend blend_materials(const BlobView& view,
-                                            const Configuration& configuration,
-                                            const CandidateSet& set, Vec3 x, Vec3 normal);
+void blend_materials(const BlobView& view, const Configuration& configuration,
+                     const CandidateSet& set, Vec3 x, Vec3 normal, MaterialBlend& blend);
 
 /// Cost: kBlendedMaterials.
 [[nodiscard]] Feel feel_of(const BlobView& view, const Configuration& configuration,

@@ -31,7 +31,9 @@ inline constexpr OctantCounts kOctantCounts = [] {
   }
   return counts;
 }();
-constexpr std::uint32_t count_low_octants(std::uint32_t mask) { return kOctantCounts.of[mask]; }
+constexpr std::uint32_t count_low_octants(std::uint32_t mask) {
+  return kOctantCounts.of[mask];  // memory: flash
+}
 
 /// Index of the child in `octant` from a word of a node. Precondition: that child exists.
 constexpr std::uint32_t child_of(std::uint32_t group, std::uint32_t octant) {

@@ -45,7 +45,8 @@ class Renderer {
                                            Vec3 probe, Vec3 velocity);
 
   Proxy proxy_;
-  Friction friction_{};  // at the contact of the last tick
+  Friction friction_{};        // at the contact of the last tick
+  MaterialBlend materials_{};  // of the contact, as of when candidates were whole last
 };
 
 }  // namespace tactree::core

@@ -11,26 +11,42 @@
 namespace tactree::core {
 
 struct NearLeaf;  // of the search for leaves
+class CornerLeaves;
 
 /// Decoded points one gather can hold. A blob whose points_per_ball_max is larger is not loaded.
 inline constexpr std::uint32_t kMaxCandidates = 128;
+
+/// Nor one with a leaf of 2^kLeafHalvings points, which no longer are left after so many halvings.
+inline constexpr std::uint32_t kLeafHalvings = 8;
+
+/// How much of gathers may be done at a time.
+struct GatherSlice {
+  std::uint32_t corners = 8;         ///< of the cube around each, with a leaf at most
+  std::uint32_t points = 65536;      ///< that are looked at
+  std::uint32_t candidates = 65536;  ///< that are decoded
+};
 
 /// What the surface may cost in one tick; what is left waits for the next.
 struct SurfaceWork {
   std::uint32_t gathers = 0;  ///< of candidates
   std::uint32_t passes = 0;   ///< over candidates: 1 a fit, 2 at a crease
+  std::uint32_t all = 0;      ///< of both, where a gather counts as kGatherWork passes
+  GatherSlice slice{};        ///< of all gathers
 };
-/// A tick's share of what a second may cost, so that probe and proxy go as fast at any rate: the
-/// faster the loop, the less there is to do in a tick. At least a gather and two fits at a crease.
+inline constexpr std::uint32_t kGatherWork = 2;
+/// A tick's share of what a second may cost: the faster the loop, the less there is to do in a
+/// tick. At least a slice of a gather or a fit at a crease: the fastest loops do the one or the
+/// other.
 inline constexpr std::uint32_t kPaces = 3;
-inline constexpr SurfaceWork kWorkPerTick[kPaces] = {{4, 10}, {2, 6}, {1, 4}};
+inline constexpr SurfaceWork kWorkPerTick[kPaces] = {
+    {4, 10, 13, {24, 288, 104}}, {2, 4, 4, {16, 160, 56}}, {1, 2, 2, {3, 48, 16}}};
 /// A pace is for rates above this, Hz.
 inline constexpr float kPaceRates[kPaces] = {0.0F, 1000.0F, 2000.0F};
 [[nodiscard]] constexpr std::uint32_t pace_of(float rate_hz) {
   return rate_hz > kPaceRates[2] ? 2U : (rate_hz > kPaceRates[1] ? 1U : 0U);
 }
 [[nodiscard]] constexpr SurfaceWork work_per_tick(float rate_hz) {
-  return kWorkPerTick[pace_of(rate_hz)];
+  return kWorkPerTick[pace_of(rate_hz)];  // memory: flash
 }
 
 /// A decoded point.
@@ -47,20 +63,27 @@ class CandidateSet {
   [[nodiscard]] static float slack_of(const BlobView& view);
 
   /// Forgets the last gather; needed whenever the blob changes.
-  void clear() { valid_ = false; }
+  void clear() { valid_ = begun_ = false; }
 
   /// Is it good for a query at `x`?
   /// Precondition: the view is the one of the last gather, or clear() was called in between.
-  [[nodiscard]] bool covers(const BlobView& view, Vec3 x) const;
-  /// Makes it so: gathers around a place ahead of x, in the direction the query has moved.
-  /// Cost: at most 8 leaves of points_per_query_max points, of which points_per_slab_max are looked
-  /// at and points_per_ball_max decoded.
-  void gather_for(const BlobView& view, Vec3 x);
-  void cover(const BlobView& view, Vec3 x) {
-    if (!covers(view, x)) {
-      gather_for(view, x);
-    }
+  [[nodiscard]] bool covers(const BlobView& view, Vec3 x) const {
+    return valid_ && is_near(view, x);
   }
+  /// Will it be, or is it, when the gather that was begun last is done?
+  [[nodiscard]] bool will_cover(const BlobView& view, Vec3 x) const {
+    return (valid_ || begun_) && is_near(view, x);
+  }
+  /// Has a gather begun that is not done yet? The set is not to be used then.
+  [[nodiscard]] bool is_begun() const { return begun_; }
+  /// Begins one around a place ahead of x, in the direction the query has moved.
+  void begin_for(const BlobView& view, Vec3 x);
+  /// Goes on with it while there is something `left`; true: done. Cost: what was left; for a whole
+  /// gather 8 leaves of points_per_query_max points, of which points_per_slab_max are looked at and
+  /// points_per_ball_max decoded.
+  bool gather(const BlobView& view, GatherSlice& left);
+  /// All at once.
+  void cover(const BlobView& view, Vec3 x);
 
   [[nodiscard]] std::uint32_t count() const { return count_; }
   /// False: the blob held more points than it declares, or than kMaxCandidates, and some were left
@@ -71,18 +94,26 @@ class CandidateSet {
   [[nodiscard]] const Candidate* end() const { return candidates_ + count_; }
 
  private:
-  void gather(const BlobView& view, Vec3 centre);
-  void gather_leaf(const BlobView& view, const NearLeaf& leaf, Int3 leaf_min);
+  [[nodiscard]] bool is_near(const BlobView& view, Vec3 x) const;
+  [[nodiscard]] bool gather_corner(const BlobView& view, CornerLeaves& corners, GatherSlice& left);
+  [[nodiscard]] bool gather_leaf(const BlobView& view, const NearLeaf& leaf, Int3 leaf_min,
+                                 GatherSlice& left);
+  void begin_leaf(const BlobView& view, const NearLeaf& leaf, std::uint32_t first_word);
   [[nodiscard]] bool is_within(float reach, Vec3 position) const;
-  [[nodiscard]] bool add(const BlobView& view, Int3 place, std::uint32_t point);
+  [[nodiscard]] bool add(const BlobView& view, Int3 place, std::uint32_t point, std::uint32_t room);
 
   Candidate candidates_[kMaxCandidates];
   std::uint32_t count_ = 0;
   std::uint32_t most_ = 0;      // candidates that the blob declares, and there is room for
   std::uint32_t unseen_ = 0;    // points that it declares for a query and that were not met yet
   std::uint32_t untested_ = 0;  // likewise, for a slab
+  std::uint32_t corner_ = 0;    // where the gather goes on: in the leaf of this corner,
+  std::uint32_t next_ = 0;      // with this point
+  std::uint32_t end_ = 0;       // behind its last
+  bool in_leaf_ = false;        // next_ and end_ hold
   Vec3 centre_{};
   bool valid_ = false;
+  bool begun_ = false;
   bool complete_ = true;
 };
 
@@ -134,7 +165,7 @@ enum class SurfaceSupport : std::uint8_t {
   kOk = 0,
   kEmpty,          ///< no model
   kNoReach,        ///< the blob was built without the guarantee reach > support radius > 0
-  kTooManyPoints,  ///< a ball may hold more than kMaxCandidates points
+  kTooManyPoints,  ///< a ball may hold more than kMaxCandidates points, or a leaf 256 or more
 };
 [[nodiscard]] SurfaceSupport surface_support(const BlobView& view);
 
