@@ -2,14 +2,13 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <utility>
 
 #include "command.hpp"
+#include "json_reader.hpp"
 #include "json_text.hpp"
 
 namespace tactree::cli {
@@ -23,23 +22,6 @@ constexpr const char* kHomingNames[core::kHomingMethods] = {"absolute", "given-p
                                                             "hard-stop"};
 // A device file is a page of text.
 constexpr std::uintmax_t kMaxBytes = 1U << 20U;
-
-template <std::size_t N>
-std::string listed(const char* const (&names)[N]) {
-  std::string all;
-  for (const char* name : names) {
-    all += (all.empty() ? "" : ", ") + std::string(name);
-  }
-  return all;
-}
-
-std::string known_names() {
-  std::string all;
-  for (const std::string& name : device_names()) {
-    all += (all.empty() ? "" : ", ") + name;
-  }
-  return all;
-}
 
 /// Every figure of a device with its key and range, for reading and writing alike.
 ///   figures.one(key, value, low, high)    a number
@@ -118,80 +100,9 @@ class Writer {
   Json& json_;
 };
 
-class Reader {
- public:
-  Reader(std::string file, const Json& json) : file_(std::move(file)), json_(json) {}
-
-  [[noreturn]] void refuse(const std::string& key, const std::string& cause,
-                           const std::string& remedy) const {
-    throw CommandError(fmt::format("{}: {}: {} ({})", file_, key, cause, remedy));
-  }
-
-  void one(const char* key, float& value, double low, double high) {
-    value = number(key, get(key), low, high);
-  }
-  void each(const char* key, float (&values)[core::kAxes], double low, double high) {
-    const Json& array = get(key);
-    if (!array.is_array() || array.size() != core::kAxes) {
-      refuse(key, "is not a list of three numbers", "one for each axis; 0 or 1 for an unused one");
-    }
-    for (std::size_t i = 0; i < core::kAxes; ++i) {
-      values[i] = number(fmt::format("{}[{}]", key, i), array[i], low, high);
-    }
-  }
-  template <std::size_t N>
-  std::uint8_t choice(const char* key, const char* const (&names)[N]) {
-    const std::string name = text(key);
-    for (std::size_t i = 0; i < N; ++i) {
-      if (name == names[i]) {
-        return static_cast<std::uint8_t>(i);
-      }
-    }
-    refuse(key, fmt::format("'{}' is unknown", name), "one of: " + listed(names));
-  }
-  std::string text(const char* key) {
-    const Json& value = get(key);
-    if (!value.is_string()) {
-      refuse(key, "is not a text", "write it in quotes");
-    }
-    return value.get<std::string>();
-  }
-  /// After everything was read: a key that nobody asked for is a typing error.
-  void finish() const {
-    for (const auto& [key, value] : json_.items()) {
-      if (std::find(known_.begin(), known_.end(), key) == known_.end()) {
-        refuse(key, "is unknown for this kind of device", "see --dump-device for the keys");
-      }
-    }
-  }
-
- private:
-  const Json& get(const char* key) {
-    known_.emplace_back(key);
-    const auto found = json_.find(key);
-    if (found == json_.end()) {
-      refuse(key, "is missing", "begin with a file of --dump-device");
-    }
-    return *found;
-  }
-  [[nodiscard]] float number(const std::string& key, const Json& value, double low,
-                             double high) const {
-    if (!value.is_number()) {
-      refuse(key, "is not a number", fmt::format("give {:.6g} .. {:.6g}", low, high));
-    }
-    const double figure = value.get<double>();
-    // The narrowing may round a limit outwards by half a unit.
-    if (!(figure >= low - 1e-7 * std::abs(low) && figure <= high + 1e-7 * std::abs(high))) {
-      refuse(key, fmt::format("{:.6g} is out of range", figure),
-             fmt::format("give {:.6g} .. {:.6g}", low, high));
-    }
-    return static_cast<float>(figure);
-  }
-
-  std::string file_;
-  const Json& json_;
-  std::vector<std::string> known_;
-};
+constexpr JsonRemedies kRemedies = {
+    "is unknown for this kind of device", "see --dump-device for the keys",
+    "begin with a file of --dump-device", "one for each axis; 0 or 1 for an unused one"};
 
 Json read_json(const std::string& file) {
   std::error_code error;
@@ -200,7 +111,7 @@ Json read_json(const std::string& file) {
     throw CommandError(
         fmt::format("--device: '{}' is neither a device nor a readable file "
                     "(devices: {}; or write one with --dump-device)",
-                    file, known_names()));
+                    file, listed(device_names())));
   }
   if (bytes > kMaxBytes) {
     throw CommandError(fmt::format("{}: is too large for a device (at most 1 MiB)", file));
@@ -216,7 +127,7 @@ Json read_json(const std::string& file) {
 
 Device read_device(const std::string& file) {
   const Json json = read_json(file);
-  Reader reader(file, json);
+  JsonReader reader(file, json, kRemedies);
   Device device;
   device.name = reader.text("name");
   device.about = reader.text("about");

@@ -1,0 +1,129 @@
+#include "json_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "command.hpp"
+
+namespace tactree::cli {
+
+std::string listed(const std::vector<std::string>& names) {
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+JsonReader::JsonReader(std::string file, const Json& json, const JsonRemedies& remedies,
+                       std::string place)
+    : file_(std::move(file)), json_(json), remedies_(remedies), place_(std::move(place)) {
+  if (!json.is_object()) {
+    throw CommandError(fmt::format("{}: {} is not an object (write it in braces)", file_,
+                                   place_.empty() ? "it" : place_));
+  }
+}
+
+std::string JsonReader::path(const std::string& key) const {
+  return place_.empty() ? key : place_ + "." + key;
+}
+
+void JsonReader::refuse(const std::string& key, const std::string& cause,
+                        const std::string& remedy) const {
+  throw CommandError(fmt::format("{}: {}: {} ({})", file_, path(key), cause, remedy));
+}
+
+const JsonReader::Json& JsonReader::get(const char* key) {
+  known_.emplace_back(key);
+  const auto found = json_.find(key);
+  if (found == json_.end()) {
+    refuse(key, "is missing", remedies_.missing);
+  }
+  return *found;
+}
+
+double JsonReader::number(const std::string& key, const Json& value, double low,
+                          double high) const {
+  if (!value.is_number()) {
+    refuse(key, "is not a number", fmt::format("give {:.6g} .. {:.6g}", low, high));
+  }
+  const double figure = value.get<double>();
+  // The narrowing may round a limit outwards by half a unit.
+  if (!(figure >= low - 1e-7 * std::abs(low) && figure <= high + 1e-7 * std::abs(high))) {
+    refuse(key, fmt::format("{:.6g} is out of range", figure),
+           fmt::format("give {:.6g} .. {:.6g}", low, high));
+  }
+  return figure;
+}
+
+void JsonReader::one(const char* key, float& value, double low, double high) {
+  value = static_cast<float>(number(key, get(key), low, high));
+}
+
+void JsonReader::each(const char* key, float (&values)[core::kAxes], double low, double high) {
+  const Json& array = get(key);
+  if (!array.is_array() || array.size() != core::kAxes) {
+    refuse(key, "is not a list of three numbers", remedies_.list);
+  }
+  for (std::size_t i = 0; i < core::kAxes; ++i) {
+    values[i] = static_cast<float>(number(fmt::format("{}[{}]", key, i), array[i], low, high));
+  }
+}
+
+std::uint32_t JsonReader::whole(const char* key, std::uint32_t low, std::uint32_t high) {
+  const Json& value = get(key);
+  const double figure = number(key, value, low, high);
+  if (figure != std::floor(figure)) {
+    refuse(key, fmt::format("{:.6g} is not a whole number", figure), "round it");
+  }
+  return static_cast<std::uint32_t>(figure);
+}
+
+bool JsonReader::flag(const char* key) {
+  const Json& value = get(key);
+  if (!value.is_boolean()) {
+    refuse(key, "is neither true nor false", "write one of them, without quotes");
+  }
+  return value.get<bool>();
+}
+
+std::string JsonReader::text(const char* key) {
+  const Json& value = get(key);
+  if (!value.is_string()) {
+    refuse(key, "is not a text", "write it in quotes");
+  }
+  return value.get<std::string>();
+}
+
+std::uint8_t JsonReader::choice_of(const char* key, const std::vector<std::string>& names) {
+  const std::string name = text(key);
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) {
+    refuse(key, fmt::format("'{}' is unknown", name), "one of: " + listed(names));
+  }
+  return static_cast<std::uint8_t>(found - names.begin());
+}
+
+JsonReader JsonReader::object(const char* key) { return {file_, get(key), remedies_, path(key)}; }
+
+std::vector<JsonReader> JsonReader::objects(const char* key, std::size_t low, std::size_t high) {
+  const Json& array = get(key);
+  if (!array.is_array() || array.size() < low || array.size() > high) {
+    refuse(key, "is not a list of so many",
+           low == high ? fmt::format("give {}", low) : fmt::format("give {} to {}", low, high));
+  }
+  std::vector<JsonReader> readers;
+  for (std::size_t i = 0; i < array.size(); ++i) {
+    readers.emplace_back(file_, array[i], remedies_, fmt::format("{}[{}]", path(key), i));
+  }
+  return readers;
+}
+
+void JsonReader::finish() const {
+  for (const auto& [key, value] : json_.items()) {
+    if (std::find(known_.begin(), known_.end(), key) == known_.end()) {
+      refuse(key, remedies_.unknown, remedies_.keys);
+    }
+  }
+}
+
+}  // namespace tactree::cli
