@@ -30,13 +30,19 @@ class Gpio : public testing::Test {
  protected:
   /// A quarter of a period of an encoder, and the board takes notice.
   void turn(std::size_t axis, int way, GpioEncoderBank& bank) {
-    position_[axis] += way;
-    const unsigned quarter = static_cast<unsigned>(position_[axis]) & 3U;
-    const bool b = quarter >= 2U;
-    const bool a = quarter == 1U || quarter == 2U;
-    chip_.pull(2 * axis, a);
-    chip_.pull(2 * axis + 1, b);
+    step(axis, position_[axis] += way);
     settle(bank, axis);
+  }
+  /// Only the line that changes: a call is an edge.
+  void step(std::size_t axis, int position) {
+    const unsigned quarter = static_cast<unsigned>(position) & 3U;
+    const std::array<bool, 2> levels = {quarter == 1U || quarter == 2U, quarter >= 2U};
+    for (std::size_t k = 0; k < 2; ++k) {
+      if (levels_[2 * axis + k] != levels[k]) {
+        levels_[2 * axis + k] = levels[k];
+        chip_.pull(2 * axis + k, levels[k]);
+      }
+    }
   }
   /// Edges are told by an interrupt: a moment later.
   void settle(GpioEncoderBank& bank, std::size_t axis) {
@@ -47,6 +53,7 @@ class Gpio : public testing::Test {
 
   GpioSim chip_{"board", kNames};
   std::array<int, 3> position_{};
+  std::array<bool, 4> levels_{};
 };
 
 std::string refusal(const std::function<void()>& act) {
@@ -75,6 +82,52 @@ TEST_F(Gpio, EncodersCountEveryEdgeInLockStep) {
   EXPECT_EQ(bank.lost(), 0U);
   EXPECT_GT(bank.last_edge_ns(), 0U);
   std::printf("encoders: 2000 edges in lock-step, %u lost\n", bank.lost());
+}
+
+/// As fast as this kernel takes them, read once in a while, as a loop does.
+TEST_F(Gpio, AMillionEdgesLeaveTheExactCount) {
+  constexpr int kEdges = 1'000'000;
+  constexpr int kEdgesPerRead = 50;
+  GpioEncoderBank bank(kAxes, "tactree", 0);
+  std::array<int, 2> position{};
+  std::mt19937 random(2);
+  for (int i = 0; i < kEdges; i += kEdgesPerRead) {
+    const std::size_t axis = random() % 2U;
+    const int way = random() % 2U == 0U ? -1 : 1;
+    for (int k = 0; k < kEdgesPerRead; ++k) {
+      step(axis, position[axis] += way);
+    }
+    const core::EncoderReading reading = bank.read();
+    ASSERT_TRUE(reading.valid[0] && reading.valid[1]) << "after " << i << " edges";
+  }
+  const core::EncoderReading reading = bank.read();
+  EXPECT_EQ(reading.counts[0], position[0]);
+  EXPECT_EQ(reading.counts[1], position[1]);
+  EXPECT_EQ(bank.lost() + bank.illegal(0) + bank.illegal(1), 0U);
+  std::printf("encoders: %d edges, %d to a read, %u lost\n", kEdges, kEdgesPerRead, bank.lost());
+}
+
+TEST_F(Gpio, AnIndexPulseComesWithTheCountOfItsMoment) {
+  GpioEncoderBank bank({{"encoder0-a", "encoder0-b", "read-back"}, kAxes[1]}, "tactree", 0);
+  turn(0, 1, bank);
+  turn(0, 1, bank);
+  EXPECT_FALSE(bank.read().index[0]);
+  step(0, position_[0] += 1);
+  chip_.pull(kReadBack, true);
+  step(0, position_[0] += 1);
+  chip_.pull(kReadBack, false);
+  core::EncoderReading reading;
+  for (int i = 0; i < 10000 && !reading.index[0]; ++i) {
+    std::this_thread::yield();
+    reading = bank.read();
+  }
+  EXPECT_TRUE(reading.index[0]);
+  EXPECT_EQ(reading.index_count[0], 3);
+  EXPECT_FALSE(reading.index[1]);
+  settle(bank, 0);
+  reading = bank.read();
+  EXPECT_EQ(reading.counts[0], 4);
+  EXPECT_FALSE(reading.index[0]) << "it is told once";
 }
 
 /// Nobody reads for a while: the kernel's buffer runs over, and that is noticed.
@@ -164,6 +217,8 @@ TEST_F(Gpio, RefusalsNameLineCauseAndRemedy) {
   EXPECT_TRUE(holds(apart, "use lines of one chip")) << apart;
   const std::string twice = refusal([] { GpioSafetyInputs("e-stop", "dead-man", "tactree"); });
   EXPECT_TRUE(holds(twice, "line 'dead-man'") && holds(twice, "have one of that name")) << twice;
+  EXPECT_EQ(find_line(chip_.label() + ":dead-man").chip, "/dev/" + chip_.chip());
+  EXPECT_EQ(find_line(other.label() + ":dead-man").chip, "/dev/" + other.chip());
 }
 
 TEST_F(Gpio, WhoMayNotIsTold) {

@@ -25,6 +25,7 @@ InputSettings pulled_down(bool edges) {
 GpioEncoderBank::GpioEncoderBank(const std::vector<EncoderLines>& axes, const std::string& consumer,
                                  std::uint32_t faults_max)
     : axes_(static_cast<std::uint32_t>(axes.size())),
+      index_axes_(axes_with_index(axes)),
       faults_max_(faults_max),
       lines_(GpioLines::inputs(names_of(axes), consumer, with_edges())) {
   std::uint64_t bits = 0;
@@ -43,13 +44,34 @@ std::vector<std::string> GpioEncoderBank::names_of(const std::vector<EncoderLine
     names.push_back(axis.a);
     names.push_back(axis.b);
   }
+  for (const std::uint32_t axis : axes_with_index(axes)) {  // bound: kAxes
+    names.push_back(axes[axis].index);
+  }
   return names;
 }
 
-void GpioEncoderBank::take(const Edge& edge) noexcept {
+std::vector<std::uint32_t> GpioEncoderBank::axes_with_index(const std::vector<EncoderLines>& axes) {
+  std::vector<std::uint32_t> found;
+  for (std::uint32_t i = 0; i < axes.size(); ++i) {  // bound: kAxes
+    if (!axes[i].index.empty()) {
+      found.push_back(i);
+    }
+  }
+  return found;
+}
+
+void GpioEncoderBank::take(const Edge& edge, core::EncoderReading& reading) noexcept {
   lost_ += edge.sequence - next_sequence_;
   next_sequence_ = edge.sequence + 1U;
   last_edge_ns_ = edge.time_ns;
+  if (edge.line >= 2U * axes_) {
+    const std::uint32_t axis = index_axes_[edge.line - 2U * axes_];
+    if (edge.level) {
+      reading.index[axis] = true;
+      reading.index_count[axis] = static_cast<std::int32_t>(decoders_[axis].count());
+    }
+    return;
+  }
   core::QuadratureDecoder& decoder = decoders_[edge.line / 2U];
   core::QuadratureLevels levels = decoder.levels();
   (edge.line % 2U == 0U ? levels.a : levels.b) = edge.level;
@@ -62,15 +84,15 @@ bool GpioEncoderBank::is_trusted(std::uint32_t axis) const {
 
 core::EncoderReading GpioEncoderBank::read() noexcept {
   std::array<Edge, kEdgesAtOnce> edges;
+  core::EncoderReading reading;
   int found = kEdgesAtOnce;
   for (int i = 0; i < kReadsPerTick && found == kEdgesAtOnce; ++i) {  // bound: kReadsPerTick
     found = lines_.read_edges(edges.data(), kEdgesAtOnce);
     gone_ = gone_ || found < 0;
     for (int k = 0; k < found; ++k) {  // bound: kEdgesAtOnce
-      take(edges[static_cast<std::size_t>(k)]);
+      take(edges[static_cast<std::size_t>(k)], reading);
     }
   }
-  core::EncoderReading reading;
   for (std::uint32_t i = 0; i < core::kAxes; ++i) {  // bound: kAxes
     reading.counts[i] = static_cast<std::int32_t>(decoders_[i].count());
     reading.valid[i] = i >= axes_ ? !gone_ : is_trusted(i);

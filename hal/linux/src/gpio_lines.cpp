@@ -12,39 +12,14 @@
 #include <filesystem>
 #include <utility>
 
+#include "tactree/hal/linux/file_descriptor.hpp"
+
 namespace tactree::hal::linux_gpio {
 namespace {
 
 constexpr std::size_t kEdgesAtOnce = 64;
 
-class File {
- public:
-  explicit File(int descriptor) : descriptor_(descriptor) {}
-  ~File() {
-    if (descriptor_ >= 0) {
-      close(descriptor_);
-    }
-  }
-  File(File&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
-  File& operator=(File&& other) noexcept {
-    std::swap(descriptor_, other.descriptor_);
-    return *this;
-  }
-  File(const File&) = delete;
-  File& operator=(const File&) = delete;
-  [[nodiscard]] int get() const { return descriptor_; }
-
- private:
-  int descriptor_;
-};
-
 std::string quoted(const std::string& name) { return "line '" + name + "'"; }
-
-struct Place {
-  std::string chip;
-  std::uint32_t offset = 0;
-  std::string user;  ///< who has it; empty: nobody
-};
 
 std::vector<std::string> chips() {
   std::vector<std::string> found;
@@ -57,9 +32,15 @@ std::vector<std::string> chips() {
   return found;
 }
 
+/// A name that is a line's, or "label:line" with the label of a chip.
+bool is_called(const std::string& name, const gpiochip_info& chip, const gpio_v2_line_info& line) {
+  return line.name[0] != '\0' &&
+         (name == line.name || name == std::string(chip.label) + ":" + line.name);
+}
+
 /// Adds where on a chip lines of that name are.
 void find_on(const std::string& chip, int file, const std::string& name,
-             std::vector<Place>& places) {
+             std::vector<LinePlace>& places) {
   gpiochip_info info{};
   if (ioctl(file, GPIO_GET_CHIPINFO_IOCTL, &info) != 0) {
     return;
@@ -67,46 +48,17 @@ void find_on(const std::string& chip, int file, const std::string& name,
   for (std::uint32_t i = 0; i < info.lines; ++i) {  // bound: lines of the chip
     gpio_v2_line_info line{};
     line.offset = i;
-    if (ioctl(file, GPIO_V2_GET_LINEINFO_IOCTL, &line) == 0 && name == line.name) {
+    if (ioctl(file, GPIO_V2_GET_LINEINFO_IOCTL, &line) == 0 && is_called(name, info, line)) {
       const bool used = (line.flags & GPIO_V2_LINE_FLAG_USED) != 0U;
-      places.push_back({chip, i, used ? std::string(line.consumer) : std::string()});
+      places.push_back({chip, i, used, used ? std::string(line.consumer) : std::string()});
     }
   }
 }
 
-Place find(const std::string& name) {
-  std::vector<Place> places;
-  std::string forbidden;
-  const std::vector<std::string> all = chips();
-  for (const std::string& chip : all) {  // bound: chips
-    const File file(open(chip.c_str(), O_RDWR | O_CLOEXEC));
-    if (file.get() >= 0) {
-      find_on(chip, file.get(), name, places);
-    } else if (errno == EACCES || errno == EPERM) {
-      forbidden = chip;
-    }
-  }
-  if (places.size() > 1) {
-    throw GpioError(quoted(name) + ": " + places[0].chip + " and " + places[1].chip +
-                    " have one of that name (remedy: give them names of their own)");
-  }
-  if (!places.empty()) {
-    return places.front();
-  }
-  if (!forbidden.empty()) {
-    throw GpioError(quoted(name) + ": " + forbidden +
-                    ": permission denied (remedy: join the group that owns it, or run as root)");
-  }
-  if (all.empty()) {
-    throw GpioError(quoted(name) + ": there is no GPIO chip (remedy: load its driver)");
-  }
-  throw GpioError(quoted(name) + ": no chip has a line of that name (remedy: gpioinfo lists them)");
-}
-
-std::vector<Place> find_all(const std::vector<std::string>& names) {
-  std::vector<Place> places;
+std::vector<LinePlace> find_all(const std::vector<std::string>& names) {
+  std::vector<LinePlace> places;
   for (const std::string& name : names) {  // bound: names
-    places.push_back(find(name));
+    places.push_back(find_line(name));
     if (places.back().chip != places.front().chip) {
       throw GpioError(quoted(name) + ": on " + places.back().chip + ", but " +
                       quoted(names.front()) + " on " + places.front().chip +
@@ -116,8 +68,8 @@ std::vector<Place> find_all(const std::vector<std::string>& names) {
   return places;
 }
 
-[[noreturn]] void refuse(const std::vector<std::string>& names, const std::vector<Place>& places,
-                         int error) {
+[[noreturn]] void refuse(const std::vector<std::string>& names,
+                         const std::vector<LinePlace>& places, int error) {
   for (std::size_t i = 0; i < names.size(); ++i) {  // bound: names
     if (error == EBUSY && !places[i].user.empty()) {
       throw GpioError(quoted(names[i]) + ": in use by '" + places[i].user +
@@ -134,10 +86,10 @@ std::pair<int, std::vector<std::uint32_t>> request(const std::vector<std::string
   if (names.empty() || names.size() > GPIO_V2_LINES_MAX) {
     throw GpioError("no lines, or more than 64, were asked for (remedy: name some)");
   }
-  const std::vector<Place> places = find_all(names);
+  const std::vector<LinePlace> places = find_all(names);
   gpio_v2_line_request wanted{};
   std::vector<std::uint32_t> offsets;
-  for (const Place& place : places) {  // bound: names
+  for (const LinePlace& place : places) {  // bound: names
     wanted.offsets[offsets.size()] = place.offset;
     offsets.push_back(place.offset);
   }
@@ -145,7 +97,7 @@ std::pair<int, std::vector<std::uint32_t>> request(const std::vector<std::string
   wanted.event_buffer_size = buffer;
   wanted.config.flags = flags;
   consumer.copy(wanted.consumer, sizeof(wanted.consumer) - 1);
-  const File chip(open(places.front().chip.c_str(), O_RDWR | O_CLOEXEC));
+  const FileDescriptor chip(open(places.front().chip.c_str(), O_RDWR | O_CLOEXEC));
   if (chip.get() < 0 || ioctl(chip.get(), GPIO_V2_GET_LINE_IOCTL, &wanted) != 0) {
     refuse(names, places, errno);
   }
@@ -160,6 +112,37 @@ std::uint64_t mask_of(std::size_t lines) {
 }
 
 }  // namespace
+
+LinePlace find_line(const std::string& name) {
+  std::vector<LinePlace> places;
+  std::string forbidden;
+  const std::vector<std::string> all = chips();
+  for (const std::string& chip : all) {  // bound: chips
+    const FileDescriptor file(open(chip.c_str(), O_RDWR | O_CLOEXEC));
+    if (file.get() >= 0) {
+      find_on(chip, file.get(), name, places);
+    } else if (errno == EACCES || errno == EPERM) {
+      forbidden = chip;
+    }
+  }
+  if (places.size() > 1) {
+    throw GpioError(quoted(name) + ": " + places[0].chip + " and " + places[1].chip +
+                    " have one of that name (remedy: put the chip's label before it, "
+                    "'label:" +
+                    name + "'; gpiodetect lists them)");
+  }
+  if (!places.empty()) {
+    return places.front();
+  }
+  if (!forbidden.empty()) {
+    throw GpioError(quoted(name) + ": " + forbidden +
+                    ": permission denied (remedy: join the group that owns it, or run as root)");
+  }
+  if (all.empty()) {
+    throw GpioError(quoted(name) + ": there is no GPIO chip (remedy: load its driver)");
+  }
+  throw GpioError(quoted(name) + ": no chip has a line of that name (remedy: gpioinfo lists them)");
+}
 
 GpioLines::GpioLines(int file, std::vector<std::uint32_t> offsets)
     : file_(file), offsets_(std::move(offsets)) {}

@@ -16,10 +16,12 @@ namespace tactree::hal::linux_gpio {
 struct EncoderLines {
   std::string a;
   std::string b;
+  std::string index = {};  ///< high for a moment, once a revolution or at the home position
 };
 
 /// Quadrature by edges. Linux is no counter: edges that it missed, and transitions that cannot be,
 /// are counted, and beyond a limit the axis is not valid any more, until the bank is made anew.
+/// An index pulse counts where it rises, with the count of that moment: edges come in their order.
 class GpioEncoderBank {
  public:
   /// One for each axis, at most core::kAxes; the other axes read 0. All on one chip.
@@ -38,10 +40,13 @@ class GpioEncoderBank {
 
  private:
   [[nodiscard]] static std::vector<std::string> names_of(const std::vector<EncoderLines>& axes);
-  void take(const Edge& edge) noexcept;
+  [[nodiscard]] static std::vector<std::uint32_t> axes_with_index(
+      const std::vector<EncoderLines>& axes);
+  void take(const Edge& edge, core::EncoderReading& reading) noexcept;
   [[nodiscard]] bool is_trusted(std::uint32_t axis) const;
 
   std::uint32_t axes_;
+  std::vector<std::uint32_t> index_axes_;  // of the lines after all a and b
   std::uint32_t faults_max_;
   GpioLines lines_;
   std::array<core::QuadratureDecoder, core::kAxes> decoders_{};
@@ -52,14 +57,17 @@ class GpioEncoderBank {
 };
 
 /// The line that gives the amplifiers their power, and the one that comes back from them. The
-/// kernel lets go of the lines when the program ends, however it ends; so let the hardware's pull
-/// say off.
+/// kernel lets go of the lines when the program ends, however it ends: then some drivers make the
+/// line an input, so that the hardware's pull decides, and some leave it as it was. So let that
+/// pull say off, and have an EnableGuard (enable_guard.hpp) that puts it off first.
 class GpioEnableLine {
  public:
   GpioEnableLine(const std::string& enable, const std::string& read_back,
                  const std::string& consumer);
   void set(bool on) noexcept { (void)enable_.set(on ? 1U : 0U); }
   [[nodiscard]] bool read_back() noexcept;
+  /// The line that set() drives, for a guard.
+  [[nodiscard]] GpioLines& line() { return enable_; }
   ~GpioEnableLine() { set(false); }
   GpioEnableLine(const GpioEnableLine&) = delete;
   GpioEnableLine& operator=(const GpioEnableLine&) = delete;

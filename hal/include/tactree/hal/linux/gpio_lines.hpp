@@ -23,6 +23,18 @@ struct Edge {
   std::uint32_t sequence = 0;  ///< 1, 2, ... over all lines: a gap is edges that were lost
 };
 
+/// Where a line is.
+struct LinePlace {
+  std::string chip;  ///< its device: "/dev/gpiochip0"
+  std::uint32_t offset = 0;
+  bool used = false;
+  std::string user;  ///< who has it, as far as that is told
+};
+
+/// Looks a line up without taking it. `name` is the line's, or where several chips have one of that
+/// name, the chip's label, a colon, and the line's: "pinctrl-rp1:GPIO17". Throws GpioError.
+[[nodiscard]] LinePlace find_line(const std::string& name);
+
 enum class Bias : std::uint8_t { kAsIs, kPullUp, kPullDown };
 
 struct InputSettings {
