@@ -1,0 +1,53 @@
+#include "tactree/hal/linux/controller_board.hpp"
+
+namespace tactree::hal::linux_gpio {
+namespace {
+
+// A kick is a system call, and the shortest watchdog waits for a second.
+constexpr std::uint64_t kKickEvery_ns = 100'000'000;
+
+std::uint32_t ticks_per_kick(std::uint64_t period_ns) {
+  const std::uint64_t ticks = kKickEvery_ns / period_ns;
+  return ticks == 0U ? 1U : static_cast<std::uint32_t>(ticks);
+}
+
+}  // namespace
+
+ControllerBoard::ControllerBoard(const ControllerBoardSettings& settings,
+                                 std::span<const std::byte> blob, TickMailbox& mailbox)
+    : enable_line_(settings.enable, settings.enable_read_back, settings.consumer),
+      guard_(enable_line_.line(), settings.guard),
+      motors_(settings.motors, settings.consumer),
+      safety_inputs_(settings.emergency_stop, settings.dead_man, settings.consumer),
+      encoders_(settings.encoders, settings.consumer, settings.encoder_faults_max),
+      in_time_(ticks_per_kick(settings.period_ns)),
+      clock_(settings.period_ns),
+      ticker_(*this),
+      link_{mailbox, ticker_},
+      storage_(blob) {
+  if (!settings.heartbeat.empty()) {
+    heartbeat_.emplace(GpioLines::outputs({settings.heartbeat}, settings.consumer, false));
+  }
+  if (!settings.watchdog.empty()) {
+    watchdog_.emplace(settings.watchdog, settings.watchdog_timeout_s);
+  }
+}
+
+void ControllerBoard::stop() noexcept {
+  enable_line_.set(false);
+  guard_.rest();
+  motors_.release();
+}
+
+void ControllerBoard::tell_watchers(bool in_time) noexcept {
+  guard_.beat();
+  if (heartbeat_ && in_time) {
+    heartbeat_level_ = !heartbeat_level_;
+    (void)heartbeat_->set(heartbeat_level_ ? 1U : 0U);
+  }
+  if (in_time_.is_due(in_time) && watchdog_) {
+    watchdog_->kick();
+  }
+}
+
+}  // namespace tactree::hal::linux_gpio

@@ -1,0 +1,94 @@
+#pragma once
+// A haptic device at the lines of a simulated chip, in a process of its own: quadrature edges and
+// switches in, enable line, directions and pulse widths out. And the hand that holds it.
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "gpio_sim.hpp"
+#include "tactree/core/device_presets.hpp"
+
+namespace tactree::vm_test {
+
+/// Lines by number, with their names in kLineNames.
+enum class Wire : std::uint8_t {
+  kA0,
+  kB0,
+  kIndex0,
+  kA1,
+  kB1,
+  kIndex1,
+  kA2,
+  kB2,
+  kIndex2,
+  kDirection0,
+  kDirection1,
+  kDirection2,
+  kEnable,
+  kReadBack,
+  kEmergencyStop,
+  kDeadMan,
+  kGood,
+  kHeartbeat,
+};
+inline const std::vector<std::string> kLineNames = {
+    "enc0-a", "enc0-b", "enc0-i", "enc1-a", "enc1-b", "enc1-i", "enc2-a", "enc2-b", "enc2-i",
+    "dir0",   "dir1",   "dir2",   "enable", "power",  "e-stop", "hand",   "good",   "beat"};
+
+/// Shared between the test and the device's process.
+struct Hands {
+  // What people do.
+  std::array<std::atomic<double>, 3> hand_m{};
+  std::atomic<bool> dead_man{false};
+  std::atomic<bool> pull_stop{false};  ///< taken back when it was pulled, at its own moment
+  std::atomic<bool> release_stop{false};
+  std::atomic<bool> end{false};
+  // What can be seen.
+  std::array<std::atomic<double>, 3> tip_m{};
+  std::array<std::atomic<double>, 3> effort_N{};
+  std::atomic<double> effort_max_N{0.0};         ///< of any axis, since it was set to 0
+  std::atomic<std::int64_t> stop_to_off_ns{-1};  ///< -1: not measured yet
+  std::atomic<std::uint64_t> edges{0};
+  std::atomic<std::uint64_t> beats{0};  ///< changes of the heartbeat line
+};
+
+/// Cartesian, three axes, an index pulse at 0: what the tests' file describes.
+[[nodiscard]] core::DevicePreset test_device();
+inline constexpr float kFullEffort_N = 8.0F;
+inline constexpr std::uint32_t kPwmPeriod_ns = 50'000;
+
+/// A folder as /sys/class/pwm has them: the test kernel has no PWM driver.
+class PwmFolder {
+ public:
+  explicit PwmFolder(const std::filesystem::path& folder);
+  [[nodiscard]] const std::filesystem::path& root() const { return root_; }
+  /// Nanoseconds.
+  [[nodiscard]] long width(std::size_t channel) const;
+
+ private:
+  std::filesystem::path root_;
+  std::vector<hal::FileDescriptor> widths_;
+};
+
+class ControlledDevice {
+ public:
+  /// Starts the process. The tip is at `start_m`.
+  ControlledDevice(GpioSim& chip, const PwmFolder& pwm, const std::array<double, 3>& start_m);
+  ~ControlledDevice();
+  ControlledDevice(const ControlledDevice&) = delete;
+  ControlledDevice& operator=(const ControlledDevice&) = delete;
+
+  [[nodiscard]] Hands& hands() { return *hands_; }
+  /// The hand goes there in a straight line, and this returns when it has arrived.
+  void move_hand(const std::array<double, 3>& to_m, double speed_m_s);
+
+ private:
+  Hands* hands_;
+  pid_t process_;
+};
+
+}  // namespace tactree::vm_test
