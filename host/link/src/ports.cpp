@@ -2,6 +2,7 @@
 
 #include <string_view>
 
+#include "tactree/host/local_socket.hpp"
 #include "tactree/host/serial_port.hpp"
 #include "tactree/host/usb_transport.hpp"
 
@@ -9,6 +10,7 @@ namespace tactree::host {
 namespace {
 
 constexpr std::string_view kUsb = "usb:";
+constexpr std::string_view kSocket = "unix:";
 
 }  // namespace
 
@@ -26,6 +28,9 @@ std::vector<std::string> list_ports() {
 std::unique_ptr<Transport> open_port(const std::string& name, unsigned baud) {
   if (name.starts_with(kUsb)) {
     return open_usb(name.substr(kUsb.size()));
+  }
+  if (name.starts_with(kSocket)) {
+    return open_local_socket(name.substr(kSocket.size()));
   }
   return open_serial_port(name, baud);
 }
