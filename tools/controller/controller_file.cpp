@@ -1,0 +1,227 @@
+#include "controller_file.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "command.hpp"
+#include "json_reader.hpp"
+
+namespace tactree::controller {
+namespace {
+
+using cli::CommandError;
+using cli::JsonReader;
+
+constexpr std::uintmax_t kMaxBytes = 1U << 20U;
+constexpr cli::JsonRemedies kRemedies = {"is unknown", "docs/LINUX-BOARD.md has the keys",
+                                         "docs/LINUX-BOARD.md tells what it is",
+                                         "one number for each axis, in [brackets]"};
+
+// A guard that looks less often than some ticks would take one late tick for a dead loop.
+constexpr std::uint64_t kGuardTicks = 5;
+constexpr std::uint64_t kNsPerMs = 1'000'000;
+
+JsonReader::Json read_json(const std::filesystem::path& file) {
+  std::error_code error;
+  const std::uintmax_t bytes = std::filesystem::file_size(file, error);
+  if (error) {
+    throw CommandError(fmt::format("{}: cannot be read: {} (give the controller's file)",
+                                   file.string(), error.message()));
+  }
+  if (bytes > kMaxBytes) {
+    throw CommandError(
+        fmt::format("{}: is too large for a controller's file (at most 1 MiB)", file.string()));
+  }
+  std::ifstream stream(file);
+  try {
+    return JsonReader::Json::parse(stream);
+  } catch (const nlohmann::json::parse_error& cause) {
+    throw CommandError(
+        fmt::format("{}: byte {}: is no JSON (correct it there)", file.string(), cause.byte));
+  }
+}
+
+/// A path in the file, meant from the file's folder; the name of a device is none.
+std::string from_folder(const std::filesystem::path& file, const std::string& path) {
+  return (file.parent_path() / path).string();
+}
+
+std::string device_of(const std::filesystem::path& file, JsonReader& reader) {
+  const std::string name = reader.text("device");
+  const std::vector<std::string> known = cli::device_names();
+  return std::find(known.begin(), known.end(), name) != known.end() ? name
+                                                                    : from_folder(file, name);
+}
+
+/// What is not there stays as it is.
+void read_limits(JsonReader limits, core::Configuration& c) {
+  const auto maybe = [&limits](const char* key, float& value, double low, double high) {
+    if (limits.has(key)) {
+      limits.one(key, value, low, high);
+    }
+  };
+  const auto maybe_flag = [&limits](const char* key, bool& value) {
+    value = limits.has(key) ? limits.flag(key) : value;
+  };
+  maybe("force_max_N", c.force_max_N, 0.01, static_cast<double>(c.force_max_N));
+  maybe("slew_N_s", c.slew_N_s, 1e-3, 1e6);
+  maybe("ramp_s", c.ramp_s, 1e-3, 10.0);
+  maybe("speed_max_m_s", c.speed_max_m_s, 0.1, 100.0);
+  maybe("stiffness_N_m", c.stiffness_N_m, 0.0, 1e5);
+  maybe("damping_Ns_m", c.damping_Ns_m, 0.0, 1000.0);
+  maybe("velocity_cutoff_hz", c.velocity_cutoff_hz, 1.0, 1e4);
+  maybe("delay_s", c.delay_s, 0.0, 0.1);
+  maybe("link_timeout_s", c.link_timeout_s, 0.005, 0.1);
+  maybe("enable_timeout_s", c.enable_timeout_s, 1e-3, 1.0);
+  maybe_flag("link_required", c.link_required);
+  maybe_flag("dead_man_required", c.dead_man_required);
+  maybe_flag("compensate_gravity", c.compensate_gravity);
+  maybe_flag("use_materials", c.use_materials);
+  limits.finish();
+}
+
+std::string maybe_text(JsonReader& reader, const char* key) {
+  return reader.has(key) ? reader.text(key) : "";
+}
+
+void read_encoders(JsonReader encoders, std::size_t axes,
+                   hal::linux_gpio::ControllerBoardSettings& board) {
+  if (encoders.has("faults_max")) {
+    board.encoder_faults_max = encoders.whole("faults_max", 0, 1'000'000);
+  }
+  for (JsonReader& axis : encoders.objects("axes", axes, axes)) {
+    board.encoders.push_back({axis.text("a"), axis.text("b"), maybe_text(axis, "index")});
+    axis.finish();
+  }
+  encoders.finish();
+}
+
+void read_motors(JsonReader motors, std::size_t axes, hal::linux_gpio::MotorSettings& settings) {
+  if (motors.has("pwm_root")) {
+    settings.pwm_root = motors.text("pwm_root");
+  }
+  settings.period_ns = motors.whole("period_ns", 1000, 1'000'000'000);
+  settings.good = maybe_text(motors, "good");
+  for (JsonReader& axis : motors.objects("axes", axes, axes)) {
+    hal::linux_gpio::MotorLines lines;
+    lines.chip = axis.text("chip");
+    lines.channel = axis.whole("channel", 0, 1000);
+    lines.direction = axis.text("direction");
+    axis.one("effort_at_full_width", lines.effort_at_full_width, 1e-4, 1e3);
+    axis.finish();
+    settings.axes.push_back(std::move(lines));
+  }
+  motors.finish();
+}
+
+void read_lines(JsonReader lines, hal::linux_gpio::ControllerBoardSettings& board) {
+  board.enable = lines.text("enable");
+  board.enable_read_back = lines.text("enable_read_back");
+  board.emergency_stop = lines.text("emergency_stop");
+  board.dead_man = lines.text("dead_man");
+  board.heartbeat = maybe_text(lines, "heartbeat");
+  lines.finish();
+}
+
+void read_watchdog(JsonReader watchdog, hal::linux_gpio::ControllerBoardSettings& board) {
+  board.watchdog = watchdog.text("device");
+  board.watchdog_timeout_s = watchdog.whole("timeout_s", 1, 600);
+  watchdog.finish();
+}
+
+void read_real_time(JsonReader reader, ControllerFile& result) {
+  if (reader.has("priority")) {
+    result.real_time.priority = static_cast<int>(reader.whole("priority", 0, 98));
+  }
+  if (reader.has("required")) {
+    result.real_time.required = reader.flag("required");
+  }
+  if (reader.has("guard_ms")) {
+    result.board.guard.silence_ns = kNsPerMs * reader.whole("guard_ms", 1, 1000);
+    const std::uint64_t least = kGuardTicks * result.board.period_ns;
+    if (result.board.guard.silence_ns < least) {
+      reader.refuse("guard_ms", "is shorter than five ticks",
+                    fmt::format("give {} or more", (least + kNsPerMs - 1) / kNsPerMs));
+    }
+  }
+  reader.finish();
+}
+
+/// The figures together: what no range of one of them tells.
+void check_together(const JsonReader& reader, const core::Configuration& configuration) {
+  const core::ConfigurationStatus status = core::check(configuration);
+  if (status == core::ConfigurationStatus::kUnstable) {
+    reader.refuse("limits.stiffness_N_m",
+                  fmt::format("{:.6g} N/m is beyond the stability limit of {:.6g} N/m with a hand",
+                              configuration.stiffness_N_m,
+                              core::stability_limit(configuration).with_hand_N_m),
+                  "lower it, or raise rate_hz or damping_Ns_m");
+  }
+  if (status != core::ConfigurationStatus::kOk) {
+    reader.refuse("limits", core::describe(status), "give a value in that range");
+  }
+}
+
+core::Configuration begin_configuration(JsonReader& reader, const cli::Device& device) {
+  core::Configuration configuration;
+  core::use_device(device.figures, configuration);
+  reader.one("rate_hz", configuration.rate_hz, 100.0, 20000.0);
+  configuration.velocity_cutoff_hz =
+      std::min(configuration.velocity_cutoff_hz, 0.5F * configuration.rate_hz);
+  if (reader.has("model_origin_m")) {
+    float origin[core::kAxes] = {0.0F, 0.0F, 0.0F};
+    reader.each("model_origin_m", origin, -10.0, 10.0);
+    configuration.model_origin_m = {origin[0], origin[1], origin[2]};
+  }
+  return configuration;
+}
+
+// What a motor cannot give is not asked of it.
+void bound_efforts(const hal::linux_gpio::MotorSettings& motors, core::Configuration& c) {
+  for (std::size_t i = 0; i < motors.axes.size(); ++i) {
+    c.effort_max[i] = std::min(c.effort_max[i], motors.axes[i].effort_at_full_width);
+  }
+}
+
+}  // namespace
+
+ControllerFile read_controller_file(const std::filesystem::path& file) {
+  const JsonReader::Json json = read_json(file);
+  JsonReader reader(file.string(), json, kRemedies);
+  if (reader.has("about")) {
+    (void)reader.text("about");
+  }
+  ControllerFile result;
+  result.file = file.string();
+  result.device = cli::load_device(device_of(file, reader));
+  result.model = from_folder(file, reader.text("model"));
+  result.configuration = begin_configuration(reader, result.device);
+  const double period_ns = 1e9 / static_cast<double>(result.configuration.rate_hz);
+  result.board.period_ns = static_cast<std::uint64_t>(std::llround(period_ns));
+  result.board.guard.silence_ns = std::max(10 * kNsPerMs, kGuardTicks * result.board.period_ns);
+  if (reader.has("limits")) {
+    read_limits(reader.object("limits"), result.configuration);
+  }
+  const std::size_t axes = core::axes_of(result.device.figures.model.kind);
+  read_encoders(reader.object("encoders"), axes, result.board);
+  read_motors(reader.object("motors"), axes, result.board.motors);
+  bound_efforts(result.board.motors, result.configuration);
+  read_lines(reader.object("lines"), result.board);
+  if (reader.has("watchdog")) {
+    read_watchdog(reader.object("watchdog"), result.board);
+  }
+  if (reader.has("real_time")) {
+    read_real_time(reader.object("real_time"), result);
+  }
+  result.socket = reader.text("socket");
+  reader.finish();
+  result.board.guard.priority = result.real_time.priority == 0 ? 0 : result.real_time.priority + 1;
+  check_together(reader, result.configuration);
+  return result;
+}
+
+}  // namespace tactree::controller

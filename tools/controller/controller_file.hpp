@@ -1,0 +1,33 @@
+#pragma once
+// What the controller of a Linux board is to do: a JSON file, docs/LINUX-BOARD.md.
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "device_file.hpp"
+#include "tactree/core/configuration.hpp"
+#include "tactree/hal/linux/controller_board.hpp"
+
+namespace tactree::controller {
+
+struct RealTimeSettings {
+  int priority = 80;      ///< of SCHED_FIFO, 1 .. 98; 0: none is wanted
+  bool required = false;  ///< true: refuse to run without priority and locked memory
+};
+
+struct ControllerFile {
+  std::string file;  ///< where it was read from
+  cli::Device device;
+  std::filesystem::path model;
+  core::Configuration configuration{};
+  hal::linux_gpio::ControllerBoardSettings board{};
+  std::string socket;
+  RealTimeSettings real_time{};
+};
+
+/// Paths in it are meant from its own folder. Throws cli::CommandError: "file: place: cause
+/// (remedy)".
+[[nodiscard]] ControllerFile read_controller_file(const std::filesystem::path& file);
+
+}  // namespace tactree::controller

@@ -1,0 +1,52 @@
+// tactree-controller: a Linux board as the controller of a haptic device.
+
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <string>
+
+#include "command.hpp"
+#include "controller_file.hpp"
+#include "dry_run.hpp"
+#include "service.hpp"
+
+namespace {
+
+using namespace tactree;
+
+/// After a crash, whatever the kernel did with the line: it is off.
+int put_off(const controller::ControllerFile& file) {
+  const auto line = hal::linux_gpio::GpioLines::outputs({file.board.enable}, "tactree off", false);
+  fmt::print("line '{}' is off\n", file.board.enable);
+  return cli::kExitOk;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"tactree-controller: runs the control loop of a haptic device on a Linux board"};
+  app.set_version_flag("--version", "tactree-controller " TACTREE_VERSION);
+  std::string file;
+  bool dry_run = false;
+  bool off = false;
+  app.add_option("file", file, "what is wired to where, and what to render (JSON)")->required();
+  auto* const dry = app.add_flag("--dry-run", dry_run,
+                                 "look whether it would run here; touches no line; exit code 1 "
+                                 "where anything is wrong");
+  app.add_flag("--off", off, "put the enable line off, and end: for after a crash")->excludes(dry);
+  try {
+    app.parse(argc, argv);
+    const controller::ControllerFile read = controller::read_controller_file(file);
+    if (dry_run) {
+      return controller::print_findings(controller::examine(read));
+    }
+    return off ? put_off(read) : controller::serve(read);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? cli::kExitOk : cli::kExitUsage;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "tactree-controller: error: {}\n", error.what());
+    return cli::kExitFailed;
+  }
+}

@@ -1,0 +1,234 @@
+#include "service.hpp"
+
+#include <fmt/core.h>
+
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <string>
+#include <thread>
+
+#include "blob_file.hpp"
+#include "command.hpp"
+#include "real_time.hpp"
+#include "tactree/core/faults.hpp"
+#include "tactree/hal/linux/local_socket_port.hpp"
+#include "tactree/hal/loop.hpp"
+#include "tactree/hal/session/session.hpp"
+#include "tactree/hal/store/no_model_store.hpp"
+
+namespace tactree::controller {
+namespace {
+
+using hal::linux_gpio::ControllerBoard;
+
+// Requests that a session may work on before a tick, and the share of the period that is left to
+// the tick's own way through the kernel.
+constexpr int kPiecesPerTick = 64;
+constexpr std::uint64_t kReserve = 4;
+
+/// Ticks and session are in one thread: nothing is to be held.
+class Platform {
+ public:
+  explicit Platform(ControllerBoard& board) : board_(board) {}
+  [[nodiscard]] std::uint32_t now_us() noexcept { return board_.ticker().now_us(); }
+  void hold_ticks(bool) noexcept {}
+
+ private:
+  ControllerBoard& board_;
+};
+
+std::string lateness_table(const hal::linux_time::LatenessHistogram& lateness) {
+  std::string text =
+      fmt::format("lateness of a tick: least {:.1f} us, mean {:.1f} us, most {:.1f} us\n",
+                  1e-3 * static_cast<double>(lateness.min_ns()), 1e-3 * lateness.mean_ns(),
+                  1e-3 * static_cast<double>(lateness.max_ns()));
+  constexpr std::uint32_t kLast = hal::linux_time::LatenessHistogram::kBuckets - 1U;
+  for (std::uint32_t i = 0; i <= kLast; ++i) {
+    if (lateness.in_bucket(i) != 0U) {
+      const std::string range = i < kLast ? fmt::format("below {:>8} us", lateness.end_us(i))
+                                          : fmt::format("above {:>8} us", lateness.end_us(i - 1U));
+      text += fmt::format("  {} {:>12}\n", range, lateness.in_bucket(i));
+    }
+  }
+  return text;
+}
+
+/// What the loop leaves for others to read.
+struct Progress {
+  std::atomic<bool> ending{false};
+  std::atomic<std::uint64_t> minor_faults{0};
+  std::atomic<std::uint64_t> major_faults{0};
+  std::atomic<std::uint64_t> allocations{0};
+  std::atomic<std::uint32_t> faults{0};
+  std::atomic<std::uint32_t> state{0};
+};
+
+void print_report(const ControllerBoard& board, const Progress& progress) {
+  const auto& lateness = board.clock().lateness();
+  std::string text = fmt::format(
+      "ticks: {} at {:.6g} Hz; deadlines missed: {}\n"
+      "page faults after the start: {} minor, {} major; allocations after the start: {}\n"
+      "encoder edges lost: {}\n"
+      "state: {}; faults latched: {:#x}\n",
+      lateness.count(), 1e9 / static_cast<double>(board.clock().period_ns()),
+      board.clock().missed(), progress.minor_faults.load(), progress.major_faults.load(),
+      progress.allocations.load(), board.edges_lost(),
+      core::name_of(static_cast<core::State>(progress.state.load())), progress.faults.load());
+  text += lateness_table(lateness);
+  std::fwrite(text.data(), 1, text.size(), stdout);
+  std::fflush(stdout);
+}
+
+/// Signals, and the printing that they ask for, away from the loop.
+class Attendant {
+ public:
+  Attendant(const ControllerBoard& board, Progress& progress)
+      : board_(board), progress_(progress), thread_([this] { attend(); }) {}
+  ~Attendant() {
+    progress_.ending = true;
+    pthread_kill(thread_.native_handle(), SIGTERM);
+    thread_.join();
+  }
+  Attendant(const Attendant&) = delete;
+  Attendant& operator=(const Attendant&) = delete;
+
+  /// Before there is any thread: signals are for this one.
+  static void block_signals() {
+    const sigset_t wanted = signals();
+    (void)pthread_sigmask(SIG_BLOCK, &wanted, nullptr);
+  }
+
+ private:
+  static sigset_t signals() {
+    sigset_t set;
+    sigemptyset(&set);
+    for (const int signal : {SIGTERM, SIGINT, SIGHUP, SIGUSR1}) {
+      sigaddset(&set, signal);
+    }
+    return set;
+  }
+
+  void attend() {
+    const sigset_t wanted = signals();
+    int signal = 0;
+    while (!progress_.ending) {
+      if (sigwait(&wanted, &signal) != 0) {
+        continue;
+      }
+      if (signal == SIGUSR1) {
+        print_report(board_, progress_);
+      } else {
+        progress_.ending = true;
+      }
+    }
+  }
+
+  const ControllerBoard& board_;
+  Progress& progress_;
+  std::thread thread_;
+};
+
+void check_start(const ControllerFile& file, const hal::StartResult& start) {
+  // Configuration and blob were checked when they were read.
+  if (start.model != core::ModelStatus::kOk) {
+    throw cli::CommandError(fmt::format("{}: {} (build it for this rate and device)",
+                                        file.model.string(), core::describe(start.model)));
+  }
+  if (!start.ok()) {
+    throw cli::CommandError(fmt::format("{}: refused: {}, {} (--dry-run tells more)", file.file,
+                                        core::describe(start.configuration),
+                                        core::describe(start.blob)));
+  }
+}
+
+void tell_missing(const ControllerFile& file, const std::vector<std::string>& missing) {
+  for (const std::string& sentence : missing) {
+    if (file.real_time.required) {
+      throw cli::CommandError(fmt::format("{}: real_time.required: {}", file.file, sentence));
+    }
+    fmt::print(stderr, "tactree-controller: warning: not in real time: {}\n", sentence);
+  }
+}
+
+/// Ticks, and between them the session; all that it needs is there before it begins.
+class Runner {
+ public:
+  using Port = hal::LocalSocketPort;
+  using Session = hal::Session<Port, hal::NoModelStore, Platform>;
+
+  Runner(const ControllerFile& file, const cli::BlobFile& model)
+      : file_(file),
+        board_(file.board, model.bytes(), mailbox_),
+        port_(file.socket),
+        platform_(board_),
+        loop_(board_, controller_),
+        session_({port_, store_, platform_, controller_, mailbox_, identity_}) {
+    const hal::StartResult start = loop_.start(file.configuration);
+    check_start(file, start);
+    session_.started(start, file.configuration);
+  }
+
+  void run() {
+    const Attendant attendant(board_, progress_);
+    tell_missing(file_, enter_real_time(file_.real_time));
+    fmt::print("tactree-controller: serving {} at {}\n", file_.device.name, file_.socket);
+    std::fflush(stdout);
+    const Disturbances before = disturbances();
+    while (!progress_.ending.load(std::memory_order_relaxed)) {
+      const core::Output& output = loop_.tick();
+      progress_.state.store(static_cast<std::uint32_t>(output.status.state),
+                            std::memory_order_relaxed);
+      progress_.faults.store(output.status.faults, std::memory_order_relaxed);
+      serve_application();
+      note(before);
+    }
+    board_.stop();
+  }
+
+  void report() const { print_report(board_, progress_); }
+
+ private:
+  void serve_application() {
+    port_.accept();
+    const std::uint64_t reserve_ns = board_.clock().period_ns() / kReserve;
+    for (int i = 0; i < kPiecesPerTick && session_.work(); ++i) {
+      if (board_.clock().left_ns() < reserve_ns) {
+        return;
+      }
+    }
+  }
+
+  void note(const Disturbances& before) {
+    const Disturbances now = disturbances();
+    progress_.minor_faults.store(now.minor_faults - before.minor_faults, std::memory_order_relaxed);
+    progress_.major_faults.store(now.major_faults - before.major_faults, std::memory_order_relaxed);
+    progress_.allocations.store(now.allocations - before.allocations, std::memory_order_relaxed);
+  }
+
+  const ControllerFile& file_;
+  hal::TickMailbox mailbox_;
+  core::Controller controller_;
+  ControllerBoard board_;
+  Port port_;
+  Platform platform_;
+  hal::NoModelStore store_;
+  hal::BoardIdentity identity_{"linux", TACTREE_VERSION, {}, 0};
+  hal::Loop<ControllerBoard> loop_;
+  Session session_;
+  Progress progress_;
+};
+
+}  // namespace
+
+int serve(const ControllerFile& file) {
+  const cli::BlobFile model(file.model);
+  Attendant::block_signals();
+  Runner runner(file, model);
+  runner.run();
+  runner.report();
+  return cli::kExitOk;
+}
+
+}  // namespace tactree::controller
