@@ -46,8 +46,6 @@ class Device {
       counts_[i] = count_of(i);
       show(i);
     }
-    chip_.pull(number(Wire::kEmergencyStop), true);
-    chip_.pull(number(Wire::kGood), true);
   }
 
   [[noreturn]] void run() {
@@ -101,12 +99,14 @@ class Device {
     }
   }
 
+  // In each step: where a program asks for a bias, this chip takes it for the level.
   void switches() {
+    chip_.pull(number(Wire::kGood), true);
     chip_.pull(number(Wire::kDeadMan), hands_.dead_man);
-    if (hands_.release_stop.exchange(false)) {
-      chip_.pull(number(Wire::kEmergencyStop), true);
-    }
+    stopped_ = stopped_ && !hands_.release_stop.exchange(false);
+    chip_.pull(number(Wire::kEmergencyStop), !stopped_);
     if (hands_.pull_stop.exchange(false)) {
+      stopped_ = true;
       const std::int64_t begin = now_ns();
       chip_.pull(number(Wire::kEmergencyStop), false);
       while (chip_.level(number(Wire::kEnable)) && now_ns() - begin < 1'000'000'000) {
@@ -160,6 +160,7 @@ class Device {
   Eigen::Vector3d effort_ = Eigen::Vector3d::Zero();
   int power_steps_ = 0;
   bool beat_ = false;
+  bool stopped_ = false;
 };
 
 }  // namespace
