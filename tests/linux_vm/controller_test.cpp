@@ -5,6 +5,7 @@
 #include <fcntl.h>
 #include <grp.h>
 #include <gtest/gtest.h>
+#include <sys/mman.h>
 #include <sys/wait.h>
 
 #include <algorithm>
@@ -191,11 +192,14 @@ class Controller : public testing::Test {
 
   /// Over the index pulse of each axis, and above the sphere.
   void home() {
-    device_.move_hand({0.01, 0.01, -0.01}, 0.1);
+    device_.move_hand({0.05, -0.05, 0.05}, 0.2);
+    device_.move_hand({0.05, 0.05, 0.05}, 0.2);
+    device_.move_hand({0.05, 0.05, -0.01}, 0.2);
     ASSERT_TRUE(eventually([&] {
       return (board_->capabilities().flags &
               static_cast<std::uint32_t>(core::wire::BoardFlag::kHomed)) != 0U;
     })) << output();
+    device_.move_hand({0.05, 0.05, 0.05}, 0.2);
     device_.move_hand({0.0, 0.0, 0.05}, 0.2);
     ASSERT_EQ(host::names_of(board_->state().faults), "") << output();
   }
@@ -206,6 +210,8 @@ class Controller : public testing::Test {
     hands_.dead_man = true;
     ASSERT_TRUE(eventually([&] { return board_->state().state == kActive; }))
         << "faults: " << host::names_of(board_->state().faults) << "\n"
+        << "limits: " << board_->state().limits << ", probe z: " << board_->state().probe_m[2]
+        << ", tip z: " << hands_.tip_m[2] << "\n"
         << report();
   }
 
@@ -243,7 +249,7 @@ class Controller : public testing::Test {
   json file_;
   GpioSim chip_{"board", kLineNames};
   PwmFolder pwm_{folder_};
-  ControlledDevice device_{chip_, pwm_, {-0.02, -0.01, 0.02}};
+  ControlledDevice device_{chip_, pwm_, {-0.05, -0.05, 0.05}};
   Hands& hands_ = device_.hands();
   pid_t child_ = -1;
   std::unique_ptr<host::Board> board_;
@@ -429,5 +435,8 @@ int main(int argc, char** argv) {
     return 2;
   }
   tactree::vm_test::program = argv[1];
+  // Pages of this program that are read in meanwhile would hold the loop up: the kernel does it in
+  // one go.
+  (void)mlockall(MCL_CURRENT);
   return RUN_ALL_TESTS();
 }

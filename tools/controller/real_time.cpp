@@ -8,6 +8,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <ctime>
 
 namespace tactree::controller {
 namespace {
@@ -45,6 +46,8 @@ std::vector<std::string> enter_real_time(const RealTimeSettings& settings) {
     missing.push_back(no_lock(errno));
   }
   touch_stack();
+  timespec now{};  // the kernel's page with the clock is none that can be locked
+  (void)clock_gettime(CLOCK_MONOTONIC, &now);
   if (settings.priority > 0) {
     sched_param parameters{};
     parameters.sched_priority = settings.priority;

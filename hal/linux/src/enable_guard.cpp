@@ -73,7 +73,7 @@ bool watch(const Shared& shared, pid_t parent, std::uint64_t silence_ns) {
     const bool expected = beats != 0U && !shared.resting.load();
     quiet = expected && beats == last ? quiet + 1U : 0U;
     last = beats;
-    if (quiet > kLooks) {
+    if (quiet >= kLooks) {
       return true;
     }
     (void)nanosleep(&look, nullptr);
