@@ -219,12 +219,13 @@ void FunctionFsController::Impl::start_reads() {
 
 void FunctionFsController::Impl::take_ended() {
   for (const AsyncContext::Ended& ended : plugged->async->ended()) {  // bound: what has ended
-    Endpoint& endpoint = plugged->endpoints[ended.tag / kPieces];
-    Piece& piece = endpoint.pieces[ended.tag % kPieces];
+    const auto number = static_cast<std::size_t>(ended.tag / kPieces);
+    Endpoint& endpoint = plugged->endpoints[number];
+    Piece& piece = endpoint.pieces[static_cast<std::size_t>(ended.tag % kPieces)];
     piece.under_way = false;
-    if (!is_to_host(ended.tag / kPieces) && ended.result > 0) {
+    if (!is_to_host(number) && ended.result > 0) {
       endpoint.came.insert(endpoint.came.end(), piece.bytes.begin(),
-                           piece.bytes.begin() + ended.result);
+                           piece.bytes.begin() + static_cast<std::ptrdiff_t>(ended.result));
     }
   }
   start_reads();
