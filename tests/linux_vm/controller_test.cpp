@@ -218,7 +218,10 @@ class Controller : public testing::Test {
   /// Until there is a force.
   void press() {
     device_.move_hand({0.0, 0.0, kRadius_m - 0.005}, 0.2);
-    ASSERT_TRUE(eventually([&] { return hands_.effort_N[2] > 0.5; })) << output();
+    ASSERT_TRUE(eventually([&] { return hands_.effort_N[2] > 0.5; }))
+        << "faults: " << host::names_of(board_->state().faults) << ", tip z: " << hands_.tip_m[2]
+        << "\n"
+        << report();
   }
 
   static std::string watchdog(const char* what) {

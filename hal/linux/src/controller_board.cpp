@@ -4,10 +4,10 @@ namespace tactree::hal::linux_gpio {
 namespace {
 
 // A kick is a system call, and the shortest watchdog waits for a second.
-constexpr std::uint64_t kKickEvery_ns = 100'000'000;
+constexpr std::uint64_t kNsPerKick = 100'000'000;
 
 std::uint32_t ticks_per_kick(std::uint64_t period_ns) {
-  const std::uint64_t ticks = kKickEvery_ns / period_ns;
+  const std::uint64_t ticks = kNsPerKick / period_ns;
   return ticks == 0U ? 1U : static_cast<std::uint32_t>(ticks);
 }
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cerrno>
 #include <charconv>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -59,8 +60,9 @@ std::uint32_t share_of(float effort, float full, std::uint32_t period_ns) {
   if (!(share > 0.0F)) {
     return 0;  // also what is no number
   }
-  return share < 1.0F ? static_cast<std::uint32_t>(share * static_cast<float>(period_ns) + 0.5F)
-                      : period_ns;
+  return share < 1.0F
+             ? static_cast<std::uint32_t>(std::lround(share * static_cast<float>(period_ns)))
+             : period_ns;
 }
 
 std::vector<std::string> directions_of(const MotorSettings& settings) {
