@@ -20,7 +20,7 @@ namespace {
 
 constexpr int kParentIsGone = SIGUSR2;
 
-// Looks in a silence: it is noticed after one and a quarter of its time at the latest.
+// Looks in a silence. One more, and what the kernel adds to five sleeps, and it is noticed.
 constexpr std::uint64_t kLooks = 4;
 
 void ignore(int) {}
