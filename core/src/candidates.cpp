@@ -92,17 +92,13 @@ float CandidateSet::slack_of(const BlobView& view) {
   return view.reach_m() - view.support_radius_m() - kLostToRounding * view.step_m();
 }
 
-bool CandidateSet::is_near(const BlobView& view, Vec3 x) const {
-  const float slack = slack_of(view);
-  return length_squared(x - centre_) <= slack * slack;
-}
-
 // Ahead of a query that walks: it is then good for twice as long.
 void CandidateSet::begin_for(const BlobView& view, Vec3 x) {
   const float slack = slack_of(view);
   const Vec3 way = x - centre_;
   const float squared = length_squared(way);
   const bool walks = valid_ && squared > 0.0F && squared <= kStride * slack * (kStride * slack);
+  slack_squared_ = slack * slack;
   centre_ = walks ? x + (kAhead * slack / square_root(squared)) * way : x;
   valid_ = false;
   begun_ = true;
@@ -114,6 +110,16 @@ void CandidateSet::begin_for(const BlobView& view, Vec3 x) {
   most_ = lower(header.points_per_ball_max, kMaxCandidates);  // memory: flash
   unseen_ = header.points_per_query_max;                      // memory: flash
   untested_ = header.points_per_slab_max;                     // memory: flash
+}
+
+[[gnu::always_inline]] inline bool CandidateSet::gather_corner(const BlobView& view,
+                                                               CornerLeaves& corners,
+                                                               GatherSlice& left) {
+  if (corners.is_beyond(corner_, view.reach_m() * view.reach_m())) {
+    return true;
+  }
+  const NearLeaf leaf = corners.find(corner_);
+  return leaf.empty() || gather_leaf(view, leaf, corners.min_of(leaf), left);
 }
 
 [[gnu::noinline]] bool CandidateSet::gather(const BlobView& view, GatherSlice& left) {
@@ -134,19 +140,11 @@ void CandidateSet::begin_for(const BlobView& view, Vec3 x) {
   return done;
 }
 
-bool CandidateSet::gather_corner(const BlobView& view, CornerLeaves& corners, GatherSlice& left) {
-  if (corners.is_beyond(corner_, view.reach_m() * view.reach_m())) {
-    return true;
-  }
-  const NearLeaf leaf = corners.find(corner_);
-  return leaf.empty() || gather_leaf(view, leaf, corners.min_of(leaf), left);
-}
-
 void CandidateSet::cover(const BlobView& view, Vec3 x) {
   if (view.empty()) {
     clear();
     count_ = 0;
-  } else if (!covers(view, x)) {
+  } else if (!covers(x)) {
     begin_for(view, x);
     GatherSlice all;
     (void)gather(view, all);
@@ -187,6 +185,9 @@ void CandidateSet::begin_leaf(const BlobView& view, const NearLeaf& leaf,
   const std::uint32_t* const words = view.point_words();
   std::uint32_t low = leaf.first_point;
   std::uint32_t length = end_ - low;
+  if (length != 0U && words[low] >= first_word) {  // memory: flash
+    length = 0U;                                   // nothing is below
+  }
   while (length != 0U) {  // bound: kLeafHalvings
     const std::uint32_t half = length / 2U;
     const bool is_below = words[low + half] < first_word;  // memory: flash

@@ -41,7 +41,8 @@ void Proxy::reset(Vec3 probe) {
   lose_support();
 }
 
-void Proxy::update(const BlobView& view, Vec3 probe, const Friction& friction, SurfaceWork work) {
+void Proxy::update(const BlobView& view, Vec3 probe, const Friction& friction,
+                   const SurfaceWork& work) {
   if (surface_support(view) != SurfaceSupport::kOk) {
     reset(probe);
     return;
@@ -88,7 +89,7 @@ bool Proxy::go_on(const BlobView& view, Vec3 x) {
   if (!may_fit()) {
     return false;
   }
-  if (candidates_.covers(view, x)) {
+  if (candidates_.covers(x)) {
     return true;
   }
   if (!may_gather()) {
@@ -96,7 +97,7 @@ bool Proxy::go_on(const BlobView& view, Vec3 x) {
   }
   has_next_ = !gather(view, x) || !may_fit();
   next_ = x;
-  return !has_next_ && candidates_.covers(view, x);
+  return !has_next_ && candidates_.covers(x);
 }
 
 void Proxy::spend(std::uint32_t passes) {
@@ -220,14 +221,14 @@ void Proxy::slide(const BlobView& view, Vec3 probe, const Friction& friction) {
     const float excess = slips ? distance - cone : 0.0F;
     bool last = !(excess > step);
     Vec3 slip = slips ? ((last ? excess : step) / distance) * along : Vec3{};
-    if (unsettled_ && !candidates_.will_cover(view, position_ + slip)) {
+    if (unsettled_ && !candidates_.will_cover(position_ + slip)) {
       slip = {};  // first where it is being gathered, else the proxy would glide for ever
       last = false;
     }
     slipping_ = slipping_ || slips;
     // at most: work / 2 + 1 per Proxy::slide
     if (!go_on(view, position_ + slip)) {
-      glide_by(view, slip);
+      glide_by(slip);
       return;
     }
     // at most: work / 2 per Proxy::slide
@@ -243,8 +244,8 @@ void Proxy::slide(const BlobView& view, Vec3 probe, const Friction& friction) {
 }
 
 // While the candidates wait for the next tick.
-void Proxy::glide_by(const BlobView& view, Vec3 step) {
-  if (has_next_ && candidates_.will_cover(view, position_ + step)) {
+void Proxy::glide_by(Vec3 step) {
+  if (has_next_ && candidates_.will_cover(position_ + step)) {
     position_ += step;
     unsettled_ = true;
   }

@@ -31,7 +31,7 @@ class Proxy {
 
   /// Follows the probe for one tick. Cost: `work`, and for each of its gathers one search for the
   /// nearest candidate.
-  void update(const BlobView& view, Vec3 probe, const Friction& friction, SurfaceWork work);
+  void update(const BlobView& view, Vec3 probe, const Friction& friction, const SurfaceWork& work);
 
   [[nodiscard]] bool in_contact() const { return in_contact_; }
   [[nodiscard]] bool slipping() const { return slipping_; }
@@ -61,7 +61,7 @@ class Proxy {
   void visit(const BlobView& view, Vec3 x);
   void begin_contact(const BlobView& view, const SurfaceFit& fit);
   void slide(const BlobView& view, Vec3 probe, const Friction& friction);
-  void glide_by(const BlobView& view, Vec3 step);
+  void glide_by(Vec3 step);
   [[nodiscard]] bool slip_by(const BlobView& view, Vec3 step);
   /// A Newton step onto the surface, where there is one.
   SurfaceFit settle(const BlobView& view);

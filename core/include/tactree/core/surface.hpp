@@ -45,7 +45,7 @@ inline constexpr float kPaceRates[kPaces] = {0.0F, 1000.0F, 2000.0F};
 [[nodiscard]] constexpr std::uint32_t pace_of(float rate_hz) {
   return rate_hz > kPaceRates[2] ? 2U : (rate_hz > kPaceRates[1] ? 1U : 0U);
 }
-[[nodiscard]] constexpr SurfaceWork work_per_tick(float rate_hz) {
+[[nodiscard]] constexpr const SurfaceWork& work_per_tick(float rate_hz) {
   return kWorkPerTick[pace_of(rate_hz)];  // memory: flash
 }
 
@@ -65,15 +65,10 @@ class CandidateSet {
   /// Forgets the last gather; needed whenever the blob changes.
   void clear() { valid_ = begun_ = false; }
 
-  /// Is it good for a query at `x`?
-  /// Precondition: the view is the one of the last gather, or clear() was called in between.
-  [[nodiscard]] bool covers(const BlobView& view, Vec3 x) const {
-    return valid_ && is_near(view, x);
-  }
+  /// Is it good for a query at `x`, in the view of the last gather?
+  [[nodiscard]] bool covers(Vec3 x) const { return valid_ && is_near(x); }
   /// Will it be, or is it, when the gather that was begun last is done?
-  [[nodiscard]] bool will_cover(const BlobView& view, Vec3 x) const {
-    return (valid_ || begun_) && is_near(view, x);
-  }
+  [[nodiscard]] bool will_cover(Vec3 x) const { return (valid_ || begun_) && is_near(x); }
   /// Has a gather begun that is not done yet? The set is not to be used then.
   [[nodiscard]] bool is_begun() const { return begun_; }
   /// Begins one around a place ahead of x, in the direction the query has moved.
@@ -94,7 +89,7 @@ class CandidateSet {
   [[nodiscard]] const Candidate* end() const { return candidates_ + count_; }
 
  private:
-  [[nodiscard]] bool is_near(const BlobView& view, Vec3 x) const;
+  [[nodiscard]] bool is_near(Vec3 x) const { return length_squared(x - centre_) <= slack_squared_; }
   [[nodiscard]] bool gather_corner(const BlobView& view, CornerLeaves& corners, GatherSlice& left);
   [[nodiscard]] bool gather_leaf(const BlobView& view, const NearLeaf& leaf, Int3 leaf_min,
                                  GatherSlice& left);
@@ -112,6 +107,7 @@ class CandidateSet {
   std::uint32_t end_ = 0;       // behind its last
   bool in_leaf_ = false;        // next_ and end_ hold
   Vec3 centre_{};
+  float slack_squared_ = 0.0F;  // m^2
   bool valid_ = false;
   bool begun_ = false;
   bool complete_ = true;
