@@ -47,8 +47,8 @@ void Proxy::update(const BlobView& view, Vec3 probe, const Friction& friction,
     reset(probe);
     return;
   }
-  left_ = work;
-  searches_left_ = work.gathers;
+  left_ = work;                   // memory: flash
+  searches_left_ = work.gathers;  // memory: flash
   lost_contact_ = false;
   if (in_contact_) {
     slide(view, probe, friction);
