@@ -218,7 +218,7 @@ void Proxy::slide(const BlobView& view, Vec3 probe, const Friction& friction) {
       slipping_ = slipping_ && distance > kStickShare * cone;
       return;
     }
-    const float excess = slips ? distance - cone : 0.0F;
+    const float excess = distance - cone;
     bool last = !(excess > step);
     Vec3 slip = slips ? ((last ? excess : step) / distance) * along : Vec3{};
     if (unsettled_ && !candidates_.will_cover(position_ + slip)) {
