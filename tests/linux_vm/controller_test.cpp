@@ -224,6 +224,16 @@ class Controller : public testing::Test {
         << report();
   }
 
+  /// Served, homed, armed, and in contact.
+  void hold() {
+    serve();
+    home();
+    arm();
+    press();
+    ASSERT_FALSE(HasFatalFailure());
+    ASSERT_TRUE(is_enabled());
+  }
+
   static std::string watchdog(const char* what) {
     std::string text = contents(fs::path("/sys/class/watchdog/watchdog0") / what);
     std::erase(text, '\n');
@@ -332,12 +342,8 @@ TEST_F(Controller, TheEmergencyStopTakesThePowerWithinTwoTicks) {
 }
 
 TEST_F(Controller, KilledItLeavesTheEnableLineOff) {
-  serve();
-  home();
-  arm();
-  press();
+  hold();
   ASSERT_FALSE(HasFatalFailure());
-  ASSERT_TRUE(is_enabled());
   kill(child_, SIGKILL);
   EXPECT_EQ(finish(std::exchange(child_, -1)), 1000 + SIGKILL);
   ASSERT_TRUE(eventually([&] {
@@ -356,12 +362,8 @@ TEST_F(Controller, KilledItLeavesTheEnableLineOff) {
 
 /// The kernel takes no line from a program that hangs: it is the guard that does.
 TEST_F(Controller, HangingItIsEndedByItsGuard) {
-  serve();
-  home();
-  arm();
-  press();
+  hold();
   ASSERT_FALSE(HasFatalFailure());
-  ASSERT_TRUE(is_enabled());
   const auto begin = std::chrono::steady_clock::now();
   kill(child_, SIGSTOP);
   ASSERT_TRUE(eventually([&] { return !is_enabled(); })) << output();

@@ -52,37 +52,26 @@ bool count_multiple(std::string_view name, const cs_arm& arm, Instruction& instr
   return true;
 }
 
-/// "STR Rx,[Ry,#imm] is always one cycle" (Arm 100166, 3.3.2): the word goes through a buffer.
-bool is_buffered_store(std::string_view name, const cs_insn& decoded) {
-  const cs_arm& arm = decoded.detail->arm;
-  if (!is_any_of(name, {"str"}) || name.starts_with("strd") || name.starts_with("strex") ||
-      arm.writeback) {
-    return false;
-  }
-  for (unsigned i = 0; i < arm.op_count; ++i) {
-    if (arm.operands[i].type == ARM_OP_MEM) {
-      return arm.operands[i].mem.index == ARM_REG_INVALID;
-    }
-  }
-  return false;
-}
-
-/// ldr, str, vldr, vstr of one or two words: two cycles, three for two words.
+/// ldr, str, vldr, vstr of one or two words: two cycles, three for two words; but "STR Rx,[Ry,#imm]
+/// is always one cycle" (Arm 100166, 3.3.2): the word goes through a buffer.
 bool count_single(std::string_view name, const cs_arm& arm, Instruction& instruction) {
   if (!is_any_of(name, {"ldr", "str", "vldr", "vstr"})) {
     return false;
   }
   std::uint32_t words = is_any_of(name, {"ldrd", "strd"}) ? 2 : words_of(arm, 0);
   bool sp = false;
+  bool plain = !arm.writeback;  // an address with an immediate offset, or none
   for (unsigned i = 0; i < arm.op_count; ++i) {
     if (arm.operands[i].type == ARM_OP_MEM) {
       sp = arm.operands[i].mem.base == ARM_REG_SP;
       instruction.literal = arm.operands[i].mem.base == ARM_REG_PC;
+      plain = plain && arm.operands[i].mem.index == ARM_REG_INVALID;
     }
   }
   words = words == 0 ? 1 : words;
   (sp ? instruction.stack_words : instruction.other_words) = words;
-  instruction.cycles = 1 + words + (writes_pc(arm) ? kRefill : 0U);
+  const bool buffered = name.starts_with("str") && words == 1 && plain;
+  instruction.cycles = buffered ? 1U : 1 + words + (writes_pc(arm) ? kRefill : 0U);
   return true;
 }
 
@@ -126,9 +115,6 @@ void count_cycles(const cs_insn& decoded, Instruction& instruction) {
   }
   if (!count_multiple(name, arm, instruction) && !count_single(name, arm, instruction)) {
     instruction.cycles = of_arithmetic(name, arm);
-  }
-  if (is_buffered_store(name, decoded)) {
-    instruction.cycles = 1;
   }
 }
 

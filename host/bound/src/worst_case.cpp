@@ -335,7 +335,13 @@ class Model {
   }
 
   // The next line is fetched while the instructions of this one are executed, unless one of them
-  // needs the flash itself.
+  // needs the flash itself: how many cycles of that fetch are over after one more instruction.
+  [[nodiscard]] double hidden_after(const Instruction& instruction, double hidden) const {
+    const bool disturbs = !analysis_.timing->prefetches || slow_words(instruction) > 0;
+    return disturbs ? -1e9 : hidden + 1.0;
+  }
+
+  /// Of the lines of a block that was jumped to.
   [[nodiscard]] double fetch_of(const ControlFlow& flow, const Block& block) const {
     const BoardTiming& timing = *analysis_.timing;
     std::uint32_t line = flow.instructions[block.first].address / timing.line_bytes;
@@ -349,8 +355,7 @@ class Model {
         wait += timing.fetch_wait - std::clamp<double>(hidden, 0.0, timing.fetch_wait);
         hidden = 0.0;
       }
-      const bool disturbs = !timing.prefetches || slow_words(instruction) > 0;
-      hidden = disturbs ? -1e9 : hidden + 1.0;
+      hidden = hidden_after(instruction, hidden);
     }
     return wait;
   }
@@ -389,8 +394,7 @@ class Model {
     for (std::uint32_t i = block.first; i < block.first + block.count; ++i) {
       const Instruction& instruction = flow.instructions[i];
       if ((instruction.address + instruction.bytes - 1) / timing.line_bytes == line) {
-        const bool disturbs = !timing.prefetches || slow_words(instruction) > 0;
-        hidden = disturbs ? -1e9 : hidden + 1.0;
+        hidden = hidden_after(instruction, hidden);
       }
     }
     return std::clamp<double>(hidden, 0.0, timing.fetch_wait);
@@ -789,16 +793,6 @@ class Model {
       FunctionOnPath& on_path = solved.functions[entry];
       on_path.name = demangled(f.flow.function.name);
       on_path.calls += solution.x[static_cast<std::size_t>(own.entry)];
-      double cyc = 0, fet = 0, pipe = 0;
-      for (std::uint32_t b = 0; b < f.flow.blocks.size(); ++b) {
-        if (!analysis_.timing) break;
-        const double t = sum(passes(entry, b), solution);
-        if (f.flow.blocks[b].count == 0) continue;
-        cyc += t * cycles_of(f.flow, f.flow.blocks[b]);
-        fet += own.kept_by[b] ? 0 : t * fetch_of(f.flow, f.flow.blocks[b]);
-        for (std::uint32_t i = 0; i < f.flow.blocks[b].count; ++i)
-          pipe += t * f.flow.instructions[f.flow.blocks[b].first + i].cycles;
-      }
       for (std::uint32_t b = 0; b < f.flow.blocks.size(); ++b) {
         const double times = sum(passes(entry, b), solution);
         on_path.instructions += times * f.flow.blocks[b].count;

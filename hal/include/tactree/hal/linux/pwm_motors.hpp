@@ -1,8 +1,7 @@
 #pragma once
 // Motors behind amplifiers that take a pulse width and a direction: PWM channels of a Linux
-// computer
-// (/sys/class/pwm) and GPIO lines. Each keeps the contract of board.hpp; constructors throw
-// PwmError or GpioError, nothing else does.
+// computer (/sys/class/pwm) and GPIO lines. Each keeps the contract of board.hpp; constructors
+// throw PwmError or GpioError, nothing else does.
 
 #include <cstdint>
 #include <optional>
