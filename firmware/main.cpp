@@ -15,15 +15,17 @@ Board board;
 tactree::core::Controller controller;
 tactree::hal::Loop<Board> loop(board, controller);
 
-// A program with a wrong byte gets no model: it cannot give a force.
+// A program with a wrong byte, or with a variable that does not hold, gets no model: it cannot give
+// a force.
 tactree::hal::StartResult start(const tactree::core::Configuration& configuration) {
-  if (tactree::firmware::image_is_whole()) {
+  const tactree::hal::ImageStatus image = tactree::firmware::test_image();
+  if (image == tactree::hal::ImageStatus::kOk) {
     controller.know_costs(tactree::firmware::tick_costs(), tactree::firmware::timer_clock_hz());
     return loop.start(configuration);
   }
-  tactree::hal::StartResult damaged;
-  damaged.image = tactree::hal::ImageStatus::kDamaged;
-  return damaged;
+  tactree::hal::StartResult unfit;
+  unfit.image = image;
+  return unfit;
 }
 
 // A board that an application can talk to listens between the ticks, for ever.

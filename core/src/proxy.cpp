@@ -75,9 +75,7 @@ bool Proxy::gather(const BlobView& view, Vec3 x) {
   if (!candidates_.is_begun()) {
     candidates_.begin_for(view, x);
   }
-  // at most: gathers per Proxy::update
-  // at most: work per Proxy::update together work as 2
-  // at most: work / 2 per Proxy::update together beginnings
+  // at most: gathers per Scene::update
   const bool done = candidates_.gather(view, left_.slice);
   complete_ = complete_ && candidates_.complete();
   return done;
@@ -122,11 +120,11 @@ void Proxy::sweep(const BlobView& view, Vec3 probe) {
       x = next_;
       has_next_ = false;
     }
-    // at most: work / 2 + 1 per Proxy::sweep
+    // at most: fits + 1 per Proxy::sweep
     if (!go_on(view, x)) {
       return;
     }
-    visit(view, x);  // at most: work / 2 per Proxy::sweep (each takes a pass and leaves another)
+    visit(view, x);  // at most: fits per Scene::update together fits
     if (in_contact_ || last) {
       return;
     }
@@ -144,8 +142,7 @@ void Proxy::visit(const BlobView& view, Vec3 x) {
   if (!tracked_ && !turned_) {
     --searches_left_;
     const float radius = view.support_radius_m();
-    // at most: gathers per Proxy::update
-    // at most: work / 2 per Proxy::update together beginnings
+    // at most: searches per Scene::update
     const Candidate* const nearest = nearest_candidate(candidates_, x, radius);
     if (nearest == nullptr) {
       spend(1U);
@@ -226,12 +223,12 @@ void Proxy::slide(const BlobView& view, Vec3 probe, const Friction& friction) {
       last = false;
     }
     slipping_ = slipping_ || slips;
-    // at most: work / 2 + 1 per Proxy::slide
+    // at most: fits + 1 per Proxy::slide
     if (!go_on(view, position_ + slip)) {
       glide_by(slip);
       return;
     }
-    // at most: work / 2 per Proxy::slide
+    // at most: fits per Scene::update together fits
     if (!slip_by(view, slip)) {
       lost_contact_ = true;
       lose_support();

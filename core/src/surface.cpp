@@ -216,13 +216,11 @@ const Candidate* nearest_candidate(const CandidateSet& set, Vec3 x, float radius
 }
 
 SurfaceFit fit_surface(const CandidateSet& set, Vec3 x, float radius, Vec3 reference) {
-  // at most: passes per Proxy::update together passes
-  // at most: work per Proxy::update together work
+  // at most: passes per Scene::update together passes
   const Surroundings around = look_around(set, x, radius, reference);
   SurfaceFit fit = solve(around.face, radius);
   if (around.crease != nullptr) {
-    // at most: passes per Proxy::update together passes
-    // at most: work per Proxy::update together work
+    // at most: passes per Scene::update together passes
     const Faces faces = divide(set, x, radius, reference, around.crease->normal);
     fit = combine(fit, faces, radius);
     fit.passes = 2;

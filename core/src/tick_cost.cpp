@@ -6,42 +6,37 @@ namespace tactree::core {
 namespace {
 
 constexpr std::uint32_t TickFigures::*kFigures[] = {&TickFigures::points_per_ball_max,
-                                                    &TickFigures::points_per_query_max,
-                                                    &TickFigures::points_per_slab_max,
                                                     &TickFigures::points_per_leaf_max,
                                                     &TickFigures::depth,
                                                     &TickFigures::levels_below,
                                                     &TickFigures::blended_points,
-                                                    &TickFigures::blended_materials,
-                                                    &TickFigures::delta};
+                                                    &TickFigures::blended_materials};
 static_assert(sizeof(kFigures) / sizeof(kFigures[0]) == kTickFigures);
 
 constexpr std::uint32_t smaller_of(std::uint32_t a, std::uint32_t b) { return a < b ? a : b; }
 
 }  // namespace
 
-TickFigures tick_figures(const BlobHeader& h, DeviceKind device) {
+TickFigures tick_figures(const BlobHeader& h) {
   TickFigures figures;
   figures.points_per_ball_max = h.points_per_ball_max;
-  figures.points_per_query_max = h.points_per_query_max;
-  figures.points_per_slab_max = h.points_per_slab_max;
   figures.points_per_leaf_max = h.points_per_leaf_max;
   figures.depth = h.depth;
   figures.levels_below = h.depth - h.directory_level;
   figures.blended_points = h.material_count > 1U ? h.points_per_ball_max : 0U;
   figures.blended_materials = smaller_of(h.material_count, kBlendedMaterials);
-  figures.delta = device == DeviceKind::kDelta ? 1U : 0U;
   return figures;
 }
 
 void TickLoad::add(const BlobHeader& header, const Configuration& configuration) {
-  const TickFigures added = tick_figures(header, configuration.device.kind);
+  const TickFigures added = tick_figures(header);
   for (const auto figure : kFigures) {  // bound: kTickFigures
     figures.*figure = added.*figure < figures.*figure ? figures.*figure : added.*figure;
   }
   const TickKind its_kind = tick_kind(header, configuration.mode);
-  pace = pace_of(configuration.rate_hz);
   kind = its_kind == TickKind::kSurface ? kind : its_kind;
+  pace = pace_of(configuration.rate_hz);
+  delta = configuration.device.kind == DeviceKind::kDelta;
   ++bodies;
 }
 
@@ -53,9 +48,25 @@ std::uint64_t cycles_of(const TickCost& cost, const TickFigures& figures) {
   return cycles;
 }
 
+const TickCost& worst_row(const TickCosts& costs, const TickLoad& load) {
+  if (load.kind == TickKind::kPaper) {
+    return costs.paper;
+  }
+  const TickCost* const rows =
+      costs.surface[static_cast<std::uint32_t>(load.kind)] + first_row(load.pace);
+  const TickCost* worst = rows;
+  for (std::uint32_t i = 1; i < rows_of_pace(load.pace); ++i) {  // bound: kTickRows
+    if (cycles_of(rows[i], load.figures) > cycles_of(*worst, load.figures)) {
+      worst = rows + i;
+    }
+  }
+  return *worst;
+}
+
 std::uint64_t cycles_of(const TickCosts& costs, const TickLoad& load) {
-  const std::uint32_t row = smaller_of(load.bodies, kMaxReachableBodies) - 1U;
-  return cycles_of(costs.of[static_cast<std::uint32_t>(load.kind)][load.pace][row], load.figures);
+  const std::uint64_t each = cycles_of(worst_row(costs, load), load.figures);
+  return costs.base + (load.delta ? costs.delta : 0U) +
+         each * smaller_of(load.bodies, kMaxReachableBodies);
 }
 
 TickKind tick_kind(const BlobHeader& header, RenderMode mode) {

@@ -15,7 +15,10 @@ static_assert(offsetof(Identity, checksum) + 4 == sizeof(Identity));
 [[gnu::used]] const Identity kIdentity = {"TACTIMG",  TACTREE_BOARD, code_begin, code_end,
                                           blob_begin, blob_end,      uf2_family, 0};
 
-bool image_is_whole() {
+hal::ImageStatus test_image() {
+  if (!variables_hold()) {
+    return hal::ImageStatus::kBadMemory;
+  }
   // The compiler knows the constant as it was before it was sealed.
   const volatile Identity* const sealed = &kIdentity;
   const auto* const code = reinterpret_cast<const std::byte*>(code_begin);
@@ -24,7 +27,7 @@ bool image_is_whole() {
   checksum.update({code, end});
   checksum.update({reinterpret_cast<const std::byte*>(image_data_source),
                    static_cast<std::size_t>(image_data_end - image_data_begin) * 4U});
-  return checksum.value() == sealed->checksum;
+  return checksum.value() == sealed->checksum ? hal::ImageStatus::kOk : hal::ImageStatus::kDamaged;
 }
 
 }  // namespace tactree::firmware

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "tactree/hal/loop.hpp"
+
 namespace tactree::firmware {
 
 struct Identity {
@@ -15,14 +17,15 @@ struct Identity {
   const std::byte* blob_begin;
   const std::byte* blob_end;
   const std::byte* uf2_family;  ///< a number, not a place: of the chip, in UF2 files; 0: none
-  std::uint32_t checksum;       ///< of the image, filled in by scripts/seal-image: image_is_whole()
+  std::uint32_t checksum;       ///< of the image, filled in by scripts/seal-image: test_image()
 };
 
 /// The last bytes of the code.
 [[gnu::section(".identity")]] extern const Identity kIdentity;
 
-/// Is every byte of the program as it was built? Of the code up to the checksum, then of the
-/// initial values of variables. Cost: some 10 instructions a byte.
-[[nodiscard]] bool image_is_whole();
+/// Did the memory of all variables hold, and is every byte of the program as it was built: of the
+/// code up to the checksum, then of the initial values of variables? Cost: some 10 instructions a
+/// byte.
+[[nodiscard]] hal::ImageStatus test_image();
 
 }  // namespace tactree::firmware

@@ -10,6 +10,8 @@ extern std::uint32_t image_data_end[];
 extern const std::uint32_t image_data_source[];
 extern std::uint32_t image_bss_begin[];
 extern std::uint32_t image_bss_end[];
+extern std::uint32_t image_tested_begin[];
+extern std::uint32_t image_tested_end[];
 extern std::uint32_t image_stack_top[];
 extern void (*const image_constructors_begin[])();
 extern void (*const image_constructors_end[])();
@@ -23,8 +25,12 @@ extern const std::byte uf2_family[];
 
 namespace tactree::firmware {
 
-/// Copies .data, clears .bss, runs the constructors, and main(). No float may be touched before the
-/// FPU is on, and no static object before this.
+/// Did the memory of all variables hold what was written, before anything was in it? The stack is
+/// in use meanwhile, and not tested.
+[[nodiscard]] bool variables_hold();
+
+/// Tests the memory of the variables, copies .data, clears .bss, runs the constructors, and main().
+/// No float may be touched before the FPU is on, and no static object before this.
 [[noreturn]] void start_image();
 
 }  // namespace tactree::firmware

@@ -1,24 +1,27 @@
+// memory: RAM
+
 #include "stm32f4/frames.hpp"
 
 #include <bit>
 
 namespace tactree::firmware::stm32f4 {
 
+static_assert(kFrameMark != kCommandKind);
+static_assert(kFrameMark > static_cast<std::uint8_t>(core::Command::kHome));
+static_assert(kCommandKind > static_cast<std::uint8_t>(core::Command::kHome));
+static_assert(kLookedAt % 4U == 0U);
+
 bool CommandReader::push(std::byte byte, core::Command& command) {
-  for (std::size_t i = 0; i + 1 < sizeof window_; ++i) {  // bound: 7
-    window_[i] = window_[i + 1];
-  }
-  window_[sizeof window_ - 1] = byte;
-  struct Bytes {
-    std::byte byte[sizeof(CommandFrame)];
-  } bytes;
-  for (std::size_t i = 0; i < sizeof window_; ++i) {  // bound: 8
-    bytes.byte[i] = window_[i];
-  }
-  const auto frame = std::bit_cast<CommandFrame>(bytes);
+  window_ = (window_ >> 8U) | (static_cast<std::uint64_t>(byte) << 56U);
+  const auto frame = std::bit_cast<CommandFrame>(window_);
   if (frame.mark != kFrameMark || frame.kind != kCommandKind ||
-      frame.command > core::Command::kHome ||
-      frame.checksum != checksum_of(frame)) {  // with: bytes_size <= 4
+      frame.command > core::Command::kHome) {
+    return false;
+  }
+  // at most: kLookedAt / 4 per tactree_tick (no frame looks like one that begins 1 to 3 bytes
+  // later)
+  const std::uint32_t checksum = checksum_of(frame);  // with: bytes_size <= 4
+  if (frame.checksum != checksum) {
     return false;
   }
   const bool repeated = !first_ && frame.sequence == last_sequence_;

@@ -23,13 +23,12 @@ class SerialLink {
     port_.send(std::as_bytes(std::span(&boot_, 1)));
   }
 
-  /// At most one command a tick; what came in after it is read in the next. Looks at most at one
-  /// ring full of bytes.
+  /// At most one command a tick; what came in after it is read in the next.
   [[nodiscard]] hal::LinkInput receive() noexcept {
     std::byte byte;
     core::Command command = core::Command::kNone;
     hal::LinkInput input;
-    for (std::uint32_t i = 0; i < kRingBytes && port_.take(byte); ++i) {  // bound: kRingBytes
+    for (std::uint32_t i = 0; i < kLookedAt && port_.take(byte); ++i) {  // bound: kLookedAt
       if (!reader_.push(byte, command)) {
         continue;
       }

@@ -38,11 +38,11 @@ bound::Bound bound_of(const emulation::BoardDescription& board, const core::Blob
                       core::DeviceKind device = core::DeviceKind::kCartesian,
                       const std::filesystem::path& sources = TACTREE_SOURCES) {
   bound::BoundOptions options;
-  options.image = built(board, "firmware", board.name);
+  options.image = bare_firmware(board);
   options.sources = sources;
   options.entries = bound::tick_entries();
-  options.parameters =
-      bound::parameters_of(view.header(), mode, 1, device, core::work_per_tick(rate_hz));
+  options.parameters = bound::parameters_of(view.header(), mode, 1, device);
+  options.pace = core::pace_of(rate_hz);
   return bound::worst_case(options);
 }
 
@@ -191,7 +191,7 @@ TEST_P(Proof, HoldsForEveryDevice) {
 
 bound::BoundOptions in_cycles(const emulation::BoardDescription& board) {
   bound::BoundOptions options;
-  options.image = built(board, "firmware", board.name);
+  options.image = bare_firmware(board);
   options.sources = TACTREE_SOURCES;
   options.entries = bound::tick_entries();
   options.timing = bound::find_timing(board.name);
@@ -203,30 +203,28 @@ core::TickFigures some_figures(std::mt19937& random) {
   const auto any = [&](std::uint32_t largest) {
     return std::uniform_int_distribution<std::uint32_t>(0, largest)(random);
   };
-  return {any(most.points_per_ball_max),
-          any(most.points_per_query_max),
-          any(most.points_per_slab_max),
-          any(most.points_per_leaf_max),
-          any(most.depth),
-          any(most.levels_below),
-          any(most.blended_points),
-          any(most.blended_materials),
-          any(most.delta)};
+  return {
+      any(most.points_per_ball_max), any(most.points_per_leaf_max), any(most.depth),
+      any(most.levels_below),        any(most.blended_points),      any(most.blended_materials)};
 }
 
 TEST_P(Proof, TheFormulaIsNeverLessThanTheBound) {
   bound::BoundOptions options = in_cycles(board());
   const core::TickCosts costs = bound::tick_costs(options);
   std::mt19937 random(5);
-  for (std::uint32_t kind = 0; kind < core::kTickKinds; ++kind) {
-    for (std::uint32_t bodies = 1; bodies <= core::kMaxReachableBodies; ++bodies) {
-      for (std::uint32_t pace = 0; pace < core::kPaces; ++pace) {
-        const core::TickFigures figures = some_figures(random);
-        options.parameters = bound::parameters_of(figures, static_cast<core::TickKind>(kind),
-                                                  bodies, core::kWorkPerTick[pace]);
-        EXPECT_GE(core::cycles_of(costs.of[kind][pace][bodies - 1], figures),
-                  bound::worst_case(options).cycles)
-            << "kind " << kind << ", pace " << pace << ", " << bodies << " bodies";
+  core::TickLoad load;
+  for (const auto kind :
+       {core::TickKind::kSurface, core::TickKind::kMixed, core::TickKind::kPaper}) {
+    for (load.bodies = 1; load.bodies <= core::kMaxReachableBodies; ++load.bodies) {
+      for (load.pace = 0; load.pace < core::kPaces; ++load.pace) {
+        load.kind = kind;
+        load.figures = some_figures(random);
+        load.delta = !load.delta;
+        options.pace = load.pace;
+        options.parameters = bound::parameters_of(load.figures, kind, load.bodies, load.delta);
+        EXPECT_GE(core::cycles_of(costs, load), bound::worst_case(options).cycles)
+            << "kind " << static_cast<int>(kind) << ", pace " << load.pace << ", " << load.bodies
+            << " bodies";
       }
     }
   }
@@ -234,17 +232,20 @@ TEST_P(Proof, TheFormulaIsNeverLessThanTheBound) {
 
 // The figures of the Stanford bunny, 10 cm long with a point every 0.5 mm.
 TEST_P(Proof, TheFormulaIsCloseForAModelOfAScan) {
-  const core::TickFigures bunny{46, 268, 171, 51, 6, 3, 0, 0, 0};
+  core::TickLoad load;
+  load.figures = {46, 51, 6, 3, 0, 0};
+  load.bodies = 1;
   bound::BoundOptions options = in_cycles(board());
   const core::TickCosts costs = bound::tick_costs(options);
-  for (std::uint32_t pace = 0; pace < core::kPaces; ++pace) {
+  for (load.pace = 0; load.pace < core::kPaces; ++load.pace) {
+    options.pace = load.pace;
     options.parameters =
-        bound::parameters_of(bunny, core::TickKind::kSurface, 1, core::kWorkPerTick[pace]);
+        bound::parameters_of(load.figures, core::TickKind::kSurface, 1, load.delta);
     const auto exact = static_cast<double>(bound::worst_case(options).cycles);
-    const auto kind = static_cast<std::uint32_t>(core::TickKind::kSurface);
-    const auto formula = static_cast<double>(core::cycles_of(costs.of[kind][pace][0], bunny));
+    const auto formula = static_cast<double>(core::cycles_of(costs, load));
+    std::printf("%s: pace %u: formula %.0f, bound %.0f\n", board().name, load.pace, formula, exact);
     EXPECT_GE(formula, exact);
-    EXPECT_LE(formula, 1.35 * exact) << "pace " << pace;
+    EXPECT_LE(formula, 1.02 * exact) << "pace " << load.pace;
   }
 }
 
@@ -272,7 +273,7 @@ hal::StartResult start_at(const emulation::BoardDescription& board,
 TEST_P(Proof, ABoardThatKnowsItsCostsRefusesARateItCannotKeep) {
   const std::filesystem::path image =
       std::filesystem::path(testing::TempDir()) / (std::string(board().name) + "_costs.elf");
-  std::filesystem::copy_file(built(board(), "firmware", board().name), image,
+  std::filesystem::copy_file(bare_firmware(board()), image,
                              std::filesystem::copy_options::overwrite_existing);
   const bound::BoundOptions options = in_cycles(board());
   bound::embed(image, bound::tick_costs(options));

@@ -5,6 +5,7 @@ usage: bound_command_test.py TACTREE BLOB SOURCES
 """
 import json
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -51,11 +52,25 @@ class BoundCommand(unittest.TestCase):
         self.assertEqual(refused.returncode, 1)
         self.assertIn(f"keeps up to {highest:.0f} Hz", refused.stderr)
 
+    def test_a_board_takes_what_is_in_time(self):
+        run = ["simulate", BLOB, "--board", BOARD, "--seconds", 0.02, "--rate"]
+        self.assertEqual(tactree(*run, 1000).returncode, 0)
+        refused = tactree(*run, 10000)
+        self.assertEqual(refused.returncode, 1)
+        highest = re.search(r"--rate: up to (\d+)", refused.stderr)
+        self.assertIsNotNone(highest, refused.stderr)
+        self.assertIn(f"cycles on {BOARD}", refused.stderr)
+        self.assertEqual(tactree(*run, highest[1]).returncode, 0)
+        self.assertEqual(tactree(*run, int(highest[1]) + 1).returncode, 1)
+        bare = tactree(*run, 10000, "--firmware", IMAGE.parent / "bare")
+        self.assertEqual(bare.returncode, 0, bare.stderr)
+
     def test_info(self):
         run = tactree("info", BLOB, "--board", BOARD)
         self.assertEqual(run.returncode, 0, run.stderr)
-        self.assertIn("points_per_ball_max", run.stdout)
-        self.assertIn("cycles a tick", run.stdout)
+        self.assertIn("the costs in the image", run.stdout)
+        self.assertRegex(run.stdout, r"cycles a tick at 168 MHz\n +=.* \+ \d+ levels_below")
+        self.assertRegex(run.stdout, r" \+ \d+ points_per_leaf_max")
 
     def test_build(self):
         points = self.folder / "plane.xyz"

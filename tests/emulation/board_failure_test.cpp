@@ -112,6 +112,15 @@ TEST_P(BlobOnBoard, IsNotTouchedByADamagedProgram) {
   std::filesystem::remove(file);
 }
 
+TEST_P(BlobOnBoard, IsNotTouchedWhereVariablesDoNotHold) {
+  emulation::EmulationOptions forgetful = options();
+  forgetful.image = built(board(), "tests/on_target", std::string("forgetful-") + board().name);
+  if (!std::filesystem::exists(forgetful.image)) {
+    GTEST_SKIP() << "all of its memory can be written";
+  }
+  EXPECT_EQ(start_without_force(good_blob(), forgetful).image, hal::ImageStatus::kBadMemory);
+}
+
 class Failure : public OnBoard {};
 TACTREE_ON_EVERY_BOARD(Failure);
 

@@ -59,7 +59,7 @@ class SimulateOnABoard(unittest.TestCase):
             self.assertEqual(board.pop("board"), BOARD)
             self.assertEqual(host.pop("board"), "host")
             self.assertEqual(host, board)
-            self.assertIsNone(counts["bound"])
+            self.assertGreaterEqual(counts["bound"], counts["max"])
             self.assertGreater(counts["max"], counts["mean"])
             self.assertGreater(counts["mean"], 500)
             self.assertIn(f"{counts['max']} at most", told)

@@ -26,7 +26,7 @@ double BoardCosts::highest_rate(const core::BlobHeader& header,
   return bound::highest_rate(timing.clock_hz, cycles);
 }
 
-BoardCosts costs_of_board(const std::string& name) {
+BoardCosts costs_of_board(const std::string& name, const std::string& firmware) {
   const emulation::BoardDescription* const board = emulation::find_board(name);
   const bound::BoardTiming* const timing = bound::find_timing(name);
   if (board == nullptr || timing == nullptr) {
@@ -36,7 +36,7 @@ BoardCosts costs_of_board(const std::string& name) {
                     name));
   }
   bound::BoundOptions options;
-  options.image = emulation::find_image(*board);
+  options.image = emulation::find_image(*board, firmware);
   options.sources = TACTREE_SOURCES;
   options.entries = bound::tick_entries();
   options.timing = timing;

@@ -23,8 +23,9 @@ struct BoardCosts {
                                     const core::Configuration& configuration) const;
 };
 
-/// Throws CommandError on a board that is not known, and what bound and emulation throw.
-[[nodiscard]] BoardCosts costs_of_board(const std::string& name);
+/// `firmware`: the folder of its image, empty: where it was built or installed. Throws CommandError
+/// on a board that is not known, and what bound and emulation throw.
+[[nodiscard]] BoardCosts costs_of_board(const std::string& name, const std::string& firmware = {});
 
 /// A device of the kind that takes longest, or the one of a name or file where one is given.
 [[nodiscard]] core::DeviceModel slowest_or(const std::string& device);

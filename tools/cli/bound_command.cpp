@@ -30,6 +30,7 @@ struct BoundCommandOptions {
   double rate_hz = 1000.0;
   bool must_keep_rate = false;
   bool embed = false;
+  bool quiet = false;
   std::string sources = TACTREE_SOURCES;
   std::string json;
   std::string mode = "surface";
@@ -40,16 +41,14 @@ struct BoundCommandOptions {
 bound::Parameters parameters(const BoundCommandOptions& options) {
   const auto mode = options.mode == "paper" ? core::RenderMode::kPaper : core::RenderMode::kSurface;
   const core::DeviceKind device = slowest_or(options.device).kind;
-  const core::SurfaceWork work = core::work_per_tick(static_cast<float>(options.rate_hz));
   if (!options.blob.empty()) {
     const BlobFile blob(options.blob);
-    return bound::parameters_of(blob.view().header(), mode, options.bodies, device, work);
+    return bound::parameters_of(blob.view().header(), mode, options.bodies, device);
   }
-  core::TickFigures figures = bound::largest_figures();
-  figures.delta = device == core::DeviceKind::kDelta ? 1U : 0U;
   const auto kind =
       mode == core::RenderMode::kPaper ? core::TickKind::kPaper : core::TickKind::kMixed;
-  return bound::parameters_of(figures, kind, options.bodies, work);
+  return bound::parameters_of(bound::largest_figures(), kind, options.bodies,
+                              device == core::DeviceKind::kDelta);
 }
 
 nlohmann::json to_json(const BoundCommandOptions& options, const bound::BoundOptions& analysis,
@@ -70,7 +69,7 @@ nlohmann::json to_json(const BoundCommandOptions& options, const bound::BoundOpt
   }
   nlohmann::json result{{"image", options.image},
                         {"blob", options.blob},
-                        {"parameters", analysis.parameters},
+                        {"parameters", bound.parameters},
                         {"instructions", bound.instructions},
                         {"cycles", nullptr},
                         {"functions", functions},
@@ -83,9 +82,9 @@ nlohmann::json to_json(const BoundCommandOptions& options, const bound::BoundOpt
   return result;
 }
 
-void print(const bound::Parameters& parameters, const bound::Bound& bound) {
+void print(const bound::Bound& bound) {
   fmt::print("instructions       {} in one tick at most\n", bound.instructions);
-  for (const auto& [name, value] : parameters) {
+  for (const auto& [name, value] : bound.parameters) {
     fmt::print("  {:<22} {}\n", name, value);
   }
   for (const std::string& fact : bound.unused_facts) {
@@ -130,6 +129,7 @@ void bound_tick(const BoundCommandOptions& options) {
   analysis.sources = options.sources;
   analysis.entries = bound::tick_entries();
   analysis.parameters = parameters(options);
+  analysis.pace = core::pace_of(static_cast<float>(options.rate_hz));
   analysis.timing = options.board.empty() ? nullptr : bound::find_timing(options.board);
   if (!options.board.empty() && analysis.timing == nullptr) {
     throw CommandError(
@@ -139,9 +139,12 @@ void bound_tick(const BoundCommandOptions& options) {
   }
   if (options.embed) {
     bound::embed(options.image, bound::tick_costs(analysis));
+    if (options.quiet) {
+      return;
+    }
   }
   const bound::Bound result = bound::worst_case(analysis);
-  print(analysis.parameters, result);
+  print(result);
   double highest = 0.0;
   if (analysis.timing != nullptr) {
     highest = std::floor(bound::highest_rate(analysis.timing->clock_hz, result.pace_cycles));
@@ -164,10 +167,13 @@ void add_bound_command(CLI::App& app, int&) {
   verb->add_option("IMAGE", options->image, "the image: <board>.elf")->required();
   CLI::Option* board = verb->add_option(
       "--board", options->board, "the board: also says how many cycles, and the highest rate");
-  verb->add_flag("--embed", options->embed,
-                 "write the cycles into the image, as a formula in the model's figures: its "
-                 "controller then refuses what is not in time (seal it with scripts/seal-image)")
-      ->needs(board);
+  CLI::Option* embed =
+      verb->add_flag(
+              "--embed", options->embed,
+              "write the cycles into the image, as a formula in the model's figures: its "
+              "controller then refuses what is not in time (seal it with scripts/seal-image)")
+          ->needs(board);
+  verb->add_flag("--quiet", options->quiet, "only that")->needs(embed);
   CLI::Option* rate = verb->add_option("--rate", options->rate_hz,
                                        "Hz; a tick does more at a low rate. With --board it fails "
                                        "where the board cannot keep it")

@@ -213,12 +213,12 @@ void print_costs(const core::BlobHeader& header, const std::string& name,
     configuration.rate_hz = static_cast<float>(highest);
     core::TickLoad load;
     load.add(header, configuration);
-    const core::TickCost& cost =
-        board.costs.of[static_cast<std::uint32_t>(load.kind)][load.pace][0];
+    const core::TickCost& cost = core::worst_row(board.costs, load);
     fmt::print("{:<8}  up to {:.0f} Hz: at most {:.0f} cycles a tick at {:.0f} MHz\n",
                mode == core::RenderMode::kPaper ? "paper" : "surface", highest,
                board.cycles(header, configuration), 1e-6 * board.timing.clock_hz);
-    fmt::print("          = {}", cost.base);
+    fmt::print("          = {}",
+               board.costs.base + (load.delta ? board.costs.delta : 0) + cost.base);
     for (std::uint32_t i = 0; i < core::kTickFigures; ++i) {
       if (cost.per_figure[i] != 0) {
         fmt::print(" + {} {}", cost.per_figure[i], core::kTickFigureNames[i]);

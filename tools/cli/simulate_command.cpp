@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "blob_file.hpp"
+#include "board_costs.hpp"
 #include "command.hpp"
 #include "device_file.hpp"
 #include "json_text.hpp"
@@ -19,6 +20,8 @@
 #include "output_file.hpp"
 #include "scene_file.hpp"
 #include "serve_session.hpp"
+#include "tactree/bound/bound.hpp"
+#include "tactree/bound/bound_error.hpp"
 #include "tactree/emulation/emulated_target.hpp"
 #include "tactree/hal/linux/function_fs_controller.hpp"
 #include "tactree/hal/linux/usbip_controller.hpp"
@@ -151,8 +154,24 @@ simulation::Setup make_setup(const SimulateOptions& options, const SceneFile& sc
          "--no-materials");
 }
 
+[[noreturn]] void refuse_slow_model(const std::string& file, const core::BlobView& view,
+                                    const core::Configuration& controller,
+                                    const SimulateOptions& options) {
+  const std::string& board = options.board;
+  const BoardCosts costs = costs_of_board(board, options.firmware);
+  refuse(
+      fmt::format("{}: refused: a tick with it may take {:.0f} cycles on {}, {:.1f} us of {:.1f}",
+                  file, costs.cycles(view.header(), controller), board,
+                  1e6 * costs.cycles(view.header(), controller) / costs.timing.clock_hz,
+                  1e6 / static_cast<double>(controller.rate_hz)),
+      fmt::format("--rate: up to {:.0f}; or build it with --board {} --rate {:.0f}",
+                  std::floor(costs.highest_rate(view.header(), controller)), board,
+                  controller.rate_hz));
+}
+
 void check_start(const std::string& file, const core::BlobView& view,
-                 const simulation::Setup& setup, const hal::StartResult& start) {
+                 const simulation::Setup& setup, const hal::StartResult& start,
+                 const SimulateOptions& options) {
   if (start.configuration == core::ConfigurationStatus::kUnstable) {
     const core::StabilityLimit limit = core::stability_limit(setup.controller);
     refuse(
@@ -160,6 +179,9 @@ void check_start(const std::string& file, const core::BlobView& view,
                     "hand at {:.6g} Hz",
                     setup.controller.stiffness_N_m, limit.with_hand_N_m, setup.controller.rate_hz),
         "lower --stiffness, or raise --rate or --damping");
+  }
+  if (start.image == hal::ImageStatus::kBadMemory) {
+    refuse("the board's memory: a bit of it does not hold what is written", "replace the board");
   }
   if (start.image != hal::ImageStatus::kOk) {
     refuse("the board's image: a byte of it is not as it was built", "build the image again");
@@ -174,6 +196,9 @@ void check_start(const std::string& file, const core::BlobView& view,
   }
   if (start.model == core::ModelStatus::kTooStiff) {
     refuse_material(file, view, setup.controller);
+  }
+  if (start.model == core::ModelStatus::kTooSlow) {
+    refuse_slow_model(file, view, setup.controller, options);
   }
   if (start.model != core::ModelStatus::kOk) {
     refuse(fmt::format("{}: {}", file, core::describe(start.model)),
@@ -196,6 +221,7 @@ struct Outcome {
   simulation::Summary summary;
   std::optional<Harm> harm;
   std::optional<emulation::InstructionCounts> instructions;  // of an emulated board
+  std::optional<std::uint64_t> bound;  // of a tick's instructions, where its image can be analysed
   std::vector<simulation::Sample> samples;
 };
 
@@ -306,6 +332,23 @@ class Comparison {
   Harm harm_;
 };
 
+/// Nothing for a board whose code cannot be analysed.
+std::optional<std::uint64_t> bound_of_tick(const SimulateOptions& options, const SceneFile& scene,
+                                           const core::Configuration& controller) {
+  bound::BoundOptions analysis;
+  analysis.image = emulation::find_image(*emulation::find_board(options.board), options.firmware);
+  analysis.sources = TACTREE_SOURCES;
+  analysis.entries = bound::tick_entries();
+  analysis.parameters = bound::parameters_of(scene.files[0]->view().header(), controller.mode, 1,
+                                             controller.device.kind);
+  analysis.pace = core::pace_of(controller.rate_hz);
+  try {
+    return bound::worst_case(analysis).instructions;
+  } catch (const bound::BoundError&) {
+    return std::nullopt;
+  }
+}
+
 Outcome run(const SimulateOptions& options, const SceneFile& scene) {
   const BlobFile& blob = *scene.files[0];
   const simulation::Setup setup = make_setup(options, scene);
@@ -320,7 +363,8 @@ Outcome run(const SimulateOptions& options, const SceneFile& scene) {
   simulation::Simulation sim(blob.bytes(), setup, hand_path(options, scene),
                              std::move(chosen.target));
   const std::size_t refused = chosen.scene == nullptr ? 0 : chosen.scene->refused_body();
-  check_start(scene.names[refused], scene.files[refused]->view(), setup, sim.start_result());
+  check_start(scene.names[refused], scene.files[refused]->view(), setup, sim.start_result(),
+              options);
   if (!sim.arm()) {
     refuse(fmt::format("the controller did not become active, it is in state {}",
                        core::name_of(sim.state())),
@@ -351,6 +395,7 @@ Outcome run(const SimulateOptions& options, const SceneFile& scene) {
   }
   if (chosen.emulated != nullptr) {
     outcome.instructions = chosen.emulated->instruction_counts();
+    outcome.bound = bound_of_tick(options, scene, setup.controller);
   }
   return outcome;
 }
@@ -363,7 +408,8 @@ void write_trace(const std::string& file, const std::vector<simulation::Sample>&
   write_file(file, csv);
 }
 
-nlohmann::json to_json(const std::optional<emulation::InstructionCounts>& counts) {
+nlohmann::json instructions_json(const Outcome& outcome) {
+  const std::optional<emulation::InstructionCounts>& counts = outcome.instructions;
   if (!counts) {
     return {{"max", nullptr}, {"mean", nullptr}, {"bound", nullptr}};
   }
@@ -372,7 +418,8 @@ nlohmann::json to_json(const std::optional<emulation::InstructionCounts>& counts
     const double mean = static_cast<double>(f.total) / static_cast<double>(counts->ticks);
     functions.push_back({{"name", f.name}, {"max", f.max}, {"mean", mean}});
   }
-  return {{"max", counts->max},     {"mean", counts->mean()},       {"bound", nullptr},
+  const auto bound = outcome.bound ? nlohmann::json(*outcome.bound) : nlohmann::json(nullptr);
+  return {{"max", counts->max},     {"mean", counts->mean()},       {"bound", bound},
           {"start", counts->start}, {"checksum", counts->checksum}, {"functions", functions}};
 }
 
@@ -420,12 +467,14 @@ nlohmann::json to_json(const SimulateOptions& options, const SceneFile& scene,
       {"bodies", to_json(scene, s)},
       {"crowded_ticks", s.crowded_ticks},
       {"injected", outcome.harm ? to_json(options.injections, *outcome.harm) : nlohmann::json()},
-      {"instructions", to_json(outcome.instructions)}};
+      {"instructions", instructions_json(outcome)}};
 }
 
-void print_instructions(const emulation::InstructionCounts& counts) {
-  fmt::print("instructions       {:.0f} per tick on average, {} at most, {} before the first\n",
-             counts.mean(), counts.max, counts.start);
+void print_instructions(const emulation::InstructionCounts& counts,
+                        std::optional<std::uint64_t> bound) {
+  fmt::print("instructions       {:.0f} per tick on average, {} at most{}, {} before the first\n",
+             counts.mean(), counts.max, bound ? fmt::format(" (bound {})", *bound) : "",
+             counts.start);
   for (std::size_t i = 0; i < std::min(kReportedFunctions, counts.functions.size()); ++i) {
     const emulation::FunctionCount& f = counts.functions[i];
     fmt::print("  {:8.0f} {:8}  {}\n",
@@ -480,7 +529,7 @@ void print_summary(const SimulateOptions& options, const SceneFile& scene, const
     print_harm(options, *outcome.harm);
   }
   if (outcome.instructions) {
-    print_instructions(*outcome.instructions);
+    print_instructions(*outcome.instructions, outcome.bound);
   }
 }
 
@@ -550,7 +599,7 @@ void serve_target(const SimulateOptions& options, const SceneFile& scene,
   const simulation::Setup setup = make_setup(options, scene);
   simulation::Simulation sim(scene.files[0]->bytes(), setup, hand_path(options, scene),
                              std::move(target));
-  check_start(scene.names[0], scene.files[0]->view(), setup, sim.start_result());
+  check_start(scene.names[0], scene.files[0]->view(), setup, sim.start_result(), options);
   sim.inject(simulation::Injector(injections(options)));
   schedule.rate_hz = static_cast<double>(setup.controller.rate_hz);
   schedule.path_s = options.seconds;

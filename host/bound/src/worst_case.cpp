@@ -967,61 +967,99 @@ class Task {
   std::set<std::string> inlined_;
 };
 
+/// In paper mode it may have any number of points; none with as many is in time.
+constexpr std::int64_t kLargestLeaf = 65535;
+
 /// A typical model: what the prices are made with.
-core::TickFigures usual_figures() { return {46, 270, 170, 50, 7, 3, 46, 4, 0}; }
+core::TickFigures usual_figures() { return {46, 50, 7, 3, 46, 4}; }
 
 Parameters open_parameters() {
-  Parameters open = parameters_of(largest_figures(), core::TickKind::kSurface, 1, {});
-  for (const char* fixed : {"bodies", "mixed", "paper", "gathers", "passes", "work",
-                            "slice_corners", "slice_points", "slice_candidates"}) {
-    open.erase(fixed);
+  Parameters open{{"delta", 1}};
+  const Parameters largest = parameters_of(largest_figures(), core::TickKind::kSurface, 1, true);
+  for (const char* const name : core::kTickFigureNames) {
+    open[name] = largest.at(name);
   }
+  open["points_per_leaf_max"] = kLargestLeaf;
   return open;
 }
 
-std::uint32_t rounded_up(double value) { return static_cast<std::uint32_t>(std::ceil(value)); }
-
-core::TickCost to_cost(const Formula& formula) {
-  core::TickCost cost;
-  cost.base = rounded_up(formula.base);
-  for (std::uint32_t i = 0; i < core::kTickFigures; ++i) {
-    const auto found = formula.per.find(core::kTickFigureNames[i]);
-    cost.per_figure[i] = found == formula.per.end() ? 0 : rounded_up(found->second);
-  }
-  return cost;
+Parameters divided(Parameters parameters, std::uint32_t pace, const Division& division) {
+  const core::GatherSlice& slice = core::kWorkPerTick[pace].slice;
+  parameters["gathers"] = division.gathers;
+  parameters["passes"] = division.passes;
+  parameters["fits"] = division.fits;
+  parameters["searches"] = division.searches;
+  parameters["slice_corners"] = slice.corners;
+  parameters["slice_points"] = slice.points;
+  parameters["slice_candidates"] = slice.candidates;
+  return parameters;
 }
 
-Parameters parameters_of(const core::SurfaceWork& work) {
-  return {{"gathers", work.gathers},
-          {"passes", work.passes},
-          {"work", work.all},
-          {"slice_corners", work.slice.corners},
-          {"slice_points", work.slice.points},
-          {"slice_candidates", work.slice.candidates}};
+/// One for each division of a tick.
+std::vector<Parameters> all_divided(const Parameters& parameters, std::uint32_t pace) {
+  std::vector<Parameters> all;
+  const auto given = parameters.find("bodies");
+  const auto bodies = static_cast<std::uint32_t>(given == parameters.end() ? 1 : given->second);
+  for (const Division& division : divisions(pace, std::min(bodies, core::kMaxReachableBodies))) {
+    all.push_back(divided(parameters, pace, division));
+  }
+  return all;
 }
 
 PaceCycles cycles_by_pace(Task& task, const BoundOptions& options) {
   PaceCycles cycles{};
   for (std::uint32_t pace = 0; pace < core::kPaces; ++pace) {
-    Parameters parameters = options.parameters;
-    for (const auto& [name, value] : parameters_of(core::kWorkPerTick[pace])) {
-      parameters[name] = value;
+    for (const Parameters& parameters : all_divided(options.parameters, pace)) {
+      cycles[pace] =
+          std::max(cycles[pace], static_cast<double>(task.cycles(parameters, *options.timing)));
     }
-    cycles[pace] = static_cast<double>(task.cycles(parameters, *options.timing));
   }
   return cycles;
 }
 
 }  // namespace
 
+std::vector<Division> divisions(std::uint32_t pace, std::uint32_t bodies) {
+  const core::SurfaceWork& work = core::kWorkPerTick[pace];
+  std::vector<Division> all(1);
+  for (std::uint32_t body = 0; body < bodies; ++body) {
+    std::vector<Division> more(all.size() + work.gathers);
+    for (std::uint32_t others = 0; others < all.size(); ++others) {
+      for (std::uint32_t gathers = 0; gathers <= work.gathers; ++gathers) {
+        const std::uint32_t left = work.all - std::min(work.all, core::kGatherWork * gathers);
+        const std::uint32_t passes = std::min(work.passes, left);
+        const std::uint32_t fits = std::max(passes, 1U) - 1U;
+        Division& sum = more[others + gathers];
+        sum.gathers = others + gathers;
+        sum.passes = std::max(sum.passes, all[others].passes + passes);
+        sum.fits = std::max(sum.fits, all[others].fits + fits);
+        sum.searches = std::max(sum.searches, all[others].searches + std::min(fits, work.gathers));
+      }
+    }
+    all = std::move(more);
+  }
+  return all;
+}
+
 Bound worst_case(const BoundOptions& options) {
   Task task(options);
-  Bound bound = task.instructions(options.parameters);
-  if (options.timing != nullptr) {
-    bound.cycles = task.cycles(options.parameters, *options.timing);
-    bound.pace_cycles = cycles_by_pace(task, options);
+  Bound worst;
+  std::uint64_t cycles = 0;
+  for (const Parameters& parameters : all_divided(options.parameters, options.pace)) {
+    Bound bound = task.instructions(parameters);
+    if (options.timing != nullptr) {
+      cycles = std::max(cycles, task.cycles(parameters, *options.timing));
+    }
+    if (bound.instructions > worst.instructions) {
+      worst = std::move(bound);
+      worst.parameters = parameters;
+    }
   }
-  return bound;
+  if (options.timing != nullptr) {
+    worst.cycles = cycles;
+    worst.pace_cycles = cycles_by_pace(task, options);
+  }
+  return worst;
 }
 
 double highest_rate(double clock_hz, const PaceCycles& cycles) {
@@ -1037,25 +1075,77 @@ double highest_rate(double clock_hz, const PaceCycles& cycles) {
   return 0.0;
 }
 
+namespace {
+
+/// Of the whole tick, for each number of bodies that are rendered.
+class TickFormulas {
+ public:
+  TickFormulas(Task& task, const BoardTiming& timing) : task_(task), timing_(timing) {}
+
+  /// A tick without a body is no more than this.
+  [[nodiscard]] double base() { return of(core::TickKind::kPaper, 0, 0, {}).base; }
+
+  [[nodiscard]] Formula of(core::TickKind kind, std::uint32_t bodies, std::uint32_t pace,
+                           const Division& division) {
+    const Parameters parameters =
+        divided(parameters_of(usual_figures(), kind, bodies, false), pace, division);
+    Formula formula = task_.formula(parameters, open_parameters(), timing_);
+    delta_ = std::max(delta_, formula.per["delta"]);
+    return formula;
+  }
+
+  /// The most that any tick takes longer because the device is a delta.
+  [[nodiscard]] double delta() const { return delta_; }
+
+ private:
+  Task& task_;
+  const BoardTiming& timing_;
+  double delta_ = 0.0;
+};
+
+/// What one of `bodies` takes of such a tick, where that is more than `cost` says.
+void cover(core::TickCost& cost, const Formula& formula, double base, std::uint32_t bodies) {
+  const auto raise = [bodies](auto& to, double share) {
+    const double each = std::ceil(share / bodies);
+    if (each > std::numeric_limits<std::decay_t<decltype(to)>>::max()) {
+      throw BoundError("a price of a tick's costs does not fit its 16 bits (widen core::TickCost)");
+    }
+    to = std::max(to, static_cast<std::decay_t<decltype(to)>>(std::max(each, 0.0)));
+  };
+  raise(cost.base, formula.base - base);
+  for (std::uint32_t i = 0; i < core::kTickFigures; ++i) {
+    const auto found = formula.per.find(core::kTickFigureNames[i]);
+    raise(cost.per_figure[i], found == formula.per.end() ? 0.0 : found->second);
+  }
+}
+
+}  // namespace
+
+// Two bodies with so many gathers together are in one row; so is one body with half of them.
 core::TickCosts tick_costs(const BoundOptions& options) {
   if (options.timing == nullptr) {
     throw BoundError(options.image.string() + ": costs need a board's timing (say which board)");
   }
   Task task(options);
+  TickFormulas formulas(task, *options.timing);
   core::TickCosts costs;
   costs.known = core::kTickCostsKnown;
-  for (std::uint32_t kind = 0; kind < core::kTickKinds; ++kind) {
+  const double base = std::floor(formulas.base());
+  costs.base = static_cast<std::uint32_t>(base);
+  for (std::uint32_t bodies = 1; bodies <= core::kMaxReachableBodies; ++bodies) {
     for (std::uint32_t pace = 0; pace < core::kPaces; ++pace) {
-      for (std::uint32_t row = 0; row < core::kMaxReachableBodies; ++row) {
-        const bool is_last = row + 1 == core::kMaxReachableBodies;
-        const Parameters parameters =
-            parameters_of(usual_figures(), static_cast<core::TickKind>(kind),
-                          is_last ? core::kMaxBodies : row + 1, core::kWorkPerTick[pace]);
-        costs.of[kind][pace][row] =
-            to_cost(task.formula(parameters, open_parameters(), *options.timing));
+      for (const Division& division : divisions(pace, bodies)) {
+        const std::uint32_t row =
+            core::first_row(pace) + division.gathers * core::kMaxReachableBodies / bodies;
+        for (const core::TickKind kind : {core::TickKind::kSurface, core::TickKind::kMixed}) {
+          cover(costs.surface[static_cast<std::uint32_t>(kind)][row],
+                formulas.of(kind, bodies, pace, division), base, bodies);
+        }
       }
     }
+    cover(costs.paper, formulas.of(core::TickKind::kPaper, bodies, 0, {}), base, bodies);
   }
+  costs.delta = static_cast<std::uint32_t>(std::ceil(formulas.delta()));
   return costs;
 }
 
@@ -1094,38 +1184,37 @@ core::TickCosts embedded(const std::filesystem::path& image) {
 }
 
 Parameters parameters_of(const core::TickFigures& figures, core::TickKind kind,
-                         std::uint32_t bodies, core::SurfaceWork work) {
-  Parameters parameters = parameters_of(work);
-  parameters.merge(Parameters{{"points_per_ball_max", figures.points_per_ball_max},
-                              {"points_per_query_max", figures.points_per_query_max},
-                              {"points_per_slab_max", figures.points_per_slab_max},
-                              {"points_per_leaf_max", figures.points_per_leaf_max},
-                              {"depth", figures.depth},
-                              {"levels_below", figures.levels_below},
-                              {"blended_points", figures.blended_points},
-                              {"blended_materials", figures.blended_materials},
-                              {"delta", figures.delta},
-                              {"bodies", bodies},
-                              {"mixed", kind == core::TickKind::kSurface ? 0 : 1},
-                              {"paper", kind == core::TickKind::kPaper ? 1 : 0}});
-  return parameters;
+                         std::uint32_t bodies, bool delta) {
+  return {{"points_per_ball_max", figures.points_per_ball_max},
+          {"points_per_leaf_max", figures.points_per_leaf_max},
+          {"points_per_query_max", core::kLeavesPerQuery * kLargestLeaf},
+          {"points_per_slab_max", core::kLeavesPerQuery * kLargestLeaf},
+          {"depth", figures.depth},
+          {"levels_below", figures.levels_below},
+          {"blended_points", figures.blended_points},
+          {"blended_materials", figures.blended_materials},
+          {"delta", delta ? 1 : 0},
+          {"bodies", bodies},
+          {"mixed", kind == core::TickKind::kSurface ? 0 : 1},
+          {"paper", kind == core::TickKind::kPaper ? 1 : 0}};
 }
 
 Parameters parameters_of(const core::BlobHeader& header, core::RenderMode mode,
-                         std::uint32_t bodies, core::DeviceKind device, core::SurfaceWork work) {
-  return parameters_of(core::tick_figures(header, device), core::tick_kind(header, mode), bodies,
-                       work);
+                         std::uint32_t bodies, core::DeviceKind device) {
+  Parameters parameters = parameters_of(core::tick_figures(header), core::tick_kind(header, mode),
+                                        bodies, device == core::DeviceKind::kDelta);
+  parameters["points_per_query_max"] = header.points_per_query_max;
+  parameters["points_per_slab_max"] = header.points_per_slab_max;
+  return parameters;
 }
 
 core::TickFigures largest_figures() {
   core::BlobHeader header{};
   header.depth = core::kMaxDepth;
   header.material_count = core::kMaxMaterials;
-  header.points_per_leaf_max = core::kMaxCandidates;
+  header.points_per_leaf_max = (1U << core::kLeafHalvings) - 1U;
   header.points_per_ball_max = core::kMaxCandidates;
-  header.points_per_query_max = core::kLeavesPerQuery * core::kMaxCandidates;
-  header.points_per_slab_max = header.points_per_query_max;
-  return core::tick_figures(header, core::DeviceKind::kDelta);
+  return core::tick_figures(header);
 }
 
 }  // namespace tactree::bound

@@ -7,22 +7,27 @@
 namespace tactree::test {
 namespace {
 
-/// A tick takes 1000 cycles, 10 more for each point of a ball; with several bodies twice as many.
+constexpr std::uint32_t kBase = 200U;
+
+/// Each body takes 800 cycles, 10 more for each point of a ball: so says the row of a tick that
+/// gathers nothing.
 core::TickCosts some_costs() {
   core::TickCosts costs;
   costs.known = core::kTickCostsKnown;
-  for (auto& kind : costs.of) {
-    for (auto& pace : kind) {
-      for (std::uint32_t row = 0; row < core::kMaxReachableBodies; ++row) {
-        pace[row].base = 1000U * (row + 1U);
-        pace[row].per_figure[0] = 10U * (row + 1U);
-      }
+  costs.base = kBase;
+  for (auto& rows : costs.surface) {
+    for (std::uint32_t pace = 0; pace < core::kPaces; ++pace) {
+      rows[core::first_row(pace)].base = 800U;
+      rows[core::first_row(pace)].per_figure[0] = 10U;
     }
   }
   return costs;
 }
 
-std::uint32_t needed() { return 1000U + 10U * shared_plane().view().header().points_per_ball_max; }
+std::uint32_t needed_by_body() {
+  return 800U + 10U * shared_plane().view().header().points_per_ball_max;
+}
+std::uint32_t needed() { return kBase + needed_by_body(); }
 
 core::ModelStatus load(const core::TickCosts& costs, std::uint32_t cycles_per_tick,
                        core::Controller& controller) {
@@ -58,11 +63,37 @@ TEST(Admission, UnknownCostsRefuseNothing) {
 TEST(Admission, ASecondBodyNeedsTimeOfItsOwn) {
   const core::TickCosts costs = some_costs();
   core::Controller controller;
-  ASSERT_EQ(load(costs, 2U * needed() - 1U, controller), core::ModelStatus::kOk);
+  const std::uint32_t both = needed() + needed_by_body();
+  ASSERT_EQ(load(costs, both - 1U, controller), core::ModelStatus::kOk);
   std::uint32_t number = 0;
   EXPECT_EQ(controller.add_body(shared_plane().view(), {}, number), core::ModelStatus::kTooSlow);
-  controller.know_costs(costs, 2U * needed() * 1000U);
+  controller.know_costs(costs, both * 1000U);
   EXPECT_EQ(controller.add_body(shared_plane().view(), {}, number), core::ModelStatus::kOk);
+}
+
+// The more of a tick's work is gathers, the less is fits: the worst of all ways counts.
+TEST(Admission, TheCostliestRowCounts) {
+  for (std::uint32_t row = 0; row < core::rows_of_pace(0); ++row) {
+    core::TickCosts costs = some_costs();
+    costs.surface[0][row].base = 5000U;
+    costs.surface[0][row].per_figure[0] = 0U;
+    core::Controller controller;
+    EXPECT_EQ(load(costs, kBase + 4999U, controller), core::ModelStatus::kTooSlow) << row;
+    EXPECT_EQ(load(costs, kBase + 5000U, controller), core::ModelStatus::kOk) << row;
+  }
+}
+
+TEST(Admission, ADeltaTakesLonger) {
+  core::TickCosts costs = some_costs();
+  costs.delta = 100U;
+  core::TickLoad load;
+  core::Configuration configuration;
+  load.add(shared_plane().view().header(), configuration);
+  EXPECT_EQ(core::cycles_of(costs, load), needed());
+  configuration.device.kind = core::DeviceKind::kDelta;
+  core::TickLoad of_delta;
+  of_delta.add(shared_plane().view().header(), configuration);
+  EXPECT_EQ(core::cycles_of(costs, of_delta), needed() + 100U);
 }
 
 TEST(Admission, AHigherRateTakesOutWhatItCannotKeep) {

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <latch>
 #include <string>
 #include <thread>
 
@@ -16,7 +17,10 @@ namespace tactree::test {
 /// Touches a sphere of 3 cm; its hand is held at the top, just above or in the surface.
 class RunningBoard {
  public:
-  explicit RunningBoard(double height_m = 0.04) : thread_([this, height_m] { run(height_m); }) {}
+  /// Returns when it listens.
+  explicit RunningBoard(double height_m = 0.04) : thread_([this, height_m] { run(height_m); }) {
+    listening_.wait();
+  }
   ~RunningBoard() {
     ending_ = true;
     thread_.join();
@@ -35,6 +39,7 @@ class RunningBoard {
     simulation::Simulation simulation(blob.written().bytes, setup, path,
                                       std::make_unique<serve::ServedTarget>(
                                           terminal_, blob.written().bytes, serve::ServeOptions{}));
+    listening_.count_down();
     double hand_s = 0.0;
     while (!ending_) {
       hand_s = simulation.state() == core::State::kActive ? hand_s + 0.001 : 0.0;
@@ -44,6 +49,7 @@ class RunningBoard {
   }
 
   host::PseudoTerminal terminal_;
+  std::latch listening_{1};
   std::atomic<bool> ending_ = false;
   std::thread thread_;
 };

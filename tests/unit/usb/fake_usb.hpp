@@ -110,7 +110,9 @@ class FakeStorage {
   core::usb::DfuStatus read(std::uint32_t offset, std::span<std::byte> bytes, std::size_t& count) {
     const std::size_t left = offset < stored.size() ? stored.size() - offset : 0;
     count = std::min(bytes.size(), left);
-    std::memcpy(bytes.data(), stored.data() + offset, count);
+    if (count != 0) {
+      std::memcpy(bytes.data(), stored.data() + offset, count);
+    }
     return at_read;
   }
 

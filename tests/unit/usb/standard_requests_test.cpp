@@ -82,7 +82,7 @@ TEST(UsbDescriptors, ConfigurationIsConsistentAtBothSpeeds) {
         EXPECT_NE(descriptor[8], 0);  // each has a name
       } else if (type == 5) {
         ++endpoints;
-        const std::uint32_t packet = descriptor[4] | descriptor[5] << 8U;
+        const auto packet = static_cast<std::uint32_t>(descriptor[4] | descriptor[5] << 8U);
         const bool bulk = descriptor[3] == 2;
         EXPECT_EQ(packet, bulk ? (high ? 512U : 64U) : 16U);
       }

@@ -16,7 +16,8 @@ namespace tactree::hal {
 /// What the self-test of the program found.
 enum class ImageStatus : std::uint8_t {
   kOk = 0,
-  kDamaged,  ///< a byte of it is not as it was built
+  kDamaged,    ///< a byte of it is not as it was built
+  kBadMemory,  ///< a bit of the RAM of its variables does not hold
 };
 
 /// Why there is no model to touch.

@@ -23,14 +23,24 @@ namespace tactree::bound {
 /// What the names in the bounds stand for, but for constants of the source.
 using Parameters = std::map<std::string, std::int64_t>;
 
-/// Those of the models that a board has loaded, and of the work that a tick may do.
+/// Those of the models that a board has loaded.
 [[nodiscard]] Parameters parameters_of(const core::BlobHeader& header, core::RenderMode mode,
-                                       std::uint32_t bodies, core::DeviceKind device,
-                                       core::SurfaceWork work);
+                                       std::uint32_t bodies, core::DeviceKind device);
+/// Of a model that has these figures, and else the largest; `delta`: the device is one.
 [[nodiscard]] Parameters parameters_of(const core::TickFigures& figures, core::TickKind kind,
-                                       std::uint32_t bodies, core::SurfaceWork work);
+                                       std::uint32_t bodies, bool delta);
 /// Of full leaves and balls at the greatest depth.
 [[nodiscard]] core::TickFigures largest_figures();
+
+/// One way to divide the work of a tick, of all bodies: with so many gathers, so much is left.
+struct Division {
+  std::uint32_t gathers = 0;
+  std::uint32_t passes = 0;
+  std::uint32_t fits = 0;      ///< places where it fits: each takes a pass and begins with two
+  std::uint32_t searches = 0;  ///< for the nearest candidate, before a fit
+};
+/// By the number of gathers, from none; for a tick of this pace, core::pace_of().
+[[nodiscard]] std::vector<Division> divisions(std::uint32_t pace, std::uint32_t bodies);
 
 /// A function the processor enters by itself, and how often in one tick.
 struct EntryPoint {
@@ -65,6 +75,8 @@ struct BoundOptions {
   std::filesystem::path sources;
   std::vector<EntryPoint> entries;
   Parameters parameters;
+  /// Of the rate, core::pace_of(): the worst of its divisions is looked for.
+  std::uint32_t pace = 0;
   /// Also what the tick takes in cycles; nullptr: instructions only.
   const BoardTiming* timing = nullptr;
 };
@@ -96,6 +108,7 @@ struct BlockOnPath {
 using PaceCycles = std::array<double, core::kPaces>;
 
 struct Bound {
+  Parameters parameters;                  ///< those given, and of the worst division
   std::uint64_t instructions = 0;         ///< of one tick, at most
   std::uint64_t cycles = 0;               ///< the same, where the board's timing is known
   PaceCycles pace_cycles{};               ///< and at each pace, whatever that of the parameters is

@@ -1,0 +1,35 @@
+#pragma once
+// A test of RAM at start-up.
+
+#include <cstddef>
+#include <cstdint>
+
+namespace tactree::firmware {
+
+/// March C- with one word and its complement (van de Goor, "Using march tests to test SRAMs", IEEE
+/// Design & Test 1993): finds each bit that is stuck or does not change, each pair of words of
+/// which one changes the other, and words that share an address. Overwrites all.
+/// Cost: eleven accesses a word. Word: std::uint32_t; in tests one that fails.
+template <class Word>
+[[nodiscard]] bool holds_all_bits(Word* begin, Word* end) {
+  std::uint32_t held = 0x55555555U;
+  std::uint32_t wrong = 0;
+  volatile Word* word = begin;
+  for (; word < end; ++word) {  // bound: tested_words
+    *word = held;
+  }
+  for (std::uint32_t pass = 0; pass < 5; ++pass) {  // bound: 5
+    const bool upwards = pass >= 3U;
+    word = upwards ? begin : end;
+    for (std::ptrdiff_t left = end - begin; left > 0; --left) {  // bound: tested_words
+      word -= upwards ? 0 : 1;
+      wrong |= *word ^ held;
+      *word = ~held;
+      word += upwards ? 1 : 0;
+    }
+    held = ~held;
+  }
+  return wrong == 0U;
+}
+
+}  // namespace tactree::firmware
