@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <random>
+#include <span>
+#include <vector>
 
 #include "session.hpp"
 
@@ -99,6 +102,45 @@ TEST(AnyInput, AWildHandKeepsThePromises) {
   EXPECT_EQ(counts.broken, 0U);
   EXPECT_GT(counts.active, 100'000U);
   EXPECT_GT(counts.with_force, 50'000U);
+}
+
+// Bits of the points flip while the object is touched: whatever surface that makes, the gate knows
+// nothing of it.
+TEST(AnyInput, PointsThatChangeMeanwhileKeepThePromises) {
+  core::Configuration configuration;
+  configuration.ramp_s = 0.01F;
+  configuration.force_max_N = 3.0F;
+  configuration.slew_N_s = 500.0F;
+  configuration.speed_max_m_s = 20.0F;
+  const std::span<const std::byte> sound = shared_plane().bytes();
+  std::vector<std::uint32_t> words(sound.size() / 4U);
+  std::memcpy(words.data(), sound.data(), sound.size());
+  core::BlobView view;
+  ASSERT_EQ(core::open_blob(std::as_bytes(std::span(words)), view), core::BlobStatus::kOk);
+  const std::size_t first = static_cast<std::size_t>(view.point_words() - words.data());
+  Session session(configuration);
+  ASSERT_EQ(session.controller.load_model(view), core::ModelStatus::kOk);
+  session.activate();
+  core::Output last = session.step();
+  Counts counts;
+  std::mt19937 random(13);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  double z = 0.01;
+  double x = 0.0;
+  for (std::uint32_t i = 0; i < 100'000U; ++i) {
+    z = std::clamp(z + 5e-4 * unit(random), -6e-3, 6e-3);
+    x = std::clamp(x + 5e-4 * unit(random), -0.015, 0.015);
+    session.move(x, 1e-3, z);
+    words[first + random() % view.point_count()] ^= 1U << (random() % 32U);
+    const Command commands[] = {Command::kClearFault, Command::kStop, Command::kArm};
+    const std::uint32_t phase = i % 1000U;
+    session.input.dead_man = phase > 20U;
+    const core::Output output = session.step(phase < 3U ? commands[phase] : Command::kNone);
+    inspect(output, last, configuration, counts);
+    last = output;
+  }
+  EXPECT_EQ(counts.broken, 0U);
+  EXPECT_GT(counts.with_force, 10'000U);
 }
 
 }  // namespace
