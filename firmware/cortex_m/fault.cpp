@@ -6,9 +6,8 @@
 namespace tactree::firmware {
 namespace {
 
-// What the core has pushed on entry, and what the handler adds below it.
-struct Pushed {
-  std::uint32_t r4_to_r11[8];
+// What the core has pushed on entry.
+struct Frame {
   std::uint32_t r0_to_r3[4];
   std::uint32_t r12;
   std::uint32_t lr;
@@ -34,31 +33,50 @@ std::uint32_t faulting_address(std::uint32_t status) {
 
 extern "C" {
 
-[[noreturn, gnu::used]] void tactree_capture_fault(const tactree::firmware::Pushed* pushed) {
+// `frame` is null where the stack was full: what the core would have pushed is nowhere.
+[[noreturn, gnu::used]] void tactree_capture_fault(const std::uint32_t* r4_to_r11,
+                                                   const tactree::firmware::Frame* frame,
+                                                   std::uint32_t sp) {
   using namespace tactree::firmware;
   tactree::hal::CapturedFault fault;
   fault.cause = exception_number();
   fault.status = cortex_m::fault_status();
   fault.address = faulting_address(fault.status);
-  fault.pc = pushed->pc;
-  fault.lr = pushed->lr;
-  fault.sp = static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(pushed->r0_to_r3));
-  for (std::uint32_t i = 0; i < 4; ++i) {  // bound: 4
-    fault.registers[i] = pushed->r0_to_r3[i];
-  }
+  fault.sp = sp;
   for (std::uint32_t i = 0; i < 8; ++i) {  // bound: 8
-    fault.registers[4 + i] = pushed->r4_to_r11[i];
+    fault.registers[4 + i] = r4_to_r11[i];
   }
-  fault.registers[12] = pushed->r12;
+  if (frame != nullptr) {
+    fault.pc = frame->pc;
+    fault.lr = frame->lr;
+    for (std::uint32_t i = 0; i < 4; ++i) {  // bound: 4
+      fault.registers[i] = frame->r0_to_r3[i];
+    }
+    fault.registers[12] = frame->r12;
+  }
   capture(fault);
 }
 
-// One stack is in use, the main one. Its pointer is handed on before a compiler touches it.
+// One stack is in use, the main one. Its pointer is handed on before a compiler touches it. Where
+// less is left than the record needs, it goes on at the top: nothing comes back from here.
 [[gnu::naked]] void tactree_fault() {
   __asm volatile(
+      "mov r2, sp\n\t"
+      "mov r1, sp\n\t"
+      "ldr r3, =image_stack_bottom\n\t"
+      "cmp r2, r3\n\t"
+      "it lo\n\t"
+      "movlo r1, #0\n\t"
+      "ldr r3, =image_stack_bottom + 256\n\t"
+      "cmp r2, r3\n\t"
+      "bhs 1f\n\t"
+      "ldr r3, =image_stack_top\n\t"
+      "mov sp, r3\n"
+      "1:\n\t"
       "push {r4-r11}\n\t"
       "mov r0, sp\n\t"
-      "b tactree_capture_fault\n\t");
+      "b tactree_capture_fault\n\t"
+      ".ltorg\n\t");
 }
 }
 

@@ -12,6 +12,7 @@ extern std::uint32_t image_bss_begin[];
 extern std::uint32_t image_bss_end[];
 extern std::uint32_t image_tested_begin[];
 extern std::uint32_t image_tested_end[];
+extern std::uint32_t image_stack_bottom[];
 extern std::uint32_t image_stack_top[];
 extern void (*const image_constructors_begin[])();
 extern void (*const image_constructors_end[])();

@@ -18,8 +18,9 @@ inline volatile std::uint32_t& timer_high() { return register_at(0x0200BFFC); }
 inline volatile std::uint32_t& test_device() { return register_at(0x00100000); }
 inline constexpr std::uint32_t kTestDeviceReset = 0x7777;
 
-inline constexpr std::uint32_t kStatusInterrupts = 1U << 3;   // mstatus.MIE
-inline constexpr std::uint32_t kStatusFpuInitial = 1U << 13;  // mstatus.FS
-inline constexpr std::uint32_t kTimerInterrupt = 1U << 7;     // mie.MTIE
+inline constexpr std::uint32_t kStatusInterrupts = 1U << 3;                   // mstatus.MIE
+inline constexpr std::uint32_t kStatusFpuInitial = 1U << 13;                  // mstatus.FS
+inline constexpr std::uint32_t kNoAccessNapotLocked = (1U << 7) | (3U << 3);  // pmpcfg: L, A
+inline constexpr std::uint32_t kTimerInterrupt = 1U << 7;                     // mie.MTIE
 
 }  // namespace tactree::firmware::rv32

@@ -4,6 +4,22 @@
 #include "runtime/image.hpp"
 #include "rv32/registers.hpp"
 
+namespace {
+
+// The stack ends where RAM begins; on QEMU's machine code lies below, which is RAM as well. Neither
+// this mode nor any other may touch these bytes until the next reset.
+void guard_stack() {
+  constexpr std::uint32_t kGuardBytes = 4096;
+  const auto bottom =
+      static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(image_stack_bottom));
+  const std::uint32_t region =
+      ((bottom - kGuardBytes) >> 2U) | ((kGuardBytes >> 3U) - 1U);  // NAPOT: section 3.7.1
+  __asm volatile("csrw pmpaddr0, %0" ::"r"(region));
+  __asm volatile("csrw pmpcfg0, %0" ::"r"(tactree::firmware::rv32::kNoAccessNapotLocked));
+}
+
+}  // namespace
+
 extern "C" {
 void tactree_trap();
 
@@ -12,6 +28,7 @@ void tactree_trap();
   __asm volatile("csrw mtvec, %0" ::"r"(tactree_trap));
   __asm volatile("csrs mstatus, %0" ::"r"(rv32::kStatusFpuInitial));
   __asm volatile("csrw fcsr, zero");
+  guard_stack();
   start_image();
 }
 

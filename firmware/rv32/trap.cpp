@@ -33,9 +33,14 @@ struct StoredRegisters {
   tactree::firmware::capture(fault);
 }
 
-// 64 bytes below the stack pointer are free: nothing lies below it.
+// 64 bytes below the stack pointer are free: nothing lies below it. Where the stack is full, which
+// takes t0, a fault is written down at its top: nothing comes back from there.
 [[gnu::naked, gnu::aligned(4)]] void tactree_trap() {
   __asm volatile(
+      "csrw mscratch, t0\n\t"
+      "la t0, image_stack_bottom + 512\n\t"
+      "bltu sp, t0, 2f\n\t"
+      "csrr t0, mscratch\n\t"
       "addi sp, sp, -64\n\t"
       "sw t0, 40(sp)\n\t"
       "csrr t0, mcause\n\t"
@@ -43,10 +48,18 @@ struct StoredRegisters {
       "lw t0, 40(sp)\n\t"
       "addi sp, sp, 64\n\t"
       "j tactree_timer_interrupt\n"
-      "1:\n\t"
-      "sw ra, 0(sp)\n\t"
-      "addi t0, sp, 64\n\t"
+      "2:\n\t"
+      "mv t0, sp\n\t"
+      "la sp, image_stack_top - 64\n\t"
       "sw t0, 4(sp)\n\t"
+      "csrr t0, mscratch\n\t"
+      "sw t0, 40(sp)\n\t"
+      "j 3f\n"
+      "1:\n\t"
+      "addi t0, sp, 64\n\t"
+      "sw t0, 4(sp)\n"
+      "3:\n\t"
+      "sw ra, 0(sp)\n\t"
       "sw a0, 8(sp)\n\t"
       "sw a1, 12(sp)\n\t"
       "sw a2, 16(sp)\n\t"
