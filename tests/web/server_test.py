@@ -134,6 +134,8 @@ class Page:
             opcode, payload = self.receive()
             if opcode == 8:
                 raise ConnectionError(f"closed: {payload[:2].hex()}")
+            if opcode == 9:  # as every browser does; a page that does not is closed after a minute
+                self.send(payload, opcode=10)
             if opcode == 1:
                 message = json.loads(payload)
                 if message["type"] == kind:
