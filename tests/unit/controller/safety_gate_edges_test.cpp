@@ -50,6 +50,15 @@ SafetyGate ramped(const GateLimits& limits) {
   return gate;
 }
 
+// An axis that its own weight fills has no room, and a force that asks for none of it loses
+// nothing.
+TEST(SafetyGateEdges, AnAxisFullOfItsOwnWeightLeavesTheOthersTheirs) {
+  SafetyGate gate = ramped(roomy());
+  const SafetyGate::Result result = gate.command({0.0F, 1.0F, 0.0F}, kIdentity, {1e3F, 0.0F, 0.0F});
+  EXPECT_GT(result.command.effort(0), 99.0F);
+  EXPECT_EQ(result.command.effort(1), 1.0F);
+}
+
 struct Range {
   const char* name;
   float low;
