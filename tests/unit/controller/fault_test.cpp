@@ -7,6 +7,7 @@
 #include <functional>
 #include <iterator>
 #include <limits>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -271,6 +272,90 @@ TEST(Faults, ASupplyOutsideItsRangeIsAFaultWhileMotorsAreOn) {
     EXPECT_TRUE(output.motors.is_zero());
     EXPECT_FALSE(output.enable);
   }
+}
+
+TEST(Faults, ASupplyAtTheEndsOfItsRangeIsGood) {
+  core::Configuration configuration;
+  configuration.supply_monitored = true;
+  for (const float volts : {configuration.supply_min_V, configuration.supply_max_V}) {
+    Session session(configuration);
+    session.input.supply_V = volts;
+    session.activate();
+    session.step();
+    EXPECT_EQ(session.state(), State::kActive) << volts;
+  }
+}
+
+/// A hand in free space that holds one axis still while a force of the application swings along
+/// another; the other axes tremble by a count.
+class StuckEncoder {
+ public:
+  StuckEncoder() : session_(configuration()) {
+    session_.activate();
+    for (std::uint32_t tick = 0; tick < 100; ++tick) {
+      tremble(tick, core::kAxes);
+      session_.step();
+    }
+  }
+
+  /// How many ticks it took to a fault; none: there is none.
+  std::optional<std::uint32_t> ticks_to_fault(std::uint32_t held, std::uint32_t pushed,
+                                              std::uint32_t ticks) {
+    for (std::uint32_t tick = 1; tick <= ticks; ++tick) {
+      tremble(tick, held);
+      const float force = (tick / 20U % 2U == 0U ? 0.4F : -0.4F) * kForce_N;
+      session_.controller.add_force(
+          {pushed == 0 ? force : 0.0F, pushed == 1 ? force : 0.0F, pushed == 2 ? force : 0.0F}, 1);
+      if (core::has_fault(session_.step().status.faults, Fault::kEncoderStuck)) {
+        return tick;
+      }
+    }
+    return std::nullopt;
+  }
+
+  Session& session() { return session_; }
+  static constexpr float kForce_N = core::Configuration{}.force_max_N;
+  static constexpr std::uint32_t kTicks = 100;  // stuck_s of the configuration below
+
+ private:
+  void tremble(std::uint32_t tick, std::uint32_t held) {
+    for (std::uint32_t axis = 0; axis < core::kAxes; ++axis) {
+      session_.input.encoders.counts[axis] += axis == held ? 0 : (tick % 2U == 0U ? 1 : -1);
+    }
+  }
+  static core::Configuration configuration() {
+    core::Configuration configuration;
+    configuration.stuck_s = 0.1F;
+    configuration.ramp_s = 0.01F;
+    return configuration;
+  }
+
+  Session session_;
+};
+
+TEST(Faults, AnEncoderThatStandsStillWhileItsOwnMotorPushesIsStuck) {
+  for (std::uint32_t held = 0; held < core::kAxes; ++held) {
+    for (std::uint32_t pushed = 0; pushed < core::kAxes; ++pushed) {
+      const auto ticks = StuckEncoder().ticks_to_fault(held, pushed, 3U * StuckEncoder::kTicks);
+      ASSERT_EQ(ticks.has_value(), held == pushed) << held << " " << pushed;
+      if (ticks) {
+        EXPECT_GE(*ticks, StuckEncoder::kTicks);
+        EXPECT_LE(*ticks, StuckEncoder::kTicks + 2U);
+      }
+    }
+  }
+}
+
+TEST(Faults, AnEncoderIsOnlyStuckWhileThereMayBeForce) {
+  StuckEncoder stuck;
+  ASSERT_FALSE(stuck.ticks_to_fault(0, 0, StuckEncoder::kTicks - 10U));
+  stuck.session().step(Command::kStop);
+  ASSERT_EQ(stuck.session().state(), State::kIdle);
+  stuck.session().input.dead_man = false;
+  stuck.session().activate();
+  ASSERT_EQ(stuck.session().state(), State::kActive);
+  EXPECT_FALSE(stuck.ticks_to_fault(0, 0, StuckEncoder::kTicks - 10U));
+  EXPECT_TRUE(stuck.ticks_to_fault(0, 0, 30U));
 }
 
 TEST(Faults, EveryCodeHasItsOwnName) {
