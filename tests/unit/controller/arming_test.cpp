@@ -42,6 +42,43 @@ TEST(Arming, ADeadManControlThatIsTiedDownDoesNotCount) {
   EXPECT_EQ(session.state(), State::kActive);
 }
 
+// What was let go while armed before is no news the next time.
+TEST(Arming, LettingGoCountsForOneArmingOnly) {
+  Session session;
+  session.step(Command::kArm);
+  session.step();
+  ASSERT_EQ(session.state(), State::kArmed);
+  session.step(Command::kStop);
+  session.input.dead_man = true;  // tied down meanwhile
+  session.step(Command::kArm);
+  for (int i = 0; i < 100; ++i) {
+    session.step();
+    ASSERT_EQ(session.state(), State::kArmed) << i;
+  }
+  session.input.dead_man = false;
+  session.step();
+  session.input.dead_man = true;
+  session.step();
+  EXPECT_EQ(session.state(), State::kActive);
+}
+
+TEST(Arming, AnAddedForceDoesNotOutliveAStop) {
+  Session session;
+  session.activate();
+  for (int i = 0; i < 300; ++i) {
+    session.step();
+  }
+  session.controller.add_force({1.0F, 0.0F, 0.0F}, 1'000'000U);
+  ASSERT_FALSE(session.step().motors.is_zero());
+  session.step(Command::kStop);
+  session.input.dead_man = false;
+  session.activate();
+  ASSERT_EQ(session.state(), State::kActive);
+  for (int i = 0; i < 300; ++i) {
+    ASSERT_TRUE(session.step().motors.is_zero()) << i;
+  }
+}
+
 TEST(Arming, WithoutADeadManControlNoSingleMessageGivesForce) {
   core::Configuration configuration;
   configuration.dead_man_required = false;
