@@ -243,10 +243,12 @@ class Image(unittest.TestCase):
     # ---- the boards' own images
 
     def real(self, core, board):
-        image = BUILD / core / "firmware" / f"{board}.elf"
-        if not image.exists():
-            self.skipTest(f"{image} is not built")
-        return image.read_bytes()
+        folder = BUILD / core / "firmware"
+        # Without the crystal that the emulator lacks, no model would be in time.
+        for image in (folder / "bare" / f"{board}.elf", folder / f"{board}.elf"):
+            if image.exists():
+                return image.read_bytes()
+        return self.skipTest(f"{image} is not built")
 
     def test_every_board(self):
         boards = sorted(BUILD.glob("*/firmware/*.elf"))
