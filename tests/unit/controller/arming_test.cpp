@@ -96,16 +96,19 @@ TEST(Arming, WaitsForTheEnableLine) {
   Session session;
   session.enable_follows = false;
   session.step(Command::kArm);
-  session.step();
+  const auto waits = [](const core::Output& output) {
+    return (output.status.limits & core::limit_bit(core::Limit::kWaiting)) != 0U;
+  };
+  EXPECT_FALSE(waits(session.step()));  // for nothing but a hand
   session.input.dead_man = true;
   for (int i = 0; i < 10; ++i) {
-    const core::Output output = session.step();
+    EXPECT_TRUE(waits(session.step()));
     EXPECT_EQ(session.state(), State::kArmed);
-    EXPECT_NE(output.status.limits & core::limit_bit(core::Limit::kWaiting), 0U);
   }
   session.input.enable_read_back = true;
   session.step();
   EXPECT_EQ(session.state(), State::kActive);
+  EXPECT_FALSE(waits(session.step()));
 }
 
 TEST(Arming, WaitsForTheProbeToLeaveTheObject) {
