@@ -18,8 +18,8 @@ bool CommandReader::push(std::byte byte, core::Command& command) {
       frame.command > core::Command::kHome) {
     return false;
   }
-  // at most: kLookedAt / 4 per tactree_tick (no frame looks like one that begins 1 to 3 bytes
-  // later)
+  // No frame looks like one that begins one to three bytes later.
+  // at most: kLookedAt / 4 per tactree_tick
   const std::uint32_t checksum = checksum_of(frame);  // with: bytes_size <= 4
   if (frame.checksum != checksum) {
     return false;

@@ -1,6 +1,7 @@
 // A fault is written down, survives the reset, and is told once. The first run causes it, the
 // second looks at the record.
 
+#include "expect.hpp"
 #include "plant_link/semihosting.hpp"
 #include "platform.hpp"
 
@@ -9,16 +10,7 @@ void tactree_tick() {}
 namespace {
 
 using tactree::firmware::semihosting::exit;
-using tactree::firmware::semihosting::print;
-
-void expect(bool good, const char* sentence) {
-  if (!good) {
-    print("not so: ");
-    print(sentence);
-    print("\n");
-    exit(1);
-  }
-}
+using tactree::test::expect;
 
 // The instruction that no core has, with a known value in an argument register.
 [[gnu::noinline]] void stumble(std::uint32_t value) {

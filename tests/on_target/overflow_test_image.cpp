@@ -1,6 +1,7 @@
 // A stack that overflows runs into no variable: the core faults, which is written down although
 // there is no stack left for it. The first run causes it, the second looks at the record.
 
+#include "expect.hpp"
 #include "plant_link/semihosting.hpp"
 #include "platform.hpp"
 #include "runtime/image.hpp"
@@ -10,16 +11,7 @@ void tactree_tick() {}
 namespace {
 
 using tactree::firmware::semihosting::exit;
-using tactree::firmware::semihosting::print;
-
-void expect(bool good, const char* sentence) {
-  if (!good) {
-    print("not so: ");
-    print(sentence);
-    print("\n");
-    exit(1);
-  }
-}
+using tactree::test::expect;
 
 volatile std::uint32_t last = 0xFFFFFFFFU;  // never reached
 volatile std::uint32_t guard = 0x600DCAFE;  // one of the variables above the stack

@@ -4,7 +4,6 @@
 
 #include "command.hpp"
 #include "device_file.hpp"
-#include "tactree/emulation/emulated_target.hpp"
 
 namespace tactree::cli {
 
@@ -26,6 +25,15 @@ double BoardCosts::highest_rate(const core::BlobHeader& header,
   return bound::highest_rate(timing.clock_hz, cycles);
 }
 
+bound::BoundOptions analysis_of(const emulation::BoardDescription& board,
+                                const std::string& firmware) {
+  bound::BoundOptions options;
+  options.image = emulation::find_image(board, firmware);
+  options.sources = TACTREE_SOURCES;
+  options.entries = bound::tick_entries();
+  return options;
+}
+
 BoardCosts costs_of_board(const std::string& name, const std::string& firmware) {
   const emulation::BoardDescription* const board = emulation::find_board(name);
   const bound::BoardTiming* const timing = bound::find_timing(name);
@@ -35,10 +43,7 @@ BoardCosts costs_of_board(const std::string& name, const std::string& firmware) 
                     "another, or leave it out)",
                     name));
   }
-  bound::BoundOptions options;
-  options.image = emulation::find_image(*board, firmware);
-  options.sources = TACTREE_SOURCES;
-  options.entries = bound::tick_entries();
+  bound::BoundOptions options = analysis_of(*board, firmware);
   options.timing = timing;
   BoardCosts result{*timing, bound::embedded(options.image), options.image.string(), true};
   if (result.costs.known != core::kTickCostsKnown) {

@@ -6,6 +6,7 @@
 
 #include "tactree/bound/bound.hpp"
 #include "tactree/core/tick_cost.hpp"
+#include "tactree/emulation/emulated_target.hpp"
 
 namespace tactree::cli {
 
@@ -22,6 +23,11 @@ struct BoardCosts {
   [[nodiscard]] double highest_rate(const core::BlobHeader& header,
                                     const core::Configuration& configuration) const;
 };
+
+/// What is needed to analyse a board's image, but for models and timing. `firmware`: its folder,
+/// empty: where it was built or installed.
+[[nodiscard]] bound::BoundOptions analysis_of(const emulation::BoardDescription& board,
+                                              const std::string& firmware);
 
 /// `firmware`: the folder of its image, empty: where it was built or installed. Throws CommandError
 /// on a board that is not known, and what bound and emulation throw.

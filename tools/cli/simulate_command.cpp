@@ -159,10 +159,10 @@ simulation::Setup make_setup(const SimulateOptions& options, const SceneFile& sc
                                     const SimulateOptions& options) {
   const std::string& board = options.board;
   const BoardCosts costs = costs_of_board(board, options.firmware);
+  const double cycles = costs.cycles(view.header(), controller);
   refuse(
       fmt::format("{}: refused: a tick with it may take {:.0f} cycles on {}, {:.1f} us of {:.1f}",
-                  file, costs.cycles(view.header(), controller), board,
-                  1e6 * costs.cycles(view.header(), controller) / costs.timing.clock_hz,
+                  file, cycles, board, 1e6 * cycles / costs.timing.clock_hz,
                   1e6 / static_cast<double>(controller.rate_hz)),
       fmt::format("--rate: up to {:.0f}; or build it with --board {} --rate {:.0f}",
                   std::floor(costs.highest_rate(view.header(), controller)), board,
@@ -335,10 +335,8 @@ class Comparison {
 /// Nothing for a board whose code cannot be analysed.
 std::optional<std::uint64_t> bound_of_tick(const SimulateOptions& options, const SceneFile& scene,
                                            const core::Configuration& controller) {
-  bound::BoundOptions analysis;
-  analysis.image = emulation::find_image(*emulation::find_board(options.board), options.firmware);
-  analysis.sources = TACTREE_SOURCES;
-  analysis.entries = bound::tick_entries();
+  bound::BoundOptions analysis =
+      analysis_of(*emulation::find_board(options.board), options.firmware);
   analysis.parameters = bound::parameters_of(scene.files[0]->view().header(), controller.mode, 1,
                                              controller.device.kind);
   analysis.pace = core::pace_of(controller.rate_hz);

@@ -341,7 +341,7 @@ class Model {
     return disturbs ? -1e9 : hidden + 1.0;
   }
 
-  /// Of the lines of a block that was jumped to.
+  /// Cycles that the lines of a block which was jumped to are waited for.
   [[nodiscard]] double fetch_of(const ControlFlow& flow, const Block& block) const {
     const BoardTiming& timing = *analysis_.timing;
     std::uint32_t line = flow.instructions[block.first].address / timing.line_bytes;
@@ -1044,20 +1044,16 @@ std::vector<Division> divisions(std::uint32_t pace, std::uint32_t bodies) {
 Bound worst_case(const BoundOptions& options) {
   Task task(options);
   Bound worst;
-  std::uint64_t cycles = 0;
   for (const Parameters& parameters : all_divided(options.parameters, options.pace)) {
     Bound bound = task.instructions(parameters);
-    if (options.timing != nullptr) {
-      cycles = std::max(cycles, task.cycles(parameters, *options.timing));
-    }
     if (bound.instructions > worst.instructions) {
       worst = std::move(bound);
       worst.parameters = parameters;
     }
   }
   if (options.timing != nullptr) {
-    worst.cycles = cycles;
     worst.pace_cycles = cycles_by_pace(task, options);
+    worst.cycles = static_cast<std::uint64_t>(worst.pace_cycles[options.pace]);
   }
   return worst;
 }

@@ -45,6 +45,34 @@ void inspect(const core::Output& output, const core::Output& last, const core::C
   counts.with_force += output.motors.is_zero() ? 0U : 1U;
 }
 
+/// Walks at random in and about the plane.
+class WildHand {
+ public:
+  WildHand(double step_m, double height_m, double width_m)
+      : step_m_(step_m), height_m_(height_m), width_m_(width_m) {}
+  void move(Session& session, std::mt19937& random) {
+    z_ = std::clamp(z_ + step_m_ * unit_(random), -height_m_, height_m_);
+    x_ = std::clamp(x_ + step_m_ * unit_(random), -width_m_, width_m_);
+    session.move(x_, 1e-3, z_);
+  }
+
+ private:
+  double step_m_, height_m_, width_m_;
+  std::uniform_real_distribution<double> unit_{-1.0, 1.0};
+  double z_ = 0.01;
+  double x_ = 0.0;
+};
+
+constexpr std::uint32_t kPhases = 1000U;
+/// Whatever happened, every kPhases ticks it begins anew; the hand comes to the dead-man control
+/// after 20 of them.
+Command command_of(std::uint32_t tick) {
+  constexpr Command kBeginAnew[] = {Command::kClearFault, Command::kStop, Command::kArm};
+  const std::uint32_t phase = tick % kPhases;
+  return phase < 3U ? kBeginAnew[phase] : Command::kNone;
+}
+bool has_hand(std::uint32_t tick) { return tick % kPhases > 20U; }
+
 TEST(AnyInput, RandomEncodersAndSwitchesKeepThePromises) {
   core::Configuration configuration;
   configuration.ramp_s = 0.01F;
@@ -84,18 +112,12 @@ TEST(AnyInput, AWildHandKeepsThePromises) {
   core::Output last = session.step();
   Counts counts;
   std::mt19937 random(12);
-  std::uniform_real_distribution<double> unit(-1.0, 1.0);
-  double z = 0.01;
-  double x = 0.0;
+  WildHand hand(2e-3, 8e-3, 0.025);
   for (std::uint32_t i = 0; i < 300'000U; ++i) {
-    z = std::clamp(z + 2e-3 * unit(random), -8e-3, 8e-3);
-    x = std::clamp(x + 2e-3 * unit(random), -0.025, 0.025);
-    session.move(x, 1e-3, z);
-    session.input.dead_man = i % 1000U > 20U && random() % 4096U != 0U;
+    hand.move(session, random);
+    session.input.dead_man = has_hand(i) && random() % 4096U != 0U;
     session.input.emergency_stop = random() % 4096U == 0U;
-    const Command commands[] = {Command::kClearFault, Command::kStop, Command::kArm};
-    const std::uint32_t phase = i % 1000U;
-    const core::Output output = session.step(phase < 3U ? commands[phase] : Command::kNone);
+    const core::Output output = session.step(command_of(i));
     inspect(output, last, configuration, counts);
     last = output;
   }
@@ -124,18 +146,12 @@ TEST(AnyInput, PointsThatChangeMeanwhileKeepThePromises) {
   core::Output last = session.step();
   Counts counts;
   std::mt19937 random(13);
-  std::uniform_real_distribution<double> unit(-1.0, 1.0);
-  double z = 0.01;
-  double x = 0.0;
+  WildHand hand(5e-4, 6e-3, 0.015);
   for (std::uint32_t i = 0; i < 100'000U; ++i) {
-    z = std::clamp(z + 5e-4 * unit(random), -6e-3, 6e-3);
-    x = std::clamp(x + 5e-4 * unit(random), -0.015, 0.015);
-    session.move(x, 1e-3, z);
+    hand.move(session, random);
     words[first + random() % view.point_count()] ^= 1U << (random() % 32U);
-    const Command commands[] = {Command::kClearFault, Command::kStop, Command::kArm};
-    const std::uint32_t phase = i % 1000U;
-    session.input.dead_man = phase > 20U;
-    const core::Output output = session.step(phase < 3U ? commands[phase] : Command::kNone);
+    session.input.dead_man = has_hand(i);
+    const core::Output output = session.step(command_of(i));
     inspect(output, last, configuration, counts);
     last = output;
   }
