@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <csignal>
 #include <memory>
 #include <thread>
 
 #include "board_port.hpp"
 #include "command.hpp"
+#include "interruption.hpp"
 #include "tactree/core/controller.hpp"
 
 namespace tactree::cli {
@@ -22,10 +22,6 @@ struct ArmOptions {
   bool home = false;
 };
 
-volatile std::sig_atomic_t ending = 0;
-
-void end(int) { ending = 1; }
-
 std::chrono::milliseconds milliseconds(double seconds) {
   return std::chrono::milliseconds(static_cast<std::int64_t>(1e3 * seconds));
 }
@@ -33,7 +29,7 @@ std::chrono::milliseconds milliseconds(double seconds) {
 /// Until the time is up, somebody interrupts, or the board stops.
 void stay(host::Board& board, double seconds, int& exit_code) {
   const auto begin = std::chrono::steady_clock::now();
-  while (ending == 0 &&
+  while (!interrupted() &&
          (seconds <= 0.0 || std::chrono::steady_clock::now() - begin < milliseconds(seconds))) {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
     const core::wire::StateReply state = board.state();
@@ -48,8 +44,7 @@ void stay(host::Board& board, double seconds, int& exit_code) {
 
 // The session needs its link: when this program ends, however, so does the force.
 void arm(const ArmOptions& options, int& exit_code) {
-  std::signal(SIGINT, end);
-  std::signal(SIGTERM, end);
+  watch_interruption();
   host::Board board(chosen_port(options.port),
                     {options.port.baud, static_cast<std::uint16_t>(options.link_timeout_ms)});
   if (options.clear) {

@@ -42,7 +42,7 @@ nlohmann::json to_json(const core::wire::ListModelsReply& models) {
   return {{"counter_min", models.counter_min}, {"slots", slots}};
 }
 
-void print(const nlohmann::json& models) {
+void print_slots(const nlohmann::json& models) {
   int number = 0;
   for (const nlohmann::json& slot : models["slots"]) {
     fmt::print("slot {}: {}", number, slot["state"].get<std::string>());
@@ -92,7 +92,7 @@ void flash(const FlashOptions& options) {
     board->erase_model(static_cast<std::uint32_t>(options.erase));
   }
   const nlohmann::json models = to_json(board->models());
-  print(models);
+  print_slots(models);
   if (!options.json.empty()) {
     write_file(options.json, models.dump(2) + "\n");
   }

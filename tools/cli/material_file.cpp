@@ -37,11 +37,6 @@ constexpr Field kFields[] = {
 constexpr double kTolerance = 30.0;
 constexpr double kMaxTolerance = 442.0;  // from black to white
 
-[[noreturn]] void refuse(const std::string& place, const std::string& cause,
-                         const std::string& remedy) {
-  throw CommandError(fmt::format("{}: {} ({})", place, cause, remedy));
-}
-
 std::string known_keys(std::string keys) {
   for (const Field& field : kFields) {
     keys += fmt::format("{}{}", keys.empty() ? "" : ", ", field.key);

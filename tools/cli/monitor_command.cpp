@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <csignal>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <thread>
 
 #include "board_port.hpp"
 #include "command.hpp"
+#include "interruption.hpp"
 #include "output_file.hpp"
 #include "tactree/core/controller.hpp"
 
@@ -27,10 +27,6 @@ struct MonitorOptions {
 
 constexpr int kBarWidth = 40;
 constexpr double kRefreshS = 0.1;
-
-volatile std::sig_atomic_t ending = 0;
-
-void end(int) { ending = 1; }
 
 std::string names_of_limits(std::uint32_t limits) {
   std::string names;
@@ -153,7 +149,7 @@ void watch(Monitor& monitor, const MonitorOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   const std::chrono::duration<double> limit(options.seconds);
   bool first = true;
-  while (ending == 0 &&
+  while (!interrupted() &&
          (options.seconds <= 0.0 || std::chrono::steady_clock::now() - begin < limit)) {
     const std::string text = to_text(monitor.look());
     // Up over the lines of the last view, and each line anew.
@@ -170,8 +166,7 @@ void watch(Monitor& monitor, const MonitorOptions& options) {
 }
 
 void show(const MonitorOptions& options, int& exit_code) {
-  std::signal(SIGINT, end);
-  std::signal(SIGTERM, end);
+  watch_interruption();
   const auto board = connect(options.port);
   Monitor monitor(*board);
   if (!options.once) {

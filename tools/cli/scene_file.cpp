@@ -18,11 +18,6 @@ using nlohmann::json;
 // A rotation's rows may be so far from unit length and right angles: files are written by hand.
 constexpr double kRotationTolerance = 1e-3;
 
-[[noreturn]] void refuse(const std::string& place, const std::string& cause,
-                         const std::string& remedy) {
-  throw CommandError(fmt::format("{}: {} ({})", place, cause, remedy));
-}
-
 void require_keys(const json& object, const std::string& place,
                   std::initializer_list<const char*> known) {
   if (!object.is_object()) {

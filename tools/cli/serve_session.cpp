@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <chrono>
-#include <csignal>
 #include <thread>
+
+#include "interruption.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -13,10 +14,6 @@ using Clock = std::chrono::steady_clock;
 // A person takes a moment to press the control after "arm"; one that is held at once is as if tied
 // down, and does not count.
 constexpr double kHandAfterS = 0.08;
-
-volatile std::sig_atomic_t ending = 0;
-
-void end(int) { ending = 1; }
 
 /// Where the hand is on its path: on it there is force, else on its way back to the begin.
 class HandTime {
@@ -76,14 +73,13 @@ class Pace {
 }  // namespace
 
 void serve_session(simulation::Simulation& simulation, const ServeSchedule& schedule) {
-  std::signal(SIGINT, end);
-  std::signal(SIGTERM, end);
+  watch_interruption();
   const double period_s = 1.0 / schedule.rate_hz;
   HandTime hand(schedule.path_s, period_s);
   DeadMan dead_man;
   Pace pace(period_s);
   double t_s = 0.0;
-  while (ending == 0 && (schedule.seconds_max <= 0.0 || t_s < schedule.seconds_max)) {
+  while (!interrupted() && (schedule.seconds_max <= 0.0 || t_s < schedule.seconds_max)) {
     const core::State state = simulation.state();
     simulation.board().safety_inputs().hold_dead_man(dead_man.is_held(state, period_s));
     (void)simulation.step_with_hand_at(hand.next(state == core::State::kActive));

@@ -16,4 +16,9 @@ class CommandError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+[[noreturn]] inline void refuse(const std::string& place, const std::string& cause,
+                                const std::string& remedy) {
+  throw CommandError(place + ": " + cause + " (" + remedy + ")");
+}
+
 }  // namespace tactree::cli

@@ -45,5 +45,5 @@ std::span<const Asset> @function@() {
 }  // namespace tactree::viewer
 ")
   set_source_files_properties(${CMAKE_CURRENT_BINARY_DIR}/${source} PROPERTIES
-    OBJECT_DEPENDS "${files}")
+    OBJECT_DEPENDS "${files}" SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()

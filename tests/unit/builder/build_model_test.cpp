@@ -12,13 +12,6 @@
 namespace tactree::builder {
 namespace {
 
-Scan cloud_scan(Cloud cloud) {
-  Scan scan;
-  scan.positions = std::move(cloud.positions);
-  scan.normals = std::move(cloud.normals);
-  return scan;
-}
-
 Scan box_scan(const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
   Mesh mesh = box_mesh(low, high);
   Scan scan;

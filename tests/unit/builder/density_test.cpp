@@ -12,13 +12,6 @@ struct Chosen {
   BuildReport report;
 };
 
-Scan cloud_scan(Cloud cloud) {
-  Scan scan;
-  scan.positions = std::move(cloud.positions);
-  scan.normals = std::move(cloud.normals);
-  return scan;
-}
-
 Scan box_scan() {
   Mesh mesh = box_mesh({-0.03, -0.02, -0.01}, {0.03, 0.02, 0.01});
   Scan scan;

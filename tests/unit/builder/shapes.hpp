@@ -7,6 +7,7 @@
 
 #include "cloud.hpp"
 #include "mesh_sampling.hpp"
+#include "tactree/builder/scan.hpp"
 
 namespace tactree::builder {
 
@@ -97,6 +98,13 @@ inline Eigen::Vector3d box_face_at(const Eigen::Vector3d& p, const Eigen::Vector
 inline Cloud without_normals(Cloud cloud) {
   cloud.normals.clear();
   return cloud;
+}
+
+inline Scan cloud_scan(Cloud cloud) {
+  Scan scan;
+  scan.positions = std::move(cloud.positions);
+  scan.normals = std::move(cloud.normals);
+  return scan;
 }
 
 }  // namespace tactree::builder

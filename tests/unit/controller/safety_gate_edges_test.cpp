@@ -19,7 +19,7 @@ using core::Mat3;
 using core::SafetyGate;
 using core::Vec3;
 
-constexpr Mat3 kIdentity{{{1.0F, 0.0F, 0.0F}, {0.0F, 1.0F, 0.0F}, {0.0F, 0.0F, 1.0F}}};
+constexpr Mat3 kJacobian{{{1.0F, 0.0F, 0.0F}, {0.0F, 1.0F, 0.0F}, {0.0F, 0.0F, 1.0F}}};
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kMax = std::numeric_limits<float>::max();
 constexpr float kInside = 1.0F - 4e-6F;  // how far below a limit the gate aims
@@ -45,7 +45,7 @@ SafetyGate ramped(const GateLimits& limits) {
   SafetyGate gate;
   EXPECT_TRUE(gate.configure(limits));
   for (std::uint32_t i = 0; i < limits.ramp_ticks; ++i) {
-    gate.command({}, kIdentity);
+    gate.command({}, kJacobian);
   }
   return gate;
 }
@@ -54,7 +54,7 @@ SafetyGate ramped(const GateLimits& limits) {
 // nothing.
 TEST(SafetyGateEdges, AnAxisFullOfItsOwnWeightLeavesTheOthersTheirs) {
   SafetyGate gate = ramped(roomy());
-  const SafetyGate::Result result = gate.command({0.0F, 1.0F, 0.0F}, kIdentity, {1e3F, 0.0F, 0.0F});
+  const SafetyGate::Result result = gate.command({0.0F, 1.0F, 0.0F}, kJacobian, {1e3F, 0.0F, 0.0F});
   EXPECT_GT(result.command.effort(0), 99.0F);
   EXPECT_EQ(result.command.effort(1), 1.0F);
 }
@@ -120,7 +120,7 @@ TEST(SafetyGateEdges, TheRampGrowsByTheSameEachTick) {
   SafetyGate gate;
   ASSERT_TRUE(gate.configure(limits));
   for (std::uint32_t tick = 0; tick < 120; ++tick) {
-    const SafetyGate::Result result = gate.command({1.0F, 0.0F, 0.0F}, kIdentity);
+    const SafetyGate::Result result = gate.command({1.0F, 0.0F, 0.0F}, kJacobian);
     const float share = tick < 100 ? static_cast<float>(tick) / 100.0F : 1.0F;
     EXPECT_FLOAT_EQ(result.force.x, share);
     EXPECT_EQ(limited(result, Limit::kRamp), tick < 100);
@@ -129,9 +129,9 @@ TEST(SafetyGateEdges, TheRampGrowsByTheSameEachTick) {
 
 TEST(SafetyGateEdges, ANewConfigurationBeginsAtZero) {
   SafetyGate gate = ramped(roomy());
-  ASSERT_FALSE(gate.command({1.0F, 0.0F, 0.0F}, kIdentity).command.is_zero());
+  ASSERT_FALSE(gate.command({1.0F, 0.0F, 0.0F}, kJacobian).command.is_zero());
   ASSERT_TRUE(gate.configure(roomy()));
-  EXPECT_TRUE(gate.command({1.0F, 0.0F, 0.0F}, kIdentity).command.is_zero());
+  EXPECT_TRUE(gate.command({1.0F, 0.0F, 0.0F}, kJacobian).command.is_zero());
 }
 
 TEST(SafetyGateEdges, EachInputAloneThatIsNotFiniteEndsTheForceAndIsTold) {
@@ -147,7 +147,7 @@ TEST(SafetyGateEdges, EachInputAloneThatIsNotFiniteEndsTheForceAndIsTold) {
           gate.command({in[0], in[1], in[2]}, map, {in[12], in[13], in[14]});
       EXPECT_TRUE(result.not_finite) << i;
       EXPECT_TRUE(result.command.is_zero()) << i;
-      EXPECT_TRUE(limited(gate.command({}, kIdentity), Limit::kRamp)) << i;
+      EXPECT_TRUE(limited(gate.command({}, kJacobian), Limit::kRamp)) << i;
     }
   }
 }
@@ -163,17 +163,17 @@ TEST(SafetyGateEdges, AnEffortBeyondAnyFloatEndsTheForceAndIsTold) {
 TEST(SafetyGateEdges, AForceAtItsLimitPassesAndOneBeyondIsTold) {
   const float allowed = kInside * 8.0F;
   SafetyGate gate = ramped(roomy());
-  SafetyGate::Result result = gate.command({0.0F, allowed, 0.0F}, kIdentity);
+  SafetyGate::Result result = gate.command({0.0F, allowed, 0.0F}, kJacobian);
   EXPECT_EQ(result.force.y, allowed);
   EXPECT_EQ(result.limits, 0U);
-  result = gate.command({0.0F, std::nextafter(allowed, 9.0F), 0.0F}, kIdentity);
+  result = gate.command({0.0F, std::nextafter(allowed, 9.0F), 0.0F}, kJacobian);
   EXPECT_TRUE(limited(result, Limit::kForce));
   EXPECT_LE(result.force.y, allowed);
 }
 
 TEST(SafetyGateEdges, AForceLongerThanAnyFloatKeepsItsDirection) {
   SafetyGate gate = ramped(roomy());
-  const Vec3 force = gate.command({kMax, -kMax, kMax}, kIdentity).force;
+  const Vec3 force = gate.command({kMax, -kMax, kMax}, kJacobian).force;
   EXPECT_NEAR(force.x, 8.0F / std::sqrt(3.0F), 1e-4F);
   EXPECT_EQ(force.y, -force.x);
   EXPECT_EQ(force.z, force.x);
@@ -183,16 +183,16 @@ TEST(SafetyGateEdges, NoForceIsWithinEveryLimit) {
   GateLimits limits = roomy();
   limits.force_max_N = 0.5F;
   limits.slew_N_per_tick = 0.1F;
-  EXPECT_EQ(ramped(limits).command({}, kIdentity).limits, 0U);
+  EXPECT_EQ(ramped(limits).command({}, kJacobian).limits, 0U);
 }
 
 TEST(SafetyGateEdges, AChangeAtTheSlewPassesAndOneBeyondIsTold) {
   GateLimits limits = roomy();
   limits.slew_N_per_tick = 2.0F;
   const float allowed = kInside * 2.0F - 4e-7F * 8.0F;
-  EXPECT_EQ(ramped(limits).command({allowed, 0.0F, 0.0F}, kIdentity).limits, 0U);
+  EXPECT_EQ(ramped(limits).command({allowed, 0.0F, 0.0F}, kJacobian).limits, 0U);
   const auto beyond =
-      ramped(limits).command({std::nextafter(allowed, 3.0F), 0.0F, 0.0F}, kIdentity);
+      ramped(limits).command({std::nextafter(allowed, 3.0F), 0.0F, 0.0F}, kJacobian);
   EXPECT_EQ(beyond.limits, core::limit_bit(Limit::kSlew));
 }
 
@@ -202,8 +202,8 @@ TEST(SafetyGateEdges, LimitsThatActTogetherAreToldTogether) {
   limits.ramp_ticks = 4;
   SafetyGate gate;
   ASSERT_TRUE(gate.configure(limits));
-  gate.command({}, kIdentity);
-  const SafetyGate::Result result = gate.command({50.0F, 0.0F, 0.0F}, kIdentity);
+  gate.command({}, kJacobian);
+  const SafetyGate::Result result = gate.command({50.0F, 0.0F, 0.0F}, kJacobian);
   EXPECT_EQ(result.limits, core::limit_bit(Limit::kRamp) | core::limit_bit(Limit::kForce) |
                                core::limit_bit(Limit::kSlew));
 }
@@ -212,11 +212,11 @@ TEST(SafetyGateEdges, TheAxesSayWhenTheyAct) {
   GateLimits clipping = roomy();
   clipping.effort_max[1] = 3.0F;
   clipping.effort_slew_per_tick[1] = 6.0F;
-  const auto clipped = ramped(clipping).command({}, kIdentity, {0.0F, 4.0F, 0.0F});
+  const auto clipped = ramped(clipping).command({}, kJacobian, {0.0F, 4.0F, 0.0F});
   EXPECT_EQ(clipped.limits, core::limit_bit(Limit::kAxis));
   GateLimits slow = roomy();
   slow.effort_slew_per_tick[2] = 0.5F;
-  const auto slewed = ramped(slow).command({0.0F, 0.0F, 2.0F}, kIdentity);
+  const auto slewed = ramped(slow).command({0.0F, 0.0F, 2.0F}, kJacobian);
   EXPECT_EQ(slewed.limits, core::limit_bit(Limit::kAxis));
 }
 
@@ -239,7 +239,7 @@ TEST(SafetyGateEdges, TheSmallestSlewIsKept) {
     if (tick % 20000 == 0) {
       target = {8.0F * unit(random), 8.0F * unit(random), 8.0F * unit(random)};
     }
-    const SafetyGate::Result result = gate.command(target, kIdentity);
+    const SafetyGate::Result result = gate.command(target, kJacobian);
     double step = 0.0;
     for (std::uint32_t i = 0; i < kAxes; ++i) {
       const double now = static_cast<double>(result.command.effort(i));
@@ -263,7 +263,7 @@ TEST(SafetyGateEdges, TheSmallestSlewOfAnAxisIsKept) {
   for (int tick = 0; tick < 30000; ++tick) {
     const float target = tick % 20000 < 10000 ? 7.9F : -7.7F;
     const double now =
-        static_cast<double>(gate.command({target, 0.0F, 0.0F}, kIdentity).command.effort(0));
+        static_cast<double>(gate.command({target, 0.0F, 0.0F}, kJacobian).command.effort(0));
     ASSERT_LE(std::abs(now - last), static_cast<double>(limits.effort_slew_per_tick[0])) << tick;
     last = now;
   }
@@ -274,7 +274,7 @@ TEST(SafetyGateEdges, EveryAxisWarmsUp) {
     SafetyGate gate = ramped(roomy());
     const float one[kAxes] = {axis == 0 ? 1.0F : 0.0F, axis == 1 ? 1.0F : 0.0F,
                               axis == 2 ? 1.0F : 0.0F};
-    gate.command({one[0], one[1], one[2]}, kIdentity);
+    gate.command({one[0], one[1], one[2]}, kJacobian);
     for (std::uint32_t other = 0; other < kAxes; ++other) {
       EXPECT_EQ(gate.heat().heat(other) > 0.0F, other == axis);
     }

@@ -19,6 +19,9 @@ inline Eigen::Isometry3d isometry(const Eigen::Vector3d& translation_m,
   return pose;
 }
 
+/// Where nothing at the origin is touched.
+inline const Eigen::Isometry3d kFar = isometry({0.0, 0.0, -1.0});
+
 inline core::Pose to_core(const Eigen::Isometry3d& pose) {
   const Eigen::Quaterniond q(pose.linear());
   return {{static_cast<float>(q.w()), narrow(q.vec())}, narrow(pose.translation())};

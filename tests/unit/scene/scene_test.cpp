@@ -26,7 +26,6 @@ using core::Reaction;
 using core::SceneRendering;
 
 const Eigen::Isometry3d kHere = Eigen::Isometry3d::Identity();
-const Eigen::Isometry3d kFar = isometry({0.0, 0.0, -1.0});
 /// Where the sheet is a wall x = 0 with its outside towards +x.
 const Eigen::Isometry3d kWallX = isometry({0.0, 0.0, 0.0}, {0.0, std::numbers::pi / 2.0, 0.0});
 

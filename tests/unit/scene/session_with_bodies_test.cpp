@@ -39,8 +39,6 @@ class SessionWithBodies : public Session {
   }
 };
 
-const Eigen::Isometry3d kFar = isometry({0.0, 0.0, -1.0});
-
 TEST(SessionWithBodies, ATouchedBodyThatGoesLeavesNoStepThatTheGateWouldHaveToHold) {
   for (const bool remove : {true, false}) {
     SessionWithBodies session({kFar});

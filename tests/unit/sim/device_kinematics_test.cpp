@@ -8,15 +8,12 @@
 #include <cmath>
 #include <random>
 
+#include "print_preset.hpp"
 #include "tactree/core/device_presets.hpp"
 #include "tactree/core/kinematics.hpp"
 #include "tactree/core/sine.hpp"
 #include "tactree/plant/linkage.hpp"
 #include "tactree/plant/trigonometry.hpp"
-
-namespace tactree::core {
-inline void PrintTo(const DevicePreset& preset, std::ostream* out) { *out << preset.name; }
-}  // namespace tactree::core
 
 namespace tactree::test {
 namespace {

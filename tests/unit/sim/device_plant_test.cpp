@@ -7,11 +7,8 @@
 #include <cmath>
 
 #include "analytic_shapes.hpp"
+#include "print_preset.hpp"
 #include "tactree/simulation/simulation.hpp"
-
-namespace tactree::core {
-inline void PrintTo(const DevicePreset& preset, std::ostream* out) { *out << preset.name; }
-}  // namespace tactree::core
 
 namespace tactree::test {
 namespace {

@@ -11,7 +11,7 @@ namespace tactree::test {
 namespace {
 
 constexpr double kQuantum = 30e-6;  // m
-constexpr double kPeriod = 1e-3;    // s
+constexpr double kTick = 1e-3;      // s
 
 core::Vec3 quantised(double x) {
   return {static_cast<float>(std::floor(x / kQuantum) * kQuantum), 0.0F, 0.0F};
@@ -20,7 +20,7 @@ core::Vec3 quantised(double x) {
 core::VelocityEstimator estimator() {
   core::VelocityEstimator e;
   const auto quantum = static_cast<float>(kQuantum);
-  e.configure(static_cast<float>(kPeriod), {quantum, quantum, quantum}, 200.0F);
+  e.configure(static_cast<float>(kTick), {quantum, quantum, quantum}, 200.0F);
   return e;
 }
 
@@ -31,12 +31,12 @@ TEST(Velocity, FollowsASteadySpeedCloselyWhereADifferenceDoesNot) {
     double worst_difference = 0.0;
     core::Vec3 last = quantised(0.0);
     for (int tick = 0; tick < 400; ++tick) {
-      const core::Vec3 x = quantised(speed * kPeriod * tick);
+      const core::Vec3 x = quantised(speed * kTick * tick);
       const double v = static_cast<double>(e.update(x).x);
       if (tick > 60) {
         worst = std::max(worst, std::abs(v - speed));
-        worst_difference = std::max(worst_difference,
-                                    std::abs(static_cast<double>(x.x - last.x) / kPeriod - speed));
+        worst_difference =
+            std::max(worst_difference, std::abs(static_cast<double>(x.x - last.x) / kTick - speed));
       }
       last = x;
     }
@@ -50,10 +50,10 @@ TEST(Velocity, FollowsASteadySpeedCloselyWhereADifferenceDoesNot) {
 TEST(Velocity, AStopIsNoticedWithinTenTicks) {
   core::VelocityEstimator e = estimator();
   for (int tick = 0; tick < 100; ++tick) {
-    e.update(quantised(0.3 * kPeriod * tick));
+    e.update(quantised(0.3 * kTick * tick));
   }
   for (int tick = 0; tick < 10; ++tick) {
-    e.update(quantised(0.3 * kPeriod * 99));
+    e.update(quantised(0.3 * kTick * 99));
   }
   EXPECT_LE(std::abs(e.velocity().x), 0.01F);
 }
