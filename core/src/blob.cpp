@@ -162,18 +162,16 @@ class BlobValidator {
     return true;
   }
 
-  // Takes the next section off the front of what is left. Sizes are compared, never added: the
-  // sum of two counts from outside could wrap.
+  // Takes the next section off the front of what is left. In 64 bits, where sums of counts from
+  // outside do not wrap.
   bool take(const BlobSection& section, std::uint64_t expected_bytes) {
-    const std::uint32_t left = header_->total_bytes - cursor_;
     if (section.offset != cursor_ || section.bytes != expected_bytes) return false;
-    if (section.bytes > left) return false;
-    const std::uint32_t padding = (4U - (section.bytes & 3U)) & 3U;
-    if (padding > left - section.bytes) return false;
-    for (std::uint32_t i = 0; i < padding; ++i) {  // bound: 3
-      if (bytes_[section.offset + section.bytes + i] != std::byte{0}) return false;
+    const std::uint64_t padding_begin = cursor_ + section.bytes;
+    cursor_ = (padding_begin + 3U) & ~std::uint64_t{3};
+    if (cursor_ > header_->total_bytes) return false;
+    for (std::uint64_t i = padding_begin; i < cursor_; ++i) {  // bound: 3
+      if (bytes_[static_cast<std::size_t>(i)] != std::byte{0}) return false;
     }
-    cursor_ += section.bytes + padding;
     return true;
   }
 
@@ -223,9 +221,14 @@ class BlobValidator {
     for (std::uint32_t axis = 0; axis < 3; ++axis) {  // bound: 3
       view_.root_min_m_[axis] = h.step_m * static_cast<float>(h.root_min[axis]);
     }
-    view_.depth_ = h.depth;
-    view_.directory_level_ = h.directory_level;
-    view_.leaf_group_shift_ = h.leaf_group_shift;
+    view_.root_min_ = {h.root_min[0], h.root_min[1], h.root_min[2]};
+    view_.node_count_ = h.node_count;
+    view_.leaf_count_ = h.leaf_count;
+    view_.point_count_ = h.point_count;
+    view_.depth_ = static_cast<std::uint8_t>(h.depth);
+    view_.directory_level_ = static_cast<std::uint8_t>(h.directory_level);
+    view_.leaf_group_shift_ = static_cast<std::uint8_t>(h.leaf_group_shift);
+    view_.material_count_ = static_cast<std::uint8_t>(h.material_count);
     view_.uniform_ = is_surface();
   }
 
@@ -292,14 +295,13 @@ class BlobValidator {
     return true;
   }
 
-  // Entry by entry what a walk from the root finds.
+  // Entry by entry what a walk from the root finds, which looks at the lowest `level` bits of each
+  // coordinate.
   bool directory_lists_nodes() const {
     const std::uint32_t level = header_->directory_level;
-    const std::uint32_t side_mask = (1U << level) - 1U;
     const std::uint32_t entries = 1U << 3U * level;
     for (std::uint32_t i = 0; i < entries; ++i) {  // bound: directory_entries
-      const Int3 cell{static_cast<std::int32_t>(i & side_mask),
-                      static_cast<std::int32_t>(i >> level & side_mask),
+      const Int3 cell{static_cast<std::int32_t>(i), static_cast<std::int32_t>(i >> level),
                       static_cast<std::int32_t>(i >> 2U * level)};
       if (view_.directory_[i] != node_of_cell(cell, level)) return false;
     }
@@ -379,7 +381,7 @@ class BlobValidator {
   std::span<const std::byte> bytes_;
   BlobView& view_;
   const BlobHeader* header_ = nullptr;
-  std::uint32_t cursor_ = 0;
+  std::uint64_t cursor_ = 0;  // how much of the bytes the sections fill so far
 };
 
 BlobStatus open_blob(std::span<const std::byte> bytes, BlobView& view) {
@@ -459,10 +461,9 @@ void LeafCursor::next() {
       top.leaves_left &= top.leaves_left - 1U;
       const Int3 cell = child_cell(cell_, octant);
       const std::int32_t edge = kLeafUnits << (view_.depth() - level_ - 1U);
-      const std::int32_t* const root = view_.header().root_min;
-      leaf_ =
-          view_.leaf(child_leaf(view_.node(top.node, level_), octant), level_ + 1U,
-                     {root[0] + cell.x * edge, root[1] + cell.y * edge, root[2] + cell.z * edge});
+      const Int3 root = view_.root_min();
+      leaf_ = view_.leaf(child_leaf(view_.node(top.node, level_), octant), level_ + 1U,
+                         {root.x + cell.x * edge, root.y + cell.y * edge, root.z + cell.z * edge});
       return;
     }
     if (top.nodes_left != 0) {

@@ -119,6 +119,7 @@ void CandidateSet::begin_for(const BlobView& view, Vec3 x) {
     return true;
   }
   const NearLeaf leaf = corners.find(corner_);
+  complete_ = complete_ && !leaf.damaged;
   return leaf.empty() || gather_leaf(view, leaf, corners.min_of(leaf), left);
 }
 
@@ -179,8 +180,9 @@ void CandidateSet::cover(const BlobView& view, Vec3 x) {
 void CandidateSet::begin_leaf(const BlobView& view, const NearLeaf& leaf,
                               std::uint32_t first_word) {
   const std::uint32_t count = leaf.end_point - leaf.first_point;
-  complete_ = complete_ && count <= unseen_;
-  end_ = leaf.first_point + lower(count, unseen_);
+  const std::uint32_t most = lower(unseen_, (1U << kLeafHalvings) - 1U);
+  complete_ = complete_ && count <= most;
+  end_ = leaf.first_point + lower(count, most);
   unseen_ -= end_ - leaf.first_point;
   const std::uint32_t* const words = view.point_words();
   std::uint32_t low = leaf.first_point;

@@ -96,12 +96,11 @@ std::uint32_t CornerLeaves::directory_entry(std::uint32_t corner) const {
 }  // memory: flash (where the compiler places the load)
 
 Int3 CornerLeaves::lower_corner(std::uint32_t corner) const {
-  const std::int32_t* const root = view_.header().root_min;
+  const Int3 root = view_.root_min();
   const auto units = [&](std::uint32_t axis) {
-    // memory: flash
-    return root[axis] + static_cast<std::int32_t>(pick(cell_, corner, axis) << kLeafShift);
+    return static_cast<std::int32_t>(pick(cell_, corner, axis) << kLeafShift);
   };
-  return {units(0), units(1), units(2)};
+  return {root.x + units(0), root.y + units(1), root.z + units(2)};
 }
 
 // A leaf larger than the finest may hold several corners: it is told for the first of them, from

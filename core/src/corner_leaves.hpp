@@ -28,6 +28,8 @@ struct NearLeaf {
   std::int32_t half_site = 1;   ///< half of it, lattice units
   Vec3 local{};                 ///< of the place, m, counted from the leaf's first site
 
+  bool damaged = false;  ///< a memory failed: the model has no such leaf, or points
+
   [[nodiscard]] bool empty() const { return end_point == first_point; }
 };
 [[nodiscard]] inline NearLeaf near_leaf(const BlobView& view, const Leaf& leaf, Vec3 place,
@@ -118,7 +120,14 @@ constexpr std::uint32_t octant_of(std::uint32_t packed, std::uint32_t level_belo
 }
 static_assert(octant_of(4U << 10, 2) == 2 && octant_of(7U | 3U << 10 | 4U << 20, 2) == 5);
 
+// The number of no leaf; kNoNode only where there is none.
+constexpr std::uint32_t kDamagedNode = kNoNode - 1U;
+constexpr std::uint32_t stopped_at(std::uint32_t node) {
+  return node == kNoNode ? kNoNode : kDamagedNode;
+}
+
 // The child of a node whose children are all of one kind; kNoNode: there is none.
+// Precondition: node < view.node_count().
 inline std::uint32_t step_down(const BlobView& view, std::uint32_t node, std::uint32_t octant) {
   const std::uint32_t group = view.node_words()[node];  // memory: flash
   const std::uint32_t mask = group >> 24;
@@ -126,18 +135,20 @@ inline std::uint32_t step_down(const BlobView& view, std::uint32_t node, std::ui
   return (mask & bit) != 0 ? (group & 0xFFFFFFU) + count_low_octants(mask & (bit - 1U)) : kNoNode;
 }
 
-// Walks down to the centre's leaf, and keeps the nodes on the way.
+// Walks down to the centre's leaf, and keeps the nodes on the way. What it stops at is kNoNode, or
+// what a memory that failed took for a node: neither is the number of one.
 [[gnu::always_inline]] inline std::uint32_t CornerLeaves::find_own() {
+  const std::uint32_t nodes = view_.node_count();
   std::uint32_t node = directory_entry(0);
   std::uint32_t left = below_;
   path_[left] = node;
-  while (left != 0 && node != kNoNode) {  // bound: levels_below
+  while (left != 0 && node < nodes) {  // bound: levels_below
     --left;
     node = step_down(view_, node, octant_of(own_packed_, left));
     path_[left] = node;
   }
   path_end_ = left;
-  return node;
+  return left == 0 ? node : stopped_at(node);
 }
 
 // Starts where the way to this corner parts from the one to the centre.
@@ -157,11 +168,12 @@ inline std::uint32_t step_down(const BlobView& view, std::uint32_t node, std::ui
     }
     node = left < path_end_ ? kNoNode : path_[left];
   }
-  while (left != 0 && node != kNoNode) {  // bound: levels_below
+  const std::uint32_t nodes = view_.node_count();
+  while (left != 0 && node < nodes) {  // bound: levels_below
     --left;
     node = step_down(view_, node, octant_of(packed, left));
   }
-  return node;
+  return left == 0 ? node : stopped_at(node);
 }
 
 [[gnu::always_inline]] inline bool CornerLeaves::begin() {
@@ -178,16 +190,23 @@ inline std::uint32_t step_down(const BlobView& view, std::uint32_t node, std::ui
     return found ? near_leaf(view_, leaf, centre_, corner) : NearLeaf{};
   }
   const std::uint32_t number = corner == 0 ? own_ : find_other(corner);
-  if (number == kNoNode) {
-    return {};
+  if (number >= view_.leaf_count()) {
+    NearLeaf none;
+    none.damaged = number != kNoNode;
+    return none;
   }
-  return {number,
-          view_.first_point(number),
-          view_.first_point(number + 1U),
-          corner,
-          2.0F * view_.step_m(),
-          1,
-          {pick(local_, corner, 0), pick(local_, corner, 1), pick(local_, corner, 2)}};
+  NearLeaf leaf{number,
+                view_.first_point(number),
+                view_.first_point(number + 1U),
+                corner,
+                2.0F * view_.step_m(),
+                1,
+                {pick(local_, corner, 0), pick(local_, corner, 1), pick(local_, corner, 2)}};
+  if (!view_.holds_points(leaf.first_point, leaf.end_point)) {
+    leaf.end_point = leaf.first_point;
+    leaf.damaged = true;
+  }
+  return leaf;
 }
 
 inline std::uint32_t CornerLeaves::axes_within(float limit_squared) const {

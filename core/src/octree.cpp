@@ -36,10 +36,13 @@ constexpr std::uint32_t octant_of(std::uint32_t x, std::uint32_t y, std::uint32_
 }  // namespace
 
 bool descend(const BlobView& view, std::uint32_t node, std::uint32_t level, Cell cell, Leaf& leaf) {
-  const Int3 root{view.header().root_min[0], view.header().root_min[1], view.header().root_min[2]};
+  const Int3 root = view.root_min();
   std::uint32_t level_below = view.depth() - level;
   while (level_below > 0) {  // bound: depth
     --level_below;
+    if (node >= view.node_count()) {
+      return false;  // a memory failed
+    }
     const std::uint32_t octant = octant_of(cell.x, cell.y, cell.z, level_below);
     const BlobNode here = view.node(node, view.depth() - level_below - 1U);
     if (((here.leaves >> 24 >> octant) & 1U) != 0) {
@@ -62,7 +65,7 @@ bool to_lattice(const BlobView& view, Vec3 position, Int3& site) {
   if (view.empty()) {
     return false;
   }
-  const BlobHeader& header = view.header();
+  const Int3 root = view.root_min();
   const float step = view.step_m();
   const float inverse = view.inverse_step();
   if (!floor_to_lattice(position.x, step, inverse, site.x) ||
@@ -71,9 +74,9 @@ bool to_lattice(const BlobView& view, Vec3 position, Int3& site) {
     return false;
   }
   const std::uint32_t edge = static_cast<std::uint32_t>(kLeafUnits) << view.depth();
-  return static_cast<std::uint32_t>(site.x - header.root_min[0]) < edge &&
-         static_cast<std::uint32_t>(site.y - header.root_min[1]) < edge &&
-         static_cast<std::uint32_t>(site.z - header.root_min[2]) < edge;
+  return static_cast<std::uint32_t>(site.x - root.x) < edge &&
+         static_cast<std::uint32_t>(site.y - root.y) < edge &&
+         static_cast<std::uint32_t>(site.z - root.z) < edge;
 }
 
 bool find_leaf(const BlobView& view, Int3 site, Leaf& leaf) {
@@ -82,11 +85,11 @@ bool find_leaf(const BlobView& view, Int3 site, Leaf& leaf) {
 
 bool find_leaf_below(const BlobView& view, std::uint32_t node, std::uint32_t level, Int3 site,
                      Leaf& leaf) {
-  const BlobHeader& header = view.header();
+  const Int3 root = view.root_min();
   return descend(view, node, level,
-                 {static_cast<std::uint32_t>(site.x - header.root_min[0]) >> kLeafShift,
-                  static_cast<std::uint32_t>(site.y - header.root_min[1]) >> kLeafShift,
-                  static_cast<std::uint32_t>(site.z - header.root_min[2]) >> kLeafShift},
+                 {static_cast<std::uint32_t>(site.x - root.x) >> kLeafShift,
+                  static_cast<std::uint32_t>(site.y - root.y) >> kLeafShift,
+                  static_cast<std::uint32_t>(site.z - root.z) >> kLeafShift},
                  leaf);
 }
 

@@ -40,20 +40,20 @@ bool find_neighbour(const BlobView& view, const Leaf& from, std::uint32_t direct
   Int3 next_to = from.min;
   const std::int32_t edge = (direction & 1U) != 0 ? 1 << shift : -(1 << shift);
   (direction < 2 ? next_to.x : direction < 4 ? next_to.y : next_to.z) += edge;
-  const std::int32_t* const root = view.header().root_min;
+  const Int3 root = view.root_min();
   const auto corner_at = [&](std::uint32_t s) {
-    return Int3{cell_corner(site.x, root[0], s), cell_corner(site.y, root[1], s),
-                cell_corner(site.z, root[2], s)};
+    return Int3{cell_corner(site.x, root.x, s), cell_corner(site.y, root.y, s),
+                cell_corner(site.z, root.z, s)};
   };
   if (!view.has_neighbours() || !(corner_at(shift) == next_to)) {
     return find_leaf(view, site, found);
   }
   const std::uint32_t entry = view.neighbours(from.number)[direction];
-  if (entry == kNeighbourNone) {
-    return false;
-  }
   const std::uint32_t index = entry & kNeighbourIndexMask;
   const std::uint32_t level = (entry & ~kNeighbourIsNode) >> kNeighbourLevelShift;
+  if (entry == kNeighbourNone || level > view.depth()) {  // the latter where a memory failed
+    return false;
+  }
   if ((entry & kNeighbourIsNode) != 0) {
     return find_leaf_below(view, index, level, site, found);
   }

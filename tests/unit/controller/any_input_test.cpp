@@ -126,30 +126,85 @@ TEST(AnyInput, AWildHandKeepsThePromises) {
   EXPECT_GT(counts.with_force, 50'000U);
 }
 
-// Bits of the points flip while the object is touched: whatever surface that makes, the gate knows
-// nothing of it.
-TEST(AnyInput, PointsThatChangeMeanwhileKeepThePromises) {
+/// A model in memory of its own, which fails: bits flip in it.
+class FailingModel {
+ public:
+  explicit FailingModel(std::span<const std::byte> sound) : sound_(sound.size() / 4U) {
+    std::memcpy(sound_.data(), sound.data(), sound.size());
+    words_ = sound_;
+    EXPECT_EQ(core::open_blob(std::as_bytes(std::span(words_)), view_), core::BlobStatus::kOk);
+    sections_ = {{0U, sizeof(core::BlobHeader)}};
+    const core::BlobHeader& h = view_.header();
+    for (const core::BlobSection& section :
+         {h.nodes, h.directory, h.leaf_bases, h.leaf_offsets, h.points, h.normals, h.neighbours,
+          h.materials, h.material_indices}) {
+      if (section.bytes >= 4U) {
+        sections_.push_back(section);
+      }
+    }
+  }
+
+  [[nodiscard]] const core::BlobView& view() const { return view_; }
+  void restore() { words_ = sound_; }
+  [[nodiscard]] std::span<std::uint32_t> words_of(const core::BlobSection& section) {
+    return std::span(words_).subspan(section.offset / 4U, section.bytes / 4U);
+  }
+  /// In each section as often, however small it is.
+  void flip(std::mt19937& random) {
+    const core::BlobSection& section = sections_[random() % sections_.size()];
+    words_[section.offset / 4U + random() % (section.bytes / 4U)] ^= 1U << (random() % 32U);
+  }
+
+ private:
+  std::vector<std::uint32_t> sound_;
+  std::vector<std::uint32_t> words_;  // as long as the blob: a reader beyond it is seen
+  std::vector<core::BlobSection> sections_;
+  core::BlobView view_;
+};
+
+/// The plane, of two materials with texture.
+Shape textured_plane() {
+  Shape shape;
+  add_sheet(shape, 0.02, 0.0, 1.0);
+  core::BlobMaterial material{};
+  material.stiffness_N_m = 400.0F;
+  material.static_friction = 0.3F;
+  material.dynamic_friction = 0.2F;
+  material.texture_height_m = 5e-5F;
+  material.texture_wavelength_m = 2e-3F;
+  shape.model().materials = {material, material};
+  for (const Eigen::Vector3d& p : shape.model().positions) {
+    shape.model().material_indices.push_back(p.x() < 0.0 ? 0 : 1);
+  }
+  shape.seal();
+  return shape;
+}
+
+// The limits hold whatever surface that makes, and nothing is read from outside the model, which
+// the sanitizers see. Each phase begins with a sound model; in half of them many bits flip.
+void touch_while_bits_flip(const Shape& shape, core::RenderMode mode) {
   core::Configuration configuration;
+  configuration.mode = mode;
   configuration.ramp_s = 0.01F;
   configuration.force_max_N = 3.0F;
   configuration.slew_N_s = 500.0F;
   configuration.speed_max_m_s = 20.0F;
-  const std::span<const std::byte> sound = shared_plane().bytes();
-  std::vector<std::uint32_t> words(sound.size() / 4U);
-  std::memcpy(words.data(), sound.data(), sound.size());
-  core::BlobView view;
-  ASSERT_EQ(core::open_blob(std::as_bytes(std::span(words)), view), core::BlobStatus::kOk);
-  const std::size_t first = static_cast<std::size_t>(view.point_words() - words.data());
+  FailingModel model(shape.bytes());
   Session session(configuration);
-  ASSERT_EQ(session.controller.load_model(view), core::ModelStatus::kOk);
+  ASSERT_EQ(session.controller.load_model(model.view()), core::ModelStatus::kOk);
   session.activate();
   core::Output last = session.step();
   Counts counts;
   std::mt19937 random(13);
   WildHand hand(5e-4, 6e-3, 0.015);
-  for (std::uint32_t i = 0; i < 100'000U; ++i) {
+  for (std::uint32_t i = 0; i < 300'000U; ++i) {
     hand.move(session, random);
-    words[first + random() % view.point_count()] ^= 1U << (random() % 32U);
+    if (i % kPhases == 0U) {
+      model.restore();
+    }
+    if (i % kPhases > 100U && random() % (i / kPhases % 2U == 0U ? 500U : 5U) == 0U) {
+      model.flip(random);
+    }
     session.input.dead_man = has_hand(i);
     const core::Output output = session.step(command_of(i));
     inspect(output, last, configuration, counts);
@@ -157,6 +212,50 @@ TEST(AnyInput, PointsThatChangeMeanwhileKeepThePromises) {
   }
   EXPECT_EQ(counts.broken, 0U);
   EXPECT_GT(counts.with_force, 10'000U);
+}
+
+TEST(AnyInput, AModelWhoseMemoryFailsKeepsThePromises) {
+  touch_while_bits_flip(shared_plane(), core::RenderMode::kSurface);
+}
+
+TEST(AnyInput, AModelWithMaterialsWhoseMemoryFailsKeepsThePromises) {
+  touch_while_bits_flip(textured_plane(), core::RenderMode::kSurface);
+}
+
+// Where the damage names what does not exist, it is told from empty space.
+TEST(AnyInput, ATreeThatLeadsOutOfTheModelIsAFault) {
+  struct Damage {
+    const char* name;
+    core::BlobSection core::BlobHeader::*section;
+    void (*apply)(std::uint32_t& word, const core::BlobHeader& sound);
+  };
+  const Damage damages[] = {
+      {"no node", &core::BlobHeader::directory,
+       [](std::uint32_t& word, const core::BlobHeader& h) { word = h.node_count; }},
+      {"no leaf", &core::BlobHeader::nodes,
+       [](std::uint32_t& word, const core::BlobHeader&) { word |= 0xFFFFFFU; }},
+      {"no point", &core::BlobHeader::leaf_bases,
+       [](std::uint32_t& word, const core::BlobHeader& h) { word = h.point_count; }},
+      {"its end before its begin", &core::BlobHeader::leaf_offsets,
+       [](std::uint32_t& word, const core::BlobHeader&) { word = 0xFFFFU; }},
+  };
+  for (const Damage& damage : damages) {
+    SCOPED_TRACE(damage.name);
+    FailingModel model(shared_plane().bytes());
+    const core::BlobHeader header = model.view().header();
+    ASSERT_LT(header.node_count, header.leaf_count);  // else a node's number would name no leaf
+    Session session;
+    ASSERT_EQ(session.controller.load_model(model.view()), core::ModelStatus::kOk);
+    session.activate();
+    for (std::uint32_t& word : model.words_of(header.*damage.section)) {
+      damage.apply(word, header);
+    }
+    EXPECT_EQ(session.press(2e-3).status.faults, core::fault_bit(core::Fault::kModelIncomplete));
+  }
+}
+
+TEST(AnyInput, AModelForPaperModeWhoseMemoryFailsKeepsThePromises) {
+  touch_while_bits_flip(shared_plane().paper_twin(), core::RenderMode::kPaper);
 }
 
 }  // namespace

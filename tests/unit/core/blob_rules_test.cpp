@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <vector>
 
 #include "tactree/core/blob.hpp"
@@ -41,11 +43,27 @@ class Specimen {
     header().total_bytes = static_cast<std::uint32_t>(size);
   }
   [[nodiscard]] std::size_t size() const { return bytes_.size(); }
+  /// Room for more nodes behind the last one.
+  void insert_nodes(std::uint32_t bytes) {
+    BlobHeader& h = header();
+    bytes_.insert(bytes_.begin() + h.nodes.offset + h.nodes.bytes, bytes, std::byte{0});
+    BlobHeader& moved = header();
+    moved.nodes.bytes += bytes;
+    for (core::BlobSection* section :
+         {&moved.directory, &moved.leaf_bases, &moved.leaf_offsets, &moved.points, &moved.normals,
+          &moved.neighbours, &moved.materials, &moved.material_indices}) {
+      section->offset += bytes;
+    }
+    moved.total_bytes += bytes;
+  }
 
-  [[nodiscard]] BlobStatus open() {
+  [[nodiscard]] BlobStatus open(core::BlobView& view) {
     builder::seal(bytes_);
-    core::BlobView view;
     return core::open_blob(bytes_, view);
+  }
+  [[nodiscard]] BlobStatus open() {
+    core::BlobView view;
+    return open(view);
   }
 
   /// The word that tells the last leaves of the tree.
@@ -266,18 +284,205 @@ TEST(BlobRules, AHeaderFillsAtMostTheBlob) {
   EXPECT_EQ(blob.open(), BlobStatus::kBadHeader);
 }
 
-TEST(BlobRules, CoordinatesStayWithinWhatAFloatHoldsExactly) {
+/// A paper blob whose figures fit any step and root: what is left are the rules of the lattice.
+BlobStatus with_lattice(float step_m, std::int32_t low, int axis = 0) {
+  Specimen blob(Profile::kPaper);
+  BlobHeader& h = blob.header();
+  h.step_m = step_m;
+  h.leaf_edge_min_m = step_m * static_cast<float>(core::kLeafUnits);
+  h.reach_m = 0.0F;
+  h.spacing_m = 1e8F;
+  h.root_min[axis] = low;
+  for (int i = 0; i < 3; ++i) {
+    h.bounds_min_m[i] = step_m * static_cast<float>(h.root_min[i]);
+    h.bounds_max_m[i] = h.bounds_min_m[i];
+  }
+  return blob.open();
+}
+std::int32_t root_edge() { return core::kLeafUnits << Specimen(Profile::kPaper).header().depth; }
+
+TEST(BlobRules, CoordinatesStayWithinTheirLimits) {
+  const float step = 0x1p-20F;
   for (int axis = 0; axis < 3; ++axis) {
-    for (const std::int32_t low :
-         {-core::kMaxCoordinate - 1, core::kMaxCoordinate - core::kLeafUnits + 1}) {
-      Specimen blob(Profile::kPaper);
-      blob.header().step_m = 0x1p-20F;
-      blob.header().leaf_edge_min_m = 0x1p-20F * static_cast<float>(core::kLeafUnits);
-      blob.header().root_min[axis] = low;
-      blob.header().bounds_min_m[axis] = 0x1p-20F * static_cast<float>(low);
-      blob.header().bounds_max_m[axis] = blob.header().bounds_min_m[axis];
-      EXPECT_EQ(blob.open(), BlobStatus::kBadFigures) << axis << " " << low;
+    const std::int32_t highest = core::kMaxCoordinate - root_edge();
+    EXPECT_EQ(with_lattice(step, -core::kMaxCoordinate, axis), BlobStatus::kOk);
+    EXPECT_EQ(with_lattice(step, -core::kMaxCoordinate - 1, axis), BlobStatus::kBadFigures);
+    EXPECT_EQ(with_lattice(step, highest, axis), BlobStatus::kOk);
+    EXPECT_EQ(with_lattice(step, highest + 1, axis), BlobStatus::kBadFigures);
+  }
+}
+
+// The more significant bits a step has, the fewer are left for the integer.
+TEST(BlobRules, CoordinatesStayWithinWhatAFloatHoldsExactly) {
+  const float step = 1.25F * 0x1p-20F;  // three bits
+  constexpr std::int32_t kLargest = 1 << 21;
+  EXPECT_EQ(with_lattice(step, -kLargest), BlobStatus::kOk);
+  EXPECT_EQ(with_lattice(step, -kLargest - 1), BlobStatus::kBadFigures);
+  EXPECT_EQ(with_lattice(step, kLargest - root_edge()), BlobStatus::kOk);
+  EXPECT_EQ(with_lattice(step, kLargest - root_edge() + 1), BlobStatus::kBadFigures);
+}
+
+TEST(BlobRules, StepsAreNeitherTinyNorHuge) {
+  EXPECT_EQ(with_lattice(0x1p-39F, 0), BlobStatus::kOk);
+  EXPECT_EQ(with_lattice(0x1p-40F, 0), BlobStatus::kBadFigures);  // 9e-13 m
+  EXPECT_EQ(with_lattice(0x1p19F, 0), BlobStatus::kOk);
+  EXPECT_EQ(with_lattice(0x1p20F, 0), BlobStatus::kBadFigures);  // 1.05e6 m
+}
+
+TEST(BlobRules, AHeaderAloneIsLongEnoughToBeRead) {
+  Specimen blob(Profile::kSurface);
+  blob.resize(sizeof(BlobHeader));
+  EXPECT_EQ(blob.open(), BlobStatus::kBadSections);
+}
+
+TEST(BlobRules, CountsMayBeAsLargeAsTheirLimits) {
+  Specimen blob(Profile::kPaper);
+  blob.header().leaf_count = core::kMaxLeaves;
+  blob.header().point_count = core::kMaxLeaves;
+  blob.header().node_count = core::kMaxNodes;
+  blob.header().material_count = core::kMaxMaterials;
+  EXPECT_EQ(blob.open(), BlobStatus::kBadSections);
+}
+
+TEST(BlobRules, TreesMayBeAsDeepAsTheirLimits) {
+  Specimen paper(Profile::kPaper);
+  paper.header().depth = core::kMaxDepth;
+  EXPECT_NE(paper.open(), BlobStatus::kBadHeader);
+  Specimen surface(Profile::kSurface);
+  surface.header().depth = core::kMaxDepth;
+  surface.header().directory_level = core::kMaxDepth - core::kMaxLevelsBelow;
+  EXPECT_NE(surface.open(), BlobStatus::kBadHeader);
+}
+
+TEST(BlobRules, AQueryHoldsAtLeastALeaf) {
+  Specimen blob(Profile::kSurface);
+  blob.header().points_per_slab_max = 1;
+  EXPECT_EQ(blob.open(), BlobStatus::kOk);
+  blob.header().points_per_query_max = blob.header().points_per_leaf_max - 1U;
+  EXPECT_EQ(blob.open(), BlobStatus::kBadHeader);
+}
+
+TEST(BlobRules, ASurfaceHasASupport) {
+  Specimen blob(Profile::kSurface);
+  blob.header().support_radius_m = 0.0F;
+  EXPECT_EQ(blob.open(), BlobStatus::kBadFigures);
+}
+
+// Sizes that agree with the counts, of far more than there is: not even padding is read.
+TEST(BlobRules, SectionsFarBeyondTheBytesAreNotRead) {
+  Specimen blob(Profile::kSurface);
+  BlobHeader& h = blob.header();
+  h.point_count = 0x2FFFFFFFU;  // odd: its normals are padded
+  h.points.bytes = 4U * h.point_count;
+  h.normals.offset = h.points.offset + h.points.bytes;
+  h.normals.bytes = 2U * h.point_count;
+  EXPECT_EQ(blob.open(), BlobStatus::kBadSections);
+}
+
+TEST(BlobRules, OneMaterialNeedsNoIndices) {
+  builder::Model model = test::cos_sheet(0.025, 0.0025, Profile::kSurface);
+  model.materials.assign(1, {800.0F, 1.0F, 0.5F, 0.3F, 0.0F, 0.0F, {}});
+  const std::vector<std::byte> bytes = builder::write_blob(model).bytes;
+  core::BlobView view;
+  ASSERT_EQ(core::open_blob(bytes, view), BlobStatus::kOk);
+  EXPECT_EQ(view.header().material_indices.bytes, 0U);
+  EXPECT_EQ(view.material_of(view.point_count() - 1U), 0U);
+}
+
+TEST_P(BlobRules, TheViewTellsWhatTheHeaderSays) {
+  core::BlobView view;
+  ASSERT_EQ(blob.open(view), BlobStatus::kOk);
+  const BlobHeader& h = blob.header();
+  EXPECT_EQ(view.support_radius_m(), h.support_radius_m);
+  EXPECT_EQ(view.reach_m(), h.reach_m);
+  EXPECT_EQ(view.cells_and_one(), static_cast<float>((1U << h.depth) + 1U));
+  EXPECT_EQ(view.root_min(), (core::Int3{h.root_min[0], h.root_min[1], h.root_min[2]}));
+  EXPECT_EQ(view.node_count(), h.node_count);
+  EXPECT_EQ(view.leaf_count(), h.leaf_count);
+  EXPECT_EQ(view.point_count(), h.point_count);
+  EXPECT_EQ(view.material_count(), h.material_count);
+}
+
+// First points that are right, of a base that is not the group's first point.
+TEST(BlobRules, AGroupOfLeavesBeginsAtItsBase) {
+  Specimen blob(test::cos_sheet(0.1, 0.0025, Profile::kSurface), 6000);
+  const BlobHeader& h = blob.header();
+  const std::uint32_t in_group = 1U << h.leaf_group_shift;
+  ASSERT_GT(h.leaf_count, 2U * in_group);
+  --blob.items<std::uint32_t>(h.leaf_bases)[1];
+  for (std::uint32_t i = in_group; i < 2U * in_group; ++i) {
+    ++blob.items<std::uint16_t>(h.leaf_offsets)[i];
+  }
+  EXPECT_EQ(blob.open(), BlobStatus::kBadLeaves);
+}
+
+// Each node the only child of the one before.
+TEST(BlobRules, AChainOfNodesIsNotFollowedForEver) {
+  Specimen blob(test::cos_sheet(0.1, 0.0025, Profile::kPaper), 6000);
+  const std::uint32_t count = blob.header().node_count;
+  ASSERT_GT(count, 300U);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    blob.items<BlobNode>(blob.header().nodes)[i] = {1U << 24 | (i + 1U), 0U};
+  }
+  EXPECT_EQ(blob.open(), BlobStatus::kBadTree);
+}
+
+TEST(BlobRules, AnOctantIsNotBothNodeAndLeaf) {
+  Specimen blob(Profile::kPaper);
+  auto* nodes = blob.items<BlobNode>(blob.header().nodes);
+  for (std::uint32_t i = 0; i < blob.header().node_count; ++i) {
+    if (nodes[i].nodes >> 24 != 0U && nodes[i].leaves >> 24 != 0U) {
+      // Its last leaf where it has a node, so that no number changes.
+      nodes[i].leaves &= ~std::bit_floor(nodes[i].leaves);
+      nodes[i].leaves |= std::bit_floor(nodes[i].nodes);
+      EXPECT_EQ(blob.open(), BlobStatus::kBadTree);
+      return;
     }
+  }
+  ADD_FAILURE() << "no node has children of both kinds";
+}
+
+// One more child of the last node that has nodes below it, in an octant that was empty.
+TEST(BlobRules, ANodeHasChildren) {
+  Specimen blob(Profile::kPaper);
+  const std::uint32_t count = blob.header().node_count;
+  blob.insert_nodes(sizeof(BlobNode));
+  auto* nodes = blob.items<BlobNode>(blob.header().nodes);
+  std::uint32_t parent = 0;
+  const auto is_last = [&](const BlobNode& node) {
+    const auto children = static_cast<std::uint32_t>(std::popcount(node.nodes >> 24));
+    return children != 0U && (node.nodes & 0xFFFFFFU) + children == count;
+  };
+  while (parent < count && !is_last(nodes[parent])) {
+    ++parent;
+  }
+  ASSERT_LT(parent, count);
+  const std::uint32_t free = ~(nodes[parent].nodes | nodes[parent].leaves) & 0xFF000000U;
+  ASSERT_NE(free, 0U);
+  const std::uint32_t octant = std::bit_floor(free);
+  const auto below =
+      static_cast<std::uint32_t>(std::popcount(nodes[parent].nodes & (octant - 1U) & 0xFF000000U));
+  const std::uint32_t child = (nodes[parent].nodes & 0xFFFFFFU) + below;
+  std::copy_backward(nodes + child, nodes + count, nodes + count + 1);
+  nodes[parent].nodes |= octant;
+  blob.header().node_count = count + 1U;
+  nodes[child] = {(1U << 24) | (count + 1U), 0U};  // a node that is not there
+  EXPECT_EQ(blob.open(), BlobStatus::kBadTree);
+  nodes[child] = {0U, 0U};
+  EXPECT_EQ(blob.open(), BlobStatus::kBadTree);
+}
+
+TEST(BlobRules, NeighboursAreCountedFromZero) {
+  for (const bool is_node : {true, false}) {
+    Specimen blob(Profile::kPaper);
+    const BlobHeader& h = blob.header();
+    auto* neighbours = blob.items<std::uint32_t>(h.neighbours);
+    const std::uint32_t count = is_node ? h.node_count : h.leaf_count;
+    const std::uint32_t kind = is_node ? core::kNeighbourIsNode : 0U;
+    neighbours[0] = kind | (count - 1U);
+    EXPECT_EQ(blob.open(), BlobStatus::kOk);
+    neighbours[0] = kind | count;
+    EXPECT_EQ(blob.open(), BlobStatus::kBadNeighbours);
   }
 }
 

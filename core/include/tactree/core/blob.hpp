@@ -49,7 +49,9 @@ struct SurfacePoint {
 
 class LeafCursor;
 
-/// A checked model, read in place. Copyable; the bytes must outlive it and not change.
+/// A checked model, read in place. Copyable; the bytes must outlive it. Should they change all the
+/// same (a memory fails), queries answer wrongly but still read inside them: each index that the
+/// bytes hold is compared with the counts of when they were checked.
 /// A default-constructed view is the empty model: every query finds nothing.
 class BlobView {
  public:
@@ -58,12 +60,15 @@ class BlobView {
   [[nodiscard]] bool empty() const { return header_ == nullptr; }
   /// Precondition of all that follow, but the queries: !empty().
   [[nodiscard]] const BlobHeader& header() const { return *header_; }
-  // memory: flash
-  [[nodiscard]] std::uint32_t point_count() const { return empty() ? 0 : header_->point_count; }
+  [[nodiscard]] std::uint32_t point_count() const { return point_count_; }
+  [[nodiscard]] std::uint32_t node_count() const { return node_count_; }
+  [[nodiscard]] std::uint32_t leaf_count() const { return leaf_count_; }
   [[nodiscard]] float step_m() const { return step_m_; }
   [[nodiscard]] float inverse_step() const { return inverse_step_; }
   [[nodiscard]] std::uint32_t depth() const { return depth_; }
-  /// Lower corner of the root cube and edge of a finest leaf; exact.
+  /// Lower corner of the root cube, lattice units.
+  [[nodiscard]] Int3 root_min() const { return root_min_; }
+  /// The same in metres, and the edge of a finest leaf; exact.
   [[nodiscard]] const float* root_min_m() const { return root_min_m_; }  // x y z 0
   [[nodiscard]] float leaf_edge_m() const { return leaf_edge_m_; }
   [[nodiscard]] float inverse_leaf_edge() const { return inverse_leaf_edge_; }
@@ -93,9 +98,18 @@ class BlobView {
     // memory: flash
     return leaf_bases_[leaf_number >> leaf_group_shift_] + leaf_offsets_[leaf_number];
   }
+  /// Do the points [first, end) exist? False where a memory that failed tells of others.
+  [[nodiscard]] bool holds_points(std::uint32_t first, std::uint32_t end) const {
+    return first <= end && end <= point_count_;
+  }
+  /// Without points where a memory that failed names a leaf or points that do not exist.
   [[nodiscard]] Leaf leaf(std::uint32_t number, std::uint32_t level, Int3 min) const {
+    if (number >= leaf_count_) {
+      return {0, 0, 0, level, min};
+    }
     const std::uint32_t first = first_point(number);
-    return {number, first, first_point(number + 1) - first, level, min};
+    const std::uint32_t end = first_point(number + 1);
+    return {number, first, holds_points(first, end) ? end - first : 0U, level, min};
   }
   [[nodiscard]] const std::uint32_t* point_words() const { return points_; }
 
@@ -113,12 +127,10 @@ class BlobView {
     return neighbours_ + 6U * leaf_number;
   }
 
-  [[nodiscard]] std::uint32_t material_count() const {
-    return empty() ? 0 : header_->material_count;  // memory: flash
-  }
-  /// Precondition: index < material_count().
+  [[nodiscard]] std::uint32_t material_count() const { return material_count_; }
+  /// Of an index that names none, the first. Precondition: material_count() > 0.
   [[nodiscard]] const BlobMaterial& material(std::uint32_t index) const {
-    return materials_[index];
+    return materials_[index < material_count_ ? index : 0U];
   }
   /// Which material a point carries; 0 in a blob with at most one.
   [[nodiscard]] std::uint32_t material_of(std::uint32_t point) const {
@@ -147,9 +159,14 @@ class BlobView {
   float inverse_leaf_edge_ = 0.0F;
   float cells_and_one_ = 0.0F;
   float root_min_m_[4] = {};
-  std::uint32_t depth_ = 0;
-  std::uint32_t directory_level_ = 0;
-  std::uint32_t leaf_group_shift_ = 0;
+  Int3 root_min_{};
+  std::uint32_t node_count_ = 0;
+  std::uint32_t leaf_count_ = 0;
+  std::uint32_t point_count_ = 0;
+  std::uint8_t depth_ = 0;
+  std::uint8_t directory_level_ = 0;
+  std::uint8_t leaf_group_shift_ = 0;
+  std::uint8_t material_count_ = 0;
   bool uniform_ = false;
 };
 
@@ -172,7 +189,7 @@ inline Vec3 BlobView::normal(std::uint32_t index) const {
 }
 
 /// Checks `bytes` and, when all is well, points `view` at them; else `view` becomes empty.
-/// After kOk no query can read outside `bytes`, whatever they hold, as long as they do not change.
+/// After kOk no query can read outside `bytes`, whatever they hold.
 /// Cost: one pass, about 30 instructions a byte word; no recursion; at most 256 bytes of stack.
 /// Not for interrupts (long), though it touches no shared state.
 [[nodiscard]] BlobStatus open_blob(std::span<const std::byte> bytes, BlobView& view);

@@ -16,7 +16,7 @@ enum class Fault : std::uint8_t {
   kEnableMismatch = 7,    ///< the enable line's read-back contradicts the command
   kUnexpectedEvent = 8,   ///< a command the state does not allow
   kMotorFault = 9,        ///< the motor bank reports a failure
-  kModelIncomplete = 10,  ///< the model holds more points in a ball than it declares
+  kModelIncomplete = 10,  ///< the model holds more than it declares, or names what it does not hold
   kEncoderStuck = 11,     ///< a motor's effort changes, its encoder does not
   kSupply = 12,           ///< the amplifiers' supply is outside supply_min_V .. supply_max_V
 };
