@@ -413,7 +413,7 @@ void Controller::recover() {
   if (configured_) {
     happen(Event::kConfigured);
   }
-  if (configured_ && !scene_.empty()) {
+  if (!scene_.empty()) {
     happen(Event::kModelLoaded);
   }
 }
@@ -456,7 +456,6 @@ void Controller::happen(Event event) {
   state_ = next_state(before, event);
   inverse_ = inverse_of(next_state(before, event));
   if (state_ == State::kFault && before != State::kFault && event != Event::kFault) {
-    present_ |= fault_bit(Fault::kUnexpectedEvent);
     latched_ |= fault_bit(Fault::kUnexpectedEvent);
   }
   if (state_ == State::kArmed && before != State::kArmed) {
@@ -465,7 +464,6 @@ void Controller::happen(Event event) {
 }
 
 void Controller::raise(FaultMask faults) {
-  present_ |= faults;
   latched_ |= faults;
   happen(Event::kFault);
 }
@@ -491,8 +489,6 @@ Vec3 Controller::wanted_force() {
 
 SafetyGate::Result Controller::apply_force() {
   if (state_ != State::kActive) {
-    passivity_.reset();
-    shown_ = {};
     added_ = {};
     given_ticks_ = 0;
     whole_ = false;

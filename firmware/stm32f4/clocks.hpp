@@ -15,6 +15,7 @@ enum class ClockFailure : std::uint8_t {
   kWaitStates,  ///< the flash does not take its wait states
   kPll,         ///< the multiplier does not lock
   kSwitch,      ///< the core stays on the internal oscillator
+  kFrequency,   ///< the crystal's frequency is not the one it should have
 };
 
 inline constexpr std::uint32_t kFullClockHz = 168000000;     ///< without a failure
@@ -43,6 +44,8 @@ inline constexpr std::uint32_t kSwitchPll = 0x2U;
 inline constexpr std::uint32_t kSwitchedMask = 0x3U << 2;
 inline constexpr std::uint32_t kSwitchedInternal = 0U;
 inline constexpr std::uint32_t kSwitchedPll = 0x2U << 2;
+inline constexpr std::uint32_t kRtcDivisorMask = 0x1FU << 16;
+inline constexpr std::uint32_t kTim11On = 1U << 18;
 inline constexpr std::uint32_t kPrescalerMask = 0xFCF0U;
 inline constexpr std::uint32_t kPrescalers = (0x5U << 10) | (0x4U << 13);  // APB1 / 4, APB2 / 2
 
@@ -56,6 +59,20 @@ inline constexpr std::uint32_t kMask = 0x707U;
 inline constexpr std::uint32_t kFull = 0x705U;
 }  // namespace flash_access
 
+// TIM11 counts the internal oscillator and captures its count at every eighth edge of the crystal,
+// divided to 1 MHz: 128 counts, by which the two know each other (sections 7.2.11, 19.5).
+namespace crystal_capture {
+inline constexpr std::uint32_t kOfCrystal = 2U;      // option: input of channel 1
+inline constexpr std::uint32_t kEveryEighth = 0xDU;  // ccmr1
+inline constexpr std::uint32_t kCaptured = 1U << 1;  // sr
+inline constexpr std::uint32_t kCounts = 8U * kInternalClockHz / 1000000U;
+inline constexpr std::uint32_t kCaptures = 64;
+/// The internal oscillator is good for 8 % from -40 to 105 degrees C (data sheet, section on
+/// its characteristics), and
+/// polling may miss two captures.
+inline constexpr std::uint32_t kTolerance = kCounts * kCaptures / 9U;
+}  // namespace crystal_capture
+
 // A poll takes some ten cycles of 16 MHz. A crystal needs a few ms, the multiplier 0.3 ms.
 inline constexpr std::uint32_t kClockPolls = 100000;
 
@@ -67,12 +84,52 @@ void fall_back(RccBlock<Word>& rcc_block) {
   clear(rcc_block.cfgr, rcc::kPrescalerMask);
 }
 
+/// Counts of the internal oscillator from the first capture to the last; 0: there was none.
+template <class Word>
+std::uint32_t count_captures(TimerBlock<Word>& tim11) {
+  std::uint32_t sum = 0;
+  std::uint32_t last = 0;
+  for (std::uint32_t i = 0; i <= crystal_capture::kCaptures; ++i) {  // bound: kCaptures + 1
+    if (!wait_until(tim11.sr, crystal_capture::kCaptured, crystal_capture::kCaptured,
+                    crystal_capture::kCounts)) {
+      return 0;
+    }
+    const std::uint32_t now = read(tim11.ccr1);
+    sum += i == 0 ? 0U : (now - last) & 0xFFFFU;
+    last = now;
+  }
+  return sum;
+}
+
+/// While the core runs on the internal oscillator. A crystal of another frequency would make every
+/// tick, and so every velocity and every limit per second, wrong by as much.
+template <class Word>
+bool has_its_frequency(RccBlock<Word>& rcc_block, TimerBlock<Word>& tim11,
+                       std::uint32_t crystal_MHz) {
+  change(rcc_block.cfgr, rcc::kRtcDivisorMask, crystal_MHz << 16);
+  set(rcc_block.apb2enr, rcc::kTim11On);
+  (void)read(rcc_block.apb2enr);
+  tim11.option = crystal_capture::kOfCrystal;
+  tim11.ccmr1 = crystal_capture::kEveryEighth;
+  tim11.ccer = 1U;
+  tim11.cr1 = 1U;
+  const std::uint32_t counts = count_captures(tim11);
+  tim11.cr1 = 0U;
+  clear(rcc_block.apb2enr, rcc::kTim11On);
+  constexpr std::uint32_t kExpected = crystal_capture::kCounts * crystal_capture::kCaptures;
+  return counts >= kExpected - crystal_capture::kTolerance &&
+         counts <= kExpected + crystal_capture::kTolerance;
+}
+
 template <class Word>
 ClockFailure try_full_speed(RccBlock<Word>& rcc_block, FlashBlock<Word>& flash,
-                            std::uint32_t crystal_MHz) {
+                            TimerBlock<Word>& tim11, std::uint32_t crystal_MHz) {
   set(rcc_block.cr, rcc::kHseOn);
   if (!wait_until(rcc_block.cr, rcc::kHseReady, rcc::kHseReady, kClockPolls)) {
     return ClockFailure::kCrystal;
+  }
+  if (!has_its_frequency(rcc_block, tim11, crystal_MHz)) {
+    return ClockFailure::kFrequency;
   }
   // The flash must be slow enough before the core is fast, and is to be read back (section 3.5.1).
   change(flash.acr, flash_access::kMask, flash_access::kFull);
@@ -99,8 +156,8 @@ ClockFailure try_full_speed(RccBlock<Word>& rcc_block, FlashBlock<Word>& flash,
 /// is what the chip starts with (section 5.4.1).
 template <class Word>
 [[nodiscard]] ClockFailure start_clocks(RccBlock<Word>& rcc_block, FlashBlock<Word>& flash,
-                                        std::uint32_t crystal_MHz) {
-  const ClockFailure failure = try_full_speed(rcc_block, flash, crystal_MHz);
+                                        TimerBlock<Word>& tim11, std::uint32_t crystal_MHz) {
+  const ClockFailure failure = try_full_speed(rcc_block, flash, tim11, crystal_MHz);
   if (failure != ClockFailure::kNone) {
     fall_back(rcc_block);
   }

@@ -32,11 +32,12 @@ struct GpioBlock {
   Word moder, otyper, ospeedr, pupdr, idr, odr, bsrr, lckr, afrl, afrh;
 };
 
-/// Timer: section 17.4 (TIM1 and TIM8), 18.4 (TIM2 to TIM5, which have no rcr and bdtr).
+/// Timer: section 17.4 (TIM1 and TIM8), 18.4 (TIM2 to TIM5, which have no rcr and bdtr), 19.5
+/// (TIM11, which has one channel).
 template <class Word>
 struct TimerBlock {
   Word cr1, cr2, smcr, dier, sr, egr, ccmr1, ccmr2, ccer, cnt, psc, arr, rcr;
-  Word ccr1, ccr2, ccr3, ccr4, bdtr;
+  Word ccr1, ccr2, ccr3, ccr4, bdtr, dcr, dmar, option;
 };
 
 /// Serial port: section 30.6.
@@ -69,6 +70,7 @@ static_assert(offsetof(FlashBlock<HardwareWord>, cr) == 0x10);
 static_assert(offsetof(GpioBlock<HardwareWord>, afrh) == 0x24);
 static_assert(offsetof(TimerBlock<HardwareWord>, cnt) == 0x24);
 static_assert(offsetof(TimerBlock<HardwareWord>, bdtr) == 0x44);
+static_assert(offsetof(TimerBlock<HardwareWord>, option) == 0x50);
 static_assert(offsetof(UsartBlock<HardwareWord>, cr3) == 0x14);
 static_assert(offsetof(DmaBlock<HardwareWord>, stream) + 2 * 0x18 == 0x40);
 static_assert(offsetof(WatchdogBlock<HardwareWord>, sr) == 0x0C);
@@ -81,6 +83,7 @@ inline constexpr std::uint32_t kTim5 = 0x40000C00;
 inline constexpr std::uint32_t kWatchdog = 0x40003000;
 inline constexpr std::uint32_t kTim8 = 0x40010400;
 inline constexpr std::uint32_t kUsart1 = 0x40011000;
+inline constexpr std::uint32_t kTim11 = 0x40014800;
 inline constexpr std::uint32_t kGpioA = 0x40020000;
 inline constexpr std::uint32_t kGpioB = 0x40020400;
 inline constexpr std::uint32_t kGpioC = 0x40020800;
@@ -107,6 +110,7 @@ struct Chip {
   TimerBlock<Word>& tim4;
   TimerBlock<Word>& tim5;
   TimerBlock<Word>& tim8;
+  TimerBlock<Word>& tim11;
   UsartBlock<Word>& usart1;
   DmaBlock<Word>& dma2;
   WatchdogBlock<Word>& watchdog;
@@ -114,12 +118,13 @@ struct Chip {
 
 /// The chip this program runs on.
 inline Chip<HardwareWord> this_chip() {
-  return {block_at<RccBlock>(address::kRcc),    block_at<FlashBlock>(address::kFlash),
-          block_at<GpioBlock>(address::kGpioA), block_at<GpioBlock>(address::kGpioB),
-          block_at<GpioBlock>(address::kGpioC), block_at<TimerBlock>(address::kTim2),
-          block_at<TimerBlock>(address::kTim4), block_at<TimerBlock>(address::kTim5),
-          block_at<TimerBlock>(address::kTim8), block_at<UsartBlock>(address::kUsart1),
-          block_at<DmaBlock>(address::kDma2),   block_at<WatchdogBlock>(address::kWatchdog)};
+  return {block_at<RccBlock>(address::kRcc),          block_at<FlashBlock>(address::kFlash),
+          block_at<GpioBlock>(address::kGpioA),       block_at<GpioBlock>(address::kGpioB),
+          block_at<GpioBlock>(address::kGpioC),       block_at<TimerBlock>(address::kTim2),
+          block_at<TimerBlock>(address::kTim4),       block_at<TimerBlock>(address::kTim5),
+          block_at<TimerBlock>(address::kTim8),       block_at<TimerBlock>(address::kTim11),
+          block_at<UsartBlock>(address::kUsart1),     block_at<DmaBlock>(address::kDma2),
+          block_at<WatchdogBlock>(address::kWatchdog)};
 }
 
 }  // namespace tactree::firmware::stm32f4

@@ -24,7 +24,7 @@ namespace tactree::firmware {
 template <class Word>
 [[nodiscard]] stm32f4::ClockFailure prepare_chip(const stm32f4::Chip<Word>& chip) {
   const stm32f4::ClockFailure failure =
-      stm32f4::start_clocks(chip.rcc, chip.flash, wiring::kCrystalMHz);
+      stm32f4::start_clocks(chip.rcc, chip.flash, chip.tim11, wiring::kCrystalMHz);
   stm32f4::set(chip.rcc.ahb1enr, wiring::kAhb1Clocks);
   stm32f4::set(chip.rcc.apb1enr, wiring::kApb1Clocks);
   stm32f4::set(chip.rcc.apb2enr, wiring::kApb2Clocks);

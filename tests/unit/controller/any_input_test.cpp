@@ -254,6 +254,21 @@ TEST(AnyInput, ATreeThatLeadsOutOfTheModelIsAFault) {
   }
 }
 
+TEST(AnyInput, AMaterialThatIsNoNumberAnyMoreIsAFault) {
+  const Shape shape = textured_plane();
+  FailingModel model(shape.bytes());
+  Session session;
+  ASSERT_EQ(session.controller.load_model(model.view()), core::ModelStatus::kOk);
+  session.activate();
+  ASSERT_EQ(session.press(1e-3).status.faults, 0U);
+  for (std::uint32_t& word : model.words_of(model.view().header().materials)) {
+    word = 0x7FC00000U;
+  }
+  const core::Output output = session.step();
+  EXPECT_EQ(output.status.faults, core::fault_bit(core::Fault::kNotFinite));
+  EXPECT_TRUE(output.motors.is_zero());
+}
+
 TEST(AnyInput, AModelForPaperModeWhoseMemoryFailsKeepsThePromises) {
   touch_while_bits_flip(shared_plane().paper_twin(), core::RenderMode::kPaper);
 }

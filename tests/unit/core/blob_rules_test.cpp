@@ -320,6 +320,11 @@ TEST(BlobRules, CoordinatesStayWithinWhatAFloatHoldsExactly) {
   EXPECT_EQ(with_lattice(step, -kLargest - 1), BlobStatus::kBadFigures);
   EXPECT_EQ(with_lattice(step, kLargest - root_edge()), BlobStatus::kOk);
   EXPECT_EQ(with_lattice(step, kLargest - root_edge() + 1), BlobStatus::kBadFigures);
+  // As many bits as leave just the root's edge.
+  const int bits = 24 - std::countr_zero(static_cast<std::uint32_t>(root_edge()));
+  const float fine = 0x1p-20F * (1.0F + std::ldexp(1.0F, 1 - bits));
+  EXPECT_EQ(with_lattice(fine, 0), BlobStatus::kOk);
+  EXPECT_EQ(with_lattice(fine, 1), BlobStatus::kBadFigures);
 }
 
 TEST(BlobRules, StepsAreNeitherTinyNorHuge) {

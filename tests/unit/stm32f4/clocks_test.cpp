@@ -15,7 +15,7 @@ using firmware::stm32f4::start_clocks;
 struct Chip {
   FakeClocks::Flash flash;
   FakeClocks clocks{flash};
-  ClockFailure start() { return start_clocks(clocks.rcc, flash, 25); }
+  ClockFailure start() { return start_clocks(clocks.rcc, flash, clocks.tim11, 25); }
 };
 
 TEST(Clocks, ReachFullSpeed) {
@@ -33,9 +33,24 @@ TEST(Clocks, EveryCrystalTheManualAllows) {
   for (std::uint32_t crystal_MHz = 4; crystal_MHz <= 26; ++crystal_MHz) {
     Chip chip;
     chip.clocks.crystal_MHz = crystal_MHz;
-    EXPECT_EQ(start_clocks(chip.clocks.rcc, chip.flash, crystal_MHz), ClockFailure::kNone);
+    EXPECT_EQ(start_clocks(chip.clocks.rcc, chip.flash, chip.clocks.tim11, crystal_MHz),
+              ClockFailure::kNone);
     EXPECT_EQ(chip.clocks.core_MHz(), 168U) << crystal_MHz;
     EXPECT_EQ(chip.clocks.violation, "");
+  }
+}
+
+// Against the internal oscillator, which is good for 8 % itself.
+TEST(Clocks, ACrystalOfAnotherFrequencyIsNoticed) {
+  for (const double internal_MHz : {16.0 * 0.92, 16.0, 16.0 * 1.08}) {
+    Chip chip;
+    chip.clocks.internal_MHz = internal_MHz;
+    EXPECT_EQ(chip.start(), ClockFailure::kNone) << internal_MHz;
+  }
+  for (const double soldered_MHz : {8.0, 12.0, 16.0, 20.0, 22.0, 28.5}) {
+    Chip chip;
+    chip.clocks.soldered_MHz = soldered_MHz;
+    EXPECT_EQ(chip.start(), ClockFailure::kFrequency) << soldered_MHz;
   }
 }
 
@@ -49,6 +64,9 @@ TEST(Clocks, ReservedBitsOfTheMultiplierStay) {
 TEST(Clocks, EachFailureHasItsNameAndEndsOnTheInternalOscillator) {
   const std::pair<ClockFailure, void (*)(FakeClocks&)> cases[] = {
       {ClockFailure::kCrystal, [](FakeClocks& c) { c.crystal_MHz = 0; }},
+      {ClockFailure::kFrequency, [](FakeClocks& c) { c.soldered_MHz = 8.0; }},
+      {ClockFailure::kFrequency, [](FakeClocks& c) { c.captures_left = 0; }},
+      {ClockFailure::kFrequency, [](FakeClocks& c) { c.captures_left = 30; }},
       {ClockFailure::kWaitStates, [](FakeClocks& c) { c.flash_takes_wait_states = false; }},
       {ClockFailure::kPll, [](FakeClocks& c) { c.pll_locks = false; }},
       {ClockFailure::kSwitch, [](FakeClocks& c) { c.switch_works = false; }},

@@ -29,8 +29,9 @@ class FakeChip {
   }
 
   [[nodiscard]] firmware::stm32f4::Chip<FakeWord> chip() {
-    return {clocks.rcc, flash,      gpio_a.block, gpio_b.block, gpio_c.block, tim2.block,
-            tim4.block, tim5.block, tim8.block,   serial.usart, serial.dma,   watchdog.block};
+    return {clocks.rcc,   flash,      gpio_a.block,  gpio_b.block, gpio_c.block,
+            tim2.block,   tim4.block, tim5.block,    tim8.block,   clocks.tim11,
+            serial.usart, serial.dma, watchdog.block};
   }
 
   void tick() {

@@ -1,5 +1,6 @@
 #pragma once
-// Clock control and the flash's access time as RM0090 tells, sections 3.5.1, 7.2 and 7.3.
+// Clock control, the flash's access time and the timer that captures the crystal as RM0090 tells,
+// sections 3.5.1, 7.2, 7.3 and 19.5.
 
 #include <cstdint>
 #include <string>
@@ -20,6 +21,9 @@ class FakeClocks {
   bool switch_works = true;
   bool flash_takes_wait_states = true;
   std::uint32_t ready_after_polls = 20;
+  double internal_MHz = 16.0;
+  double soldered_MHz = 0.0;  ///< of the crystal, where it is not the one that is expected
+  std::uint32_t captures_left = 0xFFFFFFFFU;
 
   /// What a real chip would have crashed at, or what its data sheet forbids. Empty: nothing.
   std::string violation;
@@ -44,6 +48,11 @@ class FakeClocks {
     rcc.csr.on_write = [](std::uint32_t value, std::uint32_t written) {
       return (written & (1U << 24)) != 0U ? value & 0x00FFFFFFU : value;
     };
+    tim11.sr.on_read = [this](std::uint32_t) { return capture(); };
+    tim11.ccr1.on_read = [this](std::uint32_t value) {
+      captured_ = false;
+      return value;
+    };
     flash_.acr.on_write = [this](std::uint32_t value, std::uint32_t written) {
       return flash_takes_wait_states ? written : value;
     };
@@ -67,6 +76,7 @@ class FakeClocks {
   }
 
   Rcc rcc;
+  firmware::stm32f4::TimerBlock<FakeWord> tim11;
 
   static constexpr std::uint32_t kPllReset = 0x24003010;
 
@@ -106,6 +116,22 @@ class FakeClocks {
     return good;
   }
 
+  // A capture each time somebody looks and took the last one.
+  std::uint32_t capture() {
+    const std::uint32_t divisor = rcc.cfgr.value >> 16 & 0x1FU;
+    const bool on = (rcc.apb2enr.value & (1U << 18)) != 0U && tim11.cr1.value == 1U &&
+                    tim11.ccer.value == 1U && tim11.ccmr1.value == 0xDU &&
+                    tim11.option.value == 2U && hse_was_ready_ && !uses_pll();
+    if (on && divisor >= 2U && !captured_ && captures_left != 0U) {
+      --captures_left;
+      const double crystal = soldered_MHz > 0.0 ? soldered_MHz : crystal_MHz;
+      time_us_ += 8.0 * divisor / crystal;
+      tim11.ccr1.value = static_cast<std::uint32_t>(internal_MHz * time_us_) & 0xFFFFU;
+      captured_ = true;
+    }
+    return captured_ ? 2U : 0U;
+  }
+
   std::uint32_t switched(std::uint32_t value) {
     ++polls_;
     const std::uint32_t wanted = value & 3U;
@@ -131,6 +157,8 @@ class FakeClocks {
   std::uint32_t polls_ = 0;
   std::uint32_t source_ = 0;
   bool hse_was_ready_ = false;
+  bool captured_ = false;
+  double time_us_ = 4000.0;  // the count wraps on the way
 };
 
 }  // namespace tactree::test

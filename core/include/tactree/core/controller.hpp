@@ -207,7 +207,7 @@ class Controller {
   Vec3 velocity_{};  // of the probe, m/s
   Scene scene_{};
   PassivityController passivity_{};
-  Vec3 shown_{};  // force of the last tick, N
+  Vec3 shown_{};  // force of the last active tick, N
   Vec3 added_{};  // the application's share of it, N
   Vec3 given_{};  // as add_force() took it, N
   std::uint32_t given_ticks_ = 0;

@@ -1,0 +1,278 @@
+// What one tick leaves behind for the next, and what it must forget.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "session.hpp"
+#include "tactree/core/device_presets.hpp"
+#include "tactree/core/passivity.hpp"
+
+namespace tactree::test {
+namespace {
+
+using core::Command;
+using core::Fault;
+using core::Limit;
+using core::State;
+using core::Vec3;
+
+bool has_limit(const core::Output& output, Limit limit) {
+  return (output.status.limits & core::limit_bit(limit)) != 0U;
+}
+
+constexpr double kAbove = 0.01;   // m: free space on either side of the plane
+constexpr double kBelow = -0.01;  // m
+
+core::Output settle(Session& session, int ticks = 200) {
+  core::Output output = session.step();
+  for (int i = 0; i < ticks; ++i) {
+    output = session.step();
+  }
+  return output;
+}
+
+TEST(Tick, VelocityIsThatOfTheHand) {
+  Session session;
+  core::Output output = session.step();
+  for (int i = 0; i < 400; ++i) {
+    session.move(0.0, 0.0, 0.1 - 1e-4 * i);
+    output = session.step();
+  }
+  EXPECT_NEAR(static_cast<double>(output.status.velocity.z), -0.1, 0.005);
+}
+
+// A proxy that kept its place would meet the plane on the way to the new one.
+TEST(Tick, ACounterThatComesBackElsewhereTouchedNothingOnTheWay) {
+  Session session;
+  session.move(0.0, 0.0, kAbove);
+  settle(session);
+  core::Output moving = session.step();
+  for (int i = 0; i < 50; ++i) {
+    session.move(1e-4 * i, 0.0, kAbove);
+    moving = session.step();
+  }
+  ASSERT_GT(moving.status.velocity.x, 0.05F);
+  session.input.encoders.valid[2] = false;
+  EXPECT_EQ(session.step().status.velocity, Vec3{});
+  session.move(0.0, 0.0, kBelow);
+  session.input.encoders.valid[2] = true;
+  for (int i = 0; i < 5; ++i) {
+    const core::Output output = session.step();
+    EXPECT_FALSE(output.status.rendering.in_contact);
+    EXPECT_EQ(output.status.velocity, Vec3{});
+  }
+}
+
+TEST(Tick, AJumpIsNoMotion) {
+  Session session;
+  session.move(0.0, 0.0, kAbove);
+  settle(session);
+  session.move(0.0, 0.0, kBelow);
+  EXPECT_TRUE(core::has_fault(session.step().status.faults, Fault::kEncoderJump));
+  for (int i = 0; i < 5; ++i) {
+    const core::Output output = session.step();
+    EXPECT_FALSE(output.status.rendering.in_contact);
+    EXPECT_EQ(output.status.velocity, Vec3{});
+  }
+}
+
+// The arms of a delta cannot be where these counts say.
+TEST(Tick, APlaceOutsideTheKinematicsIsAFaultAndNoMotion) {
+  core::Configuration configuration;
+  core::use_device(core::presets::falcon(), configuration);
+  configuration.device.homing = core::HomingMethod::kAbsolute;
+  Session session(configuration);
+  ASSERT_EQ(session.status, core::ConfigurationStatus::kOk);
+  for (std::uint32_t axis = 0; axis < core::kAxes; ++axis) {
+    session.input.encoders.counts[axis] = configuration.device.home_count[axis];
+  }
+  core::Output output = session.step();
+  for (int i = 0; i < 50; ++i) {
+    session.input.encoders.counts[0] += 1;
+    output = session.step();
+  }
+  ASSERT_NE(output.status.velocity, Vec3{});
+  session.input.encoders.counts[0] += 4000;  // 146 degrees
+  output = session.step();
+  EXPECT_TRUE(core::has_fault(output.status.faults, Fault::kEncoderInvalid));
+  EXPECT_EQ(output.status.velocity, Vec3{});
+}
+
+TEST(Tick, AnotherConfigurationIsNoJump) {
+  core::Configuration configuration;
+  Session session(configuration);
+  settle(session);
+  configuration.model_origin_m = {0.0F, 0.0F, 1.0F};
+  ASSERT_EQ(session.controller.configure(configuration), core::ConfigurationStatus::kOk);
+  EXPECT_EQ(session.step().status.faults, 0U);
+}
+
+TEST(Tick, WithoutAModelAFaultIsLeftForNoModel) {
+  core::Controller controller;
+  ASSERT_EQ(controller.configure({}), core::ConfigurationStatus::kOk);
+  Session rig;
+  core::Input input = rig.input;
+  input.motors_ok = false;
+  (void)controller.step(input);
+  ASSERT_EQ(controller.state(), State::kFault);
+  input.motors_ok = true;
+  input.command = Command::kClearFault;
+  (void)controller.step(input);
+  input.command = Command::kStop;
+  (void)controller.step(input);
+  EXPECT_EQ(controller.state(), State::kNoModel);
+}
+
+TEST(Tick, TheLastBodyMayGoInActionAndTheStateFollowsAfterwards) {
+  Session session;
+  session.activate();
+  ASSERT_EQ(session.controller.remove_body(0), core::ModelStatus::kOk);
+  session.step();
+  EXPECT_EQ(session.state(), State::kActive);
+  session.step(Command::kStop);
+  EXPECT_EQ(session.state(), State::kNoModel);
+}
+
+TEST(Tick, WaitingIsToldWhileTheHandIsReadyAndTheDeviceIsNot) {
+  Session session;
+  session.step(Command::kArm);
+  EXPECT_FALSE(has_limit(session.step(), Limit::kWaiting));  // nobody is there yet
+  session.enable_follows = false;
+  session.input.enable_read_back = false;
+  session.input.dead_man = true;
+  EXPECT_TRUE(has_limit(session.step(), Limit::kWaiting));
+  EXPECT_FALSE(has_limit(session.step(Command::kStop), Limit::kWaiting));
+}
+
+TEST(Tick, NobodyWaitsOnceThereIsForce) {
+  Session session;
+  session.activate();
+  ASSERT_EQ(session.state(), State::kActive);
+  EXPECT_FALSE(has_limit(session.step(), Limit::kWaiting));
+}
+
+TEST(Tick, OneArmCommandDoesNotCountTwiceHoweverTheLineReads) {
+  core::Configuration configuration;
+  configuration.dead_man_required = false;
+  Session session(configuration);
+  session.enable_follows = false;
+  session.input.enable_read_back = true;
+  const core::Output output = session.step(Command::kArm);
+  EXPECT_EQ(session.state(), State::kArmed);
+  EXPECT_FALSE(has_limit(output, Limit::kWaiting));
+}
+
+// Arming again while armed changes nothing: what was let go counts still.
+TEST(Tick, ArmedTwiceIsArmed) {
+  Session session;
+  session.step(Command::kArm);
+  session.step();
+  session.input.dead_man = true;
+  session.step(Command::kArm);
+  EXPECT_EQ(session.state(), State::kActive);
+}
+
+// The second record of the state, for who sends the command to the motors.
+TEST(Tick, ForceMayBeGivenInTheActiveStateAlone) {
+  Session session;
+  EXPECT_FALSE(session.controller.may_give_force());
+  session.step(Command::kArm);
+  EXPECT_FALSE(session.controller.may_give_force());
+  session.step();
+  session.input.dead_man = true;
+  session.step();
+  EXPECT_TRUE(session.controller.may_give_force());
+  session.step(Command::kStop);
+  EXPECT_FALSE(session.controller.may_give_force());
+}
+
+TEST(Tick, NoBodyIsPushedAfterAStop) {
+  Session session;
+  session.activate();
+  settle(session, 400);
+  ASSERT_GT(session.press(2e-3).status.force.z, 0.5F);
+  session.controller.add_force({0.0F, 0.0F, -1.0F}, 1000);
+  ASSERT_NE(session.step().status.reactions[0].force_N, Vec3{});
+  const core::Output stopped = session.step(Command::kStop);
+  EXPECT_EQ(stopped.status.reactions[0].body, core::kNoBody);
+}
+
+TEST(Tick, AnAddedForceThatNobodyTookIsGoneAfterAStop) {
+  Session session;
+  session.controller.add_force({1.0F, 0.0F, 0.0F}, 1'000'000U);
+  session.step();
+  session.activate();
+  for (int i = 0; i < 400; ++i) {
+    ASSERT_TRUE(session.step().motors.is_zero()) << i;
+  }
+}
+
+TEST(Tick, EveryAxisIsStuckByItsOwnEffort) {
+  for (std::uint32_t held = 0; held < core::kAxes; ++held) {
+    core::Configuration configuration;
+    configuration.stuck_s = 0.1F;
+    configuration.ramp_s = 0.01F;
+    configuration.device.homing = core::HomingMethod::kGivenPose;
+    for (std::uint32_t axis = 0; axis < core::kAxes; ++axis) {
+      configuration.effort_max[axis] = axis == held ? 4.0F : 40.0F;
+    }
+    Session session(configuration);
+    ASSERT_EQ(session.status, core::ConfigurationStatus::kOk);
+    session.step(Command::kHome);
+    session.activate();
+    core::Output output = settle(session, 50);
+    ASSERT_TRUE(session.controller.homed());
+    for (std::uint32_t tick = 1; tick <= 300U; ++tick) {
+      for (std::uint32_t axis = 0; axis < core::kAxes; ++axis) {
+        session.input.encoders.counts[axis] += axis == held ? 0 : (tick % 2U == 0U ? 1 : -1);
+      }
+      const float force = tick / 20U % 2U == 0U ? 1.5F : -1.5F;
+      session.controller.add_force(
+          {held == 0 ? force : 0.0F, held == 1 ? force : 0.0F, held == 2 ? force : 0.0F}, 1);
+      output = session.step();
+    }
+    EXPECT_TRUE(core::has_fault(output.status.faults, Fault::kEncoderStuck)) << held;
+    EXPECT_FALSE(session.controller.homed());  // it lost its place while it stood still
+  }
+}
+
+// The controller adds what the observer of the wall says: the same observer, beside it.
+TEST(Tick, TheWallIsKeptPassive) {
+  core::Configuration configuration;
+  configuration.ramp_s = 0.01F;
+  configuration.delay_s = 0.003F;
+  configuration.stiffness_N_m = 150.0F;
+  configuration.passivity_Ns_m = 2.0F;
+  Session session(configuration);
+  ASSERT_EQ(session.status, core::ConfigurationStatus::kOk);
+  session.activate();
+  settle(session, 50);
+  core::PassivityController observer;
+  observer.configure(1.0F / configuration.rate_hz, configuration.passivity_Ns_m,
+                     configuration.delay_s);
+  Vec3 shown{};
+  int added_ticks = 0;
+  for (int i = 0; i < 2000; ++i) {
+    session.move(0.0, 0.0, 1e-3 * std::cos(0.05 * i));
+    const core::Output output = session.step();
+    const core::Rendering& r = output.status.rendering;
+    if (!r.in_contact) {
+      observer.reset();
+    } else {
+      const Vec3 added = observer.update(shown, {output.status.probe, output.status.velocity, {}},
+                                         r.stored_energy);
+      const Vec3 force = r.force + added;
+      const float push = core::dot(force, r.normal);
+      const Vec3 expected = push < 0.0F ? force - push * r.normal : force;
+      ASSERT_EQ(output.status.limits, 0U) << i;
+      ASSERT_NEAR(output.status.force.z, expected.z, 1e-5F) << i;
+      added_ticks += added == Vec3{} ? 0 : 1;
+    }
+    shown = output.status.force;
+  }
+  EXPECT_GT(added_ticks, 100);
+}
+
+}  // namespace
+}  // namespace tactree::test
