@@ -469,7 +469,8 @@ void Controller::raise(FaultMask faults) {
 }
 
 // Of the rendered force: what the place of the device allows, and what keeps the wall passive.
-// Damping may take the push away, but never pulls the hand into the object.
+// Damping may take the push away, but never pulls the hand into the object. A hand that leaves is
+// pushed by no more than the wall can take back in time.
 Vec3 Controller::wanted_force() {
   const Rendering& contact = scene_.rendering().contact;
   const Vec3 rendered = pose_.reach * contact.force;
@@ -482,9 +483,12 @@ Vec3 Controller::wanted_force() {
                         pose_.reach * contact.stored_energy);
   const Vec3 force = rendered + added;
   const float push = dot(force, contact.normal);
+  const float leaving = dot(velocity_ - scene_.rendering().wall_velocity, contact.normal);
+  const float most = leaving > 0.0F ? passivity_.most_push(leaving, configuration_.slew_N_s) : push;
   const float pull = dot(rendered, contact.normal);  // of other bodies, at most
   const float least = pull < 0.0F ? pull : 0.0F;
-  return push < least ? force + (least - push) * contact.normal : force;
+  const float allowed = push < least ? least : push > most ? most : push;
+  return allowed == push ? force : force + (allowed - push) * contact.normal;
 }
 
 SafetyGate::Result Controller::apply_force() {

@@ -8,6 +8,7 @@ void PassivityController::configure(float period_s, float damping_max_Ns_m, floa
   constexpr float kMost = static_cast<float>(kHistory) - 1.001F;
   period_s_ = period_s;
   damping_max_ = damping_max_Ns_m;
+  delay_s_ = delay_s;
   const float ticks = delay_s < kMost * period_s ? delay_s / period_s : kMost;
   whole_ticks_ = static_cast<std::uint32_t>(ticks);
   rest_ = ticks - static_cast<float>(whole_ticks_);
@@ -19,6 +20,7 @@ void PassivityController::reset() {
     return;  // nothing was added since the last time
   }
   balance_ = 0.0F;
+  taken_ = 0.0F;
   stored_ = 0.0F;
   following_ = false;
   for (Vec3& force : sent_) {  // bound: kHistory
@@ -40,6 +42,7 @@ Vec3 PassivityController::update(Vec3 shown, const WallMotion& motion, float sto
   const Vec3 way = following_ ? motion.probe - last_ - period_s_ * motion.wall : Vec3{};
   const float taken = -dot(acted(), way);
   const float balance = following_ ? balance_ + taken - (stored - stored_) : 0.0F;
+  taken_ += taken;
   last_ = motion.probe;
   stored_ = stored;
   following_ = true;
@@ -52,6 +55,13 @@ Vec3 PassivityController::update(Vec3 shown, const WallMotion& motion, float sto
   }
   const float wanted = -balance_ / (period_s_ * squared);
   return (wanted < damping_max_ ? -wanted : -damping_max_) * velocity;
+}
+
+float PassivityController::most_push(float speed_m_s, float slew_N_s) const {
+  const float late_s = delay_s_ + period_s_;  // until a smaller force is at the hand
+  const float taken = taken_ > 0.0F ? taken_ : 0.0F;
+  const float squared = late_s * late_s + 2.0F * taken / (slew_N_s * speed_m_s);
+  return slew_N_s * (square_root(squared) - late_s);
 }
 
 }  // namespace tactree::core

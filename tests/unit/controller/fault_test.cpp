@@ -160,6 +160,21 @@ TEST(Faults, AStaleLinkEndsASessionThatNeedsIt) {
   }
 }
 
+// A program that only says "on" again and again does not look after what it turned on.
+TEST(Faults, AnArmCommandIsNoSignOfLife) {
+  core::Configuration configuration;
+  configuration.link_required = true;
+  configuration.link_timeout_s = 0.02F;
+  Session session(configuration);
+  session.activate();
+  session.input.link_alive = false;
+  for (int i = 0; i < 25; ++i) {
+    session.step(Command::kArm);
+  }
+  EXPECT_EQ(session.state(), State::kFault);
+  EXPECT_TRUE(core::has_fault(session.controller.faults(), Fault::kLinkLost));
+}
+
 TEST(Faults, ADeadLinkMattersOnlyWhileThereMayBeForce) {
   core::Configuration configuration;
   configuration.link_required = true;

@@ -67,7 +67,29 @@ TEST(Passivity, ResetForgets) {
   EXPECT_EQ(p.update(at(1.0F), {at(1.0F), at(1.0F), {}}, 0.0F), Vec3{});  // no way from before
 }
 
-}  // namespace
+// A hand that leaves at 0.5 m/s: 2000 N/s take the push away in 0.5 ms a newton, one more
+// millisecond late, and all the while it goes on giving.
+TEST(Passivity, AHandThatLeavesIsPushedByWhatTheWallCanTakeBack) {
+  for (const float delay_s : {0.0F, 1.5e-3F}) {
+    PassivityController p = controller(delay_s);
+    (void)p.update({}, {at(0.0F), {}, {}}, 0.0F);
+    EXPECT_EQ(p.most_push(0.5F, 2000.0F), 0.0F);  // nothing was taken yet
+    for (int i = 1; i <= 10; ++i) {               // 2 N against 1 mm
+      (void)p.update(at(2.0F), {at(-1e-4F * static_cast<float>(i)), {}, {}}, 0.0F);
+    }
+    const float push = p.most_push(0.5F, 2000.0F);
+    const float taken = delay_s > 0.0F ? 2.0F * 0.85e-3F : 2.0F * 1e-3F;  // it came later
+    EXPECT_NEAR(push * (push / (2.0F * 2000.0F) + delay_s + 1e-3F) * 0.5F, taken, 1e-5F);
+    EXPECT_GT(p.most_push(0.01F, 2000.0F), 10.0F);  // a slow hand is not kept from anything
+    (void)p.update(at(2.0F), {at(1.0F), {}, {}}, 0.0F);
+    (void)p.update(at(2.0F), {at(2.0F), {}, {}}, 0.0F);
+    (void)p.update(at(2.0F), {at(3.0F), {}, {}}, 0.0F);
+    EXPECT_EQ(p.most_push(0.5F, 2000.0F), 0.0F);  // more was given than taken
+    p.reset();
+    EXPECT_EQ(p.most_push(0.5F, 2000.0F), 0.0F);
+  }
+}
+
 // A wall that pushes the hand away gives energy, but of the motor that moves it.
 TEST(Passivity, DoesNotDampWhatAMovingWallGives) {
   PassivityController p = controller();
@@ -76,4 +98,5 @@ TEST(Passivity, DoesNotDampWhatAMovingWallGives) {
   EXPECT_LT(p.update(at(1.0F), {at(3e-3F), at(2.0F), at(1.0F)}, 0.0F).z, 0.0F);
 }
 
+}  // namespace
 }  // namespace tactree::test

@@ -292,8 +292,8 @@ BlobStatus with_lattice(float step_m, std::int32_t low, int axis = 0) {
   h.leaf_edge_min_m = step_m * static_cast<float>(core::kLeafUnits);
   h.reach_m = 0.0F;
   h.spacing_m = 1e8F;
-  h.root_min[axis] = low;
   for (int i = 0; i < 3; ++i) {
+    h.root_min[i] = i == axis ? low : 0;
     h.bounds_min_m[i] = step_m * static_cast<float>(h.root_min[i]);
     h.bounds_max_m[i] = h.bounds_min_m[i];
   }

@@ -259,6 +259,23 @@ TEST(LossyLink, AQueueOfOldHeartbeatsIsNoLink) {
 }
 
 // A round trip within the timeout is as good as none.
+// The loop goes on, ends the force in time, and the session is there again afterwards.
+TEST(LossyLink, ADriverThatHangsHoldsUpNeitherTheLoopNorTheEnd) {
+  Rig r;
+  play(r.rig);
+  ASSERT_EQ(r.rig.state(), State::kActive);
+  const std::uint64_t hung = r.rig.ticks();
+  r.rig.port().stuck = true;
+  r.rig.settle(1000);
+  EXPECT_EQ(r.rig.ticks(), hung + 1000U);
+  EXPECT_LE(r.watch.force_ended(), hung + kTimeoutMs + 3U);
+  EXPECT_TRUE(core::has_fault(r.rig.status().faults, core::Fault::kLinkLost));
+  r.rig.port().stuck = false;
+  r.rig.settle(1000);
+  EXPECT_EQ(r.watch.activations(), 1);
+  EXPECT_TRUE(r.rig.control(ControlCode::kClearFault).ok());
+}
+
 TEST(LossyLink, ASlowLinkWithinTheTimeoutIsALink) {
   Rig r;
   for (Wire* wire : {&r.rig.to_board(), &r.rig.to_host()}) {

@@ -36,13 +36,16 @@ std::vector<std::byte> Wire::arrived(std::uint64_t tick) {
 std::size_t TestPort::read(std::span<std::byte> bytes) noexcept {
   const std::vector<std::byte> arrived = to_board_.arrived(tick_);
   waiting_.insert(waiting_.end(), arrived.begin(), arrived.end());
-  const std::size_t count = std::min(bytes.size(), waiting_.size());
+  const std::size_t count = stuck ? 0U : std::min(bytes.size(), waiting_.size());
   std::copy_n(waiting_.begin(), count, bytes.begin());
   waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(count));
   return count;
 }
 
 std::size_t TestPort::write(std::span<const std::byte> bytes) noexcept {
+  if (stuck) {
+    return 0;
+  }
   to_host_.send(bytes, tick_);
   return bytes.size();
 }

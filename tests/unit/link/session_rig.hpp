@@ -50,6 +50,9 @@ class TestPort {
   std::size_t read(std::span<std::byte> bytes) noexcept;
   std::size_t write(std::span<const std::byte> bytes) noexcept;
 
+  /// Its driver waits for ever for something: it gives nothing and takes nothing.
+  bool stuck = false;
+
  private:
   Wire& to_board_;
   Wire& to_host_;
@@ -100,6 +103,8 @@ class SessionRig {
   /// Where the device is held, m along x: 0.05 is outside the sphere of 0.03.
   /// It gets there at 2 m/s.
   void stand_at(double x_m) { goal_m_ = x_m; }
+
+  [[nodiscard]] TestPort& port() { return port_; }
 
   /// One tick, and what board and client do around it.
   const core::Status& tick() {

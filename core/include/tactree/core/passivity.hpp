@@ -38,6 +38,14 @@ class PassivityController {
   /// Cost: constant, about 30 operations.
   [[nodiscard]] Vec3 update(Vec3 shown, const WallMotion& motion, float stored);
 
+  /// The push, N, that the wall can still take back while the hand leaves it at `speed_m_s` > 0: a
+  /// force falls by slew_N_s at most, and goes on giving until it is gone; more than was taken
+  /// since contact began it must not give. Where the spring is so soft that its own force falls
+  /// more slowly, stiffness * speed < slew, that is more than the spring's force.
+  ///   F (F / 2 slew + delay) speed <= taken
+  /// Cost: a division and a square root.
+  [[nodiscard]] float most_push(float speed_m_s, float slew_N_s) const;
+
   /// Taken minus stored since contact began, J, at most 0: what was lost before does not count.
   [[nodiscard]] float balance() const { return balance_; }
 
@@ -48,7 +56,9 @@ class PassivityController {
 
   float period_s_ = 1e-3F;
   float damping_max_ = 0.0F;
+  float delay_s_ = 0.0F;
   float balance_ = 0.0F;
+  float taken_ = 0.0F;  // J, since contact began; what it gave is taken off
   float stored_ = 0.0F;
   Vec3 last_{};
   Vec3 sent_[kHistory]{};  // the last one at newest_
