@@ -88,6 +88,7 @@ ConfigurationStatus Controller::adjust(const Adjustment& a) {
     return status;
   }
   configuration_ = c;
+  wall_changed_ = true;
   if (limits) {
     (void)gate_.configure(gate_limits(c));  // check() tried it
     link_timeout_ticks_ = static_cast<std::uint32_t>(c.link_timeout_s * c.rate_hz);
@@ -216,6 +217,7 @@ ModelStatus Controller::add_body(const BlobView& view, const Pose& pose, std::ui
 }
 
 ModelStatus Controller::move_body(std::uint32_t number, const Pose& pose, const Motion& motion) {
+  wall_changed_ = true;
   return scene_.move(number, pose, motion);
 }
 
@@ -474,13 +476,23 @@ void Controller::raise(FaultMask faults) {
 Vec3 Controller::wanted_force() {
   const Rendering& contact = scene_.rendering().contact;
   const Vec3 rendered = pose_.reach * contact.force;
-  if (!contact.in_contact || !whole_ || !(configuration_.passivity_Ns_m > 0.0F)) {
+  if (!contact.in_contact || !(configuration_.passivity_Ns_m > 0.0F)) {
     passivity_.reset();
     return rendered;
   }
-  const Vec3 added =
-      passivity_.update(shown_ - added_, {probe_, velocity_, scene_.rendering().wall_velocity},
-                        pose_.reach * contact.stored_energy);
+  const float stored = pose_.reach * contact.stored_energy;
+  if (!whole_) {
+    passivity_.reset();
+  }
+  if (!whole_ || wall_changed_) {
+    passivity_.allow(stored);
+    wall_changed_ = false;
+  }
+  if (!whole_) {
+    return rendered;
+  }
+  const Vec3 added = passivity_.update(
+      shown_ - added_, {probe_, velocity_, scene_.rendering().wall_velocity}, stored);
   const Vec3 force = rendered + added;
   const float push = dot(force, contact.normal);
   const float leaving = dot(velocity_ - scene_.rendering().wall_velocity, contact.normal);

@@ -16,15 +16,21 @@ void PassivityController::configure(float period_s, float damping_max_Ns_m, floa
 }
 
 void PassivityController::reset() {
+  taken_ = 0.0F;
   if (!following_) {
     return;  // nothing was added since the last time
   }
   balance_ = 0.0F;
-  taken_ = 0.0F;
   stored_ = 0.0F;
   following_ = false;
   for (Vec3& force : sent_) {  // bound: kHistory
     force = {};
+  }
+}
+
+void PassivityController::allow(float stored) {
+  if (taken_ < stored) {
+    taken_ = stored;
   }
 }
 

@@ -35,7 +35,9 @@ template <class Condition>
 
 class BoardOnUsb {
  public:
-  BoardOnUsb() : thread_([this] { run(); }) {}
+  /// period: of a tick; 0: as fast as it goes.
+  explicit BoardOnUsb(std::chrono::microseconds period = std::chrono::milliseconds(1))
+      : period_(period), thread_([this] { run(); }) {}
   ~BoardOnUsb() {
     end_ = true;
     thread_.join();
@@ -77,12 +79,14 @@ class BoardOnUsb {
     while (!end_) {
       (void)sim.step();
       ++ticks_;
-      next = std::max(next + std::chrono::milliseconds(1), Clock::now());
+      next = std::max(next + period_, Clock::now());
       do {
         move_cable(usb);
         target.serve();
         model_state_ = target.device().model().state();
-        std::this_thread::sleep_for(std::chrono::microseconds(50));
+        if (period_.count() > 0) {
+          std::this_thread::sleep_for(std::chrono::microseconds(50));
+        }
       } while (Clock::now() < next && !end_);
     }
   }
@@ -98,6 +102,7 @@ class BoardOnUsb {
     plugged_ = usb.plugged_in();
   }
 
+  std::chrono::microseconds period_;
   std::atomic<bool> end_ = false;
   std::atomic<bool> wanted_ = true;
   std::atomic<bool> plugged_ = false;

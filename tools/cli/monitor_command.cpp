@@ -14,6 +14,7 @@
 #include "interruption.hpp"
 #include "output_file.hpp"
 #include "tactree/core/controller.hpp"
+#include "tactree/host/link_error.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -111,6 +112,11 @@ nlohmann::json to_json(const View& view) {
           {"dropped", view.dropped}};
 }
 
+class NoTelemetry : public CommandError {
+ public:
+  using CommandError::CommandError;
+};
+
 class Monitor {
  public:
   explicit Monitor(host::Board& board) : board_(board) {
@@ -122,13 +128,13 @@ class Monitor {
     board_.subscribe({0x1FF, every});
   }
 
-  /// Throws where no telemetry comes.
+  /// Throws NoTelemetry where none comes.
   const View& look() {
     const auto wait_until = std::chrono::steady_clock::now() + std::chrono::seconds(2);
     std::vector<host::Telemetry> news = board_.take_stream();
     while (news.size() < 2U) {
-      if (std::chrono::steady_clock::now() > wait_until) {
-        throw CommandError("no telemetry comes (is the board still there?)");
+      if (!board_.connected() || std::chrono::steady_clock::now() > wait_until) {
+        throw NoTelemetry("no telemetry comes (is the board still there?)");
       }
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
       const std::vector<host::Telemetry> more = board_.take_stream();
@@ -145,13 +151,42 @@ class Monitor {
   View view_;
 };
 
-void watch(Monitor& monitor, const MonitorOptions& options) {
+/// Until the board is there again. False: the time is up, or somebody interrupts.
+template <class TimeIsUp>
+bool wait_for_return(host::Board& board, TimeIsUp time_is_up) {
+  fmt::print("the board is gone; waiting for it\n");
+  std::fflush(stdout);
+  while (!time_is_up()) {
+    try {
+      board.reconnect();
+      fmt::print("it is back\n");
+      return true;
+    } catch (const host::LinkError&) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    }
+  }
+  return false;
+}
+
+void watch(host::Board& board, Monitor& monitor, const MonitorOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   const std::chrono::duration<double> limit(options.seconds);
+  const auto time_is_up = [&] {
+    return interrupted() ||
+           (options.seconds > 0.0 && std::chrono::steady_clock::now() - begin >= limit);
+  };
   bool first = true;
-  while (!interrupted() &&
-         (options.seconds <= 0.0 || std::chrono::steady_clock::now() - begin < limit)) {
-    const std::string text = to_text(monitor.look());
+  while (!time_is_up()) {
+    std::string text;
+    try {
+      text = to_text(monitor.look());
+    } catch (const NoTelemetry&) {
+      if (!wait_for_return(board, time_is_up)) {
+        return;
+      }
+      first = true;
+      continue;
+    }
     // Up over the lines of the last view, and each line anew.
     fmt::print("{}", first ? "" : "\x1b[6A");
     for (std::size_t at = 0; at < text.size();) {
@@ -170,7 +205,7 @@ void show(const MonitorOptions& options, int& exit_code) {
   const auto board = connect(options.port);
   Monitor monitor(*board);
   if (!options.once) {
-    return watch(monitor, options);
+    return watch(*board, monitor, options);
   }
   const View& view = monitor.look();
   if (options.json.empty()) {

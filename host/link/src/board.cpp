@@ -68,17 +68,40 @@ std::string names_of(core::FaultMask faults) {
 }
 
 Board::Board(const std::string& port, const BoardOptions& options)
-    : Board(open_port(port, options.baud), options) {}
+    : Board(open_port(port, options.baud), options) {
+  port_ = port;
+}
 
 Board::Board(std::unique_ptr<Transport> transport, const BoardOptions& options)
-    : connection_(std::move(transport)) {
-  connection_.open(options.link_timeout_ms);
+    : options_(options), connection_(std::make_unique<Connection>(std::move(transport))) {
+  connection_->open(options.link_timeout_ms);
 }
 
 Board::~Board() {
-  if (connection_.in_session()) {
-    (void)connection_.call(MessageKind::kClose);
+  if (in_session()) {
+    (void)connection_->call(MessageKind::kClose);
   }
+}
+
+// The old connection ends first: a serial port is open once only.
+void Board::reconnect() {
+  if (port_.empty()) {
+    throw LinkError(connection().name() + ": was not opened by its name, so cannot be again");
+  }
+  connection_.reset();
+  auto fresh = std::make_unique<Connection>(open_port(port_, options_.baud));
+  fresh->open(options_.link_timeout_ms);
+  connection_ = std::move(fresh);
+  if (subscription_) {
+    subscribe(*subscription_);
+  }
+}
+
+Connection& Board::connection() const {
+  if (!connection_) {
+    throw LinkError(port_ + ": the board is gone");
+  }
+  return *connection_;
 }
 
 core::wire::IdentifyReply Board::identify(std::unique_ptr<Transport> transport) {
@@ -92,10 +115,10 @@ core::wire::IdentifyReply Board::identify(std::unique_ptr<Transport> transport) 
 }
 
 Response Board::demand(MessageKind kind, std::span<const std::byte> payload, const char* what) {
-  Response response = connection_.call(kind, payload);
-  const std::string where = connection_.name() + ": " + what + ": ";
+  Response response = connection().call(kind, payload);
+  const std::string where = connection().name() + ": " + what + ": ";
   if (response.timed_out) {
-    throw LinkError(where + (connection_.connected() ? "no answer" : "the board is gone"));
+    throw LinkError(where + (connection().connected() ? "no answer" : "the board is gone"));
   }
   if (!response.ok()) {
     throw LinkError(where + core::wire::describe(response.status) + details(response) +
@@ -109,7 +132,7 @@ Reply Board::fetch(MessageKind kind, const char* what) {
   const Response response = demand(kind, std::span<const std::byte>(), what);
   Reply reply;
   if (!response.read(reply)) {
-    throw LinkError(connection_.name() + ": " + what + ": the reply is too short");
+    throw LinkError(connection().name() + ": " + what + ": the reply is too short");
   }
   return reply;
 }
@@ -152,19 +175,19 @@ void Board::arm(std::chrono::milliseconds patience) {
     }
     if (now != core::State::kArmed) {
       const std::string faults = names_of(told.faults);
-      throw LinkError(connection_.name() + ": arm: the controller is in state " +
+      throw LinkError(connection().name() + ": arm: the controller is in state " +
                       core::name_of(now) + (faults.empty() ? "" : ": " + faults));
     }
     if (std::chrono::steady_clock::now() > deadline) {
       stop();
       throw LinkError(
-          connection_.name() + ": arm: nobody confirms (" +
+          connection().name() + ": arm: nobody confirms (" +
           (hand_confirms ? "let the dead-man control go, then hold it, " : "hold the probe ") +
           "outside of the object)");
     }
     if (!hand_confirms) {
       // Refused while the enable line is on its way, or the probe inside: asked for again.
-      (void)connection_.call(
+      (void)connection().call(
           MessageKind::kControl,
           core::wire::ControlRequest{
               static_cast<std::uint8_t>(ControlCode::kConfirm), {}, armed.token});
@@ -192,6 +215,7 @@ void Board::set_material(const core::wire::SetMaterialRequest& material) {
 }
 
 void Board::subscribe(const Subscription& subscription) {
+  subscription_ = subscription;
   (void)demand(MessageKind::kSubscribe,
                core::wire::SubscribeRequest{subscription.fields, subscription.every_ticks},
                "subscribe");
@@ -207,7 +231,7 @@ std::vector<TracedTick> Board::trace() {
     core::wire::ReadTraceReply reply;
     if (!response.read(reply) ||
         response.payload.size() < sizeof reply + reply.count * sizeof(core::FlightRecord)) {
-      throw LinkError(connection_.name() + ": trace: the reply is too short");
+      throw LinkError(connection().name() + ": trace: the reply is too short");
     }
     for (std::uint32_t i = 0; i < reply.count; ++i) {
       TracedTick tick{reply.last_tick - reply.age - i, {}};
@@ -236,7 +260,7 @@ std::vector<core::wire::ParameterReply> Board::parameters() {
   for (std::uint32_t i = 0; i < all.size(); ++i) {
     if (!demand(MessageKind::kGetParameter, core::wire::GetParameterRequest{i}, "parameter")
              .read(all[i])) {
-      throw LinkError(connection_.name() + ": parameter: the reply is too short");
+      throw LinkError(connection().name() + ": parameter: the reply is too short");
     }
   }
   return all;
@@ -250,7 +274,8 @@ void Board::set_parameter(const std::string& name, float value) {
       return;
     }
   }
-  throw LinkError(connection_.name() + ": no parameter '" + name + "' (tactree params lists them)");
+  throw LinkError(connection().name() + ": no parameter '" + name +
+                  "' (tactree params lists them)");
 }
 
 void Board::save_parameters() {
@@ -271,21 +296,21 @@ void Board::write_pieces(std::span<const std::byte> bytes, const Progress& progr
       pieces.push_back({MessageKind::kWriteModel, std::move(payload)});
       offset += piece.size();
     }
-    const Response last = connection_.call_all(pieces, kPiecesUnderWay);
+    const Response last = connection().call_all(pieces, kPiecesUnderWay);
     core::wire::WriteModelReply reply;
     const bool knows_place = last.read(reply);
     if (last.timed_out || last.status == WireStatus::kOutOfOrder) {
       // A piece was lost on the way: the board says, or is asked, where to go on.
       if (!knows_place) {
         const Response asked =
-            connection_.call(MessageKind::kWriteModel, core::wire::WriteModelRequest{0xFFFFFFFFU});
+            connection().call(MessageKind::kWriteModel, core::wire::WriteModelRequest{0xFFFFFFFFU});
         if (!asked.read(reply)) {
-          throw LinkError(connection_.name() + ": write model: no answer");
+          throw LinkError(connection().name() + ": write model: no answer");
         }
       }
       offset = std::min<std::size_t>(reply.next_offset, bytes.size());
     } else if (!last.ok()) {
-      throw LinkError(connection_.name() + ": write model: " + core::wire::describe(last.status) +
+      throw LinkError(connection().name() + ": write model: " + core::wire::describe(last.status) +
                       remedy_for(last.status));
     }
     if (progress) {
@@ -307,7 +332,7 @@ void Board::flash(const ModelFile& model, const Progress& progress) {
   std::memcpy(finish.signature, model.signature.data(), sizeof finish.signature);
   core::wire::FinishModelReply finished;
   if (!demand(MessageKind::kFinishModel, finish, "check model").read(finished)) {
-    throw LinkError(connection_.name() + ": check model: the reply is too short");
+    throw LinkError(connection().name() + ": check model: the reply is too short");
   }
   (void)demand(MessageKind::kActivateModel, core::wire::SlotRequest{finished.slot}, "use model");
 }
@@ -326,17 +351,17 @@ void Board::move_body(std::uint32_t body, const core::Pose& pose, const core::Mo
   const core::Vec3& t = pose.translation_m;
   const core::Vec3& v = motion.linear_m_s;
   const core::Vec3& w = motion.angular_rad_s;
-  connection_.post(MessageKind::kMoveBody, core::wire::MoveBodyRequest{body,
-                                                                       enabled ? 1U : 0U,
-                                                                       {q.w, q.v.x, q.v.y, q.v.z},
-                                                                       {t.x, t.y, t.z},
-                                                                       {v.x, v.y, v.z},
-                                                                       {w.x, w.y, w.z}});
+  connection().post(MessageKind::kMoveBody, core::wire::MoveBodyRequest{body,
+                                                                        enabled ? 1U : 0U,
+                                                                        {q.w, q.v.x, q.v.y, q.v.z},
+                                                                        {t.x, t.y, t.z},
+                                                                        {v.x, v.y, v.z},
+                                                                        {w.x, w.y, w.z}});
 }
 
 void Board::add_force(const std::array<float, 3>& force_N, std::uint32_t duration_ms) {
-  connection_.post(MessageKind::kAddForce,
-                   core::wire::AddForceRequest{{force_N[0], force_N[1], force_N[2]}, duration_ms});
+  connection().post(MessageKind::kAddForce,
+                    core::wire::AddForceRequest{{force_N[0], force_N[1], force_N[2]}, duration_ms});
 }
 
 }  // namespace tactree::host

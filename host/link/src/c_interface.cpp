@@ -65,6 +65,15 @@ tactree_board* tactree_open(const char* port, unsigned baud, unsigned link_timeo
   return board.release();
 }
 
+int tactree_reconnect(tactree_board* board) {
+  return guarded(board->error, [&] {
+    board->waiting.clear();
+    board->board.reconnect();
+  });
+}
+
+int tactree_connected(const tactree_board* board) { return board->board.connected() ? 1 : 0; }
+
 void tactree_close(tactree_board* board) { delete board; }
 
 const char* tactree_error(const tactree_board* board) {

@@ -73,7 +73,7 @@ TEST(Passivity, AHandThatLeavesIsPushedByWhatTheWallCanTakeBack) {
   for (const float delay_s : {0.0F, 1.5e-3F}) {
     PassivityController p = controller(delay_s);
     (void)p.update({}, {at(0.0F), {}, {}}, 0.0F);
-    EXPECT_EQ(p.most_push(0.5F, 2000.0F), 0.0F);  // nothing was taken yet
+    EXPECT_EQ(p.most_push(0.5F, 2000.0F), 0.0F);  // it got nothing yet
     for (int i = 1; i <= 10; ++i) {               // 2 N against 1 mm
       (void)p.update(at(2.0F), {at(-1e-4F * static_cast<float>(i)), {}, {}}, 0.0F);
     }
@@ -88,6 +88,28 @@ TEST(Passivity, AHandThatLeavesIsPushedByWhatTheWallCanTakeBack) {
     p.reset();
     EXPECT_EQ(p.most_push(0.5F, 2000.0F), 0.0F);
   }
+}
+
+// Pressed while the force still ramped, or the wall was put elsewhere: what its spring then holds
+// it may give, to a hand that trembles, too.
+TEST(Passivity, WhatTheApplicationPutIntoTheWallItMayGive) {
+  constexpr float kStored = 0.6F * 0.6F / (2.0F * 300.0F);  // J: 0.6 N of 300 N/m
+  PassivityController p = controller();
+  p.allow(kStored);
+  (void)p.update({}, {at(-2e-3F), {}, {}}, kStored);
+  const float push = p.most_push(0.05F, 2000.0F);
+  EXPECT_NEAR(push * (push / (2.0F * 2000.0F) + 1e-3F) * 0.05F, kStored, 1e-6F);
+  p.allow(0.5F * kStored);  // it may give more already
+  EXPECT_EQ(p.most_push(0.05F, 2000.0F), push);
+  p.reset();
+  EXPECT_EQ(p.most_push(0.05F, 2000.0F), 0.0F);
+}
+
+// A hand that comes out from within was never pushed in.
+TEST(Passivity, AContactThatBeginsDeepInsideHasGotNothing) {
+  PassivityController p = controller();
+  (void)p.update({}, {at(-5e-3F), {}, {}}, 0.02F);
+  EXPECT_EQ(p.most_push(0.5F, 2000.0F), 0.0F);
 }
 
 // A wall that pushes the hand away gives energy, but of the motor that moves it.

@@ -1,6 +1,9 @@
 // The host library at a board that runs.
 
 #include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
 
 #include "running_board.hpp"
 #include "tactree/host/board.hpp"
@@ -38,6 +41,44 @@ TEST(Connection, FeelsAndStops) {
   board.stop();
   EXPECT_EQ(static_cast<core::State>(board.state().state), core::State::kIdle);
   EXPECT_EQ(board.connection().refusals(), 0U);
+}
+
+// A cable that is pulled and plugged in again, under the same name.
+TEST(Connection, ABoardThatComesBackIsConnectedAgainAndNotArmed) {
+  const std::filesystem::path link =
+      std::filesystem::temp_directory_path() / ("tactree-port-" + std::to_string(::getpid()));
+  const auto plug_in = [&link](const RunningBoard& running) {
+    std::filesystem::remove(link);
+    std::filesystem::create_symlink(running.port(), link);
+  };
+  auto running = std::make_unique<RunningBoard>();
+  plug_in(*running);
+  host::Board board(link.string());
+  board.subscribe({0x3FF, 5});
+  board.arm();
+  ASSERT_TRUE(comes_true([&] { return board.latest().state == 4U; }));
+  running.reset();
+  EXPECT_TRUE(comes_true([&] { return !board.connected(); }));
+  EXPECT_THROW(board.reconnect(), host::LinkError);
+  EXPECT_FALSE(board.connected());
+  EXPECT_THROW(board.stop(), host::LinkError);
+  EXPECT_EQ(board.latest().header.tick, 0U);
+  EXPECT_TRUE(board.take_stream().empty());
+
+  const RunningBoard again;
+  plug_in(again);
+  board.reconnect();
+  EXPECT_TRUE(board.connected());
+  EXPECT_TRUE(comes_true([&] { return board.latest().header.tick > 0U; }));  // subscribed
+  EXPECT_EQ(static_cast<core::State>(board.state().state), core::State::kIdle);
+  std::filesystem::remove(link);
+}
+
+TEST(Connection, ABoardWithoutANameIsNotConnectedAgain) {
+  const RunningBoard running;
+  host::Board board(host::open_serial_port(running.port()), {});
+  EXPECT_THROW(board.reconnect(), host::LinkError);
+  EXPECT_TRUE(board.connected());
 }
 
 TEST(Connection, TheStreamIsWholeOrCountsWhatIsMissing) {

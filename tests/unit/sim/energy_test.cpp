@@ -31,6 +31,10 @@ Account press(const core::Configuration& configuration, double depth_m, double p
   const double tick_s = 1.0 / static_cast<double>(configuration.rate_hz);
   Account account;
   double hand_before = 0.0;
+  for (float t = 0.0F; t < configuration.ramp_s + 0.1F; t += 1.0F / configuration.rate_hz) {
+    session.move(0.0, 0.0, 0.01);
+    session.step();  // a wall that grows under the hand is put in by the controller
+  }
   const double turn = 2.0 * std::numbers::pi / period_s;
   for (double t = 0.0; t < 10.0 * period_s; t += tick_s) {
     session.move(tip.position_m().x(), tip.position_m().y(), tip.position_m().z());

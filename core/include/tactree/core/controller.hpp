@@ -211,7 +211,8 @@ class Controller {
   Vec3 added_{};  // the application's share of it, N
   Vec3 given_{};  // as add_force() took it, N
   std::uint32_t given_ticks_ = 0;
-  bool whole_ = false;  // that force was not held back by the ramp
+  bool whole_ = false;         // that force was not held back by the ramp
+  bool wall_changed_ = false;  // by the application, since the last tick in contact
   SafetyGate gate_{};
   EncoderWatch encoder_watch_{};
   FlightRecorder recorder_{};

@@ -31,6 +31,9 @@ class PassivityController {
 
   /// Forgets; call it when there is no contact.
   void reset();
+  /// What the spring holds (J, as in update()) it may give, though the hand did not put it in:
+  /// while the force ramps, and when somebody put the wall elsewhere or made it another one.
+  void allow(float stored);
 
   /// The force to add in this tick, N; against the motion, and zero while the wall gives nothing.
   ///   shown   N, the force that was sent in the last tick
@@ -38,11 +41,11 @@ class PassivityController {
   /// Cost: constant, about 30 operations.
   [[nodiscard]] Vec3 update(Vec3 shown, const WallMotion& motion, float stored);
 
-  /// The push, N, that the wall can still take back while the hand leaves it at `speed_m_s` > 0: a
-  /// force falls by slew_N_s at most, and goes on giving until it is gone; more than was taken
-  /// since contact began it must not give. Where the spring is so soft that its own force falls
-  /// more slowly, stiffness * speed < slew, that is more than the spring's force.
+  /// The push, N, that the wall can still take back while the hand leaves it at `speed_m_s` > 0:
+  /// where the spring's force falls faster than slew_N_s, stiffness * speed > slew, what is shown
+  /// lags behind and goes on giving until it is gone; more than the wall got it must not give.
   ///   F (F / 2 slew + delay) speed <= taken
+  /// It got what was taken since contact began, and what allow() says.
   /// Cost: a division and a square root.
   [[nodiscard]] float most_push(float speed_m_s, float slew_N_s) const;
 
@@ -58,7 +61,7 @@ class PassivityController {
   float damping_max_ = 0.0F;
   float delay_s_ = 0.0F;
   float balance_ = 0.0F;
-  float taken_ = 0.0F;  // J, since contact began; what it gave is taken off
+  float taken_ = 0.0F;  // J, what the wall got and did not give yet
   float stored_ = 0.0F;
   Vec3 last_{};
   Vec3 sent_[kHistory]{};  // the last one at newest_

@@ -18,6 +18,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -67,6 +68,13 @@ class Board {
   Board(const Board&) = delete;
   Board& operator=(const Board&) = delete;
 
+  /// After the connection was lost: opens the port and a session anew, and subscribes to what was
+  /// subscribed before. Nothing is armed. Throws while the board is not there; then try again.
+  /// For boards opened by their port's name; not while another thread uses this one. Waits.
+  void reconnect();
+  /// False after the cable was pulled, or the board was reset.
+  [[nodiscard]] bool connected() const { return connection_ && connection_->connected(); }
+
   /// Who is there, without a session: disturbs nobody. Waits.
   [[nodiscard]] static core::wire::IdentifyReply identify(std::unique_ptr<Transport> transport);
 
@@ -104,12 +112,17 @@ class Board {
                  bool enabled = true);
   void add_force(const std::array<float, 3>& force_N, std::uint32_t duration_ms);
   /// All zero before the first.
-  [[nodiscard]] Telemetry latest() const { return connection_.latest().value_or(Telemetry{}); }
-  [[nodiscard]] std::vector<Telemetry> take_stream() { return connection_.take_stream(); }
-  [[nodiscard]] std::uint64_t dropped() const { return connection_.dropped(); }
-  [[nodiscard]] bool in_session() const { return connection_.in_session(); }
+  [[nodiscard]] Telemetry latest() const {
+    return connection_ ? connection_->latest().value_or(Telemetry{}) : Telemetry{};
+  }
+  [[nodiscard]] std::vector<Telemetry> take_stream() {
+    return connection_ ? connection_->take_stream() : std::vector<Telemetry>{};
+  }
+  [[nodiscard]] std::uint64_t dropped() const { return connection_ ? connection_->dropped() : 0U; }
+  [[nodiscard]] bool in_session() const { return connection_ && connection_->in_session(); }
 
-  [[nodiscard]] Connection& connection() { return connection_; }
+  /// Throws after a reconnect() that failed.
+  [[nodiscard]] Connection& connection() const;
 
  private:
   Response demand(core::wire::MessageKind kind, std::span<const std::byte> payload,
@@ -123,7 +136,10 @@ class Board {
   Response control(core::wire::ControlCode code, std::uint32_t token, const char* what);
   void write_pieces(std::span<const std::byte> bytes, const Progress& progress);
 
-  Connection connection_;
+  std::string port_;  // empty: opened by a transport
+  BoardOptions options_;
+  std::optional<Subscription> subscription_;
+  std::unique_ptr<Connection> connection_;  // none after a reconnect() that failed
 };
 
 }  // namespace tactree::host

@@ -34,6 +34,11 @@ typedef struct {
 /* Opens a port and a session; waits. link_timeout_ms: 5 to 100, force ends when this program does
    not run for that long; 0: it goes on. NULL: see tactree_error(NULL). */
 tactree_board* tactree_open(const char* port, unsigned baud, unsigned link_timeout_ms);
+/* After the cable was pulled: the port and a session anew, and what was subscribed; nothing is
+   armed. Fails while the board is not there; waits. */
+int tactree_reconnect(tactree_board* board);
+/* Not 0: the board is there. */
+int tactree_connected(const tactree_board* board);
 /* Stops the board and closes the port; waits. NULL is allowed. */
 void tactree_close(tactree_board* board);
 /* What the last function that failed said; of tactree_open(): board = NULL, in this thread. */
