@@ -217,8 +217,9 @@ ModelStatus Controller::add_body(const BlobView& view, const Pose& pose, std::ui
 }
 
 ModelStatus Controller::move_body(std::uint32_t number, const Pose& pose, const Motion& motion) {
-  wall_changed_ = true;
-  return scene_.move(number, pose, motion);
+  const ModelStatus status = scene_.move(number, pose, motion);
+  wall_changed_ = wall_changed_ || status == ModelStatus::kOk;
+  return status;
 }
 
 ModelStatus Controller::enable_body(std::uint32_t number, bool enabled) {
@@ -243,16 +244,16 @@ bool Controller::unload_model() {
 
 const Output& Controller::step(const Input& input) {
   ++tick_;
-  present_ = watch(input);
+  FaultMask present = watch(input);
   if (configured_) {
-    present_ |= sense(input);
-    present_ |= watch_stuck(input);
+    present |= sense(input);
+    present |= watch_stuck(input);
   }
-  if (present_ != 0U) {
-    raise(present_);
+  if (present != 0U) {
+    raise(present);
   }
   const bool was_armed = state_ == State::kArmed;
-  obey(input);
+  obey(input, present);
   notice_empty_scene();
   render();
   confirm(input, was_armed);
@@ -388,7 +389,7 @@ void Controller::record(const Input& input, const Status& status) {
                  status.force, status.rendering, input.load});
 }
 
-void Controller::obey(const Input& input) {
+void Controller::obey(const Input& input, FaultMask present) {
   if (input.command == Command::kNone) {
     return;
   }
@@ -401,7 +402,7 @@ void Controller::obey(const Input& input) {
       happen(Event::kStop);
     }
   } else if (input.command == Command::kClearFault) {
-    latched_ = present_;
+    latched_ = present;
     happen(Event::kClear);
   } else if (input.command == Command::kHome && motors_off()) {
     return;  // find_joints() took it
@@ -476,6 +477,8 @@ void Controller::raise(FaultMask faults) {
 Vec3 Controller::wanted_force() {
   const Rendering& contact = scene_.rendering().contact;
   const Vec3 rendered = pose_.reach * contact.force;
+  const bool wall_changed = wall_changed_;
+  wall_changed_ = false;
   if (!contact.in_contact || !(configuration_.passivity_Ns_m > 0.0F)) {
     passivity_.reset();
     return rendered;
@@ -483,19 +486,17 @@ Vec3 Controller::wanted_force() {
   const float stored = pose_.reach * contact.stored_energy;
   if (!whole_) {
     passivity_.reset();
-  }
-  if (!whole_ || wall_changed_) {
     passivity_.allow(stored);
-    wall_changed_ = false;
-  }
-  if (!whole_) {
     return rendered;
   }
-  const Vec3 added = passivity_.update(
-      shown_ - added_, {probe_, velocity_, scene_.rendering().wall_velocity}, stored);
+  if (wall_changed) {
+    passivity_.allow(stored);
+  }
+  const Vec3 wall_velocity = scene_.rendering().wall_velocity;
+  const Vec3 added = passivity_.update(shown_ - added_, {probe_, velocity_, wall_velocity}, stored);
   const Vec3 force = rendered + added;
   const float push = dot(force, contact.normal);
-  const float leaving = dot(velocity_ - scene_.rendering().wall_velocity, contact.normal);
+  const float leaving = dot(velocity_ - wall_velocity, contact.normal);
   const float most = leaving > 0.0F ? passivity_.most_push(leaving, configuration_.slew_N_s) : push;
   const float pull = dot(rendered, contact.normal);  // of other bodies, at most
   const float least = pull < 0.0F ? pull : 0.0F;

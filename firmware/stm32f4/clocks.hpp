@@ -67,9 +67,8 @@ inline constexpr std::uint32_t kEveryEighth = 0xDU;  // ccmr1
 inline constexpr std::uint32_t kCaptured = 1U << 1;  // sr
 inline constexpr std::uint32_t kCounts = 8U * kInternalClockHz / 1000000U;
 inline constexpr std::uint32_t kCaptures = 64;
-/// The internal oscillator is good for 8 % from -40 to 105 degrees C (data sheet, section on
-/// its characteristics), and
-/// polling may miss two captures.
+/// The internal oscillator is good for 8 % from -40 to 105 degrees C (data sheet, section on its
+/// characteristics), and polling may miss two captures.
 inline constexpr std::uint32_t kTolerance = kCounts * kCaptures / 9U;
 }  // namespace crystal_capture
 

@@ -151,8 +151,8 @@ class FailingModel {
   }
   /// In each section as often, however small it is.
   void flip(std::mt19937& random) {
-    const core::BlobSection& section = sections_[random() % sections_.size()];
-    words_[section.offset / 4U + random() % (section.bytes / 4U)] ^= 1U << (random() % 32U);
+    const std::span<std::uint32_t> words = words_of(sections_[random() % sections_.size()]);
+    words[random() % words.size()] ^= 1U << (random() % 32U);
   }
 
  private:
@@ -164,20 +164,13 @@ class FailingModel {
 
 /// The plane, of two materials with texture.
 Shape textured_plane() {
-  Shape shape;
-  add_sheet(shape, 0.02, 0.0, 1.0);
   core::BlobMaterial material{};
   material.stiffness_N_m = 400.0F;
   material.static_friction = 0.3F;
   material.dynamic_friction = 0.2F;
   material.texture_height_m = 5e-5F;
   material.texture_wavelength_m = 2e-3F;
-  shape.model().materials = {material, material};
-  for (const Eigen::Vector3d& p : shape.model().positions) {
-    shape.model().material_indices.push_back(p.x() < 0.0 ? 0 : 1);
-  }
-  shape.seal();
-  return shape;
+  return two_materials(material, material);
 }
 
 // The limits hold whatever surface that makes, and nothing is read from outside the model, which

@@ -326,7 +326,9 @@ TEST(Faults, ASupplyAtTheEndsOfItsRangeIsGood) {
 /// another; the other axes tremble by a count.
 class StuckEncoder {
  public:
-  StuckEncoder() : session_(configuration()) {
+  explicit StuckEncoder(const core::Configuration& configuration = StuckEncoder::configuration())
+      : session_(configuration) {
+    session_.step(Command::kHome);
     session_.activate();
     for (std::uint32_t tick = 0; tick < 100; ++tick) {
       tremble(tick, core::kAxes);
@@ -350,6 +352,13 @@ class StuckEncoder {
   }
 
   Session& session() { return session_; }
+  static core::Configuration configuration() {
+    core::Configuration configuration;
+    configuration.stuck_s = 0.1F;
+    configuration.ramp_s = 0.01F;
+    configuration.device.homing = core::HomingMethod::kGivenPose;
+    return configuration;
+  }
   static constexpr float kForce_N = core::Configuration{}.force_max_N;
   static constexpr std::uint32_t kTicks = 100;  // stuck_s of the configuration below
 
@@ -358,12 +367,6 @@ class StuckEncoder {
     for (std::uint32_t axis = 0; axis < core::kAxes; ++axis) {
       session_.input.encoders.counts[axis] += axis == held ? 0 : (tick % 2U == 0U ? 1 : -1);
     }
-  }
-  static core::Configuration configuration() {
-    core::Configuration configuration;
-    configuration.stuck_s = 0.1F;
-    configuration.ramp_s = 0.01F;
-    return configuration;
   }
 
   Session session_;
@@ -379,6 +382,20 @@ TEST(Faults, AnEncoderThatStandsStillWhileItsOwnMotorPushesIsStuck) {
         EXPECT_LE(*ticks, StuckEncoder::kTicks + 2U);
       }
     }
+  }
+}
+
+TEST(Faults, AnEncoderIsStuckByTheEffortOfItsOwnAxis) {
+  for (std::uint32_t held = 0; held < core::kAxes; ++held) {
+    core::Configuration configuration = StuckEncoder::configuration();
+    for (std::uint32_t axis = 0; axis < core::kAxes; ++axis) {
+      configuration.effort_max[axis] = axis == held ? 4.0F : 40.0F;
+    }
+    StuckEncoder stuck(configuration);
+    ASSERT_EQ(stuck.session().status, core::ConfigurationStatus::kOk);
+    ASSERT_TRUE(stuck.session().controller.homed());
+    EXPECT_TRUE(stuck.ticks_to_fault(held, held, 3U * StuckEncoder::kTicks)) << held;
+    EXPECT_FALSE(stuck.session().controller.homed());  // it lost its place while it stood still
   }
 }
 

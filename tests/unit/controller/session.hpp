@@ -12,6 +12,10 @@ inline const Shape& shared_plane() {
   return shape;
 }
 
+inline bool has_limit(const core::Output& output, core::Limit limit) {
+  return (output.status.limits & core::limit_bit(limit)) != 0U;
+}
+
 class Session {
  public:
   explicit Session(const core::Configuration& configuration = {}) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "session.hpp"
 #include "tactree/core/device_presets.hpp"
@@ -17,10 +18,6 @@ using core::Fault;
 using core::Limit;
 using core::State;
 using core::Vec3;
-
-bool has_limit(const core::Output& output, Limit limit) {
-  return (output.status.limits & core::limit_bit(limit)) != 0U;
-}
 
 constexpr double kAbove = 0.01;   // m: free space on either side of the plane
 constexpr double kBelow = -0.01;  // m
@@ -209,35 +206,6 @@ TEST(Tick, AnAddedForceThatNobodyTookIsGoneAfterAStop) {
   }
 }
 
-TEST(Tick, EveryAxisIsStuckByItsOwnEffort) {
-  for (std::uint32_t held = 0; held < core::kAxes; ++held) {
-    core::Configuration configuration;
-    configuration.stuck_s = 0.1F;
-    configuration.ramp_s = 0.01F;
-    configuration.device.homing = core::HomingMethod::kGivenPose;
-    for (std::uint32_t axis = 0; axis < core::kAxes; ++axis) {
-      configuration.effort_max[axis] = axis == held ? 4.0F : 40.0F;
-    }
-    Session session(configuration);
-    ASSERT_EQ(session.status, core::ConfigurationStatus::kOk);
-    session.step(Command::kHome);
-    session.activate();
-    core::Output output = settle(session, 50);
-    ASSERT_TRUE(session.controller.homed());
-    for (std::uint32_t tick = 1; tick <= 300U; ++tick) {
-      for (std::uint32_t axis = 0; axis < core::kAxes; ++axis) {
-        session.input.encoders.counts[axis] += axis == held ? 0 : (tick % 2U == 0U ? 1 : -1);
-      }
-      const float force = tick / 20U % 2U == 0U ? 1.5F : -1.5F;
-      session.controller.add_force(
-          {held == 0 ? force : 0.0F, held == 1 ? force : 0.0F, held == 2 ? force : 0.0F}, 1);
-      output = session.step();
-    }
-    EXPECT_TRUE(core::has_fault(output.status.faults, Fault::kEncoderStuck)) << held;
-    EXPECT_FALSE(session.controller.homed());  // it lost its place while it stood still
-  }
-}
-
 // The controller adds what the observer of the wall says: the same observer, beside it.
 TEST(Tick, TheWallIsKeptPassive) {
   core::Configuration configuration;
@@ -277,6 +245,38 @@ TEST(Tick, TheWallIsKeptPassive) {
     shown = output.status.force;
   }
   EXPECT_GT(added_ticks, 100);
+}
+
+/// Force of each tick of a hand that is inside the plane from one tick to the next and draws back
+/// from there, after `change` was done in free space.
+template <class Change>
+std::vector<float> draw_back(Change change) {
+  core::Configuration configuration;
+  configuration.ramp_s = 0.01F;
+  Session session(configuration);
+  session.activate();
+  session.move(0.0, 0.0, 1e-3);
+  settle(session, 50);
+  change(session.controller);
+  std::vector<float> forces;
+  settle(session, 1);
+  for (int tick = 0; tick < 100; ++tick) {
+    session.move(0.0, 0.0, 2e-5 * tick - 1e-3);
+    forces.push_back(session.step().status.force.z);
+  }
+  return forces;
+}
+
+// What the spring holds is only the application's gift if the wall changed under the hand.
+TEST(Tick, AWallThatChangesInFreeSpaceGivesNothing) {
+  const std::vector<float> plain = draw_back([](core::Controller& /*as it is*/) {});
+  EXPECT_GT(*std::max_element(plain.begin(), plain.end()), 0.1F);
+  EXPECT_EQ(plain, draw_back([](core::Controller& controller) {
+              ASSERT_EQ(controller.move_body(0, {}, {}), core::ModelStatus::kOk);
+            }));
+  EXPECT_EQ(plain, draw_back([](core::Controller& controller) {
+              ASSERT_EQ(controller.adjust(controller.adjustment()), core::ConfigurationStatus::kOk);
+            }));
 }
 
 }  // namespace

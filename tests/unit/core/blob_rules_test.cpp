@@ -45,16 +45,16 @@ class Specimen {
   [[nodiscard]] std::size_t size() const { return bytes_.size(); }
   /// Room for more nodes behind the last one.
   void insert_nodes(std::uint32_t bytes) {
+    const std::uint32_t end = header().nodes.offset + header().nodes.bytes;
+    bytes_.insert(bytes_.begin() + end, bytes, std::byte{0});
     BlobHeader& h = header();
-    bytes_.insert(bytes_.begin() + h.nodes.offset + h.nodes.bytes, bytes, std::byte{0});
-    BlobHeader& moved = header();
-    moved.nodes.bytes += bytes;
+    h.nodes.bytes += bytes;
     for (core::BlobSection* section :
-         {&moved.directory, &moved.leaf_bases, &moved.leaf_offsets, &moved.points, &moved.normals,
-          &moved.neighbours, &moved.materials, &moved.material_indices}) {
+         {&h.directory, &h.leaf_bases, &h.leaf_offsets, &h.points, &h.normals, &h.neighbours,
+          &h.materials, &h.material_indices}) {
       section->offset += bytes;
     }
-    moved.total_bytes += bytes;
+    h.total_bytes += bytes;
   }
 
   [[nodiscard]] BlobStatus open(core::BlobView& view) {

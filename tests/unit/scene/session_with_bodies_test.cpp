@@ -16,10 +16,6 @@ using core::Limit;
 using core::ModelStatus;
 using core::State;
 
-bool has_limit(const core::Output& output, Limit limit) {
-  return (output.status.limits & core::limit_bit(limit)) != 0U;
-}
-
 /// Of a session with the plane as body 0 and as many more as wanted, active.
 class SessionWithBodies : public Session {
  public:

@@ -32,18 +32,6 @@ BlobMaterial textured(float height_m, float wavelength_m) {
   return material;
 }
 
-/// A plane of the first material where x < 0, of the second elsewhere.
-Shape two_materials(const BlobMaterial& left, const BlobMaterial& right) {
-  Shape shape;
-  add_sheet(shape, 0.02, 0.0, 1.0);
-  shape.model().materials = {left, right};
-  for (const Eigen::Vector3d& p : shape.model().positions) {
-    shape.model().material_indices.push_back(p.x() < 0.0 ? 0 : 1);
-  }
-  shape.seal();
-  return shape;
-}
-
 Shape one_material(const BlobMaterial& material) {
   Shape shape;
   add_sheet(shape, 0.02, 0.0, 1.0);

@@ -169,7 +169,8 @@ class Controller {
   [[nodiscard]] FaultMask watch_supply(const Input& input) const;
   [[nodiscard]] FaultMask watch_stuck(const Input& input);
   void record(const Input& input, const Status& status);
-  void obey(const Input& input);
+  /// `present`: causes of faults there in this tick.
+  void obey(const Input& input, FaultMask present);
   void render();
   void confirm(const Input& input, bool was_armed);
   void happen(Event event);
@@ -193,7 +194,6 @@ class Controller {
   Configuration configuration_{};
   State state_ = State::kBoot;
   std::uint32_t inverse_ = inverse_of(State::kBoot);  // of state_, to compare it with
-  FaultMask present_ = 0;                             // causes there in this tick
   FaultMask latched_ = 0;
   bool waiting_ = false;  // armed, and not yet allowed to be active
 
@@ -212,7 +212,7 @@ class Controller {
   Vec3 given_{};  // as add_force() took it, N
   std::uint32_t given_ticks_ = 0;
   bool whole_ = false;         // that force was not held back by the ramp
-  bool wall_changed_ = false;  // by the application, since the last tick in contact
+  bool wall_changed_ = false;  // by the application, since the last tick
   SafetyGate gate_{};
   EncoderWatch encoder_watch_{};
   FlightRecorder recorder_{};
