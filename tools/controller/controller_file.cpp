@@ -88,25 +88,60 @@ std::string maybe_text(JsonReader& reader, const char* key) {
   return reader.has(key) ? reader.text(key) : "";
 }
 
-void read_encoders(JsonReader encoders, std::size_t axes,
+/// All axes are of the kind whose key the first one has: `key` tells them apart.
+bool are_of_kind(const std::vector<JsonReader>& axes, const char* key) {
+  const bool first = axes.front().has(key);
+  for (const JsonReader& axis : axes) {
+    if (axis.has(key) != first) {
+      axis.refuse(key, "is there for some axes only", "wire all axes the same way");
+    }
+  }
+  return first;
+}
+
+void read_counters(std::vector<JsonReader>& axes, hal::linux_gpio::CounterSettings& counters) {
+  for (JsonReader& axis : axes) {
+    counters.axes.push_back({axis.text("counter"), axis.whole("count", 0, 1000)});
+    axis.finish();
+  }
+}
+
+void read_encoders(JsonReader encoders, const core::DeviceModel& device,
                    hal::linux_gpio::ControllerBoardSettings& board) {
+  const std::size_t count = core::axes_of(device.kind);
+  std::vector<JsonReader> axes = encoders.objects("axes", count, count);
+  const bool at_index = device.homing == core::HomingMethod::kIndex;
+  if (are_of_kind(axes, "counter")) {
+    if (at_index) {
+      encoders.refuse("axes", "counters tell no index pulse, by which this device is homed",
+                      "wire the encoders to lines, or give the device another homing");
+    }
+    if (encoders.has("counter_root")) {
+      board.counters.root = encoders.text("counter_root");
+    }
+    read_counters(axes, board.counters);
+    encoders.finish();
+    return;
+  }
   if (encoders.has("faults_max")) {
     board.encoder_faults_max = encoders.whole("faults_max", 0, 1'000'000);
   }
-  for (JsonReader& axis : encoders.objects("axes", axes, axes)) {
-    board.encoders.push_back({axis.text("a"), axis.text("b"), maybe_text(axis, "index")});
+  for (JsonReader& axis : axes) {
+    board.encoders.push_back({axis.text("a"), axis.text("b"),
+                              at_index ? axis.text("index") : maybe_text(axis, "index")});
     axis.finish();
   }
   encoders.finish();
 }
 
-void read_motors(JsonReader motors, std::size_t axes, hal::linux_gpio::MotorSettings& settings) {
+void read_pwm(JsonReader& motors, std::vector<JsonReader>& axes,
+              hal::linux_gpio::MotorSettings& settings) {
   if (motors.has("pwm_root")) {
     settings.pwm_root = motors.text("pwm_root");
   }
   settings.period_ns = motors.whole("period_ns", 1000, 1'000'000'000);
   settings.good = maybe_text(motors, "good");
-  for (JsonReader& axis : motors.objects("axes", axes, axes)) {
+  for (JsonReader& axis : axes) {
     hal::linux_gpio::MotorLines lines;
     lines.chip = axis.text("chip");
     lines.channel = axis.whole("channel", 0, 1000);
@@ -114,6 +149,42 @@ void read_motors(JsonReader motors, std::size_t axes, hal::linux_gpio::MotorSett
     axis.one("effort_at_full_width", lines.effort_at_full_width, 1e-4, 1e3);
     axis.finish();
     settings.axes.push_back(std::move(lines));
+  }
+}
+
+void read_converters(JsonReader& motors, std::vector<JsonReader>& axes,
+                     hal::linux_gpio::ConverterSettings& settings) {
+  constexpr std::uint32_t kCodeMax = 0xFFFFFF;  // of 24 bits: finer ones cannot be had
+  if (motors.has("converter_root")) {
+    settings.root = motors.text("converter_root");
+  }
+  settings.good = maybe_text(motors, "good");
+  for (JsonReader& axis : axes) {
+    hal::linux_gpio::ConverterAxis output;
+    output.device = axis.text("converter");
+    output.channel = axis.whole("channel", 0, 1000);
+    output.zero_code = static_cast<std::int32_t>(axis.whole("zero_code", 0, kCodeMax));
+    output.full_code = static_cast<std::int32_t>(axis.whole("full_code", 0, kCodeMax));
+    if (2 * output.zero_code < output.full_code) {
+      axis.refuse("zero_code", "leaves no room for efforts the other way",
+                  "give at least half of full_code");
+    }
+    if (output.zero_code == output.full_code) {
+      axis.refuse("full_code", "is zero_code: that gives no effort", "give another");
+    }
+    axis.one("effort_at_full", output.effort_at_full, 1e-4, 1e3);
+    axis.finish();
+    settings.axes.push_back(std::move(output));
+  }
+}
+
+void read_motors(JsonReader motors, std::size_t count,
+                 hal::linux_gpio::ControllerBoardSettings& board) {
+  std::vector<JsonReader> axes = motors.objects("axes", count, count);
+  if (are_of_kind(axes, "converter")) {
+    read_converters(motors, axes, board.converters);
+  } else {
+    read_pwm(motors, axes, board.motors);
   }
   motors.finish();
 }
@@ -123,6 +194,7 @@ void read_lines(JsonReader lines, hal::linux_gpio::ControllerBoardSettings& boar
   board.enable_read_back = lines.text("enable_read_back");
   board.emergency_stop = lines.text("emergency_stop");
   board.dead_man = lines.text("dead_man");
+  board.brake = maybe_text(lines, "brake");
   board.heartbeat = maybe_text(lines, "heartbeat");
   lines.finish();
 }
@@ -181,10 +253,30 @@ core::Configuration begin_configuration(JsonReader& reader, const cli::Device& d
 }
 
 // What a motor cannot give is not asked of it.
-void bound_efforts(const hal::linux_gpio::MotorSettings& motors, core::Configuration& c) {
-  for (std::size_t i = 0; i < motors.axes.size(); ++i) {
-    c.effort_max[i] = std::min(c.effort_max[i], motors.axes[i].effort_at_full_width);
+void bound_efforts(const hal::linux_gpio::ControllerBoardSettings& board, core::Configuration& c) {
+  for (std::size_t i = 0; i < board.motors.axes.size(); ++i) {
+    c.effort_max[i] = std::min(c.effort_max[i], board.motors.axes[i].effort_at_full_width);
   }
+  for (std::size_t i = 0; i < board.converters.axes.size(); ++i) {
+    c.effort_max[i] = std::min(c.effort_max[i], board.converters.axes[i].effort_at_full);
+  }
+}
+
+LinkSettings read_link(JsonReader& reader) {
+  LinkSettings link;
+  if (reader.has("socket") == reader.has("usb")) {
+    reader.refuse("socket", "exactly one of socket and usb is wanted",
+                  "name a socket for programs on this board, or usb for its USB device port");
+  }
+  if (reader.has("socket")) {
+    link.socket = reader.text("socket");
+    return link;
+  }
+  JsonReader usb = reader.object("usb");
+  link.usb_port = maybe_text(usb, "port");
+  link.usb_serial = usb.has("serial") ? usb.whole("serial", 0, 0xFFFFFFFF) : 0U;
+  usb.finish();
+  return link;
 }
 
 }  // namespace
@@ -206,10 +298,10 @@ ControllerFile read_controller_file(const std::filesystem::path& file) {
   if (reader.has("limits")) {
     read_limits(reader.object("limits"), result.configuration);
   }
-  const std::size_t axes = core::axes_of(result.device.figures.model.kind);
-  read_encoders(reader.object("encoders"), axes, result.board);
-  read_motors(reader.object("motors"), axes, result.board.motors);
-  bound_efforts(result.board.motors, result.configuration);
+  const core::DeviceModel& device = result.device.figures.model;
+  read_encoders(reader.object("encoders"), device, result.board);
+  read_motors(reader.object("motors"), core::axes_of(device.kind), result.board);
+  bound_efforts(result.board, result.configuration);
   read_lines(reader.object("lines"), result.board);
   if (reader.has("watchdog")) {
     read_watchdog(reader.object("watchdog"), result.board);
@@ -217,7 +309,7 @@ ControllerFile read_controller_file(const std::filesystem::path& file) {
   if (reader.has("real_time")) {
     read_real_time(reader.object("real_time"), result);
   }
-  result.socket = reader.text("socket");
+  result.link = read_link(reader);
   reader.finish();
   result.board.guard.priority = result.real_time.priority == 0 ? 0 : result.real_time.priority + 1;
   check_together(reader, result.configuration);

@@ -16,13 +16,20 @@ struct RealTimeSettings {
   bool required = false;  ///< true: refuse to run without priority and locked memory
 };
 
+/// Where an application finds it: one of the two.
+struct LinkSettings {
+  std::string socket;    ///< path of a local one; empty: the USB device port
+  std::string usb_port;  ///< of /sys/class/udc; empty: the only one
+  std::uint32_t usb_serial = 0;
+};
+
 struct ControllerFile {
   std::string file;  ///< where it was read from
   cli::Device device;
   std::filesystem::path model;
   core::Configuration configuration{};
   hal::linux_gpio::ControllerBoardSettings board{};
-  std::string socket;
+  LinkSettings link{};
   RealTimeSettings real_time{};
 };
 

@@ -12,6 +12,7 @@
 #include "command.hpp"
 #include "real_time.hpp"
 #include "tactree/core/controller.hpp"
+#include "tactree/hal/linux/function_fs_controller.hpp"
 
 namespace tactree::controller {
 namespace {
@@ -37,6 +38,10 @@ std::string look_at_line(const std::string& name) {
   return fmt::format("{} line {}, free", place.chip, place.offset);
 }
 
+const std::string& good_line(const gpio::ControllerBoardSettings& board) {
+  return board.converters.axes.empty() ? board.motors.good : board.converters.good;
+}
+
 void examine_lines(const gpio::ControllerBoardSettings& board, std::vector<Finding>& findings) {
   const auto line = [&findings](const std::string& what, const std::string& name) {
     if (!name.empty()) {
@@ -44,6 +49,7 @@ void examine_lines(const gpio::ControllerBoardSettings& board, std::vector<Findi
     }
   };
   line("enable", board.enable);
+  line("brake", board.brake);
   line("enable read-back", board.enable_read_back);
   line("emergency stop", board.emergency_stop);
   line("dead-man", board.dead_man);
@@ -56,7 +62,7 @@ void examine_lines(const gpio::ControllerBoardSettings& board, std::vector<Findi
   for (std::size_t i = 0; i < board.motors.axes.size(); ++i) {
     line(fmt::format("direction {}", i), board.motors.axes[i].direction);
   }
-  line("amplifiers good", board.motors.good);
+  line("amplifiers good", good_line(board));
 }
 
 /// Lines of one bank are read at one moment, so they are on one chip.
@@ -75,13 +81,27 @@ void examine_banks(const gpio::ControllerBoardSettings& board, std::vector<Findi
         chip = found;
       }
     }
-    return "encoders on " + chip;
+    return chip.empty() ? std::string("encoders at counters") : "encoders on " + chip;
   }));
+  if (!board.brake.empty()) {
+    findings.push_back(row("brake", "on the chip of enable", [&board] {
+      const std::string chip = gpio::find_line(board.enable).chip;
+      const std::string found = gpio::find_line(board.brake).chip;
+      if (found != chip) {
+        throw gpio::GpioError(
+            fmt::format("line '{}': on {}, line '{}' on {} (remedy: use lines of "
+                        "one chip)",
+                        board.brake, found, board.enable, chip));
+      }
+      return chip;
+    }));
+  }
 }
 
 void examine_names(const gpio::ControllerBoardSettings& board, std::vector<Finding>& findings) {
-  std::vector<std::string> names = {board.enable,   board.enable_read_back, board.emergency_stop,
-                                    board.dead_man, board.heartbeat,        board.motors.good};
+  std::vector<std::string> names = {board.enable,    board.enable_read_back, board.emergency_stop,
+                                    board.dead_man,  board.heartbeat,        board.brake,
+                                    good_line(board)};
   for (const gpio::EncoderLines& axis : board.encoders) {
     names.insert(names.end(), {axis.a, axis.b, axis.index});
   }
@@ -111,7 +131,29 @@ std::string need_writable(const std::string& file) {
   return file;
 }
 
-void examine_motors(const gpio::MotorSettings& motors, std::vector<Finding>& findings) {
+void examine_counters(const gpio::CounterSettings& counters, std::vector<Finding>& findings) {
+  for (std::size_t i = 0; i < counters.axes.size(); ++i) {
+    const gpio::CounterAxis& axis = counters.axes[i];
+    findings.push_back(row(fmt::format("encoder {}", i),
+                           fmt::format("{} count {}", axis.device, axis.count), [&counters, &axis] {
+                             return need_writable(gpio::find_count(counters.root, axis) +
+                                                  "/function");
+                           }));
+  }
+}
+
+void examine_converters(const gpio::ConverterSettings& converters, std::vector<Finding>& findings) {
+  for (std::size_t i = 0; i < converters.axes.size(); ++i) {
+    const gpio::ConverterAxis& axis = converters.axes[i];
+    findings.push_back(row(fmt::format("motor {}", i),
+                           fmt::format("{} output {}", axis.device, axis.channel),
+                           [&converters, &axis] {
+                             return need_writable(gpio::find_converter(converters.root, axis));
+                           }));
+  }
+}
+
+void examine_pwm(const gpio::MotorSettings& motors, std::vector<Finding>& findings) {
   for (std::size_t i = 0; i < motors.axes.size(); ++i) {
     const gpio::MotorLines& axis = motors.axes[i];
     findings.push_back(row(fmt::format("motor {}", i),
@@ -154,7 +196,16 @@ void examine_real_time(const RealTimeSettings& settings, std::vector<Finding>& f
                                 "measure it)"});
 }
 
-void examine_socket(const std::string& socket, std::vector<Finding>& findings) {
+void examine_link(const LinkSettings& link, std::vector<Finding>& findings) {
+  if (link.socket.empty()) {
+    findings.push_back(row("USB device port", link.usb_port, [&link] {
+      const std::string port = hal::linux_usb::find_udc(link.usb_port);
+      (void)need_writable("/sys/kernel/config");
+      return port;
+    }));
+    return;
+  }
+  const std::string& socket = link.socket;
   findings.push_back(row("socket", socket, [&socket] {
     const std::filesystem::path folder = std::filesystem::path(socket).parent_path();
     return need_writable(folder.empty() ? "." : folder.string());
@@ -184,9 +235,11 @@ std::vector<Finding> examine(const ControllerFile& file) {
   examine_names(file.board, findings);
   examine_lines(file.board, findings);
   examine_banks(file.board, findings);
-  examine_motors(file.board.motors, findings);
+  examine_counters(file.board.counters, findings);
+  examine_pwm(file.board.motors, findings);
+  examine_converters(file.board.converters, findings);
   examine_watchdog(file.board.watchdog, findings);
-  examine_socket(file.socket, findings);
+  examine_link(file.link, findings);
   examine_real_time(file.real_time, findings);
   return findings;
 }

@@ -13,6 +13,7 @@
 #include "command.hpp"
 #include "real_time.hpp"
 #include "tactree/core/faults.hpp"
+#include "tactree/hal/linux/gadget_port.hpp"
 #include "tactree/hal/linux/local_socket_port.hpp"
 #include "tactree/hal/loop.hpp"
 #include "tactree/hal/session/session.hpp"
@@ -152,17 +153,24 @@ void tell_missing(const ControllerFile& file, const std::vector<std::string>& mi
   }
 }
 
+void attend(hal::LocalSocketPort& port, const core::Status&, std::uint32_t) { port.accept(); }
+void attend(hal::GadgetPort& port, const core::Status& status, std::uint32_t now_us) {
+  port.attend(status, now_us);
+}
+
 /// Ticks, and between them the session; all that it needs is there before it begins.
+template <hal::BytePort Port>
 class Runner {
  public:
-  using Port = hal::LocalSocketPort;
   using Session = hal::Session<Port, hal::NoModelStore, Platform>;
 
-  Runner(const ControllerFile& file, const cli::BlobFile& model)
+  template <class... PortArguments>
+  Runner(const ControllerFile& file, const cli::BlobFile& model, const PortArguments&... port)
       : file_(file),
         board_(file.board, model.bytes(), mailbox_),
-        port_(file.socket),
+        port_(port...),
         platform_(board_),
+        identity_{"linux", TACTREE_VERSION, {0, 0, file.link.usb_serial}, 0},
         loop_(board_, controller_),
         session_({port_, store_, platform_, controller_, mailbox_, identity_}) {
     const hal::StartResult start = loop_.start(file.configuration);
@@ -170,10 +178,11 @@ class Runner {
     session_.started(start, file.configuration);
   }
 
-  void run() {
+  /// `where`: is it served.
+  void run(const std::string& where) {
     const Attendant attendant(board_, progress_);
     tell_missing(file_, enter_real_time(file_.real_time));
-    fmt::print("tactree-controller: serving {} at {}\n", file_.device.name, file_.socket);
+    fmt::print("tactree-controller: serving {} at {}\n", file_.device.name, where);
     std::fflush(stdout);
     const Disturbances before = disturbances();
     while (!progress_.ending.load(std::memory_order_relaxed)) {
@@ -181,7 +190,7 @@ class Runner {
       progress_.state.store(static_cast<std::uint32_t>(output.status.state),
                             std::memory_order_relaxed);
       progress_.faults.store(output.status.faults, std::memory_order_relaxed);
-      serve_application();
+      serve_application(output.status);
       note(before);
     }
     board_.stop();
@@ -190,8 +199,8 @@ class Runner {
   void report() const { print_report(board_, progress_); }
 
  private:
-  void serve_application() {
-    port_.accept();
+  void serve_application(const core::Status& status) {
+    attend(port_, status, platform_.now_us());
     const std::uint64_t reserve_ns = board_.clock().period_ns() / kReserve;
     for (int i = 0; i < kPiecesPerTick && session_.work(); ++i) {
       if (board_.clock().left_ns() < reserve_ns) {
@@ -214,7 +223,7 @@ class Runner {
   Port port_;
   Platform platform_;
   hal::NoModelStore store_;
-  hal::BoardIdentity identity_{"linux", TACTREE_VERSION, {}, 0};
+  hal::BoardIdentity identity_;
   hal::Loop<ControllerBoard> loop_;
   Session session_;
   Progress progress_;
@@ -225,8 +234,17 @@ class Runner {
 int serve(const ControllerFile& file) {
   const cli::BlobFile model(file.model);
   Attendant::block_signals();
-  Runner runner(file, model);
-  runner.run();
+  if (!file.link.socket.empty()) {
+    Runner<hal::LocalSocketPort> runner(file, model, file.link.socket);
+    runner.run(file.link.socket);
+    runner.report();
+    return cli::kExitOk;
+  }
+  core::usb::Identity identity;
+  identity.serial = {0, 0, file.link.usb_serial};
+  const std::string port = hal::linux_usb::find_udc(file.link.usb_port);
+  Runner<hal::GadgetPort> runner(file, model, identity, port);
+  runner.run("USB device port " + port);
   runner.report();
   return cli::kExitOk;
 }

@@ -10,12 +10,6 @@
 #include <string>
 
 namespace tactree::hal::linux_usb {
-namespace {
-
-constexpr unsigned kOperationsMax = 64;
-
-}  // namespace
-
 AsyncContext::AsyncContext() : event_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
   if (event_ < 0 || syscall(SYS_io_setup, kOperationsMax, &context_) != 0) {
     throw std::runtime_error(std::string("io_setup: ") + std::strerror(errno));
@@ -49,18 +43,17 @@ bool AsyncContext::submit(std::uint16_t what, int file, std::span<const std::byt
   return syscall(SYS_io_submit, context_, 1, operations) == 1;
 }
 
-std::vector<AsyncContext::Ended> AsyncContext::ended() {
-  std::uint64_t count = 0;
-  (void)!::read(event_, &count, sizeof(count));
+std::span<const AsyncContext::Ended> AsyncContext::ended() {
+  std::uint64_t signals = 0;
+  (void)!::read(event_, &signals, sizeof(signals));
   std::array<io_event, kOperationsMax> events{};
   timespec no_time{};
   const long got = syscall(SYS_io_getevents, context_, 0, events.size(), events.data(), &no_time);
-  std::vector<Ended> ended;
-  for (long i = 0; i < got; ++i) {  // bound: kOperationsMax
-    const io_event& event = events[static_cast<std::size_t>(i)];
-    ended.push_back({event.data, event.res});
+  const std::size_t count = got > 0 ? static_cast<std::size_t>(got) : 0;
+  for (std::size_t i = 0; i < count; ++i) {  // bound: kOperationsMax
+    ended_[i] = {events[i].data, events[i].res};
   }
-  return ended;
+  return std::span(ended_).first(count);
 }
 
 }  // namespace tactree::hal::linux_usb

@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 namespace tactree::hal::linux_usb {
 
@@ -29,15 +28,18 @@ class AsyncContext {
     std::uint64_t tag = 0;
     std::int64_t result = 0;  ///< bytes, or -errno
   };
-  /// What has ended since the last call.
-  [[nodiscard]] std::vector<Ended> ended();
+  /// What has ended since the last call; valid until the next one.
+  [[nodiscard]] std::span<const Ended> ended();
 
  private:
   [[nodiscard]] bool submit(std::uint16_t what, int file, std::span<const std::byte> bytes,
                             std::uint64_t tag);
 
+  static constexpr unsigned kOperationsMax = 64;
+
   aio_context_t context_ = 0;
   int event_ = -1;
+  std::array<Ended, kOperationsMax> ended_{};
 };
 
 }  // namespace tactree::hal::linux_usb

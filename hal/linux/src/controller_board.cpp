@@ -13,13 +13,29 @@ std::uint32_t ticks_per_kick(std::uint64_t period_ns) {
 
 }  // namespace
 
+BoardEncoders::BoardEncoders(const ControllerBoardSettings& settings) {
+  if (settings.counters.axes.empty()) {
+    lines_.emplace(settings.encoders, settings.consumer, settings.encoder_faults_max);
+  } else {
+    counters_.emplace(settings.counters);
+  }
+}
+
+BoardMotors::BoardMotors(const ControllerBoardSettings& settings) {
+  if (settings.converters.axes.empty()) {
+    pwm_.emplace(settings.motors, settings.consumer);
+  } else {
+    converters_.emplace(settings.converters, settings.consumer);
+  }
+}
+
 ControllerBoard::ControllerBoard(const ControllerBoardSettings& settings,
                                  std::span<const std::byte> blob, TickMailbox& mailbox)
-    : enable_line_(settings.enable, settings.enable_read_back, settings.consumer),
+    : enable_line_(settings.enable, settings.enable_read_back, settings.consumer, settings.brake),
       guard_(enable_line_.line(), settings.guard),
-      motors_(settings.motors, settings.consumer),
+      motors_(settings),
       safety_inputs_(settings.emergency_stop, settings.dead_man, settings.consumer),
-      encoders_(settings.encoders, settings.consumer, settings.encoder_faults_max),
+      encoders_(settings),
       in_time_(ticks_per_kick(settings.period_ns)),
       clock_(settings.period_ns),
       ticker_(*this),

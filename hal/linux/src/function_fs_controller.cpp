@@ -11,7 +11,6 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
-#include <deque>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -27,6 +26,9 @@ namespace {
 constexpr std::size_t kPieceBytes = 2048;  // a multiple of every packet size
 constexpr std::size_t kPieces = 4;         // of an endpoint, under way at once
 constexpr std::size_t kEndpoints = 3;
+constexpr std::size_t kCameMax = 2 * kPieces * kPieceBytes;  // waiting, and under way
+constexpr std::size_t kEventsMax = 8;  // four that the kernel keeps, and what we add
+constexpr std::size_t kControlBytesMax = 65535;
 
 // In the order of their descriptors: FunctionFS names their files ep1, ep2, ep3.
 constexpr std::array<std::uint8_t, kEndpoints> kAddresses = {
@@ -57,11 +59,15 @@ struct FunctionFsController::Impl {
   struct Endpoint {
     int file = -1;
     std::array<Piece, kPieces> pieces;
-    std::deque<std::byte> came;  // from the host
+    std::vector<std::byte> came;  // from the host
   };
   /// All that there is while the device is plugged in.
   struct Plugged {
-    explicit Plugged(const core::usb::Identity& identity) : gadget(identity) {}
+    Plugged(const core::usb::Identity& identity, bool dfu) : gadget(identity), with_dfu(dfu) {
+      for (Endpoint& endpoint : endpoints) {  // bound: kEndpoints
+        endpoint.came.reserve(kCameMax);
+      }
+    }
     ~Plugged() {
       async.reset();  // first: what is under way uses the endpoints' memory
       for (const Endpoint& endpoint : endpoints) {  // bound: kEndpoints
@@ -81,7 +87,7 @@ struct FunctionFsController::Impl {
     Gadget gadget;
     int control = -1;
     int either = -1;  // epoll of control and of what ended
-    bool with_dfu = true;
+    bool with_dfu;
     bool enabled = false;
     std::array<Endpoint, kEndpoints> endpoints;
     std::unique_ptr<AsyncContext> async = std::make_unique<AsyncContext>();
@@ -89,8 +95,9 @@ struct FunctionFsController::Impl {
 
   core::usb::Identity identity;
   std::string udc;
+  bool offers_dfu = true;
   std::unique_ptr<Plugged> plugged;
-  std::deque<UsbEvent> events;
+  std::vector<UsbEvent> events;
   core::usb::SetupPacket setup{};
   std::vector<std::byte> received;
 
@@ -103,8 +110,12 @@ struct FunctionFsController::Impl {
   void start_reads();
 };
 
-FunctionFsController::FunctionFsController(const core::usb::Identity& identity, std::string udc)
+FunctionFsController::FunctionFsController(const core::usb::Identity& identity, std::string udc,
+                                           bool with_dfu)
     : impl_(std::make_unique<Impl>()) {
+  impl_->offers_dfu = with_dfu;
+  impl_->events.reserve(kEventsMax);
+  impl_->received.reserve(kControlBytesMax);
   impl_->identity = identity;
   impl_->udc = std::move(udc);
 }
@@ -113,8 +124,8 @@ FunctionFsController::~FunctionFsController() = default;
 
 void FunctionFsController::plug_in() {
   unplug();
-  const std::string udc = impl_->udc.empty() ? only_udc() : impl_->udc;
-  impl_->plugged = std::make_unique<Impl::Plugged>(impl_->identity);
+  const std::string udc = find_udc(impl_->udc);
+  impl_->plugged = std::make_unique<Impl::Plugged>(impl_->identity, impl_->offers_dfu);
   try {
     impl_->open_function();
     impl_->plugged->gadget.bind(udc);
@@ -138,14 +149,16 @@ bool FunctionFsController::has_dfu() const { return plugged_in() && impl_->plugg
 
 void FunctionFsController::Impl::open_function() {
   plugged->control = open_file(plugged->gadget.mount() + "/ep0");
-  if (!describe(true)) {
+  bool taken = describe(plugged->with_dfu);
+  if (!taken && plugged->with_dfu) {
     close(plugged->control);  // what was refused cannot be written again to the same file
     plugged->control = open_file(plugged->gadget.mount() + "/ep0");
     plugged->with_dfu = false;
-    if (!describe(false)) {
-      throw std::runtime_error(plugged->gadget.mount() + "/ep0: " + std::strerror(errno) +
-                               " (remedy: this kernel's FunctionFS does not take the device)");
-    }
+    taken = describe(false);
+  }
+  if (!taken) {
+    throw std::runtime_error(plugged->gadget.mount() + "/ep0: " + std::strerror(errno) +
+                             " (remedy: this kernel's FunctionFS does not take the device)");
   }
   for (std::size_t i = 0; i < kEndpoints; ++i) {  // bound: kEndpoints
     plugged->endpoints[i].file = open_file(plugged->gadget.mount() + "/ep" + std::to_string(i + 1));
@@ -234,13 +247,15 @@ void FunctionFsController::Impl::take_ended() {
 UsbEvent FunctionFsController::next_event() {
   if (impl_->plugged) {
     impl_->take_ended();
-    impl_->take_events();
+    if (impl_->events.empty()) {
+      impl_->take_events();
+    }
   }
   if (impl_->events.empty()) {
     return {};
   }
   const UsbEvent event = impl_->events.front();
-  impl_->events.pop_front();
+  impl_->events.erase(impl_->events.begin());
   return event;
 }
 

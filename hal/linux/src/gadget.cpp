@@ -5,9 +5,13 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <charconv>
+#include <csignal>
 #include <cstring>
 #include <filesystem>
 #include <stdexcept>
+
+#include "tactree/hal/linux/function_fs_controller.hpp"
 
 namespace tactree::hal::linux_usb {
 namespace {
@@ -15,7 +19,10 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr char kGadgets[] = "/sys/kernel/config/usb_gadget/";
+constexpr char kPrefix[] = "tactree-";
 constexpr char kControllers[] = "/sys/class/udc";
+
+std::string mount_of(const std::string& name) { return "/run/" + name; }
 
 [[noreturn]] void fail(const std::string& file, int error, const std::string& remedy) {
   throw std::runtime_error(file + ": " + std::strerror(error) + " (remedy: " + remedy + ")");
@@ -53,9 +60,10 @@ std::string hex(std::uint32_t value) {
 }  // namespace
 
 Gadget::Gadget(const core::usb::Identity& identity)
-    : name_("tactree-" + std::to_string(getpid())),
+    : name_(kPrefix + std::to_string(getpid())),
       folder_(kGadgets + name_),
-      mount_("/run/" + name_) {
+      mount_(mount_of(name_)) {
+  take_down_left_over();
   make(folder_);
   write_to(folder_ + "/idVendor", hex(identity.vendor));
   write_to(folder_ + "/idProduct", hex(identity.product));
@@ -81,38 +89,65 @@ Gadget::Gadget(const core::usb::Identity& identity)
   }
 }
 
-Gadget::~Gadget() {
+Gadget::~Gadget() { take_down(name_); }
+
+void Gadget::take_down(const std::string& name) {
+  const std::string folder = kGadgets + name;
+  const std::string mount = mount_of(name);
   std::error_code ignored;
   try {
-    write_to(folder_ + "/UDC", "\n");
+    write_to(folder + "/UDC", "\n");
   } catch (const std::runtime_error&) {  // it was not bound
   }
-  umount2(mount_.c_str(), MNT_DETACH);
-  fs::remove(mount_, ignored);
-  fs::remove(folder_ + "/os_desc/c.1", ignored);
-  fs::remove(folder_ + "/configs/c.1/ffs." + name_, ignored);
-  fs::remove(folder_ + "/configs/c.1", ignored);
-  fs::remove(folder_ + "/functions/ffs." + name_, ignored);
-  fs::remove(folder_ + "/strings/0x409", ignored);
-  fs::remove(folder_, ignored);
+  umount2(mount.c_str(), MNT_DETACH);
+  fs::remove(mount, ignored);
+  fs::remove(folder + "/os_desc/c.1", ignored);
+  fs::remove(folder + "/configs/c.1/ffs." + name, ignored);
+  fs::remove(folder + "/configs/c.1", ignored);
+  fs::remove(folder + "/functions/ffs." + name, ignored);
+  fs::remove(folder + "/strings/0x409", ignored);
+  fs::remove(folder, ignored);
+}
+
+/// A gadget has the number of its process in its name.
+void Gadget::take_down_left_over() {
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(kGadgets, error)) {  // bound: gadgets
+    const std::string name = entry.path().filename().string();
+    pid_t process = 0;
+    if (name.starts_with(kPrefix)) {
+      (void)std::from_chars(name.data() + sizeof(kPrefix) - 1, name.data() + name.size(), process);
+    }
+    if (process > 0 && kill(process, 0) != 0 && errno == ESRCH) {
+      take_down(name);
+    }
+  }
 }
 
 void Gadget::bind(const std::string& udc) { write_to(folder_ + "/UDC", udc); }
 
-std::string only_udc() {
+std::string find_udc(const std::string& name) {
   std::string found;
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(kControllers, error)) {  // bound: controllers
-    if (!found.empty()) {
-      throw std::runtime_error(std::string(kControllers) +
-                               ": several USB device ports (remedy: name one: " + found + ", " +
-                               entry.path().filename().string() + ")");
+    const std::string port = entry.path().filename().string();
+    if (port == name) {
+      return port;
     }
-    found = entry.path().filename().string();
+    found += (found.empty() ? "" : ", ") + port;
   }
+  const std::string where = std::string(kControllers) + ": ";
   if (found.empty()) {
-    throw std::runtime_error(std::string(kControllers) +
-                             ": this computer has no USB device port (remedy: enable its driver)");
+    throw std::runtime_error(where +
+                             "this computer has no USB device port (remedy: enable its driver)");
+  }
+  if (!name.empty()) {
+    throw std::runtime_error(where + "no USB device port is '" + name +
+                             "' (remedy: name one of: " + found + ")");
+  }
+  if (found.find(',') != std::string::npos) {
+    throw std::runtime_error(where + "several USB device ports (remedy: name one of: " + found +
+                             ")");
   }
   return found;
 }

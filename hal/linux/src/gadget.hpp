@@ -9,7 +9,8 @@ namespace tactree::hal::linux_usb {
 
 class Gadget {
  public:
-  /// Makes gadget and mount; nothing is on the bus yet. Throws std::runtime_error.
+  /// Makes gadget and mount; nothing is on the bus yet. Takes down what killed programs left.
+  /// Throws std::runtime_error.
   explicit Gadget(const core::usb::Identity& identity);
   ~Gadget();
   Gadget(const Gadget&) = delete;
@@ -21,12 +22,12 @@ class Gadget {
   [[nodiscard]] const std::string& mount() const { return mount_; }
 
  private:
+  static void take_down(const std::string& name);
+  static void take_down_left_over();
+
   std::string name_;
   std::string folder_;
   std::string mount_;
 };
-
-/// The only device controller of this computer. Throws where there is none, or several.
-[[nodiscard]] std::string only_udc();
 
 }  // namespace tactree::hal::linux_usb

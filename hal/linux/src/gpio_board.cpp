@@ -12,6 +12,10 @@ InputSettings with_edges() {
   return settings;
 }
 
+std::vector<std::string> with_brake(const std::string& enable, const std::string& brake) {
+  return brake.empty() ? std::vector<std::string>{enable} : std::vector<std::string>{enable, brake};
+}
+
 /// An open wire reads low.
 InputSettings pulled_down(bool edges) {
   InputSettings settings;
@@ -100,9 +104,20 @@ core::EncoderReading GpioEncoderBank::read() noexcept {
   return reading;
 }
 
+AmplifiersGood::AmplifiersGood(const std::string& line, const std::string& consumer) {
+  if (!line.empty()) {
+    line_.emplace(GpioLines::inputs({line}, consumer, pulled_down(false)));
+  }
+}
+
+bool AmplifiersGood::read() const noexcept {
+  std::uint64_t bits = 1;
+  return !line_ || (line_->levels(bits) && bits != 0U);
+}
+
 GpioEnableLine::GpioEnableLine(const std::string& enable, const std::string& read_back,
-                               const std::string& consumer)
-    : enable_(GpioLines::outputs({enable}, consumer, false)),
+                               const std::string& consumer, const std::string& brake)
+    : enable_(GpioLines::outputs(with_brake(enable, brake), consumer, false)),
       read_back_(GpioLines::inputs({read_back}, consumer, pulled_down(false))) {}
 
 bool GpioEnableLine::read_back() noexcept {

@@ -2,58 +2,19 @@
 
 #include <fcntl.h>
 
-#include <array>
-#include <cerrno>
-#include <charconv>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
+
+#include "sysfs.hpp"
 
 namespace tactree::hal::linux_gpio {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kPatience = 1000;  // ms: udev gives the files of a new channel to their group
-
-std::string quoted(const std::string& name) { return "PWM chip '" + name + "'"; }
-
-/// A value of sysfs: one write is one value.
-bool write_value(int file, std::uint32_t value) noexcept {
-  std::array<char, 16> text{};
-  char* const end = std::to_chars(text.data(), text.data() + text.size() - 1, value).ptr;
-  *end = '\n';
-  const auto size = static_cast<std::size_t>(end + 1 - text.data());
-  return ::pwrite(file, text.data(), size, 0) == static_cast<ssize_t>(size);
-}
-
-FileDescriptor open_value(const std::string& file) {
-  FileDescriptor opened(::open(file.c_str(), O_WRONLY | O_CLOEXEC));
-  for (int i = 0; i < kPatience && opened.get() < 0; ++i) {  // bound: kPatience
-    ::usleep(1000);
-    opened = FileDescriptor(::open(file.c_str(), O_WRONLY | O_CLOEXEC));
-  }
-  if (opened.get() < 0) {
-    throw PwmError(file + ": " + std::strerror(errno) +
-                   " (remedy: join the group that owns it, or run as root)");
-  }
-  return opened;
-}
-
-void set_value(const std::string& file, std::uint32_t value) {
-  const FileDescriptor opened = open_value(file);
-  if (!write_value(opened.get(), value)) {
-    throw PwmError(file + ": " + std::to_string(value) + ": " + std::strerror(errno) +
-                   " (remedy: a period that this chip can make, and channels that are free)");
-  }
-}
-
-/// What a chip's number does not tell: the device it is in.
-std::string device_of(const fs::path& chip) {
-  std::error_code error;
-  return fs::read_symlink(chip / "device", error).filename().string();
-}
+constexpr char kKind[] = "PWM chip";
+constexpr char kRemedy[] = "a period that this chip can make, and channels that are free";
 
 std::uint32_t share_of(float effort, float full, std::uint32_t period_ns) {
   const float share = (effort < 0.0F ? -effort : effort) / full;
@@ -67,7 +28,7 @@ std::uint32_t share_of(float effort, float full, std::uint32_t period_ns) {
 
 std::vector<std::string> directions_of(const MotorSettings& settings) {
   if (settings.axes.empty() || settings.axes.size() > core::kAxes) {
-    throw PwmError(
+    throw SysfsError(
         "motors: one to three axes are wanted (remedy: name chip and direction of each)");
   }
   std::vector<std::string> names;
@@ -80,28 +41,14 @@ std::vector<std::string> directions_of(const MotorSettings& settings) {
 }  // namespace
 
 std::string find_pwm_chip(const std::string& root, const std::string& name, std::uint32_t channel) {
-  std::error_code error;
-  std::string others;
-  for (const auto& entry : fs::directory_iterator(root, error)) {  // bound: chips
-    const std::string device = device_of(entry.path());
-    if (device != name) {
-      others += (others.empty() ? "" : ", ") + device;
-      continue;
-    }
-    std::uint32_t channels = 0;
-    std::ifstream(entry.path() / "npwm") >> channels;
-    if (channel >= channels) {
-      throw PwmError(quoted(name) + ": it has no channel " + std::to_string(channel) +
+  const std::string chip = find_sysfs_device(root, name, kKind);
+  std::uint32_t channels = 0;
+  std::ifstream(chip + "/npwm") >> channels;
+  if (channel >= channels) {
+    throw SysfsError(quoted(kKind, name) + ": it has no channel " + std::to_string(channel) +
                      " (remedy: it has " + std::to_string(channels) + ", from 0)");
-    }
-    return entry.path().string();
   }
-  if (error || others.empty()) {
-    throw PwmError(quoted(name) + ": there is no PWM chip in " + root +
-                   " (remedy: enable it in the device tree)");
-  }
-  throw PwmError(quoted(name) + ": no chip in " + root +
-                 " has a device of that name (remedy: " + "name one of: " + others + ")");
+  return chip;
 }
 
 PwmChannel::PwmChannel(const std::string& root, const std::string& chip, std::uint32_t channel,
@@ -109,13 +56,13 @@ PwmChannel::PwmChannel(const std::string& root, const std::string& chip, std::ui
     : chip_(find_pwm_chip(root, chip, channel)), channel_(channel) {
   const std::string folder = chip_ + "/pwm" + std::to_string(channel);
   if (!fs::exists(folder)) {  // else of a program before us that did not tidy up
-    set_value(chip_ + "/export", channel);
+    set_value(chip_ + "/export", channel, kRemedy);
   }
-  width_ = open_value(folder + "/duty_cycle");
+  width_ = open_value(folder + "/duty_cycle", O_WRONLY);
   (void)write_value(width_.get(), 0);  // a channel that has no period yet refuses
-  set_value(folder + "/period", period_ns);
-  set_value(folder + "/duty_cycle", 0);
-  set_value(folder + "/enable", 1);
+  set_value(folder + "/period", period_ns, kRemedy);
+  set_value(folder + "/duty_cycle", 0, kRemedy);
+  set_value(folder + "/enable", 1, kRemedy);
 }
 
 PwmChannel::~PwmChannel() {
@@ -138,15 +85,11 @@ bool PwmChannel::set_width(std::uint32_t width_ns) noexcept {
 
 PwmMotors::PwmMotors(const MotorSettings& settings, const std::string& consumer)
     : directions_(GpioLines::outputs(directions_of(settings), consumer, false)),
+      good_(settings.good, consumer),
       period_ns_(settings.period_ns) {
   for (const MotorLines& axis : settings.axes) {  // bound: kAxes
     full_.push_back(axis.effort_at_full_width);
     channels_.emplace_back(settings.pwm_root, axis.chip, axis.channel, settings.period_ns);
-  }
-  if (!settings.good.empty()) {
-    InputSettings input;
-    input.bias = Bias::kPullDown;  // a broken wire is a failure
-    good_.emplace(GpioLines::inputs({settings.good}, consumer, input));
   }
 }
 
@@ -175,11 +118,7 @@ void PwmMotors::write(const core::MotorCommand& command) noexcept {
   }
 }
 
-bool PwmMotors::healthy() noexcept {
-  std::uint64_t good = 1;
-  const bool told = !good_ || good_->levels(good);
-  return delivered_ && told && good != 0U;
-}
+bool PwmMotors::healthy() noexcept { return delivered_ && good_.read(); }
 
 void PwmMotors::release() noexcept {
   for (PwmChannel& channel : channels_) {  // bound: kAxes

@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "motor_command.hpp"
 #include "tactree/hal/sim/board.hpp"
 
 namespace tactree::test {
@@ -69,21 +70,6 @@ TEST(SimEncoder, Faults) {
   EXPECT_TRUE(reading.valid[0]);
   EXPECT_FALSE(reading.valid[1]);
   EXPECT_EQ(reading.counts[2], -80);
-}
-
-core::MotorCommand command_of(float x) {
-  constexpr core::Mat3 kIdentity{{{1.0F, 0.0F, 0.0F}, {0.0F, 1.0F, 0.0F}, {0.0F, 0.0F, 1.0F}}};
-  core::SafetyGate gate;
-  core::GateLimits limits;
-  limits.ramp_ticks = 2;
-  limits.slew_N_per_tick = 16.0F;
-  for (float& slew : limits.effort_slew_per_tick) {
-    slew = 17.0F;
-  }
-  EXPECT_TRUE(gate.configure(limits));
-  gate.command({}, kIdentity);
-  gate.command({}, kIdentity);
-  return gate.command({x, 0.0F, 0.0F}, kIdentity).command;
 }
 
 TEST(SimMotor, HoldsSaturatesAndNeedsPower) {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <span>
 
+#include "tactree/core/controller.hpp"
 #include "tactree/core/usb/descriptors.hpp"
 #include "tactree/core/usb/dfu.hpp"
 #include "tactree/core/usb/setup.hpp"
@@ -45,8 +46,7 @@ struct UsbEvent {
 ///   halt(endpoint, on)        stalls it until it is called with false; fresh data toggle then
 ///   read(endpoint, bytes)     bytes that came in; returns how many
 ///   write(endpoint, bytes)    bytes to send; returns how many were taken. A message of an
-///   interrupt
-///                             endpoint is taken whole or not at all
+///                             interrupt endpoint is taken whole or not at all
 template <class T>
 concept UsbController = requires(T& usb, std::span<const std::byte> out, std::span<std::byte> in,
                                  std::uint8_t number, std::uint16_t count, bool on) {
@@ -100,6 +100,16 @@ class UsbDevice {
     const auto bytes = std::as_bytes(std::span(&news, 1));
     return may_move(core::usb::kNewsIn) &&
            controller_.write(core::usb::kNewsIn, bytes) == bytes.size();
+  }
+
+  /// Once a tick: the news, where state or faults are others than the host knows.
+  void tell_changes(const core::Status& status) {
+    const core::usb::NewsPacket news{status.tick, static_cast<std::uint32_t>(status.state),
+                                     status.faults, status.limits};
+    const bool same = news.state == told_.state && news.faults == told_.faults;
+    if (!same && tell(news)) {
+      told_ = news;
+    }
   }
 
   /// There is a host that has chosen a configuration.
@@ -195,6 +205,7 @@ class UsbDevice {
   core::usb::Dfu<Parameters> parameters_;
   core::usb::SetupPacket setup_{};
   core::usb::Answer pending_{};
+  core::usb::NewsPacket told_{};
 };
 
 }  // namespace tactree::hal

@@ -76,6 +76,21 @@ concept DfuStorage = requires(T& storage, std::uint32_t offset, std::span<const 
   { storage.read(offset, to, count) } -> std::same_as<DfuStatus>;
 };
 
+/// Of a device that takes nothing that way.
+struct NoDfuStorage {
+  [[nodiscard]] static DfuStatus begin() { return DfuStatus::kTarget; }
+  [[nodiscard]] static DfuStatus write(std::uint32_t, std::span<const std::byte>) {
+    return DfuStatus::kTarget;
+  }
+  [[nodiscard]] static DfuStatus finish() { return DfuStatus::kTarget; }
+  [[nodiscard]] static DfuProgress progress() { return {DfuStatus::kTarget}; }
+  static void abort() {}
+  [[nodiscard]] static DfuStatus read(std::uint32_t, std::span<std::byte>, std::size_t&) {
+    return DfuStatus::kTarget;
+  }
+};
+static_assert(DfuStorage<NoDfuStorage>);
+
 template <DfuStorage Storage>
 class Dfu {
  public:

@@ -1,7 +1,8 @@
 #pragma once
-// A Linux computer as the controller of a device: encoders, switches and enable line at GPIO lines,
-// motors at PWM channels, a session's mailbox as the link. Its parts are requested in the order in
-// which they can do harm: the enable line first, off, and its guard.
+// A Linux computer as the controller of a device: switches and enable line at GPIO lines, encoders
+// there or at counters, motors at PWM channels or converters, a session's mailbox as the link. Its
+// parts are requested in the order in which they can do harm: the enable line first, off, and its
+// guard.
 
 #include <cstdint>
 #include <optional>
@@ -10,6 +11,8 @@
 #include <vector>
 
 #include "tactree/hal/linux/absolute_ticker.hpp"
+#include "tactree/hal/linux/converter_motors.hpp"
+#include "tactree/hal/linux/counter_encoders.hpp"
 #include "tactree/hal/linux/enable_guard.hpp"
 #include "tactree/hal/linux/gpio_board.hpp"
 #include "tactree/hal/linux/pwm_motors.hpp"
@@ -19,11 +22,14 @@
 namespace tactree::hal::linux_gpio {
 
 struct ControllerBoardSettings {
-  std::string consumer = "tactree";  ///< what gpioinfo shows
-  std::vector<EncoderLines> encoders;
+  std::string consumer = "tactree";    ///< what gpioinfo shows
+  std::vector<EncoderLines> encoders;  ///< these, or counters
+  CounterSettings counters{};
   std::uint32_t encoder_faults_max = 0;  ///< edges lost and illegal transitions, until reset
-  MotorSettings motors{};
+  MotorSettings motors{};                ///< these, or converters
+  ConverterSettings converters{};
   std::string enable;
+  std::string brake = {};  ///< opened with the power; empty: there is none
   std::string enable_read_back;
   std::string emergency_stop;
   std::string dead_man;
@@ -34,6 +40,36 @@ struct ControllerBoardSettings {
   std::uint32_t watchdog_timeout_s = 2;
   std::uint64_t period_ns = 1'000'000;  ///< of a tick
   GuardSettings guard{};
+};
+
+/// An EncoderBank of the kind that the settings name.
+class BoardEncoders {
+ public:
+  explicit BoardEncoders(const ControllerBoardSettings& settings);
+  [[nodiscard]] core::EncoderReading read() noexcept {
+    return lines_ ? lines_->read() : counters_->read();
+  }
+  /// Edges, over all axes; counters lose none.
+  [[nodiscard]] std::uint32_t lost() const { return lines_ ? lines_->lost() : 0U; }
+
+ private:
+  std::optional<GpioEncoderBank> lines_;
+  std::optional<CounterEncoderBank> counters_;
+};
+
+/// A MotorBank of the kind that the settings name.
+class BoardMotors {
+ public:
+  explicit BoardMotors(const ControllerBoardSettings& settings);
+  void write(const core::MotorCommand& command) noexcept {
+    pwm_ ? pwm_->write(command) : converters_->write(command);
+  }
+  [[nodiscard]] bool healthy() noexcept { return pwm_ ? pwm_->healthy() : converters_->healthy(); }
+  void release() noexcept { pwm_ ? pwm_->release() : converters_->release(); }
+
+ private:
+  std::optional<PwmMotors> pwm_;
+  std::optional<ConverterMotors> converters_;
 };
 
 class ControllerBoard {
@@ -71,8 +107,8 @@ class ControllerBoard {
   ControllerBoard(const ControllerBoard&) = delete;
   ControllerBoard& operator=(const ControllerBoard&) = delete;
 
-  [[nodiscard]] GpioEncoderBank& encoders() noexcept { return encoders_; }
-  [[nodiscard]] PwmMotors& motors() noexcept { return motors_; }
+  [[nodiscard]] BoardEncoders& encoders() noexcept { return encoders_; }
+  [[nodiscard]] BoardMotors& motors() noexcept { return motors_; }
   [[nodiscard]] GpioEnableLine& enable_line() noexcept { return enable_line_; }
   [[nodiscard]] GpioSafetyInputs& safety_inputs() noexcept { return safety_inputs_; }
   [[nodiscard]] BoardTicker& ticker() noexcept { return ticker_; }
@@ -90,9 +126,9 @@ class ControllerBoard {
 
   GpioEnableLine enable_line_;
   EnableGuard guard_;
-  PwmMotors motors_;
+  BoardMotors motors_;
   GpioSafetyInputs safety_inputs_;
-  GpioEncoderBank encoders_;
+  BoardEncoders encoders_;
   std::optional<GpioLines> heartbeat_;
   bool heartbeat_level_ = false;
   std::optional<WatchdogDevice> watchdog_;

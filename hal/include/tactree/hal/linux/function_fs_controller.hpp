@@ -13,11 +13,17 @@
 
 namespace tactree::hal::linux_usb {
 
+/// A USB device port of this computer: one of /sys/class/udc; empty: the only one there is. Throws
+/// std::runtime_error: there is none, none of that name, or several.
+[[nodiscard]] std::string find_udc(const std::string& name);
+
 /// A UsbController (usb_device.hpp). Not for several threads at once; transfers are asynchronous.
+/// Once it is plugged in nothing of it allocates.
 class FunctionFsController {
  public:
-  /// `udc`: the device controller, one of /sys/class/udc; empty: the only one there is.
-  FunctionFsController(const core::usb::Identity& identity, std::string udc);
+  /// `udc`: as find_udc() takes it. `with_dfu`: offer model and parameters for DFU, where the kernel
+  /// takes that.
+  FunctionFsController(const core::usb::Identity& identity, std::string udc, bool with_dfu = true);
   ~FunctionFsController();
   FunctionFsController(const FunctionFsController&) = delete;
   FunctionFsController& operator=(const FunctionFsController&) = delete;

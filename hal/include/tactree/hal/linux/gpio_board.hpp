@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -56,23 +57,40 @@ class GpioEncoderBank {
   bool gone_ = false;
 };
 
+/// Of amplifiers that report their failures on one line: high while there is none. A broken wire is
+/// a failure. Where there is no such line (empty name) nobody complains.
+class AmplifiersGood {
+ public:
+  AmplifiersGood(const std::string& line, const std::string& consumer);
+  [[nodiscard]] bool read() const noexcept;
+
+ private:
+  std::optional<GpioLines> line_;
+};
+
 /// The line that gives the amplifiers their power, and the one that comes back from them. The
 /// kernel lets go of the lines when the program ends, however it ends: then some drivers make the
 /// line an input, so that the hardware's pull decides, and some leave it as it was. So let that
 /// pull say off, and have an EnableGuard (enable_guard.hpp) that puts it off first.
+///
+/// Brakes that a spring closes are opened by a line of their own, of the same chip, together with
+/// the power: they hold the device whenever the motors do not.
 class GpioEnableLine {
  public:
+  /// `brake`: high opens the brakes; empty: there are none.
   GpioEnableLine(const std::string& enable, const std::string& read_back,
-                 const std::string& consumer);
-  void set(bool on) noexcept { (void)enable_.set(on ? 1U : 0U); }
+                 const std::string& consumer, const std::string& brake = {});
+  void set(bool on) noexcept { (void)enable_.set(on ? kAll : 0U); }
   [[nodiscard]] bool read_back() noexcept;
-  /// The line that set() drives, for a guard.
+  /// The lines that set() drives, for a guard.
   [[nodiscard]] GpioLines& line() { return enable_; }
   ~GpioEnableLine() { set(false); }
   GpioEnableLine(const GpioEnableLine&) = delete;
   GpioEnableLine& operator=(const GpioEnableLine&) = delete;
 
  private:
+  static constexpr std::uint64_t kAll = 3;  // enable, brake
+
   GpioLines enable_;
   GpioLines read_back_;
 };

@@ -1,25 +1,19 @@
 #pragma once
 // Motors behind amplifiers that take a pulse width and a direction: PWM channels of a Linux
 // computer (/sys/class/pwm) and GPIO lines. Each keeps the contract of board.hpp; constructors
-// throw PwmError or GpioError, nothing else does.
+// throw SysfsError or GpioError, nothing else does.
 
 #include <cstdint>
-#include <optional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "tactree/hal/board.hpp"
 #include "tactree/hal/linux/file_descriptor.hpp"
+#include "tactree/hal/linux/gpio_board.hpp"
 #include "tactree/hal/linux/gpio_lines.hpp"
+#include "tactree/hal/linux/sysfs_error.hpp"
 
 namespace tactree::hal::linux_gpio {
-
-/// "PWM chip '48300200.pwm': cause (remedy: ...)"
-class PwmError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 struct MotorLines {
   std::string chip;                   ///< by the name of its device: pwmchip numbers change
@@ -32,11 +26,11 @@ struct MotorSettings {
   std::string pwm_root = "/sys/class/pwm";
   std::uint32_t period_ns = 50'000;
   std::vector<MotorLines> axes;  ///< 1 .. core::kAxes; directions on one chip
-  /// Line that is high while no amplifier reports a failure; empty: there is none.
-  std::string good = {};
+  std::string good = {};         ///< line, see AmplifiersGood
 };
 
-/// The folder of a PWM chip. Throws PwmError: no such chip (and which there are), no such channel.
+/// The folder of a PWM chip. Throws SysfsError: no such chip (and which there are), no such
+/// channel.
 [[nodiscard]] std::string find_pwm_chip(const std::string& root, const std::string& name,
                                         std::uint32_t channel);
 
@@ -85,7 +79,7 @@ class PwmMotors {
   std::vector<float> full_;
   std::vector<PwmChannel> channels_;
   GpioLines directions_;
-  std::optional<GpioLines> good_;
+  AmplifiersGood good_;
   std::uint32_t period_ns_;
   std::uint64_t negative_ = 0;  // bit n: axis n is driven that way
   bool delivered_ = true;       // everything, since the start

@@ -39,7 +39,7 @@ class UsbTarget : public ServedTarget {
     const auto now_us = std::chrono::duration_cast<std::chrono::microseconds>(now).count();
     device_.poll(static_cast<std::uint32_t>(now_us));
     work();
-    tell();
+    device_.tell_changes(status_);
   }
 
   [[nodiscard]] const Device& device() const { return device_; }
@@ -62,21 +62,11 @@ class UsbTarget : public ServedTarget {
     Device& device_;
   };
 
-  void tell() {
-    const core::usb::NewsPacket news{status_.tick, static_cast<std::uint32_t>(status_.state),
-                                     status_.faults, status_.limits};
-    const bool same = news.state == told_.state && news.faults == told_.faults;
-    if (!same && device_.tell(news)) {
-      told_ = news;
-    }
-  }
-
   Model model_;
   Parameters parameters_;
   Device device_;
   Port port_;
   core::Status status_{};
-  core::usb::NewsPacket told_{};
 };
 
 }  // namespace tactree::serve
