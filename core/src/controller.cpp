@@ -428,6 +428,9 @@ void Controller::render() {
   if (!rendered_) {
     return;
   }
+  if (state_ != State::kActive) {
+    scene_.let_out();
+  }
   // at most: 1 per Controller::step together scene
   // at most: kAxes per Controller::step together ways as 3
   const SceneRendering& rendering = scene_.update(configuration_, probe_, velocity_);

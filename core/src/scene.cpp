@@ -238,6 +238,14 @@ bool Scene::lend_slots() {
   return crowded;
 }
 
+void Scene::let_out() {
+  for (Slot& slot : slots_) {  // bound: kMaxReachableBodies
+    if (slot.body != kNoBody) {
+      slot.renderer.let_out(bodies_[slot.body].probe);
+    }
+  }
+}
+
 const SceneRendering& Scene::update(const Configuration& configuration, Vec3 probe, Vec3 velocity) {
   const auto fade_ticks = static_cast<std::uint32_t>(kFadeSeconds * configuration.rate_hz);
   fade_ticks_ = fade_ticks > 0U ? fade_ticks : 1U;

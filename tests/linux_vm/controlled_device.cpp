@@ -29,6 +29,12 @@ std::int64_t now_ns() {
 std::size_t number(Wire wire) { return static_cast<std::size_t>(wire); }
 std::size_t number(Wire wire, std::size_t axis) { return number(wire) + 3 * axis; }
 
+long number_in(const hal::FileDescriptor& file) {
+  std::array<char, 32> text{};
+  (void)!::pread(file.get(), text.data(), text.size() - 1, 0);
+  return std::strtol(text.data(), nullptr, 10);
+}
+
 plant::DevicePlantParameters parameters() {
   plant::DevicePlantParameters p;
   const core::DevicePreset device = test_device();
@@ -40,8 +46,9 @@ plant::DevicePlantParameters parameters() {
 /// The device's process.
 class Device {
  public:
-  Device(GpioSim& chip, const PwmFolder& pwm, Hands& hands, const Eigen::Vector3d& start_m)
-      : chip_(chip), pwm_(pwm), hands_(hands), plant_(parameters(), start_m) {
+  Device(GpioSim& chip, const PwmFolder& pwm, const AnalogueFolder* analogue, Hands& hands,
+         const Eigen::Vector3d& start_m)
+      : chip_(chip), pwm_(pwm), analogue_(analogue), hands_(hands), plant_(parameters(), start_m) {
     for (std::size_t i = 0; i < kAxes; ++i) {
       counts_[i] = count_of(i);
       show(i);
@@ -54,6 +61,7 @@ class Device {
       switches();
       plant_.advance(effort(), hand(), 1e-9 * static_cast<double>(kStep_ns));
       move_encoders();
+      flip();
       tell();
       due += kStep_ns;
       if (now_ns() > due) {
@@ -88,6 +96,10 @@ class Device {
   void move_encoders() {
     for (std::size_t i = 0; i < kAxes; ++i) {
       const std::int64_t to = count_of(i);
+      if (analogue_ != nullptr) {
+        analogue_->show(i, to);
+        continue;
+      }
       while (counts_[i] != to) {
         counts_[i] += counts_[i] < to ? 1 : -1;
         show(i);
@@ -96,6 +108,14 @@ class Device {
           chip_.pull(number(Wire::kIndex0, i), false);
         }
       }
+    }
+  }
+
+  void flip() {
+    const std::size_t track = number(Wire::kA0);
+    for (int left = hands_.flips.exchange(0); left > 0; --left) {
+      chip_.pull(track, !shown_[0][0]);
+      chip_.pull(track, shown_[0][0]);
     }
   }
 
@@ -122,13 +142,19 @@ class Device {
   [[nodiscard]] Eigen::Vector3d effort() {
     Eigen::Vector3d effort = Eigen::Vector3d::Zero();
     for (std::size_t i = 0; i < kAxes; ++i) {
-      const double share = static_cast<double>(pwm_.width(i)) / kPwmPeriod_ns;
-      const bool negative = chip_.level(number(Wire::kDirection0) + i);
-      const double size = static_cast<double>(kFullEffort_N) * share;
       const bool powered = chip_.level(number(Wire::kEnable)) && power_steps_ > kPowerDelaySteps;
-      effort[static_cast<Eigen::Index>(i)] = powered ? (negative ? -size : size) : 0.0;
+      effort[static_cast<Eigen::Index>(i)] =
+          powered ? static_cast<double>(kFullEffort_N) * commanded_share(i) : 0.0;
     }
     return effort_ = effort;
+  }
+
+  [[nodiscard]] double commanded_share(std::size_t axis) const {
+    if (analogue_ != nullptr) {
+      return static_cast<double>(analogue_->code(axis) - kZeroCode) / (kFullCode - kZeroCode);
+    }
+    const double share = static_cast<double>(pwm_.width(axis)) / kPwmPeriod_ns;
+    return chip_.level(number(Wire::kDirection0) + axis) ? -share : share;
   }
 
   [[nodiscard]] plant::HandTarget hand() const {
@@ -153,6 +179,7 @@ class Device {
 
   GpioSim& chip_;
   const PwmFolder& pwm_;
+  const AnalogueFolder* analogue_;
   Hands& hands_;
   plant::DevicePlant plant_;
   std::array<std::int64_t, kAxes> counts_{};
@@ -194,13 +221,41 @@ PwmFolder::PwmFolder(const std::filesystem::path& folder) : root_(folder / "pwm"
   }
 }
 
-long PwmFolder::width(std::size_t channel) const {
-  std::array<char, 32> text{};
-  (void)!::pread(widths_[channel].get(), text.data(), text.size() - 1, 0);
-  return std::strtol(text.data(), nullptr, 10);
+long PwmFolder::width(std::size_t channel) const { return number_in(widths_[channel]); }
+
+AnalogueFolder::AnalogueFolder(const std::filesystem::path& folder) : root_(folder / "bus") {
+  const auto add = [&](const std::string& device, const std::string& entry) {
+    std::filesystem::create_directories(folder / device / entry);
+    std::filesystem::create_directories(root_);
+    std::filesystem::create_directory_symlink(folder / device / entry, root_ / entry);
+    return folder / device / entry;
+  };
+  const std::filesystem::path counter = add(kCounterDevice, "counter0");
+  const std::filesystem::path converter = add(kConverterDevice, "iio:device0");
+  for (std::size_t i = 0; i < kAxes; ++i) {
+    const std::filesystem::path count = counter / ("count" + std::to_string(i));
+    std::filesystem::create_directories(count);
+    std::ofstream(count / "function").flush();
+    for (const char* const file : {"enable", "ceiling", "count"}) {
+      std::ofstream(count / file) << "0\n";
+    }
+    counts_.emplace_back(::open((count / "count").c_str(), O_WRONLY | O_CLOEXEC));
+    const std::filesystem::path code = converter / ("out_voltage" + std::to_string(i) + "_raw");
+    std::ofstream(code) << "0\n";
+    codes_.emplace_back(::open(code.c_str(), O_RDONLY | O_CLOEXEC));
+  }
 }
 
+// One write: a reader sees the count before or after it.
+void AnalogueFolder::show(std::size_t axis, std::int64_t count) const {
+  const std::string text = std::to_string(static_cast<std::uint32_t>(count)) + "\n";
+  (void)!::pwrite(counts_[axis].get(), text.data(), text.size(), 0);
+}
+
+long AnalogueFolder::code(std::size_t channel) const { return number_in(codes_[channel]); }
+
 ControlledDevice::ControlledDevice(GpioSim& chip, const PwmFolder& pwm,
+                                   const AnalogueFolder* analogue,
                                    const std::array<double, 3>& start_m) {
   void* const memory =
       mmap(nullptr, sizeof(Hands), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
@@ -210,7 +265,7 @@ ControlledDevice::ControlledDevice(GpioSim& chip, const PwmFolder& pwm,
   }
   process_ = fork();
   if (process_ == 0) {
-    Device(chip, pwm, *hands_, {start_m[0], start_m[1], start_m[2]}).run();
+    Device(chip, pwm, analogue, *hands_, {start_m[0], start_m[1], start_m[2]}).run();
   }
 }
 

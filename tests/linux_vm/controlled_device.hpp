@@ -1,6 +1,7 @@
 #pragma once
 // A haptic device at the lines of a simulated chip, in a process of its own: quadrature edges and
-// switches in, enable line, directions and pulse widths out. And the hand that holds it.
+// switches in, enable line, directions and pulse widths out; or counters and converters, as
+// folders. And the hand that holds it.
 
 #include <array>
 #include <atomic>
@@ -34,10 +35,12 @@ enum class Wire : std::uint8_t {
   kDeadMan,
   kGood,
   kHeartbeat,
+  kBrake,
 };
 inline const std::vector<std::string> kLineNames = {
-    "enc0-a", "enc0-b", "enc0-i", "enc1-a", "enc1-b", "enc1-i", "enc2-a", "enc2-b", "enc2-i",
-    "dir0",   "dir1",   "dir2",   "enable", "power",  "e-stop", "hand",   "good",   "beat"};
+    "enc0-a", "enc0-b", "enc0-i", "enc1-a", "enc1-b", "enc1-i", "enc2-a",
+    "enc2-b", "enc2-i", "dir0",   "dir1",   "dir2",   "enable", "power",
+    "e-stop", "hand",   "good",   "beat",   "brake"};
 
 /// Shared between the test and the device's process.
 struct Hands {
@@ -46,6 +49,7 @@ struct Hands {
   std::atomic<bool> dead_man{false};
   std::atomic<bool> pull_stop{false};  ///< taken back when it was pulled, at its own moment
   std::atomic<bool> release_stop{false};
+  std::atomic<int> flips{0};  ///< of track a of axis 0, forth and back, in one go: a bad wire
   std::atomic<bool> end{false};
   // What can be seen.
   std::array<std::atomic<double>, 3> tip_m{};
@@ -74,15 +78,36 @@ class PwmFolder {
   std::vector<hal::FileDescriptor> widths_;
 };
 
+/// Folders as /sys/bus/counter/devices and /sys/bus/iio/devices have them: the test kernel has
+/// neither counters nor converters.
+class AnalogueFolder {
+ public:
+  explicit AnalogueFolder(const std::filesystem::path& folder);
+  [[nodiscard]] const std::filesystem::path& root() const { return root_; }
+  void show(std::size_t axis, std::int64_t count) const;
+  [[nodiscard]] long code(std::size_t channel) const;
+
+ private:
+  std::filesystem::path root_;
+  std::vector<hal::FileDescriptor> counts_;
+  std::vector<hal::FileDescriptor> codes_;
+};
+inline constexpr char kCounterDevice[] = "test.counter";
+inline constexpr char kConverterDevice[] = "test.dac";
+inline constexpr int kZeroCode = 2048;
+inline constexpr int kFullCode = 4095;
+
 class ControlledDevice {
  public:
-  /// Starts the process. The tip is at `start_m`.
-  ControlledDevice(GpioSim& chip, const PwmFolder& pwm, const std::array<double, 3>& start_m);
+  /// Starts the process. The tip is at `start_m`. `analogue`: where not null, encoders and motors
+  /// are there instead of at the lines.
+  ControlledDevice(GpioSim& chip, const PwmFolder& pwm, const AnalogueFolder* analogue,
+                   const std::array<double, 3>& start_m);
   ~ControlledDevice();
   ControlledDevice(const ControlledDevice&) = delete;
   ControlledDevice& operator=(const ControlledDevice&) = delete;
 
-  [[nodiscard]] Hands& hands() { return *hands_; }
+  [[nodiscard]] Hands& hands() const { return *hands_; }
   /// The hand goes there in a straight line, and this returns when it has arrived.
   void move_hand(const std::array<double, 3>& to_m, double speed_m_s);
 

@@ -1,6 +1,7 @@
 // tactree-controller in a real kernel, against a device in a process of its own.
 //
-// usage: linux_controller_test TACTREE_CONTROLLER      (as root, in the test kernel, virtual time)
+// usage: linux_controller_test TACTREE_CONTROLLER BUNNY_BLOB
+//        (as root, in the test kernel, virtual time)
 
 #include <fcntl.h>
 #include <grp.h>
@@ -15,6 +16,7 @@
 #include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <random>
 #include <sstream>
 #include <thread>
@@ -23,6 +25,8 @@
 #include "tactree/hal/linux/gpio_lines.hpp"
 #include "tactree/host/board.hpp"
 #include "tactree/host/local_socket.hpp"
+#include "tactree/host/usb_devices.hpp"
+#include "tactree/host/usb_transport.hpp"
 #include "test_models.hpp"
 
 namespace tactree::vm_test {
@@ -33,8 +37,10 @@ using nlohmann::json;
 using namespace std::chrono_literals;
 
 std::string program;  // NOLINT: of the command line
+std::string bunny;    // NOLINT
 
 constexpr double kRadius_m = 0.03;
+constexpr double kHand_N_m = 300.0;  // how stiff plant::HandTarget is
 constexpr double kRate_hz = 1000.0;
 constexpr double kPeriod_ns = 1e9 / kRate_hz;
 
@@ -63,9 +69,16 @@ json axes(std::initializer_list<json> list) { return json(list); }
 
 class Controller : public testing::Test {
  protected:
+  explicit Controller(bool analogue = false) {
+    if (analogue) {
+      analogue_.emplace(folder_);
+    }
+    device_.emplace(chip_, pwm_, analogue ? &*analogue_ : nullptr,
+                    std::array<double, 3>{-0.05, -0.05, 0.05});
+  }
+
   void SetUp() override {
-    const core::DevicePreset device = test_device();
-    write_device(device);
+    write_device("index");
     const test::TestBlob blob(test::sphere(kRadius_m, 3e-3));
     const std::vector<std::byte>& bytes = blob.written().bytes;
     std::ofstream(folder_ / "sphere.blob", std::ios::binary)
@@ -89,7 +102,8 @@ class Controller : public testing::Test {
                {"enable_read_back", "power"},
                {"emergency_stop", "e-stop"},
                {"dead_man", "hand"},
-               {"heartbeat", "beat"}}},
+               {"heartbeat", "beat"},
+               {"brake", "brake"}}},
              {"watchdog", {{"device", "/dev/watchdog0"}, {"timeout_s", 60}}},
              {"real_time", {{"priority", 80}, {"required", true}, {"guard_ms", 20}}},
              {"socket", socket_}};
@@ -111,13 +125,14 @@ class Controller : public testing::Test {
             {"effort_at_full_width", kFullEffort_N}};
   }
 
-  void write_device(const core::DevicePreset& device) {
+  void write_device(const char* homing) {
+    const core::DevicePreset device = test_device();
     const core::DeviceModel& m = device.model;
     const auto list = [](const float(&v)[3]) { return json{v[0], v[1], v[2]}; };
     const json text = {{"name", "test"},
                        {"about", "three linear axes"},
                        {"kind", "cartesian"},
-                       {"homing", "index"},
+                       {"homing", homing},
                        {"counts_per_m", list(m.counts_per_m)},
                        {"ratio", list(m.ratio)},
                        {"home_position", list(m.home_position)},
@@ -183,43 +198,52 @@ class Controller : public testing::Test {
   void serve() {
     child_ = start();
     ASSERT_TRUE(eventually([&] { return holds(output(), "serving"); })) << output();
-    board_ = std::make_unique<host::Board>(host::open_local_socket(socket_),
-                                           host::BoardOptions{115200, 100});
+    connect();
     // The simulated chip lets go of its switches for a moment while they are requested.
     std::this_thread::sleep_for(20ms);
     board_->clear_faults();
   }
 
-  /// Over the index pulse of each axis, and above the sphere.
+  virtual void connect() {
+    board_ = std::make_unique<host::Board>(host::open_local_socket(socket_),
+                                           host::BoardOptions{115200, 100});
+  }
+
+  /// Over the index pulse of each axis.
+  virtual void find_home() {
+    device_->move_hand({0.05, -0.05, 0.05}, 0.2);
+    device_->move_hand({0.05, 0.05, 0.05}, 0.2);
+    device_->move_hand({0.05, 0.05, -0.01}, 0.2);
+  }
+
+  /// And then above the model.
   void home() {
-    device_.move_hand({0.05, -0.05, 0.05}, 0.2);
-    device_.move_hand({0.05, 0.05, 0.05}, 0.2);
-    device_.move_hand({0.05, 0.05, -0.01}, 0.2);
+    find_home();
     ASSERT_TRUE(eventually([&] {
       return (board_->capabilities().flags &
               static_cast<std::uint32_t>(core::wire::BoardFlag::kHomed)) != 0U;
     })) << output();
-    device_.move_hand({0.05, 0.05, 0.05}, 0.2);
-    device_.move_hand({0.0, 0.0, 0.05}, 0.2);
+    device_->move_hand({0.05, 0.05, above_m_}, 0.2);
+    device_->move_hand({0.0, 0.0, above_m_}, 0.2);
     ASSERT_EQ(host::names_of(board_->state().faults), "") << output();
   }
 
   void arm() {
     board_->begin_arming();
     std::this_thread::sleep_for(20ms);
-    hands_.dead_man = true;
+    hands().dead_man = true;
     ASSERT_TRUE(eventually([&] { return board_->state().state == kActive; }))
         << "faults: " << host::names_of(board_->state().faults) << "\n"
         << "limits: " << board_->state().limits << ", probe z: " << board_->state().probe_m[2]
-        << ", tip z: " << hands_.tip_m[2] << "\n"
+        << ", tip z: " << hands().tip_m[2] << "\n"
         << report();
   }
 
   /// Until there is a force.
   void press() {
-    device_.move_hand({0.0, 0.0, kRadius_m - 0.005}, 0.2);
-    ASSERT_TRUE(eventually([&] { return hands_.effort_N[2] > 0.5; }))
-        << "faults: " << host::names_of(board_->state().faults) << ", tip z: " << hands_.tip_m[2]
+    device_->move_hand({0.0, 0.0, kRadius_m - 0.005}, 0.2);
+    ASSERT_TRUE(eventually([&] { return hands().effort_N[2] > 0.5; }))
+        << "faults: " << host::names_of(board_->state().faults) << ", tip z: " << hands().tip_m[2]
         << "\n"
         << report();
   }
@@ -249,7 +273,19 @@ class Controller : public testing::Test {
   }
 
   [[nodiscard]] bool is_enabled() const {
-    return chip_.level(static_cast<std::size_t>(Wire::kEnable));
+    const bool enabled = chip_.level(static_cast<std::size_t>(Wire::kEnable));
+    EXPECT_EQ(chip_.level(static_cast<std::size_t>(Wire::kBrake)), enabled) << "brakes are closed";
+    return enabled;
+  }
+
+  [[nodiscard]] Hands& hands() const { return device_->hands(); }
+
+  /// What the hand gives, the motors hold.
+  void expect_balance(double hand_z_m) const {
+    const std::array<double, 3> hand = {hands().hand_m[0], hands().hand_m[1], hand_z_m};
+    for (std::size_t i = 0; i < hand.size(); ++i) {
+      EXPECT_NEAR(hands().effort_N[i], kHand_N_m * (hands().tip_m[i] - hand[i]), 0.15) << i;
+    }
   }
 
   static constexpr auto kActive = static_cast<std::uint8_t>(core::State::kActive);
@@ -262,8 +298,9 @@ class Controller : public testing::Test {
   json file_;
   GpioSim chip_{"board", kLineNames};
   PwmFolder pwm_{folder_};
-  ControlledDevice device_{chip_, pwm_, {-0.05, -0.05, 0.05}};
-  Hands& hands_ = device_.hands();
+  std::optional<AnalogueFolder> analogue_;
+  std::optional<ControlledDevice> device_;
+  double above_m_ = 0.05;  // the model, in the middle
   pid_t child_ = -1;
   std::unique_ptr<host::Board> board_;
 };
@@ -281,17 +318,17 @@ TEST_F(Controller, HomesArmsRendersAndStops) {
   ASSERT_FALSE(HasFatalFailure());
   std::this_thread::sleep_for(300ms);
   // Wall and hand are springs in series: the wall's share of the 5 mm is what is measured.
-  const double depth = kRadius_m - hands_.tip_m[2];
-  const double force = hands_.effort_N[2];
+  const double depth = kRadius_m - hands().tip_m[2];
+  const double force = hands().effort_N[2];
   EXPECT_GT(depth, 0.0005);
   EXPECT_LT(depth, 0.0030);
-  EXPECT_NEAR(force, 300.0 * (0.005 - depth), 0.15) << "what the hand gives, the motor holds";
-  EXPECT_LT(std::abs(hands_.effort_N[0]), 0.3);
+  expect_balance(kRadius_m - 0.005);
+  EXPECT_LT(std::abs(hands().effort_N[0]), 0.3);
   const core::wire::StateReply state = board_->state();
   EXPECT_EQ(state.state, kActive);
   EXPECT_EQ(state.faults, 0U);
-  EXPECT_NEAR(static_cast<double>(state.probe_m[2]), hands_.tip_m[2], 0.0005);
-  EXPECT_GT(hands_.beats, 100U);
+  EXPECT_NEAR(static_cast<double>(state.probe_m[2]), hands().tip_m[2], 0.0005);
+  EXPECT_GT(hands().beats, 100U);
   kill(child_, SIGUSR1);
   ASSERT_TRUE(eventually([&] { return holds(output(), "lateness of a tick"); }));
   EXPECT_TRUE(holds(output(), "below "));
@@ -309,7 +346,219 @@ TEST_F(Controller, HomesArmsRendersAndStops) {
       << report;
   EXPECT_TRUE(holds(report, "encoder edges lost: 0\n")) << report;
   std::printf("force %.2f N at %.2f mm; %lu edges\n%s", force, 1e3 * depth,
-              static_cast<unsigned long>(hands_.edges), report.c_str());
+              static_cast<unsigned long>(hands().edges), report.c_str());
+}
+
+/// Down to a touch, 3 mm further, and over the surface.
+TEST_F(Controller, TheBunnyIsFelt) {
+  file_["model"] = bunny;
+  above_m_ = 0.1;
+  serve();
+  ASSERT_FALSE(HasFatalFailure());
+  home();
+  ASSERT_FALSE(HasFatalFailure());
+  arm();
+  ASSERT_FALSE(HasFatalFailure());
+  const auto push_N = [&] {
+    return std::hypot(hands().effort_N[0], hands().effort_N[1], hands().effort_N[2]);
+  };
+  double z_m = above_m_;
+  while (push_N() < 0.3 && z_m > -above_m_) {
+    z_m -= 0.001;
+    device_->move_hand({0.0, 0.0, z_m}, 0.05);
+  }
+  ASSERT_GT(z_m, -above_m_) << "nothing is there";
+  z_m -= 0.003;
+  device_->move_hand({0.0, 0.0, z_m}, 0.05);
+  std::this_thread::sleep_for(300ms);
+  EXPECT_GT(push_N(), 0.8);
+  expect_balance(z_m);
+  for (const double x_m : {0.004, -0.004, 0.0}) {
+    device_->move_hand({x_m, 0.0, z_m}, 0.05);
+    EXPECT_GT(push_N(), 0.2) << "the surface ends at x = " << x_m;
+  }
+  EXPECT_EQ(board_->state().state, kActive);
+  std::printf("the bunny: %.2f N with the hand at z = %.1f mm, %lu edges\n%s", push_N(), 1e3 * z_m,
+              static_cast<unsigned long>(hands().edges), report().c_str());
+  EXPECT_TRUE(holds(output(), "encoder edges lost: 0\n")) << output();
+}
+
+/// More edges than the kernel keeps from one tick to the next.
+TEST_F(Controller, EdgesBeyondWhatTheKernelCanBearAreAFault) {
+  file_["rate_hz"] = 100.0;
+  file_["limits"]["stiffness_N_m"] = 20.0;
+  file_["real_time"]["guard_ms"] = 100;
+  serve();
+  ASSERT_FALSE(HasFatalFailure());
+  home();
+  ASSERT_FALSE(HasFatalFailure());
+  arm();
+  ASSERT_FALSE(HasFatalFailure());
+  hands().flips = 50;
+  std::this_thread::sleep_for(100ms);
+  EXPECT_EQ(board_->state().state, kActive) << "what it can bear, it bears";
+  hands().flips = 20000;
+  ASSERT_TRUE(eventually([&] { return !is_enabled(); })) << report();
+  EXPECT_TRUE(core::has_fault(board_->state().faults, core::Fault::kEncoderInvalid))
+      << host::names_of(board_->state().faults);
+  const std::string text = report();
+  EXPECT_TRUE(holds(text, "encoder edges lost: ") && !holds(text, "encoder edges lost: 0\n"))
+      << text;
+  board_->clear_faults();
+  std::this_thread::sleep_for(50ms);
+  EXPECT_NE(board_->state().faults, 0U) << "where the axis is, nobody knows: until it starts anew";
+}
+
+/// Counters, converters; homed in a given pose.
+class AnalogueController : public Controller {
+ protected:
+  AnalogueController() : Controller(true) {}
+
+  void SetUp() override {
+    Controller::SetUp();
+    write_device("given-pose");
+    const auto axis = [](int i) {
+      return json{{"converter", kConverterDevice},
+                  {"channel", i},
+                  {"zero_code", kZeroCode},
+                  {"full_code", kFullCode},
+                  {"effort_at_full", kFullEffort_N}};
+    };
+    const auto counter = [](int i) { return json{{"counter", kCounterDevice}, {"count", i}}; };
+    file_["encoders"] = {{"counter_root", analogue_->root().string()},
+                         {"axes", axes({counter(0), counter(1), counter(2)})}};
+    file_["motors"] = {{"converter_root", analogue_->root().string()},
+                       {"good", "good"},
+                       {"axes", axes({axis(0), axis(1), axis(2)})}};
+  }
+
+  void find_home() override {
+    device_->move_hand({0.0, 0.0, 0.0}, 0.2);
+    std::this_thread::sleep_for(500ms);
+    board_->home();
+  }
+};
+
+TEST_F(AnalogueController, HomesArmsRendersAndStops) {
+  EXPECT_EQ(run({"--dry-run"}), 0) << output();
+  EXPECT_TRUE(holds(output(), "encoders at counters")) << output();
+  hold();
+  ASSERT_FALSE(HasFatalFailure());
+  std::this_thread::sleep_for(300ms);
+  expect_balance(kRadius_m - 0.005);
+  EXPECT_EQ(hands().edges, 0U);
+  EXPECT_EQ(board_->state().state, kActive);
+  EXPECT_NEAR(static_cast<double>(board_->state().probe_m[2]), hands().tip_m[2], 0.001);
+  kill(child_, SIGTERM);
+  EXPECT_EQ(finish(std::exchange(child_, -1)), 0) << output();
+  EXPECT_FALSE(is_enabled());
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(analogue_->code(i), kZeroCode);
+  }
+  EXPECT_TRUE(holds(output(),
+                    "page faults after the start: 0 minor, 0 major; "
+                    "allocations after the start: 0\n"))
+      << output();
+}
+
+TEST_F(AnalogueController, WhatIsWrongIsNamedWithCauseAndRemedy) {
+  const auto refuses = [&](const std::string& part) {
+    EXPECT_EQ(run(), 1) << part;
+    EXPECT_TRUE(holds(output(), "error: ") && holds(output(), part)) << part << "\n" << output();
+    EXPECT_FALSE(is_enabled());
+  };
+  const json good = file_;
+  file_["encoders"]["axes"][1]["counter"] = "rest.counter";
+  refuses("counter 'rest.counter': none in");
+  file_ = good;
+  file_["encoders"]["axes"][1]["count"] = 3;
+  refuses("it has no count 3");
+  file_ = good;
+  file_["encoders"]["axes"][1] = {{"a", "enc1-a"}, {"b", "enc1-b"}};
+  refuses("is there for some axes only");
+  file_ = good;
+  file_["motors"]["axes"][0]["converter"] = "rest.dac";
+  refuses("converter 'rest.dac': none in");
+  file_ = good;
+  file_["motors"]["axes"][0]["channel"] = 3;
+  refuses("it has no output 3");
+  file_ = good;
+  file_["motors"]["axes"][0]["zero_code"] = 100;
+  refuses("leaves no room for efforts the other way");
+  file_ = good;
+  write_device("index");
+  refuses("counters tell no index pulse");
+}
+
+/// The link at the USB device port of this computer; its other end is here as well.
+class UsbController : public Controller {
+ protected:
+  void SetUp() override {
+    Controller::SetUp();
+    file_.erase("socket");
+    file_["usb"] = {{"port", "dummy_udc.0"}, {"serial", 77}};
+  }
+  void connect() override {
+    std::string why;
+    ASSERT_TRUE(eventually([&] {
+      try {
+        board_ = std::make_unique<host::Board>(host::open_usb(""), host::BoardOptions{115200, 100});
+      } catch (const std::runtime_error& error) {
+        why = error.what();
+      }
+      return board_ != nullptr;
+    })) << why;
+  }
+  static std::size_t gadgets() {
+    const auto folder = fs::directory_iterator("/sys/kernel/config/usb_gadget");
+    return static_cast<std::size_t>(std::distance(begin(folder), end(folder)));
+  }
+};
+
+TEST_F(UsbController, HomesArmsRendersAndStops) {
+  EXPECT_EQ(run({"--dry-run"}), 0) << output();
+  EXPECT_TRUE(holds(output(), "dummy_udc.0")) << output();
+  hold();
+  ASSERT_FALSE(HasFatalFailure());
+  EXPECT_EQ(host::list_usb_devices().at(0).serial, "00000000000000000000004D");
+  std::this_thread::sleep_for(300ms);
+  expect_balance(kRadius_m - 0.005);
+  EXPECT_EQ(board_->state().state, kActive);
+  board_->stop();
+  EXPECT_TRUE(eventually([&] { return !is_enabled(); }));
+  kill(child_, SIGTERM);
+  EXPECT_EQ(finish(std::exchange(child_, -1)), 0) << output();
+  EXPECT_TRUE(holds(output(),
+                    "page faults after the start: 0 minor, 0 major; "
+                    "allocations after the start: 0\n"))
+      << output();
+  EXPECT_EQ(gadgets(), 0U) << "it is taken down again";
+}
+
+TEST_F(UsbController, WhatAKilledOneLeftIsTakenDown) {
+  hold();
+  ASSERT_FALSE(HasFatalFailure());
+  kill(child_, SIGKILL);
+  EXPECT_EQ(finish(std::exchange(child_, -1)), 1000 + SIGKILL);
+  ASSERT_TRUE(eventually([&] { return !is_enabled(); }));
+  EXPECT_EQ(gadgets(), 1U);
+  board_.reset();
+  hands().dead_man = false;
+  serve();
+  ASSERT_FALSE(HasFatalFailure());
+  EXPECT_EQ(gadgets(), 1U) << "its own";
+  EXPECT_EQ(board_->state().faults, 0U) << host::names_of(board_->state().faults);
+}
+
+TEST_F(UsbController, APortThatIsNotThereIsNamed) {
+  file_["usb"]["port"] = "none.0";
+  EXPECT_EQ(run({"--dry-run"}), 1);
+  EXPECT_TRUE(holds(output(), "no USB device port is 'none.0' (remedy: name one of: dummy_udc.0"))
+      << output();
+  EXPECT_EQ(run(), 1);
+  file_["socket"] = socket_;
+  EXPECT_EQ(run(), 1);
+  EXPECT_TRUE(holds(output(), "exactly one of socket and usb")) << output();
 }
 
 TEST_F(Controller, TheEmergencyStopTakesThePowerWithinTwoTicks) {
@@ -324,15 +573,15 @@ TEST_F(Controller, TheEmergencyStopTakesThePowerWithinTwoTicks) {
     press();
     ASSERT_FALSE(HasFatalFailure()) << "round " << i;
     std::this_thread::sleep_for(std::chrono::microseconds(random() % 50000U));
-    hands_.stop_to_off_ns = -1;
-    hands_.pull_stop = true;
-    ASSERT_TRUE(eventually([&] { return hands_.stop_to_off_ns >= 0; }));
-    longest = std::max<std::int64_t>(longest, hands_.stop_to_off_ns);
-    EXPECT_LE(static_cast<double>(hands_.stop_to_off_ns), 2.0 * kPeriod_ns) << "round " << i;
+    hands().stop_to_off_ns = -1;
+    hands().pull_stop = true;
+    ASSERT_TRUE(eventually([&] { return hands().stop_to_off_ns >= 0; }));
+    longest = std::max<std::int64_t>(longest, hands().stop_to_off_ns);
+    EXPECT_LE(static_cast<double>(hands().stop_to_off_ns), 2.0 * kPeriod_ns) << "round " << i;
     EXPECT_TRUE(core::has_fault(board_->state().faults, core::Fault::kEmergencyStop));
-    hands_.dead_man = false;
-    hands_.release_stop = true;
-    device_.move_hand({0.0, 0.0, 0.05}, 0.2);
+    hands().dead_man = false;
+    hands().release_stop = true;
+    device_->move_hand({0.0, 0.0, 0.05}, 0.2);
     std::this_thread::sleep_for(20ms);
     EXPECT_FALSE(is_enabled()) << "released, it stays off";
     board_->clear_faults();
@@ -352,9 +601,9 @@ TEST_F(Controller, KilledItLeavesTheEnableLineOff) {
   EXPECT_FALSE(is_enabled());
   EXPECT_EQ(watchdog("state"), "active") << "and the watchdog runs on";
   std::this_thread::sleep_for(50ms);
-  hands_.effort_max_N = 0.0;
+  hands().effort_max_N = 0.0;
   std::this_thread::sleep_for(50ms);
-  EXPECT_EQ(hands_.effort_max_N, 0.0);
+  EXPECT_EQ(hands().effort_max_N, 0.0);
   EXPECT_EQ(run({"--off"}), 0) << output();
   EXPECT_TRUE(holds(output(), "line 'enable' is off"));
   EXPECT_FALSE(is_enabled());
@@ -399,7 +648,7 @@ TEST_F(Controller, WhatIsWrongIsNamedWithCauseAndRemedy) {
   refuses("line 'hnad': no chip has a line of that name");
   file_ = good;
   file_["motors"]["axes"][2]["chip"] = "rest.pwm";
-  refuses("PWM chip 'rest.pwm': no chip in");
+  refuses("PWM chip 'rest.pwm': none in");
   file_ = good;
   file_["motors"]["axes"][2]["channel"] = 3;
   refuses("it has no channel 3");
@@ -435,11 +684,12 @@ TEST_F(Controller, TheLinesAreOursAndNobodyElses) {
 
 int main(int argc, char** argv) {
   testing::InitGoogleTest(&argc, argv);
-  if (argc != 2) {
-    std::fprintf(stderr, "usage: linux_controller_test TACTREE_CONTROLLER\n");
+  if (argc != 3) {
+    std::fprintf(stderr, "usage: linux_controller_test TACTREE_CONTROLLER BUNNY_BLOB\n");
     return 2;
   }
   tactree::vm_test::program = argv[1];
+  tactree::vm_test::bunny = argv[2];
   // Pages of this program that are read in meanwhile would hold the loop up: the kernel does it in
   // one go.
   (void)mlockall(MCL_CURRENT);

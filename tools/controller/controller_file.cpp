@@ -262,6 +262,18 @@ void bound_efforts(const hal::linux_gpio::ControllerBoardSettings& board, core::
   }
 }
 
+/// What of a slew is in one tick must not be more than the gate takes: at a low rate a default may
+/// be. A slew that was given stays, and is refused if it must be.
+void fit_slews(bool given, core::Configuration& c) {
+  constexpr float kShareOfATick = 1.0F;  // of the limit; the gate takes up to 2
+  if (!given) {
+    c.slew_N_s = std::min(c.slew_N_s, kShareOfATick * c.force_max_N * c.rate_hz);
+  }
+  for (std::size_t i = 0; i < core::kAxes; ++i) {
+    c.effort_slew_s[i] = std::min(c.effort_slew_s[i], kShareOfATick * c.effort_max[i] * c.rate_hz);
+  }
+}
+
 LinkSettings read_link(JsonReader& reader) {
   LinkSettings link;
   if (reader.has("socket") == reader.has("usb")) {
@@ -295,13 +307,17 @@ ControllerFile read_controller_file(const std::filesystem::path& file) {
   const double period_ns = 1e9 / static_cast<double>(result.configuration.rate_hz);
   result.board.period_ns = static_cast<std::uint64_t>(std::llround(period_ns));
   result.board.guard.silence_ns = std::max(10 * kNsPerMs, kGuardTicks * result.board.period_ns);
+  bool slew_given = false;
   if (reader.has("limits")) {
-    read_limits(reader.object("limits"), result.configuration);
+    JsonReader limits = reader.object("limits");
+    slew_given = limits.has("slew_N_s");
+    read_limits(std::move(limits), result.configuration);
   }
   const core::DeviceModel& device = result.device.figures.model;
   read_encoders(reader.object("encoders"), device, result.board);
   read_motors(reader.object("motors"), core::axes_of(device.kind), result.board);
   bound_efforts(result.board, result.configuration);
+  fit_slews(slew_given, result.configuration);
   read_lines(reader.object("lines"), result.board);
   if (reader.has("watchdog")) {
     read_watchdog(reader.object("watchdog"), result.board);

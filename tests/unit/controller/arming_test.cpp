@@ -126,6 +126,39 @@ TEST(Arming, WaitsForTheProbeToLeaveTheObject) {
   EXPECT_EQ(session.state(), State::kActive);
 }
 
+// A device may well be switched on with its tip inside. The surface is still there from within, but
+// it holds nobody while the motors are off, so that who comes out is not taken for inside for ever.
+TEST(Arming, WhoComesOutFromWithinIsOutside) {
+  for (const double from : {-0.03, -0.01, -0.002, -0.0005}) {
+    Session session;
+    session.move(0.0, 0.0, from);
+    core::Output output = session.step();
+    for (double z = from; z < 0.01; z += 1e-4) {
+      session.move(0.0, 0.0, z);
+      output = session.step();
+    }
+    EXPECT_FALSE(output.status.rendering.in_contact) << from;
+    session.activate();
+    EXPECT_EQ(session.state(), State::kActive) << from;
+    EXPECT_GT(session.press(1e-3).status.force.z, 0.1F) << from << ": and the surface is felt";
+  }
+}
+
+// Where there is force a thin wall has two sides.
+TEST(Arming, WhoIsActiveWithinFeelsTheWallFromThere) {
+  Session session;
+  session.move(0.0, 0.0, -0.01);
+  session.step();
+  session.activate();
+  ASSERT_EQ(session.state(), State::kActive);
+  core::Output output = session.step();
+  for (double z = -0.01; z < 1e-3; z += 1e-4) {
+    session.move(0.0, 0.0, z);
+    output = session.step();
+  }
+  EXPECT_LT(output.status.force.z, -0.1F);
+}
+
 TEST(Arming, TheForceStartsAtExactlyZeroAndRamps) {
   core::Configuration configuration;
   configuration.ramp_s = 0.5F;

@@ -34,6 +34,8 @@ class Proxy {
   void update(const BlobView& view, Vec3 probe, const Friction& friction, const SurfaceWork& work);
 
   [[nodiscard]] bool in_contact() const { return in_contact_; }
+  /// In contact: the probe left the object, or an open surface, from its inner side.
+  [[nodiscard]] bool from_behind() const { return in_contact_ && side_ < 0.0F; }
   [[nodiscard]] bool slipping() const { return slipping_; }
   /// In contact: on the surface. Free: where the sweep has got to, the probe as a rule.
   [[nodiscard]] Vec3 position() const { return position_; }

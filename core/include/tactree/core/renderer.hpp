@@ -34,6 +34,13 @@ class Renderer {
   /// Forgets the contact. Call it when the model or the configuration changes.
   void reset(Vec3 probe) { proxy_.reset(probe); }
 
+  /// Forgets a contact from the inner side of the surface.
+  void let_out(Vec3 probe) {
+    if (proxy_.from_behind()) {
+      proxy_.reset(probe);
+    }
+  }
+
   /// One tick. `velocity` in m/s. Precondition: check(configuration) is kOk, probe is finite.
   /// Cost: surface mode: Proxy::update(); paper mode: paper_collision() and paper_nearest().
   Rendering update(const BlobView& view, const Configuration& configuration, Vec3 probe,

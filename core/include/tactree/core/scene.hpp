@@ -86,6 +86,10 @@ class Scene {
   /// Forgets contacts and fading forces, not bodies: the probe is somewhere else now.
   void reset(Vec3 probe);
 
+  /// While there is no force, before update(): who goes out of an object from within is outside,
+  /// and not held at its inner side.
+  void let_out();
+
   /// One tick; `probe` and `velocity` in the scene's frame. Preconditions: as Renderer::update().
   /// Cost: kMaxReachableBodies times Renderer::update(), kMaxBodies times about 100 operations.
   const SceneRendering& update(const Configuration& configuration, Vec3 probe, Vec3 velocity);
