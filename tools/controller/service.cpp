@@ -178,7 +178,7 @@ class Runner {
     session_.started(start, file.configuration);
   }
 
-  /// `where`: is it served.
+  /// `where` applications find it, for people.
   void run(const std::string& where) {
     const Attendant attendant(board_, progress_);
     tell_missing(file_, enter_real_time(file_.real_time));
@@ -229,24 +229,27 @@ class Runner {
   Progress progress_;
 };
 
+template <hal::BytePort Port, class... PortArguments>
+int serve_over(const ControllerFile& file, const std::string& where, const PortArguments&... port) {
+  const cli::BlobFile model(file.model);
+  Attendant::block_signals();
+  Runner<Port> runner(file, model, port...);
+  runner.run(where);
+  runner.report();
+  return cli::kExitOk;
+}
+
 }  // namespace
 
 int serve(const ControllerFile& file) {
-  const cli::BlobFile model(file.model);
-  Attendant::block_signals();
-  if (!file.link.socket.empty()) {
-    Runner<hal::LocalSocketPort> runner(file, model, file.link.socket);
-    runner.run(file.link.socket);
-    runner.report();
-    return cli::kExitOk;
+  const LinkSettings& link = file.link;
+  if (!link.socket.empty()) {
+    return serve_over<hal::LocalSocketPort>(file, link.socket, link.socket);
   }
   core::usb::Identity identity;
-  identity.serial = {0, 0, file.link.usb_serial};
-  const std::string port = hal::linux_usb::find_udc(file.link.usb_port);
-  Runner<hal::GadgetPort> runner(file, model, identity, port);
-  runner.run("USB device port " + port);
-  runner.report();
-  return cli::kExitOk;
+  identity.serial = {0, 0, link.usb_serial};
+  const std::string port = hal::linux_usb::find_udc(link.usb_port);
+  return serve_over<hal::GadgetPort>(file, "USB device port " + port, identity, port);
 }
 
 }  // namespace tactree::controller
