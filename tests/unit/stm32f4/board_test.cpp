@@ -1,14 +1,20 @@
 // The whole board of firmware/boards/stm32f405 on the faked chip, with an application at its serial
 // port: from power-up to a force and back, and every way in which it is refused.
 
+#include "tactree/host/board.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <string>
+#include <thread>
 
 #include "analytic_shapes.hpp"
 #include "board_rig.hpp"
 #include "tactree/hal/conformance.hpp"
+#include "tactree/host/link_error.hpp"
 
 // What an image gets from its core and its linker script.
 namespace tactree::firmware {
@@ -403,6 +409,92 @@ TEST_F(Stm32f405, SavesSoOftenThatItErasesItsRecordSectors) {
   EXPECT_EQ(rig.status().faults, 0U);
   rig.restart();
   EXPECT_TRUE(uses(image_model()));
+}
+
+// ---- the library of applications
+
+/// The wire between that and the board, which lives in the library's thread, in real time; where
+/// the computer is too slow, its time goes slower. The hand holds on a moment after
+/// the board is armed.
+class RigTransport : public host::Transport {
+ public:
+  /// `driven`: whether the motors ever got current.
+  RigTransport(BoardRig& rig, std::atomic<bool>& driven) : rig_(rig), driven_(driven) {
+    rig_.application_runs = false;
+  }
+
+  std::size_t read(std::span<std::byte> bytes) override {
+    const std::vector<std::uint8_t> sent = rig_.take_sent();
+    waiting_.insert(waiting_.end(), sent.begin(), sent.end());
+    const std::size_t count = std::min(bytes.size(), waiting_.size());
+    for (std::size_t i = 0; i < count; ++i) {
+      bytes[i] = std::byte{waiting_.front()};
+      waiting_.pop_front();
+    }
+    return count;
+  }
+  std::size_t write(std::span<const std::byte> bytes) override {
+    for (const std::byte byte : bytes) {
+      rig_.to_board().push_back(static_cast<std::uint8_t>(byte));
+    }
+    return bytes.size();
+  }
+  void wait(std::chrono::microseconds timeout) override {
+    std::this_thread::sleep_for(timeout);
+    const auto now = std::chrono::steady_clock::now();
+    begin_ = std::max(begin_, now - std::chrono::milliseconds(5));
+    for (; begin_ < now; begin_ += std::chrono::milliseconds(1)) {
+      const core::State state = rig_.controller().state();
+      const bool armed = state == core::State::kArmed || state == core::State::kActive;
+      armed_ticks_ = armed ? armed_ticks_ + 1 : 0;
+      rig_.chip().hold_dead_man(armed_ticks_ > 20);
+      rig_.tick();
+      driven_ = driven_ || rig_.duty() > 0.0;
+    }
+  }
+  [[nodiscard]] bool connected() const override { return true; }
+  [[nodiscard]] std::string name() const override { return "the serial port"; }
+
+ private:
+  BoardRig& rig_;
+  std::atomic<bool>& driven_;
+  int armed_ticks_ = 0;
+  std::deque<std::uint8_t> waiting_;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+TEST(Stm32f405InRealTime, TheLibraryOfApplicationsFindsFlashesArmsAndStopsIt) {
+  const Shape small = cos_sheet({}, 0.04, 0.002);
+  BoardRig rig;
+  rig.program_image_model(image_model().bytes());
+  rig.boot();
+  std::atomic<bool> driven = false;
+  {
+    const host::Introduction found =
+        host::Board::introduce(std::make_unique<RigTransport>(rig, driven));
+    EXPECT_STREQ(found.board.board, "stm32f405");
+    EXPECT_TRUE(host::complaints(found.start).empty());
+  }
+  {
+    host::BoardOptions options;
+    options.link_timeout_ms = 100;
+    host::Board board(std::make_unique<RigTransport>(rig, driven), options);
+    board.flash({.bytes = small.bytes(), .board = "stm32f405"});
+    EXPECT_EQ(board.models().slot[0].state,
+              static_cast<std::uint8_t>(core::wire::SlotState::kActive));
+    board.set_parameter("delay_s", 0.0005F);
+    board.save_parameters();
+    board.home();
+    board.arm();
+    EXPECT_THROW(board.flash({.bytes = small.bytes(), .board = ""}), host::LinkError);
+    EXPECT_EQ(static_cast<core::State>(board.state().state), core::State::kActive);
+    board.stop();
+    EXPECT_EQ(static_cast<core::State>(board.state().state), core::State::kIdle);
+    EXPECT_FALSE(board.trace().empty());
+  }
+  EXPECT_TRUE(driven);
+  EXPECT_EQ(rig.duty(), 0.0);
+  EXPECT_FALSE(rig.chip().watchdog.bitten());
 }
 
 }  // namespace
