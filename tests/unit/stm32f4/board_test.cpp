@@ -181,7 +181,7 @@ TEST_F(Stm32f405, AWrongModelIsTold) {
   EXPECT_FALSE(rig.arm());
 }
 
-TEST_F(Stm32f405, ALoopThatHangsStarvesTheWatchdogWhileTheSessionGoesOn) {
+TEST_F(Stm32f405, ALoopThatHangsStarvesTheWatchdog) {
   rig.boot();
   rig.run(100);
   EXPECT_FALSE(rig.chip().watchdog.bitten());
