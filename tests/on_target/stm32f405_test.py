@@ -5,9 +5,7 @@ missing, judge the blob, and give no force.
 usage: stm32f405_test.py IMAGE CONFORMANCE_IMAGE BLOB TACTREE
 """
 import json
-import os
 import pathlib
-import select
 import struct
 import subprocess
 import sys
@@ -15,98 +13,19 @@ import tempfile
 import unittest
 import zlib
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "tests" / "checks"))
-import read_session  # from docs/PROTOCOL.md
+sys.dont_write_bytecode = True
+from emulated_stm32f405 import EMULATOR, Emulator, boot_command
 
 IMAGE, CONFORMANCE, BLOB, TACTREE = sys.argv[1:5]
 # As it was before it was told what a tick costs; else it still is so.
 BARE = pathlib.Path(IMAGE).parent / "bare" / pathlib.Path(IMAGE).name
-EMULATOR = ["qemu-system-arm", "-M", "netduinoplus2", "-display", "none", "-monitor", "none",
-            "-icount", "shift=3,sleep=off"]
-BLOB_ADDRESS = 0x08020000
-# The emulator begins with a flash of zeros, which the store's records are not.
-RECORDS_ADDRESS, RECORDS = 0x08004000, bytes(b"\xff" * 32768)
-
-IDENTIFY, OPEN, STATE, CONTROL, BEGIN_MODEL, READ_START = 0x01, 0x02, 0x06, 0x07, 0x11, 0x22
+STATE, CONTROL, BEGIN_MODEL = 0x06, 0x07, 0x11
 ARM = bytes([1]) + bytes(7)
 NOT_NOW, STORAGE_FAILED = 7, 23
 MOTORS, ENABLE_LINE, SAFETY_INPUTS, WATCHDOG, RECEIVER, CRYSTAL = 2, 4, 8, 16, 32, 256
 BLOB_OK, MODEL_OK, MODEL_TOO_SLOW = 0, 0, 11
 IMAGE_OK, IMAGE_DAMAGED = 0, 1
 VECTOR_OF_NO_EXCEPTION = 4 * 8
-
-
-def cobs(data):
-    """As docs/PROTOCOL.md says, with the zero at the end."""
-    out, begin = bytearray(), 0
-    while begin <= len(data):
-        end = data.find(0, begin, begin + 254)
-        if end < 0:
-            end = min(begin + 254, len(data))
-        out += bytes([end - begin + 1]) + data[begin:end]
-        begin = end + (0 if end - begin == 254 else 1)
-    return bytes(out) + b"\0"
-
-
-def boot_command(folder, image, blob, serial):
-    """With `blob` where the model of the image is."""
-    command = [*EMULATOR, "-serial", serial, "-kernel", image]
-    for name, content, address in (("records", RECORDS, RECORDS_ADDRESS), ("blob", blob, BLOB_ADDRESS)):
-        if content:
-            file = pathlib.Path(folder, name)
-            file.write_bytes(content)
-            command += ["-device", f"loader,file={file},addr={address:#x},force-raw=on"]
-    return command
-
-
-class Emulator:
-    """An image that boots, and a client at its serial port."""
-
-    def __init__(self, image, blob):
-        self.folder = tempfile.TemporaryDirectory()
-        self.process = subprocess.Popen(boot_command(self.folder.name, image, blob, "stdio"),
-                                        stdin=subprocess.PIPE, stdout=subprocess.PIPE)
-        self.sequence = self.session = 0
-        while not self.hears():
-            pass
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        self.process.kill()
-        self.process.communicate()
-        self.folder.cleanup()
-
-    def send(self, kind, payload=b""):
-        self.sequence += 1
-        raw = struct.pack("<BBHHH", kind, 0, self.sequence, self.session, len(payload)) + payload
-        self.process.stdin.write(cobs(raw + struct.pack("<I", zlib.crc32(raw))))
-        self.process.stdin.flush()
-
-    def hears(self):
-        """What comes before its port is ready is lost."""
-        self.send(IDENTIFY)
-        return bool(select.select([self.process.stdout], [], [], 0.2)[0])
-
-    def ask(self, kind, payload=b""):
-        """The reply's header and fields."""
-        self.send(kind, payload)
-        reply = {"sequence": None}
-        while reply["sequence"] != self.sequence:  # replies to former ones, of when it began to hear
-            frame = bytearray()
-            while frame[-1:] != b"\0":
-                frame += os.read(self.process.stdout.fileno(), 1)
-            reply = read_session.decode_frame(bytes(frame))
-        assert reply["kind"] == kind | 0x80, reply
-        return reply
-
-    def open(self):
-        self.session = self.ask(OPEN, struct.pack("<BBHI", 1, 0, 0, 7))["fields"]["session"]
-
-    def start(self):
-        return self.ask(READ_START)["fields"]
 
 
 class Stm32f405(unittest.TestCase):
@@ -123,7 +42,7 @@ class Stm32f405(unittest.TestCase):
         return state["faults"]
 
     def test_what_is_missing_is_told(self):
-        with Emulator(IMAGE, pathlib.Path(BLOB).read_bytes()) as board:
+        with Emulator(["-kernel", IMAGE], pathlib.Path(BLOB).read_bytes()) as board:
             start = board.start()
             self.assertEqual(start["missing"],
                              CRYSTAL | MOTORS | ENABLE_LINE | SAFETY_INPUTS | WATCHDOG | RECEIVER)
@@ -136,14 +55,14 @@ class Stm32f405(unittest.TestCase):
 
     def test_without_a_watchdog_that_waits_nothing_is_erased(self):
         blob = pathlib.Path(BLOB).read_bytes()
-        with Emulator(IMAGE, blob) as board:
+        with Emulator(["-kernel", IMAGE], blob) as board:
             board.open()
             begin = struct.pack("<24sIII", b"", 0, len(blob), zlib.crc32(blob))
             self.assertEqual(board.ask(BEGIN_MODEL, begin)["status"], STORAGE_FAILED)
 
     @unittest.skipUnless(BARE.exists(), "the image does not know what a tick costs")
     def test_without_its_costs_a_board_takes_the_model(self):
-        with Emulator(BARE, pathlib.Path(BLOB).read_bytes()) as board:
+        with Emulator(["-kernel", BARE], pathlib.Path(BLOB).read_bytes()) as board:
             start = board.start()
             self.assertEqual([start["blob"], start["model"], start["image"]], [BLOB_OK, MODEL_OK, IMAGE_OK])
             self.no_force(board)
@@ -157,7 +76,7 @@ class Stm32f405(unittest.TestCase):
         too_large[total:total + 4] = struct.pack("<I", 896 * 1024 + 4)
         refusals = set()
         for blob in (b"", b"\xff" * 4096, good[:len(good) // 2], bytes(flipped), bytes(too_large)):
-            with Emulator(IMAGE, blob) as board:
+            with Emulator(["-kernel", IMAGE], blob) as board:
                 told = board.start()["blob"]
                 self.assertNotEqual(told, BLOB_OK)
                 refusals.add(told)
@@ -176,14 +95,14 @@ class Stm32f405(unittest.TestCase):
             with tempfile.TemporaryDirectory() as folder:
                 damaged = pathlib.Path(folder, "damaged.elf")
                 damaged.write_bytes(data)
-                with Emulator(damaged, pathlib.Path(BLOB).read_bytes()) as board:
+                with Emulator(["-kernel", damaged], pathlib.Path(BLOB).read_bytes()) as board:
                     self.assertEqual(board.start()["image"], IMAGE_DAMAGED)
                     self.no_force(board)
 
     @unittest.skipUnless(pathlib.Path(TACTREE).exists(), "there is no tactree (build the preset host-gcc)")
     def test_the_command_line_talks_to_it(self):
         with tempfile.TemporaryDirectory() as folder, subprocess.Popen(
-                boot_command(folder, IMAGE, pathlib.Path(BLOB).read_bytes(),
+                boot_command(folder, ["-kernel", IMAGE], pathlib.Path(BLOB).read_bytes(),
                              f"unix:{folder}/port,server=on,wait=off"), stdin=subprocess.DEVNULL) as emulator:
             port = f"unix:{folder}/port"
 

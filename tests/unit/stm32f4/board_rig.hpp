@@ -4,6 +4,7 @@
 // of the board does, and bytes take their time on the wire.
 
 #include <deque>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -20,6 +21,7 @@ namespace tactree::test {
 struct ChipInUse {
   FakeChip* chip = nullptr;
   bool ticks_held = false;
+  std::function<void()> on_hold = [] {};
 };
 inline ChipInUse chip_in_use;
 
@@ -28,7 +30,7 @@ class BoardRig {
   using Board = firmware::Stm32f405Board<FakeWord, FakeCell>;
   static constexpr std::uint32_t kBlobBegin = 0x20000;  ///< in the flash; memory.ld
 
-  BoardRig() { chip_in_use = {&chip(), false}; }
+  BoardRig() { chip_in_use = {&chip()}; }
   ~BoardRig() { chip_in_use = {}; }
   BoardRig(const BoardRig&) = delete;
 
@@ -57,7 +59,7 @@ class BoardRig {
     session_.reset();
     board_.reset();
     chip_ = std::make_unique<FakeChip>();
-    chip_in_use = {chip_.get(), false};
+    chip_in_use = {chip_.get()};
     chip_->flash.restore(kept);
     client_ = host::Client();
     to_board_.clear();

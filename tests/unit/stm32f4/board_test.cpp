@@ -20,7 +20,12 @@
 namespace tactree::firmware {
 std::uint32_t deadlines() { return test::chip_in_use.chip->ticks; }
 std::uint32_t now_us() { return test::chip_in_use.chip->ticks * 1000U; }
-void hold_ticks(bool hold) { test::chip_in_use.ticks_held = hold; }
+void hold_ticks(bool hold) {
+  test::chip_in_use.ticks_held = hold;
+  if (hold) {
+    test::chip_in_use.on_hold();
+  }
+}
 void wait_for_interrupt() { test::chip_in_use.chip->tick(); }
 std::span<const std::byte> BlobArea::active() const noexcept {
   constexpr std::size_t kRoom = 896U * 1024U;
@@ -298,8 +303,8 @@ TEST_F(Stm32f405, WritesNoModelWhileThereMayBeForce) {
 TEST_F(Stm32f405, WhileItErasesNothingMovesAndTheWatchdogWaits) {
   rig.boot();
   ASSERT_TRUE(rig.open().ok());
-  // Something is driven, as if a part had gone wrong.
-  rig.chip().gpio_c.block.odr.value |= 1U << 4;
+  // The power is on, as if the last tick had gone wrong.
+  chip_in_use.on_hold = [&] { rig.chip().gpio_c.block.odr.value |= 1U << 4; };
   std::uint32_t seen = 0;
   const auto pass = rig.chip().flash.pass;
   rig.chip().flash.pass = [&](double us) {

@@ -279,13 +279,14 @@ class FakeWatchdog {
   double oscillator_hz = 32000.0;  ///< 17 000 .. 47 000
   std::uint32_t update_polls = 6;
   bool takes_settings = true;
+  bool takes_prescaler = true;
 
   FakeWatchdog() {
     block.kr.on_read = [](std::uint32_t) { return 0U; };
     block.kr.on_write = [this](std::uint32_t, std::uint32_t key) { return take_key(key); };
     block.rlr.value = 0xFFF;
     block.pr.on_write = [this](std::uint32_t value, std::uint32_t written) {
-      return set(value, written, updating_[0]);
+      return takes_prescaler ? set(value, written, updating_[0]) : value;
     };
     block.rlr.on_write = [this](std::uint32_t value, std::uint32_t written) {
       return set(value, written, updating_[1]);

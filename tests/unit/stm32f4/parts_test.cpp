@@ -447,6 +447,9 @@ TEST(Watchdog, SettingsThatAreNotTakenAreTold) {
   FakeWatchdog deaf;
   deaf.takes_settings = false;
   EXPECT_FALSE(Watchdog<FakeWord>(deaf.block).start());
+  FakeWatchdog half;
+  half.takes_prescaler = false;
+  EXPECT_FALSE(Watchdog<FakeWord>(half.block).set(kTimeOfErasing));
   FakeWatchdog slow;
   slow.update_polls = watchdog::kPolls + 2U;
   EXPECT_FALSE(Watchdog<FakeWord>(slow.block).start());
