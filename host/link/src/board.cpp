@@ -30,6 +30,8 @@ const char* remedy_for(WireStatus status) {
       return " (build it with a larger --spacing or with --flash-budget)";
     case WireStatus::kBadSignature:
       return " (tactree sign, with the key that belongs to the board)";
+    case WireStatus::kInUse:
+      return " (roll back first; where the image's model fills both slots, program a smaller one)";
     case WireStatus::kOldCounter:
       return " (sign it with a larger --counter)";
     default:
