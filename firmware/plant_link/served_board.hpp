@@ -4,6 +4,7 @@
 
 #include "plant_link/plant_link_board.hpp"
 #include "plant_link/slot_store.hpp"
+#include "runtime/application.hpp"
 #include "runtime/identity.hpp"
 #include "tactree/hal/session/session.hpp"
 
@@ -16,10 +17,11 @@ class ServedBoard : public PlantLinkBoard {
 
   [[nodiscard]] core::Configuration connect(const hal::CapturedFault& last_fault) {
     core::Configuration configuration = PlantLinkBoard::connect(last_fault);
+    report_.last_fault = last_fault;
     if (is_served()) {
       store_.prepare(PlantLinkBoard::storage());
       uart_.start(timer_clock_hz(), kBaud);
-      take_saved_parameters(configuration);
+      take_saved_parameters(store_, configuration);
     }
     return configuration;
   }
@@ -31,9 +33,9 @@ class ServedBoard : public PlantLinkBoard {
       return;
     }
     static const hal::BoardIdentity identity{kIdentity.board, TACTREE_FIRMWARE_VERSION, {}, 0};
-    static hal::Session<Uart, SlotStore, Platform> session(
+    static hal::Session<Uart, SlotStore, SessionPlatform> session(
         {uart_, store_, platform_, controller, mailbox_, identity});
-    session.started(started, configuration);
+    session.started(started, configuration, &report_);
     std::uint32_t idle = 0;
     while (true) {  // bound: for_ever
       idle = session.work() ? 0U : idle + 1U;
@@ -66,22 +68,10 @@ class ServedBoard : public PlantLinkBoard {
   /// emulator lets time pass at once, and nothing comes in.
   static constexpr std::uint32_t kPatience = 2000;
 
-  struct Platform {
-    [[nodiscard]] std::uint32_t now_us() noexcept { return firmware::now_us(); }
-    void hold_ticks(bool hold) noexcept { firmware::hold_ticks(hold); }
-  };
-
-  void take_saved_parameters(core::Configuration& configuration) const {
-    if (const float* const saved = store_.parameters()) {
-      for (std::uint32_t i = 0; i < core::kParameters; ++i) {  // bound: kParameters
-        (void)core::set_parameter(configuration, i, saved[i]);
-      }
-    }
-  }
-
   Uart uart_;
   SlotStore store_;
-  Platform platform_;
+  SessionPlatform platform_;
+  hal::StartReport report_;
   hal::TickMailbox mailbox_;
 };
 

@@ -21,10 +21,10 @@ hal::ImageStatus test_image() {
   }
   // The compiler knows the constant as it was before it was sealed.
   const volatile Identity* const sealed = &kIdentity;
-  const auto* const code = reinterpret_cast<const std::byte*>(code_begin);
   const auto* const end = reinterpret_cast<const std::byte*>(&kIdentity) + sizeof kIdentity - 4;
   core::Crc32 checksum;
-  checksum.update({code, end});
+  checksum.update({image_vectors_begin, image_vectors_end});
+  checksum.update({image_text_begin, end});
   checksum.update({reinterpret_cast<const std::byte*>(image_data_source),
                    static_cast<std::size_t>(image_data_end - image_data_begin) * 4U});
   return checksum.value() == sealed->checksum ? hal::ImageStatus::kOk : hal::ImageStatus::kDamaged;

@@ -24,8 +24,8 @@ struct Identity {
 [[gnu::section(".identity")]] extern const Identity kIdentity;
 
 /// Did the memory of all variables hold, and is every byte of the program as it was built: of the
-/// code up to the checksum, then of the initial values of variables? Cost: some 10 instructions a
-/// byte.
+/// vectors and the code up to the checksum, then of the initial values of variables? Cost: some 10
+/// instructions a byte.
 [[nodiscard]] hal::ImageStatus test_image();
 
 }  // namespace tactree::firmware

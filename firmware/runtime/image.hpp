@@ -17,6 +17,9 @@ extern std::uint32_t image_stack_top[];
 extern void (*const image_constructors_begin[])();
 extern void (*const image_constructors_end[])();
 
+extern const std::byte image_vectors_begin[];
+extern const std::byte image_vectors_end[];
+extern const std::byte image_text_begin[];
 extern const std::byte code_begin[];
 extern const std::byte code_end[];
 extern const std::byte blob_begin[];

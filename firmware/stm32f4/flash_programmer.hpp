@@ -1,7 +1,7 @@
 #pragma once
-// Erasing and programming the flash that holds the blob (RM0090, sections 3.6 and 3.9). While the
-// flash is busy the processor cannot fetch from it and stands still: an erase takes up to 2 s.
-// So: motors off, and before the watchdog runs.
+// Erasing and programming the chip's flash (RM0090, sections 3.6 and 3.9). While the flash is busy
+// the processor cannot fetch from it and stands still: an erase takes up to 2 s. So: motors off,
+// and a watchdog that waits as long (store_flash.hpp).
 
 #include <cstdint>
 #include <span>
@@ -21,12 +21,19 @@ enum class FlashStatus : std::uint8_t {
   kReadBack,   ///< the flash does not hold what was written, or is not erased
 };
 
-/// Sectors of equal size that follow each other. On an STM32F405 5 to 11 have 128 KiB (table 5).
+/// Sectors of equal size that follow each other. On an STM32F405 0 to 3 have 16 KiB, 4 has 64 KiB,
+/// 5 to 11 have 128 KiB (table 5).
 struct FlashRegion {
   std::uint32_t first_sector = 5;
   std::uint32_t sectors = 7;
   std::uint32_t words_per_sector = 32768;
 };
+
+/// Bytes of the flash before it.
+constexpr std::uint32_t begin_of(const FlashRegion& region) {
+  const std::uint32_t first = region.first_sector;
+  return first < 5U ? first * 0x4000U : 0x20000U + (first - 5U) * 0x20000U;
+}
 
 /// Reads of the status before it is a timeout. A poll takes ten cycles or more: data sheet, table
 /// 38, gives 2 s for a sector and 0.1 ms for a word.

@@ -77,6 +77,7 @@ static_assert(offsetof(WatchdogBlock<HardwareWord>, sr) == 0x0C);
 
 /// Where the blocks are: section 2.3, table 1.
 namespace address {
+inline constexpr std::uint32_t kFlashBegin = 0x08000000;
 inline constexpr std::uint32_t kTim2 = 0x40000000;
 inline constexpr std::uint32_t kTim4 = 0x40000800;
 inline constexpr std::uint32_t kTim5 = 0x40000C00;

@@ -53,6 +53,7 @@ void write_each(const std::filesystem::path& folder) {
   s.add(MessageKind::kControl, wire::ControlRequest{3, {}, 0});
   s.add(MessageKind::kReadTrace, wire::ReadTraceRequest{0, 13});
   s.add(MessageKind::kReadFault);
+  s.add(MessageKind::kReadStart);
   s.add(MessageKind::kGetParameter, wire::GetParameterRequest{3});
   s.add(MessageKind::kSetParameter, wire::SetParameterRequest{3, 0.1F});
   s.add(MessageKind::kSaveParameters);

@@ -1,9 +1,10 @@
 """The image of stm32f405 in an emulator that has the chip's core, timers and serial port, but no clocks,
-pins, DMA or watchdog: it must get through its start, tell over its serial port what is missing, judge the
-blob, and give no force.
+pins, DMA or watchdog: it must get through its start, tell an application at its serial port what is
+missing, judge the blob, and give no force.
 
-usage: stm32f405_test.py IMAGE CONFORMANCE_IMAGE BLOB
+usage: stm32f405_test.py IMAGE CONFORMANCE_IMAGE BLOB TACTREE
 """
+import json
 import pathlib
 import struct
 import subprocess
@@ -12,78 +13,59 @@ import tempfile
 import unittest
 import zlib
 
-IMAGE, CONFORMANCE, BLOB = sys.argv[1:4]
+sys.dont_write_bytecode = True
+from emulated_stm32f405 import EMULATOR, Emulator, boot_command
+
+IMAGE, CONFORMANCE, BLOB, TACTREE = sys.argv[1:5]
 # As it was before it was told what a tick costs; else it still is so.
 BARE = pathlib.Path(IMAGE).parent / "bare" / pathlib.Path(IMAGE).name
-EMULATOR = ["qemu-system-arm", "-M", "netduinoplus2", "-display", "none", "-monitor", "none",
-            "-icount", "shift=3,sleep=off"]
-BLOB_ADDRESS = 0x08020000
-
-# firmware/stm32f4/frames.hpp, decoded by hand.
-BOOT_BYTES, STATUS_BYTES = 92, 44
-CRYSTAL = 1
-ENCODERS, MOTORS, ENABLE_LINE, SAFETY_INPUTS, WATCHDOG = 1, 2, 4, 8, 16
-STATES = ["boot", "no-model", "idle", "armed", "active", "fault"]
-BLOB_OK = 0
-MODEL_OK, MODEL_TOO_SLOW = 0, 11
+STATE, CONTROL, BEGIN_MODEL = 0x06, 0x07, 0x11
+ARM = bytes([1]) + bytes(7)
+NOT_NOW, STORAGE_FAILED = 7, 23
+MOTORS, ENABLE_LINE, SAFETY_INPUTS, WATCHDOG, RECEIVER, CRYSTAL = 2, 4, 8, 16, 32, 256
+BLOB_OK, MODEL_OK, MODEL_TOO_SLOW = 0, 0, 11
 IMAGE_OK, IMAGE_DAMAGED = 0, 1
-STATUS_FRAMES = 20
-
-
-def frames_of(data):
-    """The frames of a stream of bytes, each with its checksum checked."""
-    frames = []
-    while data:
-        assert data[:1] == b"T", data[:8]
-        size = {b"b": BOOT_BYTES, b"s": STATUS_BYTES}[data[1:2]]
-        frame, data = data[:size], data[size:]
-        assert struct.unpack("<I", frame[-4:])[0] == zlib.crc32(frame[:-4]), frame.hex()
-        frames.append(frame)
-    return frames
+VECTOR_OF_NO_EXCEPTION = 4 * 8
 
 
 class Stm32f405(unittest.TestCase):
-    def boot(self, blob, image=IMAGE):
-        """Boot frame and status frames of a run with these bytes where the blob should be."""
-        with tempfile.TemporaryDirectory() as folder:
-            command = [*EMULATOR, "-serial", "stdio", "-kernel", image]
-            if blob:
-                file = pathlib.Path(folder, "blob")
-                file.write_bytes(blob)
-                command += ["-device", f"loader,file={file},addr={BLOB_ADDRESS:#x},force-raw=on"]
-            with subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE) as emulator:
-                data = emulator.stdout.read(BOOT_BYTES + STATUS_FRAMES * STATUS_BYTES)
-                emulator.kill()
-        boot, *statuses = frames_of(data)
-        self.assertEqual(boot[1:2], b"b")
-        self.assertEqual(len(statuses), STATUS_FRAMES)
-        return boot, statuses
-
-    def no_force(self, statuses):
+    def no_force(self, board):
+        """It ticks, refuses to be armed, and gives no force. Its faults."""
+        board.open()
+        self.assertEqual(board.ask(CONTROL, ARM)["status"], NOT_NOW)
         ticks = []
-        for frame in statuses:
-            state, tick = frame[3], struct.unpack("<I", frame[4:8])[0]
-            ticks.append(tick)
-            self.assertNotIn(STATES[state], ("armed", "active"))
-            self.assertEqual(frame[28:40], bytes(12), "a force")
+        for _ in range(20):
+            state = board.ask(STATE)["fields"]
+            ticks.append(state["tick"])
+            self.assertEqual(state["force_N"], [0, 0, 0])
         self.assertEqual(ticks, sorted(set(ticks)))
+        return state["faults"]
 
     def test_what_is_missing_is_told(self):
-        boot, statuses = self.boot(pathlib.Path(BLOB).read_bytes())
-        self.assertEqual(boot[3], CRYSTAL)
-        self.assertEqual(boot[4], MOTORS | ENABLE_LINE | SAFETY_INPUTS | WATCHDOG)
-        # Without a crystal the core runs at 16 MHz, where no model is in time.
-        model = MODEL_TOO_SLOW if BARE.exists() else MODEL_OK
-        self.assertEqual(boot[6:10], bytes([0, BLOB_OK, model, IMAGE_OK]))
-        self.no_force(statuses)
-        faults = struct.unpack("<I", statuses[-1][8:12])[0]
-        self.assertEqual(faults, 1 << 1 | 1 << 9)  # emergency stop, motors
+        with Emulator(["-kernel", IMAGE], pathlib.Path(BLOB).read_bytes()) as board:
+            start = board.start()
+            self.assertEqual(start["missing"],
+                             CRYSTAL | MOTORS | ENABLE_LINE | SAFETY_INPUTS | WATCHDOG | RECEIVER)
+            # Without a crystal the core runs at 16 MHz, where no model is in time.
+            model = MODEL_TOO_SLOW if BARE.exists() else MODEL_OK
+            self.assertEqual([start[name] for name in ("configuration", "blob", "model", "image")],
+                             [0, BLOB_OK, model, IMAGE_OK])
+            self.assertEqual(start["fault_cause"], 0)
+            self.assertEqual(self.no_force(board), 1 << 1 | 1 << 9)  # emergency stop, motors
+
+    def test_without_a_watchdog_that_waits_nothing_is_erased(self):
+        blob = pathlib.Path(BLOB).read_bytes()
+        with Emulator(["-kernel", IMAGE], blob) as board:
+            board.open()
+            begin = struct.pack("<24sIII", b"", 0, len(blob), zlib.crc32(blob))
+            self.assertEqual(board.ask(BEGIN_MODEL, begin)["status"], STORAGE_FAILED)
 
     @unittest.skipUnless(BARE.exists(), "the image does not know what a tick costs")
     def test_without_its_costs_a_board_takes_the_model(self):
-        boot, statuses = self.boot(pathlib.Path(BLOB).read_bytes(), BARE)
-        self.assertEqual(boot[6:10], bytes([0, BLOB_OK, MODEL_OK, IMAGE_OK]))
-        self.no_force(statuses)
+        with Emulator(["-kernel", BARE], pathlib.Path(BLOB).read_bytes()) as board:
+            start = board.start()
+            self.assertEqual([start["blob"], start["model"], start["image"]], [BLOB_OK, MODEL_OK, IMAGE_OK])
+            self.no_force(board)
 
     def test_a_wrong_blob_is_told(self):
         good = pathlib.Path(BLOB).read_bytes()
@@ -94,21 +76,63 @@ class Stm32f405(unittest.TestCase):
         too_large[total:total + 4] = struct.pack("<I", 896 * 1024 + 4)
         refusals = set()
         for blob in (b"", b"\xff" * 4096, good[:len(good) // 2], bytes(flipped), bytes(too_large)):
-            boot, statuses = self.boot(blob)
-            self.assertNotEqual(boot[7], BLOB_OK)
-            refusals.add(boot[7])
-            self.no_force(statuses)
+            with Emulator(["-kernel", IMAGE], blob) as board:
+                told = board.start()["blob"]
+                self.assertNotEqual(told, BLOB_OK)
+                refusals.add(told)
+                self.no_force(board)
         self.assertEqual(len(refusals), 4)  # too short, magic, checksum, size
 
     def test_a_damaged_image_is_told(self):
-        data = bytearray(pathlib.Path(IMAGE).read_bytes())
-        data[data.index(b"TACTIMG\0") + 30] ^= 1  # behind the board's name: in no one's way
-        with tempfile.TemporaryDirectory() as folder:
-            damaged = pathlib.Path(folder, "damaged.elf")
-            damaged.write_bytes(data)
-            boot, statuses = self.boot(pathlib.Path(BLOB).read_bytes(), damaged)
-        self.assertEqual(boot[9], IMAGE_DAMAGED)
-        self.no_force(statuses)
+        image = pathlib.Path(IMAGE).read_bytes()
+        (table,) = struct.unpack_from("<I", image, 28)
+        (vectors,) = struct.unpack_from("<I", image, table + 4)
+        self.assertEqual(struct.unpack_from("<I", image, table + 12)[0], 0x08000000)
+        # In no one's way: behind the board's name, and a handler that is never called.
+        for place in (image.index(b"TACTIMG\0") + 30, vectors + VECTOR_OF_NO_EXCEPTION):
+            data = bytearray(image)
+            data[place] ^= 1
+            with tempfile.TemporaryDirectory() as folder:
+                damaged = pathlib.Path(folder, "damaged.elf")
+                damaged.write_bytes(data)
+                with Emulator(["-kernel", damaged], pathlib.Path(BLOB).read_bytes()) as board:
+                    self.assertEqual(board.start()["image"], IMAGE_DAMAGED)
+                    self.no_force(board)
+
+    @unittest.skipUnless(pathlib.Path(TACTREE).exists(), "there is no tactree (build the preset host-gcc)")
+    def test_the_command_line_talks_to_it(self):
+        with tempfile.TemporaryDirectory() as folder, subprocess.Popen(
+                boot_command(folder, ["-kernel", IMAGE], pathlib.Path(BLOB).read_bytes(),
+                             f"unix:{folder}/port,server=on,wait=off"), stdin=subprocess.DEVNULL) as emulator:
+            port = f"unix:{folder}/port"
+
+            def call(*arguments):
+                return subprocess.run([TACTREE, *map(str, arguments), "--port", port], capture_output=True,
+                                      text=True, check=False, timeout=60)
+
+            def run(*arguments, code=0):
+                done = call(*arguments)
+                self.assertEqual(done.returncode, code, done.stdout + done.stderr)
+                return done.stdout + done.stderr
+
+            try:
+                while call("devices").returncode != 0:
+                    pass  # it boots
+                told = run("devices")
+                self.assertIn("stm32f405, firmware", told)
+                self.assertIn("no force, did not start: motors, enable line", told)
+                self.assertIn("crystal", told)
+                result = pathlib.Path(folder, "seen.json")
+                run("monitor", "--once", "--json", result, code=1)  # it has faults
+                self.assertIn("motor-fault", json.loads(result.read_text())["fault_names"])
+                self.assertIn("delay_s", run("params"))
+                self.assertIn("empty", run("flash", "--list"))
+                self.assertIn("does not allow it", run("arm", code=1))
+                self.assertIn("tick,state,contact", run("trace"))
+                self.assertIn("stopped", run("stop"))
+                self.assertIn("the flash did not take it", run("flash", BLOB, code=1))
+            finally:
+                emulator.kill()
 
     def test_the_conformance_program_finds_the_missing_parts(self):
         done = subprocess.run([*EMULATOR, "-semihosting-config", "enable=on,target=native", "-serial",

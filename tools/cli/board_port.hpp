@@ -12,7 +12,7 @@ namespace tactree::cli {
 
 struct BoardPort {
   std::string port;  ///< empty: the only one there is
-  unsigned baud = 115200;
+  unsigned baud = host::kUsualBaud;
 };
 
 void add_port_options(CLI::App& verb, BoardPort& options);

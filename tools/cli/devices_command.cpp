@@ -29,13 +29,15 @@ struct DevicesOptions {
 
 nlohmann::json probe(const std::string& port, unsigned baud) {
   try {
-    const core::wire::IdentifyReply board = host::Board::identify(host::open_port(port, baud));
+    const host::Introduction found = host::Board::introduce(host::open_port(port, baud));
+    const core::wire::IdentifyReply& board = found.board;
     return {{"port", port},
             {"board", text_of(board.board)},
             {"firmware", text_of(board.firmware)},
             {"serial",
              fmt::format("{:08x}{:08x}{:08x}", board.serial[0], board.serial[1], board.serial[2])},
-            {"protocol", fmt::format("{}.{}", board.version_major, board.version_minor)}};
+            {"protocol", fmt::format("{}.{}", board.version_major, board.version_minor)},
+            {"complaints", host::complaints(found.start)}};
   } catch (const host::LinkError& error) {
     return {{"port", port}, {"error", error.what()}};
   }
@@ -49,6 +51,9 @@ void print(const nlohmann::json& device) {
   fmt::print("{}: {}, firmware {}, serial {}, protocol {}\n", device["port"].get<std::string>(),
              device["board"].get<std::string>(), device["firmware"].get<std::string>(),
              device["serial"].get<std::string>(), device["protocol"].get<std::string>());
+  for (const auto& complaint : device["complaints"]) {
+    fmt::print("  {}\n", complaint.get<std::string>());
+  }
 }
 
 void list_devices(const DevicesOptions& options, int& exit_code) {

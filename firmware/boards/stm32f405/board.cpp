@@ -1,5 +1,7 @@
 #include "board.hpp"
 
+#include "runtime/identity.hpp"
+
 namespace tactree::firmware {
 namespace {
 
@@ -15,6 +17,8 @@ std::uint32_t timer_clock_hz() {
 
 void prepare_board() { clock_failure = prepare_chip(stm32f4::this_chip()); }
 
-Board::Board() : Stm32f405Board(stm32f4::this_chip(), clock_failure) {}
+Board::Board()
+    : Stm32f405Board(stm32f4::this_chip(), stm32f4::flash_cells(), clock_failure,
+                     {kIdentity.board, TACTREE_FIRMWARE_VERSION, {}, timer_clock_hz()}) {}
 
 }  // namespace tactree::firmware

@@ -6,15 +6,19 @@
 #include <cstdint>
 
 #include "platform.hpp"
+#include "runtime/application.hpp"
 #include "runtime/blob_area.hpp"
 #include "runtime/deadline_wait.hpp"
 #include "stm32f4/clocks.hpp"
 #include "stm32f4/lines.hpp"
 #include "stm32f4/pwm_motors.hpp"
 #include "stm32f4/quadrature_encoders.hpp"
-#include "stm32f4/serial_link.hpp"
+#include "stm32f4/serial_port.hpp"
+#include "stm32f4/store_flash.hpp"
 #include "stm32f4/watchdog.hpp"
 #include "tactree/hal/board.hpp"
+#include "tactree/hal/session/session.hpp"
+#include "tactree/hal/store/model_store.hpp"
 #include "wiring.hpp"
 
 namespace tactree::firmware {
@@ -32,10 +36,28 @@ template <class Word>
   return failure;
 }
 
-template <class Word>
+/// Where the model store keeps its records and its two slots: memory.ld has the whole flash.
+inline constexpr stm32f4::FlashRegion kRecordSectors{1, 2, 4096};
+inline constexpr stm32f4::FlashRegion kSlotSectors{6, 6, 32768};
+
+constexpr core::wire::StartPart part_of(stm32f4::ClockFailure failure) {
+  using stm32f4::ClockFailure;
+  using Part = core::wire::StartPart;
+  return failure == ClockFailure::kCrystal      ? Part::kCrystal
+         : failure == ClockFailure::kFrequency  ? Part::kCrystalFrequency
+         : failure == ClockFailure::kWaitStates ? Part::kWaitStates
+         : failure == ClockFailure::kPll        ? Part::kPll
+                                                : Part::kClockSwitch;
+}
+
+/// `Cell` as in FlashProgrammer.
+template <class Word, class Cell = Word>
 class Stm32f405Board {
  public:
-  /// The watchdog is fed where a tick begins and nowhere else: a tick that hangs starves it.
+  using Part = core::wire::StartPart;
+
+  /// The watchdog is fed where a tick begins, and around an erase, in which no tick is: a tick that
+  /// hangs starves it.
   class Ticker {
    public:
     explicit Ticker(Stm32f405Board& board) : board_(board) {}
@@ -62,55 +84,106 @@ class Stm32f405Board {
     Stm32f405Board& board_;
   };
 
+  /// Power off, and no tick, while the processor stands still. Who cannot make the watchdog wait as
+  /// long erases nothing; who cannot make it as short again as it was gives no force any more.
+  class Standstill {
+   public:
+    explicit Standstill(Stm32f405Board& board) : board_(board) {}
+    [[nodiscard]] bool begin() noexcept {
+      firmware::hold_ticks(true);
+      board_.enable_line_.set(false);
+      return board_.watchdog_.set(stm32f4::kTimeOfErasing);
+    }
+    void end() noexcept {
+      board_.note(board_.watchdog_.set(stm32f4::kTimeOfTicks), Part::kWatchdog);
+      firmware::hold_ticks(false);
+    }
+
+   private:
+    Stm32f405Board& board_;
+  };
+
+  using Flash = stm32f4::StoreFlash<Word, Cell, Standstill>;
+  using Store = hal::ModelStore<Flash>;
+  using Session = hal::Session<stm32f4::SerialPort<Word>, Store, SessionPlatform>;
+  using Link = hal::MailboxLink<Ticker>;
+
   /// `clocks`: what prepare_chip() returned.
-  Stm32f405Board(const stm32f4::Chip<Word>& chip, stm32f4::ClockFailure clocks)
+  Stm32f405Board(const stm32f4::Chip<Word>& chip, const stm32f4::FlashCells<Cell>& cells,
+                 stm32f4::ClockFailure clocks, const hal::BoardIdentity& identity)
       : chip_(chip),
+        identity_(identity),
+        full_speed_(clocks == stm32f4::ClockFailure::kNone),
         encoders_({chip.tim2, stm32f4::CounterWidth::k32}, {chip.tim5, stm32f4::CounterWidth::k32},
                   {chip.tim4, stm32f4::CounterWidth::k16}),
         pwm_(chip.tim8, {pin_c(0), pin_c(1), pin_c(2)}, pin_b(14), wiring::kEffortAtFullWidth),
         enable_line_(pin_c(4), pin_c(5), pwm_),
         safety_inputs_(pin_b(12), pin_b(13)),
         port_(chip.usart1, chip.dma2, ring_),
-        link_(port_),
         watchdog_(chip.watchdog),
+        standstill_(*this),
+        record_flash_(chip.flash, cells, kRecordSectors, standstill_),
+        slot_flash_(chip.flash, cells, kSlotSectors, standstill_),
+        store_(slot_flash_, record_flash_, {identity_.board, nullptr, {}}),
         motors_(*this),
-        ticker_(*this) {
-    boot_.clocks = clocks;
+        ticker_(*this),
+        link_{mailbox_, ticker_} {
+    if (!full_speed_) {
+      report_.miss(part_of(clocks));
+    }
   }
   Stm32f405Board(const Stm32f405Board&) = delete;
   Stm32f405Board& operator=(const Stm32f405Board&) = delete;
 
-  /// Starts every part; the configuration is that of wiring.hpp.
+  /// Starts every part; the configuration is that of wiring.hpp, with the calibration that was
+  /// saved.
   [[nodiscard]] core::Configuration connect(const hal::CapturedFault& last_fault) {
-    boot_.reset_by_watchdog = stm32f4::take_watchdog_reset(chip_.rcc);
-    boot_.last_fault = last_fault;
-    note(enable_line_.start(), stm32f4::Part::kEnableLine);
-    note(safety_inputs_.start(), stm32f4::Part::kSafetyInputs);
+    report_.by_watchdog = stm32f4::take_watchdog_reset(chip_.rcc);
+    report_.last_fault = last_fault;
+    note(enable_line_.start(), Part::kEnableLine);
+    note(safety_inputs_.start(), Part::kSafetyInputs);
     prepare_encoder_pins();
-    note(encoders_.start(), stm32f4::Part::kEncoders);
+    note(encoders_.start(), Part::kEncoders);
     prepare_motor_pins();
-    note(pwm_.start(), stm32f4::Part::kMotors);
+    note(pwm_.start(), Part::kMotors);
     pin_a(9).make_alternate(wiring::kUsart1Function, stm32f4::Pull::kUp);
     pin_a(10).make_alternate(wiring::kUsart1Function, stm32f4::Pull::kUp);
-    port_.start(apb2_clock_hz(), wiring::kBaud);
-    return wiring::configuration();
+    note(port_.start(full_speed_ ? stm32f4::kApb2Hz : stm32f4::kInternalClockHz, wiring::kBaud),
+         Part::kReceiver);
+    store_.set_factory(BlobArea().active());
+    (void)store_.mount();
+    core::Configuration configuration = wiring::configuration();
+    take_saved_parameters(store_, configuration);
+    return configuration;
   }
 
-  /// Tells over the link what started and what did not. The watchdog starts here and not in
-  /// connect(): checking a large model takes longer than it waits.
-  void report(const hal::StartResult& result) {
-    boot_.result = result;
-    note(watchdog_.start(), stm32f4::Part::kWatchdog);
-    link_.tell(boot_);
+  /// The watchdog starts here and not in connect(): checking a large model takes longer than it
+  /// waits. What is in `result` is told over the link: serve().
+  void report(const hal::StartResult& /*result*/) { note(watchdog_.start(), Part::kWatchdog); }
+
+  /// Serves an application at the port, between the ticks, for ever.
+  void serve(core::Controller& controller, const hal::StartResult& started,
+             const core::Configuration& configuration) {
+    static Session session(session_parts(controller));
+    session.started(started, configuration, &report_);
+    while (true) {  // bound: for_ever
+      (void)session.work();
+    }
+  }
+  [[nodiscard]] typename Session::Parts session_parts(core::Controller& controller) {
+    return {port_, store_, platform_, controller, mailbox_, identity_};
   }
 
   [[nodiscard]] stm32f4::QuadratureEncoders<Word>& encoders() noexcept { return encoders_; }
   [[nodiscard]] Motors& motors() noexcept { return motors_; }
   [[nodiscard]] stm32f4::EnableLine<Word>& enable_line() noexcept { return enable_line_; }
   [[nodiscard]] stm32f4::SafetyInputs<Word>& safety_inputs() noexcept { return safety_inputs_; }
-  [[nodiscard]] stm32f4::SerialLink<Word>& link() noexcept { return link_; }
-  [[nodiscard]] const BlobArea& storage() const noexcept { return storage_; }
+  [[nodiscard]] Link& link() noexcept { return link_; }
+  [[nodiscard]] const Store& storage() const noexcept { return store_; }
   [[nodiscard]] Ticker& ticker() noexcept { return ticker_; }
+
+  /// What did not start, up to now.
+  [[nodiscard]] const hal::StartReport& start_report() const noexcept { return report_; }
 
   /// Where DMA puts what comes in: a faked one has no other way to find it.
   [[nodiscard]] stm32f4::Ring& ring() noexcept { return ring_; }
@@ -139,35 +212,34 @@ class Stm32f405Board {
     pin_b(14).make_input(stm32f4::Pull::kDown);
   }
 
-  [[nodiscard]] std::uint32_t apb2_clock_hz() const {
-    return boot_.clocks == stm32f4::ClockFailure::kNone ? stm32f4::kApb2Hz
-                                                        : stm32f4::kInternalClockHz;
-  }
+  [[nodiscard]] bool started() const { return report_.missing == 0U; }
 
-  [[nodiscard]] bool started() const {
-    return boot_.clocks == stm32f4::ClockFailure::kNone && boot_.failed_parts == 0U;
-  }
-
-  void note(bool good, stm32f4::Part part) {
+  void note(bool good, Part part) {
     if (!good) {
-      boot_.failed_parts =
-          static_cast<std::uint8_t>(boot_.failed_parts | static_cast<unsigned>(part));
+      report_.miss(part);
     }
   }
 
   stm32f4::Chip<Word> chip_;
+  hal::BoardIdentity identity_;
+  bool full_speed_;
+  hal::StartReport report_{};
   stm32f4::QuadratureEncoders<Word> encoders_;
   stm32f4::PwmMotors<Word> pwm_;
   stm32f4::EnableLine<Word> enable_line_;
   stm32f4::SafetyInputs<Word> safety_inputs_;
   stm32f4::Ring ring_{};
   stm32f4::SerialPort<Word> port_;
-  stm32f4::SerialLink<Word> link_;
   stm32f4::Watchdog<Word> watchdog_;
-  BlobArea storage_;
+  Standstill standstill_;
+  Flash record_flash_;
+  Flash slot_flash_;
+  Store store_;
+  SessionPlatform platform_;
+  hal::TickMailbox mailbox_;
   Motors motors_;
   Ticker ticker_;
-  stm32f4::BootFrame boot_{};
+  Link link_;
 };
 
 }  // namespace tactree::firmware

@@ -30,6 +30,8 @@ const char* remedy_for(WireStatus status) {
       return " (build it with a larger --spacing or with --flash-budget)";
     case WireStatus::kBadSignature:
       return " (tactree sign, with the key that belongs to the board)";
+    case WireStatus::kInUse:
+      return " (roll back first; where the image's model fills both slots, program a smaller one)";
     case WireStatus::kOldCounter:
       return " (sign it with a larger --counter)";
     default:
@@ -104,14 +106,20 @@ Connection& Board::connection() const {
   return *connection_;
 }
 
-core::wire::IdentifyReply Board::identify(std::unique_ptr<Transport> transport) {
+Introduction Board::introduce(std::unique_ptr<Transport> transport) {
   Connection connection(std::move(transport));
   const Response response = connection.call(MessageKind::kIdentify);
-  core::wire::IdentifyReply reply;
-  if (!response.ok() || !response.read(reply)) {
-    throw LinkError(connection.name() + ": no answer (is it a board with Tactree's firmware?)");
+  Introduction introduction;
+  if (!response.ok() || !response.read(introduction.board)) {
+    throw LinkError(connection.name() +
+                    ": no answer (is it a board with Tactree's firmware, and is --baud right?)");
   }
-  return reply;
+  core::wire::ReadStartReply start;
+  const Response started = connection.call(MessageKind::kReadStart);
+  if (started.ok() && started.read(start)) {
+    introduction.start = start;
+  }
+  return introduction;
 }
 
 Response Board::demand(MessageKind kind, std::span<const std::byte> payload, const char* what) {

@@ -128,6 +128,8 @@ bool is_model(std::span<const std::byte> bytes, int number) {
          std::memcmp(bytes.data(), wanted.data(), wanted.size()) == 0;
 }
 
+Order next_model() { return {bytes_of_model(1), "", 0, false}; }
+
 struct StoreTest : ::testing::Test {
   SimFlash flash{geometry()};
   hal::StoreSetup setup{"here", nullptr, {}};
@@ -324,6 +326,84 @@ TEST_F(StoreTest, RotInTheModelOrInAllRecordsGivesNoModel) {
   EXPECT_TRUE(is_model(mended.active(), 2));
 }
 
+// ---- the model of the image lies in the slots, and the records in a flash of their own
+
+struct FactoryInSlots : ::testing::Test {
+  SimFlash records{{512, 2, 4}};
+  SimFlash models{{1024, 2 * 8, 4}};
+  hal::StoreSetup setup{"here", nullptr, {}};
+
+  /// Puts the model where it lies after the image was programmed.
+  void program_factory(const Bytes& model, std::uint32_t sector) {
+    ASSERT_TRUE(models.program(sector * 1024U, model));
+    setup.factory = models.bytes().subspan(sector * std::size_t{1024}, model.size());
+  }
+  Store mounted() {
+    Store store(models, records, setup);
+    EXPECT_TRUE(store.mount());
+    return store;
+  }
+};
+
+TEST_F(FactoryInSlots, TheWholeFlashIsForModels) {
+  Store store = mounted();
+  EXPECT_EQ(store.slot_bytes(), 8U * 1024U);
+  for (int i = 0; i < 20; ++i) {
+    ASSERT_EQ(update(store, {bytes_of_model(i % 3), "", 0, false}), WireStatus::kOk);
+    Store again = mounted();
+    ASSERT_TRUE(is_model(again.active(), i % 3)) << i;
+  }
+  EXPECT_EQ(records.mistakes() + models.mistakes(), 0U);
+  EXPECT_NEAR(records.erased_times(0), records.erased_times(1), 1);
+}
+
+TEST_F(FactoryInSlots, ItsSlotIsWrittenOnceItIsNotInUse) {
+  program_factory(bytes_of_model(0), 0);
+  Store store = mounted();
+  EXPECT_EQ(store.begin_erase(0, &kOwner), WireStatus::kInUse);
+  ASSERT_EQ(transfer(store, {bytes_of_model(1), "", 0, false}), WireStatus::kOk);
+  EXPECT_EQ(store.transfer_slot(), 1U);
+  EXPECT_TRUE(is_model(store.active(), 0));
+  ASSERT_EQ(store.activate(1), WireStatus::kOk);
+  ASSERT_EQ(update(store, {bytes_of_model(2), "", 0, false}), WireStatus::kOk);
+  EXPECT_EQ(store.transfer_slot(), 0U);
+  EXPECT_TRUE(is_model(mounted().active(), 2));
+  EXPECT_EQ(models.mistakes(), 0U);
+}
+
+TEST_F(FactoryInSlots, OneThatReachesIntoBothSlotsIsNotWrittenOver) {
+  program_factory(bytes_of_model(0), 8U - 1U);
+  ASSERT_GT(bytes_of_model(0).size(), 1024U);
+  Store store = mounted();
+  EXPECT_EQ(transfer(store, {bytes_of_model(1), "", 0, false}), WireStatus::kInUse);
+  EXPECT_TRUE(is_model(mounted().active(), 0));
+}
+
+TEST_F(FactoryInSlots, WhatIsNoModelProtectsNothing) {
+  program_factory(Bytes(4096, std::byte{0x55}), 6);
+  Store store = mounted();
+  EXPECT_EQ(update(store, {bytes_of_model(1), "", 0, false}), WireStatus::kOk);
+  EXPECT_TRUE(is_model(mounted().active(), 1));
+}
+
+TEST_F(FactoryInSlots, ACutOfTheFirstUpdateLeavesTheOldOrTheNewModel) {
+  for (SimFlash* cut : {&records, &models}) {
+    for (std::uint64_t operation = 0; operation < 2000U; operation += 1U + operation / 16U) {
+      records = SimFlash({512, 2, 4});
+      models = SimFlash({1024, 2 * 8, 4});
+      program_factory(bytes_of_model(0), 0);
+      models.power_on();
+      cut->cut_power_at(operation, static_cast<int>(operation % 3U));
+      Store store = mounted();
+      (void)update(store, next_model());
+      records.power_on();
+      models.power_on();
+      Store again = mounted();
+      ASSERT_TRUE(is_model(again.active(), 0) || is_model(again.active(), 1)) << operation;
+    }
+  }
+}
+
 // Whatever bytes are in the flash: it starts, and what it gives as a model is one.
 TEST_F(StoreTest, AnyBytesDoNoHarm) {
   std::mt19937 random(9);
@@ -353,8 +433,6 @@ struct BeforeUpdate {
   Bytes saved;
   std::uint64_t operations = 0;
 };
-
-Order next_model() { return {bytes_of_model(1), "", 0, false}; }
 
 /// `updates`: models written before; the log of records is in another place with each.
 BeforeUpdate prepare(int updates) {

@@ -89,7 +89,7 @@ class SessionRig {
         loop_(board_, controller_) {
     stand_at(0.05);
     start_ = loop_.start(configuration);
-    session_.started(start_, configuration);
+    session_.started(start_, configuration, &start_report);
     settle(10);
   }
 
@@ -187,6 +187,7 @@ class SessionRig {
   void replace_client() { client_ = host::Client(); }
 
   std::function<void()> after_tick;
+  hal::StartReport start_report{};
 
  private:
   static constexpr hal::BoardIdentity kIdentity{"test", "1.2.3", {1, 2, 3}, 0};

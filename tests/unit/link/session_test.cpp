@@ -282,6 +282,27 @@ TEST_F(SessionTest, TellsTheFirstFault) {
   EXPECT_EQ(rig.state(), State::kIdle);
 }
 
+TEST_F(SessionTest, TellsHowTheBoardStartedToAnyoneAndToTheLast) {
+  core::wire::ReadStartReply start;
+  ASSERT_TRUE(rig.ask(MessageKind::kReadStart).read(start));
+  EXPECT_EQ(start.missing, 0U);
+  EXPECT_EQ(start.by_watchdog, 0U);
+  EXPECT_EQ(start.fault_cause, 0U);
+  EXPECT_EQ(start.blob, static_cast<std::uint8_t>(core::BlobStatus::kOk));
+  rig.start_report.missing = 7;  // noticed later
+  rig.start_report.by_watchdog = true;
+  rig.start_report.last_fault = {
+      3, 4, 5, 6, 7, 8, {9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21}};
+  ASSERT_TRUE(rig.ask(MessageKind::kReadStart).read(start));
+  EXPECT_EQ(start.missing, 7U);
+  EXPECT_EQ(start.by_watchdog, 1U);
+  EXPECT_EQ(start.fault_cause, 3U);
+  EXPECT_EQ(start.fault_pc, 6U);
+  EXPECT_EQ(start.fault_sp, 8U);
+  EXPECT_EQ(start.fault_registers[12], 21U);
+  EXPECT_EQ(rig.client().session(), 0U) << "it opened a session for that";
+}
+
 TEST_F(SessionTest, ParametersHaveNamesRangesAndAreChecked) {
   ASSERT_TRUE(rig.open().ok());
   for (std::uint32_t i = 0; i < core::kParameters; ++i) {

@@ -5,13 +5,14 @@
 #include <cstdint>
 
 #include "fake_clocks.hpp"
+#include "fake_flash.hpp"
 #include "fake_parts.hpp"
 
 namespace tactree::test {
 
 class FakeChip {
  public:
-  FakeChip() : clocks(flash), serial(nullptr) {
+  FakeChip() : clocks(flash.block), serial(nullptr) {
     const auto clocked = [](const FakeWord& word, std::uint32_t bit) {
       return [&word, bit] { return (word.value & (1U << bit)) != 0U; };
     };
@@ -26,23 +27,31 @@ class FakeChip {
     gpio_b.wire(12, false);  // emergency stop: closed to ground
     gpio_b.wire(14, true);   // amplifiers are good
     gpio_c.wire(5, false);   // amplifiers have no power
+    flash.pass = [this](double us) { pass_us(us); };
   }
 
   [[nodiscard]] firmware::stm32f4::Chip<FakeWord> chip() {
-    return {clocks.rcc,   flash,      gpio_a.block,  gpio_b.block, gpio_c.block,
-            tim2.block,   tim4.block, tim5.block,    tim8.block,   clocks.tim11,
-            serial.usart, serial.dma, watchdog.block};
+    return {clocks.rcc,   flash.block, gpio_a.block,  gpio_b.block, gpio_c.block,
+            tim2.block,   tim4.block,  tim5.block,    tim8.block,   clocks.tim11,
+            serial.usart, serial.dma,  watchdog.block};
   }
 
   void tick() {
+    pass_us(1000);
+    begin_tick();
+  }
+  /// The deadline of the next tick.
+  void begin_tick() {
     ++ticks;
     if (power_follows) {
       gpio_c.wire(5, gpio_c.level(4));
     }
     tim8.take_over();
+  }
+  void pass_us(double us) {
     serial.clock_MHz = clocks.apb2_MHz();
-    serial.tick_us(1000);
-    watchdog.tick_us(1000);
+    serial.tick_us(us);
+    watchdog.tick_us(us);
   }
 
   /// A switch of the device.
@@ -54,7 +63,7 @@ class FakeChip {
     tim4.turn(z);
   }
 
-  firmware::stm32f4::FlashBlock<FakeWord> flash;
+  FakeFlash flash{FakeFlash::whole_chip(), 0xFFFFFFFFU};
   FakeClocks clocks;
   FakeGpio gpio_a, gpio_b, gpio_c;
   FakeTimer tim2{0xFFFFFFFFU}, tim4{0xFFFFU}, tim5{0xFFFFFFFFU}, tim8{0xFFFFU};

@@ -53,8 +53,10 @@ class FakeClocks {
       captured_ = false;
       return value;
     };
-    flash_.acr.on_write = [this](std::uint32_t value, std::uint32_t written) {
-      return flash_takes_wait_states ? written : value;
+    flash_.acr.on_write = [this, inner = flash_.acr.on_write](std::uint32_t value,
+                                                              std::uint32_t written) {
+      const std::uint32_t taken = inner ? inner(value, written) : written;
+      return flash_takes_wait_states ? taken : value;
     };
   }
 

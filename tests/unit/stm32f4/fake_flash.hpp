@@ -1,39 +1,107 @@
 #pragma once
 // The flash as RM0090 tells, sections 3.5 to 3.9: locked until two keys came in order, busy for a
 // while, bits that only go from 1 to 0, whole sectors to erase, and a data cache that does not
-// notice.
+// notice. Power may go at any operation, and leaves it half done.
 
 #include <cstdint>
+#include <cstring>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "fake_word.hpp"
 #include "stm32f4/flash_programmer.hpp"
+#include "stm32f4/store_flash.hpp"
 
 namespace tactree::test {
+
+class FakeFlash;
+
+/// A word of the flash itself.
+class FakeCell {
+ public:
+  operator std::uint32_t() const;
+  FakeCell& operator=(std::uint32_t word);
+
+ private:
+  friend class FakeFlash;
+  FakeFlash* flash_ = nullptr;
+};
 
 class FakeFlash {
  public:
   static constexpr std::uint32_t kSectors = 3;
   static constexpr std::uint32_t kWords = 8;  ///< in a sector
+  static constexpr double kEraseUs = 2e6;     ///< at most: data sheet, table 38
+  static constexpr double kProgramUs = 100;
 
   // Imperfections.
   std::uint32_t busy_polls = 5;
   bool never_ready = false;
   bool keys_work = true;
-  std::optional<std::uint32_t> protected_sector;  ///< of the region
-  std::optional<std::uint32_t> worn_cell;         ///< its lowest bit does not come back to 1
+  std::optional<std::uint32_t> protected_sector;
+  std::optional<std::uint32_t> worn_cell;  ///< its lowest bit does not come back to 1
+  /// In the operation with this number, counted from 0. After it nothing is done any more.
+  std::uint64_t power_goes_at = std::numeric_limits<std::uint64_t>::max();
 
   std::string violation;  ///< what the manual forbids; empty: nothing was
-  std::uint32_t operations = 0;
+  std::uint64_t operations = 0;
+  std::uint32_t erased = 0;                             ///< sectors
+  std::function<void(double us)> pass = [](double) {};  ///< the processor stands still
   firmware::stm32f4::FlashRegion region{5, kSectors, kWords};
   firmware::stm32f4::FlashBlock<FakeWord> block;
-  std::unique_ptr<FakeWord[]> cells{new FakeWord[kSectors * kWords]};
 
-  FakeFlash() : stored_(kSectors * kWords, 0U), cached_(kSectors * kWords) {
+  /// Words of each of the chip's sectors, of none of those that a test does without.
+  explicit FakeFlash(std::vector<std::uint32_t> words = {0, 0, 0, 0, 0, kWords, kWords, kWords},
+                     std::uint32_t content = 0U)
+      : sector_words_(std::move(words)) {
+    std::uint32_t size = 0;
+    for (const std::uint32_t sector : sector_words_) {
+      size += sector;
+    }
+    stored_.assign(size, content);
+    cached_.resize(size);
+    cells_ = std::make_unique<FakeCell[]>(size);
+    for (std::uint32_t i = 0; i < size; ++i) {
+      cells_[i].flash_ = this;
+    }
+    set_hooks();
+  }
+  FakeFlash(const FakeFlash&) = delete;
+
+  /// All of an STM32F405, erased.
+  static std::vector<std::uint32_t> whole_chip() {
+    std::vector<std::uint32_t> words(12, 32768);
+    words[0] = words[1] = words[2] = words[3] = 4096;
+    words[4] = 16384;
+    return words;
+  }
+
+  [[nodiscard]] FakeCell* cells() { return cells_.get(); }
+  [[nodiscard]] firmware::stm32f4::FlashCells<FakeCell> whole() {
+    return {cells_.get(), std::as_bytes(std::span(stored_)).data()};
+  }
+  [[nodiscard]] bool locked() const { return (block.cr.value & kLock) != 0U; }
+  /// What the flash holds, whatever the cache says.
+  [[nodiscard]] std::uint32_t stored(std::uint32_t cell) const { return stored_[cell]; }
+  [[nodiscard]] const std::vector<std::uint32_t>& content() const { return stored_; }
+  /// A programmer at its pins wrote this.
+  void restore(const std::vector<std::uint32_t>& content) { stored_ = content; }
+  void put(std::uint32_t offset, std::span<const std::byte> bytes) {
+    std::memcpy(std::as_writable_bytes(std::span(stored_)).data() + offset, bytes.data(),
+                bytes.size());
+  }
+
+ private:
+  friend class FakeCell;
+  static constexpr std::uint32_t kLock = 1U << 31, kBusy = 1U << 16, kFlags = 0xF3U;
+  static constexpr std::uint32_t kDataCacheOn = 1U << 10, kDataCacheReset = 1U << 12;
+
+  void set_hooks() {
     block.cr.value = kLock;
     block.acr.value = kDataCacheOn;
     block.keyr.on_write = [this](std::uint32_t, std::uint32_t key) { return take_key(key); };
@@ -47,19 +115,7 @@ class FakeFlash {
     block.acr.on_write = [this](std::uint32_t value, std::uint32_t written) {
       return access(value, written);
     };
-    for (std::uint32_t i = 0; i < kSectors * kWords; ++i) {
-      cells[i].on_read = [this, i](std::uint32_t) { return fetch(i); };
-      cells[i].on_write = [this, i](std::uint32_t, std::uint32_t word) { return write(i, word); };
-    }
   }
-
-  [[nodiscard]] bool locked() const { return (block.cr.value & kLock) != 0U; }
-  /// What the flash holds, whatever the cache says.
-  [[nodiscard]] std::uint32_t stored(std::uint32_t cell) const { return stored_[cell]; }
-
- private:
-  static constexpr std::uint32_t kLock = 1U << 31, kBusy = 1U << 16, kFlags = 0xF3U;
-  static constexpr std::uint32_t kDataCacheOn = 1U << 10, kDataCacheReset = 1U << 12;
 
   std::uint32_t take_key(std::uint32_t key) {
     if (!keys_work) {
@@ -80,14 +136,22 @@ class FakeFlash {
       return value;
     }
     if ((written & (1U << 16)) != 0U && (written & (1U << 1)) != 0U) {
-      erase(((written >> 3) & 0xFU) - region.first_sector);
+      erase((written >> 3) & 0xFU);
     }
     return written & ~(1U << 16);
   }
 
+  [[nodiscard]] std::uint32_t first_cell(std::uint32_t sector) const {
+    std::uint32_t first = 0;
+    for (std::uint32_t i = 0; i < sector; ++i) {
+      first += sector_words_[i];
+    }
+    return first;
+  }
+
   void erase(std::uint32_t sector) {
-    begin();
-    if (sector >= kSectors) {
+    const bool has_power = begin(kEraseUs);
+    if (sector >= sector_words_.size() || sector_words_[sector] == 0U) {
       violation = "a sector outside the region was erased";
       return;
     }
@@ -95,35 +159,47 @@ class FakeFlash {
       block.sr.value |= 1U << 4;
       return;
     }
-    for (std::uint32_t i = sector * kWords; i < (sector + 1U) * kWords; ++i) {
+    if (operations - 1U > power_goes_at) {
+      return;
+    }
+    ++erased;
+    const std::uint32_t first = first_cell(sector);
+    const std::uint32_t count = has_power ? sector_words_[sector] : sector_words_[sector] / 2U;
+    for (std::uint32_t i = first; i < first + count; ++i) {
       stored_[i] = worn_cell == i ? 0xFFFFFFFEU : 0xFFFFFFFFU;
     }
   }
 
-  std::uint32_t write(std::uint32_t cell, std::uint32_t word) {
+  void write(std::uint32_t cell, std::uint32_t word) {
     if (remaining_ > 0U) {
       violation = "the flash was written while busy";
     }
     if (locked() || (block.cr.value & 1U) == 0U) {
       block.sr.value |= 1U << 7;  // sequence
-      return 0;
+      return;
     }
     if (((block.cr.value >> 8) & 3U) != 2U) {
       block.sr.value |= 1U << 6;  // parallelism
-      return 0;
+      return;
     }
-    begin();
-    if (protected_sector == cell / kWords) {
+    const bool has_power = begin(kProgramUs);
+    if (protected_sector.has_value() && cell >= first_cell(*protected_sector) &&
+        cell < first_cell(*protected_sector + 1U)) {
       block.sr.value |= 1U << 4;
-      return 0;
+      return;
     }
-    stored_[cell] &= word;
-    return 0;
+    if (operations - 1U <= power_goes_at) {
+      stored_[cell] &= has_power ? word : word | 0xFFFF0000U;
+    }
   }
 
-  void begin() {
+  // False: the power goes in this one, or is gone.
+  bool begin(double us) {
+    const bool has_power = operations < power_goes_at;
     ++operations;
     remaining_ = busy_polls;
+    pass(us);
+    return has_power;
   }
 
   std::uint32_t status(std::uint32_t value) {
@@ -135,7 +211,10 @@ class FakeFlash {
 
   std::uint32_t access(std::uint32_t value, std::uint32_t written) {
     if ((written & kDataCacheReset) != 0U && (value & kDataCacheOn) == 0U) {
-      cached_.assign(cached_.size(), std::nullopt);
+      for (const std::uint32_t cell : in_cache_) {
+        cached_[cell] = std::nullopt;
+      }
+      in_cache_.clear();
     }
     return written;
   }
@@ -146,14 +225,26 @@ class FakeFlash {
     }
     if (!cached_[cell].has_value()) {
       cached_[cell] = stored_[cell];
+      in_cache_.push_back(cell);
     }
     return *cached_[cell];
   }
 
+  std::vector<std::uint32_t> sector_words_;
   std::vector<std::uint32_t> stored_;
   std::vector<std::optional<std::uint32_t>> cached_;
+  std::vector<std::uint32_t> in_cache_;
+  std::unique_ptr<FakeCell[]> cells_;
   std::uint32_t last_key_ = 0;
   std::uint32_t remaining_ = 0;
 };
+
+inline FakeCell::operator std::uint32_t() const {
+  return flash_->fetch(static_cast<std::uint32_t>(this - flash_->cells_.get()));
+}
+inline FakeCell& FakeCell::operator=(std::uint32_t word) {
+  flash_->write(static_cast<std::uint32_t>(this - flash_->cells_.get()), word);
+  return *this;
+}
 
 }  // namespace tactree::test

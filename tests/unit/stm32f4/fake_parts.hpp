@@ -7,6 +7,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "fake_word.hpp"
@@ -145,7 +146,12 @@ class FakeTimer {
 class FakeSerial {
  public:
   explicit FakeSerial(firmware::stm32f4::Ring* ring) : ring_(ring) {
-    usart.sr.value = kEmpty;
+    usart.sr.on_read = [this](std::uint32_t) {
+      return (held_.size() < 2U ? kEmpty : 0U) | (received_.has_value() ? kFull : 0U);
+    };
+    usart.dr.on_read = [this](std::uint32_t) {
+      return std::uint32_t{std::exchange(received_, std::nullopt).value_or(0)};
+    };
     usart.dr.on_write = [this](std::uint32_t, std::uint32_t written) {
       if ((usart.cr1.value & kSends) == kSends) {
         hold(written);
@@ -175,7 +181,14 @@ class FakeSerial {
     auto& stream = dma.stream[2];
     const bool channel_4 = ((stream.cr.value >> 25) & 7U) == 4U;
     const bool circular = (stream.cr.value & 0x500U) == 0x500U;
-    if (!receives || !by_dma || !on() || !channel_4 || !circular || ring_ == nullptr) {
+    if (!receives) {
+      return;
+    }
+    if (!by_dma) {
+      received_ = received_.value_or(byte);  // else it is lost: an overrun
+      return;
+    }
+    if (!on() || !channel_4 || !circular || ring_ == nullptr) {
       return;
     }
     ring_->byte[size_ - stream.ndtr.value] = byte;
@@ -183,7 +196,7 @@ class FakeSerial {
   }
 
   /// Time passes: as many bytes leave as the baud rate allows.
-  void tick_us(std::uint32_t us) {
+  void tick_us(double us) {
     if (usart.brr.value == 0U) {
       return;
     }
@@ -193,7 +206,6 @@ class FakeSerial {
       held_.pop_front();
     }
     time_us_ = held_.empty() ? 0.0 : time_us_;
-    usart.sr.value = held_.size() < 2U ? kEmpty : 0U;
   }
 
   [[nodiscard]] double baud() const { return clock_MHz * 1e6 / usart.brr.value; }
@@ -217,6 +229,7 @@ class FakeSerial {
   firmware::stm32f4::DmaBlock<FakeWord> dma;
 
  private:
+  static constexpr std::uint32_t kFull = 1U << 5;
   static constexpr std::uint32_t kEmpty = 1U << 7;
   static constexpr std::uint32_t kSends = (1U << 13) | (1U << 3);
   static constexpr std::uint32_t kReceives = (1U << 13) | (1U << 2);
@@ -228,8 +241,7 @@ class FakeSerial {
       violation = "a byte was written over one that waits";
       held_.pop_back();
     }
-    held_.push_back(static_cast<std::uint8_t>(byte));
-    usart.sr.value = held_.size() < 2U ? kEmpty : 0U;  // one shifts, one waits
+    held_.push_back(static_cast<std::uint8_t>(byte));  // one shifts, one waits
   }
 
   std::uint32_t control(std::uint32_t value, std::uint32_t written) {
@@ -256,6 +268,7 @@ class FakeSerial {
 
   firmware::stm32f4::Ring* ring_;
   std::deque<std::uint8_t> held_;
+  std::optional<std::uint8_t> received_;
   double time_us_ = 0.0;
   std::uint32_t size_ = 0;
   std::uint32_t stopping_ = 0;
@@ -266,23 +279,25 @@ class FakeWatchdog {
   double oscillator_hz = 32000.0;  ///< 17 000 .. 47 000
   std::uint32_t update_polls = 6;
   bool takes_settings = true;
+  bool takes_prescaler = true;
 
   FakeWatchdog() {
     block.kr.on_read = [](std::uint32_t) { return 0U; };
     block.kr.on_write = [this](std::uint32_t, std::uint32_t key) { return take_key(key); };
     block.rlr.value = 0xFFF;
-    const auto protect = [this](std::uint32_t value, std::uint32_t written) {
-      if (!unlocked_ || !takes_settings) {
-        return value;
-      }
-      updating_ = update_polls;
-      return written;
+    block.pr.on_write = [this](std::uint32_t value, std::uint32_t written) {
+      return takes_prescaler ? set(value, written, updating_[0]) : value;
     };
-    block.pr.on_write = protect;
-    block.rlr.on_write = protect;
+    block.rlr.on_write = [this](std::uint32_t value, std::uint32_t written) {
+      return set(value, written, updating_[1]);
+    };
     block.sr.on_read = [this](std::uint32_t) {
-      updating_ -= updating_ > 0U ? 1U : 0U;
-      return updating_ > 0U ? 0x3U : 0U;
+      std::uint32_t flags = 0;
+      for (std::uint32_t i = 0; i < 2; ++i) {
+        updating_[i] -= updating_[i] > 0U ? 1U : 0U;
+        flags |= updating_[i] > 0U ? 1U << i : 0U;
+      }
+      return flags;
     };
   }
 
@@ -299,6 +314,14 @@ class FakeWatchdog {
   }
 
  private:
+  std::uint32_t set(std::uint32_t value, std::uint32_t written, std::uint32_t& updating) {
+    if (!unlocked_ || !takes_settings || updating > 0U) {
+      return value;  // no other while one is on its way
+    }
+    updating = update_polls;
+    return written;
+  }
+
   std::uint32_t take_key(std::uint32_t key) {
     unlocked_ = key == 0x5555U;
     runs_ = runs_ || key == 0xCCCCU;
@@ -316,7 +339,7 @@ class FakeWatchdog {
   bool unlocked_ = false;
   bool runs_ = false;
   bool bitten_ = false;
-  std::uint32_t updating_ = 0;
+  std::uint32_t updating_[2] = {0, 0};  // prescaler, reload
   double left_s_ = 0.0;
 };
 

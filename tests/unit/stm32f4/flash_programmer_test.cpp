@@ -16,8 +16,8 @@ constexpr std::uint32_t kWords[] = {0x54434154, 0, 0xFFFFFFFF, 0x12345678};
 
 class Flash : public testing::Test {
  protected:
-  FlashProgrammer<FakeWord> programmer() {
-    return {fake.block, fake.cells.get(), fake.region, {100, 10}};
+  FlashProgrammer<FakeWord, FakeCell> programmer() {
+    return {fake.block, fake.cells(), fake.region, {100, 10}};
   }
   ~Flash() override { EXPECT_EQ(fake.violation, ""); }
   FakeFlash fake;
@@ -38,10 +38,10 @@ TEST_F(Flash, ErasesOneSectorAndProgramsIt) {
 }
 
 TEST_F(Flash, TheCacheDoesNotAnswerForTheFlash) {
-  EXPECT_EQ(std::uint32_t{fake.cells[0]}, 0U);  // now it is in the cache
+  EXPECT_EQ(std::uint32_t{fake.cells()[0]}, 0U);  // now it is in the cache
   EXPECT_EQ(programmer().erase(0), FlashStatus::kOk);
   EXPECT_EQ(programmer().program(0, kWords), FlashStatus::kOk);
-  EXPECT_EQ(std::uint32_t{fake.cells[0]}, kWords[0]);
+  EXPECT_EQ(std::uint32_t{fake.cells()[0]}, kWords[0]);
   EXPECT_NE(fake.block.acr.value & (1U << 10), 0U) << "the cache stayed off";
 }
 
@@ -79,7 +79,7 @@ TEST_F(Flash, ABusyFlashThatNeverGetsReadyIsLeftAlone) {
 }
 
 TEST_F(Flash, AProtectedSectorIsTold) {
-  fake.protected_sector = 2;
+  fake.protected_sector = 5 + 2;
   EXPECT_EQ(programmer().erase(2), FlashStatus::kProtected);
   EXPECT_EQ(programmer().program(2 * FakeFlash::kWords, kWords), FlashStatus::kProtected);
   EXPECT_EQ(programmer().erase(1), FlashStatus::kOk) << "the error of before was not cleared";
@@ -94,7 +94,7 @@ TEST_F(Flash, KeysThatAreNotTakenAreTold) {
 
 // The fake itself.
 TEST_F(Flash, TheFakeTakesNothingWithoutKeysOrWhileBusy) {
-  fake.cells[0] = 1U;
+  fake.cells()[0] = 1U;
   EXPECT_EQ(fake.block.sr.value, 1U << 7);
   fake.block.keyr = 0xCDEF89ABU;
   fake.block.keyr = 0x45670123U;
@@ -102,7 +102,7 @@ TEST_F(Flash, TheFakeTakesNothingWithoutKeysOrWhileBusy) {
   fake.block.keyr = 0xCDEF89ABU;
   EXPECT_FALSE(fake.locked());
   fake.block.cr = 0x201U;
-  fake.cells[0] = 1U;
+  fake.cells()[0] = 1U;
   fake.block.cr = 0x201U;
   EXPECT_EQ(fake.violation, "CR written while busy");
   fake.violation.clear();

@@ -4,16 +4,17 @@
 
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "fake_parts.hpp"
 #include "stm32f4/lines.hpp"
 #include "stm32f4/pwm_motors.hpp"
 #include "stm32f4/quadrature_encoders.hpp"
-#include "stm32f4/serial_link.hpp"
+#include "stm32f4/serial_port.hpp"
 #include "stm32f4/watchdog.hpp"
+#include "tactree/hal/board.hpp"
 
 namespace tactree::test {
 namespace {
@@ -284,175 +285,109 @@ TEST(SafetyInputs, APortWithoutClockIsTheSafeStateToo) {
   EXPECT_FALSE(inputs.dead_man());
 }
 
-// ---- serial link
+// ---- serial port
 
 struct SerialBench {
   Ring ring{};
   FakeSerial fake{&ring};
   SerialPort<FakeWord> port{fake.usart, fake.dma, ring};
-  SerialLink<FakeWord> link{port};
-  SerialBench() { port.start(84000000, 115200); }
+  bool started = port.start(84000000, 1000000);
 
-  void arrive(const CommandFrame& frame) {
-    std::uint8_t bytes[sizeof frame];
-    std::memcpy(bytes, &frame, sizeof frame);
-    for (const std::uint8_t byte : bytes) {
-      fake.arrive(byte);
-    }
+  std::optional<std::byte> take() {
+    std::byte byte{};
+    return port.read(std::span(&byte, 1)) == 1U ? std::optional(byte) : std::nullopt;
   }
-  /// Ticks until this many bytes came out.
+  /// Looks at the port as often as a session does, until so many bytes came out.
   void run_until_sent(std::size_t bytes) {
-    for (int i = 0; i < 1000 && fake.sent.size() < bytes; ++i) {
-      port.advance();
-      fake.tick_us(1000);
+    for (int i = 0; i < 10000 && fake.sent.size() < bytes; ++i) {
+      (void)port.read({});
+      fake.tick_us(10);
     }
   }
 };
 
-CommandFrame frame_of(core::Command command, std::uint8_t sequence) {
-  CommandFrame frame;
-  frame.command = command;
-  frame.sequence = sequence;
-  frame.checksum = checksum_of(frame);
-  return frame;
-}
+static_assert(hal::BytePort<SerialPort<FakeWord>>);
 
-TEST(SerialPort, BaudRateIsWithinOnePercent) {
+TEST(SerialPort, BaudRateIsExactAtBothClocks) {
   SerialBench bench;
-  EXPECT_NEAR(bench.fake.baud(), 115200.0, 1152.0);
+  EXPECT_EQ(bench.fake.baud(), 1e6);
+  bench.fake.clock_MHz = 16.0;
+  EXPECT_TRUE(bench.port.start(16000000, 1000000));
+  EXPECT_EQ(bench.fake.baud(), 1e6);
 }
 
 TEST(SerialPort, ReceivesAroundTheRing) {
   SerialBench bench;
-  std::byte byte{};
-  EXPECT_FALSE(bench.port.take(byte));
+  ASSERT_TRUE(bench.started);
+  EXPECT_FALSE(bench.take().has_value());
   for (std::uint32_t i = 0; i < 3 * kRingBytes; ++i) {
     bench.fake.arrive(static_cast<std::uint8_t>(i));
-    ASSERT_TRUE(bench.port.take(byte));
-    EXPECT_EQ(byte, static_cast<std::byte>(i));
-    EXPECT_FALSE(bench.port.take(byte));
+    ASSERT_EQ(bench.take(), static_cast<std::byte>(i));
+    EXPECT_FALSE(bench.take().has_value());
   }
+}
+
+TEST(SerialPort, GivesNoMoreThanFitsAndNoMoreThanCame) {
+  SerialBench bench;
+  for (std::uint32_t i = 0; i < kRingBytes - 1U; ++i) {
+    bench.fake.arrive(static_cast<std::uint8_t>(i));
+  }
+  std::vector<std::byte> bytes(kRingBytes);
+  EXPECT_EQ(bench.port.read(std::span(bytes).first(100)), 100U);
+  EXPECT_EQ(bench.port.read(bytes), kRingBytes - 101U);
+  EXPECT_EQ(bytes[0], std::byte{100});
 }
 
 TEST(SerialPort, StartsAnewWhileTheStreamRuns) {
   SerialBench bench;
   bench.fake.arrive(1);
-  bench.port.start(84000000, 115200);
+  ASSERT_TRUE(bench.port.start(84000000, 1000000));
   EXPECT_EQ(bench.fake.dma.stream[2].ndtr.value, kRingBytes);
-  std::byte byte{};
-  EXPECT_FALSE(bench.port.take(byte));
+  EXPECT_FALSE(bench.take().has_value());
   bench.fake.arrive(2);
-  ASSERT_TRUE(bench.port.take(byte));
-  EXPECT_EQ(byte, std::byte{2});
+  ASSERT_EQ(bench.take(), std::byte{2});
+}
+
+TEST(SerialPort, WithoutDmaTakesAByteAtATimeAndSaysSo) {
+  SerialBench bench;
+  bench.fake.gate_by([] { return true; }, [] { return false; });
+  ASSERT_FALSE(bench.port.start(84000000, 1000000));
+  EXPECT_FALSE(bench.take().has_value());
+  bench.fake.arrive(7);
+  bench.fake.arrive(8);  // nobody looked: lost
+  EXPECT_EQ(bench.take(), std::byte{7});
+  EXPECT_FALSE(bench.take().has_value());
 }
 
 TEST(SerialPort, NeverWritesOverAByteThatWaits) {
   SerialBench bench;
   const std::vector<std::byte> bytes(40, std::byte{0x5A});
-  bench.port.send(bytes);
+  EXPECT_EQ(bench.port.write(bytes), bytes.size());
   for (int i = 0; i < 10; ++i) {
-    bench.port.advance();  // the wire stands still
+    EXPECT_EQ(bench.port.write(bytes), 0U);  // the wire stands still
   }
-  EXPECT_FALSE(bench.port.idle());
   EXPECT_EQ(bench.fake.violation, "");
   bench.run_until_sent(bytes.size());
   EXPECT_EQ(bench.fake.sent.size(), bytes.size());
-  EXPECT_TRUE(bench.port.idle());
+  EXPECT_EQ(bench.port.write(bytes), bytes.size());
 }
 
-/// What the next ticks read that look at two frames.
-core::Command next_command(SerialBench& bench) {
-  core::Command command = core::Command::kNone;
-  for (std::uint32_t seen = 0; seen < 16U && command == core::Command::kNone; seen += kLookedAt) {
-    command = bench.link.receive().command;
-  }
-  return command;
-}
-
-TEST(SerialLink, LooksAtNoMoreThanItsShareOfATick) {
+TEST(SerialPort, SendsWhatIsLongerThanItsRoomInPieces) {
   SerialBench bench;
-  for (std::uint32_t i = 0; i < kLookedAt; ++i) {
-    bench.fake.arrive(0);
+  std::vector<std::byte> bytes(1000);
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    bytes[i] = static_cast<std::byte>(i % 251);
   }
-  bench.arrive(frame_of(core::Command::kArm, 0));
-  EXPECT_FALSE(bench.link.receive().alive);
-  EXPECT_EQ(bench.link.receive().command, core::Command::kArm);
-}
-
-TEST(SerialLink, GivesACommandOnceAndOneATick) {
-  SerialBench bench;
-  bench.arrive(frame_of(core::Command::kArm, 0));
-  bench.arrive(frame_of(core::Command::kArm, 0));  // repeated on the wire
-  bench.arrive(frame_of(core::Command::kStop, 1));
-  bench.arrive(frame_of(core::Command::kHome, 2));
-  EXPECT_EQ(bench.link.receive().command, core::Command::kArm);
-  EXPECT_EQ(next_command(bench), core::Command::kStop);
-  EXPECT_EQ(next_command(bench), core::Command::kHome);
-  const hal::LinkInput nothing = bench.link.receive();
-  EXPECT_FALSE(nothing.alive);
-  EXPECT_EQ(nothing.command, core::Command::kNone);
-}
-
-TEST(SerialLink, ASignOfLifeIsNoCommand) {
-  SerialBench bench;
-  bench.arrive(frame_of(core::Command::kNone, 9));
-  const hal::LinkInput input = bench.link.receive();
-  EXPECT_TRUE(input.alive);
-  EXPECT_EQ(input.command, core::Command::kNone);
-}
-
-TEST(SerialLink, EveryWrongBitAndEveryCutIsAsIfNothingCame) {
-  const CommandFrame good = frame_of(core::Command::kArm, 3);
-  for (std::uint32_t bit = 0; bit < 8U * sizeof good; ++bit) {
-    SerialBench bench;
-    std::uint8_t bytes[sizeof good];
-    std::memcpy(bytes, &good, sizeof good);
-    bytes[bit / 8] = static_cast<std::uint8_t>(bytes[bit / 8] ^ (1U << (bit % 8)));
-    for (const std::uint8_t byte : bytes) {
-      bench.fake.arrive(byte);
-    }
-    EXPECT_FALSE(bench.link.receive().alive) << bit;
-    bench.arrive(frame_of(core::Command::kStop, 4));
-    EXPECT_EQ(next_command(bench), core::Command::kStop) << bit;
+  std::size_t taken = 0;
+  for (int i = 0; i < 10000 && taken < bytes.size(); ++i) {
+    taken += bench.port.write(std::span(std::as_const(bytes)).subspan(taken));
+    bench.fake.tick_us(10);
   }
-  for (std::size_t cut = 1; cut < sizeof good; ++cut) {
-    SerialBench bench;
-    for (std::size_t i = 0; i < cut; ++i) {
-      bench.fake.arrive(reinterpret_cast<const std::uint8_t*>(&good)[i]);
-    }
-    bench.arrive(frame_of(core::Command::kStop, 4));
-    EXPECT_EQ(next_command(bench), core::Command::kStop) << cut;
+  bench.run_until_sent(bytes.size());
+  ASSERT_EQ(bench.fake.sent.size(), bytes.size());
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    ASSERT_EQ(std::byte{bench.fake.sent[i]}, bytes[i]) << i;
   }
-  SerialBench unknown;
-  unknown.arrive(frame_of(static_cast<core::Command>(99), 5));
-  EXPECT_FALSE(unknown.link.receive().alive);
-}
-
-TEST(SerialLink, TellsTheBootAndThenTheStatus) {
-  SerialBench bench;
-  BootFrame boot;
-  boot.result.blob = core::BlobStatus::kBadChecksum;
-  boot.failed_parts = 5;
-  bench.link.tell(boot);
-  core::Status status;
-  status.tick = 77;
-  bench.link.send(status);  // dropped: the boot message is on its way
-  bench.run_until_sent(sizeof(BootFrame));
-  ASSERT_EQ(bench.fake.sent.size(), sizeof(BootFrame));
-  BootFrame told;
-  std::memcpy(&told, bench.fake.sent.data(), sizeof told);
-  EXPECT_EQ(told.result.blob, core::BlobStatus::kBadChecksum);
-  EXPECT_EQ(told.failed_parts, 5);
-  EXPECT_EQ(told.checksum, checksum_of(told));
-
-  status.tick = 99;
-  bench.link.send(status);
-  bench.run_until_sent(sizeof(BootFrame) + sizeof(StatusFrame));
-  ASSERT_EQ(bench.fake.sent.size(), sizeof(BootFrame) + sizeof(StatusFrame));
-  StatusFrame frame;
-  std::memcpy(&frame, bench.fake.sent.data() + sizeof(BootFrame), sizeof frame);
-  EXPECT_EQ(frame.tick, 99U);
-  EXPECT_EQ(frame.checksum, checksum_of(frame));
 }
 
 // ---- watchdog
@@ -473,6 +408,34 @@ TEST(Watchdog, BitesWithinTenMillisecondsOverItsOscillatorsRange) {
   }
 }
 
+TEST(Watchdog, WaitsForAnEraseAndIsAsImpatientAsBeforeAfterIt) {
+  for (const double oscillator_hz : {17000.0, 32000.0, 47000.0}) {
+    FakeWatchdog fake;
+    fake.oscillator_hz = oscillator_hz;
+    Watchdog<FakeWord> watchdog(fake.block);
+    ASSERT_TRUE(watchdog.start());
+    fake.tick_us(2500);
+    ASSERT_TRUE(watchdog.set(kTimeOfErasing));
+    fake.tick_us(2.9e6);
+    ASSERT_FALSE(fake.bitten()) << oscillator_hz;
+    ASSERT_TRUE(watchdog.set(kTimeOfTicks));
+    fake.tick_us(3000);
+    ASSERT_FALSE(fake.bitten()) << oscillator_hz;
+    fake.tick_us(6000);
+    EXPECT_TRUE(fake.bitten()) << oscillator_hz;
+  }
+}
+
+TEST(Watchdog, WaitsForASettingThatIsOnItsWay) {
+  FakeWatchdog fake;
+  Watchdog<FakeWord> watchdog(fake.block);
+  ASSERT_TRUE(watchdog.start());
+  fake.block.kr = 0x5555U;
+  fake.block.rlr = 99U;  // somebody else's, not taken yet
+  EXPECT_TRUE(watchdog.set(kTimeOfErasing));
+  EXPECT_EQ(fake.block.rlr.value, kTimeOfErasing.reload);
+}
+
 TEST(Watchdog, DoesNotRunBeforeItsStart) {
   FakeWatchdog fake;
   Watchdog<FakeWord> watchdog(fake.block);
@@ -484,6 +447,9 @@ TEST(Watchdog, SettingsThatAreNotTakenAreTold) {
   FakeWatchdog deaf;
   deaf.takes_settings = false;
   EXPECT_FALSE(Watchdog<FakeWord>(deaf.block).start());
+  FakeWatchdog half;
+  half.takes_prescaler = false;
+  EXPECT_FALSE(Watchdog<FakeWord>(half.block).set(kTimeOfErasing));
   FakeWatchdog slow;
   slow.update_polls = watchdog::kPolls + 2U;
   EXPECT_FALSE(Watchdog<FakeWord>(slow.block).start());

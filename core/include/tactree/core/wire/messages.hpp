@@ -40,6 +40,7 @@ enum class MessageKind : std::uint8_t {
   kEraseModel = 0x16,      ///< of the slot that is not in use
   kReadTrace = 0x20,       ///< records of the flight recorder
   kReadFault = 0x21,       ///< what it was like when the first fault was latched
+  kReadStart = 0x22,       ///< how the board started; needs no session
   kGetParameter = 0x28,    ///< device calibration: value, range, name
   kSetParameter = 0x29,    ///< changes it until the next reset
   kSaveParameters = 0x2A,  ///< keeps it
@@ -342,6 +343,38 @@ struct ReadFaultReply {
   float force_N[3] = {};
 };
 
+/// Parts of a board that did not start; with any of them there is no force.
+enum class StartPart : std::uint32_t {
+  kEncoders = 1U << 0,
+  kMotors = 1U << 1,
+  kEnableLine = 1U << 2,
+  kSafetyInputs = 1U << 3,
+  kWatchdog = 1U << 4,          ///< or it did not take its time back after the flash was erased
+  kReceiver = 1U << 5,          ///< of the link: what comes fast is lost
+  kCrystal = 1U << 8,           ///< no oscillation: the core is slow
+  kCrystalFrequency = 1U << 9,  ///< another crystal than the board's
+  kWaitStates = 1U << 10,       ///< of the flash
+  kPll = 1U << 11,              ///< does not lock
+  kClockSwitch = 1U << 12,      ///< the core stays on its internal oscillator
+};
+
+/// The first four: why there is no model; 0 is good.
+struct ReadStartReply {
+  std::uint8_t configuration = 0;   ///< ConfigurationStatus
+  std::uint8_t blob = 0;            ///< BlobStatus
+  std::uint8_t model = 0;           ///< ModelStatus
+  std::uint8_t image = 0;           ///< 1: a byte of the program is wrong; 2: a bit of RAM
+  std::uint32_t missing = 0;        ///< StartPart, or of them
+  std::uint32_t by_watchdog = 0;    ///< 1: it caused the last reset
+  std::uint32_t fault_cause = 0;    ///< what the last run died of; 0: nothing; see CapturedFault
+  std::uint32_t fault_status = 0;   ///< Arm: CFSR; RISC-V: mstatus
+  std::uint32_t fault_address = 0;  ///< Arm: BFAR or MMFAR; RISC-V: mtval
+  std::uint32_t fault_pc = 0;       ///< instruction that failed, or one soon after it
+  std::uint32_t fault_lr = 0;       ///< return address
+  std::uint32_t fault_sp = 0;       ///< stack pointer
+  std::uint32_t fault_registers[13] = {};  ///< Arm: r0-r12; RISC-V: a0-a7, t0-t4
+};
+
 struct GetParameterRequest {
   std::uint32_t number = 0;  ///< 0 .. CapabilitiesReply::parameters - 1
 };
@@ -372,6 +405,7 @@ static_assert(sizeof(BeginModelReply) == 4 && sizeof(WriteModelRequest) == 4);
 static_assert(sizeof(WriteModelReply) == 4 && sizeof(FinishModelRequest) == 68);
 static_assert(sizeof(FinishModelReply) == 8 && sizeof(SlotRequest) == 4);
 static_assert(sizeof(ReadTraceRequest) == 8 && sizeof(ReadTraceReply) == 16);
+static_assert(sizeof(ReadStartReply) == 88);
 static_assert(sizeof(ReadFaultReply) == 56 && sizeof(GetParameterRequest) == 4);
 static_assert(sizeof(ParameterReply) == 56 && sizeof(SetParameterRequest) == 8);
 static_assert(sizeof(WriteModelRequest) + kMaxPiece <= kMaxPayload);

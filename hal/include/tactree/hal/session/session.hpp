@@ -28,6 +28,7 @@
 #include "tactree/hal/session/reply.hpp"
 #include "tactree/hal/session/telemetry.hpp"
 #include "tactree/hal/session/tick_mailbox.hpp"
+#include "tactree/hal/start_report.hpp"
 
 namespace tactree::hal {
 
@@ -67,10 +68,13 @@ class Session {
       : parts_(parts), models_(parts.store, parts.platform, parts.controller, parts.mailbox) {}
 
   /// What start-up said, and with which configuration: its limits are the greatest that an
-  /// application may set. Call it before work().
-  void started(const StartResult& result, const core::Configuration& base) {
+  /// application may set. Call it before work(). `report` stays where it is: what the board notices
+  /// later is told too.
+  void started(const StartResult& result, const core::Configuration& base,
+               const StartReport* report = nullptr) {
     start_ = result;
     base_ = base;
+    report_ = report;
   }
 
   /// One piece. True: there may be more to do at once. Cost, without the flash's own time and the
@@ -178,6 +182,9 @@ class Session {
     if (kind == Kind::kIdentify) {
       return identify();
     }
+    if (kind == Kind::kReadStart) {
+      return tell_start();
+    }
     if (kind == Kind::kOpen) {
       return open();
     }
@@ -269,6 +276,28 @@ class Session {
     copy(parts_.identity.firmware, reply.firmware);
     for (std::uint32_t i = 0; i < 3U; ++i) {  // bound: 3
       reply.serial[i] = parts_.identity.serial[i];
+    }
+    return answer(reply);
+  }
+
+  Outcome tell_start() {
+    const StartReport report = report_ == nullptr ? StartReport{} : *report_;
+    const CapturedFault& fault = report.last_fault;
+    core::wire::ReadStartReply reply;
+    reply.configuration = static_cast<std::uint8_t>(start_.configuration);
+    reply.blob = static_cast<std::uint8_t>(start_.blob);
+    reply.model = static_cast<std::uint8_t>(start_.model);
+    reply.image = static_cast<std::uint8_t>(start_.image);
+    reply.missing = report.missing;
+    reply.by_watchdog = report.by_watchdog ? 1U : 0U;
+    reply.fault_cause = fault.cause;
+    reply.fault_status = fault.status;
+    reply.fault_address = fault.address;
+    reply.fault_pc = fault.pc;
+    reply.fault_lr = fault.lr;
+    reply.fault_sp = fault.sp;
+    for (std::uint32_t i = 0; i < 13U; ++i) {  // bound: 13
+      reply.fault_registers[i] = fault.registers[i];
     }
     return answer(reply);
   }
@@ -751,6 +780,7 @@ class Session {
   ModelTransfer<Store, Platform> models_;
   core::Configuration base_{};
   StartResult start_{};
+  const StartReport* report_ = nullptr;  // nullptr: the board tells nothing
 
   core::wire::FrameDecoder decoder_{};
   FrameQueue queue_{};

@@ -11,7 +11,7 @@ namespace tactree::hal {
 /// All sectors are of one size.
 struct FlashGeometry {
   std::uint32_t sector_bytes = 4096;  ///< smallest piece that can be erased; a multiple of 512
-  std::uint32_t sectors = 0;          ///< at least 4
+  std::uint32_t sectors = 0;          ///< at least 4; 2 of one that holds records, or models, only
   std::uint32_t program_bytes = 4;    ///< smallest piece that can be written: 1 .. 32, power of 2
 };
 

@@ -6,6 +6,11 @@
 //   sector 0, 1   records            record_log.hpp
 //   then          slot 0, slot 1     half of the other sectors each
 //
+// A flash with sectors of several sizes gives the records its small ones, as a flash of their own.
+//
+// The model of the image may lie in the slots. While it is in use, a slot that it reaches into is
+// not written.
+//
 // What is read is never trusted: a model is opened by open_blob() each time, its checksum, and
 // where a key is given its signature, are those of its record. A store that makes no sense is
 // damaged: no model, until somebody writes one.
@@ -15,6 +20,7 @@
 //
 // Not for the tick. One context.
 
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -32,13 +38,18 @@ struct StoreSetup {
   std::span<const std::byte> factory{};  ///< model of the image, in use until another is; or none
 };
 
-template <Flash F>
+template <Flash F, Flash Records = F>
 class ModelStore {
  public:
   using WireStatus = core::wire::WireStatus;
   static constexpr std::uint32_t kSlots = kStoreSlots;
 
-  ModelStore(F& flash, const StoreSetup& setup) : flash_(flash), setup_(setup), log_(flash) {}
+  ModelStore(F& flash, const StoreSetup& setup) requires std::same_as<F, Records>
+      : flash_(flash), first_slot_sector_(2), setup_(setup), log_(flash) {}
+
+  /// Two sectors of `records`, and all of `flash` for the slots.
+  ModelStore(F& flash, Records& records, const StoreSetup& setup)
+      : flash_(flash), first_slot_sector_(0), setup_(setup), log_(records) {}
 
   // ---- at start-up
 
@@ -49,8 +60,8 @@ class ModelStore {
   bool mount() {
     record_ = {};
     const auto found = log_.find(slot_bytes(), record_);
-    damaged_ = found == RecordLog<F>::Found::kDamaged;
-    if (found != RecordLog<F>::Found::kRecord) {
+    damaged_ = found == RecordLog<Records>::Found::kDamaged;
+    if (found != RecordLog<Records>::Found::kRecord) {
       record_ = {};
     }
     return !damaged_;
@@ -101,10 +112,14 @@ class ModelStore {
     if (status != WireStatus::kOk) {
       return status;
     }
+    const std::uint32_t spare = spare_slot();
+    if (holds_factory(spare)) {
+      return WireStatus::kInUse;
+    }
     owner_ = owner;
     announced_ = request;
     next_offset_ = 0;
-    slot_ = spare_slot();
+    slot_ = spare;
     record_.slot[slot_] = {};
     return start_erasing(announced_.bytes);
   }
@@ -215,7 +230,7 @@ class ModelStore {
     if (slot >= kSlots) {
       return WireStatus::kBadValue;
     }
-    if (slot == record_.active) {
+    if (slot == record_.active || holds_factory(slot)) {
       return WireStatus::kInUse;
     }
     if (owner_ != nullptr && owner_ != owner) {
@@ -243,10 +258,10 @@ class ModelStore {
   static constexpr std::uint32_t kLargestPiece = 32;  // of program_bytes
 
   [[nodiscard]] std::uint32_t sectors_per_slot() const {
-    return (flash_.geometry().sectors - 2U) / kSlots;
+    return (flash_.geometry().sectors - first_slot_sector_) / kSlots;
   }
   [[nodiscard]] std::uint32_t first_sector(std::uint32_t slot) const {
-    return 2U + slot * sectors_per_slot();
+    return first_slot_sector_ + slot * sectors_per_slot();
   }
   [[nodiscard]] std::span<const std::byte> bytes_of(std::uint32_t slot, std::uint32_t count) const {
     return flash_.bytes().subspan(first_sector(slot) * flash_.geometry().sector_bytes, count);
@@ -256,7 +271,21 @@ class ModelStore {
     if (record_.active < kSlots) {
       return 1U - record_.active;
     }
-    return record_.slot[0].bytes == 0U ? 0U : 1U;
+    return record_.slot[0].bytes == 0U && !holds_factory(0) ? 0U : 1U;
+  }
+
+  /// Is the model of the image in use, and does it reach into the slot? Cost: checks the model.
+  [[nodiscard]] bool holds_factory(std::uint32_t slot) const {
+    const auto address = [](const std::byte* byte) {
+      return reinterpret_cast<std::uintptr_t>(byte);
+    };
+    const std::span<const std::byte> model = setup_.factory;
+    const std::span<const std::byte> room = bytes_of(slot, slot_bytes());
+    core::BlobView view;
+    return record_.active == kFactorySlot &&
+           address(model.data()) < address(room.data() + room.size()) &&
+           address(room.data()) < address(model.data() + model.size()) &&
+           core::open_blob(model, view) == core::BlobStatus::kOk;
   }
 
   [[nodiscard]] WireStatus start_erasing(std::uint32_t bytes) {
@@ -383,8 +412,9 @@ class ModelStore {
   }
 
   F& flash_;
+  std::uint32_t first_slot_sector_;
   StoreSetup setup_;
-  RecordLog<F> log_;
+  RecordLog<Records> log_;
   ModelRecord record_{};
   bool damaged_ = false;
 

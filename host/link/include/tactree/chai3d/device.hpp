@@ -18,7 +18,7 @@
 namespace tactree::chai3d {
 
 struct DeviceOptions {
-  unsigned baud = 115200;
+  unsigned baud = host::kUsualBaud;
   /// CHAI3D's servo loop sends forces all the time: when it ends, so does the force.
   std::uint16_t link_timeout_ms = 50;
   std::uint32_t every_ticks = 1;  ///< of telemetry; on a serial port 10 or more

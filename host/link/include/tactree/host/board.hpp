@@ -26,11 +26,13 @@
 #include "tactree/core/flight_recorder.hpp"
 #include "tactree/core/pose.hpp"
 #include "tactree/host/connection.hpp"
+#include "tactree/host/serial_port.hpp"
+#include "tactree/host/start_report.hpp"
 
 namespace tactree::host {
 
 struct BoardOptions {
-  unsigned baud = 115200;
+  unsigned baud = kUsualBaud;  ///< of a serial port
   /// 5 .. 100: force ends when this program does not run for that long. 0: force goes on without
   /// it.
   std::uint16_t link_timeout_ms = 0;
@@ -58,6 +60,12 @@ struct TracedTick {
 /// "motor-fault, link-lost"; empty: there is none.
 [[nodiscard]] std::string names_of(core::FaultMask faults);
 
+/// A board that answers, and how it started: complaints() of start_report.hpp.
+struct Introduction {
+  core::wire::IdentifyReply board{};
+  core::wire::ReadStartReply start{};  ///< all well, of a board that does not tell
+};
+
 class Board {
  public:
   /// A port by its path. Opens a session; waits.
@@ -75,8 +83,8 @@ class Board {
   /// False after the cable was pulled, or the board was reset.
   [[nodiscard]] bool connected() const { return connection_ && connection_->connected(); }
 
-  /// Who is there, without a session: disturbs nobody. Waits.
-  [[nodiscard]] static core::wire::IdentifyReply identify(std::unique_ptr<Transport> transport);
+  /// Who is there and how it started, without a session: disturbs nobody. Waits.
+  [[nodiscard]] static Introduction introduce(std::unique_ptr<Transport> transport);
 
   // ---- these wait
   [[nodiscard]] core::wire::IdentifyReply identify();

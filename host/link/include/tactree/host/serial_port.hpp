@@ -9,11 +9,14 @@
 
 namespace tactree::host {
 
+/// What our firmware speaks: firmware/boards/stm32f405.
+inline constexpr unsigned kUsualBaud = 1000000;
+
 /// A serial port, or the far end of a pseudo-terminal, in raw mode. `baud`: 9600 .. 4000000, as far
 /// as the system knows it; of no meaning where no wire is. Throws LinkError where it cannot be
 /// opened.
 [[nodiscard]] std::unique_ptr<Transport> open_serial_port(const std::string& path,
-                                                          unsigned baud = 115200);
+                                                          unsigned baud = kUsualBaud);
 
 /// Ports that there are: /dev/ttyACM*, /dev/ttyUSB*.
 [[nodiscard]] std::vector<std::string> serial_ports();

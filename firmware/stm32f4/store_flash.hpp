@@ -1,0 +1,89 @@
+#pragma once
+// Sectors of the chip's flash as hal::Flash.
+
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "stm32f4/flash_programmer.hpp"
+#include "tactree/hal/store/flash.hpp"
+
+namespace tactree::firmware::stm32f4 {
+
+/// What a board does around an erase, in which the processor stands still for up to 2 s.
+///   begin()  no force and no tick from now on, and a watchdog that waits as long. False: it cannot
+///            be done, so nothing is erased.
+///   end()    as it was before; called after each begin().
+template <class T>
+concept Standstill = requires(T& standstill) {
+  { standstill.begin() }
+  noexcept->std::same_as<bool>;
+  { standstill.end() }
+  noexcept->std::same_as<void>;
+};
+
+/// The whole flash: its first word, to be written and to be read. `Cell` as in FlashProgrammer.
+template <class Cell>
+struct FlashCells {
+  Cell* cells = nullptr;
+  const std::byte* bytes = nullptr;
+};
+
+/// That of the chip this program runs on.
+inline FlashCells<HardwareWord> flash_cells() {
+  const std::uintptr_t begin = address::kFlashBegin;
+  return {reinterpret_cast<HardwareWord*>(begin), reinterpret_cast<const std::byte*>(begin)};
+}
+
+template <class Word, class Cell, class S>
+class StoreFlash {
+ public:
+  StoreFlash(FlashBlock<Word>& block, const FlashCells<Cell>& flash, const FlashRegion& region,
+             S& standstill)
+      : programmer_(block, flash.cells + begin_of(region) / 4U, region),
+        bytes_(flash.bytes + begin_of(region)),
+        region_(region),
+        standstill_(standstill) {}
+
+  [[nodiscard]] hal::FlashGeometry geometry() const noexcept {
+    return {4U * region_.words_per_sector, region_.sectors, 4};
+  }
+  [[nodiscard]] std::span<const std::byte> bytes() const noexcept {
+    return {bytes_, std::size_t{4} * region_.words_per_sector * region_.sectors};
+  }
+
+  [[nodiscard]] bool erase(std::uint32_t sector) noexcept {
+    static_assert(Standstill<S>);
+    const bool ready = standstill_.begin();
+    const bool erased = ready && programmer_.erase(sector) == FlashStatus::kOk;
+    standstill_.end();
+    return erased;
+  }
+
+  /// Ticks go on: a word takes 0.1 ms at most.
+  [[nodiscard]] bool program(std::uint32_t offset, std::span<const std::byte> bytes) noexcept {
+    std::uint32_t words[16];
+    if (offset % 4U != 0U || bytes.size() % 4U != 0U) {
+      return false;
+    }
+    while (!bytes.empty()) {  // bound: bytes_size / 4
+      const std::size_t size = bytes.size() < sizeof words ? bytes.size() : sizeof words;
+      __builtin_memcpy(words, bytes.data(), size);
+      if (programmer_.program(offset / 4U, std::span(words).first(size / 4U)) != FlashStatus::kOk) {
+        return false;
+      }
+      offset += static_cast<std::uint32_t>(size);
+      bytes = bytes.subspan(size);
+    }
+    return true;
+  }
+
+ private:
+  FlashProgrammer<Word, Cell> programmer_;
+  const std::byte* bytes_;
+  FlashRegion region_;
+  S& standstill_;
+};
+
+}  // namespace tactree::firmware::stm32f4
