@@ -53,7 +53,7 @@ export function buildModel(name, points, options = []) {
 
 /** `tactree view` with these arguments: { url, port, stop() }, once it listens. */
 export function startServer(args, port = 0) {
-  const child = spawn(tactree, ['view', '--port', String(port), ...args]);
+  const child = spawn(tactree, ['view', '--page-port', String(port), ...args]);
   let text = '';
   child.stderr.on('data', (data) => process.stderr.write(data));
   return new Promise((done, failed) => {
