@@ -204,8 +204,8 @@ void BoardSession::use_board() {
   }
   if (link_ == Link::kHere) {
     take_telemetry();
-    notice_loss();
   }
+  notice_loss();
 }
 
 void BoardSession::stop_if_wanted() {
@@ -304,9 +304,13 @@ void BoardSession::add(const host::Telemetry& telemetry) {
 }
 
 void BoardSession::notice_loss() {
-  if (!board_->connected()) {
+  if (link_ != Link::kGone && !board_->connected()) {
     lose(Link::kGone, "The board is gone: unplugged, or without power.");
-  } else if (!board_->in_session()) {
+  }
+  if (link_ != Link::kHere) {
+    return;
+  }
+  if (!board_->in_session()) {
     lose(Link::kTaken, "Another program has taken the board, or it was reset.");
   } else if (Clock::now() - heard_ > kLongestSilence) {
     lose(Link::kGone, "The board is silent.");
