@@ -102,7 +102,7 @@ test('what a board cannot do is disabled, and the page says why; what it can do 
   assert.ok(await page.locator('#mend').isDisabled());
   assert.ok(await page.getByText('the parts of the board and its device are real').isVisible());
   assert.ok(await page.getByText("The hand is at the board's device").isVisible());
-  assert.match(await page.locator('#work-why').textContent(), /does not count/);
+  assert.match(await page.locator('#work-why').textContent(), /counts neither instructions nor cycles/);
   const set = (id, value) => page.locator(id).evaluate((slider, wanted) => {
     slider.value = wanted;
     slider.dispatchEvent(new Event('change'));
@@ -163,4 +163,32 @@ test('a board with another model than the one shown: the page warns', async (t) 
     await page.close();
     await server.stop();
   }
+});
+
+test('an emulated board: its instructions are shown, below the bound', async (t) => {
+  try {
+    await plugIn(t, '--board', 'mps2-an386');
+  } catch {
+    t.skip('the image of mps2-an386 is not built, or its emulator is missing');
+    return;
+  }
+  const server = await watch(t);
+  const page = await openPage(browser, server.url, small);
+  await state(page, 'idle');
+  assert.equal(await page.locator('#work-name').textContent(), 'Instructions');
+  const [taken, bound] = await page.waitForFunction(() => {
+    const found = /^([\d,]+) of ([\d,]+)$/.exec(document.getElementById('work-now').value);
+    return found && found.slice(1).map((digits) => Number(digits.replaceAll(',', '')));
+  }).then((handle) => handle.jsonValue());
+  assert.ok(taken > 500 && bound > 10000 && taken < bound, `${taken} of ${bound}`);
+  assert.equal(await page.locator('#work-why').textContent(), '');
+  // The line of the bound, in its colour.
+  const lines = () => page.locator('#strip-work').evaluate((canvas) => {
+    const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+    let red = 0;
+    for (let i = 0; i < data.length; i += 4) if (data[i + 3] > 128 && data[i] > data[i + 1] + 80) ++red;
+    return red / canvas.width;
+  });
+  assert.ok(await lines() > 0.5, 'the bound is not drawn');
+  await page.close();
 });

@@ -2,14 +2,13 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "board_costs.hpp"
 #include "board_port.hpp"
+#include "board_work.hpp"
 #include "command.hpp"
 #include "device_file.hpp"
 #include "scene_file.hpp"
@@ -29,6 +28,7 @@ struct ViewOptions {
   std::string trace;
   BoardPort board;
   int link_timeout_ms = 50;
+  std::string firmware;
   std::string mode = "surface";
   viewer::Settings settings;
   viewer::ServerOptions server{.address = "127.0.0.1", .port = 8023};
@@ -58,24 +58,6 @@ std::vector<viewer::NamedDevice> devices(const std::string& chosen) {
   return list;
 }
 
-/// Of a tick with this model, cycles: whatever mode and kind of device the board has, which it does
-/// not tell.
-double bound_of(const core::BlobHeader& model, const std::string& board, float rate_hz) {
-  if (bound::find_timing(board) == nullptr) {
-    throw CommandError(fmt::format("nothing is known about the time that {} takes.", board));
-  }
-  const BoardCosts costs = costs_of_board(board);
-  core::Configuration configuration;
-  configuration.rate_hz = rate_hz;
-  configuration.device = slowest_or("");
-  double most = 0.0;
-  for (const core::RenderMode mode : {core::RenderMode::kSurface, core::RenderMode::kPaper}) {
-    configuration.mode = mode;
-    most = std::max(most, costs.cycles(model, configuration));
-  }
-  return most;
-}
-
 std::unique_ptr<viewer::Source> board_source(const ViewOptions& options, const SceneFile& scene) {
   if (scene.files.size() != 1) {
     throw CommandError("--port: a board has one model (give one BLOB)");
@@ -86,8 +68,9 @@ std::unique_ptr<viewer::Source> board_source(const ViewOptions& options, const S
   settings.link = {options.board.baud, static_cast<std::uint16_t>(options.link_timeout_ms)};
   settings.device = load_device(options.settings.device).figures.model;
   settings.model = shown.bytes();
-  settings.bound = [&shown](const std::string& board, float rate_hz) {
-    return bound_of(shown.view().header(), board, rate_hz);
+  settings.work = [&shown, firmware = options.firmware](const std::string& board,
+                                                        const core::wire::CapabilitiesReply& can) {
+    return work_of_board(board, can, shown.view().header(), firmware);
   };
   return std::make_unique<viewer::BoardSession>(bodies_of(scene), std::move(settings));
 }
@@ -153,6 +136,9 @@ void add_board_options(CLI::App& verb, ViewOptions& options) {
       ->capture_default_str()
       ->needs(port);
   add_link_timeout_option(verb, options.link_timeout_ms)->needs(port);
+  verb.add_option("--firmware", options.firmware,
+                  "folder with the board's image, for the bound of a tick (default: as simulate)")
+      ->needs(port);
 }
 
 void add_session_options(CLI::App& verb, ViewOptions& options) {

@@ -76,18 +76,13 @@ void BoardSession::get_acquainted() {
 }
 
 Work BoardSession::work_of(const BoardFacts& facts) const {
-  if (facts.can.cycles_per_tick == 0U) {
-    return {{}, std::nullopt, "This board does not count the cycles of a tick."};
+  if (!settings_.work) {
+    return {{}, 0.0, std::nullopt, "What a tick of this board has to do is not known."};
   }
-  Work work{"cycles", std::nullopt, {}};
-  if (facts.model == BoardFacts::Model::kOther) {
+  Work work = settings_.work(facts.name, facts.can);
+  if (work.bound && facts.model == BoardFacts::Model::kOther) {
+    work.bound.reset();
     work.why = "No bound is drawn: the board uses another model than the one shown.";
-    return work;
-  }
-  try {
-    work.bound = settings_.bound(facts.name, facts.can.rate_hz);
-  } catch (const std::runtime_error& error) {
-    work.why = std::string("No bound is drawn: ") + error.what();
   }
   return work;
 }
@@ -296,7 +291,7 @@ void BoardSession::add(const host::Telemetry& telemetry) {
                   static_cast<double>(telemetry.probe_m[2])};
   strip_.add(sample.status);
   if (!work_.unit.empty()) {
-    strip_.add_work(static_cast<double>(telemetry.load) * facts_->can.cycles_per_tick);
+    strip_.add_work(static_cast<double>(telemetry.load) * work_.per_period);
   }
   log_.add(sample);
   last_ = sample;

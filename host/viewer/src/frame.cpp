@@ -140,7 +140,7 @@ json work_json(const Work& work) {
       {"unit", work.unit}, {"bound", work.bound ? json(*work.bound) : json()}, {"why", work.why}};
 }
 
-json unknown_work(const std::string& why) { return work_json({{}, std::nullopt, why}); }
+json unknown_work(const std::string& why) { return work_json({{}, 0.0, std::nullopt, why}); }
 
 json models_json(const Bodies& bodies) {
   json models = json::array();

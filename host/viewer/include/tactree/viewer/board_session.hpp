@@ -35,9 +35,8 @@ struct BoardSettings {
   host::BoardOptions link{};
   core::DeviceModel device{};          ///< that is drawn: a board does not tell its own
   std::span<const std::byte> model{};  ///< that is shown: compared with the board's
-  /// Cycles that a tick takes at most with the model shown, on the board of this name and at this
-  /// rate. Throws std::runtime_error where that is not known: why.
-  std::function<double(const std::string& board, float rate_hz)> bound;
+  /// How much a tick of the board of this name has to do with the model shown; none: not known.
+  std::function<Work(const std::string& board, const core::wire::CapabilitiesReply& can)> work;
 };
 
 class BoardSession : public Source {

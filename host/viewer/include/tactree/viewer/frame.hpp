@@ -57,6 +57,7 @@ struct Bodies {
 /// not, else. Without a unit there is no work to be shown.
 struct Work {
   std::string unit;
+  double per_period = 0.0;  ///< what fills a tick's period
   std::optional<double> bound;
   std::string why;
 };
