@@ -97,6 +97,7 @@ test('what a board cannot do is disabled, and the page says why; what it can do 
   const page = await openPage(browser, server.url);
   await state(page, 'idle');
   for (const control of ['#mode', '#rate_hz', '#device']) assert.ok(await page.locator(control).isDisabled(), control);
+  assert.equal(await page.locator('#mode').inputValue(), '', 'a board does not tell its method');
   assert.ok(await page.getByText('the board has its method, rate and device').isVisible());
   await page.locator('#faults summary').click();
   assert.ok(await page.locator('#mend').isDisabled());
@@ -128,6 +129,7 @@ test('a board that is unplugged: the page says so, and goes on when it is back, 
   await whileLinked(page, () => arm(page));
   await board.stop();
   await page.locator('#board-gone').waitFor();
+  assert.match(await page.locator('#board-why').textContent(), /^The board is gone/);
   await state(page, 'no board');
   assert.equal(await page.locator('#force-now').textContent(), '–');
   assert.ok(await page.locator('#arm').isDisabled());

@@ -124,7 +124,11 @@ export async function state(page, name, timeout = 30000) {
 
 /** A figure of the table of numbers. */
 export async function number(page, name) {
-  await page.locator('#numbers-box').evaluate((box) => { box.open = true; });
+  const box = page.locator('#numbers-box');
+  if (!(await box.evaluate((one) => one.open))) {
+    await box.evaluate((one) => { one.open = true; });
+    await page.waitForTimeout(200); // what it shows is of when it was closed
+  }
   const cell = page.locator(`#numbers td[data-name='${name}']`);
   return Number(await cell.textContent());
 }

@@ -329,7 +329,11 @@ void BoardSession::connect_again() {
     stop_wanted_ = false;  // a new session begins stopped
     link_ = Link::kHere;
   } catch (const host::LinkError& error) {
-    why_not_here_ = error.what();
+    if (link_ == Link::kGone) {
+      why_not_here_ = fmt::format("The board is gone: {}.", error.what());
+    } else {
+      tell(error.what());
+    }
   }
   next_try_ = Clock::now() + kBetweenTries;
 }

@@ -49,6 +49,8 @@ export class Panel {
     for (const control of document.querySelectorAll<HTMLButtonElement | HTMLSelectElement>(
       '.simulated button, .simulated select',
     )) control.disabled = hello.source === 'board';
+    // A board does not tell these: nothing is chosen.
+    if (hello.source === 'board') for (const id of ['mode', 'device']) find<HTMLSelectElement>(id).value = '';
   }
 
   /** What holds now; nothing is changed under the user's fingers. */
