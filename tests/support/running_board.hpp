@@ -29,6 +29,8 @@ class RunningBoard {
   RunningBoard& operator=(const RunningBoard&) = delete;
 
   [[nodiscard]] std::string port() const { return terminal_.name(); }
+  /// Still there, but it does nothing: a board that hangs.
+  void freeze(bool frozen) { frozen_ = frozen; }
   void press_emergency_stop(bool pressed) { emergency_stop_ = pressed; }
   /// What it touches until another model is written.
   [[nodiscard]] static const TestBlob& model() {
@@ -48,6 +50,10 @@ class RunningBoard {
     listening_.count_down();
     double hand_s = 0.0;
     while (!ending_) {
+      if (frozen_) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        continue;
+      }
       simulation.board().safety_inputs().press_emergency_stop(emergency_stop_);
       hand_s = simulation.state() == core::State::kActive ? hand_s + 0.001 : 0.0;
       (void)simulation.step_with_hand_at(hand_s);
@@ -59,6 +65,7 @@ class RunningBoard {
   std::latch listening_{1};
   std::atomic<bool> ending_ = false;
   std::atomic<bool> emergency_stop_ = false;
+  std::atomic<bool> frozen_ = false;
   std::thread thread_;
 };
 

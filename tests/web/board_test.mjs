@@ -38,8 +38,10 @@ after(async () => {
   await browser?.close();
 });
 
-// A picture made by software takes time that the board's link needs.
 const small = { viewport: { width: 700, height: 480 } };
+
+/** Without its picture: made by software it takes time that the board's link needs. */
+const hidePicture = (page) => page.locator('#view').evaluate((canvas) => { canvas.style.display = 'none'; });
 
 /** Does it again where the computer was too busy for the board's link, which then ends the force. */
 async function whileLinked(page, act) {
@@ -66,6 +68,7 @@ test('the force of the board is shown, and a stop from any page ends it', async 
   await plugIn(t);
   const server = await watch(t);
   const page = await openPage(browser, server.url, small);
+  await hidePicture(page);
   const second = await browser.newPage();
   await second.goto(`${server.url}faults/`);
   await state(page, 'idle');
@@ -126,6 +129,7 @@ test('a board that is unplugged: the page says so, and goes on when it is back, 
   const server = await watch(t);
   const page = await openPage(browser, server.url, small);
   await state(page, 'idle');
+  await hidePicture(page);
   await whileLinked(page, () => arm(page));
   await board.stop();
   await page.locator('#board-gone').waitFor();

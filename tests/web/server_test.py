@@ -347,9 +347,17 @@ class ServerTest(unittest.TestCase):
                                  ((self.blob, "--trace", cut), "line 3: 2 values"),
                                  ((self.blob, "--trace", other), "no column t_s"),
                                  ((self.blob, "--trace", folder / "none.csv"), "cannot be read"),
-                                 ((folder / "none.blob",), "none.blob")):
+                                 ((folder / "none.blob",), "none.blob"),
+                                 ((self.blob, "--port", "/dev/no-such-port"), "/dev/no-such-port"),
+                                 ((self.blob, self.blob, "--port", "/dev/no-such-port"), "give one BLOB")):
             code, text = run(*arguments)
             self.assertEqual(code, 1, arguments)
+            self.assertIn(words, text)
+        for arguments, words in ((("--port", "8023"), "--page-port 8023"),
+                                 (("--port", "/dev/no-such-port", "--stiffness", "300"), "--stiffness"),
+                                 (("--link-timeout", "20"), "--port")):
+            code, text = run(self.blob, *arguments)
+            self.assertEqual(code, 2, arguments)
             self.assertIn(words, text)
 
 

@@ -164,6 +164,17 @@ TEST_F(BoardSessionTest, ABoardThatComesBackIsShownAgainAndNotArmed) {
   arm();
 }
 
+TEST_F(BoardSessionTest, ASilentBoardIsGoneUntilItAnswers) {
+  plug_in();
+  begin();
+  frames_.wait_for(is_idle);
+  running_->freeze(true);
+  const json gone = frames_.wait_for([](const json& f) { return f["board"]["link"] == "gone"; });
+  EXPECT_TRUE(gone["runs"].empty());
+  running_->freeze(false);
+  frames_.wait_for(is_idle);
+}
+
 TEST_F(BoardSessionTest, ABoardThatAnotherProgramTookIsGivenBackWhenAskedFor) {
   plug_in();
   begin();
