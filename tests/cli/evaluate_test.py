@@ -3,11 +3,16 @@
 usage: evaluate_test.py TACTREE
 """
 import json
+import math
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
 import unittest
+
+sys.dont_write_bytecode = True
+from served_board import write_ball  # noqa: E402
 
 TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
 RATES = {"1000", "4000", "10000"}
@@ -56,6 +61,24 @@ class Evaluate(unittest.TestCase):
         self.assertIn("damping of the wall", page)
         self.assertGreater(page.count("<tr>"), 30)
         self.assertNotRegex(page.replace("http://www.w3.org/2000/svg", ""), r"(src|href)=|https?://|@import")
+
+    def test_the_page_for_a_browser_maps_the_holes_of_a_scan(self):
+        write_ball(self.path / "ball.csv", points=20000)
+        rows = (self.path / "ball.csv").read_text().splitlines()
+        # A cap of 0.5 rad of the ball of 30 mm: a hole of about 29 mm.
+        cut = [rows[0], *(row for row in rows[1:] if float(row.split(",")[2]) < 0.03 * math.cos(0.5))]
+        (self.path / "cut.csv").write_text("\n".join(cut) + "\n")
+        subprocess.run([TACTREE, "evaluate", "--quick", "--scan", "ball.csv", "--scan", "cut.csv", "--html",
+                        "holes.html"], cwd=self.path, capture_output=True, check=True)
+        whole, holed = (self.path / "holes.html").read_text().split("Where ball.csv ends")[1].split(
+            "Where cut.csv ends")
+        self.assertNotIn("<circle", whole)
+        self.assertEqual(holed.count("<circle"), 3)  # from three sides
+        width = float(re.search(r"<td> *hole *</td><td> *([\d.]+) *</td>", holed)[1])
+        self.assertAlmostEqual(width, 2 * 30 * math.sin(0.5), delta=1.5)
+        # As wide in the picture as beside it: the ball of 60 mm fills the square of 290.
+        for radius in re.findall(r'<circle [^>]* r="([\d.]+)"', holed):
+            self.assertAlmostEqual(2 * float(radius), width / 60 * 290, delta=3)
 
     def test_is_the_same_every_time(self):
         self.assertEqual(self.evaluate("second").returncode, 0)

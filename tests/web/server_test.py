@@ -40,7 +40,7 @@ def make_blob(folder):
 
 class Server:
     def __init__(self, *arguments):
-        self.process = subprocess.Popen([TACTREE, "view", *arguments, "--port", "0"],
+        self.process = subprocess.Popen([TACTREE, "view", *arguments, "--page-port", "0"],
                                         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         line = self.process.stdout.readline()
         found = re.search(r"http://(\S+):(\d+)/", line)
@@ -341,15 +341,23 @@ class ServerTest(unittest.TestCase):
         cut.write_text("t_s,probe_x_m,probe_y_m,probe_z_m,force_x_N,force_y_N,force_z_N\n0,0,0,0,0,0,0\n1,2\n")
         other = folder / "other.csv"
         other.write_text("a,b\n1,2\n")
-        for arguments, words in (((self.blob, "--port", str(self.server.port)), "choose another --port"),
+        for arguments, words in (((self.blob, "--page-port", str(self.server.port)), "choose another --page-port"),
                                  ((self.blob, "--address", "nowhere"), "is no address"),
                                  ((self.blob, "--stiffness", "90000"), "stability limit"),
                                  ((self.blob, "--trace", cut), "line 3: 2 values"),
                                  ((self.blob, "--trace", other), "no column t_s"),
                                  ((self.blob, "--trace", folder / "none.csv"), "cannot be read"),
-                                 ((folder / "none.blob",), "none.blob")):
+                                 ((folder / "none.blob",), "none.blob"),
+                                 ((self.blob, "--port", "/dev/no-such-port"), "/dev/no-such-port"),
+                                 ((self.blob, self.blob, "--port", "/dev/no-such-port"), "give one BLOB")):
             code, text = run(*arguments)
             self.assertEqual(code, 1, arguments)
+            self.assertIn(words, text)
+        for arguments, words in ((("--port", "8023"), "--page-port 8023"),
+                                 (("--port", "/dev/no-such-port", "--stiffness", "300"), "--stiffness"),
+                                 (("--link-timeout", "20"), "--port")):
+            code, text = run(self.blob, *arguments)
+            self.assertEqual(code, 2, arguments)
             self.assertIn(words, text)
 
 

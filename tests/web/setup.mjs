@@ -51,25 +51,38 @@ export function buildModel(name, points, options = []) {
   return blob;
 }
 
-/** `tactree view` with these arguments: { url, port, stop() }, once it listens. */
-export function startServer(args, port = 0) {
-  const child = spawn(tactree, ['view', '--port', String(port), ...args]);
+/** `tactree` with these arguments, once it says what `pattern` finds: { said, stop() }. */
+function startProgram(args, pattern) {
+  const child = spawn(tactree, args);
   let text = '';
   child.stderr.on('data', (data) => process.stderr.write(data));
   return new Promise((done, failed) => {
-    child.on('exit', (code) => failed(new Error(`tactree view ended with ${code}`)));
+    child.on('exit', (code) => failed(new Error(`tactree ${args[0]} ended with ${code}`)));
     child.stdout.on('data', (data) => {
       text += data;
-      const url = /http:\/\/[^ ]*\//.exec(text)?.[0];
-      if (!url) return;
+      const said = pattern.exec(text)?.[1];
+      if (!said) return;
       const stop = () => new Promise((ended) => {
+        if (child.exitCode !== null) return ended();
         child.removeAllListeners('exit');
         child.on('exit', ended);
         child.kill('SIGTERM');
       });
-      done({ url, port: Number(new URL(url).port), stop });
+      done({ said, stop });
     });
   });
+}
+
+/** `tactree view` with these arguments: { url, port, stop() }, once it listens. */
+export async function startServer(args, port = 0) {
+  const { said, stop } = await startProgram(['view', '--page-port', String(port), ...args], /(http:\/\/[^ ]*\/)/);
+  return { url: said, port: Number(new URL(said).port), stop };
+}
+
+/** A simulated board that programs talk to: { port, stop() }, once it listens. */
+export async function startBoard(args) {
+  const { said, stop } = await startProgram(['simulate', '--serve', ...args], /serving at (\S+)\n/);
+  return { port: said, stop };
 }
 
 export const launch = () => chromium.launch({
@@ -97,20 +110,32 @@ export async function openPage(browser, url, options = {}) {
 export const shown = (page) =>
   page.waitForFunction(() => document.documentElement.dataset.firstPicture, null, { timeout: 60000 });
 
-export const state = (page, name) =>
-  page.waitForFunction((wanted) => document.getElementById('state').textContent === wanted, name,
-    { timeout: 30000 });
+/** Waits until the controller is in this state. */
+export async function state(page, name, timeout = 30000) {
+  try {
+    await page.waitForFunction((wanted) => document.getElementById('state').textContent === wanted, name,
+      { timeout });
+  } catch (error) {
+    const said = [];
+    for (const id of ['state', 'fault-names', 'note']) said.push(await page.locator(`#${id}`).textContent());
+    throw new Error(`not ${name}: ${said.join(', ')}`, { cause: error });
+  }
+}
 
 /** A figure of the table of numbers. */
 export async function number(page, name) {
-  await page.locator('#numbers-box').evaluate((box) => { box.open = true; });
+  const box = page.locator('#numbers-box');
+  if (!(await box.evaluate((one) => one.open))) {
+    await box.evaluate((one) => { one.open = true; });
+    await page.waitForTimeout(200); // what it shows is of when it was closed
+  }
   const cell = page.locator(`#numbers td[data-name='${name}']`);
   return Number(await cell.textContent());
 }
 
 /** Waits until `test` of the numbers with these names is true; the numbers then. */
-export async function until(page, names, test, what) {
-  const end = Date.now() + 30000;
+export async function until(page, names, test, what, timeout = 30000) {
+  const end = Date.now() + timeout;
   for (;;) {
     const values = [];
     for (const name of names) values.push(await number(page, name));

@@ -73,10 +73,7 @@ void add_arm_command(CLI::App& app, int& exit_code) {
   verb->add_option("--patience", options->patience_s, "how long to wait for the hand, s")
       ->check(CLI::Range(0.1, 3600.0))
       ->capture_default_str();
-  verb->add_option("--link-timeout", options->link_timeout_ms,
-                   "force ends when the board hears nothing for so long, ms")
-      ->check(CLI::Range(5, 100))
-      ->capture_default_str();
+  add_link_timeout_option(*verb, options->link_timeout_ms);
   verb->add_flag("--clear", options->clear, "clear faults whose cause is gone, first");
   verb->add_flag("--home", options->home, "the device is in its home pose now");
   verb->callback([options, &exit_code] { arm(*options, exit_code); });

@@ -14,6 +14,14 @@ void add_port_options(CLI::App& verb, BoardPort& options) {
   verb.add_option("--baud", options.baud, "speed of a serial port")->capture_default_str();
 }
 
+CLI::Option* add_link_timeout_option(CLI::App& verb, int& milliseconds) {
+  return verb
+      .add_option("--link-timeout", milliseconds,
+                  "force ends when the board hears nothing for so long, ms")
+      ->check(CLI::Range(5, 100))
+      ->capture_default_str();
+}
+
 std::string chosen_port(const BoardPort& options) {
   if (!options.port.empty()) {
     return options.port;

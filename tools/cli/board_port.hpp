@@ -17,6 +17,9 @@ struct BoardPort {
 
 void add_port_options(CLI::App& verb, BoardPort& options);
 
+/// How long a board that was armed from here may hear nothing.
+CLI::Option* add_link_timeout_option(CLI::App& verb, int& milliseconds);
+
 /// Throws CommandError where there is no board, or more than one to choose from.
 [[nodiscard]] std::string chosen_port(const BoardPort& options);
 

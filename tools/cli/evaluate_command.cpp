@@ -82,9 +82,10 @@ void write_report(const fs::path& file, const evaluation::Result& result) {
   write_file(file, evaluation::to_markdown(result, pictures.string()));
 }
 
-/// The same and the Z-width in one file, its pictures within.
+/// The same, the Z-width and where the scans end in one file, its pictures within.
 std::string html_report(const evaluation::Result& result) {
   std::map<std::string, std::string> pictures = evaluation::plots(result);
+  pictures.merge(evaluation::hole_maps(result));
   pictures["z_width.svg"] = evaluation::z_width_svg(result.options.quick);
   viewer::MarkdownTargets targets;
   targets.picture = [&pictures](std::string_view file) {
@@ -94,7 +95,8 @@ std::string html_report(const evaluation::Result& result) {
   const std::string text = evaluation::to_markdown(result, "pictures") +
                            "\n## Z-width\nThe stiffest wall that is stable when nobody holds the "
                            "device, by its damping and the loop's rate.\n\n"
-                           "![Z-width](z_width.svg)\n";
+                           "![Z-width](z_width.svg)\n" +
+                           evaluation::holes_markdown(result);
   return viewer::html_page("How good is the touch?", viewer::markdown_html(text, targets));
 }
 
@@ -141,7 +143,7 @@ void add_evaluate_command(CLI::App& app, int& exit_code) {
                    "write a Markdown page to this file, its plots into a folder of its name");
   verb->add_option("--html", options->html,
                    "write all of it to this file, a page for a browser that needs no other file; "
-                   "with a map of the Z-width");
+                   "with maps of the Z-width and of the holes of each scan");
   verb->callback([options, &exit_code] { evaluate(*options, exit_code); });
 }
 

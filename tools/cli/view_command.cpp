@@ -4,12 +4,16 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "board_port.hpp"
+#include "board_work.hpp"
 #include "command.hpp"
 #include "device_file.hpp"
 #include "scene_file.hpp"
 #include "tactree/simulation/placement.hpp"
+#include "tactree/viewer/board_session.hpp"
 #include "tactree/viewer/live_session.hpp"
 #include "tactree/viewer/recording.hpp"
 #include "tactree/viewer/server.hpp"
@@ -22,6 +26,9 @@ struct ViewOptions {
   std::vector<std::string> blobs;
   std::string scene;
   std::string trace;
+  BoardPort board;
+  int link_timeout_ms = 50;
+  std::string firmware;
   std::string mode = "surface";
   viewer::Settings settings;
   viewer::ServerOptions server{.address = "127.0.0.1", .port = 8023};
@@ -51,7 +58,27 @@ std::vector<viewer::NamedDevice> devices(const std::string& chosen) {
   return list;
 }
 
+std::unique_ptr<viewer::Source> board_source(const ViewOptions& options, const SceneFile& scene) {
+  if (scene.files.size() != 1) {
+    throw CommandError("--port: a board has one model (give one BLOB)");
+  }
+  const BlobFile& shown = *scene.files[0];
+  viewer::BoardSettings settings;
+  settings.port = options.board.port;
+  settings.link = {options.board.baud, static_cast<std::uint16_t>(options.link_timeout_ms)};
+  settings.device = load_device(options.settings.device).figures.model;
+  settings.model = shown.bytes();
+  settings.work = [&shown, firmware = options.firmware](const std::string& board,
+                                                        const core::wire::CapabilitiesReply& can) {
+    return work_of_board(board, can, shown.view().header(), firmware);
+  };
+  return std::make_unique<viewer::BoardSession>(bodies_of(scene), std::move(settings));
+}
+
 std::unique_ptr<viewer::Source> make_source(const ViewOptions& options, const SceneFile& scene) {
+  if (!options.board.port.empty()) {
+    return board_source(options, scene);
+  }
   if (options.trace.empty()) {
     return std::make_unique<viewer::LiveSession>(bodies_of(scene), devices(options.settings.device),
                                                  options.settings);
@@ -83,17 +110,41 @@ void view(ViewOptions& options) {
 }
 
 void add_server_options(CLI::App& verb, ViewOptions& options) {
-  verb.add_option("--port", options.server.port, "to listen on; 0: any free one")
+  verb.add_option("--page-port", options.server.port, "to listen on; 0: any free one")
       ->capture_default_str();
   verb.add_option("--address", options.server.address,
                   "to listen on; whoever reaches another one than this machine's own may move the "
-                  "simulated hand")
+                  "simulated hand, or arm the board")
       ->capture_default_str();
+}
+
+/// Those of a simulation are not a board's.
+void add_board_options(CLI::App& verb, ViewOptions& options) {
+  CLI::Option* port =
+      verb.add_option("--port", options.board.port,
+                      "show the board at this port, live: a serial port, usb:SERIAL, or what "
+                      "tactree simulate --serve prints")
+          ->check([](const std::string& name) {
+            const bool is_number = name.find_first_not_of("0123456789") == std::string::npos;
+            return is_number ? "it is a board's port (the page's is --page-port " + name + ")"
+                             : std::string();
+          });
+  for (const char* other : {"--scene", "--trace", "--mode", "--rate", "--stiffness", "--damping"}) {
+    port->excludes(other);
+  }
+  verb.add_option("--baud", options.board.baud, "speed of a serial port")
+      ->capture_default_str()
+      ->needs(port);
+  add_link_timeout_option(verb, options.link_timeout_ms)->needs(port);
+  verb.add_option("--firmware", options.firmware,
+                  "folder with the board's image, for the bound of a tick (default: as simulate)")
+      ->needs(port);
 }
 
 void add_session_options(CLI::App& verb, ViewOptions& options) {
   verb.add_option("--device", options.settings.device,
-                  "a device's name, or a JSON file that describes one: see simulate")
+                  "a device's name, or a JSON file that describes one: see simulate. With --port "
+                  "only what is drawn")
       ->capture_default_str();
   verb.add_option("--mode", options.mode, "surface, paper, or both side by side")
       ->check(CLI::IsMember({"surface", "paper", "both"}))
@@ -106,7 +157,7 @@ void add_session_options(CLI::App& verb, ViewOptions& options) {
 void add_view_command(CLI::App& app, int&) {
   auto options = std::make_shared<ViewOptions>();
   CLI::App* verb = app.add_subcommand(
-      "view", "Shows a page in the browser: the model, and a hand that touches it");
+      "view", "Shows a page in the browser: the model, and a hand, trace or board that touches it");
   verb->add_option("BLOB", options->blobs, "the blob to touch, or several");
   verb->add_option("--scene", options->scene,
                    "JSON file that says where each body is: see simulate")
@@ -115,6 +166,7 @@ void add_view_command(CLI::App& app, int&) {
       "--trace", options->trace,
       "show this recording of simulate --trace, tick by tick, instead of a simulation");
   add_session_options(*verb, *options);
+  add_board_options(*verb, *options);
   add_server_options(*verb, *options);
   verb->callback([options] { view(*options); });
 }

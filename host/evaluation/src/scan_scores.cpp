@@ -3,6 +3,7 @@
 #include <random>
 
 #include "errors.hpp"
+#include "hole_map.hpp"
 #include "reference_surface.hpp"
 #include "tactree/builder/build_model.hpp"
 #include "tactree/core/surface.hpp"
@@ -82,6 +83,9 @@ ScanResult score_scan(const std::filesystem::path& file, int probes, std::uint32
     }
     result.points = view.point_count();
     result.spacing_m = built.report.spacing_m;
+    result.support_m = static_cast<double>(view.header().support_radius_m);
+    result.openings = built.report.openings;
+    result.hole_map = hole_map_svg(view, result.openings);
     compare(view, probes, seed, result.scores);
   } catch (const std::exception& error) {
     result.error = error.what();

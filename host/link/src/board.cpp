@@ -166,39 +166,47 @@ Response Board::control(ControlCode code, std::uint32_t token, const char* what)
                 core::wire::ControlRequest{static_cast<std::uint8_t>(code), {}, token}, what);
 }
 
-void Board::begin_arming() { (void)control(ControlCode::kArm, 0, "arm"); }
-
-void Board::arm(std::chrono::milliseconds patience) {
+void Board::begin_arming() {
   using core::wire::BoardFlag;
-  const bool hand_confirms =
+  hand_confirms_ =
       (capabilities().flags & static_cast<std::uint32_t>(BoardFlag::kDeadManRequired)) != 0U;
   core::wire::ControlReply armed;
   (void)control(ControlCode::kArm, 0, "arm").read(armed);
+  arm_token_ = armed.token;
+}
+
+bool Board::go_on_arming() {
+  const core::wire::StateReply told = state();
+  const auto now = static_cast<core::State>(told.state);
+  if (now == core::State::kActive) {
+    return true;
+  }
+  if (now != core::State::kArmed) {
+    const std::string faults = names_of(told.faults);
+    throw LinkError(connection().name() + ": arm: the controller is in state " +
+                    core::name_of(now) + (faults.empty() ? "" : ": " + faults));
+  }
+  if (!hand_confirms_) {
+    // Refused while the enable line is on its way, or the probe inside: asked for again.
+    (void)connection().call(MessageKind::kControl,
+                            core::wire::ControlRequest{
+                                static_cast<std::uint8_t>(ControlCode::kConfirm), {}, arm_token_});
+  }
+  return false;
+}
+
+const char* Board::who_confirms() const {
+  return hand_confirms_ ? "let the dead-man control go, then hold it, outside of the object"
+                        : "hold the probe outside of the object";
+}
+
+void Board::arm(std::chrono::milliseconds patience) {
+  begin_arming();
   const auto deadline = std::chrono::steady_clock::now() + patience;
-  while (true) {
-    const core::wire::StateReply told = state();
-    const auto now = static_cast<core::State>(told.state);
-    if (now == core::State::kActive) {
-      return;
-    }
-    if (now != core::State::kArmed) {
-      const std::string faults = names_of(told.faults);
-      throw LinkError(connection().name() + ": arm: the controller is in state " +
-                      core::name_of(now) + (faults.empty() ? "" : ": " + faults));
-    }
+  while (!go_on_arming()) {
     if (std::chrono::steady_clock::now() > deadline) {
       stop();
-      throw LinkError(
-          connection().name() + ": arm: nobody confirms (" +
-          (hand_confirms ? "let the dead-man control go, then hold it, " : "hold the probe ") +
-          "outside of the object)");
-    }
-    if (!hand_confirms) {
-      // Refused while the enable line is on its way, or the probe inside: asked for again.
-      (void)connection().call(
-          MessageKind::kControl,
-          core::wire::ControlRequest{
-              static_cast<std::uint8_t>(ControlCode::kConfirm), {}, armed.token});
+      throw LinkError(connection().name() + ": arm: nobody confirms (" + who_confirms() + ")");
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
@@ -351,6 +359,12 @@ void Board::roll_back() {
 
 void Board::erase_model(std::uint32_t slot) {
   (void)demand(MessageKind::kEraseModel, core::wire::SlotRequest{slot}, "erase");
+}
+
+void Board::post_stop() {
+  connection().post(
+      MessageKind::kControl,
+      core::wire::ControlRequest{static_cast<std::uint8_t>(ControlCode::kStop), {}, 0});
 }
 
 void Board::move_body(std::uint32_t body, const core::Pose& pose, const core::Motion& motion,

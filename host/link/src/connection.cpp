@@ -115,7 +115,11 @@ class Connection::Worker {
         exchange();
       }
       arrived_.notify_all();
-      transport_->wait(kWait);
+      if (transport_->connected()) {
+        transport_->wait(kWait);
+      } else {
+        std::this_thread::sleep_for(kWait);  // there is nothing to wait for: it would not rest
+      }
     }
     const std::lock_guard lock(mutex_);
     exchange();  // what was sent last

@@ -1,5 +1,6 @@
 #include "tactree/host/ports.hpp"
 
+#include <filesystem>
 #include <string_view>
 
 #include "tactree/host/local_socket.hpp"
@@ -33,6 +34,15 @@ std::unique_ptr<Transport> open_port(const std::string& name, unsigned baud) {
     return open_local_socket(name.substr(kSocket.size()));
   }
   return open_serial_port(name, baud);
+}
+
+std::optional<unsigned> wire_speed(const std::string& name, unsigned baud) {
+  constexpr unsigned kBitsPerByte = 10;  // with start and stop
+  std::error_code error;
+  const std::string path = std::filesystem::canonical(name, error).string();
+  const bool has_no_wire = name.starts_with(kUsb) || name.starts_with(kSocket) ||
+                           path.starts_with("/dev/pts/") || path.starts_with("/dev/ttyACM");
+  return has_no_wire ? std::nullopt : std::optional(baud / kBitsPerByte);
 }
 
 }  // namespace tactree::host

@@ -94,11 +94,13 @@ void Strip::add(const core::Status& status) {
 }
 
 json Strip::take() {
-  const auto pair = [](const Span& span) { return json::array({span.low, span.high}); };
+  const auto pair = [](const Span& span) {
+    return span.empty ? json() : json::array({span.low, span.high});
+  };
   json taken = {{"ticks", ticks_},
                 {"force_N", pair(force_N_)},
                 {"penetration_m", pair(penetration_m_)},
-                {"instructions", nullptr}};  // a host does not count them
+                {"work", pair(work_)}};
   *this = {};
   return taken;
 }
@@ -131,6 +133,26 @@ json run_json(const simulation::Sample& sample, const char* mode, const core::De
     run["candidates"] = candidates_json(r, bodies, pose, scratch);
   }
   return run;
+}
+
+json work_json(const Work& work) {
+  return {
+      {"unit", work.unit}, {"bound", work.bound ? json(*work.bound) : json()}, {"why", work.why}};
+}
+
+json unknown_work(const std::string& why) { return work_json({{}, 0.0, std::nullopt, why}); }
+
+json models_json(const Bodies& bodies) {
+  json models = json::array();
+  for (const core::BlobView& view : bodies.views) {
+    models.push_back({{"name", view.header().name}, {"points", view.point_count()}});
+  }
+  return models;
+}
+
+bool has_materials(const Bodies& bodies) {
+  return std::any_of(bodies.views.begin(), bodies.views.end(),
+                     [](const core::BlobView& view) { return view.material_count() > 0; });
 }
 
 json poses_json(const Bodies& bodies, double t_s) {

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "feel.hpp"
 #include "tactree/core/faults.hpp"
 #include "tactree/plant/vectors.hpp"
 #include "tactree/simulation/hand_script.hpp"
@@ -35,13 +36,6 @@ const char* name_of(core::RenderMode mode) {
   return mode == core::RenderMode::kPaper ? "paper" : "surface";
 }
 
-float number(const std::string& key, const json& value) {
-  if (!value.is_number()) {
-    throw SessionRefused(key + ": it is not a number");
-  }
-  return value.get<float>();
-}
-
 Eigen::Vector3d place(const json& value) {
   constexpr double kFurthest_m = 10.0;
   if (!value.is_array() || value.size() != 3) {
@@ -49,27 +43,12 @@ Eigen::Vector3d place(const json& value) {
   }
   Eigen::Vector3d target;
   for (std::size_t i = 0; i < 3; ++i) {
-    target[static_cast<Eigen::Index>(i)] = static_cast<double>(number("target_m", value[i]));
+    target[static_cast<Eigen::Index>(i)] = static_cast<double>(number_of("target_m", value[i]));
   }
   if (!target.allFinite() || target.cwiseAbs().maxCoeff() > kFurthest_m) {
     throw SessionRefused(fmt::format("target_m: it is outside +-{} m", kFurthest_m));
   }
   return target;
-}
-
-/// The settings that the controller itself has by this name.
-float* setting_of(core::Configuration& c, const std::string& key) {
-  const std::pair<const char*, float*> settings[] = {{"stiffness_N_m", &c.stiffness_N_m},
-                                                     {"damping_Ns_m", &c.damping_Ns_m},
-                                                     {"static_friction", &c.static_friction},
-                                                     {"dynamic_friction", &c.dynamic_friction},
-                                                     {"rate_hz", &c.rate_hz}};
-  for (const auto& [name, value] : settings) {
-    if (key == name) {
-      return value;
-    }
-  }
-  return nullptr;
 }
 
 /// An injection of each kind, ready to be given.
@@ -250,16 +229,17 @@ LiveSession::Runs LiveSession::make_runs(const Settings& settings) const {
 Settings LiveSession::changed(const json& wanted) const {
   Settings settings = settings_;
   for (const auto& [key, value] : wanted.items()) {
-    if (float* const figure = setting_of(settings.controller, key)) {
-      *figure = number(key, value);
-    } else if (key == "use_materials" && value.is_boolean()) {
-      settings.controller.use_materials = value.get<bool>();
+    if (set_feel(settings.controller, key, value)) {
+      continue;
+    }
+    if (key == "rate_hz") {
+      settings.controller.rate_hz = number_of(key, value);
     } else if (key == "mode" && value.is_string()) {
       settings.modes = modes_of(value.get<std::string>());
     } else if (key == "device" && value.is_string()) {
       settings.device = device(value.get<std::string>()).name;
     } else if (key != "do") {
-      throw SessionRefused(fmt::format("{}: there is no such setting, or not of this kind", key));
+      throw no_such_setting(key);
     }
   }
   return settings;
@@ -316,18 +296,12 @@ std::string LiveSession::hello() const {
   for (const NamedDevice& one : devices_) {
     devices.push_back({{"name", one.name}, {"about", one.about}});
   }
-  json models = json::array();
-  bool materials = false;
-  for (const core::BlobView& view : bodies_.views) {
-    materials = materials || view.material_count() > 0;
-    models.push_back({{"name", view.header().name}, {"points", view.point_count()}});
-  }
   const std::lock_guard lock(mutex_);
   const json hello = {{"type", "hello"},
                       {"source", "simulation"},
-                      {"models", models},
+                      {"models", models_json(bodies_)},
                       {"devices", devices},
-                      {"has_materials", materials},
+                      {"has_materials", has_materials(bodies_)},
                       {"injections", injections_json()},
                       {"settings", settings_json()}};
   return hello.dump();
@@ -335,16 +309,13 @@ std::string LiveSession::hello() const {
 
 json LiveSession::settings_json() const {
   const core::Configuration c = make_setup(settings_, core::RenderMode::kSurface).controller;
-  return {{"stiffness_N_m", c.stiffness_N_m},
-          {"damping_Ns_m", c.damping_Ns_m},
-          {"static_friction", c.static_friction},
-          {"dynamic_friction", c.dynamic_friction},
-          {"rate_hz", c.rate_hz},
-          {"mode", name_of(settings_.modes)},
-          {"device", settings_.device},
-          {"use_materials", c.use_materials},
-          {"stiffness_limit_N_m", core::stability_limit(c).with_hand_N_m},
-          {"force_max_N", c.force_max_N}};
+  json settings = feel_json(c);
+  settings.update({{"rate_hz", c.rate_hz},
+                   {"mode", name_of(settings_.modes)},
+                   {"device", settings_.device},
+                   {"stiffness_limit_N_m", core::stability_limit(c).with_hand_N_m},
+                   {"force_max_N", c.force_max_N}});
+  return settings;
 }
 
 std::string LiveSession::trace_csv() const { return log_.csv(); }
@@ -444,6 +415,8 @@ std::string LiveSession::frame() {
                       {"hand_m", json::array({hand.x(), hand.y(), hand.z()})},
                       {"bodies", poses_json(bodies_, t_s)},
                       {"lost_s", lost_s_},
+                      {"work", unknown_work("A simulation on this computer counts no instructions: "
+                                            "tactree simulate --board does.")},
                       {"settings", settings}};
   return frame.dump();
 }

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "csv.hpp"
 #include "tactree/viewer/recording.hpp"
 
 namespace tactree::viewer {
@@ -17,18 +18,6 @@ using simulation::Sample;
 
 // As many samples as simulate writes at most.
 constexpr std::size_t kMostTicks = 5000000;
-
-std::vector<std::string_view> cells_of(std::string_view line) {
-  std::vector<std::string_view> cells;
-  while (true) {
-    const std::size_t comma = line.find(',');
-    cells.push_back(line.substr(0, comma));
-    if (comma == std::string_view::npos) {
-      return cells;
-    }
-    line.remove_prefix(comma + 1);
-  }
-}
 
 /// One row, by the names of its columns.
 class Row {

@@ -56,13 +56,9 @@ Recording::Recording(Samples samples, Bodies bodies, const core::DeviceModel& de
 Recording::~Recording() { stop(); }
 
 std::string Recording::hello() const {
-  json models = json::array();
-  for (const core::BlobView& view : bodies_.views) {
-    models.push_back({{"name", view.header().name}, {"points", view.point_count()}});
-  }
   const json hello = {{"type", "hello"},
                       {"source", "trace"},
-                      {"models", models},
+                      {"models", models_json(bodies_)},
                       {"ticks", samples_.size()},
                       {"begin_s", samples_.front().t_s},
                       {"end_s", samples_.back().t_s},
@@ -151,6 +147,7 @@ std::string Recording::frame(std::size_t tick, double speed) {
                       {"playing", speed},
                       {"runs", json::array({run})},
                       {"around", around(tick)},
+                      {"work", unknown_work("A trace does not tell how much a tick had to do.")},
                       {"bodies", poses_json(bodies_, sample.t_s)}};
   return frame.dump();
 }

@@ -35,7 +35,7 @@ tcp::acceptor listen(asio::io_context& context, const ServerOptions& options) {
   } catch (const boost::system::system_error& error) {
     throw ServerError("cannot listen on " + options.address + " port " +
                       std::to_string(options.port) + ": " + error.code().message() +
-                      " (choose another --port)");
+                      " (choose another --page-port)");
   }
 }
 

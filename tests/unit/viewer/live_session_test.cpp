@@ -4,11 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include <condition_variable>
-#include <functional>
-#include <mutex>
 #include <nlohmann/json.hpp>
 
+#include "frames.hpp"
 #include "test_models.hpp"
 
 namespace tactree::test {
@@ -16,41 +14,6 @@ namespace {
 
 using nlohmann::json;
 using viewer::LiveSession;
-
-/// Waits for frames as a page does.
-class Frames {
- public:
-  viewer::Source::Publish taker() {
-    return [this](const std::shared_ptr<const std::string>& text) {
-      const std::lock_guard lock(mutex_);
-      newest_ = json::parse(*text);
-      ++count_;
-      changed_.notify_all();
-    };
-  }
-  /// The first frame from now on for which this holds; it has to come.
-  json wait_for(const std::function<bool(const json&)>& holds) {
-    std::unique_lock lock(mutex_);
-    for (int i = 0; i < 3000; ++i) {
-      const auto before = count_;
-      changed_.wait(lock, [&] { return count_ != before; });
-      if (holds(newest_)) {
-        return newest_;
-      }
-    }
-    ADD_FAILURE() << "it never happened: " << newest_.dump().substr(0, 600);
-    return newest_;
-  }
-  json wait_for_state(const std::string& state) {
-    return wait_for([&](const json& frame) { return frame["runs"][0]["state"] == state; });
-  }
-
- private:
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  json newest_;
-  std::uint64_t count_ = 0;
-};
 
 class LiveSessionTest : public testing::Test {
  protected:

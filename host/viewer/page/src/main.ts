@@ -1,6 +1,7 @@
 // The page of `tactree view`: puts its parts together.
 
 import './style.css';
+import { BoardView } from './board';
 import { Connection } from './connection';
 import { Hand } from './hand';
 import { length, type Command, type Frame, type Hello, type Run } from './messages';
@@ -17,11 +18,12 @@ const view = new View(find<HTMLCanvasElement>('view'));
 const strips = {
   force: new Strip(find<HTMLCanvasElement>('strip-force'), 'N', 1),
   penetration: new Strip(find<HTMLCanvasElement>('strip-penetration'), 'mm', 1),
-  instructions: new Strip(find<HTMLCanvasElement>('strip-instructions'), '', 1000),
+  work: new Strip(find<HTMLCanvasElement>('strip-work'), '', 1000),
 };
 const numbers = new Numbers();
 const panel = new Panel(say);
 const player = new Player(say);
+const board = new BoardView(note);
 const hand = new Hand(view, (target_m) => say({ do: 'hand', target_m }));
 const connection = new Connection({ hello, frame, refused: note, connected });
 let source: Hello['source'] = 'simulation';
@@ -50,11 +52,13 @@ function hello(message: Hello): void {
   document.body.dataset.source = source;
   const points = message.models.reduce((sum, model) => sum + model.points, 0);
   const names = message.models.map((model) => model.name || 'model').join(', ');
-  find('model-name').textContent = `${names} · ${points.toLocaleString('en')} points`;
+  const port = message.port ? ` · board at ${message.port}` : '';
+  find('model-name').textContent = `${names} · ${points.toLocaleString('en')} points${port}`;
   document.title = `${names} – Tactree`;
   hand.target = undefined;
   for (const strip of Object.values(strips)) strip.clear();
   panel.hello(message);
+  board.hello();
   player.hello(message);
   view.load(message.models.length)
     .then(() => (find<HTMLInputElement>('octant-level').max = String(view.deepest)))
@@ -72,10 +76,14 @@ function showFaults(run: Run): void {
   const names = run.faults.map((fault) => fault.name);
   find('fault-names').textContent = names.join(', ');
   find<HTMLAnchorElement>('fault-page').href = `/faults/${names[0] ?? ''}`;
+  showLimits(run.limits);
+}
+
+function showLimits(names: string[]): void {
   const limits = find('limits');
-  if (limits.dataset.shown === run.limits.join()) return;
-  limits.dataset.shown = run.limits.join();
-  limits.replaceChildren(...run.limits.map((name) => {
+  if (limits.dataset.shown === names.join()) return;
+  limits.dataset.shown = names.join();
+  limits.replaceChildren(...names.map((name) => {
     const link = document.createElement('a');
     link.href = `/faults/limit-${name}`;
     link.target = '_blank';
@@ -98,7 +106,9 @@ function isLosing(frame: Frame): boolean {
 function showTiming(frame: Frame, run: Run): void {
   const rate = frame.settings ? `${frame.settings.rate_hz} ticks a second` : '';
   const slow = isLosing(frame) ? 'this machine is too slow for real time' : '';
-  const parts = [rate, `${run.overruns} deadlines missed`, slow].filter((part) => part !== '');
+  const load = frame.board ? `load ${(100 * frame.board.load).toFixed(0)} %` : '';
+  const lost = frame.board?.dropped ? `${frame.board.dropped} messages lost` : '';
+  const parts = [rate, `${run.overruns} deadlines missed`, load, lost, slow].filter((part) => part !== '');
   const text = parts.join(' · ');
   const line = find('timing');
   if (line.textContent !== text) line.textContent = text;
@@ -110,13 +120,21 @@ function pushStrips(frame: Frame): void {
     strips.force.push(i, run.strip.force_N);
     const [low, high] = run.strip.penetration_m;
     strips.penetration.push(i, [1e3 * low, 1e3 * high]);
-    const { instructions } = run.strip;
-    find('instructions-row').hidden = !instructions;
-    if (instructions) {
-      strips.instructions.push(i, [instructions.max, instructions.max]);
-      strips.instructions.limit = instructions.bound;
-    }
+    if (run.strip.work) strips.work.push(i, run.strip.work);
   });
+}
+
+/** How much a tick has to do, against the most that is proven; or why that is not shown. */
+function showWork(frame: Frame, run: Run): void {
+  const { unit, bound, why } = frame.work;
+  find('strip-work').hidden = unit === '';
+  find('work-name').textContent = unit === '' ? 'Instructions' : unit[0]!.toUpperCase() + unit.slice(1);
+  find('work-why').textContent = why;
+  strips.work.limit = bound ?? undefined;
+  const most = run.strip?.work?.[1];
+  if (most === undefined) return;
+  const rounded = (value: number) => Math.round(value).toLocaleString('en');
+  find<HTMLOutputElement>('work-now').value = rounded(most) + (bound === null ? '' : ` of ${rounded(bound)}`);
 }
 
 let latest: Frame | undefined;
@@ -131,22 +149,37 @@ function frame(message: Frame): void {
 function refresh(): void {
   requestAnimationFrame(refresh);
   const message = latest;
-  const run = message?.runs[0];
-  if (!message || !run) return;
+  if (!message) return;
   latest = undefined;
   view.show(message);
   document.body.dataset.mode = message.settings?.mode ?? '';
+  board.show(message);
+  if (message.settings) panel.follow(message.settings);
+  const run = message.runs[0];
+  if (run) showRun(message, run);
+  else showNothing();
+  for (const strip of Object.values(strips)) strip.draw();
+}
+
+function showRun(message: Frame, run: Run): void {
   setState(run.state);
   showFaults(run);
   showTiming(message, run);
+  showWork(message, run);
   if (find<HTMLDetailsElement>('numbers-box').open) numbers.show(message);
-  if (message.settings) panel.follow(message.settings);
   find<HTMLOutputElement>('force-now').value = `${length(run.force_N).toFixed(2)} N`;
   find<HTMLOutputElement>('penetration-now').value = `${(1e3 * run.penetration_m).toFixed(2)} mm`;
   player.show(message, strips.force, strips.penetration);
-  strips.force.draw();
-  strips.penetration.draw();
-  if (!find('instructions-row').hidden) strips.instructions.draw();
+}
+
+/** No figure of before may pass for one of now. */
+function showNothing(): void {
+  setState('no board');
+  find('banner').hidden = true;
+  showLimits([]);
+  for (const name of ['force', 'penetration', 'work']) find<HTMLOutputElement>(`${name}-now`).value = '–';
+  find('timing').textContent = '';
+  numbers.clear();
 }
 requestAnimationFrame(refresh);
 
@@ -173,7 +206,7 @@ window.addEventListener('keyup', (event) => {
 }, { capture: true });
 window.addEventListener('keydown', (event) => {
   if (event.target instanceof HTMLSelectElement || event.ctrlKey || event.metaKey || event.altKey) return;
-  if (event.key === 'a' && source === 'simulation') say({ do: 'arm' });
+  if (event.key === 'a' && source !== 'trace') say({ do: 'arm' });
   if (source === 'trace' && document.activeElement?.id === 'view') {
     if (event.key === 'ArrowRight' && !event.shiftKey) player.step(1);
     if (event.key === 'ArrowLeft' && !event.shiftKey) player.step(-1);
@@ -182,6 +215,7 @@ window.addEventListener('keydown', (event) => {
 
 find('stop').addEventListener('click', stop);
 find('arm').addEventListener('click', () => say({ do: 'arm' }));
+find('connect').addEventListener('click', () => say({ do: 'connect' }));
 find('clear').addEventListener('click', () => say({ do: 'clear' }));
 find('reset-view').addEventListener('click', () => hand.reset());
 

@@ -1,5 +1,5 @@
-// What the server and the page say to each other: see source.hpp, live_session.hpp and
-// recording.hpp of host/viewer.
+// What the server and the page say to each other: see source.hpp, live_session.hpp, recording.hpp
+// and board_session.hpp of host/viewer.
 
 export type Triple = [number, number, number];
 export type Range = [number, number];
@@ -10,22 +10,27 @@ export interface Settings {
   static_friction: number;
   dynamic_friction: number;
   rate_hz: number;
-  mode: 'surface' | 'paper' | 'both';
-  device: string;
   use_materials: boolean;
   stiffness_limit_N_m: number;
   force_max_N: number;
+  // of a simulation
+  mode?: 'surface' | 'paper' | 'both';
+  device?: string;
+  // of a board
+  force_limit_N?: number;
 }
 
 export interface Hello {
   type: 'hello';
-  source: 'simulation' | 'trace';
+  source: 'simulation' | 'trace' | 'board';
   models: { name: string; points: number }[];
   // of a simulation
   devices?: { name: string; about: string }[];
   injections?: { fault: string; about: string }[];
   has_materials?: boolean;
   settings?: Settings;
+  // of a board
+  port?: string;
   // of a trace
   ticks?: number;
   overview?: { force_N: Range[]; penetration_m: Range[] };
@@ -46,17 +51,30 @@ export interface Run {
   velocity_m_s: Triple;
   penetration_m: number;
   in_contact: boolean;
-  slipping: boolean;
+  slipping: boolean | null; // null: a board does not tell
   strength: number;
-  tip_m: Triple;
+  tip_m: Triple | null; // likewise
   linkage: Triple[][];
   candidates: Triple[];
   strip?: {
     ticks: number;
     force_N: Range;
     penetration_m: Range;
-    instructions: { max: number; bound: number } | null;
+    work: Range | null;
   };
+}
+
+/** A board, and the connection to it. */
+export interface Board {
+  name: string;
+  firmware: string;
+  link: 'here' | 'gone' | 'taken';
+  why: string; // it is not here
+  model: 'same' | 'other' | 'unknown';
+  about_model: string;
+  confirm: string; // what the person at the device has to do now
+  load: number;
+  dropped: number;
 }
 
 export interface Frame {
@@ -64,10 +82,15 @@ export interface Frame {
   t_s: number;
   runs: Run[];
   bodies: number[][];
+  /** What the strips' work is counted in; empty: it is not known. `why` something is missing. */
+  work: { unit: string; bound: number | null; why: string };
   // of a simulation
   hand_m?: Triple;
   lost_s?: number;
   settings?: Settings;
+  // of a board, with settings
+  board?: Board;
+  news?: { number: number; text: string };
   // of a trace
   tick?: number;
   playing?: number;

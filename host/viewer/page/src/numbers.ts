@@ -12,6 +12,7 @@ function vector(name: string, unit: string, v: Triple): [string, string][] {
 
 function friction(run: Run): string {
   if (!run.in_contact) return 'free';
+  if (run.slipping === null) return 'in contact';
   return run.slipping ? 'slipping' : 'sticking';
 }
 
@@ -27,9 +28,10 @@ function rows(frame: Frame, run: Run): [string, string][] {
     ['friction', friction(run)],
     ...vector('normal', '', run.normal),
     ...vector('velocity', '_m_s', run.velocity_m_s),
-    ...vector('tip', '_m', run.tip_m),
+    ...(run.tip_m ? vector('tip', '_m', run.tip_m) : []),
     ['strength', exact(run.strength)],
     ['overruns', String(run.overruns)],
+    ...(frame.board ? ([['load', exact(frame.board.load)]] as [string, string][]) : []),
   ];
 }
 
@@ -41,11 +43,13 @@ export class Numbers {
     const run = frame.runs[0];
     if (!run) return;
     const wanted = rows(frame, run);
-    if (wanted.length !== this.cells.size) {
-      this.cells.clear();
-      this.body.replaceChildren();
-    }
+    if (wanted.length !== this.cells.size) this.clear();
     for (const [name, value] of wanted) this.cell(name).textContent = value;
+  }
+
+  clear(): void {
+    this.cells.clear();
+    this.body.replaceChildren();
   }
 
   private cell(name: string): HTMLTableCellElement {

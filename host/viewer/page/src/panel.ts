@@ -3,8 +3,8 @@
 import type { Command, Hello, Settings } from './messages';
 
 type Say = (command: Command) => void;
-type Slider = 'stiffness_N_m' | 'damping_Ns_m' | 'static_friction' | 'dynamic_friction';
-const SLIDERS: Slider[] = ['stiffness_N_m', 'damping_Ns_m', 'static_friction', 'dynamic_friction'];
+type Slider = 'stiffness_N_m' | 'damping_Ns_m' | 'static_friction' | 'dynamic_friction' | 'force_max_N';
+const SLIDERS: Slider[] = ['stiffness_N_m', 'damping_Ns_m', 'static_friction', 'dynamic_friction', 'force_max_N'];
 
 export function find<T extends HTMLElement = HTMLElement>(id: string): T {
   const element = document.getElementById(id);
@@ -46,10 +46,16 @@ export class Panel {
     );
     find('injections').replaceChildren(...(hello.injections ?? []).map((one) => this.injection(one)));
     find('materials').hidden = !hello.has_materials;
+    for (const control of document.querySelectorAll<HTMLButtonElement | HTMLSelectElement>(
+      '.simulated button, .simulated select',
+    )) control.disabled = hello.source === 'board';
+    // A board does not tell these: nothing is chosen.
+    if (hello.source === 'board') for (const id of ['mode', 'device']) find<HTMLSelectElement>(id).value = '';
   }
 
   /** What holds now; nothing is changed under the user's fingers. */
   follow(settings: Settings): void {
+    if (settings.force_limit_N) find<HTMLInputElement>('force_max_N').max = String(settings.force_limit_N);
     for (const id of SLIDERS) {
       const slider = find<HTMLInputElement>(id);
       if (document.activeElement !== slider || this.said[id] === undefined) {
@@ -57,9 +63,9 @@ export class Panel {
         this.label(slider);
       }
     }
-    this.choose('mode', settings.mode);
+    if (settings.mode) this.choose('mode', settings.mode);
     this.choose('rate_hz', String(settings.rate_hz));
-    this.choose('device', settings.device);
+    if (settings.device) this.choose('device', settings.device);
     find<HTMLInputElement>('use_materials').checked = settings.use_materials;
     find('stability').textContent =
       `Stable up to ${Math.floor(settings.stiffness_limit_N_m)} N/m with a hand`;

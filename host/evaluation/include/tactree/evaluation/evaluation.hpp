@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "tactree/builder/build_model.hpp"
 #include "tactree/builder/progress.hpp"
 
 namespace tactree::evaluation {
@@ -99,6 +100,9 @@ struct ScanResult {
   std::string error;  ///< not empty: why it could not be evaluated
   std::uint64_t points = 0;
   double spacing_m = 0.0;
+  double support_m = 0.0;                  ///< radius that the surface fit bridges
+  std::vector<builder::Opening> openings;  ///< wider than that, widest first
+  std::string hole_map;                    ///< where they are: an SVG picture
   Scores scores;
 };
 
@@ -143,6 +147,11 @@ struct Result {
 
 /// SVG pictures by file name.
 [[nodiscard]] std::map<std::string, std::string> plots(const Result& result);
+
+/// A section of Markdown for each scan: where its surface ends, with the pictures of hole_maps().
+[[nodiscard]] std::string holes_markdown(const Result& result);
+/// SVG pictures by file name.
+[[nodiscard]] std::map<std::string, std::string> hole_maps(const Result& result);
 
 /// An SVG picture: the stiffest wall that is stable without a hand, over its damping, at several
 /// rates; measured in a simulation, and as core::stability_limit() says. Cost: seconds; less when

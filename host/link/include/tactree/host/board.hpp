@@ -93,8 +93,14 @@ class Board {
   /// Until there may be force. Where the board has a dead-man control, until it is held, at most
   /// `patience`. Throws, and stops, where it takes longer.
   void arm(std::chrono::milliseconds patience = std::chrono::seconds(30));
-  /// Arms and does not wait for the hand. Throws where the state does not allow it.
+  /// Arms and does not wait for the hand: go_on_arming() does the rest. Throws where the state does
+  /// not allow it.
   void begin_arming();
+  /// Again and again after begin_arming(): true once there may be force. Confirms where the board
+  /// has no dead-man control. Throws where the board is not armed any more.
+  [[nodiscard]] bool go_on_arming();
+  /// What the person at the device has to do before there is force.
+  [[nodiscard]] const char* who_confirms() const;
   void stop();
   void clear_faults();  ///< and stops, so that the board is ready again
   void home();          ///< the device is in its home pose
@@ -116,6 +122,9 @@ class Board {
   void erase_model(std::uint32_t slot);
 
   // ---- these do not
+  /// Sent at once, and perhaps lost: stop() makes sure. Also while another thread uses the board,
+  /// but for reconnect().
+  void post_stop();
   void move_body(std::uint32_t body, const core::Pose& pose, const core::Motion& motion = {},
                  bool enabled = true);
   void add_force(const std::array<float, 3>& force_N, std::uint32_t duration_ms);
@@ -147,6 +156,8 @@ class Board {
   std::string port_;  // empty: opened by a transport
   BoardOptions options_;
   std::optional<Subscription> subscription_;
+  bool hand_confirms_ = false;              // of the last arming
+  std::uint32_t arm_token_ = 0;             // likewise
   std::unique_ptr<Connection> connection_;  // none after a reconnect() that failed
 };
 

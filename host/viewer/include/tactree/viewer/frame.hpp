@@ -27,12 +27,15 @@ struct Span {
 class Strip {
  public:
   void add(const core::Status& status);
+  /// How much the tick had to do, in the unit that the source tells.
+  void add_work(double work) { work_.add(work); }
   /// Takes what was added, and begins anew.
   [[nodiscard]] nlohmann::json take();
 
  private:
   Span force_N_;
   Span penetration_m_;
+  Span work_;
   std::uint64_t ticks_ = 0;
 };
 
@@ -49,6 +52,22 @@ struct Bodies {
                                       const core::Vec3& model_origin_m,
                                       const std::optional<Eigen::Vector3d>& joints,
                                       const Bodies& bodies, core::CandidateSet& scratch);
+
+/// What a strip's work is counted in, and the most that a tick can take where that is known; `why`
+/// not, else. Without a unit there is no work to be shown.
+struct Work {
+  std::string unit;
+  double per_period = 0.0;  ///< what fills a tick's period
+  std::optional<double> bound;
+  std::string why;
+};
+[[nodiscard]] nlohmann::json work_json(const Work& work);
+/// Of a source that does not tell it.
+[[nodiscard]] nlohmann::json unknown_work(const std::string& why);
+
+/// Names and sizes.
+[[nodiscard]] nlohmann::json models_json(const Bodies& bodies);
+[[nodiscard]] bool has_materials(const Bodies& bodies);
 
 /// Each body's pose at a time: 12 numbers, the upper rows of its matrix.
 [[nodiscard]] nlohmann::json poses_json(const Bodies& bodies, double t_s);

@@ -17,7 +17,6 @@
 #include <memory>
 #include <mutex>
 #include <nlohmann/json_fwd.hpp>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -27,12 +26,6 @@
 #include "tactree/viewer/tick_log.hpp"
 
 namespace tactree::viewer {
-
-/// Why a session cannot begin: what the controller refused, as words for people.
-class SessionRefused : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 enum class Modes { kSurface, kPaper, kBoth };
 /// "surface", "paper" or "both"; throws SessionRefused.

@@ -1,5 +1,5 @@
 #pragma once
-// Where the motion on the page comes from: a simulation, or a recorded trace.
+// Where the motion on the page comes from: a simulation, a recorded trace, or a board.
 //
 // What goes to and fro are JSON objects. To a page: {"type": "hello", ...} once, then frames at
 // display rate, {"type": "frame", ...}, and {"type": "refused", "why": ...} as the answer to a
@@ -10,6 +10,7 @@
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <utility>
@@ -18,6 +19,12 @@ namespace tactree::viewer {
 
 /// Frames a second.
 inline constexpr double kFrameRate_hz = 60.0;
+
+/// A session that cannot begin, or a command that is not obeyed: why, as words for people.
+class SessionRefused : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 
 class Source {
  public:

@@ -29,19 +29,32 @@ class RunningBoard {
   RunningBoard& operator=(const RunningBoard&) = delete;
 
   [[nodiscard]] std::string port() const { return terminal_.name(); }
+  /// Still there, but it does nothing: a board that hangs.
+  void freeze(bool frozen) { frozen_ = frozen; }
+  void press_emergency_stop(bool pressed) { emergency_stop_ = pressed; }
+  /// What it touches until another model is written.
+  [[nodiscard]] static const TestBlob& model() {
+    static const TestBlob kModel(sphere(0.03, 0.002));
+    return kModel;
+  }
 
  private:
   void run(double height_m) {
-    const TestBlob blob(sphere(0.03, 0.002));
+    const std::span<const std::byte> blob = model().written().bytes;
     simulation::Setup setup;
     setup.controller.dead_man_required = false;
     simulation::HandPath path({{0.0, {0.0, 0.0, 0.04}}, {1.0, {0.0, 0.0, height_m}}});
-    simulation::Simulation simulation(blob.written().bytes, setup, path,
-                                      std::make_unique<serve::ServedTarget>(
-                                          terminal_, blob.written().bytes, serve::ServeOptions{}));
+    simulation::Simulation simulation(
+        blob, setup, path,
+        std::make_unique<serve::ServedTarget>(terminal_, blob, serve::ServeOptions{}));
     listening_.count_down();
     double hand_s = 0.0;
     while (!ending_) {
+      if (frozen_) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        continue;
+      }
+      simulation.board().safety_inputs().press_emergency_stop(emergency_stop_);
       hand_s = simulation.state() == core::State::kActive ? hand_s + 0.001 : 0.0;
       (void)simulation.step_with_hand_at(hand_s);
       std::this_thread::sleep_for(std::chrono::microseconds(500));
@@ -51,6 +64,8 @@ class RunningBoard {
   host::PseudoTerminal terminal_;
   std::latch listening_{1};
   std::atomic<bool> ending_ = false;
+  std::atomic<bool> emergency_stop_ = false;
+  std::atomic<bool> frozen_ = false;
   std::thread thread_;
 };
 

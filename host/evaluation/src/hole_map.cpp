@@ -1,0 +1,149 @@
+#include "hole_map.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+
+#include "tactree/evaluation/evaluation.hpp"
+
+namespace tactree::evaluation {
+namespace {
+
+using builder::Opening;
+
+constexpr double kSide = 290.0;  // of the square that a view is in
+constexpr double kGap = 15.0;
+constexpr double kTop = 30.0;
+constexpr double kBottom = kTop + kSide + 40.0;
+constexpr std::uint32_t kDots = 4000;  // of a view: a model is known by them
+constexpr std::size_t kListed = 10;
+
+const char* name_of(Opening::Kind kind) { return kind == Opening::Kind::kHole ? "hole" : "rim"; }
+
+std::string map_name(std::size_t scan) { return fmt::format("holes_{}.svg", scan); }
+
+/// From where it is seen: the axes to the right and up.
+struct Side {
+  const char* name;
+  Eigen::Index right;
+  Eigen::Index up;
+};
+constexpr std::array<Side, 3> kSides = {
+    {{"along y: x, z", 0, 2}, {"along x: y, z", 1, 2}, {"along z: x, y", 0, 1}}};
+
+const char* colour_of(Opening::Kind kind) {
+  return kind == Opening::Kind::kHole ? "#d6191f" : "#ee8c0f";
+}
+
+/// Model to picture, the same scale in all views.
+class Frame {
+ public:
+  explicit Frame(const core::BlobHeader& header) {
+    const Eigen::Vector3f low(header.bounds_min_m);
+    const Eigen::Vector3f high(header.bounds_max_m);
+    middle_ = (0.5F * (low + high)).cast<double>();
+    scale_ = kSide / std::max(1e-9, static_cast<double>((high - low).maxCoeff()));
+  }
+  [[nodiscard]] static double middle_of(std::size_t view) {
+    return 0.5 * kSide + static_cast<double>(view) * (kSide + kGap);
+  }
+  [[nodiscard]] Eigen::Vector2d place(const Eigen::Vector3d& at, std::size_t view) const {
+    const Side& side = kSides[view];
+    return {middle_of(view) + scale_ * (at[side.right] - middle_[side.right]),
+            kTop + 0.5 * kSide - scale_ * (at[side.up] - middle_[side.up])};
+  }
+  [[nodiscard]] double pixels(double metres) const { return scale_ * metres; }
+
+ private:
+  Eigen::Vector3d middle_;
+  double scale_ = 1.0;
+};
+
+/// All points of a view in one path: a line of no length is a dot.
+std::string dots(const core::BlobView& view, const Frame& frame, std::size_t side) {
+  const std::uint32_t every = 1U + view.point_count() / kDots;
+  std::string path;
+  core::for_each_point(view, [&](const core::Leaf& leaf, std::uint32_t index) {
+    if (index % every != 0U) {
+      return;
+    }
+    const core::Vec3 p = view.surface_point(leaf, index).position;
+    const Eigen::Vector2d at = frame.place(Eigen::Vector3f(p.x, p.y, p.z).cast<double>(), side);
+    fmt::format_to(std::back_inserter(path), "M{:.1f} {:.1f}h0", at.x(), at.y());
+  });
+  return fmt::format(
+      "<path d=\"{}\" stroke=\"#b9bfc6\" stroke-width=\"1.6\" stroke-linecap=\"round\"/>\n", path);
+}
+
+std::string circle(const Opening& opening, const Frame& frame, std::size_t side) {
+  constexpr double kLeast = 2.5;  // a hole of less would not be seen
+  const Eigen::Vector2d at = frame.place(opening.centre, side);
+  const double radius = std::max(kLeast, 0.5 * frame.pixels(opening.diameter_m));
+  return fmt::format(
+      "<circle cx=\"{0:.1f}\" cy=\"{1:.1f}\" r=\"{2:.1f}\" fill=\"{3}\" fill-opacity=\"0.2\" "
+      "stroke=\"{3}\"/>\n",
+      at.x(), at.y(), radius, colour_of(opening.kind));
+}
+
+}  // namespace
+
+std::string hole_map_svg(const core::BlobView& view, std::span<const Opening> openings) {
+  const Frame frame(view.header());
+  const double width = 3.0 * kSide + 2.0 * kGap;
+  std::string svg = fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" "
+      "viewBox=\"0 0 {0:.0f} {1:.0f}\" font-family=\"sans-serif\" font-size=\"13\">\n"
+      "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n",
+      width, kBottom);
+  for (std::size_t side = 0; side < kSides.size(); ++side) {
+    fmt::format_to(std::back_inserter(svg),
+                   "<text x=\"{:.1f}\" y=\"18\" text-anchor=\"middle\">{}</text>\n",
+                   Frame::middle_of(side), kSides[side].name);
+    svg += dots(view, frame, side);
+    for (const Opening& opening : openings) {
+      svg += circle(opening, frame, side);
+    }
+  }
+  return svg + "</svg>\n";
+}
+
+std::map<std::string, std::string> hole_maps(const Result& result) {
+  std::map<std::string, std::string> maps;
+  for (std::size_t i = 0; i < result.scans.size(); ++i) {
+    if (result.scans[i].error.empty()) {
+      maps[map_name(i)] = result.scans[i].hole_map;
+    }
+  }
+  return maps;
+}
+
+std::string holes_markdown(const Result& result) {
+  std::string page;
+  for (std::size_t i = 0; i < result.scans.size(); ++i) {
+    const ScanResult& scan = result.scans[i];
+    if (!scan.error.empty()) {
+      continue;
+    }
+    fmt::format_to(
+        std::back_inserter(page),
+        "\n## Where {} ends\nOpenings wider than the {:.3g} mm that the surface fit bridges: {}. "
+        "Red: a hole, with surface all around; orange: an open rim.\n\n"
+        "![Openings of {}]({})\n",
+        scan.name, 1e3 * scan.support_m, scan.openings.size(), scan.name, map_name(i));
+    if (!scan.openings.empty()) {
+      page += "\n| opening | width, mm | middle x, y, z, mm |\n|---|---|---|\n";
+    }
+    for (std::size_t k = 0; k < std::min(kListed, scan.openings.size()); ++k) {
+      const Opening& o = scan.openings[k];
+      fmt::format_to(std::back_inserter(page), "| {} | {:.2f} | {:.2f}, {:.2f}, {:.2f} |\n",
+                     name_of(o.kind), 1e3 * o.diameter_m, 1e3 * o.centre.x(), 1e3 * o.centre.y(),
+                     1e3 * o.centre.z());
+    }
+  }
+  return page;
+}
+
+}  // namespace tactree::evaluation

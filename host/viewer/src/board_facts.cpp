@@ -1,0 +1,78 @@
+#include "board_facts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <iterator>
+
+#include "tactree/core/crc32.hpp"
+#include "tactree/host/link_error.hpp"
+
+namespace tactree::viewer {
+namespace {
+
+using core::wire::ModelSlot;
+
+template <std::size_t N>
+std::string text_of(const char (&field)[N]) {
+  return {field, ::strnlen(field, N)};
+}
+
+core::Vec3 origin_of(const std::vector<core::wire::ParameterReply>& parameters) {
+  const auto value = [&](const char* name) {
+    const auto found =
+        std::find_if(parameters.begin(), parameters.end(),
+                     [&](const auto& parameter) { return text_of(parameter.name) == name; });
+    return found == parameters.end() ? 0.0F : found->value;
+  };
+  return {value("model_origin_m.x"), value("model_origin_m.y"), value("model_origin_m.z")};
+}
+
+void compare(const ModelSlot& in_use, std::span<const std::byte> shown, BoardFacts& facts) {
+  if (in_use.bytes == shown.size() && in_use.checksum == core::crc32(shown)) {
+    facts.model = BoardFacts::Model::kSame;
+    facts.about_model = "The board uses the model that is shown.";
+    return;
+  }
+  facts.model = BoardFacts::Model::kOther;
+  facts.about_model = fmt::format(
+      "The board uses another model than the one shown ({} points, {} bytes; shown: {} bytes). "
+      "What "
+      "is felt is not what is seen: show the board's own, or write this one with tactree flash.",
+      in_use.points, in_use.bytes, shown.size());
+}
+
+void compare_models(host::Board& board, std::span<const std::byte> shown, BoardFacts& facts) {
+  facts.about_model =
+      "The board uses the model of its image, and does not tell which: see that it is the one "
+      "shown.";
+  if (facts.can.slots == 0U) {
+    return;
+  }
+  const core::wire::ListModelsReply list = board.models();
+  const auto in_use = std::find_if(std::begin(list.slot), std::end(list.slot), [](auto& slot) {
+    return slot.state == static_cast<std::uint8_t>(core::wire::SlotState::kActive);
+  });
+  if (in_use != std::end(list.slot)) {
+    compare(*in_use, shown, facts);
+  } else if (facts.can.bodies == 0U) {
+    facts.model = BoardFacts::Model::kOther;
+    facts.about_model = "The board has no model (tactree flash writes one).";
+  }
+}
+
+}  // namespace
+
+BoardFacts ask_board(host::Board& board, std::span<const std::byte> shown) {
+  BoardFacts facts;
+  const core::wire::IdentifyReply identity = board.identify();
+  facts.name = text_of(identity.board);
+  facts.firmware = text_of(identity.firmware);
+  facts.can = board.capabilities();
+  facts.model_origin_m = origin_of(board.parameters());
+  compare_models(board, shown, facts);
+  return facts;
+}
+
+}  // namespace tactree::viewer

@@ -1,0 +1,267 @@
+// A board that runs, as a page shows it and drives it.
+
+#include "tactree/viewer/board_session.hpp"
+
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "frames.hpp"
+#include "running_board.hpp"
+#include "tactree/core/device_presets.hpp"
+#include "tactree/host/link_error.hpp"
+
+namespace tactree::test {
+namespace {
+
+using nlohmann::json;
+using viewer::BoardSession;
+
+bool is_here(const json& frame) {
+  return frame["board"]["link"] == "here" && !frame["runs"].empty();
+}
+
+/// The port under a name that stays, as a cable's does.
+class Cable {
+ public:
+  ~Cable() { std::filesystem::remove(name_); }
+  void plug_in(const RunningBoard& board) {
+    std::filesystem::remove(name_);
+    std::filesystem::create_symlink(board.port(), name_);
+  }
+  [[nodiscard]] std::string name() const { return name_.string(); }
+
+ private:
+  std::filesystem::path name_ = std::filesystem::temp_directory_path() /
+                                ("tactree-board-session-" + std::to_string(::getpid()));
+};
+
+class BoardSessionTest : public testing::Test {
+ protected:
+  static viewer::Bodies bodies() {
+    simulation::SceneBody body;
+    body.blob = RunningBoard::model().written().bytes;
+    return {{RunningBoard::model().view()}, {body}};
+  }
+  static viewer::BoardSettings settings(const std::string& port) {
+    viewer::BoardSettings settings;
+    settings.port = port;
+    // The longest there is: a test's computer may be busy.
+    settings.link.link_timeout_ms = 100;
+    settings.device = core::presets::premium().model;
+    settings.work = [](const std::string& board, const core::wire::CapabilitiesReply& can) {
+      return viewer::Work{"instructions of " + board, static_cast<double>(can.rate_hz), 900.0, ""};
+    };
+    settings.model = std::as_bytes(std::span(RunningBoard::model().written().bytes));
+    return settings;
+  }
+
+  void plug_in(double height_m = 0.0295) {
+    running_ = std::make_unique<RunningBoard>(height_m);
+    cable_.plug_in(*running_);
+  }
+  void begin() {
+    session_ = std::make_unique<BoardSession>(bodies(), settings(cable_.name()));
+    session_->start(frames_.taker());
+  }
+  void arm() {
+    say({{"do", "arm"}});
+    frames_.wait_for(is_active);
+  }
+  static bool is_active(const json& frame) {
+    return is_here(frame) && frame["runs"][0]["state"] == "active";
+  }
+  static bool is_idle(const json& frame) {
+    return is_here(frame) && frame["runs"][0]["state"] == "idle";
+  }
+  /// At a terminal that two programs read, an answer may get to the wrong one.
+  bool another_program_opens() {
+    try {
+      host::Connection(host::open_serial_port(running_->port())).open(0);
+      return true;
+    } catch (const host::LinkError&) {
+      return false;
+    }
+  }
+  void say(const json& command) { EXPECT_EQ(session_->command(command).value_or(""), ""); }
+  std::string refusal(const json& command) {
+    return session_->command(command).value_or("accepted");
+  }
+
+  Cable cable_;
+  Frames frames_;
+  std::unique_ptr<RunningBoard> running_;
+  std::unique_ptr<BoardSession> session_;
+};
+
+TEST_F(BoardSessionTest, ShowsTheForceThatTheBoardTellsUntilItIsStopped) {
+  plug_in();
+  begin();
+  arm();
+  const json frame = frames_.wait_for(
+      [](const json& f) { return is_here(f) && f["runs"][0]["force_N"][2].get<double>() > 0.05; });
+  const json& run = frame["runs"][0];
+  EXPECT_EQ(run["in_contact"], true);
+  EXPECT_GT(run["penetration_m"].get<double>(), 0.0);
+  EXPECT_NEAR(core::length({run["proxy_m"][0], run["proxy_m"][1], run["proxy_m"][2]}), 0.03F,
+              5e-4F);
+  EXPECT_GT(run["candidates"].size(), 5U);
+  EXPECT_GE(run["strip"]["force_N"][1], run["force_N"][2]);
+  EXPECT_TRUE(run["slipping"].is_null());
+  say({{"do", "stop"}});
+  const json idle = frames_.wait_for(is_idle);
+  EXPECT_EQ(idle["runs"][0]["force_N"], json({0.0, 0.0, 0.0}));
+}
+
+TEST_F(BoardSessionTest, AStopTakesBackTheArmingThatWaitsBeforeIt) {
+  plug_in();
+  begin();
+  frames_.wait_for(is_idle);
+  for (int i = 0; i < 20; ++i) {
+    say({{"do", "arm"}});
+    say({{"do", "stop"}});
+  }
+  for (int i = 0; i < 60; ++i) {
+    frames_.wait_for([](const json&) { return true; });
+  }
+  frames_.wait_for(is_idle);
+  EXPECT_EQ(frames_.wait_for([](const json&) { return true; })["board"]["confirm"], "");
+}
+
+TEST_F(BoardSessionTest, AFaultIsShownAndClearedWhereItsCauseIsGone) {
+  plug_in(0.04);
+  begin();
+  arm();
+  running_->press_emergency_stop(true);
+  const json frame =
+      frames_.wait_for([](const json& f) { return is_here(f) && !f["runs"][0]["faults"].empty(); });
+  EXPECT_EQ(frame["runs"][0]["faults"][0]["name"], "emergency-stop");
+  say({{"do", "clear"}});
+  frames_.wait_for([](const json& f) { return is_here(f) && f["runs"][0]["state"] == "fault"; });
+  running_->press_emergency_stop(false);
+  frames_.wait_for([&](const json& f) {
+    (void)session_->command({{"do", "clear"}});
+    return is_idle(f) && f["runs"][0]["faults"].empty();
+  });
+}
+
+TEST_F(BoardSessionTest, ABoardThatComesBackIsShownAgainAndNotArmed) {
+  plug_in();
+  begin();
+  arm();
+  running_.reset();
+  const json gone = frames_.wait_for([](const json& f) { return f["board"]["link"] == "gone"; });
+  EXPECT_TRUE(gone["runs"].empty());
+  EXPECT_FALSE(gone["board"]["why"].get<std::string>().empty());
+  EXPECT_NE(refusal({{"do", "arm"}}), "accepted");
+  EXPECT_NE(refusal({{"do", "stop"}}).find("emergency stop"), std::string::npos);
+  plug_in();
+  frames_.wait_for(is_idle);
+  for (int i = 0; i < 60; ++i) {
+    const json frame = frames_.wait_for(is_here);
+    EXPECT_EQ(frame["runs"][0]["state"], "idle");
+  }
+  arm();
+}
+
+TEST_F(BoardSessionTest, ASilentBoardIsGoneUntilItAnswers) {
+  plug_in();
+  begin();
+  frames_.wait_for(is_idle);
+  running_->freeze(true);
+  const json gone = frames_.wait_for([](const json& f) { return f["board"]["link"] == "gone"; });
+  EXPECT_TRUE(gone["runs"].empty());
+  running_->freeze(false);
+  frames_.wait_for(is_idle);
+}
+
+TEST_F(BoardSessionTest, ABoardThatAnotherProgramTookIsGivenBackWhenAskedFor) {
+  plug_in();
+  begin();
+  frames_.wait_for(is_idle);
+  EXPECT_TRUE(comes_true([&] { return another_program_opens(); }));
+  frames_.wait_for([](const json& f) { return f["board"]["link"] == "taken"; });
+  for (int i = 0; i < 60; ++i) {  // it is not taken back by itself
+    EXPECT_EQ(frames_.wait_for([](const json&) { return true; })["board"]["link"], "taken");
+  }
+  say({{"do", "connect"}});
+  frames_.wait_for(is_idle);
+}
+
+TEST_F(BoardSessionTest, TellsWhetherTheModelIsTheOneShown) {
+  plug_in();
+  begin();
+  EXPECT_EQ(frames_.wait_for(is_here)["board"]["model"], "unknown");
+  for (const bool same : {true, false}) {
+    session_.reset();
+    const TestBlob other(sphere(0.02, 0.002));
+    host::ModelFile model;
+    model.bytes = std::as_bytes(
+        std::span(same ? RunningBoard::model().written().bytes : other.written().bytes));
+    host::Board(running_->port()).flash(model);
+    begin();
+    const json frame = frames_.wait_for(is_here);
+    EXPECT_EQ(frame["board"]["model"], same ? "same" : "other");
+    const std::string about = frame["board"]["about_model"];
+    EXPECT_EQ(about.find("tactree flash") == std::string::npos, same) << about;
+    // The bound is that of the model shown.
+    EXPECT_EQ(frame["work"]["unit"], "instructions of host");
+    EXPECT_EQ(frame["work"]["bound"], same ? json(900.0) : json());
+    EXPECT_EQ(frame["work"]["why"].get<std::string>().empty(), same);
+  }
+}
+
+TEST_F(BoardSessionTest, TheContactFeelsAsThePageSays) {
+  plug_in();
+  begin();
+  frames_.wait_for(is_here);
+  say({{"do", "set"}, {"stiffness_N_m", 300}, {"damping_Ns_m", 0.7}, {"force_max_N", 2}});
+  const json frame = frames_.wait_for([](const json& f) {
+    return f["settings"]["stiffness_N_m"] == 300.0 && f["settings"]["force_max_N"] == 2.0;
+  });
+  EXPECT_NEAR(frame["settings"]["damping_Ns_m"].get<double>(), 0.7, 1e-6);
+  say({{"do", "set"}, {"stiffness_N_m", 50000}});
+  const json refused = frames_.wait_for([](const json& f) { return f["news"]["number"] == 1; });
+  EXPECT_NE(refused["news"]["text"].get<std::string>().find("stiff"), std::string::npos)
+      << refused["news"];
+  EXPECT_EQ(refused["settings"]["stiffness_N_m"], 300.0);
+}
+
+TEST_F(BoardSessionTest, WhatABoardCannotDoIsRefusedByName) {
+  plug_in();
+  begin();
+  for (const char* command : {"hand", "inject", "mend"}) {
+    EXPECT_NE(refusal({{"do", command}}).find("real board"), std::string::npos);
+  }
+  EXPECT_NE(refusal({{"do", "fly"}}).find("none of"), std::string::npos);
+  EXPECT_NE(refusal({{"do", 7}}), "accepted");
+  EXPECT_NE(refusal({{"do", "set"}, {"device", "premium"}}).find("no such setting"),
+            std::string::npos);
+  EXPECT_NE(refusal({{"do", "set"}, {"force_max_N", "much"}}).find("not a number"),
+            std::string::npos);
+}
+
+TEST_F(BoardSessionTest, ItsTraceHoldsEveryTickAndNothingThatTheBoardDoesNotTell) {
+  plug_in();
+  begin();
+  frames_.wait_for([](const json& f) { return f["t_s"].get<double>() > 0.7; });
+  const std::string csv = session_->trace_csv();
+  EXPECT_GT(std::count(csv.begin(), csv.end(), '\n'), 500);
+  const std::string heading = csv.substr(0, csv.find('\n'));
+  EXPECT_EQ(heading.find("slipping"), std::string::npos);
+  EXPECT_EQ(heading.find("tip_"), std::string::npos);
+  EXPECT_NE(heading.find("penetration_m"), std::string::npos);
+  EXPECT_EQ(std::count(heading.begin(), heading.end(), ','),
+            std::count(csv.begin() + static_cast<std::ptrdiff_t>(heading.size()) + 1,
+                       std::find(csv.begin() + static_cast<std::ptrdiff_t>(heading.size()) + 1,
+                                 csv.end(), '\n'),
+                       ','));
+}
+
+TEST_F(BoardSessionTest, APortWithoutABoardIsToldByName) {
+  const host::PseudoTerminal nobody;
+  EXPECT_THROW(BoardSession(bodies(), settings(nobody.name())), host::LinkError);
+}
+
+}  // namespace
+}  // namespace tactree::test

@@ -1,0 +1,200 @@
+// The page of `tactree view --port` beside a board that runs: what it shows of it, and that its stop stops it.
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { rmSync, symlinkSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { bumpySphere, buildModel, folder, launch, openPage, startBoard, startServer, state, tactree, until }
+  from './setup.mjs';
+
+const RADIUS = 0.03;
+const blob = buildModel('ball', bumpySphere(8000, RADIUS, 0), ['--unit', 'm']);
+const other = buildModel('smaller', bumpySphere(6000, 0.02, 0), ['--unit', 'm']);
+const FORCE = ['force_x_N', 'force_y_N', 'force_z_N'];
+// The board's port under a name that stays, as a cable's does.
+const cable = join(folder, 'cable');
+let browser;
+
+/** A board at the cable's end until the test is over. */
+async function plugIn(t, ...options) {
+  const board = await startBoard([blob, '--script', 'press', ...options]);
+  t.after(board.stop);
+  rmSync(cable, { force: true });
+  symlinkSync(board.port, cable);
+  return board;
+}
+
+// The longest there is: the computer of a test may be busy.
+async function watch(t) {
+  const server = await startServer([blob, '--port', cable, '--link-timeout', '100']);
+  t.after(server.stop);
+  return server;
+}
+
+before(async () => {
+  browser = await launch();
+});
+after(async () => {
+  await browser?.close();
+});
+
+const small = { viewport: { width: 700, height: 480 } };
+
+/** Without its picture: made by software it takes time that the board's link needs. */
+const hidePicture = (page) => page.locator('#view').evaluate((canvas) => { canvas.style.display = 'none'; });
+
+/** Does it again where the computer was too busy for the board's link, which then ends the force. */
+async function whileLinked(page, act) {
+  for (let left = 5; ; --left) {
+    try {
+      return await act();
+    } catch (error) {
+      if (left === 0 || !/link-lost/.test(await page.locator('#fault-names').textContent())) throw error;
+      await page.locator('#clear').click();
+      await state(page, 'idle');
+    }
+  }
+}
+
+async function arm(page) {
+  // In the object it is not armed.
+  await until(page, ['probe_x_m', 'probe_y_m', 'probe_z_m'], (...at) => Math.hypot(...at) > RADIUS + 0.001,
+    'the hand does not come back');
+  await page.locator('#arm').click();
+  await state(page, 'active', 10000);
+}
+
+test('the force of the board is shown, and a stop from any page ends it', async (t) => {
+  await plugIn(t);
+  const server = await watch(t);
+  const page = await openPage(browser, server.url, small);
+  await hidePicture(page);
+  const second = await browser.newPage();
+  await second.goto(`${server.url}faults/`);
+  await state(page, 'idle');
+  assert.match(await page.locator('#board-name').textContent(), /^host, firmware \d/);
+  const otherPage = () => second.evaluate(() => {
+    const socket = new WebSocket(`ws://${location.host}/live`);
+    socket.onopen = () => socket.send('{"do": "stop"}');
+  });
+  for (const stop of [() => page.keyboard.press('Space'), otherPage]) {
+    await whileLinked(page, async () => {
+      await arm(page);
+      const [depth, ...rest] = await until(page, ['penetration_m', 'proxy_x_m', 'proxy_y_m', 'proxy_z_m', ...FORCE],
+        (deep, x, y, z, ...force) => deep > 0 && Math.hypot(...force) > 0.2, 'no force', 10000);
+      assert.ok(depth < 0.01, `${depth} m deep`);
+      assert.ok(Math.abs(Math.hypot(...rest.slice(0, 3)) - RADIUS) < 5e-4, `the proxy is at ${rest.slice(0, 3)}`);
+      await stop();
+      await state(page, 'idle', 10000);
+      await until(page, FORCE, (...f) => Math.hypot(...f) === 0, 'still force');
+    });
+  }
+  assert.deepEqual(page.troubles, []);
+  await page.close();
+  await second.close();
+});
+
+test('what a board cannot do is disabled, and the page says why; what it can do it does', async (t) => {
+  await plugIn(t);
+  const server = await watch(t);
+  const page = await openPage(browser, server.url);
+  await state(page, 'idle');
+  for (const control of ['#mode', '#rate_hz', '#device']) assert.ok(await page.locator(control).isDisabled(), control);
+  assert.equal(await page.locator('#mode').inputValue(), '', 'a board does not tell its method');
+  assert.ok(await page.getByText('the board has its method, rate and device').isVisible());
+  await page.locator('#faults summary').click();
+  assert.ok(await page.locator('#mend').isDisabled());
+  assert.ok(await page.getByText('the parts of the board and its device are real').isVisible());
+  assert.ok(await page.getByText("The hand is at the board's device").isVisible());
+  assert.match(await page.locator('#work-why').textContent(), /counts neither instructions nor cycles/);
+  const set = (id, value) => page.locator(id).evaluate((slider, wanted) => {
+    slider.value = wanted;
+    slider.dispatchEvent(new Event('change'));
+  }, value);
+  await set('#stiffness_N_m', '300');
+  await set('#force_max_N', '2');
+  await page.waitForFunction(() => document.querySelector("output[for='force_max_N']").value === '2 N'
+    && document.querySelector("output[for='stiffness_N_m']").value === '300 N/m');
+  await set('#damping_Ns_m', '0');
+  await set('#stiffness_N_m', '3000'); // not without damping
+  await page.locator('#note').waitFor();
+  assert.match(await page.locator('#note').textContent(), /stiff/);
+  await page.waitForFunction(() => document.querySelector("output[for='stiffness_N_m']").value === '300 N/m');
+  assert.deepEqual(page.troubles, []);
+  await page.close();
+});
+
+test('a board that is unplugged: the page says so, and goes on when it is back, not armed', async (t) => {
+  let board = await plugIn(t);
+  const server = await watch(t);
+  const page = await openPage(browser, server.url, small);
+  await state(page, 'idle');
+  await hidePicture(page);
+  await whileLinked(page, () => arm(page));
+  await board.stop();
+  await page.locator('#board-gone').waitFor();
+  assert.match(await page.locator('#board-why').textContent(), /^The board is gone/);
+  await state(page, 'no board');
+  assert.equal(await page.locator('#force-now').textContent(), '–');
+  assert.ok(await page.locator('#arm').isDisabled());
+  board = await plugIn(t);
+  await page.locator('#board-gone').waitFor({ state: 'hidden' });
+  await state(page, 'idle');
+  await page.waitForTimeout(1000);
+  assert.equal(await page.locator('#state').textContent(), 'idle');
+  await whileLinked(page, () => arm(page));
+  await page.close();
+});
+
+test('a fault of the board is told, with a link to its page', async (t) => {
+  await plugIn(t, '--inject', 'estop:pressed@0');
+  const server = await watch(t);
+  const page = await openPage(browser, server.url, small);
+  await state(page, 'fault');
+  assert.match(await page.locator('#fault-names').textContent(), /emergency-stop/);
+  assert.equal(await page.locator('#fault-page').getAttribute('href'), '/faults/emergency-stop');
+  await page.close();
+});
+
+test('a board with another model than the one shown: the page warns', async (t) => {
+  await plugIn(t);
+  for (const [model, warned] of [[other, true], [blob, false]]) {
+    execFileSync(tactree, ['flash', model, '--port', cable], { stdio: 'pipe' });
+    const server = await watch(t);
+    const page = await openPage(browser, server.url, small);
+    await state(page, 'idle');
+    assert.equal(await page.locator('#model-warning').isVisible(), warned);
+    assert.match(await page.locator('#board-model').textContent(), warned ? /another model/ : /the model that is shown/);
+    assert.deepEqual(page.troubles, []);
+    await page.close();
+    await server.stop();
+  }
+});
+
+test('an emulated board: its instructions are shown, below the bound', async (t) => {
+  try {
+    await plugIn(t, '--board', 'mps2-an386');
+  } catch {
+    t.skip('the image of mps2-an386 is not built, or its emulator is missing');
+    return;
+  }
+  const server = await watch(t);
+  const page = await openPage(browser, server.url, small);
+  await state(page, 'idle');
+  assert.equal(await page.locator('#work-name').textContent(), 'Instructions');
+  const [taken, bound] = await page.waitForFunction(() => {
+    const found = /^([\d,]+) of ([\d,]+)$/.exec(document.getElementById('work-now').value);
+    return found && found.slice(1).map((digits) => Number(digits.replaceAll(',', '')));
+  }).then((handle) => handle.jsonValue());
+  assert.ok(taken > 500 && bound > 10000 && taken < bound, `${taken} of ${bound}`);
+  assert.equal(await page.locator('#work-why').textContent(), '');
+  // The line of the bound, in its colour.
+  const lines = () => page.locator('#strip-work').evaluate((canvas) => {
+    const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+    let red = 0;
+    for (let i = 0; i < data.length; i += 4) if (data[i + 3] > 128 && data[i] > data[i + 1] + 80) ++red;
+    return red / canvas.width;
+  });
+  assert.ok(await lines() > 0.5, 'the bound is not drawn');
+  await page.close();
+});
