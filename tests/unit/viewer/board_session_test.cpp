@@ -64,10 +64,18 @@ class BoardSessionTest : public testing::Test {
     session_ = std::make_unique<BoardSession>(bodies(), settings(cable_.name()));
     session_->start(frames_.taker());
   }
-  void arm() {
-    say({{"do", "arm"}});
-    frames_.wait_for(is_active);
+  /// Armed until this holds; and again where the computer was too busy for the link.
+  json while_armed(const std::function<bool(const json&)>& holds) {
+    return frames_.wait_for([&](const json& frame) {
+      if (is_here(frame) && frame["runs"][0]["state"] == "fault") {
+        (void)session_->command({{"do", "clear"}});
+      } else if (is_idle(frame)) {
+        (void)session_->command({{"do", "arm"}});
+      }
+      return holds(frame);
+    });
   }
+  void arm() { (void)while_armed(is_active); }
   static bool is_active(const json& frame) {
     return is_here(frame) && frame["runs"][0]["state"] == "active";
   }
