@@ -58,7 +58,10 @@ class Link(unittest.TestCase):
             self.assertIn("stopped", self.run_verb("stop", "--port", port))
             trace = self.run_verb("trace", "--port", port).splitlines()
             self.assertTrue(any(line.startswith("tick,state,contact") for line in trace))
-            self.assertGreater(len(trace), 300)
+            ticks = [int(line.split(",")[0]) for line in trace if line[:1].isdigit()]
+            self.assertEqual(ticks, list(range(ticks[0], ticks[0] + len(ticks))), "none is missing")
+            # The board goes on meanwhile and writes over its oldest: how many are left is a matter of speed.
+            self.assertGreater(len(ticks), 32)
 
     def test_a_model_is_written_and_rolled_back(self):
         with ServedBoard(TACTREE, self.blob, "--board", BOARD) as port:
