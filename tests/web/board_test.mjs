@@ -1,35 +1,13 @@
 // The page of `tactree view --port` beside a board that runs: what it shows of it, and that its stop stops it.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
-import { rmSync, symlinkSync } from 'node:fs';
-import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { bumpySphere, buildModel, folder, launch, openPage, startBoard, startServer, state, tactree, until }
-  from './setup.mjs';
+import { blob, cable, plugIn, RADIUS, small, watch } from './board_rig.mjs';
+import { buildModel, bumpySphere, launch, openPage, state, tactree, until } from './setup.mjs';
 
-const RADIUS = 0.03;
-const blob = buildModel('ball', bumpySphere(8000, RADIUS, 0), ['--unit', 'm']);
 const other = buildModel('smaller', bumpySphere(6000, 0.02, 0), ['--unit', 'm']);
 const FORCE = ['force_x_N', 'force_y_N', 'force_z_N'];
-// The board's port under a name that stays, as a cable's does.
-const cable = join(folder, 'cable');
 let browser;
-
-/** A board at the cable's end until the test is over. */
-async function plugIn(t, ...options) {
-  const board = await startBoard([blob, '--script', 'press', ...options]);
-  t.after(board.stop);
-  rmSync(cable, { force: true });
-  symlinkSync(board.port, cable);
-  return board;
-}
-
-// The longest there is: the computer of a test may be busy.
-async function watch(t) {
-  const server = await startServer([blob, '--port', cable, '--link-timeout', '100']);
-  t.after(server.stop);
-  return server;
-}
 
 before(async () => {
   browser = await launch();
@@ -37,8 +15,6 @@ before(async () => {
 after(async () => {
   await browser?.close();
 });
-
-const small = { viewport: { width: 700, height: 480 } };
 
 /** Without its picture: made by software it takes time that the board's link needs. */
 const hidePicture = (page) => page.locator('#view').evaluate((canvas) => { canvas.style.display = 'none'; });
@@ -169,32 +145,4 @@ test('a board with another model than the one shown: the page warns', async (t) 
     await page.close();
     await server.stop();
   }
-});
-
-test('an emulated board: its instructions are shown, below the bound', async (t) => {
-  try {
-    await plugIn(t, '--board', 'mps2-an386');
-  } catch {
-    t.skip('the image of mps2-an386 is not built, or its emulator is missing');
-    return;
-  }
-  const server = await watch(t);
-  const page = await openPage(browser, server.url, small);
-  await state(page, 'idle');
-  assert.equal(await page.locator('#work-name').textContent(), 'Instructions');
-  const [taken, bound] = await page.waitForFunction(() => {
-    const found = /^([\d,]+) of ([\d,]+)$/.exec(document.getElementById('work-now').value);
-    return found && found.slice(1).map((digits) => Number(digits.replaceAll(',', '')));
-  }).then((handle) => handle.jsonValue());
-  assert.ok(taken > 500 && bound > 10000 && taken < bound, `${taken} of ${bound}`);
-  assert.equal(await page.locator('#work-why').textContent(), '');
-  // The line of the bound, in its colour.
-  const lines = () => page.locator('#strip-work').evaluate((canvas) => {
-    const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
-    let red = 0;
-    for (let i = 0; i < data.length; i += 4) if (data[i + 3] > 128 && data[i] > data[i + 1] + 80) ++red;
-    return red / canvas.width;
-  });
-  assert.ok(await lines() > 0.5, 'the bound is not drawn');
-  await page.close();
 });

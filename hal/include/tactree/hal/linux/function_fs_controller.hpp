@@ -21,8 +21,8 @@ namespace tactree::hal::linux_usb {
 /// Once it is plugged in nothing of it allocates.
 class FunctionFsController {
  public:
-  /// `udc`: as find_udc() takes it. `with_dfu`: offer model and parameters for DFU, where the kernel
-  /// takes that.
+  /// `udc`: as find_udc() takes it. `with_dfu`: offer model and parameters for DFU, where the
+  /// kernel takes that.
   FunctionFsController(const core::usb::Identity& identity, std::string udc, bool with_dfu = true);
   ~FunctionFsController();
   FunctionFsController(const FunctionFsController&) = delete;
