@@ -642,9 +642,10 @@ void serve(const SimulateOptions& options, const SceneFile& scene) {
     serve_on_usb(options, scene, identity, controller);
   } else {
     host::PseudoTerminal terminal;
+    auto target = served_target(options, scene, terminal);
     fmt::print("serving at {}\n", terminal.name());
     std::fflush(stdout);
-    serve_target(options, scene, served_target(options, scene, terminal), {});
+    serve_target(options, scene, std::move(target), {});
   }
 }
 
