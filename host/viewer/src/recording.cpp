@@ -11,6 +11,7 @@
 namespace tactree::viewer {
 namespace {
 
+using Clock = std::chrono::steady_clock;
 using nlohmann::json;
 using simulation::Sample;
 using Samples = std::vector<Sample>;
@@ -109,7 +110,6 @@ std::string Recording::trace_csv() const {
 }
 
 void Recording::run(const Publish& publish) {
-  using Clock = std::chrono::steady_clock;
   const std::chrono::duration<double> period(1.0 / kFrameRate_hz);
   while (running()) {
     const Clock::time_point now = Clock::now();
