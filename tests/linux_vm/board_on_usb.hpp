@@ -8,6 +8,7 @@
 #include <mutex>
 #include <thread>
 
+#include "await_response.hpp"
 #include "tactree/hal/linux/usbip_controller.hpp"
 #include "tactree/host/client.hpp"
 #include "tactree/host/usb_transport.hpp"
@@ -135,19 +136,10 @@ class Application {
   }
 
   host::Response await(std::uint16_t sequence) {
-    host::Response response;
     const Clock::time_point end = Clock::now() + kPatience;
-    while (Clock::now() < end && transport_->connected()) {
-      while (client_.take(response)) {
-        if (response.sequence == sequence) {
-          return response;
-        }
-      }
-      turn();
-    }
-    response = {};
-    response.timed_out = true;
-    return response;
+    return test::await_response(
+        client_, sequence, [&] { return Clock::now() < end && transport_->connected(); },
+        [&] { turn(); });
   }
   template <core::wire::Message T>
   host::Response ask(core::wire::MessageKind kind, const T& message) {

@@ -280,6 +280,14 @@ class Controller : public testing::Test {
 
   [[nodiscard]] Hands& hands() const { return device_->hands(); }
 
+  /// By its last report.
+  void expect_undisturbed() const {
+    EXPECT_TRUE(holds(output(),
+                      "page faults after the start: 0 minor, 0 major; "
+                      "allocations after the start: 0\n"))
+        << output();
+  }
+
   /// What the hand gives, the motors hold.
   void expect_balance(double hand_z_m) const {
     const std::array<double, 3> hand = {hands().hand_m[0], hands().hand_m[1], hand_z_m};
@@ -340,10 +348,7 @@ TEST_F(Controller, HomesArmsRendersAndStops) {
   EXPECT_EQ(watchdog("state"), "inactive");
   EXPECT_FALSE(fs::exists(socket_));
   const std::string report = output();
-  EXPECT_TRUE(holds(report,
-                    "page faults after the start: 0 minor, 0 major; "
-                    "allocations after the start: 0\n"))
-      << report;
+  expect_undisturbed();
   EXPECT_TRUE(holds(report, "encoder edges lost: 0\n")) << report;
   std::printf("force %.2f N at %.2f mm; %lu edges\n%s", force, 1e3 * depth,
               static_cast<unsigned long>(hands().edges), report.c_str());
@@ -460,10 +465,7 @@ TEST_F(AnalogueController, HomesArmsRendersAndStops) {
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_EQ(analogue_->code(i), kZeroCode);
   }
-  EXPECT_TRUE(holds(output(),
-                    "page faults after the start: 0 minor, 0 major; "
-                    "allocations after the start: 0\n"))
-      << output();
+  expect_undisturbed();
 }
 
 TEST_F(AnalogueController, WhatIsWrongIsNamedWithCauseAndRemedy) {
@@ -533,10 +535,7 @@ TEST_F(UsbController, HomesArmsRendersAndStops) {
   EXPECT_TRUE(eventually([&] { return !is_enabled(); }));
   kill(child_, SIGTERM);
   EXPECT_EQ(finish(std::exchange(child_, -1)), 0) << output();
-  EXPECT_TRUE(holds(output(),
-                    "page faults after the start: 0 minor, 0 major; "
-                    "allocations after the start: 0\n"))
-      << output();
+  expect_undisturbed();
   EXPECT_EQ(gadgets(), 0U) << "it is taken down again";
 }
 

@@ -20,6 +20,10 @@ using core::wire::WireStatus;
 constexpr std::size_t kPiecesUnderWay = 6;
 constexpr std::size_t kPiecesPerCall = 64;
 
+core::wire::ControlRequest control_request(ControlCode code, std::uint32_t token) {
+  return {static_cast<std::uint8_t>(code), {}, token};
+}
+
 const char* remedy_for(WireStatus status) {
   switch (status) {
     case WireStatus::kBusy:
@@ -162,8 +166,7 @@ core::wire::ListModelsReply Board::models() {
 }
 
 Response Board::control(ControlCode code, std::uint32_t token, const char* what) {
-  return demand(MessageKind::kControl,
-                core::wire::ControlRequest{static_cast<std::uint8_t>(code), {}, token}, what);
+  return demand(MessageKind::kControl, control_request(code, token), what);
 }
 
 void Board::begin_arming() {
@@ -189,8 +192,7 @@ bool Board::go_on_arming() {
   if (!hand_confirms_) {
     // Refused while the enable line is on its way, or the probe inside: asked for again.
     (void)connection().call(MessageKind::kControl,
-                            core::wire::ControlRequest{
-                                static_cast<std::uint8_t>(ControlCode::kConfirm), {}, arm_token_});
+                            control_request(ControlCode::kConfirm, arm_token_));
   }
   return false;
 }
@@ -362,9 +364,7 @@ void Board::erase_model(std::uint32_t slot) {
 }
 
 void Board::post_stop() {
-  connection().post(
-      MessageKind::kControl,
-      core::wire::ControlRequest{static_cast<std::uint8_t>(ControlCode::kStop), {}, 0});
+  connection().post(MessageKind::kControl, control_request(ControlCode::kStop, 0));
 }
 
 void Board::move_body(std::uint32_t body, const core::Pose& pose, const core::Motion& motion,

@@ -8,6 +8,7 @@
 #include <functional>
 #include <vector>
 
+#include "await_response.hpp"
 #include "tactree/hal/session/session.hpp"
 #include "tactree/hal/sim/board.hpp"
 #include "tactree/hal/store/no_model_store.hpp"
@@ -134,18 +135,9 @@ class SessionRig {
 
   /// Waits for the response to a request. Everything else that comes is dropped.
   host::Response await(std::uint16_t sequence, int ticks_max = 40000) {
-    host::Response response;
-    for (int i = 0; i < ticks_max; ++i) {
-      while (client_.take(response)) {
-        if (response.sequence == sequence) {
-          return response;
-        }
-      }
-      tick();
-    }
-    response = {};
-    response.timed_out = true;
-    return response;
+    int ticks = 0;
+    return test::await_response(
+        client_, sequence, [&] { return ticks++ < ticks_max; }, [&] { tick(); });
   }
   template <core::wire::Message T>
   host::Response ask(core::wire::MessageKind kind, const T& message) {

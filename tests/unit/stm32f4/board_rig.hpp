@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "await_response.hpp"
 #include "boards/stm32f405/stm32f405_board.hpp"
 #include "fake_chip.hpp"
 #include "tactree/hal/loop.hpp"
@@ -92,18 +93,9 @@ class BoardRig {
   // ---- the application
 
   host::Response await(std::uint16_t sequence, int ticks_max = 5000) {
-    host::Response response;
-    for (int i = 0; i < ticks_max; ++i) {
-      while (client_.take(response)) {
-        if (response.sequence == sequence) {
-          return response;
-        }
-      }
-      tick();
-    }
-    response = {};
-    response.timed_out = true;
-    return response;
+    int ticks = 0;
+    return test::await_response(
+        client_, sequence, [&] { return ticks++ < ticks_max; }, [&] { tick(); });
   }
   host::Response ask(core::wire::MessageKind kind, std::span<const std::byte> payload = {}) {
     return await(client_.send(kind, payload, now_us()));
