@@ -187,7 +187,7 @@ std::size_t count_differences(const Ours& ours, const Nanoflann& peer,
   for (const Vec3& probe : probes) {
     const Answer a = ours(probe);
     const Answer b = peer(probe);
-    // Nothing found counts as the radius: a point on its rim is found by one or the other.
+    // Nothing found counts as the radius: a point on its boundary is found by one or the other.
     const bool found = a.index != tactree::core::kNoPoint;
     const float a_distance = found ? std::sqrt(a.distance_squared) : radius;
     const float b_distance = std::sqrt(b.distance_squared);

@@ -1,9 +1,9 @@
 # Installation, for find_package(tactree) from other projects.
 #
-# Each component has its own export file, and finds its own dependencies: a firmware project that
-# wants core and hal needs neither Eigen nor anything else.
-#   core        tactree::core, tactree::hal           depends on nothing; always there
-#   builder     tactree::builder                      Eigen, fmt, TBB, liblzf
+# Each component has its own export file and finds its own dependencies. A firmware project that uses
+# core and hal needs no other package.
+#   core        tactree::core, hal, board_link        depends on nothing; always present
+#   builder     tactree::builder                      Eigen, fmt, TBB, liblzf, libsodium
 #   simulation  tactree::plant, tactree::simulation   Eigen
 #   host        tactree::host                         threads
 include(CMakePackageConfigHelpers)
@@ -11,7 +11,7 @@ include(CMakePackageConfigHelpers)
 set(tactree_cmake_dir ${CMAKE_INSTALL_LIBDIR}/cmake/tactree)
 
 # tactree_install_component(<component> <headers>... TARGETS <target>...)
-#   headers  folders whose content goes into the include folder
+#   headers  folders whose content is installed to the include folder
 function(tactree_install_component component)
   cmake_parse_arguments(arg "" "" "HEADERS;TARGETS" ${ARGN})
   install(TARGETS ${arg_TARGETS} EXPORT tactree-${component}
@@ -25,24 +25,24 @@ function(tactree_install_component component)
 endfunction()
 
 tactree_install_component(core
-  TARGETS tactree_core tactree_hal
-  HEADERS core/include hal/include)
+  TARGETS tactree_core tactree_hal tactree_board_link
+  HEADERS core/include hal/include hal/board_link/include)
 if(TACTREE_BUILD_TOOLS)
   tactree_install_component(builder
-    TARGETS tactree_builder
-    HEADERS tools/builder/include ${CMAKE_CURRENT_BINARY_DIR}/tools/builder/include)
+    TARGETS tactree_builder tactree_process
+    HEADERS host/builder/include ${CMAKE_CURRENT_BINARY_DIR}/host/builder/include)
   tactree_install_component(simulation
     TARGETS tactree_plant tactree_simulation
-    HEADERS host/plant/include host/simulation/include)
+    HEADERS host/simulator/plant/include host/simulator/simulation/include)
   tactree_install_component(host
     TARGETS tactree_host
-    HEADERS host/link/include)
+    HEADERS host/client/include)
 endif()
 
 configure_package_config_file(cmake/tactree-config.cmake.in
   ${CMAKE_CURRENT_BINARY_DIR}/tactree-config.cmake
   INSTALL_DESTINATION ${tactree_cmake_dir})
-# Before 1.0 a minor version may break its users.
+# Before 1.0 a minor version may change the interface.
 write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/tactree-config-version.cmake
   COMPATIBILITY SameMinorVersion)
 install(FILES

@@ -1,6 +1,6 @@
-// The program of every board: gets a configuration, opens the model, and runs the control loop from
-// the tick interrupt. When something is refused the loop runs all the same: it keeps the motors off
-// and tells why.
+// The program of every board: reads the configuration, opens the model and runs the control loop
+// from the tick interrupt. If configuration or model is refused, the loop runs with motors off and
+// reports the cause.
 
 #include "board.hpp"
 #include "platform.hpp"
@@ -15,20 +15,19 @@ Board board;
 tactree::core::Controller controller;
 tactree::hal::Loop<Board> loop(board, controller);
 
-// A program with a wrong byte, or with a variable that does not hold, gets no model: it cannot give
-// a force.
+// If the self-test of program or RAM fails, no model is opened, so there is no force.
 tactree::hal::StartResult start(const tactree::core::Configuration& configuration) {
   const tactree::hal::ImageStatus image = tactree::firmware::test_image();
   if (image == tactree::hal::ImageStatus::kOk) {
     controller.know_costs(tactree::firmware::tick_costs(), tactree::firmware::timer_clock_hz());
     return loop.start(configuration);
   }
-  tactree::hal::StartResult unfit;
-  unfit.image = image;
-  return unfit;
+  tactree::hal::StartResult refused;
+  refused.image = image;
+  return refused;
 }
 
-// A board that an application can talk to listens between the ticks, for ever.
+// A board with a port for applications serves it between the ticks and does not return.
 template <class B>
 void serve(B& on, const tactree::hal::StartResult& started,
            const tactree::core::Configuration& configuration) {

@@ -1,6 +1,6 @@
 #pragma once
-// What main.cpp and the start-up code want from each other, from the core they run on, and from the
-// board. Each function is defined once in an image: one that is missing is an error of the linker.
+// Interfaces between main.cpp, the start-up code, the processor core and the board. Each function
+// is defined once in an image; a missing one is a linker error.
 
 #include <cstdint>
 
@@ -17,28 +17,28 @@ void start_ticks(float rate_hz);
 [[nodiscard]] std::uint32_t deadlines();
 /// Microseconds since start_ticks(), wrapping at 2^32.
 [[nodiscard]] std::uint32_t now_us();
-/// While held no tick begins; those that fall due meanwhile follow at once. For moments only.
+/// While held no tick begins; a tick that became due begins at the release. Hold briefly.
 void hold_ticks(bool hold);
 /// Sleeps until an interrupt.
 void wait_for_interrupt();
-/// Starts anew, as after power-up; RAM that is not initialised keeps its content.
+/// Resets the processor. RAM that start-up does not initialise keeps its content.
 [[noreturn]] void reset();
 
 // ---- provided by runtime/
 
-/// Keeps the record and resets. For the fault handlers of a core.
+/// Stores the record and resets. For the fault handlers of a core.
 [[noreturn]] void capture(const hal::CapturedFault& fault);
-/// What the last run died of; a second call finds nothing.
+/// The processor fault that ended the last run; a second call returns none.
 [[nodiscard]] hal::CapturedFault take_captured_fault();
 
-/// What a tick of this image costs at most.
+/// Upper bounds of the cost of a tick of this image.
 [[nodiscard]] const core::TickCosts& tick_costs();
 
 // ---- provided by boards/<name>/board.cpp
 
-/// Frequency of the tick timer's clock, Hz; a multiple of 1 MHz. Asked in start_ticks().
+/// Clock frequency of the tick timer, Hz; a multiple of 1 MHz. Called by start_ticks().
 [[nodiscard]] std::uint32_t timer_clock_hz();
-/// Clocks and pins; before main(), with nothing initialised yet.
+/// Sets up clocks and pins. Runs before main(); variables are not initialised yet.
 void prepare_board();
 
 }  // namespace tactree::firmware
@@ -46,8 +46,8 @@ void prepare_board();
 extern "C" {
 /// One tick of the control loop, in the context of an interrupt of low priority.
 void tactree_tick();
-/// Sleeps for ever, between the ticks. Of the core: the instruction counter takes a tick as over
-/// when the core is in here.
+/// Sleeps between the ticks and does not return. Provided by the core: the instruction counter
+/// recognises the end of a tick by entry into this function.
 [[noreturn]] void tactree_idle();
 int main();
 }

@@ -1,5 +1,5 @@
-"""Tests of core/ with some of its sources compiled in another way, for scripts/coverage and
-scripts/mutate. Takes commands from a build folder; the folder itself stays as it is.
+"""Builds the tests of core/ with some sources compiled differently, for scripts/coverage and scripts/mutate.
+Takes the commands from a build folder and writes nothing there.
 """
 import json
 import pathlib
@@ -7,22 +7,22 @@ import shlex
 import subprocess
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-TESTS = {"core_test": "tests/unit/core", "controller_test": "tests/unit/controller",
-         "surface_test": "tests/unit/surface", "scene_test": "tests/unit/scene"}
+TESTS = {"core_test": "tests/unit/core/model", "controller_test": "tests/unit/core/control",
+         "surface_test": "tests/unit/core/contact", "scene_test": "tests/unit/core/scene"}
 
 
 class Build:
     def __init__(self, folder, tests):
         self.folder = pathlib.Path(folder).resolve()
         if not (self.folder / "build.ninja").exists():
-            raise SystemExit(f"{self.folder} is no build folder (cmake --preset host-gcc)")
+            raise SystemExit(f"{self.folder} is not a build folder (cmake --preset host-gcc)")
         subprocess.run(["cmake", "--build", self.folder, "--target", *tests], check=True,
                        stdout=subprocess.DEVNULL)
         entries = json.loads((self.folder / "compile_commands.json").read_text())
         self.compiles = {e["file"]: e["command"] for e in entries if "tactree_core.dir" in e["command"]}
 
     def compile(self, source, output, *flags, text=None):
-        """Compiles a file of core/, or `text` in its place, with these flags behind its own."""
+        """Compiles a file of core/, or `text` in its place, with additional flags."""
         words = shlex.split(self.compiles[str(ROOT / source)])
         words = words[1:] if pathlib.Path(words[0]).name == "ccache" else words
         at = words.index("-o")
@@ -33,7 +33,7 @@ class Build:
                               input=text, text=True, capture_output=True, check=False)
 
     def link(self, test, output, *added):
-        """Links a test anew; what is added comes first, so that it wins over the library."""
+        """Links a test again, with objects that precede the library and so replace its own."""
         target = f"{TESTS[test]}/{test}"
         done = subprocess.run(["ninja", "-C", self.folder, "-t", "commands", "-s", target], check=True,
                               capture_output=True, text=True)

@@ -11,7 +11,7 @@ int main() {
   tactree::core::Configuration configuration;
   use_device(tactree::core::presets::premium(), configuration);
   configuration.link_required = true;
-  // What is refused here the status tells; the loop runs all the same and keeps the motors off.
+  // After a refusal the loop runs as well: it keeps the motors off, and the status has the cause.
   (void)loop.start(configuration);
   while (true) {
     (void)loop.tick();

@@ -1,4 +1,5 @@
-// Any fault: writes down registers and cause, and resets. Motors are off after a reset.
+// Fault handler: records registers and cause, then resets. Motors are off after a reset.
+// Loop and memory annotations: docs/BOUND.md.
 
 #include "cortex_m/registers.hpp"
 #include "platform.hpp"
@@ -6,7 +7,7 @@
 namespace tactree::firmware {
 namespace {
 
-// What the core has pushed on entry.
+// Registers that the core pushes on exception entry.
 struct Frame {
   std::uint32_t r0_to_r3[4];
   std::uint32_t r12;
@@ -33,15 +34,14 @@ std::uint32_t faulting_address(std::uint32_t status) {
 
 extern "C" {
 
-// `frame` is null where the stack was full: what the core would have pushed is nowhere.
+// `frame` is null if the stack was full: the core could not push its registers.
 [[noreturn, gnu::used]] void tactree_capture_fault(const std::uint32_t* r4_to_r11,
                                                    const tactree::firmware::Frame* frame,
                                                    std::uint32_t sp) {
-  using namespace tactree::firmware;
   tactree::hal::CapturedFault fault;
-  fault.cause = exception_number();
-  fault.status = cortex_m::fault_status();
-  fault.address = faulting_address(fault.status);
+  fault.cause = tactree::firmware::exception_number();
+  fault.status = tactree::firmware::cortex_m::fault_status();
+  fault.address = tactree::firmware::faulting_address(fault.status);
   fault.sp = sp;
   for (std::uint32_t i = 0; i < 8; ++i) {  // bound: 8
     fault.registers[4 + i] = r4_to_r11[i];
@@ -54,11 +54,11 @@ extern "C" {
     }
     fault.registers[12] = frame->r12;
   }
-  capture(fault);
+  tactree::firmware::capture(fault);
 }
 
-// One stack is in use, the main one. Its pointer is handed on before a compiler touches it. Where
-// less is left than the record needs, it goes on at the top: nothing comes back from here.
+// Only the main stack is in use. Passes its pointer before compiled code changes it. If too little
+// stack is left for the record, the handler continues at the top of the stack: it never returns.
 [[gnu::naked]] void tactree_fault() {
   __asm volatile(
       "mov r2, sp\n\t"

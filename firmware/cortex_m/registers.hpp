@@ -1,6 +1,6 @@
 #pragma once
-// Registers of the core that every Cortex-M has (Armv7-M and Armv8-M Architecture Reference
-// Manuals, "System Control Space").
+// Core registers common to all Cortex-M (Armv7-M and Armv8-M Architecture Reference Manuals,
+// "System Control Space").
 
 #include <cstdint>
 
@@ -13,7 +13,7 @@ inline volatile std::uint32_t& register_at(std::uint32_t address) {
 inline volatile std::uint32_t& systick_control() { return register_at(0xE000E010); }
 inline volatile std::uint32_t& systick_reload() { return register_at(0xE000E014); }
 inline volatile std::uint32_t& systick_value() { return register_at(0xE000E018); }
-/// Enabled, with an interrupt, from the core's clock.
+/// SysTick enabled, with interrupt, on the core clock.
 inline constexpr std::uint32_t kSystickOn = 0x7;
 inline constexpr std::uint32_t kSystickReloadMax = 0xFFFFFF;
 
@@ -40,6 +40,30 @@ inline constexpr std::uint32_t kBusAddressValid = 1U << 15;
 
 inline volatile std::uint32_t& coprocessor_access() { return register_at(0xE000ED88); }
 inline constexpr std::uint32_t kFpuFullAccess = 0xFU << 20;
+
+/// Memory protection (Armv7-M Architecture Reference Manual, B3.5).
+inline volatile std::uint32_t& mpu_control() { return register_at(0xE000ED94); }
+inline constexpr std::uint32_t kMpuOnWithDefaultMap = 0x5;
+inline volatile std::uint32_t& mpu_region_number() { return register_at(0xE000ED98); }
+inline volatile std::uint32_t& mpu_region_base() { return register_at(0xE000ED9C); }
+inline volatile std::uint32_t& mpu_region_attributes() { return register_at(0xE000EDA0); }
+
+/// 128 KiB that can only be read, without the eighths whose bit is set in `without`.
+struct ReadOnlyRegion {
+  std::uint32_t base;
+  std::uint32_t without;
+  bool executable;
+};
+inline void protect(std::uint32_t number, const ReadOnlyRegion& region) {
+  constexpr std::uint32_t kEnabled128K = 16U << 1U | 1U;
+  constexpr std::uint32_t kInternalRam = 6U << 16U;  // shareable, write-through
+  constexpr std::uint32_t kReadOnly = 6U << 24U;
+  constexpr std::uint32_t kNeverExecute = 1U << 28U;
+  mpu_region_number() = number;
+  mpu_region_base() = region.base;
+  mpu_region_attributes() = kEnabled128K | region.without << 8U | kInternalRam | kReadOnly |
+                            (region.executable ? 0U : kNeverExecute);
+}
 
 inline void synchronise() { __asm volatile("dsb\n\tisb" ::: "memory"); }
 

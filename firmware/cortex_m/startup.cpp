@@ -9,31 +9,35 @@ namespace {
 
 using Handler = void (*)();
 
-[[noreturn]] void start() {
-  cortex_m::coprocessor_access() = cortex_m::coprocessor_access() | cortex_m::kFpuFullAccess;
-  cortex_m::handler_control() = cortex_m::handler_control() | cortex_m::kMemoryBusUsageFaults;
-  cortex_m::synchronise();
-  start_image();
-}
-
 }  // namespace
 }  // namespace tactree::firmware
 
 extern "C" {
+[[noreturn, gnu::used]] void tactree_start() {
+  namespace core = tactree::firmware::cortex_m;
+  core::coprocessor_access() = core::coprocessor_access() | core::kFpuFullAccess;
+  core::handler_control() = core::handler_control() | core::kMemoryBusUsageFaults;
+  core::synchronise();
+  tactree::firmware::start_image();
+}
+
+// A board may define another one, which ends with a call of tactree_start().
+[[noreturn, gnu::weak, gnu::alias("tactree_start")]] void tactree_reset();
+
 void tactree_fault();
 void tactree_deadline();
 
-// What the core reads at reset: stack, then one handler for each exception. An exception nobody
-// expects is a fault.
+// The vector table: initial stack pointer, then one handler per exception. Unused exceptions are
+// faults.
 struct VectorTable {
   std::uint32_t* stack_top;
   tactree::firmware::Handler handlers[15];
 };
 
-[[gnu::section(".vectors"), gnu::used]] const VectorTable tactree_vectors = {
+[[gnu::section(".vectors"), gnu::used]] const VectorTable kVectors = {
     image_stack_top,
     {
-        tactree::firmware::start,
+        tactree_reset,
         tactree_fault,  // NMI
         tactree_fault,  // hard fault
         tactree_fault,  // memory management

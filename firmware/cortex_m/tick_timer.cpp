@@ -1,5 +1,6 @@
-// SysTick counts the deadlines at the highest priority and asks for PendSV, at the lowest; that one
-// runs the tick. So a deadline is counted also while a tick runs late, and none is lost.
+// SysTick, at the highest priority, counts the deadlines and requests PendSV, at the lowest, which
+// runs the tick. Deadlines are counted also while a tick runs late, so none is lost.
+// Loop and memory annotations: docs/BOUND.md.
 
 #include "cortex_m/registers.hpp"
 #include "platform.hpp"
@@ -28,7 +29,7 @@ void start_ticks(float rate_hz) {
 
 std::uint32_t deadlines() { return counted; }
 
-// Again where a deadline goes by between the two readings.
+// Repeats if a deadline passes between the two reads.
 std::uint32_t now_us() {
   std::uint32_t before;
   std::uint32_t cycles;

@@ -1,3 +1,5 @@
+// Loop and memory annotations: docs/BOUND.md.
+
 #include "plant_link/plant_link_board.hpp"
 
 #include <cstddef>
@@ -14,7 +16,7 @@ namespace link = hal::plant_link;
 
 // Exit codes of the emulation.
 constexpr std::uint32_t kFinished = 0;
-constexpr std::uint32_t kNoHost = 3;  // the streams are missing, or ended before kFinish
+constexpr std::uint32_t kNoHost = 3;  // the streams are missing or ended before kFinish
 
 template <class Message>
 void send_message(int file, const Message& message) {
@@ -83,10 +85,11 @@ void PlantLinkBoard::write(const core::MotorCommand& command) noexcept {
 }
 
 hal::LinkInput PlantLinkBoard::receive() noexcept {
-  const hal::LinkInput received{input_.input.link_alive, input_.input.command, 0, input_.body};
+  const std::size_t bodies = input_.body.body != core::kNoBody ? 1U : 0U;
+  const hal::LinkInput received{
+      input_.input.link_alive, input_.input.command, 0, {&input_.body, bodies}, {}, false};
   input_.input.link_alive = false;
   input_.input.command = core::Command::kNone;
-  input_.body = {};
   return received;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
-// A board in an emulator: encoders, motors, lines and the application's link are at the other end
-// of the plant link; timer, flash and core are the emulated ones. To the emulated program an
-// exchange takes no time.
+// A board in an emulator. Encoders, motors, lines and the link of the application are simulated on
+// the host, over the plant link; timer, flash and core are emulated. An exchange takes no emulated
+// time.
 
 #include "platform.hpp"
 #include "runtime/blob_area.hpp"
@@ -13,8 +13,8 @@ namespace tactree::firmware {
 
 class PlantLinkBoard {
  public:
-  /// Waits for a deadline when none has gone by, which is never so in a tick; then gives the plant
-  /// what the last tick brought, and takes its message for this one.
+  /// Waits for the next deadline; inside a tick it has passed. Then sends the output of the last
+  /// tick to the plant and receives the input of this tick.
   class Ticker {
    public:
     explicit Ticker(PlantLinkBoard& board) : board_(board) {}
@@ -30,14 +30,14 @@ class PlantLinkBoard {
   PlantLinkBoard(const PlantLinkBoard&) = delete;
   PlantLinkBoard& operator=(const PlantLinkBoard&) = delete;
 
-  /// Says hello and waits for the session's configuration.
+  /// Identifies the board to the host and waits for the configuration of the session.
   [[nodiscard]] core::Configuration connect(const hal::CapturedFault& last_fault);
-  /// After connect(): does the host want the board to serve an application?
+  /// True if the host requested a served application. Precondition: connect() was called.
   [[nodiscard]] bool is_served() const { return served_; }
-  /// Tells whether there is a model to touch.
+  /// Sends the result of the start to the host.
   void report(const hal::StartResult& result);
 
-  // The parts of a board: here one object plays most of them.
+  // The parts of a board; this object implements most of them.
   [[nodiscard]] PlantLinkBoard& encoders() noexcept { return *this; }
   [[nodiscard]] PlantLinkBoard& motors() noexcept { return *this; }
   [[nodiscard]] PlantLinkBoard& enable_line() noexcept { return *this; }
@@ -65,7 +65,7 @@ class PlantLinkBoard {
   int from_host_ = -1;
   int to_host_ = -1;
   bool served_ = false;
-  bool in_session_ = false;  // a tick has begun, the plant waits for its output
+  bool in_session_ = false;  // a tick has begun; the plant waits for its output
   hal::plant_link::TickInput input_{};
   hal::plant_link::TickOutput output_{};
 };

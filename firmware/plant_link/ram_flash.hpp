@@ -1,12 +1,13 @@
 #pragma once
-// Flash of an emulated board: RAM with the habits of flash. It keeps its content over a reset of
-// the board, and begins erased with each emulation.
+// Flash of an emulated board, simulated in RAM. Keeps its content over a reset of the board; is
+// erased at the start of each emulation.
+// Loop and memory annotations: docs/BOUND.md.
 
 #include <cstddef>
 #include <cstdint>
 #include <span>
 
-#include "tactree/hal/store/flash.hpp"
+#include "tactree/hal/flash.hpp"
 
 extern "C" {
 extern std::byte store_begin[];  // of the linker script
@@ -17,7 +18,7 @@ namespace tactree::firmware {
 
 class RamFlash {
  public:
-  /// Erases all of it, where the mark of an earlier start is missing.
+  /// Erases everything unless the mark of an earlier start is present.
   void prepare() {
     if (mark() == kMark) {
       return;
@@ -28,7 +29,7 @@ class RamFlash {
     mark() = kMark;
   }
 
-  /// The last sector is the mark's.
+  /// The last sector holds the mark.
   [[nodiscard]] hal::FlashGeometry geometry() const noexcept {
     const auto bytes = static_cast<std::uint32_t>(store_end - store_begin);
     return {kSectorBytes, bytes / kSectorBytes - 1U, 4};

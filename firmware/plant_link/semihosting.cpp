@@ -1,3 +1,5 @@
+// Loop and memory annotations: docs/BOUND.md.
+
 #include "plant_link/semihosting.hpp"
 
 #include <cstddef>
@@ -20,8 +22,8 @@ std::uint32_t address_of(const void* pointer) {
 }
 
 #if defined(__riscv)
-// Both arguments are in the registers the call wants. The first three instructions must not be
-// compressed, nor lie on two pages.
+// The arguments are already in the registers of the call. The three instructions must not be
+// compressed or cross a page.
 [[gnu::naked, gnu::noinline, gnu::aligned(16)]] std::uint32_t call(Operation /*a0*/,
                                                                    std::uint32_t /*a1*/) {
   __asm volatile(
@@ -54,7 +56,7 @@ int open(std::span<const char> zero_terminated_name, Access access) {
                                                   static_cast<std::uint32_t>(access), length}));
 }
 
-// Both calls return how many bytes are left to do.
+// Both calls return the number of bytes not transferred.
 bool read(int file, std::span<std::byte> bytes) {
   while (!bytes.empty()) {  // bound: 1 (pipes do not divide messages as short as ours)
     const auto wanted = static_cast<std::uint32_t>(bytes.size());

@@ -1,17 +1,18 @@
 #pragma once
-// Where an emulated board keeps models that an application writes.
+// The model store of an emulated board.
 
 #include "plant_link/ram_flash.hpp"
 #include "runtime/blob_area.hpp"
-#include "tactree/hal/store/model_store.hpp"
+#include "tactree/board_link/store/model_store.hpp"
 
 namespace tactree::firmware {
 
-/// Slots in RamFlash. Until one is written the model is that of the image.
-class SlotStore : public hal::ModelStore<RamFlash> {
+/// Slots in RamFlash. The model of the image is used until a slot is activated.
+class SlotStore : public board_link::ModelStore<RamFlash> {
  public:
   explicit SlotStore(const char* board) : ModelStore(flash_, {board, nullptr, {}}) {}
 
+  /// Call once at start-up, before other functions. `factory`: the model of the image.
   void prepare(const BlobArea& factory) {
     flash_.prepare();
     set_factory(factory.active());

@@ -1,5 +1,5 @@
 #pragma once
-// The blob at its fixed place in flash.
+// The blob at its fixed address in flash.
 
 #include <cstddef>
 #include <span>
@@ -8,7 +8,7 @@ namespace tactree::firmware {
 
 class BlobArea {
  public:
-  /// The header tells the size; open_blob() finds out when that is a lie.
+  /// The size is from the blob's header, limited to the area; open_blob() checks it.
   [[nodiscard]] std::span<const std::byte> active() const noexcept;
 };
 

@@ -1,5 +1,5 @@
-// The record lies in RAM that start-up leaves alone. Its checksum tells it from what RAM holds
-// after power-up.
+// The record is in RAM that start-up does not initialise. Its checksum distinguishes it from the
+// random content of RAM after power-up.
 
 #include <cstddef>
 #include <span>

@@ -1,5 +1,6 @@
 #pragma once
-// Waiting for the tick timer, as a board's ticker does it.
+// The wait() of a board's ticker, on the tick timer.
+// Loop and memory annotations: docs/BOUND.md.
 
 #include <cstdint>
 
@@ -9,8 +10,8 @@ namespace tactree::firmware {
 
 class DeadlineWait {
  public:
-  /// Returns at the next deadline; at once when one has gone by, which is so in every tick. How
-  /// many went by besides it.
+  /// Blocks until the next deadline; inside a tick it has passed. Returns the number of further
+  /// deadlines that have passed.
   [[nodiscard]] std::uint32_t wait() {
     while (deadlines() == seen_) {  // bound: 0 (a deadline has begun this tick)
       wait_for_interrupt();

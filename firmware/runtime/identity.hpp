@@ -1,6 +1,6 @@
 #pragma once
-// Which board an image is for, and where it and its blob may lie: in the image itself, so that
-// `tactree image` can refuse the wrong one. tools/cli/firmware_image.hpp reads it.
+// The board of an image, and the address ranges of code and blob, stored in the image itself:
+// `tactree image` refuses a blob or board that does not fit. tools/cli reads it.
 
 #include <cstddef>
 #include <cstdint>
@@ -16,16 +16,15 @@ struct Identity {
   const std::byte* code_end;
   const std::byte* blob_begin;
   const std::byte* blob_end;
-  const std::byte* uf2_family;  ///< a number, not a place: of the chip, in UF2 files; 0: none
+  const std::byte* uf2_family;  ///< number of the chip in UF2 files, not an address; 0: none
   std::uint32_t checksum;       ///< of the image, filled in by scripts/seal-image: test_image()
 };
 
 /// The last bytes of the code.
 [[gnu::section(".identity")]] extern const Identity kIdentity;
 
-/// Did the memory of all variables hold, and is every byte of the program as it was built: of the
-/// vectors and the code up to the checksum, then of the initial values of variables? Cost: some 10
-/// instructions a byte.
+/// Checks the result of the RAM test and the checksum of the program: vectors and code up to the
+/// checksum, then initial values of variables. Cost: about 10 instructions per byte.
 [[nodiscard]] hal::ImageStatus test_image();
 
 }  // namespace tactree::firmware

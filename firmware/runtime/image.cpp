@@ -1,3 +1,5 @@
+// Loop and memory annotations: docs/BOUND.md.
+
 #include "image.hpp"
 
 #include "platform.hpp"
@@ -6,11 +8,11 @@
 namespace tactree::firmware {
 namespace {
 
-bool variables_hold_ = false;
+bool variables_held = false;
 
 }  // namespace
 
-bool variables_hold() { return variables_hold_; }
+bool variables_hold() { return variables_held; }
 
 void start_image() {
   prepare_board();
@@ -22,7 +24,7 @@ void start_image() {
   for (std::uint32_t* to = image_bss_begin; to < image_bss_end; ++to) {  // bound: bss_words
     *to = 0;
   }
-  variables_hold_ = hold;
+  variables_held = hold;
   for (auto constructor = image_constructors_begin; constructor < image_constructors_end;
        ++constructor) {  // bound: constructors
     (*constructor)();

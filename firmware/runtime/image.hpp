@@ -1,10 +1,11 @@
 #pragma once
-// What the linker script knows of an image, and the part of the start-up that all cores share.
+// Symbols of the linker script, and the start-up common to all cores.
 
 #include <cstddef>
 #include <cstdint>
 
 extern "C" {
+// NOLINTBEGIN(readability-identifier-naming): names of the linker script
 extern std::uint32_t image_data_begin[];
 extern std::uint32_t image_data_end[];
 extern const std::uint32_t image_data_source[];
@@ -19,22 +20,25 @@ extern void (*const image_constructors_end[])();
 
 extern const std::byte image_vectors_begin[];
 extern const std::byte image_vectors_end[];
+extern const std::byte image_slow_begin[];
+extern const std::byte image_slow_end[];
 extern const std::byte image_text_begin[];
 extern const std::byte code_begin[];
 extern const std::byte code_end[];
 extern const std::byte blob_begin[];
 extern const std::byte blob_end[];
 extern const std::byte uf2_family[];
+// NOLINTEND(readability-identifier-naming)
 }
 
 namespace tactree::firmware {
 
-/// Did the memory of all variables hold what was written, before anything was in it? The stack is
-/// in use meanwhile, and not tested.
+/// Result of the RAM test of all variables before their initialisation. The stack is in use during
+/// the test and not tested.
 [[nodiscard]] bool variables_hold();
 
-/// Tests the memory of the variables, copies .data, clears .bss, runs the constructors, and main().
-/// No float may be touched before the FPU is on, and no static object before this.
+/// Tests the memory of the variables, copies .data, clears .bss, runs the constructors and main().
+/// Preconditions: the FPU is on; no static object was used.
 [[noreturn]] void start_image();
 
 }  // namespace tactree::firmware

@@ -1,5 +1,6 @@
-// The four functions a compiler calls of its own accord. Compiled so that it does not turn these
-// loops into calls of themselves.
+// The four functions that a compiler may call implicitly. Compiler flags prevent the conversion of
+// these loops into calls of themselves.
+// Loop and memory annotations: docs/BOUND.md.
 
 #include <cstddef>
 #include <cstdint>
@@ -10,13 +11,13 @@ bool aligned(const void* a, const void* b) {
   return ((reinterpret_cast<std::uintptr_t>(a) | reinterpret_cast<std::uintptr_t>(b)) & 3U) == 0U;
 }
 
-// The bounds of copies hold where whatever has 16 bytes or more lies on words, as all structures of
-// a tick do.
+// The bounds of copies are valid if objects of 16 bytes or more are word-aligned, as all structures
+// of a tick are.
 
-// Words of whatever type the bytes have.
+// Words that may alias any type.
 using Word [[gnu::may_alias]] = std::uint32_t;
 
-// Four at a time: a tick clears and copies about 1000 bytes of structures.
+// Four words per pass: a tick clears and copies about 1000 bytes of structures.
 struct [[gnu::may_alias]] Block {
   Word words[4];
 };
@@ -62,7 +63,7 @@ void* memset(void* to, int value, std::size_t bytes) {
   auto* target = static_cast<unsigned char*>(to);
   const auto byte = static_cast<unsigned char>(value);
   const std::uint32_t word = byte * 0x01010101U;
-  // A compiler clears the rest of a structure from wherever it begins.
+  // The compiler may clear the tail of a structure from an unaligned address.
   for (; bytes > 0 && !aligned(target, nullptr); --bytes) {  // bound: min(bytes, 3)
     *target++ = byte;
   }

@@ -1,5 +1,6 @@
 #pragma once
 // A test of RAM at start-up.
+// Loop and memory annotations: docs/BOUND.md.
 
 #include <cstddef>
 #include <cstdint>
@@ -7,9 +8,9 @@
 namespace tactree::firmware {
 
 /// March C- with one word and its complement (van de Goor, "Using march tests to test SRAMs", IEEE
-/// Design & Test 1993): finds each bit that is stuck or does not change, each pair of words of
-/// which one changes the other, and words that share an address. Overwrites all.
-/// Cost: eleven accesses a word. Word: std::uint32_t; in tests one that fails.
+/// Design & Test 1993): detects each bit that is stuck or does not change, each word that changes
+/// another, and words that share an address. Overwrites the range.
+/// Cost: eleven accesses per word. Word: std::uint32_t; in tests a simulated word with faults.
 template <class Word>
 [[nodiscard]] bool holds_all_bits(Word* begin, Word* end) {
   std::uint32_t held = 0x55555555U;

@@ -1,10 +1,11 @@
-// Of this very image: `tactree bound --embed` writes it here after it was linked. Nothing in this
-// file reads it: a compiler that does not see who does cannot take it for the zeros it is compiled
-// to.
+// The costs of a tick of this image. `tactree bound --embed` writes them here after linking. No
+// code in this file reads them: the compiler would replace them by the zeros of the initialiser.
 
 #include "platform.hpp"
 
+// NOLINTBEGIN(readability-identifier-naming): the name of a symbol in the image
 extern "C" const tactree::core::TickCosts tactree_tick_costs;
 [[gnu::used, gnu::section(".tick_costs")]] const tactree::core::TickCosts tactree_tick_costs = {};
+// NOLINTEND(readability-identifier-naming)
 
 const tactree::core::TickCosts& tactree::firmware::tick_costs() { return tactree_tick_costs; }

@@ -1,4 +1,5 @@
 // From reset to start_image(): stack, global pointer, trap handler and FPU.
+// Loop and memory annotations: docs/BOUND.md.
 
 #include "platform.hpp"
 #include "runtime/image.hpp"
@@ -6,8 +7,8 @@
 
 namespace {
 
-// The stack ends where RAM begins; on QEMU's machine code lies below, which is RAM as well. Neither
-// this mode nor any other may touch these bytes until the next reset.
+// Guard at the end of the stack, where RAM begins; on QEMU's machine the code below is in RAM too.
+// No mode may access these bytes until the next reset.
 void guard_stack() {
   constexpr std::uint32_t kGuardBytes = 4096;
   const auto bottom =

@@ -1,5 +1,6 @@
-// The machine timer runs freely; the next deadline stands in its compare register. A tick that ends
-// late finds how many deadlines went by from the time alone.
+// The machine timer runs freely; its compare register holds the next deadline. After a late tick
+// the number of missed deadlines is computed from the time.
+// Loop and memory annotations: docs/BOUND.md.
 
 #include "platform.hpp"
 #include "rv32/registers.hpp"
@@ -9,13 +10,13 @@ namespace {
 
 constexpr std::uint32_t kMegahertz = 1000000;
 
-std::uint32_t period = 0;  // of the timer's clock
+std::uint32_t period = 0;  // clocks of the timer
 std::uint32_t period_us = 0;
 std::uint32_t cycles_per_us = 1;
 volatile std::uint32_t counted = 0;
-volatile std::uint32_t last_deadline = 0;  // low word of the time
+volatile std::uint32_t last_deadline = 0;  // low word of its time
 
-// A comparison in between must not strike: first to the far end, then the low word.
+// Avoids an interrupt between the two writes: sets the high word to its maximum first.
 void set_next_deadline(std::uint32_t low) {
   std::uint32_t high = rv32::timer_high();
   high += low < rv32::timer_low() ? 1U : 0U;
@@ -24,7 +25,7 @@ void set_next_deadline(std::uint32_t low) {
   rv32::timer_compare_high() = high;
 }
 
-// Counts the deadlines that have gone by, also while a tick runs.
+// Counts passed deadlines, also while a tick runs.
 void count_deadlines() {
   const std::uint32_t passed = (rv32::timer_low() - last_deadline) / period;
   last_deadline = last_deadline + passed * period;

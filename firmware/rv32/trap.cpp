@@ -1,5 +1,6 @@
-// One handler for all traps: the timer's interrupt runs the tick; everything else is a fault, which
-// is written down before a reset. Motors are off after a reset.
+// The handler of all traps: the timer interrupt runs the tick; all others are faults, which are
+// recorded before a reset. Motors are off after a reset.
+// Loop and memory annotations: docs/BOUND.md.
 
 #include "platform.hpp"
 #include "rv32/registers.hpp"
@@ -21,7 +22,7 @@ struct StoredRegisters {
   __asm volatile("csrr %0, mstatus" : "=r"(fault.status));
   __asm volatile("csrr %0, mtval" : "=r"(fault.address));
   __asm volatile("csrr %0, mepc" : "=r"(fault.pc));
-  ++fault.cause;  // 0 is a cause of its own, and means none in the record
+  ++fault.cause;  // 0 is a valid cause, but means none in the record
   fault.lr = stored->ra;
   fault.sp = stored->sp;
   for (std::uint32_t i = 0; i < 8; ++i) {  // bound: 8
@@ -33,8 +34,8 @@ struct StoredRegisters {
   tactree::firmware::capture(fault);
 }
 
-// 64 bytes below the stack pointer are free: nothing lies below it. Where the stack is full, which
-// takes t0, a fault is written down at its top: nothing comes back from there.
+// Uses 64 bytes below the stack pointer. If the stack is full (the check uses t0), the fault is
+// recorded at the top of the stack: the handler never returns.
 [[gnu::naked, gnu::aligned(4)]] void tactree_trap() {
   __asm volatile(
       "csrw mscratch, t0\n\t"

@@ -1,6 +1,9 @@
 #pragma once
-// Reading, changing and waiting for bits of a register. Every wait is bounded: a bit that hardware
-// never sets costs a failure with a name, not the control loop.
+// Reads, changes and polls bits of a register. Every wait is bounded: a bit that the hardware never
+// sets causes a named failure, not a hanging control loop.
+//
+// change(), set() and clear() read, modify and write: not interrupt safe for a shared register.
+// Loop and memory annotations: docs/BOUND.md.
 
 #include <cstdint>
 
@@ -11,12 +14,13 @@ std::uint32_t read(const Word& word) {
   return static_cast<std::uint32_t>(word);
 }
 
+/// True if all bits of `mask` are set.
 template <class Word>
 bool has(const Word& word, std::uint32_t mask) {
   return (read(word) & mask) == mask;
 }
 
-/// Gives the bits of `mask` the value `bits`; the others stay.
+/// Sets the bits of `mask` to `bits`; keeps the others.
 template <class Word>
 void change(Word& word, std::uint32_t mask, std::uint32_t bits) {
   word = (read(word) & ~mask) | bits;
@@ -32,7 +36,7 @@ void clear(Word& word, std::uint32_t mask) {
   change(word, mask, 0U);
 }
 
-/// Reads at most `polls` times. False: the bits of `mask` never had the value `bits`.
+/// Polls until the bits of `mask` equal `bits`, at most `polls` reads. False: timeout.
 template <class Word>
 [[nodiscard]] bool wait_until(const Word& word, std::uint32_t mask, std::uint32_t bits,
                               std::uint32_t polls) {

@@ -1,6 +1,7 @@
 #pragma once
 // From the internal oscillator after reset to 168 MHz from a crystal (RM0090, sections 7.2, 3.5).
-// When a step fails the chip runs on its internal oscillator and the failure has a name.
+// If a step fails, the chip runs on its internal oscillator and the failure is reported by name.
+// Loop and memory annotations: docs/BOUND.md.
 
 #include <cstdint>
 
@@ -11,17 +12,18 @@ namespace tactree::firmware::stm32f4 {
 
 enum class ClockFailure : std::uint8_t {
   kNone = 0,
-  kCrystal,     ///< the external oscillator does not get ready
-  kWaitStates,  ///< the flash does not take its wait states
+  kCrystal,     ///< the external oscillator does not start
+  kWaitStates,  ///< the flash does not accept its wait states
   kPll,         ///< the multiplier does not lock
   kSwitch,      ///< the core stays on the internal oscillator
-  kFrequency,   ///< the crystal's frequency is not the one it should have
+  kFrequency,   ///< the frequency of the crystal is wrong
 };
 
-inline constexpr std::uint32_t kFullClockHz = 168000000;     ///< without a failure
-inline constexpr std::uint32_t kInternalClockHz = 16000000;  ///< after one; 1 % at 25 degrees C
+inline constexpr std::uint32_t kFullClockHz = 168000000;  ///< without a failure
+inline constexpr std::uint32_t kInternalClockHz =
+    16000000;  ///< after a failure; 1 % at 25 degrees C
 
-/// Clock of the buses APB1 and APB2 at full speed; their timers run at twice as much (section 7.2).
+/// Clock of the buses APB1 and APB2 at full speed; their timers run at twice this (section 7.2).
 inline constexpr std::uint32_t kApb1Hz = kFullClockHz / 4;
 inline constexpr std::uint32_t kApb2Hz = kFullClockHz / 2;
 
@@ -32,8 +34,8 @@ inline constexpr std::uint32_t kSecurityOn = 1U << 19;
 inline constexpr std::uint32_t kPllOn = 1U << 24;
 inline constexpr std::uint32_t kPllReady = 1U << 25;
 
-// PLLCFGR: crystal / M = 1 MHz, * N = 336 MHz, / P = 168 MHz for the core; / Q = 48 MHz. What is
-// not in the mask is reserved and keeps its value.
+// PLLCFGR: crystal / M = 1 MHz, * N = 336 MHz, / P = 168 MHz for the core; / Q = 48 MHz. Bits
+// outside the mask are reserved and keep their value.
 inline constexpr std::uint32_t kPllMask = 0x0F437FFFU;
 inline constexpr std::uint32_t kPllTimes336 = 336U << 6;
 inline constexpr std::uint32_t kPllFromHse = 1U << 22;
@@ -59,16 +61,16 @@ inline constexpr std::uint32_t kMask = 0x707U;
 inline constexpr std::uint32_t kFull = 0x705U;
 }  // namespace flash_access
 
-// TIM11 counts the internal oscillator and captures its count at every eighth edge of the crystal,
-// divided to 1 MHz: 128 counts, by which the two know each other (sections 7.2.11, 19.5).
+// TIM11 counts the internal oscillator and captures its count at every eighth edge of the crystal
+// clock, divided to 1 MHz: 128 counts, which compares the two (sections 7.2.11, 19.5).
 namespace crystal_capture {
 inline constexpr std::uint32_t kOfCrystal = 2U;      // option: input of channel 1
 inline constexpr std::uint32_t kEveryEighth = 0xDU;  // ccmr1
 inline constexpr std::uint32_t kCaptured = 1U << 1;  // sr
 inline constexpr std::uint32_t kCounts = 8U * kInternalClockHz / 1000000U;
 inline constexpr std::uint32_t kCaptures = 64;
-/// The internal oscillator is good for 8 % from -40 to 105 degrees C (data sheet, section on its
-/// characteristics), and polling may miss two captures.
+/// The internal oscillator is within 8 % from -40 to 105 degrees C (data sheet, section on its
+/// characteristics); polling may miss two captures.
 inline constexpr std::uint32_t kTolerance = kCounts * kCaptures / 9U;
 }  // namespace crystal_capture
 
@@ -83,7 +85,7 @@ void fall_back(RccBlock<Word>& rcc_block) {
   clear(rcc_block.cfgr, rcc::kPrescalerMask);
 }
 
-/// Counts of the internal oscillator from the first capture to the last; 0: there was none.
+/// Counts of the internal oscillator from the first capture to the last; 0: no capture.
 template <class Word>
 std::uint32_t count_captures(TimerBlock<Word>& tim11) {
   std::uint32_t sum = 0;
@@ -100,8 +102,8 @@ std::uint32_t count_captures(TimerBlock<Word>& tim11) {
   return sum;
 }
 
-/// While the core runs on the internal oscillator. A crystal of another frequency would make every
-/// tick, and so every velocity and every limit per second, wrong by as much.
+/// Precondition: the core runs on the internal oscillator. A crystal of another frequency would
+/// scale every tick, and thus every velocity and every limit per second.
 template <class Word>
 bool has_its_frequency(RccBlock<Word>& rcc_block, TimerBlock<Word>& tim11,
                        std::uint32_t crystal_MHz) {
@@ -130,7 +132,7 @@ ClockFailure try_full_speed(RccBlock<Word>& rcc_block, FlashBlock<Word>& flash,
   if (!has_its_frequency(rcc_block, tim11, crystal_MHz)) {
     return ClockFailure::kFrequency;
   }
-  // The flash must be slow enough before the core is fast, and is to be read back (section 3.5.1).
+  // Wait states must be set before the core is fast, and read back (section 3.5.1).
   change(flash.acr, flash_access::kMask, flash_access::kFull);
   if (!wait_until(flash.acr, flash_access::kMask, flash_access::kFull, kClockPolls)) {
     return ClockFailure::kWaitStates;
@@ -151,8 +153,8 @@ ClockFailure try_full_speed(RccBlock<Word>& rcc_block, FlashBlock<Word>& flash,
   return ClockFailure::kNone;
 }
 
-/// 4 <= crystal_MHz <= 26. To be called once after a reset. The voltage scaling that 168 MHz needs
-/// is what the chip starts with (section 5.4.1).
+/// Precondition: 4 <= crystal_MHz <= 26. Call once after a reset. The reset value of the voltage
+/// scaling is the one for 168 MHz (section 5.4.1).
 template <class Word>
 [[nodiscard]] ClockFailure start_clocks(RccBlock<Word>& rcc_block, FlashBlock<Word>& flash,
                                         TimerBlock<Word>& tim11, std::uint32_t crystal_MHz) {
@@ -163,7 +165,8 @@ template <class Word>
   return failure;
 }
 
-/// Did the watchdog cause the last reset? Forgets it: a second call says no (section 7.3.21).
+/// True if the watchdog caused the last reset. Clears the flag: a second call returns false
+/// (section 7.3.21).
 template <class Word>
 [[nodiscard]] bool take_watchdog_reset(RccBlock<Word>& rcc_block) {
   const bool by_watchdog = has(rcc_block.csr, rcc::kResetByWatchdog);

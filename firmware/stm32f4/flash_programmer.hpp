@@ -1,7 +1,8 @@
 #pragma once
-// Erasing and programming the chip's flash (RM0090, sections 3.6 and 3.9). While the flash is busy
-// the processor cannot fetch from it and stands still: an erase takes up to 2 s. So: motors off,
-// and a watchdog that waits as long (store_flash.hpp).
+// Erases and programs the flash of the chip (RM0090, sections 3.6 and 3.9). While the flash is busy
+// the processor cannot fetch from it and stalls: up to 2 s in an erase. Preconditions: motors off
+// and the watchdog's timeout extended (store_flash.hpp).
+// Loop and memory annotations: docs/BOUND.md.
 
 #include <cstdint>
 #include <span>
@@ -13,15 +14,15 @@ namespace tactree::firmware::stm32f4 {
 
 enum class FlashStatus : std::uint8_t {
   kOk = 0,
-  kOutside,    ///< not within the region; nothing was touched
-  kLocked,     ///< the keys were not taken
-  kTimeout,    ///< busy for longer than the data sheet allows
+  kOutside,    ///< not within the region; nothing was changed
+  kLocked,     ///< the keys were rejected
+  kTimeout,    ///< busy longer than the data sheet specifies
   kProtected,  ///< the sector is write-protected
   kRefused,    ///< alignment, size or sequence error
-  kReadBack,   ///< the flash does not hold what was written, or is not erased
+  kReadBack,   ///< content differs from the data written, or is not erased
 };
 
-/// Sectors of equal size that follow each other. On an STM32F405 0 to 3 have 16 KiB, 4 has 64 KiB,
+/// Contiguous sectors of equal size. On an STM32F405 0 to 3 have 16 KiB, 4 has 64 KiB,
 /// 5 to 11 have 128 KiB (table 5).
 struct FlashRegion {
   std::uint32_t first_sector = 5;
@@ -29,14 +30,14 @@ struct FlashRegion {
   std::uint32_t words_per_sector = 32768;
 };
 
-/// Bytes of the flash before it.
+/// Offset of the region in the flash, bytes.
 constexpr std::uint32_t begin_of(const FlashRegion& region) {
   const std::uint32_t first = region.first_sector;
   return first < 5U ? first * 0x4000U : 0x20000U + (first - 5U) * 0x20000U;
 }
 
-/// Reads of the status before it is a timeout. A poll takes ten cycles or more: data sheet, table
-/// 38, gives 2 s for a sector and 0.1 ms for a word.
+/// Status reads before a timeout. A poll takes at least ten cycles; the data sheet, table 38,
+/// specifies 2 s for a sector and 0.1 ms for a word.
 struct FlashPatience {
   std::uint32_t erase_polls = 50000000;
   std::uint32_t program_polls = 50000;
@@ -60,7 +61,7 @@ inline constexpr std::uint32_t kDataCacheReset = 1U << 12;
 inline constexpr std::uint32_t kErased = 0xFFFFFFFF;
 }  // namespace flash
 
-/// `Cell` is a word of the flash itself, `Word` one of its registers.
+/// `Cell`: type of a word of flash. `Word`: type of a register. Use outside the tick only.
 template <class Word, class Cell = Word>
 class FlashProgrammer {
  public:
@@ -69,7 +70,8 @@ class FlashProgrammer {
                   const FlashPatience& patience = {})
       : block_(block), cells_(cells), region_(region), patience_(patience) {}
 
-  /// All words of a sector become 0xFFFFFFFF; read back. The region's first sector is 0.
+  /// Sets all words of a sector to 0xFFFFFFFF and reads them back. Sectors count from 0 in the
+  /// region.
   [[nodiscard]] FlashStatus erase(std::uint32_t sector) {
     if (sector >= region_.sectors) {
       return FlashStatus::kOutside;
@@ -85,8 +87,8 @@ class FlashProgrammer {
     return status == FlashStatus::kOk && !is_erased(sector) ? FlashStatus::kReadBack : status;
   }
 
-  /// Writes words from the word `offset` of the region on, reading each back. Stops at the first
-  /// that fails. Bits go from 1 to 0 only: erase first.
+  /// Writes words from word `offset` of the region and reads each back. Stops at the first failure.
+  /// Precondition: the words are erased, as programming changes bits from 1 to 0 only.
   [[nodiscard]] FlashStatus program(std::uint32_t offset, std::span<const std::uint32_t> words) {
     const std::uint32_t size = region_.sectors * region_.words_per_sector;
     if (offset > size || words.size() > size - offset) {
@@ -108,8 +110,8 @@ class FlashProgrammer {
     return status == FlashStatus::kOk && read(cell) != word ? FlashStatus::kReadBack : status;
   }
 
-  // Not busy, unlocked, and no error of former times. The data cache may hold what is about to
-  // change: it is off until close(), which also clears it (section 3.5.2).
+  // Waits until not busy, unlocks, clears old errors. Disables the data cache, which may hold bytes
+  // that will change, until close(), which also clears it (section 3.5.2).
   FlashStatus open() {
     if (!wait_until(block_.sr, flash::kBusy, 0U, patience_.erase_polls)) {
       return FlashStatus::kTimeout;
@@ -122,7 +124,7 @@ class FlashProgrammer {
     if (has(block_.cr, flash::kLock)) {
       return FlashStatus::kLocked;
     }
-    block_.sr = flash::kErrors | flash::kDone;  // a one clears
+    block_.sr = flash::kErrors | flash::kDone;  // write 1 to clear
     return FlashStatus::kOk;
   }
 
@@ -138,8 +140,8 @@ class FlashProgrammer {
                                                     : FlashStatus::kRefused;
   }
 
-  // Locked again whatever happened; but while the flash is busy, a write to its register would hold
-  // up the processor (section 3.9.5).
+  // Locks in any case, unless the flash is busy: a write to its register would then stall the
+  // processor (section 3.9.5).
   void close() {
     if (has(block_.sr, flash::kBusy)) {
       return;

@@ -1,27 +1,28 @@
 #pragma once
-// The wires of safety: enable line with read-back, emergency stop, dead-man control. Each is wired
-// so that a broken wire reads as the safe state.
+// Safety lines: enable line with read-back, emergency stop, dead-man control. A broken wire reads
+// as the safe state.
 
 #include "stm32f4/pins.hpp"
 #include "stm32f4/pwm_motors.hpp"
 
 namespace tactree::firmware::stm32f4 {
 
-/// Gives the amplifiers their power, and takes the pulses away with it. `sense` is high while the
-/// amplifiers have power.
+/// Switches the power of the amplifiers and the pulses. `sense` is high while the amplifiers have
+/// power.
 template <class Word>
 class EnableLine {
  public:
   EnableLine(const Pin<Word>& line, const Pin<Word>& sense, PwmMotors<Word>& motors)
       : line_(line), sense_(sense), motors_(motors) {}
 
-  /// False: a pin did not take its mode.
+  /// False: a pin did not accept its mode.
   [[nodiscard]] bool start() {
     line_.make_output();
     sense_.make_input(Pull::kDown);
     return line_.is(PinMode::kOutput) && sense_.is(PinMode::kInput) && sense_.pulls(Pull::kDown);
   }
 
+  /// Safe in the tick. Constant cost.
   void set(bool on) noexcept {
     motors_.connect(on);
     line_.drive(on);
@@ -34,16 +35,16 @@ class EnableLine {
   PwmMotors<Word>& motors_;
 };
 
-/// Both switches are to ground. The stop's is closed until it is pressed, the dead-man control's
-/// open until it is held.
+/// Both switches connect to ground. The emergency stop is normally closed, the dead-man control
+/// normally open.
 template <class Word>
 class SafetyInputs {
  public:
   SafetyInputs(const Pin<Word>& stop, const Pin<Word>& dead_man)
       : stop_(stop), dead_man_(dead_man) {}
 
-  /// False: the port did not take its settings. Then both read as the safe state for ever: a port
-  /// without a clock reads as zero, which would mean released and held.
+  /// False: the port did not accept its settings. Both inputs then read as the safe state until the
+  /// next reset: a port without a clock reads zero, which would mean released and held.
   [[nodiscard]] bool start() {
     stop_.make_input(Pull::kUp);
     dead_man_.make_input(Pull::kUp);

@@ -1,5 +1,5 @@
 #pragma once
-// Pins as inputs, outputs and wires of another part (RM0090, sections 8.3 and 8.4).
+// Pins as inputs, outputs and alternate functions (RM0090, sections 8.3 and 8.4).
 
 #include <cstdint>
 
@@ -22,13 +22,13 @@ class Pin {
     set_mode(PinMode::kInput);
   }
 
-  /// Low from the first moment on.
+  /// Configures an output that is low from the start.
   void make_output() {
     drive(false);
     set_mode(PinMode::kOutput);
   }
 
-  /// Wire of another part: number of its function from the data sheet, table 9.
+  /// Configures an alternate function; its number is in the data sheet, table 9.
   void make_alternate(std::uint32_t function, Pull pull) {
     set_pull(pull);
     const std::uint32_t shift = 4U * (number_ % 8U);
@@ -36,17 +36,17 @@ class Pin {
     set_mode(PinMode::kAlternate);
   }
 
-  /// One write, so that it disturbs no other pin: the upper half clears, the lower one sets.
+  /// One write that changes no other pin: the upper half clears, the lower half sets.
   void drive(bool high) { port_->bsrr = high ? 1U << number_ : 1U << (number_ + 16U); }
 
   [[nodiscard]] bool is_high() const { return has(port_->idr, 1U << number_); }
 
-  /// Did the port take the mode? A port without a clock takes nothing and reads as zero.
+  /// Reads the mode back. A port without a clock ignores writes and reads as zero.
   [[nodiscard]] bool is(PinMode mode) const {
     return ((read(port_->moder) >> (2U * number_)) & 0x3U) == static_cast<std::uint32_t>(mode);
   }
 
-  /// Did it take the pull? Of an input, whose mode is zero anyway.
+  /// Reads the pull back. For inputs, whose mode is zero also without a clock.
   [[nodiscard]] bool pulls(Pull pull) const {
     return ((read(port_->pupdr) >> (2U * number_)) & 0x3U) == static_cast<std::uint32_t>(pull);
   }

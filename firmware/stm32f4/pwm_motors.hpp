@@ -1,8 +1,9 @@
 #pragma once
-// Three motors behind amplifiers that take a pulse width and a direction: channels 1 to 3 of an
+// Three motors whose amplifiers have inputs for pulse width and direction: channels 1 to 3 of an
 // advanced timer, centre-aligned (RM0090, sections 17.3.10 and 17.4). A pulse width takes effect
-// with the timer's next period, the direction at once: for up to one period, 50 us, after a change
-// of sign the old width drives the new way; the gate's slew limit keeps that width small.
+// with the next period of the timer, the direction immediately: after a change of sign the old
+// width acts in the new direction for up to one period, 50 us. The slew limit of the gate bounds
+// it.
 
 #include <cstdint>
 
@@ -21,10 +22,10 @@ inline constexpr std::uint32_t kHoldLowWhenOff = 1U << 10;                      
 inline constexpr std::uint32_t kOutputsOn = 1U << 15;                                 // BDTR: MOE
 inline constexpr std::uint32_t kTakeOver = 1U;                                        // EGR: UG
 
-/// Half a period in clocks of the timer: 168 MHz / (2 * 20 kHz).
+/// Half a period, clocks of the timer: 168 MHz / (2 * 20 kHz).
 inline constexpr std::uint32_t kHalfPeriod = 4200;
 
-/// Compare value for an effort: 0 .. kHalfPeriod. What is no number drives nothing.
+/// Compare value of an effort: 0 .. kHalfPeriod. NaN gives 0.
 inline std::uint32_t compare_of(float effort, float effort_at_full_width) {
   const float size = effort < 0.0F ? -effort : effort;
   const float share = size / effort_at_full_width;
@@ -39,7 +40,7 @@ inline std::uint32_t compare_of(float effort, float effort_at_full_width) {
 template <class Word>
 class PwmMotors {
  public:
-  /// The pin `good` is high while no amplifier reports a failure; a broken wire reads low.
+  /// `good` is high while no amplifier reports a failure; a broken wire reads low.
   PwmMotors(TimerBlock<Word>& timer, const Pin<Word> (&direction)[core::kAxes],
             const Pin<Word>& good, const float (&effort_at_full_width)[core::kAxes])
       : timer_(timer),
@@ -47,7 +48,7 @@ class PwmMotors {
         good_(good),
         full_{effort_at_full_width[0], effort_at_full_width[1], effort_at_full_width[2]} {}
 
-  /// Pulses of no width, outputs off. False: the timer does not run as told.
+  /// Starts with zero pulse widths and outputs off. False: the timer does not run as configured.
   [[nodiscard]] bool start() {
     timer_.bdtr = pwm::kHoldLowWhenOff;
     timer_.psc = 0U;
@@ -58,7 +59,7 @@ class PwmMotors {
     timer_.ccmr1 = pwm::kModeOneBuffered | (pwm::kModeOneBuffered << 8);
     timer_.ccmr2 = pwm::kModeOneBuffered;
     timer_.ccer = pwm::kThreeChannels;
-    timer_.egr = pwm::kTakeOver;  // or the first period runs with the values of the reset
+    timer_.egr = pwm::kTakeOver;  // otherwise the first period uses the reset values
     timer_.cr1 = pwm::kCentreAlignedOn;
     started_ = has(timer_.cr1, pwm::kCentreAlignedOn) && read(timer_.arr) == pwm::kHalfPeriod;
     return started_;
@@ -70,13 +71,13 @@ class PwmMotors {
     drive(2, timer_.ccr3, command.effort(2));
   }
 
-  /// Outputs follow the pulses, or are low. Stays off where the timer could not be started.
+  /// Enables the outputs; disabled outputs are low. Stays off if the timer could not be started.
   void connect(bool on) {
     connected_ = on && started_;
     change(timer_.bdtr, pwm::kOutputsOn, connected_ ? pwm::kOutputsOn : 0U);
   }
 
-  /// No amplifier complains, and the timer holds what it was told.
+  /// True if no amplifier reports a failure and the timer's registers hold the values written.
   [[nodiscard]] bool healthy() noexcept {
     const bool delivered = read(timer_.ccr1) == compare_[0] && read(timer_.ccr2) == compare_[1] &&
                            read(timer_.ccr3) == compare_[2];

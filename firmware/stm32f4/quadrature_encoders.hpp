@@ -1,6 +1,7 @@
 #pragma once
-// Encoders on timers that count both edges of both tracks (RM0090, section 18.3.12). A wire that
-// breaks is not seen by a counter: an axis is invalid only when its timer does not run as told.
+// Encoders on timers that count both edges of both tracks (RM0090, section 18.3.12). A counter does
+// not detect a broken wire: an axis is invalid only if its timer is misconfigured.
+// Loop and memory annotations: docs/BOUND.md.
 
 #include <cstdint>
 
@@ -25,7 +26,7 @@ class QuadratureCounter {
  public:
   QuadratureCounter(TimerBlock<Word>& timer, CounterWidth width) : timer_(timer), width_(width) {}
 
-  /// Counts from zero on. Precondition: the timer has its clock.
+  /// Starts counting at zero. Precondition: the timer has its clock.
   void start() {
     timer_.smcr = encoder::kBothEdges;
     timer_.ccmr1 = encoder::kTracks;
@@ -36,13 +37,14 @@ class QuadratureCounter {
     count_ = last_ = 0U;
   }
 
+  /// True if the timer's registers hold the values written by start().
   [[nodiscard]] bool runs() const {
     return has(timer_.cr1, encoder::kCount) && has(timer_.ccmr1, encoder::kTracks) &&
            (read(timer_.smcr) & encoder::kSlaveMask) == encoder::kBothEdges;
   }
 
-  /// The count, of 32 bits also where the timer has 16: then to be read before it has moved 32 767
-  /// counts.
+  /// The count, extended to 32 bits. Precondition for a 16-bit timer: between two reads it moves by
+  /// at most 32 767 counts.
   [[nodiscard]] std::int32_t take() {
     const std::uint32_t now = read(timer_.cnt) & static_cast<std::uint32_t>(width_);
     std::uint32_t moved = now - last_;
@@ -62,7 +64,7 @@ class QuadratureCounter {
   std::uint32_t last_ = 0;
 };
 
-/// The counters of the axes, read within a microsecond of each other.
+/// The counters of the axes, read within one microsecond. Safe in the tick; one context only.
 template <class Word>
 class QuadratureEncoders {
  public:

@@ -1,7 +1,7 @@
 #pragma once
-// The register blocks of an STM32F405 that its drivers use, from ST's reference manual RM0090.
-// `Word` is `volatile std::uint32_t` on the chip; in a test it is a type that behaves as the manual
-// says. A driver gets its blocks by reference, so it does not know which of the two it talks to.
+// Register blocks of an STM32F405 used by its drivers, from ST's reference manual RM0090. `Word` is
+// `volatile std::uint32_t` on the chip and a simulated register in tests. Drivers receive their
+// blocks by reference, so the same code runs on both.
 
 #include <cstddef>
 #include <cstdint>
@@ -75,7 +75,7 @@ static_assert(offsetof(UsartBlock<HardwareWord>, cr3) == 0x14);
 static_assert(offsetof(DmaBlock<HardwareWord>, stream) + 2 * 0x18 == 0x40);
 static_assert(offsetof(WatchdogBlock<HardwareWord>, sr) == 0x0C);
 
-/// Where the blocks are: section 2.3, table 1.
+/// Addresses of the blocks: section 2.3, table 1.
 namespace address {
 inline constexpr std::uint32_t kFlashBegin = 0x08000000;
 inline constexpr std::uint32_t kTim2 = 0x40000000;
@@ -99,7 +99,7 @@ Block<HardwareWord>& block_at(std::uint32_t address) {
   return *reinterpret_cast<Block<HardwareWord>*>(static_cast<std::uintptr_t>(address));
 }
 
-/// All blocks a board of ours uses.
+/// All blocks in use.
 template <class Word>
 struct Chip {
   RccBlock<Word>& rcc;

@@ -1,7 +1,7 @@
 #pragma once
-// A serial port that nobody waits for (RM0090, sections 30.3 and 10.3), as hal::BytePort: DMA puts
-// what comes in into a ring; what goes out is handed over as fast as the port takes it, whenever
-// somebody looks at the port.
+// A non-blocking serial port (RM0090, sections 30.3 and 10.3), a hal::BytePort. DMA writes received
+// bytes to a ring. Bytes to send are copied to the port during calls of read() and write().
+// Loop and memory annotations: docs/BOUND.md.
 
 #include <cstddef>
 #include <cstdint>
@@ -12,11 +12,11 @@
 
 namespace tactree::firmware::stm32f4 {
 
-/// 41 ms at 1 000 000 baud: longer than a session looks away while the device may have force, and
-/// more than all pieces of a model that an application has on their way at once.
+/// 41 ms at 1 000 000 baud: longer than the interval between polls of a session while force is
+/// possible, and more than an application sends of a model before it waits for a reply.
 inline constexpr std::uint32_t kRingBytes = 4096;
 
-/// Memory that DMA writes. Not in the core-coupled RAM, which DMA does not reach (section 2.3.1).
+/// Memory for the DMA; not in the core-coupled RAM, which DMA cannot access (section 2.3.1).
 struct Ring {
   volatile std::uint8_t byte[kRingBytes];
 };
@@ -33,20 +33,20 @@ inline constexpr std::uint32_t kStream2Flags = 0x3DU << 16;               // LIF
 inline constexpr std::uint32_t kStreamPolls = 1000;
 }  // namespace serial
 
-/// USART1 with stream 2 of DMA2, channel 4 (table 43).
+/// USART1 with stream 2 of DMA2, channel 4 (table 43). One context only: outside the tick.
 template <class Word>
 class SerialPort {
  public:
   SerialPort(UsartBlock<Word>& usart, DmaBlock<Word>& dma, Ring& ring)
       : usart_(usart), dma_(dma), ring_(ring) {}
 
-  /// `clock_hz` of the port's bus, at least 16 times `baud`. 8 data bits, no parity, one stop bit.
-  /// False: DMA does not run. Then a byte is taken where one waits, and what comes faster is lost:
-  /// enough to ask the board what is the matter.
+  /// `clock_hz`: clock of the bus, at least 16 times `baud`. 8 data bits, no parity, one stop bit.
+  /// False: DMA does not run. Single bytes are then received, faster ones are lost; this suffices
+  /// to query the cause.
   [[nodiscard]] bool start(std::uint32_t clock_hz, std::uint32_t baud) {
     auto& stream = dma_.stream[2];
     clear(stream.cr, serial::kStreamOn);
-    // The stream must be off before it takes settings (section 10.3.17).
+    // The stream accepts settings only while it is off (section 10.3.17).
     (void)wait_until(stream.cr, serial::kStreamOn, 0U, serial::kStreamPolls);
     dma_.lifcr = serial::kStream2Flags;
     stream.par = address_of(&usart_.dr);
@@ -62,7 +62,7 @@ class SerialPort {
     return by_dma_;
   }
 
-  /// More than a ring full between two looks is lost, as a checksum will tell.
+  /// Bytes that overflow the ring between two calls are lost; the checksum of frames detects it.
   std::size_t read(std::span<std::byte> bytes) noexcept {
     advance();
     std::size_t count = 0;
@@ -72,7 +72,7 @@ class SerialPort {
     return count;
   }
 
-  /// Takes nothing while there is something on its way.
+  /// Accepts nothing while a transfer is in progress.
   std::size_t write(std::span<const std::byte> bytes) noexcept {
     advance();
     if (sent_ != size_) {

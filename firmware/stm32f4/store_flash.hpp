@@ -1,5 +1,6 @@
 #pragma once
 // Sectors of the chip's flash as hal::Flash.
+// Loop and memory annotations: docs/BOUND.md.
 
 #include <concepts>
 #include <cstddef>
@@ -7,14 +8,14 @@
 #include <span>
 
 #include "stm32f4/flash_programmer.hpp"
-#include "tactree/hal/store/flash.hpp"
+#include "tactree/hal/flash.hpp"
 
 namespace tactree::firmware::stm32f4 {
 
-/// What a board does around an erase, in which the processor stands still for up to 2 s.
-///   begin()  no force and no tick from now on, and a watchdog that waits as long. False: it cannot
-///            be done, so nothing is erased.
-///   end()    as it was before; called after each begin().
+/// Actions of a board around an erase, during which the processor stalls for up to 2 s.
+///   begin()  disables force and ticks, extends the watchdog's timeout. False: not possible, and
+///            nothing is erased.
+///   end()    restores the state before; called after each begin().
 template <class T>
 concept Standstill = requires(T& standstill) {
   { standstill.begin() }
@@ -23,14 +24,14 @@ concept Standstill = requires(T& standstill) {
   noexcept->std::same_as<void>;
 };
 
-/// The whole flash: its first word, to be written and to be read. `Cell` as in FlashProgrammer.
+/// The whole flash: its first word for writing and for reading. `Cell` as in FlashProgrammer.
 template <class Cell>
 struct FlashCells {
   Cell* cells = nullptr;
   const std::byte* bytes = nullptr;
 };
 
-/// That of the chip this program runs on.
+/// The flash of this chip.
 inline FlashCells<HardwareWord> flash_cells() {
   const std::uintptr_t begin = address::kFlashBegin;
   return {reinterpret_cast<HardwareWord*>(begin), reinterpret_cast<const std::byte*>(begin)};
@@ -61,7 +62,7 @@ class StoreFlash {
     return erased;
   }
 
-  /// Ticks go on: a word takes 0.1 ms at most.
+  /// Ticks continue: a word takes at most 0.1 ms.
   [[nodiscard]] bool program(std::uint32_t offset, std::span<const std::byte> bytes) noexcept {
     std::uint32_t words[16];
     if (offset % 4U != 0U || bytes.size() % 4U != 0U) {

@@ -1,7 +1,6 @@
 #pragma once
-// The independent watchdog (RM0090, section 21.3): a clock of its own, and no way to stop it but a
-// reset. Its oscillator runs at 17 .. 47 kHz (data sheet, table 36). How long it waits may be
-// changed while it runs.
+// The independent watchdog (RM0090, section 21.3). It has its own oscillator of 17 .. 47 kHz (data
+// sheet, table 36), and only a reset stops it. The timeout may be changed while it runs.
 
 #include <cstdint>
 
@@ -19,15 +18,15 @@ inline constexpr std::uint32_t kUpdating = 0x3U;
 inline constexpr std::uint32_t kPolls = 100000;
 }  // namespace watchdog
 
-/// (reload + 1) * 4 * 2^prescaler clocks of its oscillator.
+/// Timeout: (reload + 1) * 4 * 2^prescaler clocks of its oscillator.
 struct WatchdogTime {
   std::uint32_t prescaler = 0;  ///< 0 .. 6
   std::uint32_t reload = 0;     ///< 0 .. 4095
 };
 
-/// 3.2 ms at 47 kHz, which is three ticks at 1 kHz; 8.9 ms at 17 kHz.
+/// 3.2 ms at 47 kHz (three ticks at 1 kHz) to 8.9 ms at 17 kHz.
 inline constexpr WatchdogTime kTimeOfTicks{0, 37};
-/// 3.0 s at 47 kHz, 8.3 s at 17 kHz: the flash erases a sector in 2 s at most.
+/// 3.0 s at 47 kHz to 8.3 s at 17 kHz; an erase of a sector takes at most 2 s.
 inline constexpr WatchdogTime kTimeOfErasing{6, 550};
 
 template <class Word>
@@ -35,15 +34,15 @@ class Watchdog {
  public:
   explicit Watchdog(WatchdogBlock<Word>& block) : block_(block) {}
 
-  /// From now on a reset comes unless refresh() is called every 3 ms. Starting comes first: without
-  /// its oscillator the watchdog takes no settings. False: it did not take them.
+  /// Starts the watchdog: it resets the chip unless refresh() is called every 3 ms. Starts before
+  /// setting the timeout, which needs its oscillator. False: the timeout was not accepted.
   [[nodiscard]] bool start() {
     block_.kr = watchdog::kStart;
     return set(kTimeOfTicks);
   }
 
-  /// Waits so long from now on, beginning anew. False: it did not take that. What it does then is
-  /// not known, but that it bites. Cost: 0.3 ms, or two times as much after another set().
+  /// Sets the timeout and restarts it. False: the setting was not accepted; the timeout is unknown
+  /// then, but the watchdog stays active. Cost: 0.3 ms, or two times as much after another set().
   [[nodiscard]] bool set(const WatchdogTime& time) {
     refresh();
     if (!is_settled()) {
@@ -57,10 +56,11 @@ class Watchdog {
     return taken && read(block_.pr) == time.prescaler && read(block_.rlr) == time.reload;
   }
 
+  /// Restarts the timeout. Safe in the tick. Cost: one store.
   void refresh() { block_.kr = watchdog::kRefresh; }
 
  private:
-  /// While a setting is on its way no other is taken, and none can be read (section 21.4.4).
+  /// False while an update is pending: registers can be neither written nor read (section 21.4.4).
   [[nodiscard]] bool is_settled() const {
     return wait_until(block_.sr, watchdog::kUpdating, 0U, watchdog::kPolls);
   }

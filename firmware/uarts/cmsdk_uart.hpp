@@ -1,6 +1,7 @@
 #pragma once
-// Serial port of Arm's MPS boards, asked in turn (Arm DDI 0479D, "Cortex-M System Design Kit", APB
+// Serial port of Arm's MPS boards, polled (Arm DDI 0479D, "Cortex-M System Design Kit", APB
 // UART).
+// Loop and memory annotations: docs/BOUND.md.
 
 #include <cstddef>
 #include <cstdint>
@@ -11,7 +12,7 @@ namespace tactree::firmware {
 template <std::uint32_t kAddress>
 class CmsdkUart {
  public:
-  /// `clock_hz` of the bus.
+  /// `clock_hz`: clock of the bus.
   void start(std::uint32_t clock_hz, std::uint32_t baud) {
     word(kDivider) = clock_hz / baud;
     word(kControl) = kSendAndReceive;

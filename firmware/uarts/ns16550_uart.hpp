@@ -1,5 +1,6 @@
 #pragma once
-// The 16550, asked in turn (TI, "TL16C550C", SLLS177). Its speed is left as it is.
+// The 16550, polled (TI, "TL16C550C", SLLS177). Does not change its speed.
+// Loop and memory annotations: docs/BOUND.md.
 
 #include <cstddef>
 #include <cstdint>

@@ -1,5 +1,5 @@
-// The proof holds: no tick of an emulated board takes more instructions than the bound of its
-// image, and none executes code that was not analysed.
+// No tick of an emulated board executes more instructions than the bound of its image, and none
+// executes code that was not analysed.
 
 #include <gtest/gtest.h>
 
@@ -13,16 +13,16 @@
 #include <string>
 
 #include "boards_for_test.hpp"
-#include "tactree/bound/bound.hpp"
 #include "tactree/core/device_presets.hpp"
 #include "tactree/simulation/hand_script.hpp"
+#include "tactree/wcet/bound.hpp"
 #include "test_models.hpp"
 #include "worst_seeking.hpp"
 
 namespace tactree::test {
 namespace {
 
-// Of the images, those that can be analysed and whose cores the emulator models.
+// Boards with images that can be analysed and cores that the emulator models.
 const char* const kProven[] = {"mps2-an386", "netduinoplus2", "mps2-an500", "mps2-an505"};
 
 std::vector<const emulation::BoardDescription*> proven_boards() {
@@ -33,24 +33,24 @@ std::vector<const emulation::BoardDescription*> proven_boards() {
   return boards;
 }
 
-bound::Bound bound_of(const emulation::BoardDescription& board, const core::BlobView& view,
-                      core::RenderMode mode, float rate_hz = core::Configuration{}.rate_hz,
-                      core::DeviceKind device = core::DeviceKind::kCartesian,
-                      const std::filesystem::path& sources = TACTREE_SOURCES) {
-  bound::BoundOptions options;
+wcet::Bound bound_of(const emulation::BoardDescription& board, const core::BlobView& view,
+                     core::RenderMode mode, float rate_hz = core::Configuration{}.rate_hz,
+                     core::DeviceKind device = core::DeviceKind::kCartesian,
+                     const std::filesystem::path& sources = TACTREE_SOURCES) {
+  wcet::BoundOptions options;
   options.image = bare_firmware(board);
   options.sources = sources;
-  options.entries = bound::tick_entries();
-  options.parameters = bound::parameters_of(view.header(), mode, 1, device);
-  options.pace = core::pace_of(rate_hz);
-  return bound::worst_case(options);
+  options.entries = wcet::tick_entries();
+  options.parameters = wcet::parameters_of(view.header(), mode, 1, device);
+  options.rate_tier = core::rate_tier_of(rate_hz);
+  return wcet::worst_case(options);
 }
 
-/// Is all of the range in blocks that were analysed, or in what ends the emulation after the ticks?
-bool analysed(const bound::Bound& bound, emulation::CodeRange range) {
+/// True if the whole range is in analysed blocks or in functions that end the emulation.
+bool analysed(const wcet::Bound& bound, emulation::CodeRange range) {
   std::map<std::uint32_t, std::uint32_t> known;
   for (const auto* blocks : {&bound.blocks, &bound.endings}) {
-    for (const bound::BlockOnPath& block : *blocks) {
+    for (const wcet::BlockOnPath& block : *blocks) {
       known[block.address] = block.end;
     }
   }
@@ -70,7 +70,7 @@ std::string read_text(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// Flash: the program's, or where the blob is.
+/// True if the range is in the program's flash or in the blob.
 bool touches_flash(const emulation::BoardDescription& board, const emulation::DataRange& range) {
   constexpr std::uint32_t kRam = 0x20000000U;
   const std::uint32_t blob_end = board.blob_address + board.blob_bytes_max;
@@ -79,7 +79,7 @@ bool touches_flash(const emulation::BoardDescription& board, const emulation::Da
 
 class Proof : public OnBoard {
  protected:
-  void expect_all_analysed(const bound::Bound& bound,
+  void expect_all_analysed(const wcet::Bound& bound,
                            const std::vector<emulation::CodeRange>& code) {
     EXPECT_FALSE(code.empty());
     for (const emulation::CodeRange& range : code) {
@@ -87,15 +87,15 @@ class Proof : public OnBoard {
                                           << range.begin << " .. " << range.end;
     }
   }
-  // What the sources call RAM is none of the blob or the program.
-  void expect_in_ram(const bound::Bound& bound, const std::vector<emulation::DataRange>& data) {
+  // Instructions annotated as accessing RAM access neither the blob nor the program.
+  void expect_in_ram(const wcet::Bound& bound, const std::vector<emulation::DataRange>& data) {
     std::size_t seen = 0;
     for (const emulation::DataRange& range : data) {
       if (bound.in_ram.contains(range.instruction)) {
         ++seen;
         EXPECT_FALSE(touches_flash(board(), range))
-            << std::hex << "said to use RAM, but at " << range.instruction << " uses "
-            << range.lowest << " .. " << range.highest;
+            << std::hex << "annotated as accessing RAM, but at " << range.instruction
+            << " accesses " << range.lowest << " .. " << range.highest;
       }
     }
     EXPECT_GT(seen, 0U);
@@ -103,29 +103,29 @@ class Proof : public OnBoard {
 };
 INSTANTIATE_TEST_SUITE_P(Boards, Proof, testing::ValuesIn(proven_boards()), name_of_board);
 
-TEST_P(Proof, EveryFactOfTheSourcesHoldsOnToCode) {
-  const TestBlob blob(nasty_model(Nastiness::kEdge));
+TEST_P(Proof, EveryLimitOfTheSourcesAppliesToCode) {
+  const TestBlob blob(expensive_model(ExpensiveModel::kEdge));
   EXPECT_EQ(bound_of(board(), blob.view(), core::RenderMode::kSurface).unused_facts,
             std::vector<std::string>{});
 }
 
-// How far from the origin it makes sense to look for the worst tick: some supports of the model.
+// Range of the probe around the origin: some supports of the model.
 constexpr float kSize_m = 2e-3F;
 constexpr int kRuns = 12;
 
-// Seeking on these cores reaches so much of the bound: it is no idle one.
+// Cores on which the search must reach kTightness of the bound.
 bool is_tight(const emulation::BoardDescription& board) {
   return std::string(board.toolchain) == "cortex-m4f";
 }
 constexpr double kTightness = 0.8;
 
-TEST_P(Proof, SeekingFindsNoTickBeyondTheBound) {
+TEST_P(Proof, SearchFindsNoTickAboveTheBound) {
   double reached = 0.0;
   for (const float rate_hz : {1000.0F, 2000.0F, 4000.0F}) {
-    for (const Nastiness kind : {Nastiness::kEdge, Nastiness::kRandomNormals, Nastiness::kAskew}) {
-      const TestBlob blob(nasty_model(kind));
-      const bound::Bound bound =
-          bound_of(board(), blob.view(), core::RenderMode::kSurface, rate_hz);
+    for (const ExpensiveModel kind :
+         {ExpensiveModel::kEdge, ExpensiveModel::kRandomNormals, ExpensiveModel::kOblique}) {
+      const TestBlob blob(expensive_model(kind));
+      const wcet::Bound bound = bound_of(board(), blob.view(), core::RenderMode::kSurface, rate_hz);
       emulation::EmulationOptions noting = options();
       noting.note_code = true;
       const Found found = seek_worst(board(), noting, blob.written().bytes, kSize_m, kRuns,
@@ -150,7 +150,7 @@ TEST_P(Proof, SeekingFindsNoTickBeyondTheBound) {
 TEST_P(Proof, HoldsInPaperMode) {
   for (const core::Profile profile : {core::Profile::kSurface, core::Profile::kPaper}) {
     const TestBlob blob(random_cloud(2000, 0.01, 0.2e-3, profile, 3));
-    const bound::Bound bound = bound_of(board(), blob.view(), core::RenderMode::kPaper);
+    const wcet::Bound bound = bound_of(board(), blob.view(), core::RenderMode::kPaper);
     emulation::EmulationOptions noting = options();
     noting.note_code = true;
     const Found found = seek_worst(board(), noting, blob.written().bytes, 6e-3F, kRuns / 2,
@@ -161,10 +161,10 @@ TEST_P(Proof, HoldsInPaperMode) {
   }
 }
 
-// Scripts as people run them, with every device: armed, in contact, with faults of the device.
+// Scripts of the simulation with every device: armed, in contact, with device faults.
 TEST_P(Proof, HoldsForEveryDevice) {
   const core::BlobView& view = touched_shape().view();
-  const bound::Bound bound =
+  const wcet::Bound bound =
       bound_of(board(), view, core::RenderMode::kSurface, 1000.0F, core::DeviceKind::kDelta);
   for (const core::DevicePreset& device : core::kDevicePresets) {
     simulation::Setup setup;
@@ -189,17 +189,17 @@ TEST_P(Proof, HoldsForEveryDevice) {
   }
 }
 
-bound::BoundOptions in_cycles(const emulation::BoardDescription& board) {
-  bound::BoundOptions options;
+wcet::BoundOptions in_cycles(const emulation::BoardDescription& board) {
+  wcet::BoundOptions options;
   options.image = bare_firmware(board);
   options.sources = TACTREE_SOURCES;
-  options.entries = bound::tick_entries();
-  options.timing = bound::find_timing(board.name);
+  options.entries = wcet::tick_entries();
+  options.timing = wcet::find_timing(board.name);
   return options;
 }
 
-core::TickFigures some_figures(std::mt19937& random) {
-  const core::TickFigures most = bound::largest_figures();
+core::ModelLimits random_limits(std::mt19937& random) {
+  const core::ModelLimits most = wcet::largest_model_limits();
   const auto any = [&](std::uint32_t largest) {
     return std::uniform_int_distribution<std::uint32_t>(0, largest)(random);
   };
@@ -208,48 +208,48 @@ core::TickFigures some_figures(std::mt19937& random) {
       any(most.levels_below),        any(most.blended_points),      any(most.blended_materials)};
 }
 
-TEST_P(Proof, TheFormulaIsNeverLessThanTheBound) {
-  bound::BoundOptions options = in_cycles(board());
-  const core::TickCosts costs = bound::tick_costs(options);
+TEST_P(Proof, FormulaIsNeverLessThanTheBound) {
+  wcet::BoundOptions options = in_cycles(board());
+  const core::TickCosts costs = wcet::tick_costs(options);
   std::mt19937 random(5);
   core::TickLoad load;
   for (const auto kind :
        {core::TickKind::kSurface, core::TickKind::kMixed, core::TickKind::kPaper}) {
     for (load.bodies = 1; load.bodies <= core::kMaxReachableBodies; ++load.bodies) {
-      for (load.pace = 0; load.pace < core::kPaces; ++load.pace) {
+      for (load.rate_tier = 0; load.rate_tier < core::kRateTiers; ++load.rate_tier) {
         load.kind = kind;
-        load.figures = some_figures(random);
+        load.limits = random_limits(random);
         load.delta = !load.delta;
-        options.pace = load.pace;
-        options.parameters = bound::parameters_of(load.figures, kind, load.bodies, load.delta);
-        EXPECT_GE(core::cycles_of(costs, load), bound::worst_case(options).cycles)
-            << "kind " << static_cast<int>(kind) << ", pace " << load.pace << ", " << load.bodies
-            << " bodies";
+        options.rate_tier = load.rate_tier;
+        options.parameters = wcet::parameters_of(load.limits, kind, load.bodies, load.delta);
+        EXPECT_GE(core::cycles_of(costs, load), wcet::worst_case(options).cycles)
+            << "kind " << static_cast<int>(kind) << ", rate_tier " << load.rate_tier << ", "
+            << load.bodies << " bodies";
       }
     }
   }
 }
 
-// The figures of the Stanford bunny, 10 cm long with a point every 0.5 mm.
-TEST_P(Proof, TheFormulaIsCloseForAModelOfAScan) {
+// The limits of the Stanford bunny, 10 cm long with a point every 0.5 mm.
+TEST_P(Proof, FormulaIsAtMostOneFortiethAboveTheBoundOfAScan) {
   core::TickLoad load;
-  load.figures = {46, 51, 6, 3, 0, 0};
+  load.limits = {46, 51, 6, 3, 0, 0};
   load.bodies = 1;
-  bound::BoundOptions options = in_cycles(board());
-  const core::TickCosts costs = bound::tick_costs(options);
-  for (load.pace = 0; load.pace < core::kPaces; ++load.pace) {
-    options.pace = load.pace;
-    options.parameters =
-        bound::parameters_of(load.figures, core::TickKind::kSurface, 1, load.delta);
-    const auto exact = static_cast<double>(bound::worst_case(options).cycles);
+  wcet::BoundOptions options = in_cycles(board());
+  const core::TickCosts costs = wcet::tick_costs(options);
+  for (load.rate_tier = 0; load.rate_tier < core::kRateTiers; ++load.rate_tier) {
+    options.rate_tier = load.rate_tier;
+    options.parameters = wcet::parameters_of(load.limits, core::TickKind::kSurface, 1, load.delta);
+    const auto exact = static_cast<double>(wcet::worst_case(options).cycles);
     const auto formula = static_cast<double>(core::cycles_of(costs, load));
-    std::printf("%s: pace %u: formula %.0f, bound %.0f\n", board().name, load.pace, formula, exact);
+    std::printf("%s: rate_tier %u: formula %.0f, bound %.0f\n", board().name, load.rate_tier,
+                formula, exact);
     EXPECT_GE(formula, exact);
-    EXPECT_LE(formula, 1.02 * exact) << "pace " << load.pace;
+    EXPECT_LE(formula, 1.025 * exact) << "rate_tier " << load.rate_tier;
   }
 }
 
-/// What a board says that knows its costs.
+/// Answer of a board, whose image has its costs, to a start at this rate.
 hal::StartResult start_at(const emulation::BoardDescription& board,
                           const std::filesystem::path& image, double rate_hz) {
   simulation::Setup setup;
@@ -270,23 +270,23 @@ hal::StartResult start_at(const emulation::BoardDescription& board,
   return sim.start_result();
 }
 
-TEST_P(Proof, ABoardThatKnowsItsCostsRefusesARateItCannotKeep) {
+TEST_P(Proof, BoardWithCostsRefusesARateThatIsTooHigh) {
   const std::filesystem::path image =
       std::filesystem::path(testing::TempDir()) / (std::string(board().name) + "_costs.elf");
   std::filesystem::copy_file(bare_firmware(board()), image,
                              std::filesystem::copy_options::overwrite_existing);
-  const bound::BoundOptions options = in_cycles(board());
-  bound::embed(image, bound::tick_costs(options));
-  EXPECT_EQ(bound::embedded(image).known, core::kTickCostsKnown);
+  const wcet::BoundOptions options = in_cycles(board());
+  wcet::embed(image, wcet::tick_costs(options));
+  EXPECT_EQ(wcet::embedded(image).known, core::kTickCostsKnown);
   ASSERT_EQ(std::system((TACTREE_SOURCES "/scripts/seal-image " + image.string()).c_str()), 0);
 
   core::TickLoad load;
   load.add(touched_shape().view().header(), {});
-  bound::PaceCycles cycles{};
-  for (load.pace = 0; load.pace < core::kPaces; ++load.pace) {
-    cycles[load.pace] = static_cast<double>(core::cycles_of(bound::embedded(image), load));
+  wcet::RateTierCycles cycles{};
+  for (load.rate_tier = 0; load.rate_tier < core::kRateTiers; ++load.rate_tier) {
+    cycles[load.rate_tier] = static_cast<double>(core::cycles_of(wcet::embedded(image), load));
   }
-  const double highest = bound::highest_rate(options.timing->clock_hz, cycles);
+  const double highest = wcet::highest_rate(options.timing->clock_hz, cycles);
   std::printf("%s: highest rate admitted %.0f Hz\n", board().name, highest);
   const hal::StartResult refused = start_at(board(), image, 1.01 * std::max(highest, 100.0));
   EXPECT_EQ(refused.model, core::ModelStatus::kTooSlow) << core::describe(refused.configuration);
@@ -296,8 +296,8 @@ TEST_P(Proof, ABoardThatKnowsItsCostsRefusesARateItCannotKeep) {
   std::filesystem::remove(image);
 }
 
-// The test of the tests: where an annotation says less than the code does, a run shows it.
-TEST_P(Proof, ATooSmallBoundIsFound) {
+// Tests the search itself: it exceeds the bound of an annotation that is too small.
+TEST_P(Proof, SearchExceedsABoundThatIsTooSmall) {
   const std::filesystem::path folder =
       std::filesystem::path(testing::TempDir()) / ("too_small_" + std::string(board().name));
   std::filesystem::create_directories(folder);
@@ -306,18 +306,18 @@ TEST_P(Proof, ATooSmallBoundIsFound) {
                           std::filesystem::copy_options::recursive |
                               std::filesystem::copy_options::overwrite_existing);
   }
-  const std::filesystem::path file = folder / "core/src/surface.cpp";
+  const std::filesystem::path file = folder / "core/src/contact/surface.cpp";
   std::string text = read_text(file);
-  const std::string honest = "// bound: points_per_ball_max";
-  for (std::size_t at = 0; (at = text.find(honest, at)) != std::string::npos; ++at) {
-    text.replace(at, honest.size(), "// bound: points_per_ball_max / 2");
+  const std::string correct = "// bound: points_per_ball_max";
+  for (std::size_t at = 0; (at = text.find(correct, at)) != std::string::npos; ++at) {
+    text.replace(at, correct.size(), "// bound: points_per_ball_max / 2");
   }
   std::ofstream(file) << text;
 
-  const TestBlob blob(nasty_model(Nastiness::kEdge));
-  constexpr float kRate_hz = 4000.0F;  // where the bound is tightest
-  const bound::Bound bound = bound_of(board(), blob.view(), core::RenderMode::kSurface, kRate_hz,
-                                      core::DeviceKind::kCartesian, folder);
+  const TestBlob blob(expensive_model(ExpensiveModel::kEdge));
+  constexpr float kRate_hz = 4000.0F;  // at which the bound is tightest
+  const wcet::Bound bound = bound_of(board(), blob.view(), core::RenderMode::kSurface, kRate_hz,
+                                     core::DeviceKind::kCartesian, folder);
   const Found found = seek_worst(board(), options(), blob.written().bytes, kSize_m, kRuns,
                                  core::RenderMode::kSurface, kRate_hz, 1);
   EXPECT_GT(found.instructions, bound.instructions);

@@ -1,11 +1,11 @@
-// What the analysis bounds, and what it refuses.
+// Bounds and refusals of the analysis, on small images.
 
 #include "sample_image.hpp"
 
 namespace tactree::test {
 namespace {
 
-// Something that no compiler computes ahead, unrolls or makes a call of.
+// Work that no compiler evaluates at compile time, unrolls or replaces by a library call.
 const std::string kWork = R"(
 volatile int work;
 [[gnu::noinline]] void leaf() { work = work + 1; }
@@ -25,21 +25,21 @@ extern "C" void tick() {
 
 class Bounding : public SampleImage {};
 
-TEST_F(Bounding, StraightCodeTakesItsInstructions) {
-  const bound::Bound bound = bound_of(R"(extern "C" [[gnu::naked]] void tick() {
+TEST_F(Bounding, CountsTheInstructionsOfStraightCode) {
+  const wcet::Bound bound = bound_of(R"(extern "C" [[gnu::naked]] void tick() {
     __asm volatile("movs r0, #1\n\t adds r0, #2\n\t bx lr");
   })");
   EXPECT_EQ(bound.instructions, 3U);
 }
 
-TEST_F(Bounding, TheLongerOfTwoWaysCounts) {
-  const bound::Bound bound = bound_of(R"(extern "C" [[gnu::naked]] void tick() {
+TEST_F(Bounding, TakesTheLongerOfTwoBranches) {
+  const wcet::Bound bound = bound_of(R"(extern "C" [[gnu::naked]] void tick() {
     __asm volatile("cmp r0, #1\n\t beq 1f\n\t nop\n\t nop\n\t nop\n 1:\n\t bx lr");
   })");
   EXPECT_EQ(bound.instructions, 6U);
 }
 
-TEST_F(Bounding, EachPassOfALoopCountsTheSame) {
+TEST_F(Bounding, IsLinearInTheBoundOfALoop) {
   const std::uint64_t ten = bound_of(looping("10")).instructions;
   const std::uint64_t twenty = bound_of(looping("20")).instructions;
   const std::uint64_t thirty = bound_of(looping("2 * (10 + 5)")).instructions;
@@ -48,7 +48,7 @@ TEST_F(Bounding, EachPassOfALoopCountsTheSame) {
   EXPECT_GE(twenty - ten, 10U * 7U);  // the leaf's load, addition, store and return, and the loop
 }
 
-TEST_F(Bounding, ABoundMayNameAParameterOrAConstant) {
+TEST_F(Bounding, AcceptsParametersAndConstantsInABound) {
   const std::uint64_t ten = bound_of(looping("10")).instructions;
   EXPECT_EQ(bound_of(looping("points"), {{"points", 10}}).instructions, ten);
   EXPECT_EQ(bound_of("constexpr unsigned kTwo = 2;\nconstexpr unsigned kTen = kTwo * 5U;\n" +
@@ -57,22 +57,22 @@ TEST_F(Bounding, ABoundMayNameAParameterOrAConstant) {
             ten);
 }
 
-TEST_F(Bounding, TheReportNamesLoopsAndFunctions) {
-  const bound::Bound bound = bound_of(looping("10"));
+TEST_F(Bounding, ReportsLoopsAndFunctions) {
+  const wcet::Bound bound = bound_of(looping("10"));
   ASSERT_EQ(bound.loops.size(), 1U);
   EXPECT_EQ(bound.loops[0].file, "sample.cpp");
   EXPECT_EQ(bound.loops[0].line, 8U);
   EXPECT_EQ(bound.loops[0].passes, 10);
   ASSERT_EQ(bound.functions.size(), 2U);
   double sum = 0.0;
-  for (const bound::FunctionOnPath& function : bound.functions) {
+  for (const wcet::FunctionOnPath& function : bound.functions) {
     sum += function.instructions;
     EXPECT_EQ(function.calls, function.name == "tick" ? 1.0 : 10.0) << function.name;
   }
   EXPECT_NEAR(sum, static_cast<double>(bound.instructions), 1e-3);
 }
 
-TEST_F(Bounding, ATotalHoldsOverAllEntriesOfALoop) {
+TEST_F(Bounding, LimitsAllEntriesOfALoopByATotal) {
   const auto nested = [](const std::string& inner) {
     return kWork + R"(
 extern "C" void tick() {
@@ -85,10 +85,10 @@ extern "C" void tick() {
   }
 })";
   };
-  const bound::Bound each = bound_of(nested("50"));
-  const bound::Bound all = bound_of(nested("50, total 60 per tick"));
-  const auto calls = [](const bound::Bound& bound) {
-    for (const bound::FunctionOnPath& function : bound.functions) {
+  const wcet::Bound each = bound_of(nested("50"));
+  const wcet::Bound all = bound_of(nested("50, total 60 per tick"));
+  const auto calls = [](const wcet::Bound& bound) {
+    for (const wcet::FunctionOnPath& function : bound.functions) {
       if (function.name == "leaf()") {
         return function.calls;
       }
@@ -99,7 +99,7 @@ extern "C" void tick() {
   EXPECT_NEAR(calls(all), 60.0, 1e-6);
 }
 
-TEST_F(Bounding, AStatementMayBeLimited) {
+TEST_F(Bounding, LimitsAStatement) {
   const auto limited = [](const std::string& comment) {
     return kWork + R"(
 [[gnu::noinline]] void dear() { leaf(); leaf(); leaf(); leaf(); }
@@ -114,20 +114,68 @@ extern "C" void tick() {
   }
 })";
   };
-  const bound::Bound free = bound_of(limited(""));
-  const bound::Bound held = bound_of(limited("at most: 3 per tick"));
-  const bound::Bound without = bound_of(limited("at most: 0 per tick"));
-  EXPECT_LT(held.instructions, free.instructions);
-  EXPECT_LT(without.instructions, held.instructions);
-  EXPECT_TRUE(held.unused_facts.empty());
+  const wcet::Bound free = bound_of(limited(""));
+  const wcet::Bound limited_to_3 = bound_of(limited("at most: 3 per tick"));
+  const wcet::Bound without = bound_of(limited("at most: 0 per tick"));
+  EXPECT_LT(limited_to_3.instructions, free.instructions);
+  EXPECT_LT(without.instructions, limited_to_3.instructions);
+  EXPECT_TRUE(limited_to_3.unused_facts.empty());
 }
 
-TEST_F(Bounding, AFactOnALineWithoutCodeIsReported) {
-  const bound::Bound bound = bound_of("// at most: 1 per tick\n\n" + looping("10"));
-  EXPECT_EQ(bound.unused_facts, std::vector<std::string>{"sample.cpp:2"});
+// A formatter may put the call of a statement on another line than its annotation.
+TEST_F(Bounding, LimitsACallOnTheSecondLineOfAStatement) {
+  const auto limited = [](const std::string& comment) {
+    return kWork + R"(
+[[gnu::noinline]] unsigned dear(unsigned by) { leaf(); leaf(); leaf(); return work + by; }
+extern "C" void tick() {
+  unsigned sum = 0;
+  for (unsigned i = 0; i < wanted; ++i) {  // bound: 10
+    if (work == 7) {
+      // )" +
+           comment +
+           R"(
+      sum +=
+          dear(sum);
+    }
+  }
+  work = sum;
+})";
+  };
+  EXPECT_LT(bound_of(limited("at most: 3 per tick")).instructions,
+            bound_of(limited("")).instructions);
 }
 
-TEST_F(Bounding, AnArgumentIsWhatEachCallGives) {
+TEST_F(Bounding, RefusesALimitThatBelongsToNoCall) {
+  EXPECT_NE(refusal("// at most: 1 per tick\n\n" + looping("10")).find("belongs to no statement"),
+            std::string::npos);
+  const std::string arithmetic = kWork + R"(
+extern "C" unsigned tick() {
+  unsigned sum = work;
+  for (unsigned i = 0; i < wanted; ++i) {  // bound: 10
+    leaf();
+    // at most: 3 per tick
+    sum = sum * 5U + work;
+  }
+  return sum;
+})";
+  EXPECT_NE(refusal(arithmetic).find("sample.cpp:"), std::string::npos);
+  EXPECT_NE(refusal(arithmetic).find("belongs to no call or store"), std::string::npos);
+}
+
+// The branch is taken on the shorter path only.
+TEST_F(Bounding, ABranchThatIsNotTakenCostsOneCycle) {
+  const auto cycles = [&](const std::string& branch) {
+    return bound_of(R"(extern "C" [[gnu::naked]] void tick() {
+  asm volatile("cmp r0, #0\n )" +
+                        branch + R"(\n nop\n nop\n nop\n nop\n nop\n nop\n 1: bx lr");
+})",
+                    {}, wcet::find_timing("mps2-an386"))
+        .cycles;
+  };
+  EXPECT_EQ(cycles("beq 1f"), cycles("nop"));
+}
+
+TEST_F(Bounding, AnalysesEachCallWithItsArguments) {
   const auto clearing = [](const std::string& calls) {
     return kWork + R"(
 [[gnu::noinline, gnu::noclone, gnu::noipa]] void clear(char* to, unsigned bytes) {
@@ -150,8 +198,8 @@ extern "C" void tick() { )" +
   EXPECT_NE(refused.find("an argument 'bytes' that is no constant"), std::string::npos) << refused;
 }
 
-TEST_F(Bounding, AJumpTableIsFollowed) {
-  const bound::Bound bound = bound_of(kWork + R"(
+TEST_F(Bounding, FollowsAJumpTable) {
+  const wcet::Bound bound = bound_of(kWork + R"(
 [[gnu::noinline]] void many() { leaf(); leaf(); leaf(); leaf(); leaf(); leaf(); }
 extern "C" void tick() {
   switch (wanted) {
@@ -166,13 +214,13 @@ extern "C" void tick() {
   }
 })");
   bool passes_many = false;
-  for (const bound::FunctionOnPath& function : bound.functions) {
+  for (const wcet::FunctionOnPath& function : bound.functions) {
     passes_many = passes_many || (function.name == "many()" && function.calls == 1.0);
   }
   EXPECT_TRUE(passes_many);
 }
 
-TEST_F(Bounding, AWayThatNeverReturnsIsNoTick) {
+TEST_F(Bounding, PathsThatNeverReturnAreExcluded) {
   const std::string code = kWork + R"(
 [[gnu::noinline, noreturn]] void stop() { while (true) { work = 1; } }  // bound: for_ever
 extern "C" void tick() {
@@ -181,12 +229,12 @@ extern "C" void tick() {
   }
   leaf();
 })";
-  const bound::Bound bound = bound_of(code);
+  const wcet::Bound bound = bound_of(code);
   EXPECT_EQ(bound.endings.size(), 1U);
   EXPECT_LT(bound.instructions, 20U);
 }
 
-TEST_F(Bounding, ALoopWithoutABoundIsNamed) {
+TEST_F(Bounding, RefusesALoopWithoutABound) {
   const std::string refused = refusal(kWork + R"(
 extern "C" void tick() {
   for (unsigned i = 0; i < wanted; ++i) {
@@ -196,7 +244,7 @@ extern "C" void tick() {
   EXPECT_NE(refused.find("sample.cpp:7: a loop without a bound"), std::string::npos) << refused;
 }
 
-TEST_F(Bounding, WhatCannotBeFollowedIsNamed) {
+TEST_F(Bounding, RefusesCodeThatItCannotFollow) {
   struct Case {
     const char* code;
     const char* cause;
@@ -210,7 +258,7 @@ TEST_F(Bounding, WhatCannotBeFollowedIsNamed) {
       {R"(void (*volatile to)(); extern "C" void tick() { to(); })", "indirect jump"},
       {R"(extern "C" void tick() { __asm volatile(".inst.w 0xfeefffff"); })",
        "unknown instruction"},
-      {R"(extern "C" void tick() { __asm volatile("svc #0"); })", "calls a handler"},
+      {R"(extern "C" void tick() { __asm volatile("svc #0"); })", "calls an exception handler"},
   };
   for (const Case& c : cases) {
     const std::string refused = refusal(c.code);
@@ -219,29 +267,30 @@ TEST_F(Bounding, WhatCannotBeFollowedIsNamed) {
   }
 }
 
-TEST_F(Bounding, ABoundThatMeansNothingIsNamed) {
-  EXPECT_NE(refusal(looping("points")).find("nobody says what 'points' is"), std::string::npos);
-  EXPECT_NE(refusal(looping("2 points")).find("sample.cpp:8: ' points' is no part of a bound"),
-            std::string::npos);
-  EXPECT_NE(refusal(looping("")).find("no bound can be read"), std::string::npos);
+TEST_F(Bounding, RefusesAMalformedBound) {
+  EXPECT_NE(refusal(looping("points")).find("'points' is unknown"), std::string::npos);
+  EXPECT_NE(
+      refusal(looping("2 points")).find("sample.cpp:8: ' points' is not part of the annotation"),
+      std::string::npos);
+  EXPECT_NE(refusal(looping("")).find("no expression begins"), std::string::npos);
   EXPECT_NE(refusal(looping("10 / 0")).find("divides by zero"), std::string::npos);
-  EXPECT_NE(refusal(looping("5, total 3 per other")).find("other is no function of its own"),
+  EXPECT_NE(refusal(looping("5, total 3 per other")).find("other is not a function of the image"),
             std::string::npos);
 }
 
-TEST_F(Bounding, OtherFilesAreRefused) {
+TEST_F(Bounding, RefusesOtherFiles) {
   const auto refused = [&](const std::filesystem::path& file) {
     try {
       (void)bound_of_image(file);
       return std::string();
-    } catch (const bound::BoundError& error) {
+    } catch (const wcet::BoundError& error) {
       return std::string(error.what());
     }
   };
   EXPECT_NE(refused(folder_ / "missing.elf").find("cannot be read"), std::string::npos);
-  EXPECT_NE(refused("/bin/sh").find("no linked image of an Arm core"), std::string::npos);
+  EXPECT_NE(refused("/bin/sh").find("not a linked image of an Arm core"), std::string::npos);
   std::ofstream(folder_ / "text.elf") << "hello";
-  EXPECT_NE(refused(folder_ / "text.elf").find("no linked image"), std::string::npos);
+  EXPECT_NE(refused(folder_ / "text.elf").find("not a linked image"), std::string::npos);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 #pragma once
-// Small images for the analysis, compiled where they are needed.
+// Small images for the analysis, compiled by the test that needs them.
 
 #include <gtest/gtest.h>
 
@@ -8,12 +8,12 @@
 #include <fstream>
 #include <string>
 
-#include "tactree/bound/bound.hpp"
-#include "tactree/bound/bound_error.hpp"
+#include "tactree/wcet/bound.hpp"
+#include "tactree/wcet/bound_error.hpp"
 
 namespace tactree::test {
 
-/// Skipped where the compiler for the boards is missing.
+/// Skipped if the cross compiler is missing.
 class SampleImage : public testing::Test {
  protected:
   void SetUp() override {
@@ -26,8 +26,9 @@ class SampleImage : public testing::Test {
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  /// The bound of tick() in a program.
-  bound::Bound bound_of(const std::string& code, const bound::Parameters& parameters = {}) {
+  /// The bound of tick() in a program; with `timing` also in cycles.
+  wcet::Bound bound_of(const std::string& code, const wcet::Parameters& parameters = {},
+                       const wcet::BoardTiming* timing = nullptr) {
     std::ofstream(folder_ / "sample.cpp") << code;
     const std::string command =
         "cd '" + folder_.string() +
@@ -39,25 +40,27 @@ class SampleImage : public testing::Test {
       ADD_FAILURE() << std::string(std::istreambuf_iterator<char>(log), {});
       return {};
     }
-    return bound_of_image(folder_ / "sample.elf", parameters);
+    return bound_of_image(folder_ / "sample.elf", parameters, timing);
   }
 
-  bound::Bound bound_of_image(const std::filesystem::path& image,
-                              const bound::Parameters& parameters = {}) {
-    bound::BoundOptions options;
+  wcet::Bound bound_of_image(const std::filesystem::path& image,
+                             const wcet::Parameters& parameters = {},
+                             const wcet::BoardTiming* timing = nullptr) {
+    wcet::BoundOptions options;
+    options.timing = timing;
     options.image = image;
     options.sources = folder_;
     options.entries = {{"tick", 1}};
     options.parameters = parameters;
-    return bound::worst_case(options);
+    return wcet::worst_case(options);
   }
 
-  /// What the analysis says when it refuses; "" when it does not.
+  /// Message of the refusal; "": not refused.
   std::string refusal(const std::string& code) {
     try {
       (void)bound_of(code);
       return "";
-    } catch (const bound::BoundError& error) {
+    } catch (const wcet::BoundError& error) {
       return error.what();
     }
   }

@@ -17,7 +17,7 @@ constexpr std::size_t kEpisodes = 30;
 
 double as_double(float v) { return static_cast<double>(v); }
 
-/// Nothing to limit the probe's jumps, and all that costs instructions.
+/// Every part that costs instructions is enabled; no limit on the jumps of the probe.
 core::Configuration free_probe(core::RenderMode mode, float rate_hz) {
   core::Configuration c;
   c.mode = mode;
@@ -40,7 +40,7 @@ core::Status step(emulation::EmulatedTarget& target, hal::sim::SimBoard& board, 
   return target.tick(board);
 }
 
-/// Armed when the place is free; in contact the ticks cost about the same.
+/// Arms if the position is free; ticks in contact cost about the same.
 void arm(emulation::EmulatedTarget& target, hal::sim::SimBoard& board, core::Vec3 at) {
   for (int i = 0; i < 12; ++i) {
     board.link().post(i == 2 || i == 9 ? core::Command::kArm : core::Command::kNone);
@@ -52,17 +52,17 @@ class Climber {
  public:
   Climber(float size_m, std::uint32_t seed) : size_m_(size_m), random_(seed) {}
 
-  Way random_episode() {
-    Way way;
+  ProbePath random_episode() {
+    ProbePath path;
     for (std::size_t i = 0; i < kEpisode; ++i) {
-      way.push_back(place(size_m_));
+      path.push_back(place(size_m_));
     }
-    return way;
+    return path;
   }
 
-  /// Some ticks elsewhere, or a little beside.
-  Way changed(const Way& way) {
-    Way result = way;
+  /// Moves some positions, most by a small step.
+  ProbePath changed(const ProbePath& path) {
+    ProbePath result = path;
     const float scale = size_m_ * std::pow(10.0F, -3.0F * uniform());
     for (core::Vec3& at : result) {
       const float choice = uniform();
@@ -91,7 +91,7 @@ class Climber {
 
 }  // namespace
 
-builder::Model nasty_model(Nastiness kind) {
+builder::Model expensive_model(ExpensiveModel kind) {
   constexpr double kSupport = 0.5e-3;
   constexpr double kPatch = 0.05e-3;
   builder::Model model;
@@ -101,26 +101,26 @@ builder::Model nasty_model(Nastiness kind) {
     const double u = place(random);
     const double v = std::abs(place(random));
     const bool top = i % 2 == 0;
-    if (kind == Nastiness::kEdge) {
-      // Not at the corner of eight leaves: in most of them.
+    if (kind == ExpensiveModel::kEdge) {
+      // In most of eight leaves rather than at their common corner.
       model.positions.emplace_back(kPatch * (top ? 0.4 - v : 0.4), kPatch * u,
                                    kPatch * (top ? 0.4 : 0.4 - v));
       model.normals.emplace_back(top ? 0.0F : 1.0F, 0.0F, top ? 1.0F : 0.0F);
-    } else if (kind == Nastiness::kAskew) {
+    } else if (kind == ExpensiveModel::kOblique) {
       constexpr double kTilt = 1.2;  // rad
       const double turn = 1.2 * place(random);
       model.positions.emplace_back(kPatch * u, kPatch * place(random), kPatch * place(random));
-      const Eigen::Vector3d askew(std::sin(kTilt) * std::cos(turn),
-                                  std::sin(kTilt) * std::sin(turn), std::cos(kTilt));
+      const Eigen::Vector3d oblique(std::sin(kTilt) * std::cos(turn),
+                                    std::sin(kTilt) * std::sin(turn), std::cos(kTilt));
       model.normals.push_back(
-          (i % 16 == 0 ? Eigen::Vector3d(Eigen::Vector3d::UnitZ()) : askew).cast<float>());
+          (i % 16 == 0 ? Eigen::Vector3d(Eigen::Vector3d::UnitZ()) : oblique).cast<float>());
     } else {
       model.positions.emplace_back(kPatch * u, kPatch * place(random), kPatch * place(random));
       const Eigen::Vector3d normal(place(random), place(random), place(random));
       model.normals.push_back((normal + Eigen::Vector3d(1e-3, 0, 0)).normalized().cast<float>());
     }
   }
-  // Far away, so that the tree is deep.
+  // Distant points make the tree deep.
   for (const double side : {-1.0, 1.0}) {
     model.positions.emplace_back(side * Eigen::Vector3d::Constant(0.3));
     model.normals.emplace_back(0.0F, 0.0F, 1.0F);
@@ -133,15 +133,15 @@ builder::Model nasty_model(Nastiness kind) {
 
 emulation::InstructionCounts follow(const emulation::BoardDescription& board,
                                     emulation::EmulationOptions options,
-                                    std::span<const std::byte> blob, const Way& way,
+                                    std::span<const std::byte> blob, const ProbePath& path,
                                     core::RenderMode mode, float rate_hz) {
   hal::sim::BoardParameters parameters;
   parameters.encoders.counts_per_m = 1.0;
   hal::sim::SimBoard plant(parameters, blob);
   emulation::EmulatedTarget target(board, blob, options);
   EXPECT_TRUE(target.start(plant, free_probe(mode, rate_hz)).ok());
-  arm(target, plant, way.at(0));
-  for (const core::Vec3& at : way) {
+  arm(target, plant, path.at(0));
+  for (const core::Vec3& at : path) {
     plant.link().post(core::Command::kNone);
     (void)step(target, plant, at);
   }
@@ -155,25 +155,25 @@ Found seek_worst(const emulation::BoardDescription& board,
   Climber climber(size_m, seed);
   emulation::EmulationOptions counted = options;
   counted.uncounted_ticks = 12;
-  counted.instruction_shift = 0;  // no tick is so long that it misses a deadline
+  counted.instruction_shift = 0;  // time for the longest tick
   Found found;
   for (int run = 0; run < runs; ++run) {
-    Way way;
+    ProbePath path;
     for (std::size_t i = 0; i < kEpisodes; ++i) {
-      const bool fresh = found.way.empty() || climber.uniform() < 0.1F;
-      const Way episode = fresh ? climber.random_episode() : climber.changed(found.way);
-      way.insert(way.end(), episode.begin(), episode.end());
+      const bool fresh = found.path.empty() || climber.uniform() < 0.1F;
+      const ProbePath episode = fresh ? climber.random_episode() : climber.changed(found.path);
+      path.insert(path.end(), episode.begin(), episode.end());
     }
-    const emulation::InstructionCounts counts = follow(board, counted, blob, way, mode, rate_hz);
+    const emulation::InstructionCounts counts = follow(board, counted, blob, path, mode, rate_hz);
     found.code.insert(found.code.end(), counts.code.begin(), counts.code.end());
     found.data.insert(found.data.end(), counts.data.begin(), counts.data.end());
     if (counts.max > found.instructions) {
       found.instructions = counts.max;
       const auto worst = static_cast<std::size_t>(counts.worst_tick);
       const std::size_t begin = worst + 1 < kEpisode ? 0 : worst + 1 - kEpisode;
-      found.way.assign(way.begin() + static_cast<std::ptrdiff_t>(begin),
-                       way.begin() + static_cast<std::ptrdiff_t>(worst + 1));
-      found.way.resize(kEpisode, found.way.back());
+      found.path.assign(path.begin() + static_cast<std::ptrdiff_t>(begin),
+                        path.begin() + static_cast<std::ptrdiff_t>(worst + 1));
+      found.path.resize(kEpisode, found.path.back());
     }
   }
   return found;

@@ -1,5 +1,5 @@
 #pragma once
-// Looks for the tick that takes a board the most instructions.
+// Searches for the tick with the most instructions on a board.
 
 #include <cstdint>
 #include <random>
@@ -12,31 +12,31 @@
 
 namespace tactree::test {
 
-/// Models made to be expensive: as many points as a controller accepts in one ball, all of which
-/// are within the support of the fit wherever the probe comes near, in eight leaves of a tree of
-/// great depth, and of two faces, or of none, or nearly all on the longest way through a fit: askew
-/// to the face that is looked from, and to each other.
-enum class Nastiness { kEdge, kRandomNormals, kAskew };
-[[nodiscard]] builder::Model nasty_model(Nastiness kind);
+/// Expensive models: as many points as a controller accepts in one ball, all within the support of
+/// the fit, in eight leaves of a deep tree. Their normals: of two faces; random; or oblique to the
+/// face of the fit and to each other, which takes the longest path through a fit.
+enum class ExpensiveModel { kEdge, kRandomNormals, kOblique };
+[[nodiscard]] builder::Model expensive_model(ExpensiveModel kind);
 
-/// Where the probe is in successive ticks, m, the model at the origin. It jumps as it likes.
-using Way = std::vector<core::Vec3>;
+/// Positions of the probe in successive ticks, m, with the model at the origin. Jumps are allowed.
+using ProbePath = std::vector<core::Vec3>;
 
-/// A run along a way, armed or not, on an emulated board with a cartesian device.
+/// Runs an emulated board with a cartesian device along a path.
 [[nodiscard]] emulation::InstructionCounts follow(const emulation::BoardDescription& board,
                                                   emulation::EmulationOptions options,
-                                                  std::span<const std::byte> blob, const Way& way,
-                                                  core::RenderMode mode, float rate_hz);
+                                                  std::span<const std::byte> blob,
+                                                  const ProbePath& path, core::RenderMode mode,
+                                                  float rate_hz);
 
 struct Found {
   std::uint64_t instructions = 0;
-  Way way;  ///< the ticks that led there
+  ProbePath path;  ///< the ticks up to the worst one
   std::vector<emulation::CodeRange> code;
   std::vector<emulation::DataRange> data;
 };
 
-/// Climbs on the instruction count: the ways around the worst tick of one run, changed a little,
-/// are the next run. `size_m`: how far from the origin it makes sense to be.
+/// Hill climbing on the instruction count: each run follows variations of the path that led to the
+/// worst tick so far. `size_m`: range of the probe around the origin.
 [[nodiscard]] Found seek_worst(const emulation::BoardDescription& board,
                                const emulation::EmulationOptions& options,
                                std::span<const std::byte> blob, float size_m, int runs,

@@ -1,4 +1,4 @@
-"""read_blob.py, made from docs/FORMAT.md, and `tactree info --points` agree on every blob.
+"""read_blob.py, which was written from docs/FORMAT.md alone, agrees with `tactree info --points` on every blob.
 
 usage: independent_reader_test.py TACTREE FOLDER_OF_SEEDS
 """

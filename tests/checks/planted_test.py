@@ -1,6 +1,7 @@
-"""The checkers of scripts/, each on planted violations: it must refuse them, and name them.
+"""Tests of the checks in scripts/ with planted violations, which a check must refuse and name.
 
-usage: planted_test.py [CLASS...]        environment: CXX, the compiler to plant with
+usage: planted_test.py [CLASS...]        exit code 77: skipped
+environment: CXX, the compiler of planted code; PAGE_BUILD, the build folder of the page
 """
 import json
 import os
@@ -17,7 +18,7 @@ CXX = os.environ.get("CXX", "c++")
 
 
 def check(name, *arguments):
-    """Exit code and output of a checker."""
+    """Exit code and output of a check."""
     done = subprocess.run([ROOT / "scripts" / name, *map(str, arguments)], capture_output=True,
                           text=True, check=False)
     return done.returncode, done.stdout + done.stderr
@@ -62,20 +63,28 @@ class Layers(Planted):
         self.refuses_line("core includes tactree/hal/board.hpp of hal",
                           "core/include/tactree/core/octree.hpp", '#include "tactree/hal/board.hpp"')
 
+    def test_contact_includes_control(self):
+        self.refuses_line("contact includes tactree/core/controller.hpp of control",
+                          "core/src/contact/scene.cpp", '#include "tactree/core/controller.hpp"')
+
+    def test_model_includes_device(self):
+        self.refuses_line("model includes tactree/core/kinematics.hpp of device",
+                          "core/include/tactree/core/octree.hpp", '#include "tactree/core/kinematics.hpp"')
+
     def test_core_includes_hosted_header(self):
-        self.refuses_line("<vector>, which is not freestanding", "core/src/octree.cpp",
+        self.refuses_line("<vector>, which is not freestanding", "core/src/model/octree.cpp",
                           "#  include <vector>")
 
     def test_core_includes_builder_by_path(self):
-        self.refuses_line("of builder", "core/src/octree.cpp",
-                          '#include "../../tools/builder/src/lattice.hpp"')
+        self.refuses_line("of builder", "core/src/model/octree.cpp",
+                          '#include "../../../host/builder/src/lattice.hpp"')
 
     def test_core_includes_builder_by_name(self):
-        self.refuses_line("core includes lattice.hpp of builder", "core/src/octree.cpp",
+        self.refuses_line("core includes lattice.hpp of builder", "core/src/model/octree.cpp",
                           '#include "lattice.hpp"')
 
     def test_hal_includes_simulation(self):
-        self.refuses_line("hal includes tactree/simulation/simulation.hpp of host",
+        self.refuses_line("hal includes tactree/simulation/simulation.hpp of simulation",
                           "hal/include/tactree/hal/board.hpp",
                           '#include <tactree/simulation/simulation.hpp>')
 
@@ -84,16 +93,16 @@ class Layers(Planted):
                           "#include <chrono>")
 
     def test_builder_includes_host(self):
-        self.refuses_line("builder includes tactree/plant/plant.hpp of host",
-                          "tools/builder/src/lattice.cpp", '#include "tactree/plant/plant.hpp"')
+        self.refuses_line("builder includes tactree/plant/plant.hpp of plant",
+                          "host/builder/src/lattice.cpp", '#include "tactree/plant/plant.hpp"')
 
     def test_builder_includes_hal(self):
         self.refuses_line("builder includes tactree/hal/loop.hpp of hal",
-                          "tools/builder/src/lattice.cpp", '#include "tactree/hal/loop.hpp"')
+                          "host/builder/src/lattice.cpp", '#include "tactree/hal/loop.hpp"')
 
     def test_host_includes_builder(self):
-        self.refuses_line("host includes tactree/builder/model.hpp of builder",
-                          "host/simulation/src/simulation.cpp",
+        self.refuses_line("simulation includes tactree/builder/model.hpp of builder",
+                          "host/simulator/simulation/src/simulation.cpp",
                           '#include "tactree/builder/model.hpp"')
 
     def test_tools_include_unknown_library(self):
@@ -102,7 +111,7 @@ class Layers(Planted):
     def test_firmware_includes_host(self):
         self.write("firmware/main.cpp", '#include "tactree/core/controller.hpp"\n')
         self.accepts("check-layers", "--root", self.folder)
-        self.refuses_line("firmware includes tactree/plant/plant.hpp of host", "firmware/main.cpp",
+        self.refuses_line("firmware includes tactree/plant/plant.hpp of plant", "firmware/main.cpp",
                           '#include "tactree/plant/plant.hpp"')
 
     def test_core_links_library(self):
@@ -114,26 +123,35 @@ class Layers(Planted):
                           "target_link_libraries(tactree_core\n  PUBLIC tactree::hal)")
 
     def test_host_links_builder(self):
-        self.refuses_line("host uses tactree_builder of builder", "host/plant/CMakeLists.txt",
+        self.refuses_line("plant uses tactree_builder of builder", "host/simulator/plant/CMakeLists.txt",
                           "target_link_libraries(tactree_plant PRIVATE tactree_builder)")
 
     def test_builder_takes_include_folder_of_host(self):
-        self.refuses_line("of host", "tools/builder/CMakeLists.txt",
+        self.refuses_line("of plant", "host/builder/CMakeLists.txt",
                           "target_include_directories(tactree_builder PRIVATE\n"
-                          "  ${CMAKE_CURRENT_SOURCE_DIR}/../../host/plant/include)")
+                          "  ${CMAKE_CURRENT_SOURCE_DIR}/../simulator/plant/include)")
 
     def test_empty_tree(self):
         self.refuses("nothing to check", "check-layers", "--root", self.write("a/b", "").parent)
 
 
 class Loops(Planted):
+    REFERENCE = "// Loop and memory annotations: docs/BOUND.md.\n"
+
     def accepts_code(self, code):
-        self.write("a.cpp", code)
+        self.write("a.cpp", self.REFERENCE + code)
         self.accepts("check-loops", self.folder)
 
     def refuses_code(self, code, line):
-        self.write("a.cpp", code)
-        self.refuses(f"a.cpp:{line}:", "check-loops", self.folder)
+        self.write("a.cpp", self.REFERENCE + code)
+        self.refuses(f"a.cpp:{line + 1}:", "check-loops", self.folder)
+
+    def test_annotation_without_reference(self):
+        code = "void f(int n) {\n  while (n > 0) --n;  // bound: n\n}\n"
+        for text, line in ((code, 2), (code + self.REFERENCE, 2), ("// memory: RAM\n" + self.REFERENCE + code, 1)):
+            self.write("a.cpp", text)
+            self.refuses(f"a.cpp:{line}: annotation", "check-loops", self.folder)
+        self.accepts_code(code)
 
     def test_bounded(self):
         self.accepts_code("void f(int n) {\n"
@@ -164,7 +182,7 @@ class Loops(Planted):
     def test_goto(self):
         self.refuses_code("void f(int n) {\nagain:\n  if (--n) goto again;  // bound: n\n}\n", 3)
 
-    def test_bound_within_the_body(self):
+    def test_bound_inside_the_body_does_not_count(self):
         self.refuses_code("void f(int n) {\n  while (n > 0) {\n    --n;  // bound: n\n  }\n}\n", 2)
 
     def test_empty_bound(self):
@@ -173,11 +191,11 @@ class Loops(Planted):
     def test_bound_in_a_string(self):
         self.refuses_code('void f(int n) {\n  while (n > 0) n = g("x \\" // no b", n);\n}\n', 2)
 
-    def test_bound_alone_above(self):
+    def test_bound_on_the_line_above(self):
         self.accepts_code("void f(int n) {\n  // bound: n\n  while (n > 0) --n;\n}\n")
         self.refuses_code("void f(int n) {\n  n *= 2;  // bound: n\n  while (n > 0) --n;\n}\n", 3)
 
-    def test_words_that_are_no_loops(self):
+    def test_ignores_keywords_in_comments_and_strings(self):
         self.write("b.cpp", '// for ever, while (it lasts)\nconst char* s = "do while (1) for (;;)";\n'
                             "int forward = 1'000; char c = '\"';  // for\n")
         self.accepts_code("void f() {\n  for (;;) {  // bound: none\n  }\n}\n")
@@ -271,7 +289,7 @@ class ProtocolDoc(Planted):
     def test_constant(self):
         self.refuses_doc("('kMaxPiece', 255)", "| `kMaxPiece` | 256 |", "| `kMaxPiece` | 255 |")
 
-    def test_field_that_the_page_does_not_know(self):
+    def test_undocumented_field(self):
         shutil.copytree(ROOT / "core/include", self.folder / "include")
         path = self.folder / "include/tactree/core/wire/messages.hpp"
         old = "  std::uint32_t age_us = 0;"
@@ -362,9 +380,9 @@ class Style(Planted):
         self.refuses("clang-format-violations", "check-style", "format",
                      self.write("a.cpp", "int  f( int a ){return a;}\n"))
 
-    def test_habits_kept(self):
-        self.accepts(*self.tidy("constexpr int kMost = 3;\nint at_most(int value) {\n"
-                                "  return value < kMost ? value : kMost;\n}\n"))
+    def test_clean_code(self):
+        self.accepts(*self.tidy("constexpr int kMax = 3;\nint at_most(int value) {\n"
+                                "  return value < kMax ? value : kMax;\n}\n"))
 
     def test_function_name(self):
         self.refuses("readability-identifier-naming", *self.tidy("int AtMost(int value) { return value; }\n"))
@@ -393,14 +411,98 @@ class Style(Planted):
         self.refuses("readability-function-size",
                      *self.tidy("int f(int a) {\n" + "  ++a;\n" * 62 + "  return a;\n}\n"))
 
-    def test_knotted_function(self):
+    def test_complex_function(self):
         body = "".join(f"{'  ' * d}if (a > {d}) {{\n" for d in range(1, 9)) + "a = 0;\n" + "}" * 8
         self.refuses("readability-function-cognitive-complexity",
                      *self.tidy(f"int f(int a) {{\n{body}\n  return a;\n}}\n"))
 
+    def test_file_of_no_build(self):
+        source = self.write("b.cpp", "int f();\n")
+        self.tidy("int g();\n")
+        self.refuses("is not compiled in", "check-style", "tidy", self.folder, source)
+
+    def build_of(self, *sources):
+        """A build folder of host/ with these sources; those in a list are compiled as one file."""
+        entries = []
+        for number, source in enumerate(sources):
+            if isinstance(source, list):
+                source = self.write(f"host/files/Unity/unity_{number}_cxx.cxx",
+                                    "".join(f'#include "{name}"\n' for name in source))
+            entries.append({"directory": str(self.folder), "file": str(source),
+                            "command": f"c++ -std=c++20 -o {number}.o -c {source}"})
+        self.write("compile_commands.json", json.dumps(entries))
+        return "check-style", "tidy", "--root", self.folder, self.folder
+
+    GOOD = "int good(int value) { return value + 1; }\n"
+    BAD = "int BadName(int value) { return value + 1; }\n"
+
+    def test_host_file(self):
+        good = self.write("host/files/good.cpp", self.GOOD)
+        self.accepts(*self.build_of(good))
+        self.refuses("host/files/bad.cpp:1:5", *self.build_of(good, self.write("host/files/bad.cpp", self.BAD)))
+
+    def test_merged_host_file(self):
+        good = self.write("host/files/good.cpp", self.GOOD)
+        bad = self.write("host/files/bad.cpp", self.BAD)
+        self.refuses("host/files/bad.cpp:1:5", *self.build_of([good, bad]))
+        self.accepts(*self.build_of([good, bad]), good)
+
+    def test_files_that_cannot_be_merged(self):
+        one, two = (self.write(f"host/files/{name}.cpp", f"namespace {{\nint f() {{ return 1; }}\n}}\n"
+                               f"int {name}() {{ return f(); }}\n") for name in ("one", "two"))
+        self.accepts(*self.build_of(one, two))
+        two.write_text(two.read_text() + self.BAD)
+        self.refuses("host/files/two.cpp:5:5", *self.build_of(one, two))
+
+    def test_firmware_is_checked_in_cross_builds_only(self):
+        self.write("firmware/bad.cpp", self.BAD)
+        code, output = check(*self.build_of(self.folder / "firmware/bad.cpp"))
+        self.assertEqual(code, 1)
+        self.assertIn("nothing to check", output)
+
+
+class Page(Planted):
+    BUILD = pathlib.Path(os.environ.get("PAGE_BUILD", ROOT / "build/host-gcc/host/viewer/page"))
+
+    def setUp(self):
+        super().setUp()
+        shutil.copy(ROOT / "host/viewer/page/biome.json", self.folder)
+
+    def refuses_code(self, rule, code, name="a.ts"):
+        self.write(name, code)
+        self.refuses(rule, "check-page", self.BUILD, self.folder)
+        self.refuses(name, "check-page", self.BUILD, self.folder)
+
+    def test_clean(self):
+        self.write("a.ts", "export const twice = (value: number): number => 2 * value;\n")
+        self.accepts("check-page", self.BUILD, self.folder)
+
+    def test_unused_variable(self):
+        self.refuses_code("noUnusedVariables", "const twice = (value: number): number => 2 * value;\n")
+
+    def test_any(self):
+        self.refuses_code("noExplicitAny", "export const same = (value: any): any => value;\n")
+
+    def test_loose_equality(self):
+        self.refuses_code("noDoubleEquals", "export const isOne = (value: unknown) => value == 1;\n")
+
+    def test_non_null_assertion(self):
+        self.refuses_code("noNonNullAssertion", "export const name = (a: { b?: string }) => a.b!.length;\n")
+
+    def test_floating_promise(self):
+        self.refuses_code("noFloatingPromises", "async function load(): Promise<void> {\n"
+                                                "  await fetch('/');\n}\n\n"
+                                                "export function start() {\n  load();\n}\n")
+
+    def test_layout(self):
+        self.refuses_code("format", "export const  one=1\n")
+
+    def test_button_without_type(self):
+        self.refuses_code("useButtonType", "<button>Go</button>\n", "a.html")
+
 
 class Tracked(Planted):
-    # In pieces, so that this file does not trip the checker itself.
+    # Split, so that this file passes the check.
     PATH = "/" + "home/somebody/tactree"
 
     def test_clean(self):
@@ -426,7 +528,60 @@ class Tracked(Planted):
         self.write("a.bin", "x" * ((1 << 20) + 1))
         self.refuses("a.bin: 1048577 bytes", "check-tracked", "--root", self.folder)
 
+    def test_long_source(self):
+        for name, first in (("a.cpp", "// a\n"), ("script", "#!/usr/bin/env python3\n")):
+            self.write(name, first + "x\n" * 599)
+            self.accepts("check-tracked", "--root", self.folder)
+            path = self.write(name, first + "x\n" * 600)
+            self.refuses(f"{name}: 601 lines", "check-tracked", "--root", self.folder)
+            path.unlink()
+        self.write("data.csv", "1,2\n" * 700)
+        self.accepts("check-tracked", "--root", self.folder)
+
+
+class Scripts(Planted):
+    def test_shell(self):
+        self.accepts("check-scripts", "shell", self.write("a", '#!/bin/bash\nrm -- "$1"\n'))
+        self.refuses("[SC2086]", "check-scripts", "shell", self.write("a", "#!/bin/bash\nrm -- $1\n"))
+
+    def test_python(self):
+        self.accepts("check-scripts", "python", self.write("a.py", "import sys\nprint(sys.argv)\n"))
+        self.refuses("undefined name 'argv'", "check-scripts", "python", self.write("a.py", "print(argv)\n"))
+        self.refuses("imported but unused", "check-scripts", "python", self.write("a.py", "import sys\n"))
+
+    def test_syntax(self):
+        self.refuses("a:2:", "check-scripts", "shell", self.write("a", "#!/bin/sh\nif true; then\n"))
+        self.refuses("a.py:1:", "check-scripts", "python", self.write("a.py", "def f(:\n"))
+
+
+class Words(Planted):
+    def limit(self, word, most):
+        self.write("core/a.hpp", f"// {word}\n" * most)
+        self.write("tests/a.cpp", f"// {word}\n")  # only the product counts
+        self.accepts("check-words", "--root", self.folder)
+        self.write("README.md", f"One more: {word.upper()}, and {word}ward is another word.\n")
+        self.refuses(f"{most + 1} x ", "check-words", "--root", self.folder)
+        self.refuses("README.md:1: One more", "check-words", "--root", self.folder)
+
+    def test_limits(self):
+        self.limit("way", 55)
+        self.limit("told", 70)
+
+    def test_retired_names(self):
+        for text, words in (("int kMostBodies = 8;", "write kMax..."), ("gate.warm_up();", "update_thermal_model"),
+                            ("## Who may know whom", "Layers and dependencies"),
+                            ("TEST(Bound, AWayThatNeverReturnsIsNoTick)", "PathsThatNeverReturn"),
+                            ("kLimitRim, at the rim", "boundary"), ("Vec3 shown_;", "applied_force_")):
+            self.write("core/a.cpp", text + "\n")
+            self.refuses(words, "check-words", "--root", self.folder)
+        self.write("core/a.cpp", "int kMaxBodies = 8; int almost; bool shown; // a trim\n")
+        self.write("tests/a.cpp", "bool shown_;\n")
+        self.accepts("check-words", "--root", self.folder)
+
 
 if __name__ == "__main__":
+    if sys.argv[1:] == ["Page"] and not (Page.BUILD / "node_modules/.bin/biome").exists():
+        print(f"skipped: {Page.BUILD} has no npm packages")
+        sys.exit(77)
     sys.argv[0] = "planted_test.py"
     unittest.main()

@@ -1,6 +1,6 @@
-"""An independent reader of blobs, made from docs/FORMAT.md alone: the page is enough if this works.
+"""An independent reader of blobs, written from docs/FORMAT.md alone: its tests prove the page complete.
 
-usage: read_blob.py BLOB      prints index,x,y,z,nx,ny,nz of every point, as `tactree info --points`
+usage: read_blob.py BLOB      prints index,x,y,z,nx,ny,nz of every point, like `tactree info --points`
 """
 import dataclasses
 import math
@@ -122,7 +122,7 @@ def points(blob):
 
 
 def cell_of(table, root_min, depth, low, level):
-    """What the cell with that lower corner is: an entry of the neighbour table."""
+    """Entry of the neighbour table for the cell with that lower corner."""
     edge = 2048 << depth
     if any(not 0 <= low[a] - root_min[a] < edge for a in range(3)):
         return 0xFFFFFFFF
@@ -135,7 +135,7 @@ def cell_of(table, root_min, depth, low, level):
 
 
 def expected_directory(blob):
-    """The directory, made from the octree alone."""
+    """The directory, computed from the octree alone."""
     level = blob.directory_level
     entries = [0xFFFFFFFF] * (8 ** level if level else 0)
 
@@ -155,7 +155,7 @@ def expected_directory(blob):
 
 
 def expected_neighbours(blob):
-    """The neighbour table, made from the octree alone."""
+    """The neighbour table, computed from the octree alone."""
     leaves = sorted(walk(blob))
     table = {(level, low): number | level << 24 for number, level, low in leaves}
     next_node = [1]

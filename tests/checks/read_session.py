@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Reads messages as docs/PROTOCOL.md describes them; layouts are taken from its tables.
+"""Decodes messages with the layouts in the tables of docs/PROTOCOL.md.
 
 usage: read_session.py SESSION.txt       each line "> hex" or "< hex"; prints one JSON object a frame
 """
@@ -81,13 +81,13 @@ def decode_telemetry(payload):
             values += read
         fields[name] = values
     if at != len(payload):
-        raise ValueError("telemetry of another length")
+        raise ValueError("length of telemetry")
     return fields
 
 
 def decode_frame(frame):
     if frame[-1:] != b"\0" or b"\0" in frame[:-1]:
-        raise ValueError("a frame ends at its only zero")
+        raise ValueError("a frame has one zero byte, at its end")
     raw = uncobs(frame[:-1])
     if zlib.crc32(raw[:-4]) != struct.unpack("<I", raw[-4:])[0]:
         raise ValueError("checksum")

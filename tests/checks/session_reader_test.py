@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""PROTOCOL.md is enough to read a session: a reader made from it agrees with ours.
+"""A reader made from docs/PROTOCOL.md decodes a session as the library does.
 
 usage: session_reader_test.py RECORD_SESSION GOLDEN.txt
 """
@@ -51,10 +51,10 @@ def main():
         damaged[5] ^= 4
         try:
             read_session.decode_frame(bytes(damaged))
-            raise AssertionError("a damaged frame was read")
+            raise AssertionError("a damaged frame was accepted")
         except ValueError:
             pass
-    # A session of the first release of this protocol is read for ever.
+    # A recorded session of protocol 1.0 stays readable.
     kept = read_session.read_session(pathlib.Path(golden).read_text())
     assert len(kept) > 60 and {m["kind"] for m in kept} >= {0x81, 0x82, 0x85, 0x87, 0x40}
     print(f"{len(messages)} messages, {len(kept)} kept")

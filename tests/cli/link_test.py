@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The verbs that talk to a board, at a simulated one: exit codes, JSON, refusals; keys and signatures.
+"""The verbs that use a board, with a simulated one: exit codes, JSON, refusals; keys and signatures.
 
 usage: link_test.py TACTREE [BOARD]      BOARD: where the controller runs, default host
 """
@@ -45,13 +45,13 @@ class Link(unittest.TestCase):
         self.run_verb(*arguments, "--json", path, code=code)
         return json.loads(path.read_text())
 
-    def test_a_session_from_the_shell(self):
+    def test_session_from_the_shell(self):
         with ServedBoard(TACTREE, self.blob, "--board", BOARD) as port:
             devices = self.read_json("devices", "--port", port)["devices"]
             self.assertEqual(devices[0]["board"], BOARD)
             seen = self.read_json("monitor", "--once", "--port", port)
             self.assertEqual((seen["state"], seen["faults"]), ("idle", 0))
-            # On a slow computer a link of 100 ms may be lost for want of time: that is no failure.
+            # A slow computer may lose the link by its timeout of 100 ms: not a failure.
             armed = subprocess.run([TACTREE, "arm", "--port", port, "--seconds", "1", "--link-timeout", "100"],
                                    capture_output=True, text=True, timeout=120)
             self.assertIn("active", armed.stdout + armed.stderr)
@@ -60,10 +60,10 @@ class Link(unittest.TestCase):
             self.assertTrue(any(line.startswith("tick,state,contact") for line in trace))
             ticks = [int(line.split(",")[0]) for line in trace if line[:1].isdigit()]
             self.assertEqual(ticks, list(range(ticks[0], ticks[0] + len(ticks))), "none is missing")
-            # The board goes on meanwhile and writes over its oldest: how many are left is a matter of speed.
+            # The board overwrites the oldest samples meanwhile: the number left depends on the speed.
             self.assertGreater(len(ticks), 32)
 
-    def test_a_model_is_written_and_rolled_back(self):
+    def test_writes_and_rolls_back_a_model(self):
         with ServedBoard(TACTREE, self.blob, "--board", BOARD) as port:
             points = json.loads(self.info(self.coarse))["points"]
             for _ in range(2):
@@ -90,13 +90,13 @@ class Link(unittest.TestCase):
             self.assertIn("NAME=NUMBER", self.run_verb("params", "delay_s=x", "--port", port, code=1))
             self.run_verb("params", "delay_s=7", "--port", port, code=1)
 
-    def test_no_board(self):
+    def test_reports_a_missing_board(self):
         for verb in (["monitor", "--once"], ["stop"], ["trace"], ["params"], ["flash", "--list"], ["arm"]):
             self.assertIn("/dev/no-such-port", self.run_verb(*verb, "--port", "/dev/no-such-port", code=1))
         self.run_verb("devices", "--port", "/dev/no-such-port", code=1)
 
     @unittest.skipIf(BOARD != "host", "the images of emulated boards have no key")
-    def test_a_board_with_a_key(self):
+    def test_board_with_a_key_refuses_unsigned_models(self):
         key, other = self.folder / "key", self.folder / "other"
         for name in (key, other):
             self.run_verb("keygen", name)
@@ -120,10 +120,10 @@ class Link(unittest.TestCase):
         signature = pathlib.Path(f"{self.coarse}.sig")
         text = signature.read_text()
         signature.write_text(text.replace('"counter": 4', '"counter": 5'))
-        self.assertIn("not the signature of this blob", self.run_verb("check", self.coarse, code=1))
+        self.assertIn("not a valid signature of this blob", self.run_verb("check", self.coarse, code=1))
         self.assertFalse(json.loads(self.info(self.coarse))["signature"]["valid"])
         signature.write_text("{}")
-        self.assertIn("no signature of a model", self.run_verb("check", self.coarse, code=1))
+        self.assertIn("not a signature of a model", self.run_verb("check", self.coarse, code=1))
         signature.unlink()
 
 

@@ -98,7 +98,7 @@ class Materials(unittest.TestCase):
                 "cartesian", "--device-friction", "0", "--json", "run.json", *options)
         return json.loads((self.path / "run.json").read_text())
 
-    def test_each_side_feels_its_own_stiffness(self):
+    def test_each_side_has_its_own_stiffness(self):
         self.build(self.two_colours())
         for x, stiffness in ((-0.015, 800), (0.015, 200)):
             depth = self.force_at(x)["penetration_max_m"]
@@ -112,21 +112,21 @@ class Materials(unittest.TestCase):
             info = self.build(option)
             self.assertEqual([m["stiffness_N_m"] for m in info["material_list"]], [321])
 
-    def test_too_stiff_for_the_device_is_refused_with_the_limit(self):
+    def test_refuses_a_stiffness_above_the_limit_of_the_device(self):
         self.build("stiffness=20000")
         done = self.run_tool("simulate", "model.blob", "--seconds", "1")
         self.assertEqual(done.returncode, 1)
         self.assertRegex(done.stderr, r"material 0.*20000 N/m.*limit of \d+.* N/m.*1000 Hz")
         self.ok("simulate", "model.blob", "--seconds", "1", "--no-materials")
 
-    def test_wrong_files_are_refused_with_place_and_remedy(self):
+    def test_refuses_invalid_files_with_place_and_remedy(self):
         self.write("scan.ply", scan("ply"))
         cases = [
             ('{"stiffness_N_m": 1e9}', "stiffness_N_m: 1e+09 is outside"),
             ('{"stiffness_N_m": -1}', "stiffness_N_m: -1 is outside"),
             ('{"stiffness_N_m": NaN}', "is not JSON"),
             ('{"stiffness_N_m": "500"}', "is not a number"),
-            ('{"stiffness": 500}', "material.stiffness: is no figure"),
+            ('{"stiffness": 500}', "material.stiffness: is not a property"),
             ('{"damping_Ns_m": 1}', "stiffness_N_m is missing"),
             ('{"stiffness_N_m": 5, "dynamic_friction": 0.3}', "dynamic_friction: 0.3 is more"),
             ('{"stiffness_N_m": 5, "texture_height_m": 1e-3}', "texture_height_m: 0.001 is more"),

@@ -15,7 +15,7 @@ TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
 
 
 def shell(hole):
-    """Points of a sphere of 4 cm, with normals, but for those within `hole` of the +x axis (radii)."""
+    """Points of a sphere of 4 cm, with normals, except those within `hole` (in radii) of the +x axis."""
     rows = []
     count = 20000
     for i in range(count):
@@ -42,14 +42,14 @@ def pixels(file):
     raw = zlib.decompress(packed)
     rows, above = [], bytes(3 * width)
     for y in range(height):
-        way, line = raw[y * (3 * width + 1)], bytearray(raw[y * (3 * width + 1) + 1:(y + 1) * (3 * width + 1)])
+        method, line = raw[y * (3 * width + 1)], bytearray(raw[y * (3 * width + 1) + 1:(y + 1) * (3 * width + 1)])
         for i in range(3 * width):
             left = line[i - 3] if i >= 3 else 0
             corner = above[i - 3] if i >= 3 else 0
             guess = left + above[i] - corner
             near = sorted((abs(guess - v), k) for k, v in enumerate((left, above[i], corner)))[0][1]
             line[i] = (line[i] + (0, left, above[i], (left + above[i]) // 2,
-                                  (left, above[i], corner)[near])[way]) & 255
+                                  (left, above[i], corner)[near])[method]) & 255
         above = bytes(line)
         rows.append([tuple(line[i:i + 3]) for i in range(0, 3 * width, 3)])
     return width, height, rows
@@ -58,6 +58,11 @@ def pixels(file):
 def reds(rows):
     return [(x, y) for y, row in enumerate(rows) for x, (r, g, b) in enumerate(row)
             if r > 190 and g < 60 and b < 80]
+
+
+def purples(rows):
+    return [(x, y) for y, row in enumerate(rows) for x, (r, g, b) in enumerate(row)
+            if b > 1.25 * r > 1.5 * g]
 
 
 class Preview(unittest.TestCase):
@@ -73,7 +78,7 @@ class Preview(unittest.TestCase):
         (self.path / "ball.xyz").write_text(shell(hole))
         return self.run_verb("build", "ball.xyz", "-o", "ball.blob", "--preview", "built.png", *options)
 
-    def test_a_hole_is_marked_in_front_where_it_is(self):
+    def test_a_hole_is_marked_in_the_front_view(self):
         self.assertEqual(self.build(0.25).returncode, 0)
         self.assertEqual(self.run_verb("info", "ball.blob", "--preview", "known.png").returncode, 0)
         for name in ("built.png", "known.png"):
@@ -81,15 +86,33 @@ class Preview(unittest.TestCase):
             self.assertEqual((width, height), (1280, 720))
             marked = reds(rows)
             self.assertGreater(len(marked), 200, name)
-            # The eye is on the side of +x in the left half; behind, the mark is faint.
+            # The left half shows the model from +x; behind the model, the mark is faint.
             self.assertLess(max(x for x, _ in marked), width // 2, name)
 
-    def test_a_whole_surface_has_no_mark(self):
+    def test_a_legend_names_the_colour_of_the_marks(self):
+        self.assertEqual(self.build(0.25).returncode, 0)
+        _, _, rows = pixels(self.path / "built.png")
+        corner = [rows[y][x] for y in range(20, 34) for x in range(40, 54)]
+        self.assertEqual(len(set(corner)), 1)
+        self.assertTrue(reds([corner]))
+
+    def test_a_closed_surface_has_no_mark(self):
         self.assertEqual(self.build(0.0).returncode, 0)
         _, _, rows = pixels(self.path / "built.png")
         self.assertEqual(reds(rows), [])
         shades = {pixel for row in rows[::7] for pixel in row[::7]}
         self.assertGreater(len(shades), 100)
+
+    def test_points_of_doubtful_side_have_a_colour_of_their_own(self):
+        rows = [f"{0.001 * i} {0.001 * j} {0.002 * math.sin(0.1 * i)}" for i in range(60) for j in range(60)]
+        (self.path / "sheet.xyz").write_text("\n".join(rows) + "\n")
+        for options, doubtful in (((), True), (("--viewpoint", "0,0,1"), False)):
+            done = self.run_verb("build", "sheet.xyz", "-o", "y", "--preview", "y.png", *options)
+            self.assertEqual("doubtful" in done.stderr, doubtful, done.stderr)
+            _, _, picture = pixels(self.path / "y.png")
+            corner = [picture[y][x] for y in range(21, 33) for x in range(41, 53)]
+            self.assertEqual(len(purples([corner])), len(corner) if doubtful else 0)
+            self.assertEqual(len(purples(picture)) > 20000, doubtful)
 
     def test_a_scan_is_not_overwritten(self):
         before = shell(0.0)

@@ -1,4 +1,4 @@
-"""The campaign of scripts/make-safety, short: each promise about broken parts, in every situation.
+"""The campaign of scripts/make-safety, short: each requirement on faults, in every situation.
 
 usage: safety_test.py TACTREE SCRIPT
 """
@@ -23,17 +23,17 @@ class Safety(unittest.TestCase):
                            stderr=subprocess.DEVNULL)
             cls.rows = json.loads(rows.read_text())
 
-    def test_every_part_was_broken_in_every_situation(self):
+    def test_every_fault_was_injected_in_every_situation(self):
         self.assertEqual({r["situation"] for r in self.rows}, {"free", "contact", "full force"})
         self.assertGreaterEqual(len({r["what"] for r in self.rows}), 17)
         full = [r["force_max_N"] for r in self.rows if r["situation"] == "full force"]
         self.assertGreater(max(full), 0.99 * FORCE_MAX_N)
 
-    def test_no_broken_part_makes_more_force_than_the_limit(self):
+    def test_no_fault_exceeds_the_force_limit(self):
         for row in self.rows:
             self.assertLessEqual(row["force_max_N"], FORCE_MAX_N, row)
 
-    def test_what_is_promised_to_be_detected_is_at_once_and_ends_the_force(self):
+    def test_required_detections_are_immediate_and_end_the_force(self):
         promised = [r for r in self.rows if r["promised"]]
         self.assertGreaterEqual(len(promised), 21)
         for row in promised:
@@ -42,14 +42,14 @@ class Safety(unittest.TestCase):
             self.assertLessEqual(row["detected_s"], 2 * TICK_S, row)
             self.assertEqual(row["force_max_N"], 0.0, row)
 
-    def test_no_other_fault_is_named(self):
+    def test_no_other_fault_is_reported(self):
         for row in self.rows:
             if not row["promised"]:
                 self.assertLessEqual(set(row["faults"]), {"encoder-stuck"}, row)
 
 
 class Page(unittest.TestCase):
-    def test_is_as_the_sources_say(self):
+    def test_document_matches_the_sources(self):
         done = subprocess.run([SCRIPT, "--check"], capture_output=True, text=True, check=False)
         self.assertEqual(done.returncode, 0, done.stderr)
 

@@ -1,11 +1,10 @@
-"""A simulated board in a process of its own, for tests of what talks to boards."""
+"""A simulated board in a separate process, for tests of the verbs that use a board."""
 import math
-import pathlib
 import subprocess
 
 
 def write_ball(path, points=3000):
-    """Of 3 cm radius, with normals."""
+    """A ball of 3 cm radius, with normals."""
     rows = ["x,y,z,nx,ny,nz"]
     for i in range(points):
         z = 1 - 2 * (i + 0.5) / points

@@ -1,4 +1,4 @@
-# Installs BUILD to an empty PREFIX and looks whether all is there.
+# Installs BUILD to an empty PREFIX and checks for programs and headers.
 file(REMOVE_RECURSE ${PREFIX})
 execute_process(COMMAND ${CMAKE_COMMAND} --install ${BUILD} --prefix ${PREFIX}
   OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
@@ -7,6 +7,7 @@ foreach(file
     libexec/tactree/tactree-import-mesh
     include/tactree/core/blob.hpp
     include/tactree/hal/board.hpp
+    include/tactree/board_link/session/session.hpp
     include/tactree/builder/model.hpp
     include/tactree/builder/version.hpp
     include/tactree/host/board.hpp

@@ -1,4 +1,4 @@
-"""examples/integrator, built: two programs for the controller, without heap, and as short as is told.
+"""The programs of examples/integrator link no heap, and its board header is as short as docs/PORTING.md states.
 
 usage: integrator_test.py SOURCES BUILD
 """
@@ -17,4 +17,4 @@ for program in ("hc3-main.elf", "hc3-conformance.elf"):
     assert any("Controller4step" in s for s in symbols) == (program == "hc3-main.elf")
     for heap in ("malloc", "_malloc_r", "_Znwj"):
         assert heap not in symbols, f"{program}: {heap}"
-print(f"the contracts in {lines} lines")
+print(f"hc3_board.hpp implements the contracts in {lines} lines")

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The example of an application feels the ball of a simulated board.
+"""examples/touch displays the force of a simulated board.
 
 usage: touch_test.py TACTREE TOUCH
 """

@@ -1,5 +1,5 @@
-// A board that gets a wrong blob boots, tells, and gives no force. An emulated session that cannot
-// go on ends with an error that names the board, the cause and the remedy.
+// A board with an invalid blob boots, reports it, and applies no force. An emulated session that
+// cannot continue ends with an error that names the board, the cause and the remedy.
 
 #include <cstdlib>
 #include <cstring>
@@ -21,7 +21,7 @@ Bytes good_blob() {
   return {bytes.begin(), bytes.end()};
 }
 
-/// The text of the error that the action ends with.
+/// Message of the error that the action throws.
 std::string error_of(const std::function<void()>& action) {
   try {
     action();
@@ -37,7 +37,7 @@ void expect_in(const std::string& words, const std::string& text) {
 
 class BlobOnBoard : public OnBoard {
  protected:
-  /// Boots with these bytes, arms in vain, and returns what the board said of the blob.
+  /// Boots with these bytes, tries to arm, and returns the status of the blob.
   static core::BlobStatus refusal(const Bytes& blob) {
     return start_without_force(blob, options()).blob;
   }
@@ -63,31 +63,31 @@ class BlobOnBoard : public OnBoard {
 };
 TACTREE_ON_EVERY_BOARD(BlobOnBoard);
 
-TEST_P(BlobOnBoard, WhichIsNoneIsRefused) {
+TEST_P(BlobOnBoard, IsRefusedIfMissing) {
   EXPECT_EQ(refusal({}), core::BlobStatus::kTooShort);  // the area reads as zeros
   EXPECT_EQ(refusal(Bytes(4096, std::byte{0xFF})), core::BlobStatus::kBadMagic);
 }
 
-TEST_P(BlobOnBoard, ThatWasCutIsRefused) {
+TEST_P(BlobOnBoard, IsRefusedIfTruncated) {
   Bytes blob = good_blob();
   blob.resize(blob.size() / 2);
   EXPECT_EQ(refusal(blob), core::BlobStatus::kBadChecksum);
 }
 
-TEST_P(BlobOnBoard, WithOneWrongBitIsRefused) {
+TEST_P(BlobOnBoard, IsRefusedWithOneWrongBit) {
   Bytes blob = good_blob();
   blob[blob.size() - 5] ^= std::byte{4};
   EXPECT_EQ(refusal(blob), core::BlobStatus::kBadChecksum);
 }
 
-TEST_P(BlobOnBoard, LargerThanTheFlashIsRefusedByTheBoard) {
+TEST_P(BlobOnBoard, IsRefusedByTheBoardIfLargerThanTheFlash) {
   Bytes blob = good_blob();
   const std::uint32_t size = board().blob_bytes_max + 4;
   std::memcpy(blob.data() + offsetof(core::BlobHeader, total_bytes), &size, 4);
   EXPECT_EQ(refusal(blob), core::BlobStatus::kBadSize);
 }
 
-TEST_P(BlobOnBoard, LargerThanTheFlashIsRefusedBeforeBooting) {
+TEST_P(BlobOnBoard, IsRefusedBeforeBootingIfLargerThanTheFlash) {
   const std::size_t size = board().blob_bytes_max + std::size_t{1};
   const std::unique_ptr<std::byte[]> untouched(new std::byte[size]);
   const std::span<const std::byte> blob(untouched.get(), size);
@@ -97,12 +97,12 @@ TEST_P(BlobOnBoard, LargerThanTheFlashIsRefusedBeforeBooting) {
   expect_in("--flash-budget " + std::to_string(board().blob_bytes_max), error);
 }
 
-TEST_P(BlobOnBoard, IsNotTouchedByADamagedProgram) {
+TEST_P(BlobOnBoard, IsNotReadByADamagedProgram) {
   std::ifstream in(built(board(), "firmware", board().name), std::ios::binary);
   std::string image((std::istreambuf_iterator<char>(in)), {});
   const std::size_t identity = image.find(std::string("TACTIMG\0", 8));
   ASSERT_NE(identity, std::string::npos);
-  image[identity + 30] ^= 1;  // behind the board's name: in no one's way
+  image[identity + 30] ^= 1;  // behind the board's name: unused
   const auto file =
       std::filesystem::path(testing::TempDir()) / (std::string("damaged-") + board().name + ".elf");
   std::ofstream(file, std::ios::binary) << image;
@@ -112,7 +112,7 @@ TEST_P(BlobOnBoard, IsNotTouchedByADamagedProgram) {
   std::filesystem::remove(file);
 }
 
-TEST_P(BlobOnBoard, IsNotTouchedWhereVariablesDoNotHold) {
+TEST_P(BlobOnBoard, IsNotReadIfTheRamTestFails) {
   emulation::EmulationOptions forgetful = options();
   forgetful.image = built(board(), "tests/on_target", std::string("forgetful-") + board().name);
   if (!std::filesystem::exists(forgetful.image)) {
@@ -124,7 +124,7 @@ TEST_P(BlobOnBoard, IsNotTouchedWhereVariablesDoNotHold) {
 class Failure : public OnBoard {};
 TACTREE_ON_EVERY_BOARD(Failure);
 
-TEST_P(Failure, AnImageThatFaultsIsTold) {
+TEST_P(Failure, ReportsAnImageThatFaults) {
   emulation::EmulationOptions faulty = options();
   faulty.image = built(board(), "tests/on_target", std::string("faulty-") + board().name);
   const std::string error = error_of([&] {
@@ -139,7 +139,7 @@ TEST_P(Failure, AnImageThatFaultsIsTold) {
   expect_in("pc 0x", error);
 }
 
-TEST_P(Failure, ASilentBoardIsGivenUp) {
+TEST_P(Failure, ReportsASilentBoard) {
   emulation::EmulationOptions silent = options();
   silent.image = built(board(), "tests/on_target", std::string("silent-") + board().name);
   silent.start_limit = std::chrono::milliseconds(500);
@@ -147,20 +147,20 @@ TEST_P(Failure, ASilentBoardIsGivenUp) {
   expect_in("silent for 0.5 s", error);
 }
 
-TEST_P(Failure, AnImageOfAnotherBoardIsRefused) {
+TEST_P(Failure, RefusesAnImageOfAnotherBoard) {
   for (const emulation::BoardDescription& other : emulation::boards()) {
     if (other.toolchain != std::string(board().toolchain) || other.name == board().name) {
       continue;
     }
     emulation::EmulationOptions wrong = options();
     wrong.image = built(other, "firmware", other.name);
-    // It may not even start on this board.
+    // It may not start on this board.
     wrong.start_limit = std::chrono::milliseconds(2000);
     EXPECT_NE(error_of([&] { EmulatedTarget(board(), good_blob(), wrong); }), "no error");
   }
 }
 
-TEST_P(Failure, AFileThatIsNoImageIsRefused) {
+TEST_P(Failure, RefusesAFileThatIsNotAnImage) {
   emulation::EmulationOptions wrong = options();
   wrong.image = TACTREE_BUILD "/does-not-exist.elf";
   const std::string error = error_of([&] { EmulatedTarget(board(), good_blob(), wrong); });
@@ -168,7 +168,7 @@ TEST_P(Failure, AFileThatIsNoImageIsRefused) {
   expect_in("does-not-exist", error);
 }
 
-TEST_P(Failure, WithoutTheEmulatorTheErrorTellsThePackage) {
+TEST_P(Failure, NamesThePackageOfAMissingEmulator) {
   const std::string path = std::getenv("PATH");
   ::setenv("PATH", "/nonexistent", 1);
   const std::string error = error_of([&] { EmulatedTarget(board(), good_blob(), options()); });
@@ -176,13 +176,13 @@ TEST_P(Failure, WithoutTheEmulatorTheErrorTellsThePackage) {
   expect_in(std::string("apt-get install ") + board().package, error);
 }
 
-TEST_P(Failure, WithoutTheImageTheErrorTellsHowToBuildIt) {
+TEST_P(Failure, NamesTheCommandsThatBuildAMissingImage) {
   const std::string error = error_of([&] { (void)emulation::find_image(board(), "/nonexistent"); });
   expect_in(std::string(board().name) + ".elf", error);
   expect_in(std::string("cmake --build --preset ") + board().toolchain, error);
 }
 
-TEST(Boards, HaveNamesOfTheirOwn) {
+TEST(Boards, HaveUniqueNames) {
   for (const emulation::BoardDescription& board : emulation::boards()) {
     EXPECT_EQ(emulation::find_board(board.name), &board);
   }

@@ -1,5 +1,5 @@
 #pragma once
-// What the tests of emulated boards share.
+// Shared by the tests of emulated boards.
 
 #include <gtest/gtest.h>
 
@@ -12,20 +12,19 @@
 
 namespace tactree::test {
 
-/// The cos sheet of the paper: contact, rims and slopes.
+/// The cos sheet of the paper: contact, boundaries and slopes.
 inline const Shape& touched_shape() {
   static const Shape shape = cos_sheet();
   return shape;
 }
 
-/// A file of the firmware's builds: folder "firmware" or "tests/on_target".
+/// A file of the firmware builds; folder: "firmware" or "tests/on_target".
 inline std::filesystem::path built(const emulation::BoardDescription& board,
                                    const std::string& folder, const std::string& name) {
   return std::filesystem::path(TACTREE_BUILD) / board.toolchain / folder / (name + ".elf");
 }
 
-/// The board's firmware; where that knows what a tick costs, as it was before: it admits every
-/// model.
+/// The firmware of the board without the costs of a tick: it admits every model.
 inline std::filesystem::path bare_firmware(const emulation::BoardDescription& board) {
   const std::filesystem::path bare = built(board, "firmware/bare", board.name);
   return std::filesystem::exists(bare) ? bare : built(board, "firmware", board.name);
@@ -39,7 +38,7 @@ inline std::vector<const emulation::BoardDescription*> all_boards() {
   return boards;
 }
 
-/// A test for each board; skipped where the board's image is not built.
+/// A test for each board; skipped if its image is not built.
 class OnBoard : public testing::TestWithParam<const emulation::BoardDescription*> {
  protected:
   void SetUp() override {

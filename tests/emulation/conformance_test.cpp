@@ -1,4 +1,4 @@
-// The conformance program runs on every board, and finds the wrong one out there too.
+// The conformance program passes on every board and fails on a defective one.
 
 #include <functional>
 
@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kTicksMax = 2000;
 
-/// Boots the program and drives it until it ends; what it printed.
+/// Boots the program and runs it to its end; returns its output.
 std::string verdict(const emulation::BoardDescription& board,
                     const std::function<void(hal::sim::SimBoard&)>& prepare) {
   emulation::EmulationOptions options;
@@ -36,13 +36,13 @@ std::string verdict(const emulation::BoardDescription& board,
 class Conformance : public OnBoard {};
 TACTREE_ON_EVERY_BOARD(Conformance);
 
-TEST_P(Conformance, TheBoardPasses) {
+TEST_P(Conformance, PassesOnTheBoard) {
   const std::string found = verdict(board(), [](hal::sim::SimBoard&) {});
   EXPECT_NE(found.find("exit code 0"), std::string::npos) << found;
   EXPECT_NE(found.find("conformance passed"), std::string::npos) << found;
 }
 
-TEST_P(Conformance, AWrongBoardIsFoundOut) {
+TEST_P(Conformance, FailsOnADefectiveBoard) {
   const std::string found = verdict(board(), [](hal::sim::SimBoard& b) {
     b.encoders().inject(1, hal::sim::EncoderFault::kDisconnected);
     b.safety_inputs().hold_dead_man(true);

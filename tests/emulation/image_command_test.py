@@ -1,4 +1,4 @@
-"""`tactree image`: each format read by decoders of this file's own, and everything it has to refuse.
+"""`tactree image`: every format, read by independent decoders, and every refusal.
 
 usage: image_command_test.py TACTREE BLOB BUILD_FOLDER
 BUILD_FOLDER holds the builds of the firmware; what needs them is skipped without.
@@ -152,37 +152,37 @@ class Image(unittest.TestCase):
 
     # ---- each format holds every byte at its address, and no other
 
-    def test_hex(self):
+    def test_writes_hex(self):
         self.assertEqual(from_hex(self.make("hex")), self.expected())
 
-    def test_uf2(self):
+    def test_writes_uf2(self):
         self.equal_but_for_erased(from_uf2(self.make("uf2"), FAMILY), self.expected())
 
-    def test_bin(self):
+    def test_writes_bin(self):
         self.equal_but_for_erased(from_bin(self.make("bin")), self.expected())
         self.assertEqual(len(self.make("bin")), PLACE - CODE + len(GOOD_BLOB))
 
-    def test_dfu(self):
+    def test_writes_dfu(self):
         self.equal_but_for_erased(from_dfu(self.make("dfu")), self.expected())
         from_dfu(self.make("dfu", "--usb", "0483:df11"), (0x0483, 0xDF11))
 
-    def test_elf(self):
+    def test_writes_elf(self):
         self.assertEqual(from_elf(self.make("elf")), self.expected())
 
-    def test_the_firmware_alone(self):
+    def test_writes_the_firmware_alone(self):
         self.assertEqual(self.make("elf", blob=None), firmware())
         self.assertEqual(from_hex(self.make("hex", blob=None)), from_elf(firmware()))
 
-    def test_code_of_every_length(self):
+    def test_writes_code_of_every_length(self):
         for size in range(0, 40):
             elf = firmware(bytes(range(size)))
             self.assertEqual(from_hex(self.make("hex", elf=elf)), self.expected(elf))
 
-    def test_code_across_64_kib_off_the_grid_of_16(self):
+    def test_writes_unaligned_code_across_64_kib(self):
         elf = firmware(bytes(range(256)) * 300, address=CODE + 4)
         self.assertEqual(from_hex(self.make("hex", elf=elf)), self.expected(elf))
 
-    def test_format_by_option_and_report(self):
+    def test_selects_the_format_by_option_and_reports_it(self):
         data = self.make("image", "--format", "uf2", "--json", self.folder / "r.json", "--board", "stm32f405")
         from_uf2(data, FAMILY)
         report = json.loads((self.folder / "r.json").read_text())
@@ -192,28 +192,28 @@ class Image(unittest.TestCase):
 
     # ---- refused before there is a file to flash
 
-    def test_wrong_board(self):
+    def test_refuses_an_image_of_another_board(self):
         self.refused("wrong board", "for stm32f405, not for mps2-an500", arguments=("--board", "mps2-an500"))
 
-    def test_blob_too_large(self):
+    def test_refuses_a_blob_that_is_too_large(self):
         room = len(GOOD_BLOB) - 1
         small = firmware(place=(PLACE, PLACE + room))
         self.refused("too large for stm32f405", f"--flash-budget {room}", elf=small)
         self.make("hex", elf=firmware(place=(PLACE, PLACE + len(GOOD_BLOB))))
 
-    def test_blob_cut_or_corrupt(self):
+    def test_refuses_a_truncated_or_corrupt_blob(self):
         self.refused("refused", "shorter than a blob's header", blob=GOOD_BLOB[:16])
         self.refused("refused", blob=GOOD_BLOB[:-1])
         self.refused("refused", blob=GOOD_BLOB + b"\0")
         self.refused("refused", "checksum", blob=GOOD_BLOB[:-5] + bytes([GOOD_BLOB[-5] ^ 1]) + GOOD_BLOB[-4:])
         self.refused("refused", "tactree build", blob=b"ply\nformat ascii 1.0\n" * 100)
 
-    def test_image_cut_at_any_byte(self):
+    def test_refuses_an_image_truncated_at_any_byte(self):
         whole = firmware()
         for size in [*range(0, 130), len(whole) // 2, len(whole) - 1]:
             self.refused("firmware.elf", "cut", elf=whole[:size])
 
-    def test_image_with_a_wrong_bit_anywhere_in_its_program(self):
+    def test_refuses_an_image_with_a_flipped_bit_in_its_program(self):
         whole = firmware()
         for at in range(148, len(whole), 7):
             wrong = bytearray(whole)
@@ -223,24 +223,24 @@ class Image(unittest.TestCase):
         wrong[200] ^= 1
         self.refused("damaged: its checksum does not match", elf=wrong)
 
-    def test_image_that_is_none(self):
+    def test_refuses_a_file_that_is_not_an_image(self):
         self.refused("not an ELF file", elf=b"\x7fELG" + firmware()[4:])
         self.refused("not a program for", elf=firmware(machine=62))
-        self.refused("does not tell which board", elf=firmware(mark=b"TACTICS"))
-        self.refused("more than once", elf=firmware(identity() + bytes(4)))
-        self.refused("more than once, or wrongly", elf=firmware(board=b"b" * 24))
+        self.refused("it has no identity with the name of its board", elf=firmware(mark=b"TACTICS"))
+        self.refused("several identities", elf=firmware(identity() + bytes(4)))
+        self.refused("malformed name of the board", elf=firmware(board=b"b" * 24))
         self.refused("are impossible", elf=firmware(place=(PLACE_END, PLACE)))
         self.refused("outside the board's code", elf=firmware(address=CODE - 4))
         self.refused("outside the board's code", elf=firmware(bytes(0x20000)))
 
-    def test_a_gap_no_flat_file_can_hold(self):
+    def test_refuses_a_gap_too_large_for_a_flat_file(self):
         far = firmware(place=(0x60000000, 0x61000000))
         for ending in ("bin", "dfu"):
             self.refused("use .elf, .hex or .uf2", elf=far, ending=ending)
         self.make("hex", elf=far)
 
-    def test_bad_usage(self):
-        self.refused("its ending tells no format", ending="img", code=2)
+    def test_refuses_bad_usage(self):
+        self.refused("cannot infer the format from the extension", ending="img", code=2)
         self.refused("--usb", arguments=("--usb", "0483df11"), code=2)
         self.refused("--usb", arguments=("--usb", "04:3:df11"), code=2)
 
@@ -254,7 +254,7 @@ class Image(unittest.TestCase):
                 return image.read_bytes()
         return self.skipTest(f"{image} is not built")
 
-    def test_every_board(self):
+    def test_merges_an_image_for_every_board(self):
         boards = sorted(BUILD.glob("*/firmware/*.elf"))
         if not boards:
             self.skipTest("no firmware is built")
@@ -273,7 +273,7 @@ class Image(unittest.TestCase):
             self.assertEqual(sections.pop(".blob"), from_bin(GOOD_BLOB, place))
             self.assertEqual(sections, from_elf(elf, sections=True))
 
-    def test_a_merged_image_boots_and_takes_its_model(self):
+    def test_a_merged_image_boots_with_its_model(self):
         elf = self.real("cortex-m4f", "stm32f405")
         for ending in ("elf", "hex"):
             self.make(ending, elf=elf)

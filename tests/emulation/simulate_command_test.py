@@ -1,4 +1,4 @@
-"""`tactree simulate --board NAME` as a user meets it: options, report, exit codes, nothing left over.
+"""`tactree simulate --board NAME` from the command line: options, report, exit codes, no process left behind.
 
 usage: simulate_command_test.py TACTREE BLOB
 """
@@ -45,11 +45,11 @@ class SimulateOnABoard(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         return json.loads(file.read_text()), done.stdout
 
-    def test_report_and_trace_are_those_of_the_host(self):
+    def test_report_and_trace_equal_the_host(self):
         for mode in ("surface", "paper"):
             common = ("--mode", mode, "--rate", 2000, "--stiffness", 345.6, "--static-friction", 0.5)
             host, _ = self.report(*common, "--trace", self.folder / "host.csv")
-            board, told = self.report(*common, "--trace", self.folder / "board.csv", "--board", BOARD,
+            board, printed = self.report(*common, "--trace", self.folder / "board.csv", "--board", BOARD,
                                       "--plot", self.folder / "board.svg")
             self.assertEqual((self.folder / "host.csv").read_text(),
                              (self.folder / "board.csv").read_text())
@@ -62,22 +62,22 @@ class SimulateOnABoard(unittest.TestCase):
             self.assertGreaterEqual(counts["bound"], counts["max"])
             self.assertGreater(counts["max"], counts["mean"])
             self.assertGreater(counts["mean"], 500)
-            self.assertIn(f"{counts['max']} at most", told)
+            self.assertIn(f"{counts['max']} at most", printed)
             self.assertIn("tactree::core::", counts["functions"][0]["name"])
 
-    def test_a_body_that_moves_is_rendered_as_on_the_host(self):
+    def test_a_moving_body_is_rendered_as_on_the_host(self):
         scene = self.folder / "scene.json"
         scene.write_text(json.dumps({"bodies": [
             {"blob": 0, "angular_velocity_rad_s": [0.2, 0.1, 1.5], "linear_velocity_m_s": [0, 0, 0.004],
              "until_s": 0.9}]}))
         at_rest, _ = self.report()
         host, _ = self.report("--scene", scene)
-        board, told = self.report("--scene", scene, "--board", BOARD)
+        board, printed = self.report("--scene", scene, "--board", BOARD)
         self.assertGreater(host["contact_ticks"], 100)
         self.assertNotEqual(host["trace_crc32"], at_rest["trace_crc32"])
         self.assertEqual(board["trace_crc32"], host["trace_crc32"])
         self.assertEqual(board["bodies"], host["bodies"])
-        self.assertIn("body 0", told)
+        self.assertIn("body 0", printed)
         self.assertGreater(board["instructions"]["mean"], 500)
 
     def test_more_than_one_body_is_refused(self):
@@ -86,7 +86,7 @@ class SimulateOnABoard(unittest.TestCase):
         self.assertIn(f"--board {BOARD}: a board has one blob in its flash, the scene has 2 bodies "
                       "(use --board host", done.stderr)
 
-    def test_image_missing(self):
+    def test_reports_a_missing_image(self):
         done = tactree(BLOB, "--board", BOARD, "--firmware", self.folder)
         self.assertEqual(done.returncode, 1)
         self.assertIn("cmake --build --preset cortex-m7", done.stderr)
@@ -95,7 +95,7 @@ class SimulateOnABoard(unittest.TestCase):
         self.assertEqual(done.returncode, 1)
         self.assertIn(str(self.folder), done.stderr)
 
-    def test_emulator_missing(self):
+    def test_reports_a_missing_emulator(self):
         done = tactree(BLOB, "--board", BOARD, env={**os.environ, "PATH": str(self.folder)})
         self.assertEqual(done.returncode, 1)
         self.assertIn("apt-get install qemu-system-arm", done.stderr)
@@ -105,7 +105,7 @@ class SimulateOnABoard(unittest.TestCase):
         self.assertEqual(done.returncode, 2)
         self.assertIn(BOARD, done.stderr)
 
-    def test_configuration_refused_as_on_the_host(self):
+    def test_refuses_the_configurations_the_host_refuses(self):
         arguments = (BLOB, "--seconds", 1, "--stiffness", 50000)
         host = tactree(*arguments)
         board = tactree(*arguments, "--board", BOARD)
@@ -113,7 +113,7 @@ class SimulateOnABoard(unittest.TestCase):
         self.assertIn("stability limit", board.stderr)
         self.assertEqual(board.stderr, host.stderr)
 
-    def test_killed_it_takes_the_emulator_along(self):
+    def test_the_emulator_ends_with_a_killed_program(self):
         with subprocess.Popen([TACTREE, "simulate", BLOB, "--seconds", "3000", "--board", BOARD],
                               stdout=subprocess.DEVNULL) as process:
             children = []

@@ -1,4 +1,4 @@
-// The controller of a board does what that of the host does, to the bit, and always the same.
+// The controller on a board computes the same trace as on the host, to the bit, in every run.
 
 #include <memory>
 #include <optional>
@@ -35,7 +35,7 @@ simulation::HandPath path() { return simulation::make_script("rub", touched_shap
 simulation::Setup setup_of(core::RenderMode mode) {
   simulation::Setup setup;
   setup.controller.mode = mode;
-  setup.controller.stiffness_N_m = 612.3F;  // what does not arrive to the bit shows
+  setup.controller.stiffness_N_m = 612.3F;  // a value that is not a power of two shows lost bits
   setup.controller.static_friction = 0.37F;
   setup.board.encoders.latency_ticks = 1;
   setup.board.motors.latency_ticks = 1;
@@ -47,7 +47,7 @@ simulation::Summary run_on_host(const simulation::Setup& setup) {
   return record(sim);
 }
 
-/// It turns, moves sideways and into the hand; for a while it is not there.
+/// It rotates, moves sideways and towards the hand; for a while it is absent.
 simulation::SceneBody moving_body() {
   const Eigen::Isometry3d begin(Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitY()));
   simulation::SceneBody body;
@@ -87,7 +87,7 @@ RunResult run_on(const emulation::BoardDescription& board, emulation::EmulationO
 class Trace : public OnBoard {};
 TACTREE_ON_EVERY_BOARD(Trace);
 
-TEST_P(Trace, IsTheHostsInBothModes) {
+TEST_P(Trace, EqualsTheHostInBothModes) {
   for (const core::RenderMode mode : {core::RenderMode::kSurface, core::RenderMode::kPaper}) {
     const simulation::Setup setup = setup_of(mode);
     const simulation::Summary expected = run_on_host(setup);
@@ -101,7 +101,7 @@ TEST_P(Trace, IsTheHostsInBothModes) {
   }
 }
 
-TEST_P(Trace, OfABodyThatMovesIsTheHostsInBothModes) {
+TEST_P(Trace, OfAMovingBodyEqualsTheHostInBothModes) {
   for (const core::RenderMode mode : {core::RenderMode::kSurface, core::RenderMode::kPaper}) {
     const simulation::Setup setup = setup_of(mode);
     const simulation::Summary expected = run_on_host(setup, moving_body());
@@ -116,14 +116,14 @@ TEST_P(Trace, OfABodyThatMovesIsTheHostsInBothModes) {
   }
 }
 
-TEST_P(Trace, IsTheHostsAtFourKilohertz) {
+TEST_P(Trace, EqualsTheHostAtFourKilohertz) {
   simulation::Setup setup = setup_of(core::RenderMode::kSurface);
   setup.controller.rate_hz = 4000.0F;
   simulation::Simulation on_host(touched_shape().bytes(), setup, path());
   EXPECT_EQ(run_on(board(), options(), setup).summary.trace_crc32, record(on_host).trace_crc32);
 }
 
-TEST_P(Trace, AgainTakesTheSameInstructionsInEveryTick) {
+TEST_P(Trace, TakesTheSameInstructionsInEveryRun) {
   const simulation::Setup setup = setup_of(core::RenderMode::kSurface);
   const RunResult first = run_on(board(), options(), setup);
   const RunResult second = run_on(board(), options(), setup);
@@ -142,8 +142,8 @@ TEST_P(Trace, AgainTakesTheSameInstructionsInEveryTick) {
   EXPECT_EQ(sum, first.counts.total);
 }
 
-// A core a hundred times too slow: the ticks run late, which is a fault, and there is no force.
-TEST_P(Trace, OfABoardThatIsTooSlowIsAFault) {
+// On a core a hundred times too slow, ticks end late: a fault, and no force.
+TEST_P(Trace, OfABoardThatIsTooSlowEndsWithAFault) {
   emulation::EmulationOptions slow = options();
   slow.instruction_shift = 10;
   auto target = std::make_unique<emulation::EmulatedTarget>(board(), touched_shape().bytes(), slow);

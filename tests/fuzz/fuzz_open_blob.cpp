@@ -1,8 +1,8 @@
-// Promises B1 and B2: whatever the bytes are, open_blob() reads only them; and once it has accepted
-// them, no query reads outside, loops, or says something that is not so.
+// Requirements B1 and B2: open_blob() reads only the bytes of the blob; for an accepted blob, no
+// query reads outside of it, loops, or returns a wrong result.
 //
-// The input is a blob. The mutator changes words as often as bytes, and seals every other result:
-// behind a wrong checksum the structural checks would never be reached.
+// The input is a blob. The mutator changes words as often as bytes and recomputes the checksum of
+// every other result: with a wrong checksum the structural checks are not reached.
 
 #include <algorithm>
 #include <bit>
@@ -16,6 +16,7 @@
 #include <span>
 #include <vector>
 
+#include "leaf_set.hpp"
 #include "tactree/builder/model.hpp"
 #include "tactree/core/blob.hpp"
 #include "tactree/core/crc32.hpp"
@@ -29,7 +30,7 @@ namespace {
 
 using namespace tactree::core;
 
-// std::abort() in every build: these are findings, not assertions.
+// std::abort() in every build type, unlike an assertion.
 void require(bool good, const char* sentence) {
   if (!good) {
     std::fprintf(stderr, "finding: %s\n", sentence);
@@ -37,7 +38,7 @@ void require(bool good, const char* sentence) {
   }
 }
 
-/// The bytes in memory that ends where they end.
+/// A copy of the bytes in memory of exactly that size, for AddressSanitizer.
 class ExactCopy {
  public:
   ExactCopy(const std::uint8_t* data, std::size_t size)
@@ -79,7 +80,7 @@ class Examination {
   }
 
  private:
-  // Every leaf and point once, in order, each where its leaf is.
+  // Every leaf and point once, in order, each point within its leaf.
   void walk() {
     std::uint32_t leaves = 0;
     for (LeafCursor cursor(view_); !cursor.done(); cursor.next()) {
@@ -133,7 +134,7 @@ class Examination {
         };
         return {corner(h.root_min[0]), corner(h.root_min[1]), corner(h.root_min[2])};
       }
-      case 2: {  // anywhere in and around the root
+      case 2: {  // in or around the root
         const auto axis = [&](std::uint32_t i) {
           const float edge = h.step_m * static_cast<float>(kLeafUnits << h.depth);
           return h.step_m * static_cast<float>(h.root_min[i]) +
@@ -141,7 +142,7 @@ class Examination {
         };
         return {axis(0), axis(1), axis(2)};
       }
-      case 3:  // any float there is
+      case 3:  // any float
         return {std::bit_cast<float>(static_cast<std::uint32_t>(random_())),
                 std::bit_cast<float>(static_cast<std::uint32_t>(random_())),
                 std::bit_cast<float>(static_cast<std::uint32_t>(random_()))};
@@ -160,8 +161,7 @@ class Examination {
     require(view_.step_m() * static_cast<float>(site.x) <= probe.x &&
                 probe.x < view_.step_m() * static_cast<float>(site.x + 1),
             "to_lattice() is off");
-    LeafSet set;
-    find_leaves_within(view_, probe, 0.0F, set);
+    const tactree::test::LeafSet set = tactree::test::leaves_within(view_, probe, 0.0F);
     if (find_leaf(view_, site, leaf)) {
       require(set.count > 0 && set.leaves[0].number == leaf.number,
               "the eight-corner rule misses the leaf of the centre");
@@ -238,7 +238,7 @@ class Examination {
     require(points_within(view_, make_probe(0), r, room).count == 0, "points beyond the reach");
   }
 
-  // What the controller does with a model that it has taken.
+  // The steps of the controller with an accepted model.
   void render() {
     Configuration configuration;
     const bool surface = surface_support(view_) == SurfaceSupport::kOk;
@@ -269,7 +269,7 @@ void examine_empty(const BlobView& view) {
   require(LeafCursor(view).done(), "the empty model has a leaf");
 }
 
-// Numbers at which comparisons change their mind.
+// Values at the boundaries of comparisons.
 std::uint32_t interesting_word(std::uint32_t old, std::minstd_rand& random) {
   static constexpr std::uint32_t kWords[] = {0,          1,          2,          3,
                                              8,          0x7FFFFFFF, 0x80000000, 0xFFFFFFFF,
@@ -300,7 +300,7 @@ void change_word(std::span<std::byte> blob, std::minstd_rand& random) {
   }
   std::byte* const at = blob.data() + 4 * (random() % range);
   std::uint32_t word = 0;
-  if (random() % 8 == 0) {  // a word from elsewhere
+  if (random() % 8 == 0) {  // a word from another place
     std::memcpy(&word, blob.data() + 4 * (random() % words), 4);
   } else {
     std::memcpy(&word, at, 4);
@@ -322,7 +322,7 @@ extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, st
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
                                                std::size_t max_size, unsigned int seed) {
   std::minstd_rand random(seed);
-  (void)random();  // near seeds give near first numbers
+  (void)random();  // discards the first number, which is similar for similar seeds
   if (random() % 3 == 0) {
     size = LLVMFuzzerMutate(data, size, max_size);
   } else {

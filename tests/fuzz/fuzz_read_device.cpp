@@ -1,5 +1,5 @@
-// Whatever a device file holds, it is refused with a reason, or gives figures that a configuration
-// can be made of, and that survive being written and read again.
+// Reads arbitrary bytes as a device file: it is refused with a reason, or gives parameters for a
+// configuration that do not change when written and read again.
 
 #include "command.hpp"
 #include "device_file.hpp"
@@ -14,7 +14,7 @@ cli::Device read(const fuzz::MemoryFile& file) { return cli::load_device(file.pa
 
 void examine(const cli::Device& device) {
   core::Configuration configuration;
-  configuration.device = device.figures.model;
+  configuration.device = device.preset.model;
   const core::ConfigurationStatus status = check(configuration);
   const std::int32_t counts[core::kAxes] = {1000, -1000, 0};
   if (status == core::ConfigurationStatus::kOk) {

@@ -1,14 +1,14 @@
-// Whatever a firmware image holds, it is refused with a reason, or every byte of it lies where the
-// board has its code.
+// Reads arbitrary bytes as a firmware image: it is refused with a reason, or every byte lies in the
+// code memory of the board.
 //
-// The mutator seals every other result: behind a wrong checksum nothing would be reached.
+// The mutator recomputes the checksum of every other result: a wrong one ends the checks early.
 
 #include <algorithm>
 #include <cstring>
 #include <random>
 
 #include "command.hpp"
-#include "firmware_image.hpp"
+#include "image/firmware_image.hpp"
 #include "memory_file.hpp"
 #include "tactree/core/crc32.hpp"
 
@@ -48,7 +48,7 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
                                                std::size_t max_size, unsigned int seed) {
   std::minstd_rand random(seed + 1);
   size = LLVMFuzzerMutate(data, size, max_size);
-  // Seeds are one segment that ends the file, the checksum last: seal it where it still can be.
+  // Seeds end with one segment and its checksum: recompute it if the layout is intact.
   constexpr std::size_t kSegment = 52 + 32;
   if (random() % 2 == 0 && size > kSegment + 4) {
     const auto bytes = std::as_bytes(std::span(data + kSegment, size - kSegment - 4));

@@ -1,9 +1,9 @@
-// Whatever a material file or the option itself holds, it is refused with a reason, or gives
-// materials that a blob may hold.
+// Reads arbitrary bytes as a material file or as a list of properties: it is refused with a reason
+// or gives materials that a blob may hold.
 
-#include "command.hpp"
-#include "material_file.hpp"
 #include "memory_file.hpp"
+#include "tactree/builder/read_materials.hpp"
+#include "tactree/builder/scan.hpp"
 
 namespace {
 
@@ -37,11 +37,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       is_option ? "stiffness=" + std::string(reinterpret_cast<const char*>(data) + 1, size - 1)
                 : file.path().string();
   if (option.find('\0') != std::string::npos) {
-    return 0;  // no shell can give it
+    return 0;  // no argument holds a zero byte
   }
   try {
-    examine(cli::read_materials(option));
-  } catch (const cli::CommandError& error) {
+    examine(builder::read_materials(option));
+  } catch (const builder::ReadError& error) {
     fuzz::require_reason(error.what(), is_option ? "--material" : option);
   }
   return 0;

@@ -1,5 +1,5 @@
-// Whatever a file holds, read_scan() gives a usable scan or throws ReadError; it never takes more
-// memory than it may. Meshes for the import process are left out: a process a file is too slow.
+// Reads arbitrary bytes as a scan: read_scan() returns a usable scan or throws ReadError, within
+// its memory limit. Meshes for the import process are excluded: a process per input is too slow.
 
 #include <algorithm>
 #include <string_view>
@@ -18,7 +18,7 @@ void examine(const Scan& scan) {
   require(!scan.positions.empty(), "a scan without points");
   require(!scan.format.empty(), "a scan without a format");
   require(scan.normals.empty() || scan.normals.size() == scan.positions.size(),
-          "not one normal a point");
+          "the number of normals is wrong");
   require(scan.colours.empty() || scan.colours.size() == scan.positions.size(),
           "not one colour a point");
   for (const Eigen::Vector3d& p : scan.positions) {

@@ -1,20 +1,20 @@
-// Whatever a scene file holds, it is refused with a reason, or gives bodies that a controller takes
-// at every time.
+// Reads arbitrary bytes as a scene file: it is refused with a reason, or gives bodies that a
+// controller accepts at every time.
 
 #include <cstdlib>
 #include <fstream>
 
 #include "command.hpp"
 #include "memory_file.hpp"
-#include "scene_file.hpp"
+#include "run/scene_file.hpp"
 
 namespace {
 
 using namespace tactree;
 namespace fs = std::filesystem;
 
-// A folder of its own: file names in the scene are looked for there, not among this process's
-// descriptors, of which some would wait for ever.
+// A separate folder: file names in the scene must not resolve to descriptors of this process, some
+// of which block.
 class Folder {
  public:
   Folder() {

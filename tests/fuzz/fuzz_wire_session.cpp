@@ -1,9 +1,10 @@
-// Promise P5: whatever messages come, the board reads only them, answers, and gives no force.
+// Requirement P5: for any messages, the board reads only their bytes, answers, and outputs no
+// force.
 //
-// The input is a list of messages: kind, length, payload. They are sealed here, with the session's
-// number and sequence numbers that count: behind a wrong checksum nothing would be reached. A
-// message of kind 0xFF is sent as it is, unsealed. The board has a model store on flash that counts
-// mistakes. The token of an arming is not given to the input, so the board must never be active.
+// The input is a list of messages: kind, length, payload. They get the session number, ascending
+// sequence numbers and a valid checksum here; a message of kind 0xFF is sent unchanged. The board
+// has a model store on simulated flash that counts incorrect accesses. The input does not know the
+// token for arming, so the board must never become active.
 
 #include <cstdio>
 #include <cstdlib>
@@ -11,19 +12,19 @@
 #include <vector>
 
 #include "session_rig.hpp"
+#include "tactree/board_link/store/model_store.hpp"
 #include "tactree/hal/sim/flash.hpp"
-#include "tactree/hal/store/model_store.hpp"
 
 namespace {
 
 using namespace tactree;
 using Bytes = std::vector<std::byte>;
-using Store = hal::ModelStore<hal::sim::SimFlash>;
+using Store = board_link::ModelStore<hal::sim::SimFlash>;
 
 constexpr std::uint8_t kRaw = 0xFF;
-constexpr std::size_t kMostMessages = 64;
+constexpr std::size_t kMaxMessages = 64;
 
-// std::abort() in every build: these are findings, not assertions.
+// std::abort() in every build type, unlike an assertion.
 void require(bool good, const char* sentence) {
   if (!good) {
     std::fprintf(stderr, "finding: %s\n", sentence);
@@ -38,7 +39,7 @@ Bytes sealed(std::uint8_t kind, std::uint16_t session, std::uint16_t sequence,
   return frame;
 }
 
-/// What the board sends has to be whole, whatever it was asked.
+/// Every message of the board must be complete.
 void check_replies(test::Wire& wire) {
   for (const Bytes& frame : wire.sent()) {
     core::wire::FrameDecoder decoder;
@@ -49,7 +50,7 @@ void check_replies(test::Wire& wire) {
     require(whole, "the board sent a damaged frame");
     if (decoder.header().kind == static_cast<std::uint8_t>(core::wire::MessageKind::kTelemetry)) {
       host::Telemetry telemetry;
-      require(host::decode_telemetry(decoder.payload(), telemetry), "telemetry is too short");
+      require(core::wire::decode_telemetry(decoder.payload(), telemetry), "telemetry is too short");
     }
   }
 }
@@ -66,7 +67,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   require(rig.open().ok(), "no session");
   std::uint16_t sequence = 100;
   std::span<const std::byte> left = std::as_bytes(std::span(data, size));
-  for (std::size_t i = 0; i < kMostMessages && left.size() >= 3U; ++i) {
+  for (std::size_t i = 0; i < kMaxMessages && left.size() >= 3U; ++i) {
     const auto kind = static_cast<std::uint8_t>(left[0]);
     const std::size_t wanted =
         static_cast<std::size_t>(left[1]) + 256U * (static_cast<std::size_t>(left[2]) & 1U);

@@ -1,6 +1,6 @@
 // Writes the seeds of the fuzz targets: make_seeds FOLDER
-//   open_blob/<status>.<what>   small blobs, valid and with one rule broken; all but the unsealed
-//                               ones have a right checksum
+//   open_blob/<status>.<what>   small blobs, valid or violating one rule; all but the unsealed
+//                               ones have a valid checksum
 //   read_scan/<what>            a few points in every format that is read in-process
 //   read_device, read_firmware, read_materials, read_rows, read_scene
 //                               accepted files, and texts of options
@@ -49,7 +49,7 @@ void write(const fs::path& path, const std::string& text) {
   write(path, std::as_bytes(std::span(text)));
 }
 
-// Points on a sphere along a spiral, evenly.
+// Evenly spread points on a sphere, along a spiral.
 Model sphere(int points, Profile profile, Eigen::Vector3d centre, double radius) {
   Model model;
   for (int i = 0; i < points; ++i) {
@@ -116,7 +116,7 @@ T* items_of(Bytes& blob, const tactree::core::BlobSection& section) {
   return reinterpret_cast<T*>(blob.data() + section.offset);
 }
 
-// One rule each, in the order of the validator.
+// One blob per rule, in the order of the validator.
 void write_broken_blobs(const fs::path& folder) {
   Model model = sphere(120, Profile::kPaper, {0, 0, 0}, 0.04);
   give_materials(model, 3);
@@ -225,7 +225,7 @@ void write_scans(const fs::path& folder) {
   for (int i = 0; i < 9; ++i) {
     append(floats, 0.25F * static_cast<float>(i));
   }
-  // A compressed body that holds the bytes as they are: LZF literal runs.
+  // A compressed body of LZF literal runs only.
   std::string runs;
   append(runs, static_cast<std::uint8_t>(31));
   runs += floats.substr(0, 32);
@@ -266,7 +266,7 @@ void write_devices(const fs::path& folder) {
   }
 }
 
-// One segment behind the headers; the identity ends it (firmware/runtime/identity.hpp).
+// One segment after the headers, which ends with the identity (firmware/runtime/identity.hpp).
 void write_firmware(const fs::path& folder) {
   constexpr std::uint32_t kCode = 0x08000000;
   std::string code(256, '\x42');

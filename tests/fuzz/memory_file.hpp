@@ -1,5 +1,5 @@
 #pragma once
-// What the targets of file readers share.
+// Helpers of the targets for file readers.
 
 #include <sys/mman.h>
 #include <unistd.h>
@@ -13,7 +13,7 @@
 
 namespace tactree::fuzz {
 
-// std::abort() in every build: these are findings, not assertions.
+// std::abort() in every build type, unlike an assertion.
 inline void require(bool good, const char* sentence) {
   if (!good) {
     std::fprintf(stderr, "finding: %s\n", sentence);
@@ -21,7 +21,7 @@ inline void require(bool good, const char* sentence) {
   }
 }
 
-/// "file: cause (remedy)": a refusal has a reason and does not end in the middle.
+/// Requires the form "file: cause (remedy)".
 inline void require_reason(std::string_view text, std::string_view file) {
   if (text.size() <= file.size() + 10 || text.substr(0, file.size()) != file) {
     std::fprintf(stderr, "%.*s\n", static_cast<int>(text.size()), text.data());
@@ -30,7 +30,7 @@ inline void require_reason(std::string_view text, std::string_view file) {
   require(text.size() > file.size() + 10, "a refusal without a reason");
 }
 
-/// A file that is only in memory.
+/// A file in memory.
 class MemoryFile {
  public:
   MemoryFile(const std::uint8_t* data, std::size_t size)

@@ -1,8 +1,8 @@
-// Runs a fuzz target without libFuzzer: every file of the folders, and some mutations of each.
+// Runs a fuzz target without libFuzzer: on every file of the folders, and on mutations of each.
 // usage: replay_<target> [--mutations N] FOLDER...
 //
-// The mutations are the same in every run. Exit code 1 when there was nothing to run; a finding
-// ends the program.
+// The mutations are the same in every run. Exit code 1 without any input; a finding aborts the
+// program.
 
 #include <algorithm>
 #include <cstdint>
@@ -49,7 +49,7 @@ std::vector<std::filesystem::path> files_in(const std::vector<std::string>& fold
 
 }  // namespace
 
-// What libFuzzer offers to custom mutators, in its simplest form.
+// A minimal replacement for the interface of libFuzzer to custom mutators.
 extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size,
                                         std::size_t max_size) {
   auto& random = random_numbers();

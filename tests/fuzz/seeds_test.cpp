@@ -1,4 +1,4 @@
-// The seeds are what their names say; else the fuzzer would start from nothing.
+// Checks that each seed is accepted, or refused for the rule in its name.
 
 #include <gtest/gtest.h>
 
@@ -10,11 +10,11 @@
 #include <string>
 #include <vector>
 
-#include "csv_points.hpp"
 #include "device_file.hpp"
-#include "firmware_image.hpp"
-#include "material_file.hpp"
-#include "scene_file.hpp"
+#include "image/firmware_image.hpp"
+#include "run/scene_file.hpp"
+#include "scan/read_points.hpp"
+#include "tactree/builder/read_materials.hpp"
 #include "tactree/builder/read_scan.hpp"
 #include "tactree/core/blob.hpp"
 #include "tactree/simulation/injection.hpp"
@@ -50,7 +50,7 @@ TEST(Seeds, BlobsAreAcceptedOrRefusedAsNamed) {
     EXPECT_EQ(name_of(open(entry.path())), status) << file;
     seen.insert(status);
   }
-  // Every rule but the alignment, which no file can break.
+  // Every rule except alignment, which a file cannot violate.
   EXPECT_EQ(seen.size(), static_cast<std::size_t>(BlobStatus::kBadMaterials));
 }
 
@@ -71,12 +71,12 @@ TEST(Seeds, TheFilesOfTheCommandLineAreRead) {
   }
   for (const char* name : {"one", "colours"}) {
     const std::string file = std::string(TACTREE_SEEDS "/read_materials/") + name;
-    EXPECT_NO_THROW((void)tactree::cli::read_materials(file)) << name;
+    EXPECT_NO_THROW((void)tactree::builder::read_materials(file)) << name;
   }
   const fs::path scenes = TACTREE_SEEDS "/read_scene";
   const std::string blob = TACTREE_SEEDS "/open_blob/kOk.surface";
   EXPECT_EQ(tactree::cli::read_scene(scenes / "moving", {blob}).bodies.size(), 1U);
-  EXPECT_EQ(tactree::cli::read_csv_rows<3>(TACTREE_SEEDS "/read_rows/points", "x,y,z").size(), 2U);
+  EXPECT_EQ(tactree::cli::read_points(TACTREE_SEEDS "/read_rows/points").size(), 2U);
   EXPECT_GE(seeds_of("read_rows").size(), 2U + tactree::simulation::injection_kinds().size());
 }
 

@@ -15,7 +15,7 @@ namespace {
 using namespace tactree::core;
 using wire::MessageKind;
 
-/// As fuzz_wire_session reads it.
+/// In the input format of fuzz_wire_session.
 class Session {
  public:
   void add(MessageKind kind, std::span<const std::byte> payload = {}) {
@@ -61,7 +61,7 @@ void write_each(const std::filesystem::path& folder) {
   s.write(folder / "each");
 }
 
-// Not a model: the transfer is as it should be, the check at its end refuses it.
+// Not a model: the transfer is correct, the final check refuses the data.
 void write_model(const std::filesystem::path& folder) {
   const std::vector<std::byte> model(600, std::byte{0x5A});
   Session s;

@@ -1,5 +1,5 @@
 #pragma once
 #include <filesystem>
 
-/// Seeds of fuzz_wire_session: each message once, and a model written as it should be.
+/// Seeds of fuzz_wire_session: each message once, and the correct transfer of a model.
 void write_wire_sessions(const std::filesystem::path& folder);

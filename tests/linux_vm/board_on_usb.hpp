@@ -21,7 +21,7 @@ namespace tactree::vm_test {
 using Clock = std::chrono::steady_clock;
 inline constexpr std::chrono::seconds kPatience{120};  // machines that build may stand still
 
-/// False: it did not come true in time.
+/// False: timeout.
 template <class Condition>
 [[nodiscard]] bool eventually(Condition condition) {
   const Clock::time_point end = Clock::now() + kPatience;
@@ -112,7 +112,7 @@ class BoardOnUsb {
   std::thread thread_;
 };
 
-/// A client over a transport, moved on by whoever waits.
+/// A client over a transport; waiting functions advance it.
 class Application {
  public:
   explicit Application(std::unique_ptr<host::UsbTransport> transport)
@@ -148,7 +148,7 @@ class Application {
   host::Response ask(core::wire::MessageKind kind) {
     return await(client_.send(kind, std::span<const std::byte>(), now_us()));
   }
-  /// As another program than all before: the board tells them by this number.
+  /// Acts as a new program: the board distinguishes programs by this number.
   host::Response open() {
     static std::uint32_t programs = 0;
     return await(client_.open(0, ++programs, now_us()));
@@ -164,7 +164,7 @@ class Application {
   std::uint64_t received_ = 0;
 };
 
-/// Waits until the board is there, and opens it.
+/// Waits until the board is connected, and opens it.
 [[nodiscard]] inline std::unique_ptr<host::UsbTransport> open_board() {
   std::unique_ptr<host::UsbTransport> transport;
   std::string why;

@@ -119,7 +119,7 @@ class Device {
     }
   }
 
-  // In each step: where a program asks for a bias, this chip takes it for the level.
+  // In each step: if a program requests a bias, this chip sets the level to it.
   void switches() {
     chip_.pull(number(Wire::kGood), true);
     chip_.pull(number(Wire::kDeadMan), hands_.dead_man);
@@ -133,7 +133,7 @@ class Device {
       }
       hands_.stop_to_off_ns = now_ns() - begin;
     }
-    // A relay follows after a while; what it says is what the motors have.
+    // A relay switches the power after a delay; its state is that of the motors.
     const bool on = chip_.level(number(Wire::kEnable));
     power_steps_ = on ? power_steps_ + 1 : 0;
     chip_.pull(number(Wire::kReadBack), power_steps_ > kPowerDelaySteps);
@@ -278,12 +278,12 @@ ControlledDevice::~ControlledDevice() {
 void ControlledDevice::move_hand(const std::array<double, 3>& to_m, double speed_m_s) {
   constexpr double kTick_s = 1e-3;
   std::array<double, 3> from{};
-  double way = 0.0;
+  double squared_m2 = 0.0;
   for (std::size_t i = 0; i < kAxes; ++i) {
     from[i] = hands_->hand_m[i];
-    way += (to_m[i] - from[i]) * (to_m[i] - from[i]);
+    squared_m2 += (to_m[i] - from[i]) * (to_m[i] - from[i]);
   }
-  const int steps = 1 + static_cast<int>(std::sqrt(way) / speed_m_s / kTick_s);
+  const int steps = 1 + static_cast<int>(std::sqrt(squared_m2) / speed_m_s / kTick_s);
   for (int k = 1; k <= steps; ++k) {
     for (std::size_t i = 0; i < kAxes; ++i) {
       hands_->hand_m[i] = from[i] + (to_m[i] - from[i]) * k / steps;

@@ -44,14 +44,14 @@ inline const std::vector<std::string> kLineNames = {
 
 /// Shared between the test and the device's process.
 struct Hands {
-  // What people do.
+  // Actions of people.
   std::array<std::atomic<double>, 3> hand_m{};
   std::atomic<bool> dead_man{false};
   std::atomic<bool> pull_stop{false};  ///< taken back when it was pulled, at its own moment
   std::atomic<bool> release_stop{false};
   std::atomic<int> flips{0};  ///< of track a of axis 0, forth and back, in one go: a bad wire
   std::atomic<bool> end{false};
-  // What can be seen.
+  // Observations.
   std::array<std::atomic<double>, 3> tip_m{};
   std::array<std::atomic<double>, 3> effort_N{};
   std::atomic<double> effort_max_N{0.0};         ///< of any axis, since it was set to 0
@@ -60,7 +60,7 @@ struct Hands {
   std::atomic<std::uint64_t> beats{0};  ///< changes of the heartbeat line
 };
 
-/// Cartesian, three axes, an index pulse at 0: what the tests' file describes.
+/// Cartesian, three axes, an index pulse at 0: as described in the file of the tests.
 [[nodiscard]] core::DevicePreset test_device();
 inline constexpr float kFullEffort_N = 8.0F;
 inline constexpr std::uint32_t kPwmPeriod_ns = 50'000;

@@ -58,7 +58,7 @@ TEST(Usb, WindowsFindsItsDescriptors) {
   libusb_exit(context);
 }
 
-TEST(Usb, AnEndpointThatTheHostHaltsGoesOnWhenCleared) {
+TEST(Usb, HaltedEndpointResumesWhenCleared) {
   const BoardOnUsb board;
   auto transport = open_board();
   ASSERT_TRUE(transport);
@@ -82,7 +82,7 @@ TEST(Usb, AnEndpointThatTheHostHaltsGoesOnWhenCleared) {
   libusb_exit(context);
 }
 
-TEST(Usb, ASecondProgramIsToldThatTheBoardIsInUse) {
+TEST(Usb, SecondProgramIsRefusedWhileTheBoardIsInUse) {
   const BoardOnUsb board;
   const auto first = open_board();
   ASSERT_TRUE(first);
@@ -95,7 +95,7 @@ TEST(Usb, ASecondProgramIsToldThatTheBoardIsInUse) {
   }
 }
 
-TEST(Usb, WhoMayNotOpenItIsToldTheRule) {
+TEST(Usb, MissingPermissionNamesTheUdevRule) {
   const BoardOnUsb board;
   ASSERT_TRUE(open_board());
   const pid_t child = fork();
@@ -111,7 +111,7 @@ TEST(Usb, WhoMayNotOpenItIsToldTheRule) {
   EXPECT_EQ(status, 0);
 }
 
-TEST(Usb, ABoardThatIsNotThereIsNamed) {
+TEST(Usb, NamesAMissingBoard) {
   try {
     (void)host::open_usb("ABCD");
     FAIL() << "opened what is not there";
@@ -136,7 +136,7 @@ TEST(Usb, RoundTripIsMeasured) {
 }
 
 /// Each tick has a message; one that does not come was counted by the board.
-TEST(Usb, NoTelemetryIsLostUnnoticed) {
+TEST(Usb, LostTelemetryIsCounted) {
   const BoardOnUsb board(std::chrono::microseconds(0));
   Application application(open_board());
   ASSERT_TRUE(application.open().ok());
@@ -168,14 +168,15 @@ TEST(Usb, NoTelemetryIsLostUnnoticed) {
   EXPECT_GE(application.received(), kPacketBytes * wanted);
   EXPECT_EQ(unnoticed, 0U);
   EXPECT_EQ(application.client().damaged(), 0U);
-  std::printf("telemetry: %llu messages, %u dropped and told, %llu unnoticed, %llu bytes, %.0f s\n",
-              static_cast<unsigned long long>(received), last_dropped,
-              static_cast<unsigned long long>(unnoticed),
-              static_cast<unsigned long long>(application.received()),
-              std::chrono::duration<double>(Clock::now() - begin).count());
+  std::printf(
+      "telemetry: %llu messages, %u dropped and reported, %llu unnoticed, %llu bytes, %.0f s\n",
+      static_cast<unsigned long long>(received), last_dropped,
+      static_cast<unsigned long long>(unnoticed),
+      static_cast<unsigned long long>(application.received()),
+      std::chrono::duration<double>(Clock::now() - begin).count());
 }
 
-TEST(Usb, NewsOfTheStateComeByThemselves) {
+TEST(Usb, StateChangesAreNotifiedWithoutARequest) {
   const BoardOnUsb board;
   Application application(open_board());
   ASSERT_TRUE(application.open().ok());
@@ -204,8 +205,8 @@ TEST(Usb, NewsOfTheStateComeByThemselves) {
   }));
 }
 
-/// The cable is pulled while: nothing, a request, telemetry, a half-written request.
-TEST(Usb, PullingTheCableAtAnyMomentIsNoticedAndAReplugWorks) {
+/// Unplugs the board when idle, during a request, telemetry, a half-written request.
+TEST(Usb, UnplugIsDetectedAtAnyMomentAndReplugWorks) {
   BoardOnUsb board;
   std::mt19937 random(1);
   for (int round = 0; round < 24; ++round) {
@@ -242,7 +243,7 @@ TEST(Usb, PullingTheCableAtAnyMomentIsNoticedAndAReplugWorks) {
   }
 }
 
-TEST(Usb, AWatchTellsWhoComesAndGoesWithoutUdev) {
+TEST(Usb, HotplugIsReportedWithoutUdev) {
   BoardOnUsb board;
   host::UsbWatch watch(std::chrono::milliseconds(20));
   const auto wait_for = [&](bool arrived) {
@@ -262,7 +263,7 @@ TEST(Usb, AWatchTellsWhoComesAndGoesWithoutUdev) {
 }
 
 /// A program that ends in the middle of a DFU transfer, and a cable that is pulled there.
-TEST(Usb, ADfuTransferThatIsBrokenOffLeavesTheModel) {
+TEST(Usb, InterruptedDfuTransferKeepsTheModel) {
   BoardOnUsb board;
   const auto& model = BoardOnUsb::blob().written().bytes;
   const auto* const bytes = reinterpret_cast<const unsigned char*>(model.data());
@@ -279,7 +280,7 @@ TEST(Usb, ADfuTransferThatIsBrokenOffLeavesTheModel) {
       return libusb_control_transfer(device, type, number, 0, 1, data.data(),
                                      static_cast<std::uint16_t>(data.size()), 60000);
     };
-    // As every tool begins: with whatever the one before has left.
+    // The next tool starts in the state left by the last one.
     EXPECT_TRUE(eventually([&] {
       std::array<unsigned char, 6> status{};
       const int length = libusb_control_transfer(device, 0xA1, 3, 0, 1, status.data(), 6, 60000);

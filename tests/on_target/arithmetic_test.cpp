@@ -1,5 +1,5 @@
-// What the core takes for granted of a processor and its compiler: IEEE single precision, to the
-// bit, with denormals. The known answers are those of x86-64.
+// Properties that the core requires of processor and compiler: IEEE single precision, exact to the
+// bit, with denormals. The known answers are from x86-64.
 
 #include <bit>
 #include <span>
@@ -11,7 +11,7 @@
 namespace tactree::test {
 namespace {
 
-// What the compiler must not know.
+// Values hidden from the compiler.
 float opaque(float value) {
   volatile float hidden = value;
   return hidden;

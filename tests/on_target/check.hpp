@@ -5,9 +5,9 @@
 
 namespace tactree::test {
 
-/// Counts, and tells what is wrong: sentence and place.
+/// Counts, and prints a failure with its condition and place.
 void check(bool good, const char* sentence, const char* file, std::uint32_t line);
-/// The same for a known answer; tells both.
+/// The same for a known answer; prints both.
 void check_answer(std::uint32_t found, std::uint32_t known, const char* file, std::uint32_t line);
 void print(const char* text);
 void print_number(std::uint32_t number);
@@ -19,7 +19,7 @@ void test_memory();
 void test_golden_blobs();
 void test_corrupt_blobs();
 
-/// Runs the four and tells the sum. 0: all good.
+/// Runs the four and prints the sum. Returns 0 if all passed.
 [[nodiscard]] int run_core_tests();
 
 /// Numbers that look random and are the same everywhere.

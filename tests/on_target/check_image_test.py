@@ -32,12 +32,12 @@ class CheckImage(unittest.TestCase):
         self.assertEqual(code, 1, output)
         self.assertIn(words, output)
 
-    def test_the_image_is_fine(self):
+    def test_accepts_the_image(self):
         code, output = check()
         self.assertEqual(code, 0, output)
         print(output.splitlines()[-1])
 
-    def test_over_by_one(self):
+    def test_refuses_an_image_one_over_its_budget(self):
         report = self.folder / "report.json"
         report.write_text(json.dumps({"instructions": {"max": 1234}}))
         budgets = self.folder / "budgets.toml"
@@ -59,15 +59,15 @@ class CheckImage(unittest.TestCase):
         (self.folder / "planted.ci").write_text("\n".join(lines) + "\n")
         return [self.folder]
 
-    def test_calls_that_cannot_be_followed(self):
+    def test_refuses_calls_that_cannot_be_followed(self):
         tick = 'edge: { sourcename: "tactree_tick" targetname: "%s" label: "" }'
         self.refuses("calls itself", folders=self.plant(tick % "tactree_tick"))
-        self.refuses("frame is not known", folders=self.plant(tick % "printf"))
-        self.refuses("known only at run time", folders=self.plant(tick % "__indirect_call"))
+        self.refuses("frame is unknown", folders=self.plant(tick % "printf"))
+        self.refuses("calls indirectly", folders=self.plant(tick % "__indirect_call"))
         node = 'node: { title: "f" label: "f\\nf.cpp:1:1\\n8 bytes (%s)" }'
         self.refuses("its frame is dynamic", folders=self.plant(node % "dynamic", tick % "f"))
 
-    def test_code_that_must_not_be(self):
+    def test_refuses_forbidden_code(self):
         source, planted = self.folder / "a.cpp", self.folder / "a.o"
         source.write_text("float f(float a, float b) { return __builtin_fmaf(a, b, a); }\n"
                           'extern "C" void* malloc(unsigned long) { return nullptr; }\n'

@@ -1,4 +1,4 @@
-// core_test on the host: where the known answers come from.
+// core_test on the host, the source of the known answers.
 
 #include <sys/mman.h>
 #include <unistd.h>

@@ -22,7 +22,7 @@ IDENTIFY, OPEN, READ_START = 0x01, 0x02, 0x22
 
 
 def cobs(data):
-    """As docs/PROTOCOL.md says, with the zero at the end."""
+    """A frame of docs/PROTOCOL.md, with the zero at the end."""
     out, begin = bytearray(), 0
     while begin <= len(data):
         end = data.find(0, begin, begin + 254)

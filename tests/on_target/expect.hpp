@@ -1,5 +1,5 @@
 #pragma once
-// What a test image of one question expects: the first that is not so ends it.
+// Expectations of a test image; the first failure ends it.
 
 #include "plant_link/semihosting.hpp"
 

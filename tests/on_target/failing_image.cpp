@@ -1,5 +1,5 @@
-// A board that goes wrong, for the host to find out: built with TACTREE_SILENT it never says hello;
-// else it faults in its third tick.
+// A defective board, to be detected by the host: built with TACTREE_SILENT it sends no hello;
+// otherwise it faults in its third tick.
 
 #include "board.hpp"
 #include "platform.hpp"

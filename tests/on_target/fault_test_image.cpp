@@ -1,5 +1,5 @@
-// A fault is written down, survives the reset, and is told once. The first run causes it, the
-// second looks at the record.
+// A fault is recorded, survives the reset and is reported once. The first run causes it, the second
+// checks the record.
 
 #include "expect.hpp"
 #include "plant_link/semihosting.hpp"
@@ -44,7 +44,7 @@ int main() {
   expect(fault.cause == kCause, "the cause is that of an unknown instruction");
   expect(fault.pc == place, "pc is the instruction's address");
   expect(fault.registers[2] == kValue, "the third register has its value");
-  expect(fault.lr != 0 && fault.sp != 0, "return address and stack are told");
-  expect(!tactree::firmware::take_captured_fault().present(), "a fault is told once");
+  expect(fault.lr != 0 && fault.sp != 0, "return address and stack are reported");
+  expect(!tactree::firmware::take_captured_fault().present(), "a fault is reported once");
   exit(0);
 }

@@ -1,5 +1,5 @@
-// The golden blobs open, and every query on them gives what a look at all points gives, and the
-// bits that it gives on the other processors.
+// The golden blobs open, and every query on them equals a search of all points and the result on
+// other processors, to the bit.
 
 #include <cstdint>
 #include <span>

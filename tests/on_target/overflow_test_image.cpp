@@ -1,5 +1,5 @@
-// A stack that overflows runs into no variable: the core faults, which is written down although
-// there is no stack left for it. The first run causes it, the second looks at the record.
+// A stack overflow changes no variable: the core faults and records it without using the stack. The
+// first run causes it, the second checks the record.
 
 #include "expect.hpp"
 #include "plant_link/semihosting.hpp"
@@ -35,6 +35,6 @@ int main() {
   }
   expect(guard == 0x600DCAFE, "variables are as they were");
   expect(fault.sp < place_of(image_stack_bottom) + 64U, "the stack pointer is at the stack's end");
-  expect(!tactree::firmware::take_captured_fault().present(), "a fault is told once");
+  expect(!tactree::firmware::take_captured_fault().present(), "a fault is reported once");
   exit(0);
 }

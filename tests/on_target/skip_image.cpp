@@ -1,11 +1,11 @@
-// Promise P4: no single instruction of the gate and of the way to force, left out, gives force
-// while stopped. skip_test.py lists the instructions; this program overwrites one after the other
-// with one that does nothing, runs the control loop out of several stopped states, and looks at
-// what the motors were told. It runs where its own code is in RAM.
+// Promise P4: skipping any single instruction of the gate and of the path to force gives no force
+// while stopped. skip_test.py lists the instructions; this program replaces one at a time by a
+// no-op, runs the control loop from several stopped states and checks the commands to the motors.
+// Its code runs in RAM.
 //
-// Each line of the output is an instruction's address and what came of it. A fault or a hang ends
-// in a reset, as on a device, where motors are off then; the emulator ends there, and skip_test.py
-// goes on behind that instruction.
+// Each line of the output is the address of an instruction and the outcome. A fault or hang ends in
+// a reset, after which motors are off; the emulator ends there, and skip_test.py continues after
+// that instruction.
 
 #include <cstring>
 #include <type_traits>
@@ -37,7 +37,7 @@ class Bench {
   Bench& storage() { return *this; }
 
   [[nodiscard]] core::EncoderReading read() noexcept { return counts; }
-  // Not inlined: what looks at commands is no part of what is left out.
+  // Not inlined: the check of commands is not part of the skipped code.
   [[gnu::noinline]] void write(const core::MotorCommand& efforts) noexcept {
     told = false;
     for (std::uint32_t i = 0; i < core::kAxes; ++i) {  // bound: kAxes
@@ -66,9 +66,9 @@ class Bench {
   bool stopped = false;
   bool held = true;
   bool enabled = false;
-  bool told = false;  ///< the motors are to do something
+  bool told = false;  ///< the last command is not zero
   // Since they were last cleared:
-  bool commanded = false;  ///< the motors were told something
+  bool commanded = false;  ///< a command was not zero
   bool force = false;      ///< and had power
 };
 
@@ -231,7 +231,7 @@ void session(const Kept& start, const Instruction& place) {
   }
 }
 
-/// What the session without this instruction came to.
+/// Outcome of the session without this instruction.
 const char* outcome(const Instruction& place) {
   const char* result = "same\n";
   for (const Kept& start : kept) {  // bound: kStarts

@@ -1,4 +1,4 @@
-"""Promise P4: no single instruction of the gate and of the way to force, left out, gives force while
+"""Promise P4: no single instruction of the gate and of the path to force, left out, gives force while
 stopped. Lists the instructions of an image's functions, and lets the image do the rest in an emulator.
 
 usage: skip_test.py IMAGE TOOLS_PREFIX [--every N]
@@ -67,7 +67,7 @@ def campaign(found):
     """Address -> what came of leaving out that instruction:
       same     the session went as ever
       other    the controller's state differs; no command
-      command  the motors were told something, but had no power: the enable line was off
+      command  the motors got a command but had no power: the enable line was off
       force    both
       reset    a fault, or the watchdog of the tick
       hang     only a watchdog outside of the program helps"""
@@ -84,7 +84,7 @@ def campaign(found):
 
 
 class Skip(unittest.TestCase):
-    def test_no_instruction_left_out_gives_force_while_stopped(self):
+    def test_skipping_any_instruction_gives_no_force_while_stopped(self):
         found = instructions()
         functions = {f for _, _, f in found}
         for needed in ("Controller::step", "SafetyGate::command", "SafetyGate::release", "::tick"):

@@ -17,7 +17,7 @@ sys.dont_write_bytecode = True
 from emulated_stm32f405 import EMULATOR, Emulator, boot_command
 
 IMAGE, CONFORMANCE, BLOB, TACTREE = sys.argv[1:5]
-# As it was before it was told what a tick costs; else it still is so.
+# The image before the costs of a tick were embedded; or the image itself, if it has none.
 BARE = pathlib.Path(IMAGE).parent / "bare" / pathlib.Path(IMAGE).name
 STATE, CONTROL, BEGIN_MODEL = 0x06, 0x07, 0x11
 ARM = bytes([1]) + bytes(7)
@@ -41,7 +41,7 @@ class Stm32f405(unittest.TestCase):
         self.assertEqual(ticks, sorted(set(ticks)))
         return state["faults"]
 
-    def test_what_is_missing_is_told(self):
+    def test_reports_missing_parts(self):
         with Emulator(["-kernel", IMAGE], pathlib.Path(BLOB).read_bytes()) as board:
             start = board.start()
             self.assertEqual(start["missing"],
@@ -53,7 +53,7 @@ class Stm32f405(unittest.TestCase):
             self.assertEqual(start["fault_cause"], 0)
             self.assertEqual(self.no_force(board), 1 << 1 | 1 << 9)  # emergency stop, motors
 
-    def test_without_a_watchdog_that_waits_nothing_is_erased(self):
+    def test_erases_nothing_if_the_watchdog_cannot_be_extended(self):
         blob = pathlib.Path(BLOB).read_bytes()
         with Emulator(["-kernel", IMAGE], blob) as board:
             board.open()
@@ -61,13 +61,13 @@ class Stm32f405(unittest.TestCase):
             self.assertEqual(board.ask(BEGIN_MODEL, begin)["status"], STORAGE_FAILED)
 
     @unittest.skipUnless(BARE.exists(), "the image does not know what a tick costs")
-    def test_without_its_costs_a_board_takes_the_model(self):
+    def test_accepts_the_model_without_embedded_costs(self):
         with Emulator(["-kernel", BARE], pathlib.Path(BLOB).read_bytes()) as board:
             start = board.start()
             self.assertEqual([start["blob"], start["model"], start["image"]], [BLOB_OK, MODEL_OK, IMAGE_OK])
             self.no_force(board)
 
-    def test_a_wrong_blob_is_told(self):
+    def test_reports_an_invalid_blob(self):
         good = pathlib.Path(BLOB).read_bytes()
         flipped = bytearray(good)
         flipped[-5] ^= 4
@@ -83,12 +83,12 @@ class Stm32f405(unittest.TestCase):
                 self.no_force(board)
         self.assertEqual(len(refusals), 4)  # too short, magic, checksum, size
 
-    def test_a_damaged_image_is_told(self):
+    def test_reports_a_damaged_image(self):
         image = pathlib.Path(IMAGE).read_bytes()
         (table,) = struct.unpack_from("<I", image, 28)
         (vectors,) = struct.unpack_from("<I", image, table + 4)
         self.assertEqual(struct.unpack_from("<I", image, table + 12)[0], 0x08000000)
-        # In no one's way: behind the board's name, and a handler that is never called.
+        # Unused places: after the board's name, and in a handler that is never called.
         for place in (image.index(b"TACTIMG\0") + 30, vectors + VECTOR_OF_NO_EXCEPTION):
             data = bytearray(image)
             data[place] ^= 1
@@ -100,7 +100,7 @@ class Stm32f405(unittest.TestCase):
                     self.no_force(board)
 
     @unittest.skipUnless(pathlib.Path(TACTREE).exists(), "there is no tactree (build the preset host-gcc)")
-    def test_the_command_line_talks_to_it(self):
+    def test_command_line_session(self):
         with tempfile.TemporaryDirectory() as folder, subprocess.Popen(
                 boot_command(folder, ["-kernel", IMAGE], pathlib.Path(BLOB).read_bytes(),
                              f"unix:{folder}/port,server=on,wait=off"), stdin=subprocess.DEVNULL) as emulator:
@@ -134,14 +134,14 @@ class Stm32f405(unittest.TestCase):
             finally:
                 emulator.kill()
 
-    def test_the_conformance_program_finds_the_missing_parts(self):
+    def test_conformance_program_reports_missing_parts(self):
         done = subprocess.run([*EMULATOR, "-semihosting-config", "enable=on,target=native", "-serial",
                                "null", "-kernel", CONFORMANCE], stdin=subprocess.DEVNULL,
                               capture_output=True, text=True, check=False, timeout=100)
         self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
         found = (done.stdout + done.stderr).splitlines()
         self.assertEqual(found, [
-            "an encoder at rest counts",  # the emulated timers know no encoder mode
+            "an encoder at rest counts",  # the emulated timers have no encoder mode
             "the motor bank fails on commands of zero",
             "the read-back does not follow when the enable line goes on",
             "the emergency stop reads as pressed",

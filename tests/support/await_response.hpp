@@ -1,5 +1,5 @@
 #pragma once
-// Waits for the answer to a request, in whatever time the test has.
+// Waits for the response to a request, in real or simulated time.
 
 #include <cstdint>
 
@@ -7,10 +7,11 @@
 
 namespace tactree::test {
 
-/// Everything else that comes is dropped. `go_on()` lets time go by, as long as `has_time()`.
-template <class HasTime, class GoOn>
+/// Drops all other responses. Calls `advance()` to let time pass while `has_time()`; then times
+/// out.
+template <class HasTime, class Advance>
 host::Response await_response(host::Client& client, std::uint16_t sequence, HasTime has_time,
-                              GoOn go_on) {
+                              Advance advance) {
   host::Response response;
   while (has_time()) {
     while (client.take(response)) {
@@ -18,7 +19,7 @@ host::Response await_response(host::Client& client, std::uint16_t sequence, HasT
         return response;
       }
     }
-    go_on();
+    advance();
   }
   response = {};
   response.timed_out = true;

@@ -1,5 +1,5 @@
 #pragma once
-// A served board in a thread, in real time, and the path of its port.
+// A served board that runs in a thread, in real time.
 
 #include <atomic>
 #include <chrono>
@@ -14,10 +14,10 @@
 
 namespace tactree::test {
 
-/// Touches a sphere of 3 cm; its hand is held at the top, just above or in the surface.
+/// Its model is a sphere of 3 cm radius; the simulated hand moves to `height_m` above the centre.
 class RunningBoard {
  public:
-  /// Returns when it listens.
+  /// Returns when the port is open.
   explicit RunningBoard(double height_m = 0.04) : thread_([this, height_m] { run(height_m); }) {
     listening_.wait();
   }
@@ -29,10 +29,10 @@ class RunningBoard {
   RunningBoard& operator=(const RunningBoard&) = delete;
 
   [[nodiscard]] std::string port() const { return terminal_.name(); }
-  /// Still there, but it does nothing: a board that hangs.
+  /// Simulates a board that hangs: the port stays open, nothing is answered.
   void freeze(bool frozen) { frozen_ = frozen; }
   void press_emergency_stop(bool pressed) { emergency_stop_ = pressed; }
-  /// What it touches until another model is written.
+  /// The model until another one is written.
   [[nodiscard]] static const TestBlob& model() {
     static const TestBlob kModel(sphere(0.03, 0.002));
     return kModel;
@@ -69,7 +69,7 @@ class RunningBoard {
   std::thread thread_;
 };
 
-/// Waits for something that comes in real time, as long as it takes a slow machine.
+/// Polls a condition for up to 30 s.
 template <class Condition>
 bool comes_true(Condition condition) {
   for (int i = 0; i < 3000; ++i) {

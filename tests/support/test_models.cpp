@@ -72,7 +72,7 @@ builder::Model random_cloud(std::uint32_t points, double edge_m, double spacing_
 
 TestBlob::TestBlob(const builder::Model& model) : written_(builder::write_blob(model)) {
   if (core::open_blob(written_.bytes, view_) != core::BlobStatus::kOk) {
-    throw std::logic_error("the test's own blob was refused");
+    throw std::logic_error("the blob of a test model is invalid");
   }
   for (core::LeafCursor cursor(view_); !cursor.done(); cursor.next()) {
     const core::Leaf& leaf = cursor.leaf();

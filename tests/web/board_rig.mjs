@@ -1,4 +1,4 @@
-// A board that `tactree simulate` runs, and the page of `tactree view --port` beside it.
+// A board simulated by `tactree simulate`, and the page of `tactree view --port` with it.
 import { rmSync, symlinkSync } from 'node:fs';
 import { join } from 'node:path';
 import { bumpySphere, buildModel, folder, startBoard, startServer } from './setup.mjs';
@@ -6,7 +6,7 @@ import { bumpySphere, buildModel, folder, startBoard, startServer } from './setu
 export const RADIUS = 0.03;
 export const blob = buildModel('ball', bumpySphere(8000, RADIUS, 0), ['--unit', 'm']);
 export const small = { viewport: { width: 700, height: 480 } };
-// The board's port under a name that stays, as a cable's does.
+// A stable name for the board's port, like a cable.
 export const cable = join(folder, 'cable');
 
 /** A board at the cable's end until the test is over. */
@@ -18,7 +18,7 @@ export async function plugIn(t, ...options) {
   return board;
 }
 
-// The longest there is: the computer of a test may be busy.
+// The maximum: the computer of a test may be busy.
 export async function watch(t) {
   const server = await startServer([blob, '--port', cable, '--link-timeout', '100']);
   t.after(server.stop);

@@ -1,4 +1,4 @@
-// The page of `tactree view --port` beside a board that runs: what it shows of it, and that its stop stops it.
+// The page of `tactree view --port` with a simulated board: display, commands, stop.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { after, before, test } from 'node:test';
@@ -16,10 +16,10 @@ after(async () => {
   await browser?.close();
 });
 
-/** Without its picture: made by software it takes time that the board's link needs. */
+/** Hides the picture: software rendering delays the link of the board. */
 const hidePicture = (page) => page.locator('#view').evaluate((canvas) => { canvas.style.display = 'none'; });
 
-/** Does it again where the computer was too busy for the board's link, which then ends the force. */
+/** Repeats `act` if a busy computer made the board report link-lost. */
 async function whileLinked(page, act) {
   for (let left = 5; ; --left) {
     try {
@@ -33,14 +33,14 @@ async function whileLinked(page, act) {
 }
 
 async function arm(page) {
-  // In the object it is not armed.
+  // A board does not arm inside the object.
   await until(page, ['probe_x_m', 'probe_y_m', 'probe_z_m'], (...at) => Math.hypot(...at) > RADIUS + 0.001,
     'the hand does not come back');
   await page.locator('#arm').click();
   await state(page, 'active', 10000);
 }
 
-test('the force of the board is shown, and a stop from any page ends it', async (t) => {
+test('shows the force of the board; a stop from any page ends it', async (t) => {
   await plugIn(t);
   const server = await watch(t);
   const page = await openPage(browser, server.url, small);
@@ -70,17 +70,17 @@ test('the force of the board is shown, and a stop from any page ends it', async 
   await second.close();
 });
 
-test('what a board cannot do is disabled, and the page says why; what it can do it does', async (t) => {
+test('disables what a board does not support, with the reason; applies the other settings', async (t) => {
   await plugIn(t);
   const server = await watch(t);
   const page = await openPage(browser, server.url);
   await state(page, 'idle');
   for (const control of ['#mode', '#rate_hz', '#device']) assert.ok(await page.locator(control).isDisabled(), control);
-  assert.equal(await page.locator('#mode').inputValue(), '', 'a board does not tell its method');
-  assert.ok(await page.getByText('the board has its method, rate and device').isVisible());
+  assert.equal(await page.locator('#mode').inputValue(), '', 'boards do not report their method');
+  assert.ok(await page.getByText('Fixed by the configuration of the board.').isVisible());
   await page.locator('#faults summary').click();
   assert.ok(await page.locator('#mend').isDisabled());
-  assert.ok(await page.getByText('the parts of the board and its device are real').isVisible());
+  assert.ok(await page.getByText('Simulation only: run tactree view without --port.').isVisible());
   assert.ok(await page.getByText("The hand is at the board's device").isVisible());
   assert.match(await page.locator('#work-why').textContent(), /counts neither instructions nor cycles/);
   const set = (id, value) => page.locator(id).evaluate((slider, wanted) => {
@@ -100,7 +100,7 @@ test('what a board cannot do is disabled, and the page says why; what it can do 
   await page.close();
 });
 
-test('a board that is unplugged: the page says so, and goes on when it is back, not armed', async (t) => {
+test('reports an unplugged board; reconnects without arming when it is back', async (t) => {
   let board = await plugIn(t);
   const server = await watch(t);
   const page = await openPage(browser, server.url, small);
@@ -109,7 +109,7 @@ test('a board that is unplugged: the page says so, and goes on when it is back, 
   await whileLinked(page, () => arm(page));
   await board.stop();
   await page.locator('#board-gone').waitFor();
-  assert.match(await page.locator('#board-why').textContent(), /^The board is gone/);
+  assert.match(await page.locator('#board-why').textContent(), /^The board is (disconnected|not reachable)/);
   await state(page, 'no board');
   assert.equal(await page.locator('#force-now').textContent(), '–');
   assert.ok(await page.locator('#arm').isDisabled());
@@ -122,17 +122,19 @@ test('a board that is unplugged: the page says so, and goes on when it is back, 
   await page.close();
 });
 
-test('a fault of the board is told, with a link to its page', async (t) => {
+test('reports a fault of the board with a link to its page, and that its cause persists', async (t) => {
   await plugIn(t, '--inject', 'estop:pressed@0');
   const server = await watch(t);
   const page = await openPage(browser, server.url, small);
   await state(page, 'fault');
   assert.match(await page.locator('#fault-names').textContent(), /emergency-stop/);
   assert.equal(await page.locator('#fault-page').getAttribute('href'), '/faults/emergency-stop');
+  await page.locator('#clear').click();
+  await page.locator('#note', { hasText: 'Not cleared: the cause of emergency-stop persists' }).waitFor();
   await page.close();
 });
 
-test('a board with another model than the one shown: the page warns', async (t) => {
+test('warns if the board uses a model other than the displayed one', async (t) => {
   await plugIn(t);
   for (const [model, warned] of [[other, true], [blob, false]]) {
     execFileSync(tactree, ['flash', model, '--port', cable], { stdio: 'pipe' });
@@ -140,7 +142,7 @@ test('a board with another model than the one shown: the page warns', async (t) 
     const page = await openPage(browser, server.url, small);
     await state(page, 'idle');
     assert.equal(await page.locator('#model-warning').isVisible(), warned);
-    assert.match(await page.locator('#board-model').textContent(), warned ? /another model/ : /the model that is shown/);
+    assert.match(await page.locator('#board-model').textContent(), warned ? /a model other than/ : /the displayed model/);
     assert.deepEqual(page.troubles, []);
     await page.close();
     await server.stop();

@@ -1,4 +1,4 @@
-// The page of `tactree view --port` beside a board in the emulator, which counts its instructions.
+// The page of `tactree view --port` with a board in the emulator, which counts instructions.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { plugIn, small, watch } from './board_rig.mjs';
@@ -12,7 +12,7 @@ after(async () => {
   await browser?.close();
 });
 
-test('an emulated board: its instructions are shown, below the bound', async (t) => {
+test('shows the instructions of an emulated board, below the bound', async (t) => {
   await plugIn(t, '--board', 'mps2-an386');
   const server = await watch(t);
   const page = await openPage(browser, server.url, small);

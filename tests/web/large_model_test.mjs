@@ -1,5 +1,5 @@
-// Five million points: the page answers at once with what it has, and is never held up. Times are
-// printed, not judged: they are the machine's.
+// Five million points: the page shows a coarse picture at once and never blocks. Times are printed,
+// not asserted: they depend on the machine.
 import assert from 'node:assert/strict';
 import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -12,7 +12,7 @@ const RADIUS = 0.3;
 const HEADER = ['ply', 'format binary_little_endian 1.0', `element vertex ${COUNT}`,
   ...['x', 'y', 'z', 'nx', 'ny', 'nz'].map((name) => `property float ${name}`), 'end_header', ''].join('\n');
 
-/** A sphere; its normals tell where its points are. */
+/** A sphere; the normals give the positions. */
 function scan() {
   const values = new Float32Array(6 * COUNT);
   const turn = Math.PI * (3 - Math.sqrt(5));

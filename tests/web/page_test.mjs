@@ -1,4 +1,4 @@
-// The page of `tactree view` in a browser, as a user has it.
+// The page of `tactree view` in a browser.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
@@ -22,7 +22,7 @@ after(async () => {
   await server?.stop();
 });
 
-/** Different colours in a PNG file's pixels, and the share of those that are not the commonest. */
+/** Number of colours in a PNG file, and the share of pixels not of the most common colour. */
 function pixels(png) {
   const width = png.readUInt32BE(16);
   const channels = png[25] === 6 ? 4 : 3;
@@ -58,19 +58,22 @@ function pixels(png) {
   return { colours: counts.size, drawn: 1 - Math.max(...counts.values()) / all };
 }
 
-/** Moves the hand into the surface: pushes it along the view with the keys of the page. */
+/** Moves the hand into the surface with the keys of the page. */
 async function press(page, wanted_m) {
   await page.locator('#view').focus();
   for (let i = 0; i < 200; ++i) {
     if (await number(page, 'penetration_m') > wanted_m) return;
-    // The hand begins above the object: towards it, whatever the view.
+    // The hand starts above the object.
     await page.keyboard.press(i < 1 ? 'Home' : 'ArrowDown');
     await page.waitForTimeout(60);
   }
   throw new Error('the hand did not reach the surface');
 }
 
-test('the page shows the model, with nothing from elsewhere', async () => {
+/** Waits for this message of the page. */
+const noted = (page, wanted) => page.locator('#note', { hasText: wanted }).waitFor({ timeout: 10000 });
+
+test('shows the model and loads no external resources', async () => {
   const page = await openPage(browser, server.url);
   await page.locator('#show-device').uncheck();
   const picture = pixels(await page.locator('#view').screenshot());
@@ -82,21 +85,13 @@ test('the page shows the model, with nothing from elsewhere', async () => {
   await page.close();
 });
 
-test('dragging the hand into the surface: the force rises, the proxy stays on it; stop ends it', async () => {
+test('a press on the object raises the force, with the proxy on the surface, until stop', async () => {
   const page = await openPage(browser, server.url);
   await state(page, 'active');
   const box = await page.locator('#view').boundingBox();
-  const x = box.x + box.width / 2;
-  await page.mouse.move(x, box.y + 100);
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
   await page.mouse.down();
-  let deepest = 0;
-  for (let y = 100; y < box.height && deepest < 0.001; y += 4) {
-    await page.mouse.move(x, box.y + y);
-    await page.waitForTimeout(40);
-    deepest = await number(page, 'penetration_m');
-  }
-  await page.mouse.up();
-  assert.ok(deepest >= 0.001, `the probe went in ${deepest} m`);
+  await until(page, ['penetration_m'], (deep) => deep >= 0.001, 'the probe does not go in');
   const names = ['proxy', 'probe'].flatMap((n) => ['x', 'y', 'z'].map((axis) => `${n}_${axis}_m`));
   const v = await until(page, names, () => true, '');
   assert.ok(Math.abs(Math.hypot(...v.slice(0, 3)) - RADIUS) < 2e-4, `proxy at ${Math.hypot(...v.slice(0, 3))}`);
@@ -110,17 +105,18 @@ test('dragging the hand into the surface: the force rises, the proxy stays on it
   await page.keyboard.press('Space');
   await state(page, 'idle');
   await until(page, ['force_x_N', 'force_y_N', 'force_z_N'], (...f) => Math.hypot(...f) === 0, 'still force');
+  await page.mouse.up();
   assert.deepEqual(page.troubles, []);
   await page.close();
 });
 
-test('everything is done with keys alone', async () => {
+test('can be operated by keys alone', async () => {
   const page = await openPage(browser, server.url);
   await page.keyboard.press('Escape');
   await state(page, 'idle');
   await page.locator('#view').focus();
-  for (let i = 0; i < 60; ++i) await page.keyboard.press('ArrowUp'); // out of the object
-  await page.waitForTimeout(500);
+  await page.keyboard.press('Backspace'); // above the object
+  await page.waitForTimeout(2000);
   await page.keyboard.press('a');
   await state(page, 'active');
   await press(page, 0.0005);
@@ -129,7 +125,7 @@ test('everything is done with keys alone', async () => {
   await page.close();
 });
 
-test('a broken part: the fault is told, its page explains it, clearing it ends it', async () => {
+test('an injected fault is reported, explained by its page, and cleared', async () => {
   const page = await openPage(browser, server.url);
   await page.locator('#view').focus();
   for (let i = 0; i < 80; ++i) await page.keyboard.press('ArrowUp');
@@ -145,15 +141,57 @@ test('a broken part: the fault is told, its page explains it, clearing it ends i
   assert.ok(await explained.locator('li').count() > 0);
   await explained.close();
   await page.locator('#clear').click();
-  await page.waitForTimeout(300);
-  assert.equal(await page.locator('#state').textContent(), 'fault', 'its cause is still there');
+  await noted(page, /Not cleared: the cause of encoder-invalid persists.* encoder1:disconnected/);
+  assert.equal(await page.locator('#state').textContent(), 'fault', 'its cause persists');
+  await page.locator('#arm').click();
+  await noted(page, /Not armed: the fault encoder-invalid is latched/);
   await page.locator('#mend').click();
   await page.locator('#clear').click();
   await state(page, 'idle');
   await page.close();
 });
 
-test('settings: two pages agree, both methods side by side, what is refused is told', async () => {
+test('an injected fault without a visible effect is reported with the reason', async () => {
+  const own = await startServer([blob]);
+  const page = await openPage(browser, own.url);
+  await state(page, 'active');
+  await page.locator('#faults summary').click();
+  await page.getByRole('button', { name: 'motor1:reversed' }).click();
+  await noted(page, /motor1:reversed is injected, without a visible effect yet: it shows in contact/);
+  await page.close();
+  await own.stop();
+});
+
+test('the strips have a time axis: seconds before now, and seconds of a trace', async () => {
+  const csv = join(folder, 'axis.csv');
+  execFileSync(tactree, ['simulate', blob, '--seconds', '1', '--script', 'rub', '--trace', csv], { stdio: 'pipe' });
+  const replay = await startServer([blob, '--trace', csv]);
+  for (const [url, first, last] of [[server.url, /^-\d+ s$/, /^now$/], [replay.url, /^0 s$/, /^0\.[89]\d* s|1 s$/]]) {
+    const page = await browser.newPage();
+    await page.addInitScript(() => {
+      window.written = [];
+      const { fillText } = CanvasRenderingContext2D.prototype;
+      CanvasRenderingContext2D.prototype.fillText = function write(text, x, y) {
+        if (this.canvas.id === 'strip-force') window.written.push({ text, x: x / this.canvas.width, y: y / this.canvas.height });
+        fillText.call(this, text, x, y);
+      };
+    });
+    await page.goto(url);
+    await shown(page);
+    await page.waitForTimeout(1000);
+    const written = await page.evaluate(() => {
+      window.written.length = 0;
+      return new Promise((done) => setTimeout(() => done(window.written), 500));
+    });
+    const axis = written.filter(({ text, y }) => /s$|^now$/.test(text) && y > 0.8);
+    assert.ok(axis.some(({ text, x }) => first.test(text) && x < 0.3), JSON.stringify(axis.slice(0, 12)));
+    assert.ok(axis.some(({ text, x }) => last.test(text) && x > 0.7), JSON.stringify(axis.slice(0, 12)));
+    await page.close();
+  }
+  await replay.stop();
+});
+
+test('settings: two pages agree, both methods side by side, refusals are reported', async () => {
   const page = await openPage(browser, server.url);
   const other = await openPage(browser, server.url);
   await page.locator('#mode').selectOption('both');
@@ -196,19 +234,39 @@ test('octants, picture and trace', async () => {
   await page.close();
 });
 
-test('a tablet, upright, in the dark: the controls open over the picture', async () => {
-  const page = await openPage(browser, server.url, {
-    viewport: { width: 820, height: 1180 }, hasTouch: true, colorScheme: 'dark',
-  });
-  assert.ok(!(await page.locator('#panel').isVisible()));
-  await page.locator('#panel-toggle').tap();
-  assert.ok(await page.locator('#panel').isVisible());
-  const wide = await page.evaluate(() => document.documentElement.scrollWidth);
-  assert.ok(wide <= 820, `${wide} pixels wide`);
-  await page.close();
+test('on every screen the open controls cover neither the hint nor the buttons', async () => {
+  for (const [width, height] of [[360, 740], [820, 1180], [1280, 720]]) {
+    const page = await openPage(browser, server.url, { viewport: { width, height }, hasTouch: true, colorScheme: 'dark' });
+    if (width <= 900) {
+      assert.ok(!(await page.locator('#panel').isVisible()));
+      await page.locator('#panel-toggle').tap();
+    }
+    assert.ok(await page.locator('#panel').isVisible());
+    await page.locator('#faults summary').click();
+    await page.getByRole('button', { name: 'estop:pressed' }).click();
+    await state(page, 'fault');
+    for (const id of ['arm', 'stop', 'clear', 'hint']) {
+      const free = await page.locator(`#${id}`).evaluate((element) => {
+        const box = element.getBoundingClientRect();
+        // The top right place of the text of the hint, the middle of a button.
+        const at = (x, y) => element.contains(document.elementFromPoint(box.left + x * box.width, box.top + y * box.height));
+        const isInside = box.left >= 0 && box.right <= innerWidth && box.bottom <= innerHeight && box.height > 10;
+        return isInside && at(0.5, 0.5) && at(0.05, 0.2) && at(0.95, 0.2);
+      });
+      assert.ok(free, `#${id} on ${width} x ${height}`);
+    }
+    const wide = await page.evaluate(() => document.documentElement.scrollWidth);
+    assert.ok(wide <= width, `${wide} of ${width} pixels wide`);
+    const picture = await page.locator('#view').boundingBox();
+    assert.ok(picture.height > 150, `a picture of ${picture.height} pixels`);
+    await page.locator('#mend').click();
+    await page.locator('#clear').click();
+    await state(page, 'idle');
+    await page.close();
+  }
 });
 
-test('after a restart of the server the page goes on by itself', async () => {
+test('reconnects after a restart of the server', async () => {
   const own = await startServer([blob]);
   const page = await openPage(browser, own.url);
   await own.stop();
@@ -223,7 +281,7 @@ test('after a restart of the server the page goes on by itself', async () => {
   await again.stop();
 });
 
-test('a trace: every figure of a tick is that of its row', async () => {
+test('a trace: the values of a tick are those of its row', async () => {
   const csv = join(folder, 'rub.csv');
   execFileSync(tactree, ['simulate', blob, '--seconds', '1', '--script', 'rub', '--trace', csv], { stdio: 'pipe' });
   const [heading, ...rows] = readFileSync(csv, 'utf8').trim().split('\n').map((row) => row.split(','));
@@ -249,7 +307,7 @@ test('a trace: every figure of a tick is that of its row', async () => {
   await check(500);
   await page.keyboard.press('ArrowRight');
   await check(501);
-  assert.ok(!(await page.locator('#arm').isVisible()), 'a trace is not armed');
+  assert.ok(!(await page.locator('#arm').isVisible()), 'a trace cannot be armed');
   assert.deepEqual(page.troubles, []);
   await page.close();
   await replay.stop();

@@ -1,15 +1,15 @@
-// The pictures of the page in the documentation: scripts/make-pictures.
+// Makes the pictures of the page for the documentation; called by scripts/make-pictures.
 // usage: TACTREE=... CHROMIUM=... node pictures.mjs BLOB FOLDER
 import { join } from 'node:path';
 import { launch, number, openPage, startServer, state } from './setup.mjs';
 
-// From where the model is seen well, and how deep the hand presses without slipping off it.
+// Camera position, and the depth to which the hand presses without slipping off.
 const TURNS = 14;
 const DEPTH_M = 0.0009;
 
 const [, , blob, into] = process.argv;
 
-/** Into the object along the keys' way, until it presses. */
+/** Moves the hand into the object with the keys, until it presses. */
 async function press(page, wanted_m) {
   await page.locator('#view').focus();
   for (let i = 0; i < 150 && (await number(page, 'penetration_m')) < wanted_m; ++i) {

@@ -1,5 +1,5 @@
-"""The server of `tactree view` from outside: what it serves, what it refuses, and that a client that
-never reads holds nothing up.
+"""The server of `tactree view` from outside: content, refusals, clients that never read.
+
 usage: server_test.py TACTREE
 """
 import base64
@@ -14,7 +14,6 @@ import struct
 import subprocess
 import sys
 import tempfile
-import time
 import unittest
 import urllib.error
 import urllib.request
@@ -69,7 +68,7 @@ class Server:
             return error.code, error.read()
 
     def raw(self, request):
-        """The status line's code to these bytes, 0 where the connection just ends."""
+        """The status code of the answer to these bytes; 0 if the connection is closed without one."""
         with self.connect() as connection:
             connection.sendall(request)
             try:
@@ -80,7 +79,7 @@ class Server:
 
 
 class Page:
-    """A WebSocket as a page opens it."""
+    """A WebSocket opened like one of a page."""
 
     def __init__(self, server, origin=None, host=None, receive_buffer=None):
         self.socket = socket.socket()
@@ -153,7 +152,8 @@ class ServerTest(unittest.TestCase):
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
         cls.blob = make_blob(pathlib.Path(cls.folder.name))
-        cls.server = Server(cls.blob)
+        # Half the default rate: with sanitizers the simulation takes most of a processor.
+        cls.server = Server(cls.blob, "--rate", "500")
 
     @classmethod
     def tearDownClass(cls):
@@ -174,12 +174,12 @@ class ServerTest(unittest.TestCase):
                      "/model/0/points/99999999999999999999", "/index.html", "//", "/faults/README.md"):
             self.assertEqual(self.server.get(path)[0], 404, path)
 
-    def test_pages_ask_for_nothing_from_elsewhere(self):
+    def test_pages_load_no_external_resources(self):
         for path in ("/", "/assets/page.css", "/faults/encoder-stuck"):
             body = self.server.get(path)[1].decode()
             self.assertNotRegex(body, r"(src|href)=[\"']?(https?:)?//|url\((https?:)?//|@import", path)
 
-    def test_points_of_all_nodes_are_the_model(self):
+    def test_nodes_together_hold_all_points(self):
         tree = json.loads(self.server.get("/model/0")[1])
         total = 0
         for number, node in enumerate(tree["nodes"]):
@@ -239,7 +239,7 @@ class ServerTest(unittest.TestCase):
             page.close()
         self.still_serves()
 
-    def test_refuses_commands_by_name(self):
+    def test_refuses_invalid_commands(self):
         page = Page(self.server)
         page.wait_for("hello")
         for command in ('not json', '[]', '{"do": 7}', '{"do": "fly"}', '{"do": "hand"}',
@@ -271,7 +271,7 @@ class ServerTest(unittest.TestCase):
         page.say(do="hand", target_m=[0, 0, 0.07])
         page.close()
 
-    def test_a_page_that_never_reads_holds_nothing_up(self):
+    def test_a_page_that_never_reads_delays_nothing(self):
         stalled = Page(self.server, receive_buffer=4096)
         reading = Page(self.server)
         reading.wait_for("hello")
@@ -280,13 +280,14 @@ class ServerTest(unittest.TestCase):
             return json.loads(self.server.get("/status.json")[1])["frames"]
 
         before = status()["dropped"]
-        end = time.monotonic() + 60
-        while status()["dropped"] - before < 30 and time.monotonic() < end:
+        for _ in range(100):
+            if status()["dropped"] - before >= 30:
+                break
             for _ in range(30):
                 reading.wait_for("frame")
         now = status()
         self.assertGreaterEqual(now["dropped"] - before, 30, "no frame was dropped")
-        # The loop goes on, and the page that reads misses nothing that matters.
+        # The source and the other page continue.
         first = reading.wait_for("frame")
         for _ in range(60):
             last = reading.wait_for("frame")
@@ -296,7 +297,7 @@ class ServerTest(unittest.TestCase):
         stalled.close()
         reading.close()
 
-    def test_too_many_pages_are_turned_away(self):
+    def test_refuses_too_many_pages(self):
         pages = [Page(self.server) for _ in range(16)]
         for page in pages:
             page.wait_for("hello")
@@ -307,13 +308,13 @@ class ServerTest(unittest.TestCase):
             page.close()
         self.still_serves()
 
-    def test_listens_on_loopback_alone(self):
+    def test_listens_on_loopback_only(self):
         table = pathlib.Path("/proc/net/tcp").read_text().splitlines()[1:]
         listening = [row.split()[1] for row in table if row.split()[3] == "0A"]
         port = f"{self.server.port:04X}"
         self.assertEqual([a for a in listening if a.endswith(":" + port)], ["0100007F:" + port])
 
-    def test_listens_elsewhere_when_told_and_answers_to_addresses_alone(self):
+    def test_address_option_accepts_addresses_but_no_names(self):
         server = Server(self.blob, "--address", "0.0.0.0")
         server.host = f"127.0.0.1:{server.port}"
         self.assertEqual(server.get("/")[0], 200)
@@ -325,16 +326,16 @@ class ServerTest(unittest.TestCase):
         page.close()
         server.stop()
 
-    def test_ends_when_told(self):
+    def test_stops_on_a_signal(self):
         server = Server(self.blob)
         page = Page(server)
         page.wait_for("hello")
         self.assertEqual(server.stop(), 0)
         page.close()
 
-    def test_names_what_it_cannot_do(self):
+    def test_reports_invalid_options(self):
         def run(*arguments):
-            done = subprocess.run([TACTREE, "view", *arguments], capture_output=True, text=True, timeout=30)
+            done = subprocess.run([TACTREE, "view", *arguments], capture_output=True, text=True, timeout=120)
             return done.returncode, done.stderr
         folder = pathlib.Path(self.folder.name)
         cut = folder / "cut.csv"
@@ -342,7 +343,7 @@ class ServerTest(unittest.TestCase):
         other = folder / "other.csv"
         other.write_text("a,b\n1,2\n")
         for arguments, words in (((self.blob, "--page-port", str(self.server.port)), "choose another --page-port"),
-                                 ((self.blob, "--address", "nowhere"), "is no address"),
+                                 ((self.blob, "--address", "nowhere"), "is not an IP address"),
                                  ((self.blob, "--stiffness", "90000"), "stability limit"),
                                  ((self.blob, "--trace", cut), "line 3: 2 values"),
                                  ((self.blob, "--trace", other), "no column t_s"),

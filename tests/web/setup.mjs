@@ -1,4 +1,4 @@
-// What the tests share: models, the program under test, the browser.
+// Shared by the tests: models, the program under test, the browser.
 import { execFileSync, spawn } from 'node:child_process';
 import { existsSync, mkdirSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';

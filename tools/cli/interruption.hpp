@@ -1,10 +1,11 @@
 #pragma once
-// Ctrl-C for verbs that go on until somebody ends them: they put things in order first.
+// Orderly termination by Ctrl-C of verbs that run until stopped.
 
 namespace tactree::cli {
 
-/// From now on SIGINT and SIGTERM do not end the program; interrupted() tells of them.
+/// Catches SIGINT and SIGTERM from now on; interrupted() reports them. Call before starting
+/// threads.
 void watch_interruption();
-bool interrupted();
+[[nodiscard]] bool interrupted();
 
 }  // namespace tactree::cli

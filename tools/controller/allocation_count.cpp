@@ -1,4 +1,4 @@
-// Every way to the heap, counted: the C library's own functions stand behind these, and operator
+// Counts all heap allocations: the C library's own functions stand behind these, and operator
 // new calls them.
 
 #include <cstddef>
@@ -24,10 +24,12 @@ std::uint64_t allocations_of_this_thread() { return allocations; }
 
 #if defined(__GLIBC__) && !defined(TACTREE_SANITIZED)
 extern "C" {
+// NOLINTBEGIN(bugprone-reserved-identifier,readability-identifier-naming): names of the C library
 void* __libc_malloc(std::size_t size);
 void* __libc_calloc(std::size_t count, std::size_t size);
 void* __libc_realloc(void* memory, std::size_t size);
 void* __libc_memalign(std::size_t alignment, std::size_t size);
+// NOLINTEND(bugprone-reserved-identifier,readability-identifier-naming)
 
 void* malloc(std::size_t size) {
   ++allocations;

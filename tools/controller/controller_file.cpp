@@ -18,7 +18,7 @@ using cli::JsonReader;
 
 constexpr std::uintmax_t kMaxBytes = 1U << 20U;
 constexpr cli::JsonRemedies kRemedies = {"is unknown", "docs/LINUX-BOARD.md has the keys",
-                                         "docs/LINUX-BOARD.md tells what it is",
+                                         "see docs/LINUX-BOARD.md",
                                          "one number for each axis, in [brackets]"};
 
 // A guard that looks less often than some ticks would take one late tick for a dead loop.
@@ -57,7 +57,7 @@ std::string device_of(const std::filesystem::path& file, JsonReader& reader) {
                                                                     : from_folder(file, name);
 }
 
-/// What is not there stays as it is.
+/// Keys that are missing leave their value unchanged.
 void read_limits(JsonReader limits, core::Configuration& c) {
   const auto maybe = [&limits](const char* key, float& value, double low, double high) {
     if (limits.has(key)) {
@@ -88,12 +88,12 @@ std::string maybe_text(JsonReader& reader, const char* key) {
   return reader.has(key) ? reader.text(key) : "";
 }
 
-/// All axes are of the kind whose key the first one has: `key` tells them apart.
+/// All axes are of the kind of the first one: `key` distinguishes the kinds.
 bool are_of_kind(const std::vector<JsonReader>& axes, const char* key) {
   const bool first = axes.front().has(key);
   for (const JsonReader& axis : axes) {
     if (axis.has(key) != first) {
-      axis.refuse(key, "is there for some axes only", "wire all axes the same way");
+      axis.refuse(key, "is given for some axes only", "wire all axes alike");
     }
   }
   return first;
@@ -113,7 +113,7 @@ void read_encoders(JsonReader encoders, const core::DeviceModel& device,
   const bool at_index = device.homing == core::HomingMethod::kIndex;
   if (are_of_kind(axes, "counter")) {
     if (at_index) {
-      encoders.refuse("axes", "counters tell no index pulse, by which this device is homed",
+      encoders.refuse("axes", "counters report no index pulse, which homing of this device needs",
                       "wire the encoders to lines, or give the device another homing");
     }
     if (encoders.has("counter_root")) {
@@ -166,7 +166,7 @@ void read_converters(JsonReader& motors, std::vector<JsonReader>& axes,
     output.zero_code = static_cast<std::int32_t>(axis.whole("zero_code", 0, kCodeMax));
     output.full_code = static_cast<std::int32_t>(axis.whole("full_code", 0, kCodeMax));
     if (2 * output.zero_code < output.full_code) {
-      axis.refuse("zero_code", "leaves no room for efforts the other way",
+      axis.refuse("zero_code", "leaves no room for efforts of the other sign",
                   "give at least half of full_code");
     }
     if (output.zero_code == output.full_code) {
@@ -223,7 +223,7 @@ void read_real_time(JsonReader reader, ControllerFile& result) {
   reader.finish();
 }
 
-/// The figures together: what no range of one of them tells.
+/// Checks that involve several values.
 void check_together(const JsonReader& reader, const core::Configuration& configuration) {
   const core::ConfigurationStatus status = core::check(configuration);
   if (status == core::ConfigurationStatus::kUnstable) {
@@ -240,10 +240,9 @@ void check_together(const JsonReader& reader, const core::Configuration& configu
 
 core::Configuration begin_configuration(JsonReader& reader, const cli::Device& device) {
   core::Configuration configuration;
-  core::use_device(device.figures, configuration);
+  core::use_device(device.preset, configuration);
   reader.one("rate_hz", configuration.rate_hz, 100.0, 20000.0);
-  configuration.velocity_cutoff_hz =
-      std::min(configuration.velocity_cutoff_hz, 0.5F * configuration.rate_hz);
+  core::limit_to_rate(configuration);
   if (reader.has("model_origin_m")) {
     float origin[core::kAxes] = {0.0F, 0.0F, 0.0F};
     reader.each("model_origin_m", origin, -10.0, 10.0);
@@ -313,7 +312,7 @@ ControllerFile read_controller_file(const std::filesystem::path& file) {
     slew_given = limits.has("slew_N_s");
     read_limits(std::move(limits), result.configuration);
   }
-  const core::DeviceModel& device = result.device.figures.model;
+  const core::DeviceModel& device = result.device.preset.model;
   read_encoders(reader.object("encoders"), device, result.board);
   read_motors(reader.object("motors"), core::axes_of(device.kind), result.board);
   bound_efforts(result.board, result.configuration);

@@ -192,7 +192,7 @@ void examine_real_time(const RealTimeSettings& settings, std::vector<Finding>& f
   const bool preempt = access("/sys/kernel/realtime", F_OK) == 0;
   findings.push_back({"kernel", "PREEMPT_RT", preempt, false,
                       preempt ? "yes"
-                              : "no: ticks may be late by more (docs/LINUX-BOARD.md tells how to "
+                              : "no: ticks may be late by more (see docs/LINUX-BOARD.md to "
                                 "measure it)"});
 }
 

@@ -12,9 +12,8 @@
 #include "dry_run.hpp"
 #include "service.hpp"
 
+namespace tactree {
 namespace {
-
-using namespace tactree;
 
 /// After a crash, whatever the kernel did with the line: it is off.
 int put_off(const controller::ControllerFile& file) {
@@ -23,19 +22,19 @@ int put_off(const controller::ControllerFile& file) {
   return cli::kExitOk;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   CLI::App app{"tactree-controller: runs the control loop of a haptic device on a Linux board"};
-  app.set_version_flag("--version", "tactree-controller " TACTREE_VERSION);
+  app.set_version_flag("--version", "tactree-controller " TACTREE_VERSION " (" +
+                                        hal::linux_gpio::gpio_library() + ")");
   std::string file;
   bool dry_run = false;
   bool off = false;
-  app.add_option("file", file, "what is wired to where, and what to render (JSON)")->required();
+  app.add_option("file", file, "wiring, device and model of the controller (JSON)")->required();
   auto* const dry = app.add_flag("--dry-run", dry_run,
-                                 "look whether it would run here; touches no line; exit code 1 "
-                                 "where anything is wrong");
-  app.add_flag("--off", off, "put the enable line off, and end: for after a crash")->excludes(dry);
+                                 "check whether it would run here, without using any line; exit "
+                                 "code 1: it would not");
+  app.add_flag("--off", off, "switch the enable line off and exit: for use after a crash")
+      ->excludes(dry);
   try {
     app.parse(argc, argv);
     const controller::ControllerFile read = controller::read_controller_file(file);
@@ -50,3 +49,9 @@ int main(int argc, char** argv) {
     return cli::kExitFailed;
   }
 }
+
+}  // namespace
+}  // namespace tactree
+
+// NOLINTNEXTLINE(bugprone-exception-escape): a failed write of the error message ends the program.
+int main(int argc, char** argv) { return tactree::run(argc, argv); }

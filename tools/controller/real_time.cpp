@@ -21,19 +21,19 @@ constexpr std::size_t kPageBytes = 4096;
   for (std::size_t i = 0; i < kStackBytes; i += kPageBytes) {
     stack[i] = std::byte{0};
   }
-  asm volatile("" : : "r"(stack.data()) : "memory");  // or it would be left out
+  asm volatile("" : : "r"(stack.data()) : "memory");  // keeps the compiler from removing it
 }
 
 std::string no_priority(int priority, int error) {
   return fmt::format(
-      "SCHED_FIFO {}: {}: ticks wait for any other program (run as root, or let the service have "
+      "SCHED_FIFO {}: {}: ticks wait for any other program (run as root, or give the service "
       "LimitRTPRIO={} and CAP_SYS_NICE)",
       priority, std::strerror(error), priority + 1);
 }
 
 std::string no_lock(int error) {
   return fmt::format(
-      "locked memory: {}: a tick may wait for a page (run as root, or let the service have "
+      "locked memory: {}: a tick may wait for a page (run as root, or give the service "
       "LimitMEMLOCK=infinity)",
       std::strerror(error));
 }

@@ -12,12 +12,12 @@
 #include "blob_file.hpp"
 #include "command.hpp"
 #include "real_time.hpp"
+#include "tactree/board_link/session/session.hpp"
+#include "tactree/board_link/store/no_model_store.hpp"
 #include "tactree/core/faults.hpp"
 #include "tactree/hal/linux/gadget_port.hpp"
 #include "tactree/hal/linux/local_socket_port.hpp"
 #include "tactree/hal/loop.hpp"
-#include "tactree/hal/session/session.hpp"
-#include "tactree/hal/store/no_model_store.hpp"
 
 namespace tactree::controller {
 namespace {
@@ -89,6 +89,7 @@ class Attendant {
       : board_(board), progress_(progress), thread_([this] { attend(); }) {}
   ~Attendant() {
     progress_.ending = true;
+    // NOLINTNEXTLINE(bugprone-bad-signal-to-kill-thread): the thread waits for it in sigwait().
     pthread_kill(thread_.native_handle(), SIGTERM);
     thread_.join();
   }
@@ -135,12 +136,11 @@ void check_start(const ControllerFile& file, const hal::StartResult& start) {
   // Configuration and blob were checked when they were read.
   if (start.model != core::ModelStatus::kOk) {
     throw cli::CommandError(fmt::format("{}: {} (build it for this rate and device)",
-                                        file.model.string(), core::describe(start.model)));
+                                        file.model.string(), describe(start)));
   }
   if (!start.ok()) {
-    throw cli::CommandError(fmt::format("{}: refused: {}, {} (--dry-run tells more)", file.file,
-                                        core::describe(start.configuration),
-                                        core::describe(start.blob)));
+    throw cli::CommandError(
+        fmt::format("{}: refused: {} (see --dry-run)", file.file, describe(start)));
   }
 }
 
@@ -162,7 +162,7 @@ void attend(hal::GadgetPort& port, const core::Status& status, std::uint32_t now
 template <hal::BytePort Port>
 class Runner {
  public:
-  using Session = hal::Session<Port, hal::NoModelStore, Platform>;
+  using Session = board_link::Session<Port, board_link::NoModelStore, Platform>;
 
   template <class... PortArguments>
   Runner(const ControllerFile& file, const cli::BlobFile& model, const PortArguments&... port)
@@ -217,13 +217,13 @@ class Runner {
   }
 
   const ControllerFile& file_;
-  hal::TickMailbox mailbox_;
+  board_link::TickMailbox mailbox_;
   core::Controller controller_;
   ControllerBoard board_;
   Port port_;
   Platform platform_;
-  hal::NoModelStore store_;
-  hal::BoardIdentity identity_;
+  board_link::NoModelStore store_;
+  board_link::BoardIdentity identity_;
   hal::Loop<ControllerBoard> loop_;
   Session session_;
   Progress progress_;

@@ -1,41 +1,30 @@
 // tactree-import-mesh FILE HINT MEMORY_BYTES CPU_SECONDS
-// Reads the mesh FILE, whose content is what usually has the extension HINT, and writes it to
-// standard output in the form of import_wire.hpp. Limits its own memory and time first. Started by
-// the tactree builder, not by people.
+// Limits its own memory and time, reads the mesh FILE as a file with the extension HINT, and writes
+// it to standard output in the form of host/builder/mesh_import/wire.hpp. The tactree builder
+// starts it; it is not meant for interactive use.
 
-#include <assimp/config.h>
-#include <assimp/postprocess.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <assimp/Importer.hpp>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <exception>
 #include <new>
-#include <string>
 
-#include "contained_files.hpp"
-#include "import_wire.hpp"
-#include "scene_writer.hpp"
+#include "mesh_import/import_file.hpp"
 
 namespace tactree::import_mesh {
 namespace {
-
-using builder::WireHeader;
-using builder::WireStatus;
 
 constexpr int kExitRefused = 1;
 constexpr int kExitUsage = 2;
 constexpr int kExitOutOfMemory = 3;
 
-int output = -1;  // standard output as it was at the start
+int output = -1;  // the original standard output
 
-// AddressSanitizer reserves terabytes of addresses, which no limit would let it have.
+// AddressSanitizer reserves terabytes of address space: RLIMIT_AS would stop it at its start.
 #if defined(__SANITIZE_ADDRESS__)
 constexpr bool kLimitAddresses = false;
 #elif defined(__has_feature)
@@ -57,60 +46,19 @@ bool set_limits(const char* memory_bytes, const char* cpu_seconds) {
   const rlim_t memory = std::strtoull(memory_bytes, nullptr, 10);
   const rlim_t seconds = std::strtoull(cpu_seconds, nullptr, 10);
   if (memory == 0 || seconds == 0) return false;
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // not to outlive the builder
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // end with the builder
   return (!kLimitAddresses || set_limit(RLIMIT_AS, memory)) && set_limit(RLIMIT_CPU, seconds) &&
          set_limit(RLIMIT_FSIZE, 0) && set_limit(RLIMIT_CORE, 0);
 }
 
-/// Needs no memory: also called when there is none.
-void write_status(WireStatus status, const char* text) {
-  WireHeader header;
-  header.status = static_cast<std::uint32_t>(status);
-  header.text_bytes =
-      static_cast<std::uint32_t>(std::min<std::size_t>(std::strlen(text), builder::kMaxWireText));
-  if (::write(output, &header, sizeof header) < 0) return;
-  if (::write(output, text, header.text_bytes) < 0) return;
-}
-
-void out_of_memory() {
-  write_status(WireStatus::kOutOfMemory, "");
+void report_out_of_memory() {
+  builder::write_status(output, builder::WireStatus::kOutOfMemory, "");
   std::_Exit(kExitOutOfMemory);
 }
 
-void configure(Assimp::Importer& importer) {
-  importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS,
-                              aiComponent_TEXCOORDS | aiComponent_TANGENTS_AND_BITANGENTS |
-                                  aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS |
-                                  aiComponent_TEXTURES | aiComponent_LIGHTS | aiComponent_CAMERAS |
-                                  aiComponent_MATERIALS);
-  // A scan stays in the frame of its file.
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
-}
-
 int refuse(const char* text) {
-  write_status(WireStatus::kRefused, text);
+  builder::write_status(output, builder::WireStatus::kRefused, text);
   return kExitRefused;
-}
-
-int import(const char* file, const char* hint) {
-  Assimp::Importer importer;
-  if (!importer.IsExtensionSupported(hint)) return refuse("the mesh library does not know it");
-  configure(importer);
-  auto* files = new ContainedFiles(file, hint);
-  importer.SetIOHandler(files);  // which deletes it
-  constexpr unsigned kSteps = aiProcess_ValidateDataStructure | aiProcess_RemoveComponent |
-                              aiProcess_Triangulate | aiProcess_JoinIdenticalVertices;
-  const aiScene* scene = importer.ReadFile(files->alias(), kSteps);
-  if (scene == nullptr) {
-    std::string reason = importer.GetErrorString();
-    const std::size_t alias = reason.find(files->alias());
-    if (alias != std::string::npos) reason.replace(alias, files->alias().size(), file);
-    return refuse(reason.c_str());
-  }
-  std::FILE* to = ::fdopen(output, "wb");
-  SceneWriter writer(*scene, to);
-  if (writer.write()) return 0;
-  return refuse("it holds no point and no face");
 }
 
 int run(int count, char** arguments) {
@@ -118,13 +66,13 @@ int run(int count, char** arguments) {
     std::fprintf(stderr, "usage: %s FILE HINT MEMORY_BYTES CPU_SECONDS\n", arguments[0]);
     return kExitUsage;
   }
-  // Whatever the library prints must not get among the result.
+  // The result alone goes to the original output; what the library prints goes to standard error.
   output = ::dup(STDOUT_FILENO);
   if (output < 0 || ::dup2(STDERR_FILENO, STDOUT_FILENO) < 0) return kExitUsage;
   if (!set_limits(arguments[3], arguments[4])) return refuse("its limits cannot be set");
-  std::set_new_handler(out_of_memory);
+  std::set_new_handler(report_out_of_memory);
   try {
-    return import(arguments[1], arguments[2]);
+    return builder::import_file(arguments[1], arguments[2], output) ? 0 : kExitRefused;
   } catch (const std::exception& error) {
     return refuse(error.what());
   }

@@ -1,9 +1,9 @@
 #pragma once
 // Arm MPS3 with the Cortex-M55 image AN547, in QEMU.
 
-#include "plant_link/served_board.hpp"
+#include "plant_link/uart_board.hpp"
 #include "uarts/cmsdk_uart.hpp"
 
 namespace tactree::firmware {
-using Board = ServedBoard<CmsdkUart<0x59303000>>;
+using Board = UartBoard<CmsdkUart<0x59303000>>;
 }  // namespace tactree::firmware

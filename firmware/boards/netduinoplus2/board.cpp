@@ -1,5 +1,7 @@
 #include "board.hpp"
 
+#include "stm32f4/program_in_ram.hpp"
+
 namespace tactree::firmware {
 
 std::uint32_t timer_clock_hz() { return 168000000; }

@@ -1,11 +1,12 @@
 #include "board.hpp"
 
 #include "runtime/identity.hpp"
+#include "stm32f4/program_in_ram.hpp"
 
 namespace tactree::firmware {
 namespace {
 
-// Written before RAM is initialised, so start-up must leave it alone.
+// Written before RAM is initialised; start-up must not clear it.
 [[gnu::section(".noinit")]] stm32f4::ClockFailure clock_failure;
 
 }  // namespace

@@ -1,5 +1,5 @@
 #pragma once
-// The board on the chip itself.
+// The board on the registers of the chip.
 
 #include "stm32f405_board.hpp"
 

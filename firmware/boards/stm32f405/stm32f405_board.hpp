@@ -1,7 +1,7 @@
 #pragma once
-// A board with an STM32F405, three encoders and three amplifiers: README.md here has the pins and
-// tells what was run where. `Word` as in registers.hpp: the tests run this whole board on registers
-// that behave as the manual says.
+// A board with an STM32F405, three encoders and three amplifiers. README.md in this folder lists
+// the pins and the tests that were run. `Word` as in registers.hpp: the tests run the whole board
+// on simulated registers. Loop and memory annotations: docs/BOUND.md.
 
 #include <cstdint>
 
@@ -16,15 +16,15 @@
 #include "stm32f4/serial_port.hpp"
 #include "stm32f4/store_flash.hpp"
 #include "stm32f4/watchdog.hpp"
+#include "tactree/board_link/session/session.hpp"
+#include "tactree/board_link/store/model_store.hpp"
 #include "tactree/hal/board.hpp"
-#include "tactree/hal/session/session.hpp"
-#include "tactree/hal/store/model_store.hpp"
 #include "wiring.hpp"
 
 namespace tactree::firmware {
 
-/// Full speed, and a clock for every part. To be called once after a reset, before any other part
-/// of the chip is touched.
+/// Switches to full speed and enables the clock of every part. Call once after a reset, before any
+/// other access to the chip.
 template <class Word>
 [[nodiscard]] stm32f4::ClockFailure prepare_chip(const stm32f4::Chip<Word>& chip) {
   const stm32f4::ClockFailure failure =
@@ -32,11 +32,11 @@ template <class Word>
   stm32f4::set(chip.rcc.ahb1enr, wiring::kAhb1Clocks);
   stm32f4::set(chip.rcc.apb1enr, wiring::kApb1Clocks);
   stm32f4::set(chip.rcc.apb2enr, wiring::kApb2Clocks);
-  (void)stm32f4::read(chip.rcc.apb2enr);  // a part may be used two cycles after its clock is on
+  (void)stm32f4::read(chip.rcc.apb2enr);  // a part is usable two cycles after its clock is enabled
   return failure;
 }
 
-/// Where the model store keeps its records and its two slots: memory.ld has the whole flash.
+/// Regions of the model store: its records and its two slots. memory.ld lists the whole flash.
 inline constexpr stm32f4::FlashRegion kRecordSectors{1, 2, 4096};
 inline constexpr stm32f4::FlashRegion kSlotSectors{6, 6, 32768};
 
@@ -56,8 +56,8 @@ class Stm32f405Board {
  public:
   using Part = core::wire::StartPart;
 
-  /// The watchdog is fed where a tick begins, and around an erase, in which no tick is: a tick that
-  /// hangs starves it.
+  /// Feeds the watchdog at the start of a tick and around an erase only, so a hanging tick causes a
+  /// reset.
   class Ticker {
    public:
     explicit Ticker(Stm32f405Board& board) : board_(board) {}
@@ -73,7 +73,7 @@ class Stm32f405Board {
     DeadlineWait deadline_;
   };
 
-  /// The bank of motors, failing for as long as a part of the board did not start.
+  /// The bank of motors. Reports a failure if any part of the board did not start.
   class Motors {
    public:
     explicit Motors(Stm32f405Board& board) : board_(board) {}
@@ -84,8 +84,9 @@ class Stm32f405Board {
     Stm32f405Board& board_;
   };
 
-  /// Power off, and no tick, while the processor stands still. Who cannot make the watchdog wait as
-  /// long erases nothing; who cannot make it as short again as it was gives no force any more.
+  /// Switches the power off and holds the ticks while the processor stalls in an erase. If the
+  /// watchdog's timeout cannot be lengthened, nothing is erased; if it cannot be restored, the
+  /// board gives no force until the next reset.
   class Standstill {
    public:
     explicit Standstill(Stm32f405Board& board) : board_(board) {}
@@ -104,13 +105,13 @@ class Stm32f405Board {
   };
 
   using Flash = stm32f4::StoreFlash<Word, Cell, Standstill>;
-  using Store = hal::ModelStore<Flash>;
-  using Session = hal::Session<stm32f4::SerialPort<Word>, Store, SessionPlatform>;
-  using Link = hal::MailboxLink<Ticker>;
+  using Store = board_link::ModelStore<Flash>;
+  using Session = board_link::Session<stm32f4::SerialPort<Word>, Store, SessionPlatform>;
+  using Link = board_link::MailboxLink<Ticker>;
 
-  /// `clocks`: what prepare_chip() returned.
+  /// `clocks`: result of prepare_chip().
   Stm32f405Board(const stm32f4::Chip<Word>& chip, const stm32f4::FlashCells<Cell>& cells,
-                 stm32f4::ClockFailure clocks, const hal::BoardIdentity& identity)
+                 stm32f4::ClockFailure clocks, const board_link::BoardIdentity& identity)
       : chip_(chip),
         identity_(identity),
         full_speed_(clocks == stm32f4::ClockFailure::kNone),
@@ -135,8 +136,7 @@ class Stm32f405Board {
   Stm32f405Board(const Stm32f405Board&) = delete;
   Stm32f405Board& operator=(const Stm32f405Board&) = delete;
 
-  /// Starts every part; the configuration is that of wiring.hpp, with the calibration that was
-  /// saved.
+  /// Starts every part. The configuration is from wiring.hpp, with the saved calibration.
   [[nodiscard]] core::Configuration connect(const hal::CapturedFault& last_fault) {
     report_.by_watchdog = stm32f4::take_watchdog_reset(chip_.rcc);
     report_.last_fault = last_fault;
@@ -153,15 +153,15 @@ class Stm32f405Board {
     store_.set_factory(BlobArea().active());
     (void)store_.mount();
     core::Configuration configuration = wiring::configuration();
-    take_saved_parameters(store_, configuration);
+    board_link::apply_saved_parameters(store_.parameters(), configuration);
     return configuration;
   }
 
-  /// The watchdog starts here and not in connect(): checking a large model takes longer than it
-  /// waits. What is in `result` is told over the link: serve().
+  /// Starts the watchdog: in connect(), the check of a large model would exceed its timeout.
+  /// serve() reports `result` over the link.
   void report(const hal::StartResult& /*result*/) { note(watchdog_.start(), Part::kWatchdog); }
 
-  /// Serves an application at the port, between the ticks, for ever.
+  /// Serves an application at the port between the ticks. Does not return.
   void serve(core::Controller& controller, const hal::StartResult& started,
              const core::Configuration& configuration) {
     static Session session(session_parts(controller));
@@ -182,10 +182,10 @@ class Stm32f405Board {
   [[nodiscard]] const Store& storage() const noexcept { return store_; }
   [[nodiscard]] Ticker& ticker() noexcept { return ticker_; }
 
-  /// What did not start, up to now.
+  /// Parts that have failed to start.
   [[nodiscard]] const hal::StartReport& start_report() const noexcept { return report_; }
 
-  /// Where DMA puts what comes in: a faked one has no other way to find it.
+  /// The buffer of the DMA, for a simulated DMA, which cannot read its address register.
   [[nodiscard]] stm32f4::Ring& ring() noexcept { return ring_; }
 
  private:
@@ -193,7 +193,7 @@ class Stm32f405Board {
   stm32f4::Pin<Word> pin_b(std::uint32_t number) const { return {chip_.gpio_b, number}; }
   stm32f4::Pin<Word> pin_c(std::uint32_t number) const { return {chip_.gpio_c, number}; }
 
-  // A pull-up: an open track does not flutter.
+  // Pull-up: an open track keeps its level.
   void prepare_encoder_pins() {
     pin_a(15).make_alternate(wiring::kTim2Function, stm32f4::Pull::kUp);
     pin_b(3).make_alternate(wiring::kTim2Function, stm32f4::Pull::kUp);
@@ -203,7 +203,7 @@ class Stm32f405Board {
     pin_b(7).make_alternate(wiring::kTim4Function, stm32f4::Pull::kUp);
   }
 
-  // A pull-down: no pulse while the timer does not drive, none from a broken failure line.
+  // Pull-down: no pulse while the timer does not drive; a broken failure line reads as a failure.
   void prepare_motor_pins() {
     for (std::uint32_t axis = 0; axis < core::kAxes; ++axis) {  // bound: kAxes
       pin_c(axis).make_output();
@@ -221,7 +221,7 @@ class Stm32f405Board {
   }
 
   stm32f4::Chip<Word> chip_;
-  hal::BoardIdentity identity_;
+  board_link::BoardIdentity identity_;
   bool full_speed_;
   hal::StartReport report_{};
   stm32f4::QuadratureEncoders<Word> encoders_;
@@ -236,7 +236,7 @@ class Stm32f405Board {
   Flash slot_flash_;
   Store store_;
   SessionPlatform platform_;
-  hal::TickMailbox mailbox_;
+  board_link::TickMailbox mailbox_;
   Motors motors_;
   Ticker ticker_;
   Link link_;

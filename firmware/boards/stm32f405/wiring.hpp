@@ -1,6 +1,6 @@
 #pragma once
-// What is soldered to which pin, and what is on the other end. All that a board of one's own with
-// this chip changes is in this file.
+// Pins of the board and the parts connected to them. Adapt this file for another board with this
+// chip.
 
 #include <cstdint>
 
@@ -10,12 +10,11 @@
 namespace tactree::firmware::wiring {
 
 inline constexpr std::uint32_t kCrystalMHz = 25;  ///< 4 .. 26
-/// Divides the bus's clock without a rest, at full speed (84) and at that of the internal
-/// oscillator (16): the rate is as exact as the clock. At a slower one telemetry would hold up
-/// replies.
+/// Divides the bus clock without remainder at full speed (84 MHz) and on the internal oscillator
+/// (16 MHz), so the rate is as exact as the clock. At a lower rate telemetry would delay replies.
 inline constexpr std::uint32_t kBaud = 1000000;
 
-// Ports by letter: their bits in AHB1ENR (RM0090, section 7.3.10), DMA2 besides.
+// Bits of the ports and of DMA2 in AHB1ENR (RM0090, section 7.3.10).
 inline constexpr std::uint32_t kAhb1Clocks = (1U << 0) | (1U << 1) | (1U << 2) | (1U << 22);
 inline constexpr std::uint32_t kApb1Clocks = (1U << 0) | (1U << 2) | (1U << 3);  // TIM2, 4, 5
 inline constexpr std::uint32_t kApb2Clocks = (1U << 1) | (1U << 4);              // TIM8, USART1
@@ -27,15 +26,15 @@ inline constexpr std::uint32_t kTim5Function = 2;
 inline constexpr std::uint32_t kTim8Function = 3;
 inline constexpr std::uint32_t kUsart1Function = 7;
 
-/// Effort of an axis at the full pulse width, N or Nm.
+/// Effort of an axis at full pulse width, N or Nm.
 inline constexpr float kEffortAtFullWidth[core::kAxes] = {1.9F, 1.8F, 1.5F};
 
-/// Of the device the board is in; it is homed by hand (HomingMethod::kGivenPose). The application's
-/// link is a must: without it nobody could stop it.
+/// Configuration of the device. Homed by hand (HomingMethod::kGivenPose). Requires the link of the
+/// application, which is the means to stop the device.
 inline core::Configuration configuration() {
   core::Configuration configuration;
   core::use_device(core::presets::premium(), configuration);
-  configuration.rate_hz = 1000.0F;  // the watchdog expects no less
+  configuration.rate_hz = 1000.0F;  // the watchdog requires at least this rate
   configuration.link_required = true;
   configuration.link_timeout_s = 0.1F;
   return configuration;

@@ -2,10 +2,10 @@
 
 namespace tactree::firmware {
 
-// CHANGE: the clock of the tick timer (on a Cortex-M that is the core's).
+// CHANGE: clock of the tick timer, Hz (on a Cortex-M: the core clock).
 std::uint32_t timer_clock_hz() { return 25000000; }
 
-// CHANGE: clocks, pins, and a clock for each part in use. No variable has its value yet.
+// CHANGE: clocks, pins, and a clock for each part in use. Variables are not initialised yet.
 void prepare_board() {}
 
 }  // namespace tactree::firmware

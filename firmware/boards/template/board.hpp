@@ -1,7 +1,7 @@
 #pragma once
-// A board to begin with. It boots, tells that every part is missing, and gives no force: each part
-// is what a part must be that does not work. Go through the CHANGEs from top to bottom and run the
-// conformance program after each: docs/PORTING.md.
+// Template of a board. It boots, reports every part as missing and gives no force: each part
+// behaves as a failed part. Complete the CHANGEs from top to bottom and run the conformance program
+// after each: docs/PORTING.md.
 
 #include "platform.hpp"
 #include "runtime/blob_area.hpp"
@@ -13,7 +13,7 @@ namespace tactree::firmware {
 
 class Board {
  public:
-  /// Ready as it is.
+  /// Needs no change.
   class Ticker {
    public:
     // CHANGE: feed your watchdog here and nowhere else.
@@ -27,7 +27,7 @@ class Board {
   class Encoders {
    public:
     // CHANGE: latch all counters at one instant; extend them to 32 bits; valid only while a counter
-    // runs as it was told. The index pulse only where the device is homed by it.
+    // runs as configured. The index pulse is needed only for homing by index.
     [[nodiscard]] core::EncoderReading read() noexcept { return {}; }
   };
 
@@ -35,15 +35,15 @@ class Board {
    public:
     // CHANGE: command.effort(axis) is N or Nm; hold it until the next write.
     void write(const core::MotorCommand&) noexcept {}
-    // CHANGE: no amplifier complains, and the last command was delivered.
+    // CHANGE: true if no amplifier reports a failure and the last command was delivered.
     [[nodiscard]] bool healthy() noexcept { return false; }
   };
 
   class EnableLine {
    public:
-    // CHANGE: power of the amplifiers. A broken wire must be off.
+    // CHANGE: power of the amplifiers. A broken wire must mean off.
     void set(bool) noexcept {}
-    // CHANGE: measured at the amplifiers, not what was set.
+    // CHANGE: the level measured at the amplifiers, not the level set.
     [[nodiscard]] bool read_back() noexcept { return false; }
   };
 
@@ -51,22 +51,22 @@ class Board {
    public:
     // CHANGE: a broken wire, or a port that did not start, must read as pressed.
     [[nodiscard]] bool emergency_stop() noexcept { return true; }
-    // CHANGE: a broken wire must read as let go.
+    // CHANGE: a broken wire must read as released.
     [[nodiscard]] bool dead_man() noexcept { return false; }
   };
 
   class Link {
    public:
-    // CHANGE: messages that fail their checks are as if they never came; each command once.
+    // CHANGE: return each valid command once; ignore messages that fail their checks.
     [[nodiscard]] hal::LinkInput receive() noexcept { return {}; }
-    // CHANGE: drops the status when there is no room; never waits.
+    // CHANGE: drop the status if there is no room; never wait.
     void send(const core::Status&) noexcept {}
   };
 
-  /// Starts every part. CHANGE: use_device() of tactree/core/device_presets.hpp, and your figures.
+  /// Starts every part. CHANGE: use_device() of tactree/core/device_presets.hpp, and your values.
   [[nodiscard]] core::Configuration connect(const hal::CapturedFault&) { return {}; }
-  /// What is wrong with configuration or model. CHANGE: tell it. Start the watchdog here: checking
-  /// a large model takes longer than a watchdog waits.
+  /// Receives the result of the start. CHANGE: report it, and start the watchdog: the check of a
+  /// large model takes longer than the timeout of a watchdog.
   void report(const hal::StartResult&) {}
 
   [[nodiscard]] Encoders& encoders() noexcept { return encoders_; }

@@ -1,3 +1,5 @@
+// Loop and memory annotations: docs/BOUND.md.
+
 #include "tactree/hal/linux/absolute_ticker.hpp"
 
 #include <algorithm>
@@ -5,17 +7,10 @@
 #include <cerrno>
 #include <ctime>
 
+#include "monotonic_time.hpp"
+
 namespace tactree::hal::linux_time {
 namespace {
-
-constexpr std::uint64_t kNsPerSecond = 1'000'000'000;
-
-std::uint64_t now_ns() noexcept {
-  timespec now{};
-  (void)clock_gettime(CLOCK_MONOTONIC, &now);
-  return static_cast<std::uint64_t>(now.tv_sec) * kNsPerSecond +
-         static_cast<std::uint64_t>(now.tv_nsec);
-}
 
 void sleep_until(std::uint64_t due_ns) noexcept {
   timespec due{};
@@ -60,7 +55,7 @@ Tick AbsoluteTicker::wait() noexcept {
   const std::uint64_t now = now_ns();
   const std::uint64_t late_ns = now > due_ns_ ? now - due_ns_ : 0;
   lateness_.add(late_ns);
-  // What it is too late for is left out, not made up for in a burst.
+  // Missed ticks are skipped; a burst of ticks would repeat old outputs.
   const std::uint64_t missed = late_ns / period_ns_;
   due_ns_ += (missed + 1U) * period_ns_;
   raise_by(missed_, missed);

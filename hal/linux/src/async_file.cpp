@@ -1,3 +1,5 @@
+// Loop and memory annotations: docs/BOUND.md.
+
 #include "async_file.hpp"
 
 #include <sys/eventfd.h>

@@ -1,5 +1,5 @@
 #pragma once
-// Linux's asynchronous file operations, as far as FunctionFS's endpoints need them.
+// Asynchronous file operations of Linux, the part required for endpoints of FunctionFS.
 
 #include <linux/aio_abi.h>
 
@@ -10,17 +10,17 @@
 
 namespace tactree::hal::linux_usb {
 
-/// Operations under way, and a descriptor that is readable when one has ended.
+/// A queue of operations, with a descriptor that is readable when one has ended.
 class AsyncContext {
  public:
   AsyncContext();
-  /// Cancels what is under way, and waits for that.
+  /// Cancels pending operations and waits until they have ended.
   ~AsyncContext();
   AsyncContext(const AsyncContext&) = delete;
   AsyncContext& operator=(const AsyncContext&) = delete;
 
   [[nodiscard]] int descriptor() const { return event_; }
-  /// False: it was refused. `tag` comes back; `bytes` stay until then.
+  /// Starts an operation. `bytes` must stay valid until ended() returns `tag`. False: refused.
   [[nodiscard]] bool read(int file, std::span<std::byte> bytes, std::uint64_t tag);
   [[nodiscard]] bool write(int file, std::span<const std::byte> bytes, std::uint64_t tag);
 
@@ -28,7 +28,7 @@ class AsyncContext {
     std::uint64_t tag = 0;
     std::int64_t result = 0;  ///< bytes, or -errno
   };
-  /// What has ended since the last call; valid until the next one.
+  /// Operations ended since the last call; valid until the next call.
   [[nodiscard]] std::span<const Ended> ended();
 
  private:

@@ -3,7 +3,7 @@
 namespace tactree::hal::linux_gpio {
 namespace {
 
-// A kick is a system call, and the shortest watchdog waits for a second.
+// Kicking on every tick is not needed: it costs a system call, and timeouts are 1 s or longer.
 constexpr std::uint64_t kNsPerKick = 100'000'000;
 
 std::uint32_t ticks_per_kick(std::uint64_t period_ns) {
@@ -30,7 +30,7 @@ BoardMotors::BoardMotors(const ControllerBoardSettings& settings) {
 }
 
 ControllerBoard::ControllerBoard(const ControllerBoardSettings& settings,
-                                 std::span<const std::byte> blob, TickMailbox& mailbox)
+                                 std::span<const std::byte> blob, board_link::TickMailbox& mailbox)
     : enable_line_(settings.enable, settings.enable_read_back, settings.consumer, settings.brake),
       guard_(enable_line_.line(), settings.guard),
       motors_(settings),
@@ -55,7 +55,7 @@ void ControllerBoard::stop() noexcept {
   motors_.release();
 }
 
-void ControllerBoard::tell_watchers(bool in_time) noexcept {
+void ControllerBoard::feed_watchers(bool in_time) noexcept {
   guard_.beat();
   if (heartbeat_ && in_time) {
     heartbeat_level_ = !heartbeat_level_;

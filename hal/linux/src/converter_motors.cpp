@@ -1,3 +1,5 @@
+// Loop and memory annotations: docs/BOUND.md.
+
 #include "tactree/hal/linux/converter_motors.hpp"
 
 #include <fcntl.h>
@@ -16,11 +18,11 @@ constexpr char kKind[] = "converter";
 
 std::string find_converter(const std::string& root, const ConverterAxis& axis) {
   const std::string folder = find_sysfs_device(root, axis.device, kKind);
-  const std::string file = folder + "/out_voltage" + std::to_string(axis.channel) + "_raw";
+  std::string file = folder + "/out_voltage" + std::to_string(axis.channel) + "_raw";
   if (!std::filesystem::exists(file)) {
     throw SysfsError(quoted(kKind, axis.device) + ": it has no output " +
                      std::to_string(axis.channel) +
-                     " (remedy: they are the files out_voltage*_raw "
+                     " (remedy: use one of the files out_voltage*_raw "
                      "in " +
                      folder + ")");
   }
@@ -30,7 +32,7 @@ std::string find_converter(const std::string& root, const ConverterAxis& axis) {
 std::int32_t code_of(const ConverterAxis& axis, float effort) {
   const float share = effort / axis.effort_at_full;
   if (!(share < 0.0F) && !(share > 0.0F)) {
-    return axis.zero_code;  // also what is no number
+    return axis.zero_code;  // also for NaN
   }
   const float held = share > 1.0F ? 1.0F : share < -1.0F ? -1.0F : share;
   const double span = static_cast<double>(axis.full_code) - static_cast<double>(axis.zero_code);
@@ -40,7 +42,7 @@ std::int32_t code_of(const ConverterAxis& axis, float effort) {
 ConverterMotors::ConverterMotors(const ConverterSettings& settings, const std::string& consumer)
     : good_(settings.good, consumer) {
   if (settings.axes.empty() || settings.axes.size() > core::kAxes) {
-    throw SysfsError("motors: one to three axes are wanted (remedy: name the converter of each)");
+    throw SysfsError("motors: one to three axes are required (remedy: name the converter of each)");
   }
   for (const ConverterAxis& axis : settings.axes) {  // bound: kAxes
     const std::string file = find_converter(settings.root, axis);

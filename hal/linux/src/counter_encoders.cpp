@@ -1,3 +1,5 @@
+// Loop and memory annotations: docs/BOUND.md.
+
 #include "tactree/hal/linux/counter_encoders.hpp"
 
 #include <fcntl.h>
@@ -20,18 +22,19 @@ std::string function_of(const std::string& folder) {
   return text;
 }
 
-/// Each edge of both tracks is a count.
+/// Selects counting of each edge of both tracks.
 void count_each_edge(const std::string& folder) {
   if (function_of(folder) != kEachEdge) {
     std::ofstream(folder + "/function") << kEachEdge << std::flush;
   }
   if (function_of(folder) != kEachEdge) {
-    throw SysfsError(folder + "/function: does not take '" + kEachEdge +
-                     "' (remedy: run as root, or take a counter that can)");
+    throw SysfsError(folder + "/function: does not accept '" + kEachEdge +
+                     "' (remedy: run as root, or use a counter that supports it)");
   }
 }
 
-/// Of a counter that wraps after `ceiling`: as wide as it gets. Some start with no range at all.
+/// Sets the largest range a counter accepts and returns it; it wraps after `ceiling`. Some counters
+/// start with an empty range.
 std::uint64_t widen(const std::string& folder) {
   const std::string file = folder + "/ceiling";
   if (::access(file.c_str(), W_OK) == 0) {
@@ -44,14 +47,14 @@ std::uint64_t widen(const std::string& folder) {
   }
   std::int64_t ceiling = 0;
   if (!read_value(open_value(file, O_RDONLY).get(), ceiling) || ceiling < 0xFF) {
-    throw SysfsError(file + ": tells no range to count in (remedy: take another counter)");
+    throw SysfsError(file + ": has no valid counting range (remedy: use another counter)");
   }
   return static_cast<std::uint64_t>(ceiling) + 1U;
 }
 
 void start(const std::string& folder) {
   const std::string file = folder + "/enable";
-  if (std::filesystem::exists(file)) {  // one that always counts has none
+  if (std::filesystem::exists(file)) {  // a counter that always counts has no such file
     set_value(file, 1, "run as root");
   }
 }
@@ -60,11 +63,11 @@ void start(const std::string& folder) {
 
 std::string find_count(const std::string& root, const CounterAxis& axis) {
   const std::string counter = find_sysfs_device(root, axis.device, kKind);
-  const std::string folder = counter + "/count" + std::to_string(axis.count);
+  std::string folder = counter + "/count" + std::to_string(axis.count);
   if (!std::filesystem::exists(folder)) {
     throw SysfsError(quoted(kKind, axis.device) + ": it has no count " +
                      std::to_string(axis.count) +
-                     " (remedy: they are the folders count0, count1 "
+                     " (remedy: use one of the folders count0, count1 "
                      "... in " +
                      counter + ")");
   }
@@ -73,7 +76,7 @@ std::string find_count(const std::string& root, const CounterAxis& axis) {
 
 CounterEncoderBank::CounterEncoderBank(const CounterSettings& settings) {
   if (settings.axes.empty() || settings.axes.size() > core::kAxes) {
-    throw SysfsError("encoders: one to three axes are wanted (remedy: name the counter of each)");
+    throw SysfsError("encoders: one to three axes are required (remedy: name the counter of each)");
   }
   for (const CounterAxis& named : settings.axes) {  // bound: kAxes
     const std::string folder = find_count(settings.root, named);
@@ -85,7 +88,7 @@ CounterEncoderBank::CounterEncoderBank(const CounterSettings& settings) {
     std::int64_t now = 0;
     if (!read_value(axis.file.get(), now) || now < 0 ||
         static_cast<std::uint64_t>(now) >= axis.range) {
-      throw SysfsError(folder + "/count: tells no count (remedy: take another counter)");
+      throw SysfsError(folder + "/count: has no valid count (remedy: use another counter)");
     }
     axis.last = static_cast<std::uint64_t>(now);
     axes_.push_back(std::move(axis));

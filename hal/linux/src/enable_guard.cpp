@@ -1,3 +1,5 @@
+// Loop and memory annotations: docs/BOUND.md.
+
 #include "tactree/hal/linux/enable_guard.hpp"
 
 #include <sched.h>
@@ -20,19 +22,19 @@ namespace {
 
 constexpr int kParentIsGone = SIGUSR2;
 
-// Looks in a silence. One more, and what the kernel adds to five sleeps, and it is noticed.
+// Checks per `silence_ns`. Detection takes one check more, plus the delay that the kernel adds to
+// five sleeps.
 constexpr std::uint64_t kLooks = 4;
 
 void ignore(int) {}
 
-// What ends or stops the loop's process, from a terminal or a service manager, is not for the
-// guard.
+// A terminal or a service manager signals the whole group; the guard must outlive the loop.
 void outlive_the_others() {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGTSTP, SIGUSR1, SIGPIPE}) {  // bound: 6
     (void)std::signal(signal, SIG_IGN);
   }
   struct sigaction wake {};
-  wake.sa_handler = ignore;  // without SA_RESTART: it ends a sleep
+  wake.sa_handler = ignore;  // without SA_RESTART, so a signal ends a sleep
   (void)sigaction(kParentIsGone, &wake, nullptr);
   sigset_t none;
   sigemptyset(&none);
@@ -48,7 +50,7 @@ void be_quick(int priority) {
   }
 }
 
-void tell(const char* text) { (void)!::write(STDERR_FILENO, text, std::strlen(text)); }
+void print(const char* text) { (void)!::write(STDERR_FILENO, text, std::strlen(text)); }
 
 }  // namespace
 
@@ -60,7 +62,7 @@ struct EnableGuard::Shared {
 
 namespace {
 
-/// Returns when the loop is gone or silent. Looks are at most a quarter of the silence apart.
+/// Returns when the loop has ended or is silent. Checks at least four times per `silence_ns`.
 template <class Shared>
 bool watch(const Shared& shared, pid_t parent, std::uint64_t silence_ns) {
   const std::uint64_t look_ns = silence_ns / kLooks;
@@ -107,10 +109,10 @@ EnableGuard::EnableGuard(GpioLines& enable, const GuardSettings& settings) {
   const bool off = enable.set(0);
   if (silent) {
     (void)kill(parent, SIGKILL);
-    (void)enable.set(0);  // once more: it may have put it on in between
-    tell("tactree guard: the control loop was silent; enable line off, loop killed\n");
+    (void)enable.set(0);  // again: the loop may have switched it on before it was killed
+    print("tactree guard: the control loop was silent; enable line off, loop killed\n");
   } else if (!shared_->done.load()) {
-    tell("tactree guard: the control loop is gone; enable line off\n");
+    print("tactree guard: the control loop has ended; enable line off\n");
   }
   _exit(off ? 0 : 1);
 }
@@ -124,7 +126,7 @@ EnableGuard::~EnableGuard() {
 }
 
 void EnableGuard::beat() noexcept {
-  // 0 says that there was none yet.
+  // 0 means: no beat yet.
   const std::uint32_t next = shared_->beats.load(std::memory_order_relaxed) + 1U;
   shared_->beats.store(next == 0U ? 1U : next);
 }

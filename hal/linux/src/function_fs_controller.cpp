@@ -1,3 +1,5 @@
+// Loop and memory annotations: docs/BOUND.md.
+
 #include "tactree/hal/linux/function_fs_controller.hpp"
 
 #include <fcntl.h>
@@ -23,11 +25,11 @@
 namespace tactree::hal::linux_usb {
 namespace {
 
-constexpr std::size_t kPieceBytes = 2048;  // a multiple of every packet size
-constexpr std::size_t kPieces = 4;         // of an endpoint, under way at once
+constexpr std::size_t kPieceBytes = 2048;  // bytes; a multiple of every packet size
+constexpr std::size_t kPieces = 4;         // pending operations per endpoint
 constexpr std::size_t kEndpoints = 3;
-constexpr std::size_t kCameMax = 2 * kPieces * kPieceBytes;  // waiting, and under way
-constexpr std::size_t kEventsMax = 8;  // four that the kernel keeps, and what we add
+constexpr std::size_t kCameMax = 2 * kPieces * kPieceBytes;  // waiting, and pending
+constexpr std::size_t kEventsMax = 8;  // four of the kernel, and those added here
 constexpr std::size_t kControlBytesMax = 65535;
 
 // In the order of their descriptors: FunctionFS names their files ep1, ep2, ep3.
@@ -61,7 +63,7 @@ struct FunctionFsController::Impl {
     std::array<Piece, kPieces> pieces;
     std::vector<std::byte> came;  // from the host
   };
-  /// All that there is while the device is plugged in.
+  /// State while the device is plugged in.
   struct Plugged {
     Plugged(const core::usb::Identity& identity, bool dfu) : gadget(identity), with_dfu(dfu) {
       for (Endpoint& endpoint : endpoints) {  // bound: kEndpoints
@@ -69,7 +71,7 @@ struct FunctionFsController::Impl {
       }
     }
     ~Plugged() {
-      async.reset();  // first: what is under way uses the endpoints' memory
+      async.reset();  // first: pending operations use the endpoints' memory
       for (const Endpoint& endpoint : endpoints) {  // bound: kEndpoints
         close_if_open(endpoint.file);
       }
@@ -86,7 +88,7 @@ struct FunctionFsController::Impl {
 
     Gadget gadget;
     int control = -1;
-    int either = -1;  // epoll of control and of what ended
+    int either = -1;  // epoll of endpoint 0 and of ended operations
     bool with_dfu;
     bool enabled = false;
     std::array<Endpoint, kEndpoints> endpoints;
@@ -145,20 +147,19 @@ void FunctionFsController::unplug() {
 
 bool FunctionFsController::plugged_in() const { return impl_->plugged != nullptr; }
 int FunctionFsController::descriptor() const { return plugged_in() ? impl_->plugged->either : -1; }
-bool FunctionFsController::has_dfu() const { return plugged_in() && impl_->plugged->with_dfu; }
 
 void FunctionFsController::Impl::open_function() {
   plugged->control = open_file(plugged->gadget.mount() + "/ep0");
   bool taken = describe(plugged->with_dfu);
   if (!taken && plugged->with_dfu) {
-    close(plugged->control);  // what was refused cannot be written again to the same file
+    close(plugged->control);  // after a refusal the file accepts no other descriptors
     plugged->control = open_file(plugged->gadget.mount() + "/ep0");
     plugged->with_dfu = false;
     taken = describe(false);
   }
   if (!taken) {
     throw std::runtime_error(plugged->gadget.mount() + "/ep0: " + std::strerror(errno) +
-                             " (remedy: this kernel's FunctionFS does not take the device)");
+                             " (remedy: use a kernel whose FunctionFS supports this device)");
   }
   for (std::size_t i = 0; i < kEndpoints; ++i) {  // bound: kEndpoints
     plugged->endpoints[i].file = open_file(plugged->gadget.mount() + "/ep" + std::to_string(i + 1));
@@ -273,7 +274,8 @@ void FunctionFsController::control_receive(std::uint16_t bytes) {
 
 std::span<const std::byte> FunctionFsController::control_data() const { return impl_->received; }
 
-/// An empty data stage in the request's own direction; of a request with data it is done already.
+/// Ends a request without data by an empty transfer in its direction. With data, the transfer has
+/// ended it already.
 void FunctionFsController::control_acknowledge() {
   if (impl_->setup.wLength == 0) {
     (void)!::read(impl_->plugged->control, nullptr, 0);
@@ -281,7 +283,7 @@ void FunctionFsController::control_acknowledge() {
   impl_->events.push_back({UsbEvent::Kind::kStatusDone, {}, {}});
 }
 
-/// Asking for data in the wrong direction is how FunctionFS is told to stall.
+/// FunctionFS stalls when data is requested in the wrong direction.
 void FunctionFsController::control_stall() {
   if (impl_->setup.to_host()) {
     (void)!::read(impl_->plugged->control, nullptr, 0);
@@ -289,11 +291,6 @@ void FunctionFsController::control_stall() {
     (void)!::write(impl_->plugged->control, nullptr, 0);
   }
 }
-
-// These are the kernel's own.
-void FunctionFsController::set_address(std::uint8_t) {}
-void FunctionFsController::configure(bool) {}
-void FunctionFsController::halt(std::uint8_t, bool) {}
 
 std::size_t FunctionFsController::read(std::uint8_t endpoint, std::span<std::byte> bytes) {
   if (!impl_->plugged) {

@@ -1,3 +1,5 @@
+// Loop and memory annotations: docs/BOUND.md.
+
 #include "function_fs_descriptors.hpp"
 
 #include <linux/usb/functionfs.h>
@@ -30,7 +32,8 @@ struct Descriptors {
   std::uint32_t count = 0;
 };
 
-/// Of the interfaces, from the configuration of that speed. FunctionFS numbers names from 1 on.
+/// Interface and endpoint descriptors from the configuration of that speed. FunctionFS numbers
+/// names from 1.
 Descriptors interfaces_of(core::usb::Speed speed, bool with_dfu) {
   const auto all = core::usb::configuration_descriptor(speed);
   Descriptors found;
@@ -38,7 +41,7 @@ Descriptors interfaces_of(core::usb::Speed speed, bool with_dfu) {
   while (at < all.size()) {  // bound: descriptors of the configuration
     const auto size = static_cast<std::size_t>(all[at]);
     Bytes one(all.begin() + static_cast<long>(at), all.begin() + static_cast<long>(at + size));
-    if (one[1] == std::byte{4}) {  // of an interface
+    if (one[1] == std::byte{4}) {  // an interface
       if (!with_dfu && one[2] != std::byte{core::usb::kLinkInterface}) {
         break;
       }
@@ -82,7 +85,7 @@ Bytes function_fs_descriptors(bool with_dfu) {
   const Bytes windows = windows_descriptors(with_dfu);
   Bytes out;
   put_u32(out, FUNCTIONFS_DESCRIPTORS_MAGIC_V2);
-  put_u32(out, 0);  // the length, below
+  put_u32(out, 0);  // length, set below
   put_u32(out, FUNCTIONFS_HAS_FS_DESC | FUNCTIONFS_HAS_HS_DESC | FUNCTIONFS_HAS_MS_OS_DESC);
   put_u32(out, full.count);
   put_u32(out, high.count);

@@ -1,12 +1,12 @@
 #pragma once
-// The device's descriptors in the form that FunctionFS wants them.
+// Descriptors of the device in the format of FunctionFS.
 
 #include <cstddef>
 #include <vector>
 
 namespace tactree::hal::linux_usb {
 
-/// Of both speeds; with the DFU interfaces or without.
+/// Descriptors of both speeds, with or without the DFU interfaces.
 [[nodiscard]] std::vector<std::byte> function_fs_descriptors(bool with_dfu);
 /// Names of the interfaces.
 [[nodiscard]] std::vector<std::byte> function_fs_strings(bool with_dfu);

@@ -1,3 +1,5 @@
+// Loop and memory annotations: docs/BOUND.md.
+
 #include "gadget.hpp"
 
 #include <fcntl.h>
@@ -28,7 +30,7 @@ std::string mount_of(const std::string& name) { return "/run/" + name; }
   throw std::runtime_error(file + ": " + std::strerror(error) + " (remedy: " + remedy + ")");
 }
 
-/// configfs takes what one call writes.
+/// Writes in one system call, as configfs requires.
 void write_to(const std::string& file, const std::string& text) {
   const int opened = open(file.c_str(), O_WRONLY | O_CLOEXEC);
   const bool written =
@@ -73,12 +75,12 @@ Gadget::Gadget(const core::usb::Identity& identity)
   write_to(folder_ + "/strings/0x409/product", identity.name);
   write_to(folder_ + "/strings/0x409/serialnumber", core::usb::serial_text(identity).data());
   make(folder_ + "/configs/c.1");
-  write_to(folder_ + "/configs/c.1/bmAttributes", "0xc0");  // motors are not fed by the bus
+  write_to(folder_ + "/configs/c.1/bmAttributes", "0xc0");  // self-powered
   write_to(folder_ + "/configs/c.1/MaxPower", "100");
   const std::string function = folder_ + "/functions/ffs." + name_;
   make(function);
   fs::create_symlink(function, folder_ + "/configs/c.1/ffs." + name_);
-  // This kernel's own way to tell Windows that it needs no driver: version 1 of those descriptors.
+  // Microsoft descriptors, version 1, the one configfs supports: Windows loads WinUSB.
   write_to(folder_ + "/os_desc/b_vendor_code", hex(core::usb::kMicrosoftRequest));
   write_to(folder_ + "/os_desc/qw_sign", "MSFT100");
   write_to(folder_ + "/os_desc/use", "1");
@@ -109,7 +111,7 @@ void Gadget::take_down(const std::string& name) {
   fs::remove(folder, ignored);
 }
 
-/// A gadget has the number of its process in its name.
+/// Removes gadgets of processes that have ended; the name of a gadget has its process id.
 void Gadget::take_down_left_over() {
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(kGadgets, error)) {  // bound: gadgets
@@ -130,7 +132,7 @@ std::string find_udc(const std::string& name) {
   std::string found;
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(kControllers, error)) {  // bound: controllers
-    const std::string port = entry.path().filename().string();
+    std::string port = entry.path().filename().string();
     if (port == name) {
       return port;
     }

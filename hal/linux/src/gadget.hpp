@@ -9,16 +9,16 @@ namespace tactree::hal::linux_usb {
 
 class Gadget {
  public:
-  /// Makes gadget and mount; nothing is on the bus yet. Takes down what killed programs left.
+  /// Creates gadget and mount, not connected to the bus yet. Removes gadgets of killed programs.
   /// Throws std::runtime_error.
   explicit Gadget(const core::usb::Identity& identity);
   ~Gadget();
   Gadget(const Gadget&) = delete;
   Gadget& operator=(const Gadget&) = delete;
 
-  /// After the descriptors were written: pulls the bus's line up.
+  /// Connects to the bus. Call after the descriptors were written.
   void bind(const std::string& udc);
-  /// Where FunctionFS is mounted.
+  /// Mount point of FunctionFS.
   [[nodiscard]] const std::string& mount() const { return mount_; }
 
  private:

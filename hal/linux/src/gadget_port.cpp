@@ -9,7 +9,7 @@ GadgetPort::GadgetPort(const core::usb::Identity& identity, const std::string& u
 
 void GadgetPort::attend(const core::Status& status, std::uint32_t now_us) {
   device_.poll(now_us);
-  device_.tell_changes(status);
+  device_.send_changes(status);
 }
 
 }  // namespace tactree::hal

@@ -1,10 +1,16 @@
+// Loop and memory annotations: docs/BOUND.md.
+
 #include "tactree/hal/linux/gpio_board.hpp"
+
+#include <bit>
+
+#include "gpio_chip.hpp"
+#include "monotonic_time.hpp"
 
 namespace tactree::hal::linux_gpio {
 namespace {
 
-constexpr int kEdgesAtOnce = 64;
-constexpr int kReadsPerTick = 64;  // 4096 edges; what comes faster than that is lost, and counted
+constexpr int kReadsPerTick = 64;  // 4096 edges; more are lost and counted
 
 InputSettings with_edges() {
   InputSettings settings;
@@ -14,6 +20,10 @@ InputSettings with_edges() {
 
 std::vector<std::string> with_brake(const std::string& enable, const std::string& brake) {
   return brake.empty() ? std::vector<std::string>{enable} : std::vector<std::string>{enable, brake};
+}
+
+core::QuadratureLevels levels_of(std::uint64_t bits, std::uint32_t axis) {
+  return {((bits >> (2U * axis)) & 1U) != 0U, ((bits >> (2U * axis + 1U)) & 1U) != 0U};
 }
 
 /// An open wire reads low.
@@ -32,16 +42,16 @@ GpioEncoderBank::GpioEncoderBank(const std::vector<EncoderLines>& axes, const st
       index_axes_(axes_with_index(axes)),
       faults_max_(faults_max),
       lines_(GpioLines::inputs(names_of(axes), consumer, with_edges())) {
-  std::uint64_t bits = 0;
-  gone_ = !lines_.levels(bits);
+  gone_ = !lines_.levels(decoded_);
   for (std::uint32_t i = 0; i < axes_; ++i) {  // bound: kAxes
-    decoders_[i].begin({((bits >> (2U * i)) & 1U) != 0U, ((bits >> (2U * i + 1U)) & 1U) != 0U});
+    decoders_[i].begin(levels_of(decoded_, i));
   }
 }
 
 std::vector<std::string> GpioEncoderBank::names_of(const std::vector<EncoderLines>& axes) {
   if (axes.empty() || axes.size() > core::kAxes) {
-    throw GpioError("encoders: one to three axes are wanted (remedy: name lines a and b of each)");
+    throw GpioError(
+        "encoders: one to three axes are required (remedy: name lines a and b of each)");
   }
   std::vector<std::string> names;
   for (const EncoderLines& axis : axes) {  // bound: kAxes
@@ -64,39 +74,59 @@ std::vector<std::uint32_t> GpioEncoderBank::axes_with_index(const std::vector<En
   return found;
 }
 
+// An edge to the level that a line has: those between were merged.
 void GpioEncoderBank::take(const Edge& edge, core::EncoderReading& reading) noexcept {
-  lost_ += edge.sequence - next_sequence_;
-  next_sequence_ = edge.sequence + 1U;
-  last_edge_ns_ = edge.time_ns;
-  if (edge.line >= 2U * axes_) {
-    const std::uint32_t axis = index_axes_[edge.line - 2U * axes_];
-    if (edge.level) {
-      reading.index[axis] = true;
-      reading.index_count[axis] = static_cast<std::int32_t>(decoders_[axis].count());
-    }
+  const std::uint64_t bit = std::uint64_t{1} << edge.line;
+  unseen_ += static_cast<std::uint32_t>(((decoded_ & bit) != 0U) == edge.level);
+  decoded_ = edge.level ? decoded_ | bit : decoded_ & ~bit;
+  differ_ &= ~bit;
+  if (edge.line < 2U * axes_) {
+    decoders_[edge.line / 2U].step(levels_of(decoded_, edge.line / 2U));
     return;
   }
-  core::QuadratureDecoder& decoder = decoders_[edge.line / 2U];
-  core::QuadratureLevels levels = decoder.levels();
-  (edge.line % 2U == 0U ? levels.a : levels.b) = edge.level;
-  decoder.step(levels);
+  const std::uint32_t axis = index_axes_[edge.line - 2U * axes_];
+  if (edge.level) {
+    reading.index[axis] = true;
+    reading.index_count[axis] = static_cast<std::int32_t>(decoders_[axis].count());
+  }
+}
+
+// A line differs until its edge has come out of the kernel; it never comes if it was lost.
+void GpioEncoderBank::compare_levels() noexcept {
+  std::uint64_t bits = 0;
+  gone_ = gone_ || !lines_.levels(bits);
+  differ_ &= bits ^ decoded_;
+  const std::uint64_t now_ns = linux_time::now_ns();
+  if (differ_ == 0U) {
+    differ_ = bits ^ decoded_;
+    differ_since_ns_ = now_ns;
+  } else if (now_ns - differ_since_ns_ >= kRest_ns) {
+    unseen_ += static_cast<std::uint32_t>(std::popcount(differ_));
+    decoded_ ^= differ_;
+    differ_ = 0;
+    for (std::uint32_t i = 0; i < axes_; ++i) {  // bound: kAxes
+      decoders_[i].step(levels_of(decoded_, i));
+    }
+  }
 }
 
 bool GpioEncoderBank::is_trusted(std::uint32_t axis) const {
-  return !gone_ && lost_ + decoders_[axis].illegal() <= faults_max_;
+  return !gone_ && lost() + decoders_[axis].illegal() <= faults_max_;
 }
 
 core::EncoderReading GpioEncoderBank::read() noexcept {
   std::array<Edge, kEdgesAtOnce> edges;
   core::EncoderReading reading;
-  int found = kEdgesAtOnce;
-  for (int i = 0; i < kReadsPerTick && found == kEdgesAtOnce; ++i) {  // bound: kReadsPerTick
-    found = lines_.read_edges(edges.data(), kEdgesAtOnce);
+  int found = static_cast<int>(kEdgesAtOnce);
+  for (int i = 0; i < kReadsPerTick && found == static_cast<int>(kEdgesAtOnce);
+       ++i) {  // bound: kReadsPerTick
+    found = lines_.read_edges(edges);
     gone_ = gone_ || found < 0;
     for (int k = 0; k < found; ++k) {  // bound: kEdgesAtOnce
       take(edges[static_cast<std::size_t>(k)], reading);
     }
   }
+  compare_levels();
   for (std::uint32_t i = 0; i < core::kAxes; ++i) {  // bound: kAxes
     reading.counts[i] = static_cast<std::int32_t>(decoders_[i].count());
     reading.valid[i] = i >= axes_ ? !gone_ : is_trusted(i);
@@ -130,15 +160,12 @@ GpioSafetyInputs::GpioSafetyInputs(const std::string& emergency_stop, const std:
     : emergency_stop_(GpioLines::inputs({emergency_stop}, consumer, pulled_down(true))),
       dead_man_(GpioLines::inputs({dead_man}, consumer, pulled_down(false))) {}
 
+// Any edge: the line was low before it or after it, also where edges were merged or lost.
 bool GpioSafetyInputs::emergency_stop() noexcept {
   std::array<Edge, kEdgesAtOnce> edges;
-  const int found = emergency_stop_.read_edges(edges.data(), kEdgesAtOnce);
-  bool pressed = found < 0;
-  for (int i = 0; i < found; ++i) {  // bound: kEdgesAtOnce
-    pressed = pressed || !edges[static_cast<std::size_t>(i)].level;
-  }
+  const bool changed = emergency_stop_.read_edges(edges) != 0;
   std::uint64_t bits = 0;
-  return pressed || !emergency_stop_.levels(bits) || bits == 0U;
+  return changed || !emergency_stop_.levels(bits) || bits == 0U;
 }
 
 bool GpioSafetyInputs::dead_man() noexcept {

@@ -1,23 +1,20 @@
+// Loop and memory annotations: docs/BOUND.md.
+
 #include "tactree/hal/linux/gpio_lines.hpp"
 
-#include <fcntl.h>
-#include <linux/gpio.h>
-#include <sys/ioctl.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstring>
+#include <ctime>
 #include <filesystem>
-#include <utility>
 
-#include "tactree/hal/linux/file_descriptor.hpp"
+#include "gpio_chip.hpp"
+#include "monotonic_time.hpp"
 
 namespace tactree::hal::linux_gpio {
 namespace {
 
-constexpr std::size_t kEdgesAtOnce = 64;
+constexpr std::uint64_t kPatience_ns = 1'000'000'000;
 
 std::string quoted(const std::string& name) { return "line '" + name + "'"; }
 
@@ -32,83 +29,26 @@ std::vector<std::string> chips() {
   return found;
 }
 
-/// A name that is a line's, or "label:line" with the label of a chip.
-bool is_called(const std::string& name, const gpiochip_info& chip, const gpio_v2_line_info& line) {
-  return line.name[0] != '\0' &&
-         (name == line.name || name == std::string(chip.label) + ":" + line.name);
+/// True if `name` is the name of the line, or "label:line" with the label of the chip.
+bool is_called(const std::string& name, const Chip& chip, const ChipLine& line) {
+  return !line.name.empty() && (name == line.name || name == chip.label + ":" + line.name);
 }
 
-/// Adds where on a chip lines of that name are.
-void find_on(const std::string& chip, int file, const std::string& name,
+/// Appends the lines of that name on a chip.
+void find_on(const std::string& device, const Chip& chip, const std::string& name,
              std::vector<LinePlace>& places) {
-  gpiochip_info info{};
-  if (ioctl(file, GPIO_GET_CHIPINFO_IOCTL, &info) != 0) {
-    return;
-  }
-  for (std::uint32_t i = 0; i < info.lines; ++i) {  // bound: lines of the chip
-    gpio_v2_line_info line{};
-    line.offset = i;
-    if (ioctl(file, GPIO_V2_GET_LINEINFO_IOCTL, &line) == 0 && is_called(name, info, line)) {
-      const bool used = (line.flags & GPIO_V2_LINE_FLAG_USED) != 0U;
-      places.push_back({chip, i, used, used ? std::string(line.consumer) : std::string()});
+  for (std::size_t i = 0; i < chip.lines.size(); ++i) {  // bound: lines of the chip
+    const ChipLine& line = chip.lines[i];
+    if (is_called(name, chip, line)) {
+      places.push_back({device, static_cast<std::uint32_t>(i), line.used, line.user});
     }
   }
 }
 
-std::vector<LinePlace> find_all(const std::vector<std::string>& names) {
-  std::vector<LinePlace> places;
-  for (const std::string& name : names) {  // bound: names
-    places.push_back(find_line(name));
-    if (places.back().chip != places.front().chip) {
-      throw GpioError(quoted(name) + ": on " + places.back().chip + ", but " +
-                      quoted(names.front()) + " on " + places.front().chip +
-                      " (remedy: use lines of one chip)");
-    }
-  }
-  return places;
-}
-
-[[noreturn]] void refuse(const std::vector<std::string>& names,
-                         const std::vector<LinePlace>& places, int error) {
-  for (std::size_t i = 0; i < names.size(); ++i) {  // bound: names
-    if (error == EBUSY && !places[i].user.empty()) {
-      throw GpioError(quoted(names[i]) + ": in use by '" + places[i].user +
-                      "' (remedy: end that program)");
-    }
-  }
-  throw GpioError(quoted(names.front()) + ": " + places.front().chip + ": " + std::strerror(error) +
-                  " (remedy: gpioinfo tells what the line can do)");
-}
-
-std::pair<int, std::vector<std::uint32_t>> request(const std::vector<std::string>& names,
-                                                   const std::string& consumer, std::uint64_t flags,
-                                                   std::uint32_t buffer) {
-  if (names.empty() || names.size() > GPIO_V2_LINES_MAX) {
-    throw GpioError("no lines, or more than 64, were asked for (remedy: name some)");
-  }
-  const std::vector<LinePlace> places = find_all(names);
-  gpio_v2_line_request wanted{};
-  std::vector<std::uint32_t> offsets;
-  for (const LinePlace& place : places) {  // bound: names
-    wanted.offsets[offsets.size()] = place.offset;
-    offsets.push_back(place.offset);
-  }
-  wanted.num_lines = static_cast<std::uint32_t>(offsets.size());
-  wanted.event_buffer_size = buffer;
-  wanted.config.flags = flags;
-  consumer.copy(wanted.consumer, sizeof(wanted.consumer) - 1);
-  const FileDescriptor chip(open(places.front().chip.c_str(), O_RDWR | O_CLOEXEC));
-  if (chip.get() < 0 || ioctl(chip.get(), GPIO_V2_GET_LINE_IOCTL, &wanted) != 0) {
-    refuse(names, places, errno);
-  }
-  fcntl(wanted.fd, F_SETFL, fcntl(wanted.fd, F_GETFL) | O_NONBLOCK);
-  return {wanted.fd, offsets};
-}
-
-std::uint64_t flag(bool on, std::uint64_t bits) { return on ? bits : 0U; }
-
-std::uint64_t mask_of(std::size_t lines) {
-  return lines >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << lines) - 1U;
+void sleep_ns(std::uint64_t time_ns) {
+  const timespec time{static_cast<time_t>(time_ns / linux_time::kNsPerSecond),
+                      static_cast<decltype(timespec::tv_nsec)>(time_ns % linux_time::kNsPerSecond)};
+  (void)nanosleep(&time, nullptr);
 }
 
 }  // namespace
@@ -118,10 +58,11 @@ LinePlace find_line(const std::string& name) {
   std::string forbidden;
   const std::vector<std::string> all = chips();
   for (const std::string& chip : all) {  // bound: chips
-    const FileDescriptor file(open(chip.c_str(), O_RDWR | O_CLOEXEC));
-    if (file.get() >= 0) {
-      find_on(chip, file.get(), name, places);
-    } else if (errno == EACCES || errno == EPERM) {
+    Chip lines;
+    const int error = read_chip(chip, lines);
+    if (error == 0) {
+      find_on(chip, lines, name, places);
+    } else if (error == EACCES || error == EPERM) {
       forbidden = chip;
     }
   }
@@ -141,70 +82,50 @@ LinePlace find_line(const std::string& name) {
   if (all.empty()) {
     throw GpioError(quoted(name) + ": there is no GPIO chip (remedy: load its driver)");
   }
-  throw GpioError(quoted(name) + ": no chip has a line of that name (remedy: gpioinfo lists them)");
+  throw GpioError(quoted(name) +
+                  ": no chip has a line of that name (remedy: use a name listed by gpioinfo)");
 }
 
-GpioLines::GpioLines(int file, std::vector<std::uint32_t> offsets)
-    : file_(file), offsets_(std::move(offsets)) {}
-
-GpioLines::~GpioLines() {
-  if (file_ >= 0) {
-    close(file_);
+WantedLines find_lines(const std::vector<std::string>& names, const std::string& consumer) {
+  if (names.empty() || names.size() > kMaxLines) {
+    throw GpioError("no lines, or more than 64, were requested (remedy: name 1 to 64 lines)");
   }
-}
-
-GpioLines::GpioLines(GpioLines&& other) noexcept
-    : file_(std::exchange(other.file_, -1)), offsets_(std::move(other.offsets_)) {}
-
-GpioLines GpioLines::inputs(const std::vector<std::string>& names, const std::string& consumer,
-                            const InputSettings& settings) {
-  const std::uint64_t flags =
-      GPIO_V2_LINE_FLAG_INPUT | flag(settings.active_low, GPIO_V2_LINE_FLAG_ACTIVE_LOW) |
-      flag(settings.edges, GPIO_V2_LINE_FLAG_EDGE_RISING | GPIO_V2_LINE_FLAG_EDGE_FALLING) |
-      flag(settings.bias == Bias::kPullUp, GPIO_V2_LINE_FLAG_BIAS_PULL_UP) |
-      flag(settings.bias == Bias::kPullDown, GPIO_V2_LINE_FLAG_BIAS_PULL_DOWN);
-  auto [file, offsets] =
-      request(names, consumer, flags, settings.edges ? settings.edge_buffer : 0U);
-  return {file, std::move(offsets)};
-}
-
-GpioLines GpioLines::outputs(const std::vector<std::string>& names, const std::string& consumer,
-                             bool active_low) {
-  const std::uint64_t flags =
-      GPIO_V2_LINE_FLAG_OUTPUT | flag(active_low, GPIO_V2_LINE_FLAG_ACTIVE_LOW);
-  auto [file, offsets] = request(names, consumer, flags, 0U);
-  return {file, std::move(offsets)};
-}
-
-bool GpioLines::levels(std::uint64_t& bits) const noexcept {
-  gpio_v2_line_values values{0, mask_of(offsets_.size())};
-  if (ioctl(file_, GPIO_V2_LINE_GET_VALUES_IOCTL, &values) != 0) {
-    return false;
+  WantedLines wanted{names, {}, consumer};
+  for (const std::string& name : names) {  // bound: names
+    wanted.places.push_back(find_line(name));
+    if (wanted.places.back().chip != wanted.chip()) {
+      throw GpioError(quoted(name) + ": on " + wanted.places.back().chip + ", but " +
+                      quoted(names.front()) + " on " + wanted.chip() +
+                      " (remedy: use lines of one chip)");
+    }
   }
-  bits = values.bits;
-  return true;
+  return wanted;
 }
 
-bool GpioLines::set(std::uint64_t bits) noexcept {
-  gpio_v2_line_values values{bits, mask_of(offsets_.size())};
-  return ioctl(file_, GPIO_V2_LINE_SET_VALUES_IOCTL, &values) == 0;
+void refuse(const WantedLines& wanted, int error) {
+  for (std::size_t i = 0; i < wanted.names.size(); ++i) {  // bound: names
+    if (error == EBUSY && !wanted.places[i].user.empty()) {
+      throw GpioError(quoted(wanted.names[i]) + ": in use by '" + wanted.places[i].user +
+                      "' (remedy: end that program)");
+    }
+  }
+  throw GpioError(quoted(wanted.names.front()) + ": " + wanted.chip() + ": " +
+                  std::strerror(error) +
+                  " (remedy: see gpioinfo for the capabilities of the line)");
 }
 
-int GpioLines::read_edges(Edge* edges, int count) noexcept {
-  std::array<gpio_v2_line_event, kEdgesAtOnce> events{};
-  const auto wanted = std::min(static_cast<std::size_t>(count), events.size());
-  const ssize_t size = ::read(file_, events.data(), wanted * sizeof(events[0]));
-  if (size < 0) {
-    return errno == EAGAIN || errno == EINTR ? 0 : -1;
-  }
-  const int found = static_cast<int>(static_cast<std::size_t>(size) / sizeof(events[0]));
-  for (int i = 0; i < found; ++i) {  // bound: kEdgesAtOnce
-    const gpio_v2_line_event& event = events[static_cast<std::size_t>(i)];
-    const auto at = std::find(offsets_.begin(), offsets_.end(), event.offset) - offsets_.begin();
-    edges[i] = {event.timestamp_ns, static_cast<std::uint32_t>(at),
-                event.id == GPIO_V2_LINE_EVENT_RISING_EDGE, event.seqno};
-  }
-  return found;
+// The request itself may have caused edges.
+void GpioLines::await_rest(const std::string& name) {
+  const std::uint64_t end_ns = linux_time::now_ns() + kPatience_ns;
+  do {  // bound: kPatience_ns / kRest_ns
+    if (linux_time::now_ns() > end_ns) {
+      throw GpioError(quoted(name) +
+                      ": it, or a line requested with it, changed for 1 s without a rest of 2 ms "
+                      "(remedy: hold the device still at the start)");
+    }
+    begin_edges();
+    sleep_ns(kRest_ns);
+  } while (!is_at_rest());
 }
 
 }  // namespace tactree::hal::linux_gpio

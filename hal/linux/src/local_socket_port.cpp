@@ -20,7 +20,7 @@ sockaddr_un address_of(const std::string& path) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   if (path.empty() || path.size() >= sizeof(address.sun_path)) {
-    fail(path, "not a path of 1 .. " + std::to_string(sizeof(address.sun_path) - 1) + " letters",
+    fail(path, "not a path of 1 .. " + std::to_string(sizeof(address.sun_path) - 1) + " bytes",
          "choose another");
   }
   path.copy(address.sun_path, path.size());
@@ -35,14 +35,14 @@ const sockaddr* plain(const sockaddr_un& address) {
   return reinterpret_cast<const sockaddr*>(&address);
 }
 
-/// A socket that nobody listens at is what a killed program left.
+/// Removes the socket of a killed program: no process listens on it.
 void remove_left_over(const std::string& path, const sockaddr_un& address) {
   struct stat found {};
   if (lstat(path.c_str(), &found) != 0) {
     return;
   }
   if (!S_ISSOCK(found.st_mode)) {
-    fail(path, "is there, and no socket", "choose another path");
+    fail(path, "exists and is not a socket", "choose another path");
   }
   const FileDescriptor probe = new_socket();
   if (connect(probe.get(), plain(address), sizeof(address)) == 0 || errno == EAGAIN) {
@@ -63,7 +63,7 @@ LocalSocketPort::LocalSocketPort(std::string path)
   umask(before);
   if (bound != 0 || listen(listener_.get(), 1) != 0) {
     fail(path_, std::strerror(bound != 0 ? error : errno),
-         "make its folder, and let this user write there");
+         "create its folder, and permit this user to write to it");
   }
 }
 
@@ -76,7 +76,7 @@ void LocalSocketPort::accept() noexcept {
   }
 }
 
-// Nothing to do now is no reason to hang up.
+// EAGAIN and EINTR mean that no data is available now; the connection continues.
 void LocalSocketPort::note(long result) noexcept {
   if (result == 0 || (result < 0 && errno != EAGAIN && errno != EINTR)) {
     peer_ = FileDescriptor();
@@ -97,7 +97,7 @@ std::size_t LocalSocketPort::write(std::span<const std::byte> bytes) noexcept {
     return 0;
   }
   if (!connected()) {
-    return bytes.size();  // nobody hears it, and it must not wait for the next one
+    return bytes.size();  // without an application: dropped, not kept for the next one
   }
   const ssize_t count = send(peer_.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL);
   note(count);

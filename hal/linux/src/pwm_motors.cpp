@@ -1,3 +1,5 @@
+// Loop and memory annotations: docs/BOUND.md.
+
 #include "tactree/hal/linux/pwm_motors.hpp"
 
 #include <fcntl.h>
@@ -14,12 +16,12 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr char kKind[] = "PWM chip";
-constexpr char kRemedy[] = "a period that this chip can make, and channels that are free";
+constexpr char kRemedy[] = "use a period supported by this chip, and a free channel";
 
 std::uint32_t share_of(float effort, float full, std::uint32_t period_ns) {
   const float share = (effort < 0.0F ? -effort : effort) / full;
   if (!(share > 0.0F)) {
-    return 0;  // also what is no number
+    return 0;  // also for NaN
   }
   return share < 1.0F
              ? static_cast<std::uint32_t>(std::lround(share * static_cast<float>(period_ns)))
@@ -29,7 +31,7 @@ std::uint32_t share_of(float effort, float full, std::uint32_t period_ns) {
 std::vector<std::string> directions_of(const MotorSettings& settings) {
   if (settings.axes.empty() || settings.axes.size() > core::kAxes) {
     throw SysfsError(
-        "motors: one to three axes are wanted (remedy: name chip and direction of each)");
+        "motors: one to three axes are required (remedy: name chip and direction of each)");
   }
   std::vector<std::string> names;
   for (const MotorLines& axis : settings.axes) {  // bound: kAxes
@@ -41,7 +43,7 @@ std::vector<std::string> directions_of(const MotorSettings& settings) {
 }  // namespace
 
 std::string find_pwm_chip(const std::string& root, const std::string& name, std::uint32_t channel) {
-  const std::string chip = find_sysfs_device(root, name, kKind);
+  std::string chip = find_sysfs_device(root, name, kKind);
   std::uint32_t channels = 0;
   std::ifstream(chip + "/npwm") >> channels;
   if (channel >= channels) {
@@ -55,11 +57,11 @@ PwmChannel::PwmChannel(const std::string& root, const std::string& chip, std::ui
                        std::uint32_t period_ns)
     : chip_(find_pwm_chip(root, chip, channel)), channel_(channel) {
   const std::string folder = chip_ + "/pwm" + std::to_string(channel);
-  if (!fs::exists(folder)) {  // else of a program before us that did not tidy up
+  if (!fs::exists(folder)) {  // otherwise left exported by a killed program
     set_value(chip_ + "/export", channel, kRemedy);
   }
   width_ = open_value(folder + "/duty_cycle", O_WRONLY);
-  (void)write_value(width_.get(), 0);  // a channel that has no period yet refuses
+  (void)write_value(width_.get(), 0);  // fails while the channel has no period
   set_value(folder + "/period", period_ns, kRemedy);
   set_value(folder + "/duty_cycle", 0, kRemedy);
   set_value(folder + "/enable", 1, kRemedy);

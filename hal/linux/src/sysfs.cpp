@@ -1,3 +1,5 @@
+// Loop and memory annotations: docs/BOUND.md.
+
 #include "sysfs.hpp"
 
 #include <fcntl.h>
@@ -16,9 +18,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kPatience = 1000;  // ms: udev gives the files of a new channel to their group
+constexpr int kPatience = 1000;  // ms: udev changes the group of the files of a new channel
 
-/// Entries of a class have a link to their device; those of a bus are in its folder.
+/// Entries of a class link to their device; entries of a bus are inside its folder.
 std::string device_of(const fs::path& entry) {
   std::error_code error;
   const fs::path link = fs::read_symlink(entry / "device", error);
@@ -46,11 +48,11 @@ std::string find_sysfs_device(const std::string& root, const std::string& name,
     others += (others.empty() ? "" : ", ") + device;
   }
   if (error || others.empty()) {
-    throw SysfsError(quoted(kind, name) + ": there is none in " + root +
+    throw SysfsError(quoted(kind, name) + ": no such device in " + root +
                      " (remedy: enable it in the device tree)");
   }
-  throw SysfsError(quoted(kind, name) + ": none in " + root +
-                   " has a device of that name (remedy: name one of: " + others + ")");
+  throw SysfsError(quoted(kind, name) + ": no such device in " + root +
+                   " (remedy: use one of: " + others + ")");
 }
 
 FileDescriptor open_value(const std::string& file, int flags) {

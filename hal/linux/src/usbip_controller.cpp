@@ -1,3 +1,5 @@
+// Loop and memory annotations: docs/BOUND.md.
+
 #include "tactree/hal/linux/usbip_controller.hpp"
 
 #include <arpa/inet.h>
@@ -23,14 +25,14 @@ constexpr std::uint32_t kSubmitReply = 3;
 constexpr std::uint32_t kUnlinkReply = 4;
 constexpr std::size_t kHeaderBytes = 48;
 constexpr std::size_t kWords = 10;               // of a header, before the setup packet
-constexpr std::size_t kTransferMax = 1U << 20U;  // bytes: more is no sane host
-constexpr std::size_t kOutgoingMax = 4096;       // as much as a controller's memory holds
+constexpr std::size_t kTransferMax = 1U << 20U;  // bytes; longer requests end the connection
+constexpr std::size_t kOutgoingMax = 4096;       // bytes, as in the memory of a hardware controller
 constexpr int kHighSpeed = 3;                    // USB_SPEED_HIGH
 constexpr char kHostController[] = "/sys/devices/platform/vhci_hcd.0/";
 
 using Words = std::array<std::uint32_t, kWords>;
 
-/// A port of the virtual host controller where a high-speed device may be plugged in.
+/// Finds a free high-speed port of the virtual host controller.
 int free_port() {
   std::ifstream status(std::string(kHostController) + "status");
   if (!status) {
@@ -54,24 +56,24 @@ int free_port() {
 
 }  // namespace
 
-/// One request of the host, as it waits here.
+/// A pending request of the host.
 struct UsbIpController::Transfer {
   std::uint32_t sequence = 0;
   bool to_host = false;
-  std::size_t length = 0;       // asked for, to the host
+  std::size_t length = 0;       // requested by the host
   std::vector<std::byte> data;  // from the host
   std::size_t taken = 0;        // of data
 };
 
 struct UsbIpController::Impl {
   int socket = -1;
-  std::vector<std::byte> incoming;  // of the socket, not understood yet
+  std::vector<std::byte> incoming;  // from the socket, not parsed yet
   std::vector<std::byte> outgoing;  // to the socket
   std::deque<UsbEvent> events;
   std::deque<std::pair<core::usb::SetupPacket, Transfer>> requests;  // of endpoint 0
-  std::optional<Transfer> control;                                   // the one in hand
+  std::optional<Transfer> control;                                   // in progress
   std::map<std::uint8_t, std::deque<Transfer>> transfers;
-  std::map<std::uint8_t, std::deque<std::byte>> waiting;  // to the host, nobody asked yet
+  std::map<std::uint8_t, std::deque<std::byte>> waiting;  // to the host, not requested yet
   std::map<std::uint8_t, bool> halted;
 
   void drop();
@@ -107,7 +109,7 @@ void UsbIpController::plug_in() {
   if (attach >= 0) {
     close(attach);
   }
-  close(ends[1]);  // the kernel holds it now
+  close(ends[1]);  // the kernel has its own reference
   if (!written) {
     close(ends[0]);
     throw std::runtime_error(file + ": " + std::strerror(error) +
@@ -121,7 +123,7 @@ void UsbIpController::plug_into(int socket) {
   impl_->socket = socket;
   fcntl(socket, F_SETFL, fcntl(socket, F_GETFL) | O_NONBLOCK);
   impl_->events.push_back({UsbEvent::Kind::kReset, core::usb::Speed::kHigh, {}});
-  // The virtual host controller keeps this request to itself.
+  // The virtual host controller does not forward this request.
   impl_->requests.push_back({{0, core::usb::kSetAddress, 1, 0, 0}, {}});
 }
 
@@ -212,8 +214,8 @@ void UsbIpController::Impl::submit(const Words& words, const std::byte* setup,
   serve(endpoint);
 }
 
-/// The host gives a request up: either it is dropped here, or its reply is on its way already. To
-/// answer it as well would end the connection.
+/// The host cancels a request: it is dropped here unless its reply was sent already. A second
+/// answer would end the connection.
 void UsbIpController::Impl::unlink(std::uint32_t sequence, std::uint32_t which) {
   std::size_t dropped = std::erase_if(
       requests, [&](const auto& request) { return request.second.sequence == which; });
@@ -247,7 +249,7 @@ void UsbIpController::Impl::finish(const Transfer& transfer, int status, std::si
   }
 }
 
-/// Gives the host what it waits for, where there is something.
+/// Answers pending requests of the host with the available data.
 void UsbIpController::Impl::serve(std::uint8_t endpoint) {
   auto& queue = transfers[endpoint];
   auto& bytes = waiting[endpoint];
@@ -271,8 +273,11 @@ void UsbIpController::Impl::serve(std::uint8_t endpoint) {
 
 UsbEvent UsbIpController::next_event() {
   Impl& impl = *impl_;
-  impl.receive();
-  impl.flush();
+  if (impl.events.empty()) {
+    impl.receive();
+    impl.flush();
+  }
+  // Before further messages: a transfer that follows the end of a halt must not meet the halt.
   if (!impl.events.empty()) {
     const UsbEvent event = impl.events.front();
     impl.events.pop_front();
@@ -294,7 +299,7 @@ void UsbIpController::control_send(std::span<const std::byte> data, bool) {
 }
 
 void UsbIpController::control_receive(std::uint16_t) {
-  impl_->events.push_back({UsbEvent::Kind::kData, {}, {}});  // it came with the request
+  impl_->events.push_back({UsbEvent::Kind::kData, {}, {}});  // the data arrived with the request
 }
 
 std::span<const std::byte> UsbIpController::control_data() const {
@@ -312,8 +317,6 @@ void UsbIpController::control_stall() {
   impl_->finish(*impl_->control, -EPIPE, 0);
   impl_->control.reset();
 }
-
-void UsbIpController::set_address(std::uint8_t) {}
 
 void UsbIpController::configure(bool) {
   impl_->waiting.clear();

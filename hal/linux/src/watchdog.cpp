@@ -16,10 +16,10 @@ namespace {
 
 const char* remedy_for(int error) {
   if (error == EBUSY) {
-    return "another program has it; systemd does where RuntimeWatchdogSec is set";
+    return "end the program that uses it; systemd uses it if RuntimeWatchdogSec is set";
   }
-  return error == ENOENT ? "load its driver, or leave the watchdog out"
-                         : "run as root, or let a udev rule allow it";
+  return error == ENOENT ? "load its driver, or configure no watchdog"
+                         : "run as root, or add a udev rule that permits it";
 }
 
 }  // namespace
@@ -34,13 +34,13 @@ WatchdogDevice::WatchdogDevice(const std::string& file, std::uint32_t timeout_s)
     const int error = errno;
     (void)::write(file_.get(), "V", 1);
     errno = error;
-    fail(file, "give a time that this watchdog can do");
+    fail(file, "use a timeout supported by this watchdog");
   }
 }
 
 WatchdogDevice::~WatchdogDevice() {
   if (file_.get() >= 0) {
-    (void)!::write(file_.get(), "V", 1);  // closing it without this is what a crash does
+    (void)!::write(file_.get(), "V", 1);  // magic close: without it the driver assumes a crash
   }
 }
 

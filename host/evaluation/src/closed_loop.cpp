@@ -16,11 +16,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kCoarse = 2.5e-3;      // m, h: paper mode needs it for 1 mm of depth
+constexpr double kCoarse = 2.5e-3;      // m, h: required by paper mode for a depth of 1 mm
 constexpr double kEncoderStep = 20e-6;  // m
 constexpr double kSpeed = 0.01;         // m/s, of the hand
 constexpr double kPress = 1.0;          // N
-constexpr double kCorner = 20.0;        // Hz: slower than this is motion, not vibration
+constexpr double kCorner = 20.0;        // Hz: lower frequencies are motion, not vibration
 
 core::RenderMode render_mode(Mode mode) {
   return mode == kPaper ? core::RenderMode::kPaper : core::RenderMode::kSurface;
@@ -39,7 +39,7 @@ class HighPass {
     a2_ = (1.0 - std::numbers::sqrt2 * k + k * k) * norm;
   }
   Vector3d update(const Vector3d& x) {
-    const Vector3d y = b_ * (x - 2.0 * x1_ + x2_) - a1_ * y1_ - a2_ * y2_;
+    Vector3d y = b_ * (x - 2.0 * x1_ + x2_) - a1_ * y1_ - a2_ * y2_;
     x2_ = x1_;
     x1_ = x;
     y2_ = y1_;
@@ -57,7 +57,7 @@ class HighPass {
   Vector3d y2_ = Vector3d::Zero();
 };
 
-/// Down onto the sheet in a second, then along it at a depth at which the hand's spring presses.
+/// Descends onto the sheet within a second, then moves along it at the depth of the pressing force.
 simulation::HandPath drawn_hand(const simulation::Setup& setup, double seconds) {
   const CosSheet sheet;
   const double deep = 1e-3 + kPress / setup.plant.hand.stiffness_N_m;
@@ -85,7 +85,7 @@ double vibration(const Shape& shape, Mode mode, double seconds) {
   setup.board.encoders.counts_per_m = static_cast<double>(setup.controller.device.counts_per_m[0]);
   simulation::Simulation sim(shape.bytes(), setup, drawn_hand(setup, seconds));
   if (!sim.start_result().ok() || !sim.arm()) {
-    throw std::runtime_error("the closed loop does not start");
+    throw std::runtime_error("the closed loop cannot start");
   }
   const double rate = static_cast<double>(setup.controller.rate_hz);
   HighPass filter(kCorner, rate);
@@ -110,7 +110,8 @@ constexpr double kDamping = 0.5;  // Ns/m
 constexpr double kPush = 0.5;     // N
 constexpr double kGrid = 0.0;     // m, x and y: on a point, for paper mode
 
-/// Lets go of a device a tenth off its equilibrium in the wall. True: the swing dies away.
+/// Releases a device at a distance from its equilibrium in the wall. True if the oscillation
+/// decays.
 bool is_stable(const Shape& wall, Mode mode, double rate_hz, double stiffness) {
   core::Configuration configuration;
   configuration.mode = render_mode(mode);
@@ -166,7 +167,8 @@ LoopResult::Limit measure_limit(double rate_hz, double delay_s, double hand_Ns_m
   c.device_damping_Ns_m = hand_Ns_m > 0.0 ? 0.1 : 0.5;
   c.hand_damping_Ns_m = hand_Ns_m;
   c.wall_damping_Ns_m = wall_Ns_m;
-  // Well above the wall's own frequency, or its damping comes too late to count in full.
+  // Well above the natural frequency of the wall: a slower filter reduces the effect of its
+  // damping.
   c.velocity_cutoff_hz = std::max(c.velocity_cutoff_hz, rate_hz / 20.0);
   LoopResult::Limit limit{rate_hz, delay_s, hand_Ns_m, wall_Ns_m, 0.0, 0.0, 0.0};
   limit.formula_N_m = simulation::predicted_stiffness(c);

@@ -13,9 +13,9 @@
 namespace tactree::evaluation {
 
 double Scores::get(const std::string& name) const {
-  const auto found = std::find_if(figures_.begin(), figures_.end(),
-                                  [&](const auto& figure) { return figure.first == name; });
-  return found == figures_.end() ? kNotMeasured : found->second;
+  const auto found = std::find_if(values_.begin(), values_.end(),
+                                  [&](const auto& value) { return value.first == name; });
+  return found == values_.end() ? kNotMeasured : found->second;
 }
 
 bool Result::all_met() const {
@@ -24,14 +24,14 @@ bool Result::all_met() const {
 
 namespace {
 
-// 58 lines of about 540 ticks and 16 mm make the 30 000 ticks that lost contact is looked for on.
+// 58 lines of about 540 ticks and 16 mm: 30 000 ticks for the detection of lost contact.
 constexpr int kLines = 64;
 
 void evaluate_shapes(const Options& options, builder::Progress& progress, Result& result) {
   const Effort effort = options.quick ? Effort{2000, 50, 10} : Effort{};
   const std::vector<Subject> subjects = make_subjects(options.seed, options.quick ? 16 : kLines);
   for (const Subject& subject : subjects) {
-    progress.begin("touching: " + subject.title);
+    progress.begin("shape: " + subject.title);
     ShapeResult shape{subject.name, subject.title, {}};
     for (const Mode mode : {kSurface, kPaper}) {
       shape.modes[mode] = score_shape(subject, mode, effort, options.seed);
@@ -45,7 +45,7 @@ void evaluate_shapes(const Options& options, builder::Progress& progress, Result
 
 void evaluate_scans(const Options& options, builder::Progress& progress, Result& result) {
   for (const std::filesystem::path& scan : options.scans) {
-    progress.begin("comparing: " + scan.filename().string());
+    progress.begin("scan: " + scan.filename().string());
     result.scans.push_back(score_scan(scan, options.quick ? 500 : 5000, options.seed));
   }
 }

@@ -14,18 +14,20 @@ namespace {
 
 using builder::Opening;
 
-constexpr double kSide = 290.0;  // of the square that a view is in
+constexpr double kSide = 290.0;  // of the square of a view
 constexpr double kGap = 15.0;
 constexpr double kTop = 30.0;
 constexpr double kBottom = kTop + kSide + 40.0;
-constexpr std::uint32_t kDots = 4000;  // of a view: a model is known by them
+constexpr std::uint32_t kDots = 4000;  // per view: enough to recognise a model
 constexpr std::size_t kListed = 10;
 
-const char* name_of(Opening::Kind kind) { return kind == Opening::Kind::kHole ? "hole" : "rim"; }
+const char* name_of(Opening::Kind kind) {
+  return kind == Opening::Kind::kHole ? "hole" : "boundary";
+}
 
 std::string map_name(std::size_t scan) { return fmt::format("holes_{}.svg", scan); }
 
-/// From where it is seen: the axes to the right and up.
+/// A view: the axes to the right and up.
 struct Side {
   const char* name;
   Eigen::Index right;
@@ -62,7 +64,7 @@ class Frame {
   double scale_ = 1.0;
 };
 
-/// All points of a view in one path: a line of no length is a dot.
+/// All points of a view in one path; a line of length 0 is a dot.
 std::string dots(const core::BlobView& view, const Frame& frame, std::size_t side) {
   const std::uint32_t every = 1U + view.point_count() / kDots;
   std::string path;
@@ -79,7 +81,7 @@ std::string dots(const core::BlobView& view, const Frame& frame, std::size_t sid
 }
 
 std::string circle(const Opening& opening, const Frame& frame, std::size_t side) {
-  constexpr double kLeast = 2.5;  // a hole of less would not be seen
+  constexpr double kLeast = 2.5;  // pixels, visible
   const Eigen::Vector2d at = frame.place(opening.centre, side);
   const double radius = std::max(kLeast, 0.5 * frame.pixels(opening.diameter_m));
   return fmt::format(
@@ -129,8 +131,8 @@ std::string holes_markdown(const Result& result) {
     }
     fmt::format_to(
         std::back_inserter(page),
-        "\n## Where {} ends\nOpenings wider than the {:.3g} mm that the surface fit bridges: {}. "
-        "Red: a hole, with surface all around; orange: an open rim.\n\n"
+        "\n## Openings of {}\nOpenings wider than the {:.3g} mm that the surface fit bridges: {}. "
+        "Red: a hole, enclosed by surface; orange: an open boundary.\n\n"
         "![Openings of {}]({})\n",
         scan.name, 1e3 * scan.support_m, scan.openings.size(), scan.name, map_name(i));
     if (!scan.openings.empty()) {

@@ -1,5 +1,5 @@
 #pragma once
-// Where the surface of a scan ends, as a picture.
+// A map of the openings of a scan.
 
 #include <span>
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace tactree::evaluation {
 
-/// An SVG picture: the model from three sides, to one scale, and a circle as wide as each opening.
-/// Precondition: !view.empty().
+/// An SVG picture: the model from three sides at one scale, with a circle of the size of each
+/// opening. Precondition: !view.empty().
 [[nodiscard]] std::string hole_map_svg(const core::BlobView& view,
                                        std::span<const builder::Opening> openings);
 

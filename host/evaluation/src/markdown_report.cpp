@@ -8,7 +8,7 @@
 namespace tactree::evaluation {
 namespace {
 
-/// Text that grows row by row.
+/// A page of Markdown under construction.
 class Page {
  public:
   template <class... Values>
@@ -46,11 +46,12 @@ std::string detection(const DetectionRow::Count& c) {
 
 void add_detection(Page& page, const Result& result) {
   page.add(
-      "## The paper's Table 1: is the probe in contact?\n"
+      "## Table 1 of the paper: contact detection\n"
       "6 820 probes on z = cos x + cos y, |x|, |y| <= 0.25 m; box and six-point offset 2.5 mm as "
-      "the paper has them.\nAccuracy (false positives / false negatives). *Tracing*: all probes on "
-      "the surface. *Hovering*: 23.5 % on it, the others\n2 to 10 mm above. Surface mode says "
-      "contact within the paper's margin of 5 um and one step of the blob's lattice.\n\n"
+      "in "
+      "the paper.\nAccuracy (false positives / false negatives). *Tracing*: all probes on the "
+      "surface. *Hovering*: 23.5 % on the surface, the others\n2 to 10 mm above. Surface mode "
+      "detects contact within the paper's margin of 5 um plus one step of the blob's lattice.\n\n"
       "| separation | model | printed in the paper | paper mode, tracing | paper mode, hovering | "
       "surface mode, tracing | surface mode, hovering |\n|---|---|---|---|---|---|---|\n");
   for (const DetectionRow& row : result.detection) {
@@ -64,46 +65,45 @@ void add_detection(Page& page, const Result& result) {
              detection(row.hovering[kSurface]));
   }
   page.add(
-      "\n**What does not reproduce.** Row 0.0025 does, static: nearly all of its misses are "
-      "diagonal leaves, which six points\ndo not reach. Rows 0.01 and 0.005 do not follow from "
-      "that row's path: with boxes of 2.5 mm, most of a surface\nsampled at 5 or 10 mm is in no "
-      "box. Row 0.01 is met by a path that is on the surface for 23.5 % of its probes\nand hovers "
-      "else, but then row 0.0025 is not. The false positives of rows 0.01 and 0.005 do not appear "
-      "with\nboxes of 2.5 mm. A rigid pose of the model changes no verdict but by rounding; the "
-      "paper's 98.18 % for the dynamic\nmodel is not (3 + 179) of 6 820 either, which would be "
-      "97.33 %.\n\n");
+      "\n**Not reproduced.** Row 0.0025, static, is reproduced: nearly all of its misses are "
+      "diagonal leaves, out of reach of the\nsix points. Rows 0.01 and 0.005 do not follow from "
+      "the same path: with boxes of 2.5 mm, most of a surface sampled at\n5 or 10 mm is in no box. "
+      "A path with 23.5 % of its probes on the surface reproduces row 0.01, but not row 0.0025. "
+      "The\nfalse positives of rows 0.01 and 0.005 do not occur with boxes of 2.5 mm. A rigid pose "
+      "of the model changes results by\nrounding only; the paper's 98.18 % for the dynamic model "
+      "does not match (3 + 179) of 6 820 either, which is 97.33 %.\n\n");
 }
 
 void add_distances(Page& page, const Result& result) {
   const DistanceTable& d = result.distances;
   page.add(
-      "## The paper's Table 2: how far is the surface?\n"
+      "## Table 2 of the paper: distance to the surface\n"
       "Probes from 50 mm below to 10 mm above the sheet, h = 2.5 mm; difference of the distance "
       "from brute force.\n\n| | mean | largest |\n|---|---|---|\n"
       "| printed in the paper | 1.97 um | 34.2 um |\n"
-      "| paper mode, octant of the detection remembered, flat top | {} um | {} um |\n"
+      "| paper mode, detection octant remembered, flat top | {} um | {} um |\n"
       "| exact nearest point, within reach | - | {} um |\n"
       "| surface mode, proxy, against the true surface | {} um | {} um |\n\n",
       figure(d.paper_mean_m, 1e6), figure(d.paper_max_m, 1e6), figure(d.nearest_max_m, 1e6),
       figure(d.surface_mean_m, 1e6), figure(d.surface_max_m, 1e6));
   page.add(
-      "**What does not reproduce.** Read literally, the experiment leaves {} of the probes without "
-      "any point: neither the\nprobe nor its six points are in a leaf that has one. It needs the "
+      "**Not reproduced.** As described in the paper, the experiment leaves {} of the probes "
+      "without "
+      "any point: neither the\nprobe nor its six points are in a leaf with points. It requires the "
       "octant of the detection to be remembered, and the\nflat top of the sheet, |x|, |y| <= 75 "
-      "mm. "
-      "The text's \"0.3 micrometre\" is 34 um in its own table, and its \"25 mm\"\nis 2.5 mm. The "
-      "run times of both tables are of another machine and are not compared here.\n\n",
+      "mm. The text's \"0.3 micrometre\" is 34 um in its table, and its \"25 mm\" is 2.5 mm. "
+      "The\nrun times of both tables are from a different machine and are not compared here.\n\n",
       percent(d.literal_without_point));
 }
 
 void add_geometry(Page& page, const Result& result, const std::string& pictures) {
   page.add(
-      "## Where is the surface?\n"
-      "h = 1 mm unless said; probes up to h above and below. *Off the surface*: of the point "
-      "answered (rms / largest);\n*distance*: error of the distance answered, rms; *normal*: "
-      "error, "
-      "rms; *answered*: share of the probes. Paper mode answers\nwith a point of the cloud: on the "
-      "surface, but not where it is nearest.\n\n"
+      "## Accuracy of the surface\n"
+      "h = 1 mm unless stated otherwise; probes up to h above and below. *Off the surface*: "
+      "distance "
+      "of the computed point (rms /\nlargest); *distance*: error of the computed distance, rms; "
+      "*normal*: error, rms; *answered*: share of the probes with a result.\nPaper mode returns "
+      "points of the cloud, which are on the surface but not necessarily the nearest.\n\n"
       "| shape | mode | off the surface, um | distance, um | normal, deg | answered |\n"
       "|---|---|---|---|---|---|\n");
   for (const ShapeResult& shape : result.shapes) {
@@ -122,12 +122,13 @@ void add_geometry(Page& page, const Result& result, const std::string& pictures)
 
 void add_forces(Page& page, const Result& result, const std::string& pictures) {
   page.add(
-      "## What does the hand feel?\n"
+      "## Contact force\n"
       "Sliding 1 mm deep at 0.1 m/s, 1 N/mm, 1 kHz, without friction: error of the force of 1 N, "
-      "largest step from one tick\nto the next (a force that turns with the sphere alone makes "
-      "0.0033 N), ticks without contact. *Pulled in*: share of probes\n1 mm outside that feel a "
-      "force towards the surface. *Missed*: crossings at 0.05 to 6 m/s, 60 degrees at most, that "
-      "were\nnot noticed. *Friction*: tangential over normal force while slipping, for 0.3.\n\n"
+      "largest step between ticks\n(0.0033 N are due to the turning of the force on the sphere), "
+      "ticks without contact. *Pulled in*: share of probes 1 mm\noutside with a force towards the "
+      "surface. *Missed*: undetected crossings of the surface at 0.05 to 6 m/s and up to 60 "
+      "degrees\nfrom the normal. *Friction*: ratio of tangential to normal force while slipping; "
+      "coefficient 0.3.\n\n"
       "| shape | mode | error, N rms | step, N | lost, of ticks | pulled in | missed, of | "
       "friction "
       "|\n|---|---|---|---|---|---|---|---|\n");
@@ -145,9 +146,9 @@ void add_forces(Page& page, const Result& result, const std::string& pictures) {
     }
   }
   page.add(
-      "\nIn paper mode at h = 1 mm the boxes reach 0.5 mm deep: 1 mm below the surface there is no "
-      "contact, hence no step.\nWhere a thinned cloud has a hole without a point in the whole "
-      "support, contact ends as on a rim.\n\n");
+      "\nIn paper mode at h = 1 mm the boxes are 0.5 mm deep: no contact 1 mm below the surface, "
+      "hence no step. In a hole of a\nthinned cloud without any point in the support, contact ends "
+      "as at a boundary.\n\n");
   add_picture(page, pictures, "force.svg", "Force while sliding");
   add_picture(page, pictures, "force_error.svg", "Error of the force");
 }
@@ -156,8 +157,8 @@ void add_loop(Page& page, const Result& result) {
   page.add(
       "## The closed loop\n"
       "*Vibration*: acceleration of the tip above 20 Hz, rms, while a hand presses with 1 N and "
-      "draws it at 10 mm/s over\nthe cosine sheet, h = 2.5 mm: 1 kHz, 1 N/mm, encoder 20 um. "
-      "*Stiffness*: the largest stable one of a device with\nb = 0.5 Ns/m, no hand, no delay; "
+      "moves at 10 mm/s over the\ncosine sheet, h = 2.5 mm: 1 kHz, 1 N/mm, encoder 20 um. "
+      "*Stiffness*: largest stable stiffness of a device with\nb = 0.5 Ns/m, no hand, no delay; "
       "2 b / T is Colgate and Brown's limit.\n\n| | surface | paper | 2 b / T "
       "|\n|---|---|---|---|\n");
   const LoopResult& loop = result.loop;
@@ -169,11 +170,11 @@ void add_loop(Page& page, const Result& result) {
              figure(row.expected_N_m, 1e-3));
   }
   page.add(
-      "\nWhat the controller's own parts bear, by rate, delay from reading to force, the hand's "
-      "damping and the wall's:\n*formula* is what a configuration is held to, *measured* without "
-      "passivity control, *passive* with it.\nThe velocity's filter passes 200 Hz, from 4 kHz on a "
-      "twentieth of the rate: the wall's damping counts in full only\nwhile the filter is faster "
-      "than the wall's own swing.\n\n"
+      "\nStability limits of the controller by rate, delay from reading to force, damping of the "
+      "hand and of the wall:\n*formula* is the limit applied to configurations, *measured* is "
+      "without passivity control, *passive* with it. The cutoff\nof the velocity filter is 200 Hz, "
+      "from 4 kHz on a twentieth of the rate: the wall's damping acts in full only if the\nfilter "
+      "is faster than the oscillation of the wall.\n\n"
       "| rate, kHz | delay, ms | hand, Ns/m | wall, Ns/m | formula, N/mm | measured | passive | "
       "gain |\n|---|---|---|---|---|---|---|---|\n");
   for (const LoopResult::Limit& c : loop.limits) {
@@ -192,10 +193,9 @@ void add_scans(Page& page, const Result& result) {
   page.add(
       "## Real scans\n"
       "Built with the default options and compared with a double precision APSS over all decoded "
-      "points, projected until it stands\nstill; probes within a spacing of the surface; lengths "
-      "in thousandths of the spacing h. *Smooth*: where no two normals\nin the support differ by "
-      "more than 60 degrees. Elsewhere surface mode keeps edges sharp that the reference "
-      "rounds.\n\n"
+      "points, projected until\nconvergence; probes within a spacing of the surface; lengths in "
+      "thousandths of the spacing h. *Smooth*: no two normals in\nthe support differ by more than "
+      "60 degrees. Elsewhere surface mode preserves edges that the reference rounds.\n\n"
       "| scan | points | smooth | point, rms / largest | normal, deg rms | all: point, rms / "
       "largest | normal, deg rms | answered |\n|---|---|---|---|---|---|---|---|\n");
   for (const ScanResult& scan : result.scans) {
@@ -220,7 +220,7 @@ std::string bounds_of(const Target& target) {
 }
 
 void add_targets(Page& page, const Result& result) {
-  page.add("## Targets of surface mode\n\n| target | wanted | measured | |\n|---|---|---|---|\n");
+  page.add("## Targets of surface mode\n\n| target | required | measured | |\n|---|---|---|---|\n");
   for (const Target& target : result.targets) {
     page.add("| {} | {} | {:.4g} | {} |\n", target.name, bounds_of(target), target.value,
              target.met() ? "met" : "**missed**");
@@ -233,9 +233,9 @@ void add_targets(Page& page, const Result& result) {
 std::string to_markdown(const Result& result, const std::string& pictures) {
   Page page;
   page.add(
-      "# How good is what a hand feels?\n\nWritten by `scripts/make-results`{}; every figure comes "
-      "from `tactree evaluate`, seed {}, and is the same on every run.\n*Surface* is the default "
-      "mode, *paper* the method of El-Far, Georganas and El Saddik, kept as it is.\n\n",
+      "# Evaluation results\n\nWritten by `scripts/make-results`{}; all values come from `tactree "
+      "evaluate`, seed {}, and are reproducible.\n*Surface* is the default mode, *paper* the "
+      "unmodified method of El-Far, Georganas and El Saddik.\n\n",
       result.options.quick ? " with --quick" : "", result.options.seed);
   add_detection(page, result);
   add_distances(page, result);

@@ -17,11 +17,11 @@ using Eigen::Vector3d;
 
 constexpr int kProbes = 6820;
 constexpr double kHalf = 0.25;        // m, of the domain
-constexpr double kMargin = 5e-6;      // m, what the paper allows a device's resolution
-constexpr double kOnSurface = 0.235;  // share of the probes of a path that traces and hovers
+constexpr double kMargin = 5e-6;      // m, the paper's allowance for the resolution of a device
+constexpr double kOnSurface = 0.235;  // share of the probes on the surface when hovering
 constexpr double kFinest = 0.0025;    // m
 
-// Moved down, so that the sheet lies about the origin and float32 keeps more of it.
+// Centres the sheet on the origin, which reduces float32 rounding.
 constexpr double kOffset = 1.9689;
 
 CosSheet paper_sheet() { return {1.0, 1.0}; }
@@ -30,7 +30,7 @@ Vector3d on_sheet(double x, double y) {
   return paper_sheet().point(x, y) - Vector3d(0.0, 0.0, kOffset);
 }
 
-/// h apart; the paper's box and offset stay 2.5 mm whatever h is.
+/// Points at distance h; the paper's box and offset are 2.5 mm for any h.
 Shape sheet_blob(double separation_m, core::Profile profile) {
   Shape shape(profile == core::Profile::kPaper ? kFinest : separation_m);
   const int n = static_cast<int>(std::lround(kHalf / separation_m));
@@ -46,7 +46,7 @@ Shape sheet_blob(double separation_m, core::Profile profile) {
   return shape;
 }
 
-/// What a surface blob can tell apart: the paper's margin and one step of the lattice.
+/// Resolution of a surface blob: the paper's margin plus one step of the lattice.
 double resolution_of(const core::BlobView& view) {
   return kMargin + static_cast<double>(view.header().leaf_edge_min_m) / 1024.0;
 }
@@ -69,7 +69,7 @@ class Pose {
     turn_ = turn.cast<float>();
     shift_ = Vector3d(0.05 * std::sin(t), 0.04 * std::cos(t), 0.01 * t).cast<float>();
   }
-  /// Out into the world and back into the model, as a controller has to.
+  /// To the world frame and back to the model frame, as in a controller.
   [[nodiscard]] Vector3d there_and_back(const Vector3d& p) const {
     const Eigen::Vector3f world = turn_ * p.cast<float>() + shift_;
     return (turn_.transpose() * (world - shift_)).cast<double>();
@@ -103,8 +103,8 @@ DetectionRow::Count count_errors(const core::BlobView& view, Mode mode, double s
   return count;
 }
 
-/// The leaves that the paper searches when it remembers where the contact was found: the octant of
-/// the detection, and those that the six points reached from there.
+/// The leaves that the paper searches if the detection is remembered: its octant, and those of the
+/// six offset points.
 std::vector<core::Leaf> remembered_leaves(const core::BlobView& view, const Vector3d& spot) {
   std::vector<core::Leaf> leaves;
   const core::PaperContact contact = core::paper_collision(view, narrow(spot));
@@ -135,7 +135,7 @@ double nearest_in(const core::BlobView& view, const std::vector<core::Leaf>& lea
   return std::sqrt(best);
 }
 
-/// Does any leaf hold the probe or one of the six points around it?
+/// True if a leaf contains the probe or one of its six offset points.
 bool any_leaf(const core::BlobView& view, const Vector3d& probe) {
   core::Leaf leaf;
   if (core::find_leaf(view, narrow(probe), leaf)) {
@@ -183,7 +183,7 @@ std::vector<Vector3d> points_of(const core::BlobView& view) {
   return points;
 }
 
-// The flat top, where the octant of the detection stays the right one however deep the probe is.
+// The flat top, where the octant of the detection is the nearest one at any depth.
 constexpr double kTop = 0.075;  // m
 
 void paper_distances(int probes, std::mt19937_64 random, DistanceTable& table) {
@@ -209,7 +209,7 @@ void paper_distances(int probes, std::mt19937_64 random, DistanceTable& table) {
   table.paper_mean_m = sum / measured;
 }
 
-/// The proxy follows the probe down to where it is, and its distance is compared with the truth.
+/// Lowers the probe to its position and compares the distance of the proxy with the true one.
 double proxy_error(const core::BlobView& view, const Crisscross& c) {
   const Vector3d probe = c.probe();
   const Vector3d foot =
@@ -227,7 +227,7 @@ double proxy_error(const core::BlobView& view, const Crisscross& c) {
   for (double z = begin.z(); z > probe.z(); z -= kStep) {
     touched = touch.to({probe.x(), probe.y(), z});
   }
-  for (int i = 0; i < 20; ++i) {  // it slips to the nearest place
+  for (int i = 0; i < 20; ++i) {  // the proxy slips to the nearest point
     touched = touch.to(probe);
   }
   return (touched.proxy - probe).norm() - truth;

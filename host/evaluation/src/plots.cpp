@@ -56,10 +56,10 @@ class Svg {
   std::string out_;
 };
 
-/// The force along one slide: 1 N is right.
+/// The force along one slide; the true value is 1 N.
 std::string force_plot(const ForceTrace& trace) {
-  constexpr double kTop = 70.0;
-  constexpr double kBottom = 360.0;
+  constexpr double kAxisTop = 70.0;
+  constexpr double kAxisBottom = 360.0;
   Svg svg(410.0, "Force while sliding 1 mm deep over: " + trace.title);
   double high = 1.2;
   for (const Mode mode : {kSurface, kPaper}) {
@@ -67,20 +67,24 @@ std::string force_plot(const ForceTrace& trace) {
       high = std::max(high, 1.05 * force);
     }
   }
-  const double length = trace.way_m.empty() ? 1.0 : trace.way_m.back();
-  const auto x_of = [&](double way) { return kLeft + way / length * (kRight - kLeft); };
-  const auto y_of = [&](double force) { return kBottom - force / high * (kBottom - kTop); };
+  const double length = trace.distance_m.empty() ? 1.0 : trace.distance_m.back();
+  const auto x_of = [&](double distance) { return kLeft + distance / length * (kRight - kLeft); };
+  const auto y_of = [&](double force) {
+    return kAxisBottom - force / high * (kAxisBottom - kAxisTop);
+  };
   for (double force = 0.0; force < high; force += 0.5) {
     svg.line(kLeft, y_of(force), kRight, y_of(force), "#e4e4e4");
     svg.text(kLeft - 8.0, y_of(force) + 4.0, "end", fmt::format("{:.1f} N", force));
   }
-  for (double way = 0.0; way <= length; way += 0.01) {
-    svg.text(x_of(way), kBottom + 20.0, "middle", fmt::format("{:.0f} mm", 1e3 * way));
+  for (double distance = 0.0; distance <= length; distance += 0.01) {
+    svg.text(x_of(distance), kAxisBottom + 20.0, "middle",
+             fmt::format("{:.0f} mm", 1e3 * distance));
   }
   for (const Mode mode : {kPaper, kSurface}) {
     std::string points;
     for (std::size_t i = 0; i < trace.force_N[mode].size(); ++i) {
-      points += fmt::format("{:.1f},{:.1f} ", x_of(trace.way_m[i]), y_of(trace.force_N[mode][i]));
+      points +=
+          fmt::format("{:.1f},{:.1f} ", x_of(trace.distance_m[i]), y_of(trace.force_N[mode][i]));
     }
     svg.curve(points, mode);
   }
@@ -90,19 +94,19 @@ std::string force_plot(const ForceTrace& trace) {
 /// One score of all shapes, on a logarithmic axis from `low` to `high`.
 std::string score_plot(const Result& result, const std::string& score, const std::string& title,
                        double low, double high, const std::string& unit, double scale) {
-  constexpr double kTop = 70.0;
+  constexpr double kFirstRow = 70.0;
   constexpr double kRow = 38.0;
-  const double bottom = kTop + kRow * static_cast<double>(result.shapes.size());
+  const double bottom = kFirstRow + kRow * static_cast<double>(result.shapes.size());
   Svg svg(bottom + 50.0, title);
   const auto x_of = [&](double value) {
     const double share = std::log(std::clamp(value, low, high) / low) / std::log(high / low);
     return kLeft + share * (kRight - kLeft);
   };
   for (double value = low; value <= 1.001 * high; value *= 10.0) {
-    svg.line(x_of(value), kTop - 6.0, x_of(value), bottom, "#e4e4e4");
+    svg.line(x_of(value), kFirstRow - 6.0, x_of(value), bottom, "#e4e4e4");
     svg.text(x_of(value), bottom + 18.0, "middle", fmt::format("{:g} {}", scale * value, unit));
   }
-  double y = kTop;
+  double y = kFirstRow;
   for (const ShapeResult& shape : result.shapes) {
     svg.text(kLeft - 8.0, y + 18.0, "end", shape.name);
     for (const Mode mode : {kSurface, kPaper}) {

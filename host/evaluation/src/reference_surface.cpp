@@ -61,7 +61,7 @@ ReferenceSurface::Fit ReferenceSurface::fit(const std::vector<std::size_t>& arou
 }
 
 ReferenceSurface::Projection ReferenceSurface::project(const Vector3d& x) const {
-  std::vector<std::size_t> around;  // whatever a step below may need
+  std::vector<std::size_t> around;  // all points that a projection step may need
   std::size_t nearest = positions_.size();
   double best = radius_ * radius_;
   for (std::size_t i = 0; i < positions_.size(); ++i) {

@@ -1,6 +1,6 @@
 #pragma once
-// The surface by the book: APSS in double precision over all points, projected until it stands
-// still. Slow, and independent of the code it judges.
+// Reference surface: APSS in double precision over all points, projected until convergence. Slow,
+// and independent of the code under test.
 
 #include <Eigen/Core>
 #include <vector>

@@ -79,7 +79,7 @@ ScanResult score_scan(const std::filesystem::path& file, int probes, std::uint32
     core::BlobView view;
     if (core::open_blob(built.blob.bytes, view) != core::BlobStatus::kOk ||
         core::surface_support(view) != core::SurfaceSupport::kOk) {
-      throw std::runtime_error("surface mode cannot render it");
+      throw std::runtime_error("surface mode cannot render this scan");
     }
     result.points = view.point_count();
     result.spacing_m = built.report.spacing_m;

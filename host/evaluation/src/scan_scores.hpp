@@ -1,15 +1,15 @@
 #pragma once
-// A real scan: the float32 answer of the controller's code against the reference.
+// Real scans: results of the controller's float32 code against a reference.
 
 #include "tactree/evaluation/evaluation.hpp"
 
 namespace tactree::evaluation {
 
-/// Builds the scan as `tactree build` does by default and compares `probes` answers, within a
+/// Builds the scan with the defaults of `tactree build` and compares `probes` results, within a
 /// spacing of the surface, with ReferenceSurface:
 ///   distance_rms_m, distance_max_m, normal_rms_deg, normal_max_deg, depth_rms_m  everywhere
-///   smooth_...                             the same where no crease is near
-///   creased                                share of the probes with a crease near
+///   smooth_...                             the same, away from creases
+///   creased                                share of the probes near a crease
 ///   answered                               share of the probes with an answer
 [[nodiscard]] ScanResult score_scan(const std::filesystem::path& file, int probes,
                                     std::uint32_t seed);

@@ -14,9 +14,9 @@ using Eigen::Vector3d;
 
 constexpr double kDepth = 1e-3;    // m, of the slides
 constexpr double kPerTick = 1e-4;  // m: 0.1 m/s at 1 kHz
-constexpr double kLift = 4e-3;     // m, where a hand begins above the surface
+constexpr double kLift = 4e-3;     // m, start above the surface
 constexpr double kDescent = 5e-5;  // m a tick
-constexpr double kSlipped = 2e-3;  // m, after which friction has left its static part
+constexpr double kSlipped = 2e-3;  // m, beyond which friction is dynamic
 constexpr core::Friction kRough{0.4F, 0.3F};
 
 const core::BlobView& blob_of(const Subject& subject, Mode mode) {
@@ -27,7 +27,7 @@ core::RenderMode render_mode(Mode mode) {
   return mode == kPaper ? core::RenderMode::kPaper : core::RenderMode::kSurface;
 }
 
-/// Where a mode says the surface is.
+/// Surface point, normal and distance computed by a mode.
 struct Answer {
   bool found = false;
   Vector3d point = Vector3d::Zero();
@@ -40,16 +40,16 @@ Answer ask_surface(const core::BlobView& view, const Vector3d& probe) {
   return {p.supported, widen(p.point), widen(p.normal), static_cast<double>(p.signed_distance)};
 }
 
-/// The paper knows no side: the answer is turned to the side of the truth.
+/// Paper mode has no sign: the true distance decides the side.
 Answer ask_paper(const core::BlobView& view, const Vector3d& probe, double true_distance) {
   const core::PaperContact contact = core::paper_collision(view, narrow(probe));
   const core::NearestPoint nearest = core::paper_nearest(view, narrow(probe), contact);
   if (!contact.in_contact || !nearest.found()) {
     return {};
   }
-  const Vector3d way = probe - widen(nearest.position);
+  const Vector3d offset = probe - widen(nearest.position);
   const double outward = true_distance < 0.0 ? -1.0 : 1.0;
-  return {true, widen(nearest.position), outward * way, outward * way.norm()};
+  return {true, widen(nearest.position), outward * offset, outward * offset.norm()};
 }
 
 void score_distances(const Subject& subject, Mode mode, int probes, Random& random,
@@ -80,7 +80,7 @@ void score_distances(const Subject& subject, Mode mode, int probes, Random& rand
   scores.set("answered", static_cast<double>(distance.count()) / probes);
 }
 
-/// From above onto the begin of a path, 1 mm deep.
+/// Descends onto the start of a path, to 1 mm below the surface.
 Touch touch_down(const Subject& subject, Mode mode, const Path& path,
                  const core::Friction& friction) {
   const Spot begin = path.spot(0.0);
@@ -150,7 +150,7 @@ Vector3d slanted(Random& random, const Vector3d& axis) {
   }
 }
 
-/// Straight through the surface at `entry`, from 20 mm before it to 10 mm behind.
+/// Moves straight through the surface at `entry`, from 20 mm before it to 10 mm behind.
 bool notices_crossing(const Subject& subject, Mode mode, const Vector3d& entry,
                       const Vector3d& inward, double step, double phase) {
   constexpr double kBefore = 0.02;
@@ -161,7 +161,7 @@ bool notices_crossing(const Subject& subject, Mode mode, const Vector3d& entry,
       return true;
     }
   }
-  // Faster than the sweep: it may still be on its way.
+  // The sweep may lag behind a fast probe.
   bool noticed = false;
   for (int i = 0; i < 50 && !noticed; ++i) {
     noticed = touch.to(entry + kBehind * inward).in_contact;
@@ -181,7 +181,7 @@ void score_crossings(const Subject& subject, Mode mode, int each, Random& random
       Spot spot = subject.spot(random);
       while (std::max(std::abs(spot.point.x()), std::abs(spot.point.y())) > 0.015 &&
              subject.distance(Vector3d::Zero()) > -0.02) {
-        spot = subject.spot(random);  // a sheet ends: keep away from its rim
+        spot = subject.spot(random);  // keep away from the boundary of a sheet
       }
       const Vector3d inward = slanted(random, -spot.normal);
       missed += notices_crossing(subject, mode, spot.point, inward, speed * kPeriodS, unit(random))
@@ -196,7 +196,7 @@ void score_crossings(const Subject& subject, Mode mode, int each, Random& random
 
 void score_friction(const Subject& subject, Mode mode, Scores& scores) {
   if (!subject.friction || mode == kPaper) {
-    return;  // the paper has no friction
+    return;  // paper mode has no friction
   }
   double low = 1e9;
   double high = 0.0;
@@ -236,7 +236,7 @@ ForceTrace trace_force(const Subject& subject) {
     slide(subject, mode, subject.paths.front(), {},
           [&](double s, const Spot&, const Touched& touched) {
             if (mode == kSurface) {
-              trace.way_m.push_back(s);
+              trace.distance_m.push_back(s);
             }
             trace.force_N[mode].push_back(touched.force.norm());
           });

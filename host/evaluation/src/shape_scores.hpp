@@ -1,5 +1,5 @@
 #pragma once
-// What a mode makes of a shape.
+// Scores of a mode on a shape.
 
 #include "subjects.hpp"
 #include "tactree/core/configuration.hpp"
@@ -7,7 +7,7 @@
 
 namespace tactree::evaluation {
 
-/// How much is tried.
+/// Number of samples.
 struct Effort {
   int probes = 20'000;  // distance and normal
   int sticky = 1000;    // descents to 1 mm above
@@ -15,13 +15,13 @@ struct Effort {
 };
 
 /// All scores of one mode on one shape:
-///   distance_rms_m, distance_max_m  of the answered surface point from the true surface
-///   depth_rms_m                     of the answered distance from the true one
-///   normal_rms_deg, normal_max_deg  of the answered normal (paper: the force's line)
+///   distance_rms_m, distance_max_m  answered surface point to the true surface
+///   depth_rms_m                     answered distance to the true one
+///   normal_rms_deg, normal_max_deg  answered normal (paper: direction of the force)
 ///   answered                        share of the probes with an answer
 ///   force_error_rms_N, force_step_max_N, contact_lost, slide_ticks
 ///                                   sliding 1 mm deep at 0.1 m/s, 1 N/mm
-///   sticky                          share of probes that are pulled in 1 mm outside
+///   sticky                          share of probes 1 mm outside that feel an attracting force
 ///   crossings_missed, crossings     at 0.05 .. 6 m/s
 ///   friction_min, friction_max      tangential over normal force, slipping; mu_d = 0.3
 [[nodiscard]] Scores score_shape(const Subject& subject, Mode mode, const Effort& effort,

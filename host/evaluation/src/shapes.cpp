@@ -20,7 +20,7 @@ void Shape::add(const Eigen::Vector3d& position, const Eigen::Vector3d& normal) 
 void Shape::seal() {
   written_ = builder::write_blob(model_);
   if (core::open_blob(written_.bytes, view_) != core::BlobStatus::kOk) {
-    throw std::runtime_error("the shape's blob is refused");
+    throw std::runtime_error("the blob of the shape is invalid");
   }
 }
 
@@ -74,11 +74,11 @@ Shape sphere(double radius_m, double spacing_m) {
 
 Eigen::Vector3d CosSheet::nearest(const Eigen::Vector3d& p) const {
   Eigen::Vector3d foot = point(p.x(), p.y());
-  // Each step leaves a share of height times curvature of the error: 1 mm * 27/m, or less.
+  // Each step reduces the error by the factor height * curvature, at most 1 mm * 27/m.
   for (int i = 0; i < 12; ++i) {
     const Eigen::Vector3d n = normal(foot.x(), foot.y());
-    const Eigen::Vector3d way = p - foot;
-    const Eigen::Vector3d along = way - way.dot(n) * n;
+    const Eigen::Vector3d offset = p - foot;
+    const Eigen::Vector3d along = offset - offset.dot(n) * n;
     foot = point(foot.x() + along.x(), foot.y() + along.y());
   }
   return foot;

@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 constexpr double kDepth = 1e-3;  // of all slides, m
 constexpr double kBoxHalf = 0.02;
 constexpr double kBoxShift = 0.3;            // spacings: no row is parallel to an edge
-constexpr double kBoxZone = 2.5 * kSpacing;  // the support radius: what an edge disturbs
+constexpr double kBoxZone = 2.5 * kSpacing;  // the support radius: zone of influence of an edge
 constexpr double kOnEdge = 0.03 * kSpacing;  // closer than this to two faces: on both
 constexpr double kPlateThickness = 0.5 * kSpacing;
 
@@ -20,7 +20,7 @@ double uniform(Random& random, double low, double high) {
   return std::uniform_real_distribution<double>(low, high)(random);
 }
 
-/// Two faces, opposite or not, are picked alike.
+/// 1 or -1 with equal probability.
 double side(Random& random) { return uniform(random, -1.0, 1.0) < 0.0 ? -1.0 : 1.0; }
 
 Subject subject(std::string name, std::string title, Shape shape) {
@@ -31,24 +31,25 @@ Subject subject(std::string name, std::string title, Shape shape) {
 
 // ---- cosine sheets
 
-/// Straight lines, seen from above, across a disc about the middle.
+/// Chords of a disc about the middle, seen from above.
 std::vector<Path> lines_over(const CosSheet& sheet, Random& random, int count) {
-  constexpr double kRim = 0.033;
+  constexpr double kBoundary = 0.033;
   std::vector<Path> paths;
   while (static_cast<int>(paths.size()) < count) {
     const double from = uniform(random, 0.0, 2.0 * std::numbers::pi);
     const double to = uniform(random, 0.0, 2.0 * std::numbers::pi);
-    const Vector3d begin(kRim * std::cos(from), kRim * std::sin(from), 0.0);
-    const Vector3d way = Vector3d(kRim * std::cos(to), kRim * std::sin(to), 0.0) - begin;
-    if (way.norm() < kRim) {
+    const Vector3d begin(kBoundary * std::cos(from), kBoundary * std::sin(from), 0.0);
+    const Vector3d chord =
+        Vector3d(kBoundary * std::cos(to), kBoundary * std::sin(to), 0.0) - begin;
+    if (chord.norm() < kBoundary) {
       continue;
     }
-    const Vector3d direction = way.normalized();
+    const Vector3d direction = chord.normalized();
     paths.push_back({[=](double s) {
                        const Vector3d at = begin + s * direction;
                        return Spot{sheet.point(at.x(), at.y()), sheet.normal(at.x(), at.y())};
                      },
-                     way.norm()});
+                     chord.norm()});
   }
   return paths;
 }
@@ -152,7 +153,7 @@ Vector3d box_normal(const Vector3d& p, const Vector3d& answer) {
   return best;
 }
 
-/// Spots on the faces: `across` tells how far from the middle of the face on each of its axes.
+/// Spots on the faces; `across` returns the distances from the middle of the face along its axes.
 Subject on_box(std::string name, std::string title,
                std::function<std::pair<double, double>(Random&)> across) {
   Subject made = subject(std::move(name), std::move(title), box(kBoxHalf, kBoxShift));
@@ -171,7 +172,7 @@ Subject on_box(std::string name, std::string title,
   return made;
 }
 
-/// On the top face, straight to where the wall beside it is as near as the face.
+/// A path on the top face, up to where the adjacent wall is as near as the face.
 Path to_the_edge(const Vector3d& direction, double y) {
   const double inside = kBoxHalf - kDepth;
   constexpr double kLength = 0.008;
@@ -183,7 +184,7 @@ Path to_the_edge(const Vector3d& direction, double y) {
 }
 
 double on_face(Random& r) { return uniform(r, 0.0, kBoxHalf - 2.0 * kBoxZone); }
-double near_rim(Random& r) { return uniform(r, kBoxHalf - kBoxZone, kBoxHalf); }
+double near_boundary(Random& r) { return uniform(r, kBoxHalf - kBoxZone, kBoxHalf); }
 
 void add_boxes(std::vector<Subject>& all) {
   Subject face = on_box("box_face", "box, irregular points: faces", [](Random& r) {
@@ -199,21 +200,21 @@ void add_boxes(std::vector<Subject>& all) {
   all.push_back(std::move(face));
 
   Subject edge = on_box("box_edge", "box, within R of an edge", [](Random& r) {
-    return std::pair{near_rim(r), on_face(r)};
+    return std::pair{near_boundary(r), on_face(r)};
   });
   edge.paths = {to_the_edge(Vector3d::UnitX(), 0.0031), to_the_edge(Vector3d::UnitX(), -0.00687)};
   all.push_back(std::move(edge));
 
   Subject corner = on_box("box_corner", "box, within R of a corner", [](Random& r) {
-    return std::pair{near_rim(r), near_rim(r)};
+    return std::pair{near_boundary(r), near_boundary(r)};
   });
   corner.paths = {to_the_edge(Vector3d(1.0, 1.0, 0.0).normalized(), 0.0)};
   all.push_back(std::move(corner));
 }
 
-// ---- thin things
+// ---- thin shapes
 
-/// Over a flat top at height z, touched from `up`.
+/// A path on a flat sheet at height z; `up` is the side of the probe.
 std::vector<Path> over_flat(double z, double up) {
   return {{[=](double s) {
              return Spot{{s - 0.012, 0.4 * s - 0.005, z}, up * Vector3d::UnitZ()};
@@ -233,7 +234,7 @@ Subject thin_plate() {
     return Spot{{x, uniform(r, -0.012, 0.012), 0.5 * up * kPlateThickness}, up * Vector3d::UnitZ()};
   };
   made.paths = over_flat(0.5 * kPlateThickness, 1.0);
-  made.probe_depth_m = 0.0;  // inside, either side is as right
+  made.probe_depth_m = 0.0;  // inside, both sides are equally near
   made.crossings = true;
   made.friction = true;
   return made;
@@ -257,7 +258,7 @@ Subject two_sided_sheet() {
 }  // namespace
 
 std::vector<Subject> make_subjects(std::uint32_t seed, int lines) {
-  // A stream each, so that a cloud does not depend on how many lines were drawn before it.
+  // Separate streams: a cloud must not depend on the number of lines drawn before.
   std::uint32_t stream = 0;
   const auto next = [&] { return Random((std::uint64_t{seed} << 8) + ++stream); };
   const int few = lines / 4;

@@ -37,8 +37,8 @@ double lowest_accuracy(const Result& result) {
   return lowest;
 }
 
-/// The measured limits against the formula: the furthest below and above; and the smallest gain by
-/// passivity control where a hand holds the device.
+/// Smallest and largest ratio of the measured limits to the formula; smallest gain by passivity
+/// control with a hand.
 void add_limits(const LoopResult& loop, Checker& check) {
   double lowest = std::numeric_limits<double>::infinity();
   double highest = 0.0;

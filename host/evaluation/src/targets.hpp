@@ -1,5 +1,5 @@
 #pragma once
-// What surface mode promises, and whether it holds.
+// The targets of surface mode.
 
 #include "tactree/evaluation/evaluation.hpp"
 

@@ -1,5 +1,5 @@
 #pragma once
-// One hand that touches one blob in one mode, tick by tick, as the controller would.
+// A probe that touches a blob in one mode, with one update of the renderer per tick.
 
 #include <Eigen/Core>
 
@@ -21,7 +21,7 @@ struct Touched {
 
 class Touch {
  public:
-  /// Begins in free space at `probe`. `view` must outlive it.
+  /// Starts in free space at `probe`. `view` must outlive the object.
   Touch(const core::BlobView& view, core::RenderMode mode, const Eigen::Vector3d& probe,
         const core::Friction& friction = {})
       : view_(view) {

@@ -18,7 +18,7 @@ constexpr double kLeft = 90.0;
 constexpr double kRight = 740.0;
 constexpr double kTop = 50.0;
 constexpr double kBottom = 420.0;
-constexpr double kMostDamping_Ns_m = 4.0;
+constexpr double kMaxDamping_Ns_m = 4.0;
 constexpr double kSoftest_N_m = 100.0;
 constexpr double kStiffest_N_m = 100000.0;
 
@@ -30,7 +30,7 @@ constexpr Rate kRates[] = {
     {1000.0, "#0072b2"}, {2000.0, "#009e73"}, {4000.0, "#d55e00"}, {10000.0, "#cc79a7"}};
 
 double x_of(double damping_Ns_m) {
-  return kLeft + damping_Ns_m / kMostDamping_Ns_m * (kRight - kLeft);
+  return kLeft + damping_Ns_m / kMaxDamping_Ns_m * (kRight - kLeft);
 }
 
 double y_of(double stiffness_N_m) {
@@ -56,18 +56,18 @@ void grid(std::string& svg) {
     line(kLeft, y_of(stiffness), kRight, y_of(stiffness));
     text(svg, kLeft - 8.0, y_of(stiffness) + 4.0, "end", fmt::format("{:g}", stiffness));
   }
-  for (double damping = 0.0; damping <= kMostDamping_Ns_m; damping += 0.5) {
+  for (double damping = 0.0; damping <= kMaxDamping_Ns_m; damping += 0.5) {
     line(x_of(damping), kTop, x_of(damping), kBottom);
     text(svg, x_of(damping), kBottom + 20.0, "middle", fmt::format("{:g}", damping));
   }
   text(svg, 0.5 * (kLeft + kRight), kBottom + 44.0, "middle", "damping of the wall / (Ns/m)");
-  text(svg, kLeft - 60.0, kTop - 18.0, "start", "stiffness / (N/m), up to which it is stable");
+  text(svg, kLeft - 60.0, kTop - 18.0, "start", "largest stable stiffness / (N/m)");
 }
 
 void curve(std::string& svg, const Rate& rate) {
   std::string measured;
   std::string predicted;
-  for (double damping = 0.0; damping <= kMostDamping_Ns_m; damping += 0.5) {
+  for (double damping = 0.0; damping <= kMaxDamping_Ns_m; damping += 0.5) {
     simulation::StabilityCase wall;
     wall.rate_hz = rate.hz;
     wall.wall_damping_Ns_m = damping;

@@ -32,21 +32,20 @@ core::Vec3 origin_of(const std::vector<core::wire::ParameterReply>& parameters) 
 void compare(const ModelSlot& in_use, std::span<const std::byte> shown, BoardFacts& facts) {
   if (in_use.bytes == shown.size() && in_use.checksum == core::crc32(shown)) {
     facts.model = BoardFacts::Model::kSame;
-    facts.about_model = "The board uses the model that is shown.";
+    facts.about_model = "The board uses the displayed model.";
     return;
   }
   facts.model = BoardFacts::Model::kOther;
   facts.about_model = fmt::format(
-      "The board uses another model than the one shown ({} points, {} bytes; shown: {} bytes). "
-      "What "
-      "is felt is not what is seen: show the board's own, or write this one with tactree flash.",
+      "The board uses a model other than the displayed one ({} points, {} bytes; displayed: {} "
+      "bytes). Display the board's model, or write this one with tactree flash.",
       in_use.points, in_use.bytes, shown.size());
 }
 
 void compare_models(host::Board& board, std::span<const std::byte> shown, BoardFacts& facts) {
   facts.about_model =
-      "The board uses the model of its image, and does not tell which: see that it is the one "
-      "shown.";
+      "The board uses the model of its image and cannot identify it: make sure that it is the "
+      "displayed one.";
   if (facts.can.slots == 0U) {
     return;
   }

@@ -1,5 +1,6 @@
 #pragma once
-// What a board tells about itself once for each connection, and whether its model is the one shown.
+// Properties of a board, read once per connection, and a comparison of its model with the displayed
+// one.
 
 #include <cstddef>
 #include <span>
@@ -21,7 +22,8 @@ struct BoardFacts {
   std::string about_model;  ///< for people
 };
 
-/// Waits for the board's answers. `shown`: the bytes of the model that is drawn. Throws LinkError.
+/// Blocks until the board has answered. `shown`: the bytes of the displayed model. Throws
+/// LinkError.
 [[nodiscard]] BoardFacts ask_board(host::Board& board, std::span<const std::byte> shown);
 
 }  // namespace tactree::viewer

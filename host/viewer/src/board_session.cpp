@@ -8,24 +8,25 @@
 #include <utility>
 
 #include "board_facts.hpp"
-#include "csv.hpp"
-#include "feel.hpp"
+#include "command_outcome.hpp"
+#include "contact_parameters.hpp"
 #include "tactree/host/link_error.hpp"
 #include "tactree/host/ports.hpp"
+#include "trace_columns.hpp"
 
 namespace tactree::viewer {
 namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kMostWaiting = 64;
-constexpr std::chrono::seconds kLongestSilence{2};
-constexpr std::chrono::milliseconds kBetweenTries{200};
-constexpr std::chrono::seconds kPatience{30};  // for the hand, as tactree arm has it
+constexpr std::size_t kMaxQueued = 64;
+constexpr std::chrono::seconds kMaxSilence{2};
+constexpr std::chrono::milliseconds kRetryInterval{200};
+constexpr std::chrono::seconds kConfirmTimeout{30};  // as tactree arm
 
-// All but the reactions of bodies.
+// All fields except the reactions of bodies.
 constexpr std::uint32_t kFields = 0x1FF;
-// Of a message with these: header, fields, and what frames it.
+// Size of a message with these fields, including header and framing.
 constexpr unsigned kMessageBytes = 140;
 
 core::Vec3 vec3(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
@@ -57,37 +58,39 @@ core::Status status_of(const host::Telemetry& t) {
 BoardSession::BoardSession(Bodies bodies, BoardSettings settings)
     : bodies_(std::move(bodies)),
       settings_(std::move(settings)),
-      board_(std::make_unique<host::Board>(settings_.port, settings_.link)) {
-  get_acquainted();
+      board_(std::make_unique<host::Board>(settings_.port, settings_.link)),
+      outcome_(std::make_unique<CommandOutcome>()) {
+  begin_session();
 }
 
 BoardSession::~BoardSession() { stop(); }
 
-void BoardSession::get_acquainted() {
+void BoardSession::begin_session() {
   auto facts = std::make_unique<BoardFacts>(ask_board(*board_, settings_.model));
   work_ = work_of(*facts);
-  feel_.stiffness_N_m = facts->can.stiffness_N_m;
+  contact_.stiffness_N_m = facts->can.stiffness_N_m;
   board_->subscribe({kFields, ticks_per_message(*facts)});
   facts_ = std::move(facts);
-  heard_ = Clock::now();
+  last_telemetry_ = Clock::now();
   last_.reset();
+  outcome_->stopped();
   strip_ = {};
   log_.clear();
 }
 
 Work BoardSession::work_of(const BoardFacts& facts) const {
   if (!settings_.work) {
-    return {{}, 0.0, std::nullopt, "What a tick of this board has to do is not known."};
+    return {{}, 0.0, std::nullopt, "The work per tick of this board is unknown."};
   }
   Work work = settings_.work(facts.name, facts.can);
   if (work.bound && facts.model == BoardFacts::Model::kOther) {
     work.bound.reset();
-    work.why = "No bound is drawn: the board uses another model than the one shown.";
+    work.why = "No bound: the board uses a model other than the displayed one.";
   }
   return work;
 }
 
-/// Every tick, so that the strips miss no peak; but half of a wire is for what else is said.
+/// Every tick, so that no peak is missed, but at most half of the capacity of a serial line.
 std::uint32_t BoardSession::ticks_per_message(const BoardFacts& facts) const {
   const std::optional<unsigned> bytes_s = host::wire_speed(settings_.port, settings_.link.baud);
   if (!bytes_s) {
@@ -98,7 +101,7 @@ std::uint32_t BoardSession::ticks_per_message(const BoardFacts& facts) const {
       std::max(1.0, std::ceil(static_cast<double>(facts.can.rate_hz) / messages_s)));
 }
 
-// What a page says. Any thread.
+// Commands of a page; any thread.
 
 std::string BoardSession::hello() const {
   const json hello = {{"type", "hello"},
@@ -120,44 +123,48 @@ std::optional<std::string> BoardSession::command(const json& command) {
       for (const auto& [key, value] : command.items()) {
         if (key == "force_max_N") {
           (void)number_of(key, value);
-        } else if (key != "do" && !set_feel(any, key, value)) {
+        } else if (key != "do" && !set_contact_parameters(any, key, value)) {
           throw no_such_setting(key);
         }
       }
     } else if (name == "hand" || name == "inject" || name == "mend") {
-      return fmt::format("'{}': this is a real board, with its own hand and parts", name);
+      return fmt::format(
+          "'{}': not available with a board (use a simulation: tactree view without --port)", name);
     } else if (name != "arm" && name != "clear" && name != "connect") {
-      return fmt::format("'{}' is none of a board's commands", name);
+      return fmt::format("'{}': unknown command (a board has arm, stop, clear, set, connect)",
+                         name);
     }
-    if (name != "connect" && link_ != Link::kHere) {
+    if (name != "connect" && link_ != Link::kConnected) {
       return "the board is not connected";
     }
     enqueue(command);
     return std::nullopt;
-  } catch (const std::exception& error) {  // a refusal, or JSON of another kind than asked for
+  } catch (const std::exception& error) {  // SessionRefused, or JSON of a wrong type
     return error.what();
   }
 }
 
 void BoardSession::enqueue(const json& command) {
   const std::lock_guard lock(mutex_);
-  if (commands_.size() >= kMostWaiting) {
-    throw SessionRefused("too many commands at once");
+  if (commands_.size() >= kMaxQueued) {
+    throw SessionRefused("too many commands are waiting (send fewer)");
   }
   commands_.push_back(command);
 }
 
-// Not in the queue, behind answers that are waited for: sent now, and again by the session's thread
-// until the board says that it has stopped.
+// Bypasses the queue: sent at once, and again by the session's thread until the board confirms that
+// it has stopped.
 std::optional<std::string> BoardSession::post_stop() {
   {
     const std::lock_guard lock(mutex_);
-    commands_.clear();  // nothing that was said before may start again
+    commands_.clear();  // no earlier command may start the board again
   }
   stop_wanted_ = true;
   const std::unique_lock lock(connecting_, std::try_to_lock);
   if (!lock.owns_lock() || !board_->connected()) {
-    return "stop: the board is gone, and ends the force by itself (else use the emergency stop)";
+    return "stop: no connection to the board; it ends the force by its own timeout (or use the "
+           "emergency "
+           "stop)";
   }
   board_->post_stop();
   return std::nullopt;
@@ -167,22 +174,22 @@ std::string BoardSession::trace_csv() const {
   return without_columns(log_.csv(), {"tip_x_m", "tip_y_m", "tip_z_m", "slipping"});
 }
 
-// The session's thread.
+// The session's thread
 
 void BoardSession::run(const Publish& publish) {
   const std::chrono::duration<double> period(1.0 / kFrameRate_hz);
   while (running()) {
     const Clock::time_point now = Clock::now();
-    use_board();
-    if (link_ == Link::kGone && now >= next_try_) {
-      connect_again();
+    update_board();
+    if (link_ == Link::kLost && now >= next_try_) {
+      reconnect();
     }
     publish(std::make_shared<const std::string>(frame()));
     std::this_thread::sleep_until(now + period);
   }
 }
 
-void BoardSession::use_board() {
+void BoardSession::update_board() {
   std::deque<json> commands;
   {
     const std::lock_guard lock(mutex_);
@@ -191,16 +198,16 @@ void BoardSession::use_board() {
   try {
     stop_if_wanted();
     for (const json& command : commands) {
-      obey(command);
+      execute(command);
     }
-    go_on_arming();
+    continue_arming();
   } catch (const host::LinkError& error) {
-    tell(error.what());
+    report(error.what());
   }
-  if (link_ == Link::kHere) {
-    take_telemetry();
+  if (link_ == Link::kConnected) {
+    read_telemetry();
   }
-  notice_loss();
+  check_link();
 }
 
 void BoardSession::stop_if_wanted() {
@@ -216,41 +223,42 @@ void BoardSession::stop_if_wanted() {
   }
 }
 
-void BoardSession::obey(const json& command) {
+void BoardSession::execute(const json& command) {
   const std::string name = command["do"];
   if (name == "connect") {
-    if (link_ != Link::kHere) {
-      connect_again();
+    if (link_ != Link::kConnected) {
+      reconnect();
     }
   } else if (name == "set") {
     set(command);
   } else if (name == "clear") {
     board_->clear_faults();
+    outcome_->cleared(last_ ? last_->t_s : 0.0);
   } else if (!arming_until_) {
     board_->begin_arming();
-    arming_until_ = Clock::now() + kPatience;
+    arming_until_ = Clock::now() + kConfirmTimeout;
   }
 }
 
 void BoardSession::set(const json& wanted) {
-  core::Configuration feel = feel_;
-  bool feels_else = false;
+  core::Configuration contact = contact_;
+  bool changed = false;
   for (const auto& [key, value] : wanted.items()) {
-    feels_else = set_feel(feel, key, value) || feels_else;
+    changed = set_contact_parameters(contact, key, value) || changed;
   }
-  if (feels_else) {
-    board_->set_material({feel.stiffness_N_m, feel.damping_Ns_m, feel.static_friction,
-                          feel.dynamic_friction, feel.use_materials ? 1U : 0U});
-    feel_ = feel;
+  if (changed) {
+    board_->set_material({contact.stiffness_N_m, contact.damping_Ns_m, contact.static_friction,
+                          contact.dynamic_friction, contact.use_materials ? 1U : 0U});
+    contact_ = contact;
   }
   if (wanted.contains("force_max_N")) {
     board_->set_limits(number_of("force_max_N", wanted["force_max_N"]), facts_->can.slew_N_s,
-                       feel_.ramp_s);
+                       contact_.ramp_s);
   }
   facts_->can = board_->capabilities();
 }
 
-void BoardSession::go_on_arming() {
+void BoardSession::continue_arming() {
   if (!arming_until_) {
     return;
   }
@@ -261,7 +269,7 @@ void BoardSession::go_on_arming() {
     } else if (is_late) {
       arming_until_.reset();
       board_->stop();
-      tell(fmt::format("arm: nobody confirms ({})", board_->who_confirms()));
+      report(fmt::format("arm: not confirmed within 30 s ({})", board_->who_confirms()));
     }
   } catch (const host::LinkError&) {
     arming_until_.reset();
@@ -269,7 +277,7 @@ void BoardSession::go_on_arming() {
   }
 }
 
-void BoardSession::take_telemetry() {
+void BoardSession::read_telemetry() {
   for (const host::Telemetry& telemetry : board_->take_stream()) {
     add(telemetry);
   }
@@ -280,7 +288,7 @@ void BoardSession::add(const host::Telemetry& telemetry) {
   const std::uint32_t since_us = telemetry.header.board_time_us - last_time_us_;
   if (last_) {
     if (since_us == 0U || since_us > 0x80000000U) {
-      return;  // the board's time does not go back
+      return;  // out of order
     }
     sample.t_s = last_->t_s + 1e-6 * since_us;
   }
@@ -294,61 +302,64 @@ void BoardSession::add(const host::Telemetry& telemetry) {
     strip_.add_work(static_cast<double>(telemetry.load) * work_.per_period);
   }
   log_.add(sample);
+  if (const std::optional<std::string> news = outcome_->update(sample.status, sample.t_s)) {
+    report(*news);
+  }
   last_ = sample;
-  heard_ = Clock::now();
+  last_telemetry_ = Clock::now();
 }
 
-void BoardSession::notice_loss() {
-  if (link_ != Link::kGone && !board_->connected()) {
-    lose(Link::kGone, "The board is gone: unplugged, or without power.");
+void BoardSession::check_link() {
+  if (link_ != Link::kLost && !board_->connected()) {
+    set_lost(Link::kLost, "The board is disconnected or without power.");
   }
-  if (link_ != Link::kHere) {
+  if (link_ != Link::kConnected) {
     return;
   }
   if (!board_->in_session()) {
-    lose(Link::kTaken, "Another program has taken the board, or it was reset.");
-  } else if (Clock::now() - heard_ > kLongestSilence) {
-    lose(Link::kGone, "The board is silent.");
+    set_lost(Link::kTaken, "Another program uses the board, or the board was reset.");
+  } else if (Clock::now() - last_telemetry_ > kMaxSilence) {
+    set_lost(Link::kLost, "The board sends no telemetry.");
   }
 }
 
-void BoardSession::lose(Link link, const std::string& why) {
+void BoardSession::set_lost(Link link, const std::string& why) {
   link_ = link;
-  why_not_here_ = why;
+  why_lost_ = why;
   arming_until_.reset();
-  next_try_ = Clock::now() + kBetweenTries;
+  next_try_ = Clock::now() + kRetryInterval;
 }
 
-void BoardSession::connect_again() {
+void BoardSession::reconnect() {
   try {
     {
       const std::lock_guard lock(connecting_);
       board_->reconnect();
     }
-    get_acquainted();
-    stop_wanted_ = false;  // a new session begins stopped
-    link_ = Link::kHere;
+    begin_session();
+    stop_wanted_ = false;  // a new session starts in the stopped state
+    link_ = Link::kConnected;
   } catch (const host::LinkError& error) {
-    if (link_ == Link::kGone) {
-      why_not_here_ = fmt::format("The board is gone: {}.", error.what());
+    if (link_ == Link::kLost) {
+      why_lost_ = fmt::format("The board is not reachable: {}.", error.what());
     } else {
-      tell(error.what());
+      report(error.what());
     }
   }
-  next_try_ = Clock::now() + kBetweenTries;
+  next_try_ = Clock::now() + kRetryInterval;
 }
 
-void BoardSession::tell(const std::string& news) {
+void BoardSession::report(const std::string& news) {
   ++news_number_;
   news_ = news;
 }
 
 std::string BoardSession::frame() {
-  const bool shows = link_ == Link::kHere && last_;
+  const bool has_run = link_ == Link::kConnected && last_;
   const json frame = {{"type", "frame"},
                       {"frame", frames_++},
                       {"t_s", last_ ? last_->t_s : 0.0},
-                      {"runs", shows ? json::array({run_of_last_tick()}) : json::array()},
+                      {"runs", has_run ? json::array({run_of_last_tick()}) : json::array()},
                       {"bodies", poses_json(bodies_, 0.0)},
                       {"work", work_json(work_)},
                       {"settings", settings_json()},
@@ -359,18 +370,18 @@ std::string BoardSession::frame() {
 
 json BoardSession::run_of_last_tick() {
   const Bodies none;
-  // Points of another model would only look like those of the contact.
+  // Points of a different model would not be those of the contact.
   const Bodies& known = facts_->model == BoardFacts::Model::kOther ? none : bodies_;
   json run = run_json(*last_, "board", settings_.device, facts_->model_origin_m, std::nullopt,
                       known, scratch_);
-  run["slipping"] = nullptr;  // a board does not tell
+  run["slipping"] = nullptr;  // not reported by boards
   run["tip_m"] = nullptr;
   run["strip"] = strip_.take();
   return run;
 }
 
 json BoardSession::settings_json() const {
-  json settings = feel_json(feel_);
+  json settings = contact_parameters_json(contact_);
   const core::wire::CapabilitiesReply& can = facts_->can;
   settings.update({{"stiffness_N_m", can.stiffness_N_m},
                    {"stiffness_limit_N_m", can.stiffness_limit_N_m},
@@ -385,10 +396,10 @@ json BoardSession::board_json() const {
   const BoardFacts::Model model = facts_->model;
   return {{"name", facts_->name},
           {"firmware", facts_->firmware},
-          {"link", link == Link::kHere   ? "here"
-                   : link == Link::kGone ? "gone"
-                                         : "taken"},
-          {"why", link == Link::kHere ? "" : why_not_here_},
+          {"link", link == Link::kConnected ? "here"
+                   : link == Link::kLost    ? "gone"
+                                            : "taken"},
+          {"why", link == Link::kConnected ? "" : why_lost_},
           {"model", model == BoardFacts::Model::kSame    ? "same"
                     : model == BoardFacts::Model::kOther ? "other"
                                                          : "unknown"},

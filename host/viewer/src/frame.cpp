@@ -14,14 +14,14 @@ namespace {
 using nlohmann::json;
 using plant::widen;
 
-// For what is only drawn: a micrometre is less than a pixel.
+// For drawing only: a micrometre is less than a pixel.
 double rounded(double metres) { return std::round(1e6 * metres) * 1e-6; }
 
 json drawn(const Eigen::Vector3d& v) {
   return json::array({rounded(v.x()), rounded(v.y()), rounded(v.z())});
 }
 
-// Figures keep every digit: they are compared with the trace.
+// Displayed values keep all digits: they must match the trace.
 json exact(core::Vec3 v) { return json::array({v.x, v.y, v.z}); }
 
 json faults_json(core::FaultMask mask) {
@@ -61,7 +61,7 @@ json linkage_json(const core::DeviceModel& device, const core::Vec3& origin_m,
   return lines;
 }
 
-/// The points that a gather at the proxy finds: what the surface there is made of.
+/// The points from which the surface at the proxy is fitted.
 json candidates_json(const core::Rendering& rendering, const Bodies& bodies, const core::Pose& pose,
                      core::CandidateSet& scratch) {
   const core::BlobView& view = bodies.views[rendering.body];
@@ -70,8 +70,9 @@ json candidates_json(const core::Rendering& rendering, const Bodies& bodies, con
   scratch.cover(view, centre);
   json points = json::array();
   for (const core::Candidate& candidate : scratch) {
-    const core::Vec3 away = candidate.position - centre;
-    if (core::dot(away, away) <= view.header().support_radius_m * view.header().support_radius_m) {
+    const core::Vec3 offset = candidate.position - centre;
+    if (core::dot(offset, offset) <=
+        view.header().support_radius_m * view.header().support_radius_m) {
       points.push_back(drawn(widen(core::position_to_scene(pose, candidate.position))));
     }
   }

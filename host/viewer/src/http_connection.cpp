@@ -20,10 +20,10 @@ using Request = HttpConnection::Request;
 using Response = http::response<http::string_body>;
 
 constexpr std::uint32_t kLongestHeader = 8192;
-constexpr std::uint64_t kLongestBody = 0;  // no request of ours has one
+constexpr std::uint64_t kLongestBody = 0;  // the page sends no bodies
 constexpr std::chrono::seconds kSlowest(30);
 
-// Only what comes from here is run, shown or asked, and the page is not shown inside another.
+// Scripts, styles, pictures and connections from this server only; no embedding in other pages.
 constexpr const char* kPolicy =
     "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: "
     "blob:; connect-src 'self'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'";
@@ -58,17 +58,17 @@ void HttpConnection::read() {
         const bool ours =
             error.category() == http::make_error_code(http::error::bad_method).category();
         if (ours && error != http::error::end_of_stream && error != http::error::partial_message) {
-          Request request;  // unreadable: the answer closes the connection
+          Request request;  // unreadable: close the connection after the answer
           request.version(11);
           request.keep_alive(false);
-          self->send(plain(400, "not a request: " + error.message() + "\n"), request);
+          self->send(plain(400, "invalid request: " + error.message() + "\n"), request);
         }
       });
 }
 
 bool HttpConnection::is_ours(beast::string_view host) const {
   if (!service_.any_host.empty() && host.ends_with(service_.any_host)) {
-    // Which addresses the machine has is not known, but a name is none of them.
+    // The addresses of the machine are unknown here: accept any address, but no name.
     host.remove_suffix(service_.any_host.size());
     if (host.starts_with('[') && host.ends_with(']')) {
       host = host.substr(1, host.size() - 2);
@@ -88,10 +88,10 @@ std::optional<Answer> HttpConnection::refusal(const Request& request) const {
     return plain(405, "only GET and HEAD\n");
   }
   if (request.target().empty() || request.target().front() != '/') {
-    return plain(400, "a path begins with /\n");
+    return plain(400, "a path starts with /\n");
   }
-  // A page of another site has another origin. Programs have none, and may see what is public, but
-  // a WebSocket moves things: it needs one.
+  // Pages of other sites have another origin. Programs send none: they may read, but a WebSocket
+  // can move the device and requires the origin of our page.
   const beast::string_view origin = request[http::field::origin];
   const bool from_here =
       origin.starts_with("http://") && origin.substr(7) == request[http::field::host];
@@ -102,7 +102,7 @@ std::optional<Answer> HttpConnection::refusal(const Request& request) const {
   return std::nullopt;
 }
 
-void HttpConnection::handle(Request request) {
+void HttpConnection::handle(const Request& request) {
   if (auto refused = refusal(request)) {
     send(std::move(*refused), request);
     return;
@@ -130,12 +130,11 @@ void HttpConnection::look_up(std::string path, const Request& request) {
     send(service_.site.answer(path), request);
     return;
   }
-  asio::post(service_.worker, [self = shared_from_this(), path = std::move(path), request] {
-    Answer answer = self->service_.site.answer(path);
+  const auto kept = std::make_shared<const Request>(request);
+  asio::post(service_.worker, [self = shared_from_this(), path = std::move(path), kept] {
+    const auto answer = std::make_shared<Answer>(self->service_.site.answer(path));
     asio::dispatch(self->stream_.get_executor(),
-                   [self, answer = std::move(answer), request]() mutable {
-                     self->send(std::move(answer), request);
-                   });
+                   [self, answer, kept] { self->send(std::move(*answer), *kept); });
   });
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// A client's HTTP requests, one after the other; a request for /live becomes a LiveConnection.
+// Answers a client's HTTP requests in order; a request for /live becomes a LiveConnection.
 
 #include <atomic>
 #include <boost/asio/thread_pool.hpp>
@@ -18,17 +18,17 @@
 
 namespace tactree::viewer {
 
-/// What the connections of a server share.
+/// Data shared by the connections of a server.
 struct Service {
-  static constexpr int kMostConnections = 64;
+  static constexpr int kMaxConnections = 64;
 
   const Site& site;
   Source& source;
   Hub& hub;
-  boost::asio::thread_pool& worker;  // for answers that take long
+  boost::asio::thread_pool& worker;  // for slow answers
   std::string host;                  // "127.0.0.1:8023"
-  std::string local_host;            // the same as "localhost:8023"; empty: not on loopback
-  std::string any_host;              // ":8023" when every address of the machine is listened on
+  std::string local_host;            // "localhost:8023"; empty: not on loopback
+  std::string any_host;              // ":8023" if listening on all addresses; else empty
   int connections = 0;
 };
 
@@ -44,7 +44,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   void read();
 
  private:
-  void handle(Request request);
+  void handle(const Request& request);
   [[nodiscard]] std::optional<Answer> refusal(const Request& request) const;
   [[nodiscard]] bool is_ours(boost::beast::string_view host) const;
   void look_up(std::string path, const Request& request);

@@ -31,7 +31,7 @@ void Hub::take() {
 }
 
 bool Hub::join(LiveConnection* page) {
-  return pages_.size() < kMostPages && pages_.insert(page).second;
+  return pages_.size() < kMaxPages && pages_.insert(page).second;
 }
 
 void Hub::close_all() {

@@ -1,6 +1,6 @@
 #pragma once
-// The pages that are connected, and the way from the source's thread to them. All but offer() only
-// in the server's thread.
+// Passes frames from the source's thread to the connected pages. Except for offer(), call it from
+// the server's thread only.
 
 #include <atomic>
 #include <boost/asio/io_context.hpp>
@@ -18,12 +18,12 @@ using Message = std::shared_ptr<const std::string>;
 
 class Hub {
  public:
-  static constexpr std::size_t kMostPages = 16;
+  static constexpr std::size_t kMaxPages = 16;
 
   explicit Hub(boost::asio::io_context& context) : context_(context) {}
 
-  /// The next frame, from the source's thread. Where the one before has not been taken yet this
-  /// takes its place: the thread waits for nobody, and nothing piles up.
+  /// Offers the next frame; called from the source's thread. Replaces a frame that was not sent
+  /// yet: the thread never waits and no queue grows.
   void offer(Message frame);
 
   [[nodiscard]] bool join(LiveConnection* page);

@@ -12,13 +12,13 @@ namespace asio = boost::asio;
 namespace beast = boost::beast;
 namespace websocket = beast::websocket;
 
-// What the kernel may hold of frames that a page does not read: not more than a second's.
+// Unread frames that the kernel may buffer: less than one second.
 constexpr int kSendBufferBytes = 64 * 1024;
 
 websocket::stream_base::timeout timeouts() {
   websocket::stream_base::timeout t{};
   t.handshake_timeout = std::chrono::seconds(10);
-  t.idle_timeout = std::chrono::seconds(60);  // a page that vanished, or never reads
+  t.idle_timeout = std::chrono::seconds(60);  // the page vanished or does not read
   t.keep_alive_pings = true;
   return t;
 }
@@ -32,12 +32,12 @@ LiveConnection::~LiveConnection() { hub_.leave(this); }
 
 void LiveConnection::accept(const Request& request) {
   beast::error_code ignored;
-  beast::get_lowest_layer(socket_).expires_never();  // the WebSocket has timeouts of its own
+  beast::get_lowest_layer(socket_).expires_never();  // the WebSocket has its own timeouts
   beast::get_lowest_layer(socket_).socket().set_option(
       asio::socket_base::send_buffer_size(kSendBufferBytes), ignored);
   beast::get_lowest_layer(socket_).socket().set_option(asio::ip::tcp::no_delay(true), ignored);
   socket_.set_option(timeouts());
-  socket_.read_message_max(kLongestCommand);
+  socket_.read_message_max(kMaxCommandBytes);
   socket_.text(true);
   socket_.async_accept(request, [self = shared_from_this()](beast::error_code error) {
     if (error) {
@@ -55,21 +55,21 @@ void LiveConnection::accept(const Request& request) {
 
 void LiveConnection::read() {
   socket_.async_read(incoming_, [self = shared_from_this()](beast::error_code error, std::size_t) {
-    if (error) {  // also a message that is too long: Beast has told the page why
+    if (error) {  // also for messages that are too long: Beast has sent the cause
       self->open_ = false;
       self->hub_.leave(self.get());
       return;
     }
-    self->obey(beast::buffers_to_string(self->incoming_.data()));
+    self->execute(beast::buffers_to_string(self->incoming_.data()));
     self->incoming_.consume(self->incoming_.size());
     self->read();
   });
 }
 
-void LiveConnection::obey(const std::string& text) {
+void LiveConnection::execute(const std::string& text) {
   const nlohmann::json command = nlohmann::json::parse(text, nullptr, false);
   const std::optional<std::string> why =
-      command.is_object() ? source_.command(command) : "a command is a JSON object";
+      command.is_object() ? source_.command(command) : "a command must be a JSON object";
   if (why) {
     answer(nlohmann::json({{"type", "refused"}, {"why", *why}})
                .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
@@ -77,7 +77,7 @@ void LiveConnection::obey(const std::string& text) {
 }
 
 void LiveConnection::answer(std::string text) {
-  if (answers_.size() >= kMostAnswers) {
+  if (answers_.size() >= kMaxAnswers) {
     close();
     return;
   }
@@ -122,7 +122,7 @@ void LiveConnection::write_next() {
 void LiveConnection::close() {
   open_ = false;
   hub_.leave(this);
-  // Not a closing handshake: that waits for a page that may not read.
+  // No closing handshake: the page may not read it.
   beast::error_code ignored;
   beast::get_lowest_layer(socket_).socket().close(ignored);
 }

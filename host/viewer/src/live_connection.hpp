@@ -20,24 +20,24 @@ class LiveConnection : public std::enable_shared_from_this<LiveConnection> {
  public:
   using Request = boost::beast::http::request<boost::beast::http::string_body>;
 
-  /// Longest command, and most answers that wait for a page to read; one more ends the connection.
-  static constexpr std::size_t kLongestCommand = 4096;
-  static constexpr std::size_t kMostAnswers = 16;
+  /// Longest command (bytes), and number of unread answers beyond which the connection is closed.
+  static constexpr std::size_t kMaxCommandBytes = 4096;
+  static constexpr std::size_t kMaxAnswers = 16;
 
   LiveConnection(boost::beast::tcp_stream stream, Hub& hub, Source& source);
   ~LiveConnection();
   LiveConnection(const LiveConnection&) = delete;
   LiveConnection& operator=(const LiveConnection&) = delete;
 
-  /// Answers a request for a WebSocket; the connection then lives as long as the page.
+  /// Answers a request for a WebSocket; the object then keeps itself alive until the page leaves.
   void accept(const Request& request);
-  /// Sends the frame next. One that still waits is dropped for it.
+  /// Sends the frame as soon as possible; drops one that is still waiting.
   void show(const Message& frame);
   void close();
 
  private:
   void read();
-  void obey(const std::string& text);
+  void execute(const std::string& text);
   void answer(std::string text);
   void write_next();
 
@@ -45,9 +45,9 @@ class LiveConnection : public std::enable_shared_from_this<LiveConnection> {
   Hub& hub_;
   Source& source_;
   boost::beast::flat_buffer incoming_;
-  std::deque<Message> answers_;  // go first
-  Message frame_;                // the newest one that waits
-  Message writing_;              // on its way
+  std::deque<Message> answers_;  // sent before frames
+  Message frame_;                // the next one
+  Message writing_;              // being sent
   bool open_ = false;
 };
 

@@ -8,7 +8,9 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "feel.hpp"
+#include "command_outcome.hpp"
+#include "contact_parameters.hpp"
+#include "steered_hand.hpp"
 #include "tactree/core/faults.hpp"
 #include "tactree/plant/vectors.hpp"
 #include "tactree/simulation/hand_script.hpp"
@@ -21,12 +23,13 @@ namespace {
 using nlohmann::json;
 using Clock = std::chrono::steady_clock;
 
-// Commands are taken and ticks made up so often; every fourth time there is a frame.
+// Interval of commands and ticks; every fourth turn publishes a frame.
 constexpr double kTurn_s = 1.0 / (4.0 * kFrameRate_hz);
 constexpr int kTurnsPerFrame = 4;
-// A machine that is too slow for real time loses what is more than this, and tells so.
-constexpr double kMostBehind_s = 0.1;
-constexpr std::size_t kMostCommands = 256;
+// A simulation further behind real time skips the rest; the frame reports the time lost.
+constexpr double kMaxBehind_s = 0.1;
+constexpr std::size_t kMaxCommands = 256;
+constexpr std::size_t kMaxVia = 64;
 
 const char* name_of(Modes modes) {
   return modes == Modes::kSurface ? "surface" : modes == Modes::kPaper ? "paper" : "both";
@@ -36,22 +39,47 @@ const char* name_of(core::RenderMode mode) {
   return mode == core::RenderMode::kPaper ? "paper" : "surface";
 }
 
-Eigen::Vector3d place(const json& value) {
+Eigen::Vector3d place_of(const std::string& name, const json& value) {
   constexpr double kFurthest_m = 10.0;
   if (!value.is_array() || value.size() != 3) {
-    throw SessionRefused("target_m: three numbers are needed");
+    throw SessionRefused(name + ": not an array of three numbers");
   }
-  Eigen::Vector3d target;
+  Eigen::Vector3d place;
   for (std::size_t i = 0; i < 3; ++i) {
-    target[static_cast<Eigen::Index>(i)] = static_cast<double>(number_of("target_m", value[i]));
+    place[static_cast<Eigen::Index>(i)] = static_cast<double>(number_of(name, value[i]));
   }
-  if (!target.allFinite() || target.cwiseAbs().maxCoeff() > kFurthest_m) {
-    throw SessionRefused(fmt::format("target_m: it is outside +-{} m", kFurthest_m));
+  if (!place.allFinite() || place.cwiseAbs().maxCoeff() > kFurthest_m) {
+    throw SessionRefused(fmt::format("{}: outside +-{} m", name, kFurthest_m));
   }
-  return target;
+  return place;
 }
 
-/// An injection of each kind, ready to be given.
+/// The path of a "hand" command.
+std::vector<Eigen::Vector3d> path_of(const json& command) {
+  const json via = command.value("via_m", json::array());
+  if (!via.is_array() || via.size() > kMaxVia) {
+    throw SessionRefused(fmt::format("via_m: not an array of at most {} places", kMaxVia));
+  }
+  std::vector<Eigen::Vector3d> path;
+  for (const json& place : via) {
+    path.push_back(place_of("via_m", place));
+  }
+  path.push_back(place_of("target_m", command.value("target_m", json())));
+  return path;
+}
+
+double speed_of(const json& command) {
+  if (!command.contains("speed_m_s")) {
+    return SteeredHand::kFastest_m_s;
+  }
+  const auto speed = static_cast<double>(number_of("speed_m_s", command["speed_m_s"]));
+  if (!(speed > 0.0 && speed <= SteeredHand::kFastest_m_s)) {
+    throw SessionRefused(fmt::format("speed_m_s: outside 0 .. {}", SteeredHand::kFastest_m_s));
+  }
+  return speed;
+}
+
+/// One injection of each kind, with an example value.
 json injections_json() {
   const std::pair<const char*, const char*> values[] = {{"encoderN:jump", "500"},
                                                         {"motor:weak", "0.1"},
@@ -78,17 +106,14 @@ std::string refusal(const core::BlobView& view, const simulation::Setup& setup,
   const core::Configuration& c = setup.controller;
   if (start.configuration == core::ConfigurationStatus::kUnstable) {
     return fmt::format(
-        "a stiffness of {:.6g} N/m is beyond the stability limit of {:.6g} N/m at "
+        "a stiffness of {:.6g} N/m exceeds the stability limit of {:.6g} N/m at "
         "{:.6g} Hz (lower it, or raise damping or rate)",
         c.stiffness_N_m, core::stability_limit(c).with_hand_N_m, c.rate_hz);
   }
   if (start.configuration != core::ConfigurationStatus::kOk) {
-    return core::describe(start.configuration);
+    return describe(start);
   }
-  if (start.blob != core::BlobStatus::kOk) {
-    return fmt::format("the model is refused: {}", core::describe(start.blob));
-  }
-  return fmt::format("{}: {}", view.header().name, core::describe(start.model));
+  return fmt::format("{}: {}", view.header().name, describe(start));
 }
 
 }  // namespace
@@ -99,10 +124,10 @@ Modes modes_of(const std::string& name) {
       return modes;
     }
   }
-  throw SessionRefused(fmt::format("mode: '{}' is none of surface, paper, both", name));
+  throw SessionRefused(fmt::format("mode: '{}' is unknown (use surface, paper or both)", name));
 }
 
-/// A controller, its device, and the person that holds it.
+/// A controller with its simulated device and hand.
 struct LiveSession::Run {
   Run(const Bodies& bodies, const simulation::Setup& its_setup, const Eigen::Vector3d& hand_m)
       : setup(its_setup),
@@ -123,6 +148,7 @@ struct LiveSession::Run {
     sim.post(core::Command::kClearFault);
     stop_next = true;
   }
+  void mend() { sim.injector().mend(sim.time_s()); }
 
   void step(const plant::HandTarget& hand) {
     if (hold_at_s >= 0.0 && sim.time_s() >= hold_at_s) {
@@ -133,7 +159,7 @@ struct LiveSession::Run {
     last = sim.step();
     strip.add(last.status);
     if (std::exchange(stop_next, false)) {
-      stop();  // a fault that was cleared is left by a stop
+      stop();  // clearing leaves the fault state only with a stop
     }
   }
 
@@ -141,39 +167,16 @@ struct LiveSession::Run {
   simulation::Simulation sim;
   simulation::Sample last{};
   Strip strip;
-  double hold_at_s = -1.0;  // when the hand takes hold of the dead-man control; < 0: not to come
+  double hold_at_s = -1.0;  // time at which the hand presses the dead-man control; < 0: never
   bool stop_next = false;
-};
-
-/// Follows what the page says without jumps: pages speak 60 times a second, the hand moves on.
-class LiveSession::Hand {
- public:
-  explicit Hand(const Eigen::Vector3d& at_m) : goal_(at_m) { now_.position_m = at_m; }
-
-  void go(const Eigen::Vector3d& goal_m) { goal_ = goal_m; }
-  void stay() { goal_ = now_.position_m; }
-  const plant::HandTarget& advance(double dt) {
-    constexpr double kFollow_s = 0.03;
-    constexpr double kFastest_m_s = 0.5;
-    Eigen::Vector3d velocity = (goal_ - now_.position_m) / kFollow_s;
-    const double speed = velocity.norm();
-    velocity *= speed > kFastest_m_s ? kFastest_m_s / speed : 1.0;
-    now_.position_m += dt * velocity;
-    now_.velocity_m_s = velocity;
-    return now_;
-  }
-  [[nodiscard]] const Eigen::Vector3d& position_m() const { return now_.position_m; }
-
- private:
-  Eigen::Vector3d goal_;
-  plant::HandTarget now_{};
 };
 
 LiveSession::LiveSession(Bodies bodies, std::vector<NamedDevice> devices, const Settings& settings)
     : bodies_(std::move(bodies)), devices_(std::move(devices)), settings_(settings) {
-  const simulation::HandPath way = simulation::make_script("press", bodies_.views[0], 1.0);
-  start_m_ = bodies_.bodies[0].path.first() * way.waypoints().front().position_m;
-  hand_ = std::make_unique<Hand>(start_m_);
+  const simulation::HandPath path = simulation::make_script("press", bodies_.views[0], 1.0);
+  start_m_ = bodies_.bodies[0].path.first() * path.waypoints().front().position_m;
+  hand_ = std::make_unique<SteeredHand>(start_m_);
+  outcome_ = std::make_unique<CommandOutcome>();
   runs_ = make_runs(settings_);
 }
 
@@ -183,7 +186,7 @@ const NamedDevice& LiveSession::device(const std::string& name) const {
   const auto found = std::find_if(devices_.begin(), devices_.end(),
                                   [&](const NamedDevice& one) { return one.name == name; });
   if (found == devices_.end()) {
-    throw SessionRefused(fmt::format("device: there is no '{}'", name));
+    throw SessionRefused(fmt::format("device: '{}' is unknown", name));
   }
   return *found;
 }
@@ -192,12 +195,11 @@ simulation::Setup LiveSession::make_setup(const Settings& settings, core::Render
   simulation::Setup setup;
   setup.controller = settings.controller;
   setup.controller.mode = mode;
-  simulation::use_device(device(settings.device).figures, setup);
+  simulation::use_device(device(settings.device).preset, setup);
   setup.controller.model_origin_m = simulation::middle_at_origin(
       bodies_.views[0].header(), bodies_.bodies[0].path.first(), setup.controller.device.kind);
   setup.controller.supply_monitored = true;
-  setup.controller.velocity_cutoff_hz =
-      std::min(setup.controller.velocity_cutoff_hz, 0.5F * setup.controller.rate_hz);
+  core::limit_to_rate(setup.controller);
   return setup;
 }
 
@@ -211,25 +213,25 @@ LiveSession::Runs LiveSession::make_runs(const Settings& settings) const {
     }
     const simulation::Setup setup = make_setup(settings, mode);
     const core::ConfigurationStatus status = core::check(setup.controller);
-    if (status != core::ConfigurationStatus::kOk) {  // before a simulation is made of it
+    if (status != core::ConfigurationStatus::kOk) {  // a simulation requires a valid configuration
       throw SessionRefused(refusal(bodies_.views[0], setup, {.configuration = status}));
     }
     auto run = std::make_unique<Run>(bodies_, setup, start_m_);
     if (!run->sim.start_result().ok()) {
       throw SessionRefused(refusal(bodies_.views[0], setup, run->sim.start_result()));
     }
-    run->arm();  // nobody is at a simulated device
+    run->arm();  // a simulated device needs no confirmation
     runs.push_back(std::move(run));
   }
   return runs;
 }
 
-// What a page says. Any thread.
+// Commands of a page; any thread.
 
 Settings LiveSession::changed(const json& wanted) const {
   Settings settings = settings_;
   for (const auto& [key, value] : wanted.items()) {
-    if (set_feel(settings.controller, key, value)) {
+    if (set_contact_parameters(settings.controller, key, value)) {
       continue;
     }
     if (key == "rate_hz") {
@@ -245,13 +247,13 @@ Settings LiveSession::changed(const json& wanted) const {
   return settings;
 }
 
-void LiveSession::begin_anew(const json& wanted) {
+void LiveSession::restart(const json& wanted) {
   Settings settings;
   {
     const std::lock_guard lock(mutex_);
     settings = changed(wanted);
   }
-  Runs runs = make_runs(settings);  // takes a while: the loop goes on meanwhile
+  Runs runs = make_runs(settings);  // slow: without the lock, so that the session continues
   const std::lock_guard lock(mutex_);
   settings_ = settings;
   next_runs_ = std::move(runs);
@@ -260,12 +262,12 @@ void LiveSession::begin_anew(const json& wanted) {
 void LiveSession::enqueue(const json& command) {
   const std::lock_guard lock(mutex_);
   if (command["do"] == "stop") {
-    commands_.clear();  // nothing that was said before may start again
+    commands_.clear();  // no earlier command may start the device again
   } else if (command["do"] == "hand" && !commands_.empty() && commands_.back()["do"] == "hand") {
-    commands_.pop_back();  // only where it is wanted last matters
+    commands_.pop_back();  // only the latest target counts
   }
-  if (commands_.size() >= kMostCommands) {
-    throw SessionRefused("too many commands at once");
+  if (commands_.size() >= kMaxCommands) {
+    throw SessionRefused("too many commands are waiting (send fewer)");
   }
   commands_.push_back(command);
 }
@@ -274,19 +276,22 @@ std::optional<std::string> LiveSession::command(const json& command) {
   try {
     const std::string name = command.value("do", "");
     if (name == "set") {
-      begin_anew(command);
+      restart(command);
       return std::nullopt;
     }
     if (name == "hand") {
-      (void)place(command.value("target_m", json()));
+      (void)path_of(command);
+      (void)speed_of(command);
     } else if (name == "inject") {
       (void)simulation::parse_injection(command.value("fault", "") + "@0");
     } else if (name != "arm" && name != "stop" && name != "clear" && name != "mend") {
-      return fmt::format("'{}' is none of the simulation's commands", name);
+      return fmt::format(
+          "'{}': unknown command (a simulation has hand, arm, stop, clear, set, inject, mend)",
+          name);
     }
     enqueue(command);
     return std::nullopt;
-  } catch (const std::exception& error) {  // a refusal, or JSON of another kind than asked for
+  } catch (const std::exception& error) {  // SessionRefused, or JSON of a wrong type
     return error.what();
   }
 }
@@ -303,13 +308,14 @@ std::string LiveSession::hello() const {
                       {"devices", devices},
                       {"has_materials", has_materials(bodies_)},
                       {"injections", injections_json()},
+                      {"hand_start_m", {start_m_.x(), start_m_.y(), start_m_.z()}},
                       {"settings", settings_json()}};
   return hello.dump();
 }
 
 json LiveSession::settings_json() const {
   const core::Configuration c = make_setup(settings_, core::RenderMode::kSurface).controller;
-  json settings = feel_json(c);
+  json settings = contact_parameters_json(c);
   settings.update({{"rate_hz", c.rate_hz},
                    {"mode", name_of(settings_.modes)},
                    {"device", settings_.device},
@@ -320,7 +326,7 @@ json LiveSession::settings_json() const {
 
 std::string LiveSession::trace_csv() const { return log_.csv(); }
 
-// The session's thread.
+// The session's thread
 
 void LiveSession::run(const Publish& publish) {
   Clock::time_point then = Clock::now();
@@ -328,9 +334,9 @@ void LiveSession::run(const Publish& publish) {
     const Clock::time_point now = Clock::now();
     const double elapsed_s = std::chrono::duration<double>(now - then).count();
     then = now;
-    take_over();
-    advance(std::min(elapsed_s, kMostBehind_s));
-    lost_s_ += std::max(0.0, elapsed_s - kMostBehind_s);
+    apply_commands();
+    advance(std::min(elapsed_s, kMaxBehind_s));
+    lost_s_ += std::max(0.0, elapsed_s - kMaxBehind_s);
     if (turn % kTurnsPerFrame == 0) {
       publish(std::make_shared<const std::string>(frame()));
     }
@@ -338,7 +344,7 @@ void LiveSession::run(const Publish& publish) {
   }
 }
 
-void LiveSession::take_over() {
+void LiveSession::apply_commands() {
   std::deque<json> commands;
   Runs next;
   {
@@ -348,35 +354,51 @@ void LiveSession::take_over() {
   }
   if (!next.empty()) {
     runs_ = std::move(next);
-    hand_ = std::make_unique<Hand>(start_m_);
+    hand_ = std::make_unique<SteeredHand>(start_m_);
+    outcome_ = std::make_unique<CommandOutcome>();
     ticks_due_ = 0.0;
     log_.clear();
   }
   for (const json& command : commands) {
-    obey(command);
+    execute(command);
   }
 }
 
-void LiveSession::obey(const json& command) {
+void LiveSession::execute(const json& command) {
   const std::string name = command["do"];
+  const double now_s = runs_[0]->sim.time_s();
   if (name == "hand") {
-    hand_->go(place(command["target_m"]));
+    hand_->go(path_of(command), speed_of(command));
+  } else if (name == "arm") {
+    outcome_->armed(now_s);
+    for_each_run(&Run::arm);
+  } else if (name == "stop") {
+    outcome_->stopped();
+    for_each_run(&Run::stop);
+  } else if (name == "clear") {
+    outcome_->cleared(now_s);
+    for_each_run(&Run::clear);
+  } else if (name == "mend") {
+    outcome_->mended();
+    for_each_run(&Run::mend);
+  } else if (name == "inject") {
+    inject(command["fault"]);
   }
+}
+
+void LiveSession::for_each_run(void (Run::*act)()) {
   for (const auto& run : runs_) {
-    if (name == "arm") {
-      run->arm();
-    } else if (name == "stop") {
-      run->stop();
-    } else if (name == "clear") {
-      run->clear();
-    } else if (name == "mend") {
-      run->sim.injector().mend(run->sim.time_s());
-    } else if (name == "inject") {
-      simulation::InjectedFault fault =
-          simulation::parse_injection(command["fault"].get<std::string>() + "@0");
-      fault.from_s = run->sim.time_s();
-      run->sim.injector().add(std::move(fault));
-    }
+    (run.get()->*act)();
+  }
+}
+
+void LiveSession::inject(const std::string& text) {
+  simulation::InjectedFault fault = simulation::parse_injection(text + "@0");
+  outcome_->injected(text, std::string(simulation::shows_when(fault.kind)), runs_[0]->last.status,
+                     runs_[0]->sim.time_s());
+  for (const auto& run : runs_) {
+    fault.from_s = run->sim.time_s();
+    run->sim.injector().add(fault);
   }
 }
 
@@ -388,7 +410,12 @@ void LiveSession::advance(double seconds) {
     for (const auto& run : runs_) {
       run->step(hand);
     }
-    log_.add(runs_[0]->last);
+    const simulation::Sample& last = runs_[0]->last;
+    log_.add(last);
+    if (std::optional<std::string> news = outcome_->update(last.status, last.t_s)) {
+      ++news_number_;
+      news_ = *std::move(news);
+    }
   }
 }
 
@@ -415,8 +442,9 @@ std::string LiveSession::frame() {
                       {"hand_m", json::array({hand.x(), hand.y(), hand.z()})},
                       {"bodies", poses_json(bodies_, t_s)},
                       {"lost_s", lost_s_},
-                      {"work", unknown_work("A simulation on this computer counts no instructions: "
-                                            "tactree simulate --board does.")},
+                      {"news", {{"number", news_number_}, {"text", news_}}},
+                      {"work", unknown_work("Not counted in this simulation (use tactree simulate "
+                                            "--board).")},
                       {"settings", settings}};
   return frame.dump();
 }

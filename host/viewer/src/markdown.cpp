@@ -1,8 +1,11 @@
 #include "tactree/viewer/markdown.hpp"
 
+#include <cmark-gfm-core-extensions.h>
+#include <cmark-gfm.h>
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <memory>
+#include <vector>
 
 namespace tactree::viewer {
 namespace {
@@ -15,193 +18,128 @@ body {{ font: 16px/1.6 system-ui, sans-serif; max-width: 60rem; margin: 3rem aut
 h1 {{ font-size: 1.5rem; }} h2 {{ font-size: 1.15rem; margin-top: 2.5rem; }}
 code {{ font-size: 0.95em; }} svg {{ max-width: 100%; height: auto; }}
 table {{ border-collapse: collapse; display: block; overflow-x: auto; }}
-td {{ padding: 0.15rem 1rem 0.15rem 0; border-bottom: 1px solid #8884; }}
+th, td {{ padding: 0.15rem 1rem 0.15rem 0; border-bottom: 1px solid #8884; text-align: left; }}
 </style></head><body>
 {}</body></html>
 )";
 
-/// Takes `open`text`close` off the front of `rest`.
-bool take_between(std::string_view& rest, std::string_view open, std::string_view close,
-                  std::string_view& text) {
-  if (!rest.starts_with(open)) {
-    return false;
-  }
-  const std::size_t end = rest.find(close, open.size());
-  if (end == rest.npos || end == open.size()) {
-    return false;
-  }
-  text = rest.substr(open.size(), end - open.size());
-  rest.remove_prefix(end + close.size());
-  return true;
+struct FreeNode {
+  void operator()(cmark_node* node) const { cmark_node_free(node); }
+};
+using Document = std::unique_ptr<cmark_node, FreeNode>;
+
+struct FreeParser {
+  void operator()(cmark_parser* parser) const { cmark_parser_free(parser); }
+};
+using Parser = std::unique_ptr<cmark_parser, FreeParser>;
+
+struct FreeText {
+  void operator()(char* text) const { cmark_get_default_mem_allocator()->free(text); }
+};
+
+Document parse(std::string_view markdown, const Parser& parser) {
+  cmark_gfm_core_extensions_ensure_registered();
+  cmark_parser_attach_syntax_extension(parser.get(), cmark_find_syntax_extension("table"));
+  cmark_parser_feed(parser.get(), markdown.data(), markdown.size());
+  return Document(cmark_parser_finish(parser.get()));
 }
 
-/// One line's marks.
-class Line {
- public:
-  Line(std::string_view rest, const MarkdownTargets& targets) : rest_(rest), targets_(targets) {}
+/// Without CMARK_OPT_UNSAFE the renderer drops raw HTML and script addresses.
+std::string render(cmark_node* node, cmark_llist* extensions) {
+  const std::unique_ptr<char, FreeText> html(
+      cmark_render_html(node, CMARK_OPT_DEFAULT, extensions));
+  return html.get();
+}
 
-  std::string html() {
-    while (!rest_.empty()) {
-      const bool taken =
-          mark("`", "code") || mark("**", "strong") || mark("*", "em") || picture() || link();
-      if (!taken) {
-        out_ += html_escaped(rest_.substr(0, 1));
-        rest_.remove_prefix(1);
-      }
-    }
-    return std::move(out_);
+cmark_node* text_node(const std::string& text) {
+  cmark_node* const node = cmark_node_new(CMARK_NODE_TEXT);
+  cmark_node_set_literal(node, text.c_str());
+  return node;
+}
+
+void replace(cmark_node* old, cmark_node* by) {
+  cmark_node_replace(old, by);
+  cmark_node_free(old);
+}
+
+void replace_by_children(cmark_node* node) {
+  while (cmark_node* const child = cmark_node_first_child(node)) {
+    cmark_node_insert_before(node, child);
   }
+  cmark_node_free(node);
+}
 
- private:
-  bool mark(std::string_view sign, std::string_view element) {
-    std::string_view text;
-    if (!take_between(rest_, sign, sign, text)) {
-      return false;
-    }
-    out_ += fmt::format("<{0}>{1}</{0}>", element, html_escaped(text));
-    return true;
+/// Raw HTML becomes text, so that a reader sees what the renderer would drop.
+void show_as_text(cmark_node* node) {
+  cmark_node* text = text_node(cmark_node_get_literal(node));
+  if (cmark_node_get_type(node) == CMARK_NODE_HTML_BLOCK) {
+    cmark_node* const paragraph = cmark_node_new(CMARK_NODE_PARAGRAPH);
+    cmark_node_append_child(paragraph, text);
+    text = paragraph;
   }
+  replace(node, text);
+}
 
-  bool picture() {
-    std::string_view all;
-    std::string_view target;
-    std::string_view ahead = rest_;
-    if (!take_between(ahead, "![", "](", all) || all.find('[') != all.npos) {
-      return false;
-    }
-    const std::size_t end = ahead.find(')');
-    if (end == ahead.npos) {
-      return false;
-    }
-    target = ahead.substr(0, end);
-    out_ += targets_.picture ? targets_.picture(target) : html_escaped(all);
-    rest_ = ahead.substr(end + 1);
-    return true;
+void resolve_link(cmark_node* node, const MarkdownTargets& targets) {
+  const std::string address = targets.link ? targets.link(cmark_node_get_url(node)) : "";
+  if (address.empty()) {
+    replace_by_children(node);
+  } else {
+    cmark_node_set_url(node, address.c_str());
   }
+}
 
-  bool link() {
-    std::string_view text;
-    std::string_view ahead = rest_;
-    if (!take_between(ahead, "[", "](", text) || text.find('[') != text.npos) {
-      return false;
-    }
-    const std::size_t end = ahead.find(')');
-    if (end == ahead.npos) {
-      return false;
-    }
-    const std::string address = targets_.link ? targets_.link(ahead.substr(0, end)) : "";
-    out_ += address.empty()
-                ? html_escaped(text)
-                : fmt::format("<a href=\"{}\">{}</a>", html_escaped(address), html_escaped(text));
-    rest_ = ahead.substr(end + 1);
-    return true;
+void resolve_picture(cmark_node* node, const MarkdownTargets& targets) {
+  if (!targets.picture) {
+    replace_by_children(node);
+    return;
   }
+  cmark_node* const markup = cmark_node_new(CMARK_NODE_CUSTOM_INLINE);
+  cmark_node_set_on_enter(markup, targets.picture(cmark_node_get_url(node)).c_str());
+  replace(node, markup);
+}
 
-  std::string_view rest_;
-  const MarkdownTargets& targets_;
-  std::string out_;
-};
-
-class Writer {
- public:
-  explicit Writer(const MarkdownTargets& targets) : targets_(targets) {}
-
-  void line(std::string_view line) {
-    if (line.empty()) {
-      within("");
-    } else if (line.starts_with("## ")) {
-      alone("h2", line.substr(3));
-    } else if (line.starts_with("# ")) {
-      alone("h1", line.substr(2));
-    } else if (line.starts_with("- ")) {
-      within("ul");
-      out_ += "<li>" + marked(line.substr(2)) + "</li>\n";
-    } else if (line.starts_with("|--")) {
-      // between a table's heading and its rows
-    } else if (line.starts_with("|")) {
-      within("table");
-      out_ += row(line.substr(1));
-    } else {
-      within("p");
-      out_ += marked(line) + "\n";
+/// Parents before their children.
+std::vector<cmark_node*> nodes_of(cmark_node* document) {
+  std::vector<cmark_node*> nodes;
+  cmark_iter* const iterator = cmark_iter_new(document);
+  for (cmark_event_type event = cmark_iter_next(iterator); event != CMARK_EVENT_DONE;
+       event = cmark_iter_next(iterator)) {
+    if (event == CMARK_EVENT_ENTER) {
+      nodes.push_back(cmark_iter_get_node(iterator));
     }
   }
-  std::string take() {
-    within("");
-    return std::move(out_);
-  }
+  cmark_iter_free(iterator);
+  return nodes;
+}
 
- private:
-  [[nodiscard]] std::string marked(std::string_view text) const {
-    return Line(text, targets_).html();
-  }
-
-  void alone(std::string_view element, std::string_view text) {
-    within("");
-    out_ += fmt::format("<{0}>{1}</{0}>\n", element, marked(text));
-  }
-
-  [[nodiscard]] std::string row(std::string_view cells) const {
-    std::string out = "<tr>";
-    while (!cells.empty()) {
-      const std::size_t end = std::min(cells.find('|'), cells.size());
-      out += "<td>" + marked(cells.substr(0, end)) + "</td>";
-      cells.remove_prefix(std::min(end + 1, cells.size()));
+void resolve(cmark_node* document, const MarkdownTargets& targets) {
+  // Children first: to replace a node frees those below it.
+  const std::vector<cmark_node*> nodes = nodes_of(document);
+  for (auto node = nodes.rbegin(); node != nodes.rend(); ++node) {
+    const cmark_node_type type = cmark_node_get_type(*node);
+    if (type == CMARK_NODE_LINK) {
+      resolve_link(*node, targets);
+    } else if (type == CMARK_NODE_IMAGE) {
+      resolve_picture(*node, targets);
+    } else if (type == CMARK_NODE_HTML_INLINE || type == CMARK_NODE_HTML_BLOCK) {
+      show_as_text(*node);
     }
-    return out + "</tr>\n";
   }
-
-  void within(std::string_view element) {
-    if (element == element_) {
-      return;
-    }
-    out_ += element_.empty() ? "" : fmt::format("</{}>\n", element_);
-    out_ += element.empty() ? "" : fmt::format("<{}>\n", element);
-    element_ = element;
-  }
-
-  const MarkdownTargets& targets_;
-  std::string out_;
-  std::string_view element_;
-};
+}
 
 }  // namespace
 
-std::string html_escaped(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
-}
-
 std::string markdown_html(std::string_view markdown, const MarkdownTargets& targets) {
-  Writer writer(targets);
-  while (!markdown.empty()) {
-    const std::size_t end = std::min(markdown.find('\n'), markdown.size());
-    writer.line(markdown.substr(0, end));
-    markdown.remove_prefix(std::min(end + 1, markdown.size()));
-  }
-  return writer.take();
+  const Parser parser(cmark_parser_new(CMARK_OPT_DEFAULT));
+  const Document document = parse(markdown, parser);
+  resolve(document.get(), targets);
+  return render(document.get(), cmark_parser_get_syntax_extensions(parser.get()));
 }
 
 std::string html_page(std::string_view title, std::string_view body) {
-  return fmt::format(fmt::runtime(kPage), html_escaped(title), body);
+  const Document text(text_node(std::string(title)));
+  return fmt::format(fmt::runtime(kPage), render(text.get(), nullptr), body);
 }
 
 }  // namespace tactree::viewer

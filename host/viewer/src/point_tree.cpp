@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 namespace tactree::viewer {
@@ -27,7 +28,7 @@ std::uint32_t to_byte(float value) {
   return static_cast<std::uint32_t>(std::lround((std::clamp(value, -1.0F, 1.0F) + 1.0F) * 127.5F));
 }
 
-/// The unit sphere on an octahedron on a square: two numbers for a direction.
+/// Octahedral mapping of the unit sphere to a square: two numbers per direction.
 std::uint16_t pack_normal(core::Vec3 n) {
   const float size = std::abs(n.x) + std::abs(n.y) + std::abs(n.z);
   float u = n.x / size;
@@ -90,7 +91,7 @@ class PointTree::Build {
     open_.push_back(std::move(root));
   }
 
-  // Breadth first, so that the coarse nodes come first.
+  // Breadth first: coarse nodes get the low numbers.
   void run() {
     for (std::size_t i = 0; i < open_.size(); ++i) {
       Task task = std::move(open_[i]);
@@ -99,7 +100,7 @@ class PointTree::Build {
   }
 
  private:
-  /// Every so many points of the octree's order, which are spread evenly, stay; the rest go down.
+  /// Keeps every n-th point in the octree's order, which spreads them evenly; moves the rest down.
   void divide(Task& task) {
     const std::size_t all = task.points.size();
     const bool last = all <= kPointsPerNode || task.level == kDeepestNode;
@@ -174,33 +175,46 @@ std::string tree_json(const PointTree& tree, const core::BlobView& view) {
   return json.dump();
 }
 
-OctantBoxes octant_boxes(const core::BlobView& view, std::uint32_t level, std::size_t most) {
+namespace {
+
+std::array<float, 3> lower_corner(const core::BlobView& view, core::Int3 site, float edge_m) {
+  const float position[3] = {static_cast<float>(site.x), static_cast<float>(site.y),
+                             static_cast<float>(site.z)};
+  std::array<float, 3> corner{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const float low = view.root_min_m()[axis];
+    const float offset = position[axis] * view.step_m() - low;
+    corner[axis] = low + edge_m * std::floor(offset / edge_m + 1e-3F);
+  }
+  return corner;
+}
+
+/// Stops after `max_cubes` + 1 cubes.
+OctantBoxes boxes_of_level(const core::BlobView& view, std::uint32_t level, std::size_t max_cubes) {
   OctantBoxes boxes;
-  for (boxes.level = std::min(level, view.depth());; --boxes.level) {
-    // Leaves come in the octree's order, so those of one cube are neighbours.
-    boxes.corners_m.clear();
-    boxes.edge_m = view.leaf_edge_m() * static_cast<float>(1U << (view.depth() - boxes.level));
-    for (core::LeafCursor cursor(view); !cursor.done(); cursor.next()) {
-      const core::Int3 min = cursor.leaf().min;
-      const float site[3] = {static_cast<float>(min.x), static_cast<float>(min.y),
-                             static_cast<float>(min.z)};
-      std::array<float, 3> corner{};
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const float low = view.root_min_m()[axis];
-        const float way = site[axis] * view.step_m() - low;
-        corner[axis] = low + boxes.edge_m * std::floor(way / boxes.edge_m + 1e-3F);
-      }
-      if (boxes.corners_m.empty() || boxes.corners_m.back() != corner) {
-        boxes.corners_m.push_back(corner);
-      }
-      if (boxes.corners_m.size() > most && boxes.level > 0) {
-        break;
-      }
+  boxes.level = level;
+  boxes.edge_m = view.leaf_edge_m() * static_cast<float>(1U << (view.depth() - level));
+  // Leaves are stored in the octree's order: those of one cube are neighbours.
+  for (core::LeafCursor cursor(view); !cursor.done() && boxes.corners_m.size() <= max_cubes;
+       cursor.next()) {
+    const std::array<float, 3> corner = lower_corner(view, cursor.leaf().min, boxes.edge_m);
+    if (boxes.corners_m.empty() || boxes.corners_m.back() != corner) {
+      boxes.corners_m.push_back(corner);
     }
-    if (boxes.corners_m.size() <= most || boxes.level == 0) {
+  }
+  return boxes;
+}
+
+}  // namespace
+
+OctantBoxes octant_boxes(const core::BlobView& view, std::uint32_t level, std::size_t max_cubes) {
+  for (std::uint32_t tried = std::min(level, view.depth()); tried > 0; --tried) {
+    OctantBoxes boxes = boxes_of_level(view, tried, max_cubes);
+    if (boxes.corners_m.size() <= max_cubes) {
       return boxes;
     }
   }
+  return boxes_of_level(view, 0, std::numeric_limits<std::size_t>::max());
 }
 
 }  // namespace tactree::viewer

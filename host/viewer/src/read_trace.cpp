@@ -1,11 +1,9 @@
 #include <fmt/format.h>
 
-#include <charconv>
-#include <cmath>
-#include <fstream>
+#include <array>
 #include <limits>
-#include <map>
-#include <stdexcept>
+#include <optional>
+#include <string>
 #include <string_view>
 
 #include "csv.hpp"
@@ -14,51 +12,84 @@
 namespace tactree::viewer {
 namespace {
 
+using files::CsvReader;
 using simulation::Sample;
+using Column = std::optional<std::size_t>;
 
-// As many samples as simulate writes at most.
-constexpr std::size_t kMostTicks = 5000000;
+// The longest trace that simulate writes.
+constexpr std::size_t kMaxTicks = 5000000;
+constexpr const char* kRemedy = "give a file written by simulate --trace";
 
-/// One row, by the names of its columns.
+std::size_t required(const CsvReader& table, const std::string& name) {
+  const Column column = table.find_column(name);
+  if (!column) {
+    table.refuse("the header has no column " + name, kRemedy);
+  }
+  return *column;
+}
+
+/// The columns of a vector: NAME_xUNIT, NAME_yUNIT, NAME_zUNIT.
+struct VectorColumns {
+  VectorColumns(const CsvReader& table, const std::string& name, const std::string& unit) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      axes[axis] = table.find_column(fmt::format("{}_{}{}", name, "xyz"[axis], unit));
+    }
+  }
+  std::array<Column, 3> axes;
+};
+
+struct Columns {
+  explicit Columns(const CsvReader& table)
+      : t_s(required(table, "t_s")),
+        tip(table, "tip", "_m"),
+        probe(table, "probe", "_m"),
+        velocity(table, "velocity", "_m_s"),
+        force(table, "force", "_N"),
+        proxy(table, "proxy", "_m"),
+        normal(table, "normal", ""),
+        state(table.find_column("state")),
+        limits(table.find_column("limits")),
+        faults(table.find_column("faults")),
+        in_contact(table.find_column("in_contact")),
+        slipping(table.find_column("slipping")),
+        penetration_m(table.find_column("penetration_m")),
+        strength(table.find_column("strength")),
+        body(table.find_column("body")) {
+    for (const char* name :
+         {"probe_x_m", "probe_y_m", "probe_z_m", "force_x_N", "force_y_N", "force_z_N"}) {
+      (void)required(table, name);
+    }
+  }
+
+  std::size_t t_s;
+  VectorColumns tip, probe, velocity, force, proxy, normal;
+  Column state, limits, faults, in_contact, slipping, penetration_m, strength, body;
+};
+
+/// The current row. Values of missing columns are 0.
 class Row {
  public:
-  Row(const std::map<std::string, std::size_t>& columns, std::vector<std::string_view> cells)
-      : columns_(columns), cells_(std::move(cells)) {}
+  explicit Row(const CsvReader& table) : table_(table) {}
 
-  [[nodiscard]] std::string_view text(const std::string& column) const {
-    const auto found = columns_.find(column);
-    return found == columns_.end() ? std::string_view() : cells_[found->second];
+  [[nodiscard]] std::string_view text(Column column) const {
+    return column ? table_.cells()[*column] : std::string_view();
   }
-  /// 0 where there is no such column.
-  [[nodiscard]] double number(const std::string& column) const {
-    const std::string_view digits = text(column);
-    if (columns_.count(column) == 0) {
-      return 0.0;
-    }
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (error != std::errc() || end != digits.data() + digits.size() || !std::isfinite(value)) {
-      throw std::runtime_error(fmt::format("{}: '{}' is not a number", column, digits));
-    }
-    return value;
-  }
-  [[nodiscard]] float narrow(const std::string& column) const {
-    return static_cast<float>(number(column));
-  }
-  [[nodiscard]] std::uint32_t index(const std::string& column, std::uint32_t none) const {
+  [[nodiscard]] double number(Column column) const { return column ? table_.number(*column) : 0.0; }
+  [[nodiscard]] float narrow(Column column) const { return static_cast<float>(number(column)); }
+  [[nodiscard]] std::uint32_t index(Column column, std::uint32_t none) const {
     const double value = number(column);
-    const bool known = columns_.count(column) != 0 && value >= 0.0 &&
-                       value <= std::numeric_limits<std::uint32_t>::max();
+    const bool known = column && value >= 0.0 && value <= std::numeric_limits<std::uint32_t>::max();
     return known ? static_cast<std::uint32_t>(value) : none;
   }
-  /// "NAME_x_UNIT" and so on.
-  [[nodiscard]] core::Vec3 vector(const std::string& name, const std::string& unit) const {
-    return {narrow(name + "_x" + unit), narrow(name + "_y" + unit), narrow(name + "_z" + unit)};
+  [[nodiscard]] core::Vec3 vector(const VectorColumns& columns) const {
+    return {narrow(columns.axes[0]), narrow(columns.axes[1]), narrow(columns.axes[2])};
+  }
+  [[nodiscard]] Eigen::Vector3d wide_vector(const VectorColumns& columns) const {
+    return {number(columns.axes[0]), number(columns.axes[1]), number(columns.axes[2])};
   }
 
  private:
-  const std::map<std::string, std::size_t>& columns_;
-  std::vector<std::string_view> cells_;
+  const CsvReader& table_;
 };
 
 core::State state_of(std::string_view name) {
@@ -70,96 +101,50 @@ core::State state_of(std::string_view name) {
   return core::State::kBoot;
 }
 
-Sample sample_of(const Row& row) {
+Sample read_sample(const Row& row, const Columns& columns) {
   Sample sample;
-  sample.t_s = row.number("t_s");
-  sample.tip_m = {row.number("tip_x_m"), row.number("tip_y_m"), row.number("tip_z_m")};
+  sample.t_s = row.number(columns.t_s);
+  // Boards do not report the true position of the tip: the probe stands for it.
+  sample.tip_m = row.wide_vector(columns.tip.axes[0] ? columns.tip : columns.probe);
   core::Status& s = sample.status;
-  s.probe = row.vector("probe", "_m");
-  s.velocity = row.vector("velocity", "_m_s");
-  s.force = row.vector("force", "_N");
-  s.state = state_of(row.text("state"));
-  s.limits = row.index("limits", 0);
-  s.faults = row.index("faults", 0);
+  s.probe = row.vector(columns.probe);
+  s.velocity = row.vector(columns.velocity);
+  s.force = row.vector(columns.force);
+  s.state = state_of(row.text(columns.state));
+  s.limits = row.index(columns.limits, 0);
+  s.faults = row.index(columns.faults, 0);
   core::Rendering& r = s.rendering;
-  r.in_contact = row.number("in_contact") != 0.0;
-  r.slipping = row.number("slipping") != 0.0;
-  r.proxy = row.vector("proxy", "_m");
-  r.normal = row.vector("normal", "");
-  r.penetration_m = row.narrow("penetration_m");
-  r.strength = row.narrow("strength");
-  r.body = row.index("body", core::kNoBody);
-  return sample;
-}
-
-std::map<std::string, std::size_t> columns_of(const std::string& heading) {
-  std::map<std::string, std::size_t> columns;
-  const std::vector<std::string_view> names = cells_of(heading);
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    columns.emplace(names[i], i);
-  }
-  for (const char* needed :
-       {"t_s", "probe_x_m", "probe_y_m", "probe_z_m", "force_x_N", "force_y_N", "force_z_N"}) {
-    if (columns.count(needed) == 0) {
-      throw std::runtime_error(fmt::format("the heading has no column {}", needed));
-    }
-  }
-  return columns;
-}
-
-Sample read_row(const std::map<std::string, std::size_t>& columns, const std::string& line) {
-  std::vector<std::string_view> cells = cells_of(line);
-  if (cells.size() != columns.size()) {
-    throw std::runtime_error(
-        fmt::format("{} values, the heading has {}", cells.size(), columns.size()));
-  }
-  Sample sample = sample_of(Row(columns, std::move(cells)));
-  if (columns.count("tip_x_m") == 0) {
-    const core::Vec3 p = sample.status.probe;
-    sample.tip_m = {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)};
-  }
+  r.in_contact = row.number(columns.in_contact) != 0.0;
+  r.slipping = row.number(columns.slipping) != 0.0;
+  r.proxy = row.vector(columns.proxy);
+  r.normal = row.vector(columns.normal);
+  r.penetration_m = row.narrow(columns.penetration_m);
+  r.strength = row.narrow(columns.strength);
+  r.body = row.index(columns.body, core::kNoBody);
   return sample;
 }
 
 }  // namespace
 
 std::vector<Sample> read_trace(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  std::size_t number = 0;
-  const auto refuse = [&](const std::string& cause) -> std::runtime_error {
-    return std::runtime_error(fmt::format(
-        "{}: line {}: {} (give a file that simulate --trace wrote)", file.string(), number, cause));
-  };
-  if (!in) {
-    throw std::runtime_error(
-        fmt::format("{}: it cannot be read (check name and rights)", file.string()));
+  CsvReader table(file, {.header = files::CsvHeader::kRequired});
+  if (table.columns().empty()) {
+    table.refuse("the trace has no ticks", kRemedy);
   }
+  const Columns columns(table);
+  const Row row(table);
   std::vector<Sample> samples;
-  std::map<std::string, std::size_t> columns;
-  std::string line;
-  try {
-    while (std::getline(in, line)) {
-      ++number;
-      if (!line.empty() && line.back() == '\r') {
-        line.pop_back();
-      }
-      if (number == 1) {
-        columns = columns_of(line);
-        continue;
-      }
-      samples.push_back(read_row(columns, line));
-      if (samples.size() > 1 && !(samples.back().t_s > samples[samples.size() - 2].t_s)) {
-        throw std::runtime_error("t_s does not ascend");
-      }
-      if (samples.size() > kMostTicks) {
-        throw std::runtime_error(fmt::format("more than {} ticks", kMostTicks));
-      }
+  while (table.next_row()) {
+    samples.push_back(read_sample(row, columns));
+    if (samples.size() > 1 && !(samples.back().t_s > samples[samples.size() - 2].t_s)) {
+      table.refuse("t_s does not increase", kRemedy);
     }
-  } catch (const std::runtime_error& error) {
-    throw refuse(error.what());
+    if (samples.size() > kMaxTicks) {
+      table.refuse(fmt::format("more than {} ticks", kMaxTicks), "record a shorter run");
+    }
   }
   if (samples.empty()) {
-    throw refuse("there is no tick");
+    table.refuse("the trace has no ticks", kRemedy);
   }
   return samples;
 }

@@ -17,7 +17,7 @@ using simulation::Sample;
 using Samples = std::vector<Sample>;
 
 constexpr std::size_t kOverviewColumns = 1000;
-constexpr std::size_t kShownTicks = 150;  // before and after the one that is shown
+constexpr std::size_t kShownTicks = 150;  // before and after the displayed tick
 constexpr double kFastest = 100.0;
 
 double force_of(const Sample& sample) {
@@ -29,7 +29,7 @@ double penetration_of(const Sample& sample) {
   return r.in_contact ? static_cast<double>(r.penetration_m) : 0.0;
 }
 
-/// The whole trace in some columns: lowest and highest value of each.
+/// The trace in at most kOverviewColumns columns: lowest and highest value of each.
 template <class Value>
 json overview(const Samples& samples, const Value& value) {
   const std::size_t columns = std::min(kOverviewColumns, samples.size());
@@ -85,7 +85,7 @@ std::optional<std::string> Recording::command(const json& command) {
     } else if (name == "play") {
       const double speed = command.at("speed").get<double>();
       if (!(speed >= 0.0 && speed <= kFastest)) {
-        return "speed: it is outside 0 .. 100";
+        return "speed: outside 0 .. 100";
       }
       speed_ = speed;
       tick_ = tick_ == static_cast<std::size_t>(last) ? 0 : tick_;
@@ -93,7 +93,7 @@ std::optional<std::string> Recording::command(const json& command) {
     } else if (name == "stop") {
       speed_ = 0.0;
     } else {
-      return "'" + name + "': a recorded trace can be played, not touched";
+      return "'" + name + "': unknown command (a trace has seek, step, play, stop)";
     }
     return std::nullopt;
   } catch (const json::exception& error) {
@@ -147,7 +147,7 @@ std::string Recording::frame(std::size_t tick, double speed) {
                       {"playing", speed},
                       {"runs", json::array({run})},
                       {"around", around(tick)},
-                      {"work", unknown_work("A trace does not tell how much a tick had to do.")},
+                      {"work", unknown_work("A trace does not record the work per tick.")},
                       {"bodies", poses_json(bodies_, sample.t_s)}};
   return frame.dump();
 }

@@ -23,7 +23,7 @@ tcp::endpoint endpoint_of(const ServerOptions& options) {
   const asio::ip::address address = asio::ip::make_address(options.address, error);
   if (error) {
     throw ServerError("--address: '" + options.address +
-                      "' is no address (give one such as 127.0.0.1 or ::1)");
+                      "' is not an IP address (give one such as 127.0.0.1 or ::1)");
   }
   return {address, options.port};
 }
@@ -62,7 +62,7 @@ struct Server::Parts {
       service.any_host = ":" + std::to_string(own.port());
     }
   }
-  // With the context go the connections that are still there, and those know hub and service.
+  // The context destroys the open connections, which refer to hub and service.
   ~Parts() {
     acceptor.reset();
     context.reset();
@@ -75,9 +75,9 @@ struct Server::Parts {
       if (error == asio::error::operation_aborted) {
         return;
       }
-      if (!error && service.connections < Service::kMostConnections) {
+      if (!error && service.connections < Service::kMaxConnections) {
         std::make_shared<HttpConnection>(std::move(socket), service)->read();
-      }  // else the socket closes
+      }  // else the socket is closed
       accept();
     });
   }

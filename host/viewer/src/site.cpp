@@ -11,14 +11,14 @@
 namespace tactree::viewer {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "points are sent as they lie in memory");
+static_assert(std::endian::native == std::endian::little, "points are sent in memory order");
 
-constexpr std::size_t kMostOctants = 20000;
+constexpr std::size_t kMaxOctants = 20000;
 constexpr std::string_view kFaults = "/faults/";
 constexpr std::string_view kModel = "/model/";
 constexpr std::string_view kTrace = "/trace.csv";
 
-Answer not_found() { return {404, "text/plain; charset=utf-8", "there is no such page\n", {}}; }
+Answer not_found() { return {404, "text/plain; charset=utf-8", "unknown page\n", {}}; }
 
 Answer binary(const void* bytes, std::size_t size) {
   return {200, "application/octet-stream", std::string(static_cast<const char*>(bytes), size), {}};
@@ -47,7 +47,7 @@ bool take_word(std::string_view& path, std::string_view word) {
 }
 
 Answer octants(const core::BlobView& view, std::uint32_t level) {
-  const OctantBoxes boxes = octant_boxes(view, level, kMostOctants);
+  const OctantBoxes boxes = octant_boxes(view, level, kMaxOctants);
   Answer answer = binary(&boxes.level, sizeof(boxes.level));
   answer.body.append(reinterpret_cast<const char*>(&boxes.edge_m), sizeof(boxes.edge_m));
   answer.body.append(reinterpret_cast<const char*>(boxes.corners_m.data()),

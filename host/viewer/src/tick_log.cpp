@@ -17,7 +17,7 @@ void TickLog::publish() {
   filling_.reserve(kChunkTicks);
   const std::lock_guard lock(mutex_);
   full_.push_back(std::move(chunk));
-  if (full_.size() > kMostTicks / kChunkTicks) {
+  if (full_.size() > kMaxTicks / kChunkTicks) {
     full_.pop_front();
   }
 }

@@ -1,4 +1,4 @@
-// Writes a blob of a sphere, asks it for the nearest point, and saves it.
+// Builds the blob of a sphere, queries its nearest point, and saves it to the file argv[1].
 #include <cmath>
 #include <cstdio>
 #include <fstream>

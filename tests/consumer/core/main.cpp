@@ -1,4 +1,4 @@
-// A controller without a model: it starts, gives no force and says why.
+// A controller without a model starts and refuses an empty model.
 #include <cstdio>
 
 #include "tactree/core/controller.hpp"

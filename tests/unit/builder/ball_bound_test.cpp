@@ -18,7 +18,7 @@ std::uint32_t count_in_ball(const std::vector<Eigen::Vector3d>& positions,
   return count;
 }
 
-// The fullest of many balls: centres at points, and between them.
+// The fullest of many balls, centred at points and between them.
 std::uint32_t sampled_maximum(const std::vector<Eigen::Vector3d>& positions, double radius) {
   std::uint32_t most = 0;
   for (std::size_t i = 0; i < positions.size(); ++i) {
@@ -37,37 +37,37 @@ void expect_tight(const std::vector<Eigen::Vector3d>& positions, double radius) 
   EXPECT_LE(bound, 1.25 * sampled + 1.0);
 }
 
-TEST(BallBound, IsABoundAndTightOnSurfaces) {
+TEST(BallBound, NeverBelowTheMaximumAndTightOnSurfaces) {
   expect_tight(plane_grid(50, 1.0).positions, 3.0);
   expect_tight(cosine_sheet(60, 0.06, 0.005, 300.0).positions, 0.003);
   expect_tight(random_sphere(3000, 0.03).positions, 0.006);
 }
 
-TEST(BallBound, IsABoundAndTightInAVolumeAndAClump) {
+TEST(BallBound, NeverBelowTheMaximumAndTightInAVolumeAndAClump) {
   std::vector<Eigen::Vector3d> volume;
   for (std::uint64_t i = 0; i < 3000; ++i) {
     volume.emplace_back(unit_random(3 * i), unit_random(3 * i + 1), unit_random(3 * i + 2));
   }
   expect_tight(volume, 0.15);
-  for (std::uint64_t i = 0; i < 500; ++i) {  // far denser than all else
+  for (std::uint64_t i = 0; i < 500; ++i) {  // far denser than the rest
     volume.emplace_back(2.0 + 0.01 * unit_random(i), 0.5, 0.5);
   }
   expect_tight(volume, 0.15);
 }
 
-TEST(BallBound, HoldsWhereTheFullestBallIsCentredOnNoPoint) {
-  // The corners of a cube just fit into a ball around its middle; none around a corner holds two.
+TEST(BallBound, CoversBallsCentredBetweenPoints) {
+  // A ball around the middle of a cube just contains its corners; a ball around a corner only one.
   const Mesh cube = box_mesh({0, 0, 0}, {1, 1, 1});
   EXPECT_EQ(max_points_in_ball(cube.positions, 0.5 * std::sqrt(3.0)), 8U);
   EXPECT_LT(max_points_in_ball(cube.positions, 0.45), 3U);
 }
 
-TEST(BallBound, KnowsTheTrivialCases) {
+TEST(BallBound, TrivialCases) {
   EXPECT_EQ(max_points_in_ball({}, 1.0), 0U);
   EXPECT_EQ(max_points_in_ball(std::vector<Eigen::Vector3d>(7, Eigen::Vector3d(1, 2, 3)), 0.1), 7U);
 }
 
-TEST(BallBound, DoesNotDependOnThreads) {
+TEST(BallBound, IsIndependentOfThreads) {
   const Cloud cloud = random_sphere(4000, 0.03, 7);
   std::vector<std::uint64_t> rank(cloud.size());
   for (std::size_t i = 0; i < rank.size(); ++i) {
@@ -84,7 +84,7 @@ TEST(BallBound, DoesNotDependOnThreads) {
   EXPECT_EQ(kept[0], kept[1]);
 }
 
-TEST(BallBound, ThinsOffendingBallsOnly) {
+TEST(BallBound, ThinsOnlyOverfullBalls) {
   Cloud cloud = even_sphere(3000, 0.03);
   const std::size_t sparse = cloud.size();
   for (std::uint64_t i = 0; i < 400; ++i) {  // a clump at the pole
@@ -95,9 +95,9 @@ TEST(BallBound, ThinsOffendingBallsOnly) {
     rank[i] = hash64(i);
   }
   const double radius = 0.004;
-  constexpr std::uint32_t kMost = 40;
-  ASSERT_LT(max_points_in_ball(std::span(cloud.positions).first(sparse), radius), kMost);
-  const std::vector<bool> kept = thin_to_ball_bound(cloud.positions, rank, radius, kMost);
+  constexpr std::uint32_t kMax = 40;
+  ASSERT_LT(max_points_in_ball(std::span(cloud.positions).first(sparse), radius), kMax);
+  const std::vector<bool> kept = thin_to_ball_bound(cloud.positions, rank, radius, kMax);
   std::vector<Eigen::Vector3d> left;
   std::size_t dropped_far = 0;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
@@ -108,7 +108,7 @@ TEST(BallBound, ThinsOffendingBallsOnly) {
     }
   }
   EXPECT_EQ(dropped_far, 0U);
-  EXPECT_LE(sampled_maximum(left, radius), kMost);
+  EXPECT_LE(sampled_maximum(left, radius), kMax);
   EXPECT_GT(left.size(), cloud.size() - 420U);
 }
 

@@ -1,11 +1,11 @@
 #include "tactree/builder/build_model.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <fstream>
 
-#include "sha256.hpp"
 #include "shapes.hpp"
 #include "tactree/core/blob.hpp"
 
@@ -13,11 +13,7 @@ namespace tactree::builder {
 namespace {
 
 Scan box_scan(const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
-  Mesh mesh = box_mesh(low, high);
-  Scan scan;
-  scan.positions = std::move(mesh.positions);
-  scan.triangles = std::move(mesh.triangles);
-  return scan;
+  return mesh_scan(box_mesh(low, high));
 }
 
 BuildResult build(Scan scan, const BuildOptions& options = {}) {
@@ -62,7 +58,8 @@ TEST(BuildModel, PointsOfASphereLieOnItWithinTwoPercentOfTheSpacing) {
     const BuildResult result = build(cloud_scan(std::move(cloud)), options);
     const std::vector<DecodedPoint> points = decode(result);
     EXPECT_EQ(points.size(), result.report.output_points);
-    EXPECT_NEAR(static_cast<double>(points.size()), 0.83 * 11310.0, 300.0);  // of 9 a square
+    EXPECT_NEAR(static_cast<double>(points.size()), 0.83 * 11310.0,
+                300.0);  // 9 candidates per square
     for (const DecodedPoint& p : points) {
       ASSERT_LT(std::abs(p.position.norm() - radius), 0.02 * 0.001);
       ASSERT_GT(p.normal.dot(p.position.normalized()), 0.998);
@@ -88,7 +85,7 @@ TEST(BuildModel, PointsOfABoxMeshLieOnItsFaces) {
   EXPECT_LT(off_their_face, 30U);  // within 2 % of the spacing of an edge
 }
 
-TEST(BuildModel, IsTheSameForAnyNumberOfThreads) {
+TEST(BuildModel, IsIndependentOfThreads) {
   for (const bool mesh : {false, true}) {
     BuildOptions options;
     std::vector<std::byte> bytes[3];
@@ -105,9 +102,9 @@ TEST(BuildModel, IsTheSameForAnyNumberOfThreads) {
   }
 }
 
-TEST(BuildModel, NoBallHoldsMoreThanABoardTakes) {
+TEST(BuildModel, NoBallExceedsTheBoardsLimit) {
   BuildOptions options;
-  options.resample = false;  // many more than the spacing is for
+  options.resample = false;  // many more points than for the spacing
   Cloud cloud = even_sphere(1000, 0.03);
   const Cloud dense = random_sphere(60000, 0.03);
   for (std::size_t i = 0; i < dense.size(); ++i) {
@@ -136,7 +133,7 @@ TEST(BuildModel, BuildsTinyInputs) {
   }
 }
 
-TEST(BuildModel, TellsWhereItCameFrom) {
+TEST(BuildModel, RecordsSourceAndTool) {
   Cloud cloud = random_sphere(5000, 40.0);
   for (Eigen::Vector3d& p : cloud.positions) {
     p += Eigen::Vector3d(1000.0, 2000.0, 3000.0);
@@ -153,7 +150,7 @@ TEST(BuildModel, TellsWhereItCameFrom) {
   EXPECT_STREQ(view.header().name, "ball");
 }
 
-TEST(BuildModel, RefusesNothingness) {
+TEST(BuildModel, RefusesEmptyInputs) {
   EXPECT_THROW((void)build(Scan()), BuildError);
   Progress quiet;
   EXPECT_THROW((void)build_model(std::span<const std::filesystem::path>(), {}, quiet), BuildError);
@@ -177,28 +174,39 @@ class BuildFromFiles : public testing::Test {
     return folder_ / name;
   }
 
+  /// A plane: one point for each x in [first, last) and y in [0, 50).
+  std::filesystem::path write_grid(const std::string& name, int first, int last) {
+    std::ofstream out(folder_ / name);
+    for (int x = first; x < last; ++x) {
+      for (int y = 0; y < 50; ++y) {
+        out << x << ' ' << y << " 0\n";
+      }
+    }
+    return folder_ / name;
+  }
+
   std::filesystem::path folder_;
 };
 
 TEST_F(BuildFromFiles, JoinsThemAndDigestsTheirBytes) {
-  const std::vector<std::filesystem::path> files = {write("one.xyz", even_sphere(2000, 0.03)),
-                                                    write("two.xyz", even_sphere(3000, 0.05))};
+  const std::vector<std::filesystem::path> files = {write_grid("one.xyz", 0, 50),
+                                                    write_grid("two.xyz", 50, 90)};
+  BuildOptions options;
+  options.unit_m = 0.001;
   Progress quiet;
-  const BuildResult result = build_model(files, {}, quiet);
-  EXPECT_EQ(result.report.input_points, 5000U);
+  const BuildResult result = build_model(files, options, quiet);
+  EXPECT_EQ(result.report.input_points, 4500U);
   ASSERT_EQ(result.report.inputs.size(), 2U);
-  EXPECT_EQ(result.report.inputs[1].points, 3000U);
+  EXPECT_EQ(result.report.inputs[1].points, 2000U);
   core::BlobView view;
   ASSERT_EQ(core::open_blob(result.blob.bytes, view), core::BlobStatus::kOk);
   EXPECT_STREQ(view.header().name, "one");
-  Sha256 sha;
-  for (const std::filesystem::path& file : files) {
-    std::ifstream in(file, std::ios::binary);
-    const std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-    sha.update(std::as_bytes(std::span(text)));
+  std::string digest;
+  for (const std::uint8_t byte : view.header().source_digest) {
+    digest += fmt::format("{:02x}", byte);
   }
-  const Sha256Digest digest = sha.digest();
-  EXPECT_TRUE(std::equal(digest.begin(), digest.end(), view.header().source_digest));
+  // cat one.xyz two.xyz | sha256sum
+  EXPECT_EQ(digest, "9e43bc9680612ba195ee465d409d9192d5c12348abbd9d77de6b5cf973b71774");
 }
 
 TEST_F(BuildFromFiles, NamesTheFileThatCannotBeBuilt) {
@@ -213,6 +221,27 @@ TEST_F(BuildFromFiles, NamesTheFileThatCannotBeBuilt) {
     EXPECT_EQ(std::string(error.what()).rfind(files[0].string() + ": ", 0), 0U) << error.what();
     EXPECT_NE(std::string(error.what()).find("2000 outside_crop"), std::string::npos);
   }
+}
+
+TEST(BuildModel, WarnsOfASizeThatNoHandCanFeelUnlessAUnitIsGiven) {
+  const auto warned = [](double radius_m, const BuildOptions& options) {
+    Progress quiet;
+    const BuildReport report =
+        build_model({cloud_scan(random_sphere(2000, radius_m))}, options, quiet).report;
+    return std::any_of(report.warnings.begin(), report.warnings.end(), [](const std::string& w) {
+      return w.find("--unit") != std::string::npos && w.find("reaches") != std::string::npos;
+    });
+  };
+  EXPECT_FALSE(warned(0.45, {}));
+  EXPECT_TRUE(warned(0.55, {}));
+  EXPECT_FALSE(warned(0.0026, {}));
+  EXPECT_TRUE(warned(0.0024, {}));
+  BuildOptions options;
+  options.unit_m = 1.0;
+  EXPECT_FALSE(warned(0.55, options));
+  options.unit_m.reset();
+  options.fit_m = 0.1;
+  EXPECT_FALSE(warned(0.55, options));
 }
 
 }  // namespace

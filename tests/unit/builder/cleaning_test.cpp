@@ -9,20 +9,6 @@
 namespace tactree::builder {
 namespace {
 
-Scan to_scan(Cloud cloud) {
-  Scan scan;
-  scan.positions = std::move(cloud.positions);
-  scan.normals = std::move(cloud.normals);
-  return scan;
-}
-
-Scan to_scan(Mesh mesh) {
-  Scan scan;
-  scan.positions = std::move(mesh.positions);
-  scan.triangles = std::move(mesh.triangles);
-  return scan;
-}
-
 struct Cleaned {
   CleanInput input;
   BuildReport report;
@@ -36,14 +22,14 @@ Cleaned clean_one(Scan scan, const BuildOptions& options = {}) {
   return cleaned;
 }
 
-// model = source_scale * turn * (source - source_origin), for whatever the options do.
+// model = source_scale * turn * (source - source_origin), for any options.
 void expect_recorded(const BuildOptions& options, const Eigen::Vector3d& place) {
   Cloud cloud = without_normals(even_sphere(500, 2.0));
   for (Eigen::Vector3d& p : cloud.positions) {
     p += place;
   }
   const std::vector<Eigen::Vector3d> source = cloud.positions;
-  const Cleaned cleaned = clean_one(to_scan(std::move(cloud)), options);
+  const Cleaned cleaned = clean_one(cloud_scan(std::move(cloud)), options);
   const Frame& frame = cleaned.input.frame;
   ASSERT_EQ(cleaned.input.points.size(), source.size());
   for (const Eigen::Vector3d& p : source) {
@@ -57,7 +43,7 @@ void expect_recorded(const BuildOptions& options, const Eigen::Vector3d& place) 
   }
 }
 
-TEST(Frame, IsRecordedWhateverTheOptions) {
+TEST(Frame, IsRecordedForAllOptions) {
   BuildOptions options;
   expect_recorded(options, {0, 0, 0});
   expect_recorded(options, {500000.0, 5600000.0, 300.0});
@@ -74,40 +60,40 @@ TEST(Frame, IsRecordedWhateverTheOptions) {
 }
 
 TEST(Frame, OfAScanNearItsOriginIsKept) {
-  const Cleaned cleaned = clean_one(to_scan(random_sphere(1000, 0.05)));
+  const Cleaned cleaned = clean_one(cloud_scan(random_sphere(1000, 0.05)));
   EXPECT_EQ(cleaned.report.source_origin, Eigen::Vector3d(0, 0, 0));
   EXPECT_EQ(cleaned.report.source_scale, 1.0);
   EXPECT_TRUE(cleaned.report.notes.empty());
 }
 
-TEST(Frame, OfAFarScanIsShiftedAndSaid) {
+TEST(Frame, OfAFarScanIsShiftedWithANote) {
   Cloud cloud = plane_grid(30, 1e-3);
   for (Eigen::Vector3d& p : cloud.positions) {
     p += Eigen::Vector3d(665187.522, 5648349.895, 241.75);
   }
-  const Cleaned cleaned = clean_one(to_scan(std::move(cloud)));
+  const Cleaned cleaned = clean_one(cloud_scan(std::move(cloud)));
   EXPECT_EQ(cleaned.report.notes.size(), 1U);
   EXPECT_LT(cleaned.input.bounds.center().norm(), 1e-8);
   EXPECT_NEAR(cleaned.report.source_origin.y(), 5648349.895 + 0.0145, 1e-6);
   EXPECT_EQ(cleaned.input.points.size(), 900U);
 }
 
-TEST(Frame, FitMakesTheLongestEdgeThatAndCentres) {
+TEST(Frame, FitScalesTheLongestEdgeAndCentres) {
   BuildOptions options;
   options.fit_m = 0.25;
   const Cleaned cleaned =
-      clean_one(to_scan(box_mesh({10.0, 20.0, 30.0}, {14.0, 22.0, 31.0})), options);
+      clean_one(mesh_scan(box_mesh({10.0, 20.0, 30.0}, {14.0, 22.0, 31.0})), options);
   EXPECT_NEAR(cleaned.input.bounds.sizes().x(), 0.25, 1e-12);
   EXPECT_NEAR(cleaned.input.bounds.sizes().y(), 0.125, 1e-12);
   EXPECT_LT(cleaned.input.bounds.center().norm(), 1e-12);
   EXPECT_NEAR(cleaned.report.source_scale, 0.0625, 1e-12);
 }
 
-TEST(Frame, TurnsKeepHandednessAndTurnNormals) {
+TEST(Frame, RotationsKeepHandednessAndRotateNormals) {
   for (const UpAxis up : {UpAxis::kX, UpAxis::kY, UpAxis::kZ}) {
     BuildOptions options;
     options.up = up;
-    const Cleaned cleaned = clean_one(to_scan(even_sphere(300, 1.0)), options);
+    const Cleaned cleaned = clean_one(cloud_scan(even_sphere(300, 1.0)), options);
     const Eigen::Vector3d source_up = Eigen::Vector3d::Unit(static_cast<int>(up));
     EXPECT_NEAR(cleaned.input.frame.turn.determinant(), 1.0, 1e-15);
     EXPECT_EQ(Eigen::Vector3d(cleaned.input.frame.turn * source_up), Eigen::Vector3d(0, 0, 1));
@@ -119,25 +105,62 @@ TEST(Frame, TurnsKeepHandednessAndTurnNormals) {
   }
 }
 
-TEST(Cleaning, CropsCloudsAndMeshesInTheSourcesUnits) {
+TEST(Frame, UnitOfTheFileIsUsedUnlessOneIsGiven) {
+  Scan scan = cloud_scan(random_sphere(2000, 10.0));
+  scan.unit_m = 0.01;
+  BuildOptions options;
+  EXPECT_NEAR(clean_one(scan, options).input.bounds.sizes().x(), 0.2, 0.002);
+  options.unit_m = 0.001;
+  EXPECT_NEAR(clean_one(scan, options).input.bounds.sizes().x(), 0.02, 0.0002);
+}
+
+TEST(Frame, ScansOfDifferentUnitsAreJoined) {
+  Scan metres = cloud_scan(random_sphere(2000, 0.1));
+  Scan millimetres = cloud_scan(random_sphere(2000, 300.0));
+  millimetres.unit_m = 0.001;
+  BuildReport report;
+  EXPECT_NEAR(clean({metres, millimetres}, {}, report).bounds.sizes().x(), 0.6, 0.006);
+  EXPECT_NEAR(clean({millimetres, metres}, {}, report).bounds.sizes().x(), 0.6, 0.006);
+}
+
+TEST(Cleaning, WarnsOfTheStepsOfFloat32CoordinatesFarFromTheOrigin) {
+  for (const bool is_float : {true, false}) {
+    for (const double far : {5.6e6, 0.0}) {
+      Scan scan = cloud_scan(random_sphere(2000, 10.0));
+      for (Eigen::Vector3d& p : scan.positions) {
+        p.x() += far;
+        for (double& value : p) {
+          value = is_float ? static_cast<double>(static_cast<float>(value)) : value;
+        }
+      }
+      const Cleaned cleaned = clean_one(std::move(scan), {});
+      ASSERT_EQ(cleaned.report.warnings.size(), is_float && far > 0.0 ? 1U : 0U);
+      if (is_float && far > 0.0) {
+        EXPECT_NE(cleaned.report.warnings[0].find("steps of 500 mm"), std::string::npos);
+      }
+    }
+  }
+}
+
+TEST(Cleaning, CropsCloudsAndMeshesInSourceUnits) {
   BuildOptions options;
   options.unit_m = 0.001;
   options.up = UpAxis::kY;
   options.crop = Eigen::AlignedBox3d(Eigen::Vector3d(-20, -20, 0), Eigen::Vector3d(20, 20, 20));
-  const Cleaned cloud = clean_one(to_scan(random_sphere(2000, 10.0)), options);
+  const Cleaned cloud = clean_one(cloud_scan(random_sphere(2000, 10.0)), options);
   EXPECT_EQ(cloud.report.kept_points + cloud.report.dropped.at("outside_crop"), 2000U);
   EXPECT_NEAR(static_cast<double>(cloud.report.kept_points), 1000.0, 100.0);
   for (const Eigen::Vector3d& p : cloud.input.points.positions()) {
     ASSERT_LE(p.y(), 0.0);  // the source's +z is the model's -y
   }
-  const Cleaned mesh = clean_one(to_scan(box_mesh({-30, -30, -30}, {10, 10, 10})), options);
+  const Cleaned mesh = clean_one(mesh_scan(box_mesh({-30, -30, -30}, {10, 10, 10})), options);
   EXPECT_NEAR(mesh.input.bounds.sizes().y(), 0.010, 1e-12);
   EXPECT_NEAR(mesh.input.bounds.sizes().x(), 0.030, 1e-12);
   options.crop = Eigen::AlignedBox3d(Eigen::Vector3d(90, 90, 90), Eigen::Vector3d(99, 99, 99));
-  EXPECT_THROW((void)clean_one(to_scan(random_sphere(2000, 10.0)), options), std::runtime_error);
+  EXPECT_THROW((void)clean_one(cloud_scan(random_sphere(2000, 10.0)), options), std::runtime_error);
 }
 
-TEST(Cleaning, CountsEveryPointItDrops) {
+TEST(Cleaning, CountsEveryDroppedPoint) {
   Cloud cloud = even_sphere(3000, 0.1);
   cloud.positions[7].x() = std::numeric_limits<double>::quiet_NaN();
   cloud.positions[8].z() = std::numeric_limits<double>::infinity();
@@ -145,7 +168,7 @@ TEST(Cleaning, CountsEveryPointItDrops) {
   cloud.positions.emplace_back(3.0e4, -1.0e5, 0.0);
   cloud.positions.emplace_back(0.0, 0.5, 0.0);
   cloud.normals.resize(cloud.size(), Eigen::Vector3f::UnitX());
-  Scan scan = to_scan(std::move(cloud));
+  Scan scan = cloud_scan(std::move(cloud));
   scan.dropped["non_finite"] = 5;  // by the reader
   scan.dropped["bad_row"] = 2;
   const Cleaned cleaned = clean_one(std::move(scan));
@@ -157,15 +180,15 @@ TEST(Cleaning, CountsEveryPointItDrops) {
   EXPECT_NEAR(cleaned.input.bounds.sizes().maxCoeff(), 0.2, 0.001);
 }
 
-TEST(Cleaning, StraysAtAnyDistanceDoNotChangeTheEstimates) {
-  const Cleaned clean_cloud = clean_one(to_scan(random_sphere(20000, 0.1)));
+TEST(Cleaning, OutliersAtAnyDistanceDoNotChangeTheEstimates) {
+  const Cleaned clean_cloud = clean_one(cloud_scan(random_sphere(20000, 0.1)));
   for (const double far : {0.4, 1.0, 30.0, 1e5}) {
     Cloud strayed = random_sphere(20000, 0.1);
     for (int k = 0; k < 10; ++k) {
       strayed.positions.emplace_back(far * (1.0 + 0.3 * k), far * (k % 3 - 1.0), -far * k);
       strayed.normals.push_back(Eigen::Vector3f::UnitX());
     }
-    const Cleaned cleaned = clean_one(to_scan(std::move(strayed)));
+    const Cleaned cleaned = clean_one(cloud_scan(std::move(strayed)));
     EXPECT_EQ(cleaned.report.dropped.at("outlier"), 10U) << far;
     EXPECT_NEAR(cleaned.input.points_spacing, clean_cloud.input.points_spacing,
                 0.01 * clean_cloud.input.points_spacing);
@@ -173,21 +196,21 @@ TEST(Cleaning, StraysAtAnyDistanceDoNotChangeTheEstimates) {
   }
 }
 
-TEST(Cleaning, KeepsOutliersWhenTold) {
+TEST(Cleaning, KeepsOutliersOnRequest) {
   Cloud cloud = random_sphere(2000, 0.1);
   cloud.positions.emplace_back(50.0, 0.0, 0.0);
   cloud.normals.push_back(Eigen::Vector3f::UnitX());
   BuildOptions options;
-  options.keep_outliers = true;
-  EXPECT_EQ(clean_one(to_scan(std::move(cloud)), options).report.kept_points, 2001U);
+  options.outlier_sigma = 0.0;
+  EXPECT_EQ(clean_one(cloud_scan(std::move(cloud)), options).report.kept_points, 2001U);
 }
 
-TEST(Cleaning, NormalisesNormalsAndForgetsUselessOnes) {
+TEST(Cleaning, NormalisesNormalsAndDropsInvalidOnes) {
   Cloud cloud = even_sphere(1000, 0.1);
   cloud.normals[1] *= 7.0F;
   cloud.normals[2].setZero();
   cloud.normals[3].x() = std::numeric_limits<float>::quiet_NaN();
-  const Cleaned cleaned = clean_one(to_scan(std::move(cloud)));
+  const Cleaned cleaned = clean_one(cloud_scan(std::move(cloud)));
   std::size_t unknown = 0;
   for (const Eigen::Vector3f& normal : cleaned.input.points.normals()) {
     unknown += normal.isZero() ? 1U : 0U;
@@ -196,12 +219,12 @@ TEST(Cleaning, NormalisesNormalsAndForgetsUselessOnes) {
   EXPECT_EQ(unknown, 2U);
 }
 
-TEST(Cleaning, DropsUnusedCornersAndStrayFacesOfAMesh) {
+TEST(Cleaning, DropsUnusedCornersAndOutlierFacesOfAMesh) {
   Mesh mesh = box_mesh({-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1});
-  mesh.positions.emplace_back(1.0, 1.0, 1.0);    // no face names it
-  mesh.positions.emplace_back(1.0e5, 0.0, 0.0);  // a spike
+  mesh.positions.emplace_back(1.0, 1.0, 1.0);    // not used by a face
+  mesh.positions.emplace_back(1.0e5, 0.0, 0.0);  // an outlier
   mesh.triangles.push_back({0, 1, 9});
-  const Cleaned cleaned = clean_one(to_scan(std::move(mesh)));
+  const Cleaned cleaned = clean_one(mesh_scan(std::move(mesh)));
   EXPECT_EQ(cleaned.report.dropped.at("not_in_a_face"), 1U);
   EXPECT_EQ(cleaned.report.dropped.at("outlier"), 1U);
   EXPECT_EQ(cleaned.report.dropped.at("outlier_face"), 1U);
@@ -211,9 +234,9 @@ TEST(Cleaning, DropsUnusedCornersAndStrayFacesOfAMesh) {
 
 TEST(Cleaning, JoinsScansWithAndWithoutNormals) {
   std::vector<Scan> scans;
-  scans.push_back(to_scan(without_normals(even_sphere(500, 0.1))));
-  scans.push_back(to_scan(even_sphere(700, 0.11)));
-  scans.push_back(to_scan(box_mesh({-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2})));
+  scans.push_back(cloud_scan(without_normals(even_sphere(500, 0.1))));
+  scans.push_back(cloud_scan(even_sphere(700, 0.11)));
+  scans.push_back(mesh_scan(box_mesh({-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2})));
   BuildReport report;
   const CleanInput input = clean(std::move(scans), {}, report);
   EXPECT_EQ(input.points.size(), 1200U);

@@ -12,13 +12,7 @@ struct Chosen {
   BuildReport report;
 };
 
-Scan box_scan() {
-  Mesh mesh = box_mesh({-0.03, -0.02, -0.01}, {0.03, 0.02, 0.01});
-  Scan scan;
-  scan.positions = std::move(mesh.positions);
-  scan.triangles = std::move(mesh.triangles);
-  return scan;
-}
+Scan box_scan() { return mesh_scan(box_mesh({-0.03, -0.02, -0.01}, {0.03, 0.02, 0.01})); }
 
 Chosen choose(Scan scan, const BuildOptions& options) {
   Chosen chosen;
@@ -30,7 +24,7 @@ Chosen choose(Scan scan, const BuildOptions& options) {
   return chosen;
 }
 
-TEST(Density, AGridOfTheSpacingAskedForIsKeptWhole) {
+TEST(Density, KeepsAllOfAGridWithTheRequestedSpacing) {
   for (const core::Profile profile : {core::Profile::kSurface, core::Profile::kPaper}) {
     BuildOptions options;
     options.profile = profile;
@@ -42,7 +36,7 @@ TEST(Density, AGridOfTheSpacingAskedForIsKeptWhole) {
   }
 }
 
-TEST(Density, ACloudIsNotMadeFinerThanItIs) {
+TEST(Density, RaisesASpacingFinerThanTheCloud) {
   BuildOptions options;
   options.spacing_m = 0.0005;
   const Chosen chosen = choose(cloud_scan(plane_grid(100, 0.0025)), options);
@@ -51,7 +45,7 @@ TEST(Density, ACloudIsNotMadeFinerThanItIs) {
   EXPECT_NE(chosen.report.warnings[0].find("0.5 mm"), std::string::npos);
 }
 
-TEST(Density, ADenseCloudGetsTheSpacingAskedFor) {
+TEST(Density, ResamplesADenseCloudToTheRequestedSpacing) {
   BuildOptions options;
   options.spacing_m = 0.002;
   const Chosen chosen = choose(cloud_scan(random_sphere(200000, 0.03)), options);
@@ -61,7 +55,7 @@ TEST(Density, ADenseCloudGetsTheSpacingAskedFor) {
   EXPECT_NEAR(per_square, 1.0, 0.06);
 }
 
-TEST(Density, WithoutResamplingEveryPointStays) {
+TEST(Density, KeepsEveryPointWithoutResampling) {
   BuildOptions options;
   options.resample = false;
   options.profile = core::Profile::kPaper;
@@ -69,13 +63,39 @@ TEST(Density, WithoutResamplingEveryPointStays) {
   EXPECT_THROW((void)choose(box_scan(), options), std::runtime_error);
 }
 
-TEST(Density, AMeshGetsATwoHundredthOfItsSize) {
+TEST(Density, DefaultSpacingOfAMeshIsATwoHundredthOfItsSize) {
   const Chosen chosen = choose(box_scan(), {});
   EXPECT_NEAR(chosen.choice.spacing_m, 0.06 / 200.0, 1e-12);
   EXPECT_GT(chosen.report.sampled_points, 6U * chosen.choice.points.size());
 }
 
-TEST(Density, ABudgetIsUsedAndNotExceeded) {
+TEST(Density, DefaultSpacingOfALongThinMeshFollowsFromItsArea) {
+  const Chosen chosen = choose(mesh_scan(box_mesh({0, 0, 0}, {1.0, 0.006, 0.006})), {});
+  EXPECT_NEAR(chosen.choice.spacing_m, std::sqrt(4.0 * 0.006 / 20000.0), 2e-5);
+}
+
+TEST(Density, DefaultSpacingOfAMeshOfLargeAreaIsNotRefused) {
+  Mesh stack = box_mesh({0, 0, 0}, {1, 1, 1});
+  const std::vector<std::array<std::uint32_t, 3>> faces = stack.triangles;
+  for (int k = 0; k < 11; ++k) {
+    stack.triangles.insert(stack.triangles.end(), faces.begin(), faces.end());
+  }
+  const Chosen chosen = choose(mesh_scan(stack), {});
+  EXPECT_GT(chosen.choice.spacing_m, 1.0 / 200.0);
+  EXPECT_LE(static_cast<double>(chosen.report.sampled_points), kMaxCandidates);
+}
+
+TEST(Density, ASpacingEqualToThatOfTheScanKeepsItsPoints) {
+  const Scan scan = cloud_scan(random_sphere(20000, 0.03));
+  const Chosen own = choose(scan, {});
+  BuildOptions options;
+  options.spacing_m = own.choice.spacing_m;
+  const Chosen same = choose(scan, options);
+  EXPECT_EQ(same.choice.points.size(), own.choice.points.size());
+  EXPECT_TRUE(same.report.warnings.empty());
+}
+
+TEST(Density, UsesTheFlashBudgetWithoutExceedingIt) {
   for (const core::Profile profile : {core::Profile::kSurface, core::Profile::kPaper}) {
     for (const std::uint64_t budget : {10000U, 60000U}) {
       BuildOptions options;
@@ -99,7 +119,7 @@ TEST(Density, ABudgetIsUsedAndNotExceeded) {
   }
 }
 
-TEST(Density, ABudgetBeyondTheScanKeepsTheScan) {
+TEST(Density, KeepsTheScanIfTheBudgetIsLarger) {
   BuildOptions options;
   options.flash_budget_bytes = 10000000;
   const Chosen chosen = choose(cloud_scan(plane_grid(100, 0.0025)), options);
@@ -108,7 +128,7 @@ TEST(Density, ABudgetBeyondTheScanKeepsTheScan) {
   EXPECT_NE(chosen.report.notes[0].find("no finer detail"), std::string::npos);
 }
 
-TEST(Density, ABudgetSmallerThanAHeaderIsRefused) {
+TEST(Density, RefusesABudgetSmallerThanAHeader) {
   BuildOptions options;
   options.flash_budget_bytes = 300;
   EXPECT_THROW((void)choose(box_scan(), options), std::runtime_error);

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+
 #include "resample.hpp"
 #include "shapes.hpp"
 
@@ -16,15 +18,15 @@ ZOrderedCloud resampled(Cloud dense) {
   return points.subset(select_poisson_disk(points, kDistanceOverSpacing * kSpacing));
 }
 
-// A sphere of 20 mm with a round hole at the top, of this diameter measured along the chord.
+// A sphere of 20 mm with a round hole at the top; `diameter` is that of the chord.
 ZOrderedCloud sphere_with_hole(double diameter) {
   constexpr double kSphere = 0.02;
-  const double rim =
+  const double boundary =
       diameter > 0.0 ? std::sqrt(kSphere * kSphere - 0.25 * diameter * diameter) : 1.0;
   const Cloud whole = random_sphere(80000, kSphere);
   Cloud open;
   for (std::size_t i = 0; i < whole.size(); ++i) {
-    if (whole.positions[i].z() < rim) {
+    if (whole.positions[i].z() < boundary) {
       open.positions.push_back(whole.positions[i]);
       open.normals.push_back(whole.normals[i]);
     }
@@ -32,14 +34,14 @@ ZOrderedCloud sphere_with_hole(double diameter) {
   return resampled(std::move(open));
 }
 
-TEST(Gaps, AClosedSphereHasNone) {
+TEST(Gaps, NoneInAClosedSphere) {
   const Gaps gaps = find_gaps(sphere_with_hole(0.0), kSpacing, kRadius);
   EXPECT_TRUE(gaps.openings.empty());
   EXPECT_LT(gaps.largest_m, kRadius);
   EXPECT_GT(gaps.largest_m, kSpacing);
 }
 
-TEST(Gaps, AHoleIsFoundWithItsPlaceAndSize) {
+TEST(Gaps, FindsPositionAndSizeOfAHole) {
   for (const double diameter : {0.004, 0.008, 0.015}) {
     const Gaps gaps = find_gaps(sphere_with_hole(diameter), kSpacing, kRadius);
     ASSERT_EQ(gaps.openings.size(), 1U) << diameter;
@@ -52,7 +54,7 @@ TEST(Gaps, AHoleIsFoundWithItsPlaceAndSize) {
   }
 }
 
-TEST(Gaps, TheBorderOfAnOpenSheetIsARimAndNoHole) {
+TEST(Gaps, ClassifiesTheBorderOfASheetAsABoundary) {
   Cloud sheet = cosine_sheet(160, 0.06, 0.001, 150.0);
   for (const Eigen::Vector3d& p : sheet.positions) {
     sheet.normals.push_back(
@@ -62,12 +64,12 @@ TEST(Gaps, TheBorderOfAnOpenSheetIsARimAndNoHole) {
   }
   const Gaps gaps = find_gaps(resampled(std::move(sheet)), kSpacing, kRadius);
   ASSERT_EQ(gaps.openings.size(), 1U);
-  EXPECT_EQ(gaps.openings[0].kind, Opening::Kind::kRim);
+  EXPECT_EQ(gaps.openings[0].kind, Opening::Kind::kBoundary);
   EXPECT_NEAR(gaps.openings[0].diameter_m, 0.06 * std::sqrt(2.0), 2.0 * kSpacing);
   EXPECT_LT(gaps.largest_m, kRadius);
 }
 
-TEST(Gaps, TwoHolesInASheetAreTwo) {
+TEST(Gaps, FindsTwoHolesInASheet) {
   Cloud sheet;
   for (const Eigen::Vector3d& p : cosine_sheet(160, 0.06, 0.0, 1.0).positions) {
     const double left = (p - Eigen::Vector3d(-0.008, 0, 0)).norm();
@@ -78,8 +80,8 @@ TEST(Gaps, TwoHolesInASheetAreTwo) {
     }
   }
   const Gaps gaps = find_gaps(resampled(std::move(sheet)), kSpacing, kRadius);
-  ASSERT_EQ(gaps.openings.size(), 3U);  // and the rim, which is the widest
-  EXPECT_EQ(gaps.openings[0].kind, Opening::Kind::kRim);
+  ASSERT_EQ(gaps.openings.size(), 3U);  // and the boundary, which is the widest
+  EXPECT_EQ(gaps.openings[0].kind, Opening::Kind::kBoundary);
   EXPECT_EQ(gaps.openings[1].kind, Opening::Kind::kHole);
   EXPECT_NEAR(gaps.openings[1].diameter_m, 0.010, kSpacing);
   EXPECT_NEAR(gaps.openings[1].centre.x(), -0.008, kSpacing);
@@ -88,19 +90,88 @@ TEST(Gaps, TwoHolesInASheetAreTwo) {
   EXPECT_DOUBLE_EQ(gaps.largest_m, gaps.openings[1].diameter_m);
 }
 
-TEST(Gaps, TheEdgesOfABoxAreNone) {
-  const Gaps gaps =
-      find_gaps(resampled(sample_faces(box_mesh({0, 0, 0}, {0.04, 0.03, 0.02}), kSpacing)),
-                kSpacing, kRadius);
-  EXPECT_LT(gaps.largest_m, kRadius);
-  for (const Opening& opening : gaps.openings) {
-    EXPECT_EQ(opening.kind, Opening::Kind::kRim);
-    EXPECT_LT(opening.diameter_m, 4.0 * kRadius);
+// A prism over a polygon that is star-shaped around the origin, turned by a random rotation.
+Mesh prism(const std::vector<Eigen::Vector2d>& outline, double height, std::uint64_t turn) {
+  Mesh mesh;
+  const auto n = static_cast<std::uint32_t>(outline.size());
+  for (const double z : {0.0, height}) {
+    for (const Eigen::Vector2d& p : outline) {
+      mesh.positions.emplace_back(p.x(), p.y(), z);
+    }
   }
-  EXPECT_LE(gaps.openings.size(), 2U);
+  mesh.positions.emplace_back(0.0, 0.0, 0.0);
+  mesh.positions.emplace_back(0.0, 0.0, height);
+  for (std::uint32_t k = 0; k < n; ++k) {
+    const std::uint32_t next = (k + 1) % n;
+    mesh.triangles.push_back({2 * n, next, k});
+    mesh.triangles.push_back({2 * n + 1, n + k, n + next});
+    mesh.triangles.push_back({k, next, n + next});
+    mesh.triangles.push_back({k, n + next, n + k});
+  }
+  const Eigen::Vector3d axis(unit_random(turn) - 0.5, unit_random(turn + 1) - 0.5, 0.3);
+  const Eigen::Matrix3d rotation =
+      Eigen::AngleAxisd(6.0 * unit_random(turn + 2), axis.normalized()).toRotationMatrix();
+  for (Eigen::Vector3d& p : mesh.positions) {
+    p = rotation * p;
+  }
+  return mesh;
 }
 
-TEST(Gaps, TheSidesOfAThinPlateDoNotCloseEachOthersHoles) {
+std::vector<Eigen::Vector2d> gear(int teeth, double inner, double outer) {
+  std::vector<Eigen::Vector2d> outline;
+  for (int k = 0; k < 4 * teeth; ++k) {
+    const double angle = 2.0 * std::numbers::pi * k / (4.0 * teeth);
+    const double radius = k % 4 < 2 ? outer : inner;
+    outline.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
+  }
+  return outline;
+}
+
+struct Part {
+  const char* name;
+  std::vector<Eigen::Vector2d> outline;
+  double height;
+};
+
+std::vector<Part> watertight_parts() {
+  const std::vector<Eigen::Vector2d> square = {
+      {-0.02, -0.02}, {0.02, -0.02}, {0.02, 0.02}, {-0.02, 0.02}};
+  const std::vector<Eigen::Vector2d> bracket = {{-0.004, -0.004}, {0.03, -0.004}, {0.03, 0.004},
+                                                {0.004, 0.004},   {0.004, 0.03},  {-0.004, 0.03}};
+  std::vector<Part> parts = {
+      {"cube", square, 0.04}, {"bracket", bracket, 0.01}, {"gear", gear(16, 0.018, 0.024), 0.006}};
+  for (const double height : {0.2, 0.5, 1.0, 1.5, 2.0, 3.0}) {
+    parts.push_back({"plate", square, height * kSpacing});
+  }
+  return parts;
+}
+
+TEST(Gaps, NoneInWatertightParts) {
+  for (const Part& part : watertight_parts()) {
+    for (std::uint64_t turn = 1; turn < 100; turn += 10) {
+      const Mesh mesh = prism(part.outline, part.height, turn);
+      const Gaps gaps = find_gaps(resampled(sample_faces(mesh, kSpacing)), kSpacing, kRadius);
+      EXPECT_LT(gaps.largest_m, kRadius) << part.name << ' ' << part.height;
+      EXPECT_EQ(gaps.openings.size(), 0U) << part.name << ' ' << part.height;
+    }
+  }
+}
+
+TEST(Gaps, FindsTheMissingLidOfABox) {
+  Mesh box = box_mesh({0, 0, 0}, {0.03, 0.03, 0.02});
+  std::erase_if(box.triangles, [&](const std::array<std::uint32_t, 3>& t) {
+    return box.positions[t[0]].z() > 0.01 && box.positions[t[1]].z() > 0.01 &&
+           box.positions[t[2]].z() > 0.01;
+  });
+  const Gaps gaps = find_gaps(resampled(sample_faces(box, kSpacing)), kSpacing, kRadius);
+  ASSERT_EQ(gaps.openings.size(), 1U);
+  EXPECT_NEAR(gaps.openings[0].diameter_m, 0.03 * std::sqrt(2.0), 2.0 * kSpacing);
+  EXPECT_EQ(
+      find_gaps(resampled(sample_faces(box, kSpacing)), kSpacing, kRadius, true).openings.size(),
+      0U);
+}
+
+TEST(Gaps, FindsAHoleInOneSideOfAThinPlate) {
   Cloud plate;
   for (const double side : {1.0, -1.0}) {
     for (const Eigen::Vector3d& p : cosine_sheet(120, 0.04, 0.0, 1.0).positions) {

@@ -1,4 +1,4 @@
-// From the colours of a scan to the materials of a blob's points.
+// Materials of the points of a blob from the colours of a scan.
 
 #include "tactree/builder/materials.hpp"
 
@@ -29,7 +29,7 @@ BuildResult build(std::vector<Scan> scans, const BuildOptions& options) {
   return build_model(std::move(scans), options, quiet);
 }
 
-/// The stiffness each point of a blob carries.
+/// The stiffness of each point of a blob.
 template <typename Use>
 void for_each_point(const BuildResult& result, Use&& use) {
   core::BlobView view;
@@ -43,7 +43,7 @@ void for_each_point(const BuildResult& result, Use&& use) {
   }
 }
 
-TEST(MaterialMap, TheNearestColourWithinItsToleranceCounts) {
+TEST(MaterialMap, ChoosesTheNearestColourWithinItsTolerance) {
   MaterialMap map = red_and_blue();
   EXPECT_EQ(map.index_of({255, 0, 0}), 1);
   EXPECT_EQ(map.index_of({250, 10, 5}), 1);
@@ -61,7 +61,7 @@ TEST(MaterialMap, TheNearestColourWithinItsToleranceCounts) {
   EXPECT_EQ(map.list()[2].stiffness_N_m, 300.0F);
 }
 
-TEST(MaterialMap, ColoursOfACloudGoThroughCleaningAndResampling) {
+TEST(MaterialMap, KeepsColoursThroughCleaningAndResampling) {
   Scan scan;
   Cloud cloud = random_sphere(60000, 0.05);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
@@ -91,7 +91,7 @@ TEST(MaterialMap, ColoursOfACloudGoThroughCleaningAndResampling) {
   EXPECT_GT(counts[1], 100U);
 }
 
-TEST(MaterialMap, APointOnAFaceIsAsItsNearestCorner) {
+TEST(MaterialMap, PointsOfAFaceHaveTheMaterialOfTheNearestCorner) {
   Scan scan;
   scan.positions = {{-0.05, -0.05, 0}, {0.05, -0.05, 0}, {0.05, 0.05, 0}, {-0.05, 0.05, 0}};
   scan.colours = {kRed, kBlue, kBlue, kRed};
@@ -112,7 +112,7 @@ TEST(MaterialMap, APointOnAFaceIsAsItsNearestCorner) {
   EXPECT_EQ(wrong, 0U);
 }
 
-TEST(MaterialMap, AScanWithoutColoursIsOfTheBaseMaterialBesideOneThatHasThem) {
+TEST(MaterialMap, ScansWithoutColoursGetTheBaseMaterial) {
   Scan coloured;
   coloured.positions = plane_grid(40, 1e-3).positions;
   coloured.colours.assign(coloured.positions.size(), kRed);
@@ -128,19 +128,20 @@ TEST(MaterialMap, AScanWithoutColoursIsOfTheBaseMaterialBesideOneThatHasThem) {
   });
 }
 
-TEST(MaterialMap, NoColoursAtAllIsRefusedAndAnUnusedOneIsTold) {
+TEST(MaterialMap, RefusesScansWithoutAnyColourAndWarnsOfAnUnusedOne) {
   Scan scan;
   scan.positions = plane_grid(40, 1e-3).positions;
   BuildOptions options;
   options.materials = red_and_blue();
   EXPECT_THROW((void)build({scan}, options), BuildError);
   scan.colours.assign(scan.positions.size(), kBlue);
+  options.orient = OrientationRule::kUp;
   const BuildResult result = build({scan}, options);
   ASSERT_EQ(result.report.warnings.size(), 1U);
   EXPECT_NE(result.report.warnings[0].find("'red'"), std::string::npos);
 }
 
-TEST(MaterialMap, OneMaterialForTheWholeModelTakesNoByteAPoint) {
+TEST(MaterialMap, ASingleMaterialCostsNoByteAPoint) {
   Scan scan;
   scan.positions = plane_grid(40, 1e-3).positions;
   BuildOptions options;

@@ -11,7 +11,7 @@ namespace {
 const Eigen::Vector3d kLow(-0.03, -0.02, -0.01);
 const Eigen::Vector3d kHigh(0.03, 0.02, 0.01);
 
-TEST(MeshSampling, PointsLieOnTheirFacesWithTheFacesNormal) {
+TEST(MeshSampling, PointsLieOnTheirFacesWithTheirNormal) {
   const Cloud samples = sample_faces(box_mesh(kLow, kHigh), 0.001);
   std::size_t on_edges = 0;
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -31,7 +31,7 @@ TEST(MeshSampling, SpreadsPointsByArea) {
   const Cloud samples = sample_faces(box_mesh(kLow, kHigh), spacing);
   const double expected = area / std::pow(kCandidateDistance * spacing, 2);
   EXPECT_NEAR(static_cast<double>(samples.size()), expected, 12.0);
-  // Every square of the spacing on the top holds some of its 7.
+  // Every square with the edge of the spacing on the top holds at least one of 7 points.
   std::vector<int> squares(60 * 40, 0);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (samples.normals[i].z() > 0.5F) {
@@ -44,8 +44,8 @@ TEST(MeshSampling, SpreadsPointsByArea) {
   EXPECT_LT(*std::max_element(squares.begin(), squares.end()), 13);
 }
 
-TEST(MeshSampling, FacesSmallerThanAPointsAreaGetTheirShare) {
-  Mesh mesh;  // 1 cm^2 in 2 x 200 x 200 triangles, each a 50th of a candidate's area
+TEST(MeshSampling, SamplesFacesSmallerThanTheAreaOfAPoint) {
+  Mesh mesh;  // 1 cm^2 in 2 x 200 x 200 triangles, each a 50th of the area of a candidate
   constexpr std::uint32_t kSide = 200;
   for (std::uint32_t j = 0; j <= kSide; ++j) {
     for (std::uint32_t i = 0; i <= kSide; ++i) {
@@ -79,10 +79,10 @@ TEST(MeshSampling, DropsFacesWithoutArea) {
   EXPECT_EQ(mesh.triangles.size(), 12U);
   std::vector<bool> keep(mesh.positions.size(), true);
   keep[0] = false;
-  EXPECT_EQ(drop_faces(mesh, keep)[1], 3U);  // those around corner 0
+  EXPECT_EQ(drop_faces(mesh, keep)[1], 3U);  // the faces around corner 0
 }
 
-TEST(MeshSampling, RefusesWhatWouldNotFitAndNamesASpacingThatDoes) {
+TEST(MeshSampling, RefusesTooManyPointsAndSuggestsASpacing) {
   const Mesh mesh = box_mesh({0, 0, 0}, {1, 1, 1});
   try {
     (void)sample_faces(mesh, 1e-4);
@@ -92,7 +92,7 @@ TEST(MeshSampling, RefusesWhatWouldNotFitAndNamesASpacingThatDoes) {
     const std::size_t at = text.find("--spacing to ");
     ASSERT_NE(at, std::string::npos) << text;
     const double offered = std::stod(text.substr(at + 13));
-    EXPECT_LE(area_of(mesh) / std::pow(kCandidateDistance * offered, 2), kMostCandidates);
+    EXPECT_LE(area_of(mesh) / std::pow(kCandidateDistance * offered, 2), kMaxCandidates);
     EXPECT_LT(offered, 0.01);
   }
 }

@@ -8,7 +8,7 @@
 namespace tactree::builder {
 namespace {
 
-TEST(Outliers, ThePlausibleBoxIgnoresStraysHoweverFar) {
+TEST(Outliers, ThePlausibleBoxIgnoresOutliersAtAnyDistance) {
   Cloud cloud = random_sphere(2000, 0.1);
   const Box clean = plausible_box(cloud.positions, 10.0);
   for (const double far : {1.0, 1e3, 1e5}) {
@@ -25,7 +25,7 @@ TEST(Outliers, ThePlausibleBoxIgnoresStraysHoweverFar) {
   }
 }
 
-TEST(Outliers, ThePlausibleBoxOfAFewPointsHoldsThem) {
+TEST(Outliers, ThePlausibleBoxContainsAFewPoints) {
   const Mesh cube = box_mesh({0, 0, 0}, {1, 1, 1});
   const Box box = plausible_box(cube.positions, 10.0);
   for (const Eigen::Vector3d& p : cube.positions) {
@@ -34,7 +34,7 @@ TEST(Outliers, ThePlausibleBoxOfAFewPointsHoldsThem) {
   EXPECT_TRUE(plausible_box(std::span(cube.positions).first(3), 10.0).isEmpty());
 }
 
-TEST(Outliers, LonePointsNearTheScanAreDropped) {
+TEST(Outliers, DropsIsolatedPointsNearTheScan) {
   Cloud cloud = even_sphere(5000, 0.1);
   const std::size_t n = cloud.size();
   cloud.positions.emplace_back(0.3, 0.0, 0.0);
@@ -50,8 +50,8 @@ TEST(Outliers, LonePointsNearTheScanAreDropped) {
   }
 }
 
-TEST(Outliers, SmallPartsOfAScanStay) {
-  // A handle of 40 points off a dense body, and a coarse far wall of a room.
+TEST(Outliers, KeepsSmallPartsOfAScan) {
+  // A handle of 40 points beside a dense body, and a coarse distant wall.
   Cloud cloud = without_normals(even_sphere(20000, 0.1));
   for (int k = 0; k < 40; ++k) {
     cloud.positions.emplace_back(0.3 + 0.001 * k, 0.0, 0.0);
@@ -64,7 +64,7 @@ TEST(Outliers, SmallPartsOfAScanStay) {
   EXPECT_EQ(points_in_company(points, estimate_spacing(points).median_m).size(), points.size());
 }
 
-TEST(Outliers, TinyInputsAreNoOutliers) {
+TEST(Outliers, KeepsTinyInputs) {
   for (std::size_t n = 1; n <= 8; ++n) {
     Cloud cloud;
     cloud.positions = box_mesh({0, 0, 0}, {1, 1, 1}).positions;

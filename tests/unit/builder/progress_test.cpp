@@ -8,7 +8,7 @@
 namespace tactree::builder {
 namespace {
 
-std::string told(ProgressStyle style) {
+std::string output_of(ProgressStyle style) {
   std::FILE* file = std::tmpfile();
   {
     const auto progress = make_progress(style, file);
@@ -31,19 +31,19 @@ std::size_t count_lines(const std::string& text) {
   return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
 }
 
-TEST(Progress, KeepsQuietInAPipeAndWhenOff) {
-  EXPECT_EQ(told(ProgressStyle::kAuto), "");
-  EXPECT_EQ(told(ProgressStyle::kOff), "");
+TEST(Progress, PrintsNothingInAPipeAndWhenOff) {
+  EXPECT_EQ(output_of(ProgressStyle::kAuto), "");
+  EXPECT_EQ(output_of(ProgressStyle::kOff), "");
 }
 
-TEST(Progress, IsALineAStepWhenPlain) {
-  const std::string text = told(ProgressStyle::kPlain);
+TEST(Progress, PrintsALinePerStepWhenPlain) {
+  const std::string text = output_of(ProgressStyle::kPlain);
   EXPECT_EQ(count_lines(text), 1U);
   EXPECT_NE(text.find("reading \"a\\b\""), std::string::npos);
 }
 
-TEST(Progress, IsAFewObjectsALineAsJson) {
-  const std::string text = told(ProgressStyle::kJson);
+TEST(Progress, PrintsAnObjectPerLineAsJson) {
+  const std::string text = output_of(ProgressStyle::kJson);
   EXPECT_GT(count_lines(text), 10U);
   EXPECT_LT(count_lines(text), 30U);
   EXPECT_EQ(text.rfind("{\"step\": \"reading \\\"a\\\\b\\\"\", \"fraction\": 0.00", 0), 0U);

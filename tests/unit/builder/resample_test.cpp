@@ -31,7 +31,7 @@ void expect_maximal_packing(const ZOrderedCloud& points, double distance) {
   }
 }
 
-TEST(Resample, KeepsNoneTooCloseAndLeavesNoGap) {
+TEST(Resample, KeepsTheDistanceAndLeavesNoGap) {
   expect_maximal_packing(ZOrderedCloud(random_sphere(20000, 1.0)), 0.05);
   expect_maximal_packing(ZOrderedCloud(without_normals(random_sphere(20000, 1.0))), 0.05);
   expect_maximal_packing(ZOrderedCloud(without_normals(random_sphere(5000, 1.0))), 0.9);
@@ -58,7 +58,7 @@ TEST(Resample, GivesOnePointPerSquareOfTheSpacing) {
   EXPECT_LT(per_square, 1.0);
 }
 
-TEST(Resample, KeepsAGridOfItsOwnSpacingWhole) {
+TEST(Resample, KeepsAllOfAGridWithThatSpacing) {
   const ZOrderedCloud points(plane_grid(80, 0.001));
   EXPECT_EQ(select_poisson_disk(points, kDistanceOverSpacing * 0.001).size(), points.size());
   EXPECT_LT(select_poisson_disk(points, 1.001 * 0.001).size(), points.size());
@@ -83,7 +83,7 @@ TEST(Resample, KeepsBothSidesOfAThinPlate) {
   EXPECT_GT(kept.size(), 2U * 1500U);
 }
 
-TEST(Resample, DoesNotDependOnThreads) {
+TEST(Resample, IsIndependentOfThreads) {
   const ZOrderedCloud points(random_sphere(50000, 1.0, 3));
   std::vector<std::uint32_t> kept[2];
   for (std::size_t threads = 1; threads <= 2; ++threads) {

@@ -1,5 +1,5 @@
 #pragma once
-// Clouds and meshes of surfaces that formulas know. All are functions of their arguments alone.
+// Clouds and meshes of analytic surfaces. Deterministic functions of their arguments.
 
 #include <cmath>
 #include <numbers>
@@ -104,6 +104,13 @@ inline Scan cloud_scan(Cloud cloud) {
   Scan scan;
   scan.positions = std::move(cloud.positions);
   scan.normals = std::move(cloud.normals);
+  return scan;
+}
+
+inline Scan mesh_scan(Mesh mesh) {
+  Scan scan;
+  scan.positions = std::move(mesh.positions);
+  scan.triangles = std::move(mesh.triangles);
   return scan;
 }
 

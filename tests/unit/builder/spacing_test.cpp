@@ -7,13 +7,13 @@
 namespace tactree::builder {
 namespace {
 
-TEST(Spacing, IsThatOfAGrid) {
+TEST(Spacing, OfAGridIsItsEdge) {
   const SpacingEstimate estimate = estimate_spacing(ZOrderedCloud(plane_grid(100, 0.002)));
   EXPECT_NEAR(estimate.median_m, 0.002, 0.05 * 0.002);
   EXPECT_NEAR(estimate.mean_m, 0.002, 0.08 * 0.002);  // the border's points have half a disc
 }
 
-TEST(Spacing, IsTheSquareThatAPointHasToItself) {
+TEST(Spacing, OfRandomPointsIsTheRootOfTheAreaPerPoint) {
   for (const std::size_t n : {3000U, 100000U}) {
     const double expected = std::sqrt(4.0 * std::numbers::pi / static_cast<double>(n));
     for (const Cloud& cloud : {even_sphere(n, 1.0), random_sphere(n, 1.0)}) {
@@ -24,7 +24,7 @@ TEST(Spacing, IsTheSquareThatAPointHasToItself) {
   }
 }
 
-TEST(Spacing, TheMeanTellsOfSparserParts) {
+TEST(Spacing, MeanIncludesSparserParts) {
   Cloud cloud = plane_grid(60, 0.001);  // half the points on a hundredth of the area
   for (Eigen::Vector3d p : plane_grid(60, 0.01).positions) {
     p.z() = 1.0;
@@ -34,7 +34,7 @@ TEST(Spacing, TheMeanTellsOfSparserParts) {
   EXPECT_NEAR(estimate.mean_m, 0.01 / std::sqrt(2.0), 0.1 * 0.01);
 }
 
-TEST(Spacing, OfAFewPointsIsTheDistanceToTheNext) {
+TEST(Spacing, OfAFewPointsIsTheDistanceToTheNearest) {
   EXPECT_NEAR(
       estimate_spacing(ZOrderedCloud({box_mesh({0, 0, 0}, {2, 2, 2}).positions, {}, {}})).median_m,
       2.0, 1e-9);

@@ -50,7 +50,7 @@ TEST(ZOrder, VisitsExactlyThePointsWithin) {
   }
 }
 
-TEST(ZOrder, FindsTheNearestWhateverTheGuess) {
+TEST(ZOrder, FindsTheNearestForAnyGuess) {
   const ZOrderedCloud points(random_sphere(2000, 1.0));
   std::vector<Neighbour> all;
   std::vector<Neighbour> found;
@@ -91,7 +91,7 @@ TEST(ZOrder, DropsDuplicatesAndKeepsTheKnownNormal) {
   EXPECT_EQ(drop_duplicates(points), 0U);
 }
 
-TEST(ZOrder, StandsCloudsWithoutExtentOrPoints) {
+TEST(ZOrder, AcceptsCloudsWithoutExtentOrPoints) {
   const ZOrderedCloud none;
   EXPECT_TRUE(none.cells(3).empty());
   Cloud one;

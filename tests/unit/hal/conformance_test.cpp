@@ -1,4 +1,4 @@
-// The simulated board keeps the contracts; and a board that breaks one is found out.
+// The simulated board satisfies the contracts; a board that violates one is detected.
 
 #include "tactree/hal/conformance.hpp"
 
@@ -17,7 +17,7 @@ using hal::sim::SimBoard;
 
 alignas(4) const std::array<std::byte, 64> kBytes{};
 
-/// The first readings are older than the board: there was no device yet.
+/// The first readings precede the device.
 void power_up(SimBoard& board) {
   for (std::uint32_t i = 0; i <= hal::sim::kMaxLatencyTicks; ++i) {
     board.sample({0.0, 0.0, 0.0});
@@ -32,7 +32,7 @@ std::string failures(const hal::ConformanceReport& report) {
   return all;
 }
 
-TEST(Conformance, TheSimulatedBoardPasses) {
+TEST(Conformance, PassesTheSimulatedBoard) {
   SimBoard board({}, kBytes);
   power_up(board);
   const hal::ConformanceReport report = hal::run_conformance(board);
@@ -40,7 +40,7 @@ TEST(Conformance, TheSimulatedBoardPasses) {
   EXPECT_GE(report.checks, 14U);
 }
 
-TEST(Conformance, AlsoWithDelaysAndWithoutAModel) {
+TEST(Conformance, PassesWithDelaysAndWithoutAModel) {
   BoardParameters parameters;
   parameters.enable_delay_ticks = 40;
   parameters.encoders.latency_ticks = 3;
@@ -51,7 +51,7 @@ TEST(Conformance, AlsoWithDelaysAndWithoutAModel) {
   EXPECT_TRUE(report.passed()) << failures(report);
 }
 
-/// Runs the checks on a board with one thing wrong; the sentences of all failures.
+/// Runs the checks on a board with one fault; returns the sentences of all failures.
 template <class Break>
 std::string failures_when(const Break& break_it, const BoardParameters& parameters = {}) {
   SimBoard board(parameters, kBytes);
@@ -62,7 +62,7 @@ std::string failures_when(const Break& break_it, const BoardParameters& paramete
   return failures(report);
 }
 
-TEST(Conformance, WrongBoardsAreFoundOut) {
+TEST(Conformance, DetectsFaultyBoards) {
   EXPECT_EQ(failures_when([](SimBoard& b) { b.enable_line().stick(true); }),
             "the enable line is on at the start; the read-back does not follow when the enable "
             "line goes off; ");
@@ -80,12 +80,12 @@ TEST(Conformance, WrongBoardsAreFoundOut) {
   EXPECT_EQ(failures_when([](SimBoard& b) { b.safety_inputs().hold_dead_man(true); }),
             "the dead-man control reads as held; ");
   EXPECT_EQ(failures_when([](SimBoard& b) { b.link().post(core::Command::kArm); }),
-            "the link gives commands nobody sent; ");
+            "the link returns an unsent command; ");
   EXPECT_EQ(failures_when([](SimBoard& b) {
               b.link().post(core::Command::kNone);
               b.link().attach(hal::BodyUpdate{.body = 0});
             }),
-            "the link moves bodies though nobody said so; ");
+            "the link returns unsent body updates; ");
   EXPECT_EQ(failures_when([](SimBoard&) {},
                           [] {
                             BoardParameters slow;
@@ -137,7 +137,7 @@ class RestlessBoard {
   Storage storage_;
 };
 
-TEST(Conformance, ARestlessBoardIsFoundOut) {
+TEST(Conformance, DetectsABoardThatMovesOnItsOwn) {
   RestlessBoard board;
   const hal::ConformanceReport report = hal::run_conformance(board);
   EXPECT_FALSE(report.passed());

@@ -1,4 +1,4 @@
-// The loop moves data between board and controller, each piece to its place.
+// The loop transfers data between board and controller.
 
 #include "tactree/hal/loop.hpp"
 
@@ -38,7 +38,7 @@ class LoopTest : public ::testing::Test {
   hal::Loop<SimBoard> loop_{board_, controller_};
 };
 
-TEST_F(LoopTest, BringsAForceFromTheModelToTheMotors) {
+TEST_F(LoopTest, WritesTheForceOfTheModelToTheMotors) {
   ASSERT_TRUE(loop_.start({}).ok());
   activate();
   ASSERT_EQ(controller_.state(), State::kActive);
@@ -52,7 +52,7 @@ TEST_F(LoopTest, BringsAForceFromTheModelToTheMotors) {
   EXPECT_EQ(board_.link().last().tick, output.status.tick);
 }
 
-TEST_F(LoopTest, BringsTheMoveOfABodyToTheController) {
+TEST_F(LoopTest, PassesBodyUpdatesToTheController) {
   ASSERT_TRUE(loop_.start({}).ok());
   activate();
   for (double z = 0.01; z > -1e-3; z -= 1e-4) {
@@ -71,8 +71,8 @@ TEST_F(LoopTest, BringsTheMoveOfABodyToTheController) {
   EXPECT_FALSE(tick(-1e-3).status.rendering.in_contact);
 }
 
-// Moves alone, where there is nobody or nothing that can be: the session goes on.
-TEST_F(LoopTest, WhatIsRefusedOfAMoveChangesNothing) {
+// Updates of a missing body or with an invalid pose: the session continues.
+TEST_F(LoopTest, ARefusedBodyUpdateChangesNothing) {
   ASSERT_TRUE(loop_.start({}).ok());
   activate();
   for (double z = 0.01; z > -1e-3; z -= 1e-4) {
@@ -91,7 +91,7 @@ TEST_F(LoopTest, WhatIsRefusedOfAMoveChangesNothing) {
   EXPECT_EQ(controller_.state(), State::kActive);
 }
 
-TEST_F(LoopTest, NothingIsPoweredBeforeTheSessionIsArmed) {
+TEST_F(LoopTest, PowersNothingBeforeArming) {
   ASSERT_TRUE(loop_.start({}).ok());
   for (double z = 0.01; z > -2e-3; z -= 1e-4) {
     tick(z);
@@ -128,7 +128,7 @@ TEST_F(LoopTest, EverySwitchAndFailureReachesTheController) {
       core::fault_bit(core::Fault::kEncoderInvalid));
 }
 
-TEST_F(LoopTest, ADamagedModelIsNamedAndGivesNoForce) {
+TEST_F(LoopTest, RefusesADamagedModelAndGivesNoForce) {
   std::vector<std::byte> bytes(shape_.bytes().begin(), shape_.bytes().end());
   bytes[100] ^= std::byte{1};
   SimBoard board({}, bytes);
@@ -144,7 +144,7 @@ TEST_F(LoopTest, ADamagedModelIsNamedAndGivesNoForce) {
   }
 }
 
-TEST_F(LoopTest, ABadConfigurationIsNamedAndGivesNoForce) {
+TEST_F(LoopTest, RefusesABadConfigurationAndGivesNoForce) {
   core::Configuration configuration;
   configuration.force_max_N = -1.0F;
   const hal::StartResult result = loop_.start(configuration);

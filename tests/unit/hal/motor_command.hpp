@@ -1,5 +1,5 @@
 #pragma once
-// A command for motors: only the safety gate can make one.
+// A command for motors, constructed by the safety gate.
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@ namespace {
 constexpr QuadratureLevels kForward[] = {
     {false, false}, {true, false}, {true, true}, {false, true}};
 
-TEST(Quadrature, CountsFourAPeriodEitherWay) {
+TEST(Quadrature, CountsFourStepsPerPeriodInBothDirections) {
   QuadratureDecoder decoder;
   for (int i = 1; i <= 400; ++i) {
     decoder.step(kForward[i % 4]);
@@ -21,7 +21,7 @@ TEST(Quadrature, CountsFourAPeriodEitherWay) {
   EXPECT_EQ(decoder.illegal(), 0U);
 }
 
-TEST(Quadrature, BothLinesAtOnceIsIllegalAndCountsNothing) {
+TEST(Quadrature, DoesNotCountASimultaneousEdge) {
   QuadratureDecoder decoder;
   decoder.step({true, true});
   decoder.step({false, false});
@@ -31,7 +31,7 @@ TEST(Quadrature, BothLinesAtOnceIsIllegalAndCountsNothing) {
   EXPECT_EQ(decoder.illegal(), 2U) << "nothing has changed";
 }
 
-TEST(Quadrature, BeginsWhereTheLinesAre) {
+TEST(Quadrature, StartsFromTheLevelsOfTheLines) {
   QuadratureDecoder decoder;
   decoder.begin({true, true});
   decoder.step({false, true});

@@ -1,4 +1,4 @@
-// The imperfections of the simulated board are what their parameters say.
+// The imperfections of the simulated board match their parameters.
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@ namespace {
 
 using namespace hal::sim;
 
-TEST(DelayLine, GivesWhatWasPushedThatLongAgo) {
+TEST(DelayLine, ReturnsTheValueOfTheLatency) {
   for (const std::uint32_t latency : {0U, 1U, 5U, kMaxLatencyTicks}) {
     DelayLine<int> line(latency, -1);
     for (int i = 0; i < 200; ++i) {
@@ -35,7 +35,7 @@ TEST(SimEncoder, QuantisesDownwards) {
   EXPECT_TRUE(reading.valid[0] && reading.valid[1] && reading.valid[2]);
 }
 
-TEST(SimEncoder, ReadsThePast) {
+TEST(SimEncoder, ReadsDelayedPositions) {
   EncoderParameters parameters;
   parameters.counts_per_m = 1000.0;
   parameters.latency_ticks = 2;
@@ -47,7 +47,7 @@ TEST(SimEncoder, ReadsThePast) {
   }
 }
 
-TEST(SimEncoder, CountsOverTheEnd) {
+TEST(SimEncoder, CountsAcrossTheOverflow) {
   EncoderParameters parameters;
   parameters.counts_per_m = 1000.0;
   parameters.start_count = 0x7FFFFFFFU;
@@ -84,7 +84,7 @@ TEST(SimMotor, HoldsSaturatesAndNeedsPower) {
   EXPECT_EQ(bank.effort(0, true), -2.0);
 }
 
-TEST(SimMotor, ActsLate) {
+TEST(SimMotor, ActsAfterItsLatency) {
   MotorParameters parameters;
   parameters.latency_ticks = 1;
   SimMotorBank bank(parameters);
@@ -130,7 +130,7 @@ TEST(SimTicker, KeepsTimeAndCountsMissedDeadlines) {
   EXPECT_EQ(ticker.wait().overruns, 0U);
 }
 
-TEST(SimLink, GivesEachMessageOnce) {
+TEST(SimLink, ReturnsEachMessageOnce) {
   SimLink link;
   EXPECT_FALSE(link.receive().alive);
   link.post(core::Command::kStop);
@@ -141,22 +141,23 @@ TEST(SimLink, GivesEachMessageOnce) {
   EXPECT_EQ(link.receive().command, core::Command::kNone);
 }
 
-TEST(SimLink, AMessageCarriesAnUpdateUnlessItIsLost) {
+TEST(SimLink, DeliversUpdatesUnlessTheMessageIsLost) {
   SimLink link;
   const hal::BodyUpdate gone{.body = 3, .enabled = false};
   link.post(core::Command::kStop);
   link.attach(gone);
   const hal::LinkInput input = link.receive();
   EXPECT_EQ(input.command, core::Command::kStop);
-  EXPECT_EQ(input.body.body, 3U);
-  EXPECT_FALSE(input.body.enabled);
-  EXPECT_EQ(link.receive().body.body, core::kNoBody);
+  ASSERT_EQ(input.bodies.size(), 1U);
+  EXPECT_EQ(input.bodies[0].body, 3U);
+  EXPECT_FALSE(input.bodies[0].enabled);
+  EXPECT_TRUE(link.receive().bodies.empty());
   link.post(core::Command::kStop);
   link.cut();
   link.attach(gone);
   const hal::LinkInput nothing = link.receive();
   EXPECT_FALSE(nothing.alive);
-  EXPECT_EQ(nothing.body.body, core::kNoBody);
+  EXPECT_TRUE(nothing.bodies.empty());
 }
 
 }  // namespace

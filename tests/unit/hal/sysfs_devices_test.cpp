@@ -1,4 +1,4 @@
-// Encoders at counters and motors at converters, on folders as the kernel has them in /sys.
+// Encoders at counters and motors at converters, on folders with the layout of /sys.
 
 #include <gtest/gtest.h>
 #include <stdlib.h>
@@ -53,7 +53,7 @@ class SysfsDevices : public testing::Test {
   [[nodiscard]] CounterSettings counters(std::vector<CounterAxis> axes) const {
     return {(root_ / "bus").string(), std::move(axes)};
   }
-  /// The message of what is refused.
+  /// Message of a refusal.
   template <class Make>
   static std::string refusal(Make make) {
     try {
@@ -73,7 +73,7 @@ bool holds(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-TEST_F(SysfsDevices, ACounterIsSetToCountEachEdgeAndStarted) {
+TEST_F(SysfsDevices, SetsACounterToCountEachEdgeAndStartsIt) {
   add_counter("1000.counter");
   CounterEncoderBank bank(counters({{"1000.counter", 0}}));
   EXPECT_EQ(read(folder_ + "function"), "quadrature x4");
@@ -85,13 +85,13 @@ TEST_F(SysfsDevices, ACounterIsSetToCountEachEdgeAndStarted) {
   }
 }
 
-TEST_F(SysfsDevices, ACounterWithoutARangeIsGivenAllOfIt) {
+TEST_F(SysfsDevices, SetsTheFullRangeOfACounterWithoutOne) {
   add_counter("1000.counter", "0");
   const CounterEncoderBank bank(counters({{"1000.counter", 0}}));
   EXPECT_EQ(read(folder_ + "ceiling"), "4294967295");
 }
 
-TEST_F(SysfsDevices, CountsBeginWhereTheyAreAndGoBothWays) {
+TEST_F(SysfsDevices, CountsContinueFromTheirValueInBothDirections) {
   add_counter("1000.counter");
   write(folder_ + "count", "700");
   CounterEncoderBank bank(counters({{"1000.counter", 0}}));
@@ -104,7 +104,7 @@ TEST_F(SysfsDevices, CountsBeginWhereTheyAreAndGoBothWays) {
   EXPECT_EQ(bank.read().counts[0], -706);
 }
 
-TEST_F(SysfsDevices, ASmallCounterIsContinuedBeyondItsEnds) {
+TEST_F(SysfsDevices, ExtendsASmallCounterBeyondItsRange) {
   add_counter("1000.counter");
   // A value that nobody may write, not even root: 65536.
   fs::remove(root_ / (folder_ + "ceiling"));
@@ -119,7 +119,7 @@ TEST_F(SysfsDevices, ASmallCounterIsContinuedBeyondItsEnds) {
   }
 }
 
-TEST_F(SysfsDevices, ACounterThatIsGoneIsNotValidAnyMore) {
+TEST_F(SysfsDevices, ARemovedCounterIsNotValid) {
   add_counter("1000.counter");
   add_counter("2000.counter");
   CounterEncoderBank bank(counters({{"1000.counter", 0}, {"2000.counter", 0}}));
@@ -135,24 +135,24 @@ TEST_F(SysfsDevices, ACounterThatIsGoneIsNotValidAnyMore) {
   }
 }
 
-TEST_F(SysfsDevices, ACounterThatCannotBeUsedIsRefused) {
+TEST_F(SysfsDevices, RefusesAnUnusableCounter) {
   const auto make = [this](std::vector<CounterAxis> axes) {
     return refusal([&] { const CounterEncoderBank bank(counters(axes)); });
   };
-  EXPECT_TRUE(holds(make({{"1000.counter", 0}}), "counter '1000.counter': there is none in"));
+  EXPECT_TRUE(holds(make({{"1000.counter", 0}}), "counter '1000.counter': no such device in"));
   add_counter("1000.counter");
   EXPECT_TRUE(holds(make({}), "one to three axes"));
-  EXPECT_TRUE(holds(make({{"2000.counter", 0}}), "name one of: 1000.counter"));
+  EXPECT_TRUE(holds(make({{"2000.counter", 0}}), "use one of: 1000.counter"));
   EXPECT_TRUE(holds(make({{"1000.counter", 1}}), "it has no count 1"));
   write(folder_ + "count", "none");
-  EXPECT_TRUE(holds(make({{"1000.counter", 0}}), "count: tells no count"));
+  EXPECT_TRUE(holds(make({{"1000.counter", 0}}), "count: has no valid count"));
   write(folder_ + "count", "0");
   fs::remove(root_ / (folder_ + "function"));
   fs::create_directories(root_ / (folder_ + "function"));  // takes no value
-  EXPECT_TRUE(holds(make({{"1000.counter", 0}}), "does not take 'quadrature x4'"));
+  EXPECT_TRUE(holds(make({{"1000.counter", 0}}), "does not accept 'quadrature x4'"));
 }
 
-TEST_F(SysfsDevices, ACounterThatTellsNoRangeIsRefused) {
+TEST_F(SysfsDevices, RefusesACounterWithoutARange) {
   add_counter("1000.counter");
   fs::remove(root_ / (folder_ + "ceiling"));
   fs::create_directories(root_ / (folder_ + "ceiling"));
@@ -163,7 +163,7 @@ TEST_F(SysfsDevices, ACounterThatTellsNoRangeIsRefused) {
 
 ConverterAxis bipolar() { return {"spi0.0", 0, 2048, 4095, 8.0F}; }
 
-TEST(ConverterCode, IsInProportionAndNeverBeyondTheEnds) {
+TEST(ConverterCode, IsProportionalAndClamped) {
   const ConverterAxis axis = bipolar();
   EXPECT_EQ(code_of(axis, 0.0F), 2048);
   EXPECT_EQ(code_of(axis, 8.0F), 4095);
@@ -208,14 +208,14 @@ TEST_F(Converters, GiveNoEffortBeforeTheFirstCommandAndAfterTheLast) {
   EXPECT_EQ(read(kFile), "2048");
 }
 
-TEST_F(Converters, ThatAreNotThereAreNamed) {
+TEST_F(Converters, MissingOnesAreNamed) {
   ConverterAxis axis = bipolar();
   axis.device = "spi0.1";
   const auto make = [&] {
     return refusal([&] { const ConverterMotors motors(settings(axis), "test"); });
   };
-  EXPECT_TRUE(holds(make(), "converter 'spi0.1': none in"));
-  EXPECT_TRUE(holds(make(), "name one of: spi0.0"));
+  EXPECT_TRUE(holds(make(), "converter 'spi0.1': no such device in"));
+  EXPECT_TRUE(holds(make(), "use one of: spi0.0"));
   axis = bipolar();
   axis.channel = 1;
   EXPECT_TRUE(holds(make(), "it has no output 1"));

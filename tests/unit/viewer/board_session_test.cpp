@@ -1,4 +1,4 @@
-// A board that runs, as a page shows it and drives it.
+// A session with a simulated board: frames, commands, loss of the connection.
 
 #include "tactree/viewer/board_session.hpp"
 
@@ -21,7 +21,7 @@ bool is_here(const json& frame) {
   return frame["board"]["link"] == "here" && !frame["runs"].empty();
 }
 
-/// The port under a name that stays, as a cable's does.
+/// A stable name for the board's port, like a cable.
 class Cable {
  public:
   ~Cable() { std::filesystem::remove(name_); }
@@ -46,7 +46,7 @@ class BoardSessionTest : public testing::Test {
   static viewer::BoardSettings settings(const std::string& port) {
     viewer::BoardSettings settings;
     settings.port = port;
-    // The longest there is: a test's computer may be busy.
+    // The maximum: the computer of a test may be busy.
     settings.link.link_timeout_ms = 100;
     settings.device = core::presets::premium().model;
     settings.work = [](const std::string& board, const core::wire::CapabilitiesReply& can) {
@@ -64,7 +64,7 @@ class BoardSessionTest : public testing::Test {
     session_ = std::make_unique<BoardSession>(bodies(), settings(cable_.name()));
     session_->start(frames_.taker());
   }
-  /// Armed until this holds; and again where the computer was too busy for the link.
+  /// Keeps the board armed until `holds`; rearms after a link loss on a busy computer.
   json while_armed(const std::function<bool(const json&)>& holds) {
     return frames_.wait_for([&](const json& frame) {
       if (is_here(frame) && frame["runs"][0]["state"] == "fault") {
@@ -82,7 +82,7 @@ class BoardSessionTest : public testing::Test {
   static bool is_idle(const json& frame) {
     return is_here(frame) && frame["runs"][0]["state"] == "idle";
   }
-  /// At a terminal that two programs read, an answer may get to the wrong one.
+  /// With two readers of a terminal, an answer may reach the wrong one: may need repetition.
   bool another_program_opens() {
     try {
       host::Connection(host::open_serial_port(running_->port())).open(0);
@@ -102,7 +102,7 @@ class BoardSessionTest : public testing::Test {
   std::unique_ptr<BoardSession> session_;
 };
 
-TEST_F(BoardSessionTest, ShowsTheForceThatTheBoardTellsUntilItIsStopped) {
+TEST_F(BoardSessionTest, ReportsTheForceOfTheBoardUntilStopped) {
   plug_in();
   begin();
   arm();
@@ -121,7 +121,7 @@ TEST_F(BoardSessionTest, ShowsTheForceThatTheBoardTellsUntilItIsStopped) {
   EXPECT_EQ(idle["runs"][0]["force_N"], json({0.0, 0.0, 0.0}));
 }
 
-TEST_F(BoardSessionTest, AStopTakesBackTheArmingThatWaitsBeforeIt) {
+TEST_F(BoardSessionTest, StopCancelsAQueuedArm) {
   plug_in();
   begin();
   frames_.wait_for(is_idle);
@@ -136,7 +136,7 @@ TEST_F(BoardSessionTest, AStopTakesBackTheArmingThatWaitsBeforeIt) {
   EXPECT_EQ(frames_.wait_for([](const json&) { return true; })["board"]["confirm"], "");
 }
 
-TEST_F(BoardSessionTest, AFaultIsShownAndClearedWhereItsCauseIsGone) {
+TEST_F(BoardSessionTest, ReportsAFaultAndClearsItWithoutItsCause) {
   plug_in(0.04);
   begin();
   arm();
@@ -153,7 +153,7 @@ TEST_F(BoardSessionTest, AFaultIsShownAndClearedWhereItsCauseIsGone) {
   });
 }
 
-TEST_F(BoardSessionTest, ABoardThatComesBackIsShownAgainAndNotArmed) {
+TEST_F(BoardSessionTest, ReconnectsAReturningBoardWithoutArmingIt) {
   plug_in();
   begin();
   arm();
@@ -172,7 +172,7 @@ TEST_F(BoardSessionTest, ABoardThatComesBackIsShownAgainAndNotArmed) {
   arm();
 }
 
-TEST_F(BoardSessionTest, ASilentBoardIsGoneUntilItAnswers) {
+TEST_F(BoardSessionTest, ReportsASilentBoardAsLostUntilItAnswers) {
   plug_in();
   begin();
   frames_.wait_for(is_idle);
@@ -183,20 +183,20 @@ TEST_F(BoardSessionTest, ASilentBoardIsGoneUntilItAnswers) {
   frames_.wait_for(is_idle);
 }
 
-TEST_F(BoardSessionTest, ABoardThatAnotherProgramTookIsGivenBackWhenAskedFor) {
+TEST_F(BoardSessionTest, ReconnectsATakenBoardOnRequestOnly) {
   plug_in();
   begin();
   frames_.wait_for(is_idle);
   EXPECT_TRUE(comes_true([&] { return another_program_opens(); }));
   frames_.wait_for([](const json& f) { return f["board"]["link"] == "taken"; });
-  for (int i = 0; i < 60; ++i) {  // it is not taken back by itself
+  for (int i = 0; i < 60; ++i) {  // not automatically
     EXPECT_EQ(frames_.wait_for([](const json&) { return true; })["board"]["link"], "taken");
   }
   say({{"do", "connect"}});
   frames_.wait_for(is_idle);
 }
 
-TEST_F(BoardSessionTest, TellsWhetherTheModelIsTheOneShown) {
+TEST_F(BoardSessionTest, ReportsWhetherTheBoardUsesTheDisplayedModel) {
   plug_in();
   begin();
   EXPECT_EQ(frames_.wait_for(is_here)["board"]["model"], "unknown");
@@ -212,14 +212,14 @@ TEST_F(BoardSessionTest, TellsWhetherTheModelIsTheOneShown) {
     EXPECT_EQ(frame["board"]["model"], same ? "same" : "other");
     const std::string about = frame["board"]["about_model"];
     EXPECT_EQ(about.find("tactree flash") == std::string::npos, same) << about;
-    // The bound is that of the model shown.
+    // The bound is that of the displayed model.
     EXPECT_EQ(frame["work"]["unit"], "instructions of host");
     EXPECT_EQ(frame["work"]["bound"], same ? json(900.0) : json());
     EXPECT_EQ(frame["work"]["why"].get<std::string>().empty(), same);
   }
 }
 
-TEST_F(BoardSessionTest, TheContactFeelsAsThePageSays) {
+TEST_F(BoardSessionTest, AppliesContactParametersAndReportsRefusals) {
   plug_in();
   begin();
   frames_.wait_for(is_here);
@@ -235,21 +235,21 @@ TEST_F(BoardSessionTest, TheContactFeelsAsThePageSays) {
   EXPECT_EQ(refused["settings"]["stiffness_N_m"], 300.0);
 }
 
-TEST_F(BoardSessionTest, WhatABoardCannotDoIsRefusedByName) {
+TEST_F(BoardSessionTest, RefusesUnknownCommandsAndSettings) {
   plug_in();
   begin();
   for (const char* command : {"hand", "inject", "mend"}) {
-    EXPECT_NE(refusal({{"do", command}}).find("real board"), std::string::npos);
+    EXPECT_NE(refusal({{"do", command}}).find("not available with a board"), std::string::npos);
   }
-  EXPECT_NE(refusal({{"do", "fly"}}).find("none of"), std::string::npos);
+  EXPECT_NE(refusal({{"do", "fly"}}).find("unknown command"), std::string::npos);
   EXPECT_NE(refusal({{"do", 7}}), "accepted");
-  EXPECT_NE(refusal({{"do", "set"}, {"device", "premium"}}).find("no such setting"),
+  EXPECT_NE(refusal({{"do", "set"}, {"device", "premium"}}).find("unknown setting"),
             std::string::npos);
   EXPECT_NE(refusal({{"do", "set"}, {"force_max_N", "much"}}).find("not a number"),
             std::string::npos);
 }
 
-TEST_F(BoardSessionTest, ItsTraceHoldsEveryTickAndNothingThatTheBoardDoesNotTell) {
+TEST_F(BoardSessionTest, TraceHasEveryTickAndOnlyReportedColumns) {
   plug_in();
   begin();
   frames_.wait_for([](const json& f) { return f["t_s"].get<double>() > 0.7; });
@@ -266,7 +266,7 @@ TEST_F(BoardSessionTest, ItsTraceHoldsEveryTickAndNothingThatTheBoardDoesNotTell
                        ','));
 }
 
-TEST_F(BoardSessionTest, APortWithoutABoardIsToldByName) {
+TEST_F(BoardSessionTest, APortWithoutABoardIsALinkError) {
   const host::PseudoTerminal nobody;
   EXPECT_THROW(BoardSession(bodies(), settings(nobody.name())), host::LinkError);
 }

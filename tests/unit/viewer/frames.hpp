@@ -1,5 +1,5 @@
 #pragma once
-// What a source publishes, as a page has it.
+// Frames of a source, as a page receives them.
 
 #include <gtest/gtest.h>
 

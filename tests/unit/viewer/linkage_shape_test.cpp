@@ -94,7 +94,7 @@ TEST(LinkageShape, HasTheDevicesLengthsAndEndsAtTheTip) {
   }
 }
 
-TEST(LinkageShape, FixedJointsStay) {
+TEST(LinkageShape, FixedJointsDoNotMove) {
   std::mt19937 random(11);
   for (const core::DevicePreset& preset : core::kDevicePresets) {
     if (preset.model.kind == core::DeviceKind::kCartesian) {

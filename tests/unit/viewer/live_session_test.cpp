@@ -1,4 +1,4 @@
-// A session that a page drives: what it takes, what it refuses, what it does.
+// A simulated session driven by the commands of a page.
 
 #include "tactree/viewer/live_session.hpp"
 
@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "frames.hpp"
+#include "tactree/simulation/injection.hpp"
 #include "test_models.hpp"
 
 namespace tactree::test {
@@ -35,6 +36,12 @@ class LiveSessionTest : public testing::Test {
     return {{blob_.view()}, {body}};
   }
   void say(const json& command) { EXPECT_EQ(session_.command(command).value_or(""), ""); }
+  std::string wait_for_news(const std::string& text) {
+    const json frame = frames_.wait_for([&](const json& f) {
+      return f["news"]["text"].get<std::string>().find(text) != std::string::npos;
+    });
+    return frame["news"]["text"];
+  }
   std::string refusal(const json& command) {
     return session_.command(command).value_or("accepted");
   }
@@ -44,7 +51,7 @@ class LiveSessionTest : public testing::Test {
   Frames frames_;
 };
 
-TEST_F(LiveSessionTest, TheHandIsHeldOffByTheSurfaceUntilItIsStopped) {
+TEST_F(LiveSessionTest, SurfaceForceActsUntilStopped) {
   frames_.wait_for_state("active");
   say({{"do", "hand"}, {"target_m", {0.0, 0.0, kRadius_m - 0.01}}});
   const json frame = frames_.wait_for(
@@ -60,7 +67,7 @@ TEST_F(LiveSessionTest, TheHandIsHeldOffByTheSurfaceUntilItIsStopped) {
   EXPECT_EQ(idle["runs"][0]["force_N"], json({0.0, 0.0, 0.0}));
 }
 
-TEST_F(LiveSessionTest, AFaultStaysUntilItsCauseIsGoneAndItIsCleared) {
+TEST_F(LiveSessionTest, AFaultPersistsUntilItsCauseEndsAndItIsCleared) {
   frames_.wait_for_state("active");
   say({{"do", "inject"}, {"fault", "estop:pressed"}});
   const json frame = frames_.wait_for_state("fault");
@@ -72,14 +79,72 @@ TEST_F(LiveSessionTest, AFaultStaysUntilItsCauseIsGoneAndItIsCleared) {
   frames_.wait_for_state("active");
 }
 
-TEST_F(LiveSessionTest, BothModesGoSideBySide) {
+TEST_F(LiveSessionTest, AClearWhoseCausePersistsIsReportedWithTheInjection) {
+  frames_.wait_for_state("active");
+  say({{"do", "inject"}, {"fault", "estop:pressed"}});
+  frames_.wait_for_state("fault");
+  say({{"do", "clear"}});
+  const std::string cleared = wait_for_news("Not cleared");
+  EXPECT_NE(cleared.find("emergency-stop"), std::string::npos) << cleared;
+  EXPECT_NE(cleared.find("estop:pressed"), std::string::npos) << cleared;
+  say({{"do", "arm"}});
+  wait_for_news("Not armed: the fault emergency-stop is latched");
+}
+
+TEST_F(LiveSessionTest, ArmingInsideTheObjectReportsWhyThereIsNoForce) {
+  frames_.wait_for_state("active");
+  say({{"do", "stop"}});
+  frames_.wait_for_state("idle");
+  say({{"do", "hand"}, {"target_m", {0.0, 0.0, 0.75 * kRadius_m}}});
+  frames_.wait_for([](const json& f) { return f["runs"][0]["probe_m"][2] < 0.9 * kRadius_m; });
+  say({{"do", "arm"}});
+  wait_for_news("the probe is inside the object");
+}
+
+TEST_F(LiveSessionTest, EveryInjectionShowsAnEffectOrItsReason) {
+  const json injections = json::parse(session_.hello())["injections"];
+  EXPECT_EQ(injections.size(), simulation::injection_kinds().size());
+  for (const json& one : injections) {
+    say({{"do", "set"}, {"damping_Ns_m", 0.5}});  // a new session
+    frames_.wait_for([](const json& f) { return f["t_s"] < 0.2; });
+    const json before = frames_.wait_for(
+        [](const json& f) { return f["runs"][0]["state"] == "active" && f["t_s"] > 0.4; });
+    say({{"do", "inject"}, {"fault", one["fault"]}});
+    frames_.wait_for([&](const json& f) {
+      return f["runs"][0]["state"] != "active" || f["runs"][0]["overruns"] > 0 ||
+             (f["news"]["number"] != before["news"]["number"] &&
+              f["news"]["text"].get<std::string>().starts_with(one["fault"].get<std::string>()));
+    });
+    EXPECT_FALSE(HasFailure()) << one;
+  }
+}
+
+TEST_F(LiveSessionTest, TheHandVisitsThePlacesOnItsPath) {
+  frames_.wait_for_state("active");
+  const Eigen::Vector3d aside(0.0, 0.08, 0.0);
+  const auto is_near = [](const json& f, const Eigen::Vector3d& place) {
+    const json& hand = f["hand_m"];
+    return (Eigen::Vector3d(hand[0], hand[1], hand[2]) - place).norm() < 2e-3;
+  };
+  const Eigen::Vector3d end(0.0, 0.0, -0.06);
+  say({{"do", "hand"},
+       {"target_m", {end.x(), end.y(), end.z()}},
+       {"via_m", {{aside.x(), aside.y(), aside.z()}}}});
+  frames_.wait_for([&](const json& f) {
+    EXPECT_EQ(f["runs"][0]["force_N"], json({0.0, 0.0, 0.0}));
+    return is_near(f, aside);
+  });
+  frames_.wait_for([&](const json& f) { return is_near(f, end); });
+}
+
+TEST_F(LiveSessionTest, RunsBothModesSideBySide) {
   say({{"do", "set"}, {"mode", "both"}});
   const json frame = frames_.wait_for([](const json& f) { return f["runs"].size() == 2; });
   EXPECT_EQ(frame["runs"][0]["mode"], "surface");
   EXPECT_EQ(frame["runs"][1]["mode"], "paper");
 }
 
-TEST_F(LiveSessionTest, ChangedSettingsBeginAnewOutsideTheObject) {
+TEST_F(LiveSessionTest, ChangedSettingsRestartOutsideTheObject) {
   frames_.wait_for_state("active");
   say({{"do", "hand"}, {"target_m", {0.0, 0.0, kRadius_m - 0.01}}});
   frames_.wait_for([](const json& f) { return f["runs"][0]["force_N"][2].get<double>() > 0.5; });
@@ -90,22 +155,30 @@ TEST_F(LiveSessionTest, ChangedSettingsBeginAnewOutsideTheObject) {
   frames_.wait_for_state("active");
 }
 
-TEST_F(LiveSessionTest, ARefusalChangesNothing) {
+TEST_F(LiveSessionTest, RefusedCommandsChangeNothing) {
   EXPECT_NE(refusal({{"do", "set"}, {"stiffness_N_m", 50000}}).find("stability limit"),
             std::string::npos);
   EXPECT_NE(refusal({{"do", "set"}, {"rate_hz", 1}}).find("rate_hz"), std::string::npos);
-  EXPECT_NE(refusal({{"do", "set"}, {"device", "none"}}).find("there is no 'none'"),
+  EXPECT_NE(refusal({{"do", "set"}, {"device", "none"}}).find("'none' is unknown"),
             std::string::npos);
-  EXPECT_NE(refusal({{"do", "set"}, {"colour", "red"}}).find("no such setting"), std::string::npos);
-  EXPECT_NE(refusal({{"do", "jump"}}).find("none of"), std::string::npos);
+  EXPECT_NE(refusal({{"do", "set"}, {"colour", "red"}}).find("unknown setting"), std::string::npos);
+  EXPECT_NE(refusal({{"do", "jump"}}).find("unknown command"), std::string::npos);
   EXPECT_NE(refusal({{"do", "hand"}, {"target_m", {1, 2}}}), "accepted");
   EXPECT_NE(refusal({{"do", "hand"}, {"target_m", {1e30, 0, 0}}}), "accepted");
+  const json places = json::array({{0, 0, 0}});
+  EXPECT_EQ(refusal({{"do", "hand"}, {"target_m", {0, 0, 0.1}}, {"via_m", places}}), "accepted");
+  EXPECT_NE(refusal({{"do", "hand"}, {"target_m", {0, 0, 0.1}}, {"via_m", 3}}), "accepted");
+  EXPECT_NE(refusal({{"do", "hand"}, {"target_m", {0, 0, 0.1}}, {"via_m", {{0, 0}}}}), "accepted");
+  EXPECT_NE(refusal({{"do", "hand"}, {"target_m", {0, 0, 0.1}}, {"via_m", json(65, places[0])}}),
+            "accepted");
+  EXPECT_NE(refusal({{"do", "hand"}, {"target_m", {0, 0, 0.1}}, {"speed_m_s", 0}}), "accepted");
+  EXPECT_NE(refusal({{"do", "hand"}, {"target_m", {0, 0, 0.1}}, {"speed_m_s", 9}}), "accepted");
   const json hello = json::parse(session_.hello());
   EXPECT_EQ(hello["settings"]["stiffness_N_m"], 500.0);
   EXPECT_EQ(hello["settings"]["rate_hz"], 1000.0);
 }
 
-TEST_F(LiveSessionTest, WhatItDidIsATrace) {
+TEST_F(LiveSessionTest, RecordsATrace) {
   frames_.wait_for([](const json& f) { return f["t_s"].get<double>() > 0.7; });
   const std::string csv = session_.trace_csv();
   EXPECT_GT(std::count(csv.begin(), csv.end(), '\n'), 500);

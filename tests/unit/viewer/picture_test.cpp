@@ -1,4 +1,4 @@
-// Pictures without a display: the shape where it is, and marks where the surface ends.
+// Pictures of models: position of the shape, marks at the ends of the surface.
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ using picture::Raster;
 constexpr Colour kWhite{1.0F, 1.0F, 1.0F};
 constexpr Colour kBlack{};
 
-TEST(RasterTest, TheNearerDiscIsSeen) {
+TEST(RasterTest, NearerDiscsHideFartherOnes) {
   Raster raster(20, 20, kWhite);
   raster.disc(10.0F, 10.0F, 4.0F, 1.0F, kBlack);
   raster.disc(12.0F, 10.0F, 4.0F, 2.0F, {1.0F, 0.0F, 0.0F});
@@ -27,7 +27,7 @@ TEST(RasterTest, TheNearerDiscIsSeen) {
   EXPECT_EQ(raster.depth(12, 10), 1.0F);
 }
 
-TEST(RasterTest, WhatIsOutsideIsCutOff) {
+TEST(RasterTest, ClipsToThePicture) {
   Raster raster(8, 8, kWhite);
   for (const float x : {-1e9F, -3.0F, 0.0F, 7.5F, 30.0F, 1e9F}) {
     raster.disc(x, x, 3.0F, 0.0F, kBlack);
@@ -46,7 +46,7 @@ TEST(RasterTest, WritesAPng) {
   EXPECT_EQ(png[23], std::byte{2});
 }
 
-/// Share of the pixels that are not of the colour in the corner.
+/// Share of the pixels that differ from the corner.
 double drawn(const Raster& raster) {
   int count = 0;
   for (int y = 0; y < raster.height(); ++y) {
@@ -68,7 +68,7 @@ int reds(const Raster& raster) {
   return count;
 }
 
-TEST(ModelPicture, ASphereIsTwoRoundDiscs) {
+TEST(ModelPicture, ShowsASphereAsTwoDiscs) {
   const TestBlob blob(sphere(0.05, 0.001));
   const Raster raster = picture::draw_model(blob.view(), {});
   // As high as there is room: all but two margins of 40 pixels and the caption's 70.
@@ -77,13 +77,13 @@ TEST(ModelPicture, ASphereIsTwoRoundDiscs) {
   EXPECT_EQ(reds(raster), 0);
 }
 
-TEST(ModelPicture, AHoleIsMarkedWhereItIs) {
+TEST(ModelPicture, MarksAHoleAtItsPosition) {
   const TestBlob blob(sphere(0.05, 0.001));
   const picture::Mark front{{0.04F, 0.02F, 0.02F}, 0.01F, true};
   EXPECT_GT(reds(picture::draw_model(blob.view(), std::span(&front, 1))), 100);
-  // An open rim is not as bad as a hole: another colour.
-  const picture::Mark rim{{0.04F, 0.02F, 0.02F}, 0.01F, false};
-  EXPECT_EQ(reds(picture::draw_model(blob.view(), std::span(&rim, 1))), 0);
+  // An open boundary is not as bad as a hole: another colour.
+  const picture::Mark boundary{{0.04F, 0.02F, 0.02F}, 0.01F, false};
+  EXPECT_EQ(reds(picture::draw_model(blob.view(), std::span(&boundary, 1))), 0);
 }
 
 }  // namespace

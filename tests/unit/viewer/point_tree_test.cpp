@@ -1,4 +1,4 @@
-// The points by level of detail: all of the model, nowhere twice, and coarse from the first node.
+// Points by level of detail: complete, without duplicates, coarse in the first node.
 
 #include "tactree/viewer/point_tree.hpp"
 
@@ -42,7 +42,7 @@ TEST_F(PointTreeTest, HoldsEveryPointOnce) {
     }
   }
   ASSERT_EQ(sent.size(), blob_.points().size());
-  // Rounding is far below the spacing: what lies in the cells around is the point itself.
+  // Rounding is far below the spacing: a match in the cells around is the point itself.
   std::map<std::array<long, 3>, int> found;
   const auto key = [](const Eigen::Vector3d& p, int dx, int dy, int dz) {
     return std::array<long, 3>{std::lround(p.x() / 1e-4) + dx, std::lround(p.y() / 1e-4) + dy,
@@ -63,7 +63,7 @@ TEST_F(PointTreeTest, HoldsEveryPointOnce) {
   }
 }
 
-TEST_F(PointTreeTest, TheFirstNodeIsACoarsePictureOfTheWhole) {
+TEST_F(PointTreeTest, TheRootIsACoarsePictureOfTheModel) {
   const PointNode& root = tree_.nodes()[0];
   EXPECT_GT(root.spacing_m, blob_.view().header().spacing_m);
   // Every place of the sphere has a point of the root within some of its spacings.
@@ -79,7 +79,7 @@ TEST_F(PointTreeTest, TheFirstNodeIsACoarsePictureOfTheWhole) {
   }
 }
 
-TEST_F(PointTreeTest, ChildrenFollowTheirParentsAndLieInThem) {
+TEST_F(PointTreeTest, ChildrenAreInsideTheirParentsAndHaveHigherIndices) {
   for (std::size_t i = 0; i < tree_.nodes().size(); ++i) {
     const PointNode& node = tree_.nodes()[i];
     for (const std::uint32_t child : node.children) {
@@ -94,7 +94,7 @@ TEST_F(PointTreeTest, ChildrenFollowTheirParentsAndLieInThem) {
   }
 }
 
-TEST_F(PointTreeTest, OctantsAreThoseOfTheBlob) {
+TEST_F(PointTreeTest, OctantsMatchTheBlob) {
   const viewer::OctantBoxes root = viewer::octant_boxes(blob_.view(), 0, 1000);
   EXPECT_EQ(root.corners_m.size(), 1U);
   const viewer::OctantBoxes leaves =

@@ -1,4 +1,4 @@
-// A trace that is read back is the one that was written, and what is no trace is refused by line.
+// Traces are read back as written; invalid files are refused with the line.
 
 #include "tactree/viewer/recording.hpp"
 
@@ -71,12 +71,12 @@ std::string csv_of(const std::vector<Sample>& samples) {
   return csv;
 }
 
-TEST_F(RecordingTest, ReadsWhatATraceWrote) {
+TEST_F(RecordingTest, ReadsBackAWrittenTrace) {
   const std::string csv = csv_of(some_samples());
   EXPECT_EQ(csv_of(read(csv)), csv);
 }
 
-TEST_F(RecordingTest, ReadsTheLeastThatIsNeeded) {
+TEST_F(RecordingTest, NeedsTimeProbeAndForceOnly) {
   const auto samples =
       read("t_s,probe_x_m,probe_y_m,probe_z_m,force_x_N,force_y_N,force_z_N\r\n0,1,2,3,4,5,6\r\n");
   ASSERT_EQ(samples.size(), 1U);
@@ -84,21 +84,22 @@ TEST_F(RecordingTest, ReadsTheLeastThatIsNeeded) {
   EXPECT_EQ(samples[0].tip_m, Eigen::Vector3d(1.0, 2.0, 3.0));
 }
 
-TEST_F(RecordingTest, RefusesWhatIsNoTrace) {
+TEST_F(RecordingTest, RefusesInvalidFilesWithTheLine) {
   const std::string heading = simulation::trace_heading();
   const std::string csv = csv_of(some_samples());
-  EXPECT_NE(refusal("").find("there is no tick"), std::string::npos);
-  EXPECT_NE(refusal(heading).find("there is no tick"), std::string::npos);
-  EXPECT_NE(refusal("x,y\n1,2\n").find("line 1: the heading has no column t_s"), std::string::npos);
+  EXPECT_NE(refusal("").find("the trace has no ticks"), std::string::npos);
+  EXPECT_NE(refusal(heading).find("the trace has no ticks"), std::string::npos);
+  EXPECT_NE(refusal("x,y\n1,2\n").find("line 1: the header has no column t_s"), std::string::npos);
   EXPECT_NE(refusal(csv + "1,2,3\n").find("line 7: 3 values"), std::string::npos);
   const std::string twice = csv + csv.substr(heading.size());
-  EXPECT_NE(refusal(twice).find("line 7: t_s does not ascend"), std::string::npos);
+  EXPECT_NE(refusal(twice).find("line 7: t_s does not increase"), std::string::npos);
   std::string word = csv;
   word.replace(word.find("\n0,") + 1, 1, "zero");
-  EXPECT_NE(refusal(word).find("line 2: t_s: 'zero' is not a number"), std::string::npos);
+  EXPECT_NE(refusal(word).find("line 2: column 1 (t_s) is not a number: 'zero'"),
+            std::string::npos);
 }
 
-TEST_F(RecordingTest, GoesWhereItIsToldAndNoFurther) {
+TEST_F(RecordingTest, CommandsStayWithinTheTrace) {
   viewer::Recording recording(some_samples(), {}, core::presets::premium().model, {});
   using nlohmann::json;
   EXPECT_FALSE(recording.command({{"do", "seek"}, {"tick", 99999}}));

@@ -1,6 +1,10 @@
 #pragma once
-// The one way from bytes to a model: open_blob() checks everything a query relies on, once, and
-// hands out a BlobView that reads the bytes in place.
+// Models: open_blob() validates the bytes of a blob once and returns a BlobView that reads them in
+// place. No other function creates a view of a model. Format: docs/FORMAT.md.
+//
+// Interrupt safety: a view is read-only; its functions may be called from any context. open_blob()
+// takes too long for an interrupt.
+// Loop and memory annotations: docs/BOUND.md.
 
 #include <cstddef>
 #include <cstdint>
@@ -17,22 +21,22 @@ enum class BlobStatus : std::uint8_t {
   kTooShort,       ///< fewer bytes than a header
   kBadMagic,       ///< not a blob
   kBadVersion,     ///< a newer major version, or none
-  kBadSize,        ///< total_bytes is not the number of bytes given
+  kBadSize,        ///< total_bytes differs from the number of bytes passed
   kBadChecksum,    ///< damaged
   kBadHeader,      ///< a count, name or reserved field is impossible
-  kBadFigures,     ///< a length, bound or lattice figure is impossible or contradicts another
+  kBadFigures,     ///< a length, bound or lattice value is impossible or contradicts another
   kBadSections,    ///< sections do not tile the blob, or disagree with the counts
   kBadTree,        ///< a node does not follow the canonical order, or the directory the nodes
   kBadLeaves,      ///< a leaf is empty, too full or out of order
   kBadPoints,      ///< points of a leaf are not in ascending order
-  kBadNeighbours,  ///< a neighbour entry names no node or leaf
-  kBadMaterials,   ///< a material is impossible, or an index names none
+  kBadNeighbours,  ///< a neighbour entry refers to no node or leaf
+  kBadMaterials,   ///< a material is impossible, or an index refers to none
 };
 
-/// The status as a word for people: "checksum does not match", ...
+/// Text for people, static storage: "damaged: the checksum does not match", ...
 [[nodiscard]] const char* describe(BlobStatus status);
 
-/// A leaf of the octree and where its points are.
+/// A leaf of the octree and the range of its points.
 struct Leaf {
   std::uint32_t number = 0;  ///< depth-first
   std::uint32_t first_point = 0;
@@ -49,16 +53,16 @@ struct SurfacePoint {
 
 class LeafCursor;
 
-/// A checked model, read in place. Copyable; the bytes must outlive it. Should they change all the
-/// same (a memory fails), queries answer wrongly but still read inside them: each index that the
-/// bytes hold is compared with the counts of when they were checked.
-/// A default-constructed view is the empty model: every query finds nothing.
+/// A validated model, read in place. Copyable; the bytes must outlive every copy. If they change
+/// (memory fault), results are wrong but no access is out of range: each index read from the bytes
+/// is compared with the counts at validation.
+/// A default-constructed view is the empty model: no query finds anything.
 class BlobView {
  public:
   BlobView() = default;
 
   [[nodiscard]] bool empty() const { return header_ == nullptr; }
-  /// Precondition of all that follow, but the queries: !empty().
+  /// Precondition of all functions below: !empty().
   [[nodiscard]] const BlobHeader& header() const { return *header_; }
   [[nodiscard]] std::uint32_t point_count() const { return point_count_; }
   [[nodiscard]] std::uint32_t node_count() const { return node_count_; }
@@ -68,18 +72,18 @@ class BlobView {
   [[nodiscard]] std::uint32_t depth() const { return depth_; }
   /// Lower corner of the root cube, lattice units.
   [[nodiscard]] Int3 root_min() const { return root_min_; }
-  /// The same in metres, and the edge of a finest leaf; exact.
+  /// Lower corner of the root cube and edge of a finest leaf, m; exact.
   [[nodiscard]] const float* root_min_m() const { return root_min_m_; }  // x y z 0
   [[nodiscard]] float leaf_edge_m() const { return leaf_edge_m_; }
   [[nodiscard]] float inverse_leaf_edge() const { return inverse_leaf_edge_; }
-  /// One more than there are finest cells along an edge of the root.
+  /// Number of finest cells along an edge of the root, plus one.
   [[nodiscard]] float cells_and_one() const { return cells_and_one_; }
   /// Largest radius for which a query is exact.
   [[nodiscard]] float reach_m() const { return reach_m_; }
   [[nodiscard]] float support_radius_m() const { return support_radius_m_; }
 
-  /// True in the surface profile: every leaf is of the deepest level, and a node is one word, the
-  /// group of its children: leaves below a node of level depth() - 1, else nodes.
+  /// True in the surface profile: every leaf is at the deepest level. A node is one word, the group
+  /// of its children: leaves below a node of level depth() - 1, else nodes.
   [[nodiscard]] bool is_uniform() const { return uniform_; }
   [[nodiscard]] const std::uint32_t* node_words() const { return nodes_; }
   [[nodiscard]] BlobNode node(std::uint32_t index, std::uint32_t level) const {
@@ -89,7 +93,7 @@ class BlobView {
     // memory: flash
     return level + 1U < depth_ ? BlobNode{nodes_[index], 0} : BlobNode{0, nodes_[index]};
   }
-  /// The nodes of level directory_level() by their cells, kNoNode where there is none.
+  /// The nodes of level directory_level() by cell; kNoNode: empty space.
   [[nodiscard]] std::uint32_t directory_level() const { return directory_level_; }
   [[nodiscard]] const std::uint32_t* directory() const { return directory_; }
 
@@ -98,11 +102,11 @@ class BlobView {
     // memory: flash
     return leaf_bases_[leaf_number >> leaf_group_shift_] + leaf_offsets_[leaf_number];
   }
-  /// Do the points [first, end) exist? False where a memory that failed tells of others.
+  /// The points [first, end) exist. False if out of range, e.g. after a memory fault.
   [[nodiscard]] bool holds_points(std::uint32_t first, std::uint32_t end) const {
     return first <= end && end <= point_count_;
   }
-  /// Without points where a memory that failed names a leaf or points that do not exist.
+  /// Has no points if the leaf or its points do not exist, e.g. after a memory fault.
   [[nodiscard]] Leaf leaf(std::uint32_t number, std::uint32_t level, Int3 min) const {
     if (number >= leaf_count_) {
       return {0, 0, 0, level, min};
@@ -113,8 +117,8 @@ class BlobView {
   }
   [[nodiscard]] const std::uint32_t* point_words() const { return points_; }
 
-  /// Position and normal of point `index` of `leaf`. Preconditions: the leaf is this view's, and
-  /// holds the index. Cost: constant (one square root and one division for the normal).
+  /// Position and normal of point `index` of `leaf`. Preconditions: the leaf belongs to this view
+  /// and holds the index. Cost: constant (one square root and one division for the normal).
   [[nodiscard]] Vec3 position(const Leaf& leaf, std::uint32_t index) const;
   [[nodiscard]] Vec3 normal(std::uint32_t index) const;
   [[nodiscard]] SurfacePoint surface_point(const Leaf& leaf, std::uint32_t index) const {
@@ -128,11 +132,11 @@ class BlobView {
   }
 
   [[nodiscard]] std::uint32_t material_count() const { return material_count_; }
-  /// Of an index that names none, the first. Precondition: material_count() > 0.
+  /// The first material if the index is out of range. Precondition: material_count() > 0.
   [[nodiscard]] const BlobMaterial& material(std::uint32_t index) const {
     return materials_[index < material_count_ ? index : 0U];
   }
-  /// Which material a point carries; 0 in a blob with at most one.
+  /// Index of a point's material; 0 in a blob with at most one.
   [[nodiscard]] std::uint32_t material_of(std::uint32_t point) const {
     return material_indices_ == nullptr ? 0U : material_indices_[point];  // memory: flash
   }
@@ -188,14 +192,13 @@ inline Vec3 BlobView::normal(std::uint32_t index) const {
   return (1.0F / length(n)) * n;
 }
 
-/// Checks `bytes` and, when all is well, points `view` at them; else `view` becomes empty.
-/// After kOk no query can read outside `bytes`, whatever they hold.
-/// Cost: one pass, about 30 instructions a byte word; no recursion; at most 256 bytes of stack.
-/// Not for interrupts (long), though it touches no shared state.
+/// Validates `bytes`. kOk: `view` reads them, and no query can read outside of them, whatever they
+/// hold. Any other status: `view` is empty.
+/// Cost: one pass, about 30 instructions per word; no recursion; at most 256 bytes of stack.
 [[nodiscard]] BlobStatus open_blob(std::span<const std::byte> bytes, BlobView& view);
 
-/// All leaves of a model in depth-first order (of a node's children, leaves before inner nodes),
-/// which is the order of their numbers and points.
+/// Iterates over the leaves of a model in depth-first order (leaves of a node before its inner
+/// nodes), which is the order of their numbers and points.
 ///   for (LeafCursor c(view); !c.done(); c.next()) use(c.leaf());
 /// Cost of a full walk: nodes + leaves steps. Stack: 11 levels of 12 bytes.
 class LeafCursor {
@@ -222,7 +225,7 @@ class LeafCursor {
   bool done_ = true;
 };
 
-/// use(leaf, index) for each point of a model, by their numbers. Cost: as a full walk.
+/// Calls use(leaf, index) for each point of a model in ascending order. Cost: a full walk.
 template <typename Use>
 void for_each_point(const BlobView& view, Use&& use) {
   for (LeafCursor cursor(view); !cursor.done(); cursor.next()) {  // bound: kMaxLeaves

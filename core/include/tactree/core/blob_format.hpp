@@ -1,15 +1,16 @@
 #pragma once
-// The bytes of a blob: docs/FORMAT.md in C++. Little-endian, position-independent, 4-byte aligned.
+// The layout of a blob, as specified by docs/FORMAT.md. Little-endian, position-independent, 4-byte
+// aligned.
 //
 // A blob is a header followed by sections that tile the rest of it without gaps:
 //   nodes [, directory], leaf bases, leaf offsets, points, normals [, neighbours]
 //   [, materials [, material indices]]
 //
-// All positions lie on one integer lattice: metres = step_m * integer. The step has so few
-// significant bits that this product is exact in float32 for every lattice coordinate of the root
-// cube, so every reader, on any core, in float or double, decodes the very same number.
-// A finest leaf is 2048 units wide and has 1024 sites on each axis, in the middle of two units
-// each; so a point is within one unit of its site, and strictly inside its leaf.
+// All positions lie on an integer lattice: metres = step_m * integer. The step has few significant
+// bits, so this product is exact in float32 for every lattice coordinate of the root cube. Every
+// reader, in float or double, decodes the same number.
+// A finest leaf is 2048 units wide and has 1024 sites on each axis, each in the middle of two
+// units: a site is strictly inside its leaf.
 
 #include <bit>
 #include <cstddef>
@@ -80,13 +81,13 @@ struct BlobHeader {
   std::uint32_t directory_level;  ///< level of the nodes that the directory lists; 0: the root only
   std::uint32_t leaf_group_shift;  ///< 2^this leaves share a base
 
-  float spacing_m;           ///< h: what the points were resampled to
-  float support_radius_m;    ///< R: of the surface fit
+  float spacing_m;           ///< h: spacing of the resampled points
+  float support_radius_m;    ///< R: radius of the surface fit
   float reach_m;             ///< R + slack: largest radius of an exact query
   float leaf_edge_min_m;     ///< E = 2048 step_m
   float aabb_edge_m;         ///< a: vertex box of the paper's collision test
   float six_point_offset_m;  ///< s
-  float largest_gap_m;       ///< widest hole or gap the builder found; 0 when not known
+  float largest_gap_m;       ///< widest gap between points; 0: unknown
   float bounds_min_m[3];     ///< of the decoded points
   float bounds_max_m[3];
 
@@ -113,14 +114,14 @@ struct BlobHeader {
 
 /// An inner node: eight octants, each empty, an inner node or a leaf. Octant = x | y << 1 | z << 2,
 /// a bit being set for the upper half. Children of one kind are consecutive, in octant order.
-/// In the surface profile, where a node's level tells which kind its children are, only that word
-/// is stored.
+/// In the surface profile the level of a node determines the kind of its children, and only the
+/// word of that kind is stored.
 struct BlobNode {
   std::uint32_t nodes;   ///< bits 0-23: index of the first child node; bits 24-31: which octants
   std::uint32_t leaves;  ///< bits 0-23: number of the first child leaf; bits 24-31: which octants
 };
 
-/// What the hand feels of the points that carry this material.
+/// Contact parameters of the points with this material.
 struct BlobMaterial {
   float stiffness_N_m;
   float damping_Ns_m;

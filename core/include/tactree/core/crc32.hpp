@@ -1,6 +1,8 @@
 #pragma once
-// CRC-32 (IEEE 802.3, reflected, polynomial 0xEDB88320): guards blobs and messages against
-// accidents.
+// CRC-32 (IEEE 802.3, reflected, polynomial 0xEDB88320): detects accidental damage of blobs and
+// messages. It is no protection against forgery.
+//
+// Interrupt safety: no shared state.
 
 #include <cstddef>
 #include <cstdint>
@@ -8,7 +10,7 @@
 
 namespace tactree::core {
 
-/// Running checksum. Cost: about 10 instructions a byte; 64 bytes of table; interrupt safe.
+/// Running checksum. Cost: about 10 instructions per byte; a table of 64 bytes.
 class Crc32 {
  public:
   void update(std::span<const std::byte> bytes);
@@ -18,6 +20,7 @@ class Crc32 {
   std::uint32_t state_ = 0xFFFFFFFFU;
 };
 
+/// Checksum of `bytes`.
 [[nodiscard]] std::uint32_t crc32(std::span<const std::byte> bytes);
 
 }  // namespace tactree::core

@@ -1,8 +1,11 @@
 #pragma once
-// The figures of a device: encoders, transmission, geometry, joint ranges, masses.
+// The parameters of a device: encoders, transmission, geometry, joint ranges, masses.
 // Presets: device_presets.hpp. From counts to the probe: kinematics.hpp.
 //
 // Device frame: x to the user, y to the user's right, z up.
+//
+// Interrupt safety: plain data and pure functions.
+// Loop and memory annotations: docs/BOUND.md.
 
 #include <cstdint>
 
@@ -21,9 +24,9 @@ enum class DeviceKind : std::uint8_t {
 };
 inline constexpr std::uint32_t kDeviceKinds = 5;
 
-/// How the counters get to know where the joints are after power-up (homing.hpp).
+/// Method that relates encoder counts to joint positions after power-up (homing.hpp).
 enum class HomingMethod : std::uint8_t {
-  kAbsolute = 0,  ///< they know: home_count holds at power-up
+  kAbsolute = 0,  ///< absolute encoders: home_count holds at power-up
   kGivenPose,     ///< the user holds every joint at its home position and gives the command
   kIndex,         ///< each joint passes the index pulse at its home position
   kHardStop,      ///< the user moves each joint from stop to stop
@@ -35,8 +38,8 @@ inline constexpr std::uint32_t kHomingMethods = 4;
 struct ArmGeometry {
   float arm_m = 0.2F;      ///< shoulder to elbow: 0.01 .. 10
   float forearm_m = 0.2F;  ///< elbow to probe: 0.01 .. 10
-  /// What joint 2 counts from. 0: the vertical (a parallelogram, its motor on the base).
-  /// 1: the arm (its motor on the arm). 0 .. 1
+  /// Reference of joint 2, 0 .. 1. 0: the vertical (a parallelogram, its motor on the base).
+  /// 1: the arm (its motor on the arm).
   float coupling = 0.0F;
 };
 
@@ -64,8 +67,7 @@ struct FiveBarGeometry {
   float base_m = 0.02F;     ///< between the motors: 0 .. 10
 };
 
-/// A device. Which geometry counts depends on `kind`; its units are those of the joints: rad, or m
-/// for kCartesian.
+/// A device. `kind` selects the geometry. Joint positions are in rad, or in m for kCartesian.
 struct DeviceModel {
   DeviceKind kind = DeviceKind::kCartesian;
   HomingMethod homing = HomingMethod::kAbsolute;
@@ -76,47 +78,47 @@ struct DeviceModel {
   /// All others: counts (all edges) per revolution of the motor: 1 .. 1e7.
   float counts_per_revolution[kAxes] = {4096.0F, 4096.0F, 4096.0F};
   /// Revolutions of the motor per revolution of the joint (kCartesian: motor rad per metre; only
-  /// for currents). Negative: they turn in opposite directions. 1e-3 .. 1e5 either way.
+  /// for currents). Negative: opposite directions. Absolute value: 1e-3 .. 1e5.
   float ratio[kAxes] = {1.0F, 1.0F, 1.0F};
   std::int32_t home_count[kAxes] = {0, 0, 0};
   float home_position[kAxes] = {0.0F, 0.0F, 0.0F};  ///< within the joint's range
   /// Mechanical range of each joint, min < max, within +-1e12 (m) or +-100 (rad).
   float joint_min[kAxes] = {-1e12F, -1e12F, -1e12F};
   float joint_max[kAxes] = {1e12F, 1e12F, 1e12F};
-  /// The force fades over this much of each end of the range; a joint further than this beyond it
-  /// is an encoder error. 0 .. (max - min) / 2; 0: no fading, and an error right at the end.
+  /// The force fades over this distance from each end of the range. A joint beyond an end by more
+  /// than this is an encoder error. 0 .. (max - min) / 2; 0: no fading.
   float joint_margin[kAxes] = {0.0F, 0.0F, 0.0F};
 
   ArmGeometry arm{};
   DeltaGeometry delta{};
   FiveBarGeometry five_bar{};
   float paddle_m = 0.07F;  ///< kPaddle, pivot to probe: 0.001 .. 10. Joint: elevation.
-  /// Origin of the device frame as the geometry sees it, whose own origin is on the axis of joint
-  /// 0 (kArm: at the shoulder's height; kDelta: in the ring's middle; kFiveBar: between the
-  /// motors): within +-10 m.
+  /// Origin of the device frame in the frame of the geometry, within +-10 m. The geometry's own
+  /// origin is on the axis of joint 0; kArm: at the height of the shoulder; kDelta: in the ring's
+  /// middle; kFiveBar: between the motors.
   Vec3 origin_m{};
 
-  // For gravity. A centre is measured along the link from its joint; behind the joint, as that of
-  // a counterweight, it is negative. kArm: link 1 the arm, 2 the forearm. kDelta, kFiveBar: each
-  // arm with half its forearm. kPaddle: link 0. kCartesian: none.
+  // For gravity compensation. A centre of mass is measured along the link from its joint; behind
+  // the joint, e.g. of a counterweight, it is negative. kArm: link 1 the arm, 2 the forearm.
+  // kDelta, kFiveBar: each arm with half its forearm. kPaddle: link 0. kCartesian: none.
   float link_mass_kg[kAxes] = {0.0F, 0.0F, 0.0F};   ///< 0 .. 100
   float link_centre_m[kAxes] = {0.0F, 0.0F, 0.0F};  ///< within +-10
-  float tip_mass_kg = 0.0F;                         ///< what moves with the probe: 0 .. 100
+  float tip_mass_kg = 0.0F;                         ///< moves with the probe: 0 .. 100
 
   /// Torque of a motor per current: 1e-6 .. 1000.
   float torque_constant_Nm_per_ampere[kAxes] = {0.025F, 0.025F, 0.025F};
 };
 
-/// Axes the kind has: 3, 2 or 1; the inputs of the others do not matter and they get no effort.
+/// Number of axes: 3, 2 or 1. Inputs of unused axes are ignored, and their effort is 0.
 [[nodiscard]] constexpr std::uint32_t axes_of(DeviceKind kind) {
   return kind == DeviceKind::kPaddle ? 1U : (kind == DeviceKind::kFiveBar ? 2U : kAxes);
 }
 
-/// Is every figure that counts for the kind finite and within its range? Cost: constant.
+/// True if every parameter used by the kind is finite and within its range. Cost: constant.
 [[nodiscard]] bool is_valid(const DeviceModel& device);
 
-/// Encoder counts per unit of the joint (1/m or 1/rad), negative where they run against each
-/// other. Precondition: is_valid(device), axis < kAxes.
+/// Encoder counts per unit of the joint (1/m or 1/rad), negative for opposite directions.
+/// Precondition: is_valid(device), axis < kAxes.
 [[nodiscard]] constexpr float counts_per_unit(const DeviceModel& device, std::uint32_t axis) {
   constexpr float kTwoPi = 6.2831853F;
   return device.kind == DeviceKind::kCartesian

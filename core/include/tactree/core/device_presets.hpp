@@ -1,19 +1,21 @@
 #pragma once
-// The devices that Tactree knows, every figure of them in this one place. Lengths, ratios, counts,
-// torque constants and forces are public figures where no comment says "estimate"; masses, centres,
-// inertias, frictions and joint ranges are all estimates, plausible for the class of device and
-// not measured on any. Take them as a start, and measure yours.
+// Presets of known devices. Lengths, ratios, counts, torque constants and forces are published
+// values unless marked "estimate". Masses, centres, inertias, frictions and joint ranges are
+// estimates for the class of device; measure your own.
+//
+// Interrupt safety: constants and pure functions.
+// Loop and memory annotations: docs/BOUND.md.
 
 #include "tactree/core/configuration.hpp"
 #include "tactree/core/device_model.hpp"
 
 namespace tactree::core {
 
-/// What the motors can do, and what the stability limit needs to know.
+/// Limits of the motors, and the damping for the stability limit.
 struct DeviceDrive {
   float force_max_N = 8.0F;                      ///< at the probe
   float effort_max[kAxes] = {8.5F, 8.5F, 8.5F};  ///< N or Nm at the joints
-  float damping_Ns_m = 0.05F;                    ///< least viscous damping at the probe
+  float damping_Ns_m = 0.05F;                    ///< smallest viscous damping at the probe
 };
 
 /// For simulation. Units: kg, Ns/m, N of a linear axis; kg m2, Nms, Nm of a joint.
@@ -74,7 +76,7 @@ constexpr DevicePreset premium() {
   m.tip_mass_kg = 0.030F;
   set(m.torque_constant_Nm_per_ampere, 0.0235F, 0.0235F, 0.0235F);  // estimate: 20 W brushed motors
   p.drive = {8.5F, {1.9F, 1.8F, 1.5F}, 0.0125F};  // efforts: estimate, 8.5 N at home
-  // 0.075 kg and 0.04 N at the probe at home, as the maker says of the class.
+  // The manufacturer states 0.075 kg and 0.04 N for the class, at the probe at home.
   p.dynamics = {
       {2.0e-3F, 2.0e-3F, 1.3e-3F}, {5.5e-4F, 5.5e-4F, 3.6e-4F}, {8.4e-3F, 8.4e-3F, 6.8e-3F}};
   return p;
@@ -117,7 +119,7 @@ constexpr DevicePreset falcon() {
   m.delta = {0.060F,   0.1025F,   0.01443F,
              0.01125F, 0.01125F,  -0.025F,
              0.040F,   -0.02309F, {105.0F * kDegree, -15.0F * kDegree, -135.0F * kDegree}};
-  // 9881 counts a joint revolution; how they share into counts and ratio is an estimate.
+  // 9881 counts per joint revolution; the split into counts and ratio is an estimate.
   set(m.counts_per_revolution, 1280.0F, 1280.0F, 1280.0F);
   set(m.ratio, 9881.0F / 1280.0F, 9881.0F / 1280.0F, 9881.0F / 1280.0F);
   set(m.home_position, 46.0F * kDegree, 46.0F * kDegree, 46.0F * kDegree);
@@ -191,9 +193,9 @@ inline constexpr DevicePreset kDevicePresets[] = {presets::cartesian(),  presets
                                                   presets::wooden(),     presets::falcon(),
                                                   presets::pantograph(), presets::hapkit()};
 
-/// Takes the device's figures over: model, limits of force and effort, damping.
+/// Copies a device to the configuration: model, limits of force and effort, damping.
 constexpr void use_device(const DevicePreset& device, Configuration& configuration) {
-  // From nothing to all that an axis can do in this time; the probe's own slew limit is stricter.
+  // Time from zero to the full effort of an axis. The slew limit at the probe is stricter.
   constexpr float kFullEffortIn_s = 0.004F;
   configuration.device = device.model;
   configuration.force_max_N = device.drive.force_max_N;

@@ -1,7 +1,6 @@
 #pragma once
-// A counter that stands still although its motor pulls: a stuck encoder, or one whose wire is off
-// but reads as valid. A good one cannot: where the effort of an axis changes by much, the axis
-// gives by at least a count.
+// Detects a stuck encoder, or a disconnected one that reads as valid: the count of a sound axis
+// changes when the effort of its motor changes by more than kChange.
 //
 // Interrupt safe: no shared state.
 
@@ -13,17 +12,17 @@ namespace tactree::core {
 
 class EncoderWatch {
  public:
-  /// Change of an axis's effort, as a share of its effort_max, that must move it.
+  /// Change of effort / effort_max above which the count of an axis must change.
   static constexpr float kChange = 0.25F;
-  /// One part of so many of the time: the effort may still follow the motion that has ended.
+  /// 1 / kSettling of the time is excluded: the effort may still follow an ended motion.
   static constexpr std::uint32_t kSettling = 4;
 
-  /// ticks: that an axis may stand still while its effort changes; at least 1.
+  /// ticks: longest standstill of an axis under a changing effort; at least 1.
   void configure(std::uint32_t ticks) { ticks_ = ticks; }
   void reset();
 
-  /// One tick: the counts read, and the effort of the contact, without the device's own weight, as
-  /// a share of effort_max. False: the encoder of an axis is stuck. Cost: constant.
+  /// Call once a tick. counts: as read. share: contact effort / effort_max, without gravity
+  /// compensation. axes: number in use. False: an encoder is stuck. Cost: constant.
   [[nodiscard]] bool update(const std::int32_t (&counts)[kAxes], const float (&share)[kAxes],
                             std::uint32_t axes);
 

@@ -1,5 +1,6 @@
 #pragma once
-// Why the force is off. Each code has a page in docs/faults/.
+// Codes of faults and limits. Each has a page in docs/faults/.
+// Interrupt safe: pure functions.
 
 #include <cstdint>
 
@@ -8,16 +9,16 @@ namespace tactree::core {
 enum class Fault : std::uint8_t {
   kNone = 0,
   kEmergencyStop = 1,     ///< the emergency stop input is open
-  kEncoderInvalid = 2,    ///< an encoder reports no valid count, or the device cannot be there
+  kEncoderInvalid = 2,    ///< an encoder reports no valid count, or an impossible pose
   kEncoderJump = 3,       ///< the probe moved faster than speed_max_m_s
-  kNotFinite = 4,         ///< a force or effort came out as NaN or infinity
+  kNotFinite = 4,         ///< a force or effort is NaN or infinite
   kDeadlineMissed = 5,    ///< two overruns within 100 ticks
   kLinkLost = 6,          ///< no message for longer than link_timeout_s while the link is required
   kEnableMismatch = 7,    ///< the enable line's read-back contradicts the command
-  kUnexpectedEvent = 8,   ///< a command the state does not allow
+  kUnexpectedEvent = 8,   ///< a command that the state does not allow
   kMotorFault = 9,        ///< the motor bank reports a failure
-  kModelIncomplete = 10,  ///< the model holds more than it declares, or names what it does not hold
-  kEncoderStuck = 11,     ///< a motor's effort changes, its encoder does not
+  kModelIncomplete = 10,  ///< the model exceeds its declared limits or has an invalid index
+  kEncoderStuck = 11,     ///< a motor's effort changes, its count does not
   kSupply = 12,           ///< the amplifiers' supply is outside supply_min_V .. supply_max_V
 };
 inline constexpr std::uint32_t kFaultCodes = 13;
@@ -31,28 +32,28 @@ constexpr FaultMask fault_bit(Fault fault) {
 
 constexpr bool has_fault(FaultMask mask, Fault fault) { return (mask & fault_bit(fault)) != 0U; }
 
-/// The name as in docs/faults/: "emergency-stop", ...; "unknown" for a code that is none.
+/// Name as in docs/faults/: "emergency-stop", ...; "unknown" for an invalid code. Cost: constant.
 [[nodiscard]] const char* name_of(Fault fault);
 
-/// What held the force back in a tick without stopping it.
+/// Limits that reduce the force in a tick without a fault.
 enum class Limit : std::uint32_t {
   kForce = 1U << 0,      ///< the force was longer than force_max_N
   kSlew = 1U << 1,       ///< the force changed faster than slew_N_s
-  kRamp = 1U << 2,       ///< armed a moment ago
-  kAxis = 1U << 3,       ///< an axis would have passed its effort_max or effort_slew_s
-  kRim = 1U << 4,        ///< the surface ends here, or its body is gone: the force fades
-  kWaiting = 1U << 5,    ///< armed, but the probe is inside the object or the enable line not up
-  kWorkspace = 1U << 6,  ///< near the end of a joint's range or a singular pose: the force fades
-  kNotHomed = 1U << 7,   ///< the joints' positions are not known yet: no force (homing.hpp)
-  kBodies = 1U << 8,     ///< more bodies within reach than kMaxReachableBodies: some are not felt
-  kThermal = 1U << 9,    ///< a motor is warm: its peak effort falls to the continuous one
+  kRamp = 1U << 2,       ///< ramp after activation
+  kAxis = 1U << 3,       ///< an axis reached its effort_max or effort_slew_s
+  kBoundary = 1U << 4,   ///< surface boundary, or body removed: the force fades
+  kWaiting = 1U << 5,    ///< armed; the probe is inside the object or the enable line is off
+  kWorkspace = 1U << 6,  ///< near a joint limit or singular pose: the force fades
+  kNotHomed = 1U << 7,   ///< joint positions unknown: no force (homing.hpp)
+  kBodies = 1U << 8,     ///< more bodies within reach than kMaxReachableBodies: some not rendered
+  kThermal = 1U << 9,    ///< a motor is warm: peak effort reduced towards continuous effort
 };
 using LimitMask = std::uint32_t;
 inline constexpr std::uint32_t kLimits = 10;
 
 constexpr LimitMask limit_bit(Limit limit) { return static_cast<LimitMask>(limit); }
 
-/// The name as in docs/faults/, without "limit-"; "unknown" for a value that is none.
+/// Name as in docs/faults/, without "limit-"; "unknown" for an invalid value. Cost: constant.
 [[nodiscard]] const char* name_of(Limit limit);
 
 }  // namespace tactree::core

@@ -1,8 +1,8 @@
 #pragma once
-// The last ticks, for whoever asks what happened. A fault ends the recording some ticks later, so
-// that what led to it is still there when somebody looks; clearing the fault goes on.
+// Ring buffer of the last ticks. A fault stops the recording after kAfterFault further ticks, which
+// preserves the ticks before the fault; clearing the fault resumes the recording.
 //
-// Interrupt safe: no shared state; read it in the context that adds.
+// Interrupt safety: no shared state; read it in the context that calls add().
 
 #include <cstdint>
 
@@ -15,15 +15,15 @@ namespace tactree::core {
 
 /// One tick, rounded: 18 bytes.
 struct FlightRecord {
-  static constexpr float kMetre = 50000.0F;  ///< units of 20 um; beyond +-0.65 m: the end of it
-  static constexpr float kNewton = 1000.0F;  ///< units of 1 mN; beyond +-32 N: the end of it
-  static constexpr float kDepth = 20000.0F;  ///< units of 50 um; beyond +-6.3 mm: the end of it
+  static constexpr float kMetre = 50000.0F;  ///< units of 20 um; clamped to +-0.65 m
+  static constexpr float kNewton = 1000.0F;  ///< units of 1 mN; clamped to +-32 N
+  static constexpr float kDepth = 20000.0F;  ///< units of 50 um; clamped to +-6.3 mm
 
   std::int16_t probe[3] = {0, 0, 0};
   std::int16_t force[3] = {0, 0, 0};
-  std::int8_t proxy[3] = {0, 0, 0};  ///< from the probe, in units of kDepth
+  std::int8_t proxy[3] = {0, 0, 0};  ///< relative to the probe, in units of kDepth
   std::uint8_t state = 0;            ///< bits 0-2: State; bit 3: in contact; bit 4: slipping
-  std::uint8_t load = 0;  ///< time the tick took, in 1/128 of its period; 255: two or more
+  std::uint8_t load = 0;  ///< duration of the tick, period / 128; 255: two periods or more
 
   [[nodiscard]] State state_of() const { return static_cast<State>(state & 7U); }
   [[nodiscard]] bool in_contact() const { return (state & 8U) != 0U; }
@@ -33,12 +33,12 @@ static_assert(sizeof(FlightRecord) == 18);
 
 /// The tick in which the first fault since the last clear was latched.
 struct FaultSnapshot {
-  FaultMask faults = 0;  ///< all that were latched in that tick; 0: there was none
+  FaultMask faults = 0;  ///< all latched in that tick; 0: none
   std::uint32_t tick = 0;
   Vec3 probe{};     ///< m
   Vec3 proxy{};     ///< m
   Vec3 velocity{};  ///< m/s
-  Vec3 force{};     ///< N, of the tick before: what the hand felt
+  Vec3 force{};     ///< N, of the preceding tick
 };
 
 class FlightRecorder {
@@ -46,7 +46,7 @@ class FlightRecorder {
   static constexpr std::uint32_t kTicks = 512;
   static constexpr std::uint32_t kAfterFault = 32;  ///< ticks recorded after a fault was latched
 
-  /// What a tick was like.
+  /// State of a tick.
   struct Moment {
     State state = State::kBoot;
     FaultMask faults = 0;
@@ -55,15 +55,15 @@ class FlightRecorder {
     Vec3 velocity{};
     Vec3 force{};
     const Rendering& rendering;
-    float load = 0.0F;  ///< share of the period that the last tick took, >= 0
+    float load = 0.0F;  ///< duration of the last tick / period, >= 0
   };
 
   /// Cost: constant.
   void add(const Moment& moment);
 
-  /// Records there are: 0 .. kTicks.
+  /// Number of records: 0 .. kTicks.
   [[nodiscard]] std::uint32_t count() const { return count_; }
-  /// `age` 0 is the newest. Precondition: age < count().
+  /// Record by age; 0: newest. Precondition: age < count().
   [[nodiscard]] const FlightRecord& record(std::uint32_t age) const {
     return records_[(next_ + kTicks - 1U - age) % kTicks];
   }

@@ -1,6 +1,6 @@
 #pragma once
-// The force of a contact that ended without the probe leaving the surface: it does not snap to
-// zero, but goes down in a straight line. Interrupt safe: no shared state.
+// Linear fade of the force of a contact that ended without the probe leaving the surface, for
+// example at a surface boundary. Interrupt safe: no shared state.
 
 #include <cstdint>
 
@@ -10,8 +10,8 @@ namespace tactree::core {
 
 class ForceFade {
  public:
-  /// What is left of an earlier force fades together with this one. `ticks` >= 1: the force is 0
-  /// from the tick that many after its last.
+  /// Starts a fade from `force`, N, to 0 in `ticks` >= 1 ticks. The remainder of an earlier fade is
+  /// added to it. Cost: constant.
   void begin(Vec3 force, std::uint32_t ticks) {
     from_ = active() ? share() * from_ + force : force;
     ticks_ = ticks;
@@ -20,7 +20,7 @@ class ForceFade {
   void stop() { left_ = 0; }
   [[nodiscard]] bool active() const { return left_ > 0U; }
 
-  /// The force of the next tick; once a tick.
+  /// Force of the next tick, N. Call once a tick.
   [[nodiscard]] Vec3 next() {
     left_ -= active() ? 1U : 0U;
     return active() ? share() * from_ : Vec3{};

@@ -1,8 +1,8 @@
 #pragma once
-// How warm the windings are, from what was asked of the motors: heat follows the square of the
-// effort with the time constant of the winding, 1 being what the continuous effort leads to for
-// ever. From kWarm on the peak that is allowed falls, to the continuous effort at 1; so that a
-// winding never gets warmer than its motor bears. (The I2t limit of servo drives; first order.)
+// Thermal model of the windings from the commanded efforts: heat follows the square of the effort
+// with the time constant of the winding. Heat 1 is the steady state of the continuous effort. Above
+// kWarm the allowed peak falls linearly to the continuous effort at heat 1, which keeps the winding
+// within its rating. (First-order I2t limit, as in servo drives.)
 //
 // Interrupt safe: no shared state.
 
@@ -17,13 +17,13 @@ class MotorHeat {
   static constexpr float kWarm = 0.8F;
 
   /// continuous_share: 0.05 .. 1 of an axis's effort_max; share_per_tick: period over time
-  /// constant, > 0 and below 1. Keeps what is warm.
+  /// constant, > 0 and below 1. Keeps the heat.
   void configure(float continuous_share, float share_per_tick);
 
-  /// One tick in which an axis had this share of its effort_max: -1 .. 1.
+  /// Adds one tick. share: effort / effort_max of the axis, -1 .. 1. Cost: constant.
   void add(std::uint32_t axis, float share);
 
-  /// Share of effort_max that an axis may have now: continuous_share .. 1.
+  /// Allowed effort / effort_max of an axis: continuous_share .. 1. Cost: constant.
   [[nodiscard]] float allowed(std::uint32_t axis) const;
 
   [[nodiscard]] float heat(std::uint32_t axis) const { return heat_[axis]; }

@@ -1,5 +1,7 @@
 #pragma once
-// Exact neighbour queries by the eight-corner rule: every point of the answer, and no other.
+// Exact neighbour queries by the eight-corner rule.
+//
+// Interrupt safety: pure functions.
 
 #include <cstdint>
 #include <span>
@@ -18,24 +20,25 @@ struct NearestPoint {
   [[nodiscard]] bool found() const { return index != kNoPoint; }
 };
 
-/// The point nearest to `probe` among those with distance <= r; of equally near ones, the one with
-/// the lowest index. Precondition: 0 <= r <= view.reach_m(); else nothing is found.
-/// Cost: at most 8 leaves, header().points_per_query_max points. Interrupt safe.
+/// The point nearest to `probe` (m) within distance r (m); of equally near points the one with the
+/// lowest index. Precondition: 0 <= r <= view.reach_m(), else nothing is found.
+/// Cost: at most 8 leaves with header().points_per_query_max points.
 [[nodiscard]] NearestPoint nearest_within(const BlobView& view, Vec3 probe, float r);
 
 struct PointsWithin {
-  std::uint32_t count = 0;  ///< how many indices were written
+  std::uint32_t count = 0;  ///< indices written
   bool complete = true;     ///< false: the buffer was too small for all of them
 };
 
-/// All points with distance <= r from `probe`, their indices into `out` in no particular order.
-/// A buffer of header().points_per_ball_max entries is always enough for r <= reach_m().
+/// Writes the indices of all points within distance r (m) of `probe` to `out`, in no particular
+/// order. A buffer of header().points_per_ball_max entries is sufficient for r <= reach_m().
+/// Precondition and cost: as nearest_within().
 [[nodiscard]] PointsWithin points_within(const BlobView& view, Vec3 probe, float r,
                                          std::span<std::uint32_t> out);
 
-/// Is `probe` in the axis-aligned box, edge header().aabb_edge_m, of any point? Exact, closed
-/// boxes. Precondition: aabb_edge_m / 2 <= reach_m(), which holds in every `surface` blob; else
-/// false.
+/// True if the axis-aligned box, edge header().aabb_edge_m, of any point holds `probe`. Exact; the
+/// boxes are closed. Precondition: aabb_edge_m / 2 <= reach_m(), else false. It holds in the
+/// surface profile. Cost: as nearest_within().
 [[nodiscard]] bool in_any_vertex_box(const BlobView& view, Vec3 probe);
 
 }  // namespace tactree::core

@@ -1,5 +1,8 @@
 #pragma once
-// Point location.
+// Point location in the octree of a blob.
+//
+// Interrupt safety: pure functions.
+// Loop and memory annotations: docs/BOUND.md.
 
 #include <cstdint>
 
@@ -19,8 +22,8 @@ constexpr std::uint32_t lowest_octant(std::uint32_t mask) {
   return count_octants((mask & (~mask + 1U)) - 1U);
 }
 
-/// The same of a mask without its highest octant (0-127), by a table: it is what every step down
-/// the tree waits for.
+/// Table of count_octants() for masks without the highest octant (0-127). Every step of a descent
+/// depends on this count.
 struct OctantCounts {
   std::uint8_t of[128];
 };
@@ -35,7 +38,7 @@ constexpr std::uint32_t count_low_octants(std::uint32_t mask) {
   return kOctantCounts.of[mask];  // memory: flash
 }
 
-/// Index of the child in `octant` from a word of a node. Precondition: that child exists.
+/// Index of the child in `octant`, from a group word of a node. Precondition: the child exists.
 constexpr std::uint32_t child_of(std::uint32_t group, std::uint32_t octant) {
   return (group & 0xFFFFFFU) + count_low_octants((group >> 24) & ((1U << octant) - 1U));
 }
@@ -46,35 +49,26 @@ constexpr std::uint32_t child_leaf(BlobNode node, std::uint32_t octant) {
   return child_of(node.leaves, octant);
 }
 
-/// Cell of a child, in cells of its level.
+/// Cell of a child, in units of cells of the child's level.
 constexpr Int3 child_cell(Int3 cell, std::uint32_t octant) {
   return {cell.x << 1 | static_cast<std::int32_t>(octant & 1U),
           cell.y << 1 | static_cast<std::int32_t>((octant >> 1) & 1U),
           cell.z << 1 | static_cast<std::int32_t>(octant >> 2)};
 }
 
-/// Lattice coordinates of the unit at or below `position` on each axis: floor(position / step_m),
-/// exactly. False when the position is not finite or outside the root cube.
+/// Lattice coordinates of `position` (m): floor(position / step_m) on each axis, exact. False if
+/// the position is not finite or outside the root cube.
 [[nodiscard]] bool to_lattice(const BlobView& view, Vec3 position, Int3& site);
 
 /// The leaf that contains a lattice site inside the root cube. False: empty space there.
 /// Cost: one descent, at most depth() levels, about 20 instructions each.
 [[nodiscard]] bool find_leaf(const BlobView& view, Int3 site, Leaf& leaf);
 
-/// The same, starting at node `node` of level `level`, whose cell holds the site.
+/// The same from node `node` of level `level`. Precondition: the node's cell holds the site.
 [[nodiscard]] bool find_leaf_below(const BlobView& view, std::uint32_t node, std::uint32_t level,
                                    Int3 site, Leaf& leaf);
 
 /// The leaf that contains a position: to_lattice() and find_leaf().
 [[nodiscard]] bool find_leaf(const BlobView& view, Vec3 position, Leaf& leaf);
-
-/// The leaves that the cube centre +- r touches. The leaf of the centre, if there is one, is first.
-/// Precondition: 0 <= r <= view.reach_m(); for a larger or NaN r, or a centre that is not finite,
-/// there are none. Cost: at most 8 descents of at most depth() levels.
-struct LeafSet {
-  Leaf leaves[kLeavesPerQuery];
-  std::uint32_t count = 0;
-};
-void find_leaves_within(const BlobView& view, Vec3 centre, float r, LeafSet& found);
 
 }  // namespace tactree::core

@@ -1,6 +1,6 @@
 #pragma once
-// The figures of a Configuration that calibrate a device, by number and name, for an application to
-// read and set. Interrupt safe: pure functions.
+// Calibration values of a Configuration by number and name, for an application to read and set.
+// Interrupt safe: pure functions. Cost: constant.
 
 #include <cstdint>
 
@@ -16,11 +16,11 @@ struct Parameter {
   float max = 0.0F;
 };
 
-/// Precondition of all: number < kParameters. Some ranges depend on other figures as well:
-/// check(Configuration) has the last word.
+/// Precondition of all: number < kParameters. Some ranges also depend on other values: call
+/// check(Configuration) afterwards.
 [[nodiscard]] Parameter parameter(std::uint32_t number);
 [[nodiscard]] float parameter_of(const Configuration& configuration, std::uint32_t number);
-/// False: not finite, or out of the range; nothing was changed. A home_count is rounded towards 0.
+/// False: not finite or out of range; nothing changed. A home_count is rounded towards 0.
 [[nodiscard]] bool set_parameter(Configuration& configuration, std::uint32_t number, float value);
 
 }  // namespace tactree::core

@@ -1,14 +1,14 @@
 #pragma once
-// Counts of an incremental encoder from the edges of its two lines, four a period. For boards that
-// have no counter in hardware.
+// Quadrature decoder: counts of an incremental encoder from the levels of its two lines, four per
+// period. For boards without a hardware counter.
 //
-// Interrupt safe: pure functions on the caller's object.
+// Interrupt safety: no shared state; one context owns a decoder.
 
 #include <cstdint>
 
 namespace tactree::core {
 
-/// Both lines at one moment. Forward is the order 00, 01, 11, 10 (b a): a leads.
+/// Levels of both lines. Forward is the order 00, 01, 11, 10 (b a): a leads.
 struct QuadratureLevels {
   bool a = false;
   bool b = false;
@@ -17,11 +17,11 @@ struct QuadratureLevels {
 
 class QuadratureDecoder {
  public:
-  /// Where the lines are now; the count stays.
+  /// Sets the present levels; the count stays.
   void begin(QuadratureLevels now) { levels_ = now; }
 
-  /// The lines are so from now on. Where both have changed at once the direction is not known:
-  /// nothing is counted but one more illegal transition. Cost: constant.
+  /// Processes new levels. If both lines changed at once, the direction is unknown: illegal() is
+  /// incremented instead of the count. Cost: constant.
   void step(QuadratureLevels now) {
     const std::uint32_t quarter = (quarter_of(now) - quarter_of(levels_)) & 3U;
     levels_ = now;

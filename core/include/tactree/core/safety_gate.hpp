@@ -1,6 +1,6 @@
 #pragma once
-// The last step before the motors. Whatever comes in, what goes out is finite, within the force
-// limit and within the slew limit; after activation it starts at exactly 0 and ramps up.
+// Output stage before the motors. For every input the output is finite and within the limits of
+// force, slew and effort; after activation it starts at exactly 0 and ramps up.
 
 #include <cstdint>
 
@@ -13,7 +13,7 @@ namespace tactree::core {
 
 class SafetyGate;
 
-/// Efforts for the motors, N or Nm per axis. Only a SafetyGate makes one.
+/// Efforts of the motors, N or Nm per axis. Only a SafetyGate constructs one.
 class MotorCommand {
  public:
   [[nodiscard]] float effort(std::uint32_t axis) const { return effort_[axis]; }
@@ -32,9 +32,9 @@ struct GateLimits {
   float slew_N_per_tick = 2.0F;                            ///< force_max_N * 1e-4 .. 2 force_max_N
   float effort_max[kAxes] = {8.5F, 8.5F, 8.5F};            ///< N or Nm: 1e-4 .. 1000
   float effort_slew_per_tick[kAxes] = {2.0F, 2.0F, 2.0F};  ///< effort_max * 1e-4 .. 2 effort_max
-  std::uint32_t ramp_ticks = 250;                          ///< from 0 to the whole force: 2 .. 1e6
-  float continuous_share = 0.35F;     ///< of effort_max, what a motor bears for ever: 0.05 .. 1
-  float heat_share_per_tick = 2e-5F;  ///< period over the windings' time constant: 1e-8 .. 0.1
+  std::uint32_t ramp_ticks = 250;                          ///< from 0 to full force: 2 .. 1e6
+  float continuous_share = 0.35F;     ///< continuous effort / effort_max: 0.05 .. 1
+  float heat_share_per_tick = 2e-5F;  ///< period / time constant of the windings: 1e-8 .. 0.1
 };
 
 /// Interrupt safe: no shared state.
@@ -51,21 +51,21 @@ class SafetyGate {
     Result() = default;
   };
 
-  /// Takes the limits if all of them are in range; else changes nothing and returns false.
-  /// The next command is zero.
+  /// Applies the limits if all are in range; otherwise returns false and changes nothing.
+  /// The next command is zero. Cost: constant.
   [[nodiscard]] bool configure(const GateLimits& limits);
 
-  /// The command of a tick in which no force may be. Ramp and slew start anew; motors cool.
+  /// Zero command for a tick without force. Restarts ramp and slew; the thermal model cools.
   Result release();
 
-  /// The command of an active tick. `force` at the probe, N; `effort_per_force` maps it to axes;
-  /// `own_effort`, N or Nm, holds the device's weight, ramps up as the force does, and has the
-  /// limits of the axes only. Where these do not leave room for both, the force shrinks and keeps
-  /// its direction; the efforts' change in a tick shrinks as a whole, too.
+  /// Command of an active tick. `force`: at the probe, N. `effort_per_force`: maps it to the axes.
+  /// `own_effort`, N or Nm: gravity compensation; follows the ramp, and only the limits of the axes
+  /// apply to it. If an axis limit is too small for both, the force is scaled down and keeps its
+  /// direction; the change of all efforts in a tick is scaled by a common factor.
   /// Cost: constant, about 150 operations.
   Result command(Vec3 force, const Mat3& effort_per_force, Vec3 own_effort = {});
 
-  /// No effort at all.
+  /// Zero effort on all axes.
   [[nodiscard]] static MotorCommand no_effort() { return {}; }
 
   [[nodiscard]] const GateLimits& limits() const { return limits_; }
@@ -76,7 +76,7 @@ class SafetyGate {
   [[nodiscard]] Vec3 limit_slew(Vec3 force, LimitMask& limits) const;
   void limit_axes(Vec3 own, Vec3 wanted, Result& result) const;
   void limit_axis_slew(const float (&target)[kAxes], Result& result) const;
-  void warm_up();
+  void update_thermal_model();
 
   GateLimits limits_{};
   MotorHeat heat_{};

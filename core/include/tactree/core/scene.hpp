@@ -1,15 +1,16 @@
 #pragma once
-// Several rigid bodies around one probe. Each has a model and a pose that may change every tick;
-// the probe is seen from the body's frame, and rendered there by a Renderer of its own, so that a
-// body that moves takes its proxy along and pushes the probe. The forces add up.
+// Several rigid bodies around one probe. Each body has a model and a pose that may change every
+// tick. A Renderer per body works in the body's frame: a moving body carries its proxy along and
+// pushes the probe. The forces add up.
 //
 //   probe -> bodies within reach -> body frame -> Renderer -> force, and its reaction on the body
 //
-// Of the bodies whose box the probe touches, kMaxReachableBodies are rendered: those touched first,
-// then those added first. The others are as if they were not there, and SceneRendering tells so.
-// A body that appears around the probe does not throw it out: its surface is felt from within.
+// At most kMaxReachableBodies of the bodies whose box contains the probe are rendered: those
+// reached first, then those with the lowest numbers. The others exert no force, and
+// SceneRendering::crowded is set. A body that appears around the probe does not expel it: the probe
+// contacts its inner side.
 //
-// Interrupt safe: no shared state; one context owns a Scene.
+// Interrupt safety: no shared state; one context owns a scene.
 
 #include <cstdint>
 
@@ -24,10 +25,10 @@ namespace tactree::core {
 inline constexpr std::uint32_t kMaxBodies = 8;
 inline constexpr std::uint32_t kMaxReachableBodies = 2;  ///< rendered at the same time
 
-/// How long the force of a contact that disappears takes to fade.
+/// Duration in which the force of a removed contact fades to 0.
 inline constexpr float kFadeSeconds = 0.05F;
 
-/// Why a model or a change of a body was refused.
+/// Reason why a model or a change of a body was refused.
 enum class ModelStatus : std::uint8_t {
   kOk = 0,
   kBusy,           ///< armed or active: stop first
@@ -44,14 +45,14 @@ enum class ModelStatus : std::uint8_t {
 };
 [[nodiscard]] const char* describe(ModelStatus status);
 
-/// What the probe does to a body; scene's axes, the torque about the body's origin.
+/// Force and torque of the probe on a body, along the scene's axes; torque about the body's origin.
 struct Reaction {
   std::uint32_t body = kNoBody;
   Vec3 force_N{};
   Vec3 torque_Nm{};
 };
 
-/// What the bodies do to the probe in one tick.
+/// Contacts of all bodies in one tick.
 struct SceneRendering {
   /// The contact with the largest force, in the scene's frame; `force` and `stored_energy` are
   /// those of all of them.
@@ -59,61 +60,66 @@ struct SceneRendering {
   Vec3 wall_velocity{};                       ///< m/s, of that contact's body where the probe is
   Reaction reactions[kMaxReachableBodies]{};  ///< of the bodies in contact
   bool crowded = false;                       ///< more bodies within reach than kMaxReachableBodies
-  bool fading = false;  ///< a contact has disappeared: its force is on its way to 0
+  bool fading = false;                        ///< the force of a removed contact fades
 };
 
 class Scene {
  public:
-  /// Takes all bodies out, and every force with them.
+  /// Removes all bodies, contacts and forces.
   void clear();
 
-  /// Adds a body; `number` tells which. Its model must be suitable and outlive it.
+  /// Adds a body and returns its number: the lowest free one. The model must
+  /// outlive the body, and suit the render mode: surface_support(). Refused: kEmpty, kBadPose,
+  /// kTooManyBodies.
   [[nodiscard]] ModelStatus add(const BlobView& view, const Pose& pose, std::uint32_t& number);
-  /// Its force fades; its blob is not read any more. The number may be given to another body.
+  /// Removes a body; its force fades. Its blob is not read after the call. Refused: kNoSuchBody.
   [[nodiscard]] ModelStatus remove(std::uint32_t number);
-  /// A body that is disabled is as if removed, but keeps its number, and moves on.
+  /// A disabled body exerts no force, but keeps its number and continues to move. Refused:
+  /// kNoSuchBody.
   [[nodiscard]] ModelStatus enable(std::uint32_t number, bool enabled);
-  /// Puts a body at `pose` in the next tick; from there it moves on until told otherwise. Where it
-  /// jumps by more than twice the probe's greatest speed, a contact ends: its force fades.
+  /// Places a body at `pose` in the next tick; from there it moves with `motion`. If the probe
+  /// jumps in the body's frame faster than twice speed_max_m_s, the contact ends and its force
+  /// fades. Refused: kNoSuchBody, kBadPose, kBadMotion.
   [[nodiscard]] ModelStatus move(std::uint32_t number, const Pose& pose, const Motion& motion);
 
-  [[nodiscard]] bool empty() const;
-  /// The empty view where there is no such body.
+  [[nodiscard]] bool empty() const { return count_ == 0U; }
+  /// The empty view if there is no such body.
   [[nodiscard]] BlobView view(std::uint32_t number) const;
-  /// Likewise the pose at the origin.
+  /// The pose at the origin if there is no such body.
   [[nodiscard]] Pose pose(std::uint32_t number) const;
 
-  /// Forgets contacts and fading forces, not bodies: the probe is somewhere else now.
+  /// Clears contacts and fading forces, not bodies. Required when the probe jumps.
   void reset(Vec3 probe);
 
-  /// While there is no force, before update(): who goes out of an object from within is outside,
-  /// and not held at its inner side.
-  void let_out();
+  /// Clears contacts with inner sides, so that a probe that leaves an object from within is not
+  /// held back. Call it before update(), while no force is displayed.
+  void release_inner_contacts();
 
-  /// One tick; `probe` and `velocity` in the scene's frame. Preconditions: as Renderer::update().
+  /// Renders one tick; `probe` (m) and `velocity` (m/s) in the scene's frame. Preconditions: as
+  /// Renderer::update().
   /// Cost: kMaxReachableBodies times Renderer::update(), kMaxBodies times about 100 operations.
   const SceneRendering& update(const Configuration& configuration, Vec3 probe, Vec3 velocity);
-  /// What update() returned last; nothing after reset().
+  /// Result of the last update(); no contact after reset().
   [[nodiscard]] const SceneRendering& rendering() const { return rendering_; }
 
  private:
   struct Body {
-    BlobView view{};  // empty: the number is free, and all the rest as here
+    BlobView view{};  // empty: the number is free, and all other members are as here
     Pose pose{};
     Motion motion{};
-    Vec3 probe{};        // in the body's frame, of this tick; where `enabled`
-    Vec3 last_probe{};   // of the last tick; where `seen`
-    bool moved = false;  // its frame is not the scene's, or will not be
+    Vec3 probe{};        // in the body's frame, this tick; valid if enabled
+    Vec3 last_probe{};   // in the body's frame, last tick; valid if seen
+    bool moved = false;  // the body's frame differs from the scene's, or is about to
     bool enabled = true;
     bool seen = false;
   };
 
-  /// A renderer and the body it is lent to.
+  /// A renderer and the body it is assigned to.
   struct Slot {
     std::uint32_t body = kNoBody;
     Renderer renderer{};
     bool in_contact = false;
-    Vec3 force{};  // of the last tick
+    Vec3 force{};  // in the last tick
     float stored_energy = 0.0F;
     ForceFade fade{};
   };
@@ -121,16 +127,18 @@ class Scene {
   [[nodiscard]] bool exists(std::uint32_t number) const;
   [[nodiscard]] Slot* slot_of(std::uint32_t number);
   [[nodiscard]] Slot* free_slot(const bool (&within_reach)[kMaxBodies]);
-  static void lend(Slot& slot, std::uint32_t number, Vec3 probe);
+  static void assign_slot(Slot& slot, std::uint32_t number, Vec3 probe);
   void release(std::uint32_t number);
-  static void let_go(Slot& slot, std::uint32_t fade_ticks);
+  static void begin_fade(Slot& slot, std::uint32_t fade_ticks);
   void locate_probe(Vec3 probe);
-  [[nodiscard]] bool lend_slots();
+  [[nodiscard]] bool assign_slots();
   void render(Slot& slot, const Configuration& configuration, Vec3 probe, Vec3 velocity);
   void move_on(float period_s);
+  void list_bodies();
 
   Body bodies_[kMaxBodies]{};
-  std::uint32_t end_ = 0;  // one behind the last body
+  std::uint8_t listed_[kMaxBodies]{};  // numbers of the bodies, ascending
+  std::uint32_t count_ = 0;            // of the bodies
   Slot slots_[kMaxReachableBodies]{};
   SceneRendering rendering_{};
   std::uint32_t fade_ticks_ = 1;

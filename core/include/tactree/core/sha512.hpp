@@ -1,5 +1,7 @@
 #pragma once
 // SHA-512 (FIPS 180-4), for signatures.
+//
+// Interrupt safety: no shared state.
 
 #include <cstddef>
 #include <cstdint>
@@ -7,14 +9,14 @@
 
 namespace tactree::core {
 
-/// Running hash. Interrupt safe: no shared state. Cost: about 40 instructions a byte on a 32-bit
-/// core; 200 bytes of RAM and 640 of stack.
+/// Running hash. Cost: about 40 instructions per byte on a 32-bit core; 200 bytes of RAM and 640 of
+/// stack.
 class Sha512 {
  public:
   static constexpr std::size_t kBytes = 64;
 
   void update(std::span<const std::byte> bytes);
-  /// Ends it. Call it once.
+  /// Returns the hash. Call it once, after all update().
   void finish(std::span<std::uint8_t, kBytes> hash);
 
  private:

@@ -1,13 +1,13 @@
 #pragma once
-// Ed25519: was this signed by the owner of the key? (RFC 8032, sections 5.1 and 6.) Verifying only:
-// a board keeps no secret, so nothing here has to run in constant time.
+// Verification of Ed25519 signatures (RFC 8032, sections 5.1 and 6). A board holds no secret key,
+// so constant time is not required.
 //
-// Strict: a signature whose S is not below the group's order, whose R or key is not a canonical
-// point, or whose key or R is of small order, is refused. Each of these would let one message have
-// two signatures, or one signature fit many messages.
+// Strict: refuses an S that is not below the group's order, an R or key that is not canonically
+// encoded, and an R or key of small order. Each of these would allow two signatures for one
+// message, or one signature for several messages.
 //
-// Interrupt safe: no shared state. RAM: about 2 KiB of stack. Cost: about 20 million instructions,
-// and 40 a byte of the message.
+// Interrupt safety: no shared state, but too slow for an interrupt. RAM: about 2 KiB of stack.
+// Cost: about 20 million instructions, plus 40 per byte of the message.
 
 #include <cstddef>
 #include <cstdint>

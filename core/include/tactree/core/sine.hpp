@@ -1,5 +1,7 @@
 #pragma once
-// Sine and cosine without libm: the same bits on every compiler and core.
+// Sine and cosine without libm: the same bits with every compiler and core.
+//
+// Interrupt safety: pure functions.
 
 #include <cstdint>
 
@@ -10,18 +12,18 @@ struct SineCosine {
   float cosine = 1.0F;
 };
 
-/// Largest angle, rad, for which the error is stated.
+/// Largest angle with a stated error, rad.
 inline constexpr float kMaxAngle = 1000.0F;
 
-/// Both within 1.2e-7 for |angle| <= 2 pi and within 2e-7 for |angle| <= kMaxAngle; beyond that,
-/// and for NaN, 0 and 1: whoever needs more checks its range first.
-/// Taylor series of degree 9 and 8 about the nearest quarter turn. Interrupt safe: pure.
-/// Cost: about 30 operations, no loop.
+/// Sine and cosine of `angle` (rad). Error: below 1.2e-7 for |angle| <= 2 pi, below 2e-7 for
+/// |angle|
+/// <= kMaxAngle. Returns 0 and 1 beyond kMaxAngle and for NaN.
+/// Taylor series of degree 9 and 8 about the nearest quarter turn. Cost: about 30 operations.
 [[nodiscard]] inline SineCosine sine_cosine(float angle) {
   if (!(angle >= -kMaxAngle && angle <= kMaxAngle)) {
     return {};
   }
-  // A quarter turn in three parts: the first two have so few bits that their products are exact.
+  // A quarter turn in three parts. The first two have few bits, so their products are exact.
   constexpr float kPerQuarter = 0.63661977F;
   constexpr float kQuarterHigh = 1.5703125F;
   constexpr float kQuarterMiddle = 0.0004837512969970703F;

@@ -1,6 +1,9 @@
 #pragma once
-// When there may be force: one table, state x event -> state. What the table does not allow is a
-// fault; a fault latches until its cause is gone, clear-fault was given and then stop.
+// State machine of the controller: one table, state x event -> state. Only kActive has force. An
+// event that a state does not allow is a fault. A fault stays latched until its cause has ended,
+// then clear-fault and stop were received.
+// Interrupt safe: pure functions. Cost: constant.
+// Loop and memory annotations: docs/BOUND.md.
 
 #include <cstdint>
 
@@ -8,9 +11,9 @@ namespace tactree::core {
 
 enum class State : std::uint8_t {
   kBoot = 0,  ///< not configured
-  kNoModel,   ///< configured, nothing to touch
+  kNoModel,   ///< configured, no model
   kIdle,      ///< ready, motors off
-  kArmed,     ///< enable line on, waiting for the hand: force still zero
+  kArmed,     ///< enable line on, waiting for the hand: force zero
   kActive,    ///< the only state with force
   kFault,     ///< motors off, latched
 };
@@ -23,10 +26,10 @@ enum class Event : std::uint8_t {
   kArm,      ///< command
   kStop,     ///< command
   kClear,    ///< command clear-fault
-  kReady,    ///< armed, enable line up, probe in free space, and the hand confirms
-  kUnready,  ///< the dead-man control was let go
-  kFault,    ///< something is wrong
-  kRecover,  ///< stop, with every fault cleared
+  kReady,    ///< armed, enable line on, probe in free space, dead-man control held
+  kUnready,  ///< dead-man control released
+  kFault,    ///< a fault was detected
+  kRecover,  ///< stop, after every fault was cleared
 };
 inline constexpr std::uint32_t kEvents = 10;
 

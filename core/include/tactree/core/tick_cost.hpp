@@ -1,9 +1,10 @@
 #pragma once
-// What a tick takes at most, as a formula in the figures that a blob declares; `tactree bound`
-// proves it from the linked image and writes it there. So a controller refuses what would not be in
-// time.
+// Upper bound of a tick's cycles as a formula in the limits that a blob declares. `tactree bound`
+// proves the coefficients from the linked image and writes them into it; the controller refuses a
+// model whose bound exceeds the period.
 //
-// Interrupt safety of all that follows: pure functions.
+// Interrupt safe: pure functions.
+// Loop and memory annotations: docs/BOUND.md.
 
 #include <cstdint>
 
@@ -14,30 +15,31 @@
 
 namespace tactree::core {
 
-/// Figures of a model that a tick's length depends on. The bounds beside the loops name them.
-struct TickFigures {
+/// Limits of a model that determine the cycles of a tick; the loop bounds in the source refer to
+/// them by name.
+struct ModelLimits {
   std::uint32_t points_per_ball_max = 0;
   std::uint32_t points_per_leaf_max = 0;
   std::uint32_t depth = 0;
   std::uint32_t levels_below = 0;       ///< between the directory and the leaves
-  std::uint32_t blended_points = 0;     ///< whose materials are looked at in a contact
-  std::uint32_t blended_materials = 0;  ///< that a contact may be of
+  std::uint32_t blended_points = 0;     ///< points whose materials are read in a contact
+  std::uint32_t blended_materials = 0;  ///< materials of a contact
 };
-inline constexpr std::uint32_t kTickFigures = sizeof(TickFigures) / sizeof(std::uint32_t);
-inline constexpr const char* kTickFigureNames[kTickFigures] = {
+inline constexpr std::uint32_t kModelLimits = sizeof(ModelLimits) / sizeof(std::uint32_t);
+inline constexpr const char* kModelLimitNames[kModelLimits] = {
     "points_per_ball_max", "points_per_leaf_max", "depth",
     "levels_below",        "blended_points",      "blended_materials"};
 
-[[nodiscard]] TickFigures tick_figures(const BlobHeader& header);
+[[nodiscard]] ModelLimits model_limits(const BlobHeader& header);
 
-/// Of one body, cycles = base + the sum over the figures of per_figure * figure.
+/// Cost of one body: cycles = base + sum of per_limit[i] * limit i.
 struct TickCost {
   std::uint32_t base = 0;
-  std::uint16_t per_figure[kTickFigures] = {};
+  std::uint16_t per_limit[kModelLimits] = {};
 };
-[[nodiscard]] std::uint64_t cycles_of(const TickCost& cost, const TickFigures& figures);
+[[nodiscard]] std::uint64_t cycles_of(const TickCost& cost, const ModelLimits& limits);
 
-/// Ways through a tick that differ too much for one formula.
+/// Kinds of ticks; each has its own formula.
 enum class TickKind : std::uint32_t {
   kSurface = 0,  ///< surface mode, leaves of one size
   kMixed = 1,    ///< surface mode, leaves of several sizes
@@ -48,46 +50,48 @@ inline constexpr std::uint32_t kTickKinds = 3;
 
 /// The models of a scene together.
 struct TickLoad {
-  TickFigures figures{};  ///< of all models the largest
+  ModelLimits limits{};  ///< largest of all models
   TickKind kind = TickKind::kSurface;
   std::uint32_t bodies = 0;
-  std::uint32_t pace = 0;  ///< of the rate: pace_of()
-  bool delta = false;      ///< the device is one
+  std::uint32_t rate_tier = 0;  ///< rate_tier_of() of the rate
+  bool delta = false;           ///< the device is a delta
   void add(const BlobHeader& header, const Configuration& configuration);
 };
 
-/// A tick of surface mode that gathers more has less left to fit: what it takes depends on how
-/// many gathers, of all bodies, it does. One row for each number of them, from none.
-[[nodiscard]] constexpr std::uint32_t rows_of_pace(std::uint32_t pace) {
-  return kMaxReachableBodies * kWorkPerTick[pace].gathers + 1U;
+/// Number of cost rows of a rate tier. A tick of surface mode divides its work between gathering
+/// and fitting: its cost depends on the number of gathers of all bodies. One row per number, from
+/// 0.
+[[nodiscard]] constexpr std::uint32_t rows_of_rate_tier(std::uint32_t rate_tier) {
+  return kMaxReachableBodies * kWorkPerTick[rate_tier].gathers + 1U;
 }
-/// The rows of the pace begin after those of all before it.
-[[nodiscard]] constexpr std::uint32_t first_row(std::uint32_t pace) {
+/// First row of a rate tier: after the rows of all preceding tiers.
+[[nodiscard]] constexpr std::uint32_t first_row(std::uint32_t rate_tier) {
   std::uint32_t rows = 0;
-  for (std::uint32_t before = 0; before < pace; ++before) {  // bound: kPaces
-    rows += rows_of_pace(before);
+  for (std::uint32_t before = 0; before < rate_tier; ++before) {  // bound: kRateTiers
+    rows += rows_of_rate_tier(before);
   }
   return rows;
 }
-inline constexpr std::uint32_t kTickRows = first_row(kPaces);
+inline constexpr std::uint32_t kTickRows = first_row(kRateTiers);
 
 inline constexpr std::uint32_t kTickCostsKnown = 0x4B434954;  // "TICK"
 
-/// Of an image: cycles = base + delta where the device is one + for each body that is rendered the
-/// largest of the rows. Zeros, as compiled: nothing is known.
+/// Costs of an image: cycles = base + delta (delta device only) + listed for each body of the scene
+/// + largest row for each rendered body. All zero, as compiled: unknown.
 struct TickCosts {
   std::uint32_t known = 0;
   std::uint32_t base = 0;
   std::uint32_t delta = 0;
-  TickCost surface[2][kTickRows] = {};  ///< of leaves of one size, of several
+  std::uint32_t listed = 0;
+  TickCost surface[2][kTickRows] = {};  ///< [0]: leaves of one size, [1]: of several
   TickCost paper{};
 };
 /// Precondition: costs.known is kTickCostsKnown.
 [[nodiscard]] std::uint64_t cycles_of(const TickCosts& costs, const TickLoad& load);
-/// The costliest of the rows for such a body.
+/// Most expensive row for such a body.
 [[nodiscard]] const TickCost& worst_row(const TickCosts& costs, const TickLoad& load);
 
-static_assert(sizeof(TickCost) == 4 + 2 * kTickFigures);
-static_assert(sizeof(TickCosts) == 12 + sizeof(TickCost) * (2 * kTickRows + 1));
+static_assert(sizeof(TickCost) == 4 + 2 * kModelLimits);
+static_assert(sizeof(TickCosts) == 16 + sizeof(TickCost) * (2 * kTickRows + 1));
 
 }  // namespace tactree::core

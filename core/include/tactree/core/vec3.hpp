@@ -1,5 +1,13 @@
 #pragma once
-// Three float32 components and the few operations the control loop needs. No libm.
+// Vectors of three float32 components, and scalar helpers of the control loop. No libm.
+//
+// Interrupt safety: pure functions.
+
+#if defined(__FAST_MATH__)
+#error "Tactree: compile without -ffast-math; it changes the forces, and removes the checks for NaN"
+#elif __cplusplus < 202002L
+#error "Tactree: compile as C++20 (-std=c++20) or later"
+#endif
 
 #include <cstdint>
 
@@ -47,7 +55,7 @@ constexpr float absolute(float v) { return v < 0.0F ? -v : v; }
 constexpr bool is_finite(float v) { return v - v == 0.0F; }
 constexpr bool is_finite(Vec3 v) { return is_finite(v.x) && is_finite(v.y) && is_finite(v.z); }
 
-/// `v` scaled to unit length, or `fallback` when it has no direction.
+/// `v` scaled to unit length, or `fallback` if `v` is too short or not finite.
 inline Vec3 normalized_or(Vec3 v, Vec3 fallback) {
   const float squared = length_squared(v);
   if (!(squared > 1e-30F) || !is_finite(squared)) {

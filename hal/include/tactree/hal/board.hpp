@@ -1,10 +1,9 @@
 #pragma once
-// What a board must provide, as concepts. A port implements these types, each as small as its
-// hardware allows, bundles them in one board type and runs conformance.hpp on it.
+// Interface of a board, as concepts. A port implements these types, combines them in one board type
+// and runs conformance.hpp on it.
 //
-// For all functions here: they return at once (Ticker::wait() excepted), never throw, never
-// allocate, and are called from one context only, that of the control loop. A function that can
-// fail says so in what it returns; there is no other channel.
+// All functions return at once (except Ticker::wait()), never throw, never allocate, and are called
+// from one context only, that of the control loop. Errors are reported by return values only.
 
 #include <concepts>
 #include <cstddef>
@@ -17,8 +16,8 @@
 namespace tactree::hal {
 
 /// Position counters of the axes.
-///   read()  the counts of now, all latched at one instant; wraps at 2^32. An axis whose counter
-///           cannot be trusted (wire broken, index lost) is not valid; its count does not matter.
+///   read()  current counts, all latched at one instant; wrap at 2^32. An axis with an unreliable
+///           counter (broken wire, lost index) is not valid; its count is ignored.
 template <class T>
 concept EncoderBank = requires(T& bank) {
   { bank.read() }
@@ -26,11 +25,11 @@ concept EncoderBank = requires(T& bank) {
 };
 
 /// Amplifiers and motors.
-///   write(command)  the efforts to hold from now on, N or Nm per axis. Before the first write and
-///                   whenever the enable line is off, the effort is zero.
-///   healthy()       false: an amplifier reports a failure, or a command could not be delivered.
-/// A bank that can measure its supply also has, for Configuration::supply_monitored:
-///   supply_V()      float, of now.
+///   write(command)  sets the efforts until the next write, N or Nm per axis. The effort is zero
+///                   before the first write and while the enable line is off.
+///   healthy()       false: an amplifier reports a failure, or a command was not delivered.
+/// A bank that measures its supply also has, for Configuration::supply_monitored:
+///   supply_V()      float, current voltage.
 template <class T>
 concept MotorBank = requires(T& bank, const core::MotorCommand& command) {
   { bank.write(command) }
@@ -39,10 +38,10 @@ concept MotorBank = requires(T& bank, const core::MotorCommand& command) {
   noexcept->std::same_as<bool>;
 };
 
-/// The line that gives the amplifiers their power. Off after reset.
-///   set(on)      what it is to be.
-///   read_back()  what it is, measured at the amplifiers, not the value last set. It follows
-///                within Configuration::enable_timeout_s.
+/// Line that enables the power of the amplifiers. Off after reset.
+///   set(on)      sets the line.
+///   read_back()  state measured at the amplifiers, not the value last set. It follows set() within
+///                Configuration::enable_timeout_s.
 template <class T>
 concept EnableLine = requires(T& line, bool on) {
   { line.set(on) }
@@ -51,9 +50,9 @@ concept EnableLine = requires(T& line, bool on) {
   noexcept->std::same_as<bool>;
 };
 
-/// Switches of the person at the device.
+/// Safety switches of the user.
 ///   emergency_stop()  true: pressed. A broken wire reads as pressed.
-///   dead_man()        true: held. A broken wire reads as let go.
+///   dead_man()        true: held. A broken wire reads as released.
 template <class T>
 concept SafetyInputs = requires(T& inputs) {
   { inputs.emergency_stop() }
@@ -62,14 +61,14 @@ concept SafetyInputs = requires(T& inputs) {
   noexcept->std::same_as<bool>;
 };
 
-/// What a tick's wait tells.
+/// Result of Ticker::wait().
 struct Tick {
-  std::uint32_t overruns = 0;  ///< deadlines that went by since the last wait; 0: on time
+  std::uint32_t overruns = 0;  ///< deadlines missed since the last wait; 0: on time
 };
 
-/// The heartbeat of the loop, and a clock.
-///   wait()    returns at the next tick; at once if that has passed, counting it as an overrun.
-///   now_us()  microseconds, wrapping at 2^32, never going back.
+/// Tick source of the loop, and a clock.
+///   wait()    returns at the next tick; at once if it has passed, which counts as an overrun.
+///   now_us()  microseconds; monotonic, wraps at 2^32.
 template <class T>
 concept Ticker = requires(T& ticker) {
   { ticker.wait() }
@@ -78,29 +77,24 @@ concept Ticker = requires(T& ticker) {
   noexcept->std::same_as<std::uint32_t>;
 };
 
-/// Where a body of the scene is, how it moves on from there, and whether it is there at all.
-struct BodyUpdate {
-  std::uint32_t body = core::kNoBody;  ///< which; kNoBody: nothing is to change
-  bool enabled = true;
-  core::Pose pose{};
-  core::Motion motion{};
-};
+using core::BodyUpdate;
 
-/// What came over the link since the last look.
+/// Input from the link since the last receive().
 struct LinkInput {
   bool alive = false;                            ///< at least one valid message
-  core::Command command = core::Command::kNone;  ///< each message gives its command once
-  std::uint16_t age_ticks = 0;                   ///< where alive: see core::Input::link_age_ticks
-  BodyUpdate body{};                             ///< each message gives its update once
-  std::uint32_t force_ticks = 0;                 ///< 0: no force is to be added
-  core::Vec3 force_N{};                          ///< see core::Controller::add_force()
-  bool storage_busy = false;  ///< the flash is being written: a late tick is no fault, where
-                              ///< the motors are off
+  core::Command command = core::Command::kNone;  ///< command of a message, returned once
+  std::uint16_t age_ticks = 0;                   ///< if alive: see core::Input::link_age_ticks
+  /// Updates of a message, returned once; valid until the next receive(). The tick bound of an
+  /// image covers one.
+  std::span<const BodyUpdate> bodies{};
+  core::AddedForce added_force{};  ///< force of a message, returned once
+  bool storage_busy = false;       ///< flash write in progress: a late tick is no fault while the
+                                   ///< motors are off
 };
 
 /// The connection to an application.
-///   receive()     what came in; a message that fails its checks is as if it never came.
-///   send(status)  best effort: drops it when there is no room, never waits.
+///   receive()     input since the last call; drops a message that fails its checks.
+///   send(status)  best effort: drops the status if there is no room, never waits.
 template <class T>
 concept Link = requires(T& link, const core::Status& status) {
   { link.receive() }
@@ -109,10 +103,9 @@ concept Link = requires(T& link, const core::Status& status) {
   noexcept->std::same_as<void>;
 };
 
-/// Bytes to and from an application: a serial port, a USB endpoint. What a Session (session.hpp)
-/// talks over.
-///   read(bytes)   what came in, as much as fits; returns how many, 0 when there is nothing.
-///   write(bytes)  as many as there is room for; returns how many.
+/// Byte transport of a Session (session.hpp): a serial port or a USB endpoint.
+///   read(bytes)   copies received bytes, as many as fit; returns the number, 0: none.
+///   write(bytes)  queues as many bytes as there is room for; returns the number.
 template <class T>
 concept BytePort = requires(T& port, std::span<std::byte> in, std::span<const std::byte> out) {
   { port.read(in) }
@@ -121,16 +114,16 @@ concept BytePort = requires(T& port, std::span<std::byte> in, std::span<const st
   noexcept->std::same_as<std::size_t>;
 };
 
-/// Where the model is kept.
-///   active()  the bytes of the blob in use, 4-byte aligned, readable in place until the next
-///             reset; empty when there is none. Not trusted: open_blob() checks them.
+/// Storage of the model.
+///   active()  bytes of the blob in use, 4-byte aligned, readable in place until the next reset;
+///             empty: none. Not trusted: open_blob() checks them.
 template <class T>
 concept BlobStorage = requires(const T& storage) {
   { storage.active() }
   noexcept->std::same_as<std::span<const std::byte>>;
 };
 
-/// All of it. Each function returns a reference to the part.
+/// A complete board. Each function returns a reference to the part.
 template <class T>
 concept Board = requires(T& board) {
   requires EncoderBank<std::remove_reference_t<decltype(board.encoders())>>;

@@ -1,6 +1,7 @@
 #pragma once
-// Does a board keep the contracts of board.hpp? A port calls run_conformance() on its hardware and
-// prints the report. Nothing moves: every command is zero. Takes about a thousand ticks.
+// Test of a board against the contracts of board.hpp. A port calls run_conformance() on its
+// hardware and prints the report. Every command is zero: nothing moves. Duration: about 1000 ticks.
+// Loop and memory annotations: docs/BOUND.md.
 
 #include <cstddef>
 #include <cstdint>
@@ -12,18 +13,18 @@
 
 namespace tactree::hal {
 
-/// What the board under test is like while the test runs: nobody touches it.
+/// Properties of the board under test. Do not touch the device during the test.
 struct ConformanceSetup {
   std::uint32_t period_us = 1000;           ///< of a tick
-  std::uint32_t enable_timeout_ticks = 50;  ///< for the read-back to follow
-  std::int32_t count_noise = 2;             ///< counts an axis at rest may wander
+  std::uint32_t enable_timeout_ticks = 50;  ///< limit for the read-back
+  std::int32_t count_noise = 2;             ///< largest deviation of an axis at rest, counts
 };
 
 struct ConformanceReport {
   static constexpr std::uint32_t kMaxFailures = 16;
   std::uint32_t checks = 0;
   std::uint32_t failures = 0;
-  const char* failed[kMaxFailures] = {};  ///< what was found, one sentence each
+  const char* failed[kMaxFailures] = {};  ///< one sentence per failure
 
   [[nodiscard]] bool passed() const { return checks > 0U && failures == 0U; }
 
@@ -43,7 +44,7 @@ namespace conformance {
 
 inline constexpr std::uint32_t kTicks = 100;
 
-/// Ticks until the read-back agrees; more than `limit`: it did not.
+/// Ticks until the read-back agrees; more than `limit`: timeout.
 template <Board B>
 std::uint32_t ticks_to_follow(B& board, bool on, std::uint32_t limit) {
   board.enable_line().set(on);
@@ -129,13 +130,13 @@ void check_inputs(B& board, ConformanceReport& report) {
     board.link().send(core::Status{});
     const LinkInput input = board.link().receive();
     command = input.command == core::Command::kNone ? command : input.command;
-    moved = moved || input.body.body != core::kNoBody;
+    moved = moved || !input.bodies.empty();
   }
-  report.check(command == core::Command::kNone, "the link gives commands nobody sent");
-  report.check(!moved, "the link moves bodies though nobody said so");
+  report.check(command == core::Command::kNone, "the link returns an unsent command");
+  report.check(!moved, "the link returns unsent body updates");
 }
 
-/// Checksum in 256 slices, a tick between two of them: a board's watchdog may want its ticks.
+/// Checksum in 256 slices with a tick between two of them, which serves the watchdog of a board.
 template <Board B>
 std::uint32_t checksum_over_ticks(B& board, std::span<const std::byte> bytes) {
   const std::size_t slice = bytes.size() / 256U + 1U;
@@ -163,8 +164,8 @@ void check_storage(B& board, ConformanceReport& report) {
 
 }  // namespace conformance
 
-/// Runs every check. Precondition: emergency stop released, dead-man control let go, no host
-/// connected, device at rest, motors off.
+/// Runs every check. Precondition: emergency stop and dead-man control released, no host connected,
+/// device at rest, motors off. Call from the context of the control loop, in place of the loop.
 template <Board B>
 [[nodiscard]] ConformanceReport run_conformance(B& board, const ConformanceSetup& setup = {}) {
   ConformanceReport report;

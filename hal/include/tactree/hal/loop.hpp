@@ -1,46 +1,22 @@
 #pragma once
-// The control loop: moves data between a board and the controller, and decides nothing.
+// The control loop: transfers data between a board and the controller. All decisions are in the
+// controller. One context calls start() and tick().
 //
 //   MyBoard board;
 //   core::Controller controller;
 //   hal::Loop loop(board, controller);
-//   if (!loop.start(configuration).ok()) { /* tell, and stay: tick() keeps the motors off */ }
+//   if (!loop.start(configuration).ok()) { /* report it; tick() keeps the motors off */ }
 //   while (true) loop.tick();
 
+#include "tactree/core/between_ticks.hpp"
 #include "tactree/core/blob.hpp"
 #include "tactree/core/controller.hpp"
 #include "tactree/hal/board.hpp"
+#include "tactree/hal/start_result.hpp"
 
 namespace tactree::hal {
 
-/// What the self-test of the program found.
-enum class ImageStatus : std::uint8_t {
-  kOk = 0,
-  kDamaged,    ///< a byte of it is not as it was built
-  kBadMemory,  ///< a bit of the RAM of its variables does not hold
-};
-
-/// Why there is no model to touch.
-struct StartResult {
-  core::ConfigurationStatus configuration = core::ConfigurationStatus::kOk;
-  core::BlobStatus blob = core::BlobStatus::kOk;
-  core::ModelStatus model = core::ModelStatus::kOk;
-  ImageStatus image = ImageStatus::kOk;  ///< filled in by the firmware, ahead of Loop::start()
-  [[nodiscard]] bool ok() const {
-    return configuration == core::ConfigurationStatus::kOk && blob == core::BlobStatus::kOk &&
-           model == core::ModelStatus::kOk && image == ImageStatus::kOk;
-  }
-};
-
-/// What the controller refuses of an update stays as it is. Cost: constant.
-inline void apply(const BodyUpdate& update, core::Controller& controller) {
-  if (update.body != core::kNoBody) {
-    (void)controller.move_body(update.body, update.pose, update.motion);
-    (void)controller.enable_body(update.body, update.enabled);
-  }
-}
-
-/// What a tick reads, in its order: waits for the tick first. All but the link and the load.
+/// Waits for the tick, then reads all inputs of it except the link and the load.
 template <Board B>
 [[nodiscard]] core::Input read_inputs(B& board) {
   const Tick tick = board.ticker().wait();
@@ -62,8 +38,8 @@ class Loop {
  public:
   Loop(B& board, core::Controller& controller) : board_(board), controller_(controller) {}
 
-  /// Configures the controller and gives it the model in the board's storage. Not bounded by a
-  /// tick: call it before the first. The state stays boot or no-model when something is refused.
+  /// Configures the controller and loads the model of the board's storage. Not bounded by a tick:
+  /// call it before the first tick. If refused, the state stays boot or no-model.
   [[nodiscard]] StartResult start(const core::Configuration& configuration) {
     board_.enable_line().set(false);
     StartResult result;
@@ -71,16 +47,20 @@ class Loop {
     if (result.configuration != core::ConfigurationStatus::kOk) {
       return result;
     }
+    core::report_to_recorder(board_, [&](auto& recorder) { recorder.configured(configuration); });
     core::BlobView view;
     result.blob = core::open_blob(board_.storage().active(), view);
     if (result.blob == core::BlobStatus::kOk) {
       result.model = controller_.load_model(view);
     }
+    if (result.ok()) {
+      core::report_to_recorder(board_, [&](auto& recorder) { recorder.model_loaded(view); });
+    }
     return result;
   }
 
-  /// One tick: waits for it, reads, steps, writes. Returns what the controller said. A function of
-  /// its own, so that each of its instructions can be left out in a test.
+  /// Executes one tick: waits, reads, steps, writes. Returns the output of the controller. Not
+  /// inlined: a test skips each of its instructions.
   [[gnu::noinline]] const core::Output& tick() {
     core::Input input = read_inputs(board_);
     input.load = load_;
@@ -88,7 +68,8 @@ class Loop {
 
     const std::uint32_t begin_us = board_.ticker().now_us();
     const core::Output& output = controller_.step(input);
-    const bool active = controller_.may_give_force();  // again: see there
+    core::report_to_recorder(board_, [&](auto& recorder) { recorder.stepped(input, output); });
+    const bool active = controller_.may_give_force();  // second check, see there
     board_.motors().write(active ? output.motors : core::SafetyGate::no_effort());
     board_.enable_line().set(output.enable);
     board_.link().send(output.status);
@@ -98,16 +79,14 @@ class Loop {
   }
 
  private:
-  /// A function of its own: a message takes no stack while the controller steps.
+  /// A separate function: a message uses no stack during the controller's step.
   void listen(core::Input& input) {
     const LinkInput link = board_.link().receive();
     input.link_alive = link.alive;
     input.link_age_ticks = link.age_ticks;
     input.command = link.command;
-    apply(link.body, controller_);
-    if (link.force_ticks > 0U) {
-      controller_.add_force(link.force_N, link.force_ticks);
-    }
+    input.bodies = link.bodies;
+    input.added_force = link.added_force;
     if (link.storage_busy && controller_.motors_off()) {
       input.overruns = 0;
     }

@@ -1,16 +1,15 @@
 #pragma once
-// What an emulated board and the simulation that drives it tell each other, over two byte streams,
-// in lockstep: one message each way per tick. Both sides are little-endian and lay these structs
-// out alike, so that every float arrives with its bits. The host trusts the board and the board the
-// host: they are parts of one simulation.
+// Messages between an emulated board and its simulation, over two byte streams, in lockstep: one
+// message per tick in each direction. Both sides are little-endian with the same layout of these
+// structs: every float keeps its bits. Both sides trust each other as parts of one simulation.
 //
 //   board -> host   Hello              after every reset
 //   host -> board   Session
-//   board -> host   Started            the model was taken, or why not
-//   host -> board   TickInput          each tick; the last one has kFinish: the board ends
+//   board -> host   Started            result of the start
+//   host -> board   TickInput          each tick; the last one has kFinish: the board exits
 //   board -> host   TickOutput         each tick, when the board waits for the next
 //
-// Every message begins with its kind.
+// Every message starts with its kind.
 
 #include <cstdint>
 #include <type_traits>
@@ -21,11 +20,11 @@
 
 namespace tactree::hal::plant_link {
 
-/// Changes with every change of what follows, or of the structs in it.
+/// Increased with every change of these messages or of the structs in them.
 inline constexpr std::uint32_t kVersion = 4;
 
 enum class Kind : std::uint32_t {
-  kHello = 0x54414331,  ///< no message begins with these bytes by chance
+  kHello = 0x54414331,  ///< unlikely as the start of other data
   kSession,
   kStarted,
   kTickInput,
@@ -51,8 +50,8 @@ struct Hello {
 struct Session {
   Kind kind = Kind::kSession;
   core::Configuration configuration{};
-  std::uint32_t served = 0;  ///< 1: an application is at the board's serial port; the link of the
-                             ///< messages below is not used
+  std::uint32_t served = 0;  ///< 1: an application uses the board's serial port, not the link of
+                             ///< the messages below
 };
 
 struct Started {
@@ -62,7 +61,7 @@ struct Started {
 
 struct TickInput {
   Kind kind = Kind::kTickInput;
-  core::Input input{};
+  core::Readings input{};
   BodyUpdate body{};
 };
 
@@ -73,9 +72,9 @@ struct TickOutput {
   core::Status status{};
 };
 
-// Alike on every core: no pointer, nothing wider than four bytes.
+// Same layout on every core: no pointer, no member wider than four bytes.
 static_assert(std::is_trivially_copyable_v<core::Configuration> &&
-              std::is_trivially_copyable_v<core::Input> &&
+              std::is_trivially_copyable_v<core::Readings> &&
               std::is_trivially_copyable_v<BodyUpdate> &&
               std::is_trivially_copyable_v<core::Status>);
 static_assert(alignof(Session) == 4 && alignof(TickInput) == 4 && alignof(TickOutput) == 4);

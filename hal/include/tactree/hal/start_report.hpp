@@ -1,5 +1,5 @@
 #pragma once
-// How a board came up, beyond StartResult (loop.hpp): for people, told over its link.
+// Diagnostics of the start of a board beyond StartResult (loop.hpp), reported over its link.
 
 #include <cstdint>
 
@@ -9,7 +9,7 @@
 namespace tactree::hal {
 
 struct StartReport {
-  std::uint32_t missing = 0;  ///< core::wire::StartPart, or of them
+  std::uint32_t missing = 0;  ///< bit set of core::wire::StartPart
   bool by_watchdog = false;   ///< the watchdog caused the last reset
   CapturedFault last_fault{};
 

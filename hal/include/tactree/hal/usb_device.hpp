@@ -1,6 +1,7 @@
 #pragma once
-// The USB device of a board: hands what the host asks to the core, and moves bytes. A port
-// implements the contract of its device controller; everything that is decided is in core/usb/.
+// USB device of a board: passes the host's requests to core/usb/, which makes all decisions, and
+// transfers bytes. A port implements UsbController. One context calls all functions.
+// Loop and memory annotations: docs/BOUND.md.
 
 #include <concepts>
 #include <cstddef>
@@ -15,38 +16,37 @@
 
 namespace tactree::hal {
 
-/// What happened on the bus.
+/// Event on the bus.
 struct UsbEvent {
   enum class Kind : std::uint8_t {
     kNone = 0,
-    kReset,         ///< by the host; `speed` holds from now on. Endpoints but 0 are closed
-    kDisconnected,  ///< the cable was pulled, or the bus sleeps
-    kConfigured,    ///< the controller took the configuration by itself (Linux); endpoints are open
-    kUnconfigured,  ///< and gave it up
-    kSetup,         ///< `setup` came in; an older control transfer is over
-    kData,          ///< of a control transfer to the device: control_data() holds it
-    kStatusDone,    ///< the control transfer is over
+    kReset,         ///< by the host; `speed` is valid. All endpoints except 0 are closed
+    kDisconnected,  ///< cable unplugged, or bus suspended
+    kConfigured,    ///< the controller accepted the configuration itself (Linux); endpoints open
+    kUnconfigured,  ///< the controller left the configuration itself
+    kSetup,         ///< `setup` was received; ends an older control transfer
+    kData,          ///< data stage to the device is complete: see control_data()
+    kStatusDone,    ///< the control transfer is complete
   };
   Kind kind = Kind::kNone;
   core::usb::Speed speed = core::usb::Speed::kFull;
   core::usb::SetupPacket setup{};
 };
 
-/// A controller of the device's side of the bus. Functions return at once; all are called from one
-/// context.
-///   next_event()              what happened first of what was not told yet
-///   control_send(data, end)   data stage to the host; `end`: a packet shorter than the endpoint's
-///                             ends it, if need be an empty one. `data` holds until the next event
-///   control_receive(bytes)    data stage from the host, then the event kData
-///   control_data()            what came in
+/// USB device controller. Functions return at once; all are called from one context.
+///   next_event()              oldest event not yet returned
+///   control_send(data, end)   data stage to the host; `end`: terminate it by a short packet, empty
+///                             if necessary. `data` must stay valid until the next event
+///   control_receive(bytes)    data stage from the host, followed by the event kData
+///   control_data()            data of that stage
 ///   control_acknowledge()     status stage
 ///   control_stall()           refuses the control transfer
-///   set_address(address)      from now on
+///   set_address(address)      sets the address at once
 ///   configure(open)           opens the endpoints with fresh data toggles, or closes them
-///   halt(endpoint, on)        stalls it until it is called with false; fresh data toggle then
-///   read(endpoint, bytes)     bytes that came in; returns how many
-///   write(endpoint, bytes)    bytes to send; returns how many were taken. A message of an
-///                             interrupt endpoint is taken whole or not at all
+///   halt(endpoint, on)        true: stalls the endpoint; false: ends it, with fresh data toggle
+///   read(endpoint, bytes)     copies received bytes; returns the number
+///   write(endpoint, bytes)    queues bytes; returns the number. An interrupt endpoint accepts a
+///                             message completely or not at all
 template <class T>
 concept UsbController = requires(T& usb, std::span<const std::byte> out, std::span<std::byte> in,
                                  std::uint8_t number, std::uint16_t count, bool on) {
@@ -63,7 +63,8 @@ concept UsbController = requires(T& usb, std::span<const std::byte> out, std::sp
   { usb.write(number, out) } -> std::same_as<std::size_t>;
 };
 
-/// Also a BytePort (board.hpp): the messages of the link.
+/// USB device with link, model and parameter interfaces. As a BytePort (board.hpp) it carries the
+/// messages of the link.
 template <UsbController Controller, core::usb::DfuStorage Model, core::usb::DfuStorage Parameters>
 class UsbDevice {
  public:
@@ -74,8 +75,8 @@ class UsbDevice {
         model_(model),
         parameters_(parameters) {}
 
-  /// Once a tick, in the loop's spare time: takes a few events, so that a host that asks without
-  /// end costs no tick its deadline.
+  /// Call once a tick, after the tick's work. Handles at most kEventsPerTick events: the cost is
+  /// bounded for any host.
   void poll(std::uint32_t now_us) {
     model_.advance(now_us);
     parameters_.advance(now_us);
@@ -94,25 +95,25 @@ class UsbDevice {
   [[nodiscard]] std::size_t write(std::span<const std::byte> bytes) noexcept {
     return may_move(core::usb::kBulkIn) ? controller_.write(core::usb::kBulkIn, bytes) : 0;
   }
-  /// Tells the host that state, faults or limits are others now; false: it has not taken the news
-  /// before yet, so try again.
-  [[nodiscard]] bool tell(const core::usb::NewsPacket& news) {
+  /// Sends a change of state, faults or limits to the host. False: the preceding news is still
+  /// pending; try again.
+  [[nodiscard]] bool send_news(const core::usb::NewsPacket& news) {
     const auto bytes = std::as_bytes(std::span(&news, 1));
     return may_move(core::usb::kNewsIn) &&
            controller_.write(core::usb::kNewsIn, bytes) == bytes.size();
   }
 
-  /// Once a tick: the news, where state or faults are others than the host knows.
-  void tell_changes(const core::Status& status) {
+  /// Call once a tick: sends the news if state or faults changed since the last news.
+  void send_changes(const core::Status& status) {
     const core::usb::NewsPacket news{status.tick, static_cast<std::uint32_t>(status.state),
                                      status.faults, status.limits};
-    const bool same = news.state == told_.state && news.faults == told_.faults;
-    if (!same && tell(news)) {
-      told_ = news;
+    const bool same = news.state == last_sent_.state && news.faults == last_sent_.faults;
+    if (!same && send_news(news)) {
+      last_sent_ = news;
     }
   }
 
-  /// There is a host that has chosen a configuration.
+  /// True if a host has selected a configuration.
   [[nodiscard]] bool configured() const { return standard_.configured(); }
   [[nodiscard]] const core::usb::StandardRequests& standard() const { return standard_; }
   [[nodiscard]] const core::usb::Dfu<Model>& model() const { return model_; }
@@ -145,7 +146,7 @@ class UsbDevice {
     }
   }
 
-  /// A transfer that was under way will not go on.
+  /// Aborts a transfer in progress.
   void leave() {
     pending_ = {};
     model_.reset();
@@ -185,7 +186,7 @@ class UsbDevice {
     }
   }
 
-  /// An address holds from the end of the request's status stage on, not earlier (9.4.6).
+  /// A new address takes effect after the status stage of its request (USB 2.0, 9.4.6).
   void carry_out() {
     using Effect = core::usb::Answer::Effect;
     const core::usb::Answer done = pending_;
@@ -205,7 +206,7 @@ class UsbDevice {
   core::usb::Dfu<Parameters> parameters_;
   core::usb::SetupPacket setup_{};
   core::usb::Answer pending_{};
-  core::usb::NewsPacket told_{};
+  core::usb::NewsPacket last_sent_{};
 };
 
 }  // namespace tactree::hal

@@ -1,23 +1,27 @@
-// A camera that goes round a point. z is up, as in the device's frame; x comes to the user.
+// A camera on an orbit around a point. At first z is up and x points to the user, as in the device
+// frame; every orientation can be reached.
 
 import * as THREE from 'three';
 
 const START = { yaw: 0.5, pitch: 0.35 };
-const STEEPEST = 1.55;
+const Z = new THREE.Vector3(0, 0, 1);
 
 export class Orbit {
   readonly camera = new THREE.PerspectiveCamera(35, 1, 0.001, 100);
-  private yaw = START.yaw;
-  private pitch = START.pitch;
   private distance = 1;
   private readonly target = new THREE.Vector3();
   private fitted = new THREE.Sphere(new THREE.Vector3(), 0.1);
 
-  /** Shows all of it. */
+  /** Places the camera so that the whole sphere is visible. */
   fit(sphere: THREE.Sphere): void {
     this.fitted = sphere.clone();
-    this.yaw = START.yaw;
-    this.pitch = START.pitch;
+    const level = Math.cos(START.pitch);
+    const from = new THREE.Vector3(
+      level * Math.cos(START.yaw),
+      level * Math.sin(START.yaw),
+      Math.sin(START.pitch),
+    );
+    this.camera.quaternion.setFromRotationMatrix(new THREE.Matrix4().lookAt(from, new THREE.Vector3(), Z));
     this.target.copy(sphere.center);
     const half = THREE.MathUtils.degToRad(this.camera.fov / 2);
     const narrow = Math.min(1, this.camera.aspect);
@@ -28,9 +32,16 @@ export class Orbit {
     this.fit(this.fitted);
   }
 
+  /** Turns the camera around the scene's vertical, and over the scene. */
   turn(yaw: number, pitch: number): void {
-    this.yaw += yaw;
-    this.pitch = THREE.MathUtils.clamp(this.pitch + pitch, -STEEPEST, STEEPEST);
+    const upright = this.up.z < 0 ? -1 : 1;
+    this.camera.quaternion.premultiply(new THREE.Quaternion().setFromAxisAngle(Z, upright * yaw));
+    this.camera.rotateX(-pitch);
+    this.place();
+  }
+  /** Turns the camera around its line of sight. */
+  roll(angle: number): void {
+    this.camera.rotateZ(angle);
     this.place();
   }
   zoom(factor: number): void {
@@ -57,7 +68,7 @@ export class Orbit {
   get forward(): THREE.Vector3 {
     return new THREE.Vector3().setFromMatrixColumn(this.camera.matrixWorld, 2).negate();
   }
-  /** Where `at` is. */
+  /** Size of a pixel at the depth of `at`. */
   metresPerPixel(at: THREE.Vector3, height_px: number): number {
     const depth = at.clone().sub(this.camera.position).dot(this.forward);
     const half = Math.tan(THREE.MathUtils.degToRad(this.camera.fov / 2));
@@ -65,13 +76,8 @@ export class Orbit {
   }
 
   private place(): void {
-    const level = Math.cos(this.pitch);
-    const away = new THREE.Vector3(
-      level * Math.cos(this.yaw), level * Math.sin(this.yaw), Math.sin(this.pitch),
-    );
-    this.camera.up.set(0, 0, 1);
-    this.camera.position.copy(this.target).addScaledVector(away, this.distance);
-    this.camera.lookAt(this.target);
+    const offset = Z.clone().applyQuaternion(this.camera.quaternion);
+    this.camera.position.copy(this.target).addScaledVector(offset, this.distance);
     this.camera.near = Math.max(this.distance / 500, 1e-4);
     this.camera.far = this.distance + 40 * this.fitted.radius + 2;
     this.camera.updateProjectionMatrix();

@@ -1,15 +1,8 @@
-// A model's points by level of detail: the server's tree of nodes, of which only what the view
-// needs is fetched, and only as much is drawn as the machine keeps up with.
+// A model's points by level of detail. Of the server's tree of nodes only those in view are
+// fetched; a point budget limits how many are drawn.
 
 import * as THREE from 'three';
-
-interface NodeInfo {
-  min_m: [number, number, number];
-  edge_m: number;
-  spacing_m: number;
-  points: number;
-  children: number[];
-}
+import { type Hit, type Nearest, type NodeInfo, Search, SearchNode, UNITS } from './search';
 
 interface Tree {
   name: string;
@@ -21,17 +14,16 @@ interface Tree {
   nodes: NodeInfo[];
 }
 
-/** How the camera sees a metre. */
+/** Camera and height of the picture: the scale of the screen. */
 export interface Eye {
   camera: THREE.PerspectiveCamera;
   height_px: number;
 }
 
-const MOST_REQUESTS = 4;
-// Points nearer to each other than this are one on the screen.
+const MAX_REQUESTS = 4;
+// Nodes are refined until the gap between points is below this.
 const FINEST_PX = 1.2;
 const OVERLAP = 2.0;
-const UNITS = 65535;
 
 const VERTEX = `
 precision highp float;
@@ -60,8 +52,8 @@ uniform vec3 colour, inner;
 in vec3 vNormal;
 out vec4 result;
 void main() {
-  vec2 away = gl_PointCoord - 0.5;
-  if (dot(away, away) > 0.25) discard;
+  vec2 offset = gl_PointCoord - 0.5;
+  if (dot(offset, offset) > 0.25) discard;
   vec3 n = normalize(vNormal);
   vec3 base = n.z >= 0.0 ? colour : inner;
   n *= sign(n.z);
@@ -71,24 +63,41 @@ void main() {
   result = vec4(base * (0.28 + 0.22 * fill + 0.6 * key) + 0.10 * shine, 1.0);
 }`;
 
-class CloudNode {
+class CloudNode extends SearchNode {
   object: THREE.Points | undefined;
   requested = false;
   chosen = false;
-  readonly centre: THREE.Vector3;
-  readonly radius: number;
-
-  constructor(readonly info: NodeInfo) {
-    const half = info.edge_m / 2;
-    this.centre = new THREE.Vector3(...info.min_m).addScalar(half);
-    this.radius = half * Math.sqrt(3);
-  }
 }
+
+/** The camera in the frame of the model. */
+interface ModelView {
+  frustum: THREE.Frustum;
+  scale: number; // pixels of a metre at a distance of 1 m
+  position: THREE.Vector3;
+}
+
+/** A node to be drawn or refined; `gap_px`: between its parent's points on the screen. */
+interface OpenNode {
+  node: CloudNode;
+  gap_px: number;
+}
+
+function takeCoarsest(open: OpenNode[]): CloudNode {
+  let coarsest = 0;
+  for (let i = 1; i < open.length; ++i) if (open[i].gap_px > open[coarsest].gap_px) coarsest = i;
+  const { node } = open[coarsest];
+  open[coarsest] = open[open.length - 1];
+  open.pop();
+  return node;
+}
+
+const spacingOf = (node: CloudNode): number => (node.object?.userData.spacing as number) ?? 0;
 
 export class Cloud {
   readonly group = new THREE.Group();
   drawn = 0;
-  private nodes: CloudNode[] = [];
+  private readonly nodes: CloudNode[];
+  private readonly search: Search;
   private requests = 0;
   private readonly material = new THREE.RawShaderMaterial({
     glslVersion: THREE.GLSL3,
@@ -108,10 +117,11 @@ export class Cloud {
     private readonly changed: () => void,
   ) {
     this.nodes = tree.nodes.map((info) => new CloudNode(info));
+    this.search = new Search(this.nodes);
     this.group.matrixAutoUpdate = false;
   }
 
-  /** `changed` is called whenever there is more to draw. */
+  /** Calls `changed` whenever more points have arrived. */
   static async load(number: number, changed: () => void): Promise<Cloud> {
     const answer = await fetch(`/model/${number}`);
     if (!answer.ok) throw new Error(`model ${number}: ${answer.status}`);
@@ -123,70 +133,101 @@ export class Cloud {
     return new THREE.Box3(new THREE.Vector3(...bounds_min_m), new THREE.Vector3(...bounds_max_m));
   }
 
+  // Searches in the frame of the scene, in the points that have arrived.
+
+  /** The visible surface on the ray. */
+  hit(ray: THREE.Ray): Hit | undefined {
+    const found = this.search.hit(ray.clone().applyMatrix4(this.inverse));
+    return found && this.toScene(found);
+  }
+  isClear(from: THREE.Vector3, to: THREE.Vector3, margin: number): boolean {
+    const { inverse } = this;
+    return this.search.isClear(from.clone().applyMatrix4(inverse), to.clone().applyMatrix4(inverse), margin);
+  }
+  nearest(place: THREE.Vector3): Nearest | undefined {
+    const found = this.search.nearest(place.clone().applyMatrix4(this.inverse));
+    return found && this.toScene(found);
+  }
+  /** Largest distance of a point from `centre`. */
+  farthest(centre: THREE.Vector3): number {
+    return this.search.farthest(centre.clone().applyMatrix4(this.inverse));
+  }
+  private get inverse(): THREE.Matrix4 {
+    return this.group.matrix.clone().invert();
+  }
+  private toScene<P extends { point: THREE.Vector3; normal: THREE.Vector3 }>(place: P): P {
+    place.point.applyMatrix4(this.group.matrix);
+    place.normal.transformDirection(this.group.matrix);
+    return place;
+  }
+
   dispose(): void {
     for (const node of this.nodes) node.object?.geometry.dispose();
     this.material.dispose();
   }
 
-  /** Chooses what to draw, at most `budget` points, the coarsest on the screen refined first. */
+  /** Chooses the nodes to draw, at most `budget` points, those with the widest gaps refined first. */
   choose(eye: Eye, budget: number): void {
-    const frustum = new THREE.Frustum().setFromProjectionMatrix(
-      new THREE.Matrix4()
-        .multiplyMatrices(eye.camera.projectionMatrix, eye.camera.matrixWorldInverse)
-        .multiply(this.group.matrix),
-    );
-    const scale = eye.height_px / (2 * Math.tan(THREE.MathUtils.degToRad(eye.camera.fov / 2)));
-    this.material.uniforms.scale!.value = scale;
-    const from = eye.camera.position.clone().applyMatrix4(this.group.matrix.clone().invert());
+    const view = this.viewOf(eye);
+    this.material.uniforms.scale.value = view.scale;
     for (const node of this.nodes) node.chosen = false;
-    const wanted: CloudNode[] = [];
-    let open = [{ node: this.nodes[0]!, size: Infinity }];
+    const missing: CloudNode[] = [];
+    const open: OpenNode[] = [{ node: this.nodes[0], gap_px: Infinity }];
     this.drawn = 0;
     while (open.length > 0) {
-      let best = 0;
-      for (let i = 1; i < open.length; ++i) if (open[i]!.size > open[best]!.size) best = i;
-      const { node } = open[best]!;
-      open[best] = open[open.length - 1]!;
-      open.pop();
+      const node = takeCoarsest(open);
       if (this.drawn + node.info.points > budget && this.drawn > 0) break;
       if (!node.object) {
-        wanted.push(node);
+        missing.push(node);
         continue;
       }
       node.chosen = true;
       this.drawn += node.info.points;
-      for (const child of node.info.children) {
-        const below = this.nodes[child]!;
-        const sphere = new THREE.Sphere(below.centre, below.radius);
-        if (!frustum.intersectsSphere(sphere)) continue;
-        const distance = Math.max(from.distanceTo(below.centre) - below.radius, 1e-3);
-        const spacing_px = (node.info.spacing_m * scale) / distance;
-        if (spacing_px > FINEST_PX) open.push({ node: below, size: spacing_px });
-      }
+      this.openChildren(node, view, open);
     }
     this.show();
-    for (const node of wanted) this.request(node);
+    for (const node of missing) this.request(node);
   }
 
-  /** A point is as wide as the gaps where it is the finest that is drawn. */
+  private viewOf(eye: Eye): ModelView {
+    const { camera } = eye;
+    const toScreen = new THREE.Matrix4()
+      .multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse)
+      .multiply(this.group.matrix);
+    return {
+      frustum: new THREE.Frustum().setFromProjectionMatrix(toScreen),
+      scale: eye.height_px / (2 * Math.tan(THREE.MathUtils.degToRad(camera.fov / 2))),
+      position: camera.position.clone().applyMatrix4(this.group.matrix.clone().invert()),
+    };
+  }
+
+  /** Adds the children of `node` that are in view and worth refining to `open`. */
+  private openChildren(node: CloudNode, view: ModelView, open: OpenNode[]): void {
+    for (const number of node.info.children) {
+      const child = this.nodes[number];
+      if (!view.frustum.intersectsSphere(new THREE.Sphere(child.centre, child.radius))) continue;
+      const distance = Math.max(view.position.distanceTo(child.centre) - child.radius, 1e-3);
+      const gap_px = (node.info.spacing_m * view.scale) / distance;
+      if (gap_px > FINEST_PX) open.push({ node: child, gap_px });
+    }
+  }
+
+  /** Shows the chosen nodes; points of the finest level drawn are as wide as the gaps between them. */
   private show(): void {
     // Children have higher numbers than their parents.
     for (let i = this.nodes.length - 1; i >= 0; --i) {
-      const node = this.nodes[i]!;
-      if (!node.object) continue;
-      node.object.visible = node.chosen;
-      if (!node.chosen) continue;
-      let spacing = node.info.spacing_m;
-      const below = node.info.children.map((child) => this.nodes[child]!);
-      if (below.length > 0 && below.every((child) => child.chosen)) {
-        spacing = Math.max(...below.map((child) => child.object!.userData.spacing as number));
-      }
-      node.object.userData.spacing = spacing;
+      const { info, object, chosen } = this.nodes[i];
+      if (!object) continue;
+      object.visible = chosen;
+      if (!chosen) continue;
+      const children = info.children.map((child) => this.nodes[child]);
+      const isCovered = children.length > 0 && children.every((child) => child.chosen);
+      object.userData.spacing = isCovered ? Math.max(...children.map(spacingOf)) : info.spacing_m;
     }
   }
 
   private request(node: CloudNode): void {
-    if (node.requested || this.requests >= MOST_REQUESTS) return;
+    if (node.requested || this.requests >= MAX_REQUESTS) return;
     node.requested = true;
     ++this.requests;
     fetch(`/model/${this.number}/points/${this.nodes.indexOf(node)}`)
@@ -201,14 +242,15 @@ export class Cloud {
 
   private add(node: CloudNode, bytes: ArrayBuffer): void {
     const geometry = new THREE.BufferGeometry();
-    geometry.setAttribute('position', new THREE.BufferAttribute(new Uint16Array(bytes), 4));
+    node.words = new Uint16Array(bytes);
+    geometry.setAttribute('position', new THREE.BufferAttribute(node.words, 4));
     const object = new THREE.Points(geometry, this.material);
-    object.frustumCulled = false; // choose() has done it
+    object.frustumCulled = false; // done by choose()
     object.position.set(...node.info.min_m);
     object.scale.setScalar(node.info.edge_m / UNITS);
     object.userData.spacing = node.info.spacing_m;
     object.onBeforeRender = () => {
-      this.material.uniforms.diameter!.value = OVERLAP * (object.userData.spacing as number);
+      this.material.uniforms.diameter.value = OVERLAP * (object.userData.spacing as number);
       this.material.uniformsNeedUpdate = true;
     };
     node.object = object;
@@ -216,7 +258,7 @@ export class Cloud {
   }
 }
 
-/** Cubes of the blob's octree on a level, as lines. */
+/** The cubes of the blob's octree on one level, as lines. */
 export async function loadOctants(number: number, level: number): Promise<THREE.LineSegments> {
   const answer = await fetch(`/model/${number}/octants/${level}`);
   if (!answer.ok) throw new Error(`octants: ${answer.status}`);
@@ -236,7 +278,7 @@ export async function loadOctants(number: number, level: number): Promise<THREE.
   }
   const lines = new Float32Array((corners.length / 3) * cube.length);
   for (let i = 0, at = 0; i < corners.length; i += 3) {
-    for (let k = 0; k < cube.length; ++k) lines[at++] = corners[i + (k % 3)]! + edge * cube[k]!;
+    for (let k = 0; k < cube.length; ++k) lines[at++] = corners[i + (k % 3)] + edge * cube[k];
   }
   const geometry = new THREE.BufferGeometry();
   geometry.setAttribute('position', new THREE.BufferAttribute(lines, 3));

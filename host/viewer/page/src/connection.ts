@@ -1,4 +1,4 @@
-// The WebSocket to the server; when it breaks, a new one, again and again.
+// The WebSocket to the server. A lost connection is retried until it succeeds.
 
 import type { Command, Frame, Hello } from './messages';
 
@@ -20,7 +20,7 @@ export class Connection {
     this.open();
   }
 
-  /** False: there is no connection, and nothing was sent. */
+  /** Returns false without a connection; the command is then dropped. */
   send(command: Command): boolean {
     if (this.socket?.readyState !== WebSocket.OPEN) return false;
     this.socket.send(JSON.stringify(command));

@@ -1,17 +1,18 @@
-// The page of `tactree view`: puts its parts together.
+// The page of `tactree view`: connects its parts.
 
 import './style.css';
 import { BoardView } from './board';
 import { Connection } from './connection';
+import { Gestures } from './gestures';
 import { Hand } from './hand';
-import { length, type Command, type Frame, type Hello, type Run } from './messages';
+import { type Command, type Frame, type Hello, length, type Run } from './messages';
+import { News } from './news';
 import { Numbers } from './numbers';
 import { find, outputOf, Panel } from './panel';
 import { Player } from './player';
 import { Strip } from './strips';
 import { View } from './view';
 
-const NOTE_MS = 6000;
 const LOST_SHOWN_MS = 3000;
 
 const view = new View(find<HTMLCanvasElement>('view'));
@@ -22,15 +23,16 @@ const strips = {
 };
 const numbers = new Numbers();
 const panel = new Panel(say);
-const player = new Player(say);
-const board = new BoardView(note);
-const hand = new Hand(view, (target_m) => say({ do: 'hand', target_m }));
-const connection = new Connection({ hello, frame, refused: note, connected });
+const player = new Player(say, strips.force, strips.penetration);
+const board = new BoardView();
+const news = new News();
+const hand = new Hand(view, (target_m, via_m, speed_m_s) => say({ do: 'hand', target_m, via_m, speed_m_s }));
+const gestures = new Gestures(view, hand);
+const connection = new Connection({ hello, frame, refused, connected });
 let source: Hello['source'] = 'simulation';
-let note_timer = 0;
 
 function say(command: Command): void {
-  if (!connection.send(command)) note('Not connected: nothing was sent.');
+  if (!connection.send(command)) news.show('Not connected: the command was not sent.');
 }
 
 function connected(is: boolean): void {
@@ -38,13 +40,9 @@ function connected(is: boolean): void {
   if (!is) setState('not connected');
 }
 
-function note(text: string): void {
+function refused(why: string): void {
   panel.refused();
-  const box = find('note');
-  box.textContent = text;
-  box.hidden = false;
-  clearTimeout(note_timer);
-  note_timer = window.setTimeout(() => (box.hidden = true), NOTE_MS);
+  news.show(why);
 }
 
 function hello(message: Hello): void {
@@ -55,14 +53,15 @@ function hello(message: Hello): void {
   const port = message.port ? ` · board at ${message.port}` : '';
   find('model-name').textContent = `${names} · ${points.toLocaleString('en')} points${port}`;
   document.title = `${names} – Tactree`;
-  hand.target = undefined;
+  hand.hello(message.hand_start_m);
   for (const strip of Object.values(strips)) strip.clear();
   panel.hello(message);
-  board.hello();
+  news.hello();
   player.hello(message);
-  view.load(message.models.length)
+  view
+    .load(message.models.length)
     .then(() => (find<HTMLInputElement>('octant-level').max = String(view.deepest)))
-    .catch((error: Error) => note(`The model could not be loaded: ${error.message}`));
+    .catch((error: Error) => news.show(`The model could not be loaded: ${error.message}`));
 }
 
 function setState(state: string): void {
@@ -83,29 +82,31 @@ function showLimits(names: string[]): void {
   const limits = find('limits');
   if (limits.dataset.shown === names.join()) return;
   limits.dataset.shown = names.join();
-  limits.replaceChildren(...names.map((name) => {
-    const link = document.createElement('a');
-    link.href = `/faults/limit-${name}`;
-    link.target = '_blank';
-    link.rel = 'noopener';
-    link.textContent = name;
-    return link;
-  }));
+  limits.replaceChildren(
+    ...names.map((name) => {
+      const link = document.createElement('a');
+      link.href = `/faults/limit-${name}`;
+      link.target = '_blank';
+      link.rel = 'noopener';
+      link.textContent = name;
+      return link;
+    }),
+  );
 }
 
 let lost = { s: 0, at_ms: -Infinity };
 
-/** Was simulated time lost in the last seconds? */
+/** True for some seconds after the simulation fell behind real time. */
 function isLosing(frame: Frame): boolean {
   const now_s = frame.lost_s ?? 0;
   if (now_s > lost.s) lost = { s: now_s, at_ms: performance.now() };
-  if (now_s < lost.s) lost = { s: now_s, at_ms: -Infinity }; // another session
+  if (now_s < lost.s) lost = { s: now_s, at_ms: -Infinity }; // a new session
   return performance.now() - lost.at_ms < LOST_SHOWN_MS;
 }
 
 function showTiming(frame: Frame, run: Run): void {
-  const rate = frame.settings ? `${frame.settings.rate_hz} ticks a second` : '';
-  const slow = isLosing(frame) ? 'this machine is too slow for real time' : '';
+  const rate = frame.settings ? `${frame.settings.rate_hz} ticks/s` : '';
+  const slow = isLosing(frame) ? 'too slow for real time' : '';
   const load = frame.board ? `load ${(100 * frame.board.load).toFixed(0)} %` : '';
   const lost = frame.board?.dropped ? `${frame.board.dropped} messages lost` : '';
   const parts = [rate, `${run.overruns} deadlines missed`, load, lost, slow].filter((part) => part !== '');
@@ -117,48 +118,62 @@ function showTiming(frame: Frame, run: Run): void {
 function pushStrips(frame: Frame): void {
   frame.runs.forEach((run, i) => {
     if (!run.strip || run.strip.ticks === 0) return;
-    strips.force.push(i, run.strip.force_N);
+    strips.force.push(i, frame.t_s, run.strip.force_N);
     const [low, high] = run.strip.penetration_m;
-    strips.penetration.push(i, [1e3 * low, 1e3 * high]);
-    if (run.strip.work) strips.work.push(i, run.strip.work);
+    strips.penetration.push(i, frame.t_s, [1e3 * low, 1e3 * high]);
+    if (run.strip.work) strips.work.push(i, frame.t_s, run.strip.work);
   });
 }
 
-/** How much a tick has to do, against the most that is proven; or why that is not shown. */
+/** Work per tick against the proven bound, or the reason why it is not available. */
 function showWork(frame: Frame, run: Run): void {
   const { unit, bound, why } = frame.work;
   find('strip-work').hidden = unit === '';
-  find('work-name').textContent = unit === '' ? 'Instructions' : unit[0]!.toUpperCase() + unit.slice(1);
+  find('work-name').textContent = unit === '' ? 'Instructions' : unit[0].toUpperCase() + unit.slice(1);
   find('work-why').textContent = why;
   strips.work.limit = bound ?? undefined;
-  const most = run.strip?.work?.[1];
-  if (most === undefined) return;
+  const highest = run.strip?.work?.[1];
+  if (highest === undefined) return;
   const rounded = (value: number) => Math.round(value).toLocaleString('en');
-  find<HTMLOutputElement>('work-now').value = rounded(most) + (bound === null ? '' : ` of ${rounded(bound)}`);
+  find<HTMLOutputElement>('work-now').value =
+    rounded(highest) + (bound === null ? '' : ` of ${rounded(bound)}`);
 }
 
 let latest: Frame | undefined;
+let newest_s = 0;
+let poses = '';
 
 function frame(message: Frame): void {
   latest = message;
+  if (message.t_s < newest_s) hand.touch.forget(); // a new session
+  newest_s = message.t_s;
   pushStrips(message);
   if (message.hand_m) hand.follow(message.hand_m);
 }
 
-/** Once a picture: however many frames came in. */
+/** Once per displayed picture, with the latest frame. */
 function refresh(): void {
   requestAnimationFrame(refresh);
   const message = latest;
   if (!message) return;
   latest = undefined;
   view.show(message);
+  touchMovedBodies(message);
   document.body.dataset.mode = message.settings?.mode ?? '';
   board.show(message);
+  if (news.follow(message) && message.board) panel.refused();
   if (message.settings) panel.follow(message.settings);
   const run = message.runs[0];
   if (run) showRun(message, run);
   else showNothing();
   for (const strip of Object.values(strips)) strip.draw();
+}
+
+/** A body that moves under the cursor takes the touch along. */
+function touchMovedBodies(message: Frame): void {
+  const now = JSON.stringify(message.bodies);
+  if (now !== poses) hand.touch.refresh();
+  poses = now;
 }
 
 function showRun(message: Frame, run: Run): void {
@@ -169,16 +184,27 @@ function showRun(message: Frame, run: Run): void {
   if (find<HTMLDetailsElement>('numbers-box').open) numbers.show(message);
   find<HTMLOutputElement>('force-now').value = `${length(run.force_N).toFixed(2)} N`;
   find<HTMLOutputElement>('penetration-now').value = `${(1e3 * run.penetration_m).toFixed(2)} mm`;
-  player.show(message, strips.force, strips.penetration);
+  showDistance(run);
+  player.show(message);
 }
 
-/** No figure of before may pass for one of now. */
+/** How far the probe is from the surface, or how deep the hand presses. */
+function showDistance(run: Run): void {
+  const millimetres = (metres: number) => `${(1e3 * metres).toFixed(1)} mm`;
+  const under = view.under[0];
+  const depth = hand.touch.pressed ? ` · hand ${millimetres(hand.touch.depth_m)} deep` : '';
+  const height = under ? `${millimetres(Math.max(0, under.height))} to the surface` : '';
+  find<HTMLOutputElement>('distance').value = (run.in_contact ? 'in contact' : height) + depth;
+}
+
+/** Clears all values, so that no old one looks current. */
 function showNothing(): void {
   setState('no board');
   find('banner').hidden = true;
   showLimits([]);
   for (const name of ['force', 'penetration', 'work']) find<HTMLOutputElement>(`${name}-now`).value = '–';
   find('timing').textContent = '';
+  find<HTMLOutputElement>('distance').value = '';
   numbers.clear();
 }
 requestAnimationFrame(refresh);
@@ -193,17 +219,25 @@ function stop(): void {
   say({ do: 'stop' });
 }
 
-// Whatever has the focus, these stop: before any button sees them.
-window.addEventListener('keydown', (event) => {
-  if (event.key === ' ' || event.key === 'Escape') {
-    event.preventDefault();
-    event.stopPropagation();
-    if (!event.repeat) stop();
-  }
-}, { capture: true });
-window.addEventListener('keyup', (event) => {
-  if (event.key === ' ') event.preventDefault(); // or the button in focus is pressed
-}, { capture: true });
+// Space and Escape stop regardless of focus, before a focused button can handle them.
+window.addEventListener(
+  'keydown',
+  (event) => {
+    if (event.key === ' ' || event.key === 'Escape') {
+      event.preventDefault();
+      event.stopPropagation();
+      if (!event.repeat) stop();
+    }
+  },
+  { capture: true },
+);
+window.addEventListener(
+  'keyup',
+  (event) => {
+    if (event.key === ' ') event.preventDefault(); // else the focused button is pressed
+  },
+  { capture: true },
+);
 window.addEventListener('keydown', (event) => {
   if (event.target instanceof HTMLSelectElement || event.ctrlKey || event.metaKey || event.altKey) return;
   if (event.key === 'a' && source !== 'trace') say({ do: 'arm' });
@@ -217,12 +251,14 @@ find('stop').addEventListener('click', stop);
 find('arm').addEventListener('click', () => say({ do: 'arm' }));
 find('connect').addEventListener('click', () => say({ do: 'connect' }));
 find('clear').addEventListener('click', () => say({ do: 'clear' }));
-find('reset-view').addEventListener('click', () => hand.reset());
+find('reset-view').addEventListener('click', () => gestures.reset());
+find('hand-back').addEventListener('click', () => hand.bringBack());
 
-const shown = () => view.setShown({
-  device: find<HTMLInputElement>('show-device').checked,
-  patch: find<HTMLInputElement>('show-patch').checked,
-});
+const shown = () =>
+  view.setShown({
+    device: find<HTMLInputElement>('show-device').checked,
+    patch: find<HTMLInputElement>('show-patch').checked,
+  });
 find('show-device').addEventListener('change', shown);
 find('show-patch').addEventListener('change', shown);
 
@@ -231,8 +267,9 @@ const level = find<HTMLInputElement>('octant-level');
 function showOctants(): void {
   find('octant-row').hidden = !octants.checked;
   outputOf('octant-level').value = level.value;
-  view.showOctants(octants.checked ? Number(level.value) : undefined)
-    .catch((error: Error) => note(error.message));
+  view
+    .showOctants(octants.checked ? Number(level.value) : undefined)
+    .catch((error: Error) => news.show(error.message));
 }
 octants.addEventListener('change', showOctants);
 level.addEventListener('change', showOctants);

@@ -1,7 +1,9 @@
-// What is drawn of one controller and its device: linkage, probe, proxy, force, contact.
+// Markers of one controller and its device: linkage, probe, proxy, force, contact points.
 
 import * as THREE from 'three';
 import { length, type Run, type Triple } from './messages';
+import type { Nearest } from './search';
+import { Shadow } from './shadow';
 
 export const COLOURS = {
   hand: 0x8b6fd6,
@@ -12,21 +14,21 @@ export const COLOURS = {
   device: 0x7f8c9a,
 };
 
-// The longest arrow, of the largest force, in model sizes.
+// Length of the arrow at the largest force, relative to the size of the model.
 const ARROW = 0.4;
-const MOST_CANDIDATES = 128;
+const MAX_CANDIDATES = 128;
 
 const UP = new THREE.Vector3(0, 1, 0);
 
-/** A body from one point to another. */
+/** Stretches an object of unit length from one point to another. */
 function stretch(object: THREE.Object3D, from: THREE.Vector3, to: THREE.Vector3, width: number): void {
-  const way = to.clone().sub(from);
-  const long = way.length();
-  object.visible = long > 1e-6;
+  const offset = to.clone().sub(from);
+  const length_m = offset.length();
+  object.visible = length_m > 1e-6;
   if (!object.visible) return;
-  object.position.copy(from).addScaledVector(way, 0.5);
-  object.quaternion.setFromUnitVectors(UP, way.divideScalar(long));
-  object.scale.set(width, long, width);
+  object.position.copy(from).addScaledVector(offset, 0.5);
+  object.quaternion.setFromUnitVectors(UP, offset.divideScalar(length_m));
+  object.scale.set(width, length_m, width);
 }
 
 export class Markers {
@@ -39,10 +41,13 @@ export class Markers {
   private readonly shaft: THREE.Mesh;
   private readonly head: THREE.Mesh;
   private readonly patch: THREE.Points;
+  private readonly shadow: Shadow;
   private readonly rod = new THREE.CylinderGeometry(1, 1, 1, 12);
   private readonly ball = new THREE.SphereGeometry(1, 24, 16);
   private readonly metal = new THREE.MeshStandardMaterial({
-    color: COLOURS.device, roughness: 0.55, metalness: 0.2,
+    color: COLOURS.device,
+    roughness: 0.55,
+    metalness: 0.2,
   });
 
   /** `size`: of the model, m. */
@@ -59,19 +64,28 @@ export class Markers {
     this.head = mesh(new THREE.ConeGeometry(1, 1, 16), COLOURS.force);
     this.arrow.add(this.shaft, this.head);
     const geometry = new THREE.BufferGeometry();
-    geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(3 * MOST_CANDIDATES), 3));
+    geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(3 * MAX_CANDIDATES), 3));
     this.patch = new THREE.Points(
       geometry,
       new THREE.PointsMaterial({ color: COLOURS.patch, size: 5, sizeAttenuation: false, depthTest: false }),
     );
     this.patch.frustumCulled = false;
     this.patch.renderOrder = 1;
-    // The probe goes into the object: it must be seen all the same.
+    // The probe is inside the object during contact and must stay visible.
     for (const object of [this.probe, this.spring, this.shaft, this.head]) {
       (object.material as THREE.Material).depthTest = false;
       object.renderOrder = 2;
     }
-    this.group.add(this.device, this.patch, this.proxy, this.spring, this.probe, this.arrow);
+    this.shadow = new Shadow(size, COLOURS.probe);
+    this.group.add(
+      this.shadow.group,
+      this.device,
+      this.patch,
+      this.proxy,
+      this.spring,
+      this.probe,
+      this.arrow,
+    );
   }
 
   set showDevice(shown: boolean) {
@@ -81,7 +95,8 @@ export class Markers {
     this.patch.visible = shown;
   }
 
-  show(run: Run, force_max_N: number): void {
+  /** `under`: the surface nearest to the probe. */
+  show(run: Run, force_max_N: number, under: Nearest | undefined): void {
     const at = (v: Triple) => new THREE.Vector3(...v);
     const probe = at(run.probe_m);
     const proxy = at(run.proxy_m);
@@ -90,6 +105,7 @@ export class Markers {
     this.proxy.position.copy(proxy);
     this.proxy.scale.setScalar(0.014 * this.size);
     this.proxy.visible = run.in_contact;
+    this.shadow.show(under);
     stretch(this.spring, probe, proxy, 0.003 * this.size);
     this.showForce(at(run.force_N), proxy, force_max_N);
     this.showPatchOf(run.candidates);
@@ -97,20 +113,20 @@ export class Markers {
   }
 
   private showForce(force: THREE.Vector3, from: THREE.Vector3, force_max_N: number): void {
-    const long = (force.length() / force_max_N) * ARROW * this.size;
-    this.arrow.visible = long > 0.004 * this.size;
+    const length_m = (force.length() / force_max_N) * ARROW * this.size;
+    this.arrow.visible = length_m > 0.004 * this.size;
     if (!this.arrow.visible) return;
-    const way = force.clone().normalize();
-    const head = Math.min(0.05 * this.size, 0.5 * long);
-    const neck = from.clone().addScaledVector(way, long - head);
+    const direction = force.clone().normalize();
+    const head = Math.min(0.05 * this.size, 0.5 * length_m);
+    const neck = from.clone().addScaledVector(direction, length_m - head);
     stretch(this.shaft, from, neck, 0.006 * this.size);
-    stretch(this.head, neck, from.clone().addScaledVector(way, long), 0.018 * this.size);
+    stretch(this.head, neck, from.clone().addScaledVector(direction, length_m), 0.018 * this.size);
   }
 
   private showPatchOf(candidates: Triple[]): void {
     const positions = this.patch.geometry.getAttribute('position') as THREE.BufferAttribute;
-    const count = Math.min(candidates.length, MOST_CANDIDATES);
-    for (let i = 0; i < count; ++i) positions.setXYZ(i, ...candidates[i]!);
+    const count = Math.min(candidates.length, MAX_CANDIDATES);
+    for (let i = 0; i < count; ++i) positions.setXYZ(i, ...candidates[i]);
     positions.needsUpdate = true;
     this.patch.geometry.setDrawRange(0, count);
   }
@@ -128,13 +144,13 @@ export class Markers {
       part.visible = true;
       return part;
     };
-    const longest = Math.max(0, ...lines.map((line) => length(sub(line[line.length - 1]!, line[0]!))));
+    const longest = Math.max(0, ...lines.map((line) => length(sub(line[line.length - 1], line[0]))));
     const thick = 0.018 * Math.max(longest, 0.5 * this.size);
     for (const line of lines) {
       line.forEach((point, i) => {
         if (i + 1 < line.length) {
           const width = thick * (1 - (0.5 * i) / line.length);
-          const to = line[i + 1]!;
+          const to = line[i + 1];
           stretch(next(this.rod), new THREE.Vector3(...point), new THREE.Vector3(...to), 0.6 * width);
           const joint = next(this.ball);
           joint.position.set(...point);
@@ -142,7 +158,7 @@ export class Markers {
         }
       });
     }
-    for (let i = used; i < this.device.children.length; ++i) this.device.children[i]!.visible = false;
+    for (let i = used; i < this.device.children.length; ++i) this.device.children[i].visible = false;
   }
 }
 

@@ -1,5 +1,5 @@
-// What the server and the page say to each other: see source.hpp, live_session.hpp, recording.hpp
-// and board_session.hpp of host/viewer.
+// Messages between server and page, documented in source.hpp, live_session.hpp, recording.hpp and
+// board_session.hpp of host/viewer.
 
 export type Triple = [number, number, number];
 export type Range = [number, number];
@@ -28,15 +28,18 @@ export interface Hello {
   devices?: { name: string; about: string }[];
   injections?: { fault: string; about: string }[];
   has_materials?: boolean;
+  hand_start_m?: Triple;
   settings?: Settings;
   // of a board
   port?: string;
   // of a trace
   ticks?: number;
+  begin_s?: number;
+  end_s?: number;
   overview?: { force_N: Range[]; penetration_m: Range[] };
 }
 
-/** One controller in one tick. */
+/** State of one controller in one tick. */
 export interface Run {
   mode: string;
   state: string;
@@ -51,17 +54,12 @@ export interface Run {
   velocity_m_s: Triple;
   penetration_m: number;
   in_contact: boolean;
-  slipping: boolean | null; // null: a board does not tell
+  slipping: boolean | null; // null: not reported by boards
   strength: number;
-  tip_m: Triple | null; // likewise
+  tip_m: Triple | null; // null: not reported by boards
   linkage: Triple[][];
   candidates: Triple[];
-  strip?: {
-    ticks: number;
-    force_N: Range;
-    penetration_m: Range;
-    work: Range | null;
-  };
+  strip?: { ticks: number; force_N: Range; penetration_m: Range; work: Range | null };
 }
 
 /** A board, and the connection to it. */
@@ -69,10 +67,10 @@ export interface Board {
   name: string;
   firmware: string;
   link: 'here' | 'gone' | 'taken';
-  why: string; // it is not here
+  why: string; // cause of a lost connection
   model: 'same' | 'other' | 'unknown';
   about_model: string;
-  confirm: string; // what the person at the device has to do now
+  confirm: string; // action required at the device to finish arming; empty: none
   load: number;
   dropped: number;
 }
@@ -82,15 +80,16 @@ export interface Frame {
   t_s: number;
   runs: Run[];
   bodies: number[][];
-  /** What the strips' work is counted in; empty: it is not known. `why` something is missing. */
+  /** Work per tick. `unit` is empty when it is unknown; `why` names the cause of a missing value. */
   work: { unit: string; bound: number | null; why: string };
   // of a simulation
   hand_m?: Triple;
   lost_s?: number;
   settings?: Settings;
+  // of a simulation or a board: a result that the other values do not show
+  news?: { number: number; text: string };
   // of a board, with settings
   board?: Board;
-  news?: { number: number; text: string };
   // of a trace
   tick?: number;
   playing?: number;

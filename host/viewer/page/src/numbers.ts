@@ -1,13 +1,12 @@
-// Every figure of the tick that is shown, as a table. Nine digits tell one float32 from the next,
-// as in a trace.
+// All values of the displayed tick as a table, with nine digits: enough to identify a float32.
 
-import { find } from './panel';
 import type { Frame, Run, Triple } from './messages';
+import { find } from './panel';
 
 const exact = (value: number): string => String(Number(value.toPrecision(9)));
 
 function vector(name: string, unit: string, v: Triple): [string, string][] {
-  return (['x', 'y', 'z'] as const).map((axis, i) => [`${name}_${axis}${unit}`, exact(v[i]!)]);
+  return (['x', 'y', 'z'] as const).map((axis, i) => [`${name}_${axis}${unit}`, exact(v[i])]);
 }
 
 function friction(run: Run): string {
@@ -36,7 +35,7 @@ function rows(frame: Frame, run: Run): [string, string][] {
 }
 
 export class Numbers {
-  private readonly body = find<HTMLTableElement>('numbers').tBodies[0]!;
+  private readonly body = find<HTMLTableElement>('numbers').tBodies[0];
   private readonly cells = new Map<string, HTMLTableCellElement>();
 
   show(frame: Frame): void {

@@ -1,10 +1,16 @@
-// The controls beside the picture: what they say to the server, and how they follow it.
+// The controls beside the picture: send changes to the server and follow its settings.
 
 import type { Command, Hello, Settings } from './messages';
 
 type Say = (command: Command) => void;
 type Slider = 'stiffness_N_m' | 'damping_Ns_m' | 'static_friction' | 'dynamic_friction' | 'force_max_N';
-const SLIDERS: Slider[] = ['stiffness_N_m', 'damping_Ns_m', 'static_friction', 'dynamic_friction', 'force_max_N'];
+const SLIDERS: Slider[] = [
+  'stiffness_N_m',
+  'damping_Ns_m',
+  'static_friction',
+  'dynamic_friction',
+  'force_max_N',
+];
 
 export function find<T extends HTMLElement = HTMLElement>(id: string): T {
   const element = document.getElementById(id);
@@ -13,11 +19,13 @@ export function find<T extends HTMLElement = HTMLElement>(id: string): T {
 }
 
 export function outputOf(id: string): HTMLOutputElement {
-  return document.querySelector<HTMLOutputElement>(`output[for='${id}']`)!;
+  const element = document.querySelector<HTMLOutputElement>(`output[for='${id}']`);
+  if (!element) throw new Error(`the page has no output for #${id}`);
+  return element;
 }
 
 export class Panel {
-  private said: Partial<Settings> = {};
+  private edited: Partial<Settings> = {};
 
   constructor(private readonly say: Say) {
     for (const id of SLIDERS) {
@@ -48,17 +56,18 @@ export class Panel {
     find('materials').hidden = !hello.has_materials;
     for (const control of document.querySelectorAll<HTMLButtonElement | HTMLSelectElement>(
       '.simulated button, .simulated select',
-    )) control.disabled = hello.source === 'board';
-    // A board does not tell these: nothing is chosen.
+    ))
+      control.disabled = hello.source === 'board';
+    // Boards do not report these.
     if (hello.source === 'board') for (const id of ['mode', 'device']) find<HTMLSelectElement>(id).value = '';
   }
 
-  /** What holds now; nothing is changed under the user's fingers. */
+  /** Shows the server's settings, except in the control that the user is changing. */
   follow(settings: Settings): void {
     if (settings.force_limit_N) find<HTMLInputElement>('force_max_N').max = String(settings.force_limit_N);
     for (const id of SLIDERS) {
       const slider = find<HTMLInputElement>(id);
-      if (document.activeElement !== slider || this.said[id] === undefined) {
+      if (document.activeElement !== slider || this.edited[id] === undefined) {
         slider.value = String(settings[id]);
         this.label(slider);
       }
@@ -71,9 +80,9 @@ export class Panel {
       `Stable up to ${Math.floor(settings.stiffness_limit_N_m)} N/m with a hand`;
   }
 
-  /** The server took none of it: back to what holds. */
+  /** The server refused a change: shows its settings again. */
   refused(): void {
-    this.said = {};
+    this.edited = {};
     if (document.activeElement instanceof HTMLElement) document.activeElement.blur();
   }
 
@@ -85,9 +94,9 @@ export class Panel {
   }
 
   private set(key: keyof Settings, value: unknown): void {
-    this.said = {};
+    this.edited = {};
     const friction: Record<string, unknown> = {};
-    // The dynamic coefficient is at most the static one: the other follows.
+    // The dynamic coefficient must not exceed the static one.
     if (key === 'static_friction' || key === 'dynamic_friction') {
       const other = key === 'static_friction' ? 'dynamic_friction' : 'static_friction';
       const slider = find<HTMLInputElement>(other);
@@ -98,7 +107,7 @@ export class Panel {
   }
 
   private label(slider: HTMLInputElement): void {
-    if (document.activeElement === slider) this.said[slider.id as Slider] = Number(slider.value);
+    if (document.activeElement === slider) this.edited[slider.id as Slider] = Number(slider.value);
     outputOf(slider.id).value = `${Number(slider.value)} ${slider.dataset.unit ?? ''}`;
   }
 

@@ -1,23 +1,27 @@
-// The picture: models, devices and markers; drawn when something has changed, with as many points
-// as the machine keeps up with, and with more once all is still.
+// The picture: models, devices and markers. Drawn on changes only, with as many points as the frame
+// rate allows; drawn once more with more points when nothing moves.
 
 import * as THREE from 'three';
 import { Orbit } from './camera';
 import { Cloud, loadOctants } from './cloud';
 import { COLOURS, Markers } from './markers';
 import type { Frame, Run } from './messages';
+import type { Obstacles } from './route';
+import type { Hit, Nearest } from './search';
 
-const FEWEST_POINTS = 60_000;
-const MOST_POINTS = 3_000_000;
+const MIN_POINTS = 60_000;
+const MAX_POINTS = 3_000_000;
 const STILL_MS = 350;
-// Slower than this is a hand that stumbles; faster leaves room for more points.
+// Frame times above SLOW_MS reduce the number of points, those below FAST_MS raise it.
 const SLOW_MS = 40;
 const FAST_MS = 20;
 const FORCE_N = 8;
+// The hand keeps this distance from the models on its path around them, relative to their size.
+const MARGIN = 0.015;
 
-export class View {
+export class View implements Obstacles {
   readonly orbit = new Orbit();
-  /** Points that the last picture was made of. */
+  /** Number of points in the last picture. */
   drawn = 0;
   onPicture: (() => void) | undefined;
   private readonly renderer: THREE.WebGLRenderer;
@@ -26,13 +30,16 @@ export class View {
   private clouds: Cloud[] = [];
   private markers: Markers[] = [];
   private octants: THREE.Object3D[] = [];
-  private size = 0.1;
+  /** Of the models: the diameter of a ball around them, m. */
+  size = 0.1;
   private budget = 250_000;
   private dirty = true;
   private moved_ms = 0;
   private refined = false;
   private last_ms = 0;
   private seen = '';
+  /** Of each controller: the surface nearest to its probe. */
+  under: (Nearest | undefined)[] = [];
   private shown = { device: true, patch: true };
 
   constructor(readonly canvas: HTMLCanvasElement) {
@@ -53,7 +60,7 @@ export class View {
     requestAnimationFrame((now) => this.turn(now));
   }
 
-  /** Loads the models that a server has. */
+  /** Loads the models of the server. */
   async load(count: number): Promise<void> {
     for (const cloud of this.clouds) {
       this.scene.remove(cloud.group);
@@ -81,11 +88,68 @@ export class View {
     return Math.max(0, ...this.clouds.map((cloud) => cloud.tree.depth));
   }
 
+  /** Ray through a pixel of the canvas. */
+  rayAt(x: number, y: number): THREE.Ray {
+    const { clientWidth, clientHeight } = this.canvas;
+    const width = clientWidth / this.sides;
+    const { camera } = this.orbit;
+    const place = new THREE.Vector3((2 * (x % width)) / width - 1, 1 - (2 * y) / clientHeight, 0.5);
+    place.unproject(camera);
+    return new THREE.Ray(camera.position.clone(), place.sub(camera.position).normalize());
+  }
+  /** Pixel of the canvas that shows a place; of two pictures side by side, in the left one. */
+  pixelOf(place: THREE.Vector3): THREE.Vector2 {
+    const { clientWidth, clientHeight } = this.canvas;
+    const seen = place.clone().project(this.orbit.camera);
+    return new THREE.Vector2(
+      (0.5 * (seen.x + 1) * clientWidth) / this.sides,
+      0.5 * (1 - seen.y) * clientHeight,
+    );
+  }
+  private get sides(): number {
+    return Math.max(1, this.markers.length);
+  }
+
+  /** The visible surface on a ray. */
+  hit(ray: THREE.Ray): Hit | undefined {
+    const hits = this.clouds.map((cloud) => cloud.hit(ray)).filter((hit) => hit !== undefined);
+    return hits.sort((a, b) => a.distance - b.distance)[0];
+  }
+  /** The surface nearest to a place. */
+  nearest(place: THREE.Vector3): Nearest | undefined {
+    const all = this.clouds.map((cloud) => cloud.nearest(place)).filter((one) => one !== undefined);
+    return all.sort((a, b) => Math.abs(a.height) - Math.abs(b.height))[0];
+  }
+  isClear(from: THREE.Vector3, to: THREE.Vector3): boolean {
+    return this.clouds.every((cloud) => cloud.isClear(from, to, MARGIN * this.size));
+  }
+  ball(): THREE.Sphere {
+    const box = new THREE.Box3();
+    for (const cloud of this.clouds) box.union(cloud.box.applyMatrix4(cloud.group.matrix));
+    const center = box.getCenter(new THREE.Vector3());
+    return new THREE.Sphere(center, Math.max(...this.clouds.map((cloud) => cloud.farthest(center))));
+  }
+
   show(frame: Frame): void {
     frame.bodies.forEach((rows, i) => {
       const m = rows as number[];
       this.clouds[i]?.group.matrix.set(
-        m[0]!, m[1]!, m[2]!, m[3]!, m[4]!, m[5]!, m[6]!, m[7]!, m[8]!, m[9]!, m[10]!, m[11]!, 0, 0, 0, 1,
+        m[0],
+        m[1],
+        m[2],
+        m[3],
+        m[4],
+        m[5],
+        m[6],
+        m[7],
+        m[8],
+        m[9],
+        m[10],
+        m[11],
+        0,
+        0,
+        0,
+        1,
       );
     });
     while (this.markers.length < frame.runs.length && this.clouds.length > 0) {
@@ -94,11 +158,14 @@ export class View {
       this.scene.add(markers.group);
     }
     this.dropMarkers(frame.runs.length);
-    frame.runs.forEach((run, i) => this.markers[i]?.show(run, frame.settings?.force_max_N ?? FORCE_N));
+    this.under = frame.runs.map((run) => this.nearest(new THREE.Vector3(...run.probe_m)));
+    frame.runs.forEach((run, i) => {
+      this.markers[i]?.show(run, frame.settings?.force_max_N ?? FORCE_N, this.under[i]);
+    });
     this.hand.visible = frame.hand_m !== undefined;
     if (frame.hand_m) this.hand.position.set(...frame.hand_m);
     this.applyShown();
-    // Still pictures are not drawn again: a micrometre is not seen.
+    // Changes below a micrometre are invisible: no new picture.
     const seen = JSON.stringify([frame.runs.map(look), frame.hand_m?.map(micrometres), frame.bodies]);
     if (seen !== this.seen) this.changed();
     this.seen = seen;
@@ -121,11 +188,12 @@ export class View {
   }
 
   async showOctants(level: number | undefined): Promise<void> {
-    const lines = level === undefined
-      ? []
-      : await Promise.all(this.clouds.map((_, i) => loadOctants(i, level)));
+    const lines =
+      level === undefined ? [] : await Promise.all(this.clouds.map((_, i) => loadOctants(i, level)));
     for (const old of this.octants) old.removeFromParent();
-    lines.forEach((line, i) => this.clouds[i]?.group.add(line));
+    lines.forEach((line, i) => {
+      this.clouds[i]?.group.add(line);
+    });
     this.octants = lines;
     this.changed();
   }
@@ -135,9 +203,9 @@ export class View {
     this.moved_ms = performance.now();
   }
 
-  /** What is seen, as a PNG file. */
+  /** The picture as a PNG file. */
   picture(): Promise<Blob | null> {
-    this.draw(MOST_POINTS);
+    this.draw(MAX_POINTS);
     return new Promise((done) => this.canvas.toBlob(done, 'image/png'));
   }
 
@@ -156,8 +224,8 @@ export class View {
       this.dirty = false;
       this.refined = false;
       this.draw(this.budget);
-      if (took > SLOW_MS && took < 1000) this.budget = Math.max(FEWEST_POINTS, 0.8 * this.budget);
-      if (took < FAST_MS) this.budget = Math.min(MOST_POINTS, 1.05 * this.budget);
+      if (took > SLOW_MS && took < 1000) this.budget = Math.max(MIN_POINTS, 0.8 * this.budget);
+      if (took < FAST_MS) this.budget = Math.min(MAX_POINTS, 1.05 * this.budget);
     } else if (!this.refined && now - this.moved_ms > STILL_MS) {
       this.refined = true;
       this.draw(Math.max(2 * this.budget, 500_000));
@@ -167,14 +235,16 @@ export class View {
   private draw(budget: number): void {
     const { clientWidth: width, clientHeight: height } = this.canvas;
     if (width === 0 || height === 0) return;
-    const sides = Math.max(1, this.markers.length);
+    const { sides } = this;
     this.orbit.resize(width / sides, height);
     const eye = { camera: this.orbit.camera, height_px: height * this.renderer.getPixelRatio() };
     for (const cloud of this.clouds) cloud.choose(eye, budget / sides / this.clouds.length);
     this.drawn = this.clouds.reduce((sum, cloud) => sum + cloud.drawn, 0);
     this.hand.quaternion.copy(this.orbit.camera.quaternion);
     for (let side = 0; side < sides; ++side) {
-      this.markers.forEach((markers, i) => (markers.group.visible = i === side));
+      this.markers.forEach((markers, i) => {
+        markers.group.visible = i === side;
+      });
       this.renderer.setViewport((side * width) / sides, 0, width / sides, height);
       this.renderer.setScissor((side * width) / sides, 0, width / sides, height);
       this.renderer.render(this.scene, this.orbit.camera);
@@ -183,7 +253,7 @@ export class View {
   }
 }
 
-/** Without a GPU smooth edges cost more than they are worth. */
+/** Antialiasing is too slow without a GPU. */
 function isSoftware(): boolean {
   const context = document.createElement('canvas').getContext('webgl2');
   const names = context?.getExtension('WEBGL_debug_renderer_info');
@@ -196,7 +266,10 @@ const micrometres = (v: number): number => Math.round(1e6 * v);
 
 function look(run: Run): unknown {
   return [
-    run.probe_m.map(micrometres), run.proxy_m.map(micrometres), run.force_N.map((v) => v.toFixed(3)),
-    run.in_contact, run.linkage.flat().map((point) => point.map(micrometres)),
+    run.probe_m.map(micrometres),
+    run.proxy_m.map(micrometres),
+    run.force_N.map((v) => v.toFixed(3)),
+    run.in_contact,
+    run.linkage.flat().map((point) => point.map(micrometres)),
   ];
 }

@@ -1,11 +1,13 @@
 #pragma once
-// What the device tells a USB host of itself. A device of three functions, each one interface:
-//   0  the link: messages as in wire/frame.hpp over bulk endpoints, news over an interrupt endpoint
+// USB descriptors of a board. Three functions of one interface each:
+//   0  the link: frames as in wire/frame.hpp over bulk endpoints, news over an interrupt endpoint
 //   1  the model, over DFU 1.1
 //   2  the parameters, over DFU 1.1
-// Two DFU interfaces rather than one with alternate settings: Linux's FunctionFS has none, and
-// tools tell the two apart by name all the same (`dfu-util -a model`).
-// Microsoft OS 2.0 descriptors make Windows load WinUSB by itself, so no driver is needed there.
+// Two DFU interfaces instead of alternate settings, which Linux's FunctionFS does not support.
+// `dfu-util -a model` selects an interface by its name.
+// Microsoft OS 2.0 descriptors make Windows load WinUSB; no driver installation is required.
+//
+// Interrupt safety: pure functions. Constant cost, except string_descriptor(): its length.
 
 #include <array>
 #include <cstddef>
@@ -19,8 +21,8 @@ inline constexpr std::uint8_t kLinkInterface = 0;
 inline constexpr std::uint8_t kModelInterface = 1;
 inline constexpr std::uint8_t kParameterInterface = 2;
 
-/// By these an application knows the link, whoever made the device.
-inline constexpr std::uint8_t kLinkClass = 0xFF;     ///< vendor's own
+/// Class codes that identify the link for any vendor and product number.
+inline constexpr std::uint8_t kLinkClass = 0xFF;     ///< vendor specific
 inline constexpr std::uint8_t kLinkSubclass = 0x54;  ///< 'T'
 inline constexpr std::uint8_t kLinkProtocol = 1;     ///< major version of the wire protocol
 
@@ -33,11 +35,11 @@ inline constexpr std::uint16_t kBulkPacketBytesFull = 64;
 inline constexpr std::uint16_t kBulkPacketBytesHigh = 512;
 inline constexpr std::uint16_t kDfuTransferBytes = 512;
 
-/// Vendor request with which Windows fetches the Microsoft OS 2.0 descriptors.
+/// Vendor request by which Windows reads the Microsoft OS 2.0 descriptors.
 inline constexpr std::uint8_t kMicrosoftRequest = 0x20;
 inline constexpr std::uint16_t kMicrosoftDescriptorIndex = 7;
 
-/// On the interrupt endpoint, whenever state or faults change: an application needs no polling.
+/// Sent on the interrupt endpoint whenever state or faults change.
 struct NewsPacket {
   std::uint32_t tick = 0;
   std::uint32_t state = 0;  ///< State
@@ -48,8 +50,8 @@ static_assert(sizeof(NewsPacket) == 16);
 
 enum class Speed : std::uint8_t { kFull = 0, kHigh };
 
-/// Who the device is. Vendor and product number are the maker's to set; the default is the one that
-/// pid.codes keeps for experiments and must not leave a lab.
+/// Identity of the device. The maker sets vendor and product number; the default is the test number
+/// of pid.codes, which must not be used outside a laboratory.
 struct Identity {
   std::uint16_t vendor = 0x1209;
   std::uint16_t product = 0x0001;
@@ -79,23 +81,23 @@ inline constexpr std::uint8_t kStrings = 7;
 
 [[nodiscard]] std::array<std::byte, kDeviceDescriptorBytes> device_descriptor(
     const Identity& identity);
-/// For the speed that the device does not run at now.
+/// Describes the speed that is not in use.
 [[nodiscard]] std::array<std::byte, kQualifierBytes> qualifier_descriptor();
-/// All of the configuration; `type` is 2, or 7 for that of the other speed.
+/// The whole configuration; `type` is 2, or 7 for the speed that is not in use.
 [[nodiscard]] std::array<std::byte, kConfigurationBytes> configuration_descriptor(
     Speed speed, std::uint8_t type = 2);
-/// Of interfaces and endpoints only: what follows the configuration's own nine bytes.
+/// Offset of the interface and endpoint descriptors in the configuration.
 inline constexpr std::size_t kInterfacesOffset = 9;
 
 [[nodiscard]] std::span<const std::byte, kBosBytes> bos_descriptor();
 [[nodiscard]] std::span<const std::byte, kMicrosoftBytes> microsoft_descriptors();
 
-/// Writes string descriptor `index` to `out`; returns its length, 0: there is none.
+/// Writes string descriptor `index` to `out`; returns its length, 0: no such string.
 [[nodiscard]] std::size_t string_descriptor(std::uint8_t index, const Identity& identity,
                                             std::span<std::byte, kStringBytesMax> out);
-/// Zero-terminated, 24 digits.
+/// The serial number: 24 hexadecimal digits, zero-terminated.
 [[nodiscard]] std::array<char, 25> serial_text(const Identity& identity);
-/// Of an interface: "link", "model", "parameters".
+/// Name of an interface: "link", "model", "parameters".
 [[nodiscard]] const char* interface_name(std::uint8_t interface);
 
 }  // namespace tactree::core::usb

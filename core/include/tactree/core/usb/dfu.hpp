@@ -1,9 +1,10 @@
 #pragma once
-// Device firmware upgrade, version 1.1 (USB-IF, 2004), for one interface: the states that a device
-// has in DFU mode. What is written is no firmware but a model, or parameters; so the device never
-// leaves that mode, needs no detach, and goes on working afterwards (manifestation tolerant).
+// Device firmware upgrade, version 1.1 (USB-IF, 2004), for one interface: the states of DFU mode.
+// It transfers a model or parameters, no firmware: the device never leaves DFU mode, needs no
+// detach and continues to work after a download (manifestation tolerant). The storage validates the
+// data.
 //
-// Interrupt safe: one context owns it; nothing is shared. The storage decides what is acceptable.
+// Interrupt safety: no shared state; one context owns an object. Constant cost plus the storage's.
 
 #include <concepts>
 #include <cstddef>
@@ -27,11 +28,11 @@ enum class DfuRequest : std::uint8_t {
 
 enum class DfuState : std::uint8_t {
   kIdle = 2,
-  kDownloadSync = 3,  ///< a block is there; the host has not asked yet how it went
-  kDownloadBusy = 4,  ///< and is being written: the host waits
-  kDownloadIdle = 5,  ///< for the next block
-  kManifestSync = 6,  ///< all blocks are there
-  kManifest = 7,      ///< and are being checked: the host waits
+  kDownloadSync = 3,  ///< a block was received; its status is not yet requested
+  kDownloadBusy = 4,  ///< the block is being written; the host waits
+  kDownloadIdle = 5,  ///< ready for the next block
+  kManifestSync = 6,  ///< all blocks were received
+  kManifest = 7,      ///< the data is being validated; the host waits
   kUploadIdle = 9,
   kError = 10,
 };
@@ -39,32 +40,32 @@ enum class DfuState : std::uint8_t {
 enum class DfuStatus : std::uint8_t {
   kOk = 0x00,
   kTarget = 0x01,    ///< not meant for this device
-  kFile = 0x02,      ///< refused by a check of the vendor's own
+  kFile = 0x02,      ///< refused by a vendor-specific check
   kWrite = 0x03,     ///< the memory cannot be written
   kErase = 0x04,     ///< the memory cannot be erased
   kProgram = 0x06,   ///< programming failed
-  kVerify = 0x07,    ///< what was programmed is not what was sent
+  kVerify = 0x07,    ///< the programmed bytes differ from those sent
   kAddress = 0x08,   ///< out of range, or a block out of order
   kNotDone = 0x09,   ///< the host ended too early
-  kFirmware = 0x0A,  ///< what is stored is damaged
+  kFirmware = 0x0A,  ///< the stored data is damaged
   kUnknown = 0x0E,
-  kStalledPacket = 0x0F,  ///< a request that the state does not allow
+  kStalledPacket = 0x0F,  ///< a request not allowed in the present state
 };
 
-/// How far a storage is with its last piece of work.
+/// Progress of a storage's last operation.
 struct DfuProgress {
   DfuStatus status = DfuStatus::kOk;
   bool busy = false;
-  std::uint32_t wait_ms = 0;  ///< ask again after that long; below 2^24
+  std::uint32_t wait_ms = 0;  ///< time until the next status request; below 2^24
 };
 
-/// Where the bytes go to and come from. Functions return at once; what takes long goes on later,
-/// as progress() tells.
-///   begin()                what comes replaces what is there
+/// Source and destination of the bytes. Functions return immediately; progress() reports whether an
+/// operation is still running.
+///   begin()                prepares to replace the stored data
 ///   write(offset, bytes)   offsets ascend without gaps
-///   finish()               all is there: check it and use it
-///   abort()                the host gave up, or was unplugged; also when nothing was begun
-///   read(offset, bytes, count)   what is stored; count < size: the end
+///   finish()               all bytes were written: validates and uses them
+///   abort()                the host gave up or was unplugged; also called without begin()
+///   read(offset, bytes, count)   reads the stored data; count < size: the end
 template <class T>
 concept DfuStorage = requires(T& storage, std::uint32_t offset, std::span<const std::byte> from,
                               std::span<std::byte> to, std::size_t& count) {
@@ -76,7 +77,7 @@ concept DfuStorage = requires(T& storage, std::uint32_t offset, std::span<const 
   { storage.read(offset, to, count) } -> std::same_as<DfuStatus>;
 };
 
-/// Of a device that takes nothing that way.
+/// A storage that refuses every transfer.
 struct NoDfuStorage {
   [[nodiscard]] static DfuStatus begin() { return DfuStatus::kTarget; }
   [[nodiscard]] static DfuStatus write(std::uint32_t, std::span<const std::byte>) {
@@ -96,14 +97,14 @@ class Dfu {
  public:
   explicit Dfu(Storage& storage) : storage_(storage) {}
 
-  /// The bus was reset, or the cable pulled.
+  /// Call after a bus reset or disconnect.
   void reset() {
     storage_.abort();
     state_ = DfuState::kIdle;
     status_ = DfuStatus::kOk;
   }
 
-  /// Once a tick: while the host waits, time goes by.
+  /// Call once per tick: ends the waiting time of the host.
   void advance(std::uint32_t now_us) {
     now_us_ = now_us;
     if (is_waiting() && now_us_ - waits_since_us_ >= wait_us_) {
@@ -111,16 +112,16 @@ class Dfu {
     }
   }
 
-  /// A class request to this interface.
+  /// Handles a class request to this interface.
   [[nodiscard]] Answer setup(const SetupPacket& setup) {
     const auto request = static_cast<DfuRequest>(setup.bRequest);
-    // While the host is to wait the standard allows no request at all. Two clocks differ, and a
-    // device may be late to look at its own: who asks for the status early is told to wait on.
+    // The standard allows no request while the host waits. Since clocks differ, and the device may
+    // read its own late, an early status request is answered with the waiting time again.
     if (request == DfuRequest::kAskStatus) {
-      return is_query(setup, kStatusBytes) ? tell_status(setup) : fail(DfuStatus::kStalledPacket);
+      return is_query(setup, kStatusBytes) ? send_status(setup) : fail(DfuStatus::kStalledPacket);
     }
     if (request == DfuRequest::kAskState && !is_waiting()) {
-      return is_query(setup, 1) ? tell_state(setup) : fail(DfuStatus::kStalledPacket);
+      return is_query(setup, 1) ? send_state(setup) : fail(DfuStatus::kStalledPacket);
     }
     if (state_ == DfuState::kError) {
       return request == DfuRequest::kClearStatus && is_bare(setup) ? clear() : stall();
@@ -138,7 +139,7 @@ class Dfu {
     return fail(DfuStatus::kStalledPacket);
   }
 
-  /// The bytes of a block, after setup() wanted them.
+  /// Handles the bytes of a block, after setup() answered kReceive.
   [[nodiscard]] Answer data(std::span<const std::byte> bytes) {
     if (bytes.size() != block_bytes_) {
       return fail(DfuStatus::kStalledPacket);
@@ -211,7 +212,7 @@ class Dfu {
     return receive();
   }
 
-  /// Whatever the block's number.
+  /// The block number is ignored.
   [[nodiscard]] Answer end_download() {
     if (state_ != DfuState::kDownloadIdle) {
       return fail(DfuStatus::kStalledPacket);
@@ -243,12 +244,12 @@ class Dfu {
     }
     offset_ += static_cast<std::uint32_t>(count);
     ++block_;
-    // Short: the end. Also of the first block, where the host has no reason to ask on.
+    // A short block is the end, even the first one: the host sends no further request.
     state_ = count < to.size() ? DfuState::kIdle : DfuState::kUploadIdle;
     return send(to.first(count), setup);
   }
 
-  /// Asking how it went is what moves a transfer on.
+  /// A status request advances the transfer.
   void proceed() {
     const bool manifest = state_ == DfuState::kManifestSync;
     if (!manifest && state_ != DfuState::kDownloadSync) {
@@ -267,7 +268,7 @@ class Dfu {
     }
   }
 
-  [[nodiscard]] Answer tell_status(const SetupPacket& setup) {
+  [[nodiscard]] Answer send_status(const SetupPacket& setup) {
     if (!is_waiting()) {
       wait_ms_ = 0;
       proceed();
@@ -281,7 +282,7 @@ class Dfu {
     return send(std::span(buffer_).first(kStatusBytes), setup);
   }
 
-  [[nodiscard]] Answer tell_state(const SetupPacket& setup) {
+  [[nodiscard]] Answer send_state(const SetupPacket& setup) {
     buffer_[0] = static_cast<std::byte>(state_);
     return send(std::span(buffer_).first(1), setup);
   }
@@ -289,7 +290,7 @@ class Dfu {
   Storage& storage_;
   DfuState state_ = DfuState::kIdle;
   DfuStatus status_ = DfuStatus::kOk;
-  std::uint16_t block_ = 0;  // the next
+  std::uint16_t block_ = 0;  // number of the next block
   std::uint16_t block_bytes_ = 0;
   std::uint32_t offset_ = 0;
   std::uint32_t wait_ms_ = 0;

@@ -2,12 +2,17 @@
 // The parameters (parameters.hpp) as a file for DFU, little-endian:
 //   u32 "TTPR", u16 version, u16 count, f32[count] in the order of their numbers, u32 CRC-32 of all
 //   before it
-// All are taken or none, and only while the motors are off.
+// A file sets all parameters or none, and only while the motors are off.
+//
+// Interrupt safety: no shared state of its own; call outside the tick. Platform::hold_ticks() keeps
+// the tick away while the configuration changes.
+// Loop and memory annotations: docs/BOUND.md.
 
 #include <cstddef>
 #include <cstdint>
 #include <span>
 
+#include "tactree/core/between_ticks.hpp"
 #include "tactree/core/controller.hpp"
 #include "tactree/core/crc32.hpp"
 #include "tactree/core/parameters.hpp"
@@ -31,7 +36,7 @@ static_assert(sizeof(ParameterFile) == 8 + 4 * kParameters + 4);
   return crc32(bytes.first(offsetof(ParameterFile, checksum)));
 }
 
-/// Platform: hold_ticks(bool) as a session's (hal/session/session.hpp).
+/// Platform: provides hold_ticks(bool), as the platform of a session (hal/session/session.hpp).
 template <class Platform>
 class ParameterStorage {
  public:
@@ -63,9 +68,7 @@ class ParameterStorage {
     if (!is_ours() || !take_values(configuration)) {
       return DfuStatus::kFile;
     }
-    platform_.hold_ticks(true);
-    const ConfigurationStatus status = controller_.configure(configuration);
-    platform_.hold_ticks(false);
+    const ConfigurationStatus status = configure(platform_, controller_, configuration);
     if (status == ConfigurationStatus::kBusy) {
       return DfuStatus::kTarget;
     }

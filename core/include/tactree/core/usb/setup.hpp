@@ -1,5 +1,7 @@
 #pragma once
-// What a USB host asks on endpoint 0, as numbers (USB 2.0, chapter 9), and what is answered.
+// Control transfers of endpoint 0 (USB 2.0, chapter 9): requests and answers.
+//
+// Interrupt safety: plain data and pure functions.
 
 #include <cstddef>
 #include <cstdint>
@@ -7,9 +9,9 @@
 
 namespace tactree::core::usb {
 
-/// The eight bytes that begin a control transfer.
+/// The first eight bytes of a control transfer.
 struct SetupPacket {
-  // NOLINTBEGIN(readability-identifier-naming): as the standard calls them
+  // NOLINTBEGIN(readability-identifier-naming): names of the standard
   std::uint8_t bmRequestType = 0;
   std::uint8_t bRequest = 0;
   std::uint16_t wValue = 0;
@@ -42,26 +44,26 @@ inline constexpr std::uint8_t kSetInterface = 11;
 
 inline constexpr std::uint16_t kEndpointHalt = 0;  ///< a feature
 
-/// How a control transfer goes on.
+/// Continuation of a control transfer.
 struct Answer {
   enum class Kind : std::uint8_t {
     kStall = 0,    ///< refused
-    kAcknowledge,  ///< done; there is no data
-    kSend,         ///< `data` goes to the host
-    kReceive,      ///< the host sends wLength bytes; then the request is judged
+    kAcknowledge,  ///< done, without data
+    kSend,         ///< send `data` to the host
+    kReceive,      ///< receive wLength bytes, which decide the result
   };
-  /// What the device controller has to do, after the status stage.
+  /// Action of the device controller after the status stage.
   enum class Effect : std::uint8_t {
     kNone = 0,
-    kTakeAddress,  ///< `value`
-    kConfigure,    ///< configuration `value`; 0: none
-    kHalt,         ///< endpoint with address `value`
-    kClearHalt,    ///< and its data toggle
+    kTakeAddress,  ///< use address `value`
+    kConfigure,    ///< use configuration `value`; 0: none
+    kHalt,         ///< halt the endpoint with address `value`
+    kClearHalt,    ///< clear the halt and the data toggle of endpoint `value`
   };
   Kind kind = Kind::kStall;
   Effect effect = Effect::kNone;
   std::uint8_t value = 0;
-  std::span<const std::byte> data{};  ///< holds until the next request; wLength bytes at most
+  std::span<const std::byte> data{};  ///< valid until the next request; at most wLength bytes
 };
 
 [[nodiscard]] inline Answer stall() { return {}; }
@@ -71,7 +73,7 @@ struct Answer {
 [[nodiscard]] inline Answer receive() {
   return {Answer::Kind::kReceive, Answer::Effect::kNone, 0, {}};
 }
-/// No more than the host asked for.
+/// Sends at most the requested number of bytes.
 [[nodiscard]] inline Answer send(std::span<const std::byte> data, const SetupPacket& setup) {
   const std::size_t size = data.size() < setup.wLength ? data.size() : setup.wLength;
   return {Answer::Kind::kSend, Answer::Effect::kNone, 0, data.first(size)};

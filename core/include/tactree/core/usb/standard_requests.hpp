@@ -1,8 +1,8 @@
 #pragma once
-// The standard requests of endpoint 0 (USB 2.0, section 9.4), and the one vendor request that
-// fetches the Microsoft descriptors. What is not as the standard has it is refused with a stall.
+// The standard requests of endpoint 0 (USB 2.0, section 9.4), and the vendor request for the
+// Microsoft descriptors. Requests that violate the standard are refused with a stall.
 //
-// Interrupt safe: one context owns it; nothing is shared.
+// Interrupt safety: no shared state; one context owns an object. Constant cost.
 
 #include "tactree/core/usb/descriptors.hpp"
 #include "tactree/core/usb/setup.hpp"
@@ -15,12 +15,13 @@ class StandardRequests {
   StandardRequests(const Identity& identity, bool has_high_speed)
       : identity_(identity), has_high_speed_(has_high_speed) {}
 
-  /// The bus was reset, and the device runs at this speed now.
+  /// Call after a bus reset, with the negotiated speed.
   void reset(Speed speed);
-  /// The controller has taken a configuration by itself, as Linux's does.
+  /// For a controller that handles SET_CONFIGURATION itself, e.g. Linux's.
   void set_configured(bool configured);
 
-  /// Standard and vendor requests. An effect in the answer has happened here already.
+  /// Handles a standard or vendor request. The answer's effect is already included in the state
+  /// here.
   [[nodiscard]] Answer setup(const SetupPacket& setup);
 
   [[nodiscard]] bool configured() const { return configured_; }
@@ -45,7 +46,7 @@ class StandardRequests {
   Speed speed_ = Speed::kFull;
   std::uint8_t address_ = 0;
   bool configured_ = false;
-  std::uint32_t halted_ = 0;  // bit n: endpoint n of `endpoints` in the source
+  std::uint32_t halted_ = 0;  // bit n: entry n of kEndpoints
   std::array<std::byte, kConfigurationBytes> buffer_{};
 };
 

@@ -1,10 +1,11 @@
 #pragma once
-// A message on the wire: header, payload, CRC-32; COBS-encoded and ended by a zero byte, so that a
-// reader that joins late, or has lost bytes, finds the next message at the next zero. The same on a
-// stream of bytes (serial port, pseudo-terminal) and in USB packets, which may cut a frame
-// anywhere. (S. Cheshire, M. Baker, "Consistent Overhead Byte Stuffing", IEEE/ACM ToN 7(2), 1999.)
+// Frames of the wire protocol: header, payload, CRC-32; COBS-encoded and terminated by a zero byte.
+// A reader that joins late or lost bytes resynchronises at the next zero. Serial ports,
+// pseudo-terminals and USB packets carry the same bytes; a packet may split a frame anywhere.
+// (S. Cheshire, M. Baker, "Consistent Overhead Byte Stuffing", IEEE/ACM ToN 7(2), 1999.)
+// Specification: docs/PROTOCOL.md.
 //
-// Interrupt safe: no shared state. Every byte is told in docs/PROTOCOL.md.
+// Interrupt safety: no shared state; one context owns a decoder.
 
 #include <cstddef>
 #include <cstdint>
@@ -16,10 +17,10 @@
 namespace tactree::core::wire {
 
 struct FrameHeader {
-  std::uint8_t kind = 0;    ///< MessageKind; of a reply: with kReplyBit
-  std::uint8_t status = 0;  ///< WireStatus, of a reply; else 0
+  std::uint8_t kind = 0;    ///< MessageKind; with kReplyBit in a reply
+  std::uint8_t status = 0;  ///< WireStatus in a reply; else 0
   std::uint16_t sequence = 0;
-  std::uint16_t session = 0;  ///< as the board gave it out; 0: of none
+  std::uint16_t session = 0;  ///< assigned by the board; 0: none
   std::uint16_t payload_bytes = 0;
 };
 static_assert(sizeof(FrameHeader) == 8 && alignof(FrameHeader) == 2);
@@ -29,31 +30,25 @@ inline constexpr std::uint32_t kFrameChecksumBytes = 4;
 /// Header, payload and checksum, before COBS.
 inline constexpr std::uint32_t kMaxFrame = 276;
 static_assert(kMaxFrame == sizeof(FrameHeader) + kMaxPayload + kFrameChecksumBytes);
-/// COBS adds a byte for each 254 begun, and the zero at the end.
+/// COBS adds one byte per 254 begun, and the zero at the end.
 inline constexpr std::uint32_t kMaxEncodedFrame = 279;
 static_assert(kMaxEncodedFrame == kMaxFrame + (kMaxFrame + 253U) / 254U + 1U);
-/// Between two frames.
+/// Ends a frame.
 inline constexpr std::uint8_t kDelimiter = 0;
 
-/// Writes a frame to `out` and returns its length, the delimiter included. 0: the payload is longer
-/// than kMaxPayload, or `out` is shorter than kMaxEncodedFrame. `header.payload_bytes` is filled in
-/// here. Cost: about 25 instructions a byte.
+/// Writes a frame to `out` and returns its length including the delimiter. 0: the payload is longer
+/// than kMaxPayload, or `out` is shorter than kMaxEncodedFrame. Sets `header.payload_bytes`.
+/// Cost: about 25 instructions per byte.
 [[nodiscard]] std::size_t encode_frame(FrameHeader header, std::span<const std::byte> payload,
                                        std::span<std::byte> out);
 
-/// A message whose fields lie in memory as on the wire.
+/// A message with the same layout in memory as on the wire.
 template <class T>
 concept Message = std::is_aggregate_v<T> && std::is_trivially_copyable_v<T> &&
                   sizeof(T) <= kMaxPayload;
 
-template <Message T>
-[[nodiscard]] std::size_t encode_message(const FrameHeader& header, const T& message,
-                                         std::span<std::byte> out) {
-  return encode_frame(header, std::as_bytes(std::span(&message, 1)), out);
-}
-
-/// The message that a payload begins with. A later minor version may have added fields at its end:
-/// they are skipped. False: the payload is too short.
+/// Reads the message at the beginning of a payload. Ignores the bytes behind it: later minor
+/// versions may append fields. False: the payload is too short.
 template <Message T>
 [[nodiscard]] bool decode_message(std::span<const std::byte> payload, T& message) {
   if (payload.size() < sizeof(T)) {
@@ -63,16 +58,16 @@ template <Message T>
   return true;
 }
 
-/// Takes bytes one by one and finds frames among them, after any garbage.
+/// Extracts frames from a stream of bytes; skips garbage.
 class FrameDecoder {
  public:
   enum class Result : std::uint8_t {
-    kNone = 0,  ///< nothing is complete yet
-    kFrame,     ///< header() and payload() hold until the next push()
-    kDamaged,   ///< something ended that is no frame: it was dropped
+    kNone = 0,  ///< no frame is complete yet
+    kFrame,     ///< a frame; header() and payload() are valid until the next push()
+    kDamaged,   ///< bytes that are no frame were dropped
   };
 
-  /// Cost: a few instructions; at a delimiter a checksum of the frame, about 10 a byte.
+  /// Cost: a few instructions; at a delimiter the checksum of the frame, about 10 per byte.
   [[nodiscard]] Result push(std::byte byte);
 
   [[nodiscard]] const FrameHeader& header() const { return header_; }
@@ -90,7 +85,7 @@ class FrameDecoder {
   FrameHeader header_{};
   std::uint32_t size_ = 0;    // decoded bytes in the buffer
   std::uint8_t left_ = 0;     // bytes until the next code
-  bool zero_is_due_ = false;  // a zero stands between the run and the next one
+  bool zero_is_due_ = false;  // a zero separates this run from the next
   bool empty_ = true;         // nothing since the last delimiter
   bool too_long_ = false;
 };

@@ -1,11 +1,13 @@
 #pragma once
-// What application and board tell each other: kinds, status codes and the payload of each message,
-// laid out in memory as on the wire (little-endian, no padding). docs/PROTOCOL.md tells how they
-// are used; scripts/check-protocol-doc compares the two.
+// Messages of the wire protocol: kinds, status codes and the payload of each message, with the same
+// layout in memory as on the wire (little-endian, no padding). docs/PROTOCOL.md specifies their
+// use; scripts/check-protocol-doc compares it with this header.
 //
-// A request has a kind of 0x01 .. 0x3F; its reply has the same kind with kReplyBit, the request's
-// sequence number and a WireStatus, and an empty payload where that is not kOk. What a board sends
-// of its own accord has a kind of 0x40 .. 0x7F.
+// A request has a kind of 0x01 .. 0x3F. Its reply has the same kind with kReplyBit, the request's
+// sequence number and a WireStatus; the payload is empty unless the status is kOk. An unsolicited
+// message of the board has a kind of 0x40 .. 0x7F.
+//
+// Interrupt safety: plain data and pure functions.
 
 #include <cstddef>
 #include <cstdint>
@@ -19,32 +21,32 @@ inline constexpr std::uint8_t kProtocolMinor = 0;
 inline constexpr std::uint8_t kReplyBit = 0x80;
 
 enum class MessageKind : std::uint8_t {
-  kIdentify = 0x01,        ///< who are you; needs no session
+  kIdentify = 0x01,        ///< name, version and serial number; needs no session
   kOpen = 0x02,            ///< begins a session, ends the one before
   kClose = 0x03,           ///< ends the session, and stops
   kHeartbeat = 0x04,       ///< the only message that keeps a required link alive
-  kCapabilities = 0x05,    ///< what the board can do, and its limits
+  kCapabilities = 0x05,    ///< features of the board, and its limits
   kState = 0x06,           ///< state and faults
   kControl = 0x07,         ///< arm, stop ...; stop needs no session
-  kSetLimits = 0x08,       ///< of the force
-  kSetMaterial = 0x09,     ///< how a contact feels
+  kSetLimits = 0x08,       ///< limits of the force
+  kSetMaterial = 0x09,     ///< parameters of a contact
   kMoveBody = 0x0A,        ///< pose and velocity
-  kAddForce = 0x0B,        ///< a force of the application, on top of the contact's
-  kSubscribe = 0x0C,       ///< telemetry: which fields, how often
+  kAddForce = 0x0B,        ///< a force of the application, added to the contact force
+  kSubscribe = 0x0C,       ///< telemetry: fields and decimation
   kListModels = 0x10,      ///< slots of the model store
   kBeginModel = 0x11,      ///< erases the slot that is not in use
   kWriteModel = 0x12,      ///< a piece of the model
-  kFinishModel = 0x13,     ///< checks what was written
-  kActivateModel = 0x14,   ///< uses it from now on
-  kRollBackModel = 0x15,   ///< back to the model before
-  kEraseModel = 0x16,      ///< of the slot that is not in use
+  kFinishModel = 0x13,     ///< validates the written model
+  kActivateModel = 0x14,   ///< selects the model of a slot
+  kRollBackModel = 0x15,   ///< returns to the previous model
+  kEraseModel = 0x16,      ///< erases the slot that is not in use
   kReadTrace = 0x20,       ///< records of the flight recorder
-  kReadFault = 0x21,       ///< what it was like when the first fault was latched
-  kReadStart = 0x22,       ///< how the board started; needs no session
+  kReadFault = 0x21,       ///< conditions when the first fault was latched
+  kReadStart = 0x22,       ///< result of the start; needs no session
   kGetParameter = 0x28,    ///< device calibration: value, range, name
-  kSetParameter = 0x29,    ///< changes it until the next reset
-  kSaveParameters = 0x2A,  ///< keeps it
-  kTelemetry = 0x40,       ///< of the board's own accord
+  kSetParameter = 0x29,    ///< changes a parameter until the next reset
+  kSaveParameters = 0x2A,  ///< stores all parameters
+  kTelemetry = 0x40,       ///< unsolicited
 };
 
 enum class WireStatus : std::uint8_t {
@@ -53,30 +55,30 @@ enum class WireStatus : std::uint8_t {
   kBadLength = 2,       ///< the payload is shorter than the message
   kBadVersion = 3,      ///< another major version of the protocol
   kNoSession = 4,       ///< open a session first; or it has ended
-  kBadValue = 5,        ///< a field is not finite, out of its range, or names nothing
+  kBadValue = 5,        ///< a field is not finite, out of range, or refers to nothing
   kBusy = 6,            ///< armed or active: stop first
   kNotNow = 7,          ///< the state does not allow it
   kUnstable = 8,        ///< stiffer than device, hand and rate allow
-  kBadToken = 9,        ///< confirm: not the token that arm gave
+  kBadToken = 9,        ///< confirm: not the token of the reply to arm
   kUnsupported = 10,    ///< this board has no such part
-  kNoTransfer = 11,     ///< begin a transfer first; or it was broken off
+  kNoTransfer = 11,     ///< begin a transfer first; or it was aborted
   kOutOfOrder = 12,     ///< the piece does not follow the one before it
   kTooLarge = 13,       ///< the slot is smaller
   kWrongBoard = 14,     ///< the model was made for another board
-  kOldCounter = 15,     ///< the model is older than one that was used: see anti-rollback
-  kBadChecksum = 16,    ///< what was stored is not what was announced
-  kBadModel = 17,       ///< open_blob() or the controller refuses it
+  kOldCounter = 15,     ///< the model is older than one used before: see anti-rollback
+  kBadChecksum = 16,    ///< the stored bytes do not match the announced checksum
+  kBadModel = 17,       ///< open_blob() or the controller refuses the model
   kBadSignature = 18,   ///< not signed by the key that the board trusts
-  kInterrupted = 19,    ///< the transfer did not send all that was announced
-  kOtherWriter = 20,    ///< another session writes
-  kNoModel = 21,        ///< the slot holds no model that can be used
-  kInUse = 22,          ///< the slot of the model that is in use
-  kStorageFailed = 23,  ///< the flash did not take it
-  kQueueFull = 24,      ///< too many requests at once: wait for replies
+  kInterrupted = 19,    ///< the transfer sent fewer bytes than announced
+  kOtherWriter = 20,    ///< another session writes a model
+  kNoModel = 21,        ///< the slot holds no usable model
+  kInUse = 22,          ///< the slot holds the model in use
+  kStorageFailed = 23,  ///< the flash reported an error
+  kQueueFull = 24,      ///< too many pending requests: wait for replies
 };
 inline constexpr std::uint32_t kWireStatuses = 25;
 
-/// The status as words for people: "another major version of the protocol", ...
+/// Text for people, static storage: "the board does not know this message", ...
 [[nodiscard]] const char* describe(WireStatus status);
 
 // --- Session ---------------------------------------------------------------------------------
@@ -87,61 +89,61 @@ struct IdentifyReply {
   std::uint16_t max_payload_bytes = kMaxPayload;
   char board[24] = {};           ///< its name, zero-terminated
   char firmware[24] = {};        ///< version, zero-terminated
-  std::uint32_t serial[3] = {};  ///< unique number; zeros: it has none
+  std::uint32_t serial[3] = {};  ///< unique number; zeros: none
 };
 
 struct OpenRequest {
   std::uint8_t version_major = kProtocolMajor;
   std::uint8_t version_minor = kProtocolMinor;
-  /// 0: the link may be lost; 5 .. 100 ms: then force ends at that time at the latest.
+  /// 0: not monitored; 5 .. 100 ms: without a heartbeat the force ends within this time.
   std::uint16_t link_timeout_ms = 0;
-  std::uint32_t nonce = 0;  ///< comes back: whose reply this is
+  std::uint32_t nonce = 0;  ///< returned in the reply, to identify it
 };
 
 struct OpenReply {
   std::uint8_t version_major = kProtocolMajor;
   std::uint8_t version_minor = kProtocolMinor;  ///< the smaller one of both sides
-  std::uint16_t session = 0;                    ///< for the header of all that follows
+  std::uint16_t session = 0;                    ///< for the header of all later requests
   std::uint32_t nonce = 0;
   std::uint32_t board_time_us = 0;
 };
 
-/// Proof that the host has heard the board a moment ago, not only that bytes come in: without it a
-/// queue of old heartbeats would keep a dead link alive.
+/// Proves that the host has recently received from the board. Otherwise a queue of old heartbeats
+/// would keep a dead link alive.
 struct HeartbeatRequest {
-  std::uint32_t board_time_us = 0;  ///< the newest that the host has seen
+  std::uint32_t board_time_us = 0;  ///< the newest time received from the board
 };
 
 struct HeartbeatReply {
   std::uint32_t board_time_us = 0;
-  std::uint32_t age_us = 0;  ///< of the request's board_time_us when it came in
+  std::uint32_t age_us = 0;  ///< age of the request's board_time_us on arrival
 };
 
 // --- Capabilities, state, control ------------------------------------------------------------
 
 struct CapabilitiesReply {
   float rate_hz = 0.0F;
-  float force_max_N = 0.0F;          ///< as set now
-  float force_limit_N = 0.0F;        ///< greatest that kSetLimits takes
-  float slew_N_s = 0.0F;             ///< as set now
-  float slew_limit_N_s = 0.0F;       ///< greatest that kSetLimits takes
-  float host_force_max_N = 0.0F;     ///< longest that kAddForce takes
-  float stiffness_N_m = 0.0F;        ///< as set now
+  float force_max_N = 0.0F;          ///< present setting
+  float force_limit_N = 0.0F;        ///< largest value for kSetLimits
+  float slew_N_s = 0.0F;             ///< present setting
+  float slew_limit_N_s = 0.0F;       ///< largest value for kSetLimits
+  float host_force_max_N = 0.0F;     ///< longest vector for kAddForce
+  float stiffness_N_m = 0.0F;        ///< present setting
   float stiffness_limit_N_m = 0.0F;  ///< with a light hand
   std::uint32_t bodies_max = 0;
-  std::uint32_t bodies = 0;           ///< there are: bit n is body n
-  std::uint32_t slots = 0;            ///< for models; 0: the model is part of the image
-  std::uint32_t slot_bytes = 0;       ///< most bytes of a model
+  std::uint32_t bodies = 0;           ///< present bodies: bit n is body n
+  std::uint32_t slots = 0;            ///< model slots; 0: the model is part of the image
+  std::uint32_t slot_bytes = 0;       ///< largest size of a model
   std::uint32_t flags = 0;            ///< BoardFlag
-  std::uint32_t trace_ticks = 0;      ///< that the flight recorder holds
+  std::uint32_t trace_ticks = 0;      ///< capacity of the flight recorder
   std::uint32_t parameters = 0;       ///< number of them
-  std::uint32_t cycles_per_tick = 0;  ///< of the core's clock in a period; 0: not known
+  std::uint32_t cycles_per_tick = 0;  ///< core clock cycles per period; 0: unknown
 };
 
 enum class BoardFlag : std::uint32_t {
   kSignatureRequired = 1U << 0,  ///< a model must be signed
   kDeadManRequired = 1U << 1,    ///< a dead-man control confirms; else the message confirm
-  kLinkRequired = 1U << 2,       ///< this session dies with its link
+  kLinkRequired = 1U << 2,       ///< this session ends with its link
   kHomed = 1U << 3,
 };
 
@@ -161,8 +163,8 @@ struct StateReply {
 
 enum class ControlCode : std::uint8_t {
   kArm = 1,      ///< idle to armed; the reply has a token
-  kConfirm = 2,  ///< armed to active, with that token; where a hand confirms: refused
-  kStop = 3,     ///< at any time, of any session and sequence number
+  kConfirm = 2,  ///< armed to active, with that token; refused on boards with a dead-man control
+  kStop = 3,     ///< allowed at any time, from any session, with any sequence number
   kClearFault = 4,
   kHome = 5,  ///< the device is in its home pose
 };
@@ -174,17 +176,17 @@ struct ControlRequest {
 };
 
 struct ControlReply {
-  std::uint8_t state = 0;  ///< State after the tick that took it
+  std::uint8_t state = 0;  ///< State after the tick that executed the request
   std::uint8_t reserved[3] = {};
   std::uint32_t faults = 0;
-  std::uint32_t token = 0;  ///< of kArm
+  std::uint32_t token = 0;  ///< after kArm; else 0
 };
 
-// --- What the hand feels ---------------------------------------------------------------------
+// --- Limits and contact ----------------------------------------------------------------------
 
 struct SetLimitsRequest {
-  float force_max_N = 0.0F;  ///< 0.01 .. the board's own
-  float slew_N_s = 0.0F;     ///< up to the board's own
+  float force_max_N = 0.0F;  ///< 0.01 .. force_limit_N
+  float slew_N_s = 0.0F;     ///< up to slew_limit_N_s
   float ramp_s = 0.0F;       ///< 2 ticks .. 10 s
 };
 
@@ -193,7 +195,7 @@ struct SetMaterialRequest {
   float damping_Ns_m = 0.0F;
   float static_friction = 0.0F;
   float dynamic_friction = 0.0F;
-  std::uint32_t use_materials = 1;  ///< 1: where the model has materials of its own they count
+  std::uint32_t use_materials = 1;  ///< 1: use the model's materials, if any
 };
 
 struct MoveBodyRequest {
@@ -206,23 +208,23 @@ struct MoveBodyRequest {
 };
 
 struct AddForceRequest {
-  float force_N[3] = {};          ///< device's axes; longer than the limit: scaled down to it
-  std::uint32_t duration_ms = 0;  ///< 1 .. 100: then it is gone unless there was another
+  float force_N[3] = {};          ///< device frame; scaled down if longer than the limit
+  std::uint32_t duration_ms = 0;  ///< 1 .. 100; then the force ends unless renewed
 };
 
 // --- Telemetry -------------------------------------------------------------------------------
 
-/// Fields of a telemetry message, in this order, the ones that were asked for.
+/// Fields of a telemetry message. The subscribed ones follow TelemetryHeader in this order.
 enum class TelemetryField : std::uint32_t {
   kState = 1U << 0,      ///< u32 State, u32 faults, u32 limits
   kProbe = 1U << 1,      ///< f32[3] m
   kVelocity = 1U << 2,   ///< f32[3] m/s
-  kForce = 1U << 3,      ///< f32[3] N, that the hand feels
+  kForce = 1U << 3,      ///< f32[3] N, applied
   kProxy = 1U << 4,      ///< f32[3] m
   kNormal = 1U << 5,     ///< f32[3]
   kContact = 1U << 6,    ///< f32 penetration m, u32 body, f32 share of the force displayed
   kWanted = 1U << 7,     ///< f32[3] N, before the gate
-  kTiming = 1U << 8,     ///< u32 overruns, f32 share of the period that the last tick took
+  kTiming = 1U << 8,     ///< u32 overruns, f32 share of the period used by the last tick
   kReactions = 1U << 9,  ///< twice: u32 body, f32[3] force N, f32[3] torque Nm
 };
 inline constexpr std::uint32_t kTelemetryFields = 10;
@@ -233,14 +235,14 @@ inline constexpr std::uint32_t kTelemetryFieldBytes[kTelemetryFields] = {12, 12,
 
 struct SubscribeRequest {
   std::uint32_t fields = 0;      ///< TelemetryField, or of them
-  std::uint32_t decimation = 0;  ///< a message every so many ticks; 0: none
+  std::uint32_t decimation = 0;  ///< ticks per message; 0: no messages
 };
 
 struct TelemetryHeader {
   std::uint32_t tick = 0;
   std::uint32_t board_time_us = 0;
-  std::uint32_t fields = 0;   ///< that follow
-  std::uint32_t dropped = 0;  ///< messages since the subscription that found no room
+  std::uint32_t fields = 0;   ///< TelemetryField, or of them
+  std::uint32_t dropped = 0;  ///< messages dropped since the subscription
 };
 
 // --- Model store -----------------------------------------------------------------------------
@@ -250,7 +252,7 @@ enum class SlotState : std::uint8_t {
   kPartial = 1,  ///< a transfer was begun and not finished
   kReady = 2,    ///< checked, not in use
   kActive = 3,   ///< in use, or will be after the next start
-  kDamaged = 4,  ///< what it holds is not what was checked
+  kDamaged = 4,  ///< the contents have changed since validation
 };
 
 struct ModelSlot {
@@ -265,23 +267,23 @@ struct ModelSlot {
 };
 
 struct ListModelsReply {
-  std::uint32_t counter_min = 0;  ///< a signed model with a smaller one is refused
+  std::uint32_t counter_min = 0;  ///< a signed model with a smaller counter is refused
   std::uint32_t slots = 0;
   ModelSlot slot[2]{};
 };
 
-/// What a signature covers, followed by the bytes of the model.
+/// A signature covers this manifest followed by the bytes of the model.
 struct ModelManifest {
   char purpose[16] = {'t', 'a', 'c', 't', 'r', 'e', 'e', '-', 'm', 'o', 'd', 'e', 'l', '-', '1', 0};
-  char board[24] = {};        ///< the only one that may use it, zero-terminated; empty: any
-  std::uint32_t counter = 0;  ///< anti-rollback: never smaller than that of any model used before
+  char board[24] = {};        ///< board that may use the model, zero-terminated; empty: any
+  std::uint32_t counter = 0;  ///< anti-rollback: not smaller than that of any model used before
   std::uint32_t bytes = 0;
 };
 
 struct BeginModelRequest {
   char board[24] = {};         ///< as in ModelManifest
   std::uint32_t counter = 0;   ///< as in ModelManifest
-  std::uint32_t bytes = 0;     ///< of the whole model
+  std::uint32_t bytes = 0;     ///< size of the model
   std::uint32_t checksum = 0;  ///< CRC-32 of all bytes
 };
 
@@ -295,7 +297,7 @@ struct WriteModelRequest {
 };
 inline constexpr std::uint32_t kMaxPiece = 256;
 
-/// Also where the piece was out of order: the one place to go on from.
+/// Also sent with kOutOfOrder; the transfer continues at next_offset.
 struct WriteModelReply {
   std::uint32_t next_offset = 0;
 };
@@ -321,21 +323,21 @@ struct SlotRequest {
 // --- Trace, parameters -----------------------------------------------------------------------
 
 struct ReadTraceRequest {
-  std::uint32_t age = 0;    ///< of the first record: 0 is the newest
-  std::uint32_t count = 0;  ///< 1 .. kMaxTraceRecords, going back in time
+  std::uint32_t age = 0;    ///< age of the first record; 0: the newest
+  std::uint32_t count = 0;  ///< 1 .. kMaxTraceRecords, towards older records
 };
 
 /// Followed by `count` records of 18 bytes (FlightRecord).
 struct ReadTraceReply {
   std::uint32_t last_tick = 0;  ///< of the newest record
-  std::uint32_t total = 0;      ///< records that there are
+  std::uint32_t total = 0;      ///< records available
   std::uint32_t age = 0;
-  std::uint32_t count = 0;  ///< may be less than asked for
+  std::uint32_t count = 0;  ///< may be less than requested
 };
 inline constexpr std::uint32_t kMaxTraceRecords = 13;
 
 struct ReadFaultReply {
-  std::uint32_t faults = 0;  ///< 0: there was none
+  std::uint32_t faults = 0;  ///< 0: no fault
   std::uint32_t tick = 0;
   float probe_m[3] = {};
   float proxy_m[3] = {};
@@ -343,35 +345,35 @@ struct ReadFaultReply {
   float force_N[3] = {};
 };
 
-/// Parts of a board that did not start; with any of them there is no force.
+/// Parts of a board that failed to start. Any failure disables the force.
 enum class StartPart : std::uint32_t {
   kEncoders = 1U << 0,
   kMotors = 1U << 1,
   kEnableLine = 1U << 2,
   kSafetyInputs = 1U << 3,
-  kWatchdog = 1U << 4,          ///< or it did not take its time back after the flash was erased
-  kReceiver = 1U << 5,          ///< of the link: what comes fast is lost
+  kWatchdog = 1U << 4,          ///< or its timeout was not restored after an erase of the flash
+  kReceiver = 1U << 5,          ///< receiver of the link: bytes at full speed are lost
   kCrystal = 1U << 8,           ///< no oscillation: the core is slow
   kCrystalFrequency = 1U << 9,  ///< another crystal than the board's
-  kWaitStates = 1U << 10,       ///< of the flash
+  kWaitStates = 1U << 10,       ///< wait states of the flash
   kPll = 1U << 11,              ///< does not lock
   kClockSwitch = 1U << 12,      ///< the core stays on its internal oscillator
 };
 
-/// The first four: why there is no model; 0 is good.
+/// The first four fields state why there is no model; 0: no error.
 struct ReadStartReply {
-  std::uint8_t configuration = 0;   ///< ConfigurationStatus
-  std::uint8_t blob = 0;            ///< BlobStatus
-  std::uint8_t model = 0;           ///< ModelStatus
-  std::uint8_t image = 0;           ///< 1: a byte of the program is wrong; 2: a bit of RAM
-  std::uint32_t missing = 0;        ///< StartPart, or of them
-  std::uint32_t by_watchdog = 0;    ///< 1: it caused the last reset
-  std::uint32_t fault_cause = 0;    ///< what the last run died of; 0: nothing; see CapturedFault
-  std::uint32_t fault_status = 0;   ///< Arm: CFSR; RISC-V: mstatus
-  std::uint32_t fault_address = 0;  ///< Arm: BFAR or MMFAR; RISC-V: mtval
-  std::uint32_t fault_pc = 0;       ///< instruction that failed, or one soon after it
-  std::uint32_t fault_lr = 0;       ///< return address
-  std::uint32_t fault_sp = 0;       ///< stack pointer
+  std::uint8_t configuration = 0;  ///< ConfigurationStatus
+  std::uint8_t blob = 0;           ///< BlobStatus
+  std::uint8_t model = 0;          ///< ModelStatus
+  std::uint8_t image = 0;          ///< 1: checksum of the program is wrong; 2: RAM self-test failed
+  std::uint32_t missing = 0;       ///< StartPart, or of them
+  std::uint32_t by_watchdog = 0;   ///< 1: the watchdog caused the last reset
+  std::uint32_t fault_cause = 0;   ///< cause of the last crash; 0: none; see CapturedFault
+  std::uint32_t fault_status = 0;  ///< Arm: CFSR; RISC-V: mstatus
+  std::uint32_t fault_address = 0;         ///< Arm: BFAR or MMFAR; RISC-V: mtval
+  std::uint32_t fault_pc = 0;              ///< the failed instruction, or one shortly after it
+  std::uint32_t fault_lr = 0;              ///< return address
+  std::uint32_t fault_sp = 0;              ///< stack pointer
   std::uint32_t fault_registers[13] = {};  ///< Arm: r0-r12; RISC-V: a0-a7, t0-t4
 };
 

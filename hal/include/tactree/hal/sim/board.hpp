@@ -1,7 +1,7 @@
 #pragma once
-// A board in software: every part keeps the contract of board.hpp, and has the faults and delays
-// of the real thing as parameters. Whoever simulates calls sample() with the position before each
-// tick of the loop and takes effort() after it.
+// A simulated board: every part satisfies the contract of board.hpp, with faults and delays as
+// parameters. The simulation calls sample() with the position before each tick of the loop and
+// effort() after it. Not thread safe.
 
 #include <cstddef>
 #include <cstdint>
@@ -10,6 +10,7 @@
 #include "tactree/hal/board.hpp"
 #include "tactree/hal/sim/encoder_bank.hpp"
 #include "tactree/hal/sim/motor_bank.hpp"
+#include "tactree/hal/sim/session_recorder.hpp"
 
 namespace tactree::hal::sim {
 
@@ -17,17 +18,18 @@ struct BoardParameters {
   EncoderParameters encoders{};
   MotorParameters motors{};
   std::uint32_t period_us = 1000;        ///< of a tick: 1 .. 1e6
-  std::uint32_t enable_delay_ticks = 5;  ///< for the amplifiers' power to follow the line
+  std::uint32_t enable_delay_ticks = 5;  ///< delay of the amplifiers' power
+  SessionRecorder* recorder = nullptr;   ///< receives the session; outlives the board
 };
 
-/// A relay: follows after a delay, unless it sticks.
+/// A relay with a delay; it may stick.
 class SimEnableLine {
  public:
   explicit SimEnableLine(std::uint32_t delay_ticks) : line_(delay_ticks, false) {}
   void set(bool on) noexcept { wanted_ = on; }
   [[nodiscard]] bool read_back() noexcept { return stuck_ ? stuck_at_ : line_.value(); }
 
-  /// Once a tick.
+  /// Call once a tick.
   void advance() { line_.push(wanted_); }
   void stick(bool at) {
     stuck_ = true;
@@ -54,10 +56,10 @@ class SimSafetyInputs {
   bool dead_man_ = false;
 };
 
-/// Simulated time: a wait takes exactly one period, or more where an overrun is injected.
+/// Simulated time: a wait takes exactly one period, plus injected overruns.
 class SimTicker {
  public:
-  /// `line` moves on with the time and must outlive the ticker.
+  /// `line` advances with the time and must outlive the ticker.
   SimTicker(std::uint32_t period_us, SimEnableLine& line) : period_us_(period_us), line_(line) {}
   [[nodiscard]] Tick wait() noexcept {
     const Tick tick{overruns_};
@@ -68,7 +70,7 @@ class SimTicker {
   }
   [[nodiscard]] std::uint32_t now_us() noexcept { return now_us_; }
 
-  /// The next wait finds this many deadlines missed.
+  /// The next wait() reports this number of missed deadlines.
   void miss(std::uint32_t deadlines) { overruns_ = deadlines; }
 
  private:
@@ -78,7 +80,7 @@ class SimTicker {
   std::uint32_t overruns_ = 0;
 };
 
-/// An application on the other end of a wire.
+/// Link to a simulated application.
 class SimLink {
  public:
   [[nodiscard]] LinkInput receive() noexcept {
@@ -88,16 +90,25 @@ class SimLink {
   }
   void send(const core::Status& status) noexcept { last_ = status; }
 
-  /// The next receive() finds a message with this command (kNone: a sign of life).
+  /// The next receive() returns a message with this command (kNone: keep-alive).
   void post(core::Command command) { next_ = {true, command, {}}; }
-  /// And it carries this update as well, unless it was lost.
-  void attach(const BodyUpdate& update) { next_.body = next_.alive ? update : BodyUpdate{}; }
-  /// What is on its way is lost.
+  /// Adds this update to the posted message, unless it was lost.
+  void attach(const BodyUpdate& update) {
+    body_ = update;
+    next_.bodies = std::span(&body_, next_.alive ? 1U : 0U);
+  }
+  /// The next receive() returns these updates with or without a message, as from an application on
+  /// the board. `updates` must stay valid until the end of the tick.
+  void move_bodies(std::span<const BodyUpdate> updates) { next_.bodies = updates; }
+  /// The next receive() returns this force.
+  void add_force(const core::AddedForce& force) { next_.added_force = force; }
+  /// Drops the pending input.
   void cut() { next_ = {}; }
   [[nodiscard]] const core::Status& last() const { return last_; }
 
  private:
   LinkInput next_{};
+  BodyUpdate body_{};
   core::Status last_{};
 };
 
@@ -118,7 +129,8 @@ class SimBoard {
         motors_(parameters.motors),
         enable_line_(parameters.enable_delay_ticks),
         ticker_(parameters.period_us, enable_line_),
-        storage_(blob) {}
+        storage_(blob),
+        recorder_(parameters.recorder) {}
 
   SimBoard(const SimBoard&) = delete;
   SimBoard& operator=(const SimBoard&) = delete;
@@ -130,8 +142,10 @@ class SimBoard {
   [[nodiscard]] SimTicker& ticker() noexcept { return ticker_; }
   [[nodiscard]] SimLink& link() noexcept { return link_; }
   [[nodiscard]] SimStorage& storage() noexcept { return storage_; }
+  /// nullptr: none.
+  [[nodiscard]] SessionRecorder* recorder() noexcept { return recorder_; }
 
-  /// Once a tick, before the loop's: positions of the axes, m.
+  /// Call once a tick, before the loop's tick: positions of the axes, m.
   void sample(const double (&position_m)[core::kAxes]) { encoders_.sample(position_m); }
   /// Effort of an axis, N. Precondition: axis < kAxes.
   [[nodiscard]] double effort(std::uint32_t axis) {
@@ -146,6 +160,7 @@ class SimBoard {
   SimTicker ticker_;
   SimLink link_;
   SimStorage storage_;
+  SessionRecorder* recorder_;
 };
 
 static_assert(Board<SimBoard>);

@@ -1,5 +1,6 @@
 #pragma once
-// A value as it was some ticks ago.
+// Delay of a value by a number of ticks.
+// Loop and memory annotations: docs/BOUND.md.
 
 #include <cstdint>
 
@@ -7,12 +8,12 @@ namespace tactree::hal::sim {
 
 inline constexpr std::uint32_t kMaxLatencyTicks = 63;
 
-/// push() once a tick; value() is what was pushed `latency` pushes before the last. Before there
-/// were so many, it is the initial value.
+/// Call push() once a tick. value() returns the value pushed `latency` pushes before the last, or
+/// the initial value if there are fewer. Cost: constant.
 template <class T>
 class DelayLine {
  public:
-  /// latency_ticks: 0 .. kMaxLatencyTicks; larger is taken as the largest.
+  /// latency_ticks: 0 .. kMaxLatencyTicks; larger values are clamped.
   DelayLine(std::uint32_t latency_ticks, const T& initial)
       : latency_(latency_ticks < kMaxLatencyTicks ? latency_ticks : kMaxLatencyTicks) {
     for (T& slot : slots_) {  // bound: slots

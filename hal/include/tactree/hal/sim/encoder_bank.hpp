@@ -1,5 +1,6 @@
 #pragma once
 // Encoders of a simulated cartesian device: counts per metre, quantisation, latency, faults.
+// Loop and memory annotations: docs/BOUND.md.
 
 #include <cmath>
 #include <cstdint>
@@ -9,10 +10,10 @@
 
 namespace tactree::hal::sim {
 
-/// One encoder axis that went wrong.
+/// Fault of one encoder axis.
 enum class EncoderFault : std::uint8_t {
   kNone = 0,
-  kStuck,         ///< the count stays where it is
+  kStuck,         ///< the count does not change
   kDisconnected,  ///< not valid
 };
 
@@ -27,7 +28,7 @@ class SimEncoderBank {
   explicit SimEncoderBank(const EncoderParameters& parameters)
       : parameters_(parameters), line_(parameters.latency_ticks, core::EncoderReading{}) {}
 
-  /// Once a tick: where the axes are, m.
+  /// Call once a tick: positions of the axes, m.
   void sample(const double (&position_m)[core::kAxes]) {
     core::EncoderReading reading;
     for (std::uint32_t i = 0; i < core::kAxes; ++i) {  // bound: kAxes
@@ -45,7 +46,7 @@ class SimEncoderBank {
 
   /// Precondition of both: axis < kAxes.
   void inject(std::uint32_t axis, EncoderFault fault) { fault_[axis] = fault; }
-  /// The count jumps by this much and stays off.
+  /// Adds a permanent offset to the count.
   void jump(std::uint32_t axis, std::int32_t counts) {
     offset_[axis] += static_cast<std::uint32_t>(counts);
   }

@@ -1,6 +1,7 @@
 #pragma once
-// NOR flash in software, stricter than the real one: writing what was not erased is a mistake that
-// is counted, not a merge of bits. Power may go at any operation, and leaves it half done.
+// Simulated NOR flash, stricter than a real one: writing to bytes that are not erased fails and
+// counts as a mistake. A power cut may interrupt any operation.
+// Loop and memory annotations: docs/BOUND.md.
 
 #include <cstddef>
 #include <cstdint>
@@ -9,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "tactree/hal/store/flash.hpp"
+#include "tactree/hal/flash.hpp"
 
 namespace tactree::hal::sim {
 
@@ -48,7 +49,7 @@ class SimFlash {
     return true;
   }
 
-  /// Piece by piece; each is one operation.
+  /// Writes in units of program_bytes; each unit is one operation.
   [[nodiscard]] bool program(std::uint32_t offset, std::span<const std::byte> bytes) noexcept {
     const std::size_t unit = geometry_.program_bytes;
     if (offset % unit != 0U || bytes.size() % unit != 0U || bytes.size() > this->bytes().size() ||
@@ -64,8 +65,8 @@ class SimFlash {
     return true;
   }
 
-  /// Power goes during the operation with this number, counted from power_on(); `done`: 0 nothing
-  /// of it, 1 half of it, 2 all of it is done then. After that nothing is done any more.
+  /// Cuts the power during the operation with this number, counted from power_on(). `done`: 0 none,
+  /// 1 half, 2 all of the operation is executed. Later operations have no effect.
   void cut_power_at(std::uint64_t operation, int done) {
     cut_at_ = operation;
     done_ = static_cast<Fate>(done);
@@ -77,11 +78,11 @@ class SimFlash {
   [[nodiscard]] std::uint64_t operations() const { return operations_; }
   [[nodiscard]] bool has_power() const { return operations_ <= cut_at_; }
 
-  /// Bits change of themselves.
+  /// Inverts bits, as by ageing.
   void rot(std::size_t offset, std::uint8_t bits) {
     writable()[offset] ^= static_cast<std::byte>(bits);
   }
-  /// As it was when it was saved, to begin with.
+  /// Restores saved content.
   void restore(std::span<const std::byte> saved) {
     for (std::size_t i = 0; i < saved.size(); ++i) {  // bound: saved
       writable()[i] = saved[i];
@@ -96,12 +97,12 @@ class SimFlash {
     }
   }
 
-  /// Writes to what was not erased, or outside.
+  /// Number of writes to bytes that were not erased, or out of range.
   [[nodiscard]] std::uint32_t mistakes() const { return mistakes_; }
   [[nodiscard]] std::uint32_t erased_times(std::uint32_t sector) const {
     return erased_times_[sector];
   }
-  /// What is left half done differs with it.
+  /// Seed of the random content of interrupted operations.
   void seed(std::uint32_t seed) { random_.seed(seed); }
 
  private:

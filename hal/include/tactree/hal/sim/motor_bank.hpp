@@ -1,5 +1,6 @@
 #pragma once
 // Motors of a simulated device: force limit, latency, faults.
+// Loop and memory annotations: docs/BOUND.md.
 
 #include <cstdint>
 
@@ -11,12 +12,12 @@ namespace tactree::hal::sim {
 enum class MotorFault : std::uint8_t {
   kNone = 0,
   kDead,      ///< no effort
-  kStuck,     ///< holds the effort it had
+  kStuck,     ///< keeps its effort
   kReversed,  ///< the wrong sign
 };
 
 struct MotorParameters {
-  double effort_max = 8.5;          ///< N or Nm per axis: what the motor saturates at
+  double effort_max = 8.5;          ///< N or Nm per axis: saturation
   std::uint32_t latency_ticks = 0;  ///< from the write to the effort: 0 .. kMaxLatencyTicks
 };
 
@@ -31,7 +32,7 @@ class SimMotorBank {
     hold({command.effort(0), command.effort(1), command.effort(2)});
   }
 
-  /// What a board elsewhere has commanded.
+  /// Sets the efforts that an external board commanded, N or Nm.
   void hold(const float (&effort)[core::kAxes]) noexcept {
     Efforts efforts;
     for (std::uint32_t i = 0; i < core::kAxes; ++i) {  // bound: kAxes
@@ -42,7 +43,7 @@ class SimMotorBank {
 
   [[nodiscard]] bool healthy() noexcept { return healthy_; }
 
-  /// Effort of an axis at the moment, N or Nm; zero while `powered` is false.
+  /// Current effort of an axis, N or Nm; zero while `powered` is false.
   /// Precondition: axis < kAxes.
   [[nodiscard]] double effort(std::uint32_t axis, bool powered) {
     double wanted = line_.value().axis[axis];
@@ -61,7 +62,7 @@ class SimMotorBank {
   void inject(std::uint32_t axis, MotorFault fault) { fault_[axis] = fault; }
   void set_healthy(bool healthy) { healthy_ = healthy; }
 
-  /// All motors give no more than this, N or Nm.
+  /// Limits the effort of all motors, N or Nm.
   void saturate(double effort) { weak_ = effort; }
   void saturate_as_built() { weak_ = parameters_.effort_max; }
 

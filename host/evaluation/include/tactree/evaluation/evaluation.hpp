@@ -1,9 +1,9 @@
 #pragma once
-// How good is what a hand feels? Both modes, on shapes whose truth is known, on the paper's
-// experiments, in the closed loop, and on real scans.
+// Evaluation of both modes: accuracy on shapes with known distances, the paper's experiments, the
+// closed loop, and real scans.
 //
-// Everything is a function of the options alone: the same options give the same figures.
-// A figure that does not apply is NaN (null in JSON).
+// Deterministic: the same options give the same results. A value that does not apply is NaN (null
+// in JSON).
 
 #include <array>
 #include <cstdint>
@@ -18,8 +18,8 @@
 namespace tactree::evaluation {
 
 struct Options {
-  bool quick = false;      ///< fewer probes and lines: all figures in seconds, for tests
-  std::uint32_t seed = 1;  ///< of every random choice
+  bool quick = false;      ///< fewer probes and lines: seconds instead of minutes, for tests
+  std::uint32_t seed = 1;  ///< of the random numbers
   std::vector<std::filesystem::path> scans;
 };
 
@@ -27,16 +27,16 @@ struct Options {
 enum Mode : std::uint8_t { kSurface = 0, kPaper = 1 };
 inline constexpr std::array<const char*, 2> kModeNames = {"surface", "paper"};
 
-/// Named figures in the order they were added.
+/// Named values in the order of addition.
 class Scores {
  public:
-  void set(const std::string& name, double value) { figures_.emplace_back(name, value); }
-  /// NaN when there is none.
+  void set(const std::string& name, double value) { values_.emplace_back(name, value); }
+  /// NaN if there is none.
   [[nodiscard]] double get(const std::string& name) const;
-  [[nodiscard]] const std::vector<std::pair<std::string, double>>& all() const { return figures_; }
+  [[nodiscard]] const std::vector<std::pair<std::string, double>>& all() const { return values_; }
 
  private:
-  std::vector<std::pair<std::string, double>> figures_;
+  std::vector<std::pair<std::string, double>> values_;
 };
 
 struct ShapeResult {
@@ -45,7 +45,7 @@ struct ShapeResult {
   std::array<Scores, 2> modes;
 };
 
-/// A row of the paper's Table 1, measured again.
+/// A row of the paper's Table 1, and our measurement.
 struct DetectionRow {
   double separation_m = 0.0;
   bool dynamic = false;
@@ -66,7 +66,7 @@ struct DetectionRow {
 
 /// Table 2: distances found, against a brute-force search.
 struct DistanceTable {
-  double literal_without_point = 0.0;  ///< share of the probes for which no leaf is in reach
+  double literal_without_point = 0.0;  ///< share of the probes without a leaf in reach
   double paper_mean_m = 0.0;           ///< with the detection octant remembered
   double paper_max_m = 0.0;
   double surface_mean_m = 0.0;  ///< the proxy's distance against that of the true surface
@@ -90,23 +90,23 @@ struct LoopResult {
     double wall_Ns_m = 0.0;
     double formula_N_m = 0.0;   ///< core::stability_limit()
     double measured_N_m = 0.0;  ///< passivity control off
-    double passive_N_m = 0.0;   ///< and on, as configured by default
+    double passive_N_m = 0.0;   ///< passivity control on, default configuration
   };
   std::vector<Limit> limits;
 };
 
 struct ScanResult {
   std::string name;
-  std::string error;  ///< not empty: why it could not be evaluated
+  std::string error;  ///< not empty: the scan was not evaluated for this reason
   std::uint64_t points = 0;
   double spacing_m = 0.0;
-  double support_m = 0.0;                  ///< radius that the surface fit bridges
+  double support_m = 0.0;                  ///< largest radius that the surface fit bridges
   std::vector<builder::Opening> openings;  ///< wider than that, widest first
-  std::string hole_map;                    ///< where they are: an SVG picture
+  std::string hole_map;                    ///< SVG picture of the openings
   Scores scores;
 };
 
-/// A figure that was promised.
+/// A required value.
 struct Target {
   std::string name;
   double value = 0.0;
@@ -119,8 +119,8 @@ struct Target {
 /// For a plot: force along one slide.
 struct ForceTrace {
   std::string title;
-  std::vector<double> way_m;
-  std::array<std::vector<double>, 2> force_N;  ///< size, per mode
+  std::vector<double> distance_m;
+  std::array<std::vector<double>, 2> force_N;  ///< magnitude, per mode
 };
 
 struct Result {
@@ -141,20 +141,20 @@ struct Result {
 /// The result as JSON: tables, shapes, loop, scans, targets.
 [[nodiscard]] std::string to_json(const Result& result);
 
-/// The result as a page of Markdown that shows the pictures of plots() from `picture_folder`, or
-/// none where that is empty.
+/// The result as Markdown with the pictures of plots() in `picture_folder`; without pictures if
+/// that is empty.
 [[nodiscard]] std::string to_markdown(const Result& result, const std::string& picture_folder);
 
 /// SVG pictures by file name.
 [[nodiscard]] std::map<std::string, std::string> plots(const Result& result);
 
-/// A section of Markdown for each scan: where its surface ends, with the pictures of hole_maps().
+/// A section of Markdown per scan with its openings and the pictures of hole_maps().
 [[nodiscard]] std::string holes_markdown(const Result& result);
 /// SVG pictures by file name.
 [[nodiscard]] std::map<std::string, std::string> hole_maps(const Result& result);
 
-/// An SVG picture: the stiffest wall that is stable without a hand, over its damping, at several
-/// rates; measured in a simulation, and as core::stability_limit() says. Cost: seconds; less when
-/// quick, which leaves rates out.
+/// An SVG picture: the largest stable stiffness of a wall without a hand, over its damping, at
+/// several rates; measured in simulation, and predicted by core::stability_limit(). Cost: seconds;
+/// `quick` omits rates.
 [[nodiscard]] std::string z_width_svg(bool quick);
 }  // namespace tactree::evaluation

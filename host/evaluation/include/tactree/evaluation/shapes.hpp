@@ -1,5 +1,5 @@
 #pragma once
-// Surfaces whose every distance and normal is known, sampled and written as blobs.
+// Sampled surfaces with known distances and normals, as blobs.
 
 #include <Eigen/Core>
 #include <cmath>
@@ -18,7 +18,7 @@ inline constexpr double kSpacing = 1e-3;  // m, h
 using plant::narrow;
 using plant::widen;
 
-/// A model and the blob made of it. Moves only: the view points into the blob's bytes.
+/// A model and its blob. Move-only: the view refers to the blob's bytes.
 class Shape {
  public:
   explicit Shape(double spacing_m = kSpacing);
@@ -27,7 +27,7 @@ class Shape {
 
   void add(const Eigen::Vector3d& position, const Eigen::Vector3d& normal);
   builder::Model& model() { return model_; }
-  /// Writes and opens the blob; throws std::runtime_error when it is refused.
+  /// Writes and opens the blob; throws std::runtime_error if it is invalid.
   void seal();
   /// The same points in a blob for paper mode, sealed.
   [[nodiscard]] Shape paper_twin() const;
@@ -46,15 +46,15 @@ void add_sheet(Shape& shape, double half_m, double height_m, double up);
 
 [[nodiscard]] Shape plane(double half_m = 0.03);
 
-/// Two sheets facing away from each other, about z = 0.
+/// Two sheets facing away from each other, symmetric to z = 0.
 [[nodiscard]] Shape plate(double thickness_m, double half_m = 0.02);
 
 inline constexpr double kSphereRadius = 0.03;
 
-/// Golden spiral: even, without rows.
+/// Points on a golden spiral: evenly spaced, without rows.
 [[nodiscard]] Shape sphere(double radius_m = kSphereRadius, double spacing_m = kSpacing);
 
-/// z = a (cos kx + cos ky): every curvature from -2ak^2 to 2ak^2.
+/// z = a (cos kx + cos ky): curvatures from -2ak^2 to 2ak^2.
 struct CosSheet {
   double amplitude_m = 2.5e-3;
   double wave_number = 2.0 * std::numbers::pi / 0.06;  // 1/m
@@ -69,16 +69,17 @@ struct CosSheet {
         .normalized();
   }
   [[nodiscard]] Eigen::Vector3d point(double x, double y) const { return {x, y, height(x, y)}; }
-  /// The point of the sheet nearest to `p`; p within half of the smallest radius of curvature.
+  /// The point of the sheet nearest to `p`. Precondition: p is within half of the smallest radius
+  /// of curvature.
   [[nodiscard]] Eigen::Vector3d nearest(const Eigen::Vector3d& p) const;
 };
 
-/// On a grid.
+/// Points on a grid.
 [[nodiscard]] Shape cos_sheet(const CosSheet& sheet = {}, double half_m = 0.04,
                               double spacing_m = kSpacing);
 
 /// Cube about the origin with sharp edges; points on the faces, half a spacing from the edges, each
-/// moved along its face by up to `shift` spacings, at random.
+/// displaced along its face by up to `shift` spacings at random.
 [[nodiscard]] Shape box(double half_m, double shift = 0.0, unsigned seed = 1);
 
 }  // namespace tactree::evaluation

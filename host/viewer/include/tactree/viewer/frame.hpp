@@ -1,5 +1,6 @@
 #pragma once
-// What a page shows of one tick, and of the ticks since the frame before, as JSON.
+// The content of a frame as JSON: the latest tick, and the extremes of the ticks since the last
+// frame.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -15,7 +16,7 @@
 
 namespace tactree::viewer {
 
-/// Lowest and highest of a figure over the ticks of a frame, so that no spike is lost.
+/// Lowest and highest value over the ticks of a frame, so that no spike is lost.
 struct Span {
   double low = 0.0;
   double high = 0.0;
@@ -27,9 +28,9 @@ struct Span {
 class Strip {
  public:
   void add(const core::Status& status);
-  /// How much the tick had to do, in the unit that the source tells.
+  /// Work of the tick, in the unit of Work.
   void add_work(double work) { work_.add(work); }
-  /// Takes what was added, and begins anew.
+  /// Returns the collected values and clears them.
   [[nodiscard]] nlohmann::json take();
 
  private:
@@ -39,37 +40,37 @@ class Strip {
   std::uint64_t ticks_ = 0;
 };
 
-/// The bodies, to place a contact's points.
+/// The bodies of the scene and their models, one for one.
 struct Bodies {
   std::vector<core::BlobView> views;
   std::vector<simulation::SceneBody> bodies;
 };
 
-/// A tick of one controller. `joints`: of the device; empty: found from the tip. `scratch` is for
-/// the points gathered around the contact.
+/// A tick of one controller. `joints`: joint positions of the device; empty: computed from the tip.
+/// `scratch` is working memory.
 [[nodiscard]] nlohmann::json run_json(const simulation::Sample& sample, const char* mode,
                                       const core::DeviceModel& device,
                                       const core::Vec3& model_origin_m,
                                       const std::optional<Eigen::Vector3d>& joints,
                                       const Bodies& bodies, core::CandidateSet& scratch);
 
-/// What a strip's work is counted in, and the most that a tick can take where that is known; `why`
-/// not, else. Without a unit there is no work to be shown.
+/// Unit and bound of the work per tick. An empty unit: the work is unknown. `why` states the cause
+/// of a missing unit or bound.
 struct Work {
   std::string unit;
-  double per_period = 0.0;  ///< what fills a tick's period
+  double per_period = 0.0;  ///< work that fills one period
   std::optional<double> bound;
   std::string why;
 };
 [[nodiscard]] nlohmann::json work_json(const Work& work);
-/// Of a source that does not tell it.
+/// For a source that does not report the work.
 [[nodiscard]] nlohmann::json unknown_work(const std::string& why);
 
-/// Names and sizes.
+/// Name and number of points of each model.
 [[nodiscard]] nlohmann::json models_json(const Bodies& bodies);
 [[nodiscard]] bool has_materials(const Bodies& bodies);
 
-/// Each body's pose at a time: 12 numbers, the upper rows of its matrix.
+/// The pose of each body at time t_s: 12 numbers, the upper three rows of its matrix.
 [[nodiscard]] nlohmann::json poses_json(const Bodies& bodies, double t_s);
 
 }  // namespace tactree::viewer

@@ -1,16 +1,19 @@
 #pragma once
-// The controller of the firmware in a simulation that keeps pace with the clock on the wall, and a
-// hand that the page moves. Both modes may run side by side, each with a device and hand of its
-// own that want to go the same way.
+// The controller of the firmware in a real-time simulation with a hand that the page moves. Both
+// modes may run side by side, each with its own device and a hand with the same target.
 //
 // Commands of a page:
-//   {"do": "hand", "target_m": [x, y, z]}   where the hand wants to be, model frame
+//   {"do": "hand", "target_m": [x, y, z], "via_m": [[x, y, z], ...],
+//    "speed_m_s": 0.2}      where the hand wants to be, model frame. Optional: places to visit on
+//                           its path there, at most 64, and its largest speed
 //   {"do": "arm"} {"do": "stop"} {"do": "clear"}
 //   {"do": "set", "stiffness_N_m": 400, "damping_Ns_m": 0.5, "static_friction": 0.4,
 //    "dynamic_friction": 0.3, "rate_hz": 1000, "mode": "surface" | "paper" | "both",
-//    "device": NAME, "use_materials": true}  any of them; the session begins anew
-//   {"do": "inject", "fault": "encoder1:stuck"}, as --inject without a time: from now on
-//   {"do": "mend"}                          everything that was injected
+//    "device": NAME, "use_materials": true}  any of them; restarts the session
+//   {"do": "inject", "fault": "encoder1:stuck"}, as --inject without a time; acts at once
+//   {"do": "mend"}                          removes all injected faults
+// The result of a command that shows none, and its cause, follow in the frames:
+// {"news": {"number": 1, "text": ...}}.
 
 #include <Eigen/Core>
 #include <deque>
@@ -31,9 +34,9 @@ enum class Modes { kSurface, kPaper, kBoth };
 /// "surface", "paper" or "both"; throws SessionRefused.
 [[nodiscard]] Modes modes_of(const std::string& name);
 
-/// What a page may change.
+/// Settings that a page may change.
 struct Settings {
-  core::Configuration controller{};  ///< feel and rate; mode, device and place are set from below
+  core::Configuration controller{};  ///< contact and rate; the session sets the other fields
   Modes modes = Modes::kSurface;
   std::string device = "premium";
 };
@@ -41,12 +44,15 @@ struct Settings {
 struct NamedDevice {
   std::string name;
   std::string about;
-  core::DevicePreset figures{};
+  core::DevicePreset preset{};
 };
+
+class CommandOutcome;
+class SteeredHand;
 
 class LiveSession : public Source {
  public:
-  /// The blobs that `bodies` view must outlive the session. `devices`: those to choose from.
+  /// The blobs of `bodies` must outlive the session. `devices`: the choices of the page.
   /// Throws SessionRefused.
   LiveSession(Bodies bodies, std::vector<NamedDevice> devices, const Settings& settings);
   ~LiveSession() override;
@@ -57,7 +63,6 @@ class LiveSession : public Source {
 
  private:
   struct Run;
-  class Hand;
   using Runs = std::vector<std::unique_ptr<Run>>;
 
   [[nodiscard]] Runs make_runs(const Settings& settings) const;
@@ -65,29 +70,34 @@ class LiveSession : public Source {
   [[nodiscard]] const NamedDevice& device(const std::string& name) const;
   [[nodiscard]] Settings changed(const nlohmann::json& wanted) const;
   [[nodiscard]] nlohmann::json settings_json() const;
-  void begin_anew(const nlohmann::json& wanted);
+  void restart(const nlohmann::json& wanted);
   void enqueue(const nlohmann::json& command);
   void run(const Publish& publish) override;
-  void take_over();
-  void obey(const nlohmann::json& command);
+  void apply_commands();
+  void execute(const nlohmann::json& command);
+  void for_each_run(void (Run::*act)());
+  void inject(const std::string& text);
   void advance(double seconds);
   [[nodiscard]] std::string frame();
 
   Bodies bodies_;
   std::vector<NamedDevice> devices_;
-  Eigen::Vector3d start_m_;  // of the hand: outside the object
+  Eigen::Vector3d start_m_;  // start of the hand, outside the object
 
-  // Of the session's thread.
+  // Used by the session's thread only.
   Runs runs_;
-  std::unique_ptr<Hand> hand_;
+  std::unique_ptr<SteeredHand> hand_;
+  std::unique_ptr<CommandOutcome> outcome_;
   core::CandidateSet scratch_;
   double ticks_due_ = 0.0;
   std::uint64_t frames_ = 0;
-  double lost_s_ = 0.0;  // that the machine was too slow to simulate
+  double lost_s_ = 0.0;  // real time that was not simulated: the machine was too slow
+  std::uint64_t news_number_ = 0;
+  std::string news_;
 
   mutable std::mutex mutex_;  // guards what follows
   Settings settings_;
-  Runs next_runs_;  // of changed settings
+  Runs next_runs_;  // with changed settings; empty: none
   std::deque<nlohmann::json> commands_;
 
   TickLog log_;

@@ -1,7 +1,6 @@
 #pragma once
-// Pages of our own documentation and reports as HTML: headings, paragraphs, lists, tables, `code`,
-// *emphasis*, **strong**, [links](target) and ![pictures](target). No other Markdown, and nothing
-// of the text becomes markup.
+// Markdown (CommonMark and GitHub's tables) as HTML, for the fault pages and the evaluation report.
+// Raw HTML in the text is shown as text; links and pictures go through MarkdownTargets.
 
 #include <functional>
 #include <string>
@@ -10,18 +9,17 @@
 namespace tactree::viewer {
 
 struct MarkdownTargets {
-  /// The address of a link's target; empty: its text stays, without a link.
+  /// Maps a link's target to an address. Empty result or no function: the text without a link.
   std::function<std::string(std::string_view)> link;
-  /// The markup of a picture's target.
+  /// Maps a picture's target to markup, inserted unchanged. No function: the alternative text.
   std::function<std::string(std::string_view)> picture;
 };
 
-/// A body of a page. Lines of one kind that follow each other are one element.
+/// The body of a page.
 [[nodiscard]] std::string markdown_html(std::string_view markdown, const MarkdownTargets& targets);
 
-/// A page around it that needs nothing from elsewhere; in the dark it is dark.
+/// A complete page around `body`; loads no external resources, follows the browser's dark mode.
+/// `title` is escaped, `body` is not.
 [[nodiscard]] std::string html_page(std::string_view title, std::string_view body);
-
-[[nodiscard]] std::string html_escaped(std::string_view text);
 
 }  // namespace tactree::viewer

@@ -1,7 +1,7 @@
 #pragma once
-// A model's points by level of detail, for a page that shows millions of them: an octree whose
-// every node holds some thousands of points spread over its cube. The root alone is a coarse
-// picture of the whole; each level below adds points, nowhere one that is above it already.
+// A model's points by level of detail, for pages that show millions of them: an octree whose nodes
+// hold some thousands of points each, spread over the node's cube. The root is a coarse picture of
+// the model; each level adds points, none twice.
 
 #include <array>
 #include <cstdint>
@@ -13,26 +13,26 @@
 
 namespace tactree::viewer {
 
-/// Points of a node, but for nodes on the deepest level: there all that are left.
+/// Points per node; nodes on the deepest level hold all remaining points.
 inline constexpr std::uint32_t kPointsPerNode = 8192;
 inline constexpr std::uint32_t kDeepestNode = 12;  ///< levels below the root
 
-/// As it is sent, little-endian: x, y, z as shares of the node's edge from its lower corner, in
-/// 1/65535; then the normal, octahedral, 8 bits each way.
+/// The transmitted form, little-endian: x, y, z from the node's lower corner in 1/65535 of its
+/// edge; then the normal on an octahedron, 8 bits per axis.
 using PackedPoint = std::array<std::uint16_t, 4>;
 
 struct PointNode {
   std::array<float, 3> min_m{};  ///< lower corner
   float edge_m = 0.0F;
-  float spacing_m = 0.0F;  ///< about; between points of this node and those above it
+  float spacing_m = 0.0F;  ///< approximate distance between points of this node and its ancestors
   std::uint32_t first_point = 0;
   std::uint32_t point_count = 0;
-  std::vector<std::uint32_t> children;  ///< their numbers; children follow their parents
+  std::vector<std::uint32_t> children;  ///< indices, greater than that of the node
 };
 
 class PointTree {
  public:
-  /// Cost: about 0.2 us a point; 8 bytes a point stay.
+  /// Cost: about 0.2 us and 8 bytes per point.
   explicit PointTree(const core::BlobView& view);
 
   [[nodiscard]] const std::vector<PointNode>& nodes() const { return nodes_; }
@@ -47,17 +47,17 @@ class PointTree {
   std::vector<PackedPoint> points_;
 };
 
-/// The nodes, without their points, as JSON: what the page plans with.
+/// The nodes without their points, as JSON.
 [[nodiscard]] std::string tree_json(const PointTree& tree, const core::BlobView& view);
 
-/// Cubes of the blob's own octree on one level: x, y, z of the lower corner (m, float32 each).
-/// More than `most` cubes: the level above, and so on. `level` is the one that was taken.
+/// Cubes of the blob's octree on one level, by their lower corners (m). Takes the deepest level
+/// that is at most `level` and has at most `max_cubes` cubes, or level 0; returns it in `level`.
 struct OctantBoxes {
   std::uint32_t level = 0;
   float edge_m = 0.0F;
   std::vector<std::array<float, 3>> corners_m;
 };
 [[nodiscard]] OctantBoxes octant_boxes(const core::BlobView& view, std::uint32_t level,
-                                       std::size_t most);
+                                       std::size_t max_cubes);
 
 }  // namespace tactree::viewer

@@ -1,9 +1,9 @@
 #pragma once
-// A trace that simulate or a page wrote, to be looked at tick by tick.
+// Playback of a trace that simulate or a page wrote.
 //
 // Commands of a page:
 //   {"do": "seek", "tick": 120}   {"do": "step", "ticks": -1}
-//   {"do": "play", "speed": 0.1}  of the recorded time; 0 or {"do": "stop"}: stands still
+//   {"do": "play", "speed": 0.1}  relative to the recorded time; 0 or {"do": "stop"}: pauses
 
 #include <filesystem>
 #include <mutex>
@@ -14,14 +14,14 @@
 
 namespace tactree::viewer {
 
-/// The ticks of a trace, a row each, by the names of its columns; those that tell t_s, probe and
-/// force must be there. Throws std::runtime_error: "file: line n: cause (remedy)".
+/// The ticks of a trace. Required columns: t_s, probe, force; values of other missing columns are
+/// 0. Throws files::CsvError, a std::runtime_error: "file: line n: cause (remedy)".
 [[nodiscard]] std::vector<simulation::Sample> read_trace(const std::filesystem::path& file);
 
 class Recording : public Source {
  public:
-  /// The blobs that `bodies` view must outlive the recording. `device` and where the model stood in
-  /// its frame: for drawing the linkage. Precondition: there are samples.
+  /// The blobs of `bodies` must outlive the recording. `device` and the position of the model in
+  /// its frame serve to draw the linkage. Precondition: !samples.empty().
   Recording(std::vector<simulation::Sample> samples, Bodies bodies, const core::DeviceModel& device,
             const core::Vec3& model_origin_m);
   ~Recording() override;
@@ -45,7 +45,7 @@ class Recording : public Source {
   mutable std::mutex mutex_;  // guards what follows
   std::size_t tick_ = 0;
   double speed_ = 0.0;
-  double time_s_ = 0.0;  // while it plays
+  double time_s_ = 0.0;  // during playback
 };
 
 }  // namespace tactree::viewer

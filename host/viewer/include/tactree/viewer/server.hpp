@@ -1,10 +1,10 @@
 #pragma once
-// The page's server: HTTP for what does not move, a WebSocket (/live) for what does.
+// The server of the page: HTTP for static data, a WebSocket (/live) for frames and commands.
 //
-// It is made for one machine: it listens on the loopback interface unless told, answers only
-// requests that name the address it listens on (so no other site's page can reach it through a
-// name of its own), and takes WebSockets only from its own page. Everything a client can make
-// grow is bounded. A page that does not read loses frames, counted; it never holds up the source.
+// Made for one machine: listens on the loopback interface by default, answers only requests for the
+// address it listens on (which defeats DNS rebinding), and accepts WebSockets only from its own
+// page. Memory per client is bounded. A page that does not read loses frames, which are counted; it
+// never delays the source.
 
 #include <cstdint>
 #include <memory>
@@ -21,7 +21,7 @@ struct ServerOptions {
   std::uint16_t port = 0;  ///< 0: any free one
 };
 
-/// The address cannot be listened on.
+/// The address is invalid or in use.
 class ServerError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -29,7 +29,7 @@ class ServerError : public std::runtime_error {
 
 class Server {
  public:
-  /// Listens from now on. Site and source must outlive the server. Throws ServerError.
+  /// Starts to listen. Site and source must outlive the server. Throws ServerError.
   Server(const ServerOptions& options, const Site& site, Source& source);
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;

@@ -1,6 +1,6 @@
 #pragma once
-// What the server answers to which path. Nothing is looked up in the file system: the page and the
-// pages of the faults are part of the program, the rest is made of the models and the session.
+// The paths of the server and their content. Page and fault pages are embedded in the program, the
+// rest is generated from the models and the session; no file is read.
 
 #include <cstdint>
 #include <span>
@@ -17,24 +17,24 @@ struct Answer {
   unsigned status = 200;
   std::string type = "text/plain; charset=utf-8";
   std::string body;
-  std::string file_name;  ///< empty: to be shown, else: to be kept under this name
+  std::string file_name;  ///< empty: displayed; else downloaded under this name
 };
 
-/// A text file that is part of the program.
+/// A text file embedded in the program.
 struct Asset {
   std::string_view path;
   std::string_view type;
   std::string_view content;
 };
 
-/// The built page: "/", "/assets/..."; a page that says what is missing where it was not built.
+/// The built page: "/", "/assets/...". If it was not built: a page with the reason.
 [[nodiscard]] std::span<const Asset> page_assets();
 /// "/faults/NAME": Markdown.
 [[nodiscard]] std::span<const Asset> fault_pages();
-/// Was the page built?
+/// False if the program was built without its page.
 [[nodiscard]] bool has_page();
 
-/// A page of docs/faults as HTML, with its links to other such pages.
+/// A page of docs/faults as HTML; links to other such pages are kept.
 [[nodiscard]] std::string fault_html(std::string_view title, std::string_view markdown);
 
 class Site {
@@ -42,9 +42,9 @@ class Site {
   /// The views' bytes and the source must outlive the site.
   Site(std::vector<core::BlobView> models, const Source& source);
 
-  /// Of a path without query. May take long for is_slow() paths; any thread.
+  /// The content of a path without query; 404 if unknown. Slow for is_slow() paths. Any thread.
   ///   /                      the page            /assets/...
-  ///   /faults/ /faults/NAME  why the force is off
+  ///   /faults/ /faults/NAME  explanation of faults and limits
   ///   /model/I               the nodes of model I, JSON
   ///   /model/I/points/NODE   PackedPoints
   ///   /model/I/octants/LEVEL level and edge, then corners: little-endian u32, float32s

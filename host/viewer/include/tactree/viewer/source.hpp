@@ -1,9 +1,9 @@
 #pragma once
-// Where the motion on the page comes from: a simulation, a recorded trace, or a board.
+// The source of the motion on the page: a simulation, a recorded trace, or a board.
 //
-// What goes to and fro are JSON objects. To a page: {"type": "hello", ...} once, then frames at
-// display rate, {"type": "frame", ...}, and {"type": "refused", "why": ...} as the answer to a
-// command. From a page: {"do": NAME, ...}; each source documents its own.
+// Messages are JSON objects. To a page: {"type": "hello", ...} once, then frames at display rate,
+// {"type": "frame", ...}, and {"type": "refused", "why": ...} in answer to a refused command. From
+// a page: {"do": NAME, ...}; each source documents its commands.
 
 #include <atomic>
 #include <functional>
@@ -17,10 +17,9 @@
 
 namespace tactree::viewer {
 
-/// Frames a second.
 inline constexpr double kFrameRate_hz = 60.0;
 
-/// A session that cannot begin, or a command that is not obeyed: why, as words for people.
+/// A session cannot start or a command is refused; the message states the cause.
 class SessionRefused : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -36,12 +35,12 @@ class Source {
   Source& operator=(const Source&) = delete;
   virtual ~Source() = default;
 
-  /// Begins to move, in a thread of its own, and publishes frames until stop().
+  /// Starts a thread that publishes frames until stop().
   void start(Publish publish) {
     running_ = true;
     thread_ = std::thread([this, publish = std::move(publish)] { run(publish); });
   }
-  /// Waits for the thread. A source calls it before any part of it goes.
+  /// Ends the thread. Every source calls it in its destructor.
   void stop() {
     running_ = false;
     if (thread_.joinable()) {
@@ -49,20 +48,20 @@ class Source {
     }
   }
 
-  // From any thread:
+  // Callable from any thread:
 
-  /// What a page must know before its first frame.
+  /// The message before the first frame.
   [[nodiscard]] virtual std::string hello() const = 0;
-  /// Why the command is refused; nothing when it will be obeyed. Never blocks for long.
+  /// Queues a command. Returns the cause if it is refused. Does not block.
   [[nodiscard]] virtual std::optional<std::string> command(const nlohmann::json& command) = 0;
-  /// The ticks there are, as simulation::append_trace() writes them.
+  /// The ticks so far, in the format of simulation::append_trace().
   [[nodiscard]] virtual std::string trace_csv() const = 0;
 
  protected:
   [[nodiscard]] bool running() const { return running_; }
 
  private:
-  /// The thread: publishes frames while it is running().
+  /// Body of the thread: publishes frames while running().
   virtual void run(const Publish& publish) = 0;
 
   std::atomic<bool> running_{false};

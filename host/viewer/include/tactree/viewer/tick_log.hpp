@@ -1,6 +1,6 @@
 #pragma once
-// The last ticks of a session, for a trace. One thread writes, any thread may take a copy without
-// holding the writer up: full chunks never change and are shared.
+// The last ticks of a session, for a trace. One thread adds ticks; any thread may read a copy
+// without delaying it, because full chunks are immutable and shared.
 
 #include <deque>
 #include <memory>
@@ -15,11 +15,11 @@ namespace tactree::viewer {
 class TickLog {
  public:
   static constexpr std::size_t kChunkTicks = 500;
-  /// Some 25 MB of samples; a minute at 1 kHz.
-  static constexpr std::size_t kMostTicks = 60000;
+  /// About 25 MB; one minute at 1 kHz.
+  static constexpr std::size_t kMaxTicks = 60000;
 
   void add(const simulation::Sample& sample);
-  /// Another session begins: its ticks are not of the old one's trace.
+  /// Begins a new trace.
   void clear();
   [[nodiscard]] std::string csv() const;
 

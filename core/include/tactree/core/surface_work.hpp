@@ -1,0 +1,45 @@
+#pragma once
+// The surface work of one tick: limits per rate tier.
+//
+// A gather decodes the candidate points around a place; a pass goes once over the decoded points.
+// A tick gets a share of the work allowed per second, so the share shrinks with the rate. Even the
+// smallest share is a slice of a gather or one fit at a crease.
+//
+// Interrupt safety: constants and pure functions.
+// Loop and memory annotations: docs/BOUND.md.
+
+#include <cstdint>
+
+namespace tactree::core {
+
+/// Limits of the gathers of one tick, together.
+struct GatherSlice {
+  std::uint32_t corners = 8;         ///< corners visited; each has at most one leaf
+  std::uint32_t points = 65536;      ///< points compared with the ball
+  std::uint32_t candidates = 65536;  ///< points decoded
+};
+
+/// Limits of one tick. Work beyond them continues in the next tick.
+struct SurfaceWork {
+  std::uint32_t gathers = 0;  ///< calls of CandidateSet::gather()
+  std::uint32_t passes = 0;   ///< 1 per fit, 2 at a crease
+  std::uint32_t all = 0;      ///< gathers and passes, a gather counted as kGatherWork passes
+  GatherSlice slice{};
+};
+inline constexpr std::uint32_t kGatherWork = 2;
+
+inline constexpr std::uint32_t kRateTiers = 3;
+inline constexpr SurfaceWork kWorkPerTick[kRateTiers] = {
+    {4, 10, 13, {24, 288, 104}}, {2, 4, 4, {16, 160, 56}}, {1, 2, 2, {3, 48, 16}}};
+/// A tier holds the rates above its entry, Hz.
+inline constexpr float kRateTierRates[kRateTiers] = {0.0F, 1000.0F, 2000.0F};
+
+/// Tier of a rate in Hz: 0 .. kRateTiers - 1.
+[[nodiscard]] constexpr std::uint32_t rate_tier_of(float rate_hz) {
+  return rate_hz > kRateTierRates[2] ? 2U : (rate_hz > kRateTierRates[1] ? 1U : 0U);
+}
+[[nodiscard]] constexpr const SurfaceWork& work_per_tick(float rate_hz) {
+  return kWorkPerTick[rate_tier_of(rate_hz)];  // memory: flash
+}
+
+}  // namespace tactree::core

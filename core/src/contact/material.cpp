@@ -1,0 +1,160 @@
+// Blending of materials by the weights of the surface fit, and the texture.
+// Loop and memory annotations: docs/BOUND.md.
+// memory: RAM
+
+#include "tactree/core/material.hpp"
+
+#include "tactree/core/sine.hpp"
+
+namespace tactree::core {
+namespace {
+
+constexpr float kTurn = 6.28318531F;  // rad
+
+void set_single(MaterialBlend& blend, std::uint32_t material) {
+  blend.count = 1;
+  blend.material[0] = material;
+  blend.share[0] = 1.0F;
+}
+
+void add(MaterialBlend& blend, std::uint32_t material, float weight) {
+  std::uint32_t slot = 0;
+  while (slot < blend.count && blend.material[slot] != material) {  // bound: kBlendedMaterials
+    ++slot;
+  }
+  if (slot == kBlendedMaterials) {
+    return;
+  }
+  if (slot == blend.count) {
+    blend.material[slot] = material;
+    blend.share[slot] = 0.0F;
+    ++blend.count;
+  }
+  blend.share[slot] += weight;
+}
+
+/// Weight in the surface fit, times the cosine between the normals; 0 for the other side.
+float weight_of(Vec3 offset, float inverse_squared, float cosine) {
+  const float u = 1.0F - length_squared(offset) * inverse_squared;
+  if (!(u > 0.0F) || !(cosine > 0.0F)) {
+    return 0.0F;
+  }
+  const float u2 = u * u;
+  return u2 * u2 * cosine;
+}
+
+/// cos(2 pi turns); error below 1e-6.
+float wave(float turns) {
+  const auto whole_turns = static_cast<std::int32_t>(turns < 0.0F ? turns - 0.5F : turns + 0.5F);
+  return sine_cosine(kTurn * (turns - static_cast<float>(whole_turns))).cosine;
+}
+
+/// -1 .. 1 for a unit normal.
+float bumps(Vec3 x, float wavelength, Vec3 n) {
+  const Vec3 turns{x.x / wavelength, x.y / wavelength, x.z / wavelength};
+  const bool near = absolute(turns.x) <= kTextureWaves && absolute(turns.y) <= kTextureWaves &&
+                    absolute(turns.z) <= kTextureWaves;
+  if (!near) {
+    return 1.0F;
+  }
+  const Vec3 w{wave(turns.x), wave(turns.y), wave(turns.z)};
+  return n.x * n.x * w.y * w.z + n.y * n.y * w.z * w.x + n.z * n.z * w.x * w.y;
+}
+
+float depth_of(const BlobMaterial& m, Vec3 x, Vec3 normal) {
+  if (!(m.texture_height_m > 0.0F) || !(m.texture_wavelength_m > 0.0F)) {  // memory: flash
+    return 0.0F;
+  }
+  const float level = 1.0F - bumps(x, m.texture_wavelength_m, normal);  // memory: flash
+  return level > 0.0F ? m.texture_height_m * level : 0.0F;              // memory: flash
+}
+
+}  // namespace
+
+MaterialBlend material_at(const BlobView& view, const Configuration& configuration,
+                          std::uint32_t point) {
+  MaterialBlend blend;
+  if (follows_materials(view, configuration)) {
+    set_single(blend, view.material_of(point));
+  }
+  return blend;
+}
+
+void blend_materials(const BlobView& view, const Configuration& configuration,
+                     const CandidateSet& set, Vec3 x, Vec3 normal, MaterialBlend& blend) {
+  blend.count = 0;
+  if (!follows_materials(view, configuration)) {
+    return;
+  }
+  if (view.material_count() == 1U) {
+    set_single(blend, 0);
+    return;
+  }
+  const float radius = view.support_radius_m();
+  const float inverse_squared = 1.0F / (radius * radius);
+  float sum = 0.0F;
+  // bound: blended_points
+  for (const Candidate& candidate : set) {
+    const float weight =
+        weight_of(candidate.position - x, inverse_squared, dot(candidate.normal, normal));
+    if (weight > 0.0F) {
+      add(blend, view.material_of(candidate.point), weight);
+    }
+  }
+  for (std::uint32_t i = 0; i < blend.count; ++i) {  // bound: blended_materials
+    sum += blend.share[i];
+  }
+  if (!(sum > 0.0F)) {
+    set_single(blend, 0);
+    return;
+  }
+  for (std::uint32_t i = 0; i < blend.count; ++i) {  // bound: blended_materials
+    blend.share[i] /= sum;
+  }
+}
+
+ContactParameters contact_parameters_of(const BlobView& view, const Configuration& c,
+                                        const MaterialBlend& blend) {
+  if (blend.count == 0U) {
+    return {c.stiffness_N_m, c.damping_Ns_m, {c.static_friction, c.dynamic_friction}};
+  }
+  ContactParameters blended;
+  for (std::uint32_t i = 0; i < blend.count; ++i) {  // bound: blended_materials
+    const BlobMaterial& m = view.material(blend.material[i]);
+    const float share = blend.share[i];
+    blended.stiffness_N_m += share * m.stiffness_N_m;                    // memory: flash
+    blended.damping_Ns_m += share * m.damping_Ns_m;                      // memory: flash
+    blended.friction.static_coefficient += share * m.static_friction;    // memory: flash
+    blended.friction.dynamic_coefficient += share * m.dynamic_friction;  // memory: flash
+  }
+  return blended;
+}
+
+float texture_depth(const BlobView& view, const MaterialBlend& blend, Vec3 x, Vec3 normal) {
+  float depth = 0.0F;
+  for (std::uint32_t i = 0; i < blend.count; ++i) {  // bound: blended_materials
+    depth += blend.share[i] * depth_of(view.material(blend.material[i]), x, normal);
+  }
+  return depth;
+}
+
+std::uint32_t find_unstable_material(const BlobView& view, const Configuration& configuration) {
+  if (!follows_materials(view, configuration)) {
+    return kNoMaterial;
+  }
+  for (std::uint32_t i = 0; i < view.material_count(); ++i) {  // bound: kMaxMaterials
+    const BlobMaterial& material = view.material(i);
+    if (!(material.stiffness_N_m <= material_limit(configuration, material))) {
+      return i;
+    }
+  }
+  return kNoMaterial;
+}
+
+float material_limit(const Configuration& configuration, const BlobMaterial& material) {
+  Configuration with = configuration;
+  with.damping_Ns_m = material.damping_Ns_m;
+  return stability_limit(with).with_hand_N_m;
+}
+
+}  // namespace tactree::core

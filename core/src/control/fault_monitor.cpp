@@ -1,0 +1,78 @@
+// Loop and memory annotations: docs/BOUND.md.
+// memory: RAM
+
+#include "tactree/core/fault_monitor.hpp"
+
+namespace tactree::core {
+namespace {
+
+// Two overruns closer than this are a fault.
+constexpr std::uint32_t kOverrunWindow = 100;
+
+constexpr std::uint32_t add_saturating(std::uint32_t a, std::uint32_t b) {
+  constexpr std::uint32_t kMax = 0xFFFFFFFFU;
+  return b > kMax - a ? kMax : a + b;
+}
+
+FaultMask check_supply(const Readings& readings, const Configuration& configuration) {
+  const bool good = readings.supply_V >= configuration.supply_min_V &&
+                    readings.supply_V <= configuration.supply_max_V;
+  return configuration.supply_monitored && !good ? fault_bit(Fault::kSupply) : 0U;
+}
+
+}  // namespace
+
+void FaultMonitor::configure(const Configuration& configuration) {
+  set_link_timeout(configuration);
+  enable_timeout_ticks_ =
+      static_cast<std::uint32_t>(configuration.enable_timeout_s * configuration.rate_hz);
+  ticks_since_overrun_ = kForever;
+  encoders_.configure(static_cast<std::uint32_t>(configuration.stuck_s * configuration.rate_hz));
+}
+
+void FaultMonitor::set_link_timeout(const Configuration& configuration) {
+  link_timeout_ticks_ =
+      static_cast<std::uint32_t>(configuration.link_timeout_s * configuration.rate_hz);
+}
+
+FaultMask FaultMonitor::update(const Readings& readings, const Configuration& configuration,
+                               State state, bool enable) {
+  const bool motors_on = state == State::kArmed || state == State::kActive;
+  FaultMask faults = check_overruns(readings) |
+                     check_link(readings, configuration.link_required && motors_on) |
+                     check_enable(readings, state, enable);
+  faults |= motors_on ? check_supply(readings, configuration) : 0U;
+  faults |= readings.emergency_stop ? fault_bit(Fault::kEmergencyStop) : 0U;
+  faults |= readings.motors_ok ? 0U : fault_bit(Fault::kMotorFault);
+  return faults;
+}
+
+FaultMask FaultMonitor::check_overruns(const Readings& readings) {
+  ticks_since_overrun_ = add_saturating(ticks_since_overrun_, 1);
+  if (readings.overruns == 0U) {
+    return 0U;
+  }
+  const bool again = readings.overruns > 1U || ticks_since_overrun_ <= kOverrunWindow;
+  overruns_ = add_saturating(overruns_, readings.overruns);
+  ticks_since_overrun_ = 0;
+  return again ? fault_bit(Fault::kDeadlineMissed) : 0U;
+}
+
+FaultMask FaultMonitor::check_link(const Readings& readings, bool required) {
+  const std::uint32_t longer = add_saturating(ticks_since_link_, 1);
+  const std::uint32_t age = readings.link_age_ticks;
+  ticks_since_link_ = readings.link_alive && age < longer ? age : longer;
+  return required && ticks_since_link_ > link_timeout_ticks_ ? fault_bit(Fault::kLinkLost) : 0U;
+}
+
+// While there may be force a drop-out counts at once: when the power came back, the force would
+// come back with it, without a ramp.
+FaultMask FaultMonitor::check_enable(const Readings& readings, State state, bool enable) {
+  const bool agrees = readings.enable_read_back == enable;
+  ticks_of_mismatch_ = agrees ? 0U : add_saturating(ticks_of_mismatch_, 1);
+  const bool dropped = state == State::kActive && !readings.enable_read_back;
+  const bool late = ticks_of_mismatch_ > enable_timeout_ticks_;
+  return dropped || late ? fault_bit(Fault::kEnableMismatch) : 0U;
+}
+
+}  // namespace tactree::core

@@ -1,0 +1,154 @@
+// Three arms on a ring. For leg i, in the ring's frame rotated by the leg's angle, with u outwards,
+// v along the joint and w normal to the ring:
+//   du = u - r + c - a cos(q_i),  dv = v - s + f,  dw = w - a sin(q_i)
+//   g  = |(du, dw)| - (d + e)
+//   g^2 + dv^2 = b^2                                                     (closure)
+// n_i = (g du / (g + d + e), dv, g dw / (g + d + e)) is the parallelogram's long side, hence
+//   n_i . dP = h_i dq_i,   h_i = a g (dw cos(q_i) - du sin(q_i)) / (g + d + e)
+// and row i of the transposed Jacobian is h_i (n_j x n_k) / det(n_0, n_1, n_2), derived from the
+// closure.
+// Ring's frame: w is x of the device, 0 rad is y, and a quarter turn is z.
+//
+// Loop and memory annotations: docs/BOUND.md.
+// memory: RAM
+
+#include "kinds.hpp"
+#include "tactree/core/sine.hpp"
+
+namespace tactree::core {
+namespace {
+
+constexpr std::uint32_t kNewtonSteps = 3;
+// A longer last Newton step means that there is no solution.
+constexpr float kConverged = 5e-4F;  // m
+
+/// The constants of a leg during the search for the plate.
+struct Leg {
+  Vec3 out;        // u
+  Vec3 along;      // v
+  Vec3 fixed;      // (du, dv, dw) = plate - fixed
+  SineCosine arm;  // of its joint
+};
+
+constexpr Vec3 kRingNormal = {1.0F, 0.0F, 0.0F};  // w
+
+Leg leg_of(const DeltaGeometry& g, float place_rad, float joint_rad) {
+  const SineCosine place = sine_cosine(place_rad);
+  Leg leg;
+  leg.arm = sine_cosine(joint_rad);
+  leg.out = {0.0F, place.cosine, place.sine};
+  leg.along = {0.0F, -place.sine, place.cosine};
+  leg.fixed = (g.r - g.c + g.a * leg.arm.cosine) * leg.out + (g.s - g.f) * leg.along +
+              g.a * leg.arm.sine * kRingNormal;
+  return leg;
+}
+
+/// One closure and its gradient.
+struct Closure {
+  float residual;  // half of g^2 + dv^2 - b^2
+  Vec3 n;
+  float h;
+  bool open;  // the parallelogram is extended, not folded back
+};
+
+Closure close(const DeltaGeometry& g, const Leg& leg, Vec3 plate) {
+  const Vec3 from_leg = plate - leg.fixed;
+  const float du = dot(from_leg, leg.out);
+  const float dv = dot(from_leg, leg.along);
+  const float dw = dot(from_leg, kRingNormal);
+  const float reach = square_root(du * du + dw * dw);
+  const float stretch = reach - (g.d + g.e);
+  const bool open = stretch > 0.0F;
+  const float share = open ? stretch / reach : 0.0F;
+  return {0.5F * (stretch * stretch + dv * dv - g.b * g.b),
+          share * du * leg.out + dv * leg.along + share * dw * kRingNormal,
+          share * g.a * (dw * leg.arm.cosine - du * leg.arm.sine), open};
+}
+
+/// Three closures, and the inverse of their gradients.
+struct Closures {
+  Closure of[kAxes];
+  Vec3 column[kAxes];  // inverse of the matrix of the n
+  float openness;      // volume spanned by the three unit directions
+  bool valid;
+};
+
+Closures close_all(const DeltaGeometry& g, const Leg (&legs)[kAxes], Vec3 plate) {
+  Closures all{{close(g, legs[0], plate), close(g, legs[1], plate), close(g, legs[2], plate)},
+               {},
+               0.0F,
+               false};
+  const Vec3 n0 = all.of[0].n;
+  const Vec3 n1 = all.of[1].n;
+  const Vec3 n2 = all.of[2].n;
+  const Vec3 across = cross(n1, n2);
+  const float volume = dot(n0, across);
+  all.openness = absolute(volume) / (g.b * g.b * g.b);
+  all.valid = all.of[0].open && all.of[1].open && all.of[2].open && all.openness > 1e-4F;
+  if (!all.valid) {
+    return all;
+  }
+  const float inverse = 1.0F / volume;
+  all.column[0] = inverse * across;
+  all.column[1] = inverse * cross(n2, n0);
+  all.column[2] = inverse * cross(n0, n1);
+  return all;
+}
+
+/// Start value of the plate, some millimetres off: the intersection, above the ring, of three
+/// spheres with the greatest length of a leg. False: they do not intersect.
+bool first_guess(const DeltaGeometry& g, const Leg (&legs)[kAxes], Vec3& plate) {
+  const Vec3 a = legs[1].fixed - legs[0].fixed;
+  const Vec3 b = legs[2].fixed - legs[0].fixed;
+  const Vec3 normal = cross(a, b);
+  const float squared = length_squared(normal);
+  if (!(squared > 1e-12F)) {
+    return false;
+  }
+  const Vec3 centre = (0.5F / squared) *
+                      (length_squared(b) * cross(normal, a) + length_squared(a) * cross(b, normal));
+  const float longest = g.b + g.d + g.e;
+  const float height_squared = longest * longest - length_squared(centre);
+  if (!(height_squared > 0.0F)) {
+    return false;
+  }
+  const float height = square_root(height_squared / squared);
+  plate = legs[0].fixed + centre + (normal.x < 0.0F ? -height : height) * normal;
+  return true;
+}
+
+}  // namespace
+
+KindPose locate_delta(const DeviceModel& device, Vec3 joints) {
+  const DeltaGeometry& g = device.delta;
+  const Leg legs[kAxes] = {leg_of(g, g.leg_rad[0], joints.x), leg_of(g, g.leg_rad[1], joints.y),
+                           leg_of(g, g.leg_rad[2], joints.z)};
+  KindPose pose;
+  if (!first_guess(g, legs, pose.probe)) {
+    return pose;
+  }
+  Closures all = close_all(g, legs, pose.probe);
+  Vec3 step{};
+  for (std::uint32_t i = 0; i < kNewtonSteps; ++i) {  // bound: kNewtonSteps
+    if (!all.valid) {
+      return pose;
+    }
+    step = all.of[0].residual * all.column[0] + all.of[1].residual * all.column[1] +
+           all.of[2].residual * all.column[2];
+    pose.probe -= step;
+    all = close_all(g, legs, pose.probe);
+  }
+  pose.valid = all.valid && length_squared(step) <= kConverged * kConverged;
+  pose.openness = all.openness;
+  float link_effort[kAxes];
+  for (std::uint32_t i = 0; i < kAxes; ++i) {  // bound: kAxes
+    pose.effort_per_force.row[i] = all.of[i].h * all.column[i];
+    // Height of the arm's centre: centre * cos(q) * sin(place), as z is a quarter turn from y.
+    link_effort[i] = -kGravity * device.link_mass_kg[i] * device.link_centre_m[i] *
+                     legs[i].arm.sine * legs[i].out.z;
+  }
+  pose.link_effort = {link_effort[0], link_effort[1], link_effort[2]};
+  return pose;
+}
+
+}  // namespace tactree::core

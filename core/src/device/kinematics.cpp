@@ -1,0 +1,107 @@
+// From encoder counts to joints, and the limits that all kinds of device share.
+// Loop and memory annotations: docs/BOUND.md.
+// memory: RAM
+
+#include "tactree/core/kinematics.hpp"
+
+#include "kinds.hpp"
+
+namespace tactree::core {
+namespace {
+
+constexpr Mat3 kIdentity{{{1.0F, 0.0F, 0.0F}, {0.0F, 1.0F, 0.0F}, {0.0F, 0.0F, 1.0F}}};
+
+// Up to kSingular there is no force: the position of a parallel linkage is inaccurate there, and
+// small forces need large efforts. From kOpen on the full force is allowed.
+constexpr float kSingular = 0.05F;
+constexpr float kOpen = 0.15F;
+
+constexpr float lower(float a, float b) { return a < b ? a : b; }
+
+/// Position of one joint; the counter may have wrapped around.
+float joint_of(const DeviceModel& device, std::uint32_t axis, std::int32_t count) {
+  const std::uint32_t difference =
+      static_cast<std::uint32_t>(count) - static_cast<std::uint32_t>(device.home_count[axis]);
+  return device.home_position[axis] +
+         static_cast<float>(static_cast<std::int32_t>(difference)) / counts_per_unit(device, axis);
+}
+
+/// Share of the force that the range of one joint allows; negative: out of range.
+float share_of_range(const DeviceModel& device, std::uint32_t axis, float joint) {
+  const float margin = device.joint_margin[axis];
+  const float inside = lower(joint - device.joint_min[axis], device.joint_max[axis] - joint);
+  if (inside >= margin) {
+    return 1.0F;
+  }
+  if (!(inside >= -margin)) {
+    return -1.0F;
+  }
+  return inside > 0.0F ? inside / margin : 0.0F;
+}
+
+float share_of_ranges(const DeviceModel& device, Vec3 joints) {
+  const float all[kAxes] = {joints.x, joints.y, joints.z};
+  const std::uint32_t axes = axes_of(device.kind);
+  float share = 1.0F;
+  for (std::uint32_t i = 0; i < axes; ++i) {  // bound: kAxes
+    share = lower(share, share_of_range(device, i, all[i]));
+  }
+  return share;
+}
+
+DevicePose nowhere(Vec3 joints) {
+  DevicePose pose;
+  pose.joints = joints;
+  return pose;
+}
+
+KindPose locate_kind(const DeviceModel& device, Vec3 joints) {
+  if (device.kind == DeviceKind::kCartesian) {
+    return {true, joints, kIdentity, {}, 1.0F};
+  }
+  if (device.kind == DeviceKind::kArm) {
+    return locate_arm(device, joints);
+  }
+  if (device.kind == DeviceKind::kDelta) {
+    return locate_delta(device, joints);  // at most: delta per locate_joints
+  }
+  if (device.kind == DeviceKind::kFiveBar) {
+    return locate_five_bar(device, joints);
+  }
+  return device.kind == DeviceKind::kPaddle ? locate_paddle(device, joints) : KindPose{};
+}
+
+}  // namespace
+
+Vec3 joints_of(const DeviceModel& device, const std::int32_t (&counts)[kAxes]) {
+  const std::uint32_t axes = axes_of(device.kind);
+  return {joint_of(device, 0, counts[0]), axes > 1 ? joint_of(device, 1, counts[1]) : 0.0F,
+          axes > 2 ? joint_of(device, 2, counts[2]) : 0.0F};
+}
+
+DevicePose locate_joints(const DeviceModel& device, Vec3 joints) {
+  const float share = share_of_ranges(device, joints);
+  if (!(share >= 0.0F)) {
+    return nowhere(joints);
+  }
+  const KindPose place = locate_kind(device, joints);
+  if (!place.valid || !is_finite(place.probe)) {
+    return nowhere(joints);
+  }
+  const float open = place.openness > kSingular
+                         ? lower(1.0F, (place.openness - kSingular) / (kOpen - kSingular))
+                         : 0.0F;
+  const Vec3 tip_weight = {0.0F, 0.0F, kGravity * device.tip_mass_kg};
+  return {true,
+          lower(share, open),
+          joints,
+          place.probe - device.origin_m,
+          place.effort_per_force,
+          place.link_effort + place.effort_per_force * tip_weight};
+}
+
+DevicePose locate(const DeviceModel& device, const std::int32_t (&counts)[kAxes]) {
+  return locate_joints(device, joints_of(device, counts));
+}
+
+}  // namespace tactree::core

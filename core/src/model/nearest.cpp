@@ -1,0 +1,110 @@
+// Exact neighbour queries over the leaves of the eight-corner rule.
+// Loop and memory annotations: docs/BOUND.md.
+
+#include "tactree/core/nearest.hpp"
+
+#include <bit>
+
+#include "leaf_scan.hpp"
+
+namespace tactree::core {
+
+namespace {
+
+constexpr std::int32_t kNone = 0x7FFFFFFF;  // above the index of any point
+
+struct Nearest {
+  float squared;
+  std::int32_t index;
+};
+
+struct NearestOfLanes {
+  Floats squared;
+  Integers index;
+};
+
+float next_above(float positive) {
+  return std::bit_cast<float>(std::bit_cast<std::uint32_t>(positive) + 1U);
+}
+
+// True if a point of the leaf became the best. A lane keeps the first of equally near points, which
+// has the lowest index. A point as near as the best so far counts as nearer within a lane.
+bool nearest_in_leaf(const LeafScan& scan, Nearest& best) {
+  NearestOfLanes lanes{all(next_above(best.squared)), all(kNone)};
+  scan.each_block([&lanes](Floats squared, Integers index) {
+    lanes.index = select(squared < lanes.squared, index, lanes.index);
+    lanes.squared = smaller(squared, lanes.squared);
+  });
+  const float squared = smallest(lanes.squared);
+  if (squared > best.squared) {
+    return false;
+  }
+  const std::int32_t index = smallest(select(lanes.squared == squared, lanes.index, all(kNone)));
+  if (squared == best.squared && index > best.index) {
+    return false;
+  }
+  best = {squared, index};
+  return true;
+}
+
+}  // namespace
+
+NearestPoint nearest_within(const BlobView& view, Vec3 probe, float r) {
+  CornerLeaves corners(view, probe, r);
+  Nearest best{r * r, kNone};
+  std::uint32_t number = 0;
+  std::uint32_t corner = 0;
+  corners.each(best.squared, [&](const NearLeaf& leaf) {
+    if (nearest_in_leaf(LeafScan(view, leaf), best)) {
+      number = leaf.number;
+      corner = leaf.corner;
+    }
+    return best.squared;
+  });
+  if (best.index == kNone) {
+    return {};
+  }
+  const auto index = static_cast<std::uint32_t>(best.index);
+  return {index, best.squared, view.position(corners.leaf(number, corner), index), number};
+}
+
+PointsWithin points_within(const BlobView& view, Vec3 probe, float r,
+                           std::span<std::uint32_t> out) {
+  PointsWithin result;
+  const float limit = r * r;
+  CornerLeaves(view, probe, r).each(limit, [&](const NearLeaf& leaf) {
+    auto next = static_cast<std::int32_t>(leaf.first_point);
+    LeafScan(view, leaf).each_block([&](Floats squared, Integers index) {
+      for (std::uint32_t k = 0; k < kLanes; ++k) {  // bound: 4
+        const std::int32_t point = lane(index, k);
+        if (point < next || lane(squared, k) > limit) {
+          continue;
+        }
+        next = point + 1;
+        if (result.count == out.size()) {
+          result.complete = false;
+          continue;
+        }
+        out[result.count++] = static_cast<std::uint32_t>(point);
+      }
+    });
+    return result.complete ? limit : -1.0F;
+  });
+  return result;
+}
+
+bool in_any_vertex_box(const BlobView& view, Vec3 probe) {
+  if (view.empty()) {
+    return false;
+  }
+  const float half = 0.5F * view.header().aabb_edge_m;
+  const float everything = 4.0F * half * half;
+  bool found = false;
+  CornerLeaves(view, probe, half).each(everything, [&](const NearLeaf& leaf) {
+    found = leaf_has_box_around(view, leaf, half);
+    return found ? -1.0F : everything;
+  });
+  return found;
+}
+
+}  // namespace tactree::core

@@ -1,0 +1,97 @@
+#pragma once
+// GPIO lines of a Linux computer by name, through libgpiod 1.6 or 2.x. The build selects the
+// generation that pkg-config finds. Both report the edges of several lines in the order of their
+// times, and count the edges that the kernel dropped or merged.
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace tactree::hal::linux_gpio {
+
+/// "line 'encoder0-a': cause (remedy: ...)"
+class GpioError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+struct Edge {
+  std::uint64_t time_ns = 0;  ///< time of the interrupt, CLOCK_MONOTONIC
+  std::uint32_t line = 0;     ///< index in the request
+  bool level = false;         ///< level after the edge
+};
+
+/// Position of a line.
+struct LinePlace {
+  std::string chip;  ///< device file, e.g. "/dev/gpiochip0"
+  std::uint32_t offset = 0;
+  bool used = false;
+  std::string user;  ///< consumer; empty: not in use
+};
+
+/// Library and version in use, e.g. "libgpiod 2.1.3".
+[[nodiscard]] std::string gpio_library();
+
+/// Finds a line without requesting it. `name`: name of the line, or "label:name" with the label of
+/// its chip if several chips have a line of that name: "pinctrl-rp1:GPIO17". Throws GpioError.
+[[nodiscard]] LinePlace find_line(const std::string& name);
+
+enum class Bias : std::uint8_t { kAsIs, kPullUp, kPullDown };
+
+/// Of one call of GpioLines::read_edges().
+constexpr std::size_t kEdgesAtOnce = 64;
+
+struct InputSettings {
+  bool active_low = false;
+  bool edges = false;  ///< report rising and falling edges
+  Bias bias = Bias::kAsIs;
+  /// Capacity of the kernel's queue, edges; at most 1024. libgpiod 1.6: always 16 for each line.
+  std::uint32_t edge_buffer = 1024;
+};
+
+/// Lines of one chip, requested together. No other program can use them during the lifetime of this
+/// object. For one thread.
+class GpioLines {
+ public:
+  /// `consumer`: name shown by gpioinfo. With edges, returns once the lines rested for 2 ms. Throws
+  /// GpioError if a line is missing, in use, ambiguous, on another chip, not permitted, or never at
+  /// rest within 1 s.
+  static GpioLines inputs(const std::vector<std::string>& names, const std::string& consumer,
+                          const InputSettings& settings);
+  /// Outputs, initially off.
+  static GpioLines outputs(const std::vector<std::string>& names, const std::string& consumer,
+                           bool active_low);
+
+  ~GpioLines();
+  GpioLines(GpioLines&& other) noexcept;
+  GpioLines& operator=(GpioLines&&) = delete;
+  GpioLines(const GpioLines&) = delete;
+  GpioLines& operator=(const GpioLines&) = delete;
+
+  /// Reads all lines: bit n is line n. False: the chip was removed. Cost: one system call; with
+  /// libgpiod 1.6 and edges, one for each line.
+  [[nodiscard]] bool levels(std::uint64_t& bits) const noexcept;
+  [[nodiscard]] bool set(std::uint64_t bits) noexcept;
+  /// Reads edges, oldest first over all lines; never blocks. Returns their number; less than
+  /// kEdgesAtOnce: there are no more; -1: the chip was removed. An edge whose order is uncertain
+  /// stays for a later call, for 2 ms at most. Cost: one system call; with libgpiod 1.6, two for
+  /// each line.
+  [[nodiscard]] int read_edges(std::array<Edge, kEdgesAtOnce>& edges) noexcept;
+  /// Edges that the kernel dropped or merged since the lines were requested, at least. An edge that
+  /// the chip itself merged, before the kernel saw it, is not among them.
+  [[nodiscard]] std::uint32_t lost() const;
+
+ private:
+  struct Request;
+  explicit GpioLines(std::unique_ptr<Request> request);
+  void await_rest(const std::string& name);
+  void begin_edges() noexcept;
+  [[nodiscard]] bool is_at_rest() noexcept;
+
+  std::unique_ptr<Request> request_;
+};
+
+}  // namespace tactree::hal::linux_gpio

@@ -1,0 +1,34 @@
+#pragma once
+// Materials of a model, and the assignment of the points of a coloured scan to them.
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tactree/core/blob_format.hpp"
+
+namespace tactree::builder {
+
+using Colour = std::array<std::uint8_t, 3>;  ///< R, G, B
+
+struct ColourMaterial {
+  std::string name;
+  Colour colour{};
+  double tolerance = 0.0;  ///< maximum distance in R, G, B of a matching colour
+  core::BlobMaterial material{};
+};
+
+struct MaterialMap {
+  core::BlobMaterial base{};            ///< of the points that match no colour
+  std::vector<ColourMaterial> colours;  ///< at most kMaxMaterials - 1
+
+  [[nodiscard]] bool by_colour() const { return !colours.empty(); }
+  /// Index of the material of a colour. 0: base; i + 1: colours[i], the nearest within its
+  /// tolerance, the first of equally near ones.
+  [[nodiscard]] std::uint8_t index_of(const Colour& colour) const;
+  /// All materials in the order of the indices.
+  [[nodiscard]] std::vector<core::BlobMaterial> list() const;
+};
+
+}  // namespace tactree::builder

@@ -1,0 +1,51 @@
+#pragma once
+// Input of the blob writer: resampled points with oriented normals, in the model frame.
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tactree/core/blob_format.hpp"
+
+namespace tactree::builder {
+
+struct Model {
+  std::vector<Eigen::Vector3d> positions;      ///< m, model frame
+  std::vector<Eigen::Vector3f> normals;        ///< unit length, outward; one per position
+  std::vector<std::uint8_t> material_indices;  ///< empty, or one per position
+  std::vector<core::BlobMaterial> materials;
+
+  double spacing_m = 0.0;         ///< h
+  double support_radius_m = 0.0;  ///< R
+  double reach_m = 0.0;           ///< R + slack
+  double largest_gap_m = 0.0;
+  core::Profile profile = core::Profile::kSurface;
+  std::uint32_t points_per_leaf_wanted =
+      10;  ///< `paper` profile: leaves with more points are split
+
+  double source_scale = 1.0;                                ///< model metres per source unit
+  Eigen::Vector3d source_origin = Eigen::Vector3d::Zero();  ///< of the model frame, source units
+  std::string name;
+  std::array<std::uint8_t, 32> source_digest{};
+};
+
+/// A blob, and for each of its points the index of the encoded position.
+struct WrittenBlob {
+  std::vector<std::byte> bytes;             ///< 4-byte aligned storage
+  std::vector<std::uint32_t> source_index;  ///< blob point -> model position
+  std::uint64_t merged = 0;                 ///< points that shared a lattice site with another
+};
+
+/// Quantises, builds the octree and serialises; the result has passed core::open_blob().
+/// Deterministic. Throws std::runtime_error with a message for the user if the model cannot be
+/// represented (too large for its spacing, no points). Cost: about 20 us per point.
+[[nodiscard]] WrittenBlob write_blob(const Model& model);
+
+/// Recomputes the checksum in the header. Precondition: `blob` holds at least a header.
+void seal(std::span<std::byte> blob);
+
+}  // namespace tactree::builder

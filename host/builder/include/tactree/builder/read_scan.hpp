@@ -1,0 +1,38 @@
+#pragma once
+// Reads a scan file: PLY, PCD, text (XYZ, PTS, CSV), OBJ, STL, OFF, and the formats of the assimp
+// library (glTF, FBX, 3DS, COLLADA, ...) in a separate process with limits.
+//
+// The format is recognised by content, never by the file name. Files are untrusted: counts are
+// compared with the file size before memory is allocated for them.
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+
+#include "tactree/builder/scan.hpp"
+
+namespace tactree::builder {
+
+struct ReadOptions {
+  /// Memory limit of the scan, bytes; a larger one is refused before the allocation.
+  std::uint64_t scan_memory_bytes = 3ULL << 29;
+  /// Address space limit of the mesh import process, bytes.
+  std::uint64_t child_memory_bytes = 3ULL << 29;
+  /// Time limit of the mesh import process, for processor time and for elapsed time.
+  double child_seconds = 120.0;
+  /// Called repeatedly with the fraction of the file that was read, rising from 0 to 1.
+  std::function<void(double fraction)> progress;
+};
+
+/// Reads `file`. Throws ReadError if it is not a scan, is damaged beyond use or holds no point.
+/// Damage that leaves a usable scan is counted in Scan::dropped and described in Scan::warnings:
+///   "non_finite"             positions with NaN or infinite coordinates
+///   "bad_row"                rows of a text file that are not a point
+///   "degenerate_face"        faces with fewer than three distinct corners
+///   "face_index_out_of_range" faces with the index of a point that does not exist
+///   "face_non_finite"        faces with a corner that was dropped as non_finite
+/// A normal that is missing or NaN becomes the zero vector.
+/// Cost: one pass over the file, memory for the result and a buffer of a few MiB.
+[[nodiscard]] Scan read_scan(const std::filesystem::path& file, const ReadOptions& options = {});
+
+}  // namespace tactree::builder

@@ -1,0 +1,137 @@
+#include "mesh_import/scene_writer.hpp"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "mesh_import/wire.hpp"
+
+namespace tactree::builder {
+namespace {
+
+Eigen::Matrix4d to_eigen(const aiMatrix4x4& matrix) {
+  Eigen::Matrix4d result;
+  for (unsigned row = 0; row < 4; ++row) {
+    for (unsigned column = 0; column < 4; ++column) {
+      result(row, column) = static_cast<double>(matrix[row][column]);
+    }
+  }
+  return result;
+}
+
+Eigen::Vector3d to_eigen(const aiVector3D& vector) {
+  return {static_cast<double>(vector.x), static_cast<double>(vector.y),
+          static_cast<double>(vector.z)};
+}
+
+std::uint8_t to_byte(float value) {
+  return std::isnan(value)
+             ? std::uint8_t{0}
+             : static_cast<std::uint8_t>(std::clamp(std::round(value * 255.0F), 0.0F, 255.0F));
+}
+
+}  // namespace
+
+SceneWriter::SceneWriter(const aiScene& scene, const FileUnit& unit, std::FILE* to)
+    : scene_(scene), unit_(unit), to_(to) {}
+
+void SceneWriter::place_meshes() {
+  struct Node {
+    const aiNode* node;
+    Eigen::Matrix4d parent;
+  };
+  std::vector<Node> open;
+  if (scene_.mRootNode != nullptr) open.push_back({scene_.mRootNode, Eigen::Matrix4d::Identity()});
+  while (!open.empty()) {
+    const Node current = open.back();
+    open.pop_back();
+    const Eigen::Matrix4d transform = current.parent * to_eigen(current.node->mTransformation);
+    for (unsigned i = 0; i < current.node->mNumMeshes; ++i) {
+      const unsigned index = current.node->mMeshes[i];
+      if (index < scene_.mNumMeshes) placed_.push_back({scene_.mMeshes[index], transform});
+    }
+    for (unsigned i = current.node->mNumChildren; i > 0; --i) {
+      open.push_back({current.node->mChildren[i - 1], transform});
+    }
+  }
+}
+
+void SceneWriter::count() {
+  for (const Placed& placed : placed_) {
+    const aiMesh& mesh = *placed.mesh;
+    points_ += mesh.mNumVertices;
+    normals_ = normals_ && mesh.HasNormals();
+    colours_ = colours_ && mesh.HasVertexColors(0);
+    for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
+      if (mesh.mFaces[i].mNumIndices == 3) ++triangles_;
+    }
+  }
+}
+
+bool SceneWriter::write() {
+  place_meshes();
+  count();
+  if (points_ == 0) return false;
+  WireHeader header;
+  header.flags = (normals_ ? kHasNormals : 0) | (colours_ ? kHasColours : 0);
+  header.points = points_;
+  header.triangles = triangles_;
+  header.unit_m = unit_.metres;
+  put(&header, sizeof header);
+  for (const Placed& placed : placed_) write_points(placed);
+  std::uint64_t first_point = 0;
+  for (const Placed& placed : placed_) {
+    write_triangles(placed, first_point);
+    first_point += placed.mesh->mNumVertices;
+  }
+  put(kWireEnd.data(), kWireEnd.size());
+  return !failed_ && std::fflush(to_) == 0;
+}
+
+void SceneWriter::write_points(const Placed& placed) {
+  const aiMesh& mesh = *placed.mesh;
+  const Eigen::Matrix3d linear = placed.transform.topLeftCorner<3, 3>();
+  const Eigen::Vector3d offset = placed.transform.topRightCorner<3, 1>();
+  const double to_units = unit_.scene_scaled ? 1.0 / unit_.metres : 1.0;
+  // Normals transform by the inverse transposed matrix, also for a reflection.
+  const Eigen::Matrix3d for_normals = linear.inverse().transpose();
+  for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
+    const Eigen::Vector3d position = to_units * (linear * to_eigen(mesh.mVertices[i]) + offset);
+    put(position.data(), sizeof(double) * 3);
+    if (normals_) {
+      const Eigen::Vector3f normal =
+          (for_normals * to_eigen(mesh.mNormals[i])).normalized().cast<float>();
+      put(normal.data(), sizeof(float) * 3);
+    }
+    if (colours_) {
+      const aiColor4D& colour = mesh.mColors[0][i];
+      const std::array<std::uint8_t, 3> bytes = {to_byte(colour.r), to_byte(colour.g),
+                                                 to_byte(colour.b)};
+      put(bytes.data(), bytes.size());
+    }
+  }
+}
+
+void SceneWriter::write_triangles(const Placed& placed, std::uint64_t first_point) {
+  const aiMesh& mesh = *placed.mesh;
+  // A reflection reverses the winding: swap two corners.
+  const bool mirrored = placed.transform.topLeftCorner<3, 3>().determinant() < 0;
+  for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
+    if (mesh.mFaces[i].mNumIndices != 3) continue;
+    const unsigned* corners = mesh.mFaces[i].mIndices;
+    std::array<std::uint32_t, 3> triangle{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      triangle[k] = static_cast<std::uint32_t>(first_point + corners[k]);
+    }
+    if (mirrored) std::swap(triangle[1], triangle[2]);
+    put(triangle.data(), sizeof triangle);
+  }
+}
+
+void SceneWriter::put(const void* data, std::size_t size) {
+  if (std::fwrite(data, 1, size, to_) != size) failed_ = true;
+}
+
+}  // namespace tactree::builder

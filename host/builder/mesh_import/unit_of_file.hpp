@@ -1,0 +1,21 @@
+#pragma once
+// The unit of length that a mesh file states, or that its format defines.
+
+#include <assimp/scene.h>
+
+#include <string>
+#include <string_view>
+
+namespace tactree::builder {
+
+struct FileUnit {
+  double metres = 0.0;        ///< per unit of the file; 0: unknown
+  bool scene_scaled = false;  ///< the positions of the scene are in metres already
+};
+
+/// glTF and X3D: metres; FBX: its UnitScaleFactor; 3MF: the attribute of its model, or millimetres;
+/// COLLADA: its <unit>, or metres. hint: extension of the format.
+[[nodiscard]] FileUnit unit_of_file(const aiScene& scene, const std::string& file,
+                                    std::string_view hint);
+
+}  // namespace tactree::builder

@@ -1,0 +1,375 @@
+#include "tactree/builder/build_model.hpp"
+
+#include <fmt/core.h>
+#include <sys/resource.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "ball_bound.hpp"
+#include "cleaning.hpp"
+#include "density.hpp"
+#include "gaps.hpp"
+#include "normals.hpp"
+#include "orientation/given_normals.hpp"
+#include "orientation/mesh_windings.hpp"
+#include "orientation/orient_cloud.hpp"
+#include "orientation/report_orientation.hpp"
+#include "source_digest.hpp"
+#include "tactree/builder/length_text.hpp"
+#include "tactree/builder/read_scan.hpp"
+#include "tactree/core/blob.hpp"
+#include "two_sided.hpp"
+
+namespace tactree::builder {
+namespace {
+
+// Sizes of an object that a hand at a device can feel; outside, the unit is probably wrong.
+constexpr double kHugeModel_m = 1.0;
+constexpr double kTinyModel_m = 0.005;
+
+std::uint64_t peak_rss_bytes() {
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024U;
+}
+
+class Pipeline {
+ public:
+  Pipeline(const BuildOptions& options, Progress& progress)
+      : options_(options), progress_(progress) {}
+
+  [[nodiscard]] BuildReport& report() { return report_; }
+  /// Per point of the blob, after run(): 1 if its side is doubtful.
+  [[nodiscard]] std::vector<std::uint8_t>& doubtful() { return doubtful_of_blob_; }
+
+  WrittenBlob run(std::vector<Scan> scans, const Sha256Digest& digest) {
+    progress_.begin("cleaning");
+    input_ = clean(std::move(scans), options_, report_);
+    advise_on_unit();
+    progress_.begin("checking the outside");
+    check_given();
+    model_.profile = options_.profile;
+    model_.name = options_.name;
+    model_.source_digest = digest;
+    model_.source_scale = report_.source_scale;
+    model_.source_origin = report_.source_origin;
+    if (options_.materials) {
+      model_.materials = options_.materials->list();
+    }
+    progress_.begin("resampling");
+    DensityChoice choice = choose_density(input_, options_, progress_, report_);
+    model_.spacing_m = choice.spacing_m;
+    model_.support_radius_m = kSupportSpacings * choice.spacing_m;
+    model_.reach_m = kReachSpacings * choice.spacing_m;
+    input_ = {};  // `choice` holds all further input
+    find_normals(choice);
+    if (options_.flip_normals) {
+      flip(choice);
+    }
+    choice.dense = {};
+    if (options_.two_sided_m) {
+      make_two_sided(choice, *options_.two_sided_m);
+    }
+    progress_.begin("finding gaps");
+    Gaps gaps = find_gaps(choice.points, model_.spacing_m, model_.support_radius_m, watertight_);
+    model_.largest_gap_m = gaps.largest_m;
+    report_.openings = std::move(gaps.openings);
+    return write(choice);
+  }
+
+ private:
+  void advise_on_unit() {
+    const double extent = largest_edge(input_.bounds);
+    const bool huge = extent > kHugeModel_m;
+    const bool stated = options_.unit_m || options_.fit_m || options_.fit_edge_m;
+    if (stated || !(huge || extent < kTinyModel_m) || extent == 0.0) {
+      return;
+    }
+    report_.warnings.push_back(fmt::format(
+        "the model is {} wide, {} (check the unit: --unit mm, or --fit 0.2 for 0.2 m)",
+        length_text(extent),
+        huge ? "but a haptic device reaches 0.1 to 0.6 m: a hand can touch only the part around "
+               "its origin"
+             : "too small to feel by a device that reaches 0.1 to 0.6 m"));
+  }
+
+  // Before the points are chosen: points on two sides of a plate do not compete.
+  void check_given() {
+    for (const Eigen::Vector3d& viewpoint : options_.viewpoints) {
+      viewpoints_.push_back(input_.frame.placed(viewpoint));
+    }
+    const std::vector<Sight>& sights = input_.points.cloud().sights;
+    const bool seen = std::any_of(sights.begin(), sights.end(),
+                                  [](const Sight& sight) { return !sight.toward.isZero(); });
+    if (options_.orient == OrientationRule::kViewpoint && viewpoints_.empty() && !seen) {
+      throw std::runtime_error(
+          "--orient viewpoint needs the position of the scanner, and the input has none (give "
+          "--viewpoint X,Y,Z)");
+    }
+    mesh_ = !input_.mesh.triangles.empty();
+    if (options_.orient == OrientationRule::kGiven) {
+      return;
+    }
+    if (mesh_) {
+      const WindingRepair repair = repair_windings(input_.mesh, options_.orient, viewpoints_);
+      watertight_ =
+          repair.watertight && input_.points.size() == 0 && !options_.crop && !options_.two_sided_m;
+      if (!options_.two_sided_m) {
+        report_windings(repair, input_.mesh.triangles.size(), report_);
+      }
+    }
+    if (signs_are_random(input_.points, input_.points_spacing)) {
+      input_.points.set_normals({});
+      report_.warnings.emplace_back(
+          "the normals of the file contradict each other and are estimated instead (--orient given "
+          "keeps them)");
+    }
+  }
+
+  void find_normals(DensityChoice& choice) {
+    const ZOrderedCloud& points = choice.points;
+    std::vector<std::uint8_t> given(points.size(), 0);
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < points.size() && points.cloud().has_normals(); ++i) {
+      given[i] = points.normals()[i].isZero() ? 0 : 1;
+      count += given[i];
+    }
+    const bool all = count == points.size();
+    if (all && (mesh_ || options_.orient == OrientationRule::kGiven)) {
+      return;
+    }
+    progress_.begin(all ? "checking normals" : "estimating normals");
+    std::vector<Eigen::Vector3f> normals =
+        all ? points.normals()
+            : estimate_normals(points, choice.dense, model_.spacing_m, input_spacing(choice));
+    orient(choice, given, normals);
+    if (!all) {
+      report_.notes.push_back(fmt::format(
+          "{} of {} normals are estimated; the surface has {} connected piece{}",
+          points.size() - count, points.size(), report_.pieces, report_.pieces == 1 ? "" : "s"));
+    }
+    choice.points.set_normals(std::move(normals));
+  }
+
+  static void flip(DensityChoice& choice) {
+    std::vector<Eigen::Vector3f> normals = choice.points.normals();
+    for (Eigen::Vector3f& normal : normals) {
+      normal = -normal;
+    }
+    choice.points.set_normals(std::move(normals));
+  }
+
+  void orient(const DensityChoice& choice, std::span<const std::uint8_t> given,
+              std::span<Eigen::Vector3f> normals) {
+    const bool keep = options_.orient == OrientationRule::kGiven;
+    std::vector<Eigen::Vector3f> before;
+    if (keep) {
+      before.assign(normals.begin(), normals.end());
+    }
+    CloudOrientation orientation = orient_cloud({.points = choice.points,
+                                                 .spacing = model_.spacing_m,
+                                                 .dense = choice.dense,
+                                                 .dense_spacing = input_spacing(choice),
+                                                 .rule = options_.orient,
+                                                 .viewpoints = viewpoints_,
+                                                 .given = given},
+                                                normals);
+    for (std::size_t i = 0; i < normals.size() && keep; ++i) {
+      if (given[i] != 0) {
+        normals[i] = before[i];
+      }
+    }
+    report_.pieces = static_cast<std::uint32_t>(orientation.pieces.size());
+    if (!options_.two_sided_m) {
+      report_orientation(orientation, keep ? 0 : orientation.repaired, report_);
+      doubtful_ = std::move(orientation.doubtful);
+    }
+  }
+
+  void make_two_sided(DensityChoice& choice, double thickness) {
+    const double h = model_.spacing_m;
+    if (!(thickness >= h)) {
+      throw std::runtime_error(fmt::format(
+          "--two-sided {}: the sheet must be at least as thick as the spacing of its points, {} "
+          "(raise it, or lower --spacing)",
+          length_text(thickness), length_text(h)));
+    }
+    Thickened body = thicken(choice.points, h, model_.support_radius_m, thickness);
+    choice.points = std::move(body.points);
+    if (options_.profile == core::Profile::kSurface) {
+      report_.thinned += thin_to_candidates(choice.points, h);
+    }
+    report_.notes.push_back(
+        fmt::format("the sheet is a body of {} thickness, with {} points on its two sides and {} "
+                    "around its edges",
+                    length_text(thickness), choice.points.size() - body.at_edge, body.at_edge));
+  }
+
+  static double input_spacing(const DensityChoice& choice) {
+    return choice.dense_spacing_m > 0.0 ? choice.dense_spacing_m : choice.spacing_m;
+  }
+
+  WrittenBlob write(const DensityChoice& choice) {
+    progress_.begin("writing the octree");
+    model_.positions = choice.points.positions();
+    model_.normals = choice.points.normals();
+    model_.material_indices = choice.points.cloud().materials;
+    WrittenBlob blob = write_blob(model_);
+    check(blob);
+    if (options_.flash_budget_bytes && blob.bytes.size() > *options_.flash_budget_bytes) {
+      throw std::runtime_error(fmt::format(
+          "the two-sided sheet takes {} bytes, more than the flash budget of {} (raise --spacing)",
+          blob.bytes.size(), *options_.flash_budget_bytes));
+    }
+    count_materials(blob);
+    collect_doubtful(choice, blob);
+    report_.spacing_m = model_.spacing_m;
+    report_.largest_gap_m = model_.largest_gap_m;
+    report_.merged = blob.merged;
+    report_.output_points = blob.source_index.size();
+    report_.bounds = bounds_of(model_.positions);
+    report_.bytes = blob.bytes.size();
+    return blob;
+  }
+
+  void collect_doubtful(const DensityChoice& choice, const WrittenBlob& blob) {
+    if (doubtful_.empty() && !options_.two_sided_m) {
+      doubtful_ = choice.points.cloud().doubtful;
+    }
+    doubtful_of_blob_.assign(blob.source_index.size(), 0);
+    for (std::size_t i = 0; i < doubtful_of_blob_.size() && !doubtful_.empty(); ++i) {
+      doubtful_of_blob_[i] = doubtful_[blob.source_index[i]];
+    }
+  }
+
+  void count_materials(const WrittenBlob& blob) {
+    report_.material_points.assign(model_.materials.size(), 0);
+    for (const std::uint32_t source : blob.source_index) {
+      if (!model_.materials.empty()) {
+        ++report_
+              .material_points[model_.material_indices.empty() ? 0
+                                                               : model_.material_indices[source]];
+      }
+    }
+    for (std::size_t i = 1; i < report_.material_points.size(); ++i) {
+      if (report_.material_points[i] == 0) {
+        report_.warnings.push_back(
+            fmt::format("no point has the colour of the material '{}' (raise its tolerance)",
+                        options_.materials->colours[i - 1].name));
+      }
+    }
+  }
+
+  // Decodes the blob as the board does and compares the positions.
+  void check(const WrittenBlob& blob) const {
+    core::BlobView view;
+    const core::BlobStatus status = core::open_blob(blob.bytes, view);
+    if (status != core::BlobStatus::kOk || view.point_count() != blob.source_index.size()) {
+      throw std::logic_error(
+          fmt::format("internal error: the written blob is not valid: {}", core::describe(status)));
+    }
+    core::for_each_point(view, [&](const core::Leaf& leaf, std::uint32_t index) {
+      const core::Vec3 p = view.position(leaf, index);
+      const Eigen::Vector3d decoded(static_cast<double>(p.x), static_cast<double>(p.y),
+                                    static_cast<double>(p.z));
+      const double off =
+          (decoded - model_.positions[blob.source_index[index]]).cwiseAbs().maxCoeff();
+      const double cell = std::ldexp(static_cast<double>(view.step_m()),
+                                     static_cast<int>(view.depth() - leaf.level));
+      if (!(off <= 1.0001 * cell)) {
+        throw std::logic_error(fmt::format(
+            "internal error: point {} of the written blob is displaced by {} m", index, off));
+      }
+    });
+  }
+
+  const BuildOptions& options_;
+  Progress& progress_;
+  BuildReport report_;
+  CleanInput input_;
+  bool mesh_ = false;                        // some points lie on faces
+  bool watertight_ = false;                  // all points lie on the faces of closed shells
+  std::vector<Eigen::Vector3d> viewpoints_;  // in the model frame
+  Model model_;
+  std::vector<std::uint8_t> doubtful_;  // per point of the model; empty: none
+  std::vector<std::uint8_t> doubtful_of_blob_;
+};
+
+class Stopwatch {
+ public:
+  [[nodiscard]] double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+std::unique_ptr<tbb::global_control> limit_threads(unsigned threads) {
+  return threads == 0 ? nullptr
+                      : std::make_unique<tbb::global_control>(
+                            tbb::global_control::max_allowed_parallelism, threads);
+}
+
+BuildResult finish(Pipeline& pipeline, std::vector<Scan> scans, const Sha256Digest& digest,
+                   const std::string& label, const Stopwatch& stopwatch, Progress& progress) {
+  try {
+    BuildResult result;
+    result.blob = pipeline.run(std::move(scans), digest);
+    result.report = std::move(pipeline.report());
+    result.doubtful = std::move(pipeline.doubtful());
+    result.report.seconds = stopwatch.seconds();
+    result.report.peak_rss_bytes = peak_rss_bytes();
+    progress.end();
+    return result;
+  } catch (const std::runtime_error& error) {
+    throw BuildError(label.empty() ? error.what() : label + ": " + error.what());
+  }
+}
+
+std::string label_of(std::span<const std::filesystem::path> inputs) {
+  if (inputs.size() == 1) {
+    return inputs[0].string();
+  }
+  return fmt::format("{} and {} more", inputs[0].string(), inputs.size() - 1);
+}
+
+}  // namespace
+
+BuildResult build_model(std::span<const std::filesystem::path> inputs, const BuildOptions& options,
+                        Progress& progress) {
+  if (inputs.empty()) {
+    throw BuildError("no input file");
+  }
+  const Stopwatch stopwatch;
+  const auto limit = limit_threads(options.threads);
+  SourceDigest digest(inputs, options.threads != 1);
+  BuildOptions named = options;
+  if (named.name.empty()) {
+    named.name = inputs[0].stem().string();
+  }
+  Pipeline pipeline(named, progress);
+  std::vector<Scan> scans;
+  for (const std::filesystem::path& file : inputs) {
+    progress.begin("reading " + file.filename().string());
+    ReadOptions reading;
+    reading.progress = [&](double fraction) { progress.advance(fraction); };
+    scans.push_back(read_scan(file, reading));
+    const Scan& scan = scans.back();
+    pipeline.report().inputs.push_back(
+        {file.string(), scan.format, scan.positions.size(), scan.triangles.size()});
+  }
+  return finish(pipeline, std::move(scans), digest.get(), label_of(inputs), stopwatch, progress);
+}
+
+BuildResult build_model(std::vector<Scan> scans, const BuildOptions& options, Progress& progress) {
+  const Stopwatch stopwatch;
+  const auto limit = limit_threads(options.threads);
+  Pipeline pipeline(options, progress);
+  return finish(pipeline, std::move(scans), {}, "", stopwatch, progress);
+}
+
+}  // namespace tactree::builder

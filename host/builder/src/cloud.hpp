@@ -1,0 +1,50 @@
+#pragma once
+// A set of points with normals and materials, as passed between the steps of a build.
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace tactree::builder {
+
+using Box = Eigen::AlignedBox3d;
+
+/// What is known about the scanner that saw a point.
+struct Sight {
+  Eigen::Vector3f toward = Eigen::Vector3f::Zero();  ///< unit vector to the scanner; 0: unknown
+  bool sure = false;
+};
+
+struct Cloud {
+  std::vector<Eigen::Vector3d> positions;
+  std::vector<Eigen::Vector3f>
+      normals;  ///< empty, or one per position: unit length, or 0 if unknown
+  std::vector<std::uint8_t> materials;   ///< empty, or one per position: index in the material map
+  std::vector<std::uint8_t> doubtful{};  ///< empty, or one per position: 1 if its side is doubtful
+  std::vector<Sight> sights{};           ///< empty, or one per position
+
+  [[nodiscard]] std::size_t size() const { return positions.size(); }
+  [[nodiscard]] bool has_normals() const { return !normals.empty(); }
+  [[nodiscard]] bool has_materials() const { return !materials.empty(); }
+  [[nodiscard]] bool has_sights() const { return !sights.empty(); }
+};
+
+[[nodiscard]] Box bounds_of(std::span<const Eigen::Vector3d> positions);
+
+/// The longest edge; 0 for an empty box.
+[[nodiscard]] double largest_edge(const Box& box);
+
+/// The points at the indices `order`, in that order.
+[[nodiscard]] Cloud select(const Cloud& cloud, std::span<const std::uint32_t> order);
+
+/// Hash of a 64-bit number (the finaliser of splitmix64). The only source of randomness in a build.
+[[nodiscard]] constexpr std::uint64_t hash64(std::uint64_t v) {
+  v += 0x9E3779B97F4A7C15U;
+  v = (v ^ (v >> 30)) * 0xBF58476D1CE4E5B9U;
+  v = (v ^ (v >> 27)) * 0x94D049BB133111EBU;
+  return v ^ (v >> 31);
+}
+
+}  // namespace tactree::builder

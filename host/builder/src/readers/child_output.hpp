@@ -1,0 +1,39 @@
+#pragma once
+// Reads the standard output of a child process, with a time limit.
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "tactree/process/child_process.hpp"
+#include "tactree/process/file_descriptor.hpp"
+
+namespace tactree::builder {
+
+class ChildOutput {
+ public:
+  /// Starts the program arguments[0], which is killed with this object. Throws std::system_error.
+  ChildOutput(const std::vector<std::string>& arguments, double seconds);
+
+  /// Reads the next `size` bytes of the output. False if the output ends earlier or the time is
+  /// over.
+  [[nodiscard]] bool read(void* into, std::size_t size);
+
+  /// After read() returned false: waits for the end of the child and describes it, for a message.
+  [[nodiscard]] std::string wait_and_describe_end();
+
+ private:
+  [[nodiscard]] bool refill();
+  [[nodiscard]] bool wait_for_output() const;
+  [[nodiscard]] std::chrono::milliseconds time_left() const;
+
+  double seconds_;
+  std::chrono::steady_clock::time_point deadline_;
+  process::Pipe pipe_;
+  process::ChildProcess child_;
+  std::vector<char> buffer_;
+  std::size_t begin_ = 0;  // unread part of buffer_
+  std::size_t end_ = 0;
+};
+
+}  // namespace tactree::builder

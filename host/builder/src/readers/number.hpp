@@ -1,0 +1,42 @@
+#pragma once
+// Numbers and tokens in text. No locale, no allocation; every view refers to the given text.
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace tactree::builder {
+
+[[nodiscard]] constexpr bool is_space(char c) {
+  return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v';
+}
+
+/// Removes white space at both ends.
+[[nodiscard]] std::string_view trim(std::string_view text);
+
+/// Removes the next word (up to white space) from the front of `rest`; empty if there is none.
+[[nodiscard]] inline std::string_view take_word(std::string_view& rest) {
+  std::size_t begin = 0;
+  while (begin < rest.size() && is_space(rest[begin])) ++begin;
+  std::size_t end = begin;
+  while (end < rest.size() && !is_space(rest[end])) ++end;
+  const std::string_view word = rest.substr(begin, end - begin);
+  rest.remove_prefix(end);
+  return word;
+}
+
+/// Parses all of `token` as a number. Accepts a leading '+', nan and inf, also as "1.#QNAN".
+/// Overflow gives infinity, underflow zero. Returns false for any other text.
+[[nodiscard]] bool parse_number(std::string_view token, double& value);
+
+/// Parses all of `token` as an integer. Accepts a leading '+'.
+[[nodiscard]] bool parse_integer(std::string_view token, std::int64_t& value);
+
+/// ASCII only.
+[[nodiscard]] bool equal_ignoring_case(std::string_view a, std::string_view b);
+[[nodiscard]] bool starts_with_ignoring_case(std::string_view text, std::string_view prefix);
+
+/// The first 60 characters for a message; unprintable characters become '?'.
+[[nodiscard]] std::string printable(std::string_view text);
+
+}  // namespace tactree::builder

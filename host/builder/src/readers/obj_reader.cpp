@@ -1,0 +1,240 @@
+// OBJ (Wavefront): lines of points, normals and faces. assimp is not used here: it stores float
+// coordinates (6 cm apart at 10^6 m) and splits points by the normals of their corners.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "number.hpp"
+#include "readers.hpp"
+#include "scan_builder.hpp"
+
+namespace tactree::builder {
+namespace {
+
+constexpr const char* kExportAgain = "the file is damaged; copy or export it again";
+constexpr std::int64_t kNoIndex = -1;
+constexpr float kSameDirection = 0.9998F;  // cosine of about one degree
+constexpr std::size_t kMaxForwardFaces = 4096;
+
+/// One normal per point, where the corners of its faces agree.
+class CornerNormals {
+ public:
+  explicit CornerNormals(ScanBuilder& builder) : builder_(builder) {}
+
+  void add(const Eigen::Vector3f& normal) {
+    if (normals_.size() == normals_.capacity()) {
+      const std::size_t more = std::max<std::size_t>(1024, normals_.size());
+      builder_.charge(more * sizeof(Eigen::Vector3f));
+      normals_.reserve(normals_.size() + more);
+    }
+    normals_.push_back(normal);
+  }
+
+  [[nodiscard]] std::size_t count() const { return normals_.size(); }
+
+  void use(std::int64_t point, std::int64_t normal) {
+    if (disagree_ || point < 0 || normal < 0) return;
+    if (static_cast<std::size_t>(normal) >= normals_.size()) return;
+    if (static_cast<std::uint64_t>(point) >= builder_.points_read()) return;
+    const auto at = static_cast<std::size_t>(point);
+    if (at >= of_point_.size()) grow_to(at + 1);
+    const auto index = static_cast<std::uint32_t>(normal) + 1;
+    if (of_point_[at] == 0) of_point_[at] = index;
+    if (of_point_[at] == index) return;
+    const Eigen::Vector3f first = normals_[of_point_[at] - 1].normalized();
+    if (!(first.dot(normals_[index - 1].normalized()) > kSameDirection)) disagree_ = true;
+  }
+
+  /// Passes the normals to the builder, if there are any.
+  void finish() {
+    if (normals_.empty()) return;
+    if (disagree_) {
+      builder_.warn("The normals were ignored: at edges they differ between the faces of a point.");
+      return;
+    }
+    const auto points = static_cast<std::size_t>(builder_.points_read());
+    if (of_point_.empty()) {
+      // No face refers to them: in a cloud, normals are in the order of the points.
+      if (normals_.size() == points) builder_.set_normals(std::move(normals_));
+      return;
+    }
+    builder_.charge(points * sizeof(Eigen::Vector3f));
+    std::vector<Eigen::Vector3f> result(points, Eigen::Vector3f::Zero());
+    for (std::size_t i = 0; i < of_point_.size(); ++i) {
+      if (of_point_[i] != 0) result[i] = normals_[of_point_[i] - 1];
+    }
+    builder_.set_normals(std::move(result));
+  }
+
+ private:
+  void grow_to(std::size_t size) {
+    if (size > of_point_.capacity()) {
+      const std::size_t capacity = std::max(2 * of_point_.capacity(), size);
+      builder_.charge((capacity - of_point_.capacity()) * sizeof(std::uint32_t));
+      of_point_.reserve(capacity);
+    }
+    of_point_.resize(size, 0);
+  }
+
+  ScanBuilder& builder_;
+  std::vector<Eigen::Vector3f> normals_;
+  std::vector<std::uint32_t> of_point_;  // index into normals_ plus one, 0: none
+  bool disagree_ = false;
+};
+
+class ObjReader {
+ public:
+  ObjReader(InputFile& file, const ReadOptions& options)
+      : file_(file), builder_(file.name(), options.scan_memory_bytes, "line"), normals_(builder_) {}
+
+  Scan read() {
+    find_colours();
+    std::string_view line;
+    while (next_line(line)) read_line(line);
+    find_bad_forward_face();
+    if (has_colours_ && points_without_colour_ > 0) {
+      builder_.warn(
+          fmt::format("{} points have no colour and became white.", points_without_colour_));
+    }
+    normals_.finish();
+    return builder_.finish("OBJ");
+  }
+
+ private:
+  /// Searches all points for a colour: the builder needs to know at the first one.
+  void find_colours() {
+    file_.rewind();
+    constexpr std::size_t kSampleLines = 10000;
+    std::string_view line;
+    for (std::size_t i = 0; i < kSampleLines && !has_colours_ && file_.next_line(line); ++i) {
+      if (take_word(line) == "v" && parse_values(line) >= 6) has_colours_ = true;
+    }
+    if (has_colours_) builder_.use_colours(ColourRange::kAuto);
+    file_.rewind();
+  }
+
+  /// Reads a line, joined with its continuations (a '\' at the end).
+  bool next_line(std::string_view& line) {
+    if (!file_.next_line(line)) return false;
+    if (!line.ends_with('\\')) return true;
+    joined_.clear();
+    while (line.ends_with('\\')) {
+      line.remove_suffix(1);
+      joined_.append(line).push_back(' ');
+      if (joined_.size() > InputFile::kMaxLineBytes) fail("the line is longer than 1 MiB");
+      if (!file_.next_line(line)) line = {};
+    }
+    joined_.append(line);
+    line = joined_;
+    return true;
+  }
+
+  void read_line(std::string_view line) {
+    line = line.substr(0, line.find('#'));
+    const std::string_view keyword = take_word(line);
+    if (keyword == "v") return read_point(line);
+    if (keyword == "vn") return read_normal(line);
+    if (keyword == "f" || keyword == "fo") return read_face(line);
+  }
+
+  /// Parses the numbers into values_ and returns their count.
+  std::size_t parse_values(std::string_view rest) {
+    std::size_t count = 0;
+    while (count < values_.size() && parse_number(take_word(rest), values_[count])) ++count;
+    return count;
+  }
+
+  void read_point(std::string_view rest) {
+    const std::size_t count = parse_values(rest);
+    if (count < 3) fail("the point has fewer than three numbers");
+    PointRow row{};
+    std::copy_n(values_.begin(), 3, row.begin());
+    if (has_colours_) {
+      // "x y z w" has no colour, "x y z r g b" and "x y z r g b a" have.
+      const bool coloured = count >= 6;
+      const double white = white_;
+      if (!coloured) ++points_without_colour_;
+      for (std::size_t i = 0; i < 3; ++i) {
+        row[kRed + i] = coloured ? values_[3 + i] : white;
+        if (coloured && values_[3 + i] > 1.5) white_ = 255.0;
+      }
+    }
+    builder_.add_point(row);
+  }
+
+  void read_normal(std::string_view rest) {
+    if (parse_values(rest) < 3) fail("the normal has fewer than three numbers");
+    normals_.add({static_cast<float>(values_[0]), static_cast<float>(values_[1]),
+                  static_cast<float>(values_[2])});
+  }
+
+  /// Corners are "point", "point/texture", "point//normal" or "point/texture/normal".
+  void read_face(std::string_view rest) {
+    corners_.clear();
+    std::int64_t highest = kNoIndex;
+    for (auto word = take_word(rest); !word.empty(); word = take_word(rest)) {
+      const std::size_t slash = word.find('/');
+      const std::int64_t point = to_index(word.substr(0, slash), builder_.points_read());
+      highest = std::max(highest, point);
+      corners_.push_back(point);
+      if (slash == std::string_view::npos) continue;
+      const std::size_t second = word.find('/', slash + 1);
+      if (second == std::string_view::npos) continue;
+      normals_.use(point, to_index(word.substr(second + 1), normals_.count()));
+    }
+    const bool forward =
+        highest != kNoIndex && static_cast<std::uint64_t>(highest) >= builder_.points_read();
+    if (forward && forward_faces_.size() < kMaxForwardFaces) {
+      forward_faces_.push_back({highest, file_.line_number()});
+    }
+    builder_.add_face(corners_, file_.line_number());
+  }
+
+  /// Indices count from 1, or backwards from the latest if negative.
+  static std::int64_t to_index(std::string_view word, std::uint64_t count) {
+    std::int64_t value = 0;
+    if (!parse_integer(word, value) || value == 0) return kNoIndex;
+    if (value > 0) return value - 1;
+    const auto known = static_cast<std::int64_t>(count);
+    return value >= -known ? known + value : kNoIndex;
+  }
+
+  /// Faces may precede their points: only at the end are invalid indices known.
+  void find_bad_forward_face() {
+    for (const ForwardFace& face : forward_faces_) {
+      if (static_cast<std::uint64_t>(face.highest) < builder_.points_read()) continue;
+      builder_.set_first_bad_face(face.line);
+      return;
+    }
+  }
+
+  [[noreturn]] void fail(const std::string& cause) const {
+    throw ReadError(file_.name(), file_.line_place(), cause, kExportAgain);
+  }
+
+  struct ForwardFace {
+    std::int64_t highest;
+    std::uint64_t line;
+  };
+
+  InputFile& file_;
+  ScanBuilder builder_;
+  CornerNormals normals_;
+  bool has_colours_ = false;
+  double white_ = 1.0;
+  std::uint64_t points_without_colour_ = 0;
+  std::array<double, 8> values_{};
+  std::vector<std::int64_t> corners_;
+  std::vector<ForwardFace> forward_faces_;
+  std::string joined_;
+};
+
+}  // namespace
+
+Scan read_obj(InputFile& file, const ReadOptions& options) {
+  return ObjReader(file, options).read();
+}
+
+}  // namespace tactree::builder

@@ -1,0 +1,53 @@
+#pragma once
+// Shared by the readers of ASCII and binary PLY data: the elements in use and the slots of the
+// vertex properties.
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "input_file.hpp"
+#include "ply_header.hpp"
+#include "scan_builder.hpp"
+
+namespace tactree::builder {
+
+enum class PlyRole : std::uint8_t { kOther, kVertex, kFace, kStrip };
+
+[[nodiscard]] PlyRole role_of(const PlyElement& element);
+
+/// Index of the list of corners of a face or strip, or properties.size() if there is none.
+[[nodiscard]] std::size_t index_property(const PlyElement& element);
+
+struct PlyField {
+  std::size_t property = 0;
+  Slot slot = kNoSlot;
+};
+
+/// The vertex properties in use: x y z, and normals and colours if complete.
+[[nodiscard]] std::vector<PlyField> vertex_fields(const PlyElement& vertex);
+
+/// Throws: the file holds fewer rows than declared, namely rows_there (or at_most that many).
+[[noreturn]] void throw_truncated(const InputFile& file, const PlyElement& element,
+                                  std::uint64_t rows_there, bool at_most = false);
+
+/// Adds the triangles of a strip; an index of -1 starts a new one.
+class StripReader {
+ public:
+  StripReader(ScanBuilder& builder, std::uint64_t place) : builder_(builder), place_(place) {}
+  void add(std::int64_t index);
+
+ private:
+  ScanBuilder& builder_;
+  std::uint64_t place_;
+  std::int64_t older_ = -1;
+  std::int64_t newer_ = -1;
+  std::uint64_t length_ = 0;
+};
+
+/// Read the elements through the last one in use. The file must be positioned after the header.
+void read_ply_ascii(InputFile& file, std::span<const PlyElement> elements, ScanBuilder& builder);
+void read_ply_binary(InputFile& file, std::span<const PlyElement> elements, bool swap,
+                     ScanBuilder& builder);
+
+}  // namespace tactree::builder

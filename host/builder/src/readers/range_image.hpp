@@ -1,0 +1,46 @@
+#pragma once
+// Where the scanner stood that recorded an image of points, row by row.
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "tactree/builder/scan.hpp"
+
+namespace tactree::builder {
+
+/// Tests the position that a file states against the order of its points. Seen from the scanner,
+/// neighbours to the right and below appear in the same order everywhere, at any distance. Files
+/// state a position in the frame of the points, or in another one while the points have the scanner
+/// at their origin.
+class RangeImage {
+ public:
+  /// width: points per row; 0: the points are in no order.
+  RangeImage(std::uint64_t width, const std::optional<Eigen::Vector3d>& stated);
+
+  /// The next point of the file, also a missing one (NaN).
+  void add(const Eigen::Vector3d& position);
+
+  /// Nothing if no position is stated or none fits.
+  [[nodiscard]] std::optional<ScannerPose> pose() const;
+
+ private:
+  struct Candidate {
+    Eigen::Vector3d position = Eigen::Vector3d::Zero();
+    std::uint64_t right = 0;     ///< triangles of neighbours in the order of an image
+    std::uint64_t mirrored = 0;  ///< in the opposite order
+  };
+  [[nodiscard]] static bool most(std::uint64_t votes, const Candidate& of);
+
+  std::size_t width_;
+  std::size_t column_ = 0;
+  std::vector<Eigen::Vector3d> last_row_;  // up to the column: this row
+  Eigen::Vector3d left_ = Eigen::Vector3d::Zero();
+  bool stated_;
+  Candidate as_stated_;
+  Candidate at_origin_;
+};
+
+}  // namespace tactree::builder

@@ -1,0 +1,52 @@
+#include "tactree/builder/read_scan.hpp"
+
+#include <new>
+
+#include "input_file.hpp"
+#include "readers.hpp"
+#include "recognise.hpp"
+
+namespace tactree::builder {
+namespace {
+
+Scan read_recognised(InputFile& file, const std::filesystem::path& path,
+                     const Recognition& recognition, const ReadOptions& options) {
+  switch (recognition.kind) {
+    case FileKind::kPly:
+      return read_ply(file, options);
+    case FileKind::kPcd:
+      return read_pcd(file, options);
+    case FileKind::kObj:
+      return read_obj(file, options);
+    case FileKind::kOff:
+      return read_off(file, options);
+    case FileKind::kStlAscii:
+      return read_stl_ascii(file, options);
+    case FileKind::kStlBinary:
+      return read_stl_binary(file, options);
+    case FileKind::kImportedMesh:
+      return import_mesh(path, recognition, options);
+    case FileKind::kText:
+      return read_text(file, options);
+    case FileKind::kUnsupported:
+      break;
+  }
+  throw ReadError(file.name(), "", "this is " + recognition.name, recognition.remedy);
+}
+
+}  // namespace
+
+Scan read_scan(const std::filesystem::path& path, const ReadOptions& options) {
+  InputFile file(path, options.progress);
+  const Recognition recognition = recognise(file.peek(kHeadBytes), file.size());
+  try {
+    Scan scan = read_recognised(file, path, recognition, options);
+    if (options.progress) options.progress(1.0);
+    return scan;
+  } catch (const std::bad_alloc&) {
+    throw ReadError(file.name(), "", "not enough memory for this scan",
+                    "close other programs, or reduce the scan first");
+  }
+}
+
+}  // namespace tactree::builder

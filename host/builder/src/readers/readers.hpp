@@ -1,0 +1,22 @@
+#pragma once
+// One function per format. Each reads `file` from its first byte and throws ReadError.
+
+#include "input_file.hpp"
+#include "recognise.hpp"
+#include "tactree/builder/read_scan.hpp"
+
+namespace tactree::builder {
+
+[[nodiscard]] Scan read_ply(InputFile& file, const ReadOptions& options);
+[[nodiscard]] Scan read_pcd(InputFile& file, const ReadOptions& options);
+[[nodiscard]] Scan read_text(InputFile& file, const ReadOptions& options);
+[[nodiscard]] Scan read_obj(InputFile& file, const ReadOptions& options);
+[[nodiscard]] Scan read_off(InputFile& file, const ReadOptions& options);
+[[nodiscard]] Scan read_stl_ascii(InputFile& file, const ReadOptions& options);
+[[nodiscard]] Scan read_stl_binary(InputFile& file, const ReadOptions& options);
+
+/// Reads the file in the mesh import process.
+[[nodiscard]] Scan import_mesh(const std::filesystem::path& file, const Recognition& recognition,
+                               const ReadOptions& options);
+
+}  // namespace tactree::builder

@@ -1,0 +1,287 @@
+#include "recognise.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "number.hpp"
+#include "scalar.hpp"
+#include "stl_layout.hpp"
+
+namespace tactree::builder {
+namespace {
+
+using namespace std::string_view_literals;
+
+constexpr const char* kToPlyRemedy =
+    "convert it to PLY with CloudCompare (File > Save) or with pdal translate";
+constexpr const char* kPictureRemedy = "give the scan, not a picture of it";
+constexpr const char* kUnpackRemedy = "unpack it and give the scan inside";
+constexpr const char* kMeshRemedy = "open it in Blender or MeshLab and save it as PLY";
+
+struct Magic {
+  std::size_t at;
+  std::string_view bytes;
+  const char* name;
+  const char* remedy;
+};
+
+constexpr Magic kUnsupportedMagics[] = {
+    {0, "ASTM-E57"sv, "an E57 file, which is not supported yet", kToPlyRemedy},
+    {0, "DRACO"sv, "a Draco file (.drc), which is not supported yet",
+     "decode it with draco_decoder -i FILE -o scan.ply"},
+    {0, "\x89PNG\r\n\x1a\n"sv, "a PNG picture", kPictureRemedy},
+    {0, "\x89PNG"sv, "a PNG picture", kPictureRemedy},
+    {0, "\xff\xd8\xff"sv, "a JPEG picture", kPictureRemedy},
+    {0, "GIF8"sv, "a GIF picture", kPictureRemedy},
+    {0, "II*\0"sv, "a TIFF picture", kPictureRemedy},
+    {0, "MM\0*"sv, "a TIFF picture", kPictureRemedy},
+    {8, "WEBP"sv, "a WebP picture", kPictureRemedy},
+    {0, "%PDF"sv, "a PDF document", "give the scan file"},
+    {0, "\x1f\x8b"sv, "a gzip archive", "unpack it with gunzip and give the result"},
+    {0, "BZh"sv, "a bzip2 archive", "unpack it with bunzip2 and give the result"},
+    {0,
+     "\xfd"
+     "7zXZ\0"sv,
+     "an xz archive", "unpack it with unxz and give the result"},
+    {0, "\x28\xb5\x2f\xfd"sv, "a Zstandard archive", "unpack it with unzstd and give the result"},
+    {0, "7z\xbc\xaf\x27\x1c"sv, "a 7-Zip archive", kUnpackRemedy},
+    {0, "Rar!\x1a\x07"sv, "a RAR archive", kUnpackRemedy},
+    {257, "ustar"sv, "a tar archive", kUnpackRemedy},
+    {0,
+     "\x7f"
+     "ELF"sv,
+     "a program", "give the scan file"},
+    {0, "ISO-10303-21"sv, "a CAD file (STEP or IFC)",
+     "export it from the CAD program as STL or PLY"},
+    {0, "SQLite format 3"sv, "a database", "give the scan file"},
+    {0, "version https://git-lfs"sv, "a Git LFS pointer, not the file itself",
+     "fetch the file with git lfs pull"},
+    {0, "\xff\xfe"sv, "text in UTF-16", "save it as UTF-8"},
+    {0, "\xfe\xff"sv, "text in UTF-16", "save it as UTF-8"},
+};
+
+struct ImportMagic {
+  std::size_t at;
+  std::string_view bytes;
+  const char* name;
+  const char* hint;
+};
+
+constexpr ImportMagic kImportMagics[] = {
+    {0, "glTF"sv, "glTF binary (GLB)", "glb"},
+    {0, "Kaydara FBX Binary"sv, "FBX binary", "fbx"},
+    {0, "; FBX"sv, "FBX text", "fbx"},
+    {0, "BLENDER"sv, "Blender file", "blend"},
+    {8, "LWOB"sv, "LightWave object", "lwo"},
+    {8, "LWO2"sv, "LightWave object", "lwo"},
+    {0, "MS3D000000"sv, "MilkShape 3D", "ms3d"},
+    {0, "xof 03"sv, "DirectX X", "x"},
+    {0, "AC3D"sv, "AC3D", "ac"},
+    {0, "#VRML"sv, "VRML", "wrl"},
+    {0, "#X3D"sv, "X3D", "x3d"},
+    {0, "IDP2"sv, "Quake II model", "md2"},
+    {0, "IDP3"sv, "Quake III model", "md3"},
+    {0, "*3DSMAX_ASCIIEXPORT"sv, "3ds Max ASE", "ase"},
+    {0, "OgreXML"sv, "Ogre mesh", "mesh"},
+};
+
+bool has_magic(std::string_view head, std::size_t at, std::string_view bytes) {
+  return head.size() >= at + bytes.size() && head.substr(at, bytes.size()) == bytes;
+}
+
+Recognition unsupported(const std::string& name, const std::string& remedy) {
+  return {FileKind::kUnsupported, name, remedy, ""};
+}
+
+Recognition imported(const std::string& name, const std::string& hint) {
+  return {FileKind::kImportedMesh, name, "", hint};
+}
+
+bool is_text(std::string_view head) {
+  return std::none_of(head.begin(), head.end(), [](char c) {
+    const auto byte = static_cast<unsigned char>(c);
+    return byte == 0x7f || (byte < 0x20 && !is_space(c) && c != '\n' && c != 0x1a);
+  });
+}
+
+/// The first lines, without blank ones and those that begin with '#'; at most `count`.
+std::vector<std::string_view> first_lines(std::string_view head, std::size_t count) {
+  std::vector<std::string_view> lines;
+  while (!head.empty() && lines.size() < count) {
+    const std::size_t end = head.find_first_of("\r\n");
+    const std::string_view line = trim(head.substr(0, end));
+    if (!line.empty() && line.front() != '#') lines.push_back(line);
+    head.remove_prefix(end == std::string_view::npos ? head.size() : end + 1);
+  }
+  return lines;
+}
+
+std::string_view first_word(std::string_view line) { return take_word(line); }
+
+bool begins_with_number(std::string_view text) {
+  double value = 0;
+  return parse_number(take_word(text), value);
+}
+
+std::optional<Recognition> recognise_las(std::string_view head) {
+  if (!head.starts_with("LASF")) return std::nullopt;
+  constexpr std::size_t kPointFormatByte = 104;
+  const bool compressed = (head.size() > kPointFormatByte &&
+                           (static_cast<unsigned char>(head[kPointFormatByte]) & 0x80) != 0) ||
+                          head.find("laszip encoded") != std::string_view::npos;
+  return unsupported(compressed ? "a LAZ file (compressed LAS), which is not supported yet"
+                                : "a LAS file, which is not supported yet",
+                     kToPlyRemedy);
+}
+
+std::optional<Recognition> recognise_zip(std::string_view head) {
+  if (!head.starts_with("PK\x03\x04") && !head.starts_with("PK\x05\x06")) return std::nullopt;
+  const auto contains = [&](std::string_view word) { return head.find(word) != head.npos; };
+  // An Open Packaging file: a 3MF, or an office document. Pictures may precede the model.
+  const bool package = contains("[Content_Types].xml") || contains("_rels/") || contains("3D/") ||
+                       contains("Metadata/");
+  const bool office = contains("word/") || contains("xl/") || contains("ppt/");
+  if (package && !office) return imported("3MF", "3mf");
+  return unsupported("a zip archive", kUnpackRemedy);
+}
+
+std::optional<Recognition> recognise_3ds(std::string_view head, std::uint64_t file_size) {
+  if (!head.starts_with("MM") || head.size() < 16) return std::nullopt;
+  const std::uint32_t length = load_bits<std::uint32_t, false>(head.data() + 2);
+  const std::uint16_t next = load_bits<std::uint16_t, false>(head.data() + 6);
+  const bool known_chunk = next == 0x0002 || next == 0x3d3d || next == 0xb000;
+  if (!known_chunk || length < 16 || length / 2 > file_size) return std::nullopt;
+  return imported("3DS", "3ds");
+}
+
+std::optional<Recognition> recognise_markup(std::string_view head) {
+  const std::string_view text =
+      trim(head.substr(std::min(head.find_first_not_of("\n\r \t"), head.size())));
+  const auto contains = [&](std::string_view word) { return head.find(word) != head.npos; };
+  if (text.starts_with('{') && contains("\"asset\"")) return imported("glTF", "gltf");
+  if (text.starts_with('{') && contains("\"buffers\"")) return imported("glTF", "gltf");
+  if (text.starts_with('{')) return unsupported("a JSON file", "give the scan file");
+  if (starts_with_ignoring_case(text, "<!doctype html") ||
+      starts_with_ignoring_case(text, "<html")) {
+    return unsupported("an HTML page, perhaps the error page of a download",
+                       "download the scan again and check the result");
+  }
+  if (!text.starts_with("<?xml") && !text.starts_with('<')) return std::nullopt;
+  if (contains("<COLLADA")) return imported("COLLADA", "dae");
+  if (contains("<X3D")) return imported("X3D", "x3d");
+  if (contains("<amf")) return imported("AMF", "amf");
+  if (contains("<html")) return unsupported("an HTML page", "give the scan file");
+  if (contains("<mesh>")) return imported("Ogre mesh XML", "mesh.xml");
+  return unsupported("an XML file", kMeshRemedy);
+}
+
+bool is_off_keyword(std::string_view word) {
+  constexpr std::string_view kKeywords[] = {"OFF",   "COFF",   "NOFF",   "CNOFF",  "NCOFF",
+                                            "STOFF", "STCOFF", "STNOFF", "STCNOFF"};
+  return std::find(std::begin(kKeywords), std::end(kKeywords), word) != std::end(kKeywords);
+}
+
+bool is_obj(const std::vector<std::string_view>& lines) {
+  constexpr std::string_view kKeywords[] = {"v", "vn", "vt", "vp",     "f",      "l",     "p",
+                                            "o", "g",  "s",  "mtllib", "usemtl", "usemap"};
+  if (std::find(std::begin(kKeywords), std::end(kKeywords), first_word(lines.front())) ==
+      std::end(kKeywords)) {
+    return false;
+  }
+  return std::any_of(lines.begin(), lines.end(), [](std::string_view line) {
+    return take_word(line) == "v" && begins_with_number(line);
+  });
+}
+
+/// Leica PTX: columns, rows, then a position and three axes, then a 4 x 4 matrix.
+bool is_ptx(const std::vector<std::string_view>& lines) {
+  constexpr std::array<int, 10> kNumbers = {1, 1, 3, 3, 3, 3, 4, 4, 4, 4};
+  if (lines.size() < kNumbers.size()) return false;
+  for (std::size_t i = 0; i < kNumbers.size(); ++i) {
+    std::string_view rest = lines[i];
+    double value = 0;
+    int count = 0;
+    while (parse_number(take_word(rest), value)) ++count;
+    if (count != kNumbers[i] || !trim(rest).empty()) return false;
+  }
+  return true;
+}
+
+bool is_pcd(std::string_view head, const std::vector<std::string_view>& lines) {
+  if (head.starts_with("# .PCD")) return true;
+  const std::string_view word = lines.empty() ? ""sv : first_word(lines.front());
+  if (word != "VERSION" && word != "FIELDS") return false;
+  return std::any_of(lines.begin(), lines.end(),
+                     [](std::string_view line) { return first_word(line) == "FIELDS"; });
+}
+
+Recognition recognise_text(std::string_view head) {
+  constexpr std::size_t kManyLines = 20000;  // comments or normals may come first
+  const std::vector<std::string_view> lines = first_lines(head, kManyLines);
+  if (lines.empty()) return {FileKind::kText, "text", "", ""};
+  const std::string_view word = first_word(lines.front());
+  if (is_off_keyword(word)) return {FileKind::kOff, "OFF", "", ""};
+  if (word == "4OFF" || word == "nOFF" || word == "4nOFF") {
+    return unsupported("an OFF file whose points are not three-dimensional", kMeshRemedy);
+  }
+  if (equal_ignoring_case(word, "solid") && lines.size() > 1) {
+    const std::string_view second = first_word(lines[1]);
+    if (starts_with_ignoring_case(second, "facet") ||
+        starts_with_ignoring_case(second, "endsolid") ||
+        starts_with_ignoring_case(second, "color")) {
+      return {FileKind::kStlAscii, "STL ascii", "", ""};
+    }
+  }
+  if (is_obj(lines)) return {FileKind::kObj, "OBJ", "", ""};
+  if (is_ptx(lines)) return unsupported("a PTX file, which is not supported yet", kToPlyRemedy);
+  return {FileKind::kText, "text", "", ""};
+}
+
+std::optional<Recognition> recognise_magic(std::string_view head) {
+  for (const Magic& magic : kUnsupportedMagics) {
+    if (has_magic(head, magic.at, magic.bytes)) return unsupported(magic.name, magic.remedy);
+  }
+  for (const ImportMagic& magic : kImportMagics) {
+    if (has_magic(head, magic.at, magic.bytes)) return imported(magic.name, magic.hint);
+  }
+  return std::nullopt;
+}
+
+bool is_ply(std::string_view head) {
+  std::string_view first = head.substr(0, head.find('\n'));
+  return take_word(first) == "ply" && trim(first.substr(0, first.find('\r'))).empty();
+}
+
+}  // namespace
+
+Recognition recognise(std::string_view head, std::uint64_t file_size) {
+  if (head.starts_with("\xef\xbb\xbf")) head.remove_prefix(3);
+  if (is_ply(head)) return {FileKind::kPly, "PLY", "", ""};
+  if (head.starts_with("# .PCD")) return {FileKind::kPcd, "PCD", "", ""};
+  if (is_exact_binary_stl(head, file_size)) return {FileKind::kStlBinary, "STL binary", "", ""};
+  if (auto las = recognise_las(head)) return *las;
+  if (auto zip = recognise_zip(head)) return *zip;
+  if (auto mesh = recognise_3ds(head, file_size)) return *mesh;
+  if (auto magic = recognise_magic(head)) return *magic;
+  if (is_pcd(head, first_lines(head.substr(0, 4096), 32))) return {FileKind::kPcd, "PCD", "", ""};
+  if (head.starts_with("OFF BINARY")) {
+    return unsupported("a binary OFF file, which is not supported", kMeshRemedy);
+  }
+  if (is_text(head)) {
+    if (auto markup = recognise_markup(head)) return *markup;
+    return recognise_text(head);
+  }
+  if (looks_like_binary_stl(head, file_size)) {
+    return {FileKind::kStlBinary, "STL binary", "", ""};
+  }
+  // Damaged text: its reader reports the damage with a line number.
+  const Recognition as_text = recognise_text(head);
+  if (as_text.kind != FileKind::kText) return as_text;
+  return unsupported("not a scan in a supported format",
+                     "save the scan as PLY, PCD, XYZ, OBJ, STL, OFF or glTF");
+}
+
+}  // namespace tactree::builder

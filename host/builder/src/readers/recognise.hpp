@@ -1,0 +1,35 @@
+#pragma once
+// Recognises the format of a file by its first bytes and its size, not by its name.
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace tactree::builder {
+
+enum class FileKind : std::uint8_t {
+  kPly,
+  kPcd,
+  kObj,
+  kOff,
+  kStlAscii,
+  kStlBinary,
+  kImportedMesh,  ///< read by the mesh import process
+  kText,          ///< possibly rows of numbers
+  kUnsupported,   ///< no reader
+};
+
+struct Recognition {
+  FileKind kind = FileKind::kUnsupported;
+  std::string name;    ///< for messages, e.g. "LAZ (compressed LAS)"
+  std::string remedy;  ///< kUnsupported: an action for the user
+  std::string hint;    ///< kImportedMesh: the usual extension, e.g. "glb"
+};
+
+/// Number of leading bytes that recognise() inspects.
+inline constexpr std::size_t kHeadBytes = std::size_t{1} << 18;
+
+/// head: the first bytes of the file, up to kHeadBytes; file_size: of the whole file.
+[[nodiscard]] Recognition recognise(std::string_view head, std::uint64_t file_size);
+
+}  // namespace tactree::builder

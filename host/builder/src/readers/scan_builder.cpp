@@ -1,0 +1,397 @@
+#include "scan_builder.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "number.hpp"
+#include "polygon.hpp"
+
+namespace tactree::builder {
+namespace {
+
+constexpr std::uint32_t kDropped = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint64_t kMaxEntries = kDropped - 1;
+constexpr const char* kNonFinite = "non_finite";
+constexpr const char* kDegenerateFace = "degenerate_face";
+constexpr const char* kFaceIndexOutOfRange = "face_index_out_of_range";
+constexpr const char* kFaceNonFinite = "face_non_finite";
+
+struct SlotName {
+  std::string_view name;
+  Slot slot;
+};
+
+constexpr SlotName kSlotNames[] = {
+    {"x", kX},
+    {"y", kY},
+    {"z", kZ},
+    {"points:0", kX},
+    {"points:1", kY},
+    {"points:2", kZ},
+    {"nx", kNx},
+    {"ny", kNy},
+    {"nz", kNz},
+    {"normal_x", kNx},
+    {"normal_y", kNy},
+    {"normal_z", kNz},
+    {"normalx", kNx},
+    {"normaly", kNy},
+    {"normalz", kNz},
+    {"normals:0", kNx},
+    {"normals:1", kNy},
+    {"normals:2", kNz},
+    {"red", kRed},
+    {"green", kGreen},
+    {"blue", kBlue},
+    {"r", kRed},
+    {"g", kGreen},
+    {"b", kBlue},
+    {"rf", kRed},
+    {"gf", kGreen},
+    {"bf", kBlue},
+    {"diffuse_red", kRed},
+    {"diffuse_green", kGreen},
+    {"diffuse_blue", kBlue},
+};
+
+std::uint8_t to_byte(double value) {
+  if (!(value > 0.0)) return 0;  // also NaN
+  return value >= 255.0 ? std::uint8_t{255} : static_cast<std::uint8_t>(std::lround(value));
+}
+
+std::string mebibytes(std::uint64_t bytes) {
+  return fmt::format("{:.0f} MiB", std::ceil(static_cast<double>(bytes) / (1 << 20)));
+}
+
+bool has_equal_corners(std::span<const std::uint32_t> t) {
+  return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
+}
+
+}  // namespace
+
+Slot slot_of_name(std::string_view name) {
+  for (const SlotName& known : kSlotNames) {
+    if (equal_ignoring_case(known.name, name)) return known.slot;
+  }
+  return kNoSlot;
+}
+
+ScanBuilder::ScanBuilder(std::string file, std::uint64_t memory_bytes, std::string place_unit)
+    : file_(std::move(file)),
+      memory_bytes_(memory_bytes),
+      place_unit_(std::move(place_unit)),
+      face_index_limit_(kDropped) {}
+
+std::uint64_t ScanBuilder::bytes_for(std::uint64_t points, std::uint64_t triangles) const {
+  std::uint64_t per_point = sizeof(Eigen::Vector3d);
+  if (has_normals_) per_point += sizeof(Eigen::Vector3f);
+  if (colours_ != ColourRange::kNone) per_point += 3;
+  const std::uint64_t faces = 12 * triangles + 4 * (polygons_.capacity() + dropped_.capacity());
+  return per_point * points + faces + extra_bytes_;
+}
+
+std::uint64_t ScanBuilder::points_that_fit() const {
+  const std::uint64_t other = bytes_for(0, scan_.triangles.capacity());
+  const std::uint64_t per_point = bytes_for(1, 0) - bytes_for(0, 0);
+  const std::uint64_t fit = other >= memory_bytes_ ? 0 : (memory_bytes_ - other) / per_point;
+  return std::min(fit, kMaxEntries);
+}
+
+void ScanBuilder::throw_too_large(std::uint64_t points) const {
+  throw ReadError(
+      file_, "",
+      fmt::format("the scan is too large: {} points and {} faces exceed the limit of {} of "
+                  "memory",
+                  std::max(points, points_read_), faces_read_, mebibytes(memory_bytes_)),
+      "reduce it first, for example in CloudCompare with Edit > Subsample");
+}
+
+void ScanBuilder::set_point_capacity(std::uint64_t count) {
+  const auto capacity = static_cast<std::size_t>(count);
+  scan_.positions.reserve(capacity);
+  if (has_normals_) scan_.normals.reserve(capacity);
+  if (colours_ != ColourRange::kNone) scan_.colours.reserve(capacity);
+}
+
+void ScanBuilder::reserve_points(std::uint64_t count) {
+  if (count > points_that_fit()) throw_too_large(count);
+  set_point_capacity(count);
+}
+
+void ScanBuilder::expect_points(std::uint64_t count) {
+  set_point_capacity(std::min(count, points_that_fit()));
+}
+
+void ScanBuilder::charge(std::uint64_t bytes) {
+  extra_bytes_ += bytes;
+  if (bytes_for(scan_.positions.capacity(), scan_.triangles.capacity()) > memory_bytes_) {
+    throw_too_large();
+  }
+}
+
+std::uint64_t ScanBuilder::grown_capacity(std::uint64_t size, std::uint64_t more,
+                                          std::uint64_t entry_bytes,
+                                          std::uint64_t other_bytes) const {
+  const std::uint64_t needed = size + more;
+  const std::uint64_t fit =
+      other_bytes >= memory_bytes_ ? 0 : (memory_bytes_ - other_bytes) / entry_bytes;
+  const std::uint64_t capacity =
+      std::min({std::max({std::uint64_t{1024}, 2 * size, needed}), fit, kMaxEntries});
+  // While the list grows, both copies exist; a quarter above the limit is reserved for that.
+  const std::uint64_t while_moving = other_bytes + 2 * size * entry_bytes;
+  if (capacity < needed || while_moving > memory_bytes_ + memory_bytes_ / 4) throw_too_large();
+  return capacity;
+}
+
+void ScanBuilder::grow_points() {
+  const std::uint64_t size = scan_.positions.size();
+  const std::uint64_t other = bytes_for(0, scan_.triangles.capacity());
+  set_point_capacity(grown_capacity(size, 1, bytes_for(1, 0) - bytes_for(0, 0), other));
+}
+
+void ScanBuilder::add_point(const PointRow& row) {
+  if (!std::isfinite(row[kX]) || !std::isfinite(row[kY]) || !std::isfinite(row[kZ])) {
+    drop_point();
+    return;
+  }
+  if (scan_.positions.size() == scan_.positions.capacity()) grow_points();
+  scan_.positions.emplace_back(row[kX], row[kY], row[kZ]);
+  if (has_normals_) add_normal(row);
+  if (colours_ != ColourRange::kNone) add_colour(row);
+  ++points_read_;
+}
+
+void ScanBuilder::drop_point() {
+  if (dropped_.size() == dropped_.capacity()) {
+    const std::uint64_t entry_bytes = sizeof(std::uint32_t);
+    const std::uint64_t all = bytes_for(scan_.positions.capacity(), scan_.triangles.capacity());
+    dropped_.reserve(static_cast<std::size_t>(
+        grown_capacity(dropped_.size(), 1, entry_bytes, all - entry_bytes * dropped_.size())));
+  }
+  dropped_.push_back(static_cast<std::uint32_t>(points_read_));
+  ++points_read_;
+}
+
+void ScanBuilder::add_normal(const PointRow& row) {
+  Eigen::Vector3f normal(static_cast<float>(row[kNx]), static_cast<float>(row[kNy]),
+                         static_cast<float>(row[kNz]));
+  if (!normal.allFinite()) {
+    normal.setZero();
+    ++missing_normals_;
+  }
+  scan_.normals.push_back(normal);
+}
+
+void ScanBuilder::add_colour(const PointRow& row) {
+  double scale = 1.0;
+  if (colours_ == ColourRange::kWord) scale = 1.0 / 257.0;
+  if (colours_ == ColourRange::kAuto) {
+    const double largest = std::max({row[kRed], row[kGreen], row[kBlue]});
+    if (unit_colours_ && largest > 1.5) leave_unit_colours();
+    if (unit_colours_) scale = 255.0;
+  }
+  scan_.colours.push_back(
+      {to_byte(row[kRed] * scale), to_byte(row[kGreen] * scale), to_byte(row[kBlue] * scale)});
+}
+
+/// Converts the colours so far from the range 0 .. 1 to 0 .. 255.
+void ScanBuilder::leave_unit_colours() {
+  unit_colours_ = false;
+  for (auto& colour : scan_.colours) {
+    for (std::uint8_t& channel : colour) channel = to_byte(channel / 255.0);
+  }
+}
+
+void ScanBuilder::count_dropped(const std::string& cause, std::uint64_t count) {
+  if (count > 0) scan_.dropped[cause] += count;
+}
+
+void ScanBuilder::set_first_bad_face(std::uint64_t place) {
+  if (first_bad_place_ == 0 || place < first_bad_place_) first_bad_place_ = place;
+}
+
+void ScanBuilder::count_bad_face(const char* cause, std::uint64_t place) {
+  ++bad_faces_;
+  count_dropped(cause);
+  if (place != 0 && first_bad_place_ == 0) first_bad_place_ = place;
+}
+
+void ScanBuilder::add_face(std::span<const std::int64_t> corners, std::uint64_t place) {
+  ++faces_read_;
+  for (const std::int64_t corner : corners) {
+    if (static_cast<std::uint64_t>(corner) >= face_index_limit_) {  // negative ones as well
+      count_bad_face(kFaceIndexOutOfRange, place);
+      return;
+    }
+  }
+  if (corners.size() < 3) {
+    count_bad_face(kDegenerateFace, place);
+    return;
+  }
+  if (corners.size() == 3) {
+    const std::array<std::uint32_t, 3> triangle = {static_cast<std::uint32_t>(corners[0]),
+                                                   static_cast<std::uint32_t>(corners[1]),
+                                                   static_cast<std::uint32_t>(corners[2])};
+    if (has_equal_corners(triangle)) {
+      count_bad_face(kDegenerateFace, place);
+      return;
+    }
+    add_triangle(triangle);
+    return;
+  }
+  add_polygon(corners);
+}
+
+void ScanBuilder::add_polygon(std::span<const std::int64_t> corners) {
+  const std::size_t size = polygons_.size();
+  if (polygons_.capacity() - size <= corners.size()) {
+    const std::uint64_t entry_bytes = sizeof(std::uint32_t);
+    const std::uint64_t all = bytes_for(scan_.positions.capacity(), scan_.triangles.capacity());
+    polygons_.reserve(static_cast<std::size_t>(grown_capacity(
+        size, corners.size() + 1, entry_bytes, all - entry_bytes * polygons_.capacity())));
+  }
+  polygons_.push_back(static_cast<std::uint32_t>(corners.size()));
+  for (const std::int64_t corner : corners) polygons_.push_back(static_cast<std::uint32_t>(corner));
+}
+
+void ScanBuilder::add_triangle(const std::array<std::uint32_t, 3>& triangle) {
+  if (scan_.triangles.size() == scan_.triangles.capacity()) {
+    const std::uint64_t other = bytes_for(scan_.positions.capacity(), 0);
+    scan_.triangles.reserve(static_cast<std::size_t>(
+        grown_capacity(scan_.triangles.size(), 1, sizeof triangle, other)));
+  }
+  scan_.triangles.push_back(triangle);
+}
+
+void ScanBuilder::set_normals(std::vector<Eigen::Vector3f> normals) {
+  std::size_t next_dropped = 0;
+  scan_.normals.clear();
+  scan_.normals.reserve(scan_.positions.size());
+  for (std::size_t i = 0; i < normals.size() && i < points_read_; ++i) {
+    if (next_dropped < dropped_.size() && dropped_[next_dropped] == i) {
+      ++next_dropped;
+      continue;
+    }
+    const bool finite = normals[i].allFinite();
+    if (!finite) ++missing_normals_;
+    scan_.normals.push_back(finite ? normals[i] : Eigen::Vector3f::Zero());
+  }
+  scan_.normals.resize(scan_.positions.size(), Eigen::Vector3f::Zero());
+}
+
+/// Index in the scan of a point of the file, or kDropped.
+std::uint32_t ScanBuilder::kept_index(std::uint32_t index) const {
+  const auto next = std::lower_bound(dropped_.begin(), dropped_.end(), index);
+  if (next != dropped_.end() && *next == index) return kDropped;
+  return index - static_cast<std::uint32_t>(next - dropped_.begin());
+}
+
+/// Converts the corners to indices of the scan; counts the face and returns false if it is invalid.
+bool ScanBuilder::keep_face(std::span<std::uint32_t> corners) {
+  for (const std::uint32_t corner : corners) {
+    if (corner >= points_read_) {
+      count_bad_face(kFaceIndexOutOfRange, 0);
+      return false;
+    }
+  }
+  if (dropped_.empty()) return true;
+  for (std::uint32_t& corner : corners) {
+    corner = kept_index(corner);
+    if (corner == kDropped) {
+      count_dropped(kFaceNonFinite);
+      return false;
+    }
+  }
+  return true;
+}
+
+void ScanBuilder::check_triangles() {
+  std::size_t kept = 0;
+  for (std::array<std::uint32_t, 3> triangle : scan_.triangles) {
+    if (keep_face(triangle)) scan_.triangles[kept++] = triangle;
+  }
+  scan_.triangles.resize(kept);
+}
+
+void ScanBuilder::cut_polygons() {
+  PolygonCutter cutter(scan_.positions);
+  for (std::size_t at = 0; at < polygons_.size(); at += 1 + polygons_[at]) {
+    const std::span<std::uint32_t> corners{&polygons_[at + 1], polygons_[at]};
+    if (!keep_face(corners)) continue;
+    bool any = false;
+    for (const auto& triangle : cutter.cut(corners)) {
+      if (has_equal_corners(triangle)) continue;
+      any = true;
+      add_triangle(triangle);
+    }
+    if (!any) count_bad_face(kDegenerateFace, 0);
+  }
+  if (cutter.gave_up()) {
+    warn("Some of the polygons with very many corners were cut as fans.");
+  }
+  polygons_ = {};
+}
+
+void ScanBuilder::check_points_left() const {
+  if (points_read_ == 0) {
+    throw ReadError(file_, "", "the file holds no point", "check the export, and export it again");
+  }
+  if (scan_.positions.empty()) {
+    throw ReadError(
+        file_, "",
+        fmt::format("none of the {} positions is usable: all are NaN or infinite", points_read_),
+        "export the scan again");
+  }
+}
+
+void ScanBuilder::check_faces_left() const {
+  if (bad_faces_ == 0 || !scan_.triangles.empty()) return;
+  const bool placed = first_bad_place_ != 0;
+  throw ReadError(
+      file_, placed ? fmt::format("{} {}", place_unit_, first_bad_place_) : "",
+      fmt::format(
+          "none of the {} faces is usable: they refer to points that the file does not have, "
+          "or have fewer than three distinct corners",
+          faces_read_),
+      "export the mesh again, or delete the faces to use only the points");
+}
+
+void ScanBuilder::warn_of_damage() {
+  if (!dropped_.empty()) {
+    warn(fmt::format("{} of {} points were dropped: their coordinates are NaN or infinite.",
+                     dropped_.size(), points_read_));
+  }
+  if (const auto lost = scan_.dropped.find(kFaceNonFinite); lost != scan_.dropped.end()) {
+    warn(fmt::format("{} of {} faces were dropped with their points.", lost->second, faces_read_));
+  }
+  if (missing_normals_ > 0) {
+    warn(fmt::format("{} points have a normal that is not a number; it is ignored.",
+                     missing_normals_));
+  }
+  if (bad_faces_ > 0) {
+    const std::string first =
+        first_bad_place_ == 0 ? ""
+                              : fmt::format(" (the first at {} {})", place_unit_, first_bad_place_);
+    warn(fmt::format(
+        "{} of {} faces were dropped: they refer to points that the file does not have, "
+        "or have fewer than three distinct corners{}.",
+        bad_faces_, faces_read_, first));
+  }
+}
+
+Scan ScanBuilder::finish(std::string format) {
+  count_dropped(kNonFinite, dropped_.size());
+  check_points_left();
+  check_triangles();
+  cut_polygons();
+  check_faces_left();
+  warn_of_damage();
+  scan_.format = std::move(format);
+  return std::move(scan_);
+}
+
+}  // namespace tactree::builder

@@ -1,0 +1,120 @@
+#pragma once
+// Collects the points and faces of a reader in a Scan. Common to all formats: drops and counts
+// non-finite points, checks faces, limits memory, converts colours to bytes.
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tactree/builder/scan.hpp"
+
+namespace tactree::builder {
+
+/// Meaning of a column or property of a point.
+enum Slot : std::uint8_t { kX, kY, kZ, kNx, kNy, kNz, kRed, kGreen, kBlue, kSlots, kNoSlot };
+
+/// The slot of a column with this name, or kNoSlot. Ignores case.
+[[nodiscard]] Slot slot_of_name(std::string_view name);
+
+using PointRow = std::array<double, kSlots>;
+
+enum class ColourRange : std::uint8_t {
+  kNone,
+  kByte,  ///< 0 .. 255
+  kWord,  ///< 0 .. 65535
+  kAuto,  ///< 0 .. 255 if a value exceeds 1.5, else 0 .. 1
+};
+
+class ScanBuilder {
+ public:
+  /// `place_unit` ("line", "byte", "face"): unit of the `place` of a face, for messages.
+  ScanBuilder(std::string file, std::uint64_t memory_bytes, std::string place_unit);
+
+  /// Call before the first point.
+  void use_normals() { has_normals_ = true; }
+  void use_colours(ColourRange range) { colours_ = range; }
+
+  /// Allocates memory for this many points. Throws ReadError above the limit.
+  void reserve_points(std::uint64_t count);
+  /// Allocates memory for an estimated number of points, reduced to the limit.
+  void expect_points(std::uint64_t count);
+  /// Counts memory that the reader allocates itself. Throws ReadError above the limit.
+  void charge(std::uint64_t bytes);
+
+  void add_point(const PointRow& row);
+  /// Points so far, including dropped ones.
+  [[nodiscard]] std::uint64_t points_read() const { return points_read_; }
+
+  /// The points that follow were seen from here.
+  void begin_pose(const Eigen::Vector3d& position, bool sure) {
+    scan_.poses.push_back({position, scan_.positions.size(), sure});
+  }
+  void set_unit(double metres) { scan_.unit_m = metres; }
+  void set_poses(std::vector<ScannerPose> poses) { scan_.poses = std::move(poses); }
+
+  /// Limits the indices of faces to values below `count`; default: points_read() at the end.
+  void limit_face_indices(std::uint64_t count) { face_index_limit_ = count; }
+  /// Adds a face. corners: indices over all points of the file.
+  void add_face(std::span<const std::int64_t> corners, std::uint64_t place);
+  /// Records the place of a bad face that is detected at the end.
+  void set_first_bad_face(std::uint64_t place);
+
+  /// One normal per point of the file; replaces those of the rows.
+  void set_normals(std::vector<Eigen::Vector3f> normals);
+
+  void count_dropped(const std::string& cause, std::uint64_t count = 1);
+  void warn(std::string sentence) { scan_.warnings.push_back(std::move(sentence)); }
+
+  /// Returns the scan. Throws ReadError if no point is usable, or none of the faces.
+  [[nodiscard]] Scan finish(std::string format);
+
+ private:
+  [[nodiscard]] std::uint64_t bytes_for(std::uint64_t points, std::uint64_t triangles) const;
+  [[nodiscard]] std::uint64_t points_that_fit() const;
+  /// points: the declared number, if it is known to be too large.
+  [[noreturn]] void throw_too_large(std::uint64_t points = 0) const;
+  void set_point_capacity(std::uint64_t count);
+  /// The new capacity of a list of `size` entries for `more` of them. other_bytes: all other
+  /// memory. Throws ReadError above the limit.
+  [[nodiscard]] std::uint64_t grown_capacity(std::uint64_t size, std::uint64_t more,
+                                             std::uint64_t entry_bytes,
+                                             std::uint64_t other_bytes) const;
+  void grow_points();
+  void add_normal(const PointRow& row);
+  void add_colour(const PointRow& row);
+  void leave_unit_colours();
+  void drop_point();
+  void add_polygon(std::span<const std::int64_t> corners);
+  void add_triangle(const std::array<std::uint32_t, 3>& triangle);
+  void count_bad_face(const char* cause, std::uint64_t place);
+
+  [[nodiscard]] std::uint32_t kept_index(std::uint32_t index) const;
+  [[nodiscard]] bool keep_face(std::span<std::uint32_t> corners);
+  void check_triangles();
+  void cut_polygons();
+  void check_points_left() const;
+  void check_faces_left() const;
+  void warn_of_damage();
+
+  std::string file_;
+  std::uint64_t memory_bytes_;
+  std::string place_unit_;
+  Scan scan_;
+  bool has_normals_ = false;
+  ColourRange colours_ = ColourRange::kNone;
+  bool unit_colours_ = true;  // kAuto: no value above 1.5 so far
+  std::uint64_t extra_bytes_ = 0;
+  std::uint64_t points_read_ = 0;
+  std::uint64_t missing_normals_ = 0;
+  std::vector<std::uint32_t> dropped_;  // indices of the non-finite points, rising
+  std::uint64_t face_index_limit_;
+  std::uint64_t faces_read_ = 0;
+  std::uint64_t bad_faces_ = 0;
+  std::uint64_t first_bad_place_ = 0;    // 0: unknown
+  std::vector<std::uint32_t> polygons_;  // faces with four or more corners: count, corners
+};
+
+}  // namespace tactree::builder

@@ -1,0 +1,21 @@
+#pragma once
+// The layout of a binary STL: 80 bytes of text, a count, and 50 bytes for each triangle (normal,
+// three corners, two bytes of attributes). It has no magic number.
+
+#include <cstdint>
+#include <string_view>
+
+namespace tactree::builder {
+
+inline constexpr std::size_t kStlHeaderBytes = 84;
+inline constexpr std::size_t kStlCountByte = 80;
+inline constexpr std::size_t kStlTriangleBytes = 50;
+inline constexpr std::size_t kStlCornersByte = 12;  // in a triangle
+
+/// Whether the count agrees exactly with the file size.
+[[nodiscard]] bool is_exact_binary_stl(std::string_view head, std::uint64_t file_size);
+
+/// Whether the first triangles are plausible, independently of the count.
+[[nodiscard]] bool looks_like_binary_stl(std::string_view head, std::uint64_t file_size);
+
+}  // namespace tactree::builder

@@ -1,0 +1,42 @@
+#pragma once
+// Layout of a text file of points: separator, columns, leading count. Determined from its first
+// rows.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "input_file.hpp"
+#include "scan_builder.hpp"
+
+namespace tactree::builder {
+
+struct TextLayout {
+  char separator = ' ';                   ///< ' ' stands for any run of white space
+  bool decimal_comma = false;             ///< "1,5" means 1.5
+  std::vector<Slot> slots;                ///< per column
+  std::optional<std::uint64_t> declared;  ///< the count that comes before the first point
+  std::uint64_t header_line = 0;          ///< of the column names; 0: none
+  std::uint64_t first_row_line = 0;
+  double row_bytes = 0;  ///< on average
+  std::vector<std::string> warnings;
+
+  [[nodiscard]] bool has(Slot slot) const;
+};
+
+/// The data of a line: without comments ('#', "//"), a byte order mark and spaces.
+[[nodiscard]] std::string_view text_of_line(std::string_view line);
+
+/// Removes the next field from the front of `rest`, without quotes and spaces around it. False at
+/// the end of the line.
+[[nodiscard]] bool take_field(std::string_view& rest, char separator, std::string_view& field);
+
+/// parse_number() with the decimal separator of the layout.
+[[nodiscard]] bool parse_field(std::string_view field, bool decimal_comma, double& value);
+
+/// Reads the first rows and rewinds the file. Throws ReadError if they are not points.
+[[nodiscard]] TextLayout find_text_layout(InputFile& file);
+
+}  // namespace tactree::builder

@@ -1,0 +1,111 @@
+#include <fmt/format.h>
+
+#include "number.hpp"
+#include "readers.hpp"
+#include "scan_builder.hpp"
+#include "text_layout.hpp"
+
+namespace tactree::builder {
+namespace {
+
+class TextReader {
+ public:
+  TextReader(InputFile& file, const ReadOptions& options)
+      : file_(file),
+        layout_(find_text_layout(file)),
+        declared_(layout_.declared.value_or(0)),
+        builder_(file.name(), options.scan_memory_bytes, "line") {}
+
+  Scan read() {
+    for (const std::string& warning : layout_.warnings) builder_.warn(warning);
+    if (layout_.has(kNx)) builder_.use_normals();
+    if (layout_.has(kRed)) builder_.use_colours(ColourRange::kAuto);
+    builder_.expect_points(
+        1024 +
+        static_cast<std::uint64_t>(1.05 * static_cast<double>(file_.size()) / layout_.row_bytes));
+    std::string_view line;
+    while (file_.next_line(line)) read_line(line);
+    check_bad_rows();
+    if (layout_.declared && declared_ != builder_.points_read()) {
+      builder_.warn(fmt::format("The file declares {} points and holds {}.", declared_,
+                                builder_.points_read()));
+    }
+    return builder_.finish(format_name());
+  }
+
+ private:
+  void read_line(std::string_view line) {
+    if (file_.line_number() == layout_.header_line) return;
+    const std::string_view text = text_of_line(line);
+    if (text.empty()) return;
+    PointRow row{};
+    if (parse(text, row)) {
+      builder_.add_point(row);
+      return;
+    }
+    if (layout_.declared && is_count(text)) return;
+    if (bad_rows_++ == 0) first_bad_line_ = file_.line_number();
+    if (bad_rows_ >= 1000 && bad_rows_ > builder_.points_read()) refuse();
+  }
+
+  bool parse(std::string_view rest, PointRow& row) const {
+    std::string_view field;
+    for (const Slot slot : layout_.slots) {
+      if (!take_field(rest, layout_.separator, field)) return false;
+      if (slot != kNoSlot && !parse_field(field, layout_.decimal_comma, row[slot])) return false;
+    }
+    return true;
+  }
+
+  /// PTS files may hold several scans, each preceded by its count.
+  bool is_count(std::string_view text) {
+    std::int64_t count = 0;
+    if (!parse_integer(text, count) || count < 0) return false;
+    if (file_.line_number() < layout_.first_row_line) return true;
+    declared_ += static_cast<std::uint64_t>(count);
+    return true;
+  }
+
+  void check_bad_rows() {
+    if (bad_rows_ == 0) return;
+    if (bad_rows_ * 100 > bad_rows_ + builder_.points_read()) refuse();
+    builder_.count_dropped("bad_row", bad_rows_);
+    builder_.warn(fmt::format("{} rows were dropped: they are not points (the first at line {}).",
+                              bad_rows_, first_bad_line_));
+  }
+
+  [[noreturn]] void refuse() const {
+    throw ReadError(
+        file_.name(), fmt::format("line {}", first_bad_line_),
+        fmt::format("the row is not a point, like {} of {} rows: {} numbers are "
+                    "expected in each",
+                    bad_rows_, bad_rows_ + builder_.points_read(), layout_.slots.size()),
+        "the file is damaged, or not a list of points; export it again");
+  }
+
+  std::string format_name() const {
+    switch (layout_.separator) {
+      case ',':
+        return "text, separated by commas";
+      case ';':
+        return "text, separated by semicolons";
+      default:
+        return "text, separated by spaces";
+    }
+  }
+
+  InputFile& file_;
+  TextLayout layout_;
+  std::uint64_t declared_;
+  ScanBuilder builder_;
+  std::uint64_t bad_rows_ = 0;
+  std::uint64_t first_bad_line_ = 0;
+};
+
+}  // namespace
+
+Scan read_text(InputFile& file, const ReadOptions& options) {
+  return TextReader(file, options).read();
+}
+
+}  // namespace tactree::builder

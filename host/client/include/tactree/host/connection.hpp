@@ -1,0 +1,75 @@
+#pragma once
+// Runs a Client over a Transport in its own thread: requests from any thread, telemetry as the
+// latest state and as a stream. post(), latest() and take_stream() never wait for the board, so
+// they are for a render loop; call() waits for its reply.
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "tactree/host/client.hpp"
+#include "tactree/host/transport.hpp"
+
+namespace tactree::host {
+
+struct ConnectionOptions {
+  ClientOptions client{};
+  /// Telemetry messages that wait for take_stream(); what comes beyond that is dropped and counted.
+  std::size_t stream_capacity = 4096;
+};
+
+class Connection {
+ public:
+  explicit Connection(std::unique_ptr<Transport> transport, const ConnectionOptions& options = {});
+  ~Connection();
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
+
+  /// Opens a session and waits for it. Throws LinkError: no answer, another version, busy.
+  void open(std::uint16_t link_timeout_ms);
+
+  /// Sends a request and waits for its response, at most for the client's timeout.
+  [[nodiscard]] Response call(core::wire::MessageKind kind,
+                              std::span<const std::byte> payload = {});
+  template <core::wire::Message T>
+  [[nodiscard]] Response call(core::wire::MessageKind kind, const T& message) {
+    return call(kind, std::as_bytes(std::span(&message, 1)));
+  }
+  /// Sends several in order, at most `window` without a response; stops after the first response
+  /// that is not ok, and returns it, or else the last one.
+  struct Request {
+    core::wire::MessageKind kind{};
+    std::vector<std::byte> payload;
+  };
+  [[nodiscard]] Response call_all(std::span<const Request> requests, std::size_t window);
+
+  /// Sends a request; of its reply only a refusal is kept: refusals().
+  void post(core::wire::MessageKind kind, std::span<const std::byte> payload);
+  template <core::wire::Message T>
+  void post(core::wire::MessageKind kind, const T& message) {
+    post(kind, std::as_bytes(std::span(&message, 1)));
+  }
+  /// Posted requests that were refused or got no reply.
+  [[nodiscard]] std::uint64_t refusals() const;
+
+  /// The newest telemetry; nothing before the first.
+  [[nodiscard]] std::optional<Telemetry> latest() const;
+  /// All telemetry since the last call, oldest first.
+  [[nodiscard]] std::vector<Telemetry> take_stream();
+  /// Telemetry that found no room: here, and on the board since the last subscription.
+  [[nodiscard]] std::uint64_t dropped() const;
+
+  /// False: unplugged, or closed from the other side.
+  [[nodiscard]] bool connected() const;
+  /// False as well when the board has ended the session: it was reset, or somebody else opened one.
+  [[nodiscard]] bool in_session() const;
+  [[nodiscard]] std::string name() const;
+
+ private:
+  class Worker;
+  std::unique_ptr<Worker> worker_;
+};
+
+}  // namespace tactree::host

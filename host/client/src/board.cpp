@@ -1,0 +1,389 @@
+#include "tactree/host/board.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <thread>
+
+#include "tactree/core/controller.hpp"
+#include "tactree/core/crc32.hpp"
+#include "tactree/host/link_error.hpp"
+#include "tactree/host/ports.hpp"
+
+namespace tactree::host {
+namespace {
+
+using core::wire::ControlCode;
+using core::wire::MessageKind;
+using core::wire::WireStatus;
+
+// Pieces of a model sent before the first reply: enough to fill the time until it comes.
+constexpr std::size_t kPiecesUnderWay = 6;
+constexpr std::size_t kPiecesPerCall = 64;
+
+core::wire::ControlRequest control_request(ControlCode code, std::uint32_t token) {
+  return {static_cast<std::uint8_t>(code), {}, token};
+}
+
+const char* remedy_for(WireStatus status) {
+  switch (status) {
+    case WireStatus::kBusy:
+      return " (tactree stop, then again)";
+    case WireStatus::kNoSession:
+      return " (the board was reset, or another program opened a session)";
+    case WireStatus::kTooLarge:
+      return " (build it with a larger --spacing or with --flash-budget)";
+    case WireStatus::kBadSignature:
+      return " (tactree sign, with the key that belongs to the board)";
+    case WireStatus::kInUse:
+      return " (roll back first; where the image's model fills both slots, program a smaller one)";
+    case WireStatus::kOldCounter:
+      return " (sign it with a larger --counter)";
+    default:
+      return "";
+  }
+}
+
+/// The cause in the reply for a refused model.
+std::string details(const Response& response) {
+  core::wire::FinishModelReply reply;
+  if (response.status != WireStatus::kBadModel || !response.read(reply)) {
+    return "";
+  }
+  const auto blob = static_cast<core::BlobStatus>(reply.blob);
+  return std::string(": ") + (blob != core::BlobStatus::kOk
+                                  ? core::describe(blob)
+                                  : core::describe(static_cast<core::ModelStatus>(reply.model)));
+}
+
+template <std::size_t N>
+void copy(const std::string& from, char (&to)[N]) {
+  std::memcpy(to, from.data(), std::min(from.size(), N - 1));
+}
+
+}  // namespace
+
+std::string names_of(core::FaultMask faults) {
+  std::string names;
+  for (std::uint32_t code = 1; code < core::kFaultCodes; ++code) {
+    const auto fault = static_cast<core::Fault>(code);
+    if (core::has_fault(faults, fault)) {
+      names += std::string(names.empty() ? "" : ", ") + core::name_of(fault);
+    }
+  }
+  return names;
+}
+
+Board::Board(const std::string& port, const BoardOptions& options)
+    : Board(open_port(port, options.baud), options) {
+  port_ = port;
+}
+
+Board::Board(std::unique_ptr<Transport> transport, const BoardOptions& options)
+    : options_(options), connection_(std::make_unique<Connection>(std::move(transport))) {
+  connection_->open(options.link_timeout_ms);
+}
+
+Board::~Board() {
+  if (in_session()) {
+    (void)connection_->call(MessageKind::kClose);
+  }
+}
+
+// The old connection ends first: a serial port is open once only.
+void Board::reconnect() {
+  if (port_.empty()) {
+    throw LinkError(connection().name() + ": was not opened by its name, so cannot be again");
+  }
+  connection_.reset();
+  auto fresh = std::make_unique<Connection>(open_port(port_, options_.baud));
+  fresh->open(options_.link_timeout_ms);
+  connection_ = std::move(fresh);
+  if (subscription_) {
+    subscribe(*subscription_);
+  }
+}
+
+Connection& Board::connection() const {
+  if (!connection_) {
+    throw LinkError(port_ + ": the board is gone");
+  }
+  return *connection_;
+}
+
+Introduction Board::introduce(std::unique_ptr<Transport> transport) {
+  Connection connection(std::move(transport));
+  const Response response = connection.call(MessageKind::kIdentify);
+  Introduction introduction;
+  if (!response.ok() || !response.read(introduction.board)) {
+    throw LinkError(connection.name() +
+                    ": no answer (is it a board with Tactree's firmware, and is --baud right?)");
+  }
+  core::wire::ReadStartReply start;
+  const Response started = connection.call(MessageKind::kReadStart);
+  if (started.ok() && started.read(start)) {
+    introduction.start = start;
+  }
+  return introduction;
+}
+
+Response Board::demand(MessageKind kind, std::span<const std::byte> payload, const char* what) {
+  Response response = connection().call(kind, payload);
+  const std::string where = connection().name() + ": " + what + ": ";
+  if (response.timed_out) {
+    throw LinkError(where + (connection().connected() ? "no answer" : "the board is gone"));
+  }
+  if (!response.ok()) {
+    throw LinkError(where + core::wire::describe(response.status) + details(response) +
+                    remedy_for(response.status));
+  }
+  return response;
+}
+
+template <core::wire::Message Reply>
+Reply Board::fetch(MessageKind kind, const char* what) {
+  const Response response = demand(kind, std::span<const std::byte>(), what);
+  Reply reply;
+  if (!response.read(reply)) {
+    throw LinkError(connection().name() + ": " + what + ": the reply is too short");
+  }
+  return reply;
+}
+
+core::wire::IdentifyReply Board::identify() {
+  return fetch<core::wire::IdentifyReply>(MessageKind::kIdentify, "identify");
+}
+core::wire::CapabilitiesReply Board::capabilities() {
+  return fetch<core::wire::CapabilitiesReply>(MessageKind::kCapabilities, "capabilities");
+}
+core::wire::StateReply Board::state() {
+  return fetch<core::wire::StateReply>(MessageKind::kState, "state");
+}
+core::wire::ReadFaultReply Board::first_fault() {
+  return fetch<core::wire::ReadFaultReply>(MessageKind::kReadFault, "fault");
+}
+core::wire::ListModelsReply Board::models() {
+  return fetch<core::wire::ListModelsReply>(MessageKind::kListModels, "models");
+}
+
+Response Board::control(ControlCode code, std::uint32_t token, const char* what) {
+  return demand(MessageKind::kControl, control_request(code, token), what);
+}
+
+void Board::begin_arming() {
+  using core::wire::BoardFlag;
+  hand_confirms_ =
+      (capabilities().flags & static_cast<std::uint32_t>(BoardFlag::kDeadManRequired)) != 0U;
+  core::wire::ControlReply armed;
+  (void)control(ControlCode::kArm, 0, "arm").read(armed);
+  arm_token_ = armed.token;
+}
+
+bool Board::go_on_arming() {
+  const core::wire::StateReply reply = state();
+  const auto now = static_cast<core::State>(reply.state);
+  if (now == core::State::kActive) {
+    return true;
+  }
+  if (now != core::State::kArmed) {
+    const std::string faults = names_of(reply.faults);
+    throw LinkError(connection().name() + ": arm: the controller is in state " +
+                    core::name_of(now) + (faults.empty() ? "" : ": " + faults));
+  }
+  if (!hand_confirms_) {
+    // Refused until the enable line has switched and the probe is outside: repeated by the caller.
+    (void)connection().call(MessageKind::kControl,
+                            control_request(ControlCode::kConfirm, arm_token_));
+  }
+  return false;
+}
+
+const char* Board::who_confirms() const {
+  return hand_confirms_ ? "let the dead-man control go, then hold it, outside of the object"
+                        : "hold the probe outside of the object";
+}
+
+void Board::arm(std::chrono::milliseconds patience) {
+  begin_arming();
+  const auto deadline = std::chrono::steady_clock::now() + patience;
+  while (!go_on_arming()) {
+    if (std::chrono::steady_clock::now() > deadline) {
+      stop();
+      throw LinkError(connection().name() + ": arm: nobody confirms (" + who_confirms() + ")");
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+}
+
+void Board::stop() { (void)control(ControlCode::kStop, 0, "stop"); }
+
+void Board::clear_faults() {
+  (void)control(ControlCode::kClearFault, 0, "clear faults");
+  stop();
+}
+
+void Board::home() { (void)control(ControlCode::kHome, 0, "home"); }
+
+void Board::set_limits(float force_max_N, float slew_N_s, float ramp_s) {
+  (void)demand(MessageKind::kSetLimits, core::wire::SetLimitsRequest{force_max_N, slew_N_s, ramp_s},
+               "set limits");
+}
+
+void Board::set_material(const core::wire::SetMaterialRequest& material) {
+  (void)demand(MessageKind::kSetMaterial, material, "set material");
+}
+
+void Board::subscribe(const Subscription& subscription) {
+  subscription_ = subscription;
+  (void)demand(MessageKind::kSubscribe,
+               core::wire::SubscribeRequest{subscription.fields, subscription.every_ticks},
+               "subscribe");
+}
+
+std::vector<TracedTick> Board::trace() {
+  std::vector<TracedTick> ticks;
+  std::uint32_t age = 0;
+  while (true) {
+    const Response response =
+        demand(MessageKind::kReadTrace,
+               core::wire::ReadTraceRequest{age, core::wire::kMaxTraceRecords}, "trace");
+    core::wire::ReadTraceReply reply;
+    if (!response.read(reply) ||
+        response.payload.size() < sizeof reply + reply.count * sizeof(core::FlightRecord)) {
+      throw LinkError(connection().name() + ": trace: the reply is too short");
+    }
+    for (std::uint32_t i = 0; i < reply.count; ++i) {
+      TracedTick tick{reply.last_tick - reply.age - i, {}};
+      std::memcpy(&tick.record, response.payload.data() + sizeof reply + i * sizeof tick.record,
+                  sizeof tick.record);
+      ticks.push_back(tick);
+    }
+    age += reply.count;
+    if (reply.count == 0U || age >= reply.total) {
+      break;
+    }
+  }
+  // The recording may go on while it is read: then ticks are read twice.
+  std::sort(ticks.begin(), ticks.end(), [](const TracedTick& a, const TracedTick& b) {
+    return static_cast<std::int32_t>(a.tick - b.tick) < 0;
+  });
+  ticks.erase(
+      std::unique(ticks.begin(), ticks.end(),
+                  [](const TracedTick& a, const TracedTick& b) { return a.tick == b.tick; }),
+      ticks.end());
+  return ticks;
+}
+
+std::vector<core::wire::ParameterReply> Board::parameters() {
+  std::vector<core::wire::ParameterReply> all(capabilities().parameters);
+  for (std::uint32_t i = 0; i < all.size(); ++i) {
+    if (!demand(MessageKind::kGetParameter, core::wire::GetParameterRequest{i}, "parameter")
+             .read(all[i])) {
+      throw LinkError(connection().name() + ": parameter: the reply is too short");
+    }
+  }
+  return all;
+}
+
+void Board::set_parameter(const std::string& name, float value) {
+  for (const core::wire::ParameterReply& parameter : parameters()) {
+    if (name == std::string(parameter.name, ::strnlen(parameter.name, sizeof parameter.name))) {
+      (void)demand(MessageKind::kSetParameter,
+                   core::wire::SetParameterRequest{parameter.number, value}, name.c_str());
+      return;
+    }
+  }
+  throw LinkError(connection().name() + ": no parameter '" + name +
+                  "' (tactree params lists them)");
+}
+
+void Board::save_parameters() {
+  (void)demand(MessageKind::kSaveParameters, std::span<const std::byte>(), "save parameters");
+}
+
+void Board::write_pieces(std::span<const std::byte> bytes, const Progress& progress) {
+  std::size_t offset = 0;
+  while (offset < bytes.size()) {
+    std::vector<Connection::Request> pieces;
+    while (offset < bytes.size() && pieces.size() < kPiecesPerCall) {
+      const auto piece = bytes.subspan(
+          offset, std::min<std::size_t>(core::wire::kMaxPiece, bytes.size() - offset));
+      const core::wire::WriteModelRequest head{static_cast<std::uint32_t>(offset)};
+      const auto head_bytes = std::as_bytes(std::span(&head, 1));
+      std::vector<std::byte> payload(head_bytes.begin(), head_bytes.end());
+      payload.insert(payload.end(), piece.begin(), piece.end());
+      pieces.push_back({MessageKind::kWriteModel, std::move(payload)});
+      offset += piece.size();
+    }
+    const Response last = connection().call_all(pieces, kPiecesUnderWay);
+    core::wire::WriteModelReply reply;
+    const bool knows_place = last.read(reply);
+    if (last.timed_out || last.status == WireStatus::kOutOfOrder) {
+      // A piece was lost: the board's reply, or one more request, gives the next offset.
+      if (!knows_place) {
+        const Response asked =
+            connection().call(MessageKind::kWriteModel, core::wire::WriteModelRequest{0xFFFFFFFFU});
+        if (!asked.read(reply)) {
+          throw LinkError(connection().name() + ": write model: no answer");
+        }
+      }
+      offset = std::min<std::size_t>(reply.next_offset, bytes.size());
+    } else if (!last.ok()) {
+      throw LinkError(connection().name() + ": write model: " + core::wire::describe(last.status) +
+                      remedy_for(last.status));
+    }
+    if (progress) {
+      progress(offset, bytes.size());
+    }
+  }
+}
+
+void Board::flash(const ModelFile& model, const Progress& progress) {
+  core::wire::BeginModelRequest begin;
+  copy(model.board, begin.board);
+  begin.counter = model.counter;
+  begin.bytes = static_cast<std::uint32_t>(model.bytes.size());
+  begin.checksum = core::crc32(model.bytes);
+  (void)demand(MessageKind::kBeginModel, begin, "begin model");
+  write_pieces(model.bytes, progress);
+  core::wire::FinishModelRequest finish;
+  finish.is_signed = model.is_signed ? 1U : 0U;
+  std::memcpy(finish.signature, model.signature.data(), sizeof finish.signature);
+  core::wire::FinishModelReply finished;
+  if (!demand(MessageKind::kFinishModel, finish, "check model").read(finished)) {
+    throw LinkError(connection().name() + ": check model: the reply is too short");
+  }
+  (void)demand(MessageKind::kActivateModel, core::wire::SlotRequest{finished.slot}, "use model");
+}
+
+void Board::roll_back() {
+  (void)demand(MessageKind::kRollBackModel, std::span<const std::byte>(), "roll back");
+}
+
+void Board::erase_model(std::uint32_t slot) {
+  (void)demand(MessageKind::kEraseModel, core::wire::SlotRequest{slot}, "erase");
+}
+
+void Board::post_stop() {
+  connection().post(MessageKind::kControl, control_request(ControlCode::kStop, 0));
+}
+
+void Board::move_body(std::uint32_t body, const core::Pose& pose, const core::Motion& motion,
+                      bool enabled) {
+  const core::Quaternion& q = pose.rotation;
+  const core::Vec3& t = pose.translation_m;
+  const core::Vec3& v = motion.linear_m_s;
+  const core::Vec3& w = motion.angular_rad_s;
+  connection().post(MessageKind::kMoveBody, core::wire::MoveBodyRequest{body,
+                                                                        enabled ? 1U : 0U,
+                                                                        {q.w, q.v.x, q.v.y, q.v.z},
+                                                                        {t.x, t.y, t.z},
+                                                                        {v.x, v.y, v.z},
+                                                                        {w.x, w.y, w.z}});
+}
+
+void Board::add_force(const std::array<float, 3>& force_N, std::uint32_t duration_ms) {
+  connection().post(MessageKind::kAddForce,
+                    core::wire::AddForceRequest{{force_N[0], force_N[1], force_N[2]}, duration_ms});
+}
+
+}  // namespace tactree::host

@@ -1,0 +1,28 @@
+#pragma once
+// Haptic devices: presets by name, and descriptions in JSON files (`tactree simulate
+// --dump-device`).
+
+#include <string>
+#include <vector>
+
+#include "tactree/core/device_presets.hpp"
+
+namespace tactree::cli {
+
+struct Device {
+  std::string name;
+  std::string about;
+  core::DevicePreset preset{};  ///< its name and description are not used
+};
+
+/// "cartesian", "premium", ...
+[[nodiscard]] std::vector<std::string> device_names();
+
+/// The preset of this name, or else the device in the file of this name. Throws CommandError:
+/// "file: key: cause (remedy)".
+[[nodiscard]] Device load_device(const std::string& name_or_file);
+
+/// The text of a device file.
+[[nodiscard]] std::string device_json(const Device& device);
+
+}  // namespace tactree::cli

@@ -1,0 +1,71 @@
+#pragma once
+// Values of a JSON object, each checked against its range. Every error names file, place, cause and
+// remedy; a key that is not read is an error.
+
+#include <cstddef>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tactree/core/device_model.hpp"
+
+namespace tactree::cli {
+
+/// Parts of the messages that depend on the kind of file.
+struct JsonRemedies {
+  const char* unknown = "is unknown";  ///< cause, for a key that is not read
+  const char* keys = "leave it out";   ///< remedy for such a key
+  const char* missing = "add it";      ///< remedy for a missing key
+  const char* list =
+      "one for each axis, in [brackets]";  ///< remedy for a value that is not a list of numbers
+};
+
+class JsonReader {
+ public:
+  using Json = nlohmann::ordered_json;
+
+  /// Keeps a reference to `json`. All functions throw CommandError; this one if `json` is not an
+  /// object.
+  JsonReader(std::string file, const Json& json, const JsonRemedies& remedies,
+             std::string place = "");
+
+  [[noreturn]] void refuse(const std::string& key, const std::string& cause,
+                           const std::string& remedy) const;
+
+  [[nodiscard]] bool has(const char* key) const { return json_.contains(key); }
+
+  void one(const char* key, float& value, double low, double high);
+  void each(const char* key, float (&values)[core::kAxes], double low, double high);
+  [[nodiscard]] std::uint32_t whole(const char* key, std::uint32_t low, std::uint32_t high);
+  [[nodiscard]] bool flag(const char* key);
+  [[nodiscard]] std::string text(const char* key);
+  template <std::size_t N>
+  [[nodiscard]] std::uint8_t choice(const char* key, const char* const (&names)[N]) {
+    return choice_of(key, std::vector<std::string>(names, names + N));
+  }
+  [[nodiscard]] JsonReader object(const char* key);
+  /// A list of `low` to `high` objects.
+  [[nodiscard]] std::vector<JsonReader> objects(const char* key, std::size_t low, std::size_t high);
+
+  /// Refuses keys that were not read.
+  void finish() const;
+
+ private:
+  const Json& get(const char* key);
+  [[nodiscard]] std::string path(const std::string& key) const;
+  [[nodiscard]] double number(const std::string& key, const Json& value, double low,
+                              double high) const;
+  [[nodiscard]] std::uint8_t choice_of(const char* key, const std::vector<std::string>& names);
+
+  std::string file_;
+  const Json& json_;
+  JsonRemedies remedies_;
+  std::string place_;  // "motors.", "" for the whole file
+  std::vector<std::string> known_;
+};
+
+/// "a, b, c"
+[[nodiscard]] std::string listed(const std::vector<std::string>& names);
+
+}  // namespace tactree::cli

@@ -1,0 +1,78 @@
+#pragma once
+// A file descriptor with an owner, and pipes. Every descriptor is close-on-exec: a child process
+// receives only those that ChildProcess is given.
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <system_error>
+#include <utility>
+
+namespace tactree::process {
+
+/// Throws std::system_error of errno; its text is "what: cause".
+[[noreturn]] inline void fail_with_errno(const char* what) {
+  throw std::system_error(errno, std::generic_category(), what);
+}
+
+class FileDescriptor {
+ public:
+  /// Below are the numbers that a child process may receive.
+  static constexpr int kLowest = 10;
+
+  FileDescriptor() = default;
+  /// Takes ownership of `descriptor` and moves it to a number >= kLowest. A negative number is a
+  /// call that failed: throws std::system_error of errno, as when no number is free.
+  explicit FileDescriptor(int descriptor) {
+    if (descriptor < 0) {
+      fail_with_errno("file descriptor");
+    }
+    descriptor_ = ::fcntl(descriptor, F_DUPFD_CLOEXEC, kLowest);
+    const int cause = errno;
+    ::close(descriptor);
+    if (descriptor_ < 0) {
+      errno = cause;
+      fail_with_errno("file descriptor");
+    }
+  }
+  FileDescriptor(FileDescriptor&& other) noexcept
+      : descriptor_(std::exchange(other.descriptor_, -1)) {}
+  FileDescriptor& operator=(FileDescriptor&& other) noexcept {
+    std::swap(descriptor_, other.descriptor_);
+    return *this;
+  }
+  FileDescriptor(const FileDescriptor&) = delete;
+  FileDescriptor& operator=(const FileDescriptor&) = delete;
+  ~FileDescriptor() { close(); }
+
+  /// -1: owns none.
+  [[nodiscard]] int get() const { return descriptor_; }
+  void close() {
+    if (descriptor_ >= 0) {
+      ::close(std::exchange(descriptor_, -1));
+    }
+  }
+
+ private:
+  int descriptor_ = -1;
+};
+
+struct Pipe {
+  FileDescriptor read_end;
+  FileDescriptor write_end;
+};
+
+/// Throws std::system_error.
+[[nodiscard]] inline Pipe make_pipe() {
+  int ends[2] = {-1, -1};
+  if (::pipe2(ends, O_CLOEXEC) != 0) {
+    fail_with_errno("pipe");
+  }
+  Pipe pipe;
+  pipe.read_end = FileDescriptor(ends[0]);
+  pipe.write_end = FileDescriptor(ends[1]);
+  return pipe;
+}
+
+}  // namespace tactree::process

@@ -1,0 +1,103 @@
+#pragma once
+// A controller in this process with the protocol of a board: session, model store and control loop
+// of the firmware, on simulated flash.
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "tactree/board_link/session/session.hpp"
+#include "tactree/board_link/store/model_store.hpp"
+#include "tactree/core/signature.hpp"
+#include "tactree/hal/sim/flash.hpp"
+#include "tactree/host/transport.hpp"
+#include "tactree/simulation/target.hpp"
+
+namespace tactree::serve {
+
+/// A simulated board with a session as its link and a model store as its storage.
+class ServedSimBoard {
+ public:
+  using Link = board_link::MailboxLink<hal::sim::SimTicker>;
+  using Store = board_link::ModelStore<hal::sim::SimFlash>;
+
+  ServedSimBoard(hal::sim::SimBoard& board, board_link::TickMailbox& mailbox, const Store& store)
+      : board_(board), link_{mailbox, board.ticker()}, store_(store) {}
+
+  [[nodiscard]] hal::sim::SimEncoderBank& encoders() noexcept { return board_.encoders(); }
+  [[nodiscard]] hal::sim::SimMotorBank& motors() noexcept { return board_.motors(); }
+  [[nodiscard]] hal::sim::SimEnableLine& enable_line() noexcept { return board_.enable_line(); }
+  [[nodiscard]] hal::sim::SimSafetyInputs& safety_inputs() noexcept {
+    return board_.safety_inputs();
+  }
+  [[nodiscard]] hal::sim::SimTicker& ticker() noexcept { return board_.ticker(); }
+  [[nodiscard]] Link& link() noexcept { return link_; }
+  [[nodiscard]] const Store& storage() const noexcept { return store_; }
+  [[nodiscard]] hal::sim::SessionRecorder* recorder() noexcept { return board_.recorder(); }
+
+ private:
+  hal::sim::SimBoard& board_;
+  Link link_;
+  const Store& store_;
+};
+
+struct ServeOptions {
+  /// Ed25519 public key that must verify the signature of a model; none: no signature required.
+  std::optional<std::array<std::uint8_t, core::kPublicKeyBytes>> key;
+  std::uint32_t slot_bytes = 16U << 20U;
+  std::uint32_t serial = 0;  ///< last word of the unique number
+};
+
+/// Ticks and session run in one thread: hold_ticks() has no effect.
+class ServedPlatform {
+ public:
+  void start(hal::sim::SimBoard& board) { board_ = &board; }
+  /// Simulated time, us; 0 before the start.
+  [[nodiscard]] std::uint32_t now_us() noexcept {
+    return board_ == nullptr ? 0U : board_->ticker().now_us();
+  }
+  [[nodiscard]] hal::sim::SessionRecorder* recorder() noexcept {
+    return board_ == nullptr ? nullptr : board_->recorder();
+  }
+  void hold_ticks(bool) noexcept {}
+
+ private:
+  hal::sim::SimBoard* board_ = nullptr;
+};
+
+class ServedTarget : public simulation::Target {
+ public:
+  /// `model`: in use until another is written. `model` and `transport` must outlive the target.
+  ServedTarget(host::Transport& transport, std::span<const std::byte> model,
+               const ServeOptions& options);
+  ~ServedTarget() override;
+
+  hal::StartResult start(hal::sim::SimBoard& board,
+                         const core::Configuration& configuration) override;
+  /// Executes one tick, then work().
+  core::Status tick(hal::sim::SimBoard& board) override;
+  /// Runs the session, also between ticks.
+  void work();
+
+  // For other parts of a board than the session, for example USB.
+  [[nodiscard]] core::Controller& controller() { return controller_; }
+  [[nodiscard]] ServedSimBoard::Store& store() { return store_; }
+  [[nodiscard]] board_link::TickMailbox& mailbox() { return mailbox_; }
+  [[nodiscard]] ServedPlatform& platform() { return platform_; }
+
+ private:
+  class Running;
+
+  host::Transport& transport_;
+  ServeOptions options_;
+  hal::sim::SimFlash flash_;
+  core::Controller controller_;
+  ServedPlatform platform_;
+  board_link::TickMailbox mailbox_;
+  ServedSimBoard::Store store_;
+  std::unique_ptr<Running> running_;
+};
+
+}  // namespace tactree::serve

@@ -1,0 +1,72 @@
+#pragma once
+// A served board on USB with the link, model and parameter interfaces of a board.
+
+#include <chrono>
+
+#include "tactree/board_link/store/dfu_model.hpp"
+#include "tactree/core/usb/parameter_storage.hpp"
+#include "tactree/hal/usb_device.hpp"
+#include "tactree/serve/served_target.hpp"
+
+namespace tactree::serve {
+
+/// Controller: a UsbController (hal/usb_device.hpp) of the caller; must outlive the target.
+template <hal::UsbController Controller>
+class UsbTarget : public ServedTarget {
+ public:
+  using Model = board_link::DfuModel<ServedSimBoard::Store, ServedPlatform>;
+  using Parameters = core::usb::ParameterStorage<ServedPlatform>;
+  using Device = hal::UsbDevice<Controller, Model, Parameters>;
+
+  UsbTarget(Controller& usb, const core::usb::Identity& identity, std::span<const std::byte> model,
+            const ServeOptions& options)
+      : ServedTarget(port_, model, options),
+        model_(store(), controller(), mailbox(), platform()),
+        parameters_(controller(), platform()),
+        device_(usb, identity, true, model_, parameters_),
+        port_(device_) {}
+
+  core::Status tick(hal::sim::SimBoard& board) override {
+    status_ = ServedTarget::tick(board);
+    serve();
+    return status_;
+  }
+
+  /// Handles requests of the host; also between ticks.
+  void serve() {
+    // Real time: the simulation may be slower than the clock of the host.
+    const auto now = std::chrono::steady_clock::now().time_since_epoch();
+    const auto now_us = std::chrono::duration_cast<std::chrono::microseconds>(now).count();
+    device_.poll(static_cast<std::uint32_t>(now_us));
+    work();
+    device_.send_changes(status_);
+  }
+
+  [[nodiscard]] const Device& device() const { return device_; }
+
+ private:
+  class Port : public host::Transport {
+   public:
+    explicit Port(Device& device) : device_(device) {}
+    [[nodiscard]] std::size_t read(std::span<std::byte> bytes) override {
+      return device_.read(bytes);
+    }
+    [[nodiscard]] std::size_t write(std::span<const std::byte> bytes) override {
+      return device_.write(bytes);
+    }
+    void wait(std::chrono::microseconds) override {}
+    [[nodiscard]] bool connected() const override { return device_.configured(); }
+    [[nodiscard]] std::string name() const override { return "usb device"; }
+
+   private:
+    Device& device_;
+  };
+
+  Model model_;
+  Parameters parameters_;
+  Device device_;
+  Port port_;
+  core::Status status_{};
+};
+
+}  // namespace tactree::serve

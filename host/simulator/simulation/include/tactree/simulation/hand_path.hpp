@@ -1,0 +1,36 @@
+#pragma once
+// Path of the hand: its target position as a function of time.
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <vector>
+
+#include "tactree/plant/plant.hpp"
+
+namespace tactree::simulation {
+
+struct Waypoint {
+  double t_s = 0.0;
+  Eigen::Vector3d position_m = Eigen::Vector3d::Zero();  ///< model frame
+};
+
+/// Straight lines between waypoints; at rest before the first and after the last.
+class HandPath {
+ public:
+  /// Throws std::invalid_argument if there is no waypoint, one is not finite, or the times do not
+  /// ascend.
+  explicit HandPath(std::vector<Waypoint> waypoints);
+
+  /// Cost: constant for ascending times, otherwise a binary search.
+  [[nodiscard]] plant::HandTarget at(double t_s) const;
+  [[nodiscard]] const std::vector<Waypoint>& waypoints() const { return waypoints_; }
+
+ private:
+  std::vector<Waypoint> waypoints_;
+};
+
+/// Reads rows `t_s,x,y,z` (s, m). A first row without numbers is a heading; empty rows and rows
+/// that start with # are ignored. Throws std::runtime_error: "file: line n: cause (remedy)".
+[[nodiscard]] HandPath read_hand_path(const std::filesystem::path& file);
+
+}  // namespace tactree::simulation

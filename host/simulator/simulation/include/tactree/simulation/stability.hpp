@@ -1,0 +1,34 @@
+#pragma once
+// Largest stable stiffness of a wall, measured in a closed loop of the controller's velocity
+// estimator and passivity controller with a mass, whose motion between two ticks is the exact
+// solution. Compare core::stability_limit().
+
+#include "tactree/core/configuration.hpp"
+
+namespace tactree::simulation {
+
+/// A tip at a wall with dampers only: the worst case.
+struct StabilityCase {
+  double mass_kg = 0.075;  ///< of device and hand
+  double device_damping_Ns_m = 0.05;
+  double hand_damping_Ns_m = 0.0;     ///< 0: no hand
+  double wall_damping_Ns_m = 0.0;     ///< on the estimated velocity
+  double velocity_cutoff_hz = 200.0;  ///< at most half the rate
+  double rate_hz = 1000.0;
+  double delay_s = 0.0;  ///< from the encoders to the force, beyond the sampling: 0 .. 60 ticks
+  double encoder_step_m = 0.0;
+  double passivity_Ns_m = 0.0;  ///< maximum damping of the passivity controller; 0: off
+};
+
+/// True if a tip released 1 mm from equilibrium comes to rest: in the last quarter of 10 s it must
+/// stay nearer than at the start.
+[[nodiscard]] bool is_stable(const StabilityCase& c, double stiffness_N_m);
+
+/// Largest stable stiffness, N/m, within 0.2 %, between 1 and 1e6. Cost: about 20 times 10 s of
+/// ticks; 20 ms at 1 kHz.
+[[nodiscard]] double largest_stable_stiffness(const StabilityCase& c);
+
+/// Result of core::stability_limit() for the case.
+[[nodiscard]] double predicted_stiffness(const StabilityCase& c);
+
+}  // namespace tactree::simulation

@@ -1,0 +1,41 @@
+#pragma once
+// Results of a simulation as CSV table and as SVG plot.
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tactree/simulation/simulation.hpp"
+
+namespace tactree::simulation {
+
+/// First row of a trace: the names of its columns with units.
+[[nodiscard]] std::string trace_heading();
+
+/// Appends one row per sample. Reading a float32 back gives the same bits.
+void append_trace(std::string& csv, const Sample& sample);
+
+/// Distribution of a value of the ticks. `bound`: proven upper bound; 0: unknown.
+struct Histogram {
+  struct Bar {
+    double from = 0.0;
+    double count = 0.0;
+  };
+  std::string label;
+  double bar_width = 1.0;
+  std::vector<Bar> bars;  ///< ascending
+  double bound = 0.0;
+};
+
+/// SVG page with the components and magnitude of the force and the penetration over time, `title`
+/// above and the histogram below if it has bars. Long runs are drawn as the band between the lowest
+/// and the highest value of each pixel column, which keeps every spike.
+[[nodiscard]] std::string plot_svg(std::span<const Sample> samples, const std::string& title,
+                                   const Histogram& histogram = {});
+
+/// SVG page with the force of two runs along the same path, one per mode: the whole run, and a
+/// quarter of a second from the middle.
+[[nodiscard]] std::string plot_modes_svg(std::span<const Sample> surface,
+                                         std::span<const Sample> paper, const std::string& title);
+
+}  // namespace tactree::simulation

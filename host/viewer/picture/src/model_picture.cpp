@@ -1,0 +1,222 @@
+#include "tactree/picture/model_picture.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace tactree::picture {
+namespace {
+
+using core::Vec3;
+
+// Drawn at twice the size and halved: smooth edges.
+constexpr int kOver = 2;
+constexpr int kMargin = 40;
+constexpr int kCaption = 70;
+constexpr std::size_t kDrawnMarks = 8;
+constexpr Colour kPaper{0.965F, 0.969F, 0.975F};
+constexpr Colour kInk{0.16F, 0.2F, 0.25F};
+constexpr Colour kOutside{0.83F, 0.77F, 0.69F};
+constexpr Colour kInside{0.42F, 0.47F, 0.55F};
+constexpr Colour kHole{0.84F, 0.1F, 0.15F};
+constexpr Colour kDoubtful{0.62F, 0.33F, 0.85F};
+constexpr Colour kBoundary{0.93F, 0.55F, 0.06F};
+
+/// Orthographic view of the model: the scale holds everywhere.
+struct Eye {
+  Vec3 right;
+  Vec3 up;
+  Vec3 forward;  ///< from the eye to the model
+};
+
+/// A view slightly from above; z is up.
+Eye eye_from(float yaw_rad) {
+  constexpr float kPitch_rad = 0.35F;
+  const float level = std::cos(kPitch_rad);
+  const Vec3 towards{level * std::cos(yaw_rad), level * std::sin(yaw_rad), std::sin(kPitch_rad)};
+  const Vec3 right{-std::sin(yaw_rad), std::cos(yaw_rad), 0.0F};
+  return {right, core::cross(towards, right), -towards};
+}
+
+Vec3 vector(const std::array<float, 3>& v) { return {v[0], v[1], v[2]}; }
+
+Vec3 unit(Vec3 v) { return (1.0F / core::length(v)) * v; }
+
+/// One view of the model in its part of the picture.
+class Panel {
+ public:
+  Panel(Raster& raster, const core::BlobView& view, const Eye& eye, int left, int width)
+      : raster_(raster), view_(view), eye_(eye) {
+    const core::BlobHeader& h = view.header();
+    const Vec3 low{h.bounds_min_m[0], h.bounds_min_m[1], h.bounds_min_m[2]};
+    const Vec3 high{h.bounds_max_m[0], h.bounds_max_m[1], h.bounds_max_m[2]};
+    middle_ = 0.5F * (low + high);
+    const auto wide = static_cast<float>(width - 2 * kOver * kMargin);
+    const auto tall = static_cast<float>(raster.height() - kOver * (2 * kMargin + kCaption));
+    scale_ = std::min(wide / (2.0F * extent(eye.right)), tall / (2.0F * extent(eye.up)));
+    x_ = static_cast<float>(left) + 0.5F * static_cast<float>(width);
+    y_ = 0.5F * static_cast<float>(raster.height() - kOver * kCaption);
+  }
+
+  [[nodiscard]] float pixels_per_metre() const { return scale_; }
+
+  /// doubtful: empty, or 1 per point of doubtful side.
+  void draw_points(std::span<const std::uint8_t> doubtful) {
+    const float radius = std::max(0.9F * view_.header().spacing_m * scale_, 1.0F);
+    core::for_each_point(view_, [&](const core::Leaf& leaf, std::uint32_t index) {
+      const core::SurfacePoint p = view_.surface_point(leaf, index);
+      const Vec3 at = seen(p.position);
+      raster_.disc(at.x, at.y, radius, at.z,
+                   shade(p.normal, !doubtful.empty() && doubtful[index] != 0));
+    });
+  }
+
+  void draw_mark(const Mark& mark) {
+    const Vec3 at = seen(vector(mark.centre_m));
+    const float radius = std::max(0.5F * mark.diameter_m * scale_, 8.0F);
+    const bool hidden = is_hidden(at, mark.diameter_m);
+    raster_.circle(at.x, at.y, radius + 6.0F, 5.0F, mark.is_hole ? kHole : kBoundary,
+                   hidden ? 0.3F : 1.0F);
+  }
+
+ private:
+  /// Largest distance of a point from the middle along a direction, to either side.
+  [[nodiscard]] float extent(Vec3 direction) const {
+    float largest = view_.header().spacing_m;
+    core::for_each_point(view_, [&](const core::Leaf& leaf, std::uint32_t index) {
+      const Vec3 p = view_.position(leaf, index) - middle_;
+      largest = std::max(largest, std::abs(core::dot(p, direction)));
+    });
+    return largest;
+  }
+
+  /// x and y in pixels, z the depth in metres.
+  [[nodiscard]] Vec3 seen(Vec3 position) const {
+    const Vec3 p = position - middle_;
+    return {x_ + scale_ * core::dot(p, eye_.right), y_ - scale_ * core::dot(p, eye_.up),
+            core::dot(p, eye_.forward)};
+  }
+
+  [[nodiscard]] bool is_hidden(Vec3 at, float tolerance_m) const {
+    const int x = static_cast<int>(at.x);
+    const int y = static_cast<int>(at.y);
+    return x >= 0 && y >= 0 && x < raster_.width() && y < raster_.height() &&
+           raster_.depth(x, y) < at.z - tolerance_m;
+  }
+
+  [[nodiscard]] Colour shade(Vec3 normal, bool doubtful) const {
+    Vec3 n{core::dot(normal, eye_.right), core::dot(normal, eye_.up),
+           -core::dot(normal, eye_.forward)};
+    const bool outside = n.z >= 0.0F;
+    n = outside ? n : -n;
+    static const Vec3 kKey = unit({-0.45F, 0.6F, 0.65F});
+    static const Vec3 kShine = unit({-0.25F, 0.35F, 0.9F});
+    const float key = std::max(core::dot(n, kKey), 0.0F);
+    const float fill = 0.5F + 0.5F * n.y;
+    const float shine = 0.1F * std::pow(std::max(core::dot(n, kShine), 0.0F), 24.0F);
+    const float light = 0.28F + 0.22F * fill + 0.6F * key;
+    const Colour base = doubtful ? kDoubtful : outside ? kOutside : kInside;
+    return {light * base.red + shine, light * base.green + shine, light * base.blue + shine};
+  }
+
+  Raster& raster_;
+  const core::BlobView& view_;
+  Eye eye_;
+  Vec3 middle_{};
+  float scale_ = 1.0F;
+  float x_ = 0.0F;
+  float y_ = 0.0F;
+};
+
+std::string length_text(float metres) {
+  return metres >= 1.0F    ? fmt::format("{:g} m", metres)
+         : metres >= 1e-3F ? fmt::format("{:g} mm", std::round(1e4F * metres) * 0.1F)
+                           : fmt::format("{:g} um", std::round(1e7F * metres) * 0.1F);
+}
+
+/// 1, 2 or 5 times a power of ten, at most `longest`.
+float round_length(float longest) {
+  const float power = std::pow(10.0F, std::floor(std::log10(longest)));
+  return longest >= 5.0F * power ? 5.0F * power : longest >= 2.0F * power ? 2.0F * power : power;
+}
+
+void draw_scale(Raster& raster, float pixels_per_metre) {
+  const float bar_m = round_length(200.0F / pixels_per_metre);
+  const int left = kMargin;
+  const int bottom = raster.height() - 26;
+  const int width = static_cast<int>(std::lround(bar_m * pixels_per_metre));
+  raster.box(left, bottom - 3, left + width, bottom, kInk);
+  raster.box(left, bottom - 10, left + 2, bottom, kInk);
+  raster.box(left + width - 2, bottom - 10, left + width, bottom, kInk);
+  raster.text(left + width + 14, bottom - 14, length_text(bar_m), 2, kInk);
+}
+
+std::string caption(const core::BlobHeader& h, std::span<const Mark> marks) {
+  const auto holes =
+      std::count_if(marks.begin(), marks.end(), [](const Mark& m) { return m.is_hole; });
+  const auto boundaries = static_cast<std::ptrdiff_t>(marks.size()) - holes;
+  return fmt::format("{} points, {} apart, {} hole{}, {} open boundar{}", h.point_count,
+                     length_text(h.spacing_m), holes, holes == 1 ? "" : "s", boundaries,
+                     boundaries == 1 ? "y" : "ies");
+}
+
+void draw_caption(Raster& raster, const core::BlobHeader& header, std::span<const Mark> marks) {
+  const std::string line = caption(header, marks);
+  const int width = static_cast<int>(line.size()) * 12;
+  raster.text(raster.width() - kMargin - width, raster.height() - 40, line, 2, kInk);
+}
+
+void draw_key(Raster& raster, int& top, const Colour& colour, const std::string& text) {
+  raster.box(kMargin, top, kMargin + 14, top + 14, colour);
+  raster.text(kMargin + 24, top, text, 2, kInk);
+  top += 22;
+}
+
+/// The colours of the marks, in the upper left corner; nothing without marks.
+void draw_legend(Raster& raster, std::span<const Mark> drawn, std::size_t all, bool doubtful) {
+  int top = kMargin / 2;
+  if (doubtful) {
+    draw_key(raster, top, kDoubtful, "outside is doubtful");
+  }
+  for (const bool hole : {true, false}) {
+    const auto count = std::count_if(drawn.begin(), drawn.end(),
+                                     [hole](const Mark& mark) { return mark.is_hole == hole; });
+    if (count > 0) {
+      draw_key(raster, top, hole ? kHole : kBoundary, hole ? "hole" : "open boundary");
+    }
+  }
+  if (drawn.size() < all) {
+    raster.text(kMargin, top, fmt::format("the {} widest of {}", drawn.size(), all), 2, kInk);
+  }
+}
+
+}  // namespace
+
+Raster draw_model(const core::BlobView& view, std::span<const Mark> marks,
+                  std::span<const std::uint8_t> doubtful) {
+  constexpr float kFrontYaw_rad = 0.5F;
+  constexpr float kHalfTurn_rad = 3.14159265F;
+  Raster large(kOver * kPictureWidth, kOver * kPictureHeight, kPaper);
+  const int width = kOver * kPictureWidth / 2;
+  float pixels_per_metre = 1.0F;
+  const std::span<const Mark> drawn = marks.first(std::min(marks.size(), kDrawnMarks));
+  for (int side = 0; side < 2; ++side) {
+    const Eye eye = eye_from(kFrontYaw_rad + static_cast<float>(side) * kHalfTurn_rad);
+    Panel panel(large, view, eye, side * width, width);
+    panel.draw_points(doubtful);
+    for (const Mark& mark : drawn) {
+      panel.draw_mark(mark);
+    }
+    pixels_per_metre = panel.pixels_per_metre() / static_cast<float>(kOver);
+  }
+  Raster picture = large.halved();
+  draw_scale(picture, pixels_per_metre);
+  draw_caption(picture, view.header(), marks);
+  draw_legend(picture, drawn, marks.size(),
+              std::find(doubtful.begin(), doubtful.end(), 1) != doubtful.end());
+  return picture;
+}
+
+}  // namespace tactree::picture

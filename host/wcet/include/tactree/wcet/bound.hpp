@@ -1,0 +1,157 @@
+#pragma once
+// Worst-case bound of a tick: instructions and cycles that one tick of a linked image executes at
+// most. docs/BOUND.md describes the method, its assumptions and the annotations.
+//
+//   BoundOptions options{image, sources, tick_entries(), parameters_of(header, mode, 1, device)};
+//   options.rate_tier = core::rate_tier_of(rate_hz);
+//   const Bound bound = worst_case(options);
+//
+// Method: implicit path enumeration (Li and Malik, "Performance analysis of embedded software using
+// implicit path enumeration", DAC 1995). The passes of each edge between blocks of machine code are
+// variables; flow into a block equals flow out of it; annotations limit loops; the weighted sum is
+// maximised.
+//
+// Costs: worst_case() solves a few linear programs, about 1 s; tick_costs() some dozens, about 20
+// s. All functions may be called from several threads. Errors are BoundError: "place: cause
+// (remedy)".
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "tactree/core/blob_format.hpp"
+#include "tactree/core/surface.hpp"
+#include "tactree/core/tick_cost.hpp"
+
+namespace tactree::wcet {
+
+// ---- input
+
+/// Values of the names in annotations, except constants of the source.
+using Parameters = std::map<std::string, std::int64_t>;
+
+/// Of the model with this header, on `bodies` bodies.
+[[nodiscard]] Parameters parameters_of(const core::BlobHeader& header, core::RenderMode mode,
+                                       std::uint32_t bodies, core::DeviceKind device);
+/// Of a model with these limits; parameters that ModelLimits lacks are the largest. `delta`: the
+/// device is a delta robot.
+[[nodiscard]] Parameters parameters_of(const core::ModelLimits& limits, core::TickKind kind,
+                                       std::uint32_t bodies, bool delta);
+/// Limits that no model exceeds: full leaves and balls at the greatest depth.
+[[nodiscard]] core::ModelLimits largest_model_limits();
+
+/// A division of a tick's work among all bodies. More gathers leave less of the rest.
+struct Division {
+  std::uint32_t gathers = 0;
+  std::uint32_t passes = 0;    ///< of surface fits
+  std::uint32_t fits = 0;      ///< places with a fit: each takes a pass and begins with two
+  std::uint32_t searches = 0;  ///< for the nearest candidate, before a fit
+};
+/// All divisions at this rate tier (core::rate_tier_of()), by gathers from 0.
+[[nodiscard]] std::vector<Division> divisions(std::uint32_t rate_tier, std::uint32_t bodies);
+
+/// A function that the processor enters by an interrupt.
+struct EntryPoint {
+  std::string function;     ///< symbol
+  std::uint32_t times = 1;  ///< in one tick
+};
+
+/// The interrupt of the tick, and twice that of the timer: it begins the tick and may occur once
+/// more before the tick ends.
+[[nodiscard]] std::vector<EntryPoint> tick_entries();
+
+/// Wait states of a board's memories.
+struct BoardTiming {
+  const char* board;
+  double clock_hz;
+  std::uint32_t fetch_wait;    ///< cycles for each code line that is not in the cache
+  std::uint32_t line_bytes;    ///< of a code line
+  std::uint32_t cache_lines;   ///< of a code cache with LRU replacement; 0: none
+  bool prefetches;             ///< the next line is fetched while the current one executes
+  std::uint32_t ram_wait;      ///< cycles for each word in RAM, except on the stack
+  std::uint32_t data_wait;     ///< cycles for each other word
+  std::uint32_t ram_code_end;  ///< code below this address is in RAM; its lines have no wait
+  bool is_estimate;  ///< the core is not a Cortex-M4, or the wait states are not published
+  const char* source;
+};
+/// nullptr: the timing of this board is unknown.
+[[nodiscard]] const BoardTiming* find_timing(const std::string& board);
+
+struct BoundOptions {
+  /// A linked ELF image with symbols and line numbers.
+  std::filesystem::path image;
+  /// The folder of the sources from which the image was built, unchanged since.
+  std::filesystem::path sources;
+  std::vector<EntryPoint> entries;
+  Parameters parameters;
+  /// core::rate_tier_of() of the rate; the bound is the worst of divisions() at this tier.
+  std::uint32_t rate_tier = 0;
+  /// nullptr: instructions only, no cycles.
+  const BoardTiming* timing = nullptr;
+};
+
+// ---- result
+
+struct LoopOnPath {
+  std::string file;
+  std::uint32_t line = 0;
+  std::string function;       ///< that contains the machine code
+  std::uint32_t address = 0;  ///< of the loop's header
+  std::string bound;          ///< the annotation
+  std::int64_t passes = 0;    ///< its value: passes of the body per entry of the loop
+  double total = 0.0;         ///< passes of the header in the worst tick
+};
+
+struct FunctionOnPath {
+  std::string name;
+  double calls = 0.0;         ///< in the worst tick
+  double instructions = 0.0;  ///< in the worst tick, without callees
+};
+
+struct BlockOnPath {
+  std::uint32_t address = 0;
+  std::uint32_t end = 0;
+  std::uint32_t instructions = 0;  ///< of one pass
+  double times = 0.0;              ///< in the worst tick
+};
+
+/// Cycles of a tick at each rate tier.
+using RateTierCycles = std::array<double, core::kRateTiers>;
+
+struct Bound {
+  Parameters parameters;                  ///< of the options and of the worst division
+  std::uint64_t instructions = 0;         ///< of one tick, at most
+  std::uint64_t cycles = 0;               ///< of one tick, at most; 0: no timing was given
+  RateTierCycles rate_tier_cycles{};      ///< the cycles at every rate tier
+  std::vector<FunctionOnPath> functions;  ///< most instructions first
+  std::vector<LoopOnPath> loops;
+  std::vector<std::string> unused_facts;  ///< "file:line" of `at most:` annotations without code
+  std::vector<BlockOnPath> endings;       ///< functions that never return: not part of a tick
+  std::vector<BlockOnPath> blocks;        ///< all blocks analysed, executed or not
+  std::set<std::uint32_t> in_ram;         ///< instructions annotated as accessing RAM only
+};
+
+/// Throws BoundError with file and line for a loop without a bound, recursion, an indirect call or
+/// jump, an unknown instruction, an annotation that cannot be applied.
+[[nodiscard]] Bound worst_case(const BoundOptions& options);
+
+/// Highest rate, Hz, at which a tick ends in time; 0: none.
+[[nodiscard]] double highest_rate(double clock_hz, const RateTierCycles& cycles);
+
+// ---- admission: the bound as a formula that a board can evaluate
+
+/// Costs in cycles, as a sum over the limits of the model; never less than the cycles of
+/// worst_case() up to largest_model_limits(). Ignores the parameters and the rate tier of
+/// `options`. Throws BoundError as worst_case() does, and if `options` has no timing.
+[[nodiscard]] core::TickCosts tick_costs(const BoundOptions& options);
+
+/// Writes the costs into an image. Its checksum is invalid until scripts/seal-image has run.
+void embed(const std::filesystem::path& image, const core::TickCosts& costs);
+/// The costs in an image; an image as linked has none: all zero.
+[[nodiscard]] core::TickCosts embedded(const std::filesystem::path& image);
+
+}  // namespace tactree::wcet

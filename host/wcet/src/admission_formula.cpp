@@ -1,0 +1,119 @@
+// The bound as the formula by which a board admits models: core::TickCosts.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <type_traits>
+#include <vector>
+
+#include "model_parameters.hpp"
+#include "tactree/wcet/bound.hpp"
+#include "tactree/wcet/bound_error.hpp"
+#include "tick_analysis.hpp"
+
+namespace tactree::wcet {
+namespace {
+
+/// The reference of the prices: a model of a scan.
+core::ModelLimits typical_model_limits() { return {46, 50, 7, 3, 46, 4}; }
+
+Parameters open_parameters() {
+  Parameters open{{"delta", 1}, {"listed", core::kMaxBodies}};
+  const Parameters largest =
+      parameters_of(largest_model_limits(), core::TickKind::kSurface, 1, true);
+  for (const char* const name : core::kModelLimitNames) {
+    open[name] = largest.at(name);
+  }
+  open["points_per_leaf_max"] = kLargestLeaf;
+  return open;
+}
+
+/// Formulas of a whole tick, for each number of bodies that are rendered.
+class TickFormulas {
+ public:
+  TickFormulas(TickAnalysis& tick, const BoardTiming& timing) : tick_(tick), timing_(timing) {}
+
+  /// Cycles of a tick without a body.
+  [[nodiscard]] double base() { return of(core::TickKind::kPaper, 0, 0, {}).base; }
+
+  [[nodiscard]] CostFormula of(core::TickKind kind, std::uint32_t bodies, std::uint32_t rate_tier,
+                               const Division& division) {
+    const Parameters parameters =
+        divided(parameters_of(typical_model_limits(), kind, bodies, false), rate_tier, division);
+    CostFormula formula = tick_.formula(parameters, open_parameters(), timing_);
+    delta_ = std::max(delta_, formula.per["delta"]);
+    listed_ = std::max(listed_, formula.per["listed"]);
+    return formula;
+  }
+
+  /// The largest cost of a delta device among all formulas so far.
+  [[nodiscard]] double delta() const { return delta_; }
+  /// The same of one body of the scene, rendered or not.
+  [[nodiscard]] double listed() const { return listed_; }
+
+ private:
+  TickAnalysis& tick_;
+  const BoardTiming& timing_;
+  double delta_ = 0.0;
+  double listed_ = 0.0;
+};
+
+/// Raises `cost` to the share of one of `bodies` in the formula.
+void cover(core::TickCost& cost, const CostFormula& formula, double base, double listed,
+           std::uint32_t bodies) {
+  const auto raise = [bodies](auto& to, double share) {
+    const double each = std::ceil(share / bodies);
+    if (each > std::numeric_limits<std::decay_t<decltype(to)>>::max()) {
+      throw BoundError("a price of a tick's costs does not fit its 16 bits (widen core::TickCost)");
+    }
+    to = std::max(to, static_cast<std::decay_t<decltype(to)>>(std::max(each, 0.0)));
+  };
+  // Each body pays `listed`: this formula's own price may be lower.
+  raise(cost.base, formula.base - base - bodies * (listed - formula.per.at("listed")));
+  for (std::uint32_t i = 0; i < core::kModelLimits; ++i) {
+    const auto found = formula.per.find(core::kModelLimitNames[i]);
+    raise(cost.per_limit[i], found == formula.per.end() ? 0.0 : found->second);
+  }
+}
+
+}  // namespace
+
+// One row covers two bodies with n gathers together, and one body with half of them.
+core::TickCosts tick_costs(const BoundOptions& options) {
+  if (options.timing == nullptr) {
+    throw BoundError(options.image.string() +
+                     ": costs need the timing of a board (name the board)");
+  }
+  TickAnalysis tick(options);
+  TickFormulas formulas(tick, *options.timing);
+  core::TickCosts costs;
+  costs.known = core::kTickCostsKnown;
+  const double base = std::floor(formulas.base());
+  costs.base = static_cast<std::uint32_t>(base);
+  struct Row {
+    core::TickCost& cost;
+    CostFormula formula;
+    std::uint32_t bodies;
+  };
+  std::vector<Row> rows;
+  for (std::uint32_t bodies = 1; bodies <= core::kMaxReachableBodies; ++bodies) {
+    for (std::uint32_t rate_tier = 0; rate_tier < core::kRateTiers; ++rate_tier) {
+      for (const Division& division : divisions(rate_tier, bodies)) {
+        const std::uint32_t row =
+            core::first_row(rate_tier) + division.gathers * core::kMaxReachableBodies / bodies;
+        for (const core::TickKind kind : {core::TickKind::kSurface, core::TickKind::kMixed}) {
+          rows.push_back({costs.surface[static_cast<std::uint32_t>(kind)][row],
+                          formulas.of(kind, bodies, rate_tier, division), bodies});
+        }
+      }
+    }
+    rows.push_back({costs.paper, formulas.of(core::TickKind::kPaper, bodies, 0, {}), bodies});
+  }
+  for (const Row& row : rows) {
+    cover(row.cost, row.formula, base, formulas.listed(), row.bodies);
+  }
+  costs.delta = static_cast<std::uint32_t>(std::ceil(formulas.delta()));
+  costs.listed = static_cast<std::uint32_t>(std::ceil(formulas.listed()));
+  return costs;
+}
+
+}  // namespace tactree::wcet

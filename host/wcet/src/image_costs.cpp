@@ -1,0 +1,50 @@
+// The costs of a tick inside an image: where they are, and reading and writing them.
+#include <fmt/core.h>
+
+#include <cstdint>
+#include <fstream>
+#include <ios>
+#include <optional>
+
+#include "image.hpp"
+#include "tactree/wcet/bound.hpp"
+#include "tactree/wcet/bound_error.hpp"
+
+namespace tactree::wcet {
+namespace {
+
+constexpr const char* kCostsSymbol = "tactree_tick_costs";
+
+std::streamoff costs_offset(const std::filesystem::path& image) {
+  const std::optional<std::uint64_t> offset = Image(image).offset_of(kCostsSymbol);
+  if (!offset) {
+    throw BoundError(
+        fmt::format("{}: has no {} (give an image of Tactree)", image.string(), kCostsSymbol));
+  }
+  return static_cast<std::streamoff>(*offset);
+}
+
+}  // namespace
+
+void embed(const std::filesystem::path& image, const core::TickCosts& costs) {
+  const std::streamoff offset = costs_offset(image);
+  std::fstream file(image, std::ios::in | std::ios::out | std::ios::binary);
+  file.seekp(offset);
+  file.write(reinterpret_cast<const char*>(&costs), sizeof costs);
+  if (!file.flush()) {
+    throw BoundError(image.string() + ": cannot be written (check the file's permissions)");
+  }
+}
+
+core::TickCosts embedded(const std::filesystem::path& image) {
+  const std::streamoff offset = costs_offset(image);
+  std::ifstream file(image, std::ios::binary);
+  core::TickCosts costs;
+  file.seekg(offset);
+  if (!file.read(reinterpret_cast<char*>(&costs), sizeof costs)) {
+    throw BoundError(image.string() + ": cannot be read (it is truncated; build it again)");
+  }
+  return costs;
+}
+
+}  // namespace tactree::wcet

@@ -1,0 +1,12 @@
+#pragma once
+// Limits that no model exceeds, in place of values that a formula leaves open.
+
+#include <cstdint>
+
+namespace tactree::wcet {
+
+/// Points of a leaf in paper mode, where the format sets no limit: no board renders as many in
+/// time.
+inline constexpr std::int64_t kLargestLeaf = 65535;
+
+}  // namespace tactree::wcet

@@ -1,0 +1,257 @@
+"""`tactree build` and the verbs that read a blob, at the limits of files, numbers and formats.
+
+usage: build_test.py TACTREE
+"""
+import json
+import math
+import os
+import pathlib
+import resource
+import signal
+import subprocess
+import sys
+import tempfile
+import unittest
+import zipfile
+
+TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
+CORNERS = [(x, y, z) for z in (0, 10) for y in (0, 10) for x in (0, 10)]
+FACES = [(0, 2, 1), (1, 2, 3), (4, 5, 6), (5, 7, 6), (0, 1, 4), (1, 5, 4),
+         (2, 6, 3), (3, 6, 7), (0, 4, 2), (2, 4, 6), (1, 3, 5), (3, 7, 5)]
+
+
+def sphere(count, radius):
+    """Evenly spread points, one text line each."""
+    golden = math.pi * (3 - math.sqrt(5))
+    lines = []
+    for i in range(count):
+        z = 1 - (2 * i + 1) / count
+        ring = math.sqrt(1 - z * z)
+        lines.append(f"{radius * ring * math.cos(golden * i)} "
+                     f"{radius * ring * math.sin(golden * i)} {radius * z}")
+    return "\n".join(lines) + "\n"
+
+
+def small_files():
+    resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))
+    signal.signal(signal.SIGXFSZ, signal.SIG_DFL)  # Python ignores it
+
+
+class Folder(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.path = pathlib.Path(folder.name)
+        (self.path / "s.xyz").write_text(sphere(2000, 0.05))
+
+    def run_tool(self, *arguments, **options):
+        options = {"capture_output": True, "text": True, "timeout": 60, **options}
+        return subprocess.run([TACTREE, *arguments], cwd=self.path, check=False, **options)
+
+    def build(self, *arguments):
+        done = self.run_tool("build", "s.xyz", "-o", "s.blob", *arguments)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done
+
+    def refused(self, *arguments):
+        done = self.run_tool(*arguments)
+        self.assertIn(done.returncode, (1, 2), done.stdout)
+        return done.stderr
+
+
+class Outputs(Folder):
+    def test_an_input_is_not_overwritten(self):
+        self.build()
+        blob = (self.path / "s.blob").read_bytes()
+        (self.path / "link").symlink_to("s.blob")
+        for output in ("--json", "--points", "--preview"):
+            for name in ("s.blob", "./s.blob", "link"):
+                self.assertIn("is an input", self.refused("info", "s.blob", output, name))
+        self.assertIn("is an input", self.refused("check", "s.blob", "--json", "s.blob"))
+        self.assertIn("is an input", self.refused("query", "s.blob", "--points", "s.xyz",
+                                                  "--json", "s.blob"))
+        self.assertIn("is an input", self.refused("simulate", "s.blob", "--trace", "s.blob"))
+        self.assertEqual((self.path / "s.blob").read_bytes(), blob)
+
+    def test_two_outputs_need_two_files(self):
+        for output in ("--report", "--json", "--preview"):
+            message = self.refused("build", "s.xyz", "-o", "y", output, "./y")
+            self.assertIn("two outputs", message)
+        self.assertFalse((self.path / "y").exists())
+        self.build("--report", "/dev/null", "--json", "/dev/null")
+
+    def test_an_output_that_cannot_be_written_is_refused_before_the_input_is_read(self):
+        (self.path / "folder").mkdir()
+        for name in ("no/such/y", "s.xyz/y", "folder"):
+            message = self.refused("build", "no_input", "-o", "y", "--report", name)
+            self.assertIn(f"{name}: cannot be written", message)
+        self.assertIn("'' is not the name", self.refused("build", "s.xyz", "-o", ""))
+
+    def test_rows_that_cannot_be_printed_are_an_error(self):
+        self.build()
+        (self.path / "many.xyz").write_text(sphere(20000, 0.05))
+        with open("/dev/full", "w", encoding="ascii") as full:
+            done = self.run_tool("query", "s.blob", "--points", "many.xyz", capture_output=False,
+                                 stdout=full, stderr=subprocess.PIPE)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("standard output cannot be written", done.stderr)
+
+    def test_a_limit_on_file_sizes_leaves_no_temporary_file(self):
+        done = self.run_tool("build", "s.xyz", "-o", "s.blob", preexec_fn=small_files)
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertIn("File too large", done.stderr)
+        self.assertEqual(os.listdir(self.path), ["s.xyz"])
+
+
+class Numbers(Folder):
+    def test_absurd_sizes_are_refused_with_their_cause(self):
+        for option in ("--scale", "--fit"):
+            for value in ("1e300", "1e30", "1e-30", "1e-300"):
+                message = self.refused("build", "s.xyz", "-o", "y", option, value)
+                self.assertIn("--scale", message, value)
+                self.assertNotIn("own check", message)
+        for spacing in ("1e300", "1e-300"):
+            message = self.refused("build", "s.xyz", "-o", "y", "--spacing", spacing)
+            self.assertIn("between 1 nm and 1000 km", message)
+
+    def test_coordinates_beyond_reason_are_dropped(self):
+        with open(self.path / "s.xyz", "a", encoding="ascii") as file:
+            file.write("1e300 0 0\n0 -1e150 0\n")
+        self.build("--report", "r.json")
+        report = json.loads((self.path / "r.json").read_text())
+        self.assertEqual(report["dropped"], {"out_of_range": 2})
+        (self.path / "huge.xyz").write_text(sphere(500, 1e300))
+        self.assertIn("500 out_of_range", self.refused("build", "huge.xyz", "-o", "y"))
+
+    def test_an_empty_number_is_refused(self):
+        self.assertIn("'' is not a number", self.refused("build", "s.xyz", "-o", "y", "--spacing", ""))
+        self.assertIn("'' is not a number",
+                      self.refused("build", "s.xyz", "-o", "y", "--flash-budget", ""))
+
+    def test_lengths_are_printed_without_an_exponent(self):
+        self.assertRegex(self.build("--scale", "1e7").stdout, r"spacing \d+\.?\d* km\n")
+        self.assertRegex(self.build("--scale", "1e-4").stdout, r"spacing \d+\.?\d* um\n")
+
+
+class Formats(Folder):
+    def test_a_damaged_header_is_refused_before_the_rest_is_read(self):
+        with open(self.path / "large.ply", "wb") as file:
+            file.write(b"ply\nformat nonsense 1.0\n")
+            file.truncate(1 << 38)  # takes no space, and minutes to read
+        self.assertIn("nonsense", self.refused("build", "large.ply", "-o", "y"))
+        self.assertIn("a device", self.refused("build", "/dev/zero", "-o", "y"))
+        os.mkfifo(self.path / "pipe")
+        self.assertIn("a pipe", self.refused("build", "pipe", "-o", "y"))
+
+    def write_ply(self, line):
+        lines = sphere(500, 0.05).splitlines()
+        head = ["ply", "format ascii 1.0", line, f"element vertex {len(lines)}",
+                "property float x", "property float y", "property float z", "end_header"]
+        (self.path / "a.ply").write_text("\n".join(head + lines) + "\n")
+
+    def test_unknown_lines_of_a_ply_header_are_left_out_with_a_warning(self):
+        self.write_ply("scanner_serial 1234 rev B")
+        done = self.run_tool("build", "a.ply", "-o", "y")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn('1 line of the header is unknown and left out, the first at line 3, '
+                      '"scanner_serial"', done.stderr)
+
+    def test_a_misspelt_property_of_a_ply_header_is_refused(self):
+        for line in ("proprty float x", "elemnt vertex 9", "Format binary_little_endian 1.0"):
+            self.write_ply(line)
+            self.assertIn("is not a word of a PLY header",
+                          self.refused("build", "a.ply", "-o", "y"))
+
+    def write_3mf(self, name, target, *pictures, unit="millimeter"):
+        vertices = "".join('<vertex x="%g" y="%g" z="%g"/>' % corner for corner in CORNERS)
+        faces = "".join('<triangle v1="%d" v2="%d" v3="%d"/>' % face for face in FACES)
+        core = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
+        package = "http://schemas.openxmlformats.org/package/2006/"
+        with zipfile.ZipFile(self.path / name, "w", zipfile.ZIP_DEFLATED) as archive:
+            for picture in pictures:
+                archive.writestr(picture, bytes(100000), zipfile.ZIP_STORED)
+            archive.writestr("[Content_Types].xml", f'<Types xmlns="{package}content-types"/>')
+            archive.writestr("_rels/.rels", f'<Relationships xmlns="{package}relationships">'
+                             f'<Relationship Target="/{target}" Id="r" Type="http://schemas.'
+                             'microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>')
+            archive.writestr(target, f'<model unit="{unit}" xmlns="{core}"><resources>'
+                             f'<object id="1"><mesh><vertices>{vertices}</vertices><triangles>'
+                             f'{faces}</triangles></mesh></object></resources><build>'
+                             '<item objectid="1"/></build></model>')
+
+    def test_a_3mf_with_pictures_or_its_own_file_names_is_read(self):
+        self.write_3mf("a.3mf", "3D/part of mine.model")
+        self.write_3mf("b.3mf", "3D/3dmodel.model", "Metadata/thumbnail.png")
+        for name in ("a.3mf", "b.3mf"):
+            done = self.run_tool("build", name, "-o", "y", "--fit", "0.1", "--spacing", "0.005")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn("3MF, 8 points, 12 triangles", done.stdout)
+
+    def test_the_unit_of_a_3mf_is_used_unless_one_is_given(self):
+        for unit, options, metres in (("inch", (), 0.0254), ("millimeter", (), 0.001),
+                                      ("inch", ("--unit", "cm"), 0.01)):
+            self.write_3mf("a.3mf", "3D/3dmodel.model", unit=unit)
+            done = self.run_tool("build", "a.3mf", "-o", "y", "--report", "r.json", *options)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            report = json.loads((self.path / "r.json").read_text())
+            self.assertAlmostEqual(report["source_scale"], metres)
+            self.assertEqual("unit of the file" in done.stdout, not options)
+
+    def test_the_unit_of_an_fbx_is_used(self):
+        points = ",".join("%g,%g,%g" % corner for corner in CORNERS)
+        faces = ",".join("%d,%d,%d" % (a, b, -c - 1) for a, b, c in FACES)
+        (self.path / "a.fbx").write_text(f"""; FBX 7.3.0 project file
+FBXHeaderExtension:  {{
+	FBXHeaderVersion: 1003
+	FBXVersion: 7300
+}}
+GlobalSettings:  {{
+	Version: 1000
+	Properties70:  {{
+		P: "UnitScaleFactor", "double", "Number", "",2.54
+	}}
+}}
+Objects:  {{
+	Geometry: 1, "Geometry::", "Mesh" {{
+		Vertices: *24 {{
+			a: {points}
+		}}
+		PolygonVertexIndex: *36 {{
+			a: {faces}
+		}}
+	}}
+	Model: 2, "Model::box", "Mesh" {{
+		Version: 232
+	}}
+}}
+Connections:  {{
+	C: "OO",2,0
+	C: "OO",1,2
+}}
+""")
+        done = self.run_tool("build", "a.fbx", "-o", "y", "--report", "r.json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertAlmostEqual(json.loads((self.path / "r.json").read_text())["source_scale"],
+                               0.0254)
+
+    def test_a_compressed_gltf_is_refused_by_the_name_of_its_compression(self):
+        buffer = {"byteLength": 99, "extensions": {"EXT_meshopt_compression": {"fallback": True}}}
+        (self.path / "a.gltf").write_text(json.dumps(
+            {"asset": {"version": "2.0"}, "buffers": [buffer],
+             "extensionsRequired": ["EXT_meshopt_compression"]}))
+        message = self.refused("build", "a.gltf", "-o", "y")
+        self.assertIn("compressed with EXT_meshopt_compression", message)
+        self.assertNotIn("uri", message)
+
+    def test_a_damaged_collada_file_is_refused_in_one_short_message(self):
+        (self.path / "a.dae").write_text(
+            '<?xml version="1.0"?><COLLADA version="1.4.1"><library_geometries><geometry id="g">'
+            f'<mesh><source id="p"><float_array id="a" count="3000">{"no number " * 3000}'
+            "</float_array></source></mesh></geometry></library_geometries></COLLADA>")
+        message = self.refused("build", "a.dae", "-o", "y")
+        self.assertIn("this COLLADA cannot be read: Cannot parse", message)
+        self.assertLess(len(message), 400)
+
+
+if __name__ == "__main__":
+    unittest.main()

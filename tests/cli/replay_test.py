@@ -1,0 +1,124 @@
+"""Recording and replay end to end: simulate --record -> simulate --replay, and each cause of a refusal.
+
+usage: replay_test.py TACTREE
+"""
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
+MOVING = {"bodies": [
+    {"blob": 0},
+    {"blob": 1, "from_s": 0.3, "until_s": 0.8, "linear_velocity_m_s": [0.004, 0, 0.002],
+     "angular_velocity_rad_s": [0, 0, 0.3]}]}
+
+
+def sheet(height_m):
+    """6 cm wide, normals up."""
+    steps = [i * 1e-3 for i in range(-30, 31)]
+    return "x,y,z,nx,ny,nz\n" + "".join(f"{x},{y},{height_m},0,0,1\n" for x in steps for y in steps)
+
+
+class Replay(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.folder = pathlib.Path(folder.name)
+        for name, height_m in (("low", 0.0), ("high", 0.001), ("other", 0.002)):
+            (cls.folder / f"{name}.csv").write_text(sheet(height_m))
+            done = cls.run_tool("build", f"{name}.csv", "-o", f"{name}.blob", "--spacing", 0.001,
+                                "--progress", "off")
+            assert done.returncode == 0, done.stderr
+        (cls.folder / "press.csv").write_text("t_s,x,y,z\n0,0,0,0.01\n0.2,0,0,-0.002\n1,0.01,0,-0.002\n")
+        (cls.folder / "moving.json").write_text(json.dumps(MOVING))
+
+    @classmethod
+    def run_tool(cls, *arguments):
+        return subprocess.run([TACTREE, *map(str, arguments)], cwd=cls.folder, capture_output=True,
+                              text=True, check=False)
+
+    def record(self, *arguments, codes=(0,)):
+        """The checksum of a recorded session's trace; the recording is session.rec."""
+        done = self.run_tool("simulate", "low.blob", "high.blob", "--scene", "moving.json", "--path",
+                             "press.csv", "--device", "cartesian", "--seconds", 1, "--json", "run.json",
+                             "--record", "session.rec", *arguments)
+        self.assertIn(done.returncode, codes, done.stderr)
+        run = json.loads((self.folder / "run.json").read_text())
+        self.assertGreater(run["contact_ticks"], 50)
+        return run["trace_crc32"]
+
+    def replay(self, *blobs, name="session.rec"):
+        (self.folder / "replay.json").unlink(missing_ok=True)
+        return self.run_tool("simulate", *blobs, "--replay", name, "--json", "replay.json")
+
+    def refuses(self, words, *blobs, name="session.rec"):
+        done = self.replay(*blobs, name=name)
+        self.assertEqual(done.returncode, 1, done.stdout)
+        for word in (name, *words):
+            self.assertIn(word, done.stderr)
+        self.assertFalse((self.folder / "replay.json").exists())
+
+    def expect_same(self, checksum, *blobs):
+        done = self.replay(*blobs)
+        self.assertEqual(done.returncode, 0, done.stderr + done.stdout)
+        self.assertEqual(json.loads((self.folder / "replay.json").read_text())["trace_crc32"], checksum)
+
+    def test_a_session_with_moving_bodies_replays_bit_for_bit(self):
+        self.expect_same(self.record(), "low.blob", "high.blob")
+
+    def test_the_order_of_the_blobs_does_not_matter(self):
+        self.expect_same(self.record(), "high.blob", "low.blob")
+
+    def test_a_session_with_a_fault_replays_bit_for_bit(self):
+        self.expect_same(self.record("--inject", "encoder1:disconnected@0.5s", codes=(1,)),
+                         "low.blob", "high.blob")
+
+    def test_a_session_at_4_khz_in_paper_mode_replays_bit_for_bit(self):
+        self.expect_same(self.record("--rate", 4000, "--mode", "paper"), "low.blob", "high.blob")
+
+    def test_a_replay_without_a_blob_of_the_session_is_refused(self):
+        self.record()
+        self.refuses(["none of the blobs given"], "low.blob", "other.blob")
+
+    def test_a_damaged_recording_is_refused(self):
+        self.record()
+        data = bytearray((self.folder / "session.rec").read_bytes())
+        data[len(data) // 2] ^= 4
+        (self.folder / "damaged.rec").write_bytes(data)
+        self.refuses(["checksum"], "low.blob", "high.blob", name="damaged.rec")
+
+    def test_a_truncated_or_foreign_recording_is_refused(self):
+        self.record()
+        data = (self.folder / "session.rec").read_bytes()
+        for size in (0, 3, 40, len(data) // 2, len(data) - 1):
+            (self.folder / "cut.rec").write_bytes(data[:size])
+            self.refuses([], "low.blob", "high.blob", name="cut.rec")
+        self.refuses([], "low.blob", "high.blob", name="low.blob")
+
+    def test_a_huge_file_is_refused_by_its_header(self):
+        self.record()
+        header = (self.folder / "session.rec").read_bytes()[:20]
+        for begin, words in ((b"", "not a recording"), (header, "truncated or was added to")):
+            with open(self.folder / "huge.rec", "wb") as huge:
+                huge.write(begin)
+                huge.truncate(1 << 40)
+            self.refuses([words], "low.blob", "high.blob", name="huge.rec")
+
+    def test_an_emulated_board_does_not_record(self):
+        done = self.run_tool("simulate", "low.blob", "--board", "mps2-an386", "--record", "board.rec")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("leave --board out", done.stderr)
+        self.assertFalse((self.folder / "board.rec").exists())
+
+    def test_record_and_replay_exclude_each_other(self):
+        self.record()
+        done = self.run_tool("simulate", "low.blob", "--record", "x.rec", "--replay", "session.rec")
+        self.assertEqual(done.returncode, 2)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,34 @@
+"""Errors in the command line: unknown verbs, and values out of range.
+
+usage: usage_test.py TACTREE
+"""
+import subprocess
+import sys
+import unittest
+
+TACTREE = sys.argv.pop(1)
+
+
+class Usage(unittest.TestCase):
+    def refused(self, *arguments):
+        done = subprocess.run([TACTREE, *arguments], capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertLess(max(map(len, done.stderr.splitlines())), 120, done.stderr)
+        return done.stderr
+
+    def test_unknown_verb_names_the_nearest(self):
+        self.assertIn("unknown verb 'biuld' (did you mean 'build'? tactree --help lists the verbs)",
+                      self.refused("biuld", "x.ply"))
+        error = self.refused("frobnicate")
+        self.assertIn("unknown verb 'frobnicate' (tactree --help", error)
+
+    def test_numbers_out_of_range_are_quoted(self):
+        for value in ("-1", "0", "nan", "inf", "ten", "1e999"):
+            error = self.refused("simulate", "model.blob", f"--seconds={value}")
+            self.assertIn(f"'{value}' is not a number above 0", error)
+        self.assertIn("'-1' is not a number from 0 upwards",
+                      self.refused("query", "model.blob", "--points", "-", "--radius=-1"))
+
+
+if __name__ == "__main__":
+    unittest.main()

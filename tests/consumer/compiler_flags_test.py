@@ -1,0 +1,36 @@
+"""Compiler flags that the library cannot work with are refused by its headers.
+
+usage: compiler_flags_test.py COMPILER INCLUDE_FOLDER
+"""
+import subprocess
+import sys
+import unittest
+
+INCLUDE = sys.argv.pop()
+COMPILER = sys.argv.pop()
+
+
+class CompilerFlags(unittest.TestCase):
+    def compile(self, *flags):
+        """Exit code and messages."""
+        done = subprocess.run([COMPILER, "-x", "c++", "-fsyntax-only", "-I", INCLUDE, *flags, "-"],
+                              input="#include <tactree/core/vec3.hpp>\n", capture_output=True, text=True)
+        return done.returncode, done.stderr
+
+    def test_cpp20_compiles(self):
+        self.assertEqual(self.compile("-std=c++20"), (0, ""))
+
+    def test_cpp17_is_refused_with_the_flag_to_set(self):
+        code, text = self.compile("-std=c++17")
+        self.assertNotEqual(code, 0)
+        self.assertIn("compile as C++20 (-std=c++20)", text)
+
+    def test_fast_math_is_refused(self):
+        for flags in (["-ffast-math"], ["-Ofast"]):
+            code, text = self.compile("-std=c++20", *flags)
+            self.assertNotEqual(code, 0)
+            self.assertIn("compile without -ffast-math", text)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,168 @@
+// The host library with a running board.
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "running_board.hpp"
+#include "tactree/host/board.hpp"
+#include "tactree/host/link_error.hpp"
+
+namespace tactree::test {
+namespace {
+
+TEST(Connection, ReportsTheCauseOfAPortFailure) {
+  for (const char* port : {"/dev/no-such-port", "/dev/null"}) {
+    try {
+      host::Board board(port);
+      FAIL() << port;
+    } catch (const host::LinkError& error) {
+      EXPECT_NE(std::string(error.what()).find(port), std::string::npos);
+    }
+  }
+  EXPECT_THROW((void)host::open_serial_port("/dev/null", 12345), host::LinkError);
+}
+
+TEST(Connection, NamesTheDefaultInsteadOfAnUnusualSpeed) {
+  try {
+    (void)host::open_serial_port("/dev/null", 0);
+    FAIL();
+  } catch (const host::LinkError& error) {
+    EXPECT_STREQ(
+        error.what(),
+        "/dev/null: 0 baud is not a usual speed (the default is 1000000; others are 115200, "
+        "921600 and 2000000)");
+  }
+}
+
+TEST(Connection, RefusesASilentPort) {
+  const host::PseudoTerminal nobody;
+  EXPECT_THROW(host::Board board(nobody.name()), host::LinkError);
+}
+
+TEST(Connection, RendersContactAndStops) {
+  const RunningBoard running(0.0295);
+  host::Board board(running.port());
+  board.subscribe({0x3FF, 5});
+  board.arm();
+  EXPECT_TRUE(comes_true([&] { return board.latest().force_N[2] > 0.05F; }));
+  EXPECT_EQ(board.latest().body, 0U);
+  board.move_body(0, {{}, {0.0F, 0.0F, -0.01F}});
+  EXPECT_TRUE(comes_true([&] { return board.latest().body == core::kNoBody; }));
+  board.stop();
+  EXPECT_EQ(static_cast<core::State>(board.state().state), core::State::kIdle);
+  EXPECT_EQ(board.connection().refusals(), 0U);
+}
+
+// Unplugs the board and plugs it in again under the same name.
+TEST(Connection, ReconnectsAReturningBoardWithoutArmingIt) {
+  const std::filesystem::path link =
+      std::filesystem::temp_directory_path() / ("tactree-port-" + std::to_string(::getpid()));
+  const auto plug_in = [&link](const RunningBoard& running) {
+    std::filesystem::remove(link);
+    std::filesystem::create_symlink(running.port(), link);
+  };
+  auto running = std::make_unique<RunningBoard>();
+  plug_in(*running);
+  host::Board board(link.string());
+  board.subscribe({0x3FF, 5});
+  board.arm();
+  ASSERT_TRUE(comes_true([&] { return board.latest().state == 4U; }));
+  running.reset();
+  EXPECT_TRUE(comes_true([&] { return !board.connected(); }));
+  EXPECT_THROW(board.reconnect(), host::LinkError);
+  EXPECT_FALSE(board.connected());
+  EXPECT_THROW(board.stop(), host::LinkError);
+  EXPECT_EQ(board.latest().header.tick, 0U);
+  EXPECT_TRUE(board.take_stream().empty());
+
+  const RunningBoard again;
+  plug_in(again);
+  board.reconnect();
+  EXPECT_TRUE(board.connected());
+  EXPECT_TRUE(comes_true([&] { return board.latest().header.tick > 0U; }));  // subscribed
+  EXPECT_EQ(static_cast<core::State>(board.state().state), core::State::kIdle);
+  std::filesystem::remove(link);
+}
+
+TEST(Connection, DoesNotReconnectABoardWithoutAName) {
+  const RunningBoard running;
+  host::Board board(host::open_serial_port(running.port()), {});
+  EXPECT_THROW(board.reconnect(), host::LinkError);
+  EXPECT_TRUE(board.connected());
+}
+
+TEST(Connection, DeliversTheStreamAndCountsMissingMessages) {
+  const RunningBoard running;
+  host::Board board(running.port());
+  board.subscribe({0x003, 1});
+  std::vector<host::Telemetry> all;
+  ASSERT_TRUE(comes_true([&] {
+    const auto news = board.take_stream();
+    all.insert(all.end(), news.begin(), news.end());
+    return all.size() > 500U;
+  }));
+  std::uint64_t missing = 0;
+  for (std::size_t i = 1; i < all.size(); ++i) {
+    missing += all[i].header.tick - all[i - 1].header.tick - 1U;
+  }
+  EXPECT_LE(missing, board.dropped());
+}
+
+TEST(Connection, LimitsTheSizeOfAnUnreadStream) {
+  const RunningBoard running;
+  host::ConnectionOptions options;
+  options.stream_capacity = 10;
+  host::Connection connection(host::open_serial_port(running.port()), options);
+  connection.open(0);
+  ASSERT_TRUE(
+      connection.call(core::wire::MessageKind::kSubscribe, core::wire::SubscribeRequest{1, 1})
+          .ok());
+  EXPECT_TRUE(comes_true([&] { return connection.dropped() > 20U; }));
+  EXPECT_EQ(connection.take_stream().size(), 10U);
+}
+
+TEST(Connection, CountsRefusedPosts) {
+  const RunningBoard running;
+  host::Board board(running.port());
+  board.add_force({1.0F, 0.0F, 0.0F}, 20);  // not active
+  EXPECT_TRUE(comes_true([&] { return board.connection().refusals() == 1U; }));
+}
+
+TEST(Connection, FlashesRollsBackAndReadsTraceAndParameters) {
+  const RunningBoard running;
+  host::Board board(running.port());
+  const TestBlob one(sphere(0.02, 0.002));
+  const TestBlob two(sphere(0.025, 0.002));
+  for (const TestBlob* blob : {&one, &two}) {
+    host::ModelFile model;
+    model.bytes = std::as_bytes(std::span(blob->written().bytes));
+    std::size_t done = 0;
+    board.flash(model, [&](std::size_t now, std::size_t) { done = now; });
+    EXPECT_EQ(done, model.bytes.size());
+  }
+  EXPECT_EQ(board.models().slot[1].points, two.view().point_count());
+  board.roll_back();
+  EXPECT_EQ(board.models().slot[0].state,
+            static_cast<std::uint8_t>(core::wire::SlotState::kActive));
+  board.erase_model(1);
+  EXPECT_THROW(board.roll_back(), host::LinkError);
+
+  const std::vector<host::TracedTick> trace = board.trace();
+  ASSERT_GE(trace.size(), 100U);
+  EXPECT_LT(trace.front().tick, trace.back().tick);
+
+  board.set_parameter("hand_damping_Ns_m", 2.0F);
+  board.save_parameters();
+  bool found = false;
+  for (const core::wire::ParameterReply& p : board.parameters()) {
+    found = found || (std::string(p.name) == "hand_damping_Ns_m" && p.value == 2.0F);
+  }
+  EXPECT_TRUE(found);
+  EXPECT_THROW(board.set_parameter("no such", 1.0F), host::LinkError);
+  EXPECT_THROW(board.set_parameter("delay_s", 5.0F), host::LinkError);
+}
+
+}  // namespace
+}  // namespace tactree::test

@@ -1,0 +1,139 @@
+// A model that the board cannot render in time is not loaded, and there is no force.
+
+#include <gtest/gtest.h>
+
+#include "session.hpp"
+
+namespace tactree::test {
+namespace {
+
+constexpr std::uint32_t kBase = 200U;
+
+/// Costs of 800 cycles per body and 10 per point of a ball, in the row without gathers.
+core::TickCosts some_costs() {
+  core::TickCosts costs;
+  costs.known = core::kTickCostsKnown;
+  costs.base = kBase;
+  for (auto& rows : costs.surface) {
+    for (std::uint32_t rate_tier = 0; rate_tier < core::kRateTiers; ++rate_tier) {
+      rows[core::first_row(rate_tier)].base = 800U;
+      rows[core::first_row(rate_tier)].per_limit[0] = 10U;
+    }
+  }
+  return costs;
+}
+
+std::uint32_t needed_by_body() {
+  return 800U + 10U * shared_plane().view().header().points_per_ball_max;
+}
+std::uint32_t needed() { return kBase + needed_by_body(); }
+
+core::ModelStatus load(const core::TickCosts& costs, std::uint32_t cycles_per_tick,
+                       core::Controller& controller) {
+  core::Configuration configuration;
+  controller.know_costs(costs, cycles_per_tick * 1000U);
+  EXPECT_EQ(controller.configure(configuration), core::ConfigurationStatus::kOk);
+  return controller.load_model(shared_plane().view());
+}
+
+TEST(Admission, LoadsAModelThatFitsExactly) {
+  const core::TickCosts costs = some_costs();
+  core::Controller controller;
+  EXPECT_EQ(load(costs, needed(), controller), core::ModelStatus::kOk);
+  EXPECT_EQ(controller.state(), core::State::kIdle);
+}
+
+TEST(Admission, RefusesAModelOneCycleTooLong) {
+  const core::TickCosts costs = some_costs();
+  core::Controller controller;
+  EXPECT_EQ(load(costs, needed() - 1U, controller), core::ModelStatus::kTooSlow);
+  EXPECT_EQ(controller.state(), core::State::kNoModel);
+  core::Input input;
+  input.command = core::Command::kArm;
+  EXPECT_FALSE(controller.step(input).enable);
+}
+
+TEST(Admission, UnknownCostsRefuseNoModel) {
+  const core::TickCosts costs;
+  core::Controller controller;
+  EXPECT_EQ(load(costs, 1, controller), core::ModelStatus::kOk);
+}
+
+TEST(Admission, AddsTheTimeOfASecondBody) {
+  const core::TickCosts costs = some_costs();
+  core::Controller controller;
+  const std::uint32_t both = needed() + needed_by_body();
+  ASSERT_EQ(load(costs, both - 1U, controller), core::ModelStatus::kOk);
+  std::uint32_t number = 0;
+  EXPECT_EQ(controller.add_body(shared_plane().view(), {}, number), core::ModelStatus::kTooSlow);
+  controller.know_costs(costs, both * 1000U);
+  EXPECT_EQ(controller.add_body(shared_plane().view(), {}, number), core::ModelStatus::kOk);
+}
+
+// Each tick visits all bodies of the scene, although it renders two of them at most.
+TEST(Admission, AddsTheTimeOfEachBodyOfTheScene) {
+  core::TickCosts costs = some_costs();
+  costs.listed = 50U;
+  core::TickLoad load;
+  const core::Configuration configuration;
+  for (std::uint32_t bodies = 1; bodies <= core::kMaxBodies; ++bodies) {
+    load.add(shared_plane().view().header(), configuration);
+    const std::uint32_t rendered =
+        bodies < core::kMaxReachableBodies ? bodies : core::kMaxReachableBodies;
+    EXPECT_EQ(core::cycles_of(costs, load), kBase + 50U * bodies + rendered * needed_by_body());
+  }
+}
+
+// A tick divides its work between gathers and fits: the most expensive division counts.
+TEST(Admission, UsesTheMostExpensiveRow) {
+  for (std::uint32_t row = 0; row < core::rows_of_rate_tier(0); ++row) {
+    core::TickCosts costs = some_costs();
+    costs.surface[0][row].base = 5000U;
+    costs.surface[0][row].per_limit[0] = 0U;
+    core::Controller controller;
+    EXPECT_EQ(load(costs, kBase + 4999U, controller), core::ModelStatus::kTooSlow) << row;
+    EXPECT_EQ(load(costs, kBase + 5000U, controller), core::ModelStatus::kOk) << row;
+  }
+}
+
+TEST(Admission, AddsTheCyclesOfADelta) {
+  core::TickCosts costs = some_costs();
+  costs.delta = 100U;
+  core::TickLoad load;
+  core::Configuration configuration;
+  load.add(shared_plane().view().header(), configuration);
+  EXPECT_EQ(core::cycles_of(costs, load), needed());
+  configuration.device.kind = core::DeviceKind::kDelta;
+  core::TickLoad of_delta;
+  of_delta.add(shared_plane().view().header(), configuration);
+  EXPECT_EQ(core::cycles_of(costs, of_delta), needed() + 100U);
+}
+
+TEST(Admission, AHigherRateRemovesModelsThatNoLongerFit) {
+  const core::TickCosts costs = some_costs();
+  core::Controller controller;
+  ASSERT_EQ(load(costs, needed(), controller), core::ModelStatus::kOk);
+  core::Configuration faster;
+  faster.rate_hz = 1001.0F;
+  EXPECT_EQ(controller.configure(faster), core::ConfigurationStatus::kOk);
+  EXPECT_EQ(controller.state(), core::State::kNoModel);
+}
+
+TEST(Admission, UsesTheLargestLimitsOfSeveralModels) {
+  core::TickLoad load;
+  core::BlobHeader header{};
+  header.points_per_ball_max = 7;
+  header.depth = 3;
+  load.add(header, {});
+  header.points_per_ball_max = 5;
+  header.depth = 4;
+  header.profile = static_cast<std::uint32_t>(core::Profile::kPaper);
+  load.add(header, {});
+  EXPECT_EQ(load.limits.points_per_ball_max, 7U);
+  EXPECT_EQ(load.limits.depth, 4U);
+  EXPECT_EQ(load.kind, core::TickKind::kMixed);
+  EXPECT_EQ(load.bodies, 2U);
+}
+
+}  // namespace
+}  // namespace tactree::test

@@ -1,0 +1,163 @@
+// Every impossible value of a configuration is refused by name.
+
+#include "tactree/core/configuration.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "odd_floats.hpp"
+#include "session.hpp"
+
+namespace tactree::test {
+namespace {
+
+using core::Configuration;
+using core::ConfigurationStatus;
+
+using Field = float Configuration::*;
+
+const std::vector<std::pair<Field, ConfigurationStatus>>& fields() {
+  static const std::vector<std::pair<Field, ConfigurationStatus>> all = {
+      {&Configuration::rate_hz, ConfigurationStatus::kBadRate},
+      {&Configuration::stiffness_N_m, ConfigurationStatus::kBadStiffness},
+      {&Configuration::damping_Ns_m, ConfigurationStatus::kBadDamping},
+      {&Configuration::static_friction, ConfigurationStatus::kBadFriction},
+      {&Configuration::dynamic_friction, ConfigurationStatus::kBadFriction},
+      {&Configuration::velocity_cutoff_hz, ConfigurationStatus::kBadFilter},
+      {&Configuration::device_damping_Ns_m, ConfigurationStatus::kBadDamping},
+      {&Configuration::hand_damping_Ns_m, ConfigurationStatus::kBadDamping},
+      {&Configuration::passivity_Ns_m, ConfigurationStatus::kBadDamping},
+      {&Configuration::delay_s, ConfigurationStatus::kBadTimeout},
+      {&Configuration::force_max_N, ConfigurationStatus::kBadLimit},
+      {&Configuration::slew_N_s, ConfigurationStatus::kBadLimit},
+      {&Configuration::ramp_s, ConfigurationStatus::kBadRamp},
+      {&Configuration::speed_max_m_s, ConfigurationStatus::kBadSpeed},
+      {&Configuration::link_timeout_s, ConfigurationStatus::kBadTimeout},
+      {&Configuration::enable_timeout_s, ConfigurationStatus::kBadTimeout},
+  };
+  return all;
+}
+
+TEST(Configuration, AcceptsTheDefaults) {
+  EXPECT_EQ(core::check(Configuration{}), ConfigurationStatus::kOk);
+}
+
+TEST(Configuration, RefusesNaNInfiniteAndNegativeValuesByName) {
+  for (const auto& [field, status] : fields()) {
+    for (const float bad :
+         {-1.0F, std::numeric_limits<float>::max(), std::numeric_limits<float>::infinity(),
+          -std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()}) {
+      Configuration c;
+      c.*field = bad;
+      EXPECT_EQ(core::check(c), status) << bad << ", " << core::describe(status);
+      core::Controller controller;
+      EXPECT_EQ(controller.configure(c), status);
+      EXPECT_EQ(controller.state(), core::State::kBoot);
+    }
+  }
+}
+
+TEST(Configuration, UnusualFloatsNeverExceedTheForceLimits) {
+  for (const auto& [field, status] : fields()) {
+    for (const float odd : kOddFloats) {
+      Configuration c;
+      c.ramp_s = 0.01F;
+      c.*field = odd;
+      Session session(c);
+      session.activate();
+      for (int i = 0; i < 30; ++i) {
+        session.step();
+      }
+      const core::Output output = session.press(2e-3);
+      ASSERT_TRUE(std::isfinite(output.motors.effort(2)));
+      if (session.status == ConfigurationStatus::kOk) {
+        ASSERT_LE(std::abs(output.motors.effort(2)),
+                  session.controller.configuration().force_max_N);
+      } else {
+        ASSERT_TRUE(output.motors.is_zero());
+      }
+    }
+  }
+}
+
+TEST(Configuration, ChecksEveryComponentOfAVector) {
+  for (std::uint32_t axis = 0; axis < core::kAxes; ++axis) {
+    for (const float bad : {0.0F, -1.0F, std::numeric_limits<float>::infinity(),
+                            std::numeric_limits<float>::quiet_NaN()}) {
+      Configuration c;
+      c.device.counts_per_m[axis] = bad;
+      EXPECT_EQ(core::check(c), ConfigurationStatus::kBadDevice);
+      c = {};
+      c.effort_max[axis] = bad;
+      EXPECT_EQ(core::check(c), ConfigurationStatus::kBadLimit);
+      c = {};
+      c.effort_slew_s[axis] = bad;
+      EXPECT_EQ(core::check(c), ConfigurationStatus::kBadLimit);
+    }
+  }
+  Configuration c;
+  c.model_origin_m.y = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(core::check(c), ConfigurationStatus::kBadOrigin);
+  c = {};
+  c.mode = static_cast<core::RenderMode>(9);
+  EXPECT_EQ(core::check(c), ConfigurationStatus::kBadMode);
+  c = {};
+  c.device.kind = static_cast<core::DeviceKind>(9);
+  EXPECT_EQ(core::check(c), ConfigurationStatus::kBadDevice);
+}
+
+TEST(Configuration, RefusesDynamicAboveStaticFriction) {
+  Configuration c;
+  c.static_friction = 0.2F;
+  c.dynamic_friction = 0.21F;
+  EXPECT_EQ(core::check(c), ConfigurationStatus::kBadFriction);
+  c.dynamic_friction = 0.2F;
+  EXPECT_EQ(core::check(c), ConfigurationStatus::kOk);
+}
+
+// Colgate and Brown: K < (b + b_hand) / (T / 2 + t_d).
+TEST(Configuration, RefusesStiffnessAboveTheStabilityLimit) {
+  Configuration c;
+  c.device_damping_Ns_m = 0.1F;
+  c.hand_damping_Ns_m = 1.0F;
+  c.damping_Ns_m = 0.0F;
+  c.passivity_Ns_m = 0.0F;
+  EXPECT_NEAR(core::stability_limit(c).with_hand_N_m, 2200.0F, 1.0F);
+  EXPECT_NEAR(core::stability_limit(c).without_hand_N_m, 200.0F, 0.1F);
+  c.delay_s = 0.3e-3F;
+  EXPECT_NEAR(core::stability_limit(c).with_hand_N_m, 1375.0F, 1.0F);
+  c.stiffness_N_m = 1370.0F;
+  EXPECT_EQ(core::check(c), ConfigurationStatus::kOk);
+  c.stiffness_N_m = 1380.0F;
+  EXPECT_EQ(core::check(c), ConfigurationStatus::kUnstable);
+  c.rate_hz = 4000.0F;
+  c.delay_s = 0.0F;
+  EXPECT_NEAR(core::stability_limit(c).with_hand_N_m, 8800.0F, 4.0F);
+}
+
+TEST(Configuration, EveryStatusHasItsOwnDescription) {
+  for (int i = 0; i <= static_cast<int>(ConfigurationStatus::kUnstable); ++i) {
+    for (int k = i + 1; k <= static_cast<int>(ConfigurationStatus::kUnstable); ++k) {
+      EXPECT_NE(std::string(core::describe(static_cast<ConfigurationStatus>(i))),
+                core::describe(static_cast<ConfigurationStatus>(k)));
+    }
+  }
+  EXPECT_EQ(std::string(core::describe(static_cast<ConfigurationStatus>(99))), "unknown status");
+}
+
+TEST(LoadModel, ReturnsTheReasonOfARefusal) {
+  core::Controller controller;
+  EXPECT_EQ(controller.load_model(shared_plane().view()), core::ModelStatus::kNotConfigured);
+  ASSERT_EQ(controller.configure({}), ConfigurationStatus::kOk);
+  EXPECT_EQ(controller.load_model(core::BlobView{}), core::ModelStatus::kEmpty);
+  EXPECT_EQ(controller.state(), core::State::kNoModel);
+  EXPECT_EQ(controller.load_model(shared_plane().view()), core::ModelStatus::kOk);
+  EXPECT_EQ(controller.state(), core::State::kIdle);
+}
+
+}  // namespace
+}  // namespace tactree::test

@@ -1,0 +1,216 @@
+#pragma once
+// The board of firmware/boards/stm32f405 on the faked chip, and an application's client at the
+// other end of its serial port, in steps of a tick. Between two ticks the session works, as serve()
+// of the board does, and bytes take their time on the wire.
+
+#include <deque>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "await_response.hpp"
+#include "boards/stm32f405/stm32f405_board.hpp"
+#include "fake_chip.hpp"
+#include "tactree/hal/loop.hpp"
+#include "tactree/host/client.hpp"
+
+namespace tactree::test {
+
+/// Functions and symbols that an image gets from core and linker script, for the chip in use.
+struct ChipInUse {
+  FakeChip* chip = nullptr;
+  bool ticks_held = false;
+  std::function<void()> on_hold = [] {};
+};
+inline ChipInUse chip_in_use;
+
+class BoardRig {
+ public:
+  using Board = firmware::Stm32f405Board<FakeWord, FakeCell>;
+  static constexpr std::uint32_t kBlobBegin = 0x20000;  ///< in the flash; memory.ld
+
+  BoardRig() { chip_in_use = {&chip()}; }
+  ~BoardRig() { chip_in_use = {}; }
+  BoardRig(const BoardRig&) = delete;
+
+  /// As `tactree image` lays it out.
+  void program_image_model(std::span<const std::byte> blob) { chip().flash.put(kBlobBegin, blob); }
+
+  /// From reset to the first tick, as main.cpp does it.
+  void boot(const hal::CapturedFault& last_fault = {}) {
+    const auto clocks = firmware::prepare_chip(chip().chip());
+    board_ = std::make_unique<Board>(chip().chip(), chip().flash.whole(), clocks, kIdentity);
+    configuration_ = board_->connect(last_fault);
+    chip().flash.pass = [this](double us) { pass_us(us); };
+    chip().serial.give_ring(&board_->ring());  // an address in M0AR has too few bits for the host's
+    controller_ = std::make_unique<core::Controller>();
+    loop_.emplace(*board_, *controller_);
+    start_ = loop_->start(configuration_);
+    board_->report(start_);
+    session_ = std::make_unique<Board::Session>(board_->session_parts(*controller_));
+    session_->started(start_, configuration_, &board_->start_report());
+  }
+
+  /// Power cycle; the flash keeps its content.
+  void restart() {
+    const std::vector<std::uint32_t> kept = chip().flash.content();
+    loop_.reset();
+    session_.reset();
+    board_.reset();
+    chip_ = std::make_unique<FakeChip>();
+    chip_in_use = {chip_.get()};
+    chip_->flash.restore(kept);
+    client_ = host::Client();
+    to_board_.clear();
+    boot();
+  }
+
+  /// Advances the time to the next tick and runs it.
+  const core::Status& tick() {
+    const std::uint32_t before = ticks_;
+    while (ticks_ == before) {
+      (void)session_->work();
+      if (!to_board_.empty()) {
+        chip().serial.arrive(to_board_.front());
+        to_board_.pop_front();
+      }
+      pass_us(10);
+    }
+    if (application_runs) {
+      talk();
+    }
+    return status_;
+  }
+  const core::Status& run(int ticks) {
+    for (int i = 0; i < ticks; ++i) {
+      tick();
+    }
+    return status_;
+  }
+
+  // ---- the application
+
+  host::Response await(std::uint16_t sequence, int ticks_max = 5000) {
+    int ticks = 0;
+    return test::await_response(
+        client_, sequence, [&] { return ticks++ < ticks_max; }, [&] { tick(); });
+  }
+  host::Response ask(core::wire::MessageKind kind, std::span<const std::byte> payload = {}) {
+    return await(client_.send(kind, payload, now_us()));
+  }
+  template <core::wire::Message T>
+  host::Response ask(core::wire::MessageKind kind, const T& message) {
+    return ask(kind, std::as_bytes(std::span(&message, 1)));
+  }
+  host::Response open(std::uint16_t link_timeout_ms = 50) {
+    return await(client_.open(link_timeout_ms, 7, now_us()));
+  }
+  host::Response control(core::wire::ControlCode code) {
+    return ask(core::wire::MessageKind::kControl,
+               core::wire::ControlRequest{static_cast<std::uint8_t>(code), {}, 0});
+  }
+  core::wire::ReadStartReply ask_start() {
+    core::wire::ReadStartReply reply;
+    reply.missing = 0xFFFFFFFFU;
+    (void)ask(core::wire::MessageKind::kReadStart).read(reply);
+    return reply;
+  }
+  /// Homed, armed, and the hand at the dead-man control: to active.
+  bool arm() {
+    const bool armed = open().ok() && control(core::wire::ControlCode::kHome).ok() &&
+                       control(core::wire::ControlCode::kArm).ok();
+    run(20);
+    chip().hold_dead_man(true);
+    run(500);
+    return armed && status_.state == core::State::kActive;
+  }
+  /// A model as `tactree flash` writes it. The first response that is not good, or the last.
+  host::Response flash(std::span<const std::byte> model) {
+    using Kind = core::wire::MessageKind;
+    core::wire::BeginModelRequest begin;
+    begin.bytes = static_cast<std::uint32_t>(model.size());
+    begin.checksum = core::crc32(model);
+    host::Response response = ask(Kind::kBeginModel, begin);
+    for (std::size_t at = 0; response.ok() && at < model.size(); at += core::wire::kMaxPiece) {
+      const auto piece =
+          model.subspan(at, std::min<std::size_t>(core::wire::kMaxPiece, model.size() - at));
+      const core::wire::WriteModelRequest where{static_cast<std::uint32_t>(at)};
+      const auto head = std::as_bytes(std::span(&where, 1));
+      std::vector<std::byte> payload(head.begin(), head.end());
+      payload.insert(payload.end(), piece.begin(), piece.end());
+      response = ask(Kind::kWriteModel, payload);
+    }
+    if (response.ok()) {
+      response = ask(Kind::kFinishModel, core::wire::FinishModelRequest{});
+    }
+    core::wire::FinishModelReply finished;
+    if (!response.ok() || !response.read(finished)) {
+      return response;
+    }
+    return ask(Kind::kActivateModel, core::wire::SlotRequest{finished.slot});
+  }
+
+  /// Bytes between the application and the wire: for a client that is not ours.
+  std::deque<std::uint8_t>& to_board() { return to_board_; }
+  std::vector<std::uint8_t> take_sent() { return std::exchange(chip().serial.sent, {}); }
+
+  [[nodiscard]] FakeChip& chip() { return *chip_; }
+  [[nodiscard]] Board& board() { return *board_; }
+  [[nodiscard]] core::Controller& controller() { return *controller_; }
+  [[nodiscard]] const hal::StartResult& started() const { return start_; }
+  [[nodiscard]] const core::Configuration& configuration() const { return configuration_; }
+  [[nodiscard]] const core::Status& status() const { return status_; }
+  [[nodiscard]] host::Microseconds now_us() { return 1000U * std::uint64_t{chip().ticks}; }
+  /// Share of the time that the motors get current.
+  [[nodiscard]] double duty() {
+    return chip().tim8.duty(0) + chip().tim8.duty(1) + chip().tim8.duty(2);
+  }
+
+  bool application_runs = true;
+  bool ticks_run = true;
+
+  /// Runs a tick as an interrupt. While ticks are held, due ticks are merged into one.
+  void pass_us(double us) {
+    chip().pass_us(us);
+    since_tick_us_ += us;
+    if (since_tick_us_ < 1000.0 || chip_in_use.ticks_held) {
+      return;
+    }
+    since_tick_us_ = 0.0;
+    ++ticks_;
+    chip().begin_tick();
+    if (ticks_run) {
+      status_ = loop_->tick().status;
+    }
+  }
+
+ private:
+  static constexpr board_link::BoardIdentity kIdentity{"stm32f405", "1.2.3", {}, 168000000};
+
+  void talk() {
+    const std::vector<std::uint8_t> sent = take_sent();
+    client_.receive(std::as_bytes(std::span(sent)), now_us());
+    client_.advance(now_us());
+    for (const std::byte byte : client_.to_send()) {
+      to_board_.push_back(static_cast<std::uint8_t>(byte));
+    }
+    client_.sent(client_.to_send().size());
+  }
+
+  std::unique_ptr<FakeChip> chip_ = std::make_unique<FakeChip>();
+  std::unique_ptr<Board> board_;
+  std::unique_ptr<core::Controller> controller_;
+  std::optional<hal::Loop<Board>> loop_;
+  std::unique_ptr<Board::Session> session_;
+  core::Configuration configuration_;
+  hal::StartResult start_;
+  core::Status status_;
+  double since_tick_us_ = 0.0;
+  std::uint32_t ticks_ = 0;
+  host::Client client_;
+  std::deque<std::uint8_t> to_board_;
+};
+
+}  // namespace tactree::test

@@ -1,0 +1,222 @@
+// Touch with mouse and fingers on the picture of the object, and the view's own motions.
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { ballAt, covered, distance, length, pixelOf } from './eye.mjs';
+import { bumpySphere, buildModel, launch, number, openPage, startServer, state, until } from './setup.mjs';
+
+const RADIUS = 0.04;
+const UNDER_CURSOR_M = 0.002;
+const KEY_TURN = 0.08; // of a press of Shift and an arrow key
+const FORCE = ['force_x_N', 'force_y_N', 'force_z_N'];
+const PROBE = ['probe_x_m', 'probe_y_m', 'probe_z_m'];
+const PROXY = ['proxy_x_m', 'proxy_y_m', 'proxy_z_m'];
+const blob = buildModel('smooth', bumpySphere(30000, RADIUS, 0), ['--unit', 'm']);
+let browser;
+let server;
+
+before(async () => {
+  browser = await launch();
+});
+after(async () => {
+  await browser?.close();
+});
+
+/** A page with a session of its own. */
+async function openSession(t, options = {}, args = []) {
+  server = await startServer([blob, ...args]);
+  t.after(server.stop);
+  const page = await openPage(browser, server.url, options);
+  t.after(() => page.close());
+  await state(page, 'active');
+  await number(page, 't_s'); // opens the table
+  return page;
+}
+
+/** A place of the canvas: shares of its height from the middle. */
+async function pixel(page, right, up) {
+  const box = await page.locator('#view').boundingBox();
+  const at = { x: box.width / 2 + right * box.height, y: box.height / 2 - up * box.height };
+  return { ...at, pageX: box.x + at.x, pageY: box.y + at.y };
+}
+
+/** Waits until the proxy is at the place, on the surface, with a force. */
+async function touches(page, place, what) {
+  const values = await until(page, [...PROXY, ...FORCE, 'penetration_m'], (x, y, z, fx, fy, fz, deep) =>
+    deep > 0 && length([fx, fy, fz]) > 0.1 && distance([x, y, z], place) < UNDER_CURSOR_M, what, 10000);
+  const from_m = Math.abs(length(values.slice(0, 3)) - RADIUS);
+  assert.ok(from_m < 3e-4, `the proxy is ${from_m} m from the surface`);
+  return values;
+}
+
+async function pressAt(page, right, up, turned) {
+  const at = await pixel(page, right, up);
+  await page.mouse.move(at.pageX, at.pageY);
+  await page.mouse.down();
+  const place = await ballAt(page, RADIUS, at.x, at.y, turned);
+  await touches(page, place, `no touch at ${place}`);
+}
+
+const distanceText = (page) => page.locator('#distance').textContent();
+
+test('pressing on the picture touches the surface under the cursor; dragging slides along it', async (t) => {
+  const page = await openSession(t);
+  await pressAt(page, 0.1, 0.12);
+  for (const [right, up] of [[0.16, 0.02], [0.02, -0.1], [-0.17, 0.05]]) {
+    const at = await pixel(page, right, up);
+    await page.mouse.move(at.pageX, at.pageY, { steps: 6 });
+    await touches(page, await ballAt(page, RADIUS, at.x, at.y), `the proxy does not follow to ${right}, ${up}`);
+  }
+  await page.mouse.up();
+  await until(page, [...PROBE, ...FORCE], (x, y, z, ...f) => length([x, y, z]) > RADIUS + 0.005 && length(f) === 0,
+    'the hand does not withdraw');
+  assert.deepEqual(page.troubles, []);
+});
+
+test('the hand slides over the whole path of a fast drag without leaving the surface', async (t) => {
+  const page = await openSession(t);
+  await pressAt(page, -0.2, 0);
+  const begin_s = await number(page, 't_s');
+  const to = await pixel(page, 0.2, 0);
+  await page.mouse.move(to.pageX, to.pageY);
+  await touches(page, await ballAt(page, RADIUS, to.x, to.y), 'the proxy does not follow');
+  const end_s = await number(page, 't_s');
+  await page.mouse.up();
+  const csv = await (await fetch(`${server.url}trace.csv`)).text();
+  const [heading, ...rows] = csv.trim().split('\n').map((row) => row.split(','));
+  const column = (row, name) => Number(row[heading.indexOf(name)]);
+  const slid = rows.filter((row) => column(row, 't_s') > begin_s && column(row, 't_s') < end_s);
+  assert.ok(slid.length > 100, `${slid.length} ticks`);
+  const free = slid.filter((row) => column(row, 'in_contact') === 0).length;
+  assert.ok(free < 0.05 * slid.length, `${free} of ${slid.length} ticks without contact`);
+});
+
+test('the wheel changes the depth while pressed, and zooms otherwise', async (t) => {
+  const page = await openSession(t);
+  await page.locator('#show-device').uncheck();
+  await pressAt(page, 0, 0.1);
+  const deep = await number(page, 'penetration_m');
+  for (let i = 0; i < 4; ++i) await page.mouse.wheel(0, -100);
+  await until(page, ['penetration_m'], (now) => now > 1.5 * deep, 'not deeper');
+  assert.match(await distanceText(page), /in contact · hand 8\.0 mm deep/);
+  for (let i = 0; i < 6; ++i) await page.mouse.wheel(0, 100);
+  await until(page, ['penetration_m'], (now) => now < 0.8 * deep, 'not shallower');
+  await page.mouse.up();
+  await page.waitForTimeout(1000);
+  const before = await covered(page);
+  for (let i = 0; i < 5; ++i) await page.mouse.wheel(0, 100);
+  await page.waitForTimeout(1000);
+  const after = await covered(page);
+  assert.ok(after.share < 0.7 * before.share, `${after.share} of ${before.share}`);
+});
+
+test('the far side is touched after turning the view, and the hand comes back around the object', async (t) => {
+  const page = await openSession(t);
+  const start = await until(page, PROBE, () => true, '');
+  await page.locator('#view').focus();
+  const turns = Math.round(Math.PI / KEY_TURN);
+  for (let i = 0; i < turns; ++i) await page.keyboard.press('Shift+ArrowLeft');
+  await pressAt(page, 0.05, -0.15, { yaw: turns * KEY_TURN });
+  const begin_s = await number(page, 't_s');
+  await page.mouse.up();
+  await page.waitForTimeout(300);
+  await page.locator('#hand-back').click();
+  await until(page, PROBE, (...at) => distance(at, start) < 0.002, 'the hand does not come back');
+  const csv = await (await fetch(`${server.url}trace.csv`)).text();
+  const [heading, ...rows] = csv.trim().split('\n').map((row) => row.split(','));
+  const later = rows.filter((row) => Number(row[0]) > begin_s + 0.5);
+  const touching = later.filter((row) => row[heading.indexOf('in_contact')] !== '0').length;
+  assert.equal(touching, 0, 'the hand came back through the object');
+});
+
+test('the view turns over the poles and rolls; the cursor still touches what it points at', async (t) => {
+  const page = await openSession(t);
+  await page.locator('#view').focus();
+  const turns = 30; // the camera is behind the object, upside down
+  for (let i = 0; i < turns; ++i) await page.keyboard.press('Shift+ArrowDown');
+  await pressAt(page, 0.12, 0.05, { pitch: turns * KEY_TURN });
+  await page.mouse.up();
+  for (let i = 0; i < 10; ++i) await page.keyboard.press(']');
+  await pressAt(page, 0.05, 0.15, { pitch: turns * KEY_TURN, roll: 10 * KEY_TURN });
+  await page.mouse.up();
+});
+
+test('dragging beside the object turns the view; with Shift it pans', async (t) => {
+  const page = await openSession(t);
+  await page.locator('#show-device').uncheck();
+  const beside = await pixel(page, -0.75, 0);
+  const drag = async (right) => {
+    await page.mouse.move(beside.pageX, beside.pageY);
+    await page.mouse.down();
+    await page.mouse.move(beside.pageX + right, beside.pageY, { steps: 4 });
+    await page.mouse.up();
+  };
+  const before = await covered(page);
+  const turn_px = 100;
+  await drag(turn_px);
+  await pressAt(page, 0.1, 0, { yaw: -turn_px * 0.006 });
+  await page.mouse.up();
+  await page.waitForTimeout(500);
+  await page.keyboard.down('Shift');
+  await drag(120);
+  await page.keyboard.up('Shift');
+  await page.waitForTimeout(1000);
+  const { width } = await page.locator('#view').boundingBox();
+  const moved_px = ((await covered(page)).x - before.x) * width;
+  assert.ok(Math.abs(moved_px - 120) < 30, `the picture moved by ${moved_px} pixels`);
+});
+
+test('the marker of the hand can be dragged beside the object', async (t) => {
+  const page = await openSession(t);
+  const start = await until(page, PROBE, () => true, '');
+  const box = await page.locator('#view').boundingBox();
+  const at = await pixelOf(page, start);
+  await page.mouse.move(box.x + at.x, box.y + at.y);
+  await page.mouse.down();
+  await page.mouse.move(box.x + at.x + 100, box.y + at.y, { steps: 5 });
+  await page.mouse.up();
+  const now = await until(page, PROBE, (...probe) => distance(probe, start) > 0.005, 'the hand does not move');
+  await page.waitForTimeout(700);
+  const shown = await pixelOf(page, await until(page, PROBE, () => true, ''));
+  assert.ok(Math.hypot(shown.x - at.x - 100, shown.y - at.y) < 8, `${now}: at ${shown.x - at.x}, ${shown.y - at.y}`);
+});
+
+test('a spot marks the surface under the probe, and its distance is shown', async (t) => {
+  const page = await openSession(t);
+  await page.waitForFunction(() => /mm to the surface/.test(document.getElementById('distance').value));
+  const [x, y, z] = await until(page, PROBE, () => true, '');
+  const shown_mm = parseFloat(await distanceText(page));
+  assert.ok(Math.abs(shown_mm - 1e3 * (length([x, y, z]) - RADIUS)) < 0.3, `${shown_mm} mm`);
+});
+
+test('fingers: one touches, a second one sets the depth, two move the view', async (t) => {
+  const page = await openSession(t, { viewport: { width: 820, height: 1180 }, hasTouch: true });
+  const fingers = await page.context().newCDPSession(page);
+  const point = (type, ...places) => fingers.send('Input.dispatchTouchEvent', {
+    type, touchPoints: places.map(([x, y], id) => ({ x, y, id })),
+  });
+  const on = await pixel(page, 0, 0.05);
+  const first = [on.pageX, on.pageY];
+  await point('touchStart', first);
+  await touches(page, await ballAt(page, RADIUS, on.x, on.y), 'no touch by a finger');
+  const deep = await number(page, 'penetration_m');
+  const second = [on.pageX + 200, on.pageY];
+  await point('touchStart', first, second);
+  for (let i = 1; i <= 5; ++i) await point('touchMove', first, [second[0], second[1] - 20 * i]);
+  await until(page, ['penetration_m'], (now) => now > 1.5 * deep, 'the second finger does not press deeper');
+  await point('touchEnd');
+  await until(page, ['penetration_m'], (now) => now === 0, 'the hand does not withdraw');
+
+  await page.locator('#show-device').evaluate((box) => box.click());
+  await page.waitForTimeout(1000);
+  const before = await covered(page);
+  await point('touchStart', first);
+  await point('touchStart', first, [first[0] + 100, first[1]]);
+  for (let i = 1; i <= 10; ++i) await point('touchMove', [first[0] - 2 * i, first[1] - 10 * i],
+    [first[0] + 100 + 2 * i, first[1] - 10 * i]);
+  await point('touchEnd');
+  await page.waitForTimeout(1500);
+  const after = await covered(page);
+  assert.ok(after.share > 1.4 * before.share, `share ${before.share}, then ${after.share}`);
+  assert.ok(after.y < before.y - 0.03, `middle at ${before.y}, then ${after.y}`);
+  assert.deepEqual(page.troubles, []);
+});

@@ -1,0 +1,83 @@
+#include "device/arm_command.hpp"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <thread>
+
+#include "command.hpp"
+#include "device/board_port.hpp"
+#include "interruption.hpp"
+#include "option_checks.hpp"
+#include "tactree/core/controller.hpp"
+
+namespace tactree::cli {
+namespace {
+
+struct ArmOptions {
+  BoardPort port;
+  double patience_s = 30.0;
+  double seconds = 0.0;
+  int link_timeout_ms = 50;
+  bool clear = false;
+  bool home = false;
+};
+
+std::chrono::milliseconds milliseconds(double seconds) {
+  return std::chrono::milliseconds(static_cast<std::int64_t>(1e3 * seconds));
+}
+
+/// Runs until the time is up, Ctrl-C is pressed or the board stops.
+void stay(host::Board& board, double seconds, int& exit_code) {
+  const auto begin = std::chrono::steady_clock::now();
+  while (!interrupted() &&
+         (seconds <= 0.0 || std::chrono::steady_clock::now() - begin < milliseconds(seconds))) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    const core::wire::StateReply state = board.state();
+    if (static_cast<core::State>(state.state) != core::State::kActive) {
+      fmt::print("the board is in state {}\n",
+                 core::name_of(static_cast<core::State>(state.state)));
+      exit_code = kExitFailed;
+      return;
+    }
+  }
+}
+
+// The session requires its link, so the force ends however this program ends.
+void arm(const ArmOptions& options, int& exit_code) {
+  watch_interruption();
+  host::Board board(chosen_port(options.port),
+                    {options.port.baud, static_cast<std::uint16_t>(options.link_timeout_ms)});
+  if (options.clear) {
+    board.clear_faults();
+  }
+  if (options.home) {
+    board.home();
+  }
+  board.arm(milliseconds(options.patience_s));
+  fmt::print("active; ends with this program\n");
+  std::fflush(stdout);
+  stay(board, options.seconds, exit_code);
+  board.stop();
+  fmt::print("stopped\n");
+}
+
+}  // namespace
+
+void add_arm_command(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<ArmOptions>();
+  CLI::App* verb = app.add_subcommand("arm", "Arms a board until this program ends");
+  add_port_options(*verb, options->port);
+  verb->add_option("--seconds", options->seconds, "stop after this time, s (default: on Ctrl-C)")
+      ->check(is_positive);
+  verb->add_option("--patience", options->patience_s,
+                   "longest wait for the dead-man control or the probe, s")
+      ->check(CLI::Range(0.1, 3600.0))
+      ->capture_default_str();
+  add_link_timeout_option(*verb, options->link_timeout_ms);
+  verb->add_flag("--clear", options->clear, "first clear faults whose cause is gone");
+  verb->add_flag("--home", options->home, "home: the device is in its home pose now");
+  verb->callback([options, &exit_code] { arm(*options, exit_code); });
+}
+
+}  // namespace tactree::cli

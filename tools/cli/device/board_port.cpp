@@ -1,0 +1,44 @@
+#include "device/board_port.hpp"
+
+#include <fmt/format.h>
+
+#include "command.hpp"
+#include "tactree/host/ports.hpp"
+
+namespace tactree::cli {
+
+void add_port_options(CLI::App& verb, BoardPort& options) {
+  verb.add_option("--port", options.port,
+                  "port of the board: a serial port, usb:SERIAL, or the one that tactree simulate "
+                  "--serve prints (default: the only one found)");
+  verb.add_option("--baud", options.baud, "speed of a serial port")->capture_default_str();
+}
+
+CLI::Option* add_link_timeout_option(CLI::App& verb, int& milliseconds) {
+  return verb
+      .add_option("--link-timeout", milliseconds,
+                  "force ends after this time without a heartbeat of this program, ms")
+      ->check(CLI::Range(5, 100))
+      ->capture_default_str();
+}
+
+std::string chosen_port(const BoardPort& options) {
+  if (!options.port.empty()) {
+    return options.port;
+  }
+  const std::vector<std::string> ports = host::list_ports();
+  if (ports.empty()) {
+    throw CommandError("no board found (plug one in, or give its --port)");
+  }
+  if (ports.size() > 1) {
+    throw CommandError(fmt::format("there are {} ports: {} (choose with --port)", ports.size(),
+                                   fmt::join(ports, ", ")));
+  }
+  return ports.front();
+}
+
+std::unique_ptr<host::Board> connect(const BoardPort& options) {
+  return std::make_unique<host::Board>(chosen_port(options), host::BoardOptions{options.baud, 0});
+}
+
+}  // namespace tactree::cli

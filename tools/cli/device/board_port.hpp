@@ -1,0 +1,35 @@
+#pragma once
+// Selects the board of a verb: --port and --baud, or the only board found.
+
+#include <CLI/CLI.hpp>
+#include <cstring>
+#include <memory>
+#include <string>
+
+#include "tactree/host/board.hpp"
+
+namespace tactree::cli {
+
+struct BoardPort {
+  std::string port;  ///< empty: the only one found
+  unsigned baud = host::kUsualBaud;
+};
+
+void add_port_options(CLI::App& verb, BoardPort& options);
+
+/// Adds --link-timeout: longest time without a heartbeat, ms, of a board armed by this program.
+CLI::Option* add_link_timeout_option(CLI::App& verb, int& milliseconds);
+
+/// Throws CommandError if there is no board, or more than one.
+[[nodiscard]] std::string chosen_port(const BoardPort& options);
+
+/// Opens a session. Throws as chosen_port() and host::Board.
+[[nodiscard]] std::unique_ptr<host::Board> connect(const BoardPort& options);
+
+/// A zero-terminated name that may fill its field.
+template <std::size_t N>
+[[nodiscard]] std::string text_of(const char (&field)[N]) {
+  return {field, ::strnlen(field, N)};
+}
+
+}  // namespace tactree::cli

@@ -1,0 +1,243 @@
+#include "device/monitor_command.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "command.hpp"
+#include "device/board_port.hpp"
+#include "interruption.hpp"
+#include "option_checks.hpp"
+#include "output_file.hpp"
+#include "tactree/core/controller.hpp"
+#include "tactree/host/link_error.hpp"
+
+namespace tactree::cli {
+namespace {
+
+struct MonitorOptions {
+  BoardPort port;
+  std::string json;
+  bool once = false;
+  double seconds = 0.0;
+};
+
+constexpr int kBarWidth = 40;
+constexpr double kRefreshS = 0.1;
+
+std::string names_of_limits(std::uint32_t limits) {
+  std::string names;
+  for (std::uint32_t i = 0; i < core::kLimits; ++i) {
+    if ((limits & (1U << i)) != 0U) {
+      names +=
+          std::string(names.empty() ? "" : ", ") + core::name_of(static_cast<core::Limit>(1U << i));
+    }
+  }
+  return names;
+}
+
+double length(const float (&v)[3]) {
+  return std::hypot(static_cast<double>(v[0]), static_cast<double>(v[1]),
+                    static_cast<double>(v[2]));
+}
+
+/// Ticks per second of the board's clock.
+double rate_of(const host::Telemetry& from, const host::Telemetry& to) {
+  const std::uint32_t us = to.header.board_time_us - from.header.board_time_us;
+  return us == 0U ? 0.0 : 1e6 * static_cast<double>(to.header.tick - from.header.tick) / us;
+}
+
+struct View {
+  host::Telemetry now{};
+  double rate_hz = 0.0;
+  double force_max_N = 0.0;
+  std::uint32_t cycles_per_tick = 0;
+  std::uint64_t dropped = 0;
+};
+
+std::string cycles(const View& view) {
+  if (view.cycles_per_tick == 0U) {
+    return "";
+  }
+  return fmt::format(", {:.0f} of {} cycles",
+                     static_cast<double>(view.now.load) * view.cycles_per_tick,
+                     view.cycles_per_tick);
+}
+
+std::string to_text(const View& view) {
+  const host::Telemetry& t = view.now;
+  const double force = length(t.force_N);
+  const double share = view.force_max_N > 0.0 ? std::min(1.0, force / view.force_max_N) : 0.0;
+  const int filled = static_cast<int>(std::lround(share * kBarWidth));
+  const std::string faults = host::names_of(t.faults);
+  const std::string limits = names_of_limits(t.limits);
+  return fmt::format(
+      "state    {}{}\n"
+      "force    {:7.3f} N [{}{}] {:.3g} N\n"
+      "probe    {:9.4f} {:9.4f} {:9.4f} m   speed {:.3f} m/s\n"
+      "contact  {}\n"
+      "ticks    {:.0f} a second, load {:.1f} %{}, overruns {}, telemetry dropped {}\n"
+      "faults   {}\n",
+      core::name_of(static_cast<core::State>(t.state)),
+      limits.empty() ? "" : " (held back: " + limits + ")", force,
+      std::string(static_cast<std::size_t>(filled), '#'),
+      std::string(static_cast<std::size_t>(kBarWidth - filled), ' '), view.force_max_N,
+      t.probe_m[0], t.probe_m[1], t.probe_m[2], length(t.velocity_m_s),
+      t.body == core::kNoBody ? "none"
+                              : fmt::format("body {}, {:.3f} mm deep", t.body,
+                                            1e3 * static_cast<double>(t.penetration_m)),
+      view.rate_hz, 100.0 * static_cast<double>(t.load), cycles(view), t.overruns, view.dropped,
+      faults.empty() ? "none" : faults);
+}
+
+nlohmann::json to_json(const View& view) {
+  const host::Telemetry& t = view.now;
+  return {{"tick", t.header.tick},
+          {"state", core::name_of(static_cast<core::State>(t.state))},
+          {"faults", t.faults},
+          {"fault_names", host::names_of(t.faults)},
+          {"limits", t.limits},
+          {"force_N", t.force_N},
+          {"probe_m", t.probe_m},
+          {"velocity_m_s", t.velocity_m_s},
+          {"in_contact", t.body != core::kNoBody},
+          {"penetration_m", t.penetration_m},
+          {"rate_hz", view.rate_hz},
+          {"load", t.load},
+          {"overruns", t.overruns},
+          {"dropped", view.dropped}};
+}
+
+class NoTelemetry : public CommandError {
+ public:
+  using CommandError::CommandError;
+};
+
+class Monitor {
+ public:
+  explicit Monitor(host::Board& board) : board_(board) {
+    const core::wire::CapabilitiesReply can = board_.capabilities();
+    view_.force_max_N = static_cast<double>(can.force_max_N);
+    view_.cycles_per_tick = can.cycles_per_tick;
+    // Fifty per second are readable and leave bandwidth on a serial port.
+    const auto every = static_cast<std::uint32_t>(std::max(1.0F, can.rate_hz / 50.0F));
+    board_.subscribe({0x1FF, every});
+  }
+
+  /// Throws NoTelemetry if none arrives.
+  const View& look() {
+    const auto wait_until = std::chrono::steady_clock::now() + std::chrono::seconds(2);
+    std::vector<host::Telemetry> news = board_.take_stream();
+    while (news.size() < 2U) {
+      if (!board_.connected() || std::chrono::steady_clock::now() > wait_until) {
+        throw NoTelemetry("no telemetry (is the board still connected?)");
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+      const std::vector<host::Telemetry> more = board_.take_stream();
+      news.insert(news.end(), more.begin(), more.end());
+    }
+    view_.rate_hz = rate_of(news.front(), news.back());
+    view_.now = news.back();
+    view_.dropped = board_.dropped();
+    return view_;
+  }
+
+ private:
+  host::Board& board_;
+  View view_;
+};
+
+/// Waits until the board is connected again. False: the time is up, or Ctrl-C was pressed.
+template <class TimeIsUp>
+bool wait_for_return(host::Board& board, TimeIsUp time_is_up) {
+  fmt::print("the board is disconnected; waiting for it\n");
+  std::fflush(stdout);
+  while (!time_is_up()) {
+    try {
+      board.reconnect();
+      fmt::print("the board is connected again\n");
+      return true;
+    } catch (const host::LinkError&) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    }
+  }
+  return false;
+}
+
+/// On a terminal over the last view; in a file or pipe after it, separated by an empty line.
+void print_view(const std::string& text, bool first) {
+  if (isatty(STDOUT_FILENO) == 0) {
+    fmt::print("{}{}", first ? "" : "\n", text);
+  } else {
+    fmt::print("{}", first ? "" : "\x1b[6A");
+    for (std::size_t at = 0; at < text.size();) {
+      const std::size_t line_end = text.find('\n', at);
+      fmt::print("\x1b[2K{}\n", text.substr(at, line_end - at));
+      at = line_end + 1;
+    }
+  }
+  std::fflush(stdout);
+}
+
+void watch(host::Board& board, Monitor& monitor, const MonitorOptions& options) {
+  const auto begin = std::chrono::steady_clock::now();
+  const std::chrono::duration<double> limit(options.seconds);
+  const auto time_is_up = [&] {
+    return interrupted() ||
+           (options.seconds > 0.0 && std::chrono::steady_clock::now() - begin >= limit);
+  };
+  bool first = true;
+  while (!time_is_up()) {
+    std::string text;
+    try {
+      text = to_text(monitor.look());
+    } catch (const NoTelemetry&) {
+      if (!wait_for_return(board, time_is_up)) {
+        return;
+      }
+      first = true;
+      continue;
+    }
+    print_view(text, first);
+    first = false;
+    std::this_thread::sleep_for(std::chrono::duration<double>(kRefreshS));
+  }
+}
+
+void show(const MonitorOptions& options, int& exit_code) {
+  watch_interruption();
+  const auto board = connect(options.port);
+  Monitor monitor(*board);
+  if (!options.once) {
+    return watch(*board, monitor, options);
+  }
+  const View& view = monitor.look();
+  if (options.json.empty()) {
+    fmt::print("{}", to_text(view));
+  } else {
+    write_file(options.json, to_json(view).dump(2) + "\n");
+  }
+  exit_code = view.now.faults == 0U ? kExitOk : kExitFailed;
+}
+
+}  // namespace
+
+void add_monitor_command(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<MonitorOptions>();
+  CLI::App* verb = app.add_subcommand("monitor", "Shows state, force and faults of a board, live");
+  add_port_options(*verb, options->port);
+  CLI::Option* once =
+      verb->add_flag("--once", options->once, "print one view; exit code 1: a fault is latched");
+  verb->add_option("--json", options->json, "write the view to this file")->needs(once);
+  verb->add_option("--seconds", options->seconds, "end after this time, s (default: on Ctrl-C)")
+      ->check(is_positive);
+  verb->callback([options, &exit_code] { show(*options, exit_code); });
+}
+
+}  // namespace tactree::cli

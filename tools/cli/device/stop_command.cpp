@@ -1,0 +1,40 @@
+#include "device/stop_command.hpp"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "command.hpp"
+#include "device/board_port.hpp"
+#include "tactree/host/connection.hpp"
+#include "tactree/host/ports.hpp"
+
+namespace tactree::cli {
+namespace {
+
+// Needs no session: another program may have one. Repeats until the board reports that it has
+// stopped.
+void stop(const BoardPort& options) {
+  constexpr int kTries = 5;
+  host::Connection connection(host::open_port(chosen_port(options), options.baud));
+  const core::wire::ControlRequest request{
+      static_cast<std::uint8_t>(core::wire::ControlCode::kStop), {}, 0};
+  for (int i = 0; i < kTries; ++i) {
+    if (connection.call(core::wire::MessageKind::kControl, request).ok()) {
+      fmt::print("stopped\n");
+      return;
+    }
+  }
+  throw CommandError(connection.name() + ": no answer (use the emergency stop)");
+}
+
+}  // namespace
+
+void add_stop_command(CLI::App& app, int&) {
+  auto options = std::make_shared<BoardPort>();
+  CLI::App* verb = app.add_subcommand("stop", "Stops a board, whichever program armed it");
+  add_port_options(*verb, *options);
+  verb->callback([options] { stop(*options); });
+}
+
+}  // namespace tactree::cli

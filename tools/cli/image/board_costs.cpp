@@ -1,0 +1,75 @@
+#include "image/board_costs.hpp"
+
+#include <fmt/core.h>
+
+#include "command.hpp"
+#include "device_file.hpp"
+
+namespace tactree::cli {
+
+double BoardCosts::cycles(const core::BlobHeader& header,
+                          const core::Configuration& configuration) const {
+  core::TickLoad load;
+  load.add(header, configuration);
+  return static_cast<double>(core::cycles_of(costs, load));
+}
+
+double BoardCosts::highest_rate(const core::BlobHeader& header,
+                                const core::Configuration& configuration) const {
+  core::TickLoad load;
+  load.add(header, configuration);
+  wcet::RateTierCycles cycles{};
+  for (load.rate_tier = 0; load.rate_tier < core::kRateTiers; ++load.rate_tier) {
+    cycles[load.rate_tier] = static_cast<double>(core::cycles_of(costs, load));
+  }
+  return wcet::highest_rate(timing.clock_hz, cycles);
+}
+
+wcet::BoundOptions analysis_of(const emulation::BoardDescription& board,
+                               const std::string& firmware) {
+  wcet::BoundOptions options;
+  options.image = emulation::find_image(board, firmware);
+  options.sources = TACTREE_SOURCES;
+  options.entries = wcet::tick_entries();
+  return options;
+}
+
+BoardCosts costs_of_board(const std::string& name, const std::string& firmware) {
+  const emulation::BoardDescription* const board = emulation::find_board(name);
+  const wcet::BoardTiming* const timing = wcet::find_timing(name);
+  if (board == nullptr || timing == nullptr) {
+    throw CommandError(
+        fmt::format("--board: the timing of {} is unknown (name another board, or leave "
+                    "the option out)",
+                    name));
+  }
+  wcet::BoundOptions options = analysis_of(*board, firmware);
+  options.timing = timing;
+  BoardCosts result{*timing, wcet::embedded(options.image), options.image.string(), true};
+  if (result.costs.known != core::kTickCostsKnown) {
+    result.costs = wcet::tick_costs(options);
+    result.embedded = false;
+  }
+  return result;
+}
+
+core::DeviceModel slowest_or(const std::string& device) {
+  if (!device.empty()) {
+    return load_device(device).preset.model;
+  }
+  core::DeviceModel slowest;
+  slowest.kind = core::DeviceKind::kDelta;
+  return slowest;
+}
+
+std::vector<std::string> boards_with_timing() {
+  std::vector<std::string> names;
+  for (const emulation::BoardDescription& board : emulation::boards()) {
+    if (wcet::find_timing(board.name) != nullptr) {
+      names.emplace_back(board.name);
+    }
+  }
+  return names;
+}
+
+}  // namespace tactree::cli

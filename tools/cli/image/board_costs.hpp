@@ -1,0 +1,43 @@
+#pragma once
+// Cycles of a tick on a board, from the image of its firmware.
+
+#include <string>
+#include <vector>
+
+#include "tactree/core/tick_cost.hpp"
+#include "tactree/emulation/emulated_target.hpp"
+#include "tactree/wcet/bound.hpp"
+
+namespace tactree::cli {
+
+struct BoardCosts {
+  wcet::BoardTiming timing;
+  core::TickCosts costs;
+  std::string image;
+  bool embedded = false;  ///< false: the image has no costs; they were analysed now
+
+  /// Cycles of a tick with this model alone. Uses mode, rate and kind of device of the
+  /// configuration.
+  [[nodiscard]] double cycles(const core::BlobHeader& header,
+                              const core::Configuration& configuration) const;
+  /// Highest rate, Hz, at which the board renders this model in time.
+  [[nodiscard]] double highest_rate(const core::BlobHeader& header,
+                                    const core::Configuration& configuration) const;
+};
+
+/// Options to analyse a board's image, without models and timing. `firmware`: its folder; empty:
+/// the build tree or the installation.
+[[nodiscard]] wcet::BoundOptions analysis_of(const emulation::BoardDescription& board,
+                                             const std::string& firmware);
+
+/// `firmware` as above. Throws CommandError on an unknown board, wcet::BoundError and
+/// EmulationError.
+[[nodiscard]] BoardCosts costs_of_board(const std::string& name, const std::string& firmware = {});
+
+/// The device of this name or file; empty: a device of the kind that takes the most cycles.
+[[nodiscard]] core::DeviceModel slowest_or(const std::string& device);
+
+/// Boards with a known timing.
+[[nodiscard]] std::vector<std::string> boards_with_timing();
+
+}  // namespace tactree::cli

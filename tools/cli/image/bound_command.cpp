@@ -1,0 +1,202 @@
+#include "image/bound_command.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "blob_file.hpp"
+#include "command.hpp"
+#include "image/board_costs.hpp"
+#include "json_text.hpp"
+#include "output_file.hpp"
+#include "tactree/core/scene.hpp"
+#include "tactree/wcet/bound.hpp"
+
+namespace tactree::cli {
+namespace {
+
+// Functions in the summary.
+constexpr std::size_t kReported = 12;
+
+struct BoundCommandOptions {
+  std::string image;
+  std::string board;
+  std::string blob;
+  double rate_hz = 1000.0;
+  bool must_keep_rate = false;
+  bool embed = false;
+  bool quiet = false;
+  std::string sources = TACTREE_SOURCES;
+  std::string json;
+  std::string mode = "surface";
+  std::uint32_t bodies = 1;
+  std::string device;
+};
+
+wcet::Parameters parameters(const BoundCommandOptions& options) {
+  const auto mode = options.mode == "paper" ? core::RenderMode::kPaper : core::RenderMode::kSurface;
+  const core::DeviceKind device = slowest_or(options.device).kind;
+  if (!options.blob.empty()) {
+    const BlobFile blob(options.blob);
+    return wcet::parameters_of(blob.view().header(), mode, options.bodies, device);
+  }
+  const auto kind =
+      mode == core::RenderMode::kPaper ? core::TickKind::kPaper : core::TickKind::kMixed;
+  return wcet::parameters_of(wcet::largest_model_limits(), kind, options.bodies,
+                             device == core::DeviceKind::kDelta);
+}
+
+nlohmann::json to_json(const BoundCommandOptions& options, const wcet::BoundOptions& analysis,
+                       const wcet::Bound& bound, double highest_rate_hz) {
+  nlohmann::json functions = nlohmann::json::array();
+  for (const wcet::FunctionOnPath& f : bound.functions) {
+    functions.push_back({{"name", f.name}, {"calls", f.calls}, {"instructions", f.instructions}});
+  }
+  nlohmann::json loops = nlohmann::json::array();
+  for (const wcet::LoopOnPath& loop : bound.loops) {
+    loops.push_back({{"file", loop.file},
+                     {"line", loop.line},
+                     {"function", loop.function},
+                     {"address", loop.address},
+                     {"bound", loop.bound},
+                     {"passes", loop.passes},
+                     {"total", loop.total}});
+  }
+  nlohmann::json result{{"image", options.image},
+                        {"blob", options.blob},
+                        {"parameters", bound.parameters},
+                        {"instructions", bound.instructions},
+                        {"cycles", nullptr},
+                        {"functions", functions},
+                        {"loops", loops}};
+  if (analysis.timing != nullptr) {
+    result["cycles"] = bound.cycles;
+    result["cycles_are_an_estimate"] = analysis.timing->is_estimate;
+    result["rate_max_hz"] = highest_rate_hz;
+  }
+  return result;
+}
+
+void print(const wcet::Bound& bound) {
+  fmt::print("instructions       {} in one tick at most\n", bound.instructions);
+  for (const auto& [name, value] : bound.parameters) {
+    fmt::print("  {:<22} {}\n", name, value);
+  }
+  for (const std::string& fact : bound.unused_facts) {
+    fmt::print("without effect     {}: 'at most:' on a line without a call or store\n", fact);
+  }
+  fmt::print("functions\n");
+  for (std::size_t i = 0; i < std::min(kReported, bound.functions.size()); ++i) {
+    const wcet::FunctionOnPath& f = bound.functions[i];
+    fmt::print("  {:8.0f} {:7.0f} x  {}\n", f.instructions, f.calls, f.name);
+  }
+  fmt::print("loops              passes each time, in the worst tick\n");
+  for (const wcet::LoopOnPath& loop : bound.loops) {
+    fmt::print("  {:6} {:8.0f}  {}:{}: {}\n", loop.passes, loop.total, loop.file, loop.line,
+               loop.bound);
+  }
+}
+
+void print_timing(const BoundCommandOptions& options, const wcet::BoardTiming& timing,
+                  const wcet::Bound& bound, double highest_rate_hz) {
+  fmt::print("cycles             {} at most{}: {:.1f} us of {:.1f} at {:.0f} MHz ({})\n",
+             bound.cycles, timing.is_estimate ? ", an estimate" : "",
+             1e6 * static_cast<double>(bound.cycles) / timing.clock_hz, 1e6 / options.rate_hz,
+             1e-6 * timing.clock_hz, timing.source);
+  fmt::print("highest rate       {:.0f} Hz\n", highest_rate_hz);
+}
+
+/// Throws CommandError if the board cannot keep the rate.
+void check_rate(const BoundCommandOptions& options, const wcet::BoardTiming& timing,
+                const wcet::Bound& bound, double highest) {
+  // A tick does more work at a low rate tier: a rate below the highest may still be too high.
+  if (static_cast<double>(bound.cycles) * options.rate_hz > timing.clock_hz) {
+    throw CommandError(fmt::format(
+        "--rate: {} keeps up to {:.0f} Hz with this model, but not {:.0f}: a tick takes up to {} "
+        "cycles of {:.0f} (lower --rate, or build a model with fewer points in a ball)",
+        timing.board, highest, options.rate_hz, bound.cycles, timing.clock_hz / options.rate_hz));
+  }
+}
+
+void bound_tick(const BoundCommandOptions& options) {
+  check_outputs({options.json}, {options.image, options.blob});
+  wcet::BoundOptions analysis;
+  analysis.image = options.image;
+  analysis.sources = options.sources;
+  analysis.entries = wcet::tick_entries();
+  analysis.parameters = parameters(options);
+  analysis.rate_tier = core::rate_tier_of(static_cast<float>(options.rate_hz));
+  analysis.timing = options.board.empty() ? nullptr : wcet::find_timing(options.board);
+  if (!options.board.empty() && analysis.timing == nullptr) {
+    throw CommandError(
+        fmt::format("--board: the timing of {} is unknown (leave the option out: the "
+                    "bound is then in instructions)",
+                    options.board));
+  }
+  if (options.embed) {
+    wcet::embed(options.image, wcet::tick_costs(analysis));
+    if (options.quiet) {
+      return;
+    }
+  }
+  const wcet::Bound result = wcet::worst_case(analysis);
+  print(result);
+  double highest = 0.0;
+  if (analysis.timing != nullptr) {
+    highest = std::floor(wcet::highest_rate(analysis.timing->clock_hz, result.rate_tier_cycles));
+    print_timing(options, *analysis.timing, result, highest);
+  }
+  if (!options.json.empty()) {
+    write_file(options.json, json_text(to_json(options, analysis, result, highest)));
+  }
+  if (options.must_keep_rate && analysis.timing != nullptr) {
+    check_rate(options, *analysis.timing, result, highest);
+  }
+}
+
+}  // namespace
+
+void add_bound_command(CLI::App& app, int&) {
+  auto options = std::make_shared<BoundCommandOptions>();
+  CLI::App* verb = app.add_subcommand(
+      "bound",
+      "Proves the largest number of instructions and cycles of a tick from a board's image");
+  verb->add_option("IMAGE", options->image, "the image: <board>.elf")->required();
+  CLI::Option* board = verb->add_option(
+      "--board", options->board, "name of the board: prints cycles and the highest rate, too");
+  CLI::Option* embed =
+      verb->add_flag(
+              "--embed", options->embed,
+              "write the cycles into the image, as a formula in the limits of the model: its "
+              "controller then refuses models that are too slow (run scripts/seal-image on it)")
+          ->needs(board);
+  verb->add_flag("--quiet", options->quiet, "with --embed: print nothing")->needs(embed);
+  CLI::Option* rate = verb->add_option("--rate", options->rate_hz,
+                                       "ticks per second, Hz; a tick does more work at a low rate. "
+                                       "With --board: exit code 1 if the board cannot keep it")
+                          ->default_str("1000")
+                          ->check(CLI::Range(1.0, 1e6));
+  verb->add_option(
+      "--blob", options->blob,
+      "the model on the board; default: the worst of all models that a controller accepts");
+  verb->add_option("--mode", options->mode, "surface or paper")
+      ->check(CLI::IsMember({"surface", "paper"}));
+  verb->add_option("--bodies", options->bodies, "models within reach of the probe at a time")
+      ->check(CLI::Range(1U, core::kMaxReachableBodies));
+  verb->add_option("--device", options->device,
+                   "name or file of the device; default: the kind that takes most cycles");
+  verb->add_option("--sources", options->sources,
+                   "folder of the sources from which the image was built");
+  verb->add_option("--json", options->json, "write the result to this file");
+  verb->callback([options, rate] {
+    options->must_keep_rate = rate->count() > 0;
+    bound_tick(*options);
+  });
+}
+
+}  // namespace tactree::cli

@@ -1,0 +1,35 @@
+#pragma once
+// Encoders of the file formats of programmers and boot loaders.
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "image/firmware_image.hpp"
+
+namespace tactree::cli {
+
+/// Largest result of to_bin(), bytes: it fills gaps.
+inline constexpr std::uint64_t kLargestBin = 64U << 20;
+
+/// From the first byte to the last; gaps are 0xFF, as erased flash. Precondition: segments sorted
+/// by address, without overlap, end - begin <= kLargestBin.
+[[nodiscard]] std::vector<std::byte> to_bin(std::span<const Segment> segments);
+
+/// Intel HEX with 32-bit addresses and the entry point.
+[[nodiscard]] std::vector<std::byte> to_hex(std::span<const Segment> segments, std::uint32_t entry);
+
+/// UF2 (github.com/microsoft/uf2): blocks of 256 bytes at multiples of 256; bytes of a block
+/// outside the segments are 0xFF.
+[[nodiscard]] std::vector<std::byte> to_uf2(std::span<const Segment> segments,
+                                            std::uint32_t family);
+
+/// to_bin() with the suffix of USB DFU 1.1, appendix B. 0xFFFF: any vendor, any product.
+[[nodiscard]] std::vector<std::byte> to_dfu(std::span<const Segment> segments, std::uint16_t vendor,
+                                            std::uint16_t product);
+
+/// The ELF file of the firmware with its symbols, and `blob` as an additional segment and section.
+[[nodiscard]] std::vector<std::byte> to_elf(std::span<const std::byte> file, const Segment& blob);
+
+}  // namespace tactree::cli

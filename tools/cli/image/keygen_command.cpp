@@ -1,0 +1,24 @@
+#include "image/keygen_command.hpp"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "command.hpp"
+#include "image/model_signature.hpp"
+
+namespace tactree::cli {
+
+void add_keygen_command(CLI::App& app, int&) {
+  auto file = std::make_shared<std::string>();
+  CLI::App* verb = app.add_subcommand(
+      "keygen",
+      "Generates a key pair for signing models: KEY, to be kept secret, and KEY.pub for boards");
+  verb->add_option("KEY", *file, "file for the secret key; it must not exist")->required();
+  verb->callback([file] {
+    const PublicKey key = generate_key(*file);
+    fmt::print("{}: secret; {}.pub: {}\n", *file, *file, to_hex(key));
+  });
+}
+
+}  // namespace tactree::cli

@@ -1,0 +1,155 @@
+#include "run/evaluate_command.hpp"
+
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "command.hpp"
+#include "output_file.hpp"
+#include "tactree/builder/progress.hpp"
+#include "tactree/evaluation/evaluation.hpp"
+#include "tactree/viewer/markdown.hpp"
+
+namespace tactree::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+// From the package glmark2-data.
+constexpr const char* kDefaultScan = "/usr/share/glmark2/models/bunny.obj";
+
+struct EvaluateOptions {
+  evaluation::Options evaluation;
+  std::vector<std::string> scans;
+  std::string folder;
+  bool no_scans = false;
+  bool require_targets = false;
+  std::string json;
+  std::string report;
+  std::string html;
+};
+
+std::vector<fs::path> files_below(const std::string& folder) {
+  std::error_code error;
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder, error)) {
+    if (entry.is_regular_file(error)) {
+      files.push_back(entry.path());
+    }
+  }
+  if (error) {
+    throw CommandError(fmt::format("{}: cannot list the folder: {}", folder, error.message()));
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+std::vector<fs::path> scans_of(const EvaluateOptions& options) {
+  std::vector<fs::path> scans(options.scans.begin(), options.scans.end());
+  for (const fs::path& scan : scans) {
+    if (!fs::exists(scan)) {
+      throw CommandError(fmt::format("{}: no such file (check the path)", scan.string()));
+    }
+  }
+  if (!options.folder.empty()) {
+    const std::vector<fs::path> found = files_below(options.folder);
+    scans.insert(scans.end(), found.begin(), found.end());
+  }
+  if (scans.empty() && !options.no_scans && fs::exists(kDefaultScan)) {
+    scans.emplace_back(kDefaultScan);
+  }
+  return scans;
+}
+
+/// Writes the page, and its pictures to a folder of the same name.
+void write_report(const fs::path& file, const evaluation::Result& result) {
+  const fs::path pictures = file.stem();
+  const fs::path folder = file.parent_path() / pictures;
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) {
+    throw CommandError(
+        fmt::format("{}: cannot create the folder: {}", folder.string(), error.message()));
+  }
+  for (const auto& [name, svg] : evaluation::plots(result)) {
+    write_file(folder / name, svg);
+  }
+  write_file(file, evaluation::to_markdown(result, pictures.string()));
+}
+
+/// The report with the Z-width and the openings of the scans as one file with embedded pictures.
+std::string html_report(const evaluation::Result& result) {
+  std::map<std::string, std::string> pictures = evaluation::plots(result);
+  pictures.merge(evaluation::hole_maps(result));
+  pictures["z_width.svg"] = evaluation::z_width_svg(result.options.quick);
+  viewer::MarkdownTargets targets;
+  targets.picture = [&pictures](std::string_view file) {
+    const auto found = pictures.find(std::string(file.substr(file.rfind('/') + 1)));
+    return found == pictures.end() ? std::string() : found->second;
+  };
+  const std::string text =
+      evaluation::to_markdown(result, "pictures") +
+      "\n## Z-width\nLargest stable stiffness of a wall without a hand, by the "
+      "damping of the wall and the rate.\n\n"
+      "![Z-width](z_width.svg)\n" +
+      evaluation::holes_markdown(result);
+  return viewer::html_page("Evaluation results", viewer::markdown_html(text, targets));
+}
+
+void evaluate(EvaluateOptions& options, int& exit_code) {
+  options.evaluation.scans = scans_of(options);
+  const std::vector<fs::path> inputs(options.evaluation.scans.begin(),
+                                     options.evaluation.scans.end());
+  check_outputs({options.json, options.html}, inputs);
+  const auto progress = builder::make_progress(builder::ProgressStyle::kAuto, stderr);
+  const evaluation::Result result = evaluation::evaluate(options.evaluation, *progress);
+  if (!options.json.empty()) {
+    write_file(options.json, evaluation::to_json(result));
+  }
+  if (!options.report.empty()) {
+    write_report(options.report, result);
+  }
+  if (!options.html.empty()) {
+    write_file(options.html, html_report(result));
+  }
+  fmt::print("{}", evaluation::to_markdown(result, ""));
+  exit_code = options.require_targets && !result.all_met() ? kExitFailed : kExitOk;
+}
+
+}  // namespace
+
+void add_evaluate_command(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<EvaluateOptions>();
+  CLI::App* verb = app.add_subcommand(
+      "evaluate",
+      "Measures the accuracy of both modes: the paper's Tables 1 and 2, distance, normal and "
+      "force\n"
+      "on shapes with known geometry, the closed loop, and real scans against a double precision\n"
+      "reference. Deterministic; some minutes, or seconds with --quick. Prints the tables and\n"
+      "targets.");
+  verb->add_flag("--quick", options->evaluation.quick, "fewer probes: faster, less precise");
+  verb->add_option("--seed", options->evaluation.seed, "seed of the random numbers")
+      ->capture_default_str();
+  verb->add_option("--scan", options->scans,
+                   fmt::format("scans to compare (default: {}, if present)", kDefaultScan));
+  verb->add_option("--scans", options->folder, "compare every readable scan below this folder");
+  verb->add_flag("--no-scans", options->no_scans, "omit the default scan");
+  verb->add_flag("--require-targets", options->require_targets,
+                 "exit code 1 if a target is missed");
+  verb->add_option("--json", options->json, "write all values to this file");
+  verb->add_option("--report", options->report,
+                   "write a Markdown page to this file, its plots to a folder of the same name");
+  verb->add_option(
+      "--html", options->html,
+      "write a self-contained HTML page to this file, with maps of the Z-width and of the "
+      "holes of each scan");
+  verb->callback([options, &exit_code] { evaluate(*options, exit_code); });
+}
+
+}  // namespace tactree::cli

@@ -1,0 +1,20 @@
+#pragma once
+// Compares the size of a model with the workspace of a device.
+
+#include <optional>
+#include <string>
+
+#include "tactree/core/blob_format.hpp"
+#include "tactree/core/device_model.hpp"
+
+namespace tactree::cli {
+
+/// A warning with its remedy if the device cannot reach all faces of the box around the model,
+/// placed with its middle at the device's origin. Empty if it can, and for a device of one or two
+/// axes. Cost: some tenths of a second.
+[[nodiscard]] std::optional<std::string> oversize_warning(const std::string& file,
+                                                          const core::BlobHeader& model,
+                                                          const std::string& device_name,
+                                                          const core::DeviceModel& device);
+
+}  // namespace tactree::cli

@@ -1,0 +1,36 @@
+#pragma once
+// The bodies of a simulation and how they move, from a JSON file:
+//
+//   {"bodies": [
+//     {"blob": 0, "pose": [1,0,0,0.1,  0,1,0,0,  0,0,1,0,  0,0,0,1],
+//      "linear_velocity_m_s": [0, 0, 0.01], "angular_velocity_rad_s": [0, 0, 1]},
+//     {"blob": "lid.blob", "keyframes": [{"t_s": 0, "pose": [...]}, {"t_s": 2, "pose": [...]}],
+//      "from_s": 1, "until_s": 3}]}
+//
+// "blob": index of a blob on the command line, from 0, or a file next to the scene file. "pose": a
+// 4x4 matrix, row by row, in metres; default: the scene's origin. Time 0 is the first tick after
+// arming. A body without "from_s" and "until_s" is always enabled.
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "blob_file.hpp"
+#include "tactree/simulation/scene_target.hpp"
+
+namespace tactree::cli {
+
+struct SceneFile {
+  std::vector<std::unique_ptr<BlobFile>> blobs;
+  std::vector<std::string> names;      ///< of each body's blob
+  std::vector<const BlobFile*> files;  ///< each body's blob
+  std::vector<simulation::SceneBody> bodies;
+};
+
+/// Reads `scene`; empty: each of `blobs` is a body at rest at the origin. Throws CommandError with
+/// file, key, cause and remedy.
+[[nodiscard]] SceneFile read_scene(const std::filesystem::path& scene,
+                                   const std::vector<std::string>& blobs);
+
+}  // namespace tactree::cli

@@ -1,0 +1,23 @@
+#pragma once
+// Runs a simulated board in real time for connected programs.
+
+#include <chrono>
+#include <functional>
+
+#include "tactree/simulation/simulation.hpp"
+
+namespace tactree::cli {
+
+struct ServeSchedule {
+  double rate_hz = 1000.0;
+  double path_s = 10.0;      ///< duration of the hand's path, travelled to and fro
+  double seconds_max = 0.0;  ///< real time; 0: until interrupted
+  /// Called after each tick; returns at the time of the next tick. None: sleeps.
+  std::function<void(std::chrono::steady_clock::time_point due)> wait;
+};
+
+/// Runs until the time is up or a signal (SIGINT, SIGTERM). The simulated user holds the dead-man
+/// control while the controller is armed and moves while there is force.
+void serve_session(simulation::Simulation& simulation, const ServeSchedule& schedule);
+
+}  // namespace tactree::cli

@@ -1,0 +1,86 @@
+#include "run/simulate_command.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "command.hpp"
+#include "device_file.hpp"
+#include "output_file.hpp"
+#include "run/model_size.hpp"
+#include "run/scene_file.hpp"
+#include "run/simulate_options.hpp"
+#include "run/simulate_replay.hpp"
+#include "run/simulate_report.hpp"
+#include "run/simulate_run.hpp"
+#include "run/simulate_serve.hpp"
+#include "run/simulate_setup.hpp"
+
+namespace tactree::cli {
+namespace {
+
+/// None for a model that --origin or a scene placed: it may be meant to be reached in part.
+std::optional<std::string> size_warning(const SimulateOptions& options, const SceneFile& scene) {
+  if (is_scene(options) || !options.origin_m.empty()) {
+    return std::nullopt;
+  }
+  return oversize_warning(options.blob, scene.files[0]->view().header(), options.device,
+                          load_device(options.device).preset.model);
+}
+
+void simulate(SimulateOptions& options, int& exit_code) {
+  if (options.dump_device) {
+    fmt::print("{}", device_json(load_device(options.device)));
+    return;
+  }
+  if (options.blobs.empty() && options.scene.empty()) {
+    throw CLI::RequiredError("BLOB");
+  }
+  std::vector<std::filesystem::path> inputs(options.blobs.begin(), options.blobs.end());
+  inputs.insert(inputs.end(), {options.scene, options.path, options.replay});
+  check_outputs({options.record, options.trace, options.plot, options.json}, inputs);
+  if (!options.replay.empty()) {
+    exit_code = replay_session(options) ? kExitOk : kExitFailed;
+    return;
+  }
+  if (!options.record.empty() && !options.board.empty() && options.board != "host") {
+    refuse(fmt::format("--record: the inputs of {} are assembled in the emulator, out of reach",
+                       options.board),
+           "leave --board out: the host computes the same ticks bit for bit");
+  }
+  const SceneFile scene = read_scene(options.scene, options.blobs);
+  options.blob = scene.names[0];
+  if (options.serve) {
+    serve(options, scene);
+    return;
+  }
+  const std::optional<std::string> oversize = size_warning(options, scene);
+  if (oversize) {
+    fmt::print(stderr, "tactree: warning: {}\n", *oversize);
+  }
+  const Outcome outcome = run(options, scene);
+  write_results(options, scene, outcome);
+  print_summary(options, scene, outcome);
+  exit_code = outcome.summary.faults.empty() ? kExitOk : kExitFailed;
+  if (exit_code == kExitOk && outcome.summary.contact_ticks == 0 && !options.allow_no_contact) {
+    refuse(fmt::format("{}: the probe never touched the model", options.blob),
+           oversize ? "make it smaller: see the warning"
+                    : "choose a --script or --path that meets its surface, or its --origin; "
+                      "--allow-no-contact accepts it");
+  }
+}
+
+}  // namespace
+
+void add_simulate_command(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<SimulateOptions>();
+  CLI::App* verb = app.add_subcommand(
+      "simulate", "Runs the controller of the firmware against a simulated device and hand");
+  add_simulate_options(*verb, *options);
+  verb->callback([options, &exit_code] { simulate(*options, exit_code); });
+}
+
+}  // namespace tactree::cli

@@ -1,0 +1,204 @@
+#include "run/simulate_options.hpp"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+#include "device_file.hpp"
+#include "option_checks.hpp"
+#include "run/wall_options.hpp"
+#include "tactree/emulation/board_description.hpp"
+#include "tactree/simulation/hand_script.hpp"
+#include "tactree/simulation/injection.hpp"
+
+namespace tactree::cli {
+namespace {
+
+std::vector<std::string> board_names() {
+  std::vector<std::string> names{"host"};
+  for (const emulation::BoardDescription& board : emulation::boards()) {
+    names.emplace_back(board.name);
+  }
+  return names;
+}
+
+void add_controller_options(CLI::App& verb, SimulateOptions& options) {
+  core::Configuration& c = options.setup.controller;
+  add_wall_options(verb, c);
+  verb.add_option("--passivity", c.passivity_Ns_m,
+                  "maximum damping of the passivity controller, Ns/m; 0: off")
+      ->check(CLI::Range(0.0, 100.0))
+      ->capture_default_str();
+  verb.add_option("--static-friction", c.static_friction, "coefficient")
+      ->check(CLI::Range(0.0, 2.0))
+      ->capture_default_str();
+  verb.add_option("--dynamic-friction", c.dynamic_friction, "coefficient, at most the static one")
+      ->check(CLI::Range(0.0, 2.0))
+      ->capture_default_str();
+  verb.add_flag("!--no-materials", c.use_materials,
+                "ignore the materials of the blob: use the options above everywhere");
+  options.force_max =
+      verb.add_option("--force-max", c.force_max_N, "largest force, N (default: the device's)")
+          ->check(CLI::Range(0.01, 1000.0));
+}
+
+std::string injection_help() {
+  std::string text =
+      "inject a fault: PART:KIND[=VALUE]@FROM[..TO], seconds after arming; repeatable";
+  for (const simulation::InjectionHelp& kind : simulation::injection_kinds()) {
+    text += fmt::format("\n  {:<22} {}", kind.name, kind.about);
+  }
+  return text;
+}
+
+void add_injection_option(CLI::App& verb, SimulateOptions& options) {
+  verb.add_option("--inject", options.injections, injection_help())
+      ->check(CLI::Validator(
+          [](const std::string& text) -> std::string {
+            try {
+              (void)simulation::parse_injection(text);
+              return {};
+            } catch (const std::invalid_argument& error) {
+              return error.what();
+            }
+          },
+          "FAULT"))
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+void add_plant_options(CLI::App& verb, SimulateOptions& options) {
+  plant::PlantParameters& plant = options.setup.plant;
+  options.cartesian_only = {
+      verb.add_option("--device-mass", plant.device.mass_kg, "cartesian: apparent mass, kg")
+          ->check(CLI::Range(1e-4, 100.0))
+          ->capture_default_str(),
+      verb.add_option("--device-friction", plant.device.coulomb_N,
+                      "cartesian: dry friction of each axis, N")
+          ->check(CLI::Range(0.0, 100.0))
+          ->capture_default_str(),
+      verb.add_option("--encoder-step", options.encoder_step_m, "cartesian: travel of one count, m")
+          ->check(CLI::Range(1e-8, 1e-2))
+          ->capture_default_str()};
+  verb.add_option("--latency-ticks", options.latency_ticks, "age of an encoder reading, ticks")
+      ->check(CLI::Range(0, static_cast<int>(hal::sim::kMaxLatencyTicks)))
+      ->capture_default_str();
+  verb.add_option("--hand-stiffness", plant.hand.stiffness_N_m, "spring of the hand, N/m")
+      ->check(CLI::Range(0.0, 1e5))
+      ->capture_default_str();
+  verb.add_option("--hand-damping", plant.hand.damping_Ns_m, "damper of the hand, Ns/m")
+      ->check(CLI::Range(0.0, 1e3))
+      ->capture_default_str();
+  verb.add_option("--hand-mass", plant.hand.mass_kg, "mass that moves with the device, kg")
+      ->check(CLI::Range(0.0, 100.0))
+      ->capture_default_str();
+}
+
+void add_device_options(CLI::App& verb, SimulateOptions& options) {
+  std::string names;
+  for (const std::string& name : device_names()) {
+    names += (names.empty() ? "" : ", ") + name;
+  }
+  verb.add_option("--device", options.device, names + ", or a JSON file that describes another")
+      ->capture_default_str();
+  verb.add_flag("--dump-device", options.dump_device,
+                "print the device as a JSON file, as a template, and exit");
+  verb.add_option("--origin", options.origin_m,
+                  "where the model's origin is in the device's frame (x to the user, y right, z "
+                  "up), m; default: the model's middle at the device's origin, "
+                  "with a device of one or two axes the middle of its top")
+      ->expected(3)
+      ->check(CLI::Range(-10.0, 10.0));
+}
+
+void add_output_options(CLI::App& verb, SimulateOptions& options) {
+  CLI::Option* record =
+      verb.add_option("--record", options.record,
+                      "record all inputs of the controller in this file, from its "
+                      "configuration on: for --replay");
+  verb.add_option("--replay", options.replay,
+                  "replay this recording, with its blobs as BLOB, on a new controller and compare "
+                  "each tick bit for bit; a difference gives exit code 1 and its first tick. "
+                  "Device, hand and controller options have no effect")
+      ->check(CLI::ExistingFile)
+      ->excludes(record);
+  verb.add_option("--trace", options.trace, "write every tick to this CSV file");
+  CLI::Option* plot =
+      verb.add_option("--plot", options.plot, "draw force and penetration into this SVG file");
+  verb.add_flag("--compare", options.compare,
+                "draw the force of both modes into the plot, along the same path")
+      ->needs(plot);
+  verb.add_option("--json", options.json, "write the summary to this file");
+}
+
+void add_session_options(CLI::App& verb, SimulateOptions& options) {
+  verb.add_option("BLOB", options.blobs, "the blob to touch, or several");
+  verb.add_option("--scene", options.scene, "JSON file with the blob, pose and motion of each body")
+      ->check(CLI::ExistingFile);
+  verb.add_option("--board", options.board, "where the controller runs")
+      ->check(CLI::IsMember(board_names()))
+      ->capture_default_str();
+  verb.add_option("--firmware", options.firmware,
+                  "folder with the images of the emulated boards (default: $TACTREE_FIRMWARE, the "
+                  "installation, or the build tree)");
+  verb.add_option("--mode", options.mode, "how contact is rendered")
+      ->check(CLI::IsMember({"surface", "paper"}))
+      ->capture_default_str();
+  options.seconds_given = verb.add_option("--seconds", options.seconds, "length of the run, s")
+                              ->check(is_positive)
+                              ->capture_default_str();
+}
+
+void add_serve_options(CLI::App& verb, SimulateOptions& options) {
+  CLI::Option* serve = verb.add_flag(
+      "--serve", options.serve,
+      "run in real time and accept programs at a printed port; without --seconds until "
+      "interrupted");
+  verb.add_option(
+          "--require-key", options.key,
+          "with --serve: public key (tactree keygen) that must verify the signature of a model")
+      ->needs(serve)
+      ->check(CLI::ExistingFile);
+  CLI::Option* usb = verb.add_flag(
+      "--usb", options.on_usb,
+      "with --serve: act as a USB device of this computer (needs root and the module vhci-hcd); "
+      "SIGUSR1 unplugs the cable, and plugs it in again");
+  usb->needs(serve);
+  verb.add_option("--usb-gadget", options.usb_port,
+                  "with --serve: act as a USB device at this computer's device port, one of "
+                  "/sys/class/udc (default: the only one); needs root and the module usb_f_fs")
+      ->expected(0, 1)
+      ->default_str("")
+      ->needs(serve)
+      ->excludes(usb);
+  verb.add_option("--serial", options.serial, "with --serve: last digits of the serial number")
+      ->needs(serve);
+}
+
+void add_hand_options(CLI::App& verb, SimulateOptions& options) {
+  CLI::Option* script = verb.add_option("--script", options.script, "motion of the hand")
+                            ->check(CLI::IsMember(simulation::script_names()))
+                            ->capture_default_str();
+  verb.add_option("--path", options.path, "CSV file with the hand's path: t_s,x,y,z (s, m)")
+      ->excludes(script);
+  verb.add_flag("--allow-no-contact", options.allow_no_contact,
+                "exit with 0 if the probe never touches the model");
+}
+}  // namespace
+
+bool is_scene(const SimulateOptions& options) {
+  return !options.scene.empty() || options.blobs.size() > 1;
+}
+
+void add_simulate_options(CLI::App& verb, SimulateOptions& options) {
+  add_session_options(verb, options);
+  add_device_options(verb, options);
+  add_serve_options(verb, options);
+  add_hand_options(verb, options);
+  add_controller_options(verb, options);
+  add_plant_options(verb, options);
+  add_injection_option(verb, options);
+  add_output_options(verb, options);
+}
+
+}  // namespace tactree::cli

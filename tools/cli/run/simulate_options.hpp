@@ -1,0 +1,54 @@
+#pragma once
+// Options of `tactree simulate`.
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tactree/simulation/simulation.hpp"
+
+namespace tactree::cli {
+
+struct SimulateOptions {
+  std::vector<std::string> blobs;
+  std::string scene;
+  std::string blob;  // of the first body
+  std::string board = "host";
+  std::string firmware;
+  std::string device = "premium";
+  bool dump_device = false;
+  std::vector<double> origin_m;  // of the model, device frame; empty: its middle at the origin
+  std::string script = "rub";
+  std::string path;
+  std::string mode = "surface";
+  std::string record;
+  std::string replay;
+  std::string trace;
+  std::string plot;
+  bool compare = false;
+  std::string json;
+  bool serve = false;
+  std::string key;  // public key for the models of the served board
+  bool on_usb = false;
+  std::optional<std::string> usb_port;  // of this computer, as a device; empty: the only one
+  std::uint32_t serial = 1;
+  CLI::Option* seconds_given = nullptr;
+  std::vector<std::string> injections;
+  bool allow_no_contact = false;
+  double seconds = 10.0;
+  double latency_ticks = 0.0;
+  double encoder_step_m = 30e-6;
+  std::vector<CLI::Option*> cartesian_only;
+  CLI::Option* force_max = nullptr;
+  simulation::Setup setup;
+};
+
+/// True for several bodies, or one placed by a scene file.
+[[nodiscard]] bool is_scene(const SimulateOptions& options);
+
+/// Adds all of them to the verb. `options` must outlive it.
+void add_simulate_options(CLI::App& verb, SimulateOptions& options);
+
+}  // namespace tactree::cli

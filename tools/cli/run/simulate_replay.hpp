@@ -1,0 +1,12 @@
+#pragma once
+// `tactree simulate --replay`: replays a recorded session on a new controller.
+
+#include "run/simulate_options.hpp"
+
+namespace tactree::cli {
+
+/// Prints the result. True: every tick has the outcome that was recorded, bit for bit. Throws
+/// CommandError if the recording or a blob is not usable.
+[[nodiscard]] bool replay_session(const SimulateOptions& options);
+
+}  // namespace tactree::cli

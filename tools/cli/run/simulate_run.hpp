@@ -1,0 +1,34 @@
+#pragma once
+// Run of `tactree simulate`: a session without user input at full speed of the computer.
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "run/scene_file.hpp"
+#include "run/simulate_options.hpp"
+#include "tactree/emulation/instruction_counts.hpp"
+#include "tactree/simulation/simulation.hpp"
+
+namespace tactree::cli {
+
+/// Effect of the injected faults.
+struct Harm {
+  double from_s = 0.0;               ///< time of the first injected fault
+  std::optional<double> detected_s;  ///< from from_s to the first latched fault
+  double force_max_N = 0.0;          ///< from from_s on
+  double moved_m = 0.0;              ///< largest distance from the path without faults
+};
+
+struct Outcome {
+  simulation::Summary summary;
+  std::optional<Harm> harm;
+  std::optional<emulation::InstructionCounts> instructions;  ///< of an emulated board
+  std::optional<std::uint64_t> bound;  ///< of a tick's instructions, if the image can be analysed
+  std::vector<simulation::Sample> samples;  ///< for --trace and --plot
+};
+
+/// Runs the session and records it for --record. Throws CommandError.
+[[nodiscard]] Outcome run(const SimulateOptions& options, const SceneFile& scene);
+
+}  // namespace tactree::cli

@@ -1,0 +1,119 @@
+#include "run/simulate_serve.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+#include <utility>
+
+#include "image/model_signature.hpp"
+#include "output_file.hpp"
+#include "run/serve_session.hpp"
+#include "run/simulate_setup.hpp"
+#include "run/usb_port.hpp"
+#include "tactree/emulation/emulated_target.hpp"
+#include "tactree/hal/linux/function_fs_controller.hpp"
+#include "tactree/hal/linux/usbip_controller.hpp"
+#include "tactree/host/serial_port.hpp"
+#include "tactree/serve/served_target.hpp"
+#include "tactree/serve/usb_target.hpp"
+#include "tactree/simulation/recording.hpp"
+
+namespace tactree::cli {
+namespace {
+
+using hal::linux_usb::UsbPort;
+
+serve::ServeOptions serve_options(const SimulateOptions& options) {
+  serve::ServeOptions serving;
+  serving.serial = options.serial;
+  if (!options.key.empty()) {
+    serving.key = read_public_key(options.key);
+  }
+  return serving;
+}
+
+std::unique_ptr<simulation::Target> served_target(const SimulateOptions& options,
+                                                  const SceneFile& scene,
+                                                  host::Transport& terminal) {
+  const BlobFile& blob = *scene.files[0];
+  const serve::ServeOptions serving = serve_options(options);
+  const emulation::BoardDescription* const board = emulation::find_board(options.board);
+  if (board == nullptr) {
+    return std::make_unique<serve::ServedTarget>(terminal, blob.bytes(), serving);
+  }
+  if (serving.key) {
+    refuse(fmt::format("--require-key: the image of {} has no key", board->name),
+           "use --board host");
+  }
+  emulation::EmulationOptions emulation;
+  emulation.image = emulation::find_image(*board, options.firmware);
+  emulation.count_instructions = false;
+  emulation.served = &terminal;
+  return std::make_unique<emulation::EmulatedTarget>(*board, blob.bytes(), emulation);
+}
+
+void serve_target(const SimulateOptions& options, const SceneFile& scene,
+                  std::unique_ptr<simulation::Target> target, ServeSchedule schedule) {
+  simulation::Setup setup = make_setup(options, scene);
+  simulation::SessionWriter writer;
+  setup.board.recorder = options.record.empty() ? nullptr : &writer;
+  simulation::Simulation sim(scene.files[0]->bytes(), setup, hand_path(options, scene),
+                             std::move(target));
+  check_start(scene.names[0], scene.files[0]->view(), setup, sim.start_result(), options);
+  sim.inject(simulation::Injector(injections(options)));
+  schedule.rate_hz = static_cast<double>(setup.controller.rate_hz);
+  schedule.path_s = options.seconds;
+  schedule.seconds_max = options.seconds_given->count() != 0 ? options.seconds : 0.0;
+  serve_session(sim, schedule);
+  if (!options.record.empty()) {
+    write_file(options.record, writer.finish());
+  }
+}
+
+void serve_on_usb(const SimulateOptions& options, const SceneFile& scene,
+                  const core::usb::Identity& identity, UsbPort& port) {
+  auto target = std::make_unique<serve::UsbTarget<UsbPort>>(port, identity, scene.files[0]->bytes(),
+                                                            serve_options(options));
+  auto& served = *target;
+  watch_cable_signal();
+  port.plug_in();
+  tell_cable(true);
+  ServeSchedule schedule;
+  schedule.wait = [&](auto due) { serve_until(due, served, port); };
+  serve_target(options, scene, std::move(target), schedule);
+  port.unplug();
+}
+
+}  // namespace
+
+void serve(const SimulateOptions& options, const SceneFile& scene) {
+  if ((options.on_usb || options.usb_port) && options.board != "host") {
+    refuse(fmt::format("--board {}: an emulated board has no USB port", options.board),
+           "use --board host, or leave --usb out");
+  }
+  const emulation::BoardDescription* const board = emulation::find_board(options.board);
+  if (board != nullptr && !board->serves) {
+    refuse(fmt::format("--board {}: its image is too small for an application to talk to",
+                       options.board),
+           "choose another board, or leave --serve out");
+  }
+  core::usb::Identity identity;
+  identity.name = "Simulated controller";
+  identity.serial = {0, 0, options.serial};
+  if (options.on_usb) {
+    hal::linux_usb::UsbIpController controller;
+    serve_on_usb(options, scene, identity, controller);
+  } else if (options.usb_port) {
+    hal::linux_usb::FunctionFsController controller(identity, *options.usb_port);
+    serve_on_usb(options, scene, identity, controller);
+  } else {
+    host::PseudoTerminal terminal;
+    auto target = served_target(options, scene, terminal);
+    fmt::print("serving at {}\n", terminal.name());
+    std::fflush(stdout);
+    serve_target(options, scene, std::move(target), {});
+  }
+}
+
+}  // namespace tactree::cli

@@ -1,0 +1,30 @@
+#pragma once
+// Builds a simulation from the options of `tactree simulate`, and reports a refused start.
+
+#include <string>
+#include <vector>
+
+#include "run/scene_file.hpp"
+#include "run/simulate_options.hpp"
+#include "tactree/simulation/injection.hpp"
+
+namespace tactree::cli {
+
+/// Throws CommandError: `what` was refused, with the remedy in brackets.
+[[noreturn]] void refuse(const std::string& what, const std::string& remedy);
+
+/// Device, controller and mechanics. Throws CommandError.
+[[nodiscard]] simulation::Setup make_setup(const SimulateOptions& options, const SceneFile& scene);
+
+/// Path of the hand. A script touches the first body at its first pose. Throws CommandError.
+[[nodiscard]] simulation::HandPath hand_path(const SimulateOptions& options,
+                                             const SceneFile& scene);
+
+[[nodiscard]] std::vector<simulation::InjectedFault> injections(const SimulateOptions& options);
+
+/// Throws CommandError unless `start` is ok(). `file` and `view`: the body that was refused.
+void check_start(const std::string& file, const core::BlobView& view,
+                 const simulation::Setup& setup, const hal::StartResult& start,
+                 const SimulateOptions& options);
+
+}  // namespace tactree::cli

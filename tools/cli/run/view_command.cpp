@@ -1,0 +1,191 @@
+#include "run/view_command.hpp"
+
+#include <fmt/core.h>
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "command.hpp"
+#include "device/board_port.hpp"
+#include "device_file.hpp"
+#include "run/model_size.hpp"
+#include "run/scene_file.hpp"
+#include "run/wall_options.hpp"
+#include "scan/board_work.hpp"
+#include "tactree/simulation/placement.hpp"
+#include "tactree/viewer/board_session.hpp"
+#include "tactree/viewer/live_session.hpp"
+#include "tactree/viewer/recording.hpp"
+#include "tactree/viewer/server.hpp"
+
+namespace tactree::cli {
+namespace {
+
+struct ViewOptions {
+  std::vector<std::string> blobs;
+  std::string scene;
+  std::string trace;
+  BoardPort board;
+  int link_timeout_ms = 50;
+  std::string firmware;
+  std::string mode = "surface";
+  viewer::Settings settings;
+  viewer::ServerOptions server{.address = "127.0.0.1", .port = 8023};
+};
+
+viewer::Bodies bodies_of(const SceneFile& scene) {
+  viewer::Bodies bodies;
+  bodies.bodies = scene.bodies;
+  for (const BlobFile* const file : scene.files) {
+    bodies.views.push_back(file->view());
+  }
+  return bodies;
+}
+
+/// The built-in devices, and the chosen one if it is a file.
+std::vector<viewer::NamedDevice> devices(const std::string& chosen) {
+  std::vector<viewer::NamedDevice> list;
+  bool known = false;
+  for (const std::string& name : device_names()) {
+    list.push_back({name, load_device(name).about, load_device(name).preset});
+    known = known || name == chosen;
+  }
+  if (!known) {
+    const Device own = load_device(chosen);
+    list.push_back({chosen, own.about, own.preset});
+  }
+  return list;
+}
+
+std::unique_ptr<viewer::Source> board_source(const ViewOptions& options, const SceneFile& scene) {
+  if (scene.files.size() != 1) {
+    throw CommandError("--port: a board has one model (give one BLOB)");
+  }
+  const BlobFile& shown = *scene.files[0];
+  viewer::BoardSettings settings;
+  settings.port = options.board.port;
+  settings.link = {options.board.baud, static_cast<std::uint16_t>(options.link_timeout_ms)};
+  settings.device = load_device(options.settings.device).preset.model;
+  settings.model = shown.bytes();
+  settings.work = [&shown, firmware = options.firmware](const std::string& board,
+                                                        const core::wire::CapabilitiesReply& can) {
+    return work_of_board(board, can, shown.view().header(), firmware);
+  };
+  return std::make_unique<viewer::BoardSession>(bodies_of(scene), std::move(settings));
+}
+
+std::unique_ptr<viewer::Source> make_source(const ViewOptions& options, const SceneFile& scene) {
+  if (!options.board.port.empty()) {
+    return board_source(options, scene);
+  }
+  if (options.trace.empty()) {
+    return std::make_unique<viewer::LiveSession>(bodies_of(scene), devices(options.settings.device),
+                                                 options.settings);
+  }
+  const core::DeviceModel device = load_device(options.settings.device).preset.model;
+  const core::Vec3 origin_m = simulation::middle_at_origin(
+      scene.files[0]->view().header(), scene.bodies[0].path.first(), device.kind);
+  return std::make_unique<viewer::Recording>(viewer::read_trace(options.trace), bodies_of(scene),
+                                             device, origin_m);
+}
+
+void warn_of_size(const ViewOptions& options, const SceneFile& scene) {
+  if (!options.scene.empty() || !options.trace.empty() || !options.board.port.empty() ||
+      scene.files.size() != 1) {
+    return;
+  }
+  const std::string& device = options.settings.device;
+  if (const auto warning = oversize_warning(scene.names[0], scene.files[0]->view().header(), device,
+                                            load_device(device).preset.model)) {
+    fmt::print(stderr, "tactree: warning: {}\n", *warning);
+  }
+}
+
+void view(ViewOptions& options) {
+  if (!viewer::has_page()) {
+    throw CommandError(
+        "view: this program was built without its page (scripts/install-deps view, then configure "
+        "with -DTACTREE_PAGE=ON and build again)");
+  }
+  if (options.blobs.empty() && options.scene.empty()) {
+    throw CLI::RequiredError("BLOB");
+  }
+  options.settings.modes = viewer::modes_of(options.mode);
+  const SceneFile scene = read_scene(options.scene, options.blobs);
+  warn_of_size(options, scene);
+  const std::unique_ptr<viewer::Source> source = make_source(options, scene);
+  const viewer::Site site(bodies_of(scene).views, *source);
+  viewer::Server server(options.server, site, *source);
+  fmt::print("open {} in a browser; Ctrl+C ends it\n", server.address());
+  std::fflush(stdout);
+  server.run();
+}
+
+void add_server_options(CLI::App& verb, ViewOptions& options) {
+  verb.add_option("--page-port", options.server.port, "TCP port of the page; 0: any free one")
+      ->capture_default_str();
+  verb.add_option(
+          "--address", options.server.address,
+          "address to listen on; with an address other than loopback, others on the network can "
+          "move the simulated hand or arm the board")
+      ->capture_default_str();
+}
+
+/// Options of a board, which exclude those of a simulation.
+void add_board_options(CLI::App& verb, ViewOptions& options) {
+  CLI::Option* port =
+      verb.add_option(
+              "--port", options.board.port,
+              "show the board at this port: a serial port, usb:SERIAL, or the port printed by "
+              "tactree simulate --serve")
+          ->check([](const std::string& name) {
+            const bool is_number = name.find_first_not_of("0123456789") == std::string::npos;
+            return is_number ? "it is a board's port (the page's is --page-port " + name + ")"
+                             : std::string();
+          });
+  for (const char* other : {"--scene", "--trace", "--mode", "--rate", "--stiffness", "--damping"}) {
+    port->excludes(other);
+  }
+  verb.add_option("--baud", options.board.baud, "speed of a serial port")
+      ->capture_default_str()
+      ->needs(port);
+  add_link_timeout_option(verb, options.link_timeout_ms)->needs(port);
+  verb.add_option("--firmware", options.firmware,
+                  "folder with the board's image, for the bound of a tick (default: as simulate)")
+      ->needs(port);
+}
+
+void add_session_options(CLI::App& verb, ViewOptions& options) {
+  verb.add_option(
+          "--device", options.settings.device,
+          "name of a device, or a JSON file that describes one: see simulate. With --port: the "
+          "device to draw")
+      ->capture_default_str();
+  verb.add_option("--mode", options.mode, "surface, paper, or both side by side")
+      ->check(CLI::IsMember({"surface", "paper", "both"}))
+      ->capture_default_str();
+  add_wall_options(verb, options.settings.controller);
+}
+
+}  // namespace
+
+void add_view_command(CLI::App& app, int&) {
+  auto options = std::make_shared<ViewOptions>();
+  CLI::App* verb = app.add_subcommand("view",
+                                      "Serves a page for the browser that shows the model and a "
+                                      "simulated hand, a trace or a board");
+  verb->add_option("BLOB", options->blobs, "one or more blobs");
+  verb->add_option("--scene", options->scene,
+                   "JSON file with the positions of the bodies: see simulate")
+      ->check(CLI::ExistingFile);
+  verb->add_option("--trace", options->trace,
+                   "play back this trace of simulate --trace instead of a simulation");
+  add_session_options(*verb, *options);
+  add_board_options(*verb, *options);
+  add_server_options(*verb, *options);
+  verb->callback([options] { view(*options); });
+}
+
+}  // namespace tactree::cli

@@ -1,0 +1,546 @@
+#include "scan/build_command.hpp"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "command.hpp"
+#include "image/board_costs.hpp"
+#include "json_text.hpp"
+#include "output_file.hpp"
+#include "scan/fit_option.hpp"
+#include "scan/preview.hpp"
+#include "tactree/builder/build_model.hpp"
+#include "tactree/builder/length_text.hpp"
+#include "tactree/builder/read_materials.hpp"
+#include "tactree/emulation/board_description.hpp"
+
+namespace tactree::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using builder::BuildOptions;
+using builder::BuildReport;
+using builder::Opening;
+using nlohmann::ordered_json;
+
+const std::map<std::string, double> kUnits = {{"m", 1.0},   {"cm", 1e-2},   {"mm", 1e-3},
+                                              {"um", 1e-6}, {"in", 0.0254}, {"ft", 0.3048}};
+const std::map<std::string, builder::UpAxis> kAxes = {
+    {"x", builder::UpAxis::kX}, {"y", builder::UpAxis::kY}, {"z", builder::UpAxis::kZ}};
+const std::map<std::string, builder::OrientationRule> kOrientations = {
+    {"auto", builder::OrientationRule::kAuto},
+    {"outward", builder::OrientationRule::kOutward},
+    {"viewpoint", builder::OrientationRule::kViewpoint},
+    {"up", builder::OrientationRule::kUp},
+    {"given", builder::OrientationRule::kGiven}};
+const std::map<std::string, core::Profile> kProfiles = {{"surface", core::Profile::kSurface},
+                                                        {"paper", core::Profile::kPaper}};
+const std::map<std::string, builder::ProgressStyle> kProgressStyles = {
+    {"auto", builder::ProgressStyle::kAuto},
+    {"plain", builder::ProgressStyle::kPlain},
+    {"json", builder::ProgressStyle::kJson},
+    {"off", builder::ProgressStyle::kOff}};
+
+constexpr std::size_t kOpeningsPrinted = 3;
+constexpr std::size_t kOpeningsReported = 1000;
+constexpr std::size_t kPiecesReported = 1000;
+
+struct BuildArguments {
+  std::vector<std::string> inputs;
+  std::string output;
+  std::string report;
+  std::string preview;
+  std::string json;
+  std::optional<std::string> fit;
+  std::vector<double> crop;
+  std::vector<std::string> viewpoints;
+  std::optional<std::string> spacing;
+  std::optional<std::string> budget;
+  std::string outliers = "3";
+  std::string board;
+  std::string device;
+  double rate_hz = 0.0;
+  std::string material;
+  bool no_resample = false;
+  builder::ProgressStyle progress = builder::ProgressStyle::kAuto;
+  BuildOptions build;
+};
+
+/// Without an explicit spacing or budget: the finest model that fits the flash of the board.
+void choose_for_board(BuildArguments& arguments) {
+  const emulation::BoardDescription* const board = emulation::find_board(arguments.board);
+  BuildOptions& build = arguments.build;
+  if (board != nullptr && build.resample && !build.spacing_m && !build.flash_budget_bytes) {
+    build.flash_budget_bytes = board->blob_bytes_max;
+  }
+}
+
+[[noreturn]] void misuse(const std::string& option, const std::string& cause) {
+  throw CLI::ValidationError(option, cause);
+}
+
+// A finite number without any other text.
+double to_number(const std::string& option, const std::string& text) {
+  std::size_t used = 0;
+  double value = 0.0;
+  try {
+    value = std::stod(text, &used);
+  } catch (const std::exception&) {
+    used = 0;
+  }
+  if (used == 0 || used != text.size() || !std::isfinite(value)) {
+    misuse(option, "'" + text + "' is not a number");
+  }
+  return value;
+}
+
+// Parses 917504, 896K or 1M; K and M are 1024 and 1024 squared bytes.
+std::uint64_t to_bytes(const std::string& text) {
+  double factor = 1.0;
+  std::string number = text;
+  const std::string suffixes = "KMG";
+  const std::size_t suffix = number.empty() ? std::string::npos : suffixes.find(number.back());
+  if (suffix != std::string::npos) {
+    factor = std::ldexp(1.0, 10 * static_cast<int>(suffix + 1));
+    number.pop_back();
+  }
+  const double bytes = factor * to_number("--flash-budget", number);
+  if (!(bytes >= 1.0) || !(bytes < 4294967296.0)) {
+    misuse("--flash-budget", "'" + text + "' is not between 1 byte and 4 GiB");
+  }
+  return static_cast<std::uint64_t>(bytes);
+}
+
+void require_positive(const std::string& option, const std::optional<double>& value) {
+  if (value && !(*value > 0.0 && std::isfinite(*value))) {
+    misuse(option, "must be positive");
+  }
+}
+
+Eigen::Vector3d to_position(const std::string& option, const std::string& text) {
+  Eigen::Vector3d position;
+  std::size_t begin = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::size_t end = axis < 2 ? text.find(',', begin) : text.size();
+    if (end == std::string::npos) {
+      misuse(option, "'" + text + "' is not X,Y,Z");
+    }
+    position[axis] = to_number(option, text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return position;
+}
+
+void complete(BuildArguments& arguments) {
+  if (arguments.output.empty()) {
+    misuse("--output", "'' is not the name of a file");
+  }
+  BuildOptions& build = arguments.build;
+  require_positive("--scale", build.scale);
+  if (arguments.fit) {
+    set_fit(*arguments.fit, build);
+  }
+  require_positive("--two-sided", build.two_sided_m);
+  if (!arguments.crop.empty()) {
+    const auto& c = arguments.crop;
+    if (!(c[0] < c[3] && c[1] < c[4] && c[2] < c[5])) {
+      misuse("--crop", "requires xmin,ymin,zmin,xmax,ymax,zmax with min < max");
+    }
+    build.crop =
+        Eigen::AlignedBox3d(Eigen::Vector3d(c[0], c[1], c[2]), Eigen::Vector3d(c[3], c[4], c[5]));
+  }
+  for (const std::string& viewpoint : arguments.viewpoints) {
+    build.viewpoints.push_back(to_position("--viewpoint", viewpoint));
+  }
+  build.resample = !arguments.no_resample;
+  if (arguments.spacing) {
+    const double spacing = to_number("--spacing", *arguments.spacing);
+    if (spacing < 0.0) {
+      misuse("--spacing", "must not be negative");
+    }
+    if (spacing > 0.0) {
+      build.spacing_m = spacing;
+    } else {
+      build.resample = false;
+    }
+  }
+  if (arguments.budget) {
+    build.flash_budget_bytes = to_bytes(*arguments.budget);
+    if (!build.resample || build.spacing_m) {
+      misuse("--flash-budget",
+             "cannot be combined with --spacing or --no-resample, because it chooses the spacing");
+    }
+  }
+  build.outlier_sigma =
+      arguments.outliers == "off" ? 0.0 : to_number("--outliers", arguments.outliers);
+  if (build.outlier_sigma < 1.0 && arguments.outliers != "off") {
+    misuse("--outliers", "'" + arguments.outliers + "' is neither off nor a number of at least 1");
+  }
+  choose_for_board(arguments);
+  if (!arguments.material.empty()) {
+    build.materials = builder::read_materials(arguments.material);
+  }
+}
+
+ordered_json triple(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+ordered_json openings_json(const BuildReport& report) {
+  ordered_json list = ordered_json::array();
+  for (const Opening& opening : report.openings) {
+    if (list.size() == kOpeningsReported) {
+      break;
+    }
+    list.push_back({{"kind", opening.kind == Opening::Kind::kHole ? "hole" : "boundary"},
+                    {"diameter_m", opening.diameter_m},
+                    {"centre_m", triple(opening.centre)},
+                    {"points", opening.points}});
+  }
+  return list;
+}
+
+ordered_json orientation_json(const builder::OrientationReport& orientation) {
+  ordered_json pieces = ordered_json::array();
+  for (const builder::OrientedPiece& piece : orientation.pieces) {
+    if (pieces.size() == kPiecesReported) {
+      break;
+    }
+    pieces.push_back({{"points", piece.points},
+                      {"centre_m", triple(piece.centre)},
+                      {"basis", builder::describe(piece.basis)},
+                      {"confidence", piece.confidence},
+                      {"doubtful", piece.confidence < builder::kLeastConfidence}});
+  }
+  return {{"checked", orientation.checked},
+          {"confidence", orientation.confidence},
+          {"doubtful_points", orientation.doubtful_points},
+          {"reversed_normals", orientation.reversed_normals},
+          {"reversed_faces", orientation.reversed_faces},
+          {"pieces", pieces}};
+}
+
+double bytes_per_point(const BuildReport& report) {
+  return static_cast<double>(report.bytes) / static_cast<double>(report.output_points);
+}
+
+std::string material_name(const BuildOptions& build, std::size_t index) {
+  return index == 0 ? "default" : build.materials->colours[index - 1].name;
+}
+
+ordered_json materials_json(const BuildReport& report, const BuildOptions& build) {
+  ordered_json list = ordered_json::array();
+  for (std::size_t i = 0; i < report.material_points.size(); ++i) {
+    list.push_back({{"name", material_name(build, i)}, {"points", report.material_points[i]}});
+  }
+  return list;
+}
+
+ordered_json to_json(const BuildReport& report, const BuildOptions& build) {
+  ordered_json inputs = ordered_json::array();
+  for (const builder::InputReport& input : report.inputs) {
+    inputs.push_back({{"file", input.file},
+                      {"format", input.format},
+                      {"points", input.points},
+                      {"triangles", input.triangles}});
+  }
+  ordered_json dropped = ordered_json::object();
+  for (const auto& [cause, count] : report.dropped) {
+    dropped[cause] = count;
+  }
+  return {{"inputs", inputs},
+          {"input_points", report.input_points},
+          {"kept_points", report.kept_points},
+          {"dropped", dropped},
+          {"sampled_points", report.sampled_points},
+          {"thinned_points", report.thinned},
+          {"merged_points", report.merged},
+          {"output_points", report.output_points},
+          {"spacing_m", report.spacing_m},
+          {"largest_gap_m", report.largest_gap_m},
+          {"openings", openings_json(report)},
+          {"pieces", report.pieces},
+          {"orientation", orientation_json(report.orientation)},
+          {"materials", materials_json(report, build)},
+          {"bounds_min_m", triple(report.bounds.min())},
+          {"bounds_max_m", triple(report.bounds.max())},
+          {"source_scale", report.source_scale},
+          {"source_origin", triple(report.source_origin)},
+          {"bytes", report.bytes},
+          {"bytes_per_point", bytes_per_point(report)},
+          {"seconds", report.seconds},
+          {"points_per_second", static_cast<double>(report.input_points) / report.seconds},
+          {"peak_rss_bytes", report.peak_rss_bytes},
+          {"notes", report.notes},
+          {"warnings", report.warnings}};
+}
+
+void print_input(const BuildReport& report) {
+  for (const builder::InputReport& input : report.inputs) {
+    const std::string triangles =
+        input.triangles == 0 ? "" : fmt::format(", {} triangles", input.triangles);
+    fmt::print("read      {}: {}, {} points{}\n", input.file, input.format, input.points,
+               triangles);
+  }
+  std::string dropped;
+  for (const auto& [cause, count] : report.dropped) {
+    dropped += fmt::format("{}{} {}", dropped.empty() ? "; dropped " : ", ", count, cause);
+  }
+  fmt::print("kept      {} of {} points{}\n", report.kept_points, report.input_points, dropped);
+  if (report.sampled_points > 0) {
+    fmt::print("sampled   {} points on the faces\n", report.sampled_points);
+  }
+}
+
+void print_gaps(const BuildReport& report) {
+  fmt::print("gaps      up to {}", builder::length_text(report.largest_gap_m));
+  std::size_t holes = 0;
+  for (const Opening& opening : report.openings) {
+    holes += opening.kind == Opening::Kind::kHole ? 1 : 0;
+  }
+  fmt::print("; {} hole{} and {} open boundar{} too wide for the surface fit\n", holes,
+             holes == 1 ? "" : "s", report.openings.size() - holes,
+             report.openings.size() - holes == 1 ? "y" : "ies");
+  std::size_t printed = 0;
+  for (const Opening& o : report.openings) {
+    if (printed++ == kOpeningsPrinted) {
+      break;
+    }
+    fmt::print("          {} of {} around ({:.4g}, {:.4g}, {:.4g}) m\n",
+               o.kind == Opening::Kind::kHole ? "hole" : "boundary",
+               builder::length_text(o.diameter_m), o.centre.x(), o.centre.y(), o.centre.z());
+  }
+}
+
+void print_orientation(const builder::OrientationReport& orientation) {
+  if (!orientation.checked || orientation.pieces.empty()) {
+    return;
+  }
+  fmt::print("outside   confidence {:.0f} %; {} piece{}, the largest {}\n",
+             std::floor(100.0 * orientation.confidence), orientation.pieces.size(),
+             orientation.pieces.size() == 1 ? "" : "s",
+             builder::describe(orientation.pieces.front().basis));
+}
+
+void print(const BuildReport& report, const BuildOptions& build, const std::string& output) {
+  print_input(report);
+  const Eigen::Vector3d size = report.bounds.sizes();
+  fmt::print("model     {:.4g} x {:.4g} x {:.4g} m, {} points, spacing {}\n", size.x(), size.y(),
+             size.z(), report.output_points, builder::length_text(report.spacing_m));
+  print_orientation(report.orientation);
+  print_gaps(report);
+  for (std::size_t i = 0; i < report.material_points.size(); ++i) {
+    fmt::print("material  {}: {} points\n", material_name(build, i), report.material_points[i]);
+  }
+  for (const std::string& note : report.notes) {
+    fmt::print("note      {}\n", note);
+  }
+  fmt::print(
+      "wrote     {}: {} bytes, {:.2f} bytes per point, in {:.2f} s ({:.3g} points/s, {} MiB)\n",
+      output, report.bytes, bytes_per_point(report), report.seconds,
+      static_cast<double>(report.input_points) / report.seconds, report.peak_rss_bytes >> 20U);
+}
+
+core::BlobView open_built(std::span<const std::byte> blob) {
+  core::BlobView view;
+  if (core::open_blob(blob, view) != core::BlobStatus::kOk) {
+    throw CommandError(
+        "internal error: the written blob is not valid (report it with the input file)");
+  }
+  return view;
+}
+
+/// Throws if the board cannot render the blob at --rate.
+void check_time(const BuildArguments& arguments, std::span<const std::byte> blob) {
+  if (arguments.board.empty() || arguments.rate_hz <= 0.0) {
+    return;
+  }
+  const core::BlobView view = open_built(blob);
+  core::Configuration configuration;
+  configuration.mode = view.is_uniform() ? core::RenderMode::kSurface : core::RenderMode::kPaper;
+  configuration.rate_hz = static_cast<float>(arguments.rate_hz);
+  configuration.device = slowest_or(arguments.device);
+  const BoardCosts board = costs_of_board(arguments.board);
+  const double highest = board.highest_rate(view.header(), configuration);
+  // A tick costs more at a low rate: a rate below the highest one can also exceed the period.
+  if (board.cycles(view.header(), configuration) * arguments.rate_hz > board.timing.clock_hz) {
+    throw CommandError(fmt::format(
+        "--rate: {} renders this model at up to {:.0f} Hz, not at {:.6g} Hz: a tick takes up to "
+        "{:.0f} cycles, the period has {:.0f} (lower --rate, choose a faster board, or a larger "
+        "--spacing: {} points in a ball dominate the cost)",
+        arguments.board, std::floor(highest), arguments.rate_hz,
+        board.cycles(view.header(), configuration), board.timing.clock_hz / arguments.rate_hz,
+        view.header().points_per_ball_max));
+  }
+}
+
+void build(const BuildArguments& arguments) {
+  const std::vector<fs::path> inputs(arguments.inputs.begin(), arguments.inputs.end());
+  check_outputs({arguments.output, arguments.report, arguments.json, arguments.preview}, inputs);
+  const std::unique_ptr<builder::Progress> progress =
+      builder::make_progress(arguments.progress, stderr);
+  builder::BuildResult result;
+  try {
+    result = builder::build_model(inputs, arguments.build, *progress);
+  } catch (...) {
+    progress->end();
+    throw;
+  }
+  check_time(arguments, result.blob.bytes);
+  write_file(arguments.output, std::span<const std::byte>(result.blob.bytes));
+  const std::string json = json_text(to_json(result.report, arguments.build));
+  for (const std::string& file : {arguments.report, arguments.json}) {
+    if (!file.empty()) {
+      write_file(file, json);
+    }
+  }
+  if (!arguments.preview.empty()) {
+    write_preview(arguments.preview, open_built(result.blob.bytes), result.report.openings,
+                  result.doubtful);
+  }
+  print(result.report, arguments.build, arguments.output);
+  for (const std::string& warning : result.report.warnings) {
+    fmt::print(stderr, "tactree: warning: {}\n", warning);
+  }
+}
+
+void add_frame_options(CLI::App& verb, BuildArguments& arguments) {
+  BuildOptions& build = arguments.build;
+  constexpr const char* kGroup = "Size and place";
+  verb.add_option("--unit", build.unit_m,
+                  "unit of the coordinates: m, cm, mm, um, in, ft (default: as the file states, "
+                  "else m)")
+      ->transform(CLI::CheckedTransformer(kUnits).description("m|cm|mm|um|in|ft"))
+      ->group(kGroup);
+  CLI::Option* scale =
+      verb.add_option("--scale", build.scale, "additional scale factor")->group(kGroup);
+  verb.add_option("--fit", arguments.fit,
+                  "scale the longest edge to this many metres, or to what a device reaches: "
+                  "device:NAME or device:FILE, device: premium; and centre")
+      ->excludes(scale)
+      ->group(kGroup);
+  verb.add_flag("--center,--centre", build.centre,
+                "move the origin to the middle of the bounding box")
+      ->group(kGroup);
+  verb.add_option("--axis", build.up, "axis of the file that points up; it becomes z")
+      ->transform(CLI::CheckedTransformer(kAxes).description("x|y|z"))
+      ->default_str("z")
+      ->group(kGroup);
+  verb.add_option("--crop", arguments.crop,
+                  "keep only this box: xmin,ymin,zmin,xmax,ymax,zmax in the unit of the file")
+      ->delimiter(',')
+      ->expected(6)
+      ->group(kGroup);
+}
+
+void add_quality_options(CLI::App& verb, BuildArguments& arguments) {
+  BuildOptions& build = arguments.build;
+  constexpr const char* kGroup = "Density and surface";
+  verb.add_option("--spacing", arguments.spacing,
+                  "metres between points (default: as in a cloud; size of a mesh / 200; 0: "
+                  "--no-resample)")
+      ->group(kGroup);
+  verb.add_option("--flash-budget", arguments.budget,
+                  "choose the finest spacing whose blob has at most this size: bytes, or 896K, 1M")
+      ->group(kGroup);
+  verb.add_flag("--no-resample", arguments.no_resample, "keep every distinct point of a cloud")
+      ->group(kGroup);
+  CLI::Option* board =
+      verb.add_option("--board", arguments.board,
+                      "build for this board: the finest model that fits its flash, unless "
+                      "--spacing or --flash-budget is given")
+          ->check(CLI::IsMember(boards_with_timing()));
+  verb.add_option("--rate", arguments.rate_hz,
+                  "refuse a model that the board cannot render at this rate, Hz")
+      ->needs(board)
+      ->group(kGroup);
+  verb.add_option("--device", arguments.device,
+                  "device for --rate, by name or file (default: the kind with the longest tick)")
+      ->needs(board)
+      ->group(kGroup);
+  verb.add_option("--profile", build.profile, "surface: fitted surface; paper: method of the paper")
+      ->transform(CLI::CheckedTransformer(kProfiles).description("surface|paper"))
+      ->default_str("surface")
+      ->group(kGroup);
+  verb.add_option("--material", arguments.material,
+                  "stiffness=N/m,damping=Ns/m,static=,dynamic=,texture_height=m,"
+                  "texture_wavelength=m of the whole model, or a JSON file with one material or "
+                  "one per colour")
+      ->group(kGroup);
+}
+
+void add_surface_options(CLI::App& verb, BuildArguments& arguments) {
+  BuildOptions& build = arguments.build;
+  constexpr const char* kGroup = "Points and their outside";
+  verb.add_option("--outliers", arguments.outliers,
+                  "drop points that are off the surface by more than this many times the noise of "
+                  "the scan; off: keep all (default: 3)")
+      ->group(kGroup);
+  CLI::Option* largest =
+      verb.add_flag("--keep-largest", build.keep_largest, "keep the largest connected piece only")
+          ->group(kGroup);
+  verb.add_option("--min-piece", build.min_piece,
+                  "drop connected pieces of fewer points than this; of a mesh: corners")
+      ->excludes(largest)
+      ->group(kGroup);
+  verb.add_option("--orient", build.orient,
+                  "side of the surface that is outside: outward: away from the body; viewpoint: "
+                  "towards the scanner; up: towards +z; given: as the file says, unchecked; auto: "
+                  "by viewpoints if there are any, else outward, and sheets up")
+      ->transform(
+          CLI::CheckedTransformer(kOrientations).description("auto|outward|viewpoint|up|given"))
+      ->default_str("auto")
+      ->group(kGroup);
+  verb.add_option("--viewpoint", arguments.viewpoints,
+                  "position of the scanner, X,Y,Z in the unit of the file; may be repeated")
+      ->group(kGroup);
+  verb.add_option("--two-sided", build.two_sided_m,
+                  "the scan is a sheet: build a body of this thickness in metres, which can be "
+                  "touched from both sides")
+      ->group(kGroup);
+  verb.add_flag("--flip-normals", build.flip_normals, "reverse all normals in the end")
+      ->group(kGroup);
+}
+
+}  // namespace
+
+void add_build_command(CLI::App& app, int&) {
+  auto arguments = std::make_shared<BuildArguments>();
+  CLI::App* verb = app.add_subcommand(
+      "build", "Builds a blob from one or several scans: point clouds or meshes");
+  verb->add_option("INPUT", arguments->inputs,
+                   "PLY, PCD, XYZ/PTS/CSV, OBJ, STL, OFF, glTF, ...; recognised by content")
+      ->required();
+  verb->add_option("-o,--output", arguments->output, "blob to write")->required();
+  add_frame_options(*verb, *arguments);
+  add_quality_options(*verb, *arguments);
+  add_surface_options(*verb, *arguments);
+  verb->add_option("--name", arguments->build.name,
+                   "name of the model (default: that of the first file)");
+  verb->add_option("--threads", arguments->build.threads,
+                   "number of threads, 0: one per core; does not change the result")
+      ->default_str("0")
+      ->check(CLI::Range(0, 1024));
+  verb->add_option("--progress", arguments->progress,
+                   "progress on standard error: one line, lines, JSON, none")
+      ->transform(CLI::CheckedTransformer(kProgressStyles).description("auto|plain|json|off"))
+      ->default_str("auto");
+  verb->add_option("--report", arguments->report,
+                   "write a report of the build as JSON to this file");
+  verb->add_option("--json", arguments->json, "same as --report");
+  verb->add_option(
+      "--preview", arguments->preview,
+      "write a picture of the model to this PNG file, with a scale and marked openings");
+  verb->callback([arguments] {
+    complete(*arguments);
+    build(*arguments);
+  });
+}
+
+}  // namespace tactree::cli

@@ -1,0 +1,58 @@
+#include "scan/fit_option.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <cmath>
+
+#include "command.hpp"
+#include "device_file.hpp"
+#include "tactree/simulation/workspace.hpp"
+
+namespace tactree::cli {
+namespace {
+
+constexpr char kDevice[] = "device";
+// Of the largest model that the device reaches: room for the probe around it.
+constexpr double kShare = 0.95;
+
+void fit_to_device(const std::string& name, builder::BuildOptions& build) {
+  const core::DeviceModel device = load_device(name).preset.model;
+  if (core::axes_of(device.kind) != core::kAxes) {
+    refuse("--fit device:" + name,
+           "a device of one or two axes touches a section of a model of any size",
+           "give a length in metres");
+  }
+  build.fit_edge_m = [device, name](const Eigen::Vector3d& size) {
+    const double scale = simulation::largest_scale(device, size).value_or(0.0);
+    if (!(scale > 0.0)) {
+      refuse("--fit device:" + name, "it does not reach the places around its origin",
+             "correct the device");
+    }
+    return kShare * scale * size.maxCoeff();
+  };
+}
+
+}  // namespace
+
+void set_fit(const std::string& text, builder::BuildOptions& build) {
+  if (text == kDevice) {
+    fit_to_device("premium", build);
+    return;
+  }
+  if (text.starts_with(std::string(kDevice) + ":")) {
+    fit_to_device(text.substr(sizeof kDevice), build);
+    return;
+  }
+  double length_m = 0.0;
+  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), length_m);
+  if (error != std::errc{} || rest != text.data() + text.size() || !std::isfinite(length_m) ||
+      !(length_m > 0.0)) {
+    throw CLI::ValidationError(
+        "--fit", fmt::format("'{}' is neither a length in metres nor device:NAME", text));
+  }
+  build.fit_m = length_m;
+}
+
+}  // namespace tactree::cli

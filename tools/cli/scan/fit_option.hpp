@@ -1,0 +1,15 @@
+#pragma once
+// `tactree build --fit`.
+
+#include <string>
+
+#include "tactree/builder/build_model.hpp"
+
+namespace tactree::cli {
+
+/// `text`: a length in metres, `device`, or `device:` and the name or file of a device. Throws
+/// CLI::ValidationError, and CommandError of a device that cannot be read or has fewer than three
+/// axes.
+void set_fit(const std::string& text, builder::BuildOptions& build);
+
+}  // namespace tactree::cli

@@ -1,0 +1,19 @@
+#pragma once
+// A picture of a model with its openings marked, as a PNG file.
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+
+#include "tactree/builder/build_model.hpp"
+#include "tactree/core/blob.hpp"
+
+namespace tactree::cli {
+
+/// Writes the picture. doubtful: empty, or per point: 1 if its side is doubtful. Throws
+/// CommandError if the file cannot be written.
+void write_preview(const std::filesystem::path& file, const core::BlobView& view,
+                   std::span<const builder::Opening> openings,
+                   std::span<const std::uint8_t> doubtful = {});
+
+}  // namespace tactree::cli
