@@ -42,7 +42,7 @@ wcet::Bound bound_of(const emulation::BoardDescription& board, const core::BlobV
   options.sources = sources;
   options.entries = wcet::tick_entries();
   options.parameters = wcet::parameters_of(view.header(), mode, 1, device);
-  options.rate_tier = core::rate_tier_of(rate_hz);
+  options.work_tier = core::work_tier_of(rate_hz);
   return wcet::worst_case(options);
 }
 
@@ -216,14 +216,14 @@ TEST_P(Proof, FormulaIsNeverLessThanTheBound) {
   for (const auto kind :
        {core::TickKind::kSurface, core::TickKind::kMixed, core::TickKind::kPaper}) {
     for (load.bodies = 1; load.bodies <= core::kMaxReachableBodies; ++load.bodies) {
-      for (load.rate_tier = 0; load.rate_tier < core::kRateTiers; ++load.rate_tier) {
+      for (load.work_tier = 0; load.work_tier < core::kWorkTiers; ++load.work_tier) {
         load.kind = kind;
         load.limits = random_limits(random);
         load.delta = !load.delta;
-        options.rate_tier = load.rate_tier;
+        options.work_tier = load.work_tier;
         options.parameters = wcet::parameters_of(load.limits, kind, load.bodies, load.delta);
         EXPECT_GE(core::cycles_of(costs, load), wcet::worst_case(options).cycles)
-            << "kind " << static_cast<int>(kind) << ", rate_tier " << load.rate_tier << ", "
+            << "kind " << static_cast<int>(kind) << ", work_tier " << load.work_tier << ", "
             << load.bodies << " bodies";
       }
     }
@@ -237,15 +237,15 @@ TEST_P(Proof, FormulaIsAtMostOneFortiethAboveTheBoundOfAScan) {
   load.bodies = 1;
   wcet::BoundOptions options = in_cycles(board());
   const core::TickCosts costs = wcet::tick_costs(options);
-  for (load.rate_tier = 0; load.rate_tier < core::kRateTiers; ++load.rate_tier) {
-    options.rate_tier = load.rate_tier;
+  for (load.work_tier = 0; load.work_tier < core::kWorkTiers; ++load.work_tier) {
+    options.work_tier = load.work_tier;
     options.parameters = wcet::parameters_of(load.limits, core::TickKind::kSurface, 1, load.delta);
     const auto exact = static_cast<double>(wcet::worst_case(options).cycles);
     const auto formula = static_cast<double>(core::cycles_of(costs, load));
-    std::printf("%s: rate_tier %u: formula %.0f, bound %.0f\n", board().name, load.rate_tier,
+    std::printf("%s: work_tier %u: formula %.0f, bound %.0f\n", board().name, load.work_tier,
                 formula, exact);
     EXPECT_GE(formula, exact);
-    EXPECT_LE(formula, 1.025 * exact) << "rate_tier " << load.rate_tier;
+    EXPECT_LE(formula, 1.025 * exact) << "work_tier " << load.work_tier;
   }
 }
 
@@ -282,9 +282,9 @@ TEST_P(Proof, BoardWithCostsRefusesARateThatIsTooHigh) {
 
   core::TickLoad load;
   load.add(touched_shape().view().header(), {});
-  wcet::RateTierCycles cycles{};
-  for (load.rate_tier = 0; load.rate_tier < core::kRateTiers; ++load.rate_tier) {
-    cycles[load.rate_tier] = static_cast<double>(core::cycles_of(wcet::embedded(image), load));
+  wcet::WorkTierCycles cycles{};
+  for (load.work_tier = 0; load.work_tier < core::kWorkTiers; ++load.work_tier) {
+    cycles[load.work_tier] = static_cast<double>(core::cycles_of(wcet::embedded(image), load));
   }
   const double highest = wcet::highest_rate(options.timing->clock_hz, cycles);
   std::printf("%s: highest rate admitted %.0f Hz\n", board().name, highest);

@@ -63,12 +63,12 @@ float spring_energy(float stiffness_N_m, float length_m, float force_max_N) {
 }  // namespace
 
 Rendering Renderer::update(const BlobView& view, const Configuration& configuration, Vec3 probe,
-                           Vec3 velocity) {
+                           Vec3 velocity, std::uint32_t least_tier) {
   if (configuration.mode == RenderMode::kPaper) {
     return update_paper(view, configuration, probe);  // at most: paper per Scene::render
   }
   // at most: 1 - paper per Scene::render
-  proxy_.update(view, probe, friction_, work_per_tick(configuration.rate_hz));
+  proxy_.update(view, probe, friction_, work_per_tick(configuration.rate_hz, least_tier));
   return render_proxy(view, configuration, probe, velocity);
 }
 

@@ -303,7 +303,8 @@ void Scene::render(Slot& slot, const Configuration& configuration, Vec3 probe, V
     relative = relative_velocity(body.pose, body.motion, probe, velocity);
     seen_velocity = direction_to_body(body.pose, relative);
   }
-  Rendering r = slot.renderer.update(body.view, configuration, body.probe, seen_velocity);
+  Rendering r =
+      slot.renderer.update(body.view, configuration, body.probe, seen_velocity, work_tier_);
   if (body.moved) {
     bring_to_scene(body.pose, r);
   }

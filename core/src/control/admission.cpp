@@ -33,17 +33,17 @@ ModelStatus Admission::check(const BlobView& view, const TickLoad& others,
   if (status != ModelStatus::kOk) {
     return status;
   }
-  return is_in_time(others, view, configuration) ? ModelStatus::kOk : ModelStatus::kTooSlow;
+  TickLoad all = others;
+  all.add(view.header(), configuration);
+  return work_tier(all, configuration) < kWorkTiers ? ModelStatus::kOk : ModelStatus::kTooSlow;
 }
 
-bool Admission::is_in_time(TickLoad load, const BlobView& added,
-                           const Configuration& configuration) const {
+std::uint32_t Admission::work_tier(const TickLoad& load, const Configuration& configuration) const {
   if (costs_ == nullptr || costs_->known != kTickCostsKnown) {
-    return true;
+    return work_tier_of(configuration.rate_hz);
   }
-  load.add(added.header(), configuration);
   const float period = static_cast<float>(cycles_per_second_) / configuration.rate_hz;
-  return cycles_of(*costs_, load) <= static_cast<std::uint32_t>(period);
+  return work_tier_in_time(*costs_, load, static_cast<std::uint32_t>(period));
 }
 
 TickLoad load_of(const Scene& scene, const Configuration& configuration) {

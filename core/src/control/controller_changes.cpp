@@ -85,6 +85,12 @@ void Controller::remove_unsuitable_bodies() {
     }
   }
   notice_empty_scene();
+  choose_work();
+}
+
+void Controller::choose_work() {
+  const TickLoad load = load_of(scene_, configuration_);
+  scene_.limit_work(load.bodies == 0U ? 0U : admission_.work_tier(load, configuration_));
 }
 
 ModelStatus Controller::may_change_models() const {
@@ -116,6 +122,7 @@ ModelStatus Controller::add_body(const BlobView& view, const Pose& pose, std::ui
     status = scene_.add(view, pose, number);
   }
   if (status == ModelStatus::kOk) {
+    choose_work();
     forget_motion();
     handle_event(Event::kModelLoaded);
   }

@@ -37,7 +37,7 @@ void TickLoad::add(const BlobHeader& header, const Configuration& configuration)
   }
   const TickKind its_kind = tick_kind(header, configuration.mode);
   kind = its_kind == TickKind::kSurface ? kind : its_kind;
-  rate_tier = rate_tier_of(configuration.rate_hz);
+  work_tier = work_tier_of(configuration.rate_hz);
   delta = configuration.device.kind == DeviceKind::kDelta;
   ++bodies;
 }
@@ -55,9 +55,9 @@ const TickCost& worst_row(const TickCosts& costs, const TickLoad& load) {
     return costs.paper;
   }
   const TickCost* const rows =
-      costs.surface[static_cast<std::uint32_t>(load.kind)] + first_row(load.rate_tier);
+      costs.surface[static_cast<std::uint32_t>(load.kind)] + first_row(load.work_tier);
   const TickCost* worst = rows;
-  for (std::uint32_t i = 1; i < rows_of_rate_tier(load.rate_tier); ++i) {  // bound: kTickRows
+  for (std::uint32_t i = 1; i < rows_of_work_tier(load.work_tier); ++i) {  // bound: kTickRows
     if (cycles_of(rows[i], load.limits) > cycles_of(*worst, load.limits)) {
       worst = rows + i;
     }
@@ -70,6 +70,13 @@ std::uint64_t cycles_of(const TickCosts& costs, const TickLoad& load) {
   return costs.base + (load.delta ? costs.delta : 0U) +
          static_cast<std::uint64_t>(costs.listed) * load.bodies +
          each * smaller_of(load.bodies, kMaxReachableBodies);
+}
+
+std::uint32_t work_tier_in_time(const TickCosts& costs, TickLoad load, std::uint64_t cycles) {
+  while (load.work_tier < kWorkTiers && cycles_of(costs, load) > cycles) {  // bound: kWorkTiers
+    ++load.work_tier;
+  }
+  return load.work_tier;
 }
 
 TickKind tick_kind(const BlobHeader& header, RenderMode mode) {

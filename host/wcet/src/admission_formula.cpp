@@ -35,10 +35,10 @@ class TickFormulas {
   /// Cycles of a tick without a body.
   [[nodiscard]] double base() { return of(core::TickKind::kPaper, 0, 0, {}).base; }
 
-  [[nodiscard]] CostFormula of(core::TickKind kind, std::uint32_t bodies, std::uint32_t rate_tier,
+  [[nodiscard]] CostFormula of(core::TickKind kind, std::uint32_t bodies, std::uint32_t work_tier,
                                const Division& division) {
     const Parameters parameters =
-        divided(parameters_of(typical_model_limits(), kind, bodies, false), rate_tier, division);
+        divided(parameters_of(typical_model_limits(), kind, bodies, false), work_tier, division);
     CostFormula formula = tick_.formula(parameters, open_parameters(), timing_);
     delta_ = std::max(delta_, formula.per["delta"]);
     listed_ = std::max(listed_, formula.per["listed"]);
@@ -96,13 +96,13 @@ core::TickCosts tick_costs(const BoundOptions& options) {
   };
   std::vector<Row> rows;
   for (std::uint32_t bodies = 1; bodies <= core::kMaxReachableBodies; ++bodies) {
-    for (std::uint32_t rate_tier = 0; rate_tier < core::kRateTiers; ++rate_tier) {
-      for (const Division& division : divisions(rate_tier, bodies)) {
+    for (std::uint32_t work_tier = 0; work_tier < core::kWorkTiers; ++work_tier) {
+      for (const Division& division : divisions(work_tier, bodies)) {
         const std::uint32_t row =
-            core::first_row(rate_tier) + division.gathers * core::kMaxReachableBodies / bodies;
+            core::first_row(work_tier) + division.gathers * core::kMaxReachableBodies / bodies;
         for (const core::TickKind kind : {core::TickKind::kSurface, core::TickKind::kMixed}) {
           rows.push_back({costs.surface[static_cast<std::uint32_t>(kind)][row],
-                          formulas.of(kind, bodies, rate_tier, division), bodies});
+                          formulas.of(kind, bodies, work_tier, division), bodies});
         }
       }
     }

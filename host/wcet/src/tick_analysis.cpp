@@ -115,8 +115,8 @@ double TickAnalysis::interrupt_cycles(const BoardTiming& timing) const {
                    (is_cached ? timing.cache_lines * timing.fetch_wait : 0));
 }
 
-Parameters divided(Parameters parameters, std::uint32_t rate_tier, const Division& division) {
-  const core::GatherSlice& slice = core::kWorkPerTick[rate_tier].slice;
+Parameters divided(Parameters parameters, std::uint32_t work_tier, const Division& division) {
+  const core::GatherSlice& slice = core::kWorkPerTick[work_tier].slice;
   parameters["gathers"] = division.gathers;
   parameters["passes"] = division.passes;
   parameters["fits"] = division.fits;

@@ -37,7 +37,7 @@ class TickAnalysis {
 };
 
 /// `parameters` with the work of this division of a tick.
-[[nodiscard]] Parameters divided(Parameters parameters, std::uint32_t rate_tier,
+[[nodiscard]] Parameters divided(Parameters parameters, std::uint32_t work_tier,
                                  const Division& division);
 
 }  // namespace tactree::wcet

@@ -8,22 +8,22 @@
 namespace tactree::wcet {
 namespace {
 
-std::vector<Parameters> all_divided(const Parameters& parameters, std::uint32_t rate_tier) {
+std::vector<Parameters> all_divided(const Parameters& parameters, std::uint32_t work_tier) {
   std::vector<Parameters> all;
   const auto given = parameters.find("bodies");
   const auto bodies = static_cast<std::uint32_t>(given == parameters.end() ? 1 : given->second);
   for (const Division& division :
-       divisions(rate_tier, std::min(bodies, core::kMaxReachableBodies))) {
-    all.push_back(divided(parameters, rate_tier, division));
+       divisions(work_tier, std::min(bodies, core::kMaxReachableBodies))) {
+    all.push_back(divided(parameters, work_tier, division));
   }
   return all;
 }
 
-RateTierCycles cycles_by_rate_tier(TickAnalysis& tick, const BoundOptions& options) {
-  RateTierCycles cycles{};
-  for (std::uint32_t rate_tier = 0; rate_tier < core::kRateTiers; ++rate_tier) {
-    for (const Parameters& parameters : all_divided(options.parameters, rate_tier)) {
-      cycles[rate_tier] = std::max(cycles[rate_tier],
+WorkTierCycles cycles_by_work_tier(TickAnalysis& tick, const BoundOptions& options) {
+  WorkTierCycles cycles{};
+  for (std::uint32_t work_tier = 0; work_tier < core::kWorkTiers; ++work_tier) {
+    for (const Parameters& parameters : all_divided(options.parameters, work_tier)) {
+      cycles[work_tier] = std::max(cycles[work_tier],
                                    static_cast<double>(tick.cycles(parameters, *options.timing)));
     }
   }
@@ -34,8 +34,8 @@ RateTierCycles cycles_by_rate_tier(TickAnalysis& tick, const BoundOptions& optio
 
 std::vector<EntryPoint> tick_entries() { return {{"tactree_tick", 1}, {"tactree_deadline", 2}}; }
 
-std::vector<Division> divisions(std::uint32_t rate_tier, std::uint32_t bodies) {
-  const core::SurfaceWork& work = core::kWorkPerTick[rate_tier];
+std::vector<Division> divisions(std::uint32_t work_tier, std::uint32_t bodies) {
+  const core::SurfaceWork& work = core::kWorkPerTick[work_tier];
   std::vector<Division> all(1);
   for (std::uint32_t body = 0; body < bodies; ++body) {
     std::vector<Division> more(all.size() + work.gathers);
@@ -59,7 +59,7 @@ std::vector<Division> divisions(std::uint32_t rate_tier, std::uint32_t bodies) {
 Bound worst_case(const BoundOptions& options) {
   TickAnalysis tick(options);
   Bound worst;
-  for (const Parameters& parameters : all_divided(options.parameters, options.rate_tier)) {
+  for (const Parameters& parameters : all_divided(options.parameters, options.work_tier)) {
     Bound bound = tick.instructions(parameters);
     if (bound.instructions > worst.instructions) {
       worst = std::move(bound);
@@ -67,23 +67,29 @@ Bound worst_case(const BoundOptions& options) {
     }
   }
   if (options.timing != nullptr) {
-    worst.rate_tier_cycles = cycles_by_rate_tier(tick, options);
-    worst.cycles = static_cast<std::uint64_t>(worst.rate_tier_cycles[options.rate_tier]);
+    worst.work_tier_cycles = cycles_by_work_tier(tick, options);
+    worst.cycles = static_cast<std::uint64_t>(worst.work_tier_cycles[options.work_tier]);
   }
   return worst;
 }
 
-double highest_rate(double clock_hz, const RateTierCycles& cycles) {
-  double below = clock_hz;
-  for (std::uint32_t rate_tier = core::kRateTiers; rate_tier-- > 0;) {
-    const double rate = std::min(clock_hz / cycles[rate_tier], below);
-    const double lowest = static_cast<double>(core::kRateTierRates[rate_tier]);
-    if (rate > lowest) {
-      return rate;
-    }
-    below = lowest;
+double highest_rate(double clock_hz, const WorkTierCycles& cycles) {
+  double highest = 0.0;
+  for (std::uint32_t tier = 0; tier < core::kWorkTiers; ++tier) {
+    const double rate = clock_hz / cycles[tier];
+    const bool is_last = tier + 1 == core::kWorkTiers;
+    const double end = is_last ? rate : static_cast<double>(core::kWorkTierRates[tier + 1]);
+    highest = std::max(highest, std::min(rate, end));
   }
-  return 0.0;
+  return highest;
+}
+
+std::uint32_t work_tier_in_time(double rate_hz, double clock_hz, const WorkTierCycles& cycles) {
+  std::uint32_t tier = core::work_tier_of(static_cast<float>(rate_hz));
+  while (tier + 1 < core::kWorkTiers && cycles[tier] * rate_hz > clock_hz) {
+    ++tier;
+  }
+  return tier;
 }
 
 }  // namespace tactree::wcet

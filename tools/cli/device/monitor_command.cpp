@@ -58,6 +58,7 @@ struct View {
   double rate_hz = 0.0;
   double force_max_N = 0.0;
   std::uint32_t cycles_per_tick = 0;
+  bool work_is_reduced = false;
   std::uint64_t dropped = 0;
 };
 
@@ -82,7 +83,7 @@ std::string to_text(const View& view) {
       "force    {:7.3f} N [{}{}] {:.3g} N\n"
       "probe    {:9.4f} {:9.4f} {:9.4f} m   speed {:.3f} m/s\n"
       "contact  {}\n"
-      "ticks    {:.0f} a second, load {:.1f} %{}, overruns {}, telemetry dropped {}\n"
+      "ticks    {:.0f} a second, load {:.1f} %{}{}, overruns {}, telemetry dropped {}\n"
       "faults   {}\n",
       core::name_of(static_cast<core::State>(t.state)),
       limits.empty() ? "" : " (held back: " + limits + ")", force,
@@ -92,7 +93,8 @@ std::string to_text(const View& view) {
       t.body == core::kNoBody ? "none"
                               : fmt::format("body {}, {:.3f} mm deep", t.body,
                                             1e3 * static_cast<double>(t.penetration_m)),
-      view.rate_hz, 100.0 * static_cast<double>(t.load), cycles(view), t.overruns, view.dropped,
+      view.rate_hz, 100.0 * static_cast<double>(t.load), cycles(view),
+      view.work_is_reduced ? ", work reduced" : "", t.overruns, view.dropped,
       faults.empty() ? "none" : faults);
 }
 
@@ -111,6 +113,7 @@ nlohmann::json to_json(const View& view) {
           {"rate_hz", view.rate_hz},
           {"load", t.load},
           {"overruns", t.overruns},
+          {"work_is_reduced", view.work_is_reduced},
           {"dropped", view.dropped}};
 }
 
@@ -125,6 +128,8 @@ class Monitor {
     const core::wire::CapabilitiesReply can = board_.capabilities();
     view_.force_max_N = static_cast<double>(can.force_max_N);
     view_.cycles_per_tick = can.cycles_per_tick;
+    view_.work_is_reduced =
+        (can.flags & static_cast<std::uint32_t>(core::wire::BoardFlag::kWorkReduced)) != 0U;
     // Fifty per second are readable and leave bandwidth on a serial port.
     const auto every = static_cast<std::uint32_t>(std::max(1.0F, can.rate_hz / 50.0F));
     board_.subscribe({0x1FF, every});

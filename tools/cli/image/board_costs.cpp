@@ -7,22 +7,31 @@
 
 namespace tactree::cli {
 
-double BoardCosts::cycles(const core::BlobHeader& header,
-                          const core::Configuration& configuration) const {
+wcet::WorkTierCycles BoardCosts::cycles_at_tiers(const core::BlobHeader& header,
+                                                 const core::Configuration& configuration) const {
   core::TickLoad load;
   load.add(header, configuration);
-  return static_cast<double>(core::cycles_of(costs, load));
+  wcet::WorkTierCycles cycles{};
+  for (load.work_tier = 0; load.work_tier < core::kWorkTiers; ++load.work_tier) {
+    cycles[load.work_tier] = static_cast<double>(core::cycles_of(costs, load));
+  }
+  return cycles;
+}
+
+std::uint32_t BoardCosts::work_tier(const core::BlobHeader& header,
+                                    const core::Configuration& configuration) const {
+  return wcet::work_tier_in_time(static_cast<double>(configuration.rate_hz), timing.clock_hz,
+                                 cycles_at_tiers(header, configuration));
+}
+
+double BoardCosts::cycles(const core::BlobHeader& header,
+                          const core::Configuration& configuration) const {
+  return cycles_at_tiers(header, configuration)[work_tier(header, configuration)];
 }
 
 double BoardCosts::highest_rate(const core::BlobHeader& header,
                                 const core::Configuration& configuration) const {
-  core::TickLoad load;
-  load.add(header, configuration);
-  wcet::RateTierCycles cycles{};
-  for (load.rate_tier = 0; load.rate_tier < core::kRateTiers; ++load.rate_tier) {
-    cycles[load.rate_tier] = static_cast<double>(core::cycles_of(costs, load));
-  }
-  return wcet::highest_rate(timing.clock_hz, cycles);
+  return wcet::highest_rate(timing.clock_hz, cycles_at_tiers(header, configuration));
 }
 
 wcet::BoundOptions analysis_of(const emulation::BoardDescription& board,

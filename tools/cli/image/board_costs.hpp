@@ -16,13 +16,19 @@ struct BoardCosts {
   std::string image;
   bool embedded = false;  ///< false: the image has no costs; they were analysed now
 
-  /// Cycles of a tick with this model alone. Uses mode, rate and kind of device of the
-  /// configuration.
+  /// Work tier of the board with this model alone, and the cycles of a tick there. Both use mode,
+  /// rate and kind of device of the configuration.
+  [[nodiscard]] std::uint32_t work_tier(const core::BlobHeader& header,
+                                        const core::Configuration& configuration) const;
   [[nodiscard]] double cycles(const core::BlobHeader& header,
                               const core::Configuration& configuration) const;
   /// Highest rate, Hz, at which the board renders this model in time.
   [[nodiscard]] double highest_rate(const core::BlobHeader& header,
                                     const core::Configuration& configuration) const;
+
+ private:
+  [[nodiscard]] wcet::WorkTierCycles cycles_at_tiers(
+      const core::BlobHeader& header, const core::Configuration& configuration) const;
 };
 
 /// Options to analyse a board's image, without models and timing. `firmware`: its folder; empty:

@@ -103,24 +103,44 @@ void print(const wcet::Bound& bound) {
 }
 
 void print_timing(const BoundCommandOptions& options, const wcet::BoardTiming& timing,
-                  const wcet::Bound& bound, double highest_rate_hz) {
+                  const wcet::Bound& bound, std::uint32_t work_tier, double highest_rate_hz) {
   fmt::print("cycles             {} at most{}: {:.1f} us of {:.1f} at {:.0f} MHz ({})\n",
              bound.cycles, timing.is_estimate ? ", an estimate" : "",
              1e6 * static_cast<double>(bound.cycles) / timing.clock_hz, 1e6 / options.rate_hz,
              1e-6 * timing.clock_hz, timing.source);
-  fmt::print("highest rate       {:.0f} Hz\n", highest_rate_hz);
+  if (work_tier > core::work_tier_of(static_cast<float>(options.rate_hz))) {
+    fmt::print("work               reduced to that of rates above {:.0f} Hz, to end in time\n",
+               core::kWorkTierRates[work_tier]);
+  }
+  fmt::print("highest rate       {:.0f} Hz, and every lower one\n", highest_rate_hz);
 }
 
 /// Throws CommandError if the board cannot keep the rate.
 void check_rate(const BoundCommandOptions& options, const wcet::BoardTiming& timing,
                 const wcet::Bound& bound, double highest) {
-  // A tick does more work at a low rate tier: a rate below the highest may still be too high.
   if (static_cast<double>(bound.cycles) * options.rate_hz > timing.clock_hz) {
     throw CommandError(fmt::format(
-        "--rate: {} keeps up to {:.0f} Hz with this model, but not {:.0f}: a tick takes up to {} "
-        "cycles of {:.0f} (lower --rate, or build a model with fewer points in a ball)",
+        "--rate: {} keeps up to {:.0f} Hz with this model, not {:.0f}: a tick takes up to {} "
+        "cycles "
+        "of {:.0f} (lower --rate, or build a model with fewer points in a ball)",
         timing.board, highest, options.rate_hz, bound.cycles, timing.clock_hz / options.rate_hz));
   }
+}
+
+/// At the work tier that a board with this timing takes.
+wcet::Bound worst_case(wcet::BoundOptions& analysis, double rate_hz) {
+  analysis.work_tier = core::work_tier_of(static_cast<float>(rate_hz));
+  wcet::Bound bound = wcet::worst_case(analysis);
+  if (analysis.timing == nullptr) {
+    return bound;
+  }
+  const std::uint32_t tier =
+      wcet::work_tier_in_time(rate_hz, analysis.timing->clock_hz, bound.work_tier_cycles);
+  if (tier != analysis.work_tier) {
+    analysis.work_tier = tier;
+    bound = wcet::worst_case(analysis);
+  }
+  return bound;
 }
 
 void bound_tick(const BoundCommandOptions& options) {
@@ -130,7 +150,6 @@ void bound_tick(const BoundCommandOptions& options) {
   analysis.sources = options.sources;
   analysis.entries = wcet::tick_entries();
   analysis.parameters = parameters(options);
-  analysis.rate_tier = core::rate_tier_of(static_cast<float>(options.rate_hz));
   analysis.timing = options.board.empty() ? nullptr : wcet::find_timing(options.board);
   if (!options.board.empty() && analysis.timing == nullptr) {
     throw CommandError(
@@ -144,12 +163,12 @@ void bound_tick(const BoundCommandOptions& options) {
       return;
     }
   }
-  const wcet::Bound result = wcet::worst_case(analysis);
+  const wcet::Bound result = worst_case(analysis, options.rate_hz);
   print(result);
   double highest = 0.0;
   if (analysis.timing != nullptr) {
-    highest = std::floor(wcet::highest_rate(analysis.timing->clock_hz, result.rate_tier_cycles));
-    print_timing(options, *analysis.timing, result, highest);
+    highest = std::floor(wcet::highest_rate(analysis.timing->clock_hz, result.work_tier_cycles));
+    print_timing(options, *analysis.timing, result, analysis.work_tier, highest);
   }
   if (!options.json.empty()) {
     write_file(options.json, json_text(to_json(options, analysis, result, highest)));

@@ -109,16 +109,27 @@ class Comparison {
   Harm harm_;
 };
 
+/// Work tier of the controller in the image: a later one than that of the rate if its costs need
+/// it.
+std::uint32_t tier_of_board(const SimulateOptions& options, const wcet::BoundOptions& analysis,
+                            const SceneFile& scene, const core::Configuration& controller) {
+  const bool has_costs = wcet::embedded(analysis.image).known == core::kTickCostsKnown;
+  return has_costs ? costs_of_board(options.board, options.firmware)
+                         .work_tier(scene.files[0]->view().header(), controller)
+                   : core::work_tier_of(controller.rate_hz);
+}
+
 /// Empty for a board whose code cannot be analysed.
-std::optional<std::uint64_t> bound_of_tick(const SimulateOptions& options, const SceneFile& scene,
-                                           const core::Configuration& controller) {
+std::optional<TickBound> bound_of_tick(const SimulateOptions& options, const SceneFile& scene,
+                                       const core::Configuration& controller) {
   wcet::BoundOptions analysis =
       analysis_of(*emulation::find_board(options.board), options.firmware);
   analysis.parameters = wcet::parameters_of(scene.files[0]->view().header(), controller.mode, 1,
                                             controller.device.kind);
-  analysis.rate_tier = core::rate_tier_of(controller.rate_hz);
   try {
-    return wcet::worst_case(analysis).instructions;
+    analysis.work_tier = tier_of_board(options, analysis, scene, controller);
+    return TickBound{wcet::worst_case(analysis).instructions,
+                     analysis.work_tier > core::work_tier_of(controller.rate_hz)};
   } catch (const wcet::BoundError&) {
     return std::nullopt;
   }

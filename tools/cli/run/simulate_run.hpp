@@ -20,11 +20,16 @@ struct Harm {
   double moved_m = 0.0;              ///< largest distance from the path without faults
 };
 
+struct TickBound {
+  std::uint64_t instructions = 0;
+  bool work_is_reduced = false;  ///< see core::Controller::work_is_reduced()
+};
+
 struct Outcome {
   simulation::Summary summary;
   std::optional<Harm> harm;
   std::optional<emulation::InstructionCounts> instructions;  ///< of an emulated board
-  std::optional<std::uint64_t> bound;  ///< of a tick's instructions, if the image can be analysed
+  std::optional<TickBound> bound;  ///< if the image can be analysed
   std::vector<simulation::Sample> samples;  ///< for --trace and --plot
 };
 

@@ -32,7 +32,7 @@ double most_cycles(const std::string& board, float rate_hz, const core::BlobHead
 double most_instructions(const emulation::BoardDescription& board, float rate_hz,
                          const core::BlobHeader& model, const std::string& firmware) {
   wcet::BoundOptions options = analysis_of(board, firmware);
-  options.rate_tier = core::rate_tier_of(rate_hz);
+  options.work_tier = core::work_tier_of(rate_hz);
   double most = 0.0;
   for (const core::RenderMode mode : kModes) {
     options.parameters = wcet::parameters_of(model, mode, 1, slowest_or("").kind);

@@ -368,8 +368,7 @@ void check_time(const BuildArguments& arguments, std::span<const std::byte> blob
   configuration.device = slowest_or(arguments.device);
   const BoardCosts board = costs_of_board(arguments.board);
   const double highest = board.highest_rate(view.header(), configuration);
-  // A tick costs more at a low rate: a rate below the highest one can also exceed the period.
-  if (board.cycles(view.header(), configuration) * arguments.rate_hz > board.timing.clock_hz) {
+  if (arguments.rate_hz > highest) {
     throw CommandError(fmt::format(
         "--rate: {} renders this model at up to {:.0f} Hz, not at {:.6g} Hz: a tick takes up to "
         "{:.0f} cycles, the period has {:.0f} (lower --rate, choose a faster board, or a larger "

@@ -21,10 +21,13 @@ class Admission {
   [[nodiscard]] ModelStatus check(const BlobView& view, const TickLoad& others,
                                   const Configuration& configuration) const;
 
- private:
-  [[nodiscard]] bool is_in_time(TickLoad load, const BlobView& added,
-                                const Configuration& configuration) const;
+  /// Tier of the most work that a tick does in time for these models: that of the rate, or a later
+  /// one on a slow board. kWorkTiers: a tick with the least work is too long. Unknown costs: that
+  /// of the rate.
+  [[nodiscard]] std::uint32_t work_tier(const TickLoad& load,
+                                        const Configuration& configuration) const;
 
+ private:
   const TickCosts* costs_ = nullptr;
   std::uint32_t cycles_per_second_ = 0;
 };

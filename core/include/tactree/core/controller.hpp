@@ -104,10 +104,16 @@ class Controller {
   /// while armed or active. A refused adjustment changes nothing. Precondition: configured.
   [[nodiscard]] ConfigurationStatus adjust(const Adjustment& adjustment);
 
-  /// Sets the tick costs of this board and its clock frequency, Hz. From then on a model is refused
-  /// (kTooSlow) if the bound of a tick with it exceeds the period. Unknown costs refuse no model.
-  /// `costs` must outlive the controller.
+  /// Sets the tick costs of this board and its clock frequency, Hz. From then on the work of a tick
+  /// is reduced where its bound would exceed the period, and a model is refused (kTooSlow) if that
+  /// does not suffice. Unknown costs refuse no model. `costs` must outlive the controller.
   void know_costs(const TickCosts& costs, std::uint32_t cycles_per_second);
+
+  /// A tick does less work than its rate allows, because the models are large for this board: the
+  /// proxy may follow with more delay.
+  [[nodiscard]] bool work_is_reduced() const {
+    return scene_.work_tier() > work_tier_of(configuration_.rate_hz);
+  }
 
   /// Replaces all bodies by one, number 0, at the scene's origin. Requires a model that the mode
   /// can render, and motors off; otherwise returns the reason and keeps the old bodies.
@@ -152,6 +158,7 @@ class Controller {
   // Changes between ticks.
   [[nodiscard]] ModelStatus may_change_models() const;
   void remove_unsuitable_bodies();
+  void choose_work();
   void forget_motion();
 
   // Steps of a tick, in their order.

@@ -42,11 +42,12 @@ class Renderer {
     }
   }
 
-  /// Renders one tick; `probe` in m, `velocity` in m/s. Preconditions: check(configuration) is kOk,
-  /// `probe` is finite. Cost: surface mode: Proxy::update(); paper mode: paper_collision() and
+  /// Renders one tick; `probe` in m, `velocity` in m/s. The surface mode works at the tier of the
+  /// rate, or at `least_tier` if that is later. Preconditions: check(configuration) is kOk, `probe`
+  /// is finite. Cost: surface mode: Proxy::update(); paper mode: paper_collision() and
   /// paper_nearest().
   Rendering update(const BlobView& view, const Configuration& configuration, Vec3 probe,
-                   Vec3 velocity);
+                   Vec3 velocity, std::uint32_t least_tier = 0);
 
  private:
   [[gnu::noinline]] Rendering render_proxy(const BlobView& view, const Configuration& configuration,

@@ -95,6 +95,11 @@ class Scene {
   /// held back. Call it before update(), while no force is displayed.
   void release_inner_contacts();
 
+  /// Limits the work of each body in a tick to that of this tier, where the tier of the rate allows
+  /// more. Initially 0: the rate alone decides. Precondition: less than kWorkTiers.
+  void limit_work(std::uint32_t work_tier) { work_tier_ = work_tier; }
+  [[nodiscard]] std::uint32_t work_tier() const { return work_tier_; }
+
   /// Renders one tick; `probe` (m) and `velocity` (m/s) in the scene's frame. Preconditions: as
   /// Renderer::update().
   /// Cost: kMaxReachableBodies times Renderer::update(), kMaxBodies times about 100 operations.
@@ -142,6 +147,7 @@ class Scene {
   Slot slots_[kMaxReachableBodies]{};
   SceneRendering rendering_{};
   std::uint32_t fade_ticks_ = 1;
+  std::uint32_t work_tier_ = 0;  // at least, whatever the rate
 };
 
 }  // namespace tactree::core

@@ -1,9 +1,11 @@
 #pragma once
-// The surface work of one tick: limits per rate tier.
+// The surface work of one tick: limits per work tier, most work first.
 //
 // A gather decodes the candidate points around a place; a pass goes once over the decoded points.
 // A tick gets a share of the work allowed per second, so the share shrinks with the rate. Even the
-// smallest share is a slice of a gather or one fit at a crease.
+// smallest share is a slice of a gather or one fit at a crease. A board that is too slow for the
+// tier of its rate works at a later one, so that it keeps every rate below its highest:
+// Admission::work_tier().
 //
 // Interrupt safety: constants and pure functions.
 // Loop and memory annotations: docs/BOUND.md.
@@ -28,18 +30,21 @@ struct SurfaceWork {
 };
 inline constexpr std::uint32_t kGatherWork = 2;
 
-inline constexpr std::uint32_t kRateTiers = 3;
-inline constexpr SurfaceWork kWorkPerTick[kRateTiers] = {
+inline constexpr std::uint32_t kWorkTiers = 3;
+inline constexpr SurfaceWork kWorkPerTick[kWorkTiers] = {
     {4, 10, 13, {24, 288, 104}}, {2, 4, 4, {16, 160, 56}}, {1, 2, 2, {3, 48, 16}}};
-/// A tier holds the rates above its entry, Hz.
-inline constexpr float kRateTierRates[kRateTiers] = {0.0F, 1000.0F, 2000.0F};
+/// A tier is that of the rates above its entry, Hz.
+inline constexpr float kWorkTierRates[kWorkTiers] = {0.0F, 1000.0F, 2000.0F};
 
-/// Tier of a rate in Hz: 0 .. kRateTiers - 1.
-[[nodiscard]] constexpr std::uint32_t rate_tier_of(float rate_hz) {
-  return rate_hz > kRateTierRates[2] ? 2U : (rate_hz > kRateTierRates[1] ? 1U : 0U);
+/// Tier of a rate in Hz: 0 .. kWorkTiers - 1.
+[[nodiscard]] constexpr std::uint32_t work_tier_of(float rate_hz) {
+  return rate_hz > kWorkTierRates[2] ? 2U : (rate_hz > kWorkTierRates[1] ? 1U : 0U);
 }
-[[nodiscard]] constexpr const SurfaceWork& work_per_tick(float rate_hz) {
-  return kWorkPerTick[rate_tier_of(rate_hz)];  // memory: flash
+/// At the tier of the rate, or at `least_tier` if that is later.
+[[nodiscard]] constexpr const SurfaceWork& work_per_tick(float rate_hz,
+                                                         std::uint32_t least_tier = 0) {
+  const std::uint32_t tier = work_tier_of(rate_hz);
+  return kWorkPerTick[tier < least_tier ? least_tier : tier];  // memory: flash
 }
 
 }  // namespace tactree::core

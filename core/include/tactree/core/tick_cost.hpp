@@ -53,26 +53,26 @@ struct TickLoad {
   ModelLimits limits{};  ///< largest of all models
   TickKind kind = TickKind::kSurface;
   std::uint32_t bodies = 0;
-  std::uint32_t rate_tier = 0;  ///< rate_tier_of() of the rate
+  std::uint32_t work_tier = 0;  ///< add() sets work_tier_of() of the rate
   bool delta = false;           ///< the device is a delta
   void add(const BlobHeader& header, const Configuration& configuration);
 };
 
-/// Number of cost rows of a rate tier. A tick of surface mode divides its work between gathering
+/// Number of cost rows of a work tier. A tick of surface mode divides its work between gathering
 /// and fitting: its cost depends on the number of gathers of all bodies. One row per number, from
 /// 0.
-[[nodiscard]] constexpr std::uint32_t rows_of_rate_tier(std::uint32_t rate_tier) {
-  return kMaxReachableBodies * kWorkPerTick[rate_tier].gathers + 1U;
+[[nodiscard]] constexpr std::uint32_t rows_of_work_tier(std::uint32_t work_tier) {
+  return kMaxReachableBodies * kWorkPerTick[work_tier].gathers + 1U;
 }
-/// First row of a rate tier: after the rows of all preceding tiers.
-[[nodiscard]] constexpr std::uint32_t first_row(std::uint32_t rate_tier) {
+/// First row of a work tier: after the rows of all preceding tiers.
+[[nodiscard]] constexpr std::uint32_t first_row(std::uint32_t work_tier) {
   std::uint32_t rows = 0;
-  for (std::uint32_t before = 0; before < rate_tier; ++before) {  // bound: kRateTiers
-    rows += rows_of_rate_tier(before);
+  for (std::uint32_t before = 0; before < work_tier; ++before) {  // bound: kWorkTiers
+    rows += rows_of_work_tier(before);
   }
   return rows;
 }
-inline constexpr std::uint32_t kTickRows = first_row(kRateTiers);
+inline constexpr std::uint32_t kTickRows = first_row(kWorkTiers);
 
 inline constexpr std::uint32_t kTickCostsKnown = 0x4B434954;  // "TICK"
 
@@ -88,6 +88,10 @@ struct TickCosts {
 };
 /// Precondition: costs.known is kTickCostsKnown.
 [[nodiscard]] std::uint64_t cycles_of(const TickCosts& costs, const TickLoad& load);
+/// First tier at which a tick takes at most `cycles`, beginning with `load.work_tier`; kWorkTiers:
+/// none. Precondition: as above.
+[[nodiscard]] std::uint32_t work_tier_in_time(const TickCosts& costs, TickLoad load,
+                                              std::uint64_t cycles);
 /// Most expensive row for such a body.
 [[nodiscard]] const TickCost& worst_row(const TickCosts& costs, const TickLoad& load);
 

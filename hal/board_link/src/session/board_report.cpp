@@ -17,7 +17,8 @@ std::uint32_t board_flags(const core::Controller& controller, const StoreFacts& 
   return flag(store.signature_required, BoardFlag::kSignatureRequired) |
          flag(c.dead_man_required, BoardFlag::kDeadManRequired) |
          flag(c.link_required, BoardFlag::kLinkRequired) |
-         flag(controller.homed(), BoardFlag::kHomed);
+         flag(controller.homed(), BoardFlag::kHomed) |
+         flag(controller.work_is_reduced(), BoardFlag::kWorkReduced);
 }
 
 }  // namespace

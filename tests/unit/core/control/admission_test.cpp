@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "session.hpp"
+#include "tactree/core/admission.hpp"
 
 namespace tactree::test {
 namespace {
@@ -15,9 +18,9 @@ core::TickCosts some_costs() {
   costs.known = core::kTickCostsKnown;
   costs.base = kBase;
   for (auto& rows : costs.surface) {
-    for (std::uint32_t rate_tier = 0; rate_tier < core::kRateTiers; ++rate_tier) {
-      rows[core::first_row(rate_tier)].base = 800U;
-      rows[core::first_row(rate_tier)].per_limit[0] = 10U;
+    for (std::uint32_t work_tier = 0; work_tier < core::kWorkTiers; ++work_tier) {
+      rows[core::first_row(work_tier)].base = 800U;
+      rows[core::first_row(work_tier)].per_limit[0] = 10U;
     }
   }
   return costs;
@@ -86,14 +89,87 @@ TEST(Admission, AddsTheTimeOfEachBodyOfTheScene) {
 
 // A tick divides its work between gathers and fits: the most expensive division counts.
 TEST(Admission, UsesTheMostExpensiveRow) {
-  for (std::uint32_t row = 0; row < core::rows_of_rate_tier(0); ++row) {
+  for (std::uint32_t row = 0; row < core::rows_of_work_tier(0); ++row) {
     core::TickCosts costs = some_costs();
+    for (std::uint32_t tier = 1; tier < core::kWorkTiers; ++tier) {
+      costs.surface[0][core::first_row(tier)].base = 6000U;
+    }
     costs.surface[0][row].base = 5000U;
     costs.surface[0][row].per_limit[0] = 0U;
     core::Controller controller;
     EXPECT_EQ(load(costs, kBase + 4999U, controller), core::ModelStatus::kTooSlow) << row;
     EXPECT_EQ(load(costs, kBase + 5000U, controller), core::ModelStatus::kOk) << row;
   }
+}
+
+/// Costs whose tiers take 1000, 800 and 600 cycles for any model.
+core::TickCosts costs_that_fall() {
+  core::TickCosts costs;
+  costs.known = core::kTickCostsKnown;
+  for (std::uint32_t tier = 0; tier < core::kWorkTiers; ++tier) {
+    costs.surface[0][core::first_row(tier)].base = 1000U - 200U * tier;
+  }
+  return costs;
+}
+
+TEST(Admission, ReducesTheWorkBeforeItRefusesAModel) {
+  const core::TickCosts costs = costs_that_fall();
+  core::Controller controller;
+  EXPECT_EQ(load(costs, 1000U, controller), core::ModelStatus::kOk);
+  EXPECT_FALSE(controller.work_is_reduced());
+  EXPECT_EQ(load(costs, 999U, controller), core::ModelStatus::kOk);
+  EXPECT_TRUE(controller.work_is_reduced());
+  EXPECT_EQ(load(costs, 600U, controller), core::ModelStatus::kOk);
+  EXPECT_TRUE(controller.work_is_reduced());
+  EXPECT_EQ(load(costs, 599U, controller), core::ModelStatus::kTooSlow);
+}
+
+TEST(Admission, RestoresTheWorkForALighterScene) {
+  const core::TickCosts costs = costs_that_fall();
+  core::Controller controller;
+  ASSERT_EQ(load(costs, 1000U, controller), core::ModelStatus::kOk);
+  std::uint32_t number = 0;
+  controller.know_costs(costs, 1300U * 1000U);  // two bodies take 1200 cycles with the least work
+  ASSERT_EQ(controller.add_body(shared_plane().view(), {}, number), core::ModelStatus::kOk);
+  EXPECT_TRUE(controller.work_is_reduced());
+  ASSERT_EQ(controller.load_model(shared_plane().view()), core::ModelStatus::kOk);
+  EXPECT_FALSE(controller.work_is_reduced());
+}
+
+// A tick with reduced work takes no more of it than its tier allows.
+TEST(Admission, ATickKeepsToTheReducedWork) {
+  for (std::uint32_t tier = 0; tier < core::kWorkTiers; ++tier) {
+    EXPECT_EQ(&core::work_per_tick(500.0F, tier), &core::kWorkPerTick[tier]);
+    EXPECT_EQ(&core::work_per_tick(1500.0F, tier), &core::kWorkPerTick[tier < 1U ? 1U : tier]);
+  }
+}
+
+TEST(Admission, ARateThatIsAdmittedImpliesEveryLowerOne) {
+  std::mt19937 random(11);
+  std::uniform_int_distribution<std::uint32_t> cycles(0, 200000U);
+  std::uint32_t admitted = 0;
+  for (std::uint32_t board = 0; board < 200U; ++board) {
+    core::TickCosts costs;
+    costs.known = core::kTickCostsKnown;
+    costs.base = cycles(random) / 8U;
+    for (core::TickCost& row : costs.surface[0]) {
+      row.base = cycles(random);
+    }
+    bool is_admitted = false;
+    for (float rate_hz = 20000.0F; rate_hz > 100.0F; rate_hz *= 0.93F) {
+      core::Configuration configuration;
+      configuration.rate_hz = rate_hz;
+      core::TickLoad of_one;
+      of_one.add(shared_plane().view().header(), configuration);
+      core::Admission admission;
+      admission.know_costs(costs, 168000000U);
+      const bool now = admission.work_tier(of_one, configuration) < core::kWorkTiers;
+      EXPECT_TRUE(now || !is_admitted) << rate_hz;
+      is_admitted = now;
+    }
+    admitted += is_admitted ? 1U : 0U;
+  }
+  EXPECT_EQ(admitted, 200U);  // every board renders the model at 100 Hz
 }
 
 TEST(Admission, AddsTheCyclesOfADelta) {

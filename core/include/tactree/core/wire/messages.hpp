@@ -145,6 +145,7 @@ enum class BoardFlag : std::uint32_t {
   kDeadManRequired = 1U << 1,    ///< a dead-man control confirms; else the message confirm
   kLinkRequired = 1U << 2,       ///< this session ends with its link
   kHomed = 1U << 3,
+  kWorkReduced = 1U << 4,  ///< Controller::work_is_reduced()
 };
 
 struct StateReply {

@@ -3,7 +3,7 @@
 // most. docs/BOUND.md describes the method, its assumptions and the annotations.
 //
 //   BoundOptions options{image, sources, tick_entries(), parameters_of(header, mode, 1, device)};
-//   options.rate_tier = core::rate_tier_of(rate_hz);
+//   options.work_tier = core::work_tier_of(rate_hz);
 //   const Bound bound = worst_case(options);
 //
 // Method: implicit path enumeration (Li and Malik, "Performance analysis of embedded software using
@@ -51,8 +51,8 @@ struct Division {
   std::uint32_t fits = 0;      ///< places with a fit: each takes a pass and begins with two
   std::uint32_t searches = 0;  ///< for the nearest candidate, before a fit
 };
-/// All divisions at this rate tier (core::rate_tier_of()), by gathers from 0.
-[[nodiscard]] std::vector<Division> divisions(std::uint32_t rate_tier, std::uint32_t bodies);
+/// All divisions at this work tier (core::work_tier_of()), by gathers from 0.
+[[nodiscard]] std::vector<Division> divisions(std::uint32_t work_tier, std::uint32_t bodies);
 
 /// A function that the processor enters by an interrupt.
 struct EntryPoint {
@@ -88,8 +88,8 @@ struct BoundOptions {
   std::filesystem::path sources;
   std::vector<EntryPoint> entries;
   Parameters parameters;
-  /// core::rate_tier_of() of the rate; the bound is the worst of divisions() at this tier.
-  std::uint32_t rate_tier = 0;
+  /// core::work_tier_of() of the rate; the bound is the worst of divisions() at this tier.
+  std::uint32_t work_tier = 0;
   /// nullptr: instructions only, no cycles.
   const BoardTiming* timing = nullptr;
 };
@@ -119,14 +119,14 @@ struct BlockOnPath {
   double times = 0.0;              ///< in the worst tick
 };
 
-/// Cycles of a tick at each rate tier.
-using RateTierCycles = std::array<double, core::kRateTiers>;
+/// Cycles of a tick at each work tier.
+using WorkTierCycles = std::array<double, core::kWorkTiers>;
 
 struct Bound {
   Parameters parameters;                  ///< of the options and of the worst division
   std::uint64_t instructions = 0;         ///< of one tick, at most
   std::uint64_t cycles = 0;               ///< of one tick, at most; 0: no timing was given
-  RateTierCycles rate_tier_cycles{};      ///< the cycles at every rate tier
+  WorkTierCycles work_tier_cycles{};      ///< the cycles at every work tier
   std::vector<FunctionOnPath> functions;  ///< most instructions first
   std::vector<LoopOnPath> loops;
   std::vector<std::string> unused_facts;  ///< "file:line" of `at most:` annotations without code
@@ -139,13 +139,18 @@ struct Bound {
 /// jump, an unknown instruction, an annotation that cannot be applied.
 [[nodiscard]] Bound worst_case(const BoundOptions& options);
 
-/// Highest rate, Hz, at which a tick ends in time; 0: none.
-[[nodiscard]] double highest_rate(double clock_hz, const RateTierCycles& cycles);
+/// Highest rate, Hz, at which a tick ends in time, at the work tier of the rate or at a later one;
+/// a tick ends in time at every lower rate, too.
+[[nodiscard]] double highest_rate(double clock_hz, const WorkTierCycles& cycles);
+
+/// First work tier from that of the rate at which a tick ends in time; the last one if none does.
+[[nodiscard]] std::uint32_t work_tier_in_time(double rate_hz, double clock_hz,
+                                              const WorkTierCycles& cycles);
 
 // ---- admission: the bound as a formula that a board can evaluate
 
 /// Costs in cycles, as a sum over the limits of the model; never less than the cycles of
-/// worst_case() up to largest_model_limits(). Ignores the parameters and the rate tier of
+/// worst_case() up to largest_model_limits(). Ignores the parameters and the work tier of
 /// `options`. Throws BoundError as worst_case() does, and if `options` has no timing.
 [[nodiscard]] core::TickCosts tick_costs(const BoundOptions& options);
 
