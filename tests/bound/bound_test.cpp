@@ -298,11 +298,11 @@ TEST(HighestRate, IsTheRateUpToWhichEveryTickEndsInTime) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> cycles(1e3, 1e5);
   for (int board = 0; board < 1000; ++board) {
-    const WorkTierCycles tiers{cycles(random), cycles(random), cycles(random)};
+    const wcet::WorkTierCycles tiers{cycles(random), cycles(random), cycles(random)};
     constexpr double kClock = 5e7;
-    const double highest = highest_rate(kClock, tiers);
+    const double highest = wcet::highest_rate(kClock, tiers);
     for (double rate_hz = 50.0; rate_hz < 60000.0; rate_hz *= 1.07) {
-      const std::uint32_t tier = work_tier_in_time(rate_hz, kClock, tiers);
+      const std::uint32_t tier = wcet::work_tier_in_time(rate_hz, kClock, tiers);
       EXPECT_GE(tier, core::work_tier_of(static_cast<float>(rate_hz)));
       EXPECT_EQ(tiers[tier] * rate_hz <= kClock, rate_hz <= highest) << rate_hz << " Hz";
     }

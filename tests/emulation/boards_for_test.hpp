@@ -33,7 +33,9 @@ inline std::filesystem::path bare_firmware(const emulation::BoardDescription& bo
 inline std::vector<const emulation::BoardDescription*> all_boards() {
   std::vector<const emulation::BoardDescription*> boards;
   for (const emulation::BoardDescription& board : emulation::boards()) {
-    boards.push_back(&board);
+    if (board.is_emulated()) {
+      boards.push_back(&board);
+    }
   }
   return boards;
 }

@@ -17,7 +17,9 @@ namespace {
 std::vector<std::string> board_names() {
   std::vector<std::string> names{"host"};
   for (const emulation::BoardDescription& board : emulation::boards()) {
-    names.emplace_back(board.name);
+    if (board.is_emulated()) {
+      names.emplace_back(board.name);
+    }
   }
   return names;
 }

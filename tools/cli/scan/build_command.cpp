@@ -15,12 +15,12 @@
 #include "image/board_costs.hpp"
 #include "json_text.hpp"
 #include "output_file.hpp"
+#include "scan/board_build.hpp"
 #include "scan/fit_option.hpp"
 #include "scan/preview.hpp"
 #include "tactree/builder/build_model.hpp"
 #include "tactree/builder/length_text.hpp"
 #include "tactree/builder/read_materials.hpp"
-#include "tactree/emulation/board_description.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -65,23 +65,12 @@ struct BuildArguments {
   std::optional<std::string> spacing;
   std::optional<std::string> budget;
   std::string outliers = "3";
-  std::string board;
-  std::string device;
-  double rate_hz = 0.0;
+  BoardRequest board;
   std::string material;
   bool no_resample = false;
   builder::ProgressStyle progress = builder::ProgressStyle::kAuto;
   BuildOptions build;
 };
-
-/// Without an explicit spacing or budget: the finest model that fits the flash of the board.
-void choose_for_board(BuildArguments& arguments) {
-  const emulation::BoardDescription* const board = emulation::find_board(arguments.board);
-  BuildOptions& build = arguments.build;
-  if (board != nullptr && build.resample && !build.spacing_m && !build.flash_budget_bytes) {
-    build.flash_budget_bytes = board->blob_bytes_max;
-  }
-}
 
 [[noreturn]] void misuse(const std::string& option, const std::string& cause) {
   throw CLI::ValidationError(option, cause);
@@ -184,7 +173,7 @@ void complete(BuildArguments& arguments) {
   if (build.outlier_sigma < 1.0 && arguments.outliers != "off") {
     misuse("--outliers", "'" + arguments.outliers + "' is neither off nor a number of at least 1");
   }
-  choose_for_board(arguments);
+  limit_to_board(arguments.board, build);
   if (!arguments.material.empty()) {
     build.materials = builder::read_materials(arguments.material);
   }
@@ -347,38 +336,6 @@ void print(const BuildReport& report, const BuildOptions& build, const std::stri
       static_cast<double>(report.input_points) / report.seconds, report.peak_rss_bytes >> 20U);
 }
 
-core::BlobView open_built(std::span<const std::byte> blob) {
-  core::BlobView view;
-  if (core::open_blob(blob, view) != core::BlobStatus::kOk) {
-    throw CommandError(
-        "internal error: the written blob is not valid (report it with the input file)");
-  }
-  return view;
-}
-
-/// Throws if the board cannot render the blob at --rate.
-void check_time(const BuildArguments& arguments, std::span<const std::byte> blob) {
-  if (arguments.board.empty() || arguments.rate_hz <= 0.0) {
-    return;
-  }
-  const core::BlobView view = open_built(blob);
-  core::Configuration configuration;
-  configuration.mode = view.is_uniform() ? core::RenderMode::kSurface : core::RenderMode::kPaper;
-  configuration.rate_hz = static_cast<float>(arguments.rate_hz);
-  configuration.device = slowest_or(arguments.device);
-  const BoardCosts board = costs_of_board(arguments.board);
-  const double highest = board.highest_rate(view.header(), configuration);
-  if (arguments.rate_hz > highest) {
-    throw CommandError(fmt::format(
-        "--rate: {} renders this model at up to {:.0f} Hz, not at {:.6g} Hz: a tick takes up to "
-        "{:.0f} cycles, the period has {:.0f} (lower --rate, choose a faster board, or a larger "
-        "--spacing: {} points in a ball dominate the cost)",
-        arguments.board, std::floor(highest), arguments.rate_hz,
-        board.cycles(view.header(), configuration), board.timing.clock_hz / arguments.rate_hz,
-        view.header().points_per_ball_max));
-  }
-}
-
 void build(const BuildArguments& arguments) {
   const std::vector<fs::path> inputs(arguments.inputs.begin(), arguments.inputs.end());
   check_outputs({arguments.output, arguments.report, arguments.json, arguments.preview}, inputs);
@@ -386,12 +343,11 @@ void build(const BuildArguments& arguments) {
       builder::make_progress(arguments.progress, stderr);
   builder::BuildResult result;
   try {
-    result = builder::build_model(inputs, arguments.build, *progress);
+    result = build_for_board(inputs, arguments.build, arguments.board, *progress);
   } catch (...) {
     progress->end();
     throw;
   }
-  check_time(arguments, result.blob.bytes);
   write_file(arguments.output, std::span<const std::byte>(result.blob.bytes));
   const std::string json = json_text(to_json(result.report, arguments.build));
   for (const std::string& file : {arguments.report, arguments.json}) {
@@ -400,8 +356,7 @@ void build(const BuildArguments& arguments) {
     }
   }
   if (!arguments.preview.empty()) {
-    write_preview(arguments.preview, open_built(result.blob.bytes), result.report.openings,
-                  result.doubtful);
+    write_preview(arguments.preview, view_of(result), result.report.openings, result.doubtful);
   }
   print(result.report, arguments.build, arguments.output);
   for (const std::string& warning : result.report.warnings) {
@@ -451,15 +406,17 @@ void add_quality_options(CLI::App& verb, BuildArguments& arguments) {
   verb.add_flag("--no-resample", arguments.no_resample, "keep every distinct point of a cloud")
       ->group(kGroup);
   CLI::Option* board =
-      verb.add_option("--board", arguments.board,
+      verb.add_option("--board", arguments.board.board,
                       "build for this board: the finest model that fits its flash, unless "
                       "--spacing or --flash-budget is given")
           ->check(CLI::IsMember(boards_with_timing()));
-  verb.add_option("--rate", arguments.rate_hz,
-                  "refuse a model that the board cannot render at this rate, Hz")
+  verb.add_option(
+          "--rate", arguments.board.rate_hz,
+          "the finest model that the board also renders at this rate, Hz; with a --spacing or "
+          "--flash-budget that is too fine for it: refuse")
       ->needs(board)
       ->group(kGroup);
-  verb.add_option("--device", arguments.device,
+  verb.add_option("--device", arguments.board.device,
                   "device for --rate, by name or file (default: the kind with the longest tick)")
       ->needs(board)
       ->group(kGroup);

@@ -5,7 +5,8 @@ namespace {
 
 constexpr std::uint32_t kMiB = 1U << 20;
 
-// Addresses as in firmware/boards/<name>/memory.ld; an image with other addresses is refused.
+// Addresses as in firmware/boards/<name>/memory.ld; an image with other addresses is refused. No
+// emulator has the timers and the USART of the STM32F405; the Netduino Plus 2 has the same chip.
 constexpr BoardDescription kBoards[] = {
     {"mps2-an500", "Cortex-M7", "cortex-m7", "qemu-system-arm", "qemu-system-arm", "-M mps2-an500",
      0x60000000, 16 * kMiB, 1, true},
@@ -17,6 +18,8 @@ constexpr BoardDescription kBoards[] = {
      "-M mps3-an547", 0x70000000, 256 * kMiB, 2, true},
     {"netduinoplus2", "STM32F405, Cortex-M4F", "cortex-m4f", "qemu-system-arm", "qemu-system-arm",
      "-M netduinoplus2", 0x08020000, 896 << 10, 3, false},
+    {"stm32f405", "STM32F405, Cortex-M4F", "cortex-m4f", nullptr, nullptr, nullptr, 0x08020000,
+     384 << 10, 0, false},
     {"rv32-virt", "RISC-V rv32imafc", "rv32imafc", "qemu-system-riscv32", "qemu-system-misc",
      "-M virt -cpu sifive-e34 -bios none -m 512M", 0x81000000, 256 * kMiB, 2, true},
 };

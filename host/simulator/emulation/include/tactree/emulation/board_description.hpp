@@ -1,5 +1,5 @@
 #pragma once
-// Boards that can be emulated, with the emulator and its arguments.
+// Boards with firmware in this repository, and how they are emulated.
 
 #include <cstdint>
 #include <span>
@@ -12,15 +12,17 @@ struct BoardDescription {
   const char* name;       ///< of the board and its image: <name>.elf
   const char* core;       ///< for messages
   const char* toolchain;  ///< the preset that builds its image
-  const char* emulator;   ///< name of the program in PATH
+  const char* emulator;   ///< name of the program in PATH; null: no emulator has its parts
   const char* package;    ///< Debian package of the emulator
   const char* machine;    ///< arguments of the emulator that select the machine
   std::uint32_t blob_address;
-  std::uint32_t blob_bytes_max;
+  std::uint32_t blob_bytes_max;  ///< of the image's model, or of a slot where models are flashed
   /// An instruction takes 2^shift ns of the board's time: approximately as on the real core.
   std::uint32_t instruction_shift;
   /// True if applications can connect to its serial port.
   bool serves;
+
+  [[nodiscard]] bool is_emulated() const { return emulator != nullptr; }
 };
 
 [[nodiscard]] std::span<const BoardDescription> boards();

@@ -1,0 +1,34 @@
+#pragma once
+// `tactree build --board`: the finest model that the board holds and renders in time.
+
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "tactree/builder/build_model.hpp"
+
+namespace tactree::cli {
+
+struct BoardRequest {
+  std::string board;     ///< empty: any board
+  std::string device;    ///< name or file; empty: the kind with the longest tick
+  double rate_hz = 0.0;  ///< 0: any rate
+  /// The size of the model follows from the board, not from the user.
+  bool chooses_size = false;
+};
+
+/// Sets the size of the board's flash as the budget unless the user chose a size.
+void limit_to_board(BoardRequest& request, builder::BuildOptions& build);
+
+/// Builds a model; where the board chooses its size and is too slow for it, the finest one that
+/// it renders at the rate, with a note. Throws CommandError if the board is too slow for any, and
+/// what builder::build_model() throws.
+[[nodiscard]] builder::BuildResult build_for_board(std::span<const std::filesystem::path> inputs,
+                                                   const builder::BuildOptions& build,
+                                                   const BoardRequest& request,
+                                                   builder::Progress& progress);
+
+/// The blob of a result. Throws CommandError if it is not valid.
+[[nodiscard]] core::BlobView view_of(const builder::BuildResult& result);
+
+}  // namespace tactree::cli
