@@ -4,6 +4,7 @@
 usage: bound_command_test.py TACTREE BLOB SOURCES
 """
 import json
+import math
 import pathlib
 import re
 import subprocess
@@ -85,6 +86,48 @@ class BoundCommand(unittest.TestCase):
         built = tactree(*base, 50)
         self.assertEqual(built.returncode, 0, built.stderr)
         self.assertTrue(blob.exists())
+
+    def rates_of(self, blob, board=BOARD):
+        run = tactree("info", blob, "--board", board)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        return [int(rate) for rate in re.findall(r"up to (\d+) Hz", run.stdout)]
+
+    def test_the_board_with_real_parts_is_known(self):
+        points = self.folder / "plane.xyz"
+        points.write_text("".join(f"{x} {y} 0\n" for x in range(40) for y in range(40)))
+        blob = self.folder / "plane.blob"
+        built = tactree("build", points, "--unit", "mm", "--board", "stm32f405", "--rate", 4000, "-o", blob)
+        self.assertEqual(built.returncode, 0, built.stderr)
+        self.assertLessEqual(blob.stat().st_size, 384 << 10)
+        self.assertGreaterEqual(self.rates_of(blob, "stm32f405")[0], 4000)
+        refused = tactree("simulate", blob, "--board", "stm32f405")
+        self.assertNotEqual(refused.returncode, 0)
+        self.assertIn("netduinoplus2", refused.stderr)
+
+    def test_a_board_too_slow_for_its_finest_model_gets_a_coarser_one(self):
+        points = self.folder / "hill.xyz"
+        points.write_text("".join(f"{x} {y} {20 * math.exp(-((x - 60) ** 2 + (y - 60) ** 2) / 400):.4f}\n"
+                                  for x in range(120) for y in range(120)))
+        fine, coarse, between = (self.folder / name for name in ("fine.blob", "coarse.blob", "between.blob"))
+        base = ["build", points, "--unit", "mm", "--board", BOARD, "-o"]
+        for blob, more in ((fine, []), (coarse, ["--spacing", "0.008"])):
+            built = tactree(*base, blob, *more)
+            self.assertEqual(built.returncode, 0, built.stderr)
+        slow, fast = self.rates_of(fine)[0], self.rates_of(coarse)[0]
+        self.assertGreater(fast, slow + 10)
+        built = tactree(*base, between, "--rate", slow + 5)
+        self.assertEqual(built.returncode, 0, built.stderr)
+        self.assertIn("renders only a coarser model", built.stdout)
+        self.assertGreaterEqual(self.rates_of(between)[0], slow + 5)
+        self.assertLess(between.stat().st_size, fine.stat().st_size)
+        self.assertGreater(between.stat().st_size, coarse.stat().st_size)
+
+    def test_a_rate_that_is_kept_implies_every_lower_one(self):
+        highest = self.bound("--board", BOARD)["rate_max_hz"]
+        base = ["bound", IMAGE, "--blob", BLOB, "--board", BOARD, "--rate"]
+        for share in (0.1, 0.3, 0.5, 0.7, 0.9, 0.99):
+            run = tactree(*base, share * highest)
+            self.assertEqual(run.returncode, 0, run.stderr)
 
     def test_refused(self):
         self.assertIn("cannot be read", tactree("bound", self.folder / "none.elf").stderr)
