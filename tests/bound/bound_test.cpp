@@ -1,5 +1,7 @@
 // Bounds and refusals of the analysis, on small images.
 
+#include <random>
+
 #include "sample_image.hpp"
 
 namespace tactree::test {
