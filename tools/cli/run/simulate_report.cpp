@@ -33,7 +33,8 @@ nlohmann::json instructions_json(const Outcome& outcome) {
     const double mean = static_cast<double>(f.total) / static_cast<double>(counts->ticks);
     functions.push_back({{"name", f.name}, {"max", f.max}, {"mean", mean}});
   }
-  const auto bound = outcome.bound ? nlohmann::json(outcome.bound->instructions) : nlohmann::json(nullptr);
+  const auto bound =
+      outcome.bound ? nlohmann::json(outcome.bound->instructions) : nlohmann::json(nullptr);
   return {{"max", counts->max},     {"mean", counts->mean()},       {"bound", bound},
           {"start", counts->start}, {"checksum", counts->checksum}, {"functions", functions}};
 }
@@ -88,11 +89,12 @@ nlohmann::json to_json(const SimulateOptions& options, const SceneFile& scene,
 void print_instructions(const emulation::InstructionCounts& counts,
                         const std::optional<TickBound>& bound) {
   fmt::print("instructions       {:.0f} per tick on average, {} at most{}, {} before the first\n",
-             counts.mean(), counts.max, bound ? fmt::format(" (bound {})", bound->instructions) : "",
-             counts.start);
+             counts.mean(), counts.max,
+             bound ? fmt::format(" (bound {})", bound->instructions) : "", counts.start);
   if (bound && bound->work_is_reduced) {
-    fmt::print("work               reduced, to end each tick in time: the surface may follow with a "
-               "delay\n");
+    fmt::print(
+        "work               reduced, to end each tick in time: the surface may follow with a "
+        "delay\n");
   }
   for (std::size_t i = 0; i < std::min(kReportedFunctions, counts.functions.size()); ++i) {
     const emulation::FunctionCount& f = counts.functions[i];

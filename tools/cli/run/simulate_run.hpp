@@ -29,8 +29,8 @@ struct Outcome {
   simulation::Summary summary;
   std::optional<Harm> harm;
   std::optional<emulation::InstructionCounts> instructions;  ///< of an emulated board
-  std::optional<TickBound> bound;  ///< if the image can be analysed
-  std::vector<simulation::Sample> samples;  ///< for --trace and --plot
+  std::optional<TickBound> bound;                            ///< if the image can be analysed
+  std::vector<simulation::Sample> samples;                   ///< for --trace and --plot
 };
 
 /// Runs the session and records it for --record. Throws CommandError.

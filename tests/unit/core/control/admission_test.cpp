@@ -1,11 +1,12 @@
 // A model that the board cannot render in time is not loaded, and there is no force.
 
+#include "tactree/core/admission.hpp"
+
 #include <gtest/gtest.h>
 
 #include <random>
 
 #include "session.hpp"
-#include "tactree/core/admission.hpp"
 
 namespace tactree::test {
 namespace {
