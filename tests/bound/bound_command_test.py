@@ -105,20 +105,23 @@ class BoundCommand(unittest.TestCase):
         self.assertIn("netduinoplus2", refused.stderr)
 
     def test_a_board_too_slow_for_its_finest_model_gets_a_coarser_one(self):
+        # One half is eight times as dense as the other: at a fine spacing, more points in a ball there.
+        places = [(0.25 * i, 0.5 * j) for i in range(240) for j in range(240)]
+        places += [(60 + 2 * i, 2 * j) for i in range(30) for j in range(60)]
         points = self.folder / "hill.xyz"
         points.write_text("".join(f"{x} {y} {20 * math.exp(-((x - 60) ** 2 + (y - 60) ** 2) / 400):.4f}\n"
-                                  for x in range(120) for y in range(120)))
+                                  for x, y in places))
         fine, coarse, between = (self.folder / name for name in ("fine.blob", "coarse.blob", "between.blob"))
         base = ["build", points, "--unit", "mm", "--board", BOARD, "-o"]
-        for blob, more in ((fine, []), (coarse, ["--spacing", "0.008"])):
+        for blob, more in ((fine, []), (coarse, ["--spacing", "0.004"])):
             built = tactree(*base, blob, *more)
             self.assertEqual(built.returncode, 0, built.stderr)
         slow, fast = self.rates_of(fine)[0], self.rates_of(coarse)[0]
-        self.assertGreater(fast, slow + 10)
-        built = tactree(*base, between, "--rate", slow + 5)
+        self.assertGreater(fast, slow + 400)
+        built = tactree(*base, between, "--rate", slow + 400)
         self.assertEqual(built.returncode, 0, built.stderr)
         self.assertIn("renders only a coarser model", built.stdout)
-        self.assertGreaterEqual(self.rates_of(between)[0], slow + 5)
+        self.assertGreaterEqual(self.rates_of(between)[0], slow + 400)
         self.assertLess(between.stat().st_size, fine.stat().st_size)
         self.assertGreater(between.stat().st_size, coarse.stat().st_size)
 
