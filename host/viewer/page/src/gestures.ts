@@ -43,8 +43,8 @@ export class Gestures {
     this.view.canvas.setPointerCapture(event.pointerId);
     this.view.canvas.focus({ preventScroll: true });
     const [first] = this.pointers.values();
-    const grip = first ? this.secondGrip(first) : this.firstGrip(event);
-    this.pointers.set(event.pointerId, { ...this.pixel(event), grip, since_ms: performance.now() });
+    const grip = first ? this.secondGrip(first, event) : this.firstGrip(event);
+    this.pointers.set(event.pointerId, { ...this.pixel(event), grip, since_ms: event.timeStamp });
   }
 
   private firstGrip(event: PointerEvent): Grip {
@@ -56,9 +56,10 @@ export class Gestures {
     return this.hand.isAt(at.x, at.y) ? 'hand' : 'turn';
   }
 
-  private secondGrip(first: Pointer): Grip {
+  // The times of the events, not of their handling: a busy page handles them late.
+  private secondGrip(first: Pointer, event: PointerEvent): Grip {
     if (this.pointers.size > 1) return 'nothing';
-    if (first.grip === 'surface' && performance.now() - first.since_ms > TOGETHER_MS) return 'depth';
+    if (first.grip === 'surface' && event.timeStamp - first.since_ms > TOGETHER_MS) return 'depth';
     this.hand.touch.end();
     first.grip = 'camera';
     return 'camera';
