@@ -4,37 +4,42 @@
 #include <gtest/gtest.h>
 
 #include <condition_variable>
+#include <deque>
 #include <functional>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "tactree/viewer/source.hpp"
 
 namespace tactree::test {
 
-/// Waits for frames as a page does.
+/// Waits for frames as a page does; sees every one of them.
 class Frames {
  public:
   viewer::Source::Publish taker() {
     return [this](const std::shared_ptr<const std::string>& text) {
+      nlohmann::json frame = nlohmann::json::parse(*text);
       const std::lock_guard lock(mutex_);
-      newest_ = nlohmann::json::parse(*text);
-      ++count_;
+      unseen_.push_back(std::move(frame));
       changed_.notify_all();
     };
   }
   /// The first frame from now on for which this holds; it has to come.
   nlohmann::json wait_for(const std::function<bool(const nlohmann::json&)>& holds) {
-    std::unique_lock lock(mutex_);
+    {
+      const std::lock_guard lock(mutex_);
+      unseen_.clear();
+    }
+    nlohmann::json frame;
     for (int i = 0; i < 3000; ++i) {
-      const auto before = count_;
-      changed_.wait(lock, [&] { return count_ != before; });
-      if (holds(newest_)) {
-        return newest_;
+      frame = next();
+      if (holds(frame)) {
+        return frame;
       }
     }
-    ADD_FAILURE() << "it never happened: " << newest_.dump().substr(0, 600);
-    return newest_;
+    ADD_FAILURE() << "it never happened: " << frame.dump().substr(0, 600);
+    return frame;
   }
   nlohmann::json wait_for_state(const std::string& state) {
     return wait_for(
@@ -42,10 +47,17 @@ class Frames {
   }
 
  private:
+  nlohmann::json next() {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return !unseen_.empty(); });
+    nlohmann::json frame = std::move(unseen_.front());
+    unseen_.pop_front();
+    return frame;
+  }
+
   std::mutex mutex_;
   std::condition_variable changed_;
-  nlohmann::json newest_;
-  std::uint64_t count_ = 0;
+  std::deque<nlohmann::json> unseen_;
 };
 
 }  // namespace tactree::test
