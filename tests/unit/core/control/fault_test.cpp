@@ -411,6 +411,15 @@ TEST(Faults, ChecksForStuckEncodersOnlyWhileActive) {
   EXPECT_TRUE(stuck.ticks_to_fault(0, 0, 30U));
 }
 
+TEST(Faults, DetectsAStuckEncoderAfterTheConfiguredTime) {
+  core::Configuration configuration = StuckEncoder::configuration();
+  configuration.stuck_s = 0.25F;
+  const auto ticks = StuckEncoder(configuration).ticks_to_fault(0, 0, 400U);
+  ASSERT_TRUE(ticks.has_value());
+  EXPECT_GE(*ticks, 250U);
+  EXPECT_LE(*ticks, 252U);
+}
+
 TEST(Faults, EveryCodeHasItsOwnName) {
   std::vector<std::string> names;
   for (std::uint32_t code = 0; code < core::kFaultCodes; ++code) {

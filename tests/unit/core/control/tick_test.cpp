@@ -196,6 +196,80 @@ TEST(Tick, ReportsNoReactionAfterAStop) {
   EXPECT_EQ(stopped.status.reactions[0].body, core::kNoBody);
 }
 
+// Shorter than the jump that a body notices by itself.
+TEST(Tick, ACounterThatReturnsNearbyTouchesNothingBetween) {
+  Session session;
+  session.move(0.0, 0.0, 1e-3);
+  settle(session);
+  session.input.encoders.valid[2] = false;
+  session.step();
+  session.move(0.0, 0.0, -1e-3);
+  session.input.encoders.valid[2] = true;
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_FALSE(session.step().status.rendering.in_contact) << i;
+  }
+}
+
+TEST(Tick, ANewConfigurationForgetsTheContact) {
+  Session session;
+  session.activate();
+  settle(session);
+  ASSERT_TRUE(session.press(1e-3).status.rendering.in_contact);
+  session.step(Command::kStop);
+  settle(session);
+  ASSERT_TRUE(session.step().status.rendering.in_contact);
+  ASSERT_EQ(session.controller.configure(session.controller.configuration()),
+            core::ConfigurationStatus::kOk);
+  EXPECT_FALSE(settle(session).status.rendering.in_contact);
+}
+
+TEST(Tick, WithoutAConfigurationNoEncoderIsChecked) {
+  core::Controller controller;
+  core::Input input;
+  input.emergency_stop = false;
+  input.motors_ok = true;
+  input.link_alive = true;
+  EXPECT_FALSE(core::has_fault(controller.step(input).status.faults, Fault::kEncoderInvalid));
+}
+
+TEST(Tick, ABodyThatMovesPushesTheProbe) {
+  Session session;
+  session.activate();
+  settle(session, 400);
+  core::Output output = session.step();
+  for (int i = 1; i <= 120; ++i) {
+    core::BodyUpdate update;
+    update.body = 0;
+    update.pose.translation_m.z = static_cast<float>(1e-4 * i);
+    session.updates = {update};
+    output = session.step();
+  }
+  EXPECT_TRUE(output.status.rendering.in_contact);
+  EXPECT_GT(output.status.force.z, 0.5F);
+}
+
+TEST(Tick, AnAddedForceActsForItsTicks) {
+  Session session;
+  session.activate();
+  settle(session, 400);
+  session.input.added_force = {{0.5F, 0.0F, 0.0F}, 40};
+  EXPECT_GT(settle(session, 38).status.force.x, 0.4F);
+  EXPECT_EQ(settle(session, 100).status.force, Vec3{});
+}
+
+TEST(Tick, AReactionIsThatOfTheContactAloneAfterAnAddedForce) {
+  Session session;
+  session.activate();
+  settle(session, 400);
+  session.press(1e-3);
+  session.input.added_force = {{0.0F, 0.0F, 0.5F}, 20};
+  const core::Output during = settle(session, 15);
+  const core::Output after = settle(session, 200);
+  ASSERT_GT(after.status.force.z, 0.5F);
+  EXPECT_GT(during.status.force.z, after.status.force.z + 0.2F);
+  EXPECT_EQ(after.status.reactions[0].force_N, -after.status.force);
+}
+
 TEST(Tick, StopDiscardsAnUnusedAddedForce) {
   Session session;
   session.input.added_force = {{1.0F, 0.0F, 0.0F}, 1'000'000U};
