@@ -30,14 +30,15 @@ endif()
 
 file(COPY ${SOURCE}/ DESTINATION ${BUILD} PATTERN node_modules EXCLUDE PATTERN dist EXCLUDE)
 
-# npm ci takes a while and needs the network: only when the lock has changed.
+# npm ci takes a while: only when the lock has changed. It needs the network where `scripts/install-deps view` did
+# not fill npm's cache.
 file(SHA256 ${SOURCE}/package-lock.json lock)
 set(installed "")
 if(EXISTS ${BUILD}/installed.txt)
   file(READ ${BUILD}/installed.txt installed)
 endif()
 if(NOT installed STREQUAL lock)
-  npm(status ci --ignore-scripts --no-audit --no-fund)
+  npm(status ci --prefer-offline --ignore-scripts --no-audit --no-fund)
   if(NOT status EQUAL 0)
     do_without("npm ci failed (is there a network?)")
     return()
