@@ -27,6 +27,32 @@ def shell(hole):
     return "\n".join(rows) + "\n"
 
 
+def add_left(line, _):
+    for i in range(3, len(line)):
+        line[i] = (line[i] + line[i - 3]) & 255
+
+
+def add_above(line, above):
+    for i in range(3, len(line)):
+        line[i] = (line[i] + above[i]) & 255
+
+
+def add_mean(line, above):
+    for i in range(3, len(line)):
+        line[i] = (line[i] + (line[i - 3] + above[i]) // 2) & 255
+
+
+def add_paeth(line, above):
+    for i in range(3, len(line)):
+        left, up, corner = line[i - 3], above[i], above[i - 3]
+        to_left, to_up, to_corner = abs(up - corner), abs(left - corner), abs(left + up - 2 * corner)
+        near = left if to_left <= to_up and to_left <= to_corner else up if to_up <= to_corner else corner
+        line[i] = (line[i] + near) & 255
+
+
+UNFILTER = (lambda *_: None, add_left, add_above, add_mean, add_paeth)
+
+
 def pixels(file):
     """Width, height and rows of (r, g, b) of an 8-bit PNG without interlacing."""
     data = file.read_bytes()
@@ -40,18 +66,14 @@ def pixels(file):
             packed += data[at + 8:at + 8 + size]
         at += size + 12
     raw = zlib.decompress(packed)
-    rows, above = [], bytes(3 * width)
+    rows, above = [], bytes(3 * width + 3)
     for y in range(height):
-        method, line = raw[y * (3 * width + 1)], bytearray(raw[y * (3 * width + 1) + 1:(y + 1) * (3 * width + 1)])
-        for i in range(3 * width):
-            left = line[i - 3] if i >= 3 else 0
-            corner = above[i - 3] if i >= 3 else 0
-            guess = left + above[i] - corner
-            near = sorted((abs(guess - v), k) for k, v in enumerate((left, above[i], corner)))[0][1]
-            line[i] = (line[i] + (0, left, above[i], (left + above[i]) // 2,
-                                  (left, above[i], corner)[near])[method]) & 255
+        # Three bytes of zero before each line: the pixel to the left of the first one.
+        begin = y * (3 * width + 1)
+        line = bytearray(3) + raw[begin + 1:begin + 3 * width + 1]
+        UNFILTER[raw[begin]](line, above)
         above = bytes(line)
-        rows.append([tuple(line[i:i + 3]) for i in range(0, 3 * width, 3)])
+        rows.append([tuple(line[i:i + 3]) for i in range(3, 3 * width + 3, 3)])
     return width, height, rows
 
 
@@ -122,4 +144,4 @@ class Preview(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    unittest.main(verbosity=2)

@@ -103,7 +103,7 @@ TEST(Blob, DirectoryIsSmallAndLeavesFewLevels) {
 TEST(Blob, CountsCrowdedLeaves) {
   builder::Model model;
   for (int i = 0; i < 90000; ++i) {
-    model.positions.emplace_back(1e-5 * (i % 300), 1e-5 * (i / 300), 0.0);
+    model.positions.emplace_back(1e-4 * (i % 300), 1e-4 * (i / 300), 0.0);
     model.normals.emplace_back(0.0F, 0.0F, 1.0F);
   }
   model.positions.emplace_back(0.05, 0.05, 0.05);
