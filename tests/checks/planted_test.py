@@ -584,4 +584,4 @@ if __name__ == "__main__":
         print(f"skipped: {Page.BUILD} has no npm packages")
         sys.exit(77)
     sys.argv[0] = "planted_test.py"
-    unittest.main()
+    unittest.main(verbosity=2)

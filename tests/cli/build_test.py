@@ -254,4 +254,4 @@ Connections:  {{
 
 
 if __name__ == "__main__":
-    unittest.main()
+    unittest.main(verbosity=2)

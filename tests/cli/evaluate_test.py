@@ -1,6 +1,6 @@
 """tactree evaluate: every target is met, reproducibly, and reported as table, JSON and page.
 
-usage: evaluate_test.py TACTREE
+usage: evaluate_test.py TACTREE CLASS      CLASS: Report or Seeds
 """
 import json
 import math
@@ -18,7 +18,7 @@ TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
 RATES = {"1000", "4000", "10000"}
 
 
-class Evaluate(unittest.TestCase):
+class InAFolder(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         folder = tempfile.TemporaryDirectory()
@@ -35,6 +35,8 @@ class Evaluate(unittest.TestCase):
     def read(self, name):
         return json.loads((self.path / name).read_text())
 
+
+class Report(InAFolder):
     def test_meets_every_target(self):
         self.assertEqual(self.first.returncode, 0, self.first.stdout[-2000:] + self.first.stderr)
         self.assertIn("All targets are met.", self.first.stdout)
@@ -80,6 +82,8 @@ class Evaluate(unittest.TestCase):
         for radius in re.findall(r'<circle [^>]* r="([\d.]+)"', holed):
             self.assertAlmostEqual(2 * float(radius), width / 60 * 290, delta=3)
 
+
+class Seeds(InAFolder):
     def test_result_is_reproducible(self):
         self.assertEqual(self.evaluate("second").returncode, 0)
         self.assertEqual(self.read("second.json"), self.read("first.json"))
@@ -90,4 +94,4 @@ class Evaluate(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    unittest.main(verbosity=2)

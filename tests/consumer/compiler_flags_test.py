@@ -33,4 +33,4 @@ class CompilerFlags(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    unittest.main(verbosity=2)

@@ -1,6 +1,6 @@
 """The commands of README.md and docs/COMMANDS.md work: all of them in order, in one folder, with the files they show.
 
-usage: commands_test.py TACTREE PAGE...
+usage: commands_test.py TACTREE PAGE... CLASS      CLASS: Commands, or ServedCommands, in real time
 """
 import json
 import math
@@ -16,8 +16,8 @@ import unittest
 import urllib.error
 import urllib.request
 
-TACTREE, *PAGES = (pathlib.Path(argument).resolve() for argument in sys.argv[1:])
-del sys.argv[1:]
+TACTREE, *PAGES = (pathlib.Path(argument).resolve() for argument in sys.argv[1:-1])
+del sys.argv[1:-1]
 TEXT = "\n".join(page.read_text() for page in PAGES)
 # The reader's own scans: name -> radius of a ball, m.
 SCANS = {"statue.ply": 0.03, "lid.ply": 0.02}
@@ -45,7 +45,7 @@ def prompt_lines(block):
     return [line.removeprefix("$ ") for line in block.splitlines() if line.startswith("$ ")]
 
 
-class Commands(unittest.TestCase):
+class InAFolder(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         folder = tempfile.TemporaryDirectory()
@@ -67,6 +67,36 @@ class Commands(unittest.TestCase):
         done = self.run_line(line)
         self.assertEqual(done.returncode, 0, f"{line}\n{done.stdout}{done.stderr}")
         return done.stdout
+
+    def read(self, name):
+        return json.loads((self.path / name).read_text())
+
+
+class Commands(InAFolder):
+    def test_every_command_works(self):
+        lines = [line for block in blocks("sh") for line in block.splitlines()]
+        self.assertGreater(len(lines), 15)
+        for line in lines:
+            self.succeeds(line)
+        for name in re.findall(r"(?:--(?:plot|report|json|preview|trace|html)|>) (\S+)", " ".join(lines)):
+            self.assertGreater((self.path / name).stat().st_size, 100, name)
+
+        self.succeeds("tactree info felt.blob --json felt.json")
+        self.assertEqual(len(self.read("felt.json")["material_list"]), 2)
+        bodies = self.read("scene-run.json")["bodies"]
+        self.assertEqual([pathlib.Path(body["blob"]).name for body in bodies], ["statue.blob", "lid.blob"])
+        self.assertGreater(bodies[0]["contact_ticks"], 0)
+        self.assertIn("shapes", self.read("evaluation.json"))
+        self.assertEqual(len((self.path / "answers.csv").read_text().splitlines()), 3)
+
+
+class ServedCommands(InAFolder):
+    def setUp(self):
+        # The models and recordings that the commands name.
+        for block in blocks("sh"):
+            for line in block.splitlines():
+                if line.startswith(("tactree build", "tactree simulate")):
+                    self.succeeds(line)
 
     def start(self, line, expected):
         """A command that runs until it is ended; its first line of output matches `expected`."""
@@ -104,32 +134,13 @@ class Commands(unittest.TestCase):
             line = line if "--clear" in line else line + " --clear"
         self.fail(f"{line}\n{done.stdout}{done.stderr}")
 
-    def read(self, name):
-        return json.loads((self.path / name).read_text())
-
-    def test_1_every_command_works(self):
-        lines = [line for block in blocks("sh") for line in block.splitlines()]
-        self.assertGreater(len(lines), 15)
-        for line in lines:
-            self.succeeds(line)
-        for name in re.findall(r"(?:--(?:plot|report|json|preview|trace|html)|>) (\S+)", " ".join(lines)):
-            self.assertGreater((self.path / name).stat().st_size, 100, name)
-
-        self.succeeds("tactree info felt.blob --json felt.json")
-        self.assertEqual(len(self.read("felt.json")["material_list"]), 2)
-        bodies = self.read("scene-run.json")["bodies"]
-        self.assertEqual([pathlib.Path(body["blob"]).name for body in bodies], ["statue.blob", "lid.blob"])
-        self.assertGreater(bodies[0]["contact_ticks"], 0)
-        self.assertIn("shapes", self.read("evaluation.json"))
-        self.assertEqual(len((self.path / "answers.csv").read_text().splitlines()), 3)
-
-    def test_2_every_page_is_served(self):
+    def test_every_page_is_served(self):
         lines = [line for block in blocks("console") if "--serve" not in block for line in prompt_lines(block)]
         self.assertEqual(len(lines), 3)
         for line in lines:
             self.shows_page(line)
 
-    def test_3_a_served_board_answers_every_command(self):
+    def test_a_served_board_answers_every_command(self):
         (block,) = [block for block in blocks("console") if "--serve" in block]
         shown = re.search(r"^serving at (\S+)$", block, re.MULTILINE)[1]
         serve, *lines = prompt_lines(block)
@@ -149,4 +160,4 @@ class Commands(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    unittest.main(verbosity=2)

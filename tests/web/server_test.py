@@ -369,4 +369,4 @@ if __name__ == "__main__":
     if "built without its page" in probe.stderr:
         print("skipped: the page was not built (scripts/install-deps view)")
         sys.exit(SKIPPED)
-    unittest.main(verbosity=1)
+    unittest.main(verbosity=2)
