@@ -36,7 +36,7 @@ std::vector<const emulation::BoardDescription*> proven_boards() {
 wcet::Bound bound_of(const emulation::BoardDescription& board, const core::BlobView& view,
                      core::RenderMode mode, float rate_hz = core::Configuration{}.rate_hz,
                      core::DeviceKind device = core::DeviceKind::kCartesian,
-                     const std::filesystem::path& sources = TACTREE_SOURCES) {
+                     const std::filesystem::path& sources = source_folder()) {
   wcet::BoundOptions options;
   options.image = bare_firmware(board);
   options.sources = sources;
@@ -192,7 +192,7 @@ TEST_P(Proof, HoldsForEveryDevice) {
 wcet::BoundOptions in_cycles(const emulation::BoardDescription& board) {
   wcet::BoundOptions options;
   options.image = bare_firmware(board);
-  options.sources = TACTREE_SOURCES;
+  options.sources = source_folder();
   options.entries = wcet::tick_entries();
   options.timing = wcet::find_timing(board.name);
   return options;
@@ -278,7 +278,10 @@ TEST_P(Proof, BoardWithCostsRefusesARateThatIsTooHigh) {
   const wcet::BoundOptions options = in_cycles(board());
   wcet::embed(image, wcet::tick_costs(options));
   EXPECT_EQ(wcet::embedded(image).known, core::kTickCostsKnown);
-  ASSERT_EQ(std::system((TACTREE_SOURCES "/scripts/seal-image " + image.string()).c_str()), 0);
+  ASSERT_EQ(
+      std::system(
+          (source_folder() / "scripts/seal-image").string().append(" " + image.string()).c_str()),
+      0);
 
   core::TickLoad load;
   load.add(touched_shape().view().header(), {});
@@ -302,7 +305,7 @@ TEST_P(Proof, SearchExceedsABoundThatIsTooSmall) {
       std::filesystem::path(testing::TempDir()) / ("too_small_" + std::string(board().name));
   std::filesystem::create_directories(folder);
   for (const char* part : {"core", "hal", "firmware"}) {
-    std::filesystem::copy(std::filesystem::path(TACTREE_SOURCES) / part, folder / part,
+    std::filesystem::copy(source_folder() / part, folder / part,
                           std::filesystem::copy_options::recursive |
                               std::filesystem::copy_options::overwrite_existing);
   }

@@ -426,7 +426,7 @@ class Style(Planted):
         entries = []
         for number, source in enumerate(sources):
             if isinstance(source, list):
-                source = self.write(f"host/files/Unity/unity_{number}_cxx.cxx",
+                source = self.write(f"host/files/merged/files_{number}.cpp",
                                     "".join(f'#include "{name}"\n' for name in source))
             entries.append({"directory": str(self.folder), "file": str(source),
                             "command": f"c++ -std=c++20 -o {number}.o -c {source}"})

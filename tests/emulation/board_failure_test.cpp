@@ -162,7 +162,7 @@ TEST_P(Failure, RefusesAnImageOfAnotherBoard) {
 
 TEST_P(Failure, RefusesAFileThatIsNotAnImage) {
   emulation::EmulationOptions wrong = options();
-  wrong.image = TACTREE_BUILD "/does-not-exist.elf";
+  wrong.image = source_folder() / "build/does-not-exist.elf";
   const std::string error = error_of([&] { EmulatedTarget(board(), good_blob(), wrong); });
   expect_in("the emulator ended too early", error);
   expect_in("does-not-exist", error);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "analytic_shapes.hpp"
+#include "folders.hpp"
 #include "tactree/emulation/emulated_target.hpp"
 
 namespace tactree::test {
@@ -21,7 +22,7 @@ inline const Shape& touched_shape() {
 /// A file of the firmware builds; folder: "firmware" or "tests/on_target".
 inline std::filesystem::path built(const emulation::BoardDescription& board,
                                    const std::string& folder, const std::string& name) {
-  return std::filesystem::path(TACTREE_BUILD) / board.toolchain / folder / (name + ".elf");
+  return source_folder() / "build" / board.toolchain / folder / (name + ".elf");
 }
 
 /// The firmware of the board without the costs of a tick: it admits every model.

@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "command.hpp"
+#include "folders.hpp"
 #include "memory_file.hpp"
 #include "run/scene_file.hpp"
 
@@ -21,7 +22,7 @@ class Folder {
     std::string name = (fs::temp_directory_path() / "tactree-scene-XXXXXX").string();
     fuzz::require(::mkdtemp(name.data()) != nullptr, "no folder can be made");
     path_ = name;
-    fs::copy_file(TACTREE_SEEDS "/open_blob/kOk.surface", path_ / "a.blob");
+    fs::copy_file(test::seeds_folder() / "open_blob/kOk.surface", path_ / "a.blob");
   }
   ~Folder() { fs::remove_all(path_); }
   Folder(const Folder&) = delete;

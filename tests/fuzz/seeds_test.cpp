@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "device_file.hpp"
+#include "folders.hpp"
 #include "image/firmware_image.hpp"
 #include "run/scene_file.hpp"
 #include "scan/read_points.hpp"
@@ -44,7 +45,7 @@ BlobStatus open(const fs::path& path) {
 
 TEST(Seeds, BlobsAreAcceptedOrRefusedAsNamed) {
   std::set<std::string> seen;
-  for (const auto& entry : fs::directory_iterator(TACTREE_SEEDS "/open_blob")) {
+  for (const auto& entry : fs::directory_iterator(tactree::test::seeds_folder() / "open_blob")) {
     const std::string file = entry.path().filename().string();
     const std::string status = file.substr(0, file.find('.'));
     EXPECT_EQ(name_of(open(entry.path())), status) << file;
@@ -56,7 +57,7 @@ TEST(Seeds, BlobsAreAcceptedOrRefusedAsNamed) {
 
 std::vector<fs::path> seeds_of(const char* target) {
   std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(fs::path(TACTREE_SEEDS) / target)) {
+  for (const auto& entry : fs::directory_iterator(tactree::test::seeds_folder() / target)) {
     files.push_back(entry.path());
   }
   return files;
@@ -70,19 +71,20 @@ TEST(Seeds, TheFilesOfTheCommandLineAreRead) {
     EXPECT_EQ(tactree::cli::read_firmware(file).board, "board");
   }
   for (const char* name : {"one", "colours"}) {
-    const std::string file = std::string(TACTREE_SEEDS "/read_materials/") + name;
+    const std::string file = tactree::test::seeds_folder() / "read_materials" / name;
     EXPECT_NO_THROW((void)tactree::builder::read_materials(file)) << name;
   }
-  const fs::path scenes = TACTREE_SEEDS "/read_scene";
-  const std::string blob = TACTREE_SEEDS "/open_blob/kOk.surface";
+  const fs::path scenes = tactree::test::seeds_folder() / "read_scene";
+  const std::string blob = tactree::test::seeds_folder() / "open_blob/kOk.surface";
   EXPECT_EQ(tactree::cli::read_scene(scenes / "moving", {blob}).bodies.size(), 1U);
-  EXPECT_EQ(tactree::cli::read_points(TACTREE_SEEDS "/read_rows/points").size(), 2U);
+  EXPECT_EQ(tactree::cli::read_points(tactree::test::seeds_folder() / "read_rows/points").size(),
+            2U);
   EXPECT_GE(seeds_of("read_rows").size(), 2U + tactree::simulation::injection_kinds().size());
 }
 
 TEST(Seeds, ScansAreRead) {
   std::set<std::string> formats;
-  for (const auto& entry : fs::directory_iterator(TACTREE_SEEDS "/read_scan")) {
+  for (const auto& entry : fs::directory_iterator(tactree::test::seeds_folder() / "read_scan")) {
     try {
       const auto scan = tactree::builder::read_scan(entry.path());
       EXPECT_GE(scan.positions.size(), 2U) << entry.path();

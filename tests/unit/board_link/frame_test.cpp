@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "folders.hpp"
 #include "tactree/core/wire/messages.hpp"
 
 namespace tactree::core::wire {
@@ -163,7 +164,7 @@ TEST(Frame, AcceptsLongerAndRefusesShorterMessages) {
 
 // Every frame of a session of the first release is decoded, and encoded to the same bytes.
 TEST(Frame, EncodesTheGoldenSessionUnchanged) {
-  std::ifstream golden(TACTREE_GOLDEN "/session-1.0.txt");
+  std::ifstream golden(test::source_folder() / "tests/golden/session-1.0.txt");
   int frames = 0;
   for (std::string line; std::getline(golden, line); ++frames) {
     Bytes frame;

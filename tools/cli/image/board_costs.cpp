@@ -34,11 +34,13 @@ double BoardCosts::highest_rate(const core::BlobHeader& header,
   return wcet::highest_rate(timing.clock_hz, cycles_at_tiers(header, configuration));
 }
 
+std::string source_folder() { return TACTREE_SOURCES; }
+
 wcet::BoundOptions analysis_of(const emulation::BoardDescription& board,
                                const std::string& firmware) {
   wcet::BoundOptions options;
   options.image = emulation::find_image(board, firmware);
-  options.sources = TACTREE_SOURCES;
+  options.sources = source_folder();
   options.entries = wcet::tick_entries();
   return options;
 }

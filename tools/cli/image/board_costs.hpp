@@ -31,6 +31,9 @@ struct BoardCosts {
       const core::BlobHeader& header, const core::Configuration& configuration) const;
 };
 
+/// Of the sources that this program was built from: the default for the analysis of an image.
+[[nodiscard]] std::string source_folder();
+
 /// Options to analyse a board's image, without models and timing. `firmware`: its folder; empty:
 /// the build tree or the installation.
 [[nodiscard]] wcet::BoundOptions analysis_of(const emulation::BoardDescription& board,

@@ -31,7 +31,7 @@ struct BoundCommandOptions {
   bool must_keep_rate = false;
   bool embed = false;
   bool quiet = false;
-  std::string sources = TACTREE_SOURCES;
+  std::string sources = source_folder();
   std::string json;
   std::string mode = "surface";
   std::uint32_t bodies = 1;

@@ -5,6 +5,7 @@
 #include <sstream>
 #include <vector>
 
+#include "folders.hpp"
 #include "test_files.hpp"
 
 namespace tactree::builder {
@@ -28,7 +29,7 @@ class SharedData : public testing::Test {
     }
   }
 
-  const fs::path root_ = TACTREE_SHARED_DATA;
+  const fs::path root_ = test::scans_folder();
 };
 
 struct Listed {

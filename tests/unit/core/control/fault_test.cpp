@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "folders.hpp"
 #include "session.hpp"
 
 namespace tactree::test {
@@ -254,7 +255,7 @@ TEST(Faults, CountersMayWrapAround) {
 
 std::set<std::string> pages() {
   std::set<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(TACTREE_FAULT_PAGES)) {
+  for (const auto& entry : std::filesystem::directory_iterator(source_folder() / "docs/faults")) {
     names.insert(entry.path().stem().string());
   }
   names.erase("README");
@@ -271,7 +272,7 @@ TEST(Faults, FaultPagesMatchTheCodesAndLimits) {
   }
   EXPECT_EQ(pages(), wanted);
   for (const std::string& name : pages()) {
-    std::ifstream file(std::filesystem::path(TACTREE_FAULT_PAGES) / (name + ".md"));
+    std::ifstream file(source_folder() / "docs/faults" / (name + ".md"));
     const std::string text((std::istreambuf_iterator<char>(file)), {});
     EXPECT_NE(text.find("## Likely causes\n- "), std::string::npos) << name;
     EXPECT_NE(text.find("## What to do\n"), std::string::npos) << name;
