@@ -41,8 +41,8 @@ GpioEncoderBank::GpioEncoderBank(const std::vector<EncoderLines>& axes, const st
     : axes_(static_cast<std::uint32_t>(axes.size())),
       index_axes_(axes_with_index(axes)),
       faults_max_(faults_max),
-      lines_(GpioLines::inputs(names_of(axes), consumer, with_edges())) {
-  gone_ = !lines_.levels(decoded_);
+      lines_(GpioLines::inputs(names_of(axes), consumer, with_edges())),
+      decoded_(lines_.first_levels()) {
   for (std::uint32_t i = 0; i < axes_; ++i) {  // bound: kAxes
     decoders_[i].begin(levels_of(decoded_, i));
   }

@@ -114,7 +114,8 @@ void refuse(const WantedLines& wanted, int error) {
                   " (remedy: see gpioinfo for the capabilities of the line)");
 }
 
-// The request itself may have caused edges.
+// The request itself may have caused edges. The levels are read within the rest: after it, a device
+// that moves slowly may have changed them before its edge is in the queue.
 void GpioLines::await_rest(const std::string& name) {
   const std::uint64_t end_ns = linux_time::now_ns() + kPatience_ns;
   do {  // bound: kPatience_ns / kRest_ns
@@ -124,6 +125,9 @@ void GpioLines::await_rest(const std::string& name) {
                       "(remedy: hold the device still at the start)");
     }
     begin_edges();
+    if (!levels(first_levels_)) {
+      throw GpioError(quoted(name) + ": its chip was removed (remedy: load its driver)");
+    }
     sleep_ns(kRest_ns);
   } while (!is_at_rest());
 }

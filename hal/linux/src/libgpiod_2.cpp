@@ -196,7 +196,11 @@ void GpioLines::begin_edges() noexcept {
   request_->lost = 0;
 }
 
-bool GpioLines::is_at_rest() noexcept { return request_->read() <= 0; }
+// The edges of a restless line are counted: their numbers are not missing later.
+bool GpioLines::is_at_rest() noexcept {
+  std::array<Edge, kEdgesAtOnce> edges;
+  return read_edges(edges) <= 0;
+}
 
 int read_chip(const std::string& device, Chip& chip) {
   const OpenChip opened(gpiod_chip_open(device.c_str()));

@@ -74,6 +74,8 @@ class GpioLines {
   /// Reads all lines: bit n is line n. False: the chip was removed. Cost: one system call; with
   /// libgpiod 1.6 and edges, one for each line.
   [[nodiscard]] bool levels(std::uint64_t& bits) const noexcept;
+  /// Levels before the first edge that read_edges() returns; only of lines with edges.
+  [[nodiscard]] std::uint64_t first_levels() const { return first_levels_; }
   [[nodiscard]] bool set(std::uint64_t bits) noexcept;
   /// Reads edges, oldest first over all lines; never blocks. Returns their number; less than
   /// kEdgesAtOnce: there are no more; -1: the chip was removed. An edge whose order is uncertain
@@ -92,6 +94,7 @@ class GpioLines {
   [[nodiscard]] bool is_at_rest() noexcept;
 
   std::unique_ptr<Request> request_;
+  std::uint64_t first_levels_ = 0;
 };
 
 }  // namespace tactree::hal::linux_gpio
