@@ -51,16 +51,12 @@ class Link(unittest.TestCase):
             self.assertEqual(devices[0]["board"], BOARD)
             seen = self.read_json("monitor", "--once", "--port", port)
             self.assertEqual((seen["state"], seen["faults"]), ("idle", 0))
-            # A slow computer may lose the link by its timeout of 100 ms: not a failure.
-            armed = subprocess.run([TACTREE, "arm", "--port", port, "--seconds", "1", "--link-timeout", "100"],
-                                   capture_output=True, text=True, timeout=120)
-            self.assertIn("active", armed.stdout + armed.stderr)
+            self.assertIn("active", self.run_verb("arm", "--port", port, "--seconds", "1"))
             self.assertIn("stopped", self.run_verb("stop", "--port", port))
             trace = self.run_verb("trace", "--port", port).splitlines()
             self.assertTrue(any(line.startswith("tick,state,contact") for line in trace))
             ticks = [int(line.split(",")[0]) for line in trace if line[:1].isdigit()]
             self.assertEqual(ticks, list(range(ticks[0], ticks[0] + len(ticks))), "none is missing")
-            # The board overwrites the oldest samples meanwhile: the number left depends on the speed.
             self.assertGreater(len(ticks), 32)
 
     def test_writes_and_rolls_back_a_model(self):

@@ -23,10 +23,10 @@ def build_ball(tactree, folder, name="ball", *options):
 
 
 class ServedBoard:
-    """with ServedBoard(tactree, blob) as port: ..."""
+    """with ServedBoard(tactree, blob) as port: ...      Its time passes only while a program lets it."""
 
     def __init__(self, tactree, blob, *options):
-        self.command = [tactree, "simulate", blob, "--serve", *options]
+        self.command = [tactree, "simulate", blob, "--serve", "--lock-step", *options]
 
     def __enter__(self):
         self.process = subprocess.Popen(self.command, stdout=subprocess.PIPE, text=True)

@@ -1,5 +1,5 @@
 #pragma once
-// A served board that runs in a thread, in real time.
+// A served board that runs in a thread, in lock-step with the program that is connected.
 
 #include <atomic>
 #include <chrono>
@@ -7,7 +7,8 @@
 #include <string>
 #include <thread>
 
-#include "tactree/host/serial_port.hpp"
+#include "tactree/host/connection.hpp"
+#include "tactree/host/lock_step.hpp"
 #include "tactree/serve/served_target.hpp"
 #include "tactree/simulation/simulation.hpp"
 #include "test_models.hpp"
@@ -28,8 +29,10 @@ class RunningBoard {
   RunningBoard(const RunningBoard&) = delete;
   RunningBoard& operator=(const RunningBoard&) = delete;
 
-  [[nodiscard]] std::string port() const { return terminal_.name(); }
-  /// Simulates a board that hangs: the port stays open, nothing is answered.
+  [[nodiscard]] std::string port() const { return server_.name(); }
+  /// Of its socket: another name of it, after "step:", is a port as well.
+  [[nodiscard]] std::string path() const { return port().substr(port().find(':') + 1); }
+  /// Simulates a board that hangs: the port stays open, nothing is answered, and time passes.
   void freeze(bool frozen) { frozen_ = frozen; }
   void press_emergency_stop(bool pressed) { emergency_stop_ = pressed; }
   /// The model until another one is written.
@@ -46,22 +49,20 @@ class RunningBoard {
     simulation::HandPath path({{0.0, {0.0, 0.0, 0.04}}, {1.0, {0.0, 0.0, height_m}}});
     simulation::Simulation simulation(
         blob, setup, path,
-        std::make_unique<serve::ServedTarget>(terminal_, blob, serve::ServeOptions{}));
+        std::make_unique<serve::ServedTarget>(server_, blob, serve::ServeOptions{}));
     listening_.count_down();
     double hand_s = 0.0;
     while (!ending_) {
-      if (frozen_) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));
-        continue;
+      if (!frozen_) {
+        simulation.board().safety_inputs().press_emergency_stop(emergency_stop_);
+        hand_s = simulation.state() == core::State::kActive ? hand_s + 0.001 : 0.0;
+        (void)simulation.step_with_hand_at(hand_s);
       }
-      simulation.board().safety_inputs().press_emergency_stop(emergency_stop_);
-      hand_s = simulation.state() == core::State::kActive ? hand_s + 0.001 : 0.0;
-      (void)simulation.step_with_hand_at(hand_s);
-      std::this_thread::sleep_for(std::chrono::microseconds(500));
+      server_.pass(std::chrono::milliseconds(1), [this] { return ending_.load(); });
     }
   }
 
-  host::PseudoTerminal terminal_;
+  host::LockStepServer server_;
   std::latch listening_{1};
   std::atomic<bool> ending_ = false;
   std::atomic<bool> emergency_stop_ = false;
@@ -69,14 +70,14 @@ class RunningBoard {
   std::thread thread_;
 };
 
-/// Polls a condition for up to 30 s.
+/// Looks every 10 ms, for up to 30 s of the board's time.
 template <class Condition>
-bool comes_true(Condition condition) {
+bool comes_true(const host::Connection& connection, Condition condition) {
   for (int i = 0; i < 3000; ++i) {
     if (condition()) {
       return true;
     }
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    connection.sleep(std::chrono::milliseconds(10));
   }
   return false;
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <thread>
 
 #include "tactree/core/controller.hpp"
 #include "tactree/core/crc32.hpp"
@@ -204,13 +203,13 @@ const char* Board::who_confirms() const {
 
 void Board::arm(std::chrono::milliseconds patience) {
   begin_arming();
-  const auto deadline = std::chrono::steady_clock::now() + patience;
+  const auto deadline = connection().now() + patience;
   while (!go_on_arming()) {
-    if (std::chrono::steady_clock::now() > deadline) {
+    if (connection().now() > deadline) {
       stop();
       throw LinkError(connection().name() + ": arm: nobody confirms (" + who_confirms() + ")");
     }
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    connection().sleep(std::chrono::milliseconds(20));
   }
 }
 

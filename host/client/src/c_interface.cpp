@@ -109,6 +109,10 @@ int tactree_set_material(tactree_board* board, float stiffness_N_m, float dampin
   });
 }
 
+void tactree_sleep(const tactree_board* board, unsigned duration_ms) {
+  board->board.connection().sleep(std::chrono::milliseconds(duration_ms));
+}
+
 void tactree_latest(const tactree_board* board, tactree_sample* sample) {
   *sample = sample_of(board->board.latest());
 }

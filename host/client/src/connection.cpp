@@ -24,11 +24,6 @@ using std::chrono::microseconds;
 // Longest time that a posted request waits to be sent, and that a heartbeat may be late.
 constexpr microseconds kWait{500};
 
-Microseconds now_us() {
-  const auto since = std::chrono::steady_clock::now().time_since_epoch();
-  return static_cast<Microseconds>(std::chrono::duration_cast<microseconds>(since).count());
-}
-
 }  // namespace
 
 class Connection::Worker {
@@ -106,8 +101,30 @@ class Connection::Worker {
     return transport_->connected() && client_.state() == Client::State::kOpen;
   }
   [[nodiscard]] std::string name() const { return transport_->name(); }
+  [[nodiscard]] microseconds now() const { return transport_->now(); }
+
+  void sleep(microseconds duration) {
+    std::unique_lock lock(mutex_);
+    const microseconds end = now() + duration;
+    const Waiting waiting(waiting_);
+    arrived_.wait(lock, [&] { return now() >= end; });
+  }
 
  private:
+  /// Counts the threads that wait for the board or its time.
+  class Waiting {
+   public:
+    explicit Waiting(std::atomic<int>& count) : count_(count) { ++count_; }
+    ~Waiting() { --count_; }
+    Waiting(const Waiting&) = delete;
+    Waiting& operator=(const Waiting&) = delete;
+
+   private:
+    std::atomic<int>& count_;
+  };
+
+  [[nodiscard]] Microseconds now_us() const { return static_cast<Microseconds>(now().count()); }
+
   void run() {
     while (!ending_) {
       {
@@ -117,8 +134,11 @@ class Connection::Worker {
       arrived_.notify_all();
       if (transport_->connected()) {
         transport_->wait(kWait);
-      } else {
-        std::this_thread::sleep_for(kWait);  // there is nothing to wait for: it would not rest
+      }
+      // Nothing to wait for: it would not rest. Simulated time passes as fast as it can while a
+      // thread waits for it, else not faster than that of the computer.
+      if (!transport_->connected() || (transport_->in_lock_step() && waiting_ == 0)) {
+        std::this_thread::sleep_for(kWait);
       }
     }
     const std::lock_guard lock(mutex_);
@@ -127,12 +147,12 @@ class Connection::Worker {
 
   void exchange() {
     std::array<std::byte, 4096> bytes{};
-    const Microseconds now = now_us();
+    const Microseconds time_us = now_us();
     std::size_t count = 0;
     while ((count = transport_->read(bytes)) > 0U) {
-      client_.receive(std::span(bytes).first(count), now);
+      client_.receive(std::span(bytes).first(count), time_us);
     }
-    client_.advance(now);
+    client_.advance(time_us);
     client_.sent(transport_->write(client_.to_send()));
     Response response;
     while (client_.take(response)) {
@@ -161,6 +181,7 @@ class Connection::Worker {
   Response await(std::unique_lock<std::mutex>& lock, std::uint16_t sequence) {
     const auto is_it = [sequence](const Response& r) { return r.sequence == sequence; };
     auto found = responses_.end();
+    const Waiting waiting(waiting_);
     arrived_.wait(lock, [&] {
       found = std::find_if(responses_.begin(), responses_.end(), is_it);
       return found != responses_.end();
@@ -182,6 +203,7 @@ class Connection::Worker {
   std::uint64_t dropped_ = 0;
   std::uint64_t refusals_ = 0;
   std::atomic<bool> ending_ = false;
+  std::atomic<int> waiting_ = 0;
   std::thread thread_;
 };
 
@@ -217,6 +239,8 @@ std::uint64_t Connection::refusals() const { return worker_->refusals(); }
 std::optional<Telemetry> Connection::latest() const { return worker_->latest(); }
 std::vector<Telemetry> Connection::take_stream() { return worker_->take_stream(); }
 std::uint64_t Connection::dropped() const { return worker_->dropped(); }
+std::chrono::microseconds Connection::now() const { return worker_->now(); }
+void Connection::sleep(std::chrono::microseconds duration) const { worker_->sleep(duration); }
 bool Connection::connected() const { return worker_->connected(); }
 bool Connection::in_session() const { return worker_->in_session(); }
 std::string Connection::name() const { return worker_->name(); }

@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "tactree/host/local_socket.hpp"
+#include "tactree/host/lock_step.hpp"
 #include "tactree/host/serial_port.hpp"
 #include "tactree/host/usb_transport.hpp"
 
@@ -12,6 +13,7 @@ namespace {
 
 constexpr std::string_view kUsb = "usb:";
 constexpr std::string_view kSocket = "unix:";
+constexpr std::string_view kStep = "step:";
 
 }  // namespace
 
@@ -33,6 +35,9 @@ std::unique_ptr<Transport> open_port(const std::string& name, unsigned baud) {
   if (name.starts_with(kSocket)) {
     return open_local_socket(name.substr(kSocket.size()));
   }
+  if (name.starts_with(kStep)) {
+    return open_lock_step(name.substr(kStep.size()));
+  }
   return open_serial_port(name, baud);
 }
 
@@ -41,7 +46,8 @@ std::optional<unsigned> wire_speed(const std::string& name, unsigned baud) {
   std::error_code error;
   const std::string path = std::filesystem::canonical(name, error).string();
   const bool has_no_wire = name.starts_with(kUsb) || name.starts_with(kSocket) ||
-                           path.starts_with("/dev/pts/") || path.starts_with("/dev/ttyACM");
+                           name.starts_with(kStep) || path.starts_with("/dev/pts/") ||
+                           path.starts_with("/dev/ttyACM");
   return has_no_wire ? std::nullopt : std::optional(baud / kBitsPerByte);
 }
 

@@ -71,7 +71,7 @@ void BoardSession::begin_session() {
   contact_.stiffness_N_m = facts->can.stiffness_N_m;
   board_->subscribe({kFields, ticks_per_message(*facts)});
   facts_ = std::move(facts);
-  last_telemetry_ = Clock::now();
+  last_telemetry_ = board_->connection().now();
   last_.reset();
   outcome_->stopped();
   strip_ = {};
@@ -177,7 +177,7 @@ std::string BoardSession::trace_csv() const {
 // The session's thread
 
 void BoardSession::run(const Publish& publish) {
-  const std::chrono::duration<double> period(1.0 / kFrameRate_hz);
+  constexpr std::chrono::microseconds kPeriod(static_cast<int>(1e6 / kFrameRate_hz));
   while (running()) {
     const Clock::time_point now = Clock::now();
     update_board();
@@ -185,7 +185,11 @@ void BoardSession::run(const Publish& publish) {
       reconnect();
     }
     publish(std::make_shared<const std::string>(frame()));
-    std::this_thread::sleep_until(now + period);
+    if (board_->connected()) {
+      board_->connection().sleep(kPeriod);
+    } else {
+      std::this_thread::sleep_for(kPeriod);
+    }
   }
 }
 
@@ -236,7 +240,7 @@ void BoardSession::execute(const json& command) {
     outcome_->cleared(last_ ? last_->t_s : 0.0);
   } else if (!arming_until_) {
     board_->begin_arming();
-    arming_until_ = Clock::now() + kConfirmTimeout;
+    arming_until_ = board_->connection().now() + kConfirmTimeout;
   }
 }
 
@@ -262,7 +266,7 @@ void BoardSession::continue_arming() {
   if (!arming_until_) {
     return;
   }
-  const bool is_late = Clock::now() > *arming_until_;
+  const bool is_late = board_->connection().now() > *arming_until_;
   try {
     if (board_->go_on_arming()) {
       arming_until_.reset();
@@ -306,7 +310,7 @@ void BoardSession::add(const host::Telemetry& telemetry) {
     report(*news);
   }
   last_ = sample;
-  last_telemetry_ = Clock::now();
+  last_telemetry_ = board_->connection().now();
 }
 
 void BoardSession::check_link() {
@@ -318,7 +322,7 @@ void BoardSession::check_link() {
   }
   if (!board_->in_session()) {
     set_lost(Link::kTaken, "Another program uses the board, or the board was reset.");
-  } else if (Clock::now() - last_telemetry_ > kMaxSilence) {
+  } else if (board_->connection().now() - last_telemetry_ > kMaxSilence) {
     set_lost(Link::kLost, "The board sends no telemetry.");
   }
 }

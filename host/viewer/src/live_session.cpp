@@ -330,18 +330,29 @@ std::string LiveSession::trace_csv() const { return log_.csv(); }
 
 void LiveSession::run(const Publish& publish) {
   Clock::time_point then = Clock::now();
-  for (int turn = 0; running(); ++turn) {
+  for (int count = 0; running(); ++count) {
     const Clock::time_point now = Clock::now();
     const double elapsed_s = std::chrono::duration<double>(now - then).count();
     then = now;
-    apply_commands();
-    advance(std::min(elapsed_s, kMaxBehind_s));
-    lost_s_ += std::max(0.0, elapsed_s - kMaxBehind_s);
-    if (turn % kTurnsPerFrame == 0) {
+    turn(elapsed_s);
+    if (count % kTurnsPerFrame == 0) {
       publish(std::make_shared<const std::string>(frame()));
     }
     std::this_thread::sleep_until(now + std::chrono::duration<double>(kTurn_s));
   }
+}
+
+std::string LiveSession::step() {
+  for (int i = 0; i < kTurnsPerFrame; ++i) {
+    turn(kTurn_s);
+  }
+  return frame();
+}
+
+void LiveSession::turn(double elapsed_s) {
+  apply_commands();
+  advance(std::min(elapsed_s, kMaxBehind_s));
+  lost_s_ += std::max(0.0, elapsed_s - kMaxBehind_s);
 }
 
 void LiveSession::apply_commands() {

@@ -13,17 +13,18 @@ int c_program(const char* port) {
     result = 2;
   }
   tactree_sample sample;
-  long left = 100000000L;
+  int left_ms = 20000;
   do {
+    tactree_sleep(board, 1);
     tactree_latest(board, &sample);
-    left = left - 1;
-  } while (result == 0 && left > 0 && tactree_in_session(board) && !(sample.force_N[2] > 0.05f));
+    left_ms = left_ms - 1;
+  } while (result == 0 && left_ms > 0 && tactree_in_session(board) && !(sample.force_N[2] > 0.05f));
   const float still[3] = {0, 0, 0};
   const float upright[4] = {1, 0, 0, 0};
   tactree_move_body(board, 0, upright, still, still);
   tactree_add_force(board, still, 20);
   tactree_sample taken[4];
-  if (result == 0 && (left == 0 || tactree_take(board, taken, 4) == 0)) {
+  if (result == 0 && (left_ms == 0 || tactree_take(board, taken, 4) == 0)) {
     result = 3;
   }
   if (tactree_stop(board) != 0) {

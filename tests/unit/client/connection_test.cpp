@@ -3,11 +3,16 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
+#include <chrono>
 #include <filesystem>
 
 #include "running_board.hpp"
 #include "tactree/host/board.hpp"
 #include "tactree/host/link_error.hpp"
+#include "tactree/host/ports.hpp"
+#include "tactree/host/serial_port.hpp"
 
 namespace tactree::test {
 namespace {
@@ -37,8 +42,34 @@ TEST(Connection, NamesTheDefaultInsteadOfAnUnusualSpeed) {
 }
 
 TEST(Connection, RefusesASilentPort) {
-  const host::PseudoTerminal nobody;
-  EXPECT_THROW(host::Board board(nobody.name()), host::LinkError);
+  RunningBoard silent;
+  silent.freeze(true);
+  EXPECT_THROW(host::Board board(silent.port()), host::LinkError);
+}
+
+TEST(Connection, TimePassesOnlyWhileTheProgramLetsIt) {
+  const RunningBoard running;
+  host::Board board(running.port(), {.link_timeout_ms = 5});
+  const auto begin = board.connection().now();
+  board.connection().sleep(std::chrono::seconds(10));
+  const auto slept = board.connection().now() - begin;
+  EXPECT_GE(slept, std::chrono::seconds(10));
+  board.arm();  // the link has not been lost
+  board.connection().sleep(std::chrono::seconds(10));
+  EXPECT_EQ(static_cast<core::State>(board.state().state), core::State::kActive);
+}
+
+TEST(Connection, ASerialPortIsReadAndWritten) {
+  host::PseudoTerminal board;
+  const std::unique_ptr<host::Transport> port = host::open_port(board.name(), host::kUsualBaud);
+  const std::array<std::byte, 3> sent{std::byte{0}, std::byte{0x7F}, std::byte{0xFF}};
+  std::array<std::byte, 8> received{};
+  ASSERT_EQ(port->write(sent), sent.size());
+  ASSERT_EQ(board.read(received), sent.size());
+  EXPECT_TRUE(std::equal(sent.begin(), sent.end(), received.begin()));
+  ASSERT_EQ(board.write(sent), sent.size());
+  port->wait(std::chrono::seconds(10));
+  EXPECT_EQ(port->read(received), sent.size());
 }
 
 TEST(Connection, RendersContactAndStops) {
@@ -46,10 +77,10 @@ TEST(Connection, RendersContactAndStops) {
   host::Board board(running.port());
   board.subscribe({0x3FF, 5});
   board.arm();
-  EXPECT_TRUE(comes_true([&] { return board.latest().force_N[2] > 0.05F; }));
+  EXPECT_TRUE(comes_true(board.connection(), [&] { return board.latest().force_N[2] > 0.05F; }));
   EXPECT_EQ(board.latest().body, 0U);
   board.move_body(0, {{}, {0.0F, 0.0F, -0.01F}});
-  EXPECT_TRUE(comes_true([&] { return board.latest().body == core::kNoBody; }));
+  EXPECT_TRUE(comes_true(board.connection(), [&] { return board.latest().body == core::kNoBody; }));
   board.stop();
   EXPECT_EQ(static_cast<core::State>(board.state().state), core::State::kIdle);
   EXPECT_EQ(board.connection().refusals(), 0U);
@@ -61,16 +92,16 @@ TEST(Connection, ReconnectsAReturningBoardWithoutArmingIt) {
       std::filesystem::temp_directory_path() / ("tactree-port-" + std::to_string(::getpid()));
   const auto plug_in = [&link](const RunningBoard& running) {
     std::filesystem::remove(link);
-    std::filesystem::create_symlink(running.port(), link);
+    std::filesystem::create_symlink(running.path(), link);
   };
   auto running = std::make_unique<RunningBoard>();
   plug_in(*running);
-  host::Board board(link.string());
+  host::Board board("step:" + link.string());
   board.subscribe({0x3FF, 5});
   board.arm();
-  ASSERT_TRUE(comes_true([&] { return board.latest().state == 4U; }));
+  ASSERT_TRUE(comes_true(board.connection(), [&] { return board.latest().state == 4U; }));
   running.reset();
-  EXPECT_TRUE(comes_true([&] { return !board.connected(); }));
+  EXPECT_TRUE(comes_true(board.connection(), [&] { return !board.connected(); }));
   EXPECT_THROW(board.reconnect(), host::LinkError);
   EXPECT_FALSE(board.connected());
   EXPECT_THROW(board.stop(), host::LinkError);
@@ -81,14 +112,15 @@ TEST(Connection, ReconnectsAReturningBoardWithoutArmingIt) {
   plug_in(again);
   board.reconnect();
   EXPECT_TRUE(board.connected());
-  EXPECT_TRUE(comes_true([&] { return board.latest().header.tick > 0U; }));  // subscribed
+  EXPECT_TRUE(comes_true(board.connection(),
+                         [&] { return board.latest().header.tick > 0U; }));  // subscribed
   EXPECT_EQ(static_cast<core::State>(board.state().state), core::State::kIdle);
   std::filesystem::remove(link);
 }
 
 TEST(Connection, DoesNotReconnectABoardWithoutAName) {
   const RunningBoard running;
-  host::Board board(host::open_serial_port(running.port()), {});
+  host::Board board(host::open_port(running.port(), 0), {});
   EXPECT_THROW(board.reconnect(), host::LinkError);
   EXPECT_TRUE(board.connected());
 }
@@ -98,7 +130,7 @@ TEST(Connection, DeliversTheStreamAndCountsMissingMessages) {
   host::Board board(running.port());
   board.subscribe({0x003, 1});
   std::vector<host::Telemetry> all;
-  ASSERT_TRUE(comes_true([&] {
+  ASSERT_TRUE(comes_true(board.connection(), [&] {
     const auto news = board.take_stream();
     all.insert(all.end(), news.begin(), news.end());
     return all.size() > 500U;
@@ -114,12 +146,12 @@ TEST(Connection, LimitsTheSizeOfAnUnreadStream) {
   const RunningBoard running;
   host::ConnectionOptions options;
   options.stream_capacity = 10;
-  host::Connection connection(host::open_serial_port(running.port()), options);
+  host::Connection connection(host::open_port(running.port(), 0), options);
   connection.open(0);
   ASSERT_TRUE(
       connection.call(core::wire::MessageKind::kSubscribe, core::wire::SubscribeRequest{1, 1})
           .ok());
-  EXPECT_TRUE(comes_true([&] { return connection.dropped() > 20U; }));
+  EXPECT_TRUE(comes_true(connection, [&] { return connection.dropped() > 20U; }));
   EXPECT_EQ(connection.take_stream().size(), 10U);
 }
 
@@ -127,7 +159,7 @@ TEST(Connection, CountsRefusedPosts) {
   const RunningBoard running;
   host::Board board(running.port());
   board.add_force({1.0F, 0.0F, 0.0F}, 20);  // not active
-  EXPECT_TRUE(comes_true([&] { return board.connection().refusals() == 1U; }));
+  EXPECT_TRUE(comes_true(board.connection(), [&] { return board.connection().refusals() == 1U; }));
 }
 
 TEST(Connection, FlashesRollsBackAndReadsTraceAndParameters) {

@@ -20,9 +20,6 @@ class LiveSessionTest : public testing::Test {
  protected:
   static constexpr double kRadius_m = 0.04;
 
-  LiveSessionTest() { session_.start(frames_.taker()); }
-  ~LiveSessionTest() override { session_.stop(); }
-
   static std::vector<viewer::NamedDevice> devices() {
     std::vector<viewer::NamedDevice> list;
     for (const core::DevicePreset& preset : core::kDevicePresets) {
@@ -36,8 +33,23 @@ class LiveSessionTest : public testing::Test {
     return {{blob_.view()}, {body}};
   }
   void say(const json& command) { EXPECT_EQ(session_.command(command).value_or(""), ""); }
+  /// The first of the next frames for which this holds; the session's time passes meanwhile.
+  json wait_for(const std::function<bool(const json&)>& holds) {
+    json frame;
+    for (int i = 0; i < 3000; ++i) {
+      frame = json::parse(session_.step());
+      if (holds(frame)) {
+        return frame;
+      }
+    }
+    ADD_FAILURE() << "it never happened: " << frame.dump().substr(0, 600);
+    return frame;
+  }
+  json wait_for_state(const std::string& state) {
+    return wait_for([&](const json& frame) { return frame["runs"][0]["state"] == state; });
+  }
   std::string wait_for_news(const std::string& text) {
-    const json frame = frames_.wait_for([&](const json& f) {
+    const json frame = wait_for([&](const json& f) {
       return f["news"]["text"].get<std::string>().find(text) != std::string::npos;
     });
     return frame["news"]["text"];
@@ -48,14 +60,13 @@ class LiveSessionTest : public testing::Test {
 
   TestBlob blob_{sphere(kRadius_m, 0.001)};
   LiveSession session_{bodies(), devices(), {}};
-  Frames frames_;
 };
 
 TEST_F(LiveSessionTest, SurfaceForceActsUntilStopped) {
-  frames_.wait_for_state("active");
+  wait_for_state("active");
   say({{"do", "hand"}, {"target_m", {0.0, 0.0, kRadius_m - 0.01}}});
-  const json frame = frames_.wait_for(
-      [](const json& f) { return f["runs"][0]["force_N"][2].get<double>() > 0.5; });
+  const json frame =
+      wait_for([](const json& f) { return f["runs"][0]["force_N"][2].get<double>() > 0.5; });
   const json& run = frame["runs"][0];
   EXPECT_NEAR(core::length({run["proxy_m"][0], run["proxy_m"][1], run["proxy_m"][2]}),
               static_cast<float>(kRadius_m), 2e-4F);
@@ -63,26 +74,26 @@ TEST_F(LiveSessionTest, SurfaceForceActsUntilStopped) {
   EXPECT_GT(run["candidates"].size(), 5U);
   EXPECT_GE(run["strip"]["force_N"][1], run["strip"]["force_N"][0]);
   say({{"do", "stop"}});
-  const json idle = frames_.wait_for_state("idle");
+  const json idle = wait_for_state("idle");
   EXPECT_EQ(idle["runs"][0]["force_N"], json({0.0, 0.0, 0.0}));
 }
 
 TEST_F(LiveSessionTest, AFaultPersistsUntilItsCauseEndsAndItIsCleared) {
-  frames_.wait_for_state("active");
+  wait_for_state("active");
   say({{"do", "inject"}, {"fault", "estop:pressed"}});
-  const json frame = frames_.wait_for_state("fault");
+  const json frame = wait_for_state("fault");
   EXPECT_EQ(frame["runs"][0]["faults"][0]["name"], "emergency-stop");
   say({{"do", "mend"}});
   say({{"do", "clear"}});
-  frames_.wait_for_state("idle");
+  wait_for_state("idle");
   say({{"do", "arm"}});
-  frames_.wait_for_state("active");
+  wait_for_state("active");
 }
 
 TEST_F(LiveSessionTest, AClearWhoseCausePersistsIsReportedWithTheInjection) {
-  frames_.wait_for_state("active");
+  wait_for_state("active");
   say({{"do", "inject"}, {"fault", "estop:pressed"}});
-  frames_.wait_for_state("fault");
+  wait_for_state("fault");
   say({{"do", "clear"}});
   const std::string cleared = wait_for_news("Not cleared");
   EXPECT_NE(cleared.find("emergency-stop"), std::string::npos) << cleared;
@@ -92,11 +103,11 @@ TEST_F(LiveSessionTest, AClearWhoseCausePersistsIsReportedWithTheInjection) {
 }
 
 TEST_F(LiveSessionTest, ArmingInsideTheObjectReportsWhyThereIsNoForce) {
-  frames_.wait_for_state("active");
+  wait_for_state("active");
   say({{"do", "stop"}});
-  frames_.wait_for_state("idle");
+  wait_for_state("idle");
   say({{"do", "hand"}, {"target_m", {0.0, 0.0, 0.75 * kRadius_m}}});
-  frames_.wait_for([](const json& f) { return f["runs"][0]["probe_m"][2] < 0.9 * kRadius_m; });
+  wait_for([](const json& f) { return f["runs"][0]["probe_m"][2] < 0.9 * kRadius_m; });
   say({{"do", "arm"}});
   wait_for_news("the probe is inside the object");
 }
@@ -106,11 +117,11 @@ TEST_F(LiveSessionTest, EveryInjectionShowsAnEffectOrItsReason) {
   EXPECT_EQ(injections.size(), simulation::injection_kinds().size());
   for (const json& one : injections) {
     say({{"do", "set"}, {"damping_Ns_m", 0.5}});  // a new session
-    frames_.wait_for([](const json& f) { return f["t_s"] < 0.2; });
-    const json before = frames_.wait_for(
-        [](const json& f) { return f["runs"][0]["state"] == "active" && f["t_s"] > 0.4; });
+    wait_for([](const json& f) { return f["t_s"] < 0.2; });
+    const json before =
+        wait_for([](const json& f) { return f["runs"][0]["state"] == "active" && f["t_s"] > 0.4; });
     say({{"do", "inject"}, {"fault", one["fault"]}});
-    frames_.wait_for([&](const json& f) {
+    wait_for([&](const json& f) {
       return f["runs"][0]["state"] != "active" || f["runs"][0]["overruns"] > 0 ||
              (f["news"]["number"] != before["news"]["number"] &&
               f["news"]["text"].get<std::string>().starts_with(one["fault"].get<std::string>()));
@@ -120,7 +131,7 @@ TEST_F(LiveSessionTest, EveryInjectionShowsAnEffectOrItsReason) {
 }
 
 TEST_F(LiveSessionTest, TheHandVisitsThePlacesOnItsPath) {
-  frames_.wait_for_state("active");
+  wait_for_state("active");
   const Eigen::Vector3d aside(0.0, 0.08, 0.0);
   const auto is_near = [](const json& f, const Eigen::Vector3d& place) {
     const json& hand = f["hand_m"];
@@ -130,29 +141,29 @@ TEST_F(LiveSessionTest, TheHandVisitsThePlacesOnItsPath) {
   say({{"do", "hand"},
        {"target_m", {end.x(), end.y(), end.z()}},
        {"via_m", {{aside.x(), aside.y(), aside.z()}}}});
-  frames_.wait_for([&](const json& f) {
+  wait_for([&](const json& f) {
     EXPECT_EQ(f["runs"][0]["force_N"], json({0.0, 0.0, 0.0}));
     return is_near(f, aside);
   });
-  frames_.wait_for([&](const json& f) { return is_near(f, end); });
+  wait_for([&](const json& f) { return is_near(f, end); });
 }
 
 TEST_F(LiveSessionTest, RunsBothModesSideBySide) {
   say({{"do", "set"}, {"mode", "both"}});
-  const json frame = frames_.wait_for([](const json& f) { return f["runs"].size() == 2; });
+  const json frame = wait_for([](const json& f) { return f["runs"].size() == 2; });
   EXPECT_EQ(frame["runs"][0]["mode"], "surface");
   EXPECT_EQ(frame["runs"][1]["mode"], "paper");
 }
 
 TEST_F(LiveSessionTest, ChangedSettingsRestartOutsideTheObject) {
-  frames_.wait_for_state("active");
+  wait_for_state("active");
   say({{"do", "hand"}, {"target_m", {0.0, 0.0, kRadius_m - 0.01}}});
-  frames_.wait_for([](const json& f) { return f["runs"][0]["force_N"][2].get<double>() > 0.5; });
+  wait_for([](const json& f) { return f["runs"][0]["force_N"][2].get<double>() > 0.5; });
   say({{"do", "set"}, {"damping_Ns_m", 1.0}});
-  const json frame = frames_.wait_for(
+  const json frame = wait_for(
       [](const json& f) { return f["settings"]["damping_Ns_m"] == 1.0 && f["t_s"] > 0.0; });
   EXPECT_EQ(frame["runs"][0]["penetration_m"], 0.0);
-  frames_.wait_for_state("active");
+  wait_for_state("active");
 }
 
 TEST_F(LiveSessionTest, RefusedCommandsChangeNothing) {
@@ -179,9 +190,16 @@ TEST_F(LiveSessionTest, RefusedCommandsChangeNothing) {
 }
 
 TEST_F(LiveSessionTest, RecordsATrace) {
-  frames_.wait_for([](const json& f) { return f["t_s"].get<double>() > 0.7; });
+  wait_for([](const json& f) { return f["t_s"].get<double>() > 0.7; });
   const std::string csv = session_.trace_csv();
   EXPECT_GT(std::count(csv.begin(), csv.end(), '\n'), 500);
+}
+
+TEST_F(LiveSessionTest, RunsInRealTimeOnceStarted) {
+  Frames frames;
+  session_.start(frames.taker());
+  frames.wait_for_state("active");
+  session_.stop();
 }
 
 }  // namespace

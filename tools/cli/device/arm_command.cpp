@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <memory>
-#include <thread>
 
 #include "command.hpp"
 #include "device/board_port.hpp"
@@ -29,10 +28,10 @@ std::chrono::milliseconds milliseconds(double seconds) {
 
 /// Runs until the time is up, Ctrl-C is pressed or the board stops.
 void stay(host::Board& board, double seconds, int& exit_code) {
-  const auto begin = std::chrono::steady_clock::now();
-  while (!interrupted() &&
-         (seconds <= 0.0 || std::chrono::steady_clock::now() - begin < milliseconds(seconds))) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  const host::Connection& connection = board.connection();
+  const auto begin = connection.now();
+  while (!interrupted() && (seconds <= 0.0 || connection.now() - begin < milliseconds(seconds))) {
+    connection.sleep(std::chrono::milliseconds(50));
     const core::wire::StateReply state = board.state();
     if (static_cast<core::State>(state.state) != core::State::kActive) {
       fmt::print("the board is in state {}\n",

@@ -137,13 +137,14 @@ class Monitor {
 
   /// Throws NoTelemetry if none arrives.
   const View& look() {
-    const auto wait_until = std::chrono::steady_clock::now() + std::chrono::seconds(2);
+    const host::Connection& connection = board_.connection();
+    const auto wait_until = connection.now() + std::chrono::seconds(2);
     std::vector<host::Telemetry> news = board_.take_stream();
     while (news.size() < 2U) {
-      if (!board_.connected() || std::chrono::steady_clock::now() > wait_until) {
+      if (!board_.connected() || connection.now() > wait_until) {
         throw NoTelemetry("no telemetry (is the board still connected?)");
       }
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+      connection.sleep(std::chrono::milliseconds(10));
       const std::vector<host::Telemetry> more = board_.take_stream();
       news.insert(news.end(), more.begin(), more.end());
     }

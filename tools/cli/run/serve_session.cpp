@@ -58,6 +58,7 @@ class Pacer {
       : period_(
             std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(period_s))) {}
 
+  [[nodiscard]] Clock::duration period() const { return period_; }
   /// Time of the next tick.
   Clock::time_point next() {
     next_ = std::max(next_ + period_, Clock::now() - kMaxLate);
@@ -86,7 +87,7 @@ void serve_session(simulation::Simulation& simulation, const ServeSchedule& sche
     t_s += period_s;
     const Clock::time_point due = pacer.next();
     if (schedule.wait) {
-      schedule.wait(due);
+      schedule.wait(due, pacer.period());
     } else {
       std::this_thread::sleep_until(due);
     }

@@ -1,5 +1,5 @@
 #pragma once
-// Runs a simulated board in real time for connected programs.
+// Runs a simulated board for connected programs, in real time or as they let its time pass.
 
 #include <chrono>
 #include <functional>
@@ -11,9 +11,11 @@ namespace tactree::cli {
 struct ServeSchedule {
   double rate_hz = 1000.0;
   double path_s = 10.0;      ///< duration of the hand's path, travelled to and fro
-  double seconds_max = 0.0;  ///< real time; 0: until interrupted
-  /// Called after each tick; returns at the time of the next tick. None: sleeps.
-  std::function<void(std::chrono::steady_clock::time_point due)> wait;
+  double seconds_max = 0.0;  ///< 0: until interrupted
+  /// Called after each tick; returns when the next tick may run, at `due` in real time. None:
+  /// sleeps.
+  std::function<void(std::chrono::steady_clock::time_point due, std::chrono::nanoseconds period)>
+      wait;
 };
 
 /// Runs until the time is up or a signal (SIGINT, SIGTERM). The simulated user holds the dead-man

@@ -161,18 +161,24 @@ void add_serve_options(CLI::App& verb, SimulateOptions& options) {
           "with --serve: public key (tactree keygen) that must verify the signature of a model")
       ->needs(serve)
       ->check(CLI::ExistingFile);
+  CLI::Option* lock_step = verb.add_flag("--lock-step", options.lock_step,
+                                         "with --serve: time passes only while a program is "
+                                         "connected and runs, so that it may be slow "
+                                         "or held in a debugger");
+  lock_step->needs(serve);
   CLI::Option* usb = verb.add_flag(
       "--usb", options.on_usb,
       "with --serve: act as a USB device of this computer (needs root and the module vhci-hcd); "
       "SIGUSR1 unplugs the cable, and plugs it in again");
-  usb->needs(serve);
+  usb->needs(serve)->excludes(lock_step);
   verb.add_option("--usb-gadget", options.usb_port,
                   "with --serve: act as a USB device at this computer's device port, one of "
                   "/sys/class/udc (default: the only one); needs root and the module usb_f_fs")
       ->expected(0, 1)
       ->default_str("")
       ->needs(serve)
-      ->excludes(usb);
+      ->excludes(usb)
+      ->excludes(lock_step);
   verb.add_option("--serial", options.serial, "with --serve: last digits of the serial number")
       ->needs(serve);
 }

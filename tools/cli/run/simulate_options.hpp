@@ -31,6 +31,7 @@ struct SimulateOptions {
   std::string json;
   bool serve = false;
   std::string key;  // public key for the models of the served board
+  bool lock_step = false;
   bool on_usb = false;
   std::optional<std::string> usb_port;  // of this computer, as a device; empty: the only one
   std::uint32_t serial = 1;

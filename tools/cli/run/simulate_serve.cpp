@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "image/model_signature.hpp"
+#include "interruption.hpp"
 #include "output_file.hpp"
 #include "run/serve_session.hpp"
 #include "run/simulate_setup.hpp"
@@ -14,6 +15,7 @@
 #include "tactree/emulation/emulated_target.hpp"
 #include "tactree/hal/linux/function_fs_controller.hpp"
 #include "tactree/hal/linux/usbip_controller.hpp"
+#include "tactree/host/lock_step.hpp"
 #include "tactree/host/serial_port.hpp"
 #include "tactree/serve/served_target.hpp"
 #include "tactree/serve/usb_target.hpp"
@@ -80,9 +82,17 @@ void serve_on_usb(const SimulateOptions& options, const SceneFile& scene,
   port.plug_in();
   tell_cable(true);
   ServeSchedule schedule;
-  schedule.wait = [&](auto due) { serve_until(due, served, port); };
+  schedule.wait = [&](auto due, auto) { serve_until(due, served, port); };
   serve_target(options, scene, std::move(target), schedule);
   port.unplug();
+}
+
+void serve_at(const SimulateOptions& options, const SceneFile& scene, host::Transport& port,
+              const ServeSchedule& schedule) {
+  auto target = served_target(options, scene, port);
+  fmt::print("serving at {}\n", port.name());
+  std::fflush(stdout);
+  serve_target(options, scene, std::move(target), schedule);
 }
 
 }  // namespace
@@ -107,12 +117,14 @@ void serve(const SimulateOptions& options, const SceneFile& scene) {
   } else if (options.usb_port) {
     hal::linux_usb::FunctionFsController controller(identity, *options.usb_port);
     serve_on_usb(options, scene, identity, controller);
+  } else if (options.lock_step) {
+    host::LockStepServer server;
+    ServeSchedule schedule;
+    schedule.wait = [&](auto, auto period) { server.pass(period, interrupted); };
+    serve_at(options, scene, server, schedule);
   } else {
     host::PseudoTerminal terminal;
-    auto target = served_target(options, scene, terminal);
-    fmt::print("serving at {}\n", terminal.name());
-    std::fflush(stdout);
-    serve_target(options, scene, std::move(target), {});
+    serve_at(options, scene, terminal, {});
   }
 }
 

@@ -9,7 +9,6 @@
 #include <atomic>
 #include <chrono>
 #include <string>
-#include <thread>
 
 #include "analytic_shapes.hpp"
 #include "board_rig.hpp"
@@ -418,9 +417,8 @@ TEST_F(Stm32f405, ErasesItsRecordSectorsAfterManySaves) {
 
 // ---- the library of applications
 
-/// The wire between that and the board, which lives in the library's thread, in real time; where
-/// the computer is too slow, its time goes slower. The hand holds on a moment after
-/// the board is armed.
+/// The wire between that and the board, which runs in the library's thread, in lock-step with it.
+/// The hand holds on a moment after the board is armed.
 class RigTransport : public host::Transport {
  public:
   /// `driven`: whether the motors ever got current.
@@ -445,10 +443,8 @@ class RigTransport : public host::Transport {
     return bytes.size();
   }
   void wait(std::chrono::microseconds timeout) override {
-    std::this_thread::sleep_for(timeout);
-    const auto now = std::chrono::steady_clock::now();
-    begin_ = std::max(begin_, now - std::chrono::milliseconds(5));
-    for (; begin_ < now; begin_ += std::chrono::milliseconds(1)) {
+    for (due_ += timeout; due_ >= kTick; due_ -= kTick) {
+      ticked_us_ += kTick.count();
       const core::State state = rig_.controller().state();
       const bool armed = state == core::State::kArmed || state == core::State::kActive;
       armed_ticks_ = armed ? armed_ticks_ + 1 : 0;
@@ -457,18 +453,25 @@ class RigTransport : public host::Transport {
       driven_ = driven_ || rig_.duty() > 0.0;
     }
   }
+  [[nodiscard]] std::chrono::microseconds now() const override {
+    return std::chrono::microseconds(ticked_us_);
+  }
+  [[nodiscard]] bool in_lock_step() const override { return true; }
   [[nodiscard]] bool connected() const override { return true; }
   [[nodiscard]] std::string name() const override { return "the serial port"; }
 
  private:
+  static constexpr std::chrono::microseconds kTick{1000};
+
   BoardRig& rig_;
   std::atomic<bool>& driven_;
   int armed_ticks_ = 0;
   std::deque<std::uint8_t> waiting_;
-  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  std::chrono::microseconds due_{0};
+  std::atomic<std::int64_t> ticked_us_ = 0;
 };
 
-TEST(Stm32f405InRealTime, TheClientLibraryFindsFlashesArmsAndStopsIt) {
+TEST(Stm32f405InLockStep, TheClientLibraryFindsFlashesArmsAndStopsIt) {
   const Shape small = cos_sheet({}, 0.04, 0.002);
   BoardRig rig;
   rig.program_image_model(image_model().bytes());

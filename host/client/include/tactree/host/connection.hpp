@@ -3,6 +3,7 @@
 // latest state and as a stream. post(), latest() and take_stream() never wait for the board, so
 // they are for a render loop; call() waits for its reply.
 
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -60,6 +61,11 @@ class Connection {
   [[nodiscard]] std::vector<Telemetry> take_stream();
   /// Telemetry that found no room: here, and on the board since the last subscription.
   [[nodiscard]] std::uint64_t dropped() const;
+
+  /// Time of the connection, Transport::now().
+  [[nodiscard]] std::chrono::microseconds now() const;
+  /// Waits for so much time of the connection, also if the board is lost meanwhile.
+  void sleep(std::chrono::microseconds duration) const;
 
   /// False: unplugged, or closed from the other side.
   [[nodiscard]] bool connected() const;

@@ -13,8 +13,9 @@ namespace tactree::host {
 /// Ports at which a board may be. Cheap: nothing is opened.
 [[nodiscard]] std::vector<std::string> list_ports();
 
-/// By a name of list_ports(), "usb:" and a serial number, "unix:" and the path of a socket, or the
-/// path of any serial port. `baud` is for serial ports. Throws LinkError.
+/// By a name of list_ports(), "usb:" and a serial number, "unix:" or "step:" (lock_step.hpp) and
+/// the path of a socket, or the path of any serial port. `baud` is for serial ports. Throws
+/// LinkError.
 [[nodiscard]] std::unique_ptr<Transport> open_port(const std::string& name, unsigned baud);
 
 /// Bytes a second that the wire of such a port carries; none: its speed has no meaning there.

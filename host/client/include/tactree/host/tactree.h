@@ -58,6 +58,9 @@ int tactree_subscribe(tactree_board* board, unsigned every_ticks);
 int tactree_set_material(tactree_board* board, float stiffness_N_m, float damping_Ns_m,
                          float static_friction, float dynamic_friction);
 
+/* Waits for so much time of the connection. For loops that look for something: with a simulated board in lock-step, time passes as fast as it can meanwhile. */
+void tactree_sleep(const tactree_board* board, unsigned duration_ms);
+
 /* The newest sample; all zero before the first. */
 void tactree_latest(const tactree_board* board, tactree_sample* sample);
 /* Takes up to `most` samples, oldest first, and returns how many; 0: there are none. */

@@ -9,7 +9,7 @@
 
 namespace tactree::host {
 
-/// Not for several threads at once.
+/// Not for several threads at once, except now().
 class Transport {
  public:
   Transport() = default;
@@ -24,6 +24,11 @@ class Transport {
   [[nodiscard]] virtual std::size_t write(std::span<const std::byte> bytes) = 0;
   /// Returns when there is something to read, when the connection is lost, or at the timeout.
   virtual void wait(std::chrono::microseconds timeout) = 0;
+  /// Time of this connection since any moment; never decreases. All time limits, heartbeats and
+  /// Connection::sleep() use it.
+  [[nodiscard]] virtual std::chrono::microseconds now() const;
+  /// Whether time passes within wait() only, as in a simulation that waits for this program.
+  [[nodiscard]] virtual bool in_lock_step() const { return false; }
   /// False once the other side is gone for good: unplugged, closed. read() and write() then give 0.
   [[nodiscard]] virtual bool connected() const = 0;
   /// For messages to people: "/dev/ttyACM0", "usb 1d50:6159 3-2".

@@ -90,8 +90,8 @@ class BoardSession : public Source {
   Work work_;
   std::string why_lost_;
   Clock::time_point next_try_{};
-  std::optional<Clock::time_point> arming_until_;
-  Clock::time_point last_telemetry_{};
+  std::optional<std::chrono::microseconds> arming_until_;  // of the connection's time
+  std::chrono::microseconds last_telemetry_{};             // of the connection's time
   std::optional<simulation::Sample> last_;
   std::unique_ptr<CommandOutcome> outcome_;
   std::uint32_t last_time_us_ = 0;

@@ -57,6 +57,10 @@ class LiveSession : public Source {
   LiveSession(Bodies bodies, std::vector<NamedDevice> devices, const Settings& settings);
   ~LiveSession() override;
 
+  /// Instead of start(): executes waiting commands and simulates the time of one frame, as fast as
+  /// possible. Returns the frame. For programs with a time of their own.
+  [[nodiscard]] std::string step();
+
   [[nodiscard]] std::string hello() const override;
   [[nodiscard]] std::optional<std::string> command(const nlohmann::json& command) override;
   [[nodiscard]] std::string trace_csv() const override;
@@ -73,6 +77,7 @@ class LiveSession : public Source {
   void restart(const nlohmann::json& wanted);
   void enqueue(const nlohmann::json& command);
   void run(const Publish& publish) override;
+  void turn(double elapsed_s);
   void apply_commands();
   void execute(const nlohmann::json& command);
   void for_each_run(void (Run::*act)());
