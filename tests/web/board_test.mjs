@@ -37,7 +37,7 @@ async function arm(page) {
   await until(page, ['probe_x_m', 'probe_y_m', 'probe_z_m'], (...at) => Math.hypot(...at) > RADIUS + 0.001,
     'the hand does not come back');
   await page.locator('#arm').click();
-  await state(page, 'active', 10000);
+  await state(page, 'active');
 }
 
 test('shows the force of the board; a stop from any page ends it', async (t) => {
@@ -57,11 +57,11 @@ test('shows the force of the board; a stop from any page ends it', async (t) => 
     await whileLinked(page, async () => {
       await arm(page);
       const [depth, ...rest] = await until(page, ['penetration_m', 'proxy_x_m', 'proxy_y_m', 'proxy_z_m', ...FORCE],
-        (deep, x, y, z, ...force) => deep > 0 && Math.hypot(...force) > 0.2, 'no force', 10000);
+        (deep, x, y, z, ...force) => deep > 0 && Math.hypot(...force) > 0.2, 'no force');
       assert.ok(depth < 0.01, `${depth} m deep`);
       assert.ok(Math.abs(Math.hypot(...rest.slice(0, 3)) - RADIUS) < 5e-4, `the proxy is at ${rest.slice(0, 3)}`);
       await stop();
-      await state(page, 'idle', 10000);
+      await state(page, 'idle');
       await until(page, FORCE, (...f) => Math.hypot(...f) === 0, 'still force');
     });
   }

@@ -71,7 +71,7 @@ async function press(page, wanted_m) {
 }
 
 /** Waits for this message of the page. */
-const noted = (page, wanted) => page.locator('#note', { hasText: wanted }).waitFor({ timeout: 10000 });
+const noted = (page, wanted) => page.locator('#note', { hasText: wanted }).waitFor({ timeout: 60000 });
 
 test('shows the model and loads no external resources', async () => {
   const page = await openPage(browser, server.url);

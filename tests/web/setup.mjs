@@ -102,7 +102,7 @@ export async function openPage(browser, url, options = {}) {
     const here = request.url().startsWith(url) || /^(blob|data|ws):/.test(request.url());
     if (!here) page.foreign.push(request.url());
   });
-  await page.goto(url);
+  await page.goto(url, { timeout: 120000 });
   await shown(page);
   return page;
 }
@@ -111,7 +111,7 @@ export const shown = (page) =>
   page.waitForFunction(() => document.documentElement.dataset.firstPicture, null, { timeout: 60000 });
 
 /** Waits until the controller is in this state. */
-export async function state(page, name, timeout = 30000) {
+export async function state(page, name, timeout = 60000) {
   try {
     await page.waitForFunction((wanted) => document.getElementById('state').textContent === wanted, name,
       { timeout });
@@ -122,23 +122,26 @@ export async function state(page, name, timeout = 30000) {
   }
 }
 
-/** A figure of the table of numbers. */
-export async function number(page, name) {
+/** Figures of the table of numbers, all of one tick. */
+async function numbers(page, names) {
   const box = page.locator('#numbers-box');
   if (!(await box.evaluate((one) => one.open))) {
     await box.evaluate((one) => { one.open = true; });
     await page.waitForTimeout(200); // what it shows is of when it was closed
   }
-  const cell = page.locator(`#numbers td[data-name='${name}']`);
-  return Number(await cell.textContent());
+  await page.locator(`#numbers td[data-name='${names[0]}']`).waitFor({ state: 'attached' });
+  return page.evaluate((wanted) => wanted.map((name) =>
+    Number(document.querySelector(`#numbers td[data-name='${name}']`)?.textContent)), names);
 }
 
+/** A figure of the table of numbers. */
+export const number = async (page, name) => (await numbers(page, [name]))[0];
+
 /** Waits until `test` of the numbers with these names is true; the numbers then. */
-export async function until(page, names, test, what, timeout = 30000) {
+export async function until(page, names, test, what, timeout = 60000) {
   const end = Date.now() + timeout;
   for (;;) {
-    const values = [];
-    for (const name of names) values.push(await number(page, name));
+    const values = await numbers(page, names);
     if (test(...values)) return values;
     if (Date.now() > end) throw new Error(`${what}: ${names.join(', ')} = ${values.join(', ')}`);
     await page.waitForTimeout(50);

@@ -42,7 +42,7 @@ async function pixel(page, right, up) {
 /** Waits until the proxy is at the place, on the surface, with a force. */
 async function touches(page, place, what) {
   const values = await until(page, [...PROXY, ...FORCE, 'penetration_m'], (x, y, z, fx, fy, fz, deep) =>
-    deep > 0 && length([fx, fy, fz]) > 0.1 && distance([x, y, z], place) < UNDER_CURSOR_M, what, 10000);
+    deep > 0 && length([fx, fy, fz]) > 0.1 && distance([x, y, z], place) < UNDER_CURSOR_M, what);
   const from_m = Math.abs(length(values.slice(0, 3)) - RADIUS);
   assert.ok(from_m < 3e-4, `the proxy is ${from_m} m from the surface`);
   return values;
@@ -56,9 +56,21 @@ async function pressAt(page, right, up, turned) {
   await touches(page, place, `no touch at ${place}`);
 }
 
+/** Waits until the hand has come to rest in the object; the penetration then, m. */
+async function depthAtRest(page) {
+  let before = { t_s: -1, deep_m: 0 };
+  const [, deep_m] = await until(page, ['t_s', 'penetration_m'], (t_s, now_m) => {
+    if (t_s < before.t_s + 0.1) return false;
+    const still = now_m > 0 && Math.abs(now_m - before.deep_m) < 0.02 * now_m;
+    before = { t_s, deep_m: now_m };
+    return still;
+  }, 'the hand does not come to rest');
+  return deep_m;
+}
+
 /** Waits until what the model covers of the picture holds. */
 async function untilCovered(page, holds, what) {
-  const limit = Date.now() + 20000;
+  const limit = Date.now() + 60000;
   let now = await covered(page);
   while (!holds(now)) {
     assert.ok(Date.now() < limit, `${what}: ${JSON.stringify(now)}`);
@@ -79,6 +91,10 @@ async function coveredAtRest(page) {
 }
 
 const distanceText = (page) => page.locator('#distance').textContent();
+
+const untilText = (page, pattern) => page.waitForFunction(
+  (text) => new RegExp(text).test(document.getElementById('distance').textContent), pattern.source,
+  { timeout: 60000 });
 
 test('pressing on the picture touches the surface under the cursor; dragging slides along it', async (t) => {
   const page = await openSession(t);
@@ -101,12 +117,14 @@ test('the hand slides over the whole path of a fast drag without leaving the sur
   const to = await pixel(page, 0.2, 0);
   await page.mouse.move(to.pageX, to.pageY);
   await touches(page, await ballAt(page, RADIUS, to.x, to.y), 'the proxy does not follow');
-  const end_s = await number(page, 't_s');
   await page.mouse.up();
+  await until(page, ['penetration_m'], (deep) => deep <= 0, 'the hand stays in the object');
   const csv = await (await fetch(`${server.url}trace.csv`)).text();
   const [heading, ...rows] = csv.trim().split('\n').map((row) => row.split(','));
   const column = (row, name) => Number(row[heading.indexOf(name)]);
-  const slid = rows.filter((row) => column(row, 't_s') > begin_s && column(row, 't_s') < end_s);
+  // Until the hand left: what the page shows is older than the session on a busy machine.
+  const slid = rows.filter((row) => column(row, 't_s') > begin_s);
+  while (slid.length > 0 && column(slid.at(-1), 'in_contact') === 0) slid.pop();
   assert.ok(slid.length > 100, `${slid.length} ticks`);
   const free = slid.filter((row) => column(row, 'in_contact') === 0).length;
   assert.ok(free < 0.05 * slid.length, `${free} of ${slid.length} ticks without contact`);
@@ -116,10 +134,11 @@ test('the wheel changes the depth while pressed, and zooms otherwise', async (t)
   const page = await openSession(t);
   await page.locator('#show-device').uncheck();
   await pressAt(page, 0, 0.1);
-  const deep = await number(page, 'penetration_m');
-  for (let i = 0; i < 4; ++i) await page.mouse.wheel(0, -100);
+  const deep = await depthAtRest(page);
+  await page.mouse.wheel(0, -100);
+  await page.mouse.wheel(0, -300); // three notches in one event, as a busy page gets them
   await until(page, ['penetration_m'], (now) => now > 1.5 * deep, 'not deeper');
-  assert.match(await distanceText(page), /in contact · hand 8\.0 mm deep/);
+  await untilText(page, /in contact · hand 8\.0 mm deep/);
   for (let i = 0; i < 6; ++i) await page.mouse.wheel(0, 100);
   await until(page, ['penetration_m'], (now) => now < 0.8 * deep, 'not shallower');
   await page.mouse.up();
@@ -136,14 +155,13 @@ test('the far side is touched after turning the view, and the hand comes back ar
   const turns = Math.round(Math.PI / KEY_TURN);
   for (let i = 0; i < turns; ++i) await page.keyboard.press('Shift+ArrowLeft');
   await pressAt(page, 0.05, -0.15, { yaw: turns * KEY_TURN });
-  const begin_s = await number(page, 't_s');
   await page.mouse.up();
-  await page.waitForTimeout(300);
+  const [begin_s] = await until(page, ['t_s', 'penetration_m'], (t_s, deep) => deep <= 0, 'the hand stays in the object');
   await page.locator('#hand-back').click();
   await until(page, PROBE, (...at) => distance(at, start) < 0.002, 'the hand does not come back');
   const csv = await (await fetch(`${server.url}trace.csv`)).text();
   const [heading, ...rows] = csv.trim().split('\n').map((row) => row.split(','));
-  const later = rows.filter((row) => Number(row[0]) > begin_s + 0.5);
+  const later = rows.filter((row) => Number(row[0]) > begin_s);
   const touching = later.filter((row) => row[heading.indexOf('in_contact')] !== '0').length;
   assert.equal(touching, 0, 'the hand came back through the object');
 });
@@ -194,7 +212,7 @@ test('the marker of the hand can be dragged beside the object', async (t) => {
   await page.mouse.move(box.x + at.x + 100, box.y + at.y, { steps: 5 });
   await page.mouse.up();
   const now = await until(page, PROBE, (...probe) => distance(probe, start) > 0.005, 'the hand does not move');
-  const limit = Date.now() + 20000;
+  const limit = Date.now() + 60000;
   let shown = at;
   while (Math.hypot(shown.x - at.x - 100, shown.y - at.y) >= 8) {
     assert.ok(Date.now() < limit, `${now}: at ${shown.x - at.x}, ${shown.y - at.y}`);
@@ -204,7 +222,7 @@ test('the marker of the hand can be dragged beside the object', async (t) => {
 
 test('a spot marks the surface under the probe, and its distance is shown', async (t) => {
   const page = await openSession(t);
-  await page.waitForFunction(() => /mm to the surface/.test(document.getElementById('distance').value));
+  await untilText(page, /mm to the surface/);
   const [x, y, z] = await until(page, PROBE, () => true, '');
   const shown_mm = parseFloat(await distanceText(page));
   assert.ok(Math.abs(shown_mm - 1e3 * (length([x, y, z]) - RADIUS)) < 0.3, `${shown_mm} mm`);
@@ -220,7 +238,7 @@ test('fingers: one touches, a second one sets the depth, two move the view', asy
   const first = [on.pageX, on.pageY];
   await point('touchStart', first);
   await touches(page, await ballAt(page, RADIUS, on.x, on.y), 'no touch by a finger');
-  const deep = await number(page, 'penetration_m');
+  const deep = await depthAtRest(page);
   const second = [on.pageX + 200, on.pageY];
   await point('touchStart', first, second);
   for (let i = 1; i <= 5; ++i) await point('touchMove', first, [second[0], second[1] - 20 * i]);

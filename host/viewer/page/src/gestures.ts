@@ -10,6 +10,21 @@ const DEPTH_PER_PX_M = 5e-5;
 // A second finger that follows sooner belongs to a gesture for the camera.
 const TOGETHER_MS = 250;
 
+// A pinch on a trackpad arrives as turns of a wheel with Ctrl, by a few pixels each.
+const PINCH_PX = 50;
+const PINCH_GAIN = 10;
+const PX_PER_NOTCH = 100;
+const LINES_PER_NOTCH = 3;
+
+/** How far a wheel was turned, positive down: a busy page gets several notches as one event, and a
+ *  trackpad sends parts of one. */
+function notches({ deltaY, deltaMode, ctrlKey }: WheelEvent): number {
+  if (deltaMode === WheelEvent.DOM_DELTA_PAGE) return deltaY;
+  if (deltaMode === WheelEvent.DOM_DELTA_LINE) return deltaY / LINES_PER_NOTCH;
+  const pinched = ctrlKey && Math.abs(deltaY) < PINCH_PX;
+  return (deltaY / PX_PER_NOTCH) * (pinched ? PINCH_GAIN : 1);
+}
+
 /** What a pressed button or finger moves. */
 type Grip = 'surface' | 'depth' | 'hand' | 'turn' | 'pan' | 'roll' | 'camera' | 'nothing';
 
@@ -110,8 +125,9 @@ export class Gestures {
   private wheel(event: WheelEvent): void {
     event.preventDefault();
     const { touch } = this.hand;
-    if (touch.pressed && !event.ctrlKey && !event.metaKey) touch.deepen(event.deltaY > 0 ? -1 : 1);
-    else this.zoom(event.deltaY > 0 ? ZOOM : 1 / ZOOM);
+    const down = notches(event);
+    if (touch.pressed && !event.ctrlKey && !event.metaKey) touch.deepen(-down);
+    else this.zoom(ZOOM ** down);
   }
 
   private key(event: KeyboardEvent): void {
