@@ -104,6 +104,10 @@ class Connection::Worker {
   [[nodiscard]] microseconds now() const { return transport_->now(); }
 
   void sleep(microseconds duration) {
+    if (!transport_->in_lock_step()) {
+      std::this_thread::sleep_for(duration);
+      return;
+    }
     std::unique_lock lock(mutex_);
     const microseconds end = now() + duration;
     const Waiting waiting(waiting_);

@@ -22,6 +22,7 @@ using nlohmann::json;
 constexpr std::size_t kMaxQueued = 64;
 constexpr std::chrono::seconds kMaxSilence{2};
 constexpr std::chrono::milliseconds kRetryInterval{200};
+constexpr std::chrono::milliseconds kMinPause{1};    // between frames, on a slow computer
 constexpr std::chrono::seconds kConfirmTimeout{30};  // as tactree arm
 
 // All fields except the reactions of bodies.
@@ -185,10 +186,11 @@ void BoardSession::run(const Publish& publish) {
       reconnect();
     }
     publish(std::make_shared<const std::string>(frame()));
+    const Clock::duration left = std::max<Clock::duration>(now + kPeriod - Clock::now(), kMinPause);
     if (board_->connected()) {
-      board_->connection().sleep(kPeriod);
+      board_->connection().sleep(std::chrono::duration_cast<std::chrono::microseconds>(left));
     } else {
-      std::this_thread::sleep_for(kPeriod);
+      std::this_thread::sleep_for(left);
     }
   }
 }
