@@ -34,13 +34,12 @@ constexpr Vec3 kRingNormal = {1.0F, 0.0F, 0.0F};  // w
 
 Leg leg_of(const DeltaGeometry& g, float place_rad, float joint_rad) {
   const SineCosine place = sine_cosine(place_rad);
-  Leg leg;
-  leg.arm = sine_cosine(joint_rad);
-  leg.out = {0.0F, place.cosine, place.sine};
-  leg.along = {0.0F, -place.sine, place.cosine};
-  leg.fixed = (g.r - g.c + g.a * leg.arm.cosine) * leg.out + (g.s - g.f) * leg.along +
-              g.a * leg.arm.sine * kRingNormal;
-  return leg;
+  const SineCosine arm = sine_cosine(joint_rad);
+  const Vec3 out = {0.0F, place.cosine, place.sine};
+  const Vec3 along = {0.0F, -place.sine, place.cosine};
+  return {out, along,
+          (g.r - g.c + g.a * arm.cosine) * out + (g.s - g.f) * along + g.a * arm.sine * kRingNormal,
+          arm};
 }
 
 /// One closure and its gradient.
@@ -74,25 +73,21 @@ struct Closures {
 };
 
 Closures close_all(const DeltaGeometry& g, const Leg (&legs)[kAxes], Vec3 plate) {
-  Closures all{{close(g, legs[0], plate), close(g, legs[1], plate), close(g, legs[2], plate)},
-               {},
-               0.0F,
-               false};
-  const Vec3 n0 = all.of[0].n;
-  const Vec3 n1 = all.of[1].n;
-  const Vec3 n2 = all.of[2].n;
+  const Closure first = close(g, legs[0], plate);
+  const Closure second = close(g, legs[1], plate);
+  const Closure third = close(g, legs[2], plate);
+  const Vec3 n0 = first.n;
+  const Vec3 n1 = second.n;
+  const Vec3 n2 = third.n;
   const Vec3 across = cross(n1, n2);
   const float volume = dot(n0, across);
-  all.openness = absolute(volume) / (g.b * g.b * g.b);
-  all.valid = all.of[0].open && all.of[1].open && all.of[2].open && all.openness > 1e-4F;
-  if (!all.valid) {
-    return all;
-  }
-  const float inverse = 1.0F / volume;
-  all.column[0] = inverse * across;
-  all.column[1] = inverse * cross(n2, n0);
-  all.column[2] = inverse * cross(n0, n1);
-  return all;
+  const float openness = absolute(volume) / (g.b * g.b * g.b);
+  const bool valid = first.open && second.open && third.open && openness > 1e-4F;
+  const float inverse = valid ? 1.0F / volume : 0.0F;
+  return {{first, second, third},
+          {inverse * across, inverse * cross(n2, n0), inverse * cross(n0, n1)},
+          openness,
+          valid};
 }
 
 /// Start value of the plate, some millimetres off: the intersection, above the ring, of three
@@ -117,6 +112,20 @@ bool first_guess(const DeltaGeometry& g, const Leg (&legs)[kAxes], Vec3& plate) 
   return true;
 }
 
+/// Efforts per force, and of the legs' weights, where the plate is.
+[[gnu::noinline]] void finish(const DeviceModel& device, const Leg (&legs)[kAxes],
+                              const Closures& all, KindPose& pose) {
+  pose.openness = all.openness;
+  float link_effort[kAxes];
+  for (std::uint32_t i = 0; i < kAxes; ++i) {  // bound: kAxes
+    pose.effort_per_force.row[i] = all.of[i].h * all.column[i];
+    // Height of the arm's centre: centre * cos(q) * sin(place), as z is a quarter turn from y.
+    link_effort[i] = -kGravity * device.link_mass_kg[i] * device.link_centre_m[i] *
+                     legs[i].arm.sine * legs[i].out.z;
+  }
+  pose.link_effort = {link_effort[0], link_effort[1], link_effort[2]};
+}
+
 }  // namespace
 
 KindPose locate_delta(const DeviceModel& device, Vec3 joints) {
@@ -127,27 +136,21 @@ KindPose locate_delta(const DeviceModel& device, Vec3 joints) {
   if (!first_guess(g, legs, pose.probe)) {
     return pose;
   }
-  Closures all = close_all(g, legs, pose.probe);
   Vec3 step{};
-  for (std::uint32_t i = 0; i < kNewtonSteps; ++i) {  // bound: kNewtonSteps
+  for (std::uint32_t i = 0; i <= kNewtonSteps; ++i) {  // bound: kNewtonSteps + 1
+    const Closures all = close_all(g, legs, pose.probe);
     if (!all.valid) {
+      return pose;
+    }
+    if (i == kNewtonSteps) {
+      finish(device, legs, all, pose);  // at most: 1 per locate_delta
+      pose.valid = length_squared(step) <= kConverged * kConverged;
       return pose;
     }
     step = all.of[0].residual * all.column[0] + all.of[1].residual * all.column[1] +
            all.of[2].residual * all.column[2];
     pose.probe -= step;
-    all = close_all(g, legs, pose.probe);
   }
-  pose.valid = all.valid && length_squared(step) <= kConverged * kConverged;
-  pose.openness = all.openness;
-  float link_effort[kAxes];
-  for (std::uint32_t i = 0; i < kAxes; ++i) {  // bound: kAxes
-    pose.effort_per_force.row[i] = all.of[i].h * all.column[i];
-    // Height of the arm's centre: centre * cos(q) * sin(place), as z is a quarter turn from y.
-    link_effort[i] = -kGravity * device.link_mass_kg[i] * device.link_centre_m[i] *
-                     legs[i].arm.sine * legs[i].out.z;
-  }
-  pose.link_effort = {link_effort[0], link_effort[1], link_effort[2]};
   return pose;
 }
 
