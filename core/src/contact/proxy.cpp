@@ -25,9 +25,27 @@ constexpr float kContradicted = 0.2F;
 // 1e-4 of the radius, whatever the curvature. Longer steps around a bend take a second one.
 constexpr float kOneStepIsEnough = 0.01F;
 
+// A step that leads away from the probe is taken back, and the next ones are shorter: the surface
+// ahead bends more, towards the probe, than the probe is deep. Share of the length after such a
+// step, after any other one, and the least.
+constexpr float kShorter = 0.4F;
+constexpr float kLonger = 1.5F;
+constexpr float kShortest = 0.1F;
+
+// A face touches the proxy within this share of the support radius.
+constexpr float kTouching = 0.001F;
+
 float clamp(float value, float low, float high) {
   return value < low ? low : (value > high ? high : value);
 }
+
+/// A step of this length in the direction of `way`; none if that has none.
+Vec3 along(Vec3 way, float step) {
+  const float all = length(way);
+  return all > 0.0F ? (step / all) * way : Vec3{};
+}
+
+float smaller_of(float a, float b) { return a < b ? a : b; }
 
 float step_length(const BlobView& view) { return 0.5F * view.support_radius_m(); }
 
@@ -56,10 +74,6 @@ void Proxy::update(const BlobView& view, Vec3 probe, const Friction& friction,
   }
 }
 
-bool Proxy::may_fit() const {
-  return budget_.allows_fit() && (is_tracking() || budget_.allows_search());
-}
-
 bool Proxy::gather(const BlobView& view, Vec3 x) {
   GatherSlice& slice = budget_.spend_gather();
   if (!candidates_.is_gathering()) {
@@ -72,7 +86,7 @@ bool Proxy::gather(const BlobView& view, Vec3 x) {
 // Provides candidates for a fit at x. False: the budget ends here; has_next_ is true if a gather
 // for x has been begun.
 bool Proxy::prepare_fit(const BlobView& view, Vec3 x) {
-  if (!may_fit()) {
+  if (!budget_.allows_fit()) {
     return false;
   }
   if (candidates_.covers(x)) {
@@ -81,13 +95,15 @@ bool Proxy::prepare_fit(const BlobView& view, Vec3 x) {
   if (!budget_.allows_gather()) {
     return false;
   }
-  has_next_ = !gather(view, x) || !may_fit();
+  has_next_ = !gather(view, x) || !budget_.allows_fit();
   next_ = x;
   return !has_next_ && candidates_.covers(x);
 }
 
 SurfaceFit Proxy::evaluate(const BlobView& view, Vec3 x, Vec3 reference) {
-  const SurfaceFit fit = fit_surface(candidates_, x, view.support_radius_m(), reference);
+  // at most: fits per Scene::update together evaluations
+  const SurfaceFit fit =
+      fit_surface(candidates_, x, view.support_radius_m(), reference, side_, near_);
   budget_.spend_passes(fit.passes);
   return fit;
 }
@@ -103,7 +119,7 @@ void Proxy::sweep(const BlobView& view, Vec3 probe) {
       x = next_;
       has_next_ = false;
     }
-    // at most: fits + 1 per Proxy::sweep
+    // at most: fits_of_one + 1 per Proxy::sweep
     if (!prepare_fit(view, x)) {
       return;
     }
@@ -115,118 +131,259 @@ void Proxy::sweep(const BlobView& view, Vec3 probe) {
 }
 
 void Proxy::visit(const BlobView& view, Vec3 x) {
+  const Vec3 step = x - position_;
   position_ = x;
   if (candidates_.count() == 0U) {
     budget_.spend_passes(1U);
     lose_support();
     return;
   }
-  Vec3 reference = reference_;
   if (state_ == State::kUntracked) {
-    budget_.spend_search();
-    const float radius = view.support_radius_m();
-    // at most: searches per Scene::update
-    const Candidate* const nearest = nearest_candidate(candidates_, x, radius);
+    budget_.spend_passes(1U);
+    // at most: passes per Scene::update together passes
+    const Candidate* const nearest = nearest_candidate(candidates_, x, view.support_radius_m());
     if (nearest == nullptr) {
-      budget_.spend_passes(1U);
       return;
     }
-    reference = nearest->normal;
+    reference_ = nearest->normal;
   }
-  SurfaceFit fit = evaluate(view, x, reference);
+  const bool was_smooth = near_.count == 0U;
+  const SurfaceFit fit = evaluate(view, x, reference_);
   if (is_contradicted(fit)) {
-    if (!budget_.allows_fit()) {
-      reference_ = -reference;
-      state_ = State::kReversed;
-      return;
-    }
-    state_ = State::kUntracked;
-    fit = evaluate(view, x, -reference);
+    reference_ = -reference_;
+    near_.count = 0;
+    state_ = State::kReferenced;
+    return;
   }
   if (!fit.firm()) {
     lose_support();
+    return;
+  }
+  if (was_smooth && near_.count != 0U && (!is_tracking() || side_ * fit.distance < 0.0F)) {
+    position_ = x - step;
+    next_ = x;
+    has_next_ = true;  // a crease came near: tell its faces apart before a contact begins
+    state_ = is_tracking() ? state_ : State::kReferenced;
+    return;
+  }
+  if (passes_by(fit, step)) {
+    reference_ = fit.back.normal;
+    near_.count = 0;
+    state_ = State::kTracking;
     return;
   }
   if (!is_tracking()) {
     side_ = fit.distance < 0.0F ? -1.0F : 1.0F;
     state_ = State::kTracking;
   }
-  reference_ = fit.normal;
-  if (side_ * fit.distance < 0.0F) {
-    begin_contact(view, fit);
+  refer_to(fit, was_smooth);
+  strength_ = fit.strength;
+  planes_ = holding_planes(fit, side_);
+  std::uint32_t lowest = 0;
+  for (std::uint32_t i = 1; i < planes_.count; ++i) {  // bound: kMaxFaces
+    lowest = planes_.plane[i].distance < planes_.plane[lowest].distance ? i : lowest;
   }
+  make_main(lowest);
+  if (planes_.plane[0].distance < 0.0F) {
+    begin_contact(view);
+  }
+}
+
+// The step went around the edge of a plate or over a ridge: it was in front of the back when it
+// fell behind the face, not between them. A probe whose side is not known yet is in front of
+// either.
+bool Proxy::passes_by(const SurfaceFit& fit, Vec3 step) const {
+  const float height = side_ * fit.distance;
+  const float back_height = side_ * fit.back.distance;
+  if (fit.back.normal == Vec3{} || !(height < 0.0F && back_height > 0.0F)) {
+    return false;
+  }
+  const float fall = -side_ * dot(fit.normal, step);
+  const float behind = fall > -height ? -height / fall : 1.0F;  // share of the step
+  return !is_tracking() || back_height > behind * side_ * dot(fit.back.normal, step);
 }
 
 // A tracked surface that was crossed begins a contact, whichever side its other points face.
 bool Proxy::is_contradicted(const SurfaceFit& fit) const {
   const bool crossed = is_tracking() && fit.firm() && side_ * fit.distance < 0.0F;
-  return !crossed && state_ != State::kReversed && fit.facing < kContradicted;
+  return !crossed && state_ != State::kReferenced && fit.facing < kContradicted;
 }
 
-void Proxy::begin_contact(const BlobView& view, const SurfaceFit& fit) {
-  position_ -= fit.distance * fit.normal;
-  strength_ = fit.strength;
+void Proxy::begin_contact(const BlobView& view) {
+  const Vec3 step = -planes_.plane[0].distance * planes_.plane[0].normal;
+  position_ += step;
+  planes_.step_by(step);
   state_ = State::kSticking;
   unsettled_ = true;
-  if (prepare_fit(view, position_) && !settle(view).supported) {
+  stride_ = 1.0F;
+  float moved = 0.0F;
+  // at most: fits per Scene::update together settles
+  if (prepare_fit(view, position_) && !settle(view, moved)) {
     lose_support();  // the step ended beyond the boundary
   }
 }
 
-// Moves the proxy onto the surface by one Newton step, if it is supported.
-SurfaceFit Proxy::settle(const BlobView& view) {
-  const SurfaceFit fit = evaluate(view, position_, reference_);
-  if (fit.supported) {
-    position_ -= fit.distance * fit.normal;
+// The fit that sees a crease first is smooth, its normal between those of the faces: they could not
+// be told apart by it.
+void Proxy::refer_to(const SurfaceFit& fit, bool was_smooth) {
+  if (fit.next_reference != Vec3{}) {
+    reference_ = fit.next_reference;
+  } else if (!was_smooth || near_.count == 0U) {
     reference_ = fit.normal;
-    strength_ = fit.strength;
-    unsettled_ = false;
   }
-  return fit;
+}
+
+/// The face of this plane takes the place of the one of reference_.
+void Proxy::make_main(std::uint32_t plane) {
+  if (plane == 0U) {
+    return;
+  }
+  const Plane first = planes_.plane[0];
+  planes_.plane[0] = planes_.plane[plane];
+  planes_.plane[plane] = first;
+  const Vec3 reference = side_ * planes_.plane[0].normal;
+  for (std::uint32_t i = 0; i < near_.count; ++i) {  // bound: kMaxFaces
+    if (near_.normal[i] == reference) {
+      near_.normal[i] = reference_;
+    }
+  }
+  reference_ = reference;
+}
+
+/// The shortest move of the probe to the front of all faces, and their common normal.
+PlaneMove Proxy::move_of(Vec3 probe) {
+  ConstraintPlanes planes = planes_;
+  planes.step_by(probe - position_);
+  const PlaneMove move = shortest_move(planes, false);
+  common_normal_ = normalized_or(move.step, side_ * reference_);
+  return move;
+}
+
+// Moves the proxy onto the surface by one Newton step, if it is supported.
+bool Proxy::settle(const BlobView& view, float& moved) {
+  const bool was_smooth = near_.count == 0U;
+  const SurfaceFit fit = evaluate(view, position_, reference_);
+  if (!fit.supported) {
+    return false;
+  }
+  refer_to(fit, was_smooth);
+  strength_ = fit.strength;
+  unsettled_ = false;
+  planes_ = holding_planes(fit, side_);
+  if (fit.holding + fit.ending == 0U) {
+    position_ -= fit.distance * fit.normal;
+    moved = absolute(fit.distance);
+  } else {
+    const Vec3 step = shortest_move(landing_planes(fit, side_), true).step;
+    position_ += step;
+    planes_.step_by(step);
+    moved = length(step);
+  }
+  return true;
+}
+
+// Faces that are ahead stop the proxy, but do not rub on it: with one ahead, the main face does.
+Proxy::Pull Proxy::pull_of(const BlobView& view, Vec3 probe) {
+  const Vec3 displacement = probe - position_;
+  if (planes_.count <= 1U) {
+    const float height = dot(displacement, normal());
+    const Vec3 along = displacement - height * normal();
+    return {height > 0.0F, along, -height, length(along)};
+  }
+  const PlaneMove all = move_of(probe);
+  if ((all.active & 1U) == 0U && all.active != 0U) {
+    make_main((all.active & 2U) != 0U ? 1U : 2U);
+  }
+  const float reach = kTouching * view.support_radius_m();
+  const Plane& main = planes_.plane[0];
+  const bool is_ahead = planes_.plane[1].distance > reach ||
+                        (planes_.count == kMaxFaces && planes_.plane[2].distance > reach);
+  Vec3 step = all.step;
+  if (main.distance <= reach && is_ahead) {
+    step = -(main.distance + dot(main.normal, displacement)) * main.normal;
+  }
+  return {all.active == 0U, displacement + all.step, length(step), length(displacement + step)};
+}
+
+Proxy::Footing Proxy::footing() const { return {position_, reference_, near_, planes_, strength_}; }
+
+void Proxy::restore(const Footing& footing) {
+  position_ = footing.position;
+  reference_ = footing.reference;
+  near_ = footing.near;
+  planes_ = footing.planes;
+  strength_ = footing.strength;
+  unsettled_ = false;
+  has_next_ = false;
+}
+
+/// The next step of a slip by `excess` in steps of at most `step` (m); `last`: it ends there.
+Vec3 Proxy::next_slip(const Pull& pull, float excess, float step, bool& last) const {
+  const float length_left = smaller_of(excess, length(pull.along));
+  last = !(length_left > step);
+  const Vec3 slip = along(pull.along, stride_ * (last ? length_left : step));
+  if (unsettled_ && !candidates_.will_cover(position_ + slip)) {
+    last = false;
+    return {};  // settle within the present candidates first, or the proxy would never settle
+  }
+  return slip;
 }
 
 void Proxy::slide(const BlobView& view, Vec3 probe, const Friction& friction) {
   const float step = step_length(view);
   for (std::uint32_t i = 0; i < kSteps; ++i) {  // bound: kSteps
-    const Vec3 displacement = probe - position_;
-    const float height = dot(displacement, normal());
-    if (height > 0.0F) {
+    // at most: max(1, fits_of_one) per Proxy::slide
+    const Pull pull = pull_of(view, probe);
+    if (pull.released) {
       release();
       return;
     }
-    const Vec3 along = displacement - height * normal();
-    const float distance = length(along);
-    const float cone = friction.dynamic_coefficient * -height;
-    const bool slips = distance > (slipping() ? cone : friction.static_coefficient * -height);
+    const float cone = friction.dynamic_coefficient * pull.depth;
+    const bool slips =
+        pull.distance > (slipping() ? cone : friction.static_coefficient * pull.depth);
     if (!slips && !unsettled_) {
-      end_slip(distance, cone);
+      end_slip(pull.distance, cone);
       return;
     }
-    const float excess = distance - cone;
-    bool last = !(excess > step);
-    Vec3 slip = slips ? ((last ? excess : step) / distance) * along : Vec3{};
-    if (unsettled_ && !candidates_.will_cover(position_ + slip)) {
-      slip = {};  // settle within the present candidates first, or the proxy would never settle
-      last = false;
-    }
+    bool last = false;
+    const Vec3 slip = next_slip(pull, slips ? pull.distance - cone : 0.0F, step, last);
     if (slips) {
       state_ = State::kSlipping;
     }
-    // at most: fits + 1 per Proxy::slide
+    // at most: fits_of_one + 1 per Proxy::slide
     if (!prepare_fit(view, position_ + slip)) {
       glide_by(slip);
       return;
     }
+    const bool was_settled = !unsettled_;
+    const Footing before = footing();
     // at most: fits per Scene::update together fits
     if (!slip_by(view, slip)) {
       lost_contact_ = true;
       lose_support();
       return;
     }
-    if (last) {
+    last = !takes_back(view, slip, probe, before, was_settled) && last;
+    if (last || !budget_.allows_fit()) {
       return;
     }
   }
+}
+
+// A step that led away from the probe, from one settled place to another. Short ones are within the
+// errors of the fits.
+bool Proxy::takes_back(const BlobView& view, Vec3 slip, Vec3 probe, const Footing& before,
+                       bool was_settled) {
+  const bool is_long = length(slip) > kOneStepIsEnough * view.support_radius_m();
+  const bool leads_away =
+      length_squared(probe - position_) > length_squared(probe - before.position);
+  if (!was_settled || !is_long || !leads_away) {
+    stride_ = smaller_of(kLonger * stride_, 1.0F);
+    return false;
+  }
+  restore(before);
+  stride_ = clamp(kShorter * stride_, kShortest, 1.0F);
+  return true;
 }
 
 void Proxy::end_slip(float distance, float cone) {
@@ -239,6 +396,7 @@ void Proxy::end_slip(float distance, float cone) {
 void Proxy::glide_by(Vec3 step) {
   if (has_next_ && candidates_.will_cover(position_ + step)) {
     position_ += step;
+    planes_.step_by(step);
     unsettled_ = true;
   }
   has_next_ = false;
@@ -249,12 +407,14 @@ bool Proxy::slip_by(const BlobView& view, Vec3 step) {
   const float strength_before = strength_;
   position_ += step;
   const float radius = view.support_radius_m();
-  const SurfaceFit fit = settle(view);
-  if (!fit.supported) {
+  float moved = 0.0F;
+  // at most: fits per Scene::update together settles
+  if (!settle(view, moved)) {
     return false;
   }
-  unsettled_ = absolute(fit.distance) > kOneStepIsEnough * radius;
-  if (unsettled_ && prepare_fit(view, position_) && !settle(view).supported) {
+  unsettled_ = moved > kOneStepIsEnough * radius;
+  // at most: fits per Scene::update together settles
+  if (unsettled_ && prepare_fit(view, position_) && !settle(view, moved)) {
     return false;
   }
   const float change = kStrengthPerRadius * length(position_ - position_before) / radius;
@@ -267,6 +427,7 @@ void Proxy::release() {
   state_ = State::kTracking;
   unsettled_ = false;
   strength_ = 0.0F;
+  planes_.count = 0;
 }
 
 void Proxy::lose_support() {
@@ -274,6 +435,7 @@ void Proxy::lose_support() {
   state_ = State::kUntracked;
   has_next_ = false;
   reference_ = {};
+  near_.count = 0;
   side_ = 1.0F;
 }
 

@@ -1,224 +1,124 @@
-// The fit of an algebraic sphere, or of two at a crease, and the projection onto it.
+// The fit at one place, and the projection onto the surface.
 // Loop and memory annotations: docs/BOUND.md.
 // memory: RAM
 
 #include "tactree/core/surface.hpp"
 
+#include "contact/face_fits.hpp"
+#include "contact/passes.hpp"
+
 namespace tactree::core {
 namespace {
 
-// Offset of the centroid, in support radii, from which the strength falls and at which it is 0.
-// On a regular sheet it is below 0.1 inside and 0.24 on the boundary.
-constexpr float kFadeBegins = 0.6F;
-constexpr float kFadeEnds = 0.95F;
-
-// Below this share of A the points nearly coincide: fit a plane.
-constexpr float kFlatShare = 1e-3F;
-
-// Two faces meet in a crease if their normals differ by 60 to 120 degrees. A larger angle is the
-// other side of a plate, which is ignored.
-constexpr float kCreaseCosine = 0.5F;
-// A point belongs to a face if its normal is within 30 degrees of the face's.
-constexpr float kFaceCosine = 0.87F;
-// Largest share of points between two faces; more, and the edge is round, not sharp.
-constexpr float kRoundShare = 0.25F;
-// A crease requires each face's centroid at this distance, in support radii, from the other face's
-// plane, and this many points on the other face: a stray normal within a face makes no crease.
-constexpr float kApart = 0.04F;
-constexpr std::uint32_t kFacePoints = 3;
-
-/// The weighted sums of a fit; q is relative to the query position.
-struct Moments {
-  float w = 0.0F;
-  Vec3 p{};
-  Vec3 n{};
-  float a = 0.0F;
-  float b = 0.0F;
-
-  void add(Vec3 q, float qq, Vec3 normal, float weight) {
-    w += weight;
-    p += weight * q;
-    n += weight * normal;
-    a += weight * qq;
-    b += weight * dot(q, normal);
-  }
-};
-
-/// Weight of a point in the support at squared distance qq.
-float weight_of(float qq, float inverse_squared) {
-  const float u = 1.0F - qq * inverse_squared;
-  const float u2 = u * u;
-  return u2 * u2;
+Plane seen_from(float side, const Plane& plane) {
+  return {side * plane.normal, side * plane.distance};
 }
 
-/// The points in the support, relative to one face.
-struct Surroundings {
-  Moments face{};                     // points that face the reference
-  float averted = 0.0F;               // weight of the others
-  const Candidate* crease = nullptr;  // nearest point of another face
-};
-
-// The sums are locals, not members of the result: a compiler keeps locals in registers.
-[[gnu::noinline]] Surroundings look_around(const CandidateSet& set, Vec3 x, float radius,
-                                           Vec3 reference) {
-  const float radius_squared = radius * radius;
-  const float inverse_squared = 1.0F / radius_squared;
-  Moments face;
-  float averted = 0.0F;
-  float nearest = radius_squared;
-  const Candidate* crease = nullptr;
-  for (const Candidate& candidate : set) {  // bound: points_per_ball_max
-    const Vec3 q = candidate.position - x;
-    const float qq = length_squared(q);
-    if (!(qq < radius_squared)) {
-      continue;
-    }
-    const float weight = weight_of(qq, inverse_squared);
-    const float cosine = dot(candidate.normal, reference);
-    if (cosine < kCreaseCosine) {
-      if (cosine > -kCreaseCosine && qq < nearest) {
-        nearest = qq;
-        crease = &candidate;
-      }
-      if (!(cosine > 0.0F)) {
-        averted += weight;
-        continue;
-      }
-    }
-    face.add(q, qq, candidate.normal, weight);
+/// A face that is none of those known is looked for in the next fit; where there is no room, if it
+/// is closer than one of those held, in its place.
+void admit(const SurfaceFit& fit, float side, Vec3 x, const Candidate& stray, NearFaces& near) {
+  if (near.count < kMaxFaces - 1U) {
+    near.normal[near.count++] = stray.normal;
+    return;
   }
-  return {face, averted, crease};
+  const float distance = length(stray.position - x);
+  for (std::uint32_t i = 0; i < fit.holding; ++i) {  // bound: kMaxFaces
+    if (side * fit.also[i].distance > distance) {
+      near.normal[i] = stray.normal;
+      return;
+    }
+  }
 }
 
-/// The points around a crease, each with the face whose normal is closer to its own.
-struct Faces {
-  Moments own{};
-  Moments other{};
-  std::uint32_t others = 0;
-  float between = 0.0F;  // weight of the points that belong to neither
-};
+void set_to(SurfaceFit& result, const FaceFit& fit) {
+  result.supported = fit.supported;
+  result.distance = fit.plane.distance;
+  result.normal = fit.plane.normal;
+  result.strength = fit.strength;
+}
 
-[[gnu::noinline]] Faces divide(const CandidateSet& set, Vec3 x, float radius, Vec3 own,
-                               Vec3 other) {
-  const float radius_squared = radius * radius;
-  const float inverse_squared = 1.0F / radius_squared;
-  Moments own_face;  // locals, as above
-  Moments other_face;
-  std::uint32_t others = 0;
-  float between = 0.0F;
-  for (const Candidate& candidate : set) {  // bound: points_per_ball_max
-    const Vec3 q = candidate.position - x;
-    const float qq = length_squared(q);
-    if (!(qq < radius_squared)) {
-      continue;
-    }
-    const float weight = weight_of(qq, inverse_squared);
-    const float to_own = dot(candidate.normal, own);
-    const float to_other = dot(candidate.normal, other);
-    const bool is_own = to_own >= to_other;
-    const float closer = is_own ? to_own : to_other;
-    if (!(closer > 0.0F)) {
-      continue;
-    }
-    if (is_own) {
-      own_face.add(q, qq, candidate.normal, weight);
+/// The point of a further face: of a crease, else of an opposite wall ahead. An opposite face that
+/// is not ahead is the back of this one.
+const Candidate* nearest_other(const Candidate* crease, const Candidate* opposite, Vec3 x,
+                               float radius, float side, SurfaceFit& fit) {
+  if (opposite == nullptr) {
+    return crease;
+  }
+  const Vec3 q = opposite->position - x;
+  if (side * (dot(q, fit.normal) + fit.distance) > kApart * radius) {
+    return crease != nullptr ? crease : opposite;
+  }
+  fit.back = {opposite->normal, -dot(opposite->normal, q)};
+  return crease;
+}
+
+/// At a crease that the last fit has found.
+[[gnu::noinline]] void fit_faces(const CandidateSet& points, Vec3 x, float radius,
+                                 const Seeds& seeds, float side, NearFaces& near,
+                                 SurfaceFit& result) {
+  Division division;
+  divide(points, x, radius, seeds, division);
+  const DividedSums sums = sum_faces(points, x, radius, division);
+  result.passes = 2;
+  const bool joined = join_faces(sums.faces, seeds, radius, side, near, result);
+  if (!joined) {
+    set_to(result, fit_face(sums.facing, radius));
+  }
+  const Candidate* const other =
+      nearest_other(division.stray, division.opposite, x, radius, side, result);
+  if (joined && other != nullptr) {
+    admit(result, side, x, *other, near);
+  }
+}
+
+/// Where the last fit was smooth. A crease that comes near is for the next fit.
+[[gnu::noinline]] void fit_smooth(const CandidateSet& points, Vec3 x, float radius, Vec3 reference,
+                                  float side, NearFaces& near, SurfaceFit& result) {
+  const Surroundings around = look_around(points, x, radius, reference);
+  set_to(result, fit_face(around.face, radius));
+  const float all = around.face.w + around.averted;
+  result.facing = all > 0.0F ? around.face.w / all : 1.0F;
+  const Candidate* const crease = around.crease != nullptr ? around.crease : around.mild;
+  const Candidate* const other = nearest_other(crease, around.opposite, x, radius, side, result);
+  if (other != nullptr) {
+    // The smooth surface of several faces that came near at once is between them.
+    if (around.aligned == 0U) {
+      result.next_reference = other->normal;
     } else {
-      other_face.add(q, qq, candidate.normal, weight);
-      ++others;
-    }
-    if (closer < kFaceCosine) {
-      between += weight;
+      near.normal[near.count++] = other->normal;
     }
   }
-  return {own_face, other_face, others, between};
-}
-
-/// 1 below kFadeBegins, 0 from kFadeEnds on, smooth between.
-float strength_of(float offset) {
-  if (!(offset > kFadeBegins)) {
-    return 1.0F;
-  }
-  if (!(offset < kFadeEnds)) {
-    return 0.0F;
-  }
-  const float s = (kFadeEnds - offset) * (1.0F / (kFadeEnds - kFadeBegins));
-  return s * s * (3.0F - 2.0F * s);
-}
-
-/// The algebraic sphere through weighted points and normals.
-SurfaceFit solve(const Moments& m, float radius) {
-  SurfaceFit fit;  // memory: flash
-  if (!(m.w > 0.0F)) {
-    return fit;
-  }
-  const float inverse_w = 1.0F / m.w;
-  const float spread = m.a - dot(m.p, m.p) * inverse_w;
-  float uq = 0.0F;
-  if (spread > kFlatShare * m.a) {
-    uq = 0.5F * (m.b - dot(m.p, m.n) * inverse_w) / spread;
-  }
-  const Vec3 l = inverse_w * (m.n - (2.0F * uq) * m.p);
-  const float uc = -inverse_w * (dot(l, m.p) + uq * m.a);
-  const float ll = length_squared(l);
-  if (!(ll > 1e-12F) || !is_finite(ll) || !is_finite(uc)) {
-    return fit;
-  }
-  const float l_length = square_root(ll);
-  const float root = ll - 4.0F * uc * uq;
-  const float distance = 2.0F * uc / (l_length + square_root(root > 0.0F ? root : 0.0F));
-  const Vec3 normal = (1.0F / l_length) * l;
-
-  const Vec3 centroid = inverse_w * m.p;
-  const Vec3 along = centroid - dot(centroid, normal) * normal;
-  const float strength = strength_of(length(along) / radius);
-  if (!is_finite(distance) || !is_finite(strength)) {
-    return fit;
-  }
-  return {true, distance, normal, strength, 1.0F};
-}
-
-/// The surface at a crease. The inside of a convex edge is the intersection of the insides of both
-/// faces, that of a concave edge their union. The smooth fit stays if the points do not form two
-/// faces.
-SurfaceFit combine(const SurfaceFit& smooth, const Faces& faces, float radius) {
-  const float lesser = faces.own.w < faces.other.w ? faces.own.w : faces.other.w;
-  if (faces.others < kFacePoints || faces.between > kRoundShare * lesser) {
-    return smooth;
-  }
-  const SurfaceFit own = solve(faces.own, radius);
-  const SurfaceFit other = solve(faces.other, radius);
-  if (!own.firm() || !other.firm()) {
-    return other.firm() ? other : smooth;  // around the corner, or along the boundary of a face
-  }
-  const Vec3 own_to_other =
-      (1.0F / faces.other.w) * faces.other.p - (1.0F / faces.own.w) * faces.own.p;
-  const float other_above_own = dot(own_to_other, own.normal);
-  const float own_above_other = -dot(own_to_other, other.normal);
-  const float apart = kApart * radius;
-  if (other_above_own < -apart && own_above_other < -apart) {
-    return own.distance >= other.distance ? own : other;
-  }
-  if (other_above_own > apart && own_above_other > apart) {
-    return own.distance <= other.distance ? own : other;
-  }
-  return smooth;
 }
 
 }  // namespace
 
-SurfaceFit fit_surface(const CandidateSet& set, Vec3 x, float radius, Vec3 reference) {
-  // at most: passes per Scene::update together passes
-  const Surroundings around = look_around(set, x, radius, reference);
-  SurfaceFit fit = solve(around.face, radius);
-  if (around.crease != nullptr) {
+SurfaceFit fit_surface(const CandidateSet& points, Vec3 x, float radius, Vec3 reference, float side,
+                       NearFaces& near) {
+  SurfaceFit result;  // memory: flash
+  if (near.count != 0U) {
+    const Seeds seeds{{reference, near.normal[0], near.normal[1]}, 1U + near.count};
+    // at most: passes per Scene::update together passes as 2
+    fit_faces(points, x, radius, seeds, side, near, result);
+  } else {
     // at most: passes per Scene::update together passes
-    const Faces faces = divide(set, x, radius, reference, around.crease->normal);
-    fit = combine(fit, faces, radius);
-    fit.passes = 2;
+    fit_smooth(points, x, radius, reference, side, near, result);
   }
-  const float all = around.face.w + around.averted;
-  fit.facing = all > 0.0F ? around.face.w / all : 1.0F;
-  return fit;
+  return result;
+}
+
+ConstraintPlanes holding_planes(const SurfaceFit& fit, float side) {
+  return {{{side * fit.normal, side * fit.distance},
+           fit.holding > 0U ? seen_from(side, fit.also[0]) : Plane{},
+           fit.holding > 1U ? seen_from(side, fit.also[1]) : Plane{}},
+          1U + fit.holding};
+}
+
+ConstraintPlanes landing_planes(const SurfaceFit& fit, float side) {
+  const std::uint32_t count = fit.holding + fit.ending;
+  return {{{side * fit.normal, side * fit.distance},
+           count > 0U ? seen_from(fit.holding > 0U ? side : -side, fit.also[0]) : Plane{},
+           count > 1U ? seen_from(fit.holding > 1U ? side : -side, fit.also[1]) : Plane{}},
+          1U + count};
 }
 
 SurfaceSupport surface_support(const BlobView& view) {
@@ -238,6 +138,22 @@ SurfaceSupport surface_support(const BlobView& view) {
   return SurfaceSupport::kOk;
 }
 
+namespace {
+
+/// Fits until no further face is found; each fit finds one at most.
+SurfaceFit fit_all_faces(const CandidateSet& points, Vec3 x, float radius, Vec3 reference,
+                         NearFaces& faces) {
+  SurfaceFit fit = fit_surface(points, x, radius, reference, 1.0F, faces);
+  for (std::uint32_t i = 1; i < kMaxFaces && faces.count >= i; ++i) {  // bound: kMaxFaces
+    // The normal of a smooth fit is between those of the faces.
+    const Vec3 next = fit.holding + fit.ending != 0U ? fit.normal : reference;
+    fit = fit_surface(points, x, radius, next, 1.0F, faces);
+  }
+  return fit;
+}
+
+}  // namespace
+
 SurfaceProjection project_to_surface(const BlobView& view, Vec3 x, CandidateSet& scratch) {
   SurfaceProjection result;
   if (surface_support(view) != SurfaceSupport::kOk || !is_finite(x)) {
@@ -250,19 +166,25 @@ SurfaceProjection project_to_surface(const BlobView& view, Vec3 x, CandidateSet&
   if (nearest == nullptr) {
     return result;
   }
-  const SurfaceFit first = fit_surface(scratch, x, radius, nearest->normal);
+  NearFaces faces;
+  const SurfaceFit first = fit_all_faces(scratch, x, radius, nearest->normal, faces);
   if (!first.firm()) {
     return result;
   }
   const Vec3 near = x - first.distance * first.normal;
   scratch.cover(view, near);
-  const SurfaceFit second = fit_surface(scratch, near, radius, first.normal);
+  const SurfaceFit second = fit_all_faces(scratch, near, radius, first.normal, faces);
   if (!second.firm()) {
     return result;
   }
   result.supported = true;
-  result.point = near - second.distance * second.normal;
+  result.point = near + shortest_move(landing_planes(second, 1.0F), true).step;
   result.normal = second.normal;
+  if (second.holding != 0U && first.distance < 0.0F) {
+    ConstraintPlanes planes = holding_planes(second, 1.0F);
+    planes.step_by(x - near);
+    result.point = x + shortest_move(planes, false).step;
+  }
   const float distance = length(x - result.point);
   result.signed_distance = first.distance < 0.0F ? -distance : distance;
   return result;

@@ -7,10 +7,11 @@
 // Free:       the path of the probe is swept in steps of half a support radius, so that no surface
 //             is crossed undetected. Contact begins where the signed distance turns negative.
 // In contact: the proxy sticks within the friction cone of the probe, or slips to the cone's
-//             boundary.
+//             boundary. Where the surface is concave, up to three faces hold it: it goes to the
+//             place in front of all of them that is closest to the probe.
 //
 //   state                     side known   in contact
-//   kUntracked, kReversed     no           no
+//   kUntracked, kReferenced   no           no
 //   kTracking                 yes          no
 //   kSticking, kSlipping      yes          yes
 //
@@ -25,6 +26,7 @@
 
 #include "tactree/core/blob.hpp"
 #include "tactree/core/candidates.hpp"
+#include "tactree/core/constraint_planes.hpp"
 #include "tactree/core/surface.hpp"
 #include "tactree/core/tick_budget.hpp"
 
@@ -53,9 +55,13 @@ class Proxy {
   [[nodiscard]] bool slipping() const { return state_ == State::kSlipping; }
   /// m. In contact: on the surface. Free: the end of the sweep, normally the probe.
   [[nodiscard]] Vec3 position() const { return position_; }
-  /// In contact: unit normal of the surface on the probe's side.
-  [[nodiscard]] Vec3 normal() const { return side_ * reference_; }
-  /// In contact: unit normal of the surface on the side of the points' normals.
+  /// In contact: unit normal of the surface on the probe's side; where several faces hold the
+  /// proxy, the direction in which they push the probe together.
+  [[nodiscard]] Vec3 normal() const {
+    return planes_.count > 1U ? common_normal_ : side_ * reference_;
+  }
+  /// In contact: unit normal of the surface on the side of the points' normals; of one of the faces
+  /// that hold the proxy.
   [[nodiscard]] Vec3 stored_normal() const { return reference_; }
   /// The points around position().
   [[nodiscard]] const CandidateSet& candidates() const { return candidates_; }
@@ -70,36 +76,67 @@ class Proxy {
  private:
   // The order matters: see is_tracking() and in_contact().
   enum class State : std::uint8_t {
-    kUntracked,  // the nearest candidate provides the next reference
-    kReversed,   // reference_ was contradicted and has been reversed for the next fit
-    kTracking,   // reference_ and side_ hold
+    kUntracked,   // the nearest candidate provides the next reference
+    kReferenced,  // reference_ is for the next fit; it was checked, or contradicted and reversed
+    kTracking,    // reference_ and side_ hold
     kSticking,
     kSlipping,
   };
 
+  /// A settled place, to which a step that leads away from the probe returns.
+  struct Footing {
+    Vec3 position{};
+    Vec3 reference{};
+    NearFaces near{};
+    ConstraintPlanes planes{};
+    float strength = 0.0F;
+  };
+
+  /// Where a probe pulls the proxy.
+  struct Pull {
+    bool released;   // the probe is in front of all faces
+    Vec3 along;      // m, without friction
+    float depth;     // m, of the probe below the faces that touch
+    float distance;  // m, along them
+  };
+
   [[nodiscard]] bool is_tracking() const { return state_ >= State::kTracking; }
-  [[nodiscard]] bool may_fit() const;
   [[nodiscard]] bool gather(const BlobView& view, Vec3 x);
   [[nodiscard]] bool prepare_fit(const BlobView& view, Vec3 x);
   [[nodiscard]] SurfaceFit evaluate(const BlobView& view, Vec3 x, Vec3 reference);
   void sweep(const BlobView& view, Vec3 probe);
   void visit(const BlobView& view, Vec3 x);
   [[nodiscard]] bool is_contradicted(const SurfaceFit& fit) const;
-  void begin_contact(const BlobView& view, const SurfaceFit& fit);
+  [[nodiscard]] bool passes_by(const SurfaceFit& fit, Vec3 step) const;
+  void begin_contact(const BlobView& view);
   void slide(const BlobView& view, Vec3 probe, const Friction& friction);
+  [[nodiscard]] Vec3 next_slip(const Pull& pull, float excess, float step, bool& last) const;
   void end_slip(float distance, float cone);
   void glide_by(Vec3 step);
   [[nodiscard]] bool slip_by(const BlobView& view, Vec3 step);
-  SurfaceFit settle(const BlobView& view);
+  [[nodiscard]] bool settle(const BlobView& view, float& moved);
+  void refer_to(const SurfaceFit& fit, bool was_smooth);
+  void make_main(std::uint32_t plane);
+  [[nodiscard]] PlaneMove move_of(Vec3 probe);
+  [[nodiscard]] Pull pull_of(const BlobView& view, Vec3 probe);
+  [[nodiscard]] Footing footing() const;
+  [[nodiscard]] bool takes_back(const BlobView& view, Vec3 slip, Vec3 probe, const Footing& before,
+                                bool was_settled);
+  void restore(const Footing& footing);
   void release();
   void lose_support();
 
   CandidateSet candidates_;
   Vec3 position_{};
-  Vec3 reference_{};   // normal of the last fit, on the side of the points' normals
-  float side_ = 1.0F;  // +1 or -1: the probe's side of the surface
+  Vec3 reference_{};           // normal of the last fit, on the side of the points' normals
+  NearFaces near_{};           // other faces around the last fit
+  ConstraintPlanes planes_{};  // in contact, from position_: of the faces that hold the proxy, that
+                               // of reference_ first; distances are kept where there are several
+  Vec3 common_normal_{};       // where several faces hold the proxy
+  float side_ = 1.0F;          // +1 or -1: the probe's side of the surface
   float strength_ = 0.0F;
-  Vec3 next_{};  // position of the fit that waits for its candidates; where has_next_
+  float stride_ = 1.0F;  // share of the next step: smaller after one that led away from the probe
+  Vec3 next_{};          // position of the fit that waits for its candidates; where has_next_
   TickBudget budget_;
   State state_ = State::kUntracked;
   bool has_next_ = false;

@@ -1,11 +1,11 @@
 #pragma once
 // The surface work of one tick: limits per work tier, most work first.
 //
-// A gather decodes the candidate points around a place; a pass goes once over the decoded points.
-// A tick gets a share of the work allowed per second, so the share shrinks with the rate. Even the
-// smallest share is a slice of a gather or one fit at a crease. A board that is too slow for the
-// tier of its rate works at a later one, so that it keeps every rate below its highest:
-// Admission::work_tier().
+// A gather decodes the candidate points around a place; a pass goes once over the decoded points,
+// at a crease at the cost of two. A tick gets a share of the work allowed per second, so the share
+// shrinks with the rate. Even the smallest share is a slice of a gather or one fit at a crease. A
+// board that is too slow for the tier of its rate works at a later one, so that it keeps every rate
+// below its highest: Admission::work_tier().
 //
 // Interrupt safety: constants and pure functions.
 // Loop and memory annotations: docs/BOUND.md.
@@ -24,7 +24,7 @@ struct GatherSlice {
 /// Limits of one tick. Work beyond them continues in the next tick.
 struct SurfaceWork {
   std::uint32_t gathers = 0;  ///< calls of CandidateSet::gather()
-  std::uint32_t passes = 0;   ///< 1 per fit, 2 at a crease
+  std::uint32_t passes = 0;   ///< 1 per fit, 2 at a crease; 1 per search for the nearest candidate
   std::uint32_t all = 0;      ///< gathers and passes, a gather counted as kGatherWork passes
   GatherSlice slice{};
 };

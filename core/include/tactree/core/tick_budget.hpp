@@ -14,18 +14,15 @@ namespace tactree::core {
 
 class TickBudget {
  public:
-  /// Starts a tick with the limits of `work` and one search per gather.
+  /// Starts a tick with the limits of `work`.
   void begin(const SurfaceWork& work) {
-    left_ = work;                   // memory: flash
-    searches_left_ = work.gathers;  // memory: flash
+    left_ = work;  // memory: flash
   }
 
-  /// Room for a fit, including the second pass that a crease takes.
+  /// Room for a fit: at a crease, or of one face after a search for the nearest candidate.
   [[nodiscard]] bool allows_fit() const {
     return left_.passes >= kPassesOfFit && left_.all >= kPassesOfFit;
   }
-  /// Room for a search for the nearest candidate.
-  [[nodiscard]] bool allows_search() const { return searches_left_ != 0U; }
   /// Room for a gather of at least one candidate.
   [[nodiscard]] bool allows_gather() const {
     const GatherSlice& slice = left_.slice;
@@ -39,19 +36,17 @@ class TickBudget {
     left_.all -= kGatherWork;
     return left_.slice;
   }
-  /// Precondition: allows_fit(), once per fit.
+  /// Precondition: allows_fit(), once per fit with its search. Not below 0: a wrong count must not
+  /// lift the limit.
   void spend_passes(std::uint32_t passes) {
-    left_.passes -= passes;
-    left_.all -= passes;
+    left_.passes -= passes < left_.passes ? passes : left_.passes;
+    left_.all -= passes < left_.all ? passes : left_.all;
   }
-  /// Precondition: allows_search().
-  void spend_search() { --searches_left_; }
 
  private:
   static constexpr std::uint32_t kPassesOfFit = 2;
 
   SurfaceWork left_{};
-  std::uint32_t searches_left_ = 0;
 };
 
 }  // namespace tactree::core

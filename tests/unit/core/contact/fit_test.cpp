@@ -116,7 +116,9 @@ TEST(Fit, StrengthFallsSmoothlyBeyondTheBoundary) {
   for (double x = 0.0; x < half + 0.003; x += 1e-5) {
     const core::Vec3 position = narrow({x, 0.2e-3, 0.0});
     set.cover(shape.view(), position);
-    const core::SurfaceFit fit = core::fit_surface(set, position, radius, {0.0F, 0.0F, 1.0F});
+    core::NearFaces near;
+    const core::SurfaceFit fit =
+        core::fit_surface(set, position, radius, {0.0F, 0.0F, 1.0F}, 1.0F, near);
     if (x < half) {
       ASSERT_EQ(fit.strength, 1.0F) << x;
     }

@@ -1,0 +1,112 @@
+// Closed forms of the shortest move onto one, two or three planes, and the choice among them. All
+// sets of planes are compared by the distances and the cosines between the normals alone.
+// Loop and memory annotations: docs/BOUND.md.
+// memory: RAM
+
+#include "tactree/core/constraint_planes.hpp"
+
+namespace tactree::core {
+namespace {
+
+// Behind a plane by less is on it, m: several roundings of coordinates below 1 m.
+constexpr float kOnPlane = 2e-7F;
+
+// Two planes are parallel if the sine of their angle is below 0.03, three meet in no point if the
+// determinant of their normals is below 1e-3.
+constexpr float kParallel = 1e-3F;
+constexpr float kNoPoint = 1e-3F;
+
+constexpr std::uint32_t kFirst = 1;
+constexpr std::uint32_t kSecond = 2;
+constexpr std::uint32_t kThird = 4;
+
+/// A step onto two planes, along their normals.
+struct OntoTwo {
+  bool allowed = false;
+  float by_a = 0.0F;  // m
+  float by_b = 0.0F;
+};
+
+/// Onto planes a and b, at distances a and b and with this cosine between them; c is the third
+/// plane. Refused: they are parallel, a plane does not hold the point back and need not be reached
+/// (`a_on`, `b_on`), or the step ends behind c.
+OntoTwo onto_two(float a, float b, float c, float ab, float bc, float ca, bool a_on, bool b_on) {
+  OntoTwo step;
+  const float sine_squared = 1.0F - ab * ab;
+  if (!(sine_squared > kParallel)) {
+    return step;
+  }
+  const float inverse = 1.0F / sine_squared;
+  step.by_a = inverse * (ab * b - a);
+  step.by_b = inverse * (ab * a - b);
+  step.allowed = (a_on || step.by_a >= 0.0F) && (b_on || step.by_b >= 0.0F) &&
+                 c + step.by_a * ca + step.by_b * bc >= -kOnPlane;
+  return step;
+}
+
+Vec3 along(const OntoTwo& step, const Plane& a, const Plane& b) {
+  return step.by_a * a.normal + step.by_b * b.normal;
+}
+
+}  // namespace
+
+void ConstraintPlanes::step_by(Vec3 step) {
+  for (std::uint32_t i = 0; i < count; ++i) {  // bound: kMaxFaces
+    plane[i].distance += dot(plane[i].normal, step);
+  }
+}
+
+// The sets of planes in the order of their size: the first one whose step is allowed is the
+// shortest, since its planes hold the point back and the others do not.
+PlaneMove shortest_move(const ConstraintPlanes& planes, bool onto_first) {
+  const Plane& first = planes.plane[0];
+  const Plane& second = planes.plane[1];
+  const Plane& third = planes.plane[2];
+  const float a = first.distance;
+  const float b = second.distance;
+  const float c = third.distance;
+  if (!onto_first && a >= -kOnPlane && b >= -kOnPlane && c >= -kOnPlane) {
+    return {};
+  }
+  const float ab = dot(first.normal, second.normal);
+  const float bc = dot(second.normal, third.normal);
+  const float ca = dot(third.normal, first.normal);
+  if ((onto_first || a < 0.0F) && b - a * ab >= -kOnPlane && c - a * ca >= -kOnPlane) {
+    return {-a * first.normal, kFirst};
+  }
+  if (!onto_first && b < 0.0F && a - b * ab >= -kOnPlane && c - b * bc >= -kOnPlane) {
+    return {-b * second.normal, kSecond};
+  }
+  if (!onto_first && c < 0.0F && a - c * ca >= -kOnPlane && b - c * bc >= -kOnPlane) {
+    return {-c * third.normal, kThird};
+  }
+  if (planes.count > 1U) {
+    const OntoTwo step = onto_two(a, b, c, ab, bc, ca, onto_first, false);
+    if (step.allowed) {
+      return {along(step, first, second), kFirst | kSecond};
+    }
+  }
+  if (planes.count > 2U) {
+    OntoTwo step = onto_two(c, a, b, ca, ab, bc, false, onto_first);
+    if (step.allowed) {
+      return {along(step, third, first), kThird | kFirst};
+    }
+    step = onto_two(b, c, a, bc, ca, ab, false, false);
+    if (!onto_first && step.allowed) {
+      return {along(step, second, third), kSecond | kThird};
+    }
+    const Vec3 across = cross(second.normal, third.normal);
+    const float determinant = dot(first.normal, across);
+    if (absolute(determinant) > kNoPoint) {
+      const Vec3 sum = a * across + b * cross(third.normal, first.normal) +
+                       c * cross(first.normal, second.normal);
+      return {(-1.0F / determinant) * sum, kFirst | kSecond | kThird};
+    }
+  }
+  if (onto_first || (a <= b && a <= c)) {
+    return {-a * first.normal, kFirst};
+  }
+  return b <= c ? PlaneMove{-b * second.normal, kSecond} : PlaneMove{-c * third.normal, kThird};
+}
+
+}  // namespace tactree::core

@@ -1,0 +1,169 @@
+// The fit of an algebraic sphere, and the relations of the faces at a crease.
+// Loop and memory annotations: docs/BOUND.md.
+// memory: RAM
+
+#include "contact/face_fits.hpp"
+
+namespace tactree::core {
+namespace {
+
+// Offset of the centroid, in support radii, from which the strength falls and at which it is 0.
+// On a regular sheet it is below 0.1 inside and 0.24 on the boundary.
+constexpr float kFadeBegins = 0.6F;
+constexpr float kFadeEnds = 0.95F;
+
+// Below this share of A the points nearly coincide: fit a plane.
+constexpr float kFlatShare = 1e-3F;
+
+// Largest share of points between two faces; more, and the edge is round, not sharp.
+constexpr float kRoundShare = 0.25F;
+
+// Fewer points are no face beside the first one.
+constexpr std::uint32_t kFacePoints = 3;
+
+// Faces closer than kCreaseCosine are told apart only if they are concave and flat: the smooth
+// surface between them would be above the crease. Least squared length of a flat face's mean
+// normal.
+constexpr float kFlat = 0.9995F;
+
+constexpr FaceFit kUnsupported = {false, 0.0F, {}};
+
+/// 1 below kFadeBegins, 0 from kFadeEnds on, smooth between.
+float strength_of(float offset) {
+  if (!(offset > kFadeBegins)) {
+    return 1.0F;
+  }
+  if (!(offset < kFadeEnds)) {
+    return 0.0F;
+  }
+  const float s = (kFadeEnds - offset) * (1.0F / (kFadeEnds - kFadeBegins));
+  return s * s * (3.0F - 2.0F * s);
+}
+
+bool is_flat(const Moments& sums) { return length_squared(sums.n) > kFlat * sums.w * sums.w; }
+
+/// Few points lie between the faces.
+bool is_sharp(const Face& a, const Face& b) {
+  const float lesser = a.sums.w < b.sums.w ? a.sums.w : b.sums.w;
+  return a.between + b.between <= kRoundShare * lesser;
+}
+
+enum class Relation : std::uint8_t { kNone, kConvex, kConcave };
+
+/// Two faces in front of each other are concave.
+Relation relation_of(const Face& a, const FaceFit& a_fit, const Face& b, const FaceFit& b_fit,
+                     float side, float apart) {
+  const Vec3 a_to_b = (1.0F / b.sums.w) * b.sums.p - (1.0F / a.sums.w) * a.sums.p;
+  const float b_above_a = side * dot(a_to_b, a_fit.plane.normal);
+  const float a_above_b = -side * dot(a_to_b, b_fit.plane.normal);
+  if (b_above_a < -apart && a_above_b < -apart) {
+    return Relation::kConvex;
+  }
+  return b_above_a > apart && a_above_b > apart ? Relation::kConcave : Relation::kNone;
+}
+
+/// What the face is to the first one. The other side of a plate is nothing to it.
+[[gnu::noinline]] Relation relation_to_first(const Face& first, const FaceFit& first_fit,
+                                             const Face& face, const FaceFit& fit, float side,
+                                             float apart) {
+  if (!fit.firm() || face.points < kFacePoints || !is_sharp(first, face)) {
+    return Relation::kNone;
+  }
+  const Relation relation = relation_of(first, first_fit, face, fit, side, apart);
+  const float cosine = dot(first_fit.plane.normal, fit.plane.normal);
+  const bool is_back = cosine < kOppositeCosine && relation == Relation::kConvex;
+  const bool is_mild = cosine > kCreaseCosine;
+  const bool is_soft =
+      is_mild && (relation == Relation::kConvex || !is_flat(first.sums) || !is_flat(face.sums));
+  return is_back || is_soft ? Relation::kNone : relation;
+}
+
+}  // namespace
+
+[[gnu::noinline]] FaceFit fit_face(const Moments& m, float radius) {
+  if (!(m.w > 0.0F)) {
+    return kUnsupported;  // memory: flash
+  }
+  const float inverse_w = 1.0F / m.w;
+  const float spread = m.a - dot(m.p, m.p) * inverse_w;
+  float uq = 0.0F;
+  if (spread > kFlatShare * m.a) {
+    uq = 0.5F * (m.b - dot(m.p, m.n) * inverse_w) / spread;
+  }
+  const Vec3 l = inverse_w * (m.n - (2.0F * uq) * m.p);
+  const float uc = -inverse_w * (dot(l, m.p) + uq * m.a);
+  const float ll = length_squared(l);
+  if (!(ll > 1e-12F) || !is_finite(ll) || !is_finite(uc)) {
+    return kUnsupported;  // memory: flash
+  }
+  const float l_length = square_root(ll);
+  const float root = ll - 4.0F * uc * uq;
+  const float distance = 2.0F * uc / (l_length + square_root(root > 0.0F ? root : 0.0F));
+  const Vec3 normal = (1.0F / l_length) * l;
+
+  const Vec3 centroid = inverse_w * m.p;
+  const Vec3 along = centroid - dot(centroid, normal) * normal;
+  const float strength = strength_of(length(along) / radius);
+  if (!is_finite(distance) || !is_finite(strength)) {
+    return kUnsupported;  // memory: flash
+  }
+  return {true, strength, {normal, distance}};
+}
+
+bool join_faces(const Faces& faces, const Seeds& seeds, float radius, float side, NearFaces& near,
+                SurfaceFit& result) {
+  const float apart = kApart * radius;
+  const Face(&face)[kMaxFaces] = faces.of;
+  const FaceFit fit[kMaxFaces] = {fit_face(face[0].sums, radius), fit_face(face[1].sums, radius),
+                                  fit_face(face[2].sums, radius)};
+  near.count = 0;
+  if (!fit[0].firm()) {  // around the corner, or along the boundary of a face
+    for (std::uint32_t i = 1; i < kMaxFaces; ++i) {  // bound: kMaxFaces
+      if (fit[i].firm() && face[i].points >= kFacePoints && is_sharp(face[0], face[i]) &&
+          dot(fit[i].plane.normal, seeds.normal[0]) > kOppositeCosine) {
+        result.set(fit[i].plane, fit[i].strength);
+        return true;
+      }
+    }
+    return false;
+  }
+  Relation relation[kMaxFaces] = {Relation::kNone,
+                                  relation_to_first(face[0], fit[0], face[1], fit[1], side, apart),
+                                  relation_to_first(face[0], fit[0], face[2], fit[2], side, apart)};
+  std::uint32_t main = 0;
+  for (std::uint32_t i = 1; i < kMaxFaces; ++i) {  // bound: kMaxFaces
+    const bool is_higher = side * fit[i].plane.distance > side * fit[main].plane.distance;
+    main = relation[i] == Relation::kConvex && is_higher ? i : main;
+  }
+  if (main != 0U) {  // the others, as seen from that face
+    const std::uint32_t third = kMaxFaces - main;
+    relation[0] = relation_of(face[main], fit[main], face[0], fit[0], side, apart);
+    if (relation[third] != Relation::kNone) {
+      relation[third] = relation_of(face[main], fit[main], face[third], fit[third], side, apart);
+    }
+    relation[main] = Relation::kNone;
+  }
+  float strength = fit[main].strength;
+  for (std::uint32_t i = 0; i < kMaxFaces; ++i) {  // bound: kMaxFaces
+    if (relation[i] == Relation::kConcave) {
+      result.also[near.count] = fit[i].plane;
+      near.normal[near.count++] = fit[i].plane.normal;
+      strength = fit[i].strength > strength ? fit[i].strength : strength;
+    }
+  }
+  result.holding = near.count;
+  for (std::uint32_t i = 0; i < kMaxFaces; ++i) {  // bound: kMaxFaces
+    if (relation[i] == Relation::kConvex) {
+      result.also[near.count] = fit[i].plane;
+      near.normal[near.count++] = fit[i].plane.normal;
+    }
+  }
+  result.ending = near.count - result.holding;
+  if (near.count == 0U) {
+    return false;
+  }
+  result.set(fit[main].plane, strength);
+  return true;
+}
+
+}  // namespace tactree::core

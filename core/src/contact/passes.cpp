@@ -1,0 +1,175 @@
+// The passes over the candidates: sums over the points of one face, or of several.
+// Loop and memory annotations: docs/BOUND.md.
+// memory: RAM
+
+#include "contact/passes.hpp"
+
+namespace tactree::core {
+namespace {
+
+// From 18 degrees on from the reference, a normal may be that of another face.
+constexpr float kMildCosine = 0.95F;
+
+// The normals of a face's own points are within 60 degrees of it. Those further away than 30
+// degrees are between faces; than a quarter of the angle, where faces are closer than 60 degrees.
+constexpr float kFaceCosine = 0.5F;
+constexpr float kBetweenCosine = 0.87F;
+
+/// Weight of a point in the support at squared distance qq.
+float weight_of(float qq, float inverse_squared) {
+  const float u = 1.0F - qq * inverse_squared;
+  const float u2 = u * u;
+  return u2 * u2;
+}
+
+/// The nearest of the points that were offered.
+struct Nearest {
+  float squared;  // m^2, of it; before the first one, of the support radius
+  const Candidate* point = nullptr;
+
+  void offer(const Candidate& candidate, float its_squared) {
+    if (its_squared < squared) {
+      squared = its_squared;
+      point = &candidate;
+    }
+  }
+};
+
+float larger_of(float a, float b) { return a > b ? a : b; }
+
+/// Cosine of a quarter of the angle between two faces, if it is below 60 degrees; else 0.
+float quarter_of(Vec3 a, Vec3 b) {
+  const float cosine = dot(a, b);
+  return cosine > kFaceCosine ? 1.0F - (1.0F - cosine) * (1.0F / 16.0F) : 0.0F;
+}
+
+[[gnu::noinline]] Face sum_face(const CandidateSet& points, Vec3 x, float radius,
+                                const std::uint8_t* indices, std::uint32_t count) {
+  const float inverse_squared = 1.0F / (radius * radius);
+  Moments sums{};  // locals, as below
+  float between = 0.0F;
+  // bound: points_per_ball_max, total points_per_ball_max per sum_faces
+  for (std::uint32_t k = 0; k < count; ++k) {
+    const std::uint32_t index = indices[k];
+    const Candidate& candidate = points[index & ~std::uint32_t{Division::kBetween}];
+    const Vec3 q = candidate.position - x;
+    const float qq = length_squared(q);
+    const float weight = weight_of(qq, inverse_squared);
+    sums.add(q, qq, candidate.normal, weight);
+    between += (index & Division::kBetween) != 0U ? weight : 0.0F;
+  }
+  return {sums, count, between};
+}
+
+}  // namespace
+
+// The sums are locals, not members of the result: a compiler keeps locals in registers.
+[[gnu::noinline]] Surroundings look_around(const CandidateSet& points, Vec3 x, float radius,
+                                           Vec3 reference) {
+  const float radius_squared = radius * radius;
+  const float inverse_squared = 1.0F / radius_squared;
+  Moments face{};
+  float averted = 0.0F;
+  std::uint32_t aligned = 0;
+  Nearest crease{radius_squared};
+  Nearest mild{radius_squared};
+  Nearest opposite{radius_squared};
+  for (const Candidate& candidate : points) {  // bound: points_per_ball_max
+    const Vec3 q = candidate.position - x;
+    const float qq = length_squared(q);
+    if (!(qq < radius_squared)) {
+      continue;
+    }
+    const float weight = weight_of(qq, inverse_squared);
+    const float cosine = dot(candidate.normal, reference);
+    if (cosine < kMildCosine) {
+      if (cosine > kCreaseCosine) {
+        mild.offer(candidate, qq);
+      } else if (cosine > kOppositeCosine) {
+        crease.offer(candidate, qq);
+      } else {
+        opposite.offer(candidate, qq);
+      }
+      if (!(cosine > 0.0F)) {
+        averted += weight;
+        continue;
+      }
+    } else {
+      ++aligned;
+    }
+    face.add(q, qq, candidate.normal, weight);
+  }
+  return {face, averted, aligned, crease.point, mild.point, opposite.point};
+}
+
+[[gnu::noinline]] void divide(const CandidateSet& points, Vec3 x, float radius, const Seeds& seeds,
+                              Division& division) {
+  const Vec3 seed = seeds.normal[0];
+  const Vec3 second_seed = seeds.normal[1];
+  const Vec3 third_seed = seeds.count == kMaxFaces ? seeds.normal[2] : Vec3{};
+  const float between =
+      larger_of(larger_of(kBetweenCosine, quarter_of(seed, second_seed)),
+                larger_of(quarter_of(second_seed, third_seed), quarter_of(third_seed, seed)));
+  const float radius_squared = radius * radius;
+  Nearest stray{radius_squared};
+  Nearest opposite{radius_squared};
+  for (std::uint32_t i = 0; i < kMaxFaces; ++i) {  // bound: kMaxFaces
+    division.facing[i] = 0;
+    division.averted[i] = 0;
+  }
+  const std::uint32_t all = points.count();
+  for (std::uint32_t i = 0; i < all; ++i) {  // bound: points_per_ball_max
+    const Candidate& candidate = points[i];
+    const float qq = length_squared(candidate.position - x);
+    if (!(qq < radius_squared)) {
+      continue;
+    }
+    const float to_first = dot(candidate.normal, seed);
+    const float to_second = dot(candidate.normal, second_seed);
+    const float to_third = dot(candidate.normal, third_seed);
+    float closer = to_first;
+    std::uint32_t face = 0;
+    if (to_second > closer) {
+      closer = to_second;
+      face = 1;
+    }
+    if (to_third > closer) {
+      closer = to_third;
+      face = 2;
+    }
+    if (closer < kCreaseCosine) {
+      (to_first > kOppositeCosine ? stray : opposite).offer(candidate, qq);
+      if (!(closer > kFaceCosine)) {
+        if (to_first > 0.0F) {
+          division.point[0][kMaxCandidates - ++division.averted[0]] = static_cast<std::uint8_t>(i);
+        }
+        continue;
+      }
+    }
+    const bool is_between = closer < between;
+    const std::uint32_t place =
+        to_first > 0.0F ? division.facing[face]++ : kMaxCandidates - ++division.averted[face];
+    division.point[face][place] =
+        static_cast<std::uint8_t>(i | (is_between ? Division::kBetween : 0U));
+  }
+  division.stray = stray.point;
+  division.opposite = opposite.point;
+}
+
+[[gnu::noinline]] DividedSums sum_faces(const CandidateSet& points, Vec3 x, float radius,
+                                        const Division& division) {
+  const auto front = [&](std::uint32_t i) {
+    return sum_face(points, x, radius, division.point[i], division.facing[i]);
+  };
+  const auto back = [&](std::uint32_t i) {
+    const std::uint32_t count = division.averted[i];
+    return sum_face(points, x, radius, division.point[i] + (kMaxCandidates - count), count);
+  };
+  const Face first = front(0);
+  const Face second = front(1);
+  const Face third = front(2);
+  const Moments facing = first.sums + second.sums + third.sums + back(0).sums;
+  return {{{first, second + back(1), third + back(2)}}, facing};
+}
+
+}  // namespace tactree::core

@@ -1,0 +1,246 @@
+// No crease lets a hand through: grooves, slots, corners of three and four faces, stairs of faces
+// that are convex and concave; ridges are felt from the side on which the hand is.
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "tactree/core/proxy.hpp"
+#include "tactree/core/surface.hpp"
+#include "tactree/evaluation/creases.hpp"
+
+namespace tactree::test {
+namespace {
+
+using namespace evaluation;  // NOLINT(google-build-using-namespace)
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr double kSpring = 1000.0;  // N/m
+constexpr double kH = 0.5e-3;       // spacing, m
+constexpr core::Friction kNoFriction{0.0F, 0.0F};
+
+/// A hand that is moved along a path in the frame of a body.
+class Hand {
+ public:
+  Hand(const Shape& shape, const Matrix3d& turn, const Vector3d& start, float rate_hz,
+       const core::Friction& friction = kNoFriction)
+      : view_(shape.view()), turn_(turn), at_(start), rate_hz_(rate_hz), friction_(friction) {
+    proxy_.reset(narrow(turn * start));
+  }
+
+  /// To `end` at a speed; calls each() after every tick.
+  template <class Each>
+  void move_to(const Vector3d& end, double speed, const Each& each) {
+    const Vector3d begin = at_;
+    const auto ticks =
+        std::max(1L, std::lround((end - begin).norm() / speed * static_cast<double>(rate_hz_)));
+    for (long i = 1; i <= ticks; ++i) {
+      at_ = begin + (static_cast<double>(i) / double(ticks)) * (end - begin);
+      tick();
+      each();
+    }
+  }
+  void move_to(const Vector3d& end, double speed) {
+    move_to(end, speed, [] {});
+  }
+  void stay(int ticks) {
+    for (int i = 0; i < ticks; ++i) {
+      tick();
+    }
+  }
+
+  [[nodiscard]] bool feels() const { return proxy_.in_contact(); }
+  [[nodiscard]] Vector3d place() const { return turn_.transpose() * widen(proxy_.position()); }
+  /// N, in the frame of the body.
+  [[nodiscard]] Vector3d force() const {
+    return feels() ? Vector3d(kSpring * static_cast<double>(proxy_.strength()) * (place() - at_))
+                   : Vector3d::Zero();
+  }
+  [[nodiscard]] double largest_step() const { return largest_step_; }
+  [[nodiscard]] const core::Proxy& proxy() const { return proxy_; }
+
+ private:
+  void tick() {
+    const Vector3d last = force();
+    const bool felt = feels();
+    proxy_.update(view_, narrow(turn_ * at_), friction_, core::work_per_tick(rate_hz_));
+    if (felt && feels()) {
+      largest_step_ = std::max(largest_step_, (force() - last).norm());
+    }
+  }
+
+  const core::BlobView& view_;
+  Matrix3d turn_;
+  Vector3d at_;
+  float rate_hz_;
+  core::Friction friction_;
+  core::Proxy proxy_;
+  double largest_step_ = 0.0;
+};
+
+std::vector<Matrix3d> turns(unsigned seed) {
+  std::mt19937_64 random(seed);
+  return {Matrix3d::Identity(), any_turn(random), any_turn(random)};
+}
+
+TEST(Crease, AGrooveHoldsTheHandAtItsBottom) {
+  for (const double angle : {20.0, 40.0, 60.0, 80.0, 100.0, 140.0}) {
+    for (const Matrix3d& turn : turns(3)) {
+      Prism prism = groove(angle);
+      prism.turn = turn;
+      const Shape shape = sampled(prism, kH, 0.3, 0.0, 7);
+      for (const float rate : {1000.0F, 4000.0F}) {
+        Hand hand(shape, turn, {0.4e-3, -8e-3, 6e-3}, rate);
+        int lost = 0;
+        const auto expect_contact = [&] { lost += hand.feels() ? 0 : 1; };
+        hand.move_to({0.4e-3, -8e-3, -20e-6}, 0.02);
+        hand.move_to({0.4e-3, -8e-3, -4e-3}, 0.02, expect_contact);
+        hand.move_to({-0.6e-3, 8e-3, -4e-3}, 0.05, expect_contact);
+        hand.stay(40);
+        EXPECT_EQ(lost, 0) << angle << " degrees, " << rate << " Hz";
+        const Vector3d place = hand.place();
+        // An error of a face moves the bottom by more, the narrower the groove is.
+        const double off = 1.5e-6 / std::sin(angle * std::numbers::pi / 360.0);
+        EXPECT_LT(std::hypot(place.x(), place.z()), off) << angle << " degrees, " << rate;
+        EXPECT_NEAR(hand.force().z(), 4.0, 0.02);
+        // A tick of the hand is 0.05 N at most.
+        EXPECT_LT(hand.largest_step(), 0.13) << angle << " degrees, " << rate;
+      }
+    }
+  }
+}
+
+TEST(Crease, ASlotHoldsTheHandBetweenItsWalls) {
+  for (const double width : {1e-3, 2e-3, 4e-3}) {
+    for (const Matrix3d& turn : turns(4)) {
+      Prism prism = slot(width);
+      prism.turn = turn;
+      const Shape shape = sampled(prism, kH, 0.3, 0.0, 8);
+      Hand hand(shape, turn, {0.0, -8e-3, 3e-3}, 1000.0F);
+      hand.move_to({0.0, -8e-3, -1e-3}, 0.02);
+      int lost = 0;
+      // Into the floor and one wall, then into the other one.
+      hand.move_to({2.0 * width, 8e-3, -2e-3}, 0.05, [&] { lost += hand.feels() ? 0 : 1; });
+      hand.stay(60);
+      EXPECT_LT((hand.place() - Vector3d(0.5 * width, 8e-3, 0.0)).norm(), 30e-6) << width;
+      hand.move_to({-2.0 * width, -8e-3, -2e-3}, 0.05, [&] { lost += hand.feels() ? 0 : 1; });
+      hand.stay(60);
+      EXPECT_LT((hand.place() - Vector3d(-0.5 * width, -8e-3, 0.0)).norm(), 30e-6) << width;
+      EXPECT_EQ(lost, 0) << width;
+    }
+  }
+}
+
+TEST(Crease, ACornerOfThreeFacesHoldsTheHand) {
+  constexpr double kHalf = 8e-3;
+  for (const Matrix3d& turn : turns(5)) {
+    const Shape shape = room(kHalf, kH, 0.3, 9, turn);
+    for (const float rate : {1000.0F, 4000.0F}) {
+      Hand hand(shape, turn, Vector3d::Zero(), rate);
+      int lost = 0;
+      hand.move_to(Vector3d::Constant(kHalf + 50e-6), 0.05);
+      hand.move_to({kHalf + 2e-3, kHalf + 3e-3, kHalf + 1e-3}, 0.02,
+                   [&] { lost += hand.feels() ? 0 : 1; });
+      hand.stay(40);
+      EXPECT_EQ(lost, 0) << rate;
+      EXPECT_LT((hand.place() - Vector3d::Constant(kHalf)).norm(), 10e-6) << rate;
+      EXPECT_LT((hand.force() - Vector3d(-2.0, -3.0, -1.0)).norm(), 0.02) << rate;
+      // Along an edge to the next corner.
+      hand.move_to({-kHalf - 2e-3, kHalf + 3e-3, kHalf + 1e-3}, 0.05,
+                   [&] { lost += hand.feels() ? 0 : 1; });
+      hand.stay(40);
+      EXPECT_EQ(lost, 0) << rate;
+      EXPECT_LT((hand.place() - Vector3d(-kHalf, kHalf, kHalf)).norm(), 10e-6) << rate;
+      EXPECT_LT(hand.largest_step(), 0.15) << rate;
+    }
+  }
+}
+
+TEST(Crease, FrictionInAGrooveIsThatOfItsFaces) {
+  const Shape shape = sampled(groove(90.0), kH, 0.3, 0.0, 10);
+  Hand hand(shape, Matrix3d::Identity(), {0.0, -8e-3, 3e-3}, 1000.0F, {0.4F, 0.3F});
+  hand.move_to({0.0, -8e-3, -2e-3}, 0.02);
+  hand.stay(20);
+  const Vector3d rests = hand.place();
+  EXPECT_LT(std::hypot(rests.x(), rests.z()), 5e-6);
+  // Within the cone of static friction it sticks; beyond, it follows with that of dynamic friction.
+  hand.move_to({0.0, -8e-3 + 0.7e-3, -2e-3}, 0.02);
+  EXPECT_LT((hand.place() - rests).norm(), 5e-6);
+  hand.move_to({0.0, 0.0, -2e-3}, 0.02);
+  const Vector3d force = hand.force();
+  EXPECT_NEAR(-force.y() / force.z(), 0.3, 0.01);
+}
+
+TEST(Crease, AFaceAheadDoesNotRubOnTheProxy) {
+  const Shape shape = sampled(groove(60.0), kH, 0.3, 0.0, 13);
+  Hand hand(shape, Matrix3d::Identity(), {1e-3, 0.0, 6e-3}, 1000.0F, {0.4F, 0.3F});
+  hand.move_to({1e-3, 0.0, -4e-3}, 0.02);
+  hand.stay(200);
+  EXPECT_LT(std::hypot(hand.place().x(), hand.place().z()), 5e-6);
+}
+
+TEST(Crease, ARidgeIsNotFeltBesideIt) {
+  for (const double angle : {20.0, 30.0, 45.0, 60.0, 90.0}) {
+    for (const Matrix3d& turn : turns(6)) {
+      Prism prism = ridge(angle);
+      prism.turn = turn;
+      const Shape shape = sampled(prism, kH, 0.3, 0.0, 11);
+      for (const double side : {-1.0, 1.0}) {
+        // Down beside the ridge, 0.1 mm off its face.
+        const double tan = std::tan(angle * std::numbers::pi / 360.0);
+        const double off = 0.1e-3 / std::cos(angle * std::numbers::pi / 360.0);
+        Hand hand(shape, turn, {side * off, 0.0, 5e-3}, 1000.0F);
+        hand.move_to({side * off, 0.0, 0.0}, 0.02, [&] { EXPECT_FALSE(hand.feels()) << angle; });
+        hand.move_to({side * (off + 3e-3 * tan), 0.0, -3e-3}, 0.02,
+                     [&] { EXPECT_FALSE(hand.feels()) << angle; });
+        // Into the face: it pushes back to the same side.
+        hand.move_to({side * (off + 3e-3 * tan - 0.3e-3), 0.0, -3e-3}, 0.01);
+        EXPECT_TRUE(hand.feels()) << angle;
+        EXPECT_GT(side * hand.force().x(), 0.05) << angle;
+        EXPECT_FALSE(hand.proxy().from_behind());
+      }
+    }
+  }
+}
+
+TEST(Crease, AHandDeepBelowARoundBendDoesNotMakeTheProxyOscillate) {
+  // A trough of 3 mm radius, with the hand 6 mm below its bottom.
+  constexpr double kRadius = 3e-3;
+  Shape shape(kH);
+  for (double y = -8e-3; y < 8e-3; y += kH) {
+    for (double turn = 0.0; turn <= std::numbers::pi; turn += kH / kRadius) {
+      const Vector3d out(std::cos(turn), 0.0, -std::sin(turn));
+      shape.add(kRadius * out + Vector3d(0.0, y, kRadius), -out);
+    }
+  }
+  shape.seal();
+  for (const float rate : {1000.0F, 4000.0F}) {
+    Hand hand(shape, Matrix3d::Identity(), {0.2e-3, 0.0, 3e-3}, rate);
+    hand.move_to({0.2e-3, 0.0, -6e-3}, 0.02);
+    hand.move_to({0.2e-3, 2e-3, -6e-3}, 0.02);
+    hand.stay(200);
+    const Vector3d before = hand.force();
+    hand.stay(1);
+    EXPECT_LT((hand.force() - before).norm(), 0.02) << rate;
+    EXPECT_LT(hand.largest_step(), 0.1) << rate;
+  }
+}
+
+TEST(Crease, TheSurfaceIsAtTheBottomForAPlaceBelowIt) {
+  for (const double angle : {30.0, 60.0, 90.0, 120.0}) {
+    const Shape shape = sampled(groove(angle), kH, 0.3, 0.0, 12);
+    const core::SurfaceProjection below =
+        core::project_to_surface(shape.view(), {0.0F, 1e-3F, -0.5e-3F});
+    ASSERT_TRUE(below.supported);
+    EXPECT_LT((widen(below.point) - Vector3d(0.0, 1e-3, 0.0)).norm(), 5e-6) << angle;
+    EXPECT_NEAR(static_cast<double>(below.signed_distance), -0.5e-3, 5e-6) << angle;
+  }
+}
+
+}  // namespace
+}  // namespace tactree::test
