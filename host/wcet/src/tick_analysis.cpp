@@ -120,7 +120,7 @@ Parameters divided(Parameters parameters, std::uint32_t work_tier, const Divisio
   parameters["gathers"] = division.gathers;
   parameters["passes"] = division.passes;
   parameters["fits"] = division.fits;
-  parameters["searches"] = division.searches;
+  parameters["fits_of_one"] = division.fits_of_one;
   parameters["slice_corners"] = slice.corners;
   parameters["slice_points"] = slice.points;
   parameters["slice_candidates"] = slice.candidates;

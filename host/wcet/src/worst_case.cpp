@@ -48,7 +48,7 @@ std::vector<Division> divisions(std::uint32_t work_tier, std::uint32_t bodies) {
         sum.gathers = others + gathers;
         sum.passes = std::max(sum.passes, all[others].passes + passes);
         sum.fits = std::max(sum.fits, all[others].fits + fits);
-        sum.searches = std::max(sum.searches, all[others].searches + std::min(fits, work.gathers));
+        sum.fits_of_one = std::max({sum.fits_of_one, all[others].fits_of_one, fits});
       }
     }
     all = std::move(more);

@@ -47,9 +47,9 @@ using Parameters = std::map<std::string, std::int64_t>;
 /// A division of a tick's work among all bodies. More gathers leave less of the rest.
 struct Division {
   std::uint32_t gathers = 0;
-  std::uint32_t passes = 0;    ///< of surface fits
-  std::uint32_t fits = 0;      ///< places with a fit: each takes a pass and begins with two
-  std::uint32_t searches = 0;  ///< for the nearest candidate, before a fit
+  std::uint32_t passes = 0;       ///< over the candidates
+  std::uint32_t fits = 0;         ///< places with a fit: each takes a pass and begins with two
+  std::uint32_t fits_of_one = 0;  ///< largest number of one body
 };
 /// All divisions at this work tier (core::work_tier_of()), by gathers from 0.
 [[nodiscard]] std::vector<Division> divisions(std::uint32_t work_tier, std::uint32_t bodies);
