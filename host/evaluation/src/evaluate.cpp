@@ -2,6 +2,7 @@
 #include <limits>
 
 #include "closed_loop.hpp"
+#include "crease_scores.hpp"
 #include "errors.hpp"
 #include "paper_tables.hpp"
 #include "scan_scores.hpp"
@@ -60,6 +61,8 @@ Result evaluate(const Options& options, builder::Progress& progress) {
   progress.begin("the paper's Table 2");
   result.distances = measure_distances(options.seed, options.quick ? 300 : 3000);
   evaluate_shapes(options, progress, result);
+  progress.begin("creases");
+  result.creases = measure_creases(options.quick, options.seed);
   progress.begin("the closed loop");
   result.loop = measure_loop(options.quick);
   evaluate_scans(options, progress, result);

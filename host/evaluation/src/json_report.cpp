@@ -89,6 +89,19 @@ Json loop(const LoopResult& l) {
   return json;
 }
 
+Json creases(const Result& result) {
+  Json json = Json::object();
+  for (const CreaseResult& row : result.creases) {
+    json[row.name] = {{"ticks", row.ticks},
+                      {"lost", row.lost},
+                      {"late_m", row.late_m},
+                      {"fast_late_m", row.fast_late_m},
+                      {"off_m", row.concave ? number(row.off_m) : nullptr},
+                      {"step_N", row.step_N}};
+  }
+  return json;
+}
+
 Json scans(const Result& result) {
   Json json = Json::object();
   for (const ScanResult& scan : result.scans) {
@@ -117,13 +130,10 @@ std::string to_json(const Result& result) {
                        {"high", target.high},
                        {"met", target.met()}});
   }
-  const Json json = {{"quick", result.options.quick},
-                     {"seed", result.options.seed},
-                     {"tables", tables(result)},
-                     {"shapes", shapes},
-                     {"loop", loop(result.loop)},
-                     {"scans", scans(result)},
-                     {"targets", targets},
+  const Json json = {{"quick", result.options.quick},  {"seed", result.options.seed},
+                     {"tables", tables(result)},       {"shapes", shapes},
+                     {"creases", creases(result)},     {"loop", loop(result.loop)},
+                     {"scans", scans(result)},         {"targets", targets},
                      {"targets_met", result.all_met()}};
   return json.dump(2) + "\n";
 }

@@ -153,6 +153,28 @@ void add_forces(Page& page, const Result& result, const std::string& pictures) {
   add_picture(page, pictures, "force_error.svg", "Error of the force");
 }
 
+void add_creases(Page& page, const Result& result) {
+  page.add(
+      "## Creases\n"
+      "Edges of exact bodies, turned any way. Grooves: the hand presses 4 mm beyond the bottom, "
+      "stays, slides along and aside.\nRidges: it slides along and across, 0.6 mm below the top. "
+      "1 N/mm, no friction; the worst of 1 kHz at 0.02 and 0.1 m/s,\n2 kHz at 0.1 m/s, 4 kHz at "
+      "0.1 and 0.5 m/s. *Lost*: ticks without contact while the hand is deeper than an encoder\n"
+      "count (20 um). *Noticed at*: depth at which contact began. *Off*: distance of the proxy "
+      "from "
+      "the bottom line.\n*Step*: of the force between two ticks in contact, beyond the hand's own "
+      "movement, without the "
+      "fastest.\n\n"
+      "| crease | lost, of ticks | noticed at, mm | at 0.5 m/s | off, um | step, N |\n"
+      "|---|---|---|---|---|---|\n");
+  for (const CreaseResult& row : result.creases) {
+    page.add("| {} | {} of {} | {} | {} | {} | {} |\n", row.name, row.lost, row.ticks,
+             figure(row.late_m, 1e3), figure(row.fast_late_m, 1e3),
+             row.concave ? figure(row.off_m, 1e6) : "-", figure(row.step_N));
+  }
+  page.add("\n");
+}
+
 void add_loop(Page& page, const Result& result) {
   page.add(
       "## The closed loop\n"
@@ -195,7 +217,7 @@ void add_scans(Page& page, const Result& result) {
       "Built with the default options and compared with a double precision APSS over all decoded "
       "points, projected until\nconvergence; probes within a spacing of the surface; lengths in "
       "thousandths of the spacing h. *Smooth*: no two normals in\nthe support differ by more than "
-      "60 degrees. Elsewhere surface mode preserves edges that the reference rounds.\n\n"
+      "47 degrees. Elsewhere surface mode preserves edges that the reference rounds.\n\n"
       "| scan | points | smooth | point, rms / largest | normal, deg rms | all: point, rms / "
       "largest | normal, deg rms | answered |\n|---|---|---|---|---|---|---|---|\n");
   for (const ScanResult& scan : result.scans) {
@@ -241,6 +263,7 @@ std::string to_markdown(const Result& result, const std::string& pictures) {
   add_distances(page, result);
   add_geometry(page, result, pictures);
   add_forces(page, result, pictures);
+  add_creases(page, result);
   add_loop(page, result);
   add_scans(page, result);
   add_targets(page, result);

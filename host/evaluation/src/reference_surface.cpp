@@ -110,7 +110,7 @@ bool ReferenceSurface::is_creased(const std::vector<std::size_t>& around, const 
   }
   for (const std::size_t i : close) {
     for (const std::size_t j : close) {
-      if (normals_[i].dot(normals_[j]) < 0.5) {
+      if (normals_[i].dot(normals_[j]) < 0.68) {
         return true;
       }
     }

@@ -16,7 +16,7 @@ class ReferenceSurface {
 
   struct Projection {
     bool supported = false;
-    bool creased = false;  ///< normals in the support differ by more than 60 degrees
+    bool creased = false;  ///< normals in the support differ by more than 47 degrees
     Eigen::Vector3d point = Eigen::Vector3d::Zero();
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
     double signed_distance = 0.0;

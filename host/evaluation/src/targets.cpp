@@ -53,6 +53,25 @@ void add_limits(const LoopResult& loop, Checker& check) {
   check.add({"loop.stiffness gained by passivity", gain, 1.7, 1e3, ""});
 }
 
+void add_creases(const std::vector<CreaseResult>& creases, Checker& check) {
+  double lost = 0.0;
+  double late = 0.0;
+  double off = 0.0;
+  double step = 0.0;
+  for (const CreaseResult& row : creases) {
+    lost += row.lost;
+    late = std::max({late, row.late_m, row.fast_late_m});
+    if (row.concave && !row.noisy) {
+      off = std::max(off, row.off_m);
+      step = std::max(step, row.step_N);
+    }
+  }
+  check.add({"creases.contact_lost", lost, 0.0, 0.0, ""});
+  check.add({"creases.noticed_at_m", late, 0.0, 1e-3, "m"});
+  check.add({"creases.off_m", off, 0.0, 5e-6, "m"});
+  check.add({"creases.step_N", step, 0.0, 0.1, "N"});
+}
+
 }  // namespace
 
 std::vector<Target> check_targets(const Result& result) {
@@ -84,6 +103,7 @@ std::vector<Target> check_targets(const Result& result) {
   check.at_most("cos", "friction_max", 0.32, "");
   check.at_most("sphere", "friction_max", 0.32, "");
   check.add({"loop.vibration_m_s2", result.loop.vibration_m_s2[kSurface], 0.0, 0.06, "m/s2"});
+  add_creases(result.creases, check);
   add_limits(result.loop, check);
   return check.take();
 }

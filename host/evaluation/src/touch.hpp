@@ -23,8 +23,9 @@ class Touch {
  public:
   /// Starts in free space at `probe`. `view` must outlive the object.
   Touch(const core::BlobView& view, core::RenderMode mode, const Eigen::Vector3d& probe,
-        const core::Friction& friction = {})
+        const core::Friction& friction = {}, double rate_hz = 1.0 / kPeriodS)
       : view_(view) {
+    configuration_.rate_hz = static_cast<float>(rate_hz);
     configuration_.mode = mode;
     configuration_.stiffness_N_m = static_cast<float>(kStiffness_N_m);
     configuration_.damping_Ns_m = 0.0F;

@@ -106,6 +106,21 @@ struct ScanResult {
   Scores scores;
 };
 
+/// A hand at an edge: concave ones pressed 4 mm deep and slid along, ridges slid along and crossed;
+/// the worst of several turns of the body, rates and speeds.
+struct CreaseResult {
+  std::string name;
+  bool concave = true;
+  bool noisy = false;
+  int ticks = 0;
+  int lost = 0;         ///< without contact, more than an encoder count (20 um) deep, after contact
+  double late_m = 0.0;  ///< depth at which a contact began
+  double fast_late_m = 0.0;  ///< the same at 4 kHz and 0.5 m/s
+  double off_m = 0.0;        ///< concave: of the proxy from the crease, once the hand stays
+  /// Of the force between two ticks in contact, beyond the hand's own movement; without the fast.
+  double step_N = 0.0;
+};
+
 /// A required value.
 struct Target {
   std::string name;
@@ -128,6 +143,7 @@ struct Result {
   std::vector<DetectionRow> detection;
   DistanceTable distances;
   std::vector<ShapeResult> shapes;
+  std::vector<CreaseResult> creases;
   LoopResult loop;
   std::vector<ScanResult> scans;
   std::vector<Target> targets;
