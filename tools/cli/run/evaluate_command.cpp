@@ -130,8 +130,9 @@ void add_evaluate_command(CLI::App& app, int& exit_code) {
       "evaluate",
       "Measures the accuracy of both modes: the paper's Tables 1 and 2, distance, normal and "
       "force\n"
-      "on shapes with known geometry, the closed loop, and real scans against a double precision\n"
-      "reference. Deterministic; some minutes, or seconds with --quick. Prints the tables and\n"
+      "on shapes with known geometry, creases, the closed loop, and real scans against a double\n"
+      "precision reference. Deterministic; some minutes, or seconds with --quick. Prints the "
+      "tables and\n"
       "targets.");
   verb->add_flag("--quick", options->evaluation.quick, "fewer probes: faster, less precise");
   verb->add_option("--seed", options->evaluation.seed, "seed of the random numbers")

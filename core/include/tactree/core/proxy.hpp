@@ -44,8 +44,8 @@ class Proxy {
   /// model changes.
   void reset(Vec3 probe);
 
-  /// Follows the probe (m, model frame) for one tick. Cost: at most `work`, plus one search for the
-  /// nearest candidate per gather.
+  /// Follows the probe (m, model frame) for one tick. Cost: at most `work`, the
+  /// searches for the nearest candidate included.
   void update(const BlobView& view, Vec3 probe, const Friction& friction, const SurfaceWork& work);
 
   [[nodiscard]] bool in_contact() const { return state_ >= State::kSticking; }

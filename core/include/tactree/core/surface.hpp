@@ -20,7 +20,7 @@ struct NearFaces {
 
 /// The fitted surface near one query position.
 struct SurfaceFit {
-  bool supported = false;  ///< false: no usable points; distance, normal and strength are zero
+  bool supported = false;  ///< false: no usable points; normal and strength are zero
   float distance = 0.0F;   ///< m, signed, positive along the normals
   Vec3 normal{};           ///< unit length
   /// 1 inside the surface, falling smoothly to 0 on its boundary; from the distance between the

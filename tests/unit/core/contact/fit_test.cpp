@@ -106,6 +106,14 @@ TEST(Fit, SeparatesTheSidesOfAThinPlate) {
   }
 }
 
+TEST(Fit, WithoutPointsThereIsNoSurface) {
+  core::NearFaces near;
+  const core::SurfaceFit fit = core::fit_surface({}, {}, 1e-3F, {0.0F, 0.0F, 1.0F}, 1.0F, near);
+  EXPECT_FALSE(fit.supported);
+  EXPECT_EQ(fit.normal, core::Vec3{});
+  EXPECT_FALSE(fit.firm());
+}
+
 TEST(Fit, StrengthFallsSmoothlyBeyondTheBoundary) {
   const double half = 0.01;
   const Shape shape = plane(half);

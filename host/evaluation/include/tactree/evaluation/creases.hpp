@@ -36,7 +36,7 @@ struct Prism {
 [[nodiscard]] Shape sampled(const Prism& prism, double spacing_m, double shift, double noise,
                             unsigned seed);
 
-/// A room, 30 mm wide, from inside: the walls face its middle, which is the origin.
+/// A cube from inside, of this half width: the walls face its middle, which is the origin.
 [[nodiscard]] Shape room(double half_m, double spacing_m, double shift, unsigned seed,
                          const Eigen::Matrix3d& turn = Eigen::Matrix3d::Identity());
 
