@@ -16,6 +16,10 @@ not as root
 </system-out></testcase>
 <testcase name="web.page" time="0" status="notrun"><skipped message="SKIP_RETURN_CODE=77"/>
 <system-out>skipped: chromium is missing</system-out></testcase>
+<testcase name="web.board" time="0" status="notrun"><skipped message="SKIP_RETURN_CODE=77"/>
+<system-out>skipped: a part of it
+
+skipped: inconclusive: the machine stood still for 512 ms while it ran</system-out></testcase>
 <testcase name="not.built" time="0" status="notrun"><skipped message="Unable to find executable"/></testcase>
 <testcase name="cli.link" time="2" status="run"><system-out>test_a (__main__.Link.test_a) ... ok
 test_key (__main__.Link.test_key) ... skipped 'no key'
@@ -38,7 +42,7 @@ class TestReport(unittest.TestCase):
         return done.stdout
 
     def test_counts_passed_failed_and_skipped_tests(self):
-        self.assertEqual(self.report("count", self.folder / "host.xml"), "3 2 3\n")
+        self.assertEqual(self.report("count", self.folder / "host.xml"), "3 2 4\n")
         self.assertEqual(self.report("count", self.folder / "absent.xml"), "0 0 0\n")
 
     def test_prints_the_output_of_failures(self):
@@ -49,7 +53,8 @@ class TestReport(unittest.TestCase):
 
     def test_names_skips_with_their_reason(self):
         self.assertEqual(self.report("skips", self.folder).splitlines(), [
-            "Gate.NeedsRoot (not as root)", "cli.link: test_key (no key)", "web.page (chromium is missing)"])
+            "Gate.NeedsRoot (not as root)", "cli.link: test_key (no key)",
+            "web.board (inconclusive: the machine stood still for 512 ms while it ran)", "web.page (chromium is missing)"])
 
     def test_lists_the_slowest(self):
         lines = self.report("slowest", self.folder).splitlines()
