@@ -86,8 +86,9 @@ std::size_t put(std::span<const std::byte> from, std::vector<std::byte>& to) {
 
 class LockStepPort : public Transport {
  public:
-  explicit LockStepPort(std::string path) : path_(std::move(path)), descriptor_(new_socket()) {
+  explicit LockStepPort(std::string path) : path_(std::move(path)) {
     const sockaddr_un address = address_of(path_);
+    descriptor_ = new_socket();
     if (::connect(descriptor_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
       const int error = errno;
       ::close(descriptor_);
@@ -128,7 +129,7 @@ class LockStepPort : public Transport {
   }
 
   std::string path_;
-  int descriptor_;
+  int descriptor_ = -1;
   std::atomic<bool> gone_ = false;
   microseconds gone_at_{0};  // written before gone_
   std::atomic<std::uint64_t> now_us_ = 0;
@@ -142,8 +143,15 @@ std::unique_ptr<Transport> open_lock_step(const std::string& path) {
   return std::make_unique<LockStepPort>(path);
 }
 
-LockStepServer::LockStepServer() : listening_(new_socket()) {
-  std::string folder = (std::filesystem::temp_directory_path() / "tactree-XXXXXX").string();
+// If the rest throws, the destructor removes what there is: another constructor was complete.
+LockStepServer::LockStepServer() : LockStepServer(new_socket()) {
+  std::error_code error;
+  const std::filesystem::path parent = std::filesystem::temp_directory_path(error);
+  if (error) {
+    throw LinkError("the folder for temporary files: " + error.message() +
+                    " (set TMPDIR to one that exists)");
+  }
+  std::string folder = (parent / "tactree-XXXXXX").string();
   if (::mkdtemp(folder.data()) == nullptr) {
     throw LinkError(folder + ": " + std::strerror(errno) + " (is the folder writable?)");
   }

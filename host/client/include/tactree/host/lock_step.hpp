@@ -50,13 +50,14 @@ class LockStepServer : public Transport {
     std::vector<std::byte> out;
   };
 
+  explicit LockStepServer(int listening) : listening_(listening) {}
   void answer_what_is_due();
   [[nodiscard]] bool all_wait() const;
   void take_requests();
   void take_request(Program& program);
 
   std::string path_;
-  int listening_ = -1;
+  int listening_;
   std::chrono::nanoseconds now_{0};
   std::vector<Program> programs_;
   std::vector<std::byte> in_;
