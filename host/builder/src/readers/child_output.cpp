@@ -13,17 +13,18 @@ namespace tactree::builder {
 namespace {
 
 using std::chrono::milliseconds;
-using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kBufferBytes = std::size_t{1} << 16;
 constexpr milliseconds kMaxPoll{60'000};
 
 }  // namespace
 
-ChildOutput::ChildOutput(const std::vector<std::string>& arguments, double seconds)
+ChildOutput::ChildOutput(const std::vector<std::string>& arguments, double seconds,
+                         Clock::time_point (*now)())
     : seconds_(seconds),
-      deadline_(Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                                   std::chrono::duration<double>(seconds))),
+      now_(now),
+      deadline_(now_() + std::chrono::duration_cast<Clock::duration>(
+                             std::chrono::duration<double>(seconds))),
       pipe_(process::make_pipe()),
       child_(arguments, {.output = pipe_.write_end.get(), .error = -1, .inherited = {}}),
       buffer_(kBufferBytes) {
@@ -31,8 +32,7 @@ ChildOutput::ChildOutput(const std::vector<std::string>& arguments, double secon
 }
 
 milliseconds ChildOutput::time_left() const {
-  return std::max(milliseconds(0),
-                  std::chrono::duration_cast<milliseconds>(deadline_ - Clock::now()));
+  return std::max(milliseconds(0), std::chrono::duration_cast<milliseconds>(deadline_ - now_()));
 }
 
 bool ChildOutput::wait_for_output() const {

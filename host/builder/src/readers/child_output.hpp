@@ -12,8 +12,12 @@ namespace tactree::builder {
 
 class ChildOutput {
  public:
+  using Clock = std::chrono::steady_clock;
+
   /// Starts the program arguments[0], which is killed with this object. Throws std::system_error.
-  ChildOutput(const std::vector<std::string>& arguments, double seconds);
+  /// `now` is the time of the limit.
+  ChildOutput(const std::vector<std::string>& arguments, double seconds,
+              Clock::time_point (*now)() = &Clock::now);
 
   /// Reads the next `size` bytes of the output. False if the output ends earlier or the time is
   /// over.
@@ -28,7 +32,8 @@ class ChildOutput {
   [[nodiscard]] std::chrono::milliseconds time_left() const;
 
   double seconds_;
-  std::chrono::steady_clock::time_point deadline_;
+  Clock::time_point (*now_)();
+  Clock::time_point deadline_;
   process::Pipe pipe_;
   process::ChildProcess child_;
   std::vector<char> buffer_;
