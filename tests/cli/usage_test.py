@@ -1,4 +1,4 @@
-"""Errors in the command line: unknown verbs, and values out of range.
+"""Errors in the command line: unknown verbs, and values out of range; what the help says of ports.
 
 usage: usage_test.py TACTREE
 """
@@ -28,6 +28,16 @@ class Usage(unittest.TestCase):
             self.assertIn(f"'{value}' is not a number above 0", error)
         self.assertIn("'-1' is not a number from 0 upwards",
                       self.refused("query", "model.blob", "--points", "-", "--radius=-1"))
+
+    def test_help_names_all_kinds_of_ports(self):
+        ports = "a serial port, usb:SERIAL, unix:PATH (the socket of tactree-controller), or the one that tactree "\
+            "simulate --serve prints (with --lock-step: step:PATH)"
+        for verb in ("devices", "flash", "monitor", "arm", "stop", "trace", "params", "view"):
+            self.assertIn(ports, " ".join(self.help_of(verb).split()), verb)
+        self.assertIn("--serve: at a port step:PATH", " ".join(self.help_of("simulate").split()))
+
+    def help_of(self, verb):
+        return subprocess.run([TACTREE, verb, "--help"], capture_output=True, text=True, check=True).stdout
 
 
 if __name__ == "__main__":

@@ -9,8 +9,7 @@ namespace tactree::cli {
 
 void add_port_options(CLI::App& verb, BoardPort& options) {
   verb.add_option("--port", options.port,
-                  "port of the board: a serial port, usb:SERIAL, or the one that tactree simulate "
-                  "--serve prints (default: the only one found)");
+                  fmt::format("port of the board: {}; default: the only one found", kPortForms));
   verb.add_option("--baud", options.baud, "speed of a serial port")->capture_default_str();
 }
 

@@ -10,6 +10,11 @@
 
 namespace tactree::cli {
 
+/// What a port can be, for the help.
+inline constexpr const char* kPortForms =
+    "a serial port, usb:SERIAL, unix:PATH (the socket of tactree-controller), or the one that "
+    "tactree simulate --serve prints (with --lock-step: step:PATH)";
+
 struct BoardPort {
   std::string port;  ///< empty: the only one found
   unsigned baud = host::kUsualBaud;

@@ -162,9 +162,9 @@ void add_serve_options(CLI::App& verb, SimulateOptions& options) {
       ->needs(serve)
       ->check(CLI::ExistingFile);
   CLI::Option* lock_step = verb.add_flag("--lock-step", options.lock_step,
-                                         "with --serve: time passes only while a program is "
-                                         "connected and runs, so that it may be slow "
-                                         "or held in a debugger");
+                                         "with --serve: at a port step:PATH; time passes only "
+                                         "while a program is connected and runs, so that it may "
+                                         "be slow or held in a debugger");
   lock_step->needs(serve);
   CLI::Option* usb = verb.add_flag(
       "--usb", options.on_usb,

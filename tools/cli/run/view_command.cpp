@@ -136,10 +136,8 @@ void add_server_options(CLI::App& verb, ViewOptions& options) {
 /// Options of a board, which exclude those of a simulation.
 void add_board_options(CLI::App& verb, ViewOptions& options) {
   CLI::Option* port =
-      verb.add_option(
-              "--port", options.board.port,
-              "show the board at this port: a serial port, usb:SERIAL, or the port printed by "
-              "tactree simulate --serve")
+      verb.add_option("--port", options.board.port,
+                      fmt::format("show the board at this port: {}", kPortForms))
           ->check([](const std::string& name) {
             const bool is_number = name.find_first_not_of("0123456789") == std::string::npos;
             return is_number ? "it is a board's port (the page's is --page-port " + name + ")"
