@@ -110,6 +110,22 @@ TEST_F(Edges, ManyLeaveTheExactCount) {
               bank.lost());
 }
 
+/// A loop in step with the device: at each read an edge is on its way into the queue, since its
+/// thread has not run, of either axis in turn.
+TEST_F(Edges, AreCountedThoughSomeAreAlwaysInFlight) {
+  GpioEncoderBank bank(kAxes, "tactree", 0);
+  set_priority(kAboveInterrupts);
+  for (int i = 0; i < 200; ++i) {
+    step(static_cast<std::size_t>(i) % 2U, 1);
+    ASSERT_TRUE(is_valid(bank.read())) << "at read " << i;
+    std::this_thread::sleep_for(1ms);
+  }
+  set_priority(0);
+  const core::EncoderReading reading = read_at_rest(bank);
+  EXPECT_TRUE(is_exact(reading) && is_valid(reading));
+  EXPECT_EQ(bank.lost(), 0U);
+}
+
 // The start waits for a rest of 2 ms: a device that moves slowly has them. Its edges also come
 // between the end of the rest and the first read, and then have not reached the queue. On a busy
 // host the emulated computer may find no rest: such a start is refused, and is no error.

@@ -25,16 +25,36 @@ void EdgeOrder::begin(const std::vector<std::uint32_t>& interrupts) {
 void EdgeOrder::look(std::uint64_t begin_ns, std::uint64_t end_ns,
                      const std::vector<std::uint32_t>& interrupts) {
   look_ns_ = begin_ns;
+  until_ns_ = end_ns + kStamp_ns;
   for (std::size_t i = 0; i < lines_.size(); ++i) {  // bound: kMaxLines
     Line& line = lines_[i];
+    line.counted = interrupts[i] - line.base;
     if (!line.checked) {
-      line.checked = true;
-      line.due = interrupts[i] - line.base;
-      line.arrived = line.queued;
-      line.since_ns = begin_ns;
-      line.until_ns = end_ns + kStamp_ns;
+      begin_check(line);
     }
   }
+}
+
+void EdgeOrder::begin_check(Line& line) const {
+  line.checked = true;
+  line.due = line.counted;
+  line.arrived = line.queued;
+  line.since_ns = look_ns_;
+  line.until_ns = until_ns_;
+}
+
+// True: the edges of the check have come out of the queue, or were given up.
+bool EdgeOrder::end_check(Line& line) {
+  const auto missing = static_cast<std::int32_t>(line.due - line.arrived);
+  if (missing > 0 && look_ns_ - line.since_ns < kRest_ns) {
+    return false;
+  }
+  const std::uint32_t lost = missing > 0 ? static_cast<std::uint32_t>(missing) : 0U;
+  lost_ += lost;
+  line.queued += lost;
+  line.checked = false;
+  line.clear_ns = line.since_ns;
+  return true;
 }
 
 void EdgeOrder::add(const Edge& edge) {
@@ -48,22 +68,17 @@ void EdgeOrder::add(const Edge& edge) {
   line.held[line.end++ % kHeld] = edge;
 }
 
+// Each line has a check of its own: if they had to be complete together, edges would never come
+// while at each look one of some line is in flight.
 void EdgeOrder::settle() {
-  bool complete = true;
-  std::uint64_t checked_ns = look_ns_;
+  certain_ns_ = look_ns_;
   for (Line& line : lines_) {  // bound: kMaxLines
-    const auto missing = static_cast<std::int32_t>(line.due - line.arrived);
-    if (missing > 0 && look_ns_ - line.since_ns < kRest_ns) {
-      complete = false;
-      continue;
+    if (end_check(line) && line.clear_ns != look_ns_) {
+      begin_check(line);
+      (void)end_check(line);
     }
-    const std::uint32_t lost = missing > 0 ? static_cast<std::uint32_t>(missing) : 0U;
-    lost_ += lost;
-    line.queued += lost;
-    line.checked = false;
-    checked_ns = std::min(checked_ns, line.since_ns);
+    certain_ns_ = std::min(certain_ns_, line.clear_ns);
   }
-  certain_ns_ = complete ? checked_ns : certain_ns_;
 }
 
 bool EdgeOrder::take(Edge& edge) {
@@ -81,6 +96,14 @@ bool EdgeOrder::take(Edge& edge) {
   }
   edge = oldest->held[oldest->first++ % kHeld];
   return true;
+}
+
+std::uint64_t EdgeOrder::held() const {
+  std::uint64_t bits = 0;
+  for (std::size_t i = 0; i < lines_.size(); ++i) {  // bound: kMaxLines
+    bits |= static_cast<std::uint64_t>(lines_[i].first != lines_[i].end) << i;
+  }
+  return bits;
 }
 
 }  // namespace tactree::hal::linux_gpio

@@ -41,14 +41,18 @@ class EdgeOrder {
   /// lines.
   [[nodiscard]] bool take(Edge& edge);
   [[nodiscard]] std::uint32_t lost() const { return lost_; }
+  /// Lines with edges that wait for their turn: bit n is line n.
+  [[nodiscard]] std::uint64_t held() const;
 
  private:
   struct Line {
     std::array<Edge, kHeld> held;
-    std::uint32_t first = 0;   // edges taken so far
-    std::uint32_t end = 0;     // edges held so far
-    std::uint32_t queued = 0;  // edges that came out of the queue, and those given up
-    std::uint32_t base = 0;    // interrupts at begin()
+    std::uint32_t first = 0;     // edges taken so far
+    std::uint32_t end = 0;       // edges held so far
+    std::uint32_t queued = 0;    // edges that came out of the queue, and those given up
+    std::uint32_t base = 0;      // interrupts at begin()
+    std::uint32_t counted = 0;   // interrupts from begin() to the last look
+    std::uint64_t clear_ns = 0;  // all edges up to this time have come out of the queue
     // A check: of the edges up to `until_ns`, `due` must come out of the queue.
     bool checked = false;
     std::uint32_t due = 0;
@@ -57,9 +61,13 @@ class EdgeOrder {
     std::uint64_t until_ns = 0;
   };
 
+  void begin_check(Line& line) const;
+  [[nodiscard]] bool end_check(Line& line);
+
   std::vector<Line> lines_;
   std::uint64_t look_ns_ = 0;
-  std::uint64_t certain_ns_ = 0;  // all edges up to this time have come out of their queues
+  std::uint64_t until_ns_ = 0;    // of the checks that begin with this look
+  std::uint64_t certain_ns_ = 0;  // all edges of all lines up to this time have come out
   std::uint32_t lost_ = 0;
 };
 

@@ -42,7 +42,8 @@ GpioEncoderBank::GpioEncoderBank(const std::vector<EncoderLines>& axes, const st
       index_axes_(axes_with_index(axes)),
       faults_max_(faults_max),
       lines_(GpioLines::inputs(names_of(axes), consumer, with_edges())),
-      decoded_(lines_.first_levels()) {
+      decoded_(lines_.first_levels()),
+      watch_(kRest_ns) {
   for (std::uint32_t i = 0; i < axes_; ++i) {  // bound: kAxes
     decoders_[i].begin(levels_of(decoded_, i));
   }
@@ -79,7 +80,7 @@ void GpioEncoderBank::take(const Edge& edge, core::EncoderReading& reading) noex
   const std::uint64_t bit = std::uint64_t{1} << edge.line;
   unseen_ += static_cast<std::uint32_t>(((decoded_ & bit) != 0U) == edge.level);
   decoded_ = edge.level ? decoded_ | bit : decoded_ & ~bit;
-  differ_ &= ~bit;
+  watch_.take(bit);
   if (edge.line < 2U * axes_) {
     decoders_[edge.line / 2U].step(levels_of(decoded_, edge.line / 2U));
     return;
@@ -95,18 +96,14 @@ void GpioEncoderBank::take(const Edge& edge, core::EncoderReading& reading) noex
 void GpioEncoderBank::compare_levels() noexcept {
   std::uint64_t bits = 0;
   gone_ = gone_ || !lines_.levels(bits);
-  differ_ &= bits ^ decoded_;
-  const std::uint64_t now_ns = linux_time::now_ns();
-  if (differ_ == 0U) {
-    differ_ = bits ^ decoded_;
-    differ_since_ns_ = now_ns;
-  } else if (now_ns - differ_since_ns_ >= kRest_ns) {
-    unseen_ += static_cast<std::uint32_t>(std::popcount(differ_));
-    decoded_ ^= differ_;
-    differ_ = 0;
-    for (std::uint32_t i = 0; i < axes_; ++i) {  // bound: kAxes
-      decoders_[i].step(levels_of(decoded_, i));
-    }
+  const std::uint64_t lost = watch_.look(bits ^ decoded_, lines_.held(), linux_time::now_ns());
+  if (lost == 0U) {
+    return;
+  }
+  unseen_ += static_cast<std::uint32_t>(std::popcount(lost));
+  decoded_ ^= lost;
+  for (std::uint32_t i = 0; i < axes_; ++i) {  // bound: kAxes
+    decoders_[i].step(levels_of(decoded_, i));
   }
 }
 

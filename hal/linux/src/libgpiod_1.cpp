@@ -205,6 +205,8 @@ int GpioLines::read_edges(std::array<Edge, kEdgesAtOnce>& edges) noexcept {
   return found;
 }
 
+std::uint64_t GpioLines::held() const { return request_->order.held(); }
+
 std::uint32_t GpioLines::lost() const { return request_->order.lost(); }
 
 void GpioLines::begin_edges() noexcept {

@@ -186,6 +186,9 @@ int GpioLines::read_edges(std::array<Edge, kEdgesAtOnce>& edges) noexcept {
   return found;
 }
 
+// The kernel's one queue is in order.
+std::uint64_t GpioLines::held() const { return 0; }
+
 std::uint32_t GpioLines::lost() const { return request_->lost; }
 
 void GpioLines::begin_edges() noexcept {

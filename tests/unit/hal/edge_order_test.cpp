@@ -67,6 +67,36 @@ TEST_F(EdgesOfTwoQueues, WaitForEachEarlierOneInFlight) {
   EXPECT_EQ(order_.lost(), 0U);
 }
 
+/// A loop in step with the device: at each look an edge is in flight, of either line in turn.
+TEST_F(EdgesOfTwoQueues, ComeAlthoughSomeLineIsAlwaysInFlight) {
+  std::vector<std::uint32_t> interrupts = {0, 0};
+  std::vector<Edge> in_flight;
+  for (std::uint32_t tick = 1; tick < 20; ++tick) {
+    const std::uint32_t line = tick % 2U;
+    ++interrupts[line];
+    EXPECT_EQ(times(look(tick * kTick_ns, interrupts, in_flight)), times(in_flight)) << tick;
+    in_flight = {{tick * kTick_ns - 5, line, tick % 4U < 2U}};
+  }
+  EXPECT_EQ(order_.lost(), 0U);
+}
+
+/// The same of one line: it is checked at each look, not at every other one.
+TEST_F(EdgesOfTwoQueues, WaitForTheEdgesOfOneLookOnly) {
+  EXPECT_EQ(times(look(kTick_ns, {1, 0}, {})), Times{});
+  EXPECT_EQ(times(look(2 * kTick_ns, {2, 1}, {{5, 0, true}, {kTick_ns + 5, 1, true}})), (Times{5}));
+  EXPECT_EQ(times(look(3 * kTick_ns, {3, 1}, {{2 * kTick_ns - 5, 0, false}})),
+            (Times{kTick_ns + 5, 2 * kTick_ns - 5}));
+  EXPECT_EQ(order_.lost(), 0U);
+}
+
+TEST_F(EdgesOfTwoQueues, AreHeldUntilTheirOrderIsCertain) {
+  EXPECT_EQ(order_.held(), 0U);
+  EXPECT_EQ(times(look(50, {1, 1}, {{20, 1, true}})), Times{});
+  EXPECT_EQ(order_.held(), 2U) << "that of line 1";
+  EXPECT_EQ(times(look(60, {1, 1}, {{10, 0, true}})), (Times{10, 20}));
+  EXPECT_EQ(order_.held(), 0U);
+}
+
 TEST_F(EdgesOfTwoQueues, AreLostIfTheyDoNotArriveInTime) {
   EXPECT_EQ(times(look(1, {3, 0}, {{1, 0, true}})), Times{});
   EXPECT_EQ(times(look(kTick_ns, {3, 0}, {})), Times{});

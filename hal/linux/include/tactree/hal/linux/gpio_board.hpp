@@ -11,6 +11,7 @@
 #include "tactree/core/quadrature.hpp"
 #include "tactree/hal/board.hpp"
 #include "tactree/hal/linux/gpio_lines.hpp"
+#include "tactree/hal/linux/level_watch.hpp"
 
 namespace tactree::hal::linux_gpio {
 
@@ -57,8 +58,7 @@ class GpioEncoderBank {
   GpioLines lines_;
   std::array<core::QuadratureDecoder, core::kAxes> decoders_{};
   std::uint64_t decoded_ = 0;  // levels after the edges so far, a bit for each line
-  std::uint64_t differ_ = 0;   // lines whose level was another one at the last reads
-  std::uint64_t differ_since_ns_ = 0;
+  LevelWatch watch_;
   std::uint32_t unseen_ = 0;  // lost edges that GpioLines does not report
   bool gone_ = false;
 };

@@ -79,9 +79,12 @@ class GpioLines {
   [[nodiscard]] bool set(std::uint64_t bits) noexcept;
   /// Reads edges, oldest first over all lines; never blocks. Returns their number; less than
   /// kEdgesAtOnce: there are no more; -1: the chip was removed. An edge whose order is uncertain
-  /// stays for a later call, for 2 ms at most. Cost: one system call; with libgpiod 1.6, two for
-  /// each line.
+  /// stays for a later call, usually the next one, for 4 ms at most. Cost: one system call; with
+  /// libgpiod 1.6, two for each line.
   [[nodiscard]] int read_edges(std::array<Edge, kEdgesAtOnce>& edges) noexcept;
+  /// Lines of which read_edges() has edges whose order is uncertain: bit n is line n. Their levels
+  /// may be newer than the edges so far.
+  [[nodiscard]] std::uint64_t held() const;
   /// Edges that the kernel dropped or merged since the lines were requested, at least. An edge that
   /// the chip itself merged, before the kernel saw it, is not among them.
   [[nodiscard]] std::uint32_t lost() const;
