@@ -214,7 +214,7 @@ class Controller : public testing::Test {
     })) << output();
     device_->move_hand({0.05, 0.05, above_m_}, 0.2);
     device_->move_hand({0.0, 0.0, above_m_}, 0.2);
-    ASSERT_EQ(host::names_of(board_->state().faults), "") << output();
+    ASSERT_EQ(host::names_of(board_->state().faults), "") << report();
   }
 
   void arm() {
