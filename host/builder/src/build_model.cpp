@@ -357,6 +357,7 @@ BuildResult build_model(std::span<const std::filesystem::path> inputs, const Bui
     progress.begin("reading " + file.filename().string());
     ReadOptions reading;
     reading.progress = [&](double fraction) { progress.advance(fraction); };
+    reading.columns = options.columns;
     scans.push_back(read_scan(file, reading));
     const Scan& scan = scans.back();
     pipeline.report().inputs.push_back(

@@ -125,6 +125,7 @@ class Cleaner {
       report_.input_points += cause.find("face") == std::string::npos ? count : 0;
     }
     report_.warnings.insert(report_.warnings.end(), scan.warnings.begin(), scan.warnings.end());
+    report_.notes.insert(report_.notes.end(), scan.notes.begin(), scan.notes.end());
   }
 
   [[nodiscard]] bool keep_outliers() const { return !(options_.outlier_sigma > 0.0); }

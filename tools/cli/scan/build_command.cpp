@@ -65,6 +65,7 @@ struct BuildArguments {
   std::optional<std::string> spacing;
   std::optional<std::string> budget;
   std::string outliers = "3";
+  std::string columns;
   BoardRequest board;
   std::string material;
   bool no_resample = false;
@@ -134,6 +135,13 @@ void complete(BuildArguments& arguments) {
   }
   BuildOptions& build = arguments.build;
   require_positive("--scale", build.scale);
+  if (!arguments.columns.empty()) {
+    try {
+      build.columns = builder::parse_columns(arguments.columns);
+    } catch (const std::invalid_argument& error) {
+      misuse("--columns", error.what());
+    }
+  }
   if (arguments.fit) {
     set_fit(*arguments.fit, build);
   }
@@ -471,9 +479,12 @@ void add_build_command(CLI::App& app, int&) {
   CLI::App* verb = app.add_subcommand(
       "build", "Builds a blob from one or several scans: point clouds or meshes");
   verb->add_option("INPUT", arguments->inputs,
-                   "PLY, PCD, XYZ/PTS/CSV, OBJ, STL, OFF, glTF, ...; recognised by content")
+                   "PLY, PCD, XYZ/PTS/CSV, OBJ, STL, OFF, glTF, 3MF, ...; recognised by content")
       ->required();
   verb->add_option("-o,--output", arguments->output, "blob to write")->required();
+  verb->add_option("--columns", arguments->columns,
+                   "columns of text files, from 1: x=2,y=3,z=4, also nx, ny, nz, red, green, blue "
+                   "(default: by their names, or by their numbers)");
   add_frame_options(*verb, *arguments);
   add_quality_options(*verb, *arguments);
   add_surface_options(*verb, *arguments);

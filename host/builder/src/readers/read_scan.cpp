@@ -34,11 +34,24 @@ Scan read_recognised(InputFile& file, const std::filesystem::path& path,
   throw ReadError(file.name(), "", "this is " + recognition.name, recognition.remedy);
 }
 
+/// Columns belong to text: text that is recognised as a format without a reader becomes a table.
+Recognition recognise_for(InputFile& file, const ReadOptions& options) {
+  const std::string_view head = file.peek(kHeadBytes);
+  Recognition found = recognise(head, file.size());
+  if (options.columns.empty() || found.kind == FileKind::kText) return found;
+  if (found.kind == FileKind::kUnsupported && is_text(head)) {
+    return {FileKind::kText, "text", "", ""};
+  }
+  throw ReadError(file.name(), "",
+                  "columns are named, but this is no text file of points: " + found.name,
+                  "leave --columns out");
+}
+
 }  // namespace
 
 Scan read_scan(const std::filesystem::path& path, const ReadOptions& options) {
   InputFile file(path, options.progress);
-  const Recognition recognition = recognise(file.peek(kHeadBytes), file.size());
+  const Recognition recognition = recognise_for(file, options);
   try {
     Scan scan = read_recognised(file, path, recognition, options);
     if (options.progress) options.progress(1.0);

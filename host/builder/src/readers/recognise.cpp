@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "number.hpp"
+#include "other_formats.hpp"
 #include "scalar.hpp"
 #include "stl_layout.hpp"
 
@@ -98,13 +99,6 @@ Recognition unsupported(const std::string& name, const std::string& remedy) {
 
 Recognition imported(const std::string& name, const std::string& hint) {
   return {FileKind::kImportedMesh, name, "", hint};
-}
-
-bool is_text(std::string_view head) {
-  return std::none_of(head.begin(), head.end(), [](char c) {
-    const auto byte = static_cast<unsigned char>(c);
-    return byte == 0x7f || (byte < 0x20 && !is_space(c) && c != '\n' && c != 0x1a);
-  });
 }
 
 /// The first lines, without blank ones and those that begin with '#'; at most `count`.
@@ -237,6 +231,7 @@ Recognition recognise_text(std::string_view head) {
   }
   if (is_obj(lines)) return {FileKind::kObj, "OBJ", "", ""};
   if (is_ptx(lines)) return unsupported("a PTX file, which is not supported yet", kToPlyRemedy);
+  if (auto counted = recognise_counted_format(lines)) return *counted;
   return {FileKind::kText, "text", "", ""};
 }
 
@@ -257,6 +252,13 @@ bool is_ply(std::string_view head) {
 
 }  // namespace
 
+bool is_text(std::string_view head) {
+  return std::none_of(head.begin(), head.end(), [](char c) {
+    const auto byte = static_cast<unsigned char>(c);
+    return byte == 0x7f || (byte < 0x20 && !is_space(c) && c != '\n' && c != 0x1a);
+  });
+}
+
 Recognition recognise(std::string_view head, std::uint64_t file_size) {
   if (head.starts_with("\xef\xbb\xbf")) head.remove_prefix(3);
   if (is_ply(head)) return {FileKind::kPly, "PLY", "", ""};
@@ -265,6 +267,7 @@ Recognition recognise(std::string_view head, std::uint64_t file_size) {
   if (auto las = recognise_las(head)) return *las;
   if (auto zip = recognise_zip(head)) return *zip;
   if (auto mesh = recognise_3ds(head, file_size)) return *mesh;
+  if (auto other = recognise_other_format(head)) return *other;
   if (auto magic = recognise_magic(head)) return *magic;
   if (is_pcd(head, first_lines(head.substr(0, 4096), 32))) return {FileKind::kPcd, "PCD", "", ""};
   if (head.starts_with("OFF BINARY")) {

@@ -32,4 +32,7 @@ inline constexpr std::size_t kHeadBytes = std::size_t{1} << 18;
 /// head: the first bytes of the file, up to kHeadBytes; file_size: of the whole file.
 [[nodiscard]] Recognition recognise(std::string_view head, std::uint64_t file_size);
 
+/// Whether the bytes can be text: no control characters but white space.
+[[nodiscard]] bool is_text(std::string_view head);
+
 }  // namespace tactree::builder

@@ -66,6 +66,7 @@ class ScanBuilder {
   void set_normals(std::vector<Eigen::Vector3f> normals);
 
   void count_dropped(const std::string& cause, std::uint64_t count = 1);
+  void note(std::string sentence) { scan_.notes.push_back(std::move(sentence)); }
   void warn(std::string sentence) { scan_.warnings.push_back(std::move(sentence)); }
 
   /// Returns the scan. Throws ReadError if no point is usable, or none of the faces.

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "number.hpp"
+#include "text_columns.hpp"
 
 namespace tactree::builder {
 namespace {
@@ -17,9 +18,10 @@ constexpr std::size_t kSampleLines = 4000;  // sample: lines before the rows and
 constexpr std::size_t kMaxColumns = 4096;
 constexpr std::size_t kMinColumns = 3;
 constexpr const char* kNotPoints =
-    "a text file of points has rows of numbers, x y z first or under a line of column names";
-
-using Row = std::vector<double>;
+    "a text file of points has rows of numbers, x y z first or under a line of column names; "
+    "otherwise name them, as in --columns x=2,y=3,z=4";
+constexpr const char* kNameColumns =
+    "if they are points, name the columns, as in --columns x=1,y=2,z=3; else save the scan as PLY";
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
@@ -53,19 +55,22 @@ void find_separator(std::string_view line, TextLayout& layout) {
 
 /// False if a required field is not a number: a named column, or one of the first three without
 /// names. Other fields that are not numbers become NaN.
-bool parse_row(std::string_view line, const TextLayout& layout, Row& row) {
-  row.clear();
+bool parse_row(std::string_view line, const TextLayout& layout, TextRow& row) {
+  row = {};
   std::string_view field;
-  while (row.size() < kMaxColumns && take_field(line, layout.separator, field)) {
-    const std::size_t column = row.size();
+  bool all_numbers = true;
+  while (row.values.size() < kMaxColumns && take_field(line, layout.separator, field)) {
+    const std::size_t column = row.values.size();
     const bool named = column < layout.slots.size() && layout.slots[column] != kNoSlot;
     const bool needed = layout.slots.empty() ? column < kMinColumns : named;
     double value = 0;
     if (!parse_field(field, layout.decimal_comma, value)) {
       if (needed) return false;
       value = std::numeric_limits<double>::quiet_NaN();
+      all_numbers = false;
     }
-    row.push_back(value);
+    row.values.push_back(value);
+    if (all_numbers) row.numbers = row.values.size();
   }
   return true;
 }
@@ -77,100 +82,35 @@ std::string_view bare_name(std::string_view field) {
 }
 
 bool read_column_names(std::string_view line, TextLayout& layout) {
-  std::vector<Slot> slots;
-  std::array<bool, kSlots> filled{};
   line = trim(line);
   while (line.starts_with('/') || line.starts_with('#')) line.remove_prefix(1);
   line = trim(line);
   char separator = ' ';
   if (line.find(',') != std::string_view::npos) separator = ',';
   if (line.find(';') != std::string_view::npos) separator = ';';
+  std::vector<std::string_view> names;
   std::string_view field;
-  while (slots.size() < kMaxColumns && take_field(line, separator, field)) {
-    Slot slot = slot_of_name(bare_name(field));
-    if (slot != kNoSlot && filled[slot]) slot = kNoSlot;
-    if (slot != kNoSlot) filled[slot] = true;
-    slots.push_back(slot);
+  while (names.size() < kMaxColumns && take_field(line, separator, field)) {
+    names.push_back(bare_name(field));
   }
-  if (!filled[kX] || !filled[kY] || !filled[kZ]) return false;
-  layout.slots = std::move(slots);
-  return true;
+  layout.slots = slots_of_names(names);
+  return !layout.slots.empty();
 }
 
-void forget_incomplete(std::vector<Slot>& slots) {
-  const auto has = [&](Slot slot) {
-    return std::find(slots.begin(), slots.end(), slot) != slots.end();
-  };
-  const bool normals = has(kNx) && has(kNy) && has(kNz);
-  const bool colours = has(kRed) && has(kGreen) && has(kBlue);
-  for (Slot& slot : slots) {
-    if (slot >= kNx && slot <= kNz && !normals) slot = kNoSlot;
-    if (slot >= kRed && slot <= kBlue && !colours) slot = kNoSlot;
-  }
-}
-
-/// Whether nearly all rows have a unit (or missing) vector at this column.
-bool are_normals(const std::vector<Row>& rows, std::size_t column) {
-  std::size_t unit = 0;
-  std::size_t missing = 0;
-  for (const Row& row : rows) {
-    const double length = std::hypot(row[column], row[column + 1], row[column + 2]);
-    if (std::abs(length - 1.0) < 0.02) ++unit;
-    if (length == 0.0 || std::isnan(length)) ++missing;
-  }
-  return unit > 0 && 20 * (unit + missing) >= 19 * rows.size() && 2 * unit >= rows.size();
-}
-
-bool are_bytes(const std::vector<Row>& rows, std::size_t column) {
-  return std::all_of(rows.begin(), rows.end(), [&](const Row& row) {
-    return std::all_of(row.begin() + static_cast<std::ptrdiff_t>(column),
-                       row.begin() + static_cast<std::ptrdiff_t>(column) + 3, [](double value) {
-                         return value >= 0 && value <= 255 && value == std::floor(value);
-                       });
-  });
-}
-
-/// Without column names: x y z, then normals and colours as recognised by their values.
-void guess_columns(const std::vector<Row>& rows, TextLayout& layout) {
-  const std::size_t columns = rows.front().size();
-  layout.slots.assign(columns, kNoSlot);
-  layout.slots[0] = kX;
-  layout.slots[1] = kY;
-  layout.slots[2] = kZ;
-  // PTS: x y z intensity r g b.
-  std::size_t at = layout.declared && columns >= 7 ? 4 : 3;
-  bool normals = false;
-  bool colours = false;
-  while (at + 3 <= columns) {
-    Slot first = kNoSlot;
-    if (!normals && are_normals(rows, at)) {
-      first = kNx;
-      normals = true;
-    } else if (!colours && are_bytes(rows, at)) {
-      first = kRed;
-      colours = true;
-    }
-    if (first == kNoSlot) {
-      ++at;
-      continue;
-    }
-    for (std::size_t k = 0; k < 3; ++k) {
-      layout.slots[at + k] = static_cast<Slot>(static_cast<std::size_t>(first) + k);
-    }
-    at += 3;
-  }
-  if (!normals && !colours && columns >= 6) {
-    layout.warnings.push_back(
-        fmt::format("Columns 4 to {} were ignored: they are neither unit normals nor colours of "
-                    "0 to 255, and there is no line of column names.",
-                    columns));
-  }
+/// "830 3 0": several whole numbers and nothing else.
+bool are_counts(const TextRow& row) {
+  return row.values.size() >= 2 && row.numbers == row.values.size() &&
+         std::all_of(row.values.begin(), row.values.end(),
+                     [](double value) { return value >= 0 && value == std::floor(value); });
 }
 
 /// Determines the layout from the first lines.
 class LayoutFinder {
  public:
-  explicit LayoutFinder(InputFile& file) : file_(file) {}
+  LayoutFinder(InputFile& file, const ColumnMap& columns) : file_(file) {
+    layout_.slots = slots_of_columns(columns);
+    if (!columns.empty()) layout_.source = "as named";
+  }
 
   TextLayout find() {
     file_.rewind();
@@ -183,7 +123,7 @@ class LayoutFinder {
     if (rows_.empty()) refuse();
     layout_.row_bytes = static_cast<double>(row_bytes_) / static_cast<double>(rows_.size());
     settle_columns();
-    forget_incomplete(layout_.slots);
+    leave_out_unused(layout_.slots);
     file_.rewind();
     return std::move(layout_);
   }
@@ -197,27 +137,38 @@ class LayoutFinder {
       return;
     }
     if (rows_.empty()) find_separator(text, layout_);
-    Row row;
+    TextRow row;
     const bool numbers = parse_row(text, layout_, row);
-    if (rows_.empty() && numbers && row.size() == 1 && row[0] >= 0 &&
-        row[0] == std::floor(row[0]) && row[0] < 1e15 && !layout_.declared) {
-      layout_.declared = static_cast<std::uint64_t>(row[0]);
+    if (numbers && rows_.empty() && is_count(row)) {
+      layout_.declared = static_cast<std::uint64_t>(row.values[0]);
       return;
     }
-    if (!numbers && rows_.empty() && layout_.slots.empty() && take_names(text)) return;
-    const bool fits = rows_.empty() || row.size() == rows_.front().size();
-    if (numbers && row.size() >= kMinColumns && fits) {
+    const bool unnamed = rows_.empty() && layout_.slots.empty();
+    // "Point#, X, Y, Z" is no comment.
+    if (!numbers && unnamed && (take_names(text) || take_names(trim(line)))) return;
+    if (numbers && row.values.size() >= std::max(kMinColumns, layout_.slots.size())) {
       if (rows_.empty()) layout_.first_row_line = file_.line_number();
       row_bytes_ += line.size() + 1;
       rows_.push_back(std::move(row));
       return;
     }
+    if (numbers && unnamed && are_counts(row) && counts_line_ == 0) {
+      counts_line_ = file_.line_number();
+      counts_text_ = printable(text);
+    }
     note_other(text, numbers);
+  }
+
+  [[nodiscard]] bool is_count(const TextRow& row) const {
+    return !layout_.declared && row.values.size() == 1 && row.numbers == 1 && row.values[0] >= 0 &&
+           row.values[0] == std::floor(row.values[0]) && row.values[0] < 1e15;
   }
 
   bool take_names(std::string_view text) {
     if (!read_column_names(text, layout_)) return false;
     layout_.header_line = file_.line_number();
+    layout_.source = fmt::format("named by line {}", layout_.header_line);
+    leave_out_unused(layout_.slots);
     return true;
   }
 
@@ -239,6 +190,15 @@ class LayoutFinder {
                       "check the export, and export it again");
     }
     const std::string place = fmt::format("line {}", first_other_line_);
+    if (other_is_numbers_ && !layout_.slots.empty()) {
+      const bool by_user = layout_.header_line == 0;
+      throw ReadError(file_.name(), place,
+                      fmt::format("the row has {} values, but {} {} columns", other_fields_,
+                                  by_user ? "--columns names"
+                                          : fmt::format("line {} names", layout_.header_line),
+                                  layout_.slots.size()),
+                      by_user ? "check --columns" : "export the scan again");
+    }
     if (other_is_numbers_) {
       throw ReadError(file_.name(), place,
                       fmt::format("\"{}\" has fewer than three numbers", first_other_text_),
@@ -251,11 +211,8 @@ class LayoutFinder {
   }
 
   void settle_columns() {
-    const std::size_t columns = rows_.front().size();
-    if (!layout_.slots.empty()) {
-      check_names_fit(columns);
-      return;
-    }
+    if (!layout_.slots.empty()) return;
+    const std::size_t columns = rows_.front().values.size();
     const bool unnamed_header = first_other_line_ != 0 && !other_is_numbers_ &&
                                 first_other_line_ < layout_.first_row_line &&
                                 other_fields_ == columns;
@@ -263,30 +220,34 @@ class LayoutFinder {
       throw ReadError(
           file_.name(), fmt::format("line {}", first_other_line_),
           fmt::format("the column names \"{}\" do not include x, y and z", first_other_text_),
-          "rename these columns to x, y and z, or delete the line");
+          "rename these columns to x, y and z, or give their numbers, as in "
+          "--columns x=2,y=3,z=4");
     }
-    guess_columns(rows_, layout_);
+    ColumnGuess guess = guess_columns(rows_, layout_.declared.has_value());
+    if (counts_line_ != 0 && counts_line_ < layout_.first_row_line) {
+      refuse_guess(counts_line_,
+                   fmt::format("\"{}\" looks like the counts of a mesh or a grid", counts_text_));
+    }
+    if (!guess.doubt.empty()) refuse_guess(layout_.first_row_line, guess.doubt);
+    layout_.slots = std::move(guess.slots);
+    layout_.counter = guess.counter;
+    layout_.warnings = std::move(guess.warnings);
+    layout_.source = "without names, by their numbers";
   }
 
-  void check_names_fit(std::size_t columns) {
-    const auto last = std::find_if(layout_.slots.rbegin(), layout_.slots.rend(),
-                                   [](Slot slot) { return slot != kNoSlot; });
-    const auto needed = static_cast<std::size_t>(layout_.slots.rend() - last);
-    if (needed > columns) {
-      throw ReadError(file_.name(), fmt::format("line {}", layout_.first_row_line),
-                      fmt::format("the row has {} values, but line {} names {} columns", columns,
-                                  layout_.header_line, layout_.slots.size()),
-                      "export the scan again");
-    }
-    layout_.slots.resize(columns, kNoSlot);
+  [[noreturn]] void refuse_guess(std::uint64_t line, const std::string& doubt) const {
+    throw ReadError(file_.name(), fmt::format("line {}", line),
+                    "the rows of numbers cannot be taken for points: " + doubt, kNameColumns);
   }
 
   InputFile& file_;
   TextLayout layout_;
-  std::vector<Row> rows_;
+  std::vector<TextRow> rows_;
   std::size_t row_bytes_ = 0;
   std::uint64_t first_other_line_ = 0;
   std::string first_other_text_;
+  std::uint64_t counts_line_ = 0;  // first line of two or more counts
+  std::string counts_text_;
   std::size_t other_fields_ = 0;
   bool other_is_numbers_ = false;
 };
@@ -335,6 +296,8 @@ bool parse_field(std::string_view field, bool decimal_comma, double& value) {
   return parse_number({text.data(), field.size()}, value);
 }
 
-TextLayout find_text_layout(InputFile& file) { return LayoutFinder(file).find(); }
+TextLayout find_text_layout(InputFile& file, const ColumnMap& columns) {
+  return LayoutFinder(file, columns).find();
+}
 
 }  // namespace tactree::builder

@@ -10,18 +10,21 @@
 
 #include "input_file.hpp"
 #include "scan_builder.hpp"
+#include "tactree/builder/read_scan.hpp"
 
 namespace tactree::builder {
 
 struct TextLayout {
   char separator = ' ';                   ///< ' ' stands for any run of white space
   bool decimal_comma = false;             ///< "1,5" means 1.5
-  std::vector<Slot> slots;                ///< per column
+  std::vector<Slot> slots;                ///< per column, up to the last one in use
+  std::optional<std::size_t> counter;     ///< column that numbers the points
   std::optional<std::uint64_t> declared;  ///< the count that comes before the first point
   std::uint64_t header_line = 0;          ///< of the column names; 0: none
   std::uint64_t first_row_line = 0;
   double row_bytes = 0;  ///< on average
   std::vector<std::string> warnings;
+  std::string source;  ///< of the columns, for messages: "named by line 1"
 
   [[nodiscard]] bool has(Slot slot) const;
 };
@@ -37,6 +40,7 @@ struct TextLayout {
 [[nodiscard]] bool parse_field(std::string_view field, bool decimal_comma, double& value);
 
 /// Reads the first rows and rewinds the file. Throws ReadError if they are not points.
-[[nodiscard]] TextLayout find_text_layout(InputFile& file);
+/// columns: as named by the user, or empty.
+[[nodiscard]] TextLayout find_text_layout(InputFile& file, const ColumnMap& columns);
 
 }  // namespace tactree::builder

@@ -1,8 +1,11 @@
 #include <fmt/format.h>
 
+#include <limits>
+
 #include "number.hpp"
 #include "readers.hpp"
 #include "scan_builder.hpp"
+#include "text_columns.hpp"
 #include "text_layout.hpp"
 
 namespace tactree::builder {
@@ -12,12 +15,14 @@ class TextReader {
  public:
   TextReader(InputFile& file, const ReadOptions& options)
       : file_(file),
-        layout_(find_text_layout(file)),
+        layout_(find_text_layout(file, options.columns)),
+        columns_named_(!options.columns.empty()),
         declared_(layout_.declared.value_or(0)),
         builder_(file.name(), options.scan_memory_bytes, "line") {}
 
   Scan read() {
     for (const std::string& warning : layout_.warnings) builder_.warn(warning);
+    note_columns();
     if (layout_.has(kNx)) builder_.use_normals();
     if (layout_.has(kRed)) builder_.use_colours(ColourRange::kAuto);
     builder_.expect_points(
@@ -26,6 +31,7 @@ class TextReader {
     std::string_view line;
     while (file_.next_line(line)) read_line(line);
     check_bad_rows();
+    check_counter();
     if (layout_.declared && declared_ != builder_.points_read()) {
       builder_.warn(fmt::format("The file declares {} points and holds {}.", declared_,
                                 builder_.points_read()));
@@ -36,6 +42,8 @@ class TextReader {
  private:
   void read_line(std::string_view line) {
     if (file_.line_number() == layout_.header_line) return;
+    // The names in a header that the user has replaced.
+    if (columns_named_ && file_.line_number() < layout_.first_row_line) return;
     const std::string_view text = text_of_line(line);
     if (text.empty()) return;
     PointRow row{};
@@ -48,10 +56,26 @@ class TextReader {
     if (bad_rows_ >= 1000 && bad_rows_ > builder_.points_read()) refuse();
   }
 
-  bool parse(std::string_view rest, PointRow& row) const {
+  void note_columns() {
+    std::string counter;
+    if (layout_.counter) {
+      counter = fmt::format("; column {} numbers the points", *layout_.counter + 1);
+      if (layout_.slots.size() == 4) {
+        counter +=
+            " (where northing comes before easting, give --columns x=3,y=2,z=4: this mirrors the "
+            "scan)";
+      }
+    }
+    builder_.note(fmt::format("{}: columns {}, {}{}", file_.name(), describe_columns(layout_.slots),
+                              layout_.source, counter));
+  }
+
+  bool parse(std::string_view rest, PointRow& row) {
     std::string_view field;
-    for (const Slot slot : layout_.slots) {
+    for (std::size_t i = 0; i < layout_.slots.size(); ++i) {
+      const Slot slot = layout_.slots[i];
       if (!take_field(rest, layout_.separator, field)) return false;
+      if (layout_.counter == i) count_row(field);
       if (slot != kNoSlot && !parse_field(field, layout_.decimal_comma, row[slot])) return false;
     }
     return true;
@@ -66,6 +90,24 @@ class TextReader {
     return true;
   }
 
+  /// The column that numbers the points must do so in all rows, not only in the first ones.
+  void count_row(std::string_view field) {
+    std::int64_t number = 0;
+    if (!parse_integer(field, number) || number <= last_number_) {
+      if (uncounted_++ == 0) first_uncounted_line_ = file_.line_number();
+    }
+    last_number_ = number;
+  }
+
+  void check_counter() const {
+    if (uncounted_ * 100 <= builder_.points_read()) return;
+    throw ReadError(file_.name(), fmt::format("line {}", first_uncounted_line_),
+                    fmt::format("column 1 numbers the first rows and does not go on to do so in "
+                                "{} of {} rows: it may be a coordinate",
+                                uncounted_, builder_.points_read()),
+                    "name the columns, as in --columns x=1,y=2,z=3 or --columns x=2,y=3,z=4");
+  }
+
   void check_bad_rows() {
     if (bad_rows_ == 0) return;
     if (bad_rows_ * 100 > bad_rows_ + builder_.points_read()) refuse();
@@ -77,10 +119,12 @@ class TextReader {
   [[noreturn]] void refuse() const {
     throw ReadError(
         file_.name(), fmt::format("line {}", first_bad_line_),
-        fmt::format("the row is not a point, like {} of {} rows: {} numbers are "
-                    "expected in each",
-                    bad_rows_, bad_rows_ + builder_.points_read(), layout_.slots.size()),
-        "the file is damaged, or not a list of points; export it again");
+        fmt::format(
+            "the row is not a point, like {} of {} rows: numbers are expected in the columns "
+            "{}",
+            bad_rows_, bad_rows_ + builder_.points_read(), describe_columns(layout_.slots)),
+        "the file is damaged, or not a list of points; export it again, or name its columns, as in "
+        "--columns x=1,y=2,z=3");
   }
 
   std::string format_name() const {
@@ -96,10 +140,14 @@ class TextReader {
 
   InputFile& file_;
   TextLayout layout_;
+  bool columns_named_;  // by the user
   std::uint64_t declared_;
   ScanBuilder builder_;
   std::uint64_t bad_rows_ = 0;
   std::uint64_t first_bad_line_ = 0;
+  std::int64_t last_number_ = std::numeric_limits<std::int64_t>::min();
+  std::uint64_t uncounted_ = 0;
+  std::uint64_t first_uncounted_line_ = 0;
 };
 
 }  // namespace

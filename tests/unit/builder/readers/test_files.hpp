@@ -49,6 +49,12 @@ class TestFiles : public testing::Test {
     }
     return "";
   }
+  /// With columns as named by the user.
+  static ReadOptions columns(std::string_view text) {
+    ReadOptions options;
+    options.columns = parse_columns(text);
+    return options;
+  }
   std::string refusal_of(std::string_view bytes, const std::string& name = "scan") {
     return refusal(write(name, bytes));
   }

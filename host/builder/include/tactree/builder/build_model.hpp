@@ -21,6 +21,7 @@
 #include "tactree/builder/model.hpp"
 #include "tactree/builder/orientation.hpp"
 #include "tactree/builder/progress.hpp"
+#include "tactree/builder/read_scan.hpp"
 #include "tactree/builder/scan.hpp"
 
 namespace tactree::builder {
@@ -32,6 +33,7 @@ inline constexpr double kReachSpacings = 3.0;
 enum class UpAxis : std::uint8_t { kX, kY, kZ };
 
 struct BuildOptions {
+  ColumnMap columns;             ///< of text files of points; empty: found in each file
   std::optional<double> unit_m;  ///< metres per unit of the source; default: as it states, or 1
   double scale = 1.0;            ///< additional factor
   std::optional<double> fit_m;   ///< scale so that the longest edge is this; implies `centre`

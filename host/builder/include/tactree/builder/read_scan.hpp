@@ -8,10 +8,19 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
+#include <string>
+#include <string_view>
 
 #include "tactree/builder/scan.hpp"
 
 namespace tactree::builder {
+
+/// Columns of a text file, from 1, by what they hold: x, y, z, nx, ny, nz, red, green, blue.
+using ColumnMap = std::map<std::string, std::size_t>;
+
+/// Parses "x=2,y=3,z=4,red=5,green=6,blue=7". Throws std::invalid_argument with the cause.
+[[nodiscard]] ColumnMap parse_columns(std::string_view text);
 
 struct ReadOptions {
   /// Memory limit of the scan, bytes; a larger one is refused before the allocation.
@@ -20,6 +29,9 @@ struct ReadOptions {
   std::uint64_t child_memory_bytes = 3ULL << 29;
   /// Time limit of the mesh import process, for processor time and for elapsed time.
   double child_seconds = 120.0;
+  /// Of a text file; empty: by its line of names, or by the numbers. Other formats are refused with
+  /// it, but text of a mesh or grid without a reader is read as rows of numbers.
+  ColumnMap columns;
   /// Called repeatedly with the fraction of the file that was read, rising from 0 to 1.
   std::function<void(double fraction)> progress;
 };

@@ -35,6 +35,7 @@ struct Scan {
   std::string format;  ///< recognised format, e.g. "PLY binary little endian"
   std::map<std::string, std::uint64_t> dropped;  ///< cause -> count, e.g. "non_finite" -> 3
   std::vector<std::string> warnings;             ///< one sentence each, for the user
+  std::vector<std::string> notes;                ///< how the file was read, one sentence each
 
   [[nodiscard]] bool is_mesh() const { return !triangles.empty(); }
 };

@@ -1,0 +1,370 @@
+#include "text_columns.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "number.hpp"
+
+namespace tactree::builder {
+namespace {
+
+constexpr std::size_t kMinColumns = 3;
+constexpr std::size_t kMaxColumnNumber = 4096;
+constexpr std::size_t kTooManyColumns = 9;  // of unknown meaning: points have fewer
+constexpr std::size_t kRowsToCount = 4;     // fewer rows say nothing about a column
+constexpr std::array<const char*, kSlots> kNames = {"x",  "y",   "z",     "nx",  "ny",
+                                                    "nz", "red", "green", "blue"};
+
+bool is_whole(double value) { return value == std::floor(value) && std::abs(value) < 1e15; }
+
+/// Statistics of a column.
+struct Column {
+  bool numbers = true;    ///< in every row
+  bool whole = true;      ///< only whole numbers
+  bool constant = true;   ///< one value
+  bool rises = true;      ///< each value is above the one before
+  std::size_t steps = 0;  ///< values that are one above the one before
+  double first = 0.0;
+};
+
+Column column_of(std::span<const TextRow> rows, std::size_t at) {
+  Column column;
+  column.first = rows.front().values[at];
+  double last = column.first;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const double value = rows[i].values[at];
+    column.numbers = column.numbers && at < rows[i].numbers;
+    column.whole = column.whole && is_whole(value);
+    column.constant = column.constant && value == column.first;
+    if (i > 0 && !(value > last)) column.rises = false;
+    if (i > 0 && value == last + 1.0) ++column.steps;
+    last = value;
+  }
+  return column;
+}
+
+/// Whether nearly all rows have a unit (or missing) vector at this column.
+bool are_normals(std::span<const TextRow> rows, std::size_t column) {
+  std::size_t unit = 0;
+  std::size_t missing = 0;
+  for (const TextRow& row : rows) {
+    const double length =
+        std::hypot(row.values[column], row.values[column + 1], row.values[column + 2]);
+    if (std::abs(length - 1.0) < 0.02) ++unit;
+    if (length == 0.0 || std::isnan(length)) ++missing;
+  }
+  return unit > 0 && 20 * (unit + missing) >= 19 * rows.size() && 2 * unit >= rows.size();
+}
+
+bool are_bytes(std::span<const TextRow> rows, std::size_t column) {
+  return std::all_of(rows.begin(), rows.end(), [&](const TextRow& row) {
+    const auto first = row.values.begin() + static_cast<std::ptrdiff_t>(column);
+    return std::all_of(first, first + 3,
+                       [](double value) { return value >= 0 && value <= 255 && is_whole(value); });
+  });
+}
+
+/// Four columns of bytes: an intensity before the colour, or an opacity after it?
+bool begins_with_intensity(std::span<const TextRow> rows, std::size_t at) {
+  const Column last = column_of(rows, at + 3);
+  if (!last.constant || last.first != 255.0) return true;
+  // An opacity of 255 throughout, unless the colour is white throughout.
+  const Column red = column_of(rows, at + 1);
+  const Column green = column_of(rows, at + 2);
+  const Column first = column_of(rows, at);
+  return red.constant && green.constant && red.first == 255.0 && green.first == 255.0 &&
+         !first.constant;
+}
+
+/// Heights in rows: neighbours in a row differ far less than the numbers of the table.
+bool is_grid(std::span<const TextRow> rows, std::size_t columns) {
+  double sum = 0.0;
+  double squares = 0.0;
+  double steps = 0.0;
+  for (const TextRow& row : rows) {
+    for (std::size_t i = 0; i < columns; ++i) {
+      sum += row.values[i];
+      squares += row.values[i] * row.values[i];
+      if (i > 0) steps += std::abs(row.values[i] - row.values[i - 1]);
+    }
+  }
+  const double count = static_cast<double>(rows.size() * columns);
+  const double spread = std::sqrt(std::max(0.0, squares / count - sum * sum / (count * count)));
+  constexpr double kSmooth = 0.25;
+  const double pairs = static_cast<double>(rows.size() * (columns - 1));
+  return spread > 0.0 && steps / pairs < kSmooth * spread;
+}
+
+class Guess {
+ public:
+  Guess(std::span<const TextRow> rows, bool counted) : rows_(rows), counted_(counted) {}
+
+  ColumnGuess find() {
+    columns_ = common_width();
+    check_rows();
+    rows_left_.clear();
+    for (const TextRow& row : rows_) {
+      if (row.values.size() >= columns_) rows_left_.push_back(row);
+    }
+    if (guess_.doubt.empty()) check_counter();
+    if (guess_.doubt.empty()) check_corners();
+    place();
+    if (guess_.doubt.empty()) check_rest();
+    return std::move(guess_);
+  }
+
+ private:
+  /// The number of values of most rows.
+  [[nodiscard]] std::size_t common_width() const {
+    std::vector<std::size_t> widths;
+    for (const TextRow& row : rows_) widths.push_back(row.values.size());
+    std::sort(widths.begin(), widths.end());
+    std::size_t best = 0;
+    std::size_t width = kMinColumns;
+    for (auto at = widths.begin(); at != widths.end();) {
+      const auto end = std::upper_bound(at, widths.end(), *at);
+      if (static_cast<std::size_t>(end - at) > best) {
+        best = static_cast<std::size_t>(end - at);
+        width = *at;
+      }
+      at = end;
+    }
+    return width;
+  }
+
+  /// Rows of points have the same number of columns; words at their end may have spaces.
+  void check_rows() {
+    const TextRow& first = rows_.front();
+    if (first.values.size() != columns_ && first.numbers == first.values.size() &&
+        std::all_of(first.values.begin(), first.values.end(), is_whole) && rows_.size() > 2) {
+      guess_.doubt =
+          "the first row has whole numbers and another length than the rows after it, "
+          "like the counts of a mesh or a grid";
+      return;
+    }
+    std::size_t other = 0;
+    std::size_t fewest = columns_;
+    bool words = true;
+    for (const TextRow& row : rows_) {
+      if (row.values.size() == columns_) continue;
+      ++other;
+      fewest = std::min(fewest, row.numbers);
+    }
+    for (const TextRow& row : rows_) words = words && row.numbers == fewest;
+    if (100 * other <= rows_.size()) return;
+    if (words) {
+      columns_ = fewest;
+    } else {
+      guess_.doubt = "the rows differ in their number of columns";
+    }
+  }
+
+  /// A first column of rising whole numbers counts the points.
+  void check_counter() {
+    if (rows_left_.size() < kRowsToCount || columns_ < kMinColumns) return;
+    const Column first = column_of(rows_left_, 0);
+    const Column second = column_of(rows_left_, 1);
+    const Column third = column_of(rows_left_, 2);
+    if (!first.numbers || !first.whole || !first.rises) return;
+    const bool consecutive = 10 * first.steps >= 9 * (rows_left_.size() - 1);
+    if (columns_ == kMinColumns) {
+      if (consecutive && !second.whole && !third.whole) {
+        guess_.doubt = "column 1 numbers the rows, and only two columns follow";
+      }
+      return;
+    }
+    const Column fourth = column_of(rows_left_, 3);
+    if (consecutive && !second.constant && !third.constant && !fourth.constant && fourth.numbers) {
+      guess_.counter = 0;
+    } else {
+      guess_.doubt = consecutive ? "column 1 may number the points, or be a coordinate"
+                                 : "column 1 rises from row to row, like a number or a time";
+    }
+  }
+
+  /// Rows such as "3 0 1 2" are faces.
+  void check_corners() {
+    if (guess_.counter || columns_ < 4 || rows_left_.size() < kRowsToCount) return;
+    const Column first = column_of(rows_left_, 0);
+    if (!first.constant || !first.whole || first.first < 3 || first.first > 8) return;
+    for (std::size_t i = 1; i < columns_; ++i) {
+      if (!column_of(rows_left_, i).whole) return;
+    }
+    guess_.doubt = fmt::format("every row is {} and whole numbers, like the faces of a mesh",
+                               static_cast<int>(first.first));
+  }
+
+  /// x y z, then normals and colours as recognised by their values.
+  void place() {
+    guess_.slots.assign(columns_, kNoSlot);
+    const std::size_t first = guess_.counter ? 1 : 0;
+    if (columns_ < first + kMinColumns) return;
+    for (std::size_t k = 0; k < 3; ++k) guess_.slots[first + k] = static_cast<Slot>(k);
+    // PTS: x y z intensity r g b.
+    std::size_t at = first + (counted_ && columns_ >= 7 ? 4 : 3);
+    while (at + 3 <= columns_) {
+      Slot slot = kNoSlot;
+      if (!normals_ && are_normals(rows_left_, at)) {
+        slot = kNx;
+        normals_ = true;
+      } else if (!colours_ && are_bytes(rows_left_, at)) {
+        const bool four = at + 4 <= columns_ && are_bytes(rows_left_, at + 1) &&
+                          !(at + 6 <= columns_ && are_normals(rows_left_, at + 3));
+        if (four && begins_with_intensity(rows_left_, at)) ++at;
+        slot = kRed;
+        colours_ = true;
+      }
+      if (slot == kNoSlot) {
+        ++at;
+        continue;
+      }
+      for (std::size_t k = 0; k < 3; ++k) {
+        guess_.slots[at + k] = static_cast<Slot>(static_cast<std::size_t>(slot) + k);
+      }
+      at += 3;
+    }
+  }
+
+  void check_rest() {
+    if (normals_ || colours_) return;
+    if (columns_ >= kTooManyColumns) {
+      guess_.doubt = fmt::format(
+          "{} columns are neither normals nor colours, as in a grid of "
+          "heights or several points per row",
+          columns_ - kMinColumns);
+    } else if (columns_ > 4 && rows_left_.size() >= kRowsToCount && is_grid(rows_left_, columns_)) {
+      guess_.doubt = "the numbers of a row hardly differ, as in a grid of heights";
+    } else if (columns_ >= 6) {
+      guess_.warnings.push_back(
+          fmt::format("Columns {} to {} were ignored: they are neither unit normals nor colours of "
+                      "0 to 255, and there is no line of column names.",
+                      guess_.counter ? 5 : 4, columns_));
+    }
+  }
+
+  std::span<const TextRow> rows_;
+  bool counted_;
+  ColumnGuess guess_;
+  std::size_t columns_ = 0;
+  std::vector<TextRow> rows_left_;  // those with the common number of columns
+  bool normals_ = false;
+  bool colours_ = false;
+};
+
+/// Names of survey files, for coordinates that have no other name.
+Slot slot_of_survey_name(std::string_view name) {
+  struct Name {
+    std::string_view name;
+    Slot slot;
+  };
+  constexpr Name kSurvey[] = {
+      {"easting", kX},   {"east", kX}, {"e", kX},      {"northing", kY}, {"north", kY}, {"n", kY},
+      {"elevation", kZ}, {"elev", kZ}, {"height", kZ}, {"altitude", kZ}, {"h", kZ}};
+  for (const Name& known : kSurvey) {
+    if (equal_ignoring_case(known.name, name)) return known.slot;
+  }
+  return kNoSlot;
+}
+
+void take(std::vector<Slot>& slots, std::array<bool, kSlots>& filled, std::size_t at, Slot slot) {
+  if (slot == kNoSlot || filled[slot] || slots[at] != kNoSlot) return;
+  filled[slot] = true;
+  slots[at] = slot;
+}
+
+}  // namespace
+
+ColumnGuess guess_columns(std::span<const TextRow> rows, bool counted) {
+  return Guess(rows, counted).find();
+}
+
+std::vector<Slot> slots_of_names(std::span<const std::string_view> names) {
+  std::vector<Slot> slots(names.size(), kNoSlot);
+  std::array<bool, kSlots> filled{};
+  for (std::size_t i = 0; i < names.size(); ++i) take(slots, filled, i, slot_of_name(names[i]));
+  if (!filled[kX] && !filled[kY]) {
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      take(slots, filled, i, slot_of_survey_name(names[i]));
+    }
+  }
+  if (!filled[kX] || !filled[kY] || !filled[kZ]) return {};
+  return slots;
+}
+
+std::vector<Slot> slots_of_columns(const ColumnMap& columns) {
+  std::vector<Slot> slots;
+  for (const auto& [name, number] : columns) {
+    if (number > slots.size()) slots.resize(number, kNoSlot);
+    slots[number - 1] = slot_of_name(name);
+  }
+  return slots;
+}
+
+void leave_out_unused(std::vector<Slot>& slots) {
+  const auto has = [&](Slot slot) {
+    return std::find(slots.begin(), slots.end(), slot) != slots.end();
+  };
+  const bool normals = has(kNx) && has(kNy) && has(kNz);
+  const bool colours = has(kRed) && has(kGreen) && has(kBlue);
+  for (Slot& slot : slots) {
+    if (slot >= kNx && slot <= kNz && !normals) slot = kNoSlot;
+    if (slot >= kRed && slot <= kBlue && !colours) slot = kNoSlot;
+  }
+  while (!slots.empty() && slots.back() == kNoSlot) slots.pop_back();
+}
+
+std::string describe_columns(std::span<const Slot> slots) {
+  std::string text;
+  for (std::size_t slot = 0; slot < kSlots; ++slot) {
+    const auto at = std::find(slots.begin(), slots.end(), static_cast<Slot>(slot));
+    if (at == slots.end()) continue;
+    text += fmt::format("{}{}={}", text.empty() ? "" : ", ", kNames[slot], at - slots.begin() + 1);
+  }
+  return text;
+}
+
+ColumnMap parse_columns(std::string_view text) {
+  ColumnMap columns;
+  const auto fail = [&](const std::string& cause) {
+    throw std::invalid_argument(cause + ", as in x=2,y=3,z=4");
+  };
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    const std::string_view entry = trim(text.substr(begin, end - begin));
+    begin = end + 1;
+    const std::size_t equals = entry.find('=');
+    const Slot slot = slot_of_name(trim(entry.substr(0, equals)));
+    std::int64_t number = 0;
+    const bool numbered = equals != std::string_view::npos &&
+                          parse_integer(trim(entry.substr(equals + 1)), number) && number >= 1 &&
+                          number <= static_cast<std::int64_t>(kMaxColumnNumber);
+    if (slot == kNoSlot || !numbered) {
+      fail(
+          fmt::format("'{}' is not one of x, y, z, nx, ny, nz, red, green, blue with the number of "
+                      "a column from 1",
+                      printable(entry)));
+    }
+    for (const auto& [name, other] : columns) {
+      if (name == kNames[slot] || other == static_cast<std::size_t>(number)) {
+        fail(fmt::format("'{}' names a column twice", printable(entry)));
+      }
+    }
+    columns[kNames[slot]] = static_cast<std::size_t>(number);
+  }
+  for (std::size_t first = 0; first < kSlots; first += 3) {
+    std::size_t named = 0;
+    for (std::size_t k = 0; k < 3; ++k) named += columns.count(kNames[first + k]);
+    if (named != 3 && (named != 0 || first == 0)) {
+      fail(fmt::format("{}, {} and {} are needed", kNames[first], kNames[first + 1],
+                       kNames[first + 2]));
+    }
+  }
+  return columns;
+}
+
+}  // namespace tactree::builder
