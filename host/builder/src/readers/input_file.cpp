@@ -73,6 +73,16 @@ void InputFile::skip(std::uint64_t count) {
   begin_ = end_ = 0;
 }
 
+bool InputFile::only_zeros_left() {
+  while (true) {
+    const std::string_view bytes = peek(1);
+    if (bytes.empty()) return true;
+    const std::size_t other = bytes.find_first_not_of('\0');
+    if (other != std::string_view::npos) return false;
+    consume(bytes.size());
+  }
+}
+
 void InputFile::rewind() {
   buffer_offset_ = 0;
   begin_ = end_ = 0;

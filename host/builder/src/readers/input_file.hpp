@@ -40,6 +40,9 @@ class InputFile {
   /// Skips any number of bytes, at most to the end of the file.
   void skip(std::uint64_t count);
 
+  /// Skips bytes of zero, with which some programs fill the end of a file. Whether no other follow.
+  [[nodiscard]] bool only_zeros_left();
+
   /// The next line without its end ("\n", "\r\n", or "\r" in a file that has no "\n").
   /// False at the end of the file. Throws ReadError for a line above kMaxLineBytes.
   [[nodiscard]] bool next_line(std::string_view& line);

@@ -1,6 +1,7 @@
 #include "number.hpp"
 
 #include <charconv>
+#include <cmath>
 #include <limits>
 #include <system_error>
 
@@ -63,6 +64,16 @@ bool parse_integer(std::string_view token, std::int64_t& value) {
   const char* end = token.data() + token.size();
   const auto [stop, error] = std::from_chars(token.data(), end, value);
   return error == std::errc{} && stop == end && !token.empty();
+}
+
+bool parse_corner(std::string_view token, std::int64_t& value) {
+  if (parse_integer(token, value)) return true;
+  double number = 0;
+  if (!parse_number(token, number)) return false;
+  constexpr double kIndexEnd = 4294967296.0;
+  const bool index = number >= 0.0 && number < kIndexEnd && number == std::floor(number);
+  value = index ? static_cast<std::int64_t>(number) : -1;
+  return true;
 }
 
 bool equal_ignoring_case(std::string_view a, std::string_view b) {

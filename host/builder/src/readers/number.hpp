@@ -32,6 +32,10 @@ namespace tactree::builder {
 /// Parses all of `token` as an integer. Accepts a leading '+'.
 [[nodiscard]] bool parse_integer(std::string_view token, std::int64_t& value);
 
+/// Parses the index of a corner. A number that is no index, such as nan or 1e30, becomes -1, so
+/// that its face is dropped and counted. Returns false for other text.
+[[nodiscard]] bool parse_corner(std::string_view token, std::int64_t& value);
+
 /// ASCII only.
 [[nodiscard]] bool equal_ignoring_case(std::string_view a, std::string_view b);
 [[nodiscard]] bool starts_with_ignoring_case(std::string_view text, std::string_view prefix);

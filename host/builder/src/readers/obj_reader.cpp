@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 #include "number.hpp"
 #include "readers.hpp"
@@ -86,13 +87,27 @@ class CornerNormals {
 
 class ObjReader {
  public:
-  ObjReader(InputFile& file, const ReadOptions& options)
-      : file_(file), builder_(file.name(), options.scan_memory_bytes, "line"), normals_(builder_) {}
+  /// first_index: of the points and normals; 1, or 0 in the files of some programs.
+  ObjReader(InputFile& file, const ReadOptions& options, std::int64_t first_index)
+      : file_(file),
+        first_index_(first_index),
+        builder_(file.name(), options.scan_memory_bytes, "line"),
+        normals_(builder_) {}
 
-  Scan read() {
+  /// Nothing if the indices count from 0 and not from first_index.
+  std::optional<Scan> read() {
     find_colours();
     std::string_view line;
     while (next_line(line)) read_line(line);
+    const bool from_zero = zero_seen_ && !relative_seen_ && highest_index_ >= 0 &&
+                           static_cast<std::uint64_t>(highest_index_) < builder_.points_read();
+    if (from_zero && first_index_ == 1) return std::nullopt;
+    if (first_index_ == 0) {
+      builder_.warn(fmt::format(
+          "The indices of the faces are 0 to {} for {} points: they were taken to count from 0, "
+          "though an OBJ file counts from 1.",
+          highest_index_, builder_.points_read()));
+    }
     find_bad_forward_face();
     if (has_colours_ && points_without_colour_ > 0) {
       builder_.warn(
@@ -177,6 +192,7 @@ class ObjReader {
     for (auto word = take_word(rest); !word.empty(); word = take_word(rest)) {
       const std::size_t slash = word.find('/');
       const std::int64_t point = to_index(word.substr(0, slash), builder_.points_read());
+      note_index(word.substr(0, slash));
       highest = std::max(highest, point);
       corners_.push_back(point);
       if (slash == std::string_view::npos) continue;
@@ -192,11 +208,21 @@ class ObjReader {
     builder_.add_face(corners_, file_.line_number());
   }
 
-  /// Indices count from 1, or backwards from the latest if negative.
-  static std::int64_t to_index(std::string_view word, std::uint64_t count) {
+  /// Whether the indices of the points count from 0 is known at the end.
+  void note_index(std::string_view word) {
     std::int64_t value = 0;
-    if (!parse_integer(word, value) || value == 0) return kNoIndex;
-    if (value > 0) return value - 1;
+    if (!parse_integer(word, value)) return;
+    zero_seen_ = zero_seen_ || value == 0;
+    relative_seen_ = relative_seen_ || value < 0;
+    highest_index_ = std::max(highest_index_, value);
+  }
+
+  /// Indices count from 1, or backwards from the latest if negative.
+  [[nodiscard]] std::int64_t to_index(std::string_view word, std::uint64_t count) const {
+    std::int64_t value = 0;
+    if (!parse_integer(word, value)) return kNoIndex;
+    if (value >= first_index_) return value - first_index_;
+    if (value == 0) return kNoIndex;
     const auto known = static_cast<std::int64_t>(count);
     return value >= -known ? known + value : kNoIndex;
   }
@@ -220,6 +246,10 @@ class ObjReader {
   };
 
   InputFile& file_;
+  std::int64_t first_index_;
+  bool zero_seen_ = false;
+  bool relative_seen_ = false;
+  std::int64_t highest_index_ = -1;
   ScanBuilder builder_;
   CornerNormals normals_;
   bool has_colours_ = false;
@@ -234,7 +264,8 @@ class ObjReader {
 }  // namespace
 
 Scan read_obj(InputFile& file, const ReadOptions& options) {
-  return ObjReader(file, options).read();
+  if (std::optional<Scan> scan = ObjReader(file, options, 1).read()) return *std::move(scan);
+  return ObjReader(file, options, 0).read().value();
 }
 
 }  // namespace tactree::builder

@@ -24,6 +24,7 @@ class OffReader {
     builder_.limit_face_indices(points_);
     for (std::uint64_t i = 0; i < points_; ++i) read_point(i);
     for (std::uint64_t i = 0; i < faces_; ++i) read_face(i);
+    warn_of_more_rows();
     return builder_.finish("OFF");
   }
 
@@ -37,6 +38,16 @@ class OffReader {
       if (!row.empty()) return true;
     }
     return false;
+  }
+
+  void warn_of_more_rows() {
+    std::uint64_t more = 0;
+    std::string_view row;
+    while (next_row(row)) ++more;
+    if (more == 0) return;
+    const bool mesh = faces_ > 0;
+    const std::uint64_t declared = mesh ? faces_ : points_;
+    builder_.warn_of_more(mesh ? "faces" : "points", declared, declared + more);
   }
 
   /// Returns the rest of the line after the keyword.
@@ -108,7 +119,7 @@ class OffReader {
     for (std::uint64_t i = 0; i < corners; ++i) {
       const std::string_view word = take_word(row);
       std::int64_t corner = 0;
-      if (!parse_integer(word, corner)) {
+      if (!parse_corner(word, corner)) {
         fail(fmt::format("corner {} of {} is not a number", i + 1, corners));
       }
       corners_.push_back(corner);

@@ -167,6 +167,10 @@ class PcdReader {
       file_.consume(static_cast<std::size_t>(points * point_bytes));
       left -= points;
     }
+    const std::uint64_t more = file_.remaining() / point_bytes;
+    if (more > 0 && !file_.only_zeros_left()) {
+      builder_.warn_of_more("points", header_.points, header_.points + more);
+    }
   }
 
   /// Two sizes, then the LZF stream of all first fields, all second fields, and so on.
@@ -182,6 +186,13 @@ class PcdReader {
         load(used_[k], columns[k] + i * size_of(used_[k].field.type), row);
       }
       add_point(row);
+    }
+    const std::uint64_t more = file_.remaining();
+    if (more > 0 && !file_.only_zeros_left()) {
+      builder_.warn(fmt::format(
+          "{} bytes after the {} points that the file declares were left out (the header is "
+          "damaged, or two files were joined; export the scan again).",
+          more, header_.points));
     }
   }
 
@@ -274,15 +285,10 @@ class PcdReader {
   }
 
   void warn_of_more_rows() {
+    std::uint64_t more = 0;
     std::string_view line;
-    while (file_.next_line(line)) {
-      if (trim(line).empty()) continue;
-      builder_.warn(
-          fmt::format("There are more rows than the {} that the header declares; they "
-                      "were left out.",
-                      header_.points));
-      return;
-    }
+    while (file_.next_line(line)) more += trim(line).empty() ? 0U : 1U;
+    if (more > 0) builder_.warn_of_more("points", header_.points, header_.points + more);
   }
 
   [[noreturn]] void fail(std::uint64_t place, const std::string& cause) const {

@@ -80,7 +80,7 @@ class AsciiBody {
     for (std::uint64_t left = list_length(rest); left > 0; --left) {
       const std::string_view word = next_word(rest);
       std::int64_t corner = 0;
-      if (!parse_integer(word, corner)) fail_number(word);
+      if (!parse_corner(word, corner)) fail_number(word);
       corners_.push_back(corner);
     }
   }
@@ -123,9 +123,14 @@ class AsciiBody {
 
 }  // namespace
 
-void read_ply_ascii(InputFile& file, std::span<const PlyElement> elements, ScanBuilder& builder) {
+std::uint64_t read_ply_ascii(InputFile& file, std::span<const PlyElement> elements,
+                             ScanBuilder& builder) {
   AsciiBody body(file, builder);
   for (const PlyElement& element : elements) body.read(element);
+  std::uint64_t rows = 0;
+  std::string_view line;
+  while (file.next_line(line)) rows += trim(line).empty() ? 0U : 1U;
+  return rows;
 }
 
 }  // namespace tactree::builder

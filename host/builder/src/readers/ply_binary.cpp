@@ -173,15 +173,22 @@ class BinaryBody {
 
 }  // namespace
 
-void read_ply_binary(InputFile& file, std::span<const PlyElement> elements, bool swap,
-                     ScanBuilder& builder) {
-  if (swap) {
-    BinaryBody<true> body(file, builder);
-    for (const PlyElement& element : elements) body.read(element);
-    return;
-  }
-  BinaryBody<false> body(file, builder);
-  for (const PlyElement& element : elements) body.read(element);
+double read_ply_binary(InputFile& file, std::span<const PlyElement> elements, bool swap,
+                       ScanBuilder& builder) {
+  const auto read_all = [&](auto body) {
+    std::uint64_t begin = file.offset();
+    for (const PlyElement& element : elements) {
+      begin = file.offset();
+      body.read(element);
+    }
+    return file.offset() - begin;
+  };
+  const PlyElement& last = elements.back();
+  const std::uint64_t bytes =
+      swap ? read_all(BinaryBody<true>(file, builder)) : read_all(BinaryBody<false>(file, builder));
+  if (last.count > 0) return static_cast<double>(bytes) / static_cast<double>(last.count);
+  constexpr std::uint64_t kTriangleBytes = 12;
+  return static_cast<double>(last.min_row_bytes() + (last.has_list() ? kTriangleBytes : 0));
 }
 
 }  // namespace tactree::builder

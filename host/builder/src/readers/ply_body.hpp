@@ -45,9 +45,12 @@ class StripReader {
   std::uint64_t length_ = 0;
 };
 
-/// Read the elements through the last one in use. The file must be positioned after the header.
-void read_ply_ascii(InputFile& file, std::span<const PlyElement> elements, ScanBuilder& builder);
-void read_ply_binary(InputFile& file, std::span<const PlyElement> elements, bool swap,
-                     ScanBuilder& builder);
+/// Read the elements, through the last one in use. The file must be positioned after the header.
+/// Returns the number of rows after them.
+[[nodiscard]] std::uint64_t read_ply_ascii(InputFile& file, std::span<const PlyElement> elements,
+                                           ScanBuilder& builder);
+/// Returns the bytes per row of the last element, on average.
+[[nodiscard]] double read_ply_binary(InputFile& file, std::span<const PlyElement> elements,
+                                     bool swap, ScanBuilder& builder);
 
 }  // namespace tactree::builder

@@ -14,6 +14,10 @@ namespace {
 
 constexpr const char* kExportAgain = "export the scan again";
 
+std::string rows_of(const PlyElement& element) {
+  return element.name == "vertex" ? "vertices" : fmt::format("rows of \"{}\"", element.name);
+}
+
 const PlyElement& vertex_element(const InputFile& file, const PlyHeader& header) {
   const PlyElement* vertex = nullptr;
   for (const PlyElement& element : header.elements) {
@@ -81,6 +85,18 @@ std::span<const PlyElement> elements_that_count(const PlyHeader& header) {
   return std::span(header.elements).first(end);
 }
 
+/// more: rows after those of `elements`.
+void warn_of_more(const PlyHeader& header, std::span<const PlyElement> elements, std::uint64_t more,
+                  ScanBuilder& builder) {
+  for (std::size_t i = elements.size(); i < header.elements.size(); ++i) {
+    const PlyElement& unused = header.elements[i];
+    if (!unused.properties.empty()) more -= std::min(more, unused.count);
+  }
+  if (more == 0) return;
+  const PlyElement& last = elements.back();
+  builder.warn_of_more(rows_of(last), last.count, last.count + more);
+}
+
 }  // namespace
 
 PlyRole role_of(const PlyElement& element) {
@@ -120,8 +136,7 @@ std::vector<PlyField> vertex_fields(const PlyElement& vertex) {
 
 void throw_truncated(const InputFile& file, const PlyElement& element, std::uint64_t rows_there,
                      bool at_most) {
-  const bool vertex = element.name == "vertex";
-  const std::string rows = vertex ? "vertices" : fmt::format("rows of \"{}\"", element.name);
+  const std::string rows = rows_of(element);
   throw ReadError(file.name(), fmt::format("byte {}", file.size()),
                   fmt::format("the file ends too early: its header declares {} {}, only {}{} are "
                               "there",
@@ -169,18 +184,19 @@ Scan read_ply(InputFile& file, const ReadOptions& options) {
   } else {
     builder.reserve_points(vertex.count);
   }
-  switch (header.encoding) {
-    case PlyEncoding::kAscii:
-      read_ply_ascii(file, elements, builder);
-      return builder.finish("PLY ascii");
-    case PlyEncoding::kLittleEndian:
-      read_ply_binary(file, elements, false, builder);
-      return builder.finish("PLY binary little endian");
-    case PlyEncoding::kBigEndian:
-      break;
+  if (ascii) {
+    warn_of_more(header, elements, read_ply_ascii(file, elements, builder), builder);
+    return builder.finish("PLY ascii");
   }
-  read_ply_binary(file, elements, true, builder);
-  return builder.finish("PLY binary big endian");
+  const bool big = header.encoding == PlyEncoding::kBigEndian;
+  const double row_bytes = read_ply_binary(file, elements, big, builder);
+  const double more = static_cast<double>(file.remaining()) / row_bytes;
+  // Elements without use follow: their lists may have any length.
+  const bool last = elements.size() == header.elements.size();
+  if (last && more >= 1.0 && !file.only_zeros_left()) {
+    warn_of_more(header, elements, static_cast<std::uint64_t>(more), builder);
+  }
+  return builder.finish(big ? "PLY binary big endian" : "PLY binary little endian");
 }
 
 }  // namespace tactree::builder

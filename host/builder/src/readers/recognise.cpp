@@ -190,6 +190,19 @@ bool is_obj(const std::vector<std::string_view>& lines) {
   });
 }
 
+/// The keywords of an STL may share a line.
+bool is_stl(const std::vector<std::string_view>& lines) {
+  std::string_view first = lines.front();
+  for (auto word = take_word(first); !word.empty(); word = take_word(first)) {
+    if (equal_ignoring_case(word, "facet") && equal_ignoring_case(take_word(first), "normal")) {
+      return true;
+    }
+  }
+  const std::string_view second = lines.size() > 1 ? first_word(lines[1]) : ""sv;
+  return starts_with_ignoring_case(second, "facet") || starts_with_ignoring_case(second, "end") ||
+         starts_with_ignoring_case(second, "color");
+}
+
 /// Leica PTX: columns, rows, then a position and three axes, then a 4 x 4 matrix.
 bool is_ptx(const std::vector<std::string_view>& lines) {
   constexpr std::array<int, 10> kNumbers = {1, 1, 3, 3, 3, 3, 4, 4, 4, 4};
@@ -221,13 +234,8 @@ Recognition recognise_text(std::string_view head) {
   if (word == "4OFF" || word == "nOFF" || word == "4nOFF") {
     return unsupported("an OFF file whose points are not three-dimensional", kMeshRemedy);
   }
-  if (equal_ignoring_case(word, "solid") && lines.size() > 1) {
-    const std::string_view second = first_word(lines[1]);
-    if (starts_with_ignoring_case(second, "facet") ||
-        starts_with_ignoring_case(second, "endsolid") ||
-        starts_with_ignoring_case(second, "color")) {
-      return {FileKind::kStlAscii, "STL ascii", "", ""};
-    }
+  if (equal_ignoring_case(word, "solid") && is_stl(lines)) {
+    return {FileKind::kStlAscii, "STL ascii", "", ""};
   }
   if (is_obj(lines)) return {FileKind::kObj, "OBJ", "", ""};
   if (is_ptx(lines)) return unsupported("a PTX file, which is not supported yet", kToPlyRemedy);
@@ -277,7 +285,7 @@ Recognition recognise(std::string_view head, std::uint64_t file_size) {
     if (auto markup = recognise_markup(head)) return *markup;
     return recognise_text(head);
   }
-  if (looks_like_binary_stl(head, file_size)) {
+  if (find_stl_triangles(head, file_size)) {
     return {FileKind::kStlBinary, "STL binary", "", ""};
   }
   // Damaged text: its reader reports the damage with a line number.

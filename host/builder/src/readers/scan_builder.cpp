@@ -383,6 +383,14 @@ void ScanBuilder::warn_of_damage() {
   }
 }
 
+void ScanBuilder::warn_of_more(const std::string& what, std::uint64_t declared,
+                               std::uint64_t there) {
+  warn(
+      fmt::format("The file declares {0} {2} and holds {1}: the last {3} were left out (the "
+                  "header is damaged, or two files were joined; export the scan again).",
+                  declared, there, what, there - declared));
+}
+
 Scan ScanBuilder::finish(std::string format) {
   count_dropped(kNonFinite, dropped_.size());
   check_points_left();

@@ -69,6 +69,9 @@ class ScanBuilder {
   void note(std::string sentence) { scan_.notes.push_back(std::move(sentence)); }
   void warn(std::string sentence) { scan_.warnings.push_back(std::move(sentence)); }
 
+  /// The header declares fewer of these ("points", "faces") than the file has room for.
+  void warn_of_more(const std::string& what, std::uint64_t declared, std::uint64_t there);
+
   /// Returns the scan. Throws ReadError if no point is usable, or none of the faces.
   [[nodiscard]] Scan finish(std::string format);
 

@@ -3,6 +3,7 @@
 // three corners, two bytes of attributes). It has no magic number.
 
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
 namespace tactree::builder {
@@ -15,7 +16,9 @@ inline constexpr std::size_t kStlCornersByte = 12;  // in a triangle
 /// Whether the count agrees exactly with the file size.
 [[nodiscard]] bool is_exact_binary_stl(std::string_view head, std::uint64_t file_size);
 
-/// Whether the first triangles are plausible, independently of the count.
-[[nodiscard]] bool looks_like_binary_stl(std::string_view head, std::uint64_t file_size);
+/// Where the first triangle of a binary STL is, if the first ones are plausible: after the count,
+/// or in its place if the file has none. The count itself may be wrong.
+[[nodiscard]] std::optional<std::size_t> find_stl_triangles(std::string_view head,
+                                                            std::uint64_t file_size);
 
 }  // namespace tactree::builder

@@ -18,6 +18,7 @@ namespace tactree::builder {
 namespace {
 
 constexpr const char* kExportAgain = "copy or export it again";
+constexpr std::size_t kStlSampleBytes = 1024;
 
 std::uint32_t count_in(std::string_view head) {
   return load_bits<std::uint32_t, false>(head.data() + kStlCountByte);
@@ -100,37 +101,72 @@ class AsciiReader {
 
  private:
   void read_line(std::string_view rest) {
-    const std::string_view keyword = take_word(rest);
-    const auto is = [&](std::string_view word) { return equal_ignoring_case(keyword, word); };
-    if (is("vertex")) {
-      read_corner(rest);
-    } else if (is("facet")) {
-      if (in_facet_) fail("a triangle begins inside another");
-      in_facet_ = true;
-      corners_ = 0;
+    for (auto word = take_word(rest); !word.empty(); word = take_word(rest)) read_word(word, rest);
+    if (corner_numbers_ < 3) fail("\"\" is not a number");
+  }
+
+  void read_word(std::string_view word, std::string_view& rest) {
+    const auto is = [&](std::string_view keyword) {
+      return equal_ignoring_case(word, keyword) || (after_end_ && keyword.starts_with("end") &&
+                                                    equal_ignoring_case(word, keyword.substr(3)));
+    };
+    if (corner_numbers_ < 3) return read_coordinate(word);
+    if (is("endsolid")) {
+      in_solid_ = false;
+      rest = {};  // its name
     } else if (is("endfacet")) {
       end_facet();
+    } else if (is("vertex")) {
+      begin_corner();
+    } else if (is("facet")) {
+      begin_facet();
+    } else if (is("normal")) {
+      skip_numbers(rest);
     } else if (is("solid")) {
       in_solid_ = true;
-    } else if (is("endsolid")) {
-      in_solid_ = false;
-    } else if (!keyword.empty() && !is("outer") && !is("endloop") && !is("color")) {
-      fail(fmt::format("\"{}\" is not a word of an STL file", printable(keyword)));
+      skip_name(rest);
+    } else if (is("color")) {
+      rest = {};
+    } else if (!is("outer") && !is("loop") && !is("endloop") && !is("end")) {
+      fail(fmt::format("\"{}\" is not a word of an STL file", printable(word)));
+    }
+    after_end_ = is("end");
+  }
+
+  /// The name of a solid has any words; a facet may follow in its line.
+  static void skip_name(std::string_view& rest) {
+    while (!rest.empty()) {
+      std::string_view next = rest;
+      if (equal_ignoring_case(take_word(next), "facet") &&
+          equal_ignoring_case(take_word(next), "normal")) {
+        return;
+      }
+      (void)take_word(rest);
     }
   }
 
-  void read_corner(std::string_view rest) {
+  static void skip_numbers(std::string_view& rest) {
+    double value = 0;
+    for (std::string_view next = rest; parse_number(take_word(next), value);) rest = next;
+  }
+
+  void begin_facet() {
+    if (in_facet_) fail("a triangle begins inside another");
+    in_facet_ = true;
+    corners_ = 0;
+  }
+
+  void begin_corner() {
     if (!in_facet_) fail("a vertex outside a triangle");
     if (corners_ == 3) fail("the triangle has more than three corners");
-    for (float& coordinate : facet_[corners_]) {
-      double value = 0;
-      const std::string_view word = take_word(rest);
-      if (!parse_number(word, value)) {
-        fail(fmt::format("\"{}\" is not a number", printable(word)));
-      }
-      coordinate = static_cast<float>(value);
-    }
-    ++corners_;
+    corner_numbers_ = 0;
+  }
+
+  void read_coordinate(std::string_view word) {
+    double value = 0;
+    if (!parse_number(word, value)) fail(fmt::format("\"{}\" is not a number", printable(word)));
+    facet_[corners_][corner_numbers_] = static_cast<float>(value);
+    if (++corner_numbers_ == 3) ++corners_;
   }
 
   void end_facet() {
@@ -150,6 +186,8 @@ class AsciiReader {
   Triangles triangles_;
   bool in_solid_ = false;
   bool in_facet_ = false;
+  bool after_end_ = false;          // the word "end" comes before
+  std::size_t corner_numbers_ = 3;  // read of a corner; 3: complete
   std::size_t corners_ = 0;
   std::uint64_t facets_ = 0;
   std::array<VertexWelder::Position, 3> facet_{};
@@ -172,19 +210,22 @@ void check_count(const InputFile& file, std::uint64_t declared) {
   }
 }
 
-}  // namespace
-
-bool is_exact_binary_stl(std::string_view head, std::uint64_t file_size) {
-  if (head.size() < kStlHeaderBytes) return false;
-  return file_size == kStlHeaderBytes + kStlTriangleBytes * std::uint64_t{count_in(head)};
+/// Bytes after the last triangle: more triangles, or something else.
+void warn_of_rest(InputFile& file, std::uint64_t declared, ScanBuilder& builder) {
+  const std::uint64_t rest = file.remaining();
+  if (rest == 0 || file.only_zeros_left()) return;
+  const std::uint64_t more = rest / kStlTriangleBytes;
+  if (more * kStlTriangleBytes == rest) {
+    builder.warn_of_more("triangles", declared, declared + more);
+  } else {
+    builder.warn(fmt::format(
+        "{} bytes after the {} triangles that the file declares were left out.", rest, declared));
+  }
 }
 
-bool looks_like_binary_stl(std::string_view head, std::uint64_t file_size) {
-  if (file_size < kStlHeaderBytes + kStlTriangleBytes) return false;
+bool are_plausible(std::string_view head, std::size_t at) {
   constexpr std::size_t kSamples = 16;
-  std::size_t at = kStlHeaderBytes;
-  const std::string_view first = head.substr(at, kStlTriangleBytes);
-  if (first.find_first_not_of('\0') == std::string_view::npos) return false;
+  if (head.substr(at, kStlTriangleBytes).find_first_not_of('\0') == head.npos) return false;
   for (std::size_t i = 0; i < kSamples && at + kStlTriangleBytes <= head.size(); ++i) {
     if (!is_plausible_triangle(head.data() + at)) return false;
     at += kStlTriangleBytes;
@@ -192,15 +233,46 @@ bool looks_like_binary_stl(std::string_view head, std::uint64_t file_size) {
   return true;
 }
 
+}  // namespace
+
+bool is_exact_binary_stl(std::string_view head, std::uint64_t file_size) {
+  if (head.size() < kStlHeaderBytes) return false;
+  return file_size == kStlHeaderBytes + kStlTriangleBytes * std::uint64_t{count_in(head)};
+}
+
+std::optional<std::size_t> find_stl_triangles(std::string_view head, std::uint64_t file_size) {
+  if (head.size() < kStlHeaderBytes + kStlTriangleBytes) return std::nullopt;
+  const std::uint64_t counted = count_in(head) * std::uint64_t{kStlTriangleBytes};
+  const bool has_count = count_in(head) > 0 && counted <= file_size - kStlHeaderBytes;
+  const bool fits_without = (file_size - kStlCountByte) % kStlTriangleBytes == 0;
+  if (!has_count && fits_without && are_plausible(head, kStlCountByte)) return kStlCountByte;
+  if (are_plausible(head, kStlHeaderBytes)) return kStlHeaderBytes;
+  return std::nullopt;
+}
+
 Scan read_stl_ascii(InputFile& file, const ReadOptions& options) {
   return AsciiReader(file, options).read();
 }
 
 Scan read_stl_binary(InputFile& file, const ReadOptions& options) {
-  const std::uint64_t count = count_in(file.peek(kStlHeaderBytes));
-  check_count(file, count);
-  file.consume(kStlHeaderBytes);
+  const std::string_view head = file.peek(kStlSampleBytes);
+  const std::uint64_t declared = count_in(head);
+  const std::size_t begin = find_stl_triangles(head, file.size()).value_or(kStlHeaderBytes);
+  const std::uint64_t room = (file.size() - begin) / kStlTriangleBytes;
+  const bool by_size = begin == kStlCountByte || (declared == 0 && room > 0);
+  if (!by_size) check_count(file, declared);
   Triangles triangles(file, options, "byte");
+  if (begin == kStlCountByte) {
+    triangles.builder().warn(fmt::format(
+        "The STL file has no count after its first 80 bytes; by its size it holds {} triangles, "
+        "which were read.",
+        room));
+  } else if (by_size) {
+    triangles.builder().warn(fmt::format(
+        "The STL file declares 0 triangles; by its size it holds {}, which were read.", room));
+  }
+  file.consume(begin);
+  const std::uint64_t count = by_size ? room : declared;
   for (std::uint64_t i = 0; i < count; ++i) {
     const std::uint64_t place = file.offset();
     const std::string_view bytes = file.peek(kStlTriangleBytes);
@@ -212,10 +284,7 @@ Scan read_stl_binary(InputFile& file, const ReadOptions& options) {
     file.consume(kStlTriangleBytes);
     triangles.add(corners, place);
   }
-  if (file.remaining() > 0) {
-    triangles.builder().warn(
-        fmt::format("{} bytes after the last triangle were ignored.", file.remaining()));
-  }
+  warn_of_rest(file, declared, triangles.builder());
   return triangles.finish("STL binary");
 }
 
