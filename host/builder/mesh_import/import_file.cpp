@@ -10,11 +10,17 @@
 #include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <iterator>
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "mesh_import/contained_files.hpp"
+#include "mesh_import/gltf_file.hpp"
+#include "mesh_import/gltf_scene.hpp"
+#include "mesh_import/imported_mesh.hpp"
 #include "mesh_import/scene_writer.hpp"
+#include "mesh_import/three_mf.hpp"
 #include "mesh_import/unit_of_file.hpp"
 
 namespace tactree::builder {
@@ -30,31 +36,30 @@ void configure(Assimp::Importer& importer) {
 }
 
 /// Reads and checks the scene; null on failure.
-const aiScene* read_scene(Assimp::Importer& importer, const std::string& file,
-                          std::string_view hint) {
+const aiScene* read_scene(Assimp::Importer& importer, const std::string& file) {
   constexpr unsigned kSteps = aiProcess_ValidateDataStructure | aiProcess_RemoveComponent |
                               aiProcess_Triangulate | aiProcess_JoinIdenticalVertices;
-  if (hint != "3mf") {
-    return importer.ReadFile(file, kSteps);
-  }
-  // The library leaves the size of a 3MF's pictures, such as its thumbnail, undefined and does not
-  // own their pixels: its check refuses them, and to free them would end the process.
-  if (importer.ReadFile(file, 0) == nullptr) {
-    return nullptr;
-  }
-  auto* scene = const_cast<aiScene*>(importer.GetScene());  // NOLINT: it has no other access
-  scene->mNumTextures = 0;
-  scene->mTextures = nullptr;
-  return importer.ApplyPostProcessing(kSteps);
+  return importer.ReadFile(file, kSteps);
 }
 
-/// The compression of the data that makes a glTF file unreadable, or null.
-const char* compression_of(const char* file) {
-  constexpr std::string_view kName = "EXT_meshopt_compression";
+std::string read_file(const char* file) {
   std::ifstream in(file, std::ios::binary);
-  std::string text(std::size_t{1} << 20, '\0');
-  in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  return text.find(kName) != std::string::npos ? kName.data() : nullptr;
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// The mesh of a file that a reader of our own reads; nothing: the library reads it.
+std::optional<ImportedMesh> read_mesh(const char* file, std::string_view hint) {
+  if (hint == "3mf") {
+    return read_3mf(read_file(file));
+  }
+  if (hint == "glb" || hint == "gltf") {
+    ContainedFiles files(file, std::string(hint));
+    GltfFile gltf(files.alias(), files);
+    if (gltf.version() >= 2 && !is_draco_gltf(gltf)) {
+      return read_gltf(gltf);
+    }
+  }
+  return std::nullopt;
 }
 
 bool refuse(int output, const char* text) {
@@ -65,6 +70,13 @@ bool refuse(int output, const char* text) {
 }  // namespace
 
 bool import_file(const char* file, const char* hint, int output) {
+  try {
+    if (const std::optional<ImportedMesh> mesh = read_mesh(file, hint)) {
+      return write_mesh(*mesh, ::fdopen(output, "wb"));
+    }
+  } catch (const ImportError& error) {
+    return refuse(output, error.what());
+  }
   Assimp::Importer importer;
   if (!importer.IsExtensionSupported(hint)) {
     return refuse(output, "this version of assimp has no reader for the format");
@@ -72,13 +84,8 @@ bool import_file(const char* file, const char* hint, int output) {
   configure(importer);
   auto* files = new ContainedFiles(file, hint);
   importer.SetIOHandler(files);  // takes ownership
-  const aiScene* scene = read_scene(importer, files->alias(), hint);
+  const aiScene* scene = read_scene(importer, files->alias());
   if (scene == nullptr) {
-    if (const char* compression = compression_of(file)) {
-      return refuse(output, (std::string("its data is compressed with ") + compression +
-                             ", which is not supported")
-                                .c_str());
-    }
     std::string reason = importer.GetErrorString();
     const std::size_t alias = reason.find(files->alias());
     if (alias != std::string::npos) {

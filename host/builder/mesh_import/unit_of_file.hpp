@@ -13,8 +13,8 @@ struct FileUnit {
   bool scene_scaled = false;  ///< the positions of the scene are in metres already
 };
 
-/// glTF and X3D: metres; FBX: its UnitScaleFactor; 3MF: the attribute of its model, or millimetres;
-/// COLLADA: its <unit>, or metres. hint: extension of the format.
+/// glTF and X3D: metres; FBX: its UnitScaleFactor; COLLADA: its <unit>, or metres. hint: extension
+/// of the format.
 [[nodiscard]] FileUnit unit_of_file(const aiScene& scene, const std::string& file,
                                     std::string_view hint);
 

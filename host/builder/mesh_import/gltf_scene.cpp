@@ -1,0 +1,471 @@
+#include "mesh_import/gltf_scene.hpp"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+namespace tactree::builder {
+namespace {
+
+using Eigen::Matrix4d;
+using Eigen::Vector3d;
+using nlohmann::json;
+
+constexpr const char* kDraco = "KHR_draco_mesh_compression";
+constexpr const char* kNoStructure = "its JSON does not have the structure of glTF";
+constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+
+/// Required extensions that leave the shape as it is, or that this reader knows.
+bool is_supported(const std::string& extension) {
+  constexpr std::string_view kKnown[] = {
+      "KHR_mesh_quantization", "KHR_texture_transform", "KHR_texture_basisu",
+      "EXT_texture_webp",      "EXT_texture_avif",      "MSFT_texture_dds",
+      "KHR_lights_punctual",   "KHR_xmp_json_ld",       "KHR_xmp",
+      "KHR_animation_pointer"};
+  return extension.starts_with("KHR_materials_") ||
+         std::find(std::begin(kKnown), std::end(kKnown), extension) != std::end(kKnown);
+}
+
+void check_extensions(const json& root, std::string_view also = {}) {
+  for (const json& name : root.value("extensionsRequired", json::array())) {
+    const std::string extension = name.get<std::string>();
+    if (!is_supported(extension) && extension != also) {
+      throw ImportError("it requires the extension " + extension.substr(0, 60) +
+                        ", which is not supported");
+    }
+  }
+}
+
+std::vector<double> numbers_of(const json& object, const char* name, std::size_t count) {
+  const auto found = object.find(name);
+  if (found == object.end()) {
+    return {};
+  }
+  const auto numbers = found->get<std::vector<double>>();
+  if (numbers.size() != count) {
+    throw ImportError(std::string("the \"") + name + "\" of a node does not have " +
+                      std::to_string(count) + " numbers");
+  }
+  return numbers;
+}
+
+Matrix4d transform_of(const json& node) {
+  if (const auto m = numbers_of(node, "matrix", 16); !m.empty()) {
+    return Eigen::Map<const Matrix4d>(m.data());
+  }
+  Eigen::Affine3d transform = Eigen::Affine3d::Identity();
+  if (const auto t = numbers_of(node, "translation", 3); !t.empty()) {
+    transform.translate(Vector3d(t[0], t[1], t[2]));
+  }
+  if (const auto r = numbers_of(node, "rotation", 4); !r.empty()) {
+    transform.rotate(Eigen::Quaterniond(r[3], r[0], r[1], r[2]).normalized());
+  }
+  if (const auto s = numbers_of(node, "scale", 3); !s.empty()) {
+    transform.scale(Vector3d(s[0], s[1], s[2]));
+  }
+  return transform.matrix();
+}
+
+std::uint8_t to_byte(double value) {
+  return value > 0.0 ? static_cast<std::uint8_t>(std::lround(std::min(value, 1.0) * 255.0))
+                     : std::uint8_t{0};
+}
+
+/// The corners of the triangles of a primitive, three each.
+std::vector<std::uint32_t> corners_of(const std::vector<std::uint32_t>& list, std::size_t mode) {
+  constexpr std::size_t kStrip = 5;
+  constexpr std::size_t kFan = 6;
+  if (mode != kStrip && mode != kFan) {
+    return list;
+  }
+  std::vector<std::uint32_t> corners;
+  for (std::size_t i = 2; i < list.size(); ++i) {
+    const bool swapped = mode == kStrip && i % 2 == 1;
+    const std::uint32_t first = mode == kFan ? list[0] : list[i - 2];
+    corners.insert(corners.end(),
+                   {swapped ? list[i - 1] : first, swapped ? first : list[i - 1], list[i]});
+  }
+  return corners;
+}
+
+class GltfScene {
+ public:
+  explicit GltfScene(GltfFile& file) : file_(file), root_(file.root()) {}
+
+  ImportedMesh read() {
+    check_extensions(root_);
+    place_nodes();
+    for (const std::size_t node : nodes_in_scene()) {
+      add_node(node);
+    }
+    if (!all_normals_) {
+      mesh_.normals.clear();
+    }
+    if (!all_colours_) {
+      mesh_.colours.clear();
+    }
+    mesh_.unit_m = 1.0;
+    warn();
+    return std::move(mesh_);
+  }
+
+ private:
+  /// Points of a primitive in the frame of the scene.
+  struct Points {
+    std::vector<double> positions;  // three each
+    std::vector<double> normals;
+    std::vector<double> colours;
+    std::size_t colour_width = 3;
+    std::size_t count = 0;
+  };
+
+  void place_nodes() {
+    const std::size_t count = root_.value("nodes", json::array()).size();
+    parents_.assign(count, kNone);
+    for (std::size_t i = 0; i < count; ++i) {
+      for (const std::size_t child : children_of(file_.at("nodes", i))) {
+        if (child >= count || parents_[child] != kNone) {
+          throw ImportError("its nodes do not form a tree");
+        }
+        parents_[child] = i;
+      }
+    }
+    worlds_.assign(count, std::nullopt);
+    for (std::size_t i = 0; i < count; ++i) {
+      place(i);
+    }
+  }
+
+  /// Iterative: the tree may be a long chain.
+  void place(std::size_t node) {
+    std::vector<std::size_t> chain;
+    for (std::size_t at = node; at != kNone && !worlds_[at]; at = parents_[at]) {
+      chain.push_back(at);
+      if (chain.size() > parents_.size()) {
+        throw ImportError("its nodes do not form a tree");
+      }
+    }
+    while (!chain.empty()) {
+      const std::size_t at = chain.back();
+      chain.pop_back();
+      const Matrix4d own = transform_of(file_.at("nodes", at));
+      worlds_[at] = parents_[at] == kNone ? own : Matrix4d(*worlds_[parents_[at]] * own);
+    }
+  }
+
+  static std::vector<std::size_t> children_of(const json& node, const char* list = "children") {
+    std::vector<std::size_t> children;
+    for (const json& child : node.value(list, json::array())) {
+      children.push_back(child.is_number_unsigned() ? child.get<std::size_t>() : kNone);
+    }
+    return children;
+  }
+
+  /// The nodes below the roots of the scene, each before its children.
+  [[nodiscard]] std::vector<std::size_t> nodes_in_scene() const {
+    std::vector<std::size_t> open;
+    if (root_.contains("scenes")) {
+      open = children_of(file_.at("scenes", gltf_count(root_, "scene", 0)), "nodes");
+      std::reverse(open.begin(), open.end());
+    } else {
+      for (std::size_t i = parents_.size(); i > 0; --i) {
+        if (parents_[i - 1] == kNone) {
+          open.push_back(i - 1);
+        }
+      }
+    }
+    std::vector<std::size_t> nodes;
+    std::vector<bool> found(parents_.size(), false);
+    while (!open.empty()) {
+      const std::size_t node = open.back();
+      open.pop_back();
+      std::vector<std::size_t> children = children_of(file_.at("nodes", node));
+      if (found[node]) {
+        continue;
+      }
+      found[node] = true;
+      nodes.push_back(node);
+      open.insert(open.end(), children.rbegin(), children.rend());
+    }
+    return nodes;
+  }
+
+  void add_node(std::size_t number) {
+    const json& node = file_.at("nodes", number);
+    if (!node.contains("mesh")) {
+      return;
+    }
+    const json& mesh = file_.at("meshes", gltf_count(node, "mesh"));
+    const std::vector<Matrix4d> joints = joints_of(node);
+    const json weights = node.contains("weights") ? node["weights"] : mesh.value("weights", json());
+    for (const json& primitive : mesh.value("primitives", json::array())) {
+      add_primitive(primitive, *worlds_[number], joints, weights);
+    }
+  }
+
+  /// From the frame of the mesh to that of the scene, for each joint; empty: no skin.
+  std::vector<Matrix4d> joints_of(const json& node) {
+    if (!node.contains("skin")) {
+      return {};
+    }
+    const json& skin = file_.at("skins", gltf_count(node, "skin"));
+    std::vector<Matrix4d> joints;
+    for (const std::size_t joint : children_of(skin, "joints")) {
+      if (joint >= worlds_.size()) {
+        throw ImportError("a joint of a skin is no node of it");
+      }
+      joints.push_back(*worlds_[joint]);
+    }
+    if (!skin.contains("inverseBindMatrices")) {
+      return joints;
+    }
+    const std::vector<double> inverse = file_.numbers(gltf_count(skin, "inverseBindMatrices"), 16);
+    if (inverse.size() < 16 * joints.size()) {
+      throw ImportError("a skin has more joints than inverseBindMatrices");
+    }
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+      joints[i] *= Eigen::Map<const Matrix4d>(inverse.data() + 16 * i);
+    }
+    return joints;
+  }
+
+  void add_primitive(const json& primitive, const Matrix4d& world,
+                     const std::vector<Matrix4d>& joints, const json& weights) {
+    constexpr std::size_t kTriangles = 4;
+    const std::size_t mode = gltf_count(primitive, "mode", kTriangles);
+    const json attributes = primitive.value("attributes", json::object());
+    const std::size_t position = gltf_count(attributes, "POSITION", kNone);
+    if (position == kNone) {
+      return;
+    }
+    if (mode >= 1 && mode < kTriangles) {
+      ++lines_;
+      return;
+    }
+    Points points;
+    points.positions = file_.numbers(position, 3);
+    points.count = points.positions.size() / 3;
+    read_normals_and_colours(attributes, points);
+    const bool morphed = morph(primitive, weights, points);
+    if (morphed) {
+      points.normals.clear();
+    }
+    const std::vector<Matrix4d> placed = transforms(attributes, world, joints, points.count);
+    const auto first = static_cast<std::uint32_t>(mesh_.positions.size());
+    if (mesh_.positions.size() + points.count >= std::numeric_limits<std::uint32_t>::max()) {
+      throw ImportError("it has more than 2^32 points");
+    }
+    add_points(points, placed);
+    if (mode >= kTriangles) {
+      const bool mirrored = !placed.empty() && placed[0].topLeftCorner<3, 3>().determinant() < 0;
+      add_triangles(corners_of(indices_of(primitive, points.count), mode), first, points.count,
+                    mirrored);
+    }
+  }
+
+  void read_normals_and_colours(const json& attributes, Points& points) {
+    if (attributes.contains("NORMAL")) {
+      points.normals = file_.numbers(gltf_count(attributes, "NORMAL"), 3);
+      check_count(points.normals.size(), 3, points, "NORMAL");
+    }
+    if (attributes.contains("COLOR_0")) {
+      const std::size_t accessor = gltf_count(attributes, "COLOR_0");
+      points.colour_width = file_.width(accessor) == 4 ? 4 : 3;
+      points.colours = file_.numbers(accessor, points.colour_width);
+      check_count(points.colours.size(), points.colour_width, points, "COLOR_0");
+    }
+  }
+
+  static void check_count(std::size_t numbers, std::size_t width, const Points& points,
+                          const std::string& name) {
+    if (numbers != width * points.count) {
+      throw ImportError("a primitive has " + std::to_string(points.count) + " positions and " +
+                        std::to_string(numbers / width) + " entries of " + name);
+    }
+  }
+
+  /// Adds the displacements of the morph targets. Whether there are any.
+  bool morph(const json& primitive, const json& weights, Points& points) {
+    bool morphed = false;
+    const json targets = primitive.value("targets", json::array());
+    for (std::size_t i = 0; i < targets.size() && i < weights.size(); ++i) {
+      const double weight = weights[i].get<double>();
+      if (weight == 0.0 || !targets[i].contains("POSITION")) {
+        continue;
+      }
+      const std::vector<double> offsets = file_.numbers(gltf_count(targets[i], "POSITION"), 3);
+      check_count(offsets.size(), 3, points, "a morph target");
+      for (std::size_t k = 0; k < offsets.size(); ++k) {
+        points.positions[k] += weight * offsets[k];
+      }
+      morphed = true;
+    }
+    return morphed;
+  }
+
+  /// One transform for all points, or one per point of a skin: the joints place its points, the
+  /// transform of the node itself does not.
+  std::vector<Matrix4d> transforms(const json& attributes, const Matrix4d& world,
+                                   const std::vector<Matrix4d>& joints, std::size_t count) {
+    if (joints.empty() || !attributes.contains("JOINTS_0")) {
+      return {world};
+    }
+    std::vector<Matrix4d> placed(count, Matrix4d::Zero());
+    std::vector<double> sums(count, 0.0);
+    for (std::size_t set = 0; attributes.contains("JOINTS_" + std::to_string(set)); ++set) {
+      const std::string joints_name = "JOINTS_" + std::to_string(set);
+      const std::string weights_name = "WEIGHTS_" + std::to_string(set);
+      const std::vector<double> indices =
+          file_.numbers(gltf_count(attributes, joints_name.c_str()), 4);
+      const std::vector<double> weights =
+          file_.numbers(gltf_count(attributes, weights_name.c_str(), kNone), 4);
+      if (indices.size() != 4 * count || weights.size() != 4 * count) {
+        throw ImportError("a skin has another number of weights than of points");
+      }
+      for (std::size_t k = 0; k < indices.size(); ++k) {
+        if (!(weights[k] > 0.0)) {
+          continue;
+        }
+        if (!(indices[k] < static_cast<double>(joints.size()))) {
+          throw ImportError("a point hangs on a joint that its skin does not have");
+        }
+        placed[k / 4] += weights[k] * joints[static_cast<std::size_t>(indices[k])];
+        sums[k / 4] += weights[k];
+      }
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      if (sums[i] > 0.0) {
+        placed[i] /= sums[i];
+      } else {
+        placed[i] = world;
+        ++loose_points_;
+      }
+    }
+    return placed;
+  }
+
+  void add_points(const Points& points, const std::vector<Matrix4d>& placed) {
+    all_normals_ = all_normals_ && !points.normals.empty();
+    all_colours_ = all_colours_ && !points.colours.empty();
+    Eigen::Matrix3d for_normals = Eigen::Matrix3d::Identity();
+    for (std::size_t i = 0; i < points.count; ++i) {
+      const Matrix4d& transform = placed.size() == 1 ? placed[0] : placed[i];
+      const Eigen::Map<const Vector3d> position(points.positions.data() + 3 * i);
+      mesh_.positions.emplace_back(transform.topLeftCorner<3, 3>() * position +
+                                   transform.topRightCorner<3, 1>());
+      if (all_normals_) {
+        // Normals transform by the inverse transposed matrix, also for a reflection.
+        if (i == 0 || placed.size() > 1) {
+          for_normals = transform.topLeftCorner<3, 3>().inverse().transpose();
+        }
+        const Eigen::Map<const Vector3d> normal(points.normals.data() + 3 * i);
+        mesh_.normals.emplace_back((for_normals * normal).normalized().cast<float>());
+      }
+      if (all_colours_) {
+        const double* colour = points.colours.data() + points.colour_width * i;
+        mesh_.colours.push_back({to_byte(colour[0]), to_byte(colour[1]), to_byte(colour[2])});
+      }
+    }
+  }
+
+  std::vector<std::uint32_t> indices_of(const json& primitive, std::size_t count) {
+    if (primitive.contains("indices")) {
+      return file_.indices(gltf_count(primitive, "indices"));
+    }
+    std::vector<std::uint32_t> indices(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      indices[i] = static_cast<std::uint32_t>(i);
+    }
+    return indices;
+  }
+
+  void add_triangles(const std::vector<std::uint32_t>& corners, std::uint32_t first,
+                     std::size_t count, bool mirrored) {
+    for (std::size_t i = 0; i + 3 <= corners.size(); i += 3) {
+      const auto highest = std::max({corners[i], corners[i + 1], corners[i + 2]});
+      if (highest >= count) {
+        ++bad_triangles_;
+        continue;
+      }
+      // A reflection reverses the winding: swap two corners.
+      mesh_.triangles.push_back({first + corners[i], first + corners[i + (mirrored ? 2 : 1)],
+                                 first + corners[i + (mirrored ? 1 : 2)]});
+    }
+  }
+
+  void warn() {
+    const auto add = [&](std::uint64_t count, const char* text) {
+      if (count == 0) {
+        return;
+      }
+      mesh_.warning += (mesh_.warning.empty() ? "" : " ") + std::to_string(count) + text;
+    };
+    add(bad_triangles_,
+        " triangles were dropped: they refer to points that the file does not have.");
+    add(lines_, " sets of lines were left out.");
+    add(loose_points_, " points of a skin hang on no joint.");
+  }
+
+  GltfFile& file_;
+  const json& root_;
+  ImportedMesh mesh_;
+  std::vector<std::size_t> parents_;
+  std::vector<std::optional<Matrix4d>> worlds_;
+  bool all_normals_ = true;
+  bool all_colours_ = true;
+  std::uint64_t bad_triangles_ = 0;
+  std::uint64_t lines_ = 0;
+  std::uint64_t loose_points_ = 0;
+};
+
+bool uses_draco(const json& root) {
+  for (const json& mesh : root.value("meshes", json::array())) {
+    for (const json& primitive : mesh.value("primitives", json::array())) {
+      if (primitive.value("extensions", json::object()).contains(kDraco)) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+bool is_draco_gltf(const GltfFile& file) {
+  try {
+    const json& root = file.root();
+    if (!uses_draco(root)) {
+      return false;
+    }
+    check_extensions(root, kDraco);
+    for (const json& node : root.value("nodes", json::array())) {
+      if (node.contains("skin")) {
+        throw ImportError(std::string("it has a skin and data compressed with ") + kDraco +
+                          ", which are not supported together");
+      }
+    }
+    return true;
+  } catch (const json::exception&) {
+    throw ImportError(kNoStructure);
+  }
+}
+
+ImportedMesh read_gltf(GltfFile& file) {
+  try {
+    ImportedMesh mesh = GltfScene(file).read();
+    if (mesh.positions.empty()) {
+      throw ImportError("it holds no point and no face");
+    }
+    return mesh;
+  } catch (const json::exception&) {
+    throw ImportError(kNoStructure);
+  }
+}
+
+}  // namespace tactree::builder

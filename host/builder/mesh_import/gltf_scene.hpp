@@ -1,0 +1,21 @@
+#pragma once
+// Reads a glTF 2 file as one mesh: its nodes, meshes, quantized positions, morph targets and skins
+// in the pose of the file.
+
+#include <string>
+
+#include "mesh_import/contained_files.hpp"
+#include "mesh_import/gltf_file.hpp"
+#include "mesh_import/imported_mesh.hpp"
+
+namespace tactree::builder {
+
+/// Whether meshes are compressed with Draco (KHR_draco_mesh_compression), which the library
+/// decodes. Throws ImportError if it cannot read the file right: with skins or other required
+/// extensions.
+[[nodiscard]] bool is_draco_gltf(const GltfFile& file);
+
+/// Throws ImportError with the cause, such as a required extension that is not supported.
+[[nodiscard]] ImportedMesh read_gltf(GltfFile& file);
+
+}  // namespace tactree::builder

@@ -1,0 +1,33 @@
+#pragma once
+// The points and triangles of a mesh file, and their output in the form of wire.hpp.
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <cstdio>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace tactree::builder {
+
+struct ImportedMesh {
+  std::vector<Eigen::Vector3d> positions;  ///< in units of the file
+  std::vector<Eigen::Vector3f> normals;    ///< empty, or one per position
+  std::vector<std::array<std::uint8_t, 3>> colours;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  double unit_m = 0.0;  ///< metres per unit; 0: unknown
+  std::string warning;  ///< one or more sentences; may be empty
+};
+
+/// A mesh file is damaged, or needs what no reader supports. what(): the cause, for "... cannot be
+/// read: cause".
+class ImportError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// False if writing fails.
+[[nodiscard]] bool write_mesh(const ImportedMesh& mesh, std::FILE* to);
+
+}  // namespace tactree::builder

@@ -1,0 +1,41 @@
+#pragma once
+// The members of a zip archive. Sizes are checked against the archive before memory is taken.
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tactree::builder {
+
+class ZipArchive {
+ public:
+  /// bytes: of the whole archive; must outlive this object. Throws ImportError.
+  explicit ZipArchive(std::string_view bytes);
+
+  /// A path inside the archive, with or without a leading '/'; ignores case.
+  [[nodiscard]] bool contains(std::string_view path) const;
+  /// The unpacked member. Throws ImportError if it is missing or damaged.
+  [[nodiscard]] std::string read(std::string_view path) const;
+  /// Path of the first member with this ending; empty: none.
+  [[nodiscard]] std::string first_with_ending(std::string_view ending) const;
+
+ private:
+  struct Member {
+    std::string path;
+    std::uint64_t method = 0;
+    std::uint64_t packed = 0;
+    std::uint64_t unpacked = 0;
+    std::uint64_t header = 0;
+    std::uint32_t checksum = 0;
+  };
+  [[nodiscard]] std::uint64_t number(std::uint64_t at, unsigned size) const;
+  [[nodiscard]] std::uint64_t read_member(std::uint64_t at);
+  void read_long_sizes(Member& member, std::uint64_t at, std::uint64_t end) const;
+  [[nodiscard]] const Member* find(std::string_view path) const;
+
+  std::string_view bytes_;
+  std::vector<Member> members_;
+};
+
+}  // namespace tactree::builder

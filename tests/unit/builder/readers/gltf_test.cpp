@@ -1,0 +1,282 @@
+// glTF 2: quantized positions, skins, morph targets, sparse accessors, required extensions.
+
+#include <cmath>
+#include <random>
+
+#include "mesh_writers.hpp"
+#include "test_files.hpp"
+
+namespace tactree::builder {
+namespace {
+
+using Json = nlohmann::json;
+using test::GltfWriter;
+using Triangle = std::array<std::uint32_t, 3>;
+
+constexpr int kByte = 5120;
+constexpr int kUByte = 5121;
+constexpr int kShort = 5122;
+constexpr int kUShort = 5123;
+constexpr int kUInt = 5125;
+constexpr int kFloat = 5126;
+
+const std::vector<std::uint16_t> kFaces = {0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2};
+
+/// A tetrahedron with positions of any type.
+template <typename Number>
+GltfWriter tetrahedron(const std::vector<Number>& positions, int component,
+                       std::size_t stride = 0) {
+  GltfWriter gltf;
+  const std::size_t at = gltf.add(positions, component, "VEC3", 3, stride);
+  const std::size_t faces = gltf.add(kFaces, kUShort, "SCALAR", 1);
+  gltf.root["meshes"][0]["primitives"] = {{{"attributes", {{"POSITION", at}}}, {"indices", faces}}};
+  return gltf;
+}
+
+GltfWriter floats() {
+  return tetrahedron(std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}, kFloat);
+}
+
+Json& attributes(GltfWriter& gltf) { return gltf.root["meshes"][0]["primitives"][0]["attributes"]; }
+
+class GltfTest : public TestFiles {
+ protected:
+  void expect_point(const Scan& scan, std::size_t at, double x, double y, double z) {
+    ASSERT_GT(scan.positions.size(), at);
+    const Eigen::Vector3d off = scan.positions[at] - Eigen::Vector3d(x, y, z);
+    EXPECT_LT(off.norm(), 1e-6) << at << ": " << scan.positions[at].transpose();
+  }
+};
+
+TEST_F(GltfTest, PositionsOfIntegers) {
+  const std::vector<std::uint16_t> words = {0, 0, 0, 16383, 0, 0, 0, 10922, 0, 0, 0, 65535};
+  GltfWriter gltf = tetrahedron(words, kUShort, 8);
+  gltf.root["extensionsRequired"] = {"KHR_mesh_quantization"};
+  gltf.root["nodes"][0]["scale"] = {0.001, 0.001, 0.001};
+  gltf.root["nodes"][0]["translation"] = {1, 2, 3};
+  const Scan scan = read(gltf.glb());
+  EXPECT_EQ(scan.triangles.size(), 4U);
+  expect_point(scan, 1, 17.383, 2, 3);
+  expect_point(scan, 3, 1, 2, 68.535);
+  gltf.root["accessors"][0]["normalized"] = true;
+  expect_point(read(gltf.glb()), 3, 1, 2, 3.001);
+  GltfWriter bytes =
+      tetrahedron(std::vector<std::int8_t>{0, 0, 0, -128, 0, 0, 0, 127, 0, 0, 0, 64}, kByte, 4);
+  expect_point(read(bytes.glb()), 1, -128, 0, 0);
+  bytes.root["accessors"][0]["normalized"] = true;
+  const Scan normalized = read(bytes.glb());
+  expect_point(normalized, 1, -1, 0, 0);
+  expect_point(normalized, 2, 0, 1, 0);
+  GltfWriter shorts =
+      tetrahedron(std::vector<std::int16_t>{0, 0, 0, -7, 0, 0, 0, 9, 0, 0, 0, 11}, kShort, 8);
+  expect_point(read(shorts.glb()), 1, -7, 0, 0);
+}
+
+/// Two joints below an armature of another scale; the last point hangs on both.
+GltfWriter skinned() {
+  GltfWriter gltf = floats();
+  const std::size_t joints = gltf.add(
+      std::vector<std::uint8_t>{0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0}, kUByte, "VEC4", 4);
+  const std::size_t weights = gltf.add(
+      std::vector<float>{1, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 0.5, 0.5, 0, 0}, kFloat, "VEC4", 4);
+  // The second joint lies at (10, 0, 0) when the mesh is bound.
+  const std::size_t inverse =
+      gltf.add(std::vector<float>{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0,   0, 0, 1,
+                                  1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -10, 0, 0, 1},
+               kFloat, "MAT4", 16);
+  attributes(gltf)["JOINTS_0"] = joints;
+  attributes(gltf)["WEIGHTS_0"] = weights;
+  gltf.root["skins"] = {{{"joints", {2, 3}}, {"inverseBindMatrices", inverse}}};
+  gltf.root["nodes"] = {
+      {{"mesh", 0}, {"skin", 0}, {"translation", {500, 0, 0}}, {"scale", {3, 3, 3}}},
+      {{"scale", {0.01, 0.01, 0.01}}, {"children", {2}}},
+      {{"children", {3}}},
+      {{"translation", {10, 0, 100}}}};
+  gltf.root["scenes"][0]["nodes"] = {0, 1};
+  return gltf;
+}
+
+TEST_F(GltfTest, JointsPlaceThePointsOfASkin) {
+  const Scan scan = read(skinned().glb());
+  ASSERT_EQ(scan.positions.size(), 4U);
+  expect_point(scan, 0, 0, 0, 0);
+  expect_point(scan, 1, 0.01, 0, 1);
+  expect_point(scan, 2, 0, 0.01, 0);  // weights of another sum
+  expect_point(scan, 3, 0, 0, 0.51);  // half of each joint
+  EXPECT_TRUE(scan.warnings.empty());
+}
+
+TEST_F(GltfTest, SkinsAreChecked) {
+  GltfWriter gltf = skinned();
+  gltf.root["skins"][0]["joints"] = {2};
+  expect_parts(refusal_of(gltf.glb(), "a.glb"), "a.glb", "a joint that its skin does not have");
+  gltf = skinned();
+  gltf.root["skins"][0]["joints"] = {2, 3, 2};
+  expect_parts(refusal_of(gltf.glb()), "more joints than inverseBindMatrices");
+  gltf = skinned();
+  gltf.root["skins"][0]["joints"] = {2, 99};
+  expect_parts(refusal_of(gltf.glb()), "a joint of a skin is no node");
+  gltf = skinned();
+  gltf.root["accessors"][3]["count"] = 3;
+  expect_parts(refusal_of(gltf.glb()), "another number of weights");
+}
+
+TEST_F(GltfTest, MorphTargetsInTheirStateInTheFile) {
+  GltfWriter gltf = floats();
+  const std::size_t target =
+      gltf.add(std::vector<float>{0, 0, 0, 4, 0, 0, 0, 0, 0, 0, 0, 0}, kFloat, "VEC3", 3);
+  gltf.root["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", target}}};
+  expect_point(read(gltf.glb()), 1, 1, 0, 0);
+  gltf.root["meshes"][0]["weights"] = {0.5};
+  expect_point(read(gltf.glb()), 1, 3, 0, 0);
+  gltf.root["nodes"][0]["weights"] = {1.0};
+  expect_point(read(gltf.glb()), 1, 5, 0, 0);
+}
+
+TEST_F(GltfTest, SparseAccessorsAndStrips) {
+  GltfWriter gltf = floats();
+  const std::size_t where = gltf.add(std::vector<std::uint16_t>{3}, kUShort, "SCALAR", 1);
+  const std::size_t what = gltf.add(std::vector<float>{0, 0, 9}, kFloat, "VEC3", 3);
+  gltf.root["accessors"][0]["sparse"] = {
+      {"count", 1},
+      {"indices", {{"bufferView", where}, {"componentType", kUShort}}},
+      {"values", {{"bufferView", what}}}};
+  expect_point(read(gltf.glb()), 3, 0, 0, 9);
+  gltf.root["accessors"][0]["sparse"]["count"] = 7;
+  expect_parts(refusal_of(gltf.glb()), "accessor 0 ends after");
+  gltf = floats();
+  const std::size_t strip = gltf.add(std::vector<std::uint8_t>{0, 1, 2, 3}, kUByte, "SCALAR", 1);
+  gltf.root["meshes"][0]["primitives"][0]["indices"] = strip;
+  gltf.root["meshes"][0]["primitives"][0]["mode"] = 5;
+  EXPECT_EQ(read(gltf.glb()).triangles,
+            (std::vector<Triangle>{Triangle{0, 1, 2}, Triangle{2, 1, 3}}));
+  gltf.root["meshes"][0]["primitives"][0]["mode"] = 6;
+  EXPECT_EQ(read(gltf.glb()).triangles,
+            (std::vector<Triangle>{Triangle{0, 1, 2}, Triangle{0, 2, 3}}));
+  gltf.root["meshes"][0]["primitives"][0]["mode"] = 0;
+  EXPECT_TRUE(read(gltf.glb()).triangles.empty());
+}
+
+TEST_F(GltfTest, ColoursOfAllTypes) {
+  GltfWriter gltf = floats();
+  attributes(gltf)["COLOR_0"] =
+      gltf.add(std::vector<std::uint8_t>{255, 0, 51, 7, 0, 0, 0, 7, 0, 0, 0, 7, 0, 0, 0, 7}, kUByte,
+               "VEC4", 4);
+  gltf.root["accessors"].back()["normalized"] = true;
+  EXPECT_EQ(read(gltf.glb()).colours.at(0), (std::array<std::uint8_t, 3>{255, 0, 51}));
+  attributes(gltf)["COLOR_0"] =
+      gltf.add(std::vector<float>{1, 0.5, 0, 0, 0, 0, 0, 0, 0, 2, -1, 0}, kFloat, "VEC3", 3);
+  const Scan scan = read(gltf.glb());
+  EXPECT_EQ(scan.colours.at(0), (std::array<std::uint8_t, 3>{255, 128, 0}));
+  EXPECT_EQ(scan.colours.at(3), (std::array<std::uint8_t, 3>{255, 0, 0}));
+}
+
+TEST_F(GltfTest, RequiredExtensionsAreKnownOrNamed) {
+  GltfWriter gltf = floats();
+  gltf.root["extensionsRequired"] = {"KHR_materials_unlit", "KHR_texture_transform"};
+  EXPECT_EQ(read(gltf.glb()).positions.size(), 4U);
+  for (const char* name : {"KHR_draco_mesh_compression", "EXT_meshopt_compression",
+                           "EXT_mesh_gpu_instancing", "ACME_shape"}) {
+    gltf.root["extensionsRequired"] = {"KHR_materials_unlit", name};
+    expect_parts(refusal_of(gltf.glb(), "a.glb"), "a.glb", "requires the extension", name,
+                 "save it as PLY");
+  }
+  // The library decodes Draco, and would place its skins wrong.
+  GltfWriter draco = skinned();
+  draco.root["meshes"][0]["primitives"][0]["extensions"] = {
+      {"KHR_draco_mesh_compression", Json::object()}};
+  draco.root["extensionsRequired"] = {"KHR_draco_mesh_compression"};
+  expect_parts(refusal_of(draco.glb()), "a skin and data compressed with KHR_draco");
+  draco.root["extensionsRequired"] = {"KHR_draco_mesh_compression", "ACME_shape"};
+  expect_parts(refusal_of(draco.glb()), "requires the extension ACME_shape");
+}
+
+TEST_F(GltfTest, TrianglesWithoutTheirPointsAreCounted) {
+  GltfWriter gltf = floats();
+  const std::size_t faces =
+      gltf.add(std::vector<std::uint32_t>{0, 1, 2, 0, 1, 4, 0, 1, 0xffffffff}, kUInt, "SCALAR", 1);
+  gltf.root["meshes"][0]["primitives"][0]["indices"] = faces;
+  // A second primitive, whose points the wrong index must not reach.
+  gltf.root["meshes"][0]["primitives"].push_back({{"attributes", {{"POSITION", 0}}}});
+  const Scan scan = read(gltf.glb());
+  EXPECT_EQ(scan.triangles.size(), 2U);
+  ASSERT_EQ(scan.warnings.size(), 1U);
+  expect_parts(scan.warnings[0], "2 triangles were dropped");
+}
+
+TEST_F(GltfTest, BuffersInTextAndFilesWithSpacesInTheirNames) {
+  const GltfWriter gltf = floats();
+  Json root = gltf.root;
+  write("a b.bin", gltf.data);
+  root["buffers"] = {{{"byteLength", gltf.data.size()}, {"uri", "a%20b.bin"}}};
+  EXPECT_EQ(read(root.dump()).triangles.size(), 4U);
+  // Three floats 1.0 of a triangle of one point: AACAPw== is 1.0F.
+  Json inline_data = floats().root;
+  inline_data["buffers"] = {
+      {{"byteLength", 12}, {"uri", "data:application/octet-stream;base64,AACAPwAAAEAAAEBA"}}};
+  inline_data["bufferViews"] = {{{"buffer", 0}, {"byteLength", 12}}};
+  inline_data["accessors"] = {
+      {{"bufferView", 0}, {"componentType", kFloat}, {"count", 1}, {"type", "VEC3"}}};
+  inline_data["meshes"][0]["primitives"] = {{{"attributes", {{"POSITION", 0}}}, {"mode", 0}}};
+  expect_point(read(inline_data.dump()), 0, 1, 2, 3);
+  inline_data["buffers"][0]["uri"] = "data:application/octet-stream;base64,AA*APw";
+  expect_parts(refusal_of(inline_data.dump()), "base64");
+}
+
+TEST_F(GltfTest, ImpossibleStructuresAreRefused) {
+  const auto refuse = [&](auto change, const std::string& cause) {
+    GltfWriter gltf = floats();
+    change(gltf.root);
+    expect_parts(refusal_of(gltf.glb(), "a.glb"), "a.glb", cause);
+  };
+  refuse([](Json& root) { root["accessors"][0]["count"] = 5; }, "accessor 0 ends after");
+  refuse([](Json& root) { root["accessors"][0]["count"] = 1'000'000'000'000; }, "accessor 0");
+  refuse([](Json& root) { root["accessors"][0]["count"] = -1; }, "\"count\"");
+  refuse([](Json& root) { root["accessors"][0]["byteOffset"] = 4; }, "accessor 0 ends after");
+  refuse([](Json& root) { root["accessors"][0]["componentType"] = 5124; }, "component type 5124");
+  refuse([](Json& root) { root["accessors"][0]["type"] = "VEC2"; }, "another type");
+  refuse([](Json& root) { root["bufferViews"][0]["byteLength"] = 1'000'000; }, "of its buffer");
+  refuse([](Json& root) { root["bufferViews"][0]["byteStride"] = 8; }, "byteStride");
+  refuse([](Json& root) { root["bufferViews"][0]["buffer"] = 7; }, "entry 7 of \"buffers\"");
+  refuse([](Json& root) { root["accessors"][0]["bufferView"] = 9; }, "entry 9 of \"bufferViews\"");
+  refuse([](Json& root) { root["nodes"][0]["mesh"] = 3; }, "entry 3 of \"meshes\"");
+  refuse([](Json& root) { root["nodes"][0]["children"] = {0}; }, "tree");
+  refuse([](Json& root) { root["nodes"][0]["scale"] = {1, 2}; }, "\"scale\" of a node");
+  refuse([](Json& root) { root["nodes"][0]["scale"] = "large"; }, "structure of glTF");
+  refuse(
+      [](Json& root) {
+        root["accessors"][0].erase("bufferView");
+        root["accessors"][0]["count"] = 1'000'000'000'000;
+      },
+      "has no bytes");
+}
+
+TEST_F(GltfTest, CutFilesNameBothSizes) {
+  const std::string whole = floats().glb();
+  expect_parts(refusal_of(whole.substr(0, whole.size() - 4), "a.glb"),
+               "states " + std::to_string(whole.size()) + " bytes",
+               "holds " + std::to_string(whole.size() - 4));
+}
+
+TEST_F(GltfTest, DamageIsRefusedOrReadConsistently) {
+  const std::string whole = skinned().glb();
+  std::mt19937 random(7);
+  unsigned refused = 0;
+  for (unsigned round = 0; round < 40; ++round) {
+    std::string bytes = whole;
+    for (int change = 0; change < 3; ++change) {
+      bytes[20 + random() % (bytes.size() - 20)] = static_cast<char>(random());
+    }
+    try {
+      const Scan scan = read(bytes, "a.glb");
+      for (const auto& position : scan.positions) EXPECT_TRUE(position.allFinite());
+    } catch (const ReadError& error) {
+      expect_parts(error.what(), "a.glb");
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 10U);
+}
+
+}  // namespace
+}  // namespace tactree::builder

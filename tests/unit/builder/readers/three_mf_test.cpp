@@ -1,0 +1,145 @@
+// 3MF: units, unused objects, components, parts of the production extension.
+
+#include "mesh_writers.hpp"
+#include "test_files.hpp"
+
+namespace tactree::builder {
+namespace {
+
+using test::ZipWriter;
+using Triangle = std::array<std::uint32_t, 3>;
+
+const std::string kRelations =
+    R"(<?xml version="1.0"?><Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship Target="/3D/3dmodel.model" Id="r" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>)";
+
+const std::string kMesh =
+    R"(<mesh><vertices><vertex x="0" y="0" z="0"/><vertex x="1" y="0" z="0"/><vertex x="0" y="2" z="0"/><vertex x="0" y="0" z="+3.5e0"/></vertices><triangles><triangle v1="0" v2="2" v3="1"/><triangle v1="0" v2="1" v3="3" pid="1" p1="0"/><triangle v1="0" v2="3" v3="2"/><triangle v1="1" v2="2" v3="3"/></triangles></mesh>)";
+
+std::string object(const std::string& id, const std::string& content) {
+  return "<object id=\"" + id + "\" type=\"model\">" + content + "</object>";
+}
+
+std::string model(const std::string& resources, const std::string& build,
+                  const std::string& attributes = R"(unit="millimeter")",
+                  const std::string& before = "") {
+  return R"(<?xml version="1.0" encoding="UTF-8"?>)" + before + "<model " + attributes +
+         R"( xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"><resources>)" +
+         resources + "</resources><build>" + build + "</build></model>";
+}
+
+std::string package(const std::string& root, bool stored = false) {
+  return ZipWriter(stored)
+      .add("[Content_Types].xml", "<Types/>")
+      .add("_rels/.rels", kRelations)
+      .add("3D/3dmodel.model", root)
+      .bytes();
+}
+
+class ThreeMfTest : public TestFiles {};
+
+TEST_F(ThreeMfTest, ObjectsOfTheBuildOnly) {
+  const std::string root = model(object("9", kMesh) + object("1", kMesh),
+                                 R"(<item objectid="1" transform="0 1 0 1 0 0 0 0 1 5 6 7"/>)");
+  const Scan scan = read(package(root));
+  EXPECT_EQ(scan.format, "3MF");
+  EXPECT_EQ(scan.unit_m, 1e-3);
+  ASSERT_EQ(scan.positions.size(), 4U);
+  EXPECT_EQ(scan.positions[1], Eigen::Vector3d(5, 7, 7));
+  EXPECT_EQ(scan.positions[3], Eigen::Vector3d(5, 6, 10.5));
+  // The transform is a reflection: its windings are restored.
+  EXPECT_EQ(scan.triangles.at(0), (Triangle{0, 1, 2}));
+  EXPECT_EQ(read(package(root, true)).positions.size(), 4U);
+}
+
+TEST_F(ThreeMfTest, UnitAfterALongComment) {
+  const std::string comment = "<!-- <model unit=\"foot\"> " + std::string(300000, 'x') + " -->";
+  const std::string build = R"(<item objectid="1"/>)";
+  EXPECT_EQ(read(package(model(object("1", kMesh), build, R"(unit="inch")", comment))).unit_m,
+            0.0254);
+  EXPECT_EQ(read(package(model(object("1", kMesh), build, ""))).unit_m, 1e-3);
+  expect_parts(refusal_of(package(model(object("1", kMesh), build, R"(unit="parsec")"))),
+               "\"parsec\"");
+}
+
+const std::string kProduction =
+    R"(unit="millimeter" xmlns:p="http://schemas.microsoft.com/3dmanufacturing/production/2015/06" requiredextensions="p")";
+
+std::string production(const std::string& part, const std::string& path = "/3D/Objects/a.model") {
+  const std::string root = model(
+      object("2", "<components><component p:path=\"" + path +
+                      R"(" objectid="1" transform="1 0 0 0 1 0 0 0 1 0 0 20"/></components>)"),
+      R"(<item objectid="2" transform="2 0 0 0 2 0 0 0 2 0 100 0"/>)", kProduction);
+  return ZipWriter()
+      .add("_rels/.rels", kRelations)
+      .add("3D/Objects/a.model", part)
+      .add("3D/3dmodel.model", root)
+      .bytes();
+}
+
+TEST_F(ThreeMfTest, PartsInFilesOfTheirOwn) {
+  const Scan scan = read(production(model(object("1", kMesh), "")));
+  ASSERT_EQ(scan.positions.size(), 4U);
+  EXPECT_EQ(scan.positions[2], Eigen::Vector3d(0, 104, 40));
+  EXPECT_EQ(scan.triangles.size(), 4U);
+  // A part of another unit.
+  const Scan inches = read(production(model(object("1", kMesh), "", R"(unit="inch")")));
+  EXPECT_NEAR(inches.positions.at(2).y(), 100 + 2 * 2 * 25.4, 1e-9);
+  expect_parts(refusal_of(production(model(object("1", kMesh), ""), "/3D/b.model"), "a.3mf"),
+               "a.3mf", "part \"3D/b.model\" is missing");
+  expect_parts(refusal_of(production(model(object("7", kMesh), ""))), "has no object \"1\"");
+}
+
+TEST_F(ThreeMfTest, OtherRequiredExtensionsAreNamed) {
+  const std::string attributes =
+      R"(xmlns:b="http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02" requiredextensions="b")";
+  expect_parts(
+      refusal_of(package(model(object("1", kMesh), R"(<item objectid="1"/>)", attributes))),
+      "requires the extension", "beamlattice");
+}
+
+TEST_F(ThreeMfTest, DamageIsRefused) {
+  const std::string item = R"(<item objectid="1"/>)";
+  expect_parts(refusal_of(package(model(object("1", kMesh), ""))), "its build names no object");
+  expect_parts(refusal_of(package(model(object("1", ""), item))), "no point and no face");
+  expect_parts(refusal_of(package(model(object("1", kMesh), R"(<item objectid="4"/>)"))),
+               "has no object \"4\"");
+  const std::string loop =
+      object("1", R"(<components><component objectid="1"/></components>)" + kMesh);
+  expect_parts(refusal_of(package(model(loop, item))), "too deeply");
+  std::string word = model(object("1", kMesh), item);
+  word.replace(word.find("x=\"1\""), 5, "x=\"l\"");
+  expect_parts(refusal_of(package(word)), "\"l\" is not a coordinate");
+  const std::string whole = model(object("1", kMesh), item);
+  expect_parts(refusal_of(package(whole.substr(0, whole.size() / 2))), "was cut off");
+  std::string wrong = whole;
+  wrong.replace(wrong.find("v3=\"1\""), 6, "v3=\"8\"");
+  const Scan scan = read(package(wrong));
+  EXPECT_EQ(scan.triangles.size(), 3U);
+  ASSERT_EQ(scan.warnings.size(), 1U);
+  expect_parts(scan.warnings[0], "1 triangles were dropped");
+}
+
+TEST_F(ThreeMfTest, ArchivesWithLongSizes) {
+  const std::string root = model(object("1", kMesh), R"(<item objectid="1"/>)");
+  const std::string bytes =
+      ZipWriter(false, true).add("_rels/.rels", kRelations).add("3D/3dmodel.model", root).bytes();
+  EXPECT_EQ(read(bytes).positions.size(), 4U);
+}
+
+TEST_F(ThreeMfTest, DamagedArchivesAreRefused) {
+  const std::string whole = package(model(object("1", kMesh), R"(<item objectid="1"/>)"));
+  for (std::size_t length = 200; length < whole.size(); length += whole.size() / 12) {
+    expect_parts(refusal_of(whole.substr(0, length), "a.3mf"), "a.3mf", "zip archive");
+  }
+  std::string flipped = whole;
+  flipped[whole.find("3D/3dmodel.model") + 200] ^= 0x10;
+  expect_parts(refusal_of(flipped), "zip archive is damaged");
+  // A size that 100 bytes cannot have.
+  std::string large = whole;
+  const std::size_t entry = large.rfind("3D/3dmodel.model") - 46;
+  large.replace(entry + 24, 4, test::little(0x7fffffff, 4));
+  expect_parts(refusal_of(large), "states a size that its bytes cannot have");
+}
+
+}  // namespace
+}  // namespace tactree::builder
