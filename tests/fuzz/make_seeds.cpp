@@ -21,6 +21,8 @@
 #include <vector>
 
 #include "device_file.hpp"
+#include "e57_writer.hpp"
+#include "las_writer.hpp"
 #include "tactree/builder/model.hpp"
 #include "tactree/core/blob.hpp"
 #include "tactree/core/crc32.hpp"
@@ -202,6 +204,25 @@ std::string ply_binary(bool big_endian) {
   return out;
 }
 
+/// Three corners with normals and colours, and the triangle between them.
+std::string off_binary() {
+  std::string out = "CNOFF BINARY\n";
+  for (const std::int32_t count : {3, 1, 0}) {
+    append(out, count, true);
+  }
+  for (const auto& [x, y] :
+       {std::array{0.0F, 0.0F}, std::array{1.0F, 0.0F}, std::array{0.0F, 1.0F}}) {
+    for (const float value : {x, y, 0.0F, 0.0F, 0.0F, 1.0F, 1.0F, 0.5F, 0.0F, 1.0F}) {
+      append(out, value, true);
+    }
+  }
+  for (const std::int32_t corner :
+       {3, 0, 1, 2, 0}) {  // the first is the count, the last of colours
+    append(out, corner, true);
+  }
+  return out;
+}
+
 std::string stl_binary() {
   std::string out(80, ' ');
   append(out, std::uint32_t{2});
@@ -218,6 +239,37 @@ std::string pcd(const std::string& data, const std::string& body) {
   return "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 3\n"
          "HEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 3\nDATA " +
          data + "\n" + body;
+}
+
+void write_laser_scans(const fs::path& folder) {
+  using namespace tactree::test;
+  E57TestScan cartesian = {
+      {e57_double("cartesianX", {0, 1, 2}), e57_single("cartesianY", {0, 1, 1}),
+       e57_integer("cartesianZ", -9, 300, {-9, 0, 300}, R"(scale="0.5")"),
+       e57_integer("cartesianInvalidState", 0, 2, {0, 1, 0})},
+      e57_pose("1 0 0 0", "0 0 5"),
+      7,
+      ""};
+  for (const char* name : {"colorRed", "colorGreen", "colorBlue"}) {
+    cartesian.columns.push_back(e57_integer(name, 0, 255, {1, 2, 3}));
+  }
+  const E57TestScan spherical = {
+      {e57_double("sphericalRange", {1, 2}), e57_double("sphericalAzimuth", {0, 1}),
+       e57_double("sphericalElevation", {0, 1})},
+      "",
+      9,
+      ""};
+  write(folder / "e57_cartesian", e57_file({cartesian}));
+  write(folder / "e57_two_scans", e57_file({spherical, cartesian}));
+  LasFile las;
+  las.points = {{{1, 2, 3}, {1, 2, 300}}, {{5, 6, 7}, {3, 2, 1}}, {{4, 5, 6}, {7, 8, 9}, true}};
+  las.records = las_geo_keys({{1024, 1}, {3076, 9002}});
+  las.record_count = 1;
+  write(folder / "las_1_2", las_file(las));
+  las.minor = 4;
+  las.point_format = 7;
+  las.records = las_record("LASF_Projection", 2112, R"(PROJCS["p",UNIT["metre",1]])");
+  write(folder / "las_1_4", las_file(las));
 }
 
 void write_scans(const fs::path& folder) {
@@ -253,6 +305,11 @@ void write_scans(const fs::path& folder) {
   write(folder / "csv_semicolon", "\"X\";\"Y\";\"Z\"\r\n0,5;1,5;2,5\r\n1,5;1,5;2,5\r\n2,5;1;2\r\n");
   write(folder / "obj",
         "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\nf -4 -2 -1\n");
+  write(folder / "ptx",
+        "2\n2\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n0 1 0 0\n-1 0 0 0\n0 0 1 0\n10 20 30 1\n"
+        "2 1 1 0.5 9 8 7\n2 1 0 0.5 9 8 7\n2 0 1 0.5 9 8 7\n0 0 0 0.5 0 0 0\n");
+  write_laser_scans(folder);
+  write(folder / "off_binary", off_binary());
   write(folder / "off", "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n4 0 1 2 3\n");
   write(folder / "stl_ascii",
         "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"

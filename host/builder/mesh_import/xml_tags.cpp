@@ -40,7 +40,9 @@ bool XmlTags::skip_after(std::string_view ending) {
 
 bool XmlTags::next() {
   while (true) {
+    const std::size_t after = at_;
     at_ = text_.find('<', at_);
+    before_ = text_.substr(after, at_ - after);
     if (at_ == std::string_view::npos) {
       at_ = text_.size();
       return false;
@@ -58,6 +60,7 @@ bool XmlTags::next() {
       break;
     }
   }
+  begin_ = at_;
   const std::size_t end = end_of_tag(text_, at_ + 1);
   if (end == std::string_view::npos) {
     cut_off_ = true;

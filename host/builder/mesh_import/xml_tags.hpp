@@ -1,5 +1,5 @@
 #pragma once
-// The tags of an XML document, one after the other, without its text. Comments, CDATA and
+// The tags of an XML document, one after the other, with the text before each. Comments, CDATA and
 // processing instructions are skipped. No entity but the five of XML is replaced.
 
 #include <string>
@@ -18,6 +18,10 @@ class XmlTags {
   /// Whether the text ended inside a tag or comment.
   [[nodiscard]] bool cut_off() const { return cut_off_; }
 
+  /// The text between the last tag and this one, without a comment in it.
+  [[nodiscard]] std::string_view text_before() const { return before_; }
+  /// Offset of the tag.
+  [[nodiscard]] std::size_t offset() const { return begin_; }
   /// Name without its prefix: "model" of <m:model>.
   [[nodiscard]] std::string_view name() const { return name_; }
   [[nodiscard]] bool closes() const { return closes_; }      ///< </name>
@@ -37,6 +41,8 @@ class XmlTags {
   std::string_view text_;
   std::size_t at_ = 0;
   bool cut_off_ = false;
+  std::size_t begin_ = 0;
+  std::string_view before_;
   std::string_view name_;
   bool closes_ = false;
   bool is_empty_ = false;

@@ -478,8 +478,10 @@ void add_build_command(CLI::App& app, int&) {
   auto arguments = std::make_shared<BuildArguments>();
   CLI::App* verb = app.add_subcommand(
       "build", "Builds a blob from one or several scans: point clouds or meshes");
-  verb->add_option("INPUT", arguments->inputs,
-                   "PLY, PCD, XYZ/PTS/CSV, OBJ, STL, OFF, glTF, 3MF, ...; recognised by content")
+  verb->add_option(
+          "INPUT", arguments->inputs,
+          "PLY, PCD, PTX, E57, LAS, XYZ/PTS/CSV, OBJ, STL, OFF, glTF, 3MF, ...; recognised by "
+          "content")
       ->required();
   verb->add_option("-o,--output", arguments->output, "blob to write")->required();
   verb->add_option("--columns", arguments->columns,

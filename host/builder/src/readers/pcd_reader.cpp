@@ -17,7 +17,6 @@ namespace tactree::builder {
 namespace {
 
 constexpr std::size_t kBlockBytes = std::size_t{1} << 16;
-constexpr const char* kCopyAgain = "the file was cut off or is damaged; copy or export it again";
 
 /// LZF encodes at most 264 bytes in 3.
 constexpr std::uint64_t kMaxLzfRatio = 88;

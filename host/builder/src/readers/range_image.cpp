@@ -6,14 +6,16 @@
 namespace tactree::builder {
 namespace {
 
-constexpr double kMost = 0.97;  // of the triangles; distortion of a lens turns a few
+constexpr double kClearMajority = 0.97;  // of the triangles; distortion of a lens turns a few
 constexpr std::uint64_t kMaxWidth = std::uint64_t{1} << 20;
 
 }  // namespace
 
-RangeImage::RangeImage(std::uint64_t width, const std::optional<Eigen::Vector3d>& stated)
+RangeImage::RangeImage(std::uint64_t width, const std::optional<Eigen::Vector3d>& stated,
+                       bool certain)
     : width_(width <= kMaxWidth ? static_cast<std::size_t>(width) : 0),
-      stated_(stated.has_value()) {
+      stated_(stated.has_value()),
+      certain_(certain) {
   as_stated_.position = stated.value_or(Eigen::Vector3d::Zero());
   last_row_.assign(width_,
                    Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()).eval());
@@ -37,7 +39,7 @@ void RangeImage::add(const Eigen::Vector3d& position) {
 
 bool RangeImage::most(std::uint64_t votes, const Candidate& of) {
   return votes > 0 &&
-         static_cast<double>(votes) >= kMost * static_cast<double>(of.right + of.mirrored);
+         static_cast<double>(votes) >= kClearMajority * static_cast<double>(of.right + of.mirrored);
 }
 
 std::optional<ScannerPose> RangeImage::pose() const {
@@ -46,8 +48,10 @@ std::optional<ScannerPose> RangeImage::pose() const {
     return stated_ ? std::optional(ScannerPose{as_stated_.position, 0, elsewhere}) : std::nullopt;
   }
   if (most(as_stated_.right, as_stated_)) return ScannerPose{as_stated_.position, 0, true};
-  if (most(at_origin_.right, at_origin_)) return ScannerPose{at_origin_.position, 0, true};
-  if (elsewhere && most(as_stated_.mirrored, as_stated_)) {
+  if (!certain_ && most(at_origin_.right, at_origin_)) {
+    return ScannerPose{at_origin_.position, 0, true};
+  }
+  if ((elsewhere || certain_) && most(as_stated_.mirrored, as_stated_)) {
     return ScannerPose{as_stated_.position, 0, true};
   }
   return std::nullopt;

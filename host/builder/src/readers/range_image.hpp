@@ -17,8 +17,10 @@ namespace tactree::builder {
 /// at their origin.
 class RangeImage {
  public:
-  /// width: points per row; 0: the points are in no order.
-  RangeImage(std::uint64_t width, const std::optional<Eigen::Vector3d>& stated);
+  /// width: points per row; 0: the points are in no order. `certain`: the format defines the
+  /// position; rows from right to left are accepted even if it is the origin.
+  RangeImage(std::uint64_t width, const std::optional<Eigen::Vector3d>& stated,
+             bool certain = false);
 
   /// The next point of the file, also a missing one (NaN).
   void add(const Eigen::Vector3d& position);
@@ -39,6 +41,7 @@ class RangeImage {
   std::vector<Eigen::Vector3d> last_row_;  // up to the column: this row
   Eigen::Vector3d left_ = Eigen::Vector3d::Zero();
   bool stated_;
+  bool certain_;
   Candidate as_stated_;
   Candidate at_origin_;
 };

@@ -16,10 +16,18 @@ Scan read_recognised(InputFile& file, const std::filesystem::path& path,
       return read_ply(file, options);
     case FileKind::kPcd:
       return read_pcd(file, options);
+    case FileKind::kPtx:
+      return read_ptx(file, options);
+    case FileKind::kE57:
+      return read_e57(file, path, options);
+    case FileKind::kLas:
+      return read_las(file, options);
     case FileKind::kObj:
       return read_obj(file, options);
     case FileKind::kOff:
       return read_off(file, options);
+    case FileKind::kOffBinary:
+      return read_off_binary(file, options);
     case FileKind::kStlAscii:
       return read_stl_ascii(file, options);
     case FileKind::kStlBinary:

@@ -7,11 +7,21 @@
 
 namespace tactree::builder {
 
+/// Remedy where bytes are missing or wrong.
+inline constexpr const char* kCopyAgain =
+    "the file was cut off or is damaged; copy or export it again";
+
 [[nodiscard]] Scan read_ply(InputFile& file, const ReadOptions& options);
 [[nodiscard]] Scan read_pcd(InputFile& file, const ReadOptions& options);
+/// path: of the file, whose end is read first.
+[[nodiscard]] Scan read_e57(InputFile& file, const std::filesystem::path& path,
+                            const ReadOptions& options);
+[[nodiscard]] Scan read_las(InputFile& file, const ReadOptions& options);
+[[nodiscard]] Scan read_ptx(InputFile& file, const ReadOptions& options);
 [[nodiscard]] Scan read_text(InputFile& file, const ReadOptions& options);
 [[nodiscard]] Scan read_obj(InputFile& file, const ReadOptions& options);
 [[nodiscard]] Scan read_off(InputFile& file, const ReadOptions& options);
+[[nodiscard]] Scan read_off_binary(InputFile& file, const ReadOptions& options);
 [[nodiscard]] Scan read_stl_ascii(InputFile& file, const ReadOptions& options);
 [[nodiscard]] Scan read_stl_binary(InputFile& file, const ReadOptions& options);
 

@@ -16,8 +16,6 @@ namespace {
 
 using namespace std::string_view_literals;
 
-constexpr const char* kToPlyRemedy =
-    "convert it to PLY with CloudCompare (File > Save) or with pdal translate";
 constexpr const char* kPictureRemedy = "give the scan, not a picture of it";
 constexpr const char* kUnpackRemedy = "unpack it and give the scan inside";
 constexpr const char* kMeshRemedy = "open it in Blender or MeshLab and save it as PLY";
@@ -30,7 +28,6 @@ struct Magic {
 };
 
 constexpr Magic kUnsupportedMagics[] = {
-    {0, "ASTM-E57"sv, "an E57 file, which is not supported yet", kToPlyRemedy},
     {0, "DRACO"sv, "a Draco file (.drc), which is not supported yet",
      "decode it with draco_decoder -i FILE -o scan.ply"},
     {0, "\x89PNG\r\n\x1a\n"sv, "a PNG picture", kPictureRemedy},
@@ -120,15 +117,17 @@ bool begins_with_number(std::string_view text) {
   return parse_number(take_word(text), value);
 }
 
-std::optional<Recognition> recognise_las(std::string_view head) {
-  if (!head.starts_with("LASF")) return std::nullopt;
+/// LAZ sets the upper bits of the point format, and has a record of its own. Its library,
+/// liblaszip, is not part of Debian 12.
+Recognition recognise_las(std::string_view head) {
   constexpr std::size_t kPointFormatByte = 104;
   const bool compressed = (head.size() > kPointFormatByte &&
-                           (static_cast<unsigned char>(head[kPointFormatByte]) & 0x80) != 0) ||
+                           (static_cast<unsigned char>(head[kPointFormatByte]) & 0xc0) != 0) ||
                           head.find("laszip encoded") != std::string_view::npos;
-  return unsupported(compressed ? "a LAZ file (compressed LAS), which is not supported yet"
-                                : "a LAS file, which is not supported yet",
-                     kToPlyRemedy);
+  if (!compressed) return {FileKind::kLas, "LAS", "", ""};
+  return unsupported("a LAZ file (compressed LAS), which has no reader",
+                     "unpack it with `pdal translate FILE scan.las` or laszip, or open it in "
+                     "CloudCompare and save it as PLY");
 }
 
 std::optional<Recognition> recognise_zip(std::string_view head) {
@@ -176,6 +175,11 @@ bool is_off_keyword(std::string_view word) {
   constexpr std::string_view kKeywords[] = {"OFF",   "COFF",   "NOFF",   "CNOFF",  "NCOFF",
                                             "STOFF", "STCOFF", "STNOFF", "STCNOFF"};
   return std::find(std::begin(kKeywords), std::end(kKeywords), word) != std::end(kKeywords);
+}
+
+bool is_binary_off(std::string_view head) {
+  std::string_view first = head.substr(0, head.find('\n'));
+  return is_off_keyword(take_word(first)) && take_word(first) == "BINARY";
 }
 
 bool is_obj(const std::vector<std::string_view>& lines) {
@@ -238,7 +242,7 @@ Recognition recognise_text(std::string_view head) {
     return {FileKind::kStlAscii, "STL ascii", "", ""};
   }
   if (is_obj(lines)) return {FileKind::kObj, "OBJ", "", ""};
-  if (is_ptx(lines)) return unsupported("a PTX file, which is not supported yet", kToPlyRemedy);
+  if (is_ptx(lines)) return {FileKind::kPtx, "PTX", "", ""};
   if (auto counted = recognise_counted_format(lines)) return *counted;
   return {FileKind::kText, "text", "", ""};
 }
@@ -272,15 +276,14 @@ Recognition recognise(std::string_view head, std::uint64_t file_size) {
   if (is_ply(head)) return {FileKind::kPly, "PLY", "", ""};
   if (head.starts_with("# .PCD")) return {FileKind::kPcd, "PCD", "", ""};
   if (is_exact_binary_stl(head, file_size)) return {FileKind::kStlBinary, "STL binary", "", ""};
-  if (auto las = recognise_las(head)) return *las;
+  if (head.starts_with("ASTM-E57")) return {FileKind::kE57, "E57", "", ""};
+  if (head.starts_with("LASF")) return recognise_las(head);
   if (auto zip = recognise_zip(head)) return *zip;
   if (auto mesh = recognise_3ds(head, file_size)) return *mesh;
   if (auto other = recognise_other_format(head)) return *other;
   if (auto magic = recognise_magic(head)) return *magic;
   if (is_pcd(head, first_lines(head.substr(0, 4096), 32))) return {FileKind::kPcd, "PCD", "", ""};
-  if (head.starts_with("OFF BINARY")) {
-    return unsupported("a binary OFF file, which is not supported", kMeshRemedy);
-  }
+  if (is_binary_off(head)) return {FileKind::kOffBinary, "OFF binary", "", ""};
   if (is_text(head)) {
     if (auto markup = recognise_markup(head)) return *markup;
     return recognise_text(head);
@@ -292,7 +295,7 @@ Recognition recognise(std::string_view head, std::uint64_t file_size) {
   const Recognition as_text = recognise_text(head);
   if (as_text.kind != FileKind::kText) return as_text;
   return unsupported("not a scan in a supported format",
-                     "save the scan as PLY, PCD, XYZ, OBJ, STL, OFF or glTF");
+                     "save the scan as PLY, PCD, PTX, E57, LAS, XYZ, OBJ, STL, OFF, glTF or 3MF");
 }
 
 }  // namespace tactree::builder

@@ -10,8 +10,12 @@ namespace tactree::builder {
 enum class FileKind : std::uint8_t {
   kPly,
   kPcd,
+  kPtx,
+  kE57,
+  kLas,
   kObj,
   kOff,
+  kOffBinary,
   kStlAscii,
   kStlBinary,
   kImportedMesh,  ///< read by the mesh import process

@@ -189,6 +189,11 @@ void ScanBuilder::add_normal(const PointRow& row) {
 void ScanBuilder::add_colour(const PointRow& row) {
   double scale = 1.0;
   if (colours_ == ColourRange::kWord) scale = 1.0 / 257.0;
+  if (colours_ == ColourRange::kWordOrByte) {
+    const double largest = std::max({row[kRed], row[kGreen], row[kBlue]});
+    if (byte_colours_ && largest > 255.0) leave_byte_colours();
+    if (!byte_colours_) scale = 1.0 / 257.0;
+  }
   if (colours_ == ColourRange::kAuto) {
     const double largest = std::max({row[kRed], row[kGreen], row[kBlue]});
     if (unit_colours_ && largest > 1.5) leave_unit_colours();
@@ -203,6 +208,14 @@ void ScanBuilder::leave_unit_colours() {
   unit_colours_ = false;
   for (auto& colour : scan_.colours) {
     for (std::uint8_t& channel : colour) channel = to_byte(channel / 255.0);
+  }
+}
+
+/// Converts the colours so far from the range 0 .. 65535 to 0 .. 255.
+void ScanBuilder::leave_byte_colours() {
+  byte_colours_ = false;
+  for (auto& colour : scan_.colours) {
+    for (std::uint8_t& channel : colour) channel = to_byte(channel / 257.0);
   }
 }
 

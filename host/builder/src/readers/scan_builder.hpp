@@ -23,9 +23,10 @@ using PointRow = std::array<double, kSlots>;
 
 enum class ColourRange : std::uint8_t {
   kNone,
-  kByte,  ///< 0 .. 255
-  kWord,  ///< 0 .. 65535
-  kAuto,  ///< 0 .. 255 if a value exceeds 1.5, else 0 .. 1
+  kByte,        ///< 0 .. 255
+  kWord,        ///< 0 .. 65535
+  kWordOrByte,  ///< 0 .. 65535 if a value exceeds 255, else 0 .. 255
+  kAuto,        ///< 0 .. 255 if a value exceeds 1.5, else 0 .. 1
 };
 
 class ScanBuilder {
@@ -47,11 +48,9 @@ class ScanBuilder {
   void add_point(const PointRow& row);
   /// Points so far, including dropped ones.
   [[nodiscard]] std::uint64_t points_read() const { return points_read_; }
+  /// Without dropped ones: index of the next point in the scan.
+  [[nodiscard]] std::size_t points_kept() const { return scan_.positions.size(); }
 
-  /// The points that follow were seen from here.
-  void begin_pose(const Eigen::Vector3d& position, bool sure) {
-    scan_.poses.push_back({position, scan_.positions.size(), sure});
-  }
   void set_unit(double metres) { scan_.unit_m = metres; }
   void set_poses(std::vector<ScannerPose> poses) { scan_.poses = std::move(poses); }
 
@@ -90,6 +89,7 @@ class ScanBuilder {
   void add_normal(const PointRow& row);
   void add_colour(const PointRow& row);
   void leave_unit_colours();
+  void leave_byte_colours();
   void drop_point();
   void add_polygon(std::span<const std::int64_t> corners);
   void add_triangle(const std::array<std::uint32_t, 3>& triangle);
@@ -109,6 +109,7 @@ class ScanBuilder {
   Scan scan_;
   bool has_normals_ = false;
   ColourRange colours_ = ColourRange::kNone;
+  bool byte_colours_ = true;  // kWordOrByte: no value above 255 so far
   bool unit_colours_ = true;  // kAuto: no value above 1.5 so far
   std::uint64_t extra_bytes_ = 0;
   std::uint64_t points_read_ = 0;

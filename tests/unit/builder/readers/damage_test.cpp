@@ -142,6 +142,14 @@ TEST_F(DamageTest, Off) {
          kRounds);
 }
 
+TEST_F(DamageTest, OffBinary) {
+  std::string bytes = "NOFF BINARY\n";
+  for (const int count : {3, 1, 0}) bytes += bytes_of(count, true);
+  for (int i = 0; i < 18; ++i) bytes += bytes_of(static_cast<float>(i % 5), true);
+  for (const int number : {3, 0, 1, 2, 0}) bytes += bytes_of(number, true);
+  damage(bytes, kRounds);
+}
+
 TEST_F(DamageTest, Stl) {
   damage(
       "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"

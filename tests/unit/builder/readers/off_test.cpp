@@ -55,5 +55,49 @@ TEST_F(OffTest, DamageNamesTheLine) {
                "line 6");
 }
 
+/// The numbers of a binary OFF, each a float or an std::int32_t.
+template <typename... Numbers>
+std::string big_endian(Numbers... numbers) {
+  return (bytes_of(numbers, true) + ...);
+}
+
+TEST_F(OffTest, Binary) {
+  const Scan scan = read("OFF BINARY\n" + big_endian(4, 1, 0) + big_endian(0.0F, 0.0F, 0.5F) +
+                         big_endian(1.0F, 0.0F, 0.5F) + big_endian(1.0F, 1.0F, 0.5F) +
+                         big_endian(0.0F, 1.0F, 0.5F) + big_endian(4, 0, 1, 2, 3) +
+                         big_endian(3, 0.5F, 0.5F, 0.5F));
+  EXPECT_EQ(scan.format, "OFF binary");
+  ASSERT_EQ(scan.positions.size(), 4U);
+  EXPECT_EQ(scan.positions[2], Eigen::Vector3d(1, 1, 0.5));
+  ASSERT_EQ(scan.triangles.size(), 2U);
+  EXPECT_EQ(scan.triangles[1], (Triangle{0, 2, 3}));
+}
+
+TEST_F(OffTest, BinaryWithNormalsAndColours) {
+  const Scan scan = read("STCNOFF BINARY\n" + big_endian(1, 0, 0) + big_endian(1.0F, 2.0F, 3.0F) +
+                         big_endian(0.0F, 0.0F, 1.0F) + big_endian(1.0F, 0.5F, 0.0F, 1.0F) +
+                         big_endian(7.0F, 7.0F));
+  ASSERT_EQ(scan.positions.size(), 1U);
+  EXPECT_EQ(scan.positions[0], Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(scan.normals.at(0), Eigen::Vector3f(0, 0, 1));
+  EXPECT_EQ(scan.colours.at(0), (Colour{255, 128, 0}));
+}
+
+TEST_F(OffTest, BinaryCountsAreNotTrusted) {
+  const std::string points = big_endian(0.0F, 0.0F, 0.0F);
+  const auto refused = [&](const std::string& rest) {
+    return refusal_of("OFF BINARY\n" + rest, "m.off");
+  };
+  expect_parts(refused(big_endian(2147483647, 0, 0) + points), "2147483647 points", "room for 1");
+  expect_parts(refused(big_endian(-1, 0, 0) + points), "-1", "number of points");
+  expect_parts(refused(big_endian(0, 0, 0)), "no point");
+  expect_parts(refused(big_endian(1, 5, 0) + points), "5 faces", "room for 0");
+  expect_parts(refused(big_endian(1, 1, 0) + points + big_endian(2147483647, 0)),
+               "2147483647 corners");
+  expect_parts(refused(big_endian(1, 1, 0) + points + big_endian(1, 0)), "too early");
+  expect_parts(refused(big_endian(1, 1, 0) + points + big_endian(0, 9)), "too early");
+  expect_parts(refused(big_endian(1, 0)), "too early");
+}
+
 }  // namespace
 }  // namespace tactree::builder

@@ -36,12 +36,12 @@ std::string iges_line() {
   return line + "\n" + line + "\n";
 }
 
-struct Case {
+struct ForeignFile {
   std::string text;
   std::string name;
 };
 
-std::vector<Case> meshes() {
+std::vector<ForeignFile> meshes() {
   const std::string xyz = rows(100, "0.001 0.002 0.003");
   return {
       {"# vtk DataFile Version 4.2\nvtk output\nASCII\nDATASET POLYDATA\nPOINTS 300 float\n" +
@@ -92,7 +92,7 @@ std::vector<Case> meshes() {
   };
 }
 
-std::vector<Case> others() {
+std::vector<ForeignFile> others() {
   const std::string heights = rows(40, "0.02 0.021 0.022 0.023 0.024 0.025");
   return {
       {"ncols 6\nnrows 40\nxllcorner 0\nyllcorner 0\ncellsize 0.001\n" + heights, "ESRI grid"},
@@ -117,9 +117,9 @@ std::vector<Case> others() {
 }
 
 TEST_F(OtherFormatsTest, AreNamedWithARemedy) {
-  std::vector<Case> cases = meshes();
-  for (Case& other : others()) cases.push_back(std::move(other));
-  for (const Case& one : cases) {
+  std::vector<ForeignFile> cases = meshes();
+  for (ForeignFile& other : others()) cases.push_back(std::move(other));
+  for (const ForeignFile& one : cases) {
     const std::string message = refusal_of(one.text, "thing.xyz");
     expect_parts(message, "thing.xyz", one.name, "which has no reader");
     EXPECT_EQ(message.back(), ')') << "no remedy: " << message;

@@ -23,16 +23,11 @@ TEST_F(RecogniseTest, NamesUnsupportedFormats) {
     std::string bytes;
     std::string name;
   };
-  const std::string las = "LASF" + std::string(223, '\0');
-  std::string laz = las;
+  std::string laz = "LASF" + std::string(223, '\0');
   laz[104] = static_cast<char>(0x83);
   const Case cases[] = {
-      {las, "LAS file"},
       {laz, "LAZ file"},
-      {"ASTM-E57\1\0\0\0"s, "E57"},
       {"DRACO\2\2\1\1"s, "Draco"},
-      {"15\n71\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n1 2 3 0.5\n",
-       "PTX"},
       {"\x89PNG\r\n\x1a\n\0\0\0\rIHDR"s, "PNG"},
       {"\xff\xd8\xff\xe0\0\x10JFIF"s, "JPEG"},
       {"<!DOCTYPE html><html></html>", "HTML"},

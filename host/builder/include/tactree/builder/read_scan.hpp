@@ -1,6 +1,6 @@
 #pragma once
-// Reads a scan file: PLY, PCD, text (XYZ, PTS, CSV), OBJ, STL, OFF, and the formats of the assimp
-// library (glTF, FBX, 3DS, COLLADA, ...) in a separate process with limits.
+// Reads a scan file: PLY, PCD, PTX, E57, LAS, text (XYZ, PTS, CSV), OBJ, STL, OFF; glTF, 3MF and the
+// formats of the assimp library (FBX, 3DS, COLLADA, ...) in a separate process with limits.
 //
 // The format is recognised by content, never by the file name. Files are untrusted: counts are
 // compared with the file size before memory is allocated for them.
@@ -38,6 +38,8 @@ struct ReadOptions {
 
 /// Reads `file`. Throws ReadError if it is not a scan, is damaged beyond use or holds no point.
 /// Damage that leaves a usable scan is counted in Scan::dropped and described in Scan::warnings:
+///   "not_measured"           points that the file itself marks as invalid (PTX, E57)
+///   "withheld"               points of a LAS file that are marked as deleted
 ///   "non_finite"             positions with NaN or infinite coordinates
 ///   "bad_row"                rows of a text file that are not a point
 ///   "degenerate_face"        faces with fewer than three distinct corners

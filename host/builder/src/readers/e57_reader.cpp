@@ -1,0 +1,259 @@
+// E57 (ASTM E2807): a file in pages with checksums, an XML section that describes the scans, and a
+// section of packed points for each. Each scan has the pose of its scanner.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "e57_index.hpp"
+#include "e57_pages.hpp"
+#include "e57_streams.hpp"
+#include "range_image.hpp"
+#include "readers.hpp"
+#include "scalar.hpp"
+#include "scan_builder.hpp"
+
+namespace tactree::builder {
+namespace {
+
+constexpr std::size_t kHeaderBytes = 48;
+constexpr std::uint64_t kMaxXmlBytes = std::uint64_t{1} << 26;
+
+/// Meanings of the fields beside those of Slot.
+enum Role : std::uint8_t {
+  kRange = kSlots,
+  kAzimuth,
+  kElevation,
+  kCartesianInvalid,
+  kSphericalInvalid,
+  kColourInvalid,
+  kRoles
+};
+
+constexpr std::array<std::string_view, kRoles> kFieldNames = {"cartesianX",
+                                                              "cartesianY",
+                                                              "cartesianZ",
+                                                              "normalX",
+                                                              "normalY",
+                                                              "normalZ",
+                                                              "colorRed",
+                                                              "colorGreen",
+                                                              "colorBlue",
+                                                              "sphericalRange",
+                                                              "sphericalAzimuth",
+                                                              "sphericalElevation",
+                                                              "cartesianInvalidState",
+                                                              "sphericalInvalidState",
+                                                              "isColorInvalid"};
+
+/// Index of the field with each role; -1: none.
+using Columns = std::array<int, kRoles>;
+
+Columns columns_of(const E57Scan& scan) {
+  Columns columns;
+  columns.fill(-1);
+  for (std::size_t i = 0; i < scan.fields.size(); ++i) {
+    const auto name = std::find(kFieldNames.begin(), kFieldNames.end(), scan.fields[i].name);
+    if (name == kFieldNames.end() || scan.fields[i].type == E57Field::Type::kText) continue;
+    columns[static_cast<std::size_t>(name - kFieldNames.begin())] = static_cast<int>(i);
+  }
+  return columns;
+}
+
+bool has(const Columns& columns, std::size_t first) {
+  return columns[first] >= 0 && columns[first + 1] >= 0 && columns[first + 2] >= 0;
+}
+
+class E57Reader {
+ public:
+  E57Reader(InputFile& file, const ReadOptions& options)
+      : file_(file), pages_(file), builder_(file.name(), options.scan_memory_bytes, "byte") {}
+
+  Scan read(const std::filesystem::path& path) {
+    std::vector<E57Scan> scans = parse_e57_index(file_.name(), read_xml(path));
+    const std::size_t declared = scans.size();
+    std::erase_if(scans, [](const E57Scan& scan) { return scan.count == 0; });
+    if (scans.empty()) {
+      throw ReadError(
+          file_.name(), "",
+          declared == 0
+              ? "the file holds no point: it declares no scan"
+              : fmt::format("the file holds no point: all scans ({}) are empty", declared),
+          "check the export, and export it again");
+    }
+    choose_columns(scans);
+    builder_.set_unit(1.0);
+    for (const E57Scan& scan : scans) read_scan(scan);
+    if (missing_ > 0) builder_.count_dropped("not_measured", missing_);
+    if (builder_.points_read() == 0) {
+      throw ReadError(file_.name(), "",
+                      fmt::format("none of the {} points is valid, as the file states", missing_),
+                      "export the scan again");
+    }
+    if (std::any_of(poses_.begin(), poses_.end(),
+                    [](const ScannerPose& pose) { return pose.position.allFinite(); })) {
+      builder_.set_poses(std::move(poses_));
+    }
+    return builder_.finish("E57");
+  }
+
+ private:
+  /// By a file of its own: the progress of this one rises with the points.
+  std::string read_xml(const std::filesystem::path& path) {
+    InputFile file(path);
+    E57Pages pages(file);
+    std::array<char, kHeaderBytes> header{};
+    pages.read(header.data(), header.size());
+    const auto word = [&](std::size_t at) {
+      return load_bits<std::uint64_t, false>(header.data() + at);
+    };
+    const auto version = load_bits<std::uint32_t, false>(header.data() + 8);
+    if (version != 1) {
+      fail_header(fmt::format("version {} of the format is not supported", version),
+                  "export the scan as E57 1.0 or as PLY");
+    }
+    if (word(40) != E57Pages::kPageBytes) {
+      fail_header(fmt::format("pages of {} bytes are not supported", word(40)),
+                  "export the scan again, or as PLY");
+    }
+    if (word(16) > file_.size()) {
+      fail_header(fmt::format("the file ends too early: {} bytes are declared, {} are there",
+                              word(16), file_.size()),
+                  kCopyAgain);
+    }
+    const std::uint64_t begin = pages.to_logical(word(24), "the descriptions of the scans");
+    const std::uint64_t bytes = word(32);
+    if (bytes > pages.size() - begin || bytes > kMaxXmlBytes) {
+      fail_header(fmt::format("its XML section of {} bytes is too large for the file", bytes),
+                  kCopyAgain);
+    }
+    builder_.charge(2 * bytes);  // and the list of the scans
+    std::string xml(static_cast<std::size_t>(bytes), '\0');
+    pages.seek(begin);
+    pages.read(xml.data(), xml.size());
+    return xml;
+  }
+
+  /// Normals and colours are used if all scans have them.
+  void choose_columns(const std::vector<E57Scan>& scans) {
+    std::size_t normals = 0;
+    std::size_t colours = 0;
+    for (const E57Scan& scan : scans) {
+      const Columns columns = columns_of(scan);
+      normals += has(columns, kNx) ? 1U : 0U;
+      colours += has(columns, kRed) ? 1U : 0U;
+    }
+    has_normals_ = normals == scans.size();
+    has_colours_ = colours == scans.size();
+    if (has_normals_) builder_.use_normals();
+    if (has_colours_) builder_.use_colours(ColourRange::kByte);
+    const auto warn = [&](std::size_t count, const char* what) {
+      if (count > 0 && count < scans.size()) {
+        builder_.warn(fmt::format("Only {} of {} scans have {}; they were left out.", count,
+                                  scans.size(), what));
+      }
+    };
+    warn(normals, "normals");
+    warn(colours, "colours");
+  }
+
+  void read_scan(const E57Scan& scan) {
+    columns_ = columns_of(scan);
+    spherical_ = !has(columns_, kX);
+    if (spherical_ && !has(columns_, kRange)) {
+      throw ReadError(file_.name(), scan.place,
+                      "its points have neither cartesian nor spherical coordinates",
+                      "export the scan again with its coordinates");
+    }
+    E57Streams streams(pages_, scan, file_.name());
+    builder_.expect_points(builder_.points_kept() + scan.count);
+    const std::size_t first_point = builder_.points_kept();
+    streams.read([&](const std::vector<double>& values) { add_point(scan, values); });
+    if (builder_.points_kept() > first_point) add_pose(scan, first_point);
+  }
+
+  /// A scan without a pose may come from several scanners.
+  void add_pose(const E57Scan& scan, std::size_t first_point) {
+    const std::optional<Eigen::Vector3d> stated =
+        scan.has_pose ? std::optional<Eigen::Vector3d>(scan.to_file.translation()) : std::nullopt;
+    ScannerPose pose = RangeImage(0, stated).pose().value_or(
+        ScannerPose{Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()), 0, true});
+    pose.first_point = first_point;
+    poses_.push_back(pose);
+  }
+
+  [[nodiscard]] double value(const std::vector<double>& values, std::size_t role) const {
+    return columns_[role] < 0 ? 0.0 : values[static_cast<std::size_t>(columns_[role])];
+  }
+
+  void add_point(const E57Scan& scan, const std::vector<double>& values) {
+    if (value(values, spherical_ ? kSphericalInvalid : kCartesianInvalid) != 0.0) {
+      ++missing_;
+      return;
+    }
+    PointRow row{};
+    const Eigen::Vector3d at = scan.to_file * position(values);
+    std::copy_n(at.data(), 3, row.begin() + kX);
+    if (has_normals_) {
+      const Eigen::Vector3d normal =
+          scan.to_file.linear() *
+          Eigen::Vector3d(value(values, kNx), value(values, kNy), value(values, kNz));
+      std::copy_n(normal.data(), 3, row.begin() + kNx);
+    }
+    if (has_colours_ && value(values, kColourInvalid) == 0.0) set_colour(scan, values, row);
+    builder_.add_point(row);
+  }
+
+  [[nodiscard]] Eigen::Vector3d position(const std::vector<double>& values) const {
+    if (!spherical_) return {value(values, kX), value(values, kY), value(values, kZ)};
+    const double range = value(values, kRange);
+    const double azimuth = value(values, kAzimuth);
+    const double elevation = value(values, kElevation);
+    const double level = range * std::cos(elevation);
+    return {level * std::cos(azimuth), level * std::sin(azimuth), range * std::sin(elevation)};
+  }
+
+  void set_colour(const E57Scan& scan, const std::vector<double>& values, PointRow& row) const {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const E57Field& field = scan.fields[static_cast<std::size_t>(columns_[kRed + k])];
+      auto [lowest, highest] = scan.colour_limits[k];
+      if (!(highest > lowest)) {
+        lowest = field.lowest;
+        highest = field.highest;
+      }
+      if (!(highest > lowest)) {
+        lowest = 0.0;
+        highest = field.type == E57Field::Type::kInteger ? 255.0 : 1.0;
+      }
+      row[kRed + k] = 255.0 * (value(values, kRed + k) - lowest) / (highest - lowest);
+    }
+  }
+
+  [[noreturn]] void fail_header(const std::string& cause, const char* remedy) const {
+    throw ReadError(file_.name(), "header", cause, remedy);
+  }
+
+  InputFile& file_;
+  E57Pages pages_;
+  ScanBuilder builder_;
+  Columns columns_{};  // of the current scan
+  bool spherical_ = false;
+  bool has_normals_ = false;
+  bool has_colours_ = false;
+  std::uint64_t missing_ = 0;
+  std::vector<ScannerPose> poses_;
+};
+
+}  // namespace
+
+Scan read_e57(InputFile& file, const std::filesystem::path& path, const ReadOptions& options) {
+  return E57Reader(file, options).read(path);
+}
+
+}  // namespace tactree::builder

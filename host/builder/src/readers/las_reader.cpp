@@ -1,0 +1,121 @@
+// LAS 1.0 to 1.4: a header, records about the file, a record of
+// integers for each point.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "las_header.hpp"
+#include "readers.hpp"
+#include "scalar.hpp"
+#include "scan_builder.hpp"
+
+namespace tactree::builder {
+namespace {
+
+constexpr std::size_t kLasBlockBytes = std::size_t{1} << 20;
+
+class LasReader {
+ public:
+  LasReader(InputFile& file, const ReadOptions& options)
+      : file_(file),
+        header_(read_las_header(file)),
+        builder_(file.name(), options.scan_memory_bytes, "byte") {}
+
+  Scan read() {
+    if (header_.points == 0) {
+      throw ReadError(file_.name(), "header",
+                      "the file holds no point: its header declares 0 points",
+                      "check the export, and export it again");
+    }
+    set_units();
+    read_records();
+    builder_.count_dropped("withheld", withheld_);
+    if (builder_.points_read() == 0) {
+      throw ReadError(file_.name(), "",
+                      fmt::format("all {} points are marked as withheld", header_.points),
+                      "remove the marks if the points are to be used");
+    }
+    return builder_.finish(
+        fmt::format("LAS 1.{} point format {}", header_.minor, header_.point_format));
+  }
+
+ private:
+  void set_units() {
+    const LasUnits& units = header_.units;
+    if (units.degrees) {
+      builder_.warn(
+          "The file states longitude and latitude in degrees; the surface is distorted (project it "
+          "first, for example with pdal translate and filters.reprojection).");
+    }
+    if (units.horizontal) builder_.set_unit(*units.horizontal);
+    if (units.horizontal && units.vertical) to_horizontal_ = *units.vertical / *units.horizontal;
+  }
+
+  void read_records() {
+    const std::uint64_t bytes = header_.record_bytes;
+    file_.skip(header_.first_point - file_.offset());
+    const std::uint64_t there = file_.remaining() / bytes;
+    if (there < header_.points) fail_truncated(there);
+    if (header_.layout.colour >= 0) builder_.use_colours(ColourRange::kWordOrByte);
+    builder_.reserve_points(header_.points);
+    for (std::uint64_t left = header_.points; left > 0;) {
+      const std::string_view block = file_.peek(kLasBlockBytes);
+      const std::uint64_t points = std::min<std::uint64_t>(left, block.size() / bytes);
+      if (points == 0) fail_truncated(header_.points - left);
+      const char* at = block.data();
+      for (std::uint64_t i = 0; i < points; ++i, at += bytes) add_record(at, header_.layout);
+      file_.consume(static_cast<std::size_t>(points * bytes));
+      left -= points;
+    }
+    // From 1.3 on, other records may follow the points.
+    const bool last = header_.minor < 3 && there > header_.points;
+    if (last && !file_.only_zeros_left()) builder_.warn_of_more("points", header_.points, there);
+  }
+
+  void add_record(const char* record, const LasLayout& layout) {
+    const auto flags = static_cast<unsigned char>(record[15]);
+    const unsigned withheld = layout.extended ? 0x04 : 0x80;
+    const bool has_flags = header_.minor > 0;  // 1.0 has a wider classification there
+    if (has_flags && (flags & withheld) != 0) {
+      ++withheld_;
+      return;
+    }
+    PointRow row{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto axis = static_cast<Eigen::Index>(k);
+      const double number = load_scalar<false>(record + 4 * k, ScalarType::kInt32);
+      row[kX + k] = number * header_.scale[axis] + header_.offset[axis];
+    }
+    row[kZ] *= to_horizontal_;
+    if (layout.colour >= 0) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        row[kRed + k] = load_scalar<false>(record + layout.colour + 2 * k, ScalarType::kUint16);
+      }
+    }
+    builder_.add_point(row);
+  }
+
+  [[noreturn]] void fail_truncated(std::uint64_t points_there) const {
+    throw ReadError(file_.name(), fmt::format("byte {}", file_.size()),
+                    fmt::format("the file ends too early: its header declares {} points, only {} "
+                                "are there",
+                                header_.points, points_there),
+                    kCopyAgain);
+  }
+
+  InputFile& file_;
+  LasHeader header_;
+  ScanBuilder builder_;
+  double to_horizontal_ = 1.0;  // unit of z, in that of x and y
+  std::uint64_t withheld_ = 0;
+};
+
+}  // namespace
+
+Scan read_las(InputFile& file, const ReadOptions& options) {
+  return LasReader(file, options).read();
+}
+
+}  // namespace tactree::builder

@@ -1,0 +1,204 @@
+#include <limits>
+#include <random>
+
+#include "las_writer.hpp"
+#include "test_files.hpp"
+
+namespace tactree::builder {
+namespace {
+
+using Eigen::Vector3d;
+using namespace tactree::test;
+using Colour = std::array<std::uint8_t, 3>;
+
+class LasTest : public TestFiles {};
+
+LasFile las_points(int minor, int format) {
+  LasFile file;
+  file.minor = minor;
+  file.point_format = format;
+  file.points = {
+      {{1, 2, 3}, {65535, 257, 0}}, {{-4, 5, 2147483647}, {514, 32896, 1}}, {{0, 0, 0}, {0, 0, 0}}};
+  return file;
+}
+
+template <typename T>
+std::string patched(std::string file, std::size_t at, T value) {
+  return file.replace(at, sizeof value, las_bytes(value));
+}
+
+TEST_F(LasTest, EveryPointFormat) {
+  for (int format = 0; format <= 10; ++format) {
+    for (const int minor : {format < 2 ? 0 : 2, 3, 4}) {
+      if (format > 5 && minor < 4) continue;
+      LasFile file = las_points(minor, format);
+      file.scale = {0.001, 0.5, 2};
+      file.offset = {600000, -1, 0};
+      file.extra_bytes = static_cast<std::size_t>(format % 3);
+      const Scan scan = read(las_file(file));
+      EXPECT_EQ(scan.format,
+                "LAS 1." + std::to_string(minor) + " point format " + std::to_string(format));
+      ASSERT_EQ(scan.positions.size(), 3U);
+      EXPECT_EQ(scan.positions[0], Vector3d(1 * 0.001 + 600000, 0, 6));
+      EXPECT_EQ(scan.positions[1], Vector3d(-4 * 0.001 + 600000, 1.5, 2.0 * 2147483647));
+      EXPECT_FALSE(scan.unit_m.has_value());
+      EXPECT_TRUE(scan.warnings.empty());
+      const bool colours =
+          format == 2 || format == 3 || format == 5 || format == 7 || format == 8 || format == 10;
+      ASSERT_EQ(scan.colours.size(), colours ? 3U : 0U) << format;
+      if (colours) {
+        EXPECT_EQ(scan.colours[0], (Colour{255, 1, 0})) << format;
+        EXPECT_EQ(scan.colours[1], (Colour{2, 128, 0})) << format;
+      }
+    }
+  }
+}
+
+TEST_F(LasTest, ColoursOfEightBits) {
+  LasFile file = las_points(2, 2);
+  file.points[0].colour = {255, 128, 0};
+  file.points[1].colour = {1, 2, 3};
+  Scan scan = read(las_file(file));
+  EXPECT_EQ(scan.colours[0], (Colour{255, 128, 0}));
+  EXPECT_EQ(scan.colours[1], (Colour{1, 2, 3}));
+  file.points[2].colour = {256, 0, 0};  // so all have sixteen
+  scan = read(las_file(file));
+  EXPECT_EQ(scan.colours[0], (Colour{1, 0, 0}));
+  EXPECT_EQ(scan.colours[2], (Colour{1, 0, 0}));
+}
+
+TEST_F(LasTest, WithheldPointsAreLeftOut) {
+  for (const int format : {1, 7}) {
+    LasFile file = las_points(4, format);
+    file.points[0].withheld = true;
+    file.points[1].synthetic = true;  // of photogrammetry, for example
+    const Scan scan = read(las_file(file));
+    ASSERT_EQ(scan.positions.size(), 2U);
+    EXPECT_EQ(scan.positions[1], Vector3d(0, 0, 0));
+    EXPECT_EQ(scan.dropped.at("withheld"), 1U);
+    for (LasPoint& point : file.points) point.withheld = true;
+    expect_parts(refusal_of(las_file(file), "a.las"), "a.las", "all 3 points", "withheld");
+  }
+  LasFile old = las_points(0, 1);  // the bit belongs to the class
+  old.points[0].withheld = true;
+  EXPECT_EQ(read(las_file(old)).positions.size(), 3U);
+}
+
+TEST_F(LasTest, TheUnitOfTheKeys) {
+  const auto scan_with = [&](std::vector<std::array<std::uint16_t, 2>> keys) {
+    LasFile file = las_points(2, 0);
+    file.records = las_record("other", 7, "text") + las_geo_keys(keys);
+    file.record_count = 2;
+    return read(las_file(file));
+  };
+  EXPECT_EQ(scan_with({{1024, 1}, {3076, 9001}}).unit_m, 1.0);
+  EXPECT_EQ(scan_with({{3076, 9002}}).unit_m, 0.3048);
+  EXPECT_DOUBLE_EQ(scan_with({{3076, 9003}}).unit_m.value(), 0.3048006096012192);
+  EXPECT_FALSE(scan_with({{1024, 1}, {3072, 25833}}).unit_m.has_value());
+  EXPECT_FALSE(scan_with({{3076, 9999}}).unit_m.has_value());
+  const Scan mixed = scan_with({{3076, 9001}, {4099, 9002}});  // heights in feet
+  EXPECT_EQ(mixed.unit_m, 1.0);
+  EXPECT_DOUBLE_EQ(mixed.positions[0].z(), 3 * 0.3048);
+  EXPECT_EQ(mixed.positions[0].y(), 2);
+  const Scan degrees = scan_with({{1024, 2}});
+  ASSERT_EQ(degrees.warnings.size(), 1U);
+  expect_parts(degrees.warnings[0], "degrees");
+}
+
+TEST_F(LasTest, TheUnitOfWellKnownText) {
+  const auto scan_with = [&](const std::string& text) {
+    LasFile file = las_points(4, 6);
+    file.records = las_record("LASF_Projection", 2112, text);
+    file.record_count = 1;
+    return read(las_file(file));
+  };
+  const std::string degree = R"(GEOGCS["a]",UNIT["degree",0.0174]])";
+  EXPECT_EQ(scan_with(R"(PROJCS["p",)" + degree + R"(,UNIT["metre",1,AUTHORITY["E","9"]]])").unit_m,
+            1.0);
+  const Scan feet = scan_with(R"(COMPD_CS["c",PROJCS["p",)" + degree +
+                              R"(,UNIT["foot",0.3048]],VERT_CS["v",UNIT["metre",1]]])");
+  EXPECT_EQ(feet.unit_m, 0.3048);
+  EXPECT_DOUBLE_EQ(feet.positions[0].z(), 3 / 0.3048);
+  EXPECT_EQ(scan_with(R"(PROJCRS["p",CS[Cartesian,2],LENGTHUNIT["metre",1.0]])").unit_m, 1.0);
+  EXPECT_EQ(scan_with(R"(LOCAL_CS["l",UNIT["mm",0.001]])").unit_m, 0.001);
+  EXPECT_EQ(scan_with(degree).warnings.size(), 1U);
+  for (const std::string bad : {"", "PROJCS[", "PROJCS[\"", "PROJCS[UNIT[", "PROJCS[UNIT[\"m\",]]",
+                                "PROJCS[UNIT[\"m\",-1]]", "PROJCS[UNIT[\"m\",nan]]", "]]]]"}) {
+    EXPECT_FALSE(scan_with(bad).unit_m.has_value()) << bad;
+  }
+}
+
+TEST_F(LasTest, CountsAreNotTrusted) {
+  const std::string narrow = las_file(las_points(2, 3));
+  expect_parts(refusal_of(patched(narrow, 107, 4U), "a.las"), "a.las", "4 points", "only 3");
+  expect_parts(refusal_of(patched(narrow, 107, 0xffffffffU)), "4294967295 points", "only 3");
+  expect_parts(refusal_of(patched(narrow, 107, 0U)), "no point");
+  const std::string wide = las_file(las_points(4, 6));
+  EXPECT_EQ(read(wide).positions.size(), 3U);
+  expect_parts(refusal_of(patched(wide, 247, ~std::uint64_t{0})), "18446744073709551615 points",
+               "only 3");
+  expect_parts(refusal_of(patched(wide, 247, std::uint64_t{0})), "no point");
+  // Records of its own: a count that exceeds the file is no reason to allocate.
+  EXPECT_EQ(read(patched(wide, 100, 0xffffffffU)).positions.size(), 3U);
+}
+
+TEST_F(LasTest, RefusesAHeaderThatDoesNotFit) {
+  const std::string file = las_file(las_points(2, 3));
+  expect_parts(refusal_of(patched(file, 24, '\2')), "header", "version 2.2");
+  expect_parts(refusal_of(patched(file, 25, '\5')), "header", "version 1.5");
+  expect_parts(refusal_of(patched(file, 94, std::uint16_t{100})), "header of 100 bytes");
+  expect_parts(refusal_of(patched(file, 96, 0xffffffffU)), "points from byte 4294967295");
+  expect_parts(refusal_of(patched(file, 96, 1U)), "points from byte 1");
+  expect_parts(refusal_of(patched(file, 104, '\x0b')), "point format 11");
+  expect_parts(refusal_of(patched(file, 105, std::uint16_t{0})), "records of 0 bytes");
+  expect_parts(refusal_of(patched(file, 105, std::uint16_t{33})), "records of 33 bytes");
+  expect_parts(refusal_of(patched(file, 131, 0.0)), "scale");
+  expect_parts(refusal_of(patched(file, 163, std::numeric_limits<double>::infinity())), "scale");
+  for (std::size_t length = 4; length < file.size(); ++length) {
+    expect_parts(refusal_of(std::string_view(file).substr(0, length), "cut.las"), "cut.las",
+                 "copy");
+  }
+}
+
+TEST_F(LasTest, RandomDamageIsReadOrRefused) {
+  LasFile las = las_points(4, 7);
+  las.records = las_geo_keys({{1024, 1}, {3076, 9001}}) +
+                las_record("LASF_Projection", 2112, R"(PROJCS["p",UNIT["metre",1]])");
+  las.record_count = 2;
+  const std::string file = las_file(las);
+  std::mt19937 random(14);
+  int refused = 0;
+  for (int round = 0; round < 1500; ++round) {
+    std::string damaged = file;
+    for (int change = 0; change < 3; ++change) {
+      damaged[4 + random() % (damaged.size() - 4)] = static_cast<char>(random());
+    }
+    damaged[104] = static_cast<char>(damaged[104] & 0x0f);  // not LAZ
+    try {
+      for (const auto& position : read(damaged).positions) EXPECT_TRUE(position.allFinite());
+    } catch (const ReadError&) {
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 0);
+}
+
+TEST_F(LasTest, LazIsRefusedWithARemedy) {
+  std::string file = las_file(las_points(2, 0));
+  file[104] = static_cast<char>(file[104] | 0x80);
+  expect_parts(refusal_of(file, "a.laz"), "a.laz", "LAZ", "pdal translate");
+}
+
+TEST_F(LasTest, MorePointsThanDeclared) {
+  const std::string file = patched(las_file(las_points(2, 3)), 107, 2U);
+  const Scan scan = read(file);
+  EXPECT_EQ(scan.positions.size(), 2U);
+  ASSERT_EQ(scan.warnings.size(), 1U);
+  expect_parts(scan.warnings[0], "declares 2 points", "holds 3");
+  EXPECT_TRUE(read(las_file(las_points(2, 3)) + std::string(100, '\0')).warnings.empty());
+  // From 1.3 on, the bytes after the points may be records of their own.
+  EXPECT_TRUE(read(las_file(las_points(4, 6)) + std::string(100, 'r')).warnings.empty());
+}
+
+}  // namespace
+}  // namespace tactree::builder
