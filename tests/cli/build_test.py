@@ -59,6 +59,45 @@ class Folder(unittest.TestCase):
         return done.stderr
 
 
+class Columns(Folder):
+    def test_the_report_states_the_columns_in_use(self):
+        rows = (self.path / "s.xyz").read_text().splitlines()
+        numbered = "".join(f"{1000 + i},{row.replace(' ', ',')}\n" for i, row in enumerate(rows))
+        (self.path / "n.csv").write_text(numbered)
+        done = self.run_tool("build", "n.csv", "-o", "n.blob", "--report", "n.json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        note = [line for line in done.stdout.splitlines() if "columns" in line]
+        self.assertEqual(len(note), 1, done.stdout)
+        self.assertIn("n.csv: columns x=2, y=3, z=4", note[0])
+        self.assertIn("column 1 numbers the points", note[0])
+        report = json.loads((self.path / "n.json").read_text())
+        self.assertIn("columns x=2, y=3, z=4", "".join(report["notes"]))
+
+    def test_columns_are_named(self):
+        rows = (self.path / "s.xyz").read_text().splitlines()
+        swapped = "".join(" ".join(["a", *reversed(row.split())]) + "\n" for row in rows)
+        (self.path / "t.txt").write_text(swapped)
+        self.assertIn("--columns x=2,y=3,z=4", self.refused("build", "t.txt", "-o", "t.blob"))
+        done = self.run_tool("build", "t.txt", "-o", "t.blob", "--columns", "x=4,y=3,z=2")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.build("--name", "t")
+        points = []
+        for blob in ("s.blob", "t.blob"):
+            self.run_tool("info", blob, "--points", "p.csv")
+            points.append((self.path / "p.csv").read_text())
+        self.assertEqual(points[0], points[1])
+
+    def test_misuse_names_the_option(self):
+        for columns in ("x=2,y=3", "x=0,y=1,z=2", "x=1,y=1,z=2", "q=1,y=2,z=3"):
+            done = self.run_tool("build", "s.xyz", "-o", "y", "--columns", columns)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn("--columns", done.stderr)
+        (self.path / "m.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+        done = self.run_tool("build", "m.obj", "-o", "y", "--columns", "x=1,y=2,z=3")
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertIn("m.obj", done.stderr)
+
+
 class Outputs(Folder):
     def test_an_input_is_not_overwritten(self):
         self.build()

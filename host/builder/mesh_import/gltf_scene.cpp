@@ -36,8 +36,10 @@ void check_extensions(const json& root, std::string_view also = {}) {
   for (const json& name : root.value("extensionsRequired", json::array())) {
     const std::string extension = name.get<std::string>();
     if (!is_supported(extension) && extension != also) {
-      throw ImportError("it requires the extension " + extension.substr(0, 60) +
-                        ", which is not supported");
+      const bool compression = extension.ends_with("_compression");
+      throw ImportError(
+          (compression ? "its data is compressed with " : "it requires the extension ") +
+          extension.substr(0, 60) + ", which is not supported");
     }
   }
 }
