@@ -254,13 +254,16 @@ bool is_molecule(std::span<const std::string_view> lines) {
 }
 
 /// Whether the rows after the line of counts begin with the numbers 0, 1, 2, ... or 1, 2, 3, ...
-/// and the last of the `count` rows has the number that it must have.
+/// and the last of the `count` rows has the number that it must have. If the file goes on after the
+/// lines, or was cut off, many rows must be there.
 bool is_numbered(std::span<const std::string_view> lines, std::int64_t count) {
-  constexpr std::size_t kRows = 100;
-  constexpr std::size_t kHeadLines = 2000;  // with more, the file goes on after the head
+  constexpr std::uint64_t kRows = 100;
+  constexpr std::uint64_t kManyRows = 8;
   if (count < 3) return false;
   const auto rows = static_cast<std::uint64_t>(count);
-  if (rows >= lines.size() && lines.size() < kHeadLines) return false;
+  const bool cut = rows > lines.size() - 1;
+  const std::uint64_t whole = cut ? lines.size() - 2 : rows;  // the last line may be cut
+  if (cut && whole < kManyRows) return false;
   double first = 0.0;
   const auto has_number = [&](std::uint64_t row) {
     const std::vector<double> numbers = numbers_of(lines[static_cast<std::size_t>(1 + row)]);
@@ -268,11 +271,10 @@ bool is_numbered(std::span<const std::string_view> lines, std::int64_t count) {
     return numbers.size() >= 3 && first >= 0.0 && first <= 1.0 &&
            numbers.front() == first + static_cast<double>(row);
   };
-  for (std::uint64_t row = 0; row < std::min<std::uint64_t>({rows, kRows, lines.size() - 1});
-       ++row) {
+  for (std::uint64_t row = 0; row < std::min(whole, kRows); ++row) {
     if (!has_number(row)) return false;
   }
-  return rows >= lines.size() || has_number(rows - 1);
+  return has_number(whole - 1);
 }
 
 std::optional<Recognition> recognise_structure(std::string_view head,

@@ -210,16 +210,16 @@ void check_count(const InputFile& file, std::uint64_t declared) {
   }
 }
 
-/// Bytes after the last triangle: more triangles, or something else.
-void warn_of_rest(InputFile& file, std::uint64_t declared, ScanBuilder& builder) {
+/// Bytes after the triangles that were read: more triangles, or something else.
+void warn_of_rest(InputFile& file, std::uint64_t count, ScanBuilder& builder) {
   const std::uint64_t rest = file.remaining();
   if (rest == 0 || file.only_zeros_left()) return;
   const std::uint64_t more = rest / kStlTriangleBytes;
   if (more * kStlTriangleBytes == rest) {
-    builder.warn_of_more("triangles", declared, declared + more);
+    builder.warn_of_more("triangles", count, count + more);
   } else {
-    builder.warn(fmt::format(
-        "{} bytes after the {} triangles that the file declares were left out.", rest, declared));
+    builder.warn(
+        fmt::format("{} bytes after the last of {} triangles were left out.", rest, count));
   }
 }
 
@@ -284,7 +284,7 @@ Scan read_stl_binary(InputFile& file, const ReadOptions& options) {
     file.consume(kStlTriangleBytes);
     triangles.add(corners, place);
   }
-  warn_of_rest(file, declared, triangles.builder());
+  warn_of_rest(file, count, triangles.builder());
   return triangles.finish("STL binary");
 }
 

@@ -164,9 +164,24 @@ class Guess {
     }
   }
 
+  /// The counts of a mesh may have as many columns as the numbered rows after them.
+  void check_first_row() {
+    const std::span<const TextRow> rest = std::span(rows_left_).subspan(1);
+    const Column numbers = column_of(rest, 0);
+    const bool consecutive = numbers.whole && numbers.steps == rest.size() - 1;
+    const std::vector<double>& first = rows_left_[0].values;
+    const bool counts = std::all_of(first.begin(), first.end(), is_whole);
+    if (counts && rest.size() >= kRowsToCount && columns_ > kMinColumns && consecutive &&
+        first[0] + 1.0 != numbers.first) {
+      guess_.doubt =
+          "column 1 numbers the rows from the second one on, as after the counts of a mesh";
+    }
+  }
+
   /// A first column of rising whole numbers counts the points.
   void check_counter() {
     if (rows_left_.size() < kRowsToCount || columns_ < kMinColumns) return;
+    check_first_row();
     const Column first = column_of(rows_left_, 0);
     const Column second = column_of(rows_left_, 1);
     const Column third = column_of(rows_left_, 2);

@@ -142,7 +142,7 @@ TEST_F(CountsTest, StlWithAnotherCount) {
                "holds 50");
   EXPECT_EQ(last_.triangles.size(), 20U);
   expect_parts(warning_of(stl_head() + bytes_of(20U) + flat_facets(20) + "with a note"),
-               "11 bytes after the 20 triangles");
+               "11 bytes after the last of 20 triangles");
   expect_no_warning(stl_head() + bytes_of(20U) + flat_facets(20) + std::string(500, '\0'));
   expect_parts(warning_of(stl_head() + bytes_of(0U) + flat_facets(50)), "declares 0 triangles",
                "holds 50, which were read");

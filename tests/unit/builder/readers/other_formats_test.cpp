@@ -55,6 +55,7 @@ std::vector<ForeignFile> meshes() {
       {"100 3 0 0\n" + nodes("", " "), "TetGen"},
       {"100 3 0 0\n" + nodes("  ", "  ", 0), "TetGen"},
       {"# a comment\n100 4 0\n" + nodes("", " "), "TetGen"},
+      {"830 3 0 0\n" + nodes("", " ") + "101 0.0", "TetGen"},  // cut off
       {"100 50 0 0 0\n" + nodes("", " ") + rows(50, "1 0 tri 1 2 3"), "AVS-UCD"},
       {"100 7 0 0 0 0 0\n" + xyz + rows(7, "1 2 3"), "UGRID"},
       {"100 7 3\n" + rows(100, "0.5 0.25 0") + rows(7, "1 2 3 0") + rows(3, "1 2 0"), "FreeFem"},
@@ -139,6 +140,13 @@ TEST_F(OtherFormatsTest, SimilarTablesOfPointsAreRead) {
       "7 5 5 5 5 5 5\n8 5 5 5 5 5 5\n3 5 5 5 5 5 5\n",
   };
   for (const std::string& text : cases) EXPECT_GE(read(text).positions.size(), 2U) << text;
+}
+
+TEST_F(OtherFormatsTest, TheLastOfTheCountedRowsHasItsNumber) {
+  std::string text = "120 0 0\n";
+  for (int i = 0; i < 100; ++i) text += std::to_string(i) + " 5 5\n";
+  for (int i = 0; i < 30; ++i) text += "3 1 1\n";
+  EXPECT_EQ(read(text).positions.size(), 131U);
 }
 
 TEST_F(OtherFormatsTest, NamedColumnsReadTheRowsOfAnyText) {

@@ -47,6 +47,14 @@ TEST_F(TextColumnsTest, NumbersOfDeletedPointsMayBeMissing) {
   EXPECT_EQ(scan.colours.at(7), (Colour{20, 30, 200}));
 }
 
+TEST_F(TextColumnsTest, CountsAsLongAsTheNumberedRowsAreRefused) {
+  const auto number = [](int i) { return std::to_string(7 + i) + " "; };
+  expect_parts(refusal_of("830 3 0 0\n" + table(50, number, nothing)), "line 1",
+               "column 1 numbers the rows from the second one on");
+  EXPECT_EQ(read("6 0 1 0\n" + table(50, number, nothing)).positions.size(), 51U);
+  EXPECT_EQ(read("2 0.5 0.25 0.125\n" + table(50, number, nothing)).positions.size(), 51U);
+}
+
 TEST_F(TextColumnsTest, RisingNumbersThatMayBeATimeAreRefused) {
   expect_parts(refusal_of(table(
                    100, [](int i) { return std::to_string(i * i) + " "; }, nothing)),
