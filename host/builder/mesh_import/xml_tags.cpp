@@ -6,7 +6,7 @@
 namespace tactree::builder {
 namespace {
 
-constexpr std::string_view kSpaces = " \t\r\n";
+constexpr std::string_view kXmlSpaces = " \t\r\n";
 
 std::string_view without_prefix(std::string_view name) {
   const std::size_t colon = name.find(':');
@@ -73,7 +73,7 @@ bool XmlTags::next() {
   if (closes_) tag.remove_prefix(1);
   is_empty_ = tag.ends_with('/');
   if (is_empty_) tag.remove_suffix(1);
-  const std::size_t name_end = std::min(tag.find_first_of(kSpaces), tag.size());
+  const std::size_t name_end = std::min(tag.find_first_of(kXmlSpaces), tag.size());
   name_ = without_prefix(tag.substr(0, name_end));
   read_attributes(tag.substr(name_end));
   return true;
@@ -82,14 +82,14 @@ bool XmlTags::next() {
 void XmlTags::read_attributes(std::string_view tag) {
   attributes_.clear();
   while (true) {
-    const std::size_t begin = tag.find_first_not_of(kSpaces);
+    const std::size_t begin = tag.find_first_not_of(kXmlSpaces);
     if (begin == std::string_view::npos) return;
     tag.remove_prefix(begin);
     const std::size_t equals = tag.find('=');
     if (equals == std::string_view::npos) return;
     std::string_view name = tag.substr(0, equals);
-    name = name.substr(0, name.find_first_of(kSpaces));
-    const std::size_t quote = tag.find_first_not_of(kSpaces, equals + 1);
+    name = name.substr(0, name.find_first_of(kXmlSpaces));
+    const std::size_t quote = tag.find_first_not_of(kXmlSpaces, equals + 1);
     if (quote == std::string_view::npos || (tag[quote] != '"' && tag[quote] != '\'')) return;
     const std::size_t end = tag.find(tag[quote], quote + 1);
     if (end == std::string_view::npos) return;
