@@ -1,6 +1,6 @@
 #pragma once
-// Reads a scan file: PLY, PCD, PTX, E57, LAS, text (XYZ, PTS, CSV), OBJ, STL, OFF; glTF, 3MF and the
-// formats of the assimp library (FBX, 3DS, COLLADA, ...) in a separate process with limits.
+// Reads a scan file: PLY, PCD, PTX, E57, LAS, text (XYZ, PTS, CSV), OBJ, STL, OFF; glTF, 3MF and
+// the formats of the assimp library (FBX, 3DS, COLLADA, ...) in a separate process with limits.
 //
 // The format is recognised by content, never by the file name. Files are untrusted: counts are
 // compared with the file size before memory is allocated for them.
