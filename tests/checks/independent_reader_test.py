@@ -3,7 +3,9 @@
 usage: independent_reader_test.py TACTREE FOLDER_OF_SEEDS
 """
 import csv
+import math
 import pathlib
+import random
 import struct
 import subprocess
 import sys
@@ -46,6 +48,25 @@ class IndependentReader(unittest.TestCase):
         paths = sorted(SEEDS.glob("kOk.*"))
         self.assertGreaterEqual(len(paths), 8)
         self.assertGreaterEqual(sum(self.compare(path) for path in paths), 3)
+
+    def test_interior(self):
+        path = SEEDS / "kOk.surface_interior"
+        blob = read_blob.parse(path.read_bytes())
+        numbers = random.Random(3)
+        places = [tuple(numbers.uniform(-0.08, 0.08) for _ in range(3)) for _ in range(500)]
+        answers = subprocess.run([TACTREE, "query", path, "--points", "-"], check=True, text=True,
+                                 input="".join("%.9g,%.9g,%.9g\n" % place for place in places),
+                                 stdout=subprocess.PIPE).stdout
+        rows = list(csv.DictReader(answers.splitlines()))
+        far = [(place, row) for place, row in zip(places, rows) if row["signed_distance_m"] == ""]
+        self.assertGreater(len(far), 250)
+        for place, row in far:
+            unit = [math.floor(single(c) / blob.step_m) for c in place]
+            here, _ = read_blob.interior(blob, unit)
+            self.assertEqual(row["inside"], str(int(here)), place)
+            self.assertEqual(here, math.dist(place, (0, 0, 0)) < 0.05)
+        for _, _, low in read_blob.walk(blob):
+            self.assertEqual(read_blob.interior(blob, low)[1], True, "material behind every leaf")
 
     def test_refuses_damage(self):
         data = (SEEDS / "kOk.surface").read_bytes()

@@ -22,6 +22,7 @@ class Blob:
     points: list
     normals: list
     neighbours: list
+    interior: bytes
 
 
 def refuse_unless(good, rule):
@@ -31,7 +32,7 @@ def refuse_unless(good, rule):
 
 def parse(data):
     refuse_unless(data[:8] == b"TACTREE\0", "kBadMagic")
-    major, _, header_bytes, total, checksum = struct.unpack_from("<HHIII", data, 8)
+    major, minor, header_bytes, total, checksum = struct.unpack_from("<HHIII", data, 8)
     refuse_unless(major == 1, "kBadVersion")
     refuse_unless(total == len(data), "kBadSize")
     refuse_unless(checksum == zlib.crc32(data[24:], zlib.crc32(data[:20])), "kBadChecksum")
@@ -49,6 +50,10 @@ def parse(data):
         cursor = (cursor + size + 3) // 4 * 4
     refuse_unless(cursor == total, "kBadSections")
 
+    begin, size = struct.unpack_from("<2I", data, 344) if minor >= 1 and header_bytes >= 352 else (0, 0)
+    refuse_unless(size in (0, counts["nodes"] + counts["leaves"]), "kBadSections")
+    refuse_unless(size == 0 or 352 <= begin <= header_bytes - size and profile == 0, "kBadSections")
+
     def words(name, letter):
         offset, size = sections[name]
         return struct.unpack_from(f"<{size // struct.calcsize(letter)}{letter}", data, offset)
@@ -59,7 +64,7 @@ def parse(data):
     leaves = [bases[i >> group_shift] + offset for i, offset in enumerate(offsets)]
     return Blob(depth, step, struct.unpack_from("<3i", data, 36), counts, nodes, directory_level,
                 words("directory", "I"), leaves, words("points", "I"), words("normals", "H"),
-                words("neighbours", "I"))
+                words("neighbours", "I"), data[begin:begin + size])
 
 
 def children(blob, node, level):
@@ -97,6 +102,27 @@ def walk(blob):
 
     yield from enter(0, 0, blob.root_min)
     refuse_unless(next_leaf == blob.counts["leaves"] and next_node == blob.counts["nodes"], "kBadTree")
+
+
+def interior(blob, place):
+    """(in the material, material behind the surface around it), for a place in lattice units."""
+    q = [place[a] - blob.root_min[a] for a in range(3)]
+    if not blob.interior or not all(0 <= v < 2048 << blob.depth for v in q):
+        return False, False
+    node = 0
+    for level in range(blob.depth):
+        shift = 11 + blob.depth - level - 1
+        octant, eighth = (sum((v >> s & 1) << a for a, v in enumerate(q)) for s in (shift, shift - 1))
+        marked = bool(blob.interior[node] >> octant & 1)
+        nodes, leaves = children(blob, node, level)
+        before = (1 << octant) - 1
+        if leaves >> 24 >> octant & 1:
+            leaf = (leaves & 0xFFFFFF) + bin(leaves >> 24 & before).count("1")
+            return bool(blob.interior[blob.counts["nodes"] + leaf] >> eighth & 1), marked
+        if not nodes >> 24 >> octant & 1:
+            return marked, marked
+        refuse_unless(not marked, "kBadTree")
+        node = (nodes & 0xFFFFFF) + bin(nodes >> 24 & before).count("1")
 
 
 def position(blob, word, level, low):

@@ -95,6 +95,9 @@ void write_valid_blobs(const fs::path& folder) {
   write(folder / "kOk.surface", blob_of(sphere(40, Profile::kSurface, {0, 0, 0}, 0.05)));
   write(folder / "kOk.surface_directory", blob_of(sphere(600, Profile::kSurface, {0, 0, 0}, 0.05)));
   write(folder / "kOk.surface_point", blob_of(sphere(1, Profile::kSurface, {0, 0, 0}, 0.05)));
+  Model body = sphere(2000, Profile::kSurface, {0, 0, 0}, 0.05);
+  body.tells_interior = true;
+  write(folder / "kOk.surface_interior", blob_of(body));
   Model paper = sphere(120, Profile::kPaper, {0.0, -0.3, 0.0}, 0.04);
   give_materials(paper, 2);
   write(folder / "kOk.paper_materials", blob_of(paper));
@@ -167,6 +170,16 @@ void write_broken_blobs(const fs::path& folder) {
   items_of<std::uint32_t>(listed, header_of(listed).directory)[0] ^= 1U;
   tactree::builder::seal(listed);
   write(folder / "kBadTree.directory", listed);
+  Model body = sphere(2000, Profile::kSurface, {0, 0, 0}, 0.05);
+  body.tells_interior = true;
+  Bytes marked = blob_of(body);
+  marked[sizeof(BlobHeader) + sizeof(tactree::core::BlobExtension)] = std::byte{0xFF};
+  tactree::builder::seal(marked);
+  write(folder / "kBadTree.interior", marked);
+  Bytes longer = blob_of(body);
+  ++items_of<tactree::core::BlobExtension>(longer, {sizeof(BlobHeader), 0})->interior.bytes;
+  tactree::builder::seal(longer);
+  write(folder / "kBadSections.interior", longer);
   Bytes flipped = good;
   flipped.back() ^= std::byte{1};
   write(folder / "kBadChecksum.bit", flipped);

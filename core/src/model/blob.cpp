@@ -59,7 +59,8 @@ class BlobValidator {
     BlobStatus status = check_envelope();
     if (status == BlobStatus::kOk && !header_is_sane()) status = BlobStatus::kBadHeader;
     if (status == BlobStatus::kOk && !figures_are_sane()) status = BlobStatus::kBadFigures;
-    if (status == BlobStatus::kOk && !sections_tile()) status = BlobStatus::kBadSections;
+    if (status == BlobStatus::kOk && !(sections_tile() && interior_fits()))
+      status = BlobStatus::kBadSections;
     if (status != BlobStatus::kOk) return status;
     attach();
     if (!leaves_are_sane()) return BlobStatus::kBadLeaves;
@@ -196,6 +197,18 @@ class BlobValidator {
            take(h.material_indices, index_bytes) && cursor_ == h.total_bytes;
   }
 
+  // The interior lies within the header, behind the extension.
+  bool interior_fits() {
+    const BlobHeader& h = *header_;
+    constexpr std::uint32_t kBegin = kHeaderBytes + sizeof(BlobExtension);
+    if (h.version_minor < 1 || h.header_bytes < kBegin) return true;
+    interior_ = &reinterpret_cast<const BlobExtension*>(bytes_.data() + kHeaderBytes)->interior;
+    if (interior_->bytes == 0) return interior_->offset == 0;
+    const std::uint64_t end = std::uint64_t{interior_->offset} + interior_->bytes;
+    return is_surface() && interior_->offset >= kBegin && end <= h.header_bytes &&
+           interior_->bytes == std::uint64_t{h.node_count} + h.leaf_count;
+  }
+
   template <typename T>
   const T* at(const BlobSection& section) const {
     if (section.bytes == 0) return nullptr;
@@ -214,6 +227,7 @@ class BlobValidator {
     view_.neighbours_ = at<std::uint32_t>(h.neighbours);
     view_.materials_ = at<BlobMaterial>(h.materials);
     view_.material_indices_ = at<std::uint8_t>(h.material_indices);
+    view_.interior_ = interior_ == nullptr ? nullptr : at<std::uint8_t>(*interior_);
     view_.step_m_ = h.step_m;
     view_.inverse_step_ = 1.0F / h.step_m;
     view_.reach_m_ = h.reach_m;
@@ -292,6 +306,7 @@ class BlobValidator {
     const std::uint32_t node_mask = node.nodes >> 24;
     const std::uint32_t leaf_mask = node.leaves >> 24;
     if ((node_mask & leaf_mask) != 0 || (node_mask | leaf_mask) == 0) return false;
+    if (view_.interior_ != nullptr && (view_.interior_[index] & node_mask) != 0) return false;
     if (!take_group(node.nodes, header_->node_count, seen.nodes)) return false;
     if (!take_group(node.leaves, header_->leaf_count, seen.leaves)) return false;
     if (leaf_mask != 0 && level + 1 > seen.depth) seen.depth = level + 1;
@@ -384,7 +399,8 @@ class BlobValidator {
   std::span<const std::byte> bytes_;
   BlobView& view_;
   const BlobHeader* header_ = nullptr;
-  std::uint64_t cursor_ = 0;  // end of the sections checked so far
+  const BlobSection* interior_ = nullptr;  // of the header's extension, if there is one
+  std::uint64_t cursor_ = 0;               // end of the sections checked so far
 };
 
 BlobStatus open_blob(std::span<const std::byte> bytes, BlobView& view) {

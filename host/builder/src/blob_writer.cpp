@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "ball_bound.hpp"
+#include "interior.hpp"
 #include "lattice.hpp"
 #include "normal_code.hpp"
 #include "octree_builder.hpp"
@@ -307,10 +308,25 @@ void append_materials(Serialiser& out, core::BlobHeader& header, const Model& mo
   header.material_indices = out.append(indices);
 }
 
-std::vector<std::byte> serialise(const Model& model, const Octree& tree) {
+/// An extension of the header: a reader of version 1.0 steps over it.
+void append_interior(Serialiser& out, core::BlobHeader& header,
+                     const std::vector<std::uint8_t>& interior) {
+  if (interior.empty()) {
+    return;
+  }
+  const core::BlobExtension extension{
+      {sizeof header + sizeof(core::BlobExtension), static_cast<std::uint32_t>(interior.size())}};
+  out.append(&extension, sizeof extension);
+  out.append(interior);
+  header.header_bytes = static_cast<std::uint32_t>(out.bytes().size());
+}
+
+std::vector<std::byte> serialise(const Model& model, const Octree& tree,
+                                 const std::vector<std::uint8_t>& interior) {
   core::BlobHeader header = make_header(model, tree);
   Serialiser out;
   out.append(&header, sizeof header);
+  append_interior(out, header, interior);
   append_nodes(out, header, model.profile, tree);
   append_leaves(out, header, tree);
   append_points(out, header, model, tree);
@@ -338,6 +354,9 @@ void check_model(const Model& model) {
   if (model.materials.size() > 1 && model.material_indices.size() != model.positions.size()) {
     throw std::invalid_argument(
         "write_blob: the number of material indices differs from that of positions");
+  }
+  if (!model.doubtful.empty() && model.doubtful.size() != model.positions.size()) {
+    throw std::invalid_argument("write_blob: not one doubt per position");
   }
   if (!(model.spacing_m > 0.0) || !(model.reach_m >= 0.0)) {
     throw std::invalid_argument("write_blob: the spacing must be positive");
@@ -367,7 +386,13 @@ WrittenBlob write_blob(const Model& model) {
   const Octree tree =
       paper ? build_paper_octree(model, low, high) : build_surface_octree(model, low, high);
   WrittenBlob written;
-  written.bytes = serialise(model, tree);
+  std::vector<std::uint8_t> interior;
+  if (model.tells_interior && !paper) {
+    const Interior found({model.positions, model.normals, model.doubtful, model.spacing_m});
+    interior = interior_bytes(found, tree);
+    written.backed_share = found.backed_share();
+  }
+  written.bytes = serialise(model, tree, interior);
   written.source_index = tree.order;
   written.merged = tree.merged;
   core::BlobView view;

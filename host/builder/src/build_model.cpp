@@ -217,6 +217,8 @@ class Pipeline {
     model_.positions = choice.points.positions();
     model_.normals = choice.points.normals();
     model_.material_indices = choice.points.cloud().materials;
+    model_.tells_interior = true;
+    model_.doubtful = doubts_of(choice);
     WrittenBlob blob = write_blob(model_);
     check(blob);
     if (options_.flash_budget_bytes && blob.bytes.size() > *options_.flash_budget_bytes) {
@@ -225,23 +227,26 @@ class Pipeline {
           blob.bytes.size(), *options_.flash_budget_bytes));
     }
     count_materials(blob);
-    collect_doubtful(choice, blob);
+    collect_doubtful(blob);
     report_.spacing_m = model_.spacing_m;
     report_.largest_gap_m = model_.largest_gap_m;
     report_.merged = blob.merged;
+    report_.backed_share = blob.backed_share;
     report_.output_points = blob.source_index.size();
     report_.bounds = bounds_of(model_.positions);
     report_.bytes = blob.bytes.size();
     return blob;
   }
 
-  void collect_doubtful(const DensityChoice& choice, const WrittenBlob& blob) {
-    if (doubtful_.empty() && !options_.two_sided_m) {
-      doubtful_ = choice.points.cloud().doubtful;
-    }
+  std::vector<std::uint8_t> doubts_of(const DensityChoice& choice) const {
+    return doubtful_.empty() && !options_.two_sided_m ? choice.points.cloud().doubtful : doubtful_;
+  }
+
+  void collect_doubtful(const WrittenBlob& blob) {
+    const std::vector<std::uint8_t>& doubtful = model_.doubtful;
     doubtful_of_blob_.assign(blob.source_index.size(), 0);
-    for (std::size_t i = 0; i < doubtful_of_blob_.size() && !doubtful_.empty(); ++i) {
-      doubtful_of_blob_[i] = doubtful_[blob.source_index[i]];
+    for (std::size_t i = 0; i < doubtful_of_blob_.size() && !doubtful.empty(); ++i) {
+      doubtful_of_blob_[i] = doubtful[blob.source_index[i]];
     }
   }
 

@@ -261,6 +261,7 @@ ordered_json to_json(const BuildReport& report, const BuildOptions& build) {
           {"output_points", report.output_points},
           {"spacing_m", report.spacing_m},
           {"largest_gap_m", report.largest_gap_m},
+          {"backed_share", report.backed_share},
           {"openings", openings_json(report)},
           {"pieces", report.pieces},
           {"orientation", orientation_json(report.orientation)},
@@ -325,12 +326,27 @@ void print_orientation(const builder::OrientationReport& orientation) {
              builder::describe(orientation.pieces.front().basis));
 }
 
+void print_interior(const BuildReport& report, const BuildOptions& build) {
+  if (build.profile == core::Profile::kPaper) {
+    return;
+  }
+  if (report.backed_share == 0.0) {
+    fmt::print("inside    none: a sheet, which a hand feels from both sides\n");
+    return;
+  }
+  fmt::print("inside    behind {:.0f} % of the surface", 100.0 * report.backed_share);
+  fmt::print("{}\n", report.backed_share < 0.995
+                         ? "; the rest are sheets, which a hand feels from both sides"
+                         : "");
+}
+
 void print(const BuildReport& report, const BuildOptions& build, const std::string& output) {
   print_input(report);
   const Eigen::Vector3d size = report.bounds.sizes();
   fmt::print("model     {:.4g} x {:.4g} x {:.4g} m, {} points, spacing {}\n", size.x(), size.y(),
              size.z(), report.output_points, builder::length_text(report.spacing_m));
   print_orientation(report.orientation);
+  print_interior(report, build);
   print_gaps(report);
   for (std::size_t i = 0; i < report.material_points.size(); ++i) {
     fmt::print("material  {}: {} points\n", material_name(build, i), report.material_points[i]);

@@ -15,6 +15,7 @@
 #include "output_file.hpp"
 #include "scan/preview.hpp"
 #include "tactree/builder/openings.hpp"
+#include "tactree/core/interior.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -81,6 +82,21 @@ nlohmann::json materials_json(const BlobView& view) {
   return list;
 }
 
+std::uint32_t interior_bytes(const BlobView& view) {
+  return view.interior() == nullptr ? 0U : view.node_count() + view.leaf_count();
+}
+
+/// Of the points: with material behind them.
+double backed_share(const BlobView& view) {
+  std::uint32_t backed = 0;
+  for (core::LeafCursor cursor(view); !cursor.done(); cursor.next()) {
+    const core::Leaf& leaf = cursor.leaf();
+    const core::Vec3 inside_leaf = view.position(leaf, leaf.first_point);
+    backed += core::interior_at(view, inside_leaf).behind ? leaf.point_count : 0U;
+  }
+  return static_cast<double>(backed) / view.point_count();
+}
+
 nlohmann::json to_json(const BlobView& view) {
   const BlobHeader& h = view.header();
   const auto triple = [](const float* v) {
@@ -98,14 +114,16 @@ nlohmann::json to_json(const BlobView& view) {
       {"bytes", h.total_bytes},
       {"bytes_per_point", bytes_per_point(h)},
       {"section_bytes",
-       {{"header", h.header_bytes},
+       {{"header", h.header_bytes - interior_bytes(view)},
         {"nodes", h.nodes.bytes},
         {"directory", h.directory.bytes},
         {"leaves", h.leaf_bases.bytes + h.leaf_offsets.bytes},
         {"points", h.points.bytes},
         {"normals", h.normals.bytes},
         {"neighbours", h.neighbours.bytes},
-        {"materials", h.materials.bytes + h.material_indices.bytes}}},
+        {"materials", h.materials.bytes + h.material_indices.bytes},
+        {"interior", interior_bytes(view)}}},
+      {"backed_share", backed_share(view)},
       {"spacing_m", shortest(h.spacing_m)},
       {"support_radius_m", shortest(h.support_radius_m)},
       {"reach_m", shortest(h.reach_m)},
@@ -131,7 +149,8 @@ nlohmann::json to_json(const BlobView& view) {
   };
 }
 
-void print_sizes(const BlobHeader& h) {
+void print_sizes(const BlobView& view) {
+  const BlobHeader& h = view.header();
   fmt::print("size          {} bytes, {:.3f} bytes per point\n", h.total_bytes, bytes_per_point(h));
   const auto row = [&](const char* name, std::uint32_t bytes) {
     if (bytes != 0) {
@@ -139,7 +158,7 @@ void print_sizes(const BlobHeader& h) {
                  100.0 * bytes / h.total_bytes, static_cast<double>(bytes) / h.point_count);
     }
   };
-  row("header", h.header_bytes);
+  row("header", h.header_bytes - interior_bytes(view));
   row("octree", h.nodes.bytes);
   row("directory", h.directory.bytes);
   row("leaves", h.leaf_bases.bytes + h.leaf_offsets.bytes);
@@ -147,6 +166,7 @@ void print_sizes(const BlobHeader& h) {
   row("normals", h.normals.bytes);
   row("neighbours", h.neighbours.bytes);
   row("materials", h.materials.bytes + h.material_indices.bytes);
+  row("interior", interior_bytes(view));
 }
 
 void print_materials(const BlobView& view) {
@@ -183,8 +203,12 @@ void print(const BlobView& view) {
       "query\n",
       h.points_per_leaf_max, h.points_per_ball_max, millimetres(h.reach_m), h.leaves_per_query_max,
       h.points_per_query_max);
+  if (view.interior() != nullptr) {
+    fmt::print("interior      material behind {:.0f} % of the points\n",
+               100.0 * backed_share(view));
+  }
   print_materials(view);
-  print_sizes(h);
+  print_sizes(view);
 }
 
 // Nine digits preserve a float32 exactly.

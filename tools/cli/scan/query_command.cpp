@@ -15,6 +15,7 @@
 #include "option_checks.hpp"
 #include "output_file.hpp"
 #include "scan/read_points.hpp"
+#include "tactree/core/interior.hpp"
 #include "tactree/core/nearest.hpp"
 #include "tactree/core/paper_mode.hpp"
 #include "tactree/core/surface.hpp"
@@ -38,6 +39,7 @@ struct Answer {
   std::uint32_t nearest = core::kNoPoint;
   double distance_m = 0.0;
   core::SurfaceProjection surface;
+  std::optional<bool> inside;  // none: the blob does not tell
 };
 
 // The queries of the controller, which are exact up to the reach of the blob. For larger radii,
@@ -68,10 +70,22 @@ class Query {
     if (has_surface_) {
       result.surface = core::project_to_surface(view_, probe, candidates_);
     }
+    if (view_.interior() != nullptr) {
+      result.inside = is_in_material(probe, result.surface);
+    }
     return result;
   }
 
  private:
+  /// As Proxy::inside(). Precondition: candidates_ are those of the projection.
+  [[nodiscard]] bool is_in_material(Vec3 probe, const core::SurfaceProjection& surface) const {
+    if (!surface.supported) {
+      return core::interior_at(view_, probe).here;
+    }
+    return surface.signed_distance < 0.0F &&
+           core::interior_at(view_, candidates_[0].position).behind;
+  }
+
   [[nodiscard]] bool in_any_box(Vec3 probe) const {
     const float half = 0.5F * view_.header().aabb_edge_m;
     for (const core::SurfacePoint& p : points_) {
@@ -114,12 +128,13 @@ void append_row(std::string& out, Vec3 probe, const Answer& a) {
     fmt::format_to(to, "{},{:.9g},", a.nearest, a.distance_m);
   }
   if (!a.surface.supported) {
-    fmt::format_to(to, ",,,,,,\n");
-    return;
+    fmt::format_to(to, ",,,,,,");
+  } else {
+    const core::SurfaceProjection& s = a.surface;
+    fmt::format_to(to, "{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}", s.point.x, s.point.y,
+                   s.point.z, s.normal.x, s.normal.y, s.normal.z, s.signed_distance);
   }
-  const core::SurfaceProjection& s = a.surface;
-  fmt::format_to(to, "{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}\n", s.point.x, s.point.y,
-                 s.point.z, s.normal.x, s.normal.y, s.normal.z, s.signed_distance);
+  fmt::format_to(to, ",{}\n", a.inside ? (*a.inside ? "1" : "0") : "");
 }
 
 struct Totals {
@@ -141,7 +156,7 @@ Totals answer_all(Query& query, const std::vector<std::array<double, 3>>& rows) 
   Totals totals;
   std::string out =
       "x,y,z,contact_paper,contact,nearest,distance_m,surface_x,surface_y,surface_z,normal_x,"
-      "normal_y,normal_z,signed_distance_m\n";
+      "normal_y,normal_z,signed_distance_m,inside\n";
   for (const auto& row : rows) {
     const Vec3 probe{static_cast<float>(row[0]), static_cast<float>(row[1]),
                      static_cast<float>(row[2])};
@@ -196,7 +211,7 @@ void add_query_command(CLI::App& app, int&) {
       "query",
       "Prints contact, nearest point and surface for positions as CSV:\n"
       "x,y,z,contact_paper,contact,nearest,distance_m,surface_{x,y,z},normal_{x,y,z},"
-      "signed_distance_m");
+      "signed_distance_m,inside (1: in the material; empty: the blob does not tell)");
   verb->add_option("BLOB", options->blob, "blob to query")->required();
   verb->add_option("--points", options->points,
                    "CSV file with rows x,y,z (m, model frame); -: standard input")

@@ -26,7 +26,8 @@ enum class BlobStatus : std::uint8_t {
   kBadHeader,      ///< a count, name or reserved field is impossible
   kBadFigures,     ///< a length, bound or lattice value is impossible or contradicts another
   kBadSections,    ///< sections do not tile the blob, or disagree with the counts
-  kBadTree,        ///< a node does not follow the canonical order, or the directory the nodes
+  kBadTree,        ///< a node does not follow the canonical order, or the directory or the interior
+                   ///< the nodes
   kBadLeaves,      ///< a leaf is empty, too full or out of order
   kBadPoints,      ///< points of a leaf are not in ascending order
   kBadNeighbours,  ///< a neighbour entry refers to no node or leaf
@@ -131,6 +132,9 @@ class BlobView {
     return neighbours_ + 6U * leaf_number;
   }
 
+  /// Per node, then per leaf: see blob_format.hpp. Null: the blob does not tell.
+  [[nodiscard]] const std::uint8_t* interior() const { return interior_; }
+
   [[nodiscard]] std::uint32_t material_count() const { return material_count_; }
   /// The first material if the index is out of range. Precondition: material_count() > 0.
   [[nodiscard]] const BlobMaterial& material(std::uint32_t index) const {
@@ -155,6 +159,7 @@ class BlobView {
   const std::uint32_t* neighbours_ = nullptr;
   const BlobMaterial* materials_ = nullptr;
   const std::uint8_t* material_indices_ = nullptr;
+  const std::uint8_t* interior_ = nullptr;
   float step_m_ = 0.0F;
   float inverse_step_ = 0.0F;
   float reach_m_ = 0.0F;

@@ -2,7 +2,8 @@
 // The layout of a blob, as specified by docs/FORMAT.md. Little-endian, position-independent, 4-byte
 // aligned.
 //
-// A blob is a header followed by sections that tile the rest of it without gaps:
+// A blob is a header, which may hold an extension and the interior, followed by sections that tile
+// the rest of it without gaps:
 //   nodes [, directory], leaf bases, leaf offsets, points, normals [, neighbours]
 //   [, materials [, material indices]]
 //
@@ -23,7 +24,7 @@ static_assert(std::endian::native == std::endian::little, "blobs are read in pla
 
 inline constexpr std::uint8_t kBlobMagic[8] = {'T', 'A', 'C', 'T', 'R', 'E', 'E', 0};
 inline constexpr std::uint16_t kBlobMajor = 1;
-inline constexpr std::uint16_t kBlobMinor = 0;
+inline constexpr std::uint16_t kBlobMinor = 1;
 
 inline constexpr std::uint32_t kMaxDepth = 11;  ///< octree levels below the root
 inline constexpr std::uint32_t kLeafShift = 11;
@@ -112,6 +113,11 @@ struct BlobHeader {
   std::uint32_t reserved[4];          ///< 0
 };
 
+/// Follows the header if version_minor >= 1 and header_bytes has room for it.
+struct BlobExtension {
+  BlobSection interior;  ///< within header_bytes, behind this
+};
+
 /// An inner node: eight octants, each empty, an inner node or a leaf. Octant = x | y << 1 | z << 2,
 /// a bit being set for the upper half. Children of one kind are consecutive, in octant order.
 /// In the surface profile the level of a node determines the kind of its children, and only the
@@ -142,6 +148,15 @@ inline constexpr std::uint32_t kNoNode = 0xFFFFFFFFU;  ///< directory entry: emp
 // Within a leaf the words ascend.
 inline constexpr std::uint32_t kPointPositionMask = 0xFFFFFFFCU;
 
+// The interior tells material from free space: one byte per node, then one per leaf; in the surface
+// profile only.
+//   node  bit o: octant o is empty: it lies in the material
+//                octant o is a leaf: there is material behind its points, seen along their normals
+//                octant o is a node: 0
+//   leaf  bit o: its eighth o lies in the material, where that is further from all points than
+//                reach_m
+// Without it, each side of a surface counts as free.
+
 // The neighbour table has six entries a leaf (-x +x -y +y -z +z), each the cell of the leaf's own
 // size on that side: the leaf that is or contains it, or the node that divides it.
 //   bits 0-23: leaf number or node index   bits 24-27: its level   bit 31: it is a node
@@ -155,6 +170,7 @@ static_assert(sizeof(BlobDouble) == 8);
 static_assert(sizeof(BlobNode) == 8);
 static_assert(sizeof(BlobMaterial) == 32);
 static_assert(sizeof(BlobHeader) == 344);
+static_assert(sizeof(BlobExtension) == 8);
 static_assert(alignof(BlobHeader) == 4);
 static_assert(offsetof(BlobHeader, checksum) == 20);
 static_assert(offsetof(BlobHeader, profile) == 24);

@@ -262,21 +262,67 @@ TEST_P(Corruption, EveryHeaderFieldIsChecked) {
   }
 }
 
-TEST_P(Corruption, NewerMinorWithALongerHeaderIsRead) {
-  Bytes bytes = golden(GetParam());
+/// Puts bytes behind the header; the sections move.
+Bytes with_longer_header(Bytes bytes, std::uint16_t minor, const std::vector<std::byte>& more) {
   BlobHeader header = header_of(bytes);
-  header.version_minor = 9;
-  header.header_bytes += 8;
-  header.total_bytes += 8;
+  const auto size = static_cast<std::uint32_t>(more.size());
+  header.version_minor = minor;
+  header.header_bytes += size;
+  header.total_bytes += size;
   for (core::BlobSection* s :
        {&header.nodes, &header.directory, &header.leaf_bases, &header.leaf_offsets, &header.points,
         &header.normals, &header.neighbours, &header.materials, &header.material_indices}) {
-    s->offset += 8;
+    s->offset += size;
   }
-  bytes.insert(bytes.begin() + sizeof header, 8, std::byte{0x5A});
+  bytes.insert(bytes.begin() + sizeof header, more.begin(), more.end());
   std::memcpy(bytes.data(), &header, sizeof header);
   builder::seal(bytes);
-  EXPECT_EQ(open(bytes), BlobStatus::kOk);
+  return bytes;
+}
+
+TEST_P(Corruption, ReadsANewerMinorWithALongerHeader) {
+  std::vector<std::byte> more(16, std::byte{0x5A});
+  std::fill_n(more.begin(), sizeof(core::BlobExtension), std::byte{0});  // no interior
+  EXPECT_EQ(open(with_longer_header(golden(GetParam()), 9, more)), BlobStatus::kOk);
+}
+
+TEST_P(Corruption, SkipsWhatFollowsTheHeaderOfVersion1_0) {
+  const std::vector<std::byte> more(8, std::byte{0x5A});
+  EXPECT_EQ(open(with_longer_header(golden(GetParam()), 0, more)), BlobStatus::kOk);
+  EXPECT_EQ(open(with_longer_header(golden(GetParam()), 1, more)), BlobStatus::kBadSections);
+}
+
+/// The golden blob with an interior that is described by `extension`.
+BlobStatus open_with_interior(Profile profile, core::BlobSection interior,
+                              std::byte value = std::byte{0}) {
+  std::vector<std::byte> more(sizeof interior);
+  std::memcpy(more.data(), &interior, sizeof interior);
+  const BlobHeader header = header_of(golden(profile));
+  more.resize(more.size() + (header.node_count + header.leaf_count + 3U) / 4U * 4U, value);
+  return open(with_longer_header(golden(profile), 1, more));
+}
+
+TEST(Corruption, ChecksTheInterior) {
+  const BlobHeader header = header_of(golden(Profile::kSurface));
+  const std::uint32_t bytes = header.node_count + header.leaf_count;
+  const std::uint32_t end = 352U + (bytes + 3U) / 4U * 4U;
+  EXPECT_EQ(open_with_interior(Profile::kSurface, {352, bytes}), BlobStatus::kOk);
+  EXPECT_EQ(open_with_interior(Profile::kSurface, {end - bytes, bytes}), BlobStatus::kOk);
+  for (const core::BlobSection bad : {core::BlobSection{348, bytes},
+                                      {end - bytes + 1U, bytes},
+                                      {0xFFFFFFF0U, bytes},
+                                      {352, bytes - 1U},
+                                      {352, bytes + 1U},
+                                      {352, 0}}) {
+    EXPECT_EQ(open_with_interior(Profile::kSurface, bad), BlobStatus::kBadSections)
+        << bad.offset << " " << bad.bytes;
+  }
+  EXPECT_EQ(open_with_interior(Profile::kSurface, {352, bytes}, std::byte{0xFF}),
+            BlobStatus::kBadTree)
+      << "marks octants that are nodes";
+  const BlobHeader paper = header_of(golden(Profile::kPaper));
+  EXPECT_EQ(open_with_interior(Profile::kPaper, {352, paper.node_count + paper.leaf_count}),
+            BlobStatus::kBadSections);
 }
 
 struct WordCase {

@@ -96,6 +96,7 @@ struct BuildReport {
 
   double spacing_m = 0.0;
   double largest_gap_m = 0.0;
+  double backed_share = 0.0;  ///< of the points: with material behind them; others are on sheets
   std::vector<Opening> openings;  ///< wider than the support radius, widest first
   std::uint32_t pieces = 0;       ///< connected pieces, if normals were estimated; else 0
   OrientationReport orientation;

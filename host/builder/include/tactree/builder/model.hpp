@@ -18,12 +18,14 @@ struct Model {
   std::vector<Eigen::Vector3f> normals;        ///< unit length, outward; one per position
   std::vector<std::uint8_t> material_indices;  ///< empty, or one per position
   std::vector<core::BlobMaterial> materials;
+  std::vector<std::uint8_t> doubtful;  ///< empty, or one per position: 1 if its side is doubtful
 
   double spacing_m = 0.0;         ///< h
   double support_radius_m = 0.0;  ///< R
   double reach_m = 0.0;           ///< R + slack
   double largest_gap_m = 0.0;
   core::Profile profile = core::Profile::kSurface;
+  bool tells_interior = false;  ///< `surface` profile: find and store where the material is
   std::uint32_t points_per_leaf_wanted =
       10;  ///< `paper` profile: leaves with more points are split
 
@@ -38,6 +40,7 @@ struct WrittenBlob {
   std::vector<std::byte> bytes;             ///< 4-byte aligned storage
   std::vector<std::uint32_t> source_index;  ///< blob point -> model position
   std::uint64_t merged = 0;                 ///< points that shared a lattice site with another
+  double backed_share = 0.0;  ///< of the points: with material behind them, where the blob tells
 };
 
 /// Quantises, builds the octree and serialises; the result has passed core::open_blob().
