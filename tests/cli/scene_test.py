@@ -102,7 +102,7 @@ class Scenes(unittest.TestCase):
         self.assertAlmostEqual(bodies[0]["force_max_N"], bodies[1]["force_max_N"], delta=0.01)
 
     def test_a_blob_given_twice_is_identified_by_its_index(self):
-        run, _ = self.report([{"blob": 2}, {"blob": 1}], blobs=("sheet.blob", "sheet.blob", "ball.blob"))
+        run, _ = self.report([{"blob": 2, "pose": at(0, 0, -0.02)}, {"blob": 1}], blobs=("sheet.blob", "sheet.blob", "ball.blob"))
         self.assertEqual([b["blob"] for b in run["bodies"]], ["ball.blob", "sheet.blob"])
 
     def test_a_body_at_rest_equals_a_run_without_a_scene(self):

@@ -4,6 +4,8 @@
 
 #include "tactree/core/proxy.hpp"
 
+#include "tactree/core/interior.hpp"
+
 namespace tactree::core {
 namespace {
 
@@ -55,6 +57,7 @@ void Proxy::reset(Vec3 probe) {
   candidates_.clear();
   position_ = probe;
   lost_contact_ = false;
+  inside_ = false;
   lose_support();
 }
 
@@ -68,10 +71,25 @@ void Proxy::update(const BlobView& view, Vec3 probe, const Friction& friction,
   lost_contact_ = false;
   if (in_contact()) {
     slide(view, probe, friction);
+  } else if (asks_) {
+    look_behind(view);  // at most: passes per Scene::update together passes
   }
   if (!in_contact()) {
     sweep(view, probe);
   }
+}
+
+// Where no point is in reach. Costs less than a pass.
+[[gnu::noinline]] void Proxy::look_around(const BlobView& view) {
+  budget_.spend_passes(1U);
+  inside_ = interior_at(view, position_).here;
+}
+
+// Cells of the octree near the surface may be on both sides of it, but every point has a leaf.
+[[gnu::noinline]] void Proxy::look_behind(const BlobView& view) {
+  budget_.spend_passes(1U);
+  inside_ = interior_at(view, candidates_[0].position).behind;
+  asks_ = false;
 }
 
 bool Proxy::gather(const BlobView& view, Vec3 x) {
@@ -124,28 +142,37 @@ void Proxy::sweep(const BlobView& view, Vec3 probe) {
       return;
     }
     visit(view, x);  // at most: fits per Scene::update together fits
-    if (in_contact() || last) {
+    if (in_contact() || last || asks_) {
       return;
     }
   }
 }
 
+// False: no point is in reach.
+bool Proxy::has_reference(const BlobView& view, Vec3 x) {
+  if (candidates_.count() == 0U) {
+    lose_support();
+    return false;
+  }
+  if (state_ != State::kUntracked) {
+    return true;
+  }
+  budget_.spend_passes(1U);
+  // at most: passes per Scene::update together passes
+  const Candidate* const nearest = nearest_candidate(candidates_, x, view.support_radius_m());
+  if (nearest == nullptr) {
+    return false;
+  }
+  reference_ = nearest->normal;
+  return true;
+}
+
 void Proxy::visit(const BlobView& view, Vec3 x) {
   const Vec3 step = x - position_;
   position_ = x;
-  if (candidates_.count() == 0U) {
-    budget_.spend_passes(1U);
-    lose_support();
+  if (!has_reference(view, x)) {
+    look_around(view);  // at most: passes per Scene::update together passes
     return;
-  }
-  if (state_ == State::kUntracked) {
-    budget_.spend_passes(1U);
-    // at most: passes per Scene::update together passes
-    const Candidate* const nearest = nearest_candidate(candidates_, x, view.support_radius_m());
-    if (nearest == nullptr) {
-      return;
-    }
-    reference_ = nearest->normal;
   }
   const bool was_smooth = near_.count == 0U;
   const SurfaceFit fit = evaluate(view, x, reference_);
@@ -169,12 +196,12 @@ void Proxy::visit(const BlobView& view, Vec3 x) {
   if (passes_by(fit, step)) {
     reference_ = fit.back.normal;
     near_.count = 0;
+    inside_ = inside_ && side_ < 0.0F;
     state_ = State::kTracking;
     return;
   }
   if (!is_tracking()) {
-    side_ = fit.distance < 0.0F ? -1.0F : 1.0F;
-    state_ = State::kTracking;
+    begin_tracking(fit.distance);
   }
   refer_to(fit, was_smooth);
   strength_ = fit.strength;
@@ -184,9 +211,23 @@ void Proxy::visit(const BlobView& view, Vec3 x) {
     lowest = planes_.plane[i].distance < planes_.plane[lowest].distance ? i : lowest;
   }
   make_main(lowest);
-  if (planes_.plane[0].distance < 0.0F) {
-    begin_contact(view);
+  if (!(planes_.plane[0].distance < 0.0F) || asks_) {
+    return;
   }
+  if (inside_) {  // it leaves the material
+    inside_ = false;
+    side_ = 1.0F;
+    return;
+  }
+  begin_contact(view);
+}
+
+// Behind a surface: whether in its material, the next tick finds out before it goes on.
+void Proxy::begin_tracking(float distance) {
+  asks_ = distance < 0.0F;
+  inside_ = inside_ && asks_;
+  side_ = asks_ ? -1.0F : 1.0F;
+  state_ = State::kTracking;
 }
 
 // The step went around the edge of a plate or over a ridge: it was in front of the back when it
@@ -437,6 +478,7 @@ void Proxy::lose_support() {
   reference_ = {};
   near_.count = 0;
   side_ = 1.0F;
+  asks_ = false;
 }
 
 }  // namespace tactree::core

@@ -78,6 +78,7 @@ Rendering Renderer::render_proxy(const BlobView& view, const Configuration& c, V
   r.proxy = proxy_.position();
   r.complete = proxy_.complete();
   r.lost = proxy_.lost_contact();
+  r.inside = proxy_.inside();
   if (!proxy_.in_contact()) {
     return r;
   }

@@ -240,10 +240,10 @@ bool Scene::assign_slots() {
   return crowded;
 }
 
-void Scene::release_inner_contacts() {
+void Scene::release_backs() {
   for (Slot& slot : slots_) {  // bound: kMaxReachableBodies
     if (slot.body != kNoBody) {
-      slot.renderer.release_inner_contact(bodies_[slot.body].probe);
+      slot.renderer.release_back(bodies_[slot.body].probe);
     }
   }
 }
@@ -255,6 +255,7 @@ const SceneRendering& Scene::update(const Configuration& configuration, Vec3 pro
   all.contact.body = kNoBody;
   all.wall_velocity = {};
   all.fading = false;
+  all.inside = false;
   for (Reaction& reaction : all.reactions) {  // bound: kMaxReachableBodies
     reaction.body = kNoBody;
   }
@@ -322,6 +323,7 @@ void Scene::render(Slot& slot, const Configuration& configuration, Vec3 probe, V
     all.wall_velocity = velocity - relative;
   }
   all.contact.complete = complete;
+  all.inside = all.inside || r.inside;
   if (r.in_contact) {
     const auto index = static_cast<std::uint32_t>(&slot - slots_);
     const Vec3 arm = r.proxy - body.pose.translation_m;

@@ -98,7 +98,7 @@ void Controller::render() {
     return;
   }
   if (state_ != State::kActive) {
-    scene_.release_inner_contacts();
+    scene_.release_backs();
   }
   const Vec3 probe = sensor_.probe();
   // at most: 1 per Controller::step together scene
@@ -117,8 +117,9 @@ void Controller::confirm_arming(const Input& input, bool was_armed) {
     arming_.rest();
     return;
   }
-  const bool device_ready =
-      input.enable_read_back && rendered_ && !scene_.rendering().contact.in_contact;
+  const SceneRendering& rendering = scene_.rendering();
+  const bool is_free = rendered_ && !rendering.contact.in_contact && !rendering.inside;
+  const bool device_ready = input.enable_read_back && is_free;
   if (arming_.update(input, configuration_.dead_man_required, device_ready)) {
     handle_event(Event::kReady);
   }
@@ -186,7 +187,8 @@ void Controller::report(const Input& input, const SafetyGate::Result& gated) {
   status.limits |= at_end ? limit_bit(Limit::kWorkspace) : 0U;
   status.limits |= configured_ && !sensor_.homed() ? limit_bit(Limit::kNotHomed) : 0U;
   status.limits |= scene_.rendering().crowded ? limit_bit(Limit::kBodies) : 0U;
-  status.limits |= arming_.waiting() ? limit_bit(Limit::kWaiting) : 0U;
+  const bool is_inside = state_ == State::kActive && scene_.rendering().inside;
+  status.limits |= arming_.waiting() || is_inside ? limit_bit(Limit::kWaiting) : 0U;
   status.overruns = monitor_.overruns();
   status.probe = sensor_.probe();
   status.velocity = sensor_.velocity();

@@ -10,6 +10,7 @@ Shape::Shape(double spacing_m) {
   model_.support_radius_m = 2.5 * spacing_m;
   model_.reach_m = 3.0 * spacing_m;
   model_.name = "test";
+  model_.tells_interior = true;
 }
 
 void Shape::add(const Eigen::Vector3d& position, const Eigen::Vector3d& normal) {

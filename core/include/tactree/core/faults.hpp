@@ -42,7 +42,7 @@ enum class Limit : std::uint32_t {
   kRamp = 1U << 2,       ///< ramp after activation
   kAxis = 1U << 3,       ///< an axis reached its effort_max or effort_slew_s
   kBoundary = 1U << 4,   ///< surface boundary, or body removed: the force fades
-  kWaiting = 1U << 5,    ///< armed; the probe is inside the object or the enable line is off
+  kWaiting = 1U << 5,    ///< no force: the probe is inside a body, or armed and not ready
   kWorkspace = 1U << 6,  ///< near a joint limit or singular pose: the force fades
   kNotHomed = 1U << 7,   ///< joint positions unknown: no force (homing.hpp)
   kBodies = 1U << 8,     ///< more bodies within reach than kMaxReachableBodies: some not rendered

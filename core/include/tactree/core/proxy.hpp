@@ -15,6 +15,10 @@
 //   kTracking                 yes          no
 //   kSticking, kSlipping      yes          yes
 //
+// A probe behind a surface is inside where the model tells that there is material (interior.hpp):
+// at first, after a jump, or where it lost its contact. It is followed without force, and contact
+// begins only after it has left. Both sides of a sheet count as free.
+//
 // A step takes at most one gather. With work_per_tick() and R = 2.5 mm the proxy keeps up with
 // 5 m/s at 1 kHz, 2.5 m/s at 2 kHz and 1.2 m/s at 4 kHz; it follows a faster probe with a delay and
 // never loses it. When the budget ends between gather and fit, the fit follows in the next tick; a
@@ -49,8 +53,9 @@ class Proxy {
   void update(const BlobView& view, Vec3 probe, const Friction& friction, const SurfaceWork& work);
 
   [[nodiscard]] bool in_contact() const { return state_ >= State::kSticking; }
-  /// In contact with the inner side of the surface: the probe left an object from within, or
-  /// approached an open surface from its back.
+  /// In the material, without contact; known within two ticks.
+  [[nodiscard]] bool inside() const { return inside_; }
+  /// In contact with the back of a sheet, the side that its normals avert.
   [[nodiscard]] bool from_behind() const { return in_contact() && side_ < 0.0F; }
   [[nodiscard]] bool slipping() const { return state_ == State::kSlipping; }
   /// m. In contact: on the surface. Free: the end of the sweep, normally the probe.
@@ -104,8 +109,12 @@ class Proxy {
   [[nodiscard]] bool gather(const BlobView& view, Vec3 x);
   [[nodiscard]] bool prepare_fit(const BlobView& view, Vec3 x);
   [[nodiscard]] SurfaceFit evaluate(const BlobView& view, Vec3 x, Vec3 reference);
+  void look_around(const BlobView& view);
+  void look_behind(const BlobView& view);
   void sweep(const BlobView& view, Vec3 probe);
   void visit(const BlobView& view, Vec3 x);
+  [[nodiscard]] bool has_reference(const BlobView& view, Vec3 x);
+  void begin_tracking(float distance);
   [[nodiscard]] bool is_contradicted(const SurfaceFit& fit) const;
   [[nodiscard]] bool passes_by(const SurfaceFit& fit, Vec3 step) const;
   void begin_contact(const BlobView& view);
@@ -141,6 +150,8 @@ class Proxy {
   State state_ = State::kUntracked;
   bool has_next_ = false;
   bool unsettled_ = false;  // in contact: position_ needs another fit
+  bool inside_ = false;     // never in contact
+  bool asks_ = false;       // tracking, behind a surface: is that in the material?
   bool lost_contact_ = false;
 };
 

@@ -19,6 +19,7 @@ struct Rendering {
   bool slipping = false;
   bool complete = true;          ///< false: the model holds more points than it declares
   bool lost = false;             ///< the contact of the last tick ended at the surface's boundary
+  bool inside = false;           ///< in the material, without force until the probe has left it
   Vec3 proxy{};                  ///< m; the probe when free
   Vec3 normal{};                 ///< outward; zero when free
   Vec3 force{};                  ///< N
@@ -35,8 +36,8 @@ class Renderer {
   /// Clears the contact. Required whenever the model or the configuration changes.
   void reset(Vec3 probe) { proxy_.reset(probe); }
 
-  /// Clears a contact with the inner side of the surface; any other contact stays.
-  void release_inner_contact(Vec3 probe) {
+  /// Clears a contact with the back of a sheet; any other contact stays.
+  void release_back(Vec3 probe) {
     if (proxy_.from_behind()) {
       proxy_.reset(probe);
     }

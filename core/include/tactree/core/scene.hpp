@@ -7,8 +7,9 @@
 //
 // At most kMaxReachableBodies of the bodies whose box contains the probe are rendered: those
 // reached first, then those with the lowest numbers. The others exert no force, and
-// SceneRendering::crowded is set. A body that appears around the probe does not expel it: the probe
-// contacts its inner side.
+// SceneRendering::crowded is set. A body that appears around the probe exerts no force until the
+// probe has left it, and SceneRendering::inside is set; a sheet that appears is felt from the
+// probe's side.
 //
 // Interrupt safety: no shared state; one context owns a scene.
 
@@ -61,6 +62,7 @@ struct SceneRendering {
   Reaction reactions[kMaxReachableBodies]{};  ///< of the bodies in contact
   bool crowded = false;                       ///< more bodies within reach than kMaxReachableBodies
   bool fading = false;                        ///< the force of a removed contact fades
+  bool inside = false;                        ///< the probe is in the material of a body
 };
 
 class Scene {
@@ -91,9 +93,9 @@ class Scene {
   /// Clears contacts and fading forces, not bodies. Required when the probe jumps.
   void reset(Vec3 probe);
 
-  /// Clears contacts with inner sides, so that a probe that leaves an object from within is not
-  /// held back. Call it before update(), while no force is displayed.
-  void release_inner_contacts();
+  /// Clears contacts with the backs of sheets, so that a probe may change the side. Call it before
+  /// update(), while no force is displayed.
+  void release_backs();
 
   /// Limits the work of each body in a tick to that of this tier, where the tier of the rate allows
   /// more. Initially 0: the rate alone decides. Precondition: less than kWorkTiers.

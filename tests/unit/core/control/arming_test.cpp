@@ -145,8 +145,39 @@ TEST(Arming, TheProbeMayLeaveTheObjectFromInside) {
   }
 }
 
-// In the active state a thin wall has two sides.
-TEST(Arming, AnActiveProbeInsideFeelsTheWall) {
+/// Of 15 mm radius, around the origin.
+const Shape& ball() {
+  static const Shape shape = sphere(0.015);
+  return shape;
+}
+
+TEST(Arming, WaitsUntilTheProbeHasLeftABody) {
+  for (const double from : {0.0, 0.006, 0.012, 0.0145}) {
+    Session session;
+    ASSERT_EQ(session.controller.load_model(ball().view()), core::ModelStatus::kOk);
+    session.move(0.0, 0.0, from);
+    session.step();
+    session.activate();
+    EXPECT_EQ(session.state(), State::kArmed) << from;
+    double z = from;
+    for (; z < 0.0148; z += 1e-4) {
+      session.move(0.0, 0.0, z);
+      const core::Output output = session.step();
+      ASSERT_EQ(session.state(), State::kArmed) << from << ", " << z;
+      ASSERT_TRUE(has_limit(output, core::Limit::kWaiting)) << from << ", " << z;
+      ASSERT_TRUE(output.motors.is_zero()) << from << ", " << z;
+    }
+    for (; z < 0.0153; z += 1e-4) {
+      session.move(0.0, 0.0, z);
+      session.step();
+    }
+    EXPECT_EQ(session.state(), State::kActive) << from;
+    EXPECT_FALSE(has_limit(session.step(), core::Limit::kWaiting)) << from;
+  }
+}
+
+// A sheet has two sides.
+TEST(Arming, AnActiveProbeFeelsTheBackOfASheet) {
   Session session;
   session.move(0.0, 0.0, -0.01);
   session.step();

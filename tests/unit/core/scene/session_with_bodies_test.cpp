@@ -80,6 +80,42 @@ TEST(SessionWithBodies, AddingAndRemovingBodiesKeepsTheSlewLimit) {
   EXPECT_LE(furthest, 0.1F + 1e-5F);
 }
 
+// The hand may be where a body appears: no force, and the limit `waiting`, until it has left.
+TEST(SessionWithBodies, ABodyThatAppearsAroundTheHandWaits) {
+  const Shape ball = sphere(0.015);
+  Session session;
+  std::uint32_t number = 0;
+  ASSERT_EQ(session.controller.add_body(ball.view(), core::normalized(to_core(kFar)), number),
+            ModelStatus::kOk);
+  session.activate();
+  for (double z = 0.01; z <= 0.03; z += 5e-5) {  // meanwhile the ramp ends
+    session.move(0.0, 0.0, z);
+    session.step();
+  }
+  session.updates = {{number, true, {{}, {0.0F, 0.0F, 0.0175F}}, {}}};  // z 2.5 ... 32.5 mm
+  session.step();
+  for (double z = 0.03; z < 0.0322; z += 5e-5) {
+    session.move(0.0, 0.0, z);
+    const core::Output output = session.step();
+    ASSERT_EQ(session.state(), State::kActive);
+    ASSERT_TRUE(output.motors.is_zero()) << z;
+    ASSERT_TRUE(has_limit(output, Limit::kWaiting)) << z;
+  }
+  core::Output output = session.step();
+  for (double z = 0.0322; z < 0.034; z += 5e-5) {
+    session.move(0.0, 0.0, z);
+    output = session.step();
+    ASSERT_TRUE(output.motors.is_zero()) << z;
+  }
+  EXPECT_FALSE(has_limit(output, Limit::kWaiting));
+  for (double z = 0.034; z > 0.0315; z -= 5e-5) {
+    session.move(0.0, 0.0, z);
+    output = session.step();
+  }
+  EXPECT_GT(output.status.force.z, 0.3F);
+  EXPECT_FALSE(has_limit(output, Limit::kWaiting));
+}
+
 TEST(SessionWithBodies, RemovesTheLastBodyUnderForce) {
   SessionWithBodies session({});
   const float before = session.press(2e-3).status.force.z;

@@ -51,8 +51,16 @@ const Shape& image_model() {
   static const Shape shape = cos_sheet();
   return shape;
 }
+/// A ball below the hand.
 const Shape& other_model() {
-  static const Shape shape = sphere();
+  static const Shape shape = [] {
+    Shape ball = sphere();
+    for (Eigen::Vector3d& point : ball.model().positions) {
+      point.z() -= 2.0 * kSphereRadius;
+    }
+    ball.seal();
+    return ball;
+  }();
   return shape;
 }
 
