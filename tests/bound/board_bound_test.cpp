@@ -231,7 +231,7 @@ TEST_P(Proof, FormulaIsNeverLessThanTheBound) {
 }
 
 // The limits of the Stanford bunny, 10 cm long with a point every 0.5 mm.
-TEST_P(Proof, FormulaIsAtMostOneSixteenthAboveTheBoundOfAScan) {
+TEST_P(Proof, FormulaIsAtMostSixPercentAboveTheBoundOfAScan) {
   core::TickLoad load;
   load.limits = {46, 51, 6, 3, 0, 0};
   load.bodies = 1;
@@ -245,7 +245,7 @@ TEST_P(Proof, FormulaIsAtMostOneSixteenthAboveTheBoundOfAScan) {
     std::printf("%s: work_tier %u: formula %.0f, bound %.0f\n", board().name, load.work_tier,
                 formula, exact);
     EXPECT_GE(formula, exact);
-    EXPECT_LE(formula, 1.0625 * exact) << "work_tier " << load.work_tier;
+    EXPECT_LE(formula, 1.06 * exact) << "work_tier " << load.work_tier;
   }
 }
 
@@ -311,9 +311,11 @@ TEST_P(Proof, SearchExceedsABoundThatIsTooSmall) {
   }
   const std::filesystem::path file = folder / "core/src/contact/passes.cpp";
   std::string text = read_text(file);
-  const std::string correct = "// bound: points_per_ball_max";
-  for (std::size_t at = 0; (at = text.find(correct, at)) != std::string::npos; ++at) {
-    text.replace(at, correct.size(), "// bound: points_per_ball_max / 2");
+  const std::string correct = "points_per_ball_max";
+  const std::string too_small = "points_per_ball_max / 3";
+  for (std::size_t at = 0; (at = text.find(correct, at)) != std::string::npos;
+       at += too_small.size()) {
+    text.replace(at, correct.size(), too_small);
   }
   std::ofstream(file) << text;
 

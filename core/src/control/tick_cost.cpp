@@ -54,10 +54,11 @@ const TickCost& worst_row(const TickCosts& costs, const TickLoad& load) {
   if (load.kind == TickKind::kPaper) {
     return costs.paper;
   }
+  const std::uint32_t bodies = smaller_of(load.bodies, kMaxReachableBodies);
   const TickCost* const rows =
-      costs.surface[static_cast<std::uint32_t>(load.kind)] + first_row(load.work_tier);
+      costs.surface[static_cast<std::uint32_t>(load.kind)] + first_row(load.work_tier, bodies);
   const TickCost* worst = rows;
-  for (std::uint32_t i = 1; i < rows_of_work_tier(load.work_tier); ++i) {  // bound: kTickRows
+  for (std::uint32_t i = 1; i < rows_of(load.work_tier, bodies); ++i) {  // bound: kTickRows
     if (cycles_of(rows[i], load.limits) > cycles_of(*worst, load.limits)) {
       worst = rows + i;
     }

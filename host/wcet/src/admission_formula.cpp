@@ -77,7 +77,6 @@ void cover(core::TickCost& cost, const CostFormula& formula, double base, double
 
 }  // namespace
 
-// One row covers two bodies with n gathers together, and one body with half of them.
 core::TickCosts tick_costs(const BoundOptions& options) {
   if (options.timing == nullptr) {
     throw BoundError(options.image.string() +
@@ -98,8 +97,7 @@ core::TickCosts tick_costs(const BoundOptions& options) {
   for (std::uint32_t bodies = 1; bodies <= core::kMaxReachableBodies; ++bodies) {
     for (std::uint32_t work_tier = 0; work_tier < core::kWorkTiers; ++work_tier) {
       for (const Division& division : divisions(work_tier, bodies)) {
-        const std::uint32_t row =
-            core::first_row(work_tier) + division.gathers * core::kMaxReachableBodies / bodies;
+        const std::uint32_t row = core::first_row(work_tier, bodies) + division.gathers;
         for (const core::TickKind kind : {core::TickKind::kSurface, core::TickKind::kMixed}) {
           rows.push_back({costs.surface[static_cast<std::uint32_t>(kind)][row],
                           formulas.of(kind, bodies, work_tier, division), bodies});

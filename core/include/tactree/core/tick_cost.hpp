@@ -58,26 +58,30 @@ struct TickLoad {
   void add(const BlobHeader& header, const Configuration& configuration);
 };
 
-/// Number of cost rows of a work tier. A tick of surface mode divides its work between gathering
-/// and fitting: its cost depends on the number of gathers of all bodies. One row per number, from
-/// 0.
-[[nodiscard]] constexpr std::uint32_t rows_of_work_tier(std::uint32_t work_tier) {
-  return kMaxReachableBodies * kWorkPerTick[work_tier].gathers + 1U;
+/// Number of cost rows of a work tier and a number of rendered bodies, 1 to kMaxReachableBodies. A
+/// tick of surface mode divides its work between gathering and fitting: its cost depends on the
+/// number of gathers of all bodies. One row per number, from 0.
+[[nodiscard]] constexpr std::uint32_t rows_of(std::uint32_t work_tier, std::uint32_t bodies) {
+  return bodies * kWorkPerTick[work_tier].gathers + 1U;
 }
-/// First row of a work tier: after the rows of all preceding tiers.
-[[nodiscard]] constexpr std::uint32_t first_row(std::uint32_t work_tier) {
+/// The first of them. Those of fewer bodies come first, then those of preceding tiers.
+[[nodiscard]] constexpr std::uint32_t first_row(std::uint32_t work_tier, std::uint32_t bodies) {
   std::uint32_t rows = 0;
-  for (std::uint32_t before = 0; before < work_tier; ++before) {  // bound: kWorkTiers
-    rows += rows_of_work_tier(before);
+  for (std::uint32_t fewer = 1; fewer <= bodies; ++fewer) {  // bound: kMaxReachableBodies
+    const std::uint32_t tiers = fewer < bodies ? kWorkTiers : work_tier;
+    for (std::uint32_t before = 0; before < tiers; ++before) {  // bound: kWorkTiers
+      rows += rows_of(before, fewer);
+    }
   }
   return rows;
 }
-inline constexpr std::uint32_t kTickRows = first_row(kWorkTiers);
+inline constexpr std::uint32_t kTickRows = first_row(kWorkTiers, kMaxReachableBodies);
 
 inline constexpr std::uint32_t kTickCostsKnown = 0x4B434954;  // "TICK"
 
 /// Costs of an image: cycles = base + delta (delta device only) + listed for each body of the scene
-/// + largest row for each rendered body. All zero, as compiled: unknown.
+/// + largest row for each rendered body; rows of several bodies hold the share of one. All zero, as
+/// compiled: unknown.
 struct TickCosts {
   std::uint32_t known = 0;
   std::uint32_t base = 0;
@@ -92,7 +96,7 @@ struct TickCosts {
 /// none. Precondition: as above.
 [[nodiscard]] std::uint32_t work_tier_in_time(const TickCosts& costs, TickLoad load,
                                               std::uint64_t cycles);
-/// Most expensive row for such a body.
+/// Most expensive row for such bodies. Precondition: load.bodies > 0.
 [[nodiscard]] const TickCost& worst_row(const TickCosts& costs, const TickLoad& load);
 
 static_assert(sizeof(TickCost) == 4 + 2 * kModelLimits);

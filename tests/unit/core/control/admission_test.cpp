@@ -19,9 +19,11 @@ core::TickCosts some_costs() {
   costs.known = core::kTickCostsKnown;
   costs.base = kBase;
   for (auto& rows : costs.surface) {
-    for (std::uint32_t work_tier = 0; work_tier < core::kWorkTiers; ++work_tier) {
-      rows[core::first_row(work_tier)].base = 800U;
-      rows[core::first_row(work_tier)].per_limit[0] = 10U;
+    for (std::uint32_t bodies = 1; bodies <= core::kMaxReachableBodies; ++bodies) {
+      for (std::uint32_t work_tier = 0; work_tier < core::kWorkTiers; ++work_tier) {
+        rows[core::first_row(work_tier, bodies)].base = 800U;
+        rows[core::first_row(work_tier, bodies)].per_limit[0] = 10U;
+      }
     }
   }
   return costs;
@@ -90,11 +92,12 @@ TEST(Admission, AddsTheTimeOfEachBodyOfTheScene) {
 
 // A tick divides its work between gathers and fits: the most expensive division counts.
 TEST(Admission, UsesTheMostExpensiveRow) {
-  for (std::uint32_t row = 0; row < core::rows_of_work_tier(0); ++row) {
+  for (std::uint32_t row = 0; row < core::rows_of(0, 1); ++row) {
     core::TickCosts costs = some_costs();
     for (std::uint32_t tier = 1; tier < core::kWorkTiers; ++tier) {
-      costs.surface[0][core::first_row(tier)].base = 6000U;
+      costs.surface[0][core::first_row(tier, 1)].base = 6000U;
     }
+    costs.surface[0][core::first_row(0, 2)].base = 6000U;  // of two bodies
     costs.surface[0][row].base = 5000U;
     costs.surface[0][row].per_limit[0] = 0U;
     core::Controller controller;
@@ -108,7 +111,9 @@ core::TickCosts costs_that_fall() {
   core::TickCosts costs;
   costs.known = core::kTickCostsKnown;
   for (std::uint32_t tier = 0; tier < core::kWorkTiers; ++tier) {
-    costs.surface[0][core::first_row(tier)].base = 1000U - 200U * tier;
+    for (std::uint32_t bodies = 1; bodies <= core::kMaxReachableBodies; ++bodies) {
+      costs.surface[0][core::first_row(tier, bodies)].base = 1000U - 200U * tier;
+    }
   }
   return costs;
 }
