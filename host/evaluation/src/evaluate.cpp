@@ -4,6 +4,7 @@
 #include "closed_loop.hpp"
 #include "crease_scores.hpp"
 #include "errors.hpp"
+#include "inside_scores.hpp"
 #include "paper_tables.hpp"
 #include "scan_scores.hpp"
 #include "shape_scores.hpp"
@@ -63,6 +64,8 @@ Result evaluate(const Options& options, builder::Progress& progress) {
   evaluate_shapes(options, progress, result);
   progress.begin("creases");
   result.creases = measure_creases(options.quick, options.seed);
+  progress.begin("starts inside");
+  result.inside = measure_inside(options.quick, options.seed);
   progress.begin("the closed loop");
   result.loop = measure_loop(options.quick);
   evaluate_scans(options, progress, result);

@@ -102,6 +102,15 @@ Json creases(const Result& result) {
   return json;
 }
 
+Json inside(const Result& result) {
+  Json json = Json::object();
+  for (const InsideResult& row : result.inside) {
+    json[row.name] = {
+        {"starts", row.starts}, {"shown", row.shown}, {"force_N", row.force_N}, {"felt", row.felt}};
+  }
+  return json;
+}
+
 Json scans(const Result& result) {
   Json json = Json::object();
   for (const ScanResult& scan : result.scans) {
@@ -130,10 +139,15 @@ std::string to_json(const Result& result) {
                        {"high", target.high},
                        {"met", target.met()}});
   }
-  const Json json = {{"quick", result.options.quick},  {"seed", result.options.seed},
-                     {"tables", tables(result)},       {"shapes", shapes},
-                     {"creases", creases(result)},     {"loop", loop(result.loop)},
-                     {"scans", scans(result)},         {"targets", targets},
+  const Json json = {{"quick", result.options.quick},
+                     {"seed", result.options.seed},
+                     {"tables", tables(result)},
+                     {"shapes", shapes},
+                     {"creases", creases(result)},
+                     {"inside", inside(result)},
+                     {"loop", loop(result.loop)},
+                     {"scans", scans(result)},
+                     {"targets", targets},
                      {"targets_met", result.all_met()}};
   return json.dump(2) + "\n";
 }

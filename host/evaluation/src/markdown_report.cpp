@@ -175,6 +175,21 @@ void add_creases(Page& page, const Result& result) {
   page.add("\n");
 }
 
+void add_inside(Page& page, const Result& result) {
+  page.add(
+      "## Starts inside\n"
+      "Hands that are inside a body when the force begins: at random places, out on straight lines "
+      "in random directions, and\nback; 1, 2 and 4 kHz, 0.1 and 0.8 m/s. *Shown*: as inside, "
+      "before the hand moves. *Force*: the largest until the hand\nis 1 mm outside. *Felt*: the "
+      "body, when the hand returns.\n\n"
+      "| body | starts | shown | force, N | felt |\n|---|---|---|---|---|\n");
+  for (const InsideResult& row : result.inside) {
+    page.add("| {} | {} | {} | {} | {} |\n", row.name, row.starts, row.shown, figure(row.force_N),
+             row.felt);
+  }
+  page.add("\n");
+}
+
 void add_loop(Page& page, const Result& result) {
   page.add(
       "## The closed loop\n"
@@ -264,6 +279,7 @@ std::string to_markdown(const Result& result, const std::string& pictures) {
   add_geometry(page, result, pictures);
   add_forces(page, result, pictures);
   add_creases(page, result);
+  add_inside(page, result);
   add_loop(page, result);
   add_scans(page, result);
   add_targets(page, result);

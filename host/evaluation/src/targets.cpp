@@ -72,6 +72,20 @@ void add_creases(const std::vector<CreaseResult>& creases, Checker& check) {
   check.add({"creases.step_N", step, 0.0, 0.1, "N"});
 }
 
+void add_inside(const std::vector<InsideResult>& inside, Checker& check) {
+  double force = 0.0;
+  int hidden = 0;
+  int missed = 0;
+  for (const InsideResult& row : inside) {
+    force = std::max(force, row.force_N);
+    hidden += row.starts - row.shown;
+    missed += row.starts - row.felt;
+  }
+  check.add({"inside.force_N", force, 0.0, 0.0, "N"});
+  check.add({"inside.not_shown", static_cast<double>(hidden), 0.0, 0.0, ""});
+  check.add({"inside.not_felt_again", static_cast<double>(missed), 0.0, 0.0, ""});
+}
+
 }  // namespace
 
 std::vector<Target> check_targets(const Result& result) {
@@ -104,6 +118,7 @@ std::vector<Target> check_targets(const Result& result) {
   check.at_most("sphere", "friction_max", 0.32, "");
   check.add({"loop.vibration_m_s2", result.loop.vibration_m_s2[kSurface], 0.0, 0.06, "m/s2"});
   add_creases(result.creases, check);
+  add_inside(result.inside, check);
   add_limits(result.loop, check);
   return check.take();
 }

@@ -15,6 +15,7 @@ inline constexpr double kPeriodS = 1e-3;
 struct Touched {
   bool in_contact = false;
   bool slipping = false;
+  bool inside = false;
   Eigen::Vector3d force = Eigen::Vector3d::Zero();  // N
   Eigen::Vector3d proxy = Eigen::Vector3d::Zero();  // m
 };
@@ -36,7 +37,7 @@ class Touch {
 
   Touched to(const Eigen::Vector3d& probe) {
     const core::Rendering r = renderer_.update(view_, configuration_, narrow(probe), {});
-    return {r.in_contact, r.slipping, widen(r.force), widen(r.proxy)};
+    return {r.in_contact, r.slipping, r.inside, widen(r.force), widen(r.proxy)};
   }
 
  private:

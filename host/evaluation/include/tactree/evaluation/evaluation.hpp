@@ -121,6 +121,15 @@ struct CreaseResult {
   double step_N = 0.0;
 };
 
+/// Hands that start anywhere inside a body, leave it on a straight line, and return.
+struct InsideResult {
+  std::string name;
+  int starts = 0;
+  int shown = 0;         ///< as inside, before the hand moves
+  double force_N = 0.0;  ///< largest, until the hand is 1 mm outside
+  int felt = 0;          ///< the body, when the hand returns
+};
+
 /// A required value.
 struct Target {
   std::string name;
@@ -144,6 +153,7 @@ struct Result {
   DistanceTable distances;
   std::vector<ShapeResult> shapes;
   std::vector<CreaseResult> creases;
+  std::vector<InsideResult> inside;
   LoopResult loop;
   std::vector<ScanResult> scans;
   std::vector<Target> targets;
