@@ -21,19 +21,17 @@ std::string raw_bytes(const std::vector<Number>& numbers) {
 
 inline std::string little(std::uint64_t value, unsigned size) {
   std::string bytes;
-  for (unsigned k = 0; k < size; ++k) bytes.push_back(static_cast<char>(value >> (8 * k) & 0xff));
+  for (unsigned k = 0; k < size; ++k) {
+    bytes.push_back(static_cast<char>(k < sizeof value ? value >> (8 * k) & 0xff : 0));
+  }
   return bytes;
 }
 
 /// A glTF file as its JSON and the bytes of its binary part.
 struct GltfWriter {
-  nlohmann::json root = {{"asset", {{"version", "2.0"}}},
-                         {"scene", 0},
-                         {"scenes", {{{"nodes", {0}}}}},
-                         {"nodes", {{{"mesh", 0}}}},
-                         {"meshes", {{{"primitives", nlohmann::json::array()}}}},
-                         {"accessors", nlohmann::json::array()},
-                         {"bufferViews", nlohmann::json::array()}};
+  nlohmann::json root = nlohmann::json::parse(R"({
+    "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+    "meshes": [{"primitives": []}], "accessors": [], "bufferViews": []})");
   std::string data;
 
   /// Adds an accessor over numbers of its own and returns its index.

@@ -154,7 +154,7 @@ TEST_F(CountsTest, StlWithoutACount) {
   // A normal of (0, 0, 1) is also plausible four bytes further on.
   expect_parts(warning_of(stl_head() + flat_facets(50)), "has no count", "holds 50 triangles");
   ASSERT_EQ(last_.triangles.size(), 50U);
-  EXPECT_EQ(last_.positions.at(0), Eigen::Vector3d(0, double{0.001F}, 0));
+  EXPECT_EQ(last_.positions.at(0), Eigen::Vector3d(0, static_cast<double>(0.001F), 0));
 }
 
 TEST_F(CountsTest, DialectsOfTextStl) {

@@ -29,7 +29,8 @@ GltfWriter tetrahedron(const std::vector<Number>& positions, int component,
   GltfWriter gltf;
   const std::size_t at = gltf.add(positions, component, "VEC3", 3, stride);
   const std::size_t faces = gltf.add(kFaces, kUShort, "SCALAR", 1);
-  gltf.root["meshes"][0]["primitives"] = {{{"attributes", {{"POSITION", at}}}, {"indices", faces}}};
+  gltf.root["meshes"][0]["primitives"][0] = {{"attributes", {{"POSITION", at}}},
+                                             {"indices", faces}};
   return gltf;
 }
 
