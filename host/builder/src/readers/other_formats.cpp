@@ -98,9 +98,10 @@ struct Keyword {
 
 /// The keyword begins the first line.
 constexpr Keyword kFirstLines[] = {
-    {"ncols", "an ESRI grid (.asc)", kGridToXyz}, {"nrows", "an ESRI grid (.asc)", kGridToXyz},
-    {"north:", "a GRASS grid", kGridToXyz},       {"title=", "a Tecplot file", kMeshToPly},
-    {"variables=", "a Tecplot file", kMeshToPly},
+    {"ncols", "an ESRI grid (.asc)", kGridToXyz},
+    {"nrows", "an ESRI grid (.asc)", kGridToXyz},
+    {"north:", "a GRASS grid", kGridToXyz},
+    {"title=", "a Tecplot file", kMeshToPly},
 };
 
 /// The keyword begins one of the first lines.
