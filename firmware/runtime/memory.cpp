@@ -63,7 +63,9 @@ void* memset(void* to, int value, std::size_t bytes) {
   auto* target = static_cast<unsigned char*>(to);
   const auto byte = static_cast<unsigned char>(value);
   const std::uint32_t word = byte * 0x01010101U;
-  // The compiler may clear the tail of a structure from an unaligned address.
+  // The compiler may clear the tail of a structure from an unaligned address. Where it does, the
+  // bytes before the first word and those behind the last one are a word, or less.
+  // total: bytes % 4 + 4 per memset together bytes
   for (; bytes > 0 && !aligned(target, nullptr); --bytes) {  // bound: min(bytes, 3)
     *target++ = byte;
   }
@@ -74,6 +76,7 @@ void* memset(void* to, int value, std::size_t bytes) {
   for (; bytes >= 4; bytes -= 4, target += 4) {  // bound: min(bytes / 4, 3)
     *reinterpret_cast<Word*>(target) = word;
   }
+  // total: bytes % 4 + 4 per memset together bytes
   for (; bytes > 0; --bytes) {  // bound: min(bytes, 3)
     *target++ = byte;
   }
