@@ -5,6 +5,7 @@
 #include "tactree/core/candidates.hpp"
 
 #include "model/corner_leaves.hpp"
+#include "tactree/core/neighbour.hpp"
 
 namespace tactree::core {
 namespace {
@@ -105,6 +106,7 @@ void CandidateSet::begin_for(const BlobView& view, Vec3 x) {
   centre_ = predictable ? x + (kAhead * slack / square_root(squared)) * stride : x;
   state_ = State::kGathering;
   count_ = 0;
+  hidden_ = 0;
   corner_ = 0;
   in_leaf_ = false;
   const BlobHeader& header = view.header();
@@ -145,11 +147,52 @@ void CandidateSet::cover(const BlobView& view, Vec3 x) {
   if (view.empty()) {
     clear();
     count_ = 0;
+    hidden_ = 0;
   } else if (!covers(x)) {
     begin_for(view, x);
     GatherSlice all;
     (void)gather(view, all);
   }
+}
+
+// The body is what is behind one of the faces that hold, and behind all that end them. What is
+// known of it before the loop is in locals: registers.
+[[gnu::noinline]] void CandidateSet::hide(const Neighbour& neighbour, float side) {
+  constexpr float kOpposed = -0.5F;     // normals of flush faces differ by more than 120 degrees
+  const NeighbourFace none{{}, 1e30F};  // ends nothing
+  const std::uint32_t faces = neighbour.holding + neighbour.ending;
+  const NeighbourFace a = neighbour.face[0];
+  const NeighbourFace b = faces > 1U ? neighbour.face[1] : none;
+  const NeighbourFace c = faces > 2U ? neighbour.face[2] : none;
+  const bool b_holds = neighbour.holding > 1U;
+  const bool c_holds = neighbour.holding > 2U;
+  const float tolerance = neighbour.tolerance_m;
+  const std::uint32_t all = count_ + hidden_;
+  std::uint32_t shown = 0;
+  for (std::uint32_t i = 0; i < all; ++i) {  // bound: points_per_ball_max
+    const Vec3 position = candidates_[i].position;
+    float height = a.height_of(position);
+    const NeighbourFace* facing = &a;
+    const float b_height = b.height_of(position);
+    if (b_holds == (b_height < height)) {
+      height = b_height;
+      facing = &b;
+    }
+    const float c_height = c.height_of(position);
+    if (c_holds == (c_height < height)) {
+      height = c_height;
+      facing = &c;
+    }
+    const bool is_flush =
+        height <= tolerance && side * dot(candidates_[i].normal, facing->normal) < kOpposed;
+    if (!(height < -tolerance || is_flush)) {
+      const Candidate candidate = candidates_[i];
+      candidates_[i] = candidates_[shown];
+      candidates_[shown++] = candidate;
+    }
+  }
+  count_ = shown;
+  hidden_ = all - shown;
 }
 
 [[gnu::noinline]] bool CandidateSet::is_within(float reach, Vec3 position) const {

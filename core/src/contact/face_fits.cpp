@@ -26,7 +26,7 @@ constexpr std::uint32_t kFacePoints = 3;
 // normal.
 constexpr float kFlat = 0.9995F;
 
-constexpr FaceFit kUnsupported = {false, 0.0F, {}};
+constexpr FaceFit kUnsupported = {false, 0.0F, 0.0F, {}};
 
 /// 1 below kFadeBegins, 0 from kFadeEnds on, smooth between.
 float strength_of(float offset) {
@@ -107,7 +107,7 @@ Relation relation_of(const Face& a, const FaceFit& a_fit, const Face& b, const F
   if (!is_finite(distance) || !is_finite(strength)) {
     return kUnsupported;  // memory: flash
   }
-  return {true, strength, {normal, distance}};
+  return {true, strength, m.w, {normal, distance}};
 }
 
 bool join_faces(const Faces& faces, const Seeds& seeds, float radius, float side, NearFaces& near,
@@ -121,7 +121,7 @@ bool join_faces(const Faces& faces, const Seeds& seeds, float radius, float side
     for (std::uint32_t i = 1; i < kMaxFaces; ++i) {  // bound: kMaxFaces
       if (fit[i].firm() && face[i].points >= kFacePoints && is_sharp(face[0], face[i]) &&
           dot(fit[i].plane.normal, seeds.normal[0]) > kOppositeCosine) {
-        result.set(fit[i].plane, fit[i].strength);
+        result.set(fit[i].plane, fit[i].strength, fit[i].weight);
         return true;
       }
     }
@@ -162,7 +162,7 @@ bool join_faces(const Faces& faces, const Seeds& seeds, float radius, float side
   if (near.count == 0U) {
     return false;
   }
-  result.set(fit[main].plane, strength);
+  result.set(fit[main].plane, strength, fit[main].weight);
   return true;
 }
 

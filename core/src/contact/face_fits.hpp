@@ -32,6 +32,7 @@ struct Moments {
 struct FaceFit {
   bool supported;
   float strength;
+  float weight;  // of the points
   Plane plane;
 
   [[nodiscard]] bool firm() const { return supported && strength > 0.0F; }

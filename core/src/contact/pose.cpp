@@ -21,6 +21,11 @@ Quaternion unit(Quaternion q) {
 
 }  // namespace
 
+Vec3 rotate(Quaternion q, Vec3 direction) {
+  const Vec3 t = 2.0F * cross(q.v, direction);
+  return direction + q.w * t + cross(q.v, t);
+}
+
 bool is_valid(const Pose& pose) {
   return within(pose.translation_m, kMaxTranslation) &&
          absolute(length_squared(pose.rotation) - 1.0F) <= kQuaternionTolerance;
@@ -36,7 +41,7 @@ Pose normalized(const Pose& pose) {
 }
 
 Pose advanced(const Pose& pose, const Motion& motion, float seconds) {
-  if (motion == Motion{}) {
+  if (is_rest(motion)) {
     return pose;
   }
   const Quaternion& q = pose.rotation;

@@ -55,6 +55,7 @@ float step_length(const BlobView& view) { return 0.5F * view.support_radius_m();
 
 void Proxy::reset(Vec3 probe) {
   candidates_.clear();
+  found_.holding = 0;
   position_ = probe;
   lost_contact_ = false;
   inside_ = false;
@@ -62,21 +63,25 @@ void Proxy::reset(Vec3 probe) {
 }
 
 void Proxy::update(const BlobView& view, Vec3 probe, const Friction& friction,
-                   const SurfaceWork& work) {
+                   const SurfaceWork& work, const Neighbour* neighbour) {
   if (surface_support(view) != SurfaceSupport::kOk) {
     reset(probe);
     return;
   }
   budget_.begin(work);
   lost_contact_ = false;
+  blocked_ = false;
+  gives_way_ = false;
+  begin_beside(neighbour);
   if (in_contact()) {
     slide(view, probe, friction);
   } else if (asks_) {
     look_behind(view);  // at most: passes per Scene::update together passes
   }
   if (!in_contact()) {
-    sweep(view, probe);
+    sweep(view, is_led() ? neighbour->proxy : probe);
   }
+  neighbour_ = nullptr;
 }
 
 // Where no point is in reach. Costs less than a pass.
@@ -98,6 +103,7 @@ bool Proxy::gather(const BlobView& view, Vec3 x) {
     candidates_.begin_for(view, x);
   }
   // at most: gathers per Scene::update
+  must_hide_ = neighbour_ != nullptr;
   return candidates_.gather(view, slice);
 }
 
@@ -107,15 +113,21 @@ bool Proxy::prepare_fit(const BlobView& view, Vec3 x) {
   if (!budget_.allows_fit()) {
     return false;
   }
-  if (candidates_.covers(x)) {
-    return true;
+  if (!candidates_.covers(x)) {
+    if (!budget_.allows_gather()) {
+      return false;
+    }
+    has_next_ = !gather(view, x) || !budget_.allows_fit();
+    next_ = x;
+    if (has_next_ || !candidates_.covers(x)) {
+      return false;
+    }
   }
-  if (!budget_.allows_gather()) {
-    return false;
+  if (must_hide_) {
+    // at most: min(bodies, 2) / 2 * fits per Scene::update
+    hide_points(view.support_radius_m());
   }
-  has_next_ = !gather(view, x) || !budget_.allows_fit();
-  next_ = x;
-  return !has_next_ && candidates_.covers(x);
+  return true;
 }
 
 SurfaceFit Proxy::evaluate(const BlobView& view, Vec3 x, Vec3 reference) {
@@ -142,19 +154,19 @@ void Proxy::sweep(const BlobView& view, Vec3 probe) {
       return;
     }
     visit(view, x);  // at most: fits per Scene::update together fits
-    if (in_contact() || last || asks_) {
+    if (in_contact() || last || asks_ || blocked_) {
       return;
     }
   }
 }
 
-// False: no point is in reach.
+// False: no point is in reach, or none that is not hidden.
 bool Proxy::has_reference(const BlobView& view, Vec3 x) {
-  if (candidates_.count() == 0U) {
+  if (candidates_.count() + candidates_.hidden() == 0U) {
     lose_support();
     return false;
   }
-  if (state_ != State::kUntracked) {
+  if (reference_ != Vec3{}) {
     return true;
   }
   budget_.spend_passes(1U);
@@ -171,7 +183,9 @@ void Proxy::visit(const BlobView& view, Vec3 x) {
   const Vec3 step = x - position_;
   position_ = x;
   if (!has_reference(view, x)) {
-    look_around(view);  // at most: passes per Scene::update together passes
+    if (!is_tracking()) {
+      look_around(view);  // at most: passes per Scene::update together passes
+    }
     return;
   }
   const bool was_smooth = near_.count == 0U;
@@ -183,7 +197,7 @@ void Proxy::visit(const BlobView& view, Vec3 x) {
     return;
   }
   if (!fit.firm()) {
-    lose_support();
+    lose_face(fit);
     return;
   }
   if (was_smooth && near_.count != 0U && (!is_tracking() || side_ * fit.distance < 0.0F)) {
@@ -201,11 +215,11 @@ void Proxy::visit(const BlobView& view, Vec3 x) {
     return;
   }
   if (!is_tracking()) {
-    begin_tracking(fit.distance);
+    // Near enough to a proxy that another body holds outside.
+    begin_tracking(is_led() ? fit.distance + neighbour_->tolerance_m : fit.distance);
   }
   refer_to(fit, was_smooth);
-  strength_ = fit.strength;
-  planes_ = holding_planes(fit, side_);
+  hold(fit);
   std::uint32_t lowest = 0;
   for (std::uint32_t i = 1; i < planes_.count; ++i) {  // bound: kMaxFaces
     lowest = planes_.plane[i].distance < planes_.plane[lowest].distance ? i : lowest;
@@ -217,6 +231,10 @@ void Proxy::visit(const BlobView& view, Vec3 x) {
   if (inside_) {  // it leaves the material
     inside_ = false;
     side_ = 1.0F;
+    return;
+  }
+  if (is_led()) {
+    stop_at_surface();
     return;
   }
   begin_contact(view);
@@ -244,16 +262,16 @@ bool Proxy::passes_by(const SurfaceFit& fit, Vec3 step) const {
   return !is_tracking() || back_height > behind * side_ * dot(fit.back.normal, step);
 }
 
-// A tracked surface that was crossed begins a contact, whichever side its other points face.
+// A tracked surface that was crossed begins a contact, whichever side its other points face. Where
+// points are hidden, those of the reference may be.
 bool Proxy::is_contradicted(const SurfaceFit& fit) const {
   const bool crossed = is_tracking() && fit.firm() && side_ * fit.distance < 0.0F;
-  return !crossed && state_ != State::kReferenced && fit.facing < kContradicted;
+  return !crossed && state_ != State::kReferenced && fit.facing < kContradicted &&
+         candidates_.hidden() == 0U;
 }
 
 void Proxy::begin_contact(const BlobView& view) {
-  const Vec3 step = -planes_.plane[0].distance * planes_.plane[0].normal;
-  position_ += step;
-  planes_.step_by(step);
+  move_to_first();
   state_ = State::kSticking;
   unsettled_ = true;
   stride_ = 1.0F;
@@ -282,6 +300,7 @@ void Proxy::make_main(std::uint32_t plane) {
   const Plane first = planes_.plane[0];
   planes_.plane[0] = planes_.plane[plane];
   planes_.plane[plane] = first;
+  active_ = (active_ & ~(1U << plane)) | 1U;
   const Vec3 reference = side_ * planes_.plane[0].normal;
   for (std::uint32_t i = 0; i < near_.count; ++i) {  // bound: kMaxFaces
     if (near_.normal[i] == reference) {
@@ -296,6 +315,7 @@ PlaneMove Proxy::move_of(Vec3 probe) {
   ConstraintPlanes planes = planes_;
   planes.step_by(probe - position_);
   const PlaneMove move = shortest_move(planes, false);
+  active_ = move.active;
   common_normal_ = normalized_or(move.step, side_ * reference_);
   return move;
 }
@@ -308,14 +328,19 @@ bool Proxy::settle(const BlobView& view, float& moved) {
     return false;
   }
   refer_to(fit, was_smooth);
-  strength_ = fit.strength;
   unsettled_ = false;
-  planes_ = holding_planes(fit, side_);
-  if (fit.holding + fit.ending == 0U) {
+  hold(fit);
+  if (fit.holding + fit.ending == 0U && foreign_ == 0U) {
     position_ -= fit.distance * fit.normal;
+    planes_.plane[0].distance = 0.0F;
     moved = absolute(fit.distance);
   } else {
-    const Vec3 step = shortest_move(landing_planes(fit, side_), true).step;
+    ConstraintPlanes landing = landing_planes(fit, side_);
+    if (foreign_ != 0U) {
+      // at most: min(bodies, 2) / 2 * fits per Scene::update
+      add_foreign(landing);
+    }
+    const Vec3 step = shortest_move(landing, true).step;
     position_ += step;
     planes_.step_by(step);
     moved = length(step);
@@ -332,8 +357,13 @@ Proxy::Pull Proxy::pull_of(const BlobView& view, Vec3 probe) {
     return {height > 0.0F, along, -height, length(along)};
   }
   const PlaneMove all = move_of(probe);
-  if ((all.active & 1U) == 0U && all.active != 0U) {
-    make_main((all.active & 2U) != 0U ? 1U : 2U);
+  const std::uint32_t own = all.active & ~foreign_;
+  if (own == 0U && foreign_ != 0U) {
+    // at most: min(bodies, 2) / 2 * 2 per Scene::update
+    gives_way_ = touches_neighbour();
+  }
+  if (own != 0U && (own & 1U) == 0U) {
+    make_main((own & 2U) != 0U ? 1U : 2U);
   }
   const float reach = kTouching * view.support_radius_m();
   const Plane& main = planes_.plane[0];
@@ -343,16 +373,20 @@ Proxy::Pull Proxy::pull_of(const BlobView& view, Vec3 probe) {
   if (main.distance <= reach && is_ahead) {
     step = -(main.distance + dot(main.normal, displacement)) * main.normal;
   }
-  return {all.active == 0U, displacement + all.step, length(step), length(displacement + step)};
+  return {own == 0U && !gives_way_, displacement + all.step, length(step),
+          length(displacement + step)};
 }
 
-Proxy::Footing Proxy::footing() const { return {position_, reference_, near_, planes_, strength_}; }
+Proxy::Footing Proxy::footing() const {
+  return {position_, reference_, near_, planes_, foreign_, strength_};
+}
 
 void Proxy::restore(const Footing& footing) {
   position_ = footing.position;
   reference_ = footing.reference;
   near_ = footing.near;
   planes_ = footing.planes;
+  foreign_ = footing.foreign;
   strength_ = footing.strength;
   unsettled_ = false;
   has_next_ = false;
@@ -379,6 +413,9 @@ void Proxy::slide(const BlobView& view, Vec3 probe, const Friction& friction) {
       release();
       return;
     }
+    if (gives_way_) {
+      return;
+    }
     const float cone = friction.dynamic_coefficient * pull.depth;
     const bool slips =
         pull.distance > (slipping() ? cone : friction.static_coefficient * pull.depth);
@@ -400,6 +437,11 @@ void Proxy::slide(const BlobView& view, Vec3 probe, const Friction& friction) {
     const Footing before = footing();
     // at most: fits per Scene::update together fits
     if (!slip_by(view, slip)) {
+      if (candidates_.hidden() != 0U) {  // the surface ends in the neighbour
+        restore(before);
+        gives_way_ = true;
+        return;
+      }
       lost_contact_ = true;
       lose_support();
       return;
@@ -469,6 +511,7 @@ void Proxy::release() {
   unsettled_ = false;
   strength_ = 0.0F;
   planes_.count = 0;
+  foreign_ = 0;
 }
 
 void Proxy::lose_support() {
@@ -479,6 +522,18 @@ void Proxy::lose_support() {
   near_.count = 0;
   side_ = 1.0F;
   asks_ = false;
+}
+
+// Where all its points are hidden, the side of the surface is still known: the next one that is
+// not comes into view from there.
+void Proxy::lose_face(const SurfaceFit& fit) {
+  if (!is_tracking() || candidates_.hidden() == 0U) {
+    lose_support();
+    return;
+  }
+  release();
+  reference_ = fit.next_reference;
+  near_.count = 0;
 }
 
 }  // namespace tactree::core

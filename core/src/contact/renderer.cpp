@@ -35,8 +35,11 @@ float spring_energy(float stiffness_N_m, float length_m, float force_max_N) {
   return force_max_N * (length_m - 0.5F * force_max_N / stiffness_N_m);
 }
 
+}  // namespace
+
 // Neither this nor render_proxy() is inlined: their frames would add to the deepest call chain.
-[[gnu::noinline]] Rendering update_paper(const BlobView& view, const Configuration& c, Vec3 probe) {
+[[gnu::noinline]] Rendering Renderer::render_paper(const BlobView& view, const Configuration& c,
+                                                   Vec3 probe) {
   Rendering r;
   r.proxy = probe;
   const PaperContact contact = paper_collision(view, probe);
@@ -60,15 +63,12 @@ float spring_energy(float stiffness_N_m, float length_m, float force_max_N) {
   return r;
 }
 
-}  // namespace
-
 Rendering Renderer::update(const BlobView& view, const Configuration& configuration, Vec3 probe,
                            Vec3 velocity, std::uint32_t least_tier) {
   if (configuration.mode == RenderMode::kPaper) {
-    return update_paper(view, configuration, probe);  // at most: paper per Scene::render
+    return render_paper(view, configuration, probe);
   }
-  // at most: 1 - paper per Scene::render
-  proxy_.update(view, probe, friction_, work_per_tick(configuration.rate_hz, least_tier));
+  track(view, configuration, probe, least_tier, nullptr);
   return render_proxy(view, configuration, probe, velocity);
 }
 

@@ -40,9 +40,6 @@ bool comes_near(const BlobView& view, Vec3 from, Vec3 to) {
 }
 
 void bring_to_scene(const Pose& pose, Rendering& r) {
-  if (pose == Pose{}) {
-    return;
-  }
   r.proxy = rotate(pose.rotation, r.proxy) + pose.translation_m;
   r.normal = rotate(pose.rotation, r.normal);
   r.force = rotate(pose.rotation, r.force);
@@ -83,7 +80,7 @@ ModelStatus Scene::add(const BlobView& view, const Pose& pose, std::uint32_t& nu
   Body& body = bodies_[free];
   body.view = view;
   body.pose = normalized(pose);
-  body.moved = !(body.pose == Pose{});
+  body.moved = !is_origin(body.pose);
   number = free;
   list_bodies();
   return ModelStatus::kOk;
@@ -124,7 +121,7 @@ ModelStatus Scene::move(std::uint32_t number, const Pose& pose, const Motion& mo
   Body& body = bodies_[number];
   body.pose = normalized(pose);
   body.motion = motion;
-  body.moved = !(body.pose == Pose{} && motion == Motion{});
+  body.moved = !(is_origin(body.pose) && is_rest(motion));
   return ModelStatus::kOk;
 }
 
@@ -155,18 +152,19 @@ void Scene::reset(Vec3 probe) {
   }
   for (Slot& slot : slots_) {  // bound: kMaxReachableBodies
     const bool assigned = slot.body != kNoBody;
-    assign_slot(slot, slot.body,
-                assigned ? position_to_body(bodies_[slot.body].pose, probe) : probe);
-    slot.fade.stop();
+    assign_slot(slot, slot.body, assigned ? position_to_body(pose_of(slot), probe) : probe);
   }
+  fade_.stop();
+  force_ = {};
+  ended_ = false;
   rendering_ = SceneRendering{};
 }
 
 void Scene::assign_slot(Slot& slot, std::uint32_t number, Vec3 probe) {
+  ended_ = ended_ || slot.in_contact;
   slot.body = number;
   slot.renderer.reset(probe);
   slot.in_contact = false;
-  slot.force = {};
 }
 
 Scene::Slot* Scene::slot_of(std::uint32_t number) {
@@ -191,16 +189,9 @@ Scene::Slot* Scene::free_slot(const bool (&within_reach)[kMaxBodies]) {
   return nullptr;
 }
 
-void Scene::begin_fade(Slot& slot, std::uint32_t fade_ticks) {
-  if (slot.in_contact) {
-    slot.fade.begin(slot.force, fade_ticks);
-  }
-}
-
 void Scene::release(std::uint32_t number) {
   Slot* const slot = slot_of(number);
   if (slot != nullptr) {
-    begin_fade(*slot, fade_ticks_);
     assign_slot(*slot, kNoBody, {});
   }
 }
@@ -209,7 +200,8 @@ void Scene::locate_probe(Vec3 probe) {
   for (std::uint32_t i = 0; i < count_; ++i) {  // bound: listed
     Body& body = bodies_[listed_[i]];
     if (body.enabled) {
-      body.probe = body.moved ? position_to_body(body.pose, probe) : probe;
+      body.probe =
+          body.moved ? rotate_back(body.pose.rotation, probe - body.pose.translation_m) : probe;
       body.last_probe = body.seen ? body.last_probe : body.probe;
     }
   }
@@ -249,10 +241,7 @@ void Scene::release_backs() {
 }
 
 const SceneRendering& Scene::update(const Configuration& configuration, Vec3 probe, Vec3 velocity) {
-  const auto fade_ticks = static_cast<std::uint32_t>(kFadeSeconds * configuration.rate_hz);
-  fade_ticks_ = fade_ticks > 0U ? fade_ticks : 1U;
   SceneRendering& all = rendering_;
-  all.contact.body = kNoBody;
   all.wall_velocity = {};
   all.fading = false;
   all.inside = false;
@@ -261,73 +250,195 @@ const SceneRendering& Scene::update(const Configuration& configuration, Vec3 pro
   }
   locate_probe(probe);
   all.crowded = assign_slots();
-  for (Slot& slot : slots_) {  // bound: kMaxReachableBodies
-    if (slot.body != kNoBody) {
-      // at most: min(bodies, kMaxReachableBodies) per Scene::update together contacts
-      render(slot, configuration, probe, velocity);
-    }
+  Slot* leader = nullptr;
+  if (configuration.mode != RenderMode::kPaper) {
+    leader = track_all(configuration);  // at most: 1 - paper per Scene::update
   }
-  if (all.contact.body == kNoBody) {
-    // at most: min(bodies, kMaxReachableBodies) per Scene::update together contacts
+  if (leader != nullptr) {
+    render(*leader, configuration, probe, velocity);  // at most: 1 - paper per Scene::update
+  } else {
     all.contact = Rendering{};
     all.contact.proxy = probe;
   }
-  // No addition without a second contact: adding 0 would change the sign of a zero.
-  for (std::uint32_t i = 0; i < kMaxReachableBodies; ++i) {  // bound: kMaxReachableBodies
-    const Slot& slot = slots_[i];
-    if (slot.in_contact && slot.body != all.contact.body) {
-      all.contact.force += slot.force;
-      all.contact.stored_energy += slot.stored_energy;
-    }
+  all.contact.complete = observe();
+  if (configuration.mode == RenderMode::kPaper) {
+    render_paper(configuration, probe);  // at most: paper per Scene::update
   }
-  for (Slot& slot : slots_) {  // bound: kMaxReachableBodies
-    if (slot.fade.active()) {
-      all.contact.force += slot.fade.next();
-      all.fading = true;
-    }
+  if (ended_) {
+    const auto ticks = static_cast<std::uint32_t>(kFadeSeconds * configuration.rate_hz);
+    fade_.begin(force_ - all.contact.force, ticks > 0U ? ticks : 1U);
+    ended_ = false;
+  }
+  force_ = all.contact.force;
+  if (fade_.active()) {
+    all.contact.force += fade_.next();
+    all.fading = true;
   }
   move_on(1.0F / configuration.rate_hz);
   return all;
 }
 
-void Scene::render(Slot& slot, const Configuration& configuration, Vec3 probe, Vec3 velocity) {
-  SceneRendering& all = rendering_;
+/// The slot whose proxy is in contact; null: none.
+Scene::Slot* Scene::leading() {
+  for (Slot& slot : slots_) {  // bound: kMaxReachableBodies
+    if (slot.in_contact) {
+      return &slot;
+    }
+  }
+  return nullptr;
+}
+
+/// The body of `other` as that of `slot` sees it.
+[[gnu::noinline]] Neighbour Scene::neighbour_of(const Slot& slot, const Slot& other) const {
+  Neighbour neighbour = other.renderer.proxy().as_neighbour(bodies_[other.body].view);
+  neighbour.bring(pose_of(other), pose_of(slot));
+  return neighbour;
+}
+
+/// All proxies follow; returns the slot of the one that leads, or null. It goes first, and the
+/// other one follows it.
+[[gnu::noinline]] Scene::Slot* Scene::track_all(const Configuration& configuration) {
+  Slot* const led = leading();
+  Slot* slot = led != nullptr ? led : slots_;
+  for (std::uint32_t i = 0; i < kMaxReachableBodies; ++i) {  // bound: kMaxReachableBodies
+    if (slot->body != kNoBody) {
+      // at most: min(bodies, kMaxReachableBodies) per Scene::track_all
+      track(*slot, configuration);
+    }
+    slot = &beside(*slot);
+  }
+  Slot* leader = led != nullptr && led->in_contact ? led : leading();
+  if (leader != nullptr && beside(*leader).body != kNoBody) {
+    // at most: min(bodies, 2) / 2 per Scene::track_all
+    leader = share(*leader);
+  }
+  return leader;
+}
+
+/// Is the probe in the material of a body? True: the models hold what they declare.
+bool Scene::observe() {
+  bool complete = true;
+  for (const Slot& slot : slots_) {  // bound: kMaxReachableBodies
+    if (slot.body != kNoBody) {
+      rendering_.inside = rendering_.inside || slot.renderer.proxy().inside();
+      complete = complete && slot.renderer.proxy().complete();
+    }
+  }
+  return complete;
+}
+
+// A body that jumps, or a probe that does: the contact ends.
+void Scene::end_contact_of_a_jump(Slot& slot, const Configuration& configuration) {
   const Body& body = bodies_[slot.body];
   const float furthest = 2.0F * configuration.speed_max_m_s / configuration.rate_hz;
   if (!(length_squared(body.probe - body.last_probe) <= furthest * furthest)) {
-    begin_fade(slot, fade_ticks_);
     assign_slot(slot, slot.body, body.probe);
   }
+}
+
+[[gnu::noinline]] void Scene::track(Slot& slot, const Configuration& configuration) {
+  end_contact_of_a_jump(slot, configuration);
+  const Body& body = bodies_[slot.body];
+  const Slot& other = beside(slot);
+  if (other.body != kNoBody) {
+    // at most: min(bodies, 2) / 2 * 2 per Scene::track_all
+    neighbour_ = neighbour_of(slot, other);
+  }
+  slot.renderer.track(body.view, configuration, body.probe, work_tier_,
+                      other.body != kNoBody ? &neighbour_ : nullptr);
+  slot.in_contact = slot.renderer.proxy().in_contact();
+  ended_ = ended_ || slot.renderer.proxy().lost_contact();
+}
+
+/// What the proxy that followed has found holds the one that leads, too; where the surface is that
+/// of its body, it takes the lead.
+[[gnu::noinline]] Scene::Slot* Scene::share(Slot& leader) {
+  Slot& follower = beside(leader);
+  const Vec3 probe = bodies_[leader.body].probe;
+  const Neighbour its = neighbour_of(leader, follower);
+  Proxy& leads = leader.renderer.proxy();
+  Proxy& follows = follower.renderer.proxy();
+  leads.yield_to(its);
+  const bool changes = leads.belongs_to(follows, its, probe);
+  if (changes) {
+    follows.take_over(neighbour_of(follower, leader), leads);
+    leader.in_contact = false;
+    follower.in_contact = true;
+  }
+  Slot& now = changes ? follower : leader;
+  now.renderer.proxy().aim(bodies_[now.body].probe);
+  return &now;
+}
+
+[[gnu::noinline]] void Scene::render(Slot& slot, const Configuration& configuration, Vec3 probe,
+                                     Vec3 velocity) {
+  SceneRendering& all = rendering_;
+  const Body& body = bodies_[slot.body];
   Vec3 relative = velocity;
   Vec3 seen_velocity = velocity;
   if (body.moved) {
     relative = relative_velocity(body.pose, body.motion, probe, velocity);
     seen_velocity = direction_to_body(body.pose, relative);
   }
-  Rendering r =
-      slot.renderer.update(body.view, configuration, body.probe, seen_velocity, work_tier_);
+  Rendering r = slot.renderer.render_proxy(body.view, configuration, body.probe, seen_velocity);
+  Vec3 shared{};
+  if (beside(slot).body != kNoBody) {
+    // at most: min(bodies, 2) / 2 per Scene::update
+    shared = slot.renderer.proxy().share_of_neighbour(r.force);
+  }
+  if (body.moved) {
+    bring_to_scene(body.pose, r);
+    shared = rotate(body.pose.rotation, shared);
+  }
+  r.body = slot.body;
+  all.contact = r;
+  all.wall_velocity = velocity - relative;
+  react(slot, r.proxy, r.force - shared);
+  if (shared != Vec3{}) {
+    // at most: min(bodies, 2) / 2 per Scene::update
+    react(beside(slot), r.proxy, shared);
+  }
+}
+
+/// The body feels the opposite of a force at the proxy.
+[[gnu::noinline]] void Scene::react(const Slot& slot, Vec3 proxy, Vec3 force) {
+  const Vec3 arm = proxy - pose_of(slot).translation_m;
+  rendering_.reactions[&slot - slots_] = {slot.body, -force, cross(arm, -force)};
+}
+
+[[gnu::noinline]] void Scene::render_paper(const Configuration& configuration, Vec3 probe) {
+  for (Slot& slot : slots_) {  // bound: kMaxReachableBodies
+    if (slot.body != kNoBody) {
+      // at most: min(bodies, kMaxReachableBodies) per Scene::render_paper
+      render_paper(slot, configuration, probe);
+    }
+  }
+}
+
+[[gnu::noinline]] void Scene::render_paper(Slot& slot, const Configuration& configuration,
+                                           Vec3 probe) {
+  end_contact_of_a_jump(slot, configuration);
+  SceneRendering& all = rendering_;
+  const Body& body = bodies_[slot.body];
+  Rendering r = Renderer::render_paper(body.view, configuration, body.probe);
   if (body.moved) {
     bring_to_scene(body.pose, r);
   }
   r.body = slot.body;
-  if (r.lost) {
-    slot.fade.begin(slot.force - r.force, fade_ticks_);
-  }
   slot.in_contact = r.in_contact;
-  slot.force = r.force;
-  slot.stored_energy = r.stored_energy;
-  const bool first = all.contact.body == kNoBody;
-  const bool complete = r.complete && (first || all.contact.complete);
-  if (first || length_squared(r.force) > length_squared(all.contact.force)) {
-    all.contact = r;
-    all.wall_velocity = velocity - relative;
+  if (!r.in_contact) {
+    return;
   }
-  all.contact.complete = complete;
-  all.inside = all.inside || r.inside;
-  if (r.in_contact) {
-    const auto index = static_cast<std::uint32_t>(&slot - slots_);
-    const Vec3 arm = r.proxy - body.pose.translation_m;
-    all.reactions[index] = {slot.body, -r.force, cross(arm, -r.force)};
+  react(slot, r.proxy, r.force);
+  const Rendering other = all.contact;
+  const bool is_first = !other.in_contact;
+  if (is_first || length_squared(r.force) > length_squared(other.force)) {
+    all.contact = r;
+    all.wall_velocity = body.moved ? -relative_velocity(body.pose, body.motion, probe, {}) : Vec3{};
+  }
+  if (!is_first) {  // adding 0 would change the sign of a zero
+    all.contact.force = r.force + other.force;
+    all.contact.stored_energy = r.stored_energy + other.stored_energy;
   }
 }
 

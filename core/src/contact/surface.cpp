@@ -35,6 +35,7 @@ void set_to(SurfaceFit& result, const FaceFit& fit) {
   result.distance = fit.plane.distance;
   result.normal = fit.plane.normal;
   result.strength = fit.strength;
+  result.weight = fit.weight;
 }
 
 /// The point of a further face: of a crease, else of an opposite wall ahead. An opposite face that

@@ -11,6 +11,7 @@
 namespace tactree::core {
 
 struct NearLeaf;
+struct Neighbour;
 class CornerLeaves;
 
 /// Capacity of a set. surface_support() refuses a blob with a larger points_per_ball_max.
@@ -55,6 +56,18 @@ class CandidateSet {
   /// Gathers around `x` without a limit unless the set covers it. For use outside a tick.
   void cover(const BlobView& view, Vec3 x);
 
+  /// Hides the points where another body leaves no surface: those within it, and those of faces
+  /// that are flush with one of its faces, one against the other. Shows the others. `side`: 1, or
+  /// -1 if the probe is on the side that the normals avert. Precondition: neighbour.holding > 0.
+  /// Cost: one pass over the set.
+  void hide(const Neighbour& neighbour, float side);
+  void show_all() {
+    count_ += hidden_;
+    hidden_ = 0;
+  }
+  [[nodiscard]] std::uint32_t hidden() const { return hidden_; }
+
+  /// Of the points that are not hidden, as all below.
   [[nodiscard]] std::uint32_t count() const { return count_; }
   /// False after a gather that left points out because the blob holds more than it declares or
   /// than kMaxCandidates; clear() makes it true.
@@ -80,6 +93,7 @@ class CandidateSet {
 
   Candidate candidates_[kMaxCandidates];
   std::uint32_t count_ = 0;
+  std::uint32_t hidden_ = 0;    // behind the others
   std::uint32_t most_ = 0;      // limit of count_: declared by the blob, at most kMaxCandidates
   std::uint32_t unseen_ = 0;    // points left of points_per_query_max
   std::uint32_t untested_ = 0;  // points left of points_per_slab_max

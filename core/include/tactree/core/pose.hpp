@@ -17,12 +17,11 @@ struct Quaternion {
 };
 
 /// Rotates a direction from the body's frame to the scene's. About 30 operations.
-constexpr Vec3 rotate(Quaternion q, Vec3 direction) {
-  const Vec3 t = 2.0F * cross(q.v, direction);
-  return direction + q.w * t + cross(q.v, t);
-}
+[[nodiscard]] Vec3 rotate(Quaternion q, Vec3 direction);
 /// Rotates a direction from the scene's frame to the body's.
-constexpr Vec3 rotate_back(Quaternion q, Vec3 direction) { return rotate({q.w, -q.v}, direction); }
+[[nodiscard]] inline Vec3 rotate_back(Quaternion q, Vec3 direction) {
+  return rotate({q.w, -q.v}, direction);
+}
 
 /// scene position = rotation * body position + translation
 struct Pose {
@@ -54,26 +53,34 @@ inline constexpr float kQuaternionTolerance = 1.0e-3F;  ///< deviation of the sq
 /// below 1e-7 rad. The body does not move beyond kMaxTranslation.
 [[nodiscard]] Pose advanced(const Pose& pose, const Motion& motion, float seconds);
 
+/// The body's frame is that of the scene.
+[[nodiscard]] constexpr bool is_origin(const Pose& pose) {
+  return pose.rotation.w == 1.0F && pose.rotation.v == Vec3{} && pose.translation_m == Vec3{};
+}
+[[nodiscard]] constexpr bool is_rest(const Motion& motion) {
+  return motion.linear_m_s == Vec3{} && motion.angular_rad_s == Vec3{};
+}
+
 // With the identity, positions, directions and velocities are the same to the bit.
 
 [[nodiscard]] inline Vec3 position_to_body(const Pose& pose, Vec3 position) {
-  return pose == Pose{} ? position : rotate_back(pose.rotation, position - pose.translation_m);
+  return is_origin(pose) ? position : rotate_back(pose.rotation, position - pose.translation_m);
 }
 [[nodiscard]] inline Vec3 position_to_scene(const Pose& pose, Vec3 position) {
-  return pose == Pose{} ? position : rotate(pose.rotation, position) + pose.translation_m;
+  return is_origin(pose) ? position : rotate(pose.rotation, position) + pose.translation_m;
 }
 [[nodiscard]] inline Vec3 direction_to_body(const Pose& pose, Vec3 direction) {
-  return pose == Pose{} ? direction : rotate_back(pose.rotation, direction);
+  return is_origin(pose) ? direction : rotate_back(pose.rotation, direction);
 }
 [[nodiscard]] inline Vec3 direction_to_scene(const Pose& pose, Vec3 direction) {
-  return pose == Pose{} ? direction : rotate(pose.rotation, direction);
+  return is_origin(pose) ? direction : rotate(pose.rotation, direction);
 }
 
 /// Velocity, relative to the body, of a point at `position` that moves with `velocity`; along the
 /// scene's axes.
 [[nodiscard]] inline Vec3 relative_velocity(const Pose& pose, const Motion& motion, Vec3 position,
                                             Vec3 velocity) {
-  if (motion == Motion{}) {
+  if (is_rest(motion)) {
     return velocity;
   }
   return velocity - motion.linear_m_s - cross(motion.angular_rad_s, position - pose.translation_m);

@@ -19,6 +19,10 @@
 // at first, after a jump, or where it lost its contact. It is followed without force, and contact
 // begins only after it has left. Both sides of a sheet count as free.
 //
+// Two bodies near the probe share one proxy: that of the body in contact, which leads. It is held
+// by the faces of both. The other body's proxy follows it instead of the probe and finds the faces
+// there; it takes the lead where the surface is its body's own.
+//
 // A step takes at most one gather. With work_per_tick() and R = 2.5 mm the proxy keeps up with
 // 5 m/s at 1 kHz, 2.5 m/s at 2 kHz and 1.2 m/s at 4 kHz; it follows a faster probe with a delay and
 // never loses it. When the budget ends between gather and fit, the fit follows in the next tick; a
@@ -31,6 +35,7 @@
 #include "tactree/core/blob.hpp"
 #include "tactree/core/candidates.hpp"
 #include "tactree/core/constraint_planes.hpp"
+#include "tactree/core/neighbour.hpp"
 #include "tactree/core/surface.hpp"
 #include "tactree/core/tick_budget.hpp"
 
@@ -48,9 +53,25 @@ class Proxy {
   /// model changes.
   void reset(Vec3 probe);
 
-  /// Follows the probe (m, model frame) for one tick. Cost: at most `work`, the
-  /// searches for the nearest candidate included.
-  void update(const BlobView& view, Vec3 probe, const Friction& friction, const SurfaceWork& work);
+  /// Follows the probe (m, model frame) for one tick, or the proxy of a neighbour that leads. Cost:
+  /// at most `work`, the searches for the nearest candidate included; with a neighbour, a pass more
+  /// for each gather, and one.
+  void update(const BlobView& view, Vec3 probe, const Friction& friction, const SurfaceWork& work,
+              const Neighbour* neighbour = nullptr);
+
+  /// What the proxy of another body has to know of this one. Its frame is that of the model.
+  [[nodiscard]] Neighbour as_neighbour(const BlobView& view) const;
+  /// In contact: the faces of a neighbour as they are now; where they came closer, it gives way.
+  void yield_to(const Neighbour& neighbour);
+  /// In contact: the surface at the proxy is the neighbour's, whose own proxy follows this one.
+  [[nodiscard]] bool belongs_to(const Proxy& follower, const Neighbour& neighbour,
+                                Vec3 probe) const;
+  /// Continues the contact of the neighbour that led, at its proxy; that one lets it go.
+  void take_over(const Neighbour& neighbour, Proxy& from);
+  /// In contact, after the last of these: what holds the probe.
+  void aim(Vec3 probe);
+  /// Share of a contact force along the faces of the neighbour.
+  [[nodiscard]] Vec3 share_of_neighbour(Vec3 force) const;
 
   [[nodiscard]] bool in_contact() const { return state_ >= State::kSticking; }
   /// In the material, without contact; known within two ticks.
@@ -94,6 +115,7 @@ class Proxy {
     Vec3 reference{};
     NearFaces near{};
     ConstraintPlanes planes{};
+    std::uint32_t foreign = 0;
     float strength = 0.0F;
   };
 
@@ -117,6 +139,16 @@ class Proxy {
   void begin_tracking(float distance);
   [[nodiscard]] bool is_contradicted(const SurfaceFit& fit) const;
   [[nodiscard]] bool passes_by(const SurfaceFit& fit, Vec3 step) const;
+  [[nodiscard]] bool is_led() const { return neighbour_ != nullptr && neighbour_->leads; }
+  void begin_beside(const Neighbour* neighbour);
+  void hide_points(float radius);
+  void hold(const SurfaceFit& fit);
+  void hold_beside(const SurfaceFit& fit);
+  void add_foreign(ConstraintPlanes& planes) const;
+  void meet(const Neighbour* neighbour);
+  [[nodiscard]] bool touches_neighbour() const;
+  void stop_at_surface();
+  void move_to_first();
   void begin_contact(const BlobView& view);
   void slide(const BlobView& view, Vec3 probe, const Friction& friction);
   [[nodiscard]] Vec3 next_slip(const Pull& pull, float excess, float step, bool& last) const;
@@ -133,6 +165,7 @@ class Proxy {
                                 bool was_settled);
   void restore(const Footing& footing);
   void release();
+  void lose_face(const SurfaceFit& fit);
   void lose_support();
 
   CandidateSet candidates_;
@@ -144,6 +177,11 @@ class Proxy {
   Vec3 common_normal_{};       // where several faces hold the proxy
   float side_ = 1.0F;          // +1 or -1: the probe's side of the surface
   float strength_ = 0.0F;
+  const Neighbour* neighbour_ = nullptr;  // during update()
+  Neighbour found_{};                     // beside a neighbour: the faces of the last fit
+  std::uint32_t foreign_ = 0;             // bit i: plane i is of a neighbour
+  std::uint32_t active_ = 0;              // bit i: plane i holds the probe, where there are several
+  float weight_ = 0.0F;                   // of the last fit
   float stride_ = 1.0F;  // share of the next step: smaller after one that led away from the probe
   Vec3 next_{};          // position of the fit that waits for its candidates; where has_next_
   TickBudget budget_;
@@ -153,6 +191,9 @@ class Proxy {
   bool inside_ = false;     // never in contact
   bool asks_ = false;       // tracking, behind a surface: is that in the material?
   bool lost_contact_ = false;
+  bool must_hide_ = false;  // before the next fit
+  bool blocked_ = false;    // a proxy that leads is behind this surface
+  bool gives_way_ = false;  // in contact: the neighbour's faces alone hold the probe
 };
 
 }  // namespace tactree::core

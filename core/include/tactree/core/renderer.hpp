@@ -50,10 +50,23 @@ class Renderer {
   Rendering update(const BlobView& view, const Configuration& configuration, Vec3 probe,
                    Vec3 velocity, std::uint32_t least_tier = 0);
 
- private:
+  /// The two steps of an update in surface mode: the proxy follows, and the force. With a neighbour
+  /// the force is that of the proxy that leads: see proxy.hpp.
+  void track(const BlobView& view, const Configuration& configuration, Vec3 probe,
+             std::uint32_t least_tier, const Neighbour* neighbour) {
+    proxy_.update(view, probe, friction_, work_per_tick(configuration.rate_hz, least_tier),
+                  neighbour);
+  }
   [[gnu::noinline]] Rendering render_proxy(const BlobView& view, const Configuration& configuration,
                                            Vec3 probe, Vec3 velocity);
+  /// Paper mode. Cost: paper_collision() and paper_nearest().
+  [[nodiscard]] static Rendering render_paper(const BlobView& view,
+                                              const Configuration& configuration, Vec3 probe);
 
+  [[nodiscard]] Proxy& proxy() { return proxy_; }
+  [[nodiscard]] const Proxy& proxy() const { return proxy_; }
+
+ private:
   Proxy proxy_;
   Friction friction_{};        // of the contact in the last tick
   MaterialBlend materials_{};  // of the contact when its candidates were last valid

@@ -1,9 +1,12 @@
 #pragma once
 // Several rigid bodies around one probe. Each body has a model and a pose that may change every
 // tick. A Renderer per body works in the body's frame: a moving body carries its proxy along and
-// pushes the probe. The forces add up.
+// pushes the probe. The probe feels the surface of all bodies together: one proxy is held by the
+// faces of all, and a face within another body is not felt (neighbour.hpp). The material is that of
+// the body which leads. In paper mode the forces of the bodies add up.
 //
-//   probe -> bodies within reach -> body frame -> Renderer -> force, and its reaction on the body
+//   probe -> bodies within reach -> body frame -> proxies, of which one leads -> force, and its
+//   reactions on the bodies
 //
 // At most kMaxReachableBodies of the bodies whose box contains the probe are rendered: those
 // reached first, then those with the lowest numbers. The others exert no force, and
@@ -55,8 +58,8 @@ struct Reaction {
 
 /// Contacts of all bodies in one tick.
 struct SceneRendering {
-  /// The contact with the largest force, in the scene's frame; `force` and `stored_energy` are
-  /// those of all of them.
+  /// The contact of the body that leads, in paper mode that with the largest force, in the scene's
+  /// frame; `force` and `stored_energy` are those of all bodies.
   Rendering contact{};
   Vec3 wall_velocity{};                       ///< m/s, of that contact's body where the probe is
   Reaction reactions[kMaxReachableBodies]{};  ///< of the bodies in contact
@@ -104,7 +107,8 @@ class Scene {
 
   /// Renders one tick; `probe` (m) and `velocity` (m/s) in the scene's frame. Preconditions: as
   /// Renderer::update().
-  /// Cost: kMaxReachableBodies times Renderer::update(), kMaxBodies times about 100 operations.
+  /// Cost: kMaxReachableBodies times Proxy::update(), one force, kMaxBodies times about 100
+  /// operations.
   const SceneRendering& update(const Configuration& configuration, Vec3 probe, Vec3 velocity);
   /// Result of the last update(); no contact after reset().
   [[nodiscard]] const SceneRendering& rendering() const { return rendering_; }
@@ -126,20 +130,28 @@ class Scene {
     std::uint32_t body = kNoBody;
     Renderer renderer{};
     bool in_contact = false;
-    Vec3 force{};  // in the last tick
-    float stored_energy = 0.0F;
-    ForceFade fade{};
   };
 
   [[nodiscard]] bool exists(std::uint32_t number) const;
   [[nodiscard]] Slot* slot_of(std::uint32_t number);
   [[nodiscard]] Slot* free_slot(const bool (&within_reach)[kMaxBodies]);
-  static void assign_slot(Slot& slot, std::uint32_t number, Vec3 probe);
+  void assign_slot(Slot& slot, std::uint32_t number, Vec3 probe);
   void release(std::uint32_t number);
-  static void begin_fade(Slot& slot, std::uint32_t fade_ticks);
   void locate_probe(Vec3 probe);
   [[nodiscard]] bool assign_slots();
+  [[nodiscard]] Slot* leading();
+  [[nodiscard]] Slot& beside(const Slot& slot) { return slots_[&slot == slots_ ? 1 : 0]; }
+  [[nodiscard]] const Pose& pose_of(const Slot& slot) const { return bodies_[slot.body].pose; }
+  [[nodiscard]] Neighbour neighbour_of(const Slot& slot, const Slot& other) const;
+  void end_contact_of_a_jump(Slot& slot, const Configuration& configuration);
+  [[nodiscard]] Slot* track_all(const Configuration& configuration);
+  void track(Slot& slot, const Configuration& configuration);
+  [[nodiscard]] Slot* share(Slot& leader);
+  [[nodiscard]] bool observe();
   void render(Slot& slot, const Configuration& configuration, Vec3 probe, Vec3 velocity);
+  void react(const Slot& slot, Vec3 proxy, Vec3 force);
+  void render_paper(const Configuration& configuration, Vec3 probe);
+  void render_paper(Slot& slot, const Configuration& configuration, Vec3 probe);
   void move_on(float period_s);
   void list_bodies();
 
@@ -148,7 +160,10 @@ class Scene {
   std::uint32_t count_ = 0;            // of the bodies
   Slot slots_[kMaxReachableBodies]{};
   SceneRendering rendering_{};
-  std::uint32_t fade_ticks_ = 1;
+  Neighbour neighbour_{};  // of the body that is rendered
+  Vec3 force_{};           // of the contacts in the last tick
+  ForceFade fade_{};
+  bool ended_ = false;  // a contact ended otherwise than by the probe leaving: its force fades
   std::uint32_t work_tier_ = 0;  // at least, whatever the rate
 };
 

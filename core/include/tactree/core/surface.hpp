@@ -27,6 +27,8 @@ struct SurfaceFit {
   /// weighted centroid and the foot of the query, in support radii. Of several faces that hold a
   /// probe, the largest.
   float strength = 0.0F;
+  /// Of the points of the face: the larger, the more of it is around.
+  float weight = 0.0F;
   /// Enough points on all sides to locate the surface. A fit that is supported but not firm, on a
   /// boundary or in a hole, still guides a proxy in contact.
   [[nodiscard]] bool firm() const { return supported && strength > 0.0F; }
@@ -43,11 +45,12 @@ struct SurfaceFit {
   /// The back of a plate or of a sharp ridge, at its nearest point; if there is one.
   Plane back{};
 
-  void set(const Plane& plane, float its_strength) {
+  void set(const Plane& plane, float its_strength, float its_weight) {
     supported = true;
     distance = plane.distance;
     normal = plane.normal;
     strength = its_strength;
+    weight = its_weight;
   }
 };
 
