@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -10,8 +11,6 @@
 
 namespace tactree::cli {
 namespace {
-
-constexpr std::uintmax_t kLargestBlob = 0xFFFFFFFFU;
 
 const char* remedy(core::BlobStatus status) {
   switch (status) {
@@ -26,13 +25,38 @@ const char* remedy(core::BlobStatus status) {
   }
 }
 
+/// What the first bytes of a file of `size` bytes tell, before the rest is read.
+core::BlobStatus check_header(std::span<const std::byte> first, std::uintmax_t size) {
+  core::BlobView none;
+  const core::BlobStatus status = core::open_blob(first, none);
+  if (status == core::BlobStatus::kTooShort || status == core::BlobStatus::kBadMagic ||
+      status == core::BlobStatus::kBadVersion) {
+    return status;
+  }
+  core::BlobHeader header{};
+  std::memcpy(&header, first.data(), sizeof header);
+  return header.total_bytes == size ? core::BlobStatus::kOk : core::BlobStatus::kBadSize;
+}
+
+[[noreturn]] void refuse(const std::filesystem::path& file, core::BlobStatus status,
+                         const std::string& detail) {
+  throw CommandError(fmt::format("{}: refused: {}{} ({})", file.string(), core::describe(status),
+                                 detail, remedy(status)));
+}
+
 }  // namespace
 
 BlobFile::BlobFile(const std::filesystem::path& file) {
   std::error_code error;
-  if (std::filesystem::is_directory(file, error)) {
+  const std::filesystem::file_status kind = std::filesystem::status(file, error);
+  if (std::filesystem::is_directory(kind)) {
     throw CommandError(
         fmt::format("{}: is a folder, not a blob (give the file in it)", file.string()));
+  }
+  if (std::filesystem::exists(kind) && !std::filesystem::is_regular_file(kind)) {
+    throw CommandError(
+        fmt::format("{}: is a pipe or a device (a blob is read from a file: write it to one first)",
+                    file.string()));
   }
   std::ifstream in(file, std::ios::binary);
   const std::uintmax_t size = in ? std::filesystem::file_size(file, error) : 0;
@@ -41,21 +65,36 @@ BlobFile::BlobFile(const std::filesystem::path& file) {
         fmt::format("{}: cannot be read: {} (give a blob: `tactree build` makes one)",
                     file.string(), error ? error.message() : std::strerror(errno)));
   }
-  if (size > kLargestBlob) {
-    throw CommandError(
-        fmt::format("{}: {} bytes: larger than any blob (give the file that `tactree build` wrote)",
-                    file.string(), size));
+  // The header first: a large file of another kind is refused without reading it.
+  read(in, file, std::min<std::uintmax_t>(size, sizeof(core::BlobHeader)));
+  const core::BlobStatus first = check_header(bytes(), size);
+  if (first != core::BlobStatus::kOk) {
+    refuse(file, first,
+           first == core::BlobStatus::kBadSize
+               ? fmt::format(": its header states {} bytes, the file has {}", stated_bytes(), size)
+               : "");
   }
-  size_ = static_cast<std::size_t>(size);
-  words_.resize((size_ + 3) / 4);
-  if (!in.read(reinterpret_cast<char*>(words_.data()), static_cast<std::streamsize>(size_))) {
-    throw CommandError(
-        fmt::format("{}: ended while it was read (wait until it is written)", file.string()));
-  }
+  read(in, file, size);
   const core::BlobStatus status = core::open_blob(bytes(), view_);
   if (status != core::BlobStatus::kOk) {
+    refuse(file, status, "");
+  }
+}
+
+std::uint32_t BlobFile::stated_bytes() const {
+  core::BlobHeader header{};
+  std::memcpy(&header, words_.data(), sizeof header);
+  return header.total_bytes;
+}
+
+void BlobFile::read(std::istream& in, const std::filesystem::path& file, std::uintmax_t size) {
+  const std::size_t begin = size_;
+  size_ = static_cast<std::size_t>(size);
+  words_.resize((size_ + 3) / 4);
+  if (!in.read(reinterpret_cast<char*>(words_.data()) + begin,
+               static_cast<std::streamsize>(size_ - begin))) {
     throw CommandError(
-        fmt::format("{}: refused: {} ({})", file.string(), core::describe(status), remedy(status)));
+        fmt::format("{}: ended while it was read (wait until it is written)", file.string()));
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <istream>
 #include <span>
 #include <vector>
 
@@ -13,7 +14,8 @@ namespace tactree::cli {
 /// Owns the bytes; view() and bytes() are valid during its lifetime.
 class BlobFile {
  public:
-  /// Reads and checks. Throws CommandError that names the file, the cause and the remedy.
+  /// Reads and checks, the header before the rest. Throws CommandError that names the file, the
+  /// cause and the remedy.
   explicit BlobFile(const std::filesystem::path& file);
 
   [[nodiscard]] const core::BlobView& view() const { return view_; }
@@ -22,6 +24,10 @@ class BlobFile {
   }
 
  private:
+  /// Reads on, up to `size` bytes of the file.
+  void read(std::istream& in, const std::filesystem::path& file, std::uintmax_t size);
+  [[nodiscard]] std::uint32_t stated_bytes() const;
+
   std::vector<std::uint32_t> words_;  // blobs start on a 4-byte boundary
   std::size_t size_ = 0;
   core::BlobView view_;
