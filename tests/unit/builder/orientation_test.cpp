@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "known_bodies.hpp"
+#include "orientation/report_orientation.hpp"
 #include "orientation_score.hpp"
 #include "shapes.hpp"
 
@@ -154,6 +155,49 @@ TEST(Orientation, OfAFlatSheetSeenFromItsEdgeIsDoubtful) {
     scan.poses = {{Eigen::Vector3d(0.5, 0.03, 0.0), 0, sure}};
     EXPECT_TRUE(warns(built_from(scan), "doubtful")) << sure;
   }
+}
+
+/// The notes and the basis of the largest piece must not contradict each other.
+TEST(Orientation, SaysThatTheSurfaceFacesTheScannerOnlyWhereThatDecided) {
+  const auto says = [](const BuildResult& built, const char* what) {
+    const std::vector<std::string>& notes = built.report.notes;
+    return std::any_of(notes.begin(), notes.end(), [&](const std::string& note) {
+      return note.find(what) != std::string::npos;
+    });
+  };
+  const BuildResult seen = built_from(SeenValley(-0.5).scan);
+  EXPECT_TRUE(says(seen, "the surface faces the scanner at (0, 0, -0.5)"));
+  EXPECT_FALSE(says(seen, "decides no side"));
+  Scan scan = cloud_scan(plane_grid(12, 5e-3));
+  scan.poses = {{Eigen::Vector3d(0.5, 0.03, 0.0), 0, true}};
+  const BuildResult edge_on = built_from(scan);
+  ASSERT_EQ(edge_on.report.orientation.pieces.at(0).basis, OrientationBasis::kUp);
+  EXPECT_FALSE(says(edge_on, "faces the scanner"));
+  EXPECT_TRUE(says(edge_on, "(0.5, 0.03, 0), decides no side"));
+}
+
+TEST(Orientation, AsksForNoViewpointThatDecided) {
+  for (const OrientationBasis basis : {OrientationBasis::kViewpoint, OrientationBasis::kOutside}) {
+    CloudOrientation found;
+    found.pieces = {{1000, Eigen::Vector3d::Zero(), basis, 0.5}};
+    BuildResult built;
+    report_orientation(found, 0, built.report);
+    EXPECT_TRUE(warns(built, "doubtful"));
+    EXPECT_EQ(warns(built, "give --viewpoint"), basis == OrientationBasis::kOutside);
+  }
+}
+
+TEST(Orientation, StatesTheShareThatFacesTheScanner) {
+  CloudOrientation found;
+  found.pieces = {{800, Eigen::Vector3d::Zero(), OrientationBasis::kViewpoint, 1.0},
+                  {200, Eigen::Vector3d::Zero(), OrientationBasis::kOutside, 1.0}};
+  BuildReport report;
+  report.orientation.scanners = {{1.0, 2.0, 3.0}, {4.0, 5.0, 6.0}};
+  report_orientation(found, 0, report);
+  ASSERT_EQ(report.notes.size(), 1U);
+  EXPECT_EQ(report.notes[0],
+            "80 % of the surface faces the scanner at (1, 2, 3) and 1 more position, as the file "
+            "states (--orient outward ignores it)");
 }
 
 TEST(Orientation, IgnoresADefaultPoseFarAwayAsOfGeographicCoordinates) {

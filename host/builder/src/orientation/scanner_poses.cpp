@@ -70,10 +70,6 @@ std::size_t behind(std::span<Ray> cell, double width) {
   return cell.size() - first_behind;
 }
 
-std::string place_text(const Eigen::Vector3d& p) {
-  return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x(), p.y(), p.z());
-}
-
 }  // namespace
 
 Appearance appearance_from(const Eigen::Vector3d& viewpoint,
@@ -118,7 +114,6 @@ Appearance appearance_from(const Eigen::Vector3d& viewpoint,
 }
 
 void check_poses(Scan& scan, BuildReport& report) {
-  std::vector<Eigen::Vector3d> kept;
   double most_hidden = 0.0;
   for (std::size_t k = 0; k < scan.poses.size(); ++k) {
     ScannerPose& pose = scan.poses[k];
@@ -129,7 +124,7 @@ void check_poses(Scan& scan, BuildReport& report) {
         std::span(scan.positions).subspan(pose.first_point, last - pose.first_point));
     if (seen.hidden <= kMaxHidden &&
         (pose.sure || (seen.unevenness <= kMaxUnevenness && seen.range <= kMaxRange))) {
-      kept.push_back(pose.position);
+      report.orientation.scanners.push_back(pose.position);
     } else {
       most_hidden = std::max(most_hidden, pose.sure ? seen.hidden : 0.0);
       pose.position.setConstant(std::numeric_limits<double>::quiet_NaN());
@@ -140,12 +135,6 @@ void check_poses(Scan& scan, BuildReport& report) {
         "the position of the scanner in the file was ignored: {:.0f} % of the points are hidden "
         "from there (give --viewpoint X,Y,Z)",
         100.0 * most_hidden));
-  }
-  if (!kept.empty()) {
-    report.notes.push_back(fmt::format(
-        "the surface faces the scanner at {}{}, as the file states (--orient outward ignores it)",
-        place_text(kept.front()),
-        kept.size() > 1 ? fmt::format(" and {} more positions", kept.size() - 1) : ""));
   }
 }
 

@@ -19,7 +19,8 @@ struct Appearance {
                                          std::span<const Eigen::Vector3d> positions);
 
 /// Sets the poses of a scan that its points contradict to NaN, with a warning, and those that may
-/// be a default and do not look like the position of a scanner. A note names the rest.
+/// be a default and do not look like the position of a scanner. Adds the rest to
+/// report.orientation.scanners.
 void check_poses(Scan& scan, BuildReport& report);
 
 }  // namespace tactree::builder

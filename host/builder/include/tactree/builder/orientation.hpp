@@ -47,6 +47,8 @@ struct OrientationReport {
   std::uint64_t doubtful_points = 0;   ///< of doubtful pieces
   std::uint64_t reversed_normals = 0;  ///< of the file
   std::uint64_t reversed_faces = 0;    ///< of a mesh
+  /// Positions of the scanner that the file states and its points confirm; source units and axes.
+  std::vector<Eigen::Vector3d> scanners;
 };
 
 }  // namespace tactree::builder
