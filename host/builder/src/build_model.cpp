@@ -20,15 +20,12 @@
 #include "source_digest.hpp"
 #include "tactree/builder/length_text.hpp"
 #include "tactree/builder/read_scan.hpp"
+#include "tactree/builder/size_advice.hpp"
 #include "tactree/core/blob.hpp"
 #include "two_sided.hpp"
 
 namespace tactree::builder {
 namespace {
-
-// Sizes of an object that a hand at a device can feel; outside, the unit is probably wrong.
-constexpr double kHugeModel_m = 1.0;
-constexpr double kTinyModel_m = 0.005;
 
 std::uint64_t peak_rss_bytes() {
   rusage usage{};
@@ -82,18 +79,11 @@ class Pipeline {
 
  private:
   void advise_on_unit() {
-    const double extent = largest_edge(input_.bounds);
-    const bool huge = extent > kHugeModel_m;
     const bool stated = options_.unit_m || options_.fit_m || options_.fit_edge_m;
-    if (stated || !(huge || extent < kTinyModel_m) || extent == 0.0) {
-      return;
+    const std::optional<std::string> advice = size_advice(largest_edge(input_.bounds));
+    if (advice && !stated) {
+      report_.warnings.push_back(*advice);
     }
-    report_.warnings.push_back(fmt::format(
-        "the model is {} wide, {} (check the unit: --unit mm, or --fit 0.2 for 0.2 m)",
-        length_text(extent),
-        huge ? "but a haptic device reaches 0.1 to 0.6 m: a hand can touch only the part around "
-               "its origin"
-             : "too small to feel by a device that reaches 0.1 to 0.6 m"));
   }
 
   // Before the points are chosen: points on two sides of a plate do not compete.

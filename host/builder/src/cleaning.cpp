@@ -477,9 +477,9 @@ class Cleaner {
   static void require_size(double extent_m) {
     if (extent_m != 0.0 && !(extent_m >= kSmallestModel_m && extent_m <= kLargestModel_m)) {
       throw std::runtime_error(
-          fmt::format("the model would be {:.4g} m wide; a model is 1 um to 1000 km wide (check "
+          fmt::format("the model would be {} wide; a model is 1 um to 1000 km wide (check "
                       "--unit, --scale and --fit)",
-                      extent_m));
+                      length_text(extent_m)));
     }
   }
 

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "tactree/builder/length_text.hpp"
+
 namespace tactree::builder {
 namespace {
 
@@ -76,9 +78,11 @@ bool place_around(const Eigen::Vector3d& low, const Eigen::Vector3d& high, Latti
 [[noreturn]] void refuse(const Eigen::Vector3d& low, const Eigen::Vector3d& high,
                          double leaf_edge) {
   throw std::runtime_error(fmt::format(
-      "the model spans {:.6g} m, at up to {:.6g} m from the origin: too much for octree leaves of "
-      "{:.3g} m (choose a larger spacing, or crop or centre the model)",
-      (high - low).maxCoeff(), low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff(), leaf_edge));
+      "the model spans {}, at up to {} from the origin: too much for octree leaves of {} (choose a "
+      "larger spacing, or crop or centre the model)",
+      length_text((high - low).maxCoeff(), 6),
+      length_text(low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff(), 6),
+      length_text(leaf_edge, 3)));
 }
 
 }  // namespace

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "tactree/builder/length_text.hpp"
+
 namespace tactree::builder {
 namespace {
 
@@ -92,10 +94,11 @@ Cloud sample_faces(const Mesh& mesh, double spacing) {
   const double area_per_point = std::pow(kCandidateDistance * spacing, 2);
   const double wanted = area_of(mesh) / area_per_point;
   if (!(wanted <= kMaxCandidates)) {
-    throw std::runtime_error(fmt::format(
-        "a spacing of {:.4g} m on this surface needs {:.3g} sample points, more than {:.3g} "
-        "(raise --spacing to {:.2g} or more)",
-        spacing, wanted, kMaxCandidates, spacing * std::sqrt(wanted / kMaxCandidates) * 1.01));
+    throw std::runtime_error(
+        fmt::format("a spacing of {} on this surface needs {:.3g} sample points, more than {:.3g} "
+                    "(raise --spacing to {:.2g} or more)",
+                    length_text(spacing), wanted, kMaxCandidates,
+                    spacing * std::sqrt(wanted / kMaxCandidates) * 1.01));
   }
   std::vector<std::uint64_t> first(mesh.triangles.size() + 1, 0);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {

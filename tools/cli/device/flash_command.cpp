@@ -11,6 +11,7 @@
 #include "device/board_port.hpp"
 #include "image/model_signature.hpp"
 #include "output_file.hpp"
+#include "run/model_size.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -68,6 +69,9 @@ void show_progress(std::size_t done, std::size_t all) {
 
 void write_model(host::Board& board, const std::string& file) {
   const BlobFile blob(file);
+  if (const auto warning = size_warning(file, blob.view().header())) {
+    fmt::print(stderr, "tactree: warning: {}\n", *warning);
+  }
   host::ModelFile model;
   model.bytes = blob.bytes();
   if (const std::optional<ModelSignature> signature = read_signature(file)) {

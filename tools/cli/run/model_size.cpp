@@ -5,10 +5,16 @@
 #include <Eigen/Core>
 #include <cmath>
 
+#include "tactree/builder/length_text.hpp"
+#include "tactree/builder/size_advice.hpp"
 #include "tactree/simulation/workspace.hpp"
 
 namespace tactree::cli {
 namespace {
+
+Eigen::Vector3d size_of(const core::BlobHeader& model) {
+  return (Eigen::Vector3f(model.bounds_max_m) - Eigen::Vector3f(model.bounds_min_m)).cast<double>();
+}
 
 /// Rounded down.
 double two_digits(double length_m) {
@@ -21,22 +27,24 @@ double two_digits(double length_m) {
 std::optional<std::string> oversize_warning(const std::string& file, const core::BlobHeader& model,
                                             const std::string& device_name,
                                             const core::DeviceModel& device) {
-  const Eigen::Vector3d size =
-      (Eigen::Vector3f(model.bounds_max_m) - Eigen::Vector3f(model.bounds_min_m)).cast<double>();
+  const Eigen::Vector3d size = size_of(model);
   if (simulation::reaches_box(device, size)) {
     return std::nullopt;
   }
-  const Eigen::Vector3d size_mm = 1e3 * size;
-  const std::string place = fmt::format("{}: the model is {:.4g} x {:.4g} x {:.4g} mm", file,
-                                        size_mm.x(), size_mm.y(), size_mm.z());
+  const std::string place = fmt::format("{}: the model is {}", file, builder::size_text(size));
   const double longest_m = simulation::largest_scale(device, size).value_or(0.0) * size.maxCoeff();
   if (!(longest_m > 0.0)) {
     return fmt::format("{}: {} does not reach the places around its origin (correct the device)",
                        place, device_name);
   }
   return fmt::format(
-      "{}: larger than {} reaches; of that shape up to {:.2g} m (build it with --fit device:{})",
-      place, device_name, two_digits(longest_m), device_name);
+      "{}: larger than {} reaches; of that shape up to {} (build it with --fit device:{})", place,
+      device_name, builder::length_text(two_digits(longest_m), 2), device_name);
+}
+
+std::optional<std::string> size_warning(const std::string& file, const core::BlobHeader& model) {
+  const std::optional<std::string> advice = builder::size_advice(size_of(model).maxCoeff());
+  return advice ? std::optional(file + ": " + *advice) : std::nullopt;
 }
 
 }  // namespace tactree::cli

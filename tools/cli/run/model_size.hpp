@@ -17,4 +17,9 @@ namespace tactree::cli {
                                                           const std::string& device_name,
                                                           const core::DeviceModel& device);
 
+/// The advice of the builder on models that no device reaches or that are too small to feel, with
+/// the name of the file. Empty for others.
+[[nodiscard]] std::optional<std::string> size_warning(const std::string& file,
+                                                      const core::BlobHeader& model);
+
 }  // namespace tactree::cli

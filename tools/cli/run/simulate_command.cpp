@@ -23,7 +23,7 @@ namespace tactree::cli {
 namespace {
 
 /// None for a model that --origin or a scene placed: it may be meant to be reached in part.
-std::optional<std::string> size_warning(const SimulateOptions& options, const SceneFile& scene) {
+std::optional<std::string> reach_warning(const SimulateOptions& options, const SceneFile& scene) {
   if (is_scene(options) || !options.origin_m.empty()) {
     return std::nullopt;
   }
@@ -57,7 +57,7 @@ void simulate(SimulateOptions& options, int& exit_code) {
     serve(options, scene);
     return;
   }
-  const std::optional<std::string> oversize = size_warning(options, scene);
+  const std::optional<std::string> oversize = reach_warning(options, scene);
   if (oversize) {
     fmt::print(stderr, "tactree: warning: {}\n", *oversize);
   }

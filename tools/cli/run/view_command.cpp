@@ -92,13 +92,20 @@ std::unique_ptr<viewer::Source> make_source(const ViewOptions& options, const Sc
 }
 
 void warn_of_size(const ViewOptions& options, const SceneFile& scene) {
-  if (!options.scene.empty() || !options.trace.empty() || !options.board.port.empty() ||
-      scene.files.size() != 1) {
+  if (!options.scene.empty() || scene.files.size() != 1) {
     return;
   }
+  const core::BlobHeader& model = scene.files[0]->view().header();
   const std::string& device = options.settings.device;
-  if (const auto warning = oversize_warning(scene.names[0], scene.files[0]->view().header(), device,
-                                            load_device(device).preset.model)) {
+  const bool simulated = options.trace.empty() && options.board.port.empty();
+  std::optional<std::string> warning;
+  if (simulated) {
+    warning = oversize_warning(scene.names[0], model, device, load_device(device).preset.model);
+  }
+  if (!warning) {
+    warning = size_warning(scene.names[0], model);
+  }
+  if (warning) {
     fmt::print(stderr, "tactree: warning: {}\n", *warning);
   }
 }

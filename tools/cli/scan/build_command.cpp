@@ -310,9 +310,9 @@ void print_gaps(const BuildReport& report) {
     if (printed++ == kOpeningsPrinted) {
       break;
     }
-    fmt::print("          {} of {} around ({:.4g}, {:.4g}, {:.4g}) m\n",
+    fmt::print("          {} of {} around {}\n",
                o.kind == Opening::Kind::kHole ? "hole" : "boundary",
-               builder::length_text(o.diameter_m), o.centre.x(), o.centre.y(), o.centre.z());
+               builder::length_text(o.diameter_m), builder::place_text(o.centre));
   }
 }
 
@@ -342,9 +342,8 @@ void print_interior(const BuildReport& report, const BuildOptions& build) {
 
 void print(const BuildReport& report, const BuildOptions& build, const std::string& output) {
   print_input(report);
-  const Eigen::Vector3d size = report.bounds.sizes();
-  fmt::print("model     {:.4g} x {:.4g} x {:.4g} m, {} points, spacing {}\n", size.x(), size.y(),
-             size.z(), report.output_points, builder::length_text(report.spacing_m));
+  fmt::print("model     {}, {} points, spacing {}\n", builder::size_text(report.bounds.sizes()),
+             report.output_points, builder::length_text(report.spacing_m));
   print_orientation(report.orientation);
   print_interior(report, build);
   print_gaps(report);

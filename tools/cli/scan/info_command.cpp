@@ -2,18 +2,25 @@
 
 #include <fmt/core.h>
 
+#include <Eigen/Core>
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
 
 #include "blob_file.hpp"
+#include "device_file.hpp"
 #include "image/board_costs.hpp"
 #include "image/model_signature.hpp"
 #include "json_text.hpp"
 #include "output_file.hpp"
+#include "run/model_size.hpp"
 #include "scan/preview.hpp"
+#include "tactree/builder/length_text.hpp"
 #include "tactree/builder/openings.hpp"
 #include "tactree/core/interior.hpp"
 
@@ -43,7 +50,7 @@ double to_double(core::BlobDouble words) {
 // Converts to the double of the shortest decimal representation: 0.0005, not 0.00050000002.
 double shortest(float v) { return std::strtod(fmt::format("{}", v).c_str(), nullptr); }
 
-double millimetres(float metres) { return 1e3 * shortest(metres); }
+std::string length(float metres) { return builder::length_text(shortest(metres), 6); }
 
 double bytes_per_point(const BlobHeader& header) {
   return static_cast<double>(header.total_bytes) / header.point_count;
@@ -151,7 +158,7 @@ nlohmann::json to_json(const BlobView& view) {
 
 void print_sizes(const BlobView& view) {
   const BlobHeader& h = view.header();
-  fmt::print("size          {} bytes, {:.3f} bytes per point\n", h.total_bytes, bytes_per_point(h));
+  fmt::print("memory        {} bytes, {:.3f} bytes per point\n", h.total_bytes, bytes_per_point(h));
   const auto row = [&](const char* name, std::uint32_t bytes) {
     if (bytes != 0) {
       fmt::print("  {:<12}{:>10}  {:>5.1f} %  {:.3f} per point\n", name, bytes,
@@ -176,11 +183,26 @@ void print_materials(const BlobView& view) {
     fmt::print("material {:<4} {} points: {:.6g} N/m, {:.6g} Ns/m, friction {:.6g} / {:.6g}", i,
                points[i], m.stiffness_N_m, m.damping_Ns_m, m.static_friction, m.dynamic_friction);
     if (m.texture_height_m > 0.0F) {
-      fmt::print(", texture {:.6g} mm every {:.6g} mm", millimetres(m.texture_height_m),
-                 millimetres(m.texture_wavelength_m));
+      fmt::print(", texture {} every {}", length(m.texture_height_m),
+                 length(m.texture_wavelength_m));
     }
     fmt::print("\n");
   }
+}
+
+void print_bounds(const BlobHeader& h) {
+  const Eigen::Vector3f low(h.bounds_min_m);
+  const Eigen::Vector3f high(h.bounds_max_m);
+  fmt::print("size          {}\n", builder::size_text((high - low).cast<double>()));
+  const float farthest = std::max(low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff());
+  const builder::LengthUnit unit = builder::length_unit(static_cast<double>(farthest));
+  fmt::print("bounds      ");
+  for (int axis = 0; axis < 3; ++axis) {
+    fmt::print("  {} {} ... {}", "xyz"[axis],
+               builder::number_text(unit.per_metre * shortest(low[axis]), 6),
+               builder::number_text(unit.per_metre * shortest(high[axis]), 6));
+  }
+  fmt::print(" {}\n", unit.name);
 }
 
 void print(const BlobView& view) {
@@ -189,19 +211,15 @@ void print(const BlobView& view) {
              h.version_major, h.version_minor, h.tool_version);
   fmt::print("points        {} in {} leaves, {} nodes, depth {}\n", h.point_count, h.leaf_count,
              h.node_count, h.depth);
-  fmt::print("bounds        x {:.6g} ... {:.6g}  y {:.6g} ... {:.6g}  z {:.6g} ... {:.6g} m\n",
-             h.bounds_min_m[0], h.bounds_max_m[0], h.bounds_min_m[1], h.bounds_max_m[1],
-             h.bounds_min_m[2], h.bounds_max_m[2]);
-  fmt::print("spacing       {:.6g} mm; positions rounded to {:.3g} um\n", millimetres(h.spacing_m),
-             2e3 * millimetres(h.step_m));
-  fmt::print("largest gap   {:.6g} mm\n", millimetres(h.largest_gap_m));
-  fmt::print("support       {:.6g} mm; exact queries up to {:.6g} mm; leaf edge {:.6g} mm\n",
-             millimetres(h.support_radius_m), millimetres(h.reach_m),
-             millimetres(h.leaf_edge_min_m));
+  print_bounds(h);
+  fmt::print("spacing       {}; positions rounded to {}\n", length(h.spacing_m),
+             builder::length_text(2.0 * shortest(h.step_m), 3));
+  fmt::print("largest gap   {}\n", length(h.largest_gap_m));
+  fmt::print("support       {}; exact queries up to {}; leaf edge {}\n", length(h.support_radius_m),
+             length(h.reach_m), length(h.leaf_edge_min_m));
   fmt::print(
-      "limits        {} points per leaf, {} in a ball of {:.6g} mm, {} leaves and {} points per "
-      "query\n",
-      h.points_per_leaf_max, h.points_per_ball_max, millimetres(h.reach_m), h.leaves_per_query_max,
+      "limits        {} points per leaf, {} in a ball of {}, {} leaves and {} points per query\n",
+      h.points_per_leaf_max, h.points_per_ball_max, length(h.reach_m), h.leaves_per_query_max,
       h.points_per_query_max);
   if (view.interior() != nullptr) {
     fmt::print("interior      material behind {:.0f} % of the points\n",
@@ -271,6 +289,16 @@ void print_signature(const std::string& file, const BlobFile& blob) {
   }
 }
 
+/// For the device that was given, if it does not reach the model; else for any device.
+std::optional<std::string> size_warning_of(const InfoOptions& options, const BlobHeader& model) {
+  std::optional<std::string> warning;
+  if (!options.device.empty()) {
+    warning = oversize_warning(options.blob, model, options.device,
+                               load_device(options.device).preset.model);
+  }
+  return warning ? warning : size_warning(options.blob, model);
+}
+
 void info(const InfoOptions& options) {
   check_outputs({options.json, options.points, options.preview}, {options.blob});
   const BlobFile blob(options.blob);
@@ -279,8 +307,16 @@ void info(const InfoOptions& options) {
   if (!options.board.empty()) {
     print_costs(blob.view().header(), options.board, options.device);
   }
+  const std::optional<std::string> warning = size_warning_of(options, blob.view().header());
+  if (warning) {
+    fmt::print(stderr, "tactree: warning: {}\n", *warning);
+  }
   if (!options.json.empty()) {
     nlohmann::json json = to_json(blob.view());
+    json["warnings"] = nlohmann::json::array();
+    if (warning) {
+      json["warnings"].push_back(*warning);
+    }
     json["signature"] = signature_json(options.blob, blob);
     write_file(options.json, json_text(json));
   }
@@ -299,13 +335,13 @@ void add_info_command(CLI::App& app, int&) {
   CLI::App* verb = app.add_subcommand(
       "info", "Prints the contents of a blob, its limits and the size of its sections");
   verb->add_option("BLOB", options->blob, "blob to inspect")->required();
-  CLI::Option* board =
-      verb->add_option("--board", options->board,
-                       "also print the cost of a tick with this model on the board")
-          ->check(CLI::IsMember(boards_with_timing()));
-  verb->add_option("--device", options->device,
-                   "device for --board, by name or file (default: the kind with the longest tick)")
-      ->needs(board);
+  verb->add_option("--board", options->board,
+                   "also print the cost of a tick with this model on the board")
+      ->check(CLI::IsMember(boards_with_timing()));
+  verb->add_option(
+      "--device", options->device,
+      "device, by name or file: also say whether it reaches the model; and for --board "
+      "(default: the kind with the longest tick)");
   verb->add_option("--json", options->json, "write the values as JSON to this file");
   verb->add_option("--points", options->points,
                    "write all points to this CSV file: index,x,y,z,nx,ny,nz (m)");

@@ -15,6 +15,7 @@
 #include "option_checks.hpp"
 #include "output_file.hpp"
 #include "scan/read_points.hpp"
+#include "tactree/builder/length_text.hpp"
 #include "tactree/core/interior.hpp"
 #include "tactree/core/nearest.hpp"
 #include "tactree/core/paper_mode.hpp"
@@ -185,11 +186,10 @@ void query(const QueryOptions& options) {
                                                                           : header.reach_m);
   Query engine(blob.view(), radius);
   if (engine.exhaustive()) {
-    fmt::print(
-        stderr,
-        "tactree: note: the radius exceeds the blob's reach of {:.6g} m: searching all points, "
-        "unlike a controller\n",
-        header.reach_m);
+    fmt::print(stderr,
+               "tactree: note: the radius exceeds the blob's reach of {}: searching all points, "
+               "unlike a controller\n",
+               builder::length_text(static_cast<double>(header.reach_m), 6));
   }
   const Totals totals = answer_all(engine, rows);
   if (!options.json.empty()) {
