@@ -23,9 +23,13 @@
 #include "tactree/builder/size_advice.hpp"
 #include "tactree/core/blob.hpp"
 #include "two_sided.hpp"
+#include "up_hint.hpp"
 
 namespace tactree::builder {
 namespace {
+
+// Below, a body is so open that its flat base may be the only part that was scanned.
+constexpr double kBodyShare = 0.9;
 
 std::uint64_t peak_rss_bytes() {
   rusage usage{};
@@ -74,7 +78,9 @@ class Pipeline {
     Gaps gaps = find_gaps(choice.points, model_.spacing_m, model_.support_radius_m, watertight_);
     model_.largest_gap_m = gaps.largest_m;
     report_.openings = std::move(gaps.openings);
-    return write(choice);
+    WrittenBlob blob = write(choice);
+    hint_at_axis();
+    return blob;
   }
 
  private:
@@ -83,6 +89,22 @@ class Pipeline {
     const std::optional<std::string> advice = size_advice(largest_edge(input_.bounds));
     if (advice && !stated) {
       report_.warnings.push_back(*advice);
+    }
+  }
+
+  // Only where the shape tells it, and nobody has said which axis points up.
+  void hint_at_axis() {
+    if (options_.up || report_.backed_share < kBodyShare) {
+      return;
+    }
+    const std::optional<FlatBase> base =
+        flat_base(model_.positions, model_.normals, model_.spacing_m);
+    if (base && base->up != UpAxis::kZ) {
+      const char axis = base->up == UpAxis::kX ? 'x' : 'y';
+      report_.notes.push_back(
+          fmt::format("the model seems to lie on its side: its flat base, {:.0f} % of the surface, "
+                      "is at its lowest {} (--axis {} turns it; --axis z keeps it as it is)",
+                      100.0 * base->share, axis, axis));
     }
   }
 

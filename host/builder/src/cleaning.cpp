@@ -53,7 +53,7 @@ Eigen::Matrix3d turn_up(UpAxis up) {
 class Cleaner {
  public:
   Cleaner(const BuildOptions& options, BuildReport& report) : options_(options), report_(report) {
-    input_.frame.turn = turn_up(options.up);
+    input_.frame.turn = turn_up(options.up.value_or(UpAxis::kZ));
   }
 
   CleanInput run(std::vector<Scan> scans) {

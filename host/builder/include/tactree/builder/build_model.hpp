@@ -40,7 +40,7 @@ struct BuildOptions {
   /// The same for a model of this size (m): its longest edge afterwards. Not with fit_m.
   std::function<double(const Eigen::Vector3d&)> fit_edge_m;
   bool centre = false;                      ///< the middle of the bounding box becomes the origin
-  UpAxis up = UpAxis::kZ;                   ///< source axis that becomes the model's z
+  std::optional<UpAxis> up;                 ///< source axis that becomes the model's z; default: z
   std::optional<Eigen::AlignedBox3d> crop;  ///< source units and axes: points outside are dropped
 
   double outlier_sigma = 3.0;   ///< stray points: off a surface by more than this many times the

@@ -1,0 +1,129 @@
+#include "up_hint.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <string>
+
+#include "shapes.hpp"
+
+namespace tactree::builder {
+namespace {
+
+constexpr int kAround = 96;
+
+/// A body of revolution about z: radius and height of its outline, from the axis at the bottom to
+/// the axis at the top, closed.
+Mesh turned(const std::vector<Eigen::Vector2d>& outline) {
+  Mesh mesh;
+  for (const Eigen::Vector2d& at : outline) {
+    for (int k = 0; k < kAround; ++k) {
+      const double angle = 2.0 * std::numbers::pi * k / kAround;
+      mesh.positions.emplace_back(at.x() * std::cos(angle), at.x() * std::sin(angle), at.y());
+    }
+  }
+  for (std::size_t ring = 0; ring + 1 < outline.size(); ++ring) {
+    for (std::uint32_t k = 0; k < kAround; ++k) {
+      const auto first = static_cast<std::uint32_t>(ring * kAround);
+      const std::uint32_t next = (k + 1) % kAround;
+      mesh.triangles.push_back({first + k, first + next, first + kAround + next});
+      mesh.triangles.push_back({first + k, first + kAround + next, first + kAround + k});
+    }
+  }
+  return mesh;
+}
+
+std::vector<Eigen::Vector2d> dome() {
+  std::vector<Eigen::Vector2d> outline{{0.0, 0.0}};
+  for (int k = 0; k <= 24; ++k) {
+    const double angle = 0.5 * std::numbers::pi * k / 24;
+    outline.emplace_back(0.04 * std::cos(angle), 0.04 * std::sin(angle));
+  }
+  return outline;
+}
+
+/// Closed below, open above.
+const std::vector<Eigen::Vector2d> kMug = {{0.0, 0.0},    {0.03, 0.0},    {0.03, 0.08},
+                                           {0.027, 0.08}, {0.027, 0.004}, {0.0, 0.004}};
+const std::vector<Eigen::Vector2d> kCan = {{0.0, 0.0}, {0.03, 0.0}, {0.03, 0.08}, {0.0, 0.08}};
+const std::vector<Eigen::Vector2d> kCone = {{0.0, 0.0}, {0.03, 0.0}, {0.0, 0.08}};
+
+/// Turns the model so that its z points along `up`, or against it.
+Scan laid(Mesh mesh, UpAxis up, bool upside_down = false) {
+  const int shift = up == UpAxis::kX ? 2 : up == UpAxis::kY ? 1 : 0;
+  for (Eigen::Vector3d& p : mesh.positions) {
+    if (upside_down) {
+      p = Eigen::Vector3d(p.x(), -p.y(), -p.z());
+    }
+    p = Eigen::Vector3d(p[shift % 3], p[(1 + shift) % 3], p[(2 + shift) % 3]);
+  }
+  return mesh_scan(std::move(mesh));
+}
+
+std::string hint_of(Scan scan, std::optional<UpAxis> given = {}) {
+  BuildOptions options;
+  options.up = given;
+  options.spacing_m = 0.001;
+  std::vector<Scan> scans;
+  scans.push_back(std::move(scan));
+  Progress quiet;
+  for (const std::string& note : build_model(std::move(scans), options, quiet).report.notes) {
+    if (note.find("on its side") != std::string::npos) {
+      return note;
+    }
+  }
+  return "";
+}
+
+TEST(UpHint, NamesTheOptionForABodyOnItsSide) {
+  for (const auto& outline : {dome(), kMug, kCone}) {
+    EXPECT_NE(hint_of(laid(turned(outline), UpAxis::kY)).find("(--axis y turns it"),
+              std::string::npos);
+    EXPECT_NE(hint_of(laid(turned(outline), UpAxis::kX)).find("(--axis x turns it"),
+              std::string::npos);
+  }
+}
+
+TEST(UpHint, IsNotGivenWhereTheAxisIsOrTheBodyStands) {
+  EXPECT_EQ(hint_of(laid(turned(dome()), UpAxis::kY), UpAxis::kZ), "");
+  EXPECT_EQ(hint_of(laid(turned(dome()), UpAxis::kY), UpAxis::kY), "");
+  for (const auto& outline : {dome(), kMug, kCone}) {
+    EXPECT_EQ(hint_of(laid(turned(outline), UpAxis::kZ)), "");
+  }
+}
+
+TEST(UpHint, IsNotGivenWhereTheShapeDoesNotTell) {
+  EXPECT_EQ(hint_of(mesh_scan(box_mesh({-0.01, -0.02, -0.03}, {0.01, 0.02, 0.03}))), "");
+  EXPECT_EQ(hint_of(laid(turned(kCan), UpAxis::kY)), "");
+  EXPECT_EQ(hint_of(cloud_scan(even_sphere(20000, 0.03))), "");
+  EXPECT_EQ(hint_of(laid(turned(dome()), UpAxis::kY, true)), "");  // a base at the high end
+  Cloud wall;                                                      // a sheet that faces -y
+  for (const Eigen::Vector3d& p : plane_grid(60, 1e-3).positions) {
+    wall.positions.emplace_back(p.x(), 0.0, p.y());
+  }
+  EXPECT_EQ(hint_of(cloud_scan(std::move(wall))), "");
+}
+
+TEST(UpHint, IsNotGivenForAPlateForTwoBasesOrForFewPoints) {
+  std::vector<Eigen::Vector3d> positions;
+  std::vector<Eigen::Vector3f> normals;
+  const auto add = [&](int count, double y, const Eigen::Vector3f& normal) {
+    for (int i = 0; i < count; ++i) {
+      positions.emplace_back(1e-3 * (i % 40), y, 1e-3 * (i / 40));
+      normals.push_back(normal);
+    }
+  };
+  add(300, 0.0, -Eigen::Vector3f::UnitY());
+  add(300, 0.02, Eigen::Vector3f(0.6F, 0.8F, 0.0F));
+  EXPECT_TRUE(flat_base(positions, normals, 1e-3));
+  EXPECT_FALSE(flat_base(std::span(positions).subspan(101), std::span(normals).subspan(101), 1e-3));
+  add(100, 0.02, Eigen::Vector3f::UnitY());
+  EXPECT_TRUE(flat_base(positions, normals, 1e-3));
+  add(1, 0.02, Eigen::Vector3f::UnitY());  // more than a third of the base
+  EXPECT_FALSE(flat_base(positions, normals, 1e-3));
+  add(601, 0.0, -Eigen::Vector3f::UnitY());
+  EXPECT_FALSE(flat_base(positions, normals, 1e-3));  // 69 %
+}
+
+}  // namespace
+}  // namespace tactree::builder
