@@ -3,7 +3,7 @@
 # Each component has its own export file and finds its own dependencies. A firmware project that uses
 # core and hal needs no other package.
 #   core        tactree::core, hal, board_link        depends on nothing; always present
-#   builder     tactree::builder                      Eigen, fmt, TBB, liblzf, libsodium
+#   builder     tactree::builder                      Eigen, fmt, TBB, liblzf, libsodium, pugixml
 #   simulation  tactree::plant, tactree::simulation   Eigen
 #   host        tactree::host                         threads
 include(CMakePackageConfigHelpers)

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "mesh_import/xml_tags.hpp"
+#include "mesh_import/xml_document.hpp"
 #include "mesh_import/zip_archive.hpp"
 
 namespace tactree::builder {
@@ -21,6 +21,8 @@ using Transform = Eigen::Affine3d;
 
 constexpr unsigned kMaxDepth = 32;                // of components in components
 constexpr std::size_t kMaxInstances = 1'000'000;  // of objects
+// The process of the import has a limit of memory, which these would exceed.
+constexpr XmlLimits kXmlLimits{std::size_t{1} << 30, 16'000'000};
 constexpr const char* kRelations = "_rels/.rels";
 
 /// An object in an object, or in the build.
@@ -43,7 +45,7 @@ struct Model {
 };
 
 std::string canonical(std::string_view path) {
-  std::string name = without_entities(path);
+  std::string name(path);
   if (name.starts_with('/')) {
     name.erase(0, 1);
   }
@@ -105,21 +107,21 @@ double unit_of(std::string_view name) {
 }
 
 /// Refuses extensions that the model requires and that change its shape.
-void check_extensions(const XmlTags& model) {
+void check_extensions(pugi::xml_node model) {
   constexpr std::string_view kSupported[] = {"/production/", "/material/", "/trianglesets/",
                                              "/core/"};
-  std::string_view required = model.attribute("requiredextensions");
+  std::string_view required = attribute_of(model, "requiredextensions");
   while (!required.empty()) {
     const std::size_t end = std::min(required.find(' '), required.size());
     const std::string prefix = "xmlns:" + std::string(required.substr(0, end));
     required.remove_prefix(std::min(end + 1, required.size()));
-    for (const auto& [name, value] : model.attributes()) {
-      const std::string_view space = value;
+    for (const pugi::xml_attribute attribute : model.attributes()) {
+      const std::string_view space = attribute.value();
       const bool known = std::any_of(
           std::begin(kSupported), std::end(kSupported),
           [&](std::string_view part) { return space.find(part) != std::string_view::npos; });
-      if (name == prefix && !known) {
-        throw ImportError("it requires the extension " + std::string(value.substr(0, 100)) +
+      if (attribute.name() == prefix && !known) {
+        throw ImportError("it requires the extension " + std::string(space.substr(0, 100)) +
                           ", which is not supported");
       }
     }
@@ -129,65 +131,64 @@ void check_extensions(const XmlTags& model) {
 /// Reads one model part.
 class ModelReader {
  public:
-  ModelReader(std::string_view text, std::string part) : tags_(text), part_(std::move(part)) {}
+  ModelReader(const XmlDocument& document, std::string part)
+      : root_(child_of(document.root(), "model")), part_(std::move(part)) {}
 
   Model read() {
-    while (tags_.next()) {
-      if (tags_.closes()) {
-        if (tags_.name() == "object") object_ = nullptr;
-      } else {
-        read_tag();
-      }
+    if (root_.empty()) {
+      throw ImportError("its part \"" + part_ + "\" has no element \"model\"");
     }
-    if (tags_.cut_off() || !found_) {
-      throw ImportError("its part \"" + part_ + "\" is damaged or was cut off");
-    }
+    check_extensions(root_);
+    model_.unit_m = unit_of(attribute_of(root_, "unit"));
+    for_children(root_, "resources", [&](pugi::xml_node resources) {
+      for_children(resources, "object", [&](pugi::xml_node object) { read_object(object); });
+    });
+    for_children(root_, "build", [&](pugi::xml_node build) {
+      for_children(build, "item",
+                   [&](pugi::xml_node item) { model_.build.push_back(component(item)); });
+    });
     return std::move(model_);
   }
 
  private:
-  void read_tag() {
-    const std::string_view name = tags_.name();
-    if (name == "model") {
-      found_ = true;
-      check_extensions(tags_);
-      model_.unit_m = unit_of(tags_.attribute("unit"));
-    } else if (name == "object") {
-      object_ = &model_.objects[without_entities(tags_.attribute("id"))];
-    } else if (name == "item") {
-      model_.build.push_back(component());
-    } else if (object_ != nullptr) {
-      read_part(name);
-    }
+  void read_object(pugi::xml_node element) {
+    Object& object = model_.objects[std::string(attribute_of(element, "id"))];
+    for_children(element, "mesh", [&](pugi::xml_node mesh) { read_mesh(mesh, object); });
+    for_children(element, "components", [&](pugi::xml_node components) {
+      for_children(components, "component",
+                   [&](pugi::xml_node inner) { object.components.push_back(component(inner)); });
+    });
   }
 
-  void read_part(std::string_view name) {
-    if (name == "vertex") {
-      object_->vertices.emplace_back(coordinate("x"), coordinate("y"), coordinate("z"));
-    } else if (name == "triangle") {
-      object_->triangles.push_back({index_of(tags_.attribute("v1")),
-                                    index_of(tags_.attribute("v2")),
-                                    index_of(tags_.attribute("v3"))});
-    } else if (name == "component") {
-      object_->components.push_back(component());
-    }
+  static void read_mesh(pugi::xml_node mesh, Object& object) {
+    for_children(mesh, "vertices", [&](pugi::xml_node vertices) {
+      for_children(vertices, "vertex", [&](pugi::xml_node vertex) {
+        object.vertices.emplace_back(coordinate(vertex, "x"), coordinate(vertex, "y"),
+                                     coordinate(vertex, "z"));
+      });
+    });
+    for_children(mesh, "triangles", [&](pugi::xml_node triangles) {
+      for_children(triangles, "triangle", [&](pugi::xml_node triangle) {
+        object.triangles.push_back({index_of(attribute_of(triangle, "v1")),
+                                    index_of(attribute_of(triangle, "v2")),
+                                    index_of(attribute_of(triangle, "v3"))});
+      });
+    });
   }
 
-  [[nodiscard]] double coordinate(const char* axis) const {
-    return number_of(tags_.attribute(axis), "coordinate of a vertex");
+  static double coordinate(pugi::xml_node vertex, const char* axis) {
+    return number_of(attribute_of(vertex, axis), "coordinate of a vertex");
   }
 
-  [[nodiscard]] Component component() const {
-    const std::string_view path = tags_.attribute("path");
-    return {path.empty() ? part_ : canonical(path), without_entities(tags_.attribute("objectid")),
-            transform_of(tags_.attribute("transform"))};
+  [[nodiscard]] Component component(pugi::xml_node element) const {
+    const std::string_view path = attribute_of(element, "path");
+    return {path.empty() ? part_ : canonical(path), std::string(attribute_of(element, "objectid")),
+            transform_of(attribute_of(element, "transform"))};
   }
 
-  XmlTags tags_;
+  pugi::xml_node root_;
   std::string part_;
   Model model_;
-  Object* object_ = nullptr;
-  bool found_ = false;
 };
 
 class Assembly {
@@ -214,14 +215,28 @@ class Assembly {
   }
 
  private:
+  [[nodiscard]] XmlDocument parsed(const std::string& part) const {
+    try {
+      return {archive_.read(part), kXmlLimits};
+    } catch (const XmlTooLarge& error) {
+      throw ImportError("its part \"" + part + "\" is too large: " + error.what());
+    } catch (const XmlError& error) {
+      throw ImportError("its part \"" + part + "\" is damaged or was cut off: " + error.what());
+    }
+  }
+
   [[nodiscard]] std::string root_part() const {
     if (archive_.contains(kRelations)) {
-      const std::string text = archive_.read(kRelations);
-      XmlTags tags(text);
-      while (tags.next()) {
-        if (tags.name() == "Relationship" && tags.attribute("Type").ends_with("/3dmodel")) {
-          return canonical(tags.attribute("Target"));
-        }
+      const XmlDocument document = parsed(kRelations);
+      std::string target;
+      for_children(child_of(document.root(), "Relationships"), "Relationship",
+                   [&](pugi::xml_node relation) {
+                     if (target.empty() && attribute_of(relation, "Type").ends_with("/3dmodel")) {
+                       target = canonical(attribute_of(relation, "Target"));
+                     }
+                   });
+      if (!target.empty()) {
+        return target;
       }
     }
     const std::string first = archive_.first_with_ending(".model");
@@ -236,7 +251,8 @@ class Assembly {
     if (found != models_.end()) {
       return found->second;
     }
-    return models_.emplace(part, ModelReader(archive_.read(part), part).read()).first->second;
+    const XmlDocument document = parsed(part);
+    return models_.emplace(part, ModelReader(document, part).read()).first->second;
   }
 
   void add(const Component& component, const Transform& outer, unsigned depth) {

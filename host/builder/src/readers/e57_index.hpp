@@ -37,6 +37,6 @@ struct E57Scan {
 };
 
 /// Throws ReadError. file: for messages.
-[[nodiscard]] std::vector<E57Scan> parse_e57_index(const std::string& file, std::string_view xml);
+[[nodiscard]] std::vector<E57Scan> parse_e57_index(const std::string& file, std::string xml);
 
 }  // namespace tactree::builder

@@ -133,10 +133,13 @@ class E57Reader {
       fail_header(fmt::format("its XML section of {} bytes is too large for the file", bytes),
                   kCopyAgain);
     }
-    builder_.charge(2 * bytes);  // and the list of the scans
+    builder_.charge(bytes);
     std::string xml(static_cast<std::size_t>(bytes), '\0');
     pages.seek(begin);
     pages.read(xml.data(), xml.size());
+    constexpr std::uint64_t kBytesPerTag = 200;  // parsed, with its attributes
+    builder_.charge(kBytesPerTag *
+                    static_cast<std::uint64_t>(std::count(xml.begin(), xml.end(), '<')));
     return xml;
   }
 

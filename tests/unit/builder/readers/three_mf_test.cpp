@@ -119,6 +119,46 @@ TEST_F(ThreeMfTest, DamageIsRefused) {
   expect_parts(scan.warnings[0], "1 triangles were dropped");
 }
 
+TEST_F(ThreeMfTest, MalformedXmlIsNamedWithItsPartAndPlace) {
+  std::string word = model(object("1", kMesh), R"(<item objectid="1"/>)");
+  const std::size_t place = word.find("<triangle ");
+  word.replace(place, 9, "<triangle<");
+  expect_parts(refusal_of(package(word), "a.3mf"), "a.3mf", "part \"3D/3dmodel.model\"",
+               "byte " + std::to_string(place + 10));
+  const std::string deep = model(object("1", std::string(40000, '[') + kMesh), "");
+  std::string tags;
+  for (const char c : deep) tags += c == '[' ? std::string("<g>") : std::string(1, c);
+  expect_parts(refusal_of(package(tags)), "part \"3D/3dmodel.model\"", "byte ");
+  std::string closed;
+  for (int i = 0; i < 40000; ++i) closed += "<g>";
+  for (int i = 0; i < 40000; ++i) closed += "</g>";
+  expect_parts(refusal_of(package(model(closed + object("1", kMesh), ""))), "is too large: byte ",
+               "more than 64 deep");
+  expect_parts(refusal_of(package("<other/>")), "has no element \"model\"");
+  const std::string relations = ZipWriter()
+                                    .add("_rels/.rels", "<Relationships><Relationship")
+                                    .add("3D/3dmodel.model", word)
+                                    .bytes();
+  expect_parts(refusal_of(relations), "part \"_rels/.rels\"", "byte ");
+}
+
+TEST_F(ThreeMfTest, PrefixesAndEscapedPathsAreRead) {
+  std::string root =
+      model("<m:object id=\"a&amp;b\">" + kMesh + "</m:object>", "<item objectid=\"a&#38;b\"/>");
+  root.replace(root.find("<model"), 6, "<c:model");
+  root.replace(root.find("</model>"), 8, "</c:model>");
+  EXPECT_EQ(read(package(root)).positions.size(), 4U);
+  const std::string part = model(object("1", kMesh), "");
+  const std::string bytes =
+      ZipWriter()
+          .add("_rels/.rels", kRelations)
+          .add("3D/a&b.model", part)
+          .add("3D/3dmodel.model",
+               model("", R"(<item p:path="/3D/a&amp;b.model" objectid="1"/>)", kProduction))
+          .bytes();
+  EXPECT_EQ(read(bytes).positions.size(), 4U);
+}
+
 TEST_F(ThreeMfTest, ArchivesWithLongSizes) {
   const std::string root = model(object("1", kMesh), R"(<item objectid="1"/>)");
   const std::string bytes =

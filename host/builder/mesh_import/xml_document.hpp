@@ -1,0 +1,67 @@
+#pragma once
+// An XML document of an untrusted file, parsed by pugixml. Entities other than the five of XML and
+// character references are left as they are: no file is opened, and nothing is expanded.
+
+#include <cstddef>
+#include <pugixml.hpp>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace tactree::builder {
+
+/// A document is malformed. what(): "byte 120: cause".
+class XmlError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A document exceeds a limit. what(): the cause.
+class XmlTooLarge : public XmlError {
+ public:
+  using XmlError::XmlError;
+};
+
+/// An element takes about 70 bytes of memory, an attribute 40.
+struct XmlLimits {
+  std::size_t bytes = 0;  ///< of the text
+  std::size_t tags = 0;
+  unsigned depth = 64;  ///< of elements in elements
+};
+
+class XmlDocument {
+ public:
+  /// Throws XmlError.
+  XmlDocument(std::string text, const XmlLimits& limits);
+  // The nodes point into it.
+  XmlDocument(const XmlDocument&) = delete;
+  XmlDocument& operator=(const XmlDocument&) = delete;
+
+  /// The parent of the outermost element.
+  [[nodiscard]] pugi::xml_node root() const { return document_; }
+
+ private:
+  std::string text_;  // parsed in place
+  pugi::xml_document document_;
+};
+
+/// Name without its prefix: "model" of <m:model>.
+[[nodiscard]] std::string_view local_name(pugi::xml_node element);
+
+/// The first child element with this local name; null without one.
+[[nodiscard]] pugi::xml_node child_of(pugi::xml_node parent, std::string_view name);
+
+/// Value of an attribute, by its local name; empty if there is none.
+[[nodiscard]] std::string_view attribute_of(pugi::xml_node element, std::string_view name);
+
+/// Calls visit(element) for the child elements with this local name.
+template <typename Visit>
+void for_children(pugi::xml_node parent, std::string_view name, Visit&& visit) {
+  for (const pugi::xml_node child : parent.children()) {
+    if (child.type() == pugi::node_element && local_name(child) == name) {
+      visit(child);
+    }
+  }
+}
+
+}  // namespace tactree::builder
