@@ -6,8 +6,10 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <iostream>
 
 #include "command.hpp"
+#include "spooled_input.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -25,23 +27,20 @@ const char* remedy(core::BlobStatus status) {
   }
 }
 
-/// What the first bytes of a file of `size` bytes tell, before the rest is read.
-core::BlobStatus check_header(std::span<const std::byte> first, std::uintmax_t size) {
+/// What the first bytes tell, before the rest is read.
+core::BlobStatus check_header(std::span<const std::byte> first) {
   core::BlobView none;
   const core::BlobStatus status = core::open_blob(first, none);
-  if (status == core::BlobStatus::kTooShort || status == core::BlobStatus::kBadMagic ||
-      status == core::BlobStatus::kBadVersion) {
-    return status;
-  }
-  core::BlobHeader header{};
-  std::memcpy(&header, first.data(), sizeof header);
-  return header.total_bytes == size ? core::BlobStatus::kOk : core::BlobStatus::kBadSize;
+  const bool refused = status == core::BlobStatus::kTooShort ||
+                       status == core::BlobStatus::kBadMagic ||
+                       status == core::BlobStatus::kBadVersion;
+  return refused ? status : core::BlobStatus::kOk;
 }
 
-[[noreturn]] void refuse(const std::filesystem::path& file, core::BlobStatus status,
-                         const std::string& detail) {
-  throw CommandError(fmt::format("{}: refused: {}{} ({})", file.string(), core::describe(status),
-                                 detail, remedy(status)));
+[[noreturn]] void refuse_blob(const std::string& name, core::BlobStatus status,
+                              const std::string& detail = "") {
+  throw CommandError(
+      fmt::format("{}: refused: {}{} ({})", name, core::describe(status), detail, remedy(status)));
 }
 
 }  // namespace
@@ -65,19 +64,46 @@ BlobFile::BlobFile(const std::filesystem::path& file) {
         fmt::format("{}: cannot be read: {} (give a blob: `tactree build` makes one)",
                     file.string(), error ? error.message() : std::strerror(errno)));
   }
-  // The header first: a large file of another kind is refused without reading it.
-  read(in, file, std::min<std::uintmax_t>(size, sizeof(core::BlobHeader)));
-  const core::BlobStatus first = check_header(bytes(), size);
-  if (first != core::BlobStatus::kOk) {
-    refuse(file, first,
-           first == core::BlobStatus::kBadSize
-               ? fmt::format(": its header states {} bytes, the file has {}", stated_bytes(), size)
-               : "");
+  read_all(in, file.string(), size);
+}
+
+BlobFile BlobFile::named(const std::string& name) {
+  if (name != kStandardInput) {
+    return BlobFile(name);
   }
-  read(in, file, size);
+  BlobFile blob;
+  blob.read_all(std::cin, kStandardInputName, std::nullopt);
+  return blob;
+}
+
+// The header first: a large file of another kind is refused without reading it.
+void BlobFile::read_all(std::istream& in, const std::string& name,
+                        std::optional<std::uintmax_t> size) {
+  read(in,
+       std::min<std::uintmax_t>(size.value_or(sizeof(core::BlobHeader)), sizeof(core::BlobHeader)));
+  const core::BlobStatus first = check_header(bytes());
+  if (first != core::BlobStatus::kOk) {
+    refuse_blob(name, first);
+  }
+  const std::uint32_t stated = stated_bytes();
+  const auto refuse_size = [&](std::uintmax_t there, const char* more) {
+    refuse_blob(
+        name, core::BlobStatus::kBadSize,
+        fmt::format(": its header states {} bytes, the file has {}{}", stated, there, more));
+  };
+  if (size && *size != stated) {
+    refuse_size(*size, "");
+  }
+  const std::size_t there = read(in, stated);
+  if (there < stated) {
+    refuse_size(there, "");
+  }
+  if (in.peek() != std::istream::traits_type::eof()) {
+    refuse_size(there, " and more");
+  }
   const core::BlobStatus status = core::open_blob(bytes(), view_);
   if (status != core::BlobStatus::kOk) {
-    refuse(file, status, "");
+    refuse_blob(name, status);
   }
 }
 
@@ -87,15 +113,18 @@ std::uint32_t BlobFile::stated_bytes() const {
   return header.total_bytes;
 }
 
-void BlobFile::read(std::istream& in, const std::filesystem::path& file, std::uintmax_t size) {
-  const std::size_t begin = size_;
-  size_ = static_cast<std::size_t>(size);
-  words_.resize((size_ + 3) / 4);
-  if (!in.read(reinterpret_cast<char*>(words_.data()) + begin,
-               static_cast<std::streamsize>(size_ - begin))) {
-    throw CommandError(
-        fmt::format("{}: ended while it was read (wait until it is written)", file.string()));
+std::size_t BlobFile::read(std::istream& in, std::uintmax_t size) {
+  // In blocks: a stream may have less than its header states.
+  constexpr std::size_t kBlockBytes = std::size_t{1} << 26;
+  while (size_ < size && in) {
+    const std::size_t end = static_cast<std::size_t>(
+        std::min<std::uintmax_t>(size, std::uintmax_t{size_} + kBlockBytes));
+    words_.resize((end + 3) / 4);
+    in.read(reinterpret_cast<char*>(words_.data()) + size_,
+            static_cast<std::streamsize>(end - size_));
+    size_ += static_cast<std::size_t>(in.gcount());
   }
+  return size_;
 }
 
 std::vector<core::SurfacePoint> decode_points(const core::BlobView& view) {

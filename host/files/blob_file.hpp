@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <istream>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "tactree/core/blob.hpp"
@@ -18,14 +20,20 @@ class BlobFile {
   /// cause and the remedy.
   explicit BlobFile(const std::filesystem::path& file);
 
+  /// The same for the name on a command line, where "-" is standard input.
+  [[nodiscard]] static BlobFile named(const std::string& name);
+
   [[nodiscard]] const core::BlobView& view() const { return view_; }
   [[nodiscard]] std::span<const std::byte> bytes() const {
     return std::as_bytes(std::span(words_)).first(size_);
   }
 
  private:
-  /// Reads on, up to `size` bytes of the file.
-  void read(std::istream& in, const std::filesystem::path& file, std::uintmax_t size);
+  BlobFile() = default;
+  /// Reads and checks `size` bytes; a stream without end has that of the header.
+  void read_all(std::istream& in, const std::string& name, std::optional<std::uintmax_t> size);
+  /// Reads on, up to `size` bytes, or the end. Their number.
+  std::size_t read(std::istream& in, std::uintmax_t size);
   [[nodiscard]] std::uint32_t stated_bytes() const;
 
   std::vector<std::uint32_t> words_;  // blobs start on a 4-byte boundary

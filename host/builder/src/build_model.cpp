@@ -347,11 +347,27 @@ BuildResult finish(Pipeline& pipeline, std::vector<Scan> scans, const Sha256Dige
   }
 }
 
-std::string label_of(std::span<const std::filesystem::path> inputs) {
-  if (inputs.size() == 1) {
-    return inputs[0].string();
+bool is_standard_input(const std::filesystem::path& file, const BuildOptions& options) {
+  return file == "-" && !options.standard_input.empty();
+}
+
+std::string label_of(const std::filesystem::path& file, const BuildOptions& options) {
+  return is_standard_input(file, options) ? "standard input" : file.string();
+}
+
+std::string label_of(std::span<const std::filesystem::path> inputs, const BuildOptions& options) {
+  const std::string first = label_of(inputs[0], options);
+  return inputs.size() == 1 ? first : fmt::format("{} and {} more", first, inputs.size() - 1);
+}
+
+/// Where the files are.
+std::vector<std::filesystem::path> places_of(std::span<const std::filesystem::path> inputs,
+                                             const BuildOptions& options) {
+  std::vector<std::filesystem::path> places(inputs.begin(), inputs.end());
+  for (std::filesystem::path& place : places) {
+    place = is_standard_input(place, options) ? options.standard_input : place;
   }
-  return fmt::format("{} and {} more", inputs[0].string(), inputs.size() - 1);
+  return places;
 }
 
 }  // namespace
@@ -363,24 +379,29 @@ BuildResult build_model(std::span<const std::filesystem::path> inputs, const Bui
   }
   const Stopwatch stopwatch;
   const auto limit = limit_threads(options.threads);
-  SourceDigest digest(inputs, options.threads != 1);
+  const std::vector<std::filesystem::path> places = places_of(inputs, options);
+  SourceDigest digest(places, options.threads != 1);
   BuildOptions named = options;
   if (named.name.empty()) {
-    named.name = inputs[0].stem().string();
+    named.name = is_standard_input(inputs[0], options) ? "stdin" : inputs[0].stem().string();
   }
   Pipeline pipeline(named, progress);
   std::vector<Scan> scans;
-  for (const std::filesystem::path& file : inputs) {
-    progress.begin("reading " + file.filename().string());
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    const std::string label = label_of(inputs[i], options);
+    progress.begin("reading " + std::filesystem::path(label).filename().string());
     ReadOptions reading;
+    reading.format = options.format;
+    reading.label = label;
     reading.progress = [&](double fraction) { progress.advance(fraction); };
     reading.columns = options.columns;
-    scans.push_back(read_scan(file, reading));
+    scans.push_back(read_scan(places[i], reading));
     const Scan& scan = scans.back();
     pipeline.report().inputs.push_back(
-        {file.string(), scan.format, scan.positions.size(), scan.triangles.size()});
+        {label, scan.format, scan.positions.size(), scan.triangles.size()});
   }
-  return finish(pipeline, std::move(scans), digest.get(), label_of(inputs), stopwatch, progress);
+  return finish(pipeline, std::move(scans), digest.get(), label_of(inputs, options), stopwatch,
+                progress);
 }
 
 BuildResult build_model(std::vector<Scan> scans, const BuildOptions& options, Progress& progress) {

@@ -53,7 +53,7 @@ void check_signature(const CheckOptions& options, const BlobFile& blob) {
 void check(const CheckOptions& options) {
   check_outputs({options.json}, {options.blob});
   try {
-    const BlobFile blob(options.blob);
+    const BlobFile blob = BlobFile::named(options.blob);
     const std::string message =
         fmt::format("{}: valid: {} points in {} leaves, {} bytes, checksum {:08x}", options.blob,
                     blob.view().point_count(), blob.view().header().leaf_count, blob.bytes().size(),
@@ -73,7 +73,7 @@ void add_check_command(CLI::App& app, int&) {
   auto options = std::make_shared<CheckOptions>();
   CLI::App* verb = app.add_subcommand(
       "check", "Validates a blob with the checks of the controller; exit code 0: valid");
-  verb->add_option("BLOB", options->blob, "blob to check")->required();
+  verb->add_option("BLOB", options->blob, "blob to check; -: standard input")->required();
   verb->add_option("--key", options->key, "require a signature by this public key")
       ->check(CLI::ExistingFile);
   verb->add_option("--json", options->json, "write the result as JSON to this file");

@@ -301,7 +301,7 @@ std::optional<std::string> size_warning_of(const InfoOptions& options, const Blo
 
 void info(const InfoOptions& options) {
   check_outputs({options.json, options.points, options.preview}, {options.blob});
-  const BlobFile blob(options.blob);
+  const BlobFile blob = BlobFile::named(options.blob);
   print(blob.view());
   print_signature(options.blob, blob);
   if (!options.board.empty()) {
@@ -334,7 +334,7 @@ void add_info_command(CLI::App& app, int&) {
   auto options = std::make_shared<InfoOptions>();
   CLI::App* verb = app.add_subcommand(
       "info", "Prints the contents of a blob, its limits and the size of its sections");
-  verb->add_option("BLOB", options->blob, "blob to inspect")->required();
+  verb->add_option("BLOB", options->blob, "blob to inspect; -: standard input")->required();
   verb->add_option("--board", options->board,
                    "also print the cost of a tick with this model on the board")
       ->check(CLI::IsMember(boards_with_timing()));

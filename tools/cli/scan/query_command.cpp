@@ -15,6 +15,7 @@
 #include "option_checks.hpp"
 #include "output_file.hpp"
 #include "scan/read_points.hpp"
+#include "spooled_input.hpp"
 #include "tactree/builder/length_text.hpp"
 #include "tactree/core/interior.hpp"
 #include "tactree/core/nearest.hpp"
@@ -177,8 +178,11 @@ Totals answer_all(Query& query, const std::vector<std::array<double, 3>>& rows) 
 }
 
 void query(const QueryOptions& options) {
+  if (options.blob == kStandardInput && options.points == kStandardInput) {
+    throw CLI::ValidationError("--points", "'-' (standard input) is the blob");
+  }
   check_outputs({options.json}, {options.blob, options.points});
-  const BlobFile blob(options.blob);
+  const BlobFile blob = BlobFile::named(options.blob);
   const auto rows = read_points(options.points);
   const core::BlobHeader& header = blob.view().header();
   const float radius = options.radius_m ? static_cast<float>(*options.radius_m)
@@ -212,7 +216,7 @@ void add_query_command(CLI::App& app, int&) {
       "Prints contact, nearest point and surface for positions as CSV:\n"
       "x,y,z,contact_paper,contact,nearest,distance_m,surface_{x,y,z},normal_{x,y,z},"
       "signed_distance_m,inside (1: in the material; empty: the blob does not tell)");
-  verb->add_option("BLOB", options->blob, "blob to query")->required();
+  verb->add_option("BLOB", options->blob, "blob to query; -: standard input")->required();
   verb->add_option("--points", options->points,
                    "CSV file with rows x,y,z (m, model frame); -: standard input")
       ->required();

@@ -106,7 +106,7 @@ class E57Reader {
  private:
   /// By a file of its own: the progress of this one rises with the points.
   std::string read_xml(const std::filesystem::path& path) {
-    InputFile file(path);
+    InputFile file(path, nullptr, file_.name());
     E57Pages pages(file);
     std::array<char, kHeaderBytes> header{};
     pages.read(header.data(), header.size());

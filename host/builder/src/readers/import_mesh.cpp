@@ -51,7 +51,8 @@ fs::path find_program(const std::string& file) {
 class MeshImport {
  public:
   MeshImport(const fs::path& file, const Recognition& recognition, const ReadOptions& options)
-      : name_(file.string()),
+      : path_(file.string()),
+        name_(options.label.empty() ? path_ : options.label),
         recognition_(recognition),
         child_(arguments(file, recognition, options), options.child_seconds),
         builder_(name_, options.scan_memory_bytes, "face") {}
@@ -92,6 +93,10 @@ class MeshImport {
       if (static_cast<unsigned char>(c) < ' ') c = ' ';
     }
     text = trim(text);
+    for (std::size_t at = text.find(path_); at != std::string::npos;
+         at = text.find(path_, at + name_.size())) {
+      text.replace(at, path_.size(), name_);
+    }
     return text.size() <= kQuoted ? text : text.substr(0, kQuoted) + " ...";
   }
 
@@ -156,6 +161,7 @@ class MeshImport {
                     fmt::format("check that {} has the version of this program", kProgram));
   }
 
+  std::string path_;
   std::string name_;
   const Recognition& recognition_;
   ChildOutput child_;

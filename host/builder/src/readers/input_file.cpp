@@ -37,10 +37,11 @@ std::string kind_of(mode_t mode) {
 
 }  // namespace
 
-InputFile::InputFile(const std::filesystem::path& path, std::function<void(double)> progress)
-    : name_(path.string()), progress_(std::move(progress)) {
+InputFile::InputFile(const std::filesystem::path& path, std::function<void(double)> progress,
+                     std::string label)
+    : name_(label.empty() ? path.string() : std::move(label)), progress_(std::move(progress)) {
   // O_NONBLOCK: opening a pipe must not wait for a writer.
-  descriptor_ = ::open(name_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  descriptor_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (descriptor_ < 0) throw_open_error(name_, errno);
   struct stat status {};
   const bool known = ::fstat(descriptor_, &status) == 0;

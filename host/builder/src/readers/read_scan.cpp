@@ -45,7 +45,8 @@ Scan read_recognised(InputFile& file, const std::filesystem::path& path,
 /// Columns belong to text: text that is recognised as a format without a reader becomes a table.
 Recognition recognise_for(InputFile& file, const ReadOptions& options) {
   const std::string_view head = file.peek(kHeadBytes);
-  Recognition found = recognise(head, file.size());
+  Recognition found = options.format.empty() ? recognise(head, file.size())
+                                             : recognise_as(options.format, head, file.size());
   if (options.columns.empty() || found.kind == FileKind::kText) return found;
   if (found.kind == FileKind::kUnsupported && is_text(head)) {
     return {FileKind::kText, "text", "", ""};
@@ -58,7 +59,7 @@ Recognition recognise_for(InputFile& file, const ReadOptions& options) {
 }  // namespace
 
 Scan read_scan(const std::filesystem::path& path, const ReadOptions& options) {
-  InputFile file(path, options.progress);
+  InputFile file(path, options.progress, options.label);
   const Recognition recognition = recognise_for(file, options);
   try {
     Scan scan = read_recognised(file, path, recognition, options);

@@ -125,9 +125,10 @@ Recognition recognise_las(std::string_view head) {
                            (static_cast<unsigned char>(head[kPointFormatByte]) & 0xc0) != 0) ||
                           head.find("laszip encoded") != std::string_view::npos;
   if (!compressed) return {FileKind::kLas, "LAS", "", ""};
-  return unsupported("a LAZ file (compressed LAS), which has no reader",
-                     "unpack it with `pdal translate FILE scan.las` or laszip, or open it in "
-                     "CloudCompare and save it as PLY");
+  return unsupported(
+      "a LAZ file (compressed LAS), which has no reader",
+      "unpack it with `laszip -i FILE -o scan.las` or `pdal translate FILE scan.las`, "
+      "or open it in CloudCompare and save it as PLY");
 }
 
 std::optional<Recognition> recognise_zip(std::string_view head) {
@@ -295,7 +296,8 @@ Recognition recognise(std::string_view head, std::uint64_t file_size) {
   const Recognition as_text = recognise_text(head);
   if (as_text.kind != FileKind::kText) return as_text;
   return unsupported("not a scan in a supported format",
-                     "save the scan as PLY, PCD, PTX, E57, LAS, XYZ, OBJ, STL, OFF, glTF or 3MF");
+                     "name its format with --format, or save the scan as PLY, PCD, PTX, E57, LAS, "
+                     "XYZ, OBJ, STL, OFF, glTF or 3MF");
 }
 
 }  // namespace tactree::builder

@@ -4,6 +4,9 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
+
+#include "tactree/builder/read_scan.hpp"
 
 namespace tactree::builder {
 
@@ -35,6 +38,12 @@ inline constexpr std::size_t kHeadBytes = std::size_t{1} << 18;
 
 /// head: the first bytes of the file, up to kHeadBytes; file_size: of the whole file.
 [[nodiscard]] Recognition recognise(std::string_view head, std::uint64_t file_size);
+
+/// The same where the user names the format, by an extension of scan_formats(). The content decides
+/// between its text and its binary form, and contradicts the name only if it is surely another
+/// format: then kUnsupported.
+[[nodiscard]] Recognition recognise_as(std::string_view extension, std::string_view head,
+                                       std::uint64_t file_size);
 
 /// Whether the bytes can be text: no control characters but white space.
 [[nodiscard]] bool is_text(std::string_view head);

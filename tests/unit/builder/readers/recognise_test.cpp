@@ -52,6 +52,44 @@ TEST_F(RecogniseTest, NamesUnsupportedFormats) {
   }
 }
 
+/// The name of the format is the user's; the content contradicts it only if it is surely another.
+TEST_F(RecogniseTest, UsesTheNamedFormat) {
+  const auto kind = [](const char* name, const std::string& bytes) {
+    return recognise_as(name, bytes, bytes.size()).kind;
+  };
+  EXPECT_EQ(scan_formats().front(), "ply");
+  EXPECT_EQ(kind("ply", "ply\n"), FileKind::kPly);
+  EXPECT_EQ(kind("PLY", "ply\n"), FileKind::kPly);
+  EXPECT_EQ(kind("stl", "ply\n"), FileKind::kUnsupported);
+  EXPECT_EQ(kind("xyz", "v 1 2 3\n"), FileKind::kText);  // an OBJ by its content
+  EXPECT_EQ(kind("xyz", "ASTM-E57\1\2"), FileKind::kUnsupported);
+  EXPECT_EQ(kind("xyz", "\1\2\3"), FileKind::kUnsupported);
+  EXPECT_EQ(kind("csv", "$MeshFormat\n1 2 3\n"), FileKind::kText);
+  EXPECT_EQ(kind("stl", "solid"), FileKind::kStlAscii);
+  EXPECT_EQ(kind("stl", "GIF8\1"), FileKind::kStlBinary);
+  EXPECT_EQ(kind("off", "1 2 3\n"), FileKind::kOff);
+  EXPECT_EQ(kind("off", "\1\2\3"), FileKind::kOffBinary);
+  EXPECT_EQ(recognise_as("dae", "<a/>", 4).hint, "dae");
+  EXPECT_EQ(kind("glb", "{\"asset\":{}}"), FileKind::kUnsupported);  // the text form: gltf
+  EXPECT_EQ(kind("gltf", "{\"asset\":{}}"), FileKind::kImportedMesh);
+  EXPECT_EQ(kind("doc", "1 2 3\n"), FileKind::kUnsupported);
+  std::string laz = "LASF" + std::string(223, '\0');
+  EXPECT_EQ(kind("las", laz), FileKind::kLas);
+  laz[104] = static_cast<char>(0x83);
+  expect_parts(recognise_as("las", laz, laz.size()).remedy, "laszip -i FILE -o scan.las",
+               "pdal translate FILE scan.las");
+}
+
+TEST_F(RecogniseTest, LabelsMessagesAsTold) {
+  ReadOptions options;
+  options.label = "standard input";
+  for (const char* const bytes : {"ply\nformat nonsense\n", "PK\3\4 3D/ [Content_Types].xml"}) {
+    const std::string message = refusal(write("a.scan", bytes), options);
+    EXPECT_EQ(message.find("standard input: "), 0U) << message;
+    EXPECT_EQ(message.find("a.scan"), std::string::npos) << message;
+  }
+}
+
 TEST_F(RecogniseTest, RefusesFoldersAndMissingFiles) {
   expect_parts(refusal(folder_ / "absent.ply"), "absent.ply", "no such file");
   expect_parts(refusal(folder_), "a directory");

@@ -33,7 +33,10 @@ inline constexpr double kReachSpacings = 3.0;
 enum class UpAxis : std::uint8_t { kX, kY, kZ };
 
 struct BuildOptions {
-  ColumnMap columns;             ///< of text files of points; empty: found in each file
+  ColumnMap columns;   ///< of text files of points; empty: found in each file
+  std::string format;  ///< of all files, of scan_formats(); empty: by their content
+  /// The file that holds what the input "-" stands for; empty: nothing does.
+  std::filesystem::path standard_input;
   std::optional<double> unit_m;  ///< metres per unit of the source; default: as it states, or 1
   double scale = 1.0;            ///< additional factor
   std::optional<double> fit_m;   ///< scale so that the longest edge is this; implies `centre`

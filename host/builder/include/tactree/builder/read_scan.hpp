@@ -11,6 +11,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "tactree/builder/scan.hpp"
 
@@ -22,6 +23,9 @@ using ColumnMap = std::map<std::string, std::size_t>;
 /// Parses "x=2,y=3,z=4,red=5,green=6,blue=7". Throws std::invalid_argument with the cause.
 [[nodiscard]] ColumnMap parse_columns(std::string_view text);
 
+/// Names of the formats that have a reader: the usual extensions of their files, "ply" first.
+[[nodiscard]] std::vector<std::string> scan_formats();
+
 struct ReadOptions {
   /// Memory limit of the scan, bytes; a larger one is refused before the allocation.
   std::uint64_t scan_memory_bytes = 3ULL << 29;
@@ -32,6 +36,10 @@ struct ReadOptions {
   /// Of a text file; empty: by its line of names, or by the numbers. Other formats are refused with
   /// it, but text of a mesh or grid without a reader is read as rows of numbers.
   ColumnMap columns;
+  /// Of scan_formats(); empty: by content.
+  std::string format;
+  /// Name of the file in messages; empty: its path.
+  std::string label;
   /// Called repeatedly with the fraction of the file that was read, rising from 0 to 1.
   std::function<void(double fraction)> progress;
 };

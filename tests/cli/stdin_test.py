@@ -1,0 +1,163 @@
+"""Scans and blobs from standard input, and formats that are named instead of recognised.
+
+usage: stdin_test.py TACTREE
+"""
+import json
+import math
+import os
+import pathlib
+import resource
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+import zipfile
+
+TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
+CORNERS = [(x, y, z) for z in (0, 10) for y in (0, 10) for x in (0, 10)]
+FACES = [(0, 2, 1), (1, 2, 3), (4, 5, 6), (5, 7, 6), (0, 1, 4), (1, 5, 4),
+         (2, 6, 3), (3, 6, 7), (0, 4, 2), (2, 4, 6), (1, 3, 5), (3, 7, 5)]
+
+
+def sphere(count, radius):
+    """Evenly spread points, one text line each."""
+    golden = math.pi * (3 - math.sqrt(5))
+    lines = []
+    for i in range(count):
+        z = 1 - (2 * i + 1) / count
+        ring = math.sqrt(1 - z * z)
+        lines.append(f"{radius * ring * math.cos(golden * i)} "
+                     f"{radius * ring * math.sin(golden * i)} {radius * z}")
+    return "\n".join(lines) + "\n"
+
+
+def small_files():
+    resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))
+
+
+class Folder(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.path = pathlib.Path(folder.name)
+        cls.spool = cls.path / "spool"
+        cls.spool.mkdir()
+        cls.scan = sphere(1500, 0.05).encode()
+        (cls.path / "s.xyz").write_bytes(cls.scan)
+        cls.run_tool("build", "s.xyz", "-o", "s.blob")
+        cls.blob = (cls.path / "s.blob").read_bytes()
+
+    @classmethod
+    def run_tool(cls, *arguments, stdin=b"", **options):
+        done = subprocess.run([TACTREE, *arguments], cwd=cls.path, check=False, input=stdin,
+                              capture_output=True, timeout=60,
+                              env={**os.environ, "TMPDIR": str(cls.spool)}, **options)
+        done.stdout, done.stderr = done.stdout.decode(), done.stderr.decode()
+        return done
+
+    def build(self, stdin, *arguments):
+        done = self.run_tool("build", "-", "-o", "y.blob", "--report", "r.json", *arguments,
+                             stdin=stdin)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(os.listdir(self.spool), [])
+        return json.loads((self.path / "r.json").read_text())
+
+    def refused(self, stdin, *arguments, **options):
+        done = self.run_tool(*arguments, stdin=stdin, **options)
+        self.assertIn(done.returncode, (1, 2), done.stdout)
+        self.assertEqual(os.listdir(self.spool), [])
+        return done.stderr
+
+
+class Scans(Folder):
+    def test_the_blob_is_that_of_the_file(self):
+        report = self.build(self.scan, "--name", "s")
+        self.assertEqual(report["inputs"], [{"file": "standard input", "format": "text, separated by spaces",
+                                             "points": 1500, "triangles": 0}])
+        self.assertEqual((self.path / "y.blob").read_bytes(), self.blob)
+        self.build(self.scan)
+        self.assertIn("model         stdin ", self.run_tool("info", "y.blob").stdout)
+
+    def test_binary_and_packed_formats_are_recognised(self):
+        points = [tuple(map(float, line.split())) for line in self.scan.decode().splitlines()]
+        head = ("ply\nformat binary_little_endian 1.0\nelement vertex 1500\nproperty float x\n"
+                "property float y\nproperty float z\nend_header\n")
+        body = b"".join(struct.pack("<3f", *p) for p in points)
+        self.assertEqual(self.build(head.encode() + body)["inputs"][0]["points"], 1500)
+        vertices = "".join('<vertex x="%g" y="%g" z="%g"/>' % corner for corner in CORNERS)
+        faces = "".join('<triangle v1="%d" v2="%d" v3="%d"/>' % face for face in FACES)
+        with zipfile.ZipFile(self.path / "a.3mf", "w") as archive:
+            archive.writestr("3D/a.model", f'<model unit="centimeter"><resources><object id="1"><mesh>'
+                             f'<vertices>{vertices}</vertices><triangles>{faces}</triangles></mesh>'
+                             '</object></resources><build><item objectid="1"/></build></model>')
+        report = self.build((self.path / "a.3mf").read_bytes(), "--spacing", "0.005")
+        self.assertEqual(report["inputs"][0]["triangles"], 12)
+        self.assertAlmostEqual(report["source_scale"], 0.01)
+
+    def test_messages_name_standard_input(self):
+        for scan in (b"", b"ply\nformat nonsense 1.0\n", b"PK\3\4 3D/ [Content_Types].xml",
+                     b'{"asset":{"version":"2.0"},"buffers":[{"uri":"a.bin","byteLength":9}],'
+                     b'"meshes":[]}', b"ASTM-E57" + bytes(4000)):
+            message = self.refused(scan, "build", "-", "-o", "no.blob")
+            self.assertIn("standard input", message)
+            self.assertNotIn("/proc", message)
+            self.assertNotIn(str(self.spool), message)
+        self.assertFalse((self.path / "no.blob").exists())
+
+    def test_it_is_read_once_and_beside_files(self):
+        self.assertIn("read once", self.refused(b"", "build", "-", "-", "-o", "no.blob"))
+        done = self.run_tool("build", "s.xyz", "-", "-o", "y.blob", stdin=b"0 0 0.2\n" * 3)
+        self.assertIn("read      standard input: text, separated by spaces, 3 points", done.stdout)
+
+    def test_a_full_folder_is_named(self):
+        message = self.refused(self.scan, "build", "-", "-o", "no.blob", preexec_fn=small_files)
+        self.assertIn(f"it cannot be stored in {self.spool}: File too large (set TMPDIR", message)
+
+
+class Formats(Folder):
+    def test_what_is_not_recognised_names_the_option(self):
+        message = self.refused(bytes(range(1, 200)), "build", "-", "-o", "no.blob")
+        self.assertIn("name its format with --format", message)
+
+    def test_a_named_format_is_used_where_the_content_does_not_tell(self):
+        for name in ("xyz", "XYZ", "csv"):
+            self.assertEqual(self.build(self.scan, "--format", name)["inputs"][0]["points"], 1500)
+        # 80 bytes that begin like a picture, and one triangle fewer than the header says.
+        triangle = struct.pack("<12fH", 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0)
+        stl = b"GIF8".ljust(80, b" ") + struct.pack("<I", 0) + 4 * triangle
+        self.assertIn("GIF picture", self.refused(stl, "build", "-", "-o", "no.blob"))
+        self.assertEqual(self.build(stl, "--format", "stl")["inputs"][0]["triangles"], 4)
+
+    def test_a_named_format_that_the_content_contradicts_is_refused(self):
+        ply = b"ply\nformat ascii 1.0\nelement vertex 0\nend_header\n"
+        for name, shown in (("stl", "STL"), ("obj", "OBJ"), ("dae", "COLLADA")):
+            message = self.refused(ply, "build", "-", "-o", "no.blob", "--format", name)
+            self.assertIn(f"this is PLY by its content, not {shown} (leave --format out)", message)
+        message = self.refused(self.scan, "build", "-", "-o", "no.blob", "--format", "ply")
+        self.assertIn("standard input", message)
+        self.assertIn("--format", self.refused(b"", "build", "-", "-o", "y", "--format", "doc"))
+
+
+class Blobs(Folder):
+    def test_a_blob_is_read_from_standard_input(self):
+        (self.path / "p.csv").write_text("0,0,0.05\n")
+        for verb in (("info",), ("check",), ("query", "--points", "p.csv")):
+            piped = self.run_tool(verb[0], "-", *verb[1:], stdin=self.blob)
+            named = self.run_tool(verb[0], "s.blob", *verb[1:])
+            self.assertEqual(piped.returncode, 0, piped.stderr)
+            self.assertEqual(piped.stdout.replace("-: valid", "s.blob: valid"), named.stdout)
+
+    def test_other_bytes_are_refused(self):
+        for bytes_, cause in ((self.blob[:-4], f"the file has {len(self.blob) - 4}"),
+                              (self.blob + b"x", f"has {len(self.blob)} and more"),
+                              (b"", "shorter than"), (self.scan, "not a Tactree blob")):
+            message = self.refused(bytes_, "check", "-")
+            self.assertIn("standard input: refused: ", message)
+            self.assertIn(cause, message)
+        self.assertIn("is the blob", self.refused(self.blob, "query", "-", "--points", "-"))
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
