@@ -130,6 +130,10 @@ void InputFile::find_line_end_character() {
 
 bool InputFile::next_line(std::string_view& line) {
   if (line_end_ == '\0') find_line_end_character();
+  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+  if (offset() == 0 && peek(kByteOrderMark.size()).starts_with(kByteOrderMark)) {
+    consume(kByteOrderMark.size());
+  }
   std::string_view text = peek(1);
   if (text.empty()) return false;
   ++line_number_;

@@ -16,9 +16,10 @@ class InputFile {
   static constexpr std::size_t kMaxLineBytes = std::size_t{1} << 20;
   static constexpr std::size_t kMaxPeekBytes = std::size_t{1} << 26;
 
-  /// Throws ReadError if `path` is missing, unreadable, empty or not a regular file.
+  /// label: name in messages; empty: the path. Throws ReadError if `path` is missing, unreadable,
+  /// empty or not a regular file.
   explicit InputFile(const std::filesystem::path& path,
-                     std::function<void(double)> progress = nullptr);
+                     std::function<void(double)> progress = nullptr, std::string label = "");
   ~InputFile();
   InputFile(const InputFile&) = delete;
   InputFile& operator=(const InputFile&) = delete;
@@ -43,7 +44,7 @@ class InputFile {
   /// Skips bytes of zero, with which some programs fill the end of a file. Whether no other follow.
   [[nodiscard]] bool only_zeros_left();
 
-  /// The next line without its end ("\n", "\r\n", or "\r" in a file that has no "\n").
+  /// The next line without a byte order mark at the begin of the file, and without its end ("\n", "\r\n", or "\r" in a file that has no "\n").
   /// False at the end of the file. Throws ReadError for a line above kMaxLineBytes.
   [[nodiscard]] bool next_line(std::string_view& line);
   /// Number of the last line read, from 1.

@@ -33,7 +33,6 @@ class OffReader {
   bool next_row(std::string_view& row) {
     std::string_view line;
     while (file_.next_line(line)) {
-      if (line.starts_with("\xef\xbb\xbf")) line.remove_prefix(3);
       row = trim(line.substr(0, line.find('#')));
       if (!row.empty()) return true;
     }

@@ -97,6 +97,17 @@ void warn_of_more(const PlyHeader& header, std::span<const PlyElement> elements,
   builder.warn_of_more(rows_of(last), last.count, last.count + more);
 }
 
+/// Some programs name the corners of faces otherwise: then it is the only list of whole numbers.
+std::size_t only_list(const PlyElement& element) {
+  const auto is_candidate = [](const PlyProperty& property) {
+    return property.is_list && !is_float(property.type);
+  };
+  const auto& properties = element.properties;
+  const auto found = std::find_if(properties.begin(), properties.end(), is_candidate);
+  const bool only = std::count_if(properties.begin(), properties.end(), is_candidate) == 1;
+  return only ? static_cast<std::size_t>(found - properties.begin()) : properties.size();
+}
+
 }  // namespace
 
 PlyRole role_of(const PlyElement& element) {
@@ -112,6 +123,7 @@ std::size_t index_property(const PlyElement& element) {
         return property.is_list &&
                (property.name == "vertex_indices" || property.name == "vertex_index");
       });
+  if (found == element.properties.end() && element.name == "face") return only_list(element);
   return static_cast<std::size_t>(found - element.properties.begin());
 }
 

@@ -104,6 +104,31 @@ bool are_counts(const TextRow& row) {
                      [](double value) { return value >= 0 && value == std::floor(value); });
 }
 
+/// Whether "1,5,2,25,3,0625" may be three numbers with decimal commas, separated by commas.
+class SplitDecimals {
+ public:
+  /// names: columns that a line names; 0: none does.
+  void look_at(std::string_view row, std::size_t names) {
+    std::size_t fields = 0;
+    std::string_view field;
+    while (take_field(row, ',', field)) {
+      const bool fraction = ++fields % 2 == 0;
+      const std::string_view digits = field.starts_with('-') ? field.substr(1) : field;
+      const bool whole = !digits.empty() && std::all_of(digits.begin(), digits.end(), is_digit);
+      possible_ = possible_ && whole && !(fraction && field.starts_with('-'));
+      // A whole number has no zero in front, and a fraction none at its end.
+      seen_ = seen_ || (fraction && field.size() > 1 && field.starts_with('0'));
+    }
+    possible_ = possible_ && fields % 2 == 0 && fields >= 2 * kMinColumns;
+    seen_ = seen_ || (names > 0 && fields >= 2 * names);
+  }
+  [[nodiscard]] bool are_likely() const { return possible_ && seen_; }
+
+ private:
+  bool possible_ = true;
+  bool seen_ = false;
+};
+
 /// Determines the layout from the first lines.
 class LayoutFinder {
  public:
@@ -121,6 +146,7 @@ class LayoutFinder {
       if (!text_of_line(line).empty()) ++lines;
     }
     if (rows_.empty()) refuse();
+    refuse_split_decimals();
     layout_.row_bytes = static_cast<double>(row_bytes_) / static_cast<double>(rows_.size());
     settle_columns();
     leave_out_unused(layout_.slots);
@@ -147,6 +173,7 @@ class LayoutFinder {
     // "Point#, X, Y, Z" is no comment.
     if (!numbers && unnamed && (take_names(text) || take_names(trim(line)))) return;
     if (numbers && row.values.size() >= std::max(kMinColumns, layout_.slots.size())) {
+      if (layout_.separator == ',') split_.look_at(text, layout_.slots.size());
       if (rows_.empty()) layout_.first_row_line = file_.line_number();
       row_bytes_ += line.size() + 1;
       rows_.push_back(std::move(row));
@@ -210,6 +237,13 @@ class LayoutFinder {
         kNotPoints);
   }
 
+  void refuse_split_decimals() const {
+    if (layout_.separator != ',' || !split_.are_likely()) return;
+    throw ReadError(file_.name(), fmt::format("line {}", layout_.first_row_line),
+                    "its commas seem to be decimal commas as well as the separators of its columns",
+                    "export it with decimal points, or with semicolons between the columns");
+  }
+
   void settle_columns() {
     if (!layout_.slots.empty()) return;
     const std::size_t columns = rows_.front().values.size();
@@ -243,6 +277,7 @@ class LayoutFinder {
   InputFile& file_;
   TextLayout layout_;
   std::vector<TextRow> rows_;
+  SplitDecimals split_;
   std::size_t row_bytes_ = 0;
   std::uint64_t first_other_line_ = 0;
   std::string first_other_text_;
@@ -259,7 +294,6 @@ bool TextLayout::has(Slot slot) const {
 }
 
 std::string_view text_of_line(std::string_view line) {
-  if (line.starts_with("\xef\xbb\xbf")) line.remove_prefix(3);
   std::size_t end = line.find('#');
   // "1.#QNAN" is a number.
   while (end != std::string_view::npos && end > 0 && line[end - 1] == '.') {

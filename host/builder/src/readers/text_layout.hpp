@@ -29,7 +29,7 @@ struct TextLayout {
   [[nodiscard]] bool has(Slot slot) const;
 };
 
-/// The data of a line: without comments ('#', "//"), a byte order mark and spaces.
+/// The data of a line: without comments ('#', "//") and spaces.
 [[nodiscard]] std::string_view text_of_line(std::string_view line);
 
 /// Removes the next field from the front of `rest`, without quotes and spaces around it. False at
