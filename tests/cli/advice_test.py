@@ -35,7 +35,7 @@ class Folder(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.path = pathlib.Path(folder.name)
-        (self.path / "s.xyz").write_text(sphere(2000, 0.05))
+        (self.path / "s.xyz").write_text(sphere(700, 0.05))
 
     def run_tool(self, *arguments, **options):
         options = {"capture_output": True, "text": True, "timeout": 60, **options}

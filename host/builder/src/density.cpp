@@ -21,6 +21,9 @@ constexpr double kLeastMeshPoints = 20'000.0;  // of a long, thin object
 // The points of a cloud are uneven: after resampling their spacing is larger than requested. Up to
 // this factor the requested spacing is kept.
 constexpr double kSparser = 1.15;
+// A cloud up to this uneven has no voids that the fit could not bridge at its own spacing.
+constexpr double kMaxCloudUnevenness = 1.25;
+constexpr int kDistanceTrials = 8;
 constexpr double kMaxUneven = 1.5;           // spacing after resampling over that of the scan
 constexpr double kSameSpacing = 0.02;        // relative difference
 constexpr double kFallbackSpacing_m = 1e-3;  // for a single point
@@ -153,12 +156,46 @@ class DensityChooser {
     } else {
       choice.points = dense_;
     }
-    const double own = is_mesh() ? 0.0 : estimate_spacing(choice.points).mean_m;
+    double own = is_mesh() ? 0.0 : estimate_spacing(choice.points).mean_m;
+    if (own > (1.0 + kSameSpacing) * wanted && keeps_its_points()) {
+      own = keep_more(wanted, choice);
+    }
     if (own > kSparser * wanted) {
       choice.spacing_m = own;
     }
     thin(choice);
     return choice;
+  }
+
+  /// Whether a cloud that is not dense at the requested spacing may be thinned less evenly. Without
+  /// a requested spacing it is not: its own is then that of an even selection.
+  [[nodiscard]] bool keeps_its_points() const {
+    return options_.resample && options_.spacing_m && !is_mesh() &&
+           estimate_spacing(dense_).unevenness <= kMaxCloudUnevenness;
+  }
+
+  /// Lowers the least distance until the points that are kept have the wanted spacing. That
+  /// spacing.
+  double keep_more(double wanted, DensityChoice& choice) const {
+    double low = 0.0;
+    double high = kDistanceOverSpacing * wanted;
+    double own = 0.0;
+    for (int trial = 0; trial < kDistanceTrials; ++trial) {
+      const double distance = trial == 0 ? low : 0.5 * (low + high);
+      ZOrderedCloud kept =
+          distance > 0.0 ? dense_.subset(select_poisson_disk(dense_, distance)) : dense_;
+      const double spacing = estimate_spacing(kept).mean_m;
+      const bool enough = spacing <= wanted;
+      if (enough || trial == 0) {  // the largest distance that leaves enough points
+        choice.points = std::move(kept);
+        own = spacing;
+      }
+      if (trial == 0 && !enough) {
+        break;  // the cloud has no more points
+      }
+      (enough ? low : high) = distance;
+    }
+    return own;
   }
 
   void thin(DensityChoice& choice) {

@@ -51,7 +51,9 @@ SpacingEstimate estimate_spacing(const ZOrderedCloud& points) {
     sum += areas[s];
   }
   const auto counted = static_cast<double>(std::min(trusted + 1, areas.size()));
-  return {std::sqrt(areas[(areas.size() - 1) / 2]), std::sqrt(sum / counted)};
+  const double median = areas[(areas.size() - 1) / 2];
+  const double dense = areas[areas.size() / 10];
+  return {std::sqrt(median), std::sqrt(sum / counted), dense > 0.0 ? median / dense : 1.0};
 }
 
 }  // namespace tactree::builder

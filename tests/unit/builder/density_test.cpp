@@ -36,6 +36,59 @@ TEST(Density, KeepsAllOfAGridWithTheRequestedSpacing) {
   }
 }
 
+/// A grid of edge `spacing` whose points are shifted by up to `shift` spacings.
+Cloud shifted_grid(int n, double spacing, double shift) {
+  Cloud cloud = plane_grid(n, spacing);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    for (Eigen::Index axis = 0; axis < 2; ++axis) {
+      const auto seed = static_cast<std::uint64_t>(2 * i) + static_cast<std::uint64_t>(axis);
+      cloud.positions[i][axis] += shift * spacing * (2.0 * unit_random(seed) - 1.0);
+    }
+  }
+  return cloud;
+}
+
+Cloud independent_points(int n, double spacing) {
+  Cloud cloud = plane_grid(n, spacing);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    cloud.positions[i] = {n * spacing * unit_random(2 * i), n * spacing * unit_random(2 * i + 1),
+                          0.0};
+  }
+  return cloud;
+}
+
+TEST(Density, KeepsThePointsOfAnEvenCloudAtItsOwnSpacing) {
+  for (const double shift : {0.1, 0.3, 0.45}) {
+    BuildOptions options;
+    options.spacing_m = 0.0025;
+    const Chosen chosen = choose(cloud_scan(shifted_grid(100, 0.0025, shift)), options);
+    EXPECT_GE(chosen.choice.points.size(), 9400U) << shift;
+    EXPECT_NEAR(chosen.choice.spacing_m, 0.0025, 0.02 * 0.0025) << shift;
+    EXPECT_TRUE(chosen.report.warnings.empty()) << shift;
+    // Coarser: as many points as that spacing has.
+    options.spacing_m = 1.2 * 0.0025;
+    const Chosen coarser = choose(cloud_scan(shifted_grid(100, 0.0025, shift)), options);
+    EXPECT_NEAR(static_cast<double>(coarser.choice.points.size()), 10000 / 1.44, 700) << shift;
+    EXPECT_EQ(coarser.choice.spacing_m, *options.spacing_m);
+  }
+}
+
+/// Its voids would be holes of the surface at that spacing.
+TEST(Density, ThinsACloudOfIndependentPointsEvenly) {
+  BuildOptions options;
+  options.spacing_m = 0.0025;
+  const Chosen chosen = choose(cloud_scan(independent_points(100, 0.0025)), options);
+  EXPECT_LE(chosen.choice.points.size(), 6000U);
+  EXPECT_GT(chosen.choice.spacing_m, 1.15 * 0.0025);
+  ASSERT_EQ(chosen.report.warnings.size(), 1U);
+  EXPECT_NE(chosen.report.warnings[0].find("too coarse"), std::string::npos);
+}
+
+TEST(Density, WithoutASpacingTheSelectionIsEven) {
+  const Chosen chosen = choose(cloud_scan(shifted_grid(100, 0.0025, 0.3)), {});
+  EXPECT_LE(chosen.choice.points.size(), 8000U);
+}
+
 TEST(Density, RaisesASpacingFinerThanTheCloud) {
   BuildOptions options;
   options.spacing_m = 0.0005;

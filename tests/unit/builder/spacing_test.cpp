@@ -24,6 +24,16 @@ TEST(Spacing, OfRandomPointsIsTheRootOfTheAreaPerPoint) {
   }
 }
 
+TEST(Spacing, TellsEvenPointsFromIndependentOnes) {
+  const auto unevenness = [](Cloud cloud) {
+    return estimate_spacing(ZOrderedCloud(std::move(cloud))).unevenness;
+  };
+  EXPECT_NEAR(unevenness(plane_grid(100, 0.002)), 1.0, 0.01);
+  EXPECT_LT(unevenness(even_sphere(20000, 1.0)), 1.1);
+  EXPECT_GT(unevenness(random_sphere(20000, 1.0)), 1.35);
+  EXPECT_EQ(unevenness({}), 1.0);
+}
+
 TEST(Spacing, MeanIncludesSparserParts) {
   Cloud cloud = plane_grid(60, 0.001);  // half the points on a hundredth of the area
   for (Eigen::Vector3d p : plane_grid(60, 0.01).positions) {
