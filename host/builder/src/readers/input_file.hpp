@@ -44,8 +44,9 @@ class InputFile {
   /// Skips bytes of zero, with which some programs fill the end of a file. Whether no other follow.
   [[nodiscard]] bool only_zeros_left();
 
-  /// The next line without a byte order mark at the begin of the file, and without its end ("\n", "\r\n", or "\r" in a file that has no "\n").
-  /// False at the end of the file. Throws ReadError for a line above kMaxLineBytes.
+  /// The next line without a byte order mark at the begin of the file, and without its end ("\n",
+  /// "\r\n", or "\r" in a file that has no "\n"). False at the end of the file. Throws ReadError
+  /// for a line above kMaxLineBytes.
   [[nodiscard]] bool next_line(std::string_view& line);
   /// Number of the last line read, from 1.
   [[nodiscard]] std::uint64_t line_number() const { return line_number_; }
