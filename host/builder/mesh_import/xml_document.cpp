@@ -54,7 +54,7 @@ XmlDocument::XmlDocument(std::string text, const XmlLimits& limits) : text_(std:
     cause[0] = static_cast<char>(cause[0] | 0x20);  // "Error parsing ...", within a sentence
     throw XmlError("byte " + std::to_string(result.offset) + ": " + cause);
   }
-  check_depth(document_, limits.depth);
+  check_depth(document_.root(), limits.depth);
 }
 
 std::string_view local_name(pugi::xml_node element) { return without_prefix(element.name()); }

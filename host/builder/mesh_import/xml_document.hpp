@@ -38,7 +38,7 @@ class XmlDocument {
   XmlDocument& operator=(const XmlDocument&) = delete;
 
   /// The parent of the outermost element.
-  [[nodiscard]] pugi::xml_node root() const { return document_; }
+  [[nodiscard]] pugi::xml_node root() const { return document_.root(); }
 
  private:
   std::string text_;  // parsed in place
