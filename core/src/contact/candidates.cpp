@@ -158,7 +158,7 @@ void CandidateSet::cover(const BlobView& view, Vec3 x) {
 // The body is what is behind one of the faces that hold, and behind all that end them. What is
 // known of it before the loop is in locals: registers.
 [[gnu::noinline]] void CandidateSet::hide(const Neighbour& neighbour, float side) {
-  constexpr float kOpposed = -0.5F;     // normals of flush faces differ by more than 120 degrees
+  constexpr float kContinues = 0.68F;   // normals of faces that continue each other: 47 degrees
   const NeighbourFace none{{}, 1e30F};  // ends nothing
   const std::uint32_t faces = neighbour.holding + neighbour.ending;
   const NeighbourFace a = neighbour.face[0];
@@ -183,9 +183,8 @@ void CandidateSet::cover(const BlobView& view, Vec3 x) {
       height = c_height;
       facing = &c;
     }
-    const bool is_flush =
-        height <= tolerance && side * dot(candidates_[i].normal, facing->normal) < kOpposed;
-    if (!(height < -tolerance || is_flush)) {
+    const bool continues = side * dot(candidates_[i].normal, facing->normal) > kContinues;
+    if (height > tolerance || (height >= -tolerance && continues)) {
       const Candidate candidate = candidates_[i];
       candidates_[i] = candidates_[shown];
       candidates_[shown++] = candidate;

@@ -56,10 +56,10 @@ class CandidateSet {
   /// Gathers around `x` without a limit unless the set covers it. For use outside a tick.
   void cover(const BlobView& view, Vec3 x);
 
-  /// Hides the points where another body leaves no surface: those within it, and those of faces
-  /// that are flush with one of its faces, one against the other. Shows the others. `side`: 1, or
-  /// -1 if the probe is on the side that the normals avert. Precondition: neighbour.holding > 0.
-  /// Cost: one pass over the set.
+  /// Hides the points where another body leaves no surface: those within it, and those on one of
+  /// its faces that do not continue it, as those of flush faces that are opposite each other. Shows
+  /// the others. `side`: 1, or -1 if the probe is on the side that the normals avert. Precondition:
+  /// neighbour.holding > 0. Cost: one pass over the set.
   void hide(const Neighbour& neighbour, float side);
   void show_all() {
     count_ += hidden_;

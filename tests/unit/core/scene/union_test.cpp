@@ -187,6 +187,40 @@ TEST(Union, AFlushSeamIsNotFelt) {
       {"coarser", {-20.0, 0.0, -20.0, 0.0}, {0.0, 20.0, -20.0, 0.0, 1e-3}, 8.0, up, 0.01});
 }
 
+/// Points of the side x = 0, right up to its upper edge, where they are as close to the top.
+void add_edge(Shape& shape, double side) {
+  for (double y = -0.0198; y < 0.02; y += 0.5e-3) {
+    shape.add({0.0, y, -0.02e-3}, {side, 0.0, 0.0});
+    shape.add({0.0, y, -0.04e-3}, {side, 0.0, 0.0});
+  }
+  shape.seal();
+}
+
+// With points at the very edges, and a hand that rubs: slips, and never sticks.
+TEST(Union, AFlushSeamDoesNotCatchAHandThatRubs) {
+  constexpr double kFriction = 0.3;
+  Shape left = Block{-20.0, 0.0, -20.0, 0.0}.shape();
+  Shape right = Block{0.0, 20.0, -20.0, 0.0, 0.5e-3, 2}.shape();
+  add_edge(left, 1.0);
+  add_edge(right, -1.0);
+  for (const float rate_hz : {1000.0F, 4000.0F}) {
+    for (const double speed : {0.02, 0.3}) {
+      SCOPED_TRACE(testing::Message() << rate_hz << " Hz, " << speed << " m/s");
+      Course course({{left}, {right}}, Isometry3d::Identity(), rate_hz);
+      course.rig().configuration.static_friction = static_cast<float>(kFriction);
+      course.rig().configuration.dynamic_friction = static_cast<float>(kFriction);
+      course.start({-9.0, 0.7, 4.0});
+      course.go({-9.0, 0.7, -2.0}, 0.1);
+      course.go({-7.0, 0.7, -2.0}, speed);
+      double furthest = 0.0;
+      course.go({9.0, 0.7, -2.0}, speed, [&] {
+        furthest = std::max(furthest, (course.force() - Vector3d(-kFriction, 0.0, 1.0)).norm());
+      });
+      EXPECT_LT(furthest, 0.01 + kWall * speed / static_cast<double>(rate_hz));
+    }
+  }
+}
+
 TEST(Union, FacesWithinAnotherBodyAreNotFelt) {
   expect_slides({"overlapping", {-20.0, 3.0, -20.0, 0.0}, {-4.0, 20.0, -20.0, 0.0}, 9.0, up, 0.01});
   expect_slides({"the same", {-20.0, 20.0, -20.0, 0.0}, {-20.0, 20.0, -20.0, 0.0}, 9.0, up, 0.01});
@@ -359,7 +393,7 @@ TEST(Union, HoldsAHandInAnyOfTwoCubes) {
   // A proxy that goes over an edge of one cube falls to the other one.
   EXPECT_LT(lost, in / 1000);
   EXPECT_LT(sunk, in / 1000);
-  EXPECT_LT(deepest, 0.5);
+  EXPECT_LT(deepest, 1.0);
 }
 
 }  // namespace
