@@ -76,19 +76,20 @@ class Scenes(unittest.TestCase):
         return json.loads((self.path / "run.json").read_text()), done.stdout
 
     def test_each_body_is_reported(self):
-        run, text = self.report([{"blob": 0}, {"blob": 1, "pose": at(0, 0, -0.02)}, {"blob": 0,
-                                                                                  "pose": at(0, 0, -1)}])
+        # Down onto the sheet, and along it into the ball, which is sunk in it by a half.
+        self.write("corner.csv", "t_s,x,y,z\n0,0,0,0.01\n0.2,0,0,-0.002\n0.4,0.004,0,-0.002\n1,0.004,0,-0.002\n")
+        run, text = self.report([{"blob": 0}, {"blob": 1, "pose": at(0.022, 0, 0)},
+                                 {"blob": 0, "pose": at(0, 0, -1)}], path="corner.csv")
         self.assertEqual([b["blob"] for b in run["bodies"]], ["sheet.blob", "ball.blob", "sheet.blob"])
         sheet_body, ball_body, far = run["bodies"]
         self.assertGreater(sheet_body["contact_ticks"], 500)
         self.assertGreater(ball_body["contact_ticks"], 500)
         self.assertEqual(far, {"blob": "sheet.blob", "contact_ticks": 0, "force_max_N": 0,
                                "torque_max_Nm": 0})
-        # The hand is held by both springs.
-        self.assertAlmostEqual(sheet_body["force_max_N"] + ball_body["force_max_N"],
-                               run["force_max_N"], delta=0.05)
-        alone, _ = self.report([{"blob": 0}])
-        self.assertLess(run["penetration_max_m"], 0.8 * alone["penetration_max_m"])
+        # One spring, whose force is the sum of those on the bodies.
+        both = math.hypot(sheet_body["force_max_N"], ball_body["force_max_N"])
+        self.assertGreater(ball_body["force_max_N"], 0.3)
+        self.assertAlmostEqual(both, run["force_max_N"], delta=0.2 * both)
         self.assertEqual(run["crowded_ticks"], 0)
         self.assertIn("body 1             ball.blob: in contact", text)
 
@@ -96,10 +97,12 @@ class Scenes(unittest.TestCase):
         done = run_tool(self.path, "simulate", "sheet.blob", "sheet.blob", "--path", "press.csv",
                         "--seconds", 1, "--json", "run.json")
         self.assertEqual(done.returncode, 0, done.stderr)
-        bodies = json.loads((self.path / "run.json").read_text())["bodies"]
-        self.assertEqual(len(bodies), 2)
-        self.assertGreater(bodies[0]["force_max_N"], 0.1)
-        self.assertAlmostEqual(bodies[0]["force_max_N"], bodies[1]["force_max_N"], delta=0.01)
+        run = json.loads((self.path / "run.json").read_text())
+        self.assertEqual(len(run["bodies"]), 2)
+        self.assertGreater(run["force_max_N"], 0.1)
+        # In the same place they are one: as stiff as one of them.
+        self.assertAlmostEqual(max(body["force_max_N"] for body in run["bodies"]),
+                               run["force_max_N"], delta=0.01)
 
     def test_a_blob_given_twice_is_identified_by_its_index(self):
         run, _ = self.report([{"blob": 2, "pose": at(0, 0, -0.02)}, {"blob": 1}], blobs=("sheet.blob", "sheet.blob", "ball.blob"))
