@@ -3,48 +3,24 @@
 usage: advice_test.py TACTREE
 """
 import json
-import math
 import pathlib
 import resource
-import subprocess
 import sys
-import tempfile
 import unittest
 
+sys.dont_write_bytecode = True
+from tool_folder import ToolFolder  # noqa: E402
+
 TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
-
-
-def sphere(count, radius):
-    """Evenly spread points, one text line each."""
-    golden = math.pi * (3 - math.sqrt(5))
-    lines = []
-    for i in range(count):
-        z = 1 - (2 * i + 1) / count
-        ring = math.sqrt(1 - z * z)
-        lines.append(f"{radius * ring * math.cos(golden * i)} "
-                     f"{radius * ring * math.sin(golden * i)} {radius * z}")
-    return "\n".join(lines) + "\n"
 
 
 def little_memory():
     resource.setrlimit(resource.RLIMIT_AS, (1 << 30, 1 << 30))
 
 
-class Folder(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.path = pathlib.Path(folder.name)
-        (self.path / "s.xyz").write_text(sphere(700, 0.05))
-
-    def run_tool(self, *arguments, **options):
-        options = {"capture_output": True, "text": True, "timeout": 60, **options}
-        return subprocess.run([TACTREE, *arguments], cwd=self.path, check=False, **options)
-
-    def build(self, *arguments):
-        done = self.run_tool("build", "s.xyz", "-o", "s.blob", *arguments)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        return done
+class Folder(ToolFolder):
+    tool = TACTREE
+    points = 700
 
 
 class Sizes(Folder):

@@ -3,33 +3,18 @@
 usage: build_test.py TACTREE
 """
 import json
-import math
 import os
 import pathlib
 import resource
 import signal
 import subprocess
 import sys
-import tempfile
 import unittest
-import zipfile
+
+sys.dont_write_bytecode = True
+from tool_folder import CORNERS, FACES, ToolFolder, sphere, write_3mf  # noqa: E402
 
 TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
-CORNERS = [(x, y, z) for z in (0, 10) for y in (0, 10) for x in (0, 10)]
-FACES = [(0, 2, 1), (1, 2, 3), (4, 5, 6), (5, 7, 6), (0, 1, 4), (1, 5, 4),
-         (2, 6, 3), (3, 6, 7), (0, 4, 2), (2, 4, 6), (1, 3, 5), (3, 7, 5)]
-
-
-def sphere(count, radius):
-    """Evenly spread points, one text line each."""
-    golden = math.pi * (3 - math.sqrt(5))
-    lines = []
-    for i in range(count):
-        z = 1 - (2 * i + 1) / count
-        ring = math.sqrt(1 - z * z)
-        lines.append(f"{radius * ring * math.cos(golden * i)} "
-                     f"{radius * ring * math.sin(golden * i)} {radius * z}")
-    return "\n".join(lines) + "\n"
 
 
 def small_files():
@@ -37,21 +22,8 @@ def small_files():
     signal.signal(signal.SIGXFSZ, signal.SIG_DFL)  # Python ignores it
 
 
-class Folder(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.path = pathlib.Path(folder.name)
-        (self.path / "s.xyz").write_text(sphere(2000, 0.05))
-
-    def run_tool(self, *arguments, **options):
-        options = {"capture_output": True, "text": True, "timeout": 60, **options}
-        return subprocess.run([TACTREE, *arguments], cwd=self.path, check=False, **options)
-
-    def build(self, *arguments):
-        done = self.run_tool("build", "s.xyz", "-o", "s.blob", *arguments)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        return done
+class Folder(ToolFolder):
+    tool = TACTREE
 
     def refused(self, *arguments):
         done = self.run_tool(*arguments)
@@ -201,26 +173,9 @@ class Formats(Folder):
             self.assertIn("is not a word of a PLY header",
                           self.refused("build", "a.ply", "-o", "y"))
 
-    def write_3mf(self, name, target, *pictures, unit="millimeter"):
-        vertices = "".join('<vertex x="%g" y="%g" z="%g"/>' % corner for corner in CORNERS)
-        faces = "".join('<triangle v1="%d" v2="%d" v3="%d"/>' % face for face in FACES)
-        core = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
-        package = "http://schemas.openxmlformats.org/package/2006/"
-        with zipfile.ZipFile(self.path / name, "w", zipfile.ZIP_DEFLATED) as archive:
-            for picture in pictures:
-                archive.writestr(picture, bytes(100000), zipfile.ZIP_STORED)
-            archive.writestr("[Content_Types].xml", f'<Types xmlns="{package}content-types"/>')
-            archive.writestr("_rels/.rels", f'<Relationships xmlns="{package}relationships">'
-                             f'<Relationship Target="/{target}" Id="r" Type="http://schemas.'
-                             'microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>')
-            archive.writestr(target, f'<model unit="{unit}" xmlns="{core}"><resources>'
-                             f'<object id="1"><mesh><vertices>{vertices}</vertices><triangles>'
-                             f'{faces}</triangles></mesh></object></resources><build>'
-                             '<item objectid="1"/></build></model>')
-
     def test_a_3mf_with_pictures_or_its_own_file_names_is_read(self):
-        self.write_3mf("a.3mf", "3D/part of mine.model")
-        self.write_3mf("b.3mf", "3D/3dmodel.model", "Metadata/thumbnail.png")
+        write_3mf(self.path / "a.3mf", "3D/part of mine.model")
+        write_3mf(self.path / "b.3mf", "3D/3dmodel.model", "Metadata/thumbnail.png")
         for name in ("a.3mf", "b.3mf"):
             done = self.run_tool("build", name, "-o", "y", "--fit", "0.1", "--spacing", "0.005")
             self.assertEqual(done.returncode, 0, done.stderr)
@@ -229,7 +184,7 @@ class Formats(Folder):
     def test_the_unit_of_a_3mf_is_used_unless_one_is_given(self):
         for unit, options, metres in (("inch", (), 0.0254), ("millimeter", (), 0.001),
                                       ("inch", ("--unit", "cm"), 0.01)):
-            self.write_3mf("a.3mf", "3D/3dmodel.model", unit=unit)
+            write_3mf(self.path / "a.3mf", "3D/3dmodel.model", unit=unit)
             done = self.run_tool("build", "a.3mf", "-o", "y", "--report", "r.json", *options)
             self.assertEqual(done.returncode, 0, done.stderr)
             report = json.loads((self.path / "r.json").read_text())

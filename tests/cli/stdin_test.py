@@ -3,7 +3,6 @@
 usage: stdin_test.py TACTREE
 """
 import json
-import math
 import os
 import pathlib
 import resource
@@ -12,24 +11,11 @@ import subprocess
 import sys
 import tempfile
 import unittest
-import zipfile
+
+sys.dont_write_bytecode = True
+from tool_folder import sphere, write_3mf  # noqa: E402
 
 TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
-CORNERS = [(x, y, z) for z in (0, 10) for y in (0, 10) for x in (0, 10)]
-FACES = [(0, 2, 1), (1, 2, 3), (4, 5, 6), (5, 7, 6), (0, 1, 4), (1, 5, 4),
-         (2, 6, 3), (3, 6, 7), (0, 4, 2), (2, 4, 6), (1, 3, 5), (3, 7, 5)]
-
-
-def sphere(count, radius):
-    """Evenly spread points, one text line each."""
-    golden = math.pi * (3 - math.sqrt(5))
-    lines = []
-    for i in range(count):
-        z = 1 - (2 * i + 1) / count
-        ring = math.sqrt(1 - z * z)
-        lines.append(f"{radius * ring * math.cos(golden * i)} "
-                     f"{radius * ring * math.sin(golden * i)} {radius * z}")
-    return "\n".join(lines) + "\n"
 
 
 def small_files():
@@ -86,12 +72,7 @@ class Scans(Folder):
                 "property float y\nproperty float z\nend_header\n")
         body = b"".join(struct.pack("<3f", *p) for p in points)
         self.assertEqual(self.build(head.encode() + body)["inputs"][0]["points"], 1500)
-        vertices = "".join('<vertex x="%g" y="%g" z="%g"/>' % corner for corner in CORNERS)
-        faces = "".join('<triangle v1="%d" v2="%d" v3="%d"/>' % face for face in FACES)
-        with zipfile.ZipFile(self.path / "a.3mf", "w") as archive:
-            archive.writestr("3D/a.model", f'<model unit="centimeter"><resources><object id="1"><mesh>'
-                             f'<vertices>{vertices}</vertices><triangles>{faces}</triangles></mesh>'
-                             '</object></resources><build><item objectid="1"/></build></model>')
+        write_3mf(self.path / "a.3mf", unit="centimeter")
         report = self.build((self.path / "a.3mf").read_bytes(), "--spacing", "0.005")
         self.assertEqual(report["inputs"][0]["triangles"], 12)
         self.assertAlmostEqual(report["source_scale"], 0.01)

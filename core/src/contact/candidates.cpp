@@ -4,6 +4,7 @@
 
 #include "tactree/core/candidates.hpp"
 
+#include "contact/face_fits.hpp"
 #include "model/corner_leaves.hpp"
 #include "tactree/core/neighbour.hpp"
 
@@ -158,7 +159,6 @@ void CandidateSet::cover(const BlobView& view, Vec3 x) {
 // The body is what is behind one of the faces that hold, and behind all that end them. What is
 // known of it before the loop is in locals: registers.
 [[gnu::noinline]] void CandidateSet::hide(const Neighbour& neighbour, float side) {
-  constexpr float kContinues = 0.68F;   // normals of faces that continue each other: 47 degrees
   const NeighbourFace none{{}, 1e30F};  // ends nothing
   const std::uint32_t faces = neighbour.holding + neighbour.ending;
   const NeighbourFace a = neighbour.face[0];
@@ -183,7 +183,7 @@ void CandidateSet::cover(const BlobView& view, Vec3 x) {
       height = c_height;
       facing = &c;
     }
-    const bool continues = side * dot(candidates_[i].normal, facing->normal) > kContinues;
+    const bool continues = side * dot(candidates_[i].normal, facing->normal) > kCreaseCosine;
     if (height > tolerance || (height >= -tolerance && continues)) {
       const Candidate candidate = candidates_[i];
       candidates_[i] = candidates_[shown];

@@ -2,17 +2,16 @@
 // Loop and memory annotations: docs/BOUND.md.
 // memory: RAM
 
+#include "contact/face_fits.hpp"
 #include "tactree/core/neighbour.hpp"
 #include "tactree/core/proxy.hpp"
 
 namespace tactree::core {
 namespace {
 
-// Faces closer to each other than this share of the support radius are flush.
-constexpr float kFlush = 0.04F;
-
-// Faces whose normals differ by less than 47 degrees are one surface.
-constexpr float kSameFace = 0.68F;
+// Faces closer to each other than this share of the support radius are flush: nearer than those of
+// a crease.
+constexpr float kFlush = kApart;
 
 // The lead changes to the body that has so much more of the surface around.
 constexpr float kMuchMore = 1.2F;
@@ -163,7 +162,7 @@ bool Proxy::belongs_to(const Proxy& follower, const Neighbour& neighbour, Vec3 p
   if (!is_there || !touches || !(face.height_of(probe) < 0.0F)) {
     return false;
   }
-  const bool is_same = dot(face.normal, planes_.plane[0].normal) > kSameFace;
+  const bool is_same = dot(face.normal, planes_.plane[0].normal) > kCreaseCosine;
   return gives_way_ || (is_same && follower.weight_ > kMuchMore * weight_);
 }
 

@@ -30,11 +30,11 @@ struct Neighbour {
   bool holds = false;        ///< false: it has no surface near its proxy any more
   float tolerance_m = 0.0F;  ///< faces that are closer to each other are flush
   bool leads = false;        ///< its proxy is in contact
-  Vec3 proxy{};              ///< m, if it leads
+  Vec3 proxy{};              ///< m
 
   /// Adds the faces that hold a proxy, as seen from `x`, except those that continue one of the
-  /// planes. Where there is no room, one takes the
-  /// place of a plane further away, but not of the first one. Returns a bit for each plane added.
+  /// planes. Where there is no room, one takes the place of a plane further away, but not of the
+  /// first one. Returns a bit for each plane added.
   [[nodiscard]] std::uint32_t add_to(ConstraintPlanes& planes, Vec3 x) const;
   /// From the frame of a body at `from` to that of one at `to`.
   void bring(const Pose& from, const Pose& to);
