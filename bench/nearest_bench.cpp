@@ -21,7 +21,7 @@
 
 #include "instruction_counter.hpp"
 #include "tactree/builder/model.hpp"
-#include "tactree/core/nearest.hpp"
+#include "tactree/core/model/nearest.hpp"
 
 namespace {
 

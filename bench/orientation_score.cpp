@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <unordered_map>
 
-#include "tactree/core/blob.hpp"
+#include "tactree/core/model/blob.hpp"
 
 namespace tactree::bench {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "tactree/core/tick_cost.hpp"
+#include "tactree/core/control/tick_cost.hpp"
 #include "tactree/hal/captured_fault.hpp"
 
 namespace tactree::firmware {

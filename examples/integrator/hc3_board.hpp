@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <span>
 
-#include "tactree/core/blob_format.hpp"
-#include "tactree/core/device_presets.hpp"
+#include "tactree/core/configuration/device_presets.hpp"
+#include "tactree/core/model/blob_format.hpp"
 #include "tactree/hal/board.hpp"
 
 namespace hc3 {

@@ -1,7 +1,7 @@
 #include "runtime/blob_area.hpp"
 
 #include "runtime/image.hpp"
-#include "tactree/core/blob_format.hpp"
+#include "tactree/core/model/blob_format.hpp"
 
 namespace tactree::firmware {
 

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "platform.hpp"
-#include "tactree/core/crc32.hpp"
+#include "tactree/core/math/crc32.hpp"
 
 namespace tactree::firmware {
 namespace {

@@ -10,7 +10,7 @@
 #include "stm32f4/bits.hpp"
 #include "stm32f4/pins.hpp"
 #include "stm32f4/registers.hpp"
-#include "tactree/core/safety_gate.hpp"
+#include "tactree/core/safety/safety_gate.hpp"
 
 namespace tactree::firmware::stm32f4 {
 

@@ -7,7 +7,7 @@
 
 #include "stm32f4/bits.hpp"
 #include "stm32f4/registers.hpp"
-#include "tactree/core/controller.hpp"
+#include "tactree/core/control/controller.hpp"
 
 namespace tactree::firmware::stm32f4 {
 

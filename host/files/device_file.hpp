@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tactree/core/device_presets.hpp"
+#include "tactree/core/configuration/device_presets.hpp"
 
 namespace tactree::cli {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "tactree/core/device_model.hpp"
+#include "tactree/core/device/device_model.hpp"
 
 namespace tactree::cli {
 

@@ -13,7 +13,7 @@
 #include <string>
 
 #include "boards_for_test.hpp"
-#include "tactree/core/device_presets.hpp"
+#include "tactree/core/configuration/device_presets.hpp"
 #include "tactree/simulation/hand_script.hpp"
 #include "tactree/wcet/bound.hpp"
 #include "test_models.hpp"

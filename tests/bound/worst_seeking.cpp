@@ -6,7 +6,7 @@
 #include <cmath>
 #include <memory>
 
-#include "tactree/core/surface.hpp"
+#include "tactree/core/contact/surface.hpp"
 
 namespace tactree::test {
 namespace {

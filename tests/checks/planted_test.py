@@ -60,16 +60,16 @@ class Layers(Planted):
         self.refuses(name + ":", "check-layers", "--root", self.folder)
 
     def test_core_includes_hal(self):
-        self.refuses_line("core includes tactree/hal/board.hpp of hal",
-                          "core/include/tactree/core/octree.hpp", '#include "tactree/hal/board.hpp"')
+        self.refuses_line("model includes tactree/hal/board.hpp of hal",
+                          "core/include/tactree/core/model/octree.hpp", '#include "tactree/hal/board.hpp"')
 
     def test_contact_includes_control(self):
-        self.refuses_line("contact includes tactree/core/controller.hpp of control",
-                          "core/src/contact/scene.cpp", '#include "tactree/core/controller.hpp"')
+        self.refuses_line("contact includes tactree/core/control/controller.hpp of control",
+                          "core/src/contact/scene.cpp", '#include "tactree/core/control/controller.hpp"')
 
     def test_model_includes_device(self):
-        self.refuses_line("model includes tactree/core/kinematics.hpp of device",
-                          "core/include/tactree/core/octree.hpp", '#include "tactree/core/kinematics.hpp"')
+        self.refuses_line("model includes tactree/core/device/kinematics.hpp of device",
+                          "core/include/tactree/core/model/octree.hpp", '#include "tactree/core/device/kinematics.hpp"')
 
     def test_core_includes_hosted_header(self):
         self.refuses_line("<vector>, which is not freestanding", "core/src/model/octree.cpp",
@@ -80,7 +80,7 @@ class Layers(Planted):
                           '#include "../../../host/builder/src/lattice.hpp"')
 
     def test_core_includes_builder_by_name(self):
-        self.refuses_line("core includes lattice.hpp of builder", "core/src/model/octree.cpp",
+        self.refuses_line("model includes lattice.hpp of builder", "core/src/model/octree.cpp",
                           '#include "lattice.hpp"')
 
     def test_hal_includes_simulation(self):
@@ -109,7 +109,7 @@ class Layers(Planted):
         self.refuses_line("of unknown", "tools/cli/main.cpp", '#include "tactree/zebra/zebra.hpp"')
 
     def test_firmware_includes_host(self):
-        self.write("firmware/main.cpp", '#include "tactree/core/controller.hpp"\n')
+        self.write("firmware/main.cpp", '#include "tactree/core/control/controller.hpp"\n')
         self.accepts("check-layers", "--root", self.folder)
         self.refuses_line("firmware includes tactree/plant/plant.hpp of plant", "firmware/main.cpp",
                           '#include "tactree/plant/plant.hpp"')
@@ -291,7 +291,7 @@ class ProtocolDoc(Planted):
 
     def test_undocumented_field(self):
         shutil.copytree(ROOT / "core/include", self.folder / "include")
-        path = self.folder / "include/tactree/core/wire/messages.hpp"
+        path = self.folder / "include/tactree/core/link/wire/messages.hpp"
         old = "  std::uint32_t age_us = 0;"
         self.assertIn(old, path.read_text())
         text = path.read_text().replace(old, "  std::uint32_t planted = 0;" + old, 1)
@@ -312,7 +312,7 @@ class FormatDoc(Planted):
 
     def refuses_header(self, words, file, old, new):
         shutil.copytree(ROOT / "core/include", self.folder / "include")
-        path = self.folder / "include/tactree/core" / file
+        path = self.folder / "include/tactree/core/model" / file
         self.assertIn(old, path.read_text())
         path.write_text(path.read_text().replace(old, new, 1))
         self.refuses(words, "check-format-doc", "--include", self.folder / "include",

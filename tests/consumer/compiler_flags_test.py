@@ -14,7 +14,7 @@ class CompilerFlags(unittest.TestCase):
     def compile(self, *flags):
         """Exit code and messages."""
         done = subprocess.run([COMPILER, "-x", "c++", "-fsyntax-only", "-I", INCLUDE, *flags, "-"],
-                              input="#include <tactree/core/vec3.hpp>\n", capture_output=True, text=True)
+                              input="#include <tactree/core/math/vec3.hpp>\n", capture_output=True, text=True)
         return done.returncode, done.stderr
 
     def test_cpp20_compiles(self):

@@ -5,7 +5,7 @@ execute_process(COMMAND ${CMAKE_COMMAND} --install ${BUILD} --prefix ${PREFIX}
 foreach(file
     bin/tactree
     libexec/tactree/tactree-import-mesh
-    include/tactree/core/blob.hpp
+    include/tactree/core/model/blob.hpp
     include/tactree/hal/board.hpp
     include/tactree/board_link/session/session.hpp
     include/tactree/builder/model.hpp

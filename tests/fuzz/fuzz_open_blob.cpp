@@ -18,13 +18,13 @@
 
 #include "leaf_set.hpp"
 #include "tactree/builder/model.hpp"
-#include "tactree/core/blob.hpp"
-#include "tactree/core/crc32.hpp"
-#include "tactree/core/nearest.hpp"
-#include "tactree/core/octree.hpp"
-#include "tactree/core/paper_mode.hpp"
-#include "tactree/core/renderer.hpp"
-#include "tactree/core/surface.hpp"
+#include "tactree/core/contact/paper_mode.hpp"
+#include "tactree/core/contact/renderer.hpp"
+#include "tactree/core/contact/surface.hpp"
+#include "tactree/core/math/crc32.hpp"
+#include "tactree/core/model/blob.hpp"
+#include "tactree/core/model/nearest.hpp"
+#include "tactree/core/model/octree.hpp"
 
 namespace {
 

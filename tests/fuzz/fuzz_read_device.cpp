@@ -4,7 +4,7 @@
 #include "command.hpp"
 #include "device_file.hpp"
 #include "memory_file.hpp"
-#include "tactree/core/configuration.hpp"
+#include "tactree/core/configuration/configuration.hpp"
 
 namespace {
 

@@ -10,7 +10,7 @@
 #include "command.hpp"
 #include "image/firmware_image.hpp"
 #include "memory_file.hpp"
-#include "tactree/core/crc32.hpp"
+#include "tactree/core/math/crc32.hpp"
 
 namespace {
 

@@ -24,8 +24,8 @@
 #include "e57_writer.hpp"
 #include "las_writer.hpp"
 #include "tactree/builder/model.hpp"
-#include "tactree/core/blob.hpp"
-#include "tactree/core/crc32.hpp"
+#include "tactree/core/math/crc32.hpp"
+#include "tactree/core/model/blob.hpp"
 #include "tactree/simulation/injection.hpp"
 #include "wire_seeds.hpp"
 

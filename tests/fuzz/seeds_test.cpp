@@ -17,7 +17,7 @@
 #include "scan/read_points.hpp"
 #include "tactree/builder/read_materials.hpp"
 #include "tactree/builder/read_scan.hpp"
-#include "tactree/core/blob.hpp"
+#include "tactree/core/model/blob.hpp"
 #include "tactree/simulation/injection.hpp"
 
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "tactree/core/crc32.hpp"
-#include "tactree/core/wire/messages.hpp"
+#include "tactree/core/link/wire/messages.hpp"
+#include "tactree/core/math/crc32.hpp"
 
 namespace {
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "gpio_sim.hpp"
-#include "tactree/core/device_presets.hpp"
+#include "tactree/core/configuration/device_presets.hpp"
 
 namespace tactree::vm_test {
 

@@ -5,8 +5,8 @@
 #include <span>
 
 #include "check.hpp"
-#include "tactree/core/crc32.hpp"
-#include "tactree/core/vec3.hpp"
+#include "tactree/core/math/crc32.hpp"
+#include "tactree/core/math/vec3.hpp"
 
 namespace tactree::test {
 namespace {

@@ -6,11 +6,11 @@
 
 #include "check.hpp"
 #include "golden_blobs.hpp"
-#include "tactree/core/blob.hpp"
-#include "tactree/core/crc32.hpp"
-#include "tactree/core/nearest.hpp"
-#include "tactree/core/paper_mode.hpp"
-#include "tactree/core/surface.hpp"
+#include "tactree/core/contact/paper_mode.hpp"
+#include "tactree/core/contact/surface.hpp"
+#include "tactree/core/math/crc32.hpp"
+#include "tactree/core/model/blob.hpp"
+#include "tactree/core/model/nearest.hpp"
 
 namespace tactree::test {
 namespace {

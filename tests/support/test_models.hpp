@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "tactree/builder/model.hpp"
-#include "tactree/core/blob.hpp"
+#include "tactree/core/model/blob.hpp"
 
 namespace tactree::test {
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "device_file.hpp"
-#include "tactree/core/configuration.hpp"
+#include "tactree/core/configuration/configuration.hpp"
 #include "tactree/hal/linux/controller_board.hpp"
 
 namespace tactree::controller {

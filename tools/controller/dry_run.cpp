@@ -11,7 +11,7 @@
 #include "blob_file.hpp"
 #include "command.hpp"
 #include "real_time.hpp"
-#include "tactree/core/controller.hpp"
+#include "tactree/core/control/controller.hpp"
 #include "tactree/hal/linux/function_fs_controller.hpp"
 
 namespace tactree::controller {

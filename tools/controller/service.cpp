@@ -14,7 +14,7 @@
 #include "real_time.hpp"
 #include "tactree/board_link/session/session.hpp"
 #include "tactree/board_link/store/no_model_store.hpp"
-#include "tactree/core/faults.hpp"
+#include "tactree/core/safety/faults.hpp"
 #include "tactree/hal/linux/gadget_port.hpp"
 #include "tactree/hal/linux/local_socket_port.hpp"
 #include "tactree/hal/loop.hpp"

@@ -2,11 +2,11 @@
 // Loop and memory annotations: docs/BOUND.md.
 // memory: RAM
 
-#include "tactree/core/candidates.hpp"
+#include "tactree/core/contact/candidates.hpp"
 
 #include "contact/face_fits.hpp"
 #include "model/corner_leaves.hpp"
-#include "tactree/core/neighbour.hpp"
+#include "tactree/core/contact/neighbour.hpp"
 
 namespace tactree::core {
 namespace {

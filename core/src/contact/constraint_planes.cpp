@@ -3,7 +3,7 @@
 // Loop and memory annotations: docs/BOUND.md.
 // memory: RAM
 
-#include "tactree/core/constraint_planes.hpp"
+#include "tactree/core/contact/constraint_planes.hpp"
 
 namespace tactree::core {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "tactree/core/surface.hpp"
+#include "tactree/core/contact/surface.hpp"
 
 namespace tactree::core {
 

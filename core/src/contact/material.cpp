@@ -2,9 +2,9 @@
 // Loop and memory annotations: docs/BOUND.md.
 // memory: RAM
 
-#include "tactree/core/material.hpp"
+#include "tactree/core/contact/material.hpp"
 
-#include "tactree/core/sine.hpp"
+#include "tactree/core/math/sine.hpp"
 
 namespace tactree::core {
 namespace {

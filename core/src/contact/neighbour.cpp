@@ -1,7 +1,7 @@
 // Loop and memory annotations: docs/BOUND.md.
 // memory: RAM
 
-#include "tactree/core/neighbour.hpp"
+#include "tactree/core/contact/neighbour.hpp"
 
 namespace tactree::core {
 namespace {

@@ -1,10 +1,10 @@
 // The six-point rule, over the neighbour table or from the root.
 // Loop and memory annotations: docs/BOUND.md.
 
-#include "tactree/core/paper_mode.hpp"
+#include "tactree/core/contact/paper_mode.hpp"
 
 #include "model/leaf_scan.hpp"
-#include "tactree/core/octree.hpp"
+#include "tactree/core/model/octree.hpp"
 
 namespace tactree::core {
 namespace {

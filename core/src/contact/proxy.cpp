@@ -2,9 +2,9 @@
 // Loop and memory annotations: docs/BOUND.md.
 // memory: RAM
 
-#include "tactree/core/proxy.hpp"
+#include "tactree/core/contact/proxy.hpp"
 
-#include "tactree/core/interior.hpp"
+#include "tactree/core/model/interior.hpp"
 
 namespace tactree::core {
 namespace {

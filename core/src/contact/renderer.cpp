@@ -2,9 +2,9 @@
 // Loop and memory annotations: docs/BOUND.md.
 // memory: RAM
 
-#include "tactree/core/renderer.hpp"
+#include "tactree/core/contact/renderer.hpp"
 
-#include "tactree/core/paper_mode.hpp"
+#include "tactree/core/contact/paper_mode.hpp"
 
 namespace tactree::core {
 namespace {

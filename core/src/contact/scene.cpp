@@ -2,7 +2,7 @@
 // Loop and memory annotations: docs/BOUND.md.
 // memory: RAM
 
-#include "tactree/core/scene.hpp"
+#include "tactree/core/contact/scene.hpp"
 
 namespace tactree::core {
 namespace {

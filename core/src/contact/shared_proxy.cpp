@@ -3,8 +3,8 @@
 // memory: RAM
 
 #include "contact/face_fits.hpp"
-#include "tactree/core/neighbour.hpp"
-#include "tactree/core/proxy.hpp"
+#include "tactree/core/contact/neighbour.hpp"
+#include "tactree/core/contact/proxy.hpp"
 
 namespace tactree::core {
 namespace {

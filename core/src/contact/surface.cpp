@@ -2,7 +2,7 @@
 // Loop and memory annotations: docs/BOUND.md.
 // memory: RAM
 
-#include "tactree/core/surface.hpp"
+#include "tactree/core/contact/surface.hpp"
 
 #include "contact/face_fits.hpp"
 #include "contact/passes.hpp"

@@ -1,8 +1,8 @@
 // Loop and memory annotations: docs/BOUND.md.
-#include "tactree/core/admission.hpp"
+#include "tactree/core/control/admission.hpp"
 
-#include "tactree/core/material.hpp"
-#include "tactree/core/surface.hpp"
+#include "tactree/core/contact/material.hpp"
+#include "tactree/core/contact/surface.hpp"
 
 namespace tactree::core {
 namespace {

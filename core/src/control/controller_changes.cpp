@@ -1,7 +1,7 @@
 // Changes of a controller between two ticks.
 // Loop and memory annotations: docs/BOUND.md.
 
-#include "tactree/core/controller.hpp"
+#include "tactree/core/control/controller.hpp"
 
 namespace tactree::core {
 

@@ -1,7 +1,7 @@
 // Loop and memory annotations: docs/BOUND.md.
 // memory: RAM
 
-#include "tactree/core/fault_monitor.hpp"
+#include "tactree/core/control/fault_monitor.hpp"
 
 namespace tactree::core {
 namespace {

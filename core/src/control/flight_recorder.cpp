@@ -1,7 +1,7 @@
 // Loop and memory annotations: docs/BOUND.md.
 // memory: RAM
 
-#include "tactree/core/flight_recorder.hpp"
+#include "tactree/core/control/flight_recorder.hpp"
 
 #include <limits>
 

@@ -1,7 +1,7 @@
 // Loop and memory annotations: docs/BOUND.md.
 // memory: RAM
 
-#include "tactree/core/force_stage.hpp"
+#include "tactree/core/control/force_stage.hpp"
 
 namespace tactree::core {
 

@@ -1,7 +1,7 @@
 // Loop and memory annotations: docs/BOUND.md.
 // memory: RAM
 
-#include "tactree/core/passivity.hpp"
+#include "tactree/core/control/passivity.hpp"
 
 namespace tactree::core {
 

@@ -1,7 +1,7 @@
 // Loop and memory annotations: docs/BOUND.md.
 // memory: RAM
 
-#include "tactree/core/probe_sensor.hpp"
+#include "tactree/core/control/probe_sensor.hpp"
 
 namespace tactree::core {
 namespace {

@@ -1,7 +1,7 @@
 // Loop and memory annotations: docs/BOUND.md.
 // memory: RAM
 
-#include "tactree/core/state_machine.hpp"
+#include "tactree/core/control/state_machine.hpp"
 
 namespace tactree::core {
 namespace {

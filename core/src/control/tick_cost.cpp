@@ -1,8 +1,8 @@
 // Loop and memory annotations: docs/BOUND.md.
 
-#include "tactree/core/tick_cost.hpp"
+#include "tactree/core/control/tick_cost.hpp"
 
-#include "tactree/core/material.hpp"
+#include "tactree/core/contact/material.hpp"
 
 namespace tactree::core {
 namespace {

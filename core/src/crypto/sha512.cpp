@@ -1,6 +1,6 @@
 // Loop and memory annotations: docs/BOUND.md.
 
-#include "tactree/core/sha512.hpp"
+#include "tactree/core/crypto/sha512.hpp"
 
 namespace tactree::core {
 namespace {

@@ -1,9 +1,9 @@
 // Loop and memory annotations: docs/BOUND.md.
 
-#include "tactree/core/signature.hpp"
+#include "tactree/core/crypto/signature.hpp"
 
 #include "field25519.hpp"
-#include "tactree/core/sha512.hpp"
+#include "tactree/core/crypto/sha512.hpp"
 
 namespace tactree::core {
 namespace {

@@ -1,7 +1,7 @@
 // Range checks of the device parameters.
 // Loop and memory annotations: docs/BOUND.md.
 
-#include "tactree/core/device_model.hpp"
+#include "tactree/core/device/device_model.hpp"
 
 namespace tactree::core {
 namespace {

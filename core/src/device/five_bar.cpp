@@ -7,7 +7,7 @@
 // memory: RAM
 
 #include "kinds.hpp"
-#include "tactree/core/sine.hpp"
+#include "tactree/core/math/sine.hpp"
 
 namespace tactree::core {
 namespace {

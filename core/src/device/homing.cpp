@@ -2,7 +2,7 @@
 // Loop and memory annotations: docs/BOUND.md.
 // memory: RAM
 
-#include "tactree/core/homing.hpp"
+#include "tactree/core/device/homing.hpp"
 
 namespace tactree::core {
 namespace {

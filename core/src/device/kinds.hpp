@@ -2,7 +2,7 @@
 // Forward kinematics of each kind of device: probe, Jacobian, distance from singular poses, and the
 // weight of the links.
 
-#include "tactree/core/kinematics.hpp"
+#include "tactree/core/device/kinematics.hpp"
 
 namespace tactree::core {
 

@@ -2,7 +2,7 @@
 // Loop and memory annotations: docs/BOUND.md.
 // memory: RAM
 
-#include "tactree/core/kinematics.hpp"
+#include "tactree/core/device/kinematics.hpp"
 
 #include "kinds.hpp"
 

@@ -2,7 +2,7 @@
 // Loop and memory annotations: docs/BOUND.md.
 // memory: RAM
 
-#include "tactree/core/velocity.hpp"
+#include "tactree/core/device/velocity.hpp"
 
 namespace tactree::core {
 namespace {

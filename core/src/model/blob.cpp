@@ -1,10 +1,10 @@
 // Validation of a blob, and access to its leaves and points.
 // Loop and memory annotations: docs/BOUND.md.
 
-#include "tactree/core/blob.hpp"
+#include "tactree/core/model/blob.hpp"
 
-#include "tactree/core/crc32.hpp"
-#include "tactree/core/octree.hpp"
+#include "tactree/core/math/crc32.hpp"
+#include "tactree/core/model/octree.hpp"
 
 namespace tactree::core {
 namespace {

@@ -5,7 +5,7 @@
 // Loop and memory annotations: docs/BOUND.md.
 
 #include "lanes.hpp"
-#include "tactree/core/octree.hpp"
+#include "tactree/core/model/octree.hpp"
 
 namespace tactree::core {
 

@@ -1,8 +1,8 @@
 // Loop and memory annotations: docs/BOUND.md.
 
-#include "tactree/core/interior.hpp"
+#include "tactree/core/model/interior.hpp"
 
-#include "tactree/core/octree.hpp"
+#include "tactree/core/model/octree.hpp"
 
 namespace tactree::core {
 namespace {

@@ -1,7 +1,7 @@
 // Exact neighbour queries over the leaves of the eight-corner rule.
 // Loop and memory annotations: docs/BOUND.md.
 
-#include "tactree/core/nearest.hpp"
+#include "tactree/core/model/nearest.hpp"
 
 #include <bit>
 

@@ -1,7 +1,7 @@
 // Descents from the root to a leaf.
 // Loop and memory annotations: docs/BOUND.md.
 
-#include "tactree/core/octree.hpp"
+#include "tactree/core/model/octree.hpp"
 
 #include "corner_leaves.hpp"
 

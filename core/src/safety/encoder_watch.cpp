@@ -1,7 +1,7 @@
 // Loop and memory annotations: docs/BOUND.md.
 // memory: RAM
 
-#include "tactree/core/encoder_watch.hpp"
+#include "tactree/core/safety/encoder_watch.hpp"
 
 namespace tactree::core {
 

@@ -1,6 +1,6 @@
 // Loop and memory annotations: docs/BOUND.md.
 
-#include "tactree/core/faults.hpp"
+#include "tactree/core/safety/faults.hpp"
 
 namespace tactree::core {
 namespace {

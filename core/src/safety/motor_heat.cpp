@@ -1,7 +1,7 @@
 // Loop and memory annotations: docs/BOUND.md.
 // memory: RAM
 
-#include "tactree/core/motor_heat.hpp"
+#include "tactree/core/safety/motor_heat.hpp"
 
 namespace tactree::core {
 

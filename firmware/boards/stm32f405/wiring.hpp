@@ -4,8 +4,8 @@
 
 #include <cstdint>
 
-#include "tactree/core/configuration.hpp"
-#include "tactree/core/device_presets.hpp"
+#include "tactree/core/configuration/configuration.hpp"
+#include "tactree/core/configuration/device_presets.hpp"
 
 namespace tactree::firmware::wiring {
 

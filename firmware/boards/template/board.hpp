@@ -63,7 +63,8 @@ class Board {
     void send(const core::Status&) noexcept {}
   };
 
-  /// Starts every part. CHANGE: use_device() of tactree/core/device_presets.hpp, and your values.
+  /// Starts every part. CHANGE: use_device() of tactree/core/configuration/device_presets.hpp, and
+  /// your values.
   [[nodiscard]] core::Configuration connect(const hal::CapturedFault&) { return {}; }
   /// Receives the result of the start. CHANGE: report it, and start the watchdog: the check of a
   /// large model takes longer than the timeout of a watchdog.

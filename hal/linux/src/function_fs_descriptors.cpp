@@ -9,7 +9,7 @@
 #include <span>
 #include <string>
 
-#include "tactree/core/usb/descriptors.hpp"
+#include "tactree/core/link/usb/descriptors.hpp"
 
 namespace tactree::hal::linux_usb {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "tactree/core/usb/descriptors.hpp"
+#include "tactree/core/link/usb/descriptors.hpp"
 
 namespace tactree::hal::linux_usb {
 

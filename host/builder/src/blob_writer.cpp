@@ -14,9 +14,9 @@
 #include "query_bound.hpp"
 #include "tactree/builder/model.hpp"
 #include "tactree/builder/version.hpp"
-#include "tactree/core/blob.hpp"
-#include "tactree/core/crc32.hpp"
-#include "tactree/core/octree.hpp"
+#include "tactree/core/math/crc32.hpp"
+#include "tactree/core/model/blob.hpp"
+#include "tactree/core/model/octree.hpp"
 
 namespace tactree::builder {
 namespace {

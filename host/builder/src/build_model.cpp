@@ -21,7 +21,7 @@
 #include "tactree/builder/length_text.hpp"
 #include "tactree/builder/read_scan.hpp"
 #include "tactree/builder/size_advice.hpp"
-#include "tactree/core/blob.hpp"
+#include "tactree/core/model/blob.hpp"
 #include "two_sided.hpp"
 #include "up_hint.hpp"
 

@@ -11,7 +11,7 @@
 #include "resample.hpp"
 #include "spacing.hpp"
 #include "tactree/builder/length_text.hpp"
-#include "tactree/core/surface.hpp"
+#include "tactree/core/contact/surface.hpp"
 
 namespace tactree::builder {
 namespace {

@@ -10,7 +10,7 @@
 #include "disjoint_sets.hpp"
 #include "octree_builder.hpp"
 #include "point_grid.hpp"
-#include "tactree/core/octree.hpp"
+#include "tactree/core/model/octree.hpp"
 
 namespace tactree::builder {
 namespace {

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "tactree/core/blob_format.hpp"
+#include "tactree/core/model/blob_format.hpp"
 #include "winding_tree.hpp"
 
 namespace tactree::builder {

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "tactree/builder/model.hpp"
-#include "tactree/core/vec3.hpp"
+#include "tactree/core/math/vec3.hpp"
 
 namespace tactree::builder {
 

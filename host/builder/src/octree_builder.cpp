@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "morton.hpp"
-#include "tactree/core/octree.hpp"
+#include "tactree/core/model/octree.hpp"
 
 namespace tactree::builder {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "octree_builder.hpp"
-#include "tactree/core/blob_format.hpp"
+#include "tactree/core/model/blob_format.hpp"
 
 namespace tactree::builder {
 

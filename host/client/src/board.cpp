@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
-#include "tactree/core/controller.hpp"
-#include "tactree/core/crc32.hpp"
+#include "tactree/core/control/controller.hpp"
+#include "tactree/core/math/crc32.hpp"
 #include "tactree/host/link_error.hpp"
 #include "tactree/host/ports.hpp"
 

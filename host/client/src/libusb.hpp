@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "tactree/core/usb/descriptors.hpp"
+#include "tactree/core/link/usb/descriptors.hpp"
 #include "tactree/host/usb_devices.hpp"
 
 namespace tactree::host {

@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "errors.hpp"
-#include "tactree/core/renderer.hpp"
+#include "tactree/core/contact/renderer.hpp"
 #include "tactree/evaluation/shapes.hpp"
 #include "tactree/plant/plant.hpp"
 #include "tactree/simulation/simulation.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "tactree/builder/build_model.hpp"
-#include "tactree/core/blob.hpp"
+#include "tactree/core/model/blob.hpp"
 
 namespace tactree::evaluation {
 

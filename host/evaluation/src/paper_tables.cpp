@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <random>
 
-#include "tactree/core/nearest.hpp"
-#include "tactree/core/octree.hpp"
-#include "tactree/core/paper_mode.hpp"
-#include "tactree/core/surface.hpp"
+#include "tactree/core/contact/paper_mode.hpp"
+#include "tactree/core/contact/surface.hpp"
+#include "tactree/core/model/nearest.hpp"
+#include "tactree/core/model/octree.hpp"
 #include "touch.hpp"
 
 namespace tactree::evaluation {

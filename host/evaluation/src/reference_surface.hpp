@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "tactree/core/blob.hpp"
+#include "tactree/core/model/blob.hpp"
 
 namespace tactree::evaluation {
 

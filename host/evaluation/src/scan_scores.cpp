@@ -6,7 +6,7 @@
 #include "hole_map.hpp"
 #include "reference_surface.hpp"
 #include "tactree/builder/build_model.hpp"
-#include "tactree/core/surface.hpp"
+#include "tactree/core/contact/surface.hpp"
 #include "tactree/evaluation/shapes.hpp"
 
 namespace tactree::evaluation {

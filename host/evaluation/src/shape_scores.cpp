@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "errors.hpp"
-#include "tactree/core/paper_mode.hpp"
-#include "tactree/core/surface.hpp"
+#include "tactree/core/contact/paper_mode.hpp"
+#include "tactree/core/contact/surface.hpp"
 #include "touch.hpp"
 
 namespace tactree::evaluation {

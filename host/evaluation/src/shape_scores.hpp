@@ -2,7 +2,7 @@
 // Scores of a mode on a shape.
 
 #include "subjects.hpp"
-#include "tactree/core/configuration.hpp"
+#include "tactree/core/configuration/configuration.hpp"
 #include "tactree/evaluation/evaluation.hpp"
 
 namespace tactree::evaluation {

@@ -3,8 +3,8 @@
 
 #include <Eigen/Core>
 
-#include "tactree/core/configuration.hpp"
-#include "tactree/core/renderer.hpp"
+#include "tactree/core/configuration/configuration.hpp"
+#include "tactree/core/contact/renderer.hpp"
 #include "tactree/evaluation/shapes.hpp"
 
 namespace tactree::evaluation {

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <iterator>
 
-#include "tactree/core/crc32.hpp"
+#include "tactree/core/math/crc32.hpp"
 #include "tactree/host/link_error.hpp"
 
 namespace tactree::viewer {

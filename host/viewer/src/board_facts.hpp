@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "tactree/core/vec3.hpp"
+#include "tactree/core/math/vec3.hpp"
 #include "tactree/host/board.hpp"
 
 namespace tactree::viewer {

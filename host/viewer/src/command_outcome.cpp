@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "tactree/core/faults.hpp"
+#include "tactree/core/safety/faults.hpp"
 
 namespace tactree::viewer {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "tactree/core/controller.hpp"
+#include "tactree/core/control/controller.hpp"
 
 namespace tactree::viewer {
 

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "tactree/core/configuration.hpp"
+#include "tactree/core/configuration/configuration.hpp"
 #include "tactree/viewer/source.hpp"
 
 namespace tactree::viewer {

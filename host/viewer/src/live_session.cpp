@@ -11,7 +11,7 @@
 #include "command_outcome.hpp"
 #include "contact_parameters.hpp"
 #include "steered_hand.hpp"
-#include "tactree/core/faults.hpp"
+#include "tactree/core/safety/faults.hpp"
 #include "tactree/plant/vectors.hpp"
 #include "tactree/simulation/hand_script.hpp"
 #include "tactree/simulation/injection.hpp"

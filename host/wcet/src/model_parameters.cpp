@@ -1,6 +1,6 @@
 #include "model_parameters.hpp"
 
-#include "tactree/core/tick_cost.hpp"
+#include "tactree/core/control/tick_cost.hpp"
 #include "tactree/wcet/bound.hpp"
 
 namespace tactree::wcet {

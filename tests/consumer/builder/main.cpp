@@ -4,7 +4,7 @@
 #include <fstream>
 
 #include "tactree/builder/model.hpp"
-#include "tactree/core/nearest.hpp"
+#include "tactree/core/model/nearest.hpp"
 #include "tactree/simulation/hand_script.hpp"
 
 int main(int argc, char** argv) {

@@ -1,8 +1,8 @@
 // A controller without a model starts and refuses an empty model.
 #include <cstdio>
 
-#include "tactree/core/controller.hpp"
-#include "tactree/core/nearest.hpp"
+#include "tactree/core/control/controller.hpp"
+#include "tactree/core/model/nearest.hpp"
 #include "tactree/hal/loop.hpp"
 #include "tactree/hal/sim/board.hpp"
 

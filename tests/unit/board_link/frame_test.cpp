@@ -1,4 +1,4 @@
-#include "tactree/core/wire/frame.hpp"
+#include "tactree/core/link/wire/frame.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "folders.hpp"
-#include "tactree/core/wire/messages.hpp"
+#include "tactree/core/link/wire/messages.hpp"
 
 namespace tactree::core::wire {
 namespace {

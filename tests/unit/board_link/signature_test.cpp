@@ -1,6 +1,6 @@
 // Ed25519: vectors of RFC 8032, signatures that must be refused, comparison with libsodium.
 
-#include "tactree/core/signature.hpp"
+#include "tactree/core/crypto/signature.hpp"
 
 #include <gtest/gtest.h>
 #include <sodium.h>
@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "tactree/core/sha512.hpp"
+#include "tactree/core/crypto/sha512.hpp"
 
 namespace tactree::core {
 namespace {

@@ -1,6 +1,6 @@
 // The telemetry message: the encoder and the decoder against fixed bytes, and against each other.
 
-#include "tactree/core/wire/telemetry.hpp"
+#include "tactree/core/link/wire/telemetry.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "shapes.hpp"
-#include "tactree/core/blob.hpp"
+#include "tactree/core/model/blob.hpp"
 
 namespace tactree::builder {
 namespace {

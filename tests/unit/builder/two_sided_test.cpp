@@ -4,8 +4,8 @@
 
 #include "shapes.hpp"
 #include "tactree/builder/build_model.hpp"
-#include "tactree/core/blob.hpp"
-#include "tactree/core/surface.hpp"
+#include "tactree/core/contact/surface.hpp"
+#include "tactree/core/model/blob.hpp"
 
 namespace tactree::builder {
 namespace {

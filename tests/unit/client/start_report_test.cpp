@@ -6,7 +6,7 @@
 
 #include <set>
 
-#include "tactree/core/blob.hpp"
+#include "tactree/core/model/blob.hpp"
 
 namespace tactree::test {
 namespace {

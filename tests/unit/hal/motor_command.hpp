@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tactree/core/safety_gate.hpp"
+#include "tactree/core/safety/safety_gate.hpp"
 
 namespace tactree::test {
 

@@ -1,4 +1,4 @@
-#include "tactree/core/quadrature.hpp"
+#include "tactree/core/device/quadrature.hpp"
 
 #include <gtest/gtest.h>
 

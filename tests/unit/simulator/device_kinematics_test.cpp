@@ -9,9 +9,9 @@
 #include <random>
 
 #include "print_preset.hpp"
-#include "tactree/core/device_presets.hpp"
-#include "tactree/core/kinematics.hpp"
-#include "tactree/core/sine.hpp"
+#include "tactree/core/configuration/device_presets.hpp"
+#include "tactree/core/device/kinematics.hpp"
+#include "tactree/core/math/sine.hpp"
 #include "tactree/plant/linkage.hpp"
 #include "tactree/plant/trigonometry.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <ostream>
 
-#include "tactree/core/device_presets.hpp"
+#include "tactree/core/configuration/device_presets.hpp"
 
 namespace tactree::core {
 

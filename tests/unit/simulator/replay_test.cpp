@@ -7,7 +7,7 @@
 #include <random>
 
 #include "recorded_session.hpp"
-#include "tactree/core/between_ticks.hpp"
+#include "tactree/core/control/between_ticks.hpp"
 
 namespace tactree::test {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "tactree/core/crc32.hpp"
+#include "tactree/core/math/crc32.hpp"
 
 namespace tactree::test {
 namespace {

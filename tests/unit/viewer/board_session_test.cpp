@@ -8,7 +8,7 @@
 
 #include "frames.hpp"
 #include "running_board.hpp"
-#include "tactree/core/device_presets.hpp"
+#include "tactree/core/configuration/device_presets.hpp"
 #include "tactree/host/link_error.hpp"
 #include "tactree/host/ports.hpp"
 

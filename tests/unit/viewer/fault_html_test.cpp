@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tactree/core/faults.hpp"
+#include "tactree/core/safety/faults.hpp"
 #include "tactree/viewer/site.hpp"
 
 namespace tactree::test {

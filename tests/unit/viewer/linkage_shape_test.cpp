@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "tactree/core/device_presets.hpp"
+#include "tactree/core/configuration/device_presets.hpp"
 #include "tactree/plant/linkage.hpp"
 
 namespace tactree::test {

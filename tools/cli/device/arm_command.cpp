@@ -8,7 +8,7 @@
 #include "device/board_port.hpp"
 #include "interruption.hpp"
 #include "option_checks.hpp"
-#include "tactree/core/controller.hpp"
+#include "tactree/core/control/controller.hpp"
 
 namespace tactree::cli {
 namespace {

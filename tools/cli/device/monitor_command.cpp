@@ -15,7 +15,7 @@
 #include "interruption.hpp"
 #include "option_checks.hpp"
 #include "output_file.hpp"
-#include "tactree/core/controller.hpp"
+#include "tactree/core/control/controller.hpp"
 #include "tactree/host/link_error.hpp"
 
 namespace tactree::cli {

@@ -7,7 +7,7 @@
 #include "command.hpp"
 #include "device/board_port.hpp"
 #include "output_file.hpp"
-#include "tactree/core/controller.hpp"
+#include "tactree/core/control/controller.hpp"
 
 namespace tactree::cli {
 namespace {

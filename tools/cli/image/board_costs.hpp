@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tactree/core/tick_cost.hpp"
+#include "tactree/core/control/tick_cost.hpp"
 #include "tactree/emulation/emulated_target.hpp"
 #include "tactree/wcet/bound.hpp"
 

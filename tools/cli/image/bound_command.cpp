@@ -14,7 +14,7 @@
 #include "image/board_costs.hpp"
 #include "json_text.hpp"
 #include "output_file.hpp"
-#include "tactree/core/scene.hpp"
+#include "tactree/core/contact/scene.hpp"
 #include "tactree/wcet/bound.hpp"
 
 namespace tactree::cli {

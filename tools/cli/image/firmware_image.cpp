@@ -10,7 +10,7 @@
 #include <span>
 
 #include "command.hpp"
-#include "tactree/core/crc32.hpp"
+#include "tactree/core/math/crc32.hpp"
 
 namespace tactree::cli {
 namespace {

@@ -7,7 +7,7 @@
 #include <cstring>
 #include <map>
 
-#include "tactree/core/crc32.hpp"
+#include "tactree/core/math/crc32.hpp"
 
 namespace tactree::cli {
 namespace {

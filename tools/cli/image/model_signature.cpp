@@ -12,7 +12,7 @@
 
 #include "command.hpp"
 #include "output_file.hpp"
-#include "tactree/core/wire/messages.hpp"
+#include "tactree/core/link/wire/messages.hpp"
 
 namespace tactree::cli {
 namespace {

@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "tactree/core/blob_format.hpp"
-#include "tactree/core/device_model.hpp"
+#include "tactree/core/device/device_model.hpp"
+#include "tactree/core/model/blob_format.hpp"
 
 namespace tactree::cli {
 

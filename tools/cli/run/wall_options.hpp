@@ -3,7 +3,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "tactree/core/configuration.hpp"
+#include "tactree/core/configuration/configuration.hpp"
 
 namespace tactree::cli {
 

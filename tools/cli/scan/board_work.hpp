@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "tactree/core/blob_format.hpp"
-#include "tactree/core/wire/messages.hpp"
+#include "tactree/core/link/wire/messages.hpp"
+#include "tactree/core/model/blob_format.hpp"
 #include "tactree/viewer/frame.hpp"
 
 namespace tactree::cli {

@@ -22,7 +22,7 @@
 #include "scan/preview.hpp"
 #include "tactree/builder/length_text.hpp"
 #include "tactree/builder/openings.hpp"
-#include "tactree/core/interior.hpp"
+#include "tactree/core/model/interior.hpp"
 
 namespace tactree::cli {
 namespace {

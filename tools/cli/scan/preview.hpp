@@ -6,7 +6,7 @@
 #include <span>
 
 #include "tactree/builder/build_model.hpp"
-#include "tactree/core/blob.hpp"
+#include "tactree/core/model/blob.hpp"
 
 namespace tactree::cli {
 

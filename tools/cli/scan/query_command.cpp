@@ -17,10 +17,10 @@
 #include "scan/read_points.hpp"
 #include "spooled_input.hpp"
 #include "tactree/builder/length_text.hpp"
-#include "tactree/core/interior.hpp"
-#include "tactree/core/nearest.hpp"
-#include "tactree/core/paper_mode.hpp"
-#include "tactree/core/surface.hpp"
+#include "tactree/core/contact/paper_mode.hpp"
+#include "tactree/core/contact/surface.hpp"
+#include "tactree/core/model/interior.hpp"
+#include "tactree/core/model/nearest.hpp"
 
 namespace tactree::cli {
 namespace {

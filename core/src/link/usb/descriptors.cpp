@@ -1,6 +1,6 @@
 // Loop and memory annotations: docs/BOUND.md.
 
-#include "tactree/core/usb/descriptors.hpp"
+#include "tactree/core/link/usb/descriptors.hpp"
 
 namespace tactree::core::usb {
 namespace {

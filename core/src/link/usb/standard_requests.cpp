@@ -1,6 +1,6 @@
 // Loop and memory annotations: docs/BOUND.md.
 
-#include "tactree/core/usb/standard_requests.hpp"
+#include "tactree/core/link/usb/standard_requests.hpp"
 
 namespace tactree::core::usb {
 namespace {

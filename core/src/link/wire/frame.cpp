@@ -1,6 +1,6 @@
 // Loop and memory annotations: docs/BOUND.md.
 
-#include "tactree/core/wire/frame.hpp"
+#include "tactree/core/link/wire/frame.hpp"
 
 namespace tactree::core::wire {
 namespace {

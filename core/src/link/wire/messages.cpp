@@ -1,4 +1,4 @@
-#include "tactree/core/wire/messages.hpp"
+#include "tactree/core/link/wire/messages.hpp"
 
 namespace tactree::core::wire {
 namespace {

@@ -1,6 +1,6 @@
 // Loop and memory annotations: docs/BOUND.md.
 
-#include "tactree/core/wire/telemetry.hpp"
+#include "tactree/core/link/wire/telemetry.hpp"
 
 namespace tactree::core::wire {
 namespace {

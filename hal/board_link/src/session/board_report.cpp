@@ -3,7 +3,7 @@
 #include "tactree/board_link/session/board_report.hpp"
 
 #include "fields.hpp"
-#include "tactree/core/parameters.hpp"
+#include "tactree/core/configuration/parameters.hpp"
 
 namespace tactree::board_link {
 namespace {

@@ -1,6 +1,6 @@
 #include "tactree/board_link/session/control_requests.hpp"
 
-#include "tactree/core/crc32.hpp"
+#include "tactree/core/math/crc32.hpp"
 
 namespace tactree::board_link {
 

@@ -4,7 +4,7 @@
 
 #include <cstddef>
 
-#include "tactree/core/vec3.hpp"
+#include "tactree/core/math/vec3.hpp"
 
 namespace tactree::board_link {
 

@@ -4,7 +4,7 @@
 
 #include "fields.hpp"
 #include "tactree/board_link/session/admission.hpp"
-#include "tactree/core/parameters.hpp"
+#include "tactree/core/configuration/parameters.hpp"
 
 namespace tactree::board_link {
 

@@ -1,6 +1,6 @@
 #include "tactree/board_link/session/telemetry_sender.hpp"
 
-#include "tactree/core/wire/telemetry.hpp"
+#include "tactree/core/link/wire/telemetry.hpp"
 
 namespace tactree::board_link {
 

@@ -2,9 +2,9 @@
 
 #include "tactree/board_link/store/model_check.hpp"
 
-#include "tactree/core/blob_format.hpp"
-#include "tactree/core/crc32.hpp"
-#include "tactree/core/signature.hpp"
+#include "tactree/core/crypto/signature.hpp"
+#include "tactree/core/math/crc32.hpp"
+#include "tactree/core/model/blob_format.hpp"
 
 namespace tactree::board_link {
 

@@ -2,7 +2,7 @@
 
 #include "tactree/board_link/store/model_record.hpp"
 
-#include "tactree/core/crc32.hpp"
+#include "tactree/core/math/crc32.hpp"
 
 namespace tactree::board_link {
 

@@ -11,7 +11,7 @@
 #include <span>
 #include <type_traits>
 
-#include "tactree/core/controller.hpp"
+#include "tactree/core/control/controller.hpp"
 
 namespace tactree::hal {
 

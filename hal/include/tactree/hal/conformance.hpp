@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <span>
 
-#include "tactree/core/crc32.hpp"
-#include "tactree/core/safety_gate.hpp"
+#include "tactree/core/math/crc32.hpp"
+#include "tactree/core/safety/safety_gate.hpp"
 #include "tactree/hal/board.hpp"
 
 namespace tactree::hal {

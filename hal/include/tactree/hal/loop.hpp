@@ -8,9 +8,9 @@
 //   if (!loop.start(configuration).ok()) { /* report it; tick() keeps the motors off */ }
 //   while (true) loop.tick();
 
-#include "tactree/core/between_ticks.hpp"
-#include "tactree/core/blob.hpp"
-#include "tactree/core/controller.hpp"
+#include "tactree/core/control/between_ticks.hpp"
+#include "tactree/core/control/controller.hpp"
+#include "tactree/core/model/blob.hpp"
 #include "tactree/hal/board.hpp"
 #include "tactree/hal/start_result.hpp"
 

@@ -14,7 +14,7 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "tactree/core/controller.hpp"
+#include "tactree/core/control/controller.hpp"
 #include "tactree/hal/captured_fault.hpp"
 #include "tactree/hal/loop.hpp"
 

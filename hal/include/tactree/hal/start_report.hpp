@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "tactree/core/wire/messages.hpp"
+#include "tactree/core/link/wire/messages.hpp"
 #include "tactree/hal/captured_fault.hpp"
 
 namespace tactree::hal {

@@ -4,9 +4,9 @@
 
 #include <cstdint>
 
-#include "tactree/core/blob.hpp"
-#include "tactree/core/configuration.hpp"
-#include "tactree/core/scene.hpp"
+#include "tactree/core/configuration/configuration.hpp"
+#include "tactree/core/contact/scene.hpp"
+#include "tactree/core/model/blob.hpp"
 
 namespace tactree::hal {
 

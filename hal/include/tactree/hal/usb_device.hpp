@@ -8,11 +8,11 @@
 #include <cstdint>
 #include <span>
 
-#include "tactree/core/controller.hpp"
-#include "tactree/core/usb/descriptors.hpp"
-#include "tactree/core/usb/dfu.hpp"
-#include "tactree/core/usb/setup.hpp"
-#include "tactree/core/usb/standard_requests.hpp"
+#include "tactree/core/control/controller.hpp"
+#include "tactree/core/link/usb/descriptors.hpp"
+#include "tactree/core/link/usb/dfu.hpp"
+#include "tactree/core/link/usb/setup.hpp"
+#include "tactree/core/link/usb/standard_requests.hpp"
 
 namespace tactree::hal {
 

@@ -2,7 +2,7 @@
 // Fields of the structures of a recording, one list for writing and reading. `fields`: a writer or
 // reader, called with a reference to each field.
 
-#include "tactree/core/controller.hpp"
+#include "tactree/core/control/controller.hpp"
 
 namespace tactree::simulation {
 

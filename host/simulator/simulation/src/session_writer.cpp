@@ -4,7 +4,7 @@
 #include <type_traits>
 
 #include "recording_fields.hpp"
-#include "tactree/core/sha512.hpp"
+#include "tactree/core/crypto/sha512.hpp"
 #include "tactree/simulation/recording.hpp"
 
 namespace tactree::simulation {

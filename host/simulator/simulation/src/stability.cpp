@@ -4,8 +4,8 @@
 #include <cmath>
 #include <deque>
 
-#include "tactree/core/passivity.hpp"
-#include "tactree/core/velocity.hpp"
+#include "tactree/core/control/passivity.hpp"
+#include "tactree/core/device/velocity.hpp"
 
 namespace tactree::simulation {
 namespace {

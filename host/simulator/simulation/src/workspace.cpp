@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "tactree/core/kinematics.hpp"
+#include "tactree/core/device/kinematics.hpp"
 #include "tactree/plant/linkage.hpp"
 
 namespace tactree::simulation {

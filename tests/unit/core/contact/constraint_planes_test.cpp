@@ -1,7 +1,7 @@
 // The shortest move to the front of up to three planes, against a search among all sets of planes
 // in double precision.
 
-#include "tactree/core/constraint_planes.hpp"
+#include "tactree/core/contact/constraint_planes.hpp"
 
 #include <gtest/gtest.h>
 

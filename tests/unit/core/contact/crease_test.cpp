@@ -9,8 +9,8 @@
 #include <random>
 #include <vector>
 
-#include "tactree/core/proxy.hpp"
-#include "tactree/core/surface.hpp"
+#include "tactree/core/contact/proxy.hpp"
+#include "tactree/core/contact/surface.hpp"
 #include "tactree/evaluation/creases.hpp"
 
 namespace tactree::test {

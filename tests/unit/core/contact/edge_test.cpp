@@ -8,8 +8,8 @@
 #include <random>
 
 #include "analytic_shapes.hpp"
-#include "tactree/core/proxy.hpp"
-#include "tactree/core/surface.hpp"
+#include "tactree/core/contact/proxy.hpp"
+#include "tactree/core/contact/surface.hpp"
 
 namespace tactree::test {
 namespace {

@@ -11,7 +11,7 @@
 #include <set>
 
 #include "analytic_shapes.hpp"
-#include "tactree/core/surface.hpp"
+#include "tactree/core/contact/surface.hpp"
 
 namespace tactree::test {
 namespace {

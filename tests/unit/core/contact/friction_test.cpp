@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "analytic_shapes.hpp"
-#include "tactree/core/proxy.hpp"
+#include "tactree/core/contact/proxy.hpp"
 
 namespace tactree::test {
 namespace {

@@ -8,8 +8,8 @@
 #include <string>
 
 #include "analytic_shapes.hpp"
-#include "tactree/core/proxy.hpp"
-#include "tactree/core/surface_work.hpp"
+#include "tactree/core/contact/proxy.hpp"
+#include "tactree/core/contact/surface_work.hpp"
 #include "tactree/evaluation/creases.hpp"
 
 namespace tactree::test {

@@ -1,6 +1,6 @@
 // What a contact feels like: figures from the blob, their borders, and the texture.
 
-#include "tactree/core/material.hpp"
+#include "tactree/core/contact/material.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "analytic_shapes.hpp"
-#include "tactree/core/controller.hpp"
-#include "tactree/core/renderer.hpp"
+#include "tactree/core/contact/renderer.hpp"
+#include "tactree/core/control/controller.hpp"
 
 namespace tactree::test {
 namespace {

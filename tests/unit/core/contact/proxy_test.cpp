@@ -1,6 +1,6 @@
 // The god-object: contact is never missed, never lost, and the force turns and grows smoothly.
 
-#include "tactree/core/proxy.hpp"
+#include "tactree/core/contact/proxy.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // The velocity of a quantised position.
 
-#include "tactree/core/velocity.hpp"
+#include "tactree/core/device/velocity.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // A model that the board cannot render in time is not loaded, and there is no force.
 
-#include "tactree/core/admission.hpp"
+#include "tactree/core/control/admission.hpp"
 
 #include <gtest/gtest.h>
 

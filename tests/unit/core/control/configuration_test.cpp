@@ -1,6 +1,6 @@
 // Every impossible value of a configuration is refused by name.
 
-#include "tactree/core/configuration.hpp"
+#include "tactree/core/configuration/configuration.hpp"
 
 #include <gtest/gtest.h>
 

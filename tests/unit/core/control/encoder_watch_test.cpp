@@ -1,6 +1,6 @@
 // Detection of a constant count under a changing effort.
 
-#include "tactree/core/encoder_watch.hpp"
+#include "tactree/core/safety/encoder_watch.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Record of the last ticks after a fault.
 
-#include "tactree/core/flight_recorder.hpp"
+#include "tactree/core/control/flight_recorder.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
 // Homing after power-up by each method; no force before it is done.
 
-#include "tactree/core/homing.hpp"
+#include "tactree/core/device/homing.hpp"
 
 #include <gtest/gtest.h>
 
 #include "session.hpp"
-#include "tactree/core/device_presets.hpp"
+#include "tactree/core/configuration/device_presets.hpp"
 
 namespace tactree::test {
 namespace {

@@ -1,4 +1,4 @@
-#include "tactree/core/kinematics.hpp"
+#include "tactree/core/device/kinematics.hpp"
 
 #include <gtest/gtest.h>
 

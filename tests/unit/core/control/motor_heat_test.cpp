@@ -1,13 +1,13 @@
 // Thermal model of the windings, alone and in the gate.
 
-#include "tactree/core/motor_heat.hpp"
+#include "tactree/core/safety/motor_heat.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "tactree/core/safety_gate.hpp"
+#include "tactree/core/safety/safety_gate.hpp"
 
 namespace tactree::test {
 namespace {

@@ -1,6 +1,6 @@
 // Energy is measured exactly, and absorbed only after its release.
 
-#include "tactree/core/passivity.hpp"
+#include "tactree/core/control/passivity.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <limits>
 #include <random>
 
-#include "tactree/core/safety_gate.hpp"
+#include "tactree/core/safety/safety_gate.hpp"
 
 namespace tactree::test {
 namespace {

@@ -1,6 +1,6 @@
 // The gate in front of the motors: for every input a finite command within the limits.
 
-#include "tactree/core/safety_gate.hpp"
+#include "tactree/core/safety/safety_gate.hpp"
 
 #include <gtest/gtest.h>
 

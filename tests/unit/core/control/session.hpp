@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "analytic_shapes.hpp"
-#include "tactree/core/controller.hpp"
+#include "tactree/core/control/controller.hpp"
 
 namespace tactree::test {
 

@@ -1,6 +1,6 @@
 // The transition table, written a second time from docs/SAFETY.md's rules, entry by entry.
 
-#include "tactree/core/state_machine.hpp"
+#include "tactree/core/control/state_machine.hpp"
 
 #include <gtest/gtest.h>
 

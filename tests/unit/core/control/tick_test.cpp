@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "session.hpp"
-#include "tactree/core/device_presets.hpp"
-#include "tactree/core/passivity.hpp"
+#include "tactree/core/configuration/device_presets.hpp"
+#include "tactree/core/control/passivity.hpp"
 
 namespace tactree::test {
 namespace {

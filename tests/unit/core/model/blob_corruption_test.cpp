@@ -11,8 +11,8 @@
 #include <memory>
 #include <random>
 
-#include "tactree/core/nearest.hpp"
-#include "tactree/core/paper_mode.hpp"
+#include "tactree/core/contact/paper_mode.hpp"
+#include "tactree/core/model/nearest.hpp"
 #include "test_models.hpp"
 
 namespace tactree {

@@ -9,7 +9,7 @@
 #include <functional>
 #include <vector>
 
-#include "tactree/core/blob.hpp"
+#include "tactree/core/model/blob.hpp"
 #include "test_models.hpp"
 
 namespace tactree {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "tactree/core/nearest.hpp"
+#include "tactree/core/model/nearest.hpp"
 #include "test_models.hpp"
 
 namespace tactree {

@@ -1,6 +1,6 @@
 // Where a blob tells that there is material.
 
-#include "tactree/core/interior.hpp"
+#include "tactree/core/model/interior.hpp"
 
 #include <gtest/gtest.h>
 

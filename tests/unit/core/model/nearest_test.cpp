@@ -1,4 +1,4 @@
-#include "tactree/core/nearest.hpp"
+#include "tactree/core/model/nearest.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <random>
 #include <set>
 
-#include "tactree/core/octree.hpp"
+#include "tactree/core/model/octree.hpp"
 #include "test_models.hpp"
 
 namespace tactree::core {

@@ -1,4 +1,4 @@
-#include "tactree/core/octree.hpp"
+#include "tactree/core/model/octree.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // The paper's method, against an independent implementation of its text, and against its Table 1.
 
-#include "tactree/core/paper_mode.hpp"
+#include "tactree/core/contact/paper_mode.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,10 +3,10 @@
 #include <cstring>
 #include <random>
 
-#include "tactree/core/blob.hpp"
-#include "tactree/core/proxy.hpp"
-#include "tactree/core/scene.hpp"
-#include "tactree/core/surface.hpp"
+#include "tactree/core/contact/proxy.hpp"
+#include "tactree/core/contact/scene.hpp"
+#include "tactree/core/contact/surface.hpp"
+#include "tactree/core/model/blob.hpp"
 
 namespace tactree::test {
 namespace {

@@ -1,6 +1,6 @@
 // What is left of a contact goes to zero in a straight line.
 
-#include "tactree/core/force_fade.hpp"
+#include "tactree/core/contact/force_fade.hpp"
 
 #include <gtest/gtest.h>
 

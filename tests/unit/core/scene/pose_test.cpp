@@ -1,6 +1,6 @@
 // Poses turn and move as Eigen's do in double precision, and stay rotations.
 
-#include "tactree/core/pose.hpp"
+#include "tactree/core/math/pose.hpp"
 
 #include <gtest/gtest.h>
 

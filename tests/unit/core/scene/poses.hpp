@@ -5,7 +5,7 @@
 #include <random>
 
 #include "analytic_shapes.hpp"
-#include "tactree/core/pose.hpp"
+#include "tactree/core/math/pose.hpp"
 
 namespace tactree::test {
 

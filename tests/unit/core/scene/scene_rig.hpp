@@ -3,7 +3,7 @@
 
 #include "analytic_shapes.hpp"
 #include "poses.hpp"
-#include "tactree/core/scene.hpp"
+#include "tactree/core/contact/scene.hpp"
 
 namespace tactree::test {
 

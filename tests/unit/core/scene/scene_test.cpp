@@ -1,7 +1,7 @@
 // Bodies wherever they are: the same forces as at the origin, pushed and dragged by what moves, and
 // as much force on each body as on the hand.
 
-#include "tactree/core/scene.hpp"
+#include "tactree/core/contact/scene.hpp"
 
 #include <gtest/gtest.h>
 

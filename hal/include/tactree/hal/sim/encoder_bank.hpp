@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "tactree/core/controller.hpp"
+#include "tactree/core/control/controller.hpp"
 #include "tactree/hal/sim/delay_line.hpp"
 
 namespace tactree::hal::sim {

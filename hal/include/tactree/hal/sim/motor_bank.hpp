@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "tactree/core/safety_gate.hpp"
+#include "tactree/core/safety/safety_gate.hpp"
 #include "tactree/hal/sim/delay_line.hpp"
 
 namespace tactree::hal::sim {

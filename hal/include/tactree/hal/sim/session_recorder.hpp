@@ -3,7 +3,7 @@
 // ticks. The same sequence gives the same outcomes, bit for bit. Called from the context of the
 // loop.
 
-#include "tactree/core/controller.hpp"
+#include "tactree/core/control/controller.hpp"
 
 namespace tactree::hal::sim {
 

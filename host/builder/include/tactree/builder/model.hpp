@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "tactree/core/blob_format.hpp"
+#include "tactree/core/model/blob_format.hpp"
 
 namespace tactree::builder {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "tactree/builder/build_model.hpp"
-#include "tactree/core/blob.hpp"
+#include "tactree/core/model/blob.hpp"
 
 namespace tactree::builder {
 

@@ -23,8 +23,8 @@
 #include <string>
 #include <vector>
 
-#include "tactree/core/flight_recorder.hpp"
-#include "tactree/core/pose.hpp"
+#include "tactree/core/control/flight_recorder.hpp"
+#include "tactree/core/math/pose.hpp"
 #include "tactree/host/connection.hpp"
 #include "tactree/host/serial_port.hpp"
 #include "tactree/host/start_report.hpp"

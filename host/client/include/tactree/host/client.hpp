@@ -11,8 +11,8 @@
 #include <span>
 #include <vector>
 
-#include "tactree/core/wire/messages.hpp"
-#include "tactree/core/wire/telemetry.hpp"
+#include "tactree/core/link/wire/messages.hpp"
+#include "tactree/core/link/wire/telemetry.hpp"
 
 namespace tactree::host {
 

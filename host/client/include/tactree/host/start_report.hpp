@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tactree/core/wire/messages.hpp"
+#include "tactree/core/link/wire/messages.hpp"
 
 namespace tactree::host {
 

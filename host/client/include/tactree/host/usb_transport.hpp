@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "tactree/core/usb/descriptors.hpp"
+#include "tactree/core/link/usb/descriptors.hpp"
 #include "tactree/host/transport.hpp"
 #include "tactree/host/usb_devices.hpp"
 

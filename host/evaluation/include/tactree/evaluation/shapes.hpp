@@ -8,7 +8,7 @@
 #include <span>
 
 #include "tactree/builder/model.hpp"
-#include "tactree/core/blob.hpp"
+#include "tactree/core/model/blob.hpp"
 #include "tactree/plant/vectors.hpp"
 
 namespace tactree::evaluation {

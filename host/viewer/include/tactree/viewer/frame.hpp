@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "tactree/core/surface.hpp"
+#include "tactree/core/contact/surface.hpp"
 #include "tactree/simulation/scene_target.hpp"
 #include "tactree/simulation/simulation.hpp"
 

@@ -23,7 +23,7 @@
 #include <string>
 #include <vector>
 
-#include "tactree/core/device_presets.hpp"
+#include "tactree/core/configuration/device_presets.hpp"
 #include "tactree/viewer/frame.hpp"
 #include "tactree/viewer/source.hpp"
 #include "tactree/viewer/tick_log.hpp"

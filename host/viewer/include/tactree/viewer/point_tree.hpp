@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "tactree/core/blob.hpp"
+#include "tactree/core/model/blob.hpp"
 
 namespace tactree::viewer {
 

@@ -23,9 +23,9 @@
 #include <string>
 #include <vector>
 
-#include "tactree/core/blob_format.hpp"
-#include "tactree/core/surface.hpp"
-#include "tactree/core/tick_cost.hpp"
+#include "tactree/core/contact/surface.hpp"
+#include "tactree/core/control/tick_cost.hpp"
+#include "tactree/core/model/blob_format.hpp"
 
 namespace tactree::wcet {
 

@@ -4,9 +4,9 @@
 
 #include <cstdint>
 
-#include "tactree/core/configuration.hpp"
-#include "tactree/core/controller.hpp"
-#include "tactree/core/wire/messages.hpp"
+#include "tactree/core/configuration/configuration.hpp"
+#include "tactree/core/control/controller.hpp"
+#include "tactree/core/link/wire/messages.hpp"
 
 namespace tactree::board_link {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "tactree/board_link/session/reply.hpp"
-#include "tactree/core/controller.hpp"
+#include "tactree/core/control/controller.hpp"
 #include "tactree/hal/loop.hpp"
 #include "tactree/hal/start_report.hpp"
 

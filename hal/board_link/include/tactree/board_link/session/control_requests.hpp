@@ -9,8 +9,8 @@
 
 #include "tactree/board_link/session/reply.hpp"
 #include "tactree/board_link/session/tick_mailbox.hpp"
-#include "tactree/core/controller.hpp"
-#include "tactree/core/wire/messages.hpp"
+#include "tactree/core/control/controller.hpp"
+#include "tactree/core/link/wire/messages.hpp"
 
 namespace tactree::board_link {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "tactree/core/wire/frame.hpp"
+#include "tactree/core/link/wire/frame.hpp"
 #include "tactree/hal/board.hpp"
 
 namespace tactree::board_link {

@@ -9,10 +9,10 @@
 
 #include "tactree/board_link/session/reply.hpp"
 #include "tactree/board_link/session/tick_mailbox.hpp"
-#include "tactree/core/between_ticks.hpp"
-#include "tactree/core/controller.hpp"
-#include "tactree/core/parameters.hpp"
-#include "tactree/core/wire/messages.hpp"
+#include "tactree/core/configuration/parameters.hpp"
+#include "tactree/core/control/between_ticks.hpp"
+#include "tactree/core/control/controller.hpp"
+#include "tactree/core/link/wire/messages.hpp"
 
 namespace tactree::board_link {
 

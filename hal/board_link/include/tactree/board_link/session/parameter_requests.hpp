@@ -6,8 +6,8 @@
 #include <span>
 
 #include "tactree/board_link/session/reply.hpp"
-#include "tactree/core/controller.hpp"
-#include "tactree/core/wire/messages.hpp"
+#include "tactree/core/control/controller.hpp"
+#include "tactree/core/link/wire/messages.hpp"
 
 namespace tactree::board_link {
 

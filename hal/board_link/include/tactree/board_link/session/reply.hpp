@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "tactree/core/wire/messages.hpp"
+#include "tactree/core/link/wire/messages.hpp"
 
 namespace tactree::board_link {
 

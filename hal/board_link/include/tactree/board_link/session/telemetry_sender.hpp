@@ -8,7 +8,7 @@
 
 #include "tactree/board_link/session/frame_queue.hpp"
 #include "tactree/board_link/session/tick_mailbox.hpp"
-#include "tactree/core/wire/messages.hpp"
+#include "tactree/core/link/wire/messages.hpp"
 
 namespace tactree::board_link {
 

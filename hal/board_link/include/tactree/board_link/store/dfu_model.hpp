@@ -11,12 +11,12 @@
 #include <span>
 
 #include "tactree/board_link/session/tick_mailbox.hpp"
-#include "tactree/core/between_ticks.hpp"
-#include "tactree/core/blob_format.hpp"
-#include "tactree/core/controller.hpp"
-#include "tactree/core/crc32.hpp"
-#include "tactree/core/usb/dfu.hpp"
-#include "tactree/core/wire/messages.hpp"
+#include "tactree/core/control/between_ticks.hpp"
+#include "tactree/core/control/controller.hpp"
+#include "tactree/core/link/usb/dfu.hpp"
+#include "tactree/core/link/wire/messages.hpp"
+#include "tactree/core/math/crc32.hpp"
+#include "tactree/core/model/blob_format.hpp"
 
 namespace tactree::board_link {
 

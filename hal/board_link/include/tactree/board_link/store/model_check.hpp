@@ -7,8 +7,8 @@
 #include <span>
 
 #include "tactree/board_link/store/model_record.hpp"
-#include "tactree/core/blob.hpp"
-#include "tactree/core/wire/messages.hpp"
+#include "tactree/core/link/wire/messages.hpp"
+#include "tactree/core/model/blob.hpp"
 
 namespace tactree::board_link {
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <span>
 
-#include "tactree/core/parameters.hpp"
+#include "tactree/core/configuration/parameters.hpp"
 
 namespace tactree::board_link {
 

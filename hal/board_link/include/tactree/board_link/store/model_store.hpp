@@ -28,8 +28,8 @@
 
 #include "tactree/board_link/store/model_check.hpp"
 #include "tactree/board_link/store/record_log.hpp"
-#include "tactree/core/blob.hpp"
-#include "tactree/core/wire/messages.hpp"
+#include "tactree/core/link/wire/messages.hpp"
+#include "tactree/core/model/blob.hpp"
 
 namespace tactree::board_link {
 

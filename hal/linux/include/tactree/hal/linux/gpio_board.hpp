@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "tactree/core/quadrature.hpp"
+#include "tactree/core/device/quadrature.hpp"
 #include "tactree/hal/board.hpp"
 #include "tactree/hal/linux/gpio_lines.hpp"
 #include "tactree/hal/linux/level_watch.hpp"

@@ -14,7 +14,7 @@
 
 #include <Eigen/Core>
 
-#include "tactree/core/device_presets.hpp"
+#include "tactree/core/configuration/device_presets.hpp"
 #include "tactree/plant/linkage.hpp"
 #include "tactree/plant/plant.hpp"
 

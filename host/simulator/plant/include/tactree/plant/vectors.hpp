@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "tactree/core/vec3.hpp"
+#include "tactree/core/math/vec3.hpp"
 
 namespace tactree::plant {
 

@@ -10,7 +10,7 @@
 
 #include "tactree/board_link/session/session.hpp"
 #include "tactree/board_link/store/model_store.hpp"
-#include "tactree/core/signature.hpp"
+#include "tactree/core/crypto/signature.hpp"
 #include "tactree/hal/sim/flash.hpp"
 #include "tactree/host/transport.hpp"
 #include "tactree/simulation/target.hpp"

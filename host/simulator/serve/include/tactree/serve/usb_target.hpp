@@ -4,7 +4,7 @@
 #include <chrono>
 
 #include "tactree/board_link/store/dfu_model.hpp"
-#include "tactree/core/usb/parameter_storage.hpp"
+#include "tactree/core/link/usb/parameter_storage.hpp"
 #include "tactree/hal/usb_device.hpp"
 #include "tactree/serve/served_target.hpp"
 

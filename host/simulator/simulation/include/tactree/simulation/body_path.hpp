@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-#include "tactree/core/pose.hpp"
+#include "tactree/core/math/pose.hpp"
 
 namespace tactree::simulation {
 

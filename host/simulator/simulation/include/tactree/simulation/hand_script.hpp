@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tactree/core/blob.hpp"
+#include "tactree/core/model/blob.hpp"
 #include "tactree/simulation/hand_path.hpp"
 
 namespace tactree::simulation {

@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-#include "tactree/core/controller.hpp"
+#include "tactree/core/control/controller.hpp"
 #include "tactree/hal/sim/board.hpp"
 
 namespace tactree::simulation {

@@ -3,8 +3,8 @@
 
 #include <Eigen/Geometry>
 
-#include "tactree/core/blob.hpp"
-#include "tactree/core/device_model.hpp"
+#include "tactree/core/device/device_model.hpp"
+#include "tactree/core/model/blob.hpp"
 
 namespace tactree::simulation {
 

@@ -38,8 +38,8 @@
 #include <variant>
 #include <vector>
 
-#include "tactree/core/controller.hpp"
-#include "tactree/core/crc32.hpp"
+#include "tactree/core/control/controller.hpp"
+#include "tactree/core/math/crc32.hpp"
 #include "tactree/hal/sim/session_recorder.hpp"
 
 namespace tactree::simulation {

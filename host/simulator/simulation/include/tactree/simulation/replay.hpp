@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "tactree/core/blob.hpp"
+#include "tactree/core/model/blob.hpp"
 #include "tactree/simulation/recording.hpp"
 #include "tactree/simulation/simulation.hpp"
 

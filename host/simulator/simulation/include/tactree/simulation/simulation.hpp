@@ -10,8 +10,8 @@
 #include <span>
 #include <vector>
 
-#include "tactree/core/controller.hpp"
-#include "tactree/core/crc32.hpp"
+#include "tactree/core/control/controller.hpp"
+#include "tactree/core/math/crc32.hpp"
 #include "tactree/hal/loop.hpp"
 #include "tactree/hal/sim/board.hpp"
 #include "tactree/plant/device_plant.hpp"

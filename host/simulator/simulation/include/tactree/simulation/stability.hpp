@@ -3,7 +3,7 @@
 // estimator and passivity controller with a mass, whose motion between two ticks is the exact
 // solution. Compare core::stability_limit().
 
-#include "tactree/core/configuration.hpp"
+#include "tactree/core/configuration/configuration.hpp"
 
 namespace tactree::simulation {
 

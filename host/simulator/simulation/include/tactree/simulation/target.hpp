@@ -1,7 +1,7 @@
 #pragma once
 // Execution target of the controller: this process, or a board.
 
-#include "tactree/core/controller.hpp"
+#include "tactree/core/control/controller.hpp"
 #include "tactree/hal/loop.hpp"
 #include "tactree/hal/sim/board.hpp"
 

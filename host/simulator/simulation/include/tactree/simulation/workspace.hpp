@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "tactree/core/device_model.hpp"
+#include "tactree/core/device/device_model.hpp"
 
 namespace tactree::simulation {
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <span>
 
-#include "tactree/core/blob.hpp"
+#include "tactree/core/model/blob.hpp"
 #include "tactree/picture/raster.hpp"
 
 namespace tactree::picture {

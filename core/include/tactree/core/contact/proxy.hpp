@@ -1,0 +1,199 @@
+#pragma once
+// The proxy (god-object): a point that stays on the surface while the probe penetrates it. The
+// contact force pulls the probe towards the proxy. (Zilles and Salisbury, "A constraint-based
+// god-object method for haptic display", IROS 1995; friction after Harwin and Melder, EuroHaptics
+// 2002.)
+//
+// Free:       the path of the probe is swept in steps of half a support radius, so that no surface
+//             is crossed undetected. Contact begins where the signed distance turns negative.
+// In contact: the proxy sticks within the friction cone of the probe, or slips to the cone's
+//             boundary. Where the surface is concave, up to three faces hold it: it goes to the
+//             place in front of all of them that is closest to the probe.
+//
+//   state                     side known   in contact
+//   kUntracked, kReferenced   no           no
+//   kTracking                 yes          no
+//   kSticking, kSlipping      yes          yes
+//
+// A probe behind a surface is inside where the model tells that there is material (interior.hpp):
+// at first, after a jump, or where it lost its contact. It is followed without force, and contact
+// begins only after it has left. Both sides of a sheet count as free.
+//
+// Two bodies near the probe share one proxy: that of the body in contact, which leads. It is held
+// by the faces of both. The other body's proxy follows it instead of the probe and finds the faces
+// there; it takes the lead where the surface is its body's own.
+//
+// A step takes at most one gather. With work_per_tick() and R = 2.5 mm the proxy keeps up with
+// 5 m/s at 1 kHz, 2.5 m/s at 2 kHz and 1.2 m/s at 4 kHz; it follows a faster probe with a delay and
+// never loses it. When the budget ends between gather and fit, the fit follows in the next tick; a
+// proxy in contact meanwhile moves along the tangent plane.
+//
+// Interrupt safety: no shared state; one context owns a proxy.
+
+#include <cstdint>
+
+#include "tactree/core/contact/candidates.hpp"
+#include "tactree/core/contact/constraint_planes.hpp"
+#include "tactree/core/contact/neighbour.hpp"
+#include "tactree/core/contact/surface.hpp"
+#include "tactree/core/contact/tick_budget.hpp"
+#include "tactree/core/model/blob.hpp"
+
+namespace tactree::core {
+
+/// Coefficients, 0 <= dynamic <= static.
+struct Friction {
+  float static_coefficient = 0.0F;
+  float dynamic_coefficient = 0.0F;
+};
+
+class Proxy {
+ public:
+  /// Clears contact, side and candidates, and places the proxy at `probe`. Required whenever the
+  /// model changes.
+  void reset(Vec3 probe);
+
+  /// Follows the probe (m, model frame) for one tick, or the proxy of a neighbour that leads. Cost:
+  /// at most `work`, the searches for the nearest candidate included; with a neighbour, a pass more
+  /// for each gather, and one.
+  void update(const BlobView& view, Vec3 probe, const Friction& friction, const SurfaceWork& work,
+              const Neighbour* neighbour = nullptr);
+
+  /// What the proxy of another body has to know of this one. Its frame is that of the model.
+  [[nodiscard]] Neighbour as_neighbour(const BlobView& view) const;
+  /// In contact: the faces of a neighbour as they are now; where they came closer, it gives way.
+  void yield_to(const Neighbour& neighbour);
+  /// In contact: the surface at the proxy is the neighbour's, whose own proxy follows this one.
+  [[nodiscard]] bool belongs_to(const Proxy& follower, const Neighbour& neighbour,
+                                Vec3 probe) const;
+  /// Continues the contact of the neighbour that led, at its proxy; that one lets it go.
+  void take_over(const Neighbour& neighbour, Proxy& from);
+  /// In contact, after the last of these: what holds the probe.
+  void aim(Vec3 probe);
+  /// Share of a contact force along the faces of the neighbour.
+  [[nodiscard]] Vec3 share_of_neighbour(Vec3 force) const;
+
+  [[nodiscard]] bool in_contact() const { return state_ >= State::kSticking; }
+  /// In the material, without contact; known within two ticks.
+  [[nodiscard]] bool inside() const { return inside_; }
+  /// In contact with the back of a sheet, the side that its normals avert.
+  [[nodiscard]] bool from_behind() const { return in_contact() && side_ < 0.0F; }
+  [[nodiscard]] bool slipping() const { return state_ == State::kSlipping; }
+  /// m. In contact: on the surface. Free: the end of the sweep, normally the probe.
+  [[nodiscard]] Vec3 position() const { return position_; }
+  /// In contact: unit normal of the surface on the probe's side; where several faces hold the
+  /// proxy, the direction in which they push the probe together.
+  [[nodiscard]] Vec3 normal() const {
+    return planes_.count > 1U ? common_normal_ : side_ * reference_;
+  }
+  /// In contact: unit normal of the surface on the side of the points' normals; of one of the faces
+  /// that hold the proxy.
+  [[nodiscard]] Vec3 stored_normal() const { return reference_; }
+  /// The points around position().
+  [[nodiscard]] const CandidateSet& candidates() const { return candidates_; }
+  /// Share of the contact force to display; below 1 on the boundary of the surface.
+  [[nodiscard]] float strength() const { return strength_; }
+  /// True in a tick in which the contact ended at the boundary of the surface, not by the probe
+  /// leaving it.
+  [[nodiscard]] bool lost_contact() const { return lost_contact_; }
+  /// False after a gather that left points out; reset() makes it true.
+  [[nodiscard]] bool complete() const { return candidates_.complete(); }
+
+ private:
+  // The order matters: see is_tracking() and in_contact().
+  enum class State : std::uint8_t {
+    kUntracked,   // the nearest candidate provides the next reference
+    kReferenced,  // reference_ is for the next fit; it was checked, or contradicted and reversed
+    kTracking,    // reference_ and side_ hold
+    kSticking,
+    kSlipping,
+  };
+
+  /// A settled place, to which a step that leads away from the probe returns.
+  struct Footing {
+    Vec3 position{};
+    Vec3 reference{};
+    NearFaces near{};
+    ConstraintPlanes planes{};
+    std::uint32_t foreign = 0;
+    float strength = 0.0F;
+  };
+
+  /// Where a probe pulls the proxy.
+  struct Pull {
+    bool released;   // the probe is in front of all faces
+    Vec3 along;      // m, without friction
+    float depth;     // m, of the probe below the faces that touch
+    float distance;  // m, along them
+  };
+
+  [[nodiscard]] bool is_tracking() const { return state_ >= State::kTracking; }
+  [[nodiscard]] bool gather(const BlobView& view, Vec3 x);
+  [[nodiscard]] bool prepare_fit(const BlobView& view, Vec3 x);
+  [[nodiscard]] SurfaceFit evaluate(const BlobView& view, Vec3 x, Vec3 reference);
+  void look_around(const BlobView& view);
+  void look_behind(const BlobView& view);
+  void sweep(const BlobView& view, Vec3 probe);
+  void visit(const BlobView& view, Vec3 x);
+  [[nodiscard]] bool has_reference(const BlobView& view, Vec3 x);
+  void begin_tracking(float distance);
+  [[nodiscard]] bool is_contradicted(const SurfaceFit& fit) const;
+  [[nodiscard]] bool passes_by(const SurfaceFit& fit, Vec3 step) const;
+  [[nodiscard]] bool is_led() const { return neighbour_ != nullptr && neighbour_->leads; }
+  void begin_beside(const Neighbour* neighbour);
+  void hide_points(float radius);
+  void hold(const SurfaceFit& fit);
+  void hold_beside(const SurfaceFit& fit);
+  void add_foreign(ConstraintPlanes& planes) const;
+  void meet(const Neighbour* neighbour);
+  [[nodiscard]] bool touches_neighbour() const;
+  void stop_at_surface();
+  void move_to_first();
+  void begin_contact(const BlobView& view);
+  void slide(const BlobView& view, Vec3 probe, const Friction& friction);
+  [[nodiscard]] Vec3 next_slip(const Pull& pull, float excess, float step, bool& last) const;
+  void end_slip(float distance, float cone);
+  void glide_by(Vec3 step);
+  [[nodiscard]] bool slip_by(const BlobView& view, Vec3 step);
+  [[nodiscard]] bool settle(const BlobView& view, float& moved);
+  void refer_to(const SurfaceFit& fit, bool was_smooth);
+  void make_main(std::uint32_t plane);
+  [[nodiscard]] PlaneMove move_of(Vec3 probe);
+  [[nodiscard]] Pull pull_of(const BlobView& view, Vec3 probe);
+  [[nodiscard]] Footing footing() const;
+  [[nodiscard]] bool takes_back(const BlobView& view, Vec3 slip, Vec3 probe, const Footing& before,
+                                bool was_settled);
+  void restore(const Footing& footing);
+  void release();
+  void lose_face(const SurfaceFit& fit);
+  void lose_support();
+
+  CandidateSet candidates_;
+  Vec3 position_{};
+  Vec3 reference_{};           // normal of the last fit, on the side of the points' normals
+  NearFaces near_{};           // other faces around the last fit
+  ConstraintPlanes planes_{};  // in contact, from position_: of the faces that hold the proxy, that
+                               // of reference_ first; distances are kept where there are several
+  Vec3 common_normal_{};       // where several faces hold the proxy
+  float side_ = 1.0F;          // +1 or -1: the probe's side of the surface
+  float strength_ = 0.0F;
+  const Neighbour* neighbour_ = nullptr;  // during update()
+  Neighbour found_{};                     // beside a neighbour: the faces of the last fit
+  std::uint32_t foreign_ = 0;             // bit i: plane i is of a neighbour
+  std::uint32_t active_ = 0;              // bit i: plane i holds the probe, where there are several
+  float weight_ = 0.0F;                   // of the last fit
+  float stride_ = 1.0F;  // share of the next step: smaller after one that led away from the probe
+  Vec3 next_{};          // position of the fit that waits for its candidates; where has_next_
+  TickBudget budget_;
+  State state_ = State::kUntracked;
+  bool has_next_ = false;
+  bool unsettled_ = false;  // in contact: position_ needs another fit
+  bool inside_ = false;     // never in contact
+  bool asks_ = false;       // tracking, behind a surface: is that in the material?
+  bool lost_contact_ = false;
+  bool must_hide_ = false;  // before the next fit
+  bool blocked_ = false;    // a proxy that leads is behind this surface
+  bool gives_way_ = false;  // in contact: the neighbour's faces alone hold the probe
+};
+
+}  // namespace tactree::core

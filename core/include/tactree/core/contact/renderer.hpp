@@ -1,0 +1,75 @@
+#pragma once
+// The contact force of one model at the probe, before any limit.
+
+#include <cstdint>
+
+#include "tactree/core/configuration/configuration.hpp"
+#include "tactree/core/contact/material.hpp"
+#include "tactree/core/contact/proxy.hpp"
+#include "tactree/core/math/vec3.hpp"
+#include "tactree/core/model/blob.hpp"
+
+namespace tactree::core {
+
+inline constexpr std::uint32_t kNoBody = 0xFFFFFFFFU;
+
+/// The contact of one tick. Model frame; a Scene converts it to the scene's frame.
+struct Rendering {
+  bool in_contact = false;
+  bool slipping = false;
+  bool complete = true;          ///< false: the model holds more points than it declares
+  bool lost = false;             ///< the contact of the last tick ended at the surface's boundary
+  bool inside = false;           ///< in the material, without force until the probe has left it
+  Vec3 proxy{};                  ///< m; the probe when free
+  Vec3 normal{};                 ///< outward; zero when free
+  Vec3 force{};                  ///< N
+  float stored_energy = 0.0F;    ///< J, in the spring between probe and proxy
+  float strength = 0.0F;         ///< share of the force displayed; below 1 on a boundary
+  float penetration_m = 0.0F;    ///< of the probe, along the normal, without the texture
+  std::uint32_t body = kNoBody;  ///< in a Scene: number of the body in contact
+};
+
+/// Interrupt safety: no shared state; one context owns a renderer. RAM: about 4 KiB, mostly the
+/// proxy's candidates.
+class Renderer {
+ public:
+  /// Clears the contact. Required whenever the model or the configuration changes.
+  void reset(Vec3 probe) { proxy_.reset(probe); }
+
+  /// Clears a contact with the back of a sheet; any other contact stays.
+  void release_back(Vec3 probe) {
+    if (proxy_.from_behind()) {
+      proxy_.reset(probe);
+    }
+  }
+
+  /// Renders one tick; `probe` in m, `velocity` in m/s. The surface mode works at the tier of the
+  /// rate, or at `least_tier` if that is later. Preconditions: check(configuration) is kOk, `probe`
+  /// is finite. Cost: surface mode: Proxy::update(); paper mode: paper_collision() and
+  /// paper_nearest().
+  Rendering update(const BlobView& view, const Configuration& configuration, Vec3 probe,
+                   Vec3 velocity, std::uint32_t least_tier = 0);
+
+  /// The two steps of an update in surface mode: the proxy follows, and the force. With a neighbour
+  /// the force is that of the proxy that leads: see proxy.hpp.
+  void track(const BlobView& view, const Configuration& configuration, Vec3 probe,
+             std::uint32_t least_tier, const Neighbour* neighbour) {
+    proxy_.update(view, probe, friction_, work_per_tick(configuration.rate_hz, least_tier),
+                  neighbour);
+  }
+  [[gnu::noinline]] Rendering render_proxy(const BlobView& view, const Configuration& configuration,
+                                           Vec3 probe, Vec3 velocity);
+  /// Paper mode. Cost: paper_collision() and paper_nearest().
+  [[nodiscard]] static Rendering render_paper(const BlobView& view,
+                                              const Configuration& configuration, Vec3 probe);
+
+  [[nodiscard]] Proxy& proxy() { return proxy_; }
+  [[nodiscard]] const Proxy& proxy() const { return proxy_; }
+
+ private:
+  Proxy proxy_;
+  Friction friction_{};        // of the contact in the last tick
+  MaterialBlend materials_{};  // of the contact when its candidates were last valid
+};
+
+}  // namespace tactree::core

@@ -1,0 +1,170 @@
+#pragma once
+// Several rigid bodies around one probe. Each body has a model and a pose that may change every
+// tick. A Renderer per body works in the body's frame: a moving body carries its proxy along and
+// pushes the probe. The probe feels the surface of all bodies together: one proxy is held by the
+// faces of all, and a face within another body is not felt (neighbour.hpp). The material is that of
+// the body which leads. In paper mode the forces of the bodies add up.
+//
+//   probe -> bodies within reach -> body frame -> proxies, of which one leads -> force, and its
+//   reactions on the bodies
+//
+// At most kMaxReachableBodies of the bodies whose box contains the probe are rendered: those
+// reached first, then those with the lowest numbers. The others exert no force, and
+// SceneRendering::crowded is set. A body that appears around the probe exerts no force until the
+// probe has left it, and SceneRendering::inside is set; a sheet that appears is felt from the
+// probe's side.
+//
+// Interrupt safety: no shared state; one context owns a scene.
+
+#include <cstdint>
+
+#include "tactree/core/configuration/configuration.hpp"
+#include "tactree/core/contact/force_fade.hpp"
+#include "tactree/core/contact/renderer.hpp"
+#include "tactree/core/math/pose.hpp"
+#include "tactree/core/model/blob.hpp"
+
+namespace tactree::core {
+
+inline constexpr std::uint32_t kMaxBodies = 8;
+inline constexpr std::uint32_t kMaxReachableBodies = 2;  ///< rendered at the same time
+
+/// Duration in which the force of a removed contact fades to 0.
+inline constexpr float kFadeSeconds = 0.05F;
+
+/// Reason why a model or a change of a body was refused.
+enum class ModelStatus : std::uint8_t {
+  kOk = 0,
+  kBusy,           ///< armed or active: stop first
+  kNotConfigured,  ///< configure() first
+  kEmpty,          ///< no model in the view
+  kNoReach,        ///< built without the guarantees that surface mode needs
+  kTooManyPoints,  ///< a ball may hold more than kMaxCandidates points
+  kTooStiff,       ///< a material is stiffer than material_limit(): see find_unstable_material()
+  kTooManyBodies,  ///< there are kMaxBodies
+  kNoSuchBody,     ///< nothing was added under this number, or it was removed
+  kBadPose,        ///< is_valid(Pose) is false
+  kBadMotion,      ///< is_valid(Motion) is false
+  kTooSlow,        ///< a tick with it may take longer than the rate allows: see tick_cost.hpp
+};
+[[nodiscard]] const char* describe(ModelStatus status);
+
+/// Force and torque of the probe on a body, along the scene's axes; torque about the body's origin.
+struct Reaction {
+  std::uint32_t body = kNoBody;
+  Vec3 force_N{};
+  Vec3 torque_Nm{};
+};
+
+/// Contacts of all bodies in one tick.
+struct SceneRendering {
+  /// The contact of the body that leads, in paper mode that with the largest force, in the scene's
+  /// frame; `force` and `stored_energy` are those of all bodies.
+  Rendering contact{};
+  Vec3 wall_velocity{};                       ///< m/s, of that contact's body where the probe is
+  Reaction reactions[kMaxReachableBodies]{};  ///< of the bodies in contact
+  bool crowded = false;                       ///< more bodies within reach than kMaxReachableBodies
+  bool fading = false;                        ///< the force of a removed contact fades
+  bool inside = false;                        ///< the probe is in the material of a body
+};
+
+class Scene {
+ public:
+  /// Removes all bodies, contacts and forces.
+  void clear();
+
+  /// Adds a body and returns its number: the lowest free one. The model must
+  /// outlive the body, and suit the render mode: surface_support(). Refused: kEmpty, kBadPose,
+  /// kTooManyBodies.
+  [[nodiscard]] ModelStatus add(const BlobView& view, const Pose& pose, std::uint32_t& number);
+  /// Removes a body; its force fades. Its blob is not read after the call. Refused: kNoSuchBody.
+  [[nodiscard]] ModelStatus remove(std::uint32_t number);
+  /// A disabled body exerts no force, but keeps its number and continues to move. Refused:
+  /// kNoSuchBody.
+  [[nodiscard]] ModelStatus enable(std::uint32_t number, bool enabled);
+  /// Places a body at `pose` in the next tick; from there it moves with `motion`. If the probe
+  /// jumps in the body's frame faster than twice speed_max_m_s, the contact ends and its force
+  /// fades. Refused: kNoSuchBody, kBadPose, kBadMotion.
+  [[nodiscard]] ModelStatus move(std::uint32_t number, const Pose& pose, const Motion& motion);
+
+  [[nodiscard]] bool empty() const { return count_ == 0U; }
+  /// The empty view if there is no such body.
+  [[nodiscard]] BlobView view(std::uint32_t number) const;
+  /// The pose at the origin if there is no such body.
+  [[nodiscard]] Pose pose(std::uint32_t number) const;
+
+  /// Clears contacts and fading forces, not bodies. Required when the probe jumps.
+  void reset(Vec3 probe);
+
+  /// Clears contacts with the backs of sheets, so that a probe may change the side. Call it before
+  /// update(), while no force is displayed.
+  void release_backs();
+
+  /// Limits the work of each body in a tick to that of this tier, where the tier of the rate allows
+  /// more. Initially 0: the rate alone decides. Precondition: less than kWorkTiers.
+  void limit_work(std::uint32_t work_tier) { work_tier_ = work_tier; }
+  [[nodiscard]] std::uint32_t work_tier() const { return work_tier_; }
+
+  /// Renders one tick; `probe` (m) and `velocity` (m/s) in the scene's frame. Preconditions: as
+  /// Renderer::update().
+  /// Cost: kMaxReachableBodies times Proxy::update(), one force, kMaxBodies times about 100
+  /// operations.
+  const SceneRendering& update(const Configuration& configuration, Vec3 probe, Vec3 velocity);
+  /// Result of the last update(); no contact after reset().
+  [[nodiscard]] const SceneRendering& rendering() const { return rendering_; }
+
+ private:
+  struct Body {
+    BlobView view{};  // empty: the number is free, and all other members are as here
+    Pose pose{};
+    Motion motion{};
+    Vec3 probe{};        // in the body's frame, this tick; valid if enabled
+    Vec3 last_probe{};   // in the body's frame, last tick; valid if seen
+    bool moved = false;  // the body's frame differs from the scene's, or is about to
+    bool enabled = true;
+    bool seen = false;
+  };
+
+  /// A renderer and the body it is assigned to.
+  struct Slot {
+    std::uint32_t body = kNoBody;
+    Renderer renderer{};
+    bool in_contact = false;
+  };
+
+  [[nodiscard]] bool exists(std::uint32_t number) const;
+  [[nodiscard]] Slot* slot_of(std::uint32_t number);
+  [[nodiscard]] Slot* free_slot(const bool (&within_reach)[kMaxBodies]);
+  void assign_slot(Slot& slot, std::uint32_t number, Vec3 probe);
+  void release(std::uint32_t number);
+  void locate_probe(Vec3 probe);
+  [[nodiscard]] bool assign_slots();
+  [[nodiscard]] Slot* leading();
+  [[nodiscard]] Slot& beside(const Slot& slot) { return slots_[&slot == slots_ ? 1 : 0]; }
+  [[nodiscard]] const Pose& pose_of(const Slot& slot) const { return bodies_[slot.body].pose; }
+  [[nodiscard]] Neighbour neighbour_of(const Slot& slot, const Slot& other) const;
+  void end_contact_of_a_jump(Slot& slot, const Configuration& configuration);
+  [[nodiscard]] Slot* track_all(const Configuration& configuration);
+  void track(Slot& slot, const Configuration& configuration);
+  [[nodiscard]] Slot* share(Slot& leader);
+  [[nodiscard]] bool observe();
+  void render(Slot& slot, const Configuration& configuration, Vec3 probe, Vec3 velocity);
+  void react(const Slot& slot, Vec3 proxy, Vec3 force);
+  void render_paper(const Configuration& configuration, Vec3 probe);
+  void render_paper(Slot& slot, const Configuration& configuration, Vec3 probe);
+  void move_on(float period_s);
+  void list_bodies();
+
+  Body bodies_[kMaxBodies]{};
+  std::uint8_t listed_[kMaxBodies]{};  // numbers of the bodies, ascending
+  std::uint32_t count_ = 0;            // of the bodies
+  Slot slots_[kMaxReachableBodies]{};
+  SceneRendering rendering_{};
+  Neighbour neighbour_{};  // of the body that is rendered
+  Vec3 force_{};           // of the contacts in the last tick
+  ForceFade fade_{};
+  bool ended_ = false;  // a contact ended otherwise than by the probe leaving: its force fades
+  std::uint32_t work_tier_ = 0;  // at least, whatever the rate
+};
+
+}  // namespace tactree::core

@@ -1,0 +1,104 @@
+#pragma once
+// The surface between the points of a blob: an algebraic sphere fitted to the points around the
+// query (APSS; Guennebaud and Gross, "Algebraic Point Set Surfaces", SIGGRAPH 2007).
+//
+// Interrupt safety: no shared state; a candidate set belongs to one context.
+
+#include <cstdint>
+
+#include "tactree/core/contact/candidates.hpp"
+#include "tactree/core/contact/constraint_planes.hpp"
+#include "tactree/core/model/blob.hpp"
+
+namespace tactree::core {
+
+/// The faces that meet near a place, apart from the one of the reference; from fit to fit.
+struct NearFaces {
+  Vec3 normal[kMaxFaces - 1]{};  ///< unit length, on the side of the points' normals
+  std::uint32_t count = 0;
+};
+
+/// The fitted surface near one query position.
+struct SurfaceFit {
+  bool supported = false;  ///< false: no usable points; normal and strength are zero
+  float distance = 0.0F;   ///< m, signed, positive along the normals
+  Vec3 normal{};           ///< unit length
+  /// 1 inside the surface, falling smoothly to 0 on its boundary; from the distance between the
+  /// weighted centroid and the foot of the query, in support radii. Of several faces that hold a
+  /// probe, the largest.
+  float strength = 0.0F;
+  /// Of the points of the face: the larger, the more of it is around.
+  float weight = 0.0F;
+  /// Enough points on all sides to locate the surface. A fit that is supported but not firm, on a
+  /// boundary or in a hole, still guides a proxy in contact.
+  [[nodiscard]] bool firm() const { return supported && strength > 0.0F; }
+  /// Where no face has the direction of the reference: the normal of one, for the next fit; else 0.
+  Vec3 next_reference{};
+  float facing = 1.0F;       ///< share of the weight whose normals face the reference
+  std::uint32_t passes = 1;  ///< cost: 1, or 2 with faces near
+  /// Other faces around a crease; distances and normals as above. First those that hold a probe
+  /// together with this one, where the surface is concave, then those behind whose plane this face
+  /// ends, where it is convex.
+  Plane also[kMaxFaces - 1]{};
+  std::uint32_t holding = 0;
+  std::uint32_t ending = 0;
+  /// The back of a plate or of a sharp ridge, at its nearest point; if there is one.
+  Plane back{};
+
+  void set(const Plane& plane, float its_strength, float its_weight) {
+    supported = true;
+    distance = plane.distance;
+    normal = plane.normal;
+    strength = its_strength;
+    weight = its_weight;
+  }
+};
+
+/// Fits the surface at `x` to the candidates whose normal has a positive component along
+/// `reference`, which separates the two sides of a thin plate. Weights: (1 - d^2/radius^2)^4.
+/// At a sharp edge or corner each face gets its own fit: faces whose normals differ by 47 degrees
+/// or more, up to three, and opposite walls of a gap. Where they are convex as seen from `side` (1
+/// or -1: the side of the normals, or the other one), the surface is that of the face in front;
+/// where they are concave, all of them hold a probe. `near` are the faces of the last fit nearby,
+/// or none; they become those of this one, and those that came near, which the next fit tells
+/// apart. Cost: one pass over the set, at most kMaxCandidates points, and about 60 operations; with
+/// faces near, twice that.
+[[nodiscard]] SurfaceFit fit_surface(const CandidateSet& points, Vec3 x, float radius,
+                                     Vec3 reference, float side, NearFaces& near);
+
+/// The planes that hold a probe on `side` at the place of a fit, the fit's own first; normals and
+/// distances towards that side.
+[[nodiscard]] ConstraintPlanes holding_planes(const SurfaceFit& fit, float side);
+
+/// The same, and the planes of the faces that end it, reversed: the surface is on the first plane
+/// and in front of all others.
+[[nodiscard]] ConstraintPlanes landing_planes(const SurfaceFit& fit, float side);
+
+/// A position projected onto the surface.
+struct SurfaceProjection {
+  bool supported = false;
+  float signed_distance = 0.0F;  ///< m, of the position; positive on the side of the normals
+  Vec3 normal{};                 ///< unit length
+  Vec3 point{};                  ///< m, on the surface
+};
+
+/// Projects `x` with two Newton steps; the first reference normal is that of the nearest point in
+/// the support. Inside a concave edge or corner: the nearest place in front of all its faces. Not
+/// supported: the model has no surface near `x`, `x` is not finite, or surface_support() is not
+/// kOk. Cost: two gathers and up to six fits. `scratch` may hold anything.
+[[nodiscard]] SurfaceProjection project_to_surface(const BlobView& view, Vec3 x,
+                                                   CandidateSet& scratch);
+
+/// The same with a scratch on the stack (about 4 KiB).
+[[nodiscard]] SurfaceProjection project_to_surface(const BlobView& view, Vec3 x);
+
+/// Whether a model has a surface, or the reason why not.
+enum class SurfaceSupport : std::uint8_t {
+  kOk = 0,
+  kEmpty,          ///< no model
+  kNoReach,        ///< the blob was built without the guarantee reach > support radius > 0
+  kTooManyPoints,  ///< a ball may hold more than kMaxCandidates points, or a leaf 256 or more
+};
+[[nodiscard]] SurfaceSupport surface_support(const BlobView& view);
+
+}  // namespace tactree::core

@@ -1,0 +1,60 @@
+#pragma once
+// Faults that the readings of a tick show, beside those of the encoders' positions: emergency stop,
+// motors, deadlines, link, enable line, supply, an encoder that stands still.
+//
+// Interrupt safe: no shared state.
+
+#include <cstdint>
+
+#include "tactree/core/configuration/configuration.hpp"
+#include "tactree/core/control/readings.hpp"
+#include "tactree/core/control/state_machine.hpp"
+#include "tactree/core/safety/encoder_watch.hpp"
+#include "tactree/core/safety/faults.hpp"
+
+namespace tactree::core {
+
+class FaultMonitor {
+ public:
+  /// Forgets overruns. Precondition: check() accepts the configuration.
+  void configure(const Configuration& configuration);
+  /// Only the link's timeout of the configuration has changed.
+  void set_link_timeout(const Configuration& configuration);
+
+  /// Causes of faults in this tick. `state`: before the tick; `enable`: the line's setting of the
+  /// tick before. Cost: constant, about 100 instructions.
+  [[nodiscard]] FaultMask update(const Readings& readings, const Configuration& configuration,
+                                 State state, bool enable);
+
+  /// While active: `effort` of the contact, N or Nm per axis. kEncoderStuck, or none.
+  [[nodiscard]] FaultMask update_encoders(const EncoderReading& encoders,
+                                          const Configuration& configuration, Vec3 effort) {
+    const float share[kAxes] = {effort.x / configuration.effort_max[0],
+                                effort.y / configuration.effort_max[1],
+                                effort.z / configuration.effort_max[2]};
+    const bool moves = encoders_.update(encoders.counts, share, axes_of(configuration.device.kind));
+    return moves ? 0U : fault_bit(Fault::kEncoderStuck);
+  }
+  /// While not active.
+  void reset_encoders() { encoders_.reset(); }
+
+  /// Deadlines missed since the start; stays at its maximum.
+  [[nodiscard]] std::uint32_t overruns() const { return overruns_; }
+
+ private:
+  static constexpr std::uint32_t kForever = 0xFFFFFFFFU;
+
+  [[nodiscard]] FaultMask check_overruns(const Readings& readings);
+  [[nodiscard]] FaultMask check_link(const Readings& readings, bool required);
+  [[nodiscard]] FaultMask check_enable(const Readings& readings, State state, bool enable);
+
+  EncoderWatch encoders_{};
+  std::uint32_t overruns_ = 0;
+  std::uint32_t ticks_since_overrun_ = 0;
+  std::uint32_t ticks_since_link_ = 0;
+  std::uint32_t ticks_of_mismatch_ = 0;
+  std::uint32_t link_timeout_ticks_ = 0;
+  std::uint32_t enable_timeout_ticks_ = kForever;  // before configure() the line does not matter
+};
+
+}  // namespace tactree::core

@@ -1,0 +1,67 @@
+#pragma once
+// From the rendered force to the motor command: reach of the device, passivity, the application's
+// force, SafetyGate.
+//
+// Interrupt safe: no shared state.
+
+#include <cstdint>
+
+#include "tactree/core/configuration/configuration.hpp"
+#include "tactree/core/contact/scene.hpp"
+#include "tactree/core/control/passivity.hpp"
+#include "tactree/core/control/probe_sensor.hpp"
+#include "tactree/core/device/kinematics.hpp"
+#include "tactree/core/safety/safety_gate.hpp"
+
+namespace tactree::core {
+
+/// A force of the application, N, added to the contact force. It acts for `ticks` ticks, at most
+/// kAddedForceSeconds; the next added force replaces it, and leaving the active state ends it.
+/// Scaled down to kAddedForceShare of force_max_N; ignored if not finite. The gate limits the sum.
+struct AddedForce {
+  Vec3 force_N{};
+  std::uint32_t ticks = 0;  ///< 0: none
+};
+
+/// Longest duration of an AddedForce, and its largest share of force_max_N.
+inline constexpr float kAddedForceSeconds = 0.1F;
+inline constexpr float kAddedForceShare = 0.5F;
+
+class ForceStage {
+ public:
+  /// False: a limit is out of range; nothing has changed.
+  [[nodiscard]] bool set_limits(const Configuration& configuration);
+  /// Precondition: check() accepts the configuration.
+  void configure_passivity(const Configuration& configuration);
+
+  /// Takes the application's force. Without effect if `added.ticks` is 0.
+  void add(const AddedForce& added, const Configuration& configuration);
+  /// The application has changed the wall since the last tick: its spring may give what it holds.
+  void allow_stored_energy() { wall_changed_ = true; }
+
+  /// The command of an active tick. Cost: constant, about 500 instructions.
+  [[nodiscard]] SafetyGate::Result apply(const Configuration& configuration,
+                                         const ProbeSensor& sensor, const SceneRendering& scene);
+  /// The command of a tick in which no force may be.
+  [[nodiscard]] SafetyGate::Result release();
+
+  /// N, of the last active tick.
+  [[nodiscard]] Vec3 applied_force() const { return applied_force_; }
+  /// N, the application's share of it.
+  [[nodiscard]] Vec3 added_force() const { return added_force_; }
+
+ private:
+  [[nodiscard]] Vec3 contact_force(const Configuration& configuration, const ProbeSensor& sensor,
+                                   const SceneRendering& scene);
+
+  PassivityController passivity_{};
+  SafetyGate gate_{};
+  Vec3 applied_force_{};
+  Vec3 added_force_{};
+  Vec3 external_force_{};  // of the application, N, as long as external_ticks_
+  std::uint32_t external_ticks_ = 0;
+  bool ramp_complete_ = false;  // the ramp did not hold the last force back
+  bool wall_changed_ = false;
+};
+
+}  // namespace tactree::core

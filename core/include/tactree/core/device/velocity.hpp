@@ -1,0 +1,53 @@
+#pragma once
+// Velocity of a quantised position. The estimator uses the longest of a few windows of past samples
+// whose straight line passes the ends of the shorter windows within the quantum, followed by a
+// low-pass filter. Slow motion uses a long window (low noise), fast motion a short one (low delay).
+// (Janabi-Sharifi, Hayward and Chen, "Discrete-time adaptive windowing for velocity
+// estimation", IEEE T-CST 8(6), 2000, end-fit variant.)
+//
+// Interrupt safety: no shared state; one context owns an estimator.
+
+#include <cstdint>
+
+#include "tactree/core/math/vec3.hpp"
+
+namespace tactree::core {
+
+/// Samples of the longest window, less one.
+inline constexpr std::uint32_t kVelocityWindow = 15;
+/// Windows besides the one of two samples.
+inline constexpr std::uint32_t kVelocityWindows = 3;
+
+class VelocityEstimator {
+ public:
+  /// period_s > 0: sample period; quantum >= 0: quantisation step of each component, m or rad;
+  /// cutoff_hz > 0: cut-off of the first-order low-pass filter. Calls reset().
+  void configure(float period_s, Vec3 quantum, float cutoff_hz);
+
+  /// Clears all samples; the velocity is 0.
+  void reset();
+
+  /// Adds the position of this tick (m or rad) and returns the velocity, m/s or rad/s. For finite
+  /// positions it is at most the largest difference of two samples divided by the period.
+  /// Cost: kVelocityWindows per axis, about 15 operations each.
+  Vec3 update(Vec3 position);
+
+  [[nodiscard]] Vec3 velocity() const { return velocity_; }
+
+ private:
+  static constexpr std::uint32_t kSlots = 16;
+  static_assert(kSlots == kVelocityWindow + 1);
+
+  /// Change per sample over the longest valid window.
+  [[nodiscard]] float slope(const float (&samples)[kSlots], float quantum) const;
+
+  float samples_[3][kSlots]{};  // a ring per component
+  std::uint32_t newest_ = 0;
+  std::uint32_t count_ = 0;
+  float period_s_ = 1e-3F;
+  Vec3 quantum_{};
+  float share_ = 1.0F;  // of a new estimate in the filtered one
+  Vec3 velocity_{};
+};
+
+}  // namespace tactree::core

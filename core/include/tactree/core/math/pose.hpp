@@ -1,0 +1,89 @@
+#pragma once
+// Pose and motion of a rigid body in the scene's frame.
+//
+// Interrupt safety: pure functions.
+
+#include <cstdint>
+
+#include "tactree/core/math/vec3.hpp"
+
+namespace tactree::core {
+
+/// Unit quaternion.
+struct Quaternion {
+  float w = 1.0F;
+  Vec3 v{};
+  friend constexpr bool operator==(Quaternion, Quaternion) = default;
+};
+
+/// Rotates a direction from the body's frame to the scene's. About 30 operations.
+[[nodiscard]] Vec3 rotate(Quaternion q, Vec3 direction);
+/// Rotates a direction from the scene's frame to the body's.
+[[nodiscard]] inline Vec3 rotate_back(Quaternion q, Vec3 direction) {
+  return rotate({q.w, -q.v}, direction);
+}
+
+/// scene position = rotation * body position + translation
+struct Pose {
+  Quaternion rotation{};
+  Vec3 translation_m{};
+  friend constexpr bool operator==(const Pose&, const Pose&) = default;
+};
+
+/// Velocity of the body's origin and of its rotation, along and about the scene's axes.
+struct Motion {
+  Vec3 linear_m_s{};
+  Vec3 angular_rad_s{};
+  friend constexpr bool operator==(const Motion&, const Motion&) = default;
+};
+
+inline constexpr float kMaxTranslation = 10.0F;         ///< m, of each component
+inline constexpr float kMaxBodySpeed = 10.0F;           ///< m/s, of each component
+inline constexpr float kMaxBodyTurn = 100.0F;           ///< rad/s, of each component
+inline constexpr float kQuaternionTolerance = 1.0e-3F;  ///< deviation of the squared length from 1
+
+/// True if finite, within the limits, and for a pose of unit length within the tolerance.
+[[nodiscard]] bool is_valid(const Pose& pose);
+[[nodiscard]] bool is_valid(const Motion& motion);
+
+/// The pose with its rotation normalised. Precondition: is_valid(pose).
+[[nodiscard]] Pose normalized(const Pose& pose);
+
+/// The pose after `seconds`, to first order in the rotation: at 10 rad/s and 1 kHz the error is
+/// below 1e-7 rad. The body does not move beyond kMaxTranslation.
+[[nodiscard]] Pose advanced(const Pose& pose, const Motion& motion, float seconds);
+
+/// The body's frame is that of the scene.
+[[nodiscard]] constexpr bool is_origin(const Pose& pose) {
+  return pose.rotation.w == 1.0F && pose.rotation.v == Vec3{} && pose.translation_m == Vec3{};
+}
+[[nodiscard]] constexpr bool is_rest(const Motion& motion) {
+  return motion.linear_m_s == Vec3{} && motion.angular_rad_s == Vec3{};
+}
+
+// With the identity, positions, directions and velocities are the same to the bit.
+
+[[nodiscard]] inline Vec3 position_to_body(const Pose& pose, Vec3 position) {
+  return is_origin(pose) ? position : rotate_back(pose.rotation, position - pose.translation_m);
+}
+[[nodiscard]] inline Vec3 position_to_scene(const Pose& pose, Vec3 position) {
+  return is_origin(pose) ? position : rotate(pose.rotation, position) + pose.translation_m;
+}
+[[nodiscard]] inline Vec3 direction_to_body(const Pose& pose, Vec3 direction) {
+  return is_origin(pose) ? direction : rotate_back(pose.rotation, direction);
+}
+[[nodiscard]] inline Vec3 direction_to_scene(const Pose& pose, Vec3 direction) {
+  return is_origin(pose) ? direction : rotate(pose.rotation, direction);
+}
+
+/// Velocity, relative to the body, of a point at `position` that moves with `velocity`; along the
+/// scene's axes.
+[[nodiscard]] inline Vec3 relative_velocity(const Pose& pose, const Motion& motion, Vec3 position,
+                                            Vec3 velocity) {
+  if (is_rest(motion)) {
+    return velocity;
+  }
+  return velocity - motion.linear_m_s - cross(motion.angular_rad_s, position - pose.translation_m);
+}
+
+}  // namespace tactree::core

@@ -1,0 +1,44 @@
+#pragma once
+// Exact neighbour queries by the eight-corner rule.
+//
+// Interrupt safety: pure functions.
+
+#include <cstdint>
+#include <span>
+
+#include "tactree/core/model/blob.hpp"
+
+namespace tactree::core {
+
+inline constexpr std::uint32_t kNoPoint = 0xFFFFFFFFU;
+
+struct NearestPoint {
+  std::uint32_t index = kNoPoint;
+  float distance_squared = 0.0F;  ///< m^2
+  Vec3 position{};                ///< m, model frame
+  std::uint32_t leaf = 0;         ///< number of its leaf
+  [[nodiscard]] bool found() const { return index != kNoPoint; }
+};
+
+/// The point nearest to `probe` (m) within distance r (m); of equally near points the one with the
+/// lowest index. Precondition: 0 <= r <= view.reach_m(), else nothing is found.
+/// Cost: at most 8 leaves with header().points_per_query_max points.
+[[nodiscard]] NearestPoint nearest_within(const BlobView& view, Vec3 probe, float r);
+
+struct PointsWithin {
+  std::uint32_t count = 0;  ///< indices written
+  bool complete = true;     ///< false: the buffer was too small for all of them
+};
+
+/// Writes the indices of all points within distance r (m) of `probe` to `out`, in no particular
+/// order. A buffer of header().points_per_ball_max entries is sufficient for r <= reach_m().
+/// Precondition and cost: as nearest_within().
+[[nodiscard]] PointsWithin points_within(const BlobView& view, Vec3 probe, float r,
+                                         std::span<std::uint32_t> out);
+
+/// True if the axis-aligned box, edge header().aabb_edge_m, of any point holds `probe`. Exact; the
+/// boxes are closed. Precondition: aabb_edge_m / 2 <= reach_m(), else false. It holds in the
+/// surface profile. Cost: as nearest_within().
+[[nodiscard]] bool in_any_vertex_box(const BlobView& view, Vec3 probe);
+
+}  // namespace tactree::core
