@@ -2,7 +2,7 @@
 #
 # Each component has its own export file and finds its own dependencies. A firmware project that uses
 # core and hal needs no other package.
-#   core        tactree::core, hal, board_link        depends on nothing; always present
+#   core        tactree::core, hal, session, store    depends on nothing; always present
 #   builder     tactree::builder                      Eigen, fmt, TBB, liblzf, libsodium, pugixml
 #   simulation  tactree::plant, tactree::simulation   Eigen
 #   host        tactree::host                         threads
@@ -25,8 +25,8 @@ function(tactree_install_component component)
 endfunction()
 
 tactree_install_component(core
-  TARGETS tactree_core tactree_hal tactree_board_link
-  HEADERS core/include hal/include hal/board_link/include)
+  TARGETS tactree_core tactree_hal tactree_session tactree_store
+  HEADERS core/include hal/include hal/session/include hal/store/include)
 if(TACTREE_BUILD_TOOLS)
   tactree_install_component(builder
     TARGETS tactree_builder tactree_process

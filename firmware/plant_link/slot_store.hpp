@@ -3,12 +3,12 @@
 
 #include "plant_link/ram_flash.hpp"
 #include "runtime/blob_area.hpp"
-#include "tactree/board_link/store/model_store.hpp"
+#include "tactree/store/model_store.hpp"
 
 namespace tactree::firmware {
 
 /// Slots in RamFlash. The model of the image is used until a slot is activated.
-class SlotStore : public board_link::ModelStore<RamFlash> {
+class SlotStore : public store::ModelStore<RamFlash> {
  public:
   explicit SlotStore(const char* board) : ModelStore(flash_, {board, nullptr, {}}) {}
 

@@ -8,7 +8,7 @@
 #include "plant_link/slot_store.hpp"
 #include "runtime/application.hpp"
 #include "runtime/identity.hpp"
-#include "tactree/board_link/session/session.hpp"
+#include "tactree/session/session.hpp"
 
 namespace tactree::firmware {
 
@@ -23,7 +23,7 @@ class UartBoard : public PlantLinkBoard {
     if (is_served()) {
       store_.prepare(PlantLinkBoard::storage());
       uart_.start(timer_clock_hz(), kBaud);
-      board_link::apply_saved_parameters(store_.parameters(), configuration);
+      store::apply_saved_parameters(store_.parameters(), configuration);
     }
     return configuration;
   }
@@ -35,8 +35,8 @@ class UartBoard : public PlantLinkBoard {
     if (!is_served()) {
       return;
     }
-    static const board_link::BoardIdentity kBoard{kIdentity.board, TACTREE_FIRMWARE_VERSION, {}, 0};
-    static board_link::Session<Uart, SlotStore, SessionPlatform> session(
+    static const session::BoardIdentity kBoard{kIdentity.board, TACTREE_FIRMWARE_VERSION, {}, 0};
+    static session::Session<Uart, SlotStore, SessionPlatform> session(
         {uart_, store_, platform_, controller, mailbox_, kBoard});
     session.started(started, configuration, &report_);
     std::uint32_t idle = 0;
@@ -75,7 +75,7 @@ class UartBoard : public PlantLinkBoard {
   SlotStore store_;
   SessionPlatform platform_;
   hal::StartReport report_;
-  board_link::TickMailbox mailbox_;
+  session::TickMailbox mailbox_;
 };
 
 }  // namespace tactree::firmware

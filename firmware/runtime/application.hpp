@@ -1,5 +1,5 @@
 #pragma once
-// The platform of a session (tactree/board_link/session/platform.hpp) on all cores.
+// The platform of a session (tactree/session/platform.hpp) on all cores.
 
 #include <cstdint>
 

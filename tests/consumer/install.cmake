@@ -7,7 +7,7 @@ foreach(file
     libexec/tactree/tactree-import-mesh
     include/tactree/core/model/blob.hpp
     include/tactree/hal/board.hpp
-    include/tactree/board_link/session/session.hpp
+    include/tactree/session/session.hpp
     include/tactree/builder/model.hpp
     include/tactree/builder/version.hpp
     include/tactree/host/board.hpp

@@ -12,14 +12,14 @@
 #include <vector>
 
 #include "session_rig.hpp"
-#include "tactree/board_link/store/model_store.hpp"
 #include "tactree/hal/sim/flash.hpp"
+#include "tactree/store/model_store.hpp"
 
 namespace {
 
 using namespace tactree;
 using Bytes = std::vector<std::byte>;
-using Store = board_link::ModelStore<hal::sim::SimFlash>;
+using Store = store::ModelStore<hal::sim::SimFlash>;
 
 constexpr std::uint8_t kRaw = 0xFF;
 constexpr std::size_t kMaxMessages = 64;

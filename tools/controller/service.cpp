@@ -12,12 +12,12 @@
 #include "blob_file.hpp"
 #include "command.hpp"
 #include "real_time.hpp"
-#include "tactree/board_link/session/session.hpp"
-#include "tactree/board_link/store/no_model_store.hpp"
 #include "tactree/core/safety/faults.hpp"
 #include "tactree/hal/linux/gadget_port.hpp"
 #include "tactree/hal/linux/local_socket_port.hpp"
 #include "tactree/hal/loop.hpp"
+#include "tactree/session/session.hpp"
+#include "tactree/store/no_model_store.hpp"
 
 namespace tactree::controller {
 namespace {
@@ -162,7 +162,7 @@ void attend(hal::GadgetPort& port, const core::Status& status, std::uint32_t now
 template <hal::BytePort Port>
 class Runner {
  public:
-  using Session = board_link::Session<Port, board_link::NoModelStore, Platform>;
+  using Session = session::Session<Port, store::NoModelStore, Platform>;
 
   template <class... PortArguments>
   Runner(const ControllerFile& file, const cli::BlobFile& model, const PortArguments&... port)
@@ -217,13 +217,13 @@ class Runner {
   }
 
   const ControllerFile& file_;
-  board_link::TickMailbox mailbox_;
+  session::TickMailbox mailbox_;
   core::Controller controller_;
   ControllerBoard board_;
   Port port_;
   Platform platform_;
-  board_link::NoModelStore store_;
-  board_link::BoardIdentity identity_;
+  store::NoModelStore store_;
+  session::BoardIdentity identity_;
   hal::Loop<ControllerBoard> loop_;
   Session session_;
   Progress progress_;

@@ -16,9 +16,9 @@
 #include "stm32f4/serial_port.hpp"
 #include "stm32f4/store_flash.hpp"
 #include "stm32f4/watchdog.hpp"
-#include "tactree/board_link/session/session.hpp"
-#include "tactree/board_link/store/model_store.hpp"
 #include "tactree/hal/board.hpp"
+#include "tactree/session/session.hpp"
+#include "tactree/store/model_store.hpp"
 #include "wiring.hpp"
 
 namespace tactree::firmware {
@@ -105,13 +105,13 @@ class Stm32f405Board {
   };
 
   using Flash = stm32f4::StoreFlash<Word, Cell, Standstill>;
-  using Store = board_link::ModelStore<Flash>;
-  using Session = board_link::Session<stm32f4::SerialPort<Word>, Store, SessionPlatform>;
-  using Link = board_link::MailboxLink<Ticker>;
+  using Store = store::ModelStore<Flash>;
+  using Session = session::Session<stm32f4::SerialPort<Word>, Store, SessionPlatform>;
+  using Link = session::MailboxLink<Ticker>;
 
   /// `clocks`: result of prepare_chip().
   Stm32f405Board(const stm32f4::Chip<Word>& chip, const stm32f4::FlashCells<Cell>& cells,
-                 stm32f4::ClockFailure clocks, const board_link::BoardIdentity& identity)
+                 stm32f4::ClockFailure clocks, const session::BoardIdentity& identity)
       : chip_(chip),
         identity_(identity),
         full_speed_(clocks == stm32f4::ClockFailure::kNone),
@@ -153,7 +153,7 @@ class Stm32f405Board {
     store_.set_factory(BlobArea().active());
     (void)store_.mount();
     core::Configuration configuration = wiring::configuration();
-    board_link::apply_saved_parameters(store_.parameters(), configuration);
+    store::apply_saved_parameters(store_.parameters(), configuration);
     return configuration;
   }
 
@@ -221,7 +221,7 @@ class Stm32f405Board {
   }
 
   stm32f4::Chip<Word> chip_;
-  board_link::BoardIdentity identity_;
+  session::BoardIdentity identity_;
   bool full_speed_;
   hal::StartReport report_{};
   stm32f4::QuadratureEncoders<Word> encoders_;
@@ -236,7 +236,7 @@ class Stm32f405Board {
   Flash slot_flash_;
   Store store_;
   SessionPlatform platform_;
-  board_link::TickMailbox mailbox_;
+  session::TickMailbox mailbox_;
   Motors motors_;
   Ticker ticker_;
   Link link_;

@@ -30,7 +30,7 @@ BoardMotors::BoardMotors(const ControllerBoardSettings& settings) {
 }
 
 ControllerBoard::ControllerBoard(const ControllerBoardSettings& settings,
-                                 std::span<const std::byte> blob, board_link::TickMailbox& mailbox)
+                                 std::span<const std::byte> blob, session::TickMailbox& mailbox)
     : enable_line_(settings.enable, settings.enable_read_back, settings.consumer, settings.brake),
       guard_(enable_line_.line(), settings.guard),
       motors_(settings),

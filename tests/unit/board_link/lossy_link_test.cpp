@@ -99,7 +99,7 @@ void end(SessionRig<>& rig) {
 enum class Direction { kToBoard, kToHost, kBoth };
 
 struct Rig {
-  board_link::NoModelStore store;
+  store::NoModelStore store;
   SessionRig<> rig{store, quick(), blob().written().bytes};
   Watch watch{rig};
 

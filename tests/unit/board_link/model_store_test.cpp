@@ -1,6 +1,6 @@
 // Two slots and a log of records, with power cuts at every operation and at every pair of them.
 
-#include "tactree/board_link/store/model_store.hpp"
+#include "tactree/store/model_store.hpp"
 
 #include <gtest/gtest.h>
 #include <sodium.h>
@@ -17,7 +17,7 @@ namespace {
 
 using core::wire::WireStatus;
 using hal::sim::SimFlash;
-using Store = board_link::ModelStore<SimFlash>;
+using Store = store::ModelStore<SimFlash>;
 using Bytes = std::vector<std::byte>;
 
 /// Three small models of a few sectors each.
@@ -132,7 +132,7 @@ Order next_model() { return {bytes_of_model(1), "", 0, false}; }
 
 struct StoreTest : ::testing::Test {
   SimFlash flash{geometry()};
-  board_link::StoreSetup setup{"here", nullptr, {}};
+  store::StoreSetup setup{"here", nullptr, {}};
 };
 
 TEST_F(StoreTest, FindsNoModelInAnEmptyFlash) {
@@ -313,9 +313,9 @@ TEST_F(StoreTest, RefusesACorruptModelOrCorruptRecords) {
   }
   ASSERT_EQ(update(store, {bytes_of_model(1), "", 0, false}), WireStatus::kOk);
   flash.rot(3, 1);
-  flash.rot(board_link::kRecordBytes + 3, 1);
+  flash.rot(store::kRecordBytes + 3, 1);
   flash.rot(geometry().sector_bytes + 3, 1);
-  flash.rot(geometry().sector_bytes + board_link::kRecordBytes + 3, 1);
+  flash.rot(geometry().sector_bytes + store::kRecordBytes + 3, 1);
   Store damaged(flash, setup);
   EXPECT_FALSE(damaged.mount());
   EXPECT_TRUE(damaged.active().empty());
@@ -331,7 +331,7 @@ TEST_F(StoreTest, RefusesACorruptModelOrCorruptRecords) {
 struct FactoryInSlots : ::testing::Test {
   SimFlash records{{512, 2, 4}};
   SimFlash models{{1024, 2 * 8, 4}};
-  board_link::StoreSetup setup{"here", nullptr, {}};
+  store::StoreSetup setup{"here", nullptr, {}};
 
   /// Puts the model where it lies after the image was programmed.
   void program_factory(const Bytes& model, std::uint32_t sector) {
@@ -519,7 +519,7 @@ TEST(PowerCut, AtEveryPairOfOperationsLeavesTheOldOrTheNewModel) {
 // The first record: the model of the image or the new one.
 TEST(PowerCut, DuringTheFirstUpdateLeavesTheOldOrTheNewModel) {
   const Bytes factory = bytes_of_model(0);
-  const board_link::StoreSetup setup{"here", nullptr, factory};
+  const store::StoreSetup setup{"here", nullptr, factory};
   for (std::uint64_t operation = 0; operation < 200U; ++operation) {
     SimFlash flash(geometry());
     flash.cut_power_at(operation, static_cast<int>(operation % 3U));

@@ -99,7 +99,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   const test::TestBlob blob(test::sphere(0.03, 0.002));
-  board_link::NoModelStore store;
+  store::NoModelStore store;
   test::SessionRig<> rig(store, test::SessionRig<>::configuration(), blob.written().bytes);
   play(rig);
   std::ofstream session(argv[1]);

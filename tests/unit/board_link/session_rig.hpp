@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "await_response.hpp"
-#include "tactree/board_link/session/session.hpp"
-#include "tactree/board_link/store/no_model_store.hpp"
 #include "tactree/hal/sim/board.hpp"
 #include "tactree/host/client.hpp"
+#include "tactree/session/session.hpp"
+#include "tactree/store/no_model_store.hpp"
 #include "test_models.hpp"
 
 namespace tactree::test {
@@ -64,8 +64,8 @@ class TestPort {
 /// A SimBoard whose link is the session's mailbox.
 class SessionBoard : public hal::sim::SimBoard {
  public:
-  using Link = board_link::MailboxLink<hal::sim::SimTicker>;
-  SessionBoard(std::span<const std::byte> blob, board_link::TickMailbox& mailbox)
+  using Link = session::MailboxLink<hal::sim::SimTicker>;
+  SessionBoard(std::span<const std::byte> blob, session::TickMailbox& mailbox)
       : SimBoard({}, blob), link_{mailbox, ticker()} {}
   [[nodiscard]] Link& link() noexcept { return link_; }
 
@@ -80,7 +80,7 @@ struct TestPlatform {
   void hold_ticks(bool hold) noexcept { held = hold; }
 };
 
-template <class Store = board_link::NoModelStore>
+template <class Store = store::NoModelStore>
 class SessionRig {
  public:
   explicit SessionRig(Store& store, const core::Configuration& configuration,
@@ -181,7 +181,7 @@ class SessionRig {
   hal::StartReport start_report{};
 
  private:
-  static constexpr board_link::BoardIdentity kIdentity{"test", "1.2.3", {1, 2, 3}, 0};
+  static constexpr session::BoardIdentity kIdentity{"test", "1.2.3", {1, 2, 3}, 0};
 
   std::uint64_t tick_ = 0;
   double goal_m_ = 0.05;
@@ -189,11 +189,11 @@ class SessionRig {
   Wire to_board_;
   Wire to_host_;
   TestPort port_{to_board_, to_host_, tick_};
-  board_link::TickMailbox mailbox_;
+  session::TickMailbox mailbox_;
   SessionBoard board_;
   TestPlatform platform_{board_.ticker()};
   core::Controller controller_;
-  board_link::Session<TestPort, Store, TestPlatform> session_;
+  session::Session<TestPort, Store, TestPlatform> session_;
   hal::Loop<SessionBoard> loop_;
   hal::StartResult start_;
   host::Client client_;

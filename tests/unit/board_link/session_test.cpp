@@ -1,6 +1,6 @@
 // Replies of a session over a link without faults.
 
-#include "tactree/board_link/session/session.hpp"
+#include "tactree/session/session.hpp"
 
 #include <gtest/gtest.h>
 
@@ -22,8 +22,8 @@ class SessionTest : public ::testing::Test {
     static const TestBlob kBlob(sphere(0.03, 0.002));
     return kBlob;
   }
-  static board_link::NoModelStore& no_store() {
-    static board_link::NoModelStore store;
+  static store::NoModelStore& no_store() {
+    static store::NoModelStore store;
     return store;
   }
   SessionRig<> rig{no_store(), SessionRig<>::configuration(), blob().written().bytes};

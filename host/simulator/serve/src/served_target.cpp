@@ -12,7 +12,7 @@ constexpr char kBoard[] = "host";
 
 hal::FlashGeometry geometry(std::uint32_t slot_bytes) {
   const std::uint32_t sectors = (slot_bytes + kSectorBytes - 1U) / kSectorBytes;
-  return {kSectorBytes, 2U + board_link::kStoreSlots * sectors, 8};
+  return {kSectorBytes, 2U + store::kStoreSlots * sectors, 8};
 }
 
 /// Board side of a transport.
@@ -56,11 +56,11 @@ class ServedTarget::Running {
   }
 
  private:
-  board_link::BoardIdentity identity_;
+  session::BoardIdentity identity_;
   TransportPort port_;
   ServedSimBoard board_;
   hal::Loop<ServedSimBoard> loop_;
-  board_link::Session<TransportPort, ServedSimBoard::Store, ServedPlatform> session_;
+  session::Session<TransportPort, ServedSimBoard::Store, ServedPlatform> session_;
 };
 
 ServedTarget::ServedTarget(host::Transport& transport, std::span<const std::byte> model,
@@ -78,7 +78,7 @@ hal::StartResult ServedTarget::start(hal::sim::SimBoard& board,
   platform_.start(board);
   running_ = std::make_unique<Running>(board, *this);
   core::Configuration calibrated = configuration;
-  board_link::apply_saved_parameters(store_.parameters(), calibrated);
+  store::apply_saved_parameters(store_.parameters(), calibrated);
   return running_->start(calibrated);
 }
 

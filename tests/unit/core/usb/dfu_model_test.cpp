@@ -1,14 +1,14 @@
 // A model over DFU into the store of a simulated flash.
 
-#include "tactree/board_link/store/dfu_model.hpp"
+#include "tactree/session/dfu_model.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <optional>
 
-#include "tactree/board_link/store/model_store.hpp"
 #include "tactree/hal/sim/flash.hpp"
+#include "tactree/store/model_store.hpp"
 #include "test_models.hpp"
 
 namespace tactree::test {
@@ -22,8 +22,8 @@ using Bytes = std::vector<std::byte>;
 struct Platform {
   void hold_ticks(bool) noexcept {}
 };
-using Store = board_link::ModelStore<SimFlash>;
-using Model = board_link::DfuModel<Store, Platform>;
+using Store = store::ModelStore<SimFlash>;
+using Model = session::DfuModel<Store, Platform>;
 
 Bytes bytes_of_sphere(double spacing_m) {
   static std::vector<std::pair<double, TestBlob>> made;
@@ -75,7 +75,7 @@ class Rig {
 
   [[nodiscard]] core::Controller& controller() { return controller_; }
   [[nodiscard]] Store& store() { return store_; }
-  [[nodiscard]] board_link::TickMailbox& mailbox() { return mailbox_; }
+  [[nodiscard]] session::TickMailbox& mailbox() { return mailbox_; }
 
  private:
   bool send(std::uint16_t number, std::span<const std::byte> piece) {
@@ -107,7 +107,7 @@ class Rig {
 
   Store store_;
   core::Controller controller_;
-  board_link::TickMailbox mailbox_;
+  session::TickMailbox mailbox_;
   Platform platform_;
   Model model_{store_, controller_, mailbox_, platform_};
   core::usb::Dfu<Model> dfu_{model_};

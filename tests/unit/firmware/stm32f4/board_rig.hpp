@@ -187,7 +187,7 @@ class BoardRig {
   }
 
  private:
-  static constexpr board_link::BoardIdentity kIdentity{"stm32f405", "1.2.3", {}, 168000000};
+  static constexpr session::BoardIdentity kIdentity{"stm32f405", "1.2.3", {}, 168000000};
 
   void talk() {
     const std::vector<std::uint8_t> sent = take_sent();

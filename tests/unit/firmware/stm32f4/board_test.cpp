@@ -373,7 +373,7 @@ TEST_F(Stm32f405, APowerCutLeavesTheOldOrTheNewModel) {
   for (std::uint64_t i = 0; i < erases + 3U; ++i) {
     cuts.push_back(i);
   }
-  for (std::uint64_t i = all - 2U * board_link::kRecordBytes / 4U - 3U; i < all; i += 17U) {
+  for (std::uint64_t i = all - 2U * store::kRecordBytes / 4U - 3U; i < all; i += 17U) {
     cuts.push_back(i);
   }
   cuts.push_back(all - 1U);

@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "tactree/board_link/session/tick_mailbox.hpp"
 #include "tactree/hal/linux/absolute_ticker.hpp"
 #include "tactree/hal/linux/converter_motors.hpp"
 #include "tactree/hal/linux/counter_encoders.hpp"
@@ -18,6 +17,7 @@
 #include "tactree/hal/linux/gpio_board.hpp"
 #include "tactree/hal/linux/pwm_motors.hpp"
 #include "tactree/hal/linux/watchdog.hpp"
+#include "tactree/session/tick_mailbox.hpp"
 
 namespace tactree::hal::linux_gpio {
 
@@ -100,11 +100,11 @@ class ControllerBoard {
     std::span<const std::byte> bytes_;
   };
 
-  using Link = board_link::MailboxLink<BoardTicker>;
+  using Link = session::MailboxLink<BoardTicker>;
 
   /// Keeps references to `blob` and `mailbox`. Throws the exceptions of its parts.
   ControllerBoard(const ControllerBoardSettings& settings, std::span<const std::byte> blob,
-                  board_link::TickMailbox& mailbox);
+                  session::TickMailbox& mailbox);
   ~ControllerBoard() { stop(); }
   ControllerBoard(const ControllerBoard&) = delete;
   ControllerBoard& operator=(const ControllerBoard&) = delete;

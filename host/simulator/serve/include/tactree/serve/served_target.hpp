@@ -8,22 +8,22 @@
 #include <optional>
 #include <span>
 
-#include "tactree/board_link/session/session.hpp"
-#include "tactree/board_link/store/model_store.hpp"
 #include "tactree/core/crypto/signature.hpp"
 #include "tactree/hal/sim/flash.hpp"
 #include "tactree/host/transport.hpp"
+#include "tactree/session/session.hpp"
 #include "tactree/simulation/target.hpp"
+#include "tactree/store/model_store.hpp"
 
 namespace tactree::serve {
 
 /// A simulated board with a session as its link and a model store as its storage.
 class ServedSimBoard {
  public:
-  using Link = board_link::MailboxLink<hal::sim::SimTicker>;
-  using Store = board_link::ModelStore<hal::sim::SimFlash>;
+  using Link = session::MailboxLink<hal::sim::SimTicker>;
+  using Store = store::ModelStore<hal::sim::SimFlash>;
 
-  ServedSimBoard(hal::sim::SimBoard& board, board_link::TickMailbox& mailbox, const Store& store)
+  ServedSimBoard(hal::sim::SimBoard& board, session::TickMailbox& mailbox, const Store& store)
       : board_(board), link_{mailbox, board.ticker()}, store_(store) {}
 
   [[nodiscard]] hal::sim::SimEncoderBank& encoders() noexcept { return board_.encoders(); }
@@ -84,7 +84,7 @@ class ServedTarget : public simulation::Target {
   // For other parts of a board than the session, for example USB.
   [[nodiscard]] core::Controller& controller() { return controller_; }
   [[nodiscard]] ServedSimBoard::Store& store() { return store_; }
-  [[nodiscard]] board_link::TickMailbox& mailbox() { return mailbox_; }
+  [[nodiscard]] session::TickMailbox& mailbox() { return mailbox_; }
   [[nodiscard]] ServedPlatform& platform() { return platform_; }
 
  private:
@@ -95,7 +95,7 @@ class ServedTarget : public simulation::Target {
   hal::sim::SimFlash flash_;
   core::Controller controller_;
   ServedPlatform platform_;
-  board_link::TickMailbox mailbox_;
+  session::TickMailbox mailbox_;
   ServedSimBoard::Store store_;
   std::unique_ptr<Running> running_;
 };

@@ -3,10 +3,10 @@
 
 #include <chrono>
 
-#include "tactree/board_link/store/dfu_model.hpp"
 #include "tactree/core/link/usb/parameter_storage.hpp"
 #include "tactree/hal/usb_device.hpp"
 #include "tactree/serve/served_target.hpp"
+#include "tactree/session/dfu_model.hpp"
 
 namespace tactree::serve {
 
@@ -14,7 +14,7 @@ namespace tactree::serve {
 template <hal::UsbController Controller>
 class UsbTarget : public ServedTarget {
  public:
-  using Model = board_link::DfuModel<ServedSimBoard::Store, ServedPlatform>;
+  using Model = session::DfuModel<ServedSimBoard::Store, ServedPlatform>;
   using Parameters = core::usb::ParameterStorage<ServedPlatform>;
   using Device = hal::UsbDevice<Controller, Model, Parameters>;
 

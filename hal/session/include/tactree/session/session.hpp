@@ -1,0 +1,405 @@
+#pragma once
+// Answers an application's requests on a board: docs/PROTOCOL.md. The session takes frames from the
+// port, checks who may ask, calls the handler of the request and sends its reply; telemetry goes
+// out in between. The handlers are in the headers beside this one.
+//
+// A session works between ticks. Its reads and writes of the running controller:
+//   through TickMailbox       commands, moves of bodies, forces, signs of life; reports of ticks
+//   with the ticks held       whatever changes the controller (configure, adjust, load_model), and
+//                             reads of more than one word that a tick writes (the flight recorder)
+//   at any time               state(), motors_off(), homed(), faults(): one word each. has_body()
+//                             and configuration(): ticks do not change them, only this context does
+// Nothing else of the Controller may be read between ticks.
+//
+// Protection against late, repeated or forged messages:
+//   - a request counts once: its sequence number is newer than that of the last one, its session
+//     number is the one that the board gave out last
+//   - from idle to active takes two messages, the second with a token that the reply to the first
+//     brought; stop is always obeyed
+//   - only heartbeats keep a required link alive, and only as far as they prove that their sender
+//     has recently heard the board
+// Loop and memory annotations: docs/BOUND.md.
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "tactree/core/control/between_ticks.hpp"
+#include "tactree/core/control/controller.hpp"
+#include "tactree/core/link/wire/messages.hpp"
+#include "tactree/hal/board.hpp"
+#include "tactree/hal/loop.hpp"
+#include "tactree/hal/start_report.hpp"
+#include "tactree/session/admission.hpp"
+#include "tactree/session/board_report.hpp"
+#include "tactree/session/contact_requests.hpp"
+#include "tactree/session/control_requests.hpp"
+#include "tactree/session/frame_queue.hpp"
+#include "tactree/session/model_transfer.hpp"
+#include "tactree/session/parameter_requests.hpp"
+#include "tactree/session/platform.hpp"
+#include "tactree/session/reply.hpp"
+#include "tactree/session/telemetry_sender.hpp"
+#include "tactree/session/tick_mailbox.hpp"
+#include "tactree/session/trace_requests.hpp"
+
+namespace tactree::session {
+
+template <hal::BytePort Port, class Store, SessionPlatform Platform>
+class Session {
+ public:
+  /// All are kept by reference.
+  struct Parts {
+    Port& port;
+    Store& store;
+    Platform& platform;
+    core::Controller& controller;
+    TickMailbox& mailbox;
+    const BoardIdentity& identity;
+  };
+
+  explicit Session(const Parts& parts)
+      : parts_(parts),
+        control_(parts.controller, parts.mailbox),
+        telemetry_(parts.mailbox),
+        models_(parts.store, parts.platform, parts.controller, parts.mailbox) {}
+
+  /// Call it before work(). `base`: the configuration at the start; its force and slew limits are
+  /// the upper bounds of what an application may set. `report` is kept by reference: later entries
+  /// are reported too.
+  void started(const hal::StartResult& result, const core::Configuration& base,
+               const hal::StartReport* report = nullptr) {
+    start_ = result;
+    base_ = base;
+    start_report_ = report;
+  }
+
+  /// One bounded piece: sends waiting frames, encodes a telemetry message, takes one request. True:
+  /// call it again at once. Cost, without flash operations and the check of a model: one frame in
+  /// and one out, about 30 instructions a byte.
+  bool work() {
+    queue_.flush(parts_.port);
+    const bool more = send_report();
+    end_closed_session();
+    if (waiting_) {
+      return answer_request() || more;
+    }
+    return read_request() || more;
+  }
+
+ private:
+  using Kind = core::wire::MessageKind;
+  using WireStatus = core::wire::WireStatus;
+
+  static constexpr std::size_t kPiece = 64;
+
+  // ---- frames in and out
+
+  // One request at a time: what follows it stays in the piece, and in the port.
+  bool read_request() {
+    if (next_ == end_) {
+      next_ = 0;
+      end_ = parts_.port.read(std::span(piece_));
+    }
+    while (next_ < end_) {  // bound: kPiece
+      const std::byte byte = piece_[next_];
+      ++next_;
+      if (decoder_.push(byte) == core::wire::FrameDecoder::Result::kFrame) {
+        waiting_ = true;
+        step_ = 0;
+        (void)answer_request();
+        return true;
+      }
+    }
+    return false;
+  }
+
+  bool answer_request() {
+    if (!queue_.has_room(1)) {
+      return false;
+    }
+    reply_.clear();
+    const Outcome outcome = admit();
+    waiting_ = outcome == Outcome::kLater;
+    ++step_;
+    if (outcome == Outcome::kAnswer) {
+      const core::wire::FrameHeader& request = decoder_.header();
+      queue_.push(
+          {static_cast<std::uint8_t>(request.kind | core::wire::kReplyBit),
+           static_cast<std::uint8_t>(reply_.status()), request.sequence, request.session, 0},
+          reply_.payload());
+      queue_.flush(parts_.port);
+    }
+    return !waiting_;
+  }
+
+  bool send_report() {
+    const TickReport* const report = parts_.mailbox.front();
+    if (report == nullptr) {
+      return false;
+    }
+    fresh_.note(report->status);
+    telemetry_.send(*report, admission_.session(), queue_);
+    parts_.mailbox.pop();
+    queue_.flush(parts_.port);
+    return true;
+  }
+
+  // ---- admission
+
+  Outcome admit() {
+    const core::wire::FrameHeader& header = decoder_.header();
+    const auto kind = static_cast<Kind>(header.kind);
+    if (header.kind == 0U || header.kind >= static_cast<std::uint8_t>(Kind::kTelemetry)) {
+      return Outcome::kSilent;  // a reply, or an echo of our own frames
+    }
+    if (kind == Kind::kIdentify) {
+      put_identity(parts_.identity, reply_);
+      return Outcome::kAnswer;
+    }
+    if (kind == Kind::kReadStart) {
+      put_start(start_, start_report_ == nullptr ? hal::StartReport{} : *start_report_, reply_);
+      return Outcome::kAnswer;
+    }
+    if (kind == Kind::kOpen) {
+      return answer(open());
+    }
+    if (ControlRequests::is_stop(kind, decoder_.payload())) {
+      return stop();
+    }
+    switch (admission_.admit(header, step_ > 0U)) {
+      case Admission::Verdict::kNoSession:
+        return answer(WireStatus::kNoSession);
+      case Admission::Verdict::kRepeated:
+        return Outcome::kSilent;
+      case Admission::Verdict::kAdmitted:
+        break;
+    }
+    return handle(kind);
+  }
+
+  Outcome answer(WireStatus status) {
+    reply_.set_status(status);
+    return Outcome::kAnswer;
+  }
+
+  Outcome handle(Kind kind) {
+    switch (kind) {
+      case Kind::kClose:
+        return close();
+      case Kind::kHeartbeat:
+        return answer(heartbeat());
+      case Kind::kCapabilities:
+        return capabilities();
+      case Kind::kState:
+        return state();
+      case Kind::kControl:
+        return control();
+      case Kind::kMoveBody:
+        return move_body(decoder_.payload(), parts_.controller, parts_.mailbox, reply_);
+      case Kind::kAddForce:
+        return answer(add_force(decoder_.payload(), parts_.controller, parts_.mailbox));
+      case Kind::kSubscribe:
+        return answer(telemetry_.subscribe(decoder_.payload()));
+      case Kind::kGetParameter:
+        return answer(get_parameter(decoder_.payload(), parts_.controller, reply_));
+      case Kind::kSetLimits:
+      case Kind::kSetMaterial:
+      case Kind::kReadTrace:
+      case Kind::kReadFault:
+      case Kind::kSetParameter:
+        return answer(handle_held(kind));
+      default:
+        return models_.handle(kind, decoder_.payload(), step_, reply_);
+    }
+  }
+
+  /// Requests that change the controller, or read what ticks write.
+  WireStatus handle_held(Kind kind) {
+    const std::span<const std::byte> payload = decoder_.payload();
+    const TickHold hold(parts_.platform);
+    switch (kind) {
+      case Kind::kSetLimits:
+        return record_adjustment(set_limits(payload, parts_.controller, base_));
+      case Kind::kSetMaterial:
+        return record_adjustment(set_material(payload, parts_.controller));
+      case Kind::kReadTrace:
+        return read_trace(payload, parts_.controller.recorder(), reply_);
+      case Kind::kSetParameter:
+        return record_configuration(set_parameter(payload, parts_.controller, reply_));
+      default:
+        read_fault(parts_.controller.recorder(), reply_);
+        return WireStatus::kOk;
+    }
+  }
+
+  // A simulated board that records the session gets what the controller took.
+  WireStatus record_adjustment(WireStatus status) {
+    if (status == WireStatus::kOk) {
+      core::report_to_recorder(parts_.platform, [this](auto& recorder) {
+        recorder.adjusted(parts_.controller.adjustment());
+      });
+    }
+    return status;
+  }
+  WireStatus record_configuration(WireStatus status) {
+    if (status == WireStatus::kOk) {
+      core::report_to_recorder(parts_.platform, [this](auto& recorder) {
+        recorder.configured(parts_.controller.configuration());
+      });
+    }
+    return status;
+  }
+
+  // ---- the session itself
+
+  // A session stays open while there may be force: a repeated or late message must not end it.
+  WireStatus open() {
+    core::wire::OpenRequest request;
+    if (!core::wire::decode_message(decoder_.payload(), request)) {
+      return WireStatus::kBadLength;
+    }
+    if (request.version_major != core::wire::kProtocolMajor) {
+      return WireStatus::kBadVersion;
+    }
+    if (!admission_.has_opened(request)) {
+      const WireStatus status = begin_session(request);
+      if (status != WireStatus::kOk) {
+        return status;
+      }
+    }
+    reply_.put(admission_.opening(parts_.platform.now_us()));
+    return WireStatus::kOk;
+  }
+
+  WireStatus begin_session(const core::wire::OpenRequest& request) {
+    if (!parts_.controller.motors_off()) {
+      return WireStatus::kBusy;
+    }
+    const WireStatus status = require_link(request.link_timeout_ms);
+    if (status != WireStatus::kOk) {
+      return status;
+    }
+    telemetry_.unsubscribe();
+    models_.release();
+    control_.reset();
+    admission_.open(request, decoder_.header().sequence, parts_.platform.now_us());
+    closing_ = false;
+    return WireStatus::kOk;
+  }
+
+  WireStatus require_link(std::uint32_t timeout_ms) {
+    const TickHold hold(parts_.platform);
+    return record_adjustment(session::require_link(parts_.controller, base_, timeout_ms));
+  }
+
+  Outcome close() {
+    parts_.mailbox.post_stop();
+    telemetry_.unsubscribe();
+    admission_.close();
+    closing_ = true;
+    models_.release();
+    return Outcome::kAnswer;
+  }
+
+  // A link that the session required is required until the motors are off.
+  void end_closed_session() {
+    if (closing_ && parts_.controller.motors_off()) {
+      closing_ = false;
+      (void)require_link(0);
+    }
+  }
+
+  WireStatus heartbeat() {
+    core::wire::HeartbeatRequest request;
+    if (!core::wire::decode_message(decoder_.payload(), request)) {
+      return WireStatus::kBadLength;
+    }
+    const std::uint32_t now_us = parts_.platform.now_us();
+    const std::uint32_t age_us = now_us - request.board_time_us;
+    std::uint16_t ticks = 0;
+    if (link_age(age_us, parts_.controller.configuration().rate_hz, ticks)) {
+      parts_.mailbox.post_sign_of_life(ticks);
+    }
+    reply_.put(core::wire::HeartbeatReply{now_us, age_us});
+    return WireStatus::kOk;
+  }
+
+  Outcome capabilities() {
+    put_capabilities(parts_.controller, base_,
+                     {Store::kSlots, parts_.store.slot_bytes(), parts_.store.signature_required()},
+                     parts_.identity.cycles_per_second, reply_);
+    return Outcome::kAnswer;
+  }
+
+  // ---- requests that are answered with the status of a later tick
+
+  /// True in a later step, once such a status has come.
+  [[nodiscard]] bool has_fresh_status() {
+    if (step_ == 0U) {
+      fresh_.request(parts_.mailbox);
+      return false;
+    }
+    return fresh_.has_come();
+  }
+
+  Outcome state() {
+    if (!has_fresh_status()) {
+      return Outcome::kLater;
+    }
+    put_state(fresh_.get(), start_, parts_.platform.now_us(), reply_);
+    return Outcome::kAnswer;
+  }
+
+  // From any sender, however late: a stop only takes force away.
+  Outcome stop() {
+    if (step_ == 0U) {
+      admission_.note_stop(decoder_.header());
+      control_.stop();
+    }
+    return finish_command();
+  }
+
+  Outcome control() {
+    if (step_ == 0U) {
+      const WireStatus status =
+          control_.post(decoder_.payload(),
+                        {parts_.platform.now_us(), admission_.session(), models_.is_writing()});
+      if (status != WireStatus::kOk) {
+        return answer(status);
+      }
+    }
+    return finish_command();
+  }
+
+  Outcome finish_command() {
+    if (!has_fresh_status()) {
+      return Outcome::kLater;
+    }
+    control_.put_reply(fresh_.get(), reply_);
+    return Outcome::kAnswer;
+  }
+
+  Parts parts_;
+  Admission admission_{};
+  ControlRequests control_;
+  FreshStatus fresh_{};
+  TelemetrySender telemetry_;
+  ModelTransfer<Store, Platform> models_;
+  core::Configuration base_{};
+  hal::StartResult start_{};
+  const hal::StartReport* start_report_ = nullptr;
+
+  core::wire::FrameDecoder decoder_{};
+  FrameQueue queue_{};
+  Reply reply_{};
+  std::byte piece_[kPiece] = {};
+  std::size_t next_ = 0;  // in piece_
+  std::size_t end_ = 0;
+  bool waiting_ = false;    // the request in decoder_ is not finished
+  std::uint32_t step_ = 0;  // calls of its handler
+
+  bool closing_ = false;  // closed, and its link is still required
+};
+
+}  // namespace tactree::session

@@ -1,0 +1,75 @@
+#include "tactree/session/admission.hpp"
+
+namespace tactree::session {
+
+using core::wire::WireStatus;
+
+bool Admission::is_newer(std::uint16_t sequence) const {
+  const auto ahead = static_cast<std::uint16_t>(sequence - sequence_);
+  return ahead != 0U && ahead < 0x8000U;
+}
+
+Admission::Verdict Admission::admit(const core::wire::FrameHeader& request, bool continued) {
+  if (session_ == 0U || request.session != session_) {
+    return Verdict::kNoSession;
+  }
+  if (!continued && !is_newer(request.sequence)) {
+    return Verdict::kRepeated;
+  }
+  sequence_ = request.sequence;
+  return Verdict::kAdmitted;
+}
+
+void Admission::note_stop(const core::wire::FrameHeader& request) {
+  if (request.session == session_ && is_newer(request.sequence)) {
+    sequence_ = request.sequence;
+  }
+}
+
+void Admission::open(const core::wire::OpenRequest& request, std::uint16_t sequence,
+                     std::uint32_t now_us) {
+  // The first number comes from the clock: it differs from those before the last reset.
+  if (last_session_ == 0U) {
+    last_session_ = static_cast<std::uint16_t>(now_us >> 4U);
+  }
+  ++last_session_;
+  last_session_ = last_session_ == 0U ? std::uint16_t{1} : last_session_;
+  session_ = last_session_;
+  nonce_ = request.nonce;
+  minor_ = request.version_minor < core::wire::kProtocolMinor ? request.version_minor
+                                                              : core::wire::kProtocolMinor;
+  sequence_ = sequence;
+}
+
+core::wire::OpenReply Admission::opening(std::uint32_t now_us) const {
+  return {core::wire::kProtocolMajor, minor_, session_, nonce_, now_us};
+}
+
+WireStatus require_link(core::Controller& controller, const core::Configuration& base,
+                        std::uint32_t timeout_ms) {
+  core::Adjustment adjustment = controller.adjustment();
+  adjustment.link_required = base.link_required;
+  adjustment.link_timeout_s = base.link_timeout_s;
+  if (timeout_ms != 0U) {
+    const float timeout_s = 1e-3F * static_cast<float>(timeout_ms);
+    const bool shorter = !base.link_required || timeout_s < base.link_timeout_s;
+    adjustment.link_required = true;
+    adjustment.link_timeout_s = shorter ? timeout_s : base.link_timeout_s;
+  }
+  return to_wire(controller.adjust(adjustment));
+}
+
+WireStatus to_wire(core::ConfigurationStatus status) {
+  switch (status) {
+    case core::ConfigurationStatus::kOk:
+      return WireStatus::kOk;
+    case core::ConfigurationStatus::kBusy:
+      return WireStatus::kBusy;
+    case core::ConfigurationStatus::kUnstable:
+      return WireStatus::kUnstable;
+    default:
+      return WireStatus::kBadValue;
+  }
+}
+
+}  // namespace tactree::session

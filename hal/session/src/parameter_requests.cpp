@@ -1,0 +1,63 @@
+#include "tactree/session/parameter_requests.hpp"
+
+#include <cstdint>
+
+#include "fields.hpp"
+#include "tactree/core/configuration/parameters.hpp"
+#include "tactree/session/admission.hpp"
+
+namespace tactree::session {
+
+using core::wire::WireStatus;
+
+namespace {
+
+/// Precondition: number < kParameters.
+void put_parameter(std::uint32_t number, const core::Controller& controller, Reply& reply) {
+  const core::Parameter parameter = core::parameter(number);
+  core::wire::ParameterReply message;
+  message.number = number;
+  message.value = core::parameter_of(controller.configuration(), number);
+  message.min = parameter.min;
+  message.max = parameter.max;
+  copy(parameter.name, message.name);
+  reply.put(message);
+}
+
+}  // namespace
+
+WireStatus get_parameter(std::span<const std::byte> payload, const core::Controller& controller,
+                         Reply& reply) {
+  core::wire::GetParameterRequest request;
+  if (!core::wire::decode_message(payload, request)) {
+    return WireStatus::kBadLength;
+  }
+  if (request.number >= core::kParameters) {
+    return WireStatus::kBadValue;
+  }
+  put_parameter(request.number, controller, reply);
+  return WireStatus::kOk;
+}
+
+WireStatus set_parameter(std::span<const std::byte> payload, core::Controller& controller,
+                         Reply& reply) {
+  core::wire::SetParameterRequest request;
+  if (!core::wire::decode_message(payload, request)) {
+    return WireStatus::kBadLength;
+  }
+  if (!controller.motors_off()) {
+    return WireStatus::kBusy;
+  }
+  core::Configuration changed = controller.configuration();
+  if (request.number >= core::kParameters ||
+      !core::set_parameter(changed, request.number, request.value)) {
+    return WireStatus::kBadValue;
+  }
+  const WireStatus status = to_wire(controller.configure(changed));
+  if (status == WireStatus::kOk) {
+    put_parameter(request.number, controller, reply);
+  }
+  return status;
+}
+
+}  // namespace tactree::session
