@@ -5,7 +5,7 @@
 #   core        tactree::core, hal, session, store    depends on nothing; always present
 #   builder     tactree::builder                      Eigen, fmt, TBB, liblzf, libsodium, pugixml
 #   simulation  tactree::plant, tactree::simulation   Eigen
-#   host        tactree::host                         threads
+#   client      tactree::client                       threads, libusb
 include(CMakePackageConfigHelpers)
 
 set(tactree_cmake_dir ${CMAKE_INSTALL_LIBDIR}/cmake/tactree)
@@ -34,8 +34,8 @@ if(TACTREE_BUILD_TOOLS)
   tactree_install_component(simulation
     TARGETS tactree_plant tactree_simulation
     HEADERS host/simulator/plant/include host/simulator/simulation/include)
-  tactree_install_component(host
-    TARGETS tactree_host
+  tactree_install_component(client
+    TARGETS tactree_client
     HEADERS host/client/include)
 endif()
 

@@ -8,20 +8,20 @@
 #include <cstdlib>
 #include <exception>
 #include <string>
-#include <tactree/host/board.hpp>
+#include <tactree/client/board.hpp>
 #include <thread>
 
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
-void draw(const tactree::host::Telemetry& t) {
+void draw(const tactree::client::Telemetry& t) {
   const double force = std::hypot(t.force_N[0], t.force_N[1], t.force_N[2]);
   const auto length = static_cast<std::size_t>(std::min(60.0, 20.0 * force));
   std::printf("%8.3f N |%s\n", force, std::string(length, '=').c_str());
 }
 
-void touch(tactree::host::Board& board, double seconds) {
+void touch(tactree::client::Board& board, double seconds) {
   board.subscribe({.every_ticks = 20});
   board.arm();
   const Clock::time_point begin = Clock::now();
@@ -47,7 +47,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
-    tactree::host::Board board(argv[1], {.link_timeout_ms = 100});
+    tactree::client::Board board(argv[1], {.link_timeout_ms = 100});
     touch(board, argc > 2 ? std::atof(argv[2]) : 10.0);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "touch: %s\n", error.what());

@@ -10,8 +10,8 @@ foreach(file
     include/tactree/session/session.hpp
     include/tactree/builder/model.hpp
     include/tactree/builder/version.hpp
-    include/tactree/host/board.hpp
-    include/tactree/host/tactree.h
+    include/tactree/client/board.hpp
+    include/tactree/client/tactree.h
     include/tactree/chai3d/device.hpp
     include/tactree/simulation/simulation.hpp)
   if(NOT EXISTS ${PREFIX}/${file})

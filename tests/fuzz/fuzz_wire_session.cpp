@@ -49,7 +49,7 @@ void check_replies(test::Wire& wire) {
     }
     require(whole, "the board sent a damaged frame");
     if (decoder.header().kind == static_cast<std::uint8_t>(core::wire::MessageKind::kTelemetry)) {
-      host::Telemetry telemetry;
+      client::Telemetry telemetry;
       require(core::wire::decode_telemetry(decoder.payload(), telemetry), "telemetry is too short");
     }
   }

@@ -9,9 +9,9 @@
 #include <thread>
 
 #include "await_response.hpp"
+#include "tactree/client/client.hpp"
+#include "tactree/client/usb_transport.hpp"
 #include "tactree/hal/linux/usbip_controller.hpp"
-#include "tactree/host/client.hpp"
-#include "tactree/host/usb_transport.hpp"
 #include "tactree/serve/usb_target.hpp"
 #include "tactree/simulation/simulation.hpp"
 #include "test_models.hpp"
@@ -115,11 +115,11 @@ class BoardOnUsb {
 /// A client over a transport; waiting functions advance it.
 class Application {
  public:
-  explicit Application(std::unique_ptr<host::UsbTransport> transport)
+  explicit Application(std::unique_ptr<client::UsbTransport> transport)
       : transport_(std::move(transport)) {}
 
-  [[nodiscard]] static host::Microseconds now_us() {
-    return static_cast<host::Microseconds>(
+  [[nodiscard]] static client::Microseconds now_us() {
+    return static_cast<client::Microseconds>(
         std::chrono::duration_cast<std::chrono::microseconds>(Clock::now().time_since_epoch())
             .count());
   }
@@ -135,42 +135,42 @@ class Application {
     client_.receive(std::span(bytes).first(count), now_us());
   }
 
-  host::Response await(std::uint16_t sequence) {
+  client::Response await(std::uint16_t sequence) {
     const Clock::time_point end = Clock::now() + kPatience;
     return test::await_response(
         client_, sequence, [&] { return Clock::now() < end && transport_->connected(); },
         [&] { turn(); });
   }
   template <core::wire::Message T>
-  host::Response ask(core::wire::MessageKind kind, const T& message) {
+  client::Response ask(core::wire::MessageKind kind, const T& message) {
     return await(client_.send(kind, message, now_us()));
   }
-  host::Response ask(core::wire::MessageKind kind) {
+  client::Response ask(core::wire::MessageKind kind) {
     return await(client_.send(kind, std::span<const std::byte>(), now_us()));
   }
   /// Acts as a new program: the board distinguishes programs by this number.
-  host::Response open() {
+  client::Response open() {
     static std::uint32_t programs = 0;
     return await(client_.open(0, ++programs, now_us()));
   }
 
-  [[nodiscard]] host::Client& client() { return client_; }
-  [[nodiscard]] host::UsbTransport& transport() { return *transport_; }
+  [[nodiscard]] client::Client& client() { return client_; }
+  [[nodiscard]] client::UsbTransport& transport() { return *transport_; }
   [[nodiscard]] std::uint64_t received() const { return received_; }
 
  private:
-  std::unique_ptr<host::UsbTransport> transport_;
-  host::Client client_{{static_cast<host::Microseconds>(60'000'000), 60'000'000}};
+  std::unique_ptr<client::UsbTransport> transport_;
+  client::Client client_{{static_cast<client::Microseconds>(60'000'000), 60'000'000}};
   std::uint64_t received_ = 0;
 };
 
 /// Waits until the board is connected, and opens it.
-[[nodiscard]] inline std::unique_ptr<host::UsbTransport> open_board() {
-  std::unique_ptr<host::UsbTransport> transport;
+[[nodiscard]] inline std::unique_ptr<client::UsbTransport> open_board() {
+  std::unique_ptr<client::UsbTransport> transport;
   std::string why;
   const bool there = eventually([&] {
     try {
-      transport = host::open_usb("");
+      transport = client::open_usb("");
     } catch (const std::runtime_error& error) {
       why = error.what();
     }

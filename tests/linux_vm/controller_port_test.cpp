@@ -1,8 +1,8 @@
 // tactree-controller at counters and converters, and at a USB device port.
 
 #include "controller_rig.hpp"
-#include "tactree/host/usb_devices.hpp"
-#include "tactree/host/usb_transport.hpp"
+#include "tactree/client/usb_devices.hpp"
+#include "tactree/client/usb_transport.hpp"
 
 namespace tactree::vm_test {
 namespace {
@@ -97,7 +97,8 @@ class UsbController : public Controller {
     std::string why;
     ASSERT_TRUE(eventually([&] {
       try {
-        board_ = std::make_unique<host::Board>(host::open_usb(""), host::BoardOptions{115200, 100});
+        board_ = std::make_unique<client::Board>(client::open_usb(""),
+                                                 client::BoardOptions{115200, 100});
       } catch (const std::runtime_error& error) {
         why = error.what();
       }
@@ -115,7 +116,7 @@ TEST_F(UsbController, HomesArmsRendersAndStops) {
   EXPECT_TRUE(holds(output(), "dummy_udc.0")) << output();
   hold();
   ASSERT_FALSE(HasFatalFailure());
-  EXPECT_EQ(host::list_usb_devices().at(0).serial, "00000000000000000000004D");
+  EXPECT_EQ(client::list_usb_devices().at(0).serial, "00000000000000000000004D");
   std::this_thread::sleep_for(300ms);
   expect_balance(kRadius_m - 0.005);
   EXPECT_EQ(board_->state().state, kActive);
@@ -139,7 +140,7 @@ TEST_F(UsbController, RemovesTheGadgetOfAKilledProcess) {
   serve();
   ASSERT_FALSE(HasFatalFailure());
   EXPECT_EQ(gadgets(), 1U) << "the gadget of the new process";
-  EXPECT_EQ(board_->state().faults, 0U) << host::names_of(board_->state().faults);
+  EXPECT_EQ(board_->state().faults, 0U) << client::names_of(board_->state().faults);
 }
 
 TEST_F(UsbController, NamesAMissingPort) {

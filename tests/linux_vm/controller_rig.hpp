@@ -15,8 +15,8 @@
 #include <thread>
 
 #include "controlled_device.hpp"
-#include "tactree/host/board.hpp"
-#include "tactree/host/local_socket.hpp"
+#include "tactree/client/board.hpp"
+#include "tactree/client/local_socket.hpp"
 #include "test_models.hpp"
 
 namespace tactree::vm_test {
@@ -194,8 +194,8 @@ class Controller : public testing::Test {
   }
 
   virtual void connect() {
-    board_ = std::make_unique<host::Board>(host::open_local_socket(socket_),
-                                           host::BoardOptions{115200, 100});
+    board_ = std::make_unique<client::Board>(client::open_local_socket(socket_),
+                                             client::BoardOptions{115200, 100});
   }
 
   /// Moves over the index pulse of each axis.
@@ -214,7 +214,7 @@ class Controller : public testing::Test {
     })) << output();
     device_->move_hand({0.05, 0.05, above_m_}, 0.2);
     device_->move_hand({0.0, 0.0, above_m_}, 0.2);
-    ASSERT_EQ(host::names_of(board_->state().faults), "") << report();
+    ASSERT_EQ(client::names_of(board_->state().faults), "") << report();
   }
 
   void arm() {
@@ -222,7 +222,7 @@ class Controller : public testing::Test {
     std::this_thread::sleep_for(20ms);
     hands().dead_man = true;
     ASSERT_TRUE(eventually([&] { return board_->state().state == kActive; }))
-        << "faults: " << host::names_of(board_->state().faults) << "\n"
+        << "faults: " << client::names_of(board_->state().faults) << "\n"
         << "limits: " << board_->state().limits << ", probe z: " << board_->state().probe_m[2]
         << ", tip z: " << hands().tip_m[2] << "\n"
         << report();
@@ -232,7 +232,7 @@ class Controller : public testing::Test {
   void press() {
     device_->move_hand({0.0, 0.0, kRadius_m - 0.005}, 0.2);
     ASSERT_TRUE(eventually([&] { return hands().effort_N[2] > 0.5; }))
-        << "faults: " << host::names_of(board_->state().faults) << ", tip z: " << hands().tip_m[2]
+        << "faults: " << client::names_of(board_->state().faults) << ", tip z: " << hands().tip_m[2]
         << "\n"
         << report();
   }
@@ -299,7 +299,7 @@ class Controller : public testing::Test {
   std::optional<ControlledDevice> device_;
   double above_m_ = 0.05;  // the model, in the middle
   pid_t child_ = -1;
-  std::unique_ptr<host::Board> board_;
+  std::unique_ptr<client::Board> board_;
 };
 
 }  // namespace tactree::vm_test

@@ -114,7 +114,7 @@ TEST_F(Controller, OverflowOfTheKernelsEdgeQueueIsAFault) {
   const auto is_invalid = [&] {
     return core::has_fault(board_->state().faults, core::Fault::kEncoderInvalid);
   };
-  EXPECT_TRUE(eventually(is_invalid)) << host::names_of(board_->state().faults);
+  EXPECT_TRUE(eventually(is_invalid)) << client::names_of(board_->state().faults);
   const std::string text = report();
   EXPECT_TRUE(holds(text, "encoder edges lost: ") && !holds(text, "encoder edges lost: 0\n"))
       << text;

@@ -23,9 +23,9 @@ std::uint64_t packets_wanted() {
 
 TEST(Usb, TheBoardIsListedWithItsNameAndSerialNumber) {
   const BoardOnUsb board;
-  std::vector<host::UsbDeviceInfo> devices;
+  std::vector<client::UsbDeviceInfo> devices;
   ASSERT_TRUE(eventually([&] {
-    devices = host::list_usb_devices();
+    devices = client::list_usb_devices();
     return devices.size() == 1;
   }));
   EXPECT_EQ(devices[0].serial, "111111112222222233333333");
@@ -87,7 +87,7 @@ TEST(Usb, SecondProgramIsRefusedWhileTheBoardIsInUse) {
   const auto first = open_board();
   ASSERT_TRUE(first);
   try {
-    (void)host::open_usb("");
+    (void)client::open_usb("");
     FAIL() << "opened twice";
   } catch (const std::runtime_error& error) {
     EXPECT_NE(std::string(error.what()).find("end the other program"), std::string::npos)
@@ -101,9 +101,9 @@ TEST(Usb, MissingPermissionNamesTheUdevRule) {
   const pid_t child = fork();
   if (child == 0) {
     const bool other = setgid(65534) == 0 && setuid(65534) == 0;
-    const auto devices = host::list_usb_devices();
+    const auto devices = client::list_usb_devices();
     const bool told = other && devices.size() == 1 &&
-                      devices[0].problem.find(host::udev_rule()) != std::string::npos;
+                      devices[0].problem.find(client::udev_rule()) != std::string::npos;
     _exit(told ? 0 : 1);
   }
   int status = 1;
@@ -113,7 +113,7 @@ TEST(Usb, MissingPermissionNamesTheUdevRule) {
 
 TEST(Usb, NamesAMissingBoard) {
   try {
-    (void)host::open_usb("ABCD");
+    (void)client::open_usb("ABCD");
     FAIL() << "opened what is not there";
   } catch (const std::runtime_error& error) {
     EXPECT_NE(std::string(error.what()).find("no board is plugged in"), std::string::npos);
@@ -144,7 +144,7 @@ TEST(Usb, LostTelemetryIsCounted) {
   std::uint64_t unnoticed = 0;
   std::uint32_t last_tick = 0;
   std::uint32_t last_dropped = 0;
-  application.client().on_telemetry([&](const host::Telemetry& telemetry) {
+  application.client().on_telemetry([&](const client::Telemetry& telemetry) {
     const auto& header = telemetry.header;
     if (received++ != 0) {
       const std::uint32_t missing = header.tick - last_tick - 1;
@@ -245,7 +245,7 @@ TEST(Usb, UnplugIsDetectedAtAnyMomentAndReplugWorks) {
 
 TEST(Usb, HotplugIsReportedWithoutUdev) {
   BoardOnUsb board;
-  host::UsbWatch watch(std::chrono::milliseconds(20));
+  client::UsbWatch watch(std::chrono::milliseconds(20));
   const auto wait_for = [&](bool arrived) {
     return eventually([&] {
       const auto changes = watch.poll();
@@ -303,7 +303,7 @@ TEST(Usb, InterruptedDfuTransferKeepsTheModel) {
     }
     Application application(open_board());
     ASSERT_TRUE(application.open().ok());
-    const host::Response state = application.ask(MessageKind::kState);
+    const client::Response state = application.ask(MessageKind::kState);
     core::wire::StateReply reply;
     ASSERT_TRUE(state.read(reply));
     EXPECT_EQ(reply.state, static_cast<std::uint8_t>(core::State::kIdle)) << "the model is there";

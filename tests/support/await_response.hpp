@@ -3,16 +3,16 @@
 
 #include <cstdint>
 
-#include "tactree/host/client.hpp"
+#include "tactree/client/client.hpp"
 
 namespace tactree::test {
 
 /// Drops all other responses. Calls `advance()` to let time pass while `has_time()`; then times
 /// out.
 template <class HasTime, class Advance>
-host::Response await_response(host::Client& client, std::uint16_t sequence, HasTime has_time,
-                              Advance advance) {
-  host::Response response;
+client::Response await_response(client::Client& client, std::uint16_t sequence, HasTime has_time,
+                                Advance advance) {
+  client::Response response;
   while (has_time()) {
     while (client.take(response)) {
       if (response.sequence == sequence) {

@@ -7,8 +7,8 @@
 #include <string>
 #include <thread>
 
-#include "tactree/host/connection.hpp"
-#include "tactree/host/lock_step.hpp"
+#include "tactree/client/connection.hpp"
+#include "tactree/client/lock_step.hpp"
 #include "tactree/serve/served_target.hpp"
 #include "tactree/simulation/simulation.hpp"
 #include "test_models.hpp"
@@ -62,7 +62,7 @@ class RunningBoard {
     }
   }
 
-  host::LockStepServer server_;
+  client::LockStepServer server_;
   std::latch listening_{1};
   std::atomic<bool> ending_ = false;
   std::atomic<bool> emergency_stop_ = false;
@@ -72,7 +72,7 @@ class RunningBoard {
 
 /// Looks every 10 ms, for up to 30 s of the board's time.
 template <class Condition>
-bool comes_true(const host::Connection& connection, Condition condition) {
+bool comes_true(const client::Connection& connection, Condition condition) {
   for (int i = 0; i < 3000; ++i) {
     if (condition()) {
       return true;

@@ -1,14 +1,14 @@
-#include "tactree/host/board.hpp"
+#include "tactree/client/board.hpp"
 
 #include <algorithm>
 #include <cstring>
 
+#include "tactree/client/link_error.hpp"
+#include "tactree/client/ports.hpp"
 #include "tactree/core/control/controller.hpp"
 #include "tactree/core/math/crc32.hpp"
-#include "tactree/host/link_error.hpp"
-#include "tactree/host/ports.hpp"
 
-namespace tactree::host {
+namespace tactree::client {
 namespace {
 
 using core::wire::ControlCode;
@@ -385,4 +385,4 @@ void Board::add_force(const std::array<float, 3>& force_N, std::uint32_t duratio
                     core::wire::AddForceRequest{{force_N[0], force_N[1], force_N[2]}, duration_ms});
 }
 
-}  // namespace tactree::host
+}  // namespace tactree::client

@@ -5,22 +5,22 @@
 #include <memory>
 #include <string>
 
-#include "tactree/host/board.hpp"
-#include "tactree/host/tactree.h"
+#include "tactree/client/board.hpp"
+#include "tactree/client/tactree.h"
 
-static_assert(TACTREE_USUAL_BAUD == tactree::host::kUsualBaud);
+static_assert(TACTREE_USUAL_BAUD == tactree::client::kUsualBaud);
 
 struct tactree_board {
   explicit tactree_board(const char* port, unsigned baud, unsigned link_timeout_ms)
       : board(port, {baud, static_cast<std::uint16_t>(std::min(link_timeout_ms, 0xFFFFU))}) {}
-  tactree::host::Board board;
-  std::deque<tactree::host::Telemetry> waiting;  // taken from the stream, not yet by the caller
+  tactree::client::Board board;
+  std::deque<tactree::client::Telemetry> waiting;  // taken from the stream, not yet by the caller
   std::string error;
 };
 
 namespace {
 
-using tactree::host::Telemetry;
+using tactree::client::Telemetry;
 
 thread_local std::string error_of_open;  // NOLINT: C has no other place for it
 

@@ -1,9 +1,9 @@
-#include "tactree/host/client.hpp"
+#include "tactree/client/client.hpp"
 
 #include <algorithm>
 #include <array>
 
-namespace tactree::host {
+namespace tactree::client {
 namespace {
 
 using core::wire::MessageKind;
@@ -181,4 +181,4 @@ bool Client::take(Response& response) {
   return true;
 }
 
-}  // namespace tactree::host
+}  // namespace tactree::client

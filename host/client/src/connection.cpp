@@ -1,4 +1,4 @@
-#include "tactree/host/connection.hpp"
+#include "tactree/client/connection.hpp"
 
 #include <algorithm>
 #include <array>
@@ -12,9 +12,9 @@
 #include <thread>
 #include <utility>
 
-#include "tactree/host/link_error.hpp"
+#include "tactree/client/link_error.hpp"
 
-namespace tactree::host {
+namespace tactree::client {
 namespace {
 
 using core::wire::MessageKind;
@@ -249,4 +249,4 @@ bool Connection::connected() const { return worker_->connected(); }
 bool Connection::in_session() const { return worker_->in_session(); }
 std::string Connection::name() const { return worker_->name(); }
 
-}  // namespace tactree::host
+}  // namespace tactree::client

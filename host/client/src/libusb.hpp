@@ -7,10 +7,10 @@
 #include <optional>
 #include <string>
 
+#include "tactree/client/usb_devices.hpp"
 #include "tactree/core/link/usb/descriptors.hpp"
-#include "tactree/host/usb_devices.hpp"
 
-namespace tactree::host {
+namespace tactree::client {
 
 struct FreeContext {
   void operator()(libusb_context* context) const { libusb_exit(context); }
@@ -57,4 +57,4 @@ void for_each_board(libusb_context* context, Visit visit) {
   }
 }
 
-}  // namespace tactree::host
+}  // namespace tactree::client

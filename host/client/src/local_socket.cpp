@@ -1,4 +1,4 @@
-#include "tactree/host/local_socket.hpp"
+#include "tactree/client/local_socket.hpp"
 
 #include <poll.h>
 #include <sys/socket.h>
@@ -9,9 +9,9 @@
 #include <cstring>
 #include <utility>
 
-#include "tactree/host/link_error.hpp"
+#include "tactree/client/link_error.hpp"
 
-namespace tactree::host {
+namespace tactree::client {
 namespace {
 
 std::string remedy_for(int error) {
@@ -75,4 +75,4 @@ std::unique_ptr<Transport> open_local_socket(const std::string& path) {
   return std::make_unique<LocalSocket>(path);
 }
 
-}  // namespace tactree::host
+}  // namespace tactree::client

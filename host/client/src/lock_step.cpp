@@ -1,4 +1,4 @@
-#include "tactree/host/lock_step.hpp"
+#include "tactree/client/lock_step.hpp"
 
 #include <poll.h>
 #include <sys/socket.h>
@@ -13,9 +13,9 @@
 #include <filesystem>
 #include <utility>
 
-#include "tactree/host/link_error.hpp"
+#include "tactree/client/link_error.hpp"
 
-namespace tactree::host {
+namespace tactree::client {
 namespace {
 
 using std::chrono::microseconds;
@@ -239,4 +239,4 @@ void LockStepServer::take_request(Program& program) {
   }
 }
 
-}  // namespace tactree::host
+}  // namespace tactree::client

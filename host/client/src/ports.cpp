@@ -1,14 +1,14 @@
-#include "tactree/host/ports.hpp"
+#include "tactree/client/ports.hpp"
 
 #include <filesystem>
 #include <string_view>
 
-#include "tactree/host/local_socket.hpp"
-#include "tactree/host/lock_step.hpp"
-#include "tactree/host/serial_port.hpp"
-#include "tactree/host/usb_transport.hpp"
+#include "tactree/client/local_socket.hpp"
+#include "tactree/client/lock_step.hpp"
+#include "tactree/client/serial_port.hpp"
+#include "tactree/client/usb_transport.hpp"
 
-namespace tactree::host {
+namespace tactree::client {
 namespace {
 
 constexpr std::string_view kUsb = "usb:";
@@ -51,4 +51,4 @@ std::optional<unsigned> wire_speed(const std::string& name, unsigned baud) {
   return has_no_wire ? std::nullopt : std::optional(baud / kBitsPerByte);
 }
 
-}  // namespace tactree::host
+}  // namespace tactree::client

@@ -1,4 +1,4 @@
-#include "tactree/host/serial_port.hpp"
+#include "tactree/client/serial_port.hpp"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -11,9 +11,9 @@
 #include <cstring>
 #include <filesystem>
 
-#include "tactree/host/link_error.hpp"
+#include "tactree/client/link_error.hpp"
 
-namespace tactree::host {
+namespace tactree::client {
 namespace {
 
 struct Speed {
@@ -179,4 +179,4 @@ std::size_t PseudoTerminal::write(std::span<const std::byte> bytes) {
 
 void PseudoTerminal::wait(std::chrono::microseconds timeout) { wait_for(ours_, timeout); }
 
-}  // namespace tactree::host
+}  // namespace tactree::client

@@ -1,4 +1,4 @@
-#include "tactree/host/start_report.hpp"
+#include "tactree/client/start_report.hpp"
 
 #include <cstdio>
 
@@ -6,7 +6,7 @@
 #include "tactree/core/contact/scene.hpp"
 #include "tactree/core/model/blob.hpp"
 
-namespace tactree::host {
+namespace tactree::client {
 namespace {
 
 using core::wire::StartPart;
@@ -96,4 +96,4 @@ std::vector<std::string> complaints(const core::wire::ReadStartReply& start) {
   return all;
 }
 
-}  // namespace tactree::host
+}  // namespace tactree::client

@@ -3,10 +3,10 @@
 #include <filesystem>
 #include <fstream>
 
-#include "tactree/host/link_error.hpp"
-#include "tactree/host/usb_devices.hpp"
+#include "tactree/client/link_error.hpp"
+#include "tactree/client/usb_devices.hpp"
 
-namespace tactree::host {
+namespace tactree::client {
 
 std::string udev_rule() {
   // The property lists class, subclass and protocol of each interface: one with the link's.
@@ -31,4 +31,4 @@ std::string install_udev_rule(const std::string& root) {
   return file.string();
 }
 
-}  // namespace tactree::host
+}  // namespace tactree::client

@@ -1,13 +1,13 @@
-#include "tactree/host/usb_devices.hpp"
+#include "tactree/client/usb_devices.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cstdio>
 
 #include "libusb.hpp"
-#include "tactree/host/link_error.hpp"
+#include "tactree/client/link_error.hpp"
 
-namespace tactree::host {
+namespace tactree::client {
 namespace {
 
 std::string read_string(libusb_device_handle* handle, std::uint8_t index) {
@@ -205,4 +205,4 @@ std::vector<UsbWatch::Change> UsbWatch::poll(Clock::time_point now) {
   return changes;
 }
 
-}  // namespace tactree::host
+}  // namespace tactree::client

@@ -1,4 +1,4 @@
-#include "tactree/host/usb_transport.hpp"
+#include "tactree/client/usb_transport.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "libusb.hpp"
-#include "tactree/host/link_error.hpp"
+#include "tactree/client/link_error.hpp"
 
-namespace tactree::host {
+namespace tactree::client {
 namespace {
 
 constexpr std::size_t kReads = 4;         // pending at once: the board never waits for this side
@@ -279,4 +279,4 @@ std::unique_ptr<UsbTransport> open_usb(const std::string& which) {
                   " (remedy: name one by serial number or path)" + there);
 }
 
-}  // namespace tactree::host
+}  // namespace tactree::client

@@ -6,8 +6,8 @@
 #include <cstring>
 #include <iterator>
 
+#include "tactree/client/link_error.hpp"
 #include "tactree/core/math/crc32.hpp"
-#include "tactree/host/link_error.hpp"
 
 namespace tactree::viewer {
 namespace {
@@ -42,7 +42,7 @@ void compare(const ModelSlot& in_use, std::span<const std::byte> shown, BoardFac
       in_use.points, in_use.bytes, shown.size());
 }
 
-void compare_models(host::Board& board, std::span<const std::byte> shown, BoardFacts& facts) {
+void compare_models(client::Board& board, std::span<const std::byte> shown, BoardFacts& facts) {
   facts.about_model =
       "The board uses the model of its image and cannot identify it: make sure that it is the "
       "displayed one.";
@@ -63,7 +63,7 @@ void compare_models(host::Board& board, std::span<const std::byte> shown, BoardF
 
 }  // namespace
 
-BoardFacts ask_board(host::Board& board, std::span<const std::byte> shown) {
+BoardFacts ask_board(client::Board& board, std::span<const std::byte> shown) {
   BoardFacts facts;
   const core::wire::IdentifyReply identity = board.identify();
   facts.name = text_of(identity.board);

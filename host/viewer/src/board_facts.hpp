@@ -6,8 +6,8 @@
 #include <span>
 #include <string>
 
+#include "tactree/client/board.hpp"
 #include "tactree/core/math/vec3.hpp"
-#include "tactree/host/board.hpp"
 
 namespace tactree::viewer {
 
@@ -24,6 +24,6 @@ struct BoardFacts {
 
 /// Blocks until the board has answered. `shown`: the bytes of the displayed model. Throws
 /// LinkError.
-[[nodiscard]] BoardFacts ask_board(host::Board& board, std::span<const std::byte> shown);
+[[nodiscard]] BoardFacts ask_board(client::Board& board, std::span<const std::byte> shown);
 
 }  // namespace tactree::viewer

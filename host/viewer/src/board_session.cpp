@@ -10,8 +10,8 @@
 #include "board_facts.hpp"
 #include "command_outcome.hpp"
 #include "contact_parameters.hpp"
-#include "tactree/host/link_error.hpp"
-#include "tactree/host/ports.hpp"
+#include "tactree/client/link_error.hpp"
+#include "tactree/client/ports.hpp"
 #include "trace_columns.hpp"
 
 namespace tactree::viewer {
@@ -32,7 +32,7 @@ constexpr unsigned kMessageBytes = 140;
 
 core::Vec3 vec3(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
 
-core::Status status_of(const host::Telemetry& t) {
+core::Status status_of(const client::Telemetry& t) {
   core::Status s;
   s.tick = t.header.tick;
   s.state = static_cast<core::State>(std::min(t.state, core::kStates - 1U));
@@ -59,7 +59,7 @@ core::Status status_of(const host::Telemetry& t) {
 BoardSession::BoardSession(Bodies bodies, BoardSettings settings)
     : bodies_(std::move(bodies)),
       settings_(std::move(settings)),
-      board_(std::make_unique<host::Board>(settings_.port, settings_.link)),
+      board_(std::make_unique<client::Board>(settings_.port, settings_.link)),
       outcome_(std::make_unique<CommandOutcome>()) {
   begin_session();
 }
@@ -93,7 +93,7 @@ Work BoardSession::work_of(const BoardFacts& facts) const {
 
 /// Every tick, so that no peak is missed, but at most half of the capacity of a serial line.
 std::uint32_t BoardSession::ticks_per_message(const BoardFacts& facts) const {
-  const std::optional<unsigned> bytes_s = host::wire_speed(settings_.port, settings_.link.baud);
+  const std::optional<unsigned> bytes_s = client::wire_speed(settings_.port, settings_.link.baud);
   if (!bytes_s) {
     return 1U;
   }
@@ -207,7 +207,7 @@ void BoardSession::update_board() {
       execute(command);
     }
     continue_arming();
-  } catch (const host::LinkError& error) {
+  } catch (const client::LinkError& error) {
     report(error.what());
   }
   if (link_ == Link::kConnected) {
@@ -223,7 +223,7 @@ void BoardSession::stop_if_wanted() {
   arming_until_.reset();
   try {
     board_->stop();
-  } catch (const host::LinkError&) {
+  } catch (const client::LinkError&) {
     stop_wanted_ = true;
     throw;
   }
@@ -277,19 +277,19 @@ void BoardSession::continue_arming() {
       board_->stop();
       report(fmt::format("arm: not confirmed within 30 s ({})", board_->who_confirms()));
     }
-  } catch (const host::LinkError&) {
+  } catch (const client::LinkError&) {
     arming_until_.reset();
     throw;
   }
 }
 
 void BoardSession::read_telemetry() {
-  for (const host::Telemetry& telemetry : board_->take_stream()) {
+  for (const client::Telemetry& telemetry : board_->take_stream()) {
     add(telemetry);
   }
 }
 
-void BoardSession::add(const host::Telemetry& telemetry) {
+void BoardSession::add(const client::Telemetry& telemetry) {
   simulation::Sample sample;
   const std::uint32_t since_us = telemetry.header.board_time_us - last_time_us_;
   if (last_) {
@@ -345,7 +345,7 @@ void BoardSession::reconnect() {
     begin_session();
     stop_wanted_ = false;  // a new session starts in the stopped state
     link_ = Link::kConnected;
-  } catch (const host::LinkError& error) {
+  } catch (const client::LinkError& error) {
     if (link_ == Link::kLost) {
       why_lost_ = fmt::format("The board is not reachable: {}.", error.what());
     } else {

@@ -43,8 +43,8 @@ std::string fields(std::uint8_t kind, std::span<const std::byte> payload) {
   } else if (kind == (static_cast<std::uint8_t>(MessageKind::kControl) | 0x80) &&
              core::wire::decode_message(payload, control)) {
     out << " state=" << static_cast<int>(control.state) << " token=" << control.token;
-  } else if (host::Telemetry t; kind == static_cast<std::uint8_t>(MessageKind::kTelemetry) &&
-                                core::wire::decode_telemetry(payload, t)) {
+  } else if (client::Telemetry t; kind == static_cast<std::uint8_t>(MessageKind::kTelemetry) &&
+                                  core::wire::decode_telemetry(payload, t)) {
     out << " tick=" << t.header.tick << " force_N[0]=" << t.force_N[0]
         << " probe_m[0]=" << t.probe_m[0];
   }

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "await_response.hpp"
+#include "tactree/client/client.hpp"
 #include "tactree/hal/sim/board.hpp"
-#include "tactree/host/client.hpp"
 #include "tactree/session/session.hpp"
 #include "tactree/store/no_model_store.hpp"
 #include "test_models.hpp"
@@ -133,49 +133,49 @@ class SessionRig {
   }
 
   /// Waits for the response to a request. Everything else that comes is dropped.
-  host::Response await(std::uint16_t sequence, int ticks_max = 40000) {
+  client::Response await(std::uint16_t sequence, int ticks_max = 40000) {
     int ticks = 0;
     return test::await_response(
         client_, sequence, [&] { return ticks++ < ticks_max; }, [&] { tick(); });
   }
   template <core::wire::Message T>
-  host::Response ask(core::wire::MessageKind kind, const T& message) {
+  client::Response ask(core::wire::MessageKind kind, const T& message) {
     return await(client_.send(kind, message, now_us()));
   }
-  host::Response ask(core::wire::MessageKind kind) {
+  client::Response ask(core::wire::MessageKind kind) {
     return await(client_.send(kind, std::span<const std::byte>(), now_us()));
   }
-  host::Response open(std::uint16_t link_timeout_ms = 0, std::uint32_t nonce = 7) {
+  client::Response open(std::uint16_t link_timeout_ms = 0, std::uint32_t nonce = 7) {
     return await(client_.open(link_timeout_ms, nonce, now_us()));
   }
-  host::Response control(core::wire::ControlCode code, std::uint32_t token = 0) {
+  client::Response control(core::wire::ControlCode code, std::uint32_t token = 0) {
     return ask(core::wire::MessageKind::kControl,
                core::wire::ControlRequest{static_cast<std::uint8_t>(code), {}, token});
   }
   /// To active, as a careful application does it. False: it did not get there.
   bool arm() {
-    const host::Response armed = control(core::wire::ControlCode::kArm);
+    const client::Response armed = control(core::wire::ControlCode::kArm);
     core::wire::ControlReply reply;
     if (!armed.ok() || !armed.read(reply)) {
       return false;
     }
     settle(20);  // the enable line follows
-    const host::Response confirmed = control(core::wire::ControlCode::kConfirm, reply.token);
+    const client::Response confirmed = control(core::wire::ControlCode::kConfirm, reply.token);
     return confirmed.ok() && state() == core::State::kActive;
   }
 
-  [[nodiscard]] host::Microseconds now_us() const { return 1000U * tick_; }
+  [[nodiscard]] client::Microseconds now_us() const { return 1000U * tick_; }
   [[nodiscard]] std::uint64_t ticks() const { return tick_; }
   [[nodiscard]] core::State state() const { return controller_.state(); }
   [[nodiscard]] const core::Status& status() const { return status_; }
   [[nodiscard]] core::Controller& controller() { return controller_; }
-  [[nodiscard]] host::Client& client() { return client_; }
+  [[nodiscard]] client::Client& client() { return client_; }
   [[nodiscard]] Wire& to_board() { return to_board_; }
   [[nodiscard]] Wire& to_host() { return to_host_; }
   [[nodiscard]] SessionBoard& board() { return board_; }
   [[nodiscard]] const hal::StartResult& start_result() const { return start_; }
   /// Starts a new client, as after a crash of the application.
-  void replace_client() { client_ = host::Client(); }
+  void replace_client() { client_ = client::Client(); }
 
   std::function<void()> after_tick;
   hal::StartReport start_report{};
@@ -196,7 +196,7 @@ class SessionRig {
   session::Session<TestPort, Store, TestPlatform> session_;
   hal::Loop<SessionBoard> loop_;
   hal::StartResult start_;
-  host::Client client_;
+  client::Client client_;
   core::Status status_;
 };
 

@@ -30,7 +30,7 @@ class SessionTest : public ::testing::Test {
 };
 
 TEST_F(SessionTest, IdentifiesItselfWithoutASession) {
-  const host::Response response = rig.ask(MessageKind::kIdentify);
+  const client::Response response = rig.ask(MessageKind::kIdentify);
   core::wire::IdentifyReply reply;
   ASSERT_TRUE(response.ok() && response.read(reply));
   EXPECT_STREQ(reply.board, "test");
@@ -52,7 +52,7 @@ TEST_F(SessionTest, RefusesAnotherMajorVersionAndAcceptsANewerMinorVersion) {
   EXPECT_EQ(rig.ask(MessageKind::kOpen, request).status, WireStatus::kBadVersion);
   request.version_major = core::wire::kProtocolMajor;
   request.version_minor = core::wire::kProtocolMinor + 9;
-  const host::Response response = rig.ask(MessageKind::kOpen, request);
+  const client::Response response = rig.ask(MessageKind::kOpen, request);
   core::wire::OpenReply reply;
   ASSERT_TRUE(response.ok() && response.read(reply));
   EXPECT_EQ(reply.version_minor, core::wire::kProtocolMinor);
@@ -222,8 +222,8 @@ TEST_F(SessionTest, LimitsAndExpiresAnExternalForce) {
 
 TEST_F(SessionTest, SendsTelemetryWithTheRequestedFields) {
   ASSERT_TRUE(rig.open().ok());
-  std::vector<host::Telemetry> got;
-  rig.client().on_telemetry([&](const host::Telemetry& t) { got.push_back(t); });
+  std::vector<client::Telemetry> got;
+  rig.client().on_telemetry([&](const client::Telemetry& t) { got.push_back(t); });
   ASSERT_TRUE(rig.ask(MessageKind::kSubscribe, core::wire::SubscribeRequest{0x3FF, 5}).ok());
   rig.settle(101);
   ASSERT_GE(got.size(), 20U);
@@ -254,7 +254,7 @@ TEST_F(SessionTest, TelemetryOfAllFieldsAtFourKilohertzFitsUsbFullSpeed) {
 
 TEST_F(SessionTest, ReadsTheTraceInPieces) {
   ASSERT_TRUE(rig.open().ok());
-  const host::Response response =
+  const client::Response response =
       rig.ask(MessageKind::kReadTrace, core::wire::ReadTraceRequest{0, 13});
   core::wire::ReadTraceReply reply;
   ASSERT_TRUE(response.ok() && response.read(reply));

@@ -3,7 +3,7 @@
 #include <cstring>
 
 #include "running_board.hpp"
-#include "tactree/host/tactree.h"
+#include "tactree/client/tactree.h"
 
 extern "C" int c_program(const char* port);
 

@@ -1,5 +1,5 @@
 /* What a program in C does with a board. */
-#include "tactree/host/tactree.h"
+#include "tactree/client/tactree.h"
 
 int c_program(const char* port);
 int c_program(const char* port) {

@@ -75,7 +75,7 @@ TEST(Chai3d, ReadsThePositionAndAppliesForce) {
   ASSERT_TRUE(generic.open()) << device.error();
   EXPECT_TRUE(generic.m_deviceReady);
   EXPECT_EQ(generic.m_specifications.m_maxLinearForce, 4.0);
-  const host::Connection& connection = device.board()->connection();
+  const client::Connection& connection = device.board()->connection();
   EXPECT_TRUE(comes_true(connection, [&] {
     return generic.getPosition(position) && position.z() > 0.03 && position.z() < 0.05;
   }));

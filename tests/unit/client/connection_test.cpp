@@ -9,10 +9,10 @@
 #include <filesystem>
 
 #include "running_board.hpp"
-#include "tactree/host/board.hpp"
-#include "tactree/host/link_error.hpp"
-#include "tactree/host/ports.hpp"
-#include "tactree/host/serial_port.hpp"
+#include "tactree/client/board.hpp"
+#include "tactree/client/link_error.hpp"
+#include "tactree/client/ports.hpp"
+#include "tactree/client/serial_port.hpp"
 
 namespace tactree::test {
 namespace {
@@ -20,20 +20,20 @@ namespace {
 TEST(Connection, ReportsTheCauseOfAPortFailure) {
   for (const char* port : {"/dev/no-such-port", "/dev/null"}) {
     try {
-      host::Board board(port);
+      client::Board board(port);
       FAIL() << port;
-    } catch (const host::LinkError& error) {
+    } catch (const client::LinkError& error) {
       EXPECT_NE(std::string(error.what()).find(port), std::string::npos);
     }
   }
-  EXPECT_THROW((void)host::open_serial_port("/dev/null", 12345), host::LinkError);
+  EXPECT_THROW((void)client::open_serial_port("/dev/null", 12345), client::LinkError);
 }
 
 TEST(Connection, NamesTheDefaultInsteadOfAnUnusualSpeed) {
   try {
-    (void)host::open_serial_port("/dev/null", 0);
+    (void)client::open_serial_port("/dev/null", 0);
     FAIL();
-  } catch (const host::LinkError& error) {
+  } catch (const client::LinkError& error) {
     EXPECT_STREQ(
         error.what(),
         "/dev/null: 0 baud is not a usual speed (the default is 1000000; others are 115200, "
@@ -44,12 +44,12 @@ TEST(Connection, NamesTheDefaultInsteadOfAnUnusualSpeed) {
 TEST(Connection, RefusesASilentPort) {
   RunningBoard silent;
   silent.freeze(true);
-  EXPECT_THROW(host::Board board(silent.port()), host::LinkError);
+  EXPECT_THROW(client::Board board(silent.port()), client::LinkError);
 }
 
 TEST(Connection, TimePassesOnlyWhileTheProgramLetsIt) {
   const RunningBoard running;
-  host::Board board(running.port(), {.link_timeout_ms = 5});
+  client::Board board(running.port(), {.link_timeout_ms = 5});
   const auto begin = board.connection().now();
   board.connection().sleep(std::chrono::seconds(10));
   const auto slept = board.connection().now() - begin;
@@ -60,8 +60,9 @@ TEST(Connection, TimePassesOnlyWhileTheProgramLetsIt) {
 }
 
 TEST(Connection, ASerialPortIsReadAndWritten) {
-  host::PseudoTerminal board;
-  const std::unique_ptr<host::Transport> port = host::open_port(board.name(), host::kUsualBaud);
+  client::PseudoTerminal board;
+  const std::unique_ptr<client::Transport> port =
+      client::open_port(board.name(), client::kUsualBaud);
   const std::array<std::byte, 3> sent{std::byte{0}, std::byte{0x7F}, std::byte{0xFF}};
   std::array<std::byte, 8> received{};
   ASSERT_EQ(port->write(sent), sent.size());
@@ -74,7 +75,7 @@ TEST(Connection, ASerialPortIsReadAndWritten) {
 
 TEST(Connection, RendersContactAndStops) {
   const RunningBoard running(0.0295);
-  host::Board board(running.port());
+  client::Board board(running.port());
   board.subscribe({0x3FF, 5});
   board.arm();
   EXPECT_TRUE(comes_true(board.connection(), [&] { return board.latest().force_N[2] > 0.05F; }));
@@ -96,15 +97,15 @@ TEST(Connection, ReconnectsAReturningBoardWithoutArmingIt) {
   };
   auto running = std::make_unique<RunningBoard>();
   plug_in(*running);
-  host::Board board("step:" + link.string());
+  client::Board board("step:" + link.string());
   board.subscribe({0x3FF, 5});
   board.arm();
   ASSERT_TRUE(comes_true(board.connection(), [&] { return board.latest().state == 4U; }));
   running.reset();
   EXPECT_TRUE(comes_true(board.connection(), [&] { return !board.connected(); }));
-  EXPECT_THROW(board.reconnect(), host::LinkError);
+  EXPECT_THROW(board.reconnect(), client::LinkError);
   EXPECT_FALSE(board.connected());
-  EXPECT_THROW(board.stop(), host::LinkError);
+  EXPECT_THROW(board.stop(), client::LinkError);
   EXPECT_EQ(board.latest().header.tick, 0U);
   EXPECT_TRUE(board.take_stream().empty());
 
@@ -120,16 +121,16 @@ TEST(Connection, ReconnectsAReturningBoardWithoutArmingIt) {
 
 TEST(Connection, DoesNotReconnectABoardWithoutAName) {
   const RunningBoard running;
-  host::Board board(host::open_port(running.port(), 0), {});
-  EXPECT_THROW(board.reconnect(), host::LinkError);
+  client::Board board(client::open_port(running.port(), 0), {});
+  EXPECT_THROW(board.reconnect(), client::LinkError);
   EXPECT_TRUE(board.connected());
 }
 
 TEST(Connection, DeliversTheStreamAndCountsMissingMessages) {
   const RunningBoard running;
-  host::Board board(running.port());
+  client::Board board(running.port());
   board.subscribe({0x003, 1});
-  std::vector<host::Telemetry> all;
+  std::vector<client::Telemetry> all;
   ASSERT_TRUE(comes_true(board.connection(), [&] {
     const auto news = board.take_stream();
     all.insert(all.end(), news.begin(), news.end());
@@ -144,9 +145,9 @@ TEST(Connection, DeliversTheStreamAndCountsMissingMessages) {
 
 TEST(Connection, LimitsTheSizeOfAnUnreadStream) {
   const RunningBoard running;
-  host::ConnectionOptions options;
+  client::ConnectionOptions options;
   options.stream_capacity = 10;
-  host::Connection connection(host::open_port(running.port(), 0), options);
+  client::Connection connection(client::open_port(running.port(), 0), options);
   connection.open(0);
   ASSERT_TRUE(
       connection.call(core::wire::MessageKind::kSubscribe, core::wire::SubscribeRequest{1, 1})
@@ -157,18 +158,18 @@ TEST(Connection, LimitsTheSizeOfAnUnreadStream) {
 
 TEST(Connection, CountsRefusedPosts) {
   const RunningBoard running;
-  host::Board board(running.port());
+  client::Board board(running.port());
   board.add_force({1.0F, 0.0F, 0.0F}, 20);  // not active
   EXPECT_TRUE(comes_true(board.connection(), [&] { return board.connection().refusals() == 1U; }));
 }
 
 TEST(Connection, FlashesRollsBackAndReadsTraceAndParameters) {
   const RunningBoard running;
-  host::Board board(running.port());
+  client::Board board(running.port());
   const TestBlob one(sphere(0.02, 0.002));
   const TestBlob two(sphere(0.025, 0.002));
   for (const TestBlob* blob : {&one, &two}) {
-    host::ModelFile model;
+    client::ModelFile model;
     model.bytes = std::as_bytes(std::span(blob->written().bytes));
     std::size_t done = 0;
     board.flash(model, [&](std::size_t now, std::size_t) { done = now; });
@@ -179,9 +180,9 @@ TEST(Connection, FlashesRollsBackAndReadsTraceAndParameters) {
   EXPECT_EQ(board.models().slot[0].state,
             static_cast<std::uint8_t>(core::wire::SlotState::kActive));
   board.erase_model(1);
-  EXPECT_THROW(board.roll_back(), host::LinkError);
+  EXPECT_THROW(board.roll_back(), client::LinkError);
 
-  const std::vector<host::TracedTick> trace = board.trace();
+  const std::vector<client::TracedTick> trace = board.trace();
   ASSERT_GE(trace.size(), 100U);
   EXPECT_LT(trace.front().tick, trace.back().tick);
 
@@ -192,8 +193,8 @@ TEST(Connection, FlashesRollsBackAndReadsTraceAndParameters) {
     found = found || (std::string(p.name) == "hand_damping_Ns_m" && p.value == 2.0F);
   }
   EXPECT_TRUE(found);
-  EXPECT_THROW(board.set_parameter("no such", 1.0F), host::LinkError);
-  EXPECT_THROW(board.set_parameter("delay_s", 5.0F), host::LinkError);
+  EXPECT_THROW(board.set_parameter("no such", 1.0F), client::LinkError);
+  EXPECT_THROW(board.set_parameter("delay_s", 5.0F), client::LinkError);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // A board in lock-step that cannot be started, or is not there, leaves nothing behind.
 
-#include "tactree/host/lock_step.hpp"
+#include "tactree/client/lock_step.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -10,7 +10,7 @@
 #include <iterator>
 #include <optional>
 
-#include "tactree/host/link_error.hpp"
+#include "tactree/client/link_error.hpp"
 
 namespace tactree::test {
 namespace {
@@ -47,9 +47,9 @@ class TemporaryFolder {
 std::string refusal_in(const fs::path& folder) {
   const TemporaryFolder set(folder);
   try {
-    const host::LockStepServer server;
+    const client::LockStepServer server;
     return "no error";
-  } catch (const host::LinkError& error) {
+  } catch (const client::LinkError& error) {
     return error.what();
   }
 }
@@ -71,8 +71,8 @@ TEST(LockStep, AServerThatCannotStartLeavesNothingBehind) {
 
 TEST(LockStep, APortThatCannotBeOpenedLeavesNothingBehind) {
   const std::ptrdiff_t before = open_descriptors();
-  EXPECT_THROW((void)host::open_lock_step(std::string(120, 'x')), host::LinkError);
-  EXPECT_THROW((void)host::open_lock_step("/no/such/socket"), host::LinkError);
+  EXPECT_THROW((void)client::open_lock_step(std::string(120, 'x')), client::LinkError);
+  EXPECT_THROW((void)client::open_lock_step("/no/such/socket"), client::LinkError);
   EXPECT_EQ(open_descriptors(), before);
 }
 

@@ -1,6 +1,6 @@
 // The report of a board's start as text.
 
-#include "tactree/host/start_report.hpp"
+#include "tactree/client/start_report.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,8 +11,8 @@
 namespace tactree::test {
 namespace {
 
+using client::complaints;
 using core::wire::StartPart;
-using host::complaints;
 
 bool has(const std::vector<std::string>& all, const std::string& words) {
   return all.size() == 1U && all.front().find(words) != std::string::npos;

@@ -8,9 +8,9 @@
 
 #include "frames.hpp"
 #include "running_board.hpp"
+#include "tactree/client/link_error.hpp"
+#include "tactree/client/ports.hpp"
 #include "tactree/core/configuration/device_presets.hpp"
-#include "tactree/host/link_error.hpp"
-#include "tactree/host/ports.hpp"
 
 namespace tactree::test {
 namespace {
@@ -83,7 +83,9 @@ class BoardSessionTest : public testing::Test {
   static bool is_idle(const json& frame) {
     return is_here(frame) && frame["runs"][0]["state"] == "idle";
   }
-  void open_in_another_program() { host::Connection(host::open_port(running_->port(), 0)).open(0); }
+  void open_in_another_program() {
+    client::Connection(client::open_port(running_->port(), 0)).open(0);
+  }
   void say(const json& command) { EXPECT_EQ(session_->command(command).value_or(""), ""); }
   std::string refusal(const json& command) {
     return session_->command(command).value_or("accepted");
@@ -196,10 +198,10 @@ TEST_F(BoardSessionTest, ReportsWhetherTheBoardUsesTheDisplayedModel) {
   for (const bool same : {true, false}) {
     session_.reset();
     const TestBlob other(sphere(0.02, 0.002));
-    host::ModelFile model;
+    client::ModelFile model;
     model.bytes = std::as_bytes(
         std::span(same ? RunningBoard::model().written().bytes : other.written().bytes));
-    host::Board(running_->port()).flash(model);
+    client::Board(running_->port()).flash(model);
     begin();
     const json frame = frames_.wait_for(is_here);
     EXPECT_EQ(frame["board"]["model"], same ? "same" : "other");
@@ -260,8 +262,8 @@ TEST_F(BoardSessionTest, TraceHasEveryTickAndOnlyReportedColumns) {
 }
 
 TEST_F(BoardSessionTest, APortWithoutABoardIsALinkError) {
-  const host::PseudoTerminal nobody;
-  EXPECT_THROW(BoardSession(bodies(), settings(nobody.name())), host::LinkError);
+  const client::PseudoTerminal nobody;
+  EXPECT_THROW(BoardSession(bodies(), settings(nobody.name())), client::LinkError);
 }
 
 }  // namespace

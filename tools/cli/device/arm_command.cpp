@@ -27,8 +27,8 @@ std::chrono::milliseconds milliseconds(double seconds) {
 }
 
 /// Runs until the time is up, Ctrl-C is pressed or the board stops.
-void stay(host::Board& board, double seconds, int& exit_code) {
-  const host::Connection& connection = board.connection();
+void stay(client::Board& board, double seconds, int& exit_code) {
+  const client::Connection& connection = board.connection();
   const auto begin = connection.now();
   while (!interrupted() && (seconds <= 0.0 || connection.now() - begin < milliseconds(seconds))) {
     connection.sleep(std::chrono::milliseconds(50));
@@ -45,8 +45,8 @@ void stay(host::Board& board, double seconds, int& exit_code) {
 // The session requires its link, so the force ends however this program ends.
 void arm(const ArmOptions& options, int& exit_code) {
   watch_interruption();
-  host::Board board(chosen_port(options.port),
-                    {options.port.baud, static_cast<std::uint16_t>(options.link_timeout_ms)});
+  client::Board board(chosen_port(options.port),
+                      {options.port.baud, static_cast<std::uint16_t>(options.link_timeout_ms)});
   if (options.clear) {
     board.clear_faults();
   }

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "command.hpp"
-#include "tactree/host/ports.hpp"
+#include "tactree/client/ports.hpp"
 
 namespace tactree::cli {
 
@@ -25,7 +25,7 @@ std::string chosen_port(const BoardPort& options) {
   if (!options.port.empty()) {
     return options.port;
   }
-  const std::vector<std::string> ports = host::list_ports();
+  const std::vector<std::string> ports = client::list_ports();
   if (ports.empty()) {
     throw CommandError("no board found (plug one in, or give its --port)");
   }
@@ -36,8 +36,9 @@ std::string chosen_port(const BoardPort& options) {
   return ports.front();
 }
 
-std::unique_ptr<host::Board> connect(const BoardPort& options) {
-  return std::make_unique<host::Board>(chosen_port(options), host::BoardOptions{options.baud, 0});
+std::unique_ptr<client::Board> connect(const BoardPort& options) {
+  return std::make_unique<client::Board>(chosen_port(options),
+                                         client::BoardOptions{options.baud, 0});
 }
 
 }  // namespace tactree::cli

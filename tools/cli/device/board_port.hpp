@@ -6,7 +6,7 @@
 #include <memory>
 #include <string>
 
-#include "tactree/host/board.hpp"
+#include "tactree/client/board.hpp"
 
 namespace tactree::cli {
 
@@ -17,7 +17,7 @@ inline constexpr const char* kPortForms =
 
 struct BoardPort {
   std::string port;  ///< empty: the only one found
-  unsigned baud = host::kUsualBaud;
+  unsigned baud = client::kUsualBaud;
 };
 
 void add_port_options(CLI::App& verb, BoardPort& options);
@@ -28,8 +28,8 @@ CLI::Option* add_link_timeout_option(CLI::App& verb, int& milliseconds);
 /// Throws CommandError if there is no board, or more than one.
 [[nodiscard]] std::string chosen_port(const BoardPort& options);
 
-/// Opens a session. Throws as chosen_port() and host::Board.
-[[nodiscard]] std::unique_ptr<host::Board> connect(const BoardPort& options);
+/// Opens a session. Throws as chosen_port() and client::Board.
+[[nodiscard]] std::unique_ptr<client::Board> connect(const BoardPort& options);
 
 /// A zero-terminated name that may fill its field.
 template <std::size_t N>

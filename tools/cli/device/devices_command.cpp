@@ -12,9 +12,9 @@
 #include "device/board_port.hpp"
 #include "option_checks.hpp"
 #include "output_file.hpp"
-#include "tactree/host/link_error.hpp"
-#include "tactree/host/ports.hpp"
-#include "tactree/host/usb_devices.hpp"
+#include "tactree/client/link_error.hpp"
+#include "tactree/client/ports.hpp"
+#include "tactree/client/usb_devices.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -30,7 +30,7 @@ struct DevicesOptions {
 
 nlohmann::json probe(const std::string& port, unsigned baud) {
   try {
-    const host::Introduction found = host::Board::introduce(host::open_port(port, baud));
+    const client::Introduction found = client::Board::introduce(client::open_port(port, baud));
     const core::wire::IdentifyReply& board = found.board;
     return {{"port", port},
             {"board", text_of(board.board)},
@@ -38,8 +38,8 @@ nlohmann::json probe(const std::string& port, unsigned baud) {
             {"serial",
              fmt::format("{:08x}{:08x}{:08x}", board.serial[0], board.serial[1], board.serial[2])},
             {"protocol", fmt::format("{}.{}", board.version_major, board.version_minor)},
-            {"complaints", host::complaints(found.start)}};
-  } catch (const host::LinkError& error) {
+            {"complaints", client::complaints(found.start)}};
+  } catch (const client::LinkError& error) {
     return {{"port", port}, {"error", error.what()}};
   }
 }
@@ -58,7 +58,7 @@ void print(const nlohmann::json& device) {
 }
 
 void list_devices(const DevicesOptions& options, int& exit_code) {
-  std::vector<std::string> ports = host::list_ports();
+  std::vector<std::string> ports = client::list_ports();
   if (!options.port.port.empty()) {
     ports = {options.port.port};
   }
@@ -81,10 +81,10 @@ void list_devices(const DevicesOptions& options, int& exit_code) {
 void watch_devices(double seconds) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point begin = Clock::now();
-  host::UsbWatch watch;
+  client::UsbWatch watch;
   while (seconds <= 0.0 || Clock::now() - begin < std::chrono::duration<double>(seconds)) {
-    for (const host::UsbWatch::Change& change : watch.poll()) {
-      const host::UsbDeviceInfo& device = change.device;
+    for (const client::UsbWatch::Change& change : watch.poll()) {
+      const client::UsbDeviceInfo& device = change.device;
       fmt::print("{} usb:{} {} {} {} {}\n", change.arrived ? '+' : '-', device.path, device.serial,
                  device.maker, device.name, device.problem);
     }
@@ -95,10 +95,10 @@ void watch_devices(double seconds) {
 
 void devices(const DevicesOptions& options, int& exit_code) {
   if (options.print_udev) {
-    fmt::print("{}", host::udev_rule());
+    fmt::print("{}", client::udev_rule());
   } else if (options.install_udev) {
     fmt::print("wrote {}; plug the board in again, or run: udevadm trigger\n",
-               host::install_udev_rule());
+               client::install_udev_rule());
   } else if (options.watch) {
     watch_devices(options.seconds);
   } else {

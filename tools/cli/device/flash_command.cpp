@@ -67,12 +67,12 @@ void show_progress(std::size_t done, std::size_t all) {
   }
 }
 
-void write_model(host::Board& board, const std::string& file) {
+void write_model(client::Board& board, const std::string& file) {
   const BlobFile blob(file);
   if (const auto warning = size_warning(file, blob.view().header())) {
     fmt::print(stderr, "tactree: warning: {}\n", *warning);
   }
-  host::ModelFile model;
+  client::ModelFile model;
   model.bytes = blob.bytes();
   if (const std::optional<ModelSignature> signature = read_signature(file)) {
     model.board = signature->board;

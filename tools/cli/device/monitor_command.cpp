@@ -15,8 +15,8 @@
 #include "interruption.hpp"
 #include "option_checks.hpp"
 #include "output_file.hpp"
+#include "tactree/client/link_error.hpp"
 #include "tactree/core/control/controller.hpp"
-#include "tactree/host/link_error.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -48,13 +48,13 @@ double length(const float (&v)[3]) {
 }
 
 /// Ticks per second of the board's clock.
-double rate_of(const host::Telemetry& from, const host::Telemetry& to) {
+double rate_of(const client::Telemetry& from, const client::Telemetry& to) {
   const std::uint32_t us = to.header.board_time_us - from.header.board_time_us;
   return us == 0U ? 0.0 : 1e6 * static_cast<double>(to.header.tick - from.header.tick) / us;
 }
 
 struct View {
-  host::Telemetry now{};
+  client::Telemetry now{};
   double rate_hz = 0.0;
   double force_max_N = 0.0;
   std::uint32_t cycles_per_tick = 0;
@@ -72,11 +72,11 @@ std::string cycles(const View& view) {
 }
 
 std::string to_text(const View& view) {
-  const host::Telemetry& t = view.now;
+  const client::Telemetry& t = view.now;
   const double force = length(t.force_N);
   const double share = view.force_max_N > 0.0 ? std::min(1.0, force / view.force_max_N) : 0.0;
   const int filled = static_cast<int>(std::lround(share * kBarWidth));
-  const std::string faults = host::names_of(t.faults);
+  const std::string faults = client::names_of(t.faults);
   const std::string limits = names_of_limits(t.limits);
   return fmt::format(
       "state    {}{}\n"
@@ -99,11 +99,11 @@ std::string to_text(const View& view) {
 }
 
 nlohmann::json to_json(const View& view) {
-  const host::Telemetry& t = view.now;
+  const client::Telemetry& t = view.now;
   return {{"tick", t.header.tick},
           {"state", core::name_of(static_cast<core::State>(t.state))},
           {"faults", t.faults},
-          {"fault_names", host::names_of(t.faults)},
+          {"fault_names", client::names_of(t.faults)},
           {"limits", t.limits},
           {"force_N", t.force_N},
           {"probe_m", t.probe_m},
@@ -124,7 +124,7 @@ class NoTelemetry : public CommandError {
 
 class Monitor {
  public:
-  explicit Monitor(host::Board& board) : board_(board) {
+  explicit Monitor(client::Board& board) : board_(board) {
     const core::wire::CapabilitiesReply can = board_.capabilities();
     view_.force_max_N = static_cast<double>(can.force_max_N);
     view_.cycles_per_tick = can.cycles_per_tick;
@@ -137,15 +137,15 @@ class Monitor {
 
   /// Throws NoTelemetry if none arrives.
   const View& look() {
-    const host::Connection& connection = board_.connection();
+    const client::Connection& connection = board_.connection();
     const auto wait_until = connection.now() + std::chrono::seconds(2);
-    std::vector<host::Telemetry> news = board_.take_stream();
+    std::vector<client::Telemetry> news = board_.take_stream();
     while (news.size() < 2U) {
       if (!board_.connected() || connection.now() > wait_until) {
         throw NoTelemetry("no telemetry (is the board still connected?)");
       }
       connection.sleep(std::chrono::milliseconds(10));
-      const std::vector<host::Telemetry> more = board_.take_stream();
+      const std::vector<client::Telemetry> more = board_.take_stream();
       news.insert(news.end(), more.begin(), more.end());
     }
     view_.rate_hz = rate_of(news.front(), news.back());
@@ -155,13 +155,13 @@ class Monitor {
   }
 
  private:
-  host::Board& board_;
+  client::Board& board_;
   View view_;
 };
 
 /// Waits until the board is connected again. False: the time is up, or Ctrl-C was pressed.
 template <class TimeIsUp>
-bool wait_for_return(host::Board& board, TimeIsUp time_is_up) {
+bool wait_for_return(client::Board& board, TimeIsUp time_is_up) {
   fmt::print("the board is disconnected; waiting for it\n");
   std::fflush(stdout);
   while (!time_is_up()) {
@@ -169,7 +169,7 @@ bool wait_for_return(host::Board& board, TimeIsUp time_is_up) {
       board.reconnect();
       fmt::print("the board is connected again\n");
       return true;
-    } catch (const host::LinkError&) {
+    } catch (const client::LinkError&) {
       std::this_thread::sleep_for(std::chrono::milliseconds(200));
     }
   }
@@ -191,7 +191,7 @@ void print_view(const std::string& text, bool first) {
   std::fflush(stdout);
 }
 
-void watch(host::Board& board, Monitor& monitor, const MonitorOptions& options) {
+void watch(client::Board& board, Monitor& monitor, const MonitorOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   const std::chrono::duration<double> limit(options.seconds);
   const auto time_is_up = [&] {

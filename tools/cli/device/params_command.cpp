@@ -20,7 +20,7 @@ struct ParamsOptions {
   std::string json;
 };
 
-void set(host::Board& board, const std::string& setting) {
+void set(client::Board& board, const std::string& setting) {
   const std::size_t equals = setting.find('=');
   float value = 0.0F;
   const char* const begin = setting.data() + (equals == std::string::npos ? 0 : equals + 1);

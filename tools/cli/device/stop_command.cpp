@@ -6,8 +6,8 @@
 
 #include "command.hpp"
 #include "device/board_port.hpp"
-#include "tactree/host/connection.hpp"
-#include "tactree/host/ports.hpp"
+#include "tactree/client/connection.hpp"
+#include "tactree/client/ports.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -16,7 +16,7 @@ namespace {
 // stopped.
 void stop(const BoardPort& options) {
   constexpr int kTries = 5;
-  host::Connection connection(host::open_port(chosen_port(options), options.baud));
+  client::Connection connection(client::open_port(chosen_port(options), options.baud));
   const core::wire::ControlRequest request{
       static_cast<std::uint8_t>(core::wire::ControlCode::kStop), {}, 0};
   for (int i = 0; i < kTries; ++i) {

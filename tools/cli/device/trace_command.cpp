@@ -17,7 +17,7 @@ struct TraceOptions {
   std::string output;
 };
 
-std::string row(const host::TracedTick& traced) {
+std::string row(const client::TracedTick& traced) {
   const core::FlightRecord& r = traced.record;
   const auto scaled = [](int units, float per_unit) {
     return static_cast<double>(units) / static_cast<double>(per_unit);
@@ -57,7 +57,7 @@ void trace(const TraceOptions& options) {
   std::string csv =
       "tick,state,contact,slipping,x_m,y_m,z_m,force_x_N,force_y_N,force_z_N,to_proxy_x_m,"
       "to_proxy_y_m,to_proxy_z_m,load\n";
-  for (const host::TracedTick& tick : board->trace()) {
+  for (const client::TracedTick& tick : board->trace()) {
     csv += row(tick);
   }
   if (options.output.empty()) {

@@ -12,11 +12,11 @@
 #include "run/serve_session.hpp"
 #include "run/simulate_setup.hpp"
 #include "run/usb_port.hpp"
+#include "tactree/client/lock_step.hpp"
+#include "tactree/client/serial_port.hpp"
 #include "tactree/emulation/emulated_target.hpp"
 #include "tactree/hal/linux/function_fs_controller.hpp"
 #include "tactree/hal/linux/usbip_controller.hpp"
-#include "tactree/host/lock_step.hpp"
-#include "tactree/host/serial_port.hpp"
 #include "tactree/serve/served_target.hpp"
 #include "tactree/serve/usb_target.hpp"
 #include "tactree/simulation/recording.hpp"
@@ -37,7 +37,7 @@ serve::ServeOptions serve_options(const SimulateOptions& options) {
 
 std::unique_ptr<simulation::Target> served_target(const SimulateOptions& options,
                                                   const SceneFile& scene,
-                                                  host::Transport& terminal) {
+                                                  client::Transport& terminal) {
   const BlobFile& blob = *scene.files[0];
   const serve::ServeOptions serving = serve_options(options);
   const emulation::BoardDescription* const board = emulation::find_board(options.board);
@@ -87,7 +87,7 @@ void serve_on_usb(const SimulateOptions& options, const SceneFile& scene,
   port.unplug();
 }
 
-void serve_at(const SimulateOptions& options, const SceneFile& scene, host::Transport& port,
+void serve_at(const SimulateOptions& options, const SceneFile& scene, client::Transport& port,
               const ServeSchedule& schedule) {
   auto target = served_target(options, scene, port);
   fmt::print("serving at {}\n", port.name());
@@ -118,12 +118,12 @@ void serve(const SimulateOptions& options, const SceneFile& scene) {
     hal::linux_usb::FunctionFsController controller(identity, *options.usb_port);
     serve_on_usb(options, scene, identity, controller);
   } else if (options.lock_step) {
-    host::LockStepServer server;
+    client::LockStepServer server;
     ServeSchedule schedule;
     schedule.wait = [&](auto, auto period) { server.pass(period, interrupted); };
     serve_at(options, scene, server, schedule);
   } else {
-    host::PseudoTerminal terminal;
+    client::PseudoTerminal terminal;
     serve_at(options, scene, terminal, {});
   }
 }

@@ -19,7 +19,7 @@ constexpr std::size_t kMaxWaiting = 1U << 20U;
 
 }  // namespace
 
-SerialBridge::SerialBridge(host::Transport& programs) : programs_(programs) {
+SerialBridge::SerialBridge(client::Transport& programs) : programs_(programs) {
   int ends[2] = {-1, -1};
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
     throw EmulationError(std::string("socket for the board's serial port: ") +

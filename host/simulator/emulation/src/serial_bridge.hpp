@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "tactree/host/transport.hpp"
+#include "tactree/client/transport.hpp"
 #include "tactree/process/file_descriptor.hpp"
 
 namespace tactree::emulation {
@@ -12,7 +12,7 @@ namespace tactree::emulation {
 class SerialBridge {
  public:
   /// `programs` outlives the bridge. Throws EmulationError.
-  explicit SerialBridge(host::Transport& programs);
+  explicit SerialBridge(client::Transport& programs);
   /// The descriptor that the emulator uses as its serial port.
   [[nodiscard]] int board_end() const { return board_.get(); }
   /// Copies the available bytes in both directions. Never blocks.
@@ -21,7 +21,7 @@ class SerialBridge {
  private:
   void flush();
 
-  host::Transport& programs_;
+  client::Transport& programs_;
   process::FileDescriptor ours_;
   process::FileDescriptor board_;
   // Bytes that could not be written yet.

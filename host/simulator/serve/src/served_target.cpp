@@ -18,7 +18,7 @@ hal::FlashGeometry geometry(std::uint32_t slot_bytes) {
 /// Board side of a transport.
 class TransportPort {
  public:
-  explicit TransportPort(host::Transport& transport) : transport_(transport) {}
+  explicit TransportPort(client::Transport& transport) : transport_(transport) {}
   [[nodiscard]] std::size_t read(std::span<std::byte> bytes) noexcept {
     return transport_.read(bytes);
   }
@@ -27,7 +27,7 @@ class TransportPort {
   }
 
  private:
-  host::Transport& transport_;
+  client::Transport& transport_;
 };
 
 }  // namespace
@@ -63,7 +63,7 @@ class ServedTarget::Running {
   session::Session<TransportPort, ServedSimBoard::Store, ServedPlatform> session_;
 };
 
-ServedTarget::ServedTarget(host::Transport& transport, std::span<const std::byte> model,
+ServedTarget::ServedTarget(client::Transport& transport, std::span<const std::byte> model,
                            const ServeOptions& options)
     : transport_(transport),
       options_(options),

@@ -13,8 +13,8 @@
 #include "await_response.hpp"
 #include "boards/stm32f405/stm32f405_board.hpp"
 #include "fake_chip.hpp"
+#include "tactree/client/client.hpp"
 #include "tactree/hal/loop.hpp"
-#include "tactree/host/client.hpp"
 
 namespace tactree::test {
 
@@ -62,7 +62,7 @@ class BoardRig {
     chip_ = std::make_unique<FakeChip>();
     chip_in_use = {chip_.get()};
     chip_->flash.restore(kept);
-    client_ = host::Client();
+    client_ = client::Client();
     to_board_.clear();
     boot();
   }
@@ -92,22 +92,22 @@ class BoardRig {
 
   // ---- the application
 
-  host::Response await(std::uint16_t sequence, int ticks_max = 5000) {
+  client::Response await(std::uint16_t sequence, int ticks_max = 5000) {
     int ticks = 0;
     return test::await_response(
         client_, sequence, [&] { return ticks++ < ticks_max; }, [&] { tick(); });
   }
-  host::Response ask(core::wire::MessageKind kind, std::span<const std::byte> payload = {}) {
+  client::Response ask(core::wire::MessageKind kind, std::span<const std::byte> payload = {}) {
     return await(client_.send(kind, payload, now_us()));
   }
   template <core::wire::Message T>
-  host::Response ask(core::wire::MessageKind kind, const T& message) {
+  client::Response ask(core::wire::MessageKind kind, const T& message) {
     return ask(kind, std::as_bytes(std::span(&message, 1)));
   }
-  host::Response open(std::uint16_t link_timeout_ms = 50) {
+  client::Response open(std::uint16_t link_timeout_ms = 50) {
     return await(client_.open(link_timeout_ms, 7, now_us()));
   }
-  host::Response control(core::wire::ControlCode code) {
+  client::Response control(core::wire::ControlCode code) {
     return ask(core::wire::MessageKind::kControl,
                core::wire::ControlRequest{static_cast<std::uint8_t>(code), {}, 0});
   }
@@ -127,12 +127,12 @@ class BoardRig {
     return armed && status_.state == core::State::kActive;
   }
   /// A model as `tactree flash` writes it. The first response that is not good, or the last.
-  host::Response flash(std::span<const std::byte> model) {
+  client::Response flash(std::span<const std::byte> model) {
     using Kind = core::wire::MessageKind;
     core::wire::BeginModelRequest begin;
     begin.bytes = static_cast<std::uint32_t>(model.size());
     begin.checksum = core::crc32(model);
-    host::Response response = ask(Kind::kBeginModel, begin);
+    client::Response response = ask(Kind::kBeginModel, begin);
     for (std::size_t at = 0; response.ok() && at < model.size(); at += core::wire::kMaxPiece) {
       const auto piece =
           model.subspan(at, std::min<std::size_t>(core::wire::kMaxPiece, model.size() - at));
@@ -162,7 +162,7 @@ class BoardRig {
   [[nodiscard]] const hal::StartResult& started() const { return start_; }
   [[nodiscard]] const core::Configuration& configuration() const { return configuration_; }
   [[nodiscard]] const core::Status& status() const { return status_; }
-  [[nodiscard]] host::Microseconds now_us() { return 1000U * std::uint64_t{chip().ticks}; }
+  [[nodiscard]] client::Microseconds now_us() { return 1000U * std::uint64_t{chip().ticks}; }
   /// Share of the time that the motors get current.
   [[nodiscard]] double duty() {
     return chip().tim8.duty(0) + chip().tim8.duty(1) + chip().tim8.duty(2);
@@ -209,7 +209,7 @@ class BoardRig {
   core::Status status_;
   double since_tick_us_ = 0.0;
   std::uint32_t ticks_ = 0;
-  host::Client client_;
+  client::Client client_;
   std::deque<std::uint8_t> to_board_;
 };
 

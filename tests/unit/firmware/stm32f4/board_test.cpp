@@ -1,7 +1,7 @@
 // The whole board of firmware/boards/stm32f405 on the faked chip, with an application at its serial
 // port: from power-up to force and back, and every refusal.
 
-#include "tactree/host/board.hpp"
+#include "tactree/client/board.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,8 +12,8 @@
 
 #include "analytic_shapes.hpp"
 #include "board_rig.hpp"
+#include "tactree/client/link_error.hpp"
 #include "tactree/hal/conformance.hpp"
-#include "tactree/host/link_error.hpp"
 
 // Functions and symbols that an image gets from core and linker script.
 namespace tactree::firmware {
@@ -427,7 +427,7 @@ TEST_F(Stm32f405, ErasesItsRecordSectorsAfterManySaves) {
 
 /// The wire between that and the board, which runs in the library's thread, in lock-step with it.
 /// The hand holds on a moment after the board is armed.
-class RigTransport : public host::Transport {
+class RigTransport : public client::Transport {
  public:
   /// `driven`: whether the motors ever got current.
   RigTransport(BoardRig& rig, std::atomic<bool>& driven) : rig_(rig), driven_(driven) {
@@ -486,15 +486,15 @@ TEST(Stm32f405InLockStep, TheClientLibraryFindsFlashesArmsAndStopsIt) {
   rig.boot();
   std::atomic<bool> driven = false;
   {
-    const host::Introduction found =
-        host::Board::introduce(std::make_unique<RigTransport>(rig, driven));
+    const client::Introduction found =
+        client::Board::introduce(std::make_unique<RigTransport>(rig, driven));
     EXPECT_STREQ(found.board.board, "stm32f405");
-    EXPECT_TRUE(host::complaints(found.start).empty());
+    EXPECT_TRUE(client::complaints(found.start).empty());
   }
   {
-    host::BoardOptions options;
+    client::BoardOptions options;
     options.link_timeout_ms = 100;
-    host::Board board(std::make_unique<RigTransport>(rig, driven), options);
+    client::Board board(std::make_unique<RigTransport>(rig, driven), options);
     board.flash({.bytes = small.bytes(), .board = "stm32f405"});
     EXPECT_EQ(board.models().slot[0].state,
               static_cast<std::uint8_t>(core::wire::SlotState::kActive));
@@ -502,7 +502,7 @@ TEST(Stm32f405InLockStep, TheClientLibraryFindsFlashesArmsAndStopsIt) {
     board.save_parameters();
     board.home();
     board.arm();
-    EXPECT_THROW(board.flash({.bytes = small.bytes(), .board = ""}), host::LinkError);
+    EXPECT_THROW(board.flash({.bytes = small.bytes(), .board = ""}), client::LinkError);
     EXPECT_EQ(static_cast<core::State>(board.state().state), core::State::kActive);
     board.stop();
     EXPECT_EQ(static_cast<core::State>(board.state().state), core::State::kIdle);

@@ -12,13 +12,13 @@
 #include <string>
 #include <utility>
 
-#include "tactree/host/board.hpp"
-#include "tactree/host/link_error.hpp"
+#include "tactree/client/board.hpp"
+#include "tactree/client/link_error.hpp"
 
 namespace tactree::chai3d {
 
 struct DeviceOptions {
-  unsigned baud = host::kUsualBaud;
+  unsigned baud = client::kUsualBaud;
   /// CHAI3D's servo loop sends forces all the time: when it ends, so does the force.
   std::uint16_t link_timeout_ms = 50;
   std::uint32_t every_ticks = 1;  ///< of telemetry; on a serial port 10 or more
@@ -43,14 +43,14 @@ class Device : public Base {
   /// error().
   bool open() override {
     try {
-      board_ = std::make_unique<host::Board>(
-          port_, host::BoardOptions{options_.baud, options_.link_timeout_ms});
+      board_ = std::make_unique<client::Board>(
+          port_, client::BoardOptions{options_.baud, options_.link_timeout_ms});
       const core::wire::CapabilitiesReply can = board_->capabilities();
       this->m_specifications.m_maxLinearForce = static_cast<double>(can.host_force_max_N);
       this->m_specifications.m_maxLinearStiffness = static_cast<double>(can.stiffness_limit_N_m);
       board_->subscribe({0x0F, options_.every_ticks});
       board_->arm();
-    } catch (const host::LinkError& error) {
+    } catch (const client::LinkError& error) {
       error_ = error.what();
       board_.reset();
     }
@@ -71,7 +71,7 @@ class Device : public Base {
     }
     try {
       board_->home();
-    } catch (const host::LinkError& error) {
+    } catch (const client::LinkError& error) {
       error_ = error.what();
       return false;
     }
@@ -82,7 +82,7 @@ class Device : public Base {
     if (board_ == nullptr) {
       return false;
     }
-    const host::Telemetry latest = board_->latest();
+    const client::Telemetry latest = board_->latest();
     a_position.set(static_cast<double>(latest.probe_m[0]), static_cast<double>(latest.probe_m[1]),
                    static_cast<double>(latest.probe_m[2]));
     this->estimateLinearVelocity(a_position);
@@ -114,12 +114,12 @@ class Device : public Base {
 
   [[nodiscard]] const std::string& error() const { return error_; }
   /// For what CHAI3D has no name for; nullptr: closed.
-  [[nodiscard]] host::Board* board() { return board_.get(); }
+  [[nodiscard]] client::Board* board() { return board_.get(); }
 
  private:
   std::string port_;
   DeviceOptions options_;
-  std::unique_ptr<host::Board> board_;
+  std::unique_ptr<client::Board> board_;
   std::string error_;
 };
 

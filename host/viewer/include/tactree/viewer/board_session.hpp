@@ -20,7 +20,7 @@
 #include <span>
 #include <string>
 
-#include "tactree/host/board.hpp"
+#include "tactree/client/board.hpp"
 #include "tactree/viewer/frame.hpp"
 #include "tactree/viewer/source.hpp"
 #include "tactree/viewer/tick_log.hpp"
@@ -32,7 +32,7 @@ class CommandOutcome;
 
 struct BoardSettings {
   std::string port;
-  host::BoardOptions link{};
+  client::BoardOptions link{};
   core::DeviceModel device{};          ///< drawn; boards do not report theirs
   std::span<const std::byte> model{};  ///< displayed; compared with the board's
   /// Work per tick of the named board with the displayed model. No function: unknown.
@@ -41,8 +41,8 @@ struct BoardSettings {
 
 class BoardSession : public Source {
  public:
-  /// Connects; throws host::LinkError. The data that `bodies` and `settings` refer to must outlive
-  /// the session.
+  /// Connects; throws client::LinkError. The data that `bodies` and `settings` refer to must
+  /// outlive the session.
   BoardSession(Bodies bodies, BoardSettings settings);
   ~BoardSession() override;
 
@@ -65,7 +65,7 @@ class BoardSession : public Source {
   void set(const nlohmann::json& wanted);
   void continue_arming();
   void read_telemetry();
-  void add(const host::Telemetry& telemetry);
+  void add(const client::Telemetry& telemetry);
   void check_link();
   void set_lost(Link link, const std::string& why);
   void reconnect();
@@ -84,7 +84,7 @@ class BoardSession : public Source {
 
   // Used by the session's thread only, except board_ under connecting_.
   std::mutex connecting_;  // held while reconnecting
-  std::unique_ptr<host::Board> board_;
+  std::unique_ptr<client::Board> board_;
   std::unique_ptr<BoardFacts> facts_;
   core::Configuration contact_{};  // contact parameters sent to the board
   Work work_;

@@ -11,10 +11,10 @@
 #include <span>
 #include <string>
 
+#include "tactree/client/transport.hpp"
 #include "tactree/emulation/board_description.hpp"
 #include "tactree/emulation/emulation_error.hpp"
 #include "tactree/emulation/instruction_counts.hpp"
-#include "tactree/host/transport.hpp"
 #include "tactree/simulation/target.hpp"
 
 namespace tactree::emulation {
@@ -28,7 +28,7 @@ struct EmulationOptions {
   /// Also records the code and data that the ticks access; halves the speed.
   bool note_code = false;
   /// Connects programs to the serial port of the board; nullptr: none. Outlives the target.
-  host::Transport* served = nullptr;
+  client::Transport* served = nullptr;
   /// Overrides that of the board.
   std::optional<std::uint32_t> instruction_shift;
   /// Time-outs, real time: until the board has started, and for each tick.

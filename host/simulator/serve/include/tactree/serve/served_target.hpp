@@ -8,9 +8,9 @@
 #include <optional>
 #include <span>
 
+#include "tactree/client/transport.hpp"
 #include "tactree/core/crypto/signature.hpp"
 #include "tactree/hal/sim/flash.hpp"
-#include "tactree/host/transport.hpp"
 #include "tactree/session/session.hpp"
 #include "tactree/simulation/target.hpp"
 #include "tactree/store/model_store.hpp"
@@ -70,7 +70,7 @@ class ServedPlatform {
 class ServedTarget : public simulation::Target {
  public:
   /// `model`: in use until another is written. `model` and `transport` must outlive the target.
-  ServedTarget(host::Transport& transport, std::span<const std::byte> model,
+  ServedTarget(client::Transport& transport, std::span<const std::byte> model,
                const ServeOptions& options);
   ~ServedTarget() override;
 
@@ -90,7 +90,7 @@ class ServedTarget : public simulation::Target {
  private:
   class Running;
 
-  host::Transport& transport_;
+  client::Transport& transport_;
   ServeOptions options_;
   hal::sim::SimFlash flash_;
   core::Controller controller_;

@@ -45,7 +45,7 @@ class UsbTarget : public ServedTarget {
   [[nodiscard]] const Device& device() const { return device_; }
 
  private:
-  class Port : public host::Transport {
+  class Port : public client::Transport {
    public:
     explicit Port(Device& device) : device_(device) {}
     [[nodiscard]] std::size_t read(std::span<std::byte> bytes) override {

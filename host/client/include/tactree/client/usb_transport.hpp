@@ -5,11 +5,11 @@
 #include <optional>
 #include <string>
 
+#include "tactree/client/transport.hpp"
+#include "tactree/client/usb_devices.hpp"
 #include "tactree/core/link/usb/descriptors.hpp"
-#include "tactree/host/transport.hpp"
-#include "tactree/host/usb_devices.hpp"
 
-namespace tactree::host {
+namespace tactree::client {
 
 class UsbTransport : public Transport {
  public:
@@ -38,4 +38,4 @@ class UsbTransport : public Transport {
 /// just one. Throws LinkError that lists what there is.
 [[nodiscard]] std::unique_ptr<UsbTransport> open_usb(const std::string& which);
 
-}  // namespace tactree::host
+}  // namespace tactree::client

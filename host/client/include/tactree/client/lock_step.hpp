@@ -14,9 +14,9 @@
 #include <string>
 #include <vector>
 
-#include "tactree/host/transport.hpp"
+#include "tactree/client/transport.hpp"
 
-namespace tactree::host {
+namespace tactree::client {
 
 /// The program's side. Throws LinkError: nobody is there, no permission.
 [[nodiscard]] std::unique_ptr<Transport> open_lock_step(const std::string& path);
@@ -63,4 +63,4 @@ class LockStepServer : public Transport {
   std::vector<std::byte> in_;
 };
 
-}  // namespace tactree::host
+}  // namespace tactree::client

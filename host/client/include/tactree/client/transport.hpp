@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-namespace tactree::host {
+namespace tactree::client {
 
 /// Not for several threads at once, except now().
 class Transport {
@@ -35,4 +35,4 @@ class Transport {
   [[nodiscard]] virtual std::string name() const = 0;
 };
 
-}  // namespace tactree::host
+}  // namespace tactree::client

@@ -6,9 +6,9 @@
 
 #include "tactree/core/link/wire/messages.hpp"
 
-namespace tactree::host {
+namespace tactree::client {
 
 /// A sentence for each thing that is not well, with its remedy. None: all is.
 [[nodiscard]] std::vector<std::string> complaints(const core::wire::ReadStartReply& start);
 
-}  // namespace tactree::host
+}  // namespace tactree::client

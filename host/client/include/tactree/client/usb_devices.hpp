@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace tactree::host {
+namespace tactree::client {
 
 struct UsbDeviceInfo {
   std::uint16_t vendor = 0;
@@ -64,4 +64,4 @@ class UsbWatch {
 /// Writes it below `root` ("/"), and returns the file. Throws LinkError with a remedy.
 std::string install_udev_rule(const std::string& root = "/");
 
-}  // namespace tactree::host
+}  // namespace tactree::client

@@ -1,7 +1,7 @@
 #pragma once
 // A board with a haptic device, for an application:
 //
-//   tactree::host::Board board("/dev/ttyACM0");
+//   tactree::client::Board board("/dev/ttyACM0");
 //   board.subscribe({.every_ticks = 10});
 //   board.arm();                                     // waits for the dead-man control
 //   while (running) {
@@ -23,13 +23,13 @@
 #include <string>
 #include <vector>
 
+#include "tactree/client/connection.hpp"
+#include "tactree/client/serial_port.hpp"
+#include "tactree/client/start_report.hpp"
 #include "tactree/core/control/flight_recorder.hpp"
 #include "tactree/core/math/pose.hpp"
-#include "tactree/host/connection.hpp"
-#include "tactree/host/serial_port.hpp"
-#include "tactree/host/start_report.hpp"
 
-namespace tactree::host {
+namespace tactree::client {
 
 struct BoardOptions {
   unsigned baud = kUsualBaud;  ///< of a serial port
@@ -161,4 +161,4 @@ class Board {
   std::unique_ptr<Connection> connection_;  // none after a reconnect() that failed
 };
 
-}  // namespace tactree::host
+}  // namespace tactree::client

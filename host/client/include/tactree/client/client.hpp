@@ -14,7 +14,7 @@
 #include "tactree/core/link/wire/messages.hpp"
 #include "tactree/core/link/wire/telemetry.hpp"
 
-namespace tactree::host {
+namespace tactree::client {
 
 using Microseconds = std::uint64_t;
 
@@ -118,4 +118,4 @@ class Client {
   std::uint64_t damaged_ = 0;
 };
 
-}  // namespace tactree::host
+}  // namespace tactree::client

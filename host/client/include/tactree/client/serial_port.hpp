@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "tactree/host/transport.hpp"
+#include "tactree/client/transport.hpp"
 
-namespace tactree::host {
+namespace tactree::client {
 
 /// What our firmware speaks: firmware/boards/stm32f405.
 inline constexpr unsigned kUsualBaud = 1000000;
@@ -41,4 +41,4 @@ class PseudoTerminal : public Transport {
   std::string path_;
 };
 
-}  // namespace tactree::host
+}  // namespace tactree::client

@@ -10,10 +10,10 @@
 #include <span>
 #include <vector>
 
-#include "tactree/host/client.hpp"
-#include "tactree/host/transport.hpp"
+#include "tactree/client/client.hpp"
+#include "tactree/client/transport.hpp"
 
-namespace tactree::host {
+namespace tactree::client {
 
 struct ConnectionOptions {
   ClientOptions client{};
@@ -78,4 +78,4 @@ class Connection {
   std::unique_ptr<Worker> worker_;
 };
 
-}  // namespace tactree::host
+}  // namespace tactree::client

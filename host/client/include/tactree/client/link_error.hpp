@@ -1,7 +1,7 @@
 #pragma once
 #include <stdexcept>
 
-namespace tactree::host {
+namespace tactree::client {
 
 /// A port or board that does not do what was asked. The text is "where: what (remedy)".
 class LinkError : public std::runtime_error {
@@ -9,4 +9,4 @@ class LinkError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-}  // namespace tactree::host
+}  // namespace tactree::client

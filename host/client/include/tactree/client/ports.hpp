@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "tactree/host/transport.hpp"
+#include "tactree/client/transport.hpp"
 
-namespace tactree::host {
+namespace tactree::client {
 
 /// Ports at which a board may be. Cheap: nothing is opened.
 [[nodiscard]] std::vector<std::string> list_ports();
@@ -21,4 +21,4 @@ namespace tactree::host {
 /// Bytes a second that the wire of such a port carries; none: its speed has no meaning there.
 [[nodiscard]] std::optional<unsigned> wire_speed(const std::string& name, unsigned baud);
 
-}  // namespace tactree::host
+}  // namespace tactree::client

@@ -4,11 +4,11 @@
 #include <memory>
 #include <string>
 
-#include "tactree/host/transport.hpp"
+#include "tactree/client/transport.hpp"
 
-namespace tactree::host {
+namespace tactree::client {
 
 /// Throws LinkError: nobody is there, no permission.
 [[nodiscard]] std::unique_ptr<Transport> open_local_socket(const std::string& path);
 
-}  // namespace tactree::host
+}  // namespace tactree::client

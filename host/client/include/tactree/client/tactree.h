@@ -1,5 +1,5 @@
 /* Tactree for C: a board with a haptic device, for an application. Needs a C99 compiler; links
-   tactree_host, which needs the C++ run-time library.
+   tactree_client, which needs the C++ run-time library.
 
    A function that can fail returns 0 for success; tactree_error() then returns the cause. What is
    marked "waits" waits for the board's answer; the rest returns at once. A handle is for one thread
@@ -45,7 +45,8 @@ int tactree_reconnect(tactree_board* board);
 int tactree_connected(const tactree_board* board);
 /* Stops the board and closes the port; waits. NULL is allowed. */
 void tactree_close(tactree_board* board);
-/* Message of the last function that failed for this board; NULL: of tactree_open() in this thread. */
+/* Message of the last function that failed for this board; NULL: of tactree_open() in this thread.
+ */
 const char* tactree_error(const tactree_board* board);
 
 int tactree_arm(tactree_board* board, unsigned patience_ms); /* waits, also for the hand */
@@ -58,7 +59,8 @@ int tactree_subscribe(tactree_board* board, unsigned every_ticks);
 int tactree_set_material(tactree_board* board, float stiffness_N_m, float damping_Ns_m,
                          float static_friction, float dynamic_friction);
 
-/* Waits for so much time of the connection. For loops that look for something: with a simulated board in lock-step, time passes as fast as it can meanwhile. */
+/* Waits for so much time of the connection. For loops that look for something: with a simulated
+ * board in lock-step, time passes as fast as it can meanwhile. */
 void tactree_sleep(const tactree_board* board, unsigned duration_ms);
 
 /* The newest sample; all zero before the first. */
