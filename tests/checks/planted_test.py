@@ -426,7 +426,7 @@ class Style(Planted):
         entries = []
         for number, source in enumerate(sources):
             if isinstance(source, list):
-                source = self.write(f"host/files/merged/files_{number}.cpp",
+                source = self.write(f"host/support/merged/files_{number}.cpp",
                                     "".join(f'#include "{name}"\n' for name in source))
             entries.append({"directory": str(self.folder), "file": str(source),
                             "command": f"c++ -std=c++20 -o {number}.o -c {source}"})
@@ -437,22 +437,22 @@ class Style(Planted):
     BAD = "int BadName(int value) { return value + 1; }\n"
 
     def test_host_file(self):
-        good = self.write("host/files/good.cpp", self.GOOD)
+        good = self.write("host/support/good.cpp", self.GOOD)
         self.accepts(*self.build_of(good))
-        self.refuses("host/files/bad.cpp:1:5", *self.build_of(good, self.write("host/files/bad.cpp", self.BAD)))
+        self.refuses("host/support/bad.cpp:1:5", *self.build_of(good, self.write("host/support/bad.cpp", self.BAD)))
 
     def test_merged_host_file(self):
-        good = self.write("host/files/good.cpp", self.GOOD)
-        bad = self.write("host/files/bad.cpp", self.BAD)
-        self.refuses("host/files/bad.cpp:1:5", *self.build_of([good, bad]))
+        good = self.write("host/support/good.cpp", self.GOOD)
+        bad = self.write("host/support/bad.cpp", self.BAD)
+        self.refuses("host/support/bad.cpp:1:5", *self.build_of([good, bad]))
         self.accepts(*self.build_of([good, bad]), good)
 
     def test_files_that_cannot_be_merged(self):
-        one, two = (self.write(f"host/files/{name}.cpp", f"namespace {{\nint f() {{ return 1; }}\n}}\n"
+        one, two = (self.write(f"host/support/{name}.cpp", f"namespace {{\nint f() {{ return 1; }}\n}}\n"
                                f"int {name}() {{ return f(); }}\n") for name in ("one", "two"))
         self.accepts(*self.build_of(one, two))
         two.write_text(two.read_text() + self.BAD)
-        self.refuses("host/files/two.cpp:5:5", *self.build_of(one, two))
+        self.refuses("host/support/two.cpp:5:5", *self.build_of(one, two))
 
     def test_firmware_is_checked_in_cross_builds_only(self):
         self.write("firmware/bad.cpp", self.BAD)

@@ -7,10 +7,10 @@
 #include <cstring>
 #include <random>
 
-#include "command.hpp"
 #include "image/firmware_image.hpp"
 #include "memory_file.hpp"
 #include "tactree/core/math/crc32.hpp"
+#include "tactree/support/user_error.hpp"
 
 namespace {
 
@@ -36,7 +36,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const fuzz::MemoryFile file(data, size);
   try {
     examine(cli::read_firmware(file.path()));
-  } catch (const cli::CommandError& error) {
+  } catch (const support::UserError& error) {
     fuzz::require_reason(error.what(), file.path().string());
   }
   return 0;

@@ -3,11 +3,11 @@
 
 #include <cmath>
 
-#include "csv.hpp"
 #include "memory_file.hpp"
 #include "scan/read_points.hpp"
 #include "tactree/simulation/hand_path.hpp"
 #include "tactree/simulation/injection.hpp"
+#include "tactree/support/csv.hpp"
 
 namespace {
 
@@ -20,7 +20,7 @@ void examine_points(const std::string& file) {
         fuzz::require(std::isfinite(coordinate), "a coordinate is not finite");
       }
     }
-  } catch (const files::CsvError& error) {
+  } catch (const support::CsvError& error) {
     fuzz::require_reason(error.what(), file);
   }
 }

@@ -4,10 +4,10 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "command.hpp"
 #include "folders.hpp"
 #include "memory_file.hpp"
 #include "run/scene_file.hpp"
+#include "tactree/support/user_error.hpp"
 
 namespace {
 
@@ -56,7 +56,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       .write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
   try {
     examine(cli::read_scene(file, {(folder.path() / "a.blob").string()}));
-  } catch (const cli::CommandError& error) {
+  } catch (const support::UserError& error) {
     fuzz::require_reason(error.what(), folder.path().string());
   }
   return 0;

@@ -20,13 +20,13 @@
 #include <string>
 #include <vector>
 
-#include "device_file.hpp"
 #include "e57_writer.hpp"
 #include "las_writer.hpp"
 #include "tactree/builder/model.hpp"
 #include "tactree/core/math/crc32.hpp"
 #include "tactree/core/model/blob.hpp"
 #include "tactree/simulation/injection.hpp"
+#include "tactree/support/device_file.hpp"
 #include "wire_seeds.hpp"
 
 namespace {
@@ -331,8 +331,8 @@ void write_scans(const fs::path& folder) {
 }
 
 void write_devices(const fs::path& folder) {
-  for (const std::string& name : tactree::cli::device_names()) {
-    write(folder / name, tactree::cli::device_json(tactree::cli::load_device(name)));
+  for (const std::string& name : tactree::support::device_names()) {
+    write(folder / name, tactree::support::device_json(tactree::support::load_device(name)));
   }
 }
 

@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "device_file.hpp"
 #include "folders.hpp"
 #include "image/firmware_image.hpp"
 #include "run/scene_file.hpp"
@@ -19,6 +18,7 @@
 #include "tactree/builder/read_scan.hpp"
 #include "tactree/core/model/blob.hpp"
 #include "tactree/simulation/injection.hpp"
+#include "tactree/support/device_file.hpp"
 
 namespace {
 
@@ -65,7 +65,7 @@ std::vector<fs::path> seeds_of(const char* target) {
 
 TEST(Seeds, TheFilesOfTheCommandLineAreRead) {
   for (const fs::path& file : seeds_of("read_device")) {
-    EXPECT_NO_THROW((void)tactree::cli::load_device(file.string())) << file;
+    EXPECT_NO_THROW((void)tactree::support::load_device(file.string())) << file;
   }
   for (const fs::path& file : seeds_of("read_firmware")) {
     EXPECT_EQ(tactree::cli::read_firmware(file).board, "board");

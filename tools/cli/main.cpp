@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "command.hpp"
 #include "device/arm_command.hpp"
 #include "device/devices_command.hpp"
 #include "device/flash_command.hpp"
@@ -16,6 +15,7 @@
 #include "device/params_command.hpp"
 #include "device/stop_command.hpp"
 #include "device/trace_command.hpp"
+#include "exit_codes.hpp"
 #include "image/bound_command.hpp"
 #include "image/image_command.hpp"
 #include "image/keygen_command.hpp"

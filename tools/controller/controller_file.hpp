@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <string>
 
-#include "device_file.hpp"
 #include "tactree/core/configuration/configuration.hpp"
 #include "tactree/hal/linux/controller_board.hpp"
+#include "tactree/support/device_file.hpp"
 
 namespace tactree::controller {
 
@@ -25,7 +25,7 @@ struct LinkSettings {
 
 struct ControllerFile {
   std::string file;  ///< where it was read from
-  cli::Device device;
+  support::Device device;
   std::filesystem::path model;
   core::Configuration configuration{};
   hal::linux_gpio::ControllerBoardSettings board{};
@@ -33,7 +33,7 @@ struct ControllerFile {
   RealTimeSettings real_time{};
 };
 
-/// Paths in it are meant from its own folder. Throws cli::CommandError: "file: place: cause
+/// Paths in it are meant from its own folder. Throws support::UserError: "file: place: cause
 /// (remedy)".
 [[nodiscard]] ControllerFile read_controller_file(const std::filesystem::path& file);
 

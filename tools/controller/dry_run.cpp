@@ -8,11 +8,12 @@
 #include <cstring>
 #include <functional>
 
-#include "blob_file.hpp"
-#include "command.hpp"
+#include "exit_codes.hpp"
 #include "real_time.hpp"
 #include "tactree/core/control/controller.hpp"
 #include "tactree/hal/linux/function_fs_controller.hpp"
+#include "tactree/support/blob_file.hpp"
+#include "tactree/support/user_error.hpp"
 
 namespace tactree::controller {
 namespace {
@@ -123,10 +124,10 @@ void examine_names(const gpio::ControllerBoardSettings& board, std::vector<Findi
 std::string need_writable(const std::string& file) {
   if (access(file.c_str(), W_OK) != 0) {
     const int error = errno;
-    throw cli::CommandError(fmt::format("{}: {} (remedy: {})", file, std::strerror(error),
-                                        error == ENOENT
-                                            ? "make it, or load its driver"
-                                            : "run as root, or join the group that owns it"));
+    throw support::UserError(fmt::format("{}: {} (remedy: {})", file, std::strerror(error),
+                                         error == ENOENT
+                                             ? "make it, or load its driver"
+                                             : "run as root, or join the group that owns it"));
   }
   return file;
 }
@@ -167,13 +168,13 @@ void examine_pwm(const gpio::MotorSettings& motors, std::vector<Finding>& findin
 
 void examine_model(const ControllerFile& file, std::vector<Finding>& findings) {
   findings.push_back(row("model", file.model.filename().string(), [&file] {
-    const cli::BlobFile model(file.model);
+    const support::BlobFile model(file.model);
     core::Controller controller;
     (void)controller.configure(file.configuration);  // was checked when the file was read
     const core::ModelStatus status = controller.load_model(model.view());
     if (status != core::ModelStatus::kOk) {
-      throw cli::CommandError(fmt::format("{}: {} (build it for this rate and device)",
-                                          file.model.string(), core::describe(status)));
+      throw support::UserError(fmt::format("{}: {} (build it for this rate and device)",
+                                           file.model.string(), core::describe(status)));
     }
     return fmt::format("{} bytes, {} points", model.bytes().size(),
                        model.view().header().point_count);
@@ -259,7 +260,7 @@ int print_findings(const std::vector<Finding>& findings) {
   }
   fmt::print("{}\n",
              wrong == 0 ? "it would run" : fmt::format("{} wrong: it would not run", wrong));
-  return wrong == 0 ? cli::kExitOk : cli::kExitFailed;
+  return wrong == 0 ? kExitOk : kExitFailed;
 }
 
 }  // namespace tactree::controller

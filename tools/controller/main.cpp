@@ -7,9 +7,9 @@
 #include <exception>
 #include <string>
 
-#include "command.hpp"
 #include "controller_file.hpp"
 #include "dry_run.hpp"
+#include "exit_codes.hpp"
 #include "service.hpp"
 
 namespace tactree {
@@ -19,7 +19,7 @@ namespace {
 int put_off(const controller::ControllerFile& file) {
   const auto line = hal::linux_gpio::GpioLines::outputs({file.board.enable}, "tactree off", false);
   fmt::print("line '{}' is off\n", file.board.enable);
-  return cli::kExitOk;
+  return kExitOk;
 }
 
 int run(int argc, char** argv) {
@@ -43,10 +43,10 @@ int run(int argc, char** argv) {
     }
     return off ? put_off(read) : controller::serve(read);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? cli::kExitOk : cli::kExitUsage;
+    return app.exit(error) == 0 ? kExitOk : kExitUsage;
   } catch (const std::exception& error) {
     fmt::print(stderr, "tactree-controller: error: {}\n", error.what());
-    return cli::kExitFailed;
+    return kExitFailed;
   }
 }
 

@@ -9,8 +9,7 @@
 #include <string>
 #include <thread>
 
-#include "blob_file.hpp"
-#include "command.hpp"
+#include "exit_codes.hpp"
 #include "real_time.hpp"
 #include "tactree/core/safety/faults.hpp"
 #include "tactree/hal/linux/gadget_port.hpp"
@@ -18,6 +17,8 @@
 #include "tactree/hal/loop.hpp"
 #include "tactree/session/session.hpp"
 #include "tactree/store/no_model_store.hpp"
+#include "tactree/support/blob_file.hpp"
+#include "tactree/support/user_error.hpp"
 
 namespace tactree::controller {
 namespace {
@@ -135,11 +136,11 @@ class Attendant {
 void check_start(const ControllerFile& file, const hal::StartResult& start) {
   // Configuration and blob were checked when they were read.
   if (start.model != core::ModelStatus::kOk) {
-    throw cli::CommandError(fmt::format("{}: {} (build it for this rate and device)",
-                                        file.model.string(), describe(start)));
+    throw support::UserError(fmt::format("{}: {} (build it for this rate and device)",
+                                         file.model.string(), describe(start)));
   }
   if (!start.ok()) {
-    throw cli::CommandError(
+    throw support::UserError(
         fmt::format("{}: refused: {} (see --dry-run)", file.file, describe(start)));
   }
 }
@@ -147,7 +148,7 @@ void check_start(const ControllerFile& file, const hal::StartResult& start) {
 void tell_missing(const ControllerFile& file, const std::vector<std::string>& missing) {
   for (const std::string& sentence : missing) {
     if (file.real_time.required) {
-      throw cli::CommandError(fmt::format("{}: real_time.required: {}", file.file, sentence));
+      throw support::UserError(fmt::format("{}: real_time.required: {}", file.file, sentence));
     }
     fmt::print(stderr, "tactree-controller: warning: not in real time: {}\n", sentence);
   }
@@ -165,7 +166,7 @@ class Runner {
   using Session = session::Session<Port, store::NoModelStore, Platform>;
 
   template <class... PortArguments>
-  Runner(const ControllerFile& file, const cli::BlobFile& model, const PortArguments&... port)
+  Runner(const ControllerFile& file, const support::BlobFile& model, const PortArguments&... port)
       : file_(file),
         board_(file.board, model.bytes(), mailbox_),
         port_(port...),
@@ -231,12 +232,12 @@ class Runner {
 
 template <hal::BytePort Port, class... PortArguments>
 int serve_over(const ControllerFile& file, const std::string& where, const PortArguments&... port) {
-  const cli::BlobFile model(file.model);
+  const support::BlobFile model(file.model);
   Attendant::block_signals();
   Runner<Port> runner(file, model, port...);
   runner.run(where);
   runner.report();
-  return cli::kExitOk;
+  return kExitOk;
 }
 
 }  // namespace

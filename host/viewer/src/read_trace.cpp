@@ -6,21 +6,21 @@
 #include <string>
 #include <string_view>
 
-#include "csv.hpp"
+#include "tactree/support/csv.hpp"
 #include "tactree/viewer/recording.hpp"
 
 namespace tactree::viewer {
 namespace {
 
-using files::CsvReader;
 using simulation::Sample;
+using support::CsvReader;
 using Column = std::optional<std::size_t>;
 
 // The longest trace that simulate writes.
 constexpr std::size_t kMaxTicks = 5000000;
 constexpr const char* kRemedy = "give a file written by simulate --trace";
 
-std::size_t required(const CsvReader& table, const std::string& name) {
+std::size_t required(const support::CsvReader& table, const std::string& name) {
   const Column column = table.find_column(name);
   if (!column) {
     table.refuse("the header has no column " + name, kRemedy);
@@ -30,7 +30,7 @@ std::size_t required(const CsvReader& table, const std::string& name) {
 
 /// The columns of a vector: NAME_xUNIT, NAME_yUNIT, NAME_zUNIT.
 struct VectorColumns {
-  VectorColumns(const CsvReader& table, const std::string& name, const std::string& unit) {
+  VectorColumns(const support::CsvReader& table, const std::string& name, const std::string& unit) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       axes[axis] = table.find_column(fmt::format("{}_{}{}", name, "xyz"[axis], unit));
     }
@@ -39,7 +39,7 @@ struct VectorColumns {
 };
 
 struct Columns {
-  explicit Columns(const CsvReader& table)
+  explicit Columns(const support::CsvReader& table)
       : t_s(required(table, "t_s")),
         tip(table, "tip", "_m"),
         probe(table, "probe", "_m"),
@@ -69,7 +69,7 @@ struct Columns {
 /// The current row. Values of missing columns are 0.
 class Row {
  public:
-  explicit Row(const CsvReader& table) : table_(table) {}
+  explicit Row(const support::CsvReader& table) : table_(table) {}
 
   [[nodiscard]] std::string_view text(Column column) const {
     return column ? table_.cells()[*column] : std::string_view();
@@ -89,7 +89,7 @@ class Row {
   }
 
  private:
-  const CsvReader& table_;
+  const support::CsvReader& table_;
 };
 
 core::State state_of(std::string_view name) {
@@ -127,7 +127,7 @@ Sample read_sample(const Row& row, const Columns& columns) {
 }  // namespace
 
 std::vector<Sample> read_trace(const std::filesystem::path& file) {
-  CsvReader table(file, {.header = files::CsvHeader::kRequired});
+  support::CsvReader table(file, {.header = support::CsvHeader::kRequired});
   if (table.columns().empty()) {
     table.refuse("the trace has no ticks", kRemedy);
   }

@@ -3,19 +3,19 @@
 #include <algorithm>
 #include <vector>
 
-#include "csv.hpp"
+#include "tactree/support/csv.hpp"
 
 namespace tactree::viewer {
 
 std::string without_columns(std::string_view csv, std::initializer_list<std::string_view> names) {
   std::vector<bool> kept;
-  for (const std::string_view name : files::split_csv(csv.substr(0, csv.find('\n')))) {
+  for (const std::string_view name : support::split_csv(csv.substr(0, csv.find('\n')))) {
     kept.push_back(std::find(names.begin(), names.end(), name) == names.end());
   }
   std::string result;
   while (!csv.empty()) {
     const std::size_t end = csv.find('\n');
-    const std::vector<std::string_view> cells = files::split_csv(csv.substr(0, end));
+    const std::vector<std::string_view> cells = support::split_csv(csv.substr(0, end));
     const char* separator = "";
     for (std::size_t i = 0; i < cells.size(); ++i) {
       if (kept[i]) {

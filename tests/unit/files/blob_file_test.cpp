@@ -1,4 +1,4 @@
-#include "blob_file.hpp"
+#include "tactree/support/blob_file.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -8,8 +8,8 @@
 #include <iterator>
 #include <string>
 
-#include "command.hpp"
 #include "folders.hpp"
+#include "tactree/support/user_error.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -36,8 +36,8 @@ class BlobFileTest : public testing::Test {
 
   static std::string refusal_of(const fs::path& file) {
     try {
-      const BlobFile blob(file);
-    } catch (const CommandError& error) {
+      const support::BlobFile blob(file);
+    } catch (const support::UserError& error) {
       return error.what();
     }
     return "";

@@ -1,4 +1,4 @@
-#include "csv.hpp"
+#include "tactree/support/csv.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -7,7 +7,7 @@
 #include <fstream>
 #include <functional>
 
-namespace tactree::files {
+namespace tactree::support {
 namespace {
 
 namespace fs = std::filesystem;
@@ -27,7 +27,7 @@ class CsvFile : public testing::Test {
   static std::string error_of(const std::function<void()>& read) {
     try {
       read();
-    } catch (const CsvError& error) {
+    } catch (const support::CsvError& error) {
       return error.what();
     }
     return "";
@@ -37,20 +37,21 @@ class CsvFile : public testing::Test {
 };
 
 TEST(SplitCsv, SplitsAtCommasAndTrimsBlanks) {
-  EXPECT_EQ(split_csv("a, b c ,d\r"), (Cells{"a", "b c", "d"}));
-  EXPECT_EQ(split_csv("1,,3,"), (Cells{"1", "", "3", ""}));
-  EXPECT_EQ(split_csv(" , ,"), (Cells{"", "", ""}));
-  EXPECT_EQ(split_csv(""), (Cells{""}));
+  EXPECT_EQ(support::split_csv("a, b c ,d\r"), (Cells{"a", "b c", "d"}));
+  EXPECT_EQ(support::split_csv("1,,3,"), (Cells{"1", "", "3", ""}));
+  EXPECT_EQ(support::split_csv(" , ,"), (Cells{"", "", ""}));
+  EXPECT_EQ(support::split_csv(""), (Cells{""}));
 }
 
 TEST(SplitCsv, SplitsAtAnySeparatorOnRequest) {
-  EXPECT_EQ(split_csv(" 1 ;2\t3 4 , 5 ", CsvSeparator::kAny), (Cells{"1", "2", "3", "4", "5"}));
-  EXPECT_EQ(split_csv("1,;2", CsvSeparator::kAny), (Cells{"1", "", "2"}));
-  EXPECT_EQ(split_csv("1 2 ,", CsvSeparator::kAny), (Cells{"1", "2", ""}));
+  EXPECT_EQ(support::split_csv(" 1 ;2\t3 4 , 5 ", support::CsvSeparator::kAny),
+            (Cells{"1", "2", "3", "4", "5"}));
+  EXPECT_EQ(support::split_csv("1,;2", support::CsvSeparator::kAny), (Cells{"1", "", "2"}));
+  EXPECT_EQ(support::split_csv("1 2 ,", support::CsvSeparator::kAny), (Cells{"1", "2", ""}));
 }
 
 TEST_F(CsvFile, ReadsNumbersByTheNamesOfTheirColumns) {
-  CsvReader table(write("# trace\nt_s,state,x_m\n\n0.5,ready,+1e-3\r\n1,armed,2\n"), {});
+  support::CsvReader table(write("# trace\nt_s,state,x_m\n\n0.5,ready,+1e-3\r\n1,armed,2\n"), {});
   const std::size_t x = table.require_column("x_m");
   EXPECT_EQ(table.find_column("state"), 1U);
   EXPECT_EQ(table.find_column("y_m"), std::nullopt);
@@ -64,22 +65,22 @@ TEST_F(CsvFile, ReadsNumbersByTheNamesOfTheirColumns) {
 }
 
 TEST_F(CsvFile, TakesAFirstRowOfNumbersAsDataWhereAHeaderIsOptional) {
-  const CsvFormat format{.header = CsvHeader::kOptional};
-  CsvReader without(write("1,2\n3,4\n"), format);
+  const support::CsvFormat format{.header = support::CsvHeader::kOptional};
+  support::CsvReader without(write("1,2\n3,4\n"), format);
   ASSERT_TRUE(without.next_row());
   EXPECT_EQ(without.number(0), 1.0);
   ASSERT_TRUE(without.next_row());
   EXPECT_EQ(without.number(1), 4.0);
-  CsvReader with(write("x,y\n3,4\n"), format);
+  support::CsvReader with(write("x,y\n3,4\n"), format);
   ASSERT_TRUE(with.next_row());
   EXPECT_EQ(with.number(0), 3.0);
-  CsvReader empty(write(""), format);
+  support::CsvReader empty(write(""), format);
   EXPECT_FALSE(empty.next_row());
 }
 
 TEST_F(CsvFile, ReportsFileLineAndColumn) {
   const fs::path file = write("a,b\n1,2\n3,four\n");
-  CsvReader table(file, {});
+  support::CsvReader table(file, {});
   ASSERT_TRUE(table.next_row() && table.next_row());
   EXPECT_EQ(error_of([&] { (void)table.number(1); }),
             file.string() + ": line 3: column 2 (b) is not a number: 'four'");
@@ -92,24 +93,25 @@ TEST_F(CsvFile, ReportsFileLineAndColumn) {
 
 TEST_F(CsvFile, RefusesNumbersThatAreNotFinite) {
   for (const char* number : {"nan", "inf", "-inf", "1e999", "0x1", "1 2", ""}) {
-    CsvReader table(write(std::string("a,b\n1,") + number + "\n"), {});
+    support::CsvReader table(write(std::string("a,b\n1,") + number + "\n"), {});
     ASSERT_TRUE(table.next_row());
-    EXPECT_THROW((void)table.number(1), CsvError) << number;
+    EXPECT_THROW((void)table.number(1), support::CsvError) << number;
   }
 }
 
 TEST_F(CsvFile, RefusesRowsThatDoNotFitTheHeader) {
   const fs::path file = write("a,b\n1,2,3\n");
-  CsvReader table(file, {});
+  support::CsvReader table(file, {});
   EXPECT_EQ(error_of([&] { (void)table.next_row(); }),
             file.string() + ": line 2: 3 values, the header has 2");
 }
 
 TEST_F(CsvFile, RefusesFoldersAndMissingFiles) {
-  EXPECT_NE(error_of([&] { CsvReader(folder_, {}); }).find("is a folder"), std::string::npos);
-  EXPECT_NE(error_of([&] { CsvReader(folder_ / "none", {}); }).find("cannot be read: "),
+  EXPECT_NE(error_of([&] { support::CsvReader(folder_, {}); }).find("is a folder"),
+            std::string::npos);
+  EXPECT_NE(error_of([&] { support::CsvReader(folder_ / "none", {}); }).find("cannot be read: "),
             std::string::npos);
 }
 
 }  // namespace
-}  // namespace tactree::files
+}  // namespace tactree::support

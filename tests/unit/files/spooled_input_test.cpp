@@ -1,4 +1,4 @@
-#include "spooled_input.hpp"
+#include "tactree/support/spooled_input.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -7,7 +7,7 @@
 #include <iterator>
 #include <thread>
 
-#include "command.hpp"
+#include "tactree/support/user_error.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -20,7 +20,8 @@ class SpooledInputTest : public testing::Test {
   void TearDown() override { fs::remove_all(folder_); }
 
   /// The text of the copy of what another thread writes into a pipe.
-  std::string copy_of(const std::string& text, const FreeSpace& space = free_space) const {
+  std::string copy_of(const std::string& text,
+                      const support::FreeSpace& space = support::free_space) const {
     int ends[2] = {-1, -1};
     EXPECT_EQ(::pipe(ends), 0);
     std::thread writer([&] {
@@ -36,12 +37,12 @@ class SpooledInputTest : public testing::Test {
     });
     std::string copy;
     try {
-      const SpooledInput spooled(ends[0], folder_, space);
+      const support::SpooledInput spooled(ends[0], folder_, space);
       std::ifstream in(spooled.path(), std::ios::binary);
       copy.assign(std::istreambuf_iterator<char>(in), {});
       EXPECT_EQ(fs::file_size(spooled.path()), copy.size());
       EXPECT_TRUE(fs::is_empty(folder_));
-    } catch (const CommandError& error) {
+    } catch (const support::UserError& error) {
       copy = error.what();
       char ignored = 0;
       while (::read(ends[0], &ignored, 1) > 0) {
@@ -65,7 +66,7 @@ TEST_F(SpooledInputTest, CopiesAPipeAndLeavesNoFile) {
 TEST_F(SpooledInputTest, KeepsSpaceFree) {
   const std::string text(2'000'000, 'a');
   const auto space = [](std::uint64_t bytes) {
-    return [bytes](const fs::path&) { return kSpoolReserve + bytes; };
+    return [bytes](const fs::path&) { return support::kSpoolReserve + bytes; };
   };
   EXPECT_EQ(copy_of(text, space(1U << 20)), text);  // at least a block is free, each time
   const std::string refusal = copy_of(text, space(0));

@@ -4,8 +4,8 @@
 
 #include <memory>
 
-#include "command.hpp"
 #include "device/board_port.hpp"
+#include "exit_codes.hpp"
 #include "interruption.hpp"
 #include "option_checks.hpp"
 #include "tactree/core/control/controller.hpp"

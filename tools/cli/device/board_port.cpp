@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "command.hpp"
 #include "tactree/client/ports.hpp"
+#include "tactree/support/user_error.hpp"
 
 namespace tactree::cli {
 
@@ -27,11 +27,11 @@ std::string chosen_port(const BoardPort& options) {
   }
   const std::vector<std::string> ports = client::list_ports();
   if (ports.empty()) {
-    throw CommandError("no board found (plug one in, or give its --port)");
+    throw support::UserError("no board found (plug one in, or give its --port)");
   }
   if (ports.size() > 1) {
-    throw CommandError(fmt::format("there are {} ports: {} (choose with --port)", ports.size(),
-                                   fmt::join(ports, ", ")));
+    throw support::UserError(fmt::format("there are {} ports: {} (choose with --port)",
+                                         ports.size(), fmt::join(ports, ", ")));
   }
   return ports.front();
 }

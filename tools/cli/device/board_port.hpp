@@ -25,7 +25,7 @@ void add_port_options(CLI::App& verb, BoardPort& options);
 /// Adds --link-timeout: longest time without a heartbeat, ms, of a board armed by this program.
 CLI::Option* add_link_timeout_option(CLI::App& verb, int& milliseconds);
 
-/// Throws CommandError if there is no board, or more than one.
+/// Throws UserError if there is no board, or more than one.
 [[nodiscard]] std::string chosen_port(const BoardPort& options);
 
 /// Opens a session. Throws as chosen_port() and client::Board.

@@ -8,13 +8,13 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "command.hpp"
 #include "device/board_port.hpp"
+#include "exit_codes.hpp"
 #include "option_checks.hpp"
-#include "output_file.hpp"
 #include "tactree/client/link_error.hpp"
 #include "tactree/client/ports.hpp"
 #include "tactree/client/usb_devices.hpp"
+#include "tactree/support/output_file.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -73,7 +73,7 @@ void list_devices(const DevicesOptions& options, int& exit_code) {
     fmt::print("no port found where a board may be connected (plug one in, or give its --port)\n");
   }
   if (!options.json.empty()) {
-    write_file(options.json, nlohmann::json{{"devices", devices}}.dump(2) + "\n");
+    support::write_file(options.json, nlohmann::json{{"devices", devices}}.dump(2) + "\n");
   }
   exit_code = found ? kExitOk : kExitFailed;
 }

@@ -6,12 +6,12 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "blob_file.hpp"
-#include "command.hpp"
 #include "device/board_port.hpp"
 #include "image/model_signature.hpp"
-#include "output_file.hpp"
 #include "run/model_size.hpp"
+#include "tactree/support/blob_file.hpp"
+#include "tactree/support/output_file.hpp"
+#include "tactree/support/user_error.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -68,7 +68,7 @@ void show_progress(std::size_t done, std::size_t all) {
 }
 
 void write_model(client::Board& board, const std::string& file) {
-  const BlobFile blob(file);
+  const support::BlobFile blob(file);
   if (const auto warning = size_warning(file, blob.view().header())) {
     fmt::print(stderr, "tactree: warning: {}\n", *warning);
   }
@@ -85,7 +85,7 @@ void write_model(client::Board& board, const std::string& file) {
 }
 
 void flash(const FlashOptions& options) {
-  check_outputs({options.json}, {options.blob});
+  support::check_outputs({options.json}, {options.blob});
   const auto board = connect(options.port);
   if (!options.blob.empty()) {
     write_model(*board, options.blob);
@@ -99,7 +99,7 @@ void flash(const FlashOptions& options) {
   const nlohmann::json models = to_json(board->models());
   print_slots(models);
   if (!options.json.empty()) {
-    write_file(options.json, models.dump(2) + "\n");
+    support::write_file(options.json, models.dump(2) + "\n");
   }
 }
 

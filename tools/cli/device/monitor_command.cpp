@@ -10,13 +10,14 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "command.hpp"
 #include "device/board_port.hpp"
+#include "exit_codes.hpp"
 #include "interruption.hpp"
 #include "option_checks.hpp"
-#include "output_file.hpp"
 #include "tactree/client/link_error.hpp"
 #include "tactree/core/control/controller.hpp"
+#include "tactree/support/output_file.hpp"
+#include "tactree/support/user_error.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -117,9 +118,9 @@ nlohmann::json to_json(const View& view) {
           {"dropped", view.dropped}};
 }
 
-class NoTelemetry : public CommandError {
+class NoTelemetry : public support::UserError {
  public:
-  using CommandError::CommandError;
+  using support::UserError::UserError;
 };
 
 class Monitor {
@@ -227,7 +228,7 @@ void show(const MonitorOptions& options, int& exit_code) {
   if (options.json.empty()) {
     fmt::print("{}", to_text(view));
   } else {
-    write_file(options.json, to_json(view).dump(2) + "\n");
+    support::write_file(options.json, to_json(view).dump(2) + "\n");
   }
   exit_code = view.now.faults == 0U ? kExitOk : kExitFailed;
 }

@@ -6,9 +6,9 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "command.hpp"
 #include "device/board_port.hpp"
-#include "output_file.hpp"
+#include "tactree/support/output_file.hpp"
+#include "tactree/support/user_error.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -27,7 +27,7 @@ void set(client::Board& board, const std::string& setting) {
   const char* const end = setting.data() + setting.size();
   const auto [rest, error] = std::from_chars(begin, end, value);
   if (equals == std::string::npos || error != std::errc{} || rest != end) {
-    throw CommandError(fmt::format(
+    throw support::UserError(fmt::format(
         "'{}' is not of the form NAME=NUMBER (tactree params lists the names)", setting));
   }
   board.set_parameter(setting.substr(0, equals), value);
@@ -47,7 +47,7 @@ void handle(const ParamsOptions& options) {
     all[text_of(p.name)] = {{"value", p.value}, {"min", p.min}, {"max", p.max}};
   }
   if (!options.json.empty()) {
-    write_file(options.json, all.dump(2) + "\n");
+    support::write_file(options.json, all.dump(2) + "\n");
   }
 }
 

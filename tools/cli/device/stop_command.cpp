@@ -4,10 +4,10 @@
 
 #include <memory>
 
-#include "command.hpp"
 #include "device/board_port.hpp"
 #include "tactree/client/connection.hpp"
 #include "tactree/client/ports.hpp"
+#include "tactree/support/user_error.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -25,7 +25,7 @@ void stop(const BoardPort& options) {
       return;
     }
   }
-  throw CommandError(connection.name() + ": no answer (use the emergency stop)");
+  throw support::UserError(connection.name() + ": no answer (use the emergency stop)");
 }
 
 }  // namespace

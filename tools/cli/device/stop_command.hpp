@@ -4,7 +4,7 @@
 
 namespace tactree::cli {
 
-/// Adds the verb `stop`. Its errors are thrown as CommandError or client::LinkError.
+/// Adds the verb `stop`. Its errors are thrown as UserError or client::LinkError.
 void add_stop_command(CLI::App& app, int& exit_code);
 
 }  // namespace tactree::cli

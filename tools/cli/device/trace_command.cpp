@@ -4,10 +4,10 @@
 
 #include <memory>
 
-#include "command.hpp"
 #include "device/board_port.hpp"
-#include "output_file.hpp"
 #include "tactree/core/control/controller.hpp"
+#include "tactree/support/output_file.hpp"
+#include "tactree/support/user_error.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -51,7 +51,7 @@ void print_first_fault(const core::wire::ReadFaultReply& fault) {
 }
 
 void trace(const TraceOptions& options) {
-  check_outputs({options.output});
+  support::check_outputs({options.output});
   const auto board = connect(options.port);
   print_first_fault(board->first_fault());
   std::string csv =
@@ -63,7 +63,7 @@ void trace(const TraceOptions& options) {
   if (options.output.empty()) {
     fmt::print("{}", csv);
   } else {
-    write_file(options.output, csv);
+    support::write_file(options.output, csv);
   }
 }
 

@@ -2,8 +2,8 @@
 
 #include <fmt/core.h>
 
-#include "command.hpp"
-#include "device_file.hpp"
+#include "tactree/support/device_file.hpp"
+#include "tactree/support/user_error.hpp"
 
 namespace tactree::cli {
 
@@ -49,7 +49,7 @@ BoardCosts costs_of_board(const std::string& name, const std::string& firmware) 
   const emulation::BoardDescription* const board = emulation::find_board(name);
   const wcet::BoardTiming* const timing = wcet::find_timing(name);
   if (board == nullptr || timing == nullptr) {
-    throw CommandError(
+    throw support::UserError(
         fmt::format("--board: the timing of {} is unknown (name another board, or leave "
                     "the option out)",
                     name));
@@ -66,7 +66,7 @@ BoardCosts costs_of_board(const std::string& name, const std::string& firmware) 
 
 core::DeviceModel slowest_or(const std::string& device) {
   if (!device.empty()) {
-    return load_device(device).preset.model;
+    return support::load_device(device).preset.model;
   }
   core::DeviceModel slowest;
   slowest.kind = core::DeviceKind::kDelta;

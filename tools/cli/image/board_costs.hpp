@@ -39,7 +39,7 @@ struct BoardCosts {
 [[nodiscard]] wcet::BoundOptions analysis_of(const emulation::BoardDescription& board,
                                              const std::string& firmware);
 
-/// `firmware` as above. Throws CommandError on an unknown board, wcet::BoundError and
+/// `firmware` as above. Throws UserError on an unknown board, wcet::BoundError and
 /// EmulationError.
 [[nodiscard]] BoardCosts costs_of_board(const std::string& name, const std::string& firmware = {});
 

@@ -9,12 +9,12 @@
 #include <string>
 #include <vector>
 
-#include "blob_file.hpp"
-#include "command.hpp"
 #include "image/board_costs.hpp"
-#include "json_text.hpp"
-#include "output_file.hpp"
 #include "tactree/core/contact/scene.hpp"
+#include "tactree/support/blob_file.hpp"
+#include "tactree/support/json_text.hpp"
+#include "tactree/support/output_file.hpp"
+#include "tactree/support/user_error.hpp"
 #include "tactree/wcet/bound.hpp"
 
 namespace tactree::cli {
@@ -42,7 +42,7 @@ wcet::Parameters parameters(const BoundCommandOptions& options) {
   const auto mode = options.mode == "paper" ? core::RenderMode::kPaper : core::RenderMode::kSurface;
   const core::DeviceKind device = slowest_or(options.device).kind;
   if (!options.blob.empty()) {
-    const BlobFile blob(options.blob);
+    const support::BlobFile blob(options.blob);
     return wcet::parameters_of(blob.view().header(), mode, options.bodies, device);
   }
   const auto kind =
@@ -115,11 +115,11 @@ void print_timing(const BoundCommandOptions& options, const wcet::BoardTiming& t
   fmt::print("highest rate       {:.0f} Hz, and every lower one\n", highest_rate_hz);
 }
 
-/// Throws CommandError if the board cannot keep the rate.
+/// Throws UserError if the board cannot keep the rate.
 void check_rate(const BoundCommandOptions& options, const wcet::BoardTiming& timing,
                 const wcet::Bound& bound, double highest) {
   if (static_cast<double>(bound.cycles) * options.rate_hz > timing.clock_hz) {
-    throw CommandError(fmt::format(
+    throw support::UserError(fmt::format(
         "--rate: {} keeps up to {:.0f} Hz with this model, not {:.0f}: a tick takes up to {} "
         "cycles "
         "of {:.0f} (lower --rate, or build a model with fewer points in a ball)",
@@ -144,7 +144,7 @@ wcet::Bound worst_case(wcet::BoundOptions& analysis, double rate_hz) {
 }
 
 void bound_tick(const BoundCommandOptions& options) {
-  check_outputs({options.json}, {options.image, options.blob});
+  support::check_outputs({options.json}, {options.image, options.blob});
   wcet::BoundOptions analysis;
   analysis.image = options.image;
   analysis.sources = options.sources;
@@ -152,7 +152,7 @@ void bound_tick(const BoundCommandOptions& options) {
   analysis.parameters = parameters(options);
   analysis.timing = options.board.empty() ? nullptr : wcet::find_timing(options.board);
   if (!options.board.empty() && analysis.timing == nullptr) {
-    throw CommandError(
+    throw support::UserError(
         fmt::format("--board: the timing of {} is unknown (leave the option out: the "
                     "bound is then in instructions)",
                     options.board));
@@ -171,7 +171,8 @@ void bound_tick(const BoundCommandOptions& options) {
     print_timing(options, *analysis.timing, result, analysis.work_tier, highest);
   }
   if (!options.json.empty()) {
-    write_file(options.json, json_text(to_json(options, analysis, result, highest)));
+    support::write_file(options.json,
+                        support::json_text(to_json(options, analysis, result, highest)));
   }
   if (options.must_keep_rate && analysis.timing != nullptr) {
     check_rate(options, *analysis.timing, result, highest);

@@ -9,8 +9,8 @@
 #include <iterator>
 #include <span>
 
-#include "command.hpp"
 #include "tactree/core/math/crc32.hpp"
+#include "tactree/support/user_error.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -51,7 +51,7 @@ class Reader {
 
   [[noreturn]] void fail(const std::string& cause, const char* remedy) const {
     const std::string hint = *remedy == '\0' ? "" : fmt::format(" ({})", remedy);
-    throw CommandError(fmt::format("{}: {}{}", name_, cause, hint));
+    throw support::UserError(fmt::format("{}: {}{}", name_, cause, hint));
   }
 
   /// A struct of the file; refuses a truncated file.

@@ -28,7 +28,7 @@ struct FirmwareImage {
 };
 
 /// Reads a file and checks it: a complete 32-bit little-endian ELF program with one identity, all
-/// bytes in the range for code, a valid checksum. Throws CommandError with file, cause and remedy.
+/// bytes in the range for code, a valid checksum. Throws UserError with file, cause and remedy.
 [[nodiscard]] FirmwareImage read_firmware(const std::filesystem::path& file);
 
 }  // namespace tactree::cli

@@ -7,12 +7,12 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "blob_file.hpp"
-#include "command.hpp"
 #include "image/firmware_image.hpp"
 #include "image/image_formats.hpp"
-#include "json_text.hpp"
-#include "output_file.hpp"
+#include "tactree/support/blob_file.hpp"
+#include "tactree/support/json_text.hpp"
+#include "tactree/support/output_file.hpp"
+#include "tactree/support/user_error.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -29,7 +29,7 @@ struct ImageOptions {
 
 void require_board(const ImageOptions& options, const FirmwareImage& image) {
   if (!options.board.empty() && options.board != image.board) {
-    throw CommandError(fmt::format(
+    throw support::UserError(fmt::format(
         "{}: wrong board: this image is for {}, not for {} (give the image that was built for {})",
         options.firmware, image.board, options.board, options.board));
   }
@@ -37,10 +37,10 @@ void require_board(const ImageOptions& options, const FirmwareImage& image) {
 
 /// The blob at the address where the image expects it.
 Segment blob_segment(const ImageOptions& options, const FirmwareImage& image) {
-  const BlobFile blob(options.blob);
+  const support::BlobFile blob(options.blob);
   const std::uint32_t room = image.blob_end - image.blob_begin;
   if (blob.bytes().size() > room) {
-    throw CommandError(fmt::format(
+    throw support::UserError(fmt::format(
         "{}: too large for {}: {} bytes, its flash has room for {} (build it with --flash-budget "
         "{}, or with a larger --spacing)",
         options.blob, image.board, blob.bytes().size(), room, room));
@@ -68,7 +68,7 @@ void require_small_gap(const ImageOptions& options, const std::vector<Segment>& 
   const std::uint64_t span = std::uint64_t{segments.back().address} + segments.back().bytes.size() -
                              segments.front().address;
   if (span > kLargestBin) {
-    throw CommandError(fmt::format(
+    throw support::UserError(fmt::format(
         "{}: {} bytes lie between the first and the last byte of this image, and the format has no "
         "addresses (use .elf, .hex or .uf2)",
         options.output, span));
@@ -108,7 +108,7 @@ std::vector<std::byte> encode(const ImageOptions& options, const FirmwareImage& 
 }
 
 void make_image(const ImageOptions& options) {
-  check_outputs({options.output, options.json}, {options.firmware, options.blob});
+  support::check_outputs({options.output, options.json}, {options.firmware, options.blob});
   const FirmwareImage image = read_firmware(options.firmware);
   require_board(options, image);
   std::size_t code_bytes = 0;
@@ -120,7 +120,7 @@ void make_image(const ImageOptions& options) {
     blob = blob_segment(options, image);
   }
   const std::vector<std::byte> bytes = encode(options, image, blob);
-  write_file(options.output, bytes);
+  support::write_file(options.output, bytes);
   fmt::print("{}: for {}, {} bytes of code from {:#010x}, {} bytes of blob from {:#010x}\n",
              options.output, image.board, code_bytes, image.segments.front().address,
              blob.bytes.size(), image.blob_begin);
@@ -132,7 +132,7 @@ void make_image(const ImageOptions& options) {
                                 {"code_bytes", code_bytes},
                                 {"blob_bytes", blob.bytes.size()},
                                 {"file_bytes", bytes.size()}};
-    write_file(options.json, json_text(result));
+    support::write_file(options.json, support::json_text(result));
   }
 }
 

@@ -4,8 +4,8 @@
 
 #include <memory>
 
-#include "command.hpp"
 #include "image/model_signature.hpp"
+#include "tactree/support/user_error.hpp"
 
 namespace tactree::cli {
 

@@ -10,9 +10,9 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "command.hpp"
-#include "output_file.hpp"
 #include "tactree/core/link/wire/messages.hpp"
+#include "tactree/support/output_file.hpp"
+#include "tactree/support/user_error.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -22,7 +22,7 @@ constexpr const char* kPublicMark = "tactree public key ";
 
 void prepare_sodium() {
   if (sodium_init() < 0) {
-    throw CommandError(
+    throw support::UserError(
         "libsodium does not start (check the source of random numbers, /dev/urandom)");
   }
 }
@@ -43,7 +43,7 @@ std::array<std::uint8_t, 32> read_key(const std::filesystem::path& file, const s
   std::getline(in, line);
   std::array<std::uint8_t, 32> key{};
   if (!line.starts_with(mark) || !from_hex(line.substr(mark.size()), key)) {
-    throw CommandError(fmt::format("{}: line 1: not a {}({})", file.string(), mark, remedy));
+    throw support::UserError(fmt::format("{}: line 1: not a {}({})", file.string(), mark, remedy));
   }
   return key;
 }
@@ -51,13 +51,14 @@ std::array<std::uint8_t, 32> read_key(const std::filesystem::path& file, const s
 void write_new_file(const std::filesystem::path& file, const std::string& text, mode_t mode) {
   const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
   if (descriptor < 0) {
-    throw CommandError(fmt::format("{}: {} (choose another name: a lost key cannot be restored)",
-                                   file.string(), std::strerror(errno)));
+    throw support::UserError(
+        fmt::format("{}: {} (choose another name: a lost key cannot be restored)", file.string(),
+                    std::strerror(errno)));
   }
   const bool written =
       ::write(descriptor, text.data(), text.size()) == static_cast<ssize_t>(text.size());
   if (::close(descriptor) != 0 || !written) {
-    throw CommandError(fmt::format("{}: {}", file.string(), std::strerror(errno)));
+    throw support::UserError(fmt::format("{}: {}", file.string(), std::strerror(errno)));
   }
 }
 
@@ -66,8 +67,8 @@ std::vector<std::uint8_t> message_of(std::span<const std::byte> blob, const std:
                                      std::uint32_t counter) {
   core::wire::ModelManifest manifest;
   if (board.size() >= sizeof manifest.board) {
-    throw CommandError(fmt::format("--board: '{}' is longer than {} characters", board,
-                                   sizeof manifest.board - 1));
+    throw support::UserError(fmt::format("--board: '{}' is longer than {} characters", board,
+                                         sizeof manifest.board - 1));
   }
   std::memcpy(manifest.board, board.data(), board.size());
   manifest.counter = counter;
@@ -153,7 +154,7 @@ void write_signature(const std::filesystem::path& blob, const ModelSignature& si
                             {"bytes", blob_bytes},
                             {"key", to_hex(signature.key)},
                             {"signature", to_hex(signature.signature)}};
-  write_file(signature_path(blob), json.dump(2) + "\n");
+  support::write_file(signature_path(blob), json.dump(2) + "\n");
 }
 
 std::optional<ModelSignature> read_signature(const std::filesystem::path& blob) {
@@ -174,7 +175,7 @@ std::optional<ModelSignature> read_signature(const std::filesystem::path& blob) 
   } catch (const nlohmann::json::exception&) {
     // reported below
   }
-  throw CommandError(fmt::format(
+  throw support::UserError(fmt::format(
       "{}: not a signature of a model (sign the blob again with tactree sign)", path.string()));
 }
 

@@ -21,11 +21,11 @@ struct ModelSignature {
   std::array<std::uint8_t, 64> signature{};
 };
 
-/// Writes `file`, readable by its owner only, and `file`.pub. Throws CommandError, also if one of
+/// Writes `file`, readable by its owner only, and `file`.pub. Throws UserError, also if one of
 /// them exists.
 PublicKey generate_key(const std::filesystem::path& file);
 
-/// Throw CommandError that names the file, the cause and the remedy.
+/// Throw UserError that names the file, the cause and the remedy.
 [[nodiscard]] PublicKey read_public_key(const std::filesystem::path& file);
 [[nodiscard]] SecretKey read_secret_key(const std::filesystem::path& file);
 
@@ -36,7 +36,7 @@ PublicKey generate_key(const std::filesystem::path& file);
 [[nodiscard]] std::filesystem::path signature_path(const std::filesystem::path& blob);
 void write_signature(const std::filesystem::path& blob, const ModelSignature& signature,
                      std::size_t blob_bytes);
-/// Reads the signature beside the blob; nullopt: no file. Throws CommandError if it is malformed.
+/// Reads the signature beside the blob; nullopt: no file. Throws UserError if it is malformed.
 [[nodiscard]] std::optional<ModelSignature> read_signature(const std::filesystem::path& blob);
 
 /// "for any board, counter 3, by <hex>"

@@ -4,9 +4,9 @@
 
 #include <memory>
 
-#include "blob_file.hpp"
-#include "command.hpp"
 #include "image/model_signature.hpp"
+#include "tactree/support/blob_file.hpp"
+#include "tactree/support/user_error.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -19,7 +19,7 @@ struct SignOptions {
 };
 
 void sign(const SignOptions& options) {
-  const BlobFile blob(options.blob);
+  const support::BlobFile blob(options.blob);
   const ModelSignature signature =
       sign_model(read_secret_key(options.key), blob.bytes(), options.board, options.counter);
   write_signature(options.blob, signature, blob.bytes().size());

@@ -10,10 +10,11 @@
 #include <string>
 #include <vector>
 
-#include "command.hpp"
-#include "output_file.hpp"
+#include "exit_codes.hpp"
 #include "tactree/builder/progress.hpp"
 #include "tactree/evaluation/evaluation.hpp"
+#include "tactree/support/output_file.hpp"
+#include "tactree/support/user_error.hpp"
 #include "tactree/viewer/markdown.hpp"
 
 namespace tactree::cli {
@@ -44,7 +45,8 @@ std::vector<fs::path> files_below(const std::string& folder) {
     }
   }
   if (error) {
-    throw CommandError(fmt::format("{}: cannot list the folder: {}", folder, error.message()));
+    throw support::UserError(
+        fmt::format("{}: cannot list the folder: {}", folder, error.message()));
   }
   std::sort(files.begin(), files.end());
   return files;
@@ -54,7 +56,7 @@ std::vector<fs::path> scans_of(const EvaluateOptions& options) {
   std::vector<fs::path> scans(options.scans.begin(), options.scans.end());
   for (const fs::path& scan : scans) {
     if (!fs::exists(scan)) {
-      throw CommandError(fmt::format("{}: no such file (check the path)", scan.string()));
+      throw support::UserError(fmt::format("{}: no such file (check the path)", scan.string()));
     }
   }
   if (!options.folder.empty()) {
@@ -74,13 +76,13 @@ void write_report(const fs::path& file, const evaluation::Result& result) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) {
-    throw CommandError(
+    throw support::UserError(
         fmt::format("{}: cannot create the folder: {}", folder.string(), error.message()));
   }
   for (const auto& [name, svg] : evaluation::plots(result)) {
-    write_file(folder / name, svg);
+    support::write_file(folder / name, svg);
   }
-  write_file(file, evaluation::to_markdown(result, pictures.string()));
+  support::write_file(file, evaluation::to_markdown(result, pictures.string()));
 }
 
 /// The report with the Z-width and the openings of the scans as one file with embedded pictures.
@@ -106,17 +108,17 @@ void evaluate(EvaluateOptions& options, int& exit_code) {
   options.evaluation.scans = scans_of(options);
   const std::vector<fs::path> inputs(options.evaluation.scans.begin(),
                                      options.evaluation.scans.end());
-  check_outputs({options.json, options.html}, inputs);
+  support::check_outputs({options.json, options.html}, inputs);
   const auto progress = builder::make_progress(builder::ProgressStyle::kAuto, stderr);
   const evaluation::Result result = evaluation::evaluate(options.evaluation, *progress);
   if (!options.json.empty()) {
-    write_file(options.json, evaluation::to_json(result));
+    support::write_file(options.json, evaluation::to_json(result));
   }
   if (!options.report.empty()) {
     write_report(options.report, result);
   }
   if (!options.html.empty()) {
-    write_file(options.html, html_report(result));
+    support::write_file(options.html, html_report(result));
   }
   fmt::print("{}", evaluation::to_markdown(result, ""));
   exit_code = options.require_targets && !result.all_met() ? kExitFailed : kExitOk;

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "command.hpp"
+#include "tactree/support/user_error.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -21,7 +21,7 @@ constexpr double kRotationTolerance = 1e-3;
 void require_keys(const json& object, const std::string& place,
                   std::initializer_list<const char*> known) {
   if (!object.is_object()) {
-    refuse(place, "is not an object", "write it in braces");
+    support::refuse(place, "is not an object", "write it in braces");
   }
   for (const auto& [key, value] : object.items()) {
     if (std::find(known.begin(), known.end(), key) == known.end()) {
@@ -29,21 +29,21 @@ void require_keys(const json& object, const std::string& place,
       for (const char* name : known) {
         keys += fmt::format("{}{}", keys.empty() ? "" : ", ", name);
       }
-      refuse(place + "." + key, "is an unknown key", "remove it, or use one of " + keys);
+      support::refuse(place + "." + key, "is an unknown key", "remove it, or use one of " + keys);
     }
   }
 }
 
 double number(const json& value, const std::string& place) {
   if (!value.is_number() || !std::isfinite(value.get<double>())) {
-    refuse(place, "is not a number", "give one, without quotes");
+    support::refuse(place, "is not a number", "give one, without quotes");
   }
   return value.get<double>();
 }
 
 std::vector<double> numbers(const json& value, const std::string& place, std::size_t count) {
   if (!value.is_array() || value.size() != count) {
-    refuse(place, fmt::format("is not a list of {} numbers", count), "give as many");
+    support::refuse(place, fmt::format("is not a list of {} numbers", count), "give as many");
   }
   std::vector<double> list;
   for (std::size_t i = 0; i < count; ++i) {
@@ -71,11 +71,11 @@ Eigen::Isometry3d pose(const json& object, const std::string& at) {
   const Eigen::Matrix3d rotation = matrix.topLeftCorner<3, 3>();
   const Eigen::Matrix3d off = rotation * rotation.transpose() - Eigen::Matrix3d::Identity();
   if (!(off.cwiseAbs().maxCoeff() <= kRotationTolerance) || !(rotation.determinant() > 0.0)) {
-    refuse(place, "its upper left 3x3 part is not a rotation",
-           "remove scale, shear and mirroring; scale with `tactree build --scale`");
+    support::refuse(place, "its upper left 3x3 part is not a rotation",
+                    "remove scale, shear and mirroring; scale with `tactree build --scale`");
   }
   if (matrix.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
-    refuse(place, "its last row is not 0, 0, 0, 1", "write the matrix row by row");
+    support::refuse(place, "its last row is not 0, 0, 0, 1", "write the matrix row by row");
   }
   Eigen::Isometry3d result;
   result.linear() = Eigen::Quaterniond(rotation).normalized().toRotationMatrix();
@@ -92,8 +92,9 @@ simulation::BodyPath path(const json& body, const std::string& place) {
     const json& list = body["keyframes"];
     if (!list.is_array() || body.contains("pose") || body.contains("linear_velocity_m_s") ||
         body.contains("angular_velocity_rad_s")) {
-      refuse(place + ".keyframes", "is not a list, or combined with a pose or velocity",
-             "write [{\"t_s\": 0, \"pose\": [...]}, ...], without other keys of the motion");
+      support::refuse(
+          place + ".keyframes", "is not a list, or combined with a pose or velocity",
+          "write [{\"t_s\": 0, \"pose\": [...]}, ...], without other keys of the motion");
     }
     std::vector<simulation::Keyframe> keyframes;
     for (std::size_t i = 0; i < list.size(); ++i) {
@@ -103,7 +104,7 @@ simulation::BodyPath path(const json& body, const std::string& place) {
     }
     return simulation::BodyPath(std::move(keyframes));
   } catch (const std::invalid_argument& error) {
-    refuse(place, error.what(), "correct its pose, velocities or keyframes");
+    support::refuse(place, error.what(), "correct its pose, velocities or keyframes");
   }
 }
 
@@ -129,7 +130,8 @@ class SceneReader {
     require_keys(root, name, {"bodies"});
     const json bodies = root.value("bodies", json());
     if (!bodies.is_array()) {
-      refuse(name + ": bodies", "is not a list", "write {\"bodies\": [{\"blob\": 0}, ...]}");
+      support::refuse(name + ": bodies", "is not a list",
+                      "write {\"bodies\": [{\"blob\": 0}, ...]}");
     }
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       read_body(bodies[i], fmt::format("{}: bodies[{}]", name, i));
@@ -141,13 +143,13 @@ class SceneReader {
   json parse() const {
     std::ifstream in(file_, std::ios::binary);
     if (!in || std::filesystem::is_directory(file_)) {
-      refuse(file_.string(), "cannot be read", "give a JSON file");
+      support::refuse(file_.string(), "cannot be read", "give a JSON file");
     }
     try {
       return json::parse(in);
     } catch (const json::exception& error) {
-      refuse(file_.string(), fmt::format("is not JSON: {}", error.what()),
-             "correct it at that place");
+      support::refuse(file_.string(), fmt::format("is not JSON: {}", error.what()),
+                      "correct it at that place");
     }
   }
 
@@ -156,7 +158,7 @@ class SceneReader {
     if (known != files_.end()) {
       return static_cast<std::size_t>(known - files_.begin());
     }
-    scene_.blobs.push_back(std::make_unique<BlobFile>(file));
+    scene_.blobs.push_back(std::make_unique<support::BlobFile>(file));
     files_.push_back(file);
     return files_.size() - 1;
   }
@@ -167,10 +169,10 @@ class SceneReader {
       return open((file_.parent_path() / blob.get<std::string>()).string());
     }
     if (!blob.is_number_unsigned() || blob.get<std::uint64_t>() >= given_.size()) {
-      refuse(place + ".blob",
-             fmt::format("is neither a file nor the index of one of the {} blobs given",
-                         given_.size()),
-             "count from 0, or give a file name in quotes");
+      support::refuse(place + ".blob",
+                      fmt::format("is neither a file nor the index of one of the {} blobs given",
+                                  given_.size()),
+                      "count from 0, or give a file name in quotes");
     }
     return given_[blob.get<std::size_t>()];
   }
@@ -199,9 +201,10 @@ class SceneReader {
 
   SceneFile finish(const std::string& place) {
     if (scene_.bodies.empty() || scene_.bodies.size() > core::kMaxBodies) {
-      refuse(place,
-             fmt::format("{} bodies are outside 1 .. {}", scene_.bodies.size(), core::kMaxBodies),
-             "give a number of bodies in that range");
+      support::refuse(
+          place,
+          fmt::format("{} bodies are outside 1 .. {}", scene_.bodies.size(), core::kMaxBodies),
+          "give a number of bodies in that range");
     }
     return std::move(scene_);
   }

@@ -16,19 +16,19 @@
 #include <string>
 #include <vector>
 
-#include "blob_file.hpp"
 #include "tactree/simulation/scene_target.hpp"
+#include "tactree/support/blob_file.hpp"
 
 namespace tactree::cli {
 
 struct SceneFile {
-  std::vector<std::unique_ptr<BlobFile>> blobs;
-  std::vector<std::string> names;      ///< of each body's blob
-  std::vector<const BlobFile*> files;  ///< each body's blob
+  std::vector<std::unique_ptr<support::BlobFile>> blobs;
+  std::vector<std::string> names;               ///< of each body's blob
+  std::vector<const support::BlobFile*> files;  ///< each body's blob
   std::vector<simulation::SceneBody> bodies;
 };
 
-/// Reads `scene`; empty: each of `blobs` is a body at rest at the origin. Throws CommandError with
+/// Reads `scene`; empty: each of `blobs` is a body at rest at the origin. Throws UserError with
 /// file, key, cause and remedy.
 [[nodiscard]] SceneFile read_scene(const std::filesystem::path& scene,
                                    const std::vector<std::string>& blobs);

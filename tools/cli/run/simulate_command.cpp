@@ -7,9 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "command.hpp"
-#include "device_file.hpp"
-#include "output_file.hpp"
+#include "exit_codes.hpp"
 #include "run/model_size.hpp"
 #include "run/scene_file.hpp"
 #include "run/simulate_options.hpp"
@@ -18,6 +16,8 @@
 #include "run/simulate_run.hpp"
 #include "run/simulate_serve.hpp"
 #include "run/simulate_setup.hpp"
+#include "tactree/support/device_file.hpp"
+#include "tactree/support/output_file.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -28,12 +28,12 @@ std::optional<std::string> reach_warning(const SimulateOptions& options, const S
     return std::nullopt;
   }
   return oversize_warning(options.blob, scene.files[0]->view().header(), options.device,
-                          load_device(options.device).preset.model);
+                          support::load_device(options.device).preset.model);
 }
 
 void simulate(SimulateOptions& options, int& exit_code) {
   if (options.dump_device) {
-    fmt::print("{}", device_json(load_device(options.device)));
+    fmt::print("{}", support::device_json(support::load_device(options.device)));
     return;
   }
   if (options.blobs.empty() && options.scene.empty()) {
@@ -41,7 +41,7 @@ void simulate(SimulateOptions& options, int& exit_code) {
   }
   std::vector<std::filesystem::path> inputs(options.blobs.begin(), options.blobs.end());
   inputs.insert(inputs.end(), {options.scene, options.path, options.replay});
-  check_outputs({options.record, options.trace, options.plot, options.json}, inputs);
+  support::check_outputs({options.record, options.trace, options.plot, options.json}, inputs);
   if (!options.replay.empty()) {
     exit_code = replay_session(options) ? kExitOk : kExitFailed;
     return;

@@ -4,12 +4,12 @@
 
 #include <stdexcept>
 
-#include "device_file.hpp"
 #include "option_checks.hpp"
 #include "run/wall_options.hpp"
 #include "tactree/emulation/board_description.hpp"
 #include "tactree/simulation/hand_script.hpp"
 #include "tactree/simulation/injection.hpp"
+#include "tactree/support/device_file.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -98,7 +98,7 @@ void add_plant_options(CLI::App& verb, SimulateOptions& options) {
 
 void add_device_options(CLI::App& verb, SimulateOptions& options) {
   std::string names;
-  for (const std::string& name : device_names()) {
+  for (const std::string& name : support::device_names()) {
     names += (names.empty() ? "" : ", ") + name;
   }
   verb.add_option("--device", options.device, names + ", or a JSON file that describes another")

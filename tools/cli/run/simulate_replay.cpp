@@ -10,14 +10,14 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "blob_file.hpp"
-#include "command.hpp"
-#include "json_text.hpp"
-#include "output_file.hpp"
 #include "run/scene_file.hpp"
 #include "run/simulate_setup.hpp"
 #include "tactree/simulation/recording.hpp"
 #include "tactree/simulation/replay.hpp"
+#include "tactree/support/blob_file.hpp"
+#include "tactree/support/json_text.hpp"
+#include "tactree/support/output_file.hpp"
+#include "tactree/support/user_error.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -54,8 +54,8 @@ std::vector<core::BlobView> find_models(const SimulateOptions& options,
                                         const SceneFile& scene) {
   std::vector<core::BlobView> models;
   for (const simulation::ModelDigest& wanted : recording.models()) {
-    const BlobFile* found = nullptr;
-    for (const BlobFile* const file : scene.files) {
+    const support::BlobFile* found = nullptr;
+    for (const support::BlobFile* const file : scene.files) {
       found = simulation::digest_of(file->bytes()) == wanted ? file : found;
     }
     if (found == nullptr) {
@@ -102,12 +102,12 @@ bool replay_session(const SimulateOptions& options) {
     const std::vector<core::BlobView> models = find_models(options, recording, scene);
     const simulation::ReplayResult result = simulation::replay(recording, models);
     if (!options.json.empty()) {
-      write_file(options.json, json_text(to_json(result)));
+      support::write_file(options.json, support::json_text(to_json(result)));
     }
     print_result(result);
     return result.same();
   } catch (const simulation::RecordingError& error) {
-    throw CommandError(fmt::format("{}: {}", options.replay, error.what()));
+    throw support::UserError(fmt::format("{}: {}", options.replay, error.what()));
   }
 }
 

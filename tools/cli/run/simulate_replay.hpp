@@ -6,7 +6,7 @@
 namespace tactree::cli {
 
 /// Prints the result. True: every tick has the outcome that was recorded, bit for bit. Throws
-/// CommandError if the recording or a blob is not usable.
+/// UserError if the recording or a blob is not usable.
 [[nodiscard]] bool replay_session(const SimulateOptions& options);
 
 }  // namespace tactree::cli

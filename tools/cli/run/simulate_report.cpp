@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "json_text.hpp"
-#include "output_file.hpp"
 #include "tactree/simulation/trace.hpp"
+#include "tactree/support/json_text.hpp"
+#include "tactree/support/output_file.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -20,7 +20,7 @@ void write_trace(const std::string& file, const std::vector<simulation::Sample>&
   for (const simulation::Sample& sample : samples) {
     simulation::append_trace(csv, sample);
   }
-  write_file(file, csv);
+  support::write_file(file, csv);
 }
 
 nlohmann::json instructions_json(const Outcome& outcome) {
@@ -145,7 +145,8 @@ void write_plot(const SimulateOptions& options, const SceneFile& scene, const Ou
   if (!options.compare) {
     const std::string title = fmt::format("{}: {}, {} mode, {:.6g} Hz", options.blob,
                                           options.device, options.mode, rate_hz);
-    write_file(options.plot, simulation::plot_svg(outcome.samples, title, histogram(outcome)));
+    support::write_file(options.plot,
+                        simulation::plot_svg(outcome.samples, title, histogram(outcome)));
     return;
   }
   SimulateOptions other = options;
@@ -155,8 +156,8 @@ void write_plot(const SimulateOptions& options, const SceneFile& scene, const Ou
   const bool paper_first = options.mode == "paper";
   const std::string title =
       fmt::format("{}: {}, both modes, {:.6g} Hz", options.blob, options.device, rate_hz);
-  write_file(options.plot,
-             simulation::plot_modes_svg(paper_first ? beside.samples : outcome.samples,
+  support::write_file(options.plot, simulation::plot_modes_svg(
+                                        paper_first ? beside.samples : outcome.samples,
                                         paper_first ? outcome.samples : beside.samples, title));
 }
 
@@ -170,7 +171,7 @@ void write_results(const SimulateOptions& options, const SceneFile& scene, const
     write_plot(options, scene, outcome);
   }
   if (!options.json.empty()) {
-    write_file(options.json, json_text(to_json(options, scene, outcome)));
+    support::write_file(options.json, support::json_text(to_json(options, scene, outcome)));
   }
 }
 

@@ -7,7 +7,7 @@
 
 namespace tactree::cli {
 
-/// Writes the files of --trace, --plot and --json. Throws CommandError.
+/// Writes the files of --trace, --plot and --json. Throws UserError.
 void write_results(const SimulateOptions& options, const SceneFile& scene, const Outcome& outcome);
 
 void print_summary(const SimulateOptions& options, const SceneFile& scene, const Outcome& outcome);

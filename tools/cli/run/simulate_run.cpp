@@ -8,10 +8,10 @@
 #include <utility>
 
 #include "image/board_costs.hpp"
-#include "output_file.hpp"
 #include "run/simulate_setup.hpp"
 #include "tactree/emulation/emulated_target.hpp"
 #include "tactree/simulation/recording.hpp"
+#include "tactree/support/output_file.hpp"
 #include "tactree/wcet/bound.hpp"
 #include "tactree/wcet/bound_error.hpp"
 
@@ -25,7 +25,7 @@ constexpr double kMaxTracedTicks = 5e6;
 std::unique_ptr<emulation::EmulatedTarget> boot_board(const emulation::BoardDescription& board,
                                                       const SimulateOptions& options,
                                                       const simulation::Setup& setup,
-                                                      const BlobFile& blob) {
+                                                      const support::BlobFile& blob) {
   emulation::EmulationOptions emulation;
   emulation.image = emulation::find_image(board, options.firmware);
   emulation.uncounted_ticks = simulation::Simulation::arming_ticks(setup);
@@ -201,7 +201,7 @@ Outcome run(const SimulateOptions& options, const SceneFile& scene) {
   Outcome outcome = run_ticks(sim, ticks, options, scene);
   sim.finish();
   if (!options.record.empty()) {
-    write_file(options.record, writer.finish());
+    support::write_file(options.record, writer.finish());
   }
   if (chosen.emulated != nullptr) {
     outcome.instructions = chosen.emulated->instruction_counts();

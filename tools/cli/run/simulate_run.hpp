@@ -33,7 +33,7 @@ struct Outcome {
   std::vector<simulation::Sample> samples;                   ///< for --trace and --plot
 };
 
-/// Runs the session and records it for --record. Throws CommandError.
+/// Runs the session and records it for --record. Throws UserError.
 [[nodiscard]] Outcome run(const SimulateOptions& options, const SceneFile& scene);
 
 }  // namespace tactree::cli

@@ -8,7 +8,6 @@
 
 #include "image/model_signature.hpp"
 #include "interruption.hpp"
-#include "output_file.hpp"
 #include "run/serve_session.hpp"
 #include "run/simulate_setup.hpp"
 #include "run/usb_port.hpp"
@@ -20,6 +19,7 @@
 #include "tactree/serve/served_target.hpp"
 #include "tactree/serve/usb_target.hpp"
 #include "tactree/simulation/recording.hpp"
+#include "tactree/support/output_file.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -38,7 +38,7 @@ serve::ServeOptions serve_options(const SimulateOptions& options) {
 std::unique_ptr<simulation::Target> served_target(const SimulateOptions& options,
                                                   const SceneFile& scene,
                                                   client::Transport& terminal) {
-  const BlobFile& blob = *scene.files[0];
+  const support::BlobFile& blob = *scene.files[0];
   const serve::ServeOptions serving = serve_options(options);
   const emulation::BoardDescription* const board = emulation::find_board(options.board);
   if (board == nullptr) {
@@ -69,7 +69,7 @@ void serve_target(const SimulateOptions& options, const SceneFile& scene,
   schedule.seconds_max = options.seconds_given->count() != 0 ? options.seconds : 0.0;
   serve_session(sim, schedule);
   if (!options.record.empty()) {
-    write_file(options.record, writer.finish());
+    support::write_file(options.record, writer.finish());
   }
 }
 

@@ -7,7 +7,7 @@
 
 namespace tactree::cli {
 
-/// Returns when the time is up or on a signal. Throws CommandError.
+/// Returns when the time is up or on a signal. Throws UserError.
 void serve(const SimulateOptions& options, const SceneFile& scene);
 
 }  // namespace tactree::cli

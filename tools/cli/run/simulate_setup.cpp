@@ -4,18 +4,18 @@
 
 #include <cmath>
 
-#include "command.hpp"
-#include "device_file.hpp"
 #include "image/board_costs.hpp"
 #include "tactree/simulation/hand_script.hpp"
 #include "tactree/simulation/placement.hpp"
+#include "tactree/support/device_file.hpp"
+#include "tactree/support/user_error.hpp"
 
 namespace tactree::cli {
 namespace {
 
 /// The device, for controller and mechanics alike; what the options say of it goes before.
 void choose_device(const SimulateOptions& options, simulation::Setup& setup) {
-  const Device device = load_device(options.device);
+  const support::Device device = support::load_device(options.device);
   const float force_max_N = setup.controller.force_max_N;
   simulation::use_device(device.preset, setup);
   if (options.force_max->count() != 0) {
@@ -79,7 +79,7 @@ core::Vec3 place_model(const SimulateOptions& options, const SceneFile& scene,
 }  // namespace
 
 [[noreturn]] void refuse(const std::string& what, const std::string& remedy) {
-  throw CommandError(fmt::format("{} ({})", what, remedy));
+  throw support::UserError(fmt::format("{} ({})", what, remedy));
 }
 
 simulation::HandPath hand_path(const SimulateOptions& options, const SceneFile& scene) {

@@ -10,19 +10,19 @@
 
 namespace tactree::cli {
 
-/// Throws CommandError: `what` was refused, with the remedy in brackets.
+/// Throws UserError: `what` was refused, with the remedy in brackets.
 [[noreturn]] void refuse(const std::string& what, const std::string& remedy);
 
-/// Device, controller and mechanics. Throws CommandError.
+/// Device, controller and mechanics. Throws UserError.
 [[nodiscard]] simulation::Setup make_setup(const SimulateOptions& options, const SceneFile& scene);
 
-/// Path of the hand. A script touches the first body at its first pose. Throws CommandError.
+/// Path of the hand. A script touches the first body at its first pose. Throws UserError.
 [[nodiscard]] simulation::HandPath hand_path(const SimulateOptions& options,
                                              const SceneFile& scene);
 
 [[nodiscard]] std::vector<simulation::InjectedFault> injections(const SimulateOptions& options);
 
-/// Throws CommandError unless `start` is ok(). `file` and `view`: the body that was refused.
+/// Throws UserError unless `start` is ok(). `file` and `view`: the body that was refused.
 void check_start(const std::string& file, const core::BlobView& view,
                  const simulation::Setup& setup, const hal::StartResult& start,
                  const SimulateOptions& options);

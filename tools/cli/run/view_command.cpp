@@ -7,14 +7,14 @@
 #include <utility>
 #include <vector>
 
-#include "command.hpp"
 #include "device/board_port.hpp"
-#include "device_file.hpp"
 #include "run/model_size.hpp"
 #include "run/scene_file.hpp"
 #include "run/wall_options.hpp"
 #include "scan/board_work.hpp"
 #include "tactree/simulation/placement.hpp"
+#include "tactree/support/device_file.hpp"
+#include "tactree/support/user_error.hpp"
 #include "tactree/viewer/board_session.hpp"
 #include "tactree/viewer/live_session.hpp"
 #include "tactree/viewer/recording.hpp"
@@ -38,7 +38,7 @@ struct ViewOptions {
 viewer::Bodies bodies_of(const SceneFile& scene) {
   viewer::Bodies bodies;
   bodies.bodies = scene.bodies;
-  for (const BlobFile* const file : scene.files) {
+  for (const support::BlobFile* const file : scene.files) {
     bodies.views.push_back(file->view());
   }
   return bodies;
@@ -48,12 +48,12 @@ viewer::Bodies bodies_of(const SceneFile& scene) {
 std::vector<viewer::NamedDevice> devices(const std::string& chosen) {
   std::vector<viewer::NamedDevice> list;
   bool known = false;
-  for (const std::string& name : device_names()) {
-    list.push_back({name, load_device(name).about, load_device(name).preset});
+  for (const std::string& name : support::device_names()) {
+    list.push_back({name, support::load_device(name).about, support::load_device(name).preset});
     known = known || name == chosen;
   }
   if (!known) {
-    const Device own = load_device(chosen);
+    const support::Device own = support::load_device(chosen);
     list.push_back({chosen, own.about, own.preset});
   }
   return list;
@@ -61,13 +61,13 @@ std::vector<viewer::NamedDevice> devices(const std::string& chosen) {
 
 std::unique_ptr<viewer::Source> board_source(const ViewOptions& options, const SceneFile& scene) {
   if (scene.files.size() != 1) {
-    throw CommandError("--port: a board has one model (give one BLOB)");
+    throw support::UserError("--port: a board has one model (give one BLOB)");
   }
-  const BlobFile& shown = *scene.files[0];
+  const support::BlobFile& shown = *scene.files[0];
   viewer::BoardSettings settings;
   settings.port = options.board.port;
   settings.link = {options.board.baud, static_cast<std::uint16_t>(options.link_timeout_ms)};
-  settings.device = load_device(options.settings.device).preset.model;
+  settings.device = support::load_device(options.settings.device).preset.model;
   settings.model = shown.bytes();
   settings.work = [&shown, firmware = options.firmware](const std::string& board,
                                                         const core::wire::CapabilitiesReply& can) {
@@ -84,7 +84,7 @@ std::unique_ptr<viewer::Source> make_source(const ViewOptions& options, const Sc
     return std::make_unique<viewer::LiveSession>(bodies_of(scene), devices(options.settings.device),
                                                  options.settings);
   }
-  const core::DeviceModel device = load_device(options.settings.device).preset.model;
+  const core::DeviceModel device = support::load_device(options.settings.device).preset.model;
   const core::Vec3 origin_m = simulation::middle_at_origin(
       scene.files[0]->view().header(), scene.bodies[0].path.first(), device.kind);
   return std::make_unique<viewer::Recording>(viewer::read_trace(options.trace), bodies_of(scene),
@@ -100,7 +100,8 @@ void warn_of_size(const ViewOptions& options, const SceneFile& scene) {
   const bool simulated = options.trace.empty() && options.board.port.empty();
   std::optional<std::string> warning;
   if (simulated) {
-    warning = oversize_warning(scene.names[0], model, device, load_device(device).preset.model);
+    warning =
+        oversize_warning(scene.names[0], model, device, support::load_device(device).preset.model);
   }
   if (!warning) {
     warning = size_warning(scene.names[0], model);
@@ -112,7 +113,7 @@ void warn_of_size(const ViewOptions& options, const SceneFile& scene) {
 
 void view(ViewOptions& options) {
   if (!viewer::has_page()) {
-    throw CommandError(
+    throw support::UserError(
         "view: this program was built without its page (scripts/install-deps view, then configure "
         "with -DTACTREE_PAGE=ON and build again)");
   }

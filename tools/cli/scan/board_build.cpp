@@ -7,8 +7,8 @@
 #include <optional>
 #include <utility>
 
-#include "command.hpp"
 #include "image/board_costs.hpp"
+#include "tactree/support/user_error.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -39,7 +39,7 @@ class RateCheck {
   [[noreturn]] void refuse(const BuildResult& result) {
     const core::BlobView view = view_of(result);
     choose_mode(view);
-    throw CommandError(fmt::format(
+    throw support::UserError(fmt::format(
         "--rate: {} renders this model at up to {:.0f} Hz, not at {:.6g} Hz: a tick takes up to "
         "{:.0f} cycles, the period has {:.0f} (lower --rate, choose a faster board{}: {} points in "
         "a ball dominate the cost)",
@@ -109,7 +109,7 @@ class SizeSearch {
 core::BlobView view_of(const BuildResult& result) {
   core::BlobView view;
   if (core::open_blob(result.blob.bytes, view) != core::BlobStatus::kOk) {
-    throw CommandError(
+    throw support::UserError(
         "internal error: the written blob is not valid (report it with the input file)");
   }
   return view;

@@ -21,14 +21,14 @@ struct BoardRequest {
 void limit_to_board(BoardRequest& request, builder::BuildOptions& build);
 
 /// Builds a model; where the board chooses its size and is too slow for it, the finest one that
-/// it renders at the rate, with a note. Throws CommandError if the board is too slow for any, and
+/// it renders at the rate, with a note. Throws UserError if the board is too slow for any, and
 /// what builder::build_model() throws.
 [[nodiscard]] builder::BuildResult build_for_board(std::span<const std::filesystem::path> inputs,
                                                    const builder::BuildOptions& build,
                                                    const BoardRequest& request,
                                                    builder::Progress& progress);
 
-/// The blob of a result. Throws CommandError if it is not valid.
+/// The blob of a result. Throws UserError if it is not valid.
 [[nodiscard]] core::BlobView view_of(const builder::BuildResult& result);
 
 }  // namespace tactree::cli

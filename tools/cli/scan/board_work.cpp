@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "command.hpp"
 #include "image/board_costs.hpp"
+#include "tactree/support/user_error.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -15,7 +15,7 @@ constexpr core::RenderMode kModes[] = {core::RenderMode::kSurface, core::RenderM
 double most_cycles(const std::string& board, float rate_hz, const core::BlobHeader& model,
                    const std::string& firmware) {
   if (wcet::find_timing(board) == nullptr) {
-    throw CommandError(fmt::format("there is no timing table for the board {}", board));
+    throw support::UserError(fmt::format("there is no timing table for the board {}", board));
   }
   const BoardCosts costs = costs_of_board(board, firmware);
   core::Configuration configuration;

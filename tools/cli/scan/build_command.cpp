@@ -11,17 +11,17 @@
 #include <string>
 #include <vector>
 
-#include "command.hpp"
 #include "image/board_costs.hpp"
-#include "json_text.hpp"
-#include "output_file.hpp"
 #include "scan/board_build.hpp"
 #include "scan/build_report.hpp"
 #include "scan/fit_option.hpp"
 #include "scan/preview.hpp"
-#include "spooled_input.hpp"
 #include "tactree/builder/build_model.hpp"
 #include "tactree/builder/read_materials.hpp"
+#include "tactree/support/json_text.hpp"
+#include "tactree/support/output_file.hpp"
+#include "tactree/support/spooled_input.hpp"
+#include "tactree/support/user_error.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -128,7 +128,7 @@ void complete(BuildArguments& arguments) {
     misuse("--output", "'' is not the name of a file");
   }
   BuildOptions& build = arguments.build;
-  if (std::count(arguments.inputs.begin(), arguments.inputs.end(), kStandardInput) > 1) {
+  if (std::count(arguments.inputs.begin(), arguments.inputs.end(), support::kStandardInput) > 1) {
     misuse("INPUT", "'-' (standard input) can be read once");
   }
   require_positive("--scale", build.scale);
@@ -187,12 +187,13 @@ void complete(BuildArguments& arguments) {
 void build(BuildArguments& arguments) {
   const std::vector<fs::path> inputs(arguments.inputs.begin(), arguments.inputs.end());
   std::vector<fs::path> files = inputs;
-  std::erase(files, kStandardInput);
-  check_outputs({arguments.output, arguments.report, arguments.json, arguments.preview}, files);
+  std::erase(files, support::kStandardInput);
+  support::check_outputs({arguments.output, arguments.report, arguments.json, arguments.preview},
+                         files);
   const std::unique_ptr<builder::Progress> progress =
       builder::make_progress(arguments.progress, stderr);
   builder::BuildResult result;
-  std::optional<SpooledInput> standard_input;
+  std::optional<support::SpooledInput> standard_input;
   try {
     if (files.size() < inputs.size()) {
       progress->begin("copying standard input");
@@ -203,11 +204,11 @@ void build(BuildArguments& arguments) {
     progress->end();
     throw;
   }
-  write_file(arguments.output, std::span<const std::byte>(result.blob.bytes));
-  const std::string json = json_text(report_json(result.report, arguments.build));
+  support::write_file(arguments.output, std::span<const std::byte>(result.blob.bytes));
+  const std::string json = support::json_text(report_json(result.report, arguments.build));
   for (const std::string& file : {arguments.report, arguments.json}) {
     if (!file.empty()) {
-      write_file(file, json);
+      support::write_file(file, json);
     }
   }
   if (!arguments.preview.empty()) {

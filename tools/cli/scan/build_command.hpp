@@ -5,7 +5,7 @@
 
 namespace tactree::cli {
 
-/// Adds the verb `build`. Its errors are thrown as CommandError, ReadError or BuildError.
+/// Adds the verb `build`. Its errors are thrown as UserError, ReadError or BuildError.
 void add_build_command(CLI::App& app, int& exit_code);
 
 }  // namespace tactree::cli

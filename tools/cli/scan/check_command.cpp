@@ -5,11 +5,11 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "blob_file.hpp"
-#include "command.hpp"
 #include "image/model_signature.hpp"
-#include "json_text.hpp"
-#include "output_file.hpp"
+#include "tactree/support/blob_file.hpp"
+#include "tactree/support/json_text.hpp"
+#include "tactree/support/output_file.hpp"
+#include "tactree/support/user_error.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -23,37 +23,39 @@ struct CheckOptions {
 void report(const CheckOptions& options, bool valid, const std::string& message) {
   if (!options.json.empty()) {
     const nlohmann::json result{{"file", options.blob}, {"valid", valid}, {"message", message}};
-    write_file(options.json, json_text(result));
+    support::write_file(options.json, support::json_text(result));
   }
 }
 
 /// Throws if the blob has an invalid signature; with --key, also without one or with another key.
-void check_signature(const CheckOptions& options, const BlobFile& blob) {
+void check_signature(const CheckOptions& options, const support::BlobFile& blob) {
   const std::optional<ModelSignature> signature = read_signature(options.blob);
   if (!signature) {
     if (!options.key.empty()) {
-      throw CommandError(fmt::format("{}: not signed (sign it with `tactree sign`)", options.blob));
+      throw support::UserError(
+          fmt::format("{}: not signed (sign it with `tactree sign`)", options.blob));
     }
     return;
   }
   const std::string file = signature_path(options.blob).string();
   if (!is_valid(*signature, blob.bytes())) {
-    throw CommandError(
+    throw support::UserError(
         fmt::format("{}: is not a valid signature of this blob (sign it again with "
                     "`tactree sign`)",
                     file));
   }
   if (!options.key.empty() && read_public_key(options.key) != signature->key) {
-    throw CommandError(fmt::format("{}: signed by {}, not by the key of {} (sign it with that key)",
-                                   file, to_hex(signature->key), options.key));
+    throw support::UserError(
+        fmt::format("{}: signed by {}, not by the key of {} (sign it with that key)", file,
+                    to_hex(signature->key), options.key));
   }
   fmt::print("{}: valid: {}\n", file, describe(*signature));
 }
 
 void check(const CheckOptions& options) {
-  check_outputs({options.json}, {options.blob});
+  support::check_outputs({options.json}, {options.blob});
   try {
-    const BlobFile blob = BlobFile::named(options.blob);
+    const support::BlobFile blob = support::BlobFile::named(options.blob);
     const std::string message =
         fmt::format("{}: valid: {} points in {} leaves, {} bytes, checksum {:08x}", options.blob,
                     blob.view().point_count(), blob.view().header().leaf_count, blob.bytes().size(),
@@ -61,7 +63,7 @@ void check(const CheckOptions& options) {
     fmt::print("{}\n", message);
     check_signature(options, blob);
     report(options, true, message);
-  } catch (const CommandError& error) {
+  } catch (const support::UserError& error) {
     report(options, false, error.what());
     throw;
   }

@@ -4,7 +4,7 @@
 
 namespace tactree::cli {
 
-/// Adds the verb `check`. Its errors are thrown as CommandError.
+/// Adds the verb `check`. Its errors are thrown as UserError.
 void add_check_command(CLI::App& app, int& exit_code);
 
 }  // namespace tactree::cli

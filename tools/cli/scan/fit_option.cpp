@@ -6,9 +6,9 @@
 #include <charconv>
 #include <cmath>
 
-#include "command.hpp"
-#include "device_file.hpp"
 #include "tactree/simulation/workspace.hpp"
+#include "tactree/support/device_file.hpp"
+#include "tactree/support/user_error.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -18,17 +18,17 @@ constexpr char kDevice[] = "device";
 constexpr double kShare = 0.95;
 
 void fit_to_device(const std::string& name, builder::BuildOptions& build) {
-  const core::DeviceModel device = load_device(name).preset.model;
+  const core::DeviceModel device = support::load_device(name).preset.model;
   if (core::axes_of(device.kind) != core::kAxes) {
-    refuse("--fit device:" + name,
-           "a device of one or two axes touches a section of a model of any size",
-           "give a length in metres");
+    support::refuse("--fit device:" + name,
+                    "a device of one or two axes touches a section of a model of any size",
+                    "give a length in metres");
   }
   build.fit_edge_m = [device, name](const Eigen::Vector3d& size) {
     const double scale = simulation::largest_scale(device, size).value_or(0.0);
     if (!(scale > 0.0)) {
-      refuse("--fit device:" + name, "it does not reach the places around its origin",
-             "correct the device");
+      support::refuse("--fit device:" + name, "it does not reach the places around its origin",
+                      "correct the device");
     }
     return kShare * scale * size.maxCoeff();
   };

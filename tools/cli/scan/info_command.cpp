@@ -12,17 +12,17 @@
 #include <optional>
 #include <string>
 
-#include "blob_file.hpp"
-#include "device_file.hpp"
 #include "image/board_costs.hpp"
 #include "image/model_signature.hpp"
-#include "json_text.hpp"
-#include "output_file.hpp"
 #include "run/model_size.hpp"
 #include "scan/preview.hpp"
 #include "tactree/builder/length_text.hpp"
 #include "tactree/builder/openings.hpp"
 #include "tactree/core/model/interior.hpp"
+#include "tactree/support/blob_file.hpp"
+#include "tactree/support/device_file.hpp"
+#include "tactree/support/json_text.hpp"
+#include "tactree/support/output_file.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -233,12 +233,12 @@ void print(const BlobView& view) {
 void write_points(const BlobView& view, const std::string& file) {
   std::string text = "index,x,y,z,nx,ny,nz\n";
   std::size_t index = 0;
-  for (const core::SurfacePoint& p : decode_points(view)) {
+  for (const core::SurfacePoint& p : support::decode_points(view)) {
     fmt::format_to(std::back_inserter(text), "{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}\n",
                    index++, p.position.x, p.position.y, p.position.z, p.normal.x, p.normal.y,
                    p.normal.z);
   }
-  write_file(file, text);
+  support::write_file(file, text);
 }
 
 void print_costs(const core::BlobHeader& header, const std::string& name,
@@ -271,7 +271,7 @@ void print_costs(const core::BlobHeader& header, const std::string& name,
 }
 
 /// null without a signature.
-nlohmann::json signature_json(const std::string& file, const BlobFile& blob) {
+nlohmann::json signature_json(const std::string& file, const support::BlobFile& blob) {
   const std::optional<ModelSignature> signature = read_signature(file);
   if (!signature) {
     return nullptr;
@@ -282,7 +282,7 @@ nlohmann::json signature_json(const std::string& file, const BlobFile& blob) {
           {"valid", is_valid(*signature, blob.bytes())}};
 }
 
-void print_signature(const std::string& file, const BlobFile& blob) {
+void print_signature(const std::string& file, const support::BlobFile& blob) {
   if (const std::optional<ModelSignature> signature = read_signature(file)) {
     fmt::print("signature     {}: {}\n", is_valid(*signature, blob.bytes()) ? "valid" : "NOT VALID",
                describe(*signature));
@@ -294,14 +294,14 @@ std::optional<std::string> size_warning_of(const InfoOptions& options, const Blo
   std::optional<std::string> warning;
   if (!options.device.empty()) {
     warning = oversize_warning(options.blob, model, options.device,
-                               load_device(options.device).preset.model);
+                               support::load_device(options.device).preset.model);
   }
   return warning ? warning : size_warning(options.blob, model);
 }
 
 void info(const InfoOptions& options) {
-  check_outputs({options.json, options.points, options.preview}, {options.blob});
-  const BlobFile blob = BlobFile::named(options.blob);
+  support::check_outputs({options.json, options.points, options.preview}, {options.blob});
+  const support::BlobFile blob = support::BlobFile::named(options.blob);
   print(blob.view());
   print_signature(options.blob, blob);
   if (!options.board.empty()) {
@@ -318,7 +318,7 @@ void info(const InfoOptions& options) {
       json["warnings"].push_back(*warning);
     }
     json["signature"] = signature_json(options.blob, blob);
-    write_file(options.json, json_text(json));
+    support::write_file(options.json, support::json_text(json));
   }
   if (!options.points.empty()) {
     write_points(blob.view(), options.points);

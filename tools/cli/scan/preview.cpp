@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "output_file.hpp"
 #include "tactree/picture/model_picture.hpp"
+#include "tactree/support/output_file.hpp"
 
 namespace tactree::cli {
 
@@ -18,7 +18,7 @@ void write_preview(const std::filesystem::path& file, const core::BlobView& view
                      opening.kind == builder::Opening::Kind::kHole});
   }
   const std::vector<std::byte> png = picture::draw_model(view, marks, doubtful).png();
-  write_file(file, std::span<const std::byte>(png));
+  support::write_file(file, std::span<const std::byte>(png));
 }
 
 }  // namespace tactree::cli

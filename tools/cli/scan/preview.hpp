@@ -11,7 +11,7 @@
 namespace tactree::cli {
 
 /// Writes the picture. doubtful: empty, or per point: 1 if its side is doubtful. Throws
-/// CommandError if the file cannot be written.
+/// UserError if the file cannot be written.
 void write_preview(const std::filesystem::path& file, const core::BlobView& view,
                    std::span<const builder::Opening> openings,
                    std::span<const std::uint8_t> doubtful = {});

@@ -9,18 +9,18 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "blob_file.hpp"
-#include "command.hpp"
-#include "json_text.hpp"
 #include "option_checks.hpp"
-#include "output_file.hpp"
 #include "scan/read_points.hpp"
-#include "spooled_input.hpp"
 #include "tactree/builder/length_text.hpp"
 #include "tactree/core/contact/paper_mode.hpp"
 #include "tactree/core/contact/surface.hpp"
 #include "tactree/core/model/interior.hpp"
 #include "tactree/core/model/nearest.hpp"
+#include "tactree/support/blob_file.hpp"
+#include "tactree/support/json_text.hpp"
+#include "tactree/support/output_file.hpp"
+#include "tactree/support/spooled_input.hpp"
+#include "tactree/support/user_error.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -55,7 +55,7 @@ class Query {
         boxes_exact_(0.5F * view.header().aabb_edge_m <= view.reach_m()),
         has_surface_(core::surface_support(view) == core::SurfaceSupport::kOk) {
     if (!nearest_exact_ || !boxes_exact_) {
-      points_ = decode_points(view);
+      points_ = support::decode_points(view);
     }
   }
 
@@ -149,7 +149,7 @@ struct Totals {
 
 void print_rows(std::string& rows) {
   if (std::fwrite(rows.data(), 1, rows.size(), stdout) != rows.size()) {
-    throw CommandError("standard output cannot be written (check the disk or the pipe)");
+    throw support::UserError("standard output cannot be written (check the disk or the pipe)");
   }
   rows.clear();
 }
@@ -178,11 +178,11 @@ Totals answer_all(Query& query, const std::vector<std::array<double, 3>>& rows) 
 }
 
 void query(const QueryOptions& options) {
-  if (options.blob == kStandardInput && options.points == kStandardInput) {
+  if (options.blob == support::kStandardInput && options.points == support::kStandardInput) {
     throw CLI::ValidationError("--points", "'-' (standard input) is the blob");
   }
-  check_outputs({options.json}, {options.blob, options.points});
-  const BlobFile blob = BlobFile::named(options.blob);
+  support::check_outputs({options.json}, {options.blob, options.points});
+  const support::BlobFile blob = support::BlobFile::named(options.blob);
   const auto rows = read_points(options.points);
   const core::BlobHeader& header = blob.view().header();
   const float radius = options.radius_m ? static_cast<float>(*options.radius_m)
@@ -203,7 +203,7 @@ void query(const QueryOptions& options) {
                                 {"contacts", totals.contacts},
                                 {"nearest_found", totals.found},
                                 {"surface_found", totals.supported}};
-    write_file(options.json, json_text(result));
+    support::write_file(options.json, support::json_text(result));
   }
 }
 

@@ -1,12 +1,12 @@
 #include "scan/read_points.hpp"
 
-#include "csv.hpp"
+#include "tactree/support/csv.hpp"
 
 namespace tactree::cli {
 
 std::vector<std::array<double, 3>> read_points(const std::filesystem::path& file) {
-  files::CsvReader table(
-      file, {.header = files::CsvHeader::kOptional, .separator = files::CsvSeparator::kAny});
+  support::CsvReader table(
+      file, {.header = support::CsvHeader::kOptional, .separator = support::CsvSeparator::kAny});
   std::vector<std::array<double, 3>> points;
   while (table.next_row()) {
     if (table.cells().size() < 3) {

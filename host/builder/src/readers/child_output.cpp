@@ -25,7 +25,7 @@ ChildOutput::ChildOutput(const std::vector<std::string>& arguments, double secon
       now_(now),
       deadline_(now_() + std::chrono::duration_cast<Clock::duration>(
                              std::chrono::duration<double>(seconds))),
-      pipe_(process::make_pipe()),
+      pipe_(support::make_pipe()),
       child_(arguments, {.output = pipe_.write_end.get(), .error = -1, .inherited = {}}),
       buffer_(kBufferBytes) {
   pipe_.write_end.close();

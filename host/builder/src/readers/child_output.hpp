@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "tactree/process/child_process.hpp"
-#include "tactree/process/file_descriptor.hpp"
+#include "tactree/support/child_process.hpp"
+#include "tactree/support/file_descriptor.hpp"
 
 namespace tactree::builder {
 
@@ -34,8 +34,8 @@ class ChildOutput {
   double seconds_;
   Clock::time_point (*now_)();
   Clock::time_point deadline_;
-  process::Pipe pipe_;
-  process::ChildProcess child_;
+  support::Pipe pipe_;
+  support::ChildProcess child_;
   std::vector<char> buffer_;
   std::size_t begin_ = 0;  // unread part of buffer_
   std::size_t end_ = 0;

@@ -11,17 +11,17 @@
 #include "find_files.hpp"
 #include "serial_bridge.hpp"
 #include "tactree/hal/plant_link.hpp"
-#include "tactree/process/child_process.hpp"
-#include "tactree/process/file_descriptor.hpp"
+#include "tactree/support/child_process.hpp"
+#include "tactree/support/file_descriptor.hpp"
 
 namespace tactree::emulation {
 namespace {
 
 namespace link = hal::plant_link;
-using process::ChildProcess;
-using process::FileDescriptor;
-using process::Pipe;
 using std::chrono::milliseconds;
+using support::ChildProcess;
+using support::FileDescriptor;
+using support::Pipe;
 
 // Descriptor numbers in the emulator; the first two as in plant_link.hpp.
 constexpr int kToBoard = 3;
@@ -38,7 +38,7 @@ constexpr milliseconds kEndLimit{10'000};
 
 Pipe make_pipe() {
   try {
-    return process::make_pipe();
+    return support::make_pipe();
   } catch (const std::system_error& error) {
     throw EmulationError(std::string("emulation: ") + error.what());
   }
@@ -140,7 +140,7 @@ class EmulatedTarget::Session {
           const EmulationOptions& options)
       : board_(board), options_(options) {
     check_size(blob);
-    const std::string program = process::find_program(board.emulator);
+    const std::string program = support::find_program(board.emulator);
     if (program.empty()) {
       throw EmulationError(fmt::format("board {}: the emulator {} is missing (apt-get install {})",
                                        board.name, board.emulator, board.package));
@@ -156,7 +156,7 @@ class EmulatedTarget::Session {
       inherited.emplace_back(bridge_->board_end(), kSerial);
     }
     process_.emplace(command_line(board, program, image, options),
-                     process::Streams{log_.get(), log_.get(), inherited});
+                     support::Streams{log_.get(), log_.get(), inherited});
     // Only the emulator writes to these, so they end with it. The reading end of to_board_ stays
     // open here: writing to an emulator that has ended raises no SIGPIPE.
     from_board_.write_end.close();

@@ -25,8 +25,8 @@ SerialBridge::SerialBridge(client::Transport& programs) : programs_(programs) {
     throw EmulationError(std::string("socket for the board's serial port: ") +
                          std::strerror(errno));
   }
-  ours_ = process::FileDescriptor(ends[0]);
-  board_ = process::FileDescriptor(ends[1]);
+  ours_ = support::FileDescriptor(ends[0]);
+  board_ = support::FileDescriptor(ends[1]);
 }
 
 void SerialBridge::move() {

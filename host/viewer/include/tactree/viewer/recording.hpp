@@ -15,7 +15,7 @@
 namespace tactree::viewer {
 
 /// The ticks of a trace. Required columns: t_s, probe, force; values of other missing columns are
-/// 0. Throws files::CsvError, a std::runtime_error: "file: line n: cause (remedy)".
+/// 0. Throws support::CsvError, a std::runtime_error: "file: line n: cause (remedy)".
 [[nodiscard]] std::vector<simulation::Sample> read_trace(const std::filesystem::path& file);
 
 class Recording : public Source {

@@ -1,4 +1,4 @@
-#include "spooled_input.hpp"
+#include "tactree/support/spooled_input.hpp"
 
 #include <fcntl.h>
 #include <fmt/core.h>
@@ -8,9 +8,9 @@
 #include <cstring>
 #include <vector>
 
-#include "command.hpp"
+#include "tactree/support/user_error.hpp"
 
-namespace tactree::cli {
+namespace tactree::support {
 namespace {
 
 constexpr std::size_t kBlockBytes = std::size_t{1} << 20;
@@ -102,4 +102,4 @@ std::filesystem::path SpooledInput::path() const {
   return fmt::format("/proc/{}/fd/{}", ::getpid(), copy_);
 }
 
-}  // namespace tactree::cli
+}  // namespace tactree::support

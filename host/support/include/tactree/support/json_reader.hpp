@@ -10,7 +10,7 @@
 
 #include "tactree/core/device/device_model.hpp"
 
-namespace tactree::cli {
+namespace tactree::support {
 
 /// Parts of the messages that depend on the kind of file.
 struct JsonRemedies {
@@ -25,7 +25,7 @@ class JsonReader {
  public:
   using Json = nlohmann::ordered_json;
 
-  /// Keeps a reference to `json`. All functions throw CommandError; this one if `json` is not an
+  /// Keeps a reference to `json`. All functions throw UserError; this one if `json` is not an
   /// object.
   JsonReader(std::string file, const Json& json, const JsonRemedies& remedies,
              std::string place = "");
@@ -68,4 +68,4 @@ class JsonReader {
 /// "a, b, c"
 [[nodiscard]] std::string listed(const std::vector<std::string>& names);
 
-}  // namespace tactree::cli
+}  // namespace tactree::support

@@ -18,7 +18,7 @@
 #include <utility>
 #include <vector>
 
-namespace tactree::process {
+namespace tactree::support {
 
 /// Absolute path of the executable `name` in a folder of PATH; empty: not found.
 [[nodiscard]] std::string find_program(const std::string& name);
@@ -61,4 +61,4 @@ class ChildProcess {
   int status_ = 0;
 };
 
-}  // namespace tactree::process
+}  // namespace tactree::support

@@ -21,7 +21,7 @@
 #include <string_view>
 #include <vector>
 
-namespace tactree::files {
+namespace tactree::support {
 
 /// "FILE: line N: cause (remedy)"
 class CsvError : public std::runtime_error {
@@ -88,4 +88,4 @@ class CsvReader {
   std::vector<std::string> columns_;
 };
 
-}  // namespace tactree::files
+}  // namespace tactree::support

@@ -1,4 +1,4 @@
-#include "output_file.hpp"
+#include "tactree/support/output_file.hpp"
 
 #include <fcntl.h>
 #include <fmt/core.h>
@@ -8,16 +8,16 @@
 #include <cerrno>
 #include <cstring>
 
-#include "command.hpp"
+#include "tactree/support/user_error.hpp"
 
-namespace tactree::cli {
+namespace tactree::support {
 namespace {
 
 namespace fs = std::filesystem;
 
 [[noreturn]] void fail(const fs::path& file) {
-  throw CommandError(fmt::format("{}: cannot be written: {} (check the path and its permissions)",
-                                 file.string(), std::strerror(errno)));
+  throw UserError(fmt::format("{}: cannot be written: {} (check the path and its permissions)",
+                              file.string(), std::strerror(errno)));
 }
 
 // A device or pipe, such as /dev/stdout, cannot be replaced.
@@ -81,14 +81,13 @@ void check_outputs(const std::vector<fs::path>& outputs, const std::vector<fs::p
     }
     for (const fs::path& input : inputs) {
       if (!input.empty() && is_same_file(output, input)) {
-        throw CommandError(output.string() +
-                           ": is an input and would be overwritten (choose another name)");
+        throw UserError(output.string() +
+                        ": is an input and would be overwritten (choose another name)");
       }
     }
     for (std::size_t j = 0; j < i && !is_written_in_place(output); ++j) {
       if (!outputs[j].empty() && is_same_file(output, outputs[j])) {
-        throw CommandError(output.string() +
-                           ": is the name of two outputs (give each its own file)");
+        throw UserError(output.string() + ": is the name of two outputs (give each its own file)");
       }
     }
     require_writable(output);
@@ -120,4 +119,4 @@ void write_file(const fs::path& file, std::string_view text) {
   write_file(file, std::as_bytes(std::span(text)));
 }
 
-}  // namespace tactree::cli
+}  // namespace tactree::support

@@ -9,7 +9,7 @@
 #include <system_error>
 #include <utility>
 
-namespace tactree::process {
+namespace tactree::support {
 
 /// Throws std::system_error of errno; its text is "what: cause".
 [[noreturn]] inline void fail_with_errno(const char* what) {
@@ -75,4 +75,4 @@ struct Pipe {
   return pipe;
 }
 
-}  // namespace tactree::process
+}  // namespace tactree::support

@@ -6,7 +6,7 @@
 #include <functional>
 #include <string>
 
-namespace tactree::cli {
+namespace tactree::support {
 
 /// The name that stands for standard input on a command line, and its name in messages.
 inline constexpr const char* kStandardInput = "-";
@@ -24,7 +24,7 @@ using FreeSpace = std::function<std::uint64_t(const std::filesystem::path& folde
 class SpooledInput {
  public:
   /// Copies, by default standard input to the folder for temporary files (TMPDIR, else /tmp).
-  /// Throws CommandError if the descriptor is a terminal, if it fails, or if less than
+  /// Throws UserError if the descriptor is a terminal, if it fails, or if less than
   /// kSpoolReserve would stay free.
   explicit SpooledInput(int descriptor = 0, const std::filesystem::path& folder = default_folder(),
                         const FreeSpace& space = free_space);
@@ -43,4 +43,4 @@ class SpooledInput {
   int copy_ = -1;
 };
 
-}  // namespace tactree::cli
+}  // namespace tactree::support

@@ -1,4 +1,4 @@
-#include "csv.hpp"
+#include "tactree/support/csv.hpp"
 
 #include <fmt/core.h>
 
@@ -9,7 +9,7 @@
 #include <cstring>
 #include <iostream>
 
-namespace tactree::files {
+namespace tactree::support {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r";
@@ -148,4 +148,4 @@ void CsvReader::read_header() {
   columns_.assign(cells_.begin(), cells_.end());
 }
 
-}  // namespace tactree::files
+}  // namespace tactree::support

@@ -1,4 +1,4 @@
-#include "blob_file.hpp"
+#include "tactree/support/blob_file.hpp"
 
 #include <fmt/core.h>
 
@@ -8,10 +8,10 @@
 #include <fstream>
 #include <iostream>
 
-#include "command.hpp"
-#include "spooled_input.hpp"
+#include "tactree/support/spooled_input.hpp"
+#include "tactree/support/user_error.hpp"
 
-namespace tactree::cli {
+namespace tactree::support {
 namespace {
 
 const char* remedy(core::BlobStatus status) {
@@ -39,7 +39,7 @@ core::BlobStatus check_header(std::span<const std::byte> first) {
 
 [[noreturn]] void refuse_blob(const std::string& name, core::BlobStatus status,
                               const std::string& detail = "") {
-  throw CommandError(
+  throw UserError(
       fmt::format("{}: refused: {}{} ({})", name, core::describe(status), detail, remedy(status)));
 }
 
@@ -49,20 +49,19 @@ BlobFile::BlobFile(const std::filesystem::path& file) {
   std::error_code error;
   const std::filesystem::file_status kind = std::filesystem::status(file, error);
   if (std::filesystem::is_directory(kind)) {
-    throw CommandError(
+    throw UserError(
         fmt::format("{}: is a folder, not a blob (give the file in it)", file.string()));
   }
   if (std::filesystem::exists(kind) && !std::filesystem::is_regular_file(kind)) {
-    throw CommandError(
+    throw UserError(
         fmt::format("{}: is a pipe or a device (a blob is read from a file: write it to one first)",
                     file.string()));
   }
   std::ifstream in(file, std::ios::binary);
   const std::uintmax_t size = in ? std::filesystem::file_size(file, error) : 0;
   if (!in || error) {
-    throw CommandError(
-        fmt::format("{}: cannot be read: {} (give a blob: `tactree build` makes one)",
-                    file.string(), error ? error.message() : std::strerror(errno)));
+    throw UserError(fmt::format("{}: cannot be read: {} (give a blob: `tactree build` makes one)",
+                                file.string(), error ? error.message() : std::strerror(errno)));
   }
   read_all(in, file.string(), size);
 }
@@ -136,4 +135,4 @@ std::vector<core::SurfacePoint> decode_points(const core::BlobView& view) {
   return points;
 }
 
-}  // namespace tactree::cli
+}  // namespace tactree::support

@@ -11,12 +11,12 @@
 
 #include "tactree/core/model/blob.hpp"
 
-namespace tactree::cli {
+namespace tactree::support {
 
 /// Owns the bytes; view() and bytes() are valid during its lifetime.
 class BlobFile {
  public:
-  /// Reads and checks, the header before the rest. Throws CommandError that names the file, the
+  /// Reads and checks, the header before the rest. Throws UserError that names the file, the
   /// cause and the remedy.
   explicit BlobFile(const std::filesystem::path& file);
 
@@ -44,4 +44,4 @@ class BlobFile {
 /// Every point of a blob, decoded, by index.
 [[nodiscard]] std::vector<core::SurfacePoint> decode_points(const core::BlobView& view);
 
-}  // namespace tactree::cli
+}  // namespace tactree::support

@@ -1,4 +1,4 @@
-#include "device_file.hpp"
+#include "tactree/support/device_file.hpp"
 
 #include <fmt/core.h>
 
@@ -7,11 +7,11 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "command.hpp"
-#include "json_reader.hpp"
-#include "json_text.hpp"
+#include "tactree/support/json_reader.hpp"
+#include "tactree/support/json_text.hpp"
+#include "tactree/support/user_error.hpp"
 
-namespace tactree::cli {
+namespace tactree::support {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -107,18 +107,18 @@ Json read_json(const std::string& file) {
   std::error_code error;
   const std::uintmax_t bytes = std::filesystem::file_size(file, error);
   if (error) {
-    throw CommandError(
+    throw UserError(
         fmt::format("--device: '{}' is neither a device nor a readable file "
                     "(devices: {}; or write one with --dump-device)",
                     file, listed(device_names())));
   }
   if (bytes > kMaxBytes) {
-    throw CommandError(fmt::format("{}: is too large for a device (at most 1 MiB)", file));
+    throw UserError(fmt::format("{}: is too large for a device (at most 1 MiB)", file));
   }
   std::ifstream stream(file);
   const Json json = Json::parse(stream, nullptr, false);
   if (!json.is_object()) {
-    throw CommandError(
+    throw UserError(
         fmt::format("{}: is not a JSON object (begin with a file of --dump-device)", file));
   }
   return json;
@@ -190,4 +190,4 @@ std::string device_json(const Device& device) {
   return json_text(json);
 }
 
-}  // namespace tactree::cli
+}  // namespace tactree::support

@@ -1,4 +1,4 @@
-#include "json_reader.hpp"
+#include "tactree/support/json_reader.hpp"
 
 #include <fmt/format.h>
 
@@ -6,9 +6,9 @@
 #include <cmath>
 #include <utility>
 
-#include "command.hpp"
+#include "tactree/support/user_error.hpp"
 
-namespace tactree::cli {
+namespace tactree::support {
 
 std::string listed(const std::vector<std::string>& names) {
   return fmt::format("{}", fmt::join(names, ", "));
@@ -18,8 +18,8 @@ JsonReader::JsonReader(std::string file, const Json& json, const JsonRemedies& r
                        std::string place)
     : file_(std::move(file)), json_(json), remedies_(remedies), place_(std::move(place)) {
   if (!json.is_object()) {
-    throw CommandError(fmt::format("{}: {} is not an object (write it in braces)", file_,
-                                   place_.empty() ? "it" : place_));
+    throw UserError(fmt::format("{}: {} is not an object (write it in braces)", file_,
+                                place_.empty() ? "it" : place_));
   }
 }
 
@@ -29,7 +29,7 @@ std::string JsonReader::path(const std::string& key) const {
 
 void JsonReader::refuse(const std::string& key, const std::string& cause,
                         const std::string& remedy) const {
-  throw CommandError(fmt::format("{}: {}: {} ({})", file_, path(key), cause, remedy));
+  throw UserError(fmt::format("{}: {}: {} ({})", file_, path(key), cause, remedy));
 }
 
 const JsonReader::Json& JsonReader::get(const char* key) {
@@ -126,4 +126,4 @@ void JsonReader::finish() const {
   }
 }
 
-}  // namespace tactree::cli
+}  // namespace tactree::support

@@ -7,7 +7,7 @@
 
 #include "tactree/core/configuration/device_presets.hpp"
 
-namespace tactree::cli {
+namespace tactree::support {
 
 struct Device {
   std::string name;
@@ -18,11 +18,11 @@ struct Device {
 /// "cartesian", "premium", ...
 [[nodiscard]] std::vector<std::string> device_names();
 
-/// The preset of this name, or else the device in the file of this name. Throws CommandError:
+/// The preset of this name, or else the device in the file of this name. Throws UserError:
 /// "file: key: cause (remedy)".
 [[nodiscard]] Device load_device(const std::string& name_or_file);
 
 /// The text of a device file.
 [[nodiscard]] std::string device_json(const Device& device);
 
-}  // namespace tactree::cli
+}  // namespace tactree::support

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-namespace tactree::cli {
+namespace tactree::support {
 
 /// Of any nlohmann::basic_json, indented by two. Bytes that are not UTF-8 become U+FFFD.
 template <class Json>
@@ -12,4 +12,4 @@ template <class Json>
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-}  // namespace tactree::cli
+}  // namespace tactree::support

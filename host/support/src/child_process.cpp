@@ -1,4 +1,4 @@
-#include "tactree/process/child_process.hpp"
+#include "tactree/support/child_process.hpp"
 
 #include <sys/prctl.h>
 #include <sys/wait.h>
@@ -8,9 +8,9 @@
 #include <sstream>
 #include <thread>
 
-#include "tactree/process/file_descriptor.hpp"
+#include "tactree/support/file_descriptor.hpp"
 
-namespace tactree::process {
+namespace tactree::support {
 namespace {
 
 constexpr int kCannotStart = 127;
@@ -106,4 +106,4 @@ std::string ChildProcess::ending() const {
   return "exit code " + std::to_string(exit_code());
 }
 
-}  // namespace tactree::process
+}  // namespace tactree::support

@@ -1,0 +1,20 @@
+#pragma once
+// The error of a file, option or value that a user gave.
+
+#include <stdexcept>
+#include <string>
+
+namespace tactree::support {
+
+/// The text is "file: place: cause (remedy)", without the parts that do not apply.
+class UserError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+[[noreturn]] inline void refuse(const std::string& place, const std::string& cause,
+                                const std::string& remedy) {
+  throw UserError(place + ": " + cause + " (" + remedy + ")");
+}
+
+}  // namespace tactree::support
