@@ -8,25 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "device/arm_command.hpp"
-#include "device/devices_command.hpp"
-#include "device/flash_command.hpp"
-#include "device/monitor_command.hpp"
-#include "device/params_command.hpp"
-#include "device/stop_command.hpp"
-#include "device/trace_command.hpp"
+#include "commands.hpp"
 #include "exit_codes.hpp"
-#include "image/bound_command.hpp"
-#include "image/image_command.hpp"
-#include "image/keygen_command.hpp"
-#include "image/sign_command.hpp"
-#include "run/evaluate_command.hpp"
-#include "run/simulate_command.hpp"
-#include "run/view_command.hpp"
-#include "scan/build_command.hpp"
-#include "scan/check_command.hpp"
-#include "scan/info_command.hpp"
-#include "scan/query_command.hpp"
 
 namespace tactree::cli {
 namespace {

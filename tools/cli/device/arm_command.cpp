@@ -1,9 +1,8 @@
-#include "device/arm_command.hpp"
-
 #include <fmt/format.h>
 
 #include <memory>
 
+#include "commands.hpp"
 #include "device/board_port.hpp"
 #include "exit_codes.hpp"
 #include "interruption.hpp"

@@ -1,5 +1,3 @@
-#include "device/devices_command.hpp"
-
 #include <fmt/format.h>
 
 #include <chrono>
@@ -8,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "commands.hpp"
 #include "device/board_port.hpp"
 #include "exit_codes.hpp"
 #include "option_checks.hpp"

@@ -1,11 +1,10 @@
-#include "device/flash_command.hpp"
-
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "commands.hpp"
 #include "device/board_port.hpp"
 #include "image/model_signature.hpp"
 #include "run/model_size.hpp"

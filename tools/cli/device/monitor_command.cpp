@@ -1,5 +1,3 @@
-#include "device/monitor_command.hpp"
-
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -10,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "commands.hpp"
 #include "device/board_port.hpp"
 #include "exit_codes.hpp"
 #include "interruption.hpp"

@@ -1,11 +1,10 @@
-#include "device/params_command.hpp"
-
 #include <fmt/format.h>
 
 #include <charconv>
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "commands.hpp"
 #include "device/board_port.hpp"
 #include "tactree/support/output_file.hpp"
 #include "tactree/support/user_error.hpp"

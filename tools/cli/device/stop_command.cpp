@@ -1,9 +1,8 @@
-#include "device/stop_command.hpp"
-
 #include <fmt/format.h>
 
 #include <memory>
 
+#include "commands.hpp"
 #include "device/board_port.hpp"
 #include "tactree/client/connection.hpp"
 #include "tactree/client/ports.hpp"

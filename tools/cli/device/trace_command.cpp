@@ -1,9 +1,8 @@
-#include "device/trace_command.hpp"
-
 #include <fmt/format.h>
 
 #include <memory>
 
+#include "commands.hpp"
 #include "device/board_port.hpp"
 #include "tactree/core/control/controller.hpp"
 #include "tactree/support/output_file.hpp"

@@ -1,5 +1,3 @@
-#include "image/bound_command.hpp"
-
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "commands.hpp"
 #include "image/board_costs.hpp"
 #include "tactree/core/contact/scene.hpp"
 #include "tactree/support/blob_file.hpp"

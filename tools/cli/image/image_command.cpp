@@ -1,5 +1,3 @@
-#include "image/image_command.hpp"
-
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "commands.hpp"
 #include "image/firmware_image.hpp"
 #include "image/image_formats.hpp"
 #include "tactree/support/blob_file.hpp"

@@ -1,9 +1,8 @@
-#include "image/keygen_command.hpp"
-
 #include <fmt/format.h>
 
 #include <memory>
 
+#include "commands.hpp"
 #include "image/model_signature.hpp"
 #include "tactree/support/user_error.hpp"
 

@@ -1,5 +1,3 @@
-#include "run/evaluate_command.hpp"
-
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
@@ -10,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "commands.hpp"
 #include "exit_codes.hpp"
 #include "tactree/builder/progress.hpp"
 #include "tactree/evaluation/evaluation.hpp"

@@ -1,5 +1,3 @@
-#include "run/simulate_command.hpp"
-
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -7,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "commands.hpp"
 #include "exit_codes.hpp"
 #include "run/model_size.hpp"
 #include "run/scene_file.hpp"

@@ -1,5 +1,3 @@
-#include "run/view_command.hpp"
-
 #include <fmt/core.h>
 
 #include <memory>
@@ -7,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "commands.hpp"
 #include "device/board_port.hpp"
 #include "run/model_size.hpp"
 #include "run/scene_file.hpp"

@@ -1,5 +1,3 @@
-#include "scan/build_command.hpp"
-
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "commands.hpp"
 #include "image/board_costs.hpp"
 #include "scan/board_build.hpp"
 #include "scan/build_report.hpp"

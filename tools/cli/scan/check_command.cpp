@@ -1,10 +1,9 @@
-#include "scan/check_command.hpp"
-
 #include <fmt/core.h>
 
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "commands.hpp"
 #include "image/model_signature.hpp"
 #include "tactree/support/blob_file.hpp"
 #include "tactree/support/json_text.hpp"

@@ -1,5 +1,3 @@
-#include "scan/info_command.hpp"
-
 #include <fmt/core.h>
 
 #include <Eigen/Core>
@@ -12,6 +10,7 @@
 #include <optional>
 #include <string>
 
+#include "commands.hpp"
 #include "image/board_costs.hpp"
 #include "image/model_signature.hpp"
 #include "run/model_size.hpp"

@@ -1,5 +1,3 @@
-#include "scan/query_command.hpp"
-
 #include <fmt/core.h>
 
 #include <cmath>
@@ -9,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "commands.hpp"
 #include "option_checks.hpp"
 #include "scan/read_points.hpp"
 #include "tactree/builder/length_text.hpp"
