@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "cleaning.hpp"
+#include "cleaning/cleaning.hpp"
 #include "known_bodies.hpp"
 #include "orientation_score.hpp"
-#include "spacing.hpp"
+#include "geometry/spacing.hpp"
 
 namespace {
 

@@ -77,7 +77,7 @@ class Layers(Planted):
 
     def test_core_includes_builder_by_path(self):
         self.refuses_line("of builder", "core/src/model/octree.cpp",
-                          '#include "../../../host/builder/src/lattice.hpp"')
+                          '#include "../../../host/builder/src/octree/lattice.hpp"')
 
     def test_core_includes_builder_by_name(self):
         self.refuses_line("model includes lattice.hpp of builder", "core/src/model/octree.cpp",
@@ -94,11 +94,11 @@ class Layers(Planted):
 
     def test_builder_includes_host(self):
         self.refuses_line("builder includes tactree/plant/plant.hpp of plant",
-                          "host/builder/src/lattice.cpp", '#include "tactree/plant/plant.hpp"')
+                          "host/builder/src/octree/lattice.cpp", '#include "tactree/plant/plant.hpp"')
 
     def test_builder_includes_hal(self):
         self.refuses_line("builder includes tactree/hal/loop.hpp of hal",
-                          "host/builder/src/lattice.cpp", '#include "tactree/hal/loop.hpp"')
+                          "host/builder/src/octree/lattice.cpp", '#include "tactree/hal/loop.hpp"')
 
     def test_host_includes_builder(self):
         self.refuses_line("simulation includes tactree/builder/model.hpp of builder",

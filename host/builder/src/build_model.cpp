@@ -8,21 +8,21 @@
 #include <chrono>
 #include <cmath>
 
-#include "ball_bound.hpp"
-#include "cleaning.hpp"
-#include "density.hpp"
-#include "gaps.hpp"
-#include "normals.hpp"
-#include "orientation/given_normals.hpp"
-#include "orientation/mesh_windings.hpp"
-#include "orientation/orient_cloud.hpp"
-#include "orientation/report_orientation.hpp"
+#include "sampling/ball_bound.hpp"
+#include "cleaning/cleaning.hpp"
+#include "sampling/density.hpp"
+#include "openings/gaps.hpp"
+#include "normals/normals.hpp"
+#include "normals/given_normals.hpp"
+#include "normals/mesh_windings.hpp"
+#include "normals/orient_cloud.hpp"
+#include "normals/report_orientation.hpp"
 #include "source_digest.hpp"
 #include "tactree/builder/length_text.hpp"
 #include "tactree/builder/read_scan.hpp"
 #include "tactree/builder/size_advice.hpp"
 #include "tactree/core/model/blob.hpp"
-#include "two_sided.hpp"
+#include "openings/two_sided.hpp"
 #include "up_hint.hpp"
 
 namespace tactree::builder {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "cloud.hpp"
+#include "geometry/cloud.hpp"
 
 namespace tactree::builder {
 namespace {

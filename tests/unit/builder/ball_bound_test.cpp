@@ -1,10 +1,10 @@
-#include "ball_bound.hpp"
+#include "sampling/ball_bound.hpp"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
 #include "shapes.hpp"
-#include "z_order.hpp"
+#include "geometry/z_order.hpp"
 
 namespace tactree::builder {
 namespace {

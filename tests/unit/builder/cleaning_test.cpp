@@ -1,4 +1,4 @@
-#include "cleaning.hpp"
+#include "cleaning/cleaning.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "density.hpp"
+#include "sampling/density.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
-#include "gaps.hpp"
+#include "openings/gaps.hpp"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 
-#include "resample.hpp"
+#include "sampling/resample.hpp"
 #include "shapes.hpp"
 
 namespace tactree::builder {

@@ -1,6 +1,6 @@
 // Which surfaces have material behind them, and where that is.
 
-#include "interior.hpp"
+#include "octree/interior.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
-#include "mesh_sampling.hpp"
+#include "sampling/mesh_sampling.hpp"
 
 #include <gtest/gtest.h>
 
-#include "resample.hpp"
+#include "sampling/resample.hpp"
 #include "shapes.hpp"
 
 namespace tactree::builder {

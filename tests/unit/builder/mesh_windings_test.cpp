@@ -1,4 +1,4 @@
-#include "orientation/mesh_windings.hpp"
+#include "normals/mesh_windings.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
-#include "normals.hpp"
+#include "normals/normals.hpp"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
-#include "orientation/orient_cloud.hpp"
-#include "resample.hpp"
+#include "normals/orient_cloud.hpp"
+#include "sampling/resample.hpp"
 #include "shapes.hpp"
-#include "spacing.hpp"
+#include "geometry/spacing.hpp"
 
 namespace tactree::builder {
 namespace {

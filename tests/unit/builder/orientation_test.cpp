@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "known_bodies.hpp"
-#include "orientation/report_orientation.hpp"
+#include "normals/report_orientation.hpp"
 #include "orientation_score.hpp"
 #include "shapes.hpp"
 

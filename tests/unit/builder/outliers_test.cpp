@@ -1,9 +1,9 @@
-#include "outliers.hpp"
+#include "cleaning/outliers.hpp"
 
 #include <gtest/gtest.h>
 
 #include "shapes.hpp"
-#include "spacing.hpp"
+#include "geometry/spacing.hpp"
 
 namespace tactree::builder {
 namespace {

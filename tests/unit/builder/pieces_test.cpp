@@ -1,4 +1,4 @@
-#include "pieces.hpp"
+#include "cleaning/pieces.hpp"
 
 #include <gtest/gtest.h>
 

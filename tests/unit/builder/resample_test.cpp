@@ -1,4 +1,4 @@
-#include "resample.hpp"
+#include "sampling/resample.hpp"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>

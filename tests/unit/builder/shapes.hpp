@@ -5,8 +5,8 @@
 #include <numbers>
 #include <vector>
 
-#include "cloud.hpp"
-#include "mesh_sampling.hpp"
+#include "geometry/cloud.hpp"
+#include "sampling/mesh_sampling.hpp"
 #include "tactree/builder/scan.hpp"
 
 namespace tactree::builder {

@@ -1,4 +1,4 @@
-#include "spacing.hpp"
+#include "geometry/spacing.hpp"
 
 #include <gtest/gtest.h>
 

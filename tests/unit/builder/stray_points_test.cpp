@@ -1,10 +1,10 @@
-#include "stray_points.hpp"
+#include "cleaning/stray_points.hpp"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
 #include "shapes.hpp"
-#include "spacing.hpp"
+#include "geometry/spacing.hpp"
 
 namespace tactree::builder {
 namespace {

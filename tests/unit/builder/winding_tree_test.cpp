@@ -1,4 +1,4 @@
-#include "winding_tree.hpp"
+#include "geometry/winding_tree.hpp"
 
 #include <gtest/gtest.h>
 

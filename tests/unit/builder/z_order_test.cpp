@@ -1,4 +1,4 @@
-#include "z_order.hpp"
+#include "geometry/z_order.hpp"
 
 #include <gtest/gtest.h>
 

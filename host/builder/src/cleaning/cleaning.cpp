@@ -1,0 +1,522 @@
+#include "cleaning/cleaning.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "cleaning/scanner_poses.hpp"
+#include "cleaning/outliers.hpp"
+#include "cleaning/pieces.hpp"
+#include "geometry/spacing.hpp"
+#include "cleaning/stray_points.hpp"
+#include "tactree/builder/length_text.hpp"
+
+namespace tactree::builder {
+namespace {
+
+// Outliers of a cloud lie beyond 10 times the size of its bulk, corners of a mesh beyond 100 times:
+// a detailed figure may stand on a large, coarse plinth.
+constexpr double kCloudMargin = 10.0;
+constexpr double kMeshMargin = 100.0;
+// Farther from the origin than this, in extents, float32 loses detail.
+constexpr double kFarExtents = 4.0;
+// Points nearer to each other than this belong to one piece of a scan.
+constexpr double kIslandSpacings = 2.5;
+// Steps of the coordinates that a hand feels, relative to the spacing.
+constexpr double kMaxStepPerDetail = 0.05;
+constexpr double kDetailsPerExtent = 200.0;  // of a mesh: its default spacing
+// Coordinates beyond this are damage; squares of distances would overflow far beyond.
+constexpr double kLargestCoordinate_m = 1e12;
+// Extents of a model that the lattice of a blob can represent with any useful spacing.
+constexpr double kSmallestModel_m = 1e-6;
+constexpr double kLargestModel_m = 1e6;
+
+// False for NaN.
+bool is_float(double value) { return static_cast<double>(static_cast<float>(value)) == value; }
+
+bool is_in_range(const Eigen::Vector3d& position_m) {
+  return position_m.cwiseAbs().maxCoeff() <= kLargestCoordinate_m;
+}
+
+Eigen::Matrix3d turn_up(UpAxis up) {
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  if (up == UpAxis::kY) {
+    turn << 1, 0, 0, 0, 0, -1, 0, 1, 0;  // y -> z, z -> -y
+  } else if (up == UpAxis::kX) {
+    turn << 0, 1, 0, 0, 0, 1, 1, 0, 0;  // x -> z, y -> x, z -> y
+  }
+  return turn;
+}
+
+class Cleaner {
+ public:
+  Cleaner(const BuildOptions& options, BuildReport& report) : options_(options), report_(report) {
+    input_.frame.turn = turn_up(options.up.value_or(UpAxis::kZ));
+  }
+
+  CleanInput run(std::vector<Scan> scans) {
+    require_colours(scans);
+    choose_unit(scans);
+    if (std::any_of(scans.begin(), scans.end(), [](const Scan& s) { return !s.poses.empty(); })) {
+      cloud_sights_ = uses_poses();
+    }
+    for (Scan& scan : scans) {
+      count_input(scan);
+      note_float_steps(scan);
+      if (scan.is_mesh()) {
+        add_mesh(std::move(scan));
+      } else {
+        add_cloud(std::move(scan));
+      }
+      scan = Scan();
+    }
+    clean_mesh();
+    clean_cloud();
+    report_.kept_points = input_.points.size() + mesh_corners_;
+    if (input_.points.size() == 0 && input_.mesh.triangles.empty()) {
+      throw std::runtime_error(nothing_left());
+    }
+    place();
+    warn_of_float_steps();
+    return std::move(input_);
+  }
+
+ private:
+  // That of the first scan; the others are converted to it.
+  void choose_unit(std::vector<Scan>& scans) {
+    const double own = scans.empty() ? 1.0 : scans[0].unit_m.value_or(1.0);
+    const double unit_m = options_.unit_m.value_or(own);
+    input_.frame.unit = unit_m * options_.scale;
+    report_.unit_known =
+        options_.unit_m.has_value() || (!scans.empty() && scans[0].unit_m.has_value());
+    for (Scan& scan : scans) {
+      const double factor = options_.unit_m ? 1.0 : scan.unit_m.value_or(1.0) / unit_m;
+      for (std::size_t i = 0; i < scan.positions.size() && factor != 1.0; ++i) {
+        scan.positions[i] *= factor;
+      }
+      for (ScannerPose& pose : scan.poses) {
+        pose.position *= factor;
+      }
+    }
+    if (unit_m != 1.0 && !options_.unit_m) {
+      report_.notes.push_back(
+          fmt::format("the unit of the file is {} (--unit overrides it)", length_text(unit_m)));
+    }
+    if (options_.crop) {
+      for (int corner = 0; corner < 8; ++corner) {
+        input_.crop.extend(input_.frame.turned(
+            options_.crop->corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner))));
+      }
+    }
+  }
+
+  void drop(const std::string& cause, std::uint64_t count) {
+    if (count > 0) {
+      report_.dropped[cause] += count;
+    }
+  }
+
+  void count_input(const Scan& scan) {
+    report_.input_points += scan.positions.size();
+    for (const auto& [cause, count] : scan.dropped) {
+      drop(cause, count);
+      report_.input_points += cause.find("face") == std::string::npos ? count : 0;
+    }
+    report_.warnings.insert(report_.warnings.end(), scan.warnings.begin(), scan.warnings.end());
+    report_.notes.insert(report_.notes.end(), scan.notes.begin(), scan.notes.end());
+  }
+
+  [[nodiscard]] bool keep_outliers() const { return !(options_.outlier_sigma > 0.0); }
+
+  [[nodiscard]] bool by_colour() const {
+    return options_.materials && options_.materials->by_colour();
+  }
+
+  void require_colours(const std::vector<Scan>& scans) const {
+    const bool coloured = std::any_of(scans.begin(), scans.end(),
+                                      [](const Scan& scan) { return !scan.colours.empty(); });
+    if (by_colour() && !coloured) {
+      throw std::runtime_error(
+          "the materials depend on colour, but no input has colours at its points (export the scan "
+          "with vertex colours, or give one material for the whole model)");
+    }
+  }
+
+  /// Points of a scan without colours get the base material.
+  [[nodiscard]] std::uint8_t material_of(const Scan& scan, std::size_t point) const {
+    return scan.colours.empty() ? std::uint8_t{0}
+                                : options_.materials->index_of(scan.colours[point]);
+  }
+
+  [[nodiscard]] bool uses_poses() const {
+    return options_.viewpoints.empty() && (options_.orient == OrientationRule::kAuto ||
+                                           options_.orient == OrientationRule::kViewpoint);
+  }
+
+  // Of point i, at `position` in the turned frame.
+  [[nodiscard]] Sight sight_of(const Scan& scan, std::size_t i,
+                               const Eigen::Vector3d& position) const {
+    const auto next = std::upper_bound(
+        scan.poses.begin(), scan.poses.end(), i,
+        [](std::size_t point, const ScannerPose& pose) { return point < pose.first_point; });
+    if (next == scan.poses.begin()) {
+      return {};
+    }
+    const ScannerPose& pose = *std::prev(next);
+    const Eigen::Vector3d d = input_.frame.turned(pose.position) - position;
+    const double range = d.norm();
+    return range > 0.0 ? Sight{(d / range).cast<float>(), pose.sure} : Sight{};  // also NaN
+  }
+
+  void add_cloud(Scan&& scan) {
+    if (cloud_sights_) {
+      check_poses(scan, report_);
+    }
+    const bool normals = scan.normals.size() == scan.positions.size();
+    std::uint64_t non_finite = 0;
+    std::uint64_t out_of_range = 0;
+    std::uint64_t outside = 0;
+    cloud_.positions.reserve(cloud_.size() + scan.positions.size());
+    if (normals || cloud_.has_normals()) {
+      cloud_.normals.resize(cloud_.size(), Eigen::Vector3f::Zero());
+      cloud_.normals.reserve(cloud_.positions.capacity());
+    }
+    for (std::size_t i = 0; i < scan.positions.size(); ++i) {
+      const Eigen::Vector3d p = input_.frame.turned(scan.positions[i]);
+      if (!p.allFinite()) {
+        ++non_finite;
+      } else if (!is_in_range(p)) {
+        ++out_of_range;
+      } else if (options_.crop && !options_.crop->contains(scan.positions[i])) {
+        ++outside;
+      } else {
+        cloud_.positions.push_back(p);
+        if (cloud_sights_) {
+          cloud_.sights.push_back(sight_of(scan, i, p));
+        }
+        if (by_colour()) {
+          cloud_.materials.push_back(material_of(scan, i));
+        }
+        if (normals) {
+          cloud_.normals.push_back(usable_normal(scan.normals[i]));
+        } else if (cloud_.has_normals()) {
+          cloud_.normals.push_back(Eigen::Vector3f::Zero());
+        }
+      }
+    }
+    drop("non_finite", non_finite);
+    drop("out_of_range", out_of_range);
+    drop("outside_crop", outside);
+  }
+
+  [[nodiscard]] Eigen::Vector3f usable_normal(const Eigen::Vector3f& read) const {
+    const Eigen::Vector3d normal = input_.frame.turn * read.cast<double>();
+    const double length = normal.norm();
+    if (!(length > 1e-30) || !(length < 1e30)) {
+      return Eigen::Vector3f::Zero();
+    }
+    return (1.0 / length * normal).cast<float>();
+  }
+
+  void add_mesh(Scan&& scan) {
+    const auto base = static_cast<std::uint32_t>(input_.mesh.positions.size());
+    for (std::size_t i = 0; i < scan.positions.size(); ++i) {
+      input_.mesh.positions.push_back(input_.frame.turned(scan.positions[i]));
+      if (by_colour()) {
+        input_.mesh.materials.push_back(material_of(scan, i));
+      }
+    }
+    for (const auto& [i, j, k] : scan.triangles) {
+      input_.mesh.triangles.push_back({base + i, base + j, base + k});
+    }
+  }
+
+  void clean_mesh() {
+    Mesh& mesh = input_.mesh;
+    if (mesh.triangles.empty()) {
+      return;
+    }
+    std::vector<bool> used(mesh.positions.size(), false);
+    for (const auto& triangle : mesh.triangles) {
+      for (const std::uint32_t corner : triangle) {
+        used[corner] = true;
+      }
+    }
+    drop("not_in_a_face", static_cast<std::uint64_t>(std::count(used.begin(), used.end(), false)));
+    const std::vector<bool> keep = corners_to_keep(used);
+    const auto [degenerate, far] = drop_faces(mesh, keep);
+    drop("degenerate_face", degenerate);
+    drop("outlier_face", far);
+    mesh_corners_ = static_cast<std::uint64_t>(std::count(keep.begin(), keep.end(), true));
+    crop_mesh();
+    drop_small_shells();
+    for (const auto& triangle : mesh.triangles) {
+      for (const std::uint32_t corner : triangle) {
+        input_.bounds.extend(mesh.positions[corner]);
+      }
+    }
+    if (options_.crop && !mesh.triangles.empty()) {
+      input_.bounds = input_.bounds.intersection(input_.crop);
+    }
+  }
+
+  // The corners of faces with a finite and plausible position.
+  std::vector<bool> corners_to_keep(const std::vector<bool>& used) {
+    const std::vector<Eigen::Vector3d>& positions = input_.mesh.positions;
+    std::vector<Eigen::Vector3d> corners;
+    for (std::size_t i = 0; i < used.size(); ++i) {
+      if (used[i] && positions[i].allFinite() && is_in_range(positions[i])) {
+        corners.push_back(positions[i]);
+      }
+    }
+    const Box plausible = keep_outliers() ? Box() : plausible_box(corners, kMeshMargin);
+    std::vector<bool> keep = used;
+    std::uint64_t outliers = 0;
+    std::uint64_t non_finite = 0;
+    std::uint64_t out_of_range = 0;
+    for (std::size_t i = 0; i < used.size(); ++i) {
+      if (used[i] && !positions[i].allFinite()) {
+        keep[i] = false;
+        ++non_finite;
+      } else if (used[i] && !is_in_range(positions[i])) {
+        keep[i] = false;
+        ++out_of_range;
+      } else if (used[i] && !plausible.isEmpty() && !plausible.contains(positions[i])) {
+        keep[i] = false;
+        ++outliers;
+      }
+    }
+    drop("non_finite", non_finite);
+    drop("out_of_range", out_of_range);
+    drop("outlier", outliers);
+    return keep;
+  }
+
+  // Drops faces outside the crop box; faces across its border are sampled inside only.
+  void crop_mesh() {
+    if (!options_.crop) {
+      return;
+    }
+    Mesh& mesh = input_.mesh;
+    const std::size_t before = mesh.triangles.size();
+    std::erase_if(mesh.triangles, [&](const std::array<std::uint32_t, 3>& triangle) {
+      Box box;
+      for (const std::uint32_t corner : triangle) {
+        box.extend(mesh.positions[corner]);
+      }
+      return !input_.crop.intersects(box);
+    });
+    drop("face_outside_crop", before - mesh.triangles.size());
+  }
+
+  [[nodiscard]] PieceRule piece_rule() const { return {options_.keep_largest, options_.min_piece}; }
+  [[nodiscard]] bool keep_all_pieces() const {
+    return !options_.keep_largest && options_.min_piece == 0;
+  }
+
+  void drop_small_shells() {
+    Mesh& mesh = input_.mesh;
+    if (keep_all_pieces() || mesh.triangles.empty()) {
+      return;
+    }
+    const std::vector<bool> keep = kept_corners(mesh, piece_rule());
+    const auto corners = static_cast<std::uint64_t>(std::count(keep.begin(), keep.end(), false));
+    drop("small_piece", corners);
+    mesh_corners_ -= corners;
+    drop("small_piece_face",
+         std::erase_if(mesh.triangles, [&](const std::array<std::uint32_t, 3>& triangle) {
+           return !keep[triangle[0]];
+         }));
+  }
+
+  void drop_small_islands() {
+    if (keep_all_pieces()) {
+      return;
+    }
+    const std::vector<std::uint32_t> kept =
+        kept_points(input_.points, kIslandSpacings * input_.points_spacing, piece_rule());
+    drop("small_piece", input_.points.size() - kept.size());
+    if (kept.size() < input_.points.size()) {
+      input_.points = input_.points.subset(kept);
+      input_.points_spacing = estimate_spacing(input_.points).median_m;
+    }
+  }
+
+  void clean_cloud() {
+    if (cloud_.size() == 0) {
+      return;
+    }
+    if (!keep_outliers()) {
+      drop_far_points();
+    }
+    input_.points = ZOrderedCloud(std::move(cloud_));
+    drop("duplicate", drop_duplicates(input_.points));
+    input_.points_spacing = estimate_spacing(input_.points).median_m;
+    if (!keep_outliers() && input_.points_spacing > 0.0) {
+      const std::vector<std::uint32_t> kept =
+          points_in_company(input_.points, input_.points_spacing);
+      drop("outlier", input_.points.size() - kept.size());
+      if (kept.size() < input_.points.size()) {
+        input_.points = input_.points.subset(kept);
+      }
+      drop_stray_points();
+    }
+    drop_small_islands();
+    input_.bounds.extend(bounds_of(input_.points.positions()));
+  }
+
+  void drop_stray_points() {
+    const SurfacePoints found =
+        points_on_surfaces(input_.points, input_.points_spacing, options_.outlier_sigma);
+    if (found.undecided) {
+      report_.warnings.push_back(
+          "more than an eighth of the points lie on no surface: all are kept (check the scan; the "
+          "model is a surface through its points)");
+    }
+    drop("stray", input_.points.size() - found.kept.size());
+    if (found.kept.size() < input_.points.size()) {
+      input_.points = input_.points.subset(found.kept);
+      input_.points_spacing = estimate_spacing(input_.points).median_m;
+    }
+  }
+
+  void drop_far_points() {
+    const Box plausible = plausible_box(cloud_.positions, kCloudMargin);
+    if (plausible.isEmpty()) {
+      return;
+    }
+    std::vector<std::uint32_t> kept;
+    kept.reserve(cloud_.size());
+    for (std::uint32_t i = 0; i < cloud_.size(); ++i) {
+      if (plausible.contains(cloud_.positions[i])) {
+        kept.push_back(i);
+      }
+    }
+    if (kept.size() < cloud_.size()) {
+      drop("outlier", cloud_.size() - kept.size());
+      cloud_ = select(cloud_, kept);
+    }
+  }
+
+  [[nodiscard]] std::string nothing_left() const {
+    std::string causes;
+    for (const auto& [cause, count] : report_.dropped) {
+      causes += fmt::format("{}{} {}", causes.empty() ? "" : ", ", count, cause);
+    }
+    return fmt::format("no usable point is left of {}; dropped: {} (check {})",
+                       report_.input_points, causes.empty() ? "none" : causes,
+                       report_.dropped.contains("out_of_range")  ? "--unit, --scale and the file"
+                       : report_.dropped.contains("small_piece") ? "--min-piece"
+                       : options_.crop                           ? "--crop and the file"
+                                                                 : "the file");
+  }
+
+  // Coordinates that are all float32 numbers have steps that grow with the distance from the
+  // origin.
+  void note_float_steps(const Scan& scan) {
+    double farthest = 0.0;
+    Box box;
+    for (const Eigen::Vector3d& p : scan.positions) {
+      if (!is_float(p.x()) || !is_float(p.y()) || !is_float(p.z())) {
+        return;
+      }
+      farthest = std::max(farthest, p.cwiseAbs().maxCoeff());
+      box.extend(p);
+    }
+    if (farthest > kFarExtents * largest_edge(box)) {
+      float_step_ = std::max(float_step_, std::ldexp(1.0, std::ilogb(farthest) - 23));
+    }
+  }
+
+  void warn_of_float_steps() {
+    const double step = float_step_ * input_.frame.source_scale();
+    const double detail = input_.points_spacing > 0.0
+                              ? input_.points_spacing
+                              : largest_edge(input_.bounds) / kDetailsPerExtent;
+    if (step > kMaxStepPerDetail * detail) {
+      report_.warnings.push_back(fmt::format(
+          "the coordinates are float32 numbers far from their origin: they have steps of {} "
+          "(export the scan with double precision, or move it to its origin before the export)",
+          length_text(step)));
+    }
+  }
+
+  void place() {
+    Frame& frame = input_.frame;
+    const double extent = largest_edge(input_.bounds);
+    const double farthest =
+        input_.bounds.min().cwiseAbs().cwiseMax(input_.bounds.max().cwiseAbs()).maxCoeff();
+    const bool far = farthest > kFarExtents * extent;
+    const bool fitted = options_.fit_m || options_.fit_edge_m;
+    if (fitted || options_.centre || far) {
+      frame.shift = input_.bounds.center();
+    }
+    if (fitted) {
+      if (!(extent > 0.0)) {
+        throw std::runtime_error(
+            "--fit cannot scale the model: all its points coincide (use --scale)");
+      }
+      const double edge_m =
+          options_.fit_m ? *options_.fit_m : options_.fit_edge_m(input_.bounds.sizes());
+      frame.fit = edge_m / extent;
+    } else if (far && !options_.centre) {
+      const Eigen::Vector3d origin = frame.source_origin();
+      report_.notes.push_back(fmt::format(
+          "the scan lies far from its origin: the origin of the model is moved to its middle, "
+          "({:.12g}, {:.12g}, {:.12g}) in the source",
+          origin.x(), origin.y(), origin.z()));
+    }
+    require_size(frame.fit * extent);
+    move_all();
+    report_.source_scale = frame.source_scale();
+    report_.source_origin = frame.source_origin();
+  }
+
+  static void require_size(double extent_m) {
+    if (extent_m != 0.0 && !(extent_m >= kSmallestModel_m && extent_m <= kLargestModel_m)) {
+      throw std::runtime_error(
+          fmt::format("the model would be {} wide; a model is 1 um to 1000 km wide (check "
+                      "--unit, --scale and --fit)",
+                      length_text(extent_m)));
+    }
+  }
+
+  void move_all() {
+    const Frame& frame = input_.frame;
+    if (frame.shift.isZero(0.0) && frame.fit == 1.0) {
+      return;
+    }
+    const auto moved = [&](const Box& box) {
+      return box.isEmpty() ? box
+                           : Box((frame.fit * (box.min() - frame.shift)).eval(),
+                                 (frame.fit * (box.max() - frame.shift)).eval());
+    };
+    if (input_.points.size() > 0) {
+      input_.points.transform(frame.shift, frame.fit);
+    }
+    for (Eigen::Vector3d& p : input_.mesh.positions) {
+      p = frame.fit * (p - frame.shift);
+    }
+    input_.points_spacing *= frame.fit;
+    input_.crop = moved(input_.crop);
+    input_.bounds = moved(input_.bounds);
+  }
+
+  const BuildOptions& options_;
+  BuildReport& report_;
+  CleanInput input_;
+  Cloud cloud_;
+  double float_step_ = 0.0;    // of the coordinates far from the origin, in units of the source
+  bool cloud_sights_ = false;  // some points were seen from a known position
+  std::uint64_t mesh_corners_ = 0;
+};
+
+}  // namespace
+
+CleanInput clean(std::vector<Scan> scans, const BuildOptions& options, BuildReport& report) {
+  return Cleaner(options, report).run(std::move(scans));
+}
+
+}  // namespace tactree::builder

@@ -1,0 +1,88 @@
+#include "geometry/winding_tree.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "geometry/cloud.hpp"
+
+namespace tactree::builder {
+namespace {
+
+// A group is far away from this many of its radii on.
+constexpr double kFarRadii = 3.0;
+constexpr std::uint32_t kLeafSize = 8;
+// Of a tree over 2^31 elements that is halved at every node: its height, once for each side.
+constexpr std::size_t kMaxOpen = 64;
+
+double solid_angle(const SurfaceElement& element, const Eigen::Vector3d& d) {
+  const double squared = d.squaredNorm();
+  return squared > 0.0 ? element.area.dot(d) / (squared * std::sqrt(squared)) : 0.0;
+}
+
+}  // namespace
+
+WindingTree::WindingTree(std::vector<SurfaceElement> elements) : elements_(std::move(elements)) {
+  if (!elements_.empty()) {
+    add_node(0, static_cast<std::uint32_t>(elements_.size()));
+  }
+}
+
+double WindingTree::angle(const Eigen::Vector3d& at) const {
+  double sum = 0.0;
+  std::array<std::uint32_t, kMaxOpen> open{};
+  std::size_t count = nodes_.empty() ? 0 : 1;
+  while (count > 0) {
+    const std::uint32_t index = open[--count];
+    const Node& node = nodes_[index];
+    const Eigen::Vector3d d = node.sum.centre - at;
+    if (d.squaredNorm() > kFarRadii * kFarRadii * node.radius * node.radius) {
+      sum += solid_angle(node.sum, d);
+    } else if (node.right != 0) {
+      open[count++] = node.right;
+      open[count++] = index + 1;
+    } else {
+      for (std::uint32_t k = node.first; k < node.last; ++k) {
+        constexpr double kHalf = 2.0 * std::numbers::pi;
+        sum += std::clamp(solid_angle(elements_[k], elements_[k].centre - at), -kHalf, kHalf);
+      }
+    }
+  }
+  return sum;
+}
+
+void WindingTree::add_node(std::uint32_t first, std::uint32_t last) {
+  Box box;
+  SurfaceElement sum{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+  double weight = 0.0;
+  for (std::uint32_t k = first; k < last; ++k) {
+    const double own = elements_[k].area.norm();
+    box.extend(elements_[k].centre);
+    sum.area += elements_[k].area;
+    sum.centre += own * elements_[k].centre;
+    weight += own;
+  }
+  sum.centre = weight > 0.0 ? (sum.centre / weight).eval() : box.center();
+  const std::size_t index = nodes_.size();
+  nodes_.push_back({sum, 0.0, first, last, 0});
+  for (std::uint32_t k = first; k < last; ++k) {
+    nodes_[index].radius =
+        std::max(nodes_[index].radius, (elements_[k].centre - sum.centre).norm());
+  }
+  if (last - first <= kLeafSize) {
+    return;
+  }
+  Eigen::Index axis = 0;
+  box.sizes().maxCoeff(&axis);
+  const std::uint32_t middle = first + (last - first) / 2;
+  std::nth_element(elements_.begin() + first, elements_.begin() + middle, elements_.begin() + last,
+                   [axis](const SurfaceElement& a, const SurfaceElement& b) {
+                     return a.centre[axis] < b.centre[axis];
+                   });
+  add_node(first, middle);
+  nodes_[index].right = static_cast<std::uint32_t>(nodes_.size());
+  add_node(middle, last);
+}
+
+}  // namespace tactree::builder

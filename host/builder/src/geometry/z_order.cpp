@@ -1,0 +1,194 @@
+#include "geometry/z_order.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+
+#include <bit>
+#include <cmath>
+
+#include "geometry/morton.hpp"
+
+namespace tactree::builder {
+namespace {
+
+struct Entry {
+  std::uint64_t code;
+  std::uint32_t index;
+};
+
+bool lexicographically_less(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (a[axis] != b[axis]) {
+      return a[axis] < b[axis];
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+ZOrderedCloud::ZOrderedCloud(Cloud cloud) {
+  const Box box = bounds_of(cloud.positions);
+  origin_ = box.isEmpty() ? Eigen::Vector3d::Zero() : Eigen::Vector3d(box.min());
+  edge_ = largest_edge(box);
+  edge_ = edge_ > 0.0 ? edge_ * (1.0 + 1e-9) : 1.0;
+  std::vector<Entry> entries(cloud.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, cloud.size(), 4096), [&](auto range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i) {
+      entries[i] = {morton_code(finest_cell(cloud.positions[i])), static_cast<std::uint32_t>(i)};
+    }
+  });
+  tbb::parallel_sort(entries.begin(), entries.end(), [&](const Entry& a, const Entry& b) {
+    if (a.code != b.code) {
+      return a.code < b.code;
+    }
+    const Eigen::Vector3d& p = cloud.positions[a.index];
+    const Eigen::Vector3d& q = cloud.positions[b.index];
+    return lexicographically_less(p, q) || (a.index < b.index && !lexicographically_less(q, p));
+  });
+  codes_.resize(entries.size());
+  std::vector<std::uint32_t> order(entries.size());
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    codes_[i] = entries[i].code;
+    order[i] = entries[i].index;
+  }
+  entries = {};
+  cloud_ = select(cloud, order);
+}
+
+ZOrderedCloud ZOrderedCloud::subset(std::span<const std::uint32_t> indices) const {
+  ZOrderedCloud chosen;
+  chosen.cloud_ = select(cloud_, indices);
+  chosen.origin_ = origin_;
+  chosen.edge_ = edge_;
+  chosen.codes_.reserve(indices.size());
+  for (const std::uint32_t i : indices) {
+    chosen.codes_.push_back(codes_[i]);
+  }
+  return chosen;
+}
+
+void ZOrderedCloud::transform(const Eigen::Vector3d& origin, double factor) {
+  for (Eigen::Vector3d& p : cloud_.positions) {
+    p = factor * (p - origin);
+  }
+  origin_ = factor * (origin_ - origin);
+  edge_ *= factor;
+  // Rounding may move a position to another cell: recompute the codes.
+  *this = ZOrderedCloud(std::move(cloud_));
+}
+
+double ZOrderedCloud::cell_edge(int level) const { return std::ldexp(edge_, -level); }
+
+int ZOrderedCloud::level_for_edge(double edge) const {
+  if (!(edge < edge_)) {
+    return 0;
+  }
+  const int level = edge > 0.0 ? std::ilogb(edge_ / edge) : kFinestLevel;
+  return std::clamp(level, 0, kFinestLevel);
+}
+
+std::vector<CellRange> ZOrderedCloud::cells(int level) const {
+  const int shift = 3 * (kFinestLevel - level);
+  std::vector<CellRange> ranges;
+  for (std::uint32_t i = 0; i < codes_.size(); ++i) {
+    if (i == 0 || codes_[i] >> shift != codes_[i - 1] >> shift) {
+      ranges.push_back({i, i});
+    }
+    ranges.back().last = i + 1;
+  }
+  return ranges;
+}
+
+Eigen::Vector3i ZOrderedCloud::cell_of(std::uint32_t point, int level) const {
+  return morton_cell(codes_[point] >> (3 * (kFinestLevel - level)));
+}
+
+CellRange ZOrderedCloud::find(const Eigen::Vector3i& cell, int level) const {
+  const int shift = 3 * (kFinestLevel - level);
+  const std::uint64_t low = morton_code(cell) << shift;
+  const std::uint64_t high = low | ((std::uint64_t{1} << shift) - 1);
+  const auto first = std::lower_bound(codes_.begin(), codes_.end(), low);
+  if (first == codes_.end() || *first > high) {
+    return {};
+  }
+  // Cells are small relative to the cloud: search their end exponentially.
+  std::size_t step = 1;
+  const auto left = static_cast<std::size_t>(codes_.end() - first);
+  while (step < left && first[static_cast<std::ptrdiff_t>(step)] <= high) {
+    step *= 2;
+  }
+  const auto last =
+      std::upper_bound(first + static_cast<std::ptrdiff_t>(step / 2),
+                       first + static_cast<std::ptrdiff_t>(std::min(step, left)), high);
+  return {static_cast<std::uint32_t>(first - codes_.begin()),
+          static_cast<std::uint32_t>(last - codes_.begin())};
+}
+
+std::vector<std::size_t> ZOrderedCloud::count_cells() const {
+  std::vector<std::size_t> counts(kFinestLevel + 1, codes_.empty() ? 0 : 1);
+  for (std::size_t i = 1; i < codes_.size(); ++i) {
+    const std::uint64_t differing = codes_[i] ^ codes_[i - 1];
+    if (differing == 0) {
+      continue;
+    }
+    const int coarsest = kFinestLevel - (63 - std::countl_zero(differing)) / 3;
+    for (int level = coarsest; level <= kFinestLevel; ++level) {
+      ++counts[static_cast<std::size_t>(level)];
+    }
+  }
+  return counts;
+}
+
+void ZOrderedCloud::find_nearest(const Eigen::Vector3d& centre, std::size_t count, double guess,
+                                 std::vector<Neighbour>& found) const {
+  const double everywhere = 4.0 * edge_ + 2.0 * (centre - origin_).norm();
+  double radius = guess > 0.0 ? std::min(guess, everywhere) : everywhere;
+  count = std::min(count, size());
+  while (true) {
+    found.clear();
+    visit_within(centre, radius, [&](std::uint32_t i, double squared) {
+      found.push_back({squared, i});
+    });
+    if (found.size() >= count || radius >= everywhere) {
+      break;
+    }
+    radius = std::min(2.0 * radius, everywhere);
+  }
+  count = std::min(count, found.size());
+  const auto last = found.begin() + static_cast<std::ptrdiff_t>(count);
+  std::partial_sort(found.begin(), last, found.end());
+  found.resize(count);
+}
+
+Eigen::Vector3i ZOrderedCloud::finest_cell(const Eigen::Vector3d& position) const {
+  constexpr double kCells = 1 << kFinestLevel;
+  return ((position - origin_).array() * (kCells / edge_))
+      .floor()
+      .max(0.0)
+      .min(kCells - 1.0)
+      .cast<int>();
+}
+
+std::uint64_t drop_duplicates(ZOrderedCloud& points) {
+  const auto known = [&](std::uint32_t i) {
+    return points.cloud().has_normals() && !points.normals()[i].isZero();
+  };
+  std::vector<std::uint32_t> kept;
+  kept.reserve(points.size());
+  for (std::uint32_t i = 0; i < points.size(); ++i) {
+    if (kept.empty() || points.positions()[i] != points.positions()[kept.back()]) {
+      kept.push_back(i);
+    } else if (known(i) && !known(kept.back())) {
+      kept.back() = i;
+    }
+  }
+  const std::uint64_t dropped = points.size() - kept.size();
+  if (dropped > 0) {
+    points = points.subset(kept);
+  }
+  return dropped;
+}
+
+}  // namespace tactree::builder

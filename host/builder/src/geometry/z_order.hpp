@@ -1,0 +1,110 @@
+#pragma once
+// Points sorted along a Z curve. Each cell of an octree over them, at any level, is a range of
+// consecutive points, found by binary search: neighbour queries at any scale without a tree.
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "geometry/cloud.hpp"
+
+namespace tactree::builder {
+
+/// Consecutive points [first, last) in one cell.
+struct CellRange {
+  std::uint32_t first = 0;
+  std::uint32_t last = 0;
+  [[nodiscard]] std::uint32_t count() const { return last - first; }
+};
+
+struct Neighbour {
+  double squared_distance;
+  std::uint32_t index;
+  bool operator<(const Neighbour& other) const {
+    return squared_distance != other.squared_distance ? squared_distance < other.squared_distance
+                                                      : index < other.index;
+  }
+};
+
+/// A cloud in Z order; finite positions, at most 2^32 - 2 of them. Only transform() and
+/// set_normals() modify it.
+class ZOrderedCloud {
+ public:
+  static constexpr int kFinestLevel = 21;
+
+  ZOrderedCloud() = default;
+  /// Sorts the cloud. Deterministic: points of one finest cell are ordered by coordinates, then by
+  /// index.
+  explicit ZOrderedCloud(Cloud cloud);
+
+  [[nodiscard]] const Cloud& cloud() const { return cloud_; }
+  [[nodiscard]] const std::vector<Eigen::Vector3d>& positions() const { return cloud_.positions; }
+  [[nodiscard]] const std::vector<Eigen::Vector3f>& normals() const { return cloud_.normals; }
+  [[nodiscard]] std::size_t size() const { return cloud_.size(); }
+
+  /// The points at `indices`, which must ascend. No sort.
+  [[nodiscard]] ZOrderedCloud subset(std::span<const std::uint32_t> indices) const;
+  /// Replaces each position by factor * (position - origin).
+  void transform(const Eigen::Vector3d& origin, double factor);
+  void set_normals(std::vector<Eigen::Vector3f> normals) { cloud_.normals = std::move(normals); }
+
+  /// Edge of the cells of a level; level 0 is one cell around all points.
+  [[nodiscard]] double cell_edge(int level) const;
+  /// The finest level whose cells have at least this edge.
+  [[nodiscard]] int level_for_edge(double edge) const;
+  /// The occupied cells of a level, in Z order.
+  [[nodiscard]] std::vector<CellRange> cells(int level) const;
+  [[nodiscard]] Eigen::Vector3i cell_of(std::uint32_t point, int level) const;
+  [[nodiscard]] CellRange find(const Eigen::Vector3i& cell, int level) const;
+  [[nodiscard]] Eigen::Vector3d cell_corner(const Eigen::Vector3i& cell, int level) const {
+    return origin_ + cell_edge(level) * cell.cast<double>();
+  }
+
+  /// Number of occupied cells of each level. Cost: one pass.
+  [[nodiscard]] std::vector<std::size_t> count_cells() const;
+
+  /// Calls visit(index, squared_distance) for every point within `radius` of `centre`. Fixed order.
+  template <typename Visit>
+  void visit_within(const Eigen::Vector3d& centre, double radius, Visit&& visit) const {
+    // At this level there are few cells to search and few points outside the radius.
+    const int level = level_for_edge(2.0 * radius);
+    const int shift = kFinestLevel - level;
+    const Eigen::Vector3i low = finest_cell(centre.array() - radius);
+    const Eigen::Vector3i high = finest_cell(centre.array() + radius);
+    for (int z = low.z() >> shift; z <= high.z() >> shift; ++z) {
+      for (int y = low.y() >> shift; y <= high.y() >> shift; ++y) {
+        for (int x = low.x() >> shift; x <= high.x() >> shift; ++x) {
+          const CellRange range = find({x, y, z}, level);
+          for (std::uint32_t i = range.first; i < range.last; ++i) {
+            const double squared = (cloud_.positions[i] - centre).squaredNorm();
+            if (squared <= radius * radius) {
+              visit(i, squared);
+            }
+          }
+        }
+      }
+    }
+  }
+
+  /// The `count` nearest points (at most all), nearest first, ties by index.
+  /// `guess`: estimated distance of the farthest of them; influences the time only.
+  void find_nearest(const Eigen::Vector3d& centre, std::size_t count, double guess,
+                    std::vector<Neighbour>& found) const;
+
+ private:
+  [[nodiscard]] Eigen::Vector3i finest_cell(const Eigen::Vector3d& position) const;
+
+  Cloud cloud_;
+  Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
+  double edge_ = 1.0;  // of level 0
+  std::vector<std::uint64_t> codes_;
+};
+
+/// Keeps one of several points with equal coordinates, if possible one with a normal.
+/// Returns the number of points dropped.
+std::uint64_t drop_duplicates(ZOrderedCloud& points);
+
+}  // namespace tactree::builder

@@ -1,0 +1,36 @@
+#pragma once
+// Quantised points in depth-first leaf order, and the octree over them.
+
+#include <cstdint>
+#include <vector>
+
+#include "octree/lattice.hpp"
+
+namespace tactree::builder {
+
+struct BuiltLeaf {
+  core::Int3 min{};  ///< lattice units
+  std::uint32_t level = 0;
+  std::uint32_t first = 0;  ///< into Octree::order
+  std::uint32_t count = 0;
+};
+
+struct Octree {
+  Lattice lattice;
+  std::vector<core::BlobNode> nodes;
+  std::vector<BuiltLeaf> leaves;     ///< by leaf number
+  std::vector<std::uint32_t> order;  ///< position indices, leaf by leaf, words ascending
+  std::vector<std::uint32_t> words;  ///< position bits of the point words, beside `order`
+  std::uint64_t merged = 0;          ///< points dropped at an occupied site
+};
+
+/// Splits the root until a leaf holds at most `leaf_points` points or has the finest edge of the
+/// lattice; 0 splits every leaf down to the finest edge. Keeps the first of several points at one
+/// lattice site.
+[[nodiscard]] Octree build_octree(const std::vector<Eigen::Vector3d>& positions,
+                                  const Lattice& lattice, std::uint32_t leaf_points);
+
+/// The neighbours of the leaves, six entries per leaf; encoding: blob_format.hpp.
+[[nodiscard]] std::vector<std::uint32_t> neighbour_table(const Octree& tree);
+
+}  // namespace tactree::builder

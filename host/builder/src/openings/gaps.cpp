@@ -1,0 +1,313 @@
+#include "openings/gaps.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+
+#include "geometry/disjoint_sets.hpp"
+
+namespace tactree::builder {
+namespace {
+
+constexpr double kNeighbourSpacings = 1.7;
+constexpr double kBorderAngle = 2.0 * std::numbers::pi / 3.0;
+// Points whose normals differ more belong to the other side of a plate.
+constexpr float kOtherSideCosine = -0.3F;
+// Cosine to the axis of a wedge within which a point counts as in its middle.
+constexpr double kWedgeCosine = 0.866;
+// A surface that turns at an edge: directions of its normals there.
+constexpr float kBentCosine = 0.75F;
+constexpr double kBentAwayCosine = 0.5;
+constexpr double kBehindSpacings = 0.3;
+constexpr double kGoesOnSpacings = 1.0;
+// Average distance of border points from the edge of a hole, both sides together.
+constexpr double kStandBackSpacings = 0.5;
+// Border points belong to one opening if they are near each other and their `away` directions
+// agree, or if the points one look distance into the open are near each other; the latter joins
+// opposite sides of a small hole. Distances in support radii.
+constexpr double kNearRadii = 1.0;
+constexpr double kSameDirectionCosine = 0.3;
+constexpr double kLookRadii = 0.4;
+constexpr double kSameLookRadii = 0.6;
+// A border point sees across its opening within 45 degrees of the axis of its wedge.
+constexpr double kAcrossCosine = 0.707;
+// Fraction of border points that must see the other side of their opening to classify it as a hole.
+constexpr double kHolePart = 0.5;
+constexpr std::size_t kLooks = 64;
+// Minimum number of border points per spacing of diameter; fewer are noise.
+constexpr double kLeastPointsPerSpacing = 1.0;
+constexpr std::size_t kLeastPoints = 6;  // of a hole wider than the radius, and of any edge
+
+struct TangentFrame {
+  Eigen::Vector3d u;
+  Eigen::Vector3d v;
+};
+
+TangentFrame tangents_of(const Eigen::Vector3d& normal) {
+  const Eigen::Vector3d u = normal.unitOrthogonal();
+  return {u, normal.cross(u)};
+}
+
+// The widest angle between adjacent directions, and the direction of its middle.
+struct Wedge {
+  double angle = 2.0 * std::numbers::pi;
+  double middle = 0.0;
+};
+
+Wedge widest_wedge(std::vector<double>& directions) {
+  if (directions.empty()) {
+    return {};
+  }
+  std::sort(directions.begin(), directions.end());
+  Wedge widest{0.0, 0.0};
+  for (std::size_t i = 0; i < directions.size(); ++i) {
+    const bool last = i + 1 == directions.size();
+    const double next = last ? directions.front() + 2.0 * std::numbers::pi : directions[i + 1];
+    if (next - directions[i] > widest.angle) {
+      widest = {next - directions[i], 0.5 * (next + directions[i])};
+    }
+  }
+  return widest;
+}
+
+struct BorderPoint {
+  std::uint32_t index;
+  Eigen::Vector3d away;  // unit vector in the tangent plane towards the missing surface
+};
+
+// Classification of single points.
+class PointProbe {
+ public:
+  PointProbe(const ZOrderedCloud& points, double spacing, double radius)
+      : points_(points), spacing_(spacing), radius_(radius) {}
+
+  // True for a border point. Else `gap` is the diameter of an empty ball beside the point.
+  bool is_border(std::uint32_t i, Eigen::Vector3d& away, double& gap) {
+    const Eigen::Vector3d& p = points_.positions()[i];
+    gather(i);
+    // In the plane of the mean normal both faces of an edge are visible.
+    const TangentFrame frame = tangents_of(mean_normal_);
+    directions_.clear();
+    for (const std::uint32_t j : near_) {
+      const Eigen::Vector3d d = points_.positions()[j] - p;
+      directions_.push_back(std::atan2(d.dot(frame.v), d.dot(frame.u)));
+    }
+    const Wedge wedge = widest_wedge(directions_);
+    away = std::cos(wedge.middle) * frame.u + std::sin(wedge.middle) * frame.v;
+    if (wedge.angle > kBorderAngle && !wedge_holds_point(i, away)) {
+      gap = 0.0;
+      return !turns_at(i, away);
+    }
+    gap = empty_ball(p + 0.85 * spacing_ * away);
+    return false;
+  }
+
+ private:
+  // Collects the neighbours on this side of the body and their mean normal.
+  void gather(std::uint32_t i) {
+    const Eigen::Vector3f& normal = points_.normals()[i];
+    Eigen::Vector3f sum = normal;
+    near_.clear();
+    points_.visit_within(points_.positions()[i], kNeighbourSpacings * spacing_,
+                         [&](std::uint32_t j, double) {
+                           if (j != i && normal.dot(points_.normals()[j]) > kOtherSideCosine) {
+                             near_.push_back(j);
+                             sum += points_.normals()[j];
+                           }
+                         });
+    mean_normal_ = (sum.norm() > 0.1F ? sum : normal).cast<double>().normalized();
+  }
+
+  [[nodiscard]] bool wedge_holds_point(std::uint32_t i, const Eigen::Vector3d& away) const {
+    const Eigen::Vector3d& p = points_.positions()[i];
+    bool found = false;
+    points_.visit_within(p, radius_, [&](std::uint32_t j, double squared) {
+      const double along = (points_.positions()[j] - p).dot(away);
+      found = found || (along > 0.0 && along * along > kWedgeCosine * kWedgeCosine * squared &&
+                        points_.normals()[i].dot(points_.normals()[j]) > kOtherSideCosine);
+    });
+    return found;
+  }
+
+  // Whether the surface goes on around an edge: in another direction, or on the other side of a
+  // plate that ends here as well.
+  [[nodiscard]] bool turns_at(std::uint32_t i, const Eigen::Vector3d& away) const {
+    const Eigen::Vector3d& p = points_.positions()[i];
+    const Eigen::Vector3f& normal = points_.normals()[i];
+    bool bends = false;
+    bool other_side = false;
+    bool other_side_goes_on = false;
+    points_.visit_within(p, radius_, [&](std::uint32_t j, double) {
+      const Eigen::Vector3f& other = points_.normals()[j];
+      const float cosine = normal.dot(other);
+      const double along = (points_.positions()[j] - p).dot(away);
+      if (cosine <= kOtherSideCosine) {
+        other_side = true;
+        other_side_goes_on = other_side_goes_on || along > kGoesOnSpacings * spacing_;
+      } else if (cosine < kBentCosine && along > -kBehindSpacings * spacing_) {
+        bends = bends || std::abs(other.cast<double>().dot(away)) > kBentAwayCosine;
+      }
+    });
+    return bends || (other_side && !other_side_goes_on);
+  }
+
+  [[nodiscard]] double empty_ball(const Eigen::Vector3d& centre) const {
+    double least = radius_ * radius_;
+    points_.visit_within(centre, radius_,
+                         [&](std::uint32_t, double squared) { least = std::min(least, squared); });
+    return 2.0 * std::sqrt(least);
+  }
+
+  const ZOrderedCloud& points_;
+  double spacing_;
+  double radius_;
+  std::vector<std::uint32_t> near_;
+  Eigen::Vector3d mean_normal_ = Eigen::Vector3d::UnitZ();
+  std::vector<double> directions_;
+};
+
+// The border points of each opening.
+// `border`: its normals are the directions away from the surface.
+std::map<std::uint32_t, std::vector<std::uint32_t>> group(const ZOrderedCloud& border,
+                                                          double radius) {
+  const auto count = static_cast<std::uint32_t>(border.size());
+  DisjointSets sets(count);
+  const auto look = [&](std::uint32_t i) -> Eigen::Vector3d {
+    return border.positions()[i] + kLookRadii * radius * border.normals()[i].cast<double>();
+  };
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const double farthest = (2.0 * kLookRadii + kSameLookRadii) * radius;
+    border.visit_within(border.positions()[i], farthest, [&](std::uint32_t j, double squared) {
+      const bool same_edge =
+          squared <= kNearRadii * kNearRadii * radius * radius &&
+          static_cast<double>(border.normals()[i].dot(border.normals()[j])) > kSameDirectionCosine;
+      if (same_edge || (look(i) - look(j)).norm() < kSameLookRadii * radius) {
+        sets.join(i, j);
+      }
+    });
+  }
+  std::map<std::uint32_t, std::vector<std::uint32_t>> groups;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    groups[sets.find(i)].push_back(i);
+  }
+  return groups;
+}
+
+std::uint32_t farthest_from(const ZOrderedCloud& border, const std::vector<std::uint32_t>& members,
+                            const Eigen::Vector3d& place) {
+  return *std::max_element(members.begin(), members.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return (border.positions()[a] - place).squaredNorm() <
+           (border.positions()[b] - place).squaredNorm();
+  });
+}
+
+// Whether most border points see border points across the opening that face them.
+// `border`: its normals are the directions away from the surface.
+bool is_hole(const ZOrderedCloud& border, const std::vector<std::uint32_t>& members) {
+  const auto sees = [&](std::uint32_t i, std::uint32_t j) {
+    const Eigen::Vector3d chord = border.positions()[j] - border.positions()[i];
+    const double cosine = kAcrossCosine * chord.norm();
+    return border.normals()[i].cast<double>().dot(chord) > cosine &&
+           border.normals()[j].cast<double>().dot(-chord) > cosine;
+  };
+  const std::size_t stride = 1 + (members.size() - 1) / kLooks;
+  std::size_t looks = 0;
+  std::size_t met = 0;
+  for (std::size_t k = 0; k < members.size(); k += stride, ++looks) {
+    const std::uint32_t i = members[k];
+    met += std::any_of(members.begin(), members.end(), [&](std::uint32_t j) { return sees(i, j); })
+               ? 1U
+               : 0U;
+  }
+  return static_cast<double>(met) > kHolePart * static_cast<double>(looks);
+}
+
+Opening measure(const ZOrderedCloud& border, const std::vector<std::uint32_t>& members,
+                double spacing) {
+  Opening opening;
+  opening.points = static_cast<std::uint32_t>(members.size());
+  for (const std::uint32_t i : members) {
+    opening.centre += border.positions()[i];
+  }
+  opening.centre /= static_cast<double>(members.size());
+  const bool hole = is_hole(border, members);
+  opening.kind = hole ? Opening::Kind::kHole : Opening::Kind::kBoundary;
+  const std::uint32_t one = farthest_from(border, members, opening.centre);
+  const std::uint32_t other = farthest_from(border, members, border.positions()[one]);
+  const double across = (border.positions()[one] - border.positions()[other]).norm();
+  opening.diameter_m = std::max(0.0, across - (hole ? kStandBackSpacings * spacing : 0.0));
+  return opening;
+}
+
+struct Probed {
+  std::vector<Eigen::Vector3f> away;  // of border points; else 0
+  std::vector<float> gap;             // beside the others
+};
+
+Probed probe_all(const ZOrderedCloud& points, double spacing, double radius) {
+  const auto count = static_cast<std::uint32_t>(points.size());
+  Probed probed{std::vector<Eigen::Vector3f>(count, Eigen::Vector3f::Zero()),
+                std::vector<float>(count, 0.0F)};
+  tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, count, 256), [&](auto range) {
+    PointProbe probe(points, spacing, radius);
+    for (std::uint32_t i = range.begin(); i < range.end(); ++i) {
+      Eigen::Vector3d direction;
+      double width = 0.0;
+      if (probe.is_border(i, direction, width)) {
+        probed.away[i] = direction.cast<float>();
+      }
+      probed.gap[i] = static_cast<float>(width);
+    }
+  });
+  return probed;
+}
+
+}  // namespace
+
+std::vector<Eigen::Vector3f> border_directions(const ZOrderedCloud& points, double spacing,
+                                               double radius) {
+  return probe_all(points, spacing, radius).away;
+}
+
+Gaps find_gaps(const ZOrderedCloud& points, double spacing, double radius, bool watertight) {
+  const auto count = static_cast<std::uint32_t>(points.size());
+  const auto [away, gap] = probe_all(points, spacing, radius);
+  std::vector<std::uint32_t> at_border;
+  std::vector<Eigen::Vector3f> directions;
+  Gaps gaps;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    gaps.largest_m = std::max(gaps.largest_m, static_cast<double>(gap[i]));
+    if (!away[i].isZero()) {
+      at_border.push_back(i);
+      directions.push_back(away[i]);
+    }
+  }
+  if (watertight) {
+    return gaps;
+  }
+  ZOrderedCloud border = points.subset(at_border);
+  border.set_normals(std::move(directions));
+  for (const auto& [root, members] : group(border, radius)) {
+    const Opening opening = measure(border, members, spacing);
+    if (members.size() < kLeastPoints || static_cast<double>(members.size()) * spacing <
+                                             kLeastPointsPerSpacing * opening.diameter_m) {
+      continue;
+    }
+    if (opening.kind == Opening::Kind::kHole) {
+      gaps.largest_m = std::max(gaps.largest_m, opening.diameter_m);
+    }
+    if (opening.diameter_m > radius) {
+      gaps.openings.push_back(opening);
+    }
+  }
+  std::stable_sort(gaps.openings.begin(), gaps.openings.end(),
+                   [](const Opening& a, const Opening& b) { return a.diameter_m > b.diameter_m; });
+  return gaps;
+}
+
+}  // namespace tactree::builder
