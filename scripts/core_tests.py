@@ -7,8 +7,8 @@ import shlex
 import subprocess
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-TESTS = {"core_test": "tests/unit/core/model", "controller_test": "tests/unit/core/control",
-         "surface_test": "tests/unit/core/contact", "scene_test": "tests/unit/core/scene"}
+FOLDER = "tests/unit/core"  # of the build, with the programs
+TESTS = ("core_test", "controller_test", "surface_test", "scene_test")
 
 
 class Build:
@@ -34,7 +34,7 @@ class Build:
 
     def link(self, test, output, *added):
         """Links a test again, with objects that precede the library and so replace its own."""
-        target = f"{TESTS[test]}/{test}"
+        target = f"{FOLDER}/{test}"
         done = subprocess.run(["ninja", "-C", self.folder, "-t", "commands", "-s", target], check=True,
                               capture_output=True, text=True)
         steps = done.stdout.strip().splitlines()[-1].split(" && ")

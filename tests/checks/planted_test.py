@@ -71,6 +71,11 @@ class Layers(Planted):
         self.refuses_line("model includes tactree/core/device/kinematics.hpp of device",
                           "core/include/tactree/core/model/octree.hpp", '#include "tactree/core/device/kinematics.hpp"')
 
+    def test_unit_test_beside_another_subject(self):
+        self.write("tests/unit/core/contact/octree_test.cpp", "")
+        self.refuses("octree_test.cpp: stands in core/contact, not in core/model",
+                     "check-layers", "--root", self.folder)
+
     def test_core_includes_hosted_header(self):
         self.refuses_line("<vector>, which is not freestanding", "core/src/model/octree.cpp",
                           "#  include <vector>")

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
-#include "shapes.hpp"
 #include "geometry/z_order.hpp"
+#include "shapes.hpp"
 
 namespace tactree::builder {
 namespace {

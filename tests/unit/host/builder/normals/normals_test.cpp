@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include "geometry/spacing.hpp"
 #include "normals/orient_cloud.hpp"
 #include "sampling/resample.hpp"
 #include "shapes.hpp"
-#include "geometry/spacing.hpp"
 
 namespace tactree::builder {
 namespace {

@@ -1,8 +1,6 @@
 // The whole board of firmware/boards/stm32f405 on the faked chip, with an application at its serial
 // port: from power-up to force and back, and every refusal.
 
-#include "tactree/client/board.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,6 +10,7 @@
 
 #include "analytic_shapes.hpp"
 #include "board_rig.hpp"
+#include "tactree/client/board.hpp"
 #include "tactree/client/link_error.hpp"
 #include "tactree/hal/conformance.hpp"
 

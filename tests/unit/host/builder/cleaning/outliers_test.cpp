@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "shapes.hpp"
 #include "geometry/spacing.hpp"
+#include "shapes.hpp"
 
 namespace tactree::builder {
 namespace {
