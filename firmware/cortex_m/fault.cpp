@@ -8,7 +8,7 @@ namespace tactree::firmware {
 namespace {
 
 // Registers that the core pushes on exception entry.
-struct Frame {
+struct ExceptionFrame {
   std::uint32_t r0_to_r3[4];
   std::uint32_t r12;
   std::uint32_t lr;
@@ -36,7 +36,7 @@ extern "C" {
 
 // `frame` is null if the stack was full: the core could not push its registers.
 [[noreturn, gnu::used]] void tactree_capture_fault(const std::uint32_t* r4_to_r11,
-                                                   const tactree::firmware::Frame* frame,
+                                                   const tactree::firmware::ExceptionFrame* frame,
                                                    std::uint32_t sp) {
   tactree::hal::CapturedFault fault;
   fault.cause = tactree::firmware::exception_number();

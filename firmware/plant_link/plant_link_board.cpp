@@ -49,7 +49,7 @@ core::Configuration PlantLinkBoard::connect(const hal::CapturedFault& last_fault
   hello.last_fault = last_fault;
   send_message(to_host_, hello);
 
-  link::Session session;
+  link::SessionSetup session;
   receive_message(from_host_, session);
   served_ = session.served != 0U;
   return session.configuration;

@@ -1,6 +1,6 @@
 #include "tactree/session/contact_requests.hpp"
 
-#include "tactree/session/admission.hpp"
+#include "tactree/session/request_filter.hpp"
 
 namespace tactree::session {
 

@@ -4,7 +4,7 @@
 
 #include "fields.hpp"
 #include "tactree/core/configuration/parameters.hpp"
-#include "tactree/session/admission.hpp"
+#include "tactree/session/request_filter.hpp"
 
 namespace tactree::session {
 

@@ -41,9 +41,9 @@ const char* colour_of(Opening::Kind kind) {
 }
 
 /// Model to picture, the same scale in all views.
-class Frame {
+class Projection {
  public:
-  explicit Frame(const core::BlobHeader& header) {
+  explicit Projection(const core::BlobHeader& header) {
     const Eigen::Vector3f low(header.bounds_min_m);
     const Eigen::Vector3f high(header.bounds_max_m);
     middle_ = (0.5F * (low + high)).cast<double>();
@@ -65,7 +65,7 @@ class Frame {
 };
 
 /// All points of a view in one path; a line of length 0 is a dot.
-std::string dots(const core::BlobView& view, const Frame& frame, std::size_t side) {
+std::string dots(const core::BlobView& view, const Projection& frame, std::size_t side) {
   const std::uint32_t every = 1U + view.point_count() / kDots;
   std::string path;
   core::for_each_point(view, [&](const core::Leaf& leaf, std::uint32_t index) {
@@ -80,7 +80,7 @@ std::string dots(const core::BlobView& view, const Frame& frame, std::size_t sid
       "<path d=\"{}\" stroke=\"#b9bfc6\" stroke-width=\"1.6\" stroke-linecap=\"round\"/>\n", path);
 }
 
-std::string circle(const Opening& opening, const Frame& frame, std::size_t side) {
+std::string circle(const Opening& opening, const Projection& frame, std::size_t side) {
   constexpr double kLeast = 2.5;  // pixels, visible
   const Eigen::Vector2d at = frame.place(opening.centre, side);
   const double radius = std::max(kLeast, 0.5 * frame.pixels(opening.diameter_m));
@@ -93,7 +93,7 @@ std::string circle(const Opening& opening, const Frame& frame, std::size_t side)
 }  // namespace
 
 std::string hole_map_svg(const core::BlobView& view, std::span<const Opening> openings) {
-  const Frame frame(view.header());
+  const Projection frame(view.header());
   const double width = 3.0 * kSide + 2.0 * kGap;
   std::string svg = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" "
@@ -103,7 +103,7 @@ std::string hole_map_svg(const core::BlobView& view, std::span<const Opening> op
   for (std::size_t side = 0; side < kSides.size(); ++side) {
     fmt::format_to(std::back_inserter(svg),
                    "<text x=\"{:.1f}\" y=\"18\" text-anchor=\"middle\">{}</text>\n",
-                   Frame::middle_of(side), kSides[side].name);
+                   Projection::middle_of(side), kSides[side].name);
     svg += dots(view, frame, side);
     for (const Opening& opening : openings) {
       svg += circle(opening, frame, side);

@@ -28,20 +28,20 @@ core::RenderMode render_mode(Mode mode) {
 }
 
 /// Surface point, normal and distance computed by a mode.
-struct Answer {
+struct Projected {
   bool found = false;
   Vector3d point = Vector3d::Zero();
   Vector3d normal = Vector3d::Zero();
   double distance = 0.0;  // signed where the mode knows sides
 };
 
-Answer ask_surface(const core::BlobView& view, const Vector3d& probe) {
+Projected ask_surface(const core::BlobView& view, const Vector3d& probe) {
   const core::SurfaceProjection p = core::project_to_surface(view, narrow(probe));
   return {p.supported, widen(p.point), widen(p.normal), static_cast<double>(p.signed_distance)};
 }
 
 /// Paper mode has no sign: the true distance decides the side.
-Answer ask_paper(const core::BlobView& view, const Vector3d& probe, double true_distance) {
+Projected ask_paper(const core::BlobView& view, const Vector3d& probe, double true_distance) {
   const core::PaperContact contact = core::paper_collision(view, narrow(probe));
   const core::NearestPoint nearest = core::paper_nearest(view, narrow(probe), contact);
   if (!contact.in_contact || !nearest.found()) {
@@ -63,8 +63,8 @@ void score_distances(const Subject& subject, Mode mode, int probes, Random& rand
     const Spot spot = subject.spot(random);
     const Vector3d probe = spot.point + height(random) * spot.normal;
     const double truth = subject.distance(probe);
-    const Answer answer = mode == kPaper ? ask_paper(blob_of(subject, mode), probe, truth)
-                                         : ask_surface(blob_of(subject, mode), probe);
+    const Projected answer = mode == kPaper ? ask_paper(blob_of(subject, mode), probe, truth)
+                                            : ask_surface(blob_of(subject, mode), probe);
     if (!answer.found) {
       continue;
     }

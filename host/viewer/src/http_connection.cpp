@@ -30,7 +30,7 @@ constexpr const char* kPolicy =
 
 std::string text_of(beast::string_view text) { return {text.data(), text.size()}; }
 
-Answer plain(unsigned status, std::string text) {
+HttpResponse plain(unsigned status, std::string text) {
   return {status, "text/plain; charset=utf-8", std::move(text), {}};
 }
 
@@ -80,7 +80,7 @@ bool HttpConnection::is_ours(beast::string_view host) const {
   return host == service_.host || (!service_.local_host.empty() && host == service_.local_host);
 }
 
-std::optional<Answer> HttpConnection::refusal(const Request& request) const {
+std::optional<HttpResponse> HttpConnection::refusal(const Request& request) const {
   if (!is_ours(request[http::field::host])) {
     return plain(421, "this server is http://" + service_.host + "/\n");
   }
@@ -132,13 +132,13 @@ void HttpConnection::look_up(std::string path, const Request& request) {
   }
   const auto kept = std::make_shared<const Request>(request);
   asio::post(service_.worker, [self = shared_from_this(), path = std::move(path), kept] {
-    const auto answer = std::make_shared<Answer>(self->service_.site.answer(path));
+    const auto answer = std::make_shared<HttpResponse>(self->service_.site.answer(path));
     asio::dispatch(self->stream_.get_executor(),
                    [self, answer, kept] { self->send(std::move(*answer), *kept); });
   });
 }
 
-void HttpConnection::send(Answer answer, const Request& request) {
+void HttpConnection::send(HttpResponse answer, const Request& request) {
   auto response =
       std::make_shared<Response>(static_cast<http::status>(answer.status), request.version());
   response->set(http::field::content_type, answer.type);

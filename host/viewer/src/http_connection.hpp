@@ -45,10 +45,10 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
 
  private:
   void handle(const Request& request);
-  [[nodiscard]] std::optional<Answer> refusal(const Request& request) const;
+  [[nodiscard]] std::optional<HttpResponse> refusal(const Request& request) const;
   [[nodiscard]] bool is_ours(boost::beast::string_view host) const;
   void look_up(std::string path, const Request& request);
-  void send(Answer answer, const Request& request);
+  void send(HttpResponse answer, const Request& request);
 
   boost::beast::tcp_stream stream_;
   Service& service_;

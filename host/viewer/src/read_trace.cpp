@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "tactree/support/csv.hpp"
-#include "tactree/viewer/recording.hpp"
+#include "tactree/viewer/trace_playback.hpp"
 
 namespace tactree::viewer {
 namespace {

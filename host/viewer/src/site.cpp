@@ -18,9 +18,9 @@ constexpr std::string_view kFaults = "/faults/";
 constexpr std::string_view kModel = "/model/";
 constexpr std::string_view kTrace = "/trace.csv";
 
-Answer not_found() { return {404, "text/plain; charset=utf-8", "unknown page\n", {}}; }
+HttpResponse not_found() { return {404, "text/plain; charset=utf-8", "unknown page\n", {}}; }
 
-Answer binary(const void* bytes, std::size_t size) {
+HttpResponse binary(const void* bytes, std::size_t size) {
   return {200, "application/octet-stream", std::string(static_cast<const char*>(bytes), size), {}};
 }
 
@@ -46,9 +46,9 @@ bool take_word(std::string_view& path, std::string_view word) {
   return there;
 }
 
-Answer octants(const core::BlobView& view, std::uint32_t level) {
+HttpResponse octants(const core::BlobView& view, std::uint32_t level) {
   const OctantBoxes boxes = octant_boxes(view, level, kMaxOctants);
-  Answer answer = binary(&boxes.level, sizeof(boxes.level));
+  HttpResponse answer = binary(&boxes.level, sizeof(boxes.level));
   answer.body.append(reinterpret_cast<const char*>(&boxes.edge_m), sizeof(boxes.edge_m));
   answer.body.append(reinterpret_cast<const char*>(boxes.corners_m.data()),
                      boxes.corners_m.size() * sizeof(boxes.corners_m[0]));
@@ -89,7 +89,7 @@ bool Site::is_slow(std::string_view path) {
   return path == kTrace || (path.starts_with(kModel) && path.find("/octants/") != path.npos);
 }
 
-Answer Site::answer(std::string_view path) const {
+HttpResponse Site::answer(std::string_view path) const {
   if (path == kTrace) {
     return {200, "text/csv; charset=utf-8", source_.trace_csv(), "trace.csv"};
   }
@@ -102,17 +102,17 @@ Answer Site::answer(std::string_view path) const {
     const Asset* const page = find(fault_pages(), name);
     return page == nullptr
                ? not_found()
-               : Answer{200, "text/html; charset=utf-8", fault_html(name, page->content), {}};
+               : HttpResponse{200, "text/html; charset=utf-8", fault_html(name, page->content), {}};
   }
   const Asset* const asset = find(page_assets(), path);
   return asset == nullptr ? not_found()
-                          : Answer{200,
-                                   std::string(asset->type) + "; charset=utf-8",
-                                   std::string(asset->content),
-                                   {}};
+                          : HttpResponse{200,
+                                         std::string(asset->type) + "; charset=utf-8",
+                                         std::string(asset->content),
+                                         {}};
 }
 
-Answer Site::answer_model(std::string_view path) const {
+HttpResponse Site::answer_model(std::string_view path) const {
   const auto number = take_number(path);
   if (!number || *number >= models_.size()) {
     return not_found();

@@ -60,7 +60,7 @@ void AnnotationLimits::limit_loop(std::uint32_t entry, std::uint32_t number) {
 // edges: the condition may be evaluated once more than the body is executed.
 Terms AnnotationLimits::bodies(std::uint32_t entry, std::uint32_t number) const {
   const AnalysedFunction& function = flow_.function(entry);
-  const Loop& loop = function.flow.loops[number];
+  const NaturalLoop& loop = function.flow.loops[number];
   const LoopBound& bound = function.bounds[number];
   if (bound.shape == LoopShape::kAtEnd) {
     return flow_.passes(entry, loop.header);

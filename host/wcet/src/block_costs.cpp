@@ -22,7 +22,7 @@ CachedLoops BlockCosts::cached_loops(const ControlFlow& flow) const {
     return cached;
   }
   for (std::uint32_t i = 0; i < flow.loops.size(); ++i) {  // outer loops come first
-    const Loop& loop = flow.loops[i];
+    const NaturalLoop& loop = flow.loops[i];
     if (cached.loop_of[loop.header]) {
       continue;
     }
@@ -60,7 +60,7 @@ void BlockCosts::add_lines(const ControlFlow& flow, const Block& block, CodeLine
 }
 
 // The core may fetch at the target of a branch out of the loop that it does not take.
-void BlockCosts::add_targets(const ControlFlow& flow, const Loop& loop, const Block& block,
+void BlockCosts::add_targets(const ControlFlow& flow, const NaturalLoop& loop, const Block& block,
                              CodeLines& lines) const {
   for (const std::uint32_t next : block.next) {
     if (!loop.blocks.contains(next) && flow.blocks[next].count != 0 &&

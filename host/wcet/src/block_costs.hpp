@@ -48,7 +48,7 @@ class BlockCosts {
   using CodeLines = std::set<std::uint32_t>;  // addresses in units of line_bytes
 
   void add_lines(const ControlFlow& flow, const Block& block, CodeLines& lines) const;
-  void add_targets(const ControlFlow& flow, const Loop& loop, const Block& block,
+  void add_targets(const ControlFlow& flow, const NaturalLoop& loop, const Block& block,
                    CodeLines& lines) const;
   void add_callee(std::uint32_t entry, CodeLines& lines) const;
   [[nodiscard]] bool runs_from_ram(const Instruction& instruction) const;

@@ -52,7 +52,7 @@ using Edge = std::pair<std::uint32_t, std::uint32_t>;
 /// A natural loop: all blocks that reach its back edges without passing its header. Or an irregular
 /// loop, which compilers make when the path of the first pass is known: it has several entries, and
 /// its header is a block on every path around the loop.
-struct Loop {
+struct NaturalLoop {
   std::uint32_t header = 0;
   bool irregular = false;
   std::set<std::uint32_t> blocks;
@@ -73,7 +73,7 @@ struct ControlFlow {
   Function function;
   std::vector<Instruction> instructions;
   std::vector<Block> blocks;
-  std::vector<Loop> loops;  ///< an outer loop precedes its inner loops
+  std::vector<NaturalLoop> loops;  ///< an outer loop precedes its inner loops
 
   [[nodiscard]] std::vector<Edge> entries_of(std::uint32_t block) const;
   /// Content of r<number> when the call of this block begins.

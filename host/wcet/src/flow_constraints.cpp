@@ -126,7 +126,7 @@ Terms FlowConstraints::edges(std::uint32_t entry, const std::vector<Edge>& wante
   return terms;
 }
 
-Terms FlowConstraints::entered(std::uint32_t entry, const Loop& loop) const {
+Terms FlowConstraints::entered(std::uint32_t entry, const NaturalLoop& loop) const {
   Terms terms = edges(entry, loop.entries);
   if (loop.blocks.contains(0)) {
     terms[variables_.at(entry).entry] += 1.0;

@@ -40,7 +40,7 @@ class FlowConstraints {
   /// Passes of these edges.
   [[nodiscard]] Terms edges(std::uint32_t entry, const std::vector<Edge>& wanted) const;
   /// Entries of a loop; each call of the function is one if its first block is in the loop.
-  [[nodiscard]] Terms entered(std::uint32_t entry, const Loop& loop) const;
+  [[nodiscard]] Terms entered(std::uint32_t entry, const NaturalLoop& loop) const;
   /// The worst case of the call that ends a block, by {function, block}: those solved by
   /// themselves.
   [[nodiscard]] const std::map<std::pair<std::uint32_t, std::uint32_t>, WorstPath>& calls() const {

@@ -140,7 +140,7 @@ class PathProgram {
   void add_loop(std::uint32_t entry, std::uint32_t number, const LinearProgram::Solution& solution,
                 WorstPath& path) const {
     const AnalysedFunction& f = flow_.function(entry);
-    const Loop& loop = f.flow.loops[number];
+    const NaturalLoop& loop = f.flow.loops[number];
     const SourceLoop& source = *f.bounds[number].source;
     path.loops.push_back({source.file, source.line, demangled(f.flow.function.name),
                           f.flow.instructions[f.flow.blocks[loop.header].first].address,

@@ -63,7 +63,7 @@ class Matcher {
   /// Blocks of the loop that are not in an inner loop.
   [[nodiscard]] std::set<std::uint32_t> own_blocks(std::uint32_t number) const {
     std::set<std::uint32_t> own = flow_.loops[number].blocks;
-    for (const Loop& inner : flow_.loops) {
+    for (const NaturalLoop& inner : flow_.loops) {
       if (inner.parent == number) {
         std::erase_if(own, [&](std::uint32_t b) { return inner.blocks.contains(b); });
       }
@@ -175,7 +175,7 @@ class Matcher {
     if (found.size() == 1) {
       return found[0];
     }
-    const Loop& loop = flow_.loops[number];
+    const NaturalLoop& loop = flow_.loops[number];
     const std::string where =
         describe_place(image_, flow_.instructions[flow_.blocks[loop.header].first].address);
     if (found.empty()) {
@@ -204,7 +204,7 @@ class Matcher {
   }
 
   LoopShape shape_of(std::uint32_t number, const SourceLoop& source) {
-    const Loop& loop = flow_.loops[number];
+    const NaturalLoop& loop = flow_.loops[number];
     if (!source.simple || loop.irregular) {
       return LoopShape::kUnknown;
     }

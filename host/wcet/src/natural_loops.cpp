@@ -20,14 +20,14 @@ class LoopFinder {
 
   void find() {
     find_dominators();
-    std::map<std::uint32_t, Loop> by_header;
+    std::map<std::uint32_t, NaturalLoop> by_header;
     std::vector<Edge> irregular;
     for (const Edge& edge : retreating_edges()) {
       if (!dominators_[edge.first].contains(edge.second)) {
         irregular.push_back(edge);
         continue;
       }
-      Loop& loop = by_header[edge.second];
+      NaturalLoop& loop = by_header[edge.second];
       loop.header = edge.second;
       loop.back.push_back(edge);
       collect(loop, edge.first);
@@ -88,7 +88,7 @@ class LoopFinder {
     return result;
   }
 
-  void collect(Loop& loop, std::uint32_t from) const {
+  void collect(NaturalLoop& loop, std::uint32_t from) const {
     loop.blocks.insert(loop.header);
     std::vector<std::uint32_t> open{from};
     while (!open.empty()) {
@@ -102,16 +102,16 @@ class LoopFinder {
 
   /// A loop that is entered at several blocks. Some block must be on every path around it.
   void add_irregular(const Edge& edge) {
-    for (const Loop& known : flow_.loops) {
+    for (const NaturalLoop& known : flow_.loops) {
       if (known.irregular && known.blocks.contains(edge.first)) {
         return;
       }
     }
-    Loop loop;
+    NaturalLoop loop;
     loop.irregular = true;
     loop.blocks = round_trip(edge.first, room_of(edge));
     std::erase_if(flow_.loops,
-                  [&](const Loop& inner) { return includes(loop.blocks, inner.blocks); });
+                  [&](const NaturalLoop& inner) { return includes(loop.blocks, inner.blocks); });
     for (const std::uint32_t b : loop.blocks) {
       if (is_on_every_round(b, loop.blocks)) {
         loop.header = b;
@@ -139,7 +139,7 @@ class LoopFinder {
     for (std::uint32_t b = 0; b < flow_.blocks.size(); ++b) {
       room.insert(b);
     }
-    for (const Loop& loop : flow_.loops) {
+    for (const NaturalLoop& loop : flow_.loops) {
       std::set<std::uint32_t> inner = loop.blocks;
       inner.erase(loop.header);
       if (inner.contains(edge.first) && inner.contains(edge.second) && inner.size() < room.size()) {
@@ -190,7 +190,7 @@ class LoopFinder {
 
   void nest() {
     auto& loops = flow_.loops;
-    std::sort(loops.begin(), loops.end(), [](const Loop& a, const Loop& b) {
+    std::sort(loops.begin(), loops.end(), [](const NaturalLoop& a, const NaturalLoop& b) {
       return std::pair(b.blocks.size(), a.header) < std::pair(a.blocks.size(), b.header);
     });
     for (std::uint32_t i = 0; i < loops.size(); ++i) {

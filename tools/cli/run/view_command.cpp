@@ -16,8 +16,8 @@
 #include "tactree/support/user_error.hpp"
 #include "tactree/viewer/board_session.hpp"
 #include "tactree/viewer/live_session.hpp"
-#include "tactree/viewer/recording.hpp"
 #include "tactree/viewer/server.hpp"
+#include "tactree/viewer/trace_playback.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -86,8 +86,8 @@ std::unique_ptr<viewer::Source> make_source(const ViewOptions& options, const Sc
   const core::DeviceModel device = support::load_device(options.settings.device).preset.model;
   const core::Vec3 origin_m = simulation::middle_at_origin(
       scene.files[0]->view().header(), scene.bodies[0].path.first(), device.kind);
-  return std::make_unique<viewer::Recording>(viewer::read_trace(options.trace), bodies_of(scene),
-                                             device, origin_m);
+  return std::make_unique<viewer::TracePlayback>(viewer::read_trace(options.trace),
+                                                 bodies_of(scene), device, origin_m);
 }
 
 void warn_of_size(const ViewOptions& options, const SceneFile& scene) {

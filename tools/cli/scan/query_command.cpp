@@ -34,7 +34,7 @@ struct QueryOptions {
   std::optional<double> radius_m;
 };
 
-struct Answer {
+struct QueryResult {
   bool contact_paper = false;
   bool contact = false;
   std::uint32_t nearest = core::kNoPoint;
@@ -60,8 +60,8 @@ class Query {
 
   [[nodiscard]] bool exhaustive() const { return !points_.empty(); }
 
-  Answer answer(Vec3 probe) {
-    Answer result;
+  QueryResult answer(Vec3 probe) {
+    QueryResult result;
     result.contact_paper = core::paper_collision(view_, probe).in_contact;
     result.contact = boxes_exact_ ? core::in_any_vertex_box(view_, probe) : in_any_box(probe);
     const core::NearestPoint nearest =
@@ -119,7 +119,7 @@ class Query {
   core::CandidateSet candidates_;
 };
 
-void append_row(std::string& out, Vec3 probe, const Answer& a) {
+void append_row(std::string& out, Vec3 probe, const QueryResult& a) {
   auto to = std::back_inserter(out);
   fmt::format_to(to, "{:.9g},{:.9g},{:.9g},{:d},{:d},", probe.x, probe.y, probe.z, a.contact_paper,
                  a.contact);
@@ -161,7 +161,7 @@ Totals answer_all(Query& query, const std::vector<std::array<double, 3>>& rows) 
   for (const auto& row : rows) {
     const Vec3 probe{static_cast<float>(row[0]), static_cast<float>(row[1]),
                      static_cast<float>(row[2])};
-    const Answer answer = query.answer(probe);
+    const QueryResult answer = query.answer(probe);
     append_row(out, probe, answer);
     ++totals.rows;
     totals.contacts_paper += answer.contact_paper ? 1U : 0U;

@@ -53,7 +53,7 @@ bool StandardRequests::is_halted(std::uint8_t endpoint) const {
   return (halted_ & bit_of(endpoint)) != 0U;
 }
 
-Answer StandardRequests::setup(const SetupPacket& setup) {
+ControlResponse StandardRequests::setup(const SetupPacket& setup) {
   if (setup.type() == kTypeVendor) {
     const bool asked = setup.to_host() && setup.recipient() == kToDevice &&
                        setup.bRequest == kMicrosoftRequest && setup.wValue == 0 &&
@@ -72,7 +72,7 @@ Answer StandardRequests::setup(const SetupPacket& setup) {
   return setup.recipient() == kToEndpoint ? of_endpoint(setup) : stall();
 }
 
-Answer StandardRequests::of_device(const SetupPacket& setup) {
+ControlResponse StandardRequests::of_device(const SetupPacket& setup) {
   if (setup.bRequest == kGetDescriptor) {
     return descriptor(setup);
   }
@@ -91,7 +91,7 @@ Answer StandardRequests::of_device(const SetupPacket& setup) {
   return stall();  // no feature of the device can be set, and descriptors cannot be written
 }
 
-Answer StandardRequests::of_interface(const SetupPacket& setup) {
+ControlResponse StandardRequests::of_interface(const SetupPacket& setup) {
   if (!configured_ || setup.wIndex >= kInterfaces) {
     return stall();
   }
@@ -103,10 +103,10 @@ Answer StandardRequests::of_interface(const SetupPacket& setup) {
   }
   const bool first = setup.wValue == 0;  // no alternate settings
   if (setup.bRequest == kSetInterface && is_bare(setup) && first) {
-    Answer answer = acknowledge();
+    ControlResponse answer = acknowledge();
     if (setup.wIndex == kLinkInterface) {
       halted_ = 0;  // a selected setting resets its endpoints
-      answer.effect = Answer::Effect::kConfigure;
+      answer.effect = ControlResponse::Effect::kConfigure;
       answer.value = kConfigurationValue;
     }
     return answer;
@@ -114,7 +114,7 @@ Answer StandardRequests::of_interface(const SetupPacket& setup) {
   return stall();
 }
 
-Answer StandardRequests::of_endpoint(const SetupPacket& setup) {
+ControlResponse StandardRequests::of_endpoint(const SetupPacket& setup) {
   const bool control = is_control_endpoint(setup.wIndex);
   if (!control && (!configured_ || bit_of(setup.wIndex) == 0U)) {
     return stall();
@@ -129,39 +129,39 @@ Answer StandardRequests::of_endpoint(const SetupPacket& setup) {
   return stall();
 }
 
-Answer StandardRequests::take_halt(const SetupPacket& setup) {
+ControlResponse StandardRequests::take_halt(const SetupPacket& setup) {
   const bool halt = setup.bRequest == kSetFeature;
   const std::uint32_t bit = bit_of(setup.wIndex);
   halted_ = halt ? halted_ | bit : halted_ & ~bit;
-  Answer answer = acknowledge();
-  answer.effect = halt ? Answer::Effect::kHalt : Answer::Effect::kClearHalt;
+  ControlResponse answer = acknowledge();
+  answer.effect = halt ? ControlResponse::Effect::kHalt : ControlResponse::Effect::kClearHalt;
   answer.value = static_cast<std::uint8_t>(setup.wIndex);
   return answer;
 }
 
-Answer StandardRequests::take_address(const SetupPacket& setup) {
+ControlResponse StandardRequests::take_address(const SetupPacket& setup) {
   if (!is_bare(setup) || setup.wIndex != 0 || setup.wValue > kAddressMax || configured_) {
     return stall();
   }
   address_ = static_cast<std::uint8_t>(setup.wValue);
-  Answer answer = acknowledge();
-  answer.effect = Answer::Effect::kTakeAddress;
+  ControlResponse answer = acknowledge();
+  answer.effect = ControlResponse::Effect::kTakeAddress;
   answer.value = address_;
   return answer;
 }
 
-Answer StandardRequests::take_configuration(const SetupPacket& setup) {
+ControlResponse StandardRequests::take_configuration(const SetupPacket& setup) {
   if (!is_bare(setup) || setup.wIndex != 0 || setup.wValue > kConfigurationValue || address_ == 0) {
     return stall();
   }
   set_configured(setup.wValue == kConfigurationValue);
-  Answer answer = acknowledge();
-  answer.effect = Answer::Effect::kConfigure;
+  ControlResponse answer = acknowledge();
+  answer.effect = ControlResponse::Effect::kConfigure;
   answer.value = static_cast<std::uint8_t>(setup.wValue);
   return answer;
 }
 
-Answer StandardRequests::descriptor(const SetupPacket& setup) {
+ControlResponse StandardRequests::descriptor(const SetupPacket& setup) {
   if (!setup.to_host()) {
     return stall();
   }
@@ -197,18 +197,19 @@ Answer StandardRequests::descriptor(const SetupPacket& setup) {
   return stall();
 }
 
-Answer StandardRequests::configuration(const SetupPacket& setup, Speed speed, std::uint8_t type) {
+ControlResponse StandardRequests::configuration(const SetupPacket& setup, Speed speed,
+                                                std::uint8_t type) {
   buffer_ = configuration_descriptor(speed, type);
   return send(buffer_, setup);
 }
 
-Answer StandardRequests::status(const SetupPacket& setup, std::uint8_t value) {
+ControlResponse StandardRequests::status(const SetupPacket& setup, std::uint8_t value) {
   buffer_[0] = static_cast<std::byte>(value);
   buffer_[1] = std::byte{0};
   return send(std::span(buffer_).first(2), setup);
 }
 
-Answer StandardRequests::send_byte(const SetupPacket& setup, std::uint8_t value) {
+ControlResponse StandardRequests::send_byte(const SetupPacket& setup, std::uint8_t value) {
   buffer_[0] = static_cast<std::byte>(value);
   return send(std::span(buffer_).first(1), setup);
 }

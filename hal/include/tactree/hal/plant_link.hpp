@@ -47,7 +47,7 @@ struct Hello {
   CapturedFault last_fault{};
 };
 
-struct Session {
+struct SessionSetup {
   Kind kind = Kind::kSession;
   core::Configuration configuration{};
   std::uint32_t served = 0;  ///< 1: an application uses the board's serial port, not the link of

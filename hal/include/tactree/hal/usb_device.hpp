@@ -153,7 +153,7 @@ class UsbDevice {
     parameters_.reset();
   }
 
-  [[nodiscard]] core::usb::Answer judge(const core::usb::SetupPacket& setup) {
+  [[nodiscard]] core::usb::ControlResponse judge(const core::usb::SetupPacket& setup) {
     if (setup.type() != core::usb::kTypeClass) {
       return standard_.setup(setup);
     }
@@ -167,13 +167,13 @@ class UsbDevice {
                                                           : core::usb::stall();
   }
 
-  [[nodiscard]] core::usb::Answer judge_data() {
+  [[nodiscard]] core::usb::ControlResponse judge_data() {
     const auto data = controller_.control_data();
     return setup_.wIndex == core::usb::kModelInterface ? model_.data(data) : parameters_.data(data);
   }
 
-  void answer(const core::usb::Answer& answer) {
-    using Kind = core::usb::Answer::Kind;
+  void answer(const core::usb::ControlResponse& answer) {
+    using Kind = core::usb::ControlResponse::Kind;
     pending_ = answer;
     if (answer.kind == Kind::kSend) {
       controller_.control_send(answer.data, answer.data.size() < setup_.wLength);
@@ -188,8 +188,8 @@ class UsbDevice {
 
   /// A new address takes effect after the status stage of its request (USB 2.0, 9.4.6).
   void carry_out() {
-    using Effect = core::usb::Answer::Effect;
-    const core::usb::Answer done = pending_;
+    using Effect = core::usb::ControlResponse::Effect;
+    const core::usb::ControlResponse done = pending_;
     pending_ = {};
     if (done.effect == Effect::kTakeAddress) {
       controller_.set_address(done.value);
@@ -205,7 +205,7 @@ class UsbDevice {
   core::usb::Dfu<Model> model_;
   core::usb::Dfu<Parameters> parameters_;
   core::usb::SetupPacket setup_{};
-  core::usb::Answer pending_{};
+  core::usb::ControlResponse pending_{};
   core::usb::NewsPacket last_sent_{};
 };
 

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "cleaning/scanner_poses.hpp"
 #include "cleaning/outliers.hpp"
 #include "cleaning/pieces.hpp"
-#include "geometry/spacing.hpp"
+#include "cleaning/scanner_poses.hpp"
 #include "cleaning/stray_points.hpp"
+#include "geometry/spacing.hpp"
 #include "tactree/builder/length_text.hpp"
 
 namespace tactree::builder {
@@ -444,7 +444,7 @@ class Cleaner {
   }
 
   void place() {
-    Frame& frame = input_.frame;
+    ModelFrame& frame = input_.frame;
     const double extent = largest_edge(input_.bounds);
     const double farthest =
         input_.bounds.min().cwiseAbs().cwiseMax(input_.bounds.max().cwiseAbs()).maxCoeff();
@@ -484,7 +484,7 @@ class Cleaner {
   }
 
   void move_all() {
-    const Frame& frame = input_.frame;
+    const ModelFrame& frame = input_.frame;
     if (frame.shift.isZero(0.0) && frame.fit == 1.0) {
       return;
     }

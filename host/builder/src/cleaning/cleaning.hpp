@@ -7,14 +7,14 @@
 #include <vector>
 
 #include "geometry/mesh.hpp"
-#include "tactree/builder/build_model.hpp"
 #include "geometry/z_order.hpp"
+#include "tactree/builder/build_model.hpp"
 
 namespace tactree::builder {
 
 /// Transform from source to model coordinates:
 ///   model = fit * (unit * turn * source - shift)
-struct Frame {
+struct ModelFrame {
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
   double unit = 1.0;
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();
@@ -37,7 +37,7 @@ struct CleanInput {
   double points_spacing = 0.0;  ///< median spacing; 0 for fewer than two points
   Mesh mesh;                    ///< of meshes
   Box crop;                     ///< model frame; empty: none. Faces may extend beyond it
-  Frame frame;
+  ModelFrame frame;
   Box bounds;  ///< of the part inside the crop
 };
 

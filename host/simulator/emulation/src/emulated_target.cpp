@@ -165,7 +165,7 @@ class EmulatedTarget::Session {
   }
 
   hal::StartResult start(const core::Configuration& configuration) {
-    link::Session message;
+    link::SessionSetup message;
     message.configuration = configuration;
     message.served = options_.served != nullptr ? 1U : 0U;
     send(message);

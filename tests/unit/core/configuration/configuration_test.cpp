@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "controller_rig.hpp"
 #include "odd_floats.hpp"
-#include "session.hpp"
 
 namespace tactree::test {
 namespace {
@@ -67,7 +67,7 @@ TEST(Configuration, UnusualFloatsNeverExceedTheForceLimits) {
       Configuration c;
       c.ramp_s = 0.01F;
       c.*field = odd;
-      Session session(c);
+      ControllerRig session(c);
       session.activate();
       for (int i = 0; i < 30; ++i) {
         session.step();

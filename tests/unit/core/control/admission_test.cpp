@@ -6,7 +6,7 @@
 
 #include <random>
 
-#include "session.hpp"
+#include "controller_rig.hpp"
 
 namespace tactree::test {
 namespace {

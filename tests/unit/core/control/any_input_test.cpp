@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "session.hpp"
+#include "controller_rig.hpp"
 
 namespace tactree::test {
 namespace {
@@ -50,7 +50,7 @@ class WildHand {
  public:
   WildHand(double step_m, double height_m, double width_m)
       : step_m_(step_m), height_m_(height_m), width_m_(width_m) {}
-  void move(Session& session, std::mt19937& random) {
+  void move(ControllerRig& session, std::mt19937& random) {
     z_ = std::clamp(z_ + step_m_ * unit_(random), -height_m_, height_m_);
     x_ = std::clamp(x_ + step_m_ * unit_(random), -width_m_, width_m_);
     session.move(x_, 1e-3, z_);
@@ -76,7 +76,7 @@ bool has_hand(std::uint32_t tick) { return tick % kPhases > 20U; }
 TEST(AnyInput, RandomEncodersAndSwitchesKeepThePromises) {
   core::Configuration configuration;
   configuration.ramp_s = 0.01F;
-  Session session(configuration);
+  ControllerRig session(configuration);
   core::Output last = session.step();
   Counts counts;
   std::mt19937 random(11);
@@ -107,7 +107,7 @@ TEST(AnyInput, AWildHandKeepsThePromises) {
   configuration.force_max_N = 3.0F;
   configuration.slew_N_s = 500.0F;
   configuration.speed_max_m_s = 20.0F;
-  Session session(configuration);
+  ControllerRig session(configuration);
   ASSERT_EQ(session.status, core::ConfigurationStatus::kOk);
   core::Output last = session.step();
   Counts counts;
@@ -183,7 +183,7 @@ void touch_while_bits_flip(const Shape& shape, core::RenderMode mode) {
   configuration.slew_N_s = 500.0F;
   configuration.speed_max_m_s = 20.0F;
   FailingModel model(shape.bytes());
-  Session session(configuration);
+  ControllerRig session(configuration);
   ASSERT_EQ(session.controller.load_model(model.view()), core::ModelStatus::kOk);
   session.activate();
   core::Output last = session.step();
@@ -237,7 +237,7 @@ TEST(AnyInput, AnIndexOutsideTheModelIsAFault) {
     FailingModel model(shared_plane().bytes());
     const core::BlobHeader header = model.view().header();
     ASSERT_LT(header.node_count, header.leaf_count);  // else a node's number would name no leaf
-    Session session;
+    ControllerRig session;
     ASSERT_EQ(session.controller.load_model(model.view()), core::ModelStatus::kOk);
     session.activate();
     for (std::uint32_t& word : model.words_of(header.*damage.section)) {
@@ -250,7 +250,7 @@ TEST(AnyInput, AnIndexOutsideTheModelIsAFault) {
 TEST(AnyInput, AMaterialThatBecomesNaNIsAFault) {
   const Shape shape = textured_plane();
   FailingModel model(shape.bytes());
-  Session session;
+  ControllerRig session;
   ASSERT_EQ(session.controller.load_model(model.view()), core::ModelStatus::kOk);
   session.activate();
   ASSERT_EQ(session.press(1e-3).status.faults, 0U);

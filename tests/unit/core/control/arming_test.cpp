@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "session.hpp"
+#include "controller_rig.hpp"
 
 namespace tactree::test {
 namespace {
@@ -13,7 +13,7 @@ using core::Fault;
 using core::State;
 
 TEST(Arming, NeedsCommandEnableLineAndDeadManControl) {
-  Session session;
+  ControllerRig session;
   ASSERT_EQ(session.status, core::ConfigurationStatus::kOk);
   ASSERT_EQ(session.model_status, core::ModelStatus::kOk);
   EXPECT_EQ(session.state(), State::kIdle);
@@ -29,7 +29,7 @@ TEST(Arming, NeedsCommandEnableLineAndDeadManControl) {
 }
 
 TEST(Arming, ADeadManControlMustBeReleasedAfterArming) {
-  Session session;
+  ControllerRig session;
   session.input.dead_man = true;
   session.step(Command::kArm);
   for (int i = 0; i < 20; ++i) {
@@ -45,7 +45,7 @@ TEST(Arming, ADeadManControlMustBeReleasedAfterArming) {
 
 // A release during an earlier arming does not count.
 TEST(Arming, AReleaseCountsForOneArmingOnly) {
-  Session session;
+  ControllerRig session;
   session.step(Command::kArm);
   session.step();
   ASSERT_EQ(session.state(), State::kArmed);
@@ -64,7 +64,7 @@ TEST(Arming, AReleaseCountsForOneArmingOnly) {
 }
 
 TEST(Arming, StopEndsAnAddedForce) {
-  Session session;
+  ControllerRig session;
   session.activate();
   for (int i = 0; i < 300; ++i) {
     session.step();
@@ -83,7 +83,7 @@ TEST(Arming, StopEndsAnAddedForce) {
 TEST(Arming, WithoutADeadManControlForceNeedsTwoMessages) {
   core::Configuration configuration;
   configuration.dead_man_required = false;
-  Session session(configuration);
+  ControllerRig session(configuration);
   session.step(Command::kArm);
   for (int i = 0; i < 40; ++i) {
     session.step();
@@ -94,7 +94,7 @@ TEST(Arming, WithoutADeadManControlForceNeedsTwoMessages) {
 }
 
 TEST(Arming, WaitsForTheEnableLine) {
-  Session session;
+  ControllerRig session;
   session.enable_follows = false;
   session.step(Command::kArm);
   const auto waits = [](const core::Output& output) {
@@ -113,7 +113,7 @@ TEST(Arming, WaitsForTheEnableLine) {
 }
 
 TEST(Arming, WaitsForTheProbeToLeaveTheObject) {
-  Session session;
+  ControllerRig session;
   session.press(1e-3);
   session.step(Command::kArm);
   session.step();
@@ -131,7 +131,7 @@ TEST(Arming, WaitsForTheProbeToLeaveTheObject) {
 // that leaves the object counts as outside.
 TEST(Arming, TheProbeMayLeaveTheObjectFromInside) {
   for (const double from : {-0.03, -0.01, -0.002, -0.0005}) {
-    Session session;
+    ControllerRig session;
     session.move(0.0, 0.0, from);
     core::Output output = session.step();
     for (double z = from; z < 0.01; z += 1e-4) {
@@ -153,7 +153,7 @@ const Shape& ball() {
 
 TEST(Arming, WaitsUntilTheProbeHasLeftABody) {
   for (const double from : {0.0, 0.006, 0.012, 0.0145}) {
-    Session session;
+    ControllerRig session;
     ASSERT_EQ(session.controller.load_model(ball().view()), core::ModelStatus::kOk);
     session.move(0.0, 0.0, from);
     session.step();
@@ -178,7 +178,7 @@ TEST(Arming, WaitsUntilTheProbeHasLeftABody) {
 
 // A sheet has two sides.
 TEST(Arming, AnActiveProbeFeelsTheBackOfASheet) {
-  Session session;
+  ControllerRig session;
   session.move(0.0, 0.0, -0.01);
   session.step();
   session.activate();
@@ -194,7 +194,7 @@ TEST(Arming, AnActiveProbeFeelsTheBackOfASheet) {
 TEST(Arming, TheForceStartsAtExactlyZeroAndRamps) {
   core::Configuration configuration;
   configuration.ramp_s = 0.5F;
-  Session session(configuration);
+  ControllerRig session(configuration);
   session.activate();
   ASSERT_EQ(session.state(), State::kActive);
   // In 12 ticks 1 mm into the plane: 0.5 N once the ramp is over.
@@ -211,7 +211,7 @@ TEST(Arming, TheForceStartsAtExactlyZeroAndRamps) {
 }
 
 TEST(Arming, OutsideActiveEveryCommandIsZeroAndOutsideArmedTheLineIsOff) {
-  Session session;
+  ControllerRig session;
   core::Output output = session.press(2e-3);
   EXPECT_TRUE(output.motors.is_zero());
   EXPECT_FALSE(output.enable);
@@ -225,7 +225,7 @@ TEST(Arming, OutsideActiveEveryCommandIsZeroAndOutsideArmedTheLineIsOff) {
 }
 
 TEST(Arming, StopAndReleaseEndTheForceInTheSameTick) {
-  Session session;
+  ControllerRig session;
   session.activate();
   for (int i = 0; i < 300; ++i) {
     session.step();
@@ -237,7 +237,7 @@ TEST(Arming, StopAndReleaseEndTheForceInTheSameTick) {
   session.step(Command::kStop);
   EXPECT_EQ(session.state(), State::kIdle);
 
-  Session other;
+  ControllerRig other;
   other.activate();
   for (int i = 0; i < 300; ++i) {
     other.step();
@@ -249,7 +249,7 @@ TEST(Arming, StopAndReleaseEndTheForceInTheSameTick) {
 }
 
 TEST(Arming, RestartAfterAFaultNeedsClearThenStopThenArm) {
-  Session session;
+  ControllerRig session;
   session.activate();
   session.input.emergency_stop = true;
   session.step();
@@ -275,7 +275,7 @@ TEST(Arming, RestartAfterAFaultNeedsClearThenStopThenArm) {
 }
 
 TEST(Arming, ArmInsteadOfStopAfterAFaultHasNoEffect) {
-  Session session;
+  ControllerRig session;
   session.input.emergency_stop = true;
   session.step();
   session.input.emergency_stop = false;
@@ -287,7 +287,7 @@ TEST(Arming, ArmInsteadOfStopAfterAFaultHasNoEffect) {
 }
 
 TEST(Arming, ConfigurationAndModelAreFixedWhileArmed) {
-  Session session;
+  ControllerRig session;
   session.step(Command::kArm);
   EXPECT_EQ(session.controller.configure({}), core::ConfigurationStatus::kBusy);
   EXPECT_EQ(session.controller.load_model(shared_plane().view()), core::ModelStatus::kBusy);

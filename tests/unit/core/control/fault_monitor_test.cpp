@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "controller_rig.hpp"
 #include "folders.hpp"
-#include "session.hpp"
 
 namespace tactree::test {
 namespace {
@@ -26,27 +26,27 @@ using core::State;
 struct InState {
   const char* name;
   State state;
-  std::function<void(Session&)> enter;
+  std::function<void(ControllerRig&)> enter;
 };
 
 const std::vector<InState>& states() {
   static const std::vector<InState> all = {
       {"no-model", State::kNoModel,
-       [](Session& s) {
+       [](ControllerRig& s) {
          ASSERT_TRUE(s.controller.unload_model());
          s.step();
        }},
-      {"idle", State::kIdle, [](Session& s) { s.step(); }},
-      {"armed", State::kArmed, [](Session& s) { s.step(Command::kArm); }},
+      {"idle", State::kIdle, [](ControllerRig& s) { s.step(); }},
+      {"armed", State::kArmed, [](ControllerRig& s) { s.step(Command::kArm); }},
       {"active", State::kActive,
-       [](Session& s) {
+       [](ControllerRig& s) {
          s.activate();
          for (int i = 0; i < 300; ++i) {
            s.step();
          }
          s.press(1e-3);
        }},
-      {"fault", State::kFault, [](Session& s) { s.step(static_cast<Command>(77)); }},
+      {"fault", State::kFault, [](ControllerRig& s) { s.step(static_cast<Command>(77)); }},
   };
   return all;
 }
@@ -54,16 +54,16 @@ const std::vector<InState>& states() {
 /// A fault that must be detected in the same tick.
 struct Trouble {
   Fault fault;
-  std::function<void(Session&)> happen;
+  std::function<void(ControllerRig&)> happen;
 };
 
 const std::vector<Trouble>& troubles() {
   static const std::vector<Trouble> all = {
-      {Fault::kEmergencyStop, [](Session& s) { s.input.emergency_stop = true; }},
-      {Fault::kEncoderInvalid, [](Session& s) { s.input.encoders.valid[1] = false; }},
-      {Fault::kEncoderJump, [](Session& s) { s.input.encoders.counts[2] += 1000; }},
-      {Fault::kDeadlineMissed, [](Session& s) { s.input.overruns = 2; }},
-      {Fault::kMotorFault, [](Session& s) { s.input.motors_ok = false; }},
+      {Fault::kEmergencyStop, [](ControllerRig& s) { s.input.emergency_stop = true; }},
+      {Fault::kEncoderInvalid, [](ControllerRig& s) { s.input.encoders.valid[1] = false; }},
+      {Fault::kEncoderJump, [](ControllerRig& s) { s.input.encoders.counts[2] += 1000; }},
+      {Fault::kDeadlineMissed, [](ControllerRig& s) { s.input.overruns = 2; }},
+      {Fault::kMotorFault, [](ControllerRig& s) { s.input.motors_ok = false; }},
   };
   return all;
 }
@@ -71,7 +71,7 @@ const std::vector<Trouble>& troubles() {
 TEST(Faults, EveryFaultLatchesInTheSameTickInEveryState) {
   for (const InState& in : states()) {
     for (const Trouble& trouble : troubles()) {
-      Session session;
+      ControllerRig session;
       session.step();
       in.enter(session);
       ASSERT_EQ(session.state(), in.state) << in.name;
@@ -105,7 +105,7 @@ TEST(Faults, TheEmergencyStopLatchesBeforeConfiguration) {
 
 TEST(Faults, NoCommandClearsAPressedEmergencyStop) {
   for (const InState& in : states()) {
-    Session session;
+    ControllerRig session;
     in.enter(session);
     session.input.emergency_stop = true;
     session.input.dead_man = true;
@@ -123,7 +123,7 @@ TEST(Faults, NoCommandClearsAPressedEmergencyStop) {
 
 TEST(Faults, TwoOverrunsWithinAHundredTicksLatch) {
   for (const int apart : {1, 50, 100, 101, 200}) {
-    Session session;
+    ControllerRig session;
     session.activate();
     session.input.overruns = 1;
     session.step();
@@ -144,7 +144,7 @@ TEST(Faults, StopsWhenARequiredLinkIsLost) {
     core::Configuration configuration;
     configuration.link_required = required;
     configuration.link_timeout_s = 0.02F;
-    Session session(configuration);
+    ControllerRig session(configuration);
     session.activate();
     ASSERT_EQ(session.state(), State::kActive);
     session.input.link_alive = false;
@@ -166,7 +166,7 @@ TEST(Faults, AnArmCommandDoesNotKeepTheLinkAlive) {
   core::Configuration configuration;
   configuration.link_required = true;
   configuration.link_timeout_s = 0.02F;
-  Session session(configuration);
+  ControllerRig session(configuration);
   session.activate();
   session.input.link_alive = false;
   for (int i = 0; i < 25; ++i) {
@@ -179,7 +179,7 @@ TEST(Faults, AnArmCommandDoesNotKeepTheLinkAlive) {
 TEST(Faults, ALostLinkIsAFaultOnlyWhileArmedOrActive) {
   core::Configuration configuration;
   configuration.link_required = true;
-  Session session(configuration);
+  ControllerRig session(configuration);
   session.input.link_alive = false;
   for (int i = 0; i < 1000; ++i) {
     session.step();
@@ -191,7 +191,7 @@ TEST(Faults, ALostLinkIsAFaultOnlyWhileArmedOrActive) {
 }
 
 TEST(Faults, TheEnableLineMustFollowItsCommand) {
-  Session stuck_off;
+  ControllerRig stuck_off;
   stuck_off.enable_follows = false;
   stuck_off.step(Command::kArm);
   int ticks = 0;
@@ -202,7 +202,7 @@ TEST(Faults, TheEnableLineMustFollowItsCommand) {
   EXPECT_TRUE(core::has_fault(stuck_off.controller.faults(), Fault::kEnableMismatch));
   EXPECT_EQ(ticks, 51);  // longer than 50 ms
 
-  Session welded;  // power although nobody asked for it
+  ControllerRig welded;  // power although nobody asked for it
   welded.enable_follows = false;
   welded.input.enable_read_back = true;
   for (int i = 0; i < 60; ++i) {
@@ -212,7 +212,7 @@ TEST(Faults, TheEnableLineMustFollowItsCommand) {
 }
 
 TEST(Faults, APowerLossWhileActiveIsAFaultAtOnce) {
-  Session session;
+  ControllerRig session;
   session.activate();
   ASSERT_EQ(session.state(), State::kActive);
   session.enable_follows = false;
@@ -222,7 +222,7 @@ TEST(Faults, APowerLossWhileActiveIsAFaultAtOnce) {
 }
 
 TEST(Faults, AnUnknownCommandIsAnUnexpectedEvent) {
-  Session session;
+  ControllerRig session;
   session.step(static_cast<Command>(5));
   EXPECT_EQ(session.state(), State::kFault);
   EXPECT_TRUE(core::has_fault(session.controller.faults(), Fault::kUnexpectedEvent));
@@ -231,7 +231,7 @@ TEST(Faults, AnUnknownCommandIsAnUnexpectedEvent) {
 TEST(Faults, TheStatusContainsLoadAndProbeInTheModelFrame) {
   core::Configuration configuration;
   configuration.model_origin_m = {0.001F, -0.002F, 0.004F};
-  Session session(configuration);
+  ControllerRig session(configuration);
   session.input.load = 0.75F;
   const core::Status status = session.step().status;
   EXPECT_EQ(status.load, 0.75F);
@@ -243,7 +243,7 @@ TEST(Faults, TheStatusContainsLoadAndProbeInTheModelFrame) {
 TEST(Faults, CountersMayWrapAround) {
   core::Configuration configuration;
   configuration.device.home_count[0] = 0x7FFFFFFF;
-  Session session(configuration);
+  ControllerRig session(configuration);
   session.activate();
   for (int i = -50; i < 50; ++i) {
     session.move(i * 3e-5, 0.0, 0.01);
@@ -285,7 +285,7 @@ TEST(Faults, ASupplyOutsideItsRangeIsAFaultWhileMotorsAreOn) {
   configuration.supply_monitored = true;
   for (const float volts : {17.9F, 30.1F, 0.0F, -24.0F, std::numeric_limits<float>::quiet_NaN(),
                             std::numeric_limits<float>::infinity()}) {
-    Session session(configuration);
+    ControllerRig session(configuration);
     session.input.supply_V = volts;
     session.step();
     EXPECT_EQ(session.state(), State::kIdle);  // off: it may be switched off, too
@@ -301,7 +301,7 @@ TEST(Faults, ASupplyOutsideItsRangeIsAFaultWhileMotorsAreOn) {
 }
 
 TEST(Faults, ASecondFaultKeepsTheFirstReported) {
-  Session session;
+  ControllerRig session;
   session.input.emergency_stop = true;
   session.step();
   session.input.emergency_stop = false;
@@ -315,7 +315,7 @@ TEST(Faults, AcceptsASupplyAtTheEndsOfItsRange) {
   core::Configuration configuration;
   configuration.supply_monitored = true;
   for (const float volts : {configuration.supply_min_V, configuration.supply_max_V}) {
-    Session session(configuration);
+    ControllerRig session(configuration);
     session.input.supply_V = volts;
     session.activate();
     session.step();
@@ -352,7 +352,7 @@ class StuckEncoder {
     return std::nullopt;
   }
 
-  Session& session() { return session_; }
+  ControllerRig& session() { return session_; }
   static core::Configuration configuration() {
     core::Configuration configuration;
     configuration.stuck_s = 0.1F;
@@ -370,7 +370,7 @@ class StuckEncoder {
     }
   }
 
-  Session session_;
+  ControllerRig session_;
 };
 
 TEST(Faults, DetectsAStuckEncoderUnderItsMotorsEffort) {

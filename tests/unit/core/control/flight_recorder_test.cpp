@@ -6,7 +6,7 @@
 
 #include <limits>
 
-#include "session.hpp"
+#include "controller_rig.hpp"
 
 namespace tactree::test {
 namespace {
@@ -17,7 +17,7 @@ using core::FlightRecord;
 using core::FlightRecorder;
 
 TEST(FlightRecorder, KeepsTheLastTicksRounded) {
-  Session session;
+  ControllerRig session;
   session.activate();
   for (int i = 0; i < 1000; ++i) {
     session.step();
@@ -38,7 +38,7 @@ TEST(FlightRecorder, KeepsTheLastTicksRounded) {
 }
 
 TEST(FlightRecorder, AFaultEndsTheRecordingAndKeepsASnapshot) {
-  Session session;
+  ControllerRig session;
   session.activate();
   const core::Output pressed = session.press(1e-3);
   session.input.motors_ok = false;
@@ -57,7 +57,7 @@ TEST(FlightRecorder, AFaultEndsTheRecordingAndKeepsASnapshot) {
 }
 
 TEST(FlightRecorder, ContinuesWhenTheFaultIsCleared) {
-  Session session;
+  ControllerRig session;
   session.step(static_cast<Command>(77));
   for (int i = 0; i < 100; ++i) {
     session.step();
@@ -69,7 +69,7 @@ TEST(FlightRecorder, ContinuesWhenTheFaultIsCleared) {
 }
 
 TEST(FlightRecorder, ASecondFaultKeepsTheFirstSnapshot) {
-  Session session;
+  ControllerRig session;
   session.input.motors_ok = false;
   const core::Output first = session.step();
   session.input.emergency_stop = true;

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <initializer_list>
 
+#include "controller_rig.hpp"
 #include "poses.hpp"
-#include "session.hpp"
 
 namespace tactree::test {
 namespace {
@@ -17,11 +17,11 @@ using core::ModelStatus;
 using core::State;
 
 /// Of a session with the plane as body 0 and as many more as wanted, active.
-class SessionWithBodies : public Session {
+class SessionWithBodies : public ControllerRig {
  public:
   explicit SessionWithBodies(std::initializer_list<Eigen::Isometry3d> more,
                              const core::Configuration& configuration = {})
-      : Session(configuration) {
+      : ControllerRig(configuration) {
     for (const Eigen::Isometry3d& pose : more) {
       std::uint32_t number = 0;
       EXPECT_EQ(controller.add_body(shared_plane().view(), core::normalized(to_core(pose)), number),
@@ -83,7 +83,7 @@ TEST(SessionWithBodies, AddingAndRemovingBodiesKeepsTheSlewLimit) {
 // The hand may be where a body appears: no force, and the limit `waiting`, until it has left.
 TEST(SessionWithBodies, ABodyThatAppearsAroundTheHandWaits) {
   const Shape ball = sphere(0.015);
-  Session session;
+  ControllerRig session;
   std::uint32_t number = 0;
   ASSERT_EQ(session.controller.add_body(ball.view(), core::normalized(to_core(kFar)), number),
             ModelStatus::kOk);
@@ -156,7 +156,7 @@ TEST(SessionWithBodies, ReactionsMatchTheAppliedForce) {
 }
 
 TEST(SessionWithBodies, HasNoReactionWithoutForce) {
-  Session session;  // not armed
+  ControllerRig session;  // not armed
   const core::Status status = session.press(2e-3).status;
   EXPECT_TRUE(status.rendering.in_contact);
   for (const core::Reaction& reaction : status.reactions) {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "session.hpp"
+#include "controller_rig.hpp"
 #include "tactree/core/configuration/device_presets.hpp"
 #include "tactree/core/control/passivity.hpp"
 
@@ -22,7 +22,7 @@ using core::Vec3;
 constexpr double kAbove = 0.01;   // m: free space on either side of the plane
 constexpr double kBelow = -0.01;  // m
 
-core::Output settle(Session& session, int ticks = 200) {
+core::Output settle(ControllerRig& session, int ticks = 200) {
   core::Output output = session.step();
   for (int i = 0; i < ticks; ++i) {
     output = session.step();
@@ -31,7 +31,7 @@ core::Output settle(Session& session, int ticks = 200) {
 }
 
 TEST(Tick, VelocityEqualsThatOfTheHand) {
-  Session session;
+  ControllerRig session;
   core::Output output = session.step();
   for (int i = 0; i < 400; ++i) {
     session.move(0.0, 0.0, 0.1 - 1e-4 * i);
@@ -42,7 +42,7 @@ TEST(Tick, VelocityEqualsThatOfTheHand) {
 
 // A proxy that kept its position would hit the plane on the path to the new one.
 TEST(Tick, ACounterThatReturnsElsewhereTouchesNothingBetween) {
-  Session session;
+  ControllerRig session;
   session.move(0.0, 0.0, kAbove);
   settle(session);
   core::Output moving = session.step();
@@ -63,7 +63,7 @@ TEST(Tick, ACounterThatReturnsElsewhereTouchesNothingBetween) {
 }
 
 TEST(Tick, AJumpGivesNoVelocity) {
-  Session session;
+  ControllerRig session;
   session.move(0.0, 0.0, kAbove);
   settle(session);
   session.move(0.0, 0.0, kBelow);
@@ -80,7 +80,7 @@ TEST(Tick, APoseOutsideTheKinematicsIsAFaultWithoutVelocity) {
   core::Configuration configuration;
   core::use_device(core::presets::falcon(), configuration);
   configuration.device.homing = core::HomingMethod::kAbsolute;
-  Session session(configuration);
+  ControllerRig session(configuration);
   ASSERT_EQ(session.status, core::ConfigurationStatus::kOk);
   for (std::uint32_t axis = 0; axis < core::kAxes; ++axis) {
     session.input.encoders.counts[axis] = configuration.device.home_count[axis];
@@ -99,7 +99,7 @@ TEST(Tick, APoseOutsideTheKinematicsIsAFaultWithoutVelocity) {
 
 TEST(Tick, ANewConfigurationIsNoJump) {
   core::Configuration configuration;
-  Session session(configuration);
+  ControllerRig session(configuration);
   settle(session);
   configuration.model_origin_m = {0.0F, 0.0F, 1.0F};
   ASSERT_EQ(session.controller.configure(configuration), core::ConfigurationStatus::kOk);
@@ -109,7 +109,7 @@ TEST(Tick, ANewConfigurationIsNoJump) {
 TEST(Tick, RecoversToNoModelWithoutAModel) {
   core::Controller controller;
   ASSERT_EQ(controller.configure({}), core::ConfigurationStatus::kOk);
-  Session rig;
+  ControllerRig rig;
   core::Input input = rig.input;
   input.motors_ok = false;
   (void)controller.step(input);
@@ -123,7 +123,7 @@ TEST(Tick, RecoversToNoModelWithoutAModel) {
 }
 
 TEST(Tick, TheLastBodyMayBeRemovedWhileActive) {
-  Session session;
+  ControllerRig session;
   session.activate();
   ASSERT_EQ(session.controller.remove_body(0), core::ModelStatus::kOk);
   session.step();
@@ -133,7 +133,7 @@ TEST(Tick, TheLastBodyMayBeRemovedWhileActive) {
 }
 
 TEST(Tick, ReportsWaitingWhileOnlyTheHandIsReady) {
-  Session session;
+  ControllerRig session;
   session.step(Command::kArm);
   EXPECT_FALSE(has_limit(session.step(), Limit::kWaiting));  // nobody is there yet
   session.enable_follows = false;
@@ -144,7 +144,7 @@ TEST(Tick, ReportsWaitingWhileOnlyTheHandIsReady) {
 }
 
 TEST(Tick, ReportsNoWaitingWhileActive) {
-  Session session;
+  ControllerRig session;
   session.activate();
   ASSERT_EQ(session.state(), State::kActive);
   EXPECT_FALSE(has_limit(session.step(), Limit::kWaiting));
@@ -153,7 +153,7 @@ TEST(Tick, ReportsNoWaitingWhileActive) {
 TEST(Tick, OneArmCommandCountsOnce) {
   core::Configuration configuration;
   configuration.dead_man_required = false;
-  Session session(configuration);
+  ControllerRig session(configuration);
   session.enable_follows = false;
   session.input.enable_read_back = true;
   const core::Output output = session.step(Command::kArm);
@@ -163,7 +163,7 @@ TEST(Tick, OneArmCommandCountsOnce) {
 
 // Arming again while armed changes nothing: an earlier release still counts.
 TEST(Tick, ArmingTwiceStaysArmed) {
-  Session session;
+  ControllerRig session;
   session.step(Command::kArm);
   session.step();
   session.input.dead_man = true;
@@ -173,7 +173,7 @@ TEST(Tick, ArmingTwiceStaysArmed) {
 
 // The second copy of the state, checked before a command goes to the motors.
 TEST(Tick, MayGiveForceOnlyInTheActiveState) {
-  Session session;
+  ControllerRig session;
   EXPECT_FALSE(session.controller.may_give_force());
   session.step(Command::kArm);
   EXPECT_FALSE(session.controller.may_give_force());
@@ -186,7 +186,7 @@ TEST(Tick, MayGiveForceOnlyInTheActiveState) {
 }
 
 TEST(Tick, ReportsNoReactionAfterAStop) {
-  Session session;
+  ControllerRig session;
   session.activate();
   settle(session, 400);
   ASSERT_GT(session.press(2e-3).status.force.z, 0.5F);
@@ -198,7 +198,7 @@ TEST(Tick, ReportsNoReactionAfterAStop) {
 
 // Shorter than the jump that a body notices by itself.
 TEST(Tick, ACounterThatReturnsNearbyTouchesNothingBetween) {
-  Session session;
+  ControllerRig session;
   session.move(0.0, 0.0, 1e-3);
   settle(session);
   session.input.encoders.valid[2] = false;
@@ -211,7 +211,7 @@ TEST(Tick, ACounterThatReturnsNearbyTouchesNothingBetween) {
 }
 
 TEST(Tick, ANewConfigurationForgetsTheContact) {
-  Session session;
+  ControllerRig session;
   session.activate();
   settle(session);
   ASSERT_TRUE(session.press(1e-3).status.rendering.in_contact);
@@ -233,7 +233,7 @@ TEST(Tick, WithoutAConfigurationNoEncoderIsChecked) {
 }
 
 TEST(Tick, ABodyThatMovesPushesTheProbe) {
-  Session session;
+  ControllerRig session;
   session.activate();
   settle(session, 400);
   core::Output output = session.step();
@@ -249,7 +249,7 @@ TEST(Tick, ABodyThatMovesPushesTheProbe) {
 }
 
 TEST(Tick, AnAddedForceActsForItsTicks) {
-  Session session;
+  ControllerRig session;
   session.activate();
   settle(session, 400);
   session.input.added_force = {{0.5F, 0.0F, 0.0F}, 40};
@@ -258,7 +258,7 @@ TEST(Tick, AnAddedForceActsForItsTicks) {
 }
 
 TEST(Tick, AReactionIsThatOfTheContactAloneAfterAnAddedForce) {
-  Session session;
+  ControllerRig session;
   session.activate();
   settle(session, 400);
   session.press(1e-3);
@@ -271,7 +271,7 @@ TEST(Tick, AReactionIsThatOfTheContactAloneAfterAnAddedForce) {
 }
 
 TEST(Tick, StopDiscardsAnUnusedAddedForce) {
-  Session session;
+  ControllerRig session;
   session.input.added_force = {{1.0F, 0.0F, 0.0F}, 1'000'000U};
   session.step();
   session.activate();
@@ -287,7 +287,7 @@ TEST(Tick, KeepsTheWallPassive) {
   configuration.delay_s = 0.003F;
   configuration.stiffness_N_m = 150.0F;
   configuration.passivity_Ns_m = 2.0F;
-  Session session(configuration);
+  ControllerRig session(configuration);
   ASSERT_EQ(session.status, core::ConfigurationStatus::kOk);
   session.activate();
   settle(session, 50);
@@ -327,7 +327,7 @@ template <class Change>
 std::vector<float> draw_back(Change change) {
   core::Configuration configuration;
   configuration.ramp_s = 0.01F;
-  Session session(configuration);
+  ControllerRig session(configuration);
   session.activate();
   session.move(0.0, 0.0, 1e-3);
   settle(session, 50);
@@ -343,10 +343,12 @@ std::vector<float> draw_back(Change change) {
 
 // A change of the wall allows a release of spring energy only during contact.
 TEST(Tick, AWallChangeInFreeSpaceAddsNoEnergy) {
-  const std::vector<float> plain = draw_back([](Session& /*as it is*/) {});
+  const std::vector<float> plain = draw_back([](ControllerRig& /*as it is*/) {});
   EXPECT_GT(*std::max_element(plain.begin(), plain.end()), 0.1F);
-  EXPECT_EQ(plain, draw_back([](Session& session) { session.updates = {{0, true, {}, {}}}; }));
-  EXPECT_EQ(plain, draw_back([](Session& session) {
+  EXPECT_EQ(plain, draw_back([](ControllerRig& session) {
+              session.updates = {{0, true, {}, {}}};
+            }));
+  EXPECT_EQ(plain, draw_back([](ControllerRig& session) {
               core::Controller& controller = session.controller;
               ASSERT_EQ(controller.adjust(controller.adjustment()), core::ConfigurationStatus::kOk);
             }));

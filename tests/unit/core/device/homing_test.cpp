@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "session.hpp"
+#include "controller_rig.hpp"
 #include "tactree/core/configuration/device_presets.hpp"
 
 namespace tactree::test {
@@ -123,7 +123,7 @@ core::Configuration premium_to_be_homed() {
 }
 
 TEST(Homing, AllowsNoForceUntilDone) {
-  Session session(premium_to_be_homed());
+  ControllerRig session(premium_to_be_homed());
   ASSERT_EQ(session.status, core::ConfigurationStatus::kOk);
   for (std::int32_t& count : session.input.encoders.counts) {
     count = 123456;  // anywhere
@@ -153,7 +153,7 @@ TEST(Homing, AllowsNoForceUntilDone) {
 }
 
 TEST(Homing, IgnoresTheCommandWhileMotorsAreOn) {
-  Session session(premium_to_be_homed());
+  ControllerRig session(premium_to_be_homed());
   session.step(Command::kHome);
   session.activate();
   ASSERT_EQ(session.state(), State::kActive);
@@ -163,7 +163,7 @@ TEST(Homing, IgnoresTheCommandWhileMotorsAreOn) {
 }
 
 TEST(Homing, ALostCounterNeedsHoming) {
-  Session session(premium_to_be_homed());
+  ControllerRig session(premium_to_be_homed());
   session.step(Command::kHome);
   ASSERT_TRUE(session.controller.homed());
   session.input.encoders.valid[1] = false;
@@ -176,7 +176,7 @@ TEST(Homing, ALostCounterNeedsHoming) {
 }
 
 TEST(Homing, ACounterThatJumpedNeedsHoming) {
-  Session session(premium_to_be_homed());
+  ControllerRig session(premium_to_be_homed());
   session.step(Command::kHome);
   session.input.encoders.counts[1] += 2000;  // 0.27 rad in one tick
   const core::Output output = session.step();

@@ -62,8 +62,8 @@ class Rig {
   std::optional<Bytes> upload() {
     Bytes all;
     for (std::uint16_t block = 0;; ++block) {
-      const core::usb::Answer answer = dfu_.setup({0xA1, 2, block, 1, 512});
-      if (answer.kind != core::usb::Answer::Kind::kSend) {
+      const core::usb::ControlResponse answer = dfu_.setup({0xA1, 2, block, 1, 512});
+      if (answer.kind != core::usb::ControlResponse::Kind::kSend) {
         return std::nullopt;
       }
       all.insert(all.end(), answer.data.begin(), answer.data.end());
@@ -80,8 +80,9 @@ class Rig {
  private:
   bool send(std::uint16_t number, std::span<const std::byte> piece) {
     const auto size = static_cast<std::uint16_t>(piece.size());
-    return dfu_.setup({0x21, 1, number, 1, size}).kind == core::usb::Answer::Kind::kReceive &&
-           dfu_.data(piece).kind == core::usb::Answer::Kind::kAcknowledge &&
+    return dfu_.setup({0x21, 1, number, 1, size}).kind ==
+               core::usb::ControlResponse::Kind::kReceive &&
+           dfu_.data(piece).kind == core::usb::ControlResponse::Kind::kAcknowledge &&
            wait() == DfuState::kDownloadIdle;
   }
   DfuState wait() {

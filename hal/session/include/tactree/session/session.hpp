@@ -30,7 +30,6 @@
 #include "tactree/hal/board.hpp"
 #include "tactree/hal/loop.hpp"
 #include "tactree/hal/start_report.hpp"
-#include "tactree/session/admission.hpp"
 #include "tactree/session/board_report.hpp"
 #include "tactree/session/contact_requests.hpp"
 #include "tactree/session/control_requests.hpp"
@@ -39,6 +38,7 @@
 #include "tactree/session/parameter_requests.hpp"
 #include "tactree/session/platform.hpp"
 #include "tactree/session/reply.hpp"
+#include "tactree/session/request_filter.hpp"
 #include "tactree/session/telemetry_sender.hpp"
 #include "tactree/session/tick_mailbox.hpp"
 #include "tactree/session/trace_requests.hpp"
@@ -139,7 +139,7 @@ class Session {
       return false;
     }
     fresh_.note(report->status);
-    telemetry_.send(*report, admission_.session(), queue_);
+    telemetry_.send(*report, filter_.session(), queue_);
     parts_.mailbox.pop();
     queue_.flush(parts_.port);
     return true;
@@ -167,12 +167,12 @@ class Session {
     if (ControlRequests::is_stop(kind, decoder_.payload())) {
       return stop();
     }
-    switch (admission_.admit(header, step_ > 0U)) {
-      case Admission::Verdict::kNoSession:
+    switch (filter_.admit(header, step_ > 0U)) {
+      case RequestFilter::Verdict::kNoSession:
         return answer(WireStatus::kNoSession);
-      case Admission::Verdict::kRepeated:
+      case RequestFilter::Verdict::kRepeated:
         return Outcome::kSilent;
-      case Admission::Verdict::kAdmitted:
+      case RequestFilter::Verdict::kAdmitted:
         break;
     }
     return handle(kind);
@@ -262,13 +262,13 @@ class Session {
     if (request.version_major != core::wire::kProtocolMajor) {
       return WireStatus::kBadVersion;
     }
-    if (!admission_.has_opened(request)) {
+    if (!filter_.has_opened(request)) {
       const WireStatus status = begin_session(request);
       if (status != WireStatus::kOk) {
         return status;
       }
     }
-    reply_.put(admission_.opening(parts_.platform.now_us()));
+    reply_.put(filter_.opening(parts_.platform.now_us()));
     return WireStatus::kOk;
   }
 
@@ -283,7 +283,7 @@ class Session {
     telemetry_.unsubscribe();
     models_.release();
     control_.reset();
-    admission_.open(request, decoder_.header().sequence, parts_.platform.now_us());
+    filter_.open(request, decoder_.header().sequence, parts_.platform.now_us());
     closing_ = false;
     return WireStatus::kOk;
   }
@@ -296,7 +296,7 @@ class Session {
   Outcome close() {
     parts_.mailbox.post_stop();
     telemetry_.unsubscribe();
-    admission_.close();
+    filter_.close();
     closing_ = true;
     models_.release();
     return Outcome::kAnswer;
@@ -354,7 +354,7 @@ class Session {
   // From any sender, however late: a stop only takes force away.
   Outcome stop() {
     if (step_ == 0U) {
-      admission_.note_stop(decoder_.header());
+      filter_.note_stop(decoder_.header());
       control_.stop();
     }
     return finish_command();
@@ -362,9 +362,8 @@ class Session {
 
   Outcome control() {
     if (step_ == 0U) {
-      const WireStatus status =
-          control_.post(decoder_.payload(),
-                        {parts_.platform.now_us(), admission_.session(), models_.is_writing()});
+      const WireStatus status = control_.post(
+          decoder_.payload(), {parts_.platform.now_us(), filter_.session(), models_.is_writing()});
       if (status != WireStatus::kOk) {
         return answer(status);
       }
@@ -381,7 +380,7 @@ class Session {
   }
 
   Parts parts_;
-  Admission admission_{};
+  RequestFilter filter_{};
   ControlRequests control_;
   FreshStatus fresh_{};
   TelemetrySender telemetry_;

@@ -13,7 +13,7 @@
 
 namespace tactree::viewer {
 
-struct Answer {
+struct HttpResponse {
   unsigned status = 200;
   std::string type = "text/plain; charset=utf-8";
   std::string body;
@@ -49,11 +49,11 @@ class Site {
   ///   /model/I/points/NODE   PackedPoints
   ///   /model/I/octants/LEVEL level and edge, then corners: little-endian u32, float32s
   ///   /trace.csv             the ticks so far
-  [[nodiscard]] Answer answer(std::string_view path) const;
+  [[nodiscard]] HttpResponse answer(std::string_view path) const;
   [[nodiscard]] static bool is_slow(std::string_view path);
 
  private:
-  [[nodiscard]] Answer answer_model(std::string_view path) const;
+  [[nodiscard]] HttpResponse answer_model(std::string_view path) const;
 
   std::vector<core::BlobView> models_;
   std::vector<PointTree> trees_;

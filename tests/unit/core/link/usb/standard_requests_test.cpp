@@ -108,8 +108,10 @@ TEST(UsbDescriptors, OnlyTwoSpeedDevicesDescribeTheOtherSpeed) {
   ASSERT_EQ(bus.in(kIn, kGetDescriptor, 0x0600, 0, 255)->size(), 10U);
 
   StandardRequests full_speed_only(bus.identity, false);
-  EXPECT_EQ(full_speed_only.setup({kIn, kGetDescriptor, 0x0600, 0, 10}).kind, Answer::Kind::kStall);
-  EXPECT_EQ(full_speed_only.setup({kIn, kGetDescriptor, 0x0700, 0, 10}).kind, Answer::Kind::kStall);
+  EXPECT_EQ(full_speed_only.setup({kIn, kGetDescriptor, 0x0600, 0, 10}).kind,
+            ControlResponse::Kind::kStall);
+  EXPECT_EQ(full_speed_only.setup({kIn, kGetDescriptor, 0x0700, 0, 10}).kind,
+            ControlResponse::Kind::kStall);
 }
 
 TEST(UsbDescriptors, ReturnsTheStrings) {

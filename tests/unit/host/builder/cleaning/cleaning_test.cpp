@@ -30,7 +30,7 @@ void expect_recorded(const BuildOptions& options, const Eigen::Vector3d& place) 
   }
   const std::vector<Eigen::Vector3d> source = cloud.positions;
   const Cleaned cleaned = clean_one(cloud_scan(std::move(cloud)), options);
-  const Frame& frame = cleaned.input.frame;
+  const ModelFrame& frame = cleaned.input.frame;
   ASSERT_EQ(cleaned.input.points.size(), source.size());
   for (const Eigen::Vector3d& p : source) {
     const Eigen::Vector3d expected =
@@ -43,7 +43,7 @@ void expect_recorded(const BuildOptions& options, const Eigen::Vector3d& place) 
   }
 }
 
-TEST(Frame, IsRecordedForAllOptions) {
+TEST(ModelFrame, IsRecordedForAllOptions) {
   BuildOptions options;
   expect_recorded(options, {0, 0, 0});
   expect_recorded(options, {500000.0, 5600000.0, 300.0});
@@ -59,14 +59,14 @@ TEST(Frame, IsRecordedForAllOptions) {
   expect_recorded(options, {100.0, 2.0, 3.0});
 }
 
-TEST(Frame, OfAScanNearItsOriginIsKept) {
+TEST(ModelFrame, OfAScanNearItsOriginIsKept) {
   const Cleaned cleaned = clean_one(cloud_scan(random_sphere(1000, 0.05)));
   EXPECT_EQ(cleaned.report.source_origin, Eigen::Vector3d(0, 0, 0));
   EXPECT_EQ(cleaned.report.source_scale, 1.0);
   EXPECT_TRUE(cleaned.report.notes.empty());
 }
 
-TEST(Frame, OfAFarScanIsShiftedWithANote) {
+TEST(ModelFrame, OfAFarScanIsShiftedWithANote) {
   Cloud cloud = plane_grid(30, 1e-3);
   for (Eigen::Vector3d& p : cloud.positions) {
     p += Eigen::Vector3d(665187.522, 5648349.895, 241.75);
@@ -78,7 +78,7 @@ TEST(Frame, OfAFarScanIsShiftedWithANote) {
   EXPECT_EQ(cleaned.input.points.size(), 900U);
 }
 
-TEST(Frame, FitScalesTheLongestEdgeAndCentres) {
+TEST(ModelFrame, FitScalesTheLongestEdgeAndCentres) {
   BuildOptions options;
   options.fit_m = 0.25;
   const Cleaned cleaned =
@@ -89,7 +89,7 @@ TEST(Frame, FitScalesTheLongestEdgeAndCentres) {
   EXPECT_NEAR(cleaned.report.source_scale, 0.0625, 1e-12);
 }
 
-TEST(Frame, RotationsKeepHandednessAndRotateNormals) {
+TEST(ModelFrame, RotationsKeepHandednessAndRotateNormals) {
   for (const UpAxis up : {UpAxis::kX, UpAxis::kY, UpAxis::kZ}) {
     BuildOptions options;
     options.up = up;
@@ -105,7 +105,7 @@ TEST(Frame, RotationsKeepHandednessAndRotateNormals) {
   }
 }
 
-TEST(Frame, UnitOfTheFileIsUsedUnlessOneIsGiven) {
+TEST(ModelFrame, UnitOfTheFileIsUsedUnlessOneIsGiven) {
   Scan scan = cloud_scan(random_sphere(2000, 10.0));
   scan.unit_m = 0.01;
   BuildOptions options;
@@ -114,7 +114,7 @@ TEST(Frame, UnitOfTheFileIsUsedUnlessOneIsGiven) {
   EXPECT_NEAR(clean_one(scan, options).input.bounds.sizes().x(), 0.02, 0.0002);
 }
 
-TEST(Frame, ScansOfDifferentUnitsAreJoined) {
+TEST(ModelFrame, ScansOfDifferentUnitsAreJoined) {
   Scan metres = cloud_scan(random_sphere(2000, 0.1));
   Scan millimetres = cloud_scan(random_sphere(2000, 300.0));
   millimetres.unit_m = 0.001;

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "session.hpp"
+#include "controller_rig.hpp"
 #include "tactree/plant/plant.hpp"
 
 namespace tactree::test {
@@ -22,7 +22,7 @@ struct Account {
 /// A light hand presses ten times into the plane and comes out again; the controller's whole tick,
 /// counts included, acts on a device with mass and friction.
 Account press(const core::Configuration& configuration, double depth_m, double period_s) {
-  Session session(configuration);
+  ControllerRig session(configuration);
   session.step();
   session.activate();
   plant::PlantParameters parameters;

@@ -113,7 +113,7 @@ class Dfu {
   }
 
   /// Handles a class request to this interface.
-  [[nodiscard]] Answer setup(const SetupPacket& setup) {
+  [[nodiscard]] ControlResponse setup(const SetupPacket& setup) {
     const auto request = static_cast<DfuRequest>(setup.bRequest);
     // The standard allows no request while the host waits. Since clocks differ, and the device may
     // read its own late, an early status request is answered with the waiting time again.
@@ -140,7 +140,7 @@ class Dfu {
   }
 
   /// Handles the bytes of a block, after setup() answered kReceive.
-  [[nodiscard]] Answer data(std::span<const std::byte> bytes) {
+  [[nodiscard]] ControlResponse data(std::span<const std::byte> bytes) {
     if (bytes.size() != block_bytes_) {
       return fail(DfuStatus::kStalledPacket);
     }
@@ -180,20 +180,20 @@ class Dfu {
     return state_ == DfuState::kIdle || state_ == DfuState::kUploadIdle;
   }
 
-  Answer fail(DfuStatus status) {
+  ControlResponse fail(DfuStatus status) {
     storage_.abort();
     state_ = DfuState::kError;
     status_ = status;
     return stall();
   }
 
-  Answer clear() {
+  ControlResponse clear() {
     state_ = DfuState::kIdle;
     status_ = DfuStatus::kOk;
     return acknowledge();
   }
 
-  [[nodiscard]] Answer begin_block(const SetupPacket& setup) {
+  [[nodiscard]] ControlResponse begin_block(const SetupPacket& setup) {
     if (setup.wLength > kDfuTransferBytes) {
       return fail(DfuStatus::kStalledPacket);
     }
@@ -213,7 +213,7 @@ class Dfu {
   }
 
   /// The block number is ignored.
-  [[nodiscard]] Answer end_download() {
+  [[nodiscard]] ControlResponse end_download() {
     if (state_ != DfuState::kDownloadIdle) {
       return fail(DfuStatus::kStalledPacket);
     }
@@ -225,7 +225,7 @@ class Dfu {
     return acknowledge();
   }
 
-  [[nodiscard]] Answer upload(const SetupPacket& setup) {
+  [[nodiscard]] ControlResponse upload(const SetupPacket& setup) {
     if (setup.wLength == 0 || setup.wLength > kDfuTransferBytes) {
       return fail(DfuStatus::kStalledPacket);
     }
@@ -268,7 +268,7 @@ class Dfu {
     }
   }
 
-  [[nodiscard]] Answer send_status(const SetupPacket& setup) {
+  [[nodiscard]] ControlResponse send_status(const SetupPacket& setup) {
     if (!is_waiting()) {
       wait_ms_ = 0;
       proceed();
@@ -282,7 +282,7 @@ class Dfu {
     return send(std::span(buffer_).first(kStatusBytes), setup);
   }
 
-  [[nodiscard]] Answer send_state(const SetupPacket& setup) {
+  [[nodiscard]] ControlResponse send_state(const SetupPacket& setup) {
     buffer_[0] = static_cast<std::byte>(state_);
     return send(std::span(buffer_).first(1), setup);
   }

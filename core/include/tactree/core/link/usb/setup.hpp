@@ -45,7 +45,7 @@ inline constexpr std::uint8_t kSetInterface = 11;
 inline constexpr std::uint16_t kEndpointHalt = 0;  ///< a feature
 
 /// Continuation of a control transfer.
-struct Answer {
+struct ControlResponse {
   enum class Kind : std::uint8_t {
     kStall = 0,    ///< refused
     kAcknowledge,  ///< done, without data
@@ -66,17 +66,18 @@ struct Answer {
   std::span<const std::byte> data{};  ///< valid until the next request; at most wLength bytes
 };
 
-[[nodiscard]] inline Answer stall() { return {}; }
-[[nodiscard]] inline Answer acknowledge() {
-  return {Answer::Kind::kAcknowledge, Answer::Effect::kNone, 0, {}};
+[[nodiscard]] inline ControlResponse stall() { return {}; }
+[[nodiscard]] inline ControlResponse acknowledge() {
+  return {ControlResponse::Kind::kAcknowledge, ControlResponse::Effect::kNone, 0, {}};
 }
-[[nodiscard]] inline Answer receive() {
-  return {Answer::Kind::kReceive, Answer::Effect::kNone, 0, {}};
+[[nodiscard]] inline ControlResponse receive() {
+  return {ControlResponse::Kind::kReceive, ControlResponse::Effect::kNone, 0, {}};
 }
 /// Sends at most the requested number of bytes.
-[[nodiscard]] inline Answer send(std::span<const std::byte> data, const SetupPacket& setup) {
+[[nodiscard]] inline ControlResponse send(std::span<const std::byte> data,
+                                          const SetupPacket& setup) {
   const std::size_t size = data.size() < setup.wLength ? data.size() : setup.wLength;
-  return {Answer::Kind::kSend, Answer::Effect::kNone, 0, data.first(size)};
+  return {ControlResponse::Kind::kSend, ControlResponse::Effect::kNone, 0, data.first(size)};
 }
 
 }  // namespace tactree::core::usb

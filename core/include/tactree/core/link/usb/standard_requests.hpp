@@ -22,7 +22,7 @@ class StandardRequests {
 
   /// Handles a standard or vendor request. The answer's effect is already included in the state
   /// here.
-  [[nodiscard]] Answer setup(const SetupPacket& setup);
+  [[nodiscard]] ControlResponse setup(const SetupPacket& setup);
 
   [[nodiscard]] bool configured() const { return configured_; }
   [[nodiscard]] Speed speed() const { return speed_; }
@@ -33,13 +33,14 @@ class StandardRequests {
   [[nodiscard]] Answer of_device(const SetupPacket& setup);
   [[nodiscard]] Answer of_interface(const SetupPacket& setup);
   [[nodiscard]] Answer of_endpoint(const SetupPacket& setup);
-  [[nodiscard]] Answer take_address(const SetupPacket& setup);
-  [[nodiscard]] Answer take_configuration(const SetupPacket& setup);
-  [[nodiscard]] Answer take_halt(const SetupPacket& setup);
-  [[nodiscard]] Answer descriptor(const SetupPacket& setup);
-  [[nodiscard]] Answer configuration(const SetupPacket& setup, Speed speed, std::uint8_t type);
-  [[nodiscard]] Answer status(const SetupPacket& setup, std::uint8_t value);
-  [[nodiscard]] Answer send_byte(const SetupPacket& setup, std::uint8_t value);
+  [[nodiscard]] ControlResponse take_address(const SetupPacket& setup);
+  [[nodiscard]] ControlResponse take_configuration(const SetupPacket& setup);
+  [[nodiscard]] ControlResponse take_halt(const SetupPacket& setup);
+  [[nodiscard]] ControlResponse descriptor(const SetupPacket& setup);
+  [[nodiscard]] ControlResponse configuration(const SetupPacket& setup, Speed speed,
+                                              std::uint8_t type);
+  [[nodiscard]] ControlResponse status(const SetupPacket& setup, std::uint8_t value);
+  [[nodiscard]] ControlResponse send_byte(const SetupPacket& setup, std::uint8_t value);
 
   Identity identity_;
   bool has_high_speed_;

@@ -18,13 +18,13 @@ namespace tactree::viewer {
 /// 0. Throws support::CsvError, a std::runtime_error: "file: line n: cause (remedy)".
 [[nodiscard]] std::vector<simulation::Sample> read_trace(const std::filesystem::path& file);
 
-class Recording : public Source {
+class TracePlayback : public Source {
  public:
   /// The blobs of `bodies` must outlive the recording. `device` and the position of the model in
   /// its frame serve to draw the linkage. Precondition: !samples.empty().
-  Recording(std::vector<simulation::Sample> samples, Bodies bodies, const core::DeviceModel& device,
-            const core::Vec3& model_origin_m);
-  ~Recording() override;
+  TracePlayback(std::vector<simulation::Sample> samples, Bodies bodies,
+                const core::DeviceModel& device, const core::Vec3& model_origin_m);
+  ~TracePlayback() override;
 
   [[nodiscard]] std::string hello() const override;
   [[nodiscard]] std::optional<std::string> command(const nlohmann::json& command) override;

@@ -1,15 +1,16 @@
-#include "tactree/session/admission.hpp"
+#include "tactree/session/request_filter.hpp"
 
 namespace tactree::session {
 
 using core::wire::WireStatus;
 
-bool Admission::is_newer(std::uint16_t sequence) const {
+bool RequestFilter::is_newer(std::uint16_t sequence) const {
   const auto ahead = static_cast<std::uint16_t>(sequence - sequence_);
   return ahead != 0U && ahead < 0x8000U;
 }
 
-Admission::Verdict Admission::admit(const core::wire::FrameHeader& request, bool continued) {
+RequestFilter::Verdict RequestFilter::admit(const core::wire::FrameHeader& request,
+                                            bool continued) {
   if (session_ == 0U || request.session != session_) {
     return Verdict::kNoSession;
   }
@@ -20,14 +21,14 @@ Admission::Verdict Admission::admit(const core::wire::FrameHeader& request, bool
   return Verdict::kAdmitted;
 }
 
-void Admission::note_stop(const core::wire::FrameHeader& request) {
+void RequestFilter::note_stop(const core::wire::FrameHeader& request) {
   if (request.session == session_ && is_newer(request.sequence)) {
     sequence_ = request.sequence;
   }
 }
 
-void Admission::open(const core::wire::OpenRequest& request, std::uint16_t sequence,
-                     std::uint32_t now_us) {
+void RequestFilter::open(const core::wire::OpenRequest& request, std::uint16_t sequence,
+                         std::uint32_t now_us) {
   // The first number comes from the clock: it differs from those before the last reset.
   if (last_session_ == 0U) {
     last_session_ = static_cast<std::uint16_t>(now_us >> 4U);
@@ -41,7 +42,7 @@ void Admission::open(const core::wire::OpenRequest& request, std::uint16_t seque
   sequence_ = sequence;
 }
 
-core::wire::OpenReply Admission::opening(std::uint32_t now_us) const {
+core::wire::OpenReply RequestFilter::opening(std::uint32_t now_us) const {
   return {core::wire::kProtocolMajor, minor_, session_, nonce_, now_us};
 }
 

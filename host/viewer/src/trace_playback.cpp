@@ -1,4 +1,4 @@
-#include "tactree/viewer/recording.hpp"
+#include "tactree/viewer/trace_playback.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -47,16 +47,16 @@ json overview(const Samples& samples, const Value& value) {
 
 }  // namespace
 
-Recording::Recording(Samples samples, Bodies bodies, const core::DeviceModel& device,
-                     const core::Vec3& model_origin_m)
+TracePlayback::TracePlayback(Samples samples, Bodies bodies, const core::DeviceModel& device,
+                             const core::Vec3& model_origin_m)
     : samples_(std::move(samples)),
       bodies_(std::move(bodies)),
       device_(device),
       model_origin_m_(model_origin_m) {}
 
-Recording::~Recording() { stop(); }
+TracePlayback::~TracePlayback() { stop(); }
 
-std::string Recording::hello() const {
+std::string TracePlayback::hello() const {
   const json hello = {{"type", "hello"},
                       {"source", "trace"},
                       {"models", models_json(bodies_)},
@@ -69,7 +69,7 @@ std::string Recording::hello() const {
   return hello.dump();
 }
 
-std::optional<std::string> Recording::command(const json& command) {
+std::optional<std::string> TracePlayback::command(const json& command) {
   try {
     const std::string name = command.value("do", "");
     const auto last = static_cast<std::int64_t>(samples_.size()) - 1;
@@ -101,7 +101,7 @@ std::optional<std::string> Recording::command(const json& command) {
   }
 }
 
-std::string Recording::trace_csv() const {
+std::string TracePlayback::trace_csv() const {
   std::string csv = simulation::trace_heading();
   for (const Sample& sample : samples_) {
     simulation::append_trace(csv, sample);
@@ -109,7 +109,7 @@ std::string Recording::trace_csv() const {
   return csv;
 }
 
-void Recording::run(const Publish& publish) {
+void TracePlayback::run(const Publish& publish) {
   const std::chrono::duration<double> period(1.0 / kFrameRate_hz);
   while (running()) {
     const Clock::time_point now = Clock::now();
@@ -126,7 +126,7 @@ void Recording::run(const Publish& publish) {
   }
 }
 
-void Recording::play(double seconds) {
+void TracePlayback::play(double seconds) {
   if (speed_ <= 0.0) {
     return;
   }
@@ -137,7 +137,7 @@ void Recording::play(double seconds) {
   speed_ = tick_ + 1 < samples_.size() ? speed_ : 0.0;
 }
 
-std::string Recording::frame(std::size_t tick, double speed) {
+std::string TracePlayback::frame(std::size_t tick, double speed) {
   const Sample& sample = samples_[tick];
   const json run =
       run_json(sample, "trace", device_, model_origin_m_, std::nullopt, bodies_, scratch_);
@@ -152,7 +152,7 @@ std::string Recording::frame(std::size_t tick, double speed) {
   return frame.dump();
 }
 
-json Recording::around(std::size_t tick) const {
+json TracePlayback::around(std::size_t tick) const {
   const std::size_t begin = tick - std::min(tick, kShownTicks);
   const std::size_t end = std::min(samples_.size(), tick + kShownTicks + 1);
   json force = json::array();

@@ -1,6 +1,6 @@
 // Traces are read back as written; invalid files are refused with the line.
 
-#include "tactree/viewer/recording.hpp"
+#include "tactree/viewer/trace_playback.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,9 +15,9 @@ namespace {
 
 using simulation::Sample;
 
-class RecordingTest : public testing::Test {
+class TracePlaybackTest : public testing::Test {
  protected:
-  ~RecordingTest() override { std::filesystem::remove(file_); }
+  ~TracePlaybackTest() override { std::filesystem::remove(file_); }
 
   std::vector<Sample> read(const std::string& text) {
     std::ofstream(file_, std::ios::binary) << text;
@@ -71,12 +71,12 @@ std::string csv_of(const std::vector<Sample>& samples) {
   return csv;
 }
 
-TEST_F(RecordingTest, ReadsBackAWrittenTrace) {
+TEST_F(TracePlaybackTest, ReadsBackAWrittenTrace) {
   const std::string csv = csv_of(some_samples());
   EXPECT_EQ(csv_of(read(csv)), csv);
 }
 
-TEST_F(RecordingTest, NeedsTimeProbeAndForceOnly) {
+TEST_F(TracePlaybackTest, NeedsTimeProbeAndForceOnly) {
   const auto samples =
       read("t_s,probe_x_m,probe_y_m,probe_z_m,force_x_N,force_y_N,force_z_N\r\n0,1,2,3,4,5,6\r\n");
   ASSERT_EQ(samples.size(), 1U);
@@ -84,7 +84,7 @@ TEST_F(RecordingTest, NeedsTimeProbeAndForceOnly) {
   EXPECT_EQ(samples[0].tip_m, Eigen::Vector3d(1.0, 2.0, 3.0));
 }
 
-TEST_F(RecordingTest, RefusesInvalidFilesWithTheLine) {
+TEST_F(TracePlaybackTest, RefusesInvalidFilesWithTheLine) {
   const std::string heading = simulation::trace_heading();
   const std::string csv = csv_of(some_samples());
   EXPECT_NE(refusal("").find("the trace has no ticks"), std::string::npos);
@@ -99,8 +99,8 @@ TEST_F(RecordingTest, RefusesInvalidFilesWithTheLine) {
             std::string::npos);
 }
 
-TEST_F(RecordingTest, CommandsStayWithinTheTrace) {
-  viewer::Recording recording(some_samples(), {}, core::presets::premium().model, {});
+TEST_F(TracePlaybackTest, CommandsStayWithinTheTrace) {
+  viewer::TracePlayback recording(some_samples(), {}, core::presets::premium().model, {});
   using nlohmann::json;
   EXPECT_FALSE(recording.command({{"do", "seek"}, {"tick", 99999}}));
   EXPECT_FALSE(recording.command({{"do", "step"}, {"ticks", -1}}));

@@ -10,7 +10,7 @@
 
 namespace tactree::session {
 
-class Admission {
+class RequestFilter {
  public:
   enum class Verdict : std::uint8_t {
     kAdmitted,

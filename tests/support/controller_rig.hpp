@@ -18,9 +18,9 @@ inline bool has_limit(const core::Output& output, core::Limit limit) {
   return (output.status.limits & core::limit_bit(limit)) != 0U;
 }
 
-class Session {
+class ControllerRig {
  public:
-  explicit Session(const core::Configuration& configuration = {}) {
+  explicit ControllerRig(const core::Configuration& configuration = {}) {
     status = controller.configure(configuration);
     model_status = controller.load_model(shared_plane().view());
     move(0.0, 0.0, 0.01);
