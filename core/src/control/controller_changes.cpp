@@ -135,14 +135,14 @@ ModelStatus Controller::remove_body(std::uint32_t number) {
   return status;
 }
 
-bool Controller::unload_model() {
+ModelStatus Controller::unload_model() {
   if (!motors_off()) {
-    return false;
+    return ModelStatus::kBusy;
   }
   scene_.clear();
   forget_motion();
   handle_event(Event::kModelRemoved);
-  return true;
+  return ModelStatus::kOk;
 }
 
 }  // namespace tactree::core

@@ -12,8 +12,8 @@ core::Vec3 vector(const float* components) { return {components[0], components[1
 
 }  // namespace
 
-WireStatus set_limits(std::span<const std::byte> payload, core::Controller& controller,
-                      const core::Configuration& base) {
+WireStatus limits_of(std::span<const std::byte> payload, const core::Controller& controller,
+                     const core::Configuration& base, core::Adjustment& adjustment) {
   core::wire::SetLimitsRequest request;
   if (!core::wire::decode_message(payload, request)) {
     return WireStatus::kBadLength;
@@ -22,25 +22,26 @@ WireStatus set_limits(std::span<const std::byte> payload, core::Controller& cont
   if (!(request.force_max_N <= base.force_max_N) || !(request.slew_N_s <= base.slew_N_s)) {
     return WireStatus::kBadValue;
   }
-  core::Adjustment adjustment = controller.adjustment();
+  adjustment = controller.adjustment();
   adjustment.force_max_N = request.force_max_N;
   adjustment.slew_N_s = request.slew_N_s;
   adjustment.ramp_s = request.ramp_s;
-  return to_wire(controller.adjust(adjustment));
+  return WireStatus::kOk;
 }
 
-WireStatus set_material(std::span<const std::byte> payload, core::Controller& controller) {
+WireStatus material_of(std::span<const std::byte> payload, const core::Controller& controller,
+                       core::Adjustment& adjustment) {
   core::wire::SetMaterialRequest request;
   if (!core::wire::decode_message(payload, request)) {
     return WireStatus::kBadLength;
   }
-  core::Adjustment adjustment = controller.adjustment();
+  adjustment = controller.adjustment();
   adjustment.stiffness_N_m = request.stiffness_N_m;
   adjustment.damping_Ns_m = request.damping_Ns_m;
   adjustment.static_friction = request.static_friction;
   adjustment.dynamic_friction = request.dynamic_friction;
   adjustment.use_materials = request.use_materials != 0U;
-  return to_wire(controller.adjust(adjustment));
+  return WireStatus::kOk;
 }
 
 Outcome move_body(std::span<const std::byte> payload, const core::Controller& controller,

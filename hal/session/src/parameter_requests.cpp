@@ -4,15 +4,11 @@
 
 #include "fields.hpp"
 #include "tactree/core/configuration/parameters.hpp"
-#include "tactree/session/request_filter.hpp"
 
 namespace tactree::session {
 
 using core::wire::WireStatus;
 
-namespace {
-
-/// Precondition: number < kParameters.
 void put_parameter(std::uint32_t number, const core::Controller& controller, Reply& reply) {
   const core::Parameter parameter = core::parameter(number);
   core::wire::ParameterReply message;
@@ -23,8 +19,6 @@ void put_parameter(std::uint32_t number, const core::Controller& controller, Rep
   copy(parameter.name, message.name);
   reply.put(message);
 }
-
-}  // namespace
 
 WireStatus get_parameter(std::span<const std::byte> payload, const core::Controller& controller,
                          Reply& reply) {
@@ -39,25 +33,19 @@ WireStatus get_parameter(std::span<const std::byte> payload, const core::Control
   return WireStatus::kOk;
 }
 
-WireStatus set_parameter(std::span<const std::byte> payload, core::Controller& controller,
-                         Reply& reply) {
-  core::wire::SetParameterRequest request;
+WireStatus parameter_change(std::span<const std::byte> payload, const core::Controller& controller,
+                            core::wire::SetParameterRequest& request,
+                            core::Configuration& changed) {
   if (!core::wire::decode_message(payload, request)) {
     return WireStatus::kBadLength;
   }
   if (!controller.motors_off()) {
     return WireStatus::kBusy;
   }
-  core::Configuration changed = controller.configuration();
-  if (request.number >= core::kParameters ||
-      !core::set_parameter(changed, request.number, request.value)) {
-    return WireStatus::kBadValue;
-  }
-  const WireStatus status = to_wire(controller.configure(changed));
-  if (status == WireStatus::kOk) {
-    put_parameter(request.number, controller, reply);
-  }
-  return status;
+  changed = controller.configuration();
+  const bool set = request.number < core::kParameters &&
+                   core::set_parameter(changed, request.number, request.value);
+  return set ? WireStatus::kOk : WireStatus::kBadValue;
 }
 
 }  // namespace tactree::session

@@ -46,9 +46,8 @@ core::wire::OpenReply RequestFilter::opening(std::uint32_t now_us) const {
   return {core::wire::kProtocolMajor, minor_, session_, nonce_, now_us};
 }
 
-WireStatus require_link(core::Controller& controller, const core::Configuration& base,
-                        std::uint32_t timeout_ms) {
-  core::Adjustment adjustment = controller.adjustment();
+core::Adjustment with_link(core::Adjustment adjustment, const core::Configuration& base,
+                           std::uint32_t timeout_ms) {
   adjustment.link_required = base.link_required;
   adjustment.link_timeout_s = base.link_timeout_s;
   if (timeout_ms != 0U) {
@@ -57,7 +56,7 @@ WireStatus require_link(core::Controller& controller, const core::Configuration&
     adjustment.link_required = true;
     adjustment.link_timeout_s = shorter ? timeout_s : base.link_timeout_s;
   }
-  return to_wire(controller.adjust(adjustment));
+  return adjustment;
 }
 
 WireStatus to_wire(core::ConfigurationStatus status) {

@@ -43,18 +43,15 @@ class Loop {
   [[nodiscard]] StartResult start(const core::Configuration& configuration) {
     board_.enable_line().set(false);
     StartResult result;
-    result.configuration = controller_.configure(configuration);
+    core::BetweenTicks changes(controller_, board_);
+    result.configuration = changes.configure(configuration);
     if (result.configuration != core::ConfigurationStatus::kOk) {
       return result;
     }
-    core::report_to_recorder(board_, [&](auto& recorder) { recorder.configured(configuration); });
     core::BlobView view;
     result.blob = core::open_blob(board_.storage().active(), view);
     if (result.blob == core::BlobStatus::kOk) {
-      result.model = controller_.load_model(view);
-    }
-    if (result.ok()) {
-      core::report_to_recorder(board_, [&](auto& recorder) { recorder.model_loaded(view); });
+      result.model = changes.load_model(view);
     }
     return result;
   }

@@ -233,6 +233,12 @@ void Recording::take_event(std::uint8_t kind, std::size_t place, RecordedEvent& 
       event = body;
       return;
     }
+    case EventKind::kRemoveBody:
+      event = RemoveBody{take.take<std::uint32_t>()};
+      return;
+    case EventKind::kUnloadModel:
+      event = UnloadModel{};
+      return;
     case EventKind::kBeginTrace:
       event = BeginTrace{};
       return;

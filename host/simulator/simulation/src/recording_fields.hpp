@@ -141,6 +141,8 @@ enum class EventKind : std::uint8_t {
   kAdjustment,
   kBeginTrace,
   kTick,
+  kRemoveBody,
+  kUnloadModel,
 };
 
 /// Bits of a tick's mask.

@@ -25,6 +25,12 @@ class Replay {
     std::uint32_t number = 0;
     check("a body", controller_->add_body(models_[body.model], body.pose, number));
   }
+  void operator()(const RemoveBody& body) {
+    check("the removal of a body", controller_->remove_body(body.number));
+  }
+  void operator()(const UnloadModel& /*unload*/) {
+    check("the removal of the model", controller_->unload_model());
+  }
   void operator()(const BeginTrace& /*begin*/) { recorder_ = {}; }
 
   void operator()(const RecordedTick& recorded) {

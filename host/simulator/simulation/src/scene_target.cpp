@@ -38,10 +38,7 @@ hal::StartResult SceneTarget::add(hal::sim::SimBoard& board, const SceneBody& bo
   result.blob = core::open_blob(body.blob, view);
   if (result.blob == core::BlobStatus::kOk) {
     const core::Pose pose = body.path.at(0.0).pose;
-    result.model = controller_.add_body(view, pose, number);
-    if (result.ok()) {
-      core::report_to_recorder(board, [&](auto& recorder) { recorder.body_added(view, pose); });
-    }
+    result.model = core::BetweenTicks(controller_, board).add_body(view, pose, number);
   }
   return result;
 }

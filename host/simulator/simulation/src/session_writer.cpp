@@ -186,6 +186,17 @@ void SessionWriter::body_added(const core::BlobView& view, const core::Pose& pos
   visit(append, copy);
 }
 
+void SessionWriter::body_removed(std::uint32_t number) {
+  Appender append(bytes_);
+  append(EventKind::kRemoveBody);
+  append(number);
+}
+
+void SessionWriter::model_unloaded() {
+  Appender append(bytes_);
+  append(EventKind::kUnloadModel);
+}
+
 void SessionWriter::ticked(const core::Input& input, const hal::sim::TickOutcome& outcome) {
   const core::Readings& readings = input;
   unsigned mask = changed_fields(readings, last_);

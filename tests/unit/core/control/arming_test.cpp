@@ -291,10 +291,10 @@ TEST(Arming, ConfigurationAndModelAreFixedWhileArmed) {
   session.step(Command::kArm);
   EXPECT_EQ(session.controller.configure({}), core::ConfigurationStatus::kBusy);
   EXPECT_EQ(session.controller.load_model(shared_plane().view()), core::ModelStatus::kBusy);
-  EXPECT_FALSE(session.controller.unload_model());
+  EXPECT_EQ(session.controller.unload_model(), core::ModelStatus::kBusy);
   EXPECT_EQ(session.state(), State::kArmed);
   session.step(Command::kStop);
-  EXPECT_TRUE(session.controller.unload_model());
+  EXPECT_EQ(session.controller.unload_model(), core::ModelStatus::kOk);
   EXPECT_EQ(session.state(), State::kNoModel);
   session.step(Command::kArm);
   EXPECT_EQ(session.state(), State::kFault);

@@ -33,7 +33,7 @@ const std::vector<InState>& states() {
   static const std::vector<InState> all = {
       {"no-model", State::kNoModel,
        [](ControllerRig& s) {
-         ASSERT_TRUE(s.controller.unload_model());
+         ASSERT_EQ(s.controller.unload_model(), core::ModelStatus::kOk);
          s.step();
        }},
       {"idle", State::kIdle, [](ControllerRig& s) { s.step(); }},

@@ -1,12 +1,13 @@
 #pragma once
-// Changes a controller between two ticks. The caller may be interrupted by the tick: each function
-// holds the ticks during the change and passes an accepted change to the recorder, if present.
+// The changes of a controller that runs. Its owner is the only one outside the loop that changes
+// the controller: each change is made with the ticks held, and recorded before they are released.
 //
-//   platform.hold_ticks(hold)  true: no tick starts; false: pending ticks run
+//   platform.hold_ticks(hold)  true: no tick starts; false: ticks that fell due run. A platform
+//                              without it calls only where no tick can interrupt
 //   platform.recorder()        optional: pointer to a recorder (hal/sim/session_recorder.hpp);
 //                              nullptr: none
 //
-// A refused change has no effect and is not recorded. Call from the session's context only.
+// A refused change has no effect and is not recorded. Call from one context, never from the tick.
 // Cost: that of the controller's function.
 
 #include "tactree/core/control/controller.hpp"
@@ -24,39 +25,78 @@ void report_to_recorder(Owner& owner, Report report) {
 }
 
 template <class Platform>
-[[nodiscard]] ConfigurationStatus configure(Platform& platform, Controller& controller,
-                                            const Configuration& configuration) {
-  platform.hold_ticks(true);
-  const ConfigurationStatus status = controller.configure(configuration);
-  platform.hold_ticks(false);
-  if (status == ConfigurationStatus::kOk) {
-    report_to_recorder(platform, [&](auto& recorder) { recorder.configured(configuration); });
-  }
-  return status;
-}
+class BetweenTicks {
+ public:
+  /// Both are kept by reference.
+  BetweenTicks(Controller& controller, Platform& platform)
+      : controller_(controller), platform_(platform) {}
 
-template <class Platform>
-[[nodiscard]] ConfigurationStatus adjust(Platform& platform, Controller& controller,
-                                         const Adjustment& adjustment) {
-  platform.hold_ticks(true);
-  const ConfigurationStatus status = controller.adjust(adjustment);
-  platform.hold_ticks(false);
-  if (status == ConfigurationStatus::kOk) {
-    report_to_recorder(platform, [&](auto& recorder) { recorder.adjusted(adjustment); });
-  }
-  return status;
-}
+  /// Without the ticks held, see Controller for what a tick does not change meanwhile.
+  [[nodiscard]] const Controller& controller() const { return controller_; }
 
-template <class Platform>
-[[nodiscard]] ModelStatus load_model(Platform& platform, Controller& controller,
-                                     const BlobView& view) {
-  platform.hold_ticks(true);
-  const ModelStatus status = controller.load_model(view);
-  platform.hold_ticks(false);
-  if (status == ModelStatus::kOk) {
-    report_to_recorder(platform, [&](auto& recorder) { recorder.model_loaded(view); });
+  /// Calls `read` with the controller while no tick changes it.
+  template <class Read>
+  auto read(Read read) {
+    const Hold hold(platform_);
+    return read(static_cast<const Controller&>(controller_));
   }
-  return status;
-}
+
+  [[nodiscard]] ConfigurationStatus configure(const Configuration& configuration) {
+    return change([&] { return controller_.configure(configuration); },
+                  [&](auto& recorder) { recorder.configured(configuration); });
+  }
+  [[nodiscard]] ConfigurationStatus adjust(const Adjustment& adjustment) {
+    return change([&] { return controller_.adjust(adjustment); },
+                  [&](auto& recorder) { recorder.adjusted(adjustment); });
+  }
+  [[nodiscard]] ModelStatus load_model(const BlobView& view) {
+    return change([&] { return controller_.load_model(view); },
+                  [&](auto& recorder) { recorder.model_loaded(view); });
+  }
+  [[nodiscard]] ModelStatus add_body(const BlobView& view, const Pose& pose,
+                                     std::uint32_t& number) {
+    return change([&] { return controller_.add_body(view, pose, number); },
+                  [&](auto& recorder) { recorder.body_added(view, pose); });
+  }
+  [[nodiscard]] ModelStatus remove_body(std::uint32_t number) {
+    return change([&] { return controller_.remove_body(number); },
+                  [&](auto& recorder) { recorder.body_removed(number); });
+  }
+  [[nodiscard]] ModelStatus unload_model() {
+    return change([&] { return controller_.unload_model(); },
+                  [](auto& recorder) { recorder.model_unloaded(); });
+  }
+
+ private:
+  /// Holds the ticks for its lifetime.
+  class Hold {
+   public:
+    explicit Hold(Platform& platform) : platform_(platform) { hold(true); }
+    ~Hold() { hold(false); }
+    Hold(const Hold&) = delete;
+    Hold& operator=(const Hold&) = delete;
+
+   private:
+    void hold(bool held) {
+      if constexpr (requires { platform_.hold_ticks(held); }) {
+        platform_.hold_ticks(held);
+      }
+    }
+    Platform& platform_;
+  };
+
+  template <class Change, class Report>
+  auto change(Change change, Report report) {
+    const Hold hold(platform_);
+    const auto status = change();
+    if (status == decltype(status)::kOk) {
+      report_to_recorder(platform_, report);
+    }
+    return status;
+  }
+
+  Controller& controller_;
+  Platform& platform_;
+};
 
 }  // namespace tactree::core

@@ -123,8 +123,8 @@ class Controller {
   /// Adds a body under the conditions of load_model(). `number` receives its number.
   [[nodiscard]] ModelStatus add_body(const BlobView& view, const Pose& pose, std::uint32_t& number);
 
-  /// Removes all bodies. False: refused, armed or active.
-  [[nodiscard]] bool unload_model();
+  /// Removes all bodies. kBusy: armed or active.
+  [[nodiscard]] ModelStatus unload_model();
 
   /// Removes a body in any state; see Scene. Cost: constant.
   [[nodiscard]] ModelStatus remove_body(std::uint32_t number);

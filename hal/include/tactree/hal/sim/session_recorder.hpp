@@ -26,6 +26,9 @@ class SessionRecorder {
   /// Replaces all bodies. The view is valid during the call.
   virtual void model_loaded(const core::BlobView& view) = 0;
   virtual void body_added(const core::BlobView& view, const core::Pose& pose) = 0;
+  virtual void body_removed(std::uint32_t number) = 0;
+  /// Removes all bodies.
+  virtual void model_unloaded() = 0;
   /// Called after each tick.
   virtual void ticked(const core::Input& input, const TickOutcome& outcome) = 0;
   void stepped(const core::Input& input, const core::Output& output) {

@@ -12,14 +12,16 @@
 
 namespace tactree::session {
 
-// Precondition of these two: ticks are held. `base`: the configuration at the start, whose force
-// and slew limits are the upper bounds.
-// kBadLength, kBadValue, kUnstable; kBusy: while armed or active limits cannot change.
-[[nodiscard]] core::wire::WireStatus set_limits(std::span<const std::byte> payload,
-                                                core::Controller& controller,
-                                                const core::Configuration& base);
-[[nodiscard]] core::wire::WireStatus set_material(std::span<const std::byte> payload,
-                                                  core::Controller& controller);
+/// The adjustment that a request asks for. `base`: the configuration at the start, whose force and
+/// slew limits are the upper bounds. kBadLength, kBadValue.
+[[nodiscard]] core::wire::WireStatus limits_of(std::span<const std::byte> payload,
+                                               const core::Controller& controller,
+                                               const core::Configuration& base,
+                                               core::Adjustment& adjustment);
+/// kBadLength.
+[[nodiscard]] core::wire::WireStatus material_of(std::span<const std::byte> payload,
+                                                 const core::Controller& controller,
+                                                 core::Adjustment& adjustment);
 
 /// kLater: a move of another body has not been taken by a tick yet.
 [[nodiscard]] Outcome move_body(std::span<const std::byte> payload,

@@ -20,7 +20,7 @@
 
 namespace tactree::session {
 
-/// Store: a ModelStore. Platform: hold_ticks(bool), as of a session.
+/// Store: a ModelStore. Platform: as of BetweenTicks.
 template <class Store, class Platform>
 class DfuModel {
  public:
@@ -28,11 +28,11 @@ class DfuModel {
   using WireStatus = core::wire::WireStatus;
 
   DfuModel(Store& store, core::Controller& controller, TickMailbox& mailbox, Platform& platform)
-      : store_(store), controller_(controller), mailbox_(mailbox), platform_(platform) {}
+      : store_(store), changes_(controller, platform), mailbox_(mailbox) {}
 
   [[nodiscard]] DfuStatus begin() {
     abort();
-    if (!controller_.motors_off() || store_.signature_required()) {
+    if (!changes_.controller().motors_off() || store_.signature_required()) {
       return DfuStatus::kTarget;
     }
     begun_ = true;
@@ -44,7 +44,7 @@ class DfuModel {
     if (!begun_ || programmed_ != waiting_ || bytes.size() > sizeof block_) {
       return DfuStatus::kAddress;
     }
-    if (!controller_.motors_off()) {
+    if (!changes_.controller().motors_off()) {
       return DfuStatus::kTarget;
     }
     if (offset == 0U) {
@@ -153,7 +153,7 @@ class DfuModel {
     if (status != WireStatus::kOk) {
       return to_dfu(status);
     }
-    const core::ModelStatus model = core::load_model(platform_, controller_, view);
+    const core::ModelStatus model = changes_.load_model(view);
     return model == core::ModelStatus::kOk ? to_dfu(store_.activate(slot)) : DfuStatus::kTarget;
   }
 
@@ -181,9 +181,8 @@ class DfuModel {
   }
 
   Store& store_;
-  core::Controller& controller_;
+  core::BetweenTicks<Platform> changes_;
   TickMailbox& mailbox_;
-  Platform& platform_;
 
   bool begun_ = false;
   std::uint32_t total_ = 0;     // bytes of the model, as its header says

@@ -22,9 +22,9 @@ class ModelTransfer {
   using Kind = core::wire::MessageKind;
   using WireStatus = core::wire::WireStatus;
 
-  ModelTransfer(Store& store, Platform& platform, core::Controller& controller,
-                TickMailbox& mailbox)
-      : store_(store), platform_(platform), controller_(controller), mailbox_(mailbox) {}
+  /// All are kept by reference.
+  ModelTransfer(Store& store, core::BetweenTicks<Platform>& changes, TickMailbox& mailbox)
+      : store_(store), changes_(changes), mailbox_(mailbox) {}
 
   /// Aborts a transfer of this session.
   void release() {
@@ -47,7 +47,7 @@ class ModelTransfer {
       reply.set_status(is_known(kind) ? WireStatus::kUnsupported : WireStatus::kUnknownKind);
       return Outcome::kAnswer;
     } else {
-      if (is_known(kind) && kind != Kind::kListModels && !controller_.motors_off()) {
+      if (is_known(kind) && kind != Kind::kListModels && !changes_.controller().motors_off()) {
         reply.set_status(WireStatus::kBusy);
         return Outcome::kAnswer;
       }
@@ -159,7 +159,7 @@ class ModelTransfer {
     if (status != WireStatus::kOk) {
       return done(status, reply);
     }
-    const core::ModelStatus model = core::load_model(platform_, controller_, view);
+    const core::ModelStatus model = changes_.load_model(view);
     answer.model = static_cast<std::uint8_t>(model);
     reply.set_status(model == core::ModelStatus::kOk ? store_.activate(slot)
                                                      : WireStatus::kBadModel);
@@ -181,14 +181,13 @@ class ModelTransfer {
   Outcome save(Reply& reply) {
     float values[core::kParameters];
     for (std::uint32_t i = 0; i < core::kParameters; ++i) {  // bound: kParameters
-      values[i] = core::parameter_of(controller_.configuration(), i);
+      values[i] = core::parameter_of(changes_.controller().configuration(), i);
     }
     return done(store_.save_parameters(values), reply);
   }
 
   Store& store_;
-  Platform& platform_;
-  core::Controller& controller_;
+  core::BetweenTicks<Platform>& changes_;
   TickMailbox& mailbox_;
 };
 

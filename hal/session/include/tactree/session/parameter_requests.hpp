@@ -16,10 +16,14 @@ namespace tactree::session {
                                                    const core::Controller& controller,
                                                    Reply& reply);
 
-/// Configures the controller with the changed value: the device has to be homed again, and its
-/// models are checked again. Precondition: ticks are held.
-/// kBadLength, kBadValue, kUnstable; kBusy: armed or active.
-[[nodiscard]] core::wire::WireStatus set_parameter(std::span<const std::byte> payload,
-                                                   core::Controller& controller, Reply& reply);
+/// The configuration with the parameter that a request sets. kBadLength; kBusy: armed or active;
+/// kBadValue.
+[[nodiscard]] core::wire::WireStatus parameter_change(std::span<const std::byte> payload,
+                                                      const core::Controller& controller,
+                                                      core::wire::SetParameterRequest& request,
+                                                      core::Configuration& changed);
+
+/// Precondition: number < kParameters.
+void put_parameter(std::uint32_t number, const core::Controller& controller, Reply& reply);
 
 }  // namespace tactree::session

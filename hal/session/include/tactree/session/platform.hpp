@@ -18,17 +18,4 @@ concept SessionPlatform = requires(T& platform, bool hold) {
   noexcept->std::same_as<void>;
 };
 
-/// Holds the ticks for its lifetime. Does not nest.
-template <class Platform>
-class TickHold {
- public:
-  explicit TickHold(Platform& platform) : platform_(platform) { platform_.hold_ticks(true); }
-  ~TickHold() { platform_.hold_ticks(false); }
-  TickHold(const TickHold&) = delete;
-  TickHold& operator=(const TickHold&) = delete;
-
- private:
-  Platform& platform_;
-};
-
 }  // namespace tactree::session

@@ -48,12 +48,10 @@ class RequestFilter {
   std::uint32_t nonce_ = 0;
 };
 
-/// Makes the link required with this timeout; 0: as at the start (`base`). A link that the board
-/// requires stays required, with the shorter of both timeouts. kBusy while armed or active.
-/// Precondition: ticks are held.
-[[nodiscard]] core::wire::WireStatus require_link(core::Controller& controller,
-                                                  const core::Configuration& base,
-                                                  std::uint32_t timeout_ms);
+/// The adjustment with the link required with this timeout; 0: as at the start (`base`). A link
+/// that the board requires stays required, with the shorter of both timeouts.
+[[nodiscard]] core::Adjustment with_link(core::Adjustment adjustment,
+                                         const core::Configuration& base, std::uint32_t timeout_ms);
 
 /// The wire status for the result of Controller::adjust() and configure().
 [[nodiscard]] core::wire::WireStatus to_wire(core::ConfigurationStatus status);

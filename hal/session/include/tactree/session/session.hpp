@@ -5,7 +5,7 @@
 //
 // A session works between ticks. Its reads and writes of the running controller:
 //   through TickMailbox       commands, moves of bodies, forces, signs of life; reports of ticks
-//   with the ticks held       whatever changes the controller (configure, adjust, load_model), and
+//   through BetweenTicks      whatever changes the controller (configure, adjust, load_model), and
 //                             reads of more than one word that a tick writes (the flight recorder)
 //   at any time               state(), motors_off(), homed(), faults(): one word each. has_body()
 //                             and configuration(): ticks do not change them, only this context does
@@ -59,10 +59,15 @@ class Session {
   };
 
   explicit Session(const Parts& parts)
-      : parts_(parts),
+      : port_(parts.port),
+        store_(parts.store),
+        platform_(parts.platform),
+        changes_(parts.controller, parts.platform),
+        mailbox_(parts.mailbox),
+        identity_(parts.identity),
         control_(parts.controller, parts.mailbox),
         telemetry_(parts.mailbox),
-        models_(parts.store, parts.platform, parts.controller, parts.mailbox) {}
+        models_(parts.store, changes_, parts.mailbox) {}
 
   /// Call it before work(). `base`: the configuration at the start; its force and slew limits are
   /// the upper bounds of what an application may set. `report` is kept by reference: later entries
@@ -78,7 +83,7 @@ class Session {
   /// call it again at once. Cost, without flash operations and the check of a model: one frame in
   /// and one out, about 30 instructions a byte.
   bool work() {
-    queue_.flush(parts_.port);
+    queue_.flush(port_);
     const bool more = send_report();
     end_closed_session();
     if (waiting_) {
@@ -93,13 +98,15 @@ class Session {
 
   static constexpr std::size_t kPiece = 64;
 
+  [[nodiscard]] const core::Controller& controller() const { return changes_.controller(); }
+
   // ---- frames in and out
 
   // One request at a time: what follows it stays in the piece, and in the port.
   bool read_request() {
     if (next_ == end_) {
       next_ = 0;
-      end_ = parts_.port.read(std::span(piece_));
+      end_ = port_.read(std::span(piece_));
     }
     while (next_ < end_) {  // bound: kPiece
       const std::byte byte = piece_[next_];
@@ -128,20 +135,20 @@ class Session {
           {static_cast<std::uint8_t>(request.kind | core::wire::kReplyBit),
            static_cast<std::uint8_t>(reply_.status()), request.sequence, request.session, 0},
           reply_.payload());
-      queue_.flush(parts_.port);
+      queue_.flush(port_);
     }
     return !waiting_;
   }
 
   bool send_report() {
-    const TickReport* const report = parts_.mailbox.front();
+    const TickReport* const report = mailbox_.front();
     if (report == nullptr) {
       return false;
     }
     fresh_.note(report->status);
     telemetry_.send(*report, filter_.session(), queue_);
-    parts_.mailbox.pop();
-    queue_.flush(parts_.port);
+    mailbox_.pop();
+    queue_.flush(port_);
     return true;
   }
 
@@ -154,7 +161,7 @@ class Session {
       return Outcome::kSilent;  // a reply, or an echo of our own frames
     }
     if (kind == Kind::kIdentify) {
-      put_identity(parts_.identity, reply_);
+      put_identity(identity_, reply_);
       return Outcome::kAnswer;
     }
     if (kind == Kind::kReadStart) {
@@ -196,59 +203,66 @@ class Session {
       case Kind::kControl:
         return control();
       case Kind::kMoveBody:
-        return move_body(decoder_.payload(), parts_.controller, parts_.mailbox, reply_);
+        return move_body(decoder_.payload(), controller(), mailbox_, reply_);
       case Kind::kAddForce:
-        return answer(add_force(decoder_.payload(), parts_.controller, parts_.mailbox));
+        return answer(add_force(decoder_.payload(), controller(), mailbox_));
       case Kind::kSubscribe:
         return answer(telemetry_.subscribe(decoder_.payload()));
       case Kind::kGetParameter:
-        return answer(get_parameter(decoder_.payload(), parts_.controller, reply_));
+        return answer(get_parameter(decoder_.payload(), controller(), reply_));
       case Kind::kSetLimits:
+        return answer(set_limits());
       case Kind::kSetMaterial:
+        return answer(set_material());
+      case Kind::kSetParameter:
+        return answer(set_parameter());
       case Kind::kReadTrace:
       case Kind::kReadFault:
-      case Kind::kSetParameter:
-        return answer(handle_held(kind));
+        return answer(read_recorder(kind));
       default:
         return models_.handle(kind, decoder_.payload(), step_, reply_);
     }
   }
 
-  /// Requests that change the controller, or read what ticks write.
-  WireStatus handle_held(Kind kind) {
-    const std::span<const std::byte> payload = decoder_.payload();
-    const TickHold hold(parts_.platform);
-    switch (kind) {
-      case Kind::kSetLimits:
-        return record_adjustment(set_limits(payload, parts_.controller, base_));
-      case Kind::kSetMaterial:
-        return record_adjustment(set_material(payload, parts_.controller));
-      case Kind::kReadTrace:
-        return read_trace(payload, parts_.controller.recorder(), reply_);
-      case Kind::kSetParameter:
-        return record_configuration(set_parameter(payload, parts_.controller, reply_));
-      default:
-        read_fault(parts_.controller.recorder(), reply_);
-        return WireStatus::kOk;
-    }
+  WireStatus set_limits() {
+    core::Adjustment adjustment;
+    const WireStatus status = limits_of(decoder_.payload(), controller(), base_, adjustment);
+    return adjust(status, adjustment);
   }
 
-  // A simulated board that records the session gets what the controller took.
-  WireStatus record_adjustment(WireStatus status) {
+  WireStatus set_material() {
+    core::Adjustment adjustment;
+    const WireStatus status = material_of(decoder_.payload(), controller(), adjustment);
+    return adjust(status, adjustment);
+  }
+
+  WireStatus adjust(WireStatus status, const core::Adjustment& adjustment) {
+    return status == WireStatus::kOk ? to_wire(changes_.adjust(adjustment)) : status;
+  }
+
+  /// The device has to be homed again, and its models are checked again.
+  WireStatus set_parameter() {
+    core::wire::SetParameterRequest request;
+    core::Configuration changed;
+    WireStatus status = parameter_change(decoder_.payload(), controller(), request, changed);
     if (status == WireStatus::kOk) {
-      core::report_to_recorder(parts_.platform, [this](auto& recorder) {
-        recorder.adjusted(parts_.controller.adjustment());
-      });
+      status = to_wire(changes_.configure(changed));
+    }
+    if (status == WireStatus::kOk) {
+      put_parameter(request.number, controller(), reply_);
     }
     return status;
   }
-  WireStatus record_configuration(WireStatus status) {
-    if (status == WireStatus::kOk) {
-      core::report_to_recorder(parts_.platform, [this](auto& recorder) {
-        recorder.configured(parts_.controller.configuration());
-      });
-    }
-    return status;
+
+  /// Ticks write it.
+  WireStatus read_recorder(Kind kind) {
+    return changes_.read([&](const core::Controller& held) {
+      if (kind == Kind::kReadTrace) {
+        return read_trace(decoder_.payload(), held.recorder(), reply_);
+      }
+      read_fault(held.recorder(), reply_);
+      return WireStatus::kOk;
+    });
   }
 
   // ---- the session itself
@@ -268,12 +282,12 @@ class Session {
         return status;
       }
     }
-    reply_.put(filter_.opening(parts_.platform.now_us()));
+    reply_.put(filter_.opening(platform_.now_us()));
     return WireStatus::kOk;
   }
 
   WireStatus begin_session(const core::wire::OpenRequest& request) {
-    if (!parts_.controller.motors_off()) {
+    if (!controller().motors_off()) {
       return WireStatus::kBusy;
     }
     const WireStatus status = require_link(request.link_timeout_ms);
@@ -283,18 +297,17 @@ class Session {
     telemetry_.unsubscribe();
     models_.release();
     control_.reset();
-    filter_.open(request, decoder_.header().sequence, parts_.platform.now_us());
+    filter_.open(request, decoder_.header().sequence, platform_.now_us());
     closing_ = false;
     return WireStatus::kOk;
   }
 
   WireStatus require_link(std::uint32_t timeout_ms) {
-    const TickHold hold(parts_.platform);
-    return record_adjustment(session::require_link(parts_.controller, base_, timeout_ms));
+    return to_wire(changes_.adjust(with_link(controller().adjustment(), base_, timeout_ms)));
   }
 
   Outcome close() {
-    parts_.mailbox.post_stop();
+    mailbox_.post_stop();
     telemetry_.unsubscribe();
     filter_.close();
     closing_ = true;
@@ -304,7 +317,7 @@ class Session {
 
   // A link that the session required is required until the motors are off.
   void end_closed_session() {
-    if (closing_ && parts_.controller.motors_off()) {
+    if (closing_ && controller().motors_off()) {
       closing_ = false;
       (void)require_link(0);
     }
@@ -315,20 +328,20 @@ class Session {
     if (!core::wire::decode_message(decoder_.payload(), request)) {
       return WireStatus::kBadLength;
     }
-    const std::uint32_t now_us = parts_.platform.now_us();
+    const std::uint32_t now_us = platform_.now_us();
     const std::uint32_t age_us = now_us - request.board_time_us;
     std::uint16_t ticks = 0;
-    if (link_age(age_us, parts_.controller.configuration().rate_hz, ticks)) {
-      parts_.mailbox.post_sign_of_life(ticks);
+    if (link_age(age_us, controller().configuration().rate_hz, ticks)) {
+      mailbox_.post_sign_of_life(ticks);
     }
     reply_.put(core::wire::HeartbeatReply{now_us, age_us});
     return WireStatus::kOk;
   }
 
   Outcome capabilities() {
-    put_capabilities(parts_.controller, base_,
-                     {Store::kSlots, parts_.store.slot_bytes(), parts_.store.signature_required()},
-                     parts_.identity.cycles_per_second, reply_);
+    put_capabilities(controller(), base_,
+                     {Store::kSlots, store_.slot_bytes(), store_.signature_required()},
+                     identity_.cycles_per_second, reply_);
     return Outcome::kAnswer;
   }
 
@@ -337,7 +350,7 @@ class Session {
   /// True in a later step, once such a status has come.
   [[nodiscard]] bool has_fresh_status() {
     if (step_ == 0U) {
-      fresh_.request(parts_.mailbox);
+      fresh_.request(mailbox_);
       return false;
     }
     return fresh_.has_come();
@@ -347,7 +360,7 @@ class Session {
     if (!has_fresh_status()) {
       return Outcome::kLater;
     }
-    put_state(fresh_.get(), start_, parts_.platform.now_us(), reply_);
+    put_state(fresh_.get(), start_, platform_.now_us(), reply_);
     return Outcome::kAnswer;
   }
 
@@ -363,7 +376,7 @@ class Session {
   Outcome control() {
     if (step_ == 0U) {
       const WireStatus status = control_.post(
-          decoder_.payload(), {parts_.platform.now_us(), filter_.session(), models_.is_writing()});
+          decoder_.payload(), {platform_.now_us(), filter_.session(), models_.is_writing()});
       if (status != WireStatus::kOk) {
         return answer(status);
       }
@@ -379,7 +392,12 @@ class Session {
     return Outcome::kAnswer;
   }
 
-  Parts parts_;
+  Port& port_;
+  Store& store_;
+  Platform& platform_;
+  core::BetweenTicks<Platform> changes_;
+  TickMailbox& mailbox_;
+  const BoardIdentity& identity_;
   RequestFilter filter_{};
   ControlRequests control_;
   FreshStatus fresh_{};

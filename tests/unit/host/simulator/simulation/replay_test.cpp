@@ -71,10 +71,7 @@ class RandomSession {
  public:
   explicit RandomSession(std::uint32_t seed) : random_(seed) {
     EXPECT_TRUE(loop_.start(configuration()).ok());
-    std::uint32_t number = 0;
-    EXPECT_EQ(controller_.add_body(touched_plane().view(), raised(), number),
-              core::ModelStatus::kOk);
-    writer_.body_added(touched_plane().view(), raised());
+    EXPECT_EQ(add_raised(), core::ModelStatus::kOk);
   }
 
   void tick() {
@@ -95,10 +92,7 @@ class RandomSession {
   SessionWriter& writer() { return writer_; }
   core::Controller& controller() { return controller_; }
   [[nodiscard]] int contact_ticks() const { return contact_ticks_; }
-
-  // A platform, as a session has one.
-  void hold_ticks(bool /*hold*/) {}
-  hal::sim::SessionRecorder* recorder() { return &writer_; }
+  [[nodiscard]] int removals() const { return removals_; }
 
  private:
   static core::Configuration configuration() {
@@ -141,14 +135,34 @@ class RandomSession {
       adjustment.stiffness_N_m = 200.0F + 100.0F * static_cast<float>(below(4));
       adjustment.damping_Ns_m = 0.1F * static_cast<float>(below(8));
       adjustment.force_max_N = chance(8) ? 4.0F : adjustment.force_max_N;
-      (void)core::adjust(*this, controller_, adjustment);
+      (void)changes_.adjust(adjustment);
     }
-    if (controller_.motors_off() && chance(40)) {
-      (void)core::configure(*this, controller_, configuration());
+    if (chance(300)) {  // in any state
+      removals_ += changes_.remove_body(below(3)) == core::ModelStatus::kOk ? 1 : 0;
     }
-    if (controller_.motors_off() && chance(40)) {
-      (void)core::load_model(*this, controller_, touched_plane().view());
+    if (controller_.motors_off()) {
+      change_with_motors_off();
     }
+  }
+
+  void change_with_motors_off() {
+    if (chance(40)) {
+      (void)changes_.configure(configuration());
+    }
+    if (chance(60)) {
+      removals_ += changes_.unload_model() == core::ModelStatus::kOk ? 1 : 0;
+    }
+    if (chance(40) || !controller_.has_body(0)) {
+      (void)changes_.load_model(touched_plane().view());
+    }
+    if (chance(20)) {
+      (void)add_raised();
+    }
+  }
+
+  core::ModelStatus add_raised() {
+    std::uint32_t number = 0;
+    return changes_.add_body(touched_plane().view(), raised(), number);
   }
 
   void move_bodies() {
@@ -169,27 +183,32 @@ class RandomSession {
   hal::sim::SimBoard board_{{.recorder = &writer_}, touched_plane().bytes()};
   core::Controller controller_;
   hal::Loop<hal::sim::SimBoard> loop_{board_, controller_};
+  core::BetweenTicks<hal::sim::SimBoard> changes_{controller_, board_};
   std::vector<core::BodyUpdate> updates_;
   double z_m_ = 4e-3;
   std::int32_t jump_ = -400;
   int contact_ticks_ = 0;
+  int removals_ = 0;
 };
 
 // Fails if anything except Input and the recorded changes reaches the controller.
 TEST(Replay, ReproducesSessionsOfRandomActivity) {
   int contact_ticks = 0;
+  int removals = 0;
   for (std::uint32_t seed = 1; seed <= 10U; ++seed) {
     RandomSession session(seed);
     for (int i = 0; i < 3000; ++i) {
       session.tick();
     }
     contact_ticks += session.contact_ticks();
+    removals += session.removals();
     const ReplayResult replayed = replay_bytes(session.writer().finish());
     ASSERT_TRUE(replayed.same()) << seed << ", tick " << replayed.difference->tick << ": "
                                  << replayed.difference->cause;
     EXPECT_EQ(replayed.ticks, 3000U);
   }
   EXPECT_GT(contact_ticks, 500);
+  EXPECT_GT(removals, 20);
 }
 
 TEST(Replay, FindsTheFirstTickAfterAChangeThatWasNotRecorded) {

@@ -4,8 +4,7 @@
 //   before it
 // A file sets all parameters or none, and only while the motors are off.
 //
-// Interrupt safety: no shared state of its own; call outside the tick. Platform::hold_ticks() keeps
-// the tick away while the configuration changes.
+// Interrupt safety: no shared state of its own; call outside the tick.
 // Loop and memory annotations: docs/BOUND.md.
 
 #include <cstddef>
@@ -36,16 +35,15 @@ static_assert(sizeof(ParameterFile) == 8 + 4 * kParameters + 4);
   return crc32(bytes.first(offsetof(ParameterFile, checksum)));
 }
 
-/// Platform: provides hold_ticks(bool), as the platform of a session (hal/session/session.hpp).
+/// Platform: as of BetweenTicks.
 template <class Platform>
 class ParameterStorage {
  public:
-  ParameterStorage(Controller& controller, Platform& platform)
-      : controller_(controller), platform_(platform) {}
+  ParameterStorage(Controller& controller, Platform& platform) : changes_(controller, platform) {}
 
   [[nodiscard]] DfuStatus begin() {
     received_ = 0;
-    return controller_.motors_off() ? DfuStatus::kOk : DfuStatus::kTarget;
+    return changes_.controller().motors_off() ? DfuStatus::kOk : DfuStatus::kTarget;
   }
 
   [[nodiscard]] DfuStatus write(std::uint32_t offset, std::span<const std::byte> bytes) {
@@ -64,11 +62,11 @@ class ParameterStorage {
     if (file_.checksum != checksum_of(file_)) {
       return DfuStatus::kVerify;
     }
-    Configuration configuration = controller_.configuration();
+    Configuration configuration = changes_.controller().configuration();
     if (!is_ours() || !take_values(configuration)) {
       return DfuStatus::kFile;
     }
-    const ConfigurationStatus status = configure(platform_, controller_, configuration);
+    const ConfigurationStatus status = changes_.configure(configuration);
     if (status == ConfigurationStatus::kBusy) {
       return DfuStatus::kTarget;
     }
@@ -82,7 +80,7 @@ class ParameterStorage {
                                std::size_t& count) {
     ParameterFile now;
     for (std::uint32_t i = 0; i < kParameters; ++i) {  // bound: kParameters
-      now.values[i] = parameter_of(controller_.configuration(), i);
+      now.values[i] = parameter_of(changes_.controller().configuration(), i);
     }
     now.checksum = checksum_of(now);
     const std::size_t left = offset < sizeof(now) ? sizeof(now) - offset : 0;
@@ -106,8 +104,7 @@ class ParameterStorage {
     return true;
   }
 
-  Controller& controller_;
-  Platform& platform_;
+  BetweenTicks<Platform> changes_;
   ParameterFile file_{};
   std::size_t received_ = 0;
 };

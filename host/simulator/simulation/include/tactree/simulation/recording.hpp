@@ -14,6 +14,8 @@
 //     4 add body       u32 model, pose (f32[4] rotation w x y z, f32[3] translation)
 //     5 adjustment     the fields of core::Adjustment in the order of their declaration
 //     6 trace begins   nothing: the trace checksum covers the ticks after it
+//     8 remove body    u32 number of the body
+//     9 unload model   nothing
 //     7 tick           u16 mask of the fields that follow; each other one is as in the tick before
 //       bit 0..2  i32 count of the encoder
 //           3     u8 flags: emergency stop, dead man, enable, motors ok, link alive, valid 0..2
@@ -66,6 +68,8 @@ class SessionWriter final : public hal::sim::SessionRecorder {
   void adjusted(const core::Adjustment& adjustment) override;
   void model_loaded(const core::BlobView& view) override;
   void body_added(const core::BlobView& view, const core::Pose& pose) override;
+  void body_removed(std::uint32_t number) override;
+  void model_unloaded() override;
   void ticked(const core::Input& input, const hal::sim::TickOutcome& outcome) override;
   /// Starts the trace checksum at the next tick.
   void begin_trace();
@@ -92,6 +96,10 @@ struct AddBody {
   std::uint32_t model = 0;
   core::Pose pose{};
 };
+struct RemoveBody {
+  std::uint32_t number = 0;
+};
+struct UnloadModel {};
 struct BeginTrace {};
 struct RecordedTick {
   core::Readings readings{};
@@ -100,7 +108,7 @@ struct RecordedTick {
   std::uint32_t outcome = 0;  ///< checksum
 };
 using RecordedEvent = std::variant<core::Configuration, core::Adjustment, LoadModel, AddBody,
-                                   BeginTrace, RecordedTick>;
+                                   RemoveBody, UnloadModel, BeginTrace, RecordedTick>;
 
 /// An incomplete or damaged recording. The message states place, cause and remedy, not the name of
 /// the file.
