@@ -38,7 +38,7 @@ void FaultMonitor::set_link_timeout(const Configuration& configuration) {
 FaultMask FaultMonitor::update(const Readings& readings, const Configuration& configuration,
                                State state, bool enable) {
   const bool motors_on = state == State::kArmed || state == State::kActive;
-  FaultMask faults = check_overruns(readings) |
+  FaultMask faults = check_overruns(readings, motors_on) |
                      check_link(readings, configuration.link_required && motors_on) |
                      check_enable(readings, state, enable);
   faults |= motors_on ? check_supply(readings, configuration) : 0U;
@@ -47,9 +47,9 @@ FaultMask FaultMonitor::update(const Readings& readings, const Configuration& co
   return faults;
 }
 
-FaultMask FaultMonitor::check_overruns(const Readings& readings) {
+FaultMask FaultMonitor::check_overruns(const Readings& readings, bool motors_on) {
   ticks_since_overrun_ = add_saturating(ticks_since_overrun_, 1);
-  if (readings.overruns == 0U) {
+  if (readings.overruns == 0U || (readings.storage_busy && !motors_on)) {
     return 0U;
   }
   const bool again = readings.overruns > 1U || ticks_since_overrun_ <= kOverrunWindow;

@@ -84,9 +84,7 @@ class Loop {
     input.command = link.command;
     input.bodies = link.bodies;
     input.added_force = link.added_force;
-    if (link.storage_busy && controller_.motors_off()) {
-      input.overruns = 0;
-    }
+    input.storage_busy = link.storage_busy;
   }
 
   B& board_;

@@ -93,6 +93,7 @@ void take_readings(Taker& take, unsigned mask, core::Readings& r) {
     visit(take, r.encoders.index);
     visit(take, r.encoders.index_count);
   }
+  r.storage_busy = (mask & kStorageBusy) != 0U;
   r.command = core::Command::kNone;
   if ((mask & kCommand) != 0U) {
     take(r.command);

@@ -156,6 +156,7 @@ inline constexpr unsigned kCommand = 1U << 8U;
 inline constexpr unsigned kBodies = 1U << 9U;
 inline constexpr unsigned kForce = 1U << 10U;
 inline constexpr unsigned kIndex = 1U << 11U;
-inline constexpr unsigned kAllTickFields = (1U << 12U) - 1U;
+inline constexpr unsigned kStorageBusy = 1U << 12U;  // nothing follows
+inline constexpr unsigned kAllTickFields = (1U << 13U) - 1U;
 
 }  // namespace tactree::simulation

@@ -85,6 +85,7 @@ unsigned changed_fields(const core::Readings& now, const core::Readings& last) {
   mask |= !same_bits(now.load, last.load) ? kLoad : 0U;
   mask |= !same_bits(now.supply_V, last.supply_V) ? kSupply : 0U;
   mask |= !same_index(now.encoders, last.encoders) ? kIndex : 0U;
+  mask |= now.storage_busy ? kStorageBusy : 0U;
   mask |= now.command != core::Command::kNone ? kCommand : 0U;
   return mask;
 }

@@ -91,6 +91,7 @@ TEST(AnyInput, RandomEncodersAndSwitchesKeepThePromises) {
     session.input.link_alive = random() % 2U == 0U;
     session.input.enable_read_back = random() % 2U == 0U;
     session.enable_follows = random() % 2U == 0U;
+    session.input.storage_busy = random() % 4U == 0U;
     session.input.overruns = random() % 64U == 0U ? static_cast<std::uint32_t>(random()) : 0U;
     const core::Output output = session.step(static_cast<Command>(random() % 6U));
     inspect(output, last, configuration, counts);

@@ -139,6 +139,25 @@ TEST(Faults, TwoOverrunsWithinAHundredTicksLatch) {
   }
 }
 
+TEST(Faults, BusyStorageExcusesOverrunsWithMotorsOffOnly) {
+  ControllerRig session;
+  session.step();
+  session.input.storage_busy = true;
+  session.input.overruns = 5;
+  EXPECT_EQ(session.step().status.overruns, 0U);
+  EXPECT_EQ(session.state(), State::kIdle);
+  session.input.storage_busy = false;
+  EXPECT_EQ(session.step().status.overruns, 5U);
+  EXPECT_EQ(session.state(), State::kFault);
+
+  ControllerRig active;
+  active.activate();
+  active.input.storage_busy = true;
+  active.input.overruns = 2;
+  EXPECT_EQ(active.step().status.overruns, 2U);
+  EXPECT_EQ(active.state(), State::kFault);
+}
+
 TEST(Faults, StopsWhenARequiredLinkIsLost) {
   for (const bool required : {false, true}) {
     core::Configuration configuration;

@@ -44,7 +44,7 @@ class FaultMonitor {
  private:
   static constexpr std::uint32_t kForever = 0xFFFFFFFFU;
 
-  [[nodiscard]] FaultMask check_overruns(const Readings& readings);
+  [[nodiscard]] FaultMask check_overruns(const Readings& readings, bool motors_on);
   [[nodiscard]] FaultMask check_link(const Readings& readings, bool required);
   [[nodiscard]] FaultMask check_enable(const Readings& readings, State state, bool enable);
 

@@ -24,6 +24,9 @@ struct Readings {
   bool enable_read_back = false;  ///< true: the amplifiers have power
   bool motors_ok = false;         ///< false: the motor bank reports a failure
   bool link_alive = false;        ///< a valid message arrived since the last tick
+  /// Flash is being written, and its chip may stall: with the motors off, missed deadlines are
+  /// neither a fault nor counted.
+  bool storage_busy = false;
   /// If link_alive: upper bound of the message's age at arrival. The link timeout counts from the
   /// time of sending, not of arrival.
   std::uint16_t link_age_ticks = 0;

@@ -24,6 +24,7 @@
 //           8     u8 command, once
 //           9     u8 number of body updates, once; of each u32 body, u8 enabled, pose, f32[3]
 //                 linear, f32[3] angular velocity
+//           12    nothing: the storage is busy, once
 //           10    f32[3] added force, u32 ticks, once
 //                      then u32 CRC-32 of the outcome: f32[3] efforts, f32[3] force, u32 faults,
 //                      u32 limits, u8 state, u8 enable
