@@ -15,7 +15,6 @@ inline volatile std::uint32_t& systick_reload() { return register_at(0xE000E014)
 inline volatile std::uint32_t& systick_value() { return register_at(0xE000E018); }
 /// SysTick enabled, with interrupt, on the core clock.
 inline constexpr std::uint32_t kSystickOn = 0x7;
-inline constexpr std::uint32_t kSystickReloadMax = 0xFFFFFF;
 
 inline volatile std::uint32_t& interrupt_control() { return register_at(0xE000ED04); }
 inline constexpr std::uint32_t kPendPendsv = 1U << 28;

@@ -45,7 +45,6 @@ enum class TickKind : std::uint32_t {
   kMixed = 1,    ///< surface mode, leaves of several sizes
   kPaper = 2,
 };
-inline constexpr std::uint32_t kTickKinds = 3;
 [[nodiscard]] TickKind tick_kind(const BlobHeader& header, RenderMode mode);
 
 /// The models of a scene together.
