@@ -30,9 +30,9 @@ class StandardRequests {
   [[nodiscard]] bool is_halted(std::uint8_t endpoint) const;
 
  private:
-  [[nodiscard]] Answer of_device(const SetupPacket& setup);
-  [[nodiscard]] Answer of_interface(const SetupPacket& setup);
-  [[nodiscard]] Answer of_endpoint(const SetupPacket& setup);
+  [[nodiscard]] ControlResponse of_device(const SetupPacket& setup);
+  [[nodiscard]] ControlResponse of_interface(const SetupPacket& setup);
+  [[nodiscard]] ControlResponse of_endpoint(const SetupPacket& setup);
   [[nodiscard]] ControlResponse take_address(const SetupPacket& setup);
   [[nodiscard]] ControlResponse take_configuration(const SetupPacket& setup);
   [[nodiscard]] ControlResponse take_halt(const SetupPacket& setup);
