@@ -77,7 +77,7 @@ static_assert(std::is_trivially_copyable_v<core::Configuration> &&
               std::is_trivially_copyable_v<core::Readings> &&
               std::is_trivially_copyable_v<BodyUpdate> &&
               std::is_trivially_copyable_v<core::Status>);
-static_assert(alignof(Session) == 4 && alignof(TickInput) == 4 && alignof(TickOutput) == 4);
+static_assert(alignof(SessionSetup) == 4 && alignof(TickInput) == 4 && alignof(TickOutput) == 4);
 static_assert(sizeof(Hello) == 124 && sizeof(Started) == 8 && sizeof(TickInput) == 120);
 
 }  // namespace tactree::hal::plant_link
