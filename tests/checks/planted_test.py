@@ -176,62 +176,48 @@ class Symbols(Planted):
         self.refuses("0 symbols defined", "check-symbols", self.archive(""))
 
 
-class ProtocolDoc(Planted):
-    def refuses_doc(self, words, old, new):
-        doc = (ROOT / "docs/PROTOCOL.md").read_text()
-        self.assertIn(old, doc)
-        path = self.write("PROTOCOL.md", doc.replace(old, new, 1))
-        self.refuses(words, "check-protocol-doc", "--doc", path, "--compiler", CXX)
+class Pages(Planted):
+    """The tables of the documents, each with one number or source changed."""
 
-    def test_offset(self):
-        self.refuses_doc("the document says (5, 4, 'u32', 'nonce')", "| 4 | 4 | u32 | `nonce`",
-                         "| 5 | 4 | u32 | `nonce`")
-
-    def test_undocumented_field(self):
-        shutil.copytree(ROOT / "core/include", self.folder / "include")
-        path = self.folder / "include/tactree/core/link/wire/messages.hpp"
-        old = "  std::uint32_t age_us = 0;"
-        self.assertIn(old, path.read_text())
-        text = path.read_text().replace(old, "  std::uint32_t planted = 0;" + old, 1)
-        path.write_text(text.replace("sizeof(HeartbeatReply) == 8", "sizeof(HeartbeatReply) == 12"))
-        self.refuses("planted", "check-protocol-doc", "--include", self.folder / "include",
-                     "--compiler", CXX)
-
-
-class FormatDoc(Planted):
     def setUp(self):
         super().setUp()
-        self.doc = (ROOT / "docs/FORMAT.md").read_text()
+        for folder in ("core", "docs", "tests"):
+            shutil.copytree(ROOT / folder, self.folder / folder,
+                            ignore=shutil.ignore_patterns("corpus", "golden", "node_modules"))
+        subprocess.run(["git", "init", "-q"], cwd=self.folder, check=True)
 
-    def refuses_doc(self, words, old, new):
-        self.assertIn(old, self.doc)
-        path = self.write("FORMAT.md", self.doc.replace(old, new, 1))
-        self.refuses(words, "check-format-doc", "--doc", path, "--compiler", CXX)
-
-    def refuses_header(self, words, file, old, new):
-        shutil.copytree(ROOT / "core/include", self.folder / "include")
-        path = self.folder / "include/tactree/core/model" / file
+    def stale(self, page, name, old, new):
+        path = self.folder / name
         self.assertIn(old, path.read_text())
         path.write_text(path.read_text().replace(old, new, 1))
-        self.refuses(words, "check-format-doc", "--include", self.folder / "include",
-                     "--compiler", CXX)
+        self.refuses("differs from the sources", "generate", "--check", "--quick", "--root", self.folder, page)
 
-    def test_offset(self):
-        self.refuses_doc("the document says (84, 4, 'u32', 'points_per_leaf_max')",
-                         "| 64 | 4 | u32 | `points_per_leaf_max`",
-                         "| 84 | 4 | u32 | `points_per_leaf_max`")
+    def test_untouched(self):
+        self.accepts("generate", "--check", "--quick", "--root", self.folder, "FORMAT", "PROTOCOL", "SAFETY")
 
-    def test_status(self):
-        self.refuses_doc("BlobStatus: the document says (7, 'kBadHeaders')", "| 7 | `kBadHeader` |",
-                         "| 7 | `kBadHeaders` |")
+    def test_offset_in_a_table(self):
+        self.stale("PROTOCOL", "docs/PROTOCOL.md", "| 4 | 4 | u32 | `nonce`", "| 5 | 4 | u32 | `nonce`")
+
+    def test_status_in_a_table(self):
+        self.stale("FORMAT", "docs/FORMAT.md", "| 7 | `kBadHeader` |", "| 7 | `kBadHeaders` |")
 
     def test_new_field(self):
-        self.refuses_header("the header says (328, 4, 'u32', 'colour')", "blob_format.hpp",
-                            "std::uint32_t reserved[4];",
-                            "std::uint32_t colour; std::uint32_t reserved[3];")
+        self.stale("FORMAT", "core/include/tactree/core/model/blob_format.hpp", "std::uint32_t reserved[4];",
+                   "std::uint32_t colour; std::uint32_t reserved[3];")
 
-    def test_new_status(self):
-        self.refuses_header("(15, 'kBadMood')", "blob.hpp", "  kBadMaterials,", "  kBadMaterials, kBadMood,")
+    def test_changed_constant(self):
+        self.stale("FORMAT", "core/include/tactree/core/model/blob_format.hpp", "kMaxMaterials = 255", "kMaxMaterials = 254")
+
+    def test_changed_default(self):
+        self.stale("SAFETY", "core/include/tactree/core/configuration/configuration.hpp", "force_max_N = 8.0F",
+                   "force_max_N = 9.0F")
+
+    def test_changed_transition(self):
+        self.stale("SAFETY", "docs/SAFETY.md", "| **idle** | idle", "| **idle** | armed")
+
+    def test_measured_on_other_sources(self):
+        subprocess.run(["git", "add", "core"], cwd=self.folder, check=True)
+        self.refuses("campaign was measured on other sources", "generate", "--check", "--root", self.folder, "SAFETY")
 
 
 class Style(Planted):

@@ -1,4 +1,4 @@
-// Makes the pictures of the page for the documentation; called by scripts/make-pictures.
+// Makes the pictures of the page for the documentation; called by scripts/pages/pictures.py.
 // usage: TACTREE=... CHROMIUM=... node pictures.mjs BLOB FOLDER
 import { join } from 'node:path';
 import { launch, number, openPage, startServer, state } from './setup.mjs';

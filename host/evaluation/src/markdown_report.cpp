@@ -270,10 +270,10 @@ void add_targets(Page& page, const Result& result) {
 std::string to_markdown(const Result& result, const std::string& pictures) {
   Page page;
   page.add(
-      "# Evaluation results\n\nWritten by `scripts/make-results`{}; all values come from `tactree "
-      "evaluate`, seed {}, and are reproducible.\n*Surface* is the default mode, *paper* the "
-      "unmodified method of El-Far, Georganas and El Saddik.\n\n",
-      result.options.quick ? " with --quick" : "", result.options.seed);
+      "# Evaluation results\n\nAll values come from `tactree evaluate`{}, seed {}, and are "
+      "reproducible.\n*Surface* is the default mode, *paper* the unmodified method of El-Far, "
+      "Georganas and El Saddik.\n\n",
+      result.options.quick ? " --quick" : "", result.options.seed);
   add_detection(page, result);
   add_distances(page, result);
   add_geometry(page, result, pictures);

@@ -1,7 +1,7 @@
 #pragma once
 // Messages of the wire protocol: kinds, status codes and the payload of each message, with the same
 // layout in memory as on the wire (little-endian, no padding). docs/PROTOCOL.md specifies their
-// use; scripts/check-protocol-doc compares it with this header.
+// use; scripts/generate writes its tables from this header.
 //
 // A request has a kind of 0x01 .. 0x3F. Its reply has the same kind with kReplyBit, the request's
 // sequence number and a WireStatus; the payload is empty unless the status is kOk. An unsolicited

@@ -1,13 +1,6 @@
-#!/usr/bin/env python3
-"""Injects faults into all parts of a simulated device and writes docs/SAFETY.md with the results.
-
-usage: make-safety [--tool TACTREE] [--times N] [--json FILE] [--check]
-  --tool    the command line (default: build/host-gcc/tools/cli/tactree)
-  --times   injections of each fault in each situation (default: 12)
-  --json    writes the campaign's rows there and leaves docs/SAFETY.md as it is
-  --check   compares the parts of docs/SAFETY.md that come from the sources; measures nothing
+"""Tables of docs/SAFETY.md: states and limits from the headers of core, the failures of other projects with the tests
+that exclude them, and a campaign that injects faults into all parts of a simulated device.
 """
-import argparse
 import concurrent.futures
 import json
 import math
@@ -15,12 +8,10 @@ import os
 import pathlib
 import re
 import subprocess
-import sys
 import tempfile
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
-PAGE = ROOT / "docs" / "SAFETY.md"
 SECONDS = 3.0
+TIMES = 12  # injections of each fault in each situation
 
 # Injection, and the fault that must be reported; None: no fault is required, only the limit of the force.
 FAULTS = [
@@ -115,7 +106,7 @@ class Campaign:
              "--inject", f"{what}@{moment:.3f}s", "--json", report, *SITUATIONS[situation]],
             check=False, capture_output=True, text=True)
         if done.returncode not in (0, 1) or not report.exists():
-            raise SystemExit(f"make-safety: {what} while {situation}: {done.stderr.strip()}")
+            raise SystemExit(f"generate: {what} while {situation}: {done.stderr.strip()}")
         result = json.loads(report.read_text())
         report.unlink()
         faults = [f["name"] for f in result["faults"]]
@@ -142,6 +133,11 @@ class Campaign:
         return rows
 
 
+def campaign(build):
+    with tempfile.TemporaryDirectory() as folder:
+        return campaign_table(Campaign(build / "tools/cli/tactree", folder, TIMES).rows())
+
+
 def campaign_table(rows):
     lines = ["| broken | while | detected as | of | after at most, ms | largest force, N | "
              "moved, mm |", "|---|---|---|---|---|---|---|"]
@@ -153,15 +149,15 @@ def campaign_table(rows):
     return "\n".join(lines)
 
 
-def state_table():
+def states(root):
     """The transition table of core/, as a table of Markdown."""
-    source = (ROOT / "core/include/tactree/core/control/state_machine.hpp").read_text()
+    source = (root / "core/include/tactree/core/control/state_machine.hpp").read_text()
     states = re.findall(r"^  k(\w+)(?: = 0)?,  +///<", source.split("enum class Event")[0], re.M)
     events = re.findall(r"^  k(\w+)(?: = 0)?,", source.split("enum class Event")[1], re.M)
     letters = dict(re.findall(r"constexpr State k(\w) = State::k(\w+);", source))
     rows = re.findall(r"^    \{((?:k\w, )+k\w)\}", source, re.M)
     if len(states) != 6 or len(events) != 10 or len(rows) != 6:
-        raise SystemExit("make-safety: state_machine.hpp has an unknown layout (adapt state_table)")
+        raise SystemExit("generate: state_machine.hpp has an unknown layout (adapt states())")
     words = lambda name: re.sub(r"(?<!^)(?=[A-Z])", "-", name).lower()
     lines = ["| state | " + " | ".join(words(e) for e in events) + " |",
              "|---" * (len(events) + 1) + "|"]
@@ -171,8 +167,8 @@ def state_table():
     return "\n".join(lines)
 
 
-def limits_table():
-    source = (ROOT / "core/include/tactree/core/configuration/configuration.hpp").read_text()
+def limits(root):
+    source = (root / "core/include/tactree/core/configuration/configuration.hpp").read_text()
     body = source.split("// Limits.")[1].split("\n};")[0]
     lines = ["| parameter | default | meaning and range |", "|---|---|---|"]
     for name, default, text in re.findall(
@@ -182,134 +178,15 @@ def limits_table():
     return "\n".join(lines)
 
 
-def field_table():
+def field(root):
     """The table of FIELD; every test must exist."""
     tests = set()
-    for source in (ROOT / "tests").rglob("*.cpp"):
+    for source in (root / "tests").rglob("*.cpp"):
         tests |= {f"{a}.{b}" for a, b in
                   re.findall(r"^TEST(?:_[FP])?\((\w+), (\w+)\)", source.read_text(), re.M)}
     lines = ["| failure | project | test |", "|---|---|---|"]
     for what, where, test in FIELD:
         if test not in tests:
-            raise SystemExit(f"make-safety: there is no test {test}")
+            raise SystemExit(f"generate: there is no test {test}")
         lines.append(f"| {what} | {where} | `{test}` |")
     return "\n".join(lines)
-
-
-TEXT = """# Safety
-Written by `scripts/make-safety`: the tables come from the sources and from a campaign in simulation.
-
-**Limits of this document.** Tactree provides a *protective stop* in software. It does not replace an emergency stop that
-removes energy, which is hardware and the integrator's responsibility (IEC 60204-1, ISO 13850). No conformity with any
-standard is claimed, and no value here was measured on a motor.
-
-## States
-Force is applied in the state *active* only. The table lists the transitions; any other event is a fault. A fault
-latches: it is left by *clear* after its cause has been removed, then *stop*. The emergency stop has priority in every
-state.
-
-<!-- states -->
-{states}
-<!-- /states -->
-
-Force after power-up requires a configuration and a model, *arm*, the read-back of the enable line, a probe in free space,
-and a fresh press of the dead-man control. The first force is exactly 0 and ramps up.
-
-## Limits
-All limits are configuration data, with safe defaults for a device of the PHANTOM Premium class. Each is checked when it
-is set: NaN, infinity, zero, negative values and values out of range are refused by name; no value disables a limit.
-
-<!-- limits -->
-{limits}
-<!-- /limits -->
-
-A limit is reported while it acts; a fault latches. Each has [a page](faults/README.md). The last 512 ticks and the time
-of the first fault are recorded: `core/include/tactree/core/control/flight_recorder.hpp`.
-
-## Fault injection
-`tactree simulate --inject` injects a fault into a part of the simulated device. Each fault was injected {times} times,
-distributed over a stroke of the hand, in free space, in contact and at full force. *Moved*: largest deviation of the tip
-from its path in the same session without the fault; it includes a pressing hand that sinks in when the force ends.
-
-{campaign}
-
-Undetected faults stay within the limits of force and slew rate. A motor that is dead, stuck, reversed or weak cannot be
-distinguished from a pushing hand: without a second sensor the controller knows its command, not the motor's output.
-
-A model is checked when it is loaded. A bit that flips later changes the surface: the limits hold, and no access leaves
-the model, whichever bits flip (`AnyInput.AModelWhoseMemoryFailsKeepsThePromises`).
-An octree that refers to nodes, leaves or points that do not exist causes the fault
-[model-incomplete](faults/model-incomplete.md) (`AnyInput.AnIndexOutsideTheModelIsAFault`).
-
-## Self-test
-Runs at every start, before a model is loaded. A board that fails keeps its loop running and the motors off, and reports
-the cause.
-
-| tested | reported | tests with injected defects |
-|---|---|---|
-| every byte of the program (CRC-32, sealed after linking) | image: damaged | `BlobOnBoard.IsNotReadByADamagedProgram` |
-| the RAM of all variables (March C-), before its first use | image: bad memory | `RamTest`, `BlobOnBoard.IsNotReadIfTheRamTestFails` |
-| every byte and every structure of the model | the blob's status | `BlobOnBoard`, `Corruption` |
-| duration of the longest tick with the model | model: too slow | `Proof.BoardWithCostsRefusesARateThatIsTooHigh` |
-| crystal, PLL and supply of the STM32F405 are ready | clocks, and a slower core | `Clocks`, `on_target.stm32f405` |
-| frequency of its crystal against the internal oscillator, to 11 % | clocks, and a slower core | `Clocks.DetectsACrystalOfAnotherFrequency` |
-| encoders, continuously: valid, no jump, no standstill against the other encoders and the motors | a fault | `EncoderWatch`, `Faults` |
-
-The memory of the stack is in use and not tested. The stack is at the low end of the RAM, below all variables: an
-overflow raises a fault, which is recorded (`on_target.overflow_test`). A later change of the crystal's
-frequency is not detected, a stop is; the independent watchdog with its own oscillator resets a late loop.
-
-## Failures of other projects
-<!-- field -->
-{field}
-<!-- /field -->
-
-## Tests of the tests
-- `./test --release coverage` fails unless unit tests reach every line of the safety gate, the thermal model and the encoder
-  monitoring, and every branch of the blob's validation.
-- `./test --release mutate` changes one condition, comparison, constant or statement at a time in the same files and in the
-  force-related code of the controller, and lists the changes that no test detects. `scripts/mutate --only safety_gate`
-  is limited to one file.
-- `on_target.skip` skips each instruction of the gate and of the code from the renderer to the motors, one at a time, for
-  some ticks of stopped sessions on an emulated board: never armed, stopped while pressing, emergency stop while pressing.
-  It fails if a command reaches powered motors. There are two barriers: the enable line is off, and the loop checks a
-  second copy of the state before it outputs a command.
-- `./fuzz 600` feeds random bytes to each parser for ten minutes ([targets](../tests/fuzz/README.md)).
-"""
-
-
-def replace_section(text, name, table):
-    return re.sub(rf"(<!-- {name} -->\n).*?(\n<!-- /{name} -->)",
-                  lambda m: m[1] + table + m[2], text, flags=re.S)
-
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
-    parser.add_argument("--tool", default=ROOT / "build/host-gcc/tools/cli/tactree")
-    parser.add_argument("--times", type=int, default=12)
-    parser.add_argument("--json")
-    parser.add_argument("--check", action="store_true")
-    options = parser.parse_args()
-    if options.check:
-        page = PAGE.read_text()
-        fresh = page
-        for name, table in (("states", state_table), ("limits", limits_table),
-                            ("field", field_table)):
-            fresh = replace_section(fresh, name, table())
-        if fresh != page:
-            raise SystemExit("make-safety: docs/SAFETY.md is older than the sources "
-                             "(run scripts/make-safety)")
-        print("make-safety: docs/SAFETY.md is up to date")
-        return
-    with tempfile.TemporaryDirectory() as folder:
-        rows = Campaign(pathlib.Path(options.tool).resolve(), folder, options.times).rows()
-    if options.json:
-        pathlib.Path(options.json).write_text(json.dumps(rows, indent=1) + "\n")
-        return
-    PAGE.write_text(TEXT.format(states=state_table(), limits=limits_table(), field=field_table(), times=options.times,
-                                campaign=campaign_table(rows)))
-    print(f"docs/SAFETY.md: {len(rows)} rows")
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -1,19 +1,13 @@
-#!/usr/bin/env python3
-"""Draws the diagrams of the documentation from their sources.
-
-usage: draw-diagrams FOLDER
-
-  architecture.svg  layers and dependencies: the table of scripts/check-layers
-  tick.svg          data flow of one tick: the table "One tick" of docs/DESIGN.md
+"""Diagrams of the documentation, from their sources: the layers by the table of scripts/check-layers, the data flow of
+a tick by the table "One tick" of docs/DESIGN.md.
 """
 import html
 import importlib.machinery
 import importlib.util
 import pathlib
-import sys
 import textwrap
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 INK, SOFT, EDGE, CARD, ACCENT = "#1c2530", "#5d6978", "#c3cbd4", "#ffffff", "#0b6e69"
 ABOUT = {
     "core": "the control algorithm, freestanding", "hal": "contracts of a board, control loop",
@@ -124,19 +118,3 @@ def tick():
         body.append(text(left + 150, y + 28, end, 15, weight="bold"))
         body.append(text(left + 330, y - 10, names, 13, SOFT, "start"))
     return page(width, 24 + len(steps) * step + 68, "One tick: from encoder counts to a motor command", body)
-
-
-def main():
-    if len(sys.argv) != 2 or sys.argv[1].startswith("-"):
-        print(__doc__)
-        return 2
-    folder = pathlib.Path(sys.argv[1])
-    folder.mkdir(parents=True, exist_ok=True)
-    for name, draw in (("architecture.svg", architecture), ("tick.svg", tick)):
-        (folder / name).write_text(draw())
-        print(folder / name)
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

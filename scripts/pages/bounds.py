@@ -1,20 +1,13 @@
-#!/usr/bin/env python3
-"""Writes the tables of docs/BOUND.md: the bound of a tick on each board, the highest rate, and the
-share of the bound that a search reaches. The images of the boards must be built.
-
-usage: make-bounds [--build FOLDER]
-  --build   of the host's programs (default: build/host-gcc)
+"""Tables of docs/BOUND.md: the bound of a tick on each board with the highest rate, and the share of it that a search
+reaches.
 """
-import argparse
 import json
 import pathlib
 import re
 import subprocess
-import sys
 import tempfile
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
-PAGE = ROOT / "docs" / "BOUND.md"
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 MESH = "/usr/share/glmark2/models/bunny.obj"
 BOARDS = {"netduinoplus2": "cortex-m4f", "stm32f405": "cortex-m4f", "mps2-an386": "cortex-m4f",
           "mps2-an505": "cortex-m33", "mps2-an500": "cortex-m7"}
@@ -25,7 +18,7 @@ RATES = (1000, 2000, 4000)
 def run(*command, codes=(0,)):
     done = subprocess.run([str(part) for part in command], capture_output=True, text=True, cwd=ROOT)
     if done.returncode not in codes:
-        sys.exit(f"make-bounds: {' '.join(map(str, command))}\n{done.stdout[-2000:]}{done.stderr}")
+        raise SystemExit(f"generate: {' '.join(map(str, command))}\n{done.stdout[-2000:]}{done.stderr}")
     return done.stdout
 
 
@@ -33,8 +26,20 @@ def spaced(number):
     return f"{number:,.0f}".replace(",", " ")
 
 
-def bounds(tool, folder):
+def build_images():
+    for preset in sorted(set(BOARDS.values())):
+        run("cmake", "--preset", preset)
+        run("cmake", "--build", "--preset", preset)
+
+
+def bounds(build):
     """The table of the boards."""
+    build_images()
+    with tempfile.TemporaryDirectory() as folder:
+        return bounds_in(build / "tools/cli/tactree", pathlib.Path(folder))
+
+
+def bounds_in(tool, folder):
     blob, report = folder / "bunny.blob", folder / "bound.json"
     run(tool, "build", MESH, "--fit", "0.10", "--spacing", "0.0005", "-o", blob)
     rows = []
@@ -48,11 +53,12 @@ def bounds(tool, folder):
             cells.append(f"{spaced(bound['instructions'])} / {spaced(bound['cycles'])}")
         estimate = " (estimate)" if bound["cycles_are_an_estimate"] else ""
         rows.append(f"| {board} ({CORES[toolchain]}) | {' | '.join(cells)} | {bound['rate_max_hz']:.0f} Hz{estimate} |")
-    return ["| board | 1 kHz | 2 kHz | 4 kHz | highest rate |", "|---|---|---|---|---|", *rows]
+    return "\n".join(["| board | 1 kHz | 2 kHz | 4 kHz | highest rate |", "|---|---|---|---|---|", *rows])
 
 
 def shares(build):
     """The table of what a search finds."""
+    build_images()
     output = run(build / "tests/bound/board_bound_test", "--gtest_filter=*SearchFinds*")
     line = r"^(\S+), (\d+) Hz: worst tick found (\d+) instructions, bound (\d+)"
     worst = {}  # of several models
@@ -62,26 +68,5 @@ def shares(build):
     rows = [f"| {board} | {khz} kHz | {spaced(found)} | {spaced(bound)} | {100 * found / bound:.0f} % |"
             for (board, khz, bound), found in worst.items()]
     if not rows:
-        sys.exit("make-bounds: the search printed nothing (build the images of the boards)")
-    return ["| board | rate | worst tick found | bound | share |", "|---|---|---|---|---|", *rows]
-
-
-def put(text, name, lines):
-    begin, end = f"<!-- {name} -->", f"<!-- end of {name} -->"
-    before, rest = text.split(begin)
-    return before + begin + "\n" + "\n".join(lines) + "\n" + end + rest.split(end)[1]
-
-
-def main():
-    arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    arguments.add_argument("--build", type=pathlib.Path, default=ROOT / "build/host-gcc")
-    build = arguments.parse_args().build.resolve()
-    text = PAGE.read_text()
-    with tempfile.TemporaryDirectory() as folder:
-        text = put(text, "bounds", bounds(build / "tools/cli/tactree", pathlib.Path(folder)))
-    text = put(text, "shares", shares(build))
-    PAGE.write_text(text)
-
-
-if __name__ == "__main__":
-    main()
+        raise SystemExit("generate: the search printed nothing")
+    return "\n".join(["| board | rate | worst tick found | bound | share |", "|---|---|---|---|---|", *rows])
