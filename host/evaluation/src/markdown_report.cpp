@@ -65,13 +65,13 @@ void add_detection(Page& page, const Result& result) {
              detection(row.hovering[kSurface]));
   }
   page.add(
-      "\n**Not reproduced.** Row 0.0025, static, is reproduced: nearly all of its misses are "
-      "diagonal leaves, out of reach of the\nsix points. Rows 0.01 and 0.005 do not follow from "
-      "the same path: with boxes of 2.5 mm, most of a surface sampled at\n5 or 10 mm is in no box. "
-      "A path with 23.5 % of its probes on the surface reproduces row 0.01, but not row 0.0025. "
-      "The\nfalse positives of rows 0.01 and 0.005 do not occur with boxes of 2.5 mm. A rigid pose "
-      "of the model changes results by\nrounding only; the paper's 98.18 % for the dynamic model "
-      "does not match (3 + 179) of 6 820 either, which is 97.33 %.\n\n");
+      "\n**No row is reproduced exactly.** Row 0.0025, static, comes closest; nearly all of its "
+      "misses are diagonal leaves, out of reach\nof the six points. Rows 0.01 and 0.005 do not "
+      "follow from the same path: with boxes of 2.5 mm, most of a surface sampled at\n5 or 10 mm "
+      "is in no box. A path with 23.5 % of its probes on the surface comes close to row 0.01, but "
+      "not to row 0.0025. The\nfalse positives of rows 0.01 and 0.005 do not occur with boxes of "
+      "2.5 mm. A rigid pose of the model changes results by\nrounding only; the paper's 98.18 % "
+      "for the dynamic model does not match (3 + 179) of 6 820 either, which is 97.33 %.\n\n");
 }
 
 void add_distances(Page& page, const Result& result) {
