@@ -142,7 +142,8 @@ def campaign_table(rows):
     lines = ["| broken | while | detected as | of | after at most, ms | largest force, N | "
              "moved, mm |", "|---|---|---|---|---|---|---|"]
     for r in rows:
-        names = ", ".join(f"[{n}](faults/{n}.md)" for n in r["faults"]) or "-"
+        missed = "no fault: the force ends" if r["what"].startswith("deadman") else "not detected"
+        names = ", ".join(f"[{n}](faults/{n}.md)" for n in r["faults"]) or missed
         after = "-" if r["detected_s"] is None else f"{1e3 * r['detected_s']:.0f}"
         lines.append(f"| `{r['what']}` | {r['situation']} | {names} | {r['detected']} / {r['times']} "
                      f"| {after} | {r['force_max_N']:.2f} | {1e3 * r['moved_m']:.1f} |")
