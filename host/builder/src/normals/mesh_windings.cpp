@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "normals/piece_evidence.hpp"
+#include "sampling/mesh_sampling.hpp"
 #include "cleaning/pieces.hpp"
 
 namespace tactree::builder {
