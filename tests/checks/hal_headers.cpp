@@ -9,7 +9,7 @@
 #include "tactree/hal/sim/flash.hpp"
 #include "tactree/hal/sim/motor_bank.hpp"
 #include "tactree/hal/start_result.hpp"
-#include "tactree/session/admission.hpp"
+#include "tactree/session/request_filter.hpp"
 #include "tactree/session/board_report.hpp"
 #include "tactree/session/contact_requests.hpp"
 #include "tactree/session/control_requests.hpp"

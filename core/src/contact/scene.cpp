@@ -410,12 +410,12 @@ void Scene::end_contact_of_a_jump(Slot& slot, const Configuration& configuration
   for (Slot& slot : slots_) {  // bound: kMaxReachableBodies
     if (slot.body != kNoBody) {
       // at most: min(bodies, kMaxReachableBodies) per Scene::render_paper
-      render_paper(slot, configuration, probe);
+      render_paper_body(slot, configuration, probe);
     }
   }
 }
 
-[[gnu::noinline]] void Scene::render_paper(Slot& slot, const Configuration& configuration,
+[[gnu::noinline]] void Scene::render_paper_body(Slot& slot, const Configuration& configuration,
                                            Vec3 probe) {
   end_contact_of_a_jump(slot, configuration);
   SceneRendering& all = rendering_;

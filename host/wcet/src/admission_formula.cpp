@@ -87,7 +87,8 @@ core::TickCosts tick_costs(const BoundOptions& options) {
   core::TickCosts costs;
   costs.known = core::kTickCostsKnown;
   const double base = std::floor(formulas.base());
-  costs.base = static_cast<std::uint32_t>(base);
+  // One cycle more: the solver rounds, and a bound is rounded up.
+  costs.base = static_cast<std::uint32_t>(base) + 1U;
   struct Row {
     core::TickCost& cost;
     CostFormula formula;

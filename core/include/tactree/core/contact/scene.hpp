@@ -151,7 +151,7 @@ class Scene {
   void render(Slot& slot, const Configuration& configuration, Vec3 probe, Vec3 velocity);
   void react(const Slot& slot, Vec3 proxy, Vec3 force);
   void render_paper(const Configuration& configuration, Vec3 probe);
-  void render_paper(Slot& slot, const Configuration& configuration, Vec3 probe);
+  void render_paper_body(Slot& slot, const Configuration& configuration, Vec3 probe);
   void move_on(float period_s);
   void list_bodies();
 
