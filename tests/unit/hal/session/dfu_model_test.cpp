@@ -40,7 +40,7 @@ Bytes bytes_of_sphere(double spacing_m) {
 class DfuRig {
  public:
   explicit DfuRig(SimFlash& flash, std::span<const std::byte> factory = {},
-               const std::uint8_t* key = nullptr)
+                  const std::uint8_t* key = nullptr)
       : store_(flash, {"test", key, factory}) {
     (void)store_.mount();
     EXPECT_EQ(controller_.configure({}), core::ConfigurationStatus::kOk);
@@ -117,7 +117,7 @@ class DfuRig {
 
 SimFlash make_flash() { return SimFlash({1024, 2 + 2 * 16, 32}); }
 
-TEST(DfuModel, WritesUsesAndReadsBackAModel) {
+TEST(DfuModel, WritesAndReadsBackModel) {
   SimFlash flash = make_flash();
   DfuRig rig(flash);
   EXPECT_EQ(rig.upload(), Bytes());
@@ -132,7 +132,7 @@ TEST(DfuModel, WritesUsesAndReadsBackAModel) {
   EXPECT_EQ(flash.mistakes(), 0U);
 }
 
-TEST(DfuModel, ReadsTheModelOfTheImageUntilAnotherIsStored) {
+TEST(DfuModel, ReadsImageModelUntilUpdate) {
   SimFlash flash = make_flash();
   const Bytes factory = bytes_of_sphere(0.006);
   DfuRig rig(flash, factory);
@@ -141,7 +141,7 @@ TEST(DfuModel, ReadsTheModelOfTheImageUntilAnotherIsStored) {
   EXPECT_EQ(rig.upload(), bytes_of_sphere(0.005));
 }
 
-TEST(DfuModel, RefusesInvalidModelsAndKeepsTheOldOne) {
+TEST(DfuModel, RefusesInvalidModelsWithoutEffect) {
   SimFlash flash = make_flash();
   DfuRig rig(flash);
   const Bytes old = bytes_of_sphere(0.006);
@@ -165,7 +165,7 @@ TEST(DfuModel, RefusesInvalidModelsAndKeepsTheOldOne) {
   EXPECT_EQ(rig.download(model), DfuStatus::kOk) << "a refusal does not last";
 }
 
-TEST(DfuModel, RefusesWritesUnderForceOrWithoutARequiredSignature) {
+TEST(DfuModel, RefusesWritesWithoutRequiredSignature) {
   SimFlash flash = make_flash();
   const std::array<std::uint8_t, 32> key{1};
   DfuRig rig(flash, {}, key.data());
@@ -174,7 +174,7 @@ TEST(DfuModel, RefusesWritesUnderForceOrWithoutARequiredSignature) {
   EXPECT_EQ(flash.operations(), before);
 }
 
-TEST(DfuModel, DoesNotDisturbAnotherWriter) {
+TEST(DfuModel, LeavesOtherWriterUndisturbed) {
   SimFlash flash = make_flash();
   DfuRig rig(flash);
   core::wire::BeginModelRequest request;
@@ -190,7 +190,7 @@ TEST(DfuModel, DoesNotDisturbAnotherWriter) {
 }
 
 /// Whatever was done of it: after the next start there is the old model or the new one.
-TEST(DfuModel, SurvivesAPowerCutAtEveryOperation) {
+TEST(DfuModel, SurvivesEveryPowerCut) {
   const Bytes old = bytes_of_sphere(0.006);
   const Bytes fresh = bytes_of_sphere(0.005);
   std::uint64_t operations = 0;
