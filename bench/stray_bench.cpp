@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "cleaning/cleaning.hpp"
+#include "geometry/spacing.hpp"
 #include "known_bodies.hpp"
 #include "orientation_score.hpp"
-#include "geometry/spacing.hpp"
 
 namespace {
 

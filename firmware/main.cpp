@@ -1,6 +1,6 @@
-// The program of every board: reads the configuration, opens the model and runs the control loop
-// from the tick interrupt. If configuration or model is refused, the loop runs with motors off and
-// reports the cause.
+// The main program of all boards: reads the configuration, opens the model and runs the control
+// loop from the tick interrupt. If the configuration or the model is refused, the loop runs with
+// the motors off and reports the cause.
 
 #include "board.hpp"
 #include "platform.hpp"
@@ -15,7 +15,7 @@ Board board;
 tactree::core::Controller controller;
 tactree::hal::Loop<Board> loop(board, controller);
 
-// If the self-test of program or RAM fails, no model is opened, so there is no force.
+// If the self-test of the program or of RAM fails, no model is opened, so the motors stay off.
 tactree::hal::StartResult start(const tactree::core::Configuration& configuration) {
   const tactree::hal::ImageStatus image = tactree::firmware::test_image();
   if (image == tactree::hal::ImageStatus::kOk) {
@@ -27,7 +27,7 @@ tactree::hal::StartResult start(const tactree::core::Configuration& configuratio
   return refused;
 }
 
-// A board with a port for applications serves it between the ticks and does not return.
+// A board with a port for applications serves them between the ticks and does not return.
 template <class B>
 void serve(B& on, const tactree::hal::StartResult& started,
            const tactree::core::Configuration& configuration) {

@@ -1,6 +1,6 @@
 #pragma once
 // Interfaces between main.cpp, the start-up code, the processor core and the board. Each function
-// is defined once in an image; a missing one is a linker error.
+// must be defined once in an image; a missing definition is a linker error.
 
 #include <cstdint>
 
@@ -11,27 +11,28 @@ namespace tactree::firmware {
 
 // ---- provided by the core: cortex_m/, rv32/
 
-/// Starts the timer whose interrupt calls tactree_tick(). 100 <= rate_hz <= 20000.
+/// Starts the timer whose interrupt calls tactree_tick(). Precondition: 100 <= rate_hz <= 20000.
 void start_ticks(float rate_hz);
-/// Deadlines since start_ticks(); wraps. Safe in the tick and outside it.
+/// Number of deadlines since start_ticks(), modulo 2^32. Safe in the tick and outside it.
 [[nodiscard]] std::uint32_t deadlines();
-/// Microseconds since start_ticks(), wrapping at 2^32.
+/// Microseconds since start_ticks(), modulo 2^32.
 [[nodiscard]] std::uint32_t now_us();
-/// While held no tick begins; a tick that became due begins at the release. Hold briefly.
+/// While ticks are held, none begins; a tick that became due begins when they are released. Hold
+/// ticks only briefly.
 void hold_ticks(bool hold);
-/// Sleeps until an interrupt.
+/// Sleeps until the next interrupt.
 void wait_for_interrupt();
 /// Resets the processor. RAM that start-up does not initialise keeps its content.
 [[noreturn]] void reset();
 
 // ---- provided by runtime/
 
-/// Stores the record and resets. For the fault handlers of a core.
+/// Stores the record and resets. Called by the fault handlers of the cores.
 [[noreturn]] void capture(const hal::CapturedFault& fault);
-/// The processor fault that ended the last run; a second call returns none.
+/// Returns the processor fault that ended the last run. A second call returns an empty record.
 [[nodiscard]] hal::CapturedFault take_captured_fault();
 
-/// Upper bounds of the cost of a tick of this image.
+/// Upper bounds of the cost of a tick in this image.
 [[nodiscard]] const core::TickCosts& tick_costs();
 
 // ---- provided by boards/<name>/board.cpp

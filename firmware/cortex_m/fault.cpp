@@ -1,4 +1,5 @@
-// Fault handler: records registers and cause, then resets. Motors are off after a reset.
+// Fault handler. Records the registers and the cause, then resets; the motors are off after a
+// reset.
 // Loop and memory annotations: docs/BOUND.md.
 
 #include "cortex_m/registers.hpp"
@@ -34,7 +35,7 @@ std::uint32_t faulting_address(std::uint32_t status) {
 
 extern "C" {
 
-// `frame` is null if the stack was full: the core could not push its registers.
+// `frame` is null if the stack was full, because the core could not push its registers then.
 [[noreturn, gnu::used]] void tactree_capture_fault(const std::uint32_t* r4_to_r11,
                                                    const tactree::firmware::ExceptionFrame* frame,
                                                    std::uint32_t sp) {
@@ -57,8 +58,9 @@ extern "C" {
   tactree::firmware::capture(fault);
 }
 
-// Only the main stack is in use. Passes its pointer before compiled code changes it. If too little
-// stack is left for the record, the handler continues at the top of the stack: it never returns.
+// Entry of all faults. Passes the main stack pointer, the only one in use, before compiled code
+// changes it. If less than 256 bytes of stack are left for the record, the handler continues at the
+// top of the stack; it may overwrite the stack because it never returns.
 [[gnu::naked]] void tactree_fault() {
   __asm volatile(
       "mov r2, sp\n\t"

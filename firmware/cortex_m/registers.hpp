@@ -1,5 +1,5 @@
 #pragma once
-// Core registers common to all Cortex-M (Armv7-M and Armv8-M Architecture Reference Manuals,
+// Core registers of Cortex-M processors (Armv7-M and Armv8-M Architecture Reference Manuals,
 // "System Control Space").
 
 #include <cstdint>
@@ -47,7 +47,7 @@ inline volatile std::uint32_t& mpu_region_number() { return register_at(0xE000ED
 inline volatile std::uint32_t& mpu_region_base() { return register_at(0xE000ED9C); }
 inline volatile std::uint32_t& mpu_region_attributes() { return register_at(0xE000EDA0); }
 
-/// 128 KiB that can only be read, without the eighths whose bit is set in `without`.
+/// A read-only region of 128 KiB. Each bit set in `without` excludes one of its eight subregions.
 struct ReadOnlyRegion {
   std::uint32_t base;
   std::uint32_t without;

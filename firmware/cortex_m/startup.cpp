@@ -1,4 +1,4 @@
-// From reset to start_image(): the vector table and the FPU.
+// Start-up from reset to start_image(): vector table, FPU and fault exceptions.
 
 #include "cortex_m/registers.hpp"
 #include "platform.hpp"
@@ -21,14 +21,14 @@ extern "C" {
   tactree::firmware::start_image();
 }
 
-// A board may define another one, which ends with a call of tactree_start().
+// A board may define its own reset handler, which must end with a call of tactree_start().
 [[noreturn, gnu::weak, gnu::alias("tactree_start")]] void tactree_reset();
 
 void tactree_fault();
 void tactree_deadline();
 
 // The vector table: initial stack pointer, then one handler per exception. Unused exceptions are
-// faults.
+// handled as faults.
 struct VectorTable {
   std::uint32_t* stack_top;
   tactree::firmware::Handler handlers[15];

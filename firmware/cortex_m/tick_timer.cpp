@@ -1,5 +1,5 @@
-// SysTick, at the highest priority, counts the deadlines and requests PendSV, at the lowest, which
-// runs the tick. Deadlines are counted also while a tick runs late, so none is lost.
+// SysTick has the highest priority, counts the deadlines and requests PendSV, which has the lowest
+// priority and runs the tick. SysTick interrupts a late tick, so no deadline is lost.
 // Loop and memory annotations: docs/BOUND.md.
 
 #include "cortex_m/registers.hpp"
@@ -29,7 +29,7 @@ void start_ticks(float rate_hz) {
 
 std::uint32_t deadlines() { return counted; }
 
-// Repeats if a deadline passes between the two reads.
+// Reads again if a deadline has passed between the two reads.
 std::uint32_t now_us() {
   std::uint32_t before;
   std::uint32_t cycles;

@@ -1,7 +1,7 @@
 #pragma once
-// A board in an emulator. Encoders, motors, lines and the link of the application are simulated on
-// the host, over the plant link; timer, flash and core are emulated. An exchange takes no emulated
-// time.
+// A board in an emulator. The host simulates encoders, motors, lines and the link of the
+// application over the plant link; timer, flash and core are emulated. An exchange takes no
+// emulated time.
 
 #include "platform.hpp"
 #include "runtime/blob_area.hpp"
@@ -13,8 +13,9 @@ namespace tactree::firmware {
 
 class PlantLinkBoard {
  public:
-  /// Waits for the next deadline; inside a tick it has passed. Then sends the output of the last
-  /// tick to the plant and receives the input of this tick.
+  /// Waits for the next deadline, which has already passed if wait() is called from the tick
+  /// interrupt. Then sends the output of the last tick to the plant and receives the input of this
+  /// tick.
   class Ticker {
    public:
     explicit Ticker(PlantLinkBoard& board) : board_(board) {}
@@ -32,7 +33,8 @@ class PlantLinkBoard {
 
   /// Identifies the board to the host and waits for the configuration of the session.
   [[nodiscard]] core::Configuration connect(const hal::CapturedFault& last_fault);
-  /// True if the host requested a served application. Precondition: connect() was called.
+  /// True if the host requested a session that serves an application. Precondition: connect() was
+  /// called.
   [[nodiscard]] bool is_served() const { return served_; }
   /// Sends the result of the start to the host.
   void report(const hal::StartResult& result);
@@ -65,7 +67,7 @@ class PlantLinkBoard {
   int from_host_ = -1;
   int to_host_ = -1;
   bool served_ = false;
-  bool in_session_ = false;  // a tick has begun; the plant waits for its output
+  bool in_session_ = false;  // a tick has begun, and the plant waits for its output
   hal::plant_link::TickInput input_{};
   hal::plant_link::TickOutput output_{};
 };

@@ -1,5 +1,5 @@
 #pragma once
-// Flash of an emulated board, simulated in RAM. Keeps its content over a reset of the board; is
+// Flash of an emulated board, simulated in RAM. Its content is kept across a reset of the board and
 // erased at the start of each emulation.
 // Loop and memory annotations: docs/BOUND.md.
 
@@ -10,7 +10,7 @@
 #include "tactree/hal/flash.hpp"
 
 extern "C" {
-extern std::byte store_begin[];  // of the linker script
+extern std::byte store_begin[];  // defined by the linker script
 extern std::byte store_end[];
 }
 
@@ -29,7 +29,7 @@ class RamFlash {
     mark() = kMark;
   }
 
-  /// The last sector holds the mark.
+  /// Excludes the last sector, which holds the mark.
   [[nodiscard]] hal::FlashGeometry geometry() const noexcept {
     const auto bytes = static_cast<std::uint32_t>(store_end - store_begin);
     return {kSectorBytes, bytes / kSectorBytes - 1U, 4};

@@ -22,8 +22,8 @@ std::uint32_t address_of(const void* pointer) {
 }
 
 #if defined(__riscv)
-// The arguments are already in the registers of the call. The three instructions must not be
-// compressed or cross a page.
+// The compiler has already placed the arguments in a0 and a1, where the call expects them. The
+// three instructions must not be compressed and must not cross a page boundary.
 [[gnu::naked, gnu::noinline, gnu::aligned(16)]] std::uint32_t call(Operation /*a0*/,
                                                                    std::uint32_t /*a1*/) {
   __asm volatile(
@@ -56,7 +56,7 @@ int open(std::span<const char> zero_terminated_name, Access access) {
                                                   static_cast<std::uint32_t>(access), length}));
 }
 
-// Both calls return the number of bytes not transferred.
+// SYS_READ and SYS_WRITE return the number of bytes that were not transferred.
 bool read(int file, std::span<std::byte> bytes) {
   while (!bytes.empty()) {  // bound: 1 (pipes do not divide messages as short as ours)
     const auto wanted = static_cast<std::uint32_t>(bytes.size());

@@ -1,6 +1,6 @@
 #pragma once
 // Calls to the emulator or debugger (Arm, "Semihosting for AArch32 and AArch64"; the RISC-V
-// specification uses the same numbers). Without an emulator or debugger a call is a fault.
+// specification uses the same numbers). Without an emulator or debugger a call causes a fault.
 
 #include <cstdint>
 #include <span>
@@ -9,9 +9,9 @@ namespace tactree::firmware::semihosting {
 
 enum class Access : std::uint32_t { kRead = 1, kWrite = 5 };  // "rb", "wb"
 
-/// Opens a file of the host; -1: failed.
+/// Opens a file of the host. Returns -1 on failure.
 [[nodiscard]] int open(std::span<const char> zero_terminated_name, Access access);
-/// Reads until `bytes` is full; blocks. False: the stream has ended.
+/// Blocks until `bytes` is full. Returns false if the stream has ended.
 [[nodiscard]] bool read(int file, std::span<std::byte> bytes);
 [[nodiscard]] bool write(int file, std::span<const std::byte> bytes);
 /// Prints to the console.

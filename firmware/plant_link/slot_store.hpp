@@ -12,7 +12,7 @@ class SlotStore : public store::ModelStore<RamFlash> {
  public:
   explicit SlotStore(const char* board) : ModelStore(flash_, {board, nullptr, {}}) {}
 
-  /// Call once at start-up, before other functions. `factory`: the model of the image.
+  /// Call once at start-up, before other functions. `factory` is the model of the image.
   void prepare(const BlobArea& factory) {
     flash_.prepare();
     set_factory(factory.active());

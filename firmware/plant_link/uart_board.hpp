@@ -1,7 +1,7 @@
 #pragma once
-// A PlantLinkBoard that can serve an application on a serial port. The link of the control loop is
-// then the mailbox of a session, and the model is read from a store. The host selects this in its
-// Session message.
+// A PlantLinkBoard that can serve an application on a serial port. In that case the link of the
+// control loop is the mailbox of a session, and the model is read from a store. The host selects
+// this in its SessionSetup message.
 // Loop and memory annotations: docs/BOUND.md.
 
 #include "plant_link/plant_link_board.hpp"
@@ -68,7 +68,7 @@ class UartBoard : public PlantLinkBoard {
  private:
   static constexpr std::uint32_t kBaud = 115200;
   /// Number of polls without data before the core sleeps until the next tick. The emulator skips
-  /// the time while a core sleeps, so no data can arrive then.
+  /// the time during which the core sleeps, so no data can arrive then.
   static constexpr std::uint32_t kPatience = 2000;
 
   Uart uart_;

@@ -8,7 +8,7 @@ namespace tactree::firmware {
 
 class BlobArea {
  public:
-  /// The size is from the blob's header, limited to the area; open_blob() checks it.
+  /// The blob. Its size is read from its header and limited to the area; open_blob() checks it.
   [[nodiscard]] std::span<const std::byte> active() const noexcept;
 };
 

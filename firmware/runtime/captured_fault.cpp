@@ -15,7 +15,7 @@ struct Kept {
   std::uint32_t checksum;
 };
 
-// A plain array: an object would be initialised.
+// A plain array, because start-up would run the constructor of an object.
 [[gnu::section(".noinit")]] alignas(Kept) std::byte kept_bytes[sizeof(Kept)];
 
 Kept& kept() { return *reinterpret_cast<Kept*>(kept_bytes); }

@@ -1,5 +1,5 @@
 #pragma once
-// The wait() of a board's ticker, on the tick timer.
+// Implements wait() of a board's ticker with the tick timer.
 // Loop and memory annotations: docs/BOUND.md.
 
 #include <cstdint>
@@ -10,8 +10,8 @@ namespace tactree::firmware {
 
 class DeadlineWait {
  public:
-  /// Blocks until the next deadline; inside a tick it has passed. Returns the number of further
-  /// deadlines that have passed.
+  /// Blocks until the next deadline, which has already passed if wait() is called from the tick
+  /// interrupt. Returns the number of deadlines missed since the last call.
   [[nodiscard]] std::uint32_t wait() {
     while (deadlines() == seen_) {  // bound: 0 (a deadline has begun this tick)
       wait_for_interrupt();

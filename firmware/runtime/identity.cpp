@@ -24,7 +24,7 @@ hal::ImageStatus test_image() {
   const auto* const end = reinterpret_cast<const std::byte*>(&kIdentity) + sizeof kIdentity - 4;
   core::Crc32 checksum;
   checksum.update({image_vectors_begin, image_vectors_end});
-  checksum.update({image_text_begin, end});  // where it runs: includes a copy in RAM
+  checksum.update({image_text_begin, end});  // the executed code, which may be a copy in RAM
   checksum.update({reinterpret_cast<const std::byte*>(image_data_source),
                    static_cast<std::size_t>(image_data_end - image_data_begin) * 4U});
   checksum.update({image_slow_begin, image_slow_end});

@@ -1,6 +1,6 @@
 #pragma once
-// The board of an image, and the address ranges of code and blob, stored in the image itself:
-// `tactree image` refuses a blob or board that does not fit. tools/cli reads it.
+// The board of an image and the address ranges of code and blob, stored in the image itself.
+// `tactree image` (tools/cli) reads them and refuses a blob or a board that does not fit.
 
 #include <cstddef>
 #include <cstdint>
@@ -16,15 +16,16 @@ struct Identity {
   const std::byte* code_end;
   const std::byte* blob_begin;
   const std::byte* blob_end;
-  const std::byte* uf2_family;  ///< number of the chip in UF2 files, not an address; 0: none
-  std::uint32_t checksum;       ///< of the image, filled in by scripts/seal-image: test_image()
+  const std::byte* uf2_family;  ///< UF2 family ID, not an address; 0: none
+  std::uint32_t checksum;  ///< of the image; written by scripts/seal-image, checked by test_image()
 };
 
-/// The last bytes of the code.
+/// Placed at the end of the code.
 [[gnu::section(".identity")]] extern const Identity kIdentity;
 
-/// Checks the result of the RAM test and the checksum of the program: vectors and code up to the
-/// checksum, then initial values of variables. Cost: about 10 instructions per byte.
+/// Checks the result of the RAM test and the checksum of the program: vectors, code up to the
+/// checksum, initial values of variables, and code that runs from flash only. Cost: about 10
+/// instructions per byte.
 [[nodiscard]] hal::ImageStatus test_image();
 
 }  // namespace tactree::firmware

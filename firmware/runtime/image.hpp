@@ -33,12 +33,12 @@ extern const std::byte uf2_family[];
 
 namespace tactree::firmware {
 
-/// Result of the RAM test of all variables before their initialisation. The stack is in use during
-/// the test and not tested.
+/// Result of the RAM test of all variables, which runs before they are initialised. The stack is in
+/// use during the test and is not tested.
 [[nodiscard]] bool variables_hold();
 
 /// Tests the memory of the variables, copies .data, clears .bss, runs the constructors and main().
-/// Preconditions: the FPU is on; no static object was used.
+/// Preconditions: the FPU is enabled, and no static object has been used.
 [[noreturn]] void start_image();
 
 }  // namespace tactree::firmware

@@ -1,5 +1,5 @@
-// The four functions that a compiler may call implicitly. Compiler flags prevent the conversion of
-// these loops into calls of themselves.
+// The four functions that a compiler may call implicitly. Compiler flags prevent it from replacing
+// these loops by calls of the functions themselves.
 // Loop and memory annotations: docs/BOUND.md.
 
 #include <cstddef>
@@ -63,8 +63,8 @@ void* memset(void* to, int value, std::size_t bytes) {
   auto* target = static_cast<unsigned char*>(to);
   const auto byte = static_cast<unsigned char>(value);
   const std::uint32_t word = byte * 0x01010101U;
-  // The compiler may clear the tail of a structure from an unaligned address. Where it does, the
-  // bytes before the first word and those behind the last one are a word, or less.
+  // The compiler may clear the tail of a structure from an unaligned address. The bytes before the
+  // first word and after the last word then add up to bytes % 4 or bytes % 4 + 4.
   // total: bytes % 4 + 4 per memset together bytes
   for (; bytes > 0 && !aligned(target, nullptr); --bytes) {  // bound: min(bytes, 3)
     *target++ = byte;

@@ -8,9 +8,9 @@
 namespace tactree::firmware {
 
 /// March C- with one word and its complement (van de Goor, "Using march tests to test SRAMs", IEEE
-/// Design & Test 1993): detects each bit that is stuck or does not change, each word that changes
-/// another, and words that share an address. Overwrites the range.
-/// Cost: eleven accesses per word. Word: std::uint32_t; in tests a simulated word with faults.
+/// Design & Test 1993). Detects stuck-at and transition faults of each bit, coupling faults between
+/// words, and address decoder faults. Overwrites the range. Cost: eleven accesses per word. `Word`
+/// is std::uint32_t, or in tests a simulated word with faults.
 template <class Word>
 [[nodiscard]] bool holds_all_bits(Word* begin, Word* end) {
   std::uint32_t held = 0x55555555U;

@@ -1,5 +1,6 @@
 // The costs of a tick of this image. `tactree bound --embed` writes them here after linking. No
-// code in this file reads them: the compiler would replace them by the zeros of the initialiser.
+// code in this file reads their values, because the compiler would replace them by the zeros of the
+// initialiser.
 
 #include "platform.hpp"
 

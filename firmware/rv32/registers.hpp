@@ -1,6 +1,6 @@
 #pragma once
-// The machine's registers (RISC-V privileged architecture) and those of QEMU's virt machine:
-// CLINT timer at 10 MHz, and the test device that resets.
+// Machine-mode registers (RISC-V privileged architecture) and registers of QEMU's virt machine: the
+// CLINT timer, which runs at 10 MHz, and the test device, which resets the machine.
 
 #include <cstdint>
 

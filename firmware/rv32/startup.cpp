@@ -1,4 +1,4 @@
-// From reset to start_image(): stack, global pointer, trap handler and FPU.
+// Start-up from reset to start_image(): stack, global pointer, trap handler and FPU.
 // Loop and memory annotations: docs/BOUND.md.
 
 #include "platform.hpp"
@@ -7,8 +7,9 @@
 
 namespace {
 
-// Guard at the end of the stack, where RAM begins; on QEMU's machine the code below is in RAM too.
-// No mode may access these bytes until the next reset.
+// Protects the 4 KiB below the stack with the PMP. On QEMU's machine they hold the end of the code
+// memory, which is RAM too, so a stack overflow would not fault without this. No privilege mode may
+// access these bytes until the next reset.
 void guard_stack() {
   constexpr std::uint32_t kGuardBytes = 4096;
   const auto bottom =

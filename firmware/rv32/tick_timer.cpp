@@ -10,13 +10,14 @@ namespace {
 
 constexpr std::uint32_t kMegahertz = 1000000;
 
-std::uint32_t period = 0;  // clocks of the timer
+std::uint32_t period = 0;  // timer clocks
 std::uint32_t period_us = 0;
 std::uint32_t cycles_per_us = 1;
 volatile std::uint32_t counted = 0;
-volatile std::uint32_t last_deadline = 0;  // low word of its time
+volatile std::uint32_t last_deadline = 0;  // low word of the time of the last deadline
 
-// Avoids an interrupt between the two writes: sets the high word to its maximum first.
+// Sets the high word to its maximum first, which prevents an interrupt between the other two
+// writes.
 void set_next_deadline(std::uint32_t low) {
   std::uint32_t high = rv32::timer_high();
   high += low < rv32::timer_low() ? 1U : 0U;
@@ -25,7 +26,7 @@ void set_next_deadline(std::uint32_t low) {
   rv32::timer_compare_high() = high;
 }
 
-// Counts passed deadlines, also while a tick runs.
+// Counts all deadlines that have passed, also those that passed during a tick.
 void count_deadlines() {
   const std::uint32_t passed = (rv32::timer_low() - last_deadline) / period;
   last_deadline = last_deadline + passed * period;
@@ -69,7 +70,7 @@ void wait_for_interrupt() { __asm volatile("wfi" ::: "memory"); }
 }  // namespace tactree::firmware
 
 extern "C" {
-// The tick is called after the deadline is counted and the next one set, interrupts still off.
+// The next deadline is set before the tick runs. Interrupts are disabled during the tick.
 [[gnu::interrupt("machine"), gnu::used]] void tactree_timer_interrupt() {
   using namespace tactree::firmware;
   count_deadlines();

@@ -1,5 +1,5 @@
-// The handler of all traps: the timer interrupt runs the tick; all others are faults, which are
-// recorded before a reset. Motors are off after a reset.
+// The handler of all traps. The timer interrupt runs the tick. All other traps are faults, which
+// are recorded before a reset; the motors are off after a reset.
 // Loop and memory annotations: docs/BOUND.md.
 
 #include "platform.hpp"
@@ -8,7 +8,7 @@
 extern "C" {
 void tactree_timer_interrupt();
 
-// Registers as the handler below stores them.
+// Order in which tactree_trap() stores the registers.
 struct StoredRegisters {
   std::uint32_t ra;
   std::uint32_t sp;
@@ -22,7 +22,7 @@ struct StoredRegisters {
   __asm volatile("csrr %0, mstatus" : "=r"(fault.status));
   __asm volatile("csrr %0, mtval" : "=r"(fault.address));
   __asm volatile("csrr %0, mepc" : "=r"(fault.pc));
-  ++fault.cause;  // 0 is a valid cause, but means none in the record
+  ++fault.cause;  // 0 is a valid mcause, but means no fault in the record
   fault.lr = stored->ra;
   fault.sp = stored->sp;
   for (std::uint32_t i = 0; i < 8; ++i) {  // bound: 8
@@ -34,8 +34,9 @@ struct StoredRegisters {
   tactree::firmware::capture(fault);
 }
 
-// Uses 64 bytes below the stack pointer. If the stack is full (the check uses t0), the fault is
-// recorded at the top of the stack: the handler never returns.
+// Stores the registers in 64 bytes below the stack pointer. If less than 512 bytes of stack are
+// left (this check uses t0), the trap is recorded at the top of the stack; the handler may
+// overwrite the stack because it never returns then.
 [[gnu::naked, gnu::aligned(4)]] void tactree_trap() {
   __asm volatile(
       "csrw mscratch, t0\n\t"

@@ -1,8 +1,9 @@
 #pragma once
 // Reads, changes and polls bits of a register. Every wait is bounded: a bit that the hardware never
-// sets causes a named failure, not a hanging control loop.
+// sets causes a reported failure, not a hanging control loop.
 //
-// change(), set() and clear() read, modify and write: not interrupt safe for a shared register.
+// change(), set() and clear() are read-modify-write sequences: they are not interrupt safe for a
+// register that two contexts share.
 // Loop and memory annotations: docs/BOUND.md.
 
 #include <cstdint>
@@ -36,7 +37,7 @@ void clear(Word& word, std::uint32_t mask) {
   change(word, mask, 0U);
 }
 
-/// Polls until the bits of `mask` equal `bits`, at most `polls` reads. False: timeout.
+/// Polls until the bits of `mask` equal `bits`. Returns false if they do not after `polls` reads.
 template <class Word>
 [[nodiscard]] bool wait_until(const Word& word, std::uint32_t mask, std::uint32_t bits,
                               std::uint32_t polls) {

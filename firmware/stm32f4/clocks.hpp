@@ -1,6 +1,7 @@
 #pragma once
-// From the internal oscillator after reset to 168 MHz from a crystal (RM0090, sections 7.2, 3.5).
-// If a step fails, the chip runs on its internal oscillator and the failure is reported by name.
+// Switches the core from the internal oscillator, which runs after reset, to 168 MHz from a crystal
+// (RM0090, sections 7.2 and 3.5). If a step fails, the chip runs on its internal oscillator and the
+// failure is reported by name.
 // Loop and memory annotations: docs/BOUND.md.
 
 #include <cstdint>
@@ -14,16 +15,17 @@ enum class ClockFailure : std::uint8_t {
   kNone = 0,
   kCrystal,     ///< the external oscillator does not start
   kWaitStates,  ///< the flash does not accept its wait states
-  kPll,         ///< the multiplier does not lock
+  kPll,         ///< the PLL does not lock
   kSwitch,      ///< the core stays on the internal oscillator
   kFrequency,   ///< the frequency of the crystal is wrong
 };
 
 inline constexpr std::uint32_t kFullClockHz = 168000000;  ///< without a failure
 inline constexpr std::uint32_t kInternalClockHz =
-    16000000;  ///< after a failure; 1 % at 25 degrees C
+    16000000;  ///< after a failure; accurate to 1 % at 25 degrees C
 
-/// Clock of the buses APB1 and APB2 at full speed; their timers run at twice this (section 7.2).
+/// Clock of the buses APB1 and APB2 at full speed; their timers run at twice this frequency
+/// (section 7.2).
 inline constexpr std::uint32_t kApb1Hz = kFullClockHz / 4;
 inline constexpr std::uint32_t kApb2Hz = kFullClockHz / 2;
 
@@ -62,19 +64,21 @@ inline constexpr std::uint32_t kFull = 0x705U;
 }  // namespace flash_access
 
 // TIM11 counts the internal oscillator and captures its count at every eighth edge of the crystal
-// clock, divided to 1 MHz: 128 counts, which compares the two (sections 7.2.11, 19.5).
+// clock, which is divided to 1 MHz. A correct crystal gives 128 counts between two captures
+// (sections 7.2.11 and 19.5).
 namespace crystal_capture {
-inline constexpr std::uint32_t kOfCrystal = 2U;      // option: input of channel 1
-inline constexpr std::uint32_t kEveryEighth = 0xDU;  // ccmr1
-inline constexpr std::uint32_t kCaptured = 1U << 1;  // sr
+inline constexpr std::uint32_t kOfCrystal = 2U;      // OR: input of channel 1
+inline constexpr std::uint32_t kEveryEighth = 0xDU;  // CCMR1
+inline constexpr std::uint32_t kCaptured = 1U << 1;  // SR
 inline constexpr std::uint32_t kCounts = 8U * kInternalClockHz / 1000000U;
 inline constexpr std::uint32_t kCaptures = 64;
 /// The internal oscillator is within 8 % from -40 to 105 degrees C (data sheet, section on its
-/// characteristics); polling may miss two captures.
+/// characteristics), and polling may miss two of the captures (3 %).
 inline constexpr std::uint32_t kTolerance = kCounts * kCaptures / 9U;
 }  // namespace crystal_capture
 
-// A poll takes some ten cycles of 16 MHz. A crystal needs a few ms, the multiplier 0.3 ms.
+// A poll takes about ten cycles at 16 MHz, so this limit is about 60 ms. A crystal starts in a few
+// ms, and the PLL locks in 0.3 ms.
 inline constexpr std::uint32_t kClockPolls = 100000;
 
 template <class Word>
@@ -85,7 +89,8 @@ void fall_back(RccBlock<Word>& rcc_block) {
   clear(rcc_block.cfgr, rcc::kPrescalerMask);
 }
 
-/// Counts of the internal oscillator from the first capture to the last; 0: no capture.
+/// Counts of the internal oscillator from the first capture to the last, or 0 if a capture is
+/// missing.
 template <class Word>
 std::uint32_t count_captures(TimerBlock<Word>& tim11) {
   std::uint32_t sum = 0;
@@ -102,8 +107,9 @@ std::uint32_t count_captures(TimerBlock<Word>& tim11) {
   return sum;
 }
 
-/// Precondition: the core runs on the internal oscillator. A crystal of another frequency would
-/// scale every tick, and thus every velocity and every limit per second.
+/// True if the crystal has the frequency `crystal_MHz`. A crystal of another frequency would scale
+/// the period of a tick, and thus every velocity and every limit per second. Precondition: the core
+/// runs on the internal oscillator.
 template <class Word>
 bool has_its_frequency(RccBlock<Word>& rcc_block, TimerBlock<Word>& tim11,
                        std::uint32_t crystal_MHz) {
@@ -132,7 +138,7 @@ ClockFailure try_full_speed(RccBlock<Word>& rcc_block, FlashBlock<Word>& flash,
   if (!has_its_frequency(rcc_block, tim11, crystal_MHz)) {
     return ClockFailure::kFrequency;
   }
-  // Wait states must be set before the core is fast, and read back (section 3.5.1).
+  // The wait states must be set and read back before the clock is raised (section 3.5.1).
   change(flash.acr, flash_access::kMask, flash_access::kFull);
   if (!wait_until(flash.acr, flash_access::kMask, flash_access::kFull, kClockPolls)) {
     return ClockFailure::kWaitStates;
@@ -148,13 +154,13 @@ ClockFailure try_full_speed(RccBlock<Word>& rcc_block, FlashBlock<Word>& flash,
   if (!wait_until(rcc_block.cfgr, rcc::kSwitchedMask, rcc::kSwitchedPll, kClockPolls)) {
     return ClockFailure::kSwitch;
   }
-  // From here on a crystal that stops is an NMI, thus a captured fault (section 7.2.7).
+  // From here on a crystal that stops causes an NMI, which is recorded as a fault (section 7.2.7).
   set(rcc_block.cr, rcc::kSecurityOn);
   return ClockFailure::kNone;
 }
 
-/// Precondition: 4 <= crystal_MHz <= 26. Call once after a reset. The reset value of the voltage
-/// scaling is the one for 168 MHz (section 5.4.1).
+/// Precondition: 4 <= crystal_MHz <= 26. Call once after a reset. The voltage scaling keeps its
+/// reset value, which is the one for 168 MHz (section 5.4.1).
 template <class Word>
 [[nodiscard]] ClockFailure start_clocks(RccBlock<Word>& rcc_block, FlashBlock<Word>& flash,
                                         TimerBlock<Word>& tim11, std::uint32_t crystal_MHz) {

@@ -1,7 +1,7 @@
 #pragma once
 // Erases and programs the flash of the chip (RM0090, sections 3.6 and 3.9). While the flash is busy
-// the processor cannot fetch from it and stalls: up to 2 s in an erase. Preconditions: motors off
-// and the watchdog's timeout extended (store_flash.hpp).
+// the processor cannot fetch from it and stalls, for up to 2 s during an erase. Preconditions: the
+// motors are off and the watchdog's timeout is extended (store_flash.hpp).
 // Loop and memory annotations: docs/BOUND.md.
 
 #include <cstdint>
@@ -22,8 +22,8 @@ enum class FlashStatus : std::uint8_t {
   kReadBack,   ///< content differs from the data written, or is not erased
 };
 
-/// Contiguous sectors of equal size. On an STM32F405 0 to 3 have 16 KiB, 4 has 64 KiB,
-/// 5 to 11 have 128 KiB (table 5).
+/// Contiguous sectors of equal size. On an STM32F405, sectors 0 to 3 have 16 KiB, sector 4 has
+/// 64 KiB, and sectors 5 to 11 have 128 KiB (table 5).
 struct FlashRegion {
   std::uint32_t first_sector = 5;
   std::uint32_t sectors = 7;
@@ -36,8 +36,9 @@ constexpr std::uint32_t begin_of(const FlashRegion& region) {
   return first < 5U ? first * 0x4000U : 0x20000U + (first - 5U) * 0x20000U;
 }
 
-/// Status reads before a timeout. A poll takes at least ten cycles; the data sheet, table 38,
-/// specifies 2 s for a sector and 0.1 ms for a word.
+/// Number of status reads before a timeout. A poll takes at least ten cycles, so these limits are
+/// at least 2.9 s and 2.9 ms at 168 MHz. The data sheet, table 38, specifies 2 s for a sector and
+/// 0.1 ms for a word.
 struct FlashPatience {
   std::uint32_t erase_polls = 50000000;
   std::uint32_t program_polls = 50000;
@@ -61,7 +62,7 @@ inline constexpr std::uint32_t kDataCacheReset = 1U << 12;
 inline constexpr std::uint32_t kErased = 0xFFFFFFFF;
 }  // namespace flash
 
-/// `Cell`: type of a word of flash. `Word`: type of a register. Use outside the tick only.
+/// `Cell` is the type of a word of flash, `Word` that of a register. Use outside the tick only.
 template <class Word, class Cell = Word>
 class FlashProgrammer {
  public:
@@ -70,8 +71,8 @@ class FlashProgrammer {
                   const FlashPatience& patience = {})
       : block_(block), cells_(cells), region_(region), patience_(patience) {}
 
-  /// Sets all words of a sector to 0xFFFFFFFF and reads them back. Sectors count from 0 in the
-  /// region.
+  /// Erases a sector, whose words then read 0xFFFFFFFF, and checks this. `sector` counts from 0 in
+  /// the region.
   [[nodiscard]] FlashStatus erase(std::uint32_t sector) {
     if (sector >= region_.sectors) {
       return FlashStatus::kOutside;
@@ -110,8 +111,8 @@ class FlashProgrammer {
     return status == FlashStatus::kOk && read(cell) != word ? FlashStatus::kReadBack : status;
   }
 
-  // Waits until not busy, unlocks, clears old errors. Disables the data cache, which may hold bytes
-  // that will change, until close(), which also clears it (section 3.5.2).
+  // Waits until the flash is not busy, unlocks it and clears old errors. Disables the data cache,
+  // which may hold bytes that will change; close() clears and enables it again (section 3.5.2).
   FlashStatus open() {
     if (!wait_until(block_.sr, flash::kBusy, 0U, patience_.erase_polls)) {
       return FlashStatus::kTimeout;
@@ -140,8 +141,8 @@ class FlashProgrammer {
                                                     : FlashStatus::kRefused;
   }
 
-  // Locks in any case, unless the flash is busy: a write to its register would then stall the
-  // processor (section 3.9.5).
+  // Locks the flash after a success or a failure. If the flash is still busy, it stays unlocked,
+  // because a write to its register would stall the processor (section 3.9.5).
   void close() {
     if (has(block_.sr, flash::kBusy)) {
       return;

@@ -7,15 +7,15 @@
 
 namespace tactree::firmware::stm32f4 {
 
-/// Switches the power of the amplifiers and the pulses. `sense` is high while the amplifiers have
-/// power.
+/// Switches the power of the amplifiers and the PWM outputs. `sense` is high while the amplifiers
+/// have power.
 template <class Word>
 class EnableLine {
  public:
   EnableLine(const Pin<Word>& line, const Pin<Word>& sense, PwmMotors<Word>& motors)
       : line_(line), sense_(sense), motors_(motors) {}
 
-  /// False: a pin did not accept its mode.
+  /// Returns false if a pin did not accept its mode.
   [[nodiscard]] bool start() {
     line_.make_output();
     sense_.make_input(Pull::kDown);
@@ -43,8 +43,9 @@ class SafetyInputs {
   SafetyInputs(const Pin<Word>& stop, const Pin<Word>& dead_man)
       : stop_(stop), dead_man_(dead_man) {}
 
-  /// False: the port did not accept its settings. Both inputs then read as the safe state until the
-  /// next reset: a port without a clock reads zero, which would mean released and held.
+  /// Returns false if the port did not accept its settings. Both inputs then read as the safe state
+  /// until the next reset. Without this check, a port without a clock would read as zero: emergency
+  /// stop released and dead-man control held.
   [[nodiscard]] bool start() {
     stop_.make_input(Pull::kUp);
     dead_man_.make_input(Pull::kUp);

@@ -36,7 +36,7 @@ class Pin {
     set_mode(PinMode::kAlternate);
   }
 
-  /// One write that changes no other pin: the upper half clears, the lower half sets.
+  /// Changes no other pin: in BSRR, the upper half clears pins and the lower half sets them.
   void drive(bool high) { port_->bsrr = high ? 1U << number_ : 1U << (number_ + 16U); }
 
   [[nodiscard]] bool is_high() const { return has(port_->idr, 1U << number_); }
@@ -46,7 +46,8 @@ class Pin {
     return ((read(port_->moder) >> (2U * number_)) & 0x3U) == static_cast<std::uint32_t>(mode);
   }
 
-  /// Reads the pull back. For inputs, whose mode is zero also without a clock.
+  /// Reads the pull back. Use this for inputs: the mode of an input is zero, which a port without a
+  /// clock reads too.
   [[nodiscard]] bool pulls(Pull pull) const {
     return ((read(port_->pupdr) >> (2U * number_)) & 0x3U) == static_cast<std::uint32_t>(pull);
   }

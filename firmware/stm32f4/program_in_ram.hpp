@@ -1,6 +1,7 @@
 #pragma once
-// Reset of an STM32F405 whose program runs from RAM: flash has five wait states at 168 MHz (RM0090,
-// table 10), SRAM none. linker/stm32f405.ld says where everything is. Include this once per image.
+// Reset handler of an STM32F405 whose program runs from RAM: flash has five wait states at 168 MHz
+// (RM0090, table 10), SRAM none. linker/stm32f405.ld describes the memory layout. Include this file
+// once per image.
 // Loop and memory annotations: docs/BOUND.md.
 
 #include <cstdint>
@@ -11,13 +12,13 @@ extern "C" {
 // NOLINTBEGIN(readability-identifier-naming): names of the linker script
 extern const std::uint32_t image_program_in_flash[];
 extern std::uint32_t image_program_in_sram[];
-extern const std::byte image_program_words[];  // a number, not an address
+extern const std::byte image_program_words[];  // its address is the number of words
 // NOLINTEND(readability-identifier-naming)
 
 [[noreturn]] void tactree_start();
 
-// Runs from flash at its own address, because a boot loader may have mapped another memory at 0. No
-// variable is in use yet, not even those of the program that is copied.
+// Runs at its address in flash, because a boot loader may have mapped another memory at address 0.
+// Must not use variables or constants of the program, which is not yet copied.
 // NOLINTNEXTLINE(misc-definitions-in-headers): an inline one would not replace the weak default
 [[noreturn, gnu::used, gnu::section(".vectors.reset")]] void tactree_reset() {
   namespace core = tactree::firmware::cortex_m;
@@ -37,15 +38,16 @@ extern const std::byte image_program_words[];  // a number, not an address
   core::vector_table() = kFlashBegin;
   core::register_at(kSyscfgMemrmp) = kSramAtZero;
   core::synchronise();
-  // The program cannot be written, neither by a pointer to 0 nor below the stack, which ends where
-  // the program's 16 KiB sectors 3 to 6 of SRAM1 end.
+  // Makes the program read-only, both at address 0 and in SRAM1, where it occupies the 16 KiB
+  // subregions 3 to 6. A write through a null pointer or below the stack, which begins where the
+  // program ends, then faults.
   constexpr std::uint32_t kSram = 0x20000000;
   constexpr std::uint32_t kAllSectorsButProgram = 0x87;
   core::protect(0, {0x00000000, 0, true});
   core::protect(1, {kSram, kAllSectorsButProgram, false});
   core::mpu_control() = core::kMpuOnWithDefaultMap;
   core::synchronise();
-  // Too far from here for a direct call.
+  // The program is out of range of a direct call.
   asm volatile("bx %0" : : "r"(&tactree_start));
   __builtin_unreachable();
 }

@@ -1,9 +1,9 @@
 #pragma once
-// Three motors whose amplifiers have inputs for pulse width and direction: channels 1 to 3 of an
+// Three motors whose amplifiers have inputs for PWM and direction, on channels 1 to 3 of an
 // advanced timer, centre-aligned (RM0090, sections 17.3.10 and 17.4). A pulse width takes effect
-// with the next period of the timer, the direction immediately: after a change of sign the old
-// width acts in the new direction for up to one period, 50 us. The slew limit of the gate bounds
-// it.
+// with the next period of the timer, the direction immediately. After a change of sign the old
+// width therefore acts in the new direction for up to one period, 50 us. The slew limit of the
+// safety gate bounds this effort.
 
 #include <cstdint>
 
@@ -22,10 +22,10 @@ inline constexpr std::uint32_t kHoldLowWhenOff = 1U << 10;                      
 inline constexpr std::uint32_t kOutputsOn = 1U << 15;                                 // BDTR: MOE
 inline constexpr std::uint32_t kTakeOver = 1U;                                        // EGR: UG
 
-/// Half a period, clocks of the timer: 168 MHz / (2 * 20 kHz).
+/// Half a PWM period in timer clocks: 168 MHz / (2 * 20 kHz).
 inline constexpr std::uint32_t kHalfPeriod = 4200;
 
-/// Compare value of an effort: 0 .. kHalfPeriod. NaN gives 0.
+/// Compare value of an effort, 0 .. kHalfPeriod. NaN gives 0.
 inline std::uint32_t compare_of(float effort, float effort_at_full_width) {
   const float size = effort < 0.0F ? -effort : effort;
   const float share = size / effort_at_full_width;
@@ -48,7 +48,8 @@ class PwmMotors {
         good_(good),
         full_{effort_at_full_width[0], effort_at_full_width[1], effort_at_full_width[2]} {}
 
-  /// Starts with zero pulse widths and outputs off. False: the timer does not run as configured.
+  /// Starts the timer with a duty cycle of 0 and the outputs off. Returns false if the timer does
+  /// not run as configured.
   [[nodiscard]] bool start() {
     timer_.bdtr = pwm::kHoldLowWhenOff;
     timer_.psc = 0U;
@@ -59,7 +60,7 @@ class PwmMotors {
     timer_.ccmr1 = pwm::kModeOneBuffered | (pwm::kModeOneBuffered << 8);
     timer_.ccmr2 = pwm::kModeOneBuffered;
     timer_.ccer = pwm::kThreeChannels;
-    timer_.egr = pwm::kTakeOver;  // otherwise the first period uses the reset values
+    timer_.egr = pwm::kTakeOver;  // without this event the first period would use the reset values
     timer_.cr1 = pwm::kCentreAlignedOn;
     started_ = has(timer_.cr1, pwm::kCentreAlignedOn) && read(timer_.arr) == pwm::kHalfPeriod;
     return started_;
@@ -71,7 +72,8 @@ class PwmMotors {
     drive(2, timer_.ccr3, command.effort(2));
   }
 
-  /// Enables the outputs; disabled outputs are low. Stays off if the timer could not be started.
+  /// Enables or disables the outputs; disabled outputs are low. They stay disabled if the timer did
+  /// not start.
   void connect(bool on) {
     connected_ = on && started_;
     change(timer_.bdtr, pwm::kOutputsOn, connected_ ? pwm::kOutputsOn : 0U);

@@ -1,6 +1,6 @@
 #pragma once
-// Encoders on timers that count both edges of both tracks (RM0090, section 18.3.12). A counter does
-// not detect a broken wire: an axis is invalid only if its timer is misconfigured.
+// Quadrature encoders on timers that count both edges of both tracks (RM0090, section 18.3.12). A
+// counter cannot detect a broken wire, so an axis is invalid only if its timer is misconfigured.
 // Loop and memory annotations: docs/BOUND.md.
 
 #include <cstdint>
@@ -26,7 +26,7 @@ class QuadratureCounter {
  public:
   QuadratureCounter(TimerBlock<Word>& timer, CounterWidth width) : timer_(timer), width_(width) {}
 
-  /// Starts counting at zero. Precondition: the timer has its clock.
+  /// Starts counting at zero. Precondition: the clock of the timer is enabled.
   void start() {
     timer_.smcr = encoder::kBothEdges;
     timer_.ccmr1 = encoder::kTracks;
@@ -43,8 +43,8 @@ class QuadratureCounter {
            (read(timer_.smcr) & encoder::kSlaveMask) == encoder::kBothEdges;
   }
 
-  /// The count, extended to 32 bits. Precondition for a 16-bit timer: between two reads it moves by
-  /// at most 32 767 counts.
+  /// Returns the count, extended to 32 bits. Precondition for a 16-bit timer: it moves by at most
+  /// 32 767 counts between two calls.
   [[nodiscard]] std::int32_t take() {
     const std::uint32_t now = read(timer_.cnt) & static_cast<std::uint32_t>(width_);
     std::uint32_t moved = now - last_;
@@ -64,7 +64,8 @@ class QuadratureCounter {
   std::uint32_t last_ = 0;
 };
 
-/// The counters of the axes, read within one microsecond. Safe in the tick; one context only.
+/// The counters of the axes, read within one microsecond. Safe in the tick. Call from one context
+/// only.
 template <class Word>
 class QuadratureEncoders {
  public:
@@ -72,7 +73,7 @@ class QuadratureEncoders {
                      const QuadratureCounter<Word>& z)
       : axis_{x, y, z} {}
 
-  /// False: a timer does not run.
+  /// Returns false if a timer does not run.
   [[nodiscard]] bool start() {
     bool good = true;
     for (QuadratureCounter<Word>& counter : axis_) {  // bound: kAxes

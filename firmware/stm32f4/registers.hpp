@@ -1,6 +1,6 @@
 #pragma once
-// Register blocks of an STM32F405 used by its drivers, from ST's reference manual RM0090. `Word` is
-// `volatile std::uint32_t` on the chip and a simulated register in tests. Drivers receive their
+// Register blocks of an STM32F405 that its drivers use, from ST's reference manual RM0090. `Word`
+// is `volatile std::uint32_t` on the chip and a simulated register in tests. Drivers receive their
 // blocks by reference, so the same code runs on both.
 
 #include <cstddef>

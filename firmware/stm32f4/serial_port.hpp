@@ -1,6 +1,6 @@
 #pragma once
 // A non-blocking serial port (RM0090, sections 30.3 and 10.3), a hal::BytePort. DMA writes received
-// bytes to a ring. Bytes to send are copied to the port during calls of read() and write().
+// bytes to a ring buffer. read() and write() move bytes to send from a buffer to the port.
 // Loop and memory annotations: docs/BOUND.md.
 
 #include <cstddef>
@@ -12,11 +12,13 @@
 
 namespace tactree::firmware::stm32f4 {
 
-/// 41 ms at 1 000 000 baud: longer than the interval between polls of a session while force is
-/// possible, and more than an application sends of a model before it waits for a reply.
+/// 41 ms at 1 000 000 baud. This is longer than the interval between two polls by a session while
+/// the motors may be active, and more than an application sends of a model before it waits for a
+/// reply.
 inline constexpr std::uint32_t kRingBytes = 4096;
 
-/// Memory for the DMA; not in the core-coupled RAM, which DMA cannot access (section 2.3.1).
+/// Buffer of the DMA. It must not be in the core-coupled RAM, which DMA cannot access (section
+/// 2.3.1).
 struct Ring {
   volatile std::uint8_t byte[kRingBytes];
 };
@@ -33,20 +35,21 @@ inline constexpr std::uint32_t kStream2Flags = 0x3DU << 16;               // LIF
 inline constexpr std::uint32_t kStreamPolls = 1000;
 }  // namespace serial
 
-/// USART1 with stream 2 of DMA2, channel 4 (table 43). One context only: outside the tick.
+/// USART1 with stream 2 of DMA2, channel 4 (table 43). Call from one context only, outside the
+/// tick.
 template <class Word>
 class SerialPort {
  public:
   SerialPort(UsartBlock<Word>& usart, DmaBlock<Word>& dma, Ring& ring)
       : usart_(usart), dma_(dma), ring_(ring) {}
 
-  /// `clock_hz`: clock of the bus, at least 16 times `baud`. 8 data bits, no parity, one stop bit.
-  /// False: DMA does not run. Single bytes are then received, faster ones are lost; this suffices
-  /// to query the cause.
+  /// `clock_hz` is the clock of the bus, at least 16 times `baud`. 8 data bits, no parity, one stop
+  /// bit. Returns false if DMA does not run. The port then receives by polling and loses bytes that
+  /// arrive faster than it is polled, which is enough for an application to query the cause.
   [[nodiscard]] bool start(std::uint32_t clock_hz, std::uint32_t baud) {
     auto& stream = dma_.stream[2];
     clear(stream.cr, serial::kStreamOn);
-    // The stream accepts settings only while it is off (section 10.3.17).
+    // The stream accepts settings only while it is disabled (section 10.3.17).
     (void)wait_until(stream.cr, serial::kStreamOn, 0U, serial::kStreamPolls);
     dma_.lifcr = serial::kStream2Flags;
     stream.par = address_of(&usart_.dr);
@@ -62,7 +65,8 @@ class SerialPort {
     return by_dma_;
   }
 
-  /// Bytes that overflow the ring between two calls are lost; the checksum of frames detects it.
+  /// Bytes that overflow the ring buffer between two calls are lost; the checksum of frames detects
+  /// the loss.
   std::size_t read(std::span<std::byte> bytes) noexcept {
     advance();
     std::size_t count = 0;
@@ -86,7 +90,7 @@ class SerialPort {
   }
 
  private:
-  // Reading the status also clears an overrun, with the next read of a byte (section 30.6.1).
+  // Reading the status and then a byte also clears an overrun (section 30.6.1).
   void advance() {
     while (has(usart_.sr, serial::kEmpty) && sent_ < size_) {  // bound: waiting_bytes
       usart_.dr = static_cast<std::uint32_t>(waiting_[sent_]);

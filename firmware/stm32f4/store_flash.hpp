@@ -13,9 +13,9 @@
 namespace tactree::firmware::stm32f4 {
 
 /// Actions of a board around an erase, during which the processor stalls for up to 2 s.
-///   begin()  disables force and ticks, extends the watchdog's timeout. False: not possible, and
-///            nothing is erased.
-///   end()    restores the state before; called after each begin().
+///   begin()  switches the motors off, holds the ticks and extends the watchdog's timeout. If it
+///            returns false, nothing is erased.
+///   end()    restores the timeout and releases the ticks. Called after each begin().
 template <class T>
 concept Standstill = requires(T& standstill) {
   { standstill.begin() }
@@ -24,7 +24,8 @@ concept Standstill = requires(T& standstill) {
   noexcept->std::same_as<void>;
 };
 
-/// The whole flash: its first word for writing and for reading. `Cell` as in FlashProgrammer.
+/// First word of the whole flash, for writing and for reading. `Cell` is the type of a word of
+/// flash (FlashProgrammer).
 template <class Cell>
 struct FlashCells {
   Cell* cells = nullptr;
@@ -62,7 +63,7 @@ class StoreFlash {
     return erased;
   }
 
-  /// Ticks continue: a word takes at most 0.1 ms.
+  /// Ticks continue during programming, because a word takes at most 0.1 ms.
   [[nodiscard]] bool program(std::uint32_t offset, std::span<const std::byte> bytes) noexcept {
     std::uint32_t words[16];
     if (offset % 4U != 0U || bytes.size() % 4U != 0U) {

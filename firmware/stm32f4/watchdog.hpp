@@ -18,7 +18,7 @@ inline constexpr std::uint32_t kUpdating = 0x3U;
 inline constexpr std::uint32_t kPolls = 100000;
 }  // namespace watchdog
 
-/// Timeout: (reload + 1) * 4 * 2^prescaler clocks of its oscillator.
+/// Timeout of the watchdog: (reload + 1) * 4 * 2^prescaler clocks of its oscillator.
 struct WatchdogTime {
   std::uint32_t prescaler = 0;  ///< 0 .. 6
   std::uint32_t reload = 0;     ///< 0 .. 4095
@@ -34,15 +34,17 @@ class Watchdog {
  public:
   explicit Watchdog(WatchdogBlock<Word>& block) : block_(block) {}
 
-  /// Starts the watchdog: it resets the chip unless refresh() is called every 3 ms. Starts before
-  /// setting the timeout, which needs its oscillator. False: the timeout was not accepted.
+  /// Starts the watchdog, which then resets the chip unless refresh() is called every 3 ms. The
+  /// timeout is set after the start, because this requires the watchdog's oscillator to run.
+  /// Returns false if the timeout was not accepted.
   [[nodiscard]] bool start() {
     block_.kr = watchdog::kStart;
     return set(kTimeOfTicks);
   }
 
-  /// Sets the timeout and restarts it. False: the setting was not accepted; the timeout is unknown
-  /// then, but the watchdog stays active. Cost: 0.3 ms, or two times as much after another set().
+  /// Sets the timeout and restarts it. Returns false if the setting was not accepted; the timeout
+  /// is then unknown, but the watchdog stays active. Cost: 0.3 ms, or 0.6 ms directly after another
+  /// set().
   [[nodiscard]] bool set(const WatchdogTime& time) {
     refresh();
     if (!is_settled()) {
@@ -60,7 +62,8 @@ class Watchdog {
   void refresh() { block_.kr = watchdog::kRefresh; }
 
  private:
-  /// False while an update is pending: registers can be neither written nor read (section 21.4.4).
+  /// Returns false if an update stays pending. The registers can then be neither written nor read
+  /// (section 21.4.4).
   [[nodiscard]] bool is_settled() const {
     return wait_until(block_.sr, watchdog::kUpdating, 0U, watchdog::kPolls);
   }

@@ -12,7 +12,7 @@ namespace tactree::firmware {
 template <std::uint32_t kAddress>
 class CmsdkUart {
  public:
-  /// `clock_hz`: clock of the bus.
+  /// `clock_hz` is the frequency of the bus clock.
   void start(std::uint32_t clock_hz, std::uint32_t baud) {
     word(kDivider) = clock_hz / baud;
     word(kControl) = kSendAndReceive;

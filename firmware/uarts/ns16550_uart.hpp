@@ -1,5 +1,5 @@
 #pragma once
-// The 16550, polled (TI, "TL16C550C", SLLS177). Does not change its speed.
+// The 16550 UART, polled (TI, "TL16C550C", SLLS177). start() does not change the baud rate.
 // Loop and memory annotations: docs/BOUND.md.
 
 #include <cstddef>

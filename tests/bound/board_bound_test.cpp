@@ -103,7 +103,7 @@ class Proof : public OnBoard {
 };
 INSTANTIATE_TEST_SUITE_P(Boards, Proof, testing::ValuesIn(proven_boards()), name_of_board);
 
-TEST_P(Proof, EveryLimitOfTheSourcesAppliesToCode) {
+TEST_P(Proof, AppliesEverySourceLimit) {
   const TestBlob blob(expensive_model(ExpensiveModel::kEdge));
   EXPECT_EQ(bound_of(board(), blob.view(), core::RenderMode::kSurface).unused_facts,
             std::vector<std::string>{});
@@ -119,7 +119,7 @@ bool is_tight(const emulation::BoardDescription& board) {
 }
 constexpr double kTightness = 0.75;
 
-TEST_P(Proof, SearchFindsNoTickAboveTheBound) {
+TEST_P(Proof, FindsNoTickAboveBound) {
   double reached = 0.0;
   for (const float rate_hz : {1000.0F, 2000.0F, 4000.0F}) {
     for (const ExpensiveModel kind :
@@ -208,7 +208,7 @@ core::ModelLimits random_limits(std::mt19937& random) {
       any(most.levels_below),        any(most.blended_points),      any(most.blended_materials)};
 }
 
-TEST_P(Proof, FormulaIsNeverLessThanTheBound) {
+TEST_P(Proof, FormulaNeverUndercutsBound) {
   wcet::BoundOptions options = in_cycles(board());
   const core::TickCosts costs = wcet::tick_costs(options);
   std::mt19937 random(5);
@@ -231,7 +231,7 @@ TEST_P(Proof, FormulaIsNeverLessThanTheBound) {
 }
 
 // The limits of the Stanford bunny, 10 cm long with a point every 0.5 mm.
-TEST_P(Proof, FormulaIsAtMostSixPercentAboveTheBoundOfAScan) {
+TEST_P(Proof, FormulaStaysWithinSixPercent) {
   core::TickLoad load;
   load.limits = {46, 51, 6, 3, 0, 0};
   load.bodies = 1;
@@ -270,7 +270,7 @@ hal::StartResult start_at(const emulation::BoardDescription& board,
   return sim.start_result();
 }
 
-TEST_P(Proof, BoardWithCostsRefusesARateThatIsTooHigh) {
+TEST_P(Proof, BoardRefusesExcessiveRate) {
   const std::filesystem::path image =
       std::filesystem::path(testing::TempDir()) / (std::string(board().name) + "_costs.elf");
   std::filesystem::copy_file(bare_firmware(board()), image,
@@ -300,7 +300,7 @@ TEST_P(Proof, BoardWithCostsRefusesARateThatIsTooHigh) {
 }
 
 // Tests the search itself: it exceeds the bound of an annotation that is too small.
-TEST_P(Proof, SearchExceedsABoundThatIsTooSmall) {
+TEST_P(Proof, SearchExceedsUndersizedBound) {
   const std::filesystem::path folder =
       std::filesystem::path(testing::TempDir()) / ("too_small_" + std::string(board().name));
   std::filesystem::create_directories(folder);

@@ -27,21 +27,21 @@ extern "C" void tick() {
 
 class Bounding : public SampleImage {};
 
-TEST_F(Bounding, CountsTheInstructionsOfStraightCode) {
+TEST_F(Bounding, CountsStraightLineInstructions) {
   const wcet::Bound bound = bound_of(R"(extern "C" [[gnu::naked]] void tick() {
     __asm volatile("movs r0, #1\n\t adds r0, #2\n\t bx lr");
   })");
   EXPECT_EQ(bound.instructions, 3U);
 }
 
-TEST_F(Bounding, TakesTheLongerOfTwoBranches) {
+TEST_F(Bounding, TakesLongerBranch) {
   const wcet::Bound bound = bound_of(R"(extern "C" [[gnu::naked]] void tick() {
     __asm volatile("cmp r0, #1\n\t beq 1f\n\t nop\n\t nop\n\t nop\n 1:\n\t bx lr");
   })");
   EXPECT_EQ(bound.instructions, 6U);
 }
 
-TEST_F(Bounding, IsLinearInTheBoundOfALoop) {
+TEST_F(Bounding, ScalesLinearlyWithLoopBound) {
   const std::uint64_t ten = bound_of(looping("10")).instructions;
   const std::uint64_t twenty = bound_of(looping("20")).instructions;
   const std::uint64_t thirty = bound_of(looping("2 * (10 + 5)")).instructions;
@@ -50,7 +50,7 @@ TEST_F(Bounding, IsLinearInTheBoundOfALoop) {
   EXPECT_GE(twenty - ten, 10U * 7U);  // the leaf's load, addition, store and return, and the loop
 }
 
-TEST_F(Bounding, AcceptsParametersAndConstantsInABound) {
+TEST_F(Bounding, AcceptsParametersAndConstants) {
   const std::uint64_t ten = bound_of(looping("10")).instructions;
   EXPECT_EQ(bound_of(looping("points"), {{"points", 10}}).instructions, ten);
   EXPECT_EQ(bound_of("constexpr unsigned kTwo = 2;\nconstexpr unsigned kTen = kTwo * 5U;\n" +
@@ -74,7 +74,7 @@ TEST_F(Bounding, ReportsLoopsAndFunctions) {
   EXPECT_NEAR(sum, static_cast<double>(bound.instructions), 1e-3);
 }
 
-TEST_F(Bounding, LimitsAllEntriesOfALoopByATotal) {
+TEST_F(Bounding, LimitsLoopEntriesByTotal) {
   const auto nested = [](const std::string& inner) {
     return kWork + R"(
 extern "C" void tick() {
@@ -101,7 +101,7 @@ extern "C" void tick() {
   EXPECT_NEAR(calls(all), 60.0, 1e-6);
 }
 
-TEST_F(Bounding, LimitsAStatement) {
+TEST_F(Bounding, LimitsStatement) {
   const auto limited = [](const std::string& comment) {
     return kWork + R"(
 [[gnu::noinline]] void dear() { leaf(); leaf(); leaf(); leaf(); }
@@ -125,7 +125,7 @@ extern "C" void tick() {
 }
 
 // A formatter may put the call of a statement on another line than its annotation.
-TEST_F(Bounding, LimitsACallOnTheSecondLineOfAStatement) {
+TEST_F(Bounding, LimitsCallOnSecondLine) {
   const auto limited = [](const std::string& comment) {
     return kWork + R"(
 [[gnu::noinline]] unsigned dear(unsigned by) { leaf(); leaf(); leaf(); return work + by; }
@@ -147,7 +147,7 @@ extern "C" void tick() {
             bound_of(limited("")).instructions);
 }
 
-TEST_F(Bounding, RefusesALimitThatBelongsToNoCall) {
+TEST_F(Bounding, RefusesLimitWithoutCall) {
   EXPECT_NE(refusal("// at most: 1 per tick\n\n" + looping("10")).find("belongs to no statement"),
             std::string::npos);
   const std::string arithmetic = kWork + R"(
@@ -165,7 +165,7 @@ extern "C" unsigned tick() {
 }
 
 // The branch is taken on the shorter path only.
-TEST_F(Bounding, ABranchThatIsNotTakenCostsOneCycle) {
+TEST_F(Bounding, UntakenBranchCostsOneCycle) {
   const auto cycles = [&](const std::string& branch) {
     return bound_of(R"(extern "C" [[gnu::naked]] void tick() {
   asm volatile("cmp r0, #0\n )" +
@@ -177,7 +177,7 @@ TEST_F(Bounding, ABranchThatIsNotTakenCostsOneCycle) {
   EXPECT_EQ(cycles("beq 1f"), cycles("nop"));
 }
 
-TEST_F(Bounding, AnalysesEachCallWithItsArguments) {
+TEST_F(Bounding, AnalysesCallsWithTheirArguments) {
   const auto clearing = [](const std::string& calls) {
     return kWork + R"(
 [[gnu::noinline, gnu::noclone, gnu::noipa]] void clear(char* to, unsigned bytes) {
@@ -200,7 +200,7 @@ extern "C" void tick() { )" +
   EXPECT_NE(refused.find("an argument 'bytes' that is no constant"), std::string::npos) << refused;
 }
 
-TEST_F(Bounding, FollowsAJumpTable) {
+TEST_F(Bounding, FollowsJumpTable) {
   const wcet::Bound bound = bound_of(kWork + R"(
 [[gnu::noinline]] void many() { leaf(); leaf(); leaf(); leaf(); leaf(); leaf(); }
 extern "C" void tick() {
@@ -222,7 +222,7 @@ extern "C" void tick() {
   EXPECT_TRUE(passes_many);
 }
 
-TEST_F(Bounding, PathsThatNeverReturnAreExcluded) {
+TEST_F(Bounding, ExcludesNonReturningPaths) {
   const std::string code = kWork + R"(
 [[gnu::noinline, noreturn]] void stop() { while (true) { work = 1; } }  // bound: for_ever
 extern "C" void tick() {
@@ -236,7 +236,7 @@ extern "C" void tick() {
   EXPECT_LT(bound.instructions, 20U);
 }
 
-TEST_F(Bounding, RefusesALoopWithoutABound) {
+TEST_F(Bounding, RefusesLoopWithoutBound) {
   const std::string refused = refusal(kWork + R"(
 extern "C" void tick() {
   for (unsigned i = 0; i < wanted; ++i) {
@@ -246,7 +246,7 @@ extern "C" void tick() {
   EXPECT_NE(refused.find("sample.cpp:7: a loop without a bound"), std::string::npos) << refused;
 }
 
-TEST_F(Bounding, RefusesCodeThatItCannotFollow) {
+TEST_F(Bounding, RefusesUnanalysableCode) {
   struct Case {
     const char* code;
     const char* cause;
@@ -269,7 +269,7 @@ TEST_F(Bounding, RefusesCodeThatItCannotFollow) {
   }
 }
 
-TEST_F(Bounding, RefusesAMalformedBound) {
+TEST_F(Bounding, RefusesMalformedBound) {
   EXPECT_NE(refusal(looping("points")).find("'points' is unknown"), std::string::npos);
   EXPECT_NE(
       refusal(looping("2 points")).find("sample.cpp:8: ' points' is not part of the annotation"),
@@ -296,7 +296,7 @@ TEST_F(Bounding, RefusesOtherFiles) {
 }
 
 // 1 kHz and 2 kHz end the first two tiers.
-TEST(HighestRate, IsTheRateUpToWhichEveryTickEndsInTime) {
+TEST(HighestRate, SeparatesTimelyFromLateTicks) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> cycles(1e3, 1e5);
   for (int board = 0; board < 1000; ++board) {

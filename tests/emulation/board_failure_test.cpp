@@ -74,20 +74,20 @@ TEST_P(BlobOnBoard, IsRefusedIfTruncated) {
   EXPECT_EQ(refusal(blob), core::BlobStatus::kBadChecksum);
 }
 
-TEST_P(BlobOnBoard, IsRefusedWithOneWrongBit) {
+TEST_P(BlobOnBoard, IsRefusedWithWrongBit) {
   Bytes blob = good_blob();
   blob[blob.size() - 5] ^= std::byte{4};
   EXPECT_EQ(refusal(blob), core::BlobStatus::kBadChecksum);
 }
 
-TEST_P(BlobOnBoard, IsRefusedByTheBoardIfLargerThanTheFlash) {
+TEST_P(BlobOnBoard, OversizedIsRefusedByBoard) {
   Bytes blob = good_blob();
   const std::uint32_t size = board().blob_bytes_max + 4;
   std::memcpy(blob.data() + offsetof(core::BlobHeader, total_bytes), &size, 4);
   EXPECT_EQ(refusal(blob), core::BlobStatus::kBadSize);
 }
 
-TEST_P(BlobOnBoard, IsRefusedBeforeBootingIfLargerThanTheFlash) {
+TEST_P(BlobOnBoard, OversizedIsRefusedBeforeBoot) {
   const std::size_t size = board().blob_bytes_max + std::size_t{1};
   const std::unique_ptr<std::byte[]> untouched(new std::byte[size]);
   const std::span<const std::byte> blob(untouched.get(), size);
@@ -97,7 +97,7 @@ TEST_P(BlobOnBoard, IsRefusedBeforeBootingIfLargerThanTheFlash) {
   expect_in("--flash-budget " + std::to_string(board().blob_bytes_max), error);
 }
 
-TEST_P(BlobOnBoard, IsNotReadByADamagedProgram) {
+TEST_P(BlobOnBoard, IsIgnoredByDamagedProgram) {
   std::ifstream in(built(board(), "firmware", board().name), std::ios::binary);
   std::string image((std::istreambuf_iterator<char>(in)), {});
   const std::size_t identity = image.find(std::string("TACTIMG\0", 8));
@@ -112,7 +112,7 @@ TEST_P(BlobOnBoard, IsNotReadByADamagedProgram) {
   std::filesystem::remove(file);
 }
 
-TEST_P(BlobOnBoard, IsNotReadIfTheRamTestFails) {
+TEST_P(BlobOnBoard, IsIgnoredOnRamFailure) {
   emulation::EmulationOptions forgetful = options();
   forgetful.image = built(board(), "tests/on_target", std::string("forgetful-") + board().name);
   if (!std::filesystem::exists(forgetful.image)) {
@@ -124,7 +124,7 @@ TEST_P(BlobOnBoard, IsNotReadIfTheRamTestFails) {
 class Failure : public OnBoard {};
 TACTREE_ON_EVERY_BOARD(Failure);
 
-TEST_P(Failure, ReportsAnImageThatFaults) {
+TEST_P(Failure, ReportsFaultingImage) {
   emulation::EmulationOptions faulty = options();
   faulty.image = built(board(), "tests/on_target", std::string("faulty-") + board().name);
   const std::string error = error_of([&] {
@@ -139,7 +139,7 @@ TEST_P(Failure, ReportsAnImageThatFaults) {
   expect_in("pc 0x", error);
 }
 
-TEST_P(Failure, ReportsASilentBoard) {
+TEST_P(Failure, ReportsSilentBoard) {
   emulation::EmulationOptions silent = options();
   silent.image = built(board(), "tests/on_target", std::string("silent-") + board().name);
   silent.start_limit = std::chrono::milliseconds(500);
@@ -147,7 +147,7 @@ TEST_P(Failure, ReportsASilentBoard) {
   expect_in("silent for 0.5 s", error);
 }
 
-TEST_P(Failure, RefusesAnImageOfAnotherBoard) {
+TEST_P(Failure, RefusesImageOfAnotherBoard) {
   for (const emulation::BoardDescription& other : emulation::boards()) {
     if (other.toolchain != std::string(board().toolchain) || other.name == board().name) {
       continue;
@@ -160,7 +160,7 @@ TEST_P(Failure, RefusesAnImageOfAnotherBoard) {
   }
 }
 
-TEST_P(Failure, RefusesAFileThatIsNotAnImage) {
+TEST_P(Failure, ReportsEarlyEmulatorEnd) {
   emulation::EmulationOptions wrong = options();
   wrong.image = source_folder() / "build/does-not-exist.elf";
   const std::string error = error_of([&] { EmulatedTarget(board(), good_blob(), wrong); });
@@ -168,7 +168,7 @@ TEST_P(Failure, RefusesAFileThatIsNotAnImage) {
   expect_in("does-not-exist", error);
 }
 
-TEST_P(Failure, NamesThePackageOfAMissingEmulator) {
+TEST_P(Failure, NamesMissingEmulatorPackage) {
   const std::string path = std::getenv("PATH");
   ::setenv("PATH", "/nonexistent", 1);
   const std::string error = error_of([&] { EmulatedTarget(board(), good_blob(), options()); });
@@ -176,7 +176,7 @@ TEST_P(Failure, NamesThePackageOfAMissingEmulator) {
   expect_in(std::string("apt-get install ") + board().package, error);
 }
 
-TEST_P(Failure, NamesTheCommandsThatBuildAMissingImage) {
+TEST_P(Failure, NamesMissingImageBuildCommands) {
   const std::string error = error_of([&] { (void)emulation::find_image(board(), "/nonexistent"); });
   expect_in(std::string(board().name) + ".elf", error);
   expect_in(std::string("cmake --build --preset ") + board().toolchain, error);

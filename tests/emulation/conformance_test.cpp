@@ -36,13 +36,13 @@ std::string verdict(const emulation::BoardDescription& board,
 class Conformance : public OnBoard {};
 TACTREE_ON_EVERY_BOARD(Conformance);
 
-TEST_P(Conformance, PassesOnTheBoard) {
+TEST_P(Conformance, PassesOnBoard) {
   const std::string found = verdict(board(), [](hal::sim::SimBoard&) {});
   EXPECT_NE(found.find("exit code 0"), std::string::npos) << found;
   EXPECT_NE(found.find("conformance passed"), std::string::npos) << found;
 }
 
-TEST_P(Conformance, FailsOnADefectiveBoard) {
+TEST_P(Conformance, FailsOnDefectiveBoard) {
   const std::string found = verdict(board(), [](hal::sim::SimBoard& b) {
     b.encoders().inject(1, hal::sim::EncoderFault::kDisconnected);
     b.safety_inputs().hold_dead_man(true);

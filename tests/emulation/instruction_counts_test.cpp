@@ -9,7 +9,7 @@ namespace {
 
 using emulation::parse_instruction_counts;
 
-TEST(InstructionCounts, ReadsAReport) {
+TEST(InstructionCounts, ReadsReport) {
   const emulation::InstructionCounts counts = parse_instruction_counts(
       "ticks 4 30 100 77 5000\n"
       "worst 3\n"
@@ -38,7 +38,7 @@ TEST(InstructionCounts, ReadsAReport) {
   EXPECT_EQ(counts.code[0].end, 0x81CU);
 }
 
-TEST(InstructionCounts, RefusesATruncatedReport) {
+TEST(InstructionCounts, RefusesTruncatedReport) {
   for (const char* report : {"", "ticks 4 30 100 77 5000\n", "ticks 4 30\nend\n", "end"}) {
     if (std::string(report) == "end") {
       EXPECT_NO_THROW((void)parse_instruction_counts(report));  // no tick at all

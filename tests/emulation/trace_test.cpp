@@ -87,7 +87,7 @@ RunResult run_on(const emulation::BoardDescription& board, emulation::EmulationO
 class Trace : public OnBoard {};
 TACTREE_ON_EVERY_BOARD(Trace);
 
-TEST_P(Trace, EqualsTheHostInBothModes) {
+TEST_P(Trace, EqualsHostInBothModes) {
   for (const core::RenderMode mode : {core::RenderMode::kSurface, core::RenderMode::kPaper}) {
     const simulation::Setup setup = setup_of(mode);
     const simulation::Summary expected = run_on_host(setup);
@@ -101,7 +101,7 @@ TEST_P(Trace, EqualsTheHostInBothModes) {
   }
 }
 
-TEST_P(Trace, OfAMovingBodyEqualsTheHostInBothModes) {
+TEST_P(Trace, EqualsHostWithMovingBody) {
   for (const core::RenderMode mode : {core::RenderMode::kSurface, core::RenderMode::kPaper}) {
     const simulation::Setup setup = setup_of(mode);
     const simulation::Summary expected = run_on_host(setup, moving_body());
@@ -116,14 +116,14 @@ TEST_P(Trace, OfAMovingBodyEqualsTheHostInBothModes) {
   }
 }
 
-TEST_P(Trace, EqualsTheHostAtFourKilohertz) {
+TEST_P(Trace, EqualsHostAtFourKilohertz) {
   simulation::Setup setup = setup_of(core::RenderMode::kSurface);
   setup.controller.rate_hz = 4000.0F;
   simulation::Simulation on_host(touched_shape().bytes(), setup, path());
   EXPECT_EQ(run_on(board(), options(), setup).summary.trace_crc32, record(on_host).trace_crc32);
 }
 
-TEST_P(Trace, TakesTheSameInstructionsInEveryRun) {
+TEST_P(Trace, RepeatsInstructionCounts) {
   const simulation::Setup setup = setup_of(core::RenderMode::kSurface);
   const RunResult first = run_on(board(), options(), setup);
   const RunResult second = run_on(board(), options(), setup);
@@ -143,7 +143,7 @@ TEST_P(Trace, TakesTheSameInstructionsInEveryRun) {
 }
 
 // On a core a hundred times too slow, ticks end late: a fault, and no force.
-TEST_P(Trace, OfABoardThatIsTooSlowEndsWithAFault) {
+TEST_P(Trace, FaultsOnSlowBoard) {
   emulation::EmulationOptions slow = options();
   slow.instruction_shift = 10;
   auto target = std::make_unique<emulation::EmulatedTarget>(board(), touched_shape().bytes(), slow);

@@ -43,7 +43,7 @@ BlobStatus open(const fs::path& path) {
   return open_blob(std::as_bytes(std::span(words)).first(bytes.size()), view);
 }
 
-TEST(Seeds, BlobsAreAcceptedOrRefusedAsNamed) {
+TEST(Seeds, GivesNamedBlobStatus) {
   std::set<std::string> seen;
   for (const auto& entry : fs::directory_iterator(tactree::test::seeds_folder() / "open_blob")) {
     const std::string file = entry.path().filename().string();
@@ -63,7 +63,7 @@ std::vector<fs::path> seeds_of(const char* target) {
   return files;
 }
 
-TEST(Seeds, TheFilesOfTheCommandLineAreRead) {
+TEST(Seeds, ReadsCommandLineFiles) {
   for (const fs::path& file : seeds_of("read_device")) {
     EXPECT_NO_THROW((void)tactree::support::load_device(file.string())) << file;
   }
@@ -82,7 +82,7 @@ TEST(Seeds, TheFilesOfTheCommandLineAreRead) {
   EXPECT_GE(seeds_of("read_rows").size(), 2U + tactree::simulation::injection_kinds().size());
 }
 
-TEST(Seeds, ScansAreRead) {
+TEST(Seeds, ReadsScans) {
   std::set<std::string> formats;
   for (const auto& entry : fs::directory_iterator(tactree::test::seeds_folder() / "read_scan")) {
     try {

@@ -56,7 +56,7 @@ TEST_F(AnalogueController, HomesArmsRendersAndStops) {
   expect_undisturbed();
 }
 
-TEST_F(AnalogueController, NamesEachMistakeWithCauseAndRemedy) {
+TEST_F(AnalogueController, NamesMistakesWithRemedy) {
   const auto refuses = [&](const std::string& part) {
     EXPECT_EQ(run(), 1) << part;
     EXPECT_TRUE(holds(output(), "error: ") && holds(output(), part)) << part << "\n" << output();
@@ -128,7 +128,7 @@ TEST_F(UsbController, HomesArmsRendersAndStops) {
   EXPECT_EQ(gadgets(), 0U) << "removed at the end";
 }
 
-TEST_F(UsbController, RemovesTheGadgetOfAKilledProcess) {
+TEST_F(UsbController, RemovesGadgetOfKilledProcess) {
   hold();
   ASSERT_FALSE(HasFatalFailure());
   kill(child_, SIGKILL);
@@ -143,7 +143,7 @@ TEST_F(UsbController, RemovesTheGadgetOfAKilledProcess) {
   EXPECT_EQ(board_->state().faults, 0U) << client::names_of(board_->state().faults);
 }
 
-TEST_F(UsbController, NamesAMissingPort) {
+TEST_F(UsbController, NamesMissingPort) {
   file_["usb"]["port"] = "none.0";
   EXPECT_EQ(run({"--dry-run"}), 1);
   EXPECT_TRUE(holds(output(), "no USB device port is 'none.0' (remedy: name one of: dummy_udc.0"))

@@ -57,7 +57,7 @@ TEST_F(Controller, HomesArmsRendersAndStops) {
 }
 
 /// Moves down to the first contact, 3 mm further, and along the surface.
-TEST_F(Controller, RendersTheBunny) {
+TEST_F(Controller, RendersBunny) {
   file_["model"] = bunny;
   above_m_ = 0.1;
   serve();
@@ -92,7 +92,7 @@ TEST_F(Controller, RendersTheBunny) {
 
 /// More edges than the kernel queues between two reads: the loop is suspended meanwhile, for less
 /// time than its guard allows.
-TEST_F(Controller, OverflowOfTheKernelsEdgeQueueIsAFault) {
+TEST_F(Controller, FaultsOnEdgeQueueOverflow) {
   EXPECT_EQ(run({"--version"}), 0);
   const int fits = holds(output(), "libgpiod 1.") ? 6 : 200;
   file_["real_time"]["guard_ms"] = 1000;
@@ -123,7 +123,7 @@ TEST_F(Controller, OverflowOfTheKernelsEdgeQueueIsAFault) {
   EXPECT_TRUE(is_invalid()) << "the position stays unknown until a restart";
 }
 
-TEST_F(Controller, EmergencyStopDisablesPowerWithinTwoTicks) {
+TEST_F(Controller, EmergencyStopDisablesPowerPromptly) {
   serve();
   ASSERT_FALSE(HasFatalFailure());
   home();
@@ -152,7 +152,7 @@ TEST_F(Controller, EmergencyStopDisablesPowerWithinTwoTicks) {
               1e-6 * static_cast<double>(longest));
 }
 
-TEST_F(Controller, EnableLineIsOffAfterAKill) {
+TEST_F(Controller, DropsEnableLineWhenKilled) {
   hold();
   ASSERT_FALSE(HasFatalFailure());
   kill(child_, SIGKILL);
@@ -172,7 +172,7 @@ TEST_F(Controller, EnableLineIsOffAfterAKill) {
 }
 
 /// The kernel does not release the lines of a hanging program; the guard does.
-TEST_F(Controller, GuardEndsAHangingLoop) {
+TEST_F(Controller, GuardEndsHangingLoop) {
   hold();
   ASSERT_FALSE(HasFatalFailure());
   const auto begin = std::chrono::steady_clock::now();
@@ -193,7 +193,7 @@ TEST_F(Controller, DryRunClaimsNothing) {
   std::printf("%s", output().c_str());
 }
 
-TEST_F(Controller, NamesEachMistakeWithCauseAndRemedy) {
+TEST_F(Controller, NamesMistakesWithRemedy) {
   const auto refuses = [&](const std::string& part) {
     EXPECT_EQ(run({"--dry-run"}), 1) << part << "\n" << output();
     EXPECT_TRUE(holds(output(), part) && holds(output(), "it would not run")) << output();
@@ -222,7 +222,7 @@ TEST_F(Controller, NamesEachMistakeWithCauseAndRemedy) {
   refuses("cube.blob: cannot be read");
 }
 
-TEST_F(Controller, NamesAMissingPermission) {
+TEST_F(Controller, NamesMissingPermission) {
   EXPECT_EQ(run({"--dry-run"}, true), 1);
   EXPECT_TRUE(holds(output(), "permission denied (remedy: join the group")) << output();
   EXPECT_EQ(run({}, true), 1);

@@ -95,7 +95,7 @@ TEST_F(Edges, AreCountedInLockStep) {
 }
 
 /// As fast as this kernel takes them, read once in a while, as a loop does.
-TEST_F(Edges, ManyLeaveTheExactCount) {
+TEST_F(Edges, ManyLeaveExactCount) {
   const int edges = is_long ? 1'000'000 : 50'000;
   constexpr int kEdgesPerRead = kSmallestQueue - 1;  // a reversal toggles one line only
   GpioEncoderBank bank(kAxes, "tactree", 0);
@@ -112,7 +112,7 @@ TEST_F(Edges, ManyLeaveTheExactCount) {
 
 /// A loop in step with the device: at each read an edge is on its way into the queue, since its
 /// thread has not run, of either axis in turn.
-TEST_F(Edges, AreCountedThoughSomeAreAlwaysInFlight) {
+TEST_F(Edges, AreCountedWhileInFlight) {
   GpioEncoderBank bank(kAxes, "tactree", 0);
   set_priority(kAboveInterrupts);
   for (int i = 0; i < 200; ++i) {
@@ -129,7 +129,7 @@ TEST_F(Edges, AreCountedThoughSomeAreAlwaysInFlight) {
 // The start waits for a rest of 2 ms: a device that moves slowly has them. Its edges also come
 // between the end of the rest and the first read, and then have not reached the queue. On a busy
 // host the emulated computer may find no rest: such a start is refused, and is no error.
-TEST_F(Edges, OfADeviceThatMovesSlowlyAtTheStartAreCounted) {
+TEST_F(Edges, AreCountedDuringSlowStart) {
   const std::jthread device([&](const std::stop_token& end) {
     set_priority(kAboveInterrupts + 1);
     while (!end.stop_requested()) {
@@ -178,7 +178,7 @@ int Edges::ramp(GpioEncoderBank& bank) {
   return counted;
 }
 
-TEST_F(Edges, AreCountedExactlyOrTheAxisIsInvalid) {
+TEST_F(Edges, AreExactUnlessAxisInvalid) {
   const unsigned runs = is_long ? 1000 : 25;
   int least = 4 * kLargestQueue;
   int most = 0;
@@ -201,7 +201,7 @@ TEST_F(Edges, AreCountedExactlyOrTheAxisIsInvalid) {
 }
 
 /// Without reads the kernel's queue overflows.
-TEST_F(Edges, LostInAnOverflowExceedTheTolerance) {
+TEST_F(Edges, LostInOverflowExceedTolerance) {
   GpioEncoderBank bank(kAxes, "tactree", 4);
   for (int i = 0; i < 3 * kLargestQueue; ++i) {
     chip_.pull(kA0, i % 2 == 0);
@@ -213,7 +213,7 @@ TEST_F(Edges, LostInAnOverflowExceedTheTolerance) {
 
 /// A whole period of both lines while no thread of an interrupt runs: the levels are the same after
 /// it.
-TEST_F(Edges, MergedByTheKernelInvalidateTheAxis) {
+TEST_F(Edges, MergedByKernelInvalidateAxis) {
   GpioEncoderBank bank(kAxes, "tactree", 0);
   set_priority(kAboveInterrupts);
   for (int i = 0; i < 6; ++i) {

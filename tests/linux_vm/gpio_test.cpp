@@ -33,7 +33,7 @@ bool holds(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-TEST_F(Gpio, IndexPulseLatchesTheCount) {
+TEST_F(Gpio, IndexPulseLatchesCount) {
   GpioEncoderBank bank({{"encoder0-a", "encoder0-b", "read-back"}, kAxes[1]}, "tactree", 0);
   turn(0, 1, bank);
   turn(0, 1, bank);
@@ -56,7 +56,7 @@ TEST_F(Gpio, IndexPulseLatchesTheCount) {
   EXPECT_FALSE(reading.index[0]) << "it is reported once";
 }
 
-TEST_F(Gpio, BrokenEmergencyStopWireReadsAsPressed) {
+TEST_F(Gpio, BrokenStopWireReadsPressed) {
   GpioSafetyInputs inputs("e-stop", "dead-man", "tactree");
   EXPECT_TRUE(inputs.emergency_stop()) << "nothing pulls the line up";
   chip_.pull(kStop, true);
@@ -69,7 +69,7 @@ TEST_F(Gpio, BrokenEmergencyStopWireReadsAsPressed) {
   EXPECT_TRUE(inputs.dead_man());
 }
 
-TEST_F(Gpio, BriefEmergencyStopIsDetected) {
+TEST_F(Gpio, DetectsBriefEmergencyStop) {
   GpioSafetyInputs inputs("e-stop", "dead-man", "tactree");
   chip_.pull(kStop, true);
   std::this_thread::sleep_for(std::chrono::milliseconds(20));
@@ -83,7 +83,7 @@ TEST_F(Gpio, BriefEmergencyStopIsDetected) {
   EXPECT_FALSE(inputs.emergency_stop());
 }
 
-TEST_F(Gpio, EnableLineIsReadBackAtTheAmplifiers) {
+TEST_F(Gpio, ReadsEnableLineAtAmplifiers) {
   GpioEnableLine line("enable", "read-back", "tactree");
   EXPECT_FALSE(chip_.level(kEnable));
   line.set(true);
@@ -93,7 +93,7 @@ TEST_F(Gpio, EnableLineIsReadBackAtTheAmplifiers) {
   EXPECT_TRUE(line.read_back());
 }
 
-TEST_F(Gpio, KilledProgramReleasesTheEnableLine) {
+TEST_F(Gpio, KilledProgramReleasesEnableLine) {
   const pid_t child = fork();
   if (child == 0) {
     GpioEnableLine line("enable", "read-back", "tactree");
@@ -112,7 +112,7 @@ TEST_F(Gpio, KilledProgramReleasesTheEnableLine) {
   EXPECT_FALSE(chip_.level(kEnable));
 }
 
-TEST_F(Gpio, RefusalsNameLineCauseAndRemedy) {
+TEST_F(Gpio, RefusalsNameLineAndRemedy) {
   const GpioLines held = GpioLines::outputs({"enable"}, "somebody", false);
   const std::string used = refusal([] { GpioEnableLine("enable", "read-back", "tactree"); });
   EXPECT_TRUE(holds(used, "line 'enable': in use by 'somebody'")) << used;
@@ -129,7 +129,7 @@ TEST_F(Gpio, RefusalsNameLineCauseAndRemedy) {
   EXPECT_EQ(find_line(other.label() + ":dead-man").chip, "/dev/" + other.chip());
 }
 
-TEST_F(Gpio, NamesAMissingPermission) {
+TEST_F(Gpio, NamesMissingPermission) {
   const pid_t child = fork();
   if (child == 0) {
     const bool other = setgid(65534) == 0 && setuid(65534) == 0;
@@ -141,7 +141,7 @@ TEST_F(Gpio, NamesAMissingPermission) {
   EXPECT_EQ(status, 0);
 }
 
-TEST_F(Gpio, GpioinfoShowsTheConsumerOfALine) {
+TEST_F(Gpio, GpioinfoShowsLineConsumer) {
   const GpioEncoderBank bank(kAxes, "tactree encoders", 0);
   FILE* const out = popen(("gpioinfo " + chip_.chip()).c_str(), "r");
   ASSERT_NE(out, nullptr);

@@ -21,7 +21,7 @@ std::uint64_t packets_wanted() {
   return text == nullptr ? 1'000'000 : std::strtoull(text, nullptr, 10);
 }
 
-TEST(Usb, TheBoardIsListedWithItsNameAndSerialNumber) {
+TEST(Usb, ListsNameAndSerialNumber) {
   const BoardOnUsb board;
   std::vector<client::UsbDeviceInfo> devices;
   ASSERT_TRUE(eventually([&] {
@@ -82,7 +82,7 @@ TEST(Usb, HaltedEndpointResumesWhenCleared) {
   libusb_exit(context);
 }
 
-TEST(Usb, SecondProgramIsRefusedWhileTheBoardIsInUse) {
+TEST(Usb, RefusesSecondProgram) {
   const BoardOnUsb board;
   const auto first = open_board();
   ASSERT_TRUE(first);
@@ -95,7 +95,7 @@ TEST(Usb, SecondProgramIsRefusedWhileTheBoardIsInUse) {
   }
 }
 
-TEST(Usb, MissingPermissionNamesTheUdevRule) {
+TEST(Usb, MissingPermissionNamesUdevRule) {
   const BoardOnUsb board;
   ASSERT_TRUE(open_board());
   const pid_t child = fork();
@@ -111,7 +111,7 @@ TEST(Usb, MissingPermissionNamesTheUdevRule) {
   EXPECT_EQ(status, 0);
 }
 
-TEST(Usb, NamesAMissingBoard) {
+TEST(Usb, NamesMissingBoard) {
   try {
     (void)client::open_usb("ABCD");
     FAIL() << "opened what is not there";
@@ -120,7 +120,7 @@ TEST(Usb, NamesAMissingBoard) {
   }
 }
 
-TEST(Usb, RoundTripIsMeasured) {
+TEST(Usb, MeasuresRoundTrip) {
   const BoardOnUsb board;
   Application application(open_board());
   ASSERT_TRUE(application.open().ok());
@@ -136,7 +136,7 @@ TEST(Usb, RoundTripIsMeasured) {
 }
 
 /// Each tick has a message; one that does not come was counted by the board.
-TEST(Usb, LostTelemetryIsCounted) {
+TEST(Usb, CountsLostTelemetry) {
   const BoardOnUsb board(std::chrono::microseconds(0));
   Application application(open_board());
   ASSERT_TRUE(application.open().ok());
@@ -176,7 +176,7 @@ TEST(Usb, LostTelemetryIsCounted) {
       std::chrono::duration<double>(Clock::now() - begin).count());
 }
 
-TEST(Usb, StateChangesAreNotifiedWithoutARequest) {
+TEST(Usb, NotifiesOfStateChanges) {
   const BoardOnUsb board;
   Application application(open_board());
   ASSERT_TRUE(application.open().ok());
@@ -206,7 +206,7 @@ TEST(Usb, StateChangesAreNotifiedWithoutARequest) {
 }
 
 /// Unplugs the board when idle, during a request, telemetry, a half-written request.
-TEST(Usb, UnplugIsDetectedAtAnyMomentAndReplugWorks) {
+TEST(Usb, SurvivesUnplugAtAnyMoment) {
   BoardOnUsb board;
   std::mt19937 random(1);
   for (int round = 0; round < 24; ++round) {
@@ -243,7 +243,7 @@ TEST(Usb, UnplugIsDetectedAtAnyMomentAndReplugWorks) {
   }
 }
 
-TEST(Usb, HotplugIsReportedWithoutUdev) {
+TEST(Usb, ReportsHotplugWithoutUdev) {
   BoardOnUsb board;
   client::UsbWatch watch(std::chrono::milliseconds(20));
   const auto wait_for = [&](bool arrived) {
@@ -263,7 +263,7 @@ TEST(Usb, HotplugIsReportedWithoutUdev) {
 }
 
 /// A program that ends in the middle of a DFU transfer, and a cable that is pulled there.
-TEST(Usb, InterruptedDfuTransferKeepsTheModel) {
+TEST(Usb, InterruptedDfuTransferKeepsModel) {
   BoardOnUsb board;
   const auto& model = BoardOnUsb::blob().written().bytes;
   const auto* const bytes = reinterpret_cast<const unsigned char*>(model.data());

@@ -57,7 +57,7 @@ class Operations : public testing::Test {
   std::vector<std::uint32_t> words_;
 };
 
-TEST_F(Operations, TickOfOrdinaryContactTakesFewerThan3000) {
+TEST_F(Operations, OrdinaryContactTakesUnder3000) {
   std::uint32_t number = 0;
   ASSERT_EQ(scene_.add(view_, {}, number), core::ModelStatus::kOk);
   (void)tick({0.0F, 0.0F, 6e-3F}, {});
@@ -79,7 +79,7 @@ TEST_F(Operations, TickOfOrdinaryContactTakesFewerThan3000) {
   EXPECT_LE(mean, 3000U);
 }
 
-TEST_F(Operations, NoTickExceedsTheBoundsOfItsLoopsAtAnyWorkTier) {
+TEST_F(Operations, NoTickExceedsLoopBounds) {
   std::uint32_t number = 0;
   ASSERT_EQ(scene_.add(view_, {}, number), core::ModelStatus::kOk);
   std::mt19937 random(7);

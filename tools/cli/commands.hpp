@@ -5,8 +5,8 @@
 
 namespace tactree::cli {
 
-// Each adds its subcommand to `app`; running it sets `exit_code`. Errors are thrown as
-// std::runtime_error, with a text for the user: support::UserError, client::LinkError,
+// Each function adds its command to `app`; executing the command sets `exit_code`. Errors are
+// thrown as std::runtime_error with a text for the user: support::UserError, client::LinkError,
 // builder::ReadError, builder::BuildError, wcet::BoundError.
 
 // device/

@@ -1,10 +1,10 @@
 #pragma once
-// Orderly termination by Ctrl-C of verbs that run until stopped.
+// Orderly termination by Ctrl-C of commands that run until they are stopped.
 
 namespace tactree::cli {
 
-/// Catches SIGINT and SIGTERM from now on; interrupted() reports them. Call before starting
-/// threads.
+/// Catches SIGINT and SIGTERM from now on; interrupted() reports them. Call it before starting any
+/// thread.
 void watch_interruption();
 [[nodiscard]] bool interrupted();
 

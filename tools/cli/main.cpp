@@ -14,8 +14,8 @@
 namespace tactree::cli {
 namespace {
 
-/// Number of characters to insert, remove, replace or swap with the next that turn one word into
-/// the other (optimal string alignment).
+/// Minimum number of insertions, deletions, replacements and swaps of adjacent characters that turn
+/// one word into the other (optimal string alignment).
 std::size_t edits(const std::string& from, const std::string& to) {
   std::vector<std::vector<std::size_t>> fewest(from.size() + 1U,
                                                std::vector<std::size_t>(to.size() + 1U));
@@ -35,7 +35,7 @@ std::size_t edits(const std::string& from, const std::string& to) {
   return fewest.back().back();
 }
 
-/// The error for a first argument that is no verb; empty if it is one, or an option.
+/// Error message for a first argument that is not a command; empty if it is a command or an option.
 std::string unknown_verb(const CLI::App& app, const std::string& word) {
   if (word.empty() || word[0] == '-') {
     return "";
@@ -57,7 +57,8 @@ std::string unknown_verb(const CLI::App& app, const std::string& word) {
 }
 
 int run(int argc, char** argv) {
-  // A write beyond a limit on file sizes then fails, with a message and without a temporary file.
+  // If the signal is ignored, a write beyond the limit on file sizes fails with a message and
+  // leaves no temporary file.
   std::signal(SIGXFSZ, SIG_IGN);
   CLI::App app{"tactree: builds models from 3D scans and renders them on haptic devices"};
   app.set_version_flag("--version", "tactree " TACTREE_VERSION);

@@ -1,5 +1,5 @@
-// Counts all heap allocations: the C library's own functions stand behind these, and operator
-// new calls them.
+// Counts all heap allocations. These functions replace those of the C library and call its internal
+// ones; operator new calls malloc().
 
 #include <cstddef>
 #include <cstdint>

@@ -21,7 +21,8 @@ constexpr support::JsonRemedies kRemedies = {"is unknown", "docs/LINUX-BOARD.md 
                                              "see docs/LINUX-BOARD.md",
                                              "one number for each axis, in [brackets]"};
 
-// A guard that looks less often than some ticks would take one late tick for a dead loop.
+// Minimum time-out of the guard in ticks. A shorter time-out would treat one late tick as a dead
+// loop.
 constexpr std::uint64_t kGuardTicks = 5;
 constexpr std::uint64_t kNsPerMs = 1'000'000;
 
@@ -45,7 +46,7 @@ support::JsonReader::Json read_json(const std::filesystem::path& file) {
   }
 }
 
-/// A path in the file, meant from the file's folder; the name of a device is none.
+/// Converts a path relative to the file's folder.
 std::string from_folder(const std::filesystem::path& file, const std::string& path) {
   return (file.parent_path() / path).string();
 }
@@ -88,7 +89,7 @@ std::string maybe_text(support::JsonReader& reader, const char* key) {
   return reader.has(key) ? reader.text(key) : "";
 }
 
-/// All axes are of the kind of the first one: `key` distinguishes the kinds.
+/// Returns true if all axes have `key` and false if none has it; refuses a mixture.
 bool are_of_kind(const std::vector<support::JsonReader>& axes, const char* key) {
   const bool first = axes.front().has(key);
   for (const support::JsonReader& axis : axes) {
@@ -155,7 +156,7 @@ void read_pwm(support::JsonReader& motors, std::vector<support::JsonReader>& axe
 
 void read_converters(support::JsonReader& motors, std::vector<support::JsonReader>& axes,
                      hal::linux_gpio::ConverterSettings& settings) {
-  constexpr std::uint32_t kCodeMax = 0xFFFFFF;  // of 24 bits: finer ones cannot be had
+  constexpr std::uint32_t kCodeMax = 0xFFFFFF;  // 24 bits, the finest resolution available
   if (motors.has("converter_root")) {
     settings.root = motors.text("converter_root");
   }
@@ -253,7 +254,7 @@ core::Configuration begin_configuration(support::JsonReader& reader,
   return configuration;
 }
 
-// What a motor cannot give is not asked of it.
+// Limits the efforts to those that the motors can produce.
 void bound_efforts(const hal::linux_gpio::ControllerBoardSettings& board, core::Configuration& c) {
   for (std::size_t i = 0; i < board.motors.axes.size(); ++i) {
     c.effort_max[i] = std::min(c.effort_max[i], board.motors.axes[i].effort_at_full_width);
@@ -263,10 +264,11 @@ void bound_efforts(const hal::linux_gpio::ControllerBoardSettings& board, core::
   }
 }
 
-/// What of a slew is in one tick must not be more than the gate takes: at a low rate a default may
-/// be. A slew that was given stays, and is refused if it must be.
+/// Reduces default slew rates whose change per tick exceeds the range of the safety gate, which may
+/// happen at a low rate. A slew rate in the file is kept, and is refused later if it is out of
+/// range.
 void fit_slews(bool given, core::Configuration& c) {
-  constexpr float kShareOfATick = 1.0F;  // of the limit; the gate takes up to 2
+  constexpr float kShareOfATick = 1.0F;  // change per tick / limit; the gate accepts up to 2
   if (!given) {
     c.slew_N_s = std::min(c.slew_N_s, kShareOfATick * c.force_max_N * c.rate_hz);
   }

@@ -1,5 +1,5 @@
 #pragma once
-// What the controller of a Linux board is to do: a JSON file, docs/LINUX-BOARD.md.
+// Settings of the controller of a Linux board, from a JSON file (docs/LINUX-BOARD.md).
 
 #include <cstdint>
 #include <filesystem>
@@ -12,19 +12,19 @@
 namespace tactree::controller {
 
 struct RealTimeSettings {
-  int priority = 80;      ///< of SCHED_FIFO, 1 .. 98; 0: none is wanted
+  int priority = 80;      ///< of SCHED_FIFO, 1 .. 98; 0: no real-time scheduling
   bool required = false;  ///< true: refuse to run without priority and locked memory
 };
 
-/// Where an application finds it: one of the two.
+/// Link for applications: a local socket or a USB device port.
 struct LinkSettings {
-  std::string socket;    ///< path of a local one; empty: the USB device port
-  std::string usb_port;  ///< of /sys/class/udc; empty: the only one
+  std::string socket;    ///< path of the socket; empty: the USB device port is used
+  std::string usb_port;  ///< name in /sys/class/udc; empty: the only one
   std::uint32_t usb_serial = 0;
 };
 
 struct ControllerFile {
-  std::string file;  ///< where it was read from
+  std::string file;  ///< path of the file itself
   support::Device device;
   std::filesystem::path model;
   core::Configuration configuration{};
@@ -33,8 +33,8 @@ struct ControllerFile {
   RealTimeSettings real_time{};
 };
 
-/// Paths in it are meant from its own folder. Throws support::UserError: "file: place: cause
-/// (remedy)".
+/// Paths in the file are relative to its folder. Throws support::UserError with the text "file:
+/// location: cause (remedy)".
 [[nodiscard]] ControllerFile read_controller_file(const std::filesystem::path& file);
 
 }  // namespace tactree::controller

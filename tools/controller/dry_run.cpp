@@ -20,7 +20,7 @@ namespace {
 
 namespace gpio = hal::linux_gpio;
 
-/// One row of the table; `look` returns the detail, or throws it.
+/// One row of the table. `look` returns the detail, or throws an exception with it.
 Finding row(const std::string& what, const std::string& which,
             const std::function<std::string()>& look) {
   try {
@@ -66,7 +66,8 @@ void examine_lines(const gpio::ControllerBoardSettings& board, std::vector<Findi
   line("amplifiers good", good_line(board));
 }
 
-/// Lines of one bank are read at one moment, so they are on one chip.
+/// The encoder lines are read simultaneously, so they must be on the same chip. Brake and enable
+/// line must also be on the same chip.
 void examine_banks(const gpio::ControllerBoardSettings& board, std::vector<Finding>& findings) {
   findings.push_back(row("lines of a bank", "one chip each", [&board] {
     std::string chip;

@@ -1,5 +1,6 @@
 #pragma once
-// Would it run here? Looks, and takes nothing: no line, no channel, no watchdog.
+// Checks whether the controller can run on this board, without requesting any line, channel or
+// watchdog.
 
 #include <string>
 #include <vector>
@@ -9,16 +10,17 @@
 namespace tactree::controller {
 
 struct Finding {
-  std::string what;   ///< "line encoder 0 a"
+  std::string what;   ///< for example "encoder 0 a"
   std::string which;  ///< its name in the file
   bool good = true;
-  bool matters = true;  ///< false: a warning where it is not good
-  std::string detail;   ///< where it is, or cause and remedy
+  bool matters = true;  ///< false: only a warning if it is not good
+  std::string detail;   ///< location, or cause and remedy
 };
 
 [[nodiscard]] std::vector<Finding> examine(const ControllerFile& file);
 
-/// Prints the findings as a table. Returns an exit code: 0 where all that matters is good.
+/// Prints the findings as a table. Returns an exit code, which is 0 if all findings that matter are
+/// good.
 [[nodiscard]] int print_findings(const std::vector<Finding>& findings);
 
 }  // namespace tactree::controller

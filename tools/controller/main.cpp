@@ -15,7 +15,7 @@
 namespace tactree {
 namespace {
 
-/// After a crash, whatever the kernel did with the line: it is off.
+/// Switches the enable line off, for use after a crash, when the state of the line is unknown.
 int put_off(const controller::ControllerFile& file) {
   const auto line = hal::linux_gpio::GpioLines::outputs({file.board.enable}, "tactree off", false);
   fmt::print("line '{}' is off\n", file.board.enable);

@@ -46,7 +46,7 @@ std::vector<std::string> enter_real_time(const RealTimeSettings& settings) {
     missing.push_back(no_lock(errno));
   }
   touch_stack();
-  timespec now{};  // the kernel's page with the clock is none that can be locked
+  timespec now{};  // touches the kernel's clock page, which cannot be locked
   (void)clock_gettime(CLOCK_MONOTONIC, &now);
   if (settings.priority > 0) {
     sched_param parameters{};

@@ -1,5 +1,5 @@
 #pragma once
-// What a loop needs of the kernel to be in time, and proof that it got it.
+// Real-time settings of the kernel for the control loop, and counters of disturbances.
 
 #include <cstdint>
 #include <string>
@@ -9,14 +9,14 @@
 
 namespace tactree::controller {
 
-/// Of the calling thread, from now on: priority, memory that stays where it is, a stack that has
-/// been touched. Returns what it could not get, one sentence each with its remedy.
+/// Sets the priority of the calling thread, locks the memory of the process, and touches the
+/// thread's stack. Returns one sentence with a remedy for each step that failed.
 [[nodiscard]] std::vector<std::string> enter_real_time(const RealTimeSettings& settings);
 
-/// What enter_real_time() could not get, were it called. Changes nothing.
+/// What enter_real_time() would return. Has no lasting effect.
 [[nodiscard]] std::vector<std::string> missing_rights(const RealTimeSettings& settings);
 
-/// What disturbs a tick, of the calling thread.
+/// Events in the calling thread that disturb a tick.
 struct Disturbances {
   std::uint64_t minor_faults = 0;
   std::uint64_t major_faults = 0;
@@ -24,8 +24,8 @@ struct Disturbances {
 };
 [[nodiscard]] Disturbances disturbances();
 
-/// Calls of malloc, calloc, realloc and aligned_alloc of the calling thread, by whomever; 0 where
-/// they are not counted (a build with sanitizers).
+/// Number of calls of malloc, calloc, realloc and aligned_alloc in the calling thread, also from
+/// libraries; 0 if they are not counted (a build with AddressSanitizer or without glibc).
 [[nodiscard]] std::uint64_t allocations_of_this_thread();
 
 }  // namespace tactree::controller

@@ -25,12 +25,12 @@ namespace {
 
 using hal::linux_gpio::ControllerBoard;
 
-// Requests that a session may work on before a tick, and the share of the period that is left to
-// the tick's own way through the kernel.
+// Maximum number of session steps before a tick, and the reciprocal of the fraction of the period
+// that they must leave for the kernel to start the tick.
 constexpr int kPiecesPerTick = 64;
 constexpr std::uint64_t kReserve = 4;
 
-/// Ticks and session are in one thread: nothing is to be held.
+/// Ticks and session run in the same thread, therefore hold_ticks() has no effect.
 class Platform {
  public:
   explicit Platform(ControllerBoard& board) : board_(board) {}
@@ -57,7 +57,7 @@ std::string lateness_table(const hal::linux_time::LatenessHistogram& lateness) {
   return text;
 }
 
-/// What the loop leaves for others to read.
+/// State of the loop, for other threads.
 struct Progress {
   std::atomic<bool> ending{false};
   std::atomic<std::uint64_t> minor_faults{0};
@@ -83,7 +83,7 @@ void print_report(const ControllerBoard& board, const Progress& progress) {
   std::fflush(stdout);
 }
 
-/// Signals, and the printing that they ask for, away from the loop.
+/// Thread that handles signals and prints the reports that they request, so that the loop does not.
 class Attendant {
  public:
   Attendant(const ControllerBoard& board, Progress& progress)
@@ -97,7 +97,7 @@ class Attendant {
   Attendant(const Attendant&) = delete;
   Attendant& operator=(const Attendant&) = delete;
 
-  /// Before there is any thread: signals are for this one.
+  /// Call it before any thread is created, so that only this thread receives the signals.
   static void block_signals() {
     const sigset_t wanted = signals();
     (void)pthread_sigmask(SIG_BLOCK, &wanted, nullptr);
@@ -159,7 +159,7 @@ void attend(hal::GadgetPort& port, const core::Status& status, std::uint32_t now
   port.attend(status, now_us);
 }
 
-/// Ticks, and between them the session; all that it needs is there before it begins.
+/// Runs the ticks, and the session between them. The constructor creates everything that they need.
 template <hal::BytePort Port>
 class Runner {
  public:
@@ -179,7 +179,7 @@ class Runner {
     session_.started(start, file.configuration);
   }
 
-  /// `where` applications find it, for people.
+  /// `where` is the address for applications, for a message.
   void run(const std::string& where) {
     const Attendant attendant(board_, progress_);
     tell_missing(file_, enter_real_time(file_.real_time));

@@ -7,8 +7,8 @@
 
 namespace tactree::controller {
 
-/// Runs until SIGTERM or SIGINT; prints a report then, and at each SIGUSR1. Returns an exit code.
-/// Throws where something is refused, before the first tick.
+/// Runs until SIGTERM, SIGINT or SIGHUP. Prints a report at the end and on each SIGUSR1. Returns an
+/// exit code. Throws before the first tick if something is refused.
 [[nodiscard]] int serve(const ControllerFile& file);
 
 }  // namespace tactree::controller

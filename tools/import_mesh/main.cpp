@@ -24,7 +24,7 @@ constexpr int kExitOutOfMemory = 3;
 
 int output = -1;  // the original standard output
 
-// AddressSanitizer reserves terabytes of address space: RLIMIT_AS would stop it at its start.
+// AddressSanitizer reserves terabytes of address space, which RLIMIT_AS would prevent.
 #if defined(__SANITIZE_ADDRESS__)
 constexpr bool kLimitAddresses = false;
 #elif defined(__has_feature)
@@ -66,7 +66,8 @@ int run(int count, char** arguments) {
     std::fprintf(stderr, "usage: %s FILE HINT MEMORY_BYTES CPU_SECONDS\n", arguments[0]);
     return kExitUsage;
   }
-  // The result alone goes to the original output; what the library prints goes to standard error.
+  // Only the result goes to the original output; text that the library prints goes to standard
+  // error.
   output = ::dup(STDOUT_FILENO);
   if (output < 0 || ::dup2(STDERR_FILENO, STDOUT_FILENO) < 0) return kExitUsage;
   if (!set_limits(arguments[3], arguments[4])) return refuse("its limits cannot be set");

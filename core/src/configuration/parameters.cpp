@@ -5,8 +5,8 @@
 namespace tactree::core {
 namespace {
 
-// Offset in a Configuration. All are float32 except the home counts, int32, which are exact in
-// float32 within their range.
+// Location of a parameter in a Configuration. All parameters are float32, except the home counts,
+// which are int32.
 struct Place {
   Parameter parameter{};
   std::size_t offset = 0;
@@ -14,7 +14,7 @@ struct Place {
 };
 
 constexpr std::size_t kFloat = sizeof(float);
-constexpr float kMaxCounts = 16777216.0F;  // 2^24
+constexpr float kMaxCounts = 16777216.0F;  // 2^24: float32 represents all integers up to it
 
 #define TACTREE_AXES(member, low, high, is_count)                                         \
   {{#member "[0]", low, high}, offsetof(Configuration, member), is_count},                \

@@ -1,4 +1,4 @@
-// Gathering: which points of which leaves are near the centre, in slices that fit a tick.
+// Gathers the points near the centre, in slices that fit into a tick.
 // Loop and memory annotations: docs/BOUND.md.
 // memory: RAM
 
@@ -11,12 +11,13 @@
 namespace tactree::core {
 namespace {
 
-// In slacks: distance of a new centre ahead of the query, less than 1; and the longest stride of a
-// query that still predicts its next one.
+// In units of the slack: distance of a new centre ahead of the query, below 1 so that the set
+// covers the query; and the maximum stride of a query that predicts the next one. A longer stride
+// is a jump.
 constexpr float kAhead = 0.7F;
 constexpr float kStride = 1.5F;
 
-// Rounding a centre to integers moves it by less than kRounding. In all, a gather loses less than
+// Rounding a centre to integers moves it by less than kRounding. In total, a gather loses less than
 // kLostToRounding lattice units of its reach: the rounded centre, the reach rounded down, and the
 // rounded distance of a point.
 constexpr std::int32_t kRounding = 1;
@@ -24,7 +25,7 @@ constexpr float kLostToRounding = 3.0F;
 
 constexpr std::uint32_t lower(std::uint32_t a, std::uint32_t b) { return a < b ? a : b; }
 
-/// To the nearest whole number, for |value| < 2^15.
+/// Rounds to the nearest integer, for |value| < 2^15.
 constexpr std::int32_t rounded(float value) {
   constexpr float kPositive = 32768.0F;
   return static_cast<std::int32_t>(value + (kPositive + 0.5F)) -
@@ -32,10 +33,10 @@ constexpr std::int32_t rounded(float value) {
 }
 
 /// The ball of a gather in the integer coordinates of one leaf. Most points are outside, and
-/// comparing integers is faster than comparing floats. Unit: half sites from the leaf's first site,
-/// to which the centre is rounded. In a uniform blob this unit is the lattice unit, and the radius
-/// is reduced by the rounding error. In a blob with leaves of several sizes the unit may be coarse:
-/// the radius is enlarged, and the points inside are compared again exactly.
+/// comparing integers is faster than comparing floats. Unit: half a site, counted from the leaf's
+/// first site; the centre is rounded to it. In a uniform blob this unit is the lattice unit, and
+/// the radius is reduced by the rounding error. In a blob with leaves of several sizes the unit may
+/// be coarse: the radius is enlarged, and the points inside are compared again exactly.
 class LeafBall {
  public:
   LeafBall(const BlobView& view, const NearLeaf& leaf, Int3 leaf_min) {
@@ -58,8 +59,8 @@ class LeafBall {
     }
   }
 
-  /// Range of the words in the slab of z that the ball touches; words ascend with z. Empty if the
-  /// first exceeds the last.
+  /// Range of the words in the slab of z that the ball touches; words ascend with z. The range is
+  /// empty if the first exceeds the last.
   [[nodiscard]] std::uint32_t first_word() const { return first_word_; }
   [[nodiscard]] std::uint32_t last_word() const { return last_word_; }
 
@@ -72,7 +73,7 @@ class LeafBall {
   [[nodiscard]] bool holds(Int3 offset) const {
     return offset.x * offset.x + offset.y * offset.y + offset.z * offset.z <= radius_squared_;
   }
-  /// Exact, lattice units.
+  /// Exact position of a point, lattice units.
   [[nodiscard]] Int3 place_of(Int3 offset) const {
     return {origin_.x + half_site_ * offset.x, origin_.y + half_site_ * offset.y,
             origin_.z + half_site_ * offset.z};
@@ -96,7 +97,7 @@ float CandidateSet::slack_of(const BlobView& view) {
   return view.reach_m() - view.support_radius_m() - kLostToRounding * view.step_m();
 }
 
-// A centre ahead of a moving query stays valid twice as long as one at the query.
+// A centre ahead of a moving query stays valid 1 + kAhead times as long as one at the query.
 void CandidateSet::begin_for(const BlobView& view, Vec3 x) {
   const float slack = slack_of(view);
   const Vec3 stride = x - centre_;
@@ -156,10 +157,10 @@ void CandidateSet::cover(const BlobView& view, Vec3 x) {
   }
 }
 
-// The body is what is behind one of the faces that hold, and behind all that end them. What is
-// known of it before the loop is in locals: registers.
+// The body occupies the region behind at least one `holding` face and behind all `ending` faces.
+// The loop reads the faces from locals, which a compiler keeps in registers.
 [[gnu::noinline]] void CandidateSet::hide(const Neighbour& neighbour, float side) {
-  const NeighbourFace none{{}, 1e30F};  // ends nothing
+  const NeighbourFace none{{}, 1e30F};  // no effect as an ending face
   const std::uint32_t faces = neighbour.holding + neighbour.ending;
   const NeighbourFace a = neighbour.face[0];
   const NeighbourFace b = faces > 1U ? neighbour.face[1] : none;
@@ -230,7 +231,7 @@ void CandidateSet::begin_leaf(const BlobView& view, const NearLeaf& leaf,
   std::uint32_t low = leaf.first_point;
   std::uint32_t length = end_ - low;
   if (length != 0U && words[low] >= first_word) {  // memory: flash
-    length = 0U;                                   // no word is below
+    length = 0U;                                   // no word is below first_word
   }
   while (length != 0U) {  // bound: kLeafHalvings
     const std::uint32_t half = length / 2U;
@@ -241,7 +242,7 @@ void CandidateSet::begin_leaf(const BlobView& view, const NearLeaf& leaf,
   next_ = low;
 }
 
-// False: the slice is exhausted within the leaf.
+// Returns false if the slice is exhausted within the leaf.
 bool CandidateSet::gather_leaf(const BlobView& view, const NearLeaf& leaf, Int3 leaf_min,
                                GatherSlice& left) {
   const LeafBall ball(view, leaf, leaf_min);

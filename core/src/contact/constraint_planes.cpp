@@ -1,5 +1,5 @@
-// Closed forms of the shortest move onto one, two or three planes, and the choice among them. All
-// sets of planes are compared by the distances and the cosines between the normals alone.
+// Closed forms of the shortest move onto one, two or three planes, and the selection among them.
+// The sets of planes are compared by the distances and the cosines between the normals alone.
 // Loop and memory annotations: docs/BOUND.md.
 // memory: RAM
 
@@ -8,11 +8,13 @@
 namespace tactree::core {
 namespace {
 
-// Behind a plane by less is on it, m: several roundings of coordinates below 1 m.
+// A point behind a plane by less than this, m, counts as on it: several rounding errors of
+// coordinates below 1 m.
 constexpr float kOnPlane = 2e-7F;
 
-// Two planes are parallel if the sine of their angle is below 0.03, three meet in no point if the
-// determinant of their normals is below 1e-3.
+// Two planes count as parallel if the squared sine of their angle is at most kParallel (1.8
+// degrees). Three planes have no common point if the determinant of their normals is at most
+// kNoPoint.
 constexpr float kParallel = 1e-3F;
 constexpr float kNoPoint = 1e-3F;
 
@@ -27,9 +29,9 @@ struct OntoTwo {
   float by_b = 0.0F;
 };
 
-/// Onto planes a and b, at distances a and b and with this cosine between them; c is the third
-/// plane. Refused: they are parallel, a plane does not hold the point back and need not be reached
-/// (`a_on`, `b_on`), or the step ends behind c.
+/// The step onto planes a and b. `a`, `b`, `c`: distances of the three planes; `ab`, `bc`, `ca`:
+/// cosines between their normals. Not allowed if a and b are parallel, if one of them does not hold
+/// the point back and need not be reached (`a_on`, `b_on`), or if the step ends behind c.
 OntoTwo onto_two(float a, float b, float c, float ab, float bc, float ca, bool a_on, bool b_on) {
   OntoTwo step;
   const float sine_squared = 1.0F - ab * ab;
@@ -56,8 +58,8 @@ void ConstraintPlanes::step_by(Vec3 step) {
   }
 }
 
-// The sets of planes in the order of their size: the first one whose step is allowed is the
-// shortest, since its planes hold the point back and the others do not.
+// Tries the sets of planes in ascending order of size. The first allowed step is the shortest,
+// since the planes of its set hold the point back and the others do not.
 PlaneMove shortest_move(const ConstraintPlanes& planes, bool onto_first) {
   const Plane& first = planes.plane[0];
   const Plane& second = planes.plane[1];

@@ -7,23 +7,25 @@
 namespace tactree::core {
 namespace {
 
-// Offset of the centroid, in support radii, from which the strength falls and at which it is 0.
-// On a regular sheet it is below 0.1 inside and 0.24 on the boundary.
+// Offset of the centroid, in support radii, at which the strength begins to fall and at which it is
+// 0. On a regular sheet it is below 0.1 inside and 0.24 on the boundary.
 constexpr float kFadeBegins = 0.6F;
 constexpr float kFadeEnds = 0.95F;
 
-// Below this share of A the points nearly coincide: fit a plane.
+// Minimum ratio of the spread of the points about their centroid to Moments::a. Below it the points
+// nearly coincide and determine no curvature; the fit is a plane.
 constexpr float kFlatShare = 1e-3F;
 
-// Largest share of points between two faces; more, and the edge is round, not sharp.
+// Maximum weight of the points between two faces, relative to the weight of the lesser face. Above
+// it the edge is round, not sharp.
 constexpr float kRoundShare = 0.25F;
 
-// Fewer points are no face beside the first one.
+// Minimum number of points of a further face: one or two stray normals are not a face.
 constexpr std::uint32_t kFacePoints = 3;
 
-// Faces closer than kCreaseCosine are told apart only if they are concave and flat: the smooth
-// surface between them would be above the crease. Least squared length of a flat face's mean
-// normal.
+// Faces whose normals differ by less than kCreaseCosine are separated only if they are concave and
+// flat: the smooth surface between them would lie above the crease. kFlat is the minimum squared
+// length of the mean normal of a flat face.
 constexpr float kFlat = 0.9995F;
 
 constexpr FaceFit kUnsupported = {false, 0.0F, 0.0F, {}};
@@ -42,7 +44,7 @@ float strength_of(float offset) {
 
 bool is_flat(const Moments& sums) { return length_squared(sums.n) > kFlat * sums.w * sums.w; }
 
-/// Few points lie between the faces.
+/// True if few points lie between the faces.
 bool is_sharp(const Face& a, const Face& b) {
   const float lesser = a.sums.w < b.sums.w ? a.sums.w : b.sums.w;
   return a.between + b.between <= kRoundShare * lesser;
@@ -50,7 +52,8 @@ bool is_sharp(const Face& a, const Face& b) {
 
 enum class Relation : std::uint8_t { kNone, kConvex, kConcave };
 
-/// Two faces in front of each other are concave.
+/// Two faces are concave if the centroid of each is in front of the other's plane, convex if it is
+/// behind.
 Relation relation_of(const Face& a, const FaceFit& a_fit, const Face& b, const FaceFit& b_fit,
                      float side, float apart) {
   const Vec3 a_to_b = (1.0F / b.sums.w) * b.sums.p - (1.0F / a.sums.w) * a.sums.p;
@@ -62,7 +65,7 @@ Relation relation_of(const Face& a, const FaceFit& a_fit, const Face& b, const F
   return b_above_a > apart && a_above_b > apart ? Relation::kConcave : Relation::kNone;
 }
 
-/// What the face is to the first one. The other side of a plate is nothing to it.
+/// Relation of a face to the first one; kNone for the other side of a plate.
 [[gnu::noinline]] Relation relation_to_first(const Face& first, const FaceFit& first_fit,
                                              const Face& face, const FaceFit& fit, float side,
                                              float apart) {
@@ -117,7 +120,7 @@ bool join_faces(const Faces& faces, const Seeds& seeds, float radius, float side
   const FaceFit fit[kMaxFaces] = {fit_face(face[0].sums, radius), fit_face(face[1].sums, radius),
                                   fit_face(face[2].sums, radius)};
   near.count = 0;
-  if (!fit[0].firm()) {  // around the corner, or along the boundary of a face
+  if (!fit[0].firm()) {  // past an edge, or at the boundary of the first face
     for (std::uint32_t i = 1; i < kMaxFaces; ++i) {  // bound: kMaxFaces
       if (fit[i].firm() && face[i].points >= kFacePoints && is_sharp(face[0], face[i]) &&
           dot(fit[i].plane.normal, seeds.normal[0]) > kOppositeCosine) {
@@ -135,7 +138,7 @@ bool join_faces(const Faces& faces, const Seeds& seeds, float radius, float side
     const bool is_higher = side * fit[i].plane.distance > side * fit[main].plane.distance;
     main = relation[i] == Relation::kConvex && is_higher ? i : main;
   }
-  if (main != 0U) {  // the others, as seen from that face
+  if (main != 0U) {  // relations of the others to that face
     const std::uint32_t third = kMaxFaces - main;
     relation[0] = relation_of(face[main], fit[main], face[0], fit[0], side, apart);
     if (relation[third] != Relation::kNone) {

@@ -1,6 +1,6 @@
 #pragma once
-// The faces that meet at a place: sums over the points of each, their fits, and what they are to
-// each other.
+// The faces that meet at a position: sums over the points of each, their fits, and the relations
+// between them.
 
 #include <cstdint>
 
@@ -32,7 +32,7 @@ struct Moments {
 struct FaceFit {
   bool supported;
   float strength;
-  float weight;  // of the points
+  float weight;  // sum over the points
   Plane plane;
 
   [[nodiscard]] bool firm() const { return supported && strength > 0.0F; }
@@ -56,24 +56,24 @@ struct Faces {
   Face of[kMaxFaces];  // those without a seed have no points
 };
 
-/// Normals by which the points are told apart; the reference first.
+/// Normals by which the points are divided among the faces; the reference first.
 struct Seeds {
   Vec3 normal[kMaxFaces];
   std::uint32_t count;
 };
 
-/// The normals of two faces differ by at least 47 degrees; those of opposite faces by 120.
+/// The normals of two faces differ by at least 47 degrees, those of opposite faces by at least 120.
 inline constexpr float kCreaseCosine = 0.68F;
 inline constexpr float kOppositeCosine = -0.5F;
-/// A crease requires each face's centroid at this distance, in support radii, from the other face's
-/// plane: a stray normal within a face makes no crease.
+/// A crease requires that the centroid of each face has at least this distance, in support radii,
+/// from the plane of the other face. A stray normal within a face then makes no crease.
 inline constexpr float kApart = 0.04F;
 
-/// Joins the faces of `seeds` to one surface, as seen from `side`; `near` become those that belong
-/// to it, apart from its own. The inside of a convex edge is the intersection of the insides of its
-/// faces: the surface is that of the face that is highest at the query. The inside of a concave
-/// edge is their union: all of them hold a probe. False, and `result` as it was: the points do not
-/// form several faces.
+/// Combines the faces of `seeds` into one surface, as seen from `side`. `near` receives the normals
+/// of the other faces that belong to it. The interior of a convex edge is the intersection of the
+/// interiors of its faces: the surface is that of the face with the maximum height at the query.
+/// The interior of a concave edge is their union: all faces hold a probe. Returns false and leaves
+/// `result` unchanged if the points do not form several faces.
 [[nodiscard]] bool join_faces(const Faces& faces, const Seeds& seeds, float radius, float side,
                               NearFaces& near, SurfaceFit& result);
 

@@ -6,7 +6,7 @@
 namespace tactree::core {
 namespace {
 
-// Those of faces that continue each other differ by less than 8 degrees.
+// Normals of faces that continue each other differ by less than 8 degrees.
 constexpr float kContinuing = 0.99F;
 
 }  // namespace

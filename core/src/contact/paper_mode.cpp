@@ -35,9 +35,9 @@ std::int32_t cell_corner(std::int32_t site, std::int32_t root, std::uint32_t shi
   return root + (((site - root) >> shift) << shift);
 }
 
-// Finds the leaf that holds `site`: by the neighbour table of `from` if the site is in the adjacent
-// cell, else (s longer than the leaf, or the probe outside it) from the root. The result is the
-// same.
+// Finds the leaf that holds `site`: through the neighbour table of `from` if the site is in the
+// adjacent cell, otherwise (s longer than the leaf, or the probe outside it) from the root. Both
+// ways give the same result.
 bool find_neighbour(const BlobView& view, const Leaf& from, std::uint32_t direction, Int3 site,
                     Leaf& found) {
   const std::uint32_t shift = view.depth() - from.level + kLeafShift;

@@ -7,11 +7,12 @@
 namespace tactree::core {
 namespace {
 
-// From 18 degrees on from the reference, a normal may be that of another face.
+// A normal at 18 degrees or more from the reference may be that of another face.
 constexpr float kMildCosine = 0.95F;
 
-// The normals of a face's own points are within 60 degrees of it. Those further away than 30
-// degrees are between faces; than a quarter of the angle, where faces are closer than 60 degrees.
+// The normals of a face's points are within 60 degrees of its seed. Points at more than 30 degrees
+// lie between faces; if two seeds differ by less than 60 degrees, points at more than a quarter of
+// that angle.
 constexpr float kFaceCosine = 0.5F;
 constexpr float kBetweenCosine = 0.87F;
 
@@ -22,9 +23,9 @@ float weight_of(float qq, float inverse_squared) {
   return u2 * u2;
 }
 
-/// The nearest of the points that were offered.
+/// The nearest of the offered points.
 struct Nearest {
-  float squared;  // m^2, of it; before the first one, of the support radius
+  float squared;  // m^2, distance of the point; initially the support radius
   const Candidate* point = nullptr;
 
   void offer(const Candidate& candidate, float its_squared) {
@@ -46,7 +47,7 @@ float quarter_of(Vec3 a, Vec3 b) {
 [[gnu::noinline]] Face sum_face(const CandidateSet& points, Vec3 x, float radius,
                                 const std::uint8_t* indices, std::uint32_t count) {
   const float inverse_squared = 1.0F / (radius * radius);
-  Moments sums{};  // locals, as below
+  Moments sums{};  // locals, as in look_around()
   float between = 0.0F;
   // bound: points_per_ball_max, total points_per_ball_max per sum_faces
   for (std::uint32_t k = 0; k < count; ++k) {

@@ -9,39 +9,42 @@
 namespace tactree::core {
 namespace {
 
-// Steps per tick. Each takes a gather, or uses the candidates of the last one.
+// Steps per tick, of half a support radius each: 5 m/s at 1 kHz with a radius of 2.5 mm. Each takes
+// a gather, or uses the candidates of the last one.
 constexpr std::uint32_t kSteps = 4;
 
-// Slip ends below this share of the dynamic cone, not at its boundary: a slow probe whose encoder
-// counts nothing in a tick has not stopped, and would alternate between stick and slip.
+// Slip ends below this fraction of the dynamic cone, not at its boundary. A slow probe whose
+// encoders report no count in a tick has not stopped, and would otherwise alternate between stick
+// and slip.
 constexpr float kStickShare = 0.9F;
 
-// Largest change of the strength per support radius of travel. It damps the flicker where points
+// Maximum change of the strength per support radius of travel. It damps the flicker where points
 // are so sparse that a single one makes a boundary.
 constexpr float kStrengthPerRadius = 4.0F;
 
-// A first support whose facing share is lower is a stray normal, not the other side.
+// If less than this fraction of the weight faces a new reference, the reference is a stray normal
+// and is reversed; the probe is not on the other side of a sheet.
 constexpr float kContradicted = 0.2F;
 
-// Within this share of the support radius of the surface one Newton step leaves an error below
-// 1e-4 of the radius, whatever the curvature. Longer steps around a bend take a second one.
+// A Newton step shorter than this fraction of the support radius leaves an error below 1e-4 of the
+// radius at any curvature. After a longer one, around a bend, a second step follows.
 constexpr float kOneStepIsEnough = 0.01F;
 
-// A step that leads away from the probe is taken back, and the next ones are shorter: the surface
-// ahead bends more, towards the probe, than the probe is deep. Share of the length after such a
-// step, after any other one, and the least.
+// A step that leads away from the probe is taken back, and the next ones are shorter: the probe is
+// deeper than the radius of the bend ahead. Factor of the step length after such a step, after any
+// other step, and minimum of the length.
 constexpr float kShorter = 0.4F;
 constexpr float kLonger = 1.5F;
 constexpr float kShortest = 0.1F;
 
-// A face touches the proxy within this share of the support radius.
+// A face touches the proxy within this fraction of the support radius.
 constexpr float kTouching = 0.001F;
 
 float clamp(float value, float low, float high) {
   return value < low ? low : (value > high ? high : value);
 }
 
-/// A step of this length in the direction of `way`; none if that has none.
+/// A step of length `step` in the direction of `way`; zero if `way` is zero.
 Vec3 along(Vec3 way, float step) {
   const float all = length(way);
   return all > 0.0F ? (step / all) * way : Vec3{};
@@ -84,13 +87,14 @@ void Proxy::update(const BlobView& view, Vec3 probe, const Friction& friction,
   neighbour_ = nullptr;
 }
 
-// Where no point is in reach. Costs less than a pass.
+// Called where no point is within reach. Charged as a pass, but costs less.
 [[gnu::noinline]] void Proxy::look_around(const BlobView& view) {
   budget_.spend_passes(1U);
   inside_ = interior_at(view, position_).here;
 }
 
-// Cells of the octree near the surface may be on both sides of it, but every point has a leaf.
+// Looks up the leaf of a point, not the cell of the proxy: cells near the surface may extend to
+// both sides of it.
 [[gnu::noinline]] void Proxy::look_behind(const BlobView& view) {
   budget_.spend_passes(1U);
   inside_ = interior_at(view, candidates_[0].position).behind;
@@ -107,8 +111,8 @@ bool Proxy::gather(const BlobView& view, Vec3 x) {
   return candidates_.gather(view, slice);
 }
 
-// Provides candidates for a fit at x. False: the budget ends here; has_next_ is true if a gather
-// for x has been begun.
+// Provides candidates for a fit at x. Returns false if no fit is possible in this tick; has_next_
+// is then true if the fit at x has to wait for its candidates.
 bool Proxy::prepare_fit(const BlobView& view, Vec3 x) {
   if (!budget_.allows_fit()) {
     return false;
@@ -160,7 +164,8 @@ void Proxy::sweep(const BlobView& view, Vec3 probe) {
   }
 }
 
-// False: no point is in reach, or none that is not hidden.
+// Returns false if no point is within reach, or if there is no reference and all points in the
+// support are hidden.
 bool Proxy::has_reference(const BlobView& view, Vec3 x) {
   if (candidates_.count() + candidates_.hidden() == 0U) {
     lose_support();
@@ -203,7 +208,7 @@ void Proxy::visit(const BlobView& view, Vec3 x) {
   if (was_smooth && near_.count != 0U && (!is_tracking() || side_ * fit.distance < 0.0F)) {
     position_ = x - step;
     next_ = x;
-    has_next_ = true;  // a crease came near: tell its faces apart before a contact begins
+    has_next_ = true;  // a crease came near: separate its faces before a contact begins
     state_ = is_tracking() ? state_ : State::kReferenced;
     return;
   }
@@ -215,7 +220,8 @@ void Proxy::visit(const BlobView& view, Vec3 x) {
     return;
   }
   if (!is_tracking()) {
-    // Near enough to a proxy that another body holds outside.
+    // Another body holds the leading proxy outside: up to the tolerance, a follower behind the
+    // surface counts as in front of it.
     begin_tracking(is_led() ? fit.distance + neighbour_->tolerance_m : fit.distance);
   }
   refer_to(fit, was_smooth);
@@ -240,7 +246,8 @@ void Proxy::visit(const BlobView& view, Vec3 x) {
   begin_contact(view);
 }
 
-// Behind a surface: whether in its material, the next tick finds out before it goes on.
+// Behind a surface, look_behind() first determines in the next tick whether that is in the
+// material.
 void Proxy::begin_tracking(float distance) {
   asks_ = distance < 0.0F;
   inside_ = inside_ && asks_;
@@ -248,9 +255,9 @@ void Proxy::begin_tracking(float distance) {
   state_ = State::kTracking;
 }
 
-// The step went around the edge of a plate or over a ridge: it was in front of the back when it
-// fell behind the face, not between them. A probe whose side is not known yet is in front of
-// either.
+// Returns true if the step went around the edge of a plate or over a ridge: when it fell behind the
+// face, it was in front of the back, not between the two. If the side is not known yet, it is
+// sufficient that the step ends in front of the back.
 bool Proxy::passes_by(const SurfaceFit& fit, Vec3 step) const {
   const float height = side_ * fit.distance;
   const float back_height = side_ * fit.back.distance;
@@ -258,12 +265,12 @@ bool Proxy::passes_by(const SurfaceFit& fit, Vec3 step) const {
     return false;
   }
   const float fall = -side_ * dot(fit.normal, step);
-  const float behind = fall > -height ? -height / fall : 1.0F;  // share of the step
+  const float behind = fall > -height ? -height / fall : 1.0F;  // fraction of the step
   return !is_tracking() || back_height > behind * side_ * dot(fit.back.normal, step);
 }
 
 // A tracked surface that was crossed begins a contact, whichever side its other points face. Where
-// points are hidden, those of the reference may be.
+// points are hidden, those that face the reference may be among them.
 bool Proxy::is_contradicted(const SurfaceFit& fit) const {
   const bool crossed = is_tracking() && fit.firm() && side_ * fit.distance < 0.0F;
   return !crossed && state_ != State::kReferenced && fit.facing < kContradicted &&
@@ -278,12 +285,12 @@ void Proxy::begin_contact(const BlobView& view) {
   float moved = 0.0F;
   // at most: fits per Scene::update together settles
   if (prepare_fit(view, position_) && !settle(view, moved)) {
-    lose_support();  // the step ended beyond the boundary
+    lose_support();  // the step ended beyond the boundary of the surface
   }
 }
 
-// The fit that sees a crease first is smooth, its normal between those of the faces: they could not
-// be told apart by it.
+// The first fit near a crease is smooth. Its normal lies between those of the faces and could not
+// separate them; the reference is kept.
 void Proxy::refer_to(const SurfaceFit& fit, bool was_smooth) {
   if (fit.next_reference != Vec3{}) {
     reference_ = fit.next_reference;
@@ -292,7 +299,7 @@ void Proxy::refer_to(const SurfaceFit& fit, bool was_smooth) {
   }
 }
 
-/// The face of this plane takes the place of the one of reference_.
+/// Makes the face of this plane the main face, whose normal is reference_.
 void Proxy::make_main(std::uint32_t plane) {
   if (plane == 0U) {
     return;
@@ -310,7 +317,8 @@ void Proxy::make_main(std::uint32_t plane) {
   reference_ = reference;
 }
 
-/// The shortest move of the probe to the front of all faces, and their common normal.
+/// Returns the shortest move of the probe to the front of all faces, and updates active_ and
+/// common_normal_.
 PlaneMove Proxy::move_of(Vec3 probe) {
   ConstraintPlanes planes = planes_;
   planes.step_by(probe - position_);
@@ -320,7 +328,8 @@ PlaneMove Proxy::move_of(Vec3 probe) {
   return move;
 }
 
-// Moves the proxy onto the surface by one Newton step, if it is supported.
+// Moves the proxy onto the surface by one Newton step, of length `moved`. Returns false if the
+// surface is not supported there.
 bool Proxy::settle(const BlobView& view, float& moved) {
   const bool was_smooth = near_.count == 0U;
   const SurfaceFit fit = evaluate(view, position_, reference_);
@@ -348,7 +357,8 @@ bool Proxy::settle(const BlobView& view, float& moved) {
   return true;
 }
 
-// Faces that are ahead stop the proxy, but do not rub on it: with one ahead, the main face does.
+// Faces ahead of the proxy stop it, but have no friction: while one is ahead, only the main face
+// has friction.
 Proxy::Pull Proxy::pull_of(const BlobView& view, Vec3 probe) {
   const Vec3 displacement = probe - position_;
   if (planes_.count <= 1U) {
@@ -392,7 +402,8 @@ void Proxy::restore(const Footing& footing) {
   has_next_ = false;
 }
 
-/// The next step of a slip by `excess` in steps of at most `step` (m); `last`: it ends there.
+/// The next step of a slip by `excess` (m), at most `step` (m) long. Sets `last` if it completes
+/// the slip.
 Vec3 Proxy::next_slip(const Pull& pull, float excess, float step, bool& last) const {
   const float length_left = smaller_of(excess, length(pull.along));
   last = !(length_left > step);
@@ -437,7 +448,7 @@ void Proxy::slide(const BlobView& view, Vec3 probe, const Friction& friction) {
     const Footing before = footing();
     // at most: fits per Scene::update together fits
     if (!slip_by(view, slip)) {
-      if (candidates_.hidden() != 0U) {  // the surface ends in the neighbour
+      if (candidates_.hidden() != 0U) {  // the surface ends inside the neighbour
         restore(before);
         gives_way_ = true;
         return;
@@ -453,8 +464,8 @@ void Proxy::slide(const BlobView& view, Vec3 probe, const Friction& friction) {
   }
 }
 
-// A step that led away from the probe, from one settled place to another. Short ones are within the
-// errors of the fits.
+// Takes back a step that began at a settled position and led away from the probe. Short steps are
+// exempt: they are within the errors of the fits.
 bool Proxy::takes_back(const BlobView& view, Vec3 slip, Vec3 probe, const Footing& before,
                        bool was_settled) {
   const bool is_long = length(slip) > kOneStepIsEnough * view.support_radius_m();
@@ -524,8 +535,8 @@ void Proxy::lose_support() {
   asks_ = false;
 }
 
-// Where all its points are hidden, the side of the surface is still known: the next one that is
-// not comes into view from there.
+// While the neighbour hides points, the side is kept: the points of the surface that appear next
+// are seen from the same side.
 void Proxy::lose_face(const SurfaceFit& fit) {
   if (!is_tracking() || candidates_.hidden() == 0U) {
     lose_support();

@@ -9,7 +9,8 @@
 namespace tactree::core {
 namespace {
 
-/// The damping force, at most as large as the spring force: contact begins and ends without a step.
+/// The damping force, at most as large as the spring force, so that contact begins and ends without
+/// a step.
 Vec3 damping(float damping_Ns_m, Vec3 velocity, Vec3 spring) {
   const Vec3 wanted = damping_Ns_m * velocity;
   const float size = length(wanted);
@@ -17,8 +18,8 @@ Vec3 damping(float damping_Ns_m, Vec3 velocity, Vec3 spring) {
   return size > allowed ? (allowed / size) * wanted : wanted;
 }
 
-/// Share of the force above the texture: 0 where the probe is above the cut surface. Friction
-/// shrinks with the force.
+/// Factor by which the texture reduces the force, friction included; 0 where the probe is above the
+/// cut surface.
 float share_of(float penetration_m, float texture_depth_m) {
   if (!(texture_depth_m > 0.0F)) {
     return 1.0F;
@@ -37,7 +38,8 @@ float spring_energy(float stiffness_N_m, float length_m, float force_max_N) {
 
 }  // namespace
 
-// Neither this nor render_proxy() is inlined: their frames would add to the deepest call chain.
+// Neither this nor render_proxy() is inlined: their stack frames would add to the deepest call
+// chain.
 [[gnu::noinline]] Rendering Renderer::render_paper(const BlobView& view, const Configuration& c,
                                                    Vec3 probe) {
   Rendering r;

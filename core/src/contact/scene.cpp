@@ -23,13 +23,13 @@ constexpr const char* kDescriptions[] = {
 };
 constexpr std::uint32_t kDescriptionCount = sizeof(kDescriptions) / sizeof(kDescriptions[0]);
 
-/// Does the path from `a` to `b` come within `margin` of the interval?
+/// True if the path from `a` to `b` comes within `margin` of the interval.
 bool touches(float a, float b, float low, float high, float margin) {
   return (a < b ? a : b) <= high + margin && (a < b ? b : a) >= low - margin;
 }
 
-/// Does the path come near the model? Its whole box is compared, not only its end: a fast probe
-/// would cross a thin model between two ticks.
+/// True if the path comes near the model. The whole box of the path is compared, not only its end:
+/// a fast probe could cross a thin model between two ticks.
 bool comes_near(const BlobView& view, Vec3 from, Vec3 to) {
   const BlobHeader& h = view.header();
   const float margin = h.reach_m + h.aabb_edge_m;  // memory: flash
@@ -176,7 +176,7 @@ Scene::Slot* Scene::slot_of(std::uint32_t number) {
   return nullptr;
 }
 
-/// An unassigned slot, or one of a body out of reach and contact; null: none.
+/// An unassigned slot, or the slot of a body that is out of reach and not in contact, or null.
 Scene::Slot* Scene::free_slot(const bool (&within_reach)[kMaxBodies]) {
   if (Slot* const unused = slot_of(kNoBody)) {
     return unused;
@@ -207,8 +207,9 @@ void Scene::locate_probe(Vec3 probe) {
   }
 }
 
-/// Assigns slots to the bodies within reach, then to the others. True: a body within reach got
-/// none. A proxy starts at the probe's last position, which was still out of reach.
+/// Assigns slots to the bodies within reach, and unused slots to the others. Returns true if a body
+/// within reach got none. A proxy starts at the probe's last position, which was still out of
+/// reach.
 bool Scene::assign_slots() {
   bool within_reach[kMaxBodies] = {};
   for (std::uint32_t i = 0; i < count_; ++i) {  // bound: listed
@@ -278,7 +279,7 @@ const SceneRendering& Scene::update(const Configuration& configuration, Vec3 pro
   return all;
 }
 
-/// The slot whose proxy is in contact; null: none.
+/// The slot whose proxy is in contact, or null.
 Scene::Slot* Scene::leading() {
   for (Slot& slot : slots_) {  // bound: kMaxReachableBodies
     if (slot.in_contact) {
@@ -288,15 +289,15 @@ Scene::Slot* Scene::leading() {
   return nullptr;
 }
 
-/// The body of `other` as that of `slot` sees it.
+/// The body of `other` as a neighbour, in the frame of the body of `slot`.
 [[gnu::noinline]] Neighbour Scene::neighbour_of(const Slot& slot, const Slot& other) const {
   Neighbour neighbour = other.renderer.proxy().as_neighbour(bodies_[other.body].view);
   neighbour.bring(pose_of(other), pose_of(slot));
   return neighbour;
 }
 
-/// All proxies follow; returns the slot of the one that leads, or null. It goes first, and the
-/// other one follows it.
+/// Updates all proxies and returns the slot of the leading one, or null. The leading proxy is
+/// updated first, because the other one follows it.
 [[gnu::noinline]] Scene::Slot* Scene::track_all(const Configuration& configuration) {
   Slot* const led = leading();
   Slot* slot = led != nullptr ? led : slots_;
@@ -315,7 +316,8 @@ Scene::Slot* Scene::leading() {
   return leader;
 }
 
-/// Is the probe in the material of a body? True: the models hold what they declare.
+/// Reports whether the probe is in the material of a body. Returns false if a model holds more
+/// points than it declares.
 bool Scene::observe() {
   bool complete = true;
   for (const Slot& slot : slots_) {  // bound: kMaxReachableBodies
@@ -327,7 +329,7 @@ bool Scene::observe() {
   return complete;
 }
 
-// A body that jumps, or a probe that does: the contact ends.
+// Ends the contact if the body or the probe jumps.
 void Scene::end_contact_of_a_jump(Slot& slot, const Configuration& configuration) {
   const Body& body = bodies_[slot.body];
   const float furthest = 2.0F * configuration.speed_max_m_s / configuration.rate_hz;
@@ -350,8 +352,8 @@ void Scene::end_contact_of_a_jump(Slot& slot, const Configuration& configuration
   ended_ = ended_ || slot.renderer.proxy().lost_contact();
 }
 
-/// What the proxy that followed has found holds the one that leads, too; where the surface is that
-/// of its body, it takes the lead.
+/// Holds the leading proxy also by the faces that the following one has found. The follower takes
+/// the lead where the surface is that of its body.
 [[gnu::noinline]] Scene::Slot* Scene::share(Slot& leader) {
   Slot& follower = beside(leader);
   const Vec3 probe = bodies_[leader.body].probe;
@@ -400,7 +402,7 @@ void Scene::end_contact_of_a_jump(Slot& slot, const Configuration& configuration
   }
 }
 
-/// The body feels the opposite of a force at the proxy.
+/// Stores the reaction of the body: the opposite of a force at the proxy.
 [[gnu::noinline]] void Scene::react(const Slot& slot, Vec3 proxy, Vec3 force) {
   const Vec3 arm = proxy - pose_of(slot).translation_m;
   rendering_.reactions[&slot - slots_] = {slot.body, -force, cross(arm, -force)};
@@ -410,13 +412,13 @@ void Scene::end_contact_of_a_jump(Slot& slot, const Configuration& configuration
   for (Slot& slot : slots_) {  // bound: kMaxReachableBodies
     if (slot.body != kNoBody) {
       // at most: min(bodies, kMaxReachableBodies) per Scene::render_paper
-      render_paper(slot, configuration, probe);
+      render_paper_body(slot, configuration, probe);
     }
   }
 }
 
-[[gnu::noinline]] void Scene::render_paper(Slot& slot, const Configuration& configuration,
-                                           Vec3 probe) {
+[[gnu::noinline]] void Scene::render_paper_body(Slot& slot, const Configuration& configuration,
+                                                Vec3 probe) {
   end_contact_of_a_jump(slot, configuration);
   SceneRendering& all = rendering_;
   const Body& body = bodies_[slot.body];
@@ -436,7 +438,7 @@ void Scene::end_contact_of_a_jump(Slot& slot, const Configuration& configuration
     all.contact = r;
     all.wall_velocity = body.moved ? -relative_velocity(body.pose, body.motion, probe, {}) : Vec3{};
   }
-  if (!is_first) {  // adding 0 would change the sign of a zero
+  if (!is_first) {  // adding 0 would turn -0 into +0
     all.contact.force = r.force + other.force;
     all.contact.stored_energy = r.stored_energy + other.stored_energy;
   }

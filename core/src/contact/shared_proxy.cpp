@@ -1,4 +1,4 @@
-// The proxy that two bodies share: what each has to know of the other, and which of them leads.
+// The proxy that two bodies share: the faces that they exchange, and which of them leads.
 // Loop and memory annotations: docs/BOUND.md.
 // memory: RAM
 
@@ -9,14 +9,15 @@
 namespace tactree::core {
 namespace {
 
-// Faces closer to each other than this share of the support radius are flush: nearer than those of
-// a crease.
+// Faces closer to each other than this fraction of the support radius are flush; the faces of a
+// crease are further apart.
 constexpr float kFlush = kApart;
 
-// The lead changes to the body that has so much more of the surface around.
+// The lead changes to the other body if the weight of its points is larger by this factor. The
+// hysteresis prevents the lead from alternating.
 constexpr float kMuchMore = 1.2F;
 
-// No three planes meet in a point if the determinant of their normals is below this.
+// Three planes have no common point if the determinant of their normals is at most this.
 constexpr float kNoPoint = 1e-3F;
 
 }  // namespace
@@ -45,9 +46,10 @@ void Proxy::begin_beside(const Neighbour* neighbour) {
   }
 }
 
-/// Before a fit, once a tick and for each gather. A proxy that does not know its side yet needs all
-/// points: the nearest one tells it. What the other body's faces hide stays hidden until the proxy
-/// has left them so far that it comes into view at the boundary of the support.
+/// Called before a fit, once a tick and after each gather. A proxy whose side is not known yet
+/// needs all points: the nearest one determines the side. Points that the other body's faces hide
+/// stay hidden until the proxy is so far from these faces that the points reappear at the boundary
+/// of the support.
 [[gnu::noinline]] void Proxy::hide_points(float radius) {
   if (neighbour_->holding != 0U && is_tracking() && !inside_ &&
       (neighbour_->holds || length_squared(neighbour_->found_at - position_) <= radius * radius)) {
@@ -57,7 +59,7 @@ void Proxy::begin_beside(const Neighbour* neighbour) {
   }
 }
 
-/// The faces of a fit hold the proxy, with those of the neighbour where this body leads.
+/// Holds the proxy by the faces of a fit and, where this body leads, by those of the neighbour.
 void Proxy::hold(const SurfaceFit& fit) {
   strength_ = fit.strength;
   planes_ = holding_planes(fit, side_);
@@ -85,7 +87,7 @@ void Proxy::hold(const SurfaceFit& fit) {
   found_.holding = 1U + fit.holding;
   found_.ending = fit.ending;
   for (std::uint32_t i = 0; i < faces.count; ++i) {  // bound: kMaxFaces
-    const Plane& face = faces.plane[i];              // those that end it are reversed
+    const Plane& face = faces.plane[i];              // the ending faces are reversed
     const float sign = i < found_.holding ? 1.0F : -1.0F;
     found_.face[i] = {sign * face.normal, sign * (dot(face.normal, position_) - face.distance)};
   }
@@ -94,14 +96,15 @@ void Proxy::hold(const SurfaceFit& fit) {
   }
 }
 
-/// Onto the plane of the main face.
+/// Moves the proxy onto the plane of the main face.
 void Proxy::move_to_first() {
   const Vec3 step = -planes_.plane[0].distance * planes_.plane[0].normal;
   position_ += step;
   planes_.step_by(step);
 }
 
-// The proxy that leads came behind this surface: it gives way to it.
+// The leading proxy came behind this surface. This proxy stays on the surface, and the leading one
+// yields to it.
 void Proxy::stop_at_surface() {
   move_to_first();
   blocked_ = true;
@@ -141,7 +144,7 @@ void Proxy::aim(Vec3 probe) {
   }
 }
 
-/// One of the neighbour's faces that hold the probe touches the proxy.
+/// True if one of the neighbour's faces that hold the probe touches the proxy.
 [[gnu::noinline]] bool Proxy::touches_neighbour() const {
   bool touches = false;
   for (std::uint32_t i = 0; i < planes_.count; ++i) {  // bound: kMaxFaces
@@ -175,12 +178,13 @@ void Proxy::take_over(const Neighbour& neighbour, Proxy& from) {
   planes_.step_by(neighbour.proxy - position_);
   position_ = neighbour.proxy;
   foreign_ = neighbour.add_to(planes_, position_);
-  from.state_ = State::kTracking;  // its faces stay known
+  from.state_ = State::kTracking;  // keeps its faces
   from.unsettled_ = false;
   from.has_next_ = false;
 }
 
-// The force is a sum along the normals of the planes that hold the probe.
+// Decomposes the force along the normals of the planes that hold the probe, and returns the part
+// along those of the neighbour.
 [[gnu::noinline]] Vec3 Proxy::share_of_neighbour(Vec3 force) const {
   const std::uint32_t foreign = active_ & foreign_;
   if (planes_.count <= 1U || foreign == 0U) {

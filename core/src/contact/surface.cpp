@@ -1,4 +1,4 @@
-// The fit at one place, and the projection onto the surface.
+// The fit at one position, and the projection onto the surface.
 // Loop and memory annotations: docs/BOUND.md.
 // memory: RAM
 
@@ -14,8 +14,8 @@ Plane seen_from(float side, const Plane& plane) {
   return {side * plane.normal, side * plane.distance};
 }
 
-/// A face that is none of those known is looked for in the next fit; where there is no room, if it
-/// is closer than one of those held, in its place.
+/// Adds a new face, which the next fit separates. If there is no room, it replaces a `holding` face
+/// that is further away.
 void admit(const SurfaceFit& fit, float side, Vec3 x, const Candidate& stray, NearFaces& near) {
   if (near.count < kMaxFaces - 1U) {
     near.normal[near.count++] = stray.normal;
@@ -38,8 +38,8 @@ void set_to(SurfaceFit& result, const FaceFit& fit) {
   result.weight = fit.weight;
 }
 
-/// The point of a further face: of a crease, else of an opposite wall ahead. An opposite face that
-/// is not ahead is the back of this one.
+/// The nearest point of a further face: of a crease, otherwise of an opposite wall ahead. An
+/// opposite face that is not ahead is stored as the back of this one.
 const Candidate* nearest_other(const Candidate* crease, const Candidate* opposite, Vec3 x,
                                float radius, float side, SurfaceFit& fit) {
   if (opposite == nullptr) {
@@ -53,7 +53,7 @@ const Candidate* nearest_other(const Candidate* crease, const Candidate* opposit
   return crease;
 }
 
-/// At a crease that the last fit has found.
+/// The fit at a crease that the last fit has found.
 [[gnu::noinline]] void fit_faces(const CandidateSet& points, Vec3 x, float radius,
                                  const Seeds& seeds, float side, NearFaces& near,
                                  SurfaceFit& result) {
@@ -72,7 +72,7 @@ const Candidate* nearest_other(const Candidate* crease, const Candidate* opposit
   }
 }
 
-/// Where the last fit was smooth. A crease that comes near is for the next fit.
+/// The fit where the last one was smooth. A crease that comes near is left to the next fit.
 [[gnu::noinline]] void fit_smooth(const CandidateSet& points, Vec3 x, float radius, Vec3 reference,
                                   float side, NearFaces& near, SurfaceFit& result) {
   const Surroundings around = look_around(points, x, radius, reference);
@@ -82,7 +82,7 @@ const Candidate* nearest_other(const Candidate* crease, const Candidate* opposit
   const Candidate* const crease = around.crease != nullptr ? around.crease : around.mild;
   const Candidate* const other = nearest_other(crease, around.opposite, x, radius, side, result);
   if (other != nullptr) {
-    // The smooth surface of several faces that came near at once is between them.
+    // If several faces came near at once, the smooth surface lies between them.
     if (around.aligned == 0U) {
       result.next_reference = other->normal;
     } else {
@@ -141,12 +141,12 @@ SurfaceSupport surface_support(const BlobView& view) {
 
 namespace {
 
-/// Fits until no further face is found; each fit finds one at most.
+/// Fits until no further face is found; each fit finds at most one.
 SurfaceFit fit_all_faces(const CandidateSet& points, Vec3 x, float radius, Vec3 reference,
                          NearFaces& faces) {
   SurfaceFit fit = fit_surface(points, x, radius, reference, 1.0F, faces);
   for (std::uint32_t i = 1; i < kMaxFaces && faces.count >= i; ++i) {  // bound: kMaxFaces
-    // The normal of a smooth fit is between those of the faces.
+    // The normal of a smooth fit lies between those of the faces and would not separate them.
     const Vec3 next = fit.holding + fit.ending != 0U ? fit.normal : reference;
     fit = fit_surface(points, x, radius, next, 1.0F, faces);
   }

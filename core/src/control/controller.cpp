@@ -74,7 +74,7 @@ void Controller::execute_command(const Input& input, FaultMask present) {
     latched_ = present;
     handle_event(Event::kClear);
   } else if (input.command == Command::kHome && motors_off()) {
-    return;  // sense() took it
+    return;  // handled by sense()
   } else {
     raise(fault_bit(Fault::kUnexpectedEvent));
   }
@@ -90,7 +90,7 @@ void Controller::recover() {
   }
 }
 
-// The proxy is updated in every state: contact is known before the motors are enabled.
+// Updates the proxy in every state, so that a contact is known before the motors are enabled.
 void Controller::render() {
   rendered_ = sensor_.located() && !scene_reset_;
   scene_reset_ = false;
@@ -148,7 +148,7 @@ void Controller::reset_scene() {
   scene_reset_ = true;
 }
 
-// The last body may be removed while there is force: then the state waits for the motors.
+// The last body may be removed while armed or active: the state changes after the motors are off.
 void Controller::notice_empty_scene() {
   if (state_ == State::kIdle && scene_.empty()) {
     handle_event(Event::kModelRemoved);
@@ -200,7 +200,7 @@ void Controller::report(const Input& input, const SafetyGate::Result& gated) {
                  status.force, status.rendering, input.load});
 }
 
-// The gate may reduce the rendered force: the reactions are scaled in proportion.
+// Scales the reactions in proportion, because the gate may have reduced the rendered force.
 void Controller::report_reactions(Vec3 force) {
   const Vec3 rendered = scene_.rendering().contact.force;
   const float squared = length_squared(rendered);

@@ -60,7 +60,7 @@ ConfigurationStatus Controller::adjust(const Adjustment& a) {
   configuration_ = c;
   force_stage_.allow_stored_energy();
   if (limits) {
-    (void)force_stage_.set_limits(c);  // check() accepted it
+    (void)force_stage_.set_limits(c);  // cannot fail: check() accepted the limits
     monitor_.set_link_timeout(c);
     remove_unsuitable_bodies();
   }

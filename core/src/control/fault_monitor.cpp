@@ -6,7 +6,7 @@
 namespace tactree::core {
 namespace {
 
-// Two overruns closer than this are a fault.
+// Ticks. Two overruns within this window are a fault; a single one is only counted.
 constexpr std::uint32_t kOverrunWindow = 100;
 
 constexpr std::uint32_t add_saturating(std::uint32_t a, std::uint32_t b) {
@@ -65,8 +65,8 @@ FaultMask FaultMonitor::check_link(const Readings& readings, bool required) {
   return required && ticks_since_link_ > link_timeout_ticks_ ? fault_bit(Fault::kLinkLost) : 0U;
 }
 
-// While there may be force a drop-out counts at once: when the power came back, the force would
-// come back with it, without a ramp.
+// In the active state a drop-out is a fault immediately, without the timeout: when the power
+// returned, the force would return with it, without a ramp.
 FaultMask FaultMonitor::check_enable(const Readings& readings, State state, bool enable) {
   const bool agrees = readings.enable_read_back == enable;
   ticks_of_mismatch_ = agrees ? 0U : add_saturating(ticks_of_mismatch_, 1);

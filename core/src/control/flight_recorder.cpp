@@ -8,7 +8,7 @@
 namespace tactree::core {
 namespace {
 
-// NaN gives the largest value.
+// Rounds and saturates. NaN gives the maximum value.
 template <class T>
 T rounded(float value) {
   constexpr auto kMax = static_cast<float>(std::numeric_limits<T>::max());

@@ -26,9 +26,9 @@ void ForceStage::add(const AddedForce& added, const Configuration& configuration
       squared > most * most ? (most / square_root(squared)) * added.force_N : added.force_N;
 }
 
-// The rendered force, reduced by the reach of the device and kept passive. Damping may take the
-// push away, but never pulls the hand into the object. A hand that leaves is pushed by no more than
-// the wall can take back in time.
+// The rendered force, scaled by the reach of the device and kept passive. Damping may cancel the
+// push, but never pulls the hand into the object. The push on a hand that leaves the wall is
+// limited to the value that can fall to zero in time: PassivityController::most_push().
 Vec3 ForceStage::contact_force(const Configuration& configuration, const ProbeSensor& sensor,
                                const SceneRendering& scene) {
   const Rendering& contact = scene.contact;
@@ -56,7 +56,7 @@ Vec3 ForceStage::contact_force(const Configuration& configuration, const ProbeSe
   const float push = dot(force, contact.normal);
   const float leaving = dot(velocity - scene.wall_velocity, contact.normal);
   const float most = leaving > 0.0F ? passivity_.most_push(leaving, configuration.slew_N_s) : push;
-  const float pull = dot(rendered, contact.normal);  // of other bodies, at most
+  const float pull = dot(rendered, contact.normal);  // < 0 only by other bodies or a fade
   const float least = pull < 0.0F ? pull : 0.0F;
   const float allowed = push < least ? least : push > most ? most : push;
   return allowed == push ? force : force + (allowed - push) * contact.normal;
@@ -68,7 +68,7 @@ SafetyGate::Result ForceStage::apply(const Configuration& configuration, const P
   const Vec3 weight = configuration.compensate_gravity ? pose.gravity_effort : Vec3{};
   Vec3 force = contact_force(configuration, sensor, scene);
   added_force_ = {};
-  if (external_ticks_ > 0U) {  // without one the force keeps its very bits: -0 + 0 is +0
+  if (external_ticks_ > 0U) {  // otherwise the addition of 0 would turn -0 into +0
     --external_ticks_;
     added_force_ = external_force_;
     force = force + added_force_;

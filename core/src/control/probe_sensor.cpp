@@ -6,7 +6,7 @@
 namespace tactree::core {
 namespace {
 
-/// Of each joint: the step of one count.
+/// The step of one count, for each joint.
 Vec3 quantum_of(const DeviceModel& device) {
   float quantum[kAxes] = {0.0F, 0.0F, 0.0F};
   const std::uint32_t axes = axes_of(device.kind);
@@ -66,7 +66,7 @@ ProbeSensor::Sensed ProbeSensor::update(const EncoderReading& encoders, bool tak
   }
   probe_ = probe;
   located_ = true;
-  // In the joints each count is one step; at the probe the steps of all of them mix.
+  // Estimated in the joints, where a count is one step; at the probe the steps of all joints mix.
   velocity_ = transposed_times(pose_.effort_per_force, joint_velocity_.update(pose_.joints));
   if (!jumped) {
     return {0U, begins};

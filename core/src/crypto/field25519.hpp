@@ -1,7 +1,8 @@
 #pragma once
-// Arithmetic modulo p = 2^255 - 19 in eight words of 32 bits, lowest first. Between operations a
-// number is below 2^256 and not necessarily below p; reduced() returns the representative below p.
-// 2^256 = 38 modulo p: a carry out of the top is added 38-fold at the bottom.
+// Arithmetic modulo p = 2^255 - 19 in eight words of 32 bits, least significant first. Between
+// operations a number is below 2^256, not necessarily below p; reduced() returns the representative
+// below p. Since 2^256 = 38 (mod p), a carry out of the top word is multiplied by 38 and added to
+// the lowest word.
 // Loop and memory annotations: docs/BOUND.md.
 
 #include <cstddef>
@@ -20,7 +21,7 @@ inline constexpr Field kPrime = {{0xFFFFFFED, 0xFFFFFFFF, 0xFFFFFFFF, 0xFFFFFFFF
                                   0xFFFFFFFF, 0xFFFFFFFF, 0x7FFFFFFF}};
 inline constexpr Field kOne = {{1}};
 
-/// a - b without the modulus, and the borrow.
+/// Computes a - b without reduction modulo p; returns the borrow.
 inline bool subtract_words(const std::uint32_t (&a)[8], const std::uint32_t (&b)[8],
                            std::uint32_t (&difference)[8]) {
   std::uint64_t borrow = 0;
@@ -32,7 +33,7 @@ inline bool subtract_words(const std::uint32_t (&a)[8], const std::uint32_t (&b)
   return borrow != 0U;
 }
 
-/// Adds `small` at the bottom; returns the carry out of the top.
+/// Adds `small` to the lowest word; returns the carry out of the top word.
 inline std::uint64_t add_small(Field& a, std::uint64_t small) {
   std::uint64_t carry = small;
   for (std::uint32_t& word : a.word) {  // bound: 8
@@ -43,7 +44,7 @@ inline std::uint64_t add_small(Field& a, std::uint64_t small) {
   return carry;
 }
 
-/// Adds a carry out of the top back in. A second carry is at most 1; there is no third.
+/// Adds a carry out of the top word back in. This may cause a second carry of 1, but never a third.
 inline void fold(Field& a, std::uint64_t carry) {
   carry = add_small(a, 38U * carry);
   (void)add_small(a, 38U * carry);
@@ -63,7 +64,8 @@ inline Field operator+(const Field& a, const Field& b) {
   return sum;
 }
 
-/// For a borrow out of the top, worth 2^256, 38 is subtracted, at most twice.
+/// A borrow out of the top word has added 2^256 = 38 (mod p), which is subtracted. This may borrow
+/// once more.
 inline Field operator-(const Field& a, const Field& b) {
   Field difference;
   bool borrowed = field::subtract_words(a.word, b.word, difference.word);
@@ -119,7 +121,7 @@ inline bool equal(const Field& a, const Field& b) {
 
 inline bool is_zero(const Field& a) { return equal(a, Field{}); }
 
-/// Cost: 256 squarings, and one product per set bit of the exponent.
+/// base^exponent. Cost: 256 squarings, and one product per set bit of the exponent.
 inline Field power(const Field& base, const std::uint32_t (&exponent)[8]) {
   Field result = field::kOne;
   for (int bit = 255; bit >= 0; --bit) {  // bound: 256
@@ -131,7 +133,7 @@ inline Field power(const Field& base, const std::uint32_t (&exponent)[8]) {
   return result;
 }
 
-/// 1 / a, and 0 for 0: a^(p - 2) by Fermat's little theorem.
+/// 1 / a, computed as a^(p - 2) by Fermat's little theorem; 0 for a = 0.
 inline Field inverse(const Field& a) {
   constexpr std::uint32_t kExponent[8] = {0xFFFFFFEB, 0xFFFFFFFF, 0xFFFFFFFF, 0xFFFFFFFF,
                                           0xFFFFFFFF, 0xFFFFFFFF, 0xFFFFFFFF, 0x7FFFFFFF};

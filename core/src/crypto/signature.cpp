@@ -19,7 +19,8 @@ constexpr Field kRootOfMinusOne = {{0x4A0EA0B0, 0xC4EE1B27, 0xAD2FE478, 0x2F4318
 constexpr std::uint32_t kOrder[8] = {0x5CF5D3ED, 0x5812631A, 0xA2F79CD6, 0x14DEF9DE,
                                      0x00000000, 0x00000000, 0x00000000, 0x10000000};
 
-/// x = X / Z, y = Y / Z, x y = T / Z (H. Hisil et al., "Twisted Edwards curves revisited", 2008).
+/// Extended coordinates: x = X / Z, y = Y / Z, x y = T / Z (H. Hisil et al., "Twisted Edwards
+/// curves revisited", 2008).
 struct Point {
   Field x{};
   Field y = field::kOne;
@@ -35,7 +36,7 @@ constexpr Point kBase = {{{0x8F25D51A, 0xC9562D60, 0x9525A7B2, 0x692CC760, 0xFDD
                          {{0xA5B7DDA3, 0x6DDE8AB3, 0x775152F5, 0x20F09F80, 0x64ABE37D, 0x66EA4E8E,
                            0xD78B7665, 0x67875F0F}}};
 
-/// Section 3.1 of that paper, for a = -1: holds for any two points, equal ones included.
+/// Section 3.1 of that paper, for a = -1. Valid for any two points, including equal ones.
 Point sum(const Point& p, const Point& q) {
   const Field a = (p.y - p.x) * (q.y - q.x);
   const Field b = (p.y + p.x) * (q.y + q.x);
@@ -55,7 +56,8 @@ Point negative(const Point& p) { return {Field{} - p.x, p.y, p.z, Field{} - p.t}
 constexpr std::uint32_t kRootExponent[8] = {0xFFFFFFFD, 0xFFFFFFFF, 0xFFFFFFFF, 0xFFFFFFFF,
                                             0xFFFFFFFF, 0xFFFFFFFF, 0xFFFFFFFF, 0x0FFFFFFF};
 
-/// A square root of u / v; false: there is none. RFC 8032, section 5.1.3, step 3.
+/// Computes a square root of u / v as in RFC 8032, section 5.1.3, step 3. Returns false if there is
+/// none.
 bool root_of_ratio(const Field& u, const Field& v, Field& root) {
   const Field v3 = v * v * v;
   const Field v7 = v3 * v3 * v;
@@ -68,7 +70,7 @@ bool root_of_ratio(const Field& u, const Field& v, Field& root) {
   return equal(check, Field{} - u);
 }
 
-/// Decodes a point of 32 bytes. False: not on the curve, or not the canonical encoding.
+/// Decodes a point. Returns false if it is not on the curve, or not canonically encoded.
 bool decode(std::span<const std::uint8_t, 32> bytes, Point& point) {
   load_words(bytes, point.y.word);
   const std::uint32_t sign = point.y.word[7] >> 31U;
@@ -104,7 +106,7 @@ bool is_of_small_order(Point point) {
   return is_same(point, Point{});
 }
 
-/// Reduces a number of 64 bytes modulo the order, bit by bit from the top.
+/// Reduces a number of 64 bytes modulo the group order, from its most significant bit.
 void reduce_scalar(std::span<const std::uint8_t, 64> bytes, std::uint32_t (&scalar)[8]) {
   for (std::uint32_t& word : scalar) {  // bound: 8
     word = 0;

@@ -25,7 +25,7 @@ KindPose locate_arm(const DeviceModel& device, Vec3 joints) {
   const Vec3 by_arm = in_plane(-g.arm_m * arm.sine, g.arm_m * arm.cosine);
   const Vec3 by_base = radius * Vec3{-base.sine, base.cosine, 0.0F};
 
-  // Singular poses: the elbow stretched or folded, and the probe on the axis of the base.
+  // Singular poses: elbow extended or folded, and probe on the axis of the base.
   const float elbow = arm.cosine * forearm.cosine + arm.sine * forearm.sine;
   const float stand_off = radius / (g.arm_m + g.forearm_m);
   const float openness = elbow < stand_off ? elbow : stand_off;

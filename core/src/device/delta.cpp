@@ -7,7 +7,8 @@
 //   n_i . dP = h_i dq_i,   h_i = a g (dw cos(q_i) - du sin(q_i)) / (g + d + e)
 // and row i of the transposed Jacobian is h_i (n_j x n_k) / det(n_0, n_1, n_2), derived from the
 // closure.
-// Ring's frame: w is x of the device, 0 rad is y, and a quarter turn is z.
+// Frame of the ring: w is the x axis of the device; the leg angle 0 points along y, a quarter turn
+// along z.
 //
 // Loop and memory annotations: docs/BOUND.md.
 // memory: RAM
@@ -19,15 +20,15 @@ namespace tactree::core {
 namespace {
 
 constexpr std::uint32_t kNewtonSteps = 3;
-// A longer last Newton step means that there is no solution.
+// If the last Newton step is longer, the closure equations have no solution.
 constexpr float kConverged = 5e-4F;  // m
 
-/// The constants of a leg during the search for the plate.
+/// The constants of a leg during the Newton iteration for the plate.
 struct Leg {
   Vec3 out;        // u
   Vec3 along;      // v
   Vec3 fixed;      // (du, dv, dw) = plate - fixed
-  SineCosine arm;  // of its joint
+  SineCosine arm;  // of the joint angle
 };
 
 constexpr Vec3 kRingNormal = {1.0F, 0.0F, 0.0F};  // w
@@ -64,11 +65,11 @@ Closure close(const DeltaGeometry& g, const Leg& leg, Vec3 plate) {
           share * g.a * (dw * leg.arm.cosine - du * leg.arm.sine), open};
 }
 
-/// Three closures, and the inverse of their gradients.
+/// The three closures, and the inverse of the matrix of their gradients.
 struct Closures {
   Closure of[kAxes];
-  Vec3 column[kAxes];  // inverse of the matrix of the n
-  float openness;      // volume spanned by the three unit directions
+  Vec3 column[kAxes];  // of the inverse of the matrix with rows n
+  float openness;      // volume spanned by the three unit vectors n / b
   bool valid;
 };
 
@@ -90,8 +91,9 @@ Closures close_all(const DeltaGeometry& g, const Leg (&legs)[kAxes], Vec3 plate)
           valid};
 }
 
-/// Start value of the plate, some millimetres off: the intersection, above the ring, of three
-/// spheres with the greatest length of a leg. False: they do not intersect.
+/// Initial guess of the plate, accurate to some millimetres: the intersection, on the +x side of
+/// the ring, of three spheres with the maximum length of a leg as radius. Returns false if they do
+/// not intersect.
 bool first_guess(const DeltaGeometry& g, const Leg (&legs)[kAxes], Vec3& plate) {
   const Vec3 a = legs[1].fixed - legs[0].fixed;
   const Vec3 b = legs[2].fixed - legs[0].fixed;
@@ -112,14 +114,14 @@ bool first_guess(const DeltaGeometry& g, const Leg (&legs)[kAxes], Vec3& plate) 
   return true;
 }
 
-/// Efforts per force, and of the legs' weights, where the plate is.
+/// Computes the Jacobian, and the efforts that hold the weight of the legs, at the solution.
 [[gnu::noinline]] void finish(const DeviceModel& device, const Leg (&legs)[kAxes],
                               const Closures& all, KindPose& pose) {
   pose.openness = all.openness;
   float link_effort[kAxes];
   for (std::uint32_t i = 0; i < kAxes; ++i) {  // bound: kAxes
     pose.effort_per_force.row[i] = all.of[i].h * all.column[i];
-    // Height of the arm's centre: centre * cos(q) * sin(place), as z is a quarter turn from y.
+    // From the height of the arm's centre of mass: centre * cos(q) * sin(leg angle).
     link_effort[i] = -kGravity * device.link_mass_kg[i] * device.link_centre_m[i] *
                      legs[i].arm.sine * legs[i].out.z;
   }

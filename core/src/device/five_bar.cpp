@@ -13,7 +13,7 @@ namespace tactree::core {
 namespace {
 
 constexpr Vec3 in_plane(float y, float z) { return {0.0F, y, z}; }
-/// A quarter turn from y towards z.
+/// Rotates `v` by a quarter turn from y towards z.
 constexpr Vec3 turned(Vec3 v) { return {0.0F, -v.z, v.y}; }
 
 }  // namespace

@@ -60,8 +60,8 @@ void Homing::begin_travel(std::int32_t count, std::uint32_t axis) {
   highest_[axis] = 0;
 }
 
-// The middle of the travel is the middle of the joint's range. Once a joint is homed, another touch
-// of a stop does not change it.
+// The centre of the travel is the centre of the joint's range. Once a joint is homed, further
+// contact with a stop does not change its home_count.
 void Homing::record_travel(std::int32_t count, std::uint32_t axis, DeviceModel& device) {
   if ((missing_ & (1U << axis)) == 0U) {
     return;
@@ -80,6 +80,7 @@ void Homing::record_travel(std::int32_t count, std::uint32_t axis, DeviceModel& 
   if (!(travelled >= (1.0F - kStopShare) * range)) {
     return;
   }
+  // Below 4e9, half of the travel fits into an int32.
   if (!(travelled <= (1.0F + kStopShare) * range && travelled < 4e9F)) {
     begin_travel(count, axis);  // longer than the range: counts were lost
     return;

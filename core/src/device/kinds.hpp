@@ -13,8 +13,9 @@ struct KindPose {
   bool valid = false;
   Vec3 probe{};
   Mat3 effort_per_force{};
-  Vec3 link_effort{};  ///< holds the links without the tip mass
-  /// Distance from a singular pose, 0 .. 1: the smallest sine of the angles that must stay open.
+  Vec3 link_effort{};  ///< supports the weight of the links, without the tip mass
+  /// Normalised distance from singular poses, at most 1; 0 or less in a singular pose. Each kind
+  /// has its own measure.
   float openness = 1.0F;
 };
 

@@ -1,4 +1,4 @@
-// From encoder counts to joints, and the limits that all kinds of device share.
+// Conversion of encoder counts to joints, and the limits common to all kinds of device.
 // Loop and memory annotations: docs/BOUND.md.
 // memory: RAM
 
@@ -11,8 +11,9 @@ namespace {
 
 constexpr Mat3 kIdentity{{{1.0F, 0.0F, 0.0F}, {0.0F, 1.0F, 0.0F}, {0.0F, 0.0F, 1.0F}}};
 
-// Up to kSingular there is no force: the position of a parallel linkage is inaccurate there, and
-// small forces need large efforts. From kOpen on the full force is allowed.
+// Limits of KindPose::openness. Up to kSingular the force is zero, because the position of a
+// parallel linkage is inaccurate there and small forces require large efforts. From kOpen on the
+// full force is allowed.
 constexpr float kSingular = 0.05F;
 constexpr float kOpen = 0.15F;
 
@@ -26,7 +27,7 @@ float joint_of(const DeviceModel& device, std::uint32_t axis, std::int32_t count
          static_cast<float>(static_cast<std::int32_t>(difference)) / counts_per_unit(device, axis);
 }
 
-/// Share of the force that the range of one joint allows; negative: out of range.
+/// Fraction of the force that the range of one joint allows; negative if it is out of range.
 float share_of_range(const DeviceModel& device, std::uint32_t axis, float joint) {
   const float margin = device.joint_margin[axis];
   const float inside = lower(joint - device.joint_min[axis], device.joint_max[axis] - joint);

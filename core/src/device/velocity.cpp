@@ -9,11 +9,11 @@ namespace {
 
 constexpr float kTwoPi = 6.2831853F;
 
-// Two samples deviate from the line by one quantum, and by float32 rounding.
+// The difference of two samples deviates by up to one quantum; the excess covers float32 rounding.
 constexpr float kTolerance = 1.1F;
 
-// Windows tried. A hand moves little between their ends, so a line that passes the ends also passes
-// the samples between them.
+// The windows, in sample periods. A hand moves little between their ends, so a line that passes the
+// ends also passes the samples between them.
 struct Window {
   std::uint32_t samples;
   float inverse;
@@ -51,8 +51,8 @@ Vec3 VelocityEstimator::update(Vec3 position) {
   return velocity_;
 }
 
-// Each sample allows a range of slopes. The loop keeps the intersection of the ranges, which makes
-// one pass sufficient.
+// The end of each window allows a range of slopes. The loop keeps the intersection of the ranges,
+// so that one pass is sufficient.
 [[gnu::always_inline]] inline float VelocityEstimator::slope(const float (&samples)[kSlots],
                                                              float quantum) const {
   const float newest = samples[newest_];

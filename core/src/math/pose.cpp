@@ -7,7 +7,7 @@
 namespace tactree::core {
 namespace {
 
-// False for NaN and infinity.
+// Returns false for NaN and infinity.
 bool within(Vec3 v, float limit) {
   return absolute(v.x) <= limit && absolute(v.y) <= limit && absolute(v.z) <= limit;
 }

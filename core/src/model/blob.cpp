@@ -10,7 +10,7 @@ namespace tactree::core {
 namespace {
 
 constexpr std::size_t kHeaderBytes = sizeof(BlobHeader);
-// Stands in for the directory of a blob without one.
+// The directory of a blob that stores none: the root.
 constexpr std::uint32_t kRootNode = 0;
 
 constexpr std::size_t kChecksumEnd = offsetof(BlobHeader, checksum) + sizeof(std::uint32_t);
@@ -34,7 +34,7 @@ bool is_terminated(const char* text, std::uint32_t size) {
   return ended;
 }
 
-// False for NaN and infinity.
+// Returns false for NaN and infinity.
 bool in_range(float v, float low, float high) { return v >= low && v <= high; }
 
 // Significant bits of a positive normal float: 1 for a power of two, at most 24.
@@ -50,7 +50,7 @@ std::uint32_t significant_bits(float v) {
 
 }  // namespace
 
-// Each check may rely on the ones that run before it.
+// Each check may rely on those that run before it.
 class BlobValidator {
  public:
   BlobValidator(std::span<const std::byte> bytes, BlobView& view) : bytes_(bytes), view_(view) {}
@@ -147,7 +147,8 @@ class BlobValidator {
     if (!in_range(h.aabb_edge_m, 0.0F, 1e9F)) return false;
     if (!in_range(h.six_point_offset_m, 0.0F, 1e9F)) return false;
     if (!in_range(h.largest_gap_m, 0.0F, 1e9F)) return false;
-    // The eight-corner rule, with the units that CornerLeaves adds for rounding.
+    // Eight-corner rule: a query cube must not be longer than a leaf. The 4 units allow for the
+    // rounding in CornerLeaves.
     const float reach_max = h.step_m * static_cast<float>(kLeafUnits / 2 - 4);
     if (!in_range(h.reach_m, 0.0F, reach_max)) return false;
     return !is_surface() || (h.support_radius_m > 0.0F && h.support_radius_m <= h.reach_m &&
@@ -166,8 +167,8 @@ class BlobValidator {
     return true;
   }
 
-  // Checks that a section begins at cursor_, and moves cursor_ behind it. 64 bits: sums of
-  // untrusted counts do not wrap.
+  // Checks that a section begins at cursor_, and moves cursor_ past its padding. With 64 bits,
+  // sums of untrusted counts do not wrap.
   bool take(const BlobSection& section, std::uint64_t expected_bytes) {
     if (section.offset != cursor_ || section.bytes != expected_bytes) return false;
     const std::uint64_t padding_begin = cursor_ + section.bytes;
@@ -197,7 +198,7 @@ class BlobValidator {
            take(h.material_indices, index_bytes) && cursor_ == h.total_bytes;
   }
 
-  // The interior lies within the header, behind the extension.
+  // The interior must lie within header_bytes, after the extension.
   bool interior_fits() {
     const BlobHeader& h = *header_;
     constexpr std::uint32_t kBegin = kHeaderBytes + sizeof(BlobExtension);
@@ -264,8 +265,9 @@ class BlobValidator {
            !(last_begins_group && view_.leaf_offsets_[header_->leaf_count] != 0);
   }
 
-  // A depth-first walk. Each group of children must be the next unvisited one: then every node but
-  // the root has exactly one parent, which precedes it, and every leaf has its number.
+  // Depth-first traversal. Each group of children must start at the next index not yet used. Then
+  // every node except the root has exactly one parent, which precedes it, and the leaves are
+  // numbered in the order of the traversal.
   bool tree_is_canonical() const {
     struct Frame {
       std::uint32_t node;
@@ -313,8 +315,8 @@ class BlobValidator {
     return true;
   }
 
-  // Compares each entry with a walk from the root, which uses the lowest `level` bits of each
-  // coordinate.
+  // Compares each entry with a descent from the root, which uses only the lowest `level` bits of
+  // each coordinate.
   bool directory_lists_nodes() const {
     const std::uint32_t level = header_->directory_level;
     const std::uint32_t entries = 1U << 3U * level;
@@ -340,7 +342,7 @@ class BlobValidator {
     return node;
   }
 
-  // A group must begin at `next` and stay below `limit`; an empty group has index 0.
+  // A group must begin at `next` and end at or below `limit`; an empty group must be 0.
   static bool take_group(std::uint32_t group, std::uint32_t limit, std::uint32_t& next) {
     const std::uint32_t children = count_octants(group >> 24);
     if (children == 0) return group == 0;
@@ -399,7 +401,7 @@ class BlobValidator {
   std::span<const std::byte> bytes_;
   BlobView& view_;
   const BlobHeader* header_ = nullptr;
-  const BlobSection* interior_ = nullptr;  // of the header's extension, if there is one
+  const BlobSection* interior_ = nullptr;  // in the header's extension, if present
   std::uint64_t cursor_ = 0;               // end of the sections checked so far
 };
 

@@ -11,19 +11,21 @@ CornerLeaves::CornerLeaves(const BlobView& view, Vec3 centre, float r)
   is_valid_ = !view.empty() && r >= 0.0F && r <= view.reach_m() && set_axes(centre, r);
 }
 
-// Factors that move the bits of each coordinate to their place; exact, as the bits are below 2^10.
+// Factors that shift each coordinate to its bits in a packed word. The products are exact, because
+// a coordinate is below 2^10.
 constexpr float kPlaceOfBits[4] = {1.0F, 1024.0F, 1048576.0F, 0.0F};
 
-// A leaf is wider than the cube, so the cube extends beyond at most one face of the centre's cell.
-// A rounded product gives the cell's number; comparison with the cell's faces corrects it. The
-// faces are exact, and distances to them are rounded by far less than a lattice unit. The gaps are
-// reduced by one unit to cover this; open_blob() has checked the reach for it.
+// A leaf is wider than the cube, so on each axis the cube extends beyond at most one face of the
+// centre's cell. A rounded product gives the cell's number; comparison with the cell's faces
+// corrects it. The faces are exact, and distances to them are rounded by far less than a lattice
+// unit. The gaps are reduced by one unit to cover this; the range of reach_m in open_blob() allows
+// for it.
 bool CornerLeaves::set_axes(Vec3 centre, float r) {
   const float edge = view_.leaf_edge_m();
   const float step = view_.step_m();
   const auto last_cell = static_cast<std::int32_t>((1U << view_.depth()) - 1U);
   const float place[4] = {centre.x, centre.y, centre.z,
-                          0.5F * edge};  // the fourth lane reaches no face
+                          0.5F * edge};  // unused fourth lane: reaches no face
   const auto low_bits = static_cast<std::int32_t>((1U << below_) - 1U);
   std::uint32_t outside_axes = 0;
   for (std::uint32_t axis = 0; axis < 3; axis += kLanes) {  // bound: 3
@@ -48,7 +50,7 @@ bool CornerLeaves::set_axes(Vec3 centre, float r) {
     const Integers is_upper = ones_if(to_upper < to_lower);
     const Integers other = own - 1 - 2 * is_upper;
     const Floats local = to_lower - step;
-    // The edge, subtracted if the other cell is the upper one, else added.
+    // Offset of the other cell: the edge for the upper one, minus the edge for the lower one.
     const Floats shift = as_floats(as_integers(all(-edge)) ^ (is_upper & INT32_MIN));
     const Floats gap = to_face - step;
     const Floats gap_or_0 = as_floats(as_integers(gap) & ones_if(gap > 0.0F));
@@ -74,7 +76,7 @@ bool CornerLeaves::set_axes(Vec3 centre, float r) {
   return true;
 }
 
-// The centre is outside the root; the cube may extend into it.
+// For a centre outside the root cube. Returns false if the query cube does not reach the root cube.
 bool CornerLeaves::reach_in(std::uint32_t outside_axes) {
   if ((outside_axes & ~axes_left_) != 0) {
     return false;
@@ -106,8 +108,8 @@ Int3 CornerLeaves::lower_corner(std::uint32_t corner) const {
   return {root.x + units(0), root.y + units(1), root.z + units(2)};
 }
 
-// A leaf larger than the finest may hold several corners. It is returned for the first one only:
-// the corner from which no step along one axis to the centre's side stays in the leaf.
+// A leaf larger than the finest cell may contain several corners of the cube. It is returned for
+// one of them only: the corner from which every step along one axis to the centre's side leaves it.
 bool CornerLeaves::find_mixed(std::uint32_t corner, Leaf& leaf) const {
   const Cell cell{pick(cell_, corner, 0), pick(cell_, corner, 1), pick(cell_, corner, 2)};
   if (!descend(view_, 0, 0, cell, leaf)) {

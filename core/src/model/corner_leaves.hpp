@@ -1,7 +1,7 @@
 #pragma once
-// The eight-corner rule: if no leaf is smaller than the cube centre +- r, the leaves that hold the
-// cube's eight corners are all the leaves that it touches. (On each axis the cube is no longer than
-// a leaf, so a leaf that meets it contains one of its two ends.)
+// The eight-corner rule: if no leaf is smaller than the cube centre +- r, the leaves that contain
+// the eight corners of the cube are all the leaves that it touches. (On each axis the cube is no
+// longer than a leaf, so a leaf that meets it contains one of its two ends.)
 // Loop and memory annotations: docs/BOUND.md.
 
 #include "lanes.hpp"
@@ -9,26 +9,26 @@
 
 namespace tactree::core {
 
-/// A cell of the finest level, counted from the root's lower corner.
+/// A cell of the finest level, counted from the lower corner of the root cube.
 struct Cell {
   std::uint32_t x;
   std::uint32_t y;
   std::uint32_t z;
 };
-/// Finds the leaf that holds the cell, starting at a node of `level` that holds it. False: empty
-/// space.
+/// Finds the leaf that contains the cell, starting at node `node` of level `level`, which must
+/// contain it. Returns false in empty space, and after a memory fault.
 [[nodiscard]] bool descend(const BlobView& view, std::uint32_t node, std::uint32_t level, Cell cell,
                            Leaf& leaf);
 
-/// A leaf relative to a place, for a search through its points.
+/// A leaf and a position relative to it, for a search through its points.
 struct NearLeaf {
   std::uint32_t number = 0;
   std::uint32_t first_point = 0;
-  std::uint32_t end_point = 0;  ///< one behind the last
-  std::uint32_t corner = 0;     ///< corner of the cube that the leaf holds, 0 .. 7
-  float site_m = 0.0F;          ///< length of a site
-  std::int32_t half_site = 1;   ///< half of it, lattice units
-  Vec3 local{};                 ///< the place, m, relative to the leaf's first site
+  std::uint32_t end_point = 0;  ///< one past the last
+  std::uint32_t corner = 0;     ///< corner of the cube that the leaf contains, 0 .. 7
+  float site_m = 0.0F;          ///< spacing of the sites, m
+  std::int32_t half_site = 1;   ///< half the spacing, lattice units
+  Vec3 local{};                 ///< the position, m, relative to the leaf's first site
 
   bool damaged = false;  ///< memory fault: the model has no such leaf or points
 
@@ -51,28 +51,27 @@ struct NearLeaf {
 }
 
 /// The leaves that the cube centre +- r touches.
-/// Precondition: 0 <= r <= view.reach_m(); for a larger or NaN r, or a centre that is not finite,
-/// there are no leaves. Cost: at most 8 descents of at most depth() levels, about 20 instructions
-/// per level. Levels above the directory, and those shared with the descent to the centre, are
-/// skipped.
+/// There are no leaves unless 0 <= r <= view.reach_m() and the centre is finite. Cost: at most 8
+/// descents of at most depth() levels, about 20 instructions per level. Levels above the directory,
+/// and those shared with the descent to the centre, are skipped.
 class CornerLeaves {
  public:
   CornerLeaves(const BlobView& view, Vec3 centre, float r);
 
   /// Calls limit_squared = visit(leaf) for each leaf, beginning with the centre's. Skips leaves
   /// whose cells are further from the centre than the square root of limit_squared (m^2) plus two
-  /// lattice units. The limit may only shrink; a negative one ends the search.
+  /// lattice units. The limit must not increase; a negative limit ends the search.
   template <typename Visit>
   void each(float limit_squared, Visit&& visit);
 
-  /// The same step by step: begin(), then find(corner) for corner 0 and each one that next()
-  /// returns, until it returns 0. False: there are no leaves.
+  /// Iteration without a callback: begin(), then find(corner) for corner 0 and for each corner that
+  /// next() returns, until it returns 0. begin() returns false if there are no leaves.
   [[nodiscard]] bool begin();
   [[nodiscard]] std::uint32_t next(std::uint32_t corner) const {
     return (corner - axes_left_) & axes_left_;
   }
   [[nodiscard]] bool is_beyond(std::uint32_t corner, float limit_squared) const;
-  /// Empty if there is no leaf, or if it has been returned for another corner.
+  /// The result is empty if there is no leaf, or if the leaf is returned for another corner.
   [[nodiscard]] NearLeaf find(std::uint32_t corner);
 
   /// Lower corner of a visited leaf, lattice units.
@@ -81,7 +80,7 @@ class CornerLeaves {
   [[nodiscard]] Leaf leaf(std::uint32_t number, std::uint32_t corner) const;
 
  private:
-  static constexpr std::uint32_t kAxes = kLanes > 1 ? kLanes : 3;  // room for whole lanes
+  static constexpr std::uint32_t kAxes = kLanes > 1 ? kLanes : 3;  // padded to whole lanes
 
   template <typename T>
   [[nodiscard]] static T pick(const T (&of)[2][kAxes], std::uint32_t corner, std::uint32_t axis) {
@@ -101,35 +100,36 @@ class CornerLeaves {
   Vec3 centre_;
   bool is_valid_ = false;
   std::uint32_t below_;          // levels between the directory and the leaves
-  std::uint32_t axes_left_ = 0;  // bit = an axis whose other cell is within reach
-  // On each axis the centre's finest cell, and the one beyond its nearest face:
-  std::uint32_t cell_[2][kAxes];    // number of the cell from the root's lower corner
-  std::uint32_t packed_[2][kAxes];  // the bits below the directory, placed for octant_of()
+  std::uint32_t axes_left_ = 0;  // bit n: the other cell of axis n is within reach
+  // On each axis: [0] the finest cell of the centre, [1] the cell beyond its nearest face.
+  std::uint32_t cell_[2][kAxes];    // number of the cell from the lower corner of the root
+  std::uint32_t packed_[2][kAxes];  // the bits below the directory level, for octant_of()
   float local_[2][kAxes];           // the centre, m, relative to the cell's first site
-  float gap_squared_[2][kAxes];     // m^2 from the centre to the cell, rounded down
+  float gap_squared_[2][kAxes];  // squared distance of the cell from the centre, m^2, rounded down
   std::uint32_t own_packed_ = 0;
-  std::uint32_t axes_across_ = 0;  // bit = an axis whose two cells have different directory entries
-  // The descent to the centre, by levels below: the nodes, then the leaf's number.
+  std::uint32_t axes_across_ = 0;  // bit n: the cells of axis n have different directory entries
+  // The descent to the centre, by number of levels below: nodes, and at 0 the number of the leaf.
   std::uint32_t path_[kMaxLevelsBelow + 1];
-  std::uint32_t path_end_ = 0;   // level at which it ends; 0: at the leaf
+  std::uint32_t path_end_ = 0;   // index of its last entry; 0: it reached the leaf
   std::uint32_t own_ = kNoNode;  // number of that leaf
 };
 
-// `packed` holds the bits of three coordinates, ten each. One product collects the bits of a level,
-// at 0, 10 and 20, at the top.
+// `packed` contains three coordinates of ten bits each. The product moves the bits of one level
+// from positions 0, 10 and 20 to the top three positions.
 static_assert(kMaxLevelsBelow <= 10);
 constexpr std::uint32_t octant_of(std::uint32_t packed, std::uint32_t level_below) {
   return ((packed >> level_below) & 0x00100401U) * 0x20100800U >> 29;
 }
 static_assert(octant_of(4U << 10, 2) == 2 && octant_of(7U | 3U << 10 | 4U << 20, 2) == 5);
 
-// A descent that ended above the leaves: kNoNode for empty space, else a memory fault.
+// Result of a descent that ended above the leaves: kNoNode in empty space, otherwise kDamagedNode
+// (memory fault).
 constexpr std::uint32_t kDamagedNode = kNoNode - 1U;
 constexpr std::uint32_t stopped_at(std::uint32_t node) {
   return node == kNoNode ? kNoNode : kDamagedNode;
 }
 
-// The child of a node whose children are all of one kind; kNoNode: none.
+// The child of a node whose children are all of one kind; kNoNode if there is none.
 // Precondition: node < view.node_count().
 inline std::uint32_t step_down(const BlobView& view, std::uint32_t node, std::uint32_t octant) {
   const std::uint32_t group = view.node_words()[node];  // memory: flash
@@ -138,8 +138,8 @@ inline std::uint32_t step_down(const BlobView& view, std::uint32_t node, std::ui
   return (mask & bit) != 0 ? (group & 0xFFFFFFU) + count_low_octants(mask & (bit - 1U)) : kNoNode;
 }
 
-// Descends to the centre's leaf and records the nodes in path_. A descent that ends early ends at
-// kNoNode, or after a memory fault at an index that is no node's.
+// Descends to the centre's leaf and records the nodes in path_. The descent ends early at kNoNode,
+// or after a memory fault at an index that is out of range.
 [[gnu::always_inline]] inline std::uint32_t CornerLeaves::find_own() {
   const std::uint32_t nodes = view_.node_count();
   std::uint32_t node = directory_entry(0);
@@ -194,7 +194,7 @@ inline std::uint32_t step_down(const BlobView& view, std::uint32_t node, std::ui
   }
   const std::uint32_t found = corner == 0 ? own_ : find_other(corner);
   const bool exists = found < view_.leaf_count();
-  const std::uint32_t number = exists ? found : 0U;  // every model has a leaf
+  const std::uint32_t number = exists ? found : 0U;  // placeholder: every model has leaf 0
   NearLeaf leaf{number,
                 view_.first_point(number),
                 view_.first_point(number + 1U),
@@ -217,7 +217,7 @@ inline std::uint32_t CornerLeaves::axes_within(float limit_squared) const {
          (gap_squared_[1][2] > limit_squared ? 3U : 7U);
 }
 
-// The sum is rounded by less than the unit that each gap is short of.
+// The rounding error of the sum is smaller than the lattice unit by which each gap is reduced.
 inline bool CornerLeaves::is_beyond(std::uint32_t corner, float limit_squared) const {
   return pick(gap_squared_, corner, 0) + pick(gap_squared_, corner, 1) +
              pick(gap_squared_, corner, 2) >
@@ -240,7 +240,7 @@ template <typename Visit>
       }
     }
     axes = is_first ? axes_within(limit_squared) : axes;
-    corner = (corner - axes) & axes;  // the next subset of the axes, in the end none
+    corner = (corner - axes) & axes;  // the next subset of the axes; 0 after the last
   } while (corner != 0);
 }
 

@@ -7,11 +7,11 @@
 namespace tactree::core {
 namespace {
 
-/// A place in units of the lattice, from the lower corner of the root.
+/// A position in lattice units from the lower corner of the root cube.
 struct Units {
   std::uint32_t x, y, z;
 
-  /// In cells of edge 2^(shift + 1): the octant that holds the place.
+  /// Octant that contains the position in its cell of edge 2^(shift + 1).
   [[nodiscard]] std::uint32_t octant(std::uint32_t shift) const {
     return ((x >> shift) & 1U) | (((y >> shift) & 1U) << 1) | (((z >> shift) & 1U) << 2);
   }

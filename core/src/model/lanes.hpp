@@ -1,6 +1,6 @@
 #pragma once
-// SIMD lanes: four floats or integers per instruction on cores with vector instructions, else one.
-// Both use IEEE arithmetic, so results are the same to the bit.
+// SIMD lanes: four floats or integers per instruction on cores with vector instructions, otherwise
+// one. Both use IEEE arithmetic, so the results are bit-identical.
 
 #include <cstdint>
 
@@ -12,12 +12,12 @@ inline constexpr std::uint32_t kLanes = 4;
 using Floats = float __attribute__((vector_size(16)));
 using Integers = std::int32_t __attribute__((vector_size(16)));
 using Words = std::uint32_t __attribute__((vector_size(16)));
-using Mask = Integers;  // all ones or 0
+using Mask = Integers;  // per lane: all ones or 0
 
 inline Floats all(float v) { return Floats{v, v, v, v}; }
 inline Integers all(std::int32_t v) { return Integers{v, v, v, v}; }
 inline Integers ascending_from(std::int32_t first) { return first + Integers{0, 1, 2, 3}; }
-inline Integers ascending_to(std::int32_t first, std::int32_t last) {  // last: at most first + 2
+inline Integers ascending_to(std::int32_t first, std::int32_t last) {  // last <= first + 2
   return Integers{first, first < last ? first + 1 : last, last, last};
 }
 
@@ -36,14 +36,14 @@ inline Words gather(const std::uint32_t* from, Integers index) {
 }
 
 inline Floats to_floats(Integers v) { return __builtin_convertvector(v, Floats); }
-inline Floats to_floats(Words v) { return to_floats((Integers)v); }  // each below 2^31
+inline Floats to_floats(Words v) { return to_floats((Integers)v); }  // each lane below 2^31
 inline Integers to_integers(Floats v) { return __builtin_convertvector(v, Integers); }
 inline Integers as_integers(Floats v) { return (Integers)v; }
 inline Floats as_floats(Integers bits) { return (Floats)bits; }
 
 #ifdef __SSE2__
 inline Floats smaller(Floats a, Floats b) { return __builtin_ia32_minps(a, b); }
-inline std::uint32_t mask_bits(Mask mask) {  // one a lane
+inline std::uint32_t mask_bits(Mask mask) {  // one bit per lane
   return static_cast<std::uint32_t>(__builtin_ia32_movmskps((Floats)mask));
 }
 #else

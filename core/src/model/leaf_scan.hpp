@@ -1,6 +1,6 @@
 #pragma once
-// Distances from a probe to the points of one leaf, computed in the leaf's own frame: coordinates
-// are small there, and float32 resolves about 1e-7 of a leaf edge.
+// Distances from a probe to the points of one leaf, computed in the frame of the leaf, where
+// coordinates are small and float32 resolves about 1e-7 of a leaf edge.
 // Loop and memory annotations: docs/BOUND.md.
 
 #include "corner_leaves.hpp"
@@ -17,7 +17,7 @@ class LeafScan {
         scale_(leaf.site_m),
         local_(leaf.local) {}
 
-  /// From the point to the probe, m.
+  /// Vector from the point to the probe, m.
   [[nodiscard]] Vec3 offset(std::uint32_t index) const {
     const std::uint32_t word = words_[index];
     return {local_.x - scale_ * coordinate((word >> 2) & 1023U),
@@ -26,7 +26,7 @@ class LeafScan {
   }
 
   /// Calls visit(squared, index) for kLanes points at a time; squared distances in m^2. Indices
-  /// ascend in each lane. The last points may be visited twice.
+  /// ascend in each lane. Some of the last points may be visited twice.
   template <typename Visit>
   void each_block(Visit&& visit) const {
     const auto first = static_cast<std::int32_t>(first_);
@@ -48,8 +48,8 @@ class LeafScan {
   }
 
  private:
-  // A coordinate is converted in place, without a shift; the scale takes the power of two. Rounds
-  // as length_squared(offset()) does.
+  // The bits of x and y are converted to float without a shift; the scale contains their power of
+  // two. The result is rounded like length_squared(offset()).
   [[nodiscard]] Floats squared(Words words) const {
     const Floats x = (0.25F * scale_) * to_floats(words & 0xFFCU) - local_.x;
     const Floats y = (0.25F / 1024.0F * scale_) * to_floats(words & 0x3FF000U) - local_.y;
@@ -67,7 +67,7 @@ class LeafScan {
   Vec3 local_;
 };
 
-/// True if the axis-aligned box, half-width `half`, of a point of the leaf holds the probe.
+/// True if the probe is in the axis-aligned box, of half-width `half`, around a point of the leaf.
 inline bool leaf_has_box_around(const BlobView& view, const NearLeaf& leaf, float half) {
   const LeafScan scan(view, leaf);
   for (std::uint32_t p = leaf.first_point; p < leaf.end_point; ++p) {  // bound: points_per_leaf_max

@@ -27,8 +27,9 @@ float next_above(float positive) {
   return std::bit_cast<float>(std::bit_cast<std::uint32_t>(positive) + 1U);
 }
 
-// True if a point of the leaf became the best. A lane keeps the first of equally near points, which
-// has the lowest index. A point as near as the best so far counts as nearer within a lane.
+// Returns true if a point of the leaf replaces `best`. A lane keeps the first of equally near
+// points, which has the lowest index. The lanes start just above best.squared, so that a point as
+// near as `best` is found, and replaces it if its index is lower.
 bool nearest_in_leaf(const LeafScan& scan, Nearest& best) {
   NearestOfLanes lanes{all(next_above(best.squared)), all(kNone)};
   scan.each_block([&lanes](Floats squared, Integers index) {
@@ -98,6 +99,7 @@ bool in_any_vertex_box(const BlobView& view, Vec3 probe) {
     return false;
   }
   const float half = 0.5F * view.header().aabb_edge_m;
+  // Above the squared distance of a box's corner, 3 half^2, so that no leaf is skipped.
   const float everything = 4.0F * half * half;
   bool found = false;
   CornerLeaves(view, probe, half).each(everything, [&](const NearLeaf& leaf) {

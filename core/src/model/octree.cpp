@@ -8,8 +8,9 @@
 namespace tactree::core {
 namespace {
 
-// floor(v / step), exact. The rounded quotient is off by less than one unit (|v| < 2^23 steps), and
-// step * integer is exact by the blob's contract; comparisons on both sides correct it.
+// floor(v / step), exact. The error of the rounded quotient is less than one unit (|v| < 2^23
+// steps), and step * integer is exact (blob_format.hpp), so comparisons with the integers on both
+// sides correct it.
 bool floor_to_lattice(float v, float step, float inverse_step, std::int32_t& units) {
   const float quotient = v * inverse_step;
   constexpr float kLimit = 2.0F * static_cast<float>(kMaxCoordinate);

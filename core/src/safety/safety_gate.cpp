@@ -6,10 +6,10 @@
 namespace tactree::core {
 namespace {
 
-// The limits hold exactly although the arithmetic rounds: each target is below its limit by more
-// than the rounding of the operations that follow.
+// Each target is below its limit by more than the rounding error of the operations that follow, so
+// that the limits hold exactly.
 constexpr float kInside = 1.0F - 4e-6F;
-// Rounding of last + change, relative to the largest force.
+// Rounding error of last + change, relative to the maximum force or effort.
 constexpr float kRounding = 4e-7F;
 
 constexpr bool in_range(float value, float low, float high) {
@@ -30,7 +30,7 @@ float safe_length(Vec3 v) {
   if (!(largest > 0.0F)) {
     return 0.0F;
   }
-  // Separate divisions: 1 / largest overflows for a denormal.
+  // Separate divisions, because 1 / largest overflows for a denormal number.
   const Vec3 scaled = {v.x / largest, v.y / largest, v.z / largest};
   return largest * length(scaled);
 }
@@ -114,7 +114,7 @@ Vec3 SafetyGate::limit_force(Vec3 force, LimitMask& limits) const {
     return force;
   }
   limits |= limit_bit(Limit::kForce);
-  if (!is_finite(size)) {  // length above the float range: half of it has the same direction
+  if (!is_finite(size)) {  // the length overflows; that of half the vector does not
     const Vec3 half = 0.5F * force;
     return (allowed / safe_length(half)) * half;
   }

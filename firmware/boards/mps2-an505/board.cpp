@@ -2,6 +2,7 @@
 
 namespace tactree::firmware {
 
+// SYSCLK of QEMU's model of the AN505.
 std::uint32_t timer_clock_hz() { return 20000000; }
 
 void prepare_board() {}  // the emulator starts with its clocks running

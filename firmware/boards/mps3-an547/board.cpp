@@ -2,6 +2,7 @@
 
 namespace tactree::firmware {
 
+// SYSCLK of QEMU's model of the AN547.
 std::uint32_t timer_clock_hz() { return 32000000; }
 
 void prepare_board() {}  // the emulator starts with its clocks running

@@ -1,5 +1,6 @@
 #pragma once
-// Netduino Plus 2: an STM32F405, Cortex-M4 with FPU at 168 MHz, in QEMU; its plant over the link.
+// Netduino Plus 2 in QEMU: an STM32F405 (Cortex-M4 with FPU, 168 MHz). The host simulates the plant
+// over the plant link.
 
 #include "plant_link/plant_link_board.hpp"
 

@@ -1,5 +1,5 @@
 #pragma once
-// RISC-V, rv32imafc: QEMU's virt machine with the core sifive-e34.
+// QEMU's RISC-V virt machine with a sifive-e34 core, rv32imafc.
 
 #include "plant_link/uart_board.hpp"
 #include "uarts/ns16550_uart.hpp"

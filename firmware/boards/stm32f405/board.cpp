@@ -6,7 +6,7 @@
 namespace tactree::firmware {
 namespace {
 
-// Written before RAM is initialised; start-up must not clear it.
+// prepare_board() writes this before RAM is initialised; start-up must not clear it.
 [[gnu::section(".noinit")]] stm32f4::ClockFailure clock_failure;
 
 }  // namespace

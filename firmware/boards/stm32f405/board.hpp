@@ -1,5 +1,5 @@
 #pragma once
-// The board on the registers of the chip.
+// The STM32F405 board on the hardware registers of the chip.
 
 #include "stm32f405_board.hpp"
 

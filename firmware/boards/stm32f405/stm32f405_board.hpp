@@ -1,7 +1,7 @@
 #pragma once
 // A board with an STM32F405, three encoders and three amplifiers. README.md in this folder lists
-// the pins and the tests that were run. `Word` as in registers.hpp: the tests run the whole board
-// on simulated registers. Loop and memory annotations: docs/BOUND.md.
+// the pins and the tests that were run. `Word` is the type of a register (stm32f4/registers.hpp);
+// the tests run the whole board on simulated registers. Loop and memory annotations: docs/BOUND.md.
 
 #include <cstdint>
 
@@ -23,8 +23,8 @@
 
 namespace tactree::firmware {
 
-/// Switches to full speed and enables the clock of every part. Call once after a reset, before any
-/// other access to the chip.
+/// Switches to full clock speed and enables the clock of every peripheral in use. Call once after a
+/// reset, before any other access to the chip.
 template <class Word>
 [[nodiscard]] stm32f4::ClockFailure prepare_chip(const stm32f4::Chip<Word>& chip) {
   const stm32f4::ClockFailure failure =
@@ -32,11 +32,12 @@ template <class Word>
   stm32f4::set(chip.rcc.ahb1enr, wiring::kAhb1Clocks);
   stm32f4::set(chip.rcc.apb1enr, wiring::kApb1Clocks);
   stm32f4::set(chip.rcc.apb2enr, wiring::kApb2Clocks);
-  (void)stm32f4::read(chip.rcc.apb2enr);  // a part is usable two cycles after its clock is enabled
+  (void)stm32f4::read(chip.rcc.apb2enr);  // usable two cycles after the clock is enabled
   return failure;
 }
 
-/// Regions of the model store: its records and its two slots. memory.ld lists the whole flash.
+/// Flash regions of the model store: its records and its two slots. linker/stm32f405.ld lists the
+/// use of all sectors.
 inline constexpr stm32f4::FlashRegion kRecordSectors{1, 2, 4096};
 inline constexpr stm32f4::FlashRegion kSlotSectors{6, 6, 32768};
 
@@ -50,14 +51,14 @@ constexpr core::wire::StartPart part_of(stm32f4::ClockFailure failure) {
                                                 : Part::kClockSwitch;
 }
 
-/// `Cell` as in FlashProgrammer.
+/// `Word` is the type of a register, `Cell` that of a word of flash (FlashProgrammer).
 template <class Word, class Cell = Word>
 class Stm32f405Board {
  public:
   using Part = core::wire::StartPart;
 
-  /// Feeds the watchdog at the start of a tick and around an erase only, so a hanging tick causes a
-  /// reset.
+  /// Refreshes the watchdog at the start of each tick. It is otherwise refreshed only around an
+  /// erase, so a tick that hangs causes a reset.
   class Ticker {
    public:
     explicit Ticker(Stm32f405Board& board) : board_(board) {}
@@ -73,7 +74,8 @@ class Stm32f405Board {
     DeadlineWait deadline_;
   };
 
-  /// The bank of motors. Reports a failure if any part of the board did not start.
+  /// The motors of the board. healthy() also returns false if any part of the board failed to
+  /// start.
   class Motors {
    public:
     explicit Motors(Stm32f405Board& board) : board_(board) {}
@@ -84,9 +86,9 @@ class Stm32f405Board {
     Stm32f405Board& board_;
   };
 
-  /// Switches the power off and holds the ticks while the processor stalls in an erase. If the
-  /// watchdog's timeout cannot be lengthened, nothing is erased; if it cannot be restored, the
-  /// board gives no force until the next reset.
+  /// Switches the power of the amplifiers off and holds the ticks, because the processor stalls
+  /// during an erase. If the watchdog's timeout cannot be extended, nothing is erased. If it cannot
+  /// be restored, healthy() returns false and the motors stay off until the next reset.
   class Standstill {
    public:
     explicit Standstill(Stm32f405Board& board) : board_(board) {}
@@ -109,7 +111,7 @@ class Stm32f405Board {
   using Session = session::Session<stm32f4::SerialPort<Word>, Store, SessionPlatform>;
   using Link = session::MailboxLink<Ticker>;
 
-  /// `clocks`: result of prepare_chip().
+  /// `clocks` is the result of prepare_chip().
   Stm32f405Board(const stm32f4::Chip<Word>& chip, const stm32f4::FlashCells<Cell>& cells,
                  stm32f4::ClockFailure clocks, const session::BoardIdentity& identity)
       : chip_(chip),
@@ -136,7 +138,7 @@ class Stm32f405Board {
   Stm32f405Board(const Stm32f405Board&) = delete;
   Stm32f405Board& operator=(const Stm32f405Board&) = delete;
 
-  /// Starts every part. The configuration is from wiring.hpp, with the saved calibration.
+  /// Starts every part. Returns the configuration of wiring.hpp with the saved calibration applied.
   [[nodiscard]] core::Configuration connect(const hal::CapturedFault& last_fault) {
     report_.by_watchdog = stm32f4::take_watchdog_reset(chip_.rcc);
     report_.last_fault = last_fault;
@@ -157,11 +159,11 @@ class Stm32f405Board {
     return configuration;
   }
 
-  /// Starts the watchdog: in connect(), the check of a large model would exceed its timeout.
-  /// serve() reports `result` over the link.
+  /// Starts the watchdog. It must not start in connect(), because the check of a large model, which
+  /// follows, would exceed its timeout. serve() reports `result` over the link.
   void report(const hal::StartResult& /*result*/) { note(watchdog_.start(), Part::kWatchdog); }
 
-  /// Serves an application at the port between the ticks. Does not return.
+  /// Serves an application on the serial port between the ticks. Does not return.
   void serve(core::Controller& controller, const hal::StartResult& started,
              const core::Configuration& configuration) {
     static Session session(session_parts(controller));
@@ -182,10 +184,11 @@ class Stm32f405Board {
   [[nodiscard]] const Store& storage() const noexcept { return store_; }
   [[nodiscard]] Ticker& ticker() noexcept { return ticker_; }
 
-  /// Parts that have failed to start.
+  /// The parts that failed to start, and the cause of the last reset.
   [[nodiscard]] const hal::StartReport& start_report() const noexcept { return report_; }
 
-  /// The buffer of the DMA, for a simulated DMA, which cannot read its address register.
+  /// The receive buffer, for tests: a simulated DMA cannot read it through a 32-bit address
+  /// register.
   [[nodiscard]] stm32f4::Ring& ring() noexcept { return ring_; }
 
  private:
@@ -193,7 +196,7 @@ class Stm32f405Board {
   stm32f4::Pin<Word> pin_b(std::uint32_t number) const { return {chip_.gpio_b, number}; }
   stm32f4::Pin<Word> pin_c(std::uint32_t number) const { return {chip_.gpio_c, number}; }
 
-  // Pull-up: an open track keeps its level.
+  // The pull-ups keep the level of an unconnected track constant.
   void prepare_encoder_pins() {
     pin_a(15).make_alternate(wiring::kTim2Function, stm32f4::Pull::kUp);
     pin_b(3).make_alternate(wiring::kTim2Function, stm32f4::Pull::kUp);
@@ -203,7 +206,8 @@ class Stm32f405Board {
     pin_b(7).make_alternate(wiring::kTim4Function, stm32f4::Pull::kUp);
   }
 
-  // Pull-down: no pulse while the timer does not drive; a broken failure line reads as a failure.
+  // The pull-downs keep the PWM inputs low while the timer does not drive them; a broken failure
+  // line reads as a failure.
   void prepare_motor_pins() {
     for (std::uint32_t axis = 0; axis < core::kAxes; ++axis) {  // bound: kAxes
       pin_c(axis).make_output();

@@ -1,6 +1,6 @@
 #pragma once
-// Pins of the board and the parts connected to them. Adapt this file for another board with this
-// chip.
+// Values that depend on the wiring of the board: crystal, clocks and alternate functions of the
+// peripherals, amplifiers and device. Adapt this file for another board with this chip.
 
 #include <cstdint>
 
@@ -10,27 +10,28 @@
 namespace tactree::firmware::wiring {
 
 inline constexpr std::uint32_t kCrystalMHz = 25;  ///< 4 .. 26
-/// Divides the bus clock without remainder at full speed (84 MHz) and on the internal oscillator
-/// (16 MHz), so the rate is as exact as the clock. At a lower rate telemetry would delay replies.
+/// Both the bus clock at full speed (84 MHz) and the internal oscillator (16 MHz) are multiples of
+/// this rate, so the rate is as accurate as the clock. At a lower rate telemetry would delay
+/// replies.
 inline constexpr std::uint32_t kBaud = 1000000;
 
-// Bits of the ports and of DMA2 in AHB1ENR (RM0090, section 7.3.10).
+// GPIO A, B, C and DMA2 in AHB1ENR (RM0090, section 7.3.10).
 inline constexpr std::uint32_t kAhb1Clocks = (1U << 0) | (1U << 1) | (1U << 2) | (1U << 22);
 inline constexpr std::uint32_t kApb1Clocks = (1U << 0) | (1U << 2) | (1U << 3);  // TIM2, 4, 5
 inline constexpr std::uint32_t kApb2Clocks = (1U << 1) | (1U << 4);              // TIM8, USART1
 
-/// Data sheet, table 9.
+/// Numbers of the alternate functions: data sheet, table 9.
 inline constexpr std::uint32_t kTim2Function = 1;
 inline constexpr std::uint32_t kTim4Function = 2;
 inline constexpr std::uint32_t kTim5Function = 2;
 inline constexpr std::uint32_t kTim8Function = 3;
 inline constexpr std::uint32_t kUsart1Function = 7;
 
-/// Effort of an axis at full pulse width, N or Nm.
+/// Effort of an axis at a duty cycle of 1, N or Nm.
 inline constexpr float kEffortAtFullWidth[core::kAxes] = {1.9F, 1.8F, 1.5F};
 
-/// Configuration of the device. Homed by hand (HomingMethod::kGivenPose). Requires the link of the
-/// application, which is the means to stop the device.
+/// Configuration of the device. The device is homed by hand (HomingMethod::kGivenPose). The link of
+/// the application is required because the application stops the device over it.
 inline core::Configuration configuration() {
   core::Configuration configuration;
   core::use_device(core::presets::premium(), configuration);

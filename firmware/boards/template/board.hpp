@@ -1,7 +1,7 @@
 #pragma once
-// Template of a board. It boots, reports every part as missing and gives no force: each part
-// behaves as a failed part. Complete the CHANGEs from top to bottom and run the conformance program
-// after each: docs/PORTING.md.
+// Template of a board. It boots and keeps the motors off, because each part behaves like a failed
+// part. Complete the lines marked CHANGE from top to bottom and run the conformance program after
+// each of them: docs/PORTING.md.
 
 #include "platform.hpp"
 #include "runtime/blob_area.hpp"
@@ -13,10 +13,10 @@ namespace tactree::firmware {
 
 class Board {
  public:
-  /// Needs no change.
+  /// Complete, except for the watchdog.
   class Ticker {
    public:
-    // CHANGE: feed your watchdog here and nowhere else.
+    // CHANGE: refresh your watchdog here and nowhere else.
     [[nodiscard]] hal::Tick wait() noexcept { return {deadline_.wait()}; }
     [[nodiscard]] std::uint32_t now_us() noexcept { return firmware::now_us(); }
 
@@ -26,24 +26,24 @@ class Board {
 
   class Encoders {
    public:
-    // CHANGE: latch all counters at one instant; extend them to 32 bits; valid only while a counter
-    // runs as configured. The index pulse is needed only for homing by index.
+    // CHANGE: latch all counters at one instant and extend them to 32 bits. An axis is valid only
+    // while its counter runs as configured. The index pulse is needed only for homing by index.
     [[nodiscard]] core::EncoderReading read() noexcept { return {}; }
   };
 
   class Motors {
    public:
-    // CHANGE: command.effort(axis) is N or Nm; hold it until the next write.
+    // CHANGE: apply command.effort(axis), N or Nm, and hold it until the next write.
     void write(const core::MotorCommand&) noexcept {}
-    // CHANGE: true if no amplifier reports a failure and the last command was delivered.
+    // CHANGE: return true if no amplifier reports a failure and the last command was delivered.
     [[nodiscard]] bool healthy() noexcept { return false; }
   };
 
   class EnableLine {
    public:
-    // CHANGE: power of the amplifiers. A broken wire must mean off.
+    // CHANGE: switch the power of the amplifiers. A broken wire must switch it off.
     void set(bool) noexcept {}
-    // CHANGE: the level measured at the amplifiers, not the level set.
+    // CHANGE: return the level measured at the amplifiers, not the level set.
     [[nodiscard]] bool read_back() noexcept { return false; }
   };
 
@@ -59,15 +59,15 @@ class Board {
    public:
     // CHANGE: return each valid command once; ignore messages that fail their checks.
     [[nodiscard]] hal::LinkInput receive() noexcept { return {}; }
-    // CHANGE: drop the status if there is no room; never wait.
+    // CHANGE: send the status. Drop it if there is no room; never wait.
     void send(const core::Status&) noexcept {}
   };
 
-  /// Starts every part. CHANGE: use_device() of tactree/core/configuration/device_presets.hpp, and
-  /// your values.
+  /// Starts every part. CHANGE: call use_device() of tactree/core/configuration/device_presets.hpp
+  /// and set your own values.
   [[nodiscard]] core::Configuration connect(const hal::CapturedFault&) { return {}; }
-  /// Receives the result of the start. CHANGE: report it, and start the watchdog: the check of a
-  /// large model takes longer than the timeout of a watchdog.
+  /// Receives the result of the start. CHANGE: report it, then start the watchdog. It must not
+  /// start earlier, because the check of a large model takes longer than the timeout of a watchdog.
   void report(const hal::StartResult&) {}
 
   [[nodiscard]] Encoders& encoders() noexcept { return encoders_; }

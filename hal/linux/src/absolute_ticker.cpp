@@ -21,7 +21,7 @@ void sleep_until(std::uint64_t due_ns) noexcept {
   }
 }
 
-// Only one thread writes: no read-modify-write is needed.
+// Only one thread writes, so an atomic read-modify-write is not needed.
 void raise_by(std::atomic<std::uint64_t>& value, std::uint64_t amount) {
   value.store(value.load(std::memory_order_relaxed) + amount, std::memory_order_relaxed);
 }
@@ -55,7 +55,7 @@ Tick AbsoluteTicker::wait() noexcept {
   const std::uint64_t now = now_ns();
   const std::uint64_t late_ns = now > due_ns_ ? now - due_ns_ : 0;
   lateness_.add(late_ns);
-  // Missed ticks are skipped; a burst of ticks would repeat old outputs.
+  // Missed ticks are skipped, because a burst of ticks would repeat old outputs.
   const std::uint64_t missed = late_ns / period_ns_;
   due_ns_ += (missed + 1U) * period_ns_;
   raise_by(missed_, missed);

@@ -1,5 +1,5 @@
 #pragma once
-// Asynchronous file operations of Linux, the part required for endpoints of FunctionFS.
+// Asynchronous file operations of Linux, as far as endpoints of FunctionFS require them.
 
 #include <linux/aio_abi.h>
 
@@ -10,7 +10,7 @@
 
 namespace tactree::hal::linux_usb {
 
-/// A queue of operations, with a descriptor that is readable when one has ended.
+/// A queue of operations, with a file descriptor that is readable when one has ended.
 class AsyncContext {
  public:
   AsyncContext();
@@ -20,7 +20,8 @@ class AsyncContext {
   AsyncContext& operator=(const AsyncContext&) = delete;
 
   [[nodiscard]] int descriptor() const { return event_; }
-  /// Starts an operation. `bytes` must stay valid until ended() returns `tag`. False: refused.
+  /// Starts an operation. `bytes` must stay valid until ended() returns `tag`. Returns false if the
+  /// kernel refuses it.
   [[nodiscard]] bool read(int file, std::span<std::byte> bytes, std::uint64_t tag);
   [[nodiscard]] bool write(int file, std::span<const std::byte> bytes, std::uint64_t tag);
 
@@ -28,7 +29,7 @@ class AsyncContext {
     std::uint64_t tag = 0;
     std::int64_t result = 0;  ///< bytes, or -errno
   };
-  /// Operations ended since the last call; valid until the next call.
+  /// Returns the operations that ended since the last call; valid until the next call.
   [[nodiscard]] std::span<const Ended> ended();
 
  private:

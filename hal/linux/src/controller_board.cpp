@@ -3,7 +3,8 @@
 namespace tactree::hal::linux_gpio {
 namespace {
 
-// Kicking on every tick is not needed: it costs a system call, and timeouts are 1 s or longer.
+// Time between kicks of the watchdog. A kick in every tick is not needed: it costs a system call,
+// and timeouts are 1 s or longer.
 constexpr std::uint64_t kNsPerKick = 100'000'000;
 
 std::uint32_t ticks_per_kick(std::uint64_t period_ns) {

@@ -22,7 +22,7 @@ std::string function_of(const std::string& folder) {
   return text;
 }
 
-/// Selects counting of each edge of both tracks.
+/// Selects counting of every edge of both channels.
 void count_each_edge(const std::string& folder) {
   if (function_of(folder) != kEachEdge) {
     std::ofstream(folder + "/function") << kEachEdge << std::flush;
@@ -33,8 +33,8 @@ void count_each_edge(const std::string& folder) {
   }
 }
 
-/// Sets the largest range a counter accepts and returns it; it wraps after `ceiling`. Some counters
-/// start with an empty range.
+/// Sets the largest range that the counter accepts and returns its number of values; the counter
+/// wraps after `ceiling`. Some counters start with an empty range.
 std::uint64_t widen(const std::string& folder) {
   const std::string file = folder + "/ceiling";
   if (::access(file.c_str(), W_OK) == 0) {

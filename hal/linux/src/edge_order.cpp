@@ -9,7 +9,7 @@
 namespace tactree::hal::linux_gpio {
 namespace {
 
-// The kernel counts an interrupt before it takes the time.
+// Allowance for the time from the kernel's count of an interrupt to its time stamp.
 constexpr std::uint64_t kStamp_ns = 10'000;
 
 }  // namespace
@@ -43,7 +43,7 @@ void EdgeOrder::begin_check(Line& line) const {
   line.until_ns = until_ns_;
 }
 
-// True: the edges of the check have come out of the queue, or were given up.
+// Returns true if the edges of the check have been read from the queue, or were given up as lost.
 bool EdgeOrder::end_check(Line& line) {
   const auto missing = static_cast<std::int32_t>(line.due - line.arrived);
   if (missing > 0 && look_ns_ - line.since_ns < kRest_ns) {
@@ -68,8 +68,8 @@ void EdgeOrder::add(const Edge& edge) {
   line.held[line.end++ % kHeld] = edge;
 }
 
-// Each line has a check of its own: if they had to be complete together, edges would never come
-// while at each look one of some line is in flight.
+// Each line has a separate check. A common check would never end while in each pass an edge of some
+// line is in flight.
 void EdgeOrder::settle() {
   certain_ns_ = look_ns_;
   for (Line& line : lines_) {  // bound: kMaxLines

@@ -1,10 +1,10 @@
 #pragma once
-// Edges from one queue for each line, in one order over all lines. The queues carry no numbers: an
-// edge that the kernel dropped or merged is detected by the number of interrupts of its line, which
-// the kernel counts as well.
+// Merges the edges of one queue per line into chronological order over all lines. The edges have no
+// sequence numbers: edges that the kernel dropped or merged are detected by the interrupt count of
+// their line, which the kernel provides as well.
 //
-// An edge is in flight from its interrupt until a thread of the kernel has put it into the queue.
-// While one is in flight, the order of later edges of other lines is unknown: these are held back.
+// An edge is in flight from its interrupt until a kernel thread has put it into the queue. While an
+// edge is in flight, the order of later edges of other lines is uncertain, so these are held back.
 
 #include <array>
 #include <cstddef>
@@ -17,43 +17,42 @@ namespace tactree::hal::linux_gpio {
 
 class EdgeOrder {
  public:
-  /// Edges of a line that wait for their turn.
+  /// Maximum number of edges of a line that are held back.
   static constexpr std::uint32_t kHeld = 64;
 
   explicit EdgeOrder(std::size_t lines) : lines_(lines) {}
 
-  /// Starts, with empty queues. `interrupts`: number of each line so far; one element for each
-  /// line.
+  /// Starts with empty queues. `interrupts`: interrupt count of each line.
   void begin(const std::vector<std::uint32_t>& interrupts);
 
-  /// Start of a look at all queues. The interrupts were read between `begin_ns` and `end_ns`,
-  /// before any queue is read; CLOCK_MONOTONIC.
+  /// Begins a pass over all queues. The interrupt counts were read between `begin_ns` and `end_ns`
+  /// (CLOCK_MONOTONIC), before any queue is read.
   void look(std::uint64_t begin_ns, std::uint64_t end_ns,
             const std::vector<std::uint32_t>& interrupts);
-  /// An edge of a queue, oldest first.
+  /// Adds an edge of a queue, oldest first.
   void add(const Edge& edge);
-  /// The queue of a line was full: edges may have been dropped.
+  /// Call if the queue of a line was full: edges may have been dropped.
   void overflowed() { ++lost_; }
-  /// End of a look. Cost: linear in the lines.
+  /// Ends the pass. Cost: linear in the number of lines.
   void settle();
 
-  /// Removes the oldest edge whose order is certain. False: there is none. Cost: linear in the
-  /// lines.
+  /// Removes the oldest edge whose order is certain. Returns false if there is none. Cost: linear
+  /// in the number of lines.
   [[nodiscard]] bool take(Edge& edge);
   [[nodiscard]] std::uint32_t lost() const { return lost_; }
-  /// Lines with edges that wait for their turn: bit n is line n.
+  /// Lines with edges that are held back: bit n is line n.
   [[nodiscard]] std::uint64_t held() const;
 
  private:
   struct Line {
     std::array<Edge, kHeld> held;
     std::uint32_t first = 0;     // edges taken so far
-    std::uint32_t end = 0;       // edges held so far
-    std::uint32_t queued = 0;    // edges that came out of the queue, and those given up
+    std::uint32_t end = 0;       // edges put into `held` so far
+    std::uint32_t queued = 0;    // edges read from the queue, and those given up as lost
     std::uint32_t base = 0;      // interrupts at begin()
-    std::uint32_t counted = 0;   // interrupts from begin() to the last look
-    std::uint64_t clear_ns = 0;  // all edges up to this time have come out of the queue
-    // A check: of the edges up to `until_ns`, `due` must come out of the queue.
+    std::uint32_t counted = 0;   // interrupts from begin() to the last look()
+    std::uint64_t clear_ns = 0;  // all edges up to this time have been read
+    // A check waits until `due` edges up to `until_ns` have been read from the queue.
     bool checked = false;
     std::uint32_t due = 0;
     std::uint32_t arrived = 0;
@@ -66,8 +65,8 @@ class EdgeOrder {
 
   std::vector<Line> lines_;
   std::uint64_t look_ns_ = 0;
-  std::uint64_t until_ns_ = 0;    // of the checks that begin with this look
-  std::uint64_t certain_ns_ = 0;  // all edges of all lines up to this time have come out
+  std::uint64_t until_ns_ = 0;    // of the checks that begin in this pass
+  std::uint64_t certain_ns_ = 0;  // all edges of all lines up to this time have been read
   std::uint32_t lost_ = 0;
 };
 

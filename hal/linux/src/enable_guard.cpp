@@ -22,13 +22,14 @@ namespace {
 
 constexpr int kParentIsGone = SIGUSR2;
 
-// Checks per `silence_ns`. Detection takes one check more, plus the delay that the kernel adds to
-// five sleeps.
+// Checks per `silence_ns`. Detection takes at most one more check, plus the delay that the kernel
+// adds to five sleeps.
 constexpr std::uint64_t kLooks = 4;
 
 void ignore(int) {}
 
-// A terminal or a service manager signals the whole group; the guard must outlive the loop.
+// A terminal or a service manager sends signals to the whole group; the guard must outlive the
+// loop.
 void outlive_the_others() {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGTSTP, SIGUSR1, SIGPIPE}) {  // bound: 6
     (void)std::signal(signal, SIG_IGN);
@@ -62,7 +63,8 @@ struct EnableGuard::Shared {
 
 namespace {
 
-/// Returns when the loop has ended or is silent. Checks at least four times per `silence_ns`.
+/// Returns true if the loop is silent, false if it has ended. Checks at least four times per
+/// `silence_ns`.
 template <class Shared>
 bool watch(const Shared& shared, pid_t parent, std::uint64_t silence_ns) {
   const std::uint64_t look_ns = silence_ns / kLooks;
@@ -126,7 +128,7 @@ EnableGuard::~EnableGuard() {
 }
 
 void EnableGuard::beat() noexcept {
-  // 0 means: no beat yet.
+  // The value 0 is reserved: no beat yet.
   const std::uint32_t next = shared_->beats.load(std::memory_order_relaxed) + 1U;
   shared_->beats.store(next == 0U ? 1U : next);
 }

@@ -25,11 +25,11 @@
 namespace tactree::hal::linux_usb {
 namespace {
 
-constexpr std::size_t kPieceBytes = 2048;  // bytes; a multiple of every packet size
+constexpr std::size_t kPieceBytes = 2048;  // a multiple of every packet size
 constexpr std::size_t kPieces = 4;         // pending operations per endpoint
 constexpr std::size_t kEndpoints = 3;
-constexpr std::size_t kCameMax = 2 * kPieces * kPieceBytes;  // waiting, and pending
-constexpr std::size_t kEventsMax = 8;  // four of the kernel, and those added here
+constexpr std::size_t kCameMax = 2 * kPieces * kPieceBytes;  // received, and pending
+constexpr std::size_t kEventsMax = 8;  // four from the kernel, and those added here
 constexpr std::size_t kControlBytesMax = 65535;
 
 // In the order of their descriptors: FunctionFS names their files ep1, ep2, ep3.
@@ -61,7 +61,7 @@ struct FunctionFsController::Impl {
   struct Endpoint {
     int file = -1;
     std::array<Piece, kPieces> pieces;
-    std::vector<std::byte> came;  // from the host
+    std::vector<std::byte> came;  // bytes from the host that read() has not returned yet
   };
   /// State while the device is plugged in.
   struct Plugged {
@@ -71,7 +71,7 @@ struct FunctionFsController::Impl {
       }
     }
     ~Plugged() {
-      async.reset();  // first: pending operations use the endpoints' memory
+      async.reset();  // first, because pending operations use the endpoints' memory
       for (const Endpoint& endpoint : endpoints) {  // bound: kEndpoints
         close_if_open(endpoint.file);
       }
@@ -274,8 +274,8 @@ void FunctionFsController::control_receive(std::uint16_t bytes) {
 
 std::span<const std::byte> FunctionFsController::control_data() const { return impl_->received; }
 
-/// Ends a request without data by an empty transfer in its direction. With data, the transfer has
-/// ended it already.
+/// A request without data is completed by an empty read; one with data was completed by its
+/// transfer.
 void FunctionFsController::control_acknowledge() {
   if (impl_->setup.wLength == 0) {
     (void)!::read(impl_->plugged->control, nullptr, 0);
@@ -283,7 +283,7 @@ void FunctionFsController::control_acknowledge() {
   impl_->events.push_back({UsbEvent::Kind::kStatusDone, {}, {}});
 }
 
-/// FunctionFS stalls when data is requested in the wrong direction.
+/// FunctionFS stalls endpoint 0 when it is accessed in the direction opposite to the request.
 void FunctionFsController::control_stall() {
   if (impl_->setup.to_host()) {
     (void)!::read(impl_->plugged->control, nullptr, 0);

@@ -32,8 +32,8 @@ struct Descriptors {
   std::uint32_t count = 0;
 };
 
-/// Interface and endpoint descriptors from the configuration of that speed. FunctionFS numbers
-/// names from 1.
+/// Interface and endpoint descriptors of the configuration for that speed. FunctionFS numbers
+/// strings from 1.
 Descriptors interfaces_of(core::usb::Speed speed, bool with_dfu) {
   const auto all = core::usb::configuration_descriptor(speed);
   Descriptors found;
@@ -41,7 +41,7 @@ Descriptors interfaces_of(core::usb::Speed speed, bool with_dfu) {
   while (at < all.size()) {  // bound: descriptors of the configuration
     const auto size = static_cast<std::size_t>(all[at]);
     Bytes one(all.begin() + static_cast<long>(at), all.begin() + static_cast<long>(at + size));
-    if (one[1] == std::byte{4}) {  // an interface
+    if (one[1] == std::byte{4}) {  // interface descriptor
       if (!with_dfu && one[2] != std::byte{core::usb::kLinkInterface}) {
         break;
       }
@@ -57,7 +57,7 @@ Descriptors interfaces_of(core::usb::Speed speed, bool with_dfu) {
 
 std::uint8_t interfaces(bool with_dfu) { return with_dfu ? core::usb::kInterfaces : 1; }
 
-/// Windows: WinUSB for each of the interfaces.
+/// Microsoft OS descriptors: Windows loads WinUSB for each interface.
 Bytes windows_descriptors(bool with_dfu) {
   Bytes out;
   for (std::uint8_t i = 0; i < interfaces(with_dfu); ++i) {  // bound: kInterfaces

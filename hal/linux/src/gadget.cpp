@@ -80,7 +80,7 @@ Gadget::Gadget(const core::usb::Identity& identity)
   const std::string function = folder_ + "/functions/ffs." + name_;
   make(function);
   fs::create_symlink(function, folder_ + "/configs/c.1/ffs." + name_);
-  // Microsoft descriptors, version 1, the one configfs supports: Windows loads WinUSB.
+  // Microsoft OS descriptors of version 1, which configfs supports: Windows loads WinUSB.
   write_to(folder_ + "/os_desc/b_vendor_code", hex(core::usb::kMicrosoftRequest));
   write_to(folder_ + "/os_desc/qw_sign", "MSFT100");
   write_to(folder_ + "/os_desc/use", "1");
@@ -99,7 +99,7 @@ void Gadget::take_down(const std::string& name) {
   std::error_code ignored;
   try {
     write_to(folder + "/UDC", "\n");
-  } catch (const std::runtime_error&) {  // it was not bound
+  } catch (const std::runtime_error&) {  // the gadget was not bound
   }
   umount2(mount.c_str(), MNT_DETACH);
   fs::remove(mount, ignored);
@@ -111,7 +111,7 @@ void Gadget::take_down(const std::string& name) {
   fs::remove(folder, ignored);
 }
 
-/// Removes gadgets of processes that have ended; the name of a gadget has its process id.
+/// Removes gadgets of processes that have ended. The name of a gadget contains its process ID.
 void Gadget::take_down_left_over() {
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(kGadgets, error)) {  // bound: gadgets

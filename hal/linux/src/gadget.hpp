@@ -9,14 +9,14 @@ namespace tactree::hal::linux_usb {
 
 class Gadget {
  public:
-  /// Creates gadget and mount, not connected to the bus yet. Removes gadgets of killed programs.
-  /// Throws std::runtime_error.
+  /// Creates the gadget and mounts FunctionFS; does not connect to the bus yet. Removes gadgets of
+  /// killed programs. Throws std::runtime_error.
   explicit Gadget(const core::usb::Identity& identity);
   ~Gadget();
   Gadget(const Gadget&) = delete;
   Gadget& operator=(const Gadget&) = delete;
 
-  /// Connects to the bus. Call after the descriptors were written.
+  /// Connects to the bus. Call after the descriptors were written to FunctionFS.
   void bind(const std::string& udc);
   /// Mount point of FunctionFS.
   [[nodiscard]] const std::string& mount() const { return mount_; }

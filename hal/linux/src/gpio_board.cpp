@@ -10,7 +10,9 @@
 namespace tactree::hal::linux_gpio {
 namespace {
 
-constexpr int kReadsPerTick = 64;  // 4096 edges; more are lost and counted
+// Bounds the cost of read(): later edges stay in the kernel's queue, and are lost only if it
+// overflows.
+constexpr int kReadsPerTick = 64;
 
 InputSettings with_edges() {
   InputSettings settings;
@@ -26,7 +28,7 @@ core::QuadratureLevels levels_of(std::uint64_t bits, std::uint32_t axis) {
   return {((bits >> (2U * axis)) & 1U) != 0U, ((bits >> (2U * axis + 1U)) & 1U) != 0U};
 }
 
-/// An open wire reads low.
+/// With a pull-down, an open wire reads low.
 InputSettings pulled_down(bool edges) {
   InputSettings settings;
   settings.bias = Bias::kPullDown;
@@ -75,7 +77,7 @@ std::vector<std::uint32_t> GpioEncoderBank::axes_with_index(const std::vector<En
   return found;
 }
 
-// An edge to the level that a line has: those between were merged.
+// An edge that repeats the level of its line shows that the edges in between were merged or lost.
 void GpioEncoderBank::take(const Edge& edge, core::EncoderReading& reading) noexcept {
   const std::uint64_t bit = std::uint64_t{1} << edge.line;
   unseen_ += static_cast<std::uint32_t>(((decoded_ & bit) != 0U) == edge.level);
@@ -92,7 +94,7 @@ void GpioEncoderBank::take(const Edge& edge, core::EncoderReading& reading) noex
   }
 }
 
-// A line differs until its edge has come out of the kernel; it never comes if it was lost.
+// A line differs until the kernel has delivered its edge. A lost edge is never delivered.
 void GpioEncoderBank::compare_levels() noexcept {
   std::uint64_t bits = 0;
   gone_ = gone_ || !lines_.levels(bits);
@@ -157,7 +159,7 @@ GpioSafetyInputs::GpioSafetyInputs(const std::string& emergency_stop, const std:
     : emergency_stop_(GpioLines::inputs({emergency_stop}, consumer, pulled_down(true))),
       dead_man_(GpioLines::inputs({dead_man}, consumer, pulled_down(false))) {}
 
-// Any edge: the line was low before it or after it, also where edges were merged or lost.
+// Any edge shows that the line was low before or after it, even if edges were merged or lost.
 bool GpioSafetyInputs::emergency_stop() noexcept {
   std::array<Edge, kEdgesAtOnce> edges;
   const bool changed = emergency_stop_.read_edges(edges) != 0;

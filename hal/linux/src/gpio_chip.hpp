@@ -1,6 +1,6 @@
 #pragma once
-// The functions of libgpiod that differ between its generations: libgpiod_1.cpp or libgpiod_2.cpp
-// implements them, and the members of GpioLines.
+// Internal interface between gpio_lines.cpp and the implementations for the two generations of
+// libgpiod, libgpiod_1.cpp and libgpiod_2.cpp.
 
 #include <cstdint>
 #include <memory>
@@ -11,13 +11,13 @@
 
 namespace tactree::hal::linux_gpio {
 
-/// A text of the library; empty for null.
+/// Converts a string of the library; nullptr gives an empty string.
 [[nodiscard]] inline std::string text_of(const char* text) {
   return text == nullptr ? std::string() : text;
 }
 
 struct ChipLine {
-  std::string name;  ///< empty: it has none
+  std::string name;  ///< empty: the line has no name
   bool used = false;
   std::string user;
 };
@@ -27,7 +27,7 @@ struct Chip {
   std::vector<ChipLine> lines;
 };
 
-/// Reads names and users of the lines of a chip. Returns 0, or an errno.
+/// Reads names and users of the lines of a chip. Returns 0 or an errno value.
 [[nodiscard]] int read_chip(const std::string& device, Chip& chip);
 
 /// Lines of one chip, found by their names; 1 to 64.
@@ -40,7 +40,7 @@ struct WantedLines {
 };
 
 constexpr std::size_t kMaxLines = 64;
-constexpr std::uint64_t kRest_ns = 2'000'000;  // longest time from an interrupt to its edge
+constexpr std::uint64_t kRest_ns = 2'000'000;  // maximum time from an interrupt to its edge
 
 /// Throws GpioError.
 [[nodiscard]] WantedLines find_lines(const std::vector<std::string>& names,

@@ -14,7 +14,7 @@
 namespace tactree::hal::linux_gpio {
 namespace {
 
-constexpr std::uint64_t kPatience_ns = 1'000'000'000;
+constexpr std::uint64_t kPatience_ns = 1'000'000'000;  // maximum wait for lines that do not rest
 
 std::string quoted(const std::string& name) { return "line '" + name + "'"; }
 
@@ -29,7 +29,7 @@ std::vector<std::string> chips() {
   return found;
 }
 
-/// True if `name` is the name of the line, or "label:line" with the label of the chip.
+/// Returns true if `name` is the name of the line, or "label:line" with the label of the chip.
 bool is_called(const std::string& name, const Chip& chip, const ChipLine& line) {
   return !line.name.empty() && (name == line.name || name == chip.label + ":" + line.name);
 }
@@ -114,8 +114,8 @@ void refuse(const WantedLines& wanted, int error) {
                   " (remedy: see gpioinfo for the capabilities of the line)");
 }
 
-// The request itself may have caused edges. The levels are read within the rest: after it, a device
-// that moves slowly may have changed them before its edge is in the queue.
+// The request itself may have caused edges. The levels are read at the start of the rest: at its
+// end, a device that moves slowly may have changed a level before the edge is in the queue.
 void GpioLines::await_rest(const std::string& name) {
   const std::uint64_t end_ns = linux_time::now_ns() + kPatience_ns;
   do {  // bound: kPatience_ns / kRest_ns

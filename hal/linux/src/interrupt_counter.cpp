@@ -18,8 +18,8 @@ namespace {
 namespace fs = std::filesystem;
 
 const std::string kFolder = "/sys/kernel/irq";
-constexpr std::size_t kConsumerBytes = 31;  // what the kernel keeps of a consumer's name
-constexpr std::size_t kText = 4096;         // a page: all that the kernel writes
+constexpr std::size_t kConsumerBytes = 31;  // the kernel truncates consumer names to this length
+constexpr std::size_t kText = 4096;         // one page, the maximum that the kernel writes
 
 bool is_used_by(const fs::path& interrupt, const std::string& consumer) {
   std::ifstream file(interrupt / "actions");
@@ -53,7 +53,7 @@ InterruptCounter::InterruptCounter(const std::string& interrupt)
   }
 }
 
-// One number for each processor, with commas between.
+// The file has one number per processor, separated by commas.
 std::uint32_t InterruptCounter::read() const noexcept {
   std::array<char, kText> text;
   const ssize_t size = ::pread(file_.get(), text.data(), text.size(), 0);

@@ -1,5 +1,5 @@
 #pragma once
-// The number of interrupts of a GPIO line, as the kernel counts them in /sys/kernel/irq.
+// The number of interrupts of a GPIO line, from /sys/kernel/irq.
 
 #include <cstdint>
 #include <set>
@@ -9,7 +9,7 @@
 
 namespace tactree::hal::linux_gpio {
 
-/// Interrupts in use by `consumer`: names of folders in /sys/kernel/irq.
+/// Returns the interrupts in use by `consumer`, as names of folders in /sys/kernel/irq.
 [[nodiscard]] std::set<std::string> interrupts_of(const std::string& consumer);
 
 class InterruptCounter {

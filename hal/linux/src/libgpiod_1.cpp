@@ -1,5 +1,5 @@
-// GpioLines by libgpiod 1.6: lines with edges have one queue each, of 16 edges. The kernel drops
-// the newest edge when a queue is full, and reports that nowhere.
+// GpioLines with libgpiod 1.6: each line with edges has a separate queue of 16 edges. When a queue
+// is full, the kernel drops the newest edge and does not report it.
 //
 // Loop and memory annotations: docs/BOUND.md.
 
@@ -19,7 +19,7 @@
 namespace tactree::hal::linux_gpio {
 namespace {
 
-constexpr int kQueue = 16;  // edges; the kernel's, for each line
+constexpr int kQueue = 16;  // edges in the kernel's queue of each line
 
 struct CloseChip {
   void operator()(gpiod_chip* chip) const { gpiod_chip_close(chip); }
@@ -33,7 +33,7 @@ int flags_of(const InputSettings& settings) {
   return flags;
 }
 
-/// The interrupt that a request added.
+/// Returns the interrupt that was added by a request.
 std::string added(const std::set<std::string>& before, const std::set<std::string>& after,
                   const std::string& name) {
   std::vector<std::string> fresh;
@@ -87,7 +87,7 @@ void GpioLines::Request::request_values(const WantedLines& wanted,
   }
 }
 
-// One after the other: the interrupt that is new is that of the line.
+// Lines are requested one after the other, so the new interrupt is that of the line.
 void GpioLines::Request::request_edges(const WantedLines& wanted,
                                        const gpiod_line_request_config& config) {
   for (unsigned int i = 0; i < bulk.num_lines; ++i) {  // bound: kMaxLines
@@ -109,13 +109,13 @@ void GpioLines::Request::count_interrupts() noexcept {
   }
 }
 
-/// Fills `events`; -1: the chip was removed.
+/// Fills `events` and returns their number, or -1 if the chip was removed.
 int GpioLines::Request::read_queue(std::size_t line) noexcept {
   const int count = gpiod_line_event_read_multiple(bulk.lines[line], events.data(), kQueue);
   return count < 0 && (errno == EAGAIN || errno == EINTR) ? 0 : count;
 }
 
-/// Moves all edges from the queues into `order`. False: the chip was removed.
+/// Moves all edges from the queues into `order`. Returns false if the chip was removed.
 bool GpioLines::Request::look() noexcept {
   const std::uint64_t begin_ns = linux_time::now_ns();
   count_interrupts();

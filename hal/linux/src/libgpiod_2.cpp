@@ -1,4 +1,4 @@
-// GpioLines by libgpiod 2.x: one request for all lines, whose edges the kernel numbers.
+// GpioLines with libgpiod 2.x: one request for all lines; the kernel numbers their edges.
 //
 // Loop and memory annotations: docs/BOUND.md.
 
@@ -95,7 +95,7 @@ GpioLines::Request::Request(const WantedLines& wanted, gpiod_line_settings* sett
   (void)fcntl(file, F_SETFL, fcntl(file, F_GETFL) | O_NONBLOCK);
 }
 
-/// Fills `found`; -1: the chip was removed.
+/// Fills `found` and returns the number of edges, or -1 if the chip was removed.
 int GpioLines::Request::read() noexcept {
   const int count = gpiod_line_request_read_edge_events(lines.get(), buffer.get(), found.size());
   if (count < 0) {
@@ -111,14 +111,14 @@ int GpioLines::Request::read() noexcept {
          gpiod_edge_event_get_event_type(event) == GPIOD_EDGE_EVENT_RISING_EDGE},
         static_cast<std::uint32_t>(gpiod_edge_event_get_global_seqno(event))};
   }
-  // The interrupt numbers an edge; a thread of each line puts it into the queue, later.
+  // The interrupt numbers an edge; a separate thread for each line puts it into the queue later.
   std::sort(found.begin(), found.begin() + count, [](const Numbered& a, const Numbered& b) {
     return static_cast<std::int32_t>(a.number - b.number) < 0;
   });
   return count;
 }
 
-// A number that comes twice: two interrupts of a line before its thread ran.
+// A number occurs twice if a line had two interrupts before its thread ran: one edge was lost.
 void GpioLines::Request::count(std::uint32_t number) noexcept {
   const auto gap = static_cast<std::int32_t>(number - next_number);
   lost += gap >= 0 ? static_cast<std::uint32_t>(gap) : 1U;
@@ -186,7 +186,7 @@ int GpioLines::read_edges(std::array<Edge, kEdgesAtOnce>& edges) noexcept {
   return found;
 }
 
-// The kernel's one queue is in order.
+// No edges are held back, because all lines share one queue.
 std::uint64_t GpioLines::held() const { return 0; }
 
 std::uint32_t GpioLines::lost() const { return request_->lost; }
@@ -199,7 +199,8 @@ void GpioLines::begin_edges() noexcept {
   request_->lost = 0;
 }
 
-// The edges of a restless line are counted: their numbers are not missing later.
+// read_edges() counts the edges of a line that is not at rest, so they are not reported as lost
+// later.
 bool GpioLines::is_at_rest() noexcept {
   std::array<Edge, kEdgesAtOnce> edges;
   return read_edges(edges) <= 0;

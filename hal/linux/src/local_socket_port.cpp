@@ -35,7 +35,7 @@ const sockaddr* plain(const sockaddr_un& address) {
   return reinterpret_cast<const sockaddr*>(&address);
 }
 
-/// Removes the socket of a killed program: no process listens on it.
+/// Removes the socket that a killed program left: no process listens on it.
 void remove_left_over(const std::string& path, const sockaddr_un& address) {
   struct stat found {};
   if (lstat(path.c_str(), &found) != 0) {
@@ -76,7 +76,8 @@ void LocalSocketPort::accept() noexcept {
   }
 }
 
-// EAGAIN and EINTR mean that no data is available now; the connection continues.
+// EAGAIN and EINTR are temporary; any other error, and the end of the stream, closes the
+// connection.
 void LocalSocketPort::note(long result) noexcept {
   if (result == 0 || (result < 0 && errno != EAGAIN && errno != EINTR)) {
     peer_ = FileDescriptor();
@@ -97,7 +98,7 @@ std::size_t LocalSocketPort::write(std::span<const std::byte> bytes) noexcept {
     return 0;
   }
   if (!connected()) {
-    return bytes.size();  // without an application: dropped, not kept for the next one
+    return bytes.size();  // dropped, because the next application must not receive it
   }
   const ssize_t count = send(peer_.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL);
   note(count);

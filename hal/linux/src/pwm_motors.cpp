@@ -57,7 +57,7 @@ PwmChannel::PwmChannel(const std::string& root, const std::string& chip, std::ui
                        std::uint32_t period_ns)
     : chip_(find_pwm_chip(root, chip, channel)), channel_(channel) {
   const std::string folder = chip_ + "/pwm" + std::to_string(channel);
-  if (!fs::exists(folder)) {  // otherwise left exported by a killed program
+  if (!fs::exists(folder)) {  // otherwise a killed program left it exported
     set_value(chip_ + "/export", channel, kRemedy);
   }
   width_ = open_value(folder + "/duty_cycle", O_WRONLY);
@@ -69,7 +69,7 @@ PwmChannel::PwmChannel(const std::string& root, const std::string& chip, std::ui
 
 PwmChannel::~PwmChannel() {
   if (width_.get() >= 0) {
-    width_ns_ = 1;
+    width_ns_ = 1;  // differs from 0, so set_width() writes
     (void)set_width(0);
     const std::string folder = chip_ + "/pwm" + std::to_string(channel_);
     std::ofstream(folder + "/enable") << 0;

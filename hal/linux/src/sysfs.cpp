@@ -18,9 +18,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kPatience = 1000;  // ms: udev changes the group of the files of a new channel
+constexpr int kPatience = 1000;  // ms; udev sets the group of a new channel's files with a delay
 
-/// Entries of a class link to their device; entries of a bus are inside its folder.
+/// Entries of a class have a link to their device; entries of a bus are in the folder of their
+/// device.
 std::string device_of(const fs::path& entry) {
   std::error_code error;
   const fs::path link = fs::read_symlink(entry / "device", error);

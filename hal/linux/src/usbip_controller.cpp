@@ -24,9 +24,9 @@ constexpr std::uint32_t kUnlink = 2;
 constexpr std::uint32_t kSubmitReply = 3;
 constexpr std::uint32_t kUnlinkReply = 4;
 constexpr std::size_t kHeaderBytes = 48;
-constexpr std::size_t kWords = 10;               // of a header, before the setup packet
+constexpr std::size_t kWords = 10;               // of a header before the setup packet
 constexpr std::size_t kTransferMax = 1U << 20U;  // bytes; longer requests end the connection
-constexpr std::size_t kOutgoingMax = 4096;       // bytes, as in the memory of a hardware controller
+constexpr std::size_t kOutgoingMax = 4096;       // bytes; limited as in a hardware controller
 constexpr int kHighSpeed = 3;                    // USB_SPEED_HIGH
 constexpr char kHostController[] = "/sys/devices/platform/vhci_hcd.0/";
 
@@ -62,7 +62,7 @@ struct UsbIpController::Transfer {
   bool to_host = false;
   std::size_t length = 0;       // requested by the host
   std::vector<std::byte> data;  // from the host
-  std::size_t taken = 0;        // of data
+  std::size_t taken = 0;        // bytes of `data` that were read
 };
 
 struct UsbIpController::Impl {
@@ -109,7 +109,7 @@ void UsbIpController::plug_in() {
   if (attach >= 0) {
     close(attach);
   }
-  close(ends[1]);  // the kernel has its own reference
+  close(ends[1]);  // the kernel holds a separate reference
   if (!written) {
     close(ends[0]);
     throw std::runtime_error(file + ": " + std::strerror(error) +
@@ -123,7 +123,7 @@ void UsbIpController::plug_into(int socket) {
   impl_->socket = socket;
   fcntl(socket, F_SETFL, fcntl(socket, F_GETFL) | O_NONBLOCK);
   impl_->events.push_back({UsbEvent::Kind::kReset, core::usb::Speed::kHigh, {}});
-  // The virtual host controller does not forward this request.
+  // The virtual host controller does not forward the request SET_ADDRESS.
   impl_->requests.push_back({{0, core::usb::kSetAddress, 1, 0, 0}, {}});
 }
 
@@ -214,8 +214,8 @@ void UsbIpController::Impl::submit(const Words& words, const std::byte* setup,
   serve(endpoint);
 }
 
-/// The host cancels a request: it is dropped here unless its reply was sent already. A second
-/// answer would end the connection.
+/// The host cancels a request. It is dropped here unless its reply was already sent; a second reply
+/// would end the connection.
 void UsbIpController::Impl::unlink(std::uint32_t sequence, std::uint32_t which) {
   std::size_t dropped = std::erase_if(
       requests, [&](const auto& request) { return request.second.sequence == which; });
@@ -244,12 +244,12 @@ void UsbIpController::Impl::reply(std::uint32_t command, std::uint32_t sequence,
 
 void UsbIpController::Impl::finish(const Transfer& transfer, int status, std::size_t length,
                                    std::span<const std::byte> data) {
-  if (transfer.sequence != 0) {  // 0: our own
+  if (transfer.sequence != 0) {  // 0: generated here, or cancelled by the host
     reply(kSubmitReply, transfer.sequence, status, length, data);
   }
 }
 
-/// Answers pending requests of the host with the available data.
+/// Completes pending requests of the host with the available data.
 void UsbIpController::Impl::serve(std::uint8_t endpoint) {
   auto& queue = transfers[endpoint];
   auto& bytes = waiting[endpoint];
@@ -277,7 +277,8 @@ UsbEvent UsbIpController::next_event() {
     impl.receive();
     impl.flush();
   }
-  // Before further messages: a transfer that follows the end of a halt must not meet the halt.
+  // Events come before further requests: a transfer that follows the end of a halt must not be
+  // stalled.
   if (!impl.events.empty()) {
     const UsbEvent event = impl.events.front();
     impl.events.pop_front();

@@ -40,7 +40,7 @@ WatchdogDevice::WatchdogDevice(const std::string& file, std::uint32_t timeout_s)
 
 WatchdogDevice::~WatchdogDevice() {
   if (file_.get() >= 0) {
-    (void)!::write(file_.get(), "V", 1);  // magic close: without it the driver assumes a crash
+    (void)!::write(file_.get(), "V", 1);  // magic close; without it the driver assumes a crash
   }
 }
 

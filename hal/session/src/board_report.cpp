@@ -98,6 +98,7 @@ void put_state(const core::Status& status, const hal::StartResult& start, std::u
 }
 
 bool link_age(std::uint32_t age_us, float rate_hz, std::uint16_t& ticks) {
+  // The sum is truncated: 2.999 rounds up and adds two ticks, see the header.
   const float age = 1e-6F * static_cast<float>(age_us) * rate_hz + 2.999F;
   if (age_us >= 0x80000000U || age >= 65535.0F) {
     return false;

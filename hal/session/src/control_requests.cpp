@@ -41,7 +41,7 @@ void ControlRequests::put_reply(const core::Status& status, Reply& reply) const 
   reply.put(message);
 }
 
-/// kOk with Command::kNone: nothing is to be done.
+/// Returns kOk with Command::kNone if there is nothing to do.
 WireStatus ControlRequests::translate(const core::wire::ControlRequest& request,
                                       const Moment& moment, core::Command& command) {
   switch (static_cast<ControlCode>(request.code)) {
@@ -60,7 +60,7 @@ WireStatus ControlRequests::translate(const core::wire::ControlRequest& request,
   }
 }
 
-// While armed, a repeated arm gets the same token: the first reply may have been lost.
+// While armed, a repeated arm request gets the same token: the first reply may have been lost.
 WireStatus ControlRequests::arm(const Moment& moment, core::Command& command) {
   const core::State state = controller_.state();
   if (state == core::State::kArmed && token_ != 0U) {
@@ -78,7 +78,7 @@ WireStatus ControlRequests::arm(const Moment& moment, core::Command& command) {
 }
 
 WireStatus ControlRequests::confirm(std::uint32_t token, core::Command& command) const {
-  // With a dead-man control only the hand confirms.
+  // With a dead-man control, only the hand can confirm.
   if (controller_.configuration().dead_man_required || controller_.state() != core::State::kArmed) {
     return WireStatus::kNotNow;
   }
@@ -89,7 +89,7 @@ WireStatus ControlRequests::confirm(std::uint32_t token, core::Command& command)
   return WireStatus::kOk;
 }
 
-// Different each time, and never 0. Not a secret: it protects from messages sent by mistake.
+// Makes a new token, never 0. It is not a secret: it protects against messages sent by mistake.
 std::uint32_t ControlRequests::make_token(const Moment& moment) {
   ++tokens_;
   const std::uint32_t words[3] = {moment.now_us, tokens_, moment.session};

@@ -1,5 +1,5 @@
 #pragma once
-// Values of the controller as fields of messages.
+// Copies values of the controller to fields of messages.
 // Loop and memory annotations: docs/BOUND.md.
 
 #include <cstddef>
@@ -14,7 +14,7 @@ inline void copy(core::Vec3 from, float (&to)[3]) {
   to[2] = from.z;
 }
 
-/// Cuts text that is too long; `to` stays zero-terminated. Precondition: `to` is all zero.
+/// Truncates text that is too long; `to` stays zero-terminated. Precondition: `to` is all zero.
 template <std::size_t N>
 void copy(const char* from, char (&to)[N]) {
   for (std::size_t i = 0; i + 1 < N && from[i] != '\0'; ++i) {  // bound: N

@@ -29,7 +29,8 @@ void RequestFilter::note_stop(const core::wire::FrameHeader& request) {
 
 void RequestFilter::open(const core::wire::OpenRequest& request, std::uint16_t sequence,
                          std::uint32_t now_us) {
-  // The first number comes from the clock: it differs from those before the last reset.
+  // The first number is taken from the clock, so it is unlikely to be one from before the last
+  // reset.
   if (last_session_ == 0U) {
     last_session_ = static_cast<std::uint16_t>(now_us >> 4U);
   }

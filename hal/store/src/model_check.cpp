@@ -12,7 +12,7 @@ using core::wire::WireStatus;
 
 namespace {
 
-/// An empty name is for any board.
+/// An empty name matches any board.
 bool is_for_board(const char (&name)[24], const char* board) {
   if (name[0] == '\0') {
     return true;

@@ -1,6 +1,7 @@
 #pragma once
-// Restricts the mesh library to the files in and below the folder of the model, read only. The
-// model gets an alias whose extension matches its content.
+// Restricts the mesh library to read-only access to the files in and below the folder of the model.
+// The library selects its reader by the extension, so the model gets an alias whose extension
+// matches its content.
 
 #include <assimp/DefaultIOSystem.h>
 
@@ -11,7 +12,7 @@ namespace tactree::builder {
 
 class ContainedFiles : public Assimp::DefaultIOSystem {
  public:
-  /// hint: extension that selects the reader of the library, e.g. "glb".
+  /// `hint` is the extension that selects the reader of the library, e.g. "glb".
   ContainedFiles(const std::filesystem::path& model, const std::string& hint);
 
   /// Name of the model for the library.
@@ -21,7 +22,7 @@ class ContainedFiles : public Assimp::DefaultIOSystem {
   Assimp::IOStream* Open(const char* name, const char* mode) override;
 
  private:
-  /// The canonical path, or empty if it is outside the folder.
+  /// Returns the canonical path, or an empty string if it is outside the folder.
   [[nodiscard]] std::string real_path(const std::string& name) const;
 
   std::filesystem::path model_;

@@ -13,7 +13,7 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t kMaxCount = std::size_t{1} << 40;
-constexpr std::size_t kMaxZeros = std::size_t{1} << 26;  // of an accessor without bytes
+constexpr std::size_t kMaxZeros = std::size_t{1} << 26;  // elements of an accessor without bytes
 constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 constexpr std::size_t kGlbHeader = 12;
 constexpr std::size_t kChunkHeader = 8;
@@ -69,7 +69,7 @@ std::string from_base64(std::string_view text) {
   return bytes;
 }
 
-/// "a%20b" -> "a b"
+/// Decodes percent-encoding: "a%20b" -> "a b".
 std::string from_uri(const std::string& uri) {
   std::string name;
   for (std::size_t i = 0; i < uri.size(); ++i) {
@@ -145,7 +145,8 @@ std::size_t width_of_type(const std::string& type, const std::string& who) {
   throw ImportError(who + " has the unknown type \"" + type.substr(0, 20) + "\"");
 }
 
-/// A number for a vector of numbers; an index that does not fit becomes the highest.
+/// Converts a number to the element type of a vector. An index that does not fit becomes the
+/// maximum, so that its triangle is dropped.
 template <typename Number>
 Number converted(double value) {
   if constexpr (std::is_integral_v<Number>) {
@@ -265,7 +266,7 @@ GltfFile::Elements GltfFile::elements(const json& names, std::size_t count, std:
   found.bytes = view(number, who);
   found.stride = gltf_count(at("bufferViews", number), "byteStride", size);
   const std::size_t offset = gltf_count(names, "byteOffset");
-  // Counts are at most 2^40, so that no product overflows.
+  // Counts are at most 2^40, so no product overflows.
   if (found.stride < size || found.stride > 4096) {
     throw ImportError(who + " has an invalid byteStride");
   }

@@ -1,6 +1,6 @@
 #pragma once
 // The JSON of a glTF 2 file (text or GLB) and the numbers of its accessors. Every offset and count
-// is checked against the bytes that the file really has, before memory is taken for it.
+// is checked against the actual bytes of the file before memory is allocated for it.
 
 #include <cstdint>
 #include <nlohmann/json.hpp>
@@ -26,11 +26,10 @@ class GltfFile {
   /// Entry of a list of the root, such as "nodes". Throws ImportError if there is none.
   [[nodiscard]] const nlohmann::json& at(const char* list, std::size_t number) const;
 
-  /// The numbers of an accessor, `width` per element (an accessor of fewer or more is refused;
-  /// colours may have three or four). Normalized integers become -1 ... 1 or 0 ... 1. Throws
-  /// ImportError.
+  /// Returns the numbers of an accessor. Throws ImportError if the accessor does not have `width`
+  /// numbers per element. Normalized integers become -1 .. 1 or 0 .. 1.
   [[nodiscard]] std::vector<double> numbers(std::size_t accessor, std::size_t width);
-  /// Whole numbers: indices.
+  /// Returns the numbers of an accessor of indices.
   [[nodiscard]] std::vector<std::uint32_t> indices(std::size_t accessor);
   /// Numbers per element of an accessor.
   [[nodiscard]] std::size_t width(std::size_t accessor) const;
@@ -47,23 +46,23 @@ class GltfFile {
   [[nodiscard]] std::string_view buffer(std::size_t number);
   [[nodiscard]] std::string read_buffer(std::size_t number) const;
   [[nodiscard]] std::span<const unsigned char> view(std::size_t number, const std::string& who);
-  /// names: an object with bufferView and byteOffset.
+  /// `names` is an object with bufferView and byteOffset.
   [[nodiscard]] Elements elements(const nlohmann::json& names, std::size_t count,
                                   std::size_t component, std::size_t width, const std::string& who);
   template <typename Number>
   void read(std::size_t accessor, std::size_t width, std::vector<Number>& into);
 
   ContainedFiles& files_;
-  std::string bytes_;  // of the whole file
+  std::string bytes_;  // the whole file
   nlohmann::json root_;
   int version_ = 2;
-  std::string_view chunk_;  // binary part of a GLB
+  std::string_view chunk_;  // binary chunk of a GLB
   std::vector<std::string> buffers_;
   std::vector<bool> is_read_;
 };
 
-/// A number of the JSON that counts or points; `missing` if there is none. Throws ImportError if it
-/// is no whole number from 0 to 2^40.
+/// Reads a count or an index from the JSON; `missing` if it is absent. Throws ImportError if it is
+/// not an integer from 0 to 2^40.
 [[nodiscard]] std::size_t gltf_count(const nlohmann::json& object, const char* name,
                                      std::size_t missing = 0);
 

@@ -21,7 +21,7 @@ constexpr const char* kDraco = "KHR_draco_mesh_compression";
 constexpr const char* kNoStructure = "its JSON does not have the structure of glTF";
 constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
-/// Required extensions that leave the shape as it is, or that this reader knows.
+/// True for required extensions that do not change the shape or that this reader supports.
 bool is_supported(const std::string& extension) {
   constexpr std::string_view kKnown[] = {
       "KHR_mesh_quantization", "KHR_texture_transform", "KHR_texture_basisu",
@@ -79,7 +79,7 @@ std::uint8_t to_byte(double value) {
                      : std::uint8_t{0};
 }
 
-/// The corners of the triangles of a primitive, three each.
+/// Expands a strip or fan: returns three vertices per triangle.
 std::vector<std::uint32_t> corners_of(const std::vector<std::uint32_t>& list, std::size_t mode) {
   constexpr std::size_t kStrip = 5;
   constexpr std::size_t kFan = 6;
@@ -144,7 +144,7 @@ class GltfScene {
     }
   }
 
-  /// Iterative: the tree may be a long chain.
+  /// Iterative, because a long chain of nodes would exhaust the stack of a recursion.
   void place(std::size_t node) {
     std::vector<std::size_t> chain;
     for (std::size_t at = node; at != kNone && !worlds_[at]; at = parents_[at]) {
@@ -169,7 +169,7 @@ class GltfScene {
     return children;
   }
 
-  /// The nodes below the roots of the scene, each before its children.
+  /// The roots of the scene and the nodes below them, each before its children.
   [[nodiscard]] std::vector<std::size_t> nodes_in_scene() const {
     std::vector<std::size_t> open;
     if (root_.contains("scenes")) {
@@ -211,7 +211,8 @@ class GltfScene {
     }
   }
 
-  /// From the frame of the mesh to that of the scene, for each joint; empty: no skin.
+  /// Transforms from the frame of the mesh to that of the scene, one per joint; empty without a
+  /// skin.
   std::vector<Matrix4d> joints_of(const json& node) {
     if (!node.contains("skin")) {
       return {};
@@ -292,7 +293,7 @@ class GltfScene {
     }
   }
 
-  /// Adds the displacements of the morph targets. Whether there are any.
+  /// Adds the displacements of the morph targets. Returns true if there are any.
   bool morph(const json& primitive, const json& weights, Points& points) {
     bool morphed = false;
     const json targets = primitive.value("targets", json::array());
@@ -311,8 +312,8 @@ class GltfScene {
     return morphed;
   }
 
-  /// One transform for all points, or one per point of a skin: the joints place its points, the
-  /// transform of the node itself does not.
+  /// Returns one transform for all points, or one per point of a skin. The points of a skin are
+  /// placed by its joints, not by the transform of the node.
   std::vector<Matrix4d> transforms(const json& attributes, const Matrix4d& world,
                                    const std::vector<Matrix4d>& joints, std::size_t count) {
     if (joints.empty() || !attributes.contains("JOINTS_0")) {
@@ -362,7 +363,7 @@ class GltfScene {
       mesh_.positions.emplace_back(transform.topLeftCorner<3, 3>() * position +
                                    transform.topRightCorner<3, 1>());
       if (all_normals_) {
-        // Normals transform by the inverse transposed matrix, also for a reflection.
+        // Normals transform by the inverse transpose, also for a reflection.
         if (i == 0 || placed.size() > 1) {
           for_normals = transform.topLeftCorner<3, 3>().inverse().transpose();
         }
@@ -395,7 +396,7 @@ class GltfScene {
         ++bad_triangles_;
         continue;
       }
-      // A reflection reverses the winding: swap two corners.
+      // A reflection reverses the winding, so two vertices are swapped.
       mesh_.triangles.push_back({first + corners[i], first + corners[i + (mirrored ? 2 : 1)],
                                  first + corners[i + (mirrored ? 1 : 2)]});
     }

@@ -1,6 +1,6 @@
 #pragma once
-// Reads a glTF 2 file as one mesh: its nodes, meshes, quantized positions, morph targets and skins
-// in the pose of the file.
+// Reads a glTF 2 file as one mesh, in the pose that the file states: its nodes, meshes, quantized
+// positions, morph targets and skins.
 
 #include <string>
 
@@ -10,9 +10,9 @@
 
 namespace tactree::builder {
 
-/// Whether meshes are compressed with Draco (KHR_draco_mesh_compression), which the library
-/// decodes. Throws ImportError if it cannot read the file right: with skins or other required
-/// extensions.
+/// True if meshes are compressed with Draco (KHR_draco_mesh_compression), which the library
+/// decodes. Throws ImportError if the library cannot read the file correctly, because it has skins
+/// or requires other extensions.
 [[nodiscard]] bool is_draco_gltf(const GltfFile& file);
 
 /// Throws ImportError with the cause, such as a required extension that is not supported.

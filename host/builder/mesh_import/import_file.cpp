@@ -31,7 +31,7 @@ void configure(Assimp::Importer& importer) {
                               aiComponent_TEXCOORDS | aiComponent_TANGENTS_AND_BITANGENTS |
                                   aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS |
                                   aiComponent_LIGHTS | aiComponent_CAMERAS | aiComponent_MATERIALS);
-  // Positions stay in the frame of the file.
+  // Keeps the positions in the frame of the file.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
 }
 
@@ -47,7 +47,8 @@ std::string read_file(const char* file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// The mesh of a file that a reader of our own reads; nothing: the library reads it.
+/// Reads a file for which there is a reader in this folder. Returns nullopt if the library must
+/// read it.
 std::optional<ImportedMesh> read_mesh(const char* file, std::string_view hint) {
   if (hint == "3mf") {
     return read_3mf(read_file(file));

@@ -1,5 +1,5 @@
 #pragma once
-// The points and triangles of a mesh file, and their output in the form of wire.hpp.
+// The points and triangles of a mesh file, and their output in the format of wire.hpp.
 
 #include <Eigen/Core>
 #include <array>
@@ -20,14 +20,14 @@ struct ImportedMesh {
   std::string warning;  ///< one or more sentences; may be empty
 };
 
-/// A mesh file is damaged, or needs what no reader supports. what(): the cause, for "... cannot be
-/// read: cause".
+/// A mesh file is damaged or needs a feature that no reader supports. what() is the cause, which
+/// follows "cannot be read: ".
 class ImportError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// False if writing fails.
+/// Returns false if writing fails.
 [[nodiscard]] bool write_mesh(const ImportedMesh& mesh, std::FILE* to);
 
 }  // namespace tactree::builder

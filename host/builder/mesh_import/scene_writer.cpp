@@ -95,7 +95,7 @@ void SceneWriter::write_points(const Placed& placed) {
   const Eigen::Matrix3d linear = placed.transform.topLeftCorner<3, 3>();
   const Eigen::Vector3d offset = placed.transform.topRightCorner<3, 1>();
   const double to_units = unit_.scene_scaled ? 1.0 / unit_.metres : 1.0;
-  // Normals transform by the inverse transposed matrix, also for a reflection.
+  // Normals transform by the inverse transpose, also for a reflection.
   const Eigen::Matrix3d for_normals = linear.inverse().transpose();
   for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
     const Eigen::Vector3d position = to_units * (linear * to_eigen(mesh.mVertices[i]) + offset);
@@ -116,7 +116,7 @@ void SceneWriter::write_points(const Placed& placed) {
 
 void SceneWriter::write_triangles(const Placed& placed, std::uint64_t first_point) {
   const aiMesh& mesh = *placed.mesh;
-  // A reflection reverses the winding: swap two corners.
+  // A reflection reverses the winding, so two vertices are swapped.
   const bool mirrored = placed.transform.topLeftCorner<3, 3>().determinant() < 0;
   for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
     if (mesh.mFaces[i].mNumIndices != 3) continue;

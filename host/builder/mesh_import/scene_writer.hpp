@@ -1,6 +1,6 @@
 #pragma once
-// Writes an imported scene in the form of wire.hpp: all meshes, with the transforms of their nodes
-// applied, as one list of points and one list of triangles.
+// Writes an imported scene in the format of wire.hpp: all meshes, with the transforms of their
+// nodes applied, as one list of points and one list of triangles.
 
 #include <assimp/scene.h>
 
@@ -19,7 +19,7 @@ class SceneWriter {
   /// The positions are written in units of the file.
   SceneWriter(const aiScene& scene, const FileUnit& unit, std::FILE* to);
 
-  /// False if the scene has no point or writing fails.
+  /// Returns false if the scene has no point or writing fails.
   [[nodiscard]] bool write();
 
  private:

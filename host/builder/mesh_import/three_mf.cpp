@@ -19,15 +19,15 @@ namespace {
 
 using Transform = Eigen::Affine3d;
 
-constexpr unsigned kMaxDepth = 32;                // of components in components
+constexpr unsigned kMaxDepth = 32;                // nesting of components
 constexpr std::size_t kMaxInstances = 1'000'000;  // of objects
-// The process of the import has a limit of memory, which these would exceed.
+// Larger documents would exceed the memory limit of the import process.
 constexpr XmlLimits kXmlLimits{std::size_t{1} << 30, 16'000'000};
 constexpr const char* kRelations = "_rels/.rels";
 
-/// An object in an object, or in the build.
+/// A reference to an object, from another object or from the build.
 struct Component {
-  std::string part;  // path of its model
+  std::string part;  // path of its model part
   std::string object;
   Transform transform = Transform::Identity();
 };
@@ -64,7 +64,7 @@ double number_of(std::string_view text, const char* what) {
   return value;
 }
 
-/// An index; what is none becomes the highest, so that its triangle is dropped.
+/// Parses an index. Invalid text becomes the maximum, so that the triangle is dropped.
 std::uint32_t index_of(std::string_view text) {
   std::uint32_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -72,7 +72,7 @@ std::uint32_t index_of(std::string_view text) {
   return error == std::errc{} ? value : std::numeric_limits<std::uint32_t>::max();
 }
 
-/// Twelve numbers: the rows of a matrix that multiplies row vectors.
+/// Parses twelve numbers, the rows of a matrix that multiplies row vectors.
 Transform transform_of(std::string_view text) {
   Transform transform = Transform::Identity();
   if (text.find_first_not_of(" \t\r\n") == std::string_view::npos) {
@@ -106,7 +106,7 @@ double unit_of(std::string_view name) {
   return 1e-3;
 }
 
-/// Refuses extensions that the model requires and that change its shape.
+/// Refuses extensions that the model requires and this reader does not support.
 void check_extensions(pugi::xml_node model) {
   constexpr std::string_view kSupported[] = {"/production/", "/material/", "/trianglesets/",
                                              "/core/"};
@@ -267,7 +267,7 @@ class Assembly {
     }
     const Transform transform = outer * component.transform;
     const Object& object = found->second;
-    // Another unit of the part is that of its vertices.
+    // If a part has another unit, this unit applies to its vertices.
     add_mesh(object, transform, from.unit_m / mesh_.unit_m);
     for (const Component& inner : object.components) {
       add(inner, transform, depth + 1);
@@ -283,7 +283,7 @@ class Assembly {
     for (const Eigen::Vector3d& vertex : object.vertices) {
       mesh_.positions.push_back(transform * (scale * vertex));
     }
-    // A reflection reverses the winding: swap two corners.
+    // A reflection reverses the winding, so two vertices are swapped.
     const bool mirrored = transform.linear().determinant() < 0;
     for (std::array<std::uint32_t, 3> triangle : object.triangles) {
       if (*std::max_element(triangle.begin(), triangle.end()) >= object.vertices.size()) {

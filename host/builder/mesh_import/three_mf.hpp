@@ -1,6 +1,6 @@
 #pragma once
-// Reads a 3MF file: the objects that its build names, with their components, also those in model
-// parts of their own (the production extension).
+// Reads a 3MF file: the objects that its build references, with their components, also components
+// in separate model parts (the production extension).
 
 #include <string_view>
 
@@ -8,7 +8,7 @@
 
 namespace tactree::builder {
 
-/// bytes: of the whole file. Throws ImportError with the cause, such as a required extension that
+/// `bytes` is the whole file. Throws ImportError with the cause, such as a required extension that
 /// is not supported.
 [[nodiscard]] ImportedMesh read_3mf(std::string_view bytes);
 

@@ -9,7 +9,7 @@
 namespace tactree::builder {
 namespace {
 
-constexpr std::size_t kHeadBytes = std::size_t{1} << 20;  // of a text file: its unit comes early
+constexpr std::size_t kHeadBytes = std::size_t{1} << 20;  // of a text file; its unit comes early
 
 std::string read_file(const std::string& file, std::size_t most) {
   std::ifstream in(file, std::ios::binary);
@@ -19,7 +19,7 @@ std::string read_file(const std::string& file, std::size_t most) {
   return text;
 }
 
-// The value of an attribute of the first element with this name; empty: none.
+// Value of an attribute of the first element with this name; empty if there is none.
 std::string attribute(const std::string& text, const std::string& element,
                       const std::string& name) {
   std::size_t at = text.find("<" + element);
@@ -47,7 +47,7 @@ double unit_of_collada(const std::string& file) {
   return metres > 0.0 && std::isfinite(metres) ? metres : 1.0;
 }
 
-// Centimetres per unit.
+// Returns metres per unit, or 0 if unknown. UnitScaleFactor is in centimetres.
 double unit_of_fbx(const aiScene& scene) {
   double wide = 0.0;
   float narrow = 0.0F;

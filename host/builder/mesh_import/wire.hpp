@@ -1,5 +1,5 @@
 #pragma once
-// Output of the mesh import process, read by the builder through a pipe:
+// Output format of the mesh import process, read by the builder through a pipe:
 //   WireHeader
 //   text_bytes bytes of text      cause of a refusal, or a warning (may be empty)
 //   then, with status kOk:
@@ -8,7 +8,7 @@
 //                                 3 bytes   colour (R, G, B), with kHasColours
 //   triangles times               3 uint32  indices of points
 //   kWireEnd
-// Native byte order: both processes run on one machine.
+// Native byte order, because both processes run on the same machine.
 
 #include <array>
 #include <cstdint>

@@ -12,7 +12,7 @@ std::string_view without_prefix(std::string_view name) {
   return colon == std::string_view::npos ? name : name.substr(colon + 1);
 }
 
-// Without recursion, which a hostile depth would exhaust.
+// Iterative, because a malicious nesting depth would exhaust the stack of a recursion.
 void check_depth(pugi::xml_node root, unsigned limit) {
   unsigned depth = 0;
   for (pugi::xml_node at = root; !at.empty();) {
@@ -51,7 +51,7 @@ XmlDocument::XmlDocument(std::string text, const XmlLimits& limits) : text_(std:
   }
   if (!result) {
     std::string cause = result.description();
-    cause[0] = static_cast<char>(cause[0] | 0x20);  // "Error parsing ...", within a sentence
+    cause[0] = static_cast<char>(cause[0] | 0x20);  // lower case, because it continues a sentence
     throw XmlError("byte " + std::to_string(result.offset) + ": " + cause);
   }
   check_depth(document_.root(), limits.depth);

@@ -1,6 +1,6 @@
 #pragma once
 // An XML document of an untrusted file, parsed by pugixml. Entities other than the five of XML and
-// character references are left as they are: no file is opened, and nothing is expanded.
+// character references are not replaced, so no file is opened and nothing is expanded.
 
 #include <cstddef>
 #include <pugixml.hpp>
@@ -10,30 +10,30 @@
 
 namespace tactree::builder {
 
-/// A document is malformed. what(): "byte 120: cause".
+/// A document is malformed. what() is "byte 120: cause".
 class XmlError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// A document exceeds a limit. what(): the cause.
+/// A document exceeds a limit. what() is the cause.
 class XmlTooLarge : public XmlError {
  public:
   using XmlError::XmlError;
 };
 
-/// An element takes about 70 bytes of memory, an attribute 40.
+/// Limits of a document. An element takes about 70 bytes of memory, an attribute 40.
 struct XmlLimits {
   std::size_t bytes = 0;  ///< of the text
   std::size_t tags = 0;
-  unsigned depth = 64;  ///< of elements in elements
+  unsigned depth = 64;  ///< nesting of elements
 };
 
 class XmlDocument {
  public:
   /// Throws XmlError.
   XmlDocument(std::string text, const XmlLimits& limits);
-  // The nodes point into it.
+  // Not copyable, because the nodes point into the object.
   XmlDocument(const XmlDocument&) = delete;
   XmlDocument& operator=(const XmlDocument&) = delete;
 
@@ -45,10 +45,10 @@ class XmlDocument {
   pugi::xml_document document_;
 };
 
-/// Name without its prefix: "model" of <m:model>.
+/// Name without its prefix: "model" for <m:model>.
 [[nodiscard]] std::string_view local_name(pugi::xml_node element);
 
-/// The first child element with this local name; null without one.
+/// The first child element with this local name, or a null node if there is none.
 [[nodiscard]] pugi::xml_node child_of(pugi::xml_node parent, std::string_view name);
 
 /// Value of an attribute, by its local name; empty if there is none.

@@ -19,7 +19,7 @@ constexpr std::uint64_t kLocator64Bytes = 20;
 constexpr std::uint64_t kMemberBytes = 46;
 constexpr std::uint64_t kLocalBytes = 30;
 constexpr std::uint64_t kAbsent = 0xffffffff;  // the number is in the extra field
-constexpr std::uint64_t kMaxRatio = 1040;      // of deflate
+constexpr std::uint64_t kMaxRatio = 1040;      // above the maximum ratio of deflate, 1032
 
 [[noreturn]] void fail(const std::string& cause) {
   throw ImportError("its zip archive is damaged or was cut off: " + cause);
@@ -91,7 +91,7 @@ std::uint64_t ZipArchive::number(std::uint64_t at, unsigned size) const {
   return value;
 }
 
-/// Returns where the next entry of the directory is.
+/// Returns the position of the next entry of the directory.
 std::uint64_t ZipArchive::read_member(std::uint64_t at) {
   if (at > bytes_.size() || !bytes_.substr(static_cast<std::size_t>(at)).starts_with(kMember)) {
     fail("an entry of its directory is missing");
@@ -105,7 +105,7 @@ std::uint64_t ZipArchive::read_member(std::uint64_t at) {
   const std::uint64_t name = number(at + 28, 2);
   const std::uint64_t extra = number(at + 30, 2);
   const std::uint64_t comment = number(at + 32, 2);
-  (void)number(at + kMemberBytes + name + extra + comment, 0);  // inside the archive
+  (void)number(at + kMemberBytes + name + extra + comment, 0);  // throws if not inside the archive
   member.path =
       bytes_.substr(static_cast<std::size_t>(at + kMemberBytes), static_cast<std::size_t>(name));
   read_long_sizes(member, at + kMemberBytes + name, at + kMemberBytes + name + extra);
@@ -113,7 +113,7 @@ std::uint64_t ZipArchive::read_member(std::uint64_t at) {
   return at + kMemberBytes + name + extra + comment;
 }
 
-/// Zip64: numbers of eight bytes for those that are absent, in this order.
+/// Zip64 stores the numbers that are kAbsent in the entry as numbers of eight bytes, in this order.
 void ZipArchive::read_long_sizes(Member& member, std::uint64_t at, std::uint64_t end) const {
   constexpr std::uint64_t kLongSizes = 1;
   while (at + 4 <= end) {

@@ -1,5 +1,5 @@
 #pragma once
-// The members of a zip archive. Sizes are checked against the archive before memory is taken.
+// The members of a zip archive. Sizes are checked against the archive before memory is allocated.
 
 #include <cstdint>
 #include <string>
@@ -10,14 +10,14 @@ namespace tactree::builder {
 
 class ZipArchive {
  public:
-  /// bytes: of the whole archive; must outlive this object. Throws ImportError.
+  /// `bytes` is the whole archive and must outlive this object. Throws ImportError.
   explicit ZipArchive(std::string_view bytes);
 
-  /// A path inside the archive, with or without a leading '/'; ignores case.
+  /// True if the archive has this path, with or without a leading '/'. Ignores case.
   [[nodiscard]] bool contains(std::string_view path) const;
-  /// The unpacked member. Throws ImportError if it is missing or damaged.
+  /// Returns the unpacked member. Throws ImportError if it is missing or damaged.
   [[nodiscard]] std::string read(std::string_view path) const;
-  /// Path of the first member with this ending; empty: none.
+  /// Path of the first member with this ending; empty if there is none.
   [[nodiscard]] std::string first_with_ending(std::string_view ending) const;
 
  private:

@@ -8,27 +8,28 @@
 #include <chrono>
 #include <cmath>
 
-#include "sampling/ball_bound.hpp"
 #include "cleaning/cleaning.hpp"
-#include "sampling/density.hpp"
-#include "openings/gaps.hpp"
-#include "normals/normals.hpp"
 #include "normals/given_normals.hpp"
 #include "normals/mesh_windings.hpp"
+#include "normals/normals.hpp"
 #include "normals/orient_cloud.hpp"
 #include "normals/report_orientation.hpp"
+#include "openings/gaps.hpp"
+#include "openings/two_sided.hpp"
+#include "sampling/ball_bound.hpp"
+#include "sampling/density.hpp"
 #include "source_digest.hpp"
 #include "tactree/builder/length_text.hpp"
 #include "tactree/builder/read_scan.hpp"
 #include "tactree/builder/size_advice.hpp"
 #include "tactree/core/model/blob.hpp"
-#include "openings/two_sided.hpp"
 #include "up_hint.hpp"
 
 namespace tactree::builder {
 namespace {
 
-// Below, a body is so open that its flat base may be the only part that was scanned.
+// Below this ratio of points with material behind them, a body is so open that its flat base may be
+// the only part that was scanned.
 constexpr double kBodyShare = 0.9;
 
 std::uint64_t peak_rss_bytes() {
@@ -43,7 +44,7 @@ class Pipeline {
       : options_(options), progress_(progress) {}
 
   [[nodiscard]] BuildReport& report() { return report_; }
-  /// Per point of the blob, after run(): 1 if its side is doubtful.
+  /// Per point of the blob, after run(): 1 if its orientation is ambiguous.
   [[nodiscard]] std::vector<std::uint8_t>& doubtful() { return doubtful_of_blob_; }
 
   WrittenBlob run(std::vector<Scan> scans, const Sha256Digest& digest) {
@@ -92,7 +93,7 @@ class Pipeline {
     }
   }
 
-  // Only where the shape tells it, and nobody has said which axis points up.
+  // Only if the shape indicates an axis and the user has not stated which axis points up.
   void hint_at_axis() {
     if (options_.up || report_.backed_share < kBodyShare) {
       return;
@@ -360,7 +361,7 @@ std::string label_of(std::span<const std::filesystem::path> inputs, const BuildO
   return inputs.size() == 1 ? first : fmt::format("{} and {} more", first, inputs.size() - 1);
 }
 
-/// Where the files are.
+/// Paths of the files, with that of the copy for standard input.
 std::vector<std::filesystem::path> places_of(std::span<const std::filesystem::path> inputs,
                                              const BuildOptions& options) {
   std::vector<std::filesystem::path> places(inputs.begin(), inputs.end());

@@ -23,7 +23,7 @@ struct Field {
   double high;
 };
 
-// Narrower than the blob format allows: values outside serve no hand and no device.
+// Narrower ranges than the blob format allows. Values outside them are not useful for any device.
 constexpr Field kFields[] = {
     {"stiffness_N_m", "stiffness", &core::BlobMaterial::stiffness_N_m, 0.1, 1e6},
     {"damping_Ns_m", "damping", &core::BlobMaterial::damping_Ns_m, 0.0, 1e3},
@@ -40,7 +40,7 @@ constexpr Field kFields[] = {
 }
 
 constexpr double kTolerance = 30.0;
-constexpr double kMaxTolerance = 442.0;  // from black to white
+constexpr double kMaxTolerance = 442.0;  // distance from black to white
 
 std::string known_keys(std::string keys) {
   for (const Field& field : kFields) {
@@ -64,7 +64,7 @@ double number(const json& value, const std::string& place, double low, double hi
   return v;
 }
 
-// Relations between the values.
+// Checks the relations between the values.
 void check(const core::BlobMaterial& m, const std::string& place) {
   if (m.stiffness_N_m <= 0.0F) {
     refuse(place, "stiffness_N_m is missing", "add it, in N/m");
@@ -90,7 +90,8 @@ const json& as_object(const json& value, const std::string& place) {
   return value;
 }
 
-/// `material` with the values that `value` specifies. Other keys of `value` must be in `also`.
+/// Returns `material` with the values that `value` specifies. Other keys of `value` must be in
+/// `also`.
 core::BlobMaterial read_material(const json& value, const std::string& place,
                                  core::BlobMaterial material,
                                  std::initializer_list<const char*> also = {}) {

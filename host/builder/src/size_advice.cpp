@@ -7,7 +7,7 @@
 namespace tactree::builder {
 namespace {
 
-// Sizes of an object that a hand at a device can feel; outside, the unit is probably wrong.
+// Sizes that can be felt with a haptic device. Outside this range the unit is probably wrong.
 constexpr double kHugeModel_m = 1.0;
 constexpr double kTinyModel_m = 0.005;
 

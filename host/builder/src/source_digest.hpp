@@ -14,15 +14,15 @@ using Sha256Digest = std::array<std::uint8_t, 32>;
 
 class SourceDigest {
  public:
-  /// Starts the computation, in a thread of its own with `in_background`. `files` must outlive it.
+  /// Starts the computation, in a separate thread if `in_background`. `files` must outlive it.
   SourceDigest(std::span<const std::filesystem::path> files, bool in_background);
-  /// Ends an unfinished computation.
+  /// Stops an unfinished computation.
   ~SourceDigest();
   SourceDigest(const SourceDigest&) = delete;
   SourceDigest& operator=(const SourceDigest&) = delete;
 
-  /// Of the files' bytes, one file after the other. Anything but a regular file counts as empty:
-  /// read_scan() refuses it. Call once.
+  /// Returns the digest of the bytes of all files, one file after the other. Anything but a regular
+  /// file counts as empty, because read_scan() refuses it. Call once.
   [[nodiscard]] Sha256Digest get() { return digest_.get(); }
 
  private:

@@ -9,12 +9,12 @@ namespace tactree::builder {
 namespace {
 
 constexpr float kLevelCosine = 0.996F;      // 5 degrees
-constexpr double kDepthSpacings = 1.5;      // below the end of the box
-constexpr double kDepthOfEdge = 0.005;      // in lengths of its longest edge
-constexpr double kMinShare = 0.04;          // of the points, on the base
-constexpr double kMaxShare = 0.6;           // more: a plate, whose base tells nothing
-constexpr double kTimesTheNext = 3.0;       // the base over what is flat at another end
-constexpr std::size_t kFewestPoints = 500;  // fewer: 4 % of them are noise
+constexpr double kDepthSpacings = 1.5;      // maximum distance from the end of the box
+constexpr double kDepthOfEdge = 0.005;      // or this, in lengths of its longest edge
+constexpr double kMinShare = 0.04;          // minimum ratio of the points that lie on the base
+constexpr double kMaxShare = 0.6;           // above: a plate, whose base is no evidence
+constexpr double kTimesTheNext = 3.0;       // the base / the flat part at any other end
+constexpr std::size_t kFewestPoints = 500;  // of fewer points, 4 % are noise
 
 }  // namespace
 

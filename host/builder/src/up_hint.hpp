@@ -1,5 +1,5 @@
 #pragma once
-// Whether a body seems to lie on its side.
+// Checks whether a body seems to lie on its side.
 
 #include <Eigen/Core>
 #include <optional>
@@ -11,13 +11,14 @@ namespace tactree::builder {
 
 struct FlatBase {
   UpAxis up = UpAxis::kZ;  ///< the base is at the low end of this axis
-  double share = 0.0;      ///< of the points that lie on it
+  double share = 0.0;      ///< ratio of the points that lie on it
 };
 
-/// The flat face on which a body stands: at an end of its box, and several times larger than what
-/// is flat at every other end. None for bodies without (a sphere) or with several (a box, a
-/// cylinder), and if the face is at a high end: the body may be upside down, or open below. Evenly
-/// spaced points with outward normals. Cost: 10 ns per point.
+/// The flat face on which a body stands: at an end of its box, and several times larger than the
+/// flat part at every other end. Returns nullopt for bodies without such a face (a sphere) or with
+/// several (a box, a cylinder), and if the face is at a high end, because the body may be upside
+/// down or open below. Preconditions: evenly spaced points with outward normals. Cost: 10 ns per
+/// point.
 [[nodiscard]] std::optional<FlatBase> flat_base(std::span<const Eigen::Vector3d> positions,
                                                 std::span<const Eigen::Vector3f> normals,
                                                 double spacing);

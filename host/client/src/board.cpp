@@ -15,7 +15,7 @@ using core::wire::ControlCode;
 using core::wire::MessageKind;
 using core::wire::WireStatus;
 
-// Pieces of a model sent before the first reply: enough to fill the time until it comes.
+// Pieces of a model that are sent before the first reply: enough to fill the time until it arrives.
 constexpr std::size_t kPiecesUnderWay = 6;
 constexpr std::size_t kPiecesPerCall = 64;
 
@@ -42,7 +42,7 @@ const char* remedy_for(WireStatus status) {
   }
 }
 
-/// The cause in the reply for a refused model.
+/// Returns the cause in the reply for a refused model.
 std::string details(const Response& response) {
   core::wire::FinishModelReply reply;
   if (response.status != WireStatus::kBadModel || !response.read(reply)) {
@@ -88,7 +88,7 @@ Board::~Board() {
   }
 }
 
-// The old connection ends first: a serial port is open once only.
+// The old connection ends first, because a serial port can be opened only once.
 void Board::reconnect() {
   if (port_.empty()) {
     throw LinkError(connection().name() + ": was not opened by its name, so cannot be again");
@@ -189,7 +189,8 @@ bool Board::go_on_arming() {
                     core::name_of(now) + (faults.empty() ? "" : ": " + faults));
   }
   if (!hand_confirms_) {
-    // Refused until the enable line has switched and the probe is outside: repeated by the caller.
+    // Has no effect before the amplifiers have power and the probe is outside: the caller repeats
+    // it.
     (void)connection().call(MessageKind::kControl,
                             control_request(ControlCode::kConfirm, arm_token_));
   }
@@ -261,7 +262,7 @@ std::vector<TracedTick> Board::trace() {
       break;
     }
   }
-  // The recording may go on while it is read: then ticks are read twice.
+  // Recording may continue while it is read, so some ticks are read twice.
   std::sort(ticks.begin(), ticks.end(), [](const TracedTick& a, const TracedTick& b) {
     return static_cast<std::int32_t>(a.tick - b.tick) < 0;
   });
@@ -317,7 +318,7 @@ void Board::write_pieces(std::span<const std::byte> bytes, const Progress& progr
     core::wire::WriteModelReply reply;
     const bool knows_place = last.read(reply);
     if (last.timed_out || last.status == WireStatus::kOutOfOrder) {
-      // A piece was lost: the board's reply, or one more request, gives the next offset.
+      // A piece was lost: the board's reply, or one more request, contains the next offset.
       if (!knows_place) {
         const Response asked =
             connection().call(MessageKind::kWriteModel, core::wire::WriteModelRequest{0xFFFFFFFFU});

@@ -24,7 +24,7 @@ using tactree::client::Telemetry;
 
 thread_local std::string error_of_open;  // NOLINT: C has no other place for it
 
-/// No exception leaves C++.
+/// Exceptions must not reach C code.
 template <class Action>
 int guarded(std::string& error, Action action) {
   try {

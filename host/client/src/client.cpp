@@ -9,7 +9,7 @@ namespace {
 using core::wire::MessageKind;
 using core::wire::WireStatus;
 
-// Heartbeats per link timeout: one or two may be lost.
+// Heartbeats per link timeout: one or two may be lost without ending the force.
 constexpr Microseconds kBeatsPerTimeout = 5;
 
 bool takes_long(MessageKind kind) {
@@ -27,7 +27,7 @@ std::uint16_t Client::open(std::uint16_t link_timeout_ms, std::uint32_t nonce,
   nonce_ = nonce;
   knows_time_ = false;
   beat_every_us_ = 1000U * static_cast<Microseconds>(link_timeout_ms) / kBeatsPerTimeout;
-  // Ends an older frame that the board may have received in part.
+  // Ends an older frame that the board may have received partially.
   to_send_.push_back(static_cast<std::byte>(core::wire::kDelimiter));
   const core::wire::OpenRequest request{core::wire::kProtocolMajor, core::wire::kProtocolMinor,
                                         link_timeout_ms, nonce};
@@ -139,7 +139,7 @@ void Client::note_times(MessageKind kind, std::span<const std::byte> payload) {
   }
 }
 
-// Messages that come late do not turn it back.
+// Late messages do not decrease the time.
 void Client::see_board_time(std::uint32_t time_us) {
   if (!knows_time_ || time_us - board_time_us_ < 0x80000000U) {
     board_time_us_ = time_us;

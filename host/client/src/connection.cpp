@@ -21,7 +21,7 @@ using core::wire::MessageKind;
 using core::wire::WireStatus;
 using std::chrono::microseconds;
 
-// Longest time that a posted request waits to be sent, and that a heartbeat may be late.
+// Maximum delay of a posted request, and of a heartbeat.
 constexpr microseconds kWait{500};
 
 }  // namespace
@@ -139,14 +139,14 @@ class Connection::Worker {
       if (transport_->connected()) {
         transport_->wait(kWait);
       }
-      // Nothing to wait for: it would not rest. Simulated time passes as fast as it can while a
-      // thread waits for it, else not faster than that of the computer.
+      // Without a wait above, the loop would not sleep. Simulated time passes as fast as possible
+      // while a thread waits for it, otherwise not faster than real time.
       if (!transport_->connected() || (transport_->in_lock_step() && waiting_ == 0)) {
         std::this_thread::sleep_for(kWait);
       }
     }
     const std::lock_guard lock(mutex_);
-    exchange();  // what was sent last
+    exchange();  // the last requests
   }
 
   void exchange() {
@@ -181,7 +181,7 @@ class Connection::Worker {
     }
   }
 
-  /// The client gives a response for each request, at its timeout at the latest.
+  /// The client provides a response for each request, at the latest at its timeout.
   Response await(std::unique_lock<std::mutex>& lock, std::uint16_t sequence) {
     const auto is_it = [sequence](const Response& r) { return r.sequence == sequence; };
     auto found = responses_.end();

@@ -1,5 +1,5 @@
 #pragma once
-// libusb's handles as objects.
+// Owners of libusb handles.
 
 #include <libusb.h>
 
@@ -23,7 +23,7 @@ using Handle = std::unique_ptr<libusb_device_handle, FreeHandle>;
 
 [[nodiscard]] Context make_context();
 
-/// Throws LinkError: "usb 1209:0001 3-1.2: cause (remedy: ...)".
+/// Throws LinkError with the message "usb 1209:0001 3-1.2: cause (remedy: ...)".
 [[noreturn]] void fail(const std::string& label, int error);
 
 /// Calls `visit(device, descriptor, path)` for each device with a link interface.
@@ -33,13 +33,14 @@ void for_each_board(libusb_context* context, Visit visit);
 [[nodiscard]] std::string path_of(libusb_device* device);
 [[nodiscard]] bool has_link(libusb_device* device);
 
-/// Addresses of the link's endpoints: a device controller may number them as it can.
+/// Addresses of the link's endpoints. They are read from the descriptors, because device
+/// controllers may number them differently.
 struct LinkEndpoints {
   std::uint8_t in = 0;
   std::uint8_t out = 0;
   std::uint8_t news = 0;
 };
-/// Nothing: the device has no link.
+/// Empty if the device has no link.
 [[nodiscard]] std::optional<LinkEndpoints> find_link(libusb_device* device);
 
 template <class Visit>

@@ -23,8 +23,8 @@ using std::chrono::nanoseconds;
 
 constexpr const char* kScheme = "step:";
 constexpr std::size_t kMaxBytes = 32768;      // of a packet, after its time
-constexpr std::size_t kMaxUnread = 1U << 20;  // that wait for the other side
-constexpr int kLookEvery_ms = 100;            // for the end, which a signal usually tells at once
+constexpr std::size_t kMaxUnread = 1U << 20;  // bytes that may wait for the other side
+constexpr int kLookEvery_ms = 100;  // checks `ended` at least this often; a signal ends the wait
 
 sockaddr_un address_of(const std::string& path) {
   sockaddr_un address{};
@@ -39,8 +39,8 @@ sockaddr_un address_of(const std::string& path) {
 
 int new_socket() { return ::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0); }
 
-/// A time, then as many bytes as fit; these are taken out of `bytes`. False: the other side is
-/// gone.
+/// Sends a time, then as many bytes as fit, and removes these from `bytes`. Returns false if the
+/// other side is gone.
 template <class Time>
 bool send_packet(int descriptor, Time time, std::vector<std::byte>& bytes) {
   const std::size_t count = std::min(bytes.size(), kMaxBytes);
@@ -55,7 +55,7 @@ bool send_packet(int descriptor, Time time, std::vector<std::byte>& bytes) {
   return sent >= 0;
 }
 
-/// Appends the bytes of the next packet; waits for it. False: the other side is gone.
+/// Waits for the next packet and appends its bytes. Returns false if the other side is gone.
 template <class Time>
 bool receive_packet(int descriptor, Time& time, std::vector<std::byte>& bytes) {
   std::array<std::byte, sizeof(Time) + kMaxBytes> packet;
@@ -108,7 +108,7 @@ class LockStepPort : public Transport {
       exchange(timeout);
     }
   }
-  /// Once the board is gone, time goes on with that of this computer: requests must time out.
+  /// Once the board is gone, real time passes instead, because requests must time out.
   [[nodiscard]] microseconds now() const override {
     return microseconds(now_us_) + (gone_ ? Transport::now() - gone_at_ : microseconds(0));
   }
@@ -143,7 +143,7 @@ std::unique_ptr<Transport> open_lock_step(const std::string& path) {
   return std::make_unique<LockStepPort>(path);
 }
 
-// If the rest throws, the destructor removes what there is: another constructor was complete.
+// If the body throws, the destructor still runs, because the delegated constructor has completed.
 LockStepServer::LockStepServer() : LockStepServer(new_socket()) {
   std::error_code error;
   const std::filesystem::path parent = std::filesystem::temp_directory_path(error);
@@ -176,7 +176,7 @@ std::size_t LockStepServer::read(std::span<std::byte> bytes) { return take(in_, 
 
 std::size_t LockStepServer::write(std::span<const std::byte> bytes) {
   for (Program& program : programs_) {
-    (void)put(bytes, program.out);  // what finds no room is lost, as at a serial port
+    (void)put(bytes, program.out);  // bytes without room are lost, as on a serial port
   }
   return bytes.size();
 }
@@ -198,7 +198,7 @@ void LockStepServer::answer_what_is_due() {
   for (Program& program : programs_) {
     if (program.asked && (now_ >= program.until || !program.out.empty())) {
       program.asked = false;
-      program.until = std::min(program.until, now_);  // the rest is granted again
+      program.until = std::min(program.until, now_);  // the program grants the remaining time again
       (void)send_packet(program.descriptor, static_cast<std::uint64_t>(now().count()), program.out);
     }
   }
@@ -209,7 +209,7 @@ bool LockStepServer::all_wait() const {
                                            [](const Program& program) { return program.asked; });
 }
 
-/// Accepts programs, takes their requests, and notices which have gone.
+/// Accepts programs, reads their requests, and removes those that are gone.
 void LockStepServer::take_requests() {
   std::vector<pollfd> wanted{{listening_, POLLIN, 0}};
   for (const Program& program : programs_) {

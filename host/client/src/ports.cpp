@@ -42,7 +42,7 @@ std::unique_ptr<Transport> open_port(const std::string& name, unsigned baud) {
 }
 
 std::optional<unsigned> wire_speed(const std::string& name, unsigned baud) {
-  constexpr unsigned kBitsPerByte = 10;  // with start and stop
+  constexpr unsigned kBitsPerByte = 10;  // with start and stop bit
   std::error_code error;
   const std::string path = std::filesystem::canonical(name, error).string();
   const bool has_no_wire = name.starts_with(kUsb) || name.starts_with(kSocket) ||

@@ -54,7 +54,7 @@ std::string remedy_for(int error) {
 void make_raw(int descriptor, speed_t speed) {
   termios settings{};
   if (::tcgetattr(descriptor, &settings) != 0) {
-    return;  // no terminal: nothing to set
+    return;  // not a terminal, nothing to set
   }
   ::cfmakeraw(&settings);
   ::cfsetspeed(&settings, speed);
@@ -102,7 +102,7 @@ class SerialPort : public Transport {
       ::close(descriptor_);
       throw LinkError(path_ + ": not a serial port (tactree devices lists what there is)");
     }
-    // Two programs on one port would each get a part of the replies.
+    // Two programs on one port would each receive only a part of the replies.
     if (::ioctl(descriptor_, TIOCEXCL) != 0) {
       const int error = errno;
       ::close(descriptor_);

@@ -45,7 +45,7 @@ std::string missing_parts(std::uint32_t missing) {
   return names;
 }
 
-// The first that went wrong: what comes after it was not tried.
+// Describes the first failure; the start does not attempt the steps after it.
 std::string no_model(const core::wire::ReadStartReply& start) {
   if (start.image != 0U) {
     return start.image == 1U ? "its program is damaged (program the image again)"

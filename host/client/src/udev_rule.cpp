@@ -9,7 +9,7 @@
 namespace tactree::client {
 
 std::string udev_rule() {
-  // The property lists class, subclass and protocol of each interface: one with the link's.
+  // The property lists class, subclass and protocol of each interface; one must be the link's.
   return "# Tactree: whoever sits at this computer may use haptic controllers.\n"
          "SUBSYSTEM==\"usb\", ENV{DEVTYPE}==\"usb_device\", "
          "ENV{ID_USB_INTERFACES}==\"*:ff5401:*\", "
@@ -17,7 +17,7 @@ std::string udev_rule() {
 }
 
 std::string install_udev_rule(const std::string& root) {
-  // Before 73-seat-late.rules, which acts on the tag.
+  // The name sorts before 73-seat-late.rules, which acts on the tag.
   const auto file = std::filesystem::path(root) / "etc/udev/rules.d/70-tactree.rules";
   std::error_code ignored;
   std::filesystem::create_directories(file.parent_path(), ignored);

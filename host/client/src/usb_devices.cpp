@@ -148,7 +148,7 @@ std::vector<std::string> usb_paths() {
   try {
     for_each_board(make_context().get(), [&](libusb_device*, const libusb_device_descriptor&,
                                              const std::string& path) { paths.push_back(path); });
-  } catch (const LinkError&) {  // no USB here
+  } catch (const LinkError&) {  // USB cannot be used
   }
   std::sort(paths.begin(), paths.end());
   return paths;
@@ -156,14 +156,14 @@ std::vector<std::string> usb_paths() {
 
 std::vector<UsbDeviceInfo> list_usb_devices() { return list_devices(make_context().get()); }
 
-/// One context for the whole watch: udev reports changes to it.
+/// One context for the whole watch, which receives the udev events.
 struct UsbWatch::Hotplug {
   Context context = make_context();
   bool something_happened = true;
 
   Hotplug() {
     if (libusb_has_capability(LIBUSB_CAP_HAS_HOTPLUG) != 0) {
-      // Without udev this may fail, and need not work.
+      // Without udev this may fail, or have no effect; polling finds the changes.
       (void)libusb_hotplug_register_callback(
           context.get(), LIBUSB_HOTPLUG_EVENT_DEVICE_ARRIVED | LIBUSB_HOTPLUG_EVENT_DEVICE_LEFT, 0,
           LIBUSB_HOTPLUG_MATCH_ANY, LIBUSB_HOTPLUG_MATCH_ANY, LIBUSB_HOTPLUG_MATCH_ANY, &notice,
@@ -189,7 +189,7 @@ std::vector<UsbWatch::Change> UsbWatch::poll(Clock::time_point now) {
   }
   hotplug_->something_happened = false;
   next_look_ = now + look_every_;
-  // A context without udev events does not find new devices: list with a new one.
+  // A context without udev events does not find new devices, so each list uses a new one.
   std::vector<UsbDeviceInfo> devices = list_usb_devices();
   std::vector<Change> changes;
   const auto add = [&](const auto& from, const auto& other, bool arrived) {

@@ -13,11 +13,11 @@
 namespace tactree::client {
 namespace {
 
-constexpr std::size_t kReads = 4;         // pending at once: the board never waits for this side
+constexpr std::size_t kReads = 4;  // several are pending, so the board never waits for this side
 constexpr std::size_t kReadBytes = 2048;  // a multiple of every packet size
 constexpr std::size_t kWritesMax = 4;
 constexpr std::size_t kWriteBytes = 2048;
-constexpr std::size_t kBacklogMax = 1U << 20U;  // bytes that nobody read; then the board waits
+constexpr std::size_t kBacklogMax = 1U << 20U;  // unread bytes; beyond it the board waits
 
 struct FreeTransfer {
   void operator()(libusb_transfer* transfer) const { libusb_free_transfer(transfer); }
@@ -26,7 +26,7 @@ struct FreeTransfer {
 }  // namespace
 
 struct UsbTransport::Impl {
-  /// One piece of memory that libusb fills or empties.
+  /// A transfer and its memory.
   struct Piece {
     Impl* owner = nullptr;
     std::unique_ptr<libusb_transfer, FreeTransfer> transfer{libusb_alloc_transfer(0)};
@@ -79,7 +79,7 @@ void UsbTransport::Impl::open() {
     error = libusb_claim_interface(handle.get(), core::usb::kLinkInterface);
   }
   if (error == LIBUSB_SUCCESS) {
-    // Both sides begin with empty endpoints, whatever a program before us left there.
+    // Both sides start with empty endpoints, whatever a preceding program left there.
     error = libusb_set_interface_alt_setting(handle.get(), core::usb::kLinkInterface, 0);
   }
   if (error != LIBUSB_SUCCESS) {
@@ -122,8 +122,8 @@ void UsbTransport::Impl::lose(const std::string& why) {
   lost = true;
 }
 
-/// After a transfer has ended. A stall is as good as a lost connection: whoever opens again begins
-/// again on both sides.
+/// Call after a transfer has ended. A stall counts as a lost connection: both sides start afresh
+/// when the board is opened again.
 bool UsbTransport::Impl::is_intact(Piece& piece) {
   piece.under_way = false;
   if (piece.transfer->status == LIBUSB_TRANSFER_COMPLETED) {
@@ -181,7 +181,7 @@ bool UsbTransport::Impl::is_under_way() const {
          std::any_of(writes.begin(), writes.end(), busy);
 }
 
-/// libusb gives every transfer back once; until then its memory is not ours.
+/// libusb returns every transfer once. Until then its memory must not be freed.
 void UsbTransport::Impl::close() {
   closing = true;
   const auto cancel = [](Piece& piece) {

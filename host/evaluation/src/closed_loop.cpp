@@ -16,11 +16,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kCoarse = 2.5e-3;      // m, h: required by paper mode for a depth of 1 mm
+constexpr double kCoarse = 2.5e-3;      // m, point spacing that paper mode needs for 1 mm of depth
 constexpr double kEncoderStep = 20e-6;  // m
 constexpr double kSpeed = 0.01;         // m/s, of the hand
 constexpr double kPress = 1.0;          // N
-constexpr double kCorner = 20.0;        // Hz: lower frequencies are motion, not vibration
+constexpr double kCorner = 20.0;        // Hz; lower frequencies are motion, not vibration
 
 core::RenderMode render_mode(Mode mode) {
   return mode == kPaper ? core::RenderMode::kPaper : core::RenderMode::kSurface;
@@ -57,7 +57,8 @@ class HighPass {
   Vector3d y2_ = Vector3d::Zero();
 };
 
-/// Descends onto the sheet within a second, then moves along it at the depth of the pressing force.
+/// Path of a hand that descends onto the sheet within a second, then moves along it at the depth at
+/// which it presses with kPress.
 simulation::HandPath drawn_hand(const simulation::Setup& setup, double seconds) {
   const CosSheet sheet;
   const double deep = 1e-3 + kPress / setup.plant.hand.stiffness_N_m;
@@ -108,10 +109,10 @@ double vibration(const Shape& shape, Mode mode, double seconds) {
 // The textbook case: a mass with viscous damping only, a constant push, an ideal sensor.
 constexpr double kDamping = 0.5;  // Ns/m
 constexpr double kPush = 0.5;     // N
-constexpr double kGrid = 0.0;     // m, x and y: on a point, for paper mode
+constexpr double kGrid = 0.0;     // m, x and y of the probe; on a point, as paper mode requires
 
-/// Releases a device at a distance from its equilibrium in the wall. True if the oscillation
-/// decays.
+/// Releases a device at a distance from its equilibrium in the wall. Returns true if the
+/// oscillation decays.
 bool is_stable(const Shape& wall, Mode mode, double rate_hz, double stiffness) {
   core::Configuration configuration;
   configuration.mode = render_mode(mode);
@@ -126,9 +127,9 @@ bool is_stable(const Shape& wall, Mode mode, double rate_hz, double stiffness) {
   }
   plant::PlantParameters parameters;
   parameters.device = {0.075, kDamping, 0.0};
-  // A spring so soft that its force is constant.
+  // The spring of the hand is so soft that its force is nearly constant.
   parameters.hand = {0.0, 1.0, 0.0};
-  parameters.substep_s = 1e-6;  // half of it counts as lead: 1 % of the hold at 10 kHz
+  parameters.substep_s = 1e-6;  // the plant leads by half of it: 1 % of the hold's delay at 10 kHz
   plant::Plant device(parameters, begin);
   const plant::HandTarget push{{kGrid, kGrid, -kPush}, Vector3d::Zero()};
   const double ticks = 1.0 * rate_hz;
@@ -138,7 +139,7 @@ bool is_stable(const Shape& wall, Mode mode, double rate_hz, double stiffness) {
     const core::Rendering r =
         renderer.update(wall.view(), configuration, narrow(device.position_m()), {});
     if (!r.in_contact) {
-      return false;  // it left the wall, or fell through it
+      return false;  // the device left the wall or passed through it
     }
     device.advance(widen(r.force), push, 1.0 / rate_hz);
     const double squared = device.velocity_m_s().squaredNorm();
@@ -151,7 +152,7 @@ bool is_stable(const Shape& wall, Mode mode, double rate_hz, double stiffness) {
 double largest_stable(const Shape& wall, Mode mode, double rate_hz, double expected) {
   double low = 0.1 * expected;
   double high = 4.0 * expected;
-  for (int i = 0; i < 10; ++i) {  // to less than 1 %
+  for (int i = 0; i < 10; ++i) {  // to an accuracy of less than 1 %
     const double middle = std::sqrt(low * high);
     (is_stable(wall, mode, rate_hz, middle) ? low : high) = middle;
   }
@@ -167,8 +168,8 @@ LoopResult::Limit measure_limit(double rate_hz, double delay_s, double hand_Ns_m
   c.device_damping_Ns_m = hand_Ns_m > 0.0 ? 0.1 : 0.5;
   c.hand_damping_Ns_m = hand_Ns_m;
   c.wall_damping_Ns_m = wall_Ns_m;
-  // Well above the natural frequency of the wall: a slower filter reduces the effect of its
-  // damping.
+  // Well above the natural frequency of the wall, because a slower filter reduces the effect of the
+  // wall's damping.
   c.velocity_cutoff_hz = std::max(c.velocity_cutoff_hz, rate_hz / 20.0);
   LoopResult::Limit limit{rate_hz, delay_s, hand_Ns_m, wall_Ns_m, 0.0, 0.0, 0.0};
   limit.formula_N_m = simulation::predicted_stiffness(c);

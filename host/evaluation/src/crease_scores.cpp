@@ -14,12 +14,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kBeyond = 4e-3;   // the hand, behind the faces of a concave crease, m
-constexpr double kBelow = 0.6e-3;  // below the top of a ridge
-constexpr double kStart = 6e-3;    // above
-constexpr double kAlong = 10e-3;   // to both sides of the middle, along the crease
-constexpr double kStayS = 0.1;
-constexpr double kNoticed = 20e-6;  // an encoder count: a hand less deep need not be felt
+constexpr double kBeyond = 4e-3;    // m, depth of the hand below the bottom of a concave crease
+constexpr double kBelow = 0.6e-3;   // m, depth of the hand below the top of a ridge
+constexpr double kStart = 6e-3;     // m, height above the crease at which the hand starts
+constexpr double kAlong = 10e-3;    // m, slide along the crease to both sides of the centre
+constexpr double kStayS = 0.1;      // rest, after which the proxy must be on the crease
+constexpr double kNoticed = 20e-6;  // m, an encoder count; contact is not required above this depth
 
 struct Pace {
   double rate_hz;
@@ -27,9 +27,9 @@ struct Pace {
 };
 constexpr Pace kPaces[] = {
     {1000.0, 0.02}, {1000.0, 0.1}, {2000.0, 0.1}, {4000.0, 0.1}, {4000.0, 0.5}};
-constexpr double kFast = 0.2;  // m/s
+constexpr double kFast = 0.2;  // m/s; a hand that is faster has a separate score
 
-/// The hand at a tick, in the frame of the crease.
+/// Positions of the hand, one per tick, in the frame of the crease, m.
 using Hand = std::vector<Vector3d>;
 
 void move_to(Hand& hand, const Vector3d& end, double step) {
@@ -40,7 +40,7 @@ void move_to(Hand& hand, const Vector3d& end, double step) {
   }
 }
 
-/// Presses into a concave crease, stays, slides along it, aside, and back; leaves.
+/// Presses into a concave crease, rests, slides along the crease, to the side and back, and leaves.
 Hand into(double step, double rate_hz) {
   Hand hand{{0.3e-3, -kAlong, kStart}};
   move_to(hand, {0.3e-3, -kAlong, -kBeyond}, step);
@@ -54,7 +54,7 @@ Hand into(double step, double rate_hz) {
   return hand;
 }
 
-/// Slides along a ridge, and over it.
+/// Slides along a ridge, then across it.
 Hand over(double step, double) {
   Hand hand{{-0.1e-3, -kAlong, kStart}};
   move_to(hand, {-0.1e-3, -kAlong, -kBelow}, step);

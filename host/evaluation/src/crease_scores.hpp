@@ -1,5 +1,5 @@
 #pragma once
-// Hands that press into creases and slide along them and over them.
+// Contact of hands that press into creases, slide along them, and cross them.
 
 #include <cstdint>
 #include <vector>

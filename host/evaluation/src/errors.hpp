@@ -1,5 +1,5 @@
 #pragma once
-// Sums of errors.
+// Statistics of errors.
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace tactree::evaluation {
 
 inline constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 
-/// Root mean square and largest of a series.
+/// Root mean square and maximum magnitude of a series of errors.
 class Errors {
  public:
   void add(double error) {
@@ -32,7 +32,7 @@ class Errors {
   std::uint64_t count_ = 0;
 };
 
-/// Between two directions, degrees.
+/// Angle between two directions, degrees.
 inline double angle_deg(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b)) * 180.0 / std::numbers::pi;
 }

@@ -26,7 +26,8 @@ bool Result::all_met() const {
 
 namespace {
 
-// 58 lines of about 540 ticks and 16 mm: 30 000 ticks for the detection of lost contact.
+// Lines have about 540 ticks, 0.1 mm each; 64 of them give more than 30 000 ticks in which contact
+// may be lost.
 constexpr int kLines = 64;
 
 void evaluate_shapes(const Options& options, builder::Progress& progress, Result& result) {

@@ -14,12 +14,12 @@ namespace {
 
 using builder::Opening;
 
-constexpr double kSide = 290.0;  // of the square of a view
+constexpr double kSide = 290.0;  // of the square of a view, pixels
 constexpr double kGap = 15.0;
 constexpr double kTop = 30.0;
 constexpr double kBottom = kTop + kSide + 40.0;
-constexpr std::uint32_t kDots = 4000;  // per view: enough to recognise a model
-constexpr std::size_t kListed = 10;
+constexpr std::uint32_t kDots = 4000;  // maximum per view; enough to recognise a model
+constexpr std::size_t kListed = 10;    // maximum rows of the table of a scan
 
 const char* name_of(Opening::Kind kind) {
   return kind == Opening::Kind::kHole ? "hole" : "boundary";
@@ -27,7 +27,7 @@ const char* name_of(Opening::Kind kind) {
 
 std::string map_name(std::size_t scan) { return fmt::format("holes_{}.svg", scan); }
 
-/// A view: the axes to the right and up.
+/// Axes of the model that point right and up in a view.
 struct Side {
   const char* name;
   Eigen::Index right;
@@ -40,7 +40,7 @@ const char* colour_of(Opening::Kind kind) {
   return kind == Opening::Kind::kHole ? "#d6191f" : "#ee8c0f";
 }
 
-/// Model to picture, the same scale in all views.
+/// Projection of the model to the picture, with the same scale in all views.
 class Projection {
  public:
   explicit Projection(const core::BlobHeader& header) {
@@ -64,7 +64,7 @@ class Projection {
   double scale_ = 1.0;
 };
 
-/// All points of a view in one path; a line of length 0 is a dot.
+/// At most kDots points of a view in one path; a line of length 0 with round caps is a dot.
 std::string dots(const core::BlobView& view, const Projection& frame, std::size_t side) {
   const std::uint32_t every = 1U + view.point_count() / kDots;
   std::string path;
@@ -81,7 +81,7 @@ std::string dots(const core::BlobView& view, const Projection& frame, std::size_
 }
 
 std::string circle(const Opening& opening, const Projection& frame, std::size_t side) {
-  constexpr double kLeast = 2.5;  // pixels, visible
+  constexpr double kLeast = 2.5;  // pixels; a smaller circle is hardly visible
   const Eigen::Vector2d at = frame.place(opening.centre, side);
   const double radius = std::max(kLeast, 0.5 * frame.pixels(opening.diameter_m));
   return fmt::format(

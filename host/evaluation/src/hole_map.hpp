@@ -1,5 +1,5 @@
 #pragma once
-// A map of the openings of a scan.
+// Map of the openings of a scan.
 
 #include <span>
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace tactree::evaluation {
 
-/// An SVG picture: the model from three sides at one scale, with a circle of the size of each
+/// SVG picture of the model from three sides at the same scale, with a circle of the size of each
 /// opening. Precondition: !view.empty().
 [[nodiscard]] std::string hole_map_svg(const core::BlobView& view,
                                        std::span<const builder::Opening> openings);

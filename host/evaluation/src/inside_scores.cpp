@@ -14,13 +14,13 @@ namespace {
 using Eigen::Vector3d;
 using Distance = std::function<double(const Vector3d&)>;  // m, positive outside
 
-constexpr double kReach = 0.012;  // of the starts, around the origin, m
-constexpr double kPath = 0.06;    // m, out of every body
-constexpr double kAfter = 1e-3;   // of the path, behind the surface, on which nothing may pull
-constexpr double kDeep = 30e-6;   // a start that is less deep may count as outside
-constexpr double kToEnd = 0.1;    // cosine of a way towards an open end
-constexpr int kRestTicks = 12;    // before the hand moves: it is shown by then
-constexpr int kStayTicks = 50;    // back where it began: a fast hand is followed with a delay
+constexpr double kReach = 0.012;  // m, half width of the cube around the origin with the starts
+constexpr double kPath = 0.06;    // m, length of the path out of a body
+constexpr double kAfter = 1e-3;   // m of the path outside the body on which the force must be zero
+constexpr double kDeep = 30e-6;   // m; a start that is less deep may count as outside
+constexpr double kToEnd = 0.1;    // maximum cosine between a path and the axis of a prism
+constexpr int kRestTicks = 12;    // before the hand moves; it must be reported as inside by then
+constexpr int kStayTicks = 50;    // after the return, because contact with a fast hand may be late
 constexpr double kRates[] = {1000.0, 2000.0, 4000.0};
 constexpr double kSpeeds[] = {0.1, 0.8};  // m/s
 
@@ -31,7 +31,7 @@ Vector3d in_cube(std::mt19937_64& random, double half) {
   return {x, y, place(random)};
 }
 
-/// Leads a hand out of the body on a straight line, and back to where it was.
+/// Moves a hand out of the body on a straight line, and back to its start.
 void leave(const core::BlobView& view, const Distance& distance, const Vector3d& from,
            const Vector3d& way, double rate_hz, double speed, InsideResult& row) {
   Touch touch(view, core::RenderMode::kSurface, from, {}, rate_hz);
@@ -59,7 +59,7 @@ void leave(const core::BlobView& view, const Distance& distance, const Vector3d&
   row.felt += felt ? 1 : 0;
 }
 
-/// open: axis of a prism, whose ends are open; 0 of a closed body.
+/// `open` is the axis of a prism, whose ends are open, or 0 for a body without open ends.
 InsideResult measure(const std::string& name, const Shape& shape, const Distance& distance,
                      const Vector3d& open, int starts, std::mt19937_64& random) {
   InsideResult row;

@@ -16,12 +16,13 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr int kProbes = 6820;
-constexpr double kHalf = 0.25;        // m, of the domain
+constexpr double kHalf = 0.25;        // m, half width of the domain
 constexpr double kMargin = 5e-6;      // m, the paper's allowance for the resolution of a device
-constexpr double kOnSurface = 0.235;  // share of the probes on the surface when hovering
-constexpr double kFinest = 0.0025;    // m
+constexpr double kOnSurface = 0.235;  // fraction of the probes on the surface when hovering
+constexpr double kFinest = 0.0025;    // m, the paper's finest spacing, box and offset
 
-// Centres the sheet on the origin, which reduces float32 rounding.
+// Mean of the minimum and maximum height, m. Subtracting it moves the sheet to the origin, which
+// reduces float32 rounding.
 constexpr double kOffset = 1.9689;
 
 CosSheet paper_sheet() { return {1.0, 1.0}; }
@@ -30,7 +31,8 @@ Vector3d on_sheet(double x, double y) {
   return paper_sheet().point(x, y) - Vector3d(0.0, 0.0, kOffset);
 }
 
-/// Points at distance h; the paper's box and offset are 2.5 mm for any h.
+/// Blob of the sheet with this spacing of the points. In paper mode, box and offset are 2.5 mm for
+/// any spacing.
 Shape sheet_blob(double separation_m, core::Profile profile) {
   Shape shape(profile == core::Profile::kPaper ? kFinest : separation_m);
   const int n = static_cast<int>(std::lround(kHalf / separation_m));
@@ -59,7 +61,7 @@ bool in_contact(const core::BlobView& view, Mode mode, const Vector3d& probe) {
   return p.supported && std::abs(static_cast<double>(p.signed_distance)) <= resolution_of(view);
 }
 
-/// A rigid pose that changes from probe to probe, as float32 matrices.
+/// A rigid pose that changes from probe to probe, stored in float32.
 class Pose {
  public:
   explicit Pose(int probe) {
@@ -80,7 +82,8 @@ class Pose {
   Eigen::Vector3f shift_;
 };
 
-/// `share` of the probes on the surface, the others 2 to 10 mm above it.
+/// Counts the errors of contact detection with the fraction `share` of the probes on the surface
+/// and the others 2 to 10 mm above it.
 DetectionRow::Count count_errors(const core::BlobView& view, Mode mode, double share, bool dynamic,
                                  std::uint32_t seed) {
   std::mt19937_64 random(seed);
@@ -103,8 +106,8 @@ DetectionRow::Count count_errors(const core::BlobView& view, Mode mode, double s
   return count;
 }
 
-/// The leaves that the paper searches if the detection is remembered: its octant, and those of the
-/// six offset points.
+/// The leaves that the paper searches if the octant of the detection is remembered: that octant,
+/// and those of the six offset points.
 std::vector<core::Leaf> remembered_leaves(const core::BlobView& view, const Vector3d& spot) {
   std::vector<core::Leaf> leaves;
   const core::PaperContact contact = core::paper_collision(view, narrow(spot));
@@ -183,8 +186,8 @@ std::vector<Vector3d> points_of(const core::BlobView& view) {
   return points;
 }
 
-// The flat top, where the octant of the detection is the nearest one at any depth.
-constexpr double kTop = 0.075;  // m
+// Half width of the flat top, m, where the octant of the detection is the nearest at any depth.
+constexpr double kTop = 0.075;
 
 void paper_distances(int probes, std::mt19937_64 random, DistanceTable& table) {
   const Shape shape = sheet_blob(kFinest, core::Profile::kPaper);
@@ -209,7 +212,7 @@ void paper_distances(int probes, std::mt19937_64 random, DistanceTable& table) {
   table.paper_mean_m = sum / measured;
 }
 
-/// Lowers the probe to its position and compares the distance of the proxy with the true one.
+/// Lowers the probe to its position and compares the distance of the proxy with the true distance.
 double proxy_error(const core::BlobView& view, const Crisscross& c) {
   const Vector3d probe = c.probe();
   const Vector3d foot =

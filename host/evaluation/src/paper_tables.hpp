@@ -1,5 +1,5 @@
 #pragma once
-// The paper's experiments: z = cos x + cos y over half a metre.
+// The paper's experiments on the surface z = cos x + cos y over half a metre.
 
 #include "tactree/evaluation/evaluation.hpp"
 

@@ -56,7 +56,7 @@ class Svg {
   std::string out_;
 };
 
-/// The force along one slide; the true value is 1 N.
+/// Plot of the force along one slide; the true value is 1 N.
 std::string force_plot(const ForceTrace& trace) {
   constexpr double kAxisTop = 70.0;
   constexpr double kAxisBottom = 360.0;
@@ -91,7 +91,7 @@ std::string force_plot(const ForceTrace& trace) {
   return svg.take();
 }
 
-/// One score of all shapes, on a logarithmic axis from `low` to `high`.
+/// Bar chart of one score of all shapes, on a logarithmic axis from `low` to `high`.
 std::string score_plot(const Result& result, const std::string& score, const std::string& title,
                        double low, double high, const std::string& unit, double scale) {
   constexpr double kFirstRow = 70.0;

@@ -1,6 +1,6 @@
 #pragma once
-// Reference surface: APSS in double precision over all points, projected until convergence. Slow,
-// and independent of the code under test.
+// Reference surface: APSS in double precision over all points, projected until convergence. It is
+// slow, and independent of the code under test.
 
 #include <Eigen/Core>
 #include <vector>
@@ -11,7 +11,7 @@ namespace tactree::evaluation {
 
 class ReferenceSurface {
  public:
-  /// Over the points a blob decodes to, with its support radius.
+  /// Uses the decoded points of a blob and its support radius.
   explicit ReferenceSurface(const core::BlobView& view);
 
   struct Projection {
@@ -21,7 +21,8 @@ class ReferenceSurface {
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
     double signed_distance = 0.0;
   };
-  /// The reference normal is that of the nearest point. Cost: all points, then about ten fits.
+  /// The nearest point provides the reference normal. Cost: a pass over all points, then about ten
+  /// fits.
   [[nodiscard]] Projection project(const Eigen::Vector3d& x) const;
 
   [[nodiscard]] const std::vector<Eigen::Vector3d>& positions() const { return positions_; }

@@ -13,10 +13,10 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kDepth = 1e-3;    // m, of the slides
-constexpr double kPerTick = 1e-4;  // m: 0.1 m/s at 1 kHz
+constexpr double kPerTick = 1e-4;  // m; 0.1 m/s at 1 kHz
 constexpr double kLift = 4e-3;     // m, start above the surface
-constexpr double kDescent = 5e-5;  // m a tick
-constexpr double kSlipped = 2e-3;  // m, beyond which friction is dynamic
+constexpr double kDescent = 5e-5;  // m per tick
+constexpr double kSlipped = 2e-3;  // m, travel after which friction is dynamic
 constexpr core::Friction kRough{0.4F, 0.3F};
 
 const core::BlobView& blob_of(const Subject& subject, Mode mode) {
@@ -32,7 +32,7 @@ struct Projected {
   bool found = false;
   Vector3d point = Vector3d::Zero();
   Vector3d normal = Vector3d::Zero();
-  double distance = 0.0;  // signed where the mode knows sides
+  double distance = 0.0;  // signed
 };
 
 Projected ask_surface(const core::BlobView& view, const Vector3d& probe) {
@@ -40,7 +40,7 @@ Projected ask_surface(const core::BlobView& view, const Vector3d& probe) {
   return {p.supported, widen(p.point), widen(p.normal), static_cast<double>(p.signed_distance)};
 }
 
-/// Paper mode has no sign: the true distance decides the side.
+/// Distances in paper mode have no sign; it is taken from the true distance.
 Projected ask_paper(const core::BlobView& view, const Vector3d& probe, double true_distance) {
   const core::PaperContact contact = core::paper_collision(view, narrow(probe));
   const core::NearestPoint nearest = core::paper_nearest(view, narrow(probe), contact);
@@ -92,7 +92,7 @@ Touch touch_down(const Subject& subject, Mode mode, const Path& path,
   return touch;
 }
 
-/// Calls each(s, spot, touched) for every tick of a slide; s = 0 first.
+/// Calls each(s, spot, touched) for every tick of a slide, starting with s = 0.
 template <class Each>
 void slide(const Subject& subject, Mode mode, const Path& path, const core::Friction& friction,
            const Each& each) {
@@ -137,7 +137,7 @@ void score_sticky(const Subject& subject, Mode mode, int probes, Random& random,
   scores.set("sticky", static_cast<double>(pulled) / probes);
 }
 
-/// A direction within 60 degrees of `axis`.
+/// A random direction within 60 degrees of `axis`.
 Vector3d slanted(Random& random, const Vector3d& axis) {
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
   while (true) {
@@ -150,7 +150,8 @@ Vector3d slanted(Random& random, const Vector3d& axis) {
   }
 }
 
-/// Moves straight through the surface at `entry`, from 20 mm before it to 10 mm behind.
+/// Moves straight through the surface at `entry`, from 20 mm before it to 10 mm behind it. Returns
+/// true if this causes contact.
 bool notices_crossing(const Subject& subject, Mode mode, const Vector3d& entry,
                       const Vector3d& inward, double step, double phase) {
   constexpr double kBefore = 0.02;
@@ -161,7 +162,7 @@ bool notices_crossing(const Subject& subject, Mode mode, const Vector3d& entry,
       return true;
     }
   }
-  // The sweep may lag behind a fast probe.
+  // The sweep may lag behind a fast probe, so that contact begins some ticks later.
   bool noticed = false;
   for (int i = 0; i < 50 && !noticed; ++i) {
     noticed = touch.to(entry + kBehind * inward).in_contact;

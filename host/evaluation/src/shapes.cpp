@@ -75,7 +75,7 @@ Shape sphere(double radius_m, double spacing_m) {
 
 Eigen::Vector3d CosSheet::nearest(const Eigen::Vector3d& p) const {
   Eigen::Vector3d foot = point(p.x(), p.y());
-  // Each step reduces the error by the factor height * curvature, at most 1 mm * 27/m.
+  // Each step reduces the error by the factor height * curvature, for example 1 mm * 27/m.
   for (int i = 0; i < 12; ++i) {
     const Eigen::Vector3d n = normal(foot.x(), foot.y());
     const Eigen::Vector3d offset = p - foot;

@@ -11,9 +11,9 @@ using Eigen::Vector3d;
 
 constexpr double kDepth = 1e-3;  // of all slides, m
 constexpr double kBoxHalf = 0.02;
-constexpr double kBoxShift = 0.3;            // spacings: no row is parallel to an edge
-constexpr double kBoxZone = 2.5 * kSpacing;  // the support radius: zone of influence of an edge
-constexpr double kOnEdge = 0.03 * kSpacing;  // closer than this to two faces: on both
+constexpr double kBoxShift = 0.3;            // spacings; leaves no row parallel to an edge
+constexpr double kBoxZone = 2.5 * kSpacing;  // support radius, within which an edge has influence
+constexpr double kOnEdge = 0.03 * kSpacing;  // a point that is this close to two faces is on both
 constexpr double kPlateThickness = 0.5 * kSpacing;
 
 double uniform(Random& random, double low, double high) {
@@ -31,7 +31,7 @@ Subject subject(std::string name, std::string title, Shape shape) {
 
 // ---- cosine sheets
 
-/// Chords of a disc about the middle, seen from above.
+/// Random chords of a disc about the centre, as seen from above.
 std::vector<Path> lines_over(const CosSheet& sheet, Random& random, int count) {
   constexpr double kBoundary = 0.033;
   std::vector<Path> paths;
@@ -75,8 +75,9 @@ Subject over_cos(std::string name, std::string title, Shape shape, Random& rando
   return made;
 }
 
-/// Points of a cosine sheet: each row moved by up to `shift` spacings along the sheet, each point
-/// off it by a normal error of `noise` spacings, and only a share of `kept` of them.
+/// Points of a cosine sheet, each displaced along the sheet by up to `shift` spacings, and normal
+/// to it by a Gaussian error with a standard deviation of `noise` spacings. Only a fraction `kept`
+/// of the points is used.
 Shape uneven_cos(Random& random, double shift, double noise, double kept) {
   const CosSheet sheet;
   Shape shape;
@@ -153,7 +154,8 @@ Vector3d box_normal(const Vector3d& p, const Vector3d& answer) {
   return best;
 }
 
-/// Spots on the faces; `across` returns the distances from the middle of the face along its axes.
+/// Box with spots on its faces; `across` returns their distances from the centre of the face along
+/// its axes.
 Subject on_box(std::string name, std::string title,
                std::function<std::pair<double, double>(Random&)> across) {
   Subject made = subject(std::move(name), std::move(title), box(kBoxHalf, kBoxShift));
@@ -172,7 +174,7 @@ Subject on_box(std::string name, std::string title,
   return made;
 }
 
-/// A path on the top face, up to where the adjacent wall is as near as the face.
+/// A path on the top face that ends where the probe is as near to the adjacent face as to the top.
 Path to_the_edge(const Vector3d& direction, double y) {
   const double inside = kBoxHalf - kDepth;
   constexpr double kLength = 0.008;
@@ -234,7 +236,7 @@ Subject thin_plate() {
     return Spot{{x, uniform(r, -0.012, 0.012), 0.5 * up * kPlateThickness}, up * Vector3d::UnitZ()};
   };
   made.paths = over_flat(0.5 * kPlateThickness, 1.0);
-  made.probe_depth_m = 0.0;  // inside, both sides are equally near
+  made.probe_depth_m = 0.0;  // a probe inside would be about as near to one side as to the other
   made.crossings = true;
   made.friction = true;
   return made;
@@ -258,7 +260,7 @@ Subject two_sided_sheet() {
 }  // namespace
 
 std::vector<Subject> make_subjects(std::uint32_t seed, int lines) {
-  // Separate streams: a cloud must not depend on the number of lines drawn before.
+  // Separate random streams, because a cloud must not depend on the number of lines drawn before.
   std::uint32_t stream = 0;
   const auto next = [&] { return Random((std::uint64_t{seed} << 8) + ++stream); };
   const int few = lines / 4;

@@ -1,6 +1,6 @@
 #pragma once
-// The test shapes: surfaces with known distances and normals, probe positions, and paths to slide
-// on.
+// The test shapes: surfaces with known distances and normals, with probe positions and paths for
+// slides.
 
 #include <functional>
 #include <random>
@@ -19,7 +19,7 @@ struct Spot {
   Eigen::Vector3d normal;
 };
 
-/// A path on the surface, by arc length.
+/// A path on the surface, parametrised by its length.
 struct Path {
   std::function<Spot(double s_m)> spot;
   double length_m;
@@ -37,7 +37,7 @@ struct Subject {
   std::function<Eigen::Vector3d(const Eigen::Vector3d& p, const Eigen::Vector3d& answer)> normal;
   std::function<Spot(Random&)> spot;
   std::vector<Path> paths{};
-  double probe_depth_m = kSpacing;  // how far inside probes are placed
+  double probe_depth_m = kSpacing;  // maximum depth of probes inside
   bool crossings = false;           // crossing the surface at any spot must cause contact
   bool friction = false;            // the paths allow a measurement of friction
 
@@ -46,7 +46,8 @@ struct Subject {
   }
 };
 
-/// All subjects. `lines`: number of paths on each cosine sheet.
+/// All subjects. The irregular and the thinned cosine sheet have `lines` paths, the other cosine
+/// sheets a quarter of that.
 [[nodiscard]] std::vector<Subject> make_subjects(std::uint32_t seed, int lines);
 
 }  // namespace tactree::evaluation

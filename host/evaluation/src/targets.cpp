@@ -37,7 +37,7 @@ double lowest_accuracy(const Result& result) {
   return lowest;
 }
 
-/// Smallest and largest ratio of the measured limits to the formula; smallest gain by passivity
+/// Minimum and maximum ratio of the measured limits to the formula, and minimum gain by passivity
 /// control with a hand.
 void add_limits(const LoopResult& loop, Checker& check) {
   double lowest = std::numeric_limits<double>::infinity();

@@ -27,7 +27,7 @@ const char* remedy(core::BlobStatus status) {
   }
 }
 
-/// What the first bytes tell, before the rest is read.
+/// Checks size, magic and version of the header before the rest is read.
 core::BlobStatus check_header(std::span<const std::byte> first) {
   core::BlobView none;
   const core::BlobStatus status = core::open_blob(first, none);
@@ -75,7 +75,7 @@ BlobFile BlobFile::named(const std::string& name) {
   return blob;
 }
 
-// The header first: a large file of another kind is refused without reading it.
+// Checks the header first, so that a large file of another kind is refused without reading it.
 void BlobFile::read_all(std::istream& in, const std::string& name,
                         std::optional<std::uintmax_t> size) {
   read(in,
@@ -113,7 +113,7 @@ std::uint32_t BlobFile::stated_bytes() const {
 }
 
 std::size_t BlobFile::read(std::istream& in, std::uintmax_t size) {
-  // In blocks: a stream may have less than its header states.
+  // Reads in blocks, because a stream may have fewer bytes than its header states.
   constexpr std::size_t kBlockBytes = std::size_t{1} << 26;
   while (size_ < size && in) {
     const std::size_t end = static_cast<std::size_t>(

@@ -15,7 +15,8 @@ namespace {
 
 constexpr int kCannotStart = 127;
 
-// Between fork and exec: system calls only, for other threads may hold any lock.
+// Runs between fork and exec. Makes system calls only, because another thread may have held any
+// lock at the fork.
 [[noreturn]] void become(char* const* arguments, const Streams& streams, pid_t parent) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   const int nothing = ::open("/dev/null", O_RDWR);

@@ -44,7 +44,7 @@ std::vector<std::string_view> split_csv(std::string_view line, CsvSeparator sepa
     if (end == std::string_view::npos) {
       return cells;
     }
-    // Blanks beside a comma are one separator with it.
+    // A comma or semicolon and the blanks around it are one separator.
     std::size_t next = std::min(line.find_first_not_of(kBlanks, end), line.size() - 1);
     if (separators.substr(0, 2).find(line[next]) != std::string_view::npos) {
       next = std::min(line.find_first_not_of(kBlanks, next + 1), line.size());

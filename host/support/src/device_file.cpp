@@ -22,7 +22,8 @@ constexpr const char* kHomingNames[core::kHomingMethods] = {"absolute", "given-p
                                                             "hard-stop"};
 constexpr std::uintmax_t kMaxBytes = 1U << 20U;
 
-/// Visits every field of a device with its key and range, for reading and for writing.
+/// Visits the fields of a device's geometry with their keys and ranges, for reading and for
+/// writing.
 ///   fields.one(key, value, low, high)    a number
 ///   fields.each(key, values, low, high)  one number for each of three axes
 template <class Fields>
@@ -84,7 +85,7 @@ void visit_fields(core::DevicePreset& device, Fields& fields) {
   fields.each("coulomb", device.dynamics.coulomb, 0.0, 1e3);
 }
 
-/// The double with the fewest digits that is the same float: 0.2, not 0.20000000298.
+/// The shortest decimal that is the same float: 0.2 instead of 0.20000000298.
 double shortest(float value) { return std::stod(fmt::format("{}", value)); }
 
 class Writer {

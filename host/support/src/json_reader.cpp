@@ -47,7 +47,8 @@ double JsonReader::number(const std::string& key, const Json& value, double low,
     refuse(key, "is not a number", fmt::format("give {:.6g} .. {:.6g}", low, high));
   }
   const double figure = value.get<double>();
-  // The narrowing may round a limit outwards by half a unit.
+  // A limit that was written as a float may have been rounded outwards by half a unit in the last
+  // place.
   if (!(figure >= low - 1e-7 * std::abs(low) && figure <= high + 1e-7 * std::abs(high))) {
     refuse(key, fmt::format("{:.6g} is out of range", figure),
            fmt::format("give {:.6g} .. {:.6g}", low, high));

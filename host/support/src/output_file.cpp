@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
                               file.string(), std::strerror(errno)));
 }
 
-// A device or pipe, such as /dev/stdout, cannot be replaced.
+// A device or pipe, such as /dev/stdout, must not be replaced by a regular file.
 bool is_written_in_place(const fs::path& file) {
   std::error_code ignored;
   const fs::file_status status = fs::status(file, ignored);
@@ -44,7 +44,7 @@ void require_writable(const fs::path& file) {
   }
 }
 
-// Whether two paths refer to one file, also through links.
+// True if two paths refer to the same file, also through links.
 bool is_same_file(const fs::path& a, const fs::path& b) {
   std::error_code ignored;
   const fs::path real = fs::weakly_canonical(fs::absolute(a, ignored), ignored);

@@ -20,7 +20,7 @@ constexpr std::size_t kBlockBytes = std::size_t{1} << 20;
          "set TMPDIR to a folder with enough room, or save it to a file and give that");
 }
 
-/// False: errno tells the cause.
+/// Returns false on failure, with the cause in errno.
 bool write_all(int descriptor, const char* bytes, std::size_t count) {
   while (count > 0) {
     const ssize_t written = ::write(descriptor, bytes, count);

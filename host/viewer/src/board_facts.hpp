@@ -1,6 +1,6 @@
 #pragma once
-// Properties of a board, read once per connection, and a comparison of its model with the displayed
-// one.
+// Properties of a board, which are read once per connection, and a comparison of its model with the
+// displayed model.
 
 #include <cstddef>
 #include <span>
@@ -19,10 +19,10 @@ struct BoardFacts {
   core::wire::CapabilitiesReply can{};
   core::Vec3 model_origin_m{};
   Model model = Model::kUnknown;
-  std::string about_model;  ///< for people
+  std::string about_model;  ///< text for the user
 };
 
-/// Blocks until the board has answered. `shown`: the bytes of the displayed model. Throws
+/// Blocks until the board has answered. `shown` contains the bytes of the displayed model. Throws
 /// LinkError.
 [[nodiscard]] BoardFacts ask_board(client::Board& board, std::span<const std::byte> shown);
 

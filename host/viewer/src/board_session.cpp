@@ -23,7 +23,7 @@ constexpr std::size_t kMaxQueued = 64;
 constexpr std::chrono::seconds kMaxSilence{2};
 constexpr std::chrono::milliseconds kRetryInterval{200};
 constexpr std::chrono::milliseconds kMinPause{1};    // between frames, on a slow computer
-constexpr std::chrono::seconds kConfirmTimeout{30};  // as tactree arm
+constexpr std::chrono::seconds kConfirmTimeout{30};  // the default of tactree arm
 
 // All fields except the reactions of bodies.
 constexpr std::uint32_t kFields = 0x1FF;
@@ -91,7 +91,8 @@ Work BoardSession::work_of(const BoardFacts& facts) const {
   return work;
 }
 
-/// Every tick, so that no peak is missed, but at most half of the capacity of a serial line.
+/// Every tick is sent, so that no peak is missed, but at most half of the capacity of a serial line
+/// is used.
 std::uint32_t BoardSession::ticks_per_message(const BoardFacts& facts) const {
   const std::optional<unsigned> bytes_s = client::wire_speed(settings_.port, settings_.link.baud);
   if (!bytes_s) {
@@ -102,7 +103,7 @@ std::uint32_t BoardSession::ticks_per_message(const BoardFacts& facts) const {
       std::max(1.0, std::ceil(static_cast<double>(facts.can.rate_hz) / messages_s)));
 }
 
-// Commands of a page; any thread.
+// Commands of a page; may be called from any thread.
 
 std::string BoardSession::hello() const {
   const json hello = {{"type", "hello"},
@@ -153,8 +154,8 @@ void BoardSession::enqueue(const json& command) {
   commands_.push_back(command);
 }
 
-// Bypasses the queue: sent at once, and again by the session's thread until the board confirms that
-// it has stopped.
+// Bypasses the queue. The stop is sent at once, and again by the session's thread until the board
+// confirms that it has stopped.
 std::optional<std::string> BoardSession::post_stop() {
   {
     const std::lock_guard lock(mutex_);
@@ -376,7 +377,7 @@ std::string BoardSession::frame() {
 
 json BoardSession::run_of_last_tick() {
   const Bodies none;
-  // Points of a different model would not be those of the contact.
+  // The points of a different model are not those of the contact.
   const Bodies& known = facts_->model == BoardFacts::Model::kOther ? none : bodies_;
   json run = run_json(*last_, "board", settings_.device, facts_->model_origin_m, std::nullopt,
                       known, scratch_);

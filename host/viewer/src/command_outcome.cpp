@@ -10,7 +10,7 @@
 namespace tactree::viewer {
 namespace {
 
-/// True at the due time, which is then removed.
+/// Returns true when the time is due, and then clears it.
 bool is_due(std::optional<double>& due_s, double t_s) {
   if (!due_s || t_s < *due_s) {
     return false;
@@ -19,7 +19,7 @@ bool is_due(std::optional<double>& due_s, double t_s) {
   return true;
 }
 
-// Limits are left out: a ramp or a contact changes them too.
+// Limits are ignored, because a ramp or a contact changes them, too.
 bool differs(const core::Status& a, const core::Status& b) {
   return a.state != b.state || a.faults != b.faults || a.overruns != b.overruns;
 }

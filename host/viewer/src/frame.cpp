@@ -14,14 +14,14 @@ namespace {
 using nlohmann::json;
 using plant::widen;
 
-// For drawing only: a micrometre is less than a pixel.
+// For drawing only, where a micrometre is less than a pixel.
 double rounded(double metres) { return std::round(1e6 * metres) * 1e-6; }
 
 json drawn(const Eigen::Vector3d& v) {
   return json::array({rounded(v.x()), rounded(v.y()), rounded(v.z())});
 }
 
-// Displayed values keep all digits: they must match the trace.
+// Displayed values keep all digits, because they must match the trace.
 json exact(core::Vec3 v) { return json::array({v.x, v.y, v.z}); }
 
 json faults_json(core::FaultMask mask) {
@@ -61,7 +61,7 @@ json linkage_json(const core::DeviceModel& device, const core::Vec3& origin_m,
   return lines;
 }
 
-/// The points from which the surface at the proxy is fitted.
+/// The points to which the surface at the proxy is fitted.
 json candidates_json(const core::Rendering& rendering, const Bodies& bodies, const core::Pose& pose,
                      core::CandidateSet& scratch) {
   const core::BlobView& view = bodies.views[rendering.body];

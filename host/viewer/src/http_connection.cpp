@@ -58,7 +58,7 @@ void HttpConnection::read() {
         const bool ours =
             error.category() == http::make_error_code(http::error::bad_method).category();
         if (ours && error != http::error::end_of_stream && error != http::error::partial_message) {
-          Request request;  // unreadable: close the connection after the answer
+          Request request;  // could not be read; the connection is closed after the answer
           request.version(11);
           request.keep_alive(false);
           self->send(plain(400, "invalid request: " + error.message() + "\n"), request);
@@ -68,7 +68,7 @@ void HttpConnection::read() {
 
 bool HttpConnection::is_ours(beast::string_view host) const {
   if (!service_.any_host.empty() && host.ends_with(service_.any_host)) {
-    // The addresses of the machine are unknown here: accept any address, but no name.
+    // The addresses of the machine are unknown here. Accepts any address, but no name.
     host.remove_suffix(service_.any_host.size());
     if (host.starts_with('[') && host.ends_with(']')) {
       host = host.substr(1, host.size() - 2);
@@ -90,8 +90,8 @@ std::optional<HttpResponse> HttpConnection::refusal(const Request& request) cons
   if (request.target().empty() || request.target().front() != '/') {
     return plain(400, "a path starts with /\n");
   }
-  // Pages of other sites have another origin. Programs send none: they may read, but a WebSocket
-  // can move the device and requires the origin of our page.
+  // Pages of other sites have another origin. Programs send no origin. They may read; a WebSocket,
+  // however, can move the device and requires the origin of this server's page.
   const beast::string_view origin = request[http::field::origin];
   const bool from_here =
       origin.starts_with("http://") && origin.substr(7) == request[http::field::host];

@@ -27,8 +27,8 @@ struct Service {
   Hub& hub;
   boost::asio::thread_pool& worker;  // for slow answers
   std::string host;                  // "127.0.0.1:8023"
-  std::string local_host;            // "localhost:8023"; empty: not on loopback
-  std::string any_host;              // ":8023" if listening on all addresses; else empty
+  std::string local_host;            // "localhost:8023" if listening on loopback, else empty
+  std::string any_host;              // ":8023" if listening on all addresses, else empty
   int connections = 0;
 };
 

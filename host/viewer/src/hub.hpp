@@ -1,6 +1,6 @@
 #pragma once
-// Passes frames from the source's thread to the connected pages. Except for offer(), call it from
-// the server's thread only.
+// Passes frames from the source's thread to the connected pages. All functions except offer() must
+// be called from the server's thread.
 
 #include <atomic>
 #include <boost/asio/io_context.hpp>
@@ -22,8 +22,8 @@ class Hub {
 
   explicit Hub(boost::asio::io_context& context) : context_(context) {}
 
-  /// Offers the next frame; called from the source's thread. Replaces a frame that was not sent
-  /// yet: the thread never waits and no queue grows.
+  /// Offers the next frame; called from the source's thread. Replaces a frame that has not been
+  /// sent yet, so that the thread never waits and no queue grows.
   void offer(Message frame);
 
   [[nodiscard]] bool join(LiveConnection* page);

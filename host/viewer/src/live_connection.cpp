@@ -12,7 +12,7 @@ namespace asio = boost::asio;
 namespace beast = boost::beast;
 namespace websocket = beast::websocket;
 
-// Unread frames that the kernel may buffer: less than one second.
+// Limits the unread frames in the kernel's buffer to less than one second.
 constexpr int kSendBufferBytes = 64 * 1024;
 
 websocket::stream_base::timeout timeouts() {
@@ -55,7 +55,7 @@ void LiveConnection::accept(const Request& request) {
 
 void LiveConnection::read() {
   socket_.async_read(incoming_, [self = shared_from_this()](beast::error_code error, std::size_t) {
-    if (error) {  // also for messages that are too long: Beast has sent the cause
+    if (error) {  // also for messages that are too long; Beast has sent the cause
       self->open_ = false;
       self->hub_.leave(self.get());
       return;
@@ -122,7 +122,7 @@ void LiveConnection::write_next() {
 void LiveConnection::close() {
   open_ = false;
   hub_.leave(this);
-  // No closing handshake: the page may not read it.
+  // No closing handshake, because the page may not read it.
   beast::error_code ignored;
   beast::get_lowest_layer(socket_).socket().close(ignored);
 }

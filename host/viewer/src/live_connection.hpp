@@ -20,7 +20,8 @@ class LiveConnection : public std::enable_shared_from_this<LiveConnection> {
  public:
   using Request = boost::beast::http::request<boost::beast::http::string_body>;
 
-  /// Longest command (bytes), and number of unread answers beyond which the connection is closed.
+  /// Maximum size of a command, bytes, and number of unread answers beyond which the connection is
+  /// closed.
   static constexpr std::size_t kMaxCommandBytes = 4096;
   static constexpr std::size_t kMaxAnswers = 16;
 
@@ -29,9 +30,9 @@ class LiveConnection : public std::enable_shared_from_this<LiveConnection> {
   LiveConnection(const LiveConnection&) = delete;
   LiveConnection& operator=(const LiveConnection&) = delete;
 
-  /// Answers a request for a WebSocket; the object then keeps itself alive until the page leaves.
+  /// Accepts a request for a WebSocket. The object then keeps itself alive until the page leaves.
   void accept(const Request& request);
-  /// Sends the frame as soon as possible; drops one that is still waiting.
+  /// Sends the frame as soon as possible; drops a frame that is still waiting.
   void show(const Message& frame);
   void close();
 
@@ -46,7 +47,7 @@ class LiveConnection : public std::enable_shared_from_this<LiveConnection> {
   Source& source_;
   boost::beast::flat_buffer incoming_;
   std::deque<Message> answers_;  // sent before frames
-  Message frame_;                // the next one
+  Message frame_;                // waiting
   Message writing_;              // being sent
   bool open_ = false;
 };

@@ -26,7 +26,7 @@ using Clock = std::chrono::steady_clock;
 // Interval of commands and ticks; every fourth turn publishes a frame.
 constexpr double kTurn_s = 1.0 / (4.0 * kFrameRate_hz);
 constexpr int kTurnsPerFrame = 4;
-// A simulation further behind real time skips the rest; the frame reports the time lost.
+// A simulation that is further behind real time skips the excess; the frame reports the lost time.
 constexpr double kMaxBehind_s = 0.1;
 constexpr std::size_t kMaxCommands = 256;
 constexpr std::size_t kMaxVia = 64;
@@ -159,7 +159,7 @@ struct LiveSession::Run {
     last = sim.step();
     strip.add(last.status);
     if (std::exchange(stop_next, false)) {
-      stop();  // clearing leaves the fault state only with a stop
+      stop();  // the controller leaves the fault state only on a stop after the clear
     }
   }
 
@@ -167,7 +167,7 @@ struct LiveSession::Run {
   simulation::Simulation sim;
   simulation::Sample last{};
   Strip strip;
-  double hold_at_s = -1.0;  // time at which the hand presses the dead-man control; < 0: never
+  double hold_at_s = -1.0;  // time at which the hand presses the dead-man control; negative: never
   bool stop_next = false;
 };
 
@@ -226,7 +226,7 @@ LiveSession::Runs LiveSession::make_runs(const Settings& settings) const {
   return runs;
 }
 
-// Commands of a page; any thread.
+// Commands of a page; may be called from any thread.
 
 Settings LiveSession::changed(const json& wanted) const {
   Settings settings = settings_;
@@ -253,7 +253,7 @@ void LiveSession::restart(const json& wanted) {
     const std::lock_guard lock(mutex_);
     settings = changed(wanted);
   }
-  Runs runs = make_runs(settings);  // slow: without the lock, so that the session continues
+  Runs runs = make_runs(settings);  // slow; not locked, so that the session continues
   const std::lock_guard lock(mutex_);
   settings_ = settings;
   next_runs_ = std::move(runs);

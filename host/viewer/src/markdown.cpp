@@ -99,7 +99,7 @@ void resolve_picture(cmark_node* node, const MarkdownTargets& targets) {
   replace(node, markup);
 }
 
-/// Parents before their children.
+/// All nodes, parents before their children.
 std::vector<cmark_node*> nodes_of(cmark_node* document) {
   std::vector<cmark_node*> nodes;
   cmark_iter* const iterator = cmark_iter_new(document);
@@ -114,7 +114,7 @@ std::vector<cmark_node*> nodes_of(cmark_node* document) {
 }
 
 void resolve(cmark_node* document, const MarkdownTargets& targets) {
-  // Children first: to replace a node frees those below it.
+  // Children first, because the replacement of a node frees its children.
   const std::vector<cmark_node*> nodes = nodes_of(document);
   for (auto node = nodes.rbegin(); node != nodes.rend(); ++node) {
     const cmark_node_type type = cmark_node_get_type(*node);

@@ -28,7 +28,7 @@ std::uint32_t to_byte(float value) {
   return static_cast<std::uint32_t>(std::lround((std::clamp(value, -1.0F, 1.0F) + 1.0F) * 127.5F));
 }
 
-/// Octahedral mapping of the unit sphere to a square: two numbers per direction.
+/// Octahedral mapping of the unit sphere to a square, which has two coordinates.
 std::uint16_t pack_normal(core::Vec3 n) {
   const float size = std::abs(n.x) + std::abs(n.y) + std::abs(n.z);
   float u = n.x / size;
@@ -70,7 +70,7 @@ PointNode child_of(const PointNode& parent, std::size_t octant) {
 
 }  // namespace
 
-/// A node whose points are still to be chosen.
+/// A node whose points have not been chosen yet.
 struct PointTree::Task {
   std::uint32_t node = 0;
   std::uint32_t level = 0;
@@ -91,7 +91,7 @@ class PointTree::Build {
     open_.push_back(std::move(root));
   }
 
-  // Breadth first: coarse nodes get the low numbers.
+  // Breadth first, so that coarse nodes have the low numbers.
   void run() {
     for (std::size_t i = 0; i < open_.size(); ++i) {
       Task task = std::move(open_[i]);
@@ -100,7 +100,8 @@ class PointTree::Build {
   }
 
  private:
-  /// Keeps every n-th point in the octree's order, which spreads them evenly; moves the rest down.
+  /// Keeps every n-th point in the octree's order, which spreads the points evenly, and passes the
+  /// rest to the children.
   void divide(Task& task) {
     const std::size_t all = task.points.size();
     const bool last = all <= kPointsPerNode || task.level == kDeepestNode;
@@ -189,12 +190,12 @@ std::array<float, 3> lower_corner(const core::BlobView& view, core::Int3 site, f
   return corner;
 }
 
-/// Stops after `max_cubes` + 1 cubes.
+/// Cubes of one level; stops after `max_cubes` + 1 cubes.
 OctantBoxes boxes_of_level(const core::BlobView& view, std::uint32_t level, std::size_t max_cubes) {
   OctantBoxes boxes;
   boxes.level = level;
   boxes.edge_m = view.leaf_edge_m() * static_cast<float>(1U << (view.depth() - level));
-  // Leaves are stored in the octree's order: those of one cube are neighbours.
+  // Leaves are stored in the octree's order, so that those of one cube are consecutive.
   for (core::LeafCursor cursor(view); !cursor.done() && boxes.corners_m.size() <= max_cubes;
        cursor.next()) {
     const std::array<float, 3> corner = lower_corner(view, cursor.leaf().min, boxes.edge_m);

@@ -16,7 +16,7 @@ using simulation::Sample;
 using support::CsvReader;
 using Column = std::optional<std::size_t>;
 
-// The longest trace that simulate writes.
+// Maximum length of a trace that `tactree simulate` writes.
 constexpr std::size_t kMaxTicks = 5000000;
 constexpr const char* kRemedy = "give a file written by simulate --trace";
 
@@ -104,7 +104,7 @@ core::State state_of(std::string_view name) {
 Sample read_sample(const Row& row, const Columns& columns) {
   Sample sample;
   sample.t_s = row.number(columns.t_s);
-  // Boards do not report the true position of the tip: the probe stands for it.
+  // Boards do not report the true position of the tip; the probe is used instead.
   sample.tip_m = row.wide_vector(columns.tip.axes[0] ? columns.tip : columns.probe);
   core::Status& s = sample.status;
   s.probe = row.vector(columns.probe);

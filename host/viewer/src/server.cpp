@@ -62,7 +62,8 @@ struct Server::Parts {
       service.any_host = ":" + std::to_string(own.port());
     }
   }
-  // The context destroys the open connections, which refer to hub and service.
+  // The context is destroyed first, because it destroys the open connections, which refer to hub
+  // and service.
   ~Parts() {
     acceptor.reset();
     context.reset();

@@ -24,7 +24,7 @@ HttpResponse binary(const void* bytes, std::size_t size) {
   return {200, "application/octet-stream", std::string(static_cast<const char*>(bytes), size), {}};
 }
 
-/// Takes "NUMBER" or "NUMBER/" off the front of `path`.
+/// Removes "NUMBER" or "NUMBER/" from the beginning of `path`; nullopt if there is none.
 std::optional<std::uint32_t> take_number(std::string_view& path) {
   std::uint32_t number = 0;
   const auto [end, error] = std::from_chars(path.data(), path.data() + path.size(), number);

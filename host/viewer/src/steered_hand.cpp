@@ -6,8 +6,10 @@
 namespace tactree::viewer {
 namespace {
 
+// Time constant with which the hand slows down before a sharp corner or the end.
 constexpr double kFollow_s = 0.03;
-// Before a corner: the hand's spring overshoots less than a millimetre. The end has no such limit.
+// Minimum speed before a corner, at which the hand's spring overshoots less than a millimetre.
+// There is no minimum speed before the end.
 constexpr double kAtCorner_m_s = 0.05;
 // A corner is sharp if the path turns by more than 60 degrees.
 constexpr double kSharpCosine = 0.5;

@@ -17,11 +17,12 @@ class SteeredHand {
   static constexpr double kFastest_m_s = 0.5;
 
   /// Moves through the points of `path_m` (model frame) in their order, at most at `speed_m_s`, and
-  /// stays at the last one. Replaces the path before. Preconditions: not empty; above 0, at most
-  /// kFastest_m_s.
+  /// stays at the last point. Replaces the previous path. Preconditions: `path_m` is not empty;
+  /// `speed_m_s` is above 0 and at most kFastest_m_s.
   void go(std::vector<Eigen::Vector3d> path_m, double speed_m_s = kFastest_m_s);
 
-  /// Advances by `dt` seconds. Fast on straight parts, slow before sharp corners and the end.
+  /// Advances by `dt` seconds. The hand is fast on straight sections and slows down before sharp
+  /// corners and the end.
   const plant::HandTarget& advance(double dt);
 
   [[nodiscard]] const Eigen::Vector3d& position_m() const { return now_.position_m; }

@@ -29,7 +29,7 @@ double penetration_of(const Sample& sample) {
   return r.in_contact ? static_cast<double>(r.penetration_m) : 0.0;
 }
 
-/// The trace in at most kOverviewColumns columns: lowest and highest value of each.
+/// The trace in at most kOverviewColumns columns, with the minimum and maximum of each.
 template <class Value>
 json overview(const Samples& samples, const Value& value) {
   const std::size_t columns = std::min(kOverviewColumns, samples.size());

@@ -1,4 +1,4 @@
-// The bound as the formula by which a board admits models: core::TickCosts.
+// The bound as the formula with which a board admits models: core::TickCosts.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -13,7 +13,7 @@
 namespace tactree::wcet {
 namespace {
 
-/// The reference of the prices: a model of a scan.
+/// Limits of a typical model of a scan, near which the formula is tight.
 core::ModelLimits typical_model_limits() { return {46, 50, 7, 3, 46, 4}; }
 
 Parameters open_parameters() {
@@ -45,9 +45,9 @@ class TickFormulas {
     return formula;
   }
 
-  /// The largest cost of a delta device among all formulas so far.
+  /// Maximum cost of a delta device in all formulas so far.
   [[nodiscard]] double delta() const { return delta_; }
-  /// The same of one body of the scene, rendered or not.
+  /// Maximum cost of one body of the scene, rendered or not, in all formulas so far.
   [[nodiscard]] double listed() const { return listed_; }
 
  private:
@@ -57,7 +57,7 @@ class TickFormulas {
   double listed_ = 0.0;
 };
 
-/// Raises `cost` to the share of one of `bodies` in the formula.
+/// Raises `cost` to the cost of one of `bodies` bodies in the formula.
 void cover(core::TickCost& cost, const CostFormula& formula, double base, double listed,
            std::uint32_t bodies) {
   const auto raise = [bodies](auto& to, double share) {
@@ -67,7 +67,8 @@ void cover(core::TickCost& cost, const CostFormula& formula, double base, double
     }
     to = std::max(to, static_cast<std::decay_t<decltype(to)>>(std::max(each, 0.0)));
   };
-  // Each body pays `listed`: this formula's own price may be lower.
+  // Each body is charged with `listed`, which may exceed its price in this formula; the base is
+  // lower by the difference.
   raise(cost.base, formula.base - base - bodies * (listed - formula.per.at("listed")));
   for (std::uint32_t i = 0; i < core::kModelLimits; ++i) {
     const auto found = formula.per.find(core::kModelLimitNames[i]);
@@ -87,7 +88,8 @@ core::TickCosts tick_costs(const BoundOptions& options) {
   core::TickCosts costs;
   costs.known = core::kTickCostsKnown;
   const double base = std::floor(formulas.base());
-  costs.base = static_cast<std::uint32_t>(base);
+  // One cycle more: the solver rounds, and a bound is rounded up.
+  costs.base = static_cast<std::uint32_t>(base) + 1U;
   struct Row {
     core::TickCost& cost;
     CostFormula formula;

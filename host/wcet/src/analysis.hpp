@@ -1,5 +1,5 @@
 #pragma once
-// Shared by all parts of one analysis: the image, its sources, and the values of names.
+// Data that all steps of an analysis share: the image, its sources, and the values of names.
 
 #include <cstdint>
 #include <map>
@@ -14,7 +14,7 @@
 
 namespace tactree::wcet {
 
-/// Functions by address, and how often each is entered.
+/// Number of entries of each function, by address.
 using Entries = std::map<std::uint32_t, double>;
 
 struct Analysis {
@@ -23,9 +23,9 @@ struct Analysis {
   Program& program;
   const Parameters& parameters;
   std::set<std::string> inlined;  ///< symbols of functions that are inlined somewhere
-  /// Parameters that a formula leaves open, with their largest values. Empty: none.
+  /// Parameters that a formula leaves open, with their maximum values.
   Parameters open;
-  const BoardTiming* timing;  ///< the cost is in cycles; nullptr: in instructions
+  const BoardTiming* timing;  ///< if nullptr, the cost is in instructions, otherwise in cycles
 };
 
 /// True if an annotation states that the instruction's data are in RAM.
@@ -34,16 +34,16 @@ struct Analysis {
 /// Values of the names in annotations, for one call with constant arguments.
 class NameValues {
  public:
-  /// Both outlive the object.
+  /// Both must outlive the object.
   NameValues(const Analysis& analysis, const Parameters& arguments)
       : analysis_(analysis), arguments_(arguments) {}
 
-  /// Not less than 0. `file` is where the expression stands. Throws BoundError.
+  /// Value of an expression in `file`, at least 0. Throws BoundError.
   [[nodiscard]] std::int64_t value(const Expression& expression, const std::string& file) const;
-  /// With these values of the open parameters; those not in `open` are 0.
+  /// Value of an expression with these values of the open parameters; those not in `open` are 0.
   [[nodiscard]] std::int64_t value_with(const Expression& expression, const std::string& file,
                                         const Parameters& open) const;
-  /// Of the function's own arguments; nullopt: not constant.
+  /// Value of an argument of the function; nullopt if it is not constant.
   [[nodiscard]] std::optional<std::int64_t> argument(const std::string& name) const;
 
  private:

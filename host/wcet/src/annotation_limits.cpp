@@ -16,7 +16,8 @@ bool is_called(const std::string& symbol, const std::string& name) {
   return plain == name || plain.ends_with("::" + name);
 }
 
-/// The compiler has split the function: a call of this part is not a call of the function.
+/// True for a part that the compiler has split off a function; its calls are not calls of the
+/// function.
 bool is_part(const std::string& symbol) {
   return symbol.find(".part.") != std::string::npos || symbol.find(".cold") != std::string::npos;
 }
@@ -56,8 +57,8 @@ void AnnotationLimits::limit_loop(std::uint32_t entry, std::uint32_t number) {
   limit_to(terms, *source.bound, source.file, flow_.entered(entry, function.flow.loops[number]));
 }
 
-// Passes of a loop's body. Where the shape of the loop does not show them, passes of its back
-// edges: the condition may be evaluated once more than the body is executed.
+// Passes of a loop's body. If the shape of the loop does not determine them, the passes of its back
+// edges count, because the condition may be evaluated once more than the body is executed.
 Terms AnnotationLimits::bodies(std::uint32_t entry, std::uint32_t number) const {
   const AnalysedFunction& function = flow_.function(entry);
   const NaturalLoop& loop = function.flow.loops[number];
@@ -140,7 +141,7 @@ bool AnnotationLimits::is_of(const ControlFlow& flow, std::uint32_t index,
   });
 }
 
-/// True if some analysed instruction is of the statement.
+/// True if some analysed instruction belongs to the statement.
 bool AnnotationLimits::has_code(const SourceFact& fact) const {
   for (const auto& [entry, own] : flow_.variables()) {
     const ControlFlow& flow = flow_.function(entry).flow;

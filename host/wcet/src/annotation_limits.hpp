@@ -27,7 +27,7 @@ struct OpenLimit {
 
 class AnnotationLimits {
  public:
-  /// All of these outlive the object; rows are added to `program`.
+  /// All arguments must outlive the object. Rows are added to `program`.
   AnnotationLimits(const Analysis& analysis, const NameValues& values, const FlowConstraints& flow,
                    LinearProgram& program)
       : analysis_(analysis), values_(values), flow_(flow), program_(program) {}

@@ -5,7 +5,8 @@
 namespace tactree::wcet {
 namespace {
 
-// Flash that an instruction accesses delays the prefetch beyond the end of any line.
+// Assumes no prefetch in a line after an access to the flash: later instructions of the line cannot
+// make up for this value.
 constexpr double kNoPrefetch = -1e9;
 
 bool falls_through(const ControlFlow& flow, const Block& block) {
@@ -59,7 +60,8 @@ void BlockCosts::add_lines(const ControlFlow& flow, const Block& block, CodeLine
   }
 }
 
-// The core may fetch at the target of a branch out of the loop that it does not take.
+// Adds the targets of branches out of the loop, because the core may fetch at the target of a
+// branch that it does not take.
 void BlockCosts::add_targets(const ControlFlow& flow, const NaturalLoop& loop, const Block& block,
                              CodeLines& lines) const {
   for (const std::uint32_t next : block.next) {
@@ -147,8 +149,8 @@ double BlockCosts::fetch(const ControlFlow& flow, const Block& block) const {
   return wait;
 }
 
-// Nothing is saved after a conditional branch that was not taken: the core may have prefetched at
-// its target.
+// Nothing is saved after a conditional branch that was not taken, because the core may have
+// prefetched at its target.
 double BlockCosts::saved_by_falling(const ControlFlow& flow, const CachedLoops& cached,
                                     std::uint32_t from, std::uint32_t to) const {
   const Block& block = flow.blocks[from];

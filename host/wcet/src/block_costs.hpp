@@ -1,5 +1,5 @@
 #pragma once
-// Cost of a block of machine code: instructions, or cycles with the waits of the board's memories.
+// Cost of a block of machine code: instructions, or cycles with the wait states of the memories.
 //
 // Fetch model (BoardTiming): a block fetches each of its code lines from flash; the next line is
 // prefetched while the current one executes, unless an instruction accesses the flash itself. A
@@ -16,7 +16,7 @@
 
 namespace tactree::wcet {
 
-/// Loops of one function that the code cache holds; the outermost where they are nested.
+/// Loops of one function that the code cache holds; of nested loops, the outermost one.
 struct CachedLoops {
   std::vector<std::optional<std::uint32_t>> loop_of;  ///< by block
   std::map<std::uint32_t, double> fetch;  ///< by loop: cycles to fetch its lines, once per entry
@@ -24,23 +24,23 @@ struct CachedLoops {
 
 class BlockCosts {
  public:
-  /// `analysis` outlives the object.
+  /// `analysis` must outlive the object.
   explicit BlockCosts(const Analysis& analysis) : analysis_(analysis) {}
 
   [[nodiscard]] CachedLoops cached_loops(const ControlFlow& flow) const;
-  /// One pass of block `b` after a jump to it, without its callees.
+  /// Cost of one pass of block `b` after a jump to it, without its callees.
   [[nodiscard]] double pass(const ControlFlow& flow, const CachedLoops& cached,
                             std::uint32_t b) const;
-  /// Cycles to load the cached loop that the edge enters; 0: it enters none. `from` is nullopt for
-  /// the function's entry.
+  /// Cycles to load the cached loop that the edge enters; 0 if it enters none. `from` is nullopt
+  /// for the function's entry.
   static double load(const CachedLoops& cached, std::optional<std::uint32_t> from,
                      std::uint32_t to);
-  /// Cycles that pass() counts too many when block `from` runs into `to` without a jump: the first
-  /// line of `to` is fetched already, or prefetched.
+  /// Cycles that pass() overestimates when block `from` runs into `to` without a jump, because the
+  /// first line of `to` has been fetched or prefetched already.
   [[nodiscard]] double saved_by_falling(const ControlFlow& flow, const CachedLoops& cached,
                                         std::uint32_t from, std::uint32_t to) const;
-  /// Cycles that pass() counts too many when the conditional branch at the end of `from` is not
-  /// taken: the pipeline stays filled.
+  /// Cycles that pass() overestimates when the conditional branch at the end of `from` is not
+  /// taken, because the pipeline stays filled.
   [[nodiscard]] double saved_by_staying(const ControlFlow& flow, std::uint32_t from,
                                         std::uint32_t to) const;
 

@@ -12,10 +12,9 @@ constexpr BoardTiming kTimings[] = {
     // At 168 MHz and 2.7 to 3.6 V the flash has five wait states and reads 128 bits at a time. Its
     // accelerator keeps the 64 most recently used code lines and prefetches the next line while the
     // flash is idle (RM0090, 3.5.2). Its data cache is not modelled. The program is in SRAM1, which
-    // has no wait states and is mapped below 112 KiB. Where the core fetches from SRAM1 and
-    // accesses
-    // its data there in the same cycle, the bus matrix serves one after the other (RM0090, 2.1):
-    // one cycle for each word. The stack is in SRAM2, a slave of its own.
+    // has no wait states and is mapped below 112 KiB. If the core fetches code and accesses data in
+    // SRAM1 in the same cycle, the bus matrix serves one after the other (RM0090, 2.1), which costs
+    // one cycle for each word. The stack is in SRAM2, a separate slave of the bus matrix.
     {"netduinoplus2", 168e6, 5, 16, 64, true, 1, 5, 112 << 10, false, kStm32f405},
     {"stm32f405", 168e6, 5, 16, 64, true, 1, 5, 112 << 10, false, kStm32f405},
     // Prototyping boards: synchronous RAM, one cycle at 25 MHz.

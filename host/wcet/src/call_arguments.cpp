@@ -14,7 +14,8 @@ std::uint32_t call_address(const ControlFlow& flow, std::uint32_t b) {
   return flow.instructions[block.first + std::max(block.count, 1U) - 1].address;
 }
 
-// The call may be inlined into other calls that have annotations of their own: all of them hold.
+// The call may be inlined into other calls, which have their own annotations. All of them hold, so
+// the minimum is returned.
 std::optional<std::int64_t> annotated_argument(const Analysis& analysis, const NameValues& values,
                                                std::uint32_t address, const std::string& name) {
   std::optional<std::int64_t> least;

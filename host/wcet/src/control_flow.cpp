@@ -45,7 +45,7 @@ class BlockBuilder {
     return found->second;
   }
 
-  /// Addresses that a jump table leads to.
+  /// Target addresses of a jump table.
   [[nodiscard]] std::vector<std::uint32_t> table_targets(std::uint32_t at) const {
     const DecodedInstruction& d = decoded_[at];
     const std::uint32_t base = d.instruction.address + 4;
@@ -62,7 +62,8 @@ class BlockBuilder {
     return targets;
   }
 
-  /// From the comparison before the table: cmp index, #last; bhi elsewhere.
+  /// Number of entries of a jump table, from the comparison before it: cmp index, #last; bhi
+  /// elsewhere.
   [[nodiscard]] std::uint32_t table_entries(std::uint32_t at) const {
     constexpr std::uint32_t kWindow = 8;
     const DecodedInstruction& table = decoded_[at];
@@ -133,7 +134,7 @@ class BlockBuilder {
         add_edge(b, block_of_.at(index_of(target, d.instruction.address)));
       }
     }
-    // After a call that never returns there may be data: Program finds the functions that return.
+    // A call that never returns may be followed by data; Program finds the functions that return.
     const auto next = block_of_.find(last + 1);
     if (falls_through && next != block_of_.end()) {
       add_edge(b, next->second);
@@ -159,7 +160,8 @@ class BlockBuilder {
     return d.target & ~1U;
   }
 
-  /// A jump out of the function: a call whose return is that of this function.
+  /// Block of a jump's target. A jump out of the function is a call whose return is that of this
+  /// function.
   std::uint32_t target_block(const DecodedInstruction& d) {
     if (inside(d.target)) {
       return block_of_.at(index_of(d.target, d.instruction.address));

@@ -19,7 +19,7 @@ struct Instruction {
   std::string text;    ///< mnemonic and operands
   bool store = false;  ///< to memory, not relative to the stack pointer
   bool conditional_branch = false;
-  std::uint32_t cycles = 0;       ///< of a Cortex-M4, at most, without memory wait states
+  std::uint32_t cycles = 0;       ///< maximum for a Cortex-M4, without memory wait states
   std::uint32_t stack_words = 0;  ///< loaded or stored relative to the stack pointer
   std::uint32_t other_words = 0;  ///< loaded or stored elsewhere
   bool literal = false;           ///< other_words are in the literal pool of the code
@@ -40,7 +40,7 @@ struct Instruction {
 /// A basic block. A call ends a block; the callee executes between this block and the next.
 struct Block {
   std::uint32_t first = 0;  ///< index of its first instruction
-  std::uint32_t count = 0;  ///< 0: a jump to another function, as a block of its own
+  std::uint32_t count = 0;  ///< 0 for a jump to another function, which is a separate block
   std::vector<std::uint32_t> next;
   bool returns = false;
   bool runs_out = false;               ///< continues past the end of the function
@@ -49,9 +49,9 @@ struct Block {
 
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
-/// A natural loop: all blocks that reach its back edges without passing its header. Or an irregular
-/// loop, which compilers make when the path of the first pass is known: it has several entries, and
-/// its header is a block on every path around the loop.
+/// A natural loop: all blocks that reach its back edges without passing its header. An irregular
+/// loop has several entries, and its header is a block on every path around the loop; compilers
+/// generate it when they know the path of the first pass.
 struct NaturalLoop {
   std::uint32_t header = 0;
   bool irregular = false;
@@ -61,14 +61,14 @@ struct NaturalLoop {
   std::optional<std::uint32_t> parent;  ///< the smallest enclosing loop
 };
 
-/// Content of an argument register at a call: a constant, or an argument register of the caller
-/// passed on. Neither: unknown.
+/// Content of an argument register at a call: a constant, or an argument register that the caller
+/// passes on. Unknown if both are empty.
 struct Argument {
   std::optional<std::uint32_t> constant;
   std::optional<int> passed_on;
 };
 
-/// Of one function. Block 0 is the entry.
+/// Control flow graph of one function. Block 0 is the entry.
 struct ControlFlow {
   Function function;
   std::vector<Instruction> instructions;
@@ -94,7 +94,7 @@ void find_loops(const Image& image, ControlFlow& flow, const std::set<std::uint3
 /// "file:line (function+offset)" of an instruction, for messages.
 [[nodiscard]] std::string describe_place(const Image& image, std::uint32_t address);
 
-/// Throws BoundError with the place of the instruction.
+/// Throws BoundError with the location of the instruction.
 [[noreturn]] void refuse_at(const Image& image, std::uint32_t address, const std::string& cause);
 
 }  // namespace tactree::wcet

@@ -52,8 +52,8 @@ bool count_multiple(std::string_view name, const cs_arm& arm, Instruction& instr
   return true;
 }
 
-/// ldr, str, vldr, vstr of one or two words: two cycles, three for two words; but "STR Rx,[Ry,#imm]
-/// is always one cycle" (Arm 100166, 3.3.2): the word goes through a buffer.
+/// ldr, str, vldr, vstr: two cycles for one word and three for two words. However, "STR
+/// Rx,[Ry,#imm] is always one cycle" (Arm 100166, 3.3.2), because the word goes through a buffer.
 bool count_single(std::string_view name, const cs_arm& arm, Instruction& instruction) {
   if (!is_any_of(name, {"ldr", "str", "vldr", "vstr"})) {
     return false;

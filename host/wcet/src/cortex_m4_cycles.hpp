@@ -1,7 +1,7 @@
 #pragma once
-// Cycles of a Cortex-M4's instructions: Arm, "Cortex-M4 Technical Reference Manual", r0p1, tables
-// "Cortex-M4 instruction set summary" (3.3.1) and "FPU instruction set" (7.2.3); the largest value
-// of a range. Loads and stores are not pipelined.
+// Cycles of the instructions of a Cortex-M4 from Arm, "Cortex-M4 Technical Reference Manual", r0p1,
+// tables "Cortex-M4 instruction set summary" (3.3.1) and "FPU instruction set" (7.2.3). The maximum
+// of a range is used. Loads and stores are not pipelined.
 
 #include <capstone/capstone.h>
 

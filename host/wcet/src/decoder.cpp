@@ -16,7 +16,7 @@ namespace {
 /// Counts the conditional instructions after an IT instruction.
 class ItBlock {
  public:
-  /// For each instruction in order: true if it is in an IT block.
+  /// Call it for each instruction in order. Returns true if the instruction is in an IT block.
   bool next(const std::uint8_t* code, std::size_t bytes) {
     if (left_ > 0) {
       --left_;
@@ -170,8 +170,8 @@ class Decoder {
     return d;
   }
 
-  /// The program counter comes from the stack or the link register: compilers load nothing else
-  /// there.
+  /// True if the program counter is loaded from the stack or the link register. Compilers load
+  /// nothing but return addresses in this way.
   [[nodiscard]] bool is_return() const {
     switch (instruction_->id) {
       case ARM_INS_POP:
@@ -205,7 +205,8 @@ class Decoder {
   // 0 to 12 for r0 to r12; other numbers for other registers.
   static int number_of(int reg) { return reg - static_cast<int>(ARM_REG_R0); }
 
-  // Compilers often store a structure passed in registers and load it again.
+  // Needed because compilers often store a structure that was passed in registers and load it
+  // again.
   void note_words(Instruction& instruction) const {
     const std::string_view name = instruction_->mnemonic;
     instruction.writes_memory = name.starts_with("st") || name.starts_with("vst") ||

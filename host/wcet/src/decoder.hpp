@@ -16,7 +16,7 @@ enum class InstructionKind { kPlain, kBranch, kCall, kReturn, kTable };
 struct DecodedInstruction {
   Instruction instruction;
   InstructionKind kind = InstructionKind::kPlain;
-  bool conditional = false;                               // it may have no effect
+  bool conditional = false;                               // may have no effect
   std::uint32_t target = 0;                               // of a branch or call
   int index_register = -1;                                // of a table
   unsigned table_entry = 0;                               // bytes

@@ -88,7 +88,7 @@ class ExpressionReader {
     return std::make_shared<Node>(Node{operation, 0, {}, std::move(left), std::move(right)});
   }
 
-  /// Next character other than a space; 0: end of the text.
+  /// Next character other than a space; 0 at the end of the text.
   [[nodiscard]] char peek() const {
     const std::size_t at = text_.find_first_not_of(' ');
     return at == std::string_view::npos ? '\0' : text_[at];

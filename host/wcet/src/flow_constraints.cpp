@@ -53,7 +53,7 @@ void FlowConstraints::add_function(std::uint32_t entry) {
   }
 }
 
-// One pass of a block, with the call that is solved by itself.
+// Cost of one pass of a block, including its call if that is solved separately.
 double FlowConstraints::cost_of(std::uint32_t entry, const CachedLoops& cached, std::uint32_t b) {
   const ControlFlow& flow = function(entry).flow;
   const Block& block = flow.blocks[b];
@@ -73,7 +73,7 @@ double FlowConstraints::cost_of(std::uint32_t entry, const CachedLoops& cached, 
 }
 
 // Flow ends where the function returns. Nothing flows into a block that calls a function which
-// never returns: no tick takes that path.
+// never returns, because no tick takes that path.
 void FlowConstraints::conserve(std::uint32_t entry, std::uint32_t b) {
   const Block& block = function(entry).flow.blocks[b];
   Terms terms = passes(entry, b);

@@ -1,6 +1,6 @@
 #pragma once
-// The control flow of a program as a linear program: how often each edge between blocks is passed
-// is a variable, and what flows into a block flows out of it.
+// The control flow of a program as a linear program. The passes of each edge between blocks are a
+// variable, and the flow into a block equals the flow out of it.
 
 #include <cstdint>
 #include <map>
@@ -21,12 +21,12 @@ struct FunctionVariables {
 
 class FlowConstraints {
  public:
-  /// All of these outlive the object; variables and rows are added to `program`.
+  /// All arguments must outlive the object. Variables and rows are added to `program`.
   FlowConstraints(const Analysis& analysis, const NameValues& values, LinearProgram& program)
       : analysis_(analysis), values_(values), costs_(analysis), program_(program) {}
 
-  /// Adds the functions that the entries reach. Functions whose bounds name their arguments are not
-  /// among them: each call of these is solved by itself and is a cost of its block.
+  /// Adds the functions that the entries reach, except those whose bounds name their arguments:
+  /// each call of such a function is solved separately and is a cost of its block.
   void add(const Entries& entries);
 
   [[nodiscard]] const std::map<std::uint32_t, FunctionVariables>& variables() const {

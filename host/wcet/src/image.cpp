@@ -61,7 +61,7 @@ class Image::Debug {
     return result;
   }
 
-  /// The compilation unit of an address; false: it has no line numbers.
+  /// Finds the compilation unit of an address. Returns false if the address has no line numbers.
   [[nodiscard]] bool unit_at(std::uint32_t address, Dwarf_Die& unit) const {
     return dwarf_addrdie(dwarf_, address, &unit) != nullptr;
   }
@@ -255,7 +255,7 @@ std::vector<std::string> Image::source_files() const {
 
 namespace {
 
-/// Name of an argument; of a cloned function, the name in the original.
+/// Name of an argument. For a cloned function, it is the name in the original function.
 std::string name_of(Dwarf_Die& argument) {
   const char* const name = dwarf_diename(&argument);
   Dwarf_Attribute attribute;
@@ -268,7 +268,7 @@ std::string name_of(Dwarf_Die& argument) {
   return original == nullptr ? "" : original;
 }
 
-/// Words of an argument in core registers; 0: a float, which is in an FPU register.
+/// Words of an argument in core registers; 0 for a float, which is in an FPU register.
 int words_of(Dwarf_Die& argument) {
   Dwarf_Attribute attribute;
   Dwarf_Die type;

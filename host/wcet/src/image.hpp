@@ -35,17 +35,17 @@ class Image {
   ~Image();
 
   [[nodiscard]] const std::map<std::uint32_t, Function>& functions() const { return functions_; }
-  /// The function that contains the address; nullptr: none.
+  /// The function that contains the address; nullptr if there is none.
   [[nodiscard]] const Function* function_at(std::uint32_t address) const;
-  /// nullptr: no function has this symbol.
+  /// The function with this symbol; nullptr if there is none.
   [[nodiscard]] const Function* find(std::string_view symbol) const;
-  /// Bytes from `address` to the end of its section; empty: not in the image.
+  /// Bytes from `address` to the end of its section; empty if it is not in the image.
   [[nodiscard]] std::span<const std::uint8_t> bytes_at(std::uint32_t address) const;
-  /// False: data between functions, such as a literal pool.
+  /// Returns false for data between instructions, such as a literal pool.
   [[nodiscard]] bool is_code(std::uint32_t address) const;
   /// Line of an instruction, then the lines of the inlined calls that contain it.
   [[nodiscard]] std::vector<Place> places(std::uint32_t address) const;
-  /// Offset of a variable in the file; nullopt: none has this symbol.
+  /// Offset of a variable in the file; nullopt if no variable has this symbol.
   [[nodiscard]] std::optional<std::uint64_t> offset_of(std::string_view symbol) const;
   /// Symbols of the functions that are inlined somewhere.
   [[nodiscard]] std::set<std::string> inlined_functions() const;

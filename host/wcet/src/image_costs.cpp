@@ -1,4 +1,4 @@
-// The costs of a tick inside an image: where they are, and reading and writing them.
+// Locates, reads and writes the costs of a tick in an image.
 #include <fmt/core.h>
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 #pragma once
-// max c x with x >= 0 and linear constraints, solved by GLPK.
+// Maximises c x subject to x >= 0 and linear constraints, with GLPK.
 
 #include <cstddef>
 #include <map>
@@ -20,11 +20,12 @@ inline void add_terms(Terms& to, const Terms& terms, double factor = 1.0) {
 
 class LinearProgram {
  public:
-  /// Number of a new variable x >= 0 with this coefficient of the objective.
+  /// Adds a variable x >= 0 with this coefficient in the objective. Returns its number.
   int add_variable(double gain);
   [[nodiscard]] const std::vector<double>& gains() const { return gains_; }
   void set_gains(std::vector<double> gains) { gains_ = std::move(gains); }
-  /// Adds: sum of the terms == value, or <= value. Returns the number of the row.
+  /// Adds the constraint that the sum of the terms == value, or <= value. Returns the number of the
+  /// row.
   std::size_t equal(const Terms& terms, double value) { return add({terms, value, true}); }
   std::size_t at_most(const Terms& terms, double value) { return add({terms, value, false}); }
   void replace(std::size_t row, const Terms& terms) { rows_[row].terms = terms; }

@@ -79,7 +79,7 @@ class PathProgram {
     return solution().gain;
   }
 
-  /// Replaces the reference values by the largest, which bounds the passes for any values.
+  /// Replaces the reference values by the maximum values, which bound the passes for any values.
   void widen(const OpenLimit& limit) {
     double largest = limit.fixed;
     for (const auto& [name, per] : limit.per) {

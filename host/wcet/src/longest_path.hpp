@@ -1,6 +1,6 @@
 #pragma once
-// The costliest execution that control flow and annotations allow, as the maximum of a linear
-// program; or an upper bound of it as a formula in the open parameters.
+// The maximum cost of an execution that control flow and annotations allow, as the maximum of a
+// linear program; or an upper bound of it as a formula in the open parameters.
 
 #include <cstdint>
 #include <map>
@@ -12,7 +12,7 @@
 
 namespace tactree::wcet {
 
-/// A simplex solution may be too small by this.
+/// Tolerance for the rounding errors of a simplex solution.
 inline constexpr double kRounding = 1e-3;
 
 struct WorstPath {

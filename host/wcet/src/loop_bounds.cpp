@@ -77,7 +77,7 @@ class Matcher {
                        [&](std::uint32_t b) { return !flow_.loops[number].blocks.contains(b); });
   }
 
-  /// Address of the conditional branch that ends a block; nullopt: none does.
+  /// Address of the conditional branch that ends a block; nullopt if there is none.
   [[nodiscard]] std::optional<std::uint32_t> branch(std::uint32_t b) const {
     const Block& block = flow_.blocks[b];
     if (block.count == 0) {
@@ -87,7 +87,7 @@ class Matcher {
     return last.conditional_branch ? std::optional(last.address) : std::nullopt;
   }
 
-  /// Branches that leave or close the loop: its condition.
+  /// Branches that leave or close the loop, which evaluate its condition.
   [[nodiscard]] std::vector<std::uint32_t> control_instructions(
       std::uint32_t number, const std::set<std::uint32_t>& own) const {
     std::vector<std::uint32_t> result;

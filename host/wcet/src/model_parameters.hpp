@@ -5,8 +5,8 @@
 
 namespace tactree::wcet {
 
-/// Points of a leaf in paper mode, where the format sets no limit: no board renders as many in
-/// time.
+/// Maximum number of points of a leaf in paper mode, where the format sets no limit. No board
+/// renders as many in time.
 inline constexpr std::int64_t kLargestLeaf = 65535;
 
 }  // namespace tactree::wcet

@@ -100,7 +100,7 @@ class LoopFinder {
     }
   }
 
-  /// A loop that is entered at several blocks. Some block must be on every path around it.
+  /// Adds a loop with several entries. Throws BoundError if no block is on every path around it.
   void add_irregular(const Edge& edge) {
     for (const NaturalLoop& known : flow_.loops) {
       if (known.irregular && known.blocks.contains(edge.first)) {

@@ -17,7 +17,8 @@ namespace tactree::wcet {
 struct AnalysedFunction {
   ControlFlow flow;
   std::vector<LoopBound> bounds;  ///< of flow.loops
-  /// Registers of the arguments that its bounds name. Not empty: each call is analysed by itself.
+  /// Registers of the arguments that its bounds name. If there are any, each call is analysed
+  /// separately.
   std::map<std::string, int> arguments;
 };
 

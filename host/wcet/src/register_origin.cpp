@@ -12,7 +12,7 @@ class Origin {
   explicit Origin(int number) : number_(number) {}
 
   [[nodiscard]] bool lost() const { return lost_; }
-  /// Register that holds the content; nullopt: it is in memory.
+  /// Register that holds the content; nullopt if it is in memory.
   [[nodiscard]] std::optional<int> where() const {
     return in_memory_ ? std::nullopt : std::optional(number_);
   }
@@ -65,7 +65,7 @@ class Origin {
 
 Argument ControlFlow::argument(std::uint32_t block, int number) const {
   Origin origin(number);
-  // Backwards while there is one predecessor.
+  // Goes backwards as long as there is exactly one predecessor.
   for (std::size_t steps = 0; steps < blocks.size(); ++steps) {
     const Block& here = blocks[block];
     for (std::uint32_t i = here.count; i > 0; --i) {

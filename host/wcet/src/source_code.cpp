@@ -15,7 +15,7 @@
 namespace tactree::wcet {
 namespace {
 
-/// A ' after a digit separates digits.
+/// True if a string or character begins here. A ' after a digit is a digit separator.
 bool is_quote(const std::string& text, std::size_t i) {
   return text[i] == '"' ||
          (text[i] == '\'' &&
@@ -108,8 +108,7 @@ class Reader {
     if (begin != std::string::npos && code_[begin] == '{') {
       return closing(begin, '{', '}');
     }
-    // A loop or branch without braces ends where its own statement does; a brace in it closes
-    // first.
+    // A loop or branch without braces ends with its own statement, which may be a nested block.
     const std::size_t end = code_.find(';', from);
     const std::size_t brace = code_.find('{', from);
     return brace < end ? closing(brace, '{', '}') : end;
@@ -164,7 +163,7 @@ class Reader {
     return loop;
   }
 
-  /// `for (x : y)`, or a condition without && || ?: and calls.
+  /// True for `for (x : y)` and for a condition without &&, || and ?:.
   static bool is_simple(const std::string& head, bool is_for) {
     std::string condition = head.substr(head.find('(') + 1);
     if (is_for && condition.find(';') != std::string::npos) {
@@ -175,7 +174,7 @@ class Reader {
            condition.find('?') == std::string::npos;
   }
 
-  /// Text after `word` in the comment of a line; empty: none.
+  /// Text after `word` in the comment of a line; empty if the comment does not contain it.
   [[nodiscard]] std::string_view annotation(std::uint32_t line, const std::string& word) const {
     if (line == 0 || line > lines_.size()) {
       return {};
@@ -246,7 +245,8 @@ class Reader {
     return total;
   }
 
-  /// The word after `before`; empty: `text` does not begin with `before`.
+  /// Removes `before` and the word after it, and returns the word; empty if `text` does not begin
+  /// with `before`.
   static std::string read_word(std::string_view& text, std::string_view before) {
     if (!text.starts_with(before)) {
       return {};
@@ -310,7 +310,7 @@ class Reader {
     }
   }
 
-  /// Last line of the statement or head that begins on `line`; 0: no code begins there.
+  /// Last line of the statement or head that begins on `line`; 0 if no code begins there.
   [[nodiscard]] std::uint32_t end_of_statement(std::uint32_t line) const {
     const auto code_of = [&](std::uint32_t at) {
       const std::string& text = lines_[at - 1];
@@ -325,7 +325,7 @@ class Reader {
     return line;
   }
 
-  /// The line or, for a comment on a line of its own, the next statement.
+  /// Adds the line or, for a comment on a separate line, the next statement.
   void add_flash(std::uint32_t line) {
     const bool is_whole = stands_alone(line);
     line += is_whole ? 1U : 0U;
@@ -371,7 +371,8 @@ SourceFile read_source(const std::string& name, const std::string& text) {
 SourceCode::SourceCode(const std::filesystem::path& root)
     : root_(std::filesystem::absolute(root).lexically_normal()) {}
 
-// Images hold names that are relative to the sources' root, or to a folder of the build below it.
+// The names in an image are relative to the root of the sources, or to a folder of the build below
+// it.
 std::string SourceCode::name_of(const std::string& compiled_name) {
   const auto known = names_.find(compiled_name);
   if (known != names_.end()) {

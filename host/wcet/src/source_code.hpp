@@ -49,7 +49,7 @@ struct SourceFact {
   Total total;
 };
 
-/// Largest value of an argument in the calls of a statement: `with:`.
+/// Maximum value of an argument in the calls of a statement: `with:`.
 struct SourceArgument {
   std::string file;
   std::uint32_t line = 0;
@@ -75,9 +75,10 @@ class SourceCode {
  public:
   explicit SourceCode(const std::filesystem::path& root);
 
-  /// Name relative to the root, of a name in the debug information; empty: outside the root.
+  /// Converts a name in the debug information to a name relative to the root; empty if the file is
+  /// outside the root.
   [[nodiscard]] std::string name_of(const std::string& compiled_name);
-  /// nullptr: not below the root.
+  /// Returns nullptr for a file that is not below the root.
   [[nodiscard]] const SourceFile* find(const std::string& name) const;
   [[nodiscard]] const std::map<std::string, SourceFile>& files() const { return files_; }
   /// Value of a constexpr integer of `file`, or else of any file. Throws BoundError if files

@@ -12,8 +12,8 @@
 namespace tactree::wcet {
 namespace {
 
-// Interrupt entry and return of a Cortex-M4 move 26 words to and from the stack: the registers of
-// the FPU are included, which lazy stacking saves at the first FPU instruction.
+// Interrupt entry and return of a Cortex-M4 move 26 words to and from the stack. This includes the
+// registers of the FPU, which lazy stacking saves at the first FPU instruction.
 constexpr double kEntryCycles = 2.0 * (12.0 + 17.0);
 
 std::vector<std::string> unused_facts(const SourceCode& sources, const WorstPath& path) {
@@ -105,8 +105,8 @@ Analysis TickAnalysis::analysis(const Parameters& parameters, const Parameters& 
   return {image_, sources_, *program_, parameters, inlined_, open, timing};
 }
 
-// The vector is read from flash. The handlers' lines displace those of loops that were fetched
-// once.
+// The vector is read from flash. The code lines of the handlers may displace those of loops that
+// are fetched once per entry.
 double TickAnalysis::interrupt_cycles(const BoardTiming& timing) const {
   const bool is_cached =
       std::any_of(program_->functions().begin(), program_->functions().end(),

@@ -1,5 +1,5 @@
 #pragma once
-// An image, read once, to be analysed with any parameters.
+// Analysis of an image that is read once, with any parameters.
 
 #include <cstdint>
 #include <optional>
@@ -17,9 +17,10 @@ class TickAnalysis {
   explicit TickAnalysis(const BoundOptions& options);
 
   [[nodiscard]] Bound instructions(const Parameters& parameters);
-  /// Includes interrupt entry and return, and a code cache that each entry empties.
+  /// Includes interrupt entry and return, and the assumption that each entry empties the code
+  /// cache.
   [[nodiscard]] std::uint64_t cycles(const Parameters& parameters, const BoardTiming& timing);
-  /// Of the cycles, in the parameters of `open`, which holds their largest values.
+  /// Formula of the cycles in the parameters of `open`, which contains their maximum values.
   [[nodiscard]] CostFormula formula(const Parameters& parameters, const Parameters& open,
                                     const BoardTiming& timing);
 

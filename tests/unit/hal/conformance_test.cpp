@@ -32,7 +32,7 @@ std::string failures(const hal::ConformanceReport& report) {
   return all;
 }
 
-TEST(Conformance, PassesTheSimulatedBoard) {
+TEST(Conformance, PassesSimulatedBoard) {
   SimBoard board({}, kBytes);
   power_up(board);
   const hal::ConformanceReport report = hal::run_conformance(board);
@@ -40,7 +40,7 @@ TEST(Conformance, PassesTheSimulatedBoard) {
   EXPECT_GE(report.checks, 14U);
 }
 
-TEST(Conformance, PassesWithDelaysAndWithoutAModel) {
+TEST(Conformance, PassesDelayedBoardWithoutModel) {
   BoardParameters parameters;
   parameters.enable_delay_ticks = 40;
   parameters.encoders.latency_ticks = 3;
@@ -137,7 +137,7 @@ class RestlessBoard {
   Storage storage_;
 };
 
-TEST(Conformance, DetectsABoardThatMovesOnItsOwn) {
+TEST(Conformance, DetectsRestlessBoard) {
   RestlessBoard board;
   const hal::ConformanceReport report = hal::run_conformance(board);
   EXPECT_FALSE(report.passed());

@@ -38,7 +38,7 @@ class LoopTest : public ::testing::Test {
   hal::Loop<SimBoard> loop_{board_, controller_};
 };
 
-TEST_F(LoopTest, WritesTheForceOfTheModelToTheMotors) {
+TEST_F(LoopTest, WritesModelForceToMotors) {
   ASSERT_TRUE(loop_.start({}).ok());
   activate();
   ASSERT_EQ(controller_.state(), State::kActive);
@@ -52,7 +52,7 @@ TEST_F(LoopTest, WritesTheForceOfTheModelToTheMotors) {
   EXPECT_EQ(board_.link().last().tick, output.status.tick);
 }
 
-TEST_F(LoopTest, PassesBodyUpdatesToTheController) {
+TEST_F(LoopTest, PassesBodyUpdatesToController) {
   ASSERT_TRUE(loop_.start({}).ok());
   activate();
   for (double z = 0.01; z > -1e-3; z -= 1e-4) {
@@ -72,7 +72,7 @@ TEST_F(LoopTest, PassesBodyUpdatesToTheController) {
 }
 
 // Updates of a missing body or with an invalid pose: the session continues.
-TEST_F(LoopTest, ARefusedBodyUpdateChangesNothing) {
+TEST_F(LoopTest, IgnoresRefusedBodyUpdate) {
   ASSERT_TRUE(loop_.start({}).ok());
   activate();
   for (double z = 0.01; z > -1e-3; z -= 1e-4) {
@@ -100,7 +100,7 @@ TEST_F(LoopTest, PowersNothingBeforeArming) {
   }
 }
 
-TEST_F(LoopTest, EverySwitchAndFailureReachesTheController) {
+TEST_F(LoopTest, ForwardsEverySwitchAndFailure) {
   const auto fault_after = [this](auto&& happen) {
     core::Controller fresh;
     hal::Loop<SimBoard> loop(board_, fresh);
@@ -128,7 +128,7 @@ TEST_F(LoopTest, EverySwitchAndFailureReachesTheController) {
       core::fault_bit(core::Fault::kEncoderInvalid));
 }
 
-TEST_F(LoopTest, RefusesADamagedModelAndGivesNoForce) {
+TEST_F(LoopTest, RefusesDamagedModel) {
   std::vector<std::byte> bytes(shape_.bytes().begin(), shape_.bytes().end());
   bytes[100] ^= std::byte{1};
   SimBoard board({}, bytes);
@@ -144,7 +144,7 @@ TEST_F(LoopTest, RefusesADamagedModelAndGivesNoForce) {
   }
 }
 
-TEST_F(LoopTest, RefusesABadConfigurationAndGivesNoForce) {
+TEST_F(LoopTest, RefusesBadConfiguration) {
   core::Configuration configuration;
   configuration.force_max_N = -1.0F;
   const hal::StartResult result = loop_.start(configuration);

@@ -1,5 +1,5 @@
 #pragma once
-// Selects the board of a verb: --port and --baud, or the only board found.
+// Selects the board of a command: --port and --baud, or the only board found.
 
 #include <CLI/CLI.hpp>
 #include <cstring>
@@ -10,28 +10,29 @@
 
 namespace tactree::cli {
 
-/// What a port can be, for the help.
+/// Forms of a port's name, for the help text.
 inline constexpr const char* kPortForms =
     "a serial port, usb:SERIAL, unix:PATH (the socket of tactree-controller), or the one that "
     "tactree simulate --serve prints (with --lock-step: step:PATH)";
 
 struct BoardPort {
-  std::string port;  ///< empty: the only one found
+  std::string port;  ///< if empty, the only port found
   unsigned baud = client::kUsualBaud;
 };
 
 void add_port_options(CLI::App& verb, BoardPort& options);
 
-/// Adds --link-timeout: longest time without a heartbeat, ms, of a board armed by this program.
+/// Adds --link-timeout, the maximum time without a heartbeat, ms, for a board that this program
+/// arms.
 CLI::Option* add_link_timeout_option(CLI::App& verb, int& milliseconds);
 
 /// Throws UserError if there is no board, or more than one.
 [[nodiscard]] std::string chosen_port(const BoardPort& options);
 
-/// Opens a session. Throws as chosen_port() and client::Board.
+/// Opens a session. Throws the exceptions of chosen_port() and client::Board.
 [[nodiscard]] std::unique_ptr<client::Board> connect(const BoardPort& options);
 
-/// A zero-terminated name that may fill its field.
+/// Text of a field, which is zero-terminated unless the text fills the field.
 template <std::size_t N>
 [[nodiscard]] std::string text_of(const char (&field)[N]) {
   return {field, ::strnlen(field, N)};

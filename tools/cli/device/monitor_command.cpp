@@ -130,12 +130,12 @@ class Monitor {
     view_.cycles_per_tick = can.cycles_per_tick;
     view_.work_is_reduced =
         (can.flags & static_cast<std::uint32_t>(core::wire::BoardFlag::kWorkReduced)) != 0U;
-    // Fifty per second are readable and leave bandwidth on a serial port.
+    // Fifty messages per second are readable and leave bandwidth on a serial port.
     const auto every = static_cast<std::uint32_t>(std::max(1.0F, can.rate_hz / 50.0F));
     board_.subscribe({0x1FF, every});
   }
 
-  /// Throws NoTelemetry if none arrives.
+  /// Throws NoTelemetry if no telemetry arrives.
   const View& look() {
     const client::Connection& connection = board_.connection();
     const auto wait_until = connection.now() + std::chrono::seconds(2);
@@ -159,7 +159,7 @@ class Monitor {
   View view_;
 };
 
-/// Waits until the board is connected again. False: the time is up, or Ctrl-C was pressed.
+/// Waits until the board is connected again. Returns false if the time is up or Ctrl-C was pressed.
 template <class TimeIsUp>
 bool wait_for_return(client::Board& board, TimeIsUp time_is_up) {
   fmt::print("the board is disconnected; waiting for it\n");
@@ -176,7 +176,8 @@ bool wait_for_return(client::Board& board, TimeIsUp time_is_up) {
   return false;
 }
 
-/// On a terminal over the last view; in a file or pipe after it, separated by an empty line.
+/// Prints a view: on a terminal over the previous view, in a file or pipe after it, separated by an
+/// empty line.
 void print_view(const std::string& text, bool first) {
   if (isatty(STDOUT_FILENO) == 0) {
     fmt::print("{}{}", first ? "" : "\n", text);

@@ -11,8 +11,8 @@
 namespace tactree::cli {
 namespace {
 
-// Needs no session: another program may have one. Repeats until the board reports that it has
-// stopped.
+// Needs no session, because another program may have one. Repeats until the board reports that it
+// has stopped.
 void stop(const BoardPort& options) {
   constexpr int kTries = 5;
   client::Connection connection(client::open_port(chosen_port(options), options.baud));

@@ -14,15 +14,15 @@ struct BoardCosts {
   wcet::BoardTiming timing;
   core::TickCosts costs;
   std::string image;
-  bool embedded = false;  ///< false: the image has no costs; they were analysed now
+  bool embedded = false;  ///< false: the image contains no costs, they result from an analysis
 
-  /// Work tier of the board with this model alone, and the cycles of a tick there. Both use mode,
-  /// rate and kind of device of the configuration.
+  /// Work tier of the board with this model alone, and the cycles of a tick at this tier. Both use
+  /// mode, rate and kind of device of the configuration.
   [[nodiscard]] std::uint32_t work_tier(const core::BlobHeader& header,
                                         const core::Configuration& configuration) const;
   [[nodiscard]] double cycles(const core::BlobHeader& header,
                               const core::Configuration& configuration) const;
-  /// Highest rate, Hz, at which the board renders this model in time.
+  /// Maximum rate, Hz, at which the board renders this model in time.
   [[nodiscard]] double highest_rate(const core::BlobHeader& header,
                                     const core::Configuration& configuration) const;
 
@@ -31,11 +31,12 @@ struct BoardCosts {
       const core::BlobHeader& header, const core::Configuration& configuration) const;
 };
 
-/// Of the sources that this program was built from: the default for the analysis of an image.
+/// Folder of the sources from which this program was built, the default for the analysis of an
+/// image.
 [[nodiscard]] std::string source_folder();
 
-/// Options to analyse a board's image, without models and timing. `firmware`: its folder; empty:
-/// the build tree or the installation.
+/// Options for the analysis of a board's image, without model and timing. `firmware` is the folder
+/// of the image, see emulation::find_image().
 [[nodiscard]] wcet::BoundOptions analysis_of(const emulation::BoardDescription& board,
                                              const std::string& firmware);
 
@@ -43,7 +44,7 @@ struct BoardCosts {
 /// EmulationError.
 [[nodiscard]] BoardCosts costs_of_board(const std::string& name, const std::string& firmware = {});
 
-/// The device of this name or file; empty: a device of the kind that takes the most cycles.
+/// The device of this name or file. If empty, a device of the kind that takes the maximum cycles.
 [[nodiscard]] core::DeviceModel slowest_or(const std::string& device);
 
 /// Boards with a known timing.

@@ -19,7 +19,7 @@
 namespace tactree::cli {
 namespace {
 
-// Functions in the summary.
+// Number of functions in the summary.
 constexpr std::size_t kReported = 12;
 
 struct BoundCommandOptions {
@@ -126,7 +126,7 @@ void check_rate(const BoundCommandOptions& options, const wcet::BoardTiming& tim
   }
 }
 
-/// At the work tier that a board with this timing takes.
+/// Bound at the work tier that a board with this timing selects.
 wcet::Bound worst_case(wcet::BoundOptions& analysis, double rate_hz) {
   analysis.work_tier = core::work_tier_of(static_cast<float>(rate_hz));
   wcet::Bound bound = wcet::worst_case(analysis);

@@ -135,7 +135,7 @@ Identity find_identity(const Reader& reader, const std::vector<Segment>& segment
   return identity;
 }
 
-// The identity is at the end of the code, followed by initial values of variables.
+// The identity is at the end of the code and is followed by the initial values of variables.
 void check_checksum(const Reader& reader, const Identity& identity,
                     const std::vector<Segment>& segments) {
   core::Crc32 checksum;

@@ -27,8 +27,9 @@ struct FirmwareImage {
   std::vector<std::byte> file;    ///< the ELF file itself
 };
 
-/// Reads a file and checks it: a complete 32-bit little-endian ELF program with one identity, all
-/// bytes in the range for code, a valid checksum. Throws UserError with file, cause and remedy.
+/// Reads and checks a file. It must be a complete 32-bit little-endian ELF program with one
+/// identity, all bytes in the range for code, and a valid checksum. Throws UserError with file,
+/// cause and remedy.
 [[nodiscard]] FirmwareImage read_firmware(const std::filesystem::path& file);
 
 }  // namespace tactree::cli

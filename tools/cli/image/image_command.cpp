@@ -62,7 +62,7 @@ std::string format_of(const ImageOptions& options) {
                                              "(use .elf, .hex, .bin, .uf2 or .dfu, or --format)");
 }
 
-/// Formats without addresses fill the gap between code and blob.
+/// Refuses a large gap between code and blob, which formats without addresses fill.
 void require_small_gap(const ImageOptions& options, const std::vector<Segment>& segments) {
   const std::uint64_t span = std::uint64_t{segments.back().address} + segments.back().bytes.size() -
                              segments.front().address;

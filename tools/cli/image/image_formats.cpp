@@ -97,7 +97,8 @@ std::uint32_t append_part(std::vector<std::byte>& file, std::span<const std::byt
   return offset;
 }
 
-/// A section of the blob's bytes, for tools that look at sections only, such as gdb and objcopy.
+/// Adds a section with the bytes of the blob, for tools that use only sections, such as gdb and
+/// objcopy.
 void add_section(std::vector<std::byte>& file, Elf32_Ehdr& header, const Segment& blob,
                  std::uint32_t blob_offset) {
   auto sections = table_of<Elf32_Shdr>(file, header.e_shoff, header.e_shnum);
@@ -144,7 +145,7 @@ std::vector<std::byte> to_hex(std::span<const Segment> segments, std::uint32_t e
         upper = address >> 16;
         add_record(text, 4, 0, big_endian(upper, 2));
       }
-      // A record ends at a multiple of 16, so none crosses into the next 64 KiB.
+      // A record ends at a multiple of 16, so that it does not cross into the next 64 KiB.
       const std::size_t size = std::min<std::size_t>(16 - address % 16, segment.bytes.size() - i);
       add_record(text, 0, static_cast<std::uint16_t>(address),
                  std::span(segment.bytes).subspan(i, size));

@@ -10,11 +10,11 @@
 
 namespace tactree::cli {
 
-/// Largest result of to_bin(), bytes: it fills gaps.
+/// Maximum result of to_bin(), bytes. Needs a limit because to_bin() fills gaps.
 inline constexpr std::uint64_t kLargestBin = 64U << 20;
 
-/// From the first byte to the last; gaps are 0xFF, as erased flash. Precondition: segments sorted
-/// by address, without overlap, end - begin <= kLargestBin.
+/// The bytes from the first to the last segment; gaps are 0xFF, like erased flash. Precondition:
+/// the segments are sorted by address and do not overlap, and end - begin <= kLargestBin.
 [[nodiscard]] std::vector<std::byte> to_bin(std::span<const Segment> segments);
 
 /// Intel HEX with 32-bit addresses and the entry point.

@@ -27,7 +27,7 @@ void prepare_sodium() {
   }
 }
 
-/// False: not hexadecimal, or not of this length.
+/// Returns false if the text is not hexadecimal or not of this length.
 bool from_hex(const std::string& text, std::span<std::uint8_t> bytes) {
   std::size_t length = 0;
   return text.size() == 2U * bytes.size() &&

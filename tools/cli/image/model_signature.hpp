@@ -21,11 +21,11 @@ struct ModelSignature {
   std::array<std::uint8_t, 64> signature{};
 };
 
-/// Writes `file`, readable by its owner only, and `file`.pub. Throws UserError, also if one of
+/// Writes `file`, which only its owner can read, and `file`.pub. Throws UserError, also if one of
 /// them exists.
 PublicKey generate_key(const std::filesystem::path& file);
 
-/// Throw UserError that names the file, the cause and the remedy.
+/// Both throw UserError with the file, the cause and the remedy.
 [[nodiscard]] PublicKey read_public_key(const std::filesystem::path& file);
 [[nodiscard]] SecretKey read_secret_key(const std::filesystem::path& file);
 
@@ -36,10 +36,11 @@ PublicKey generate_key(const std::filesystem::path& file);
 [[nodiscard]] std::filesystem::path signature_path(const std::filesystem::path& blob);
 void write_signature(const std::filesystem::path& blob, const ModelSignature& signature,
                      std::size_t blob_bytes);
-/// Reads the signature beside the blob; nullopt: no file. Throws UserError if it is malformed.
+/// Reads the signature beside the blob; nullopt if there is no file. Throws UserError if the
+/// signature is malformed.
 [[nodiscard]] std::optional<ModelSignature> read_signature(const std::filesystem::path& blob);
 
-/// "for any board, counter 3, by <hex>"
+/// Text such as "for any board, counter 3, by <hex>".
 [[nodiscard]] std::string describe(const ModelSignature& signature);
 
 [[nodiscard]] std::string to_hex(std::span<const std::uint8_t> bytes);

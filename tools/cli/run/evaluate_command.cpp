@@ -68,7 +68,7 @@ std::vector<fs::path> scans_of(const EvaluateOptions& options) {
   return scans;
 }
 
-/// Writes the page, and its pictures to a folder of the same name.
+/// Writes the page, and its pictures to a folder with the same name.
 void write_report(const fs::path& file, const evaluation::Result& result) {
   const fs::path pictures = file.stem();
   const fs::path folder = file.parent_path() / pictures;

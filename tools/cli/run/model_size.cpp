@@ -16,7 +16,7 @@ Eigen::Vector3d size_of(const core::BlobHeader& model) {
   return (Eigen::Vector3f(model.bounds_max_m) - Eigen::Vector3f(model.bounds_min_m)).cast<double>();
 }
 
-/// Rounded down.
+/// Rounds a length down to two significant digits.
 double two_digits(double length_m) {
   const double unit = std::pow(10.0, std::floor(std::log10(length_m)) - 1.0);
   return unit * std::floor(length_m / unit);

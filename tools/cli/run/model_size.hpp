@@ -9,16 +9,16 @@
 
 namespace tactree::cli {
 
-/// A warning with its remedy if the device cannot reach all faces of the box around the model,
-/// placed with its middle at the device's origin. Empty if it can, and for a device of one or two
-/// axes. Cost: some tenths of a second.
+/// A warning with a remedy if the device cannot reach all faces of the model's bounding box,
+/// centred at the device's origin. Empty if it can, and for a device of one or two axes. Cost: some
+/// tenths of a second.
 [[nodiscard]] std::optional<std::string> oversize_warning(const std::string& file,
                                                           const core::BlobHeader& model,
                                                           const std::string& device_name,
                                                           const core::DeviceModel& device);
 
 /// The advice of the builder on models that no device reaches or that are too small to feel, with
-/// the name of the file. Empty for others.
+/// the name of the file. Empty for other models.
 [[nodiscard]] std::optional<std::string> size_warning(const std::string& file,
                                                       const core::BlobHeader& model);
 

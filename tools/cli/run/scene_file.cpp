@@ -15,7 +15,8 @@ namespace {
 
 using nlohmann::json;
 
-// Tolerance of a rotation's rows from unit length and right angles: files are written by hand.
+// Deviation of a rotation's rows from unit length and right angles that is accepted, because files
+// are written by hand.
 constexpr double kRotationTolerance = 1e-3;
 
 void require_keys(const json& object, const std::string& place,

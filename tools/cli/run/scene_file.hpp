@@ -28,8 +28,8 @@ struct SceneFile {
   std::vector<simulation::SceneBody> bodies;
 };
 
-/// Reads `scene`; empty: each of `blobs` is a body at rest at the origin. Throws UserError with
-/// file, key, cause and remedy.
+/// Reads `scene`. If it is empty, each of `blobs` is a body at rest at the origin. Throws UserError
+/// with file, key, cause and remedy.
 [[nodiscard]] SceneFile read_scene(const std::filesystem::path& scene,
                                    const std::vector<std::string>& blobs);
 

@@ -11,11 +11,12 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// The simulated user presses the dead-man control with a delay after "arm": the controller ignores
-// a control that was held before.
+// The simulated user presses the dead-man control with a delay after "arm", because the controller
+// ignores a control that was held before.
 constexpr double kHandAfterS = 0.08;
 
-/// Position of the hand on its path: forwards while there is force, otherwise back to the start.
+/// Time of the hand on its path: to and fro while the controller is active, otherwise back to the
+/// start.
 class HandTime {
  public:
   HandTime(double length_s, double period_s) : length_s_(length_s), period_s_(period_s) {}
@@ -50,8 +51,8 @@ class DeadMan {
   double since_s_ = 0.0;
 };
 
-/// Ticks in real time. A late computer delays the simulated world: a burst of missed ticks would
-/// leave programs no time to answer, and the link would time out.
+/// Ticks in real time. If the computer is late, simulated time is delayed instead of caught up: a
+/// burst of missed ticks would leave programs no time to answer, and the link would time out.
 class Pacer {
  public:
   explicit Pacer(double period_s)

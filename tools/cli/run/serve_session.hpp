@@ -1,5 +1,5 @@
 #pragma once
-// Runs a simulated board for connected programs, in real time or as they let its time pass.
+// Runs a simulated board for connected programs, in real time or in lock step with them.
 
 #include <chrono>
 #include <functional>
@@ -12,14 +12,14 @@ struct ServeSchedule {
   double rate_hz = 1000.0;
   double path_s = 10.0;      ///< duration of the hand's path, travelled to and fro
   double seconds_max = 0.0;  ///< 0: until interrupted
-  /// Called after each tick; returns when the next tick may run, at `due` in real time. None:
-  /// sleeps.
+  /// Called after each tick; returns when the next tick may run, at `due` in real time. If empty,
+  /// the session sleeps until `due`.
   std::function<void(std::chrono::steady_clock::time_point due, std::chrono::nanoseconds period)>
       wait;
 };
 
-/// Runs until the time is up or a signal (SIGINT, SIGTERM). The simulated user holds the dead-man
-/// control while the controller is armed and moves while there is force.
+/// Runs until the time is up or SIGINT or SIGTERM arrives. The simulated user holds the dead-man
+/// control while the controller is armed or active, and moves along the path while it is active.
 void serve_session(simulation::Simulation& simulation, const ServeSchedule& schedule);
 
 }  // namespace tactree::cli

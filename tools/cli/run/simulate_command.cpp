@@ -21,7 +21,8 @@
 namespace tactree::cli {
 namespace {
 
-/// None for a model that --origin or a scene placed: it may be meant to be reached in part.
+/// No warning for a model that --origin or a scene has placed: the user may want the device to
+/// reach only a part of it.
 std::optional<std::string> reach_warning(const SimulateOptions& options, const SceneFile& scene) {
   if (is_scene(options) || !options.origin_m.empty()) {
     return std::nullopt;

@@ -19,7 +19,7 @@ struct SimulateOptions {
   std::string firmware;
   std::string device = "premium";
   bool dump_device = false;
-  std::vector<double> origin_m;  // of the model, device frame; empty: its middle at the origin
+  std::vector<double> origin_m;  // of the model, device frame; empty: its centre at the origin
   std::string script = "rub";
   std::string path;
   std::string mode = "surface";
@@ -33,7 +33,7 @@ struct SimulateOptions {
   std::string key;  // public key for the models of the served board
   bool lock_step = false;
   bool on_usb = false;
-  std::optional<std::string> usb_port;  // of this computer, as a device; empty: the only one
+  std::optional<std::string> usb_port;  // USB device port of this computer; "": the only one
   std::uint32_t serial = 1;
   CLI::Option* seconds_given = nullptr;
   std::vector<std::string> injections;
@@ -49,7 +49,7 @@ struct SimulateOptions {
 /// True for several bodies, or one placed by a scene file.
 [[nodiscard]] bool is_scene(const SimulateOptions& options);
 
-/// Adds all of them to the verb. `options` must outlive it.
+/// Adds all options to the command. `options` must outlive it.
 void add_simulate_options(CLI::App& verb, SimulateOptions& options);
 
 }  // namespace tactree::cli

@@ -22,7 +22,7 @@
 namespace tactree::cli {
 namespace {
 
-/// Checks the header before it reads the rest: a file may be of any size. Throws
+/// Checks the header before it reads the rest, because a file may have any size. Throws
 /// simulation::RecordingError.
 std::vector<std::byte> read_recording(const std::string& file) {
   std::error_code error;

@@ -5,8 +5,8 @@
 
 namespace tactree::cli {
 
-/// Prints the result. True: every tick has the outcome that was recorded, bit for bit. Throws
-/// UserError if the recording or a blob is not usable.
+/// Prints the result. Returns true if the outcome of every tick is bit-identical to the recorded
+/// outcome. Throws UserError if the recording or a blob is not usable.
 [[nodiscard]] bool replay_session(const SimulateOptions& options);
 
 }  // namespace tactree::cli

@@ -32,7 +32,7 @@ std::unique_ptr<emulation::EmulatedTarget> boot_board(const emulation::BoardDesc
   return std::make_unique<emulation::EmulatedTarget>(board, blob.bytes(), emulation);
 }
 
-/// Target of the controller, and access to its parts.
+/// Target of the controller, and access to its concrete type.
 struct ChosenTarget {
   std::unique_ptr<simulation::Target> target;
   const simulation::SceneTarget* scene = nullptr;
@@ -109,8 +109,8 @@ class Comparison {
   Harm harm_;
 };
 
-/// Work tier of the controller in the image: a later one than that of the rate if its costs need
-/// it.
+/// Work tier of the controller in the image, which is later than that of the rate if its costs
+/// require it.
 std::uint32_t tier_of_board(const SimulateOptions& options, const wcet::BoundOptions& analysis,
                             const SceneFile& scene, const core::Configuration& controller) {
   const bool has_costs = wcet::embedded(analysis.image).known == core::kTickCostsKnown;
@@ -151,7 +151,7 @@ std::uint64_t ticks_of(const SimulateOptions& options, const simulation::Setup& 
   return static_cast<std::uint64_t>(count);
 }
 
-/// Runs the ticks after arming, with those of the fault-free session if faults are injected.
+/// Runs the ticks after arming, and those of a fault-free session if faults are injected.
 Outcome run_ticks(simulation::Simulation& sim, std::uint64_t ticks, const SimulateOptions& options,
                   const SceneFile& scene) {
   const std::vector<simulation::InjectedFault> faults = injections(options);

@@ -1,5 +1,5 @@
 #pragma once
-// Run of `tactree simulate`: a session without user input at full speed of the computer.
+// Run of `tactree simulate`: a session without user input at the full speed of the computer.
 
 #include <cstdint>
 #include <optional>
@@ -15,9 +15,9 @@ namespace tactree::cli {
 /// Effect of the injected faults.
 struct Harm {
   double from_s = 0.0;               ///< time of the first injected fault
-  std::optional<double> detected_s;  ///< from from_s to the first latched fault
-  double force_max_N = 0.0;          ///< from from_s on
-  double moved_m = 0.0;              ///< largest distance from the path without faults
+  std::optional<double> detected_s;  ///< time from from_s to the first latched fault
+  double force_max_N = 0.0;          ///< after from_s
+  double moved_m = 0.0;              ///< maximum distance from the path without faults
 };
 
 struct TickBound {

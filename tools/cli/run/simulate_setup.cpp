@@ -13,7 +13,7 @@
 namespace tactree::cli {
 namespace {
 
-/// The device, for controller and mechanics alike; what the options say of it goes before.
+/// Sets the device for controller and mechanics. Options take precedence over the device.
 void choose_device(const SimulateOptions& options, simulation::Setup& setup) {
   const support::Device device = support::load_device(options.device);
   const float force_max_N = setup.controller.force_max_N;
@@ -34,11 +34,12 @@ void choose_device(const SimulateOptions& options, simulation::Setup& setup) {
     counts = static_cast<float>(1.0 / options.encoder_step_m);
   }
   if (device.name == "cartesian") {
-    setup.dynamics.reset();  // the options' mass and friction
+    setup.dynamics.reset();  // uses mass and friction of the options
   }
 }
 
-/// What --origin says, or else the first body's middle at the device's origin.
+/// Origin of the model: that of --origin, else the one of simulation::middle_at_origin() for the
+/// first body.
 core::Vec3 place_model(const SimulateOptions& options, const SceneFile& scene,
                        core::DeviceKind kind) {
   if (!options.origin_m.empty()) {

@@ -10,7 +10,7 @@
 
 namespace tactree::cli {
 
-/// Throws UserError: `what` was refused, with the remedy in brackets.
+/// Throws UserError with the text "what (remedy)", where `what` states what was refused.
 [[noreturn]] void refuse(const std::string& what, const std::string& remedy);
 
 /// Device, controller and mechanics. Throws UserError.
@@ -22,7 +22,7 @@ namespace tactree::cli {
 
 [[nodiscard]] std::vector<simulation::InjectedFault> injections(const SimulateOptions& options);
 
-/// Throws UserError unless `start` is ok(). `file` and `view`: the body that was refused.
+/// Throws UserError unless `start` is ok(). `file` and `view` are those of the refused body.
 void check_start(const std::string& file, const core::BlobView& view,
                  const simulation::Setup& setup, const hal::StartResult& start,
                  const SimulateOptions& options);

@@ -16,7 +16,7 @@ void note_signal(int) { signal_came = 1; }
 
 void watch_cable_signal() {
   struct sigaction action {};
-  action.sa_handler = note_signal;  // without SA_RESTART: a wait ends
+  action.sa_handler = note_signal;  // without SA_RESTART, so that the signal ends a wait
   sigaction(SIGUSR1, &action, nullptr);
 }
 

@@ -7,13 +7,13 @@
 
 namespace tactree::cli {
 
-/// Handles SIGUSR1: unplugs the cable, or plugs it in.
+/// Handles SIGUSR1, which requests to unplug the cable or to plug it in again.
 void watch_cable_signal();
 /// True if the signal arrived since the last call.
 [[nodiscard]] bool cable_signal_came();
 void tell_cable(bool plugged_in);
 
-/// Waits until `due`, or until `descriptor` is readable (-1: waits until `due`).
+/// Waits until `due`, or until `descriptor` is readable; -1: no descriptor.
 void wait_for(int descriptor, std::chrono::steady_clock::time_point due);
 
 /// Handles requests of the host between two ticks, without delay.

@@ -7,7 +7,7 @@
 
 namespace tactree::cli {
 
-/// --rate, --stiffness, --damping. The configuration must outlive the verb.
+/// Adds --rate, --stiffness and --damping. The configuration must outlive the command.
 void add_wall_options(CLI::App& verb, core::Configuration& configuration);
 
 }  // namespace tactree::cli

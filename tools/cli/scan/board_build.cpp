@@ -16,12 +16,13 @@ namespace {
 namespace fs = std::filesystem;
 using builder::BuildResult;
 
-// A tick depends little on the number of points: sizes below 1/64 gain nothing.
+// The cost of a tick depends little on the number of points, so that sizes below 1/64 gain nothing.
 constexpr int kHalvings = 6;
-// Steps between the smallest size that is too slow and the largest that is not, which differ by 2.
+// Bisections between the minimum size that is too slow and the maximum size that is not. Initially
+// they differ by a factor of 2.
 constexpr int kRefinements = 3;
 
-/// Which rates a board keeps.
+/// Checks whether a board keeps the requested rate with a model.
 class RateCheck {
  public:
   explicit RateCheck(const BoardRequest& request)
@@ -61,14 +62,14 @@ class RateCheck {
   core::Configuration configuration_;
 };
 
-/// Models of other sizes than the first.
+/// Searches among models of other sizes than that of the first.
 class SizeSearch {
  public:
   SizeSearch(std::span<const fs::path> inputs, const builder::BuildOptions& build, RateCheck& check,
              builder::Progress& progress)
       : inputs_(inputs), build_(build), check_(check), progress_(progress) {}
 
-  /// The finest model below `too_large` bytes that keeps the rate; nullopt: none.
+  /// The finest model below `too_large` bytes that keeps the rate; nullopt if there is none.
   [[nodiscard]] std::optional<BuildResult> below(double too_large) {
     std::optional<BuildResult> best;
     for (int i = 0; i < kHalvings && !best; ++i) {
@@ -93,7 +94,7 @@ class SizeSearch {
     try {
       BuildResult result = builder::build_model(inputs_, build_, progress_);
       return check_.keeps_rate(result) ? std::optional(std::move(result)) : std::nullopt;
-    } catch (const builder::BuildError&) {  // no model is as small
+    } catch (const builder::BuildError&) {  // no model is that small
       return std::nullopt;
     }
   }

@@ -13,16 +13,16 @@ struct BoardRequest {
   std::string board;     ///< empty: any board
   std::string device;    ///< name or file; empty: the kind with the longest tick
   double rate_hz = 0.0;  ///< 0: any rate
-  /// The size of the model follows from the board, not from the user.
+  /// True if the board determines the size of the model, not the user.
   bool chooses_size = false;
 };
 
-/// Sets the size of the board's flash as the budget unless the user chose a size.
+/// Sets the size of the board's flash as the budget unless the user has chosen a size.
 void limit_to_board(BoardRequest& request, builder::BuildOptions& build);
 
-/// Builds a model; where the board chooses its size and is too slow for it, the finest one that
-/// it renders at the rate, with a note. Throws UserError if the board is too slow for any, and
-/// what builder::build_model() throws.
+/// Builds a model. If the board determines its size but is too slow for it, builds the finest model
+/// that the board renders at the rate, and adds a note. Throws UserError if the board is too slow
+/// for any model, and the exceptions of builder::build_model().
 [[nodiscard]] builder::BuildResult build_for_board(std::span<const std::filesystem::path> inputs,
                                                    const builder::BuildOptions& build,
                                                    const BoardRequest& request,

@@ -85,7 +85,7 @@ double to_number(const std::string& option, const std::string& text) {
   return value;
 }
 
-// Parses 917504, 896K or 1M; K and M are 1024 and 1024 squared bytes.
+// Parses 917504, 896K, 1M or 1G; K, M and G are powers of 1024 bytes.
 std::uint64_t to_bytes(const std::string& text) {
   double factor = 1.0;
   std::string number = text;

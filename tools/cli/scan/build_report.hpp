@@ -1,5 +1,5 @@
 #pragma once
-// The report of a build, for people and as JSON.
+// The report of a build, as text and as JSON.
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -11,7 +11,7 @@ namespace tactree::cli {
 [[nodiscard]] nlohmann::ordered_json report_json(const builder::BuildReport& report,
                                                  const builder::BuildOptions& build);
 
-/// On standard output. output: the name of the blob.
+/// Prints the report on standard output. `output` is the name of the blob.
 void print_report(const builder::BuildReport& report, const builder::BuildOptions& build,
                   const std::string& output);
 

@@ -26,7 +26,8 @@ void report(const CheckOptions& options, bool valid, const std::string& message)
   }
 }
 
-/// Throws if the blob has an invalid signature; with --key, also without one or with another key.
+/// Throws if the blob has an invalid signature. With --key, also throws if it has no signature or
+/// that of another key.
 void check_signature(const CheckOptions& options, const support::BlobFile& blob) {
   const std::optional<ModelSignature> signature = read_signature(options.blob);
   if (!signature) {

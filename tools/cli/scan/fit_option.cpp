@@ -14,7 +14,8 @@ namespace tactree::cli {
 namespace {
 
 constexpr char kDevice[] = "device";
-// Of the largest model that the device reaches: room for the probe around it.
+// Ratio of the size to the maximum size that the device reaches; leaves room for the probe around
+// the model.
 constexpr double kShare = 0.95;
 
 void fit_to_device(const std::string& name, builder::BuildOptions& build) {

@@ -7,8 +7,8 @@
 
 namespace tactree::cli {
 
-/// `text`: a length in metres, `device`, or `device:` and the name or file of a device. Throws
-/// CLI::ValidationError, and UserError of a device that cannot be read or has fewer than three
+/// `text` is a length in metres, `device`, or `device:` and the name or file of a device. Throws
+/// CLI::ValidationError, and UserError for a device that cannot be read or has fewer than three
 /// axes.
 void set_fit(const std::string& text, builder::BuildOptions& build);
 

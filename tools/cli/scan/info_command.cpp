@@ -92,7 +92,7 @@ std::uint32_t interior_bytes(const BlobView& view) {
   return view.interior() == nullptr ? 0U : view.node_count() + view.leaf_count();
 }
 
-/// Of the points: with material behind them.
+/// Fraction of the points with material behind them.
 double backed_share(const BlobView& view) {
   std::uint32_t backed = 0;
   for (core::LeafCursor cursor(view); !cursor.done(); cursor.next()) {
@@ -269,7 +269,7 @@ void print_costs(const core::BlobHeader& header, const std::string& name,
   }
 }
 
-/// null without a signature.
+/// null if there is no signature.
 nlohmann::json signature_json(const std::string& file, const support::BlobFile& blob) {
   const std::optional<ModelSignature> signature = read_signature(file);
   if (!signature) {
@@ -288,7 +288,7 @@ void print_signature(const std::string& file, const support::BlobFile& blob) {
   }
 }
 
-/// For the device that was given, if it does not reach the model; else for any device.
+/// Warning for the given device if it does not reach the model, else that for any device.
 std::optional<std::string> size_warning_of(const InfoOptions& options, const BlobHeader& model) {
   std::optional<std::string> warning;
   if (!options.device.empty()) {

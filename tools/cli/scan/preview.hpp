@@ -10,8 +10,8 @@
 
 namespace tactree::cli {
 
-/// Writes the picture. doubtful: empty, or per point: 1 if its side is doubtful. Throws
-/// UserError if the file cannot be written.
+/// Writes the picture. `doubtful` is empty, or 1 for each point with an ambiguous orientation.
+/// Throws UserError if the file cannot be written.
 void write_preview(const std::filesystem::path& file, const core::BlobView& view,
                    std::span<const builder::Opening> openings,
                    std::span<const std::uint8_t> doubtful = {});

@@ -40,11 +40,11 @@ struct QueryResult {
   std::uint32_t nearest = core::kNoPoint;
   double distance_m = 0.0;
   core::SurfaceProjection surface;
-  std::optional<bool> inside;  // none: the blob does not tell
+  std::optional<bool> inside;  // empty if the blob does not contain an interior
 };
 
 // The queries of the controller, which are exact up to the reach of the blob. For larger radii,
-// which a controller never uses, an exhaustive search.
+// which a controller never uses, all points are searched.
 class Query {
  public:
   Query(const BlobView& view, float radius_m)
@@ -78,7 +78,7 @@ class Query {
   }
 
  private:
-  /// As Proxy::inside(). Precondition: candidates_ are those of the projection.
+  /// Uses the rule of Proxy::inside(). Precondition: candidates_ are those of the projection.
   [[nodiscard]] bool is_in_material(Vec3 probe, const core::SurfaceProjection& surface) const {
     if (!surface.supported) {
       return core::interior_at(view_, probe).here;

@@ -17,7 +17,7 @@ constexpr std::uint32_t kQualifier = 6;
 constexpr std::uint32_t kOtherSpeed = 7;
 constexpr std::uint32_t kBinaryObjectStore = 15;
 
-/// Bit of an endpoint in halted_; 0: no endpoint has this address.
+/// Bit of an endpoint in halted_; 0 if no endpoint has this address.
 std::uint32_t bit_of(std::uint32_t endpoint) {
   for (std::uint32_t i = 0; i < std::size(kEndpoints); ++i) {  // bound: 3
     if (kEndpoints[i] == endpoint) {
@@ -105,7 +105,7 @@ ControlResponse StandardRequests::of_interface(const SetupPacket& setup) {
   if (setup.bRequest == kSetInterface && is_bare(setup) && first) {
     ControlResponse answer = acknowledge();
     if (setup.wIndex == kLinkInterface) {
-      halted_ = 0;  // a selected setting resets its endpoints
+      halted_ = 0;  // selecting a setting resets its endpoints
       answer.effect = ControlResponse::Effect::kConfigure;
       answer.value = kConfigurationValue;
     }

@@ -2,8 +2,8 @@
 // Interface of a board, as concepts. A port implements these types, combines them in one board type
 // and runs conformance.hpp on it.
 //
-// All functions return at once (except Ticker::wait()), never throw, never allocate, and are called
-// from one context only, that of the control loop. Errors are reported by return values only.
+// All functions except Ticker::wait() return immediately. They never throw or allocate, report
+// errors only by return values, and are called only from the context of the control loop.
 
 #include <concepts>
 #include <cstddef>
@@ -16,8 +16,8 @@
 namespace tactree::hal {
 
 /// Position counters of the axes.
-///   read()  current counts, all latched at one instant; wrap at 2^32. An axis with an unreliable
-///           counter (broken wire, lost index) is not valid; its count is ignored.
+///   read()  returns the current counts, latched at one instant; they wrap at 2^32. An axis with an
+///           unreliable counter (broken wire, lost index) is not valid; its count is ignored.
 template <class T>
 concept EncoderBank = requires(T& bank) {
   { bank.read() }
@@ -27,9 +27,10 @@ concept EncoderBank = requires(T& bank) {
 /// Amplifiers and motors.
 ///   write(command)  sets the efforts until the next write, N or Nm per axis. The effort is zero
 ///                   before the first write and while the enable line is off.
-///   healthy()       false: an amplifier reports a failure, or a command was not delivered.
+///   healthy()       returns false if an amplifier reports a failure, or if a command was not
+///                   delivered.
 /// A bank that measures its supply also has, for Configuration::supply_monitored:
-///   supply_V()      float, current voltage.
+///   supply_V()      returns the supply voltage, a float.
 template <class T>
 concept MotorBank = requires(T& bank, const core::MotorCommand& command) {
   { bank.write(command) }
@@ -38,10 +39,10 @@ concept MotorBank = requires(T& bank, const core::MotorCommand& command) {
   noexcept->std::same_as<bool>;
 };
 
-/// Line that enables the power of the amplifiers. Off after reset.
+/// Line that enables the power of the amplifiers. It is off after reset.
 ///   set(on)      sets the line.
-///   read_back()  state measured at the amplifiers, not the value last set. It follows set() within
-///                Configuration::enable_timeout_s.
+///   read_back()  returns the state measured at the amplifiers, not the value last set. It follows
+///                set() within Configuration::enable_timeout_s.
 template <class T>
 concept EnableLine = requires(T& line, bool on) {
   { line.set(on) }
@@ -51,8 +52,8 @@ concept EnableLine = requires(T& line, bool on) {
 };
 
 /// Safety switches of the user.
-///   emergency_stop()  true: pressed. A broken wire reads as pressed.
-///   dead_man()        true: held. A broken wire reads as released.
+///   emergency_stop()  returns true while pressed. A broken wire reads as pressed.
+///   dead_man()        returns true while held. A broken wire reads as released.
 template <class T>
 concept SafetyInputs = requires(T& inputs) {
   { inputs.emergency_stop() }
@@ -67,8 +68,9 @@ struct Tick {
 };
 
 /// Tick source of the loop, and a clock.
-///   wait()    returns at the next tick; at once if it has passed, which counts as an overrun.
-///   now_us()  microseconds; monotonic, wraps at 2^32.
+///   wait()    returns at the next tick, or immediately if the tick has passed; this counts as an
+///             overrun.
+///   now_us()  returns the time, us; monotonic, wraps at 2^32.
 template <class T>
 concept Ticker = requires(T& ticker) {
   { ticker.wait() }
@@ -81,20 +83,20 @@ using core::BodyUpdate;
 
 /// Input from the link since the last receive().
 struct LinkInput {
-  bool alive = false;                            ///< at least one valid message
+  bool alive = false;                            ///< at least one valid message arrived
   core::Command command = core::Command::kNone;  ///< command of a message, returned once
   std::uint16_t age_ticks = 0;                   ///< if alive: see core::Input::link_age_ticks
-  /// Updates of a message, returned once; valid until the next receive(). The tick bound of an
-  /// image covers one.
+  /// Updates of a message, returned once and valid until the next receive(). The tick bound of a
+  /// firmware image covers one update per tick.
   std::span<const BodyUpdate> bodies{};
   core::AddedForce added_force{};  ///< force of a message, returned once
-  bool storage_busy = false;       ///< flash write in progress: a late tick is no fault while the
-                                   ///< motors are off
+  bool storage_busy = false;       ///< a flash write is in progress: a late tick is not a fault
+                                   ///< while the motors are off
 };
 
-/// The connection to an application.
-///   receive()     input since the last call; drops a message that fails its checks.
-///   send(status)  best effort: drops the status if there is no room, never waits.
+/// Connection to an application.
+///   receive()     returns the input since the last call; drops a message that fails its checks.
+///   send(status)  best effort: drops the status if there is no room; never blocks.
 template <class T>
 concept Link = requires(T& link, const core::Status& status) {
   { link.receive() }
@@ -104,8 +106,8 @@ concept Link = requires(T& link, const core::Status& status) {
 };
 
 /// Byte transport of a Session (session.hpp): a serial port or a USB endpoint.
-///   read(bytes)   copies received bytes, as many as fit; returns the number, 0: none.
-///   write(bytes)  queues as many bytes as there is room for; returns the number.
+///   read(bytes)   copies as many received bytes as fit; returns their number, 0 if there are none.
+///   write(bytes)  queues as many bytes as there is room for; returns their number.
 template <class T>
 concept BytePort = requires(T& port, std::span<std::byte> in, std::span<const std::byte> out) {
   { port.read(in) }
@@ -115,15 +117,15 @@ concept BytePort = requires(T& port, std::span<std::byte> in, std::span<const st
 };
 
 /// Storage of the model.
-///   active()  bytes of the blob in use, 4-byte aligned, readable in place until the next reset;
-///             empty: none. Not trusted: open_blob() checks them.
+///   active()  returns the bytes of the blob in use, 4-byte aligned and readable in place until the
+///             next reset; empty if there is none. They are not trusted: open_blob() checks them.
 template <class T>
 concept BlobStorage = requires(const T& storage) {
   { storage.active() }
   noexcept->std::same_as<std::span<const std::byte>>;
 };
 
-/// A complete board. Each function returns a reference to the part.
+/// A complete board. Each function returns a reference to a component.
 template <class T>
 concept Board = requires(T& board) {
   requires EncoderBank<std::remove_reference_t<decltype(board.encoders())>>;

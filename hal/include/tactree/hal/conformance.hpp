@@ -1,6 +1,7 @@
 #pragma once
 // Test of a board against the contracts of board.hpp. A port calls run_conformance() on its
-// hardware and prints the report. Every command is zero: nothing moves. Duration: about 1000 ticks.
+// hardware and prints the report. All commands are zero, so nothing moves. Duration: about 1000
+// ticks.
 // Loop and memory annotations: docs/BOUND.md.
 
 #include <cstddef>
@@ -15,9 +16,9 @@ namespace tactree::hal {
 
 /// Properties of the board under test. Do not touch the device during the test.
 struct ConformanceSetup {
-  std::uint32_t period_us = 1000;           ///< of a tick
+  std::uint32_t period_us = 1000;           ///< tick period
   std::uint32_t enable_timeout_ticks = 50;  ///< limit for the read-back
-  std::int32_t count_noise = 2;             ///< largest deviation of an axis at rest, counts
+  std::int32_t count_noise = 2;             ///< maximum deviation of an axis at rest, counts
 };
 
 struct ConformanceReport {
@@ -44,7 +45,7 @@ namespace conformance {
 
 inline constexpr std::uint32_t kTicks = 100;
 
-/// Ticks until the read-back agrees; more than `limit`: timeout.
+/// Returns the ticks until the read-back agrees; more than `limit` means a timeout.
 template <Board B>
 std::uint32_t ticks_to_follow(B& board, bool on, std::uint32_t limit) {
   board.enable_line().set(on);
@@ -136,7 +137,8 @@ void check_inputs(B& board, ConformanceReport& report) {
   report.check(!moved, "the link returns unsent body updates");
 }
 
-/// Checksum in 256 slices with a tick between two of them, which serves the watchdog of a board.
+/// Computes the checksum in at most 256 slices with a tick after each, so the watchdog of the board
+/// is served.
 template <Board B>
 std::uint32_t checksum_over_ticks(B& board, std::span<const std::byte> bytes) {
   const std::size_t slice = bytes.size() / 256U + 1U;
@@ -165,7 +167,7 @@ void check_storage(B& board, ConformanceReport& report) {
 }  // namespace conformance
 
 /// Runs every check. Precondition: emergency stop and dead-man control released, no host connected,
-/// device at rest, motors off. Call from the context of the control loop, in place of the loop.
+/// device at rest, motors off. Call it from the context of the control loop, instead of the loop.
 template <Board B>
 [[nodiscard]] ConformanceReport run_conformance(B& board, const ConformanceSetup& setup = {}) {
   ConformanceReport report;

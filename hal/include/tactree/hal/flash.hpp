@@ -16,12 +16,11 @@ struct FlashGeometry {
 };
 
 /// NOR flash: erased bytes are 0xFF; written bytes stay until their sector is erased.
-///   geometry()              constant.
-///   bytes()                 the whole area, readable in place, 4-byte aligned.
-///   erase(sector)           erases a sector and waits for completion. False: failed.
-///   program(offset, bytes)  writes erased bytes and waits for completion. False: failed. Offset
-///   and
-///                           size: multiples of program_bytes.
+///   geometry()              returns the geometry, which is constant.
+///   bytes()                 returns the whole area, readable in place, 4-byte aligned.
+///   erase(sector)           erases a sector and waits for completion; returns false on failure.
+///   program(offset, bytes)  writes to erased bytes and waits for completion; returns false on
+///                           failure. Offset and size must be multiples of program_bytes.
 /// A reset during an operation leaves its sector or unit with arbitrary content.
 template <class T>
 concept Flash = requires(T& flash, const T& flash_to_read, std::uint32_t number,

@@ -1,6 +1,6 @@
 #pragma once
-// The control loop: transfers data between a board and the controller. All decisions are in the
-// controller. One context calls start() and tick().
+// The control loop: transfers data between a board and the controller, which makes all decisions.
+// start() and tick() are called from one context.
 //
 //   MyBoard board;
 //   core::Controller controller;
@@ -16,7 +16,7 @@
 
 namespace tactree::hal {
 
-/// Waits for the tick, then reads all inputs of it except the link and the load.
+/// Waits for the tick, then reads all of its inputs except the link and the load.
 template <Board B>
 [[nodiscard]] core::Input read_inputs(B& board) {
   const Tick tick = board.ticker().wait();
@@ -38,8 +38,9 @@ class Loop {
  public:
   Loop(B& board, core::Controller& controller) : board_(board), controller_(controller) {}
 
-  /// Configures the controller and loads the model of the board's storage. Not bounded by a tick:
-  /// call it before the first tick. If refused, the state stays boot or no-model.
+  /// Configures the controller and loads the model from the board's storage. The duration is not
+  /// bounded by a tick: call it before the first tick. If the configuration or the model is
+  /// refused, the state stays boot or no-model.
   [[nodiscard]] StartResult start(const core::Configuration& configuration) {
     board_.enable_line().set(false);
     StartResult result;
@@ -57,7 +58,7 @@ class Loop {
   }
 
   /// Executes one tick: waits, reads, steps, writes. Returns the output of the controller. Not
-  /// inlined: a test skips each of its instructions.
+  /// inlined, because a fault injection test skips each of its instructions.
   [[gnu::noinline]] const core::Output& tick() {
     core::Input input = read_inputs(board_);
     input.load = load_;
@@ -66,7 +67,7 @@ class Loop {
     const std::uint32_t begin_us = board_.ticker().now_us();
     const core::Output& output = controller_.step(input);
     core::report_to_recorder(board_, [&](auto& recorder) { recorder.stepped(input, output); });
-    const bool active = controller_.may_give_force();  // second check, see there
+    const bool active = controller_.may_give_force();  // second check, see may_give_force()
     board_.motors().write(active ? output.motors : core::SafetyGate::no_effort());
     board_.enable_line().set(output.enable);
     board_.link().send(output.status);
@@ -76,7 +77,7 @@ class Loop {
   }
 
  private:
-  /// A separate function: a message uses no stack during the controller's step.
+  /// A separate function, so the message occupies no stack during the controller's step.
   void listen(core::Input& input) {
     const LinkInput link = board_.link().receive();
     input.link_alive = link.alive;

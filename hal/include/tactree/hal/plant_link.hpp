@@ -1,13 +1,14 @@
 #pragma once
 // Messages between an emulated board and its simulation, over two byte streams, in lockstep: one
-// message per tick in each direction. Both sides are little-endian with the same layout of these
-// structs: every float keeps its bits. Both sides trust each other as parts of one simulation.
+// message per tick in each direction. Both sides are little-endian and use the same layout of these
+// structs, so floats are transferred bit-identically. Both sides trust each other as parts of one
+// simulation.
 //
 //   board -> host   Hello              after every reset
 //   host -> board   Session
 //   board -> host   Started            result of the start
-//   host -> board   TickInput          each tick; the last one has kFinish: the board exits
-//   board -> host   TickOutput         each tick, when the board waits for the next
+//   host -> board   TickInput          each tick; kFinish in the last one ends the board's program
+//   board -> host   TickOutput         each tick, when the board waits for the next one
 //
 // Every message starts with its kind.
 
@@ -20,11 +21,11 @@
 
 namespace tactree::hal::plant_link {
 
-/// Increased with every change of these messages or of the structs in them.
+/// Incremented with every change of these messages or of the structs in them.
 inline constexpr std::uint32_t kVersion = 4;
 
 enum class Kind : std::uint32_t {
-  kHello = 0x54414331,  ///< unlikely as the start of other data
+  kHello = 0x54414331,  ///< unlikely at the start of other data
   kSession,
   kStarted,
   kTickInput,
@@ -32,7 +33,7 @@ enum class Kind : std::uint32_t {
   kFinish,  ///< in place of kTickInput
 };
 
-/// The streams, as the emulated board opens them.
+/// Paths at which the emulated board opens the streams.
 inline constexpr char kToBoard[] = "/dev/fd/3";
 inline constexpr char kFromBoard[] = "/dev/fd/4";
 

@@ -1,5 +1,6 @@
 #pragma once
-// Diagnostics of the start of a board beyond StartResult (loop.hpp), reported over its link.
+// Diagnostics of a board's start in addition to StartResult (start_result.hpp), reported over its
+// link.
 
 #include <cstdint>
 
@@ -9,7 +10,7 @@
 namespace tactree::hal {
 
 struct StartReport {
-  std::uint32_t missing = 0;  ///< bit set of core::wire::StartPart
+  std::uint32_t missing = 0;  ///< parts that did not start: bits of core::wire::StartPart
   bool by_watchdog = false;   ///< the watchdog caused the last reset
   CapturedFault last_fault{};
 

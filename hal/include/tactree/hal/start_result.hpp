@@ -1,6 +1,6 @@
 #pragma once
-// The result of a board's start: whether there is a model to touch, and the cause where there is
-// none. Interrupt safe: plain data, pure functions of constant cost.
+// The result of a board's start: whether a model can be rendered, and otherwise the cause.
+// Interrupt safe: plain data, pure functions of constant cost.
 
 #include <cstdint>
 
@@ -21,14 +21,14 @@ struct StartResult {
   core::ConfigurationStatus configuration = core::ConfigurationStatus::kOk;
   core::BlobStatus blob = core::BlobStatus::kOk;
   core::ModelStatus model = core::ModelStatus::kOk;
-  ImageStatus image = ImageStatus::kOk;  ///< filled in by the firmware, ahead of Loop::start()
+  ImageStatus image = ImageStatus::kOk;  ///< set by the firmware, ahead of Loop::start()
   [[nodiscard]] bool ok() const {
     return configuration == core::ConfigurationStatus::kOk && blob == core::BlobStatus::kOk &&
            model == core::ModelStatus::kOk && image == ImageStatus::kOk;
   }
 };
 
-/// The first cause, in the order of the start: image, configuration, blob, model.
+/// Describes the first failure, in the order of the start: image, configuration, blob, model.
 [[nodiscard]] inline const char* describe(const StartResult& start) {
   if (start.image != ImageStatus::kOk) {
     return start.image == ImageStatus::kBadMemory ? "RAM self-test failed"

@@ -1,6 +1,6 @@
 #pragma once
-// USB device of a board: passes the host's requests to core/usb/, which makes all decisions, and
-// transfers bytes. A port implements UsbController. One context calls all functions.
+// USB device of a board: passes the host's requests to core/link/usb/, which makes all decisions,
+// and transfers bytes. A port implements UsbController. All functions are called from one context.
 // Loop and memory annotations: docs/BOUND.md.
 
 #include <concepts>
@@ -16,15 +16,15 @@
 
 namespace tactree::hal {
 
-/// Event on the bus.
+/// Bus event.
 struct UsbEvent {
   enum class Kind : std::uint8_t {
     kNone = 0,
-    kReset,         ///< by the host; `speed` is valid. All endpoints except 0 are closed
+    kReset,         ///< bus reset by the host; `speed` is valid; all endpoints except 0 are closed
     kDisconnected,  ///< cable unplugged, or bus suspended
-    kConfigured,    ///< the controller accepted the configuration itself (Linux); endpoints open
-    kUnconfigured,  ///< the controller left the configuration itself
-    kSetup,         ///< `setup` was received; ends an older control transfer
+    kConfigured,    ///< the controller accepted a configuration itself (Linux); endpoints are open
+    kUnconfigured,  ///< the controller left the configuration itself (Linux)
+    kSetup,         ///< `setup` was received; this ends an older control transfer
     kData,          ///< data stage to the device is complete: see control_data()
     kStatusDone,    ///< the control transfer is complete
   };
@@ -33,19 +33,20 @@ struct UsbEvent {
   core::usb::SetupPacket setup{};
 };
 
-/// USB device controller. Functions return at once; all are called from one context.
-///   next_event()              oldest event not yet returned
-///   control_send(data, end)   data stage to the host; `end`: terminate it by a short packet, empty
-///                             if necessary. `data` must stay valid until the next event
-///   control_receive(bytes)    data stage from the host, followed by the event kData
-///   control_data()            data of that stage
-///   control_acknowledge()     status stage
-///   control_stall()           refuses the control transfer
-///   set_address(address)      sets the address at once
-///   configure(open)           opens the endpoints with fresh data toggles, or closes them
-///   halt(endpoint, on)        true: stalls the endpoint; false: ends it, with fresh data toggle
-///   read(endpoint, bytes)     copies received bytes; returns the number
-///   write(endpoint, bytes)    queues bytes; returns the number. An interrupt endpoint accepts a
+/// USB device controller. All functions return immediately and are called from one context.
+///   next_event()              returns the oldest event not yet returned
+///   control_send(data, end)   starts the data stage to the host; `end`: terminate it with a short
+///                             packet, of length zero if necessary. `data` must stay valid until
+///                             the next event
+///   control_receive(bytes)    starts the data stage from the host, followed by the event kData
+///   control_data()            returns the data of that stage
+///   control_acknowledge()     performs the status stage
+///   control_stall()           refuses the control transfer by a stall
+///   set_address(address)      sets the address immediately
+///   configure(open)           opens the endpoints with cleared data toggles, or closes them
+///   halt(endpoint, on)        stalls the endpoint, or ends the stall and clears the data toggle
+///   read(endpoint, bytes)     copies received bytes; returns their number
+///   write(endpoint, bytes)    queues bytes; returns their number. An interrupt endpoint accepts a
 ///                             message completely or not at all
 template <class T>
 concept UsbController = requires(T& usb, std::span<const std::byte> out, std::span<std::byte> in,
@@ -75,8 +76,8 @@ class UsbDevice {
         model_(model),
         parameters_(parameters) {}
 
-  /// Call once a tick, after the tick's work. Handles at most kEventsPerTick events: the cost is
-  /// bounded for any host.
+  /// Call once per tick, after the tick's work. Handles at most kEventsPerTick events, which bounds
+  /// the cost whatever the host sends.
   void poll(std::uint32_t now_us) {
     model_.advance(now_us);
     parameters_.advance(now_us);
@@ -95,15 +96,15 @@ class UsbDevice {
   [[nodiscard]] std::size_t write(std::span<const std::byte> bytes) noexcept {
     return may_move(core::usb::kBulkIn) ? controller_.write(core::usb::kBulkIn, bytes) : 0;
   }
-  /// Sends a change of state, faults or limits to the host. False: the preceding news is still
-  /// pending; try again.
+  /// Sends a notice of state, faults and limits to the host. Returns false if it was not queued,
+  /// for instance because the preceding notice is pending; call it again then.
   [[nodiscard]] bool send_news(const core::usb::NewsPacket& news) {
     const auto bytes = std::as_bytes(std::span(&news, 1));
     return may_move(core::usb::kNewsIn) &&
            controller_.write(core::usb::kNewsIn, bytes) == bytes.size();
   }
 
-  /// Call once a tick: sends the news if state or faults changed since the last news.
+  /// Call once per tick: sends a notice if state or faults have changed since the last notice.
   void send_changes(const core::Status& status) {
     const core::usb::NewsPacket news{status.tick, static_cast<std::uint32_t>(status.state),
                                      status.faults, status.limits};

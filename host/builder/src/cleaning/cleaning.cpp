@@ -16,24 +16,24 @@
 namespace tactree::builder {
 namespace {
 
-// Outliers of a cloud lie beyond 10 times the size of its bulk, corners of a mesh beyond 100 times:
-// a detailed figure may stand on a large, coarse plinth.
+// Outliers of a cloud lie farther away than 10 times the size of its bulk, vertices of a mesh
+// farther than 100 times, because a detailed figure may stand on a large, coarse plinth.
 constexpr double kCloudMargin = 10.0;
 constexpr double kMeshMargin = 100.0;
-// Farther from the origin than this, in extents, float32 loses detail.
+// Distance from the origin, in extents, beyond which float32 loses detail.
 constexpr double kFarExtents = 4.0;
-// Points nearer to each other than this belong to one piece of a scan.
+// Points closer to each other than this, in spacings, belong to the same component of a scan.
 constexpr double kIslandSpacings = 2.5;
-// Steps of the coordinates that a hand feels, relative to the spacing.
+// Coordinate steps above this, relative to the spacing, can be felt.
 constexpr double kMaxStepPerDetail = 0.05;
-constexpr double kDetailsPerExtent = 200.0;  // of a mesh: its default spacing
-// Coordinates beyond this are damage; squares of distances would overflow far beyond.
+constexpr double kDetailsPerExtent = 200.0;  // the default spacing of a mesh is its extent / 200
+// Larger coordinates are treated as damage. Squares of distances would overflow only far beyond.
 constexpr double kLargestCoordinate_m = 1e12;
-// Extents of a model that the lattice of a blob can represent with any useful spacing.
+// Range of extents that the lattice of a blob can represent at a useful spacing.
 constexpr double kSmallestModel_m = 1e-6;
 constexpr double kLargestModel_m = 1e6;
 
-// False for NaN.
+// Returns false for NaN.
 bool is_float(double value) { return static_cast<double>(static_cast<float>(value)) == value; }
 
 bool is_in_range(const Eigen::Vector3d& position_m) {
@@ -84,7 +84,7 @@ class Cleaner {
   }
 
  private:
-  // That of the first scan; the others are converted to it.
+  // Uses the unit of the first scan and converts the others to it.
   void choose_unit(std::vector<Scan>& scans) {
     const double own = scans.empty() ? 1.0 : scans[0].unit_m.value_or(1.0);
     const double unit_m = options_.unit_m.value_or(own);
@@ -155,7 +155,7 @@ class Cleaner {
                                            options_.orient == OrientationRule::kViewpoint);
   }
 
-  // Of point i, at `position` in the turned frame.
+  // Direction from point i, at `position` in the turned frame, to its scanner.
   [[nodiscard]] Sight sight_of(const Scan& scan, std::size_t i,
                                const Eigen::Vector3d& position) const {
     const auto next = std::upper_bound(
@@ -167,7 +167,7 @@ class Cleaner {
     const ScannerPose& pose = *std::prev(next);
     const Eigen::Vector3d d = input_.frame.turned(pose.position) - position;
     const double range = d.norm();
-    return range > 0.0 ? Sight{(d / range).cast<float>(), pose.sure} : Sight{};  // also NaN
+    return range > 0.0 ? Sight{(d / range).cast<float>(), pose.sure} : Sight{};  // also for NaN
   }
 
   void add_cloud(Scan&& scan) {
@@ -262,7 +262,7 @@ class Cleaner {
     }
   }
 
-  // The corners of faces with a finite and plausible position.
+  // Selects the vertices of faces that have a finite and plausible position.
   std::vector<bool> corners_to_keep(const std::vector<bool>& used) {
     const std::vector<Eigen::Vector3d>& positions = input_.mesh.positions;
     std::vector<Eigen::Vector3d> corners;
@@ -294,7 +294,8 @@ class Cleaner {
     return keep;
   }
 
-  // Drops faces outside the crop box; faces across its border are sampled inside only.
+  // Drops faces outside the crop box. Faces that cross its border stay and are sampled inside it
+  // only.
   void crop_mesh() {
     if (!options_.crop) {
       return;
@@ -508,7 +509,7 @@ class Cleaner {
   BuildReport& report_;
   CleanInput input_;
   Cloud cloud_;
-  double float_step_ = 0.0;    // of the coordinates far from the origin, in units of the source
+  double float_step_ = 0.0;    // step of float32 coordinates far from the origin, source units
   bool cloud_sights_ = false;  // some points were seen from a known position
   std::uint64_t mesh_corners_ = 0;
 };

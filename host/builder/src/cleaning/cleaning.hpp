@@ -1,5 +1,5 @@
 #pragma once
-// Input cleaning: joins the scans, drops unusable points and faces, moves the rest to the model
+// Input cleaning: joins the scans, drops unusable points and faces, and moves the rest to the model
 // frame.
 
 #include <map>
@@ -31,7 +31,7 @@ struct ModelFrame {
   [[nodiscard]] Eigen::Vector3d source_origin() const { return turn.transpose() * shift / unit; }
 };
 
-/// All inputs, joined and cleaned, in the model frame; points or mesh may be empty, not both.
+/// All inputs, joined and cleaned, in the model frame. Points or mesh may be empty, but not both.
 struct CleanInput {
   ZOrderedCloud points;         ///< of clouds
   double points_spacing = 0.0;  ///< median spacing; 0 for fewer than two points

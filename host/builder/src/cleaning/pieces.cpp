@@ -8,7 +8,7 @@
 namespace tactree::builder {
 namespace {
 
-// Joins occupied cells that touch. cells: in Z order, as ZOrderedCloud::cells().
+// Joins occupied cells that touch. `cells` are in Z order, as ZOrderedCloud::cells() returns them.
 DisjointSets joined_cells(const ZOrderedCloud& points, const std::vector<CellRange>& cells,
                           int level) {
   DisjointSets sets(cells.size());
@@ -21,7 +21,7 @@ DisjointSets joined_cells(const ZOrderedCloud& points, const std::vector<CellRan
   const int per_axis = 1 << level;
   for (std::uint32_t c = 0; c < cells.size(); ++c) {
     const Eigen::Vector3i cell = points.cell_of(cells[c].first, level);
-    for (int k = 14; k < 27; ++k) {  // the other half joins from the other side
+    for (int k = 14; k < 27; ++k) {  // the other neighbours join from their side
       const Eigen::Vector3i at = cell + Eigen::Vector3i(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
       if ((at.array() >= 0).all() && (at.array() < per_axis).all()) {
         const CellRange other = points.find(at, level);
@@ -34,7 +34,7 @@ DisjointSets joined_cells(const ZOrderedCloud& points, const std::vector<CellRan
   return sets;
 }
 
-// Per set: whether the rule keeps it. root: set of each member; weight: its points.
+// Per set, whether the rule keeps it. `root` is the set of each member, `weight` its points.
 std::vector<bool> kept_sets(std::span<const std::uint32_t> root,
                             std::span<const std::uint64_t> weight, const PieceRule& rule) {
   std::vector<std::uint64_t> size(root.size(), 0);

@@ -18,16 +18,18 @@ constexpr std::size_t kPointsCompared = 200'000;
 constexpr int kFinestLevel = 14;  // cells per edge of a face of the cube of directions: 2^level
 constexpr std::size_t kPointsPerCell = 8;
 constexpr std::size_t kLeastInCell = 4;
-constexpr double kBehind = 1.5;  // widths of the cell between what is in front and behind
-// A real view has a few hidden points at its silhouettes, a closed body half of all.
+constexpr double kBehind = 1.5;  // gap in range between points in front and behind, in cell widths
+// Maximum ratio of hidden points. From the real position only a few points at silhouettes are
+// hidden; from another position, about half the points of a closed body.
 constexpr double kMaxHidden = 0.25;
-// Pixels cover equal solid angles within a factor of two; of a surface that another scanner saw,
-// steep parts are denser.
+// Maximum ratio of densities. The pixels of a scanner cover equal solid angles within a factor of
+// two; from another position, steep parts of the surface appear denser.
 constexpr double kMaxUnevenness = 6.0;
+// In diagonals of the bounding box.
 constexpr double kMaxRange = 30.0;
 
 struct Ray {
-  std::uint64_t cell;  // Morton code on a face of the cube of directions, after the face
+  std::uint64_t cell;  // face of the cube of directions, followed by the Morton code on it
   double range;
 };
 
@@ -55,7 +57,7 @@ std::size_t cells_at(const std::vector<Ray>& rays, int level) {
   return cells;
 }
 
-// Points of a cell beyond its widest gap in range, if that is wide. Sorts by range.
+// Number of points of a cell behind its widest gap in range, if this gap is wide. Sorts by range.
 std::size_t behind(std::span<Ray> cell, double width) {
   std::sort(cell.begin(), cell.end(), [](const Ray& a, const Ray& b) { return a.range < b.range; });
   std::size_t first_behind = cell.size();

@@ -17,41 +17,42 @@ namespace tactree::builder {
 namespace {
 
 constexpr std::size_t kLeastPoints = 2000;
-// Suspects: points with few others in the 27 cells around them, edge 1.5 to 3 spacings, ...
+// Suspects are points with few others in the 27 cells around them (edge 1.5 to 3 spacings) ...
 constexpr double kSparseCellSpacings = 1.5;
 constexpr std::size_t kCompany = 8;
-// ... and points off the planes that explain the others of their cell, edge 2.5 to 5 spacings.
+// ... and points off the planes that explain the others of their cell (edge 2.5 to 5 spacings).
 constexpr double kPlaneCellSpacings = 2.5;
 constexpr std::size_t kMaxPlanes = 4;
 constexpr std::size_t kLeastOnPlane = 4;
 constexpr std::uint64_t kPlaneTrials = 24;
-// The noise of the scan.
+// Estimation of the noise of the scan.
 constexpr std::size_t kNoiseSamples = 2000;
 constexpr std::size_t kNoiseNeighbours = 12;
-constexpr std::size_t kNoiseHeld = 8;  // of them, on the flattest plane
+constexpr std::size_t kNoiseHeld = 8;  // of the neighbours, on the flattest plane
 constexpr double kDeviationPerMedian = 1.5;
-constexpr std::size_t kSurfaceHeld = 6;  // near an edge
-// Noise is never estimated below this part of the spacing: the surface is curved.
+constexpr std::size_t kSurfaceHeld = 6;  // fewer: near an edge, the others lie on another plane
+// Lower limit of the noise as a ratio of the spacing, because the surface is curved.
 constexpr double kLeastNoise = 0.1;
 constexpr double kLeastNoiseSparse = 0.06;
 // The test of a suspect.
 constexpr std::size_t kNeighbours = 20;
 constexpr int kTrials = 32;
-constexpr std::size_t kOnSurface = 9;         // of the neighbours
-constexpr std::size_t kAtBorder = 14;         // where the surface ends
-constexpr std::size_t kOnSparseSurface = 12;  // where the neighbours are farther away
-// Widest angles without a neighbour inside a surface, and at a corner of its border.
+constexpr std::size_t kOnSurface = 9;         // neighbours required on the plane
+constexpr std::size_t kAtBorder = 14;         // required where the surface ends
+constexpr std::size_t kOnSparseSurface = 12;  // required where the neighbours are farther away
+// Maximum angles without a neighbour inside a surface, and at a corner of its border.
 constexpr double kInsideAngle = 200.0 / 180.0 * std::numbers::pi;
 constexpr double kBorderAngle = 300.0 / 180.0 * std::numbers::pi;
 constexpr std::size_t kCompared = 6;
-// Of the six nearest neighbours: on a surface through the point.
+// Number of the kAsked nearest neighbours that must lie on a surface through the point: to confirm
+// a point inside a surface, and to keep any other point in dense or sparse surroundings.
 constexpr std::size_t kAsked = 6;
 constexpr std::size_t kConfirm = 1;
 constexpr std::size_t kRescue = 2;
 constexpr std::size_t kRescueSparse = 5;
-constexpr double kTilt = 1.3;  // of a plane through few points, relative to its tolerance
+constexpr double kTilt = 1.3;  // factor of the tolerance: a plane through few points is tilted
 constexpr double kSparser = 2.2;
-constexpr std::size_t kMaxPart = 8;  // an eighth of the scan
+constexpr std::size_t kMaxPart = 8;  // at most 1/8 of the scan is dropped
 
 struct CellPlane {
   Eigen::Vector3d at = Eigen::Vector3d::Zero();
@@ -77,10 +78,11 @@ CellPlane plane_through(const ZOrderedCloud& points, const std::vector<std::uint
   return CellPlane::through(p[members[a]], p[members[b]], p[members[c]]);
 }
 
-// The plane through three of the members to which the nearest `held` of them are nearest.
+// The plane through three of the members that has the minimum distance to the `held` members
+// nearest to it.
 struct FlatPlane {
   CellPlane plane;
-  double farthest = std::numeric_limits<double>::infinity();  // of those
+  double farthest = std::numeric_limits<double>::infinity();  // maximum distance of these members
 };
 
 FlatPlane flattest_plane(const ZOrderedCloud& points, const std::vector<std::uint32_t>& members,
@@ -114,8 +116,9 @@ class SurfaceTest {
         wanted_(wanted),
         wanted_at_border_(wanted_at_border) {}
 
-  // The widest angle, seen from the point, without a neighbour on the best of some planes through
-  // it; 2 pi without such a plane, or with too few points in the cloud.
+  // The minimum, over several planes through the point, of the widest angle, seen from the point,
+  // without a neighbour on the plane. 2 pi if no plane holds enough neighbours, or if the cloud has
+  // too few points.
   double narrowest_gap(std::uint32_t i, std::vector<Neighbour>& near) const {
     const Eigen::Vector3d& p = points_.positions()[i];
     points_.find_nearest(p, kNeighbours + 1, reach_, near);
@@ -130,8 +133,8 @@ class SurfaceTest {
     return narrowest;
   }
 
-  // How many of the nearest neighbours of the point lie on a surface that contains it: a plane
-  // through the neighbours' neighbours.
+  // Number of nearest neighbours that lie on a common surface with the point: the flattest plane
+  // through the neighbours of the neighbour passes near both.
   std::size_t surfaces_through(std::uint32_t i, const std::vector<Neighbour>& near) const {
     const Eigen::Vector3d& p = points_.positions()[i];
     const double tolerance = sigma_ * std::max(noise_, least_noise_ * local_spacing(near));
@@ -154,7 +157,8 @@ class SurfaceTest {
     return surfaces;
   }
 
-  // Compares the distance of the sixth neighbour with that of three neighbours.
+  // Compares the distance of the sixth neighbour with the median of this distance at three
+  // neighbours.
   bool is_as_dense_as_others(const std::vector<Neighbour>& near) const {
     std::array<double, 3> others{};
     std::vector<Neighbour> found;
@@ -172,7 +176,7 @@ class SurfaceTest {
     return std::sqrt(std::numbers::pi * near.back().squared_distance / (kNeighbours + 0.5));
   }
 
-  // Of the plane through the point and two neighbours: the widest angle, seen from the point,
+  // For the plane through the point and two neighbours: the widest angle, seen from the point,
   // without a neighbour on the plane; 2 pi if the plane holds fewer neighbours than wanted.
   double widest_gap(int trial, const Eigen::Vector3d& p, const std::vector<Neighbour>& near,
                     double tolerance) const {
@@ -203,11 +207,11 @@ class SurfaceTest {
   }
 
   const ZOrderedCloud& points_;
-  double reach_;  // first guess of the distance of the neighbours
+  double reach_;  // initial search radius for the neighbours
   double noise_;
   double least_noise_;  // in spacings of the neighbours
   double sigma_;
-  std::size_t wanted_;  // neighbours on one plane
+  std::size_t wanted_;  // required neighbours on one plane
   std::size_t wanted_at_border_;
 };
 
@@ -248,8 +252,8 @@ class StrayFinder {
     return found;
   }
 
-  // Sparse points with sparse ones around them form a surface with each other, or none; the others
-  // stay suspects.
+  // Tests sparse points that are surrounded by sparse points, against these only. The other sparse
+  // points stay suspects.
   void test_sparse(const std::vector<std::uint32_t>& sparse, std::vector<std::uint8_t>& stray) {
     const ZOrderedCloud cloud = points_.subset(sparse);
     if (cloud.size() == 0) {
@@ -315,7 +319,7 @@ class StrayFinder {
     return count;
   }
 
-  // Points of a cell that none of a few planes through most of its points explains.
+  // Suspects the points of a cell that lie on none of a few planes through most of its points.
   void suspect_off_planes() {
     const std::vector<CellRange> cells =
         points_.cells(points_.level_for_edge(kPlaneCellSpacings * spacing_));
@@ -350,7 +354,8 @@ class StrayFinder {
     }
   }
 
-  // Of the planes through some triples of the points: the one that most points are near to.
+  // Of the planes through some triples of the points, returns the one with the maximum number of
+  // points near it.
   [[nodiscard]] CellPlane plane_with_most(const std::vector<std::uint32_t>& members,
                                           double tolerance) const {
     CellPlane best;
@@ -368,7 +373,8 @@ class StrayFinder {
     return best;
   }
 
-  // The median, over some points, of the noise of the flattest plane through their neighbours.
+  // Estimates the noise: the median, over a sample of the points, of the deviation from the
+  // flattest plane through their neighbours.
   void estimate_noise() {
     const std::size_t stride = 1 + points_.size() / kNoiseSamples;
     std::vector<double> noise((points_.size() + stride - 1) / stride);
@@ -395,7 +401,7 @@ class StrayFinder {
   double sigma_;
   double noise_ = 0.0;
   std::vector<std::uint8_t> suspect_;
-  std::vector<std::uint8_t> sparse_;  // suspects because few points are around them
+  std::vector<std::uint8_t> sparse_;  // suspects with few points around them
 };
 
 }  // namespace

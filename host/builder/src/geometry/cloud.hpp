@@ -11,7 +11,7 @@ namespace tactree::builder {
 
 using Box = Eigen::AlignedBox3d;
 
-/// What is known about the scanner that saw a point.
+/// Direction to the scanner that saw a point.
 struct Sight {
   Eigen::Vector3f toward = Eigen::Vector3f::Zero();  ///< unit vector to the scanner; 0: unknown
   bool sure = false;
@@ -22,7 +22,7 @@ struct Cloud {
   std::vector<Eigen::Vector3f>
       normals;  ///< empty, or one per position: unit length, or 0 if unknown
   std::vector<std::uint8_t> materials;   ///< empty, or one per position: index in the material map
-  std::vector<std::uint8_t> doubtful{};  ///< empty, or one per position: 1 if its side is doubtful
+  std::vector<std::uint8_t> doubtful{};  ///< empty, or one per position; 1: ambiguous orientation
   std::vector<Sight> sights{};           ///< empty, or one per position
 
   [[nodiscard]] std::size_t size() const { return positions.size(); }
@@ -33,7 +33,7 @@ struct Cloud {
 
 [[nodiscard]] Box bounds_of(std::span<const Eigen::Vector3d> positions);
 
-/// The longest edge; 0 for an empty box.
+/// Longest edge of a box; 0 if it is empty.
 [[nodiscard]] double largest_edge(const Box& box);
 
 /// The points at the indices `order`, in that order.

@@ -14,7 +14,7 @@ class DisjointSets {
     std::iota(parent_.begin(), parent_.end(), 0U);
   }
 
-  /// The lowest element of the set of `i`. Halves the path to it.
+  /// Returns the lowest element of the set of `i`. Halves the path to it.
   [[nodiscard]] std::uint32_t find(std::uint32_t i) {
     while (parent_[i] != i) {
       parent_[i] = parent_[parent_[i]];

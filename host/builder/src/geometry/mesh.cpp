@@ -6,7 +6,8 @@
 namespace tactree::builder {
 namespace {
 
-// Edges this short relative to their coordinates, and triangles this flat, are rounding errors.
+// Edges shorter than this, relative to their coordinates, and flatter triangles are rounding
+// errors.
 constexpr double kFlat = 1e-14;
 
 bool is_degenerate(const Corners& c) {

@@ -13,7 +13,7 @@ struct Mesh {
   std::vector<Eigen::Vector3d> positions;
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices into positions, all valid
   std::vector<std::uint8_t> materials;  ///< empty, or one per position, as in a Cloud
-  std::vector<std::uint8_t> doubtful;   ///< empty, or one per triangle: 1 if its side is doubtful
+  std::vector<std::uint8_t> doubtful;   ///< empty, or one per triangle; 1: ambiguous orientation
 };
 
 struct Corners {
@@ -27,8 +27,8 @@ struct Corners {
 [[nodiscard]] Corners corners_of(const Mesh& mesh, std::size_t triangle);
 
 /// Drops triangles whose area is within the rounding of their coordinates, and triangles with a
-/// corner for which keep[corner] is false (empty: keep all).
-/// Returns the counts {degenerate, with a dropped corner}.
+/// vertex for which `keep` is false (empty: keep all). Returns the counts {degenerate, with a
+/// dropped vertex}.
 std::array<std::uint64_t, 2> drop_faces(Mesh& mesh, const std::vector<bool>& keep);
 
 [[nodiscard]] double area_of(const Mesh& mesh);

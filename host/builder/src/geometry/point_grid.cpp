@@ -86,8 +86,8 @@ std::size_t PointGrid::find(const Eigen::Vector3i& cell) const {
   return kNone;
 }
 
-// The cell of any position, clamped to the grid. With `beyond`, the range of clamped cells may
-// exceed the grid by one, so that a range outside it is empty.
+// Clamps the cell of a position to the grid. Lower limits (`beyond` is 0) are clamped to 0 .. size,
+// upper limits (`beyond` is -1) to -1 .. size - 1, so that a range outside the grid is empty.
 Eigen::Vector3i PointGrid::clamped_cell(const Eigen::Vector3d& position, int beyond) const {
   const Eigen::Array3d cell = ((position - origin_) / edge_).array().floor();
   const Eigen::Array3d least = Eigen::Array3d::Constant(beyond == 0 ? 0.0 : -1.0);

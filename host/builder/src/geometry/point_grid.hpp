@@ -13,10 +13,9 @@ namespace tactree::builder {
 
 class PointGrid {
  public:
-  /// Preconditions: finite positions, at most 2^32 - 2 of them, which outlive the grid;
-  /// cell_edge > 0. The edge is enlarged to limit the grid to 2^20 cells per axis.
-  /// Deterministic. Cost: one sort; 16 bytes per point during construction, then 4 per point and 16
-  /// per cell.
+  /// Preconditions: finite positions, at most 2^32 - 2 of them; cell_edge > 0. The edge is enlarged
+  /// to limit the grid to 2^20 cells per axis. Deterministic. Cost: one sort; 16 bytes per point
+  /// during construction, then 4 per point and 16 per cell.
   PointGrid(std::span<const Eigen::Vector3d> positions, double cell_edge);
 
   [[nodiscard]] double cell_edge() const { return edge_; }

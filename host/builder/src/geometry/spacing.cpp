@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kSamples = 4096;
 constexpr std::size_t kNeighbours = 16;
-constexpr double kTrusted = 0.98;  // of the sample; the rest may be outliers
+constexpr double kTrusted = 0.98;  // ratio of the sample that is used; the rest may be outliers
 
 }  // namespace
 

@@ -10,10 +10,10 @@
 namespace tactree::builder {
 namespace {
 
-// A group is far away from this many of its radii on.
+// Distance, in radii of a group, from which the group is approximated by one dipole.
 constexpr double kFarRadii = 3.0;
 constexpr std::uint32_t kLeafSize = 8;
-// Of a tree over 2^31 elements that is halved at every node: its height, once for each side.
+// Size of the stack: twice the height of a balanced tree over 2^31 elements.
 constexpr std::size_t kMaxOpen = 64;
 
 double solid_angle(const SurfaceElement& element, const Eigen::Vector3d& d) {

@@ -1,6 +1,6 @@
 #pragma once
-// Solid angles of many surface elements at once: a group of elements that is far away counts as one
-// dipole (Barill, Dickson, Schmidt, Levin and Jacobson, "Fast winding numbers for soups and
+// Sums the solid angles of many surface elements. A distant group of elements is approximated by
+// one dipole (Barill, Dickson, Schmidt, Levin and Jacobson, "Fast winding numbers for soups and
 // clouds", SIGGRAPH 2018).
 
 #include <Eigen/Core>
@@ -10,7 +10,7 @@
 
 namespace tactree::builder {
 
-/// A small piece of a surface.
+/// A small patch of a surface.
 struct SurfaceElement {
   Eigen::Vector3d centre;
   Eigen::Vector3d area;  ///< m^2, times the unit normal
@@ -23,8 +23,7 @@ class WindingTree {
   explicit WindingTree(std::vector<SurfaceElement> elements);
 
   /// Sum of the solid angles, positive where the normals point away from `at`: 4 pi inside a body.
-  /// An element counts at most 2 pi, and nothing at its centre. Error: about 3 %. Cost: log n
-  /// groups.
+  /// An element counts at most 2 pi, and 0 at its own centre. Error: about 3 %. Cost: log n groups.
   [[nodiscard]] double angle(const Eigen::Vector3d& at) const;
 
  private:

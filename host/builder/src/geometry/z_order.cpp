@@ -113,7 +113,7 @@ CellRange ZOrderedCloud::find(const Eigen::Vector3i& cell, int level) const {
   if (first == codes_.end() || *first > high) {
     return {};
   }
-  // Cells are small relative to the cloud: search their end exponentially.
+  // Cells are small relative to the cloud, so their end is found by exponential search.
   std::size_t step = 1;
   const auto left = static_cast<std::size_t>(codes_.end() - first);
   while (step < left && first[static_cast<std::ptrdiff_t>(step)] <= high) {

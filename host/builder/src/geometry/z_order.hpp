@@ -1,6 +1,6 @@
 #pragma once
 // Points sorted along a Z curve. Each cell of an octree over them, at any level, is a range of
-// consecutive points, found by binary search: neighbour queries at any scale without a tree.
+// consecutive points that a binary search finds, so neighbour queries at any scale need no tree.
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -29,8 +29,8 @@ struct Neighbour {
   }
 };
 
-/// A cloud in Z order; finite positions, at most 2^32 - 2 of them. Only transform() and
-/// set_normals() modify it.
+/// A cloud in Z order. Preconditions: finite positions, at most 2^32 - 2 of them. Only transform()
+/// and set_normals() modify it.
 class ZOrderedCloud {
  public:
   static constexpr int kFinestLevel = 21;
@@ -45,7 +45,7 @@ class ZOrderedCloud {
   [[nodiscard]] const std::vector<Eigen::Vector3f>& normals() const { return cloud_.normals; }
   [[nodiscard]] std::size_t size() const { return cloud_.size(); }
 
-  /// The points at `indices`, which must ascend. No sort.
+  /// Returns the points at `indices`, which must ascend. Does not sort.
   [[nodiscard]] ZOrderedCloud subset(std::span<const std::uint32_t> indices) const;
   /// Replaces each position by factor * (position - origin).
   void transform(const Eigen::Vector3d& origin, double factor);
@@ -66,10 +66,11 @@ class ZOrderedCloud {
   /// Number of occupied cells of each level. Cost: one pass.
   [[nodiscard]] std::vector<std::size_t> count_cells() const;
 
-  /// Calls visit(index, squared_distance) for every point within `radius` of `centre`. Fixed order.
+  /// Calls visit(index, squared_distance) for every point within `radius` of `centre`, in a fixed
+  /// order.
   template <typename Visit>
   void visit_within(const Eigen::Vector3d& centre, double radius, Visit&& visit) const {
-    // At this level there are few cells to search and few points outside the radius.
+    // At this level, few cells must be searched and few of their points lie outside the radius.
     const int level = level_for_edge(2.0 * radius);
     const int shift = kFinestLevel - level;
     const Eigen::Vector3i low = finest_cell(centre.array() - radius);
@@ -89,8 +90,8 @@ class ZOrderedCloud {
     }
   }
 
-  /// The `count` nearest points (at most all), nearest first, ties by index.
-  /// `guess`: estimated distance of the farthest of them; influences the time only.
+  /// Returns the `count` nearest points (or all, if there are fewer), nearest first, ties by index.
+  /// `guess` is the estimated distance of the last one and influences the time only.
   void find_nearest(const Eigen::Vector3d& centre, std::size_t count, double guess,
                     std::vector<Neighbour>& found) const;
 

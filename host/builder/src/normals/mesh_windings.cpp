@@ -6,31 +6,32 @@
 #include <numbers>
 #include <vector>
 
-#include "normals/piece_evidence.hpp"
 #include "cleaning/pieces.hpp"
+#include "normals/piece_evidence.hpp"
+#include "sampling/mesh_sampling.hpp"
 
 namespace tactree::builder {
 namespace {
 
-constexpr double kFaceSamples = 40'000.0;  // on the faces, for the evidence about open shells
+constexpr double kFaceSamples = 40'000.0;  // samples, for the evidence about open shells
 constexpr double kBallDistances = 2.5;     // radius of the finest ball, in distances of the samples
-constexpr double kDecisive = 0.8;          // of the evidence
-constexpr double kFlat = 1e-9;             // volume of a shell that has no inside
-constexpr double kSmallShell = 1e-4;       // of the area: gets no samples
+constexpr double kDecisive = 0.8;          // ratio of the evidence that decides
+constexpr double kFlat = 1e-9;             // relative volume below which a shell has no inside
+constexpr double kSmallShell = 1e-4;       // ratio of the area below which a shell gets no samples
 
 struct Shell {
   std::vector<std::uint32_t> faces;
   Box box;
   double area = 0.0;
-  double as_given = 0.0;  // area of the faces whose winding is kept, less that of the others
-  double volume = 0.0;    // six times, with consistent windings
+  double as_given = 0.0;  // area of the faces whose winding is kept, minus that of the others
+  double volume = 0.0;    // six times the volume, with consistent windings
   bool closed = true;
   bool reversed = false;
 
   [[nodiscard]] bool consistent() const { return std::abs(as_given) > (1.0 - 1e-9) * area; }
 };
 
-// An edge of a face, by its corners in ascending order.
+// An edge of a face, given by its vertices in ascending order.
 struct Side {
   std::uint32_t low;
   std::uint32_t high;
@@ -72,7 +73,7 @@ class WindingMender {
   [[nodiscard]] const Eigen::Vector3d& corner(std::uint32_t face, std::size_t k) const {
     return mesh_.positions[mesh_.triangles[face][k]];
   }
-  // Twice the area, as the winding is given.
+  // Normal by the given winding. Its length is twice the area.
   [[nodiscard]] Eigen::Vector3d normal_of(std::uint32_t face) const {
     return (corner(face, 1) - corner(face, 0)).cross(corner(face, 2) - corner(face, 0));
   }
@@ -97,7 +98,7 @@ class WindingMender {
     std::vector<std::array<std::uint32_t, 3>> across(mesh_.triangles.size(), {kNone, kNone, kNone});
     std::vector<std::uint8_t> boundary(mesh_.triangles.size(), 0);
     const auto link = [&](const Side& a, const Side& b) {
-      // Faces that pass their edge in the same direction look to different sides.
+      // Faces that traverse their common edge in the same direction have opposite orientations.
       const std::uint32_t to = 2 * b.face + (a.ascending == b.ascending ? 1 : 0);
       *std::find(across[a.face].begin(), across[a.face].end(), kNone) = to;
     };
@@ -167,7 +168,7 @@ class WindingMender {
     return angle / (4.0 * std::numbers::pi);
   }
 
-  // From the largest shell to the smallest.
+  // Processes the largest shell first, so that a shell is processed after the shells around it.
   void orient_closed() {
     std::vector<std::uint32_t> order;
     for (std::uint32_t s = 0; s < shells_.size(); ++s) {
@@ -201,7 +202,7 @@ class WindingMender {
     }
   }
 
-  // Whether the faces of a consistent shell are reversed as a whole.
+  // True if the faces of a consistent shell are reversed as a whole.
   [[nodiscard]] static bool was_turned(const Shell& shell) {
     return (shell.as_given < 0.0) != shell.reversed;
   }
@@ -230,7 +231,8 @@ class WindingMender {
     orient_by_evidence(area);
   }
 
-  // Sum of the faces' components towards what the rule states, with consistent windings.
+  // Sum of the area components of the faces in the direction that the rule states, with consistent
+  // windings.
   [[nodiscard]] double stated_height(const Shell& shell) const {
     double sum = 0.0;
     for (const std::uint32_t f : shell.faces) {
@@ -306,7 +308,7 @@ class WindingMender {
   Mesh& mesh_;
   OrientationRule rule_;
   std::span<const Eigen::Vector3d> viewpoints_;
-  std::vector<std::uint8_t> turned_;  // per face: against the given winding, within its shell
+  std::vector<std::uint8_t> turned_;  // per face: 1 if reversed for consistency within its shell
   std::vector<Shell> shells_;
   WindingRepair repair_;
 };

@@ -15,7 +15,7 @@ constexpr double kFitSpacings = 1.5;
 constexpr std::size_t kLeastFitted = 12;
 constexpr std::size_t kMaxFitted = 96;
 
-// The normal of the plane through neighbours sorted by distance; nearer ones count more.
+// Normal of the plane through neighbours sorted by distance. Nearer neighbours have more weight.
 Eigen::Vector3f fit_normal(const ZOrderedCloud& dense, const std::vector<Neighbour>& neighbours) {
   const double radius_squared = 1.2 * neighbours.back().squared_distance + 1e-300;
   double weight_sum = 0.0;

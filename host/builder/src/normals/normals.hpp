@@ -1,5 +1,5 @@
 #pragma once
-// Estimation of normals. Their signs: normals/orient_cloud.hpp.
+// Estimation of normals. Their signs are determined in normals/orient_cloud.hpp.
 
 #include <cstdint>
 #include <vector>

@@ -15,20 +15,20 @@
 namespace tactree::builder {
 namespace {
 
-constexpr double kFinestBall = 2.5;  // in spacings of a random cloud: no ball slips through it
-constexpr double kFinestBallResampled = 1.3;  // of an evenly spread one
-constexpr double kDenseAsOutput = 0.45;       // dense spacings per spacing: above, the cloud itself
-constexpr float kCertain = 0.75F;             // of the edges inside a patch
-constexpr float kGivenWeight = 0.3F;          // of a normal of the file, beside evidence of 1
-constexpr double kStatedWeight = 4.0;   // of a viewpoint or of up, times the cosine; at most 1
-constexpr float kLeastStated = 0.2F;    // less where the surface is seen from its edge
-constexpr double kGivenIsRight = 0.97;  // share of the evidence that agrees with the file
+constexpr double kFinestBall = 2.5;  // in spacings of a random cloud: no ball passes through it
+constexpr double kFinestBallResampled = 1.3;  // in spacings of an evenly spread cloud
+constexpr double kDenseAsOutput = 0.45;       // uses the dense cloud above this ratio of spacings
+constexpr float kCertain = 0.75F;             // minimum certainty of the edges inside a patch
+constexpr float kGivenWeight = 0.3F;  // weight of a normal of the file, compared with evidence of 1
+constexpr double kStatedWeight = 4.0;   // of a viewpoint or of up, times the cosine; limited to 1
+constexpr float kLeastStated = 0.2F;    // below this, the surface is seen edge-on
+constexpr double kGivenIsRight = 0.97;  // minimum ratio of the evidence that agrees with the file
 constexpr int kSmoothingSweeps = 6;
-constexpr double kFewEvidence = 0.03;  // of the points of a piece: not reached at all
-constexpr double kFlatSheet = 0.5;     // length of the mean normal of a sheet that faces one way
+constexpr double kFewEvidence = 0.03;  // ratio of the points below which a component is not reached
+constexpr double kFlatSheet = 0.5;     // minimum mean normal of a sheet that faces one way
 constexpr std::size_t kParitySamples = 9;
 
-// Neighbours in compressed rows.
+// Neighbours in compressed row storage.
 struct Adjacency {
   struct Link {
     std::uint32_t to;
@@ -66,7 +66,8 @@ struct Belief {
   }
 };
 
-// Signs of the nodes: the one with the strongest belief is decided first and passes its sign on.
+// Determines the signs of the nodes. The node with the strongest belief is decided first and passes
+// its sign on to its neighbours.
 std::vector<std::int8_t> decide(std::vector<float> belief, const Adjacency& links) {
   const auto nodes = static_cast<std::uint32_t>(belief.size());
   std::vector<std::int8_t> sign(nodes, 0);
@@ -133,7 +134,7 @@ class Orienter {
     return !in_.given.empty() && in_.given[i] != 0;
   }
 
-  // Connected pieces of the graph, ascending by lowest point.
+  // Numbers the connected components of the graph, ascending by lowest point.
   void number_pieces(const std::vector<SignedEdge>& edges) {
     DisjointSets sets(size());
     for (const SignedEdge& e : edges) {
@@ -169,7 +170,7 @@ class Orienter {
   void collect_evidence() {
     hint_.assign(size(), 0.0F);
     seen_.assign(pieces_, 0);
-    // Every point was seen from a known position, or faces up.
+    // No other evidence is needed if every point was seen from a known position or must face up.
     const bool one_view = (by_viewpoint() && in_.viewpoints.size() == 1) || all_seen();
     if (one_view || in_.rule == OrientationRule::kUp) {
       stated_ = one_view ? OrientationBasis::kViewpoint : OrientationBasis::kUp;
@@ -191,7 +192,7 @@ class Orienter {
     }
   }
 
-  // A position that may be a default of the file counts for sheets only.
+  // A scanner position that may be a default value of the file is used for sheets only.
   void apply_sights() {
     for (std::size_t i = 0; i < size(); ++i) {
       const Sight* const s = sight(i);
@@ -206,7 +207,8 @@ class Orienter {
     }
   }
 
-  // Strong where the normal is steep to the ray or to the horizontal.
+  // Evidence from the viewpoint or from up. Strong unless the normal is nearly perpendicular to
+  // that direction.
   [[nodiscard]] float stated_side(std::size_t i) const {
     const double cosine = in_.rule == OrientationRule::kUp ? static_cast<double>(normals_[i].z())
                                                            : cosine_to_viewpoint(i);
@@ -222,7 +224,7 @@ class Orienter {
                               (use_dense ? in_.dense : in_.points).positions(), finest);
   }
 
-  // Patches of certain relative sign, then the signs of the patches.
+  // Joins points of certain relative sign to patches, then determines the signs of the patches.
   std::vector<std::int8_t> decide_points(const std::vector<SignedEdge>& edges) {
     const Patches patches = certain_patches(edges, evidence_.side, kCertain);
     std::vector<SignedEdge> between;
@@ -289,8 +291,8 @@ class Orienter {
     double convex = 0.0;  // sum of the heights of the points over the centre, along their normals
     OrientationBasis basis = OrientationBasis::kOutside;
     double confidence = 1.0;
-    bool reverse = false;    // the signs found
-    bool keep_file = false;  // instead of the signs found
+    bool reverse = false;    // reverse the signs found
+    bool keep_file = false;  // keep the normals of the file instead
   };
 
   void count_points() {
@@ -322,7 +324,8 @@ class Orienter {
     }
   }
 
-  // Of the angle between the normal and the viewpoint that it faces or shuns most clearly.
+  // Cosine of the angle between the normal and the direction to the scanner. Of several viewpoints,
+  // uses the one with the maximum absolute cosine.
   [[nodiscard]] double cosine_to_viewpoint(std::size_t i) const {
     if (const Sight* const s = sight(i)) {
       return static_cast<double>(normals_[i].dot(s->toward));
@@ -366,7 +369,8 @@ class Orienter {
     }
   }
 
-  // Normals of the file that the evidence confirms are kept where single points contradict it.
+  // True if the evidence confirms the normals of the file. They are then kept also at single points
+  // that contradict it.
   static bool is_right_file(const Judgement& j) {
     const std::uint32_t tested = j.given_agree + j.given_against;
     return tested != 0 && j.given_agree >= kGivenIsRight * tested;
@@ -383,7 +387,7 @@ class Orienter {
       j.reverse = j.convex < 0.0;
       j.confidence = std::min(j.confidence, 0.6);
     } else {
-      // Up: the axis that most of the sheet faces.
+      // Up is the axis that most of the sheet faces.
       Eigen::Index axis = 2;
       if (in_.rule != OrientationRule::kUp) {
         j.mean_normal.cwiseAbs().maxCoeff(&axis);
@@ -394,7 +398,7 @@ class Orienter {
     }
   }
 
-  // From the outermost piece inwards: normals point away from the material around a hollow.
+  // Starts with the outermost component. Normals point away from the material around a cavity.
   void orient_enclosed() {
     std::vector<std::uint32_t> order;
     std::vector<Box> boxes(pieces_);
@@ -461,11 +465,11 @@ class Orienter {
 
   const OrientationInput& in_;
   std::span<Eigen::Vector3f> normals_;
-  std::vector<std::uint32_t> piece_;  // of each point
+  std::vector<std::uint32_t> piece_;  // component of each point
   std::uint32_t pieces_ = 0;
   Evidence evidence_;
-  std::vector<std::uint32_t> seen_;  // per piece: points with a known position of the scanner
-  std::vector<float> hint_;          // weaker than evidence
+  std::vector<std::uint32_t> seen_;  // per component: points with a known position of the scanner
+  std::vector<float> hint_;          // per point: evidence of the file or of a viewpoint
   std::optional<OrientationBasis> stated_;
   std::vector<std::int8_t> sign_;
   std::vector<std::uint8_t> contested_;

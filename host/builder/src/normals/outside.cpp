@@ -12,8 +12,8 @@ namespace {
 constexpr double kCellsPerRadius = 2.5;
 constexpr int kBlock = 8;                    // cells on an edge
 constexpr double kMaxBlocks = 16'777'216.0;  // 2^24
-// A ball that touches an element has its centre near the normal, at the radius and up to 1.2 cells
-// beyond, since centres are rounded to cells.
+// A ball that touches an element has its centre near the normal, at a distance of the radius and up
+// to 1.2 cells more, because centres are rounded to cells.
 constexpr int kProbeSteps = 3;
 constexpr float kProbeStepCells = 0.55F;
 const std::array<Eigen::Vector3f, 7> kProbes = [] {
@@ -32,7 +32,7 @@ const std::array<Eigen::Vector3f, 7> kProbes = [] {
 constexpr std::uint64_t kFirstColumn = 0x0101010101010101U;  // x = 0
 constexpr std::uint64_t kLastColumn = 0x8080808080808080U;   // x = 7
 
-// All cells that can be reached from `seeds` inside one block of free cells.
+// Extends `seeds` to all cells that can be reached from them inside one block of free cells.
 void fill(const std::array<std::uint64_t, 8>& open, std::array<std::uint64_t, 8>& seeds) {
   for (bool changed = true; changed;) {
     changed = false;
@@ -46,7 +46,7 @@ void fill(const std::array<std::uint64_t, 8>& open, std::array<std::uint64_t, 8>
   }
 }
 
-// The cells of a block that touch reached cells of its neighbour across a face.
+// Adds the cells of a block that touch reached cells of its neighbour across a face.
 void enter(const std::array<std::uint64_t, 8>& neighbour, std::size_t face,
            std::array<std::uint64_t, 8>& seeds) {
   if (face == 4) {
@@ -109,7 +109,7 @@ void Outside::block_around(std::span<const Eigen::Vector3d> positions) {
   const double squared = radius_ * radius_;
   Eigen::Vector3i last = Eigen::Vector3i::Constant(-1);
   for (const Eigen::Vector3d& p : positions) {
-    // One of several points in half a cell is enough.
+    // Consecutive points in the same half cell are skipped, because one of them is enough.
     const Eigen::Vector3i half = (2.0 * (p - origin_) / edge_).array().floor().cast<int>();
     if (half == last) {
       continue;
@@ -159,8 +159,8 @@ std::array<std::size_t, 6> Outside::neighbours_of(std::size_t block) const {
   return {block - 1, block + 1, block - row, block + row, block - layer, block + layer};
 }
 
-// Takes over what the neighbours of a block with a bitmap have reached. Returns whether it has
-// changed.
+// Adds the cells of a block with a bitmap that can be reached from its neighbours. Returns true if
+// there are any.
 bool Outside::spread(std::size_t block) {
   Bits& reached = reached_[near_[block] - 1];
   const Bits& open = free_[near_[block] - 1];
@@ -197,7 +197,7 @@ std::vector<std::size_t> Outside::entered_from(std::size_t block) {
   return entered;
 }
 
-// The outermost layer of blocks surrounds the grid; it is reached, and never visited.
+// The outermost layer of blocks surrounds the grid; it is marked as reached and never visited.
 void Outside::reach_border() {
   for (int z = 0; z < blocks_.z(); ++z) {
     for (int y = 0; y < blocks_.y(); ++y) {
@@ -247,7 +247,7 @@ void Outside::flood() {
 }
 
 bool Outside::reached_cell(const Eigen::Vector3f& in_cells) const {
-  // Every probe lies in the grid: its margin is wider than the reach of a probe.
+  // Every probe lies in the grid, because its margin is wider than the range of a probe.
   const Eigen::Vector3i cell = in_cells.cast<int>();
   const std::size_t block = block_of(cell.x() >> 3, cell.y() >> 3, cell.z() >> 3);
   if (near_[block] == kFar) {
@@ -259,7 +259,7 @@ bool Outside::reached_cell(const Eigen::Vector3f& in_cells) const {
 
 Outside::Side Outside::side_of(const Eigen::Vector3d& position,
                                const Eigen::Vector3f& normal) const {
-  // In cells, and in a frame whose z axis is the normal.
+  // Position in cells, and two unit vectors that are perpendicular to the normal.
   const Eigen::Vector3f at = ((position - origin_) / edge_).cast<float>();
   const Eigen::Vector3f u = normal.unitOrthogonal();
   const Eigen::Vector3f v = normal.cross(u);

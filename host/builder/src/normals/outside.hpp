@@ -9,13 +9,14 @@
 
 namespace tactree::builder {
 
-/// Centres that a ball of one radius can take on its path from infinity, on a grid.
+/// Grid of the positions that the centre of a ball of one radius can take on its path from
+/// infinity.
 /// Stored sparsely: a bitmap per block of 8 x 8 x 8 cells near a point, one flag per other block.
 class Outside {
  public:
   /// The edge of a cell is radius / 2.5. Preconditions: finite positions, radius > 0.
   /// Deterministic. Cost: about 0.5 us per point; memory: about 10 bytes per point and one byte per
-  /// block of the bounding box. A radius that would need more than 2^24 blocks is raised.
+  /// block of the bounding box. A radius that would need more than 2^24 blocks is increased.
   Outside(std::span<const Eigen::Vector3d> positions, double radius);
 
   [[nodiscard]] double radius() const { return radius_; }
@@ -24,7 +25,7 @@ class Outside {
     float evidence = 0.0F;  ///< 1: `normal` points outside, -1: its opposite, 0: unknown
     bool both = false;      ///< the ball touches the element from both sides
   };
-  /// Which side of a surface element is outside.
+  /// Determines which side of a surface element is outside.
   [[nodiscard]] Side side_of(const Eigen::Vector3d& position, const Eigen::Vector3f& normal) const;
 
  private:

@@ -12,9 +12,11 @@
 namespace tactree::builder {
 namespace {
 
-// Thin plates are reached from both sides at their edges; a body that leaks, nearly everywhere.
+// Maximum ratio of points reached from both sides. Thin plates have such points at their edges, a
+// body with a leak nearly everywhere.
 constexpr double kMaxTwoSided = 0.25;
-// Smaller pieces get no larger ball than the finest one.
+// Components with fewer points, absolute and as a ratio of all points, do not require a larger
+// ball.
 constexpr std::uint32_t kFewPoints = 30;
 constexpr double kFewPart = 0.002;
 

@@ -1,5 +1,5 @@
 #pragma once
-// Evidence about the outside of the pieces of a surface, on as many scales as each needs.
+// Evidence about the outside of the components of a surface, at as many scales as each needs.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -12,25 +12,25 @@ struct PieceEvidence {
   std::uint32_t points = 0;
   std::uint32_t one_sided = 0;
   std::uint32_t two_sided = 0;
-  bool settled = false;  ///< on some scale few points are reached from both sides
-  bool closed = false;   ///< on the finest scale already
+  bool settled = false;  ///< at some scale, few points are reached from both sides
+  bool closed = false;   ///< settled at the finest scale
 };
 
 struct Evidence {
-  std::vector<float> side;            ///< per point, 1: its normal points outside, 0: unknown
-  std::vector<PieceEvidence> pieces;  ///< at the scale on which the piece is settled
+  std::vector<float> side;  ///< per point: 1 if its normal points outside, -1 if inside, 0: unknown
+  std::vector<PieceEvidence> pieces;  ///< at the scale at which the component is settled
 };
 
-/// The side of each point of `positions` that a ball reaches from outside without touching
-/// `blockers`. The ball has the radius `finest`; pieces that it reaches from both sides get larger
-/// ones. piece: number of the piece of each point, below `pieces`.
+/// Finds for each point of `positions` the side that a ball reaches from outside without touching
+/// `blockers`. The ball has the radius `finest`; components that it reaches from both sides are
+/// tested with larger balls. `piece` is the number of the component of each point, below `pieces`.
 [[nodiscard]] Evidence find_evidence(std::span<const Eigen::Vector3d> positions,
                                      std::span<const Eigen::Vector3f> normals,
                                      std::span<const std::uint32_t> piece, std::uint32_t pieces,
                                      std::span<const Eigen::Vector3d> blockers, double finest);
 
 /// Winding number of an oriented cloud at a position: about 1 inside a body, 0 outside. Points of
-/// the piece `without` do not count. area: of one point.
+/// the component `without` do not count. `area` is that of one point.
 [[nodiscard]] double winding_number(const Eigen::Vector3d& at,
                                     std::span<const Eigen::Vector3d> positions,
                                     std::span<const Eigen::Vector3f> normals,

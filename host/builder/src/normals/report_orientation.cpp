@@ -7,13 +7,14 @@
 namespace tactree::builder {
 namespace {
 
-// A warning for stray fragments would hide those that matter.
+// Ratio of the surface below which nothing is reported, because a warning about stray fragments
+// would hide those that matter.
 constexpr double kNoteworthy = 0.01;
 constexpr const char* kSheetRemedy =
     "give --viewpoint X,Y,Z, --orient up, --flip-normals, or its thickness in metres with "
     "--two-sided";
 
-/// Pieces whose side the evidence `basis` decided, in points.
+/// Number of points of the components whose orientation the evidence `basis` decided.
 double points_by(const OrientationReport& orientation, OrientationBasis basis) {
   double points = 0.0;
   for (const OrientedPiece& piece : orientation.pieces) {
@@ -22,7 +23,8 @@ double points_by(const OrientationReport& orientation, OrientationBasis basis) {
   return points;
 }
 
-// What the file states is told as the cause only where it decided, so that it contradicts no piece.
+// A scanner position in the file is named as the cause only if it decided the orientation, so that
+// the note does not contradict the result.
 void note_scanners(const OrientationReport& orientation, double all, BuildReport& report) {
   const std::size_t count = orientation.scanners.size();
   if (count == 0) {
@@ -46,7 +48,7 @@ void note_scanners(const OrientationReport& orientation, double all, BuildReport
                   place));
 }
 
-// The remedy does not ask for what is already known.
+// The hint does not request what is already known.
 std::string remedy_for(OrientationBasis basis) {
   switch (basis) {
     case OrientationBasis::kUp:

@@ -1,5 +1,5 @@
 #pragma once
-// Sums up the orientation of a cloud for the user.
+// Summarises the orientation of a cloud or mesh for the user.
 
 #include "normals/mesh_windings.hpp"
 #include "normals/orient_cloud.hpp"
@@ -7,12 +7,12 @@
 
 namespace tactree::builder {
 
-/// Fills report.orientation, and adds a warning if a part of the surface is doubtful or normals of
-/// the file were reversed.
+/// Fills report.orientation, and adds a warning if the orientation of a part of the surface is
+/// ambiguous or if normals of the file were reversed.
 void report_orientation(const CloudOrientation& orientation, std::uint64_t reversed_normals,
                         BuildReport& report);
 
-/// The same for a mesh of `faces` faces.
+/// Fills report.orientation for a mesh of `faces` faces, and adds such warnings.
 void report_windings(const WindingRepair& repair, std::uint64_t faces, BuildReport& report);
 
 }  // namespace tactree::builder

@@ -12,11 +12,12 @@ namespace {
 
 constexpr std::size_t kGraphNeighbours = 10;
 constexpr double kFarthestEdgeSpacings = 3.0;
-// A chord steeper than at an edge of 90 degrees crosses the body instead of following its surface.
+// A steeper chord than across an edge of 90 degrees passes through the body instead of along its
+// surface.
 constexpr float kSteepestChord = 0.75F;
 // Below this agreement the relative sign is unknown.
 constexpr float kLeastAgreement = 0.5F;
-// Two sets with more evidence than this against each other are not joined.
+// Two sets are not joined if both have more evidence than this and it is contradictory.
 constexpr float kContradiction = 1.5F;
 
 // Relative sign of the normals of two points, and its certainty; 0 if unknown.
@@ -94,7 +95,7 @@ class SignedSets {
     }
     return place;
   }
-  // The lowest member is the root.
+  // The lowest member becomes the root.
   void join(const SignedEdge& edge) {
     const Place a = find(edge.from);
     const Place b = find(edge.to);
@@ -117,7 +118,7 @@ class SignedSets {
  private:
   std::vector<std::uint32_t> parent_;
   std::vector<std::uint8_t> reversed_;
-  std::vector<float> evidence_;  // of the set of a root
+  std::vector<float> evidence_;  // per root: evidence of its set
 };
 
 }  // namespace
@@ -147,7 +148,7 @@ std::vector<SignedEdge> signed_graph(const ZOrderedCloud& points,
 Patches certain_patches(const std::vector<SignedEdge>& edges, std::span<const float> evidence,
                         float least_weight) {
   const std::size_t points = evidence.size();
-  // In the order of certainty, in steps: the sort is a count.
+  // Sorts by certainty in steps, which makes it a counting sort.
   constexpr int kCertaintySteps = 64;
   std::array<std::vector<std::uint32_t>, kCertaintySteps + 1> by_certainty;
   for (std::uint32_t e = 0; e < edges.size(); ++e) {

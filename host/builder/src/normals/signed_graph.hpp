@@ -17,10 +17,10 @@ struct SignedEdge {
   float weight;
 };
 
-/// The edges to the ten nearest neighbours within three spacings, ordered by (from, to). Two
-/// normals are compared after mirroring one in the plane midway between the points, which is exact
-/// on a sphere and carries signs around edges. An edge that crosses the body instead of following
-/// its surface is left out. Deterministic. Cost: about 4 us per point and core.
+/// Returns the edges to the ten nearest neighbours within three spacings, ordered by (from, to).
+/// Two normals are compared after mirroring one in the plane midway between the points, which is
+/// exact on a sphere and carries signs around edges. An edge that passes through the body instead
+/// of along its surface is left out. Deterministic. Cost: about 4 us per point and core.
 [[nodiscard]] std::vector<SignedEdge> signed_graph(const ZOrderedCloud& points,
                                                    std::span<const Eigen::Vector3f> normals,
                                                    double spacing);

@@ -6,12 +6,12 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "sampling/ball_bound.hpp"
 #include "octree/interior.hpp"
 #include "octree/lattice.hpp"
 #include "octree/normal_code.hpp"
 #include "octree/octree_builder.hpp"
 #include "octree/query_bound.hpp"
+#include "sampling/ball_bound.hpp"
 #include "tactree/builder/model.hpp"
 #include "tactree/builder/version.hpp"
 #include "tactree/core/math/crc32.hpp"
@@ -21,8 +21,8 @@
 namespace tactree::builder {
 namespace {
 
-// Margin that open_blob() requires between the diameter of a query and the edge of a leaf, in
-// units.
+// Maximum reach of a query, in units. open_blob() requires a margin between the diameter of a query
+// and the edge of a leaf.
 constexpr double kReachUnits = core::kLeafUnits / 2 - 4;
 
 Octree build_surface_octree(const Model& model, const Eigen::Vector3d& low,
@@ -47,8 +47,9 @@ std::uint32_t fullest(const Octree& tree) {
   return count;
 }
 
-// The tree of the paper: the smallest cubic root, split until no leaf holds more than m points.
-// Leaves are at least half a spacing wide; points closer to each other than that stay in one leaf.
+// The tree of the `paper` profile: the smallest cubic root, split until no leaf holds more than m
+// points. Leaves are at least half a spacing wide; points closer to each other than that stay in
+// one leaf.
 Octree build_paper_octree(const Model& model, Eigen::Vector3d low, Eigen::Vector3d high) {
   const Eigen::Vector3d middle = 0.5 * (low + high);
   low = low.cwiseMin(middle.array().matrix() - Eigen::Vector3d::Constant(model.spacing_m));
@@ -91,7 +92,7 @@ std::vector<Eigen::Vector3d> decode_all(const Octree& tree) {
 }
 
 // The deepest level whose directory takes at most 1/32 of the memory of the point words, or that
-// leaves no more levels than a query can traverse.
+// leaves no more levels below it than a query can traverse.
 std::uint32_t directory_level(const Octree& tree) {
   const std::uint32_t depth = tree.lattice.depth;
   std::uint32_t level = depth > core::kMaxLevelsBelow ? depth - core::kMaxLevelsBelow : 0U;
@@ -126,7 +127,8 @@ std::vector<std::uint32_t> directory(const Octree& tree, std::uint32_t level) {
   return entries;
 }
 
-// The largest size of leaf groups in which 16 bits can count the points from the first leaf.
+// The maximum shift of the leaf group size at which 16 bits can count the points from the first
+// leaf of a group.
 std::uint32_t leaf_group_shift(const std::vector<std::uint32_t>& first_points) {
   std::uint32_t shift = core::kMaxLeafGroupShift;
   const auto fits = [&] {
@@ -169,7 +171,7 @@ core::BlobDouble to_words(double v) {
   return {static_cast<std::uint32_t>(bits), static_cast<std::uint32_t>(bits >> 32)};
 }
 
-// Truncates to the field between two characters: UTF-8 stays valid.
+// Truncates between two characters, so that UTF-8 stays valid.
 void copy_text(char* field, std::size_t size, const std::string& text) {
   std::size_t length = std::min(text.size(), size - 1);
   while (length > 0 && length < text.size() &&
@@ -231,7 +233,7 @@ core::BlobHeader make_header(const Model& model, const Octree& tree) {
   const QueryBound query = query_bound(tree, model.profile, static_cast<double>(header.reach_m));
   header.points_per_query_max = query.points;
   header.points_per_slab_max = query.points_per_slab;
-  // A ball of this radius touches only leaves of its query, whose points are a bound as well.
+  // A ball of this radius touches only leaves of its query, so their points are another bound.
   header.points_per_ball_max =
       std::min(header.points_per_query_max,
                std::max(1U, max_points_in_ball(decoded, static_cast<double>(header.reach_m))));
@@ -246,7 +248,7 @@ core::BlobHeader make_header(const Model& model, const Octree& tree) {
   return header;
 }
 
-// In the surface profile each node has children of one kind, and the other word is 0.
+// In the surface profile each node has children of one kind only, so one of its two words is 0.
 void append_nodes(Serialiser& out, core::BlobHeader& header, core::Profile profile,
                   const Octree& tree) {
   if (profile == core::Profile::kPaper) {
@@ -308,7 +310,7 @@ void append_materials(Serialiser& out, core::BlobHeader& header, const Model& mo
   header.material_indices = out.append(indices);
 }
 
-/// An extension of the header: a reader of version 1.0 steps over it.
+/// Writes an extension of the header, which a reader of version 1.0 skips.
 void append_interior(Serialiser& out, core::BlobHeader& header,
                      const std::vector<std::uint8_t>& interior) {
   if (interior.empty()) {

@@ -8,27 +8,28 @@
 #include <numbers>
 
 #include "geometry/disjoint_sets.hpp"
-#include "octree/octree_builder.hpp"
 #include "geometry/point_grid.hpp"
+#include "octree/octree_builder.hpp"
 #include "tactree/core/model/octree.hpp"
 
 namespace tactree::builder {
 namespace {
 
-// Neighbours of a point, in spacings.
+// Radius of the neighbourhood of a point, in spacings.
 constexpr double kNear = 2.0;
-// Largest area of a point, in squared spacings: one at a border has half its neighbours.
+// Maximum area of a point, in squared spacings, because a point at a border has half the
+// neighbours.
 constexpr double kMaxArea = 2.0;
 
-// On a closed surface the winding number is 1/2, the mean of its two sides; on a flat sheet 0, on
-// half a sphere 1/4.
+// Threshold of the winding number on the surface of a body. The winding number is 1/2 (the mean of
+// both sides) on a closed surface, 0 on a flat sheet and 1/4 on half a sphere.
 constexpr double kBody = 0.3;
-// Samples of a piece.
+// Number of samples of a component.
 constexpr std::uint32_t kSamples = 2048;
 
 struct Neighbourhood {
   std::vector<double> areas;            // of each point, m^2
-  std::vector<std::uint32_t> piece_of;  // the lowest point of its piece
+  std::vector<std::uint32_t> piece_of;  // the lowest point of its component
 };
 
 Neighbourhood look_at_neighbours(const OrientedPoints& points) {

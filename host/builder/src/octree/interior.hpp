@@ -1,14 +1,14 @@
 #pragma once
-// Where the material of a scanned object is: on the inner side of its surface, as far as that
-// encloses something. A sheet has none, and both its sides are free.
+// Determines where the material of a scanned object is: on the inner side of its surface, where the
+// surface encloses something. A sheet has no material, and both its sides are free.
 
 #include <Eigen/Core>
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "tactree/core/model/blob_format.hpp"
 #include "geometry/winding_tree.hpp"
+#include "tactree/core/model/blob_format.hpp"
 
 namespace tactree::builder {
 
@@ -16,22 +16,23 @@ struct OrientedPoints {
   std::span<const Eigen::Vector3d> positions;
   std::span<const Eigen::Vector3f> normals;
   std::span<const std::uint8_t>
-      doubtful;  ///< empty, or one per position: 1 if its side is doubtful
+      doubtful;  ///< empty, or one per position: 1 if its orientation is ambiguous
   double spacing = 0.0;
 };
 
 class Interior {
  public:
-  /// Points closer than two spacings whose normals agree are one piece. A piece has material behind
-  /// it if a winding number differs enough between its two sides and the rest of space: a body
-  /// with holes does, a sheet or a flat bowl does not, nor does a piece that is doubtful.
-  /// Deterministic. Cost: about 3 us per point and core.
+  /// Points closer than two spacings whose normals agree belong to one component. A component has
+  /// material behind it if the mean winding number at its points is large enough: this is true for
+  /// a body with holes, and false for a sheet, a flat bowl or a component with ambiguous
+  /// orientation. Deterministic. Cost: about 3 us per point and core.
   explicit Interior(const OrientedPoints& points);
 
-  /// Is there material behind the point?
+  /// True if there is material behind the point.
   [[nodiscard]] bool is_backed(std::uint32_t point) const { return backed_[point] != 0; }
   [[nodiscard]] double backed_share() const { return backed_share_; }
-  /// Further from all points than a spacing or two. Cost: about 5 us.
+  /// True if there is material at a position that is farther from all points than one to two
+  /// spacings. Cost: about 5 us.
   [[nodiscard]] bool is_material(const Eigen::Vector3d& at) const;
 
  private:
@@ -40,7 +41,7 @@ class Interior {
   WindingTree tree_;
   std::vector<std::uint8_t> backed_;
   double backed_share_ = 0.0;
-  double outermost_ = 0.0;  // turns of space far away from the surface: 1 where that is material
+  double outermost_ = 0.0;  // winding number far away from the surface: 1 if material is there
 };
 
 struct Octree;

@@ -34,7 +34,8 @@ int coordinate_bits(const Lattice& lattice) {
   return bits;
 }
 
-// Places a root cube of whole leaves around the bounds; false if no allowed depth contains them.
+// Places a root cube of whole leaves around the bounds. Returns false if no allowed depth contains
+// them.
 bool place_root(const Eigen::Vector3d& low, const Eigen::Vector3d& high, Lattice& lattice) {
   const double leaf = lattice.step_m * core::kLeafUnits;
   const Eigen::Array3d first = (low.array() / leaf - 0.001).floor();
@@ -61,7 +62,7 @@ bool place_root(const Eigen::Vector3d& low, const Eigen::Vector3d& high, Lattice
   return true;
 }
 
-// Centres a root cube of the given depth and step on the bounds; false if they do not fit.
+// Centres a root cube of the given depth and step on the bounds. Returns false if they do not fit.
 bool place_around(const Eigen::Vector3d& low, const Eigen::Vector3d& high, Lattice& lattice) {
   const double units = std::ldexp(core::kLeafUnits, static_cast<int>(lattice.depth));
   const Eigen::Array3d first = low.array() / lattice.step_m;
@@ -104,8 +105,8 @@ Lattice bounding_lattice(const Eigen::Vector3d& low, const Eigen::Vector3d& high
   const double units = std::ldexp(core::kLeafUnits, static_cast<int>(depth));
   const double extent = (high - low).maxCoeff();
   for (int bits = kMaxStepBits; bits >= 1; --bits) {
-    // A root as wide as the model if the lattice allows it, else two units wider, because its
-    // corner is rounded to whole units.
+    // First tries a root as wide as the model, then one that is two units wider, because the corner
+    // of the root is rounded to whole units.
     for (const double across : {units, units - 2.0}) {
       Lattice lattice;
       lattice.depth = depth;

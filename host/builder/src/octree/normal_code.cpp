@@ -26,7 +26,8 @@ std::uint32_t encode_normal(const Eigen::Vector3f& normal) {
     u = (1.0 - std::abs(n.y())) * (n.x() < 0.0 ? -1.0 : 1.0);
     v = (1.0 - std::abs(n.x())) * (n.y() < 0.0 ? -1.0 : 1.0);
   }
-  // The nearest u and v need not give the nearest direction: tries the four codes around.
+  // The nearest u and v do not always give the nearest direction, so the four codes around are
+  // tried.
   const double fu = std::floor(u * 255.0);
   const double fv = std::floor(v * 255.0);
   std::uint32_t best = 0;

@@ -13,8 +13,8 @@ namespace {
 
 using core::Int3;
 
-// The Morton code of a point's cell of two lattice units, counted from the root. Sorting by it
-// sorts by octant on every level.
+// Morton code of a point's cell of two lattice units, counted from the root. Sorting by it sorts by
+// octant at every level.
 struct Keyed {
   std::uint64_t key;
   std::uint32_t index;
@@ -65,7 +65,7 @@ class OctreeBuilder {
     std::size_t end;
   };
 
-  // Adds the children of a node: leaves first, which makes their indices consecutive.
+  // Adds the children of a node. Leaves are added first, so that their indices are consecutive.
   void split(std::uint32_t node, std::uint32_t level, Int3 cell, std::size_t begin,
              std::size_t end) {
     const std::uint32_t shift = 3U * (tree_.lattice.depth - level - 1U + core::kLeafShift - 1U);
@@ -106,7 +106,7 @@ class OctreeBuilder {
     }
   }
 
-  // A leaf stores ten bits per axis; a coarser leaf stores the upper ones.
+  // A leaf stores ten bits per axis; a coarser leaf stores the upper bits.
   std::uint32_t word_of(std::uint64_t key, std::uint32_t level) const {
     const std::uint32_t drop = tree_.lattice.depth - level;
     const Eigen::Vector3i cell = morton_cell(key);
@@ -143,7 +143,7 @@ class OctreeBuilder {
   Octree tree_;
 };
 
-// The cell of a level that contains the lattice coordinates, or the leaf above it.
+// Finds the cell of a level that contains the lattice coordinates, or the leaf above it.
 std::uint32_t find_cell(const Octree& tree, Int3 corner, std::uint32_t level) {
   const Lattice& lattice = tree.lattice;
   const std::int32_t edge = core::kLeafUnits << lattice.depth;

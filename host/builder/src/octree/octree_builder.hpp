@@ -11,7 +11,7 @@ namespace tactree::builder {
 struct BuiltLeaf {
   core::Int3 min{};  ///< lattice units
   std::uint32_t level = 0;
-  std::uint32_t first = 0;  ///< into Octree::order
+  std::uint32_t first = 0;  ///< index into Octree::order
   std::uint32_t count = 0;
 };
 
@@ -20,7 +20,7 @@ struct Octree {
   std::vector<core::BlobNode> nodes;
   std::vector<BuiltLeaf> leaves;     ///< by leaf number
   std::vector<std::uint32_t> order;  ///< position indices, leaf by leaf, words ascending
-  std::vector<std::uint32_t> words;  ///< position bits of the point words, beside `order`
+  std::vector<std::uint32_t> words;  ///< position bits of the point words, parallel to `order`
   std::uint64_t merged = 0;          ///< points dropped at an occupied site
 };
 

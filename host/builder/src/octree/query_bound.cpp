@@ -23,7 +23,7 @@ QueryBound of_fullest_leaves(const Octree& tree) {
   return {sum, sum};
 }
 
-/// The leaves of one size, by their cells.
+/// Leaves of one size, indexed by their cells.
 class Blocks {
  public:
   explicit Blocks(const Octree& tree) : tree_(tree) {
@@ -55,7 +55,7 @@ class Blocks {
  private:
   static constexpr std::uint32_t kAxisBits = 20;
 
-  // A block has the key of its upper cell.
+  // The key of a block is that of its upper cell.
   static std::uint64_t offset_of(std::uint64_t corner) {
     return (corner & 1U) | (corner >> 1 & 1U) << kAxisBits | (corner >> 2) << 2 * kAxisBits;
   }

@@ -16,20 +16,21 @@ namespace {
 
 constexpr double kNeighbourSpacings = 1.7;
 constexpr double kBorderAngle = 2.0 * std::numbers::pi / 3.0;
-// Points whose normals differ more belong to the other side of a plate.
+// A point whose normal has a smaller cosine belongs to the other side of a plate.
 constexpr float kOtherSideCosine = -0.3F;
-// Cosine to the axis of a wedge within which a point counts as in its middle.
+// Minimum cosine to the axis of a wedge for a point in its central part (30 degrees).
 constexpr double kWedgeCosine = 0.866;
-// A surface that turns at an edge: directions of its normals there.
+// Limits for a surface that turns at an edge: the cosine between the normals, and the cosine of the
+// other normal to the axis of the wedge.
 constexpr float kBentCosine = 0.75F;
 constexpr double kBentAwayCosine = 0.5;
 constexpr double kBehindSpacings = 0.3;
 constexpr double kGoesOnSpacings = 1.0;
-// Average distance of border points from the edge of a hole, both sides together.
+// Average distance of border points from the edge of a hole, summed over both sides.
 constexpr double kStandBackSpacings = 0.5;
-// Border points belong to one opening if they are near each other and their `away` directions
-// agree, or if the points one look distance into the open are near each other; the latter joins
-// opposite sides of a small hole. Distances in support radii.
+// Border points belong to one opening if they are close to each other and their `away` directions
+// agree, or if the points at the look distance into the opening are close to each other. The latter
+// joins opposite sides of a small hole. Distances in support radii.
 constexpr double kNearRadii = 1.0;
 constexpr double kSameDirectionCosine = 0.3;
 constexpr double kLookRadii = 0.4;
@@ -53,7 +54,7 @@ TangentFrame tangents_of(const Eigen::Vector3d& normal) {
   return {u, normal.cross(u)};
 }
 
-// The widest angle between adjacent directions, and the direction of its middle.
+// The widest angle between adjacent directions, and the direction of its bisector.
 struct Wedge {
   double angle = 2.0 * std::numbers::pi;
   double middle = 0.0;
@@ -86,7 +87,7 @@ class PointProbe {
   PointProbe(const ZOrderedCloud& points, double spacing, double radius)
       : points_(points), spacing_(spacing), radius_(radius) {}
 
-  // True for a border point. Else `gap` is the diameter of an empty ball beside the point.
+  // True for a border point. Otherwise `gap` is the diameter of an empty ball beside the point.
   bool is_border(std::uint32_t i, Eigen::Vector3d& away, double& gap) {
     const Eigen::Vector3d& p = points_.positions()[i];
     gather(i);
@@ -134,7 +135,7 @@ class PointProbe {
     return found;
   }
 
-  // Whether the surface goes on around an edge: in another direction, or on the other side of a
+  // True if the surface continues around an edge: in another direction, or on the other side of a
   // plate that ends here as well.
   [[nodiscard]] bool turns_at(std::uint32_t i, const Eigen::Vector3d& away) const {
     const Eigen::Vector3d& p = points_.positions()[i];
@@ -171,8 +172,8 @@ class PointProbe {
   std::vector<double> directions_;
 };
 
-// The border points of each opening.
-// `border`: its normals are the directions away from the surface.
+// Groups the border points by opening. The normals of `border` are the directions away from the
+// surface.
 std::map<std::uint32_t, std::vector<std::uint32_t>> group(const ZOrderedCloud& border,
                                                           double radius) {
   const auto count = static_cast<std::uint32_t>(border.size());
@@ -206,8 +207,8 @@ std::uint32_t farthest_from(const ZOrderedCloud& border, const std::vector<std::
   });
 }
 
-// Whether most border points see border points across the opening that face them.
-// `border`: its normals are the directions away from the surface.
+// True if most border points face another border point across the opening. The normals of `border`
+// are the directions away from the surface.
 bool is_hole(const ZOrderedCloud& border, const std::vector<std::uint32_t>& members) {
   const auto sees = [&](std::uint32_t i, std::uint32_t j) {
     const Eigen::Vector3d chord = border.positions()[j] - border.positions()[i];
@@ -245,8 +246,8 @@ Opening measure(const ZOrderedCloud& border, const std::vector<std::uint32_t>& m
 }
 
 struct Probed {
-  std::vector<Eigen::Vector3f> away;  // of border points; else 0
-  std::vector<float> gap;             // beside the others
+  std::vector<Eigen::Vector3f> away;  // for border points; 0 for others
+  std::vector<float> gap;             // for points that are not at a border
 };
 
 Probed probe_all(const ZOrderedCloud& points, double spacing, double radius) {

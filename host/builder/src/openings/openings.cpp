@@ -2,8 +2,8 @@
 
 #include <utility>
 
-#include "openings/gaps.hpp"
 #include "geometry/z_order.hpp"
+#include "openings/gaps.hpp"
 
 namespace tactree::builder {
 

@@ -22,7 +22,7 @@ class Thickener {
     add(i, -sheet_.normals()[i].cast<double>());
   }
 
-  // Half a circle from one side to the other, around the edge of the sheet.
+  // Adds half a circle of points from one side to the other, around the edge of the sheet.
   void add_edge(std::uint32_t i, const Eigen::Vector3f& away) {
     const Eigen::Vector3d normal = sheet_.normals()[i].cast<double>();
     Eigen::Vector3d outward = away.cast<double>();

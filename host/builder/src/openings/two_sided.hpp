@@ -1,5 +1,5 @@
 #pragma once
-// Makes a body of a sheet, which a hand can touch from both sides.
+// Converts a sheet to a body, which can be touched from both sides.
 
 #include <cstdint>
 
@@ -9,14 +9,14 @@ namespace tactree::builder {
 
 struct Thickened {
   ZOrderedCloud points;
-  std::uint64_t at_edge = 0;  ///< of them: on the round edge
+  std::uint64_t at_edge = 0;  ///< number of points on the round edge
 };
 
 /// Moves two copies of the sheet apart by `thickness`, along its normals and against them, and
-/// closes its edges, also around holes, by half a cylinder. Normals of unit length; those of
-/// neighbours agree, their side does not matter. radius: of the surface fit. A sheet that is curved
-/// more tightly than half the thickness intersects itself. Deterministic. Cost: about 5 us per
-/// point and core.
+/// closes its edges, also around holes, by half a cylinder. Preconditions: normals of unit length,
+/// which agree between neighbours; their orientation does not matter. `radius` is that of the
+/// surface fit. A sheet that is curved more tightly than half the thickness intersects itself.
+/// Deterministic. Cost: about 5 us per point and core.
 [[nodiscard]] Thickened thicken(const ZOrderedCloud& sheet, double spacing, double radius,
                                 double thickness);
 

@@ -14,16 +14,17 @@ class ChildOutput {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// Starts the program arguments[0], which is killed with this object. Throws std::system_error.
-  /// `now` is the time of the limit.
+  /// Starts the program arguments[0], which is killed when this object is destroyed. Throws
+  /// std::system_error. `now` is the clock of the time limit.
   ChildOutput(const std::vector<std::string>& arguments, double seconds,
               Clock::time_point (*now)() = &Clock::now);
 
-  /// Reads the next `size` bytes of the output. False if the output ends earlier or the time is
-  /// over.
+  /// Reads the next `size` bytes of the output. Returns false if the output ends earlier or the
+  /// time limit has passed.
   [[nodiscard]] bool read(void* into, std::size_t size);
 
-  /// After read() returned false: waits for the end of the child and describes it, for a message.
+  /// Call after read() has returned false. Waits for the end of the child and describes it for a
+  /// message.
   [[nodiscard]] std::string wait_and_describe_end();
 
  private:

@@ -18,7 +18,7 @@ namespace {
 
 constexpr const char* kExportE57Again = "export the scan again, or convert it to PLY";
 
-// Of the XML section: a scan takes about 50.
+// Limits of the XML section. A scan takes about 50 tags.
 constexpr XmlLimits kXmlLimits{std::size_t{1} << 26, 1'000'000};
 
 /// Reads the elements that describe the points: e57Root / data3D / scan / ...
@@ -133,7 +133,7 @@ class IndexParser {
     }
   }
 
-  /// The number in an element; 0 without one, as the standard defines.
+  /// Returns the number in an element, or 0 if there is none, as the standard defines.
   [[nodiscard]] double content(pugi::xml_node element) const {
     const std::string_view text = trim_lines(element.child_value());
     double value = 0.0;
@@ -184,7 +184,7 @@ class IndexParser {
 
   const std::string& file_;
   std::vector<E57Scan> scans_;
-  std::string place_;  // of the last of them
+  std::string place_;  // of the last scan, for messages
 };
 
 }  // namespace

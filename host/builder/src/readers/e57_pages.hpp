@@ -1,6 +1,6 @@
 #pragma once
 // The pages of an E57 file: 1024 bytes, of which the last four are the checksum of the others.
-// Physical offsets count all bytes of the file, logical ones leave the checksums out.
+// Physical offsets count all bytes of the file, logical offsets leave out the checksums.
 
 #include <array>
 #include <cstdint>
@@ -21,8 +21,8 @@ class E57Pages {
   [[nodiscard]] std::uint64_t size() const { return file_.size() / kPageBytes * kDataBytes; }
   [[nodiscard]] std::uint64_t offset() const { return page_ * kDataBytes + at_; }
 
-  /// The logical offset of a physical one. Throws ReadError if no data is there; `what`: for its
-  /// message, e.g. "the points of scan 2".
+  /// Returns the logical offset of a physical one. Throws ReadError if there is no data; `what`
+  /// names the data in the message, e.g. "the points of scan 2".
   [[nodiscard]] std::uint64_t to_logical(std::uint64_t physical, const std::string& what) const;
 
   /// Sets the logical offset of the next read().
@@ -35,7 +35,7 @@ class E57Pages {
 
   InputFile& file_;
   std::uint64_t page_ = 0;
-  std::uint64_t at_ = 0;  // in data_
+  std::uint64_t at_ = 0;  // offset in data_
   bool loaded_ = false;
   std::array<char, kDataBytes> data_{};
 };

@@ -1,5 +1,5 @@
 // E57 (ASTM E2807): a file in pages with checksums, an XML section that describes the scans, and a
-// section of packed points for each. Each scan has the pose of its scanner.
+// section of packed points for each scan. Each scan has the pose of its scanner.
 
 #include <fmt/format.h>
 
@@ -25,7 +25,7 @@ namespace {
 constexpr std::size_t kHeaderBytes = 48;
 constexpr std::uint64_t kMaxXmlBytes = std::uint64_t{1} << 26;
 
-/// Meanings of the fields beside those of Slot.
+/// Roles of fields in addition to those of Slot.
 enum Role : std::uint8_t {
   kRange = kSlots,
   kAzimuth,
@@ -52,7 +52,7 @@ constexpr std::array<std::string_view, kRoles> kFieldNames = {"cartesianX",
                                                               "sphericalInvalidState",
                                                               "isColorInvalid"};
 
-/// Index of the field with each role; -1: none.
+/// Index of the field for each role; -1: none.
 using Columns = std::array<int, kRoles>;
 
 Columns columns_of(const E57Scan& scan) {
@@ -104,7 +104,7 @@ class E57Reader {
   }
 
  private:
-  /// By a file of its own: the progress of this one rises with the points.
+  /// Opens the file separately, so that the progress of file_ rises with the points only.
   std::string read_xml(const std::filesystem::path& path) {
     InputFile file(path, nullptr, file_.name());
     E57Pages pages(file);
@@ -143,7 +143,7 @@ class E57Reader {
     return xml;
   }
 
-  /// Normals and colours are used if all scans have them.
+  /// Normals and colours are used only if all scans have them.
   void choose_columns(const std::vector<E57Scan>& scans) {
     std::size_t normals = 0;
     std::size_t colours = 0;
@@ -181,7 +181,7 @@ class E57Reader {
     if (builder_.points_kept() > first_point) add_pose(scan, first_point);
   }
 
-  /// A scan without a pose may come from several scanners.
+  /// A scan without a pose may have been recorded by several scanners, so its pose stays unknown.
   void add_pose(const E57Scan& scan, std::size_t first_point) {
     const std::optional<Eigen::Vector3d> stated =
         scan.has_pose ? std::optional<Eigen::Vector3d>(scan.to_file.translation()) : std::nullopt;

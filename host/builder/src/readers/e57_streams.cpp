@@ -18,10 +18,10 @@ constexpr char kPointSection = 1;
 constexpr char kIndexPacket = 0;
 constexpr char kDataPacket = 1;
 constexpr char kEmptyPacket = 2;
-constexpr std::size_t kPadding = 9;  // a number of 64 bits may begin within a byte
+constexpr std::size_t kPadding = 9;  // 64 bits that begin within a byte take nine bytes
 constexpr std::size_t kMaxWaiting = std::size_t{1} << 26;
 
-/// `bits` bits from bit `at` on, the lowest first.
+/// Loads `bits` bits from bit `at` on, the lowest first.
 std::uint64_t load_packed(const char* bytes, std::uint64_t at, unsigned bits) {
   const char* first = bytes + at / 8;
   const unsigned shift = at % 8;
@@ -64,7 +64,8 @@ void E57Streams::check_room() const {
   for (const E57Field& field : scan_.fields) {
     if (field.type != E57Field::Type::kText) bits_per_point += field.bits;
   }
-  // Points whose numbers all take no bits are equal: few make sense.
+  // Points whose fields take no bits are all equal. Their number is limited as if they took one
+  // bit.
   const std::uint64_t room = 8 * (end_ - data_) / std::max<std::uint64_t>(bits_per_point, 1);
   if (scan_.count > room) {
     fail(fmt::format("{} points are declared, there is room for {}", scan_.count, room));
@@ -89,7 +90,7 @@ void E57Streams::read(const std::function<void(const std::vector<double>& values
   }
 }
 
-/// False at the end of the section.
+/// Returns false at the end of the section.
 bool E57Streams::read_packet() {
   if (end_ - data_ < 4) return false;
   std::array<char, 4> header{};
@@ -146,7 +147,7 @@ void E57Streams::read_data_packet(std::uint64_t bytes) {
   }
 }
 
-/// Points of which all numbers are there.
+/// Number of points whose fields have all been read from packets.
 std::uint64_t E57Streams::complete_points() const {
   std::uint64_t complete = scan_.count;
   for (std::size_t k = 0; k < streams_.size(); ++k) {

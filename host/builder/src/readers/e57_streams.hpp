@@ -1,5 +1,5 @@
 #pragma once
-// The points of one scan of an E57 file: packets, each with a part of the stream of every field.
+// The points of one scan of an E57 file: packets, each with a chunk of the stream of every field.
 
 #include <array>
 #include <cstdint>
@@ -15,7 +15,7 @@ namespace tactree::builder {
 class E57Streams {
  public:
   /// Reads the header of the section. Throws ReadError, also if the section is too short for the
-  /// points. `file`: for messages.
+  /// points. `file` is the name in messages.
   E57Streams(E57Pages& pages, const E57Scan& scan, const std::string& file);
 
   /// Calls `add` with the values of all fields for each point. Throws ReadError.
@@ -23,8 +23,8 @@ class E57Streams {
 
  private:
   struct Stream {
-    std::vector<char> bytes;  // from the first unread number on, and kPadding
-    std::uint64_t bit = 0;    // of the first unread number
+    std::vector<char> bytes;  // from the first unread number on, then kPadding
+    std::uint64_t bit = 0;    // position of the first unread number
   };
 
   void read_header();
@@ -39,8 +39,8 @@ class E57Streams {
   E57Pages& pages_;
   const E57Scan& scan_;
   const std::string& file_;
-  std::uint64_t data_ = 0;  // logical, of the next packet
-  std::uint64_t end_ = 0;   // logical, of the section
+  std::uint64_t data_ = 0;  // logical offset of the next packet
+  std::uint64_t end_ = 0;   // logical end of the section
   std::vector<Stream> streams_;
   std::vector<char> packet_;
 };

@@ -1,4 +1,4 @@
-// The formats by the names that a user gives: extensions of file names.
+// Maps the format names that a user gives, which are file name extensions, to formats.
 
 #include <fmt/format.h>
 
@@ -52,7 +52,7 @@ FileKind binary_form(FileKind kind) {
   return kind == FileKind::kOff ? FileKind::kOffBinary : kind;
 }
 
-/// Formats that are text may be read as a table, if the user says so.
+/// True if the content identifies a format that has a reader, other than a table of text.
 bool is_definite(const Recognition& found) {
   return found.kind != FileKind::kText && found.kind != FileKind::kUnsupported;
 }
@@ -85,7 +85,7 @@ Recognition recognise_as(std::string_view extension, std::string_view head,
             fmt::format("{} by its content, not {}", found.name, format->shown),
             "leave --format out", ""};
   }
-  // LAZ is LAS that is packed: its own refusal names what unpacks it.
+  // LAZ is compressed LAS. Its own error message names a program that unpacks it.
   const bool packed = format->kind == FileKind::kLas && head.starts_with("LASF");
   if (packed || (format->kind == FileKind::kText && !text)) return found;
   return {text ? format->kind : binary_form(format->kind), std::string(format->shown), "",

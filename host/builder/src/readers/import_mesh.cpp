@@ -23,13 +23,14 @@ namespace fs = std::filesystem;
 
 constexpr const char* kProgram = "tactree-import-mesh";
 constexpr const char* kVariable = "TACTREE_IMPORT_MESH";
-// Some messages of the library quote the file at length.
+// Maximum length of a message, because some messages of the library quote the file at length.
 constexpr std::size_t kQuoted = 160;
 constexpr const char* kSaveAsPly = "open it in Blender or MeshLab and save it as PLY";
 
 bool is_program(const fs::path& path) { return ::access(path.c_str(), X_OK) == 0; }
 
-/// Searches the environment, the folder of this program, the installation and the build tree.
+/// Searches the environment variable, the folder of this program, the installation and the build
+/// tree.
 fs::path find_program(const std::string& file) {
   if (const char* named = std::getenv(kVariable); named != nullptr && *named != '\0') {
     if (is_program(named)) return named;

@@ -40,7 +40,7 @@ std::string kind_of(mode_t mode) {
 InputFile::InputFile(const std::filesystem::path& path, std::function<void(double)> progress,
                      std::string label)
     : name_(label.empty() ? path.string() : std::move(label)), progress_(std::move(progress)) {
-  // O_NONBLOCK: opening a pipe must not wait for a writer.
+  // With O_NONBLOCK, opening a pipe does not wait for a writer.
   descriptor_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (descriptor_ < 0) throw_open_error(name_, errno);
   struct stat status {};

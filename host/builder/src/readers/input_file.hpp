@@ -16,8 +16,8 @@ class InputFile {
   static constexpr std::size_t kMaxLineBytes = std::size_t{1} << 20;
   static constexpr std::size_t kMaxPeekBytes = std::size_t{1} << 26;
 
-  /// label: name in messages; empty: the path. Throws ReadError if `path` is missing, unreadable,
-  /// empty or not a regular file.
+  /// `label` is the name in messages; if it is empty, the path is used. Throws ReadError if `path`
+  /// is missing, unreadable, empty or not a regular file.
   explicit InputFile(const std::filesystem::path& path,
                      std::function<void(double)> progress = nullptr, std::string label = "");
   ~InputFile();
@@ -30,8 +30,8 @@ class InputFile {
   [[nodiscard]] std::uint64_t offset() const { return buffer_offset_ + begin_; }
   [[nodiscard]] std::uint64_t remaining() const { return size_ - offset(); }
 
-  /// The next bytes, at least `wanted` (at most kMaxPeekBytes) unless the file ends earlier.
-  /// Valid until the next call of any member function.
+  /// Returns the next bytes: at least `wanted` (at most kMaxPeekBytes) unless the file ends
+  /// earlier. They are valid until the next call of any member function.
   [[nodiscard]] std::string_view peek(std::size_t wanted) {
     if (end_ - begin_ < wanted) fill(wanted);
     return {buffer_.data() + begin_, end_ - begin_};
@@ -41,12 +41,13 @@ class InputFile {
   /// Skips any number of bytes, at most to the end of the file.
   void skip(std::uint64_t count);
 
-  /// Skips bytes of zero, with which some programs fill the end of a file. Whether no other follow.
+  /// Skips zero bytes, with which some programs pad the end of a file. Returns true if no other
+  /// bytes follow.
   [[nodiscard]] bool only_zeros_left();
 
-  /// The next line without a byte order mark at the begin of the file, and without its end ("\n",
-  /// "\r\n", or "\r" in a file that has no "\n"). False at the end of the file. Throws ReadError
-  /// for a line above kMaxLineBytes.
+  /// Reads the next line, without a byte order mark at the beginning of the file and without its
+  /// line end ("\n", "\r\n", or "\r" in a file that has no "\n"). Returns false at the end of the
+  /// file. Throws ReadError for a line above kMaxLineBytes.
   [[nodiscard]] bool next_line(std::string_view& line);
   /// Number of the last line read, from 1.
   [[nodiscard]] std::uint64_t line_number() const { return line_number_; }
@@ -65,7 +66,7 @@ class InputFile {
   int descriptor_ = -1;
   std::uint64_t size_ = 0;
   std::vector<char> buffer_;
-  std::uint64_t buffer_offset_ = 0;  // in the file, of buffer_[0]
+  std::uint64_t buffer_offset_ = 0;  // file offset of buffer_[0]
   std::size_t begin_ = 0;            // unread part of buffer_
   std::size_t end_ = 0;
   std::uint64_t line_number_ = 0;

@@ -12,7 +12,7 @@ namespace tactree::builder {
 namespace {
 
 constexpr std::uint16_t kLeastHeaderBytes = 227;
-constexpr std::uint16_t kLongHeaderBytes = 375;  // of 1.4, with a count of 64 bits
+constexpr std::uint16_t kLongHeaderBytes = 375;  // of version 1.4, with a 64-bit count
 constexpr std::size_t kRecordHeaderBytes = 54;
 constexpr const char* kExportLasAgain = "export the scan as LAS 1.0 to 1.4, or as PLY";
 

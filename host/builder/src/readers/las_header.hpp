@@ -10,14 +10,14 @@
 
 namespace tactree::builder {
 
-/// Places in a point record.
+/// Layout of a point record.
 struct LasLayout {
   std::uint16_t least_bytes;
-  std::int16_t colour;  ///< offset of red, green, blue of 16 bits; -1: none
-  bool extended;        ///< formats 6 to 10: flags of their own
+  std::int16_t colour;  ///< offset of red, green and blue, 16 bits each; -1: none
+  bool extended;        ///< formats 6 to 10, which have other flags
 };
 
-/// Units of length, metres; nothing: not stated.
+/// Units of length in metres; nullopt: not stated.
 struct LasUnits {
   std::optional<double> horizontal;
   std::optional<double> vertical;
@@ -25,7 +25,7 @@ struct LasUnits {
 };
 
 struct LasHeader {
-  int minor = 0;  ///< of the version 1.minor
+  int minor = 0;  ///< version 1.minor
   std::uint8_t point_format = 0;
   LasLayout layout{};
   std::uint16_t record_bytes = 0;

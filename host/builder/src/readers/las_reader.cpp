@@ -1,5 +1,4 @@
-// LAS 1.0 to 1.4: a header, records about the file, a record of
-// integers for each point.
+// LAS 1.0 to 1.4: a header, records about the file, and a record of integers for each point.
 
 #include <fmt/format.h>
 
@@ -77,7 +76,7 @@ class LasReader {
   void add_record(const char* record, const LasLayout& layout) {
     const auto flags = static_cast<unsigned char>(record[15]);
     const unsigned withheld = layout.extended ? 0x04 : 0x80;
-    const bool has_flags = header_.minor > 0;  // 1.0 has a wider classification there
+    const bool has_flags = header_.minor > 0;  // 1.0 uses all bits for the classification
     if (has_flags && (flags & withheld) != 0) {
       ++withheld_;
       return;
@@ -108,7 +107,7 @@ class LasReader {
   InputFile& file_;
   LasHeader header_;
   ScanBuilder builder_;
-  double to_horizontal_ = 1.0;  // unit of z, in that of x and y
+  double to_horizontal_ = 1.0;  // unit of z / unit of x and y
   std::uint64_t withheld_ = 0;
 };
 

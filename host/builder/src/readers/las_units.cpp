@@ -11,7 +11,7 @@
 namespace tactree::builder {
 namespace {
 
-/// EPSG codes.
+/// Unit of an EPSG code, metres.
 std::optional<double> unit_of_code(std::uint16_t code) {
   switch (code) {
     case 9001:
@@ -25,7 +25,7 @@ std::optional<double> unit_of_code(std::uint16_t code) {
   }
 }
 
-/// From `keyword` to the bracket that closes it; empty: there is none.
+/// Returns the text from `keyword` to the bracket that closes it; empty if there is none.
 std::string_view block_of(std::string_view text, std::string_view keyword) {
   const std::size_t begin = text.find(keyword);
   if (begin == std::string_view::npos) return {};
@@ -40,7 +40,7 @@ std::string_view block_of(std::string_view text, std::string_view keyword) {
   return {};
 }
 
-/// Of the last UNIT or LENGTHUNIT of a block: the unit of its axes.
+/// Value of the last UNIT or LENGTHUNIT of a block, which is the unit of its axes.
 std::optional<double> unit_of_block(std::string_view block) {
   const std::size_t unit = block.rfind("UNIT[");
   if (unit == std::string_view::npos) return std::nullopt;
@@ -67,12 +67,12 @@ std::optional<double> unit_of_first(std::string_view text,
 }  // namespace
 
 void add_geo_keys(std::string_view directory, LasUnits& units) {
-  constexpr std::size_t kKeyBytes = 8;  // key, place, count, value
+  constexpr std::size_t kKeyBytes = 8;  // key, location, count, value
   for (std::size_t at = kKeyBytes; at + kKeyBytes <= directory.size(); at += kKeyBytes) {
     const auto word = [&](std::size_t i) {
       return load_bits<std::uint16_t, false>(directory.data() + at + 2 * i);
     };
-    if (word(1) != 0) continue;  // the value is elsewhere: no code
+    if (word(1) != 0) continue;  // the value is in another tag: no code
     if (word(0) == 1024) units.degrees = word(3) == 2;
     if (word(0) == 3076) units.horizontal = unit_of_code(word(3));
     if (word(0) == 4099) units.vertical = unit_of_code(word(3));

@@ -10,7 +10,8 @@ namespace {
 
 constexpr char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
-/// from_chars does not distinguish overflow from underflow; the sign of the exponent does.
+/// Value of a number that is out of range. from_chars does not distinguish overflow from underflow,
+/// but the sign of the exponent does.
 double saturated(std::string_view token) {
   const bool negative = token.front() == '-';
   const std::size_t exponent = token.find_first_of("eE");

@@ -1,5 +1,5 @@
 #pragma once
-// Numbers and tokens in text. No locale, no allocation; every view refers to the given text.
+// Numbers and tokens in text. Independent of the locale; every view refers to the given text.
 
 #include <cstdint>
 #include <string>
@@ -14,7 +14,8 @@ namespace tactree::builder {
 /// Removes white space at both ends.
 [[nodiscard]] std::string_view trim(std::string_view text);
 
-/// Removes the next word (up to white space) from the front of `rest`; empty if there is none.
+/// Removes the next word (up to white space) from the front of `rest` and returns it; empty if
+/// there is none.
 [[nodiscard]] inline std::string_view take_word(std::string_view& rest) {
   std::size_t begin = 0;
   while (begin < rest.size() && is_space(rest[begin])) ++begin;
@@ -32,15 +33,15 @@ namespace tactree::builder {
 /// Parses all of `token` as an integer. Accepts a leading '+'.
 [[nodiscard]] bool parse_integer(std::string_view token, std::int64_t& value);
 
-/// Parses the index of a corner. A number that is no index, such as nan or 1e30, becomes -1, so
-/// that its face is dropped and counted. Returns false for other text.
+/// Parses a vertex index. A number that is not an index, such as nan or 1e30, becomes -1, so that
+/// its face is dropped and counted. Returns false for other text.
 [[nodiscard]] bool parse_corner(std::string_view token, std::int64_t& value);
 
-/// ASCII only.
+/// Ignores the case of ASCII letters only.
 [[nodiscard]] bool equal_ignoring_case(std::string_view a, std::string_view b);
 [[nodiscard]] bool starts_with_ignoring_case(std::string_view text, std::string_view prefix);
 
-/// The first 60 characters for a message; unprintable characters become '?'.
+/// Returns the first 60 characters for a message; unprintable characters become '?'.
 [[nodiscard]] std::string printable(std::string_view text);
 
 }  // namespace tactree::builder

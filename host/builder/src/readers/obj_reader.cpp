@@ -19,7 +19,7 @@ constexpr std::int64_t kNoIndex = -1;
 constexpr float kSameDirection = 0.9998F;  // cosine of about one degree
 constexpr std::size_t kMaxForwardFaces = 4096;
 
-/// One normal per point, where the corners of its faces agree.
+/// One normal per point, if the corners of its faces agree.
 class CornerNormals {
  public:
   explicit CornerNormals(ScanBuilder& builder) : builder_(builder) {}
@@ -57,7 +57,7 @@ class CornerNormals {
     }
     const auto points = static_cast<std::size_t>(builder_.points_read());
     if (of_point_.empty()) {
-      // No face refers to them: in a cloud, normals are in the order of the points.
+      // No face refers to the normals: in a cloud, they are in the order of the points.
       if (normals_.size() == points) builder_.set_normals(std::move(normals_));
       return;
     }
@@ -87,14 +87,14 @@ class CornerNormals {
 
 class ObjReader {
  public:
-  /// first_index: of the points and normals; 1, or 0 in the files of some programs.
+  /// `first_index` is that of the points and normals: 1, or 0 in the files of some programs.
   ObjReader(InputFile& file, const ReadOptions& options, std::int64_t first_index)
       : file_(file),
         first_index_(first_index),
         builder_(file.name(), options.scan_memory_bytes, "line"),
         normals_(builder_) {}
 
-  /// Nothing if the indices count from 0 and not from first_index.
+  /// Returns nullopt if the indices count from 0 and not from first_index.
   std::optional<Scan> read() {
     find_colours();
     std::string_view line;
@@ -118,7 +118,8 @@ class ObjReader {
   }
 
  private:
-  /// Searches all points for a colour: the builder needs to know at the first one.
+  /// Searches the first lines for a point with a colour, because the builder must know at the first
+  /// point whether there are colours.
   void find_colours() {
     file_.rewind();
     constexpr std::size_t kSampleLines = 10000;
@@ -208,7 +209,7 @@ class ObjReader {
     builder_.add_face(corners_, file_.line_number());
   }
 
-  /// Whether the indices of the points count from 0 is known at the end.
+  /// Records the index. Only at the end of the file is it known whether indices count from 0.
   void note_index(std::string_view word) {
     std::int64_t value = 0;
     if (!parse_integer(word, value)) return;
@@ -217,7 +218,7 @@ class ObjReader {
     highest_index_ = std::max(highest_index_, value);
   }
 
-  /// Indices count from 1, or backwards from the latest if negative.
+  /// Indices count from first_index_, or backwards from the latest if negative.
   [[nodiscard]] std::int64_t to_index(std::string_view word, std::uint64_t count) const {
     std::int64_t value = 0;
     if (!parse_integer(word, value)) return kNoIndex;
@@ -227,7 +228,7 @@ class ObjReader {
     return value >= -known ? known + value : kNoIndex;
   }
 
-  /// Faces may precede their points: only at the end are invalid indices known.
+  /// Faces may precede their points, so invalid indices are known only at the end of the file.
   void find_bad_forward_face() {
     for (const ForwardFace& face : forward_faces_) {
       if (static_cast<std::uint64_t>(face.highest) < builder_.points_read()) continue;

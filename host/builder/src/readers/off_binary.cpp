@@ -1,5 +1,5 @@
-// The binary form of OFF: the keyword and "BINARY" on a line, then numbers of four bytes, the most
-// significant first: counts, points, and faces with a colour each.
+// The binary form of OFF: the keyword and "BINARY" on a line, then big-endian numbers of four
+// bytes: counts, points, and faces with a colour each.
 
 #include <fmt/format.h>
 
@@ -15,7 +15,7 @@ namespace tactree::builder {
 namespace {
 
 constexpr std::uint64_t kNumberBytes = 4;
-constexpr std::uint64_t kLeastFaceBytes = 2 * kNumberBytes;  // no corner, no colour
+constexpr std::uint64_t kLeastFaceBytes = 2 * kNumberBytes;  // no vertices, no colour
 
 class OffBinaryReader {
  public:

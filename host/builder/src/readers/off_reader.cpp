@@ -29,7 +29,7 @@ class OffReader {
   }
 
  private:
-  /// The next line that is not blank or a comment. False at the end.
+  /// Reads the next line that is not blank or a comment. Returns false at the end.
   bool next_row(std::string_view& row) {
     std::string_view line;
     while (file_.next_line(line)) {
@@ -55,7 +55,7 @@ class OffReader {
     if (!next_row(row)) fail("the file ends before its counts");
     const std::string_view keyword = take_word(row);
     has_normals_ = keyword.find('N') != std::string_view::npos;
-    // Texture coordinates come last, in the columns of the colour.
+    // Texture coordinates are last, in the columns that would hold the colour.
     has_texture_ = keyword.starts_with("ST");
     if (has_normals_) builder_.use_normals();
     return row;

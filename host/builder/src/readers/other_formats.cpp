@@ -89,9 +89,9 @@ constexpr Beginning kBeginnings[] = {
     {"$GN"sv, "a log of positions (NMEA)", kNotAScan},
 };
 
-/// A line that begins with a keyword, in any case.
+/// A keyword at the beginning of a line, in any case.
 struct Keyword {
-  std::string_view word;  // whole words, or up to and with its last character if that is no letter
+  std::string_view word;  // matches whole words if it ends with a letter
   const char* name;
   const char* remedy;
 };
@@ -147,7 +147,7 @@ Recognition refused(const char* name, const char* remedy) {
 
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 
-/// Compares without regard to case and to white space before '='.
+/// Ignores case, and white space before '='.
 bool begins_with(std::string_view line, std::string_view keyword) {
   if (keyword.back() == '=') {
     const std::string_view word = keyword.substr(0, keyword.size() - 1);
@@ -158,7 +158,7 @@ bool begins_with(std::string_view line, std::string_view keyword) {
   return !is_letter(keyword.back()) || rest.empty() || !(is_letter(rest.front()) || rest[0] == '_');
 }
 
-/// The lines with their comments, without blank ones.
+/// The lines including comments, without blank lines.
 std::vector<std::string_view> raw_lines(std::string_view head, std::size_t count) {
   std::vector<std::string_view> lines;
   while (!head.empty() && lines.size() < count) {
@@ -170,7 +170,7 @@ std::vector<std::string_view> raw_lines(std::string_view head, std::size_t count
   return lines;
 }
 
-/// Numbers of a line, if it has nothing else.
+/// Returns the numbers of a line, or none if it has anything else.
 std::vector<double> numbers_of(std::string_view line) {
   std::vector<double> numbers;
   for (auto word = take_word(line); !word.empty(); word = take_word(line)) {
@@ -181,7 +181,7 @@ std::vector<double> numbers_of(std::string_view line) {
   return numbers;
 }
 
-/// Whole numbers of a line, if it has nothing else.
+/// Returns the integers of a line, or none if it has anything else.
 std::vector<std::int64_t> counts_of(std::string_view line) {
   std::vector<std::int64_t> counts;
   for (auto word = take_word(line); !word.empty(); word = take_word(line)) {
@@ -211,7 +211,7 @@ bool is_wkt(std::string_view line) {
                                    [&](auto known) { return equal_ignoring_case(shape, known); });
 }
 
-/// Protein data bank: lines of fixed columns.
+/// Protein Data Bank: lines of fixed columns.
 bool is_pdb_atom(std::string_view line) {
   return line.size() >= 54 && (line.starts_with("ATOM  ") || line.starts_with("HETATM"));
 }
@@ -234,16 +234,16 @@ bool is_iges(std::string_view head) {
          !trim(head.substr(73, 7)).empty();
 }
 
-/// A sections file of Fluent: (0 "comment"), (2 3), ...
+/// A Fluent file, which consists of sections: (0 "comment"), (2 3), ...
 bool is_fluent(std::string_view line) {
   return line.size() > 3 && line[0] == '(' && line[1] >= '0' && line[1] <= '9' &&
          (line[2] == ' ' || line[2] == '0');
 }
 
-/// A count, a comment, rows "C 0.0 0.0 0.0".
+/// A molecule: a count, a comment, and rows such as "C 0.0 0.0 0.0".
 bool is_molecule(std::span<const std::string_view> lines) {
   if (lines.size() < 2 || counts_of(lines[0]).size() != 1) return false;
-  // The comment may be blank, and is then not among the lines.
+  // The comment may be blank; it is then not among the lines.
   for (const std::string_view line : lines.subspan(1, std::min<std::size_t>(lines.size() - 1, 2))) {
     std::string_view rest = line;
     const std::string_view element = take_word(rest);
@@ -254,9 +254,9 @@ bool is_molecule(std::span<const std::string_view> lines) {
   return false;
 }
 
-/// Whether the rows after the line of counts begin with the numbers 0, 1, 2, ... or 1, 2, 3, ...
-/// and the last of the `count` rows has the number that it must have. If the file goes on after the
-/// lines, or was cut off, many rows must be there.
+/// True if the rows after the line of counts begin with the numbers 0, 1, 2, ... or 1, 2, 3, ...
+/// and the last of the `count` rows has the expected number. If there are fewer lines, because the
+/// file is longer than `lines` or was cut off, at least kManyRows must be present.
 bool is_numbered(std::span<const std::string_view> lines, std::int64_t count) {
   constexpr std::uint64_t kRows = 100;
   constexpr std::uint64_t kManyRows = 8;

@@ -1,6 +1,6 @@
 #pragma once
-// Text formats of meshes, grids and CAD that have no reader, and binary ones with a magic number.
-// They are named, so that their numbers are never taken for points.
+// Recognises text formats of meshes, grids and CAD that have no reader, and binary formats with a
+// magic number. They are reported by name, so that their numbers are never read as points.
 
 #include <optional>
 #include <span>
@@ -10,11 +10,12 @@
 
 namespace tactree::builder {
 
-/// The format of a file that begins with `head` if it is known and has no reader.
+/// Returns the format of a file that begins with `head`, if it is known and has no reader.
 [[nodiscard]] std::optional<Recognition> recognise_other_format(std::string_view head);
 
-/// The same for rows of numbers after a line of counts: TetGen, AVS-UCD, UGRID, FreeFem. lines: the
-/// first ones without blank lines and comments.
+/// Like recognise_other_format(), for formats with rows of numbers after a line of counts: TetGen,
+/// AVS-UCD, UGRID, FreeFem. `lines` are the first lines of the file, without blank lines and
+/// comments.
 [[nodiscard]] std::optional<Recognition> recognise_counted_format(
     std::span<const std::string_view> lines);
 

@@ -84,7 +84,8 @@ class HeaderParser {
     }
   }
 
-  // Position and quaternion; the side of the points depends on the former only.
+  // Position and quaternion. Only the position is used, because the orientation of the points
+  // depends on it alone.
   void read_viewpoint(std::string_view rest) {
     Eigen::Matrix<double, 7, 1> values;
     bool good = true;

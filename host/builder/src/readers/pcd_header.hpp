@@ -18,8 +18,8 @@ struct PcdField {
   std::string name;
   ScalarType type = ScalarType::kFloat32;
   std::uint64_t count = 1;   ///< values per point
-  std::uint64_t offset = 0;  ///< in a point, in bytes
-  std::uint64_t column = 0;  ///< in a row of text
+  std::uint64_t offset = 0;  ///< offset in a point, bytes
+  std::uint64_t column = 0;  ///< column in a row of text
 
   [[nodiscard]] std::uint64_t bytes() const { return count * size_of(type); }
 };
@@ -27,8 +27,8 @@ struct PcdField {
 struct PcdHeader {
   std::vector<PcdField> fields;
   std::uint64_t points = 0;                  ///< as declared
-  std::uint64_t width = 0;                   ///< points of a row of the image, if it is one; else 0
-  std::optional<Eigen::Vector3d> viewpoint;  ///< of the scanner
+  std::uint64_t width = 0;                   ///< points per row of the image; 0: no image
+  std::optional<Eigen::Vector3d> viewpoint;  ///< position of the scanner
   PcdData data = PcdData::kAscii;
   std::vector<std::string> warnings;
 
@@ -36,7 +36,7 @@ struct PcdHeader {
   [[nodiscard]] std::uint64_t columns() const;
 };
 
-/// Reads through the line "DATA ...". Throws ReadError.
+/// Reads the header including the line "DATA ...". Throws ReadError.
 [[nodiscard]] PcdHeader read_pcd_header(InputFile& file);
 
 }  // namespace tactree::builder

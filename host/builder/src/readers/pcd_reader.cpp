@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kBlockBytes = std::size_t{1} << 16;
 
-/// LZF encodes at most 264 bytes in 3.
+/// Maximum compression ratio: LZF encodes at most 264 bytes in 3.
 constexpr std::uint64_t kMaxLzfRatio = 88;
 
 /// A field of a point that is in use.

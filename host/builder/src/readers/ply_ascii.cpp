@@ -31,7 +31,7 @@ class AsciiBody {
   }
 
  private:
-  /// The next line that is not blank.
+  /// Reads the next line that is not blank.
   std::string_view next_row(std::uint64_t row) {
     std::string_view line;
     while (file_.next_line(line)) {

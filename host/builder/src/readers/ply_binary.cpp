@@ -40,7 +40,7 @@ class BinaryBody {
   }
 
  private:
-  /// Rows of constant size, many at a time.
+  /// Reads rows of constant size, many at a time.
   void read_fixed_vertices() {
     const std::vector<FixedField> fields = fixed_fields();
     const auto row_bytes = static_cast<std::size_t>(element_->min_row_bytes());
@@ -135,7 +135,7 @@ class BinaryBody {
     file_.skip(count * size_of(property.type));
   }
 
-  /// Length of the list that begins here; checks that the file holds its entries.
+  /// Reads the length of the list that begins here. Checks that the file holds its entries.
   std::uint64_t list_length(const PlyProperty& property) {
     const std::uint64_t place = file_.offset();
     const double length = next_value(property.count_type);
@@ -167,7 +167,7 @@ class BinaryBody {
   InputFile& file_;
   ScanBuilder& builder_;
   const PlyElement* element_ = nullptr;
-  std::uint64_t row_ = 0;  // of the element
+  std::uint64_t row_ = 0;  // of element_
   std::vector<std::int64_t> corners_;
 };
 

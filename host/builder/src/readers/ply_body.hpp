@@ -1,6 +1,5 @@
 #pragma once
-// Shared by the readers of ASCII and binary PLY data: the elements in use and the slots of the
-// vertex properties.
+// Common to the readers of ASCII and binary PLY data: the elements and vertex properties in use.
 
 #include <span>
 #include <string>
@@ -16,7 +15,7 @@ enum class PlyRole : std::uint8_t { kOther, kVertex, kFace, kStrip };
 
 [[nodiscard]] PlyRole role_of(const PlyElement& element);
 
-/// Index of the list of corners of a face or strip, or properties.size() if there is none.
+/// Index of the list of vertices of a face or strip, or properties.size() if there is none.
 [[nodiscard]] std::size_t index_property(const PlyElement& element);
 
 struct PlyField {
@@ -27,11 +26,11 @@ struct PlyField {
 /// The vertex properties in use: x y z, and normals and colours if complete.
 [[nodiscard]] std::vector<PlyField> vertex_fields(const PlyElement& vertex);
 
-/// Throws: the file holds fewer rows than declared, namely rows_there (or at_most that many).
+/// Throws ReadError: the file holds only `rows_there` of the declared rows (or fewer if `at_most`).
 [[noreturn]] void throw_truncated(const InputFile& file, const PlyElement& element,
                                   std::uint64_t rows_there, bool at_most = false);
 
-/// Adds the triangles of a strip; an index of -1 starts a new one.
+/// Adds the triangles of a strip. An index of -1 starts a new strip.
 class StripReader {
  public:
   StripReader(ScanBuilder& builder, std::uint64_t place) : builder_(builder), place_(place) {}
@@ -45,11 +44,11 @@ class StripReader {
   std::uint64_t length_ = 0;
 };
 
-/// Read the elements, through the last one in use. The file must be positioned after the header.
-/// Returns the number of rows after them.
+/// Reads the elements up to and including the last one in use. The file must be positioned after
+/// the header. Returns the number of rows after them.
 [[nodiscard]] std::uint64_t read_ply_ascii(InputFile& file, std::span<const PlyElement> elements,
                                            ScanBuilder& builder);
-/// Returns the bytes per row of the last element, on average.
+/// Reads the same elements of a binary file. Returns the average bytes per row of the last element.
 [[nodiscard]] double read_ply_binary(InputFile& file, std::span<const PlyElement> elements,
                                      bool swap, ScanBuilder& builder);
 

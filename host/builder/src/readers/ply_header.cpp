@@ -74,7 +74,8 @@ class HeaderParser {
     }
   }
 
-  /// A damaged line "element" or "property" must not be left out: the data would be misread.
+  /// True for a damaged line "element" or "property". It must not be ignored, because the data
+  /// would be misread.
   static bool describes_data(std::string_view words) {
     while (true) {
       const std::string_view word = take_word(words);

@@ -17,7 +17,7 @@ struct PlyProperty {
   std::string name;
   ScalarType type = ScalarType::kFloat32;
   bool is_list = false;
-  ScalarType count_type = ScalarType::kUint8;  // of a list
+  ScalarType count_type = ScalarType::kUint8;  // type of the length of a list
 };
 
 struct PlyElement {
@@ -25,7 +25,7 @@ struct PlyElement {
   std::uint64_t count = 0;  ///< as declared
   std::vector<PlyProperty> properties;
 
-  /// Minimum size of a row in a binary file: all lists empty.
+  /// Minimum size of a row in a binary file, with all lists empty.
   [[nodiscard]] std::uint64_t min_row_bytes() const;
   [[nodiscard]] bool has_list() const;
 };
@@ -33,11 +33,11 @@ struct PlyElement {
 struct PlyHeader {
   PlyEncoding encoding = PlyEncoding::kAscii;
   std::vector<PlyElement> elements;
-  std::uint64_t unknown_lines = 0;  ///< left out: notes of a scanner
-  std::string unknown_line;         ///< place and first word of the first one
+  std::uint64_t unknown_lines = 0;  ///< ignored lines, such as notes of a scanner
+  std::string unknown_line;         ///< position and first word of the first one
 };
 
-/// Reads through the line "end_header". Throws ReadError.
+/// Reads the header including the line "end_header". Throws ReadError.
 [[nodiscard]] PlyHeader read_ply_header(InputFile& file);
 
 }  // namespace tactree::builder

@@ -85,7 +85,7 @@ std::span<const PlyElement> elements_that_count(const PlyHeader& header) {
   return std::span(header.elements).first(end);
 }
 
-/// more: rows after those of `elements`.
+/// `more` is the number of rows after those of `elements`.
 void warn_of_more(const PlyHeader& header, std::span<const PlyElement> elements, std::uint64_t more,
                   ScanBuilder& builder) {
   for (std::size_t i = elements.size(); i < header.elements.size(); ++i) {
@@ -97,7 +97,8 @@ void warn_of_more(const PlyHeader& header, std::span<const PlyElement> elements,
   builder.warn_of_more(rows_of(last), last.count, last.count + more);
 }
 
-/// Some programs name the corners of faces otherwise: then it is the only list of whole numbers.
+/// Some programs use another name for the list of vertices. It is accepted if it is the only list
+/// of integers.
 std::size_t only_list(const PlyElement& element) {
   const auto is_candidate = [](const PlyProperty& property) {
     return property.is_list && !is_float(property.type);
@@ -165,7 +166,7 @@ void StripReader::add(std::int64_t index) {
     const bool swapped = length_ % 2 == 0;
     const std::array<std::int64_t, 3> corners = {swapped ? newer_ : older_,
                                                  swapped ? older_ : newer_, index};
-    // Strips repeat an index on purpose, to change direction.
+    // Strips repeat an index to change direction; such a triangle is not an error.
     const bool turns = older_ == newer_ || newer_ == index || older_ == index;
     if (!turns) builder_.add_face(corners, place_);
   }
@@ -203,7 +204,7 @@ Scan read_ply(InputFile& file, const ReadOptions& options) {
   const bool big = header.encoding == PlyEncoding::kBigEndian;
   const double row_bytes = read_ply_binary(file, elements, big, builder);
   const double more = static_cast<double>(file.remaining()) / row_bytes;
-  // Elements without use follow: their lists may have any length.
+  // If unused elements follow, their lists may have any length, so the number of rows is unknown.
   const bool last = elements.size() == header.elements.size();
   if (last && more >= 1.0 && !file.only_zeros_left()) {
     warn_of_more(header, elements, static_cast<std::uint64_t>(more), builder);

@@ -52,7 +52,7 @@ void PolygonCutter::project(std::span<const std::uint32_t> corners) {
   }
 }
 
-/// Whether every corner turns left.
+/// True if the polygon turns left at every vertex.
 bool PolygonCutter::is_convex() const {
   const std::size_t count = flat_.size();
   for (std::size_t i = 0; i < count; ++i) {
@@ -89,7 +89,7 @@ void PolygonCutter::clip_ears(std::span<const std::uint32_t> corners) {
   std::size_t at = 0;
   std::size_t tried = 0;
   while (left_.size() > 3) {
-    // A polygon that crosses itself may have no ear; then any corner is clipped, so that this ends.
+    // A polygon that crosses itself may have no ear. Any vertex is then clipped, so that this ends.
     const bool clip = tried >= left_.size() || gave_up() || is_ear(at);
     const std::size_t count = left_.size();
     if (!clip) {

@@ -1,7 +1,7 @@
 // Leica PTX: one or more scans. Each has the number of its columns and of the points of a column,
 // the position and the axes of the scanner, the matrix from the scanner's frame to that of the file
 // (its last row is the translation), then a line per point, column by column: x y z intensity, and
-// perhaps red green blue. A point that was not measured is 0 0 0.
+// optionally red green blue. A point that was not measured is 0 0 0.
 
 #include <fmt/format.h>
 
@@ -71,7 +71,7 @@ class PtxReader {
     }
   }
 
-  /// Position and axes are stated once more by the matrix.
+  /// Skips the position and the axes, which the matrix states again.
   Eigen::Affine3d read_frame() {
     for (int i = 0; i < 4; ++i) numbers<3>(demand_line());
     Eigen::Matrix4d matrix;
@@ -87,7 +87,7 @@ class PtxReader {
     return Eigen::Affine3d(matrix);
   }
 
-  /// The point in the frame of the file; NaN if it was not measured.
+  /// Returns the point in the frame of the file; NaN if it was not measured.
   Eigen::Vector3d read_point(std::string_view line, const Eigen::Affine3d& to_file) {
     std::array<double, kColourValues> values{};
     const std::size_t there = parse(line, values);
@@ -114,7 +114,7 @@ class PtxReader {
     return at;
   }
 
-  /// How many numbers the line has, at most as many as fit.
+  /// Parses the numbers of a line, at most as many as `values` has room for. Returns their number.
   std::size_t parse(std::string_view rest, std::span<double> values) const {
     std::size_t there = 0;
     for (double& value : values) {

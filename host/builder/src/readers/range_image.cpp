@@ -6,7 +6,7 @@
 namespace tactree::builder {
 namespace {
 
-constexpr double kClearMajority = 0.97;  // of the triangles; distortion of a lens turns a few
+constexpr double kClearMajority = 0.97;  // of the triangles; lens distortion reverses a few
 constexpr std::uint64_t kMaxWidth = std::uint64_t{1} << 20;
 
 }  // namespace

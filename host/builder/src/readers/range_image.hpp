@@ -1,5 +1,5 @@
 #pragma once
-// Where the scanner stood that recorded an image of points, row by row.
+// Position of the scanner that recorded an image of points, row by row.
 
 #include <Eigen/Core>
 #include <array>
@@ -12,20 +12,21 @@
 namespace tactree::builder {
 
 /// Tests the position that a file states against the order of its points. Seen from the scanner,
-/// neighbours to the right and below appear in the same order everywhere, at any distance. Files
-/// state a position in the frame of the points, or in another one while the points have the scanner
-/// at their origin.
+/// neighbours to the right and below appear in the same order everywhere, at any distance. Some
+/// files state the position in the frame of the points, others in another frame while the scanner
+/// is at the origin of the points.
 class RangeImage {
  public:
-  /// width: points per row; 0: the points are in no order. `certain`: the format defines the
-  /// position; rows from right to left are accepted even if it is the origin.
+  /// `width` is the number of points per row; 0 if the points have no order. `certain` means that
+  /// the format defines the position; rows from right to left are then accepted even if it is the
+  /// origin.
   RangeImage(std::uint64_t width, const std::optional<Eigen::Vector3d>& stated,
              bool certain = false);
 
-  /// The next point of the file, also a missing one (NaN).
+  /// Adds the next point of the file, also a missing one (NaN).
   void add(const Eigen::Vector3d& position);
 
-  /// Nothing if no position is stated or none fits.
+  /// Returns nullopt if no position is stated or none fits.
   [[nodiscard]] std::optional<ScannerPose> pose() const;
 
  private:
@@ -38,7 +39,7 @@ class RangeImage {
 
   std::size_t width_;
   std::size_t column_ = 0;
-  std::vector<Eigen::Vector3d> last_row_;  // up to the column: this row
+  std::vector<Eigen::Vector3d> last_row_;  // the last row; before column_, this row
   Eigen::Vector3d left_ = Eigen::Vector3d::Zero();
   bool stated_;
   bool certain_;

@@ -42,7 +42,7 @@ Scan read_recognised(InputFile& file, const std::filesystem::path& path,
   throw ReadError(file.name(), "", "this is " + recognition.name, recognition.remedy);
 }
 
-/// Columns belong to text: text that is recognised as a format without a reader becomes a table.
+/// If columns are given, text of a format without a reader is read as a table.
 Recognition recognise_for(InputFile& file, const ReadOptions& options) {
   const std::string_view head = file.peek(kHeadBytes);
   Recognition found = options.format.empty() ? recognise(head, file.size())

@@ -7,13 +7,13 @@
 
 namespace tactree::builder {
 
-/// Remedy where bytes are missing or wrong.
+/// Remedy in messages about missing or wrong bytes.
 inline constexpr const char* kCopyAgain =
     "the file was cut off or is damaged; copy or export it again";
 
 [[nodiscard]] Scan read_ply(InputFile& file, const ReadOptions& options);
 [[nodiscard]] Scan read_pcd(InputFile& file, const ReadOptions& options);
-/// path: of the file, whose end is read first.
+/// The file is opened again by its `path`, to read the XML section first.
 [[nodiscard]] Scan read_e57(InputFile& file, const std::filesystem::path& path,
                             const ReadOptions& options);
 [[nodiscard]] Scan read_las(InputFile& file, const ReadOptions& options);

@@ -98,7 +98,7 @@ Recognition imported(const std::string& name, const std::string& hint) {
   return {FileKind::kImportedMesh, name, "", hint};
 }
 
-/// The first lines, without blank ones and those that begin with '#'; at most `count`.
+/// Returns the first lines, at most `count`, without blank lines and lines that begin with '#'.
 std::vector<std::string_view> first_lines(std::string_view head, std::size_t count) {
   std::vector<std::string_view> lines;
   while (!head.empty() && lines.size() < count) {
@@ -117,8 +117,8 @@ bool begins_with_number(std::string_view text) {
   return parse_number(take_word(text), value);
 }
 
-/// LAZ sets the upper bits of the point format, and has a record of its own. Its library,
-/// liblaszip, is not part of Debian 12.
+/// LAZ sets the upper bits of the point format and adds a separate record. It has no reader,
+/// because its library, liblaszip, is not part of Debian 12.
 Recognition recognise_las(std::string_view head) {
   constexpr std::size_t kPointFormatByte = 104;
   const bool compressed = (head.size() > kPointFormatByte &&
@@ -292,7 +292,7 @@ Recognition recognise(std::string_view head, std::uint64_t file_size) {
   if (find_stl_triangles(head, file_size)) {
     return {FileKind::kStlBinary, "STL binary", "", ""};
   }
-  // Damaged text: its reader reports the damage with a line number.
+  // Damaged text is passed to its reader, which reports the damage with a line number.
   const Recognition as_text = recognise_text(head);
   if (as_text.kind != FileKind::kText) return as_text;
   return unsupported("not a scan in a supported format",

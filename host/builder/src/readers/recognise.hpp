@@ -36,16 +36,16 @@ struct Recognition {
 /// Number of leading bytes that recognise() inspects.
 inline constexpr std::size_t kHeadBytes = std::size_t{1} << 18;
 
-/// head: the first bytes of the file, up to kHeadBytes; file_size: of the whole file.
+/// `head` is the first bytes of the file, up to kHeadBytes; `file_size` is that of the whole file.
 [[nodiscard]] Recognition recognise(std::string_view head, std::uint64_t file_size);
 
-/// The same where the user names the format, by an extension of scan_formats(). The content decides
-/// between its text and its binary form, and contradicts the name only if it is surely another
-/// format: then kUnsupported.
+/// Like recognise(), but the user has named the format by an extension of scan_formats(). The
+/// content selects between its text and its binary form. If the content is certainly another
+/// format, the result is kUnsupported.
 [[nodiscard]] Recognition recognise_as(std::string_view extension, std::string_view head,
                                        std::uint64_t file_size);
 
-/// Whether the bytes can be text: no control characters but white space.
+/// True if the bytes can be text: no control characters except white space.
 [[nodiscard]] bool is_text(std::string_view head);
 
 }  // namespace tactree::builder

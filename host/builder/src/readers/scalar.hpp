@@ -41,7 +41,7 @@ enum class ScalarType : std::uint8_t {
   return type == ScalarType::kFloat32 || type == ScalarType::kFloat64;
 }
 
-/// The unsigned integer of `Bytes` bytes at `from`; `Swap` for the other byte order.
+/// Loads an unsigned integer at `from`; `Swap` reverses the byte order.
 template <typename Unsigned, bool Swap>
 [[nodiscard]] inline Unsigned load_bits(const char* from) {
   Unsigned bits{};
@@ -52,7 +52,7 @@ template <typename Unsigned, bool Swap>
   return bits;
 }
 
-/// The number of the given type at `from`. Reads size_of(type) bytes.
+/// Loads the number of the given type at `from`. Reads size_of(type) bytes.
 template <bool Swap>
 [[nodiscard]] inline double load_scalar(const char* from, ScalarType type) {
   switch (type) {

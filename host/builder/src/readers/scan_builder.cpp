@@ -141,7 +141,7 @@ std::uint64_t ScanBuilder::grown_capacity(std::uint64_t size, std::uint64_t more
       other_bytes >= memory_bytes_ ? 0 : (memory_bytes_ - other_bytes) / entry_bytes;
   const std::uint64_t capacity =
       std::min({std::max({std::uint64_t{1024}, 2 * size, needed}), fit, kMaxEntries});
-  // While the list grows, both copies exist; a quarter above the limit is reserved for that.
+  // Both copies exist while the list grows; a quarter above the limit is reserved for that.
   const std::uint64_t while_moving = other_bytes + 2 * size * entry_bytes;
   if (capacity < needed || while_moving > memory_bytes_ + memory_bytes_ / 4) throw_too_large();
   return capacity;
@@ -203,7 +203,7 @@ void ScanBuilder::add_colour(const PointRow& row) {
       {to_byte(row[kRed] * scale), to_byte(row[kGreen] * scale), to_byte(row[kBlue] * scale)});
 }
 
-/// Converts the colours so far from the range 0 .. 1 to 0 .. 255.
+/// Converts the colours read so far from the range 0 .. 1 to 0 .. 255.
 void ScanBuilder::leave_unit_colours() {
   unit_colours_ = false;
   for (auto& colour : scan_.colours) {
@@ -211,7 +211,7 @@ void ScanBuilder::leave_unit_colours() {
   }
 }
 
-/// Converts the colours so far from the range 0 .. 65535 to 0 .. 255.
+/// Converts the colours read so far from the range 0 .. 65535 to 0 .. 255.
 void ScanBuilder::leave_byte_colours() {
   byte_colours_ = false;
   for (auto& colour : scan_.colours) {
@@ -303,7 +303,8 @@ std::uint32_t ScanBuilder::kept_index(std::uint32_t index) const {
   return index - static_cast<std::uint32_t>(next - dropped_.begin());
 }
 
-/// Converts the corners to indices of the scan; counts the face and returns false if it is invalid.
+/// Converts vertices to indices of the scan. If a vertex is invalid, counts the face and returns
+/// false.
 bool ScanBuilder::keep_face(std::span<std::uint32_t> corners) {
   for (const std::uint32_t corner : corners) {
     if (corner >= points_read_) {

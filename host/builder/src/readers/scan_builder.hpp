@@ -31,7 +31,7 @@ enum class ColourRange : std::uint8_t {
 
 class ScanBuilder {
  public:
-  /// `place_unit` ("line", "byte", "face"): unit of the `place` of a face, for messages.
+  /// `place_unit` ("line", "byte", "face") is the unit of a face's position in messages.
   ScanBuilder(std::string file, std::uint64_t memory_bytes, std::string place_unit);
 
   /// Call before the first point.
@@ -46,9 +46,9 @@ class ScanBuilder {
   void charge(std::uint64_t bytes);
 
   void add_point(const PointRow& row);
-  /// Points so far, including dropped ones.
+  /// Number of points read so far, including dropped ones.
   [[nodiscard]] std::uint64_t points_read() const { return points_read_; }
-  /// Without dropped ones: index of the next point in the scan.
+  /// Number of points kept so far, which is the index of the next point in the scan.
   [[nodiscard]] std::size_t points_kept() const { return scan_.positions.size(); }
 
   void set_unit(double metres) { scan_.unit_m = metres; }
@@ -56,32 +56,33 @@ class ScanBuilder {
 
   /// Limits the indices of faces to values below `count`; default: points_read() at the end.
   void limit_face_indices(std::uint64_t count) { face_index_limit_ = count; }
-  /// Adds a face. corners: indices over all points of the file.
+  /// Adds a face. `corners` are indices over all points of the file.
   void add_face(std::span<const std::int64_t> corners, std::uint64_t place);
-  /// Records the place of a bad face that is detected at the end.
+  /// Records the position of a bad face that is detected at the end.
   void set_first_bad_face(std::uint64_t place);
 
-  /// One normal per point of the file; replaces those of the rows.
+  /// Sets one normal per point of the file. They replace the normals of the rows.
   void set_normals(std::vector<Eigen::Vector3f> normals);
 
   void count_dropped(const std::string& cause, std::uint64_t count = 1);
   void note(std::string sentence) { scan_.notes.push_back(std::move(sentence)); }
   void warn(std::string sentence) { scan_.warnings.push_back(std::move(sentence)); }
 
-  /// The header declares fewer of these ("points", "faces") than the file has room for.
+  /// Warns that the header declares fewer of these ("points", "faces") than the file holds.
   void warn_of_more(const std::string& what, std::uint64_t declared, std::uint64_t there);
 
-  /// Returns the scan. Throws ReadError if no point is usable, or none of the faces.
+  /// Returns the scan. Throws ReadError if no point is usable, or if there are faces and none is
+  /// usable.
   [[nodiscard]] Scan finish(std::string format);
 
  private:
   [[nodiscard]] std::uint64_t bytes_for(std::uint64_t points, std::uint64_t triangles) const;
   [[nodiscard]] std::uint64_t points_that_fit() const;
-  /// points: the declared number, if it is known to be too large.
+  /// `points` is the declared number, if it is known to be too large.
   [[noreturn]] void throw_too_large(std::uint64_t points = 0) const;
   void set_point_capacity(std::uint64_t count);
-  /// The new capacity of a list of `size` entries for `more` of them. other_bytes: all other
-  /// memory. Throws ReadError above the limit.
+  /// Returns the new capacity of a list of `size` entries that needs `more`. `other_bytes` is all
+  /// other memory. Throws ReadError above the limit.
   [[nodiscard]] std::uint64_t grown_capacity(std::uint64_t size, std::uint64_t more,
                                              std::uint64_t entry_bytes,
                                              std::uint64_t other_bytes) const;
@@ -114,12 +115,12 @@ class ScanBuilder {
   std::uint64_t extra_bytes_ = 0;
   std::uint64_t points_read_ = 0;
   std::uint64_t missing_normals_ = 0;
-  std::vector<std::uint32_t> dropped_;  // indices of the non-finite points, rising
+  std::vector<std::uint32_t> dropped_;  // indices of the non-finite points, ascending
   std::uint64_t face_index_limit_;
   std::uint64_t faces_read_ = 0;
   std::uint64_t bad_faces_ = 0;
   std::uint64_t first_bad_place_ = 0;    // 0: unknown
-  std::vector<std::uint32_t> polygons_;  // faces with four or more corners: count, corners
+  std::vector<std::uint32_t> polygons_;  // faces with four or more vertices: count, vertices
 };
 
 }  // namespace tactree::builder

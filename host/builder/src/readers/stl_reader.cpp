@@ -1,5 +1,5 @@
-// STL (stereolithography), text and binary. Every triangle repeats its corners; bitwise equal ones
-// become one point. assimp is not used here: it trusts the count in the file.
+// STL (stereolithography), text and binary. Every triangle repeats its vertices; bitwise equal ones
+// become one point. assimp is not used here, because it trusts the count in the file.
 
 #include <fmt/format.h>
 
@@ -46,7 +46,7 @@ bool is_plausible_triangle(const char* from) {
   return true;
 }
 
-/// Adds triangles to a builder, merging equal corners.
+/// Adds triangles to a builder. Merges equal vertices.
 class Triangles {
  public:
   Triangles(const InputFile& file, const ReadOptions& options, const char* place_unit)
@@ -133,7 +133,7 @@ class AsciiReader {
     after_end_ = is("end");
   }
 
-  /// The name of a solid has any words; a facet may follow in its line.
+  /// The name of a solid may have any words; a facet may follow on the same line.
   static void skip_name(std::string_view& rest) {
     while (!rest.empty()) {
       std::string_view next = rest;
@@ -186,8 +186,8 @@ class AsciiReader {
   Triangles triangles_;
   bool in_solid_ = false;
   bool in_facet_ = false;
-  bool after_end_ = false;          // the word "end" comes before
-  std::size_t corner_numbers_ = 3;  // read of a corner; 3: complete
+  bool after_end_ = false;          // the previous word was "end"
+  std::size_t corner_numbers_ = 3;  // numbers read of a vertex; 3: complete
   std::size_t corners_ = 0;
   std::uint64_t facets_ = 0;
   std::array<VertexWelder::Position, 3> facet_{};
@@ -210,7 +210,7 @@ void check_count(const InputFile& file, std::uint64_t declared) {
   }
 }
 
-/// Bytes after the triangles that were read: more triangles, or something else.
+/// Warns of bytes after the triangles that were read: more triangles, or other data.
 void warn_of_rest(InputFile& file, std::uint64_t count, ScanBuilder& builder) {
   const std::uint64_t rest = file.remaining();
   if (rest == 0 || file.only_zeros_left()) return;

@@ -15,8 +15,8 @@ namespace {
 
 constexpr std::size_t kMinColumns = 3;
 constexpr std::size_t kMaxColumnNumber = 4096;
-constexpr std::size_t kTooManyColumns = 9;  // of unknown meaning: points have fewer
-constexpr std::size_t kRowsToCount = 4;     // fewer rows say nothing about a column
+constexpr std::size_t kTooManyColumns = 9;  // columns of unknown meaning; points have fewer
+constexpr std::size_t kRowsToCount = 4;     // minimum number of rows to judge a column
 constexpr std::array<const char*, kSlots> kNames = {"x",  "y",   "z",     "nx",  "ny",
                                                     "nz", "red", "green", "blue"};
 
@@ -24,11 +24,11 @@ bool is_whole(double value) { return value == std::floor(value) && std::abs(valu
 
 /// Statistics of a column.
 struct Column {
-  bool numbers = true;    ///< in every row
+  bool numbers = true;    ///< a number in every row
   bool whole = true;      ///< only whole numbers
   bool constant = true;   ///< one value
-  bool rises = true;      ///< each value is above the one before
-  std::size_t steps = 0;  ///< values that are one above the one before
+  bool rises = true;      ///< each value is above the previous one
+  std::size_t steps = 0;  ///< values that are one above the previous one
   double first = 0.0;
 };
 
@@ -48,7 +48,7 @@ Column column_of(std::span<const TextRow> rows, std::size_t at) {
   return column;
 }
 
-/// Whether nearly all rows have a unit (or missing) vector at this column.
+/// True if nearly all rows have a unit (or missing) vector at this column.
 bool are_normals(std::span<const TextRow> rows, std::size_t column) {
   std::size_t unit = 0;
   std::size_t missing = 0;
@@ -69,11 +69,12 @@ bool are_bytes(std::span<const TextRow> rows, std::size_t column) {
   });
 }
 
-/// Four columns of bytes: an intensity before the colour, or an opacity after it?
+/// For four columns of bytes: true for an intensity before the colour, false for an opacity after
+/// it.
 bool begins_with_intensity(std::span<const TextRow> rows, std::size_t at) {
   const Column last = column_of(rows, at + 3);
   if (!last.constant || last.first != 255.0) return true;
-  // An opacity of 255 throughout, unless the colour is white throughout.
+  // A last column of 255 throughout is an opacity, unless the colour is white throughout.
   const Column red = column_of(rows, at + 1);
   const Column green = column_of(rows, at + 2);
   const Column first = column_of(rows, at);
@@ -81,7 +82,7 @@ bool begins_with_intensity(std::span<const TextRow> rows, std::size_t at) {
          !first.constant;
 }
 
-/// Heights in rows: neighbours in a row differ far less than the numbers of the table.
+/// True for heights in rows: neighbours in a row differ far less than the numbers of the table.
 bool is_grid(std::span<const TextRow> rows, std::size_t columns) {
   double sum = 0.0;
   double squares = 0.0;
@@ -119,7 +120,7 @@ class Guess {
   }
 
  private:
-  /// The number of values of most rows.
+  /// The most frequent number of values per row.
   [[nodiscard]] std::size_t common_width() const {
     std::vector<std::size_t> widths;
     for (const TextRow& row : rows_) widths.push_back(row.values.size());
@@ -137,7 +138,7 @@ class Guess {
     return width;
   }
 
-  /// Rows of points have the same number of columns; words at their end may have spaces.
+  /// Rows of points have equal numbers of columns. Text at the end of a row may contain spaces.
   void check_rows() {
     const TextRow& first = rows_.front();
     if (first.values.size() != columns_ && first.numbers == first.values.size() &&
@@ -178,7 +179,7 @@ class Guess {
     }
   }
 
-  /// A first column of rising whole numbers counts the points.
+  /// A first column of rising integers numbers the points.
   void check_counter() {
     if (rows_left_.size() < kRowsToCount || columns_ < kMinColumns) return;
     check_first_row();
@@ -214,7 +215,7 @@ class Guess {
                                static_cast<int>(first.first));
   }
 
-  /// x y z, then normals and colours as recognised by their values.
+  /// Assigns x y z, then normals and colours as recognised by their values.
   void place() {
     guess_.slots.assign(columns_, kNoSlot);
     const std::size_t first = guess_.counter ? 1 : 0;
@@ -266,12 +267,12 @@ class Guess {
   bool counted_;
   ColumnGuess guess_;
   std::size_t columns_ = 0;
-  std::vector<TextRow> rows_left_;  // those with the common number of columns
+  std::vector<TextRow> rows_left_;  // rows with at least the common number of columns
   bool normals_ = false;
   bool colours_ = false;
 };
 
-/// Names of survey files, for coordinates that have no other name.
+/// Names of coordinates in survey files, for columns that have no other name.
 Slot slot_of_survey_name(std::string_view name) {
   struct Name {
     std::string_view name;

@@ -1,6 +1,6 @@
 #pragma once
-// The columns of a text file of points: by the names of a header line, by --columns, or by the
-// numbers in them. Columns that do not look like points are never guessed.
+// Determines the columns of a text file of points: by the names of a header line, by --columns, or
+// by the numbers in them. Columns that do not look like points are never guessed.
 
 #include <cstdint>
 #include <optional>
@@ -17,31 +17,31 @@ namespace tactree::builder {
 /// The numbers of a row; NaN for other text.
 struct TextRow {
   std::vector<double> values;
-  std::size_t numbers = 0;  ///< fields before the first one that is not a number
+  std::size_t numbers = 0;  ///< number of fields before the first one that is not a number
 };
 
 struct ColumnGuess {
   std::vector<Slot> slots;             ///< per column
   std::optional<std::size_t> counter;  ///< column that numbers the points
-  std::string doubt;                   ///< why the rows may be no points; empty: they are
+  std::string doubt;                   ///< why the rows may not be points; empty if they are
   std::vector<std::string> warnings;
 };
 
-/// Finds x y z, and normals and colours, in rows without names. counted: the number of points came
-/// before them, as in a PTS file.
+/// Finds x y z, and normals and colours, in rows without names. `counted` means that the number of
+/// points precedes the rows, as in a PTS file.
 [[nodiscard]] ColumnGuess guess_columns(std::span<const TextRow> rows, bool counted);
 
-/// The columns that these names stand for; empty if x, y and z are not among them. Survey files
-/// call them easting, northing and elevation.
+/// Returns the columns with these names; empty if x, y and z are not among them. Easting, northing
+/// and elevation, as in survey files, are accepted too.
 [[nodiscard]] std::vector<Slot> slots_of_names(std::span<const std::string_view> names);
 
-/// The same for the columns that the user has named.
+/// Returns the columns that the user has named.
 [[nodiscard]] std::vector<Slot> slots_of_columns(const ColumnMap& columns);
 
-/// Leaves out columns after the last one in use, and incomplete normals and colours.
+/// Clears incomplete normals and colours, and removes the columns after the last one in use.
 void leave_out_unused(std::vector<Slot>& slots);
 
-/// "x=2, y=3, z=4"
+/// Formats columns: "x=2, y=3, z=4".
 [[nodiscard]] std::string describe_columns(std::span<const Slot> slots);
 
 }  // namespace tactree::builder

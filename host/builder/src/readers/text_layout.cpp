@@ -14,7 +14,7 @@ namespace tactree::builder {
 namespace {
 
 constexpr std::size_t kSampleRows = 1000;
-constexpr std::size_t kSampleLines = 4000;  // sample: lines before the rows and rows
+constexpr std::size_t kSampleLines = 4000;  // of the sample, including those before the rows
 constexpr std::size_t kMaxColumns = 4096;
 constexpr std::size_t kMinColumns = 3;
 constexpr const char* kNotPoints =
@@ -25,7 +25,8 @@ constexpr const char* kNameColumns =
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// "1,5 2,5 3,5": every comma between digits, at most one in a word, three words or more.
+/// True for a line such as "1,5 2,5 3,5": every comma is between digits, at most one in a word, and
+/// there are three words or more.
 bool has_decimal_commas(std::string_view line) {
   std::size_t words = 0;
   for (auto word = take_word(line); !word.empty(); word = take_word(line)) {
@@ -53,8 +54,8 @@ void find_separator(std::string_view line, TextLayout& layout) {
   }
 }
 
-/// False if a required field is not a number: a named column, or one of the first three without
-/// names. Other fields that are not numbers become NaN.
+/// Returns false if a required field is not a number: a named column, or one of the first three
+/// columns without names. Other fields that are not numbers become NaN.
 bool parse_row(std::string_view line, const TextLayout& layout, TextRow& row) {
   row = {};
   std::string_view field;
@@ -75,7 +76,7 @@ bool parse_row(std::string_view line, const TextLayout& layout, TextRow& row) {
   return true;
 }
 
-/// "x [m]", "//X", "\"X\"" -> "x": the name without its unit.
+/// Returns the name without its unit: "x [m]" or "//x" -> "x".
 std::string_view bare_name(std::string_view field) {
   while (field.starts_with('/') || field.starts_with('#')) field.remove_prefix(1);
   return trim(field.substr(0, field.find_first_of("[(")));
@@ -97,17 +98,18 @@ bool read_column_names(std::string_view line, TextLayout& layout) {
   return !layout.slots.empty();
 }
 
-/// "830 3 0": several whole numbers and nothing else.
+/// True for a row such as "830 3 0": several whole numbers and nothing else.
 bool are_counts(const TextRow& row) {
   return row.values.size() >= 2 && row.numbers == row.values.size() &&
          std::all_of(row.values.begin(), row.values.end(),
                      [](double value) { return value >= 0 && value == std::floor(value); });
 }
 
-/// Whether "1,5,2,25,3,0625" may be three numbers with decimal commas, separated by commas.
+/// Detects rows such as "1,5,2,25,3,0625", which may be three numbers with decimal commas,
+/// separated by commas.
 class SplitDecimals {
  public:
-  /// names: columns that a line names; 0: none does.
+  /// `names` is the number of columns that a line names, or 0.
   void look_at(std::string_view row, std::size_t names) {
     std::size_t fields = 0;
     std::string_view field;
@@ -116,7 +118,7 @@ class SplitDecimals {
       const std::string_view digits = field.starts_with('-') ? field.substr(1) : field;
       const bool whole = !digits.empty() && std::all_of(digits.begin(), digits.end(), is_digit);
       possible_ = possible_ && whole && !(fraction && field.starts_with('-'));
-      // A whole number has no zero in front, and a fraction none at its end.
+      // A field with a leading zero is not a whole number, so it is a fraction.
       seen_ = seen_ || (fraction && field.size() > 1 && field.starts_with('0'));
     }
     possible_ = possible_ && fields % 2 == 0 && fields >= 2 * kMinColumns;
@@ -170,7 +172,7 @@ class LayoutFinder {
       return;
     }
     const bool unnamed = rows_.empty() && layout_.slots.empty();
-    // "Point#, X, Y, Z" is no comment.
+    // The '#' of "Point#, X, Y, Z" does not begin a comment.
     if (!numbers && unnamed && (take_names(text) || take_names(trim(line)))) return;
     if (numbers && row.values.size() >= std::max(kMinColumns, layout_.slots.size())) {
       if (layout_.separator == ',') split_.look_at(text, layout_.slots.size());
@@ -210,7 +212,7 @@ class LayoutFinder {
     other_is_numbers_ = numbers;
   }
 
-  /// Throws: there is no row of numbers.
+  /// Throws ReadError, because there is no row of numbers.
   [[noreturn]] void refuse() const {
     if (first_other_line_ == 0) {
       throw ReadError(file_.name(), "", "the text holds no point, only comments or blank lines",

@@ -1,6 +1,6 @@
 #pragma once
-// Layout of a text file of points: separator, columns, leading count. Determined from its first
-// rows.
+// Layout of a text file of points: separator, columns, leading count. It is determined from the
+// first rows of the file.
 
 #include <cstdint>
 #include <optional>
@@ -19,28 +19,28 @@ struct TextLayout {
   bool decimal_comma = false;             ///< "1,5" means 1.5
   std::vector<Slot> slots;                ///< per column, up to the last one in use
   std::optional<std::size_t> counter;     ///< column that numbers the points
-  std::optional<std::uint64_t> declared;  ///< the count that comes before the first point
-  std::uint64_t header_line = 0;          ///< of the column names; 0: none
+  std::optional<std::uint64_t> declared;  ///< the count that precedes the first point
+  std::uint64_t header_line = 0;          ///< line of the column names; 0: none
   std::uint64_t first_row_line = 0;
-  double row_bytes = 0;  ///< on average
+  double row_bytes = 0;  ///< average
   std::vector<std::string> warnings;
-  std::string source;  ///< of the columns, for messages: "named by line 1"
+  std::string source;  ///< origin of the columns, for messages: "named by line 1"
 
   [[nodiscard]] bool has(Slot slot) const;
 };
 
-/// The data of a line: without comments ('#', "//") and spaces.
+/// Returns the data of a line, without comments ('#', "//") and the spaces around it.
 [[nodiscard]] std::string_view text_of_line(std::string_view line);
 
-/// Removes the next field from the front of `rest`, without quotes and spaces around it. False at
-/// the end of the line.
+/// Removes the next field from the front of `rest`, without quotes and spaces around it. Returns
+/// false at the end of the line.
 [[nodiscard]] bool take_field(std::string_view& rest, char separator, std::string_view& field);
 
-/// parse_number() with the decimal separator of the layout.
+/// Like parse_number(), with the decimal separator of the layout.
 [[nodiscard]] bool parse_field(std::string_view field, bool decimal_comma, double& value);
 
-/// Reads the first rows and rewinds the file. Throws ReadError if they are not points.
-/// columns: as named by the user, or empty.
+/// Reads the first rows and rewinds the file. Throws ReadError if they are not points. `columns`
+/// are those that the user has named, or empty.
 [[nodiscard]] TextLayout find_text_layout(InputFile& file, const ColumnMap& columns);
 
 }  // namespace tactree::builder

@@ -42,7 +42,7 @@ class TextReader {
  private:
   void read_line(std::string_view line) {
     if (file_.line_number() == layout_.header_line) return;
-    // The names in a header that the user has replaced.
+    // Skips the names in a header that the user has replaced.
     if (columns_named_ && file_.line_number() < layout_.first_row_line) return;
     const std::string_view text = text_of_line(line);
     if (text.empty()) return;
@@ -90,7 +90,7 @@ class TextReader {
     return true;
   }
 
-  /// The column that numbers the points must do so in all rows, not only in the first ones.
+  /// The column that numbers the points must do so in all rows, not only in the first rows.
   void count_row(std::string_view field) {
     std::int64_t number = 0;
     if (!parse_integer(field, number) || number <= last_number_) {
@@ -140,7 +140,7 @@ class TextReader {
 
   InputFile& file_;
   TextLayout layout_;
-  bool columns_named_;  // by the user
+  bool columns_named_;  // named by the user
   std::uint64_t declared_;
   ScanBuilder builder_;
   std::uint64_t bad_rows_ = 0;

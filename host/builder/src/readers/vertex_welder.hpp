@@ -13,7 +13,7 @@ class VertexWelder {
  public:
   using Position = std::array<float, 3>;
 
-  /// The index of `position` among the distinct positions, in order of first occurrence.
+  /// Returns the index of `position` among the distinct positions, in order of first occurrence.
   std::uint32_t add(Position position) {
     for (float& coordinate : position) coordinate += 0.0F;  // -0 equals 0
     if (2 * (positions_.size() + 1) > table_.size()) grow();
@@ -35,7 +35,7 @@ class VertexWelder {
   static constexpr std::uint32_t kFree = 0xffff'ffff;
   using Bits = std::array<std::uint32_t, 3>;
 
-  /// Salted per run: a crafted file cannot make all hashes equal.
+  /// Salted per run, so that a crafted file cannot make all hashes equal.
   [[nodiscard]] std::size_t hash(const Position& position) const {
     std::uint64_t mixed = seed_;
     for (const std::uint32_t bits : std::bit_cast<Bits>(position)) {
@@ -45,11 +45,11 @@ class VertexWelder {
     return static_cast<std::size_t>(mixed ^ (mixed >> 32));
   }
 
-  /// The entry of this position, or a free entry.
+  /// Returns the entry of this position, or a free entry.
   std::uint32_t& find(const Position& position) {
     const std::size_t mask = table_.size() - 1;
     std::size_t at = hash(position) & mask;
-    // Bitwise: a NaN equals itself.
+    // Compares bitwise, so that a NaN equals itself.
     while (table_[at] != kFree &&
            std::bit_cast<Bits>(positions_[table_[at]]) != std::bit_cast<Bits>(position)) {
       at = (at + 1) & mask;

@@ -16,12 +16,12 @@
 namespace tactree::builder {
 namespace {
 
-// Cubes of centres are halved from an edge of 2 r down to r / 32, which adds 4 % of points to a
-// ball on a surface.
+// Cubes of centres are halved from an edge of 2 r down to r / 32. The last edge adds 4 % of points
+// to a ball on a surface.
 constexpr double kCubeRadii = 2.0;
 constexpr std::uint32_t kLevels = 6;
 // A cube is pruned if its bound is within this factor of a count that occurs. A factor near 1 saves
-// scratch memory on the board and costs more cubes here.
+// scratch memory on the board but requires more cubes here.
 constexpr double kTolerance = 1.1;
 constexpr double kToleranceOfLarge = 1.2;
 constexpr std::size_t kLargeModel = 200000;  // points; more than most boards can store
@@ -58,7 +58,8 @@ std::uint32_t count_within(std::span<const Eigen::Vector3d> positions, const Poi
   return count;
 }
 
-// A count that occurs: the fullest ball around the points (a regular sample of them).
+// A count that occurs: the maximum over the balls around the points (around a regular sample of
+// them).
 std::uint32_t occurring_maximum(std::span<const Eigen::Vector3d> positions, const PointGrid& grid,
                                 double radius) {
   const std::size_t stride = 1 + positions.size() / kSamples;
@@ -81,7 +82,8 @@ void sort_unique(std::vector<std::uint64_t>& codes) {
 }
 
 // The cells whose cubes of centres cover every ball that holds a point: the cells of the grid (edge
-// at least 2 r) that are occupied or adjacent to an occupied one; each once, in a fixed order.
+// at least 2 r) that are occupied or adjacent to an occupied one. Each is listed once, in a fixed
+// order.
 std::vector<Eigen::Vector3i> cells_of_centres(const PointGrid& grid) {
   const Eigen::Vector3i shift = Eigen::Vector3i::Constant(1);  // keeps coordinates positive
   std::vector<std::uint64_t> codes;
@@ -109,7 +111,7 @@ std::vector<Eigen::Vector3i> cells_of_centres(const PointGrid& grid) {
 using Floats = float __attribute__((vector_size(16)));
 using Integers = std::int32_t __attribute__((vector_size(16)));
 
-// Points relative to the middle of a cube of the grid, four at a time.
+// Points relative to the centre of a cube of the grid, four at a time.
 class Candidates {
  public:
   [[nodiscard]] std::uint32_t size() const { return size_; }
@@ -136,7 +138,7 @@ class Candidates {
     block.index[lane] = index;
   }
 
-  // Number of points within 1 of the cube centre +- half_edge.
+  // Number of points within a distance of 1 from the cube centre +- half_edge.
   [[nodiscard]] std::uint32_t count_near(const Eigen::Vector3f& centre, float half_edge) const {
     Integers count = {0, 0, 0, 0};
     for (const Block& block : blocks_) {
@@ -144,7 +146,7 @@ class Candidates {
     }
     return static_cast<std::uint32_t>(count[0] + count[1] + count[2] + count[3]);
   }
-  // Appends the same points to `found`.
+  // Appends these points to `found`.
   void filter(const Eigen::Vector3f& centre, float half_edge, Candidates& found) const {
     for (std::uint32_t b = 0; b < blocks_.size(); ++b) {
       const Integers is_near = near(blocks_[b], centre, half_edge);
@@ -155,7 +157,8 @@ class Candidates {
       }
     }
   }
-  // Whether all lie beyond the plane through `centre` + margin along the direction to their mean.
+  // True if all points lie beyond the plane at the distance `margin` from `centre` towards their
+  // mean.
   [[nodiscard]] bool all_to_one_side(const Eigen::Vector3f& centre, float margin) const {
     Eigen::Vector3f sum = Eigen::Vector3f::Zero();
     for (std::uint32_t i = 0; i < size_; ++i) {
@@ -181,7 +184,7 @@ class Candidates {
     Floats z;
     std::array<std::uint32_t, 4> index;
   };
-  static constexpr float kAway = 1e30F;  // its square is infinite: within no radius
+  static constexpr float kAway = 1e30F;  // its square is infinite, so it is within no radius
 
   // Distance of the coordinates from the interval centre +- half_edge; 0 inside.
   static Floats beyond(const Floats& coordinates, float centre, float half_edge) {
@@ -202,7 +205,7 @@ class Candidates {
 };
 
 // The points that a ball around any centre in a cube can hold: one list per level, filtered from
-// the level above. Lengths are in units of the radius and from the middle of the cube gathered
+// the level above. Lengths are in units of the radius, relative to the centre of the cube gathered
 // last.
 class CandidateLists {
  public:
@@ -241,7 +244,7 @@ class BoundSearch {
   BoundSearch(CandidateLists lists, double tolerance)
       : lists_(std::move(lists)), tolerance_(tolerance) {}
 
-  // An upper bound for the cell; cubes with a bound of at most `enough` are pruned.
+  // Returns an upper bound for the cell. Cubes with a bound of at most `enough` are pruned.
   std::uint32_t bound(const Eigen::Vector3i& cell, std::uint32_t enough) {
     enough_ = enough;
     const Cube cube = lists_.gather(cell);
@@ -256,8 +259,8 @@ class BoundSearch {
     if (level == kLevels) {
       return all.size();
     }
-    // The smallest ball around a set of points has its centre in their convex hull: a cube whose
-    // points all lie on one side of it cannot contain that centre.
+    // The smallest ball around a set of points has its centre in their convex hull. A cube whose
+    // points all lie on one side of it therefore cannot contain that centre.
     if (all.all_to_one_side(cube.centre, kRadiusMargin * cube.half_diagonal())) {
       return 0;
     }
@@ -363,7 +366,7 @@ std::vector<bool> thin_to_ball_bound(std::span<const Eigen::Vector3d> positions,
                                      std::uint32_t most) {
   const PointGrid grid(positions, kCubeRadii * radius);
   const std::vector<Eigen::Vector3i> cells = cells_of_centres(grid);
-  // Most cells need no thinning; they are identified in parallel.
+  // Most cells need no thinning. The others are identified first, in parallel.
   std::vector<std::uint8_t> crowded(cells.size(), 0);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, cells.size(), 64), [&](auto range) {
     BoundSearch search(CandidateLists(positions, grid, radius), 1.0);

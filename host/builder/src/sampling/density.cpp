@@ -7,10 +7,10 @@
 #include <optional>
 #include <stdexcept>
 
+#include "geometry/spacing.hpp"
 #include "sampling/ball_bound.hpp"
 #include "sampling/mesh_sampling.hpp"
 #include "sampling/resample.hpp"
-#include "geometry/spacing.hpp"
 #include "tactree/builder/length_text.hpp"
 #include "tactree/core/contact/surface.hpp"
 
@@ -18,15 +18,15 @@ namespace tactree::builder {
 namespace {
 
 constexpr double kMeshSpacingsPerExtent = 200.0;
-constexpr double kLeastMeshPoints = 20'000.0;  // of a long, thin object
-// The points of a cloud are uneven: after resampling their spacing is larger than requested. Up to
-// this factor the requested spacing is kept.
+constexpr double kLeastMeshPoints = 20'000.0;  // minimum for a long, thin object
+// The points of a cloud are uneven, so their spacing after resampling is larger than requested. The
+// requested spacing is kept up to this factor.
 constexpr double kSparser = 1.15;
-// A cloud up to this uneven has no voids that the fit could not bridge at its own spacing.
+// Maximum unevenness of a cloud without voids that the fit could not bridge at its own spacing.
 constexpr double kMaxCloudUnevenness = 1.25;
 constexpr int kDistanceTrials = 8;
 constexpr double kMaxUneven = 1.5;           // spacing after resampling over that of the scan
-constexpr double kSameSpacing = 0.02;        // relative difference
+constexpr double kSameSpacing = 0.02;        // maximum relative difference
 constexpr double kFallbackSpacing_m = 1e-3;  // for a single point
 
 // No ball of `reach` may hold more than core::kMaxCandidates points. Thinning uses a wider ball and
@@ -37,12 +37,13 @@ constexpr double kThinningFewer = 0.875;
 
 // Bytes per point of a blob: the initial value of the search for a flash budget.
 constexpr double kTypicalBytesPerPoint = 6.4;
+// The search ends above kBudgetUsed of the budget; each trial aims at kBudgetAimedAt.
 constexpr double kBudgetUsed = 0.95;
 constexpr double kBudgetAimedAt = 0.975;
 constexpr int kBudgetTrials = 12;
-constexpr double kBytesTwoSided = 2.2;  // of a sheet and its edges, in those of its points
+constexpr double kBytesTwoSided = 2.2;  // bytes of a body built from a sheet / bytes of the sheet
 
-// Of a requested spacing; the lattice of a blob could represent no other.
+// Range of a requested spacing; the lattice of a blob cannot represent any other.
 constexpr double kFinestSpacing_m = 1e-9;
 constexpr double kCoarsestSpacing_m = 1e6;
 
@@ -86,7 +87,7 @@ class DensityChooser {
     return own > 0.0 ? own : kFallbackSpacing_m;
   }
 
-  // Finer where the object is long and thin; never so fine that the faces need too many samples.
+  // Finer for a long, thin object, but never so fine that the faces need too many samples.
   [[nodiscard]] double mesh_spacing() const {
     const double area = area_of(input_.mesh);
     const double by_size = largest_edge(input_.bounds) / kMeshSpacingsPerExtent;
@@ -94,7 +95,7 @@ class DensityChooser {
     return std::max(finest, std::min(by_size, std::sqrt(area / kLeastMeshPoints)));
   }
 
-  // Samples a mesh again for each spacing; a cloud has fixed points.
+  // A mesh is sampled again for each spacing; the points of a cloud are fixed.
   void sample(double spacing) {
     if (!is_mesh()) {
       return;
@@ -133,7 +134,7 @@ class DensityChooser {
     dense_spacing_ = kCandidateDistance * spacing;
   }
 
-  // A spacing equal to that of the scan keeps the points that the scan's own spacing keeps.
+  // If the requested spacing equals that of the scan, keeps the same points as without a request.
   DensityChoice choose_wanted(double wanted) {
     if (!is_mesh() && options_.spacing_m && wanted > dense_spacing_ &&
         wanted < kMaxUneven * dense_spacing_) {
@@ -168,15 +169,15 @@ class DensityChooser {
     return choice;
   }
 
-  /// Whether a cloud that is not dense at the requested spacing may be thinned less evenly. Without
-  /// a requested spacing it is not: its own is then that of an even selection.
+  /// True if a cloud that is not dense at the requested spacing may be thinned less evenly. Without
+  /// a requested spacing it is not, because the spacing is then that of an even selection.
   [[nodiscard]] bool keeps_its_points() const {
     return options_.resample && options_.spacing_m && !is_mesh() &&
            estimate_spacing(dense_).unevenness <= kMaxCloudUnevenness;
   }
 
-  /// Lowers the least distance until the points that are kept have the wanted spacing. That
-  /// spacing.
+  /// Reduces the minimum distance until the points that are kept have the wanted spacing. Returns
+  /// the spacing reached.
   double keep_more(double wanted, DensityChoice& choice) const {
     double low = 0.0;
     double high = kDistanceOverSpacing * wanted;
@@ -221,7 +222,7 @@ class DensityChooser {
     return static_cast<std::uint64_t>(options_.two_sided_m ? kBytesTwoSided * bytes : bytes);
   }
 
-  // The finest spacing to try: that of the cloud; for a mesh, from its area and the budget.
+  // The finest spacing to try: that of a cloud, or for a mesh one from its area and the budget.
   [[nodiscard]] double first_trial(double budget) const {
     if (!is_mesh()) {
       return default_spacing();

@@ -2,15 +2,15 @@
 // Selection of the spacing and of the points at that spacing.
 
 #include "cleaning/cleaning.hpp"
-#include "tactree/builder/build_model.hpp"
 #include "geometry/z_order.hpp"
+#include "tactree/builder/build_model.hpp"
 
 namespace tactree::builder {
 
 struct DensityChoice {
   double spacing_m = 0.0;
   ZOrderedCloud points;          ///< resampled; normals as read, or zero
-  ZOrderedCloud dense;           ///< the candidates that `points` was chosen from
+  ZOrderedCloud dense;           ///< the candidates from which `points` was selected
   double dense_spacing_m = 0.0;  ///< of `dense`
 };
 
@@ -21,8 +21,8 @@ struct DensityChoice {
 [[nodiscard]] DensityChoice choose_density(CleanInput& input, const BuildOptions& options,
                                            Progress& progress, BuildReport& report);
 
-/// Drops points until no ball of the model's reach holds more than the controller's candidates.
-/// Returns their number.
+/// Drops points until no ball of the model's reach holds more points than the controller's limit of
+/// candidates. Returns the number of points dropped.
 std::uint64_t thin_to_candidates(ZOrderedCloud& points, double spacing);
 
 }  // namespace tactree::builder

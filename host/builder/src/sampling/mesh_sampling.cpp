@@ -14,8 +14,8 @@ namespace {
 
 double to_unit(std::uint64_t bits) { return std::ldexp(static_cast<double>(bits >> 11), -53); }
 
-// The area divided by the area per point, rounded up or down at random in proportion: faces smaller
-// than the area of one point get the right number on average.
+// The area divided by the area per point, rounded up or down at random in proportion, so that faces
+// smaller than the area of one point get the right number on average.
 std::uint64_t count_on(double expected, std::size_t triangle) {
   const double whole = std::floor(expected);
   const bool one_more = to_unit(hash64(2 * triangle)) < expected - whole;
@@ -29,7 +29,7 @@ Eigen::Vector2d spread_in_square(std::uint64_t i, std::uint64_t seed) {
   return {x - std::floor(x), y - std::floor(y)};
 }
 
-/// The corner with the largest of the barycentric coordinates (1 - u - v, u, v).
+/// The vertex with the maximum of the barycentric coordinates (1 - u - v, u, v).
 std::uint32_t nearest_corner(const std::array<std::uint32_t, 3>& triangle,
                              const Eigen::Vector2d& at) {
   const double first = 1.0 - at.sum();

@@ -9,13 +9,13 @@ namespace tactree::builder {
 /// Mean distance of candidates, in spacings: about 7 candidates per point of the model.
 inline constexpr double kCandidateDistance = 0.37;
 
-/// Limits memory; a blob of this density would have 15 MB.
+/// Limits the memory; a blob of this density would have 15 MB.
 inline constexpr double kMaxCandidates = 20e6;
 
 /// Samples one point per (kCandidateDistance * spacing)^2 of area on average, in a low-discrepancy
-/// pattern that depends on the triangle's index only. Each point lies on its face, up to rounding;
-/// its normal follows from the order of the corners (counter-clockwise seen from outside).
-/// Throws std::runtime_error, with the count and a remedy, above kMaxCandidates.
+/// pattern that depends only on the index of the triangle. Each point lies on its face, up to
+/// rounding; its normal follows from the order of the vertices (counter-clockwise seen from
+/// outside). Throws std::runtime_error, with the count and a remedy, above kMaxCandidates.
 [[nodiscard]] Cloud sample_faces(const Mesh& mesh, double spacing);
 
 }  // namespace tactree::builder

@@ -12,7 +12,7 @@ namespace tactree::builder {
 namespace {
 
 // Space is divided into tiles several distances wide. Tiles that do not touch cannot influence each
-// other: tiles with equal parity of all three coordinates are processed in parallel, one parity
+// other, so tiles with equal parity of all three coordinates are processed in parallel, one parity
 // after the other. The result does not depend on the order of the threads.
 constexpr double kTileDistances = 6.0;
 constexpr int kMaxCellsPerAxis = 16;  // in the local grid of a tile
@@ -26,7 +26,7 @@ struct Tile {
 // The kept points in and around one tile, in a small dense grid.
 class LocalGrid {
  public:
-  // Cells are at least `distance` wide: competitors lie in the 27 cells around a point.
+  // Cells are at least `distance` wide, so competitors lie in the 27 cells around a point.
   LocalGrid(const Eigen::Vector3d& corner, double edge, double distance)
       : corner_(corner.array() - distance) {
     const double width = edge + 2.0 * distance;
@@ -45,7 +45,7 @@ class LocalGrid {
     links_.push_back({index, head});
     head = static_cast<std::uint32_t>(links_.size() - 1);
   }
-  // Whether any(index) holds for a point in the 27 cells around p.
+  // True if any(index) holds for a point in the 27 cells around p.
   template <typename Any>
   [[nodiscard]] bool any_near(const Eigen::Vector3d& p, Any&& any) const {
     const Eigen::Vector3i at = cell_of(p);

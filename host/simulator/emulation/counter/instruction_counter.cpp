@@ -1,4 +1,4 @@
-// A plugin of QEMU: counts the instructions a board executes in each tick, by function.
+// QEMU plugin that counts the instructions that a board executes in each tick, by function.
 //   -plugin file=tactree_instruction_counter.so,out=FILE[,skip=TICKS][,code=on]
 //
 // A tick is the time from leaving tactree_idle() to the return to it, if tactree_tick() was called
@@ -27,8 +27,8 @@ namespace {
 
 struct Function {
   std::string name;
-  std::uint64_t executed = 0;  // the emulator adds to this
-  std::uint64_t before = 0;    // executed when the tick began
+  std::uint64_t executed = 0;  // incremented by the emulator
+  std::uint64_t before = 0;    // value of `executed` when the tick began
   std::uint64_t max = 0;
   std::uint64_t total = 0;
 };
@@ -36,9 +36,9 @@ struct Function {
 struct Instruction {
   std::uint64_t begin = 0;
   std::uint64_t end = 0;
-  std::uint64_t executed = 0;    // the emulator adds to this
-  std::uint64_t before = 0;      // executed before the first tick
-  std::uint64_t lowest = ~0ULL;  // addresses of its data in ticks
+  std::uint64_t executed = 0;    // incremented by the emulator
+  std::uint64_t before = 0;      // value of `executed` at the first tick
+  std::uint64_t lowest = ~0ULL;  // range of the addresses that it accesses in ticks
   std::uint64_t highest = 0;
 };
 
@@ -56,11 +56,11 @@ class Checksum {
   std::uint32_t state_ = 2166136261U;
 };
 
-constexpr std::uint64_t kBucket = 128;  // instructions
+constexpr std::uint64_t kBucket = 128;  // instructions; equal to emulation::kBucketInstructions
 
-// No locks: one board with one core runs in one thread.
+// Needs no locks, because a board with one core runs in one thread.
 struct Counter {
-  std::deque<Function> functions;  // elements keep their addresses, which the emulator holds
+  std::deque<Function> functions;  // a deque, because the emulator stores addresses of elements
   std::unordered_map<std::string, Function*> by_name;
   std::deque<Instruction> instructions;
   bool notes_code = false;
@@ -72,7 +72,7 @@ struct Counter {
   std::uint64_t total = 0;
   std::uint64_t worst = 0;
   std::uint64_t start = 0;
-  std::map<std::uint64_t, std::uint64_t> buckets;  // ticks by their length, rounded down
+  std::map<std::uint64_t, std::uint64_t> buckets;  // ticks by instructions, rounded down to kBucket
   Checksum checksum;
   bool in_tick = false;
 
@@ -88,7 +88,7 @@ struct Counter {
 
   void begin_tick() {
     if (in_tick) {
-      end_tick();  // the tick was late: the board did not idle before this one
+      end_tick();  // the previous tick was late: the board was not idle since
     } else if (seen == 0) {
       for (Instruction& instruction : instructions) {
         instruction.before = instruction.executed;
@@ -107,7 +107,7 @@ struct Counter {
   }
 
  private:
-  // Instructions executed outside the ticks.
+  // Discards the instructions executed outside ticks.
   void forget() {
     for (Function& f : functions) {
       start += seen == 0 ? f.executed - f.before : 0U;
@@ -137,7 +137,7 @@ struct Counter {
   }
 };
 
-// Never destroyed: the report is written after the destruction of static objects.
+// Never destroyed, because the report is written after the destruction of static objects.
 Counter& counter = *new Counter;
 
 void note_data(unsigned, qemu_plugin_meminfo_t, std::uint64_t address, void* data) {
@@ -169,7 +169,7 @@ void translated(qemu_plugin_id_t, qemu_plugin_tb* block) {
       continue;
     }
     Function& function = counter.function(name);
-    // The first block of the function that is ever translated begins at its entry.
+    // The first block of the function to be translated begins at the function's entry.
     static std::uint64_t entry = 0;
     const std::uint64_t address = qemu_plugin_insn_vaddr(instruction);
     if (symbol == "tactree_tick" && (entry == 0 || entry == address)) {

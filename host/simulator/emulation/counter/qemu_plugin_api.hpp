@@ -1,5 +1,5 @@
 #pragma once
-// The part of QEMU's plugin interface, version 1 (QEMU 4.2 .. 8), that the counter uses. QEMU
+// Subset of QEMU's plugin interface, version 1 (QEMU 4.2 .. 8), that the counter uses. QEMU
 // documents it in "QEMU TCG Plugins"; Debian does not package its header.
 
 #include <cstddef>
@@ -10,7 +10,7 @@ extern "C" {
 
 using qemu_plugin_id_t = std::uint64_t;
 struct qemu_plugin_tb;    // a translated block of instructions
-struct qemu_plugin_insn;  // one of them
+struct qemu_plugin_insn;  // an instruction of a block
 struct qemu_info_t;
 
 enum qemu_plugin_cb_flags { QEMU_PLUGIN_CB_NO_REGS = 0 };
@@ -28,7 +28,8 @@ std::size_t qemu_plugin_tb_n_insns(const qemu_plugin_tb* block);
 qemu_plugin_insn* qemu_plugin_tb_get_insn(const qemu_plugin_tb* block, std::size_t index);
 std::size_t qemu_plugin_insn_size(const qemu_plugin_insn* instruction);
 std::uint64_t qemu_plugin_insn_vaddr(const qemu_plugin_insn* instruction);
-/// Name of the function the instruction is in, as in the ELF file; nullptr or "" outside functions.
+/// Symbol in the ELF file of the function that contains the instruction; nullptr or "" outside
+/// functions.
 const char* qemu_plugin_insn_symbol(const qemu_plugin_insn* instruction);
 
 void qemu_plugin_register_vcpu_insn_exec_cb(qemu_plugin_insn* instruction,
@@ -43,7 +44,7 @@ void qemu_plugin_register_vcpu_mem_cb(qemu_plugin_insn* instruction,
                                       qemu_plugin_cb_flags flags, qemu_plugin_mem_rw which,
                                       void* user);
 
-// Definitions required of a plugin.
+// A plugin must define these.
 [[gnu::visibility("default")]] extern int qemu_plugin_version;
 [[gnu::visibility("default")]] int qemu_plugin_install(qemu_plugin_id_t id, const qemu_info_t* info,
                                                        int count, char** arguments);

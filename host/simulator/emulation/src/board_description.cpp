@@ -5,8 +5,9 @@ namespace {
 
 constexpr std::uint32_t kMiB = 1U << 20;
 
-// Addresses as in firmware/boards/<name>/memory.ld; an image with other addresses is refused. No
-// emulator has the timers and the USART of the STM32F405; the Netduino Plus 2 has the same chip.
+// The addresses are those of firmware/boards/<name>/memory.ld; an image with other addresses is
+// refused. No emulator models the timers and the USART that the image of the stm32f405 uses. The
+// Netduino Plus 2 has the same chip and is emulated.
 constexpr BoardDescription kBoards[] = {
     {"mps2-an500", "Cortex-M7", "cortex-m7", "qemu-system-arm", "qemu-system-arm", "-M mps2-an500",
      0x60000000, 16 * kMiB, 1, true},

@@ -23,7 +23,7 @@ using support::ChildProcess;
 using support::FileDescriptor;
 using support::Pipe;
 
-// Descriptor numbers in the emulator; the first two as in plant_link.hpp.
+// Descriptor numbers in the emulator; the first two are those of plant_link.hpp.
 constexpr int kToBoard = 3;
 constexpr int kFromBoard = 4;
 constexpr int kCounts = 5;
@@ -72,7 +72,7 @@ std::string read_to_end(int descriptor) {
   return text;
 }
 
-/// Waits for input, `limit` at most; a signal, such as Ctrl-C, does not end the wait.
+/// Waits for input for at most `limit`. A signal such as Ctrl-C restarts the wait.
 bool readable(int descriptor, milliseconds limit) {
   pollfd wanted{descriptor, POLLIN, 0};
   int found = -1;
@@ -157,8 +157,9 @@ class EmulatedTarget::Session {
     }
     process_.emplace(command_line(board, program, image, options),
                      support::Streams{log_.get(), log_.get(), inherited});
-    // Only the emulator writes to these, so they end with it. The reading end of to_board_ stays
-    // open here: writing to an emulator that has ended raises no SIGPIPE.
+    // Only the emulator keeps the write ends of these pipes, so that its end is their end of file.
+    // The read end of to_board_ stays open here, because a write to an emulator that has ended must
+    // not raise SIGPIPE.
     from_board_.write_end.close();
     counts_.write_end.close();
     greet();

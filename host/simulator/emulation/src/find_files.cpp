@@ -14,7 +14,8 @@ namespace fs = std::filesystem;
 
 constexpr char kCounter[] = "tactree_instruction_counter.so";
 
-// lib/tactree beside the bin/ of this program; empty if /proc is not available.
+/// Folder lib/tactree of the installation that contains this program; empty if /proc is not
+/// available.
 fs::path installed() {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);

@@ -8,7 +8,8 @@
 
 namespace tactree::emulation {
 
-/// Path of the instruction counter, a plugin of the emulator. Throws EmulationError if missing.
+/// Path of the instruction counter, a plugin of the emulator. Throws EmulationError if it is
+/// missing.
 [[nodiscard]] std::filesystem::path find_counter();
 
 /// Commands that build the board's image, for messages.

@@ -14,7 +14,8 @@
 namespace tactree::emulation {
 namespace {
 
-// Unread output that exceeds this, bytes, is discarded.
+// Bytes. All output that is waiting is discarded if it exceeds this, to limit the memory when no
+// program reads.
 constexpr std::size_t kMaxWaiting = 1U << 20U;
 
 }  // namespace

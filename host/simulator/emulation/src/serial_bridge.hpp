@@ -11,7 +11,7 @@ namespace tactree::emulation {
 
 class SerialBridge {
  public:
-  /// `programs` outlives the bridge. Throws EmulationError.
+  /// `programs` must outlive the bridge. Throws EmulationError.
   explicit SerialBridge(client::Transport& programs);
   /// The descriptor that the emulator uses as its serial port.
   [[nodiscard]] int board_end() const { return board_.get(); }

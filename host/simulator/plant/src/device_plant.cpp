@@ -14,7 +14,8 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr double kGravity = 9.80665;  // m/s2
-// Iterations for dry friction and stops: the tip's mass couples the joints.
+// Gauss-Seidel passes for dry friction and stops. One is not enough: the tip's mass couples the
+// joints.
 constexpr int kRubs = 12;
 
 void require(bool valid, const std::string& field) {
@@ -55,7 +56,7 @@ DevicePlant::DevicePlant(const DevicePlantParameters& parameters, const Vector3d
   require(pose.has_value(), "start of the tip");
   pose_ = *pose;
   for (Eigen::Index i = linkage_.axes(); i < 3; ++i) {
-    inertia_[i] = 1.0;  // unused axis, without effort
+    inertia_[i] = 1.0;  // unused axis without effort; keeps the mass matrix invertible
   }
 }
 
@@ -80,7 +81,7 @@ double DevicePlant::potential_J() const {
   return parameters_.has_weight ? linkage_.potential_J(joints_) : 0.0;
 }
 
-/// Efforts of the links' weight at the joints: gradient of the potential without the tip.
+/// Efforts of the links' weight at the joints: the negative gradient of the links' potential.
 Vector3d DevicePlant::link_weight() const {
   constexpr double kStep = 1e-5;
   Vector3d slope = Vector3d::Zero();
@@ -109,7 +110,7 @@ void DevicePlant::substep(const Vector3d& effort, const HandTarget& target, doub
   joint_push += massless ? Vector3d(jacobian.transpose() * tip_push) : Vector3d::Zero();
 
   // Free motion under the efforts. The work of an impulse is its product with the mean of the
-  // speeds before and after it.
+  // velocities before and after it.
   const Vector3d joint_free = joint_velocity_ + dt * joint_push.cwiseQuotient(inertia_);
   const Vector3d tip_free = massless ? tip_velocity_ : tip_velocity_ + dt / tip_mass_ * tip_push;
   const Vector3d joint_mean = 0.5 * (joint_velocity_ + joint_free);
@@ -134,8 +135,8 @@ void DevicePlant::substep(const Vector3d& effort, const HandTarget& target, doub
   move(dt);
 }
 
-/// Dry friction reduces the speed of a joint and never reverses it; a stop ends the motion.
-/// Projected Gauss-Seidel over the joints' impulses.
+/// Dry friction reduces the speed of a joint and never reverses it; a stop ends the motion. The
+/// impulses of the joints are found by projected Gauss-Seidel iteration.
 void DevicePlant::rub(const Matrix3d& inverse_mass, double dt) {
   constexpr double kAll = std::numeric_limits<double>::max();
   const core::DeviceModel& model = parameters_.model;
@@ -149,7 +150,7 @@ void DevicePlant::rub(const Matrix3d& inverse_mass, double dt) {
       const double next = std::clamp(wanted, low, high);
       joint_velocity_ += (next - impulse[i]) * inverse_mass.col(i);
       if (next == wanted) {
-        joint_velocity_[i] = 0.0;  // exactly zero at a stop
+        joint_velocity_[i] = 0.0;  // the joint stops: removes the rounding error
       }
       impulse[i] = next;
     }
@@ -159,7 +160,7 @@ void DevicePlant::rub(const Matrix3d& inverse_mass, double dt) {
 void DevicePlant::move(double dt) {
   const Vector3d joints = joints_ + dt * joint_velocity_;
   const std::optional<LinkagePose> pose = linkage_.pose(joints);
-  if (!pose) {  // the linkage cannot close: stop
+  if (!pose) {  // the linkage cannot close: the motion ends
     energy_.friction += kinetic_J();
     joint_velocity_.setZero();
     tip_velocity_.setZero();

@@ -15,7 +15,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr double kGravity = 9.80665;  // m/s2
-constexpr double kDifference = 1e-6;  // rad or m, for gradients of closures
+constexpr double kDifference = 1e-6;  // rad or m, step of the numerical gradient of a closure
 constexpr int kNewtonSteps = 60;
 constexpr double kConverged_m = 1e-12;
 
@@ -34,9 +34,9 @@ Vector3d elevated(const Vector3d& forward, double angle_rad) {
 
 /// Positions of the arm's joints.
 struct ArmPoints {
-  Vector3d axis;  // of elevations
+  Vector3d axis;  // of the elevation joints
   Vector3d elbow;
-  Vector3d forearm;  // direction
+  Vector3d forearm;  // unit vector
   Vector3d tip;
 };
 
@@ -70,7 +70,7 @@ Vector3d delta_misfit(const core::DeltaGeometry& g, const Vector3d& q, const Vec
   for (Eigen::Index i = 0; i < 3; ++i) {
     const SineCosine place = sine_cosine(static_cast<double>(g.leg_rad[i]));
     const SineCosine arm = sine_cosine(q[i]);
-    // Stamper's frame: x, y in the ring, z off it.
+    // Stamper's frame: x and y in the plane of the ring, z normal to it.
     const double x = plate.y();
     const double y = plate.z();
     const double u = x * place.cosine + y * place.sine - static_cast<double>(g.r);
@@ -100,7 +100,7 @@ Vector3d five_bar_misfit(const core::FiveBarGeometry& g, const Vector3d& q, cons
   return misfit;
 }
 
-/// Distant start on the side of the elbows where the forearms meet.
+/// Starting point of the search, far from the elbows on the side where the forearms meet.
 Vector3d beyond_elbows(const core::FiveBarGeometry& g, const Vector3d& q) {
   const Vector3d first = five_bar_elbow(g, q, 0);
   const Vector3d across = five_bar_elbow(g, q, 1) - first;
@@ -118,7 +118,8 @@ Matrix3d gradient(const Function& function, const Vector3d& at) {
   return result;
 }
 
-/// Tip for which misfit(joints, tip) is zero, searched from a distant start, and its Jacobian.
+/// Tip for which misfit(joints, tip) is zero, and its Jacobian. Newton's method from the distant
+/// point `from`, which selects the solution on that side.
 template <class Misfit>
 std::optional<LinkagePose> closed_pose(const Misfit& misfit, const Vector3d& q,
                                        const Vector3d& from) {
@@ -174,7 +175,7 @@ std::optional<LinkagePose> geometry_pose(const core::DeviceModel& m, const Vecto
   return std::nullopt;
 }
 
-/// Height of a link's centre in the frame of the geometry.
+/// Height of a link's centre of mass in the frame of the geometry.
 double centre_height(const core::DeviceModel& m, const Vector3d& q, Eigen::Index link) {
   const double centre = static_cast<double>(m.link_centre_m[link]);
   const double sine = sine_cosine(q[link]).sine;
@@ -208,7 +209,7 @@ std::optional<LinkagePose> Linkage::pose(const Vector3d& joints) const {
 
 Vector3d Linkage::joints_near(const Vector3d& tip_m) const {
   constexpr int kSteps = 200;
-  constexpr double kDamping = 1e-6;  // of the squared size of the Jacobian
+  constexpr double kDamping = 1e-6;  // relative to the squared Frobenius norm of the Jacobian
   Vector3d q = Vector3d::Zero();
   for (Eigen::Index i = 0; i < axes(); ++i) {
     const double middle =
@@ -225,7 +226,7 @@ Vector3d Linkage::joints_near(const Vector3d& tip_m) const {
     normal.diagonal().array() += kDamping * normal.trace();
     Vector3d change = normal.inverse() * (jacobian.transpose() * (tip_m - here->tip_m));
     const double largest = change.cwiseAbs().maxCoeff();
-    constexpr double kLongest = 0.2;  // limits a step: the linkage must still close
+    constexpr double kLongest = 0.2;  // rad or m; after a longer step the linkage may not close
     change *= largest > kLongest ? kLongest / largest : 1.0;
     const Vector3d before = q;
     for (Eigen::Index i = 0; i < axes(); ++i) {

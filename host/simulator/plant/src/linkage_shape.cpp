@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 
 double wide(float value) { return static_cast<double>(value); }
 
-/// Displacement of `along` metres at `angle_rad` above `forward`.
+/// Displacement by `along` metres in the direction `angle_rad` above `forward`.
 Vector3d reach(const Vector3d& forward, double angle_rad, double along) {
   const SineCosine a = sine_cosine(angle_rad);
   return along * (a.cosine * forward + a.sine * Vector3d::UnitZ());
@@ -24,7 +24,8 @@ Polyline arm(const core::ArmGeometry& g, const Vector3d& q, const Vector3d& tip)
   return {Vector3d::Zero(), reach(forward, q[1], wide(g.arm_m)), tip};
 }
 
-/// Ring, arm's end, hinge of the plate, plate's middle. Stamper's frame is y, z, x of the device.
+/// Hinge on the ring, end of the arm, hinge on the plate, centre of the plate. The axes x, y, z of
+/// Stamper's frame are y, z, x of the device.
 Polyline delta_leg(const core::DeltaGeometry& g, double q, std::size_t leg, const Vector3d& plate) {
   const SineCosine place = sine_cosine(wide(g.leg_rad[leg]));
   const Vector3d outwards(0.0, place.cosine, place.sine);
@@ -47,7 +48,7 @@ Polyline rail(const core::DeviceModel& model, Eigen::Index axis, const Vector3d&
   return line;
 }
 
-/// In the frame of the geometry, not the device frame.
+/// The links in the frame of the geometry, not in the device frame.
 std::vector<Polyline> geometry_shape(const core::DeviceModel& model, const Vector3d& q,
                                      const Vector3d& tip) {
   switch (model.kind) {

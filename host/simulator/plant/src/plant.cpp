@@ -14,7 +14,8 @@ void require(double value, double low, double high, const char* field) {
   }
 }
 
-/// Dry friction reduces the speed by at most this value; it stops an axis and never reverses it.
+/// Velocity after dry friction, which reduces the speed by at most `loss`; it stops an axis and
+/// never reverses it.
 double rub_off(double velocity, double loss) {
   return std::abs(velocity) <= loss ? 0.0 : velocity - std::copysign(loss, velocity);
 }
@@ -59,13 +60,13 @@ void Plant::substep(const Eigen::Vector3d& motor_N, const HandTarget& target, do
   const Eigen::Vector3d before = velocity_;
   velocity_ += dt / mass * (motor_N + hand_N);
   const Eigen::Vector3d pushed = velocity_;
-  // Implicit: stable for every damping and sub-step.
+  // The implicit step is stable for every damping and sub-step.
   velocity_ /= 1.0 + dt * device.viscous_Ns_m / mass;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     velocity_[axis] = rub_off(velocity_[axis], dt * device.coulomb_N / mass);
   }
   position_ += dt * velocity_;
-  // Work of an impulse: its product with the mean of the speeds before and after it.
+  // The work of an impulse is its product with the mean of the velocities before and after it.
   energy_.motor += dt * motor_N.dot(0.5 * (before + pushed));
   energy_.hand += dt * hand_N.dot(0.5 * (before + pushed));
   energy_.friction += 0.5 * mass * (pushed.squaredNorm() - velocity_.squaredNorm());

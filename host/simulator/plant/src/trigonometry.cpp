@@ -10,7 +10,8 @@ SineCosine sine_cosine(double angle_rad) {
   const double quarters = std::floor(angle_rad * (2.0 / std::numbers::pi) + 0.5);
   const double x = angle_rad - quarters * (0.5 * std::numbers::pi);
   const double xx = x * x;
-  // Taylor series about 0, last terms first: x^21 / 21! is below 1e-21 within an eighth of a turn.
+  // Taylor series about 0, last terms first. x is within an eighth of a turn, where the last term
+  // of the sine, x^21 / 21!, is below 1e-21.
   double s = 1.0;
   double c = 1.0;
   for (double n = 20.0; n >= 2.0; n -= 2.0) {

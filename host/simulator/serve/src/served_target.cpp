@@ -5,7 +5,7 @@ namespace {
 
 // Typical of microcontrollers with uniform sectors.
 constexpr std::uint32_t kSectorBytes = 16384;
-// Steps of the session between two ticks: a frame needs several.
+// Maximum number of session steps between two ticks; a frame needs several.
 constexpr int kPiecesPerTick = 64;
 
 constexpr char kBoard[] = "host";

@@ -20,7 +20,7 @@ core::Pose to_pose(const Eigen::Isometry3d& pose) {
   return to_pose(pose.linear(), pose.translation());
 }
 
-// Axis times angle.
+/// Rotation by the vector `by`: axis times angle, rad.
 Eigen::Matrix3d turn(const Eigen::Vector3d& by) {
   const double angle = by.norm();
   return angle > 0.0 ? Eigen::AngleAxisd(angle, by / angle).toRotationMatrix()

@@ -13,7 +13,7 @@
 namespace tactree::simulation {
 namespace {
 
-// One hour at 10 kHz.
+// Waypoints of one hour at 10 kHz.
 constexpr std::size_t kMaxWaypoints = 36'000'000;
 
 [[noreturn]] void refuse(const std::filesystem::path& file, std::size_t line, const char* what) {
@@ -38,7 +38,7 @@ std::optional<double> number(std::string_view text) {
   return value;
 }
 
-/// The four numbers of a row; empty if it has another content.
+/// Waypoint of a row with four numbers; empty if the row has any other content.
 std::optional<Waypoint> waypoint(std::string_view row) {
   std::array<double, 4> values{};
   for (std::size_t i = 0; i < values.size(); ++i) {

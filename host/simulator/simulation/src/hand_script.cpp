@@ -12,7 +12,7 @@ namespace tactree::simulation {
 namespace {
 
 constexpr double kSampleS = 0.002;    // between two waypoints
-constexpr double kRubSpeed = 0.1;     // m/s at the middle of a stroke
+constexpr double kRubSpeed = 0.1;     // m/s at the centre of a stroke
 constexpr double kClimbSpeed = 0.25;  // m/s: upwards along a relief
 constexpr double kSinkSpeed = 0.1;    // m/s: downwards, including touchdown
 constexpr double kRubDepth = 0.004;   // m: target depth below the surface
@@ -31,12 +31,13 @@ double clearance(const Relief& relief) {
   return std::max(0.01, 0.05 * (relief.high() - relief.low()).maxCoeff());
 }
 
-/// Angular speed for a stroke of this half length; slow enough for a hand.
+/// Angular frequency of a stroke of this amplitude, at most 1.5 Hz and kRubSpeed: within the
+/// abilities of a hand.
 double stroke_rate(double amplitude_m) {
   return std::min(kTau * 1.5, kRubSpeed / std::max(amplitude_m, 1e-6));
 }
 
-/// Smooths the steps of the relief's cells: mean over a tenth of a second.
+/// Moving average over a tenth of a second, which smooths the steps between the relief's cells.
 std::vector<double> smoothed(const std::vector<double>& values) {
   constexpr std::size_t kHalf = 25;
   std::vector<double> result;
@@ -56,7 +57,7 @@ std::vector<double> smoothed(const std::vector<double>& values) {
   return result;
 }
 
-/// Path along the relief from a rest above it: down, along the motion, and up at the end.
+/// Path that starts above the relief, descends to it, follows the motion, and lifts off at the end.
 HandPath follow(const Relief& relief, double seconds, const Motion& motion) {
   const double above = relief.high().z() + clearance(relief);
   const double lift_at = seconds - std::min(0.5, 0.2 * seconds);
@@ -68,7 +69,7 @@ HandPath follow(const Relief& relief, double seconds, const Motion& motion) {
   for (std::size_t i = 0; i < count; ++i) {
     const double t = static_cast<double>(i) * kSampleS;
     const Stroke stroke = motion(t);
-    // Over a hole the hand keeps its height.
+    // Over a hole `surface` and thereby the hand keep their heights.
     (void)relief.height(stroke.place.x(), stroke.place.y(), surface);
     const double wanted = t < lift_at ? surface - stroke.depth_m : above;
     w += std::clamp(wanted - w, -kSinkSpeed * kSampleS, kClimbSpeed * kSampleS);
@@ -88,7 +89,8 @@ HandPath rub(const Relief& relief, double seconds) {
   const Eigen::Vector2d extent = (relief.high() - relief.low()).head<2>();
   const Eigen::Vector2d amplitude = 0.25 * extent;
   const double rate = stroke_rate(amplitude.maxCoeff());
-  // The short side is slower, by a ratio with a long period: the path covers the whole surface.
+  // The motion along the short side is slower by an irrational ratio, half the golden section: the
+  // path does not repeat itself and covers its whole rectangle.
   const double ratio = 0.5 * (std::sqrt(5.0) - 1.0) * 0.5;
   const bool along_u = extent.x() >= extent.y();
   const double rate_u = along_u ? rate : ratio * rate;

@@ -92,7 +92,7 @@ double seconds(std::string_view text, std::string_view time) {
   return value;
 }
 
-/// Cuts `rest` at the first `mark` and returns the part after it, if any.
+/// Cuts `rest` at the first `mark` and returns the text after it; empty without a mark.
 std::string_view cut(std::string_view& rest, std::string_view mark) {
   const std::size_t at = rest.find(mark);
   if (at == std::string_view::npos) {
@@ -317,7 +317,7 @@ void Injector::end(const InjectedFault& fault, SimBoard& board) {
   }
 }
 
-// Faults of the simulated user and application, which act in every tick.
+// Repeats the faults of the simulated user and application, who act in every tick.
 void Injector::keep(const InjectedFault& fault, SimBoard& board) {
   if (fault.kind == InjectedKind::kDeadManReleased) {
     board.safety_inputs().hold_dead_man(false);

@@ -43,7 +43,7 @@ struct Panel {
   }
 };
 
-/// 1, 2 or 5 times a power of ten, such that about `count` of them make up `range`.
+/// Step of an axis: 1, 2 or 5 times a power of ten, such that `range` has at most `count` steps.
 double tick_step(double range, double count) {
   const double rough = range / count;
   const double power = std::pow(10.0, std::floor(std::log10(rough)));
@@ -76,7 +76,7 @@ std::string escaped(const std::string& words) {
   return safe;
 }
 
-/// Number at an axis with the digits of its step.
+/// Number at an axis with as many decimals as its step has.
 std::string number(double value, double step) {
   const int digits = std::max(0, static_cast<int>(std::ceil(-std::log10(step) - 1e-9)));
   return fmt::format("{:.{}f}", std::abs(value) < 0.5 * step ? 0.0 : value, digits);
@@ -103,7 +103,7 @@ void draw_axes(std::string& svg, const Panel& p, bool time_label) {
   }
 }
 
-/// Lowest and highest value of each column of pixels, joined to one line.
+/// Minimum and maximum of each pixel column, joined to one line.
 void draw_curve(std::string& svg, const Panel& p, const Curve& curve) {
   const std::span<const Sample> samples = curve.samples;
   fmt::format_to(std::back_inserter(svg),
@@ -183,8 +183,8 @@ std::vector<Curve> depth_curves(Samples samples) {
            }}};
 }
 
-/// Bars on a logarithmic scale of counts with a visible height for 1: a single long tick among
-/// thousands is visible.
+/// Bars on a logarithmic scale of counts. A count of 1 has a visible height, so that a single long
+/// tick among thousands is visible.
 void draw_histogram(std::string& svg, const Histogram& histogram) {
   constexpr double kTop = kHeight + 30.0;
   constexpr double kBottom = kHeight + 200.0;
@@ -242,7 +242,7 @@ Panel panel_over(Samples samples, double top, double bottom, const char* label) 
   return {top, bottom, t_min, t_last > t_min ? t_last : t_min + 1.0, 0.0, 1e-3, label};
 }
 
-/// The middle of a run: from the first sample at or after half its time.
+/// Samples with begin_s <= t_s < end_s.
 Samples cut(Samples samples, double begin_s, double end_s) {
   const auto later = [](const Sample& s, double t_s) { return s.t_s < t_s; };
   const auto first = std::lower_bound(samples.begin(), samples.end(), begin_s, later);

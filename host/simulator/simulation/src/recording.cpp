@@ -22,7 +22,7 @@ constexpr std::size_t kChecksumBytes = 4;
 
 constexpr char kRecordAgain[] = "record the session again";
 
-/// Reads values from the bytes; throws at their end.
+/// Reads values from the bytes. Throws RecordingError beyond their end.
 class Taker {
  public:
   Taker(std::span<const std::byte> bytes, std::size_t& at) : bytes_(bytes), at_(at) {}

@@ -1,6 +1,6 @@
 #pragma once
-// Fields of the structures of a recording, one list for writing and reading. `fields`: a writer or
-// reader, called with a reference to each field.
+// Fields of the structures of a recording, listed once for writing and reading. `fields` is a
+// writer or reader that is called with a reference to each field.
 
 #include "tactree/core/control/controller.hpp"
 
@@ -126,12 +126,13 @@ void visit(Fields& fields, core::Adjustment& a) {
   fields(a.dynamic_friction);
 }
 
-// Add a new field here and increase kRecordingVersion.
+// If this fails, add the new field to the lists above and increase kRecordingVersion.
 static_assert(sizeof(core::Configuration) == 364 && sizeof(core::Adjustment) == 36);
 
-/// First bytes of the file and of each event.
+/// First bytes of the file.
 inline constexpr char kRecordingMagic[8] = {'T', 'A', 'C', 'T', 'R', 'R', 'E', 'C'};
 
+/// First byte of each event.
 enum class EventKind : std::uint8_t {
   kEnd = 0,
   kModel,
@@ -156,7 +157,7 @@ inline constexpr unsigned kCommand = 1U << 8U;
 inline constexpr unsigned kBodies = 1U << 9U;
 inline constexpr unsigned kForce = 1U << 10U;
 inline constexpr unsigned kIndex = 1U << 11U;
-inline constexpr unsigned kStorageBusy = 1U << 12U;  // nothing follows
+inline constexpr unsigned kStorageBusy = 1U << 12U;  // no data
 inline constexpr unsigned kAllTickFields = (1U << 13U) - 1U;
 
 }  // namespace tactree::simulation

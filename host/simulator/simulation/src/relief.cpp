@@ -13,8 +13,8 @@ namespace {
 
 using plant::widen;
 
-constexpr double kFacing = 0.2;       // smallest cosine of a point that faces the viewer
-constexpr double kMaxCells = 1024.0;  // a side
+constexpr double kFacing = 0.2;       // minimum cosine of the normal of a point that is visible
+constexpr double kMaxCells = 1024.0;  // per side
 
 template <class Use>
 void for_each_surface_point(const core::BlobView& view, const Use& use) {
@@ -51,7 +51,8 @@ void Relief::choose_view(const core::BlobView& view) {
       facing[axis + 3] += std::max(0.0, component);
     }
   });
-  // Models usually stand upright: from above, unless another side shows clearly more surface.
+  // Models usually stand upright, therefore the view from above is preferred unless another side
+  // shows clearly more surface.
   facing[5] *= 1.2;
   const auto best = std::max_element(facing.begin(), facing.end()) - facing.begin();
   axis_ = best % 3;

@@ -49,7 +49,6 @@ core::Status SceneTarget::tick(hal::sim::SimBoard& board) {
   return hal::Loop(board, controller_).tick().status;
 }
 
-// A body outside the space that a controller accepts stays at its border.
 void SceneTarget::move_bodies(hal::sim::SimBoard& board, double t_s) {
   updates_.clear();
   for (std::size_t i = 0; i < numbers_.size(); ++i) {

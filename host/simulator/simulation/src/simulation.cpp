@@ -23,7 +23,7 @@ hal::sim::BoardParameters with_rate(hal::sim::BoardParameters board, float rate_
   return board;
 }
 
-/// Encoders of the board pass counts unchanged: the device defines the scale.
+/// The encoders of the board pass counts unchanged, because the device defines the scale.
 hal::sim::BoardParameters counting(hal::sim::BoardParameters board, float rate_hz) {
   board = with_rate(board, rate_hz);
   board.encoders.counts_per_m = 1.0;
@@ -75,7 +75,7 @@ Simulation::Simulation(std::span<const std::byte> blob, const Setup& setup, Hand
       target_(std::move(target)),
       start_(target_->start(board_, setup_.controller)),
       plant_(mechanics(setup), path_.at(0.0).position_m + widen(setup.controller.model_origin_m)) {
-  // Fills the latency line: readings before the start are of the device at rest.
+  // Fills the latency line with readings of the device at rest.
   for (std::uint32_t i = 0; i <= hal::sim::kMaxLatencyTicks; ++i) {
     sample_device();
   }

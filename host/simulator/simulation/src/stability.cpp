@@ -13,14 +13,15 @@ namespace {
 constexpr double kSeconds = 10.0;
 constexpr double kBegin_m = 1e-3;
 
-/// A mass with a damper under a constant force: closed solution.
+/// A mass with a damper under a constant force, in closed form.
 class Tip {
  public:
   Tip(double mass_kg, double damping_Ns_m) : mass_(mass_kg), rate_(damping_Ns_m / mass_kg) {}
 
   void move(double force_N, double duration_s) {
     const double a = rate_ * duration_s;
-    // (1 - exp(-a)) / a, and its remainder divided by a, as series: a is small.
+    // mean = (1 - exp(-a)) / a and rest = (1 - mean) / a as series, because a is small and the
+    // closed forms would cancel.
     double mean = 1.0;
     double rest = 0.5;
     double term = 1.0;
@@ -42,7 +43,7 @@ class Tip {
   double rate_;
 };
 
-/// One tick of the controller on one axis.
+/// The controller at a wall on one axis; force() is one tick.
 class Wall {
  public:
   Wall(const StabilityCase& c, double stiffness_N_m) : case_(c), stiffness_(stiffness_N_m) {
@@ -83,7 +84,7 @@ bool is_stable(const StabilityCase& c, double stiffness_N_m) {
   const double period_s = 1.0 / c.rate_hz;
   const double whole = std::floor(c.delay_s / period_s);
   const double rest_s = c.delay_s - whole * period_s;
-  // Forces in transit; the first acts at the start of a tick.
+  // Delayed forces; the first one acts at the start of a tick.
   std::deque<double> coming(static_cast<std::size_t>(whole) + 1, 0.0);
   Tip tip(c.mass_kg, c.device_damping_Ns_m + c.hand_damping_Ns_m);
   Wall wall(c, stiffness_N_m);

@@ -9,9 +9,9 @@
 namespace tactree::simulation {
 namespace {
 
-constexpr double kMeets_m = 1e-5;
-constexpr int kPerEdge = 5;
-constexpr double kAccuracy = 1e-3;
+constexpr double kMeets_m = 1e-5;   // maximum distance of the tip from a position that it reaches
+constexpr int kPerEdge = 5;         // points: 5^3 - 3^3 = 98 on the faces
+constexpr double kAccuracy = 1e-3;  // relative, of largest_scale()
 
 /// Points on the faces of the cube from -1 to 1.
 std::vector<Eigen::Vector3d> face_points() {
@@ -61,7 +61,7 @@ std::optional<double> largest_scale(const core::DeviceModel& device,
     return std::nullopt;
   }
   const auto fits = [&](double scale) { return reaches_box(device, scale * size_m); };
-  // From a box of 0.1 mm, which fits into every device, in steps of a factor of 2, then bisection.
+  // Starts with a box of 0.1 mm, doubles it while it fits, then bisects.
   double low = 1e-4 / edge;
   if (!fits(low)) {
     return 0.0;

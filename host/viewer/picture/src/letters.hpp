@@ -12,7 +12,8 @@ inline constexpr int kGlyphColumns = 5;
 /// Rows from the top; bit 4 is the leftmost dot.
 using Glyph = std::array<std::uint8_t, kGlyphRows>;
 
-/// An empty box for a missing letter. Capital letters are drawn as small ones.
+/// Glyph of a letter; an empty box for an unknown letter. Upper-case letters are drawn as
+/// lower-case letters.
 [[nodiscard]] const Glyph& glyph_of(char letter);
 
 }  // namespace tactree::picture

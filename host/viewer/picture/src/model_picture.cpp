@@ -11,7 +11,7 @@ namespace {
 
 using core::Vec3;
 
-// Drawn at twice the size and halved: smooth edges.
+// Drawn at twice the size and then halved, for smooth edges.
 constexpr int kOver = 2;
 constexpr int kMargin = 40;
 constexpr int kCaption = 70;
@@ -24,7 +24,7 @@ constexpr Colour kHole{0.84F, 0.1F, 0.15F};
 constexpr Colour kDoubtful{0.62F, 0.33F, 0.85F};
 constexpr Colour kBoundary{0.93F, 0.55F, 0.06F};
 
-/// Orthographic view of the model: the scale holds everywhere.
+/// Orthographic view of the model, in which the scale holds everywhere.
 struct Eye {
   Vec3 right;
   Vec3 up;
@@ -62,7 +62,7 @@ class Panel {
 
   [[nodiscard]] float pixels_per_metre() const { return scale_; }
 
-  /// doubtful: empty, or 1 per point of doubtful side.
+  /// `doubtful` is empty, or 1 for each point with an ambiguous orientation.
   void draw_points(std::span<const std::uint8_t> doubtful) {
     const float radius = std::max(0.9F * view_.header().spacing_m * scale_, 1.0F);
     core::for_each_point(view_, [&](const core::Leaf& leaf, std::uint32_t index) {
@@ -82,7 +82,7 @@ class Panel {
   }
 
  private:
-  /// Largest distance of a point from the middle along a direction, to either side.
+  /// Maximum distance of a point from the centre along a direction, to either side.
   [[nodiscard]] float extent(Vec3 direction) const {
     float largest = view_.header().spacing_m;
     core::for_each_point(view_, [&](const core::Leaf& leaf, std::uint32_t index) {
@@ -174,7 +174,7 @@ void draw_key(Raster& raster, int& top, const Colour& colour, const std::string&
   top += 22;
 }
 
-/// The colours of the marks, in the upper left corner; nothing without marks.
+/// Legend of the colours in use, in the upper left corner.
 void draw_legend(Raster& raster, std::span<const Mark> drawn, std::size_t all, bool doubtful) {
   int top = kMargin / 2;
   if (doubtful) {

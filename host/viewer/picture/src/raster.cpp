@@ -22,7 +22,7 @@ std::uint8_t to_byte(float share) {
   return static_cast<std::uint8_t>(std::lround(255.0F * std::clamp(share, 0.0F, 1.0F)));
 }
 
-/// Pixels from `low` to `high`, cut to 0 .. `size` - 1.
+/// Pixels from `low` to `high`, clipped to 0 .. `size` - 1.
 struct Range {
   Range(float low, float high, int size)
       : first(static_cast<int>(std::floor(std::clamp(low, 0.0F, static_cast<float>(size))))),

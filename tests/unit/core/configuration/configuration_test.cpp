@@ -42,11 +42,11 @@ const std::vector<std::pair<Field, ConfigurationStatus>>& fields() {
   return all;
 }
 
-TEST(Configuration, AcceptsTheDefaults) {
+TEST(Configuration, AcceptsDefaults) {
   EXPECT_EQ(core::check(Configuration{}), ConfigurationStatus::kOk);
 }
 
-TEST(Configuration, RefusesNaNInfiniteAndNegativeValuesByName) {
+TEST(Configuration, RefusesNaNInfinityAndNegatives) {
   for (const auto& [field, status] : fields()) {
     for (const float bad :
          {-1.0F, std::numeric_limits<float>::max(), std::numeric_limits<float>::infinity(),
@@ -61,7 +61,7 @@ TEST(Configuration, RefusesNaNInfiniteAndNegativeValuesByName) {
   }
 }
 
-TEST(Configuration, UnusualFloatsNeverExceedTheForceLimits) {
+TEST(Configuration, LimitsForceForUnusualFloats) {
   for (const auto& [field, status] : fields()) {
     for (const float odd : kOddFloats) {
       Configuration c;
@@ -84,7 +84,7 @@ TEST(Configuration, UnusualFloatsNeverExceedTheForceLimits) {
   }
 }
 
-TEST(Configuration, ChecksEveryComponentOfAVector) {
+TEST(Configuration, ChecksEveryVectorComponent) {
   for (std::uint32_t axis = 0; axis < core::kAxes; ++axis) {
     for (const float bad : {0.0F, -1.0F, std::numeric_limits<float>::infinity(),
                             std::numeric_limits<float>::quiet_NaN()}) {
@@ -120,7 +120,7 @@ TEST(Configuration, RefusesDynamicAboveStaticFriction) {
 }
 
 // Colgate and Brown: K < (b + b_hand) / (T / 2 + t_d).
-TEST(Configuration, RefusesStiffnessAboveTheStabilityLimit) {
+TEST(Configuration, RefusesStiffnessAboveStabilityLimit) {
   Configuration c;
   c.device_damping_Ns_m = 0.1F;
   c.hand_damping_Ns_m = 1.0F;
@@ -139,7 +139,7 @@ TEST(Configuration, RefusesStiffnessAboveTheStabilityLimit) {
   EXPECT_NEAR(core::stability_limit(c).with_hand_N_m, 8800.0F, 4.0F);
 }
 
-TEST(Configuration, EveryStatusHasItsOwnDescription) {
+TEST(Configuration, DescribesEveryStatusUniquely) {
   for (int i = 0; i <= static_cast<int>(ConfigurationStatus::kUnstable); ++i) {
     for (int k = i + 1; k <= static_cast<int>(ConfigurationStatus::kUnstable); ++k) {
       EXPECT_NE(std::string(core::describe(static_cast<ConfigurationStatus>(i))),
@@ -149,7 +149,7 @@ TEST(Configuration, EveryStatusHasItsOwnDescription) {
   EXPECT_EQ(std::string(core::describe(static_cast<ConfigurationStatus>(99))), "unknown status");
 }
 
-TEST(LoadModel, ReturnsTheReasonOfARefusal) {
+TEST(LoadModel, ReturnsReasonOfRefusal) {
   core::Controller controller;
   EXPECT_EQ(controller.load_model(shared_plane().view()), core::ModelStatus::kNotConfigured);
   ASSERT_EQ(controller.configure({}), ConfigurationStatus::kOk);

@@ -99,7 +99,7 @@ void expect_shortest(const std::vector<Vector3d>& normals, const std::vector<dou
   ASSERT_NEAR(step.norm(), truth, 1e-5 * truth + 2.0 * kOn);
 }
 
-TEST(ConstraintPlanes, TheMoveIsTheShortest) {
+TEST(ConstraintPlanes, FindsShortestMove) {
   Random random;
   int compared = 0;
   for (int i = 0; i < 60'000; ++i) {
@@ -126,7 +126,7 @@ TEST(ConstraintPlanes, TheMoveIsTheShortest) {
   EXPECT_GT(compared, 80'000);
 }
 
-TEST(ConstraintPlanes, APlaceInFrontOfAllStays) {
+TEST(ConstraintPlanes, KeepsUnconstrainedPoint) {
   const core::PlaneMove move = core::shortest_move(
       planes_of({Vector3d::UnitX(), Vector3d::UnitY(), Vector3d::UnitZ()}, {1e-3, 0.0, 2e-3}),
       false);
@@ -134,7 +134,7 @@ TEST(ConstraintPlanes, APlaceInFrontOfAllStays) {
   EXPECT_EQ(move.step, core::Vec3{});
 }
 
-TEST(ConstraintPlanes, ACornerHoldsWithAllThree) {
+TEST(ConstraintPlanes, HoldsCornerWithThreePlanes) {
   const core::PlaneMove move = core::shortest_move(
       planes_of({Vector3d::UnitX(), Vector3d::UnitY(), Vector3d::UnitZ()}, {-1e-3, -2e-3, -3e-3}),
       false);
@@ -142,7 +142,7 @@ TEST(ConstraintPlanes, ACornerHoldsWithAllThree) {
   EXPECT_LT((widen(move.step) - Vector3d(1e-3, 2e-3, 3e-3)).norm(), 1e-9);
 }
 
-TEST(ConstraintPlanes, OfPlanesThatContradictEachOtherTheWorstCounts) {
+TEST(ConstraintPlanes, ResolvesContradictionByWorstPlane) {
   // Two walls that face each other with a negative gap.
   const core::PlaneMove move = core::shortest_move(
       planes_of({Vector3d::UnitX(), -Vector3d::UnitX()}, {-1e-3, -3e-3}), false);
@@ -150,7 +150,7 @@ TEST(ConstraintPlanes, OfPlanesThatContradictEachOtherTheWorstCounts) {
   EXPECT_LT((widen(move.step) - Vector3d(-3e-3, 0.0, 0.0)).norm(), 1e-9);
 }
 
-TEST(ConstraintPlanes, PlanesThatAreNotThereHoldNothing) {
+TEST(ConstraintPlanes, IgnoresUnusedPlanes) {
   core::ConstraintPlanes planes = planes_of({Vector3d::UnitZ()}, {-1e-3});
   planes.step_by({1.0F, 1.0F, 0.5e-3F});
   EXPECT_LT((widen(core::shortest_move(planes, false).step) - Vector3d(0.0, 0.0, 0.5e-3)).norm(),

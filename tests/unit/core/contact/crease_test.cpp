@@ -88,7 +88,7 @@ std::vector<Matrix3d> turns(unsigned seed) {
   return {Matrix3d::Identity(), any_turn(random), any_turn(random)};
 }
 
-TEST(Crease, AGrooveHoldsTheHandAtItsBottom) {
+TEST(Crease, HoldsHandAtGrooveBottom) {
   for (const double angle : {20.0, 40.0, 60.0, 80.0, 100.0, 140.0}) {
     for (const Matrix3d& turn : turns(3)) {
       Prism prism = groove(angle);
@@ -115,7 +115,7 @@ TEST(Crease, AGrooveHoldsTheHandAtItsBottom) {
   }
 }
 
-TEST(Crease, ASlotHoldsTheHandBetweenItsWalls) {
+TEST(Crease, HoldsHandBetweenSlotWalls) {
   for (const double width : {1e-3, 2e-3, 4e-3}) {
     for (const Matrix3d& turn : turns(4)) {
       Prism prism = slot(width);
@@ -136,7 +136,7 @@ TEST(Crease, ASlotHoldsTheHandBetweenItsWalls) {
   }
 }
 
-TEST(Crease, ACornerOfThreeFacesHoldsTheHand) {
+TEST(Crease, HoldsHandInCorner) {
   constexpr double kHalf = 8e-3;
   for (const Matrix3d& turn : turns(5)) {
     const Shape shape = room(kHalf, kH, 0.3, 9, turn);
@@ -161,7 +161,7 @@ TEST(Crease, ACornerOfThreeFacesHoldsTheHand) {
   }
 }
 
-TEST(Crease, FrictionInAGrooveIsThatOfItsFaces) {
+TEST(Crease, KeepsFaceFrictionInGroove) {
   const Shape shape = sampled(groove(90.0), kH, 0.3, 0.0, 10);
   Hand hand(shape, Matrix3d::Identity(), {0.0, -8e-3, 3e-3}, 1000.0F, {0.4F, 0.3F});
   hand.move_to({0.0, -8e-3, -2e-3}, 0.02);
@@ -176,7 +176,7 @@ TEST(Crease, FrictionInAGrooveIsThatOfItsFaces) {
   EXPECT_NEAR(-force.y() / force.z(), 0.3, 0.01);
 }
 
-TEST(Crease, AFaceAheadDoesNotRubOnTheProxy) {
+TEST(Crease, IgnoresFrictionOfFaceAhead) {
   const Shape shape = sampled(groove(60.0), kH, 0.3, 0.0, 13);
   Hand hand(shape, Matrix3d::Identity(), {1e-3, 0.0, 6e-3}, 1000.0F, {0.4F, 0.3F});
   hand.move_to({1e-3, 0.0, -4e-3}, 0.02);
@@ -184,7 +184,7 @@ TEST(Crease, AFaceAheadDoesNotRubOnTheProxy) {
   EXPECT_LT(std::hypot(hand.place().x(), hand.place().z()), 5e-6);
 }
 
-TEST(Crease, ARidgeIsNotFeltBesideIt) {
+TEST(Crease, RendersNothingBesideRidge) {
   for (const double angle : {20.0, 30.0, 45.0, 60.0, 90.0}) {
     for (const Matrix3d& turn : turns(6)) {
       Prism prism = ridge(angle);
@@ -208,7 +208,7 @@ TEST(Crease, ARidgeIsNotFeltBesideIt) {
   }
 }
 
-TEST(Crease, AHandDeepBelowARoundBendDoesNotMakeTheProxyOscillate) {
+TEST(Crease, AvoidsOscillationBelowRoundBend) {
   // A trough of 3 mm radius, with the hand 6 mm below its bottom.
   constexpr double kRadius = 3e-3;
   Shape shape(kH);
@@ -231,7 +231,7 @@ TEST(Crease, AHandDeepBelowARoundBendDoesNotMakeTheProxyOscillate) {
   }
 }
 
-TEST(Crease, TheSurfaceIsAtTheBottomForAPlaceBelowIt) {
+TEST(Crease, ProjectsOntoGrooveBottom) {
   for (const double angle : {30.0, 60.0, 90.0, 120.0}) {
     const Shape shape = sampled(groove(angle), kH, 0.3, 0.0, 12);
     const core::SurfaceProjection below =

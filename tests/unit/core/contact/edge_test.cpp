@@ -80,7 +80,7 @@ EdgeErrors measure_box(const Shape& shape, bool corners) {
   return errors;
 }
 
-TEST(Edge, BoxEdgesStaySharp) {
+TEST(Edge, StaysSharpOnBox) {
   for (const Shape& shape : {box(kHalf), irregular_box(1), irregular_box(2)}) {
     const EdgeErrors errors = measure_box(shape, false);
     EXPECT_EQ(errors.unsupported, 0);
@@ -89,7 +89,7 @@ TEST(Edge, BoxEdgesStaySharp) {
   }
 }
 
-TEST(Edge, CornersStayAlmostSharp) {
+TEST(Edge, StaysAlmostSharpAtCorners) {
   for (const Shape& shape : {box(kHalf), irregular_box(1)}) {
     const EdgeErrors errors = measure_box(shape, true);
     EXPECT_EQ(errors.unsupported, 0);
@@ -98,7 +98,7 @@ TEST(Edge, CornersStayAlmostSharp) {
   }
 }
 
-TEST(Edge, ConcaveEdgesStaySharp) {
+TEST(Edge, StaysSharpIfConcave) {
   const Shape shape = floor_and_wall(1);
   std::mt19937 random(3);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
@@ -154,7 +154,7 @@ class SlidingHand {
   int lost_ = 0;
 };
 
-TEST(Edge, ForceDoesNotJumpAtAConvexEdge) {
+TEST(Edge, SlidesSmoothlyIfConvex) {
   for (const Shape& shape : {box(kHalf), irregular_box(1), irregular_box(2)}) {
     for (const double depth : {2e-4, 1e-3}) {
       SlidingHand hand(shape, {kHalf - 0.006, 0.0031, kHalf + 0.004});
@@ -167,7 +167,7 @@ TEST(Edge, ForceDoesNotJumpAtAConvexEdge) {
   }
 }
 
-TEST(Edge, ForceTurnsGraduallyIntoAConcaveEdge) {
+TEST(Edge, SlidesSmoothlyIfConcave) {
   for (const unsigned seed : {1U, 2U}) {
     const Shape shape = floor_and_wall(seed);
     for (const double depth : {2e-4, 1e-3}) {

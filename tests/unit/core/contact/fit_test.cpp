@@ -36,7 +36,7 @@ double angle_deg(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b)) * kDegrees;
 }
 
-TEST(Fit, FitsASphereWithinMicrometres) {
+TEST(Fit, MatchesSphereWithinMicrometres) {
   const Shape shape = sphere();
   std::mt19937 random(1);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
@@ -63,7 +63,7 @@ TEST(Fit, FitsASphereWithinMicrometres) {
   EXPECT_LE(signed_distance.largest, 5e-6);
 }
 
-TEST(Fit, FitsACosineSheetWithinMicrometres) {
+TEST(Fit, MatchesCosineSheetWithinMicrometres) {
   const CosSheet sheet;
   const Shape shape = cos_sheet(sheet);
   std::mt19937 random(2);
@@ -88,7 +88,7 @@ TEST(Fit, FitsACosineSheetWithinMicrometres) {
   EXPECT_GE(normal.rms(), 0.01);
 }
 
-TEST(Fit, SeparatesTheSidesOfAThinPlate) {
+TEST(Fit, SeparatesSidesOfThinPlate) {
   const double thickness = 0.5 * kSpacing;
   const Shape shape = plate(thickness);
   std::mt19937 random(3);
@@ -106,7 +106,7 @@ TEST(Fit, SeparatesTheSidesOfAThinPlate) {
   }
 }
 
-TEST(Fit, WithoutPointsThereIsNoSurface) {
+TEST(Fit, ReturnsNothingForEmptySet) {
   core::NearFaces near;
   const core::SurfaceFit fit = core::fit_surface({}, {}, 1e-3F, {0.0F, 0.0F, 1.0F}, 1.0F, near);
   EXPECT_FALSE(fit.supported);
@@ -114,7 +114,7 @@ TEST(Fit, WithoutPointsThereIsNoSurface) {
   EXPECT_FALSE(fit.firm());
 }
 
-TEST(Fit, StrengthFallsSmoothlyBeyondTheBoundary) {
+TEST(Fit, FadesSmoothlyBeyondBoundary) {
   const double half = 0.01;
   const Shape shape = plane(half);
   const auto radius = shape.view().header().support_radius_m;
@@ -152,7 +152,7 @@ TEST(Fit, HasNoSupportWithoutPoints) {
 }
 
 // Every query within the slack of a gather must see all points in its support.
-TEST(Candidates, HoldEveryPointOfTheSupport) {
+TEST(Candidates, HoldsEverySupportPoint) {
   const Shape shape = sphere();
   const core::BlobView& view = shape.view();
   std::vector<Eigen::Vector3d> all;
@@ -190,7 +190,7 @@ TEST(Candidates, HoldEveryPointOfTheSupport) {
   }
 }
 
-TEST(SurfaceSupport, ReportsWhyAModelHasNoSurface) {
+TEST(SurfaceSupport, ReportsReasonForNoSurface) {
   EXPECT_EQ(core::surface_support(core::BlobView{}), core::SurfaceSupport::kEmpty);
   EXPECT_EQ(core::surface_support(plane().view()), core::SurfaceSupport::kOk);
 

@@ -24,7 +24,7 @@ TEST(ForceFade, FallsLinearlyToZero) {
   EXPECT_EQ(fade.next(), Vec3{});
 }
 
-TEST(ForceFade, AddsTheRestOfAnEarlierForce) {
+TEST(ForceFade, AddsRestOfEarlierForce) {
   ForceFade fade;
   fade.begin({8.0F, 0.0F, 0.0F}, 8);
   (void)fade.next();
@@ -33,7 +33,7 @@ TEST(ForceFade, AddsTheRestOfAnEarlierForce) {
   EXPECT_EQ(fade.next(), (Vec3{4.5F, 1.5F, 0.0F}));
 }
 
-TEST(ForceFade, FinishedFadeDoesNotAffectTheNext) {
+TEST(ForceFade, ForgetsFinishedFade) {
   ForceFade fade;
   fade.begin({8.0F, 0.0F, 0.0F}, 1);
   EXPECT_EQ(fade.next(), Vec3{});

@@ -34,7 +34,7 @@ class FrictionOnAPlane : public ::testing::Test {
   core::Proxy proxy_;
 };
 
-TEST_F(FrictionOnAPlane, SlidingRatioIsTheDynamicCoefficient) {
+TEST_F(FrictionOnAPlane, SlidesWithDynamicCoefficient) {
   double low = 1.0;
   double high = 0.0;
   for (int tick = 0; tick < 200; ++tick) {
@@ -48,7 +48,7 @@ TEST_F(FrictionOnAPlane, SlidingRatioIsTheDynamicCoefficient) {
   EXPECT_LE(high, 0.305);
 }
 
-TEST_F(FrictionOnAPlane, SticksBelowTheStaticConeAndBreaksAwayAtIt) {
+TEST_F(FrictionOnAPlane, BreaksAwayAtStaticCone) {
   const core::Vec3 before = proxy_.position();
   double x = 0.0;
   for (; x < 0.395 * kDepth; x += 5e-6) {
@@ -64,7 +64,7 @@ TEST_F(FrictionOnAPlane, SticksBelowTheStaticConeAndBreaksAwayAtIt) {
 }
 
 // Slower than one encoder count a tick the probe rests now and then; the hand has not stopped.
-TEST_F(FrictionOnAPlane, SlowMotionDoesNotSawTooth) {
+TEST_F(FrictionOnAPlane, SlidesSteadilyAtLowSpeed) {
   double low = 1.0;
   double high = 0.0;
   for (int tick = 0; tick < 2000; ++tick) {
@@ -78,7 +78,7 @@ TEST_F(FrictionOnAPlane, SlowMotionDoesNotSawTooth) {
   EXPECT_LE(high, 0.305);
 }
 
-TEST_F(FrictionOnAPlane, SticksAfterAReversal) {
+TEST_F(FrictionOnAPlane, SticksAfterReversal) {
   const double end = 5e-3;
   for (double to = 0.0; to < end; to += 1e-4) {
     move(to);

@@ -32,7 +32,7 @@ void expect_free_then_felt(SceneRig& rig) {
   EXPECT_FALSE(rig.last.inside);
 }
 
-TEST(SceneInside, BodyThatIsAddedAroundTheProbe) {
+TEST(SceneInside, LeavesAddedBodyWithoutForce) {
   SceneRig rig;
   rig.add(ball(), isometry({0.0, 0.0, -1.0}));
   rig.go(kInBall);
@@ -41,7 +41,7 @@ TEST(SceneInside, BodyThatIsAddedAroundTheProbe) {
   expect_free_then_felt(rig);
 }
 
-TEST(SceneInside, BodyThatIsEnabledAroundTheProbe) {
+TEST(SceneInside, LeavesEnabledBodyWithoutForce) {
   SceneRig rig;
   rig.add(ball());
   ASSERT_EQ(rig.scene.enable(0, false), core::ModelStatus::kOk);
@@ -52,7 +52,7 @@ TEST(SceneInside, BodyThatIsEnabledAroundTheProbe) {
   expect_free_then_felt(rig);
 }
 
-TEST(SceneInside, BodyThatJumpsAroundTheProbe) {
+TEST(SceneInside, LeavesJumpingBodyWithoutForce) {
   SceneRig rig;
   rig.add(ball(), isometry({0.1, 0.0, 0.0}));
   rig.tick(kInBall);
@@ -60,7 +60,7 @@ TEST(SceneInside, BodyThatJumpsAroundTheProbe) {
   expect_free_then_felt(rig);
 }
 
-TEST(SceneInside, BodyAroundTheProbeAtTheStart) {
+TEST(SceneInside, LeavesInitialBodyWithoutForce) {
   SceneRig rig;
   rig.add(ball());
   rig.tick(kInBall);
@@ -68,7 +68,7 @@ TEST(SceneInside, BodyAroundTheProbeAtTheStart) {
 }
 
 // Another body is felt meanwhile.
-TEST(SceneInside, OneBodyDoesNotSilenceTheOther) {
+TEST(SceneInside, RendersOtherBodyWhileInside) {
   SceneRig rig;
   rig.add(ball());
   rig.add(sheet(), isometry({0.0, 0.0, 0.011}));
@@ -78,7 +78,7 @@ TEST(SceneInside, OneBodyDoesNotSilenceTheOther) {
   EXPECT_NEAR(rig.force().z(), 0.5e-3 * kWall, 0.02);
 }
 
-TEST(SceneInside, AMovingBodyCarriesItsInside) {
+TEST(SceneInside, MovesInteriorWithBody) {
   SceneRig rig;
   const Eigen::Isometry3d turned = isometry({0.02, 0.01, 0.0}, {0.3, 0.6, 0.15});
   rig.add(ball(), turned);

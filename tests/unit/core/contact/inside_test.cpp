@@ -87,15 +87,11 @@ void leave_and_return(const Shape& shape, double radius_m, double inner_m, unsig
   }
 }
 
-TEST(Inside, LeavesABallFromAnywhereWithoutForce) {
-  leave_and_return(sphere(0.015), 0.015, 0.0149, 1);
-}
+TEST(Inside, LeavesBallWithoutForce) { leave_and_return(sphere(0.015), 0.015, 0.0149, 1); }
 
-TEST(Inside, LeavesACubeThroughFacesEdgesAndCorners) {
-  leave_and_return(box(0.0125, 0.2), 0.022, 0.0120, 2);
-}
+TEST(Inside, LeavesCubeInAnyDirection) { leave_and_return(box(0.0125, 0.2), 0.022, 0.0120, 2); }
 
-TEST(Inside, LeavesAPlateThinnerThanASpacing) {
+TEST(Inside, LeavesPlateThinnerThanSpacing) {
   const Shape shape = plate(0.5 * kSpacing);
   for (const double side : {-1.0, 1.0}) {
     InnerHand hand(shape, 1000.0);
@@ -110,7 +106,7 @@ TEST(Inside, LeavesAPlateThinnerThanASpacing) {
   }
 }
 
-TEST(Inside, IsOutsideInARoom) {
+TEST(Inside, TreatsRoomAsOutside) {
   const Shape shape = room(0.015, kSpacing, 0.2, 3);
   InnerHand hand(shape, 1000.0);
   hand.rest({0.0, 0.0, 0.0}, 3);
@@ -124,7 +120,7 @@ TEST(Inside, IsOutsideInARoom) {
   EXPECT_EQ(behind.contacts, 0);
 }
 
-TEST(Inside, BothSidesOfASheetAreFree) {
+TEST(Inside, TreatsSheetSidesAsOutside) {
   const Shape shape = plane();
   for (const double side : {-1.0, 1.0}) {
     InnerHand hand(shape, 1000.0);
@@ -136,7 +132,7 @@ TEST(Inside, BothSidesOfASheetAreFree) {
 }
 
 // A hand that lost its contact deep in a body is not pulled further in when it comes out.
-TEST(Inside, AfterAJumpIntoTheBody) {
+TEST(Inside, LeavesWithoutForceAfterJump) {
   const Shape shape = sphere(0.015);
   InnerHand hand(shape, 1000.0);
   hand.rest({0.0, 0.0, 0.03}, 3);
@@ -154,7 +150,7 @@ TEST(Inside, AfterAJumpIntoTheBody) {
 }
 
 // As in a blob of format 1.0.
-TEST(Inside, WithoutAnInteriorBothSidesAreFree) {
+TEST(Inside, TreatsMissingInteriorAsOutside) {
   Shape shape = sphere(0.015);
   shape.model().tells_interior = false;
   shape.seal();

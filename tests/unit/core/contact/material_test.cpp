@@ -64,7 +64,7 @@ Ride ride(const Shape& shape, double from, double to, double depth, double step,
   return result;
 }
 
-TEST(Material, AppliesAMaterialWithoutTexture) {
+TEST(Material, AppliesStiffnessWithoutTexture) {
   const Shape shape = one_material(smooth(1234.0F));
   const Ride r = ride(shape, -0.005, 0.005, 1e-3, 1e-4);
   for (const Vec3& force : r.force) {
@@ -72,7 +72,7 @@ TEST(Material, AppliesAMaterialWithoutTexture) {
   }
 }
 
-TEST(Material, UsesTheConfigurationWithoutMaterialsOrIfRequested) {
+TEST(Material, FallsBackToConfiguration) {
   Configuration c;
   c.use_materials = false;
   EXPECT_NEAR(
@@ -81,7 +81,7 @@ TEST(Material, UsesTheConfigurationWithoutMaterialsOrIfRequested) {
   EXPECT_NEAR(static_cast<double>(ride(plane(), 0.0, 1e-3, 1e-3, 1e-4).force[0].z), 0.5, 0.005);
 }
 
-TEST(Material, ForceDoesNotStepBetweenMaterials) {
+TEST(Material, BlendsForceAcrossBoundary) {
   const Shape shape = two_materials(smooth(200.0F), smooth(1000.0F));
   const double step = 1e-4;  // 0.1 m/s at 1 kHz
   const Ride r = ride(shape, -0.008, 0.008, 1e-3, step);
@@ -96,7 +96,7 @@ TEST(Material, ForceDoesNotStepBetweenMaterials) {
   EXPECT_GT(largest, 0.8 * step / 5e-3);
 }
 
-TEST(Material, FrictionDoesNotStepBetweenMaterials) {
+TEST(Material, BlendsFrictionAcrossBoundary) {
   BlobMaterial left = smooth(500.0F);
   BlobMaterial right = smooth(500.0F);
   right.static_friction = 0.6F;
@@ -112,7 +112,7 @@ TEST(Material, FrictionDoesNotStepBetweenMaterials) {
   }
 }
 
-TEST(Material, SharesAddUpToOneAndIgnoreTheOtherSideOfAPlate) {
+TEST(Material, IgnoresOtherSideOfPlate) {
   Shape shape;
   add_sheet(shape, 0.01, 0.25e-3, 1.0);
   add_sheet(shape, 0.01, -0.25e-3, -1.0);
@@ -134,7 +134,7 @@ TEST(Material, SharesAddUpToOneAndIgnoreTheOtherSideOfAPlate) {
   }
 }
 
-TEST(Material, LimitsTheMaterialsOfABlend) {
+TEST(Material, LimitsBlendSize) {
   Shape shape;
   add_sheet(shape, 0.01, 0.0, 1.0);
   for (std::uint8_t i = 0; i < 40; ++i) {
@@ -155,7 +155,7 @@ TEST(Material, LimitsTheMaterialsOfABlend) {
   EXPECT_LE(feel.stiffness_N_m, 140.01F);
 }
 
-TEST(Texture, HasTheConfiguredAmplitudeAndWavelength) {
+TEST(Texture, HasConfiguredAmplitudeAndWavelength) {
   const double height = 0.1e-3;
   const double wavelength = 2e-3;
   const Shape shape =
@@ -188,7 +188,7 @@ TEST(Texture, HasTheConfiguredAmplitudeAndWavelength) {
   EXPECT_LE(largest_step, 1000.0 * height * 2.0 * std::numbers::pi / wavelength * step * 1.1);
 }
 
-TEST(Texture, ContactBeginsWithoutAStepAndIsNotStifferThanTheMaterial) {
+TEST(Texture, NeverExceedsMaterialStiffness) {
   const Shape shape = one_material(textured(0.2e-3F, 3e-3F));
   for (double x = -1.5e-3; x <= 1.5e-3; x += 0.25e-3) {
     core::Renderer renderer;
@@ -227,7 +227,7 @@ TEST(Texture, IsBoundedContinuousAndStateless) {
   }
 }
 
-TEST(Texture, DepthIsFiniteForEveryBlob) {
+TEST(Texture, KeepsDepthFinite) {
   for (const float height : {0.0F, 1e-30F, 1.0F}) {
     for (const float wavelength : {0.0F, 1e-38F, 1e-6F, 1e3F}) {
       const Shape shape = one_material(textured(height, wavelength));
@@ -243,7 +243,7 @@ TEST(Texture, DepthIsFiniteForEveryBlob) {
   }
 }
 
-TEST(Material, RefusesAnUnstableMaterialAndReportsTheLimit) {
+TEST(Material, RefusesStiffnessAboveStabilityLimit) {
   Configuration c;
   BlobMaterial material = smooth(1.0F);
   const float limit = core::material_limit(c, material);
@@ -264,7 +264,7 @@ TEST(Material, RefusesAnUnstableMaterialAndReportsTheLimit) {
                "a material is stiffer than device, hand and rate allow");
 }
 
-TEST(Material, LimitUsesTheMaterialsDampingAndTheRate) {
+TEST(Material, AccountsForDampingAndRate) {
   Configuration c;
   BlobMaterial material = smooth(2.0F * core::material_limit(c, smooth(1.0F)));
   EXPECT_NE(core::find_unstable_material(one_material(material).view(), c), core::kNoMaterial);

@@ -128,23 +128,23 @@ void compare_with_reference(const TestBlob& blob, std::uint32_t seed) {
   EXPECT_GT(contacts, 2000);
 }
 
-TEST(PaperMode, AgreesWithAnIndependentImplementationOnASheet) {
+TEST(PaperMode, MatchesReferenceOnSheet) {
   compare_with_reference(TestBlob(test::cos_sheet(0.1, 0.0025, Profile::kPaper)), 1);
 }
 
-TEST(PaperMode, AgreesOnACloudOfUnevenDensity) {
+TEST(PaperMode, MatchesReferenceOnUnevenCloud) {
   builder::Model model = test::random_cloud(3000, 0.2, 0.004, Profile::kPaper, 8);
   for (std::size_t i = 0; i < model.positions.size() / 2; ++i) model.positions[i] *= 0.2;
   compare_with_reference(TestBlob(model), 2);
 }
 
-TEST(PaperMode, AgreesInASurfaceBlobWithoutATable) {
+TEST(PaperMode, MatchesReferenceInSurfaceBlob) {
   compare_with_reference(TestBlob(test::cos_sheet(0.1, 0.0025, Profile::kSurface)), 3);
 }
 
 // Table 1, row 0.0025: 6 820 probes on z = cos x + cos y, |x|, |y| <= 0.25 m, h = a = s = 0.0025.
 // The paper found 106 false negatives and 1 false positive: 98.431 %.
-TEST(PaperMode, ReproducesTable1AtTheFinestSeparation) {
+TEST(PaperMode, ReproducesTable1AtFinestSeparation) {
   const TestBlob blob(test::cos_sheet(0.25, 0.0025, Profile::kPaper));
   for (std::uint32_t seed = 1; seed <= 3; ++seed) {
     std::mt19937_64 random(seed);
@@ -164,7 +164,7 @@ TEST(PaperMode, ReproducesTable1AtTheFinestSeparation) {
 
 // The exact query visits diagonal leaves too. What it still misses are the cracks between boxes of
 // edge h whose points were rounded apart, by at most a quantisation step.
-TEST(PaperMode, MostMissesAreInDiagonalLeaves) {
+TEST(PaperMode, MissesMostlyInDiagonalLeaves) {
   const TestBlob blob(test::cos_sheet(0.25, 0.0025, Profile::kPaper));
   std::mt19937_64 random(4);
   std::uniform_real_distribution<double> place(-0.25, 0.25);
@@ -181,7 +181,7 @@ TEST(PaperMode, MostMissesAreInDiagonalLeaves) {
   EXPECT_LE(5 * exact_misses, paper_misses);
 }
 
-TEST(PaperMode, FindsNothingInAnEmptyModelOrAtNaN) {
+TEST(PaperMode, FindsNothingWithoutValidInput) {
   const TestBlob blob(test::sphere(0.03, 0.001));
   const float nan = std::numeric_limits<float>::quiet_NaN();
   EXPECT_FALSE(paper_collision({}, {}).in_contact);

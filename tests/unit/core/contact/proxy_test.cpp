@@ -91,7 +91,7 @@ Eigen::Vector3d slanted(std::mt19937& random, const Eigen::Vector3d& axis) {
   }
 }
 
-TEST(Proxy, DetectsEveryCrossingOfASphere) {
+TEST(Proxy, DetectsEverySphereCrossing) {
   const Shape shape = sphere();
   EXPECT_EQ(0, crossings_missed(shape, [](std::mt19937& random, Eigen::Vector3d& entry,
                                           Eigen::Vector3d& inward) {
@@ -103,7 +103,7 @@ TEST(Proxy, DetectsEveryCrossingOfASphere) {
             }));
 }
 
-TEST(Proxy, DetectsEveryCrossingOfASheetFromBothSides) {
+TEST(Proxy, DetectsEverySheetCrossing) {
   const CosSheet sheet;
   const Shape shape = cos_sheet(sheet);
   EXPECT_EQ(0, crossings_missed(shape, [&sheet](std::mt19937& random, Eigen::Vector3d& entry,
@@ -117,7 +117,7 @@ TEST(Proxy, DetectsEveryCrossingOfASheetFromBothSides) {
             }));
 }
 
-TEST(Proxy, DetectsEveryCrossingOfAThinPlate) {
+TEST(Proxy, DetectsEveryThinPlateCrossing) {
   const Shape shape = plate(0.5 * kSpacing, 0.04);
   EXPECT_EQ(0, crossings_missed(shape, [](std::mt19937& random, Eigen::Vector3d& entry,
                                           Eigen::Vector3d& inward) {
@@ -128,7 +128,7 @@ TEST(Proxy, DetectsEveryCrossingOfAThinPlate) {
             }));
 }
 
-TEST(Proxy, DoesNotPullAProbeThroughAPlate) {
+TEST(Proxy, NeverPullsThroughPlate) {
   const Shape shape = plate(0.5 * kSpacing);
   Walk walk(shape);
   walk.to({0.0, 0.0, -0.01});
@@ -138,7 +138,7 @@ TEST(Proxy, DoesNotPullAProbeThroughAPlate) {
   EXPECT_FALSE(walk.proxy().in_contact());
 }
 
-TEST(Proxy, StaysOnItsSideOfAPlate) {
+TEST(Proxy, StaysOnTouchedPlateSide) {
   const Shape shape = plate(0.5 * kSpacing);
   Walk walk(shape);
   for (double z = 0.005; z > -0.004; z -= 2e-5) {
@@ -150,7 +150,7 @@ TEST(Proxy, StaysOnItsSideOfAPlate) {
   }
 }
 
-TEST(Proxy, SheetRepelsOnTheTouchedSide) {
+TEST(Proxy, RepelsOnTouchedSide) {
   const Shape shape = plane();
   for (const double side : {-1.0, 1.0}) {
     Walk walk(shape);
@@ -192,7 +192,7 @@ Slide slide(const Shape& shape, const std::function<Eigen::Vector3d(double)>& su
   return result;
 }
 
-TEST(Proxy, SlidesSmoothlyOverASheet) {
+TEST(Proxy, SlidesSmoothlyOverSheet) {
   const CosSheet sheet;
   const Shape shape = cos_sheet(sheet);
   // 0.1 m/s along a line in a general direction.
@@ -208,7 +208,7 @@ TEST(Proxy, SlidesSmoothlyOverASheet) {
   EXPECT_LE(result.error_rms, 0.005);
 }
 
-TEST(Proxy, SlidesSmoothlyOverASphere) {
+TEST(Proxy, SlidesSmoothlyOverSphere) {
   const Shape shape = sphere();
   const auto direction = [](double tick) {
     const double a = tick * 1e-4 / kSphereRadius;
@@ -223,7 +223,7 @@ TEST(Proxy, SlidesSmoothlyOverASphere) {
   EXPECT_LE(result.error_rms, 0.005);
 }
 
-TEST(Proxy, ForceFadesBeyondTheBoundary) {
+TEST(Proxy, FadesForceBeyondBoundary) {
   const double half = 0.01;
   const Shape shape = plane(half);
   Walk walk(shape);
@@ -247,7 +247,7 @@ TEST(Proxy, ForceFadesBeyondTheBoundary) {
   }
 }
 
-TEST(Proxy, ContactEndsAtTheSurface) {
+TEST(Proxy, EndsContactAtSurface) {
   const Shape shape = plane();
   Walk walk(shape);
   for (double z = 0.002; z > -1e-3; z -= 5e-5) {

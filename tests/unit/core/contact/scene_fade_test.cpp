@@ -42,32 +42,32 @@ void expect_fade(SceneRig& rig) {
   EXPECT_FALSE(rig.last.fading);
 }
 
-TEST(SceneFade, FadesTheForceOfARemovedBody) {
+TEST(SceneFade, FadesForceOfRemovedBody) {
   SceneRig rig = pressed();
   ASSERT_EQ(rig.scene.remove(0), ModelStatus::kOk);
   expect_fade(rig);
 }
 
-TEST(SceneFade, FadesTheForceOfADisabledBody) {
+TEST(SceneFade, FadesForceOfDisabledBody) {
   SceneRig rig = pressed();
   ASSERT_EQ(rig.scene.enable(0, false), ModelStatus::kOk);
   expect_fade(rig);
 }
 
-TEST(SceneFade, FadesTheForceOfABodyThatJumps) {
+TEST(SceneFade, FadesForceOfJumpingBody) {
   SceneRig rig = pressed();
   ASSERT_EQ(rig.scene.move(0, to_core(isometry({0.1, 0.0, 0.0})), {}), ModelStatus::kOk);
   expect_fade(rig);
 }
 
 // It does not snatch the hand to where the proxy went.
-TEST(SceneFade, FadesTheForceOfABodyThatJumpsWithinContact) {
+TEST(SceneFade, FadesJumpWithinContact) {
   SceneRig rig = pressed();
   ASSERT_EQ(rig.scene.move(0, to_core(isometry({0.0, 0.0, 0.03})), {}), ModelStatus::kOk);
   expect_fade(rig);
 }
 
-TEST(SceneFade, FadesTheForceWhereTheSurfaceEnds) {
+TEST(SceneFade, FadesForceAtSurfaceEnd) {
   SceneRig rig = pressed();
   Eigen::Vector3d before = rig.force();
   double furthest_step = 0.0;
@@ -82,7 +82,7 @@ TEST(SceneFade, FadesTheForceWhereTheSurfaceEnds) {
 }
 
 // Too short a move for a jump, and yet there is nothing any more where the contact was.
-TEST(SceneFade, FadesTheForceOfABodyThatMovesOffSideways) {
+TEST(SceneFade, FadesForceOfDepartingBody) {
   SceneRig rig = pressed();
   rig.go({0.015, 0.0, -0.002});
   ASSERT_EQ(rig.scene.move(0, to_core(isometry({-0.015, 0.0, 0.0})), {}), ModelStatus::kOk);
@@ -97,7 +97,7 @@ TEST(SceneFade, FadesTheForceOfABodyThatMovesOffSideways) {
   }
 }
 
-TEST(SceneFade, ContinuesWhenAnotherBodyGetsTheSlot) {
+TEST(SceneFade, ContinuesAfterSlotReuse) {
   SceneRig rig = pressed();
   ASSERT_EQ(rig.scene.remove(0), ModelStatus::kOk);
   rig.rest(10);
@@ -111,7 +111,7 @@ TEST(SceneFade, ContinuesWhenAnotherBodyGetsTheSlot) {
 }
 
 // The side on which the probe finds itself is the free one: the surface holds it from there.
-TEST(SceneFade, DoesNotExpelAProbeInsideANewBody) {
+TEST(SceneFade, AvoidsExpulsionFromNewBody) {
   const std::function<void(SceneRig&)> appear[] = {
       [](SceneRig& rig) { rig.add(sheet()); },
       [](SceneRig& rig) { EXPECT_EQ(rig.scene.enable(0, true), ModelStatus::kOk); },
@@ -149,7 +149,7 @@ TEST(SceneFade, DoesNotExpelAProbeInsideANewBody) {
   }
 }
 
-TEST(SceneFade, ResetClearsForcesButNotBodies) {
+TEST(SceneFade, ResetsForcesButNotBodies) {
   SceneRig rig = pressed();
   ASSERT_EQ(rig.scene.enable(0, false), ModelStatus::kOk);
   rig.rest(1);
@@ -164,7 +164,7 @@ TEST(SceneFade, ResetClearsForcesButNotBodies) {
   EXPECT_TRUE(rig.scene.empty());
 }
 
-TEST(SceneFade, HasTheSameDurationAtEveryRate) {
+TEST(SceneFade, KeepsDurationAtEveryRate) {
   for (const float rate_hz : {500.0F, 4000.0F}) {
     SceneRig rig = pressed();
     rig.configuration.rate_hz = rate_hz;

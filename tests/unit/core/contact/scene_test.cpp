@@ -54,7 +54,7 @@ Eigen::Vector3d force_on_all(const SceneRendering& r) {
 }
 
 // The same touch of the same body at rest somewhere else gives the same force, turned along.
-TEST(Scene, ForceIsIndependentOfThePose) {
+TEST(Scene, RendersForceIndependentOfPose) {
   const Shape shape = cos_sheet();
   RandomPoses random(4);
   for (int i = 0; i < 20; ++i) {
@@ -86,7 +86,7 @@ TEST(Scene, ForceIsIndependentOfThePose) {
   }
 }
 
-TEST(Scene, MovingBodyPushesARestingProbe) {
+TEST(Scene, PushesRestingProbe) {
   for (const double speed : {0.01, 0.1, 0.5}) {
     SceneRig rig;
     const std::uint32_t body = rig.add(sheet(), isometry({0.0, 0.0, -0.005}));
@@ -104,7 +104,7 @@ TEST(Scene, MovingBodyPushesARestingProbe) {
   }
 }
 
-TEST(Scene, DampsAMovingBodyLikeAMovingProbe) {
+TEST(Scene, DampsMovingBodyLikeProbe) {
   core::Configuration damped = smooth_wall();
   damped.damping_Ns_m = 2.0F;
   SceneRig rig(damped);
@@ -115,7 +115,7 @@ TEST(Scene, DampsAMovingBodyLikeAMovingProbe) {
   EXPECT_NEAR(rig.force().z(), kWall * 2e-3 + 2.0 * 0.1, 0.01);
 }
 
-TEST(Scene, MovingBodyCarriesItsProxy) {
+TEST(Scene, CarriesProxyWithBody) {
   SceneRig rig(rough_wall());
   const std::uint32_t body = rig.add(sheet());
   rig.tick({0.0, 0.0, 0.002});
@@ -129,7 +129,7 @@ TEST(Scene, MovingBodyCarriesItsProxy) {
 }
 
 // A ball that turns under a resting probe rubs on it as a probe would that moves over the ball.
-TEST(Scene, RotatingBodyDragsTheProbeByFriction) {
+TEST(Scene, DragsProbeWithRotatingBody) {
   const Shape ball = sphere();
   SceneRig rig(rough_wall());
   rig.configuration.damping_Ns_m = 0.0F;
@@ -149,7 +149,7 @@ TEST(Scene, RotatingBodyDragsTheProbeByFriction) {
 }
 
 // The line of a spring's force goes through the probe: so the torque is known without the proxy.
-TEST(Scene, ReactionIsOppositeToTheForce) {
+TEST(Scene, ReportsOppositeReaction) {
   RandomPoses random(5);
   for (int i = 0; i < 20; ++i) {
     const Eigen::Isometry3d pose = random.pose(0.5);
@@ -173,7 +173,7 @@ TEST(Scene, ReactionIsOppositeToTheForce) {
   }
 }
 
-TEST(Scene, SharesTheForceAmongTheBodiesThatHold) {
+TEST(Scene, SharesForceAmongHoldingBodies) {
   SceneRig rig;
   const std::uint32_t floor = rig.add(sheet());
   const std::uint32_t wall = rig.add(sheet(), kWallX);
@@ -189,7 +189,7 @@ TEST(Scene, SharesTheForceAmongTheBodiesThatHold) {
   EXPECT_FALSE(rig.last.crowded);
 }
 
-TEST(Scene, BodiesOutOfReachChangeNoBit) {
+TEST(Scene, IgnoresBodiesOutOfReach) {
   SceneRig alone(rough_wall());
   SceneRig among_others(rough_wall());
   alone.add(sheet());
@@ -206,7 +206,7 @@ TEST(Scene, BodiesOutOfReachChangeNoBit) {
   EXPECT_EQ(alone.last.contact.proxy, among_others.last.contact.proxy);
 }
 
-TEST(Scene, RendersTheBodiesReachedFirst) {
+TEST(Scene, RendersBodiesReachedFirst) {
   SceneRig rig;
   const std::uint32_t late = rig.add(sheet(), kFar);
   const std::uint32_t floor = rig.add(sheet());
@@ -229,7 +229,7 @@ TEST(Scene, RendersTheBodiesReachedFirst) {
   EXPECT_NEAR(force_on(rig.last, wall).x(), -kWall * 1e-3, 0.01);
 }
 
-TEST(Scene, RendersTheLowestNumbersOfBodiesReachedTogether) {
+TEST(Scene, RendersLowestNumbersOnTie) {
   SceneRig rig;
   for (std::uint32_t i = 0; i <= kMaxReachableBodies; ++i) {
     rig.add(sheet());
@@ -242,7 +242,7 @@ TEST(Scene, RendersTheLowestNumbersOfBodiesReachedTogether) {
 }
 
 // Deep below a sheet the probe is out of its reach, and yet held by it.
-TEST(Scene, BodyInContactKeepsItsSlot) {
+TEST(Scene, KeepsSlotDuringContact) {
   SceneRig rig;
   const std::uint32_t held = rig.add(sheet());
   rig.add(sheet(), isometry({0.0, 0.0, -0.0120}));
@@ -277,7 +277,7 @@ bool notices_passing(const Eigen::Isometry3d& turned, const Eigen::Vector3d& nor
   return false;
 }
 
-TEST(Scene, DetectsABodyThatPassesAtSpeed) {
+TEST(Scene, DetectsFastPassingBody) {
   RandomPoses random(6);
   int missed = 0;
   for (const double speed : {0.1, 1.0, 3.0, 5.0, 9.0}) {
@@ -304,7 +304,7 @@ Shape flap_on_a_hinge() {
 }
 
 // A flap that turns about a far hinge comes as fast as its lever is long.
-TEST(Scene, DetectsABodyThatSwingsOverTheProbe) {
+TEST(Scene, DetectsSwingingBody) {
   for (const float turn : {1.0F, 5.0F, 20.0F}) {
     SceneRig rig;
     const Shape flap = flap_on_a_hinge();
@@ -330,7 +330,7 @@ TEST(Scene, NormalisesRotations) {
   EXPECT_EQ(rig.scene.pose(body), Pose{});
 }
 
-TEST(Scene, BodyMovesUntilTheNextCommand) {
+TEST(Scene, MovesBodyUntilNextCommand) {
   SceneRig rig;
   const std::uint32_t body = rig.add(sheet(), kFar);
   ASSERT_EQ(rig.scene.move(body, {}, {{0.0F, 0.1F, 0.0F}, {0.0F, 0.0F, 1.0F}}), ModelStatus::kOk);
@@ -387,7 +387,7 @@ TEST(Scene, ReusesNumbersOfRemovedBodies) {
   EXPECT_NEAR(force_on(rig.last, 3).z(), -kWall * 1e-3, 0.01);
 }
 
-TEST(Scene, EveryStatusHasItsOwnDescription) {
+TEST(Scene, DescribesEveryStatusUniquely) {
   std::vector<std::string> words;
   for (int i = 0; i <= static_cast<int>(ModelStatus::kBadMotion); ++i) {
     words.emplace_back(core::describe(static_cast<ModelStatus>(i)));

@@ -181,7 +181,7 @@ void expect_slides(const Case& c) {
   }
 }
 
-TEST(Union, AFlushSeamIsNotFelt) {
+TEST(Union, HidesFlushSeam) {
   expect_slides({"flush", {-20.0, 0.0, -20.0, 0.0}, {0.0, 20.0, -20.0, 0.0}, 8.0, up, 0.01});
   expect_slides(
       {"coarser", {-20.0, 0.0, -20.0, 0.0}, {0.0, 20.0, -20.0, 0.0, 1e-3}, 8.0, up, 0.01});
@@ -197,7 +197,7 @@ void add_edge(Shape& shape, double side) {
 }
 
 // With points at the very edges, and a hand that rubs: slips, and never sticks.
-TEST(Union, AFlushSeamDoesNotCatchAHandThatRubs) {
+TEST(Union, RubsSmoothlyOverFlushSeam) {
   constexpr double kFriction = 0.3;
   Shape left = Block{-20.0, 0.0, -20.0, 0.0}.shape();
   Shape right = Block{0.0, 20.0, -20.0, 0.0, 0.5e-3, 2}.shape();
@@ -221,12 +221,12 @@ TEST(Union, AFlushSeamDoesNotCatchAHandThatRubs) {
   }
 }
 
-TEST(Union, FacesWithinAnotherBodyAreNotFelt) {
+TEST(Union, HidesFacesWithinOtherBody) {
   expect_slides({"overlapping", {-20.0, 3.0, -20.0, 0.0}, {-4.0, 20.0, -20.0, 0.0}, 9.0, up, 0.01});
   expect_slides({"the same", {-20.0, 20.0, -20.0, 0.0}, {-20.0, 20.0, -20.0, 0.0}, 9.0, up, 0.01});
 }
 
-TEST(Union, WallsOfAnotherBodyHold) {
+TEST(Union, StopsAtOtherBodyWalls) {
   expect_slides(
       {"flush on it", {-20.0, 20.0, -20.0, 0.0}, {0.0, 10.0, 0.0, 10.0}, 3.0, corner(0.0), 0.01});
   expect_slides(
@@ -236,7 +236,7 @@ TEST(Union, WallsOfAnotherBodyHold) {
 }
 
 // Where the other body is lower, the proxy falls to it.
-TEST(Union, AStepDownIsFeltOnce) {
+TEST(Union, FollowsStepDownOnce) {
   const Shape high = Block{-20.0, 0.0, -20.0, 0.0}.shape();
   for (const double step : {1.0, 3.0}) {
     const Shape low = Block{0.0, 20.0, -20.0, -step}.shape();
@@ -262,7 +262,7 @@ TEST(Union, AStepDownIsFeltOnce) {
 }
 
 // Two balls whose crease is a circle: the proxy rests at the lowest place between them.
-TEST(Union, TheCreaseOfTwoRoundBodiesHolds) {
+TEST(Union, HoldsCreaseOfRoundBodies) {
   const Shape ball = sphere(0.015, 0.5e-3);
   SceneRig rig;
   rig.add(ball, isometry({-0.009, 0.0, 0.0}));
@@ -283,7 +283,7 @@ TEST(Union, TheCreaseOfTwoRoundBodiesHolds) {
 }
 
 // A wall that comes pushes the proxy along the floor, as far as it goes.
-TEST(Union, AMovingWallPushesTheProxyOnTheFloor) {
+TEST(Union, PushesProxyWithMovingWall) {
   const Shape floor = Block{-20.0, 20.0, -20.0, 0.0}.shape();
   const Shape wall = Block{5.0, 15.0, 0.0, 15.0}.shape();
   for (const double speed : {0.01, 0.2}) {
@@ -311,7 +311,7 @@ TEST(Union, AMovingWallPushesTheProxyOnTheFloor) {
 }
 
 // Bodies that move together carry a proxy over their seam.
-TEST(Union, MovingBodiesHaveNoSeam) {
+TEST(Union, HidesSeamOfMovingBodies) {
   const Shape left = Block{-20.0, 0.0, -20.0, 0.0}.shape();
   const Shape right = Block{0.0, 20.0, -20.0, 0.0}.shape();
   Course course({{left}, {right}}, Isometry3d::Identity(), 1000.0F);
@@ -329,7 +329,7 @@ TEST(Union, MovingBodiesHaveNoSeam) {
 }
 
 // The other body goes away while both hold the proxy.
-TEST(Union, ABodyThatIsRemovedLeavesTheOther) {
+TEST(Union, KeepsOtherBodyAfterRemoval) {
   const Shape floor = Block{-20.0, 20.0, -20.0, 0.0}.shape();
   const Shape wall = Block{0.0, 10.0, 0.0, 15.0}.shape();
   for (const std::size_t gone : {0U, 1U}) {
@@ -361,7 +361,7 @@ double cube_distance(double half, const Vector3d& at) {
 
 // Two cubes in any place, and a hand on any path through them: it is held as long as it is in one
 // of them, and the proxy is in neither; with fewer than one exception in 1 000 ticks.
-TEST(Union, HoldsAHandInAnyOfTwoCubes) {
+TEST(Union, HoldsHandInEitherCube) {
   constexpr double kHalf = 8.0;  // mm
   const Shape cube = evaluation::box(1e-3 * kHalf, 0.3, 3);
   RandomPoses random(77);

@@ -42,14 +42,14 @@ core::ModelStatus load(const core::TickCosts& costs, std::uint32_t cycles_per_ti
   return controller.load_model(shared_plane().view());
 }
 
-TEST(Admission, LoadsAModelThatFitsExactly) {
+TEST(Admission, LoadsExactlyFittingModel) {
   const core::TickCosts costs = some_costs();
   core::Controller controller;
   EXPECT_EQ(load(costs, needed(), controller), core::ModelStatus::kOk);
   EXPECT_EQ(controller.state(), core::State::kIdle);
 }
 
-TEST(Admission, RefusesAModelOneCycleTooLong) {
+TEST(Admission, RefusesOneExcessCycle) {
   const core::TickCosts costs = some_costs();
   core::Controller controller;
   EXPECT_EQ(load(costs, needed() - 1U, controller), core::ModelStatus::kTooSlow);
@@ -59,13 +59,13 @@ TEST(Admission, RefusesAModelOneCycleTooLong) {
   EXPECT_FALSE(controller.step(input).enable);
 }
 
-TEST(Admission, UnknownCostsRefuseNoModel) {
+TEST(Admission, LoadsModelWithUnknownCosts) {
   const core::TickCosts costs;
   core::Controller controller;
   EXPECT_EQ(load(costs, 1, controller), core::ModelStatus::kOk);
 }
 
-TEST(Admission, AddsTheTimeOfASecondBody) {
+TEST(Admission, AddsTimeOfSecondBody) {
   const core::TickCosts costs = some_costs();
   core::Controller controller;
   const std::uint32_t both = needed() + needed_by_body();
@@ -77,7 +77,7 @@ TEST(Admission, AddsTheTimeOfASecondBody) {
 }
 
 // Each tick visits all bodies of the scene, although it renders two of them at most.
-TEST(Admission, AddsTheTimeOfEachBodyOfTheScene) {
+TEST(Admission, AddsTimeOfEachBody) {
   core::TickCosts costs = some_costs();
   costs.listed = 50U;
   core::TickLoad load;
@@ -91,7 +91,7 @@ TEST(Admission, AddsTheTimeOfEachBodyOfTheScene) {
 }
 
 // A tick divides its work between gathers and fits: the most expensive division counts.
-TEST(Admission, UsesTheMostExpensiveRow) {
+TEST(Admission, UsesMostExpensiveRow) {
   for (std::uint32_t row = 0; row < core::rows_of(0, 1); ++row) {
     core::TickCosts costs = some_costs();
     for (std::uint32_t tier = 1; tier < core::kWorkTiers; ++tier) {
@@ -118,7 +118,7 @@ core::TickCosts costs_that_fall() {
   return costs;
 }
 
-TEST(Admission, ReducesTheWorkBeforeItRefusesAModel) {
+TEST(Admission, ReducesWorkBeforeRefusal) {
   const core::TickCosts costs = costs_that_fall();
   core::Controller controller;
   EXPECT_EQ(load(costs, 1000U, controller), core::ModelStatus::kOk);
@@ -130,7 +130,7 @@ TEST(Admission, ReducesTheWorkBeforeItRefusesAModel) {
   EXPECT_EQ(load(costs, 599U, controller), core::ModelStatus::kTooSlow);
 }
 
-TEST(Admission, RestoresTheWorkForALighterScene) {
+TEST(Admission, RestoresWorkForLighterScene) {
   const core::TickCosts costs = costs_that_fall();
   core::Controller controller;
   ASSERT_EQ(load(costs, 1000U, controller), core::ModelStatus::kOk);
@@ -143,14 +143,14 @@ TEST(Admission, RestoresTheWorkForALighterScene) {
 }
 
 // A tick with reduced work takes no more of it than its tier allows.
-TEST(Admission, ATickKeepsToTheReducedWork) {
+TEST(Admission, LimitsTickToReducedWork) {
   for (std::uint32_t tier = 0; tier < core::kWorkTiers; ++tier) {
     EXPECT_EQ(&core::work_per_tick(500.0F, tier), &core::kWorkPerTick[tier]);
     EXPECT_EQ(&core::work_per_tick(1500.0F, tier), &core::kWorkPerTick[tier < 1U ? 1U : tier]);
   }
 }
 
-TEST(Admission, ARateThatIsAdmittedImpliesEveryLowerOne) {
+TEST(Admission, AdmitsEveryLowerRate) {
   std::mt19937 random(11);
   std::uniform_int_distribution<std::uint32_t> cycles(0, 200000U);
   std::uint32_t admitted = 0;
@@ -178,7 +178,7 @@ TEST(Admission, ARateThatIsAdmittedImpliesEveryLowerOne) {
   EXPECT_EQ(admitted, 200U);  // every board renders the model at 100 Hz
 }
 
-TEST(Admission, AddsTheCyclesOfADelta) {
+TEST(Admission, AddsCyclesOfDelta) {
   core::TickCosts costs = some_costs();
   costs.delta = 100U;
   core::TickLoad load;
@@ -191,7 +191,7 @@ TEST(Admission, AddsTheCyclesOfADelta) {
   EXPECT_EQ(core::cycles_of(costs, of_delta), needed() + 100U);
 }
 
-TEST(Admission, AHigherRateRemovesModelsThatNoLongerFit) {
+TEST(Admission, UnloadsModelAtHigherRate) {
   const core::TickCosts costs = some_costs();
   core::Controller controller;
   ASSERT_EQ(load(costs, needed(), controller), core::ModelStatus::kOk);
@@ -201,7 +201,7 @@ TEST(Admission, AHigherRateRemovesModelsThatNoLongerFit) {
   EXPECT_EQ(controller.state(), core::State::kNoModel);
 }
 
-TEST(Admission, UsesTheLargestLimitsOfSeveralModels) {
+TEST(Admission, UsesLargestLimitsOfModels) {
   core::TickLoad load;
   core::BlobHeader header{};
   header.points_per_ball_max = 7;

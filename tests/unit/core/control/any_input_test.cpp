@@ -73,7 +73,7 @@ Command command_of(std::uint32_t tick) {
 }
 bool has_hand(std::uint32_t tick) { return tick % kPhases > 20U; }
 
-TEST(AnyInput, RandomEncodersAndSwitchesKeepThePromises) {
+TEST(AnyInput, KeepsLimitsUnderRandomInputs) {
   core::Configuration configuration;
   configuration.ramp_s = 0.01F;
   ControllerRig session(configuration);
@@ -101,7 +101,7 @@ TEST(AnyInput, RandomEncodersAndSwitchesKeepThePromises) {
 }
 
 // Mostly plausible inputs, which give force: a fast random hand in and around the object.
-TEST(AnyInput, AWildHandKeepsThePromises) {
+TEST(AnyInput, KeepsLimitsUnderWildMotion) {
   core::Configuration configuration;
   configuration.ramp_s = 0.01F;
   configuration.stiffness_N_m = 3000.0F;
@@ -208,16 +208,16 @@ void touch_while_bits_flip(const Shape& shape, core::RenderMode mode) {
   EXPECT_GT(counts.with_force, 10'000U);
 }
 
-TEST(AnyInput, AModelWhoseMemoryFailsKeepsThePromises) {
+TEST(AnyInput, KeepsLimitsUnderModelCorruption) {
   touch_while_bits_flip(shared_plane(), core::RenderMode::kSurface);
 }
 
-TEST(AnyInput, AModelWithMaterialsWhoseMemoryFailsKeepsThePromises) {
+TEST(AnyInput, KeepsLimitsUnderMaterialCorruption) {
   touch_while_bits_flip(textured_plane(), core::RenderMode::kSurface);
 }
 
 // An index to a missing element is a fault, not empty space.
-TEST(AnyInput, AnIndexOutsideTheModelIsAFault) {
+TEST(AnyInput, FaultsOnIndexOutsideModel) {
   struct Damage {
     const char* name;
     core::BlobSection core::BlobHeader::*section;
@@ -248,7 +248,7 @@ TEST(AnyInput, AnIndexOutsideTheModelIsAFault) {
   }
 }
 
-TEST(AnyInput, AMaterialThatBecomesNaNIsAFault) {
+TEST(AnyInput, FaultsOnNaNMaterial) {
   const Shape shape = textured_plane();
   FailingModel model(shape.bytes());
   ControllerRig session;
@@ -263,7 +263,7 @@ TEST(AnyInput, AMaterialThatBecomesNaNIsAFault) {
   EXPECT_TRUE(output.motors.is_zero());
 }
 
-TEST(AnyInput, AModelForPaperModeWhoseMemoryFailsKeepsThePromises) {
+TEST(AnyInput, KeepsLimitsUnderPaperCorruption) {
   touch_while_bits_flip(shared_plane().paper_twin(), core::RenderMode::kPaper);
 }
 

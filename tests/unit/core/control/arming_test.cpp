@@ -12,7 +12,7 @@ using core::Command;
 using core::Fault;
 using core::State;
 
-TEST(Arming, NeedsCommandEnableLineAndDeadManControl) {
+TEST(Arming, RequiresCommandAndDeadMan) {
   ControllerRig session;
   ASSERT_EQ(session.status, core::ConfigurationStatus::kOk);
   ASSERT_EQ(session.model_status, core::ModelStatus::kOk);
@@ -28,7 +28,7 @@ TEST(Arming, NeedsCommandEnableLineAndDeadManControl) {
   EXPECT_EQ(session.state(), State::kActive);
 }
 
-TEST(Arming, ADeadManControlMustBeReleasedAfterArming) {
+TEST(Arming, RequiresFreshDeadManPress) {
   ControllerRig session;
   session.input.dead_man = true;
   session.step(Command::kArm);
@@ -44,7 +44,7 @@ TEST(Arming, ADeadManControlMustBeReleasedAfterArming) {
 }
 
 // A release during an earlier arming does not count.
-TEST(Arming, AReleaseCountsForOneArmingOnly) {
+TEST(Arming, ForgetsEarlierRelease) {
   ControllerRig session;
   session.step(Command::kArm);
   session.step();
@@ -63,7 +63,7 @@ TEST(Arming, AReleaseCountsForOneArmingOnly) {
   EXPECT_EQ(session.state(), State::kActive);
 }
 
-TEST(Arming, StopEndsAnAddedForce) {
+TEST(Arming, EndsAddedForceOnStop) {
   ControllerRig session;
   session.activate();
   for (int i = 0; i < 300; ++i) {
@@ -80,7 +80,7 @@ TEST(Arming, StopEndsAnAddedForce) {
   }
 }
 
-TEST(Arming, WithoutADeadManControlForceNeedsTwoMessages) {
+TEST(Arming, RequiresConfirmationWithoutDeadMan) {
   core::Configuration configuration;
   configuration.dead_man_required = false;
   ControllerRig session(configuration);
@@ -93,7 +93,7 @@ TEST(Arming, WithoutADeadManControlForceNeedsTwoMessages) {
   EXPECT_EQ(session.state(), State::kActive);
 }
 
-TEST(Arming, WaitsForTheEnableLine) {
+TEST(Arming, WaitsForEnableLine) {
   ControllerRig session;
   session.enable_follows = false;
   session.step(Command::kArm);
@@ -112,7 +112,7 @@ TEST(Arming, WaitsForTheEnableLine) {
   EXPECT_FALSE(waits(session.step()));
 }
 
-TEST(Arming, WaitsForTheProbeToLeaveTheObject) {
+TEST(Arming, WaitsUntilContactEnds) {
   ControllerRig session;
   session.press(1e-3);
   session.step(Command::kArm);
@@ -129,7 +129,7 @@ TEST(Arming, WaitsForTheProbeToLeaveTheObject) {
 
 // The tip may be inside at power-up. While the motors are off the proxy is released, and a probe
 // that leaves the object counts as outside.
-TEST(Arming, TheProbeMayLeaveTheObjectFromInside) {
+TEST(Arming, ActivatesAfterLeavingFromInside) {
   for (const double from : {-0.03, -0.01, -0.002, -0.0005}) {
     ControllerRig session;
     session.move(0.0, 0.0, from);
@@ -151,7 +151,7 @@ const Shape& ball() {
   return shape;
 }
 
-TEST(Arming, WaitsUntilTheProbeHasLeftABody) {
+TEST(Arming, WaitsUntilProbeLeavesBody) {
   for (const double from : {0.0, 0.006, 0.012, 0.0145}) {
     ControllerRig session;
     ASSERT_EQ(session.controller.load_model(ball().view()), core::ModelStatus::kOk);
@@ -177,7 +177,7 @@ TEST(Arming, WaitsUntilTheProbeHasLeftABody) {
 }
 
 // A sheet has two sides.
-TEST(Arming, AnActiveProbeFeelsTheBackOfASheet) {
+TEST(Arming, RendersBackOfSheet) {
   ControllerRig session;
   session.move(0.0, 0.0, -0.01);
   session.step();
@@ -191,7 +191,7 @@ TEST(Arming, AnActiveProbeFeelsTheBackOfASheet) {
   EXPECT_LT(output.status.force.z, -0.1F);
 }
 
-TEST(Arming, TheForceStartsAtExactlyZeroAndRamps) {
+TEST(Arming, RampsForceFromZero) {
   core::Configuration configuration;
   configuration.ramp_s = 0.5F;
   ControllerRig session(configuration);
@@ -210,7 +210,7 @@ TEST(Arming, TheForceStartsAtExactlyZeroAndRamps) {
   EXPECT_NEAR(last, 0.5F, 0.02F);
 }
 
-TEST(Arming, OutsideActiveEveryCommandIsZeroAndOutsideArmedTheLineIsOff) {
+TEST(Arming, CommandsZeroUnlessActive) {
   ControllerRig session;
   core::Output output = session.press(2e-3);
   EXPECT_TRUE(output.motors.is_zero());
@@ -224,7 +224,7 @@ TEST(Arming, OutsideActiveEveryCommandIsZeroAndOutsideArmedTheLineIsOff) {
   EXPECT_FALSE(output.enable);
 }
 
-TEST(Arming, StopAndReleaseEndTheForceInTheSameTick) {
+TEST(Arming, EndsForceWithinSameTick) {
   ControllerRig session;
   session.activate();
   for (int i = 0; i < 300; ++i) {
@@ -248,7 +248,7 @@ TEST(Arming, StopAndReleaseEndTheForceInTheSameTick) {
   EXPECT_FALSE(output.enable);
 }
 
-TEST(Arming, RestartAfterAFaultNeedsClearThenStopThenArm) {
+TEST(Arming, RestartsAfterClearStopArm) {
   ControllerRig session;
   session.activate();
   session.input.emergency_stop = true;
@@ -274,7 +274,7 @@ TEST(Arming, RestartAfterAFaultNeedsClearThenStopThenArm) {
   EXPECT_EQ(session.state(), State::kActive);
 }
 
-TEST(Arming, ArmInsteadOfStopAfterAFaultHasNoEffect) {
+TEST(Arming, IgnoresArmAfterClearedFault) {
   ControllerRig session;
   session.input.emergency_stop = true;
   session.step();
@@ -286,7 +286,7 @@ TEST(Arming, ArmInsteadOfStopAfterAFaultHasNoEffect) {
   }
 }
 
-TEST(Arming, ConfigurationAndModelAreFixedWhileArmed) {
+TEST(Arming, RefusesChangesWhileArmed) {
   ControllerRig session;
   session.step(Command::kArm);
   EXPECT_EQ(session.controller.configure({}), core::ConfigurationStatus::kBusy);

@@ -68,7 +68,7 @@ const std::vector<Trouble>& troubles() {
   return all;
 }
 
-TEST(Faults, EveryFaultLatchesInTheSameTickInEveryState) {
+TEST(Faults, LatchesImmediatelyInEveryState) {
   for (const InState& in : states()) {
     for (const Trouble& trouble : troubles()) {
       ControllerRig session;
@@ -93,7 +93,7 @@ TEST(Faults, EveryFaultLatchesInTheSameTickInEveryState) {
   }
 }
 
-TEST(Faults, TheEmergencyStopLatchesBeforeConfiguration) {
+TEST(Faults, LatchesEmergencyStopBeforeConfiguration) {
   core::Controller controller;
   core::Input input;  // defaults: pressed
   const core::Output output = controller.step(input);
@@ -103,7 +103,7 @@ TEST(Faults, TheEmergencyStopLatchesBeforeConfiguration) {
   EXPECT_FALSE(output.enable);
 }
 
-TEST(Faults, NoCommandClearsAPressedEmergencyStop) {
+TEST(Faults, KeepsPressedEmergencyStopLatched) {
   for (const InState& in : states()) {
     ControllerRig session;
     in.enter(session);
@@ -121,7 +121,7 @@ TEST(Faults, NoCommandClearsAPressedEmergencyStop) {
   }
 }
 
-TEST(Faults, TwoOverrunsWithinAHundredTicksLatch) {
+TEST(Faults, LatchesTwoCloseOverruns) {
   for (const int apart : {1, 50, 100, 101, 200}) {
     ControllerRig session;
     session.activate();
@@ -139,7 +139,7 @@ TEST(Faults, TwoOverrunsWithinAHundredTicksLatch) {
   }
 }
 
-TEST(Faults, BusyStorageExcusesOverrunsWithMotorsOffOnly) {
+TEST(Faults, ExcusesStorageOverrunsWhileUnpowered) {
   ControllerRig session;
   session.step();
   session.input.storage_busy = true;
@@ -158,7 +158,7 @@ TEST(Faults, BusyStorageExcusesOverrunsWithMotorsOffOnly) {
   EXPECT_EQ(active.state(), State::kFault);
 }
 
-TEST(Faults, StopsWhenARequiredLinkIsLost) {
+TEST(Faults, StopsOnRequiredLinkLoss) {
   for (const bool required : {false, true}) {
     core::Configuration configuration;
     configuration.link_required = required;
@@ -181,7 +181,7 @@ TEST(Faults, StopsWhenARequiredLinkIsLost) {
 }
 
 // A program that only repeats the arm command does not supervise the session.
-TEST(Faults, AnArmCommandDoesNotKeepTheLinkAlive) {
+TEST(Faults, IgnoresArmCommandAsHeartbeat) {
   core::Configuration configuration;
   configuration.link_required = true;
   configuration.link_timeout_s = 0.02F;
@@ -195,7 +195,7 @@ TEST(Faults, AnArmCommandDoesNotKeepTheLinkAlive) {
   EXPECT_TRUE(core::has_fault(session.controller.faults(), Fault::kLinkLost));
 }
 
-TEST(Faults, ALostLinkIsAFaultOnlyWhileArmedOrActive) {
+TEST(Faults, ReportsLinkLossOnceArmed) {
   core::Configuration configuration;
   configuration.link_required = true;
   ControllerRig session(configuration);
@@ -209,7 +209,7 @@ TEST(Faults, ALostLinkIsAFaultOnlyWhileArmedOrActive) {
   EXPECT_EQ(session.state(), State::kFault);
 }
 
-TEST(Faults, TheEnableLineMustFollowItsCommand) {
+TEST(Faults, DetectsEnableLineMismatch) {
   ControllerRig stuck_off;
   stuck_off.enable_follows = false;
   stuck_off.step(Command::kArm);
@@ -230,7 +230,7 @@ TEST(Faults, TheEnableLineMustFollowItsCommand) {
   EXPECT_TRUE(core::has_fault(welded.controller.faults(), Fault::kEnableMismatch));
 }
 
-TEST(Faults, APowerLossWhileActiveIsAFaultAtOnce) {
+TEST(Faults, ReportsPowerLossImmediately) {
   ControllerRig session;
   session.activate();
   ASSERT_EQ(session.state(), State::kActive);
@@ -240,14 +240,14 @@ TEST(Faults, APowerLossWhileActiveIsAFaultAtOnce) {
   EXPECT_EQ(session.state(), State::kFault);
 }
 
-TEST(Faults, AnUnknownCommandIsAnUnexpectedEvent) {
+TEST(Faults, ReportsUnknownCommand) {
   ControllerRig session;
   session.step(static_cast<Command>(5));
   EXPECT_EQ(session.state(), State::kFault);
   EXPECT_TRUE(core::has_fault(session.controller.faults(), Fault::kUnexpectedEvent));
 }
 
-TEST(Faults, TheStatusContainsLoadAndProbeInTheModelFrame) {
+TEST(Faults, ReportsLoadAndProbe) {
   core::Configuration configuration;
   configuration.model_origin_m = {0.001F, -0.002F, 0.004F};
   ControllerRig session(configuration);
@@ -259,7 +259,7 @@ TEST(Faults, TheStatusContainsLoadAndProbeInTheModelFrame) {
   EXPECT_NEAR(status.probe.z, 0.006F, 2e-5F);
 }
 
-TEST(Faults, CountersMayWrapAround) {
+TEST(Faults, AcceptsCounterWrapAround) {
   core::Configuration configuration;
   configuration.device.home_count[0] = 0x7FFFFFFF;
   ControllerRig session(configuration);
@@ -281,7 +281,7 @@ std::set<std::string> pages() {
   return names;
 }
 
-TEST(Faults, FaultPagesMatchTheCodesAndLimits) {
+TEST(Faults, DocumentsEveryFaultAndLimit) {
   std::set<std::string> wanted;
   for (std::uint32_t code = 1; code < core::kFaultCodes; ++code) {
     wanted.insert(core::name_of(static_cast<Fault>(code)));
@@ -299,7 +299,7 @@ TEST(Faults, FaultPagesMatchTheCodesAndLimits) {
   EXPECT_EQ(std::string(core::name_of(static_cast<core::Limit>(3))), "unknown");
 }
 
-TEST(Faults, ASupplyOutsideItsRangeIsAFaultWhileMotorsAreOn) {
+TEST(Faults, ReportsSupplyOutsideRange) {
   core::Configuration configuration;
   configuration.supply_monitored = true;
   for (const float volts : {17.9F, 30.1F, 0.0F, -24.0F, std::numeric_limits<float>::quiet_NaN(),
@@ -319,7 +319,7 @@ TEST(Faults, ASupplyOutsideItsRangeIsAFaultWhileMotorsAreOn) {
   }
 }
 
-TEST(Faults, ASecondFaultKeepsTheFirstReported) {
+TEST(Faults, KeepsFirstFaultReported) {
   ControllerRig session;
   session.input.emergency_stop = true;
   session.step();
@@ -330,7 +330,7 @@ TEST(Faults, ASecondFaultKeepsTheFirstReported) {
   EXPECT_TRUE(core::has_fault(session.controller.faults(), Fault::kEncoderInvalid));
 }
 
-TEST(Faults, AcceptsASupplyAtTheEndsOfItsRange) {
+TEST(Faults, AcceptsSupplyAtRangeEnds) {
   core::Configuration configuration;
   configuration.supply_monitored = true;
   for (const float volts : {configuration.supply_min_V, configuration.supply_max_V}) {
@@ -392,7 +392,7 @@ class StuckEncoder {
   ControllerRig session_;
 };
 
-TEST(Faults, DetectsAStuckEncoderUnderItsMotorsEffort) {
+TEST(Faults, DetectsStuckEncoderUnderEffort) {
   for (std::uint32_t held = 0; held < core::kAxes; ++held) {
     for (std::uint32_t pushed = 0; pushed < core::kAxes; ++pushed) {
       const auto ticks = StuckEncoder().ticks_to_fault(held, pushed, 3U * StuckEncoder::kTicks);
@@ -405,7 +405,7 @@ TEST(Faults, DetectsAStuckEncoderUnderItsMotorsEffort) {
   }
 }
 
-TEST(Faults, ChecksAnEncoderAgainstTheEffortOfItsOwnAxis) {
+TEST(Faults, ChecksEncoderAgainstOwnAxis) {
   for (std::uint32_t held = 0; held < core::kAxes; ++held) {
     core::Configuration configuration = StuckEncoder::configuration();
     for (std::uint32_t axis = 0; axis < core::kAxes; ++axis) {
@@ -419,7 +419,7 @@ TEST(Faults, ChecksAnEncoderAgainstTheEffortOfItsOwnAxis) {
   }
 }
 
-TEST(Faults, ChecksForStuckEncodersOnlyWhileActive) {
+TEST(Faults, ChecksStuckEncodersWhileActive) {
   StuckEncoder stuck;
   ASSERT_FALSE(stuck.ticks_to_fault(0, 0, StuckEncoder::kTicks - 10U));
   stuck.session().step(Command::kStop);
@@ -431,7 +431,7 @@ TEST(Faults, ChecksForStuckEncodersOnlyWhileActive) {
   EXPECT_TRUE(stuck.ticks_to_fault(0, 0, 30U));
 }
 
-TEST(Faults, DetectsAStuckEncoderAfterTheConfiguredTime) {
+TEST(Faults, RespectsConfiguredStuckTime) {
   core::Configuration configuration = StuckEncoder::configuration();
   configuration.stuck_s = 0.25F;
   const auto ticks = StuckEncoder(configuration).ticks_to_fault(0, 0, 400U);
@@ -440,7 +440,7 @@ TEST(Faults, DetectsAStuckEncoderAfterTheConfiguredTime) {
   EXPECT_LE(*ticks, 252U);
 }
 
-TEST(Faults, EveryCodeHasItsOwnName) {
+TEST(Faults, NamesEveryCodeUniquely) {
   std::vector<std::string> names;
   for (std::uint32_t code = 0; code < core::kFaultCodes; ++code) {
     names.emplace_back(core::name_of(static_cast<Fault>(code)));

@@ -16,7 +16,7 @@ using core::Fault;
 using core::FlightRecord;
 using core::FlightRecorder;
 
-TEST(FlightRecorder, KeepsTheLastTicksRounded) {
+TEST(FlightRecorder, KeepsLastTicksRounded) {
   ControllerRig session;
   session.activate();
   for (int i = 0; i < 1000; ++i) {
@@ -37,7 +37,7 @@ TEST(FlightRecorder, KeepsTheLastTicksRounded) {
   EXPECT_EQ(recorder.snapshot().faults, 0U);
 }
 
-TEST(FlightRecorder, AFaultEndsTheRecordingAndKeepsASnapshot) {
+TEST(FlightRecorder, StopsAtFaultWithSnapshot) {
   ControllerRig session;
   session.activate();
   const core::Output pressed = session.press(1e-3);
@@ -56,7 +56,7 @@ TEST(FlightRecorder, AFaultEndsTheRecordingAndKeepsASnapshot) {
   EXPECT_TRUE(recorder.record(FlightRecorder::kAfterFault).in_contact());  // just before
 }
 
-TEST(FlightRecorder, ContinuesWhenTheFaultIsCleared) {
+TEST(FlightRecorder, ContinuesAfterClearedFault) {
   ControllerRig session;
   session.step(static_cast<Command>(77));
   for (int i = 0; i < 100; ++i) {
@@ -68,7 +68,7 @@ TEST(FlightRecorder, ContinuesWhenTheFaultIsCleared) {
   EXPECT_EQ(session.controller.recorder().last_tick(), output.status.tick);
 }
 
-TEST(FlightRecorder, ASecondFaultKeepsTheFirstSnapshot) {
+TEST(FlightRecorder, KeepsFirstSnapshot) {
   ControllerRig session;
   session.input.motors_ok = false;
   const core::Output first = session.step();

@@ -18,7 +18,7 @@ PassivityController controller(float delay_s = 0.0F) {
 
 Vec3 at(float z) { return {0.0F, 0.0F, z}; }
 
-TEST(Passivity, DoesNotDampAWallThatAbsorbsEnergy) {
+TEST(Passivity, LeavesAbsorbingWallUndamped) {
   PassivityController p = controller();
   EXPECT_EQ(p.update({}, {at(0.0F), at(-0.1F), {}}, 0.0F), Vec3{});
   for (int i = 1; i < 100; ++i) {  // pushes with 1 N against the motion, stores nothing
@@ -28,7 +28,7 @@ TEST(Passivity, DoesNotDampAWallThatAbsorbsEnergy) {
   EXPECT_EQ(p.observed_energy(), 0.0F);  // what was taken is no credit
 }
 
-TEST(Passivity, DampingAbsorbsReleasedEnergyUpToItsLimit) {
+TEST(Passivity, DampsReleasedEnergyWithinLimit) {
   PassivityController p = controller();
   (void)p.update({}, {at(0.0F), at(0.1F), {}}, 0.0F);
   // 1 mN along 0.1 mm: 1e-7 J, in a period at 0.1 m/s: 1e-7 / (1e-3 * 0.01) = 0.01 Ns/m.
@@ -40,14 +40,14 @@ TEST(Passivity, DampingAbsorbsReleasedEnergyUpToItsLimit) {
   EXPECT_EQ(p.update({}, {at(2e-4F), {}, {}}, 0.0F), Vec3{});  // nothing to damp
 }
 
-TEST(Passivity, StoredEnergyIsNotAnError) {
+TEST(Passivity, AllowsReleaseOfStoredEnergy) {
   PassivityController p = controller();
   (void)p.update({}, {at(0.0F), {}, {}}, 1e-3F);
   (void)p.update(at(1.0F), {at(1e-3F), at(1.0F), {}}, 0.0F);
   EXPECT_NEAR(p.observed_energy(), 0.0F, 1e-9F);
 }
 
-TEST(Passivity, AccountsForTheDelayOfTheForce) {
+TEST(Passivity, AccountsForForceDelay) {
   PassivityController p = controller(1.5e-3F);
   (void)p.update({}, {at(0.0F), {}, {}}, 0.0F);
   (void)p.update(at(1.0F), {at(1e-3F), {}, {}}, 0.0F);
@@ -58,7 +58,7 @@ TEST(Passivity, AccountsForTheDelayOfTheForce) {
   EXPECT_NEAR(p.observed_energy(), -1e-3F, 1e-8F);
 }
 
-TEST(Passivity, ResetClearsTheEnergy) {
+TEST(Passivity, ClearsEnergyOnReset) {
   PassivityController p = controller();
   (void)p.update({}, {at(0.0F), {}, {}}, 0.0F);
   (void)p.update(at(1.0F), {at(1e-3F), {}, {}}, 0.0F);
@@ -69,7 +69,7 @@ TEST(Passivity, ResetClearsTheEnergy) {
 
 // A hand that leaves at 0.5 m/s: at 2000 N/s the push ends in 0.5 ms per newton, delayed by 1 ms,
 // and releases energy until then.
-TEST(Passivity, AWallLimitsThePushOnALeavingHand) {
+TEST(Passivity, LimitsWallPushWhenLeaving) {
   for (const float delay_s : {0.0F, 1.5e-3F}) {
     PassivityController p = controller(delay_s);
     (void)p.update({}, {at(0.0F), {}, {}}, 0.0F);
@@ -92,7 +92,7 @@ TEST(Passivity, AWallLimitsThePushOnALeavingHand) {
 
 // After pressing during the ramp, or a move of the wall: the spring may release its energy, also to
 // a trembling hand.
-TEST(Passivity, AWallMayReleaseEnergyFromTheApplication) {
+TEST(Passivity, LetsWallReleaseApplicationEnergy) {
   constexpr float kStored = 0.6F * 0.6F / (2.0F * 300.0F);  // J: 0.6 N of 300 N/m
   PassivityController p = controller();
   p.allow(kStored);
@@ -106,14 +106,14 @@ TEST(Passivity, AWallMayReleaseEnergyFromTheApplication) {
 }
 
 // A contact that starts deep inside has absorbed no energy.
-TEST(Passivity, ADeepFirstContactHasAbsorbedNoEnergy) {
+TEST(Passivity, CreditsDeepContactNoEnergy) {
   PassivityController p = controller();
   (void)p.update({}, {at(-5e-3F), {}, {}}, 0.02F);
   EXPECT_EQ(p.most_push(0.5F, 2000.0F), 0.0F);
 }
 
 // A moving wall that pushes the hand supplies energy of the motion, not of a leak.
-TEST(Passivity, DoesNotDampWorkOfAMovingWall) {
+TEST(Passivity, LeavesMovingWallWorkUndamped) {
   PassivityController p = controller();
   (void)p.update({}, {at(0.0F), {}, {}}, 0.0F);
   EXPECT_EQ(p.update(at(1.0F), {at(1e-3F), at(1.0F), at(1.0F)}, 0.0F), Vec3{});

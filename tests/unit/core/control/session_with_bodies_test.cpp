@@ -35,7 +35,7 @@ class SessionWithBodies : public ControllerRig {
   }
 };
 
-TEST(SessionWithBodies, RemovingATouchedBodyCausesNoForceStep) {
+TEST(SessionWithBodies, FadesForceOfRemovedBody) {
   for (const bool remove : {true, false}) {
     SessionWithBodies session({kFar});
     float before = session.press(2e-3).status.force.z;
@@ -60,7 +60,7 @@ TEST(SessionWithBodies, RemovingATouchedBodyCausesNoForceStep) {
 }
 
 // Also of a force that changes faster than it should: the gate's slew holds whatever bodies do.
-TEST(SessionWithBodies, AddingAndRemovingBodiesKeepsTheSlewLimit) {
+TEST(SessionWithBodies, LimitsSlewOfBodyChanges) {
   core::Configuration slow;
   slow.slew_N_s = 100.0F;
   SessionWithBodies session({kFar}, slow);
@@ -81,7 +81,7 @@ TEST(SessionWithBodies, AddingAndRemovingBodiesKeepsTheSlewLimit) {
 }
 
 // The hand may be where a body appears: no force, and the limit `waiting`, until it has left.
-TEST(SessionWithBodies, ABodyThatAppearsAroundTheHandWaits) {
+TEST(SessionWithBodies, WaitsInsideAppearingBody) {
   const Shape ball = sphere(0.015);
   ControllerRig session;
   std::uint32_t number = 0;
@@ -116,7 +116,7 @@ TEST(SessionWithBodies, ABodyThatAppearsAroundTheHandWaits) {
   EXPECT_FALSE(has_limit(output, Limit::kWaiting));
 }
 
-TEST(SessionWithBodies, RemovesTheLastBodyUnderForce) {
+TEST(SessionWithBodies, RemovesLastBodyUnderForce) {
   SessionWithBodies session({});
   const float before = session.press(2e-3).status.force.z;
   ASSERT_EQ(session.controller.remove_body(0), ModelStatus::kOk);
@@ -127,7 +127,7 @@ TEST(SessionWithBodies, RemovesTheLastBodyUnderForce) {
   EXPECT_EQ(session.state(), State::kNoModel);
 }
 
-TEST(SessionWithBodies, ReportsTooManyBodiesWithinReachAsALimit) {
+TEST(SessionWithBodies, ReportsTooManyReachableBodies) {
   SessionWithBodies two({isometry({0.0, 0.0, 0.0})});
   EXPECT_FALSE(has_limit(two.press(1e-3), Limit::kBodies));
   SessionWithBodies three({isometry({0.0, 0.0, 0.0}), isometry({0.0, 0.0, 0.0})});
@@ -138,7 +138,7 @@ TEST(SessionWithBodies, ReportsTooManyBodiesWithinReachAsALimit) {
 }
 
 // Where the gate gives less than was rendered, the bodies feel less too.
-TEST(SessionWithBodies, ReactionsMatchTheAppliedForce) {
+TEST(SessionWithBodies, ScalesReactionsToAppliedForce) {
   core::Configuration weak;
   weak.force_max_N = 0.5F;
   weak.slew_N_s = 500.0F;
@@ -164,7 +164,7 @@ TEST(SessionWithBodies, HasNoReactionWithoutForce) {
   }
 }
 
-TEST(SessionWithBodies, AddsBodiesOnlyWhileTheMotorsAreOff) {
+TEST(SessionWithBodies, AddsBodiesOnlyWhileUnpowered) {
   SessionWithBodies session({kFar});
   std::uint32_t number = 99;
   EXPECT_EQ(session.controller.add_body(shared_plane().view(), {}, number), ModelStatus::kBusy);

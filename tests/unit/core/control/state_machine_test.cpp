@@ -53,7 +53,7 @@ const std::map<std::pair<State, Event>, State> kAllowed = {
 State state_at(std::uint32_t i) { return static_cast<State>(i); }
 Event event_at(std::uint32_t i) { return static_cast<Event>(i); }
 
-TEST(StateMachine, MatchesTheListedTransitions) {
+TEST(StateMachine, MatchesListedTransitions) {
   for (std::uint32_t s = 0; s < core::kStates; ++s) {
     for (std::uint32_t e = 0; e < core::kEvents; ++e) {
       const auto listed = kAllowed.find({state_at(s), event_at(e)});
@@ -64,7 +64,7 @@ TEST(StateMachine, MatchesTheListedTransitions) {
   }
 }
 
-TEST(StateMachine, ActiveIsReachedOnlyFromArmed) {
+TEST(StateMachine, ReachesActiveOnlyFromArmed) {
   for (std::uint32_t s = 0; s < core::kStates; ++s) {
     for (std::uint32_t e = 0; e < core::kEvents; ++e) {
       const State next = core::next_state(state_at(s), event_at(e));
@@ -80,7 +80,7 @@ TEST(StateMachine, ActiveIsReachedOnlyFromArmed) {
   }
 }
 
-TEST(StateMachine, EveryStateFaultsAndOnlyRecoverLeavesFault) {
+TEST(StateMachine, LeavesFaultOnlyByRecover) {
   for (std::uint32_t s = 0; s < core::kStates; ++s) {
     EXPECT_EQ(core::next_state(state_at(s), Event::kFault), State::kFault);
   }
@@ -90,7 +90,7 @@ TEST(StateMachine, EveryStateFaultsAndOnlyRecoverLeavesFault) {
   }
 }
 
-TEST(StateMachine, EveryStateHasItsName) {
+TEST(StateMachine, NamesEveryState) {
   EXPECT_EQ(std::string(core::name_of(State::kBoot)), "boot");
   EXPECT_EQ(std::string(core::name_of(State::kNoModel)), "no-model");
   EXPECT_EQ(std::string(core::name_of(State::kIdle)), "idle");

@@ -30,7 +30,7 @@ core::Output settle(ControllerRig& session, int ticks = 200) {
   return output;
 }
 
-TEST(Tick, VelocityEqualsThatOfTheHand) {
+TEST(Tick, ReportsVelocityOfHand) {
   ControllerRig session;
   core::Output output = session.step();
   for (int i = 0; i < 400; ++i) {
@@ -41,7 +41,7 @@ TEST(Tick, VelocityEqualsThatOfTheHand) {
 }
 
 // A proxy that kept its position would hit the plane on the path to the new one.
-TEST(Tick, ACounterThatReturnsElsewhereTouchesNothingBetween) {
+TEST(Tick, TouchesNothingAcrossLongGap) {
   ControllerRig session;
   session.move(0.0, 0.0, kAbove);
   settle(session);
@@ -62,7 +62,7 @@ TEST(Tick, ACounterThatReturnsElsewhereTouchesNothingBetween) {
   }
 }
 
-TEST(Tick, AJumpGivesNoVelocity) {
+TEST(Tick, ReportsNoVelocityAfterJump) {
   ControllerRig session;
   session.move(0.0, 0.0, kAbove);
   settle(session);
@@ -76,7 +76,7 @@ TEST(Tick, AJumpGivesNoVelocity) {
 }
 
 // Counts that are impossible for the arms of a delta.
-TEST(Tick, APoseOutsideTheKinematicsIsAFaultWithoutVelocity) {
+TEST(Tick, ReportsImpossiblePoseWithoutVelocity) {
   core::Configuration configuration;
   core::use_device(core::presets::falcon(), configuration);
   configuration.device.homing = core::HomingMethod::kAbsolute;
@@ -97,7 +97,7 @@ TEST(Tick, APoseOutsideTheKinematicsIsAFaultWithoutVelocity) {
   EXPECT_EQ(output.status.velocity, Vec3{});
 }
 
-TEST(Tick, ANewConfigurationIsNoJump) {
+TEST(Tick, AcceptsNewConfigurationWithoutJump) {
   core::Configuration configuration;
   ControllerRig session(configuration);
   settle(session);
@@ -106,7 +106,7 @@ TEST(Tick, ANewConfigurationIsNoJump) {
   EXPECT_EQ(session.step().status.faults, 0U);
 }
 
-TEST(Tick, RecoversToNoModelWithoutAModel) {
+TEST(Tick, RecoversWithoutModel) {
   core::Controller controller;
   ASSERT_EQ(controller.configure({}), core::ConfigurationStatus::kOk);
   ControllerRig rig;
@@ -122,7 +122,7 @@ TEST(Tick, RecoversToNoModelWithoutAModel) {
   EXPECT_EQ(controller.state(), State::kNoModel);
 }
 
-TEST(Tick, TheLastBodyMayBeRemovedWhileActive) {
+TEST(Tick, RemovesLastBodyWhileActive) {
   ControllerRig session;
   session.activate();
   ASSERT_EQ(session.controller.remove_body(0), core::ModelStatus::kOk);
@@ -132,7 +132,7 @@ TEST(Tick, TheLastBodyMayBeRemovedWhileActive) {
   EXPECT_EQ(session.state(), State::kNoModel);
 }
 
-TEST(Tick, ReportsWaitingWhileOnlyTheHandIsReady) {
+TEST(Tick, ReportsWaitingForEnableLine) {
   ControllerRig session;
   session.step(Command::kArm);
   EXPECT_FALSE(has_limit(session.step(), Limit::kWaiting));  // nobody is there yet
@@ -150,7 +150,7 @@ TEST(Tick, ReportsNoWaitingWhileActive) {
   EXPECT_FALSE(has_limit(session.step(), Limit::kWaiting));
 }
 
-TEST(Tick, OneArmCommandCountsOnce) {
+TEST(Tick, CountsArmCommandOnce) {
   core::Configuration configuration;
   configuration.dead_man_required = false;
   ControllerRig session(configuration);
@@ -162,7 +162,7 @@ TEST(Tick, OneArmCommandCountsOnce) {
 }
 
 // Arming again while armed changes nothing: an earlier release still counts.
-TEST(Tick, ArmingTwiceStaysArmed) {
+TEST(Tick, IgnoresSecondArmCommand) {
   ControllerRig session;
   session.step(Command::kArm);
   session.step();
@@ -172,7 +172,7 @@ TEST(Tick, ArmingTwiceStaysArmed) {
 }
 
 // The second copy of the state, checked before a command goes to the motors.
-TEST(Tick, MayGiveForceOnlyInTheActiveState) {
+TEST(Tick, AllowsForceOnlyWhenActive) {
   ControllerRig session;
   EXPECT_FALSE(session.controller.may_give_force());
   session.step(Command::kArm);
@@ -185,7 +185,7 @@ TEST(Tick, MayGiveForceOnlyInTheActiveState) {
   EXPECT_FALSE(session.controller.may_give_force());
 }
 
-TEST(Tick, ReportsNoReactionAfterAStop) {
+TEST(Tick, ReportsNoReactionAfterStop) {
   ControllerRig session;
   session.activate();
   settle(session, 400);
@@ -197,7 +197,7 @@ TEST(Tick, ReportsNoReactionAfterAStop) {
 }
 
 // Shorter than the jump that a body notices by itself.
-TEST(Tick, ACounterThatReturnsNearbyTouchesNothingBetween) {
+TEST(Tick, TouchesNothingAcrossShortGap) {
   ControllerRig session;
   session.move(0.0, 0.0, 1e-3);
   settle(session);
@@ -210,7 +210,7 @@ TEST(Tick, ACounterThatReturnsNearbyTouchesNothingBetween) {
   }
 }
 
-TEST(Tick, ANewConfigurationForgetsTheContact) {
+TEST(Tick, ForgetsContactOnConfiguration) {
   ControllerRig session;
   session.activate();
   settle(session);
@@ -223,7 +223,7 @@ TEST(Tick, ANewConfigurationForgetsTheContact) {
   EXPECT_FALSE(settle(session).status.rendering.in_contact);
 }
 
-TEST(Tick, WithoutAConfigurationNoEncoderIsChecked) {
+TEST(Tick, IgnoresEncodersBeforeConfiguration) {
   core::Controller controller;
   core::Input input;
   input.emergency_stop = false;
@@ -232,7 +232,7 @@ TEST(Tick, WithoutAConfigurationNoEncoderIsChecked) {
   EXPECT_FALSE(core::has_fault(controller.step(input).status.faults, Fault::kEncoderInvalid));
 }
 
-TEST(Tick, ABodyThatMovesPushesTheProbe) {
+TEST(Tick, PushesProbeWithMovingBody) {
   ControllerRig session;
   session.activate();
   settle(session, 400);
@@ -248,7 +248,7 @@ TEST(Tick, ABodyThatMovesPushesTheProbe) {
   EXPECT_GT(output.status.force.z, 0.5F);
 }
 
-TEST(Tick, AnAddedForceActsForItsTicks) {
+TEST(Tick, ExpiresAddedForce) {
   ControllerRig session;
   session.activate();
   settle(session, 400);
@@ -257,7 +257,7 @@ TEST(Tick, AnAddedForceActsForItsTicks) {
   EXPECT_EQ(settle(session, 100).status.force, Vec3{});
 }
 
-TEST(Tick, AReactionIsThatOfTheContactAloneAfterAnAddedForce) {
+TEST(Tick, ExcludesAddedForceFromReaction) {
   ControllerRig session;
   session.activate();
   settle(session, 400);
@@ -270,7 +270,7 @@ TEST(Tick, AReactionIsThatOfTheContactAloneAfterAnAddedForce) {
   EXPECT_EQ(after.status.reactions[0].force_N, -after.status.force);
 }
 
-TEST(Tick, StopDiscardsAnUnusedAddedForce) {
+TEST(Tick, DiscardsUnusedAddedForce) {
   ControllerRig session;
   session.input.added_force = {{1.0F, 0.0F, 0.0F}, 1'000'000U};
   session.step();
@@ -281,7 +281,7 @@ TEST(Tick, StopDiscardsAnUnusedAddedForce) {
 }
 
 // The controller adds the damping of the passivity controller: compared with a separate instance.
-TEST(Tick, KeepsTheWallPassive) {
+TEST(Tick, KeepsWallPassive) {
   core::Configuration configuration;
   configuration.ramp_s = 0.01F;
   configuration.delay_s = 0.003F;
@@ -342,7 +342,7 @@ std::vector<float> draw_back(Change change) {
 }
 
 // A change of the wall allows a release of spring energy only during contact.
-TEST(Tick, AWallChangeInFreeSpaceAddsNoEnergy) {
+TEST(Tick, IgnoresUntouchedWallChange) {
   const std::vector<float> plain = draw_back([](ControllerRig& /*as it is*/) {});
   EXPECT_GT(*std::max_element(plain.begin(), plain.end()), 0.1F);
   EXPECT_EQ(plain, draw_back([](ControllerRig& session) {

@@ -63,7 +63,7 @@ void flip(Bytes& bytes, std::size_t bit) {
   bytes[bit / 8U] ^= static_cast<std::uint8_t>(1U << (bit % 8U));
 }
 
-TEST(Signature, VerifiesTheVectorsOfRfc8032) {
+TEST(Signature, VerifiesRfc8032Vectors) {
   struct Vector {
     const char* key;
     const char* message;
@@ -86,7 +86,7 @@ TEST(Signature, VerifiesTheVectorsOfRfc8032) {
   }
 }
 
-TEST(Signature, MatchesTheHashVectorsOfTheStandard) {
+TEST(Signature, MatchesSha512OfLibsodium) {
   for (std::size_t size = 0; size <= 400; ++size) {
     Bytes message(size, static_cast<std::uint8_t>(size));
     Sha512 hash;
@@ -123,7 +123,7 @@ TEST(Signature, RefusesEveryFlippedBit) {
   }
 }
 
-TEST(Signature, VerifiesHeadAndBodyAsOneMessage) {
+TEST(Signature, VerifiesSplitMessage) {
   std::mt19937 random(2);
   const Signed s = random_signed(random);
   for (std::size_t split = 0; split <= s.message.size(); split += 17U) {
@@ -132,7 +132,7 @@ TEST(Signature, VerifiesHeadAndBodyAsOneMessage) {
 }
 
 // S + L fits the equation as well: one message would have two signatures.
-TEST(Signature, RefusesScalarsNotBelowTheOrder) {
+TEST(Signature, RefusesUnreducedScalars) {
   const Bytes order = from_hex("edd3f55c1a631258d69cf7a2def9de1400000000000000000000000000000010");
   std::mt19937 random(3);
   for (int i = 0; i < 50; ++i) {
@@ -150,7 +150,7 @@ TEST(Signature, RefusesScalarsNotBelowTheOrder) {
 
 // The eight points of small order, and their other encodings: with such a key, or R, a signature of
 // S = 0 is valid for every message, or every eighth.
-TEST(Signature, RefusesPointsOfSmallOrderAndNonCanonicalPoints) {
+TEST(Signature, RefusesSmallOrderPoints) {
   const std::vector<std::string> points = {
       "0100000000000000000000000000000000000000000000000000000000000000",
       "0100000000000000000000000000000000000000000000000000000000000080",

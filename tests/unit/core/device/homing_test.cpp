@@ -30,13 +30,13 @@ EncoderReading at(std::int32_t a, std::int32_t b, std::int32_t c) {
 
 TEST(Homing, IsNotDoneBeforeBegin) { EXPECT_FALSE(Homing{}.done()); }
 
-TEST(Homing, AbsoluteEncodersAreDoneAtOnce) {
+TEST(Homing, SkipsAbsoluteEncoders) {
   Homing homing;
   homing.begin(device_with(HomingMethod::kAbsolute));
   EXPECT_TRUE(homing.done());
 }
 
-TEST(Homing, AGivenPoseNeedsTheCommand) {
+TEST(Homing, RequiresCommandForGivenPose) {
   DeviceModel device = device_with(HomingMethod::kGivenPose);
   Homing homing;
   homing.begin(device);
@@ -48,7 +48,7 @@ TEST(Homing, AGivenPoseNeedsTheCommand) {
   EXPECT_EQ(pose.joints, (core::Vec3{0.0F, 0.0F, 0.0F}));
 }
 
-TEST(Homing, IndexHomingNeedsThePulseOfEachJoint) {
+TEST(Homing, RequiresEveryIndexPulse) {
   DeviceModel device = device_with(HomingMethod::kIndex);
   Homing homing;
   homing.begin(device);
@@ -69,7 +69,7 @@ TEST(Homing, IndexHomingNeedsThePulseOfEachJoint) {
   EXPECT_FALSE(homing.update(again, false, device));  // counts were lost
 }
 
-TEST(Homing, TravelFromStopToStopGivesTheCentre) {
+TEST(Homing, FindsCentreBetweenStops) {
   for (const float direction : {1.0F, -1.0F}) {
     DeviceModel device = device_with(HomingMethod::kHardStop);
     for (float& ratio : device.ratio) {
@@ -105,7 +105,7 @@ TEST(Homing, TravelFromStopToStopGivesTheCentre) {
   }
 }
 
-TEST(Homing, TravelBeyondTheRangeRestartsHoming) {
+TEST(Homing, RestartsOnTravelBeyondRange) {
   DeviceModel device = device_with(HomingMethod::kHardStop);
   Homing homing;
   homing.begin(device);
@@ -152,7 +152,7 @@ TEST(Homing, AllowsNoForceUntilDone) {
   EXPECT_EQ(output.status.force, core::Vec3{});
 }
 
-TEST(Homing, IgnoresTheCommandWhileMotorsAreOn) {
+TEST(Homing, RefusesCommandWhilePowered) {
   ControllerRig session(premium_to_be_homed());
   session.step(Command::kHome);
   session.activate();
@@ -162,7 +162,7 @@ TEST(Homing, IgnoresTheCommandWhileMotorsAreOn) {
   EXPECT_TRUE(session.controller.homed());
 }
 
-TEST(Homing, ALostCounterNeedsHoming) {
+TEST(Homing, ForgetsHomeOnLostCounter) {
   ControllerRig session(premium_to_be_homed());
   session.step(Command::kHome);
   ASSERT_TRUE(session.controller.homed());
@@ -175,7 +175,7 @@ TEST(Homing, ALostCounterNeedsHoming) {
   EXPECT_FALSE(session.controller.homed());
 }
 
-TEST(Homing, ACounterThatJumpedNeedsHoming) {
+TEST(Homing, ForgetsHomeOnCounterJump) {
   ControllerRig session(premium_to_be_homed());
   session.step(Command::kHome);
   session.input.encoders.counts[1] += 2000;  // 0.27 rad in one tick

@@ -7,7 +7,7 @@
 namespace tactree::test {
 namespace {
 
-TEST(Cartesian, CountsBecomeMetres) {
+TEST(Cartesian, ConvertsCountsToMetres) {
   core::DeviceModel device;
   device.counts_per_m[0] = 1000.0F;
   device.counts_per_m[1] = 2000.0F;
@@ -19,13 +19,13 @@ TEST(Cartesian, CountsBecomeMetres) {
   EXPECT_EQ(pose.probe, (core::Vec3{1.0F, 0.0F, -1.0F}));
 }
 
-TEST(Cartesian, EffortEqualsForce) {
+TEST(Cartesian, EquatesEffortAndForce) {
   const core::DevicePose pose = core::locate({}, {1, 2, 3});
   EXPECT_EQ((pose.effort_per_force * core::Vec3{1.0F, -2.0F, 3.0F}),
             (core::Vec3{1.0F, -2.0F, 3.0F}));
 }
 
-TEST(Cartesian, OnlyTheDifferenceFromHomeCounts) {
+TEST(Cartesian, UsesDifferenceFromHome) {
   core::DeviceModel device;
   device.counts_per_m[0] = 1000.0F;
   device.home_count[0] = std::numeric_limits<std::int32_t>::max();
@@ -34,7 +34,7 @@ TEST(Cartesian, OnlyTheDifferenceFromHomeCounts) {
   EXPECT_EQ(pose.probe.x, 0.001F);
 }
 
-TEST(Cartesian, EveryCountGivesAFinitePosition) {
+TEST(Cartesian, AcceptsEveryCount) {
   core::DeviceModel device;
   device.counts_per_m[0] = 1.0F;
   for (const std::int32_t count : {std::numeric_limits<std::int32_t>::min(), -1, 0,
@@ -43,7 +43,7 @@ TEST(Cartesian, EveryCountGivesAFinitePosition) {
   }
 }
 
-TEST(Device, AnUnknownKindHasNoPose) {
+TEST(Device, RefusesUnknownKind) {
   core::DeviceModel device;
   device.kind = static_cast<core::DeviceKind>(200);
   EXPECT_FALSE(core::is_valid(device));

@@ -8,7 +8,7 @@ namespace {
 constexpr QuadratureLevels kForward[] = {
     {false, false}, {true, false}, {true, true}, {false, true}};
 
-TEST(Quadrature, CountsFourStepsPerPeriodInBothDirections) {
+TEST(Quadrature, CountsFourStepsPerPeriod) {
   QuadratureDecoder decoder;
   for (int i = 1; i <= 400; ++i) {
     decoder.step(kForward[i % 4]);
@@ -21,7 +21,7 @@ TEST(Quadrature, CountsFourStepsPerPeriodInBothDirections) {
   EXPECT_EQ(decoder.illegal(), 0U);
 }
 
-TEST(Quadrature, DoesNotCountASimultaneousEdge) {
+TEST(Quadrature, IgnoresSimultaneousEdges) {
   QuadratureDecoder decoder;
   decoder.step({true, true});
   decoder.step({false, false});
@@ -31,7 +31,7 @@ TEST(Quadrature, DoesNotCountASimultaneousEdge) {
   EXPECT_EQ(decoder.illegal(), 2U) << "nothing has changed";
 }
 
-TEST(Quadrature, StartsFromTheLevelsOfTheLines) {
+TEST(Quadrature, StartsFromLineLevels) {
   QuadratureDecoder decoder;
   decoder.begin({true, true});
   decoder.step({false, true});

@@ -24,7 +24,7 @@ core::VelocityEstimator estimator() {
   return e;
 }
 
-TEST(Velocity, IsCloserToASteadySpeedThanADifference) {
+TEST(Velocity, BeatsDifferenceAtSteadySpeed) {
   for (const double speed : {0.003, 0.01, 0.05, 0.3, 1.0}) {
     core::VelocityEstimator e = estimator();
     double worst = 0.0;
@@ -47,7 +47,7 @@ TEST(Velocity, IsCloserToASteadySpeedThanADifference) {
   }
 }
 
-TEST(Velocity, DetectsAStopWithinTenTicks) {
+TEST(Velocity, DetectsStopWithinTenTicks) {
   core::VelocityEstimator e = estimator();
   for (int tick = 0; tick < 100; ++tick) {
     e.update(quantised(0.3 * kTick * tick));
@@ -58,7 +58,7 @@ TEST(Velocity, DetectsAStopWithinTenTicks) {
   EXPECT_LE(std::abs(e.velocity().x), 0.01F);
 }
 
-TEST(Velocity, IsZeroAtRestWithOneCountOfJitter) {
+TEST(Velocity, IgnoresJitterOfOneCount) {
   core::VelocityEstimator e = estimator();
   double worst = 0.0;
   for (int tick = 0; tick < 300; ++tick) {
@@ -69,7 +69,7 @@ TEST(Velocity, IsZeroAtRestWithOneCountOfJitter) {
   EXPECT_LE(worst, 0.003);
 }
 
-TEST(Velocity, ResetClearsTheVelocity) {
+TEST(Velocity, ClearsOnReset) {
   core::VelocityEstimator e = estimator();
   e.update(quantised(0.0));
   e.update(quantised(0.001));

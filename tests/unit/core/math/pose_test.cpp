@@ -26,7 +26,7 @@ double length_of(core::Quaternion q) {
   return std::sqrt(w * w + widen(q.v).squaredNorm());
 }
 
-TEST(Pose, AgreesWithEigenInBothDirections) {
+TEST(Pose, AgreesWithEigen) {
   RandomPoses random(1);
   for (int i = 0; i < 1000; ++i) {
     const Eigen::Isometry3d pose = random.pose(1.0);
@@ -41,7 +41,7 @@ TEST(Pose, AgreesWithEigenInBothDirections) {
   }
 }
 
-TEST(Pose, IdentityChangesNoBit) {
+TEST(Pose, KeepsBitsUnderIdentity) {
   const Vec3 odd{-0.0F, 1e-42F, -1.0e30F};
   const auto same = [&odd](Vec3 v) {
     return std::bit_cast<std::uint32_t>(v.x) == std::bit_cast<std::uint32_t>(odd.x) &&
@@ -88,7 +88,7 @@ TEST(Motion, RefusesExcessiveSpeeds) {
   EXPECT_FALSE(core::is_valid(Motion{{10.01F, 0.0F, 0.0F}, {}}));
 }
 
-TEST(Pose, NormalizedIsAUnitQuaternionOfTheSameRotation) {
+TEST(Pose, NormalisesToUnitQuaternion) {
   RandomPoses random(2);
   for (const double length : {0.9996, 0.9999, 1.0001, 1.0004}) {
     for (int i = 0; i < 100; ++i) {
@@ -102,7 +102,7 @@ TEST(Pose, NormalizedIsAUnitQuaternionOfTheSameRotation) {
   }
 }
 
-TEST(Pose, StaysARotationAfterAMillionTicks) {
+TEST(Pose, StaysNormalisedOverMillionTicks) {
   Pose pose = core::normalized(to_core(isometry({0.1, 0.2, 0.3}, {1.0, -2.0, 0.5})));
   const Motion motion{{}, {30.0F, -70.0F, 11.0F}};
   double furthest = 0.0;
@@ -115,7 +115,7 @@ TEST(Pose, StaysARotationAfterAMillionTicks) {
   EXPECT_EQ(pose.translation_m, (Vec3{0.1F, 0.2F, 0.3F}));
 }
 
-TEST(Pose, AdvancesByTheMotion) {
+TEST(Pose, AdvancesByMotion) {
   const Eigen::Vector3d axis = Eigen::Vector3d(1.0, 2.0, -2.0).normalized();
   const Eigen::Isometry3d begin = isometry({0.1, 0.0, 0.0}, {0.3, 0.4, 0.5});
   Pose pose = core::normalized(to_core(begin));
@@ -129,7 +129,7 @@ TEST(Pose, AdvancesByTheMotion) {
   EXPECT_LT((widen(pose.translation_m) - Eigen::Vector3d(0.3, -0.1, 0.3)).norm(), 2e-5);
 }
 
-TEST(Pose, BodyStopsAtTheLimitOfTranslation) {
+TEST(Pose, StopsAtTranslationLimit) {
   Pose pose{{}, {9.995F, 0.0F, 0.0F}};
   for (int i = 0; i < 100; ++i) {
     pose = core::advanced(pose, {{1.0F, 1.0F, 0.0F}, {}}, 1e-3F);
@@ -138,7 +138,7 @@ TEST(Pose, BodyStopsAtTheLimitOfTranslation) {
   EXPECT_GT(pose.translation_m.x, 9.998F);
 }
 
-TEST(Pose, RelativeVelocityIsTheChangeOfThePositionInTheBody) {
+TEST(Pose, MatchesNumericRelativeVelocity) {
   RandomPoses random(3);
   for (int i = 0; i < 100; ++i) {
     const Eigen::Isometry3d pose = random.pose(0.5);

@@ -94,11 +94,9 @@ void use(const BlobView& view, std::uint32_t seed) {
 class Corruption : public testing::TestWithParam<Profile> {};
 INSTANTIATE_TEST_SUITE_P(Profiles, Corruption, testing::Values(Profile::kSurface, Profile::kPaper));
 
-TEST_P(Corruption, TheGoldenBlobIsAccepted) {
-  EXPECT_EQ(open(golden(GetParam())), BlobStatus::kOk);
-}
+TEST_P(Corruption, AcceptsGoldenBlob) { EXPECT_EQ(open(golden(GetParam())), BlobStatus::kOk); }
 
-TEST_P(Corruption, EveryPrefixIsRefused) {
+TEST_P(Corruption, RefusesEveryPrefix) {
   const Bytes whole = golden(GetParam());
   for (std::size_t size = 0; size < whole.size(); ++size) {
     ASSERT_NE(open(Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size))),
@@ -106,7 +104,7 @@ TEST_P(Corruption, EveryPrefixIsRefused) {
   }
 }
 
-TEST_P(Corruption, EveryOneByteExtensionIsRefused) {
+TEST_P(Corruption, RefusesEveryOneByteExtension) {
   Bytes longer = golden(GetParam());
   longer.push_back({});
   for (int value = 0; value < 256; ++value) {
@@ -115,7 +113,7 @@ TEST_P(Corruption, EveryOneByteExtensionIsRefused) {
   }
 }
 
-TEST_P(Corruption, EveryBitFlipIsRefused) {
+TEST_P(Corruption, RefusesEveryBitFlip) {
   Bytes bytes = golden(GetParam());
   for (std::size_t bit = 0; bit < 8 * bytes.size(); ++bit) {
     bytes[bit / 8] ^= static_cast<std::byte>(1U << (bit % 8));
@@ -124,7 +122,7 @@ TEST_P(Corruption, EveryBitFlipIsRefused) {
   }
 }
 
-TEST_P(Corruption, ResealedWordsAreRefusedOrHarmless) {
+TEST_P(Corruption, RefusesOrSurvivesResealedWords) {
   const Bytes whole = golden(GetParam());
   const std::uint32_t values[] = {0,           1,           0x7FFFFFFFU, 0x80000000U,
                                   0xFFFFFFFFU, 0x00FFFFFFU, 0x7FC00000U, 0xFF7FFFFFU};
@@ -158,7 +156,7 @@ struct FieldCase {
   std::function<void(BlobHeader&)> damage;
 };
 
-TEST_P(Corruption, EveryHeaderFieldIsChecked) {
+TEST_P(Corruption, ChecksEveryHeaderField) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const FieldCase cases[] = {
       {"magic", BlobStatus::kBadMagic, [](BlobHeader& h) { h.magic[7] = 1; }},
@@ -280,13 +278,13 @@ Bytes with_longer_header(Bytes bytes, std::uint16_t minor, const std::vector<std
   return bytes;
 }
 
-TEST_P(Corruption, ReadsANewerMinorWithALongerHeader) {
+TEST_P(Corruption, ReadsHeaderOfNewerMinor) {
   std::vector<std::byte> more(16, std::byte{0x5A});
   std::fill_n(more.begin(), sizeof(core::BlobExtension), std::byte{0});  // no interior
   EXPECT_EQ(open(with_longer_header(golden(GetParam()), 9, more)), BlobStatus::kOk);
 }
 
-TEST_P(Corruption, SkipsWhatFollowsTheHeaderOfVersion1_0) {
+TEST_P(Corruption, IgnoresExtensionOfMinorZero) {
   const std::vector<std::byte> more(8, std::byte{0x5A});
   EXPECT_EQ(open(with_longer_header(golden(GetParam()), 0, more)), BlobStatus::kOk);
   EXPECT_EQ(open(with_longer_header(golden(GetParam()), 1, more)), BlobStatus::kBadSections);
@@ -302,7 +300,7 @@ BlobStatus open_with_interior(Profile profile, core::BlobSection interior,
   return open(with_longer_header(golden(profile), 1, more));
 }
 
-TEST(Corruption, ChecksTheInterior) {
+TEST(Corruption, ChecksInterior) {
   const BlobHeader header = header_of(golden(Profile::kSurface));
   const std::uint32_t bytes = header.node_count + header.leaf_count;
   const std::uint32_t end = 352U + (bytes + 3U) / 4U * 4U;
@@ -332,7 +330,7 @@ struct WordCase {
   std::function<std::uint32_t(std::uint32_t)> damage;
 };
 
-TEST_P(Corruption, EveryStructureIsChecked) {
+TEST_P(Corruption, ChecksEveryStructure) {
   const auto plus = [](std::uint32_t n) { return [n](std::uint32_t v) { return v + n; }; };
   const auto set = [](std::uint32_t n) { return [n](std::uint32_t) { return n; }; };
   const WordCase cases[] = {
@@ -390,7 +388,7 @@ TEST_P(Corruption, EveryStructureIsChecked) {
   }
 }
 
-TEST(Corruption, NoOctantIsBothNodeAndLeaf) {
+TEST(Corruption, RefusesAmbiguousOctants) {
   Bytes bytes = golden(Profile::kPaper);
   const std::uint32_t value = 0xFF000000U;
   std::memcpy(&bytes[header_of(bytes).nodes.offset + 4], &value, 4);
@@ -398,7 +396,7 @@ TEST(Corruption, NoOctantIsBothNodeAndLeaf) {
   EXPECT_EQ(open(bytes), BlobStatus::kBadTree);
 }
 
-TEST(Corruption, EveryDirectoryEntryIsChecked) {
+TEST(Corruption, ChecksEveryDirectoryEntry) {
   const Bytes whole = golden(Profile::kSurface);
   const BlobHeader header = header_of(whole);
   ASSERT_GE(header.directory_level, 1U);
@@ -416,7 +414,7 @@ TEST(Corruption, EveryDirectoryEntryIsChecked) {
   }
 }
 
-TEST(Corruption, PaperBlobsHaveNoDirectory) {
+TEST(Corruption, RefusesDirectoryInPaperBlob) {
   Bytes bytes = golden(Profile::kPaper);
   BlobHeader header = header_of(bytes);
   header.directory_level = 1;
@@ -425,7 +423,7 @@ TEST(Corruption, PaperBlobsHaveNoDirectory) {
   EXPECT_EQ(open(bytes), BlobStatus::kBadHeader);
 }
 
-TEST(Corruption, NeighbourEntriesAreChecked) {
+TEST(Corruption, ChecksNeighbourEntries) {
   for (const std::uint32_t value :
        {0x00FFFFFFU, 0x80FFFFFFU, 0x0F000000U, 0xFF000000U, 0x7F000000U}) {
     Bytes bytes = golden(Profile::kPaper);
@@ -435,7 +433,7 @@ TEST(Corruption, NeighbourEntriesAreChecked) {
   }
 }
 
-TEST(Corruption, PaddingMustBeZero) {
+TEST(Corruption, RefusesNonZeroPadding) {
   builder::Model model = test::cos_sheet(0.01, 0.0025, Profile::kSurface);  // 81 points: odd
   Bytes bytes = builder::write_blob(model).bytes;
   const BlobHeader header = header_of(bytes);
@@ -445,7 +443,7 @@ TEST(Corruption, PaddingMustBeZero) {
   EXPECT_EQ(open(bytes), BlobStatus::kBadSections);
 }
 
-TEST(Corruption, MisalignedBytesAreRefused) {
+TEST(Corruption, RefusesMisalignedBytes) {
   const Bytes bytes = golden(Profile::kSurface);
   Bytes shifted(1);
   shifted.insert(shifted.end(), bytes.begin(), bytes.end());
@@ -454,7 +452,7 @@ TEST(Corruption, MisalignedBytesAreRefused) {
             BlobStatus::kMisaligned);
 }
 
-TEST(Corruption, EveryStatusHasADescription) {
+TEST(Corruption, DescribesEveryStatus) {
   for (int status = 0; status <= static_cast<int>(BlobStatus::kBadMaterials); ++status) {
     EXPECT_STRNE(core::describe(static_cast<BlobStatus>(status)), "unknown status");
   }

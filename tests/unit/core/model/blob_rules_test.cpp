@@ -92,19 +92,19 @@ class BlobRules : public testing::TestWithParam<Profile> {
 };
 INSTANTIATE_TEST_SUITE_P(Profiles, BlobRules, testing::Values(Profile::kSurface, Profile::kPaper));
 
-TEST_P(BlobRules, AcceptsTheSpecimen) { EXPECT_EQ(blob.open(), BlobStatus::kOk); }
+TEST_P(BlobRules, AcceptsSpecimen) { EXPECT_EQ(blob.open(), BlobStatus::kOk); }
 
-TEST_P(BlobRules, TheLastSectionEndsWithinTheBytes) {
+TEST_P(BlobRules, RefusesTruncatedLastSection) {
   blob.resize(blob.size() - 4);
   EXPECT_EQ(blob.open(), BlobStatus::kBadSections);
 }
 
-TEST_P(BlobRules, RefusesBytesBehindTheLastSection) {
+TEST_P(BlobRules, RefusesBytesBehindLastSection) {
   blob.resize(blob.size() + 4);
   EXPECT_EQ(blob.open(), BlobStatus::kBadSections);
 }
 
-TEST_P(BlobRules, RequiresThePaddingOfTheLastSection) {
+TEST_P(BlobRules, RequiresPaddingOfLastSection) {
   Specimen odd(GetParam(), 399);
   const std::uint32_t indices = odd.header().material_indices.bytes;
   ASSERT_NE(indices % 4U, 0U);
@@ -128,7 +128,7 @@ TEST_P(BlobRules, RefusesMoreLeavesThanDeclared) {
   EXPECT_EQ(blob.open(), BlobStatus::kBadTree);
 }
 
-TEST(BlobRules, RefusesATreeDeeperThanDeclared) {
+TEST(BlobRules, RefusesTreeDeeperThanDeclared) {
   Specimen blob(Profile::kPaper);
   BlobHeader& h = blob.header();
   ASSERT_GT(h.depth, 1U);
@@ -140,7 +140,7 @@ TEST(BlobRules, RefusesATreeDeeperThanDeclared) {
   EXPECT_EQ(blob.open(), BlobStatus::kBadTree);
 }
 
-TEST(BlobRules, RefusesATreeShallowerThanDeclared) {
+TEST(BlobRules, RefusesTreeShallowerThanDeclared) {
   Specimen blob(Profile::kPaper);
   BlobHeader& h = blob.header();
   ++h.depth;
@@ -155,14 +155,14 @@ TEST(BlobRules, RefusesATreeShallowerThanDeclared) {
   EXPECT_EQ(blob.open(), BlobStatus::kBadTree);
 }
 
-TEST(BlobRules, LimitsTheLevelsBelowTheDirectory) {
+TEST(BlobRules, LimitsLevelsBelowDirectory) {
   Specimen blob(Profile::kSurface);
   blob.header().depth = core::kMaxDepth;
   blob.header().directory_level = 0;
   EXPECT_EQ(blob.open(), BlobStatus::kBadHeader);
 }
 
-TEST(BlobRules, VertexBoxesLieWithinTheReach) {
+TEST(BlobRules, LimitsVertexBoxesToReach) {
   Specimen blob(Profile::kSurface);
   blob.header().aabb_edge_m = 2.0F * blob.header().reach_m;
   EXPECT_EQ(blob.open(), BlobStatus::kOk);
@@ -170,7 +170,7 @@ TEST(BlobRules, VertexBoxesLieWithinTheReach) {
   EXPECT_EQ(blob.open(), BlobStatus::kBadFigures);
 }
 
-TEST(BlobRules, RefusesANeighbourNodeAtTheLeavesLevel) {
+TEST(BlobRules, RefusesNeighbourNodeAmongLeaves) {
   Specimen blob(Profile::kPaper);
   auto* neighbours = blob.items<std::uint32_t>(blob.header().neighbours);
   const std::uint32_t depth = blob.header().depth;
@@ -181,7 +181,7 @@ TEST(BlobRules, RefusesANeighbourNodeAtTheLeavesLevel) {
 }
 
 // Where the leaves fill their last group, one more offset stands alone behind them.
-TEST(BlobRules, TheOffsetBehindTheLastFullGroupIsZero) {
+TEST(BlobRules, ChecksOffsetBehindLastGroup) {
   for (std::size_t points = 1; points < 400; ++points) {
     Specimen blob(test::random_cloud(400, 0.05, 0.002, Profile::kSurface, 3), points);
     const BlobHeader& h = blob.header();
@@ -210,7 +210,7 @@ core::BlobMaterial& second_material(Specimen& blob) {
 }
 
 // Each end of each range is accepted, the next float beyond it is not.
-TEST(BlobRules, AcceptsLengthsUpToTheirLimitsOnly) {
+TEST(BlobRules, AcceptsFiguresWithinRangeOnly) {
   const BlobStatus figures = BlobStatus::kBadFigures;
   const BlobStatus materials = BlobStatus::kBadMaterials;
   const Figure cases[] = {
@@ -248,7 +248,7 @@ TEST(BlobRules, AcceptsLengthsUpToTheirLimitsOnly) {
   }
 }
 
-TEST(BlobRules, ComparesTheFirstBytesOfTheMagic) {
+TEST(BlobRules, ComparesEveryMagicByte) {
   for (std::size_t i = 0; i < 8; ++i) {
     Specimen blob(Profile::kSurface);
     blob.header().magic[i] ^= 1U;
@@ -256,7 +256,7 @@ TEST(BlobRules, ComparesTheFirstBytesOfTheMagic) {
   }
 }
 
-TEST(BlobRules, ChecksTheFirstIndexAndBothReservedWordsOfAMaterial) {
+TEST(BlobRules, ChecksReservedWordsAndIndices) {
   Specimen index(Profile::kSurface);
   index.items<std::uint8_t>(index.header().material_indices)[0] = 2;
   EXPECT_EQ(index.open(), BlobStatus::kBadMaterials);
@@ -267,7 +267,7 @@ TEST(BlobRules, ChecksTheFirstIndexAndBothReservedWordsOfAMaterial) {
   }
 }
 
-TEST(BlobRules, ComparesEveryPointOfALeafWithItsPredecessor) {
+TEST(BlobRules, RequiresAscendingPointsInLeaf) {
   Specimen blob(Profile::kSurface);
   auto* points = blob.items<std::uint32_t>(blob.header().points);
   const auto* offsets = blob.items<std::uint16_t>(blob.header().leaf_offsets);
@@ -276,7 +276,7 @@ TEST(BlobRules, ComparesEveryPointOfALeafWithItsPredecessor) {
   EXPECT_EQ(blob.open(), BlobStatus::kBadPoints);
 }
 
-TEST(BlobRules, RefusesAHeaderLongerThanTheBlob) {
+TEST(BlobRules, RefusesHeaderLongerThanBlob) {
   Specimen blob(Profile::kSurface);
   blob.header().header_bytes = static_cast<std::uint32_t>(blob.size());
   EXPECT_EQ(blob.open(), BlobStatus::kBadSections);
@@ -327,20 +327,20 @@ TEST(BlobRules, LimitsCoordinatesToExactFloats) {
   EXPECT_EQ(with_lattice(fine, 1), BlobStatus::kBadFigures);
 }
 
-TEST(BlobRules, LimitsTheStep) {
+TEST(BlobRules, LimitsStep) {
   EXPECT_EQ(with_lattice(0x1p-39F, 0), BlobStatus::kOk);
   EXPECT_EQ(with_lattice(0x1p-40F, 0), BlobStatus::kBadFigures);  // 9e-13 m
   EXPECT_EQ(with_lattice(0x1p19F, 0), BlobStatus::kOk);
   EXPECT_EQ(with_lattice(0x1p20F, 0), BlobStatus::kBadFigures);  // 1.05e6 m
 }
 
-TEST(BlobRules, ReadsBytesThatEndBehindTheHeader) {
+TEST(BlobRules, RefusesHeaderWithoutSections) {
   Specimen blob(Profile::kSurface);
   blob.resize(sizeof(BlobHeader));
   EXPECT_EQ(blob.open(), BlobStatus::kBadSections);
 }
 
-TEST(BlobRules, AcceptsCountsUpToTheirLimits) {
+TEST(BlobRules, AcceptsCountsAtLimits) {
   Specimen blob(Profile::kPaper);
   blob.header().leaf_count = core::kMaxLeaves;
   blob.header().point_count = core::kMaxLeaves;
@@ -349,7 +349,7 @@ TEST(BlobRules, AcceptsCountsUpToTheirLimits) {
   EXPECT_EQ(blob.open(), BlobStatus::kBadSections);
 }
 
-TEST(BlobRules, AcceptsDepthsUpToTheirLimits) {
+TEST(BlobRules, AcceptsDepthsAtLimits) {
   Specimen paper(Profile::kPaper);
   paper.header().depth = core::kMaxDepth;
   EXPECT_NE(paper.open(), BlobStatus::kBadHeader);
@@ -359,7 +359,7 @@ TEST(BlobRules, AcceptsDepthsUpToTheirLimits) {
   EXPECT_NE(surface.open(), BlobStatus::kBadHeader);
 }
 
-TEST(BlobRules, RequiresAQueryToHoldALeaf) {
+TEST(BlobRules, RequiresQueryToHoldLeaf) {
   Specimen blob(Profile::kSurface);
   blob.header().points_per_slab_max = 1;
   EXPECT_EQ(blob.open(), BlobStatus::kOk);
@@ -367,14 +367,14 @@ TEST(BlobRules, RequiresAQueryToHoldALeaf) {
   EXPECT_EQ(blob.open(), BlobStatus::kBadHeader);
 }
 
-TEST(BlobRules, RequiresASupportInTheSurfaceProfile) {
+TEST(BlobRules, RequiresSupportInSurfaceProfile) {
   Specimen blob(Profile::kSurface);
   blob.header().support_radius_m = 0.0F;
   EXPECT_EQ(blob.open(), BlobStatus::kBadFigures);
 }
 
 // Sizes that agree with the counts, of far more than there is: not even padding is read.
-TEST(BlobRules, RefusesSectionsFarBeyondTheBytes) {
+TEST(BlobRules, RefusesSectionsFarBeyondBytes) {
   Specimen blob(Profile::kSurface);
   BlobHeader& h = blob.header();
   h.point_count = 0x2FFFFFFFU;  // odd: its normals are padded
@@ -384,7 +384,7 @@ TEST(BlobRules, RefusesSectionsFarBeyondTheBytes) {
   EXPECT_EQ(blob.open(), BlobStatus::kBadSections);
 }
 
-TEST(BlobRules, OneMaterialNeedsNoIndices) {
+TEST(BlobRules, OmitsIndicesOfSingleMaterial) {
   builder::Model model = test::cos_sheet(0.025, 0.0025, Profile::kSurface);
   model.materials.assign(1, {800.0F, 1.0F, 0.5F, 0.3F, 0.0F, 0.0F, {}});
   const std::vector<std::byte> bytes = builder::write_blob(model).bytes;
@@ -394,7 +394,7 @@ TEST(BlobRules, OneMaterialNeedsNoIndices) {
   EXPECT_EQ(view.material_of(view.point_count() - 1U), 0U);
 }
 
-TEST_P(BlobRules, ViewReturnsTheValuesOfTheHeader) {
+TEST_P(BlobRules, ReturnsHeaderValuesInView) {
   core::BlobView view;
   ASSERT_EQ(blob.open(view), BlobStatus::kOk);
   const BlobHeader& h = blob.header();
@@ -409,7 +409,7 @@ TEST_P(BlobRules, ViewReturnsTheValuesOfTheHeader) {
 }
 
 // First points that are right, of a base that is not the group's first point.
-TEST(BlobRules, AGroupOfLeavesBeginsAtItsBase) {
+TEST(BlobRules, RequiresLeafGroupAtBase) {
   Specimen blob(test::cos_sheet(0.1, 0.0025, Profile::kSurface), 6000);
   const BlobHeader& h = blob.header();
   const std::uint32_t in_group = 1U << h.leaf_group_shift;
@@ -422,7 +422,7 @@ TEST(BlobRules, AGroupOfLeavesBeginsAtItsBase) {
 }
 
 // Each node the only child of the one before.
-TEST(BlobRules, RefusesAnEndlessChainOfNodes) {
+TEST(BlobRules, RefusesEndlessNodeChain) {
   Specimen blob(test::cos_sheet(0.1, 0.0025, Profile::kPaper), 6000);
   const std::uint32_t count = blob.header().node_count;
   ASSERT_GT(count, 300U);
@@ -432,7 +432,7 @@ TEST(BlobRules, RefusesAnEndlessChainOfNodes) {
   EXPECT_EQ(blob.open(), BlobStatus::kBadTree);
 }
 
-TEST(BlobRules, RefusesAnOctantThatIsNodeAndLeaf) {
+TEST(BlobRules, RefusesAmbiguousOctant) {
   Specimen blob(Profile::kPaper);
   auto* nodes = blob.items<BlobNode>(blob.header().nodes);
   for (std::uint32_t i = 0; i < blob.header().node_count; ++i) {
@@ -448,7 +448,7 @@ TEST(BlobRules, RefusesAnOctantThatIsNodeAndLeaf) {
 }
 
 // One more child of the last node that has nodes below it, in an octant that was empty.
-TEST(BlobRules, RefusesANodeWithoutChildren) {
+TEST(BlobRules, RefusesNodeWithoutChildren) {
   Specimen blob(Profile::kPaper);
   const std::uint32_t count = blob.header().node_count;
   blob.insert_nodes(sizeof(BlobNode));
@@ -477,7 +477,7 @@ TEST(BlobRules, RefusesANodeWithoutChildren) {
   EXPECT_EQ(blob.open(), BlobStatus::kBadTree);
 }
 
-TEST(BlobRules, NeighboursAreCountedFromZero) {
+TEST(BlobRules, CountsNeighboursFromZero) {
   for (const bool is_node : {true, false}) {
     Specimen blob(Profile::kPaper);
     const BlobHeader& h = blob.header();
@@ -491,7 +491,7 @@ TEST(BlobRules, NeighboursAreCountedFromZero) {
   }
 }
 
-TEST(BlobRules, DescribesAnUnknownStatus) {
+TEST(BlobRules, DescribesUnknownStatus) {
   EXPECT_STREQ(core::describe(static_cast<BlobStatus>(200)), "unknown status");
 }
 

@@ -23,7 +23,7 @@ class BlobContents : public testing::TestWithParam<Profile> {};
 INSTANTIATE_TEST_SUITE_P(Profiles, BlobContents,
                          testing::Values(Profile::kSurface, Profile::kPaper));
 
-TEST_P(BlobContents, PositionsAreWithinHalfAStepOfTheModels) {
+TEST_P(BlobContents, KeepsPositionsWithinHalfStep) {
   for (const builder::Model& model : {test::cos_sheet(0.25, 0.0025, GetParam()),
                                       test::random_cloud(20000, 1.0, 0.01, GetParam(), 7)}) {
     const TestBlob blob(model);
@@ -54,7 +54,7 @@ TEST_P(BlobContents, ContainsEveryPointOnce) {
   }
 }
 
-TEST_P(BlobContents, NormalsAreWithinAThirdOfADegree) {
+TEST_P(BlobContents, KeepsNormalsWithinThirdDegree) {
   const builder::Model model = test::random_cloud(20000, 1.0, 0.01, GetParam(), 3);
   const TestBlob blob(model);
   double smallest = 1.0;
@@ -71,7 +71,7 @@ TEST_P(BlobContents, NormalsAreWithinAThirdOfADegree) {
   EXPECT_GE(degrees, 0.2);
 }
 
-TEST_P(BlobContents, EveryPositionIsAnExactMultipleOfTheStep) {
+TEST_P(BlobContents, KeepsPositionsOnLattice) {
   const TestBlob blob(test::random_cloud(5000, 3.7, 0.02, GetParam(), 5));
   const double step = static_cast<double>(blob.view().step_m());
   for (const core::Vec3 p : blob.points()) {
@@ -82,7 +82,7 @@ TEST_P(BlobContents, EveryPositionIsAnExactMultipleOfTheStep) {
   }
 }
 
-TEST(Blob, SurfaceProfileTakesAtMostSixAndAHalfBytesAPoint) {
+TEST(Blob, LimitsBytesPerSurfacePoint) {
   for (const builder::Model& model :
        {test::cos_sheet(0.25, 0.0025, Profile::kSurface), test::sphere(0.05, 0.0005)}) {
     const TestBlob blob(model);
@@ -91,7 +91,7 @@ TEST(Blob, SurfaceProfileTakesAtMostSixAndAHalfBytesAPoint) {
   }
 }
 
-TEST(Blob, DirectoryIsSmallAndLeavesFewLevels) {
+TEST(Blob, BalancesDirectorySizeAndDepth) {
   const TestBlob blob(test::cos_sheet(0.25, 0.0025, Profile::kSurface));
   const core::BlobHeader& header = blob.view().header();
   EXPECT_LE(header.directory.bytes, header.points.bytes / 32);
@@ -119,20 +119,20 @@ TEST(Blob, CountsCrowdedLeaves) {
   }
 }
 
-TEST(Blob, SurfaceLeavesAreNoSmallerThanAQuery) {
+TEST(Blob, SizesSurfaceLeavesForQuery) {
   const TestBlob blob(test::sphere(0.03, 0.001));
   const core::BlobHeader& header = blob.view().header();
   EXPECT_GE(header.leaf_edge_min_m, 2.0F * header.reach_m);
   EXPECT_LE(header.leaf_edge_min_m, 2.1F * header.reach_m);  // larger ones cost time
 }
 
-TEST(Blob, PaperLeavesHoldAtMostTenPoints) {
+TEST(Blob, LimitsPointsPerPaperLeaf) {
   const TestBlob blob(test::cos_sheet(0.25, 0.0025, Profile::kPaper));
   EXPECT_EQ(blob.view().header().points_per_leaf_max, 10U);
   EXPECT_TRUE(blob.view().has_neighbours());
 }
 
-TEST(Blob, DeclaredBallBoundHoldsAndIsTight) {
+TEST(Blob, DeclaresTightBallBound) {
   const TestBlob blob(test::sphere(0.03, 0.001));
   const double r = static_cast<double>(blob.view().reach_m());
   std::size_t most = 0;
@@ -147,12 +147,12 @@ TEST(Blob, DeclaredBallBoundHoldsAndIsTight) {
   EXPECT_LE(blob.view().header().points_per_ball_max, most + most / 3);
 }
 
-TEST(Blob, SameModelGivesSameBytes) {
+TEST(Blob, WritesBitIdenticalBytes) {
   const builder::Model model = test::sphere(0.03, 0.001);
   EXPECT_EQ(builder::write_blob(model).bytes, builder::write_blob(model).bytes);
 }
 
-TEST(Blob, TruncatesALongNameAtACharacter) {
+TEST(Blob, TruncatesLongNameAtCharacter) {
   builder::Model model = test::sphere(0.01, 0.001);
   model.name = std::string(30, 'a') + "\xC3\xA9t\xC3\xA9";  // the 31st byte is half a character
   EXPECT_EQ(std::string(TestBlob(model).view().header().name), std::string(30, 'a'));
@@ -185,7 +185,7 @@ TEST(Blob, RefusesImpossibleModels) {
   EXPECT_THROW((void)builder::write_blob(huge), std::runtime_error);
 }
 
-TEST(Blob, EmptyViewFindsNothing) {
+TEST(Blob, FindsNothingInEmptyView) {
   const BlobView view;
   EXPECT_TRUE(view.empty());
   EXPECT_EQ(view.point_count(), 0U);

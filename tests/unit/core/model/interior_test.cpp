@@ -13,7 +13,7 @@ namespace {
 
 using core::Vec3;
 
-TEST(Interior, TellsTheInsideOfABallFromTheSpaceAround) {
+TEST(Interior, DistinguishesInsideFromOutside) {
   constexpr float kRadius = 0.03F;
   builder::Model model = test::sphere(static_cast<double>(kRadius), 0.001);
   model.tells_interior = true;
@@ -37,14 +37,14 @@ TEST(Interior, TellsTheInsideOfABallFromTheSpaceAround) {
   }
 }
 
-TEST(Interior, IsUnknownWithoutTheSection) {
+TEST(Interior, IsUnknownWithoutSection) {
   const test::TestBlob blob(test::sphere(0.03, 0.001));
   EXPECT_EQ(blob.view().interior(), nullptr);
   EXPECT_FALSE(core::interior_at(blob.view(), {}).here);
   EXPECT_FALSE(core::interior_at(core::BlobView{}, {}).here);
 }
 
-TEST(Interior, OfAPlaceThatIsNotFiniteIsFree) {
+TEST(Interior, ExcludesNonFinitePlaces) {
   builder::Model model = test::sphere(0.03, 0.001);
   model.tells_interior = true;
   const test::TestBlob blob(model);

@@ -95,7 +95,7 @@ TEST(Nearest, AgreesWithBruteForce) {
 
 // A lattice of points: a probe in the middle between some is as far from all of them, exactly, even
 // where they are in different leaves.
-TEST(Nearest, ReturnsTheLowestIndexOfEquallyNearPoints) {
+TEST(Nearest, PrefersLowestIndexOnTie) {
   builder::Model model;
   constexpr double kSpacing = 0.015625;
   for (int i = 0; i < 20 * 20 * 20; ++i) {
@@ -135,7 +135,7 @@ TEST(Nearest, ReturnsTheLowestIndexOfEquallyNearPoints) {
   EXPECT_GT(across_leaves, 100U);
 }
 
-TEST(Nearest, PointsWithinReturnsEveryPointInReachOnly) {
+TEST(Nearest, ReturnsExactlyPointsWithinReach) {
   for (const Case& c : cases()) {
     const TestBlob blob(c.model);
     Probes probes(blob, 6);
@@ -157,7 +157,7 @@ TEST(Nearest, PointsWithinReturnsEveryPointInReachOnly) {
   }
 }
 
-TEST(Nearest, ReportsABufferThatIsTooSmall) {
+TEST(Nearest, ReportsTooSmallBuffer) {
   const TestBlob blob(test::sphere(0.03, 0.001));
   std::uint32_t buffer[3];
   const PointsWithin answer =
@@ -166,7 +166,7 @@ TEST(Nearest, ReportsABufferThatIsTooSmall) {
   EXPECT_FALSE(answer.complete);
 }
 
-TEST(Nearest, VertexBoxesAgreeWithBruteForce) {
+TEST(Nearest, MatchesBruteForceVertexBoxes) {
   for (const Case& c : cases()) {
     const TestBlob blob(c.model);
     Probes probes(blob, 7);
@@ -192,7 +192,7 @@ TEST(Nearest, VertexBoxesAgreeWithBruteForce) {
   }
 }
 
-TEST(Nearest, FindsNothingInAnEmptyModel) {
+TEST(Nearest, FindsNothingInEmptyModel) {
   std::uint32_t buffer[4];
   EXPECT_FALSE(nearest_within({}, {}, 1.0F).found());
   EXPECT_EQ(points_within({}, {}, 1.0F, buffer).count, 0U);

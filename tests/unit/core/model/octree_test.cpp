@@ -28,7 +28,7 @@ TEST(Octree, CountsOctants) {
   }
 }
 
-TEST(Octree, LatticeFloorIsExact) {
+TEST(Octree, FloorsExactlyToLattice) {
   const TestBlob blob(test::random_cloud(3000, 0.7, 0.01, Profile::kSurface, 11));
   const double step = static_cast<double>(blob.view().step_m());
   std::mt19937 random(1);
@@ -47,7 +47,7 @@ TEST(Octree, LatticeFloorIsExact) {
   }
 }
 
-TEST(Octree, FindsNothingOutsideOrAtNonFinitePositions) {
+TEST(Octree, FindsNothingAtInvalidPositions) {
   const TestBlob blob(test::sphere(0.03, 0.001));
   const float inf = std::numeric_limits<float>::infinity();
   const float nan = std::numeric_limits<float>::quiet_NaN();
@@ -65,7 +65,7 @@ TEST(Octree, FindsNothingOutsideOrAtNonFinitePositions) {
   }
 }
 
-TEST(Octree, EveryPointIsInTheLeafThatHoldsIt) {
+TEST(Octree, FindsLeafOfEveryPoint) {
   for (const Profile profile : {Profile::kSurface, Profile::kPaper}) {
     const TestBlob blob(test::random_cloud(20000, 1.0, 0.01, profile, 2));
     for (LeafCursor cursor(blob.view()); !cursor.done(); cursor.next()) {
@@ -100,7 +100,7 @@ std::set<std::uint32_t> leaves_by_search(const BlobView& view, Vec3 centre, floa
   return found;
 }
 
-TEST(Octree, EightCornersFindEveryLeafTheCubeTouches) {
+TEST(Octree, FindsEveryLeafInCube) {
   const TestBlob blob(test::random_cloud(4000, 1.0, 0.03, Profile::kSurface, 4));
   const BlobView& view = blob.view();
   std::mt19937 random(9);

@@ -31,19 +31,19 @@ int first_complaint(int ticks, Count count, Effort effort) {
 
 int still(int) { return 7; }
 
-TEST(EncoderWatch, DetectsAStuckCountUnderARisingEffort) {
+TEST(EncoderWatch, DetectsStandstillUnderRisingEffort) {
   const auto rising = [](int i) { return static_cast<float>(i) / 300.0F; };
   const int tick = first_complaint(1000, still, rising);
   EXPECT_GE(tick, static_cast<int>(kTicks));
   EXPECT_LE(tick, 105);
 }
 
-TEST(EncoderWatch, DetectsAStuckCountUnderAnEffortThatChangesSign) {
+TEST(EncoderWatch, DetectsStandstillUnderAlternatingEffort) {
   const auto shaking = [](int i) { return i % 20 < 10 ? 0.15F : -0.15F; };
   EXPECT_GE(first_complaint(1000, still, shaking), static_cast<int>(kTicks));
 }
 
-TEST(EncoderWatch, AcceptsAHandThatHoldsStill) {
+TEST(EncoderWatch, AcceptsHandHoldingStill) {
   EXPECT_EQ(first_complaint(10000, still, [](int) { return 0.9F; }), -1);
 }
 
@@ -53,7 +53,7 @@ TEST(EncoderWatch, AcceptsOccasionalCounts) {
   EXPECT_EQ(first_complaint(10000, slow, rising), -1);
 }
 
-TEST(EncoderWatch, AcceptsAnEffortThatLagsAnEndedMotion) {
+TEST(EncoderWatch, AcceptsEffortLaggingMotion) {
   const auto stops = [](int i) { return i < 50 ? i : 50; };
   const auto settles = [](int i) { return i < 60 ? 0.0F : 0.8F; };
   EXPECT_EQ(first_complaint(5000, stops, settles), -1);
@@ -69,7 +69,7 @@ TEST(EncoderWatch, IgnoresUnusedAxes) {
   }
 }
 
-TEST(EncoderWatch, ResetClearsTheHistory) {
+TEST(EncoderWatch, ClearsHistoryOnReset) {
   EncoderWatch watch;
   watch.configure(kTicks);
   const std::int32_t counts[kAxes] = {0, 0, 0};
@@ -110,7 +110,7 @@ TEST(EncoderWatch, IgnoresEffortChangesDuringSettling) {
   }
 }
 
-TEST(EncoderWatch, AChangeAboveAQuarterOfTheEffortMustMoveAnAxis) {
+TEST(EncoderWatch, RequiresMotionAboveEffortThreshold) {
   const auto steps_by = [](float change) {
     return first_complaint(500, still, [=](int i) { return i < 50 ? 0.0F : change; });
   };

@@ -23,7 +23,7 @@ MotorHeat motors() {
   return heat;
 }
 
-TEST(MotorHeat, AllowsTheContinuousEffortWithoutTimeLimit) {
+TEST(MotorHeat, AllowsContinuousEffortIndefinitely) {
   MotorHeat heat = motors();
   for (int i = 0; i < 20000; ++i) {
     heat.add(0, kContinuous);
@@ -33,7 +33,7 @@ TEST(MotorHeat, AllowsTheContinuousEffortWithoutTimeLimit) {
   EXPECT_EQ(heat.allowed(1), 1.0F);  // another motor
 }
 
-TEST(MotorHeat, AllowsThePeakForTheTimeOfTheFormula) {
+TEST(MotorHeat, AllowsPeakForCalculatedTime) {
   MotorHeat heat = motors();
   int ticks = 0;
   while (heat.allowed(2) >= 1.0F && ticks < 100000) {
@@ -65,7 +65,7 @@ core::GateLimits quick_to_warm() {
 
 core::Mat3 identity() { return {{{1.0F, 0.0F, 0.0F}, {0.0F, 1.0F, 0.0F}, {0.0F, 0.0F, 1.0F}}}; }
 
-TEST(MotorHeat, TheGateReducesToTheContinuousEffortAndReportsIt) {
+TEST(MotorHeat, LimitsGateToContinuousEffort) {
   core::SafetyGate gate;
   const core::GateLimits limits = quick_to_warm();
   ASSERT_TRUE(gate.configure(limits));
@@ -81,7 +81,7 @@ TEST(MotorHeat, TheGateReducesToTheContinuousEffortAndReportsIt) {
   EXPECT_NEAR(last, kContinuous * limits.effort_max[2], 0.1F);
 }
 
-TEST(MotorHeat, MotorsCoolWithoutForce) {
+TEST(MotorHeat, CoolsWithoutForce) {
   core::SafetyGate gate;
   ASSERT_TRUE(gate.configure(quick_to_warm()));
   for (int i = 0; i < 2000; ++i) {
@@ -94,7 +94,7 @@ TEST(MotorHeat, MotorsCoolWithoutForce) {
   EXPECT_LT(gate.heat().heat(2), 0.2F * warm);
 }
 
-TEST(MotorHeat, ANewConfigurationKeepsTheHeat) {
+TEST(MotorHeat, KeepsHeatAcrossConfiguration) {
   core::SafetyGate gate;
   ASSERT_TRUE(gate.configure(quick_to_warm()));
   for (int i = 0; i < 2000; ++i) {
@@ -105,7 +105,7 @@ TEST(MotorHeat, ANewConfigurationKeepsTheHeat) {
   EXPECT_GT(gate.heat().heat(2), 0.99F * warm);
 }
 
-TEST(MotorHeat, ThePeakFallsLinearly) {
+TEST(MotorHeat, ReducesPeakLinearly) {
   core::MotorHeat heat;
   heat.configure(0.5F, 0.01F);
   float before = 1.0F;

@@ -51,7 +51,7 @@ SafetyGate ramped(const GateLimits& limits) {
 }
 
 // An axis saturated by gravity does not reduce a force on the other axes.
-TEST(SafetyGateEdges, AnAxisSaturatedByGravityKeepsTheOthers) {
+TEST(SafetyGateEdges, KeepsOtherAxesUnderSaturation) {
   SafetyGate gate = ramped(roomy());
   const SafetyGate::Result result = gate.command({0.0F, 1.0F, 0.0F}, kJacobian, {1e3F, 0.0F, 0.0F});
   EXPECT_GT(result.command.effort(0), 99.0F);
@@ -65,7 +65,7 @@ struct Range {
   std::function<float&(GateLimits&)> field;
 };
 
-TEST(SafetyGateEdges, AcceptsEachLimitUpToTheEndsOfItsRange) {
+TEST(SafetyGateEdges, AcceptsLimitsWithinRangeOnly) {
   std::vector<Range> ranges = {
       {"force_max_N", 0.01F, 1000.0F, [](GateLimits& l) -> float& { return l.force_max_N; }},
       {"slew_N_per_tick", 1e-4F * 8.0F, 16.0F,
@@ -103,7 +103,7 @@ TEST(SafetyGateEdges, AcceptsEachLimitUpToTheEndsOfItsRange) {
   }
 }
 
-TEST(SafetyGateEdges, AcceptsRampsOfTwoToAMillionTicks) {
+TEST(SafetyGateEdges, LimitsRampTicks) {
   for (const auto& [ticks, taken] :
        {std::pair{0U, false}, {1U, false}, {2U, true}, {1000000U, true}, {1000001U, false}}) {
     GateLimits limits;
@@ -113,7 +113,7 @@ TEST(SafetyGateEdges, AcceptsRampsOfTwoToAMillionTicks) {
   }
 }
 
-TEST(SafetyGateEdges, TheRampGrowsLinearly) {
+TEST(SafetyGateEdges, RampsLinearly) {
   GateLimits limits = roomy();
   limits.ramp_ticks = 100;
   SafetyGate gate;
@@ -126,14 +126,14 @@ TEST(SafetyGateEdges, TheRampGrowsLinearly) {
   }
 }
 
-TEST(SafetyGateEdges, ANewConfigurationStartsAtZeroForce) {
+TEST(SafetyGateEdges, RestartsAtZeroAfterConfiguration) {
   SafetyGate gate = ramped(roomy());
   ASSERT_FALSE(gate.command({1.0F, 0.0F, 0.0F}, kJacobian).command.is_zero());
   ASSERT_TRUE(gate.configure(roomy()));
   EXPECT_TRUE(gate.command({1.0F, 0.0F, 0.0F}, kJacobian).command.is_zero());
 }
 
-TEST(SafetyGateEdges, EachNonFiniteInputEndsTheForceAndIsReported) {
+TEST(SafetyGateEdges, ReportsEachNonFiniteInput) {
   for (const float bad :
        {kNan, std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()}) {
     for (std::uint32_t i = 0; i < 15; ++i) {
@@ -151,7 +151,7 @@ TEST(SafetyGateEdges, EachNonFiniteInputEndsTheForceAndIsReported) {
   }
 }
 
-TEST(SafetyGateEdges, AnOverflowingEffortEndsTheForceAndIsReported) {
+TEST(SafetyGateEdges, ReportsOverflowingEffort) {
   SafetyGate gate = ramped(roomy());
   const SafetyGate::Result result =
       gate.command({7.0F, 0.0F, 0.0F}, {{{kMax, 0.0F, 0.0F}, {}, {}}});
@@ -159,7 +159,7 @@ TEST(SafetyGateEdges, AnOverflowingEffortEndsTheForceAndIsReported) {
   EXPECT_TRUE(result.command.is_zero());
 }
 
-TEST(SafetyGateEdges, ReportsAForceAboveItsLimitOnly) {
+TEST(SafetyGateEdges, ReportsForceAboveLimitOnly) {
   const float allowed = kInside * 8.0F;
   SafetyGate gate = ramped(roomy());
   SafetyGate::Result result = gate.command({0.0F, allowed, 0.0F}, kJacobian);
@@ -170,7 +170,7 @@ TEST(SafetyGateEdges, ReportsAForceAboveItsLimitOnly) {
   EXPECT_LE(result.force.y, allowed);
 }
 
-TEST(SafetyGateEdges, AForceOfOverflowingLengthKeepsItsDirection) {
+TEST(SafetyGateEdges, KeepsDirectionOfOverflowingForce) {
   SafetyGate gate = ramped(roomy());
   const Vec3 force = gate.command({kMax, -kMax, kMax}, kJacobian).force;
   EXPECT_NEAR(force.x, 8.0F / std::sqrt(3.0F), 1e-4F);
@@ -178,14 +178,14 @@ TEST(SafetyGateEdges, AForceOfOverflowingLengthKeepsItsDirection) {
   EXPECT_EQ(force.z, force.x);
 }
 
-TEST(SafetyGateEdges, ZeroForceIsWithinEveryLimit) {
+TEST(SafetyGateEdges, ReportsNothingAtZeroForce) {
   GateLimits limits = roomy();
   limits.force_max_N = 0.5F;
   limits.slew_N_per_tick = 0.1F;
   EXPECT_EQ(ramped(limits).command({}, kJacobian).limits, 0U);
 }
 
-TEST(SafetyGateEdges, ReportsAChangeAboveTheSlewLimitOnly) {
+TEST(SafetyGateEdges, ReportsSlewAboveLimitOnly) {
   GateLimits limits = roomy();
   limits.slew_N_per_tick = 2.0F;
   const float allowed = kInside * 2.0F - 4e-7F * 8.0F;
@@ -195,7 +195,7 @@ TEST(SafetyGateEdges, ReportsAChangeAboveTheSlewLimitOnly) {
   EXPECT_EQ(beyond.limits, core::limit_bit(Limit::kSlew));
 }
 
-TEST(SafetyGateEdges, ReportsAllLimitsThatAct) {
+TEST(SafetyGateEdges, ReportsAllActingLimits) {
   GateLimits limits = roomy();
   limits.slew_N_per_tick = 0.1F;
   limits.ramp_ticks = 4;
@@ -207,7 +207,7 @@ TEST(SafetyGateEdges, ReportsAllLimitsThatAct) {
                                core::limit_bit(Limit::kSlew));
 }
 
-TEST(SafetyGateEdges, ReportsWhenAnAxisLimitActs) {
+TEST(SafetyGateEdges, ReportsActingAxisLimit) {
   GateLimits clipping = roomy();
   clipping.effort_max[1] = 3.0F;
   clipping.effort_slew_per_tick[1] = 6.0F;
@@ -220,7 +220,7 @@ TEST(SafetyGateEdges, ReportsWhenAnAxisLimitActs) {
 }
 
 // The smallest slew is of the order of the rounding of the largest force: tests the margin.
-TEST(SafetyGateEdges, KeepsTheSmallestSlewLimit) {
+TEST(SafetyGateEdges, KeepsSmallestSlewLimit) {
   GateLimits limits;
   limits.slew_N_per_tick = 1e-4F * limits.force_max_N;
   limits.heat_share_per_tick = 1e-8F;  // cold motors: their peak is not in the way
@@ -253,7 +253,7 @@ TEST(SafetyGateEdges, KeepsTheSmallestSlewLimit) {
 }
 
 // One axis at a time: tests its own margin.
-TEST(SafetyGateEdges, KeepsTheSmallestSlewLimitOfAnAxis) {
+TEST(SafetyGateEdges, KeepsSmallestAxisSlewLimit) {
   GateLimits limits = roomy();
   limits.effort_max[0] = 8.0F;
   limits.effort_slew_per_tick[0] = 1e-4F * 8.0F;
@@ -268,7 +268,7 @@ TEST(SafetyGateEdges, KeepsTheSmallestSlewLimitOfAnAxis) {
   }
 }
 
-TEST(SafetyGateEdges, EveryAxisWarmsUp) {
+TEST(SafetyGateEdges, HeatsEachAxisSeparately) {
   for (std::uint32_t axis = 0; axis < kAxes; ++axis) {
     SafetyGate gate = ramped(roomy());
     const float one[kAxes] = {axis == 0 ? 1.0F : 0.0F, axis == 1 ? 1.0F : 0.0F,

@@ -82,7 +82,7 @@ float random_bits(std::mt19937& random) {
   return std::bit_cast<float>(static_cast<std::uint32_t>(random()));
 }
 
-TEST(SafetyGate, TenMillionRandomBitPatternsKeepTheLimits) {
+TEST(SafetyGate, KeepsLimitsForRandomBits) {
   SafetyGate gate;
   ASSERT_TRUE(gate.configure(short_ramp()));
   Watch watch(short_ramp());
@@ -105,7 +105,7 @@ TEST(SafetyGate, TenMillionRandomBitPatternsKeepTheLimits) {
   EXPECT_GT(watch.largest_step(), 0.9999 * 1.7);
 }
 
-TEST(SafetyGate, OrdinaryForcesKeepTheLimitsToo) {
+TEST(SafetyGate, KeepsLimitsForOrdinaryForces) {
   SafetyGate gate;
   ASSERT_TRUE(gate.configure(short_ramp()));
   Watch watch(short_ramp());
@@ -123,7 +123,7 @@ TEST(SafetyGate, OrdinaryForcesKeepTheLimitsToo) {
   EXPECT_GT(watch.largest(), 0.999 * 7.3);
 }
 
-TEST(SafetyGate, UnusualFloatsInEveryFieldKeepTheLimits) {
+TEST(SafetyGate, KeepsLimitsForUnusualFloats) {
   const core::GateLimits limits = short_ramp();
   Watch watch(limits);
   SafetyGate gate;
@@ -143,7 +143,7 @@ TEST(SafetyGate, UnusualFloatsInEveryFieldKeepTheLimits) {
   EXPECT_EQ(watch.broken(), 0U);
 }
 
-TEST(SafetyGate, UnusualFloatsInTheMapKeepTheEffortLimits) {
+TEST(SafetyGate, KeepsLimitsForUnusualMaps) {
   const core::GateLimits limits = short_ramp();
   SafetyGate gate;
   ASSERT_TRUE(gate.configure(limits));
@@ -167,7 +167,7 @@ TEST(SafetyGate, UnusualFloatsInTheMapKeepTheEffortLimits) {
   }
 }
 
-TEST(SafetyGate, TheFirstForceIsExactlyZeroThenItRamps) {
+TEST(SafetyGate, RampsFromExactlyZero) {
   core::GateLimits limits = short_ramp();
   limits.ramp_ticks = 100;
   limits.slew_N_per_tick = 10.0F;
@@ -187,7 +187,7 @@ TEST(SafetyGate, TheFirstForceIsExactlyZeroThenItRamps) {
   }
 }
 
-TEST(SafetyGate, AForceWithinEveryLimitPassesUnchanged) {
+TEST(SafetyGate, PassesForceWithinLimitsUnchanged) {
   SafetyGate gate;
   ASSERT_TRUE(gate.configure(short_ramp()));
   SafetyGate::Result result = gate.release();
@@ -201,7 +201,7 @@ TEST(SafetyGate, AForceWithinEveryLimitPassesUnchanged) {
   EXPECT_EQ(result.force, (Vec3{1.0F, -0.5F, 0.25F}));
 }
 
-TEST(SafetyGate, AForceAboveItsLimitKeepsItsDirection) {
+TEST(SafetyGate, KeepsDirectionAboveForceLimit) {
   SafetyGate gate;
   ASSERT_TRUE(gate.configure(short_ramp()));
   SafetyGate::Result result = gate.release();
@@ -213,7 +213,7 @@ TEST(SafetyGate, AForceAboveItsLimitKeepsItsDirection) {
   EXPECT_EQ(result.limits, core::limit_bit(core::Limit::kForce));
 }
 
-TEST(SafetyGate, AnAxisLimitScalesAllAxes) {
+TEST(SafetyGate, ScalesAllAxesTogether) {
   core::GateLimits limits = short_ramp();
   limits.effort_max[0] = 1.0F;
   SafetyGate gate;
@@ -227,7 +227,7 @@ TEST(SafetyGate, AnAxisLimitScalesAllAxes) {
   EXPECT_NE(result.limits & core::limit_bit(core::Limit::kAxis), 0U);
 }
 
-TEST(SafetyGate, RefusesInvalidLimitsAndKeepsTheOldOnes) {
+TEST(SafetyGate, RefusesInvalidLimitsWithoutEffect) {
   const auto refused = [](auto&& change) {
     SafetyGate gate;
     core::GateLimits limits = short_ramp();
@@ -250,7 +250,7 @@ TEST(SafetyGate, RefusesInvalidLimitsAndKeepsTheOldOnes) {
 }
 
 // A limit on one axis reduces the force and keeps its direction.
-TEST(SafetyGate, SaturationWithGravityKeepsTheDirectionOfTheForce) {
+TEST(SafetyGate, KeepsDirectionUnderGravitySaturation) {
   core::GateLimits limits;
   limits.ramp_ticks = 2;
   limits.force_max_N = 100.0F;
@@ -285,7 +285,7 @@ TEST(SafetyGate, SaturationWithGravityKeepsTheDirectionOfTheForce) {
   EXPECT_LT(saturated, 9900);
 }
 
-TEST(SafetyGate, TheAxesSlewTogether) {
+TEST(SafetyGate, SlewsAllAxesTogether) {
   core::GateLimits limits;
   limits.ramp_ticks = 2;
   limits.slew_N_per_tick = 16.0F;
@@ -302,7 +302,7 @@ TEST(SafetyGate, TheAxesSlewTogether) {
   EXPECT_NEAR(result.command.effort(2), 0.125F, 1e-4F);
 }
 
-TEST(SafetyGate, ClipsAGravityEffortAboveTheAxisLimit) {
+TEST(SafetyGate, ClipsGravityAboveAxisLimit) {
   core::GateLimits limits;
   limits.ramp_ticks = 2;
   limits.slew_N_per_tick = 16.0F;

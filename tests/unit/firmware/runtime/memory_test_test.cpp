@@ -49,7 +49,7 @@ class RamTest : public testing::Test {
   RamTest() { memory = {}; }
 };
 
-TEST_F(RamTest, PassesWorkingMemoryWithAnyContent) {
+TEST_F(RamTest, PassesWorkingMemory) {
   for (std::uint32_t& cell : memory.cells) {
     cell = 0xDEADBEEFU;
   }
@@ -69,7 +69,7 @@ TEST_F(RamTest, DetectsEveryStuckBit) {
   }
 }
 
-TEST_F(RamTest, DetectsEveryBitThatDoesNotChange) {
+TEST_F(RamTest, DetectsEveryTransitionFault) {
   for (std::uint32_t bit = 0; bit < 32; ++bit) {
     for (const bool rises : {false, true}) {
       memory.written = [=](Memory& m, std::uint32_t word, std::uint32_t before) {
@@ -84,7 +84,7 @@ TEST_F(RamTest, DetectsEveryBitThatDoesNotChange) {
   }
 }
 
-TEST_F(RamTest, DetectsAWordThatChangesAnother) {
+TEST_F(RamTest, DetectsCouplingFaults) {
   for (std::uint32_t from = 0; from < kWords; ++from) {
     for (std::uint32_t to = 0; to < kWords; ++to) {
       if (from != to) {
@@ -99,14 +99,14 @@ TEST_F(RamTest, DetectsAWordThatChangesAnother) {
   }
 }
 
-TEST_F(RamTest, DetectsWordsThatShareAnAddress) {
+TEST_F(RamTest, DetectsAddressDecoderFaults) {
   for (std::uint32_t line = 1; line < kWords; line *= 2) {
     memory.decoded = [=](std::uint32_t word) { return word & ~line; };
     EXPECT_FALSE(holds()) << line;
   }
 }
 
-TEST_F(RamTest, PassesAnEmptyRange) { EXPECT_TRUE(firmware::holds_all_bits(Word::all, Word::all)); }
+TEST_F(RamTest, PassesEmptyRange) { EXPECT_TRUE(firmware::holds_all_bits(Word::all, Word::all)); }
 
 }  // namespace
 }  // namespace tactree::test

@@ -18,7 +18,7 @@ struct Chip {
   ClockFailure start() { return start_clocks(clocks.rcc, flash, clocks.tim11, 25); }
 };
 
-TEST(Clocks, ReachFullSpeed) {
+TEST(Clocks, ReachesFullSpeed) {
   Chip chip;
   EXPECT_EQ(chip.start(), ClockFailure::kNone);
   EXPECT_EQ(chip.clocks.core_MHz() * 1000000U, firmware::stm32f4::kFullClockHz);
@@ -29,7 +29,7 @@ TEST(Clocks, ReachFullSpeed) {
   EXPECT_NE(chip.clocks.rcc.cr.value & (1U << 19), 0U) << "a crystal that stops goes unnoticed";
 }
 
-TEST(Clocks, SupportsEveryCrystalOfTheManual) {
+TEST(Clocks, SupportsEveryDocumentedCrystal) {
   for (std::uint32_t crystal_MHz = 4; crystal_MHz <= 26; ++crystal_MHz) {
     Chip chip;
     chip.clocks.crystal_MHz = crystal_MHz;
@@ -41,7 +41,7 @@ TEST(Clocks, SupportsEveryCrystalOfTheManual) {
 }
 
 // Against the internal oscillator, which is good for 8 % itself.
-TEST(Clocks, DetectsACrystalOfAnotherFrequency) {
+TEST(Clocks, DetectsWrongCrystalFrequency) {
   for (const double internal_MHz : {16.0 * 0.92, 16.0, 16.0 * 1.08}) {
     Chip chip;
     chip.clocks.internal_MHz = internal_MHz;
@@ -54,14 +54,14 @@ TEST(Clocks, DetectsACrystalOfAnotherFrequency) {
   }
 }
 
-TEST(Clocks, KeepsReservedBitsOfTheMultiplier) {
+TEST(Clocks, KeepsReservedMultiplierBits) {
   Chip chip;
   (void)chip.start();
   const std::uint32_t reserved = ~0x0F437FFFU;
   EXPECT_EQ(chip.clocks.rcc.pllcfgr.value & reserved, FakeClocks::kPllReset & reserved);
 }
 
-TEST(Clocks, FallsBackToTheInternalOscillatorAndNamesEachFailure) {
+TEST(Clocks, FallsBackToInternalOscillator) {
   const std::pair<ClockFailure, void (*)(FakeClocks&)> cases[] = {
       {ClockFailure::kCrystal, [](FakeClocks& c) { c.crystal_MHz = 0; }},
       {ClockFailure::kFrequency, [](FakeClocks& c) { c.soldered_MHz = 8.0; }},
@@ -83,7 +83,7 @@ TEST(Clocks, FallsBackToTheInternalOscillatorAndNamesEachFailure) {
   }
 }
 
-TEST(Clocks, WaitsForASlowCrystalWithATimeout) {
+TEST(Clocks, LimitsWaitForSlowCrystal) {
   Chip patient;
   patient.clocks.ready_after_polls = firmware::stm32f4::kClockPolls - 1;
   EXPECT_EQ(patient.start(), ClockFailure::kNone);
@@ -92,7 +92,7 @@ TEST(Clocks, WaitsForASlowCrystalWithATimeout) {
   EXPECT_EQ(late.start(), ClockFailure::kCrystal);
 }
 
-TEST(Clocks, ReportsAWatchdogResetOnce) {
+TEST(Clocks, ReportsWatchdogResetOnce) {
   Chip chip;
   chip.clocks.rcc.csr.value = 1U << 29;
   EXPECT_TRUE(firmware::stm32f4::take_watchdog_reset(chip.clocks.rcc));
@@ -100,7 +100,7 @@ TEST(Clocks, ReportsAWatchdogResetOnce) {
 }
 
 // Tests of the fake: it refuses what the chip refuses.
-TEST(FakeClocks, DetectsACoreTooFastForItsFlash) {
+TEST(FakeClocks, DetectsCoreFasterThanFlash) {
   Chip chip;
   auto& rcc = chip.clocks.rcc;
   rcc.cr = 1U << 16;

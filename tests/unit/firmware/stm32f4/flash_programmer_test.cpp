@@ -23,7 +23,7 @@ class Flash : public testing::Test {
   FakeFlash fake;
 };
 
-TEST_F(Flash, ErasesOneSectorAndProgramsIt) {
+TEST_F(Flash, ErasesAndProgramsOneSector) {
   auto flash = programmer();
   EXPECT_EQ(flash.erase(1), FlashStatus::kOk);
   EXPECT_EQ(flash.program(FakeFlash::kWords + 2, kWords), FlashStatus::kOk);
@@ -37,7 +37,7 @@ TEST_F(Flash, ErasesOneSectorAndProgramsIt) {
   EXPECT_EQ(fake.operations, 5U);
 }
 
-TEST_F(Flash, ReadsTheFlashAndNotTheCache) {
+TEST_F(Flash, BypassesStaleCache) {
   EXPECT_EQ(std::uint32_t{fake.cells()[0]}, 0U);  // now it is in the cache
   EXPECT_EQ(programmer().erase(0), FlashStatus::kOk);
   EXPECT_EQ(programmer().program(0, kWords), FlashStatus::kOk);
@@ -45,7 +45,7 @@ TEST_F(Flash, ReadsTheFlashAndNotTheCache) {
   EXPECT_NE(fake.block.acr.value & (1U << 10), 0U) << "the cache stayed off";
 }
 
-TEST_F(Flash, WritesNothingOutsideTheRegion) {
+TEST_F(Flash, WritesNothingOutsideRegion) {
   auto flash = programmer();
   EXPECT_EQ(flash.erase(FakeFlash::kSectors), FlashStatus::kOutside);
   EXPECT_EQ(flash.program(FakeFlash::kSectors * FakeFlash::kWords - 3, kWords),
@@ -56,14 +56,14 @@ TEST_F(Flash, WritesNothingOutsideTheRegion) {
   EXPECT_EQ(flash.program(FakeFlash::kSectors * FakeFlash::kWords - 4, kWords), FlashStatus::kOk);
 }
 
-TEST_F(Flash, DetectsAnUnerasedWordByReadingBack) {
+TEST_F(Flash, VerifiesWordsByReadBack) {
   EXPECT_EQ(programmer().program(0, kWords), FlashStatus::kReadBack);
   EXPECT_EQ(fake.operations, 1U) << "it went on after the first that failed";
   fake.worn_cell = 3;
   EXPECT_EQ(programmer().erase(0), FlashStatus::kReadBack);
 }
 
-TEST_F(Flash, WaitsForABusyFlashWithATimeout) {
+TEST_F(Flash, LimitsWaitWhileBusy) {
   ASSERT_EQ(programmer().erase(0), FlashStatus::kOk);
   fake.busy_polls = 10;
   EXPECT_EQ(programmer().program(0, kWords), FlashStatus::kOk);
@@ -71,14 +71,14 @@ TEST_F(Flash, WaitsForABusyFlashWithATimeout) {
   EXPECT_EQ(programmer().program(4, std::span(kWords).first(1)), FlashStatus::kTimeout);
 }
 
-TEST_F(Flash, DoesNotAccessAFlashThatStaysBusy) {
+TEST_F(Flash, AvoidsAccessWhileBusy) {
   fake.never_ready = true;
   EXPECT_EQ(programmer().erase(0), FlashStatus::kTimeout);
   EXPECT_EQ(programmer().erase(1), FlashStatus::kTimeout);  // not even opened
   EXPECT_EQ(fake.operations, 1U);
 }
 
-TEST_F(Flash, ReportsAProtectedSector) {
+TEST_F(Flash, ReportsProtectedSector) {
   fake.protected_sector = 5 + 2;
   EXPECT_EQ(programmer().erase(2), FlashStatus::kProtected);
   EXPECT_EQ(programmer().program(2 * FakeFlash::kWords, kWords), FlashStatus::kProtected);
@@ -93,7 +93,7 @@ TEST_F(Flash, ReportsRejectedKeys) {
 }
 
 // Tests of the fake.
-TEST_F(Flash, TheFakeRefusesWritesWithoutKeysOrWhileBusy) {
+TEST_F(Flash, RefusesInvalidWritesInFake) {
   fake.cells()[0] = 1U;
   EXPECT_EQ(fake.block.sr.value, 1U << 7);
   fake.block.keyr = 0xCDEF89ABU;

@@ -37,7 +37,7 @@ TEST(Pin, ChangesNoOtherPin) {
   EXPECT_EQ(port.function(9), 7U);
 }
 
-TEST(Pin, AnOutputIsLowFromTheStart) {
+TEST(Pin, StartsOutputLow) {
   FakeGpio port;
   port.block.odr.value = 1U << 4;
   std::vector<bool> levels;
@@ -62,7 +62,7 @@ struct EncoderBench {
       {x.block, CounterWidth::k32}, {y.block, CounterWidth::k32}, {z.block, CounterWidth::k16}};
 };
 
-TEST(Encoders, CountInBothDirectionsOnEveryAxis) {
+TEST(Encoders, CountsInBothDirections) {
   EncoderBench bench;
   ASSERT_TRUE(bench.bank.start());
   bench.x.turn(1000);
@@ -76,7 +76,7 @@ TEST(Encoders, CountInBothDirectionsOnEveryAxis) {
   EXPECT_FALSE(reading.index[0] || reading.index[1] || reading.index[2]);
 }
 
-TEST(Encoders, ExtendSixteenBitCountersBeyondTheirRange) {
+TEST(Encoders, ExtendsSixteenBitCounters) {
   EncoderBench bench;
   ASSERT_TRUE(bench.bank.start());
   for (std::int32_t i = 1; i <= 10; ++i) {
@@ -89,7 +89,7 @@ TEST(Encoders, ExtendSixteenBitCountersBeyondTheirRange) {
   }
 }
 
-TEST(Encoders, WrapAtThirtyTwoBitsAsSpecified) {
+TEST(Encoders, WrapsAtThirtyTwoBits) {
   EncoderBench bench;
   ASSERT_TRUE(bench.bank.start());
   bench.x.turn(std::numeric_limits<std::int32_t>::max());
@@ -98,7 +98,7 @@ TEST(Encoders, WrapAtThirtyTwoBitsAsSpecified) {
   EXPECT_EQ(bench.bank.read().counts[0], std::numeric_limits<std::int32_t>::min());
 }
 
-TEST(Encoders, AStoppedTimerInvalidatesItsAxis) {
+TEST(Encoders, InvalidatesAxisOfStoppedTimer) {
   EncoderBench bench;
   ASSERT_TRUE(bench.bank.start());
   bench.y.block.cr1.value = 0;
@@ -109,7 +109,7 @@ TEST(Encoders, AStoppedTimerInvalidatesItsAxis) {
   EXPECT_FALSE(reading.valid[2]);
 }
 
-TEST(Encoders, ATimerWithoutItsClockDoesNotStart) {
+TEST(Encoders, RefusesStartWithoutClock) {
   EncoderBench bench;
   bench.y.gate_by([] { return false; });
   EXPECT_FALSE(bench.bank.start());
@@ -153,7 +153,7 @@ struct MotorBench {
   }
 };
 
-TEST(Motors, OutputPulseWidthForSizeAndDirectionForSign) {
+TEST(Motors, OutputsPulseWidthAndDirection) {
   MotorBench bench;
   ASSERT_TRUE(bench.motors.start());
   bench.motors.connect(true);
@@ -169,7 +169,7 @@ TEST(Motors, OutputPulseWidthForSizeAndDirectionForSign) {
   EXPECT_TRUE(bench.motors.healthy());
 }
 
-TEST(Motors, SwitchAtTwentyKilohertz) {
+TEST(Motors, SwitchesAtTwentyKilohertz) {
   MotorBench bench;
   ASSERT_TRUE(bench.motors.start());
   EXPECT_EQ(firmware::stm32f4::pwm::kHalfPeriod * 2U * 20000U, 168000000U);
@@ -177,7 +177,7 @@ TEST(Motors, SwitchAtTwentyKilohertz) {
   EXPECT_EQ((bench.timer.block.cr1.value >> 5) & 3U, 1U);
 }
 
-TEST(Motors, OutputNothingBeforeTheEnableLineConnectsThem) {
+TEST(Motors, OutputsNothingUntilConnected) {
   MotorBench bench;
   bench.motors.connect(true);  // not started
   bench.motors.write(command_of({4.0F, 4.0F, 2.0F}));
@@ -193,7 +193,7 @@ TEST(Motors, OutputNothingBeforeTheEnableLineConnectsThem) {
   EXPECT_EQ(bench.timer.duty(0), 0.0);
 }
 
-TEST(Motors, OutputNothingForNonFiniteEfforts) {
+TEST(Motors, ClampsNonFiniteEfforts) {
   using firmware::stm32f4::pwm::compare_of;
   using firmware::stm32f4::pwm::kHalfPeriod;
   const float infinity = std::numeric_limits<float>::infinity();
@@ -206,7 +206,7 @@ TEST(Motors, OutputNothingForNonFiniteEfforts) {
   EXPECT_EQ(compare_of(infinity, 1.0F), kHalfPeriod);
 }
 
-TEST(Motors, ReportAFailure) {
+TEST(Motors, ReportsFailure) {
   MotorBench amplifier;
   ASSERT_TRUE(amplifier.motors.start());
   EXPECT_TRUE(amplifier.motors.healthy());
@@ -234,7 +234,7 @@ TEST(Motors, ReportAFailure) {
 
 // ---- enable line and switches
 
-TEST(EnableLine, IsOffAfterStartAndSwitchesThePulses) {
+TEST(EnableLine, StartsOffAndSwitchesPulses) {
   MotorBench bench;
   ASSERT_TRUE(bench.motors.start());
   EnableLine<FakeWord> line({bench.port.block, 4}, {bench.port.block, 5}, bench.motors);
@@ -253,7 +253,7 @@ TEST(EnableLine, IsOffAfterStartAndSwitchesThePulses) {
   EXPECT_EQ(bench.timer.block.bdtr.value & (1U << 15), 0U);
 }
 
-TEST(EnableLine, APortWithoutClockDoesNotStart) {
+TEST(EnableLine, RefusesStartWithoutClock) {
   MotorBench bench;
   bench.port.gate_by([] { return false; });
   EnableLine<FakeWord> line({bench.port.block, 4}, {bench.port.block, 5}, bench.motors);
@@ -261,7 +261,7 @@ TEST(EnableLine, APortWithoutClockDoesNotStart) {
   EXPECT_FALSE(line.read_back());
 }
 
-TEST(SafetyInputs, ABrokenWireReadsAsTheSafeState) {
+TEST(SafetyInputs, ReadsBrokenWireAsSafe) {
   FakeGpio port;
   SafetyInputs<FakeWord> inputs({port.block, 12}, {port.block, 13});
   EXPECT_TRUE(inputs.emergency_stop()) << "before the start";
@@ -274,7 +274,7 @@ TEST(SafetyInputs, ABrokenWireReadsAsTheSafeState) {
   EXPECT_TRUE(inputs.dead_man());
 }
 
-TEST(SafetyInputs, APortWithoutClockReadsAsTheSafeState) {
+TEST(SafetyInputs, ReadsUnclockedPortAsSafe) {
   FakeGpio port;
   port.wire(12, false);
   port.wire(13, false);
@@ -308,7 +308,7 @@ struct SerialBench {
 
 static_assert(hal::BytePort<SerialPort<FakeWord>>);
 
-TEST(SerialPort, BaudRateIsExactAtBothClocks) {
+TEST(SerialPort, SetsExactBaudRate) {
   SerialBench bench;
   EXPECT_EQ(bench.fake.baud(), 1e6);
   bench.fake.clock_MHz = 16.0;
@@ -316,7 +316,7 @@ TEST(SerialPort, BaudRateIsExactAtBothClocks) {
   EXPECT_EQ(bench.fake.baud(), 1e6);
 }
 
-TEST(SerialPort, ReceivesAcrossTheEndOfTheRing) {
+TEST(SerialPort, ReceivesAcrossRingEnd) {
   SerialBench bench;
   ASSERT_TRUE(bench.started);
   EXPECT_FALSE(bench.take().has_value());
@@ -327,7 +327,7 @@ TEST(SerialPort, ReceivesAcrossTheEndOfTheRing) {
   }
 }
 
-TEST(SerialPort, ReadsAtMostTheRoomAndTheReceivedBytes) {
+TEST(SerialPort, ReadsAtMostAvailableBytes) {
   SerialBench bench;
   for (std::uint32_t i = 0; i < kRingBytes - 1U; ++i) {
     bench.fake.arrive(static_cast<std::uint8_t>(i));
@@ -338,7 +338,7 @@ TEST(SerialPort, ReadsAtMostTheRoomAndTheReceivedBytes) {
   EXPECT_EQ(bytes[0], std::byte{100});
 }
 
-TEST(SerialPort, RestartsWhileTheStreamRuns) {
+TEST(SerialPort, RestartsDuringRunningStream) {
   SerialBench bench;
   bench.fake.arrive(1);
   ASSERT_TRUE(bench.port.start(84000000, 1000000));
@@ -348,7 +348,7 @@ TEST(SerialPort, RestartsWhileTheStreamRuns) {
   ASSERT_EQ(bench.take(), std::byte{2});
 }
 
-TEST(SerialPort, ReceivesSingleBytesWithoutDmaAndReportsIt) {
+TEST(SerialPort, ReceivesSingleBytesWithoutDma) {
   SerialBench bench;
   bench.fake.gate_by([] { return true; }, [] { return false; });
   ASSERT_FALSE(bench.port.start(84000000, 1000000));
@@ -359,7 +359,7 @@ TEST(SerialPort, ReceivesSingleBytesWithoutDmaAndReportsIt) {
   EXPECT_FALSE(bench.take().has_value());
 }
 
-TEST(SerialPort, NeverOverwritesAPendingByte) {
+TEST(SerialPort, NeverOverwritesPendingByte) {
   SerialBench bench;
   const std::vector<std::byte> bytes(40, std::byte{0x5A});
   EXPECT_EQ(bench.port.write(bytes), bytes.size());
@@ -372,7 +372,7 @@ TEST(SerialPort, NeverOverwritesAPendingByte) {
   EXPECT_EQ(bench.port.write(bytes), bytes.size());
 }
 
-TEST(SerialPort, SendsDataLongerThanItsBufferInPieces) {
+TEST(SerialPort, SendsLongDataInPieces) {
   SerialBench bench;
   std::vector<std::byte> bytes(1000);
   for (std::size_t i = 0; i < bytes.size(); ++i) {
@@ -392,7 +392,7 @@ TEST(SerialPort, SendsDataLongerThanItsBufferInPieces) {
 
 // ---- watchdog
 
-TEST(Watchdog, ResetsWithinTenMillisecondsOverTheOscillatorRange) {
+TEST(Watchdog, ResetsWithinTenMilliseconds) {
   for (const double oscillator_hz : {17000.0, 32000.0, 47000.0}) {
     FakeWatchdog fake;
     fake.oscillator_hz = oscillator_hz;
@@ -408,7 +408,7 @@ TEST(Watchdog, ResetsWithinTenMillisecondsOverTheOscillatorRange) {
   }
 }
 
-TEST(Watchdog, ExtendsTheTimeoutForAnEraseAndRestoresIt) {
+TEST(Watchdog, ExtendsAndRestoresTimeout) {
   for (const double oscillator_hz : {17000.0, 32000.0, 47000.0}) {
     FakeWatchdog fake;
     fake.oscillator_hz = oscillator_hz;
@@ -426,7 +426,7 @@ TEST(Watchdog, ExtendsTheTimeoutForAnEraseAndRestoresIt) {
   }
 }
 
-TEST(Watchdog, WaitsForAPendingSetting) {
+TEST(Watchdog, WaitsForPendingSetting) {
   FakeWatchdog fake;
   Watchdog<FakeWord> watchdog(fake.block);
   ASSERT_TRUE(watchdog.start());
@@ -436,7 +436,7 @@ TEST(Watchdog, WaitsForAPendingSetting) {
   EXPECT_EQ(fake.block.rlr.value, kTimeOfErasing.reload);
 }
 
-TEST(Watchdog, DoesNotRunBeforeItsStart) {
+TEST(Watchdog, StaysOffBeforeStart) {
   FakeWatchdog fake;
   Watchdog<FakeWord> watchdog(fake.block);
   watchdog.refresh();

@@ -34,7 +34,7 @@ class StoreFlashTest : public testing::Test {
   StoreFlash flash{whole.block, whole.whole(), {6, 6, 32768}, standstill};
 };
 
-TEST_F(StoreFlashTest, HasTheSizeAndTheBytesOfItsSectors) {
+TEST_F(StoreFlashTest, ExposesBytesOfSectors) {
   const StoreFlash records(whole.block, whole.whole(), {1, 2, 4096}, standstill);
   EXPECT_EQ(records.geometry().sector_bytes, 16384U);
   EXPECT_EQ(records.bytes().size(), 32768U);
@@ -44,7 +44,7 @@ TEST_F(StoreFlashTest, HasTheSizeAndTheBytesOfItsSectors) {
   EXPECT_EQ(flash.bytes().data() + flash.bytes().size() - whole.whole().bytes, 0x100000);
 }
 
-TEST_F(StoreFlashTest, ProgramsInPiecesAndReadsThemInPlace) {
+TEST_F(StoreFlashTest, ProgramsAndReadsInPlace) {
   ASSERT_TRUE(flash.erase(1));
   standstill = {};
   std::array<std::byte, 200> piece{};
@@ -61,7 +61,7 @@ TEST_F(StoreFlashTest, ProgramsInPiecesAndReadsThemInPlace) {
       << "it was written before";
 }
 
-TEST_F(StoreFlashTest, ErasesWhileTheBoardIsHalted) {
+TEST_F(StoreFlashTest, ErasesOnHaltedBoard) {
   whole.pass = [&](double) {
     EXPECT_EQ(standstill.begun, 1);
     EXPECT_EQ(standstill.ended, 0);
@@ -73,7 +73,7 @@ TEST_F(StoreFlashTest, ErasesWhileTheBoardIsHalted) {
   EXPECT_EQ(flash.bytes()[131071], std::byte{0});
 }
 
-TEST_F(StoreFlashTest, DoesNotEraseIfTheBoardCannotHalt) {
+TEST_F(StoreFlashTest, RefusesEraseWithoutHalt) {
   standstill.can = false;
   EXPECT_FALSE(flash.erase(1));
   EXPECT_EQ(whole.operations, 0U);

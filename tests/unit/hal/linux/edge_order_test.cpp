@@ -39,27 +39,27 @@ class EdgesOfTwoQueues : public testing::Test {
   EdgeOrder order_{2};
 };
 
-TEST_F(EdgesOfTwoQueues, ComeInTheOrderOfTheirTimes) {
+TEST_F(EdgesOfTwoQueues, SortsByTime) {
   const auto edges =
       look(50, {2, 2}, {{10, 0, true}, {30, 0, false}, {20, 1, true}, {40, 1, false}});
   EXPECT_EQ(times(edges), (Times{10, 20, 30, 40}));
   EXPECT_EQ(order_.lost(), 0U);
 }
 
-TEST_F(EdgesOfTwoQueues, AfterTheLookWaitForTheNextOne) {
+TEST_F(EdgesOfTwoQueues, DefersEdgesAfterLook) {
   EXPECT_EQ(times(look(15, {1, 0}, {{10, 0, true}, {20, 1, true}})), (Times{10}));
   EXPECT_EQ(times(look(50, {2, 1}, {{18, 0, false}})), (Times{18, 20}));
   EXPECT_EQ(order_.lost(), 0U);
 }
 
-TEST_F(EdgesOfTwoQueues, WaitForAnEarlierOneInFlight) {
+TEST_F(EdgesOfTwoQueues, WaitsForOneInFlight) {
   EXPECT_EQ(times(look(50, {1, 1}, {{20, 1, true}})), Times{}) << "line 0 had an interrupt before";
   EXPECT_EQ(times(look(60, {1, 1}, {{10, 0, true}})), (Times{10, 20}));
   EXPECT_EQ(order_.lost(), 0U);
 }
 
 /// The wait for one edge hides no other that is in flight when it arrives.
-TEST_F(EdgesOfTwoQueues, WaitForEachEarlierOneInFlight) {
+TEST_F(EdgesOfTwoQueues, WaitsForAllInFlight) {
   EXPECT_EQ(times(look(15, {1, 0}, {})), Times{});
   EXPECT_EQ(times(look(50, {2, 1}, {{10, 0, true}, {40, 1, true}})), (Times{10}));
   EXPECT_EQ(times(look(60, {2, 1}, {})), Times{});
@@ -68,7 +68,7 @@ TEST_F(EdgesOfTwoQueues, WaitForEachEarlierOneInFlight) {
 }
 
 /// A loop in step with the device: at each look an edge is in flight, of either line in turn.
-TEST_F(EdgesOfTwoQueues, ComeAlthoughSomeLineIsAlwaysInFlight) {
+TEST_F(EdgesOfTwoQueues, ProceedsDespiteLinesInFlight) {
   std::vector<std::uint32_t> interrupts = {0, 0};
   std::vector<Edge> in_flight;
   for (std::uint32_t tick = 1; tick < 20; ++tick) {
@@ -81,7 +81,7 @@ TEST_F(EdgesOfTwoQueues, ComeAlthoughSomeLineIsAlwaysInFlight) {
 }
 
 /// The same of one line: it is checked at each look, not at every other one.
-TEST_F(EdgesOfTwoQueues, WaitForTheEdgesOfOneLookOnly) {
+TEST_F(EdgesOfTwoQueues, WaitsForOneLookOnly) {
   EXPECT_EQ(times(look(kTick_ns, {1, 0}, {})), Times{});
   EXPECT_EQ(times(look(2 * kTick_ns, {2, 1}, {{5, 0, true}, {kTick_ns + 5, 1, true}})), (Times{5}));
   EXPECT_EQ(times(look(3 * kTick_ns, {3, 1}, {{2 * kTick_ns - 5, 0, false}})),
@@ -89,7 +89,7 @@ TEST_F(EdgesOfTwoQueues, WaitForTheEdgesOfOneLookOnly) {
   EXPECT_EQ(order_.lost(), 0U);
 }
 
-TEST_F(EdgesOfTwoQueues, AreHeldUntilTheirOrderIsCertain) {
+TEST_F(EdgesOfTwoQueues, HoldsUntilOrderIsCertain) {
   EXPECT_EQ(order_.held(), 0U);
   EXPECT_EQ(times(look(50, {1, 1}, {{20, 1, true}})), Times{});
   EXPECT_EQ(order_.held(), 2U) << "that of line 1";
@@ -97,7 +97,7 @@ TEST_F(EdgesOfTwoQueues, AreHeldUntilTheirOrderIsCertain) {
   EXPECT_EQ(order_.held(), 0U);
 }
 
-TEST_F(EdgesOfTwoQueues, AreLostIfTheyDoNotArriveInTime) {
+TEST_F(EdgesOfTwoQueues, CountsLateEdgesAsLost) {
   EXPECT_EQ(times(look(1, {3, 0}, {{1, 0, true}})), Times{});
   EXPECT_EQ(times(look(kTick_ns, {3, 0}, {})), Times{});
   EXPECT_EQ(order_.lost(), 0U);
@@ -109,7 +109,7 @@ TEST_F(EdgesOfTwoQueues, AreLostIfTheyDoNotArriveInTime) {
 }
 
 /// The line is never at rest.
-TEST_F(EdgesOfTwoQueues, AreMissedInAStream) {
+TEST_F(EdgesOfTwoQueues, CountsMissedEdgesInStream) {
   std::uint32_t interrupts = 2;  // of one edge
   (void)look(1, {interrupts, 0}, {{1, 0, true}});
   for (std::uint64_t tick = 1; tick < 10; ++tick) {
@@ -119,12 +119,12 @@ TEST_F(EdgesOfTwoQueues, AreMissedInAStream) {
   EXPECT_EQ(order_.lost(), 1U);
 }
 
-TEST_F(EdgesOfTwoQueues, AreCountedAsLostInAFullQueue) {
+TEST_F(EdgesOfTwoQueues, CountsOverflowAsLost) {
   order_.overflowed();
   EXPECT_EQ(order_.lost(), 1U);
 }
 
-TEST_F(EdgesOfTwoQueues, AreLostBeyondTheRoomForThoseInFlight) {
+TEST_F(EdgesOfTwoQueues, LosesEdgesBeyondRoom) {
   std::vector<Edge> many;
   for (std::uint64_t i = 0; i <= EdgeOrder::kHeld; ++i) {
     many.push_back({i, 0, i % 2 == 0});

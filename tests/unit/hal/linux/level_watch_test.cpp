@@ -9,7 +9,7 @@ constexpr std::uint64_t kLimit_ns = 2'000'000;
 constexpr std::uint64_t kLine0 = 1;
 constexpr std::uint64_t kLine1 = 2;
 
-TEST(LevelWatch, FindsALineThatDiffersForTheLimit) {
+TEST(LevelWatch, FindsPersistentlyDifferentLine) {
   LevelWatch watch(kLimit_ns);
   EXPECT_EQ(watch.look(kLine1, 0, 100), 0U);
   EXPECT_EQ(watch.look(kLine0 | kLine1, 0, 99 + kLimit_ns), 0U);
@@ -18,7 +18,7 @@ TEST(LevelWatch, FindsALineThatDiffersForTheLimit) {
   EXPECT_EQ(watch.look(kLine0, 0, 101 + 2 * kLimit_ns), kLine0);
 }
 
-TEST(LevelWatch, LeavesALineWhoseEdgesCome) {
+TEST(LevelWatch, IgnoresLineWithEdges) {
   LevelWatch watch(kLimit_ns);
   EXPECT_EQ(watch.look(kLine0, 0, 0), 0U);
   EXPECT_EQ(watch.look(0, 0, kLimit_ns), 0U);
@@ -28,7 +28,7 @@ TEST(LevelWatch, LeavesALineWhoseEdgesCome) {
   EXPECT_EQ(watch.look(kLine0, 0, 3 * kLimit_ns + 1), kLine0);
 }
 
-TEST(LevelWatch, LeavesALineWhoseEdgesAreHeld) {
+TEST(LevelWatch, IgnoresLineWithHeldEdges) {
   LevelWatch watch(kLimit_ns);
   EXPECT_EQ(watch.look(kLine0 | kLine1, 0, 0), 0U);
   EXPECT_EQ(watch.look(kLine0 | kLine1, kLine0, kLimit_ns), kLine1);

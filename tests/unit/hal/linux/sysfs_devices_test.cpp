@@ -73,7 +73,7 @@ bool holds(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-TEST_F(SysfsDevices, SetsACounterToCountEachEdgeAndStartsIt) {
+TEST_F(SysfsDevices, StartsCounterForEachEdge) {
   add_counter("1000.counter");
   CounterEncoderBank bank(counters({{"1000.counter", 0}}));
   EXPECT_EQ(read(folder_ + "function"), "quadrature x4");
@@ -85,13 +85,13 @@ TEST_F(SysfsDevices, SetsACounterToCountEachEdgeAndStartsIt) {
   }
 }
 
-TEST_F(SysfsDevices, SetsTheFullRangeOfACounterWithoutOne) {
+TEST_F(SysfsDevices, SetsFullRangeIfMissing) {
   add_counter("1000.counter", "0");
   const CounterEncoderBank bank(counters({{"1000.counter", 0}}));
   EXPECT_EQ(read(folder_ + "ceiling"), "4294967295");
 }
 
-TEST_F(SysfsDevices, CountsContinueFromTheirValueInBothDirections) {
+TEST_F(SysfsDevices, CountsFromInitialValue) {
   add_counter("1000.counter");
   write(folder_ + "count", "700");
   CounterEncoderBank bank(counters({{"1000.counter", 0}}));
@@ -104,7 +104,7 @@ TEST_F(SysfsDevices, CountsContinueFromTheirValueInBothDirections) {
   EXPECT_EQ(bank.read().counts[0], -706);
 }
 
-TEST_F(SysfsDevices, ExtendsASmallCounterBeyondItsRange) {
+TEST_F(SysfsDevices, ExtendsSmallCounterRange) {
   add_counter("1000.counter");
   // A value that nobody may write, not even root: 65536.
   fs::remove(root_ / (folder_ + "ceiling"));
@@ -119,7 +119,7 @@ TEST_F(SysfsDevices, ExtendsASmallCounterBeyondItsRange) {
   }
 }
 
-TEST_F(SysfsDevices, ARemovedCounterIsNotValid) {
+TEST_F(SysfsDevices, InvalidatesRemovedCounter) {
   add_counter("1000.counter");
   add_counter("2000.counter");
   CounterEncoderBank bank(counters({{"1000.counter", 0}, {"2000.counter", 0}}));
@@ -135,7 +135,7 @@ TEST_F(SysfsDevices, ARemovedCounterIsNotValid) {
   }
 }
 
-TEST_F(SysfsDevices, RefusesAnUnusableCounter) {
+TEST_F(SysfsDevices, RefusesUnusableCounter) {
   const auto make = [this](std::vector<CounterAxis> axes) {
     return refusal([&] { const CounterEncoderBank bank(counters(axes)); });
   };
@@ -152,7 +152,7 @@ TEST_F(SysfsDevices, RefusesAnUnusableCounter) {
   EXPECT_TRUE(holds(make({{"1000.counter", 0}}), "does not accept 'quadrature x4'"));
 }
 
-TEST_F(SysfsDevices, RefusesACounterWithoutARange) {
+TEST_F(SysfsDevices, RefusesCounterWithoutRange) {
   add_counter("1000.counter");
   fs::remove(root_ / (folder_ + "ceiling"));
   fs::create_directories(root_ / (folder_ + "ceiling"));
@@ -193,7 +193,7 @@ class Converters : public SysfsDevices {
   static constexpr char kFile[] = "spi0.0/iio:device3/out_voltage0_raw";
 };
 
-TEST_F(Converters, GiveNoEffortBeforeTheFirstCommandAndAfterTheLast) {
+TEST_F(Converters, GivesNoEffortOutsideCommands) {
   {
     ConverterMotors motors(settings(), "test");
     EXPECT_EQ(read(kFile), "2048");
@@ -208,7 +208,7 @@ TEST_F(Converters, GiveNoEffortBeforeTheFirstCommandAndAfterTheLast) {
   EXPECT_EQ(read(kFile), "2048");
 }
 
-TEST_F(Converters, MissingOnesAreNamed) {
+TEST_F(Converters, NamesMissingDevices) {
   ConverterAxis axis = bipolar();
   axis.device = "spi0.1";
   const auto make = [&] {

@@ -37,10 +37,10 @@ Bytes bytes_of_sphere(double spacing_m) {
 }
 
 /// A board that was switched on, and a host that downloads.
-class Rig {
+class DfuRig {
  public:
-  explicit Rig(SimFlash& flash, std::span<const std::byte> factory = {},
-               const std::uint8_t* key = nullptr)
+  explicit DfuRig(SimFlash& flash, std::span<const std::byte> factory = {},
+                  const std::uint8_t* key = nullptr)
       : store_(flash, {"test", key, factory}) {
     (void)store_.mount();
     EXPECT_EQ(controller_.configure({}), core::ConfigurationStatus::kOk);
@@ -117,33 +117,33 @@ class Rig {
 
 SimFlash make_flash() { return SimFlash({1024, 2 + 2 * 16, 32}); }
 
-TEST(DfuModel, WritesUsesAndReadsBackAModel) {
+TEST(DfuModel, WritesAndReadsBackModel) {
   SimFlash flash = make_flash();
-  Rig rig(flash);
+  DfuRig rig(flash);
   EXPECT_EQ(rig.upload(), Bytes());
   for (const double spacing_m : {0.006, 0.005, 0.007}) {
     const Bytes model = bytes_of_sphere(spacing_m);
     ASSERT_EQ(rig.download(model), DfuStatus::kOk);
     EXPECT_EQ(rig.upload(), model);
     EXPECT_TRUE(rig.controller().has_body(0));
-    Rig after_reset(flash);
+    DfuRig after_reset(flash);
     EXPECT_EQ(after_reset.upload(), model);
   }
   EXPECT_EQ(flash.mistakes(), 0U);
 }
 
-TEST(DfuModel, ReadsTheModelOfTheImageUntilAnotherIsStored) {
+TEST(DfuModel, ReadsImageModelUntilUpdate) {
   SimFlash flash = make_flash();
   const Bytes factory = bytes_of_sphere(0.006);
-  Rig rig(flash, factory);
+  DfuRig rig(flash, factory);
   EXPECT_EQ(rig.upload(), factory);
   ASSERT_EQ(rig.download(bytes_of_sphere(0.005)), DfuStatus::kOk);
   EXPECT_EQ(rig.upload(), bytes_of_sphere(0.005));
 }
 
-TEST(DfuModel, RefusesInvalidModelsAndKeepsTheOldOne) {
+TEST(DfuModel, RefusesInvalidModelsWithoutEffect) {
   SimFlash flash = make_flash();
-  Rig rig(flash);
+  DfuRig rig(flash);
   const Bytes old = bytes_of_sphere(0.006);
   ASSERT_EQ(rig.download(old), DfuStatus::kOk);
   const Bytes model = bytes_of_sphere(0.005);
@@ -165,18 +165,18 @@ TEST(DfuModel, RefusesInvalidModelsAndKeepsTheOldOne) {
   EXPECT_EQ(rig.download(model), DfuStatus::kOk) << "a refusal does not last";
 }
 
-TEST(DfuModel, RefusesWritesUnderForceOrWithoutARequiredSignature) {
+TEST(DfuModel, RefusesWritesWithoutRequiredSignature) {
   SimFlash flash = make_flash();
   const std::array<std::uint8_t, 32> key{1};
-  Rig rig(flash, {}, key.data());
+  DfuRig rig(flash, {}, key.data());
   const std::uint64_t before = flash.operations();
   EXPECT_EQ(rig.download(bytes_of_sphere(0.006)), DfuStatus::kTarget);
   EXPECT_EQ(flash.operations(), before);
 }
 
-TEST(DfuModel, DoesNotDisturbAnotherWriter) {
+TEST(DfuModel, LeavesOtherWriterUndisturbed) {
   SimFlash flash = make_flash();
-  Rig rig(flash);
+  DfuRig rig(flash);
   core::wire::BeginModelRequest request;
   request.bytes = 2000;
   int somebody = 0;
@@ -190,13 +190,13 @@ TEST(DfuModel, DoesNotDisturbAnotherWriter) {
 }
 
 /// Whatever was done of it: after the next start there is the old model or the new one.
-TEST(DfuModel, SurvivesAPowerCutAtEveryOperation) {
+TEST(DfuModel, SurvivesEveryPowerCut) {
   const Bytes old = bytes_of_sphere(0.006);
   const Bytes fresh = bytes_of_sphere(0.005);
   std::uint64_t operations = 0;
   {
     SimFlash flash = make_flash();
-    Rig rig(flash);
+    DfuRig rig(flash);
     ASSERT_EQ(rig.download(old), DfuStatus::kOk);
     const std::uint64_t before = flash.operations();
     ASSERT_EQ(rig.download(fresh), DfuStatus::kOk);
@@ -208,14 +208,14 @@ TEST(DfuModel, SurvivesAPowerCutAtEveryOperation) {
     for (const int done : {0, 1, 2}) {
       SimFlash flash = make_flash();
       {
-        Rig rig(flash);
+        DfuRig rig(flash);
         ASSERT_EQ(rig.download(old), DfuStatus::kOk);
         flash.power_on();
         flash.cut_power_at(cut, done);
         (void)rig.download(fresh);
       }
       flash.power_on();
-      Rig after(flash);
+      DfuRig after(flash);
       const auto model = after.upload();
       ASSERT_TRUE(model == old || model == fresh) << "cut at " << cut << ", " << done;
       kept += model == old ? 1 : 0;

@@ -143,7 +143,7 @@ Wire::Spoiler dead_from(std::uint64_t number, std::uint64_t& died) {
   };
 }
 
-TEST(LossyLink, EndsTheForceInTimeIfTheLinkFailsAtAnyMessage) {
+TEST(LossyLink, EndsForceAfterLinkFailure) {
   int killed_active = 0;
   for (const Direction direction : {Direction::kToBoard, Direction::kToHost, Direction::kBoth}) {
     const std::uint64_t count =
@@ -219,7 +219,7 @@ const std::vector<Harm>& harms() {
 
 // Corrupts one message. The session may fail, but it does not become active twice, and messages in
 // transit do not restore the force after stop.
-TEST(LossyLink, GivesNoForceAfterAStopAndACorruptMessage) {
+TEST(LossyLink, StaysStoppedDespiteCorruptMessage) {
   for (const Direction direction : {Direction::kToBoard, Direction::kToHost}) {
     const std::uint64_t count =
         direction == Direction::kToHost ? recorded().to_host : recorded().to_board;
@@ -244,7 +244,7 @@ TEST(LossyLink, GivesNoForceAfterAStopAndACorruptMessage) {
 }
 
 // Delays each message a little more than the one before: messages keep arriving with growing age.
-TEST(LossyLink, RefusesAQueueOfOldHeartbeats) {
+TEST(LossyLink, RefusesQueueOfOldHeartbeats) {
   for (std::uint64_t n = 20; n < recorded().to_board; n += 3) {
     Rig r;
     r.rig.to_board().spoil([&](std::uint64_t i, std::uint64_t tick, const Bytes& frame) {
@@ -258,7 +258,7 @@ TEST(LossyLink, RefusesAQueueOfOldHeartbeats) {
 
 // A round trip within the timeout is as good as none.
 // The loop goes on, ends the force in time, and the session is there again afterwards.
-TEST(LossyLink, ABlockedDriverDelaysNeitherLoopNorShutdown) {
+TEST(LossyLink, ShutsDownDespiteBlockedDriver) {
   Rig r;
   play(r.rig);
   ASSERT_EQ(r.rig.state(), State::kActive);
@@ -274,7 +274,7 @@ TEST(LossyLink, ABlockedDriverDelaysNeitherLoopNorShutdown) {
   EXPECT_TRUE(r.rig.control(ControlCode::kClearFault).ok());
 }
 
-TEST(LossyLink, AcceptsASlowLinkWithinTheTimeout) {
+TEST(LossyLink, AcceptsSlowLinkWithinTimeout) {
   Rig r;
   for (Wire* wire : {&r.rig.to_board(), &r.rig.to_host()}) {
     wire->spoil([](std::uint64_t, std::uint64_t tick, const Bytes& frame) {
@@ -286,7 +286,7 @@ TEST(LossyLink, AcceptsASlowLinkWithinTheTimeout) {
   EXPECT_TRUE(r.watch.was_touched());
 }
 
-TEST(LossyLink, SwappedMessagesDoNotActivate) {
+TEST(LossyLink, NeverReactivatesOnSwappedMessages) {
   for (std::uint64_t n = 0; n + 1U < recorded().to_board; ++n) {
     Rig r;
     Bytes held;
@@ -306,7 +306,7 @@ TEST(LossyLink, SwappedMessagesDoNotActivate) {
 }
 
 // All faults at random, in both directions.
-TEST(LossyLink, SurvivesRandomFaultsInBothDirections) {
+TEST(LossyLink, SurvivesRandomFaults) {
   for (std::uint32_t seed = 0; seed < 150U; ++seed) {
     Rig r;
     std::mt19937 random(seed);
@@ -350,7 +350,7 @@ Bytes readdressed(const Bytes& frame, std::uint16_t session, std::uint16_t seque
   return {};
 }
 
-TEST(LossyLink, NoSingleMessageActivatesAStoppedBoard) {
+TEST(LossyLink, NeverActivatesOnSingleMessage) {
   for (const Bytes& frame : recorded().frames_to_board) {
     Rig r;
     ASSERT_TRUE(r.rig.open(0).ok());
@@ -367,7 +367,7 @@ TEST(LossyLink, NoSingleMessageActivatesAStoppedBoard) {
 }
 
 // Repeats arm with new sequence numbers, as an application that retries.
-TEST(LossyLink, RepeatedArmRequestsDoNotConfirm) {
+TEST(LossyLink, IgnoresRepeatedArmAsConfirmation) {
   Rig r;
   ASSERT_TRUE(r.rig.open(0).ok());
   for (int i = 0; i < 10; ++i) {

@@ -29,7 +29,7 @@ class SessionTest : public ::testing::Test {
   SessionRig<> rig{no_store(), SessionRig<>::configuration(), blob().written().bytes};
 };
 
-TEST_F(SessionTest, IdentifiesItselfWithoutASession) {
+TEST_F(SessionTest, IdentifiesItselfWithoutSession) {
   const client::Response response = rig.ask(MessageKind::kIdentify);
   core::wire::IdentifyReply reply;
   ASSERT_TRUE(response.ok() && response.read(reply));
@@ -38,7 +38,7 @@ TEST_F(SessionTest, IdentifiesItselfWithoutASession) {
   EXPECT_EQ(reply.serial[2], 3U);
 }
 
-TEST_F(SessionTest, RefusesOtherMessagesWithoutASession) {
+TEST_F(SessionTest, RefusesOtherMessagesWithoutSession) {
   for (const MessageKind kind :
        {MessageKind::kCapabilities, MessageKind::kState, MessageKind::kHeartbeat,
         MessageKind::kSetLimits, MessageKind::kBeginModel, MessageKind::kReadTrace}) {
@@ -46,7 +46,7 @@ TEST_F(SessionTest, RefusesOtherMessagesWithoutASession) {
   }
 }
 
-TEST_F(SessionTest, RefusesAnotherMajorVersionAndAcceptsANewerMinorVersion) {
+TEST_F(SessionTest, ChecksMajorVersionOnly) {
   core::wire::OpenRequest request;
   request.version_major = core::wire::kProtocolMajor + 1;
   EXPECT_EQ(rig.ask(MessageKind::kOpen, request).status, WireStatus::kBadVersion);
@@ -72,7 +72,7 @@ TEST_F(SessionTest, ReportsCapabilitiesAndState) {
   EXPECT_NEAR(state.probe_m[0], 0.05F, 1e-4F);
 }
 
-TEST_F(SessionTest, ArmsOnlyAfterTwoMessagesWithTheToken) {
+TEST_F(SessionTest, RequiresTokenToConfirmArming) {
   ASSERT_TRUE(rig.open().ok());
   core::wire::ControlReply armed;
   ASSERT_TRUE(rig.control(ControlCode::kArm).read(armed));
@@ -101,7 +101,7 @@ TEST_F(SessionTest, ArmsOnlyAfterTwoMessagesWithTheToken) {
   EXPECT_EQ(rig.control(ControlCode::kConfirm, armed.token).status, WireStatus::kBadToken);
 }
 
-TEST_F(SessionTest, RefusesAMessageTheStateDoesNotAllowWithoutAFault) {
+TEST_F(SessionTest, RefusesUntimelyMessagesWithoutFault) {
   ASSERT_TRUE(rig.open().ok());
   EXPECT_EQ(rig.control(ControlCode::kConfirm, 5).status, WireStatus::kNotNow);
   EXPECT_EQ(rig.control(static_cast<ControlCode>(99)).status, WireStatus::kBadValue);
@@ -112,7 +112,7 @@ TEST_F(SessionTest, RefusesAMessageTheStateDoesNotAllowWithoutAFault) {
   EXPECT_EQ(rig.controller().faults(), 0U);
 }
 
-TEST_F(SessionTest, AcceptsStopWithoutASession) {
+TEST_F(SessionTest, AcceptsStopWithoutSession) {
   ASSERT_TRUE(rig.open().ok());
   ASSERT_TRUE(rig.arm());
   rig.replace_client();
@@ -120,7 +120,7 @@ TEST_F(SessionTest, AcceptsStopWithoutASession) {
   EXPECT_EQ(rig.state(), State::kIdle);
 }
 
-TEST_F(SessionTest, RefusesAnotherSessionWhileForceIsPossible) {
+TEST_F(SessionTest, RefusesSecondSessionUnderForce) {
   ASSERT_TRUE(rig.open().ok());
   ASSERT_TRUE(rig.arm());
   rig.replace_client();
@@ -130,7 +130,7 @@ TEST_F(SessionTest, RefusesAnotherSessionWhileForceIsPossible) {
   EXPECT_TRUE(rig.open(0, 8).ok());
 }
 
-TEST_F(SessionTest, StopsWhenTheSessionIsClosed) {
+TEST_F(SessionTest, StopsOnClose) {
   ASSERT_TRUE(rig.open(20).ok());
   ASSERT_TRUE(rig.arm());
   EXPECT_TRUE(rig.ask(MessageKind::kClose).ok());
@@ -139,7 +139,7 @@ TEST_F(SessionTest, StopsWhenTheSessionIsClosed) {
   EXPECT_FALSE(rig.controller().configuration().link_required);
 }
 
-TEST_F(SessionTest, LowersLimitsOnlyAndOnlyWhileStopped) {
+TEST_F(SessionTest, LowersLimitsOnlyWhileStopped) {
   ASSERT_TRUE(rig.open().ok());
   EXPECT_TRUE(
       rig.ask(MessageKind::kSetLimits, core::wire::SetLimitsRequest{3.0F, 500.0F, 0.5F}).ok());
@@ -160,7 +160,7 @@ TEST_F(SessionTest, LowersLimitsOnlyAndOnlyWhileStopped) {
   EXPECT_EQ(rig.controller().configuration().force_max_N, 3.0F);
 }
 
-TEST_F(SessionTest, ChangesTheMaterialDuringContact) {
+TEST_F(SessionTest, ChangesMaterialWhileActive) {
   ASSERT_TRUE(rig.open().ok());
   ASSERT_TRUE(rig.arm());
   EXPECT_TRUE(rig.ask(MessageKind::kSetMaterial,
@@ -178,7 +178,7 @@ TEST_F(SessionTest, ChangesTheMaterialDuringContact) {
   EXPECT_EQ(rig.state(), State::kActive);
 }
 
-TEST_F(SessionTest, MovesABody) {
+TEST_F(SessionTest, MovesBody) {
   ASSERT_TRUE(rig.open().ok());
   ASSERT_TRUE(rig.arm());
   core::wire::MoveBodyRequest request;
@@ -195,7 +195,7 @@ TEST_F(SessionTest, MovesABody) {
   EXPECT_EQ(rig.ask(MessageKind::kMoveBody, request).status, WireStatus::kBadValue);
 }
 
-TEST_F(SessionTest, LimitsAndExpiresAnExternalForce) {
+TEST_F(SessionTest, LimitsAndExpiresExternalForce) {
   ASSERT_TRUE(rig.open().ok());
   const core::wire::AddForceRequest push{{0.0F, 0.0F, 1.5F}, 50};
   EXPECT_EQ(rig.ask(MessageKind::kAddForce, push).status, WireStatus::kNotNow);
@@ -220,7 +220,7 @@ TEST_F(SessionTest, LimitsAndExpiresAnExternalForce) {
   }
 }
 
-TEST_F(SessionTest, SendsTelemetryWithTheRequestedFields) {
+TEST_F(SessionTest, SendsRequestedTelemetryFields) {
   ASSERT_TRUE(rig.open().ok());
   std::vector<client::Telemetry> got;
   rig.client().on_telemetry([&](const client::Telemetry& t) { got.push_back(t); });
@@ -244,7 +244,7 @@ TEST_F(SessionTest, SendsTelemetryWithTheRequestedFields) {
 }
 
 // USB full speed carries 1 MB/s.
-TEST_F(SessionTest, TelemetryOfAllFieldsAtFourKilohertzFitsUsbFullSpeed) {
+TEST_F(SessionTest, FitsTelemetryIntoFullSpeed) {
   ASSERT_TRUE(rig.open().ok());
   ASSERT_TRUE(rig.ask(MessageKind::kSubscribe, core::wire::SubscribeRequest{0x3FF, 1}).ok());
   rig.settle(10);
@@ -252,7 +252,7 @@ TEST_F(SessionTest, TelemetryOfAllFieldsAtFourKilohertzFitsUsbFullSpeed) {
   EXPECT_GE(rig.to_host().sent().back().size(), 160U);
 }
 
-TEST_F(SessionTest, ReadsTheTraceInPieces) {
+TEST_F(SessionTest, ReadsTraceInPieces) {
   ASSERT_TRUE(rig.open().ok());
   const client::Response response =
       rig.ask(MessageKind::kReadTrace, core::wire::ReadTraceRequest{0, 13});
@@ -269,7 +269,7 @@ TEST_F(SessionTest, ReadsTheTraceInPieces) {
   EXPECT_EQ(reply.count, 0U);
 }
 
-TEST_F(SessionTest, ReportsTheFirstFault) {
+TEST_F(SessionTest, ReportsFirstFault) {
   ASSERT_TRUE(rig.open().ok());
   rig.board().safety_inputs().press_emergency_stop(true);
   rig.settle(3);
@@ -282,7 +282,7 @@ TEST_F(SessionTest, ReportsTheFirstFault) {
   EXPECT_EQ(rig.state(), State::kIdle);
 }
 
-TEST_F(SessionTest, ReportsTheStartWithoutASession) {
+TEST_F(SessionTest, ReportsStartWithoutSession) {
   core::wire::ReadStartReply start;
   ASSERT_TRUE(rig.ask(MessageKind::kReadStart).read(start));
   EXPECT_EQ(start.missing, 0U);
@@ -303,7 +303,7 @@ TEST_F(SessionTest, ReportsTheStartWithoutASession) {
   EXPECT_EQ(rig.client().session(), 0U) << "it opened a session for that";
 }
 
-TEST_F(SessionTest, ListsParametersAndChecksTheirRanges) {
+TEST_F(SessionTest, ListsAndChecksParameters) {
   ASSERT_TRUE(rig.open().ok());
   for (std::uint32_t i = 0; i < core::kParameters; ++i) {
     core::wire::ParameterReply reply;
@@ -325,7 +325,7 @@ TEST_F(SessionTest, ListsParametersAndChecksTheirRanges) {
             WireStatus::kBusy);
 }
 
-TEST_F(SessionTest, RefusesShortMessagesOfEveryKind) {
+TEST_F(SessionTest, RefusesEveryShortMessage) {
   ASSERT_TRUE(rig.open().ok());
   for (const MessageKind kind :
        {MessageKind::kHeartbeat, MessageKind::kControl, MessageKind::kSetLimits,

@@ -12,7 +12,7 @@ namespace {
 
 using namespace hal::sim;
 
-TEST(DelayLine, ReturnsTheValueOfTheLatency) {
+TEST(DelayLine, DelaysByLatency) {
   for (const std::uint32_t latency : {0U, 1U, 5U, kMaxLatencyTicks}) {
     DelayLine<int> line(latency, -1);
     for (int i = 0; i < 200; ++i) {
@@ -47,7 +47,7 @@ TEST(SimEncoder, ReadsDelayedPositions) {
   }
 }
 
-TEST(SimEncoder, CountsAcrossTheOverflow) {
+TEST(SimEncoder, CountsAcrossOverflow) {
   EncoderParameters parameters;
   parameters.counts_per_m = 1000.0;
   parameters.start_count = 0x7FFFFFFFU;
@@ -56,7 +56,7 @@ TEST(SimEncoder, CountsAcrossTheOverflow) {
   EXPECT_EQ(bank.read().counts[0], std::numeric_limits<std::int32_t>::min());
 }
 
-TEST(SimEncoder, Faults) {
+TEST(SimEncoder, InjectsFaults) {
   EncoderParameters parameters;
   parameters.counts_per_m = 1000.0;
   SimEncoderBank bank(parameters);
@@ -94,7 +94,7 @@ TEST(SimMotor, ActsAfterItsLatency) {
   EXPECT_EQ(bank.effort(0, true), 1.0);
 }
 
-TEST(SimMotor, Faults) {
+TEST(SimMotor, InjectsFaults) {
   SimMotorBank bank({});
   bank.write(command_of(1.0F));
   bank.inject(0, MotorFault::kReversed);
@@ -119,7 +119,7 @@ TEST(SimEnableLine, FollowsAfterItsDelay) {
   EXPECT_EQ(ticks, 4);  // sampled at the next tick, then three on the way
 }
 
-TEST(SimTicker, KeepsTimeAndCountsMissedDeadlines) {
+TEST(SimTicker, CountsMissedDeadlines) {
   SimEnableLine line(0);
   SimTicker ticker(250, line);
   EXPECT_EQ(ticker.wait().overruns, 0U);
@@ -141,7 +141,7 @@ TEST(SimLink, ReturnsEachMessageOnce) {
   EXPECT_EQ(link.receive().command, core::Command::kNone);
 }
 
-TEST(SimLink, DeliversUpdatesUnlessTheMessageIsLost) {
+TEST(SimLink, DropsUpdatesOfLostMessage) {
   SimLink link;
   const hal::BodyUpdate gone{.body = 3, .enabled = false};
   link.post(core::Command::kStop);

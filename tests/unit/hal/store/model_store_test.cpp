@@ -135,14 +135,14 @@ struct StoreTest : ::testing::Test {
   store::StoreSetup setup{"here", nullptr, {}};
 };
 
-TEST_F(StoreTest, FindsNoModelInAnEmptyFlash) {
+TEST_F(StoreTest, FindsNothingInEmptyFlash) {
   Store store(flash, setup);
   EXPECT_TRUE(store.mount());
   EXPECT_TRUE(store.active().empty());
   EXPECT_EQ(store.list().slot[0].state, static_cast<std::uint8_t>(core::wire::SlotState::kEmpty));
 }
 
-TEST_F(StoreTest, UsesTheModelOfTheImageUntilTheFirstUpdate) {
+TEST_F(StoreTest, UsesImageModelUntilUpdate) {
   const Bytes factory = bytes_of_model(2);
   setup.factory = factory;
   Store store(flash, setup);
@@ -152,7 +152,7 @@ TEST_F(StoreTest, UsesTheModelOfTheImageUntilTheFirstUpdate) {
   EXPECT_TRUE(is_model(store.active(), 0));
 }
 
-TEST_F(StoreTest, UpdatesRollsBackAndKeepsTheChoice) {
+TEST_F(StoreTest, UpdatesAndRollsBack) {
   {
     Store store(flash, setup);
     ASSERT_TRUE(store.mount());
@@ -174,7 +174,7 @@ TEST_F(StoreTest, UpdatesRollsBackAndKeepsTheChoice) {
   EXPECT_EQ(flash.mistakes(), 0U);
 }
 
-TEST_F(StoreTest, HundredsOfUpdatesWearBothRecordSectorsEvenly) {
+TEST_F(StoreTest, WearsRecordSectorsEvenly) {
   Store store(flash, setup);
   ASSERT_TRUE(store.mount());
   for (int i = 0; i < 200; ++i) {
@@ -203,7 +203,7 @@ TEST_F(StoreTest, KeepsParameters) {
   EXPECT_EQ(store.parameters()[3], 0.25F);
 }
 
-TEST_F(StoreTest, RefusalsHaveUniqueNames) {
+TEST_F(StoreTest, DistinguishesRefusals) {
   Store store(flash, setup);
   ASSERT_TRUE(store.mount());
   const Order good{bytes_of_model(0), "", 0, false};
@@ -262,7 +262,7 @@ TEST_F(StoreTest, RefusalsHaveUniqueNames) {
   EXPECT_EQ(flash.mistakes(), 0U);
 }
 
-TEST_F(StoreTest, RefusesUnsignedAndOlderModelsIfAKeyIsSet) {
+TEST_F(StoreTest, RefusesUnsignedAndOlderModels) {
   setup.key = key().open.data();
   Store store(flash, setup);
   ASSERT_TRUE(store.mount());
@@ -299,7 +299,7 @@ TEST_F(StoreTest, RefusesUnsignedAndOlderModelsIfAKeyIsSet) {
   EXPECT_TRUE(other_key.active().empty());
 }
 
-TEST_F(StoreTest, RefusesACorruptModelOrCorruptRecords) {
+TEST_F(StoreTest, RefusesCorruptModelsAndRecords) {
   Store store(flash, setup);
   ASSERT_TRUE(store.mount());
   ASSERT_EQ(update(store, {bytes_of_model(0), "", 0, false}), WireStatus::kOk);
@@ -345,7 +345,7 @@ struct FactoryInSlots : ::testing::Test {
   }
 };
 
-TEST_F(FactoryInSlots, UsesTheWholeFlashForModels) {
+TEST_F(FactoryInSlots, UsesWholeFlashForModels) {
   Store store = mounted();
   EXPECT_EQ(store.slot_bytes(), 8U * 1024U);
   for (int i = 0; i < 20; ++i) {
@@ -357,7 +357,7 @@ TEST_F(FactoryInSlots, UsesTheWholeFlashForModels) {
   EXPECT_NEAR(records.erased_times(0), records.erased_times(1), 1);
 }
 
-TEST_F(FactoryInSlots, OverwritesTheFactorySlotOnlyWhenItIsNotInUse) {
+TEST_F(FactoryInSlots, OverwritesUnusedFactorySlotOnly) {
   program_factory(bytes_of_model(0), 0);
   Store store = mounted();
   EXPECT_EQ(store.begin_erase(0, &kOwner), WireStatus::kInUse);
@@ -371,7 +371,7 @@ TEST_F(FactoryInSlots, OverwritesTheFactorySlotOnlyWhenItIsNotInUse) {
   EXPECT_EQ(models.mistakes(), 0U);
 }
 
-TEST_F(FactoryInSlots, DoesNotOverwriteAFactoryModelInBothSlots) {
+TEST_F(FactoryInSlots, KeepsFactoryModelAcrossSlots) {
   program_factory(bytes_of_model(0), 8U - 1U);
   ASSERT_GT(bytes_of_model(0).size(), 1024U);
   Store store = mounted();
@@ -379,14 +379,14 @@ TEST_F(FactoryInSlots, DoesNotOverwriteAFactoryModelInBothSlots) {
   EXPECT_TRUE(is_model(mounted().active(), 0));
 }
 
-TEST_F(FactoryInSlots, InvalidFactoryDataDoesNotBlockUpdates) {
+TEST_F(FactoryInSlots, UpdatesDespiteInvalidFactoryData) {
   program_factory(Bytes(4096, std::byte{0x55}), 6);
   Store store = mounted();
   EXPECT_EQ(update(store, {bytes_of_model(1), "", 0, false}), WireStatus::kOk);
   EXPECT_TRUE(is_model(mounted().active(), 1));
 }
 
-TEST_F(FactoryInSlots, APowerCutDuringTheFirstUpdateLeavesTheOldOrTheNewModel) {
+TEST_F(FactoryInSlots, SurvivesPowerCutDuringUpdate) {
   for (SimFlash* cut : {&records, &models}) {
     for (std::uint64_t operation = 0; operation < 2000U; operation += 1U + operation / 16U) {
       records = SimFlash({512, 2, 4});
@@ -405,7 +405,7 @@ TEST_F(FactoryInSlots, APowerCutDuringTheFirstUpdateLeavesTheOldOrTheNewModel) {
 }
 
 // With any bytes in the flash the store starts, and its active model is valid or empty.
-TEST_F(StoreTest, RandomFlashContentIsHandledSafely) {
+TEST_F(StoreTest, SurvivesRandomFlashContent) {
   std::mt19937 random(9);
   Store store(flash, setup);
   ASSERT_TRUE(store.mount());
@@ -470,7 +470,7 @@ void expect_update_works(SimFlash& flash, const std::string& what) {
   ASSERT_EQ(flash.mistakes(), 0U) << what;
 }
 
-TEST(PowerCut, AtEveryOperationLeavesTheOldOrTheNewModel) {
+TEST(PowerCut, KeepsModelAtEveryOperation) {
   for (int updates = 1; updates <= 5; ++updates) {
     const BeforeUpdate before = prepare(updates);
     ASSERT_GE(before.operations, 40U);
@@ -494,7 +494,7 @@ TEST(PowerCut, AtEveryOperationLeavesTheOldOrTheNewModel) {
 }
 
 // A cut, a restart with a second update, and a cut during that update.
-TEST(PowerCut, AtEveryPairOfOperationsLeavesTheOldOrTheNewModel) {
+TEST(PowerCut, KeepsModelAtOperationPairs) {
   const BeforeUpdate before = prepare(2);
   for (std::uint64_t first = 0; first < before.operations; ++first) {
     for (std::uint64_t second = 0; second < before.operations; ++second) {
@@ -517,7 +517,7 @@ TEST(PowerCut, AtEveryPairOfOperationsLeavesTheOldOrTheNewModel) {
 }
 
 // The first record: the model of the image or the new one.
-TEST(PowerCut, DuringTheFirstUpdateLeavesTheOldOrTheNewModel) {
+TEST(PowerCut, KeepsModelDuringFirstUpdate) {
   const Bytes factory = bytes_of_model(0);
   const store::StoreSetup setup{"here", nullptr, factory};
   for (std::uint64_t operation = 0; operation < 200U; ++operation) {

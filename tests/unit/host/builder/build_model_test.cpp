@@ -46,7 +46,7 @@ std::vector<DecodedPoint> decode(const BuildResult& result) {
   return points;
 }
 
-TEST(BuildModel, PointsOfASphereLieOnItWithinTwoPercentOfTheSpacing) {
+TEST(BuildModel, KeepsPointsOnSphere) {
   const double radius = 0.03;
   for (const bool with_normals : {true, false}) {
     Cloud cloud = random_sphere(100000, radius);
@@ -69,7 +69,7 @@ TEST(BuildModel, PointsOfASphereLieOnItWithinTwoPercentOfTheSpacing) {
   }
 }
 
-TEST(BuildModel, PointsOfABoxMeshLieOnItsFaces) {
+TEST(BuildModel, KeepsPointsOnBoxFaces) {
   const Eigen::Vector3d low(-0.03, -0.02, -0.01);
   const Eigen::Vector3d high(0.03, 0.02, 0.01);
   BuildOptions options;
@@ -102,7 +102,7 @@ TEST(BuildModel, IsIndependentOfThreads) {
   }
 }
 
-TEST(BuildModel, NoBallExceedsTheBoardsLimit) {
+TEST(BuildModel, KeepsBallsWithinBoardLimit) {
   BuildOptions options;
   options.resample = false;  // many more points than for the spacing
   Cloud cloud = even_sphere(1000, 0.03);
@@ -188,7 +188,7 @@ class BuildFromFiles : public testing::Test {
   std::filesystem::path folder_;
 };
 
-TEST_F(BuildFromFiles, JoinsThemAndDigestsTheirBytes) {
+TEST_F(BuildFromFiles, JoinsFilesAndDigestsBytes) {
   const std::vector<std::filesystem::path> files = {write_grid("one.xyz", 0, 50),
                                                     write_grid("two.xyz", 50, 90)};
   BuildOptions options;
@@ -209,7 +209,7 @@ TEST_F(BuildFromFiles, JoinsThemAndDigestsTheirBytes) {
   EXPECT_EQ(digest, "9e43bc9680612ba195ee465d409d9192d5c12348abbd9d77de6b5cf973b71774");
 }
 
-TEST_F(BuildFromFiles, NamesTheFileThatCannotBeBuilt) {
+TEST_F(BuildFromFiles, NamesUnbuildableFile) {
   const std::vector<std::filesystem::path> files = {write("ball.xyz", even_sphere(2000, 0.03))};
   BuildOptions options;
   options.crop = Eigen::AlignedBox3d(Eigen::Vector3d(1, 1, 1), Eigen::Vector3d(2, 2, 2));
@@ -223,7 +223,7 @@ TEST_F(BuildFromFiles, NamesTheFileThatCannotBeBuilt) {
   }
 }
 
-TEST(BuildModel, WarnsOfASizeThatNoHandCanFeelUnlessAUnitIsGiven) {
+TEST(BuildModel, WarnsOfImplausibleSize) {
   const auto warned = [](double radius_m, const BuildOptions& options) {
     Progress quiet;
     const BuildReport report =

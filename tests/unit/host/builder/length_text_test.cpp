@@ -7,7 +7,7 @@
 namespace tactree::builder {
 namespace {
 
-TEST(LengthText, HasAUnitThatFits) {
+TEST(LengthText, HasFittingUnit) {
   EXPECT_EQ(length_text(0.0), "0 mm");
   EXPECT_EQ(length_text(5e-5), "50 um");
   EXPECT_EQ(length_text(3.1141e-3), "3.114 mm");
@@ -19,7 +19,7 @@ TEST(LengthText, HasAUnitThatFits) {
   EXPECT_EQ(length_text(0.0123456, 6), "12.3456 mm");
 }
 
-TEST(LengthText, OfASizeHasOneUnitAndNoExponent) {
+TEST(LengthText, UsesOneUnitPerSize) {
   EXPECT_EQ(size_text({238.5, 494.2, 20.0}), "238.5 x 494.2 x 20 m");
   EXPECT_EQ(size_text({238500.0, 494200.0, 20.0}), "238.5 x 494.2 x 0.02 km");
   EXPECT_EQ(size_text({0.06, 0.04, 0.0}), "60 x 40 x 0 mm");
@@ -28,7 +28,7 @@ TEST(LengthText, OfASizeHasOneUnitAndNoExponent) {
   EXPECT_EQ(place_text({-0.0125, 0.002, -0.0}), "(-12.5, 2, 0) mm");
 }
 
-TEST(SizeAdvice, IsForSizesThatNoHandCanFeel) {
+TEST(SizeAdvice, IsGivenForImplausibleSizes) {
   EXPECT_FALSE(size_advice(0.0));
   EXPECT_FALSE(size_advice(0.005));
   EXPECT_FALSE(size_advice(1.0));

@@ -43,7 +43,7 @@ void for_each_point(const BuildResult& result, Use&& use) {
   }
 }
 
-TEST(MaterialMap, ChoosesTheNearestColourWithinItsTolerance) {
+TEST(MaterialMap, ChoosesNearestColourWithinTolerance) {
   MaterialMap map = red_and_blue();
   EXPECT_EQ(map.index_of({255, 0, 0}), 1);
   EXPECT_EQ(map.index_of({250, 10, 5}), 1);
@@ -61,7 +61,7 @@ TEST(MaterialMap, ChoosesTheNearestColourWithinItsTolerance) {
   EXPECT_EQ(map.list()[2].stiffness_N_m, 300.0F);
 }
 
-TEST(MaterialMap, KeepsColoursThroughCleaningAndResampling) {
+TEST(MaterialMap, KeepsColoursThroughBuild) {
   Scan scan;
   Cloud cloud = random_sphere(60000, 0.05);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
@@ -91,7 +91,7 @@ TEST(MaterialMap, KeepsColoursThroughCleaningAndResampling) {
   EXPECT_GT(counts[1], 100U);
 }
 
-TEST(MaterialMap, PointsOfAFaceHaveTheMaterialOfTheNearestCorner) {
+TEST(MaterialMap, TakesMaterialOfNearestCorner) {
   Scan scan;
   scan.positions = {{-0.05, -0.05, 0}, {0.05, -0.05, 0}, {0.05, 0.05, 0}, {-0.05, 0.05, 0}};
   scan.colours = {kRed, kBlue, kBlue, kRed};
@@ -112,7 +112,7 @@ TEST(MaterialMap, PointsOfAFaceHaveTheMaterialOfTheNearestCorner) {
   EXPECT_EQ(wrong, 0U);
 }
 
-TEST(MaterialMap, ScansWithoutColoursGetTheBaseMaterial) {
+TEST(MaterialMap, GivesColourlessScansBaseMaterial) {
   Scan coloured;
   coloured.positions = plane_grid(40, 1e-3).positions;
   coloured.colours.assign(coloured.positions.size(), kRed);
@@ -128,7 +128,7 @@ TEST(MaterialMap, ScansWithoutColoursGetTheBaseMaterial) {
   });
 }
 
-TEST(MaterialMap, RefusesScansWithoutAnyColourAndWarnsOfAnUnusedOne) {
+TEST(MaterialMap, ReportsMissingAndUnusedColours) {
   Scan scan;
   scan.positions = plane_grid(40, 1e-3).positions;
   BuildOptions options;
@@ -141,7 +141,7 @@ TEST(MaterialMap, RefusesScansWithoutAnyColourAndWarnsOfAnUnusedOne) {
   EXPECT_NE(result.report.warnings[0].find("'red'"), std::string::npos);
 }
 
-TEST(MaterialMap, ASingleMaterialCostsNoByteAPoint) {
+TEST(MaterialMap, StoresSingleMaterialOnce) {
   Scan scan;
   scan.positions = plane_grid(40, 1e-3).positions;
   BuildOptions options;

@@ -31,18 +31,18 @@ std::size_t count_lines(const std::string& text) {
   return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
 }
 
-TEST(Progress, PrintsNothingInAPipeAndWhenOff) {
+TEST(Progress, PrintsNothingPipedOrOff) {
   EXPECT_EQ(output_of(ProgressStyle::kAuto), "");
   EXPECT_EQ(output_of(ProgressStyle::kOff), "");
 }
 
-TEST(Progress, PrintsALinePerStepWhenPlain) {
+TEST(Progress, PrintsPlainLinePerStep) {
   const std::string text = output_of(ProgressStyle::kPlain);
   EXPECT_EQ(count_lines(text), 1U);
   EXPECT_NE(text.find("reading \"a\\b\""), std::string::npos);
 }
 
-TEST(Progress, PrintsAnObjectPerLineAsJson) {
+TEST(Progress, PrintsJsonObjectPerLine) {
   const std::string text = output_of(ProgressStyle::kJson);
   EXPECT_GT(count_lines(text), 10U);
   EXPECT_LT(count_lines(text), 30U);

@@ -75,7 +75,7 @@ std::string hint_of(Scan scan, std::optional<UpAxis> given = {}) {
   return "";
 }
 
-TEST(UpHint, NamesTheOptionForABodyOnItsSide) {
+TEST(UpHint, NamesOptionForLyingBody) {
   for (const auto& outline : {dome(), kMug, kCone}) {
     EXPECT_NE(hint_of(laid(turned(outline), UpAxis::kY)).find("(--axis y turns it"),
               std::string::npos);
@@ -84,7 +84,7 @@ TEST(UpHint, NamesTheOptionForABodyOnItsSide) {
   }
 }
 
-TEST(UpHint, IsNotGivenWhereTheAxisIsOrTheBodyStands) {
+TEST(UpHint, IsOmittedWhenUnneeded) {
   EXPECT_EQ(hint_of(laid(turned(dome()), UpAxis::kY), UpAxis::kZ), "");
   EXPECT_EQ(hint_of(laid(turned(dome()), UpAxis::kY), UpAxis::kY), "");
   for (const auto& outline : {dome(), kMug, kCone}) {
@@ -92,7 +92,7 @@ TEST(UpHint, IsNotGivenWhereTheAxisIsOrTheBodyStands) {
   }
 }
 
-TEST(UpHint, IsNotGivenWhereTheShapeDoesNotTell) {
+TEST(UpHint, IsOmittedForAmbiguousShape) {
   EXPECT_EQ(hint_of(mesh_scan(box_mesh({-0.01, -0.02, -0.03}, {0.01, 0.02, 0.03}))), "");
   EXPECT_EQ(hint_of(laid(turned(kCan), UpAxis::kY)), "");
   EXPECT_EQ(hint_of(cloud_scan(even_sphere(20000, 0.03))), "");
@@ -104,7 +104,7 @@ TEST(UpHint, IsNotGivenWhereTheShapeDoesNotTell) {
   EXPECT_EQ(hint_of(cloud_scan(std::move(wall))), "");
 }
 
-TEST(UpHint, IsNotGivenForAPlateForTwoBasesOrForFewPoints) {
+TEST(UpHint, RequiresSingleLargeBase) {
   std::vector<Eigen::Vector3d> positions;
   std::vector<Eigen::Vector3f> normals;
   const auto add = [&](int count, double y, const Eigen::Vector3f& normal) {

@@ -10,12 +10,12 @@ extern "C" int c_program(const char* port);
 namespace tactree::test {
 namespace {
 
-TEST(CInterface, AProgramInCRendersTheBall) {
+TEST(CInterface, RendersBall) {
   const RunningBoard running(0.0295);
   EXPECT_EQ(c_program(running.port().c_str()), 0);
 }
 
-TEST(CInterface, AnErrorHasAMessage) {
+TEST(CInterface, GivesErrorMessages) {
   EXPECT_EQ(tactree_open("/dev/no-such-port", 115200, 0), nullptr);
   EXPECT_NE(std::strstr(tactree_error(nullptr), "/dev/no-such-port"), nullptr);
   const RunningBoard running;

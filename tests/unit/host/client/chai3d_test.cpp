@@ -65,7 +65,7 @@ class GenericHapticDevice {
 
 using Device = chai3d::Device<GenericHapticDevice, Vector, Matrix>;
 
-TEST(Chai3d, ReadsThePositionAndAppliesForce) {
+TEST(Chai3d, ReadsPositionAndAppliesForce) {
   const RunningBoard running;
   chai3d::DeviceOptions options;
   Device device(running.port(), options);
@@ -95,7 +95,7 @@ TEST(Chai3d, ReadsThePositionAndAppliesForce) {
   EXPECT_FALSE(generic.setForceAndTorqueAndGripperForce(push, {}, 0.0));
 }
 
-TEST(Chai3d, ReportsTheCauseOfAFailure) {
+TEST(Chai3d, ReportsFailureCause) {
   Device device("/dev/no-such-port");
   EXPECT_FALSE(device.open());
   EXPECT_NE(device.error().find("/dev/no-such-port"), std::string::npos);

@@ -17,7 +17,7 @@
 namespace tactree::test {
 namespace {
 
-TEST(Connection, ReportsTheCauseOfAPortFailure) {
+TEST(Connection, ReportsPortFailureCause) {
   for (const char* port : {"/dev/no-such-port", "/dev/null"}) {
     try {
       client::Board board(port);
@@ -29,7 +29,7 @@ TEST(Connection, ReportsTheCauseOfAPortFailure) {
   EXPECT_THROW((void)client::open_serial_port("/dev/null", 12345), client::LinkError);
 }
 
-TEST(Connection, NamesTheDefaultInsteadOfAnUnusualSpeed) {
+TEST(Connection, NamesDefaultForUnusualSpeed) {
   try {
     (void)client::open_serial_port("/dev/null", 0);
     FAIL();
@@ -41,13 +41,13 @@ TEST(Connection, NamesTheDefaultInsteadOfAnUnusualSpeed) {
   }
 }
 
-TEST(Connection, RefusesASilentPort) {
+TEST(Connection, RefusesSilentPort) {
   RunningBoard silent;
   silent.freeze(true);
   EXPECT_THROW(client::Board board(silent.port()), client::LinkError);
 }
 
-TEST(Connection, TimePassesOnlyWhileTheProgramLetsIt) {
+TEST(Connection, TimePassesOnlyOnRequest) {
   const RunningBoard running;
   client::Board board(running.port(), {.link_timeout_ms = 5});
   const auto begin = board.connection().now();
@@ -59,7 +59,7 @@ TEST(Connection, TimePassesOnlyWhileTheProgramLetsIt) {
   EXPECT_EQ(static_cast<core::State>(board.state().state), core::State::kActive);
 }
 
-TEST(Connection, ASerialPortIsReadAndWritten) {
+TEST(Connection, ReadsAndWritesSerialPort) {
   client::PseudoTerminal board;
   const std::unique_ptr<client::Transport> port =
       client::open_port(board.name(), client::kUsualBaud);
@@ -88,7 +88,7 @@ TEST(Connection, RendersContactAndStops) {
 }
 
 // Unplugs the board and plugs it in again under the same name.
-TEST(Connection, ReconnectsAReturningBoardWithoutArmingIt) {
+TEST(Connection, ReconnectsReturningBoardUnarmed) {
   const std::filesystem::path link =
       std::filesystem::temp_directory_path() / ("tactree-port-" + std::to_string(::getpid()));
   const auto plug_in = [&link](const RunningBoard& running) {
@@ -119,14 +119,14 @@ TEST(Connection, ReconnectsAReturningBoardWithoutArmingIt) {
   std::filesystem::remove(link);
 }
 
-TEST(Connection, DoesNotReconnectABoardWithoutAName) {
+TEST(Connection, RefusesNamelessReconnect) {
   const RunningBoard running;
   client::Board board(client::open_port(running.port(), 0), {});
   EXPECT_THROW(board.reconnect(), client::LinkError);
   EXPECT_TRUE(board.connected());
 }
 
-TEST(Connection, DeliversTheStreamAndCountsMissingMessages) {
+TEST(Connection, DeliversStreamAndCountsGaps) {
   const RunningBoard running;
   client::Board board(running.port());
   board.subscribe({0x003, 1});
@@ -143,7 +143,7 @@ TEST(Connection, DeliversTheStreamAndCountsMissingMessages) {
   EXPECT_LE(missing, board.dropped());
 }
 
-TEST(Connection, LimitsTheSizeOfAnUnreadStream) {
+TEST(Connection, LimitsUnreadStream) {
   const RunningBoard running;
   client::ConnectionOptions options;
   options.stream_capacity = 10;
@@ -163,7 +163,7 @@ TEST(Connection, CountsRefusedPosts) {
   EXPECT_TRUE(comes_true(board.connection(), [&] { return board.connection().refusals() == 1U; }));
 }
 
-TEST(Connection, FlashesRollsBackAndReadsTraceAndParameters) {
+TEST(Connection, ManagesModelsTraceAndParameters) {
   const RunningBoard running;
   client::Board board(running.port());
   const TestBlob one(sphere(0.02, 0.002));

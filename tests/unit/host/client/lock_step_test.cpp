@@ -54,7 +54,7 @@ std::string refusal_in(const fs::path& folder) {
   }
 }
 
-TEST(LockStep, AServerThatCannotStartLeavesNothingBehind) {
+TEST(LockStep, FailedServerLeavesNothingBehind) {
   const std::ptrdiff_t before = open_descriptors();
   EXPECT_NE(refusal_in("/no/such/folder").find("set TMPDIR"), std::string::npos);
   EXPECT_NE(refusal_in("/proc").find("/proc/tactree-"), std::string::npos);
@@ -69,7 +69,7 @@ TEST(LockStep, AServerThatCannotStartLeavesNothingBehind) {
   EXPECT_EQ(open_descriptors(), before);
 }
 
-TEST(LockStep, APortThatCannotBeOpenedLeavesNothingBehind) {
+TEST(LockStep, FailedPortLeavesNothingBehind) {
   const std::ptrdiff_t before = open_descriptors();
   EXPECT_THROW((void)client::open_lock_step(std::string(120, 'x')), client::LinkError);
   EXPECT_THROW((void)client::open_lock_step("/no/such/socket"), client::LinkError);

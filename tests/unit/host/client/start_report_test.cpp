@@ -18,7 +18,7 @@ bool has(const std::vector<std::string>& all, const std::string& words) {
   return all.size() == 1U && all.front().find(words) != std::string::npos;
 }
 
-TEST(StartReport, IsEmptyForABoardWithoutFailures) { EXPECT_TRUE(complaints({}).empty()); }
+TEST(StartReport, IsEmptyWithoutFailures) { EXPECT_TRUE(complaints({}).empty()); }
 
 TEST(StartReport, NamesEachMissingPart) {
   std::set<std::string> different;
@@ -39,7 +39,7 @@ TEST(StartReport, NamesEachMissingPart) {
   EXPECT_TRUE(has(complaints(start), "does not know"));
 }
 
-TEST(StartReport, ReportsTheFirstReasonForAMissingModel) {
+TEST(StartReport, ReportsWhyModelIsMissing) {
   core::wire::ReadStartReply start;
   start.model = 1;
   EXPECT_TRUE(has(complaints(start), "its model cannot be used"));
@@ -53,7 +53,7 @@ TEST(StartReport, ReportsTheFirstReasonForAMissingModel) {
   EXPECT_TRUE(has(complaints(start), "RAM self-test failed"));
 }
 
-TEST(StartReport, ReportsTheCauseOfTheLastReset) {
+TEST(StartReport, ReportsLastResetCause) {
   core::wire::ReadStartReply start;
   start.by_watchdog = 1;
   EXPECT_TRUE(has(complaints(start), "watchdog"));

@@ -49,12 +49,12 @@ class BlobFileTest : public testing::Test {
 constexpr std::uintmax_t kTerabyte = std::uintmax_t{1} << 40;
 
 // Reading 1 TiB would fail for want of memory, or last for minutes.
-TEST_F(BlobFileTest, RefusesAHugeFileOfAnotherKindByItsHeader) {
+TEST_F(BlobFileTest, RefusesForeignFileByHeader) {
   EXPECT_NE(refusal_of(write("ply\nformat ascii 1.0\n", kTerabyte)).find("not a Tactree blob"),
             std::string::npos);
 }
 
-TEST_F(BlobFileTest, RefusesASizeThatTheHeaderContradicts) {
+TEST_F(BlobFileTest, RefusesSizeContradictingHeader) {
   const std::string valid = valid_blob();
   ASSERT_FALSE(valid.empty());
   for (const std::uintmax_t size : {valid.size() - 4, valid.size() + 1, std::size_t{kTerabyte}}) {
@@ -67,7 +67,7 @@ TEST_F(BlobFileTest, RefusesASizeThatTheHeaderContradicts) {
   EXPECT_EQ(refusal_of(write(valid, valid.size())), "");
 }
 
-TEST_F(BlobFileTest, RefusesWhatIsShorterThanAHeader) {
+TEST_F(BlobFileTest, RefusesFileShorterThanHeader) {
   for (const std::size_t size : {std::size_t{0}, std::size_t{7}, sizeof(core::BlobHeader) - 1}) {
     EXPECT_NE(refusal_of(write(valid_blob().substr(0, size), size)).find("shorter than"),
               std::string::npos)
@@ -75,7 +75,7 @@ TEST_F(BlobFileTest, RefusesWhatIsShorterThanAHeader) {
   }
 }
 
-TEST_F(BlobFileTest, RefusesAPipeInsteadOfWaitingForIt) {
+TEST_F(BlobFileTest, RefusesPipeWithoutWaiting) {
   const fs::path pipe = folder_ / "pipe";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
   EXPECT_NE(refusal_of(pipe).find("is a pipe or a device"), std::string::npos);

@@ -36,21 +36,21 @@ class CsvFile : public testing::Test {
   fs::path folder_ = fs::temp_directory_path() / ("tactree_csv_" + std::to_string(::getpid()));
 };
 
-TEST(SplitCsv, SplitsAtCommasAndTrimsBlanks) {
+TEST(SplitCsv, SplitsCommasAndTrimsBlanks) {
   EXPECT_EQ(support::split_csv("a, b c ,d\r"), (Cells{"a", "b c", "d"}));
   EXPECT_EQ(support::split_csv("1,,3,"), (Cells{"1", "", "3", ""}));
   EXPECT_EQ(support::split_csv(" , ,"), (Cells{"", "", ""}));
   EXPECT_EQ(support::split_csv(""), (Cells{""}));
 }
 
-TEST(SplitCsv, SplitsAtAnySeparatorOnRequest) {
+TEST(SplitCsv, SplitsAnySeparatorOnRequest) {
   EXPECT_EQ(support::split_csv(" 1 ;2\t3 4 , 5 ", support::CsvSeparator::kAny),
             (Cells{"1", "2", "3", "4", "5"}));
   EXPECT_EQ(support::split_csv("1,;2", support::CsvSeparator::kAny), (Cells{"1", "", "2"}));
   EXPECT_EQ(support::split_csv("1 2 ,", support::CsvSeparator::kAny), (Cells{"1", "2", ""}));
 }
 
-TEST_F(CsvFile, ReadsNumbersByTheNamesOfTheirColumns) {
+TEST_F(CsvFile, ReadsNumbersByColumnName) {
   support::CsvReader table(write("# trace\nt_s,state,x_m\n\n0.5,ready,+1e-3\r\n1,armed,2\n"), {});
   const std::size_t x = table.require_column("x_m");
   EXPECT_EQ(table.find_column("state"), 1U);
@@ -64,7 +64,7 @@ TEST_F(CsvFile, ReadsNumbersByTheNamesOfTheirColumns) {
   EXPECT_FALSE(table.next_row());
 }
 
-TEST_F(CsvFile, TakesAFirstRowOfNumbersAsDataWhereAHeaderIsOptional) {
+TEST_F(CsvFile, AcceptsMissingOptionalHeader) {
   const support::CsvFormat format{.header = support::CsvHeader::kOptional};
   support::CsvReader without(write("1,2\n3,4\n"), format);
   ASSERT_TRUE(without.next_row());
@@ -91,7 +91,7 @@ TEST_F(CsvFile, ReportsFileLineAndColumn) {
             file.string() + ": the header has no column c");
 }
 
-TEST_F(CsvFile, RefusesNumbersThatAreNotFinite) {
+TEST_F(CsvFile, RefusesNonFiniteNumbers) {
   for (const char* number : {"nan", "inf", "-inf", "1e999", "0x1", "1 2", ""}) {
     support::CsvReader table(write(std::string("a,b\n1,") + number + "\n"), {});
     ASSERT_TRUE(table.next_row());
@@ -99,7 +99,7 @@ TEST_F(CsvFile, RefusesNumbersThatAreNotFinite) {
   }
 }
 
-TEST_F(CsvFile, RefusesRowsThatDoNotFitTheHeader) {
+TEST_F(CsvFile, RefusesRowsUnlikeHeader) {
   const fs::path file = write("a,b\n1,2,3\n");
   support::CsvReader table(file, {});
   EXPECT_EQ(error_of([&] { (void)table.next_row(); }),

@@ -56,7 +56,7 @@ class SpooledInputTest : public testing::Test {
   fs::path folder_ = fs::temp_directory_path() / ("tactree_spool_" + std::to_string(::getpid()));
 };
 
-TEST_F(SpooledInputTest, CopiesAPipeAndLeavesNoFile) {
+TEST_F(SpooledInputTest, CopiesPipeLeavingNoFile) {
   const std::string text = std::string(3'000'001, 'a') + "end";
   EXPECT_EQ(copy_of(text), text);
   EXPECT_EQ(copy_of(""), "");
@@ -75,7 +75,7 @@ TEST_F(SpooledInputTest, KeepsSpaceFree) {
   EXPECT_TRUE(fs::is_empty(folder_));
 }
 
-TEST_F(SpooledInputTest, NamesTheFolderThatIsMissing) {
+TEST_F(SpooledInputTest, NamesMissingFolder) {
   fs::remove_all(folder_);
   EXPECT_NE(copy_of("text").find("standard input: it cannot be stored in " + folder_.string()),
             std::string::npos);

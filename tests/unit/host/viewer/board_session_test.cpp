@@ -97,7 +97,7 @@ class BoardSessionTest : public testing::Test {
   std::unique_ptr<BoardSession> session_;
 };
 
-TEST_F(BoardSessionTest, ReportsTheForceOfTheBoardUntilStopped) {
+TEST_F(BoardSessionTest, ReportsForceUntilStopped) {
   plug_in();
   begin();
   arm();
@@ -116,7 +116,7 @@ TEST_F(BoardSessionTest, ReportsTheForceOfTheBoardUntilStopped) {
   EXPECT_EQ(idle["runs"][0]["force_N"], json({0.0, 0.0, 0.0}));
 }
 
-TEST_F(BoardSessionTest, StopCancelsAQueuedArm) {
+TEST_F(BoardSessionTest, StopCancelsQueuedArm) {
   plug_in();
   begin();
   frames_.wait_for(is_idle);
@@ -131,7 +131,7 @@ TEST_F(BoardSessionTest, StopCancelsAQueuedArm) {
   EXPECT_EQ(frames_.wait_for([](const json&) { return true; })["board"]["confirm"], "");
 }
 
-TEST_F(BoardSessionTest, ReportsAFaultAndClearsItWithoutItsCause) {
+TEST_F(BoardSessionTest, ClearsFaultOnceCauseEnds) {
   plug_in(0.04);
   begin();
   arm();
@@ -148,7 +148,7 @@ TEST_F(BoardSessionTest, ReportsAFaultAndClearsItWithoutItsCause) {
   });
 }
 
-TEST_F(BoardSessionTest, ReconnectsAReturningBoardWithoutArmingIt) {
+TEST_F(BoardSessionTest, ReconnectsReturningBoardUnarmed) {
   plug_in();
   begin();
   arm();
@@ -167,7 +167,7 @@ TEST_F(BoardSessionTest, ReconnectsAReturningBoardWithoutArmingIt) {
   arm();
 }
 
-TEST_F(BoardSessionTest, ReportsASilentBoardAsLostUntilItAnswers) {
+TEST_F(BoardSessionTest, ReportsSilentBoardAsLost) {
   plug_in();
   begin();
   frames_.wait_for(is_idle);
@@ -178,7 +178,7 @@ TEST_F(BoardSessionTest, ReportsASilentBoardAsLostUntilItAnswers) {
   frames_.wait_for(is_idle);
 }
 
-TEST_F(BoardSessionTest, ReconnectsATakenBoardOnRequestOnly) {
+TEST_F(BoardSessionTest, ReconnectsTakenBoardOnRequest) {
   plug_in();
   begin();
   frames_.wait_for(is_idle);
@@ -191,7 +191,7 @@ TEST_F(BoardSessionTest, ReconnectsATakenBoardOnRequestOnly) {
   frames_.wait_for(is_idle);
 }
 
-TEST_F(BoardSessionTest, ReportsWhetherTheBoardUsesTheDisplayedModel) {
+TEST_F(BoardSessionTest, ComparesBoardAndDisplayedModel) {
   plug_in();
   begin();
   EXPECT_EQ(frames_.wait_for(is_here)["board"]["model"], "unknown");
@@ -214,7 +214,7 @@ TEST_F(BoardSessionTest, ReportsWhetherTheBoardUsesTheDisplayedModel) {
   }
 }
 
-TEST_F(BoardSessionTest, AppliesContactParametersAndReportsRefusals) {
+TEST_F(BoardSessionTest, AppliesParametersAndReportsRefusals) {
   plug_in();
   begin();
   frames_.wait_for(is_here);
@@ -244,7 +244,7 @@ TEST_F(BoardSessionTest, RefusesUnknownCommandsAndSettings) {
             std::string::npos);
 }
 
-TEST_F(BoardSessionTest, TraceHasEveryTickAndOnlyReportedColumns) {
+TEST_F(BoardSessionTest, TracesEveryTickAsReported) {
   plug_in();
   begin();
   frames_.wait_for([](const json& f) { return f["t_s"].get<double>() > 0.7; });
@@ -261,7 +261,7 @@ TEST_F(BoardSessionTest, TraceHasEveryTickAndOnlyReportedColumns) {
                        ','));
 }
 
-TEST_F(BoardSessionTest, APortWithoutABoardIsALinkError) {
+TEST_F(BoardSessionTest, RefusesPortWithoutBoard) {
   const client::PseudoTerminal nobody;
   EXPECT_THROW(BoardSession(bodies(), settings(nobody.name())), client::LinkError);
 }

@@ -28,7 +28,7 @@ TEST(FaultHtml, RendersTables) {
   EXPECT_FALSE(contains(html, "---"));
 }
 
-TEST(FaultHtml, LinksToOtherFaultPagesOnly) {
+TEST(FaultHtml, LinksOnlyToFaultPages) {
   const std::string html = fault_html("t", "| a |\n|---|\n| [b](c.md) [d](../e.md) |\n");
   EXPECT_TRUE(contains(html, "<a href=\"/faults/c\">b</a> d"));
   EXPECT_FALSE(contains(fault_html("t", "[x](javascript:alert)"), "javascript"));
@@ -50,7 +50,7 @@ TEST(FaultHtml, ShowsRawHtmlAsText) {
   EXPECT_FALSE(contains(html, "<img"));
 }
 
-TEST(FaultPages, ExistForEveryFaultAndLimit) {
+TEST(FaultPages, CoverEveryFaultAndLimit) {
   const auto has = [](const std::string& name) {
     for (const viewer::Asset& page : viewer::fault_pages()) {
       if (page.path == name) {

@@ -78,7 +78,7 @@ TEST_F(LiveSessionTest, SurfaceForceActsUntilStopped) {
   EXPECT_EQ(idle["runs"][0]["force_N"], json({0.0, 0.0, 0.0}));
 }
 
-TEST_F(LiveSessionTest, AFaultPersistsUntilItsCauseEndsAndItIsCleared) {
+TEST_F(LiveSessionTest, ClearsFaultOnceCauseEnds) {
   wait_for_state("active");
   say({{"do", "inject"}, {"fault", "estop:pressed"}});
   const json frame = wait_for_state("fault");
@@ -90,7 +90,7 @@ TEST_F(LiveSessionTest, AFaultPersistsUntilItsCauseEndsAndItIsCleared) {
   wait_for_state("active");
 }
 
-TEST_F(LiveSessionTest, AClearWhoseCausePersistsIsReportedWithTheInjection) {
+TEST_F(LiveSessionTest, ReportsClearWithPersistingCause) {
   wait_for_state("active");
   say({{"do", "inject"}, {"fault", "estop:pressed"}});
   wait_for_state("fault");
@@ -102,7 +102,7 @@ TEST_F(LiveSessionTest, AClearWhoseCausePersistsIsReportedWithTheInjection) {
   wait_for_news("Not armed: the fault emergency-stop is latched");
 }
 
-TEST_F(LiveSessionTest, ArmingInsideTheObjectReportsWhyThereIsNoForce) {
+TEST_F(LiveSessionTest, ReportsArmingInsideObject) {
   wait_for_state("active");
   say({{"do", "stop"}});
   wait_for_state("idle");
@@ -112,7 +112,7 @@ TEST_F(LiveSessionTest, ArmingInsideTheObjectReportsWhyThereIsNoForce) {
   wait_for_news("the probe is inside the object");
 }
 
-TEST_F(LiveSessionTest, EveryInjectionShowsAnEffectOrItsReason) {
+TEST_F(LiveSessionTest, InjectionsShowEffectOrReason) {
   const json injections = json::parse(session_.hello())["injections"];
   EXPECT_EQ(injections.size(), simulation::injection_kinds().size());
   for (const json& one : injections) {
@@ -130,7 +130,7 @@ TEST_F(LiveSessionTest, EveryInjectionShowsAnEffectOrItsReason) {
   }
 }
 
-TEST_F(LiveSessionTest, TheHandVisitsThePlacesOnItsPath) {
+TEST_F(LiveSessionTest, HandVisitsPlacesOnPath) {
   wait_for_state("active");
   const Eigen::Vector3d aside(0.0, 0.08, 0.0);
   const auto is_near = [](const json& f, const Eigen::Vector3d& place) {
@@ -148,14 +148,14 @@ TEST_F(LiveSessionTest, TheHandVisitsThePlacesOnItsPath) {
   wait_for([&](const json& f) { return is_near(f, end); });
 }
 
-TEST_F(LiveSessionTest, RunsBothModesSideBySide) {
+TEST_F(LiveSessionTest, RunsBothModesTogether) {
   say({{"do", "set"}, {"mode", "both"}});
   const json frame = wait_for([](const json& f) { return f["runs"].size() == 2; });
   EXPECT_EQ(frame["runs"][0]["mode"], "surface");
   EXPECT_EQ(frame["runs"][1]["mode"], "paper");
 }
 
-TEST_F(LiveSessionTest, ChangedSettingsRestartOutsideTheObject) {
+TEST_F(LiveSessionTest, ChangedSettingsRestartOutsideObject) {
   wait_for_state("active");
   say({{"do", "hand"}, {"target_m", {0.0, 0.0, kRadius_m - 0.01}}});
   wait_for([](const json& f) { return f["runs"][0]["force_N"][2].get<double>() > 0.5; });
@@ -189,13 +189,13 @@ TEST_F(LiveSessionTest, RefusedCommandsChangeNothing) {
   EXPECT_EQ(hello["settings"]["rate_hz"], 1000.0);
 }
 
-TEST_F(LiveSessionTest, RecordsATrace) {
+TEST_F(LiveSessionTest, RecordsTrace) {
   wait_for([](const json& f) { return f["t_s"].get<double>() > 0.7; });
   const std::string csv = session_.trace_csv();
   EXPECT_GT(std::count(csv.begin(), csv.end(), '\n'), 500);
 }
 
-TEST_F(LiveSessionTest, RunsInRealTimeOnceStarted) {
+TEST_F(LiveSessionTest, RunsInRealTime) {
   Frames frames;
   session_.start(frames.taker());
   frames.wait_for_state("active");

@@ -63,7 +63,7 @@ TEST_F(PointTreeTest, HoldsEveryPointOnce) {
   }
 }
 
-TEST_F(PointTreeTest, TheRootIsACoarsePictureOfTheModel) {
+TEST_F(PointTreeTest, RootCoarselyCoversModel) {
   const PointNode& root = tree_.nodes()[0];
   EXPECT_GT(root.spacing_m, blob_.view().header().spacing_m);
   // Every place of the sphere has a point of the root within some of its spacings.
@@ -79,7 +79,7 @@ TEST_F(PointTreeTest, TheRootIsACoarsePictureOfTheModel) {
   }
 }
 
-TEST_F(PointTreeTest, ChildrenAreInsideTheirParentsAndHaveHigherIndices) {
+TEST_F(PointTreeTest, ChildrenLieInsideTheirParents) {
   for (std::size_t i = 0; i < tree_.nodes().size(); ++i) {
     const PointNode& node = tree_.nodes()[i];
     for (const std::uint32_t child : node.children) {
@@ -94,7 +94,7 @@ TEST_F(PointTreeTest, ChildrenAreInsideTheirParentsAndHaveHigherIndices) {
   }
 }
 
-TEST_F(PointTreeTest, OctantsMatchTheBlob) {
+TEST_F(PointTreeTest, OctantsMatchBlob) {
   const viewer::OctantBoxes root = viewer::octant_boxes(blob_.view(), 0, 1000);
   EXPECT_EQ(root.corners_m.size(), 1U);
   const viewer::OctantBoxes leaves =

@@ -71,12 +71,12 @@ std::string csv_of(const std::vector<Sample>& samples) {
   return csv;
 }
 
-TEST_F(TracePlaybackTest, ReadsBackAWrittenTrace) {
+TEST_F(TracePlaybackTest, ReadsBackWrittenTrace) {
   const std::string csv = csv_of(some_samples());
   EXPECT_EQ(csv_of(read(csv)), csv);
 }
 
-TEST_F(TracePlaybackTest, NeedsTimeProbeAndForceOnly) {
+TEST_F(TracePlaybackTest, NeedsTimeProbeAndForce) {
   const auto samples =
       read("t_s,probe_x_m,probe_y_m,probe_z_m,force_x_N,force_y_N,force_z_N\r\n0,1,2,3,4,5,6\r\n");
   ASSERT_EQ(samples.size(), 1U);
@@ -84,7 +84,7 @@ TEST_F(TracePlaybackTest, NeedsTimeProbeAndForceOnly) {
   EXPECT_EQ(samples[0].tip_m, Eigen::Vector3d(1.0, 2.0, 3.0));
 }
 
-TEST_F(TracePlaybackTest, RefusesInvalidFilesWithTheLine) {
+TEST_F(TracePlaybackTest, RefusesInvalidFilesWithLine) {
   const std::string heading = simulation::trace_heading();
   const std::string csv = csv_of(some_samples());
   EXPECT_NE(refusal("").find("the trace has no ticks"), std::string::npos);
@@ -99,7 +99,7 @@ TEST_F(TracePlaybackTest, RefusesInvalidFilesWithTheLine) {
             std::string::npos);
 }
 
-TEST_F(TracePlaybackTest, CommandsStayWithinTheTrace) {
+TEST_F(TracePlaybackTest, CommandsStayWithinTrace) {
   viewer::TracePlayback recording(some_samples(), {}, core::presets::premium().model, {});
   using nlohmann::json;
   EXPECT_FALSE(recording.command({{"do", "seek"}, {"tick", 99999}}));

@@ -1,7 +1,7 @@
 #pragma once
 // Presets of known devices. Lengths, ratios, counts, torque constants and forces are published
-// values unless marked "estimate". Masses, centres, inertias, frictions and joint ranges are
-// estimates for the class of device; measure your own.
+// values unless marked "estimate". Masses, centres of mass, inertias, friction and joint ranges are
+// estimates for the class of device; measure those of your device.
 //
 // Interrupt safety: constants and pure functions.
 // Loop and memory annotations: docs/BOUND.md.
@@ -15,10 +15,10 @@ namespace tactree::core {
 struct DeviceDrive {
   float force_max_N = 8.0F;                      ///< at the probe
   float effort_max[kAxes] = {8.5F, 8.5F, 8.5F};  ///< N or Nm at the joints
-  float damping_Ns_m = 0.05F;                    ///< smallest viscous damping at the probe
+  float damping_Ns_m = 0.05F;                    ///< minimum viscous damping at the probe
 };
 
-/// For simulation. Units: kg, Ns/m, N of a linear axis; kg m2, Nms, Nm of a joint.
+/// Dynamics for simulation. Units of a linear axis: kg, Ns/m, N; of a joint: kg m2, Nms, Nm.
 struct DeviceDynamics {
   float inertia[kAxes] = {0.075F, 0.075F, 0.075F};  ///< links and motor, without the tip's mass
   float viscous[kAxes] = {0.05F, 0.05F, 0.05F};
@@ -55,7 +55,7 @@ constexpr DevicePreset cartesian() {
   return p;
 }
 
-/// Home: arm level, forearm hanging; that is also the origin.
+/// Home: arm horizontal, forearm hanging; the probe is then at the origin.
 constexpr DevicePreset premium() {
   DevicePreset p;
   p.name = "premium";
@@ -70,19 +70,20 @@ constexpr DevicePreset premium() {
   set(m.joint_max, 1.1F, 1.3F, 1.1F);
   set(m.joint_margin, 0.08F, 0.08F, 0.08F);
   m.origin_m = {0.20955F, 0.0F, -0.169545F};
-  // The motors hang behind the joints and balance most of the weight.
+  // The motors are mounted behind the joints and balance most of the weight.
   set(m.link_mass_kg, 0.0F, 0.30F, 0.045F);
   set(m.link_centre_m, 0.0F, -0.040F, -0.060F);
   m.tip_mass_kg = 0.030F;
   set(m.torque_constant_Nm_per_ampere, 0.0235F, 0.0235F, 0.0235F);  // estimate: 20 W brushed motors
   p.drive = {8.5F, {1.9F, 1.8F, 1.5F}, 0.0125F};  // efforts: estimate, 8.5 N at home
-  // The manufacturer states 0.075 kg and 0.04 N for the class, at the probe at home.
+  // These give the manufacturer's values for the class, 0.075 kg and 0.04 N at the probe at home.
   p.dynamics = {
       {2.0e-3F, 2.0e-3F, 1.3e-3F}, {5.5e-4F, 5.5e-4F, 3.6e-4F}, {8.4e-3F, 8.4e-3F, 6.8e-3F}};
   return p;
 }
 
-/// Home: arm upright, forearm level. The shoulder is 0.080 m above the table, the origin 0.285 m.
+/// Home: arm vertical, forearm horizontal. The shoulder is 0.080 m above the table, the origin
+/// 0.285 m.
 constexpr DevicePreset wooden() {
   DevicePreset p;
   p.name = "wooden";
@@ -102,13 +103,13 @@ constexpr DevicePreset wooden() {
   set(m.link_centre_m, 0.0F, 0.08F, 0.09F);
   m.tip_mass_kg = 0.05F;
   set(m.torque_constant_Nm_per_ampere, 0.0259F, 0.0259F, 0.0259F);
-  p.drive = {6.0F, {1.5F, 1.4F, 1.4F}, 0.05F};  // estimate: 4 A a motor
+  p.drive = {6.0F, {1.5F, 1.4F, 1.4F}, 0.05F};  // estimate: 4 A per motor
   p.dynamics = {
       {6.0e-3F, 5.0e-3F, 3.0e-3F}, {3.0e-3F, 2.5e-3F, 3.0e-3F}, {2.5e-2F, 2.0e-2F, 2.0e-2F}};
   return p;
 }
 
-/// Home: arms at 46 degrees, an estimate; the origin is 0.125 m off the ring.
+/// Home: arms at 46 degrees (estimate). The origin is 0.125 m in front of the ring.
 constexpr DevicePreset falcon() {
   DevicePreset p;
   p.name = "falcon";
@@ -137,7 +138,7 @@ constexpr DevicePreset falcon() {
   return p;
 }
 
-/// Home: both arms spread out level, on their stops; the origin is 0.0887 m above the motors.
+/// Home: both arms horizontal, pointing outwards. The origin is 0.0887 m above the motors.
 constexpr DevicePreset pantograph() {
   DevicePreset p;
   p.name = "pantograph";
@@ -162,7 +163,7 @@ constexpr DevicePreset pantograph() {
   return p;
 }
 
-/// Home: the handle level; that is also the origin.
+/// Home: paddle horizontal; the probe is then at the origin.
 constexpr DevicePreset hapkit() {
   DevicePreset p;
   p.name = "hapkit";
@@ -171,7 +172,7 @@ constexpr DevicePreset hapkit() {
   m.kind = DeviceKind::kPaddle;
   m.homing = HomingMethod::kGivenPose;
   m.paddle_m = 0.070F;
-  set(m.ratio, 75.0F / 5.75F, 1.0F, 1.0F);                  // sector over pulley, radii
+  set(m.ratio, 75.0F / 5.75F, 1.0F, 1.0F);                  // radius of the sector / of the pulley
   set(m.counts_per_revolution, 2048.0F, 2048.0F, 2048.0F);  // estimate
   set(m.joint_min, -0.65F, -1.0F, -1.0F);
   set(m.joint_max, 0.65F, 1.0F, 1.0F);
@@ -193,9 +194,9 @@ inline constexpr DevicePreset kDevicePresets[] = {presets::cartesian(),  presets
                                                   presets::wooden(),     presets::falcon(),
                                                   presets::pantograph(), presets::hapkit()};
 
-/// Copies a device to the configuration: model, limits of force and effort, damping.
+/// Copies a device to the configuration: model, limits of force, effort and effort slew, damping.
 constexpr void use_device(const DevicePreset& device, Configuration& configuration) {
-  // Time from zero to the full effort of an axis. The slew limit at the probe is stricter.
+  // Time from zero to full effort of an axis. The defaults of Configuration give about the same.
   constexpr float kFullEffortIn_s = 0.004F;
   configuration.device = device.model;
   configuration.force_max_N = device.drive.force_max_N;

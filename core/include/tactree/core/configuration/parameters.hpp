@@ -1,5 +1,5 @@
 #pragma once
-// Calibration values of a Configuration by number and name, for an application to read and set.
+// Calibration values of a Configuration with numbers and names, for access by an application.
 // Interrupt safe: pure functions. Cost: constant.
 
 #include <cstdint>
@@ -16,11 +16,12 @@ struct Parameter {
   float max = 0.0F;
 };
 
-/// Precondition of all: number < kParameters. Some ranges also depend on other values: call
-/// check(Configuration) afterwards.
+/// Precondition of all functions: number < kParameters. Some ranges also depend on other values:
+/// call check(Configuration) after set_parameter().
 [[nodiscard]] Parameter parameter(std::uint32_t number);
 [[nodiscard]] float parameter_of(const Configuration& configuration, std::uint32_t number);
-/// False: not finite or out of range; nothing changed. A home_count is rounded towards 0.
+/// Returns false and changes nothing if `value` is not finite or out of range. A home_count is
+/// rounded towards 0.
 [[nodiscard]] bool set_parameter(Configuration& configuration, std::uint32_t number, float value);
 
 }  // namespace tactree::core

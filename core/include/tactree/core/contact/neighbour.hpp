@@ -1,6 +1,7 @@
 #pragma once
-// Another body near a proxy. Where bodies touch or overlap, the probe feels the surface of all of
-// them together: one proxy is held by the faces of each, and faces of one within another are none.
+// Another body near a proxy. Where bodies touch or overlap, the probe feels the surface of their
+// union: one proxy is held by the faces of all bodies, and faces of one body inside another are
+// ignored.
 //
 // Interrupt safety: pure functions.
 
@@ -12,31 +13,33 @@
 
 namespace tactree::core {
 
-/// Of a neighbour: what is in front of it has a positive height.
+/// A face of a neighbour. Positions in front of it have a positive height.
 struct NeighbourFace {
   Vec3 normal{};          ///< unit length
-  float offset_m = 0.0F;  ///< from the frame's origin
+  float offset_m = 0.0F;  ///< of the plane from the frame's origin, along the normal
 
   [[nodiscard]] float height_of(Vec3 x) const { return dot(normal, x) - offset_m; }
 };
 
-/// In the frame of the body whose proxy it concerns.
+/// A neighbour, in the frame of the body whose proxy it affects. "Its proxy" is that of the
+/// neighbour.
 struct Neighbour {
-  /// First those that hold a proxy, then those behind which the others end, all seen from its side.
+  /// First the `holding` faces, then the `ending` faces, whose planes bound the others. All normals
+  /// point to the side of its proxy.
   NeighbourFace face[kMaxFaces]{};
-  std::uint32_t holding = 0;  ///< 0: no surface is near, and there are no faces
+  std::uint32_t holding = 0;  ///< 0: no surface is near; face[] is not valid
   std::uint32_t ending = 0;
-  Vec3 found_at{};           ///< m, where its faces were found
-  bool holds = false;        ///< false: it has no surface near its proxy any more
+  Vec3 found_at{};           ///< m, position of its proxy when the faces were found
+  bool holds = false;        ///< false: there is no longer a surface near its proxy
   float tolerance_m = 0.0F;  ///< faces that are closer to each other are flush
   bool leads = false;        ///< its proxy is in contact
   Vec3 proxy{};              ///< m
 
-  /// Adds the faces that hold a proxy, as seen from `x`, except those that continue one of the
-  /// planes. Where there is no room, one takes the place of a plane further away, but not of the
-  /// first one. Returns a bit for each plane added.
+  /// Adds the `holding` faces with their distances from `x`, except those that continue one of the
+  /// planes. If there is no room, a face replaces the more distant of the second and third plane if
+  /// it is closer than that plane. Returns a mask: bit i is set if plane i was added.
   [[nodiscard]] std::uint32_t add_to(ConstraintPlanes& planes, Vec3 x) const;
-  /// From the frame of a body at `from` to that of one at `to`.
+  /// Transforms it from the frame of a body at `from` to the frame of a body at `to`.
   void bring(const Pose& from, const Pose& to);
 
  private:

@@ -19,7 +19,7 @@ struct PaperContact {
 
 /// Collision detection: the probe lies in the axis-aligned box (edge a) of a point of its own leaf,
 /// or of a leaf that holds one of the six points probe +- s on each axis (the six-point rule).
-/// A probe at a point lies in its box. Cost: 7 descents, 7 leaves.
+/// A probe that coincides with a point lies in its box. Cost: 7 descents, 7 leaves.
 [[nodiscard]] PaperContact paper_collision(const BlobView& view, Vec3 probe);
 
 /// Force response: the point nearest to the probe among those of the collision leaf and of the

@@ -5,28 +5,29 @@
 // 2002.)
 //
 // Free:       the path of the probe is swept in steps of half a support radius, so that no surface
-//             is crossed undetected. Contact begins where the signed distance turns negative.
-// In contact: the proxy sticks within the friction cone of the probe, or slips to the cone's
-//             boundary. Where the surface is concave, up to three faces hold it: it goes to the
-//             place in front of all of them that is closest to the probe.
+//             is crossed undetected. Contact begins where the signed distance becomes negative.
+// In contact: the proxy sticks within the friction cone of the probe, or slips to the boundary of
+//             the cone. Where the surface is concave, up to three faces hold it: it moves to the
+//             position in front of all of them that is closest to the probe.
 //
 //   state                     side known   in contact
 //   kUntracked, kReferenced   no           no
 //   kTracking                 yes          no
 //   kSticking, kSlipping      yes          yes
 //
-// A probe behind a surface is inside where the model tells that there is material (interior.hpp):
-// at first, after a jump, or where it lost its contact. It is followed without force, and contact
-// begins only after it has left. Both sides of a sheet count as free.
+// When tracking begins (at the start, after a jump or after a lost contact) behind a surface, the
+// model determines whether the probe is in its material (interior.hpp). If so, the probe is
+// followed without force, and contact begins only after it has left. Both sides of a sheet count as
+// free.
 //
 // Two bodies near the probe share one proxy: that of the body in contact, which leads. It is held
-// by the faces of both. The other body's proxy follows it instead of the probe and finds the faces
-// there; it takes the lead where the surface is its body's own.
+// by the faces of both. The proxy of the other body follows the leading proxy instead of the probe
+// and finds the faces of its body there. It takes the lead where the surface is that of its body.
 //
-// A step takes at most one gather. With work_per_tick() and R = 2.5 mm the proxy keeps up with
-// 5 m/s at 1 kHz, 2.5 m/s at 2 kHz and 1.2 m/s at 4 kHz; it follows a faster probe with a delay and
-// never loses it. When the budget ends between gather and fit, the fit follows in the next tick; a
-// proxy in contact meanwhile moves along the tangent plane.
+// A step takes at most one gather. With work_per_tick() and a support radius of 2.5 mm the proxy
+// keeps up with a probe at 5 m/s at 1 kHz, 2.5 m/s at 2 kHz and 1.2 m/s at 4 kHz. It follows a
+// faster probe with a delay and never loses it. If the budget is exhausted between gather and fit,
+// the fit follows in the next tick; until then a proxy in contact moves along the tangent plane.
 //
 // Interrupt safety: no shared state; one context owns a proxy.
 
@@ -54,62 +55,65 @@ class Proxy {
   void reset(Vec3 probe);
 
   /// Follows the probe (m, model frame) for one tick, or the proxy of a neighbour that leads. Cost:
-  /// at most `work`, the searches for the nearest candidate included; with a neighbour, a pass more
-  /// for each gather, and one.
+  /// at most `work`, including the searches for the nearest candidate; with a neighbour, one
+  /// additional pass per gather and one per tick.
   void update(const BlobView& view, Vec3 probe, const Friction& friction, const SurfaceWork& work,
               const Neighbour* neighbour = nullptr);
 
-  /// What the proxy of another body has to know of this one. Its frame is that of the model.
+  /// State and faces of this proxy for the proxy of another body, in the frame of this model.
   [[nodiscard]] Neighbour as_neighbour(const BlobView& view) const;
-  /// In contact: the faces of a neighbour as they are now; where they came closer, it gives way.
+  /// In contact: updates the faces of the neighbour and, if they came closer, moves the proxy in
+  /// front of them.
   void yield_to(const Neighbour& neighbour);
-  /// In contact: the surface at the proxy is the neighbour's, whose own proxy follows this one.
+  /// In contact: returns true if the surface at the proxy is that of the neighbour, whose proxy is
+  /// `follower`.
   [[nodiscard]] bool belongs_to(const Proxy& follower, const Neighbour& neighbour,
                                 Vec3 probe) const;
-  /// Continues the contact of the neighbour that led, at its proxy; that one lets it go.
+  /// Continues the contact of the leading neighbour at the position of its proxy, `from`, which
+  /// then tracks the surface without contact.
   void take_over(const Neighbour& neighbour, Proxy& from);
-  /// In contact, after the last of these: what holds the probe.
+  /// In contact, after the calls above: determines which faces hold the probe.
   void aim(Vec3 probe);
-  /// Share of a contact force along the faces of the neighbour.
+  /// Component of a contact force along the normals of the neighbour's faces.
   [[nodiscard]] Vec3 share_of_neighbour(Vec3 force) const;
 
   [[nodiscard]] bool in_contact() const { return state_ >= State::kSticking; }
-  /// In the material, without contact; known within two ticks.
+  /// True if the proxy is in the material, without contact. Detected within two ticks.
   [[nodiscard]] bool inside() const { return inside_; }
-  /// In contact with the back of a sheet, the side that its normals avert.
+  /// True if in contact with the back of a sheet, the side opposite to its normals.
   [[nodiscard]] bool from_behind() const { return in_contact() && side_ < 0.0F; }
   [[nodiscard]] bool slipping() const { return state_ == State::kSlipping; }
   /// m. In contact: on the surface. Free: the end of the sweep, normally the probe.
   [[nodiscard]] Vec3 position() const { return position_; }
   /// In contact: unit normal of the surface on the probe's side; where several faces hold the
-  /// proxy, the direction in which they push the probe together.
+  /// proxy, the common direction in which they push the probe.
   [[nodiscard]] Vec3 normal() const {
     return planes_.count > 1U ? common_normal_ : side_ * reference_;
   }
-  /// In contact: unit normal of the surface on the side of the points' normals; of one of the faces
-  /// that hold the proxy.
+  /// In contact: unit normal of the surface on the side of the points' normals; where several faces
+  /// hold the proxy, that of the main face.
   [[nodiscard]] Vec3 stored_normal() const { return reference_; }
   /// The points around position().
   [[nodiscard]] const CandidateSet& candidates() const { return candidates_; }
-  /// Share of the contact force to display; below 1 on the boundary of the surface.
+  /// Scale factor of the contact force; below 1 at the boundary of the surface.
   [[nodiscard]] float strength() const { return strength_; }
   /// True in a tick in which the contact ended at the boundary of the surface, not by the probe
   /// leaving it.
   [[nodiscard]] bool lost_contact() const { return lost_contact_; }
-  /// False after a gather that left points out; reset() makes it true.
+  /// False after a gather that omitted points; reset() makes it true.
   [[nodiscard]] bool complete() const { return candidates_.complete(); }
 
  private:
   // The order matters: see is_tracking() and in_contact().
   enum class State : std::uint8_t {
     kUntracked,   // the nearest candidate provides the next reference
-    kReferenced,  // reference_ is for the next fit; it was checked, or contradicted and reversed
+    kReferenced,  // reference_ holds for the next fit, which does not check it again
     kTracking,    // reference_ and side_ hold
     kSticking,
     kSlipping,
   };
 
-  /// A settled place, to which a step that leads away from the probe returns.
+  /// A settled position of the proxy and its surface, restored when a step is taken back.
   struct Footing {
     Vec3 position{};
     Vec3 reference{};
@@ -119,12 +123,12 @@ class Proxy {
     float strength = 0.0F;
   };
 
-  /// Where a probe pulls the proxy.
+  /// How the probe pulls the proxy.
   struct Pull {
     bool released;   // the probe is in front of all faces
-    Vec3 along;      // m, without friction
-    float depth;     // m, of the probe below the faces that touch
-    float distance;  // m, along them
+    Vec3 along;      // m, displacement of the proxy without friction
+    float depth;     // m, of the probe below the faces that touch the proxy
+    float distance;  // m, along these faces
   };
 
   [[nodiscard]] bool is_tracking() const { return state_ >= State::kTracking; }
@@ -172,27 +176,27 @@ class Proxy {
   Vec3 position_{};
   Vec3 reference_{};           // normal of the last fit, on the side of the points' normals
   NearFaces near_{};           // other faces around the last fit
-  ConstraintPlanes planes_{};  // in contact, from position_: of the faces that hold the proxy, that
-                               // of reference_ first; distances are kept where there are several
-  Vec3 common_normal_{};       // where several faces hold the proxy
+  ConstraintPlanes planes_{};  // in contact: faces that hold the proxy, relative to position_; the
+                               // main face, that of reference_, is the first
+  Vec3 common_normal_{};       // valid where several faces hold the proxy
   float side_ = 1.0F;          // +1 or -1: the probe's side of the surface
   float strength_ = 0.0F;
-  const Neighbour* neighbour_ = nullptr;  // during update()
+  const Neighbour* neighbour_ = nullptr;  // set during update() only
   Neighbour found_{};                     // beside a neighbour: the faces of the last fit
-  std::uint32_t foreign_ = 0;             // bit i: plane i is of a neighbour
-  std::uint32_t active_ = 0;              // bit i: plane i holds the probe, where there are several
-  float weight_ = 0.0F;                   // of the last fit
-  float stride_ = 1.0F;  // share of the next step: smaller after one that led away from the probe
-  Vec3 next_{};          // position of the fit that waits for its candidates; where has_next_
+  std::uint32_t foreign_ = 0;             // bit i: plane i belongs to a neighbour
+  std::uint32_t active_ = 0;              // bit i: plane i holds the probe; valid if count > 1
+  float weight_ = 0.0F;                   // of the last fit beside a neighbour
+  float stride_ = 1.0F;  // factor of the next step: < 1 after one that led away from the probe
+  Vec3 next_{};          // position of the fit that waits for its candidates; valid if has_next_
   TickBudget budget_;
   State state_ = State::kUntracked;
   bool has_next_ = false;
   bool unsettled_ = false;  // in contact: position_ needs another fit
   bool inside_ = false;     // never in contact
-  bool asks_ = false;       // tracking, behind a surface: is that in the material?
+  bool asks_ = false;       // tracking, behind a surface: look_behind() is pending
   bool lost_contact_ = false;
-  bool must_hide_ = false;  // before the next fit
-  bool blocked_ = false;    // a proxy that leads is behind this surface
+  bool must_hide_ = false;  // hide_points() is pending
+  bool blocked_ = false;    // the leading proxy is behind this surface
   bool gives_way_ = false;  // in contact: the neighbour's faces alone hold the probe
 };
 

@@ -24,7 +24,7 @@ struct Rendering {
   Vec3 normal{};                 ///< outward; zero when free
   Vec3 force{};                  ///< N
   float stored_energy = 0.0F;    ///< J, in the spring between probe and proxy
-  float strength = 0.0F;         ///< share of the force displayed; below 1 on a boundary
+  float strength = 0.0F;         ///< scale factor of the force; below 1 at a boundary
   float penetration_m = 0.0F;    ///< of the probe, along the normal, without the texture
   std::uint32_t body = kNoBody;  ///< in a Scene: number of the body in contact
 };
@@ -36,7 +36,7 @@ class Renderer {
   /// Clears the contact. Required whenever the model or the configuration changes.
   void reset(Vec3 probe) { proxy_.reset(probe); }
 
-  /// Clears a contact with the back of a sheet; any other contact stays.
+  /// Clears a contact with the back of a sheet; keeps any other contact.
   void release_back(Vec3 probe) {
     if (proxy_.from_behind()) {
       proxy_.reset(probe);
@@ -45,13 +45,13 @@ class Renderer {
 
   /// Renders one tick; `probe` in m, `velocity` in m/s. The surface mode works at the tier of the
   /// rate, or at `least_tier` if that is later. Preconditions: check(configuration) is kOk, `probe`
-  /// is finite. Cost: surface mode: Proxy::update(); paper mode: paper_collision() and
-  /// paper_nearest().
+  /// is finite. Cost: Proxy::update() in surface mode, paper_collision() and paper_nearest() in
+  /// paper mode.
   Rendering update(const BlobView& view, const Configuration& configuration, Vec3 probe,
                    Vec3 velocity, std::uint32_t least_tier = 0);
 
-  /// The two steps of an update in surface mode: the proxy follows, and the force. With a neighbour
-  /// the force is that of the proxy that leads: see proxy.hpp.
+  /// The two steps of an update in surface mode: track() moves the proxy, render_proxy() computes
+  /// the force. With a neighbour, render only the proxy that leads: see proxy.hpp.
   void track(const BlobView& view, const Configuration& configuration, Vec3 probe,
              std::uint32_t least_tier, const Neighbour* neighbour) {
     proxy_.update(view, probe, friction_, work_per_tick(configuration.rate_hz, least_tier),
@@ -69,7 +69,7 @@ class Renderer {
  private:
   Proxy proxy_;
   Friction friction_{};        // of the contact in the last tick
-  MaterialBlend materials_{};  // of the contact when its candidates were last valid
+  MaterialBlend materials_{};  // of the contact, blended when its candidates were last valid
 };
 
 }  // namespace tactree::core

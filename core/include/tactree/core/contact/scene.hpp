@@ -1,11 +1,11 @@
 #pragma once
 // Several rigid bodies around one probe. Each body has a model and a pose that may change every
 // tick. A Renderer per body works in the body's frame: a moving body carries its proxy along and
-// pushes the probe. The probe feels the surface of all bodies together: one proxy is held by the
-// faces of all, and a face within another body is not felt (neighbour.hpp). The material is that of
-// the body which leads. In paper mode the forces of the bodies add up.
+// pushes the probe. The probe feels the surface of the union of the bodies: one proxy is held by
+// the faces of all, and a face inside another body is not felt (neighbour.hpp). The material is
+// that of the leading body. In paper mode the forces of the bodies are added.
 //
-//   probe -> bodies within reach -> body frame -> proxies, of which one leads -> force, and its
+//   probe -> bodies within reach -> body frame -> proxies, of which one leads -> force and
 //   reactions on the bodies
 //
 // At most kMaxReachableBodies of the bodies whose box contains the probe are rendered: those
@@ -27,9 +27,9 @@
 namespace tactree::core {
 
 inline constexpr std::uint32_t kMaxBodies = 8;
-inline constexpr std::uint32_t kMaxReachableBodies = 2;  ///< rendered at the same time
+inline constexpr std::uint32_t kMaxReachableBodies = 2;  ///< rendered in one tick; bounds its work
 
-/// Duration in which the force of a removed contact fades to 0.
+/// Time in which the force of a removed contact fades to 0.
 inline constexpr float kFadeSeconds = 0.05F;
 
 /// Reason why a model or a change of a body was refused.
@@ -41,7 +41,7 @@ enum class ModelStatus : std::uint8_t {
   kNoReach,        ///< built without the guarantees that surface mode needs
   kTooManyPoints,  ///< a ball may hold more than kMaxCandidates points
   kTooStiff,       ///< a material is stiffer than material_limit(): see find_unstable_material()
-  kTooManyBodies,  ///< there are kMaxBodies
+  kTooManyBodies,  ///< the scene already has kMaxBodies
   kNoSuchBody,     ///< nothing was added under this number, or it was removed
   kBadPose,        ///< is_valid(Pose) is false
   kBadMotion,      ///< is_valid(Motion) is false
@@ -58,10 +58,10 @@ struct Reaction {
 
 /// Contacts of all bodies in one tick.
 struct SceneRendering {
-  /// The contact of the body that leads, in paper mode that with the largest force, in the scene's
-  /// frame; `force` and `stored_energy` are those of all bodies.
+  /// The contact of the leading body, in paper mode the one with the largest force, in the scene's
+  /// frame. `force` and `stored_energy` cover all bodies.
   Rendering contact{};
-  Vec3 wall_velocity{};                       ///< m/s, of that contact's body where the probe is
+  Vec3 wall_velocity{};                       ///< m/s, of the body in contact, at the probe
   Reaction reactions[kMaxReachableBodies]{};  ///< of the bodies in contact
   bool crowded = false;                       ///< more bodies within reach than kMaxReachableBodies
   bool fading = false;                        ///< the force of a removed contact fades
@@ -73,40 +73,39 @@ class Scene {
   /// Removes all bodies, contacts and forces.
   void clear();
 
-  /// Adds a body and returns its number: the lowest free one. The model must
-  /// outlive the body, and suit the render mode: surface_support(). Refused: kEmpty, kBadPose,
-  /// kTooManyBodies.
+  /// Adds a body; `number` receives the lowest free number. The model must outlive the body and
+  /// suit the render mode: surface_support(). Errors: kEmpty, kBadPose, kTooManyBodies.
   [[nodiscard]] ModelStatus add(const BlobView& view, const Pose& pose, std::uint32_t& number);
-  /// Removes a body; its force fades. Its blob is not read after the call. Refused: kNoSuchBody.
+  /// Removes a body; its force fades. Its blob is not read after the call. Error: kNoSuchBody.
   [[nodiscard]] ModelStatus remove(std::uint32_t number);
-  /// A disabled body exerts no force, but keeps its number and continues to move. Refused:
+  /// A disabled body exerts no force, but keeps its number and continues to move. Error:
   /// kNoSuchBody.
   [[nodiscard]] ModelStatus enable(std::uint32_t number, bool enabled);
   /// Places a body at `pose` in the next tick; from there it moves with `motion`. If the probe
   /// jumps in the body's frame faster than twice speed_max_m_s, the contact ends and its force
-  /// fades. Refused: kNoSuchBody, kBadPose, kBadMotion.
+  /// fades. Errors: kNoSuchBody, kBadPose, kBadMotion.
   [[nodiscard]] ModelStatus move(std::uint32_t number, const Pose& pose, const Motion& motion);
 
   [[nodiscard]] bool empty() const { return count_ == 0U; }
-  /// The empty view if there is no such body.
+  /// Returns an empty view if there is no such body.
   [[nodiscard]] BlobView view(std::uint32_t number) const;
-  /// The pose at the origin if there is no such body.
+  /// Returns the pose at the origin if there is no such body.
   [[nodiscard]] Pose pose(std::uint32_t number) const;
 
   /// Clears contacts and fading forces, not bodies. Required when the probe jumps.
   void reset(Vec3 probe);
 
-  /// Clears contacts with the backs of sheets, so that a probe may change the side. Call it before
+  /// Clears contacts with the backs of sheets, so that the probe can change sides. Call it before
   /// update(), while no force is displayed.
   void release_backs();
 
-  /// Limits the work of each body in a tick to that of this tier, where the tier of the rate allows
-  /// more. Initially 0: the rate alone decides. Precondition: less than kWorkTiers.
+  /// Limits the work of each body in a tick to that of this tier, if the tier of the rate allows
+  /// more. Initially 0: the rate alone decides. Precondition: work_tier < kWorkTiers.
   void limit_work(std::uint32_t work_tier) { work_tier_ = work_tier; }
   [[nodiscard]] std::uint32_t work_tier() const { return work_tier_; }
 
-  /// Renders one tick; `probe` (m) and `velocity` (m/s) in the scene's frame. Preconditions: as
-  /// Renderer::update().
+  /// Renders one tick; `probe` (m) and `velocity` (m/s) in the scene's frame. Preconditions: those
+  /// of Renderer::update().
   /// Cost: kMaxReachableBodies times Proxy::update(), one force, kMaxBodies times about 100
   /// operations.
   const SceneRendering& update(const Configuration& configuration, Vec3 probe, Vec3 velocity);
@@ -115,12 +114,12 @@ class Scene {
 
  private:
   struct Body {
-    BlobView view{};  // empty: the number is free, and all other members are as here
+    BlobView view{};  // empty: the number is free, and all other members have their defaults
     Pose pose{};
     Motion motion{};
     Vec3 probe{};        // in the body's frame, this tick; valid if enabled
     Vec3 last_probe{};   // in the body's frame, last tick; valid if seen
-    bool moved = false;  // the body's frame differs from the scene's, or is about to
+    bool moved = false;  // the body's frame differs from the scene's, or will
     bool enabled = true;
     bool seen = false;
   };
@@ -151,20 +150,20 @@ class Scene {
   void render(Slot& slot, const Configuration& configuration, Vec3 probe, Vec3 velocity);
   void react(const Slot& slot, Vec3 proxy, Vec3 force);
   void render_paper(const Configuration& configuration, Vec3 probe);
-  void render_paper(Slot& slot, const Configuration& configuration, Vec3 probe);
+  void render_paper_body(Slot& slot, const Configuration& configuration, Vec3 probe);
   void move_on(float period_s);
   void list_bodies();
 
   Body bodies_[kMaxBodies]{};
   std::uint8_t listed_[kMaxBodies]{};  // numbers of the bodies, ascending
-  std::uint32_t count_ = 0;            // of the bodies
+  std::uint32_t count_ = 0;            // number of bodies
   Slot slots_[kMaxReachableBodies]{};
   SceneRendering rendering_{};
-  Neighbour neighbour_{};  // of the body that is rendered
+  Neighbour neighbour_{};  // of the body that is tracked
   Vec3 force_{};           // of the contacts in the last tick
   ForceFade fade_{};
-  bool ended_ = false;  // a contact ended otherwise than by the probe leaving: its force fades
-  std::uint32_t work_tier_ = 0;  // at least, whatever the rate
+  bool ended_ = false;           // a contact ended, but not because the probe left: its force fades
+  std::uint32_t work_tier_ = 0;  // minimum at any rate
 };
 
 }  // namespace tactree::core

@@ -1,11 +1,11 @@
 #pragma once
-// The surface work of one tick: limits per work tier, most work first.
+// The surface work of one tick: limits per work tier, in descending order.
 //
-// A gather decodes the candidate points around a place; a pass goes once over the decoded points,
-// at a crease at the cost of two. A tick gets a share of the work allowed per second, so the share
-// shrinks with the rate. Even the smallest share is a slice of a gather or one fit at a crease. A
-// board that is too slow for the tier of its rate works at a later one, so that it keeps every rate
-// below its highest: Admission::work_tier().
+// A gather decodes the candidate points around a position. A pass visits each decoded point once; a
+// fit at a crease costs two passes. The work of a tick is a fraction of the work allowed per second
+// and decreases as the rate rises. The last tier still allows a slice of a gather or one fit at a
+// crease, but not both. A board that is too slow for the tier of its rate uses a later tier, so
+// that it keeps every rate below its maximum: Admission::work_tier().
 //
 // Interrupt safety: constants and pure functions.
 // Loop and memory annotations: docs/BOUND.md.
@@ -14,10 +14,10 @@
 
 namespace tactree::core {
 
-/// Limits of the gathers of one tick, together.
+/// Limits for the sum of all gathers of one tick.
 struct GatherSlice {
-  std::uint32_t corners = 8;         ///< corners visited; each has at most one leaf
-  std::uint32_t points = 65536;      ///< points compared with the ball
+  std::uint32_t corners = 8;     ///< corners of the query cube visited; each has at most one leaf
+  std::uint32_t points = 65536;  ///< points compared with the ball
   std::uint32_t candidates = 65536;  ///< points decoded
 };
 
@@ -33,14 +33,14 @@ inline constexpr std::uint32_t kGatherWork = 2;
 inline constexpr std::uint32_t kWorkTiers = 3;
 inline constexpr SurfaceWork kWorkPerTick[kWorkTiers] = {
     {4, 10, 13, {24, 288, 104}}, {2, 4, 4, {16, 160, 56}}, {1, 2, 2, {3, 48, 16}}};
-/// A tier is that of the rates above its entry, Hz.
+/// A tier applies to rates above its entry, Hz.
 inline constexpr float kWorkTierRates[kWorkTiers] = {0.0F, 1000.0F, 2000.0F};
 
 /// Tier of a rate in Hz: 0 .. kWorkTiers - 1.
 [[nodiscard]] constexpr std::uint32_t work_tier_of(float rate_hz) {
   return rate_hz > kWorkTierRates[2] ? 2U : (rate_hz > kWorkTierRates[1] ? 1U : 0U);
 }
-/// At the tier of the rate, or at `least_tier` if that is later.
+/// Limits at the tier of the rate, or at `least_tier` if that is later.
 [[nodiscard]] constexpr const SurfaceWork& work_per_tick(float rate_hz,
                                                          std::uint32_t least_tier = 0) {
   const std::uint32_t tier = work_tier_of(rate_hz);

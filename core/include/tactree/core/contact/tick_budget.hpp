@@ -1,6 +1,6 @@
 #pragma once
-// The work that remains to a proxy in one tick. Every gather, pass and search is spent here, which
-// limits the length of a tick.
+// The remaining work of a proxy in one tick. Every gather, pass and search is charged to it, which
+// limits the duration of a tick.
 //
 // Interrupt safety: no shared state; one context owns a budget.
 // Loop and memory annotations: docs/BOUND.md.
@@ -19,11 +19,12 @@ class TickBudget {
     left_ = work;  // memory: flash
   }
 
-  /// Room for a fit: at a crease, or of one face after a search for the nearest candidate.
+  /// True if the budget allows a fit at a crease, or a fit of one face after a search for the
+  /// nearest candidate.
   [[nodiscard]] bool allows_fit() const {
     return left_.passes >= kPassesOfFit && left_.all >= kPassesOfFit;
   }
-  /// Room for a gather of at least one candidate.
+  /// True if the budget allows a gather of at least one candidate.
   [[nodiscard]] bool allows_gather() const {
     const GatherSlice& slice = left_.slice;
     return left_.gathers != 0U && left_.all >= kGatherWork && slice.corners != 0U &&
@@ -36,8 +37,8 @@ class TickBudget {
     left_.all -= kGatherWork;
     return left_.slice;
   }
-  /// Precondition: allows_fit(), once per fit with its search. Not below 0: a wrong count must not
-  /// lift the limit.
+  /// Precondition: allows_fit(), checked once per fit including its search. Saturates at 0: an
+  /// underflow would remove the limit.
   void spend_passes(std::uint32_t passes) {
     left_.passes -= passes < left_.passes ? passes : left_.passes;
     left_.all -= passes < left_.all ? passes : left_.all;

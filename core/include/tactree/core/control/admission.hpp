@@ -1,6 +1,6 @@
 #pragma once
-// Decides whether a controller takes a model: can the mode render it, is it stable, is a tick with
-// it in time. Not part of a tick.
+// Decides whether a controller accepts a model: the mode must be able to render it, its materials
+// must be stable, and a tick with it must end in time. Not part of a tick.
 
 #include <cstdint>
 
@@ -16,14 +16,14 @@ class Admission {
   /// See Controller::know_costs().
   void know_costs(const TickCosts& costs, std::uint32_t cycles_per_second);
 
-  /// kOk, kEmpty, kNoReach, kTooManyPoints, kTooStiff, or kTooSlow: for `view` beside the models of
-  /// `others`. Cost: proportional to the materials of the model.
+  /// Checks `view` in addition to the models of `others`. Returns kOk, kEmpty, kNoReach,
+  /// kTooManyPoints, kTooStiff or kTooSlow. Cost: proportional to the number of materials.
   [[nodiscard]] ModelStatus check(const BlobView& view, const TickLoad& others,
                                   const Configuration& configuration) const;
 
-  /// Tier of the most work that a tick does in time for these models: that of the rate, or a later
-  /// one on a slow board. kWorkTiers: a tick with the least work is too long. Unknown costs: that
-  /// of the rate.
+  /// First tier at which a tick with these models ends in time: the tier of the rate, or a later
+  /// one on a slow board. Returns kWorkTiers if no tier suffices, and the tier of the rate if the
+  /// costs are unknown.
   [[nodiscard]] std::uint32_t work_tier(const TickLoad& load,
                                         const Configuration& configuration) const;
 
@@ -32,7 +32,7 @@ class Admission {
   std::uint32_t cycles_per_second_ = 0;
 };
 
-/// The models of a scene together.
+/// The load of all models of a scene.
 [[nodiscard]] TickLoad load_of(const Scene& scene, const Configuration& configuration);
 
 }  // namespace tactree::core

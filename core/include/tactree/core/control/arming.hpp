@@ -1,6 +1,6 @@
 #pragma once
-// The second step of arming: from armed to active once the hand confirms and the device is ready.
-// A dead-man control that is tied down confirms nothing: it must be seen released after arming.
+// The second step of arming: from armed to active once the hand confirms and the device is ready. A
+// dead-man control that is tied down does not confirm: it must have been released after arming.
 //
 // Interrupt safe: no shared state.
 
@@ -10,13 +10,13 @@ namespace tactree::core {
 
 class Arming {
  public:
-  /// The state becomes armed.
+  /// Call when the state becomes armed.
   void begin() { dead_man_released_ = false; }
-  /// A tick that is not in the armed state.
+  /// Call once per tick outside the armed state.
   void rest() { waiting_ = false; }
 
-  /// A tick in the armed state; `device_ready`: power, and a probe in free space. True: there may
-  /// be force.
+  /// Call once per tick in the armed state. `device_ready`: the amplifiers have power and the probe
+  /// is in free space. Returns true if the state must become active.
   [[nodiscard]] bool update(const Readings& readings, bool dead_man_required, bool device_ready) {
     dead_man_released_ = dead_man_released_ || !readings.dead_man;
     const bool hand = dead_man_required ? readings.dead_man && dead_man_released_
@@ -25,7 +25,7 @@ class Arming {
     return hand && device_ready;
   }
 
-  /// The hand has confirmed; the device is not ready.
+  /// True if the hand has confirmed but the device is not ready.
   [[nodiscard]] bool waiting() const { return waiting_; }
 
  private:

@@ -1,11 +1,11 @@
 #pragma once
-// The changes of a controller that runs. Its owner is the only one outside the loop that changes
-// the controller: each change is made with the ticks held, and recorded before they are released.
+// Changes of a running controller. Outside the loop, only the owner of a BetweenTicks changes the
+// controller. Each change is made with the ticks held and recorded before they are released.
 //
-//   platform.hold_ticks(hold)  true: no tick starts; false: ticks that fell due run. A platform
-//                              without it calls only where no tick can interrupt
-//   platform.recorder()        optional: pointer to a recorder (hal/sim/session_recorder.hpp);
-//                              nullptr: none
+//   platform.hold_ticks(hold)  optional; true: no tick starts; false: ticks that fell due run.
+//                              Without it, call only where no tick can interrupt
+//   platform.recorder()        optional: pointer to a recorder (hal/sim/session_recorder.hpp), or
+//                              nullptr
 //
 // A refused change has no effect and is not recorded. Call from one context, never from the tick.
 // Cost: that of the controller's function.
@@ -14,7 +14,8 @@
 
 namespace tactree::core {
 
-/// Calls `report` with the recorder of a board or platform. Generates no code without one.
+/// Calls `report` with the recorder of a board or platform, if any. Generates no code if the type
+/// has no recorder().
 template <class Owner, class Report>
 void report_to_recorder(Owner& owner, Report report) {
   if constexpr (requires { owner.recorder(); }) {
@@ -31,7 +32,7 @@ class BetweenTicks {
   BetweenTicks(Controller& controller, Platform& platform)
       : controller_(controller), platform_(platform) {}
 
-  /// Without the ticks held, see Controller for what a tick does not change meanwhile.
+  /// Does not hold the ticks: controller.hpp lists the functions that may be called during a tick.
   [[nodiscard]] const Controller& controller() const { return controller_; }
 
   /// Calls `read` with the controller while no tick changes it.

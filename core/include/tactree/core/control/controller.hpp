@@ -5,8 +5,7 @@
 //
 // The result of step(Input) depends on the controller's state and on Input only. Between two ticks
 // the state changes only through configure(), adjust(), load_model(), add_body(), remove_body(),
-// unload_model() and know_costs(). Replaying all Inputs and these calls reproduces a session bit
-// for bit.
+// unload_model() and know_costs(). A replay of all Inputs and of these calls is bit-identical.
 //
 // Interrupt safety: one context owns a Controller. Another context must hold the ticks
 // (between_ticks.hpp) during each call other than state(), motors_off(), has_body() and
@@ -45,7 +44,7 @@ struct BodyUpdate {
 /// Complete input of a tick.
 struct Input : Readings {
   /// Applied in this order at the start of the tick. hal::Loop passes at most one, and the proven
-  /// bound of an image covers one; each further update costs about 300 instructions.
+  /// bound of an image covers one; each additional update costs about 300 instructions.
   std::span<const BodyUpdate> bodies{};
   AddedForce added_force{};
 };
@@ -56,7 +55,7 @@ struct Status {
   std::uint32_t tick = 0;  ///< wraps around
   State state = State::kBoot;
   FaultMask faults = 0;        ///< latched
-  LimitMask limits = 0;        ///< that reduced the force in this tick
+  LimitMask limits = 0;        ///< active in this tick
   std::uint32_t overruns = 0;  ///< since the start; stays at its maximum
   Vec3 probe{};                ///< m
   Vec3 velocity{};             ///< m/s
@@ -65,7 +64,7 @@ struct Status {
   float load = 0.0F;           ///< duration of the last tick / period
   /// Reactions to `force` on the bodies in contact.
   Reaction reactions[kMaxReachableBodies]{};
-  /// True if a fault is latched or a limit acts.
+  /// True if a fault is latched or a limit is active.
   [[nodiscard]] bool summary() const { return faults != 0U || limits != 0U; }
 };
 
@@ -75,7 +74,7 @@ struct Output {
   Status status{};
 };
 
-/// Parameters that Controller::adjust() changes without a new homing and loading.
+/// Parameters that Controller::adjust() changes without homing and loading again.
 struct Adjustment {
   // Changeable only while the motors are off.
   float force_max_N = 0.0F;
@@ -100,17 +99,18 @@ class Controller {
   /// Current values of the adjustable parameters.
   [[nodiscard]] Adjustment adjustment() const;
 
-  /// Applies an adjustment that passes check(). kBusy: a parameter of the first group differs
-  /// while armed or active. A refused adjustment changes nothing. Precondition: configured.
+  /// Applies an adjustment that passes check(). Returns kBusy if a parameter of the first group
+  /// differs while armed or active. A refused adjustment changes nothing. Precondition: configured.
   [[nodiscard]] ConfigurationStatus adjust(const Adjustment& adjustment);
 
   /// Sets the tick costs of this board and its clock frequency, Hz. From then on the work of a tick
-  /// is reduced where its bound would exceed the period, and a model is refused (kTooSlow) if that
-  /// does not suffice. Unknown costs refuse no model. `costs` must outlive the controller.
+  /// is reduced if its bound would exceed the period, and a model is refused (kTooSlow) if that
+  /// does not suffice. While the costs are unknown, no model is refused for its cost. `costs` must
+  /// outlive the controller.
   void know_costs(const TickCosts& costs, std::uint32_t cycles_per_second);
 
-  /// A tick does less work than its rate allows, because the models are large for this board: the
-  /// proxy may follow with more delay.
+  /// True if a tick does less work than its rate allows, because the models are too large for this
+  /// board. The proxy may then follow with a longer delay.
   [[nodiscard]] bool work_is_reduced() const {
     return scene_.work_tier() > work_tier_of(configuration_.rate_hz);
   }
@@ -123,7 +123,7 @@ class Controller {
   /// Adds a body under the conditions of load_model(). `number` receives its number.
   [[nodiscard]] ModelStatus add_body(const BlobView& view, const Pose& pose, std::uint32_t& number);
 
-  /// Removes all bodies. kBusy: armed or active.
+  /// Removes all bodies. Returns kBusy if armed or active.
   [[nodiscard]] ModelStatus unload_model();
 
   /// Removes a body in any state; see Scene. Cost: constant.
@@ -136,7 +136,7 @@ class Controller {
 
   [[nodiscard]] State state() const { return state_; }
   /// True if both copies of the state are active. Check it before writing a command to the motors:
-  /// a single skipped or corrupted instruction in step() may give a wrong command.
+  /// a single skipped or corrupted instruction in step() may produce a wrong command.
   [[nodiscard]] bool may_give_force() const {
     return state_ == State::kActive && inverse_ == inverse_of(State::kActive);
   }
@@ -163,7 +163,7 @@ class Controller {
 
   // Steps of a tick, in their order.
   void update_bodies(std::span<const BodyUpdate> updates);
-  /// Causes of faults that are there in this tick.
+  /// Faults whose cause is present in this tick.
   [[nodiscard]] FaultMask sense(const Input& input);
   [[nodiscard]] FaultMask watch_encoders(const Input& input);
   void execute_command(const Input& input, FaultMask present);
@@ -179,7 +179,7 @@ class Controller {
   void recover();
   void reset_scene();
 
-  // Small members first: their addresses fit into the offset of an instruction.
+  // Small members first: their offsets fit into the immediate of a load or store.
   State state_ = State::kBoot;
   std::uint32_t inverse_ = inverse_of(State::kBoot);  // complement of state_
   FaultMask latched_ = 0;

@@ -1,6 +1,6 @@
 #pragma once
-// Faults that the readings of a tick show, beside those of the encoders' positions: emergency stop,
-// motors, deadlines, link, enable line, supply, an encoder that stands still.
+// Detects faults in the readings of a tick: emergency stop, motors, deadlines, link, enable line,
+// supply, stuck encoders. ProbeSensor detects the faults of the encoders' positions.
 //
 // Interrupt safe: no shared state.
 
@@ -16,17 +16,19 @@ namespace tactree::core {
 
 class FaultMonitor {
  public:
-  /// Forgets overruns. Precondition: check() accepts the configuration.
+  /// The next overrun counts as the first one; overruns() is kept. Precondition: check() accepts
+  /// the configuration.
   void configure(const Configuration& configuration);
-  /// Only the link's timeout of the configuration has changed.
+  /// Applies a configuration of which only the link timeout has changed.
   void set_link_timeout(const Configuration& configuration);
 
-  /// Causes of faults in this tick. `state`: before the tick; `enable`: the line's setting of the
-  /// tick before. Cost: constant, about 100 instructions.
+  /// Returns the faults whose cause is present in this tick. `state`: before the tick; `enable`:
+  /// setting of the enable line in the previous tick. Cost: constant, about 100 instructions.
   [[nodiscard]] FaultMask update(const Readings& readings, const Configuration& configuration,
                                  State state, bool enable);
 
-  /// While active: `effort` of the contact, N or Nm per axis. kEncoderStuck, or none.
+  /// Call once per tick while active. `effort`: of the contact force, N or Nm per axis. Returns
+  /// kEncoderStuck or 0.
   [[nodiscard]] FaultMask update_encoders(const EncoderReading& encoders,
                                           const Configuration& configuration, Vec3 effort) {
     const float share[kAxes] = {effort.x / configuration.effort_max[0],
@@ -35,7 +37,7 @@ class FaultMonitor {
     const bool moves = encoders_.update(encoders.counts, share, axes_of(configuration.device.kind));
     return moves ? 0U : fault_bit(Fault::kEncoderStuck);
   }
-  /// While not active.
+  /// Call while not active.
   void reset_encoders() { encoders_.reset(); }
 
   /// Deadlines missed since the start; stays at its maximum.
@@ -54,7 +56,7 @@ class FaultMonitor {
   std::uint32_t ticks_since_link_ = 0;
   std::uint32_t ticks_of_mismatch_ = 0;
   std::uint32_t link_timeout_ticks_ = 0;
-  std::uint32_t enable_timeout_ticks_ = kForever;  // before configure() the line does not matter
+  std::uint32_t enable_timeout_ticks_ = kForever;  // before configure(): no timeout
 };
 
 }  // namespace tactree::core

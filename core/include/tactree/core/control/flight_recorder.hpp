@@ -33,7 +33,7 @@ static_assert(sizeof(FlightRecord) == 18);
 
 /// The tick in which the first fault since the last clear was latched.
 struct FaultSnapshot {
-  FaultMask faults = 0;  ///< all latched in that tick; 0: none
+  FaultMask faults = 0;  ///< all faults latched in that tick; 0: none
   std::uint32_t tick = 0;
   Vec3 probe{};     ///< m
   Vec3 proxy{};     ///< m

@@ -1,6 +1,6 @@
 #pragma once
-// From the rendered force to the motor command: reach of the device, passivity, the application's
-// force, SafetyGate.
+// Computes the motor command from the rendered force: reach of the device, passivity, force of the
+// application, SafetyGate.
 //
 // Interrupt safe: no shared state.
 
@@ -23,31 +23,32 @@ struct AddedForce {
   std::uint32_t ticks = 0;  ///< 0: none
 };
 
-/// Longest duration of an AddedForce, and its largest share of force_max_N.
+/// Maximum duration of an AddedForce, and its maximum ratio to force_max_N.
 inline constexpr float kAddedForceSeconds = 0.1F;
 inline constexpr float kAddedForceShare = 0.5F;
 
 class ForceStage {
  public:
-  /// False: a limit is out of range; nothing has changed.
+  /// Returns false and changes nothing if a limit is out of range.
   [[nodiscard]] bool set_limits(const Configuration& configuration);
   /// Precondition: check() accepts the configuration.
   void configure_passivity(const Configuration& configuration);
 
-  /// Takes the application's force. Without effect if `added.ticks` is 0.
+  /// Sets the force of the application. No effect if `added.ticks` is 0.
   void add(const AddedForce& added, const Configuration& configuration);
-  /// The application has changed the wall since the last tick: its spring may give what it holds.
+  /// Call when the application has changed the wall since the last tick: the spring of the wall may
+  /// then release its stored energy.
   void allow_stored_energy() { wall_changed_ = true; }
 
   /// The command of an active tick. Cost: constant, about 500 instructions.
   [[nodiscard]] SafetyGate::Result apply(const Configuration& configuration,
                                          const ProbeSensor& sensor, const SceneRendering& scene);
-  /// The command of a tick in which no force may be.
+  /// The zero command, for a tick that is not active. Ends the force of the application.
   [[nodiscard]] SafetyGate::Result release();
 
   /// N, of the last active tick.
   [[nodiscard]] Vec3 applied_force() const { return applied_force_; }
-  /// N, the application's share of it.
+  /// N, the application's component of it.
   [[nodiscard]] Vec3 added_force() const { return added_force_; }
 
  private:
@@ -58,9 +59,9 @@ class ForceStage {
   SafetyGate gate_{};
   Vec3 applied_force_{};
   Vec3 added_force_{};
-  Vec3 external_force_{};  // of the application, N, as long as external_ticks_
+  Vec3 external_force_{};  // of the application, N, for external_ticks_ more ticks
   std::uint32_t external_ticks_ = 0;
-  bool ramp_complete_ = false;  // the ramp did not hold the last force back
+  bool ramp_complete_ = false;  // the ramp did not limit the last force
   bool wall_changed_ = false;
 };
 

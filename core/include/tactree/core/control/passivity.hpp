@@ -18,17 +18,17 @@ namespace tactree::core {
 /// Motion of the probe and of the wall that it touches. Work of a moving wall is not a leak.
 struct WallMotion {
   Vec3 probe{};     ///< m, position of the probe
-  Vec3 velocity{};  ///< m/s, estimated: ignores a toggling encoder
+  Vec3 velocity{};  ///< m/s, estimate; not affected by a toggling encoder
   Vec3 wall{};      ///< m/s, of the wall at the probe
 };
 
 class PassivityController {
  public:
-  /// period_s > 0: of a tick. damping_max_Ns_m >= 0: maximum added damping. delay_s >= 0: from a
-  /// reading to its force at the hand, beyond the sampling; limited to kHistory - 1 ticks.
+  /// period_s > 0: period of a tick. damping_max_Ns_m >= 0: maximum added damping. delay_s >= 0:
+  /// from a reading to its force at the hand, beyond the sampling; limited to kHistory - 1 ticks.
   void configure(float period_s, float damping_max_Ns_m, float delay_s);
 
-  /// Clears all energies. Call it when there is no contact.
+  /// Clears all energies. Call it while there is no contact.
   void reset();
   /// Allows the spring to release `stored` (J, as in update()) although the hand did not supply it:
   /// while the force ramps, and when the application moves or changes the wall.
@@ -40,15 +40,15 @@ class PassivityController {
   /// Cost: constant, about 30 operations.
   [[nodiscard]] Vec3 update(Vec3 applied_force, const WallMotion& motion, float stored);
 
-  /// Largest push, N, on a hand that leaves the wall at `speed_m_s` > 0. If the spring's force
+  /// Maximum push, N, on a hand that leaves the wall at `speed_m_s` > 0. If the spring's force
   /// falls faster than slew_N_s (stiffness * speed > slew), the applied force lags and releases
   /// energy until it is zero. The limit keeps this energy within the absorbed energy:
   ///   F (F / 2 slew + delay) speed <= absorbed
-  /// Absorbed: by the wall since contact began, and the energy of allow().
+  /// absorbed: energy that the wall has absorbed since contact began, at least that of allow().
   /// Cost: a division and a square root.
   [[nodiscard]] float most_push(float speed_m_s, float slew_N_s) const;
 
-  /// Absorbed minus stored energy since contact began, J, at most 0: earlier losses do not count.
+  /// Absorbed minus stored energy since contact began, J, <= 0: earlier losses are not credited.
   [[nodiscard]] float observed_energy() const { return observed_energy_; }
 
   static constexpr std::uint32_t kHistory = 16;  ///< forces in transit, ticks
@@ -60,13 +60,13 @@ class PassivityController {
   float damping_max_ = 0.0F;
   float delay_s_ = 0.0F;
   float observed_energy_ = 0.0F;
-  float absorbed_energy_ = 0.0F;  // J, absorbed by the wall and not released
+  float absorbed_energy_ = 0.0F;  // J, absorbed by the wall and not yet released
   float stored_ = 0.0F;
   Vec3 last_{};
   Vec3 sent_[kHistory]{};  // the last one at newest_
   std::uint32_t newest_ = 0;
   std::uint32_t whole_ticks_ = 0;  // of the delay
-  float rest_ = 0.0F;              // share of a tick
+  float rest_ = 0.0F;              // fraction of a tick
   bool following_ = false;         // last_ and stored_ are valid
 };
 

@@ -1,6 +1,6 @@
 #pragma once
-// From encoder counts to the probe: homing, kinematics, velocity, and the faults of a position that
-// cannot be.
+// Computes the probe from encoder counts: homing, kinematics, velocity, and the detection of
+// invalid counts and impossible positions.
 //
 // Interrupt safe: no shared state.
 
@@ -14,25 +14,25 @@ namespace tactree::core {
 
 class ProbeSensor {
  public:
-  /// Homing begins. Precondition: check() accepts the configuration.
+  /// Begins homing. Precondition: check() accepts the configuration.
   void configure(const Configuration& configuration);
 
   struct Sensed {
     FaultMask faults = 0;
-    bool jumped = false;  ///< the probe did not come here from its last position: contacts end
+    bool jumped = false;  ///< the position does not follow from the last one: contacts end
   };
-  /// One tick; `take_pose`: see Homing::update(). Homing writes configuration.device.home_count.
-  /// Cost: constant; locate() and some 200 instructions.
+  /// Processes one tick. `take_pose`: see Homing::update(). Homing writes
+  /// configuration.device.home_count. Cost: constant; locate() and about 200 instructions.
   [[nodiscard]] Sensed update(const EncoderReading& encoders, bool take_pose,
                               Configuration& configuration);
 
-  /// The next position does not follow from the last one.
+  /// Discards the motion: the next position does not follow from the last one.
   void forget_motion();
-  /// The counts cannot be trusted: homing begins again.
+  /// Restarts homing, because the counts cannot be trusted.
   void lose_position(const DeviceModel& device) { homing_.begin(device); }
 
   [[nodiscard]] bool homed() const { return homing_.done(); }
-  /// pose() and velocity() are of this tick.
+  /// True if pose(), probe() and velocity() are those of this tick.
   [[nodiscard]] bool located() const { return located_; }
   [[nodiscard]] const DevicePose& pose() const { return pose_; }
   [[nodiscard]] Vec3 probe() const { return probe_; }        ///< m, scene's frame

@@ -16,7 +16,7 @@ enum class Command : std::uint8_t {
   kHome,  ///< the device is in its home pose; for HomingMethod::kGivenPose, motors off
 };
 
-/// Plain data inputs of a tick, of the same layout on every core.
+/// Inputs of a tick as plain data, with the same layout on every processor.
 struct Readings {
   EncoderReading encoders{};
   bool emergency_stop = true;     ///< true: pressed, or its wire is open
@@ -24,15 +24,15 @@ struct Readings {
   bool enable_read_back = false;  ///< true: the amplifiers have power
   bool motors_ok = false;         ///< false: the motor bank reports a failure
   bool link_alive = false;        ///< a valid message arrived since the last tick
-  /// Flash is being written, and its chip may stall: with the motors off, missed deadlines are
-  /// neither a fault nor counted.
+  /// Flash is being written, which may stall the chip. With the motors off, missed deadlines are
+  /// then neither a fault nor counted.
   bool storage_busy = false;
   /// If link_alive: upper bound of the message's age at arrival. The link timeout counts from the
   /// time of sending, not of arrival.
   std::uint16_t link_age_ticks = 0;
   std::uint32_t overruns = 0;  ///< deadlines missed since the last tick
   float load = 0.0F;           ///< duration of the last tick / period
-  float supply_V = 0.0F;       ///< of the amplifiers; if Configuration::supply_monitored
+  float supply_V = 0.0F;       ///< of the amplifiers; valid if Configuration::supply_monitored
   Command command = Command::kNone;
 };
 

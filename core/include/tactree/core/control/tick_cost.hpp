@@ -1,7 +1,7 @@
 #pragma once
-// Upper bound of a tick's cycles as a formula in the limits that a blob declares. `tactree bound`
-// proves the coefficients from the linked image and writes them into it; the controller refuses a
-// model whose bound exceeds the period.
+// Upper bound of the cycles of a tick, as a function of the limits that a blob declares. `tactree
+// bound` proves the coefficients from the linked image and writes them into it; the controller
+// refuses a model whose bound exceeds the period.
 //
 // Interrupt safe: pure functions.
 // Loop and memory annotations: docs/BOUND.md.
@@ -22,8 +22,8 @@ struct ModelLimits {
   std::uint32_t points_per_leaf_max = 0;
   std::uint32_t depth = 0;
   std::uint32_t levels_below = 0;       ///< between the directory and the leaves
-  std::uint32_t blended_points = 0;     ///< points whose materials are read in a contact
-  std::uint32_t blended_materials = 0;  ///< materials of a contact
+  std::uint32_t blended_points = 0;     ///< points whose materials are read for a contact
+  std::uint32_t blended_materials = 0;  ///< materials in the blend of a contact
 };
 inline constexpr std::uint32_t kModelLimits = sizeof(ModelLimits) / sizeof(std::uint32_t);
 inline constexpr const char* kModelLimitNames[kModelLimits] = {
@@ -47,7 +47,7 @@ enum class TickKind : std::uint32_t {
 };
 [[nodiscard]] TickKind tick_kind(const BlobHeader& header, RenderMode mode);
 
-/// The models of a scene together.
+/// The load of all models of a scene.
 struct TickLoad {
   ModelLimits limits{};  ///< largest of all models
   TickKind kind = TickKind::kSurface;
@@ -57,13 +57,14 @@ struct TickLoad {
   void add(const BlobHeader& header, const Configuration& configuration);
 };
 
-/// Number of cost rows of a work tier and a number of rendered bodies, 1 to kMaxReachableBodies. A
-/// tick of surface mode divides its work between gathering and fitting: its cost depends on the
-/// number of gathers of all bodies. One row per number, from 0.
+/// Number of cost rows for a work tier and a number of rendered bodies, 1 to kMaxReachableBodies. A
+/// tick of surface mode divides its work between gathering and fitting, so its cost depends on the
+/// total number of gathers. There is one row for each number, from 0.
 [[nodiscard]] constexpr std::uint32_t rows_of(std::uint32_t work_tier, std::uint32_t bodies) {
   return bodies * kWorkPerTick[work_tier].gathers + 1U;
 }
-/// The first of them. Those of fewer bodies come first, then those of preceding tiers.
+/// Index of the first of these rows. The rows of fewer bodies precede it, then those of earlier
+/// tiers.
 [[nodiscard]] constexpr std::uint32_t first_row(std::uint32_t work_tier, std::uint32_t bodies) {
   std::uint32_t rows = 0;
   for (std::uint32_t fewer = 1; fewer <= bodies; ++fewer) {  // bound: kMaxReachableBodies
@@ -79,8 +80,8 @@ inline constexpr std::uint32_t kTickRows = first_row(kWorkTiers, kMaxReachableBo
 inline constexpr std::uint32_t kTickCostsKnown = 0x4B434954;  // "TICK"
 
 /// Costs of an image: cycles = base + delta (delta device only) + listed for each body of the scene
-/// + largest row for each rendered body; rows of several bodies hold the share of one. All zero, as
-/// compiled: unknown.
+/// + most expensive row for each rendered body. Rows of several bodies hold the cost of one of
+/// them. In an image as compiled, all are zero: unknown.
 struct TickCosts {
   std::uint32_t known = 0;
   std::uint32_t base = 0;
@@ -91,11 +92,11 @@ struct TickCosts {
 };
 /// Precondition: costs.known is kTickCostsKnown.
 [[nodiscard]] std::uint64_t cycles_of(const TickCosts& costs, const TickLoad& load);
-/// First tier at which a tick takes at most `cycles`, beginning with `load.work_tier`; kWorkTiers:
-/// none. Precondition: as above.
+/// First tier, from `load.work_tier` on, at which a tick takes at most `cycles`; kWorkTiers if
+/// there is none. Precondition: costs.known is kTickCostsKnown.
 [[nodiscard]] std::uint32_t work_tier_in_time(const TickCosts& costs, TickLoad load,
                                               std::uint64_t cycles);
-/// Most expensive row for such bodies. Precondition: load.bodies > 0.
+/// Most expensive row for the bodies of `load`. Precondition: load.bodies > 0.
 [[nodiscard]] const TickCost& worst_row(const TickCosts& costs, const TickLoad& load);
 
 static_assert(sizeof(TickCost) == 4 + 2 * kModelLimits);

@@ -9,14 +9,14 @@
 
 namespace tactree::core {
 
-/// Running hash. Cost: about 40 instructions per byte on a 32-bit core; 200 bytes of RAM and 640 of
-/// stack.
+/// Incremental hash. Cost: about 40 instructions per byte on a 32-bit core; 208 bytes of RAM and
+/// about 640 bytes of stack.
 class Sha512 {
  public:
   static constexpr std::size_t kBytes = 64;
 
   void update(std::span<const std::byte> bytes);
-  /// Returns the hash. Call it once, after all update().
+  /// Writes the hash. Call it once, after the last update().
   void finish(std::span<std::uint8_t, kBytes> hash);
 
  private:

@@ -2,9 +2,9 @@
 // Verification of Ed25519 signatures (RFC 8032, sections 5.1 and 6). A board holds no secret key,
 // so constant time is not required.
 //
-// Strict: refuses an S that is not below the group's order, an R or key that is not canonically
-// encoded, and an R or key of small order. Each of these would allow two signatures for one
-// message, or one signature for several messages.
+// The verification is strict: it rejects an S that is not below the group order, an R or key that
+// is not canonically encoded, and an R or key of small order. Each of these would allow two
+// signatures for one message, or one signature for several messages.
 //
 // Interrupt safety: no shared state, but too slow for an interrupt. RAM: about 2 KiB of stack.
 // Cost: about 20 million instructions, plus 40 per byte of the message.
@@ -20,7 +20,7 @@ inline constexpr std::size_t kPublicKeyBytes = 32;
 using SignatureView = std::span<const std::uint8_t, kSignatureBytes>;
 using PublicKeyView = std::span<const std::uint8_t, kPublicKeyBytes>;
 
-/// The message is `head` followed by `body`.
+/// True if `signature` is valid for `key` and the message `head` followed by `body`.
 [[nodiscard]] bool is_signed_by(PublicKeyView key, SignatureView signature,
                                 std::span<const std::byte> head, std::span<const std::byte> body);
 

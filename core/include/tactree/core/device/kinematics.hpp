@@ -1,6 +1,6 @@
 #pragma once
-// Kinematics: from encoder counts to the probe, and from a force at the probe to the effort of each
-// axis.
+// Kinematics: conversion of encoder counts to the probe position, and of a force at the probe to
+// the effort of each axis.
 //
 // Interrupt safety: pure functions.
 
@@ -11,7 +11,7 @@
 
 namespace tactree::core {
 
-/// Three rows.
+/// 3 x 3 matrix, stored by rows.
 struct Mat3 {
   Vec3 row[3]{};
   friend constexpr Vec3 operator*(const Mat3& m, Vec3 v) {
@@ -27,24 +27,24 @@ constexpr Vec3 transposed_times(const Mat3& m, Vec3 v) {
 /// Pose of the device.
 struct DevicePose {
   bool valid = false;  ///< finite, within the joints' ranges, and reachable
-  /// Share of the force that may be displayed: 1, falling to 0 at the end of a joint's range and
+  /// Fraction of the force that may be rendered: 1, falling to 0 at the end of a joint's range and
   /// near a singular pose.
   float reach = 0.0F;
-  Vec3 joints{};  ///< m or rad; 0 of an unused axis
+  Vec3 joints{};  ///< m or rad; 0 for an unused axis
   Vec3 probe{};   ///< m, device frame
   /// Transposed Jacobian: efforts of the axes (N or Nm) for a force at the probe. Row i is the
-  /// motion of the probe per motion of axis i; 0 for an unused axis.
+  /// velocity of the probe per velocity of axis i; 0 for an unused axis.
   Mat3 effort_per_force{};
   Vec3 gravity_effort{};  ///< N or Nm: efforts that balance the device's weight
 };
 
 /// Pose from encoder counts. Counters may wrap around. Precondition: is_valid(device).
-/// Error of probe and Jacobian: within 1e-6 of the device's size. kDelta uses a closed form and
-/// three Newton steps, the other kinds a closed form. Cost: constant; at most about 700 operations,
-/// for kDelta.
+/// Error of probe and Jacobian: at most 1e-6 of the device's size. kDelta uses a closed form and
+/// three Newton steps, the other kinds a closed form. Cost: constant, at most about 700 operations
+/// (kDelta).
 [[nodiscard]] DevicePose locate(const DeviceModel& device, const std::int32_t (&counts)[kAxes]);
 
-/// Pose from joint positions. Those of unused axes are ignored.
+/// Pose from joint positions. The components of unused axes are ignored.
 [[nodiscard]] DevicePose locate_joints(const DeviceModel& device, Vec3 joints);
 
 /// Joint positions from encoder counts; 0 for an unused axis. Precondition: is_valid(device).

@@ -1,6 +1,6 @@
 #pragma once
-// Quadrature decoder: counts of an incremental encoder from the levels of its two lines, four per
-// period. For boards without a hardware counter.
+// Quadrature decoder for boards without a hardware counter: counts an incremental encoder from the
+// levels of its two lines, four counts per period.
 //
 // Interrupt safety: no shared state; one context owns a decoder.
 
@@ -8,7 +8,7 @@
 
 namespace tactree::core {
 
-/// Levels of both lines. Forward is the order 00, 01, 11, 10 (b a): a leads.
+/// Levels of both lines. In the forward direction (b a) is 00, 01, 11, 10: line a leads.
 struct QuadratureLevels {
   bool a = false;
   bool b = false;
@@ -17,7 +17,7 @@ struct QuadratureLevels {
 
 class QuadratureDecoder {
  public:
-  /// Sets the present levels; the count stays.
+  /// Sets the current levels and keeps the count.
   void begin(QuadratureLevels now) { levels_ = now; }
 
   /// Processes new levels. If both lines changed at once, the direction is unknown: illegal() is
@@ -34,7 +34,7 @@ class QuadratureDecoder {
     }
   }
 
-  [[nodiscard]] std::uint32_t count() const { return count_; }  ///< wraps at 2^32
+  [[nodiscard]] std::uint32_t count() const { return count_; }  ///< wraps around at 2^32
   [[nodiscard]] std::uint32_t illegal() const { return illegal_; }
   [[nodiscard]] QuadratureLevels levels() const { return levels_; }
 

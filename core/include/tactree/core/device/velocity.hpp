@@ -1,9 +1,9 @@
 #pragma once
-// Velocity of a quantised position. The estimator uses the longest of a few windows of past samples
-// whose straight line passes the ends of the shorter windows within the quantum, followed by a
-// low-pass filter. Slow motion uses a long window (low noise), fast motion a short one (low delay).
-// (Janabi-Sharifi, Hayward and Chen, "Discrete-time adaptive windowing for velocity
-// estimation", IEEE T-CST 8(6), 2000, end-fit variant.)
+// Velocity of a quantised position. The estimate is the slope over the longest of a few windows of
+// past samples whose straight line passes the ends of the shorter windows within the quantum. A
+// low-pass filter follows. Slow motion uses a long window (low noise), fast motion a short one (low
+// delay). Source: Janabi-Sharifi, Hayward and Chen, "Discrete-time adaptive windowing for velocity
+// estimation", IEEE T-CST 8(6), 2000, end-fit variant.
 //
 // Interrupt safety: no shared state; one context owns an estimator.
 
@@ -13,9 +13,9 @@
 
 namespace tactree::core {
 
-/// Samples of the longest window, less one.
+/// Length of the longest window, sample periods.
 inline constexpr std::uint32_t kVelocityWindow = 15;
-/// Windows besides the one of two samples.
+/// Number of windows, not counting the one of two samples.
 inline constexpr std::uint32_t kVelocityWindows = 3;
 
 class VelocityEstimator {
@@ -28,7 +28,8 @@ class VelocityEstimator {
   void reset();
 
   /// Adds the position of this tick (m or rad) and returns the velocity, m/s or rad/s. For finite
-  /// positions it is at most the largest difference of two samples divided by the period.
+  /// positions its absolute value is at most the maximum difference of two samples divided by the
+  /// period.
   /// Cost: kVelocityWindows per axis, about 15 operations each.
   Vec3 update(Vec3 position);
 
@@ -41,12 +42,12 @@ class VelocityEstimator {
   /// Change per sample over the longest valid window.
   [[nodiscard]] float slope(const float (&samples)[kSlots], float quantum) const;
 
-  float samples_[3][kSlots]{};  // a ring per component
+  float samples_[3][kSlots]{};  // a ring buffer per component
   std::uint32_t newest_ = 0;
   std::uint32_t count_ = 0;
   float period_s_ = 1e-3F;
   Vec3 quantum_{};
-  float share_ = 1.0F;  // of a new estimate in the filtered one
+  float share_ = 1.0F;  // weight of a new estimate in the low-pass filter
   Vec3 velocity_{};
 };
 

@@ -1,6 +1,6 @@
 #pragma once
 // CRC-32 (IEEE 802.3, reflected, polynomial 0xEDB88320): detects accidental damage of blobs and
-// messages. It is no protection against forgery.
+// messages. It does not protect against forgery.
 //
 // Interrupt safety: no shared state.
 
@@ -10,7 +10,7 @@
 
 namespace tactree::core {
 
-/// Running checksum. Cost: about 10 instructions per byte; a table of 64 bytes.
+/// Incremental checksum. Cost: about 10 instructions per byte. Flash: a table of 64 bytes.
 class Crc32 {
  public:
   void update(std::span<const std::byte> bytes);

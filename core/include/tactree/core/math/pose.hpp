@@ -1,5 +1,5 @@
 #pragma once
-// Pose and motion of a rigid body in the scene's frame.
+// Pose and motion of a rigid body in the scene frame.
 //
 // Interrupt safety: pure functions.
 
@@ -16,9 +16,9 @@ struct Quaternion {
   friend constexpr bool operator==(Quaternion, Quaternion) = default;
 };
 
-/// Rotates a direction from the body's frame to the scene's. About 30 operations.
+/// Rotates a direction from the body frame to the scene frame. About 30 operations.
 [[nodiscard]] Vec3 rotate(Quaternion q, Vec3 direction);
-/// Rotates a direction from the scene's frame to the body's.
+/// Rotates a direction from the scene frame to the body frame.
 [[nodiscard]] inline Vec3 rotate_back(Quaternion q, Vec3 direction) {
   return rotate({q.w, -q.v}, direction);
 }
@@ -30,7 +30,7 @@ struct Pose {
   friend constexpr bool operator==(const Pose&, const Pose&) = default;
 };
 
-/// Velocity of the body's origin and of its rotation, along and about the scene's axes.
+/// Linear velocity of the body's origin and angular velocity of the body, in the scene frame.
 struct Motion {
   Vec3 linear_m_s{};
   Vec3 angular_rad_s{};
@@ -42,18 +42,19 @@ inline constexpr float kMaxBodySpeed = 10.0F;           ///< m/s, of each compon
 inline constexpr float kMaxBodyTurn = 100.0F;           ///< rad/s, of each component
 inline constexpr float kQuaternionTolerance = 1.0e-3F;  ///< deviation of the squared length from 1
 
-/// True if finite, within the limits, and for a pose of unit length within the tolerance.
+/// True if all values are finite and within the limits above. The squared length of a pose's
+/// quaternion must be 1 within kQuaternionTolerance.
 [[nodiscard]] bool is_valid(const Pose& pose);
 [[nodiscard]] bool is_valid(const Motion& motion);
 
 /// The pose with its rotation normalised. Precondition: is_valid(pose).
 [[nodiscard]] Pose normalized(const Pose& pose);
 
-/// The pose after `seconds`, to first order in the rotation: at 10 rad/s and 1 kHz the error is
-/// below 1e-7 rad. The body does not move beyond kMaxTranslation.
+/// The pose after `seconds`, to first order in the rotation: at 10 rad/s and 1 kHz the error of a
+/// tick is below 1e-7 rad. A motion beyond kMaxTranslation leaves the translation unchanged.
 [[nodiscard]] Pose advanced(const Pose& pose, const Motion& motion, float seconds);
 
-/// The body's frame is that of the scene.
+/// True if the body frame equals the scene frame.
 [[nodiscard]] constexpr bool is_origin(const Pose& pose) {
   return pose.rotation.w == 1.0F && pose.rotation.v == Vec3{} && pose.translation_m == Vec3{};
 }
@@ -61,7 +62,7 @@ inline constexpr float kQuaternionTolerance = 1.0e-3F;  ///< deviation of the sq
   return motion.linear_m_s == Vec3{} && motion.angular_rad_s == Vec3{};
 }
 
-// With the identity, positions, directions and velocities are the same to the bit.
+// For an identity pose or a body at rest, these functions return their argument bit-identical.
 
 [[nodiscard]] inline Vec3 position_to_body(const Pose& pose, Vec3 position) {
   return is_origin(pose) ? position : rotate_back(pose.rotation, position - pose.translation_m);
@@ -76,8 +77,8 @@ inline constexpr float kQuaternionTolerance = 1.0e-3F;  ///< deviation of the sq
   return is_origin(pose) ? direction : rotate(pose.rotation, direction);
 }
 
-/// Velocity, relative to the body, of a point at `position` that moves with `velocity`; along the
-/// scene's axes.
+/// Velocity, relative to the body, of a point at `position` that moves with `velocity`. All vectors
+/// are in the scene frame.
 [[nodiscard]] inline Vec3 relative_velocity(const Pose& pose, const Motion& motion, Vec3 position,
                                             Vec3 velocity) {
   if (is_rest(motion)) {

@@ -1,5 +1,5 @@
 #pragma once
-// Sine and cosine without libm: the same bits with every compiler and core.
+// Sine and cosine without libm, bit-identical with every compiler and core.
 //
 // Interrupt safety: pure functions.
 
@@ -12,18 +12,18 @@ struct SineCosine {
   float cosine = 1.0F;
 };
 
-/// Largest angle with a stated error, rad.
+/// Maximum angle for which the error is specified, rad.
 inline constexpr float kMaxAngle = 1000.0F;
 
-/// Sine and cosine of `angle` (rad). Error: below 1.2e-7 for |angle| <= 2 pi, below 2e-7 for
-/// |angle|
-/// <= kMaxAngle. Returns 0 and 1 beyond kMaxAngle and for NaN.
-/// Taylor series of degree 9 and 8 about the nearest quarter turn. Cost: about 30 operations.
+/// Sine and cosine of `angle` (rad). Error: below 1.2e-7 for |angle| <= 2 pi, below 2e-7 up to
+/// kMaxAngle. Beyond kMaxAngle and for NaN the sine is 0 and the cosine 1.
+/// Taylor series of degree 9 and 8 about the nearest multiple of pi / 2. Cost: about 30 operations.
 [[nodiscard]] inline SineCosine sine_cosine(float angle) {
   if (!(angle >= -kMaxAngle && angle <= kMaxAngle)) {
     return {};
   }
-  // A quarter turn in three parts. The first two have few bits, so their products are exact.
+  // Cody-Waite reduction: pi / 2 is the sum of three parts. The first two have so few bits that
+  // their products with q are exact.
   constexpr float kPerQuarter = 0.63661977F;
   constexpr float kQuarterHigh = 1.5703125F;
   constexpr float kQuarterMiddle = 0.0004837512969970703F;

@@ -1,5 +1,5 @@
 #pragma once
-// Vectors of three float32 components, and scalar helpers of the control loop. No libm.
+// Vectors of three float32 components, and scalar helpers for the control loop, without libm.
 //
 // Interrupt safety: pure functions.
 
@@ -28,7 +28,7 @@ struct Vec3 {
   friend constexpr bool operator==(Vec3, Vec3) = default;
 };
 
-/// Three integers: coordinates on a blob's lattice, or of an octree cell.
+/// Integer coordinates of a site on a blob's lattice, or of an octree cell.
 struct Int3 {
   std::int32_t x = 0;
   std::int32_t y = 0;
@@ -51,11 +51,11 @@ inline float length(Vec3 a) { return square_root(length_squared(a)); }
 
 constexpr float absolute(float v) { return v < 0.0F ? -v : v; }
 
-/// False for NaN and infinity.
+/// Returns false for NaN and infinity.
 constexpr bool is_finite(float v) { return v - v == 0.0F; }
 constexpr bool is_finite(Vec3 v) { return is_finite(v.x) && is_finite(v.y) && is_finite(v.z); }
 
-/// `v` scaled to unit length, or `fallback` if `v` is too short or not finite.
+/// `v` scaled to unit length, or `fallback` if its squared length is at most 1e-30 or not finite.
 inline Vec3 normalized_or(Vec3 v, Vec3 fallback) {
   const float squared = length_squared(v);
   if (!(squared > 1e-30F) || !is_finite(squared)) {

@@ -1,6 +1,6 @@
 #pragma once
-// Models: open_blob() validates the bytes of a blob once and returns a BlobView that reads them in
-// place. No other function creates a view of a model. Format: docs/FORMAT.md.
+// Access to models. open_blob() validates the bytes of a blob once and returns a BlobView that
+// reads them in place. No other function creates a view of a model. Format: docs/FORMAT.md.
 //
 // Interrupt safety: a view is read-only; its functions may be called from any context. open_blob()
 // takes too long for an interrupt.
@@ -20,26 +20,26 @@ enum class BlobStatus : std::uint8_t {
   kMisaligned,     ///< the bytes do not start on a 4-byte boundary
   kTooShort,       ///< fewer bytes than a header
   kBadMagic,       ///< not a blob
-  kBadVersion,     ///< a newer major version, or none
+  kBadVersion,     ///< the major version is not kBlobMajor
   kBadSize,        ///< total_bytes differs from the number of bytes passed
   kBadChecksum,    ///< damaged
   kBadHeader,      ///< a count, name or reserved field is impossible
   kBadFigures,     ///< a length, bound or lattice value is impossible or contradicts another
   kBadSections,    ///< sections do not tile the blob, or disagree with the counts
-  kBadTree,        ///< a node does not follow the canonical order, or the directory or the interior
-                   ///< the nodes
+  kBadTree,        ///< the nodes are not in canonical order, or contradict the directory or the
+                   ///< interior
   kBadLeaves,      ///< a leaf is empty, too full or out of order
   kBadPoints,      ///< points of a leaf are not in ascending order
   kBadNeighbours,  ///< a neighbour entry refers to no node or leaf
   kBadMaterials,   ///< a material is impossible, or an index refers to none
 };
 
-/// Text for people, static storage: "damaged: the checksum does not match", ...
+/// Human-readable text in static storage: "damaged: the checksum does not match", ...
 [[nodiscard]] const char* describe(BlobStatus status);
 
 /// A leaf of the octree and the range of its points.
 struct Leaf {
-  std::uint32_t number = 0;  ///< depth-first
+  std::uint32_t number = 0;  ///< in depth-first order
   std::uint32_t first_point = 0;
   std::uint32_t point_count = 0;
   std::uint32_t level = 0;  ///< 0 is the root
@@ -48,16 +48,16 @@ struct Leaf {
 
 /// A decoded point.
 struct SurfacePoint {
-  Vec3 position{};  ///< m, model frame; exactly step_m * an integer on each axis
+  Vec3 position{};  ///< m, model frame; on each axis exactly step_m times an integer
   Vec3 normal{};    ///< unit length, outward
 };
 
 class LeafCursor;
 
 /// A validated model, read in place. Copyable; the bytes must outlive every copy. If they change
-/// (memory fault), results are wrong but no access is out of range: each index read from the bytes
-/// is compared with the counts at validation.
-/// A default-constructed view is the empty model: no query finds anything.
+/// (memory fault), results are wrong, but no access is out of range: each index that is read from
+/// the bytes is compared with the counts stored at validation.
+/// A default-constructed view is the empty model, in which no query finds anything.
 class BlobView {
  public:
   BlobView() = default;
@@ -74,17 +74,17 @@ class BlobView {
   /// Lower corner of the root cube, lattice units.
   [[nodiscard]] Int3 root_min() const { return root_min_; }
   /// Lower corner of the root cube and edge of a finest leaf, m; exact.
-  [[nodiscard]] const float* root_min_m() const { return root_min_m_; }  // x y z 0
+  [[nodiscard]] const float* root_min_m() const { return root_min_m_; }  // x, y, z, 0
   [[nodiscard]] float leaf_edge_m() const { return leaf_edge_m_; }
   [[nodiscard]] float inverse_leaf_edge() const { return inverse_leaf_edge_; }
-  /// Number of finest cells along an edge of the root, plus one.
+  /// Number of finest cells along an edge of the root cube, plus one.
   [[nodiscard]] float cells_and_one() const { return cells_and_one_; }
-  /// Largest radius for which a query is exact.
+  /// Maximum radius for which a query is exact.
   [[nodiscard]] float reach_m() const { return reach_m_; }
   [[nodiscard]] float support_radius_m() const { return support_radius_m_; }
 
-  /// True in the surface profile: every leaf is at the deepest level. A node is one word, the group
-  /// of its children: leaves below a node of level depth() - 1, else nodes.
+  /// True in the surface profile: every leaf is of level depth(). A node is one word, the group of
+  /// its children, which are leaves for a node of level depth() - 1, otherwise nodes.
   [[nodiscard]] bool is_uniform() const { return uniform_; }
   [[nodiscard]] const std::uint32_t* node_words() const { return nodes_; }
   [[nodiscard]] BlobNode node(std::uint32_t index, std::uint32_t level) const {
@@ -94,20 +94,20 @@ class BlobView {
     // memory: flash
     return level + 1U < depth_ ? BlobNode{nodes_[index], 0} : BlobNode{0, nodes_[index]};
   }
-  /// The nodes of level directory_level() by cell; kNoNode: empty space.
+  /// Table of the nodes of level directory_level(), by cell; kNoNode for empty space.
   [[nodiscard]] std::uint32_t directory_level() const { return directory_level_; }
   [[nodiscard]] const std::uint32_t* directory() const { return directory_; }
 
-  /// Index of the first point of a leaf; for leaf_count, the number of points.
+  /// Index of the first point of a leaf; for leaf_count(), the number of points.
   [[nodiscard]] std::uint32_t first_point(std::uint32_t leaf_number) const {
     // memory: flash
     return leaf_bases_[leaf_number >> leaf_group_shift_] + leaf_offsets_[leaf_number];
   }
-  /// The points [first, end) exist. False if out of range, e.g. after a memory fault.
+  /// True if the points [first, end) exist. They may not exist after a memory fault.
   [[nodiscard]] bool holds_points(std::uint32_t first, std::uint32_t end) const {
     return first <= end && end <= point_count_;
   }
-  /// Has no points if the leaf or its points do not exist, e.g. after a memory fault.
+  /// The result has no points if the leaf or its points do not exist, e.g. after a memory fault.
   [[nodiscard]] Leaf leaf(std::uint32_t number, std::uint32_t level, Int3 min) const {
     if (number >= leaf_count_) {
       return {0, 0, 0, level, min};
@@ -119,7 +119,7 @@ class BlobView {
   [[nodiscard]] const std::uint32_t* point_words() const { return points_; }
 
   /// Position and normal of point `index` of `leaf`. Preconditions: the leaf belongs to this view
-  /// and holds the index. Cost: constant (one square root and one division for the normal).
+  /// and contains the point. Cost: constant (one square root and one division for the normal).
   [[nodiscard]] Vec3 position(const Leaf& leaf, std::uint32_t index) const;
   [[nodiscard]] Vec3 normal(std::uint32_t index) const;
   [[nodiscard]] SurfacePoint surface_point(const Leaf& leaf, std::uint32_t index) const {
@@ -132,15 +132,17 @@ class BlobView {
     return neighbours_ + 6U * leaf_number;
   }
 
-  /// Per node, then per leaf: see blob_format.hpp. Null: the blob does not tell.
+  /// Interior flags, a byte per node, then a byte per leaf (blob_format.hpp). Null if the blob has
+  /// none.
   [[nodiscard]] const std::uint8_t* interior() const { return interior_; }
 
   [[nodiscard]] std::uint32_t material_count() const { return material_count_; }
-  /// The first material if the index is out of range. Precondition: material_count() > 0.
+  /// Material `index`, or the first one if the index is out of range. Precondition:
+  /// material_count() > 0.
   [[nodiscard]] const BlobMaterial& material(std::uint32_t index) const {
     return materials_[index < material_count_ ? index : 0U];
   }
-  /// Index of a point's material; 0 in a blob with at most one.
+  /// Index of a point's material; 0 in a blob with at most one material.
   [[nodiscard]] std::uint32_t material_of(std::uint32_t point) const {
     return material_indices_ == nullptr ? 0U : material_indices_[point];  // memory: flash
   }
@@ -197,15 +199,15 @@ inline Vec3 BlobView::normal(std::uint32_t index) const {
   return (1.0F / length(n)) * n;
 }
 
-/// Validates `bytes`. kOk: `view` reads them, and no query can read outside of them, whatever they
-/// hold. Any other status: `view` is empty.
-/// Cost: one pass, about 30 instructions per word; no recursion; at most 256 bytes of stack.
+/// Validates `bytes`. After kOk, `view` reads them, and no query can read outside of them, whatever
+/// their content. After any other status, `view` is empty.
+/// Cost: linear in the number of bytes; no recursion; at most 256 bytes of stack.
 [[nodiscard]] BlobStatus open_blob(std::span<const std::byte> bytes, BlobView& view);
 
 /// Iterates over the leaves of a model in depth-first order (leaves of a node before its inner
 /// nodes), which is the order of their numbers and points.
 ///   for (LeafCursor c(view); !c.done(); c.next()) use(c.leaf());
-/// Cost of a full walk: nodes + leaves steps. Stack: 11 levels of 12 bytes.
+/// Cost of a full traversal: nodes + leaves steps. Stack: 11 levels of 12 bytes.
 class LeafCursor {
  public:
   explicit LeafCursor(const BlobView& view);
@@ -230,7 +232,7 @@ class LeafCursor {
   bool done_ = true;
 };
 
-/// Calls use(leaf, index) for each point of a model in ascending order. Cost: a full walk.
+/// Calls use(leaf, index) for each point of a model in ascending order. Cost: a full traversal.
 template <typename Use>
 void for_each_point(const BlobView& view, Use&& use) {
   for (LeafCursor cursor(view); !cursor.done(); cursor.next()) {  // bound: kMaxLeaves

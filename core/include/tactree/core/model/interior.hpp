@@ -1,5 +1,6 @@
 #pragma once
-// Material and free space around a surface, as the builder has marked them in the octree of a blob.
+// Distinguishes material from free space around a surface, by flags that the builder stores in the
+// octree of a blob.
 //
 // Interrupt safety: pure functions.
 
@@ -7,11 +8,11 @@
 
 namespace tactree::core {
 
-/// What a blob tells about a place. Both are false outside the root cube, and in a blob without an
+/// Interior flags at a position. Both are false outside the root cube, and in a blob without an
 /// interior.
 struct Interior {
-  bool here = false;    ///< the place lies in the material, if no point is within reach of it
-  bool behind = false;  ///< in a leaf: there is material behind its points
+  bool here = false;    ///< in the material; valid only if no point is within reach_m()
+  bool behind = false;  ///< in a leaf whose points have material behind them
 };
 
 /// Cost: one descent from the root, at most depth() levels of about 25 instructions.

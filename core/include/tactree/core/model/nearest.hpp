@@ -20,25 +20,25 @@ struct NearestPoint {
   [[nodiscard]] bool found() const { return index != kNoPoint; }
 };
 
-/// The point nearest to `probe` (m) within distance r (m); of equally near points the one with the
-/// lowest index. Precondition: 0 <= r <= view.reach_m(), else nothing is found.
+/// The point nearest to `probe` (m) within distance r (m). Of equally near points, the one with the
+/// lowest index is returned. Nothing is found unless 0 <= r <= view.reach_m().
 /// Cost: at most 8 leaves with header().points_per_query_max points.
 [[nodiscard]] NearestPoint nearest_within(const BlobView& view, Vec3 probe, float r);
 
 struct PointsWithin {
   std::uint32_t count = 0;  ///< indices written
-  bool complete = true;     ///< false: the buffer was too small for all of them
+  bool complete = true;     ///< false if the buffer was too small for all of them
 };
 
 /// Writes the indices of all points within distance r (m) of `probe` to `out`, in no particular
 /// order. A buffer of header().points_per_ball_max entries is sufficient for r <= reach_m().
-/// Precondition and cost: as nearest_within().
+/// Range of r and cost: as for nearest_within().
 [[nodiscard]] PointsWithin points_within(const BlobView& view, Vec3 probe, float r,
                                          std::span<std::uint32_t> out);
 
-/// True if the axis-aligned box, edge header().aabb_edge_m, of any point holds `probe`. Exact; the
-/// boxes are closed. Precondition: aabb_edge_m / 2 <= reach_m(), else false. It holds in the
-/// surface profile. Cost: as nearest_within().
+/// True if `probe` is in the axis-aligned box, with edge header().aabb_edge_m, around any point.
+/// Exact; the boxes are closed. Returns false if aabb_edge_m / 2 > reach_m(), which open_blob()
+/// excludes in the surface profile. Cost: as for nearest_within().
 [[nodiscard]] bool in_any_vertex_box(const BlobView& view, Vec3 probe);
 
 }  // namespace tactree::core

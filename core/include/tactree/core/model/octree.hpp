@@ -22,8 +22,8 @@ constexpr std::uint32_t lowest_octant(std::uint32_t mask) {
   return count_octants((mask & (~mask + 1U)) - 1U);
 }
 
-/// Table of count_octants() for masks without the highest octant (0-127). Every step of a descent
-/// depends on this count.
+/// Table of count_octants() for masks without the highest octant (0-127). A table, because every
+/// step of a descent has to wait for this count.
 struct OctantCounts {
   std::uint8_t of[128];
 };
@@ -49,26 +49,27 @@ constexpr std::uint32_t child_leaf(BlobNode node, std::uint32_t octant) {
   return child_of(node.leaves, octant);
 }
 
-/// Cell of a child, in units of cells of the child's level.
+/// Coordinates of a child's cell, in cells of the child's level.
 constexpr Int3 child_cell(Int3 cell, std::uint32_t octant) {
   return {cell.x << 1 | static_cast<std::int32_t>(octant & 1U),
           cell.y << 1 | static_cast<std::int32_t>((octant >> 1) & 1U),
           cell.z << 1 | static_cast<std::int32_t>(octant >> 2)};
 }
 
-/// Lattice coordinates of `position` (m): floor(position / step_m) on each axis, exact. False if
-/// the position is not finite or outside the root cube.
+/// Lattice coordinates of `position` (m): floor(position / step_m) on each axis, exact.
+/// Returns false if the position is not finite or outside the root cube.
 [[nodiscard]] bool to_lattice(const BlobView& view, Vec3 position, Int3& site);
 
-/// The leaf that contains a lattice site inside the root cube. False: empty space there.
+/// Finds the leaf that contains a lattice site inside the root cube. Returns false in empty space.
 /// Cost: one descent, at most depth() levels, about 20 instructions each.
 [[nodiscard]] bool find_leaf(const BlobView& view, Int3 site, Leaf& leaf);
 
-/// The same from node `node` of level `level`. Precondition: the node's cell holds the site.
+/// As above, but starts at node `node` of level `level`. Precondition: the node's cell contains the
+/// site.
 [[nodiscard]] bool find_leaf_below(const BlobView& view, std::uint32_t node, std::uint32_t level,
                                    Int3 site, Leaf& leaf);
 
-/// The leaf that contains a position: to_lattice() and find_leaf().
+/// Finds the leaf that contains a position: to_lattice(), then find_leaf().
 [[nodiscard]] bool find_leaf(const BlobView& view, Vec3 position, Leaf& leaf);
 
 }  // namespace tactree::core

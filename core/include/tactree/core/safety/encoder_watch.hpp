@@ -1,6 +1,6 @@
 #pragma once
-// Detects a stuck encoder, or a disconnected one that reads as valid: the count of a sound axis
-// changes when the effort of its motor changes by more than kChange.
+// Detects an encoder that is stuck, or that is disconnected but reads as valid: the count of a
+// working axis changes when the effort of its motor changes by more than kChange.
 //
 // Interrupt safe: no shared state.
 
@@ -14,15 +14,17 @@ class EncoderWatch {
  public:
   /// Change of effort / effort_max above which the count of an axis must change.
   static constexpr float kChange = 0.25F;
-  /// 1 / kSettling of the time is excluded: the effort may still follow an ended motion.
+  /// The first 1 / kSettling of a standstill is ignored: the effort may still follow the motion
+  /// that has just ended.
   static constexpr std::uint32_t kSettling = 4;
 
-  /// ticks: longest standstill of an axis under a changing effort; at least 1.
+  /// `ticks`: maximum standstill of an axis under a changing effort; at least 1.
   void configure(std::uint32_t ticks) { ticks_ = ticks; }
   void reset();
 
-  /// Call once a tick. counts: as read. share: contact effort / effort_max, without gravity
-  /// compensation. axes: number in use. False: an encoder is stuck. Cost: constant.
+  /// Call once per tick. `counts`: as read. `share`: contact effort / effort_max, without gravity
+  /// compensation. `axes`: number of axes in use. Returns false if an encoder is stuck. Cost:
+  /// constant.
   [[nodiscard]] bool update(const std::int32_t (&counts)[kAxes], const float (&share)[kAxes],
                             std::uint32_t axes);
 

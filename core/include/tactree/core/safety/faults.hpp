@@ -1,5 +1,5 @@
 #pragma once
-// Codes of faults and limits. Each has a page in docs/faults/.
+// Codes of faults and limits. docs/faults/ has a page for each.
 // Interrupt safe: pure functions.
 
 #include <cstdint>
@@ -9,7 +9,7 @@ namespace tactree::core {
 enum class Fault : std::uint8_t {
   kNone = 0,
   kEmergencyStop = 1,     ///< the emergency stop input is open
-  kEncoderInvalid = 2,    ///< an encoder reports no valid count, or an impossible pose
+  kEncoderInvalid = 2,    ///< an invalid or lost count, or an impossible pose
   kEncoderJump = 3,       ///< the probe moved faster than speed_max_m_s
   kNotFinite = 4,         ///< a force or effort is NaN or infinite
   kDeadlineMissed = 5,    ///< two overruns within 100 ticks
@@ -18,7 +18,7 @@ enum class Fault : std::uint8_t {
   kUnexpectedEvent = 8,   ///< a command that the state does not allow
   kMotorFault = 9,        ///< the motor bank reports a failure
   kModelIncomplete = 10,  ///< the model exceeds its declared limits or has an invalid index
-  kEncoderStuck = 11,     ///< a motor's effort changes, its count does not
+  kEncoderStuck = 11,     ///< the effort of an axis changes, but its count does not
   kSupply = 12,           ///< the amplifiers' supply is outside supply_min_V .. supply_max_V
 };
 inline constexpr std::uint32_t kFaultCodes = 13;
@@ -37,16 +37,16 @@ constexpr bool has_fault(FaultMask mask, Fault fault) { return (mask & fault_bit
 
 /// Limits that reduce the force in a tick without a fault.
 enum class Limit : std::uint32_t {
-  kForce = 1U << 0,      ///< the force was longer than force_max_N
+  kForce = 1U << 0,      ///< the force exceeded force_max_N
   kSlew = 1U << 1,       ///< the force changed faster than slew_N_s
-  kRamp = 1U << 2,       ///< ramp after activation
+  kRamp = 1U << 2,       ///< the force ramps up after activation
   kAxis = 1U << 3,       ///< an axis reached its effort_max or effort_slew_s
   kBoundary = 1U << 4,   ///< surface boundary, or body removed: the force fades
-  kWaiting = 1U << 5,    ///< no force: the probe is inside a body, or armed and not ready
+  kWaiting = 1U << 5,    ///< no force: probe inside a body, or armed and confirmed but not ready
   kWorkspace = 1U << 6,  ///< near a joint limit or singular pose: the force fades
-  kNotHomed = 1U << 7,   ///< joint positions unknown: no force (homing.hpp)
-  kBodies = 1U << 8,     ///< more bodies within reach than kMaxReachableBodies: some not rendered
-  kThermal = 1U << 9,    ///< a motor is warm: peak effort reduced towards continuous effort
+  kNotHomed = 1U << 7,   ///< no force: the joint positions are unknown (homing.hpp)
+  kBodies = 1U << 8,     ///< more than kMaxReachableBodies bodies within reach: some not rendered
+  kThermal = 1U << 9,    ///< a motor is warm: its peak effort is reduced
 };
 using LimitMask = std::uint32_t;
 inline constexpr std::uint32_t kLimits = 10;

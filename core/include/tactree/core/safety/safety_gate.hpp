@@ -52,16 +52,18 @@ class SafetyGate {
   };
 
   /// Applies the limits if all are in range; otherwise returns false and changes nothing.
-  /// The next command is zero. Cost: constant.
+  /// After success the ramp starts again at zero. Cost: constant.
   [[nodiscard]] bool configure(const GateLimits& limits);
 
-  /// Zero command for a tick without force. Restarts ramp and slew; the thermal model cools.
+  /// Returns zero effort for a tick that is not active. Restarts ramp and slew from zero; the
+  /// thermal model cools.
   Result release();
 
-  /// Command of an active tick. `force`: at the probe, N. `effort_per_force`: maps it to the axes.
-  /// `own_effort`, N or Nm: gravity compensation; follows the ramp, and only the limits of the axes
-  /// apply to it. If an axis limit is too small for both, the force is scaled down and keeps its
-  /// direction; the change of all efforts in a tick is scaled by a common factor.
+  /// Command of an active tick. `force`: at the probe, N. `effort_per_force`: transposed Jacobian.
+  /// `own_effort`: gravity compensation, N or Nm; it follows the ramp, and only the limits of the
+  /// axes apply to it. If an axis limit is too small for both, the force is scaled down and keeps
+  /// its direction. If an axis exceeds its slew limit, the changes of all efforts are scaled by a
+  /// common factor.
   /// Cost: constant, about 150 operations.
   Result command(Vec3 force, const Mat3& effort_per_force, Vec3 own_effort = {});
 

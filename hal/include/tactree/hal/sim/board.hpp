@@ -1,5 +1,5 @@
 #pragma once
-// A simulated board: every part satisfies the contract of board.hpp, with faults and delays as
+// A simulated board: every component satisfies the contract of board.hpp, with faults and delays as
 // parameters. The simulation calls sample() with the position before each tick of the loop and
 // effort() after it. Not thread safe.
 
@@ -17,19 +17,19 @@ namespace tactree::hal::sim {
 struct BoardParameters {
   EncoderParameters encoders{};
   MotorParameters motors{};
-  std::uint32_t period_us = 1000;        ///< of a tick: 1 .. 1e6
-  std::uint32_t enable_delay_ticks = 5;  ///< delay of the amplifiers' power
-  SessionRecorder* recorder = nullptr;   ///< receives the session; outlives the board
+  std::uint32_t period_us = 1000;        ///< tick period: 1 .. 1e6
+  std::uint32_t enable_delay_ticks = 5;  ///< delay until amplifier power and read-back follow
+  SessionRecorder* recorder = nullptr;   ///< records the session; must outlive the board
 };
 
-/// A relay with a delay; it may stick.
+/// Enable line with the delay of a relay, which can stick.
 class SimEnableLine {
  public:
   explicit SimEnableLine(std::uint32_t delay_ticks) : line_(delay_ticks, false) {}
   void set(bool on) noexcept { wanted_ = on; }
   [[nodiscard]] bool read_back() noexcept { return stuck_ ? stuck_at_ : line_.value(); }
 
-  /// Call once a tick.
+  /// Call once per tick.
   void advance() { line_.push(wanted_); }
   void stick(bool at) {
     stuck_ = true;
@@ -56,10 +56,10 @@ class SimSafetyInputs {
   bool dead_man_ = false;
 };
 
-/// Simulated time: a wait takes exactly one period, plus injected overruns.
+/// Simulated time: a wait takes exactly one period plus the injected overruns.
 class SimTicker {
  public:
-  /// `line` advances with the time and must outlive the ticker.
+  /// Each wait() advances `line` by one tick. It must outlive the ticker.
   SimTicker(std::uint32_t period_us, SimEnableLine& line) : period_us_(period_us), line_(line) {}
   [[nodiscard]] Tick wait() noexcept {
     const Tick tick{overruns_};
@@ -92,13 +92,13 @@ class SimLink {
 
   /// The next receive() returns a message with this command (kNone: keep-alive).
   void post(core::Command command) { next_ = {true, command, {}}; }
-  /// Adds this update to the posted message, unless it was lost.
+  /// Adds this update to the posted message. Has no effect without one.
   void attach(const BodyUpdate& update) {
     body_ = update;
     next_.bodies = std::span(&body_, next_.alive ? 1U : 0U);
   }
-  /// The next receive() returns these updates with or without a message, as from an application on
-  /// the board. `updates` must stay valid until the end of the tick.
+  /// The next receive() returns these updates, even without a message, like those of an application
+  /// on the board. `updates` must stay valid until the end of the tick.
   void move_bodies(std::span<const BodyUpdate> updates) { next_.bodies = updates; }
   /// The next receive() returns this force.
   void add_force(const core::AddedForce& force) { next_.added_force = force; }
@@ -142,12 +142,12 @@ class SimBoard {
   [[nodiscard]] SimTicker& ticker() noexcept { return ticker_; }
   [[nodiscard]] SimLink& link() noexcept { return link_; }
   [[nodiscard]] SimStorage& storage() noexcept { return storage_; }
-  /// nullptr: none.
+  /// Returns nullptr if there is none.
   [[nodiscard]] SessionRecorder* recorder() noexcept { return recorder_; }
 
-  /// Call once a tick, before the loop's tick: positions of the axes, m.
+  /// Sets the positions of the axes, m. Call once per tick, before the tick of the loop.
   void sample(const double (&position_m)[core::kAxes]) { encoders_.sample(position_m); }
-  /// Effort of an axis, N. Precondition: axis < kAxes.
+  /// Effort of an axis, N or Nm; zero while the read-back is off. Precondition: axis < kAxes.
   [[nodiscard]] double effort(std::uint32_t axis) {
     return motors_.effort(axis, enable_line_.read_back());
   }

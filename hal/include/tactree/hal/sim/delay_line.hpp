@@ -8,8 +8,8 @@ namespace tactree::hal::sim {
 
 inline constexpr std::uint32_t kMaxLatencyTicks = 63;
 
-/// Call push() once a tick. value() returns the value pushed `latency` pushes before the last, or
-/// the initial value if there are fewer. Cost: constant.
+/// Call push() once per tick. value() returns the value that was pushed latency_ticks pushes before
+/// the last one, or the initial value if there were fewer. Cost: constant.
 template <class T>
 class DelayLine {
  public:

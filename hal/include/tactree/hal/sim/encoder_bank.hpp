@@ -14,13 +14,13 @@ namespace tactree::hal::sim {
 enum class EncoderFault : std::uint8_t {
   kNone = 0,
   kStuck,         ///< the count does not change
-  kDisconnected,  ///< not valid
+  kDisconnected,  ///< reported as not valid
 };
 
 struct EncoderParameters {
-  double counts_per_m = 1.0 / 30e-6;  ///< > 0: 0.03 mm, as PHANTOM Premium
+  double counts_per_m = 1.0 / 30e-6;  ///< > 0; 0.03 mm per count, as in the PHANTOM Premium
   std::uint32_t latency_ticks = 0;    ///< 0 .. kMaxLatencyTicks
-  std::uint32_t start_count = 0;      ///< count at 0 m: near 2^31 tests the overflow
+  std::uint32_t start_count = 0;      ///< count at 0 m; a value near 2^31 tests the overflow
 };
 
 class SimEncoderBank {
@@ -28,7 +28,7 @@ class SimEncoderBank {
   explicit SimEncoderBank(const EncoderParameters& parameters)
       : parameters_(parameters), line_(parameters.latency_ticks, core::EncoderReading{}) {}
 
-  /// Call once a tick: positions of the axes, m.
+  /// Samples the positions of the axes, m. Call once per tick.
   void sample(const double (&position_m)[core::kAxes]) {
     core::EncoderReading reading;
     for (std::uint32_t i = 0; i < core::kAxes; ++i) {  // bound: kAxes

@@ -65,8 +65,8 @@ class SimFlash {
     return true;
   }
 
-  /// Cuts the power during the operation with this number, counted from power_on(). `done`: 0 none,
-  /// 1 half, 2 all of the operation is executed. Later operations have no effect.
+  /// Cuts the power during the operation with this number, counted from power_on(). `done` is the
+  /// part of it that is executed: 0 none, 1 half, 2 all. Later operations have no effect.
   void cut_power_at(std::uint64_t operation, int done) {
     cut_at_ = operation;
     done_ = static_cast<Fate>(done);
@@ -78,7 +78,7 @@ class SimFlash {
   [[nodiscard]] std::uint64_t operations() const { return operations_; }
   [[nodiscard]] bool has_power() const { return operations_ <= cut_at_; }
 
-  /// Inverts bits, as by ageing.
+  /// Inverts bits, to simulate ageing.
   void rot(std::size_t offset, std::uint8_t bits) {
     writable()[offset] ^= static_cast<std::byte>(bits);
   }
@@ -97,7 +97,7 @@ class SimFlash {
     }
   }
 
-  /// Number of writes to bytes that were not erased, or out of range.
+  /// Number of writes to bytes that were not erased, and of misaligned or out-of-range operations.
   [[nodiscard]] std::uint32_t mistakes() const { return mistakes_; }
   [[nodiscard]] std::uint32_t erased_times(std::uint32_t sector) const {
     return erased_times_[sector];

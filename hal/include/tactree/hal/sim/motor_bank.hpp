@@ -13,11 +13,11 @@ enum class MotorFault : std::uint8_t {
   kNone = 0,
   kDead,      ///< no effort
   kStuck,     ///< keeps its effort
-  kReversed,  ///< the wrong sign
+  kReversed,  ///< wrong sign
 };
 
 struct MotorParameters {
-  double effort_max = 8.5;          ///< N or Nm per axis: saturation
+  double effort_max = 8.5;          ///< saturation limit of each axis, N or Nm
   std::uint32_t latency_ticks = 0;  ///< from the write to the effort: 0 .. kMaxLatencyTicks
 };
 
@@ -32,7 +32,7 @@ class SimMotorBank {
     hold({command.effort(0), command.effort(1), command.effort(2)});
   }
 
-  /// Sets the efforts that an external board commanded, N or Nm.
+  /// Sets the efforts commanded by an external board, N or Nm.
   void hold(const float (&effort)[core::kAxes]) noexcept {
     Efforts efforts;
     for (std::uint32_t i = 0; i < core::kAxes; ++i) {  // bound: kAxes

@@ -1,7 +1,6 @@
 #pragma once
 // Receives all inputs of a controller in order: each Input, and each accepted change between two
-// ticks. The same sequence gives the same outcomes, bit for bit. Called from the context of the
-// loop.
+// ticks. The same sequence produces bit-identical outcomes. Called from the context of the loop.
 
 #include "tactree/core/control/controller.hpp"
 

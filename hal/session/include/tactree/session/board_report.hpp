@@ -1,6 +1,6 @@
 #pragma once
-// What a board reports about itself: identity, start, capabilities, state.
-// Not interrupt safe: called between ticks only. Cost of each function: constant.
+// Replies that describe a board: identity, start, capabilities, state. Not interrupt safe: called
+// between ticks only. Cost of each function: constant.
 
 #include <cstdint>
 
@@ -15,10 +15,10 @@ struct BoardIdentity {
   const char* board = "";     ///< name; at most 23 characters are sent
   const char* firmware = "";  ///< version; at most 23 characters are sent
   std::uint32_t serial[3] = {0, 0, 0};
-  std::uint32_t cycles_per_second = 0;  ///< of the core's clock; 0: not known
+  std::uint32_t cycles_per_second = 0;  ///< clock frequency of the core, Hz; 0: unknown
 };
 
-/// Properties of a model store that a host may ask for.
+/// Properties of a model store that are reported to a host.
 struct StoreFacts {
   std::uint32_t slots = 0;
   std::uint32_t slot_bytes = 0;
@@ -36,9 +36,10 @@ void put_capabilities(const core::Controller& controller, const core::Configurat
 void put_state(const core::Status& status, const hal::StartResult& start, std::uint32_t now_us,
                Reply& reply);
 
-/// For HeartbeatRequest: now_us minus the board time that the host has seen, in ticks, rounded up,
-/// plus two: the next tick takes it, and the controller accepts a link as old as its timeout.
-/// False: the time lies in the future, or so far in the past that it proves nothing.
+/// Converts `age_us`, the time since the board time in a HeartbeatRequest, to ticks. The result is
+/// rounded up, plus two: one tick passes until the controller receives the heartbeat, and the
+/// controller still accepts a link whose age equals its timeout. Returns false if the board time is
+/// in the future, or so old that its age does not fit.
 [[nodiscard]] bool link_age(std::uint32_t age_us, float rate_hz, std::uint16_t& ticks);
 
 }  // namespace tactree::session

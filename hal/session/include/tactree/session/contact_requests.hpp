@@ -12,23 +12,23 @@
 
 namespace tactree::session {
 
-/// The adjustment that a request asks for. `base`: the configuration at the start, whose force and
-/// slew limits are the upper bounds. kBadLength, kBadValue.
+/// Sets `adjustment` to the current one with the requested limits. `base`: configuration at the
+/// start, whose force and slew limits are the upper bounds. Errors: kBadLength, kBadValue.
 [[nodiscard]] core::wire::WireStatus limits_of(std::span<const std::byte> payload,
                                                const core::Controller& controller,
                                                const core::Configuration& base,
                                                core::Adjustment& adjustment);
-/// kBadLength.
+/// Sets `adjustment` to the current one with the requested material. Errors: kBadLength.
 [[nodiscard]] core::wire::WireStatus material_of(std::span<const std::byte> payload,
                                                  const core::Controller& controller,
                                                  core::Adjustment& adjustment);
 
-/// kLater: a move of another body has not been taken by a tick yet.
+/// Returns kLater while an update of another body waits for a tick.
 [[nodiscard]] Outcome move_body(std::span<const std::byte> payload,
                                 const core::Controller& controller, TickMailbox& mailbox,
                                 Reply& reply);
 
-/// kBadLength, kBadValue; kNotNow: the controller is not active.
+/// Errors: kBadLength; kBadValue; kNotNow if the controller is not active.
 [[nodiscard]] core::wire::WireStatus add_force(std::span<const std::byte> payload,
                                                const core::Controller& controller,
                                                TickMailbox& mailbox);

@@ -1,7 +1,7 @@
 #pragma once
-// The control request: arm, confirm, stop, clear a fault, home. From idle to active takes two
-// requests, the second with a token that the reply to the first brought. Not interrupt safe: called
-// between ticks only. Cost of each function: constant.
+// The control request: arm, confirm, stop, clear a fault, home. The transition from idle to active
+// requires two requests; the second returns a token from the reply to the first. Not interrupt
+// safe: called between ticks only. Cost of each function: constant.
 
 #include <cstddef>
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace tactree::session {
 
-/// The status of a tick that began after it was requested.
+/// The next status that arrives after request().
 class FreshStatus {
  public:
   void request(TickMailbox& mailbox) {
@@ -25,9 +25,9 @@ class FreshStatus {
     status_ = status;
     ++count_;
   }
-  /// One has come since request().
+  /// Returns true if a status has arrived since request().
   [[nodiscard]] bool has_come() const { return count_ != before_; }
-  /// The newest.
+  /// The newest status.
   [[nodiscard]] const core::Status& get() const { return status_; }
 
  private:
@@ -38,11 +38,11 @@ class FreshStatus {
 
 class ControlRequests {
  public:
-  /// Facts about the moment of a request.
+  /// Conditions at the time of a request.
   struct Moment {
     std::uint32_t now_us = 0;
     std::uint16_t session = 0;
-    bool flash_busy = false;  ///< an erase is going on
+    bool flash_busy = false;  ///< an erase is in progress
   };
 
   ControlRequests(const core::Controller& controller, TickMailbox& mailbox)
@@ -53,15 +53,15 @@ class ControlRequests {
 
   /// Posts a stop, ahead of any other command.
   void stop();
-  /// Posts the command that a request asks for. A command that the state does not allow would be a
-  /// fault for the controller; it is refused here. kBadLength, kBadValue, kBusy, kNotNow,
-  /// kBadToken, kQueueFull.
+  /// Posts the requested command. A command that the state does not allow is refused here, because
+  /// the controller would latch a fault. Errors: kBadLength, kBadValue, kBusy, kNotNow, kBadToken,
+  /// kQueueFull.
   [[nodiscard]] core::wire::WireStatus post(std::span<const std::byte> payload,
                                             const Moment& moment);
-  /// Puts the reply, with the status of a tick after the command.
+  /// Writes the reply, with the status of a tick after the command.
   void put_reply(const core::Status& status, Reply& reply) const;
 
-  /// Makes the token of the last arming invalid.
+  /// Invalidates the token of the last arm request.
   void reset() { token_ = 0; }
 
  private:
@@ -73,8 +73,8 @@ class ControlRequests {
 
   const core::Controller& controller_;
   TickMailbox& mailbox_;
-  std::uint32_t token_ = 0;   // of the last arming; 0: none
-  std::uint32_t tokens_ = 0;  // made so far
+  std::uint32_t token_ = 0;   // of the last arm request; 0: none
+  std::uint32_t tokens_ = 0;  // number of tokens made so far
 };
 
 }  // namespace tactree::session

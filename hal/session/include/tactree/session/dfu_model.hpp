@@ -1,10 +1,10 @@
 #pragma once
-// Model download and upload over DFU: blocks of a blob are written to the store's spare slot; the
-// model is used once it is complete and the controller accepts it. A DFU file carries neither board
-// name nor signature, so a board that requires signatures refuses the download.
+// Model download and upload over DFU: the blocks of a blob are written to the store's spare slot;
+// the model is used once it is complete and the controller accepts it. A DFU file contains neither
+// board name nor signature, so a board that requires signatures refuses the download.
 //
-// The blob's header, in the first block, holds the length to erase. progress() does the long work
-// piece by piece while the host polls. Not for the tick; one context.
+// The first block contains the blob's header, which gives the length to erase. progress() erases
+// and programs in bounded steps while the host polls. Not for use in a tick; call from one context.
 
 #include <cstddef>
 #include <cstdint>
@@ -20,7 +20,7 @@
 
 namespace tactree::session {
 
-/// Store: a ModelStore. Platform: as of BetweenTicks.
+/// Store: a ModelStore. Platform: see BetweenTicks.
 template <class Store, class Platform>
 class DfuModel {
  public:
@@ -39,7 +39,7 @@ class DfuModel {
     return DfuStatus::kOk;
   }
 
-  /// Takes a block; progress() writes it.
+  /// Accepts a block, which progress() then writes.
   [[nodiscard]] DfuStatus write(std::uint32_t offset, std::span<const std::byte> bytes) {
     if (!begun_ || programmed_ != waiting_ || bytes.size() > sizeof block_) {
       return DfuStatus::kAddress;
@@ -64,7 +64,7 @@ class DfuModel {
     return DfuStatus::kOk;
   }
 
-  /// A sector or a piece.
+  /// Erases one sector or programs one piece.
   [[nodiscard]] core::usb::DfuProgress progress() {
     if (!begun_ || (!store_.is_erasing() && programmed_ == waiting_)) {
       return {};
@@ -110,7 +110,7 @@ class DfuModel {
       other_slot_ = store_.other_slot();
     }
     if (store_.other_slot() != other_slot_) {
-      return DfuStatus::kFirmware;  // another model is in use since the upload began
+      return DfuStatus::kFirmware;  // another model was activated since the upload began
     }
     const std::size_t left = offset < model_.size() ? model_.size() - offset : 0;
     count = bytes.size() < left ? bytes.size() : left;
@@ -145,7 +145,7 @@ class DfuModel {
     return status;
   }
 
-  /// The controller first, as in ModelTransfer: what it refuses does not get into the record.
+  /// The controller loads the model first, so a model that it refuses is not recorded.
   [[nodiscard]] DfuStatus use(std::uint32_t slot) {
     core::BlobView view;
     core::BlobStatus blob = core::BlobStatus::kOk;
@@ -185,13 +185,13 @@ class DfuModel {
   TickMailbox& mailbox_;
 
   bool begun_ = false;
-  std::uint32_t total_ = 0;     // bytes of the model, as its header says
+  std::uint32_t total_ = 0;     // bytes of the model, from its header
   std::uint32_t offset_ = 0;    // of the block
   std::size_t waiting_ = 0;     // bytes in the block
-  std::size_t programmed_ = 0;  // of these
+  std::size_t programmed_ = 0;  // bytes of the block that are programmed
   core::Crc32 crc_{};
   alignas(4) std::byte block_[core::usb::kDfuTransferBytes] = {};
-  std::span<const std::byte> model_{};  // being read
+  std::span<const std::byte> model_{};  // being uploaded
   std::uint32_t other_slot_ = 0;
 };
 

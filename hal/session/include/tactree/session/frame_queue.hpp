@@ -1,5 +1,5 @@
 #pragma once
-// Encoded frames that wait for the port. Not interrupt safe: called between ticks only.
+// Queue of encoded frames that wait for the port. Not interrupt safe: called between ticks only.
 
 #include <cstddef>
 #include <cstdint>
@@ -10,18 +10,18 @@
 
 namespace tactree::session {
 
-/// Holds kFrames frames of the greatest length, or more short ones.
+/// Holds kFrames frames of maximum length, or more shorter ones.
 class FrameQueue {
  public:
   static constexpr std::size_t kFrames = 4;
   static constexpr std::size_t kBytes = kFrames * core::wire::kMaxEncodedFrame;
 
-  /// Room for that many frames of the greatest length.
+  /// Returns true if this number of frames of maximum length fits.
   [[nodiscard]] bool has_room(std::size_t frames) const {
     return kBytes - end_ >= frames * core::wire::kMaxEncodedFrame;
   }
 
-  /// False: there was no room.
+  /// Returns false if the frame does not fit.
   bool push(const core::wire::FrameHeader& header, std::span<const std::byte> payload) {
     const std::size_t size =
         core::wire::encode_frame(header, payload, std::span(bytes_).subspan(end_));
@@ -29,7 +29,7 @@ class FrameQueue {
     return size > 0U;
   }
 
-  /// Writes as many bytes as the port takes. Cost: moves the rest, at most kBytes.
+  /// Writes as many bytes as the port accepts. Cost: moves the remaining bytes, at most kBytes.
   template <hal::BytePort Port>
   void flush(Port& port) {
     if (end_ == 0U) {

@@ -1,6 +1,7 @@
 #pragma once
-// Requests to the model store: list, write, check, use, roll back, erase, save parameters. Flash is
-// written or erased only while the motors are off. Not interrupt safe: called between ticks only.
+// Requests to the model store: list, write, check, activate, roll back, erase, save parameters.
+// Flash is written or erased only while the motors are off. Not interrupt safe: called between
+// ticks only.
 // Loop and memory annotations: docs/BOUND.md.
 
 #include <cstddef>
@@ -22,7 +23,7 @@ class ModelTransfer {
   using Kind = core::wire::MessageKind;
   using WireStatus = core::wire::WireStatus;
 
-  /// All are kept by reference.
+  /// Keeps all of these references.
   ModelTransfer(Store& store, core::BetweenTicks<Platform>& changes, TickMailbox& mailbox)
       : store_(store), changes_(changes), mailbox_(mailbox) {}
 
@@ -33,7 +34,7 @@ class ModelTransfer {
     }
   }
 
-  /// An erase is going on.
+  /// Returns true while an erase is in progress.
   [[nodiscard]] bool is_writing() const {
     if constexpr (Store::kSlots > 0U) {
       return store_.is_erasing();
@@ -41,7 +42,7 @@ class ModelTransfer {
     return false;
   }
 
-  /// `step` counts from 0 for each request.
+  /// `step`: number of earlier calls for this request.
   Outcome handle(Kind kind, std::span<const std::byte> payload, std::uint32_t step, Reply& reply) {
     if constexpr (Store::kSlots == 0U) {
       reply.set_status(is_known(kind) ? WireStatus::kUnsupported : WireStatus::kUnknownKind);
@@ -124,7 +125,7 @@ class ModelTransfer {
     return Outcome::kAnswer;
   }
 
-  // Checks the stored model only; activate() asks the controller.
+  // Checks only the stored model; activate() requires that the controller accepts it, too.
   Outcome finish(std::span<const std::byte> payload, Reply& reply) {
     core::wire::FinishModelRequest request;
     if (!core::wire::decode_message(payload, request)) {
@@ -147,8 +148,8 @@ class ModelTransfer {
     return use(request.slot, reply);
   }
 
-  // The controller first: a model that it refuses does not get into the record. Where writing the
-  // record fails, the controller keeps the new model until the next reset; the reply is
+  // The controller loads the model first, so a model that it refuses is not recorded. If writing
+  // the record fails, the controller keeps the new model until the next reset, and the reply is
   // kStorageFailed.
   Outcome use(std::uint32_t slot, Reply& reply) {
     core::wire::FinishModelReply answer;

@@ -1,6 +1,6 @@
 #pragma once
-// Device calibration by number: read and set. Values are kept by ModelTransfer (kSaveParameters).
-// Not interrupt safe: called between ticks only. Cost of each function: constant.
+// Reads and sets calibration parameters by number. ModelTransfer stores them (kSaveParameters). Not
+// interrupt safe: called between ticks only. Cost of each function: constant.
 
 #include <cstddef>
 #include <span>
@@ -11,13 +11,13 @@
 
 namespace tactree::session {
 
-/// kBadLength, kBadValue.
+/// Errors: kBadLength, kBadValue.
 [[nodiscard]] core::wire::WireStatus get_parameter(std::span<const std::byte> payload,
                                                    const core::Controller& controller,
                                                    Reply& reply);
 
-/// The configuration with the parameter that a request sets. kBadLength; kBusy: armed or active;
-/// kBadValue.
+/// Sets `changed` to the current configuration with the requested parameter. Errors: kBadLength;
+/// kBusy if armed or active; kBadValue.
 [[nodiscard]] core::wire::WireStatus parameter_change(std::span<const std::byte> payload,
                                                       const core::Controller& controller,
                                                       core::wire::SetParameterRequest& request,

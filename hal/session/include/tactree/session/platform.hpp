@@ -6,10 +6,10 @@
 
 namespace tactree::session {
 
-/// Requirements of a session beyond port and store.
-///   now_us()          the Ticker's clock, microseconds, wraps at 2^32
-///   hold_ticks(hold)  while held no tick begins; ticks that fall due run right after the release.
-///                     Held for one controller call, at most the time to load a model.
+/// Requirements of a session in addition to port and store.
+///   now_us()          returns the time of the Ticker, us; wraps at 2^32
+///   hold_ticks(hold)  true: no tick starts; false: ticks that became due run immediately. Held
+///                     for one call of the controller, at most the time to load a model
 template <class T>
 concept SessionPlatform = requires(T& platform, bool hold) {
   { platform.now_us() }

@@ -9,7 +9,7 @@
 
 namespace tactree::session {
 
-/// What the session does with a request after a handler returned.
+/// Action of the session after a handler has returned.
 enum class Outcome : std::uint8_t {
   kAnswer,  ///< send the reply
   kSilent,  ///< send nothing
@@ -28,8 +28,8 @@ class Reply {
   void put(const T& message) {
     append(std::as_bytes(std::span(&message, 1)));
   }
-  /// Drops `bytes` where they do not fit. Message sizes are checked at compile time, so this does
-  /// not happen.
+  /// Drops `bytes` if they do not fit. This cannot happen, because message sizes are checked at
+  /// compile time.
   void append(std::span<const std::byte> bytes) {
     if (bytes.size() <= core::wire::kMaxPayload - size_) {
       __builtin_memcpy(bytes_ + size_, bytes.data(), bytes.size());

@@ -1,6 +1,6 @@
 #pragma once
-// Session and sequence numbers: which requests count, and which session is open. A late, repeated
-// or forged request is recognised here. Not interrupt safe: called between ticks only.
+// Checks the session and sequence numbers of requests, which detects late, repeated and forged
+// requests. Not interrupt safe: called between ticks only.
 
 #include <cstdint>
 
@@ -18,24 +18,23 @@ class RequestFilter {
     kRepeated,   ///< the sequence number is not newer than that of the last request
   };
 
-  /// `continued`: the same request again, after Outcome::kLater. Uses up the sequence number of an
-  /// admitted request.
+  /// `continued`: the request was admitted before, and its handler returned Outcome::kLater. The
+  /// sequence number of an admitted request is used up.
   [[nodiscard]] Verdict admit(const core::wire::FrameHeader& request, bool continued);
-  /// A stop is obeyed without admission. Its sequence number is used up all the same, so that an
-  /// arm sent before it and received after it is old.
+  /// A stop is obeyed without admission. Its sequence number is used up nevertheless, so an arm
+  /// request that was sent before the stop but arrives after it is not admitted.
   void note_stop(const core::wire::FrameHeader& request);
 
-  /// The open session was opened by this request: it is a repetition.
+  /// Returns true if this request opened the current session, that is, if it is a repetition.
   [[nodiscard]] bool has_opened(const core::wire::OpenRequest& request) const {
     return session_ != 0U && request.nonce == nonce_;
   }
-  /// Ends the open session, and opens one with a number that no session had before. `sequence`: of
-  /// the request.
+  /// Ends the current session and opens one with a new number. `sequence`: that of the request.
   void open(const core::wire::OpenRequest& request, std::uint16_t sequence, std::uint32_t now_us);
   void close() { session_ = 0; }
   [[nodiscard]] core::wire::OpenReply opening(std::uint32_t now_us) const;
 
-  /// 0: none is open.
+  /// Returns 0 if no session is open.
   [[nodiscard]] std::uint16_t session() const { return session_; }
 
  private:
@@ -43,17 +42,17 @@ class RequestFilter {
 
   std::uint16_t session_ = 0;
   std::uint16_t last_session_ = 0;
-  std::uint16_t sequence_ = 0;  // of the last request that counted
+  std::uint16_t sequence_ = 0;  // of the last admitted request
   std::uint8_t minor_ = 0;
   std::uint32_t nonce_ = 0;
 };
 
-/// The adjustment with the link required with this timeout; 0: as at the start (`base`). A link
-/// that the board requires stays required, with the shorter of both timeouts.
+/// Returns the adjustment with the link required at this timeout. 0 restores the link settings of
+/// `base`, the configuration at the start. If `base` requires a link, the shorter timeout applies.
 [[nodiscard]] core::Adjustment with_link(core::Adjustment adjustment,
                                          const core::Configuration& base, std::uint32_t timeout_ms);
 
-/// The wire status for the result of Controller::adjust() and configure().
+/// Converts the result of Controller::adjust() and configure() to a wire status.
 [[nodiscard]] core::wire::WireStatus to_wire(core::ConfigurationStatus status);
 
 }  // namespace tactree::session

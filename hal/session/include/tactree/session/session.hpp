@@ -1,23 +1,22 @@
 #pragma once
-// Answers an application's requests on a board: docs/PROTOCOL.md. The session takes frames from the
-// port, checks who may ask, calls the handler of the request and sends its reply; telemetry goes
-// out in between. The handlers are in the headers beside this one.
+// Serves the requests of an application on a board: docs/PROTOCOL.md. The session reads frames from
+// the port, checks session and sequence numbers, calls the handler of each request and sends its
+// reply; telemetry is sent in between. The handlers are in the other headers of this folder.
 //
-// A session works between ticks. Its reads and writes of the running controller:
-//   through TickMailbox       commands, moves of bodies, forces, signs of life; reports of ticks
-//   through BetweenTicks      whatever changes the controller (configure, adjust, load_model), and
+// A session works between ticks. It accesses the running controller only
+//   through TickMailbox       commands, body updates, forces, heartbeats; reports of ticks
+//   through BetweenTicks      all changes of the controller (configure, adjust, load_model), and
 //                             reads of more than one word that a tick writes (the flight recorder)
-//   at any time               state(), motors_off(), homed(), faults(): one word each. has_body()
-//                             and configuration(): ticks do not change them, only this context does
-// Nothing else of the Controller may be read between ticks.
+//   directly, at any time     state(), motors_off(), homed() and faults(), which are one word each;
+//                             has_body() and configuration(), which only this context changes
 //
 // Protection against late, repeated or forged messages:
-//   - a request counts once: its sequence number is newer than that of the last one, its session
-//     number is the one that the board gave out last
-//   - from idle to active takes two messages, the second with a token that the reply to the first
-//     brought; stop is always obeyed
-//   - only heartbeats keep a required link alive, and only as far as they prove that their sender
-//     has recently heard the board
+//   - A request counts once: its sequence number must be newer than that of the last request, and
+//     its session number must be the one that the board assigned last.
+//   - The transition from idle to active requires two messages; the second returns a token from the
+//     reply to the first. Stop is always obeyed.
+//   - Only heartbeats keep a required link alive. The age of the link is measured from the newest
+//     board time that a heartbeat contains, so old heartbeats do not keep it alive.
 // Loop and memory annotations: docs/BOUND.md.
 
 #include <cstddef>
@@ -48,7 +47,7 @@ namespace tactree::session {
 template <hal::BytePort Port, class Store, SessionPlatform Platform>
 class Session {
  public:
-  /// All are kept by reference.
+  /// The session keeps all of these references.
   struct Parts {
     Port& port;
     Store& store;
@@ -69,9 +68,9 @@ class Session {
         telemetry_(parts.mailbox),
         models_(parts.store, changes_, parts.mailbox) {}
 
-  /// Call it before work(). `base`: the configuration at the start; its force and slew limits are
-  /// the upper bounds of what an application may set. `report` is kept by reference: later entries
-  /// are reported too.
+  /// Call before work(). `base`: configuration at the start, whose force and slew limits are the
+  /// upper bounds of what an application may set. `report` must outlive the session; entries added
+  /// later are reported, too.
   void started(const hal::StartResult& result, const core::Configuration& base,
                const hal::StartReport* report = nullptr) {
     start_ = result;
@@ -79,9 +78,10 @@ class Session {
     start_report_ = report;
   }
 
-  /// One bounded piece: sends waiting frames, encodes a telemetry message, takes one request. True:
-  /// call it again at once. Cost, without flash operations and the check of a model: one frame in
-  /// and one out, about 30 instructions a byte.
+  /// One bounded unit of work: sends queued frames, encodes at most one telemetry message and
+  /// handles at most one request. Returns true if it should be called again immediately. Cost,
+  /// without flash operations and the check of a model: one frame in and one out, about 30
+  /// instructions per byte.
   bool work() {
     queue_.flush(port_);
     const bool more = send_report();
@@ -102,7 +102,7 @@ class Session {
 
   // ---- frames in and out
 
-  // One request at a time: what follows it stays in the piece, and in the port.
+  // Handles one request at a time: the bytes that follow it stay in piece_ and in the port.
   bool read_request() {
     if (next_ == end_) {
       next_ = 0;
@@ -158,7 +158,7 @@ class Session {
     const core::wire::FrameHeader& header = decoder_.header();
     const auto kind = static_cast<Kind>(header.kind);
     if (header.kind == 0U || header.kind >= static_cast<std::uint8_t>(Kind::kTelemetry)) {
-      return Outcome::kSilent;  // a reply, or an echo of our own frames
+      return Outcome::kSilent;  // a reply, or an echo of the board's frames
     }
     if (kind == Kind::kIdentify) {
       put_identity(identity_, reply_);
@@ -240,7 +240,7 @@ class Session {
     return status == WireStatus::kOk ? to_wire(changes_.adjust(adjustment)) : status;
   }
 
-  /// The device has to be homed again, and its models are checked again.
+  /// The device must be homed again afterwards, and its models are checked again.
   WireStatus set_parameter() {
     core::wire::SetParameterRequest request;
     core::Configuration changed;
@@ -254,7 +254,7 @@ class Session {
     return status;
   }
 
-  /// Ticks write it.
+  /// Ticks are held during the read, because they write the recorder.
   WireStatus read_recorder(Kind kind) {
     return changes_.read([&](const core::Controller& held) {
       if (kind == Kind::kReadTrace) {
@@ -265,9 +265,10 @@ class Session {
     });
   }
 
-  // ---- the session itself
+  // ---- opening and closing a session
 
-  // A session stays open while there may be force: a repeated or late message must not end it.
+  // No other session is opened while armed or active: a repeated or late message must not end the
+  // session.
   WireStatus open() {
     core::wire::OpenRequest request;
     if (!core::wire::decode_message(decoder_.payload(), request)) {
@@ -315,7 +316,7 @@ class Session {
     return Outcome::kAnswer;
   }
 
-  // A link that the session required is required until the motors are off.
+  // A link that a closed session required stays required until the motors are off.
   void end_closed_session() {
     if (closing_ && controller().motors_off()) {
       closing_ = false;
@@ -347,7 +348,7 @@ class Session {
 
   // ---- requests that are answered with the status of a later tick
 
-  /// True in a later step, once such a status has come.
+  /// Requests a status in the first step. Returns true in a later step, once it has arrived.
   [[nodiscard]] bool has_fresh_status() {
     if (step_ == 0U) {
       fresh_.request(mailbox_);
@@ -364,7 +365,7 @@ class Session {
     return Outcome::kAnswer;
   }
 
-  // From any sender, however late: a stop only takes force away.
+  // A stop is obeyed from any sender, however late, because it only removes force.
   Outcome stop() {
     if (step_ == 0U) {
       filter_.note_stop(decoder_.header());
@@ -411,12 +412,12 @@ class Session {
   FrameQueue queue_{};
   Reply reply_{};
   std::byte piece_[kPiece] = {};
-  std::size_t next_ = 0;  // in piece_
+  std::size_t next_ = 0;  // next byte in piece_
   std::size_t end_ = 0;
   bool waiting_ = false;    // the request in decoder_ is not finished
-  std::uint32_t step_ = 0;  // calls of its handler
+  std::uint32_t step_ = 0;  // calls of its handler so far
 
-  bool closing_ = false;  // closed, and its link is still required
+  bool closing_ = false;  // the session is closed, but its link is still required
 };
 
 }  // namespace tactree::session

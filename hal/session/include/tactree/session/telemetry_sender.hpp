@@ -16,12 +16,12 @@ class TelemetrySender {
  public:
   explicit TelemetrySender(TickMailbox& mailbox) : mailbox_(mailbox) {}
 
-  /// kBadLength; kBadValue: a field that does not exist.
+  /// Errors: kBadLength; kBadValue if a field does not exist.
   [[nodiscard]] core::wire::WireStatus subscribe(std::span<const std::byte> payload);
   void unsubscribe();
 
-  /// Pushes a message, where the report is for the subscription. Leaves room for one frame in the
-  /// queue, so that a reply never waits for telemetry; a message without room is counted as
+  /// Queues a message if the report is due by the subscription. It leaves room for one frame in the
+  /// queue, so a reply never waits for telemetry; a message that does not fit is counted as
   /// dropped. Cost: one frame encoded.
   void send(const TickReport& report, std::uint16_t session, FrameQueue& queue);
 

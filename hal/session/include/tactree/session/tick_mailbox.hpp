@@ -1,12 +1,12 @@
 #pragma once
-// Exchanges data between the control loop, which ticks from an interrupt, and a session, which
-// works between ticks. On the board it is the Link of the loop, or a part of it.
+// Exchanges data between the control loop, whose ticks run in an interrupt, and a session, which
+// runs between ticks. On a board it is the Link of the loop, or a part of it.
 //
-//   session -> tick   one command, one body, one force, one sign of life: each in a Box
+//   session -> tick   one command, one body update, one force, one heartbeat: each in a Box
 //   tick -> session   requested and subscribed Status values, in a ring of kWaiting
 //
 // Interrupt safe under these conditions: one core; the tick interrupts the session, never the
-// reverse. The tick takes what is complete and never waits. Cost of each function: constant.
+// reverse. The tick takes only complete values and never waits. Cost of each function: constant.
 
 #include <cstdint>
 #include <span>
@@ -20,7 +20,7 @@ template <class T>
 class Box {
  public:
   [[nodiscard]] bool full() const { return __atomic_load_n(&full_, __ATOMIC_ACQUIRE); }
-  /// Called by the session. Replaces a value that was not taken yet.
+  /// Called by the session. Replaces a value that no tick has taken yet.
   void put(const T& value) {
     clear();
     value_ = value;
@@ -34,11 +34,11 @@ class Box {
   bool full_ = false;
 };
 
-/// A tick's status for a session.
+/// Status of a tick for a session.
 struct TickReport {
   core::Status status{};
   std::uint32_t time_us = 0;
-  bool telemetry = false;  ///< due by the subscription; else by request_report()
+  bool telemetry = false;  ///< true: due by the subscription; false: by request_report()
 };
 
 class TickMailbox {
@@ -80,12 +80,12 @@ class TickMailbox {
 
   // ---- in the session
 
-  /// Replaces a posted command that was not taken yet.
+  /// Posts a stop. Replaces a posted command that no tick has taken yet.
   void post_stop() {
     command_.clear();
     __atomic_store_n(&stop_, true, __ATOMIC_RELEASE);
   }
-  /// False: the one before it has not been taken yet.
+  /// Returns false if the preceding command has not been taken yet.
   [[nodiscard]] bool post_command(core::Command command) {
     if (stop_ || command_.full()) {
       return false;
@@ -93,7 +93,8 @@ class TickMailbox {
     command_.put(command);
     return true;
   }
-  /// False: an update of another body has not been taken yet. Replaces one of the same body.
+  /// Returns false if an update of another body has not been taken yet. Replaces one of the same
+  /// body.
   [[nodiscard]] bool post_body(const hal::BodyUpdate& update) {
     if (body_.full() && body_.value().body != update.body) {
       return false;
@@ -107,18 +108,18 @@ class TickMailbox {
 
   /// Requests the report of a tick that begins after this call.
   void request_report() { __atomic_store_n(&asked_, true, __ATOMIC_RELEASE); }
-  /// A report every `decimation` ticks; 0: none.
+  /// Requests a report every `decimation` ticks; 0 requests none.
   void subscribe(std::uint32_t decimation) {
     __atomic_store_n(&decimation_, decimation, __ATOMIC_RELEASE);
     dropped_ = 0;
   }
-  /// The oldest report; nullptr: there is none.
+  /// Returns the oldest report, or nullptr if there is none.
   [[nodiscard]] const TickReport* front() const {
     return __atomic_load_n(&written_, __ATOMIC_ACQUIRE) == read_ ? nullptr
                                                                  : &ring_[read_ % kWaiting];
   }
   void pop() { __atomic_store_n(&read_, read_ + 1U, __ATOMIC_RELEASE); }
-  /// Reports that found no room since subscribe().
+  /// Number of subscribed reports that were dropped since subscribe() for lack of room.
   [[nodiscard]] std::uint32_t dropped() const { return dropped_; }
   void count_dropped() { ++dropped_; }
 

@@ -1,6 +1,6 @@
 #pragma once
 // Reads the flight recorder: its records, and the tick in which the first fault was latched.
-// Precondition of both: ticks are held, or the recorder changes while it is read.
+// Precondition of both functions: ticks are held, because they write the recorder.
 
 #include <cstddef>
 #include <span>
@@ -11,7 +11,7 @@
 
 namespace tactree::session {
 
-/// kBadLength, kBadValue. Cost: at most kMaxTraceRecords records copied.
+/// Errors: kBadLength, kBadValue. Cost: copies at most kMaxTraceRecords records.
 [[nodiscard]] core::wire::WireStatus read_trace(std::span<const std::byte> payload,
                                                 const core::FlightRecorder& recorder, Reply& reply);
 

@@ -1,6 +1,6 @@
 #pragma once
-// Checks of a stored or announced model that do not depend on the flash driver.
-// Not for the tick.
+// Checks of a stored or announced model that do not depend on the flash driver. Not for use in a
+// tick.
 
 #include <cstddef>
 #include <cstdint>
@@ -15,24 +15,25 @@ namespace tactree::store {
 struct StoreSetup {
   const char* board = "";                ///< name of this board
   const std::uint8_t* key = nullptr;     ///< 32 bytes; nullptr: no signature is required
-  std::span<const std::byte> factory{};  ///< model of the image, used until another is; or empty
+  std::span<const std::byte> factory{};  ///< initial model, part of the image; may be empty
 };
 
-/// What can be refused before anything is erased: kTooLarge, kBadValue, kWrongBoard, kOldCounter.
-/// `counter_min`: of the record. Cost: constant.
+/// Checks an announced model before anything is erased. Errors: kTooLarge, kBadValue, kWrongBoard,
+/// kOldCounter. `counter_min`: see ModelRecord. Cost: constant.
 [[nodiscard]] core::wire::WireStatus check_announcement(
     const core::wire::BeginModelRequest& request, std::uint32_t slot_bytes,
     std::uint32_t counter_min, const StoreSetup& setup);
 
-/// Checks the bytes of a slot against its entry - checksum, board, counter, signature - and opens
-/// them. kBadChecksum, kWrongBoard, kOldCounter, kBadSignature; kBadModel: `blob` has the cause.
-/// Cost: checksum, signature and validation of all bytes.
+/// Checks the bytes of a slot against its entry (checksum, board, counter, signature) and opens the
+/// blob. Errors: kBadChecksum, kWrongBoard, kOldCounter, kBadSignature; kBadModel with the cause in
+/// `blob`. Cost: checksum, signature and validation of all bytes.
 [[nodiscard]] core::wire::WireStatus check_model(const SlotEntry& entry,
                                                  std::span<const std::byte> bytes,
                                                  std::uint32_t counter_min, const StoreSetup& setup,
                                                  core::BlobView& view, core::BlobStatus& blob);
 
-/// The model of the image overlaps these bytes, and is valid. Cost: validates the model.
+/// Returns true if the model in the image overlaps these bytes and is valid. Cost: validates the
+/// model.
 [[nodiscard]] bool holds_factory_model(std::span<const std::byte> slot, const StoreSetup& setup);
 
 }  // namespace tactree::store

@@ -1,24 +1,25 @@
 #pragma once
-// Two slots for models in a board's flash, and a log of records that names the slot in use. A model
-// is written into the other slot, checked there, and used once a record that names it is complete:
-// a power cut at any moment leaves the old model or the new one.
+// Two model slots in a board's flash, and a log of records that states which slot is in use. A new
+// model is written to the other slot, checked there, and used once a record that refers to it is
+// complete: after a power cut at any time, either the old or the new model is in use.
 //
 //   sector 0, 1   records            record_log.hpp
 //   then          slot 0, slot 1     half of the other sectors each
 //
-// A flash with sectors of several sizes gives the records its small ones, as a flash of their own.
+// In a flash with sectors of several sizes, the small sectors hold the records, as a separate
+// Flash.
 //
-// The model of the image may lie in the slots. While it is in use, a slot that it reaches into is
-// not written.
+// The model in the image may overlap the slots. While it is in use, a slot that it overlaps is not
+// written.
 //
-// Flash content is never trusted: before each use the model's checksum, signature (where a key is
-// given) and blob are checked. A store without a valid record is damaged: it has no model until one
-// is written.
+// Flash content is never trusted: before each use the model's checksum, signature (if a key is set)
+// and blob are checked. A store that was written but has no valid record is damaged: it has no
+// model until one is written.
 //
-// A board with a key uses only signed models, and none whose counter is smaller than that of a
+// A board with a key accepts only signed models, and none whose counter is smaller than that of a
 // model used before.
 //
-// Not for the tick. One context.
+// Not for use in a tick. Call from one context.
 // Loop and memory annotations: docs/BOUND.md.
 
 #include <concepts>
@@ -42,16 +43,17 @@ class ModelStore {
   ModelStore(F& flash, const StoreSetup& setup) requires std::same_as<F, Records>
       : flash_(flash), first_slot_sector_(2), setup_(setup), log_(flash) {}
 
-  /// Two sectors of `records`, and all of `flash` for the slots.
+  /// Uses two sectors of `records` for the log, and all of `flash` for the slots.
   ModelStore(F& flash, Records& records, const StoreSetup& setup)
       : flash_(flash), first_slot_sector_(0), setup_(setup), log_(records) {}
 
   // ---- at start-up
 
-  /// In place of the setup's. Call it before mount().
+  /// Replaces StoreSetup::factory. Call before mount().
   void set_factory(std::span<const std::byte> model) { setup_.factory = model; }
 
-  /// Reads the record. Call it before all else. False: the store is damaged, there is no model.
+  /// Reads the record. Call before the functions below. Returns false if the store is damaged; it
+  /// then has no model.
   bool mount() {
     record_ = {};
     const auto found = log_.find(slot_bytes(), record_);
@@ -62,7 +64,7 @@ class ModelStore {
     return !damaged_;
   }
 
-  /// The model in use, as BlobStorage: empty where there is none that can be used.
+  /// Returns the model in use, as in BlobStorage; empty if there is none that can be used.
   [[nodiscard]] std::span<const std::byte> active() const noexcept {
     if (damaged_) {
       return {};
@@ -77,7 +79,7 @@ class ModelStore {
                 : std::span<const std::byte>();
   }
 
-  /// kParameters values, or nullptr: none were saved.
+  /// Returns kParameters values, or nullptr if none were saved.
   [[nodiscard]] const float* parameters() const {
     return record_.has_parameters != 0U ? record_.parameter : nullptr;
   }
@@ -120,7 +122,7 @@ class ModelStore {
     return start_erasing(announced_.bytes);
   }
 
-  /// Erases the next sector; while is_erasing().
+  /// Erases the next sector. Call while is_erasing().
   [[nodiscard]] WireStatus erase_next() {
     if (!is_erasing()) {
       return WireStatus::kOk;
@@ -158,7 +160,7 @@ class ModelStore {
     return WireStatus::kOk;
   }
 
-  /// For a transfer whose checksum is not known at its beginning.
+  /// Sets the checksum of a transfer that was not known in begin().
   void announce_checksum(std::uint32_t checksum, const void* owner) {
     if (owner_ != nullptr && owner_ == owner) {
       announced_.checksum = checksum;
@@ -194,7 +196,7 @@ class ModelStore {
     }
   }
 
-  /// A view of a slot's model, if it can be used.
+  /// Opens the model of a slot, if it can be used.
   [[nodiscard]] WireStatus open(std::uint32_t slot, core::BlobView& view,
                                 core::BlobStatus& blob) const {
     if (slot >= kSlots || record_.slot[slot].bytes == 0U) {
@@ -203,7 +205,7 @@ class ModelStore {
     return check_slot(slot, view, blob);
   }
 
-  /// Precondition: open(slot) was kOk.
+  /// Precondition: open(slot) returned kOk.
   [[nodiscard]] WireStatus activate(std::uint32_t slot) {
     ModelRecord changed = record_;
     changed.active = slot;
@@ -216,7 +218,7 @@ class ModelStore {
     return status;
   }
 
-  /// The slot that is not in use; kSlots where the model of the image is.
+  /// Returns the slot that is not in use, or kSlots if the model in the image is in use.
   [[nodiscard]] std::uint32_t other_slot() const {
     return record_.active < kSlots ? 1U - record_.active : kSlots;
   }
@@ -248,7 +250,7 @@ class ModelStore {
   }
 
  private:
-  static constexpr std::uint32_t kLargestPiece = 32;  // of program_bytes
+  static constexpr std::uint32_t kLargestPiece = 32;  // maximum of FlashGeometry::program_bytes
 
   [[nodiscard]] std::uint32_t sectors_per_slot() const {
     return (flash_.geometry().sectors - first_slot_sector_) / kSlots;
@@ -267,7 +269,8 @@ class ModelStore {
     return record_.slot[0].bytes == 0U && !holds_factory(0) ? 0U : 1U;
   }
 
-  /// The model of the image is in use, and reaches into the slot. Cost: validates the model.
+  /// Returns true if the model in the image is in use and overlaps the slot. Cost: validates the
+  /// model.
   [[nodiscard]] bool holds_factory(std::uint32_t slot) const {
     return record_.active == kFactorySlot &&
            holds_factory_model(bytes_of(slot, slot_bytes()), setup_);
@@ -303,7 +306,7 @@ class ModelStore {
     return WireStatus::kOk;
   }
 
-  /// Not inlined: a record takes much stack, which check() needs.
+  /// Not inlined, because the large record would otherwise be on the stack during check().
   [[gnu::noinline, nodiscard]] WireStatus commit_slot(std::uint32_t slot, const SlotEntry& entry) {
     ModelRecord changed = record_;
     changed.slot[slot] = entry;
@@ -352,7 +355,7 @@ class ModelStore {
   ModelRecord record_{};
   bool damaged_ = false;
 
-  const void* owner_ = nullptr;  // of the transfer; nullptr: there is none
+  const void* owner_ = nullptr;  // of the transfer; nullptr: no transfer
   core::wire::BeginModelRequest announced_{};
   std::uint32_t slot_ = 0;
   std::uint32_t next_offset_ = 0;

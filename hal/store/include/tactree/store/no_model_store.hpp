@@ -1,5 +1,5 @@
 #pragma once
-// For a board whose model is part of its image: ModelTransfer refuses every update.
+// The store of a board whose model is part of its image: ModelTransfer refuses every update.
 
 #include <cstdint>
 

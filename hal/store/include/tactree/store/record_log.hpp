@@ -1,7 +1,7 @@
 #pragma once
-// A log of records in the first two sectors of the flash. A record is appended to the newest; when
-// the sector is full, the other one is erased and takes it. The newest record is never in the
-// sector that is erased: a power cut at any moment leaves it, or the one after it.
+// A log of records in the first two sectors of a flash. A record is appended after the newest one;
+// when the sector is full, the other sector is erased and used. The sector of the newest record is
+// never erased, so after a power cut at any time the newest record or its successor is valid.
 // Loop and memory annotations: docs/BOUND.md.
 
 #include <cstddef>
@@ -20,11 +20,12 @@ class RecordLog {
 
   enum class Found : std::uint8_t {
     kRecord,
-    kNothing,  ///< never written, or the very first record was cut off
-    kDamaged,  ///< not blank, and no record is valid
+    kNothing,  ///< never written, or the very first write was interrupted
+    kDamaged,  ///< written, but no record is valid
   };
 
-  /// Cost: reads two sectors. Not inlined: a record takes much stack.
+  /// Finds the newest valid record. Cost: reads two sectors. Not inlined, because a record takes
+  /// much stack.
   [[gnu::noinline]] Found find(std::uint32_t slot_bytes, ModelRecord& record) {
     newest_ = kNone;
     std::uint32_t used = 0;
@@ -44,7 +45,8 @@ class RecordLog {
     return used <= 1U ? Found::kNothing : Found::kDamaged;
   }
 
-  /// Writes `record` as the newest. False: programming failed; the one before still counts.
+  /// Writes `record` as the newest. Returns false on failure; the preceding record then stays in
+  /// use.
   [[nodiscard]] bool append(ModelRecord& record) {
     ++record.sequence;
     record.checksum = checksum_of(record);
@@ -88,7 +90,8 @@ class RecordLog {
     return true;
   }
 
-  // The first blank place after the newest, else the begin of the other sector.
+  // Finds the first blank position after the newest record, or erases the other sector and returns
+  // its first position.
   [[nodiscard]] bool find_place(std::uint32_t& place) {
     const std::uint32_t per_sector = places_per_sector();
     const std::uint32_t sector = newest_ == kNone ? 1U : newest_ / per_sector;

@@ -26,40 +26,40 @@
 
 namespace tactree::builder {
 
-/// Support radius and reach of the surface fit, in spacings (docs/DESIGN.md).
+/// Support radius and reach of the surface fit, in point spacings (docs/DESIGN.md).
 inline constexpr double kSupportSpacings = 2.5;
 inline constexpr double kReachSpacings = 3.0;
 
 enum class UpAxis : std::uint8_t { kX, kY, kZ };
 
 struct BuildOptions {
-  ColumnMap columns;   ///< of text files of points; empty: found in each file
-  std::string format;  ///< of all files, of scan_formats(); empty: by their content
-  /// The file that holds what the input "-" stands for; empty: nothing does.
+  ColumnMap columns;   ///< columns of text files of points; empty: detected in each file
+  std::string format;  ///< format of all files, one of scan_formats(); empty: detected by content
+  /// File that holds the content of the input "-"; empty if "-" is not standard input.
   std::filesystem::path standard_input;
   std::optional<double> unit_m;  ///< metres per unit of the source; default: as it states, or 1
   double scale = 1.0;            ///< additional factor
-  std::optional<double> fit_m;   ///< scale so that the longest edge is this; implies `centre`
-  /// The same for a model of this size (m): its longest edge afterwards. Not with fit_m.
+  std::optional<double> fit_m;   ///< scales the longest edge to this length; implies `centre`
+  /// Returns the longest edge (m) to which a model of the given size (m) is scaled. Not with fit_m.
   std::function<double(const Eigen::Vector3d&)> fit_edge_m;
-  bool centre = false;                      ///< the middle of the bounding box becomes the origin
+  bool centre = false;                      ///< the centre of the bounding box becomes the origin
   std::optional<UpAxis> up;                 ///< source axis that becomes the model's z; default: z
   std::optional<Eigen::AlignedBox3d> crop;  ///< source units and axes: points outside are dropped
 
-  double outlier_sigma = 3.0;   ///< stray points: off a surface by more than this many times the
-                                ///< noise of the scan; 0: keep all points
-  bool keep_largest = false;    ///< drops all connected pieces but the largest
-  std::uint64_t min_piece = 0;  ///< drops pieces of fewer points; of a mesh: corners
-  bool flip_normals = false;    ///< reverses all normals in the end
+  double outlier_sigma = 3.0;  ///< drops points that are off a surface by more than this many times
+                               ///< the noise of the scan; 0: keeps all points
+  bool keep_largest = false;   ///< drops all connected components but the largest
+  std::uint64_t min_piece = 0;  ///< drops components with fewer points (of a mesh: vertices)
+  bool flip_normals = false;    ///< reverses all normals at the end
   OrientationRule orient = OrientationRule::kAuto;
-  std::vector<Eigen::Vector3d> viewpoints;  ///< of the scanner, source units and axes
+  std::vector<Eigen::Vector3d> viewpoints;  ///< positions of the scanner, source units and axes
 
   std::optional<double> two_sided_m;  ///< the input is a sheet: build a body of this thickness
 
-  std::optional<double> spacing_m;  ///< default: a cloud's own; a mesh's longest edge / 200
+  std::optional<double> spacing_m;  ///< default: that of a cloud; longest edge of a mesh / 200
   bool resample = true;             ///< false: keep every distinct point
   std::optional<std::uint64_t>
-      flash_budget_bytes;  ///< finest spacing whose blob fits; not with spacing_m
+      flash_budget_bytes;  ///< selects the finest spacing whose blob fits; not with spacing_m
 
   core::Profile profile = core::Profile::kSurface;
   std::optional<MaterialMap> materials;  ///< none: from the controller's configuration
@@ -70,7 +70,7 @@ struct BuildOptions {
 /// A hole or open edge of the surface.
 struct Opening {
   enum class Kind : std::uint8_t {
-    kHole,      ///< surface all around it
+    kHole,      ///< surrounded by surface
     kBoundary,  ///< an open end or edge of the object
   };
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
@@ -88,25 +88,25 @@ struct InputReport {
 
 struct BuildReport {
   std::vector<InputReport> inputs;
-  std::uint64_t input_points = 0;  ///< in the files; kept_points + dropped points
+  std::uint64_t input_points = 0;  ///< in the files: kept_points + dropped points
   std::uint64_t kept_points =
-      0;  ///< after cleaning: input of the resampling (or corners of the mesh)
+      0;  ///< after cleaning: input of the resampling (or vertices of the mesh)
   std::map<std::string, std::uint64_t> dropped;  ///< cause -> count; causes with "face" count faces
   std::uint64_t sampled_points = 0;              ///< candidates on the faces of a mesh
   std::uint64_t thinned = 0;  ///< dropped to respect the limit of points per ball
-  std::uint64_t merged = 0;   ///< dropped at an occupied lattice site
+  std::uint64_t merged = 0;   ///< dropped because their lattice site was occupied
   std::uint64_t output_points = 0;
 
   double spacing_m = 0.0;
   double largest_gap_m = 0.0;
-  double backed_share = 0.0;  ///< of the points: with material behind them; others are on sheets
+  double backed_share = 0.0;      ///< ratio of points with material behind; others are on sheets
   std::vector<Opening> openings;  ///< wider than the support radius, widest first
-  std::uint32_t pieces = 0;       ///< connected pieces, if normals were estimated; else 0
+  std::uint32_t pieces = 0;       ///< connected components if normals were estimated, else 0
   OrientationReport orientation;
 
   std::vector<std::uint64_t> material_points;  ///< points per material in the blob
 
-  bool unit_known = false;    ///< given, or stated by the source
+  bool unit_known = false;    ///< given by the user or stated by the source
   double source_scale = 1.0;  ///< model metres per source unit
   Eigen::Vector3d source_origin = Eigen::Vector3d::Zero();
   Eigen::AlignedBox3d bounds;  ///< of the model
@@ -121,10 +121,10 @@ struct BuildReport {
 struct BuildResult {
   WrittenBlob blob;
   BuildReport report;
-  std::vector<std::uint8_t> doubtful;  ///< per point of the blob: 1 if its side is doubtful
+  std::vector<std::uint8_t> doubtful;  ///< per point of the blob: 1 if its orientation is ambiguous
 };
 
-/// The build failed. `what()`: file, cause and remedy.
+/// The build failed. what() names file, cause and remedy.
 class BuildError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -1,5 +1,5 @@
 #pragma once
-// Lengths in the messages for a user.
+// Lengths in messages to the user.
 
 #include <Eigen/Core>
 #include <string>
@@ -13,17 +13,17 @@ struct LengthUnit {
 /// The unit that fits a length: um below 0.1 mm, mm, m from 1 m, km from 10 km.
 [[nodiscard]] LengthUnit length_unit(double metres);
 
-/// Decimal, never with an exponent: at least `digits` significant digits, at most nine decimals,
-/// without zeros at the end.
+/// Formats a number without an exponent, with at least `digits` significant digits, at most nine
+/// decimals and no trailing zeros.
 [[nodiscard]] std::string number_text(double value, int digits);
 
-/// "3.114 mm": in the unit that fits.
+/// Formats a length in the unit that fits it: "3.114 mm".
 [[nodiscard]] std::string length_text(double metres, int digits = 4);
 
-/// "238.5 x 494.2 x 20 m": all in the unit that fits the largest.
+/// Formats three lengths in the unit that fits the largest: "238.5 x 494.2 x 20 m".
 [[nodiscard]] std::string size_text(const Eigen::Vector3d& metres);
 
-/// "(12, -3.5, 0) mm": all in the unit that fits the largest.
+/// Formats a position in the unit that fits its largest coordinate: "(12, -3.5, 0) mm".
 [[nodiscard]] std::string place_text(const Eigen::Vector3d& metres);
 
 }  // namespace tactree::builder

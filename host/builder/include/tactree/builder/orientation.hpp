@@ -1,5 +1,5 @@
 #pragma once
-// Which side of a scanned surface is its outside: the rule to find it, and the result.
+// Orientation of a scanned surface: the rule that determines its outside, and the result.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -9,42 +9,42 @@
 namespace tactree::builder {
 
 enum class OrientationRule : std::uint8_t {
-  kAuto,       ///< viewpoints if there are any, else outward, sheets up
-  kOutward,    ///< away from the body; sheets to their convex side
+  kAuto,       ///< by viewpoints if there are any, else outward; sheets up
+  kOutward,    ///< away from the body; sheets towards their convex side
   kViewpoint,  ///< towards the scanner
   kUp,         ///< towards +z of the model
-  kGiven,      ///< as in the file, unchecked; where it has none, as kAuto
+  kGiven,      ///< as in the file, unchecked; where it has no normals, as kAuto
 };
 
-/// The evidence for the side of a piece.
+/// The evidence for the orientation of a component.
 enum class OrientationBasis : std::uint8_t {
   kOutside,    ///< one side can be reached from far away
-  kEnclosed,   ///< in a hollow of another piece: by the number of surfaces around it
-  kViewpoint,  ///< the scanner saw it
-  kGiven,      ///< normals of the file, which nothing contradicts
-  kUp,         ///< a sheet, reachable from both sides: turned up
-  kConvex,     ///< a sheet: turned to its convex side
+  kEnclosed,   ///< inside another component: by the number of surfaces around it
+  kViewpoint,  ///< the scanner saw this side
+  kGiven,      ///< normals of the file, which no evidence contradicts
+  kUp,         ///< a sheet, reachable from both sides: oriented up
+  kConvex,     ///< a sheet: oriented towards its convex side
 };
 
-/// A sentence fragment, "it is reached from one side only".
+/// A sentence fragment such as "it is reached from one side only".
 [[nodiscard]] std::string_view describe(OrientationBasis basis);
 
-/// A connected piece of the surface.
+/// A connected component of the surface.
 struct OrientedPiece {
   std::uint32_t points = 0;
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< mean of its points, m
   OrientationBasis basis = OrientationBasis::kOutside;
-  double confidence = 1.0;  ///< 0 to 1: share of its points whose side is sure
+  double confidence = 1.0;  ///< ratio of its points with a certain orientation, 0 .. 1
 };
 
-/// Below this confidence a piece is doubtful.
+/// Below this confidence the orientation of a component is ambiguous.
 inline constexpr double kLeastConfidence = 0.91;
 
 struct OrientationReport {
   bool checked = false;                ///< false: the normals were taken from the file
   std::vector<OrientedPiece> pieces;   ///< largest first
-  double confidence = 1.0;             ///< mean of the pieces, by points
-  std::uint64_t doubtful_points = 0;   ///< of doubtful pieces
+  double confidence = 1.0;             ///< mean over the components, weighted by points
+  std::uint64_t doubtful_points = 0;   ///< points of components with an ambiguous orientation
   std::uint64_t reversed_normals = 0;  ///< of the file
   std::uint64_t reversed_faces = 0;    ///< of a mesh
   /// Positions of the scanner that the file states and its points confirm; source units and axes.

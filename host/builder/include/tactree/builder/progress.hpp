@@ -13,11 +13,11 @@ namespace tactree::builder {
 class Progress {
  public:
   virtual ~Progress() = default;
-  /// Starts a step and ends the previous one. `name`: a word or two, "reading scan.ply".
+  /// Starts a step and ends the previous one. `name` is a word or two, such as "reading scan.ply".
   virtual void begin(std::string_view name);
   /// Sets the completed fraction of the step, 0 to 1.
   virtual void advance(double fraction);
-  /// Ends the operation, also after a failure: restores the line of a terminal.
+  /// Ends the operation, also after a failure. Clears the progress line of a terminal.
   virtual void end();
 };
 

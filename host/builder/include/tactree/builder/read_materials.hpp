@@ -19,8 +19,8 @@
 
 namespace tactree::builder {
 
-/// Reads `source`: a list of properties if it contains '=' and no such file exists, else a file.
-/// Throws ReadError with file, key, cause and remedy.
+/// Reads a list of properties if `source` contains '=' and no file of that name exists, otherwise
+/// the file `source`. Throws ReadError with file, key, cause and remedy.
 [[nodiscard]] MaterialMap read_materials(const std::string& source);
 
 }  // namespace tactree::builder

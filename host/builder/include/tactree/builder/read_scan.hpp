@@ -17,30 +17,30 @@
 
 namespace tactree::builder {
 
-/// Columns of a text file, from 1, by what they hold: x, y, z, nx, ny, nz, red, green, blue.
+/// Column numbers of a text file, from 1, by content: x, y, z, nx, ny, nz, red, green, blue.
 using ColumnMap = std::map<std::string, std::size_t>;
 
 /// Parses "x=2,y=3,z=4,red=5,green=6,blue=7". Throws std::invalid_argument with the cause.
 [[nodiscard]] ColumnMap parse_columns(std::string_view text);
 
-/// Names of the formats that have a reader: the usual extensions of their files, "ply" first.
+/// Names of the formats that have a reader (the usual file name extensions), "ply" first.
 [[nodiscard]] std::vector<std::string> scan_formats();
 
 struct ReadOptions {
-  /// Memory limit of the scan, bytes; a larger one is refused before the allocation.
+  /// Memory limit of the scan, bytes. A larger scan is refused before its memory is allocated.
   std::uint64_t scan_memory_bytes = 3ULL << 29;
   /// Address space limit of the mesh import process, bytes.
   std::uint64_t child_memory_bytes = 3ULL << 29;
-  /// Time limit of the mesh import process, for processor time and for elapsed time.
+  /// Limit of both the processor time and the elapsed time of the mesh import process.
   double child_seconds = 120.0;
-  /// Of a text file; empty: by its line of names, or by the numbers. Other formats are refused with
-  /// it, but text of a mesh or grid without a reader is read as rows of numbers.
+  /// Columns of a text file; empty: detected from its header or its numbers. With columns, other
+  /// formats are refused, but text of a mesh or grid without a reader is read as rows of numbers.
   ColumnMap columns;
-  /// Of scan_formats(); empty: by content.
+  /// Format of the file, one of scan_formats(); empty: detected by content.
   std::string format;
   /// Name of the file in messages; empty: its path.
   std::string label;
-  /// Called repeatedly with the fraction of the file that was read, rising from 0 to 1.
+  /// Called repeatedly with the fraction of the file that has been read, which rises from 0 to 1.
   std::function<void(double fraction)> progress;
 };
 
@@ -50,9 +50,9 @@ struct ReadOptions {
 ///   "withheld"               points of a LAS file that are marked as deleted
 ///   "non_finite"             positions with NaN or infinite coordinates
 ///   "bad_row"                rows of a text file that are not a point
-///   "degenerate_face"        faces with fewer than three distinct corners
+///   "degenerate_face"        faces with fewer than three distinct vertices
 ///   "face_index_out_of_range" faces with the index of a point that does not exist
-///   "face_non_finite"        faces with a corner that was dropped as non_finite
+///   "face_non_finite"        faces with a vertex that was dropped as non_finite
 /// A normal that is missing or NaN becomes the zero vector.
 /// Cost: one pass over the file, memory for the result and a buffer of a few MiB.
 [[nodiscard]] Scan read_scan(const std::filesystem::path& file, const ReadOptions& options = {});

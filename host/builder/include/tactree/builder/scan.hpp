@@ -14,11 +14,11 @@
 
 namespace tactree::builder {
 
-/// Where the scanner stood.
+/// Position of the scanner for a range of points.
 struct ScannerPose {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< NaN: unknown
-  std::size_t first_point = 0;  ///< it saw this point and those up to the next pose
-  bool sure = true;             ///< false: perhaps the default of the program that wrote the file
+  std::size_t first_point = 0;  ///< first point seen from here; the range ends at the next pose
+  bool sure = true;  ///< false: may be a default value of the program that wrote the file
 };
 
 struct Scan {
@@ -40,10 +40,10 @@ struct Scan {
   [[nodiscard]] bool is_mesh() const { return !triangles.empty(); }
 };
 
-/// A file was refused. `what()`: "file: place: cause (remedy)".
+/// A file was refused. what() is "file: place: cause (remedy)".
 class ReadError : public std::runtime_error {
  public:
-  /// place: "line 12", "byte 400", "header" or empty; remedy: an action for the user.
+  /// `place` is "line 12", "byte 400", "header" or empty; `remedy` is an action for the user.
   ReadError(const std::string& file, const std::string& place, const std::string& cause,
             const std::string& remedy)
       : std::runtime_error(file + (place.empty() ? "" : ": " + place) + ": " + cause +

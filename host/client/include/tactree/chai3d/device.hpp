@@ -1,12 +1,13 @@
 #pragma once
 // A Tactree board as a haptic device of CHAI3D (https://www.chai3d.org), version 3: see
-// docs/CHAI3D.md. The classes of CHAI3D are parameters, so that this header needs none of its own.
+// docs/CHAI3D.md. The classes of CHAI3D are template parameters, so this header includes none of
+// its headers.
 //
 //   using TactreeDevice = tactree::chai3d::Device<chai3d::cGenericHapticDevice, chai3d::cVector3d,
 //                                                 chai3d::cMatrix3d>;
 //   auto device = std::make_shared<TactreeDevice>("/dev/ttyACM0");
 //
-// Both have the same axes: x to the user, y to the user's right, z up.
+// Tactree and CHAI3D have the same axes: x to the user, y to the user's right, z up.
 
 #include <memory>
 #include <string>
@@ -19,10 +20,10 @@ namespace tactree::chai3d {
 
 struct DeviceOptions {
   unsigned baud = client::kUsualBaud;
-  /// CHAI3D's servo loop sends forces all the time: when it ends, so does the force.
+  /// The force ends if this program does not run for that long.
   std::uint16_t link_timeout_ms = 50;
-  std::uint32_t every_ticks = 1;  ///< of telemetry; on a serial port 10 or more
-  std::uint32_t force_ms = 20;    ///< a force acts so long unless there is another
+  std::uint32_t every_ticks = 1;  ///< telemetry interval; at least 10 on a serial port
+  std::uint32_t force_ms = 20;    ///< duration of a force unless the next one replaces it
 };
 
 template <class Base, class Vector, class Matrix>
@@ -39,8 +40,8 @@ class Device : public Base {
     this->m_specifications.m_actuatedRotation = false;
   }
 
-  /// Waits for the board, and for the hand at its dead-man control. The reason of a failure:
-  /// error().
+  /// Waits for the board, and until the user holds its dead-man control. error() returns the reason
+  /// for a failure.
   bool open() override {
     try {
       board_ = std::make_unique<client::Board>(
@@ -48,7 +49,7 @@ class Device : public Base {
       const core::wire::CapabilitiesReply can = board_->capabilities();
       this->m_specifications.m_maxLinearForce = static_cast<double>(can.host_force_max_N);
       this->m_specifications.m_maxLinearStiffness = static_cast<double>(can.stiffness_limit_N_m);
-      board_->subscribe({0x0F, options_.every_ticks});
+      board_->subscribe({0x0F, options_.every_ticks});  // state, probe, velocity, force
       board_->arm();
     } catch (const client::LinkError& error) {
       error_ = error.what();
@@ -59,12 +60,12 @@ class Device : public Base {
   }
 
   bool close() override {
-    board_.reset();  // stops
+    board_.reset();  // stops the board
     this->m_deviceReady = false;
     return true;
   }
 
-  /// The device is in its home pose.
+  /// Precondition: the device is in its home pose.
   bool calibrate(bool /*a_forceCalibration*/ = false) override {
     if (board_ == nullptr) {
       return false;
@@ -99,7 +100,7 @@ class Device : public Base {
     return board_ != nullptr;
   }
 
-  /// Added to what the board renders of its own model; torques are not displayed.
+  /// The force is added to the contact force of the board's model. Torques are not displayed.
   bool setForceAndTorqueAndGripperForce(const Vector& a_force, const Vector& /*a_torque*/,
                                         double /*a_gripperForce*/) override {
     if (board_ == nullptr || !board_->in_session()) {
@@ -113,7 +114,7 @@ class Device : public Base {
   }
 
   [[nodiscard]] const std::string& error() const { return error_; }
-  /// For what CHAI3D has no name for; nullptr: closed.
+  /// Access to functions that CHAI3D does not have; nullptr while closed.
   [[nodiscard]] client::Board* board() { return board_.get(); }
 
  private:

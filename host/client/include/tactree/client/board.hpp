@@ -1,5 +1,5 @@
 #pragma once
-// A board with a haptic device, for an application:
+// A board with a haptic device, for use by an application:
 //
 //   tactree::client::Board board("/dev/ttyACM0");
 //   board.subscribe({.every_ticks = 10});
@@ -10,8 +10,9 @@
 //   }
 //   board.stop();
 //
-// A function marked "waits" waits for the board's answer, at most a second unless stated otherwise,
-// and throws LinkError where the board refuses, is silent or gone. The rest returns at once.
+// A function marked "waits" waits for the board's reply, at most one second unless stated
+// otherwise, and throws LinkError if the board refuses, does not reply or is gone. All others
+// return immediately.
 
 #include <array>
 #include <chrono>
@@ -33,21 +34,20 @@ namespace tactree::client {
 
 struct BoardOptions {
   unsigned baud = kUsualBaud;  ///< of a serial port
-  /// 5 .. 100: force ends when this program does not run for that long. 0: force goes on without
-  /// it.
+  /// 5 .. 100: the force ends if this program does not run for that long. 0: the force continues.
   std::uint16_t link_timeout_ms = 0;
 };
 
 struct Subscription {
-  std::uint32_t fields = 0x1FF;    ///< TelemetryField, or of them
-  std::uint32_t every_ticks = 10;  ///< 0: end it
+  std::uint32_t fields = 0x1FF;    ///< OR of TelemetryField bits; default: all but kReactions
+  std::uint32_t every_ticks = 10;  ///< 0: end the subscription
 };
 
 /// A model to be written to a board.
 struct ModelFile {
   std::span<const std::byte> bytes;
-  std::string board;          ///< only for the board of this name; empty: for any
-  std::uint32_t counter = 0;  ///< anti-rollback
+  std::string board;          ///< name of the only board that accepts it; empty: any board
+  std::uint32_t counter = 0;  ///< anti-rollback counter
   bool is_signed = false;
   std::array<std::uint8_t, 64> signature{};
 };
@@ -57,18 +57,18 @@ struct TracedTick {
   core::FlightRecord record{};
 };
 
-/// "motor-fault, link-lost"; empty: there is none.
+/// Names of the faults, e.g. "motor-fault, link-lost"; empty if there are none.
 [[nodiscard]] std::string names_of(core::FaultMask faults);
 
-/// The identity of a board and its start: see complaints() of start_report.hpp.
+/// Identity of a board and the result of its start, see complaints() (start_report.hpp).
 struct Introduction {
   core::wire::IdentifyReply board{};
-  core::wire::ReadStartReply start{};  ///< no complaints, for a board without this message
+  core::wire::ReadStartReply start{};  ///< without complaints if the board does not send it
 };
 
 class Board {
  public:
-  /// A port by its path. Opens a session; waits.
+  /// Opens a port by its name (ports.hpp), and a session; waits.
   explicit Board(const std::string& port, const BoardOptions& options = {});
   Board(std::unique_ptr<Transport> transport, const BoardOptions& options);
   /// Closes the session: the board stops.
@@ -76,34 +76,36 @@ class Board {
   Board(const Board&) = delete;
   Board& operator=(const Board&) = delete;
 
-  /// After the connection was lost: opens the port and a new session, and renews the subscription.
-  /// Nothing is armed. Throws while the board is not there; then try again.
-  /// For boards opened by their port's name; not while another thread uses this one. Waits.
+  /// Call after the connection was lost: opens the port and a new session, and renews the
+  /// subscription. The board is not armed. Throws LinkError while the board is absent; try again
+  /// then. Only for boards opened by port name, and not while another thread uses this object.
+  /// Waits.
   void reconnect();
-  /// False after the cable was pulled, or the board was reset.
+  /// Returns false once the connection is lost, e.g. because the cable was unplugged.
   [[nodiscard]] bool connected() const { return connection_ && connection_->connected(); }
 
-  /// Identity and start of the board, without a session: does not disturb another client. Waits.
+  /// Returns identity and start of a board without a session, so another client is not disturbed.
+  /// Waits.
   [[nodiscard]] static Introduction introduce(std::unique_ptr<Transport> transport);
 
   // ---- these wait
   [[nodiscard]] core::wire::IdentifyReply identify();
   [[nodiscard]] core::wire::CapabilitiesReply capabilities();
   [[nodiscard]] core::wire::StateReply state();
-  /// Until there may be force. Where the board has a dead-man control, until it is held, at most
-  /// `patience`. Throws, and stops, where it takes longer.
+  /// Arms the board and waits until it is active. If the board has a dead-man control, the user
+  /// must hold it. After `patience`, stops the board and throws LinkError.
   void arm(std::chrono::milliseconds patience = std::chrono::seconds(30));
-  /// Arms and does not wait for the hand: go_on_arming() does the rest. Throws where the state does
-  /// not allow it.
+  /// Arms the board and does not wait for the user: go_on_arming() completes it. Throws LinkError
+  /// if the state does not allow it.
   void begin_arming();
-  /// Again and again after begin_arming(): true once there may be force. Confirms where the board
-  /// has no dead-man control. Throws where the board is not armed any more.
+  /// Call repeatedly after begin_arming(): returns true once the board is active. Confirms if the
+  /// board has no dead-man control. Throws LinkError if the board is no longer armed.
   [[nodiscard]] bool go_on_arming();
-  /// The action expected from the person at the device before there is force, as text.
+  /// The action required from the user before the board becomes active, as text.
   [[nodiscard]] const char* who_confirms() const;
   void stop();
-  void clear_faults();  ///< and stops, so that the board is ready again
-  void home();          ///< the device is in its home pose
+  void clear_faults();  ///< also stops the board, which makes it ready again
+  void home();          ///< precondition: the device is in its home pose
   void set_limits(float force_max_N, float slew_N_s, float ramp_s);
   void set_material(const core::wire::SetMaterialRequest& material);
   void subscribe(const Subscription& subscription);
@@ -116,19 +118,20 @@ class Board {
   // ---- models; these wait, for as long as the flash takes
   using Progress = std::function<void(std::size_t done, std::size_t all)>;
   [[nodiscard]] core::wire::ListModelsReply models();
-  /// Writes a model, has it checked and used from now on. The one before stays in the other slot.
+  /// Writes a model, has the board check it, and activates it. The preceding model stays in the
+  /// other slot.
   void flash(const ModelFile& model, const Progress& progress = {});
   void roll_back();
   void erase_model(std::uint32_t slot);
 
-  // ---- these do not
-  /// Sent at once, and perhaps lost: stop() makes sure. Also while another thread uses the board,
-  /// but for reconnect().
+  // ---- these do not wait
+  /// Sends a stop, which may be lost; stop() waits for the reply. May be called while another
+  /// thread uses the board, except in reconnect().
   void post_stop();
   void move_body(std::uint32_t body, const core::Pose& pose, const core::Motion& motion = {},
                  bool enabled = true);
   void add_force(const std::array<float, 3>& force_N, std::uint32_t duration_ms);
-  /// All zero before the first.
+  /// All zero before the first telemetry.
   [[nodiscard]] Telemetry latest() const {
     return connection_ ? connection_->latest().value_or(Telemetry{}) : Telemetry{};
   }
@@ -138,7 +141,7 @@ class Board {
   [[nodiscard]] std::uint64_t dropped() const { return connection_ ? connection_->dropped() : 0U; }
   [[nodiscard]] bool in_session() const { return connection_ && connection_->in_session(); }
 
-  /// Throws after a reconnect() that failed.
+  /// Throws LinkError after a reconnect() that failed.
   [[nodiscard]] Connection& connection() const;
 
  private:
@@ -153,12 +156,12 @@ class Board {
   Response control(core::wire::ControlCode code, std::uint32_t token, const char* what);
   void write_pieces(std::span<const std::byte> bytes, const Progress& progress);
 
-  std::string port_;  // empty: opened by a transport
+  std::string port_;  // empty: constructed from a transport
   BoardOptions options_;
   std::optional<Subscription> subscription_;
   bool hand_confirms_ = false;              // of the last arming
   std::uint32_t arm_token_ = 0;             // of the last arming
-  std::unique_ptr<Connection> connection_;  // none after a reconnect() that failed
+  std::unique_ptr<Connection> connection_;  // nullptr after a reconnect() that failed
 };
 
 }  // namespace tactree::client

@@ -1,7 +1,7 @@
 #pragma once
-// The application's side of the protocol (docs/PROTOCOL.md) as a state machine: bytes and the time
-// go in, bytes and responses come out. No I/O, no clock, no thread: a test controls all of them.
-// Connection (connection.hpp) runs one over a Transport.
+// The application's side of the protocol (docs/PROTOCOL.md) as a state machine: its inputs are
+// bytes and the time, its outputs bytes and responses. It has no I/O, clock or thread, so a test
+// controls all of these. Connection (connection.hpp) runs a Client over a Transport.
 
 #include <cstddef>
 #include <cstdint>
@@ -27,13 +27,13 @@ struct ClientOptions {
 /// The result of a request.
 struct Response {
   core::wire::MessageKind kind{};
-  std::uint16_t sequence = 0;  ///< as send() returned it
-  bool timed_out = false;      ///< no reply: the board may have done it, or not
+  std::uint16_t sequence = 0;  ///< as returned by send()
+  bool timed_out = false;      ///< no reply: the board may have executed it, or not
   core::wire::WireStatus status = core::wire::WireStatus::kOk;
   std::vector<std::byte> payload;
 
   [[nodiscard]] bool ok() const { return !timed_out && status == core::wire::WireStatus::kOk; }
-  /// False: no such message is in the payload.
+  /// Returns false if the payload is too short for the message.
   template <core::wire::Message T>
   [[nodiscard]] bool read(T& message) const {
     return core::wire::decode_message(std::span(payload), message);
@@ -48,12 +48,12 @@ class Client {
 
   explicit Client(const ClientOptions& options = {}) : options_(options) {}
 
-  /// Requests a session, and keeps its link alive after the reply. `nonce`: different for each
-  /// process that might talk to the board. Its Response comes as any other.
+  /// Requests a session and keeps its link alive after the reply. `nonce` must differ between
+  /// processes that may use the board. The Response is available by take(), as for send().
   std::uint16_t open(std::uint16_t link_timeout_ms, std::uint32_t nonce, Microseconds now_us);
 
-  /// Queues a request and returns its number. It may be lost, as may its reply: after the timeout
-  /// there is a Response that says so. The client repeats nothing itself.
+  /// Queues a request and returns its sequence number. If the request or its reply is lost, a
+  /// Response with timed_out follows after the timeout. The client never repeats a request.
   std::uint16_t send(core::wire::MessageKind kind, std::span<const std::byte> payload,
                      Microseconds now_us);
   template <core::wire::Message T>
@@ -61,34 +61,34 @@ class Client {
     return send(kind, std::as_bytes(std::span(&message, 1)), now_us);
   }
 
-  /// Bytes that came in.
+  /// Processes received bytes.
   void receive(std::span<const std::byte> bytes, Microseconds now_us);
-  /// Time goes on: sends heartbeats that are due, gives up requests that are too old.
+  /// Advances the time: queues a heartbeat if one is due, and times out requests.
   void advance(Microseconds now_us);
 
-  /// Bytes to be sent, oldest first; sent() takes those away that were.
+  /// Bytes to be sent, oldest first. sent() removes the bytes that were sent.
   [[nodiscard]] std::span<const std::byte> to_send() const { return to_send_; }
   void sent(std::size_t bytes);
 
-  /// Responses that have come, oldest first.
+  /// Removes the oldest response. Returns false if there is none.
   [[nodiscard]] bool take(Response& response);
-  /// Called for each telemetry message, from receive().
+  /// Sets the function that receive() calls for each telemetry message.
   void on_telemetry(std::function<void(const Telemetry&)> handler) {
     telemetry_ = std::move(handler);
   }
 
   [[nodiscard]] State state() const { return state_; }
   [[nodiscard]] std::uint16_t session() const { return session_; }
-  /// Newest time of the board that is known.
+  /// Newest known time of the board.
   [[nodiscard]] std::uint32_t board_time_us() const { return board_time_us_; }
-  /// Frames that came in damaged.
+  /// Number of damaged frames received.
   [[nodiscard]] std::uint64_t damaged() const { return damaged_; }
 
  private:
   struct Request {
     core::wire::MessageKind kind{};
     Microseconds deadline_us = 0;
-    bool own = false;  // a heartbeat of the client's own
+    bool own = false;  // a heartbeat of the client; has no Response
   };
 
   std::uint16_t enqueue(core::wire::MessageKind kind, std::span<const std::byte> payload, bool own,

@@ -1,7 +1,7 @@
 #pragma once
-// Runs a Client over a Transport in its own thread: requests from any thread, telemetry as the
+// Runs a Client over a Transport in a separate thread: requests from any thread, telemetry as the
 // latest state and as a stream. post(), latest() and take_stream() never wait for the board, so
-// they are for a render loop; call() waits for its reply.
+// they suit a render loop; call() waits for its reply.
 
 #include <chrono>
 #include <cstdint>
@@ -17,7 +17,8 @@ namespace tactree::client {
 
 struct ConnectionOptions {
   ClientOptions client{};
-  /// Telemetry messages that wait for take_stream(); what comes beyond that is dropped and counted.
+  /// Maximum number of telemetry messages that wait for take_stream(). Later ones are dropped and
+  /// counted.
   std::size_t stream_capacity = 4096;
 };
 
@@ -28,7 +29,8 @@ class Connection {
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
 
-  /// Opens a session and waits for it. Throws LinkError: no answer, another version, busy.
+  /// Opens a session and waits for it. Throws LinkError if the board does not reply, has another
+  /// protocol version, or is busy.
   void open(std::uint16_t link_timeout_ms);
 
   /// Sends a request and waits for its response, at most for the client's timeout.
@@ -38,38 +40,39 @@ class Connection {
   [[nodiscard]] Response call(core::wire::MessageKind kind, const T& message) {
     return call(kind, std::as_bytes(std::span(&message, 1)));
   }
-  /// Sends several in order, at most `window` without a response; stops after the first response
-  /// that is not ok, and returns it, or else the last one.
+  /// Sends several requests in order, with at most `window` of them pending. Stops after the first
+  /// response that is not ok and returns it; otherwise returns the last response.
   struct Request {
     core::wire::MessageKind kind{};
     std::vector<std::byte> payload;
   };
   [[nodiscard]] Response call_all(std::span<const Request> requests, std::size_t window);
 
-  /// Sends a request; of its reply only a refusal is kept: refusals().
+  /// Sends a request. Its reply is discarded; a refusal is counted in refusals().
   void post(core::wire::MessageKind kind, std::span<const std::byte> payload);
   template <core::wire::Message T>
   void post(core::wire::MessageKind kind, const T& message) {
     post(kind, std::as_bytes(std::span(&message, 1)));
   }
-  /// Posted requests that were refused or got no reply.
+  /// Number of posted requests that were refused or got no reply.
   [[nodiscard]] std::uint64_t refusals() const;
 
-  /// The newest telemetry; nothing before the first.
+  /// The newest telemetry; empty before the first.
   [[nodiscard]] std::optional<Telemetry> latest() const;
   /// All telemetry since the last call, oldest first.
   [[nodiscard]] std::vector<Telemetry> take_stream();
-  /// Telemetry that found no room: here, and on the board since the last subscription.
+  /// Number of telemetry messages dropped here, and on the board since the last subscription.
   [[nodiscard]] std::uint64_t dropped() const;
 
   /// Time of the connection, Transport::now().
   [[nodiscard]] std::chrono::microseconds now() const;
-  /// Waits for so much time of the connection, also if the board is lost meanwhile.
+  /// Waits until now() has advanced by `duration`, even if the board is lost meanwhile.
   void sleep(std::chrono::microseconds duration) const;
 
-  /// False: unplugged, or closed from the other side.
+  /// Returns false if the board was unplugged or the other side closed the connection.
   [[nodiscard]] bool connected() const;
-  /// False as well when the board has ended the session: it was reset, or somebody else opened one.
+  /// Also returns false if the board has ended the session, because it was reset or another client
+  /// opened one.
   [[nodiscard]] bool in_session() const;
   [[nodiscard]] std::string name() const;
 

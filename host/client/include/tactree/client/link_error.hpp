@@ -3,7 +3,7 @@
 
 namespace tactree::client {
 
-/// A port or board that does not do what was asked. The text is "where: what (remedy)".
+/// Error of a port or board. Message: "where: what (remedy)".
 class LinkError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

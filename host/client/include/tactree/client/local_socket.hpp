@@ -1,5 +1,5 @@
 #pragma once
-// A controller on this computer, at a socket in the file system: tactree-controller.
+// Connection to a controller on this computer, tactree-controller, over a Unix domain socket.
 
 #include <memory>
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace tactree::client {
 
-/// Throws LinkError: nobody is there, no permission.
+/// Throws LinkError if no controller listens or permission is missing.
 [[nodiscard]] std::unique_ptr<Transport> open_local_socket(const std::string& path);
 
 }  // namespace tactree::client

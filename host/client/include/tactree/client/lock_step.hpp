@@ -1,11 +1,10 @@
 #pragma once
-// A simulated board whose time passes only as its program lets it. A program that is slow, or held
-// in a debugger, loses no link, and a test has the same outcome on every machine.
+// A simulated board whose time passes only as far as its program grants. A program that is slow, or
+// stopped in a debugger, does not lose the link, and a test has the same outcome on every machine.
 //
-// The two sides exchange packets over a socket in the file system. The program sends the time that
-// may pass, us, as 4 bytes in the host's order, then bytes for the board. The board simulates that
-// time, or less if it has something to say, and answers with its own time, us, as 8 bytes, then the
-// bytes from the board.
+// Both sides exchange packets over a Unix domain socket. The program sends the granted time, us, as
+// 4 bytes in host byte order, then bytes for the board. The board simulates that time, or less if
+// it has data to send, and replies with its time, us, as 8 bytes, then bytes for the program.
 
 #include <chrono>
 #include <cstdint>
@@ -18,19 +17,19 @@
 
 namespace tactree::client {
 
-/// The program's side. Throws LinkError: nobody is there, no permission.
+/// Opens the program's side. Throws LinkError if no board listens or permission is missing.
 [[nodiscard]] std::unique_ptr<Transport> open_lock_step(const std::string& path);
 
-/// The board's side. Several programs share it like a wire: each receives all that the board sends,
-/// and time passes while all of them let it. Without a program it stands still.
+/// The board's side. Several programs share it like a bus: each receives all bytes that the board
+/// sends, and time passes only while all of them grant it. Without a program, time stands still.
 class LockStepServer : public Transport {
  public:
   /// Listens at a new path in the folder for temporary files. Throws LinkError.
   LockStepServer();
   ~LockStepServer() override;
 
-  /// After each tick, which took `tick` of the simulated time. Returns when the next tick may run,
-  /// or soon after `ended` is true.
+  /// Call after each tick, which took `tick` of the simulated time. Returns when the next tick may
+  /// run, or shortly after `ended` returns true.
   void pass(std::chrono::nanoseconds tick, const std::function<bool()>& ended);
 
   [[nodiscard]] std::size_t read(std::span<std::byte> bytes) override;
@@ -39,13 +38,13 @@ class LockStepServer : public Transport {
   /// Simulated time.
   [[nodiscard]] std::chrono::microseconds now() const override;
   [[nodiscard]] bool connected() const override { return true; }
-  /// What programs open: "step:" and the path.
+  /// Port name for programs: "step:" and the path.
   [[nodiscard]] std::string name() const override;
 
  private:
   struct Program {
     int descriptor = -1;
-    bool asked = false;  ///< its request has no answer yet
+    bool asked = false;  ///< its request is not answered yet
     std::chrono::nanoseconds until{0};
     std::vector<std::byte> out;
   };

@@ -1,5 +1,5 @@
 #pragma once
-// Boards by the name of the port they are at, whatever kind of port that is.
+// Opens boards by port name, for all kinds of ports.
 
 #include <memory>
 #include <optional>
@@ -10,15 +10,15 @@
 
 namespace tactree::client {
 
-/// Ports at which a board may be. Cheap: nothing is opened.
+/// Ports that may have a board. Opens none of them.
 [[nodiscard]] std::vector<std::string> list_ports();
 
-/// By a name of list_ports(), "usb:" and a serial number, "unix:" or "step:" (lock_step.hpp) and
-/// the path of a socket, or the path of any serial port. `baud` is for serial ports. Throws
-/// LinkError.
+/// Opens a port. `name`: a name of list_ports(); "usb:" and a serial number; "unix:" or "step:"
+/// (lock_step.hpp) and the path of a socket; or the path of any serial port. `baud` is for serial
+/// ports. Throws LinkError.
 [[nodiscard]] std::unique_ptr<Transport> open_port(const std::string& name, unsigned baud);
 
-/// Bytes a second that the wire of such a port carries; none: its speed has no meaning there.
+/// Bytes per second on the wire of such a port; empty if the port has no wire with that speed.
 [[nodiscard]] std::optional<unsigned> wire_speed(const std::string& name, unsigned baud);
 
 }  // namespace tactree::client

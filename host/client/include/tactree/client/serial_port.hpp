@@ -9,19 +9,19 @@
 
 namespace tactree::client {
 
-/// What our firmware speaks: firmware/boards/stm32f405.
+/// Speed of the firmware's serial port: firmware/boards/stm32f405.
 inline constexpr unsigned kUsualBaud = 1000000;
 
-/// A serial port, or the far end of a pseudo-terminal, in raw mode. `baud`: 9600 .. 4000000, as far
-/// as the system knows it; of no meaning where no wire is. Throws LinkError where it cannot be
-/// opened.
+/// Opens a serial port, or the far end of a pseudo-terminal, in raw mode. `baud`: a usual speed,
+/// 9600 .. 4000000; has no effect on ports without a wire. Throws LinkError for another speed, or
+/// if the port cannot be opened.
 [[nodiscard]] std::unique_ptr<Transport> open_serial_port(const std::string& path,
                                                           unsigned baud = kUsualBaud);
 
-/// Ports that there are: /dev/ttyACM*, /dev/ttyUSB*.
+/// Existing ports /dev/ttyACM* and /dev/ttyUSB*.
 [[nodiscard]] std::vector<std::string> serial_ports();
 
-/// Our own end of a pseudo-terminal: what a simulated board talks over. Programs open path().
+/// The board's end of a pseudo-terminal, for a simulated board. Programs open name().
 class PseudoTerminal : public Transport {
  public:
   /// Throws LinkError.
@@ -31,13 +31,13 @@ class PseudoTerminal : public Transport {
   [[nodiscard]] std::size_t read(std::span<std::byte> bytes) override;
   [[nodiscard]] std::size_t write(std::span<const std::byte> bytes) override;
   void wait(std::chrono::microseconds timeout) override;
-  /// Always: programs come and go.
+  /// Always true, because programs come and go.
   [[nodiscard]] bool connected() const override { return true; }
   [[nodiscard]] std::string name() const override { return path_; }
 
  private:
   int ours_ = -1;
-  int theirs_ = -1;  // kept open, so that a program that closes it is no hang-up
+  int theirs_ = -1;  // kept open, so a program that closes it causes no hang-up
   std::string path_;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// The start of a board as text: what failed, and the remedy.
+// The start of a board as text: failures and remedies.
 
 #include <string>
 #include <vector>
@@ -8,7 +8,8 @@
 
 namespace tactree::client {
 
-/// A sentence for each thing that is not well, with its remedy. None: all is.
+/// Returns one sentence per problem, with the remedy if there is one; empty if there are no
+/// problems.
 [[nodiscard]] std::vector<std::string> complaints(const core::wire::ReadStartReply& start);
 
 }  // namespace tactree::client

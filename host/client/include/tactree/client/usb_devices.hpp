@@ -1,6 +1,6 @@
 #pragma once
-// Which boards are plugged in. A board is known by its link interface (core/usb/descriptors.hpp),
-// not by vendor and product: those are the maker's.
+// Lists the boards that are plugged in. A board is recognised by its link interface
+// (core/link/usb/descriptors.hpp), not by vendor and product, which depend on its maker.
 
 #include <chrono>
 #include <cstdint>
@@ -14,31 +14,31 @@ namespace tactree::client {
 struct UsbDeviceInfo {
   std::uint16_t vendor = 0;
   std::uint16_t product = 0;
-  std::string path;    ///< bus and port numbers: "3-1.2"; the same after a replug there
-  std::string serial;  ///< empty: it could not be read
+  std::string path;    ///< bus and port numbers: "3-1.2"; the same after a replug into that port
+  std::string serial;  ///< empty if it could not be read
   std::string maker;
   std::string name;
-  std::string problem;  ///< why it cannot be opened, with a remedy; empty: it can
+  std::string problem;  ///< cause and remedy if it cannot be opened; empty otherwise
 
-  /// "usb 1209:0001 3-1.2"
+  /// E.g. "usb 1209:0001 3-1.2".
   [[nodiscard]] std::string label() const;
   friend bool operator==(const UsbDeviceInfo&, const UsbDeviceInfo&) = default;
 };
 
-/// Paths of the boards there are now. Opens nothing; empty also where USB cannot be used.
+/// Paths of all boards that are plugged in. Opens none. Also empty if USB cannot be used.
 [[nodiscard]] std::vector<std::string> usb_paths();
 
-/// All boards there are now, by path. Opens each for a moment; takes some ms. Throws
-/// LinkError when USB cannot be used at all.
+/// All boards that are plugged in, sorted by path. Opens each of them briefly, which takes some
+/// milliseconds. Throws LinkError if USB cannot be used.
 [[nodiscard]] std::vector<UsbDeviceInfo> list_usb_devices();
 
-/// Reports boards that are plugged in and unplugged: at once by udev events, and by polling, for
+/// Reports boards that are plugged in and unplugged: immediately by udev events, and by polling for
 /// systems without udev.
 class UsbWatch {
  public:
   using Clock = std::chrono::steady_clock;
   struct Change {
-    bool arrived = false;  ///< else it is gone
+    bool arrived = false;  ///< true: plugged in; false: unplugged
     UsbDeviceInfo device;
   };
 
@@ -59,9 +59,9 @@ class UsbWatch {
   std::vector<UsbDeviceInfo> known_;
 };
 
-/// The rule that lets the person at the screen, and the group plugdev, open boards.
+/// The udev rule that allows the user logged in locally, and the group plugdev, to open boards.
 [[nodiscard]] std::string udev_rule();
-/// Writes it below `root` ("/"), and returns the file. Throws LinkError with a remedy.
+/// Writes the rule below `root` and returns the path of the file. Throws LinkError with a remedy.
 std::string install_udev_rule(const std::string& root = "/");
 
 }  // namespace tactree::client

@@ -1,5 +1,5 @@
 #pragma once
-// Bytes over USB. Transfers are always pending: no call waits.
+// Byte transport over USB. Transfers are always pending, so read() and write() never wait.
 
 #include <memory>
 #include <optional>
@@ -13,8 +13,9 @@ namespace tactree::client {
 
 class UsbTransport : public Transport {
  public:
-  /// Opens the board and its link. Takes some ms, once. Throws LinkError with cause and
-  /// remedy: gone, no permission, in use by another program.
+  /// Opens the board and claims its link, which takes some milliseconds. Throws LinkError with
+  /// cause and remedy if the board is gone, permission is missing or another program uses the
+  /// board.
   explicit UsbTransport(const UsbDeviceInfo& device);
   ~UsbTransport() override;
 
@@ -24,9 +25,9 @@ class UsbTransport : public Transport {
   [[nodiscard]] bool connected() const override;
   [[nodiscard]] std::string name() const override;
 
-  /// The last unsolicited notification of state and faults; empty: none since the last call.
+  /// The newest notice of state and faults since the last call; empty if there was none.
   [[nodiscard]] std::optional<core::usb::NewsPacket> take_news();
-  /// Why the connection was lost; empty while it is there.
+  /// Reason for the loss of the connection; empty while connected.
   [[nodiscard]] std::string reason() const;
 
  private:
@@ -34,8 +35,8 @@ class UsbTransport : public Transport {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Opens the board that `which` names: a serial number, a path ("3-1.2"), or empty where there is
-/// just one. Throws LinkError that lists what there is.
+/// Opens the board selected by `which`: a serial number, a path ("3-1.2"), or empty if there is
+/// only one board. Throws LinkError, which lists the boards.
 [[nodiscard]] std::unique_ptr<UsbTransport> open_usb(const std::string& which);
 
 }  // namespace tactree::client

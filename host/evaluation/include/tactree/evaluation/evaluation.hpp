@@ -23,7 +23,7 @@ struct Options {
   std::vector<std::filesystem::path> scans;
 };
 
-/// The two modes, in the order of every array below.
+/// The two modes. The elements of all arrays below are in this order.
 enum Mode : std::uint8_t { kSurface = 0, kPaper = 1 };
 inline constexpr std::array<const char*, 2> kModeNames = {"surface", "paper"};
 
@@ -31,7 +31,7 @@ inline constexpr std::array<const char*, 2> kModeNames = {"surface", "paper"};
 class Scores {
  public:
   void set(const std::string& name, double value) { values_.emplace_back(name, value); }
-  /// NaN if there is none.
+  /// Value with this name; NaN if there is none.
   [[nodiscard]] double get(const std::string& name) const;
   [[nodiscard]] const std::vector<std::pair<std::string, double>>& all() const { return values_; }
 
@@ -45,11 +45,11 @@ struct ShapeResult {
   std::array<Scores, 2> modes;
 };
 
-/// A row of the paper's Table 1, and our measurement.
+/// A row of the paper's Table 1, and the values measured here.
 struct DetectionRow {
   double separation_m = 0.0;
   bool dynamic = false;
-  double paper_accuracy = 0.0;  ///< as printed there, 0 .. 1
+  double paper_accuracy = 0.0;  ///< as printed in the paper, 0 .. 1; 0: the paper lacks this row
   int paper_false_positives = 0;
   int paper_false_negatives = 0;
   struct Count {
@@ -64,12 +64,12 @@ struct DetectionRow {
   std::array<Count, 2> hovering;  ///< 23.5 % on the surface, the others 2 to 10 mm above it
 };
 
-/// Table 2: distances found, against a brute-force search.
+/// Table 2 of the paper: errors of distances, against a brute-force search.
 struct DistanceTable {
-  double literal_without_point = 0.0;  ///< share of the probes without a leaf in reach
+  double literal_without_point = 0.0;  ///< fraction of the probes without a leaf in reach
   double paper_mean_m = 0.0;           ///< with the detection octant remembered
   double paper_max_m = 0.0;
-  double surface_mean_m = 0.0;  ///< the proxy's distance against that of the true surface
+  double surface_mean_m = 0.0;  ///< distance to the proxy against that to the true surface
   double surface_max_m = 0.0;
   double nearest_max_m = 0.0;  ///< the exact query against brute force, within its reach
 };
@@ -82,7 +82,8 @@ struct LoopResult {
     std::array<double, 2> max_N_m{};
   };
   std::vector<Stiffness> stiffness;
-  /// The controller's own parts against a wall: velocity estimate, damping, passivity control.
+  /// Stability limit of the controller's velocity estimate, damping and passivity control at a
+  /// wall.
   struct Limit {
     double rate_hz = 0.0;
     double delay_s = 0.0;
@@ -97,27 +98,29 @@ struct LoopResult {
 
 struct ScanResult {
   std::string name;
-  std::string error;  ///< not empty: the scan was not evaluated for this reason
+  std::string error;  ///< reason why the scan was not evaluated; empty if it was
   std::uint64_t points = 0;
   double spacing_m = 0.0;
-  double support_m = 0.0;                  ///< largest radius that the surface fit bridges
-  std::vector<builder::Opening> openings;  ///< wider than that, widest first
+  double support_m = 0.0;                  ///< maximum radius that the surface fit bridges
+  std::vector<builder::Opening> openings;  ///< wider than support_m, in descending order of width
   std::string hole_map;                    ///< SVG picture of the openings
   Scores scores;
 };
 
-/// A hand at an edge: concave ones pressed 4 mm deep and slid along, ridges slid along and crossed;
+/// Contact of a hand at an edge. The hand presses 4 mm deep into concave edges and slides along
+/// them, or it slides along a ridge and across it. Each value is
 /// the worst of several turns of the body, rates and speeds.
 struct CreaseResult {
   std::string name;
   bool concave = true;
   bool noisy = false;
   int ticks = 0;
-  int lost = 0;         ///< without contact, more than an encoder count (20 um) deep, after contact
-  double late_m = 0.0;  ///< depth at which a contact began
-  double fast_late_m = 0.0;  ///< the same at 4 kHz and 0.5 m/s
-  double off_m = 0.0;        ///< concave: of the proxy from the crease, once the hand stays
-  /// Of the force between two ticks in contact, beyond the hand's own movement; without the fast.
+  int lost = 0;         ///< ticks in which contact was lost deeper than an encoder count (20 um)
+  double late_m = 0.0;  ///< maximum depth reached before contact began, except fast_late_m
+  double fast_late_m = 0.0;  ///< likewise at 4 kHz and 0.5 m/s
+  double off_m = 0.0;        ///< concave: distance of the proxy from the crease of a resting hand
+  /// Maximum change of the force between two ticks in contact, less the change that is due to the
+  /// movement of the hand; not at 0.5 m/s.
   double step_N = 0.0;
 };
 
@@ -125,12 +128,12 @@ struct CreaseResult {
 struct InsideResult {
   std::string name;
   int starts = 0;
-  int shown = 0;         ///< as inside, before the hand moves
-  double force_N = 0.0;  ///< largest, until the hand is 1 mm outside
-  int felt = 0;          ///< the body, when the hand returns
+  int shown = 0;         ///< starts that are reported as inside before the hand moves
+  double force_N = 0.0;  ///< maximum until the hand is 1 mm outside
+  int felt = 0;          ///< starts with contact when the hand returns
 };
 
-/// A required value.
+/// A value with its required range.
 struct Target {
   std::string name;
   double value = 0.0;
@@ -140,7 +143,7 @@ struct Target {
   [[nodiscard]] bool met() const { return value >= low && value <= high; }
 };
 
-/// For a plot: force along one slide.
+/// Force along one slide, for a plot.
 struct ForceTrace {
   std::string title;
   std::vector<double> distance_m;
@@ -161,7 +164,7 @@ struct Result {
   [[nodiscard]] bool all_met() const;
 };
 
-/// Minutes on one core; seconds when quick, plus the scans.
+/// Cost: minutes on one core, or seconds with Options::quick; plus the scans.
 [[nodiscard]] Result evaluate(const Options& options, builder::Progress& progress);
 
 /// The result as JSON: tables, shapes, loop, scans, targets.
@@ -179,8 +182,8 @@ struct Result {
 /// SVG pictures by file name.
 [[nodiscard]] std::map<std::string, std::string> hole_maps(const Result& result);
 
-/// An SVG picture: the largest stable stiffness of a wall without a hand, over its damping, at
-/// several rates; measured in simulation, and predicted by core::stability_limit(). Cost: seconds;
-/// `quick` omits rates.
+/// SVG picture of the maximum stable stiffness of a wall without a hand over the damping of the
+/// wall, at several rates, as measured in simulation and as predicted by core::stability_limit().
+/// Cost: seconds; `quick` omits rates.
 [[nodiscard]] std::string z_width_svg(bool quick);
 }  // namespace tactree::evaluation

@@ -13,12 +13,12 @@
 
 namespace tactree::evaluation {
 
-inline constexpr double kSpacing = 1e-3;  // m, h
+inline constexpr double kSpacing = 1e-3;  // m, default point spacing h
 
 using plant::narrow;
 using plant::widen;
 
-/// A model and its blob. Move-only: the view refers to the blob's bytes.
+/// A model and its blob. Move-only, because the view refers to the blob's bytes.
 class Shape {
  public:
   explicit Shape(double spacing_m = kSpacing);
@@ -41,20 +41,21 @@ class Shape {
   core::BlobView view_;
 };
 
-/// A square sheet z = height on a grid, normal up or down; not yet sealed.
+/// Adds a square sheet z = height_m with points on a grid and the normal (0, 0, up). Does not seal
+/// the shape.
 void add_sheet(Shape& shape, double half_m, double height_m, double up);
 
 [[nodiscard]] Shape plane(double half_m = 0.03);
 
-/// Two sheets facing away from each other, symmetric to z = 0.
+/// Two sheets that face away from each other, symmetric about z = 0.
 [[nodiscard]] Shape plate(double thickness_m, double half_m = 0.02);
 
 inline constexpr double kSphereRadius = 0.03;
 
-/// Points on a golden spiral: evenly spaced, without rows.
+/// Sphere with points on a golden spiral, which are evenly spaced and form no rows.
 [[nodiscard]] Shape sphere(double radius_m = kSphereRadius, double spacing_m = kSpacing);
 
-/// z = a (cos kx + cos ky): curvatures from -2ak^2 to 2ak^2.
+/// z = a (cos kx + cos ky), with principal curvatures from -ak^2 to ak^2.
 struct CosSheet {
   double amplitude_m = 2.5e-3;
   double wave_number = 2.0 * std::numbers::pi / 0.06;  // 1/m
@@ -69,17 +70,17 @@ struct CosSheet {
         .normalized();
   }
   [[nodiscard]] Eigen::Vector3d point(double x, double y) const { return {x, y, height(x, y)}; }
-  /// The point of the sheet nearest to `p`. Precondition: p is within half of the smallest radius
-  /// of curvature.
+  /// The point of the sheet nearest to `p`. Precondition: the distance of p is less than half the
+  /// minimum radius of curvature.
   [[nodiscard]] Eigen::Vector3d nearest(const Eigen::Vector3d& p) const;
 };
 
-/// Points on a grid.
+/// Square sheet with points on a grid in x and y.
 [[nodiscard]] Shape cos_sheet(const CosSheet& sheet = {}, double half_m = 0.04,
                               double spacing_m = kSpacing);
 
-/// Cube about the origin with sharp edges; points on the faces, half a spacing from the edges, each
-/// displaced along its face by up to `shift` spacings at random.
+/// Cube with sharp edges, centred at the origin. Its points are on the faces, half a spacing from
+/// the edges, each displaced along its face by up to `shift` spacings at random.
 [[nodiscard]] Shape box(double half_m, double shift = 0.0, unsigned seed = 1);
 
 }  // namespace tactree::evaluation

@@ -16,11 +16,11 @@ namespace tactree::support {
 /// Owns the bytes; view() and bytes() are valid during its lifetime.
 class BlobFile {
  public:
-  /// Reads and checks, the header before the rest. Throws UserError that names the file, the
-  /// cause and the remedy.
+  /// Reads and checks the blob, its header first. Throws UserError that names the file, the cause
+  /// and the remedy.
   explicit BlobFile(const std::filesystem::path& file);
 
-  /// The same for the name on a command line, where "-" is standard input.
+  /// Reads the blob that a command line names, where "-" is standard input. Throws UserError.
   [[nodiscard]] static BlobFile named(const std::string& name);
 
   [[nodiscard]] const core::BlobView& view() const { return view_; }
@@ -30,9 +30,9 @@ class BlobFile {
 
  private:
   BlobFile() = default;
-  /// Reads and checks `size` bytes; a stream without end has that of the header.
+  /// Reads and checks `size` bytes, or the number that the header states if `size` is empty.
   void read_all(std::istream& in, const std::string& name, std::optional<std::uintmax_t> size);
-  /// Reads on, up to `size` bytes, or the end. Their number.
+  /// Continues to read until `size` bytes in total, or the end. Returns the total number.
   std::size_t read(std::istream& in, std::uintmax_t size);
   [[nodiscard]] std::uint32_t stated_bytes() const;
 
@@ -41,7 +41,7 @@ class BlobFile {
   core::BlobView view_;
 };
 
-/// Every point of a blob, decoded, by index.
+/// Decodes all points of a blob, in the order of their index.
 [[nodiscard]] std::vector<core::SurfacePoint> decode_points(const core::BlobView& view);
 
 }  // namespace tactree::support

@@ -23,7 +23,7 @@
 
 namespace tactree::support {
 
-/// "FILE: line N: cause (remedy)"
+/// The text is "FILE: line N: cause (remedy)".
 class CsvError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -44,33 +44,33 @@ struct CsvFormat {
   CsvSeparator separator = CsvSeparator::kComma;
 };
 
-/// The cells of one line, without the blanks around them. The cells refer to `line`.
+/// Splits a line into its cells, without the blanks around them. The cells refer to `line`.
 [[nodiscard]] std::vector<std::string_view> split_csv(
     std::string_view line, CsvSeparator separator = CsvSeparator::kComma);
 
-/// Reads a table row by row. Memory: one row.
+/// Reads a table row by row. Keeps one row in memory.
 class CsvReader {
  public:
-  /// Opens the file and reads the header; "-" is standard input. All members throw CsvError.
+  /// Opens the file, or standard input for "-", and reads the header. All members throw CsvError.
   CsvReader(const std::filesystem::path& file, CsvFormat format);
 
   /// Names of the columns; empty if there is no header.
   [[nodiscard]] const std::vector<std::string>& columns() const { return columns_; }
-  /// Index of the named column, if the header has it.
+  /// Index of the named column; nullopt if the header does not have it.
   [[nodiscard]] std::optional<std::size_t> find_column(std::string_view name) const;
   [[nodiscard]] std::size_t require_column(std::string_view name) const;
 
-  /// Advances to the next row; false at the end of the file. With a required header, a row must
-  /// have as many cells as the header.
+  /// Advances to the next row. Returns false at the end of the file. With a required header, a row
+  /// must have as many cells as the header.
   [[nodiscard]] bool next_row();
   /// Cells of the current row; valid until next_row().
   [[nodiscard]] std::span<const std::string_view> cells() const { return cells_; }
   /// Number of the current line, from 1.
   [[nodiscard]] std::size_t line() const { return line_; }
-  /// The cell as a finite number. `column` may exceed the row: that is an error with the line.
+  /// Returns the cell as a finite number. If the row has no such column, the error names the line.
   [[nodiscard]] double number(std::size_t column) const;
 
-  /// Rejects the current line.
+  /// Throws CsvError for the current line.
   [[noreturn]] void refuse(const std::string& cause, const std::string& remedy = "") const;
 
  private:

@@ -15,14 +15,14 @@ struct Device {
   core::DevicePreset preset{};  ///< its name and description are not used
 };
 
-/// "cartesian", "premium", ...
+/// Names of all presets: "cartesian", "premium", ...
 [[nodiscard]] std::vector<std::string> device_names();
 
-/// The preset of this name, or else the device in the file of this name. Throws UserError:
-/// "file: key: cause (remedy)".
+/// Returns the preset of this name or, if there is none, the device in the file of this name.
+/// Throws UserError with the text "file: key: cause (remedy)".
 [[nodiscard]] Device load_device(const std::string& name_or_file);
 
-/// The text of a device file.
+/// Returns the device as the text of a device file.
 [[nodiscard]] std::string device_json(const Device& device);
 
 }  // namespace tactree::support

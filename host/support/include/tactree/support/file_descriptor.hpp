@@ -1,6 +1,6 @@
 #pragma once
-// A file descriptor with an owner, and pipes. Every descriptor is close-on-exec: a child process
-// receives only those that ChildProcess is given.
+// Owned file descriptors, and pipes. Every descriptor is close-on-exec, so a child process receives
+// only those that are passed to ChildProcess.
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -11,19 +11,20 @@
 
 namespace tactree::support {
 
-/// Throws std::system_error of errno; its text is "what: cause".
+/// Throws std::system_error for errno. Its text is "what: cause".
 [[noreturn]] inline void fail_with_errno(const char* what) {
   throw std::system_error(errno, std::generic_category(), what);
 }
 
 class FileDescriptor {
  public:
-  /// Below are the numbers that a child process may receive.
+  /// Lowest number of an owned descriptor. A child process may receive descriptors below it.
   static constexpr int kLowest = 10;
 
   FileDescriptor() = default;
-  /// Takes ownership of `descriptor` and moves it to a number >= kLowest. A negative number is a
-  /// call that failed: throws std::system_error of errno, as when no number is free.
+  /// Takes ownership of `descriptor` and moves it to a number >= kLowest. Throws std::system_error
+  /// for errno if `descriptor` is negative, because the call that returned it failed, or if no
+  /// number is free.
   explicit FileDescriptor(int descriptor) {
     if (descriptor < 0) {
       fail_with_errno("file descriptor");
@@ -46,7 +47,7 @@ class FileDescriptor {
   FileDescriptor& operator=(const FileDescriptor&) = delete;
   ~FileDescriptor() { close(); }
 
-  /// -1: owns none.
+  /// Returns -1 if no descriptor is owned.
   [[nodiscard]] int get() const { return descriptor_; }
   void close() {
     if (descriptor_ >= 0) {

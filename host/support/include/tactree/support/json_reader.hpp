@@ -1,6 +1,6 @@
 #pragma once
-// Values of a JSON object, each checked against its range. Every error names file, place, cause and
-// remedy; a key that is not read is an error.
+// Reads values of a JSON object and checks each against its range. Every error names file, key,
+// cause and remedy. A key that is not read is an error.
 
 #include <cstddef>
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace tactree::support {
 
-/// Parts of the messages that depend on the kind of file.
+/// Texts of error messages that depend on the kind of file.
 struct JsonRemedies {
   const char* unknown = "is unknown";  ///< cause, for a key that is not read
   const char* keys = "leave it out";   ///< remedy for such a key
@@ -25,8 +25,8 @@ class JsonReader {
  public:
   using Json = nlohmann::ordered_json;
 
-  /// Keeps a reference to `json`. All functions throw UserError; this one if `json` is not an
-  /// object.
+  /// Keeps a reference to `json`. All functions throw UserError; the constructor throws it if
+  /// `json` is not an object.
   JsonReader(std::string file, const Json& json, const JsonRemedies& remedies,
              std::string place = "");
 
@@ -45,10 +45,10 @@ class JsonReader {
     return choice_of(key, std::vector<std::string>(names, names + N));
   }
   [[nodiscard]] JsonReader object(const char* key);
-  /// A list of `low` to `high` objects.
+  /// Returns the objects of a list, `low` to `high` in number.
   [[nodiscard]] std::vector<JsonReader> objects(const char* key, std::size_t low, std::size_t high);
 
-  /// Refuses keys that were not read.
+  /// Throws UserError if the object has a key that was not read.
   void finish() const;
 
  private:
@@ -61,11 +61,11 @@ class JsonReader {
   std::string file_;
   const Json& json_;
   JsonRemedies remedies_;
-  std::string place_;  // "motors.", "" for the whole file
+  std::string place_;  // path of the object, such as "motors"; "" for the whole file
   std::vector<std::string> known_;
 };
 
-/// "a, b, c"
+/// Joins names: "a, b, c".
 [[nodiscard]] std::string listed(const std::vector<std::string>& names);
 
 }  // namespace tactree::support

@@ -6,7 +6,8 @@
 
 namespace tactree::support {
 
-/// Of any nlohmann::basic_json, indented by two. Bytes that are not UTF-8 become U+FFFD.
+/// Converts any nlohmann::basic_json to text, indented by two. Bytes that are not UTF-8 become
+/// U+FFFD.
 template <class Json>
 [[nodiscard]] std::string json_text(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

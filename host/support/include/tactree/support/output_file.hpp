@@ -1,5 +1,5 @@
 #pragma once
-// Output files that appear complete or not at all.
+// Output files that are written completely or not at all.
 
 #include <cstddef>
 #include <filesystem>
@@ -9,8 +9,8 @@
 
 namespace tactree::support {
 
-/// Refuses, before any work, an output that cannot be written, that is also an input, or that is
-/// named twice. An empty path is an output that is not wanted. Throws UserError.
+/// Call before any work. Refuses an output that cannot be written, that is also an input, or that
+/// is named twice. An empty path is an output that is not wanted. Throws UserError.
 void check_outputs(const std::vector<std::filesystem::path>& outputs,
                    const std::vector<std::filesystem::path>& inputs = {});
 

@@ -1,5 +1,5 @@
 #pragma once
-// The error of a file, option or value that a user gave.
+// An error in a file, option or value that the user gave.
 
 #include <stdexcept>
 #include <string>

@@ -1,13 +1,15 @@
 #pragma once
 // A board as the source: its telemetry, and those controls of the page that the protocol supports.
-// A lost board is reconnected when it returns; it is never armed automatically.
+// After a loss of the connection, the session reconnects when the board returns. The board is never
+// armed automatically.
 //
 // Commands of a page:
-//   {"do": "arm"} {"do": "stop"} {"do": "clear"}     as tactree arm, stop, arm --clear
+//   {"do": "arm"} {"do": "stop"} {"do": "clear"}     like tactree arm, stop, arm --clear
 //   {"do": "set", "stiffness_N_m": 400, "damping_Ns_m": 0.5, "static_friction": 0.4,
-//    "dynamic_friction": 0.3, "use_materials": true, "force_max_N": 3}  any of them
-//   {"do": "connect"}                                after another program took the board
-// Refusals of the board follow in the frames: {"news": {"number": 1, "text": ...}}.
+//    "dynamic_friction": 0.3, "use_materials": true, "force_max_N": 3}  any subset
+//   {"do": "connect"}                      after another program has taken over the board
+// If the board refuses a command, later frames contain a notice:
+// {"news": {"number": 1, "text": ...}}.
 
 #include <atomic>
 #include <chrono>
@@ -33,9 +35,10 @@ class CommandOutcome;
 struct BoardSettings {
   std::string port;
   client::BoardOptions link{};
-  core::DeviceModel device{};          ///< drawn; boards do not report theirs
-  std::span<const std::byte> model{};  ///< displayed; compared with the board's
-  /// Work per tick of the named board with the displayed model. No function: unknown.
+  core::DeviceModel device{};          ///< for drawing; boards do not report their device
+  std::span<const std::byte> model{};  ///< the displayed model; compared with that of the board
+  /// Returns the work per tick of the named board with the displayed model. If empty, the work is
+  /// unknown.
   std::function<Work(const std::string& board, const core::wire::CapabilitiesReply& can)> work;
 };
 
@@ -82,7 +85,7 @@ class BoardSession : public Source {
   std::atomic<Link> link_ = Link::kConnected;
   std::atomic<bool> stop_wanted_ = false;
 
-  // Used by the session's thread only, except board_ under connecting_.
+  // Used by the session's thread only. post_stop() also uses board_, with connecting_ locked.
   std::mutex connecting_;  // held while reconnecting
   std::unique_ptr<client::Board> board_;
   std::unique_ptr<BoardFacts> facts_;
@@ -90,8 +93,8 @@ class BoardSession : public Source {
   Work work_;
   std::string why_lost_;
   Clock::time_point next_try_{};
-  std::optional<std::chrono::microseconds> arming_until_;  // of the connection's time
-  std::chrono::microseconds last_telemetry_{};             // of the connection's time
+  std::optional<std::chrono::microseconds> arming_until_;  // time of the connection
+  std::chrono::microseconds last_telemetry_{};             // time of the connection
   std::optional<simulation::Sample> last_;
   std::unique_ptr<CommandOutcome> outcome_;
   std::uint32_t last_time_us_ = 0;
@@ -101,7 +104,7 @@ class BoardSession : public Source {
   std::uint64_t news_number_ = 0;
   std::string news_;
 
-  std::mutex mutex_;  // guards what follows
+  std::mutex mutex_;  // guards commands_
   std::deque<nlohmann::json> commands_;
 
   TickLog log_;

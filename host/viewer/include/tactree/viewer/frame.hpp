@@ -1,6 +1,6 @@
 #pragma once
-// The content of a frame as JSON: the latest tick, and the extremes of the ticks since the last
-// frame.
+// The content of a frame as JSON: the latest tick, and minimum and maximum values over the ticks
+// since the last frame.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -16,7 +16,7 @@
 
 namespace tactree::viewer {
 
-/// Lowest and highest value over the ticks of a frame, so that no spike is lost.
+/// Minimum and maximum over the ticks of a frame, so that no spike is lost.
 struct Span {
   double low = 0.0;
   double high = 0.0;
@@ -40,22 +40,22 @@ class Strip {
   std::uint64_t ticks_ = 0;
 };
 
-/// The bodies of the scene and their models, one for one.
+/// The bodies of the scene and their models, in the same order.
 struct Bodies {
   std::vector<core::BlobView> views;
   std::vector<simulation::SceneBody> bodies;
 };
 
-/// A tick of one controller. `joints`: joint positions of the device; empty: computed from the tip.
-/// `scratch` is working memory.
+/// A tick of one controller. `joints` are the joint positions of the device; if empty, they are
+/// computed from the tip. `scratch` is working memory.
 [[nodiscard]] nlohmann::json run_json(const simulation::Sample& sample, const char* mode,
                                       const core::DeviceModel& device,
                                       const core::Vec3& model_origin_m,
                                       const std::optional<Eigen::Vector3d>& joints,
                                       const Bodies& bodies, core::CandidateSet& scratch);
 
-/// Unit and bound of the work per tick. An empty unit: the work is unknown. `why` states the cause
-/// of a missing unit or bound.
+/// Unit and bound of the work per tick. The unit is empty if the work is unknown. `why` states the
+/// cause of a missing unit or bound.
 struct Work {
   std::string unit;
   double per_period = 0.0;  ///< work that fills one period

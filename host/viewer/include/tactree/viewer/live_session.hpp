@@ -4,15 +4,15 @@
 //
 // Commands of a page:
 //   {"do": "hand", "target_m": [x, y, z], "via_m": [[x, y, z], ...],
-//    "speed_m_s": 0.2}      where the hand wants to be, model frame. Optional: places to visit on
-//                           its path there, at most 64, and its largest speed
+//    "speed_m_s": 0.2}      target of the hand, model frame. Optional: positions on the path to it,
+//                           at most 64, and the maximum speed of the hand
 //   {"do": "arm"} {"do": "stop"} {"do": "clear"}
 //   {"do": "set", "stiffness_N_m": 400, "damping_Ns_m": 0.5, "static_friction": 0.4,
 //    "dynamic_friction": 0.3, "rate_hz": 1000, "mode": "surface" | "paper" | "both",
-//    "device": NAME, "use_materials": true}  any of them; restarts the session
-//   {"do": "inject", "fault": "encoder1:stuck"}, as --inject without a time; acts at once
+//    "device": NAME, "use_materials": true}  any subset; restarts the session
+//   {"do": "inject", "fault": "encoder1:stuck"}  like --inject without a time; acts at once
 //   {"do": "mend"}                          removes all injected faults
-// The result of a command that shows none, and its cause, follow in the frames:
+// If a command has no visible result, later frames contain a notice with the cause:
 // {"news": {"number": 1, "text": ...}}.
 
 #include <Eigen/Core>
@@ -52,13 +52,13 @@ class SteeredHand;
 
 class LiveSession : public Source {
  public:
-  /// The blobs of `bodies` must outlive the session. `devices`: the choices of the page.
-  /// Throws SessionRefused.
+  /// The blobs of `bodies` must outlive the session. `devices` are the choices of the page. Throws
+  /// SessionRefused.
   LiveSession(Bodies bodies, std::vector<NamedDevice> devices, const Settings& settings);
   ~LiveSession() override;
 
-  /// Instead of start(): executes waiting commands and simulates the time of one frame, as fast as
-  /// possible. Returns the frame. For programs with a time of their own.
+  /// Replaces start() in programs with their own time base: executes waiting commands, simulates
+  /// the time of one frame as fast as possible, and returns the frame.
   [[nodiscard]] std::string step();
 
   [[nodiscard]] std::string hello() const override;
@@ -96,13 +96,13 @@ class LiveSession : public Source {
   core::CandidateSet scratch_;
   double ticks_due_ = 0.0;
   std::uint64_t frames_ = 0;
-  double lost_s_ = 0.0;  // real time that was not simulated: the machine was too slow
+  double lost_s_ = 0.0;  // real time that was not simulated because the machine was too slow
   std::uint64_t news_number_ = 0;
   std::string news_;
 
-  mutable std::mutex mutex_;  // guards what follows
+  mutable std::mutex mutex_;  // guards settings_, next_runs_ and commands_
   Settings settings_;
-  Runs next_runs_;  // with changed settings; empty: none
+  Runs next_runs_;  // with changed settings; empty if they have not changed
   std::deque<nlohmann::json> commands_;
 
   TickLog log_;

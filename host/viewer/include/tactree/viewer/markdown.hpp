@@ -9,17 +9,19 @@
 namespace tactree::viewer {
 
 struct MarkdownTargets {
-  /// Maps a link's target to an address. Empty result or no function: the text without a link.
+  /// Maps a link's target to an address. If the function or its result is empty, only the text of
+  /// the link remains.
   std::function<std::string(std::string_view)> link;
-  /// Maps a picture's target to markup, inserted unchanged. No function: the alternative text.
+  /// Maps a picture's target to markup, which is inserted unchanged. If empty, the alternative text
+  /// is inserted.
   std::function<std::string(std::string_view)> picture;
 };
 
 /// The body of a page.
 [[nodiscard]] std::string markdown_html(std::string_view markdown, const MarkdownTargets& targets);
 
-/// A complete page around `body`; loads no external resources, follows the browser's dark mode.
-/// `title` is escaped, `body` is not.
+/// A complete page around `body`. It loads no external resources and follows the browser's dark
+/// mode. `title` is escaped, `body` is not.
 [[nodiscard]] std::string html_page(std::string_view title, std::string_view body);
 
 }  // namespace tactree::viewer

@@ -1,7 +1,7 @@
 #pragma once
-// A model's points by level of detail, for pages that show millions of them: an octree whose nodes
-// hold some thousands of points each, spread over the node's cube. The root is a coarse picture of
-// the model; each level adds points, none twice.
+// A model's points by level of detail, for pages that show millions of points: an octree whose
+// nodes hold some thousands of points each, spread over the node's cube. The root is a coarse
+// picture of the model, and each level adds points. No point is in two nodes.
 
 #include <array>
 #include <cstdint>
@@ -17,8 +17,8 @@ namespace tactree::viewer {
 inline constexpr std::uint32_t kPointsPerNode = 8192;
 inline constexpr std::uint32_t kDeepestNode = 12;  ///< levels below the root
 
-/// The transmitted form, little-endian: x, y, z from the node's lower corner in 1/65535 of its
-/// edge; then the normal on an octahedron, 8 bits per axis.
+/// A point as it is transmitted, little-endian: x, y, z from the node's lower corner in units of
+/// 1/65535 of its edge, then the normal in octahedral encoding with 8 bits per axis.
 using PackedPoint = std::array<std::uint16_t, 4>;
 
 struct PointNode {
@@ -27,7 +27,7 @@ struct PointNode {
   float spacing_m = 0.0F;  ///< approximate distance between points of this node and its ancestors
   std::uint32_t first_point = 0;
   std::uint32_t point_count = 0;
-  std::vector<std::uint32_t> children;  ///< indices, greater than that of the node
+  std::vector<std::uint32_t> children;  ///< indices, greater than the index of the node
 };
 
 class PointTree {
@@ -50,13 +50,14 @@ class PointTree {
 /// The nodes without their points, as JSON.
 [[nodiscard]] std::string tree_json(const PointTree& tree, const core::BlobView& view);
 
-/// Cubes of the blob's octree on one level, by their lower corners (m). Takes the deepest level
-/// that is at most `level` and has at most `max_cubes` cubes, or level 0; returns it in `level`.
+/// Cubes of a blob's octree on one level, by their lower corners, m.
 struct OctantBoxes {
   std::uint32_t level = 0;
   float edge_m = 0.0F;
   std::vector<std::array<float, 3>> corners_m;
 };
+/// Cubes of the deepest level that is at most `level` and has at most `max_cubes` cubes, or of
+/// level 0. OctantBoxes::level is the chosen level.
 [[nodiscard]] OctantBoxes octant_boxes(const core::BlobView& view, std::uint32_t level,
                                        std::size_t max_cubes);
 

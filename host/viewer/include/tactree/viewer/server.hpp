@@ -1,10 +1,10 @@
 #pragma once
 // The server of the page: HTTP for static data, a WebSocket (/live) for frames and commands.
 //
-// Made for one machine: listens on the loopback interface by default, answers only requests for the
-// address it listens on (which defeats DNS rebinding), and accepts WebSockets only from its own
-// page. Memory per client is bounded. A page that does not read loses frames, which are counted; it
-// never delays the source.
+// Made for one machine: it listens on the loopback interface by default, answers only requests for
+// the address on which it listens (which defeats DNS rebinding), and accepts WebSockets only from
+// its own page. Memory per client is bounded. A page that does not read loses frames, which are
+// counted; it never delays the source.
 
 #include <cstdint>
 #include <memory>
@@ -18,7 +18,7 @@ namespace tactree::viewer {
 
 struct ServerOptions {
   std::string address = "127.0.0.1";
-  std::uint16_t port = 0;  ///< 0: any free one
+  std::uint16_t port = 0;  ///< 0: any free port
 };
 
 /// The address is invalid or in use.
@@ -37,7 +37,7 @@ class Server {
 
   /// "http://127.0.0.1:8023/"
   [[nodiscard]] const std::string& address() const;
-  /// Starts the source, serves until SIGINT, SIGTERM or stop().
+  /// Starts the source and serves until SIGINT, SIGTERM or stop().
   void run();
   void stop();
 

@@ -1,6 +1,6 @@
 #pragma once
-// The paths of the server and their content. Page and fault pages are embedded in the program, the
-// rest is generated from the models and the session; no file is read.
+// The paths of the server and their content. The page and the fault pages are embedded in the
+// program; the rest is generated from the models and the session. No file is read.
 
 #include <cstdint>
 #include <span>
@@ -17,7 +17,7 @@ struct HttpResponse {
   unsigned status = 200;
   std::string type = "text/plain; charset=utf-8";
   std::string body;
-  std::string file_name;  ///< empty: displayed; else downloaded under this name
+  std::string file_name;  ///< if not empty, the body is downloaded under this name
 };
 
 /// A text file embedded in the program.
@@ -27,11 +27,11 @@ struct Asset {
   std::string_view content;
 };
 
-/// The built page: "/", "/assets/...". If it was not built: a page with the reason.
+/// The built page ("/", "/assets/..."), or a page with the reason why it was not built.
 [[nodiscard]] std::span<const Asset> page_assets();
 /// "/faults/NAME": Markdown.
 [[nodiscard]] std::span<const Asset> fault_pages();
-/// False if the program was built without its page.
+/// Returns false if the program was built without its page.
 [[nodiscard]] bool has_page();
 
 /// A page of docs/faults as HTML; links to other such pages are kept.
@@ -42,7 +42,8 @@ class Site {
   /// The views' bytes and the source must outlive the site.
   Site(std::vector<core::BlobView> models, const Source& source);
 
-  /// The content of a path without query; 404 if unknown. Slow for is_slow() paths. Any thread.
+  /// The content of a path without query; 404 if the path is unknown. Slow for is_slow() paths. May
+  /// be called from any thread.
   ///   /                      the page            /assets/...
   ///   /faults/ /faults/NAME  explanation of faults and limits
   ///   /model/I               the nodes of model I, JSON

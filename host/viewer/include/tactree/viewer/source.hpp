@@ -27,7 +27,7 @@ class SessionRefused : public std::runtime_error {
 
 class Source {
  public:
-  /// Called from the source's own thread; must not block.
+  /// Called from the source's thread; must not block.
   using Publish = std::function<void(std::shared_ptr<const std::string>)>;
 
   Source() = default;
@@ -40,7 +40,8 @@ class Source {
     running_ = true;
     thread_ = std::thread([this, publish = std::move(publish)] { run(publish); });
   }
-  /// Ends the thread. Every source calls it in its destructor.
+  /// Ends the thread. Every derived class must call it in its destructor, because the thread uses
+  /// its members.
   void stop() {
     running_ = false;
     if (thread_.joinable()) {
@@ -48,7 +49,7 @@ class Source {
     }
   }
 
-  // Callable from any thread:
+  // The following functions may be called from any thread.
 
   /// The message before the first frame.
   [[nodiscard]] virtual std::string hello() const = 0;

@@ -29,7 +29,7 @@ class TickLog {
   void publish();
 
   Chunk filling_;
-  mutable std::mutex mutex_;  // guards what follows
+  mutable std::mutex mutex_;  // guards full_
   std::deque<std::shared_ptr<const Chunk>> full_;
 };
 

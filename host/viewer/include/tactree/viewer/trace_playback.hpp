@@ -1,9 +1,9 @@
 #pragma once
-// Playback of a trace that simulate or a page wrote.
+// Playback of a trace that `tactree simulate` or a page has written.
 //
 // Commands of a page:
 //   {"do": "seek", "tick": 120}   {"do": "step", "ticks": -1}
-//   {"do": "play", "speed": 0.1}  relative to the recorded time; 0 or {"do": "stop"}: pauses
+//   {"do": "play", "speed": 0.1}  relative to the recorded time; 0 or {"do": "stop"} pauses
 
 #include <filesystem>
 #include <mutex>
@@ -14,14 +14,14 @@
 
 namespace tactree::viewer {
 
-/// The ticks of a trace. Required columns: t_s, probe, force; values of other missing columns are
-/// 0. Throws support::CsvError, a std::runtime_error: "file: line n: cause (remedy)".
+/// The ticks of a trace. The columns t_s, probe and force are required; the values of other missing
+/// columns are 0. Throws support::CsvError with the text "file: line n: cause (remedy)".
 [[nodiscard]] std::vector<simulation::Sample> read_trace(const std::filesystem::path& file);
 
 class TracePlayback : public Source {
  public:
-  /// The blobs of `bodies` must outlive the recording. `device` and the position of the model in
-  /// its frame serve to draw the linkage. Precondition: !samples.empty().
+  /// The blobs of `bodies` must outlive the object. `device` and the position of the model in its
+  /// frame are used to draw the linkage. Precondition: !samples.empty().
   TracePlayback(std::vector<simulation::Sample> samples, Bodies bodies,
                 const core::DeviceModel& device, const core::Vec3& model_origin_m);
   ~TracePlayback() override;
@@ -42,7 +42,7 @@ class TracePlayback : public Source {
   core::Vec3 model_origin_m_;
   core::CandidateSet scratch_;
 
-  mutable std::mutex mutex_;  // guards what follows
+  mutable std::mutex mutex_;  // guards the members below
   std::size_t tick_ = 0;
   double speed_ = 0.0;
   double time_s_ = 0.0;  // during playback

@@ -1,6 +1,6 @@
 #pragma once
-// Worst-case bound of a tick: instructions and cycles that one tick of a linked image executes at
-// most. docs/BOUND.md describes the method, its assumptions and the annotations.
+// Worst-case bound of a tick: the maximum number of instructions and cycles of one tick of a linked
+// image. docs/BOUND.md describes the method, its assumptions and the annotations.
 //
 //   BoundOptions options{image, sources, tick_entries(), parameters_of(header, mode, 1, device)};
 //   options.work_tier = core::work_tier_of(rate_hz);
@@ -8,12 +8,12 @@
 //
 // Method: implicit path enumeration (Li and Malik, "Performance analysis of embedded software using
 // implicit path enumeration", DAC 1995). The passes of each edge between blocks of machine code are
-// variables; flow into a block equals flow out of it; annotations limit loops; the weighted sum is
-// maximised.
+// the variables of a linear program. The flow into a block equals the flow out of it, annotations
+// limit the loops, and the weighted sum is maximised.
 //
 // Costs: worst_case() solves a few linear programs, about 1 s; tick_costs() some dozens, about 20
-// s. All functions may be called from several threads. Errors are BoundError: "place: cause
-// (remedy)".
+// s. All functions may be called from several threads. Errors are BoundError with the text
+// "location: cause (remedy)".
 
 #include <array>
 #include <cstdint>
@@ -34,24 +34,24 @@ namespace tactree::wcet {
 /// Values of the names in annotations, except constants of the source.
 using Parameters = std::map<std::string, std::int64_t>;
 
-/// Of the model with this header, on `bodies` bodies.
+/// Parameters of the model with this header on `bodies` bodies.
 [[nodiscard]] Parameters parameters_of(const core::BlobHeader& header, core::RenderMode mode,
                                        std::uint32_t bodies, core::DeviceKind device);
-/// Of a model with these limits; parameters that ModelLimits lacks are the largest. `delta`: the
-/// device is a delta robot.
+/// Parameters of a model with these limits. Parameters that are not in ModelLimits have their
+/// maximum values. `delta` is true for a delta robot.
 [[nodiscard]] Parameters parameters_of(const core::ModelLimits& limits, core::TickKind kind,
                                        std::uint32_t bodies, bool delta);
-/// Limits that no model exceeds: full leaves and balls at the greatest depth.
+/// Limits that no model exceeds: full leaves and balls at the maximum depth.
 [[nodiscard]] core::ModelLimits largest_model_limits();
 
-/// A division of a tick's work among all bodies. More gathers leave less of the rest.
+/// A division of a tick's work, summed over all bodies. More gathers leave fewer passes.
 struct Division {
   std::uint32_t gathers = 0;
   std::uint32_t passes = 0;       ///< over the candidates
-  std::uint32_t fits = 0;         ///< places with a fit: each takes a pass and begins with two
-  std::uint32_t fits_of_one = 0;  ///< largest number of one body
+  std::uint32_t fits = 0;         ///< positions with a fit; the first of a body takes two passes
+  std::uint32_t fits_of_one = 0;  ///< maximum of `fits` for one body
 };
-/// All divisions at this work tier (core::work_tier_of()), by gathers from 0.
+/// All divisions at this work tier (core::work_tier_of()), indexed by their gathers.
 [[nodiscard]] std::vector<Division> divisions(std::uint32_t work_tier, std::uint32_t bodies);
 
 /// A function that the processor enters by an interrupt.
@@ -60,8 +60,8 @@ struct EntryPoint {
   std::uint32_t times = 1;  ///< in one tick
 };
 
-/// The interrupt of the tick, and twice that of the timer: it begins the tick and may occur once
-/// more before the tick ends.
+/// The interrupt of the tick once, and that of the timer twice: it begins the tick and may occur
+/// again before the tick ends.
 [[nodiscard]] std::vector<EntryPoint> tick_entries();
 
 /// Wait states of a board's memories.
@@ -78,7 +78,7 @@ struct BoardTiming {
   bool is_estimate;  ///< the core is not a Cortex-M4, or the wait states are not published
   const char* source;
 };
-/// nullptr: the timing of this board is unknown.
+/// Returns nullptr if the timing of this board is unknown.
 [[nodiscard]] const BoardTiming* find_timing(const std::string& board);
 
 struct BoundOptions {
@@ -90,7 +90,7 @@ struct BoundOptions {
   Parameters parameters;
   /// core::work_tier_of() of the rate; the bound is the worst of divisions() at this tier.
   std::uint32_t work_tier = 0;
-  /// nullptr: instructions only, no cycles.
+  /// If nullptr, only instructions are bounded, not cycles.
   const BoardTiming* timing = nullptr;
 };
 
@@ -124,26 +124,27 @@ using WorkTierCycles = std::array<double, core::kWorkTiers>;
 
 struct Bound {
   Parameters parameters;                  ///< of the options and of the worst division
-  std::uint64_t instructions = 0;         ///< of one tick, at most
-  std::uint64_t cycles = 0;               ///< of one tick, at most; 0: no timing was given
+  std::uint64_t instructions = 0;         ///< maximum of one tick
+  std::uint64_t cycles = 0;               ///< maximum of one tick; 0 if no timing was given
   WorkTierCycles work_tier_cycles{};      ///< the cycles at every work tier
-  std::vector<FunctionOnPath> functions;  ///< most instructions first
+  std::vector<FunctionOnPath> functions;  ///< in descending order of instructions
   std::vector<LoopOnPath> loops;
   std::vector<std::string> unused_facts;  ///< "file:line" of `at most:` annotations without code
-  std::vector<BlockOnPath> endings;       ///< functions that never return: not part of a tick
+  std::vector<BlockOnPath> endings;       ///< functions that never return; not part of a tick
   std::vector<BlockOnPath> blocks;        ///< all blocks analysed, executed or not
   std::set<std::uint32_t> in_ram;         ///< instructions annotated as accessing RAM only
 };
 
 /// Throws BoundError with file and line for a loop without a bound, recursion, an indirect call or
-/// jump, an unknown instruction, an annotation that cannot be applied.
+/// jump, an unknown instruction, or an annotation that cannot be applied.
 [[nodiscard]] Bound worst_case(const BoundOptions& options);
 
-/// Highest rate, Hz, at which a tick ends in time, at the work tier of the rate or at a later one;
-/// a tick ends in time at every lower rate, too.
+/// Maximum rate, Hz, at which a tick ends in time with the work tier of the rate or a later one. A
+/// tick also ends in time at every lower rate.
 [[nodiscard]] double highest_rate(double clock_hz, const WorkTierCycles& cycles);
 
-/// First work tier from that of the rate at which a tick ends in time; the last one if none does.
+/// First work tier, beginning with that of the rate, at which a tick ends in time; the last work
+/// tier if there is none.
 [[nodiscard]] std::uint32_t work_tier_in_time(double rate_hz, double clock_hz,
                                               const WorkTierCycles& cycles);
 
@@ -156,7 +157,7 @@ struct Bound {
 
 /// Writes the costs into an image. Its checksum is invalid until scripts/seal-image has run.
 void embed(const std::filesystem::path& image, const core::TickCosts& costs);
-/// The costs in an image; an image as linked has none: all zero.
+/// The costs in an image. They are all zero in an image that was only linked.
 [[nodiscard]] core::TickCosts embedded(const std::filesystem::path& image);
 
 }  // namespace tactree::wcet

@@ -4,7 +4,7 @@
 
 namespace tactree::wcet {
 
-/// The analysis cannot prove a bound, or cannot read its input. The text is "place: cause
+/// The analysis cannot prove a bound, or cannot read its input. The text is "location: cause
 /// (remedy)".
 class BoundError : public std::runtime_error {
  public:

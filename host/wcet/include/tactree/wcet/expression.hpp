@@ -11,13 +11,13 @@
 
 namespace tactree::wcet {
 
-/// Value of a name; nullopt: unknown.
+/// Returns the value of a name; nullopt if it is unknown.
 using Names = std::function<std::optional<std::int64_t>(const std::string&)>;
 
 class Expression {
  public:
   /// Removes the expression at the beginning of `text` and returns it. Throws BoundError if there
-  /// is none; `where` is the place in messages.
+  /// is none; `where` is the location in messages.
   [[nodiscard]] static Expression read(std::string_view& text, const std::string& where);
 
   /// Throws BoundError on an unknown name and on a division by zero.

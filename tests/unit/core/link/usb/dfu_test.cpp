@@ -117,7 +117,7 @@ Bytes pattern(std::size_t size) {
   return bytes;
 }
 
-TEST_F(DfuTest, UploadsWhatWasDownloaded) {
+TEST_F(DfuTest, UploadsDownloadedBytes) {
   for (const std::size_t size : {1U, 511U, 512U, 513U, 40000U}) {
     const Bytes bytes = pattern(size);
     download(bytes, kDfuTransferBytes);
@@ -127,12 +127,12 @@ TEST_F(DfuTest, UploadsWhatWasDownloaded) {
   }
 }
 
-TEST_F(DfuTest, AcceptsBlockNumbersFromOneAndWrapAround) {
+TEST_F(DfuTest, AcceptsAndWrapsBlockNumbers) {
   download(pattern(100), 10, 1);
   download(pattern(100), 10, 65533);
 }
 
-TEST_F(DfuTest, InterfacesUseSeparateStorages) {
+TEST_F(DfuTest, SeparatesInterfaceStorages) {
   download(pattern(1000), 512);
   interface = kParameterInterface;
   download(pattern(30), 512);
@@ -140,14 +140,14 @@ TEST_F(DfuTest, InterfacesUseSeparateStorages) {
   EXPECT_EQ(bus.parameters.stored.size(), 30U);
 }
 
-TEST_F(DfuTest, HostWaitsWhileTheStorageIsBusy) {
+TEST_F(DfuTest, DelaysHostWhileStorageBusy) {
   bus.model.busy_per_block = 3;
   download(pattern(2000), 512);
   EXPECT_EQ(bus.model.stored, pattern(2000));
   EXPECT_GE(bus.now_us, 3U * 5U * 5000U);
 }
 
-TEST_F(DfuTest, RefusesAllButStatusWhileTheHostShouldWait) {
+TEST_F(DfuTest, RefusesDownloadsWhileBusy) {
   bring_to(DfuState::kDownloadBusy);
   bus.now_us += 1000;
   const Status early = status();
@@ -157,7 +157,7 @@ TEST_F(DfuTest, RefusesAllButStatusWhileTheHostShouldWait) {
   EXPECT_EQ(state(), DfuState::kError);
 }
 
-TEST_F(DfuTest, ReturnsToSyncAfterTheWaitingTime) {
+TEST_F(DfuTest, ReturnsToSyncAfterWaiting) {
   bring_to(DfuState::kDownloadBusy);
   bus.now_us += 5000;
   bus.device.poll(bus.now_us);
@@ -167,7 +167,7 @@ TEST_F(DfuTest, ReturnsToSyncAfterTheWaitingTime) {
 
 /// Figure A.1 and its tables, with what this device can: download, upload, manifestation tolerant.
 /// The one exception is the status while the host is to wait.
-TEST_F(DfuTest, HandlesEveryRequestInEveryState) {
+TEST_F(DfuTest, FollowsStandardStateTable) {
   struct Row {
     DfuState from;
     DfuState after_download;  // 16 bytes
@@ -216,7 +216,7 @@ TEST_F(DfuTest, HandlesEveryRequestInEveryState) {
   }
 }
 
-TEST_F(DfuTest, GetStateDoesNotChangeTheState) {
+TEST_F(DfuTest, KeepsStateOnGetState) {
   for (const DfuState wanted : {DfuState::kIdle, DfuState::kDownloadSync, DfuState::kDownloadIdle,
                                 DfuState::kManifestSync, DfuState::kUploadIdle, DfuState::kError}) {
     bus.happen(hal::UsbEvent::Kind::kReset, Speed::kHigh);
@@ -247,7 +247,7 @@ TEST_F(DfuTest, TreatsMalformedRequestsAsErrors) {
   refused({kClassOut, 1, 0, interface, 16}, Bytes(15));  // fewer bytes came than announced
 }
 
-TEST_F(DfuTest, RefusesOtherRecipientsWithoutAnError) {
+TEST_F(DfuTest, RefusesOtherRecipientsWithoutError) {
   EXPECT_FALSE(bus.in(kClassIn, 3, 0, kLinkInterface, 6));
   EXPECT_FALSE(bus.in(kClassIn, 3, 0, 3, 6));
   EXPECT_FALSE(bus.in(0xA0, 3, 0, interface, 6));
@@ -257,7 +257,7 @@ TEST_F(DfuTest, RefusesOtherRecipientsWithoutAnError) {
   EXPECT_FALSE(bus.in(kClassIn, 3, 0, interface, 6)) << "not configured";
 }
 
-TEST_F(DfuTest, RefusesABlockOutOfOrder) {
+TEST_F(DfuTest, RefusesBlockOutOfOrder) {
   ASSERT_TRUE(request(DfuRequest::kDownload, 0, Bytes(16)));
   status();
   EXPECT_FALSE(request(DfuRequest::kDownload, 2, Bytes(16)));
@@ -265,7 +265,7 @@ TEST_F(DfuTest, RefusesABlockOutOfOrder) {
   EXPECT_FALSE(bus.model.begun) << "what came before is given up";
 }
 
-TEST_F(DfuTest, ReportsTheStatusOfTheStorage) {
+TEST_F(DfuTest, ReportsStorageStatus) {
   const auto reported = [&] {
     const DfuStatus said = status().status;
     EXPECT_EQ(state(), DfuState::kError);
@@ -303,7 +303,7 @@ TEST_F(DfuTest, ReportsTheStatusOfTheStorage) {
   EXPECT_EQ(reported(), DfuStatus::kFirmware);
 }
 
-TEST_F(DfuTest, DisconnectAbortsTheTransfer) {
+TEST_F(DfuTest, AbortsTransferOnDisconnect) {
   const Bytes before = pattern(100);
   download(before, 64);
   for (const DfuState wanted : {DfuState::kDownloadSync, DfuState::kDownloadIdle,

@@ -44,7 +44,7 @@ void walk(const Bytes& configuration, See see) {
   EXPECT_EQ(at, configuration.size());
 }
 
-TEST(UsbDescriptors, DeviceDescriptorHoldsTheIdentity) {
+TEST(UsbDescriptors, DescribesDeviceIdentity) {
   Bus bus;
   const Reply device = bus.in(kIn, kGetDescriptor, 0x0100, 0, 64);
   ASSERT_TRUE(device);
@@ -58,14 +58,14 @@ TEST(UsbDescriptors, DeviceDescriptorHoldsTheIdentity) {
   EXPECT_EQ((*device)[17], 1);
 }
 
-TEST(UsbDescriptors, SendsAtMostTheRequestedLength) {
+TEST(UsbDescriptors, SendsAtMostRequestedLength) {
   Bus bus;
   EXPECT_EQ(bus.in(kIn, kGetDescriptor, 0x0100, 0, 8)->size(), 8U);
   EXPECT_EQ(bus.in(kIn, kGetDescriptor, 0x0200, 0, 9)->size(), 9U);
   EXPECT_EQ(bus.in(kIn, kGetDescriptor, 0x0200, 0, 0xFFFF)->size(), kConfigurationBytes);
 }
 
-TEST(UsbDescriptors, ConfigurationIsConsistentAtBothSpeeds) {
+TEST(UsbDescriptors, DescribesConfigurationAtBothSpeeds) {
   for (const bool high : {false, true}) {
     Bus bus;
     bus.happen(hal::UsbEvent::Kind::kReset, high ? Speed::kHigh : Speed::kFull);
@@ -94,7 +94,7 @@ TEST(UsbDescriptors, ConfigurationIsConsistentAtBothSpeeds) {
   }
 }
 
-TEST(UsbDescriptors, OnlyTwoSpeedDevicesDescribeTheOtherSpeed) {
+TEST(UsbDescriptors, DescribesOtherSpeedIfSupported) {
   Bus bus;
   bus.happen(hal::UsbEvent::Kind::kReset, Speed::kHigh);
   const Reply high = bus.in(kIn, kGetDescriptor, 0x0200, 0, 255);
@@ -114,7 +114,7 @@ TEST(UsbDescriptors, OnlyTwoSpeedDevicesDescribeTheOtherSpeed) {
             ControlResponse::Kind::kStall);
 }
 
-TEST(UsbDescriptors, ReturnsTheStrings) {
+TEST(UsbDescriptors, ReturnsStrings) {
   Bus bus;
   EXPECT_EQ(*bus.in(kIn, kGetDescriptor, 0x0300, 0, 255), (Bytes{4, 3, 0x09, 0x04}));
   const char* const expected[] = {
@@ -131,7 +131,7 @@ TEST(UsbDescriptors, ReturnsTheStrings) {
   EXPECT_FALSE(bus.in(kIn, kGetDescriptor, 0x03EE, 0, 255));
 }
 
-TEST(UsbDescriptors, TruncatesALongName) {
+TEST(UsbDescriptors, TruncatesLongName) {
   Identity identity;
   identity.name = "a name that is much longer than the thirty-one characters which fit";
   std::array<std::byte, kStringBytesMax + 4> guarded{};
@@ -140,7 +140,7 @@ TEST(UsbDescriptors, TruncatesALongName) {
   EXPECT_EQ(guarded[kStringBytesMax], std::byte{0});
 }
 
-TEST(UsbDescriptors, BosRefersToTheMicrosoftDescriptors) {
+TEST(UsbDescriptors, LinksBosToMicrosoftDescriptors) {
   Bus bus;
   const Reply bos = bus.in(kIn, kGetDescriptor, 0x0F00, 0, 255);
   ASSERT_TRUE(bos);
@@ -172,7 +172,7 @@ TEST(UsbDescriptors, BosRefersToTheMicrosoftDescriptors) {
   EXPECT_EQ(at, set->size());
 }
 
-TEST(UsbDescriptors, AcceptsOnlyAWellFormedMicrosoftRequest) {
+TEST(UsbDescriptors, RefusesMalformedMicrosoftRequests) {
   Bus bus;
   EXPECT_FALSE(bus.in(0xC0, kMicrosoftRequest, 0, 8, 64));
   EXPECT_FALSE(bus.in(0xC0, kMicrosoftRequest, 1, 7, 64));
@@ -198,7 +198,7 @@ TEST(UsbDescriptors, RefusesUnknownDescriptors) {
   EXPECT_FALSE(bus.out(kOut, 7, 0x0100, 0, {1, 2, 3}));  // SET_DESCRIPTOR
 }
 
-TEST(UsbRequests, AddressTakesEffectAfterTheStatusStage) {
+TEST(UsbRequests, AppliesAddressAfterStatusStage) {
   Bus bus;
   bus.controller.events.push_back({hal::UsbEvent::Kind::kSetup, {}, {kOut, kSetAddress, 42, 0, 0}});
   bus.device.poll(0);
@@ -208,7 +208,7 @@ TEST(UsbRequests, AddressTakesEffectAfterTheStatusStage) {
   EXPECT_EQ(bus.controller.address, 42);
 }
 
-TEST(UsbRequests, AcceptsOnlyAWellFormedAddress) {
+TEST(UsbRequests, RefusesMalformedAddresses) {
   Bus bus;
   EXPECT_FALSE(bus.out(kOut, kSetAddress, 128, 0));
   EXPECT_FALSE(bus.out(kOut, kSetAddress, 1, 1));
@@ -219,7 +219,7 @@ TEST(UsbRequests, AcceptsOnlyAWellFormedAddress) {
   EXPECT_EQ(bus.controller.address, 5);
 }
 
-TEST(UsbRequests, ConfigurationOpensAndClosesTheEndpoints) {
+TEST(UsbRequests, OpensAndClosesEndpoints) {
   Bus bus;
   EXPECT_FALSE(bus.out(kOut, kSetConfiguration, 1, 0)) << "no address yet";
   bus.enumerate();
@@ -234,7 +234,7 @@ TEST(UsbRequests, ConfigurationOpensAndClosesTheEndpoints) {
   EXPECT_EQ(*bus.in(kIn, kGetConfiguration, 0, 0, 1), (Bytes{0}));
 }
 
-TEST(UsbRequests, ReturnsTheStatusOfDeviceInterfaceAndEndpoint) {
+TEST(UsbRequests, ReturnsStatusOfEveryRecipient) {
   Bus bus;
   EXPECT_EQ(*bus.in(kIn, kGetStatus, 0, 0, 2), (Bytes{1, 0}));
   EXPECT_FALSE(bus.in(kInterfaceIn, kGetStatus, 0, 0, 2)) << "not configured";
@@ -251,7 +251,7 @@ TEST(UsbRequests, ReturnsTheStatusOfDeviceInterfaceAndEndpoint) {
   EXPECT_FALSE(bus.in(kIn, kGetStatus, 1, 0, 2));
 }
 
-TEST(UsbRequests, HaltStopsAnEndpointUntilItIsCleared) {
+TEST(UsbRequests, HaltsEndpointUntilCleared) {
   Bus bus;
   bus.enumerate();
   const std::byte byte{7};
@@ -281,7 +281,7 @@ TEST(UsbRequests, RefusesUnknownFeatures) {
   EXPECT_FALSE(bus.in(kEndpointIn, 12, 0, kBulkIn, 2)) << "synch frame";
 }
 
-TEST(UsbRequests, InterfacesHaveOneSettingEach) {
+TEST(UsbRequests, OffersOneSettingPerInterface) {
   Bus bus;
   EXPECT_FALSE(bus.in(kInterfaceIn, kGetInterface, 0, 0, 1)) << "not configured";
   bus.enumerate();
@@ -309,7 +309,7 @@ TEST(UsbDevice, MovesBytesOnlyWhileConfigured) {
   EXPECT_EQ(bus.device.write(bytes), 0U);
 }
 
-TEST(UsbDevice, ResetClearsAddressAndConfiguration) {
+TEST(UsbDevice, ReturnsToDefaultOnReset) {
   Bus bus;
   bus.enumerate();
   bus.happen(hal::UsbEvent::Kind::kReset);
@@ -318,7 +318,7 @@ TEST(UsbDevice, ResetClearsAddressAndConfiguration) {
   EXPECT_FALSE(bus.out(kOut, kSetConfiguration, 1, 0));
 }
 
-TEST(UsbDevice, AControllerMayConfigureByItself) {
+TEST(UsbDevice, AcceptsConfigurationByController) {
   Bus bus;
   bus.happen(hal::UsbEvent::Kind::kConfigured);
   EXPECT_TRUE(bus.device.configured());
@@ -326,7 +326,7 @@ TEST(UsbDevice, AControllerMayConfigureByItself) {
   EXPECT_FALSE(bus.device.configured());
 }
 
-TEST(UsbDevice, NewRequestEndsAnUnfinishedOne) {
+TEST(UsbDevice, ReplacesUnfinishedRequest) {
   Bus bus;
   bus.controller.events.push_back({hal::UsbEvent::Kind::kSetup, {}, {kOut, kSetAddress, 9, 0, 0}});
   bus.device.poll(0);  // its status stage never comes
@@ -334,7 +334,7 @@ TEST(UsbDevice, NewRequestEndsAnUnfinishedOne) {
   EXPECT_EQ(bus.controller.address, 0);
 }
 
-TEST(UsbDevice, LimitsTheEventsPerTick) {
+TEST(UsbDevice, LimitsEventsPerTick) {
   Bus bus;
   for (int i = 0; i < 100; ++i) {
     bus.controller.events.push_back({hal::UsbEvent::Kind::kSetup, {}, {kIn, kGetStatus, 0, 0, 2}});
@@ -343,7 +343,7 @@ TEST(UsbDevice, LimitsTheEventsPerTick) {
   EXPECT_EQ(bus.controller.events.size(), 96U);
 }
 
-TEST(UsbDevice, EveryRequestGetsOneAnswerOfAtMostTheRequestedLength) {
+TEST(UsbDevice, AnswersRandomRequestsWithinLength) {
   std::mt19937 random(1);
   Bus bus;
   int answered = 0;

@@ -55,7 +55,7 @@ Bytes random_bytes(std::mt19937& random, std::size_t size, unsigned zeros_in_4) 
   return bytes;
 }
 
-TEST(Frame, RoundTripsEveryLengthWithAnyShareOfZeros) {
+TEST(Frame, RoundTripsEveryLength) {
   std::mt19937 random(1);
   for (std::size_t size = 0; size <= kMaxPayload; ++size) {
     for (unsigned zeros = 0; zeros <= 4U; ++zeros) {
@@ -73,20 +73,20 @@ TEST(Frame, RoundTripsEveryLengthWithAnyShareOfZeros) {
   }
 }
 
-TEST(Frame, EncodesAPayloadWithoutZerosAtTheMaximumLength) {
+TEST(Frame, EncodesLongestPayloadWithoutZeros) {
   const Bytes payload(kMaxPayload, std::byte{0x55});
   const Bytes frame = encoded({0x41, 0x22, 0x3333, 0x4444, 0}, payload);
   EXPECT_EQ(frame.size(), kMaxEncodedFrame);
   ASSERT_EQ(decoded(frame).frames.size(), 1U);
 }
 
-TEST(Frame, RefusesToEncodeAPayloadThatIsTooLong) {
+TEST(Frame, RefusesOversizedPayload) {
   Bytes out(kMaxEncodedFrame);
   EXPECT_EQ(encode_frame({}, Bytes(kMaxPayload + 1U), out), 0U);
   EXPECT_EQ(encode_frame({}, Bytes(1), std::span(out).first(kMaxEncodedFrame - 1U)), 0U);
 }
 
-TEST(Frame, DropsAFrameWithAnyFlippedBit) {
+TEST(Frame, RefusesEveryFlippedBit) {
   std::mt19937 random(2);
   const Bytes frame = encoded({0x12, 0, 7, 9, 0}, random_bytes(random, 60, 1));
   const Bytes next = encoded({0x04, 0, 8, 9, 0}, {});
@@ -103,7 +103,7 @@ TEST(Frame, DropsAFrameWithAnyFlippedBit) {
   }
 }
 
-TEST(Frame, DropsEveryPrefixAndFindsTheNextFrame) {
+TEST(Frame, ResynchronisesAfterEveryPrefix) {
   std::mt19937 random(3);
   const Bytes frame = encoded({0x12, 0, 7, 9, 0}, random_bytes(random, 60, 1));
   const Bytes next = encoded({0x04, 0, 8, 9, 0}, {});
@@ -118,7 +118,7 @@ TEST(Frame, DropsEveryPrefixAndFindsTheNextFrame) {
   }
 }
 
-TEST(Frame, SkipsInvalidBytesOfAnyLength) {
+TEST(Frame, SkipsInvalidBytes) {
   std::mt19937 random(4);
   const Bytes next = encoded({0x04, 0, 8, 9, 0}, {});
   for (int round = 0; round < 200; ++round) {
@@ -130,7 +130,7 @@ TEST(Frame, SkipsInvalidBytesOfAnyLength) {
   }
 }
 
-TEST(Frame, RefusesALengthThatDiffersFromThePayload) {
+TEST(Frame, RefusesMismatchedPayloadLength) {
   // The sealed length is wrong, the checksum right: only a sender that errs makes this.
   Bytes raw(sizeof(FrameHeader) + 4U + kFrameChecksumBytes);
   const FrameHeader header{1, 0, 1, 0, 3};
@@ -154,7 +154,7 @@ TEST(Frame, RefusesALengthThatDiffersFromThePayload) {
   EXPECT_EQ(result.damaged, 1);
 }
 
-TEST(Frame, AcceptsLongerAndRefusesShorterMessages) {
+TEST(Frame, AcceptsLongerNotShorterMessages) {
   Bytes payload(sizeof(OpenRequest) + 4U);
   OpenRequest request;
   EXPECT_TRUE(decode_message(std::span<const std::byte>(payload), request));
@@ -163,7 +163,7 @@ TEST(Frame, AcceptsLongerAndRefusesShorterMessages) {
 }
 
 // Every frame of a session of the first release is decoded, and encoded to the same bytes.
-TEST(Frame, EncodesTheGoldenSessionUnchanged) {
+TEST(Frame, EncodesGoldenSessionUnchanged) {
   std::ifstream golden(test::source_folder() / "tests/golden/session-1.0.txt");
   int frames = 0;
   for (std::string line; std::getline(golden, line); ++frames) {
@@ -178,7 +178,7 @@ TEST(Frame, EncodesTheGoldenSessionUnchanged) {
   EXPECT_GE(frames, 60);
 }
 
-TEST(WireStatus, EachHasItsOwnText) {
+TEST(WireStatus, HasUniqueTexts) {
   for (std::uint32_t a = 0; a < kWireStatuses; ++a) {
     for (std::uint32_t b = a + 1U; b <= kWireStatuses; ++b) {
       EXPECT_STRNE(describe(static_cast<WireStatus>(a)), describe(static_cast<WireStatus>(b)));

@@ -94,7 +94,7 @@ TEST(Telemetry, SendsZeroPenetrationWithoutContact) {
             (std::vector<std::uint32_t>{1, 2000, contact, 5, 0, core::kNoBody, 0}));
 }
 
-TEST(Telemetry, DecodesEverySelectionOfEncodedFields) {
+TEST(Telemetry, DecodesEveryFieldSelection) {
   const core::Status s = some_status();
   for (std::uint32_t fields = 0; fields <= wire::kAllTelemetry; ++fields) {
     const std::vector<std::byte> message = encode(s, fields);
@@ -123,7 +123,7 @@ TEST(Telemetry, RefusesEveryTruncatedMessage) {
   }
 }
 
-TEST(Telemetry, IgnoresBytesAfterTheFields) {
+TEST(Telemetry, IgnoresBytesAfterFields) {
   std::vector<std::byte> message = encode(some_status(), 2U);
   message.push_back(std::byte{0x55});
   wire::Telemetry decoded;

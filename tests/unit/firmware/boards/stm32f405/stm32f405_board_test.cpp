@@ -97,13 +97,13 @@ class Stm32f405 : public testing::Test {
   BoardRig rig;
 };
 
-TEST_F(Stm32f405, PassesTheConformanceProgram) {
+TEST_F(Stm32f405, PassesConformanceProgram) {
   EXPECT_EQ(conformance(), "");
   EXPECT_FALSE(rig.chip().watchdog.bitten());
   EXPECT_TRUE(rig.chip().watchdog.runs());
 }
 
-TEST_F(Stm32f405, DetectsADefectiveBoard) {
+TEST_F(Stm32f405, DetectsDefectiveBoard) {
   rig.chip().power_follows = false;
   rig.chip().hold_dead_man(true);
   rig.chip().gpio_b.wire(14, false);
@@ -114,7 +114,7 @@ TEST_F(Stm32f405, DetectsADefectiveBoard) {
   EXPECT_NE(failed.find("the motor bank fails"), std::string::npos);
 }
 
-TEST_F(Stm32f405, ConfiguresThePinsOfTheWiring) {
+TEST_F(Stm32f405, ConfiguresWiredPins) {
   rig.boot();
   EXPECT_EQ(rig.chip().gpio_a.mode(15), 2U);
   EXPECT_EQ(rig.chip().gpio_a.function(15), 1U);  // TIM2
@@ -141,7 +141,7 @@ TEST_F(Stm32f405, ConfiguresThePinsOfTheWiring) {
   }
 }
 
-TEST_F(Stm32f405, ReportsEachPartThatDoesNotStartAndGivesNoForce) {
+TEST_F(Stm32f405, ReportsEachFailedPart) {
   const std::pair<StartPart, void (*)(FakeChip&)> cases[] = {
       {StartPart::kEncoders, [](FakeChip& f) { f.tim4.gate_by([] { return false; }); }},
       {StartPart::kMotors, [](FakeChip& f) { f.tim8.gate_by([] { return false; }); }},
@@ -171,7 +171,7 @@ TEST_F(Stm32f405, ReportsEachPartThatDoesNotStartAndGivesNoForce) {
   }
 }
 
-TEST_F(Stm32f405, ReportsTheCauseOfTheLastReset) {
+TEST_F(Stm32f405, ReportsCauseOfLastReset) {
   rig.chip().clocks.rcc.csr.value = 1U << 29;
   rig.boot({3, 4, 5, 0x0800D000, 7, 8, {}});
   const core::wire::ReadStartReply start = rig.ask_start();
@@ -183,7 +183,7 @@ TEST_F(Stm32f405, ReportsTheCauseOfTheLastReset) {
   EXPECT_EQ(rig.ask_start().missing, 0U);
 }
 
-TEST_F(Stm32f405, ReportsAnInvalidModel) {
+TEST_F(Stm32f405, ReportsInvalidModel) {
   std::vector<std::byte> flipped(image_model().bytes().begin(), image_model().bytes().end());
   flipped[flipped.size() / 2] ^= std::byte{4};
   rig.program_image_model(flipped);
@@ -192,7 +192,7 @@ TEST_F(Stm32f405, ReportsAnInvalidModel) {
   EXPECT_FALSE(rig.arm());
 }
 
-TEST_F(Stm32f405, ABlockedLoopTriggersTheWatchdog) {
+TEST_F(Stm32f405, TriggersWatchdogOnBlockedLoop) {
   rig.boot();
   rig.run(100);
   EXPECT_FALSE(rig.chip().watchdog.bitten());
@@ -215,7 +215,7 @@ TEST_F(Stm32f405, IdentifiesItself) {
 }
 
 // From power-up over homing and arming to a force; then the emergency stop.
-TEST_F(Stm32f405, CompensatesTheDeviceWeightAndReleasesIt) {
+TEST_F(Stm32f405, CompensatesWeightUntilEmergencyStop) {
   rig.boot();
   ASSERT_TRUE(rig.started().ok());
   EXPECT_EQ(rig.duty(), 0.0);
@@ -240,7 +240,7 @@ TEST_F(Stm32f405, StopsOnRequest) {
   EXPECT_FALSE(rig.chip().gpio_c.level(4));
 }
 
-TEST_F(Stm32f405, EndsTheForceIfTheApplicationIsSilent) {
+TEST_F(Stm32f405, EndsForceForSilentApplication) {
   rig.boot();
   ASSERT_TRUE(rig.arm());
   rig.run(1000);
@@ -254,7 +254,7 @@ TEST_F(Stm32f405, EndsTheForceIfTheApplicationIsSilent) {
 }
 
 // Telemetry of ten times the port's bandwidth does not block replies.
-TEST_F(Stm32f405, TelemetryDoesNotDelayTheLink) {
+TEST_F(Stm32f405, KeepsLinkResponsiveUnderTelemetry) {
   rig.boot();
   ASSERT_TRUE(rig.arm());
   ASSERT_TRUE(rig.ask(MessageKind::kSubscribe, core::wire::SubscribeRequest{0x3FF, 1}).ok());
@@ -280,7 +280,7 @@ TEST_F(Stm32f405, StoresAnotherModel) {
   EXPECT_GT(rig.duty(), 0.0);
 }
 
-TEST_F(Stm32f405, OverwritesTheModelOfTheImageOnlyWhenItIsNotInUse) {
+TEST_F(Stm32f405, OverwritesUnusedImageModelOnly) {
   // So large that it reaches into the first slot: as one of more than 128 KiB does.
   const Shape large = cos_sheet({}, 0.04, 0.0004);
   ASSERT_GT(large.bytes().size(), 0x20000U);
@@ -297,7 +297,7 @@ TEST_F(Stm32f405, OverwritesTheModelOfTheImageOnlyWhenItIsNotInUse) {
   EXPECT_TRUE(uses(image_model()));
 }
 
-TEST_F(Stm32f405, RefusesAModelWhileForceIsPossible) {
+TEST_F(Stm32f405, RefusesModelWhileForcePossible) {
   rig.boot();
   ASSERT_TRUE(rig.arm());
   EXPECT_EQ(rig.flash(other_model().bytes()).status, WireStatus::kBusy);
@@ -306,7 +306,7 @@ TEST_F(Stm32f405, RefusesAModelWhileForceIsPossible) {
   EXPECT_EQ(rig.status().state, core::State::kActive);
 }
 
-TEST_F(Stm32f405, DisablesPowerAndExtendsTheWatchdogDuringAnErase) {
+TEST_F(Stm32f405, ErasesUnpoweredWithExtendedWatchdog) {
   rig.boot();
   ASSERT_TRUE(rig.open().ok());
   // The power is on, as if the last tick had gone wrong.
@@ -332,7 +332,7 @@ TEST_F(Stm32f405, DisablesPowerAndExtendsTheWatchdogDuringAnErase) {
   EXPECT_TRUE(rig.chip().watchdog.bitten()) << "the timeout was not restored";
 }
 
-TEST_F(Stm32f405, DoesNotEraseIfTheWatchdogCannotBeExtended) {
+TEST_F(Stm32f405, RefusesEraseWithoutExtendedWatchdog) {
   rig.boot();
   ASSERT_TRUE(rig.open().ok());
   rig.chip().watchdog.takes_settings = false;
@@ -340,7 +340,7 @@ TEST_F(Stm32f405, DoesNotEraseIfTheWatchdogCannotBeExtended) {
   EXPECT_EQ(rig.chip().flash.erased, 0U);
 }
 
-TEST_F(Stm32f405, GivesNoForceIfTheWatchdogStaysExtended) {
+TEST_F(Stm32f405, RefusesForceUnderExtendedWatchdog) {
   rig.boot();
   ASSERT_TRUE(rig.open().ok());
   const auto pass = rig.chip().flash.pass;
@@ -356,7 +356,7 @@ TEST_F(Stm32f405, GivesNoForceIfTheWatchdogStaysExtended) {
 }
 
 // At every erase, around it, and at every word of the records.
-TEST_F(Stm32f405, APowerCutLeavesTheOldOrTheNewModel) {
+TEST_F(Stm32f405, SurvivesPowerCutDuringUpdate) {
   const Shape large = cos_sheet({}, 0.04, 0.0004);  // of several sectors
   rig.boot();
   ASSERT_TRUE(rig.open().ok());
@@ -409,7 +409,7 @@ TEST_F(Stm32f405, StoresItsCalibration) {
   EXPECT_TRUE(uses(image_model()));
 }
 
-TEST_F(Stm32f405, ErasesItsRecordSectorsAfterManySaves) {
+TEST_F(Stm32f405, ErasesFullRecordSectors) {
   rig.boot();
   ASSERT_TRUE(rig.open().ok());
   for (int i = 0; i < 100; ++i) {
@@ -478,7 +478,7 @@ class RigTransport : public client::Transport {
   std::atomic<std::int64_t> ticked_us_ = 0;
 };
 
-TEST(Stm32f405InLockStep, TheClientLibraryFindsFlashesArmsAndStopsIt) {
+TEST(Stm32f405InLockStep, ServesClientLibrary) {
   const Shape small = cos_sheet({}, 0.04, 0.002);
   BoardRig rig;
   rig.program_image_model(image_model().bytes());

@@ -59,14 +59,14 @@ TEST(ModelFrame, IsRecordedForAllOptions) {
   expect_recorded(options, {100.0, 2.0, 3.0});
 }
 
-TEST(ModelFrame, OfAScanNearItsOriginIsKept) {
+TEST(ModelFrame, KeepsScanNearOrigin) {
   const Cleaned cleaned = clean_one(cloud_scan(random_sphere(1000, 0.05)));
   EXPECT_EQ(cleaned.report.source_origin, Eigen::Vector3d(0, 0, 0));
   EXPECT_EQ(cleaned.report.source_scale, 1.0);
   EXPECT_TRUE(cleaned.report.notes.empty());
 }
 
-TEST(ModelFrame, OfAFarScanIsShiftedWithANote) {
+TEST(ModelFrame, ShiftsFarScanWithNote) {
   Cloud cloud = plane_grid(30, 1e-3);
   for (Eigen::Vector3d& p : cloud.positions) {
     p += Eigen::Vector3d(665187.522, 5648349.895, 241.75);
@@ -78,7 +78,7 @@ TEST(ModelFrame, OfAFarScanIsShiftedWithANote) {
   EXPECT_EQ(cleaned.input.points.size(), 900U);
 }
 
-TEST(ModelFrame, FitScalesTheLongestEdgeAndCentres) {
+TEST(ModelFrame, FitsLongestEdgeAndCentres) {
   BuildOptions options;
   options.fit_m = 0.25;
   const Cleaned cleaned =
@@ -89,7 +89,7 @@ TEST(ModelFrame, FitScalesTheLongestEdgeAndCentres) {
   EXPECT_NEAR(cleaned.report.source_scale, 0.0625, 1e-12);
 }
 
-TEST(ModelFrame, RotationsKeepHandednessAndRotateNormals) {
+TEST(ModelFrame, RotationKeepsHandednessAndNormals) {
   for (const UpAxis up : {UpAxis::kX, UpAxis::kY, UpAxis::kZ}) {
     BuildOptions options;
     options.up = up;
@@ -105,7 +105,7 @@ TEST(ModelFrame, RotationsKeepHandednessAndRotateNormals) {
   }
 }
 
-TEST(ModelFrame, UnitOfTheFileIsUsedUnlessOneIsGiven) {
+TEST(ModelFrame, GivenUnitOverridesFileUnit) {
   Scan scan = cloud_scan(random_sphere(2000, 10.0));
   scan.unit_m = 0.01;
   BuildOptions options;
@@ -114,7 +114,7 @@ TEST(ModelFrame, UnitOfTheFileIsUsedUnlessOneIsGiven) {
   EXPECT_NEAR(clean_one(scan, options).input.bounds.sizes().x(), 0.02, 0.0002);
 }
 
-TEST(ModelFrame, ScansOfDifferentUnitsAreJoined) {
+TEST(ModelFrame, JoinsScansOfDifferentUnits) {
   Scan metres = cloud_scan(random_sphere(2000, 0.1));
   Scan millimetres = cloud_scan(random_sphere(2000, 300.0));
   millimetres.unit_m = 0.001;
@@ -123,7 +123,7 @@ TEST(ModelFrame, ScansOfDifferentUnitsAreJoined) {
   EXPECT_NEAR(clean({millimetres, metres}, {}, report).bounds.sizes().x(), 0.6, 0.006);
 }
 
-TEST(Cleaning, WarnsOfTheStepsOfFloat32CoordinatesFarFromTheOrigin) {
+TEST(Cleaning, WarnsOfCoarseFloatCoordinates) {
   for (const bool is_float : {true, false}) {
     for (const double far : {5.6e6, 0.0}) {
       Scan scan = cloud_scan(random_sphere(2000, 10.0));
@@ -142,7 +142,7 @@ TEST(Cleaning, WarnsOfTheStepsOfFloat32CoordinatesFarFromTheOrigin) {
   }
 }
 
-TEST(Cleaning, CropsCloudsAndMeshesInSourceUnits) {
+TEST(Cleaning, CropsInSourceUnits) {
   BuildOptions options;
   options.unit_m = 0.001;
   options.up = UpAxis::kY;
@@ -180,7 +180,7 @@ TEST(Cleaning, CountsEveryDroppedPoint) {
   EXPECT_NEAR(cleaned.input.bounds.sizes().maxCoeff(), 0.2, 0.001);
 }
 
-TEST(Cleaning, OutliersAtAnyDistanceDoNotChangeTheEstimates) {
+TEST(Cleaning, OutliersLeaveEstimatesUnchanged) {
   const Cleaned clean_cloud = clean_one(cloud_scan(random_sphere(20000, 0.1)));
   for (const double far : {0.4, 1.0, 30.0, 1e5}) {
     Cloud strayed = random_sphere(20000, 0.1);
@@ -205,7 +205,7 @@ TEST(Cleaning, KeepsOutliersOnRequest) {
   EXPECT_EQ(clean_one(cloud_scan(std::move(cloud)), options).report.kept_points, 2001U);
 }
 
-TEST(Cleaning, NormalisesNormalsAndDropsInvalidOnes) {
+TEST(Cleaning, NormalisesAndValidatesNormals) {
   Cloud cloud = even_sphere(1000, 0.1);
   cloud.normals[1] *= 7.0F;
   cloud.normals[2].setZero();
@@ -219,7 +219,7 @@ TEST(Cleaning, NormalisesNormalsAndDropsInvalidOnes) {
   EXPECT_EQ(unknown, 2U);
 }
 
-TEST(Cleaning, DropsUnusedCornersAndOutlierFacesOfAMesh) {
+TEST(Cleaning, DropsUnusedAndOutlyingCorners) {
   Mesh mesh = box_mesh({-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1});
   mesh.positions.emplace_back(1.0, 1.0, 1.0);    // not used by a face
   mesh.positions.emplace_back(1.0e5, 0.0, 0.0);  // an outlier
@@ -232,7 +232,7 @@ TEST(Cleaning, DropsUnusedCornersAndOutlierFacesOfAMesh) {
   EXPECT_NEAR(cleaned.input.bounds.sizes().x(), 0.2, 1e-12);
 }
 
-TEST(Cleaning, JoinsScansWithAndWithoutNormals) {
+TEST(Cleaning, JoinsScansDespiteMissingNormals) {
   std::vector<Scan> scans;
   scans.push_back(cloud_scan(without_normals(even_sphere(500, 0.1))));
   scans.push_back(cloud_scan(even_sphere(700, 0.11)));

@@ -8,7 +8,7 @@
 namespace tactree::builder {
 namespace {
 
-TEST(Outliers, ThePlausibleBoxIgnoresOutliersAtAnyDistance) {
+TEST(Outliers, PlausibleBoxIgnoresOutliers) {
   Cloud cloud = random_sphere(2000, 0.1);
   const Box clean = plausible_box(cloud.positions, 10.0);
   for (const double far : {1.0, 1e3, 1e5}) {
@@ -25,7 +25,7 @@ TEST(Outliers, ThePlausibleBoxIgnoresOutliersAtAnyDistance) {
   }
 }
 
-TEST(Outliers, ThePlausibleBoxContainsAFewPoints) {
+TEST(Outliers, PlausibleBoxContainsFewPoints) {
   const Mesh cube = box_mesh({0, 0, 0}, {1, 1, 1});
   const Box box = plausible_box(cube.positions, 10.0);
   for (const Eigen::Vector3d& p : cube.positions) {
@@ -34,7 +34,7 @@ TEST(Outliers, ThePlausibleBoxContainsAFewPoints) {
   EXPECT_TRUE(plausible_box(std::span(cube.positions).first(3), 10.0).isEmpty());
 }
 
-TEST(Outliers, DropsIsolatedPointsNearTheScan) {
+TEST(Outliers, DropsIsolatedPointsNearScan) {
   Cloud cloud = even_sphere(5000, 0.1);
   const std::size_t n = cloud.size();
   cloud.positions.emplace_back(0.3, 0.0, 0.0);
@@ -50,7 +50,7 @@ TEST(Outliers, DropsIsolatedPointsNearTheScan) {
   }
 }
 
-TEST(Outliers, KeepsSmallPartsOfAScan) {
+TEST(Outliers, KeepsSmallScanParts) {
   // A handle of 40 points beside a dense body, and a coarse distant wall.
   Cloud cloud = without_normals(even_sphere(20000, 0.1));
   for (int k = 0; k < 40; ++k) {

@@ -55,20 +55,20 @@ TEST(Pieces, AreAllKeptByDefault) {
   EXPECT_EQ(dropped(built(two_spheres(), false, 0), "small_piece"), 0U);
 }
 
-TEST(Pieces, LargestOfACloudIsKept) {
+TEST(Pieces, KeepsLargestOfCloud) {
   const BuildResult result = built(two_spheres(), true, 0);
   EXPECT_EQ(dropped(result, "small_piece"), kSmall);
   EXPECT_LT(result.report.bounds.max().x(), 0.021);
   EXPECT_EQ(result.report.input_points, result.report.kept_points + kSmall);
 }
 
-TEST(Pieces, OfACloudBelowTheLimitAreDropped) {
+TEST(Pieces, DropsCloudPiecesBelowLimit) {
   EXPECT_EQ(dropped(built(two_spheres(), false, kSmall), "small_piece"), 0U);
   EXPECT_EQ(dropped(built(two_spheres(), false, kSmall + 1), "small_piece"), kSmall);
   EXPECT_THROW((void)built(two_spheres(), false, kLarge + 1), BuildError);
 }
 
-TEST(Pieces, OfAMeshAreJoinedByTheirCornersAndDropped) {
+TEST(Pieces, JoinsMeshPiecesByCorners) {
   const BuildResult all = built(two_boxes(), false, 8);
   EXPECT_EQ(dropped(all, "small_piece_face"), 0U);
   const BuildResult result = built(two_boxes(), true, 0);

@@ -55,7 +55,7 @@ double from_ground(const Eigen::Vector3d& p) {
   return std::abs(p.z() - 0.01 * (std::cos(60.0 * p.x()) + std::cos(60.0 * p.y())));
 }
 
-TEST(StrayPoints, AreRemovedFromAroundASphere) {
+TEST(StrayPoints, AreRemovedAroundSphere) {
   for (const double part : {0.005, 0.05}) {
     const Tried tried = try_with(random_sphere(30000, 0.1), part, from_sphere);
     EXPECT_GE(tried.removed, 0.99) << part;
@@ -63,7 +63,7 @@ TEST(StrayPoints, AreRemovedFromAroundASphere) {
   }
 }
 
-TEST(StrayPoints, AreRemovedNearTheSurface) {
+TEST(StrayPoints, AreRemovedNearSurface) {
   EXPECT_GE(try_with(random_sphere(30000, 0.1), 0.01, from_sphere, 1.0).removed, 0.95);
   EXPECT_GE(try_with(cosine_sheet(170, 0.2, 0.01, 60.0), 0.005, from_ground, 1.0).removed, 0.95);
 }
@@ -72,7 +72,7 @@ double from_plate(const Eigen::Vector3d& p) {
   return std::min(std::abs(p.z()), std::abs(p.z() - 0.006));
 }
 
-TEST(StrayPoints, AreRemovedBetweenTheSidesOfAPlate) {
+TEST(StrayPoints, AreRemovedInsidePlate) {
   Cloud plate = plane_grid(100, 0.001);
   for (const Eigen::Vector3d& p : plane_grid(100, 0.001).positions) {
     plate.positions.emplace_back(p.x() + 0.0003, p.y() + 0.0004, 0.006);
@@ -82,7 +82,7 @@ TEST(StrayPoints, AreRemovedBetweenTheSidesOfAPlate) {
   EXPECT_LE(tried.lost, 0.001);
 }
 
-TEST(StrayPoints, AreRemovedFromANoisySheet) {
+TEST(StrayPoints, AreRemovedFromNoisySheet) {
   Cloud sheet = cosine_sheet(170, 0.2, 0.01, 60.0);
   const double noise = 0.35 * 0.2 / 170.0;
   for (std::uint64_t i = 0; i < sheet.size(); ++i) {
@@ -93,7 +93,7 @@ TEST(StrayPoints, AreRemovedFromANoisySheet) {
   EXPECT_LE(tried.lost, 0.001);
 }
 
-TEST(StrayPoints, AreNoneInACleanScan) {
+TEST(StrayPoints, AreAbsentInCleanScan) {
   EXPECT_LE(try_with(random_sphere(30000, 0.1), 0.0, from_sphere).lost, 1e-4);
   EXPECT_LE(try_with(cosine_sheet(100, 0.2, 0.01, 60.0), 0.0, from_ground).lost, 1e-4);
 }
@@ -111,7 +111,7 @@ TEST(StrayPoints, LeaveThinPlatesAndWires) {
   EXPECT_LE(try_with(std::move(cloud), 0.0, from_ground).lost, 0.001);
 }
 
-TEST(StrayPoints, LeaveASparsePartOfAScan) {
+TEST(StrayPoints, LeaveSparseScanPart) {
   Cloud cloud;
   for (const Eigen::Vector3d& p : random_sphere(40000, 0.1).positions) {
     if (p.z() > 0.0 || unit_random(static_cast<std::uint64_t>(1e9 * (p.x() + 0.1))) < 0.04) {
@@ -121,13 +121,13 @@ TEST(StrayPoints, LeaveASparsePartOfAScan) {
   EXPECT_LE(try_with(std::move(cloud), 0.0, from_sphere).lost, 0.001);
 }
 
-TEST(StrayPoints, AreAllKeptIfTheyAreALargePartOfTheScan) {
+TEST(StrayPoints, AreKeptIfNumerous) {
   const Tried tried = try_with(random_sphere(20000, 0.1), 0.5, from_sphere);
   EXPECT_TRUE(tried.found.undecided);
   EXPECT_EQ(tried.found.kept.size(), 30000U);
 }
 
-TEST(StrayPoints, DoNotDependOnTheNumberOfThreads) {
+TEST(StrayPoints, AreIndependentOfThreads) {
   const Tried many = try_with(random_sphere(20000, 0.1), 0.03, from_sphere);
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   EXPECT_EQ(try_with(random_sphere(20000, 0.1), 0.03, from_sphere).found.kept, many.found.kept);

@@ -7,13 +7,13 @@
 namespace tactree::builder {
 namespace {
 
-TEST(Spacing, OfAGridIsItsEdge) {
+TEST(Spacing, EqualsGridEdge) {
   const SpacingEstimate estimate = estimate_spacing(ZOrderedCloud(plane_grid(100, 0.002)));
   EXPECT_NEAR(estimate.median_m, 0.002, 0.05 * 0.002);
   EXPECT_NEAR(estimate.mean_m, 0.002, 0.08 * 0.002);  // the border's points have half a disc
 }
 
-TEST(Spacing, OfRandomPointsIsTheRootOfTheAreaPerPoint) {
+TEST(Spacing, EqualsRootOfPointArea) {
   for (const std::size_t n : {3000U, 100000U}) {
     const double expected = std::sqrt(4.0 * std::numbers::pi / static_cast<double>(n));
     for (const Cloud& cloud : {even_sphere(n, 1.0), random_sphere(n, 1.0)}) {
@@ -24,7 +24,7 @@ TEST(Spacing, OfRandomPointsIsTheRootOfTheAreaPerPoint) {
   }
 }
 
-TEST(Spacing, TellsEvenPointsFromIndependentOnes) {
+TEST(Spacing, TellsEvenFromIndependentPoints) {
   const auto unevenness = [](Cloud cloud) {
     return estimate_spacing(ZOrderedCloud(std::move(cloud))).unevenness;
   };
@@ -44,7 +44,7 @@ TEST(Spacing, MeanIncludesSparserParts) {
   EXPECT_NEAR(estimate.mean_m, 0.01 / std::sqrt(2.0), 0.1 * 0.01);
 }
 
-TEST(Spacing, OfAFewPointsIsTheDistanceToTheNearest) {
+TEST(Spacing, EqualsDistanceOfFewPoints) {
   EXPECT_NEAR(
       estimate_spacing(ZOrderedCloud({box_mesh({0, 0, 0}, {2, 2, 2}).positions, {}, {}})).median_m,
       2.0, 1e-9);

@@ -26,7 +26,7 @@ Eigen::Vector3d place(std::uint64_t k) {
                                unit_random(3 * k + 2) - 0.5);
 }
 
-TEST(WindingTree, IsAWholeTurnInsideABody) {
+TEST(WindingTree, GivesWholeTurnInsideBody) {
   const WindingTree tree(ball(5000));
   for (std::uint64_t k = 0; k < 300; ++k) {
     const double radius = place(k).norm();
@@ -36,7 +36,7 @@ TEST(WindingTree, IsAWholeTurnInsideABody) {
   }
 }
 
-TEST(WindingTree, AgreesWithTheSumOfAllElements) {
+TEST(WindingTree, AgreesWithElementSum) {
   const std::vector<SurfaceElement> elements = ball(3000);
   const WindingTree tree(elements);
   for (std::uint64_t k = 0; k < 100; ++k) {
@@ -49,7 +49,7 @@ TEST(WindingTree, AgreesWithTheSumOfAllElements) {
   }
 }
 
-TEST(WindingTree, IsHalfATurnOnTheSurface) {
+TEST(WindingTree, GivesHalfTurnOnSurface) {
   const std::vector<SurfaceElement> elements = ball(5000);
   const WindingTree tree(elements);
   for (std::size_t i = 0; i < elements.size(); i += 500) {
@@ -57,7 +57,7 @@ TEST(WindingTree, IsHalfATurnOnTheSurface) {
   }
 }
 
-TEST(WindingTree, OfNothingIsNothing) {
+TEST(WindingTree, IsZeroWithoutElements) {
   EXPECT_EQ(WindingTree({}).angle(Eigen::Vector3d::Zero()), 0.0);
 }
 

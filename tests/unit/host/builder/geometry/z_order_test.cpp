@@ -9,7 +9,7 @@
 namespace tactree::builder {
 namespace {
 
-TEST(ZOrder, CellsOfEveryLevelTileThePoints) {
+TEST(ZOrder, TilesPointsAtEveryLevel) {
   const ZOrderedCloud points(random_sphere(5000, 0.1));
   const std::vector<std::size_t> counts = points.count_cells();
   for (int level = 0; level <= 12; ++level) {
@@ -32,7 +32,7 @@ TEST(ZOrder, CellsOfEveryLevelTileThePoints) {
   }
 }
 
-TEST(ZOrder, VisitsExactlyThePointsWithin) {
+TEST(ZOrder, VisitsPointsWithinRadius) {
   const ZOrderedCloud points(random_sphere(3000, 1.0));
   for (std::uint64_t q = 0; q < 200; ++q) {
     const Eigen::Vector3d centre(3.0 * unit_random(3 * q) - 1.5, 3.0 * unit_random(3 * q + 1) - 1.5,
@@ -50,7 +50,7 @@ TEST(ZOrder, VisitsExactlyThePointsWithin) {
   }
 }
 
-TEST(ZOrder, FindsTheNearestForAnyGuess) {
+TEST(ZOrder, FindsNearestForAnyGuess) {
   const ZOrderedCloud points(random_sphere(2000, 1.0));
   std::vector<Neighbour> all;
   std::vector<Neighbour> found;
@@ -74,7 +74,7 @@ TEST(ZOrder, FindsTheNearestForAnyGuess) {
   EXPECT_EQ(found.size(), points.size());
 }
 
-TEST(ZOrder, DropsDuplicatesAndKeepsTheKnownNormal) {
+TEST(ZOrder, DropsDuplicatesKeepingKnownNormals) {
   Cloud cloud = random_sphere(500, 1.0);
   const Cloud original = cloud;
   for (std::size_t i = 0; i < 100; ++i) {
@@ -91,7 +91,7 @@ TEST(ZOrder, DropsDuplicatesAndKeepsTheKnownNormal) {
   EXPECT_EQ(drop_duplicates(points), 0U);
 }
 
-TEST(ZOrder, AcceptsCloudsWithoutExtentOrPoints) {
+TEST(ZOrder, AcceptsEmptyAndDegenerateClouds) {
   const ZOrderedCloud none;
   EXPECT_TRUE(none.cells(3).empty());
   Cloud one;

@@ -49,7 +49,7 @@ class GltfTest : public TestFiles {
   }
 };
 
-TEST_F(GltfTest, PositionsOfIntegers) {
+TEST_F(GltfTest, ReadsIntegerPositions) {
   const std::vector<std::uint16_t> words = {0, 0, 0, 16383, 0, 0, 0, 10922, 0, 0, 0, 65535};
   GltfWriter gltf = tetrahedron(words, kUShort, 8);
   gltf.root["extensionsRequired"] = {"KHR_mesh_quantization"};
@@ -97,7 +97,7 @@ GltfWriter skinned() {
   return gltf;
 }
 
-TEST_F(GltfTest, JointsPlaceThePointsOfASkin) {
+TEST_F(GltfTest, JointsPlaceSkinPoints) {
   const Scan scan = read(skinned().glb());
   ASSERT_EQ(scan.positions.size(), 4U);
   expect_point(scan, 0, 0, 0, 0);
@@ -107,7 +107,7 @@ TEST_F(GltfTest, JointsPlaceThePointsOfASkin) {
   EXPECT_TRUE(scan.warnings.empty());
 }
 
-TEST_F(GltfTest, SkinsAreChecked) {
+TEST_F(GltfTest, RefusesInvalidSkins) {
   GltfWriter gltf = skinned();
   gltf.root["skins"][0]["joints"] = {2};
   expect_parts(refusal_of(gltf.glb(), "a.glb"), "a.glb", "a joint that its skin does not have");
@@ -122,7 +122,7 @@ TEST_F(GltfTest, SkinsAreChecked) {
   expect_parts(refusal_of(gltf.glb()), "another number of weights");
 }
 
-TEST_F(GltfTest, MorphTargetsInTheirStateInTheFile) {
+TEST_F(GltfTest, AppliesStoredMorphWeights) {
   GltfWriter gltf = floats();
   const std::size_t target =
       gltf.add(std::vector<float>{0, 0, 0, 4, 0, 0, 0, 0, 0, 0, 0, 0}, kFloat, "VEC3", 3);
@@ -134,7 +134,7 @@ TEST_F(GltfTest, MorphTargetsInTheirStateInTheFile) {
   expect_point(read(gltf.glb()), 1, 5, 0, 0);
 }
 
-TEST_F(GltfTest, SparseAccessorsAndStrips) {
+TEST_F(GltfTest, ReadsSparseAccessorsAndStrips) {
   GltfWriter gltf = floats();
   const std::size_t where = gltf.add(std::vector<std::uint16_t>{3}, kUShort, "SCALAR", 1);
   const std::size_t what = gltf.add(std::vector<float>{0, 0, 9}, kFloat, "VEC3", 3);
@@ -158,7 +158,7 @@ TEST_F(GltfTest, SparseAccessorsAndStrips) {
   EXPECT_TRUE(read(gltf.glb()).triangles.empty());
 }
 
-TEST_F(GltfTest, ColoursOfAllTypes) {
+TEST_F(GltfTest, ReadsColoursOfAllTypes) {
   GltfWriter gltf = floats();
   attributes(gltf)["COLOR_0"] =
       gltf.add(std::vector<std::uint8_t>{255, 0, 51, 7, 0, 0, 0, 7, 0, 0, 0, 7, 0, 0, 0, 7}, kUByte,
@@ -172,7 +172,7 @@ TEST_F(GltfTest, ColoursOfAllTypes) {
   EXPECT_EQ(scan.colours.at(3), (std::array<std::uint8_t, 3>{255, 0, 0}));
 }
 
-TEST_F(GltfTest, RequiredExtensionsAreKnownOrNamed) {
+TEST_F(GltfTest, NamesUnknownRequiredExtensions) {
   GltfWriter gltf = floats();
   gltf.root["extensionsRequired"] = {"KHR_materials_unlit", "KHR_texture_transform"};
   EXPECT_EQ(read(gltf.glb()).positions.size(), 4U);
@@ -193,7 +193,7 @@ TEST_F(GltfTest, RequiredExtensionsAreKnownOrNamed) {
   expect_parts(refusal_of(draco.glb()), "requires the extension ACME_shape");
 }
 
-TEST_F(GltfTest, TrianglesWithoutTheirPointsAreCounted) {
+TEST_F(GltfTest, CountsTrianglesWithoutPoints) {
   GltfWriter gltf = floats();
   const std::size_t faces =
       gltf.add(std::vector<std::uint32_t>{0, 1, 2, 0, 1, 4, 0, 1, 0xffffffff}, kUInt, "SCALAR", 1);
@@ -206,7 +206,7 @@ TEST_F(GltfTest, TrianglesWithoutTheirPointsAreCounted) {
   expect_parts(scan.warnings[0], "2 triangles were dropped");
 }
 
-TEST_F(GltfTest, BuffersInTextAndFilesWithSpacesInTheirNames) {
+TEST_F(GltfTest, ReadsInlineAndExternalBuffers) {
   const GltfWriter gltf = floats();
   Json root = gltf.root;
   write("a b.bin", gltf.data);
@@ -225,7 +225,7 @@ TEST_F(GltfTest, BuffersInTextAndFilesWithSpacesInTheirNames) {
   expect_parts(refusal_of(inline_data.dump()), "base64");
 }
 
-TEST_F(GltfTest, ImpossibleStructuresAreRefused) {
+TEST_F(GltfTest, RefusesImpossibleStructures) {
   const auto refuse = [&](auto change, const std::string& cause) {
     GltfWriter gltf = floats();
     change(gltf.root);
@@ -260,7 +260,7 @@ TEST_F(GltfTest, CutFilesNameBothSizes) {
                "holds " + std::to_string(whole.size() - 4));
 }
 
-TEST_F(GltfTest, DamageIsRefusedOrReadConsistently) {
+TEST_F(GltfTest, ReadsOrRefusesDamage) {
   const std::string whole = skinned().glb();
   std::mt19937 random(7);
   unsigned refused = 0;

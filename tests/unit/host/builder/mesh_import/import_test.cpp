@@ -107,7 +107,7 @@ TEST_F(ImportTest, ReadsGltfBinary) {
   EXPECT_NEAR(scan.normals[0].x(), 0.6, 1e-6);
 }
 
-TEST_F(ImportTest, NodeTransformsAreApplied) {
+TEST_F(ImportTest, AppliesNodeTransforms) {
   const Scan scan = read(glb(4, R"({"mesh":0,"translation":[10,20,30],"scale":[-2,2,2]})", true));
   ASSERT_EQ(scan.positions.size(), 4U);
   EXPECT_EQ(scan.positions[1], Eigen::Vector3d(8, 20, 30));
@@ -125,7 +125,7 @@ TEST_F(ImportTest, ReadsCollada) {
   EXPECT_EQ(scan.triangles.size(), 1U);
 }
 
-TEST_F(ImportTest, UnitIsThatOfTheFormatOrTheFile) {
+TEST_F(ImportTest, ReadsFormatOrFileUnit) {
   EXPECT_EQ(read(glb(4, R"({"mesh":0})")).unit_m, 1.0);
   std::string inches = kDae;
   EXPECT_EQ(read(inches).unit_m, 1.0);
@@ -137,7 +137,7 @@ TEST_F(ImportTest, UnitIsThatOfTheFormatOrTheFile) {
   EXPECT_FALSE(read("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unit_m.has_value());
 }
 
-TEST_F(ImportTest, ReadsGltfWithAnExternalBuffer) {
+TEST_F(ImportTest, ReadsGltfWithExternalBuffer) {
   write("points.bin", bytes_of(std::array<float, 9>{0, 0, 0, 1, 0, 0, 0, 1, 0}));
   const std::string json =
       R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
@@ -155,7 +155,7 @@ TEST_F(ImportTest, ReadsGltfWithAnExternalBuffer) {
   expect_parts(refusal_of(above, "inner/model.gltf"), "inner/model.gltf", "cannot be read");
 }
 
-TEST_F(ImportTest, DamagedMeshIsRefused) {
+TEST_F(ImportTest, RefusesDamagedMesh) {
   const std::string whole = glb(4, R"({"mesh":0})");
   for (const std::size_t length : {std::size_t{13}, std::size_t{60}, whole.size() - 100}) {
     const std::string message = refusal_of(whole.substr(0, length), "cut.glb");
@@ -164,7 +164,7 @@ TEST_F(ImportTest, DamagedMeshIsRefused) {
   }
 }
 
-TEST_F(ImportTest, MeshWithoutPointsIsRefused) {
+TEST_F(ImportTest, RefusesMeshWithoutPoints) {
   expect_parts(refusal_of(R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[]}]})"),
                "cannot be read");
 }
@@ -178,24 +178,24 @@ TEST_F(ImportTest, MemoryLimitHolds) {
 }
 #endif
 
-TEST_F(ImportTest, CrashIsReported) {
+TEST_F(ImportTest, ReportsCrash) {
   replace_importer("kill -SEGV $$");
   expect_parts(refusal(model()), "model.glb", "crashed (signal 11");
 }
 
-TEST_F(ImportTest, EarlyEndIsReported) {
+TEST_F(ImportTest, ReportsEarlyEnd) {
   replace_importer("exit 7");
   expect_parts(refusal(model()), "model.glb", "exit code 7");
 }
 
-TEST_F(ImportTest, TooSlowIsStopped) {
+TEST_F(ImportTest, StopsSlowImporter) {
   replace_importer("exec sleep 600");
   ReadOptions options;
   options.child_seconds = 0.0;  // over at once, whatever the machine does
   expect_parts(refusal(model(), options), "model.glb", "took more than 0 seconds");
 }
 
-TEST_F(ImportTest, RefusalOfTheImporterIsPassedOn) {
+TEST_F(ImportTest, PassesOnImporterRefusal) {
   WireHeader header;
   header.status = static_cast<std::uint32_t>(WireStatus::kRefused);
   header.text_bytes = 11;
@@ -207,7 +207,7 @@ TEST_F(ImportTest, RefusalOfTheImporterIsPassedOn) {
   expect_parts(refusal(model()), "memory limit");
 }
 
-TEST_F(ImportTest, ReadsAValidAnswer) {
+TEST_F(ImportTest, ReadsValidAnswer) {
   const std::string normal = bytes_of(std::array<float, 3>{0, 0, 1});
   std::string answer = wire_header(3, 1, kHasNormals | kHasColours);
   for (int i = 0; i < 3; ++i) answer += wire_point(i, i * i, 1) + normal + "\x01\x02\x03";
@@ -243,7 +243,7 @@ TEST_F(ImportTest, RefusesInvalidAnswers) {
   expect_parts(refusal(model()), "is not valid");
 }
 
-TEST_F(ImportTest, NonFiniteAnswersAreDropped) {
+TEST_F(ImportTest, DropsNonFiniteAnswers) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   importer_answers(wire_header(4, 2) + wire_point(0, 0, 0) + wire_point(nan, 0, 0) +
                    wire_point(0, 1, 0) + wire_point(1, 1, 0) + bytes_of(Triangle{0, 1, 2}) +
@@ -255,7 +255,7 @@ TEST_F(ImportTest, NonFiniteAnswersAreDropped) {
   EXPECT_EQ(scan.triangles.at(0), (Triangle{0, 1, 2}));
 }
 
-TEST_F(ImportTest, EndlessAnswerIsStoppedByTheMemoryLimit) {
+TEST_F(ImportTest, MemoryLimitStopsEndlessAnswer) {
   const auto head = write("head", wire_header(1ULL << 40, 0));
   replace_importer("cat '" + head.string() + "'; exec cat /dev/zero");
   ReadOptions options;
@@ -263,7 +263,7 @@ TEST_F(ImportTest, EndlessAnswerIsStoppedByTheMemoryLimit) {
   expect_parts(refusal(model(), options), "too large");
 }
 
-TEST_F(ImportTest, MissingProgramIsReported) {
+TEST_F(ImportTest, ReportsMissingProgram) {
   ::setenv(kVariable, (folder_ / "absent").c_str(), 1);
   expect_parts(refusal(model()), "model.glb", kVariable, "absent");
 }

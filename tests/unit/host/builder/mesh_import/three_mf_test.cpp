@@ -37,7 +37,7 @@ std::string package(const std::string& root, bool stored = false) {
 
 class ThreeMfTest : public TestFiles {};
 
-TEST_F(ThreeMfTest, ObjectsOfTheBuildOnly) {
+TEST_F(ThreeMfTest, ReadsBuildObjectsOnly) {
   const std::string root = model(object("9", kMesh) + object("1", kMesh),
                                  R"(<item objectid="1" transform="0 1 0 1 0 0 0 0 1 5 6 7"/>)");
   const Scan scan = read(package(root));
@@ -51,7 +51,7 @@ TEST_F(ThreeMfTest, ObjectsOfTheBuildOnly) {
   EXPECT_EQ(read(package(root, true)).positions.size(), 4U);
 }
 
-TEST_F(ThreeMfTest, UnitAfterALongComment) {
+TEST_F(ThreeMfTest, ReadsUnitAfterLongComment) {
   const std::string comment = "<!-- <model unit=\"foot\"> " + std::string(300000, 'x') + " -->";
   const std::string build = R"(<item objectid="1"/>)";
   EXPECT_EQ(read(package(model(object("1", kMesh), build, R"(unit="inch")", comment))).unit_m,
@@ -76,7 +76,7 @@ std::string production(const std::string& part, const std::string& path = "/3D/O
       .bytes();
 }
 
-TEST_F(ThreeMfTest, PartsInFilesOfTheirOwn) {
+TEST_F(ThreeMfTest, ReadsPartsInSeparateFiles) {
   const Scan scan = read(production(model(object("1", kMesh), "")));
   ASSERT_EQ(scan.positions.size(), 4U);
   EXPECT_EQ(scan.positions[2], Eigen::Vector3d(0, 104, 40));
@@ -89,7 +89,7 @@ TEST_F(ThreeMfTest, PartsInFilesOfTheirOwn) {
   expect_parts(refusal_of(production(model(object("7", kMesh), ""))), "has no object \"1\"");
 }
 
-TEST_F(ThreeMfTest, OtherRequiredExtensionsAreNamed) {
+TEST_F(ThreeMfTest, NamesOtherRequiredExtensions) {
   const std::string attributes =
       R"(xmlns:b="http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02" requiredextensions="b")";
   expect_parts(
@@ -97,7 +97,7 @@ TEST_F(ThreeMfTest, OtherRequiredExtensionsAreNamed) {
       "requires the extension", "beamlattice");
 }
 
-TEST_F(ThreeMfTest, DamageIsRefused) {
+TEST_F(ThreeMfTest, RefusesDamage) {
   const std::string item = R"(<item objectid="1"/>)";
   expect_parts(refusal_of(package(model(object("1", kMesh), ""))), "its build names no object");
   expect_parts(refusal_of(package(model(object("1", ""), item))), "no point and no face");
@@ -119,7 +119,7 @@ TEST_F(ThreeMfTest, DamageIsRefused) {
   expect_parts(scan.warnings[0], "1 triangles were dropped");
 }
 
-TEST_F(ThreeMfTest, MalformedXmlIsNamedWithItsPartAndPlace) {
+TEST_F(ThreeMfTest, LocatesMalformedXml) {
   std::string word = model(object("1", kMesh), R"(<item objectid="1"/>)");
   const std::size_t place = word.find("<triangle ");
   word.replace(place, 9, "<triangle<");
@@ -142,7 +142,7 @@ TEST_F(ThreeMfTest, MalformedXmlIsNamedWithItsPartAndPlace) {
   expect_parts(refusal_of(relations), "part \"_rels/.rels\"", "byte ");
 }
 
-TEST_F(ThreeMfTest, PrefixesAndEscapedPathsAreRead) {
+TEST_F(ThreeMfTest, ReadsPrefixesAndEscapedPaths) {
   std::string root =
       model("<m:object id=\"a&amp;b\">" + kMesh + "</m:object>", "<item objectid=\"a&#38;b\"/>");
   root.replace(root.find("<model"), 6, "<c:model");
@@ -159,14 +159,14 @@ TEST_F(ThreeMfTest, PrefixesAndEscapedPathsAreRead) {
   EXPECT_EQ(read(bytes).positions.size(), 4U);
 }
 
-TEST_F(ThreeMfTest, ArchivesWithLongSizes) {
+TEST_F(ThreeMfTest, ReadsArchivesWithLongSizes) {
   const std::string root = model(object("1", kMesh), R"(<item objectid="1"/>)");
   const std::string bytes =
       ZipWriter(false, true).add("_rels/.rels", kRelations).add("3D/3dmodel.model", root).bytes();
   EXPECT_EQ(read(bytes).positions.size(), 4U);
 }
 
-TEST_F(ThreeMfTest, DamagedArchivesAreRefused) {
+TEST_F(ThreeMfTest, RefusesDamagedArchives) {
   const std::string whole = package(model(object("1", kMesh), R"(<item objectid="1"/>)"));
   for (std::size_t length = 200; length < whole.size(); length += whole.size() / 12) {
     expect_parts(refusal_of(whole.substr(0, length), "a.3mf"), "a.3mf", "zip archive");

@@ -27,7 +27,7 @@ std::string nested(unsigned depth) {
   return text;
 }
 
-TEST(XmlDocument, FindsElementsAndAttributesByTheirLocalNames) {
+TEST(XmlDocument, FindsNodesByLocalName) {
   const XmlDocument document(
       "\xEF\xBB\xBF<?xml version='1.0'?><!DOCTYPE a [<!ENTITY e 'x'>]>\r\n<!-- <m:model/> -->"
       "<m:model xmlns:m='urn:m' p:path='a&amp;b&#x41;'>\n<x/>text<![CDATA[<5>]]><m:x k=\"2\"/>"
@@ -52,7 +52,7 @@ TEST(XmlDocument, ReadsUtf16) {
   EXPECT_EQ(attribute_of(child_of(document.root(), "a"), "k"), "1");
 }
 
-TEST(XmlDocument, NamesThePlaceOfWhatIsMalformed) {
+TEST(XmlDocument, LocatesMalformedText) {
   EXPECT_EQ(refusal_of("<a><b></a>").find("byte 8: start-end tags mismatch"), 0U)
       << refusal_of("<a><b></a>");
   for (const char* const text :
@@ -81,7 +81,7 @@ TEST(XmlDocument, LimitsSizeTagsAndDepth) {
 class XmlFiles : public TestFiles {};
 
 /// An entity of the document is neither expanded nor fetched.
-TEST_F(XmlFiles, EntitiesOfTheDocumentStayText) {
+TEST_F(XmlFiles, KeepsEntitiesAsText) {
   const std::filesystem::path secret = write("secret", "secret.txt");
   const XmlDocument document("<!DOCTYPE a [<!ENTITY f SYSTEM \"file://" + secret.string() +
                                  "\"><!ENTITY l \"&l;&l;\">]><a k='&f;&l;'>&f;</a>",
@@ -92,7 +92,7 @@ TEST_F(XmlFiles, EntitiesOfTheDocumentStayText) {
 }
 
 /// A depth that would exhaust the stack of a reader that recurses.
-TEST(XmlDocument, RefusesAMillionElementsInEachOther) {
+TEST(XmlDocument, RefusesMillionNestedElements) {
   try {
     const XmlDocument document(nested(1'000'000), {std::size_t{1} << 26, 10'000'000, 64});
     FAIL();

@@ -40,14 +40,14 @@ Mesh unwelded(const Mesh& mesh) {
   return apart;
 }
 
-TEST(MeshWindings, OfARightMeshAreKept) {
+TEST(MeshWindings, AreKeptWhenCorrect) {
   Mesh mesh = box_mesh(kBoxLow, kBoxHigh);
   const auto before = mesh.triangles;
   EXPECT_EQ(repair(mesh).reversed_faces, 0U);
   EXPECT_EQ(mesh.triangles, before);
 }
 
-TEST(MeshWindings, InsideOutAreReversed) {
+TEST(MeshWindings, AreReversedWhenInsideOut) {
   Mesh mesh = box_mesh(kBoxLow, kBoxHigh);
   const auto right = mesh.triangles;
   for (std::size_t f = 0; f < 12; ++f) {
@@ -57,7 +57,7 @@ TEST(MeshWindings, InsideOutAreReversed) {
   EXPECT_EQ(mesh.triangles, right);
 }
 
-TEST(MeshWindings, AtRandomAreRepairedForEveryChoice) {
+TEST(MeshWindings, AreRepairedWhenRandom) {
   const auto right = unwelded(box_mesh(kBoxLow, kBoxHigh)).triangles;
   for (std::uint64_t seed = 0; seed < 64; ++seed) {
     Mesh mesh = unwelded(box_mesh(kBoxLow, kBoxHigh));
@@ -72,7 +72,7 @@ TEST(MeshWindings, AtRandomAreRepairedForEveryChoice) {
   }
 }
 
-TEST(MeshWindings, OfAHollowStayTurnedToTheHollow) {
+TEST(MeshWindings, StayTurnedToHollow) {
   for (const bool inside_out : {false, true}) {
     Mesh hollow = box_mesh(0.5 * kBoxLow, 0.5 * kBoxHigh);
     for (std::size_t f = 0; f < 12; ++f) {
@@ -89,13 +89,13 @@ TEST(MeshWindings, OfAHollowStayTurnedToTheHollow) {
   }
 }
 
-TEST(MeshWindings, OfABodyInsideAnotherAreKept) {
+TEST(MeshWindings, AreKeptOnNestedBody) {
   Mesh mesh = box_mesh(kBoxLow, kBoxHigh);
   append(mesh, box_mesh(0.5 * kBoxLow, 0.5 * kBoxHigh));
   EXPECT_EQ(repair(mesh).reversed_faces, 0U);
 }
 
-TEST(MeshWindings, OfAnOpenBoxFollowTheSideThatIsReachedFromOutside) {
+TEST(MeshWindings, FollowOutsideOfOpenBox) {
   Mesh mesh = box_mesh(kBoxLow, kBoxHigh);
   mesh.triangles.resize(10);  // without one of the small ends
   const auto right = mesh.triangles;
@@ -107,7 +107,7 @@ TEST(MeshWindings, OfAnOpenBoxFollowTheSideThatIsReachedFromOutside) {
   EXPECT_EQ(mesh.triangles, right);
 }
 
-TEST(MeshWindings, OfASheetFollowMostOfItsAreaOrTheRule) {
+TEST(MeshWindings, FollowSheetMajorityOrRule) {
   Mesh sheet;
   sheet.positions = {{0, 0, 0}, {0.1, 0, 0}, {0.1, 0.1, 0}, {0, 0.1, 0}, {0.2, 0, 0}};
   sheet.triangles = {{0, 2, 1}, {0, 3, 2}, {1, 4, 2}};  // down, down, up

@@ -45,7 +45,7 @@ double degrees(double cosine) {
   return std::acos(std::clamp(cosine, -1.0, 1.0)) * 180.0 / std::numbers::pi;
 }
 
-TEST(Normals, OfASphereAreRadialAndOutward) {
+TEST(Normals, PointOutwardOnSphere) {
   const Prepared p = prepare(without_normals(random_sphere(30000, 0.03)), 2.0);
   EXPECT_EQ(p.pieces, 1U);
   for (std::size_t i = 0; i < p.points.size(); ++i) {
@@ -55,7 +55,7 @@ TEST(Normals, OfASphereAreRadialAndOutward) {
   }
 }
 
-TEST(Normals, OfAnOpenSheetPointUp) {
+TEST(Normals, PointUpOnOpenSheet) {
   const double k = 100.0;
   const double height = 0.002;
   const Prepared p = prepare(cosine_sheet(120, 0.1, height, k));
@@ -70,7 +70,7 @@ TEST(Normals, OfAnOpenSheetPointUp) {
   }
 }
 
-TEST(Normals, PropagateAroundTheEdgesOfABox) {
+TEST(Normals, PropagateAroundBoxEdges) {
   const Eigen::Vector3d low(-0.03, -0.02, -0.01);
   const Eigen::Vector3d high(0.03, 0.02, 0.01);
   Cloud cloud = without_normals(sample_faces(box_mesh(low, high), 0.002));
@@ -87,7 +87,7 @@ TEST(Normals, PropagateAroundTheEdgesOfABox) {
   EXPECT_GT(on_faces, p.points.size() - 5U);
 }
 
-TEST(Normals, OfTwoSeparateBodiesAreBothOutward) {
+TEST(Normals, PointOutwardOnSeparateBodies) {
   Cloud cloud = without_normals(random_sphere(5000, 0.01, 1));
   for (const Eigen::Vector3d& p : random_sphere(5000, 0.01, 2).positions) {
     cloud.positions.push_back(p + Eigen::Vector3d(0.05, 0.0, 0.0));
@@ -100,7 +100,7 @@ TEST(Normals, OfTwoSeparateBodiesAreBothOutward) {
   }
 }
 
-TEST(Normals, DoNotPropagateThroughAThinPlate) {
+TEST(Normals, DoNotCrossThinPlate) {
   // Two spacings thick: neighbours on the far side are as near as those on the same side.
   const Eigen::Vector3d low(-0.03, -0.03, -0.001);
   const Eigen::Vector3d high(0.03, 0.03, 0.001);
@@ -114,7 +114,7 @@ TEST(Normals, DoNotPropagateThroughAThinPlate) {
   }
 }
 
-TEST(Normals, OfTwoSheetsAreNotMixed) {
+TEST(Normals, StayConsistentOnParallelSheets) {
   // Separate sheets with borders two spacings apart: each has consistent normals.
   Cloud cloud;
   for (const double z : {0.0, 0.002}) {
@@ -139,7 +139,7 @@ TEST(Normals, OfTwoSheetsAreNotMixed) {
   }
 }
 
-TEST(Normals, OfAFewPointsAreKeptOnASheet) {
+TEST(Normals, FollowFewGivenNormals) {
   Cloud cloud = cosine_sheet(60, 0.06, 0.0, 1.0);
   cloud.normals.assign(cloud.size(), Eigen::Vector3f::Zero());
   for (std::size_t i = 0; i < cloud.size(); i += 50) {

@@ -31,7 +31,7 @@ bool warns(const BuildResult& built, const std::string& text) {
       [&](const std::string& warning) { return warning.find(text) != std::string::npos; });
 }
 
-TEST(Orientation, OfClosedBodiesIsOutward) {
+TEST(Orientation, FacesOutwardOnClosedBodies) {
   for (const std::uint64_t turn : {0U, 1U}) {
     for (KnownCloud cloud :
          {bench::twisted_arms(kBodyPoints, 3.0, 1), bench::long_blade(kBodyPoints, 2.5, 1),
@@ -54,16 +54,16 @@ TEST(Orientation, SurvivesNoise) {
   }
 }
 
-TEST(Orientation, OfHollowsPointsIntoThem) {
+TEST(Orientation, PointsIntoHollows) {
   EXPECT_LE(wrong(bench::nested_shells(kBodyPoints, 1)), 0.005);
 }
 
-TEST(Orientation, OfAFigureWithoutABaseIsOutward) {
+TEST(Orientation, FacesOutwardOnOpenFigure) {
   EXPECT_LE(wrong(bench::open_figure(kBodyPoints, 1)), 0.005);
   EXPECT_LE(wrong(bench::merged_views(bench::open_figure(2 * kBodyPoints, 1), 10, 0.5, 1)), 0.03);
 }
 
-TEST(Orientation, OfASheetIsUpButDoubtful) {
+TEST(Orientation, FacesUpOnDoubtfulSheet) {
   const KnownCloud relief = bench::open_relief(kBodyPoints, 1);
   const BuildResult built = built_from(bench::scan_of(relief));
   EXPECT_LE(bench::wrong_share(relief, built), 0.005);
@@ -71,7 +71,7 @@ TEST(Orientation, OfASheetIsUpButDoubtful) {
   EXPECT_EQ(built.report.orientation.doubtful_points, built.report.output_points);
 }
 
-TEST(Orientation, OfTurnedTerrainFollowsTheRuleOrTheViewpoint) {
+TEST(Orientation, FollowsViewpointOnTurnedTerrain) {
   KnownCloud terrain = bench::open_relief(kBodyPoints, 1);
   for (std::size_t i = 0; i < terrain.positions.size(); ++i) {  // y up
     for (Eigen::Vector3d* v : {&terrain.positions[i], &terrain.normals[i]}) {
@@ -87,7 +87,7 @@ TEST(Orientation, OfTurnedTerrainFollowsTheRuleOrTheViewpoint) {
   EXPECT_EQ(seen.report.orientation.pieces[0].basis, OrientationBasis::kViewpoint);
 }
 
-TEST(Orientation, OfOneViewFacesTheViewpoint) {
+TEST(Orientation, FacesGivenViewpoint) {
   const Eigen::Vector3d camera(150.0, 90.0, 60.0);
   const KnownCloud view = bench::seen_from(bench::head_with_ears(2 * kBodyPoints, 6.0, 1), camera);
   BuildOptions options;
@@ -110,7 +110,7 @@ struct SeenValley {
   }
 };
 
-TEST(Orientation, FacesThePoseInTheFile) {
+TEST(Orientation, FacesPoseInFile) {
   const SeenValley below(-0.5);
   const BuildResult built = built_from(below.scan);
   EXPECT_LE(bench::wrong_share(below.cloud, built), 0.005);
@@ -121,7 +121,7 @@ TEST(Orientation, FacesThePoseInTheFile) {
   EXPECT_LE(bench::wrong_share(below.cloud, built_from(below.scan, by_pose)), 0.005);
 }
 
-TEST(Orientation, ByTheUsersViewpointIgnoresThatOfTheFile) {
+TEST(Orientation, UserViewpointOverridesFilePose) {
   BuildOptions options;
   options.viewpoints = {{0.0, 0.0, 0.5}};
   const SeenValley below(-0.5);
@@ -131,7 +131,7 @@ TEST(Orientation, ByTheUsersViewpointIgnoresThatOfTheFile) {
   EXPECT_GE(bench::wrong_share(below.cloud, built_from(below.scan, options)), 0.995);
 }
 
-TEST(Orientation, IgnoresAPoseThatHalfOfTheBodyHidesFrom) {
+TEST(Orientation, IgnoresHalfHiddenPose) {
   const KnownCloud body = bench::torus_knot(kBodyPoints, 6.0, 1);
   for (const bool sure : {true, false}) {
     Scan scan = bench::scan_of(body);
@@ -142,14 +142,14 @@ TEST(Orientation, IgnoresAPoseThatHalfOfTheBodyHidesFrom) {
   }
 }
 
-TEST(Orientation, IgnoresADefaultPoseInsideABody) {
+TEST(Orientation, IgnoresDefaultPoseInsideBody) {
   const KnownCloud body = bench::nested_shells(kBodyPoints, 1);
   Scan scan = bench::scan_of(body);
   scan.poses = {{Eigen::Vector3d::Zero(), 0, false}};
   EXPECT_LE(bench::wrong_share(body, built_from(scan)), 0.005);
 }
 
-TEST(Orientation, OfAFlatSheetSeenFromItsEdgeIsDoubtful) {
+TEST(Orientation, DoubtsSheetSeenEdgeOn) {
   Scan scan = cloud_scan(plane_grid(60, 1e-3));
   for (const bool sure : {true, false}) {
     scan.poses = {{Eigen::Vector3d(0.5, 0.03, 0.0), 0, sure}};
@@ -158,7 +158,7 @@ TEST(Orientation, OfAFlatSheetSeenFromItsEdgeIsDoubtful) {
 }
 
 /// The notes and the basis of the largest piece must not contradict each other.
-TEST(Orientation, SaysThatTheSurfaceFacesTheScannerOnlyWhereThatDecided) {
+TEST(Orientation, NotesScannerOnlyIfDecisive) {
   const auto says = [](const BuildResult& built, const char* what) {
     const std::vector<std::string>& notes = built.report.notes;
     return std::any_of(notes.begin(), notes.end(), [&](const std::string& note) {
@@ -176,7 +176,7 @@ TEST(Orientation, SaysThatTheSurfaceFacesTheScannerOnlyWhereThatDecided) {
   EXPECT_TRUE(says(edge_on, "(0.5, 0.03, 0), decides no side"));
 }
 
-TEST(Orientation, AsksForNoViewpointThatDecided) {
+TEST(Orientation, AsksForMissingViewpointOnly) {
   for (const OrientationBasis basis : {OrientationBasis::kViewpoint, OrientationBasis::kOutside}) {
     CloudOrientation found;
     found.pieces = {{1000, Eigen::Vector3d::Zero(), basis, 0.5}};
@@ -187,7 +187,7 @@ TEST(Orientation, AsksForNoViewpointThatDecided) {
   }
 }
 
-TEST(Orientation, StatesTheShareThatFacesTheScanner) {
+TEST(Orientation, StatesShareFacingScanner) {
   CloudOrientation found;
   found.pieces = {{800, Eigen::Vector3d::Zero(), OrientationBasis::kViewpoint, 1.0},
                   {200, Eigen::Vector3d::Zero(), OrientationBasis::kOutside, 1.0}};
@@ -200,7 +200,7 @@ TEST(Orientation, StatesTheShareThatFacesTheScanner) {
             "states (--orient outward ignores it)");
 }
 
-TEST(Orientation, IgnoresADefaultPoseFarAwayAsOfGeographicCoordinates) {
+TEST(Orientation, IgnoresFarDefaultPose) {
   Scan scan = cloud_scan(cosine_sheet(60, 0.06, 1e-3, 100.0));
   for (Eigen::Vector3d& p : scan.positions) {
     p += Eigen::Vector3d(500.0, 5600.0, 30.0);
@@ -209,7 +209,7 @@ TEST(Orientation, IgnoresADefaultPoseFarAwayAsOfGeographicCoordinates) {
   EXPECT_NE(built_from(scan).report.orientation.pieces.at(0).basis, OrientationBasis::kViewpoint);
 }
 
-TEST(Orientation, OfViewsWithPosesFacesEachOfThem) {
+TEST(Orientation, FacesEachScannerPose) {
   const KnownCloud body = bench::head_with_ears(2 * kBodyPoints, 6.0, 1);
   KnownCloud merged;
   Scan scan;
@@ -226,7 +226,7 @@ TEST(Orientation, OfViewsWithPosesFacesEachOfThem) {
   EXPECT_LE(bench::wrong_share(merged, built_from(scan)), 0.005);
 }
 
-TEST(Orientation, OfAPlateTooThinToTellIsDoubtful) {
+TEST(Orientation, DoubtsVeryThinPlate) {
   KnownCloud plate = bench::flat_plate(kBodyPoints, 1.0, 1);
   bench::add_noise(plate, 0.2, 1);
   const BuildResult built = built_from(bench::scan_of(plate));
@@ -236,7 +236,7 @@ TEST(Orientation, OfAPlateTooThinToTellIsDoubtful) {
   EXPECT_TRUE(warns(built, "--viewpoint"));
 }
 
-TEST(Orientation, RepairsNormalsOfTheFileThatPointInwardOrAtRandom) {
+TEST(Orientation, RepairsWrongFileNormals) {
   const KnownCloud body = bench::torus_knot(kBodyPoints, 6.0, 1);
   for (const double inward : {0.0, 0.5, 1.0}) {
     Scan scan = bench::scan_of(body);
@@ -254,7 +254,7 @@ TEST(Orientation, RepairsNormalsOfTheFileThatPointInwardOrAtRandom) {
   }
 }
 
-TEST(Orientation, ByViewpointNeedsOne) {
+TEST(Orientation, RefusesRuleWithoutViewpoint) {
   BuildOptions options;
   options.orient = OrientationRule::kViewpoint;
   EXPECT_THROW((void)built_from(bench::scan_of(bench::open_relief(1000, 1)), options), BuildError);

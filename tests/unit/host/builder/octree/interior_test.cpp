@@ -41,7 +41,7 @@ struct Surface {
   }
 };
 
-TEST(Interior, OfABody) {
+TEST(Interior, FillsBody) {
   Surface ball;
   ball.add_sphere(kBallRadius);
   const Interior interior = ball.interior();
@@ -53,14 +53,14 @@ TEST(Interior, OfABody) {
 }
 
 // As a statue that was not scanned from below.
-TEST(Interior, OfABodyThatIsOpenBelow) {
+TEST(Interior, FillsBodyOpenBelow) {
   Surface statue;
   statue.add_sphere(kBallRadius, 1.0, [](const Eigen::Vector3d& d) { return d.z() > -0.7; });
   EXPECT_EQ(statue.interior().backed_share(), 1.0);
   EXPECT_TRUE(statue.interior().is_material({0.0, 0.0, 0.0}));
 }
 
-TEST(Interior, OfASheetOrABowlIsNothing) {
+TEST(Interior, LeavesSheetAndBowlEmpty) {
   Surface sheet;
   sheet.add_sheet(0.0, 1.0);
   EXPECT_EQ(sheet.interior().backed_share(), 0.0);
@@ -70,7 +70,7 @@ TEST(Interior, OfASheetOrABowlIsNothing) {
   EXPECT_EQ(bowl.interior().backed_share(), 0.0);
 }
 
-TEST(Interior, OfAThinPlate) {
+TEST(Interior, FillsThinPlate) {
   for (const double thickness : {0.3, 0.5, 1.0}) {
     Surface plate;
     plate.add_sheet(0.5 * thickness, 1.0);
@@ -79,7 +79,7 @@ TEST(Interior, OfAThinPlate) {
   }
 }
 
-TEST(Interior, OfARoomIsItsWall) {
+TEST(Interior, FillsRoomWall) {
   Surface room;
   room.add_sphere(kBallRadius, -1.0);
   EXPECT_EQ(room.interior().backed_share(), 1.0);
@@ -91,7 +91,7 @@ TEST(Interior, OfARoomIsItsWall) {
   EXPECT_FALSE(room.interior().is_material({0.0, 0.0, 0.7 * kBallRadius}));
 }
 
-TEST(Interior, OfAHollowBodyIsItsShell) {
+TEST(Interior, FillsShellOfHollowBody) {
   Surface shell;
   shell.add_sphere(kBallRadius);
   shell.add_sphere(0.5 * kBallRadius, -1.0);
@@ -100,7 +100,7 @@ TEST(Interior, OfAHollowBodyIsItsShell) {
   EXPECT_TRUE(shell.interior().is_material({0.0, 0.0, 0.75 * kBallRadius}));
 }
 
-TEST(Interior, TellsASheetFromTheBodyBesideIt) {
+TEST(Interior, TellsSheetFromAdjacentBody) {
   Surface both;
   both.add_sphere(kBallRadius);
   const std::size_t of_ball = both.cloud.size();
@@ -111,7 +111,7 @@ TEST(Interior, TellsASheetFromTheBodyBesideIt) {
   }
 }
 
-TEST(Interior, OfADoubtfulPieceIsNothing) {
+TEST(Interior, LeavesDoubtfulPieceEmpty) {
   Surface ball;
   ball.add_sphere(kBallRadius);
   std::vector<std::uint8_t> doubtful(ball.cloud.size(), 1);

@@ -34,14 +34,14 @@ ZOrderedCloud sphere_with_hole(double diameter) {
   return resampled(std::move(open));
 }
 
-TEST(Gaps, NoneInAClosedSphere) {
+TEST(Gaps, AreAbsentInClosedSphere) {
   const Gaps gaps = find_gaps(sphere_with_hole(0.0), kSpacing, kRadius);
   EXPECT_TRUE(gaps.openings.empty());
   EXPECT_LT(gaps.largest_m, kRadius);
   EXPECT_GT(gaps.largest_m, kSpacing);
 }
 
-TEST(Gaps, FindsPositionAndSizeOfAHole) {
+TEST(Gaps, FindsHolePositionAndSize) {
   for (const double diameter : {0.004, 0.008, 0.015}) {
     const Gaps gaps = find_gaps(sphere_with_hole(diameter), kSpacing, kRadius);
     ASSERT_EQ(gaps.openings.size(), 1U) << diameter;
@@ -54,7 +54,7 @@ TEST(Gaps, FindsPositionAndSizeOfAHole) {
   }
 }
 
-TEST(Gaps, ClassifiesTheBorderOfASheetAsABoundary) {
+TEST(Gaps, ClassifiesSheetBorderAsBoundary) {
   Cloud sheet = cosine_sheet(160, 0.06, 0.001, 150.0);
   for (const Eigen::Vector3d& p : sheet.positions) {
     sheet.normals.push_back(
@@ -69,7 +69,7 @@ TEST(Gaps, ClassifiesTheBorderOfASheetAsABoundary) {
   EXPECT_LT(gaps.largest_m, kRadius);
 }
 
-TEST(Gaps, FindsTwoHolesInASheet) {
+TEST(Gaps, FindsTwoHolesInSheet) {
   Cloud sheet;
   for (const Eigen::Vector3d& p : cosine_sheet(160, 0.06, 0.0, 1.0).positions) {
     const double left = (p - Eigen::Vector3d(-0.008, 0, 0)).norm();
@@ -146,7 +146,7 @@ std::vector<Part> watertight_parts() {
   return parts;
 }
 
-TEST(Gaps, NoneInWatertightParts) {
+TEST(Gaps, AreAbsentInWatertightParts) {
   for (const Part& part : watertight_parts()) {
     for (std::uint64_t turn = 1; turn < 100; turn += 10) {
       const Mesh mesh = prism(part.outline, part.height, turn);
@@ -157,7 +157,7 @@ TEST(Gaps, NoneInWatertightParts) {
   }
 }
 
-TEST(Gaps, FindsTheMissingLidOfABox) {
+TEST(Gaps, FindsMissingBoxLid) {
   Mesh box = box_mesh({0, 0, 0}, {0.03, 0.03, 0.02});
   std::erase_if(box.triangles, [&](const std::array<std::uint32_t, 3>& t) {
     return box.positions[t[0]].z() > 0.01 && box.positions[t[1]].z() > 0.01 &&
@@ -171,7 +171,7 @@ TEST(Gaps, FindsTheMissingLidOfABox) {
       0U);
 }
 
-TEST(Gaps, FindsAHoleInOneSideOfAThinPlate) {
+TEST(Gaps, FindsHoleInPlateSide) {
   Cloud plate;
   for (const double side : {1.0, -1.0}) {
     for (const Eigen::Vector3d& p : cosine_sheet(120, 0.04, 0.0, 1.0).positions) {

@@ -48,7 +48,7 @@ float distance_of(const BuildResult& model, float x, float y, float z) {
   return at.supported ? at.signed_distance : std::nanf("");
 }
 
-TEST(TwoSided, SheetIsTouchedFromBothSidesAndAtItsEdges) {
+TEST(TwoSided, TouchesBothSidesAndEdges) {
   for (const bool mesh : {false, true}) {
     const BuildResult model = built(sheet(mesh), kThickness_m);
     EXPECT_NEAR(distance_of(model, 0.02F, 0.01F, 2.5e-3F), 1e-3, 1e-4);
@@ -62,7 +62,7 @@ TEST(TwoSided, SheetIsTouchedFromBothSidesAndAtItsEdges) {
   }
 }
 
-TEST(TwoSided, WithoutItTheLowerSideIsInsideAndTheOptionIsNamed) {
+TEST(TwoSided, NamesMissingOption) {
   const BuildResult model = built(sheet(false), std::nullopt);
   EXPECT_LT(distance_of(model, 0.02F, 0.01F, -1e-3F), 0.0F);
   ASSERT_FALSE(model.report.warnings.empty());
@@ -71,12 +71,12 @@ TEST(TwoSided, WithoutItTheLowerSideIsInsideAndTheOptionIsNamed) {
             static_cast<std::ptrdiff_t>(model.report.output_points));
 }
 
-TEST(TwoSided, MustBeThickerThanTheSpacing) {
+TEST(TwoSided, RefusesThicknessBelowSpacing) {
   EXPECT_NO_THROW((void)built(sheet(false), 1.05e-3));
   EXPECT_THROW((void)built(sheet(false), 0.9e-3), BuildError);
 }
 
-TEST(TwoSided, RespectsTheFlashBudget) {
+TEST(TwoSided, RespectsFlashBudget) {
   Progress quiet;
   BuildOptions options;
   options.two_sided_m = kThickness_m;

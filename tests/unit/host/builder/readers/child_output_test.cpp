@@ -12,7 +12,7 @@ using Clock = ChildOutput::Clock;
 
 Clock::time_point time_now;  // NOLINT: the tests' own time, which passes only as they set it
 
-TEST(ChildOutput, AChildThatEndsItsOutputButStaysIsStopped) {
+TEST(ChildOutput, StopsChildWithClosedOutput) {
   ChildOutput child({"/bin/sh", "-c", "exec 1>&-; exec sleep 600"}, 10.0, [] { return time_now; });
   char byte = 0;
   EXPECT_FALSE(child.read(&byte, 1));  // at the end of the output: no time has passed
@@ -20,7 +20,7 @@ TEST(ChildOutput, AChildThatEndsItsOutputButStaysIsStopped) {
   EXPECT_EQ(child.wait_and_describe_end(), "took more than 10 seconds and was stopped");
 }
 
-TEST(ChildOutput, IsReadWithinTheTimeOnly) {
+TEST(ChildOutput, IsReadWithinTimeOnly) {
   ChildOutput child({"/bin/sh", "-c", "printf abc; exec sleep 600"}, 10.0, [] { return time_now; });
   std::array<char, 3> text{};
   EXPECT_TRUE(child.read(text.data(), text.size()));

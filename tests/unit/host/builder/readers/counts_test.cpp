@@ -49,7 +49,7 @@ std::string binary_points(int count) {
 
 std::string binary_face() { return "\3" + bytes_of(std::array<int, 3>{0, 1, 2}); }
 
-TEST_F(CountsTest, PlyWithMoreRowsThanDeclared) {
+TEST_F(CountsTest, ReportsExtraPlyRows) {
   const std::string points = "0 0 0\n1 0 0\n0 1 0\n";
   expect_no_warning(ply_header("ascii", 3, 1) + points + "3 0 1 2\n\n");
   expect_parts(warning_of(ply_header("ascii", 3, 1) + points + "3 0 1 2\n3 0 2 1\n\n3 1 2 0\n"),
@@ -63,7 +63,7 @@ TEST_F(CountsTest, PlyWithMoreRowsThanDeclared) {
                "holds 2");
 }
 
-TEST_F(CountsTest, BinaryPlyWithMoreRowsThanDeclared) {
+TEST_F(CountsTest, ReportsExtraBinaryPlyRows) {
   const std::string binary = "binary_little_endian";
   expect_no_warning(ply_header(binary, 30, -1) + binary_points(30));
   expect_parts(warning_of(ply_header(binary, 30, -1) + binary_points(60)), "declares 30 vertices",
@@ -79,7 +79,7 @@ TEST_F(CountsTest, BinaryPlyWithMoreRowsThanDeclared) {
   expect_no_warning(ply_header(binary, 30, -1) + binary_points(30) + std::string(4096, '\0'));
 }
 
-TEST_F(CountsTest, PlyWithAnIndexThatIsNoNumber) {
+TEST_F(CountsTest, ReportsNonNumericPlyIndex) {
   const Scan scan = read(ply_header("ascii", 3, 4) +
                          "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 0 nan 2\n3 0 1 1e30\n3 0.0 2.0 1.0\n");
   EXPECT_EQ(scan.triangles.size(), 2U);
@@ -90,7 +90,7 @@ TEST_F(CountsTest, PlyWithAnIndexThatIsNoNumber) {
                "\"here\"");
 }
 
-TEST_F(CountsTest, OffWithMoreRowsThanDeclared) {
+TEST_F(CountsTest, ReportsExtraOffRows) {
   const std::string points = "0 0 0\n1 0 0\n0 1 0\n";
   expect_no_warning("OFF\n3 1 0\n" + points + "3 0 1 2\n\n# the end\n");
   expect_parts(warning_of("OFF\n3 1 0\n" + points + "3 0 1 2\n3 0 2 1\n"), "declares 1 faces",
@@ -107,7 +107,7 @@ std::string pcd(const std::string& data, int points) {
          data + "\n";
 }
 
-TEST_F(CountsTest, PcdWithMorePointsThanDeclared) {
+TEST_F(CountsTest, ReportsExtraPcdPoints) {
   expect_no_warning(pcd("ascii", 2) + "1 2 3\n4 5 6\n\n");
   expect_parts(warning_of(pcd("ascii", 2) + "1 2 3\n4 5 6\n\n7 8 9\n1 1 1\n"), "declares 2 points",
                "holds 4");
@@ -137,7 +137,7 @@ std::string flat_facets(int count) {
 
 std::string stl_head() { return "made for a test" + std::string(65, ' '); }
 
-TEST_F(CountsTest, StlWithAnotherCount) {
+TEST_F(CountsTest, ReportsWrongStlCount) {
   expect_parts(warning_of(stl_head() + bytes_of(20U) + flat_facets(50)), "declares 20 triangles",
                "holds 50");
   EXPECT_EQ(last_.triangles.size(), 20U);
@@ -150,14 +150,14 @@ TEST_F(CountsTest, StlWithAnotherCount) {
   expect_parts(refusal_of(stl_head() + bytes_of(0U) + std::string(50, '\0')), "not a scan");
 }
 
-TEST_F(CountsTest, StlWithoutACount) {
+TEST_F(CountsTest, ReadsStlWithoutCount) {
   // A normal of (0, 0, 1) is also plausible four bytes further on.
   expect_parts(warning_of(stl_head() + flat_facets(50)), "has no count", "holds 50 triangles");
   ASSERT_EQ(last_.triangles.size(), 50U);
   EXPECT_EQ(last_.positions.at(0), Eigen::Vector3d(0, static_cast<double>(0.001F), 0));
 }
 
-TEST_F(CountsTest, DialectsOfTextStl) {
+TEST_F(CountsTest, ReadsTextStlDialects) {
   const std::string corners = "vertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n";
   const std::string cases[] = {
       "solid part\nfacet normal 0 0 1\nouter loop\n" + corners +
@@ -205,7 +205,7 @@ std::string box(int first) {
   return text;
 }
 
-TEST_F(CountsTest, ObjCountedFromZero) {
+TEST_F(CountsTest, ReadsZeroBasedObj) {
   expect_parts(warning_of(box(0)), "0 to 7 for 8 points", "count from 0");
   const Scan from_zero = last_;
   expect_no_warning(box(1));

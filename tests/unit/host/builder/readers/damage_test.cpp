@@ -84,14 +84,14 @@ std::string ply_header(const std::string& format) {
          "vertex_indices\nend_header\n";
 }
 
-TEST_F(DamageTest, PlyAscii) {
+TEST_F(DamageTest, ReadsOrRefusesAsciiPly) {
   damage(ply_header("ascii") +
              "0 0 0 0 1 2 3\n1 0 0 1 9 1 2 3\n1 1 0 2 9 9 1 2 3\n0 1 0 0 1 2 3\n4 0 1 2 3\n"
              "3 0 1 2\n",
          kRounds);
 }
 
-TEST_F(DamageTest, PlyBinary) {
+TEST_F(DamageTest, ReadsOrRefusesBinaryPly) {
   for (const bool big : {false, true}) {
     std::string bytes = ply_header(big ? "binary_big_endian" : "binary_little_endian");
     for (int i = 0; i < 4; ++i) {
@@ -112,7 +112,7 @@ std::string pcd_header(const std::string& data) {
          data + "\n";
 }
 
-TEST_F(DamageTest, Pcd) {
+TEST_F(DamageTest, ReadsOrRefusesPcd) {
   damage(pcd_header("ascii") + "1 2 3 4\n4 5 6 7\n7 8 9 10\n", kRounds);
   std::string points;
   for (int i = 0; i < 12; ++i) points += bytes_of(static_cast<float>(i));
@@ -124,25 +124,25 @@ TEST_F(DamageTest, Pcd) {
          kRounds);
 }
 
-TEST_F(DamageTest, Text) {
+TEST_F(DamageTest, ReadsOrRefusesText) {
   std::string rows = "//X,Y,Z,Nx,Ny,Nz\n3\n";
   for (int i = 0; i < 20; ++i) rows += std::to_string(i) + ",2,-3e2,0,0,1\n";
   damage(rows, kRounds);
 }
 
-TEST_F(DamageTest, Obj) {
+TEST_F(DamageTest, ReadsOrRefusesObj) {
   damage(
       "mtllib a.mtl\nv 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 1 1 0 1 0 0\nv 0 1 0 1 0 0\nvn 0 0 1\n"
       "f 1//1 2//1 3//1 4//1\nf -1 -2 \\\n-3\n",
       kRounds);
 }
 
-TEST_F(DamageTest, Off) {
+TEST_F(DamageTest, ReadsOrRefusesOff) {
   damage("COFF\n4 2 0\n0 0 0 1 2 3\n1 0 0 1 2 3\n1 1 0 1 2 3\n0 1 0 1 2 3\n3 0 1 2\n4 0 1 2 3\n",
          kRounds);
 }
 
-TEST_F(DamageTest, OffBinary) {
+TEST_F(DamageTest, ReadsOrRefusesBinaryOff) {
   std::string bytes = "NOFF BINARY\n";
   for (const int count : {3, 1, 0}) bytes += bytes_of(count, true);
   for (int i = 0; i < 18; ++i) bytes += bytes_of(static_cast<float>(i % 5), true);
@@ -150,7 +150,7 @@ TEST_F(DamageTest, OffBinary) {
   damage(bytes, kRounds);
 }
 
-TEST_F(DamageTest, Stl) {
+TEST_F(DamageTest, ReadsOrRefusesStl) {
   damage(
       "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
       "endloop\nendfacet\nendsolid s\n",

@@ -51,7 +51,7 @@ std::string patched_page(std::string file, std::size_t at, T value) {
   return e57_resealed(file.replace(at, sizeof value, e57::bytes(value)));
 }
 
-TEST_F(E57Test, NumbersOfAllTypesOverManyPackets) {
+TEST_F(E57Test, ReadsAllTypesAcrossPackets) {
   std::vector<double> x;
   std::vector<float> y;
   std::vector<std::int64_t> z;
@@ -78,7 +78,7 @@ TEST_F(E57Test, NumbersOfAllTypesOverManyPackets) {
   }
 }
 
-TEST_F(E57Test, IntegersOfEveryWidth) {
+TEST_F(E57Test, ReadsIntegersOfEveryWidth) {
   for (unsigned bits = 0; bits <= 64; ++bits) {
     const bool whole = bits == 64;
     const std::int64_t low = whole ? std::numeric_limits<std::int64_t>::min() : -3;
@@ -102,7 +102,7 @@ TEST_F(E57Test, IntegersOfEveryWidth) {
   }
 }
 
-TEST_F(E57Test, SphericalCoordinates) {
+TEST_F(E57Test, ConvertsSphericalCoordinates) {
   const double right_angle = std::acos(0.0);
   const Scan scan = read_scans({{{e57_double("sphericalRange", {2, 3, 4, 5}),
                                   e57_double("sphericalAzimuth", {0, right_angle, 0, 1}),
@@ -118,7 +118,7 @@ TEST_F(E57Test, SphericalCoordinates) {
   EXPECT_EQ(scan.dropped.at("not_measured"), 1U);
 }
 
-TEST_F(E57Test, InvalidPointsAreLeftOut) {
+TEST_F(E57Test, OmitsInvalidPoints) {
   E57TestScan scan = points_on_line(4);
   scan.columns.push_back(e57_integer("cartesianInvalidState", 0, 2, {0, 1, 0, 2}));
   const Scan result = read_scans({scan});
@@ -129,7 +129,7 @@ TEST_F(E57Test, InvalidPointsAreLeftOut) {
   expect_parts(refusal_of_scans({scan}), "a.e57", "none of the 4 points is valid");
 }
 
-TEST_F(E57Test, EachScanIsPlacedByItsPose) {
+TEST_F(E57Test, PlacesScansByPose) {
   E57TestScan first = points_on_line(3);
   // A turn by 90 degrees about z, not normalised.
   first.xml = e57_pose("2 0 0 2", "10 20 30");
@@ -148,7 +148,7 @@ TEST_F(E57Test, EachScanIsPlacedByItsPose) {
   EXPECT_EQ(scan.poses[2].first_point, 5U);
 }
 
-TEST_F(E57Test, TheOriginAsPoseMayBeADefault) {
+TEST_F(E57Test, DoubtsPoseAtOrigin) {
   E57TestScan scan = points_on_line(3);
   scan.xml = e57_pose("1 0 0 0", "0 0 0");
   const Scan result = read_scans({scan});
@@ -157,7 +157,7 @@ TEST_F(E57Test, TheOriginAsPoseMayBeADefault) {
   EXPECT_TRUE(read_scans({points_on_line(3)}).poses.empty());
 }
 
-TEST_F(E57Test, NormalsTurnWithThePose) {
+TEST_F(E57Test, TurnsNormalsWithPose) {
   E57TestScan scan = points_on_line(2);
   scan.columns.push_back(e57_single("nor:normalX", {1, 0}));
   scan.columns.push_back(e57_single("nor:normalY", {0, 0}));
@@ -169,7 +169,7 @@ TEST_F(E57Test, NormalsTurnWithThePose) {
   EXPECT_LT((result.normals[1] - Vector3f(1, 0, 0)).norm(), 1e-6F);
 }
 
-TEST_F(E57Test, ColoursOfEachRange) {
+TEST_F(E57Test, ScalesColoursOfEachRange) {
   E57TestScan words = points_on_line(3);
   E57TestScan floats = points_on_line(3);
   E57TestScan limited = points_on_line(3);
@@ -193,7 +193,7 @@ TEST_F(E57Test, ColoursOfEachRange) {
   expect_parts(mixed.warnings[0], "1 of 2 scans", "colours");
 }
 
-TEST_F(E57Test, OtherFieldsAndTextAreSkipped) {
+TEST_F(E57Test, SkipsOtherFieldsAndText) {
   E57TestScan scan = points_on_line(40);
   E57Column text{"las:note", "type=\"String\"", 8, {}};
   E57Column intensity{"intensity", "type=\"Float\"", 64, {}};
@@ -216,14 +216,14 @@ TEST_F(E57Test, ProgressRises) {
   EXPECT_GT(fractions.size(), 3U);
 }
 
-TEST_F(E57Test, FilesWithoutPointsAreRefused) {
+TEST_F(E57Test, RefusesFilesWithoutPoints) {
   E57TestScan none = points_on_line(0);
   expect_parts(refusal_of_scans({}), "a.e57", "no point", "declares no scan");
   expect_parts(refusal_of_scans({none, none}), "a.e57", "no point", "all scans (2) are empty");
   expect_line(read_scans({none, points_on_line(2)}), 2);
 }
 
-TEST_F(E57Test, AWrongChecksumNamesThePage) {
+TEST_F(E57Test, WrongChecksumNamesPage) {
   const std::string file = e57_file({points_on_line(300)});
   ASSERT_GE(file.size(), 6 * 1024U);
   for (std::size_t page = 0; page < file.size() / 1024; ++page) {
@@ -237,7 +237,7 @@ TEST_F(E57Test, AWrongChecksumNamesThePage) {
   }
 }
 
-TEST_F(E57Test, RefusesATruncatedFile) {
+TEST_F(E57Test, RefusesTruncatedFile) {
   const std::string file = e57_file({points_on_line(100)});
   expect_line(read(file), 100);
   for (std::size_t length = 8; length < file.size(); length += 97) {
@@ -246,7 +246,7 @@ TEST_F(E57Test, RefusesATruncatedFile) {
   expect_parts(refusal_of(file.substr(0, file.size() - 1)), "the file ends too early");
 }
 
-TEST_F(E57Test, CountsAreNotTrusted) {
+TEST_F(E57Test, ChecksDeclaredCounts) {
   E57TestScan scan = points_on_line(3);
   scan.count = "4";
   expect_parts(refusal_of_scans({scan}), "scan 1", "4 points are declared", "only 3 are there");
@@ -265,7 +265,7 @@ TEST_F(E57Test, CountsAreNotTrusted) {
   expect_parts(refusal_of_scans({constant}), "there is room for");
 }
 
-TEST_F(E57Test, SizesAndPlacesAreNotTrusted) {
+TEST_F(E57Test, ChecksSizesAndPlaces) {
   const std::string file = e57_file({points_on_line(3)});
   const auto huge = std::uint64_t{1} << 62;
   expect_parts(refusal_of(patched_page(file, 8, 2U)), "header", "version 2");
@@ -288,7 +288,7 @@ TEST_F(E57Test, SizesAndPlacesAreNotTrusted) {
   expect_parts(refusal_of(patched_page(file, 106, std::uint16_t{0xffff})), "exceeds its packet");
 }
 
-TEST_F(E57Test, RefusesAnXmlSectionThatDoesNotFit) {
+TEST_F(E57Test, RefusesInconsistentXmlSection) {
   const auto with_xml = [&](const std::string& from, const std::string& to) {
     std::string file = e57_file({points_on_line(3)});
     std::string logical;
@@ -319,7 +319,7 @@ TEST_F(E57Test, RefusesAnXmlSectionThatDoesNotFit) {
   }
 }
 
-TEST_F(E57Test, DamageBehindValidChecksumsIsReadOrRefused) {
+TEST_F(E57Test, ReadsOrRefusesSealedDamage) {
   E57TestScan scan = points_on_line(20);
   scan.xml = e57_pose("1 0 0 0", "1 2 3");
   const std::string file = e57_file({scan, points_on_line(5)});

@@ -27,7 +27,7 @@ std::string patched(std::string file, std::size_t at, T value) {
   return file.replace(at, sizeof value, las_bytes(value));
 }
 
-TEST_F(LasTest, EveryPointFormat) {
+TEST_F(LasTest, ReadsEveryPointFormat) {
   for (int format = 0; format <= 10; ++format) {
     for (const int minor : {format < 2 ? 0 : 2, 3, 4}) {
       if (format > 5 && minor < 4) continue;
@@ -54,7 +54,7 @@ TEST_F(LasTest, EveryPointFormat) {
   }
 }
 
-TEST_F(LasTest, ColoursOfEightBits) {
+TEST_F(LasTest, ReadsEightBitColours) {
   LasFile file = las_points(2, 2);
   file.points[0].colour = {255, 128, 0};
   file.points[1].colour = {1, 2, 3};
@@ -67,7 +67,7 @@ TEST_F(LasTest, ColoursOfEightBits) {
   EXPECT_EQ(scan.colours[2], (Colour{1, 0, 0}));
 }
 
-TEST_F(LasTest, WithheldPointsAreLeftOut) {
+TEST_F(LasTest, OmitsWithheldPoints) {
   for (const int format : {1, 7}) {
     LasFile file = las_points(4, format);
     file.points[0].withheld = true;
@@ -84,7 +84,7 @@ TEST_F(LasTest, WithheldPointsAreLeftOut) {
   EXPECT_EQ(read(las_file(old)).positions.size(), 3U);
 }
 
-TEST_F(LasTest, TheUnitOfTheKeys) {
+TEST_F(LasTest, ReadsUnitFromKeys) {
   const auto scan_with = [&](std::vector<std::array<std::uint16_t, 2>> keys) {
     LasFile file = las_points(2, 0);
     file.records = las_record("other", 7, "text") + las_geo_keys(keys);
@@ -105,7 +105,7 @@ TEST_F(LasTest, TheUnitOfTheKeys) {
   expect_parts(degrees.warnings[0], "degrees");
 }
 
-TEST_F(LasTest, TheUnitOfWellKnownText) {
+TEST_F(LasTest, ReadsUnitFromWkt) {
   const auto scan_with = [&](const std::string& text) {
     LasFile file = las_points(4, 6);
     file.records = las_record("LASF_Projection", 2112, text);
@@ -128,7 +128,7 @@ TEST_F(LasTest, TheUnitOfWellKnownText) {
   }
 }
 
-TEST_F(LasTest, CountsAreNotTrusted) {
+TEST_F(LasTest, ChecksDeclaredCounts) {
   const std::string narrow = las_file(las_points(2, 3));
   expect_parts(refusal_of(patched(narrow, 107, 4U), "a.las"), "a.las", "4 points", "only 3");
   expect_parts(refusal_of(patched(narrow, 107, 0xffffffffU)), "4294967295 points", "only 3");
@@ -142,7 +142,7 @@ TEST_F(LasTest, CountsAreNotTrusted) {
   EXPECT_EQ(read(patched(wide, 100, 0xffffffffU)).positions.size(), 3U);
 }
 
-TEST_F(LasTest, RefusesAHeaderThatDoesNotFit) {
+TEST_F(LasTest, RefusesInconsistentHeader) {
   const std::string file = las_file(las_points(2, 3));
   expect_parts(refusal_of(patched(file, 24, '\2')), "header", "version 2.2");
   expect_parts(refusal_of(patched(file, 25, '\5')), "header", "version 1.5");
@@ -160,7 +160,7 @@ TEST_F(LasTest, RefusesAHeaderThatDoesNotFit) {
   }
 }
 
-TEST_F(LasTest, RandomDamageIsReadOrRefused) {
+TEST_F(LasTest, ReadsOrRefusesRandomDamage) {
   LasFile las = las_points(4, 7);
   las.records = las_geo_keys({{1024, 1}, {3076, 9001}}) +
                 las_record("LASF_Projection", 2112, R"(PROJCS["p",UNIT["metre",1]])");
@@ -184,7 +184,7 @@ TEST_F(LasTest, RandomDamageIsReadOrRefused) {
 }
 
 /// By the bits of its point format, whatever its name.
-TEST_F(LasTest, LazIsRefusedWithARemedy) {
+TEST_F(LasTest, RefusesLazWithRemedy) {
   const std::string plain = las_file(las_points(2, 0));
   EXPECT_EQ(read(plain, "a.laz").positions.size(), 3U);
   for (const int bit : {0x80, 0x40}) {
@@ -195,7 +195,7 @@ TEST_F(LasTest, LazIsRefusedWithARemedy) {
   }
 }
 
-TEST_F(LasTest, MorePointsThanDeclared) {
+TEST_F(LasTest, ReportsExtraPoints) {
   const std::string file = patched(las_file(las_points(2, 3)), 107, 2U);
   const Scan scan = read(file);
   EXPECT_EQ(scan.positions.size(), 2U);

@@ -10,7 +10,7 @@ class ObjTest : public TestFiles {};
 
 constexpr const char* kFour = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
-TEST_F(ObjTest, FacesOfAllForms) {
+TEST_F(ObjTest, ReadsFacesOfAllForms) {
   const Scan scan = read(std::string("# c\no thing\n") + kFour +
                          "vt 0 0\nvn 0 0 1\nusemtl m\ns off\nf 1 2 3\nf 1/1 3/1 4/1\n"
                          "f 1//1 2//1 3//1\nf -4/1/1 -2/1/1 -1/1/1\nf 1 2 \\\n 3 4\n");
@@ -28,14 +28,14 @@ TEST_F(ObjTest, LargeCoordinatesKeepTheirMicrometres) {
             Eigen::Vector3d(636123.123456, 851218.654321, 0.000001));
 }
 
-TEST_F(ObjTest, NormalsThatAgreeBetweenFaces) {
+TEST_F(ObjTest, KeepsAgreeingNormals) {
   const Scan scan =
       read(std::string(kFour) + "vn 0 0 1\nvn 0 0 1\nf 1//1 2//2 3//1\nf 1//2 3//2 4//1\n");
   ASSERT_EQ(scan.normals.size(), 4U);
   EXPECT_EQ(scan.normals[2], Eigen::Vector3f(0, 0, 1));
 }
 
-TEST_F(ObjTest, IgnoresDifferingNormalsWithAWarning) {
+TEST_F(ObjTest, IgnoresDifferingNormalsWithWarning) {
   const Scan scan =
       read(std::string(kFour) + "vn 0 0 1\nvn 1 0 0\nf 1//1 2//1 3//1\nf 1//2 3//2 4//2\n");
   EXPECT_TRUE(scan.normals.empty());
@@ -43,7 +43,7 @@ TEST_F(ObjTest, IgnoresDifferingNormalsWithAWarning) {
   EXPECT_EQ(scan.warnings.size(), 1U);
 }
 
-TEST_F(ObjTest, CloudsAndWireframes) {
+TEST_F(ObjTest, ReadsCloudsAndWireframes) {
   const Scan cloud = read("vn 0 0 1\nv 1 2 3\nvn 0 1 0\nv nan 5 6\nvn 1 0 0\nv 7 8 9\n");
   EXPECT_FALSE(cloud.is_mesh());
   ASSERT_EQ(cloud.normals.size(), 2U);
@@ -54,7 +54,7 @@ TEST_F(ObjTest, CloudsAndWireframes) {
   EXPECT_FALSE(wires.is_mesh());
 }
 
-TEST_F(ObjTest, Colours) {
+TEST_F(ObjTest, ReadsColours) {
   const Scan unit = read("v 0 0 0 1 0.5 0\nv 1 0 0 0 0 1\n");
   EXPECT_EQ(unit.colours.at(0), (Colour{255, 128, 0}));
   const Scan bytes = read("v 0 0 0 255 128 0\nv 1 0 0 0 0 1\n");
@@ -65,7 +65,7 @@ TEST_F(ObjTest, Colours) {
   EXPECT_TRUE(read("v 0 0 0 1\nv 1 0 0 1\n").colours.empty());  // w
 }
 
-TEST_F(ObjTest, ConcaveFaceStaysInsideItsOutline) {
+TEST_F(ObjTest, ConcaveFaceStaysInsideOutline) {
   const Scan scan = read("v 0 2 0\nv 0 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nf 1 2 3 4 5 6\n");
   double area = 0;
   for (const Triangle& t : scan.triangles) {
@@ -76,7 +76,7 @@ TEST_F(ObjTest, ConcaveFaceStaysInsideItsOutline) {
   EXPECT_NEAR(area, 3.0, 1e-12);
 }
 
-TEST_F(ObjTest, FacesBeforeTheirPoints) {
+TEST_F(ObjTest, ReadsFacesBeforePoints) {
   const Scan scan = read(std::string("v 9 9 9\nf 2 3 4\nf 1 2 99\n") + kFour);
   ASSERT_EQ(scan.triangles.size(), 1U);
   EXPECT_EQ(scan.triangles[0], (Triangle{1, 2, 3}));
@@ -85,7 +85,7 @@ TEST_F(ObjTest, FacesBeforeTheirPoints) {
   expect_parts(scan.warnings[0], "line 3");
 }
 
-TEST_F(ObjTest, BrokenFaces) {
+TEST_F(ObjTest, CountsBrokenFaces) {
   const Scan scan = read(std::string(kFour) +
                          "f 1 2 3\nf 1 2 5\nf 0 1 2\nf -5 1 2\nf 1 2\nf\nf a b c\nf 1 1 2\n");
   EXPECT_EQ(scan.triangles.size(), 1U);
@@ -106,7 +106,7 @@ TEST_F(ObjTest, RefusesTooManyFaces) {
   expect_parts(refusal(path, options), "too large", "4 points");
 }
 
-TEST_F(ObjTest, BrokenPointIsRefused) {
+TEST_F(ObjTest, RefusesBrokenPoint) {
   expect_parts(refusal_of("v 0 0 0\nv 1 0\nv 1 1 0\nf 1 2 3\n", "m.obj"), "m.obj", "line 2",
                "fewer than three numbers");
 }

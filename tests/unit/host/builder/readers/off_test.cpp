@@ -8,7 +8,7 @@ using Triangle = std::array<std::uint32_t, 3>;
 
 class OffTest : public TestFiles {};
 
-TEST_F(OffTest, Plain) {
+TEST_F(OffTest, ReadsPlainFile) {
   const Scan scan = read(
       "OFF # a square\n# comment\n\n4 1 0\n0 0 0\n1 0 0 # here\n\n1 1 5648349.895035\n0 1 0\n"
       "4 0 1 2 3 255 0 0\n");
@@ -19,13 +19,13 @@ TEST_F(OffTest, Plain) {
   EXPECT_TRUE(scan.colours.empty());
 }
 
-TEST_F(OffTest, CountsBesideTheKeywordAndPointsOnly) {
+TEST_F(OffTest, ReadsCountsBesideKeyword) {
   const Scan scan = read("OFF 2 0\n1 2 3\n4 5 6");
   EXPECT_EQ(scan.positions.size(), 2U);
   EXPECT_FALSE(scan.is_mesh());
 }
 
-TEST_F(OffTest, ColoursAndNormals) {
+TEST_F(OffTest, ReadsColoursAndNormals) {
   const Scan coff =
       read("COFF\n3 1 0\n0 0 0 255 128 0 255\n1 0 0 1 2 3 255\n0 1 0 0 0 0 255\n3 0 1 2\n");
   EXPECT_EQ(coff.colours.at(0), (Colour{255, 128, 0}));
@@ -37,7 +37,7 @@ TEST_F(OffTest, ColoursAndNormals) {
   EXPECT_TRUE(noff.colours.empty());
 }
 
-TEST_F(OffTest, CountsAreNotTrusted) {
+TEST_F(OffTest, ChecksDeclaredCounts) {
   expect_parts(refusal_of("OFF\n353535235358 6 0\n0 0 0\n", "m.off"), "m.off", "line 2",
                "353535235358 points", "room");
   expect_parts(refusal_of("OFF\n1 99999999999 0\n0 0 0\n"), "line 2", "99999999999 faces");
@@ -46,7 +46,7 @@ TEST_F(OffTest, CountsAreNotTrusted) {
   expect_parts(refusal_of("OFF\n"), "before its counts");
 }
 
-TEST_F(OffTest, DamageNamesTheLine) {
+TEST_F(OffTest, NamesLineOfDamage) {
   expect_parts(refusal_of("OFF\n3 1 0\n0 0 0\n1 0\n0 1 0\n3 0 1 2\n"), "line 4", "fewer than 3");
   expect_parts(refusal_of("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1\n"), "line 6", "corner 3 of 3");
   expect_parts(refusal_of("OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"), "1 of 2 faces");
@@ -61,7 +61,7 @@ std::string big_endian(Numbers... numbers) {
   return (bytes_of(numbers, true) + ...);
 }
 
-TEST_F(OffTest, Binary) {
+TEST_F(OffTest, ReadsBinaryFile) {
   const Scan scan = read("OFF BINARY\n" + big_endian(4, 1, 0) + big_endian(0.0F, 0.0F, 0.5F) +
                          big_endian(1.0F, 0.0F, 0.5F) + big_endian(1.0F, 1.0F, 0.5F) +
                          big_endian(0.0F, 1.0F, 0.5F) + big_endian(4, 0, 1, 2, 3) +
@@ -73,7 +73,7 @@ TEST_F(OffTest, Binary) {
   EXPECT_EQ(scan.triangles[1], (Triangle{0, 2, 3}));
 }
 
-TEST_F(OffTest, BinaryWithNormalsAndColours) {
+TEST_F(OffTest, ReadsBinaryNormalsAndColours) {
   const Scan scan = read("STCNOFF BINARY\n" + big_endian(1, 0, 0) + big_endian(1.0F, 2.0F, 3.0F) +
                          big_endian(0.0F, 0.0F, 1.0F) + big_endian(1.0F, 0.5F, 0.0F, 1.0F) +
                          big_endian(7.0F, 7.0F));
@@ -83,7 +83,7 @@ TEST_F(OffTest, BinaryWithNormalsAndColours) {
   EXPECT_EQ(scan.colours.at(0), (Colour{255, 128, 0}));
 }
 
-TEST_F(OffTest, BinaryCountsAreNotTrusted) {
+TEST_F(OffTest, ChecksBinaryCounts) {
   const std::string points = big_endian(0.0F, 0.0F, 0.0F);
   const auto refused = [&](const std::string& rest) {
     return refusal_of("OFF BINARY\n" + rest, "m.off");

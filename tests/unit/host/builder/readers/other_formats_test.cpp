@@ -117,7 +117,7 @@ std::vector<ForeignFile> others() {
   };
 }
 
-TEST_F(OtherFormatsTest, AreNamedWithARemedy) {
+TEST_F(OtherFormatsTest, AreNamedWithRemedy) {
   std::vector<ForeignFile> cases = meshes();
   for (ForeignFile& other : others()) cases.push_back(std::move(other));
   for (const ForeignFile& one : cases) {
@@ -128,7 +128,7 @@ TEST_F(OtherFormatsTest, AreNamedWithARemedy) {
 }
 
 /// Tables of points that begin nearly like one of the formats above.
-TEST_F(OtherFormatsTest, SimilarTablesOfPointsAreRead) {
+TEST_F(OtherFormatsTest, ReadsSimilarPointTables) {
   const std::string xyz = rows(50, "0.1 0.2 0.3");
   const std::string cases[] = {
       "zone,x,y,z\n1,0.1,0.2,0.3\n1,0.4,0.5,0.6\n",
@@ -142,21 +142,21 @@ TEST_F(OtherFormatsTest, SimilarTablesOfPointsAreRead) {
   for (const std::string& text : cases) EXPECT_GE(read(text).positions.size(), 2U) << text;
 }
 
-TEST_F(OtherFormatsTest, TheLastOfTheCountedRowsHasItsNumber) {
+TEST_F(OtherFormatsTest, ReadsMisnumberedRowsAsPoints) {
   std::string text = "120 0 0\n";
   for (int i = 0; i < 100; ++i) text += std::to_string(i) + " 5 5\n";
   for (int i = 0; i < 30; ++i) text += "3 1 1\n";
   EXPECT_EQ(read(text).positions.size(), 131U);
 }
 
-TEST_F(OtherFormatsTest, NamedColumnsReadTheRowsOfAnyText) {
+TEST_F(OtherFormatsTest, NamedColumnsReadAnyText) {
   const auto path = write("a.node", "100 3 0 0\n" + nodes("", " "));
   const Scan scan = read_scan(path, columns("x=2,y=3,z=4"));
   EXPECT_EQ(scan.positions.size(), 101U);
   EXPECT_EQ(scan.positions.at(100), Eigen::Vector3d(0.009, 0.0099, 0.5));
 }
 
-TEST_F(OtherFormatsTest, NamedColumnsAreForTextOnly) {
+TEST_F(OtherFormatsTest, NamedColumnsRequireText) {
   expect_parts(refusal(write("a.obj", "v 1 2 3\n"), columns("x=2,y=3,z=4")), "a.obj", "OBJ",
                "--columns");
   expect_parts(refusal(write("a.pdf", "%PDF-1.7\n\1\2"), columns("x=2,y=3,z=4")), "a.pdf", "PDF");

@@ -40,7 +40,7 @@ std::string compressed(const std::string& bytes) {
          bytes_of(static_cast<std::uint32_t>(bytes.size())) + packed;
 }
 
-TEST_F(PcdTest, AsciiWithNormalsColourAndNan) {
+TEST_F(PcdTest, ReadsAsciiNormalsAndColour) {
   const Scan scan = read(header("x y z normal_x normal_y normal_z rgb", "4 4 4 4 4 4 4",
                                 "F F F F F F U", 2, 2, "ascii") +
                          "1 2 3 0 0 1 66051\nnan nan nan 0 0 1 0\n4 5 6 nan nan nan 255\n"
@@ -70,7 +70,7 @@ std::string image(const Eigen::Vector3d& camera, const std::string& viewpoint) {
   return text;
 }
 
-TEST_F(PcdTest, ViewpointIsThePoseOfTheScanner) {
+TEST_F(PcdTest, TakesViewpointAsScannerPose) {
   const Scan stated = read(xyz_header(1, "ascii") + "7 8 9\n");
   ASSERT_EQ(stated.poses.size(), 1U);
   EXPECT_EQ(stated.poses[0].position, Eigen::Vector3d(1, 2, 3));
@@ -84,7 +84,7 @@ TEST_F(PcdTest, ViewpointIsThePoseOfTheScanner) {
   EXPECT_EQ(bad.warnings.size(), 1U);
 }
 
-TEST_F(PcdTest, OrderOfAnImageConfirmsThePose) {
+TEST_F(PcdTest, ImageOrderConfirmsPose) {
   const Eigen::Vector3d camera(1, 2, 3);
   const Eigen::Vector3d origin(0, 0, 0);
   EXPECT_EQ(read(image(camera, "1 2 3 1 0 0 0")).poses.at(0).position, camera);
@@ -100,7 +100,7 @@ TEST_F(PcdTest, OrderOfAnImageConfirmsThePose) {
   expect_parts(unknown.warnings[0], "--viewpoint");
 }
 
-TEST_F(PcdTest, AsciiColourAsFloatOfTheSameBits) {
+TEST_F(PcdTest, ReadsColourFromFloatBits) {
   const float packed = std::bit_cast<float>(0x0000'ff40U);
   std::array<char, 40> text{};
   std::snprintf(text.data(), text.size(), "%.9g", static_cast<double>(packed));
@@ -112,7 +112,7 @@ TEST_F(PcdTest, AsciiColourAsFloatOfTheSameBits) {
   EXPECT_EQ(whole.colours.at(0), (Colour{0x40, 0x40, 0x70}));  // 4210800
 }
 
-TEST_F(PcdTest, BinaryOfMixedTypes) {
+TEST_F(PcdTest, ReadsMixedBinaryTypes) {
   const std::string head =
       "VERSION .7\nFIELDS id z y x _ rgba\nSIZE 2 8 4 4 1 4\nTYPE U F I F U U\n"
       "COUNT 1 1 1 1 3 1\nWIDTH 2\nHEIGHT 1\nPOINTS 2\nDATA binary\n";
@@ -128,7 +128,7 @@ TEST_F(PcdTest, BinaryOfMixedTypes) {
   EXPECT_EQ(scan.colours.at(1), (Colour{255, 255, 255}));
 }
 
-TEST_F(PcdTest, CompressedIsFieldByField) {
+TEST_F(PcdTest, ReadsCompressedFieldByField) {
   const std::size_t count = 500;
   std::string xs, ys, zs, colours;
   for (std::size_t i = 0; i < count; ++i) {
@@ -159,7 +159,7 @@ TEST_F(PcdTest, RefusesTruncationAtEveryByte) {
   }
 }
 
-TEST_F(PcdTest, CountsAreNotTrusted) {
+TEST_F(PcdTest, ChecksDeclaredCounts) {
   const std::string point = bytes_of(1.0F) + bytes_of(2.0F) + bytes_of(3.0F);
   const auto with_points = [](const std::string& points, const std::string& data) {
     return "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS " + points + "\nDATA " + data +
@@ -179,7 +179,7 @@ TEST_F(PcdTest, CountsAreNotTrusted) {
                "too large");
 }
 
-TEST_F(PcdTest, CompressedSizesAreNotTrusted) {
+TEST_F(PcdTest, ChecksCompressedSizes) {
   const std::string head = xyz_header(1'000'000, "binary_compressed");
   const std::uint32_t full = 12'000'000;
   expect_parts(
@@ -193,7 +193,7 @@ TEST_F(PcdTest, CompressedSizesAreNotTrusted) {
                "compressed data is damaged");
 }
 
-TEST_F(PcdTest, DamagedHeaders) {
+TEST_F(PcdTest, RefusesDamagedHeaders) {
   expect_parts(
       refusal_of("VERSION .7\nFIELDS x y\nSIZE 4 4\nTYPE F F\nPOINTS 1\nDATA ascii\n1 2\n"),
       "x, y and z");

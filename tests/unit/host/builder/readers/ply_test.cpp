@@ -69,7 +69,7 @@ constexpr const char* kTypes[] = {"char",   "int8",    "uchar",  "uint8",  "shor
                                   "ushort", "uint16",  "int",    "int32",  "uint",  "uint32",
                                   "float",  "float32", "double", "float64"};
 
-TEST_F(PlyTest, EveryTypeInEveryEncoding) {
+TEST_F(PlyTest, ReadsEveryTypeAndEncoding) {
   for (const Encoding encoding : kEncodings) {
     for (const std::string type : kTypes) {
       Ply ply(encoding);
@@ -86,7 +86,7 @@ TEST_F(PlyTest, EveryTypeInEveryEncoding) {
   }
 }
 
-TEST_F(PlyTest, NegativeNumbersOfSignedTypes) {
+TEST_F(PlyTest, ReadsNegativeNumbers) {
   for (const Encoding encoding : kEncodings) {
     for (const std::string type : {"char", "short", "int", "float", "double"}) {
       Ply ply(encoding);
@@ -142,7 +142,7 @@ std::string tangled(Encoding encoding, const std::string& line_end) {
   return ply.bytes();
 }
 
-TEST_F(PlyTest, AnyOrderAndUnknownParts) {
+TEST_F(PlyTest, AcceptsUnknownPartsAndOrder) {
   for (const Encoding encoding : kEncodings) {
     for (const std::string line_end : {"\n", "\r\n"}) {
       const Scan scan = read(tangled(encoding, line_end));
@@ -161,14 +161,14 @@ TEST_F(PlyTest, AnyOrderAndUnknownParts) {
   }
 }
 
-TEST_F(PlyTest, ReportsTheEncoding) {
+TEST_F(PlyTest, ReportsEncoding) {
   EXPECT_EQ(read(tangled(Encoding::kAscii, "\n")).format, "PLY ascii");
   EXPECT_EQ(read(tangled(Encoding::kLittle, "\n")).format, "PLY binary little endian");
   EXPECT_EQ(read(tangled(Encoding::kBig, "\n")).format, "PLY binary big endian");
 }
 
 /// The reader reports the truncation or returns only complete rows.
-TEST_F(PlyTest, TruncationAtEveryByte) {
+TEST_F(PlyTest, DetectsTruncationAtEveryByte) {
   for (const Encoding encoding : kEncodings) {
     const std::string whole = tangled(encoding, "\n");
     std::size_t refused = 0;
@@ -203,7 +203,7 @@ TEST_F(PlyTest, PolygonsBecomeFans) {
   EXPECT_EQ(scan.triangles[1], (Triangle{0, 2, 3}));
 }
 
-TEST_F(PlyTest, BrokenFacesAreCounted) {
+TEST_F(PlyTest, CountsBrokenFaces) {
   const Scan scan = read(square("3 0 1 2\n3 0 1 9\n2 0 1\n3 0 0 1\n3 -1 1 2\n0\n4 0 1 2 4\n", 7));
   EXPECT_EQ(scan.triangles.size(), 1U);
   EXPECT_EQ(dropped(scan, "face_index_out_of_range"), 3U);
@@ -212,12 +212,12 @@ TEST_F(PlyTest, BrokenFacesAreCounted) {
   expect_parts(scan.warnings[0], "6 of 7 faces", "line 15");
 }
 
-TEST_F(PlyTest, AllFacesBrokenIsRefused) {
+TEST_F(PlyTest, RefusesMeshOfBrokenFaces) {
   expect_parts(refusal_of(square("3 0 1 4\n3 1 2 99\n", 2), "mesh.ply"), "mesh.ply", "line 14",
                "none of the 2 faces");
 }
 
-TEST_F(PlyTest, NonFinitePointsDropTheirFaces) {
+TEST_F(PlyTest, NonFinitePointsDropFaces) {
   const Scan scan =
       read(square("3 0 1 2\n3 0 2 3\n4 0 1 2 3\n", 3, "0 0 0\nnan 0 0\n1 1 0\n0 1 -inf\n"));
   EXPECT_EQ(scan.positions.size(), 2U);
@@ -229,7 +229,7 @@ TEST_F(PlyTest, NonFinitePointsDropTheirFaces) {
   EXPECT_EQ(kept.triangles[0], (Triangle{0, 1, 2}));
 }
 
-TEST_F(PlyTest, TriangleStrips) {
+TEST_F(PlyTest, ReadsTriangleStrips) {
   std::string text = square("9 0 1 2 3 3 2 -1 0 1\n", 1);
   text.replace(text.find("element face"), 12, "element tristrips");
   const Scan scan = read(text);
@@ -246,7 +246,7 @@ std::string with_colour_type(const std::string& type, const std::string& rows) {
          rows;
 }
 
-TEST_F(PlyTest, ColourScales) {
+TEST_F(PlyTest, RecognisesColourScales) {
   const Scan unit = read(with_colour_type("float", "0 0 0 0 0.5 1\n1 1 1 1 0 0\n"));
   EXPECT_EQ(unit.colours.at(0), (Colour{0, 128, 255}));
   // Only the second row shows that the scale is 0 to 255.
@@ -259,7 +259,7 @@ TEST_F(PlyTest, ColourScales) {
   EXPECT_EQ(plain.colours.at(0), (Colour{0, 1, 255}));
 }
 
-TEST_F(PlyTest, IncompleteColoursAndNormalsAreIgnored) {
+TEST_F(PlyTest, IgnoresIncompleteColoursAndNormals) {
   const Scan scan = read(
       "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
       "property float z\nproperty float nx\nproperty uchar red\nend_header\n1 2 3 4 5\n");
@@ -267,7 +267,7 @@ TEST_F(PlyTest, IncompleteColoursAndNormalsAreIgnored) {
   EXPECT_TRUE(scan.colours.empty());
 }
 
-TEST_F(PlyTest, NormalsThatAreNotNumbersCountAsMissing) {
+TEST_F(PlyTest, TreatsNanNormalsAsMissing) {
   const Scan scan = read(
       "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\n"
       "property float z\nproperty float nx\nproperty float ny\nproperty float nz\nend_header\n"
@@ -282,7 +282,7 @@ std::string header_with(const std::string& format, const std::string& count) {
          "\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
 }
 
-TEST_F(PlyTest, CountsAreNotTrusted) {
+TEST_F(PlyTest, ChecksDeclaredCounts) {
   const std::string rows = bytes_of(1.0F) + bytes_of(2.0F) + bytes_of(3.0F);
   for (const std::string count : {"4294967295", "9223372036854775807", "1000000000000"}) {
     expect_parts(refusal_of(header_with("binary_little_endian", count) + rows), count,
@@ -295,7 +295,7 @@ TEST_F(PlyTest, CountsAreNotTrusted) {
   expect_parts(refusal_of(header_with("ascii", "0")), "holds no point");
 }
 
-TEST_F(PlyTest, HugeFaceCountsAndListsAreRefused) {
+TEST_F(PlyTest, RefusesHugeCountsAndLists) {
   const std::string vertices = header_with("binary_little_endian", "1");
   const std::string head = vertices.substr(0, vertices.find("end_header"));
   const std::string point(12, '\0');
@@ -316,20 +316,20 @@ TEST_F(PlyTest, HugeFaceCountsAndListsAreRefused) {
                "negative length");
 }
 
-TEST_F(PlyTest, ReportsTheNumberOfVertices) {
+TEST_F(PlyTest, ReportsMissingVertices) {
   std::string bytes = header_with("binary_big_endian", "100") + std::string(12 * 25 + 5, '\0');
   expect_parts(refusal_of(bytes, "cut.ply"), "cut.ply", "byte " + std::to_string(bytes.size()),
                "100 vertices", "only 25");
 }
 
-TEST_F(PlyTest, DamagedTextNamesTheLine) {
+TEST_F(PlyTest, NamesLineOfDamage) {
   expect_parts(refusal_of(header_with("ascii", "2") + "1 2 3\n1 2\n"), "line 9", "fewer values");
   expect_parts(refusal_of(header_with("ascii", "2") + "1 2 3\n1 2 three\n"), "line 9", "\"three\"");
   expect_parts(refusal_of(header_with("ascii", "2") + "1 2 3\n1 2 3 4\n"), "line 9", "more values");
   expect_parts(refusal_of(header_with("ascii", "3") + "1 2 3\n1 2 3\n"), "3 vertices", "only 2");
 }
 
-TEST_F(PlyTest, DamagedHeaders) {
+TEST_F(PlyTest, RefusesDamagedHeaders) {
   const std::string xyz = "property float x\nproperty float y\nproperty float z\n";
   expect_parts(refusal_of("ply\nformat ascii 1.0\nelement vertex 1\n" + xyz), "end_header");
   expect_parts(refusal_of("ply\nformat text 1.0\nelement vertex 1\n" + xyz + "end_header\n1 2 3\n"),
@@ -347,7 +347,7 @@ TEST_F(PlyTest, DamagedHeaders) {
                "not an integer type");
 }
 
-TEST_F(PlyTest, TooLargeForTheLimitIsRefused) {
+TEST_F(PlyTest, RefusesScanAboveLimit) {
   ReadOptions options;
   options.scan_memory_bytes = 10'000;
   const auto path =
@@ -369,7 +369,7 @@ TEST_F(PlyTest, ProgressRisesToOne) {
   EXPECT_EQ(fractions.back(), 1.0);
 }
 
-TEST_F(PlyTest, OldMacLineEnds) {
+TEST_F(PlyTest, ReadsOldMacLineEnds) {
   std::string text = square("3 0 1 2\n", 1);
   std::replace(text.begin(), text.end(), '\n', '\r');
   EXPECT_EQ(read(text).triangles.size(), 1U);

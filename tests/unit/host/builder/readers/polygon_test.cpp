@@ -36,7 +36,7 @@ double sum_of_sizes(const std::vector<double>& values) {
                          [](double total, double value) { return total + std::abs(value); });
 }
 
-TEST(Polygon, ConvexIsAFan) {
+TEST(Polygon, CutsConvexIntoFan) {
   const Points points = {{0, 0, 0}, {2, 0, 0}, {3, 1, 0}, {2, 2, 0}, {0, 2, 0}};
   PolygonCutter cutter(points);
   const auto triangles = cutter.cut(all_of(points));
@@ -57,12 +57,12 @@ TEST(Polygon, ConcaveStaysInside) {
   EXPECT_NEAR(sum_of_sizes(areas(points)), 3.0, 1e-9);
 }
 
-TEST(Polygon, Arrowhead) {
+TEST(Polygon, CutsArrowheadInside) {
   const Points points = {{0, 0, 0}, {2, 1, 0}, {0, 2, 0}, {1, 1, 0}};
   EXPECT_NEAR(sum_of_sizes(areas(points)), 1.0, 1e-12);
 }
 
-TEST(Polygon, CombOfManyTeeth) {
+TEST(Polygon, CutsCombOfManyTeeth) {
   Points points;
   for (int i = 0; i < 50; ++i) {
     points.emplace_back(2 * i, 10, 0);
@@ -76,7 +76,7 @@ TEST(Polygon, CombOfManyTeeth) {
   EXPECT_NEAR(std::abs(sum(parts)), sum_of_sizes(parts), 1e-9);
 }
 
-TEST(Polygon, CrossingItselfEndsWithAllTriangles) {
+TEST(Polygon, CutsSelfCrossingCompletely) {
   Points points;
   for (int i = 0; i < 5; ++i) points.emplace_back(std::cos(2.513 * i), std::sin(2.513 * i), 0);
   EXPECT_EQ(areas(points).size(), 3U);

@@ -30,7 +30,7 @@ std::string wall(int columns, int rows, bool mirrored = false, const std::string
   return text;
 }
 
-TEST_F(PtxTest, PointsAndScannerAreInTheFrameOfTheMatrix) {
+TEST_F(PtxTest, TransformsPointsAndScanner) {
   for (const bool mirrored : {false, true}) {
     const Scan scan = read(header(4, 3, kTurned) + wall(4, 3, mirrored));
     EXPECT_EQ(scan.format, "PTX");
@@ -54,7 +54,7 @@ TEST_F(PtxTest, EachScanHasItsScanner) {
   EXPECT_EQ(scan.poses[1].first_point, 12U);
 }
 
-TEST_F(PtxTest, PointsThatWereNotMeasuredAreLeftOut) {
+TEST_F(PtxTest, OmitsUnmeasuredPoints) {
   std::string points = wall(4, 3);
   points.replace(0, points.find('\n'), "0 0 0 0.5");
   const Scan scan = read(header(4, 3, kTurned) + points);
@@ -63,7 +63,7 @@ TEST_F(PtxTest, PointsThatWereNotMeasuredAreLeftOut) {
   EXPECT_EQ(scan.poses.size(), 1U);
 }
 
-TEST_F(PtxTest, Colours) {
+TEST_F(PtxTest, ReadsColours) {
   const Scan scan = read(header(4, 3, kIdentity) + wall(4, 3, false, " 0.5 255 128 0"));
   ASSERT_EQ(scan.colours.size(), 12U);
   EXPECT_EQ(scan.colours[5], (std::array<std::uint8_t, 3>{255, 128, 0}));
@@ -71,7 +71,7 @@ TEST_F(PtxTest, Colours) {
 }
 
 // Programs write points in the frame of the file beside a scanner at its origin.
-TEST_F(PtxTest, IgnoresAScannerThatTheOrderOfThePointsContradicts) {
+TEST_F(PtxTest, IgnoresContradictedScanner) {
   std::string saw;  // seen from the origin, its teeth turn this side and that
   for (int c = 0; c < 6; ++c) {
     for (int r = 0; r < 4; ++r) {
@@ -86,7 +86,7 @@ TEST_F(PtxTest, IgnoresAScannerThatTheOrderOfThePointsContradicts) {
   expect_parts(scan.warnings[0], "1 of 1 scans", "--viewpoint");
 }
 
-TEST_F(PtxTest, CountsAreNotTrusted) {
+TEST_F(PtxTest, ChecksDeclaredCounts) {
   const std::string rest = std::string("\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n") + kIdentity + wall(1, 1);
   expect_parts(refusal_of("4294967296\n4294967296" + rest, "a.ptx"), "a.ptx", "line 2",
                "4294967296 x 4294967296 points", "room for");
@@ -96,7 +96,7 @@ TEST_F(PtxTest, CountsAreNotTrusted) {
   expect_parts(refusal_of("2.5\n1" + rest), "line 1", "\"2.5\"");
 }
 
-TEST_F(PtxTest, DamageNamesTheLine) {
+TEST_F(PtxTest, NamesLineOfDamage) {
   const std::string head = header(2, 2, kIdentity);
   expect_parts(refusal_of(head + "1 2 3 4\n1 2 3 4\n1 2 3 4\n"), "line 13", "4 points", "only 3");
   expect_parts(refusal_of(head + "1 2 3 4\n1 2 x 4\n1 2 3 4\n1 2 3 4\n"), "line 12", "\"x\"");
@@ -111,7 +111,7 @@ TEST_F(PtxTest, DamageNamesTheLine) {
   }
 }
 
-TEST_F(PtxTest, RefusesTruncationAfterTheHeader) {
+TEST_F(PtxTest, RefusesTruncationAfterHeader) {
   const std::string whole = header(3, 3, kTurned) + wall(3, 3);
   EXPECT_EQ(read(whole).positions.size(), 9U);
   // A last number that lost digits cannot be told from a shorter one.

@@ -12,7 +12,7 @@ using namespace std::string_literals;
 
 class RecogniseTest : public TestFiles {};
 
-TEST_F(RecogniseTest, UsesTheContentNotTheName) {
+TEST_F(RecogniseTest, UsesContentNotName) {
   EXPECT_EQ(read("v 1 2 3\n", "points.ply").format, "OBJ");
   EXPECT_EQ(read("1 2 3\n", "mesh.stl").format, "text, separated by spaces");
   EXPECT_EQ(read("OFF\n1 0 0\n1 2 3\n", "cloud.pcd").format, "OFF");
@@ -53,7 +53,7 @@ TEST_F(RecogniseTest, NamesUnsupportedFormats) {
 }
 
 /// The name of the format is the user's; the content contradicts it only if it is surely another.
-TEST_F(RecogniseTest, UsesTheNamedFormat) {
+TEST_F(RecogniseTest, UsesNamedFormat) {
   const auto kind = [](const char* name, const std::string& bytes) {
     return recognise_as(name, bytes, bytes.size()).kind;
   };
@@ -110,7 +110,7 @@ TEST_F(RecogniseTest, RefusesFilesWithoutReadPermission) {
   expect_parts(why, "secret.ply", "permission denied");
 }
 
-TEST_F(RecogniseTest, InputIsNotModified) {
+TEST_F(RecogniseTest, LeavesInputUnmodified) {
   const std::string bytes = "v 1 2 3\nv 4 5 6\n";
   const auto path = write("a.obj", bytes);
   std::filesystem::permissions(path, std::filesystem::perms::owner_read);
@@ -121,7 +121,7 @@ TEST_F(RecogniseTest, InputIsNotModified) {
   EXPECT_EQ(std::string(std::istreambuf_iterator<char>(in), {}), bytes);
 }
 
-TEST_F(RecogniseTest, MeshesForTheImporter) {
+TEST_F(RecogniseTest, RecognisesImportedMeshes) {
   EXPECT_EQ(recognise("glTF\2\0\0\0", 100).hint, "glb");
   EXPECT_EQ(recognise("{ \"asset\": {\"version\": \"2.0\"}}", 100).hint, "gltf");
   EXPECT_EQ(recognise("<?xml version=\"1.0\"?>\n<COLLADA>", 100).hint, "dae");
@@ -129,7 +129,7 @@ TEST_F(RecogniseTest, MeshesForTheImporter) {
   EXPECT_EQ(recognise("MM\x40\0\0\0\2\0\x0a\0\0\0\3\0\0\0"s, 64).hint, "3ds");
 }
 
-TEST_F(RecogniseTest, ReportsTheLineOfDamageInText) {
+TEST_F(RecogniseTest, ReportsLineOfTextDamage) {
   expect_parts(refusal_of("v 0 0 0\nv 1 \0 0\nv 1 1 0\nf 1 2 3\n"s), "line 2", "the point");
 }
 

@@ -8,7 +8,7 @@
 namespace tactree::builder {
 namespace {
 
-TEST(ScanBuilder, FacesRespectTheMemoryLimit) {
+TEST(ScanBuilder, FacesRespectMemoryLimit) {
   ScanBuilder builder("scan", 100'000, "line");
   builder.reserve_points(3'800);  // of 24 bytes; 733 triangles of 12 bytes fit beside
   const std::array<std::int64_t, 3> corners = {0, 1, 2};
@@ -16,7 +16,7 @@ TEST(ScanBuilder, FacesRespectTheMemoryLimit) {
   EXPECT_THROW(builder.add_face(corners, 1), ReadError);
 }
 
-TEST(ScanBuilder, PolygonsRespectTheMemoryLimit) {
+TEST(ScanBuilder, PolygonsRespectMemoryLimit) {
   ScanBuilder builder("scan", 100'000, "line");
   builder.reserve_points(3'800);  // 2200 numbers of 4 bytes fit beside, five for each square
   const std::array<std::int64_t, 4> corners = {0, 1, 2, 3};
@@ -24,7 +24,7 @@ TEST(ScanBuilder, PolygonsRespectTheMemoryLimit) {
   EXPECT_THROW(builder.add_face(corners, 1), ReadError);
 }
 
-TEST(ScanBuilder, DroppedPointsRespectTheMemoryLimit) {
+TEST(ScanBuilder, DroppedPointsRespectMemoryLimit) {
   ScanBuilder builder("scan", 8'000, "line");
   PointRow row{};
   row[kX] = std::numeric_limits<double>::infinity();
@@ -34,7 +34,7 @@ TEST(ScanBuilder, DroppedPointsRespectTheMemoryLimit) {
   EXPECT_THROW(add_many(), ReadError);
 }
 
-TEST(ScanBuilder, PointsRespectTheMemoryLimit) {
+TEST(ScanBuilder, PointsRespectMemoryLimit) {
   ScanBuilder builder("scan", 100 * 24, "line");
   const PointRow row{};
   for (int i = 0; i < 62; ++i) builder.add_point(row);
@@ -44,7 +44,7 @@ TEST(ScanBuilder, PointsRespectTheMemoryLimit) {
   EXPECT_THROW(add_many(), ReadError);
 }
 
-TEST(ScanBuilder, EstimatesAreNotRefused) {
+TEST(ScanBuilder, AcceptsExcessiveEstimates) {
   ScanBuilder builder("scan", 2'400, "line");
   builder.expect_points(1'000'000'000'000);
   builder.add_point({});
@@ -52,7 +52,7 @@ TEST(ScanBuilder, EstimatesAreNotRefused) {
   EXPECT_THROW(ScanBuilder("scan", 2'400, "line").reserve_points(101), ReadError);
 }
 
-TEST(ScanBuilder, NamesOfSlots) {
+TEST(ScanBuilder, FindsSlotsByName) {
   EXPECT_EQ(slot_of_name("X"), kX);
   EXPECT_EQ(slot_of_name("normal_z"), kNz);
   EXPECT_EQ(slot_of_name("Diffuse_Green"), kGreen);

@@ -63,7 +63,7 @@ std::uint64_t listed_points_of(const Scan& scan) {
   return scan.positions.size() + dropped(scan, "non_finite") + dropped(scan, "not_measured");
 }
 
-TEST_F(SharedData, PointCountsAreAsListed) {
+TEST_F(SharedData, MatchesListedPointCounts) {
   std::size_t read_count = 0;
   for (const Listed& file : listed_files(root_)) {
     const bool supported = file.format.starts_with("PLY") || file.format.starts_with("PCD") ||
@@ -83,7 +83,7 @@ TEST_F(SharedData, PointCountsAreAsListed) {
   EXPECT_GE(read_count, 60U);
 }
 
-TEST_F(SharedData, TextAndOff) {
+TEST_F(SharedData, ReadsTextAndOff) {
   const std::map<std::string, std::size_t> expected = {
       {"awkward/Wuson.off", 3205},      {"awkward/comments.off", 8},
       {"awkward/diamond_color.off", 6}, {"awkward/rectangle_vertex_colors_float.off", 4},
@@ -101,7 +101,7 @@ TEST_F(SharedData, TextAndOff) {
   }
 }
 
-TEST_F(SharedData, EveryFileIsReadOrRefusedByName) {
+TEST_F(SharedData, ReadsOrRefusesEveryFile) {
   const std::map<std::string, std::string> unsupported = {
       {".laz", "LAZ file"}, {".drc", "Draco"},  {".vtk", "VTK file"},  {".msh", "Gmsh mesh"},
       {".node", "TetGen"},  {".inp", "Abaqus"}, {".asc", "ESRI grid"}, {".json", "JSON"}};
@@ -134,7 +134,7 @@ TEST_F(SharedData, EveryFileIsReadOrRefusedByName) {
   }
 }
 
-TEST_F(SharedData, MalformedFilesAreRefusedWithTheirCause) {
+TEST_F(SharedData, RefusesMalformedFilesWithCause) {
   const std::map<std::string, std::string> causes = {
       {"assimp_invalid/OutOfMemory.off", "353535235358 points"},
       {"assimp_invalid/crash-30d6d0f7c529b3b66b4131700b7a4580cd7082df.ply", "line 7"},
@@ -181,7 +181,7 @@ TEST_F(SharedData, MalformedFilesAreRefusedWithTheirCause) {
   }
 }
 
-TEST_F(SharedData, ReadsUsableMalformedFilesAndCountsTheDamage) {
+TEST_F(SharedData, ReadsUsableMalformedFiles) {
   struct Usable {
     const char* name;
     std::size_t points;
@@ -208,7 +208,7 @@ TEST_F(SharedData, ReadsUsableMalformedFilesAndCountsTheDamage) {
   }
 }
 
-TEST_F(SharedData, EveryMalformedFileIsReadOrRefused) {
+TEST_F(SharedData, ReadsOrRefusesMalformedFiles) {
   for (const auto& entry : fs::recursive_directory_iterator(root_ / "malformed")) {
     if (!entry.is_regular_file()) continue;
     const std::string name = fs::relative(entry.path(), root_).string();

@@ -39,7 +39,7 @@ TEST_F(StlTest, BinaryJoinsEqualCorners) {
   EXPECT_EQ(scan.triangles[1], (Triangle{2, 3, 0}));
 }
 
-TEST_F(StlTest, BinaryThatBeginsLikeText) {
+TEST_F(StlTest, RecognisesBinaryBeginningLikeText) {
   EXPECT_EQ(read(binary(2, two_facets(), "solid thing")).triangles.size(), 2U);
 }
 
@@ -61,7 +61,7 @@ TEST_F(StlTest, ManyCornersJoinExactly) {
   EXPECT_EQ(scan.triangles.size(), static_cast<std::size_t>(2 * kSide * kSide));
 }
 
-TEST_F(StlTest, Text) {
+TEST_F(StlTest, ReadsText) {
   const Scan scan = read(std::string("solid a b\n") + kFacet + "endsolid a b\nsolid\nendsolid\n");
   EXPECT_EQ(scan.format, "STL ascii");
   EXPECT_EQ(scan.positions.size(), 3U);
@@ -70,7 +70,7 @@ TEST_F(StlTest, Text) {
   EXPECT_EQ(read(std::string("SOLID\r\n") + kFacet + "ENDSOLID\r\n").triangles.size(), 1U);
 }
 
-TEST_F(StlTest, NonFiniteAndDegenerate) {
+TEST_F(StlTest, DropsNonFiniteAndDegenerate) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const std::string facets = two_facets() +
                              facet({Corner{5, 5, 5}, Corner{nan, 0, 0}, Corner{1, 1, 0}}) +
@@ -82,7 +82,7 @@ TEST_F(StlTest, NonFiniteAndDegenerate) {
   EXPECT_EQ(dropped(scan, "degenerate_face"), 1U);
 }
 
-TEST_F(StlTest, CountsAreNotTrusted) {
+TEST_F(StlTest, ChecksDeclaredCounts) {
   expect_parts(refusal_of(binary(4294967295U, two_facets()), "m.stl"), "m.stl", "byte 80",
                "4294967295 triangles", "holds 2");
   expect_parts(refusal_of(binary(3, two_facets())), "declares 3", "holds 2");
@@ -94,7 +94,7 @@ TEST_F(StlTest, CountsAreNotTrusted) {
   EXPECT_EQ(trailing.warnings.size(), 1U);
 }
 
-TEST_F(StlTest, DamagedTextNamesTheLine) {
+TEST_F(StlTest, NamesLineOfDamage) {
   const std::string solid = std::string("solid\n") + kFacet;
   expect_parts(refusal_of(solid + "facet normal 0 0 1\nouter loop\nvertex 0 0 0\n"),
                "inside a triangle", "1 complete", "line 11");

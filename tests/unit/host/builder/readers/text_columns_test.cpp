@@ -29,7 +29,7 @@ std::string nothing(int) { return ""; }
 
 std::string note_of(const Scan& scan) { return scan.notes.empty() ? "" : scan.notes.front(); }
 
-TEST_F(TextColumnsTest, AColumnOfConsecutiveNumbersIsNotACoordinate) {
+TEST_F(TextColumnsTest, SkipsConsecutiveNumberColumn) {
   const Scan scan = read(table(
       200, [](int i) { return std::to_string(1000 + i) + ","; }, nothing, ","));
   ASSERT_EQ(scan.positions.size(), 200U);
@@ -39,7 +39,7 @@ TEST_F(TextColumnsTest, AColumnOfConsecutiveNumbersIsNotACoordinate) {
   EXPECT_TRUE(scan.warnings.empty());
 }
 
-TEST_F(TextColumnsTest, NumbersOfDeletedPointsMayBeMissing) {
+TEST_F(TextColumnsTest, AcceptsGapsInPointNumbers) {
   const Scan scan = read(table(
       200, [](int i) { return std::to_string(i + i / 50) + " "; },
       [](int) { return " 20 30 200 tree"; }));
@@ -47,7 +47,7 @@ TEST_F(TextColumnsTest, NumbersOfDeletedPointsMayBeMissing) {
   EXPECT_EQ(scan.colours.at(7), (Colour{20, 30, 200}));
 }
 
-TEST_F(TextColumnsTest, CountsAsLongAsTheNumberedRowsAreRefused) {
+TEST_F(TextColumnsTest, RefusesCountsLikeNumberedRows) {
   const auto number = [](int i) { return std::to_string(7 + i) + " "; };
   expect_parts(refusal_of("830 3 0 0\n" + table(50, number, nothing)), "line 1",
                "column 1 numbers the rows from the second one on");
@@ -55,13 +55,13 @@ TEST_F(TextColumnsTest, CountsAsLongAsTheNumberedRowsAreRefused) {
   EXPECT_EQ(read("2 0.5 0.25 0.125\n" + table(50, number, nothing)).positions.size(), 51U);
 }
 
-TEST_F(TextColumnsTest, RisingNumbersThatMayBeATimeAreRefused) {
+TEST_F(TextColumnsTest, RefusesPossibleTimeColumn) {
   expect_parts(refusal_of(table(
                    100, [](int i) { return std::to_string(i * i) + " "; }, nothing)),
                "line 1", "column 1 rises", "--columns x=1,y=2,z=3");
 }
 
-TEST_F(TextColumnsTest, ACounterThatMayBeACoordinateIsRefused) {
+TEST_F(TextColumnsTest, RefusesAmbiguousCounterColumn) {
   std::string line;
   for (int i = 0; i < 2000; ++i) line += std::to_string(i) + " 5 0.25 100\n";
   expect_parts(refusal_of(line), "may number the points, or be a coordinate");
@@ -77,7 +77,7 @@ TEST_F(TextColumnsTest, ACounterThatMayBeACoordinateIsRefused) {
   expect_parts(refusal_of(restarts), "line 1501", "100 of 1600", "may be a coordinate");
 }
 
-TEST_F(TextColumnsTest, ANumberAndTwoCoordinatesAreRefused) {
+TEST_F(TextColumnsTest, RefusesNumberWithTwoCoordinates) {
   std::string text;
   for (int i = 0; i < 20; ++i) {
     text += std::to_string(i) + " " + std::to_string(0.013 * (i * 7 % 19)) + " 0.7" +
@@ -86,7 +86,7 @@ TEST_F(TextColumnsTest, ANumberAndTwoCoordinatesAreRefused) {
   expect_parts(refusal_of(text), "column 1 numbers the rows, and only two columns follow");
 }
 
-TEST_F(TextColumnsTest, FacesAreRefused) {
+TEST_F(TextColumnsTest, RefusesFaces) {
   std::string faces;
   for (int i = 0; i < 30; ++i) {
     faces += "3 " + std::to_string(i * 5 % 13) + " " + std::to_string(i * 3 % 11) + " 7\n";
@@ -94,7 +94,7 @@ TEST_F(TextColumnsTest, FacesAreRefused) {
   expect_parts(refusal_of(faces), "every row is 3 and whole numbers, like the faces of a mesh");
 }
 
-TEST_F(TextColumnsTest, GridsOfHeightsAreRefused) {
+TEST_F(TextColumnsTest, RefusesHeightGrids) {
   const auto grid = [](int columns) {
     std::string text;
     for (int row = 0; row < 40; ++row) {
@@ -110,7 +110,7 @@ TEST_F(TextColumnsTest, GridsOfHeightsAreRefused) {
   expect_parts(refusal_of(grid(60)), "57 columns are neither normals nor colours");
 }
 
-TEST_F(TextColumnsTest, RowsOfDifferentLengthAreRefused) {
+TEST_F(TextColumnsTest, RefusesRowsOfDifferentLength) {
   const std::string ragged = table(100, nothing, [](int i) {
     std::string more;
     for (int k = 0; k < i % 4; ++k) more += " 0.5 0.25 0.125";
@@ -123,14 +123,14 @@ TEST_F(TextColumnsTest, RowsOfDifferentLengthAreRefused) {
                "the counts of a mesh");
 }
 
-TEST_F(TextColumnsTest, WordsAfterThePointMayHaveSpaces) {
+TEST_F(TextColumnsTest, AcceptsSpacesInTrailingWords) {
   const Scan scan =
       read(table(100, nothing, [](int i) { return i % 3 == 0 ? " a b c" : " tree"; }));
   EXPECT_EQ(scan.positions.size(), 100U);
   expect_parts(note_of(scan), "x=1, y=2, z=3");
 }
 
-TEST_F(TextColumnsTest, ARowNeedsOnlyTheColumnsInUse) {
+TEST_F(TextColumnsTest, RequiresOnlyUsedColumns) {
   const Scan scan = read("# POINT3D_ID, X, Y, Z, R, G, B, ERROR, TRACK[] as (IMAGE_ID, POINT2D)\n" +
                          table(
                              100, [](int i) { return std::to_string(900 - 7 * i) + " "; },
@@ -145,7 +145,7 @@ TEST_F(TextColumnsTest, ARowNeedsOnlyTheColumnsInUse) {
   expect_parts(note_of(scan), "x=2, y=3, z=4, red=5", "named by line 1");
 }
 
-TEST_F(TextColumnsTest, PtsWithoutItsCount) {
+TEST_F(TextColumnsTest, ReadsPtsWithoutCount) {
   const auto colours = [this](const std::string& rest) {
     return read(table(100, nothing, [&](int i) { return " " + std::to_string(i % 200) + rest; }))
         .colours.at(1);
@@ -158,7 +158,7 @@ TEST_F(TextColumnsTest, PtsWithoutItsCount) {
   EXPECT_EQ(reflectance.colours.at(1), (Colour{220, 20, 30}));
 }
 
-TEST_F(TextColumnsTest, NamesOfSurveys) {
+TEST_F(TextColumnsTest, RecognisesSurveyNames) {
   const Scan scan = read("Point#,Northing,Easting,Elevation,Code\n1,2,3,4,a\n2,5,6,7,b\n");
   ASSERT_EQ(scan.positions.size(), 2U);
   EXPECT_EQ(scan.positions[1], Eigen::Vector3d(6, 5, 7));
@@ -167,7 +167,7 @@ TEST_F(TextColumnsTest, NamesOfSurveys) {
   EXPECT_EQ(read("n,x,y,z\n1,2,3,4\n").positions.at(0), Eigen::Vector3d(2, 3, 4));
 }
 
-TEST_F(TextColumnsTest, ColumnsAsNamedByTheUser) {
+TEST_F(TextColumnsTest, UsesColumnsNamedByUser) {
   const auto path = write("a.csv", "label;north;east;up\nA;1,5;2;3\nB;4;5;6\n");
   const Scan scan = read_scan(path, columns("x=3, y=2, z=4"));
   ASSERT_EQ(scan.positions.size(), 2U);

@@ -16,7 +16,7 @@ class TextTest : public TestFiles {
   }
 };
 
-TEST_F(TextTest, Dialects) {
+TEST_F(TextTest, ReadsDialects) {
   expect_123_456("1.5 -2 300\n4 5 6\n");
   expect_123_456("  1.5\t-2 \t 3e2  \r\n4\t5\t6\r\n");
   expect_123_456("+1.5,-2.,+3E+02\n4,5,6");
@@ -34,7 +34,7 @@ TEST_F(TextTest, Dialects) {
   expect_123_456("1.5 -2 300 label\n4 5 6 other\n");
 }
 
-TEST_F(TextTest, ColumnNames) {
+TEST_F(TextTest, ReadsColumnNames) {
   expect_123_456("X,Y,Z\n1.5,-2,300\n4,5,6\n");
   expect_123_456("x y z\r\n1.5 -2 300\r\n4 5 6\r\n");
   expect_123_456("//X Y Z\n1.5 -2 300\n4 5 6\n");
@@ -44,7 +44,7 @@ TEST_F(TextTest, ColumnNames) {
   expect_123_456("//X Y Z R G\n2\n1.5 -2 300 1 2\n4 5 6 1 2\n");
 }
 
-TEST_F(TextTest, NormalsAndColoursByName) {
+TEST_F(TextTest, ReadsNamedNormalsAndColours) {
   const Scan scan =
       read("x,y,z,Nx,Ny,Nz,R,G,B,extra\n1,2,3,0,0,1,255,0,7,9\n4,5,6,1,0,0,1,2,3,9\n");
   EXPECT_EQ(scan.normals.at(1), Eigen::Vector3f(1, 0, 0));
@@ -53,7 +53,7 @@ TEST_F(TextTest, NormalsAndColoursByName) {
   EXPECT_EQ(unit.colours.at(0), (Colour{255, 128, 0}));
 }
 
-TEST_F(TextTest, SixColumnsByContent) {
+TEST_F(TextTest, ClassifiesSixColumnsByContent) {
   const Scan normals = read("1 2 3 0 0 1\n4 5 6 0.6 0.8 0\n");
   EXPECT_EQ(normals.normals.at(1), Eigen::Vector3f(0.6F, 0.8F, 0));
   EXPECT_TRUE(normals.colours.empty());
@@ -66,7 +66,7 @@ TEST_F(TextTest, SixColumnsByContent) {
   EXPECT_EQ(neither.warnings.size(), 1U);
 }
 
-TEST_F(TextTest, MoreColumnsByContent) {
+TEST_F(TextTest, ClassifiesMoreColumnsByContent) {
   const Scan alpha = read("1 2 3 117.0 73.0 49.0 255.0\n4 5 6 1 2 3 255\n");
   EXPECT_EQ(alpha.colours.at(0), (Colour{117, 73, 49}));
   const Scan both = read("1 2 3 117 73 49 0 0 1\n4 5 6 1 2 3 0 1 0\n");
@@ -76,7 +76,7 @@ TEST_F(TextTest, MoreColumnsByContent) {
   EXPECT_EQ(pts.colours.at(1), (Colour{1, 2, 3}));
 }
 
-TEST_F(TextTest, ComparesALeadingCountWithTheRows) {
+TEST_F(TextTest, ComparesLeadingCountWithRows) {
   EXPECT_TRUE(read("2\n1 2 3\n4 5 6\n").warnings.empty());
   const Scan wrong = read("99999999999\n1 2 3\n4 5 6\n");
   EXPECT_EQ(wrong.positions.size(), 2U);
@@ -87,7 +87,7 @@ TEST_F(TextTest, ComparesALeadingCountWithTheRows) {
   EXPECT_TRUE(two_scans.warnings.empty());
 }
 
-TEST_F(TextTest, NumbersOfAllKinds) {
+TEST_F(TextTest, ReadsNumbersOfAllKinds) {
   const Scan scan = read("nan 1 2\n1.#QNAN 1 2\n1 -inf 2\n1 1 1e400\n1e-400 .5 -.5\n1 -1.#IND 3\n");
   ASSERT_EQ(scan.positions.size(), 1U);
   EXPECT_EQ(scan.positions[0], Eigen::Vector3d(0, 0.5, -0.5));
@@ -100,7 +100,7 @@ std::string rows(std::size_t count) {
   return text;
 }
 
-TEST_F(TextTest, FewBadRowsAreCounted) {
+TEST_F(TextTest, CountsFewBadRows) {
   const Scan scan = read(rows(150) + "1 2\n" + rows(49));
   EXPECT_EQ(scan.positions.size(), 199U);
   EXPECT_EQ(dropped(scan, "bad_row"), 1U);
@@ -108,16 +108,16 @@ TEST_F(TextTest, FewBadRowsAreCounted) {
   expect_parts(scan.warnings[0], "line 151");
 }
 
-TEST_F(TextTest, ManyBadRowsAreRefused) {
+TEST_F(TextTest, RefusesManyBadRows) {
   expect_parts(refusal_of(rows(150) + "1 2\nfoo bar baz\n" + rows(40), "points.xyz"), "points.xyz",
                "line 151", "2 of 192");
 }
 
-TEST_F(TextTest, ColumnNamesWithoutXyzAreRefused) {
+TEST_F(TextTest, RefusesColumnNamesWithoutXyz) {
   expect_parts(refusal_of("lon,lat,height\n1,2,3\n4,5,6\n"), "line 1", "lon,lat,height");
 }
 
-TEST_F(TextTest, RowShorterThanItsNamesIsRefused) {
+TEST_F(TextTest, RefusesRowsShorterThanNames) {
   expect_parts(refusal_of("a,b,x,y,z\n1,2,3,4\n1,2,3,4\n"), "line 2", "4 values",
                "line 1 names 5 columns");
 }
@@ -130,7 +130,7 @@ TEST_F(TextTest, RefusesTextWithoutPoints) {
   expect_parts(refusal_of("nan nan nan\n"), "none of the 1 positions");
 }
 
-TEST_F(TextTest, VeryLongLineIsRefused) {
+TEST_F(TextTest, RefusesVeryLongLine) {
   std::string text = "1 2 3\n4 5 6 ";
   text.append(3 << 20, '7');
   expect_parts(refusal_of(text), "longer than 1 MiB", "line 2");

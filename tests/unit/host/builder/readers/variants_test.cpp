@@ -103,7 +103,7 @@ std::string rows(const std::string& separator, char decimal = '.', const std::st
   return text;
 }
 
-TEST_F(VariantsTest, SeparatorsAndLineEndsOfTables) {
+TEST_F(VariantsTest, ReadsSeparatorsAndLineEnds) {
   for (const std::string separator : {" ", "\t", ",", ";", ", ", " ; ", "   ", " \t"}) {
     for (const auto& [name, text] : line_ends(rows(separator))) {
       expect("separator '" + separator + "', " + name, text);
@@ -113,7 +113,7 @@ TEST_F(VariantsTest, SeparatorsAndLineEndsOfTables) {
   }
 }
 
-TEST_F(VariantsTest, DecimalCommas) {
+TEST_F(VariantsTest, HandlesDecimalCommas) {
   for (const std::string separator : {";", "\t", " ", "; ", "   "}) {
     for (const auto& [name, text] : line_ends(rows(separator, ','))) {
       expect("decimal comma with '" + separator + "', " + name, text, Must::kReadOrRefuse);
@@ -127,7 +127,7 @@ TEST_F(VariantsTest, DecimalCommas) {
   expect("thousands", replaced(rows(";"), "100.", "1,00."), Must::kReadOrRefuse);
 }
 
-TEST_F(VariantsTest, NamesOfColumns) {
+TEST_F(VariantsTest, ReadsColumnNames) {
   for (const std::string names :
        {"x,y,z", "X,Y,Z", "\"x\",\"y\",\"z\"", "//X,Y,Z", "# x,y,z", "#X,Y,Z", "% x,y,z", "; x,y,z",
         "x [m],y [m],z [m]", "X(m),Y(m),Z(m)", "Easting,Northing,Elevation", "E,N,H",
@@ -147,7 +147,7 @@ TEST_F(VariantsTest, NamesOfColumns) {
   }
 }
 
-TEST_F(VariantsTest, CommentsQuotesAndExponents) {
+TEST_F(VariantsTest, ReadsCommentsQuotesAndExponents) {
   for (const char* const comment : {"#", "//", "%", ";", "!", "--"}) {
     expect("comment "s + comment, comment + " a scan, of 2024\n"s + comment + "\n" + rows(" "),
            Must::kReadOrRefuse);
@@ -165,7 +165,7 @@ TEST_F(VariantsTest, CommentsQuotesAndExponents) {
   expect("UTF-16", wide, Must::kReadOrRefuse);
 }
 
-TEST_F(VariantsTest, NumbersOfPoints) {
+TEST_F(VariantsTest, ReadsPointNumbers) {
   for (const int first : {0, 1, 1000}) {
     for (const char* const letter : {"", "P", "pt_"}) {
       for (const std::string separator : {",", " ", "\t"}) {
@@ -182,7 +182,7 @@ TEST_F(VariantsTest, NumbersOfPoints) {
   }
 }
 
-TEST_F(VariantsTest, CountsBeforeTables) {
+TEST_F(VariantsTest, ReadsCountsBeforeTables) {
   const auto with_count = [](int count, const std::string& after) {
     return std::to_string(count) + "\n" + rows(" ", '.', "", after);
   };
@@ -203,7 +203,7 @@ std::string ply(const std::string& format, const std::string& declared,
   return text + body;
 }
 
-TEST_F(VariantsTest, TypesAndOrdersOfPly) {
+TEST_F(VariantsTest, ReadsPlyTypesAndOrders) {
   const std::string xyz = "property T x\nproperty T y\nproperty T z\n";
   for (const bool big : {false, true}) {
     const std::string format = big ? "binary_big_endian" : "binary_little_endian";
@@ -253,7 +253,7 @@ std::string obj_vertices(const std::string& after = "") {
   return text;
 }
 
-TEST_F(VariantsTest, FacesOfObj) {
+TEST_F(VariantsTest, ReadsObjFaces) {
   const char* const kForms[] = {"f 1 2 3\nf 2 3 4\n",
                                 "f 1/1 2/2 3/3\nf 2/1 3/1 4/1\n",
                                 "f 1//1 2//2 3//3\nf 2//1 3//1 4//1\n",
@@ -278,7 +278,7 @@ TEST_F(VariantsTest, FacesOfObj) {
   expect("decimal comma", replaced(obj_vertices() + "f 1 2 3\n", ".", ","), Must::kRefuse);
 }
 
-TEST_F(VariantsTest, CountsOfOff) {
+TEST_F(VariantsTest, ReadsOffCounts) {
   const std::string body = rows(" ") + "3 0 1 2\n4 0 1 2 3\n";
   for (const std::string head :
        {"OFF\n24 2 0\n", "OFF 24 2 0\n", "OFF\n# a comment\n24 2 0\n", "OFF # a comment\n24 2 0\n",
@@ -324,7 +324,7 @@ std::string stl_binary(const std::string& header, std::optional<std::uint32_t> c
   return bytes + after;
 }
 
-TEST_F(VariantsTest, KeywordsAndCountsOfStl) {
+TEST_F(VariantsTest, ReadsStlKeywordsAndCounts) {
   constexpr std::size_t kFaces = kPoints / 3;
   for (const std::string first :
        {"solid", "solid a", "solid a b 1 2 3", "SOLID A", "solid ascii\tx"}) {
@@ -370,7 +370,7 @@ std::string pcd(const std::string& fields, const std::string& extra, const std::
          sizes + "\nTYPE" + types + "\n" + counts + extra + "DATA ascii\n" + body;
 }
 
-TEST_F(VariantsTest, HeadersOfPcd) {
+TEST_F(VariantsTest, ReadsPcdHeaders) {
   for (const std::string extra :
        {"WIDTH 24\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 24\n",
         "WIDTH 24\nHEIGHT 1\nPOINTS 24\n", "WIDTH 24\nHEIGHT 1\n", "WIDTH 6\nHEIGHT 4\nPOINTS 24\n",

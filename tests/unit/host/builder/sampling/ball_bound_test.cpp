@@ -37,13 +37,13 @@ void expect_tight(const std::vector<Eigen::Vector3d>& positions, double radius) 
   EXPECT_LE(bound, 1.25 * sampled + 1.0);
 }
 
-TEST(BallBound, NeverBelowTheMaximumAndTightOnSurfaces) {
+TEST(BallBound, IsTightOnSurfaces) {
   expect_tight(plane_grid(50, 1.0).positions, 3.0);
   expect_tight(cosine_sheet(60, 0.06, 0.005, 300.0).positions, 0.003);
   expect_tight(random_sphere(3000, 0.03).positions, 0.006);
 }
 
-TEST(BallBound, NeverBelowTheMaximumAndTightInAVolumeAndAClump) {
+TEST(BallBound, IsTightInClumpedVolume) {
   std::vector<Eigen::Vector3d> volume;
   for (std::uint64_t i = 0; i < 3000; ++i) {
     volume.emplace_back(unit_random(3 * i), unit_random(3 * i + 1), unit_random(3 * i + 2));
@@ -62,7 +62,7 @@ TEST(BallBound, CoversBallsCentredBetweenPoints) {
   EXPECT_LT(max_points_in_ball(cube.positions, 0.45), 3U);
 }
 
-TEST(BallBound, TrivialCases) {
+TEST(BallBound, HandlesTrivialCases) {
   EXPECT_EQ(max_points_in_ball({}, 1.0), 0U);
   EXPECT_EQ(max_points_in_ball(std::vector<Eigen::Vector3d>(7, Eigen::Vector3d(1, 2, 3)), 0.1), 7U);
 }

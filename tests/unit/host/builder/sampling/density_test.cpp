@@ -24,7 +24,7 @@ Chosen choose(Scan scan, const BuildOptions& options) {
   return chosen;
 }
 
-TEST(Density, KeepsAllOfAGridWithTheRequestedSpacing) {
+TEST(Density, KeepsGridOfRequestedSpacing) {
   for (const core::Profile profile : {core::Profile::kSurface, core::Profile::kPaper}) {
     BuildOptions options;
     options.profile = profile;
@@ -57,7 +57,7 @@ Cloud independent_points(int n, double spacing) {
   return cloud;
 }
 
-TEST(Density, KeepsThePointsOfAnEvenCloudAtItsOwnSpacing) {
+TEST(Density, KeepsEvenCloudAtSpacing) {
   for (const double shift : {0.1, 0.3, 0.45}) {
     BuildOptions options;
     options.spacing_m = 0.0025;
@@ -74,7 +74,7 @@ TEST(Density, KeepsThePointsOfAnEvenCloudAtItsOwnSpacing) {
 }
 
 /// Its voids would be holes of the surface at that spacing.
-TEST(Density, ThinsACloudOfIndependentPointsEvenly) {
+TEST(Density, ThinsIndependentPointsEvenly) {
   BuildOptions options;
   options.spacing_m = 0.0025;
   const Chosen chosen = choose(cloud_scan(independent_points(100, 0.0025)), options);
@@ -84,12 +84,12 @@ TEST(Density, ThinsACloudOfIndependentPointsEvenly) {
   EXPECT_NE(chosen.report.warnings[0].find("too coarse"), std::string::npos);
 }
 
-TEST(Density, WithoutASpacingTheSelectionIsEven) {
+TEST(Density, SelectsEvenlyWithoutSpacing) {
   const Chosen chosen = choose(cloud_scan(shifted_grid(100, 0.0025, 0.3)), {});
   EXPECT_LE(chosen.choice.points.size(), 8000U);
 }
 
-TEST(Density, RaisesASpacingFinerThanTheCloud) {
+TEST(Density, RaisesSpacingFinerThanCloud) {
   BuildOptions options;
   options.spacing_m = 0.0005;
   const Chosen chosen = choose(cloud_scan(plane_grid(100, 0.0025)), options);
@@ -98,7 +98,7 @@ TEST(Density, RaisesASpacingFinerThanTheCloud) {
   EXPECT_NE(chosen.report.warnings[0].find("0.5 mm"), std::string::npos);
 }
 
-TEST(Density, ResamplesADenseCloudToTheRequestedSpacing) {
+TEST(Density, ResamplesDenseCloudToSpacing) {
   BuildOptions options;
   options.spacing_m = 0.002;
   const Chosen chosen = choose(cloud_scan(random_sphere(200000, 0.03)), options);
@@ -116,18 +116,18 @@ TEST(Density, KeepsEveryPointWithoutResampling) {
   EXPECT_THROW((void)choose(box_scan(), options), std::runtime_error);
 }
 
-TEST(Density, DefaultSpacingOfAMeshIsATwoHundredthOfItsSize) {
+TEST(Density, SpacesMeshBySize) {
   const Chosen chosen = choose(box_scan(), {});
   EXPECT_NEAR(chosen.choice.spacing_m, 0.06 / 200.0, 1e-12);
   EXPECT_GT(chosen.report.sampled_points, 6U * chosen.choice.points.size());
 }
 
-TEST(Density, DefaultSpacingOfALongThinMeshFollowsFromItsArea) {
+TEST(Density, SpacesSlenderMeshByArea) {
   const Chosen chosen = choose(mesh_scan(box_mesh({0, 0, 0}, {1.0, 0.006, 0.006})), {});
   EXPECT_NEAR(chosen.choice.spacing_m, std::sqrt(4.0 * 0.006 / 20000.0), 2e-5);
 }
 
-TEST(Density, DefaultSpacingOfAMeshOfLargeAreaIsNotRefused) {
+TEST(Density, AcceptsMeshOfLargeArea) {
   Mesh stack = box_mesh({0, 0, 0}, {1, 1, 1});
   const std::vector<std::array<std::uint32_t, 3>> faces = stack.triangles;
   for (int k = 0; k < 11; ++k) {
@@ -138,7 +138,7 @@ TEST(Density, DefaultSpacingOfAMeshOfLargeAreaIsNotRefused) {
   EXPECT_LE(static_cast<double>(chosen.report.sampled_points), kMaxCandidates);
 }
 
-TEST(Density, ASpacingEqualToThatOfTheScanKeepsItsPoints) {
+TEST(Density, OwnSpacingKeepsPoints) {
   const Scan scan = cloud_scan(random_sphere(20000, 0.03));
   const Chosen own = choose(scan, {});
   BuildOptions options;
@@ -148,7 +148,7 @@ TEST(Density, ASpacingEqualToThatOfTheScanKeepsItsPoints) {
   EXPECT_TRUE(same.report.warnings.empty());
 }
 
-TEST(Density, UsesTheFlashBudgetWithoutExceedingIt) {
+TEST(Density, UsesFlashBudgetWithoutExcess) {
   for (const core::Profile profile : {core::Profile::kSurface, core::Profile::kPaper}) {
     for (const std::uint64_t budget : {10000U, 60000U}) {
       BuildOptions options;
@@ -172,7 +172,7 @@ TEST(Density, UsesTheFlashBudgetWithoutExceedingIt) {
   }
 }
 
-TEST(Density, KeepsTheScanIfTheBudgetIsLarger) {
+TEST(Density, KeepsScanWithinBudget) {
   BuildOptions options;
   options.flash_budget_bytes = 10000000;
   const Chosen chosen = choose(cloud_scan(plane_grid(100, 0.0025)), options);
@@ -181,7 +181,7 @@ TEST(Density, KeepsTheScanIfTheBudgetIsLarger) {
   EXPECT_NE(chosen.report.notes[0].find("no finer detail"), std::string::npos);
 }
 
-TEST(Density, RefusesABudgetSmallerThanAHeader) {
+TEST(Density, RefusesBudgetBelowHeader) {
   BuildOptions options;
   options.flash_budget_bytes = 300;
   EXPECT_THROW((void)choose(box_scan(), options), std::runtime_error);

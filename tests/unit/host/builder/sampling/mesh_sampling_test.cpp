@@ -11,7 +11,7 @@ namespace {
 const Eigen::Vector3d kLow(-0.03, -0.02, -0.01);
 const Eigen::Vector3d kHigh(0.03, 0.02, 0.01);
 
-TEST(MeshSampling, PointsLieOnTheirFacesWithTheirNormal) {
+TEST(MeshSampling, PointsKeepFaceAndNormal) {
   const Cloud samples = sample_faces(box_mesh(kLow, kHigh), 0.001);
   std::size_t on_edges = 0;
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -44,7 +44,7 @@ TEST(MeshSampling, SpreadsPointsByArea) {
   EXPECT_LT(*std::max_element(squares.begin(), squares.end()), 13);
 }
 
-TEST(MeshSampling, SamplesFacesSmallerThanTheAreaOfAPoint) {
+TEST(MeshSampling, SamplesTinyFaces) {
   Mesh mesh;  // 1 cm^2 in 2 x 200 x 200 triangles, each a 50th of the area of a candidate
   constexpr std::uint32_t kSide = 200;
   for (std::uint32_t j = 0; j <= kSide; ++j) {
@@ -82,7 +82,7 @@ TEST(MeshSampling, DropsFacesWithoutArea) {
   EXPECT_EQ(drop_faces(mesh, keep)[1], 3U);  // the faces around corner 0
 }
 
-TEST(MeshSampling, RefusesTooManyPointsAndSuggestsASpacing) {
+TEST(MeshSampling, SuggestsSpacingForExcessPoints) {
   const Mesh mesh = box_mesh({0, 0, 0}, {1, 1, 1});
   try {
     (void)sample_faces(mesh, 1e-4);

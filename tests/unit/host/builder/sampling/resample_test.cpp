@@ -31,7 +31,7 @@ void expect_maximal_packing(const ZOrderedCloud& points, double distance) {
   }
 }
 
-TEST(Resample, KeepsTheDistanceAndLeavesNoGap) {
+TEST(Resample, KeepsDistanceWithoutGaps) {
   expect_maximal_packing(ZOrderedCloud(random_sphere(20000, 1.0)), 0.05);
   expect_maximal_packing(ZOrderedCloud(without_normals(random_sphere(20000, 1.0))), 0.05);
   expect_maximal_packing(ZOrderedCloud(without_normals(random_sphere(5000, 1.0))), 0.9);
@@ -47,7 +47,7 @@ TEST(Resample, UnknownNormalsCompeteWithAll) {
   expect_maximal_packing(ZOrderedCloud(std::move(cloud)), 0.08);
 }
 
-TEST(Resample, GivesOnePointPerSquareOfTheSpacing) {
+TEST(Resample, GivesOnePointPerSquare) {
   const std::size_t n = 300000;
   const ZOrderedCloud points(random_sphere(n, 1.0));
   const double spacing = 0.04;  // 38 candidates a square
@@ -58,13 +58,13 @@ TEST(Resample, GivesOnePointPerSquareOfTheSpacing) {
   EXPECT_LT(per_square, 1.0);
 }
 
-TEST(Resample, KeepsAllOfAGridWithThatSpacing) {
+TEST(Resample, KeepsGridOfSameSpacing) {
   const ZOrderedCloud points(plane_grid(80, 0.001));
   EXPECT_EQ(select_poisson_disk(points, kDistanceOverSpacing * 0.001).size(), points.size());
   EXPECT_LT(select_poisson_disk(points, 1.001 * 0.001).size(), points.size());
 }
 
-TEST(Resample, KeepsBothSidesOfAThinPlate) {
+TEST(Resample, KeepsBothPlateSides) {
   Cloud plate;
   for (const double side : {1.0, -1.0}) {
     for (const Eigen::Vector3d& p : cosine_sheet(100, 0.1, 0.0, 1.0).positions) {

@@ -79,7 +79,7 @@ void compare_columns(const Matrix3d& found, const Matrix3d& expected, Errors& er
 
 class EveryDevice : public testing::TestWithParam<core::DevicePreset> {};
 
-TEST_P(EveryDevice, PositionAndJacobianAgreeWithTheSimulatedLinkage) {
+TEST_P(EveryDevice, AgreesWithSimulatedLinkage) {
   const core::DeviceModel& model = GetParam().model;
   const Linkage linkage(model);
   Joints joints(model, 1);
@@ -134,7 +134,7 @@ TEST_P(EveryDevice, JacobianAgreesWithNumericDifferences) {
   EXPECT_LT(errors.angle_deg, 0.01);
 }
 
-TEST_P(EveryDevice, GravityEffortIsTheGradientOfThePotential) {
+TEST_P(EveryDevice, GravityEffortMatchesPotentialGradient) {
   const core::DeviceModel& model = GetParam().model;
   const Linkage linkage(model);
   Joints joints(model, 3);
@@ -158,7 +158,7 @@ TEST_P(EveryDevice, GravityEffortIsTheGradientOfThePotential) {
   EXPECT_GT(poses, 1200);
 }
 
-TEST_P(EveryDevice, CountsRoundTripWithinOneCount) {
+TEST_P(EveryDevice, RoundTripsWithinOneCount) {
   const core::DeviceModel& model = GetParam().model;
   Joints joints(model, 4);
   for (int i = 0; i < 2000; ++i) {
@@ -198,7 +198,7 @@ TEST_P(EveryDevice, RefusesJointsOutsideTheirRanges) {
   }
 }
 
-TEST_P(EveryDevice, TheForceFadesTowardsTheEndOfARange) {
+TEST_P(EveryDevice, ForceFadesTowardsRangeEnd) {
   const core::DeviceModel& model = GetParam().model;
   const Vector3d at_origin = Linkage(model).joints_near(Vector3d::Zero());
   const core::Vec3 middle = {static_cast<float>(at_origin.x()), static_cast<float>(at_origin.y()),
@@ -213,7 +213,7 @@ TEST_P(EveryDevice, TheForceFadesTowardsTheEndOfARange) {
   EXPECT_EQ(core::locate_joints(model, end).reach, 0.0F);
 }
 
-TEST_P(EveryDevice, ReachesTheOriginAndItsSurroundings) {
+TEST_P(EveryDevice, ReachesOriginAndSurroundings) {
   const core::DeviceModel& model = GetParam().model;
   const Linkage linkage(model);
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
@@ -255,7 +255,7 @@ TEST(Sine, IsWithinItsStatedError) {
   EXPECT_EQ(core::sine_cosine(std::nanf("")).sine, 0.0F);
 }
 
-TEST(Sine, OfTheSimulationIsWithinItsStatedError) {
+TEST(Sine, SimulationStaysWithinStatedError) {
   for (int i = -100'000; i <= 100'000; ++i) {
     const double angle = i * 1e-2;
     const plant::SineCosine found = plant::sine_cosine(angle);
@@ -265,7 +265,7 @@ TEST(Sine, OfTheSimulationIsWithinItsStatedError) {
 }
 
 // The values of the table match published measurements.
-TEST(Presets, HaveTheResolutionOfTheirClass) {
+TEST(Presets, HaveResolutionOfTheirClass) {
   const auto step_um = [](const core::DevicePreset& preset, std::uint32_t axis) {
     const core::DeviceModel& m = preset.model;
     const Vector3d q = Linkage(m).joints_near(Vector3d::Zero());

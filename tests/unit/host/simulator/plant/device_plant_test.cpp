@@ -29,7 +29,7 @@ class EveryPlant : public testing::TestWithParam<core::DevicePreset> {};
 
 // A swinging hand and an oscillating motor: the energy balance closes, and friction only
 // dissipates.
-TEST_P(EveryPlant, EnergyIsBalanced) {
+TEST_P(EveryPlant, BalancesEnergy) {
   DevicePlant plant(of(GetParam()), Vector3d::Zero());
   const double begin = plant.kinetic_J() + plant.potential_J();
   const Vector3d most(0.1 * static_cast<double>(GetParam().drive.effort_max[0]),
@@ -53,7 +53,7 @@ TEST_P(EveryPlant, EnergyIsBalanced) {
 }
 
 // Without friction: gravity compensation from the counts alone holds the weight.
-TEST_P(EveryPlant, GravityCompensationHoldsTheDevice) {
+TEST_P(EveryPlant, GravityCompensationHoldsDevice) {
   for (const bool compensated : {true, false}) {
     DevicePlantParameters p = of(GetParam());
     for (float& coulomb : p.dynamics.coulomb) {
@@ -80,7 +80,7 @@ TEST_P(EveryPlant, GravityCompensationHoldsTheDevice) {
   }
 }
 
-TEST_P(EveryPlant, StopsAtTheEndOfItsRanges) {
+TEST_P(EveryPlant, StopsAtRangeEnds) {
   DevicePlant plant(of(GetParam()), Vector3d::Zero());
   const core::DeviceModel& m = GetParam().model;
   for (int i = 0; i < 500; ++i) {
@@ -133,7 +133,7 @@ Press press(const core::DevicePreset& device, float stiffness_N_m, float passivi
   return result;
 }
 
-TEST(DeviceSimulation, EveryDeviceTouchesAPlane) {
+TEST(DeviceSimulation, EveryDeviceTouchesPlane) {
   for (const core::DevicePreset& device : core::kDevicePresets) {
     const Press p = press(device, 500.0F, 2.0F);
     EXPECT_GT(p.contact_ticks, 600U) << device.name;
@@ -143,7 +143,7 @@ TEST(DeviceSimulation, EveryDeviceTouchesAPlane) {
 }
 
 // Half the stability limit of the configuration's defaults, the design value, is 1500 N/m.
-TEST(DeviceSimulation, PressingAWallReleasesNoExtraEnergy) {
+TEST(DeviceSimulation, PressingReleasesNoExtraEnergy) {
   for (const float stiffness : {200.0F, 500.0F, 1000.0F, 1500.0F}) {
     const Press p = press(core::presets::premium(), stiffness, 2.0F);
     EXPECT_GT(p.taken_J, 3e-4);
@@ -154,7 +154,7 @@ TEST(DeviceSimulation, PressingAWallReleasesNoExtraEnergy) {
   EXPECT_LT(active.left_J, -0.01 * active.taken_J);
 }
 
-TEST(DeviceSimulation, KeepsContactWithASphere) {
+TEST(DeviceSimulation, KeepsContactWithSphere) {
   const Shape shape = sphere(0.03);
   simulation::Setup setup;
   simulation::use_device(core::presets::premium(), setup);

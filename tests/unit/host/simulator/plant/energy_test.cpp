@@ -60,7 +60,7 @@ double hardest(const core::Configuration& configuration) {
   return static_cast<double>(core::stability_limit(configuration).with_hand_N_m);
 }
 
-TEST(Energy, AWallIsPassiveOverTheAcceptedRange) {
+TEST(Energy, KeepsAcceptedWallsPassive) {
   for (const float rate_hz : {1000.0F, 4000.0F}) {
     core::Configuration configuration;
     configuration.rate_hz = rate_hz;

@@ -69,7 +69,7 @@ void expect_lengths(const core::DeviceModel& m, const std::vector<plant::Polylin
   }
 }
 
-TEST(LinkageShape, HasTheDevicesLengthsAndEndsAtTheTip) {
+TEST(LinkageShape, HasDeviceLengthsAndTip) {
   std::mt19937 random(7);
   for (const core::DevicePreset& preset : core::kDevicePresets) {
     SCOPED_TRACE(preset.name);

@@ -23,7 +23,7 @@ PlantParameters bare_mass() {
   return p;
 }
 
-TEST(Plant, AForceAcceleratesAMassByNewtonsLaw) {
+TEST(Plant, FollowsNewtonsLaw) {
   Plant plant(bare_mass(), Vector3d(0.1, 0.0, 0.0));
   for (int i = 0; i < 1000; ++i) {
     plant.advance({0.0, 0.0, 1.0}, {}, 1e-3);
@@ -43,7 +43,7 @@ TEST(Plant, ViscousFrictionDecaysExponentially) {
   EXPECT_NEAR(plant.velocity_m_s().x() / begin, std::exp(-1.0), 1e-3);
 }
 
-TEST(Plant, DryFrictionHoldsBelowItsForceAndStopsExactly) {
+TEST(Plant, DryFrictionHoldsAndStops) {
   PlantParameters p = bare_mass();
   p.device.coulomb_N = 0.04;
   Plant held(p, Vector3d::Zero());
@@ -57,7 +57,7 @@ TEST(Plant, DryFrictionHoldsBelowItsForceAndStopsExactly) {
   EXPECT_EQ(held.velocity_m_s(), Vector3d::Zero());
 }
 
-TEST(Plant, TheHandOscillatesAtItsFrequency) {
+TEST(Plant, HandOscillatesAtItsFrequency) {
   PlantParameters p;
   p.device = {0.1, 0.0, 0.0};
   p.hand = {0.1, 200.0, 0.0};
@@ -69,7 +69,7 @@ TEST(Plant, TheHandOscillatesAtItsFrequency) {
   EXPECT_NEAR(plant.position_m().x(), 0.01, 2e-5);
 }
 
-TEST(Plant, FollowsAMovingTarget) {
+TEST(Plant, FollowsMovingTarget) {
   Plant plant({}, Vector3d::Zero());
   const Vector3d speed(0.1, 0.0, 0.0);
   for (int i = 0; i < 2000; ++i) {
@@ -80,7 +80,7 @@ TEST(Plant, FollowsAMovingTarget) {
   EXPECT_NEAR(plant.position_m().x(), 0.2 - 0.045 / 300.0, 2e-5);
 }
 
-TEST(Plant, EnergyIsBalanced) {
+TEST(Plant, BalancesEnergy) {
   PlantParameters p;
   Plant plant(p, Vector3d::Zero());
   double throughput = 0.0;
@@ -99,7 +99,7 @@ TEST(Plant, EnergyIsBalanced) {
   EXPECT_NEAR(plant.kinetic_J(), e.motor + e.hand - e.friction, 1e-9);
 }
 
-TEST(Plant, IsDeterministicAndConvergesWithTheSubstep) {
+TEST(Plant, IsDeterministicAndConverges) {
   const auto run = [](double substep_s) {
     PlantParameters p;
     p.substep_s = substep_s;

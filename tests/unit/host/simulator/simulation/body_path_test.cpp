@@ -29,7 +29,7 @@ std::vector<Keyframe> random_keyframes(RandomPoses& random) {
   return {{-0.5, random.pose(0.3)}, {0.25, random.pose(0.3)}, {2.0, random.pose(0.3)}};
 }
 
-TEST(BodyPath, PassesItsKeyframesAndRestsAtTheEnds) {
+TEST(BodyPath, PassesKeyframesRestingAtEnds) {
   RandomPoses random(8);
   for (int i = 0; i < 50; ++i) {
     const std::vector<Keyframe> keyframes = random_keyframes(random);
@@ -59,7 +59,7 @@ void expect_motion_of_poses(const BodyPath& path, double t_s) {
   EXPECT_LT((widen(motion.angular_rad_s) - angular).norm(), 1e-4);
 }
 
-TEST(BodyPath, MotionIsTheDerivativeOfThePose) {
+TEST(BodyPath, MotionIsPoseDerivative) {
   RandomPoses random(9);
   for (int i = 0; i < 50; ++i) {
     const BodyPath keyframes(random_keyframes(random));
@@ -73,7 +73,7 @@ TEST(BodyPath, MotionIsTheDerivativeOfThePose) {
   }
 }
 
-TEST(BodyPath, ConstantVelocityStartsAtTimeZero) {
+TEST(BodyPath, ConstantVelocityStartsAtZero) {
   const Eigen::Isometry3d begin = isometry({0.1, 0.2, 0.3}, {0.0, 0.0, 1.0});
   const BodyPath path(begin, {0.01, 0.0, -0.02}, {0.0, 2.0, 0.0});
   for (const double t_s : {-5.0, -1e-3, 0.0}) {
@@ -87,7 +87,7 @@ TEST(BodyPath, ConstantVelocityStartsAtTimeZero) {
   EXPECT_EQ(BodyPath().at(7.0).pose, core::Pose{});
 }
 
-TEST(BodyPath, RefusesPosesThatAControllerRefuses) {
+TEST(BodyPath, RefusesPosesLikeController) {
   const Eigen::Isometry3d here = Eigen::Isometry3d::Identity();
   const auto at = [](double x) { return isometry({x, 0.0, 0.0}); };
   Eigen::Isometry3d scaled = here;

@@ -46,7 +46,7 @@ std::string faults_along(const core::DevicePreset& device, HandPath path, double
 
 class SoundDevice : public testing::TestWithParam<core::DevicePreset> {};
 
-TEST_P(SoundDevice, PressedAgainstTheEndsOfItsRangesGivesNoFault) {
+TEST_P(SoundDevice, StaysFaultlessAtRangeEnds) {
   const Eigen::Vector3d ends[] = {{0.0, 0.0, -0.12}, {0.0, 0.0, 0.3},  {0.3, 0.0, 0.05},
                                   {-0.3, 0.0, 0.05}, {0.0, 0.3, 0.05}, {0.0, -0.3, 0.05}};
   for (const Eigen::Vector3d& end : ends) {
@@ -56,7 +56,7 @@ TEST_P(SoundDevice, PressedAgainstTheEndsOfItsRangesGivesNoFault) {
   }
 }
 
-TEST_P(SoundDevice, InRandomHandsGivesNoFault) {
+TEST_P(SoundDevice, StaysFaultlessInRandomHands) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> place(-0.12, 0.12);
   std::uniform_real_distribution<double> pause(0.05, 0.6);

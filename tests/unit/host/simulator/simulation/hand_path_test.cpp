@@ -39,7 +39,7 @@ class PathFile : public ::testing::Test {
   std::filesystem::path file_;
 };
 
-TEST_F(PathFile, ReadsHeadingsCommentsAndAnyLineEnd) {
+TEST_F(PathFile, ReadsHeadingsAndComments) {
   const HandPath path =
       read("t_s,x,y,z\r\n# comment\n\n0, 0.1,0.2,0.3\r\n0.5,0.2,0.2,0.3\n1,0.2,0.4,-3e-1");
   ASSERT_EQ(path.waypoints().size(), 3U);
@@ -53,7 +53,7 @@ TEST_F(PathFile, ReadsHeadingsCommentsAndAnyLineEnd) {
   EXPECT_EQ(path.at(9.0).velocity_m_s.norm(), 0.0);
 }
 
-TEST_F(PathFile, ErrorsStatePlaceCauseAndRemedy) {
+TEST_F(PathFile, ErrorsStatePlaceAndRemedy) {
   const std::string numbers =
       ": line 2: is not four numbers (write t_s,x,y,z in seconds and metres)";
   EXPECT_EQ(refusal("0,0,0,0\n1,0,0\n"), numbers);
@@ -79,7 +79,7 @@ TEST(HandPath, NeedsFiniteWaypointsInOrder) {
                std::invalid_argument);
 }
 
-TEST(HandScript, StartsAndEndsClearOfTheModel) {
+TEST(HandScript, StartsAndEndsOutsideModel) {
   const Shape shape = sphere();
   for (const std::string& name : simulation::script_names()) {
     const HandPath path = simulation::make_script(name, shape.view(), 4.0);
@@ -98,7 +98,7 @@ TEST(HandScript, StartsAndEndsClearOfTheModel) {
   }
 }
 
-TEST(HandScript, ApproachesFromTheSideTheSurfaceFaces) {
+TEST(HandScript, ApproachesFromFacingSide) {
   Shape wall;  // faces -x
   for (int i = -10; i <= 10; ++i) {
     for (int k = -10; k <= 10; ++k) {
@@ -115,7 +115,7 @@ TEST(HandScript, ApproachesFromTheSideTheSurfaceFaces) {
   EXPECT_GE(furthest, 0.104);
 }
 
-TEST(HandScript, RefusesUnknownNamesAndEmptyModels) {
+TEST(HandScript, RefusesInvalidNameOrModel) {
   EXPECT_THROW((void)simulation::make_script("dance", plane().view(), 1.0), std::invalid_argument);
   EXPECT_THROW((void)simulation::make_script("rub", core::BlobView{}, 1.0), std::invalid_argument);
 }

@@ -16,7 +16,7 @@ using simulation::InjectedFault;
 using simulation::InjectedKind;
 using simulation::parse_injection;
 
-TEST(Injection, ReadsEveryPartOfAScript) {
+TEST(Injection, ReadsEveryScriptPart) {
   const InjectedFault stuck = parse_injection("encoder1:stuck@2.5s");
   EXPECT_EQ(stuck.kind, InjectedKind::kEncoderStuck);
   EXPECT_EQ(stuck.axes, std::vector<std::uint32_t>{0});
@@ -28,7 +28,7 @@ TEST(Injection, ReadsEveryPartOfAScript) {
   EXPECT_EQ(jump.until_s, 1.25);
 }
 
-TEST(Injection, ReadsEveryKindOfTheHelp) {
+TEST(Injection, ReadsEveryListedKind) {
   for (const simulation::InjectionHelp& help : simulation::injection_kinds()) {
     std::string text(help.name);
     const std::size_t axis = text.find('N');
@@ -109,7 +109,7 @@ struct Expectation {
   double within_s;
 };
 
-TEST(Injection, DetectsEachFaultInTimeAndEndsTheForce) {
+TEST(Injection, DetectsFaultsAndEndsForce) {
   const Expectation all[] = {
       {"encoder1:disconnected@1.5s", Fault::kEncoderInvalid, 0.001},
       {"encoder3:jump=2000@1.5s", Fault::kEncoderJump, 0.001},
@@ -135,13 +135,13 @@ TEST(Injection, HarmlessInjectionsRaiseNoFault) {
   }
 }
 
-TEST(Injection, ALatchedFaultRemainsAfterItsCause) {
+TEST(Injection, LatchedFaultOutlivesCause) {
   const Session session = run("motor:failure@1.5s..1.6s");
   EXPECT_EQ(session.fault, Fault::kMotorFault);
   EXPECT_FALSE(session.fault_free_end);
 }
 
-TEST(Injection, ReleasingTheDeadManControlEndsTheForceWithoutAFault) {
+TEST(Injection, DeadManReleaseIsHarmless) {
   const Session session = run("deadman:released@1.5s..2s");
   EXPECT_EQ(session.fault, Fault::kNone);
 }

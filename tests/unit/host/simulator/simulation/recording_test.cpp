@@ -35,7 +35,7 @@ void seal(std::vector<std::byte>& bytes) {
   std::memcpy(&bytes[bytes.size() - 4], &crc, sizeof crc);
 }
 
-TEST(Recording, ContainsTheSessionAndItsModel) {
+TEST(Recording, ContainsSessionAndModel) {
   const Recording recording(sound());
   EXPECT_EQ(recording.ticks(), 1000U + simulation::Simulation::arming_ticks({}));
   ASSERT_EQ(recording.models().size(), 1U);
@@ -43,7 +43,7 @@ TEST(Recording, ContainsTheSessionAndItsModel) {
   EXPECT_LT(sound().size(), 25U * recording.ticks());
 }
 
-TEST(Recording, KeepsEveryFieldOfAConfiguration) {
+TEST(Recording, KeepsEveryConfigurationField) {
   // All bytes differ: detects omitted and exchanged fields.
   core::Configuration configuration;
   simulation::SessionWriter writer;
@@ -72,7 +72,7 @@ TEST(Recording, KeepsEveryFieldOfAConfiguration) {
   EXPECT_FALSE(read.dead_man_required);
 }
 
-TEST(Recording, RefusesAForeignFile) {
+TEST(Recording, RefusesForeignFile) {
   EXPECT_EQ(refusal({}),
             "byte 0: not a recording of a session (give a file that simulate --record wrote)");
   const auto text = std::as_bytes(std::span("t_s,x,y,z: this is a CSV file, and not a recording"));
@@ -106,7 +106,7 @@ TEST(Recording, RefusesEveryDamagedByte) {
 }
 
 // Forged bytes with a valid checksum: refused or replayed, without reads outside the file.
-TEST(Recording, ReadsNothingOutsideAForgedFile) {
+TEST(Recording, ReadsNothingOutsideForgedFile) {
   std::mt19937 random(1);
   for (int i = 0; i < 2000; ++i) {
     std::vector<std::byte> bytes = sound();

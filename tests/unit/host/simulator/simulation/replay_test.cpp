@@ -35,7 +35,7 @@ void expect_same(const RecordedSession& session) {
   EXPECT_EQ(replayed.summary.faults.size(), session.summary.faults.size());
 }
 
-TEST(Replay, ReproducesASessionWithAStillBody) {
+TEST(Replay, ReproducesSessionWithStillBody) {
   const RecordedSession session = record_session(std::make_unique<simulation::HostTarget>());
   EXPECT_GT(session.summary.contact_ticks, 100U);
   expect_same(session);
@@ -211,7 +211,7 @@ TEST(Replay, ReproducesSessionsOfRandomActivity) {
   EXPECT_GT(removals, 20);
 }
 
-TEST(Replay, FindsTheFirstTickAfterAChangeThatWasNotRecorded) {
+TEST(Replay, LocatesUnrecordedChange) {
   RandomSession session(3);
   for (int i = 0; i < 500; ++i) {
     session.tick();

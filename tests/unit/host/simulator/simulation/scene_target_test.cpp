@@ -73,7 +73,7 @@ std::pair<double, double> contact_of(std::vector<SceneBody> bodies) {
 const Eigen::Vector3d kUp(0.0, 0.0, 0.01);
 const Eigen::Vector3d kNoTurn = Eigen::Vector3d::Zero();
 
-TEST(SceneTarget, ABodyAtRestEqualsTheModelOfAPlainController) {
+TEST(SceneTarget, RestingBodyEqualsPlainModel) {
   const auto alone = run(std::make_unique<HostTarget>(), rub());
   const auto in_a_scene = run(scene_of({body_on(BodyPath())}), rub());
   EXPECT_GT(alone.contact_ticks, 100U);
@@ -82,14 +82,14 @@ TEST(SceneTarget, ABodyAtRestEqualsTheModelOfAPlainController) {
 
 // The sheet rises by 1 cm/s from below: after 0.4 s it is at the probe, 2 mm up; there is no time
 // before the first tick.
-TEST(SceneTarget, TimeStartsWithTheFirstTickAfterArming) {
+TEST(SceneTarget, TimeStartsAfterArming) {
   const SceneBody rising = body_on(BodyPath(isometry({0.0, 0.0, -0.002}), kUp, kNoTurn));
   EXPECT_NEAR(contact_of({rising}).first, 0.4, 0.01);
   const BodyPath keyframes({{0.1, isometry({0.0, 0.0, 0.0})}, {1.1, isometry({0.0, 0.0, 0.01})}});
   EXPECT_NEAR(contact_of({body_on(keyframes)}).first, 0.3, 0.01);
 }
 
-TEST(SceneTarget, ABodyIsEnabledWithinItsTimes) {
+TEST(SceneTarget, EnablesBodyWithinItsTimes) {
   SceneBody second = body_on(BodyPath(isometry({0.0, 0.0, -0.002}), kUp, kNoTurn));
   second.until_s = 0.6;
   const auto [begin, end] = contact_of({body_on(BodyPath(isometry({0.0, 0.0, -1.0}))), second});
@@ -100,7 +100,7 @@ TEST(SceneTarget, ABodyIsEnabledWithinItsTimes) {
   EXPECT_EQ(contact_of({second}).first, -1.0);  // it appears around the probe: no contact
 }
 
-TEST(SceneTarget, NamesTheRefusedBody) {
+TEST(SceneTarget, NamesRefusedBody) {
   const Shape for_paper = plane(0.01).paper_twin();
   auto target = scene_of({body_on(BodyPath()), body_on(BodyPath(), for_paper)});
   const SceneTarget& scene = *target;
@@ -116,7 +116,7 @@ TEST(SceneTarget, NamesTheRefusedBody) {
   EXPECT_THROW(SceneTarget({}, 0), std::invalid_argument);
 }
 
-TEST(SceneTarget, ABodyThatLeavesTheSpaceStaysAtItsBorder) {
+TEST(SceneTarget, LeavingBodyStaysAtBorder) {
   Simulation sim(
       sheet().bytes(), {}, still(0.01),
       scene_of({body_on(BodyPath(isometry({9.0, 0.0, 0.0}), {9.0, 0.0, 0.0}, kNoTurn))}));
@@ -127,7 +127,7 @@ TEST(SceneTarget, ABodyThatLeavesTheSpaceStaysAtItsBorder) {
 }
 
 // Required by emulated boards.
-TEST(LinkedBodyTarget, MovesABodyOverTheLinkAsInAScene) {
+TEST(LinkedBodyTarget, MovesBodyAsInScene) {
   SceneBody body =
       body_on(BodyPath(isometry({0.0, 0.0, 0.0}), {0.002, 0.0, 0.003}, {0.1, 0.0, 0.5}));
   body.until_s = 0.8;

@@ -34,7 +34,7 @@ Summary run(const SimSetup& setup, const std::string& script, int ticks) {
   return recorder.summary();
 }
 
-TEST(Simulation, RubbingGivesContactForceAndNoFault) {
+TEST(Simulation, RubbingGivesFaultlessContact) {
   const Summary s = run({}, "rub", 5000);
   EXPECT_EQ(s.ticks, 5000U);
   EXPECT_GT(s.contact_ticks, 3500U);
@@ -48,7 +48,7 @@ TEST(Simulation, RubbingGivesContactForceAndNoFault) {
   EXPECT_EQ(s.overruns, 0U);
 }
 
-TEST(Simulation, EveryScriptRunsAtEveryRateAndMode) {
+TEST(Simulation, RunsScriptsInEverySetup) {
   for (const float rate : {500.0F, 1000.0F, 4000.0F, 10000.0F}) {
     for (const core::RenderMode mode : {core::RenderMode::kSurface, core::RenderMode::kPaper}) {
       for (const std::string& script : simulation::script_names()) {
@@ -63,7 +63,7 @@ TEST(Simulation, EveryScriptRunsAtEveryRateAndMode) {
   }
 }
 
-TEST(Simulation, TheSameRunGivesTheSameChecksum) {
+TEST(Simulation, SameRunGivesSameChecksum) {
   const Summary first = run({}, "rub", 2000);
   const Summary second = run({}, "rub", 2000);
   EXPECT_EQ(first.trace_crc32, second.trace_crc32);
@@ -72,7 +72,7 @@ TEST(Simulation, TheSameRunGivesTheSameChecksum) {
   EXPECT_NE(run(other, "rub", 2000).trace_crc32, first.trace_crc32);
 }
 
-TEST(Simulation, AHeldTipIsInEquilibrium) {
+TEST(Simulation, HeldTipIsInEquilibrium) {
   // The target rests 5 mm below a plane: the springs of hand and wall share the displacement.
   const Shape shape = plane();
   SimSetup setup;
@@ -88,7 +88,7 @@ TEST(Simulation, AHeldTipIsInEquilibrium) {
   EXPECT_NEAR(static_cast<double>(sample.status.force.z), expected, 0.02);
 }
 
-TEST(Simulation, AFaultIsRecordedWithItsTick) {
+TEST(Simulation, RecordsFaultAndTick) {
   Simulation sim(model().bytes(), {}, simulation::make_script("rub", model().view(), 2.0));
   ASSERT_TRUE(sim.arm());
   Recorder recorder;
@@ -108,7 +108,7 @@ TEST(Simulation, AFaultIsRecordedWithItsTick) {
   EXPECT_EQ(s.faults[0].tick, 700U);
 }
 
-TEST(Simulation, DeviceFaultsGiveAFaultOrAHarmlessForce) {
+TEST(Simulation, LimitsForceOfDeviceFaults) {
   using hal::sim::EncoderFault;
   using hal::sim::MotorFault;
   const auto run_with = [](auto&& inject) {
@@ -138,7 +138,7 @@ TEST(Simulation, DeviceFaultsGiveAFaultOrAHarmlessForce) {
             8.0);
 }
 
-TEST(Simulation, LatencyReachesTheController) {
+TEST(Simulation, LatencyReachesController) {
   for (const std::uint32_t latency : {0U, 3U}) {
     SimSetup setup;
     setup.board.encoders.latency_ticks = latency;

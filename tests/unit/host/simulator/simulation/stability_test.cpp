@@ -22,7 +22,7 @@ StabilityCase held() {
   return c;
 }
 
-TEST(Stability, TheMeasuredLimitMatchesTheFormula) {
+TEST(Stability, MeasuredLimitMatchesFormula) {
   for (const double rate : {1000.0, 4000.0}) {
     for (const double delay : {0.0, 0.3e-3}) {
       StabilityCase with_hand = held();
@@ -38,7 +38,7 @@ TEST(Stability, TheMeasuredLimitMatchesTheFormula) {
   }
 }
 
-TEST(Stability, VirtualDampingMatchesTheFormulaWithinATenth) {
+TEST(Stability, VirtualDampingMatchesFormula) {
   StabilityCase c = held();
   c.device_damping_Ns_m = 0.2;
   c.hand_damping_Ns_m = 0.0;
@@ -48,7 +48,7 @@ TEST(Stability, VirtualDampingMatchesTheFormulaWithinATenth) {
   EXPECT_NEAR(measured_share(c), 1.0, 0.1);
 }
 
-TEST(Stability, PassivityControlAllowsAStifferWall) {
+TEST(Stability, PassivityControlAllowsStifferWall) {
   for (const double step_m : {0.0, 30e-6}) {
     for (const double delay : {0.0, 0.3e-3}) {
       StabilityCase c = held();

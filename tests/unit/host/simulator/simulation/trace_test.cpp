@@ -26,7 +26,7 @@ std::vector<Sample> samples(int count) {
   return all;
 }
 
-TEST(Trace, HasAValueForEachColumn) {
+TEST(Trace, HasValueForEachColumn) {
   const std::string heading = simulation::trace_heading();
   std::string row;
   simulation::append_trace(row, samples(3)[1]);
@@ -38,7 +38,7 @@ TEST(Trace, HasAValueForEachColumn) {
   EXPECT_EQ(row.back(), '\n');
 }
 
-TEST(Plot, LabelsAxesAndCurvesAndKeepsEverySpike) {
+TEST(Plot, LabelsCurvesAndKeepsSpikes) {
   const std::string svg = simulation::plot_svg(samples(20'000), "a <b> & c");
   for (const char* words : {"force / N", "penetration / mm", "time / s", "force x", "force z",
                             "force size", "a &lt;b&gt; &amp; c", "</svg>"}) {
@@ -50,7 +50,7 @@ TEST(Plot, LabelsAxesAndCurvesAndKeepsEverySpike) {
   EXPECT_NO_THROW((void)simulation::plot_svg({}, ""));
 }
 
-TEST(Plot, ShowsASingleLongTickAmongThousands) {
+TEST(Plot, ShowsSingleLongTick) {
   simulation::Histogram histogram{
       "instructions per tick", 128.0, {{1024.0, 9999.0}, {4096.0, 1.0}}, 8000.0};
   const std::string svg = simulation::plot_svg(samples(100), "t", histogram);
@@ -68,7 +68,7 @@ TEST(Plot, ShowsASingleLongTickAmongThousands) {
   EXPECT_EQ(simulation::plot_svg(samples(100), "t").find("class=\"bar\""), std::string::npos);
 }
 
-TEST(Recorder, ChecksumIsOverTheForcesBytes) {
+TEST(Recorder, ChecksumCoversForceBytes) {
   simulation::Recorder recorder;
   std::vector<float> forces;
   for (const Sample& s : samples(10)) {

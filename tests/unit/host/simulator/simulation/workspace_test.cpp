@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 
 class LargestBox : public testing::TestWithParam<core::DevicePreset> {};
 
-TEST_P(LargestBox, ReachesTheFacesOfTheLargestBoxAndNotOfALargerOne) {
+TEST_P(LargestBox, IsReachableAndMaximal) {
   const core::DeviceModel& device = GetParam().model;
   const Vector3d size(0.05, 0.03, 0.04);
   const std::optional<double> scale = largest_scale(device, size);
@@ -36,7 +36,7 @@ TEST_P(LargestBox, ReachesTheFacesOfTheLargestBoxAndNotOfALargerOne) {
 
 INSTANTIATE_TEST_SUITE_P(Workspace, LargestBox, testing::ValuesIn(core::kDevicePresets));
 
-TEST(Workspace, OfLinearAxesIsTheirRangeLessTheMargins) {
+TEST(Workspace, SubtractsMarginsFromLinearRange) {
   const core::DeviceModel device = cartesian().model;  // half a metre to either side, 1 cm margins
   EXPECT_TRUE(reaches(device, {0.489, -0.489, 0.489}));
   EXPECT_FALSE(reaches(device, {0.495, 0.0, 0.0}));
@@ -45,14 +45,14 @@ TEST(Workspace, OfLinearAxesIsTheirRangeLessTheMargins) {
   EXPECT_NEAR(*scale, 0.98, 2e-3);
 }
 
-TEST(Workspace, HoldsAFlatBoxButNoEmptyOne) {
+TEST(Workspace, HoldsFlatNotEmptyBox) {
   EXPECT_TRUE(largest_scale(cartesian().model, {0.1, 0.1, 0.0}));
   EXPECT_FALSE(largest_scale(cartesian().model, {0.0, 0.0, 0.0}));
   EXPECT_TRUE(reaches_box(cartesian().model, {0.9, 0.9, 0.0}));
   EXPECT_FALSE(reaches_box(cartesian().model, {0.9, 1.1, 0.0}));
 }
 
-TEST(Workspace, WithoutLimitsHoldsABoxOfAnySize) {
+TEST(Workspace, HoldsAnyBoxWithoutLimits) {
   const std::optional<double> scale = largest_scale(core::DeviceModel{}, {1.0, 1.0, 1.0});
   ASSERT_TRUE(scale);
   EXPECT_GT(*scale, 1.0);

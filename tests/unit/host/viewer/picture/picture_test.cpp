@@ -27,7 +27,7 @@ TEST(RasterTest, NearerDiscsHideFartherOnes) {
   EXPECT_EQ(raster.depth(12, 10), 1.0F);
 }
 
-TEST(RasterTest, ClipsToThePicture) {
+TEST(RasterTest, ClipsToPicture) {
   Raster raster(8, 8, kWhite);
   for (const float x : {-1e9F, -3.0F, 0.0F, 7.5F, 30.0F, 1e9F}) {
     raster.disc(x, x, 3.0F, 0.0F, kBlack);
@@ -38,7 +38,7 @@ TEST(RasterTest, ClipsToThePicture) {
   EXPECT_EQ(raster.pixel(7, 1).red, 0.0F);
 }
 
-TEST(RasterTest, WritesAPng) {
+TEST(RasterTest, WritesPng) {
   const std::vector<std::byte> png = Raster(3, 2, kWhite).png();
   ASSERT_GT(png.size(), 24U);
   EXPECT_EQ(png[1], std::byte{'P'});
@@ -68,7 +68,7 @@ int reds(const Raster& raster) {
   return count;
 }
 
-TEST(ModelPicture, ShowsASphereAsTwoDiscs) {
+TEST(ModelPicture, ShowsSphereAsTwoDiscs) {
   const TestBlob blob(sphere(0.05, 0.001));
   const Raster raster = picture::draw_model(blob.view(), {});
   // As high as there is room: all but two margins of 40 pixels and the caption's 70.
@@ -77,7 +77,7 @@ TEST(ModelPicture, ShowsASphereAsTwoDiscs) {
   EXPECT_EQ(reds(raster), 0);
 }
 
-TEST(ModelPicture, MarksAHoleAtItsPosition) {
+TEST(ModelPicture, MarksHoleAtItsPosition) {
   const TestBlob blob(sphere(0.05, 0.001));
   const picture::Mark front{{0.04F, 0.02F, 0.02F}, 0.01F, true};
   EXPECT_GT(reds(picture::draw_model(blob.view(), std::span(&front, 1))), 100);

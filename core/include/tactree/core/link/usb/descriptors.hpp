@@ -1,10 +1,10 @@
 #pragma once
-// USB descriptors of a board. Three functions of one interface each:
-//   0  the link: frames as in wire/frame.hpp over bulk endpoints, news over an interrupt endpoint
+// USB descriptors of a board. There are three functions of one interface each:
+//   0  the link: frames (wire/frame.hpp) over bulk endpoints, notices over an interrupt endpoint
 //   1  the model, over DFU 1.1
 //   2  the parameters, over DFU 1.1
-// Two DFU interfaces instead of alternate settings, which Linux's FunctionFS does not support.
-// `dfu-util -a model` selects an interface by its name.
+// Two DFU interfaces replace the usual alternate settings, which Linux's FunctionFS does not
+// support. `dfu-util -a model` selects an interface by its name.
 // Microsoft OS 2.0 descriptors make Windows load WinUSB; no driver installation is required.
 //
 // Interrupt safety: pure functions. Constant cost, except string_descriptor(): its length.
@@ -30,6 +30,7 @@ inline constexpr std::uint8_t kBulkOut = 0x01;
 inline constexpr std::uint8_t kBulkIn = 0x81;
 inline constexpr std::uint8_t kNewsIn = 0x82;  ///< interrupt: NewsPacket
 
+/// Maximum packet sizes of USB 2.0, sections 5.5.3 and 5.8.3.
 inline constexpr std::uint16_t kControlPacketBytes = 64;
 inline constexpr std::uint16_t kBulkPacketBytesFull = 64;
 inline constexpr std::uint16_t kBulkPacketBytesHigh = 512;
@@ -50,8 +51,8 @@ static_assert(sizeof(NewsPacket) == 16);
 
 enum class Speed : std::uint8_t { kFull = 0, kHigh };
 
-/// Identity of the device. The maker sets vendor and product number; the default is the test number
-/// of pid.codes, which must not be used outside a laboratory.
+/// Identity of the device. The manufacturer sets vendor and product number. The default is the test
+/// number of pid.codes, which must not be used outside a laboratory.
 struct Identity {
   std::uint16_t vendor = 0x1209;
   std::uint16_t product = 0x0001;
@@ -92,7 +93,7 @@ inline constexpr std::size_t kInterfacesOffset = 9;
 [[nodiscard]] std::span<const std::byte, kBosBytes> bos_descriptor();
 [[nodiscard]] std::span<const std::byte, kMicrosoftBytes> microsoft_descriptors();
 
-/// Writes string descriptor `index` to `out`; returns its length, 0: no such string.
+/// Writes string descriptor `index` to `out`. Returns its length, or 0 if there is no such string.
 [[nodiscard]] std::size_t string_descriptor(std::uint8_t index, const Identity& identity,
                                             std::span<std::byte, kStringBytesMax> out);
 /// The serial number: 24 hexadecimal digits, zero-terminated.

@@ -1,6 +1,6 @@
 #pragma once
 // Device firmware upgrade, version 1.1 (USB-IF, 2004), for one interface: the states of DFU mode.
-// It transfers a model or parameters, no firmware: the device never leaves DFU mode, needs no
+// It transfers a model or parameters, not firmware. The device never leaves DFU mode, needs no
 // detach and continues to work after a download (manifestation tolerant). The storage validates the
 // data.
 //
@@ -65,7 +65,7 @@ struct DfuProgress {
 ///   write(offset, bytes)   offsets ascend without gaps
 ///   finish()               all bytes were written: validates and uses them
 ///   abort()                the host gave up or was unplugged; also called without begin()
-///   read(offset, bytes, count)   reads the stored data; count < size: the end
+///   read(offset, bytes, count)   reads the stored data; count < bytes.size() at the end
 template <class T>
 concept DfuStorage = requires(T& storage, std::uint32_t offset, std::span<const std::byte> from,
                               std::span<std::byte> to, std::size_t& count) {
@@ -104,7 +104,7 @@ class Dfu {
     status_ = DfuStatus::kOk;
   }
 
-  /// Call once per tick: ends the waiting time of the host.
+  /// Call once per tick. Ends the waiting time of the host.
   void advance(std::uint32_t now_us) {
     now_us_ = now_us;
     if (is_waiting() && now_us_ - waits_since_us_ >= wait_us_) {
@@ -115,8 +115,8 @@ class Dfu {
   /// Handles a class request to this interface.
   [[nodiscard]] ControlResponse setup(const SetupPacket& setup) {
     const auto request = static_cast<DfuRequest>(setup.bRequest);
-    // The standard allows no request while the host waits. Since clocks differ, and the device may
-    // read its own late, an early status request is answered with the waiting time again.
+    // The standard allows no request while the host waits. Since the clocks differ, and the device
+    // may read its own clock late, an early status request gets the waiting time again.
     if (request == DfuRequest::kAskStatus) {
       return is_query(setup, kStatusBytes) ? send_status(setup) : fail(DfuStatus::kStalledPacket);
     }
@@ -139,7 +139,7 @@ class Dfu {
     return fail(DfuStatus::kStalledPacket);
   }
 
-  /// Handles the bytes of a block, after setup() answered kReceive.
+  /// Handles the bytes of a block, after setup() returned kReceive.
   [[nodiscard]] ControlResponse data(std::span<const std::byte> bytes) {
     if (bytes.size() != block_bytes_) {
       return fail(DfuStatus::kStalledPacket);
@@ -199,7 +199,7 @@ class Dfu {
     }
     if (state_ == DfuState::kIdle) {
       offset_ = 0;
-      block_ = setup.wValue;  // some tools begin with 0, some with 1
+      block_ = setup.wValue;  // tools begin with 0 or with 1
       const DfuStatus status = storage_.begin();
       if (status != DfuStatus::kOk) {
         return fail(status);
@@ -244,7 +244,7 @@ class Dfu {
     }
     offset_ += static_cast<std::uint32_t>(count);
     ++block_;
-    // A short block is the end, even the first one: the host sends no further request.
+    // A short block, even the first one, ends the upload: the host sends no further request.
     state_ = count < to.size() ? DfuState::kIdle : DfuState::kUploadIdle;
     return send(to.first(count), setup);
   }

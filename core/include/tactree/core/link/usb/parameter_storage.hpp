@@ -4,7 +4,7 @@
 //   before it
 // A file sets all parameters or none, and only while the motors are off.
 //
-// Interrupt safety: no shared state of its own; call outside the tick.
+// Interrupt safety: no shared state except the controller's; call outside the tick.
 // Loop and memory annotations: docs/BOUND.md.
 
 #include <cstddef>
@@ -35,7 +35,7 @@ static_assert(sizeof(ParameterFile) == 8 + 4 * kParameters + 4);
   return crc32(bytes.first(offsetof(ParameterFile, checksum)));
 }
 
-/// Platform: as of BetweenTicks.
+/// `Platform`: see BetweenTicks.
 template <class Platform>
 class ParameterStorage {
  public:

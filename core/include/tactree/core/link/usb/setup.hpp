@@ -1,5 +1,5 @@
 #pragma once
-// Control transfers of endpoint 0 (USB 2.0, chapter 9): requests and answers.
+// Control transfers of endpoint 0 (USB 2.0, chapter 9): requests and responses.
 //
 // Interrupt safety: plain data and pure functions.
 
@@ -42,7 +42,7 @@ inline constexpr std::uint8_t kSetConfiguration = 9;
 inline constexpr std::uint8_t kGetInterface = 10;
 inline constexpr std::uint8_t kSetInterface = 11;
 
-inline constexpr std::uint16_t kEndpointHalt = 0;  ///< a feature
+inline constexpr std::uint16_t kEndpointHalt = 0;  ///< feature selector
 
 /// Continuation of a control transfer.
 struct ControlResponse {

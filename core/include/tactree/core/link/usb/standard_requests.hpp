@@ -2,7 +2,7 @@
 // The standard requests of endpoint 0 (USB 2.0, section 9.4), and the vendor request for the
 // Microsoft descriptors. Requests that violate the standard are refused with a stall.
 //
-// Interrupt safety: no shared state; one context owns an object. Constant cost.
+// Interrupt safety: no shared state; one context owns an object. Cost: constant.
 
 #include "tactree/core/link/usb/descriptors.hpp"
 #include "tactree/core/link/usb/setup.hpp"
@@ -17,11 +17,11 @@ class StandardRequests {
 
   /// Call after a bus reset, with the negotiated speed.
   void reset(Speed speed);
-  /// For a controller that handles SET_CONFIGURATION itself, e.g. Linux's.
+  /// For a controller that handles SET_CONFIGURATION itself, such as that of Linux.
   void set_configured(bool configured);
 
-  /// Handles a standard or vendor request. The answer's effect is already included in the state
-  /// here.
+  /// Handles a standard or vendor request. The effect of the response is already applied to the
+  /// state of this object.
   [[nodiscard]] ControlResponse setup(const SetupPacket& setup);
 
   [[nodiscard]] bool configured() const { return configured_; }

@@ -1,6 +1,6 @@
 #pragma once
 // Frames of the wire protocol: header, payload, CRC-32; COBS-encoded and terminated by a zero byte.
-// A reader that joins late or lost bytes resynchronises at the next zero. Serial ports,
+// A reader that joins late or loses bytes resynchronises at the next zero. Serial ports,
 // pseudo-terminals and USB packets carry the same bytes; a packet may split a frame anywhere.
 // (S. Cheshire, M. Baker, "Consistent Overhead Byte Stuffing", IEEE/ACM ToN 7(2), 1999.)
 // Specification: docs/PROTOCOL.md.
@@ -25,20 +25,21 @@ struct FrameHeader {
 };
 static_assert(sizeof(FrameHeader) == 8 && alignof(FrameHeader) == 2);
 
+/// Large enough for a piece of a model, kMaxPiece bytes, and its header (messages.hpp).
 inline constexpr std::uint32_t kMaxPayload = 264;
 inline constexpr std::uint32_t kFrameChecksumBytes = 4;
 /// Header, payload and checksum, before COBS.
 inline constexpr std::uint32_t kMaxFrame = 276;
 static_assert(kMaxFrame == sizeof(FrameHeader) + kMaxPayload + kFrameChecksumBytes);
-/// COBS adds one byte per 254 begun, and the zero at the end.
+/// COBS adds one byte for each started group of 254 bytes, and the zero at the end.
 inline constexpr std::uint32_t kMaxEncodedFrame = 279;
 static_assert(kMaxEncodedFrame == kMaxFrame + (kMaxFrame + 253U) / 254U + 1U);
 /// Ends a frame.
 inline constexpr std::uint8_t kDelimiter = 0;
 
-/// Writes a frame to `out` and returns its length including the delimiter. 0: the payload is longer
-/// than kMaxPayload, or `out` is shorter than kMaxEncodedFrame. Sets `header.payload_bytes`.
-/// Cost: about 25 instructions per byte.
+/// Writes a frame to `out` and returns its length including the delimiter. Returns 0 if the payload
+/// is longer than kMaxPayload, or `out` is shorter than kMaxEncodedFrame. Sets
+/// `header.payload_bytes`. Cost: about 25 instructions per byte.
 [[nodiscard]] std::size_t encode_frame(FrameHeader header, std::span<const std::byte> payload,
                                        std::span<std::byte> out);
 
@@ -47,8 +48,8 @@ template <class T>
 concept Message = std::is_aggregate_v<T> && std::is_trivially_copyable_v<T> &&
                   sizeof(T) <= kMaxPayload;
 
-/// Reads the message at the beginning of a payload. Ignores the bytes behind it: later minor
-/// versions may append fields. False: the payload is too short.
+/// Reads the message at the beginning of a payload. Ignores the bytes after it, because later minor
+/// versions may append fields. Returns false if the payload is too short.
 template <Message T>
 [[nodiscard]] bool decode_message(std::span<const std::byte> payload, T& message) {
   if (payload.size() < sizeof(T)) {
@@ -64,7 +65,7 @@ class FrameDecoder {
   enum class Result : std::uint8_t {
     kNone = 0,  ///< no frame is complete yet
     kFrame,     ///< a frame; header() and payload() are valid until the next push()
-    kDamaged,   ///< bytes that are no frame were dropped
+    kDamaged,   ///< bytes that do not form a frame were dropped
   };
 
   /// Cost: a few instructions; at a delimiter the checksum of the frame, about 10 per byte.
@@ -86,7 +87,7 @@ class FrameDecoder {
   std::uint32_t size_ = 0;    // decoded bytes in the buffer
   std::uint8_t left_ = 0;     // bytes until the next code
   bool zero_is_due_ = false;  // a zero separates this run from the next
-  bool empty_ = true;         // nothing since the last delimiter
+  bool empty_ = true;         // no byte since the last delimiter
   bool too_long_ = false;
 };
 

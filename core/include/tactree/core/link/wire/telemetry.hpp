@@ -1,6 +1,6 @@
 #pragma once
 // The telemetry message: encoder and decoder. A message is a TelemetryHeader and the fields that
-// its `fields` names, in the order of TelemetryField, without gaps. Interrupt safe: no shared
+// are set in its `fields`, in the order of TelemetryField, without gaps. Interrupt safe: no shared
 // state.
 
 #include <cstddef>
@@ -12,8 +12,9 @@
 
 namespace tactree::core::wire {
 
-/// All fields of a telemetry message, in memory in the order and layout of the wire. Positions in
-/// the scene's frame. After decode_telemetry() a field that was not sent has the value given here.
+/// All fields of a telemetry message, in memory in the order and layout of the wire. Positions are
+/// in the scene's frame. decode_telemetry() does not change a field that was not sent: pass a
+/// default Telemetry to get the values given here.
 struct Telemetry {
   TelemetryHeader header{};
   std::uint32_t state = 0;   ///< State
@@ -26,10 +27,10 @@ struct Telemetry {
   float normal[3] = {};
   float penetration_m = 0.0F;        ///< 0: no contact
   std::uint32_t body = 0xFFFFFFFFU;  ///< in contact; kNoBody: none
-  float strength = 0.0F;             ///< share of the force displayed: < 1 at a boundary
+  float strength = 0.0F;             ///< scale factor of the force; below 1 at a boundary
   float wanted_N[3] = {};            ///< before the safety gate
   std::uint32_t overruns = 0;        ///< since the start of the board
-  float load = 0.0F;                 ///< share of the period that the last tick took
+  float load = 0.0F;                 ///< duration of the last tick / period
   struct Reaction {
     std::uint32_t body = 0xFFFFFFFFU;
     float force_N[3] = {};
@@ -43,15 +44,15 @@ inline constexpr std::uint32_t kAllTelemetry = (1U << kTelemetryFields) - 1U;
 inline constexpr std::uint32_t kMaxTelemetry = 176;
 static_assert(kMaxTelemetry == sizeof(Telemetry) && kMaxTelemetry <= kMaxPayload);
 
-/// Every field of a tick's status. Cost: constant.
+/// Converts all fields of a tick's status. Cost: constant.
 [[nodiscard]] Telemetry to_telemetry(const TelemetryHeader& header, const Status& status);
 
-/// Writes the fields that `telemetry.header.fields` names and returns the length. Bits beyond
-/// kAllTelemetry are ignored. Cost: at most kMaxTelemetry bytes copied.
+/// Writes the header and the fields that are set in `telemetry.header.fields`. Returns the length.
+/// Bits beyond kAllTelemetry are ignored. Cost: at most kMaxTelemetry bytes copied.
 [[nodiscard]] std::size_t encode_telemetry(const Telemetry& telemetry,
                                            std::span<std::byte, kMaxTelemetry> out);
 
-/// False: the payload is shorter than its fields. Bytes after them are ignored.
+/// Returns false if the payload is shorter than its fields. Bytes after them are ignored.
 [[nodiscard]] bool decode_telemetry(std::span<const std::byte> payload, Telemetry& telemetry);
 
 }  // namespace tactree::core::wire

@@ -14,7 +14,8 @@ namespace tactree::hal::linux_time {
 /// may read concurrently. Each value is read atomically.
 class LatenessHistogram {
  public:
-  /// Bucket 0: below 1 us; n: 2^(n-1) up to 2^n us; the last one: all above.
+  /// Bucket 0 counts delays below 1 us, bucket n those from 2^(n-1) to below 2^n us, and the last
+  /// bucket all from 2^20 us, about 1 s.
   static constexpr std::uint32_t kBuckets = 22;
 
   /// Cost: constant.
@@ -22,7 +23,7 @@ class LatenessHistogram {
 
   [[nodiscard]] std::uint64_t count() const { return count_.load(std::memory_order_relaxed); }
   [[nodiscard]] std::uint64_t max_ns() const { return max_ns_.load(std::memory_order_relaxed); }
-  /// 0 before the first tick.
+  /// Returns 0 before the first tick.
   [[nodiscard]] std::uint64_t min_ns() const;
   [[nodiscard]] double mean_ns() const;
   /// Precondition: bucket < kBuckets.
@@ -55,7 +56,7 @@ class AbsoluteTicker {
   /// CLOCK_MONOTONIC in us, wrapping at 2^32.
   [[nodiscard]] std::uint32_t now_us() noexcept;
 
-  /// Time until the next tick, ns; 0: it is due.
+  /// Time until the next tick, ns; 0 if it is due.
   [[nodiscard]] std::uint64_t left_ns() const noexcept;
   [[nodiscard]] std::uint64_t period_ns() const { return period_ns_; }
   [[nodiscard]] const LatenessHistogram& lateness() const { return lateness_; }

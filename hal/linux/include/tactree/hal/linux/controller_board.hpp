@@ -1,8 +1,8 @@
 #pragma once
 // A Linux computer as the controller of a device: switches and enable line on GPIO lines, encoders
 // on GPIO lines or counters, motors on PWM channels or converters, the mailbox of a session as the
-// link. The constructor requests the enable line first, off, together with its guard: the motors
-// have no power while the other parts are set up.
+// link. The constructor requests the enable line first, switched off, and starts its guard, so the
+// motors have no power while the other components are set up.
 
 #include <cstdint>
 #include <optional>
@@ -25,20 +25,20 @@ struct ControllerBoardSettings {
   std::string consumer = "tactree";    ///< consumer name in gpioinfo
   std::vector<EncoderLines> encoders;  ///< alternative: counters
   CounterSettings counters{};
-  std::uint32_t encoder_faults_max = 0;  ///< lost edges and illegal transitions until reset
+  std::uint32_t encoder_faults_max = 0;  ///< lost edges and illegal transitions allowed until reset
   MotorSettings motors{};                ///< alternative: converters
   ConverterSettings converters{};
   std::string enable;
-  std::string brake = {};  ///< opened together with the power; empty: none
+  std::string brake = {};  ///< line that releases the brake with the power; empty: none
   std::string enable_read_back;
   std::string emergency_stop;
   std::string dead_man;
-  /// Line that toggles on every tick in time. It drives a monostable that disconnects the
+  /// Line that toggles in every tick on time. It drives a monostable that disconnects the
   /// amplifiers some ticks after the last edge. Empty: none.
   std::string heartbeat = {};
   std::string watchdog = {};  ///< device file; empty: none
   std::uint32_t watchdog_timeout_s = 2;
-  std::uint64_t period_ns = 1'000'000;  ///< period of a tick
+  std::uint64_t period_ns = 1'000'000;  ///< tick period
   GuardSettings guard{};
 };
 
@@ -72,11 +72,11 @@ class BoardMotors {
   std::optional<ConverterMotors> converters_;
 };
 
-/// A Board (board.hpp). Construct and stop() outside the loop; its parts are for the thread of the
-/// loop only and do not throw.
+/// A Board (board.hpp). Construct it and call stop() outside the loop. Its components are for the
+/// thread of the loop only and do not throw.
 class ControllerBoard {
  public:
-  /// The ticker of the loop, on CLOCK_MONOTONIC. Each tick feeds guard, watchdog and heartbeat.
+  /// The ticker of the loop, on CLOCK_MONOTONIC. Each tick serves guard, watchdog and heartbeat.
   class BoardTicker {
    public:
     explicit BoardTicker(ControllerBoard& board) : board_(board) {}
@@ -102,7 +102,7 @@ class ControllerBoard {
 
   using Link = session::MailboxLink<BoardTicker>;
 
-  /// Keeps references to `blob` and `mailbox`. Throws the exceptions of its parts.
+  /// Keeps references to `blob` and `mailbox`. Throws the exceptions of its components.
   ControllerBoard(const ControllerBoardSettings& settings, std::span<const std::byte> blob,
                   session::TickMailbox& mailbox);
   ~ControllerBoard() { stop(); }
@@ -120,7 +120,7 @@ class ControllerBoard {
   [[nodiscard]] const linux_time::AbsoluteTicker& clock() const { return clock_; }
   /// Lost edges of all axes since the start.
   [[nodiscard]] std::uint32_t edges_lost() const { return encoders_.lost(); }
-  /// Call after the last tick: switches the enable line off, then the motors.
+  /// Call after the last tick: switches the enable line off, then sets zero efforts.
   void stop() noexcept;
 
  private:

@@ -14,7 +14,7 @@
 namespace tactree::hal::linux_gpio {
 
 struct ConverterAxis {
-  std::string device;           ///< e.g. "spi0.0"; numbers of converters vary
+  std::string device;           ///< e.g. "spi0.0"; converter numbers vary
   std::uint32_t channel = 0;    ///< out_voltage<channel> of that device
   std::int32_t zero_code = 0;   ///< code of zero effort
   std::int32_t full_code = 0;   ///< code of effort_at_full
@@ -24,19 +24,19 @@ struct ConverterAxis {
 struct ConverterSettings {
   std::string root = "/sys/bus/iio/devices";
   std::vector<ConverterAxis> axes;  ///< 1 .. core::kAxes
-  std::string good = {};            ///< line, see AmplifiersGood
+  std::string good = {};            ///< see AmplifiersGood
 };
 
-/// Path of the file for the codes of a channel. Throws SysfsError if the converter or the channel
-/// is missing; the message lists the available ones.
+/// Returns the path of the file that takes the codes of a channel. Throws SysfsError if the
+/// converter or the channel is missing; the message names the available ones.
 [[nodiscard]] std::string find_converter(const std::string& root, const ConverterAxis& axis);
 
-/// Converts an effort to a code, clamped to full_code and its mirror image at zero_code. NaN gives
-/// zero_code.
+/// Converts an effort to a code, limited to full_code and its mirror image about zero_code. Returns
+/// zero_code for NaN.
 [[nodiscard]] std::int32_t code_of(const ConverterAxis& axis, float effort);
 
-/// A MotorBank. Writes zero_code in the constructor and the destructor. A killed process leaves the
-/// codes unchanged: the enable line switches the power off. For one thread.
+/// A MotorBank. Writes zero_code in the constructor and the destructor. If the process is killed,
+/// the codes remain: an EnableGuard must switch the power off. For one thread.
 class ConverterMotors {
  public:
   ConverterMotors(const ConverterSettings& settings, const std::string& consumer);
@@ -60,7 +60,7 @@ class ConverterMotors {
 
   std::vector<Output> outputs_;
   AmplifiersGood good_;
-  bool delivered_ = true;  // every write since the start
+  bool delivered_ = true;  // every write since the start succeeded
 };
 
 static_assert(MotorBank<ConverterMotors>);

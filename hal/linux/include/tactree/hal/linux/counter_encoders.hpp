@@ -1,6 +1,6 @@
 #pragma once
 // Encoders on the quadrature counters of a Linux computer (/sys/bus/counter). The hardware counts
-// every edge, even if the program is late.
+// every edge, even while the program is late.
 
 #include <cstdint>
 #include <string>
@@ -13,8 +13,8 @@
 namespace tactree::hal::linux_gpio {
 
 struct CounterAxis {
-  std::string device;       ///< e.g. "48300180.counter"; numbers of counters vary
-  std::uint32_t count = 0;  ///< count<count> of that device
+  std::string device;       ///< e.g. "48300180.counter"; counter numbers vary
+  std::uint32_t count = 0;  ///< the folder count<count> of that device
 };
 
 struct CounterSettings {
@@ -22,16 +22,16 @@ struct CounterSettings {
   std::vector<CounterAxis> axes;  ///< 1 .. core::kAxes
 };
 
-/// Folder of one count. Throws SysfsError if the counter or the count is missing; the message lists
-/// the available ones.
+/// Returns the folder of a count. Throws SysfsError if the counter or the count is missing; the
+/// message names the available ones.
 [[nodiscard]] std::string find_count(const std::string& root, const CounterAxis& axis);
 
-/// An EncoderBank without index pulses; other axes read 0. Extends counters of fewer than 32 bits;
-/// precondition: between two reads a counter moves by less than half its range. The axes are read
-/// some microseconds apart. For one thread. Cost: one system call per axis.
+/// An EncoderBank without index pulses; axes without a counter read 0. Extends counters of fewer
+/// than 32 bits; precondition: between two reads a counter moves by less than half its range. The
+/// axes are read some microseconds apart. For one thread. Cost: one system call per axis.
 class CounterEncoderBank {
  public:
-  /// Configures the counters to count each edge over their whole range; keeps their values. Throws
+  /// Configures the counters to count every edge over their whole range; keeps their values. Throws
   /// SysfsError if a counter refuses.
   explicit CounterEncoderBank(const CounterSettings& settings);
 

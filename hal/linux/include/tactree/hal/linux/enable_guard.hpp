@@ -1,7 +1,7 @@
 #pragma once
 // A second process that holds the enable line and switches it off when the control loop ends or
 // hangs: crash, SIGKILL, SIGSTOP, endless loop. The kernel alone only releases the line, and some
-// drivers keep its level then.
+// drivers then keep its level.
 
 #include <sys/types.h>
 
@@ -13,25 +13,26 @@
 namespace tactree::hal::linux_gpio {
 
 struct GuardSettings {
-  std::uint64_t silence_ns = 10'000'000;  ///< longest time between two beats
+  std::uint64_t silence_ns = 10'000'000;  ///< maximum time between two beats
   int priority = 0;                       ///< SCHED_FIFO priority; 0: normal scheduling
 };
 
-/// beat() is for the thread of the loop.
+/// beat() must be called from the thread of the loop.
 class EnableGuard {
  public:
   /// Forks. Preconditions: the program has one thread and no other open files; `enable` is off and
   /// outlives the guard. Throws std::runtime_error.
   EnableGuard(GpioLines& enable, const GuardSettings& settings);
-  /// Ends the guard, which switches the line off.
+  /// Ends the guard process, which switches the line off.
   ~EnableGuard();
   EnableGuard(const EnableGuard&) = delete;
   EnableGuard& operator=(const EnableGuard&) = delete;
 
-  /// Call once per tick. After `silence_ns` without a call the guard switches the line off and
-  /// kills this process, which could switch it on again. Cost: one store.
+  /// Call once per tick; the first call starts the supervision. After `silence_ns` without a call,
+  /// the guard switches the line off and kills this process, which could switch it on again. Cost:
+  /// one store.
   void beat() noexcept;
-  /// Ends the supervision. The line is off and stays off.
+  /// Ends the supervision. Precondition: the line is off and stays off.
   void rest() noexcept;
   [[nodiscard]] pid_t process() const { return process_; }
 

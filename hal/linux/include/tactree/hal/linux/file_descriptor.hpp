@@ -1,5 +1,5 @@
 #pragma once
-// A file descriptor with an owner, which closes it.
+// Owner of a file descriptor, which it closes.
 
 #include <unistd.h>
 
@@ -26,7 +26,7 @@ class FileDescriptor {
   FileDescriptor(const FileDescriptor&) = delete;
   FileDescriptor& operator=(const FileDescriptor&) = delete;
 
-  /// -1: owns none.
+  /// Returns -1 if it owns none.
   [[nodiscard]] int get() const { return descriptor_; }
 
  private:

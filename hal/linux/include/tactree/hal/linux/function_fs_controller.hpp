@@ -1,10 +1,10 @@
 #pragma once
 // The USB device controller of a Linux computer with a USB device port, through FunctionFS. The
-// kernel answers the standard requests; this class answers the others. Requires the kernel modules
-// libcomposite and usb_f_fs, and root to set it up.
+// kernel handles the standard requests, this class the others. Requires the kernel modules
+// libcomposite and usb_f_fs, and root privileges for the setup.
 //
-// Kernels before 6.12 refuse the DFU descriptor: the device then has the link only, which also
-// transfers models.
+// Kernels before 6.12 refuse the DFU descriptor: the device then has only the link, which can also
+// transfer models.
 
 #include <memory>
 #include <string>
@@ -13,8 +13,8 @@
 
 namespace tactree::hal::linux_usb {
 
-/// Finds a USB device port of this computer, an entry of /sys/class/udc. Empty name: the only port.
-/// Throws std::runtime_error if it is missing or ambiguous.
+/// Finds a USB device port of this computer, an entry of /sys/class/udc. An empty name selects the
+/// only port. Throws std::runtime_error if it is missing or ambiguous.
 [[nodiscard]] std::string find_udc(const std::string& name);
 
 /// Transfers are asynchronous. Does not allocate while plugged in.
@@ -25,7 +25,7 @@ class FunctionFsController : public UsbPort {
   FunctionFsController(const core::usb::Identity& identity, std::string udc, bool with_dfu = true);
   ~FunctionFsController() override;
 
-  /// Creates the gadget and connects it. The message names file, cause and remedy.
+  /// Creates the gadget and connects it. Throws std::runtime_error with file, cause and remedy.
   void plug_in() override;
   void unplug() override;
   [[nodiscard]] bool plugged_in() const override;

@@ -1,6 +1,6 @@
 #pragma once
-// Bytes to and from an application on another computer, over the USB device port of this computer.
-// Offers no DFU: model and parameters are files of the controller.
+// Byte transport to an application on another computer, over the USB device port of this computer.
+// Offers no DFU, because model and parameters are files of the controller.
 
 #include <cstddef>
 #include <span>
@@ -19,7 +19,7 @@ class GadgetPort {
   /// cause and remedy.
   GadgetPort(const core::usb::Identity& identity, const std::string& udc);
 
-  /// Call once per tick: answers the host and reports changes. Cost: some system calls.
+  /// Call once per tick: handles requests of the host and reports changes. Cost: some system calls.
   void attend(const core::Status& status, std::uint32_t now_us);
   [[nodiscard]] std::size_t read(std::span<std::byte> bytes) noexcept {
     return device_.read(bytes);

@@ -1,7 +1,7 @@
 #pragma once
-// GPIO lines of a Linux computer by name, through libgpiod 1.6 or 2.x. The build selects the
-// generation that pkg-config finds. Both report the edges of several lines in the order of their
-// times, and count the edges that the kernel dropped or merged.
+// Access to GPIO lines of a Linux computer by name, through libgpiod 1.6 or 2.x. The build selects
+// the generation that pkg-config finds. Both report the edges of several lines in chronological
+// order, and count the edges that the kernel dropped or merged.
 
 #include <array>
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace tactree::hal::linux_gpio {
 
-/// "line 'encoder0-a': cause (remedy: ...)"
+/// Message: "line 'encoder0-a': cause (remedy: ...)"
 class GpioError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -32,7 +32,7 @@ struct LinePlace {
   std::string user;  ///< consumer; empty: not in use
 };
 
-/// Library and version in use, e.g. "libgpiod 2.1.3".
+/// Name and version of the library in use, e.g. "libgpiod 2.1.3".
 [[nodiscard]] std::string gpio_library();
 
 /// Finds a line without requesting it. `name`: name of the line, or "label:name" with the label of
@@ -41,14 +41,15 @@ struct LinePlace {
 
 enum class Bias : std::uint8_t { kAsIs, kPullUp, kPullDown };
 
-/// Of one call of GpioLines::read_edges().
+/// Maximum number of edges per call of GpioLines::read_edges().
 constexpr std::size_t kEdgesAtOnce = 64;
 
 struct InputSettings {
   bool active_low = false;
   bool edges = false;  ///< report rising and falling edges
   Bias bias = Bias::kAsIs;
-  /// Capacity of the kernel's queue, edges; at most 1024. libgpiod 1.6: always 16 for each line.
+  /// Capacity of the kernel's edge queue, at most 1024. Ignored by libgpiod 1.6, which always has a
+  /// queue of 16 edges per line.
   std::uint32_t edge_buffer = 1024;
 };
 
@@ -56,9 +57,9 @@ struct InputSettings {
 /// object. For one thread.
 class GpioLines {
  public:
-  /// `consumer`: name shown by gpioinfo. With edges, returns once the lines rested for 2 ms. Throws
-  /// GpioError if a line is missing, in use, ambiguous, on another chip, not permitted, or never at
-  /// rest within 1 s.
+  /// `consumer`: name shown by gpioinfo. With edges, returns after 2 ms without a change of the
+  /// lines. Throws GpioError if a line is missing, in use, ambiguous, on another chip or not
+  /// permitted, or if the lines are not at rest within 1 s.
   static GpioLines inputs(const std::vector<std::string>& names, const std::string& consumer,
                           const InputSettings& settings);
   /// Outputs, initially off.
@@ -71,22 +72,22 @@ class GpioLines {
   GpioLines(const GpioLines&) = delete;
   GpioLines& operator=(const GpioLines&) = delete;
 
-  /// Reads all lines: bit n is line n. False: the chip was removed. Cost: one system call; with
-  /// libgpiod 1.6 and edges, one for each line.
+  /// Reads all lines: bit n is line n. Returns false if the chip was removed. Cost: one system
+  /// call; with libgpiod 1.6 and edges, one per line.
   [[nodiscard]] bool levels(std::uint64_t& bits) const noexcept;
-  /// Levels before the first edge that read_edges() returns; only of lines with edges.
+  /// Levels before the first edge that read_edges() returns. Only for lines with edges.
   [[nodiscard]] std::uint64_t first_levels() const { return first_levels_; }
   [[nodiscard]] bool set(std::uint64_t bits) noexcept;
-  /// Reads edges, oldest first over all lines; never blocks. Returns their number; less than
-  /// kEdgesAtOnce: there are no more; -1: the chip was removed. An edge whose order is uncertain
-  /// stays for a later call, usually the next one, for 4 ms at most. Cost: one system call; with
-  /// libgpiod 1.6, two for each line.
+  /// Reads edges, oldest first over all lines; never blocks. Returns their number; a number below
+  /// kEdgesAtOnce means that there are no more, -1 that the chip was removed. An edge whose order
+  /// is uncertain is left for a later call, usually the next one, for at most 4 ms. Cost: one
+  /// system call; with libgpiod 1.6, two per line.
   [[nodiscard]] int read_edges(std::array<Edge, kEdgesAtOnce>& edges) noexcept;
-  /// Lines of which read_edges() has edges whose order is uncertain: bit n is line n. Their levels
-  /// may be newer than the edges so far.
+  /// Lines with edges that read_edges() has not returned because their order is uncertain: bit n is
+  /// line n. Their levels may be newer than the edges returned so far.
   [[nodiscard]] std::uint64_t held() const;
-  /// Edges that the kernel dropped or merged since the lines were requested, at least. An edge that
-  /// the chip itself merged, before the kernel saw it, is not among them.
+  /// Number of edges that the kernel is known to have dropped or merged since the lines were
+  /// requested. Edges that the chip merged before the kernel registered them are not included.
   [[nodiscard]] std::uint32_t lost() const;
 
  private:

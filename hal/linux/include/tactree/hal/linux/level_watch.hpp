@@ -1,22 +1,22 @@
 #pragma once
-// Lines whose level is not the one that their edges lead to: an edge was lost, unless it is on its
-// way.
+// Detects lost edges: the level of a line differs from its level after the last processed edge, and
+// the edge in between is not delivered within a time limit.
 
 #include <cstdint>
 
 namespace tactree::hal::linux_gpio {
 
-/// Bit n of all sets is line n.
+/// In all bit sets, bit n is line n.
 class LevelWatch {
  public:
   explicit LevelWatch(std::uint64_t limit_ns) : limit_ns_(limit_ns) {}
 
-  /// An edge of these lines was processed: the next difference is another one.
+  /// Call when an edge of these lines was processed: a later difference is a new one.
   void take(std::uint64_t lines) { differ_ &= ~lines; }
 
-  /// `differ`: the lines at this time; `held`: lines with edges that are not processed yet. Returns
-  /// those that have differed at all looks of at least the limit: their edges never come. They
-  /// count from now as equal.
+  /// `differ`: lines that differ now; `held`: lines with edges that are not processed yet. Returns
+  /// the lines that have differed in all calls during the time limit: their edges were lost.
+  /// Afterwards they are observed anew.
   [[nodiscard]] std::uint64_t look(std::uint64_t differ, std::uint64_t held, std::uint64_t now_ns) {
     differ &= ~held;
     differ_ &= differ;
@@ -35,7 +35,7 @@ class LevelWatch {
 
  private:
   std::uint64_t limit_ns_;
-  std::uint64_t differ_ = 0;  // at all looks since since_ns_
+  std::uint64_t differ_ = 0;  // in all calls since since_ns_
   std::uint64_t since_ns_ = 0;
 };
 

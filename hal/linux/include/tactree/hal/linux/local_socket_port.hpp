@@ -1,5 +1,5 @@
 #pragma once
-// Bytes to and from an application on the same computer, over a socket in the file system.
+// Byte transport to an application on the same computer, over a Unix domain socket.
 
 #include <cstddef>
 #include <span>

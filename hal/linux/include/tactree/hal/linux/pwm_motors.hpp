@@ -1,6 +1,6 @@
 #pragma once
-// Motors whose amplifiers have inputs for pulse width and direction: PWM channels of a Linux
-// computer (/sys/class/pwm) and GPIO lines. Only constructors throw: SysfsError or GpioError.
+// Motors whose amplifiers have PWM and direction inputs: PWM channels of a Linux computer
+// (/sys/class/pwm) and GPIO lines. Only constructors throw: SysfsError or GpioError.
 
 #include <cstdint>
 #include <string>
@@ -15,21 +15,21 @@
 namespace tactree::hal::linux_gpio {
 
 struct MotorLines {
-  std::string chip;                   ///< name of its device; pwmchip numbers vary
+  std::string chip;                   ///< device name of the PWM chip; pwmchip numbers vary
   std::uint32_t channel = 0;          ///< channel of that chip
   std::string direction;              ///< name of the line; high: negative effort
-  float effort_at_full_width = 0.0F;  ///< N or Nm; > 0
+  float effort_at_full_width = 0.0F;  ///< effort at a duty cycle of 1, N or Nm; > 0
 };
 
 struct MotorSettings {
   std::string pwm_root = "/sys/class/pwm";
   std::uint32_t period_ns = 50'000;
-  std::vector<MotorLines> axes;  ///< 1 .. core::kAxes; direction lines on one chip
-  std::string good = {};         ///< line, see AmplifiersGood
+  std::vector<MotorLines> axes;  ///< 1 .. core::kAxes; all direction lines on one chip
+  std::string good = {};         ///< see AmplifiersGood
 };
 
-/// Folder of a PWM chip. Throws SysfsError if the chip or the channel is missing; the message lists
-/// the available ones.
+/// Returns the folder of a PWM chip. Throws SysfsError if the chip or the channel is missing; the
+/// message lists what is available.
 [[nodiscard]] std::string find_pwm_chip(const std::string& root, const std::string& name,
                                         std::uint32_t channel);
 
@@ -45,8 +45,8 @@ class PwmChannel {
   PwmChannel(const PwmChannel&) = delete;
   PwmChannel& operator=(const PwmChannel&) = delete;
 
-  /// Sets the pulse width, ns. False: the kernel refused it. Cost: one system call, none if the
-  /// width is unchanged.
+  /// Sets the pulse width, ns. Returns false if the kernel refuses it. Cost: one system call, none
+  /// if the width is unchanged.
   [[nodiscard]] bool set_width(std::uint32_t width_ns) noexcept;
 
  private:
@@ -56,8 +56,8 @@ class PwmChannel {
   std::uint32_t width_ns_ = 0;
 };
 
-/// A MotorBank. Sets zero widths in the constructor and the destructor. A killed process leaves the
-/// widths unchanged: the enable line switches the power off. For one thread.
+/// A MotorBank. Sets zero widths in the constructor and the destructor. If the process is killed,
+/// the widths remain: an EnableGuard must switch the power off. For one thread.
 class PwmMotors {
  public:
   PwmMotors(const MotorSettings& settings, const std::string& consumer);
@@ -65,7 +65,7 @@ class PwmMotors {
   PwmMotors(const PwmMotors&) = delete;
   PwmMotors& operator=(const PwmMotors&) = delete;
 
-  /// Sets zero width while a direction changes. Cost: at most three system calls per axis.
+  /// An axis has zero width while its direction changes. Cost: at most three system calls per axis.
   void write(const core::MotorCommand& command) noexcept;
   /// True if no amplifier reports a failure and every width and direction since the start was
   /// written.
@@ -81,7 +81,7 @@ class PwmMotors {
   AmplifiersGood good_;
   std::uint32_t period_ns_;
   std::uint64_t negative_ = 0;  // bit n: axis n is driven in negative direction
-  bool delivered_ = true;       // every write since the start
+  bool delivered_ = true;       // every write since the start succeeded
 };
 
 static_assert(MotorBank<PwmMotors>);

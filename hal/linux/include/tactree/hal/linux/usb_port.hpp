@@ -1,11 +1,12 @@
 #pragma once
-// The USB device controllers of a Linux computer, as one interface.
+// Common interface of the USB device controllers on a Linux computer.
 
 #include "tactree/hal/usb_device.hpp"
 
 namespace tactree::hal::linux_usb {
 
-/// A UsbController (usb_device.hpp) that can be connected and disconnected. One thread at a time.
+/// A UsbController (usb_device.hpp) that can be connected and disconnected. For one thread at a
+/// time.
 class UsbPort {
  public:
   UsbPort() = default;
@@ -17,7 +18,7 @@ class UsbPort {
   virtual void plug_in() = 0;
   virtual void unplug() = 0;
   [[nodiscard]] virtual bool plugged_in() const = 0;
-  /// Descriptor that is readable when an event is pending; -1 when unplugged.
+  /// File descriptor that is readable while an event is pending; -1 while unplugged.
   [[nodiscard]] virtual int descriptor() const = 0;
 
   [[nodiscard]] virtual UsbEvent next_event() = 0;
@@ -30,7 +31,7 @@ class UsbPort {
   [[nodiscard]] virtual std::size_t write(std::uint8_t endpoint,
                                           std::span<const std::byte> bytes) = 0;
 
-  // The kernel does the following itself on some ports.
+  // On some ports the kernel performs the following itself.
   virtual void set_address(std::uint8_t) {}
   virtual void configure(bool) {}
   virtual void halt(std::uint8_t, bool) {}

@@ -1,6 +1,6 @@
 #pragma once
-// A virtual USB device controller: it speaks USB/IP over a socket with Linux's virtual host
-// controller, module vhci-hcd (Linux, Documentation/usb/usbip_protocol.rst). A simulated board
+// A virtual USB device controller. It uses USB/IP over a socket to the virtual host controller of
+// Linux, module vhci-hcd (Linux, Documentation/usb/usbip_protocol.rst). A simulated board then
 // appears as a USB device of this computer.
 
 #include <cstdint>
@@ -19,10 +19,10 @@ class UsbIpController : public UsbPort {
   UsbIpController();
   ~UsbIpController() override;
 
-  /// Connects to a free port of this computer. Causes of failure: no vhci-hcd, no permission, no
-  /// free port.
+  /// Connects to a free port of this computer. Throws std::runtime_error if vhci-hcd, permission or
+  /// a free port is missing.
   void plug_in() override;
-  /// Connects the device to the USB/IP host at the other end of `socket`; takes its ownership.
+  /// Connects the device to the USB/IP host at the other end of `socket`; takes ownership of it.
   void plug_into(int socket);
   void unplug() override;
   [[nodiscard]] bool plugged_in() const override;

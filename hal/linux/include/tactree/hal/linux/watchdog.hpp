@@ -1,6 +1,6 @@
 #pragma once
-// The watchdog of a Linux computer (/dev/watchdog): resets the computer when it is not kicked in
-// time. Its shortest timeout is usually 1 s; EnableGuard (enable_guard.hpp) reacts faster. The
+// The watchdog of a Linux computer (/dev/watchdog): resets the computer if it is not kicked in
+// time. Its minimum timeout is usually 1 s; EnableGuard (enable_guard.hpp) reacts faster. The
 // watchdog covers a hanging kernel.
 
 #include <cstdint>
@@ -33,11 +33,11 @@ class WatchdogDevice {
   FileDescriptor file_;
 };
 
-/// Decides when to kick: after each given number of consecutive ticks in time.
+/// Decides when to kick the watchdog: after every `ticks` consecutive ticks on time.
 class InTimeCounter {
  public:
   explicit InTimeCounter(std::uint32_t ticks) : wanted_(ticks) {}
-  /// Call once per tick. True: kick now. Cost: constant.
+  /// Call once per tick. Returns true when the watchdog should be kicked. Cost: constant.
   [[nodiscard]] bool is_due(bool in_time) {
     ticks_ = in_time ? ticks_ + 1U : 0U;
     if (ticks_ < wanted_) {

@@ -12,12 +12,12 @@ struct BoardDescription {
   const char* name;       ///< of the board and its image: <name>.elf
   const char* core;       ///< for messages
   const char* toolchain;  ///< the preset that builds its image
-  const char* emulator;   ///< name of the program in PATH; null: no emulator has its parts
+  const char* emulator;   ///< name of the program in PATH; nullptr if none emulates the board
   const char* package;    ///< Debian package of the emulator
   const char* machine;    ///< arguments of the emulator that select the machine
   std::uint32_t blob_address;
-  std::uint32_t blob_bytes_max;  ///< of the image's model, or of a slot where models are flashed
-  /// An instruction takes 2^shift ns of the board's time: approximately as on the real core.
+  std::uint32_t blob_bytes_max;  ///< of the model in the image, or of a slot of the model store
+  /// An instruction takes 2^shift ns of the board's time, about as long as on the real core.
   std::uint32_t instruction_shift;
   /// True if applications can connect to its serial port.
   bool serves;
@@ -26,7 +26,7 @@ struct BoardDescription {
 };
 
 [[nodiscard]] std::span<const BoardDescription> boards();
-/// nullptr: no board has this name.
+/// Returns nullptr if no board has this name.
 [[nodiscard]] const BoardDescription* find_board(std::string_view name);
 
 }  // namespace tactree::emulation

@@ -20,33 +20,33 @@
 namespace tactree::emulation {
 
 struct EmulationOptions {
-  /// Image of the board; empty: find_image().
+  /// Image of the board. If empty, find_image() finds it.
   std::filesystem::path image;
-  /// First ticks that are not counted.
+  /// Number of ticks at the beginning that are not counted.
   std::uint64_t uncounted_ticks = 0;
   bool count_instructions = true;
-  /// Also records the code and data that the ticks access; halves the speed.
+  /// Also records the code and data that the ticks access. This halves the speed.
   bool note_code = false;
-  /// Connects programs to the serial port of the board; nullptr: none. Outlives the target.
+  /// Connects programs to the serial port of the board; nullptr if unused. Must outlive the target.
   client::Transport* served = nullptr;
-  /// Overrides that of the board.
+  /// Overrides BoardDescription::instruction_shift.
   std::optional<std::uint32_t> instruction_shift;
-  /// Time-outs, real time: until the board has started, and for each tick.
+  /// Time-outs in real time: until the board has started, and for each tick.
   std::chrono::milliseconds start_limit{120'000};
   std::chrono::milliseconds tick_limit{20'000};
 };
 
-/// Path of the image of a board: in `folder` if that is not empty, else in the folder of the
-/// environment variable TACTREE_FIRMWARE, the installation, or the build tree. Throws
-/// EmulationError with the commands that build the image.
+/// Path of the image of a board. The image is searched in `folder` if that is not empty, else in
+/// the folder that the environment variable TACTREE_FIRMWARE names, else in the installation and
+/// the build tree. Throws EmulationError with the commands that build the image.
 [[nodiscard]] std::filesystem::path find_image(const BoardDescription& board,
                                                const std::filesystem::path& folder = {});
 
 class EmulatedTarget : public simulation::Target {
  public:
-  /// Boots the board with `blob` at its flash address and waits until it answers. Only the size of
-  /// the blob is checked here; the board checks its content. All functions throw EmulationError if
-  /// emulator, image or board fail.
+  /// Boots the board with `blob` at its flash address and waits for its hello message. Only the
+  /// size of the blob is checked here; the board checks its content. All functions throw
+  /// EmulationError if emulator, image or board fail.
   EmulatedTarget(const BoardDescription& board, std::span<const std::byte> blob,
                  const EmulationOptions& options);
   ~EmulatedTarget() override;
@@ -57,7 +57,7 @@ class EmulatedTarget : public simulation::Target {
   /// Ends the emulator and reads the counts.
   void finish() override;
 
-  /// nullopt: before finish(), or not counted.
+  /// nullopt before finish() and if instructions are not counted.
   [[nodiscard]] const std::optional<InstructionCounts>& instruction_counts() const;
 
  private:

@@ -26,23 +26,23 @@ struct InstructionBucket {
 };
 inline constexpr std::uint64_t kBucketInstructions = 128;
 
-/// Lowest and highest address that an instruction loaded or stored.
+/// Range of the addresses that an instruction loaded or stored.
 struct DataRange {
   std::uint32_t instruction = 0;
   std::uint32_t lowest = 0;
   std::uint32_t highest = 0;
 };
 
-/// Instructions of ticks: from the interrupt until the board is idle.
+/// Numbers of instructions. A tick lasts from its interrupt until the board is idle.
 struct InstructionCounts {
-  std::uint64_t start = 0;  ///< from reset to the first tick: checking the blob
+  std::uint64_t start = 0;  ///< from reset to the first tick, including the check of the blob
   std::uint64_t ticks = 0;
   std::uint64_t max = 0;
   std::uint64_t worst_tick = 0;  ///< number of the first tick with `max`, from 0
   std::uint64_t total = 0;
-  std::uint32_t checksum = 0;              ///< of the counts of all ticks: equal for equal runs
-  std::vector<FunctionCount> functions;    ///< the costliest first
-  std::vector<InstructionBucket> buckets;  ///< not empty, ascending
+  std::uint32_t checksum = 0;              ///< of the counts of all ticks; equal for equal runs
+  std::vector<FunctionCount> functions;    ///< in descending order of `total`
+  std::vector<InstructionBucket> buckets;  ///< those with ticks, in ascending order
   std::vector<CodeRange> code;             ///< executed in ticks; with note_code only
   std::vector<DataRange> data;             ///< accessed in ticks; with note_code only
   [[nodiscard]] double mean() const {
@@ -50,7 +50,7 @@ struct InstructionCounts {
   }
 };
 
-/// Reads the counter's report. Throws EmulationError on anything else.
+/// Reads the counter's report. Throws EmulationError if it is not complete.
 [[nodiscard]] InstructionCounts parse_instruction_counts(const std::string& report);
 
 }  // namespace tactree::emulation

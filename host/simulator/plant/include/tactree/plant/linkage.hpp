@@ -1,6 +1,6 @@
 #pragma once
-// Kinematics of a simulated device in double precision. Independent of the controller's kinematics
-// and based on other equations: each verifies the other.
+// Kinematics of a simulated device in double precision. They are independent of the controller's
+// kinematics and based on other equations, so that each verifies the other.
 
 #include <Eigen/Core>
 #include <optional>
@@ -9,8 +9,8 @@
 
 namespace tactree::plant {
 
-/// Position of the tip, device frame. Columns of `jacobian`: motion of the tip per motion of each
-/// joint; zero for an unused joint.
+/// Position of the tip in the device frame, and its Jacobian. Each column is the motion of the tip
+/// per motion of one joint; the column of an unused joint is zero.
 struct LinkagePose {
   Eigen::Vector3d tip_m = Eigen::Vector3d::Zero();
   Eigen::Matrix3d jacobian = Eigen::Matrix3d::Zero();
@@ -24,14 +24,14 @@ class Linkage {
   /// Empty if the loops of the linkage cannot close at these joints.
   [[nodiscard]] std::optional<LinkagePose> pose(const Eigen::Vector3d& joints) const;
 
-  /// Joints within their ranges with the tip nearest to a position: damped least squares from the
-  /// middle of the ranges, at most 200 steps.
+  /// Joint positions within their ranges that bring the tip nearest to a position. Damped least
+  /// squares from the centre of the ranges, at most 200 steps.
   [[nodiscard]] Eigen::Vector3d joints_near(const Eigen::Vector3d& tip_m) const;
 
   /// Potential energy of links and tip, J; its gradient is the effort of gravity compensation.
   [[nodiscard]] double potential_J(const Eigen::Vector3d& joints) const;
 
-  /// The same without the tip's mass.
+  /// Potential energy of the links only, J.
   [[nodiscard]] double links_potential_J(const Eigen::Vector3d& joints) const;
 
   [[nodiscard]] const core::DeviceModel& model() const { return model_; }

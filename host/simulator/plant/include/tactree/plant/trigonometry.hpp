@@ -1,6 +1,6 @@
 #pragma once
-// Sine and cosine of the simulated mechanics, from sums and products only: the same bits on every
-// computer, in contrast to libm.
+// Sine and cosine for the simulated mechanics. They use basic arithmetic only, therefore their
+// results are bit-identical on every computer, in contrast to those of libm.
 
 namespace tactree::plant {
 
@@ -9,7 +9,7 @@ struct SineCosine {
   double cosine = 1.0;
 };
 
-/// Within 1e-12 for |angle_rad| <= 1000.
+/// The error is at most 1e-12 for |angle_rad| <= 1000.
 [[nodiscard]] SineCosine sine_cosine(double angle_rad);
 
 }  // namespace tactree::plant

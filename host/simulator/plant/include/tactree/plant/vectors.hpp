@@ -1,5 +1,6 @@
 #pragma once
-// Conversion between float32 of the controller and double precision of simulation and evaluation.
+// Conversion between the controller's float32 vectors and the double precision vectors of
+// simulation and evaluation.
 
 #include <Eigen/Core>
 

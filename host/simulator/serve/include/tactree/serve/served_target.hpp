@@ -1,6 +1,6 @@
 #pragma once
-// A controller in this process with the protocol of a board: session, model store and control loop
-// of the firmware, on simulated flash.
+// A controller in this process that speaks the protocol of a board. It runs the firmware's session,
+// model store and control loop on simulated flash.
 
 #include <array>
 #include <cstdint>
@@ -44,13 +44,14 @@ class ServedSimBoard {
 };
 
 struct ServeOptions {
-  /// Ed25519 public key that must verify the signature of a model; none: no signature required.
+  /// Ed25519 public key that must verify the signature of a model. Without a key, no signature is
+  /// required.
   std::optional<std::array<std::uint8_t, core::kPublicKeyBytes>> key;
-  std::uint32_t slot_bytes = 16U << 20U;
-  std::uint32_t serial = 0;  ///< last word of the unique number
+  std::uint32_t slot_bytes = 16U << 20U;  ///< of each slot of the model store
+  std::uint32_t serial = 0;               ///< last word of the unique number
 };
 
-/// Ticks and session run in one thread: hold_ticks() has no effect.
+/// Ticks and session run in the same thread, therefore hold_ticks() has no effect.
 class ServedPlatform {
  public:
   void start(hal::sim::SimBoard& board) { board_ = &board; }
@@ -69,7 +70,8 @@ class ServedPlatform {
 
 class ServedTarget : public simulation::Target {
  public:
-  /// `model`: in use until another is written. `model` and `transport` must outlive the target.
+  /// `model` is in use until another model is written. `model` and `transport` must outlive the
+  /// target.
   ServedTarget(client::Transport& transport, std::span<const std::byte> model,
                const ServeOptions& options);
   ~ServedTarget() override;
@@ -81,7 +83,7 @@ class ServedTarget : public simulation::Target {
   /// Runs the session, also between ticks.
   void work();
 
-  // For other parts of a board than the session, for example USB.
+  // For components of a board other than the session, for example USB.
   [[nodiscard]] core::Controller& controller() { return controller_; }
   [[nodiscard]] ServedSimBoard::Store& store() { return store_; }
   [[nodiscard]] session::TickMailbox& mailbox() { return mailbox_; }

@@ -1,5 +1,5 @@
 #pragma once
-// A served board on USB with the link, model and parameter interfaces of a board.
+// A served board on USB with the link, model and parameter interfaces of a real board.
 
 #include <chrono>
 
@@ -10,7 +10,8 @@
 
 namespace tactree::serve {
 
-/// Controller: a UsbController (hal/usb_device.hpp) of the caller; must outlive the target.
+/// `Controller` is a UsbController (hal/usb_device.hpp). It belongs to the caller and must outlive
+/// the target.
 template <hal::UsbController Controller>
 class UsbTarget : public ServedTarget {
  public:
@@ -32,9 +33,9 @@ class UsbTarget : public ServedTarget {
     return status_;
   }
 
-  /// Handles requests of the host; also between ticks.
+  /// Handles requests of the host. May also be called between ticks.
   void serve() {
-    // Real time: the simulation may be slower than the clock of the host.
+    // Uses real time because the simulation may be slower than the clock of the host.
     const auto now = std::chrono::steady_clock::now().time_since_epoch();
     const auto now_us = std::chrono::duration_cast<std::chrono::microseconds>(now).count();
     device_.poll(static_cast<std::uint32_t>(now_us));

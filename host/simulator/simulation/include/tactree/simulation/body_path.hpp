@@ -20,18 +20,19 @@ class BodyPath {
     core::Motion motion{};
   };
 
-  /// At rest.
+  /// At rest at the identity pose.
   BodyPath() : BodyPath(Eigen::Isometry3d::Identity()) {}
   explicit BodyPath(const Eigen::Isometry3d& pose);
 
-  /// Starts at `pose` at t = 0 with constant velocities of the body's origin, scene axes; at rest
-  /// before. Throws std::invalid_argument if core::is_valid() refuses pose or motion.
+  /// At rest at `pose` until t = 0, then in motion with a constant linear velocity of the body's
+  /// origin and a constant angular velocity, along and about the scene's axes. Throws
+  /// std::invalid_argument if core::is_valid() refuses pose or motion.
   BodyPath(const Eigen::Isometry3d& pose, const Eigen::Vector3d& linear_m_s,
            const Eigen::Vector3d& angular_rad_s);
 
-  /// Constant linear and angular velocity between two keyframes; at rest before the first and after
-  /// the last. Throws std::invalid_argument if there is no keyframe, the times do not ascend, or
-  /// core::is_valid() refuses a pose or motion.
+  /// Linear and angular velocity are constant between two keyframes; the body is at rest before the
+  /// first and after the last. Throws std::invalid_argument if there is no keyframe, the times do
+  /// not ascend, or core::is_valid() refuses a pose or motion.
   explicit BodyPath(std::vector<Keyframe> keyframes);
 
   [[nodiscard]] Moment at(double t_s) const;

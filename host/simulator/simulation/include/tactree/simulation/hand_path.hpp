@@ -14,14 +14,15 @@ struct Waypoint {
   Eigen::Vector3d position_m = Eigen::Vector3d::Zero();  ///< model frame
 };
 
-/// Straight lines between waypoints; at rest before the first and after the last.
+/// The hand moves in straight lines between waypoints; it rests before the first and after the
+/// last.
 class HandPath {
  public:
   /// Throws std::invalid_argument if there is no waypoint, one is not finite, or the times do not
   /// ascend.
   explicit HandPath(std::vector<Waypoint> waypoints);
 
-  /// Cost: constant for ascending times, otherwise a binary search.
+  /// Cost: a binary search for the waypoint.
   [[nodiscard]] plant::HandTarget at(double t_s) const;
   [[nodiscard]] const std::vector<Waypoint>& waypoints() const { return waypoints_; }
 
@@ -30,7 +31,7 @@ class HandPath {
 };
 
 /// Reads rows `t_s,x,y,z` (s, m). A first row without numbers is a heading; empty rows and rows
-/// that start with # are ignored. Throws std::runtime_error: "file: line n: cause (remedy)".
+/// that start with # are ignored. Throws std::runtime_error with "file: line n: cause (remedy)".
 [[nodiscard]] HandPath read_hand_path(const std::filesystem::path& file);
 
 }  // namespace tactree::simulation

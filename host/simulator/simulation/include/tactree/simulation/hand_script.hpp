@@ -10,8 +10,8 @@
 namespace tactree::simulation {
 
 /// rub    touches down from outside and rubs to and fro over the surface, up to 0.1 m/s
-/// press  touches down in the middle and presses, harder and softer
-/// trace  draws circles with a light touch
+/// press  touches down at the centre and presses with a periodically changing depth
+/// trace  moves in circles with a light touch
 /// hover  moves above the model without touching it
 [[nodiscard]] const std::vector<std::string>& script_names();
 

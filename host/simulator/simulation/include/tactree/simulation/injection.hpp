@@ -1,13 +1,13 @@
 #pragma once
-// Fault injection: part, kind and time of a fault. Syntax: PART:KIND[=VALUE]@FROM[..TO], times in
-// seconds after arming:
+// Fault injection. A fault has a component, a kind and a time. Syntax:
+// PART:KIND[=VALUE]@FROM[..TO], times in seconds after arming:
 //
-//   encoder1:stuck@2.5s            axis 1 to 3; without a number all axes
+//   encoder1:stuck@2.5s            axis 1 to 3; all axes without a number
 //   encoder2:jump=500@1s           counts
 //   motor3:reversed@1s..1.2s       ends after 0.2 s
 //   supply:sag=12@3s               V
-//   loop:overrun=2@1s              deadlines missed in that tick
-//   clock:drift=20000@0s           excess of the board's second, millionths
+//   loop:overrun=2@1s              deadlines missed in the tick at 1 s
+//   clock:drift=20000@0s           ppm by which a second of the board's clock is too long
 
 #include <array>
 #include <limits>
@@ -57,7 +57,8 @@ struct InjectionHelp {
 };
 [[nodiscard]] std::vector<InjectionHelp> injection_kinds();
 
-/// A clause that states when a session shows the effect of such a fault: "it shows in contact".
+/// Clause that states when the effect of such a fault is visible in a session, for example "it
+/// shows in contact".
 [[nodiscard]] std::string_view shows_when(InjectedKind kind);
 
 /// Throws std::invalid_argument with `text`, the cause and the accepted values.
@@ -73,7 +74,7 @@ class Injector {
   /// Ends all faults at `t_s` at the latest.
   void mend(double t_s);
 
-  /// Call before the loop's tick at `t_s`, after posting the link's message.
+  /// Call it before the loop's tick at `t_s`, after the link's message has been posted.
   void apply(hal::sim::SimBoard& board, double t_s);
   /// Real seconds per second of the board's clock.
   [[nodiscard]] double clock_ratio(double t_s) const;

@@ -8,9 +8,9 @@
 
 namespace tactree::simulation {
 
-/// Origin of the scene in the device's frame that places the centre of the model, at `pose` in the
-/// scene, at the device's origin. For devices of one or two axes, with a small workspace: the
-/// centre of its top.
+/// Origin of the scene in the device frame for which the centre of the model, at `pose` in the
+/// scene, is at the device's origin. For a device of one or two axes, whose workspace is small, the
+/// centre of the model's top is placed there instead.
 [[nodiscard]] core::Vec3 middle_at_origin(const core::BlobHeader& model,
                                           const Eigen::Isometry3d& pose, core::DeviceKind kind);
 

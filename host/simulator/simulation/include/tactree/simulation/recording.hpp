@@ -1,6 +1,6 @@
 #pragma once
-// A session as a file: all inputs of a controller, and a checksum of each tick's outcome.
-// replay.hpp replays it on another controller.
+// Recording of a session in a file: all inputs of a controller, and a checksum of each tick's
+// outcome. replay.hpp replays it on another controller.
 //
 // Format, version 1. Little-endian, no padding; a float is its float32 bits.
 //
@@ -13,10 +13,11 @@
 //     3 load model     u32 model
 //     4 add body       u32 model, pose (f32[4] rotation w x y z, f32[3] translation)
 //     5 adjustment     the fields of core::Adjustment in the order of their declaration
-//     6 trace begins   nothing: the trace checksum covers the ticks after it
+//     6 trace begins   no data; the trace checksum covers the ticks after it
 //     8 remove body    u32 number of the body
-//     9 unload model   nothing
-//     7 tick           u16 mask of the fields that follow; each other one is as in the tick before
+//     9 unload model   no data
+//     7 tick           u16 mask of the fields that follow. All other fields have the values of the
+//                      previous tick; fields marked "once" apply to one tick only.
 //       bit 0..2  i32 count of the encoder
 //           3     u8 flags: emergency stop, dead man, enable, motors ok, link alive, valid 0..2
 //           4     u16 link age      5  u32 overruns    6  f32 load    7  f32 supply
@@ -24,7 +25,7 @@
 //           8     u8 command, once
 //           9     u8 number of body updates, once; of each u32 body, u8 enabled, pose, f32[3]
 //                 linear, f32[3] angular velocity
-//           12    nothing: the storage is busy, once
+//           12    no data; the storage is busy, once
 //           10    f32[3] added force, u32 ticks, once
 //                      then u32 CRC-32 of the outcome: f32[3] efforts, f32[3] force, u32 faults,
 //                      u32 limits, u8 state, u8 enable
@@ -111,8 +112,8 @@ struct RecordedTick {
 using RecordedEvent = std::variant<core::Configuration, core::Adjustment, LoadModel, AddBody,
                                    RemoveBody, UnloadModel, BeginTrace, RecordedTick>;
 
-/// An incomplete or damaged recording. The message states place, cause and remedy, not the name of
-/// the file.
+/// A recording is incomplete or damaged. The message contains the byte offset, cause and remedy,
+/// but not the name of the file.
 class RecordingError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -120,10 +121,11 @@ class RecordingError : public std::runtime_error {
 
 inline constexpr std::size_t kRecordingHeaderBytes = 8 + 4 + 8;
 
-/// Checks the first bytes of a file, kRecordingHeaderBytes or all of them. Throws RecordingError.
+/// Checks the header: the first kRecordingHeaderBytes of a file, or all bytes of a shorter file.
+/// Throws RecordingError.
 void check_recording_header(std::span<const std::byte> header, std::uint64_t file_bytes);
 
-/// A recording in memory; the constructor checks all of it.
+/// A recording in memory. The constructor checks all of it.
 class Recording {
  public:
   /// `bytes` must outlive the recording. Throws RecordingError.
@@ -133,7 +135,7 @@ class Recording {
   [[nodiscard]] std::uint64_t ticks() const { return ticks_; }
   [[nodiscard]] std::uint32_t trace_crc32() const { return trace_crc32_; }
 
-  /// Reads the next event. False: end of the recording.
+  /// Reads the next event. Returns false at the end of the recording.
   [[nodiscard]] bool next(RecordedEvent& event);
   /// Restarts next() at the first event.
   void rewind();

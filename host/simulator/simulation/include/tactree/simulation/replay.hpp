@@ -1,6 +1,6 @@
 #pragma once
-// Replays a recorded session on a new controller and compares the outcomes bit for bit: a tick
-// depends on the controller's state and its Input only.
+// Replays a recorded session on a new controller. The outcomes must be bit-identical, because a
+// tick depends on the controller's state and its Input only; their checksums are compared.
 
 #include <cstdint>
 #include <optional>
@@ -14,19 +14,19 @@
 namespace tactree::simulation {
 
 struct Difference {
-  std::uint64_t tick = 0;  ///< from 0, the first of the recording
-  std::string cause;       ///< description
+  std::uint64_t tick = 0;  ///< 0: the first tick of the recording
+  std::string cause;       ///< for messages
 };
 
 struct ReplayResult {
-  Summary summary{};                     ///< of the ticks after the begin of the trace
+  Summary summary{};                     ///< of the ticks after the start of the trace
   std::uint64_t ticks = 0;               ///< all replayed ticks
   std::optional<Difference> difference;  ///< first difference; ends the replay
   [[nodiscard]] bool same() const { return !difference.has_value(); }
 };
 
-/// `models`: in the order of the recording; must outlive the call. Precondition: same number and
-/// digests as in the recording.
+/// `models` are in the order of the recording and must outlive the call. Precondition: their number
+/// and digests are those of the recording.
 [[nodiscard]] ReplayResult replay(Recording& recording, const std::vector<core::BlobView>& models);
 
 }  // namespace tactree::simulation

@@ -14,19 +14,21 @@
 namespace tactree::simulation {
 
 struct SceneBody {
-  /// 4-byte aligned; must outlive the target. First body: the blob in the board's storage.
+  /// 4-byte aligned; must outlive the target. For the first body, the blob in the board's storage.
   std::span<const std::byte> blob;
   BodyPath path{};
   double from_s = -std::numeric_limits<double>::infinity();  ///< start of the enabled time
   double until_s = std::numeric_limits<double>::infinity();  ///< end of the enabled time
 };
 
-/// Update of a body at a time. A body that leaves the accepted space stays at its border.
+/// Update of a body at a time. The controller ignores a pose that core::is_valid() refuses; a body
+/// that leaves the accepted range therefore stops at its boundary.
 [[nodiscard]] hal::BodyUpdate update_at(const SceneBody& body, std::uint32_t number, double t_s);
 
 class SceneTarget : public Target {
  public:
-  /// At least one body. Time 0 is after `ticks_before` ticks: Simulation::arming_ticks().
+  /// Throws std::invalid_argument without a body. Time 0 is after `ticks_before` ticks; see
+  /// Simulation::arming_ticks().
   SceneTarget(std::vector<SceneBody> bodies, std::uint64_t ticks_before);
 
   /// Returns the result of the first refused body, if any; see refused_body().
@@ -44,18 +46,18 @@ class SceneTarget : public Target {
 
   std::vector<SceneBody> bodies_;
   std::vector<std::uint32_t> numbers_;    // of the bodies in the controller
-  std::vector<hal::BodyUpdate> updates_;  // of the tick
+  std::vector<hal::BodyUpdate> updates_;  // of the current tick
   core::Controller controller_;
   double period_s_ = 0.0;
   double tick_ = 0.0;
   std::size_t refused_body_ = 0;
 };
 
-/// Moves the single body of another target over the link, in each tick; the target may be a board.
-/// If the link is cut, the body continues with the motion of the last update.
+/// Moves the single body of another target, which may be a board, over the link in each tick. If
+/// the link is cut, the body continues with the motion of the last update.
 class LinkedBodyTarget : public Target {
  public:
-  /// Parameters as of SceneTarget.
+  /// `ticks_before` as for SceneTarget.
   LinkedBodyTarget(std::unique_ptr<Target> target, SceneBody body, std::uint64_t ticks_before);
 
   hal::StartResult start(hal::sim::SimBoard& board,

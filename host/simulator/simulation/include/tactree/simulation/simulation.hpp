@@ -25,8 +25,8 @@ namespace tactree::simulation {
 struct Setup {
   core::Configuration controller{};
   hal::sim::BoardParameters board{};  ///< period_us follows controller.rate_hz
-  plant::PlantParameters plant{};     ///< hand and sub-step; without dynamics also the masses
-  /// Dynamics of the joints of controller.device; none: plant.device on each axis.
+  plant::PlantParameters plant{};     ///< hand and sub-step; the device if `dynamics` is empty
+  /// Dynamics of the joints of controller.device. If empty, each axis is plant.device.
   std::optional<core::DeviceDynamics> dynamics{};
 };
 
@@ -61,8 +61,8 @@ struct Summary {
   double penetration_max_m = 0.0;
   std::uint32_t trace_crc32 = 0;  ///< of the force's three float32 of every tick, little-endian
   std::vector<FaultEvent> faults;
-  std::array<BodySummary, core::kMaxBodies> bodies{};  ///< by the controller's numbers
-  std::uint64_t crowded_ticks = 0;  ///< more bodies within reach than are rendered
+  std::array<BodySummary, core::kMaxBodies> bodies{};  ///< by the controller's body numbers
+  std::uint64_t crowded_ticks = 0;  ///< with more bodies within reach than are rendered
 };
 
 /// A session with a homed device: power-up, arming, then ticks along the hand's path.
@@ -73,17 +73,18 @@ class Simulation {
   Simulation(std::span<const std::byte> blob, const Setup& setup, HandPath path,
              std::unique_ptr<Target> target = std::make_unique<HostTarget>());
 
-  /// Number of ticks of arm().
+  /// Number of ticks that arm() executes.
   [[nodiscard]] static std::uint64_t arming_ticks(const Setup& setup);
 
-  /// Result of the start; if it is not ok() the force stays zero.
+  /// Result of the start. If it is not ok(), the force stays zero.
   [[nodiscard]] const hal::StartResult& start_result() const { return start_; }
 
-  /// Arms and waits for the end of the ramp, with the hand at rest at the start of its path.
-  /// False: the controller is not active. Not part of the trace.
+  /// Arms the controller and waits for the end of the ramp, with the hand at rest at the start of
+  /// its path. Returns false if the controller is not active then. These ticks are not part of the
+  /// trace.
   [[nodiscard]] bool arm();
 
-  /// Sets the faults, by the time of the samples. Call it before the first step().
+  /// Sets the faults; their times are those of the samples. Call it before the first step().
   void inject(Injector injector) { injector_ = std::move(injector); }
   [[nodiscard]] Injector& injector() { return injector_; }
 

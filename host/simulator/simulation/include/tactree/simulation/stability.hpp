@@ -1,7 +1,7 @@
 #pragma once
-// Largest stable stiffness of a wall, measured in a closed loop of the controller's velocity
-// estimator and passivity controller with a mass, whose motion between two ticks is the exact
-// solution. Compare core::stability_limit().
+// Maximum stable stiffness of a wall, measured in a closed loop of the controller's velocity
+// estimator and passivity controller with a mass. The motion of the mass between two ticks is the
+// exact solution. core::stability_limit() predicts the same limit.
 
 #include "tactree/core/configuration/configuration.hpp"
 
@@ -20,12 +20,12 @@ struct StabilityCase {
   double passivity_Ns_m = 0.0;  ///< maximum damping of the passivity controller; 0: off
 };
 
-/// True if a tip released 1 mm from equilibrium comes to rest: in the last quarter of 10 s it must
-/// stay nearer than at the start.
+/// True if a tip that is released 1 mm from the equilibrium comes to rest: in the last quarter of
+/// 10 s it must stay within 1 mm.
 [[nodiscard]] bool is_stable(const StabilityCase& c, double stiffness_N_m);
 
-/// Largest stable stiffness, N/m, within 0.2 %, between 1 and 1e6. Cost: about 20 times 10 s of
-/// ticks; 20 ms at 1 kHz.
+/// Maximum stable stiffness between 1 and 1e6 N/m, accurate to 0.2 %. Cost: the ticks of about 20
+/// runs of 10 s, which take 20 ms at 1 kHz.
 [[nodiscard]] double largest_stable_stiffness(const StabilityCase& c);
 
 /// Result of core::stability_limit() for the case.

@@ -8,7 +8,7 @@
 namespace tactree::simulation {
 
 /// A controller with its loop. It accesses the device through the simulated board; all calls must
-/// pass the same one.
+/// pass the same board.
 class Target {
  public:
   Target() = default;
@@ -25,7 +25,7 @@ class Target {
   virtual void finish() {}
 };
 
-/// Controller in this process with the model of the board's storage.
+/// Controller in this process with the model in the board's storage.
 class HostTarget : public Target {
  public:
   hal::StartResult start(hal::sim::SimBoard& board,

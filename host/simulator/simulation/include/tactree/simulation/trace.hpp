@@ -1,5 +1,5 @@
 #pragma once
-// Results of a simulation as CSV table and as SVG plot.
+// Results of a simulation as a CSV table and as SVG plots.
 
 #include <span>
 #include <string>
@@ -12,10 +12,10 @@ namespace tactree::simulation {
 /// First row of a trace: the names of its columns with units.
 [[nodiscard]] std::string trace_heading();
 
-/// Appends one row per sample. Reading a float32 back gives the same bits.
+/// Appends the row of a sample. A float32 that is read back is bit-identical.
 void append_trace(std::string& csv, const Sample& sample);
 
-/// Distribution of a value of the ticks. `bound`: proven upper bound; 0: unknown.
+/// Distribution of a value over the ticks, with its proven upper bound `bound`, 0 if unknown.
 struct Histogram {
   struct Bar {
     double from = 0.0;
@@ -28,13 +28,13 @@ struct Histogram {
 };
 
 /// SVG page with the components and magnitude of the force and the penetration over time, `title`
-/// above and the histogram below if it has bars. Long runs are drawn as the band between the lowest
-/// and the highest value of each pixel column, which keeps every spike.
+/// above and the histogram below if it has bars. Long runs are drawn as the band between the
+/// minimum and the maximum of each pixel column, which preserves every spike.
 [[nodiscard]] std::string plot_svg(std::span<const Sample> samples, const std::string& title,
                                    const Histogram& histogram = {});
 
 /// SVG page with the force of two runs along the same path, one per mode: the whole run, and a
-/// quarter of a second from the middle.
+/// quarter of a second after half the run.
 [[nodiscard]] std::string plot_modes_svg(std::span<const Sample> surface,
                                          std::span<const Sample> paper, const std::string& title);
 

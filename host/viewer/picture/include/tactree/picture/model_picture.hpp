@@ -1,6 +1,6 @@
 #pragma once
-// A picture of a model from front and back: points as discs shaded by their normals, a scale, and
-// marks at the ends of the surface.
+// Picture of a model from front and back, with the points as discs shaded by their normals, a
+// scale, and marks at holes and open boundaries of the surface.
 
 #include <array>
 #include <cstdint>
@@ -11,20 +11,20 @@
 
 namespace tactree::picture {
 
-/// A hole or an open end of the surface.
+/// A hole or an open boundary of the surface.
 struct Mark {
   std::array<float, 3> centre_m{};
   float diameter_m = 0.0F;
-  bool is_hole = true;  ///< false: an open end or edge
+  bool is_hole = true;  ///< false: an open boundary
 };
 
 inline constexpr int kPictureWidth = 1280;
 inline constexpr int kPictureHeight = 720;
 
-/// `marks`: widest first; the first eight are drawn, with a legend. Marks behind the surface are
-/// drawn faintly. doubtful: empty, or per point of the blob: 1 if its side is doubtful; such points
-/// get a colour of their own, with a legend. Precondition: !view.empty(). Cost: about 0.1 us per
-/// point.
+/// `marks` are in descending order of diameter; the first eight are drawn, with a legend. Marks
+/// behind the surface are drawn faintly. `doubtful` is empty, or has one element per point of the
+/// blob: 1 if its orientation is ambiguous. Such points have a separate colour, with a legend.
+/// Precondition: !view.empty(). Cost: about 0.1 us per point.
 [[nodiscard]] Raster draw_model(const core::BlobView& view, std::span<const Mark> marks,
                                 std::span<const std::uint8_t> doubtful = {});
 

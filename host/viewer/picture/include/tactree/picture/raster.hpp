@@ -25,13 +25,13 @@ class Raster {
   /// Depth of the nearest disc; infinite for the background.
   [[nodiscard]] float depth(int x, int y) const { return depths_[index(x, y)]; }
 
-  /// Draws a disc where nothing nearer was drawn; smaller depths are nearer.
+  /// Draws a disc where no nearer disc was drawn; smaller depths are nearer.
   void disc(float x, float y, float radius, float depth, Colour colour);
-  /// Draws on top; `opacity` 0 .. 1.
+  /// Draws on top of all discs; `opacity` 0 .. 1.
   void circle(float x, float y, float radius, float width, Colour colour, float opacity = 1.0F);
   void box(int left, int top, int right, int bottom, Colour colour);
-  /// Letters of 5 x 7 dots, each `dot` pixels wide; small letters, digits and . , - ( ). Returns
-  /// the width.
+  /// Draws text in letters of 5 x 7 dots, each `dot` pixels wide: lower-case letters, digits and
+  /// ( ) , - . / : _. Returns the width.
   int text(int x, int y, std::string_view line, int dot, Colour colour);
 
   /// The picture at half the size: each pixel is the mean of four.
