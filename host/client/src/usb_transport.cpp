@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstring>
 #include <deque>
 #include <utility>
@@ -45,7 +46,7 @@ struct UsbTransport::Impl {
   std::deque<std::byte> backlog;
   std::optional<core::usb::NewsPacket> latest;
   std::string reason;
-  bool lost = false;
+  std::atomic<bool> lost = false;  // connected() may be called from another thread
   bool closing = false;
 
   explicit Impl(const UsbDeviceInfo& device) : info(device) {}

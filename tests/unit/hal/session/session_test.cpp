@@ -29,6 +29,28 @@ class SessionTest : public ::testing::Test {
   SessionRig<> rig{no_store(), SessionRig<>::configuration(), blob().written().bytes};
 };
 
+// The reply to a command must not be an older status, which would hide a fault or a token.
+TEST(FreshStatus, IgnoresReportsQueuedBefore) {
+  session::TickMailbox mailbox;
+  session::FreshStatus fresh;
+  mailbox.subscribe(1);
+  core::Status status;
+  for (std::uint32_t tick = 1; tick <= 2U; ++tick) {
+    status.tick = tick;
+    mailbox.send(status, tick);
+  }
+  fresh.request(mailbox);
+  status.tick = 3;
+  mailbox.send(status, 3);
+  for (std::uint32_t tick = 1; tick <= 3U; ++tick) {
+    ASSERT_NE(mailbox.front(), nullptr);
+    fresh.note(*mailbox.front());
+    mailbox.pop();
+    EXPECT_EQ(fresh.has_come(), tick == 3U);
+  }
+  EXPECT_EQ(fresh.get().tick, 3U);
+}
+
 TEST_F(SessionTest, IdentifiesItselfWithoutSession) {
   const client::Response response = rig.ask(MessageKind::kIdentify);
   core::wire::IdentifyReply reply;

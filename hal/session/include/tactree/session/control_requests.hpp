@@ -14,26 +14,25 @@
 
 namespace tactree::session {
 
-/// The next status that arrives after request().
+/// The status of a tick that began after request(). Reports that were queued before do not count.
 class FreshStatus {
  public:
   void request(TickMailbox& mailbox) {
-    before_ = count_;
+    has_come_ = false;
     mailbox.request_report();
   }
-  void note(const core::Status& status) {
-    status_ = status;
-    ++count_;
+  void note(const TickReport& report) {
+    status_ = report.status;
+    has_come_ |= report.requested;
   }
-  /// Returns true if a status has arrived since request().
-  [[nodiscard]] bool has_come() const { return count_ != before_; }
+  /// Returns true once such a status has arrived.
+  [[nodiscard]] bool has_come() const { return has_come_; }
   /// The newest status.
   [[nodiscard]] const core::Status& get() const { return status_; }
 
  private:
   core::Status status_{};
-  std::uint32_t count_ = 0;
-  std::uint32_t before_ = 0;
+  bool has_come_ = false;
 };
 
 class ControlRequests {

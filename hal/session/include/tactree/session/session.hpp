@@ -145,7 +145,7 @@ class Session {
     if (report == nullptr) {
       return false;
     }
-    fresh_.note(report->status);
+    fresh_.note(*report);
     telemetry_.send(*report, filter_.session(), queue_);
     mailbox_.pop();
     queue_.flush(port_);

@@ -38,7 +38,8 @@ class Box {
 struct TickReport {
   core::Status status{};
   std::uint32_t time_us = 0;
-  bool telemetry = false;  ///< true: due by the subscription; false: by request_report()
+  bool telemetry = false;  ///< due by the subscription
+  bool requested = false;  ///< the tick began after request_report()
 };
 
 class TickMailbox {
@@ -74,7 +75,7 @@ class TickMailbox {
       ticks_ = 0;
     }
     if (asked || due) {
-      push(status, time_us, due);
+      push({status, time_us, due, asked});
     }
   }
 
@@ -134,12 +135,12 @@ class TickMailbox {
     }
   }
 
-  void push(const core::Status& status, std::uint32_t time_us, bool due) {
+  void push(const TickReport& report) {
     if (written_ - __atomic_load_n(&read_, __ATOMIC_ACQUIRE) == kWaiting) {
-      dropped_ += due ? 1U : 0U;
+      dropped_ += report.telemetry ? 1U : 0U;
       return;
     }
-    ring_[written_ % kWaiting] = {status, time_us, due};
+    ring_[written_ % kWaiting] = report;
     asked_ = false;
     __atomic_store_n(&written_, written_ + 1U, __ATOMIC_RELEASE);
   }

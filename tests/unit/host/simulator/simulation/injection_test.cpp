@@ -68,7 +68,8 @@ TEST(Injection, RefusesInvalidScripts) {
 struct Session {
   Fault fault = Fault::kNone;
   double detected_s = 0.0;
-  double force_after_N = 0.0;  // 20 ticks after detection and later
+  double force_after_N = 0.0;   // 20 ticks after detection and later
+  double force_during_N = 0.0;  // maximum from 1.6 s to 1.9 s
   bool fault_free_end = true;
 };
 
@@ -97,6 +98,10 @@ Session run(std::string_view script) {
     if (since > 0) {
       session.force_after_N =
           std::max(session.force_after_N, static_cast<double>(core::length(sample.status.force)));
+    }
+    if (sample.t_s > 1.6 && sample.t_s < 1.9) {
+      session.force_during_N =
+          std::max(session.force_during_N, static_cast<double>(core::length(sample.status.force)));
     }
     session.fault_free_end = sample.status.faults == 0U;
   }
@@ -141,9 +146,11 @@ TEST(Injection, LatchedFaultOutlivesCause) {
   EXPECT_FALSE(session.fault_free_end);
 }
 
-TEST(Injection, DeadManReleaseIsHarmless) {
+TEST(Injection, DeadManReleaseEndsForce) {
+  EXPECT_GT(run("").force_during_N, 0.3);
   const Session session = run("deadman:released@1.5s..2s");
   EXPECT_EQ(session.fault, Fault::kNone);
+  EXPECT_EQ(session.force_during_N, 0.0);
 }
 
 }  // namespace
