@@ -8,9 +8,9 @@
 // unload_model() and know_costs(). A replay of all Inputs and of these calls is bit-identical.
 //
 // Interrupt safety: one context owns a Controller. Another context must hold the ticks
-// (between_ticks.hpp) during each call other than state(), motors_off(), has_body() and
-// configuration(). One call of step() is one tick of 1 / rate_hz. RAM: sizeof(Controller), about
-// 9 KiB.
+// (between_ticks.hpp) during each call other than state(), motors_off(), homed(), faults(),
+// has_body() and configuration(). One call of step() is one tick of 1 / rate_hz. RAM:
+// sizeof(Controller), at most 21 KiB.
 
 #include <cstdint>
 #include <span>
@@ -197,5 +197,6 @@ class Controller {
   Scene scene_{};
   FlightRecorder recorder_{};
 };
+static_assert(sizeof(Controller) <= 21U * 1024U, "raise the RAM stated at the top of this header");
 
 }  // namespace tactree::core
