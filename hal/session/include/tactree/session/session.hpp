@@ -224,13 +224,14 @@ class Session {
     }
   }
 
-  WireStatus set_limits() {
+  // Not inlined, like the other changes: their data is on the stack only where it is needed.
+  [[gnu::noinline]] WireStatus set_limits() {
     core::Adjustment adjustment;
     const WireStatus status = limits_of(decoder_.payload(), controller(), base_, adjustment);
     return adjust(status, adjustment);
   }
 
-  WireStatus set_material() {
+  [[gnu::noinline]] WireStatus set_material() {
     core::Adjustment adjustment;
     const WireStatus status = material_of(decoder_.payload(), controller(), adjustment);
     return adjust(status, adjustment);
@@ -241,7 +242,7 @@ class Session {
   }
 
   /// The device must be homed again afterwards, and its models are checked again.
-  WireStatus set_parameter() {
+  [[gnu::noinline]] WireStatus set_parameter() {
     core::wire::SetParameterRequest request;
     core::Configuration changed;
     WireStatus status = parameter_change(decoder_.payload(), controller(), request, changed);
@@ -303,7 +304,7 @@ class Session {
     return WireStatus::kOk;
   }
 
-  WireStatus require_link(std::uint32_t timeout_ms) {
+  [[gnu::noinline]] WireStatus require_link(std::uint32_t timeout_ms) {
     return to_wire(changes_.adjust(with_link(controller().adjustment(), base_, timeout_ms)));
   }
 
