@@ -44,7 +44,8 @@ class Loop {
   [[nodiscard]] StartResult start(const core::Configuration& configuration) {
     board_.enable_line().set(false);
     StartResult result;
-    core::BetweenTicks changes(controller_, board_);
+    core::Uninterrupted before_ticks(board_);
+    core::BetweenTicks changes(controller_, before_ticks);
     result.configuration = changes.configure(configuration);
     if (result.configuration != core::ConfigurationStatus::kOk) {
       return result;

@@ -38,7 +38,8 @@ hal::StartResult SceneTarget::add(hal::sim::SimBoard& board, const SceneBody& bo
   result.blob = core::open_blob(body.blob, view);
   if (result.blob == core::BlobStatus::kOk) {
     const core::Pose pose = body.path.at(0.0).pose;
-    result.model = core::BetweenTicks(controller_, board).add_body(view, pose, number);
+    core::Uninterrupted before_ticks(board);
+    result.model = core::BetweenTicks(controller_, before_ticks).add_body(view, pose, number);
   }
   return result;
 }

@@ -2,8 +2,7 @@
 // Changes of a running controller. Outside the loop, only the owner of a BetweenTicks changes the
 // controller. Each change is made with the ticks held and recorded before they are released.
 //
-//   platform.hold_ticks(hold)  optional; true: no tick starts; false: ticks that fell due run.
-//                              Without it, call only where no tick can interrupt
+//   platform.hold_ticks(hold)  true: no tick starts; false: ticks that fell due run
 //   platform.recorder()        optional: pointer to a recorder (hal/sim/session_recorder.hpp), or
 //                              nullptr
 //
@@ -24,6 +23,20 @@ void report_to_recorder(Owner& owner, Report report) {
     }
   }
 }
+
+/// Platform of a context that no tick interrupts: a loop before its first tick, or a simulation in
+/// one thread. `owner`: a board, with or without a recorder; kept by reference.
+template <class Owner>
+class Uninterrupted {
+ public:
+  explicit Uninterrupted(Owner& owner) : owner_(owner) {}
+  void hold_ticks(bool /*hold*/) {}
+  [[nodiscard]] auto* recorder() requires requires(Owner& owner) { owner.recorder(); }
+  { return owner_.recorder(); }
+
+ private:
+  Owner& owner_;
+};
 
 template <class Platform>
 class BetweenTicks {
@@ -72,17 +85,12 @@ class BetweenTicks {
   /// Holds the ticks for its lifetime.
   class Hold {
    public:
-    explicit Hold(Platform& platform) : platform_(platform) { hold(true); }
-    ~Hold() { hold(false); }
+    explicit Hold(Platform& platform) : platform_(platform) { platform_.hold_ticks(true); }
+    ~Hold() { platform_.hold_ticks(false); }
     Hold(const Hold&) = delete;
     Hold& operator=(const Hold&) = delete;
 
    private:
-    void hold(bool held) {
-      if constexpr (requires { platform_.hold_ticks(held); }) {
-        platform_.hold_ticks(held);
-      }
-    }
     Platform& platform_;
   };
 

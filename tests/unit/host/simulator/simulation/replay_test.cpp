@@ -183,7 +183,8 @@ class RandomSession {
   hal::sim::SimBoard board_{{.recorder = &writer_}, touched_plane().bytes()};
   core::Controller controller_;
   hal::Loop<hal::sim::SimBoard> loop_{board_, controller_};
-  core::BetweenTicks<hal::sim::SimBoard> changes_{controller_, board_};
+  core::Uninterrupted<hal::sim::SimBoard> one_thread_{board_};
+  core::BetweenTicks<core::Uninterrupted<hal::sim::SimBoard>> changes_{controller_, one_thread_};
   std::vector<core::BodyUpdate> updates_;
   double z_m_ = 4e-3;
   std::int32_t jump_ = -400;
