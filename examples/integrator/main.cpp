@@ -10,7 +10,7 @@ int main() {
 
   tactree::core::Configuration configuration;
   use_device(tactree::core::presets::premium(), configuration);
-  configuration.link_required = true;
+  configuration.link.required = true;
   // After a refusal the loop runs as well: it keeps the motors off, and the status has the cause.
   (void)loop.start(configuration);
   while (true) {

@@ -168,14 +168,23 @@ def states(root):
     return "\n".join(lines)
 
 
+# The groups of core::Configuration that limit or supervise, and their members of it.
+LIMITS = [("ForceLimits", "limits"), ("MotorLimits", "motors"), ("Supervision", "supervision"),
+          ("LinkSupervision", "link")]
+
+
 def limits(root):
+    """The table of the limits, from the declarations and their comments."""
     source = (root / "core/include/tactree/core/configuration/configuration.hpp").read_text()
-    body = source.split("// Limits.")[1].split("\n};")[0]
     lines = ["| parameter | default | meaning and range |", "|---|---|---|"]
-    for name, default, text in re.findall(
-            r"^  (?:float|bool) (\w+)(?:\[kAxes\])? = ([^;]+);\s*///< ([^\n]+)", body, re.M):
-        value = re.sub(r"(?<=\d)F", "", default).strip("{}")
-        lines.append(f"| `{name}` | {value} | {text} |")
+    for group, member in LIMITS:
+        if not re.search(rf"^  {group} {member}{{}};", source, re.M):
+            raise SystemExit(f"generate: Configuration has no member {member} of type {group}")
+        body = re.search(rf"^struct {group} {{\n(.*?)^}};", source, re.M | re.S).group(1)
+        for name, default, text in re.findall(
+                r"^  (?:float|bool) (\w+)(?:\[kAxes\])? = ([^;]+);\s*///< ([^\n]+)", body, re.M):
+            value = re.sub(r"(?<=\d)F", "", default).strip("{}")
+            lines.append(f"| `{member}.{name}` | {value} | {text} |")
     return "\n".join(lines)
 
 

@@ -255,9 +255,9 @@ hal::StartResult start_at(const emulation::BoardDescription& board,
   simulation::Setup setup;
   setup.controller.rate_hz = static_cast<float>(rate_hz);
   setup.controller.velocity_cutoff_hz = 0.2F * setup.controller.rate_hz;
-  setup.controller.stiffness_N_m = 10.0F;
-  setup.controller.slew_N_s = setup.controller.rate_hz;
-  for (float& slew : setup.controller.effort_slew_s) {
+  setup.controller.contact.stiffness_N_m = 10.0F;
+  setup.controller.limits.slew_N_s = setup.controller.rate_hz;
+  for (float& slew : setup.controller.motors.effort_slew_s) {
     slew = setup.controller.rate_hz;
   }
   emulation::EmulationOptions options;

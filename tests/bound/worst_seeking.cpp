@@ -23,9 +23,9 @@ core::Configuration free_probe(core::RenderMode mode, float rate_hz) {
   c.mode = mode;
   c.rate_hz = rate_hz;
   c.velocity_cutoff_hz = 0.2F * rate_hz;
-  c.speed_max_m_s = 100.0F;
-  c.dead_man_required = false;
-  c.ramp_s = 0.002F;
+  c.supervision.speed_max_m_s = 100.0F;
+  c.supervision.dead_man_required = false;
+  c.limits.ramp_s = 0.002F;
   c.device.homing = core::HomingMethod::kAbsolute;
   for (std::uint32_t i = 0; i < core::kAxes; ++i) {
     c.device.counts_per_m[i] = kCountsPerMetre;

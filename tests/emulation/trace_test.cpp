@@ -35,8 +35,9 @@ simulation::HandPath path() { return simulation::make_script("rub", touched_shap
 simulation::Setup setup_of(core::RenderMode mode) {
   simulation::Setup setup;
   setup.controller.mode = mode;
-  setup.controller.stiffness_N_m = 612.3F;  // a value that is not a power of two shows lost bits
-  setup.controller.static_friction = 0.37F;
+  setup.controller.contact.stiffness_N_m =
+      612.3F;  // a value that is not a power of two shows lost bits
+  setup.controller.contact.static_friction = 0.37F;
   setup.board.encoders.latency_ticks = 1;
   setup.board.motors.latency_ticks = 1;
   return setup;

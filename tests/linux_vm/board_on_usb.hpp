@@ -61,7 +61,7 @@ class BoardOnUsb {
 
   static simulation::Setup setup() {
     simulation::Setup setup;
-    setup.controller.dead_man_required = false;
+    setup.controller.supervision.dead_man_required = false;
     return setup;
   }
 

@@ -57,7 +57,7 @@ class ControllerRig {
     step();
     input.dead_man = true;
     step();
-    if (!controller.configuration().dead_man_required) {
+    if (!controller.configuration().supervision.dead_man_required) {
       step(core::Command::kArm);
     }
   }

@@ -45,7 +45,7 @@ class RunningBoard {
   void run(double height_m) {
     const std::span<const std::byte> blob = model().written().bytes;
     simulation::Setup setup;
-    setup.controller.dead_man_required = false;
+    setup.controller.supervision.dead_man_required = false;
     simulation::HandPath path({{0.0, {0.0, 0.0, 0.04}}, {1.0, {0.0, 0.0, height_m}}});
     simulation::Simulation simulation(
         blob, setup, path,

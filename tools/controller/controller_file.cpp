@@ -68,18 +68,18 @@ void read_limits(support::JsonReader limits, core::Configuration& c) {
   const auto maybe_flag = [&limits](const char* key, bool& value) {
     value = limits.has(key) ? limits.flag(key) : value;
   };
-  maybe("force_max_N", c.force_max_N, 0.01, static_cast<double>(c.force_max_N));
-  maybe("slew_N_s", c.slew_N_s, 1e-3, 1e6);
-  maybe("ramp_s", c.ramp_s, 1e-3, 10.0);
-  maybe("speed_max_m_s", c.speed_max_m_s, 0.1, 100.0);
-  maybe("stiffness_N_m", c.stiffness_N_m, 0.0, 1e5);
-  maybe("damping_Ns_m", c.damping_Ns_m, 0.0, 1000.0);
+  maybe("force_max_N", c.limits.force_max_N, 0.01, static_cast<double>(c.limits.force_max_N));
+  maybe("slew_N_s", c.limits.slew_N_s, 1e-3, 1e6);
+  maybe("ramp_s", c.limits.ramp_s, 1e-3, 10.0);
+  maybe("speed_max_m_s", c.supervision.speed_max_m_s, 0.1, 100.0);
+  maybe("stiffness_N_m", c.contact.stiffness_N_m, 0.0, 1e5);
+  maybe("damping_Ns_m", c.contact.damping_Ns_m, 0.0, 1000.0);
   maybe("velocity_cutoff_hz", c.velocity_cutoff_hz, 1.0, 1e4);
   maybe("delay_s", c.delay_s, 0.0, 0.1);
-  maybe("link_timeout_s", c.link_timeout_s, 0.005, 0.1);
-  maybe("enable_timeout_s", c.enable_timeout_s, 1e-3, 1.0);
-  maybe_flag("link_required", c.link_required);
-  maybe_flag("dead_man_required", c.dead_man_required);
+  maybe("link_timeout_s", c.link.timeout_s, 0.005, 0.1);
+  maybe("enable_timeout_s", c.supervision.enable_timeout_s, 1e-3, 1.0);
+  maybe_flag("link_required", c.link.required);
+  maybe_flag("dead_man_required", c.supervision.dead_man_required);
   maybe_flag("compensate_gravity", c.compensate_gravity);
   maybe_flag("use_materials", c.use_materials);
   limits.finish();
@@ -231,7 +231,7 @@ void check_together(const support::JsonReader& reader, const core::Configuration
   if (status == core::ConfigurationStatus::kUnstable) {
     reader.refuse("limits.stiffness_N_m",
                   fmt::format("{:.6g} N/m is beyond the stability limit of {:.6g} N/m with a hand",
-                              configuration.stiffness_N_m,
+                              configuration.contact.stiffness_N_m,
                               core::stability_limit(configuration).with_hand_N_m),
                   "lower it, or raise rate_hz or damping_Ns_m");
   }
@@ -257,10 +257,12 @@ core::Configuration begin_configuration(support::JsonReader& reader,
 // Limits the efforts to those that the motors can produce.
 void bound_efforts(const hal::linux_gpio::ControllerBoardSettings& board, core::Configuration& c) {
   for (std::size_t i = 0; i < board.motors.axes.size(); ++i) {
-    c.effort_max[i] = std::min(c.effort_max[i], board.motors.axes[i].effort_at_full_width);
+    c.motors.effort_max[i] =
+        std::min(c.motors.effort_max[i], board.motors.axes[i].effort_at_full_width);
   }
   for (std::size_t i = 0; i < board.converters.axes.size(); ++i) {
-    c.effort_max[i] = std::min(c.effort_max[i], board.converters.axes[i].effort_at_full);
+    c.motors.effort_max[i] =
+        std::min(c.motors.effort_max[i], board.converters.axes[i].effort_at_full);
   }
 }
 
@@ -270,10 +272,12 @@ void bound_efforts(const hal::linux_gpio::ControllerBoardSettings& board, core::
 void fit_slews(bool given, core::Configuration& c) {
   constexpr float kShareOfATick = 1.0F;  // change per tick / limit; the gate accepts up to 2
   if (!given) {
-    c.slew_N_s = std::min(c.slew_N_s, kShareOfATick * c.force_max_N * c.rate_hz);
+    c.limits.slew_N_s =
+        std::min(c.limits.slew_N_s, kShareOfATick * c.limits.force_max_N * c.rate_hz);
   }
   for (std::size_t i = 0; i < core::kAxes; ++i) {
-    c.effort_slew_s[i] = std::min(c.effort_slew_s[i], kShareOfATick * c.effort_max[i] * c.rate_hz);
+    c.motors.effort_slew_s[i] =
+        std::min(c.motors.effort_slew_s[i], kShareOfATick * c.motors.effort_max[i] * c.rate_hz);
   }
 }
 

@@ -15,15 +15,16 @@ constexpr bool in_range(Vec3 v, float limit) {
 }
 
 ConfigurationStatus check_rendering(const Configuration& c) {
-  if (!in_range(c.stiffness_N_m, 0.0F, 1e5F)) {
+  if (!in_range(c.contact.stiffness_N_m, 0.0F, 1e5F)) {
     return ConfigurationStatus::kBadStiffness;
   }
-  if (!in_range(c.damping_Ns_m, 0.0F, 1e3F) || !in_range(c.device_damping_Ns_m, 0.0F, 1e3F) ||
-      !in_range(c.hand_damping_Ns_m, 0.0F, 1e3F) || !in_range(c.passivity_Ns_m, 0.0F, 100.0F)) {
+  if (!in_range(c.contact.damping_Ns_m, 0.0F, 1e3F) ||
+      !in_range(c.device_damping_Ns_m, 0.0F, 1e3F) || !in_range(c.hand_damping_Ns_m, 0.0F, 1e3F) ||
+      !in_range(c.passivity_Ns_m, 0.0F, 100.0F)) {
     return ConfigurationStatus::kBadDamping;
   }
-  if (!in_range(c.static_friction, 0.0F, 2.0F) ||
-      !in_range(c.dynamic_friction, 0.0F, c.static_friction)) {
+  if (!in_range(c.contact.static_friction, 0.0F, 2.0F) ||
+      !in_range(c.contact.dynamic_friction, 0.0F, c.contact.static_friction)) {
     return ConfigurationStatus::kBadFriction;
   }
   if (!in_range(c.velocity_cutoff_hz, 1.0F, 0.5F * c.rate_hz)) {
@@ -32,32 +33,34 @@ ConfigurationStatus check_rendering(const Configuration& c) {
   if (!in_range(c.delay_s, 0.0F, 0.1F)) {
     return ConfigurationStatus::kBadTimeout;
   }
-  if (!(c.stiffness_N_m <= stability_limit(c).with_hand_N_m)) {
+  if (!(c.contact.stiffness_N_m <= stability_limit(c).with_hand_N_m)) {
     return ConfigurationStatus::kUnstable;
   }
   return ConfigurationStatus::kOk;
 }
 
 ConfigurationStatus check_safety(const Configuration& c) {
-  if (!in_range(c.ramp_s, 2.0F / c.rate_hz, 10.0F)) {
+  if (!in_range(c.limits.ramp_s, 2.0F / c.rate_hz, 10.0F)) {
     return ConfigurationStatus::kBadRamp;
   }
   SafetyGate gate;
   if (!gate.configure(gate_limits(c))) {
     return ConfigurationStatus::kBadLimit;
   }
-  if (!in_range(c.speed_max_m_s, 0.1F, 100.0F)) {
+  if (!in_range(c.supervision.speed_max_m_s, 0.1F, 100.0F)) {
     return ConfigurationStatus::kBadSpeed;
   }
-  if (!in_range(c.link_timeout_s, 0.005F, 0.1F) || !in_range(c.enable_timeout_s, 0.001F, 1.0F)) {
+  if (!in_range(c.link.timeout_s, 0.005F, 0.1F) ||
+      !in_range(c.supervision.enable_timeout_s, 0.001F, 1.0F)) {
     return ConfigurationStatus::kBadTimeout;
   }
-  if (!in_range(c.stuck_s, 0.01F, 1.0F)) {
+  if (!in_range(c.supervision.stuck_s, 0.01F, 1.0F)) {
     return ConfigurationStatus::kBadTimeout;
   }
-  const bool supply =
-      in_range(c.supply_min_V, 1.0F, 1000.0F) && in_range(c.supply_max_V, c.supply_min_V, 1000.0F);
-  return c.supply_monitored && !supply ? ConfigurationStatus::kBadSupply : ConfigurationStatus::kOk;
+  const bool supply = in_range(c.supervision.supply_min_V, 1.0F, 1000.0F) &&
+                      in_range(c.supervision.supply_max_V, c.supervision.supply_min_V, 1000.0F);
+  return c.supervision.supply_monitored && !supply ? ConfigurationStatus::kBadSupply
+                                                   : ConfigurationStatus::kOk;
 }
 
 constexpr const char* kWords[] = {
@@ -106,22 +109,22 @@ ConfigurationStatus check(const Configuration& c) {
 
 StabilityLimit stability_limit(const Configuration& c) {
   const float lag = 0.5F / c.rate_hz + c.delay_s;
-  const float own = c.device_damping_Ns_m + c.damping_Ns_m;
+  const float own = c.device_damping_Ns_m + c.contact.damping_Ns_m;
   return {own / lag, (own + c.hand_damping_Ns_m) / lag};
 }
 
 GateLimits gate_limits(const Configuration& c) {
   GateLimits limits;
   const float period_s = 1.0F / c.rate_hz;
-  limits.force_max_N = c.force_max_N;
-  limits.slew_N_per_tick = c.slew_N_s * period_s;
+  limits.force_max_N = c.limits.force_max_N;
+  limits.slew_N_per_tick = c.limits.slew_N_s * period_s;
   for (std::uint32_t i = 0; i < kAxes; ++i) {  // bound: kAxes
-    limits.effort_max[i] = c.effort_max[i];
-    limits.effort_slew_per_tick[i] = c.effort_slew_s[i] * period_s;
+    limits.effort_max[i] = c.motors.effort_max[i];
+    limits.effort_slew_per_tick[i] = c.motors.effort_slew_s[i] * period_s;
   }
-  limits.continuous_share = c.continuous_share;
-  limits.heat_share_per_tick = period_s / c.thermal_time_s;
-  limits.ramp_ticks = static_cast<std::uint32_t>(c.ramp_s * c.rate_hz);
+  limits.continuous_share = c.motors.continuous_share;
+  limits.heat_share_per_tick = period_s / c.motors.thermal_time_s;
+  limits.ramp_ticks = static_cast<std::uint32_t>(c.limits.ramp_s * c.rate_hz);
   return limits;
 }
 

@@ -30,7 +30,7 @@ constexpr Place kPlaces[kParameters] = {
     TACTREE_AXES(device.counts_per_m, 1.0F, 1e9F, false),
     TACTREE_AXES(device.counts_per_revolution, 1.0F, 1e7F, false),
     TACTREE_AXES(device.ratio, -1e5F, 1e5F, false),
-    TACTREE_AXES(effort_max, 1e-4F, 1000.0F, false),
+    TACTREE_AXES(motors.effort_max, 1e-4F, 1000.0F, false),
     TACTREE_ONE(device.tip_mass_kg, 0.0F, 100.0F),
     TACTREE_ONE(device.paddle_m, 0.001F, 10.0F),
     TACTREE_ONE(model_origin_m.x, -10.0F, 10.0F),
@@ -41,8 +41,8 @@ constexpr Place kPlaces[kParameters] = {
     TACTREE_ONE(device_damping_Ns_m, 0.0F, 1000.0F),
     TACTREE_ONE(hand_damping_Ns_m, 0.0F, 1000.0F),
     TACTREE_ONE(delay_s, 0.0F, 0.1F),
-    TACTREE_ONE(continuous_share, 0.05F, 1.0F),
-    TACTREE_ONE(thermal_time_s, 1.0F, 1000.0F),
+    TACTREE_ONE(motors.continuous_share, 0.05F, 1.0F),
+    TACTREE_ONE(motors.thermal_time_s, 1.0F, 1000.0F),
 };
 
 #undef TACTREE_AXES

@@ -116,16 +116,16 @@ void blend_materials(const BlobView& view, const Configuration& configuration,
 ContactParameters contact_parameters_of(const BlobView& view, const Configuration& c,
                                         const MaterialBlend& blend) {
   if (blend.count == 0U) {
-    return {c.stiffness_N_m, c.damping_Ns_m, {c.static_friction, c.dynamic_friction}};
+    return c.contact;
   }
-  ContactParameters blended;
+  ContactParameters blended{0.0F, 0.0F, 0.0F, 0.0F};
   for (std::uint32_t i = 0; i < blend.count; ++i) {  // bound: blended_materials
     const BlobMaterial& m = view.material(blend.material[i]);
     const float share = blend.share[i];
-    blended.stiffness_N_m += share * m.stiffness_N_m;                    // memory: flash
-    blended.damping_Ns_m += share * m.damping_Ns_m;                      // memory: flash
-    blended.friction.static_coefficient += share * m.static_friction;    // memory: flash
-    blended.friction.dynamic_coefficient += share * m.dynamic_friction;  // memory: flash
+    blended.stiffness_N_m += share * m.stiffness_N_m;        // memory: flash
+    blended.damping_Ns_m += share * m.damping_Ns_m;          // memory: flash
+    blended.static_friction += share * m.static_friction;    // memory: flash
+    blended.dynamic_friction += share * m.dynamic_friction;  // memory: flash
   }
   return blended;
 }
@@ -153,7 +153,7 @@ std::uint32_t find_unstable_material(const BlobView& view, const Configuration& 
 
 float material_limit(const Configuration& configuration, const BlobMaterial& material) {
   Configuration with = configuration;
-  with.damping_Ns_m = material.damping_Ns_m;
+  with.contact.damping_Ns_m = material.damping_Ns_m;
   return stability_limit(with).with_hand_N_m;
 }
 

@@ -61,7 +61,7 @@ float spring_energy(float stiffness_N_m, float length_m, float force_max_N) {
   r.force = stiffness_N_m * displacement;
   r.strength = 1.0F;
   r.penetration_m = length(displacement);
-  r.stored_energy = spring_energy(stiffness_N_m, r.penetration_m, c.force_max_N);
+  r.stored_energy = spring_energy(stiffness_N_m, r.penetration_m, c.limits.force_max_N);
   return r;
 }
 
@@ -90,7 +90,7 @@ Rendering Renderer::render_proxy(const BlobView& view, const Configuration& c, V
     blend_materials(view, c, proxy_.candidates(), r.proxy, proxy_.stored_normal(), materials_);
   }
   const ContactParameters parameters = contact_parameters_of(view, c, materials_);
-  friction_ = parameters.friction;
+  friction_ = {parameters.static_friction, parameters.dynamic_friction};
   r.penetration_m = dot(displacement, normal);
   const float share = share_of(r.penetration_m, texture_depth(view, materials_, r.proxy, normal));
   const Vec3 spring = (share * parameters.stiffness_N_m) * displacement;
@@ -104,7 +104,7 @@ Rendering Renderer::render_proxy(const BlobView& view, const Configuration& c, V
   r.strength = proxy_.strength();
   r.force = r.strength * repelling;
   r.stored_energy = r.strength * spring_energy(parameters.stiffness_N_m,
-                                               share * length(displacement), c.force_max_N);
+                                               share * length(displacement), c.limits.force_max_N);
   return r;
 }
 

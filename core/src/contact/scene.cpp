@@ -332,7 +332,7 @@ bool Scene::observe() {
 // Ends the contact if the body or the probe jumps.
 void Scene::end_contact_of_a_jump(Slot& slot, const Configuration& configuration) {
   const Body& body = bodies_[slot.body];
-  const float furthest = 2.0F * configuration.speed_max_m_s / configuration.rate_hz;
+  const float furthest = 2.0F * configuration.supervision.speed_max_m_s / configuration.rate_hz;
   if (!(length_squared(body.probe - body.last_probe) <= furthest * furthest)) {
     assign_slot(slot, slot.body, body.probe);
   }

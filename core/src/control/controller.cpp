@@ -110,7 +110,7 @@ void Controller::render() {
 }
 
 void Controller::confirm_arming(const Input& input, bool was_armed) {
-  if (state_ == State::kActive && configuration_.dead_man_required && !input.dead_man) {
+  if (state_ == State::kActive && configuration_.supervision.dead_man_required && !input.dead_man) {
     handle_event(Event::kUnready);
   }
   if (state_ != State::kArmed || !was_armed) {
@@ -120,7 +120,7 @@ void Controller::confirm_arming(const Input& input, bool was_armed) {
   const SceneRendering& rendering = scene_.rendering();
   const bool is_free = rendered_ && !rendering.contact.in_contact && !rendering.inside;
   const bool device_ready = input.enable_read_back && is_free;
-  if (arming_.update(input, configuration_.dead_man_required, device_ready)) {
+  if (arming_.update(input, configuration_.supervision.dead_man_required, device_ready)) {
     handle_event(Event::kReady);
   }
 }

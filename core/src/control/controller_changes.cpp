@@ -29,30 +29,20 @@ ConfigurationStatus Controller::configure(const Configuration& configuration) {
 
 Adjustment Controller::adjustment() const {
   const Configuration& c = configuration_;
-  return {c.force_max_N,    c.slew_N_s,      c.ramp_s,       c.use_materials,   c.link_required,
-          c.link_timeout_s, c.stiffness_N_m, c.damping_Ns_m, c.static_friction, c.dynamic_friction};
+  return {c.limits, c.link, c.use_materials, c.contact};
 }
 
 ConfigurationStatus Controller::adjust(const Adjustment& a) {
-  const Adjustment now = adjustment();
-  const bool limits = a.force_max_N != now.force_max_N || a.slew_N_s != now.slew_N_s ||
-                      a.ramp_s != now.ramp_s || a.use_materials != now.use_materials ||
-                      a.link_required != now.link_required ||
-                      a.link_timeout_s != now.link_timeout_s;
+  Configuration c = configuration_;
+  const bool limits =
+      a.limits != c.limits || a.link != c.link || a.use_materials != c.use_materials;
   if (limits && !motors_off()) {
     return ConfigurationStatus::kBusy;
   }
-  Configuration c = configuration_;
-  c.force_max_N = a.force_max_N;
-  c.slew_N_s = a.slew_N_s;
-  c.ramp_s = a.ramp_s;
+  c.limits = a.limits;
+  c.link = a.link;
   c.use_materials = a.use_materials;
-  c.link_required = a.link_required;
-  c.link_timeout_s = a.link_timeout_s;
-  c.stiffness_N_m = a.stiffness_N_m;
-  c.damping_Ns_m = a.damping_Ns_m;
-  c.static_friction = a.static_friction;
-  c.dynamic_friction = a.dynamic_friction;
+  c.contact = a.contact;
   const ConfigurationStatus status = check(c);
   if (status != ConfigurationStatus::kOk) {
     return status;

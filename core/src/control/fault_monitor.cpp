@@ -15,31 +15,32 @@ constexpr std::uint32_t add_saturating(std::uint32_t a, std::uint32_t b) {
 }
 
 FaultMask check_supply(const Readings& readings, const Configuration& configuration) {
-  const bool good = readings.supply_V >= configuration.supply_min_V &&
-                    readings.supply_V <= configuration.supply_max_V;
-  return configuration.supply_monitored && !good ? fault_bit(Fault::kSupply) : 0U;
+  const bool good = readings.supply_V >= configuration.supervision.supply_min_V &&
+                    readings.supply_V <= configuration.supervision.supply_max_V;
+  return configuration.supervision.supply_monitored && !good ? fault_bit(Fault::kSupply) : 0U;
 }
 
 }  // namespace
 
 void FaultMonitor::configure(const Configuration& configuration) {
   set_link_timeout(configuration);
-  enable_timeout_ticks_ =
-      static_cast<std::uint32_t>(configuration.enable_timeout_s * configuration.rate_hz);
+  enable_timeout_ticks_ = static_cast<std::uint32_t>(configuration.supervision.enable_timeout_s *
+                                                     configuration.rate_hz);
   ticks_since_overrun_ = kForever;
-  encoders_.configure(static_cast<std::uint32_t>(configuration.stuck_s * configuration.rate_hz));
+  encoders_.configure(
+      static_cast<std::uint32_t>(configuration.supervision.stuck_s * configuration.rate_hz));
 }
 
 void FaultMonitor::set_link_timeout(const Configuration& configuration) {
   link_timeout_ticks_ =
-      static_cast<std::uint32_t>(configuration.link_timeout_s * configuration.rate_hz);
+      static_cast<std::uint32_t>(configuration.link.timeout_s * configuration.rate_hz);
 }
 
 FaultMask FaultMonitor::update(const Readings& readings, const Configuration& configuration,
                                State state, bool enable) {
   const bool motors_on = state == State::kArmed || state == State::kActive;
   FaultMask faults = check_overruns(readings, motors_on) |
-                     check_link(readings, configuration.link_required && motors_on) |
+                     check_link(readings, configuration.link.required && motors_on) |
                      check_enable(readings, state, enable);
   faults |= motors_on ? check_supply(readings, configuration) : 0U;
   faults |= readings.emergency_stop ? fault_bit(Fault::kEmergencyStop) : 0U;

@@ -19,7 +19,7 @@ void ForceStage::add(const AddedForce& added, const Configuration& configuration
     return;
   }
   const float squared = length_squared(added.force_N);
-  const float most = kAddedForceShare * configuration.force_max_N;
+  const float most = kAddedForceShare * configuration.limits.force_max_N;
   const auto longest = static_cast<std::uint32_t>(kAddedForceSeconds * configuration.rate_hz);
   external_ticks_ = !is_finite(squared) ? 0U : added.ticks < longest ? added.ticks : longest;
   external_force_ =
@@ -55,7 +55,8 @@ Vec3 ForceStage::contact_force(const Configuration& configuration, const ProbeSe
   const Vec3 force = rendered + damping;
   const float push = dot(force, contact.normal);
   const float leaving = dot(velocity - scene.wall_velocity, contact.normal);
-  const float most = leaving > 0.0F ? passivity_.most_push(leaving, configuration.slew_N_s) : push;
+  const float most =
+      leaving > 0.0F ? passivity_.most_push(leaving, configuration.limits.slew_N_s) : push;
   const float pull = dot(rendered, contact.normal);  // < 0 only by other bodies or a fade
   const float least = pull < 0.0F ? pull : 0.0F;
   const float allowed = push < least ? least : push > most ? most : push;

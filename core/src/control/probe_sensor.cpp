@@ -58,7 +58,7 @@ ProbeSensor::Sensed ProbeSensor::update(const EncoderReading& encoders, bool tak
     return {fault_bit(Fault::kEncoderInvalid), true};
   }
   const Vec3 probe = pose_.probe - configuration.model_origin_m;
-  const float furthest = configuration.speed_max_m_s / configuration.rate_hz;
+  const float furthest = configuration.supervision.speed_max_m_s / configuration.rate_hz;
   const bool jumped = located_ && !(length_squared(probe - probe_) <= furthest * furthest);
   const bool begins = jumped || !located_;
   if (begins) {

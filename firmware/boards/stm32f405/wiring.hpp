@@ -36,8 +36,8 @@ inline core::Configuration configuration() {
   core::Configuration configuration;
   core::use_device(core::presets::premium(), configuration);
   configuration.rate_hz = 1000.0F;  // the watchdog requires at least this rate
-  configuration.link_required = true;
-  configuration.link_timeout_s = 0.1F;
+  configuration.link.required = true;
+  configuration.link.timeout_s = 0.1F;
   return configuration;
 }
 

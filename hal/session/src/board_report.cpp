@@ -15,8 +15,8 @@ std::uint32_t board_flags(const core::Controller& controller, const StoreFacts& 
     return on ? static_cast<std::uint32_t>(bit) : 0U;
   };
   return flag(store.signature_required, BoardFlag::kSignatureRequired) |
-         flag(c.dead_man_required, BoardFlag::kDeadManRequired) |
-         flag(c.link_required, BoardFlag::kLinkRequired) |
+         flag(c.supervision.dead_man_required, BoardFlag::kDeadManRequired) |
+         flag(c.link.required, BoardFlag::kLinkRequired) |
          flag(controller.homed(), BoardFlag::kHomed) |
          flag(controller.work_is_reduced(), BoardFlag::kWorkReduced);
 }
@@ -59,12 +59,12 @@ void put_capabilities(const core::Controller& controller, const core::Configurat
   const core::Configuration& c = controller.configuration();
   core::wire::CapabilitiesReply message;
   message.rate_hz = c.rate_hz;
-  message.force_max_N = c.force_max_N;
-  message.force_limit_N = base.force_max_N;
-  message.slew_N_s = c.slew_N_s;
-  message.slew_limit_N_s = base.slew_N_s;
-  message.host_force_max_N = core::kAddedForceShare * c.force_max_N;
-  message.stiffness_N_m = c.stiffness_N_m;
+  message.force_max_N = c.limits.force_max_N;
+  message.force_limit_N = base.limits.force_max_N;
+  message.slew_N_s = c.limits.slew_N_s;
+  message.slew_limit_N_s = base.limits.slew_N_s;
+  message.host_force_max_N = core::kAddedForceShare * c.limits.force_max_N;
+  message.stiffness_N_m = c.contact.stiffness_N_m;
   message.stiffness_limit_N_m = core::stability_limit(c).with_hand_N_m;
   message.bodies_max = core::kMaxBodies;
   for (std::uint32_t i = 0; i < core::kMaxBodies; ++i) {  // bound: kMaxBodies

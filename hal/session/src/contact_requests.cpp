@@ -19,13 +19,14 @@ WireStatus limits_of(std::span<const std::byte> payload, const core::Controller&
     return WireStatus::kBadLength;
   }
   // Written so that NaN is refused.
-  if (!(request.force_max_N <= base.force_max_N) || !(request.slew_N_s <= base.slew_N_s)) {
+  if (!(request.force_max_N <= base.limits.force_max_N) ||
+      !(request.slew_N_s <= base.limits.slew_N_s)) {
     return WireStatus::kBadValue;
   }
   adjustment = controller.adjustment();
-  adjustment.force_max_N = request.force_max_N;
-  adjustment.slew_N_s = request.slew_N_s;
-  adjustment.ramp_s = request.ramp_s;
+  adjustment.limits.force_max_N = request.force_max_N;
+  adjustment.limits.slew_N_s = request.slew_N_s;
+  adjustment.limits.ramp_s = request.ramp_s;
   return WireStatus::kOk;
 }
 
@@ -36,10 +37,10 @@ WireStatus material_of(std::span<const std::byte> payload, const core::Controlle
     return WireStatus::kBadLength;
   }
   adjustment = controller.adjustment();
-  adjustment.stiffness_N_m = request.stiffness_N_m;
-  adjustment.damping_Ns_m = request.damping_Ns_m;
-  adjustment.static_friction = request.static_friction;
-  adjustment.dynamic_friction = request.dynamic_friction;
+  adjustment.contact.stiffness_N_m = request.stiffness_N_m;
+  adjustment.contact.damping_Ns_m = request.damping_Ns_m;
+  adjustment.contact.static_friction = request.static_friction;
+  adjustment.contact.dynamic_friction = request.dynamic_friction;
   adjustment.use_materials = request.use_materials != 0U;
   return WireStatus::kOk;
 }

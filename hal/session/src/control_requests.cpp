@@ -79,7 +79,8 @@ WireStatus ControlRequests::arm(const Moment& moment, core::Command& command) {
 
 WireStatus ControlRequests::confirm(std::uint32_t token, core::Command& command) const {
   // With a dead-man control, only the hand can confirm.
-  if (controller_.configuration().dead_man_required || controller_.state() != core::State::kArmed) {
+  if (controller_.configuration().supervision.dead_man_required ||
+      controller_.state() != core::State::kArmed) {
     return WireStatus::kNotNow;
   }
   if (token == 0U || token != token_) {

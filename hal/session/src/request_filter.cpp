@@ -49,13 +49,13 @@ core::wire::OpenReply RequestFilter::opening(std::uint32_t now_us) const {
 
 core::Adjustment with_link(core::Adjustment adjustment, const core::Configuration& base,
                            std::uint32_t timeout_ms) {
-  adjustment.link_required = base.link_required;
-  adjustment.link_timeout_s = base.link_timeout_s;
+  adjustment.link.required = base.link.required;
+  adjustment.link.timeout_s = base.link.timeout_s;
   if (timeout_ms != 0U) {
     const float timeout_s = 1e-3F * static_cast<float>(timeout_ms);
-    const bool shorter = !base.link_required || timeout_s < base.link_timeout_s;
-    adjustment.link_required = true;
-    adjustment.link_timeout_s = shorter ? timeout_s : base.link_timeout_s;
+    const bool shorter = !base.link.required || timeout_s < base.link.timeout_s;
+    adjustment.link.required = true;
+    adjustment.link.timeout_s = shorter ? timeout_s : base.link.timeout_s;
   }
   return adjustment;
 }

@@ -79,7 +79,7 @@ simulation::HandPath drawn_hand(const simulation::Setup& setup, double seconds) 
 double vibration(const Shape& shape, Mode mode, double seconds) {
   simulation::Setup setup;
   setup.controller.mode = render_mode(mode);
-  setup.controller.stiffness_N_m = 1000.0F;
+  setup.controller.contact.stiffness_N_m = 1000.0F;
   for (float& counts : setup.controller.device.counts_per_m) {
     counts = static_cast<float>(1.0 / kEncoderStep);
   }
@@ -116,8 +116,8 @@ constexpr double kGrid = 0.0;     // m, x and y of the probe; on a point, as pap
 bool is_stable(const Shape& wall, Mode mode, double rate_hz, double stiffness) {
   core::Configuration configuration;
   configuration.mode = render_mode(mode);
-  configuration.stiffness_N_m = static_cast<float>(stiffness);
-  configuration.damping_Ns_m = 0.0F;
+  configuration.contact.stiffness_N_m = static_cast<float>(stiffness);
+  configuration.contact.damping_Ns_m = 0.0F;
   core::Renderer renderer;
   renderer.reset(narrow({kGrid, kGrid, 1e-3}));
   const double depth = kPush / stiffness;

@@ -28,10 +28,10 @@ class Touch {
       : view_(view) {
     configuration_.rate_hz = static_cast<float>(rate_hz);
     configuration_.mode = mode;
-    configuration_.stiffness_N_m = static_cast<float>(kStiffness_N_m);
-    configuration_.damping_Ns_m = 0.0F;
-    configuration_.static_friction = friction.static_coefficient;
-    configuration_.dynamic_friction = friction.dynamic_coefficient;
+    configuration_.contact.stiffness_N_m = static_cast<float>(kStiffness_N_m);
+    configuration_.contact.damping_Ns_m = 0.0F;
+    configuration_.contact.static_friction = friction.static_coefficient;
+    configuration_.contact.dynamic_friction = friction.dynamic_coefficient;
     renderer_.reset(narrow(probe));
   }
 

@@ -69,7 +69,7 @@ BoardSession::~BoardSession() { stop(); }
 void BoardSession::begin_session() {
   auto facts = std::make_unique<BoardFacts>(ask_board(*board_, settings_.model));
   work_ = work_of(*facts);
-  contact_.stiffness_N_m = facts->can.stiffness_N_m;
+  sent_.contact.stiffness_N_m = facts->can.stiffness_N_m;
   board_->subscribe({kFields, ticks_per_message(*facts)});
   facts_ = std::move(facts);
   last_telemetry_ = board_->connection().now();
@@ -248,19 +248,20 @@ void BoardSession::execute(const json& command) {
 }
 
 void BoardSession::set(const json& wanted) {
-  core::Configuration contact = contact_;
+  core::Configuration next = sent_;
   bool changed = false;
   for (const auto& [key, value] : wanted.items()) {
-    changed = set_contact_parameters(contact, key, value) || changed;
+    changed = set_contact_parameters(next, key, value) || changed;
   }
   if (changed) {
+    const core::ContactParameters& contact = next.contact;
     board_->set_material({contact.stiffness_N_m, contact.damping_Ns_m, contact.static_friction,
-                          contact.dynamic_friction, contact.use_materials ? 1U : 0U});
-    contact_ = contact;
+                          contact.dynamic_friction, next.use_materials ? 1U : 0U});
+    sent_ = next;
   }
   if (wanted.contains("force_max_N")) {
     board_->set_limits(number_of("force_max_N", wanted["force_max_N"]), facts_->can.slew_N_s,
-                       contact_.ramp_s);
+                       sent_.limits.ramp_s);
   }
   facts_->can = board_->capabilities();
 }
@@ -388,7 +389,7 @@ json BoardSession::run_of_last_tick() {
 }
 
 json BoardSession::settings_json() const {
-  json settings = contact_parameters_json(contact_);
+  json settings = contact_parameters_json(sent_);
   const core::wire::CapabilitiesReply& can = facts_->can;
   settings.update({{"stiffness_N_m", can.stiffness_N_m},
                    {"stiffness_limit_N_m", can.stiffness_limit_N_m},

@@ -6,12 +6,12 @@
 namespace tactree::viewer {
 namespace {
 
-using Parameter = std::pair<const char*, float core::Configuration::*>;
+using Parameter = std::pair<const char*, float core::ContactParameters::*>;
 constexpr std::array<Parameter, 4> kParameters = {
-    {{"stiffness_N_m", &core::Configuration::stiffness_N_m},
-     {"damping_Ns_m", &core::Configuration::damping_Ns_m},
-     {"static_friction", &core::Configuration::static_friction},
-     {"dynamic_friction", &core::Configuration::dynamic_friction}}};
+    {{"stiffness_N_m", &core::ContactParameters::stiffness_N_m},
+     {"damping_Ns_m", &core::ContactParameters::damping_Ns_m},
+     {"static_friction", &core::ContactParameters::static_friction},
+     {"dynamic_friction", &core::ContactParameters::dynamic_friction}}};
 
 }  // namespace
 
@@ -22,25 +22,25 @@ float number_of(const std::string& key, const nlohmann::json& value) {
   return value.get<float>();
 }
 
-bool set_contact_parameters(core::Configuration& contact, const std::string& key,
+bool set_contact_parameters(core::Configuration& configuration, const std::string& key,
                             const nlohmann::json& value) {
   for (const auto& [name, parameter] : kParameters) {
     if (key == name) {
-      contact.*parameter = number_of(key, value);
+      configuration.contact.*parameter = number_of(key, value);
       return true;
     }
   }
   if (key == "use_materials" && value.is_boolean()) {
-    contact.use_materials = value.get<bool>();
+    configuration.use_materials = value.get<bool>();
     return true;
   }
   return false;
 }
 
-nlohmann::json contact_parameters_json(const core::Configuration& contact) {
-  nlohmann::json json = {{"use_materials", contact.use_materials}};
+nlohmann::json contact_parameters_json(const core::Configuration& configuration) {
+  nlohmann::json json = {{"use_materials", configuration.use_materials}};
   for (const auto& [name, parameter] : kParameters) {
-    json[name] = contact.*parameter;
+    json[name] = configuration.contact.*parameter;
   }
   return json;
 }

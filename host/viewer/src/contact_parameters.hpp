@@ -14,9 +14,9 @@ namespace tactree::viewer {
 [[nodiscard]] float number_of(const std::string& key, const nlohmann::json& value);
 
 /// Returns false if `key` is not a contact parameter. Throws SessionRefused.
-[[nodiscard]] bool set_contact_parameters(core::Configuration& contact, const std::string& key,
-                                          const nlohmann::json& value);
-[[nodiscard]] nlohmann::json contact_parameters_json(const core::Configuration& contact);
+[[nodiscard]] bool set_contact_parameters(core::Configuration& configuration,
+                                          const std::string& key, const nlohmann::json& value);
+[[nodiscard]] nlohmann::json contact_parameters_json(const core::Configuration& configuration);
 
 /// The exception for a setting that a source does not have.
 [[nodiscard]] SessionRefused no_such_setting(const std::string& key);

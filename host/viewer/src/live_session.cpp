@@ -108,7 +108,7 @@ std::string refusal(const core::BlobView& view, const simulation::Setup& setup,
     return fmt::format(
         "a stiffness of {:.6g} N/m exceeds the stability limit of {:.6g} N/m at "
         "{:.6g} Hz (lower it, or raise damping or rate)",
-        c.stiffness_N_m, core::stability_limit(c).with_hand_N_m, c.rate_hz);
+        c.contact.stiffness_N_m, core::stability_limit(c).with_hand_N_m, c.rate_hz);
   }
   if (start.configuration != core::ConfigurationStatus::kOk) {
     return describe(start);
@@ -198,7 +198,7 @@ simulation::Setup LiveSession::make_setup(const Settings& settings, core::Render
   simulation::use_device(device(settings.device).preset, setup);
   setup.controller.model_origin_m = simulation::middle_at_origin(
       bodies_.views[0].header(), bodies_.bodies[0].path.first(), setup.controller.device.kind);
-  setup.controller.supply_monitored = true;
+  setup.controller.supervision.supply_monitored = true;
   core::limit_to_rate(setup.controller);
   return setup;
 }
@@ -320,7 +320,7 @@ json LiveSession::settings_json() const {
                    {"mode", name_of(settings_.modes)},
                    {"device", settings_.device},
                    {"stiffness_limit_N_m", core::stability_limit(c).with_hand_N_m},
-                   {"force_max_N", c.force_max_N}});
+                   {"force_max_N", c.limits.force_max_N}});
   return settings;
 }
 

@@ -146,7 +146,7 @@ TEST_F(LoopTest, RefusesDamagedModel) {
 
 TEST_F(LoopTest, RefusesBadConfiguration) {
   core::Configuration configuration;
-  configuration.force_max_N = -1.0F;
+  configuration.limits.force_max_N = -1.0F;
   const hal::StartResult result = loop_.start(configuration);
   EXPECT_EQ(result.configuration, core::ConfigurationStatus::kBadLimit);
   EXPECT_FALSE(result.ok());

@@ -31,17 +31,18 @@ void add_controller_options(CLI::App& verb, SimulateOptions& options) {
                   "maximum damping of the passivity controller, Ns/m; 0: off")
       ->check(CLI::Range(0.0, 100.0))
       ->capture_default_str();
-  verb.add_option("--static-friction", c.static_friction, "coefficient")
+  verb.add_option("--static-friction", c.contact.static_friction, "coefficient")
       ->check(CLI::Range(0.0, 2.0))
       ->capture_default_str();
-  verb.add_option("--dynamic-friction", c.dynamic_friction, "coefficient, at most the static one")
+  verb.add_option("--dynamic-friction", c.contact.dynamic_friction,
+                  "coefficient, at most the static one")
       ->check(CLI::Range(0.0, 2.0))
       ->capture_default_str();
   verb.add_flag("!--no-materials", c.use_materials,
                 "ignore the materials of the blob: use the options above everywhere");
-  options.force_max =
-      verb.add_option("--force-max", c.force_max_N, "largest force, N (default: the device's)")
-          ->check(CLI::Range(0.01, 1000.0));
+  options.force_max = verb.add_option("--force-max", c.limits.force_max_N,
+                                      "largest force, N (default: the device's)")
+                          ->check(CLI::Range(0.01, 1000.0));
 }
 
 std::string injection_help() {

@@ -16,10 +16,10 @@ namespace {
 /// Sets the device for controller and mechanics. Options take precedence over the device.
 void choose_device(const SimulateOptions& options, simulation::Setup& setup) {
   const support::Device device = support::load_device(options.device);
-  const float force_max_N = setup.controller.force_max_N;
+  const float force_max_N = setup.controller.limits.force_max_N;
   simulation::use_device(device.preset, setup);
   if (options.force_max->count() != 0) {
-    setup.controller.force_max_N = force_max_N;
+    setup.controller.limits.force_max_N = force_max_N;
   }
   if (setup.controller.device.kind != core::DeviceKind::kCartesian) {
     for (const CLI::Option* option : options.cartesian_only) {
@@ -102,7 +102,7 @@ simulation::Setup make_setup(const SimulateOptions& options, const SceneFile& sc
   choose_device(options, setup);
   controller.model_origin_m = place_model(options, scene, controller.device.kind);
   setup.board.encoders.latency_ticks = static_cast<std::uint32_t>(options.latency_ticks);
-  controller.supply_monitored = true;
+  controller.supervision.supply_monitored = true;
   controller.delay_s = static_cast<float>(options.latency_ticks) / controller.rate_hz;
   core::limit_to_rate(controller);
   return setup;
@@ -121,11 +121,11 @@ void check_start(const std::string& file, const core::BlobView& view,
                  const SimulateOptions& options) {
   if (start.configuration == core::ConfigurationStatus::kUnstable) {
     const core::StabilityLimit limit = core::stability_limit(setup.controller);
-    refuse(
-        fmt::format("--stiffness: {:.6g} N/m is beyond the stability limit of {:.6g} N/m with a "
-                    "hand at {:.6g} Hz",
-                    setup.controller.stiffness_N_m, limit.with_hand_N_m, setup.controller.rate_hz),
-        "lower --stiffness, or raise --rate or --damping");
+    refuse(fmt::format("--stiffness: {:.6g} N/m is beyond the stability limit of {:.6g} N/m with a "
+                       "hand at {:.6g} Hz",
+                       setup.controller.contact.stiffness_N_m, limit.with_hand_N_m,
+                       setup.controller.rate_hz),
+           "lower --stiffness, or raise --rate or --damping");
   }
   if (start.image != hal::ImageStatus::kOk) {
     refuse(fmt::format("the board: {}", describe(start)),

@@ -78,56 +78,75 @@ void visit(Fields& fields, core::DeviceModel& d) {
 }
 
 template <class Fields>
+void visit(Fields& fields, core::ContactParameters& p) {
+  fields(p.stiffness_N_m);
+  fields(p.damping_Ns_m);
+  fields(p.static_friction);
+  fields(p.dynamic_friction);
+}
+
+template <class Fields>
+void visit(Fields& fields, core::ForceLimits& l) {
+  fields(l.force_max_N);
+  fields(l.slew_N_s);
+  fields(l.ramp_s);
+}
+
+template <class Fields>
+void visit(Fields& fields, core::MotorLimits& l) {
+  visit(fields, l.effort_max);
+  visit(fields, l.effort_slew_s);
+  fields(l.continuous_share);
+  fields(l.thermal_time_s);
+}
+
+template <class Fields>
+void visit(Fields& fields, core::Supervision& s) {
+  fields(s.speed_max_m_s);
+  fields(s.stuck_s);
+  fields(s.enable_timeout_s);
+  fields(s.dead_man_required);
+  fields(s.supply_monitored);
+  fields(s.supply_min_V);
+  fields(s.supply_max_V);
+}
+
+template <class Fields>
+void visit(Fields& fields, core::LinkSupervision& l) {
+  fields(l.required);
+  fields(l.timeout_s);
+}
+
+template <class Fields>
 void visit(Fields& fields, core::Configuration& c) {
   fields(c.rate_hz);
   fields(c.mode);
   visit(fields, c.device);
   visit(fields, c.model_origin_m);
-  fields(c.stiffness_N_m);
-  fields(c.damping_Ns_m);
-  fields(c.static_friction);
-  fields(c.dynamic_friction);
-  fields(c.velocity_cutoff_hz);
-  fields(c.passivity_Ns_m);
+  visit(fields, c.contact);
   fields(c.use_materials);
   fields(c.compensate_gravity);
+  fields(c.velocity_cutoff_hz);
+  fields(c.passivity_Ns_m);
   fields(c.device_damping_Ns_m);
   fields(c.hand_damping_Ns_m);
   fields(c.delay_s);
-  fields(c.force_max_N);
-  fields(c.slew_N_s);
-  visit(fields, c.effort_max);
-  visit(fields, c.effort_slew_s);
-  fields(c.continuous_share);
-  fields(c.thermal_time_s);
-  fields(c.ramp_s);
-  fields(c.speed_max_m_s);
-  fields(c.stuck_s);
-  fields(c.supply_monitored);
-  fields(c.supply_min_V);
-  fields(c.supply_max_V);
-  fields(c.link_required);
-  fields(c.link_timeout_s);
-  fields(c.dead_man_required);
-  fields(c.enable_timeout_s);
+  visit(fields, c.limits);
+  visit(fields, c.motors);
+  visit(fields, c.supervision);
+  visit(fields, c.link);
 }
 
 template <class Fields>
 void visit(Fields& fields, core::Adjustment& a) {
-  fields(a.force_max_N);
-  fields(a.slew_N_s);
-  fields(a.ramp_s);
+  visit(fields, a.limits);
+  visit(fields, a.link);
   fields(a.use_materials);
-  fields(a.link_required);
-  fields(a.link_timeout_s);
-  fields(a.stiffness_N_m);
-  fields(a.damping_Ns_m);
-  fields(a.static_friction);
-  fields(a.dynamic_friction);
+  visit(fields, a.contact);
 }
 
 // If this fails, add the new field to the lists above and increase kRecordingVersion.
-static_assert(sizeof(core::Configuration) == 364 && sizeof(core::Adjustment) == 36);
+static_assert(sizeof(core::Configuration) == 360 && sizeof(core::Adjustment) == 40);
 
 /// First bytes of the file.
 inline constexpr char kRecordingMagic[8] = {'T', 'A', 'C', 'T', 'R', 'R', 'E', 'C'};

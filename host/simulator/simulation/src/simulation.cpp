@@ -93,7 +93,8 @@ void Simulation::sample_device() {
 }
 
 std::uint64_t Simulation::arming_ticks(const Setup& setup) {
-  const double wait_s = kHoldAfterS + static_cast<double>(setup.controller.ramp_s) + kSettleS;
+  const double wait_s =
+      kHoldAfterS + static_cast<double>(setup.controller.limits.ramp_s) + kSettleS;
   const double period_s = 1.0 / static_cast<double>(setup.controller.rate_hz);
   return static_cast<std::uint64_t>(std::ceil(wait_s / period_s));
 }
@@ -103,7 +104,7 @@ bool Simulation::arm() {
   const std::uint64_t ticks = arming_ticks(setup_);
   const auto hold_at = static_cast<std::uint64_t>(std::ceil(kHoldAfterS / period_s_));
   for (std::uint64_t i = 0; i < ticks; ++i) {
-    const bool dead_man = setup_.controller.dead_man_required;
+    const bool dead_man = setup_.controller.supervision.dead_man_required;
     const bool arm_now = i == kArmAtTick || (!dead_man && i == hold_at);
     board_.link().post(arm_now ? core::Command::kArm : core::Command::kNone);
     board_.safety_inputs().hold_dead_man(i >= hold_at);

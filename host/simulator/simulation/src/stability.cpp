@@ -119,7 +119,7 @@ double predicted_stiffness(const StabilityCase& c) {
   configuration.delay_s = static_cast<float>(c.delay_s);
   configuration.device_damping_Ns_m = static_cast<float>(c.device_damping_Ns_m);
   configuration.hand_damping_Ns_m = static_cast<float>(c.hand_damping_Ns_m);
-  configuration.damping_Ns_m = static_cast<float>(c.wall_damping_Ns_m);
+  configuration.contact.damping_Ns_m = static_cast<float>(c.wall_damping_Ns_m);
   return static_cast<double>(core::stability_limit(configuration).with_hand_N_m);
 }
 

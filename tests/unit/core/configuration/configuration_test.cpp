@@ -18,26 +18,30 @@ namespace {
 using core::Configuration;
 using core::ConfigurationStatus;
 
-using Field = float Configuration::*;
+using Field = float& (*)(Configuration&);
 
 const std::vector<std::pair<Field, ConfigurationStatus>>& fields() {
+  using enum ConfigurationStatus;
   static const std::vector<std::pair<Field, ConfigurationStatus>> all = {
-      {&Configuration::rate_hz, ConfigurationStatus::kBadRate},
-      {&Configuration::stiffness_N_m, ConfigurationStatus::kBadStiffness},
-      {&Configuration::damping_Ns_m, ConfigurationStatus::kBadDamping},
-      {&Configuration::static_friction, ConfigurationStatus::kBadFriction},
-      {&Configuration::dynamic_friction, ConfigurationStatus::kBadFriction},
-      {&Configuration::velocity_cutoff_hz, ConfigurationStatus::kBadFilter},
-      {&Configuration::device_damping_Ns_m, ConfigurationStatus::kBadDamping},
-      {&Configuration::hand_damping_Ns_m, ConfigurationStatus::kBadDamping},
-      {&Configuration::passivity_Ns_m, ConfigurationStatus::kBadDamping},
-      {&Configuration::delay_s, ConfigurationStatus::kBadTimeout},
-      {&Configuration::force_max_N, ConfigurationStatus::kBadLimit},
-      {&Configuration::slew_N_s, ConfigurationStatus::kBadLimit},
-      {&Configuration::ramp_s, ConfigurationStatus::kBadRamp},
-      {&Configuration::speed_max_m_s, ConfigurationStatus::kBadSpeed},
-      {&Configuration::link_timeout_s, ConfigurationStatus::kBadTimeout},
-      {&Configuration::enable_timeout_s, ConfigurationStatus::kBadTimeout},
+      {[](Configuration& c) -> float& { return c.rate_hz; }, kBadRate},
+      {[](Configuration& c) -> float& { return c.contact.stiffness_N_m; }, kBadStiffness},
+      {[](Configuration& c) -> float& { return c.contact.damping_Ns_m; }, kBadDamping},
+      {[](Configuration& c) -> float& { return c.contact.static_friction; }, kBadFriction},
+      {[](Configuration& c) -> float& { return c.contact.dynamic_friction; }, kBadFriction},
+      {[](Configuration& c) -> float& { return c.velocity_cutoff_hz; }, kBadFilter},
+      {[](Configuration& c) -> float& { return c.device_damping_Ns_m; }, kBadDamping},
+      {[](Configuration& c) -> float& { return c.hand_damping_Ns_m; }, kBadDamping},
+      {[](Configuration& c) -> float& { return c.passivity_Ns_m; }, kBadDamping},
+      {[](Configuration& c) -> float& { return c.delay_s; }, kBadTimeout},
+      {[](Configuration& c) -> float& { return c.limits.force_max_N; }, kBadLimit},
+      {[](Configuration& c) -> float& { return c.limits.slew_N_s; }, kBadLimit},
+      {[](Configuration& c) -> float& { return c.limits.ramp_s; }, kBadRamp},
+      {[](Configuration& c) -> float& { return c.motors.continuous_share; }, kBadLimit},
+      {[](Configuration& c) -> float& { return c.motors.thermal_time_s; }, kBadLimit},
+      {[](Configuration& c) -> float& { return c.supervision.speed_max_m_s; }, kBadSpeed},
+      {[](Configuration& c) -> float& { return c.supervision.stuck_s; }, kBadTimeout},
+      {[](Configuration& c) -> float& { return c.supervision.enable_timeout_s; }, kBadTimeout},
+      {[](Configuration& c) -> float& { return c.link.timeout_s; }, kBadTimeout},
   };
   return all;
 }
@@ -52,7 +56,7 @@ TEST(Configuration, RefusesNaNInfinityAndNegatives) {
          {-1.0F, std::numeric_limits<float>::max(), std::numeric_limits<float>::infinity(),
           -std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()}) {
       Configuration c;
-      c.*field = bad;
+      field(c) = bad;
       EXPECT_EQ(core::check(c), status) << bad << ", " << core::describe(status);
       core::Controller controller;
       EXPECT_EQ(controller.configure(c), status);
@@ -65,8 +69,8 @@ TEST(Configuration, LimitsForceForUnusualFloats) {
   for (const auto& [field, status] : fields()) {
     for (const float odd : kOddFloats) {
       Configuration c;
-      c.ramp_s = 0.01F;
-      c.*field = odd;
+      c.limits.ramp_s = 0.01F;
+      field(c) = odd;
       ControllerRig session(c);
       session.activate();
       for (int i = 0; i < 30; ++i) {
@@ -76,7 +80,7 @@ TEST(Configuration, LimitsForceForUnusualFloats) {
       ASSERT_TRUE(std::isfinite(output.motors.effort(2)));
       if (session.status == ConfigurationStatus::kOk) {
         ASSERT_LE(std::abs(output.motors.effort(2)),
-                  session.controller.configuration().force_max_N);
+                  session.controller.configuration().limits.force_max_N);
       } else {
         ASSERT_TRUE(output.motors.is_zero());
       }
@@ -92,10 +96,10 @@ TEST(Configuration, ChecksEveryVectorComponent) {
       c.device.counts_per_m[axis] = bad;
       EXPECT_EQ(core::check(c), ConfigurationStatus::kBadDevice);
       c = {};
-      c.effort_max[axis] = bad;
+      c.motors.effort_max[axis] = bad;
       EXPECT_EQ(core::check(c), ConfigurationStatus::kBadLimit);
       c = {};
-      c.effort_slew_s[axis] = bad;
+      c.motors.effort_slew_s[axis] = bad;
       EXPECT_EQ(core::check(c), ConfigurationStatus::kBadLimit);
     }
   }
@@ -112,10 +116,10 @@ TEST(Configuration, ChecksEveryVectorComponent) {
 
 TEST(Configuration, RefusesDynamicAboveStaticFriction) {
   Configuration c;
-  c.static_friction = 0.2F;
-  c.dynamic_friction = 0.21F;
+  c.contact.static_friction = 0.2F;
+  c.contact.dynamic_friction = 0.21F;
   EXPECT_EQ(core::check(c), ConfigurationStatus::kBadFriction);
-  c.dynamic_friction = 0.2F;
+  c.contact.dynamic_friction = 0.2F;
   EXPECT_EQ(core::check(c), ConfigurationStatus::kOk);
 }
 
@@ -124,15 +128,15 @@ TEST(Configuration, RefusesStiffnessAboveStabilityLimit) {
   Configuration c;
   c.device_damping_Ns_m = 0.1F;
   c.hand_damping_Ns_m = 1.0F;
-  c.damping_Ns_m = 0.0F;
+  c.contact.damping_Ns_m = 0.0F;
   c.passivity_Ns_m = 0.0F;
   EXPECT_NEAR(core::stability_limit(c).with_hand_N_m, 2200.0F, 1.0F);
   EXPECT_NEAR(core::stability_limit(c).without_hand_N_m, 200.0F, 0.1F);
   c.delay_s = 0.3e-3F;
   EXPECT_NEAR(core::stability_limit(c).with_hand_N_m, 1375.0F, 1.0F);
-  c.stiffness_N_m = 1370.0F;
+  c.contact.stiffness_N_m = 1370.0F;
   EXPECT_EQ(core::check(c), ConfigurationStatus::kOk);
-  c.stiffness_N_m = 1380.0F;
+  c.contact.stiffness_N_m = 1380.0F;
   EXPECT_EQ(core::check(c), ConfigurationStatus::kUnstable);
   c.rate_hz = 4000.0F;
   c.delay_s = 0.0F;

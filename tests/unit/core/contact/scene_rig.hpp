@@ -12,10 +12,10 @@ inline constexpr double kTick = 1e-3;   // s
 
 inline core::Configuration smooth_wall() {
   core::Configuration configuration;
-  configuration.stiffness_N_m = static_cast<float>(kWall);
-  configuration.damping_Ns_m = 0.0F;
-  configuration.static_friction = 0.0F;
-  configuration.dynamic_friction = 0.0F;
+  configuration.contact.stiffness_N_m = static_cast<float>(kWall);
+  configuration.contact.damping_Ns_m = 0.0F;
+  configuration.contact.static_friction = 0.0F;
+  configuration.contact.dynamic_friction = 0.0F;
   return configuration;
 }
 

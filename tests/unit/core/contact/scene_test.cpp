@@ -31,9 +31,9 @@ const Eigen::Isometry3d kWallX = isometry({0.0, 0.0, 0.0}, {0.0, std::numbers::p
 
 core::Configuration rough_wall() {
   core::Configuration c = smooth_wall();
-  c.damping_Ns_m = 0.5F;
-  c.static_friction = 0.6F;
-  c.dynamic_friction = 0.5F;
+  c.contact.damping_Ns_m = 0.5F;
+  c.contact.static_friction = 0.6F;
+  c.contact.dynamic_friction = 0.5F;
   return c;
 }
 
@@ -106,7 +106,7 @@ TEST(Scene, PushesRestingProbe) {
 
 TEST(Scene, DampsMovingBodyLikeProbe) {
   core::Configuration damped = smooth_wall();
-  damped.damping_Ns_m = 2.0F;
+  damped.contact.damping_Ns_m = 2.0F;
   SceneRig rig(damped);
   const std::uint32_t body = rig.add(sheet(), isometry({0.0, 0.0, -1e-3}));
   rig.tick({0.0, 0.0, 0.0});
@@ -132,7 +132,7 @@ TEST(Scene, CarriesProxyWithBody) {
 TEST(Scene, DragsProbeWithRotatingBody) {
   const Shape ball = sphere();
   SceneRig rig(rough_wall());
-  rig.configuration.damping_Ns_m = 0.0F;
+  rig.configuration.contact.damping_Ns_m = 0.0F;
   const std::uint32_t body = rig.add(ball);
   rig.tick({0.0, 0.0, kSphereRadius + 0.002});
   rig.go({0.0, 0.0, kSphereRadius - 0.002});
@@ -154,7 +154,7 @@ TEST(Scene, ReportsOppositeReaction) {
   for (int i = 0; i < 20; ++i) {
     const Eigen::Isometry3d pose = random.pose(0.5);
     core::Configuration sticky = smooth_wall();
-    sticky.static_friction = sticky.dynamic_friction = 0.8F;
+    sticky.contact.static_friction = sticky.contact.dynamic_friction = 0.8F;
     SceneRig rig(sticky);
     rig.add(sheet(), kFar);
     const std::uint32_t body = rig.add(sheet(), pose);

@@ -207,8 +207,8 @@ TEST(Union, RubsSmoothlyOverFlushSeam) {
     for (const double speed : {0.02, 0.3}) {
       SCOPED_TRACE(testing::Message() << rate_hz << " Hz, " << speed << " m/s");
       Course course({{left}, {right}}, Isometry3d::Identity(), rate_hz);
-      course.rig().configuration.static_friction = static_cast<float>(kFriction);
-      course.rig().configuration.dynamic_friction = static_cast<float>(kFriction);
+      course.rig().configuration.contact.static_friction = static_cast<float>(kFriction);
+      course.rig().configuration.contact.dynamic_friction = static_cast<float>(kFriction);
       course.start({-9.0, 0.7, 4.0});
       course.go({-9.0, 0.7, -2.0}, 0.1);
       course.go({-7.0, 0.7, -2.0}, speed);

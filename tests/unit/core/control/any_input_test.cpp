@@ -35,8 +35,8 @@ void inspect(const core::Output& output, const core::Output& last, const core::C
     step += (effort - before) * (effort - before);
   }
   const bool active = output.status.state == State::kActive;
-  const double slew = static_cast<double>(c.slew_N_s) / static_cast<double>(c.rate_hz);
-  counts.broken += std::sqrt(now) <= static_cast<double>(c.force_max_N) ? 0U : 1U;
+  const double slew = static_cast<double>(c.limits.slew_N_s) / static_cast<double>(c.rate_hz);
+  counts.broken += std::sqrt(now) <= static_cast<double>(c.limits.force_max_N) ? 0U : 1U;
   counts.broken += !active || std::sqrt(step) <= slew ? 0U : 1U;
   counts.broken += active || output.motors.is_zero() ? 0U : 1U;
   counts.broken += output.enable || output.motors.is_zero() ? 0U : 1U;
@@ -75,7 +75,7 @@ bool has_hand(std::uint32_t tick) { return tick % kPhases > 20U; }
 
 TEST(AnyInput, KeepsLimitsUnderRandomInputs) {
   core::Configuration configuration;
-  configuration.ramp_s = 0.01F;
+  configuration.limits.ramp_s = 0.01F;
   ControllerRig session(configuration);
   core::Output last = session.step();
   Counts counts;
@@ -103,11 +103,11 @@ TEST(AnyInput, KeepsLimitsUnderRandomInputs) {
 // Mostly plausible inputs, which give force: a fast random hand in and around the object.
 TEST(AnyInput, KeepsLimitsUnderWildMotion) {
   core::Configuration configuration;
-  configuration.ramp_s = 0.01F;
-  configuration.stiffness_N_m = 3000.0F;
-  configuration.force_max_N = 3.0F;
-  configuration.slew_N_s = 500.0F;
-  configuration.speed_max_m_s = 20.0F;
+  configuration.limits.ramp_s = 0.01F;
+  configuration.contact.stiffness_N_m = 3000.0F;
+  configuration.limits.force_max_N = 3.0F;
+  configuration.limits.slew_N_s = 500.0F;
+  configuration.supervision.speed_max_m_s = 20.0F;
   ControllerRig session(configuration);
   ASSERT_EQ(session.status, core::ConfigurationStatus::kOk);
   core::Output last = session.step();
@@ -179,10 +179,10 @@ Shape textured_plane() {
 void touch_while_bits_flip(const Shape& shape, core::RenderMode mode) {
   core::Configuration configuration;
   configuration.mode = mode;
-  configuration.ramp_s = 0.01F;
-  configuration.force_max_N = 3.0F;
-  configuration.slew_N_s = 500.0F;
-  configuration.speed_max_m_s = 20.0F;
+  configuration.limits.ramp_s = 0.01F;
+  configuration.limits.force_max_N = 3.0F;
+  configuration.limits.slew_N_s = 500.0F;
+  configuration.supervision.speed_max_m_s = 20.0F;
   FailingModel model(shape.bytes());
   ControllerRig session(configuration);
   ASSERT_EQ(session.controller.load_model(model.view()), core::ModelStatus::kOk);

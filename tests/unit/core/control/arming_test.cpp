@@ -82,7 +82,7 @@ TEST(Arming, EndsAddedForceOnStop) {
 
 TEST(Arming, RequiresConfirmationWithoutDeadMan) {
   core::Configuration configuration;
-  configuration.dead_man_required = false;
+  configuration.supervision.dead_man_required = false;
   ControllerRig session(configuration);
   session.step(Command::kArm);
   for (int i = 0; i < 40; ++i) {
@@ -193,7 +193,7 @@ TEST(Arming, RendersBackOfSheet) {
 
 TEST(Arming, RampsForceFromZero) {
   core::Configuration configuration;
-  configuration.ramp_s = 0.5F;
+  configuration.limits.ramp_s = 0.5F;
   ControllerRig session(configuration);
   session.activate();
   ASSERT_EQ(session.state(), State::kActive);

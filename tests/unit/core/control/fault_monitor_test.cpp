@@ -161,8 +161,8 @@ TEST(Faults, ExcusesStorageOverrunsWhileUnpowered) {
 TEST(Faults, StopsOnRequiredLinkLoss) {
   for (const bool required : {false, true}) {
     core::Configuration configuration;
-    configuration.link_required = required;
-    configuration.link_timeout_s = 0.02F;
+    configuration.link.required = required;
+    configuration.link.timeout_s = 0.02F;
     ControllerRig session(configuration);
     session.activate();
     ASSERT_EQ(session.state(), State::kActive);
@@ -183,8 +183,8 @@ TEST(Faults, StopsOnRequiredLinkLoss) {
 // A program that only repeats the arm command does not supervise the session.
 TEST(Faults, IgnoresArmCommandAsHeartbeat) {
   core::Configuration configuration;
-  configuration.link_required = true;
-  configuration.link_timeout_s = 0.02F;
+  configuration.link.required = true;
+  configuration.link.timeout_s = 0.02F;
   ControllerRig session(configuration);
   session.activate();
   session.input.link_alive = false;
@@ -197,7 +197,7 @@ TEST(Faults, IgnoresArmCommandAsHeartbeat) {
 
 TEST(Faults, ReportsLinkLossOnceArmed) {
   core::Configuration configuration;
-  configuration.link_required = true;
+  configuration.link.required = true;
   ControllerRig session(configuration);
   session.input.link_alive = false;
   for (int i = 0; i < 1000; ++i) {
@@ -301,7 +301,7 @@ TEST(Faults, DocumentsEveryFaultAndLimit) {
 
 TEST(Faults, ReportsSupplyOutsideRange) {
   core::Configuration configuration;
-  configuration.supply_monitored = true;
+  configuration.supervision.supply_monitored = true;
   for (const float volts : {17.9F, 30.1F, 0.0F, -24.0F, std::numeric_limits<float>::quiet_NaN(),
                             std::numeric_limits<float>::infinity()}) {
     ControllerRig session(configuration);
@@ -332,8 +332,9 @@ TEST(Faults, KeepsFirstFaultReported) {
 
 TEST(Faults, AcceptsSupplyAtRangeEnds) {
   core::Configuration configuration;
-  configuration.supply_monitored = true;
-  for (const float volts : {configuration.supply_min_V, configuration.supply_max_V}) {
+  configuration.supervision.supply_monitored = true;
+  for (const float volts :
+       {configuration.supervision.supply_min_V, configuration.supervision.supply_max_V}) {
     ControllerRig session(configuration);
     session.input.supply_V = volts;
     session.activate();
@@ -374,12 +375,12 @@ class StuckEncoder {
   ControllerRig& session() { return session_; }
   static core::Configuration configuration() {
     core::Configuration configuration;
-    configuration.stuck_s = 0.1F;
-    configuration.ramp_s = 0.01F;
+    configuration.supervision.stuck_s = 0.1F;
+    configuration.limits.ramp_s = 0.01F;
     configuration.device.homing = core::HomingMethod::kGivenPose;
     return configuration;
   }
-  static constexpr float kForce_N = core::Configuration{}.force_max_N;
+  static constexpr float kForce_N = core::ForceLimits{}.force_max_N;
   static constexpr std::uint32_t kTicks = 100;  // stuck_s of the configuration below
 
  private:
@@ -409,7 +410,7 @@ TEST(Faults, ChecksEncoderAgainstOwnAxis) {
   for (std::uint32_t held = 0; held < core::kAxes; ++held) {
     core::Configuration configuration = StuckEncoder::configuration();
     for (std::uint32_t axis = 0; axis < core::kAxes; ++axis) {
-      configuration.effort_max[axis] = axis == held ? 4.0F : 40.0F;
+      configuration.motors.effort_max[axis] = axis == held ? 4.0F : 40.0F;
     }
     StuckEncoder stuck(configuration);
     ASSERT_EQ(stuck.session().status, core::ConfigurationStatus::kOk);
@@ -433,7 +434,7 @@ TEST(Faults, ChecksStuckEncodersWhileActive) {
 
 TEST(Faults, RespectsConfiguredStuckTime) {
   core::Configuration configuration = StuckEncoder::configuration();
-  configuration.stuck_s = 0.25F;
+  configuration.supervision.stuck_s = 0.25F;
   const auto ticks = StuckEncoder(configuration).ticks_to_fault(0, 0, 400U);
   ASSERT_TRUE(ticks.has_value());
   EXPECT_GE(*ticks, 250U);

@@ -62,7 +62,7 @@ TEST(SessionWithBodies, FadesForceOfRemovedBody) {
 // Also of a force that changes faster than it should: the gate's slew holds whatever bodies do.
 TEST(SessionWithBodies, LimitsSlewOfBodyChanges) {
   core::Configuration slow;
-  slow.slew_N_s = 100.0F;
+  slow.limits.slew_N_s = 100.0F;
   SessionWithBodies session({kFar}, slow);
   core::Vec3 before = session.press(2e-3).status.force;
   float furthest = 0.0F;
@@ -140,8 +140,8 @@ TEST(SessionWithBodies, ReportsTooManyReachableBodies) {
 // Where the gate gives less than was rendered, the bodies feel less too.
 TEST(SessionWithBodies, ScalesReactionsToAppliedForce) {
   core::Configuration weak;
-  weak.force_max_N = 0.5F;
-  weak.slew_N_s = 500.0F;
+  weak.limits.force_max_N = 0.5F;
+  weak.limits.slew_N_s = 500.0F;
   // A second plane slopes down to x = 1 mm: both hold the proxy.
   SessionWithBodies session({isometry({0.001, 0.0, 0.0}, {0.0, 0.8, 0.0})}, weak);
   const core::Status status = session.press(2e-3).status;

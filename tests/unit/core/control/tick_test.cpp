@@ -152,7 +152,7 @@ TEST(Tick, ReportsNoWaitingWhileActive) {
 
 TEST(Tick, CountsArmCommandOnce) {
   core::Configuration configuration;
-  configuration.dead_man_required = false;
+  configuration.supervision.dead_man_required = false;
   ControllerRig session(configuration);
   session.enable_follows = false;
   session.input.enable_read_back = true;
@@ -283,9 +283,9 @@ TEST(Tick, DiscardsUnusedAddedForce) {
 // The controller adds the damping of the passivity controller: compared with a separate instance.
 TEST(Tick, KeepsWallPassive) {
   core::Configuration configuration;
-  configuration.ramp_s = 0.01F;
+  configuration.limits.ramp_s = 0.01F;
   configuration.delay_s = 0.003F;
-  configuration.stiffness_N_m = 150.0F;
+  configuration.contact.stiffness_N_m = 150.0F;
   configuration.passivity_Ns_m = 2.0F;
   ControllerRig session(configuration);
   ASSERT_EQ(session.status, core::ConfigurationStatus::kOk);
@@ -309,7 +309,7 @@ TEST(Tick, KeepsWallPassive) {
       const float push = core::dot(force, r.normal);
       const float leaving = core::dot(output.status.velocity, r.normal);
       const float most =
-          leaving > 0.0F ? observer.most_push(leaving, configuration.slew_N_s) : push;
+          leaving > 0.0F ? observer.most_push(leaving, configuration.limits.slew_N_s) : push;
       const float allowed = std::clamp(push, 0.0F, std::max(most, 0.0F));
       const Vec3 expected = force + (allowed - push) * r.normal;
       ASSERT_EQ(output.status.limits, 0U) << i;
@@ -326,7 +326,7 @@ TEST(Tick, KeepsWallPassive) {
 template <class Change>
 std::vector<float> draw_back(Change change) {
   core::Configuration configuration;
-  configuration.ramp_s = 0.01F;
+  configuration.limits.ramp_s = 0.01F;
   ControllerRig session(configuration);
   session.activate();
   session.move(0.0, 0.0, 1e-3);

@@ -118,7 +118,7 @@ core::Configuration premium_to_be_homed() {
   core::Configuration configuration;
   core::use_device(core::presets::premium(), configuration);
   configuration.model_origin_m = {0.0F, 0.0F, -0.03F};
-  configuration.ramp_s = 0.002F;
+  configuration.limits.ramp_s = 0.002F;
   return configuration;
 }
 

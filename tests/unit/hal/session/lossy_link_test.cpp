@@ -26,7 +26,7 @@ const TestBlob& blob() {
 
 core::Configuration quick() {
   core::Configuration c = SessionRig<>::configuration();
-  c.ramp_s = 0.01F;
+  c.limits.ramp_s = 0.01F;
   return c;
 }
 

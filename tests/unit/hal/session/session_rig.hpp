@@ -96,8 +96,8 @@ class SessionRig {
 
   static core::Configuration configuration() {
     core::Configuration c;
-    c.dead_man_required = false;
-    c.stuck_s = 1.0F;  // nothing moves here, whatever the motors do
+    c.supervision.dead_man_required = false;
+    c.supervision.stuck_s = 1.0F;  // nothing moves here, whatever the motors do
     return c;
   }
 

@@ -158,14 +158,14 @@ TEST_F(SessionTest, StopsOnClose) {
   EXPECT_TRUE(rig.ask(MessageKind::kClose).ok());
   rig.settle(2);
   EXPECT_EQ(rig.state(), State::kIdle);
-  EXPECT_FALSE(rig.controller().configuration().link_required);
+  EXPECT_FALSE(rig.controller().configuration().link.required);
 }
 
 TEST_F(SessionTest, LowersLimitsOnlyWhileStopped) {
   ASSERT_TRUE(rig.open().ok());
   EXPECT_TRUE(
       rig.ask(MessageKind::kSetLimits, core::wire::SetLimitsRequest{3.0F, 500.0F, 0.5F}).ok());
-  EXPECT_EQ(rig.controller().configuration().force_max_N, 3.0F);
+  EXPECT_EQ(rig.controller().configuration().limits.force_max_N, 3.0F);
   for (const core::wire::SetLimitsRequest& bad : {core::wire::SetLimitsRequest{8.1F, 500.0F, 0.5F},
                                                   {3.0F, 2001.0F, 0.5F},
                                                   {NAN, 500.0F, 0.5F},
@@ -179,7 +179,7 @@ TEST_F(SessionTest, LowersLimitsOnlyWhileStopped) {
   EXPECT_EQ(
       rig.ask(MessageKind::kSetLimits, core::wire::SetLimitsRequest{2.0F, 500.0F, 0.5F}).status,
       WireStatus::kBusy);
-  EXPECT_EQ(rig.controller().configuration().force_max_N, 3.0F);
+  EXPECT_EQ(rig.controller().configuration().limits.force_max_N, 3.0F);
 }
 
 TEST_F(SessionTest, ChangesMaterialWhileActive) {
@@ -188,7 +188,7 @@ TEST_F(SessionTest, ChangesMaterialWhileActive) {
   EXPECT_TRUE(rig.ask(MessageKind::kSetMaterial,
                       core::wire::SetMaterialRequest{300.0F, 0.5F, 0.1F, 0.05F, 1})
                   .ok());
-  EXPECT_EQ(rig.controller().configuration().stiffness_N_m, 300.0F);
+  EXPECT_EQ(rig.controller().configuration().contact.stiffness_N_m, 300.0F);
   EXPECT_EQ(
       rig.ask(MessageKind::kSetMaterial, core::wire::SetMaterialRequest{1e5F, 0.0F, 0.1F, 0.05F, 1})
           .status,

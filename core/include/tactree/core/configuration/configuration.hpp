@@ -17,6 +17,48 @@ enum class RenderMode : std::uint8_t {
   kPaper = 1,    ///< the paper's collision boxes and nearest point
 };
 
+/// Parameters of a contact.
+struct ContactParameters {
+  float stiffness_N_m = 500.0F;   ///< 0 .. 1e5, below the stability limit with a hand
+  float damping_Ns_m = 0.5F;      ///< 0 .. 1000
+  float static_friction = 0.4F;   ///< 0 .. 2
+  float dynamic_friction = 0.3F;  ///< 0 .. static_friction
+};
+
+/// Limits of the force at the probe.
+struct ForceLimits {
+  float force_max_N = 8.0F;  ///< 0.01 .. 1000
+  float slew_N_s = 2000.0F;  ///< per tick: force_max_N * (1e-4 .. 2)
+  float ramp_s = 0.25F;      ///< from 0 to full force: 2 ticks .. 10 s
+  bool operator==(const ForceLimits&) const = default;
+};
+
+/// Limits of the motors.
+struct MotorLimits {
+  float effort_max[kAxes] = {8.5F, 8.5F, 8.5F};              ///< N or Nm: 1e-4 .. 1000
+  float effort_slew_s[kAxes] = {2000.0F, 2000.0F, 2000.0F};  ///< N/s or Nm/s, as slew_N_s
+  float continuous_share = 0.35F;  ///< continuous effort / effort_max: 0.05 .. 1
+  float thermal_time_s = 50.0F;    ///< time constant of the windings: 1 .. 1000
+};
+
+/// Supervision of the link to an application.
+struct LinkSupervision {
+  bool required = false;    ///< true: a lost link is a fault
+  float timeout_s = 0.02F;  ///< 0.005 .. 0.1; cannot be disabled
+  bool operator==(const LinkSupervision&) const = default;
+};
+
+/// Supervision of encoders, amplifiers and the hand on the device.
+struct Supervision {
+  float speed_max_m_s = 10.0F;     ///< of the probe; above: encoder fault: 0.1 .. 100
+  float stuck_s = 0.1F;            ///< time without counts under a changing effort: 0.01 .. 1
+  float enable_timeout_s = 0.05F;  ///< delay of the enable read-back: 0.001 .. 1
+  bool dead_man_required = true;   ///< false: a second arm command replaces it
+  bool supply_monitored = false;   ///< the board measures the amplifiers' supply
+  float supply_min_V = 18.0F;      ///< where monitored: 1 .. supply_max_V
+  float supply_max_V = 30.0F;      ///< where monitored: supply_min_V .. 1000
+};
+
 /// The defaults are safe for a PHANTOM Premium class device at 1 kHz.
 struct Configuration {
   float rate_hz = 1000.0F;  ///< ticks per second: 100 .. 20 000
@@ -24,44 +66,24 @@ struct Configuration {
   DeviceModel device{};   ///< device_model.hpp
   Vec3 model_origin_m{};  ///< origin of the model in the device's frame: within +-10 m
 
-  // Contact parameters where the model has no materials.
-  float stiffness_N_m = 500.0F;       ///< 0 .. 1e5, below the stability limit with a hand
-  float damping_Ns_m = 0.5F;          ///< 0 .. 1000
-  float static_friction = 0.4F;       ///< 0 .. 2
-  float dynamic_friction = 0.3F;      ///< 0 .. static_friction
-  float velocity_cutoff_hz = 200.0F;  ///< low-pass filter of the velocity: 1 .. rate_hz / 2
-  /// Maximum damping that the passivity controller adds: 0 .. 100; 0: off.
-  float passivity_Ns_m = 2.0F;
+  ContactParameters contact{};  ///< where the model has no materials
   /// Use the materials of the blob, if present; each must be below the stability limit.
   bool use_materials = true;
 
-  bool compensate_gravity = true;  ///< the motors compensate the weight of the device
+  bool compensate_gravity = true;     ///< the motors compensate the weight of the device
+  float velocity_cutoff_hz = 200.0F;  ///< low-pass filter of the velocity: 1 .. rate_hz / 2
+  /// Maximum damping that the passivity controller adds: 0 .. 100; 0: off.
+  float passivity_Ns_m = 2.0F;
 
   // The device and the hand, for the stability limit.
   float device_damping_Ns_m = 0.05F;  ///< 0 .. 1000
   float hand_damping_Ns_m = 1.0F;     ///< 0 .. 1000: a light hand
   float delay_s = 0.0F;               ///< from encoder to force, beyond the sampling: 0 .. 0.1
 
-  // Limits.
-  float force_max_N = 8.0F;                      ///< 0.01 .. 1000
-  float slew_N_s = 2000.0F;                      ///< per tick: force_max_N * (1e-4 .. 2)
-  float effort_max[kAxes] = {8.5F, 8.5F, 8.5F};  ///< N or Nm: 1e-4 .. 1000
-  float effort_slew_s[kAxes] = {2000.0F, 2000.0F, 2000.0F};  ///< N/s or Nm/s, as slew_N_s
-  float continuous_share = 0.35F;  ///< continuous effort / effort_max: 0.05 .. 1
-  float thermal_time_s = 50.0F;    ///< time constant of the windings: 1 .. 1000
-  float ramp_s = 0.25F;            ///< from 0 to full force: 2 ticks .. 10 s
-  float speed_max_m_s = 10.0F;     ///< of the probe; above: encoder fault: 0.1 .. 100
-
-  float stuck_s = 0.1F;           ///< time without counts under a changing effort: 0.01 .. 1
-  bool supply_monitored = false;  ///< the board measures the amplifiers' supply
-  float supply_min_V = 18.0F;     ///< where monitored: 1 .. supply_max_V
-  float supply_max_V = 30.0F;     ///< where monitored: supply_min_V .. 1000
-
-  // Handshakes.
-  bool link_required = false;      ///< true: a lost link is a fault
-  float link_timeout_s = 0.02F;    ///< 0.005 .. 0.1; cannot be disabled
-  bool dead_man_required = true;   ///< false: a second arm command replaces it
-  float enable_timeout_s = 0.05F;  ///< delay of the enable read-back: 0.001 .. 1
+  ForceLimits limits{};
+  MotorLimits motors{};
+  Supervision supervision{};
+  LinkSupervision link{};
 };
 
 enum class ConfigurationStatus : std::uint8_t {
@@ -75,7 +97,7 @@ enum class ConfigurationStatus : std::uint8_t {
   kBadDamping,
   kBadFriction,
   kBadFilter,
-  kBadLimit,  ///< force_max_N, slew_N_s, effort_max, effort_slew_s
+  kBadLimit,  ///< of ForceLimits or MotorLimits
   kBadRamp,
   kBadSpeed,
   kBadTimeout,

@@ -199,11 +199,11 @@ constexpr void use_device(const DevicePreset& device, Configuration& configurati
   // Time from zero to full effort of an axis. The defaults of Configuration give about the same.
   constexpr float kFullEffortIn_s = 0.004F;
   configuration.device = device.model;
-  configuration.force_max_N = device.drive.force_max_N;
+  configuration.limits.force_max_N = device.drive.force_max_N;
   configuration.device_damping_Ns_m = device.drive.damping_Ns_m;
   for (std::uint32_t i = 0; i < kAxes; ++i) {  // bound: kAxes
-    configuration.effort_max[i] = device.drive.effort_max[i];
-    configuration.effort_slew_s[i] = device.drive.effort_max[i] / kFullEffortIn_s;
+    configuration.motors.effort_max[i] = device.drive.effort_max[i];
+    configuration.motors.effort_slew_s[i] = device.drive.effort_max[i] / kFullEffortIn_s;
   }
 }
 

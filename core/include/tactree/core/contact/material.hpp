@@ -8,18 +8,10 @@
 #include <cstdint>
 
 #include "tactree/core/configuration/configuration.hpp"
-#include "tactree/core/contact/proxy.hpp"
 #include "tactree/core/contact/surface.hpp"
 #include "tactree/core/model/blob.hpp"
 
 namespace tactree::core {
-
-/// Parameters of a contact.
-struct ContactParameters {
-  float stiffness_N_m = 0.0F;
-  float damping_Ns_m = 0.0F;
-  Friction friction{};
-};
 
 /// Maximum number of materials in a blend. If a support radius contains more, the points of the
 /// excess materials are ignored.

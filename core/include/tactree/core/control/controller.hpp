@@ -77,17 +77,11 @@ struct Output {
 /// Parameters that Controller::adjust() changes without homing and loading again.
 struct Adjustment {
   // Changeable only while the motors are off.
-  float force_max_N = 0.0F;
-  float slew_N_s = 0.0F;
-  float ramp_s = 0.0F;
+  ForceLimits limits{};
+  LinkSupervision link{};
   bool use_materials = true;
-  bool link_required = false;
-  float link_timeout_s = 0.0F;
   // Changeable in every state.
-  float stiffness_N_m = 0.0F;
-  float damping_Ns_m = 0.0F;
-  float static_friction = 0.0F;
-  float dynamic_friction = 0.0F;
+  ContactParameters contact{};
 };
 
 class Controller {

@@ -31,9 +31,9 @@ class FaultMonitor {
   /// kEncoderStuck or 0.
   [[nodiscard]] FaultMask update_encoders(const EncoderReading& encoders,
                                           const Configuration& configuration, Vec3 effort) {
-    const float share[kAxes] = {effort.x / configuration.effort_max[0],
-                                effort.y / configuration.effort_max[1],
-                                effort.z / configuration.effort_max[2]};
+    const float share[kAxes] = {effort.x / configuration.motors.effort_max[0],
+                                effort.y / configuration.motors.effort_max[1],
+                                effort.z / configuration.motors.effort_max[2]};
     const bool moves = encoders_.update(encoders.counts, share, axes_of(configuration.device.kind));
     return moves ? 0U : fault_bit(Fault::kEncoderStuck);
   }

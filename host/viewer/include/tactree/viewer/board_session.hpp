@@ -89,7 +89,7 @@ class BoardSession : public Source {
   std::mutex connecting_;  // held while reconnecting
   std::unique_ptr<client::Board> board_;
   std::unique_ptr<BoardFacts> facts_;
-  core::Configuration contact_{};  // contact parameters sent to the board
+  core::Configuration sent_{};  // holds the contact parameters sent to the board
   Work work_;
   std::string why_lost_;
   Clock::time_point next_try_{};

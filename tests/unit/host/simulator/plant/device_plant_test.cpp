@@ -108,7 +108,7 @@ Press press(const core::DevicePreset& device, float stiffness_N_m, float passivi
   static const Shape shape = plane();
   simulation::Setup setup;
   simulation::use_device(device, setup);
-  setup.controller.stiffness_N_m = stiffness_N_m;
+  setup.controller.contact.stiffness_N_m = stiffness_N_m;
   setup.controller.passivity_Ns_m = passivity_Ns_m;
   std::vector<simulation::Waypoint> way;
   for (int i = 0; i <= 1000; ++i) {

@@ -31,7 +31,7 @@ Account press(const core::Configuration& configuration, double depth_m, double p
   const double tick_s = 1.0 / static_cast<double>(configuration.rate_hz);
   Account account;
   double hand_before = 0.0;
-  for (float t = 0.0F; t < configuration.ramp_s + 0.1F; t += 1.0F / configuration.rate_hz) {
+  for (float t = 0.0F; t < configuration.limits.ramp_s + 0.1F; t += 1.0F / configuration.rate_hz) {
     session.move(0.0, 0.0, 0.01);
     session.step();  // a wall that grows under the hand is put in by the controller
   }
@@ -66,7 +66,7 @@ TEST(Energy, KeepsAcceptedWallsPassive) {
     configuration.rate_hz = rate_hz;
     const double limit = hardest(configuration);
     for (const double share : {0.02, 0.1, 0.25, 0.5, 0.75, 0.999}) {
-      configuration.stiffness_N_m = static_cast<float>(share * limit);
+      configuration.contact.stiffness_N_m = static_cast<float>(share * limit);
       ASSERT_EQ(check(configuration), core::ConfigurationStatus::kOk) << share;
       for (const double period_s : {1.0, 0.4, 0.2, 0.1}) {
         const Account account = press(configuration, 0.02, period_s);
@@ -77,7 +77,7 @@ TEST(Energy, KeepsAcceptedWallsPassive) {
         EXPECT_EQ(account.faults, 0U);
       }
     }
-    configuration.stiffness_N_m = static_cast<float>(1.001 * limit);
+    configuration.contact.stiffness_N_m = static_cast<float>(1.001 * limit);
     EXPECT_EQ(check(configuration), core::ConfigurationStatus::kUnstable);
   }
 }

@@ -76,7 +76,7 @@ struct Session {
 Session run(std::string_view script) {
   static const Shape shape = cos_sheet();
   simulation::Setup setup;
-  setup.controller.supply_monitored = true;
+  setup.controller.supervision.supply_monitored = true;
   simulation::Simulation sim(shape.bytes(), setup,
                              simulation::make_script("rub", shape.view(), 4.0));
   EXPECT_TRUE(sim.arm());

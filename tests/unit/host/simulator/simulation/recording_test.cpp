@@ -49,15 +49,16 @@ TEST(Recording, KeepsEveryConfigurationField) {
   simulation::SessionWriter writer;
   float value = 1.0F;
   for (float* field :
-       {&configuration.rate_hz, &configuration.stiffness_N_m, &configuration.ramp_s,
+       {&configuration.rate_hz, &configuration.contact.stiffness_N_m, &configuration.limits.ramp_s,
         &configuration.device.delta.leg_rad[2], &configuration.device.five_bar.base_m,
-        &configuration.device.torque_constant_Nm_per_ampere[2], &configuration.enable_timeout_s,
-        &configuration.thermal_time_s, &configuration.model_origin_m.y}) {
+        &configuration.device.torque_constant_Nm_per_ampere[2],
+        &configuration.supervision.enable_timeout_s, &configuration.motors.thermal_time_s,
+        &configuration.model_origin_m.y}) {
     *field = value;
     value += 1.0F;
   }
   configuration.device.homing = core::HomingMethod::kIndex;
-  configuration.dead_man_required = false;
+  configuration.supervision.dead_man_required = false;
   writer.configured(configuration);
   const std::vector<std::byte> bytes = writer.finish();
   Recording recording(bytes);
@@ -67,9 +68,9 @@ TEST(Recording, KeepsEveryConfigurationField) {
   simulation::SessionWriter again;
   again.configured(read);
   EXPECT_EQ(again.finish(), bytes);
-  EXPECT_EQ(read.enable_timeout_s, configuration.enable_timeout_s);
+  EXPECT_EQ(read.supervision.enable_timeout_s, configuration.supervision.enable_timeout_s);
   EXPECT_EQ(read.device.homing, core::HomingMethod::kIndex);
-  EXPECT_FALSE(read.dead_man_required);
+  EXPECT_FALSE(read.supervision.dead_man_required);
 }
 
 TEST(Recording, RefusesForeignFile) {
@@ -82,9 +83,9 @@ TEST(Recording, RefusesForeignFile) {
 
 TEST(Recording, RefusesAnotherVersion) {
   std::vector<std::byte> bytes = sound();
-  bytes[8] = std::byte{2};
+  bytes[8] = std::byte{1};
   EXPECT_EQ(refusal(bytes),
-            "byte 8: version 2 of the format; this program reads version 1 (replay it with the "
+            "byte 8: version 1 of the format; this program reads version 2 (replay it with the "
             "version of tactree that recorded it)");
 }
 

@@ -97,7 +97,7 @@ class RandomSession {
  private:
   static core::Configuration configuration() {
     core::Configuration c;
-    c.ramp_s = 0.01F;
+    c.limits.ramp_s = 0.01F;
     c.use_materials = false;
     return c;
   }
@@ -132,9 +132,9 @@ class RandomSession {
   void change() {
     if (chance(50)) {
       core::Adjustment adjustment = controller_.adjustment();
-      adjustment.stiffness_N_m = 200.0F + 100.0F * static_cast<float>(below(4));
-      adjustment.damping_Ns_m = 0.1F * static_cast<float>(below(8));
-      adjustment.force_max_N = chance(8) ? 4.0F : adjustment.force_max_N;
+      adjustment.contact.stiffness_N_m = 200.0F + 100.0F * static_cast<float>(below(4));
+      adjustment.contact.damping_Ns_m = 0.1F * static_cast<float>(below(8));
+      adjustment.limits.force_max_N = chance(8) ? 4.0F : adjustment.limits.force_max_N;
       (void)changes_.adjust(adjustment);
     }
     if (chance(300)) {  // in any state
@@ -219,7 +219,7 @@ TEST(Replay, LocatesUnrecordedChange) {
   }
   for (int i = 0; i < 2500; ++i) {
     core::Adjustment adjustment = session.controller().adjustment();
-    adjustment.stiffness_N_m = 150.0F;
+    adjustment.contact.stiffness_N_m = 150.0F;
     ASSERT_EQ(session.controller().adjust(adjustment), core::ConfigurationStatus::kOk);
     session.tick();
   }

@@ -68,7 +68,7 @@ TEST(Simulation, SameRunGivesSameChecksum) {
   const Summary second = run({}, "rub", 2000);
   EXPECT_EQ(first.trace_crc32, second.trace_crc32);
   SimSetup other;
-  other.controller.stiffness_N_m = 501.0F;
+  other.controller.contact.stiffness_N_m = 501.0F;
   EXPECT_NE(run(other, "rub", 2000).trace_crc32, first.trace_crc32);
 }
 
