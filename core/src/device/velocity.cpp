@@ -4,10 +4,10 @@
 
 #include "tactree/core/device/velocity.hpp"
 
+#include "tactree/core/math/angle.hpp"
+
 namespace tactree::core {
 namespace {
-
-constexpr float kTwoPi = 6.2831853F;
 
 // The difference of two samples deviates by up to one quantum; the excess covers float32 rounding.
 constexpr float kTolerance = 1.1F;
