@@ -12,8 +12,8 @@ namespace {
 // The difference of two samples deviates by up to one quantum; the excess covers float32 rounding.
 constexpr float kTolerance = 1.1F;
 
-// The windows, in sample periods. A hand moves little between their ends, so a line that passes the
-// ends also passes the samples between them.
+// The windows, in sample periods; each is at least twice as long as the one before. A hand moves
+// little between their ends, so a line that passes the ends also passes the samples between them.
 struct Window {
   std::uint32_t samples;
   float inverse;
