@@ -22,7 +22,8 @@ inline constexpr std::uint32_t kHoldLowWhenOff = 1U << 10;                      
 inline constexpr std::uint32_t kOutputsOn = 1U << 15;                                 // BDTR: MOE
 inline constexpr std::uint32_t kTakeOver = 1U;                                        // EGR: UG
 
-/// Half a PWM period in timer clocks: 168 MHz / (2 * 20 kHz).
+/// Half a PWM period in timer clocks: 168 MHz / (2 * 20 kHz). Efforts have 4200 steps; with a
+/// higher frequency they would have fewer.
 inline constexpr std::uint32_t kHalfPeriod = 4200;
 
 /// Compare value of an effort, 0 .. kHalfPeriod. NaN gives 0.

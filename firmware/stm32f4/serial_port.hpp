@@ -32,7 +32,7 @@ inline constexpr std::uint32_t kChannel4 = 4U << 25;                      // str
 inline constexpr std::uint32_t kCircularBytes = (1U << 8) | (1U << 10);   // stream's CR
 inline constexpr std::uint32_t kStreamOn = 1U << 0;                       // stream's CR
 inline constexpr std::uint32_t kStream2Flags = 0x3DU << 16;               // LIFCR
-inline constexpr std::uint32_t kStreamPolls = 1000;
+inline constexpr std::uint32_t kStreamPolls = 1000;  // of about ten cycles: 60 us at 168 MHz
 }  // namespace serial
 
 /// USART1 with stream 2 of DMA2, channel 4 (table 43). Call from one context only, outside the

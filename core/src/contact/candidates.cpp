@@ -12,8 +12,10 @@ namespace tactree::core {
 namespace {
 
 // In units of the slack: distance of a new centre ahead of the query, below 1 so that the set
-// covers the query; and the maximum stride of a query that predicts the next one. A longer stride
-// is a jump.
+// covers the query; and the maximum stride of a query that predicts the next one. A query that goes
+// straight on leaves the set after 1.7, one that turns back after 0.3. A slow query begins the next
+// gather at a stride just above 1; a longer stride is a jump or a step of a sweep, which is 2.5
+// with a support radius of 2.5 and a reach of 3 spacings.
 constexpr float kAhead = 0.7F;
 constexpr float kStride = 1.5F;
 

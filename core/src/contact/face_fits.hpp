@@ -63,10 +63,15 @@ struct Seeds {
 };
 
 /// The normals of two faces differ by at least 47 degrees, those of opposite faces by at least 120.
+/// With 60 degrees, the proxy stays 85 to 130 um above the bottom of a groove of 120 degrees. With
+/// 35 degrees, bends of scans are divided: the largest force step on a statue rose from 0.9 to 1.9
+/// N. Convex faces that differ by more than 120 degrees are the two sides of a plate.
 inline constexpr float kCreaseCosine = 0.68F;
 inline constexpr float kOppositeCosine = -0.5F;
 /// A crease requires that the centroid of each face has at least this distance, in support radii,
-/// from the plane of the other face. A stray normal within a face then makes no crease.
+/// from the plane of the other face. A stray normal within a face then makes no crease. Between
+/// faces whose normals differ by an angle a, it is 0.24 sin(a): 0.07 at 18 degrees, the smallest
+/// angle of a crease. Noise of 5 % of the spacing is 0.02.
 inline constexpr float kApart = 0.04F;
 
 /// Combines the faces of `seeds` into one surface, as seen from `side`. `near` receives the normals

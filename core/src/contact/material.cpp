@@ -4,12 +4,11 @@
 
 #include "tactree/core/contact/material.hpp"
 
+#include "tactree/core/math/angle.hpp"
 #include "tactree/core/math/sine.hpp"
 
 namespace tactree::core {
 namespace {
-
-constexpr float kTurn = 6.28318531F;  // rad
 
 void set_single(MaterialBlend& blend, std::uint32_t material) {
   blend.count = 1;
@@ -46,7 +45,7 @@ float weight_of(Vec3 offset, float inverse_squared, float cosine) {
 /// cos(2 pi turns); error below 1e-6.
 float wave(float turns) {
   const auto whole_turns = static_cast<std::int32_t>(turns < 0.0F ? turns - 0.5F : turns + 0.5F);
-  return sine_cosine(kTurn * (turns - static_cast<float>(whole_turns))).cosine;
+  return sine_cosine(kTwoPi * (turns - static_cast<float>(whole_turns))).cosine;
 }
 
 /// -1 .. 1 for a unit normal.

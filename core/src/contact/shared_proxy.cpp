@@ -17,7 +17,8 @@ constexpr float kFlush = kApart;
 // hysteresis prevents the lead from alternating.
 constexpr float kMuchMore = 1.2F;
 
-// Three planes have no common point if the determinant of their normals is at most this.
+// Three planes have no common point if the determinant of their normals is at most this, as in
+// constraint_planes.cpp.
 constexpr float kNoPoint = 1e-3F;
 
 }  // namespace

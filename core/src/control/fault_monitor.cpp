@@ -6,7 +6,8 @@
 namespace tactree::core {
 namespace {
 
-// Ticks. Two overruns within this window are a fault; a single one is only counted.
+// Ticks. A single overrun keeps the last force for one period longer, and is only counted. Two
+// within this window are a fault: more than 1 % of the ticks are late, so the loop is too slow.
 constexpr std::uint32_t kOverrunWindow = 100;
 
 constexpr std::uint32_t add_saturating(std::uint32_t a, std::uint32_t b) {

@@ -19,8 +19,12 @@
 namespace tactree::core {
 namespace {
 
+// Within the joint ranges of the falcon preset, the three steps are at most 22 mm, 2.7 mm and 39 um
+// long. After two of them up to 39 um of error remain, after three only that of rounding.
 constexpr std::uint32_t kNewtonSteps = 3;
-// If the last Newton step is longer, the closure equations have no solution.
+// If the last Newton step is longer, the closure equations have no solution. A limit of 20 um made
+// poses at the ends of the ranges invalid, which is a fault. After a last step of 0.5 mm the error
+// is about 1 um.
 constexpr float kConverged = 5e-4F;  // m
 
 /// The constants of a leg during the Newton iteration for the plate.
@@ -91,9 +95,9 @@ Closures close_all(const DeltaGeometry& g, const Leg (&legs)[kAxes], Vec3 plate)
           valid};
 }
 
-/// Initial guess of the plate, accurate to some millimetres: the intersection, on the +x side of
-/// the ring, of three spheres with the maximum length of a leg as radius. Returns false if they do
-/// not intersect.
+/// Initial guess of the plate, within 22 mm for the falcon preset: the intersection, on the +x side
+/// of the ring, of three spheres with the maximum length of a leg as radius. Returns false if they
+/// do not intersect.
 bool first_guess(const DeltaGeometry& g, const Leg (&legs)[kAxes], Vec3& plate) {
   const Vec3 a = legs[1].fixed - legs[0].fixed;
   const Vec3 b = legs[2].fixed - legs[0].fixed;

@@ -3,10 +3,10 @@
 
 #include "tactree/core/device/device_model.hpp"
 
+#include "tactree/core/math/angle.hpp"
+
 namespace tactree::core {
 namespace {
-
-constexpr float kTwoPi = 6.2831853F;
 
 constexpr bool in_range(float value, float low, float high) {
   return value >= low && value <= high;

@@ -12,8 +12,11 @@ namespace {
 constexpr Mat3 kIdentity{{{1.0F, 0.0F, 0.0F}, {0.0F, 1.0F, 0.0F}, {0.0F, 0.0F, 1.0F}}};
 
 // Limits of KindPose::openness. Up to kSingular the force is zero, because the position of a
-// parallel linkage is inaccurate there and small forces require large efforts. From kOpen on the
-// full force is allowed.
+// parallel linkage is inaccurate there and small forces require large efforts: both grow as 1 /
+// openness, to 20 times at kSingular and 7 times at kOpen, from which on the full force is allowed.
+// The delta preset stays above 0.13 within its joint ranges; a larger kOpen would weaken it there.
+// If the limits were closer to each other, the force would end within less motion than 5.7 degrees
+// of an elbow.
 constexpr float kSingular = 0.05F;
 constexpr float kOpen = 0.15F;
 

@@ -4,16 +4,16 @@
 
 #include "tactree/core/device/velocity.hpp"
 
+#include "tactree/core/math/angle.hpp"
+
 namespace tactree::core {
 namespace {
-
-constexpr float kTwoPi = 6.2831853F;
 
 // The difference of two samples deviates by up to one quantum; the excess covers float32 rounding.
 constexpr float kTolerance = 1.1F;
 
-// The windows, in sample periods. A hand moves little between their ends, so a line that passes the
-// ends also passes the samples between them.
+// The windows, in sample periods; each is at least twice as long as the one before. A hand moves
+// little between their ends, so a line that passes the ends also passes the samples between them.
 struct Window {
   std::uint32_t samples;
   float inverse;

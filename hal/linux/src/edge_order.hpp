@@ -17,7 +17,8 @@ namespace tactree::hal::linux_gpio {
 
 class EdgeOrder {
  public:
-  /// Maximum number of edges of a line that are held back.
+  /// Maximum number of edges of a line that are held back; more are lost. They wait for up to
+  /// kRest_ns, 2 ms: 54 edges at 27 000 per second, which an axis reaches (docs/FIGURES.md).
   static constexpr std::uint32_t kHeld = 64;
 
   explicit EdgeOrder(std::size_t lines) : lines_(lines) {}

@@ -22,8 +22,8 @@ namespace {
 
 constexpr int kParentIsGone = SIGUSR2;
 
-// Checks per `silence_ns`. Detection takes at most one more check, plus the delay that the kernel
-// adds to five sleeps.
+// Checks per `silence_ns`. Detection takes at most one more check, hence 1.25 times `silence_ns`,
+// plus the delay that the kernel adds to five sleeps. More checks would wake the guard more often.
 constexpr std::uint64_t kLooks = 4;
 
 void ignore(int) {}

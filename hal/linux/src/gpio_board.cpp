@@ -10,8 +10,8 @@
 namespace tactree::hal::linux_gpio {
 namespace {
 
-// Bounds the cost of read(): later edges stay in the kernel's queue, and are lost only if it
-// overflows.
+// Bounds the cost of read() to 4096 edges (64 * kEdgesAtOnce): later ones stay in the kernel's
+// queue, and are lost only if it overflows.
 constexpr int kReadsPerTick = 64;
 
 InputSettings with_edges() {

@@ -47,10 +47,10 @@ constexpr std::uint32_t kDfuSubclass = 1;
 constexpr std::uint32_t kDfuMode = 2;
 // Can download and upload; manifestation tolerant.
 constexpr std::uint32_t kDfuAttributes = 0x07;
-constexpr std::uint32_t kDfuDetachTimeoutMs = 1000;
+constexpr std::uint32_t kDfuDetachTimeoutMs = 1000;  // no effect: it never leaves DFU mode
 constexpr std::uint32_t kDfuVersion = 0x0110;
 constexpr std::uint32_t kSelfPowered = 0xC0;    // the bus does not power the motors
-constexpr std::uint32_t kCurrentMax = 50;       // unit: 2 mA
+constexpr std::uint32_t kCurrentMax = 50;       // unit: 2 mA; 100 mA: any port of a hub has them
 constexpr std::uint32_t kNewsIntervalFull = 1;  // ms
 constexpr std::uint32_t kNewsIntervalHigh = 4;  // 2^(4-1) microframes: 1 ms
 
@@ -107,7 +107,7 @@ constexpr Writer<kBosBytes> write_bos() {
 }
 static_assert(write_bos().is_full());
 
-constexpr std::uint32_t kFunctionSubsetBytes = 160;
+constexpr std::uint32_t kFunctionSubsetBytes = 160;  // as add_windows_function() writes
 constexpr char kPropertyName[] = "DeviceInterfaceGUIDs";
 constexpr char kLinkGuid[] = "{6A9C0E4B-3D57-4F0C-9F3E-7B1D5E2C8A41}";
 constexpr char kDfuGuid[] = "{B2F0D6C8-51E7-4E0B-8D2A-0C9E4F7A1365}";

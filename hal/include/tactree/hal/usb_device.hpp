@@ -121,7 +121,7 @@ class UsbDevice {
   [[nodiscard]] const core::usb::Dfu<Parameters>& parameters() const { return parameters_; }
 
  private:
-  static constexpr std::uint32_t kEventsPerTick = 4;
+  static constexpr std::uint32_t kEventsPerTick = 4;  // a control transfer has up to three
 
   [[nodiscard]] bool may_move(std::uint8_t endpoint) const {
     return standard_.configured() && !standard_.is_halted(endpoint);

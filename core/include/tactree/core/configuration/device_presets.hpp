@@ -8,6 +8,7 @@
 
 #include "tactree/core/configuration/configuration.hpp"
 #include "tactree/core/device/device_model.hpp"
+#include "tactree/core/math/angle.hpp"
 
 namespace tactree::core {
 
@@ -34,9 +35,6 @@ struct DevicePreset {
 };
 
 namespace presets {
-
-inline constexpr float kDegree = 0.017453293F;
-inline constexpr float kQuarterTurn = 1.5707963F;
 
 template <class T>
 constexpr void set(T (&to)[kAxes], T x, T y, T z) {

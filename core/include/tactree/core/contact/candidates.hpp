@@ -15,11 +15,13 @@ struct Neighbour;
 class CornerLeaves;
 
 /// Capacity of a set: an index and a flag fit into one byte (Division in passes.hpp).
-/// surface_support() refuses a blob with a larger points_per_ball_max.
+/// surface_support() refuses a blob with a larger points_per_ball_max. A ball of 3 spacings holds
+/// about 28 points of a plane (pi 3^2), and twice that of a thin plate. A set takes 3.5 KiB of RAM.
 inline constexpr std::uint32_t kMaxCandidates = 128;
 
 /// Maximum number of steps of the binary search in a leaf's points. surface_support() refuses a
-/// blob with a leaf of 2^kLeafHalvings points or more.
+/// blob with a leaf of 2^kLeafHalvings points or more. A leaf 6 spacings wide holds about 36 points
+/// of a plane. Every step adds to the bound of a tick, in each leaf of a gather.
 inline constexpr std::uint32_t kLeafHalvings = 8;
 
 /// A decoded point.

@@ -23,8 +23,12 @@ struct AddedForce {
   std::uint32_t ticks = 0;  ///< 0: none
 };
 
-/// Maximum duration of an AddedForce, and its maximum ratio to force_max_N.
+/// Maximum duration of an AddedForce. An application that hangs pushes the hand no longer, even if
+/// link_required is false; it is also the maximum of link_timeout_s. The shorter it is, the more
+/// often a lasting force must be sent again.
 inline constexpr float kAddedForceSeconds = 0.1F;
+/// Maximum ratio of an AddedForce to force_max_N. A contact that pushes with force_max_N keeps at
+/// least half of it against the application; with 1, the application could cancel any contact.
 inline constexpr float kAddedForceShare = 0.5F;
 
 class ForceStage {

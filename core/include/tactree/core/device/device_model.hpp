@@ -9,6 +9,7 @@
 
 #include <cstdint>
 
+#include "tactree/core/math/angle.hpp"
 #include "tactree/core/math/vec3.hpp"
 
 namespace tactree::core {
@@ -121,7 +122,6 @@ struct DeviceModel {
 /// Encoder counts per unit of the joint (1/m or 1/rad); negative for opposite directions.
 /// Precondition: is_valid(device), axis < kAxes.
 [[nodiscard]] constexpr float counts_per_unit(const DeviceModel& device, std::uint32_t axis) {
-  constexpr float kTwoPi = 6.2831853F;
   return device.kind == DeviceKind::kCartesian
              ? device.counts_per_m[axis]
              : device.counts_per_revolution[axis] * device.ratio[axis] / kTwoPi;

@@ -13,9 +13,11 @@
 
 namespace tactree::core {
 
-/// Length of the longest window, sample periods.
+/// Length of the longest window, sample periods. A count of 20 um in it is 1.3 mm/s at 1 kHz, in
+/// the window of two samples 20 mm/s. A longer window delays the velocity of a slow motion by more
+/// than the present 7.5 ms, half of its length.
 inline constexpr std::uint32_t kVelocityWindow = 15;
-/// Number of windows, not counting the one of two samples.
+/// Number of windows, not counting the one of two samples. Each costs about 15 operations per axis.
 inline constexpr std::uint32_t kVelocityWindows = 3;
 
 class VelocityEstimator {

@@ -37,10 +37,17 @@ struct Motion {
   friend constexpr bool operator==(const Motion&, const Motion&) = default;
 };
 
-inline constexpr float kMaxTranslation = 10.0F;         ///< m, of each component
-inline constexpr float kMaxBodySpeed = 10.0F;           ///< m/s, of each component
-inline constexpr float kMaxBodyTurn = 100.0F;           ///< rad/s, of each component
-inline constexpr float kQuaternionTolerance = 1.0e-3F;  ///< deviation of the squared length from 1
+/// m, of each component. Float32 resolves 1 um there.
+inline constexpr float kMaxTranslation = 10.0F;
+/// m/s, of each component: the default of speed_max_m_s. A probe and a body that meet at this speed
+/// have twice the speed relative to each other, the limit of Scene between motion and jump.
+inline constexpr float kMaxBodySpeed = 10.0F;
+/// rad/s, of each component: 0.1 rad per tick at 1 kHz, where advanced() lags by 1e-4 rad (a
+/// twelfth of the cube of the angle).
+inline constexpr float kMaxBodyTurn = 100.0F;
+/// Deviation of the squared length from 1. Components with four decimals deviate by up to 2e-4; one
+/// that deviates by more than the tolerance is not a rounded rotation.
+inline constexpr float kQuaternionTolerance = 1.0e-3F;
 
 /// True if all values are finite and within the limits above. The squared length of a pose's
 /// quaternion must be 1 within kQuaternionTolerance.

@@ -12,7 +12,8 @@ struct SineCosine {
   float cosine = 1.0F;
 };
 
-/// Maximum angle for which the error is specified, rad.
+/// Maximum angle for which the error is specified, rad. The kinematics needs 400: the sum of two
+/// joints, each within 100 (DeviceModel) and a joint_margin of at most 100 beyond.
 inline constexpr float kMaxAngle = 1000.0F;
 
 /// Sine and cosine of `angle` (rad). Error: below 1.2e-7 for |angle| <= 2 pi, below 2e-7 up to

@@ -26,7 +26,10 @@ inline constexpr std::uint8_t kBlobMagic[8] = {'T', 'A', 'C', 'T', 'R', 'E', 'E'
 inline constexpr std::uint16_t kBlobMajor = 1;
 inline constexpr std::uint16_t kBlobMinor = 1;
 
+/// The root cube is then 2^22 lattice units wide, so that it is within kMaxCoordinate wherever the
+/// origin lies in it. With leaves of 6 spacings, its edge is 2048 leaves or 12 288 spacings.
 inline constexpr std::uint32_t kMaxDepth = 11;  ///< octree levels below the root
+/// The 10 bits of a point's site, and one so that the centre of a site is an integer.
 inline constexpr std::uint32_t kLeafShift = 11;
 inline constexpr std::int32_t kLeafUnits = 1
                                            << kLeafShift;  ///< edge of a finest leaf, lattice units
@@ -38,6 +41,8 @@ inline constexpr std::uint32_t kMaxMaterials = 255;    ///< index and count are 
 inline constexpr std::uint32_t kLeavesPerQuery = 8;    ///< the eight-corner rule
 /// Levels between the directory and the leaves. Three coordinates of 10 bits fit into a word.
 inline constexpr std::uint32_t kMaxLevelsBelow = 10;
+/// With 5, the bases take 1/8 byte for each leaf and the offsets 2 bytes; with 0 the bases would
+/// take 4 bytes, with more than 5 they could shrink by less than 1/8 byte.
 inline constexpr std::uint32_t kMaxLeafGroupShift = 5;  ///< log2 of the leaves that share a base
 
 enum class Profile : std::uint32_t {

@@ -12,10 +12,15 @@ namespace tactree::core {
 
 class EncoderWatch {
  public:
-  /// Change of effort / effort_max above which the count of an axis must change.
+  /// Change of effort / effort_max above which the count of an axis must change. On the premium
+  /// preset this is about 2 N at the probe, 50 times its friction. Less would report a fault when a
+  /// hand holds the device still while the force varies; with more, fewer stuck encoders are
+  /// detected (docs/SAFETY.md).
   static constexpr float kChange = 0.25F;
   /// The first 1 / kSettling of a standstill is ignored: the effort may still follow the motion
-  /// that has just ended.
+  /// that has just ended. The default, 25 ms, covers the window of the velocity (15 ms at 1 kHz),
+  /// its filter (1 ms) and the slew limit from full effort (4 ms). If more were ignored, less of a
+  /// standstill would be checked.
   static constexpr std::uint32_t kSettling = 4;
 
   /// `ticks`: maximum standstill of an axis under a changing effort; at least 1.

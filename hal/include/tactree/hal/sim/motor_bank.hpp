@@ -81,7 +81,7 @@ class SimMotorBank {
   MotorFault fault_[core::kAxes] = {};
   double held_[core::kAxes] = {0.0, 0.0, 0.0};
   bool healthy_ = true;
-  static constexpr float kSupplyVolts = 24.0F;
+  static constexpr float kSupplyVolts = 24.0F;  // between the default limits, 18 and 30 V
   float supply_V_ = kSupplyVolts;
 };
 

@@ -121,6 +121,8 @@ class DfuModel {
   }
 
  private:
+  /// Wait of the host before its next status request, which continues the work: the shortest that
+  /// DFU can express.
   static constexpr std::uint32_t kWaitMs = 1;
 
   [[nodiscard]] DfuStatus announce(std::span<const std::byte> bytes) {

@@ -13,6 +13,7 @@ namespace tactree::session {
 /// Holds kFrames frames of maximum length, or more shorter ones.
 class FrameQueue {
  public:
+  /// At least 2: telemetry leaves room for a reply. Four frames take 1.1 KB of RAM.
   static constexpr std::size_t kFrames = 4;
   static constexpr std::size_t kBytes = kFrames * core::wire::kMaxEncodedFrame;
 

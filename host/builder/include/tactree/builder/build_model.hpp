@@ -26,7 +26,10 @@
 
 namespace tactree::builder {
 
-/// Support radius and reach of the surface fit, in point spacings (docs/DESIGN.md).
+/// Support radius and reach of the surface fit, in point spacings (docs/DESIGN.md). From a radius
+/// of 2.5 on, contact is not lost on irregular clouds and on those thinned by 60 %; a larger one
+/// rounds more detail. A gather is valid within the difference, 0.5; a larger reach has more
+/// candidates.
 inline constexpr double kSupportSpacings = 2.5;
 inline constexpr double kReachSpacings = 3.0;
 

@@ -34,6 +34,9 @@ inline constexpr std::uint8_t kNewsIn = 0x82;  ///< interrupt: NewsPacket
 inline constexpr std::uint16_t kControlPacketBytes = 64;
 inline constexpr std::uint16_t kBulkPacketBytesFull = 64;
 inline constexpr std::uint16_t kBulkPacketBytesHigh = 512;
+/// Bytes of a DFU block: two pieces of a model (wire::kMaxPiece). Each DFU function holds a block
+/// in RAM, and that of the model a second one: 1.5 KiB. In a download each block takes at least two
+/// control transfers, data and status, so that smaller blocks would be slower.
 inline constexpr std::uint16_t kDfuTransferBytes = 512;
 
 /// Vendor request by which Windows reads the Microsoft OS 2.0 descriptors.

@@ -25,7 +25,8 @@ struct FrameHeader {
 };
 static_assert(sizeof(FrameHeader) == 8 && alignof(FrameHeader) == 2);
 
-/// Large enough for a piece of a model, kMaxPiece bytes, and its header (messages.hpp).
+/// Large enough for a piece of a model, kMaxPiece bytes, and its header (messages.hpp). A frame of
+/// this length is held by the decoder, by the reply and four times by the queue of a session.
 inline constexpr std::uint32_t kMaxPayload = 264;
 inline constexpr std::uint32_t kFrameChecksumBytes = 4;
 /// Header, payload and checksum, before COBS.
