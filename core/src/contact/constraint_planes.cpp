@@ -13,12 +13,11 @@ namespace {
 constexpr float kOnPlane = 2e-7F;
 
 // Two planes count as parallel if the squared sine of their angle is at most kParallel (1.8
-// degrees). Three planes have no common point if the determinant of their normals is at most
-// kNoPoint. Both are differences of products of about 1, with rounding errors of about 1e-7: below
-// 1e-3 the step would be wrong by more than 1e-4 of its length, and up to 32 times (two planes) or
-// 1000 times (three) as long as the distances of the planes.
+// degrees). Like the determinant of kNoCommonPoint, it is a difference of products of about 1, with
+// rounding errors of about 1e-7: below 1e-3 the step would be wrong by more than 1e-4 of its
+// length, and up to 32 times (two planes) or 1000 times (three) as long as the distances of the
+// planes.
 constexpr float kParallel = 1e-3F;
-constexpr float kNoPoint = 1e-3F;
 
 constexpr std::uint32_t kFirst = 1;
 constexpr std::uint32_t kSecond = 2;
@@ -101,7 +100,7 @@ PlaneMove shortest_move(const ConstraintPlanes& planes, bool onto_first) {
     }
     const Vec3 across = cross(second.normal, third.normal);
     const float determinant = dot(first.normal, across);
-    if (absolute(determinant) > kNoPoint) {
+    if (absolute(determinant) > kNoCommonPoint) {
       const Vec3 sum = a * across + b * cross(third.normal, first.normal) +
                        c * cross(first.normal, second.normal);
       return {(-1.0F / determinant) * sum, kFirst | kSecond | kThird};

@@ -17,10 +17,6 @@ constexpr float kFlush = kApart;
 // hysteresis prevents the lead from alternating.
 constexpr float kMuchMore = 1.2F;
 
-// Three planes have no common point if the determinant of their normals is at most this, as in
-// constraint_planes.cpp.
-constexpr float kNoPoint = 1e-3F;
-
 }  // namespace
 
 [[gnu::noinline]] Neighbour Proxy::as_neighbour(const BlobView& view) const {
@@ -213,7 +209,7 @@ void Proxy::take_over(const Neighbour& neighbour, Proxy& from) {
     const Vec3 across = cross(normal[i + 1U], normal[i + 2U]);
     const float determinant = dot(normal[i], across);
     const float along = dot(force, across);
-    if ((foreign_of >> i & 1U) != 0U && absolute(determinant) > kNoPoint &&
+    if ((foreign_of >> i & 1U) != 0U && absolute(determinant) > kNoCommonPoint &&
         along * determinant > 0.0F) {
       share += (along / determinant) * normal[i];
     }

@@ -14,6 +14,9 @@ namespace tactree::core {
 
 inline constexpr std::uint32_t kMaxFaces = 3;
 
+/// Three planes have no common point if the determinant of their normals is at most this.
+inline constexpr float kNoCommonPoint = 1e-3F;
+
 /// A plane relative to a position. By default the position is far in front, so that the plane has
 /// no effect.
 struct Plane {
