@@ -137,7 +137,7 @@ class Blobs(Folder):
             message = self.refused(bytes_, "check", "-")
             self.assertIn("standard input: refused: ", message)
             self.assertIn(cause, message)
-        self.assertIn("is the blob", self.refused(self.blob, "query", "-", "--points", "-"))
+        self.assertIn("is already used for the blob", self.refused(self.blob, "query", "-", "--points", "-"))
 
 
 if __name__ == "__main__":

@@ -79,7 +79,7 @@ TEST_F(AnalogueController, NamesMistakesWithRemedy) {
   refuses("it has no output 3");
   file_ = good;
   file_["motors"]["axes"][0]["zero_code"] = 100;
-  refuses("leaves no room for efforts of the other sign");
+  refuses("leaves no range for efforts of the opposite sign");
   file_ = good;
   write_device("index");
   refuses("counters report no index pulse");

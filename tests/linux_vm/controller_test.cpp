@@ -188,7 +188,7 @@ TEST_F(Controller, GuardEndsHangingLoop) {
 
 TEST_F(Controller, DryRunClaimsNothing) {
   EXPECT_EQ(run({"--dry-run"}), 0) << output();
-  EXPECT_TRUE(holds(output(), "it would run")) << output();
+  EXPECT_TRUE(holds(output(), "the controller would run")) << output();
   EXPECT_EQ(watchdog("state"), "inactive");
   std::printf("%s", output().c_str());
 }
@@ -196,7 +196,7 @@ TEST_F(Controller, DryRunClaimsNothing) {
 TEST_F(Controller, NamesMistakesWithRemedy) {
   const auto refuses = [&](const std::string& part) {
     EXPECT_EQ(run({"--dry-run"}), 1) << part << "\n" << output();
-    EXPECT_TRUE(holds(output(), part) && holds(output(), "it would not run")) << output();
+    EXPECT_TRUE(holds(output(), part) && holds(output(), "the controller would not run")) << output();
     EXPECT_EQ(run(), 1) << part;
     EXPECT_TRUE(holds(output(), "error: ") && holds(output(), part)) << output();
     EXPECT_FALSE(is_enabled());
