@@ -70,7 +70,7 @@ class BoundCommand(unittest.TestCase):
         run = tactree("info", BLOB, "--board", BOARD)
         self.assertEqual(run.returncode, 0, run.stderr)
         self.assertIn("costs stored in the image", run.stdout)
-        self.assertRegex(run.stdout, r"cycles a tick at 168 MHz\n +=.* \+ \d+ depth")
+        self.assertRegex(run.stdout, r"cycles per tick at 168 MHz\n +=.* \+ \d+ depth")
         self.assertRegex(run.stdout, r" \+ \d+ points_per_leaf_max")
 
     def test_build(self):
