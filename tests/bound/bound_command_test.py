@@ -137,7 +137,7 @@ class BoundCommand(unittest.TestCase):
         self.assertIn("the timing of toaster is unknown", tactree("bound", IMAGE, "--board", "toaster").stderr)
         other = tactree("bound", IMAGE, "--sources", self.folder)
         self.assertEqual(other.returncode, 1)
-        self.assertIn("a loop without a loop in the source", other.stderr)
+        self.assertIn("a loop that matches no loop in the source", other.stderr)
 
 
 if __name__ == "__main__":

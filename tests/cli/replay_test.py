@@ -102,7 +102,7 @@ class Replay(unittest.TestCase):
     def test_a_huge_file_is_refused_by_its_header(self):
         self.record()
         header = (self.folder / "session.rec").read_bytes()[:20]
-        for begin, words in ((b"", "not a recording"), (header, "truncated or was added to")):
+        for begin, words in ((b"", "not a recording"), (header, "truncated or bytes were appended")):
             with open(self.folder / "huge.rec", "wb") as huge:
                 huge.write(begin)
                 huge.truncate(1 << 40)

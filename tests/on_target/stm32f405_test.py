@@ -120,7 +120,7 @@ class Stm32f405(unittest.TestCase):
                     pass  # it boots
                 told = run("devices")
                 self.assertIn("stm32f405, firmware", told)
-                self.assertIn("no force, did not start: motors, enable line", told)
+                self.assertIn("motors disabled; did not start: motors, enable line", told)
                 self.assertIn("crystal", told)
                 result = pathlib.Path(folder, "seen.json")
                 run("monitor", "--once", "--json", result, code=1)  # it has faults
