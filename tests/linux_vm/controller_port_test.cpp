@@ -146,7 +146,7 @@ TEST_F(UsbController, RemovesGadgetOfKilledProcess) {
 TEST_F(UsbController, NamesMissingPort) {
   file_["usb"]["port"] = "none.0";
   EXPECT_EQ(run({"--dry-run"}), 1);
-  EXPECT_TRUE(holds(output(), "no USB device port is 'none.0' (remedy: name one of: dummy_udc.0"))
+  EXPECT_TRUE(holds(output(), "no USB device port is 'none.0' (hint: name one of: dummy_udc.0"))
       << output();
   EXPECT_EQ(run(), 1);
   file_["socket"] = socket_;
