@@ -131,7 +131,7 @@ Response Board::demand(MessageKind kind, std::span<const std::byte> payload, con
   Response response = connection().call(kind, payload);
   const std::string where = connection().name() + ": " + what + ": ";
   if (response.timed_out) {
-    throw LinkError(where + (connection().connected() ? "no answer" : "the board is gone"));
+    throw LinkError(where + (connection().connected() ? "no answer" : "the board is disconnected"));
   }
   if (!response.ok()) {
     throw LinkError(where + core::wire::describe(response.status) + details(response) +

@@ -74,7 +74,7 @@ std::uint32_t JsonReader::whole(const char* key, std::uint32_t low, std::uint32_
   const Json& value = get(key);
   const double figure = number(key, value, low, high);
   if (figure != std::floor(figure)) {
-    refuse(key, fmt::format("{:.6g} is not a whole number", figure), "round it");
+    refuse(key, fmt::format("{:.6g} is not an integer", figure), "round it");
   }
   return static_cast<std::uint32_t>(figure);
 }
