@@ -39,9 +39,9 @@ void add_controller_options(CLI::App& verb, SimulateOptions& options) {
       ->capture_default_str();
   verb.add_flag("!--no-materials", c.use_materials,
                 "ignore the materials of the blob: use the options above everywhere");
-  options.force_max = verb.add_option("--force-max", c.force_max_N,
-                                      "maximum force, N (default: that of the device)")
-                          ->check(CLI::Range(0.01, 1000.0));
+  options.force_max =
+      verb.add_option("--force-max", c.force_max_N, "maximum force, N (default: the device's)")
+          ->check(CLI::Range(0.01, 1000.0));
 }
 
 std::string injection_help() {

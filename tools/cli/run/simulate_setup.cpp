@@ -69,13 +69,13 @@ core::Vec3 place_model(const SimulateOptions& options, const SceneFile& scene,
   const std::string& board = options.board;
   const BoardCosts costs = costs_of_board(board, options.firmware);
   const double cycles = costs.cycles(view.header(), controller);
-  refuse(fmt::format("{}: refused: a tick with this model may take {:.0f} cycles on {}, {:.1f} us "
-                     "of {:.1f} us",
-                     file, cycles, board, 1e6 * cycles / costs.timing.clock_hz,
-                     1e6 / static_cast<double>(controller.rate_hz)),
-         fmt::format("use --rate {:.0f} or less, or build the model with --board {} --rate {:.0f}",
-                     std::floor(costs.highest_rate(view.header(), controller)), board,
-                     controller.rate_hz));
+  refuse(
+      fmt::format("{}: refused: a tick with it may take {:.0f} cycles on {}, {:.1f} us of {:.1f}",
+                  file, cycles, board, 1e6 * cycles / costs.timing.clock_hz,
+                  1e6 / static_cast<double>(controller.rate_hz)),
+      fmt::format("use --rate {:.0f} or less, or build the model with --board {} --rate {:.0f}",
+                  std::floor(costs.highest_rate(view.header(), controller)), board,
+                  controller.rate_hz));
 }
 
 }  // namespace
