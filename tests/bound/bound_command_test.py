@@ -51,14 +51,14 @@ class BoundCommand(unittest.TestCase):
         self.assertEqual(tactree(*base, highest).returncode, 0)
         refused = tactree(*base, highest + 1)
         self.assertEqual(refused.returncode, 1)
-        self.assertIn(f"keeps up to {highest:.0f} Hz", refused.stderr)
+        self.assertIn(f"at up to {highest:.0f} Hz", refused.stderr)
 
     def test_a_board_admits_a_rate_that_it_keeps(self):
         run = ["simulate", BLOB, "--board", BOARD, "--seconds", 0.02, "--allow-no-contact", "--rate"]
         self.assertEqual(tactree(*run, 1000).returncode, 0)
         refused = tactree(*run, 10000)
         self.assertEqual(refused.returncode, 1)
-        highest = re.search(r"--rate: up to (\d+)", refused.stderr)
+        highest = re.search(r"use --rate (\d+) or less", refused.stderr)
         self.assertIsNotNone(highest, refused.stderr)
         self.assertIn(f"cycles on {BOARD}", refused.stderr)
         self.assertEqual(tactree(*run, highest[1]).returncode, 0)
@@ -70,7 +70,7 @@ class BoundCommand(unittest.TestCase):
         run = tactree("info", BLOB, "--board", BOARD)
         self.assertEqual(run.returncode, 0, run.stderr)
         self.assertIn("costs stored in the image", run.stdout)
-        self.assertRegex(run.stdout, r"cycles a tick at 168 MHz\n +=.* \+ \d+ depth")
+        self.assertRegex(run.stdout, r"cycles per tick at 168 MHz\n +=.* \+ \d+ depth")
         self.assertRegex(run.stdout, r" \+ \d+ points_per_leaf_max")
 
     def test_build(self):
@@ -137,7 +137,7 @@ class BoundCommand(unittest.TestCase):
         self.assertIn("the timing of toaster is unknown", tactree("bound", IMAGE, "--board", "toaster").stderr)
         other = tactree("bound", IMAGE, "--sources", self.folder)
         self.assertEqual(other.returncode, 1)
-        self.assertIn("a loop without a loop in the source", other.stderr)
+        self.assertIn("a loop that matches no loop in the source", other.stderr)
 
 
 if __name__ == "__main__":

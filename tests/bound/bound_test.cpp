@@ -197,7 +197,8 @@ extern "C" void tick() { )" +
   EXPECT_GT(both, twenty);
   EXPECT_LT(both, ten + twenty);
   const std::string refused = refusal(clearing("clear(buffer, wanted); work = 1;"));
-  EXPECT_NE(refused.find("an argument 'bytes' that is no constant"), std::string::npos) << refused;
+  EXPECT_NE(refused.find("an argument 'bytes' that is not a constant"), std::string::npos)
+      << refused;
 }
 
 TEST_F(Bounding, FollowsJumpTable) {
@@ -243,7 +244,7 @@ extern "C" void tick() {
     leaf();
   }
 })");
-  EXPECT_NE(refused.find("sample.cpp:7: a loop without a bound"), std::string::npos) << refused;
+  EXPECT_NE(refused.find("sample.cpp:7: a loop that has no bound"), std::string::npos) << refused;
 }
 
 TEST_F(Bounding, RefusesUnanalysableCode) {

@@ -65,7 +65,7 @@ class Layers(Planted):
 
     def test_unit_test_beside_another_subject(self):
         self.write("tests/unit/core/contact/octree_test.cpp", "")
-        self.refuses("octree_test.cpp: stands in core/contact, not in core/model",
+        self.refuses("octree_test.cpp: is in core/contact, not in core/model",
                      "check-layers", "--root", self.folder)
 
     def test_core_includes_hosted_header(self):

@@ -19,7 +19,7 @@ not as root
 <testcase name="web.board" time="0" status="notrun"><skipped message="SKIP_RETURN_CODE=77"/>
 <system-out>skipped: a part of it
 
-skipped: inconclusive: the machine stood still for 512 ms while it ran</system-out></testcase>
+skipped: inconclusive: the machine stalled for 512 ms while it ran</system-out></testcase>
 <testcase name="not.built" time="0" status="notrun"><skipped message="Unable to find executable"/></testcase>
 <testcase name="cli.link" time="2" status="run"><system-out>test_a (__main__.Link.test_a) ... ok
 test_key (__main__.Link.test_key) ... skipped 'no key'
@@ -54,7 +54,7 @@ class TestReport(unittest.TestCase):
     def test_names_skips_with_their_reason(self):
         self.assertEqual(self.report("skips", self.folder).splitlines(), [
             "Gate.NeedsRoot (not as root)", "cli.link: test_key (no key)",
-            "web.board (inconclusive: the machine stood still for 512 ms while it ran)", "web.page (chromium is missing)"])
+            "web.board (inconclusive: the machine stalled for 512 ms while it ran)", "web.page (chromium is missing)"])
 
     def test_lists_the_slowest(self):
         lines = self.report("slowest", self.folder).splitlines()

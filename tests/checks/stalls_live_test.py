@@ -26,7 +26,7 @@ class Stalls(unittest.TestCase):
     def test_a_failure_beside_a_stop_of_a_second_is_skipped(self):
         code, said = self.stopped_for_a_second("exit 3")
         self.assertEqual(code, 77, said)
-        stood_ms = int(said.rpartition("stood still for ")[2].split()[0])
+        stood_ms = int(said.rpartition("stalled for ")[2].split()[0])
         self.assertGreater(stood_ms, 900)
 
     def test_a_test_that_passes_beside_a_stop_has_passed(self):
@@ -47,7 +47,7 @@ class Stalls(unittest.TestCase):
                         "--time-limit", "1") as process:
             said, _ = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 124, said)
-        self.assertIn("ended after the time limit of 1 s", said)
+        self.assertIn("stopped after the time limit of 1 s", said)
 
 
 if __name__ == "__main__":

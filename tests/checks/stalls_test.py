@@ -103,7 +103,7 @@ class Verdict(unittest.TestCase):
 
     def test_names_the_length_of_the_stall(self):
         self.assertEqual(stalls.verdict(1, 1234.4, 200)[1],
-                         "skipped: inconclusive: the machine stood still for 1234 ms while it ran")
+                         "skipped: inconclusive: the machine stalled for 1234 ms while it ran")
         self.assertEqual(stalls.verdict(5, 17.3, 200)[1],
                          "beside-stalls: exit code 5; the largest stall while it ran was 17 ms")
 
@@ -127,7 +127,7 @@ class Program(unittest.TestCase):
         code, said = self.shell(1000, "printf 'no end of line'; exit 3")
         self.assertEqual(code, 77)
         self.assertEqual(said, "no end of line\n"
-                         "skipped: inconclusive: the machine stood still for 1000 ms while it ran\n")
+                         "skipped: inconclusive: the machine stalled for 1000 ms while it ran\n")
 
     def test_failure_without_a_stall_is_a_failure(self):
         code, said = self.shell(12, "exit 3")

@@ -1,4 +1,4 @@
-"""`tactree build` and the verbs that read a blob, at the limits of files, numbers and formats.
+"""`tactree build` and the commands that read a blob, at the limits of files, numbers and formats.
 
 usage: build_test.py TACTREE
 """
@@ -123,7 +123,7 @@ class Numbers(Folder):
                 self.assertNotIn("own check", message)
         for spacing in ("1e300", "1e-300"):
             message = self.refused("build", "s.xyz", "-o", "y", "--spacing", spacing)
-            self.assertIn("between 1 nm and 1000 km", message)
+            self.assertIn("outside 1 nm .. 1000 km", message)
 
     def test_coordinates_beyond_reason_are_dropped(self):
         with open(self.path / "s.xyz", "a", encoding="ascii") as file:
@@ -170,7 +170,7 @@ class Formats(Folder):
     def test_a_misspelt_property_of_a_ply_header_is_refused(self):
         for line in ("proprty float x", "elemnt vertex 9", "Format binary_little_endian 1.0"):
             self.write_ply(line)
-            self.assertIn("is not a word of a PLY header",
+            self.assertIn("is not a keyword of a PLY header",
                           self.refused("build", "a.ply", "-o", "y"))
 
     def test_a_3mf_with_pictures_or_its_own_file_names_is_read(self):

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The verbs that use a board, with a simulated one: exit codes, JSON, refusals; keys and signatures.
+"""The commands that use a board, with a simulated one: exit codes, JSON, refusals; keys and signatures.
 
 usage: link_test.py TACTREE [BOARD]      BOARD: where the controller runs, default host
 """

@@ -46,7 +46,7 @@ class ModelSize(unittest.TestCase):
     def test_a_model_beyond_reach_gets_a_warning_whose_remedy_works(self):
         done = self.run_tool("simulate", "large.blob", "--device", "falcon", "--seconds", 1)
         self.assertIn("warning: large.blob: the model is 1.2 x 1.2 x 0", done.stderr)
-        self.assertIn(" m: larger than falcon reaches", done.stderr)
+        self.assertIn(" m, more than falcon reaches", done.stderr)
         remedy = re.search(r"--fit (\S+)\)", done.stderr)
         self.build("large", "--fit", remedy[1])
         done = self.run_tool("simulate", "large.blob", "--device", "falcon", "--seconds", 1)

@@ -130,7 +130,7 @@ class Preview(unittest.TestCase):
         (self.path / "sheet.xyz").write_text("\n".join(rows) + "\n")
         for options, doubtful in (((), True), (("--viewpoint", "0,0,1"), False)):
             done = self.run_verb("build", "sheet.xyz", "-o", "y", "--preview", "y.png", *options)
-            self.assertEqual("doubtful" in done.stderr, doubtful, done.stderr)
+            self.assertEqual("ambiguous" in done.stderr, doubtful, done.stderr)
             _, _, picture = pixels(self.path / "y.png")
             corner = [picture[y][x] for y in range(21, 33) for x in range(41, 53)]
             self.assertEqual(len(purples([corner])), len(corner) if doubtful else 0)

@@ -82,7 +82,7 @@ class Replay(unittest.TestCase):
 
     def test_a_replay_without_a_blob_of_the_session_is_refused(self):
         self.record()
-        self.refuses(["none of the blobs given"], "low.blob", "other.blob")
+        self.refuses(["not one of the given blobs"], "low.blob", "other.blob")
 
     def test_a_damaged_recording_is_refused(self):
         self.record()
@@ -102,7 +102,7 @@ class Replay(unittest.TestCase):
     def test_a_huge_file_is_refused_by_its_header(self):
         self.record()
         header = (self.folder / "session.rec").read_bytes()[:20]
-        for begin, words in ((b"", "not a recording"), (header, "truncated or was added to")):
+        for begin, words in ((b"", "not a recording"), (header, "truncated or bytes were appended")):
             with open(self.folder / "huge.rec", "wb") as huge:
                 huge.write(begin)
                 huge.truncate(1 << 40)
@@ -111,7 +111,7 @@ class Replay(unittest.TestCase):
     def test_an_emulated_board_does_not_record(self):
         done = self.run_tool("simulate", "low.blob", "--board", "mps2-an386", "--record", "board.rec")
         self.assertEqual(done.returncode, 1)
-        self.assertIn("leave --board out", done.stderr)
+        self.assertIn("omit --board", done.stderr)
         self.assertFalse((self.folder / "board.rec").exists())
 
     def test_record_and_replay_exclude_each_other(self):

@@ -1,4 +1,4 @@
-"""A simulated board in a separate process, for tests of the verbs that use a board."""
+"""A simulated board in a separate process, for tests of the commands that use a board."""
 import math
 import subprocess
 

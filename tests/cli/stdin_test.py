@@ -88,7 +88,7 @@ class Scans(Folder):
         self.assertFalse((self.path / "no.blob").exists())
 
     def test_it_is_read_once_and_beside_files(self):
-        self.assertIn("read once", self.refused(b"", "build", "-", "-", "-o", "no.blob"))
+        self.assertIn("given only once", self.refused(b"", "build", "-", "-", "-o", "no.blob"))
         done = self.run_tool("build", "s.xyz", "-", "-o", "y.blob", stdin=b"0 0 0.2\n" * 3)
         self.assertIn("read      standard input: text, separated by spaces, 3 points", done.stdout)
 
@@ -115,7 +115,7 @@ class Formats(Folder):
         ply = b"ply\nformat ascii 1.0\nelement vertex 0\nend_header\n"
         for name, shown in (("stl", "STL"), ("obj", "OBJ"), ("dae", "COLLADA")):
             message = self.refused(ply, "build", "-", "-o", "no.blob", "--format", name)
-            self.assertIn(f"this is PLY by its content, not {shown} (leave --format out)", message)
+            self.assertIn(f"this is PLY by its content, not {shown} (omit --format)", message)
         message = self.refused(self.scan, "build", "-", "-o", "no.blob", "--format", "ply")
         self.assertIn("standard input", message)
         self.assertIn("--format", self.refused(b"", "build", "-", "-o", "y", "--format", "doc"))
@@ -137,7 +137,7 @@ class Blobs(Folder):
             message = self.refused(bytes_, "check", "-")
             self.assertIn("standard input: refused: ", message)
             self.assertIn(cause, message)
-        self.assertIn("is the blob", self.refused(self.blob, "query", "-", "--points", "-"))
+        self.assertIn("is already used for the blob", self.refused(self.blob, "query", "-", "--points", "-"))
 
 
 if __name__ == "__main__":

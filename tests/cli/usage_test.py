@@ -1,4 +1,4 @@
-"""Errors in the command line: unknown verbs, and values out of range; what the help says of ports.
+"""Errors in the command line: unknown commands, and values out of range; what the help says of ports.
 
 usage: usage_test.py TACTREE
 """
@@ -16,11 +16,11 @@ class Usage(unittest.TestCase):
         self.assertLess(max(map(len, done.stderr.splitlines())), 120, done.stderr)
         return done.stderr
 
-    def test_unknown_verb_names_the_nearest(self):
-        self.assertIn("unknown verb 'biuld' (did you mean 'build'? tactree --help lists the verbs)",
+    def test_unknown_command_names_the_nearest(self):
+        self.assertIn("unknown command 'biuld' (did you mean 'build'? tactree --help lists the commands)",
                       self.refused("biuld", "x.ply"))
         error = self.refused("frobnicate")
-        self.assertIn("unknown verb 'frobnicate' (tactree --help", error)
+        self.assertIn("unknown command 'frobnicate' (tactree --help", error)
 
     def test_numbers_out_of_range_are_quoted(self):
         for value in ("-1", "0", "nan", "inf", "ten", "1e999"):
@@ -34,7 +34,7 @@ class Usage(unittest.TestCase):
             "simulate --serve prints (with --lock-step: step:PATH)"
         for verb in ("devices", "flash", "monitor", "arm", "stop", "trace", "params", "view"):
             self.assertIn(ports, " ".join(self.help_of(verb).split()), verb)
-        self.assertIn("--serve: at a port step:PATH", " ".join(self.help_of("simulate").split()))
+        self.assertIn("--serve: use a port step:PATH", " ".join(self.help_of("simulate").split()))
 
     def help_of(self, verb):
         return subprocess.run([TACTREE, verb, "--help"], capture_output=True, text=True, check=True).stdout

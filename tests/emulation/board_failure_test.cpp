@@ -135,7 +135,7 @@ TEST_P(Failure, ReportsFaultingImage) {
       (void)target.tick(device);
     }
   });
-  expect_in("it restarted: fault", error);
+  expect_in("restarted unexpectedly: fault", error);
   expect_in("pc 0x", error);
 }
 
@@ -144,7 +144,7 @@ TEST_P(Failure, ReportsSilentBoard) {
   silent.image = built(board(), "tests/on_target", std::string("silent-") + board().name);
   silent.start_limit = std::chrono::milliseconds(500);
   const std::string error = error_of([&] { EmulatedTarget(board(), good_blob(), silent); });
-  expect_in("silent for 0.5 s", error);
+  expect_in("no message for 0.5 s", error);
 }
 
 TEST_P(Failure, RefusesImageOfAnotherBoard) {
@@ -164,7 +164,7 @@ TEST_P(Failure, ReportsEarlyEmulatorEnd) {
   emulation::EmulationOptions wrong = options();
   wrong.image = source_folder() / "build/does-not-exist.elf";
   const std::string error = error_of([&] { EmulatedTarget(board(), good_blob(), wrong); });
-  expect_in("the emulator ended too early", error);
+  expect_in("the emulator terminated unexpectedly", error);
   expect_in("does-not-exist", error);
 }
 

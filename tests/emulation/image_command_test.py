@@ -226,10 +226,10 @@ class Image(unittest.TestCase):
     def test_refuses_a_file_that_is_not_an_image(self):
         self.refused("not an ELF file", elf=b"\x7fELG" + firmware()[4:])
         self.refused("not a program for", elf=firmware(machine=62))
-        self.refused("it has no identity with the name of its board", elf=firmware(mark=b"TACTICS"))
-        self.refused("several identities", elf=firmware(identity() + bytes(4)))
-        self.refused("malformed name of the board", elf=firmware(board=b"b" * 24))
-        self.refused("are impossible", elf=firmware(place=(PLACE_END, PLACE)))
+        self.refused("it does not name its board", elf=firmware(mark=b"TACTICS"))
+        self.refused("several identification records", elf=firmware(identity() + bytes(4)))
+        self.refused("malformed board name", elf=firmware(board=b"b" * 24))
+        self.refused("address ranges of code and blob are invalid", elf=firmware(place=(PLACE_END, PLACE)))
         self.refused("outside the board's code", elf=firmware(address=CODE - 4))
         self.refused("outside the board's code", elf=firmware(bytes(0x20000)))
 

@@ -79,7 +79,7 @@ TEST_F(AnalogueController, NamesMistakesWithRemedy) {
   refuses("it has no output 3");
   file_ = good;
   file_["motors"]["axes"][0]["zero_code"] = 100;
-  refuses("leaves no room for efforts of the other sign");
+  refuses("leaves no range for efforts of the opposite sign");
   file_ = good;
   write_device("index");
   refuses("counters report no index pulse");
@@ -146,7 +146,7 @@ TEST_F(UsbController, RemovesGadgetOfKilledProcess) {
 TEST_F(UsbController, NamesMissingPort) {
   file_["usb"]["port"] = "none.0";
   EXPECT_EQ(run({"--dry-run"}), 1);
-  EXPECT_TRUE(holds(output(), "no USB device port is 'none.0' (remedy: name one of: dummy_udc.0"))
+  EXPECT_TRUE(holds(output(), "no USB device port is 'none.0' (hint: name one of: dummy_udc.0"))
       << output();
   EXPECT_EQ(run(), 1);
   file_["socket"] = socket_;

@@ -181,14 +181,14 @@ TEST_F(Controller, GuardEndsHangingLoop) {
   const auto off = std::chrono::steady_clock::now() - begin;
   EXPECT_LE(off, 40ms) << "twice guard_ms";
   EXPECT_EQ(finish(std::exchange(child_, -1)), 1000 + SIGKILL);
-  EXPECT_TRUE(eventually([&] { return holds(output(), "was silent; enable line off"); }));
+  EXPECT_TRUE(eventually([&] { return holds(output(), "did not respond; enable line off"); }));
   std::printf("a loop that hangs: power off after %.1f ms\n",
               1e-6 * static_cast<double>(std::chrono::nanoseconds(off).count()));
 }
 
 TEST_F(Controller, DryRunClaimsNothing) {
   EXPECT_EQ(run({"--dry-run"}), 0) << output();
-  EXPECT_TRUE(holds(output(), "it would run")) << output();
+  EXPECT_TRUE(holds(output(), "the controller would run")) << output();
   EXPECT_EQ(watchdog("state"), "inactive");
   std::printf("%s", output().c_str());
 }
@@ -196,7 +196,8 @@ TEST_F(Controller, DryRunClaimsNothing) {
 TEST_F(Controller, NamesMistakesWithRemedy) {
   const auto refuses = [&](const std::string& part) {
     EXPECT_EQ(run({"--dry-run"}), 1) << part << "\n" << output();
-    EXPECT_TRUE(holds(output(), part) && holds(output(), "it would not run")) << output();
+    EXPECT_TRUE(holds(output(), part) && holds(output(), "the controller would not run"))
+        << output();
     EXPECT_EQ(run(), 1) << part;
     EXPECT_TRUE(holds(output(), "error: ") && holds(output(), part)) << output();
     EXPECT_FALSE(is_enabled());
@@ -224,9 +225,9 @@ TEST_F(Controller, NamesMistakesWithRemedy) {
 
 TEST_F(Controller, NamesMissingPermission) {
   EXPECT_EQ(run({"--dry-run"}, true), 1);
-  EXPECT_TRUE(holds(output(), "permission denied (remedy: join the group")) << output();
+  EXPECT_TRUE(holds(output(), "permission denied (hint: join the group")) << output();
   EXPECT_EQ(run({}, true), 1);
-  EXPECT_TRUE(holds(output(), "permission denied (remedy: join the group")) << output();
+  EXPECT_TRUE(holds(output(), "permission denied (hint: join the group")) << output();
 }
 
 TEST_F(Controller, ClaimsItsLinesExclusively) {

@@ -124,7 +124,7 @@ TEST_F(Gpio, RefusalsNameLineAndRemedy) {
   });
   EXPECT_TRUE(holds(apart, "use lines of one chip")) << apart;
   const std::string twice = refusal([] { GpioSafetyInputs("e-stop", "dead-man", "tactree"); });
-  EXPECT_TRUE(holds(twice, "line 'dead-man'") && holds(twice, "have one of that name")) << twice;
+  EXPECT_TRUE(holds(twice, "line 'dead-man'") && holds(twice, "have a line of that name")) << twice;
   EXPECT_EQ(find_line(chip_.label() + ":dead-man").chip, "/dev/" + chip_.chip());
   EXPECT_EQ(find_line(other.label() + ":dead-man").chip, "/dev/" + other.chip());
 }

@@ -120,7 +120,7 @@ class Stm32f405(unittest.TestCase):
                     pass  # it boots
                 told = run("devices")
                 self.assertIn("stm32f405, firmware", told)
-                self.assertIn("no force, did not start: motors, enable line", told)
+                self.assertIn("motors disabled; did not start: motors, enable line", told)
                 self.assertIn("crystal", told)
                 result = pathlib.Path(folder, "seen.json")
                 run("monitor", "--once", "--json", result, code=1)  # it has faults
@@ -130,7 +130,7 @@ class Stm32f405(unittest.TestCase):
                 self.assertIn("does not allow it", run("arm", code=1))
                 self.assertIn("tick,state,contact", run("trace"))
                 self.assertIn("stopped", run("stop"))
-                self.assertIn("the flash did not take it", run("flash", BLOB, code=1))
+                self.assertIn("writing the flash failed", run("flash", BLOB, code=1))
             finally:
                 emulator.kill()
 
@@ -141,7 +141,7 @@ class Stm32f405(unittest.TestCase):
         self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
         found = (done.stdout + done.stderr).splitlines()
         self.assertEqual(found, [
-            "an encoder at rest counts",  # the emulated timers have no encoder mode
+            "an encoder at rest changes its count",  # the emulated timers have no encoder mode
             "the motor bank fails on commands of zero",
             "the read-back does not follow when the enable line goes on",
             "the emergency stop reads as pressed",

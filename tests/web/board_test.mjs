@@ -79,7 +79,7 @@ test('disables what a board does not support, with the reason; applies the other
   assert.equal(await page.locator('#mode').inputValue(), '', 'boards do not report their method');
   assert.ok(await page.getByText('Fixed by the configuration of the board.').isVisible());
   await page.locator('#faults summary').click();
-  assert.ok(await page.locator('#mend').isDisabled());
+  assert.ok(await page.locator('#clear-injections').isDisabled());
   assert.ok(await page.getByText('Simulation only: run tactree view without --port.').isVisible());
   assert.ok(await page.getByText("The hand is at the board's device").isVisible());
   assert.match(await page.locator('#work-why').textContent(), /counts neither instructions nor cycles/);

@@ -145,7 +145,7 @@ test('an injected fault is reported, explained by its page, and cleared', async 
   assert.equal(await page.locator('#state').textContent(), 'fault', 'its cause persists');
   await page.locator('#arm').click();
   await noted(page, /Not armed: the fault encoder-invalid is latched/);
-  await page.locator('#mend').click();
+  await page.locator('#clear-injections').click();
   await page.locator('#clear').click();
   await state(page, 'idle');
   await page.close();
@@ -157,7 +157,7 @@ test('an injected fault without a visible effect is reported with the reason', a
   await state(page, 'active');
   await page.locator('#faults summary').click();
   await page.getByRole('button', { name: 'motor1:reversed' }).click();
-  await noted(page, /motor1:reversed is injected, without a visible effect yet: it shows in contact/);
+  await noted(page, /motor1:reversed is injected, but has no visible effect yet: it becomes visible in contact/);
   await page.close();
   await own.stop();
 });
@@ -259,7 +259,7 @@ test('on every screen the open controls cover neither the hint nor the buttons',
     assert.ok(wide <= width, `${wide} of ${width} pixels wide`);
     const picture = await page.locator('#view').boundingBox();
     assert.ok(picture.height > 150, `a picture of ${picture.height} pixels`);
-    await page.locator('#mend').click();
+    await page.locator('#clear-injections').click();
     await page.locator('#clear').click();
     await state(page, 'idle');
     await page.close();

@@ -52,7 +52,7 @@ std::string unknown_verb(const CLI::App& app, const std::string& word) {
       nearest = name;
     }
   }
-  return fmt::format("unknown verb '{}' ({}tactree --help lists the verbs)", word,
+  return fmt::format("unknown command '{}' ({}tactree --help lists the commands)", word,
                      nearest.empty() ? "" : "did you mean '" + nearest + "'? ");
 }
 

@@ -17,7 +17,7 @@ using support::JsonReader;
 using support::UserError;
 
 constexpr std::uintmax_t kMaxBytes = 1U << 20U;
-constexpr support::JsonRemedies kRemedies = {"is unknown", "docs/LINUX-BOARD.md has the keys",
+constexpr support::JsonRemedies kRemedies = {"is unknown", "docs/LINUX-BOARD.md lists the keys",
                                              "see docs/LINUX-BOARD.md",
                                              "one number for each axis, in [brackets]"};
 
@@ -30,8 +30,9 @@ support::JsonReader::Json read_json(const std::filesystem::path& file) {
   std::error_code error;
   const std::uintmax_t bytes = std::filesystem::file_size(file, error);
   if (error) {
-    throw support::UserError(fmt::format("{}: cannot be read: {} (give the controller's file)",
-                                         file.string(), error.message()));
+    throw support::UserError(
+        fmt::format("{}: cannot be read: {} (check the path and its permissions)", file.string(),
+                    error.message()));
   }
   if (bytes > kMaxBytes) {
     throw support::UserError(
@@ -42,7 +43,7 @@ support::JsonReader::Json read_json(const std::filesystem::path& file) {
     return support::JsonReader::Json::parse(stream);
   } catch (const nlohmann::json::parse_error& cause) {
     throw support::UserError(
-        fmt::format("{}: byte {}: is no JSON (correct it there)", file.string(), cause.byte));
+        fmt::format("{}: byte {}: not valid JSON (correct it there)", file.string(), cause.byte));
   }
 }
 
@@ -94,7 +95,7 @@ bool are_of_kind(const std::vector<support::JsonReader>& axes, const char* key) 
   const bool first = axes.front().has(key);
   for (const support::JsonReader& axis : axes) {
     if (axis.has(key) != first) {
-      axis.refuse(key, "is given for some axes only", "wire all axes alike");
+      axis.refuse(key, "is given for some axes only", "connect all axes in the same way");
     }
   }
   return first;
@@ -168,11 +169,11 @@ void read_converters(support::JsonReader& motors, std::vector<support::JsonReade
     output.zero_code = static_cast<std::int32_t>(axis.whole("zero_code", 0, kCodeMax));
     output.full_code = static_cast<std::int32_t>(axis.whole("full_code", 0, kCodeMax));
     if (2 * output.zero_code < output.full_code) {
-      axis.refuse("zero_code", "leaves no room for efforts of the other sign",
+      axis.refuse("zero_code", "leaves no range for efforts of the opposite sign",
                   "give at least half of full_code");
     }
     if (output.zero_code == output.full_code) {
-      axis.refuse("full_code", "is zero_code: that gives no effort", "give another");
+      axis.refuse("full_code", "equals zero_code, which gives no effort", "give another value");
     }
     axis.one("effort_at_full", output.effort_at_full, 1e-4, 1e3);
     axis.finish();
@@ -284,8 +285,8 @@ void fit_slews(bool given, core::Configuration& c) {
 LinkSettings read_link(support::JsonReader& reader) {
   LinkSettings link;
   if (reader.has("socket") == reader.has("usb")) {
-    reader.refuse("socket", "exactly one of socket and usb is wanted",
-                  "name a socket for programs on this board, or usb for its USB device port");
+    reader.refuse("socket", "exactly one of socket and usb is required",
+                  "give socket for programs on this board, or usb for its USB device port");
   }
   if (reader.has("socket")) {
     link.socket = reader.text("socket");

@@ -33,7 +33,7 @@ Finding row(const std::string& what, const std::string& which,
 std::string look_at_line(const std::string& name) {
   const gpio::LinePlace place = gpio::find_line(name);
   if (place.used) {
-    throw gpio::GpioError(fmt::format("{} line {}: in use by '{}' (remedy: end that program)",
+    throw gpio::GpioError(fmt::format("{} line {}: in use by '{}' (hint: end that program)",
                                       place.chip, place.offset, place.user));
   }
   return fmt::format("{} line {}, free", place.chip, place.offset);
@@ -75,10 +75,9 @@ void examine_banks(const gpio::ControllerBoardSettings& board, std::vector<Findi
       for (const std::string& name : {axis.a, axis.b, axis.index}) {
         const std::string found = name.empty() ? chip : gpio::find_line(name).chip;
         if (!chip.empty() && found != chip) {
-          throw gpio::GpioError(
-              fmt::format("line '{}': on {}, other encoder lines on {} (remedy: "
-                          "use lines of one chip)",
-                          name, found, chip));
+          throw gpio::GpioError(fmt::format(
+              "line '{}' is on {}, but other encoder lines are on {} (hint: use lines of one chip)",
+              name, found, chip));
         }
         chip = found;
       }
@@ -91,8 +90,7 @@ void examine_banks(const gpio::ControllerBoardSettings& board, std::vector<Findi
       const std::string found = gpio::find_line(board.brake).chip;
       if (found != chip) {
         throw gpio::GpioError(
-            fmt::format("line '{}': on {}, line '{}' on {} (remedy: use lines of "
-                        "one chip)",
+            fmt::format("line '{}' is on {}, but line '{}' is on {} (hint: use lines of one chip)",
                         board.brake, found, board.enable, chip));
       }
       return chip;
@@ -115,8 +113,8 @@ void examine_names(const gpio::ControllerBoardSettings& board, std::vector<Findi
   const auto twice = std::adjacent_find(names.begin(), names.end());
   findings.push_back(row("names", "each once", [&] {
     if (twice != names.end()) {
-      throw gpio::GpioError(
-          fmt::format("line '{}' is given twice (remedy: a line has one task)", *twice));
+      throw gpio::GpioError(fmt::format(
+          "line '{}' is given twice (hint: use a separate line for each signal)", *twice));
     }
     return fmt::format("{} lines", names.size());
   }));
@@ -125,9 +123,9 @@ void examine_names(const gpio::ControllerBoardSettings& board, std::vector<Findi
 std::string need_writable(const std::string& file) {
   if (access(file.c_str(), W_OK) != 0) {
     const int error = errno;
-    throw support::UserError(fmt::format("{}: {} (remedy: {})", file, std::strerror(error),
+    throw support::UserError(fmt::format("{}: {} (hint: {})", file, std::strerror(error),
                                          error == ENOENT
-                                             ? "make it, or load its driver"
+                                             ? "create it, or load its driver"
                                              : "run as root, or join the group that owns it"));
   }
   return file;
@@ -194,8 +192,8 @@ void examine_real_time(const RealTimeSettings& settings, std::vector<Finding>& f
   const bool preempt = access("/sys/kernel/realtime", F_OK) == 0;
   findings.push_back({"kernel", "PREEMPT_RT", preempt, false,
                       preempt ? "yes"
-                              : "no: ticks may be late by more (see docs/LINUX-BOARD.md to "
-                                "measure it)"});
+                              : "no: ticks may be later than with PREEMPT_RT (docs/LINUX-BOARD.md "
+                                "tells how to measure this)"});
 }
 
 void examine_link(const LinkSettings& link, std::vector<Finding>& findings) {
@@ -259,8 +257,8 @@ int print_findings(const std::vector<Finding>& findings) {
                verdict(finding), finding.detail);
     wrong += !finding.good && finding.matters ? 1U : 0U;
   }
-  fmt::print("{}\n",
-             wrong == 0 ? "it would run" : fmt::format("{} wrong: it would not run", wrong));
+  fmt::print("{}\n", wrong == 0 ? "the controller would run"
+                                : fmt::format("{} wrong: the controller would not run", wrong));
   return wrong == 0 ? kExitOk : kExitFailed;
 }
 

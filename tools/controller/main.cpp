@@ -31,9 +31,9 @@ int run(int argc, char** argv) {
   bool off = false;
   app.add_option("file", file, "wiring, device and model of the controller (JSON)")->required();
   auto* const dry = app.add_flag("--dry-run", dry_run,
-                                 "check whether it would run here, without using any line; exit "
-                                 "code 1: it would not");
-  app.add_flag("--off", off, "switch the enable line off and exit: for use after a crash")
+                                 "check whether the controller would run here, without using any "
+                                 "line; exit code 1: it would not");
+  app.add_flag("--off", off, "switch the enable line off and exit, for use after a crash")
       ->excludes(dry);
   try {
     app.parse(argc, argv);

@@ -26,14 +26,14 @@ constexpr std::size_t kPageBytes = 4096;
 
 std::string no_priority(int priority, int error) {
   return fmt::format(
-      "SCHED_FIFO {}: {}: ticks wait for any other program (run as root, or give the service "
+      "SCHED_FIFO {}: {}: any other program can delay a tick (run as root, or give the service "
       "LimitRTPRIO={} and CAP_SYS_NICE)",
       priority, std::strerror(error), priority + 1);
 }
 
 std::string no_lock(int error) {
   return fmt::format(
-      "locked memory: {}: a tick may wait for a page (run as root, or give the service "
+      "locked memory: {}: a page fault can delay a tick (run as root, or give the service "
       "LimitMEMLOCK=infinity)",
       std::strerror(error));
 }

@@ -43,7 +43,7 @@ class Platform {
 
 std::string lateness_table(const hal::linux_time::LatenessHistogram& lateness) {
   std::string text =
-      fmt::format("lateness of a tick: least {:.1f} us, mean {:.1f} us, most {:.1f} us\n",
+      fmt::format("lateness of a tick: min {:.1f} us, mean {:.1f} us, max {:.1f} us\n",
                   1e-3 * static_cast<double>(lateness.min_ns()), 1e-3 * lateness.mean_ns(),
                   1e-3 * static_cast<double>(lateness.max_ns()));
   constexpr std::uint32_t kLast = hal::linux_time::LatenessHistogram::kBuckets - 1U;

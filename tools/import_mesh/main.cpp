@@ -70,7 +70,7 @@ int run(int count, char** arguments) {
   // error.
   output = ::dup(STDOUT_FILENO);
   if (output < 0 || ::dup2(STDERR_FILENO, STDOUT_FILENO) < 0) return kExitUsage;
-  if (!set_limits(arguments[3], arguments[4])) return refuse("its limits cannot be set");
+  if (!set_limits(arguments[3], arguments[4])) return refuse("resource limits cannot be set");
   std::set_new_handler(report_out_of_memory);
   try {
     return builder::import_file(arguments[1], arguments[2], output) ? 0 : kExitRefused;

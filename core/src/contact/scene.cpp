@@ -16,7 +16,7 @@ constexpr const char* kDescriptions[] = {
     "a ball of the model may hold more points than the controller has room for",
     "a material is stiffer than device, hand and rate allow",
     "there is no room for another body",
-    "there is no body of this number",
+    "no body has this number",
     "the pose is not finite, not a rotation, or beyond +-10 m",
     "the motion is not finite, or beyond 10 m/s or 100 rad/s",
     "a tick with this model may take longer than the rate allows",

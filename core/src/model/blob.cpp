@@ -427,11 +427,11 @@ const char* describe(BlobStatus status) {
     case BlobStatus::kBadVersion:
       return "made for another major version of Tactree";
     case BlobStatus::kBadSize:
-      return "cut short, or something was appended";
+      return "truncated, or bytes were appended";
     case BlobStatus::kBadChecksum:
       return "damaged: the checksum does not match";
     case BlobStatus::kBadHeader:
-      return "the header holds an impossible count, text or reserved field";
+      return "the header holds an invalid count, text or reserved field";
     case BlobStatus::kBadFigures:
       return "the header's lengths contradict each other";
     case BlobStatus::kBadSections:
@@ -445,7 +445,7 @@ const char* describe(BlobStatus status) {
     case BlobStatus::kBadNeighbours:
       return "the neighbour table names a cell that does not exist";
     case BlobStatus::kBadMaterials:
-      return "a material is impossible or missing";
+      return "a material is invalid or missing";
   }
   return "unknown status";
 }

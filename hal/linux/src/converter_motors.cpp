@@ -22,7 +22,7 @@ std::string find_converter(const std::string& root, const ConverterAxis& axis) {
   if (!std::filesystem::exists(file)) {
     throw SysfsError(quoted(kKind, axis.device) + ": it has no output " +
                      std::to_string(axis.channel) +
-                     " (remedy: use one of the files out_voltage*_raw "
+                     " (hint: use one of the files out_voltage*_raw "
                      "in " +
                      folder + ")");
   }
@@ -42,7 +42,7 @@ std::int32_t code_of(const ConverterAxis& axis, float effort) {
 ConverterMotors::ConverterMotors(const ConverterSettings& settings, const std::string& consumer)
     : good_(settings.good, consumer) {
   if (settings.axes.empty() || settings.axes.size() > core::kAxes) {
-    throw SysfsError("motors: one to three axes are required (remedy: name the converter of each)");
+    throw SysfsError("motors: one to three axes are required (hint: name the converter of each)");
   }
   for (const ConverterAxis& axis : settings.axes) {  // bound: kAxes
     const std::string file = find_converter(settings.root, axis);

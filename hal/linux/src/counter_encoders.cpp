@@ -29,7 +29,7 @@ void count_each_edge(const std::string& folder) {
   }
   if (function_of(folder) != kEachEdge) {
     throw SysfsError(folder + "/function: does not accept '" + kEachEdge +
-                     "' (remedy: run as root, or use a counter that supports it)");
+                     "' (hint: run as root, or use a counter that supports it)");
   }
 }
 
@@ -47,7 +47,7 @@ std::uint64_t widen(const std::string& folder) {
   }
   std::int64_t ceiling = 0;
   if (!read_value(open_value(file, O_RDONLY).get(), ceiling) || ceiling < 0xFF) {
-    throw SysfsError(file + ": has no valid counting range (remedy: use another counter)");
+    throw SysfsError(file + ": has no valid counting range (hint: use another counter)");
   }
   return static_cast<std::uint64_t>(ceiling) + 1U;
 }
@@ -67,16 +67,14 @@ std::string find_count(const std::string& root, const CounterAxis& axis) {
   if (!std::filesystem::exists(folder)) {
     throw SysfsError(quoted(kKind, axis.device) + ": it has no count " +
                      std::to_string(axis.count) +
-                     " (remedy: use one of the folders count0, count1 "
-                     "... in " +
-                     counter + ")");
+                     " (hint: use one of the folders count0, count1 ... in " + counter + ")");
   }
   return folder;
 }
 
 CounterEncoderBank::CounterEncoderBank(const CounterSettings& settings) {
   if (settings.axes.empty() || settings.axes.size() > core::kAxes) {
-    throw SysfsError("encoders: one to three axes are required (remedy: name the counter of each)");
+    throw SysfsError("encoders: one to three axes are required (hint: name the counter of each)");
   }
   for (const CounterAxis& named : settings.axes) {  // bound: kAxes
     const std::string folder = find_count(settings.root, named);
@@ -88,7 +86,7 @@ CounterEncoderBank::CounterEncoderBank(const CounterSettings& settings) {
     std::int64_t now = 0;
     if (!read_value(axis.file.get(), now) || now < 0 ||
         static_cast<std::uint64_t>(now) >= axis.range) {
-      throw SysfsError(folder + "/count: has no valid count (remedy: use another counter)");
+      throw SysfsError(folder + "/count: has no valid count (hint: use another counter)");
     }
     axis.last = static_cast<std::uint64_t>(now);
     axes_.push_back(std::move(axis));

@@ -112,7 +112,7 @@ EnableGuard::EnableGuard(GpioLines& enable, const GuardSettings& settings) {
   if (silent) {
     (void)kill(parent, SIGKILL);
     (void)enable.set(0);  // again: the loop may have switched it on before it was killed
-    print("tactree guard: the control loop was silent; enable line off, loop killed\n");
+    print("tactree guard: the control loop did not respond; enable line off, loop killed\n");
   } else if (!shared_->done.load()) {
     print("tactree guard: the control loop has ended; enable line off\n");
   }

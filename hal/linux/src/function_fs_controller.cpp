@@ -46,7 +46,7 @@ bool is_to_host(std::size_t endpoint) { return (kAddresses[endpoint] & 0x80U) !=
 int open_file(const std::string& name) {
   const int file = open(name.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
   if (file < 0) {
-    throw std::runtime_error(name + ": " + std::strerror(errno) + " (remedy: run it as root)");
+    throw std::runtime_error(name + ": " + std::strerror(errno) + " (hint: run it as root)");
   }
   return file;
 }
@@ -159,7 +159,7 @@ void FunctionFsController::Impl::open_function() {
   }
   if (!taken) {
     throw std::runtime_error(plugged->gadget.mount() + "/ep0: " + std::strerror(errno) +
-                             " (remedy: use a kernel whose FunctionFS supports this device)");
+                             " (hint: use a kernel whose FunctionFS supports this device)");
   }
   for (std::size_t i = 0; i < kEndpoints; ++i) {  // bound: kEndpoints
     plugged->endpoints[i].file = open_file(plugged->gadget.mount() + "/ep" + std::to_string(i + 1));

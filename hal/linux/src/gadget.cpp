@@ -27,7 +27,7 @@ constexpr char kControllers[] = "/sys/class/udc";
 std::string mount_of(const std::string& name) { return "/run/" + name; }
 
 [[noreturn]] void fail(const std::string& file, int error, const std::string& remedy) {
-  throw std::runtime_error(file + ": " + std::strerror(error) + " (remedy: " + remedy + ")");
+  throw std::runtime_error(file + ": " + std::strerror(error) + " (hint: " + remedy + ")");
 }
 
 /// Writes in one system call, as configfs requires.
@@ -141,15 +141,14 @@ std::string find_udc(const std::string& name) {
   const std::string where = std::string(kControllers) + ": ";
   if (found.empty()) {
     throw std::runtime_error(where +
-                             "this computer has no USB device port (remedy: enable its driver)");
+                             "this computer has no USB device port (hint: enable its driver)");
   }
   if (!name.empty()) {
     throw std::runtime_error(where + "no USB device port is '" + name +
-                             "' (remedy: name one of: " + found + ")");
+                             "' (hint: name one of: " + found + ")");
   }
   if (found.find(',') != std::string::npos) {
-    throw std::runtime_error(where + "several USB device ports (remedy: name one of: " + found +
-                             ")");
+    throw std::runtime_error(where + "several USB device ports (hint: name one of: " + found + ")");
   }
   return found;
 }

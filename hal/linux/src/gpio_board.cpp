@@ -53,8 +53,7 @@ GpioEncoderBank::GpioEncoderBank(const std::vector<EncoderLines>& axes, const st
 
 std::vector<std::string> GpioEncoderBank::names_of(const std::vector<EncoderLines>& axes) {
   if (axes.empty() || axes.size() > core::kAxes) {
-    throw GpioError(
-        "encoders: one to three axes are required (remedy: name lines a and b of each)");
+    throw GpioError("encoders: one to three axes are required (hint: name lines a and b of each)");
   }
   std::vector<std::string> names;
   for (const EncoderLines& axis : axes) {  // bound: kAxes

@@ -67,36 +67,36 @@ LinePlace find_line(const std::string& name) {
     }
   }
   if (places.size() > 1) {
-    throw GpioError(quoted(name) + ": " + places[0].chip + " and " + places[1].chip +
-                    " have one of that name (remedy: put the chip's label before it, "
-                    "'label:" +
-                    name + "'; gpiodetect lists them)");
+    throw GpioError(
+        quoted(name) + ": " + places[0].chip + " and " + places[1].chip +
+        " have a line of that name (hint: put the chip's label before the name, 'label:" + name +
+        "'; gpiodetect lists them)");
   }
   if (!places.empty()) {
     return places.front();
   }
   if (!forbidden.empty()) {
     throw GpioError(quoted(name) + ": " + forbidden +
-                    ": permission denied (remedy: join the group that owns it, or run as root)");
+                    ": permission denied (hint: join the group that owns it, or run as root)");
   }
   if (all.empty()) {
-    throw GpioError(quoted(name) + ": there is no GPIO chip (remedy: load its driver)");
+    throw GpioError(quoted(name) + ": there is no GPIO chip (hint: load its driver)");
   }
   throw GpioError(quoted(name) +
-                  ": no chip has a line of that name (remedy: use a name listed by gpioinfo)");
+                  ": no chip has a line of that name (hint: use a name listed by gpioinfo)");
 }
 
 WantedLines find_lines(const std::vector<std::string>& names, const std::string& consumer) {
   if (names.empty() || names.size() > kMaxLines) {
-    throw GpioError("no lines, or more than 64, were requested (remedy: name 1 to 64 lines)");
+    throw GpioError("no lines, or more than 64, were requested (hint: name 1 to 64 lines)");
   }
   WantedLines wanted{names, {}, consumer};
   for (const std::string& name : names) {  // bound: names
     wanted.places.push_back(find_line(name));
     if (wanted.places.back().chip != wanted.chip()) {
-      throw GpioError(quoted(name) + ": on " + wanted.places.back().chip + ", but " +
-                      quoted(names.front()) + " on " + wanted.chip() +
-                      " (remedy: use lines of one chip)");
+      throw GpioError(quoted(name) + ": is on " + wanted.places.back().chip + ", but " +
+                      quoted(names.front()) + " is on " + wanted.chip() +
+                      " (hint: use lines of one chip)");
     }
   }
   return wanted;
@@ -106,12 +106,11 @@ void refuse(const WantedLines& wanted, int error) {
   for (std::size_t i = 0; i < wanted.names.size(); ++i) {  // bound: names
     if (error == EBUSY && !wanted.places[i].user.empty()) {
       throw GpioError(quoted(wanted.names[i]) + ": in use by '" + wanted.places[i].user +
-                      "' (remedy: end that program)");
+                      "' (hint: end that program)");
     }
   }
   throw GpioError(quoted(wanted.names.front()) + ": " + wanted.chip() + ": " +
-                  std::strerror(error) +
-                  " (remedy: see gpioinfo for the capabilities of the line)");
+                  std::strerror(error) + " (hint: see gpioinfo for the capabilities of the line)");
 }
 
 // The request itself may have caused edges. The levels are read at the start of the rest: at its
@@ -121,12 +120,12 @@ void GpioLines::await_rest(const std::string& name) {
   do {  // bound: kPatience_ns / kRest_ns
     if (linux_time::now_ns() > end_ns) {
       throw GpioError(quoted(name) +
-                      ": it, or a line requested with it, changed for 1 s without a rest of 2 ms "
-                      "(remedy: hold the device still at the start)");
+                      ": this line, or one requested with it, changed for 1 s without a rest of 2 "
+                      "ms (hint: hold the device still at the start)");
     }
     begin_edges();
     if (!levels(first_levels_)) {
-      throw GpioError(quoted(name) + ": its chip was removed (remedy: load its driver)");
+      throw GpioError(quoted(name) + ": its chip was removed (hint: load its driver)");
     }
     sleep_ns(kRest_ns);
   } while (!is_at_rest());

@@ -49,7 +49,7 @@ InterruptCounter::InterruptCounter(const std::string& interrupt)
     : file_(::open((kFolder + "/" + interrupt + "/per_cpu_count").c_str(), O_RDONLY | O_CLOEXEC)) {
   if (file_.get() < 0) {
     throw GpioError(kFolder + "/" + interrupt +
-                    "/per_cpu_count: cannot be opened (remedy: mount sysfs)");
+                    "/per_cpu_count: cannot be opened (hint: mount sysfs)");
   }
 }
 

@@ -42,7 +42,7 @@ std::string added(const std::set<std::string>& before, const std::set<std::strin
   if (fresh.size() != 1U) {
     throw GpioError("line '" + name +
                     "': its interrupt is not in /sys/kernel/irq, which libgpiod 1.6 needs to "
-                    "detect lost edges (remedy: libgpiod 2.x, or a kernel with CONFIG_SPARSE_IRQ)");
+                    "detect lost edges (hint: libgpiod 2.x, or a kernel with CONFIG_SPARSE_IRQ)");
   }
   return fresh.front();
 }

@@ -13,7 +13,7 @@ namespace {
 
 [[noreturn]] void fail(const std::string& path, const std::string& cause,
                        const std::string& remedy) {
-  throw SocketError(path + ": " + cause + " (remedy: " + remedy + ")");
+  throw SocketError(path + ": " + cause + " (hint: " + remedy + ")");
 }
 
 sockaddr_un address_of(const std::string& path) {
@@ -21,7 +21,7 @@ sockaddr_un address_of(const std::string& path) {
   address.sun_family = AF_UNIX;
   if (path.empty() || path.size() >= sizeof(address.sun_path)) {
     fail(path, "not a path of 1 .. " + std::to_string(sizeof(address.sun_path) - 1) + " bytes",
-         "choose another");
+         "choose another path");
   }
   path.copy(address.sun_path, path.size());
   return address;

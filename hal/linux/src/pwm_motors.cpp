@@ -31,7 +31,7 @@ std::uint32_t share_of(float effort, float full, std::uint32_t period_ns) {
 std::vector<std::string> directions_of(const MotorSettings& settings) {
   if (settings.axes.empty() || settings.axes.size() > core::kAxes) {
     throw SysfsError(
-        "motors: one to three axes are required (remedy: name chip and direction of each)");
+        "motors: one to three axes are required (hint: name chip and direction of each)");
   }
   std::vector<std::string> names;
   for (const MotorLines& axis : settings.axes) {  // bound: kAxes
@@ -48,7 +48,7 @@ std::string find_pwm_chip(const std::string& root, const std::string& name, std:
   std::ifstream(chip + "/npwm") >> channels;
   if (channel >= channels) {
     throw SysfsError(quoted(kKind, name) + ": it has no channel " + std::to_string(channel) +
-                     " (remedy: it has " + std::to_string(channels) + ", from 0)");
+                     " (hint: it has " + std::to_string(channels) + " channels, numbered from 0)");
   }
   return chip;
 }

@@ -50,10 +50,10 @@ std::string find_sysfs_device(const std::string& root, const std::string& name,
   }
   if (error || others.empty()) {
     throw SysfsError(quoted(kind, name) + ": no such device in " + root +
-                     " (remedy: enable it in the device tree)");
+                     " (hint: enable it in the device tree)");
   }
   throw SysfsError(quoted(kind, name) + ": no such device in " + root +
-                   " (remedy: use one of: " + others + ")");
+                   " (hint: use one of: " + others + ")");
 }
 
 FileDescriptor open_value(const std::string& file, int flags) {
@@ -64,7 +64,7 @@ FileDescriptor open_value(const std::string& file, int flags) {
   }
   if (opened.get() < 0) {
     throw SysfsError(file + ": " + std::strerror(errno) +
-                     " (remedy: join the group that owns it, or run as root)");
+                     " (hint: join the group that owns it, or run as root)");
   }
   return opened;
 }
@@ -87,7 +87,7 @@ void set_value(const std::string& file, std::int64_t value, const std::string& r
   const FileDescriptor opened = open_value(file, O_WRONLY);
   if (!write_value(opened.get(), value)) {
     throw SysfsError(file + ": " + std::to_string(value) + ": " + std::strerror(errno) +
-                     " (remedy: " + remedy + ")");
+                     " (hint: " + remedy + ")");
   }
 }
 

@@ -38,7 +38,7 @@ int free_port() {
   if (!status) {
     throw std::runtime_error(
         std::string(kHostController) +
-        "status: there is no virtual USB host controller (remedy: modprobe vhci-hcd)");
+        "status: there is no virtual USB host controller (hint: modprobe vhci-hcd)");
   }
   std::string line;
   while (std::getline(status, line)) {  // bound: ports of the controller
@@ -51,7 +51,7 @@ int free_port() {
     }
   }
   throw std::runtime_error(std::string(kHostController) +
-                           "status: no free port (remedy: unplug a virtual device)");
+                           "status: no free port (hint: unplug a virtual device)");
 }
 
 }  // namespace
@@ -113,7 +113,7 @@ void UsbIpController::plug_in() {
   if (!written) {
     close(ends[0]);
     throw std::runtime_error(file + ": " + std::strerror(error) +
-                             (error == EACCES ? " (remedy: run it as root)" : ""));
+                             (error == EACCES ? " (hint: run it as root)" : ""));
   }
   plug_into(ends[0]);
 }

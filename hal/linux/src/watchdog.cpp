@@ -11,7 +11,7 @@ namespace tactree::hal {
 namespace {
 
 [[noreturn]] void fail(const std::string& file, const char* remedy) {
-  throw WatchdogError(file + ": " + std::strerror(errno) + " (remedy: " + remedy + ")");
+  throw WatchdogError(file + ": " + std::strerror(errno) + " (hint: " + remedy + ")");
 }
 
 const char* remedy_for(int error) {

@@ -165,7 +165,7 @@ std::size_t gltf_count(const json& object, const char* name, std::size_t missing
     return missing;
   }
   if (!found->is_number_unsigned() || found->get<std::uint64_t>() > kMaxCount) {
-    throw ImportError(std::string("its \"") + name + "\" is no valid number");
+    throw ImportError(std::string("its \"") + name + "\" is not a valid number");
   }
   return found->get<std::size_t>();
 }
@@ -287,7 +287,7 @@ void GltfFile::read(std::size_t accessor, std::size_t width, std::vector<Number>
   const std::string who = named("accessor", accessor);
   const json& described = at("accessors", accessor);
   if (this->width(accessor) != width) {
-    throw ImportError(who + " has another type than its use requires");
+    throw ImportError(who + " has a type that does not fit its use");
   }
   const std::size_t count = gltf_count(described, "count");
   const std::size_t component = gltf_count(described, "componentType");

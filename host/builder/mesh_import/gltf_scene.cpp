@@ -221,7 +221,7 @@ class GltfScene {
     std::vector<Matrix4d> joints;
     for (const std::size_t joint : children_of(skin, "joints")) {
       if (joint >= worlds_.size()) {
-        throw ImportError("a joint of a skin is no node of it");
+        throw ImportError("a joint of a skin is not one of its nodes");
       }
       joints.push_back(*worlds_[joint]);
     }
@@ -329,14 +329,14 @@ class GltfScene {
       const std::vector<double> weights =
           file_.numbers(gltf_count(attributes, weights_name.c_str(), kNone), 4);
       if (indices.size() != 4 * count || weights.size() != 4 * count) {
-        throw ImportError("a skin has another number of weights than of points");
+        throw ImportError("a skin has different numbers of weights and points");
       }
       for (std::size_t k = 0; k < indices.size(); ++k) {
         if (!(weights[k] > 0.0)) {
           continue;
         }
         if (!(indices[k] < static_cast<double>(joints.size()))) {
-          throw ImportError("a point hangs on a joint that its skin does not have");
+          throw ImportError("a point refers to a joint that its skin does not have");
         }
         placed[k / 4] += weights[k] * joints[static_cast<std::size_t>(indices[k])];
         sums[k / 4] += weights[k];
@@ -412,7 +412,7 @@ class GltfScene {
     add(bad_triangles_,
         " triangles were dropped: they refer to points that the file does not have.");
     add(lines_, " sets of lines were left out.");
-    add(loose_points_, " points of a skin hang on no joint.");
+    add(loose_points_, " points of a skin refer to no joint.");
   }
 
   GltfFile& file_;

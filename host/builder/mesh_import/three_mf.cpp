@@ -199,7 +199,7 @@ class Assembly {
     const Model& root = model(root_part());
     mesh_.unit_m = root.unit_m;
     if (root.build.empty()) {
-      throw ImportError("its build names no object");
+      throw ImportError("its build refers to no object");
     }
     for (const Component& item : root.build) {
       add(item, Transform::Identity(), 0);
@@ -263,7 +263,7 @@ class Assembly {
                         component.object.substr(0, 40) + "\"");
     }
     if (depth > kMaxDepth || ++instances_ > kMaxInstances) {
-      throw ImportError("its objects contain each other too deeply or too often");
+      throw ImportError("its objects are nested too deeply or too often");
     }
     const Transform transform = outer * component.transform;
     const Object& object = found->second;

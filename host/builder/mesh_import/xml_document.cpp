@@ -20,7 +20,7 @@ void check_depth(pugi::xml_node root, unsigned limit) {
     depth += next.empty() ? 0U : 1U;
     if (depth > limit) {
       throw XmlTooLarge("byte " + std::to_string(next.offset_debug()) +
-                        ": elements in elements, more than " + std::to_string(limit) + " deep");
+                        ": elements are nested more than " + std::to_string(limit) + " deep");
     }
     while (next.empty() && !(at == root)) {
       next = at.next_sibling();
@@ -47,7 +47,7 @@ XmlDocument::XmlDocument(std::string text, const XmlLimits& limits) : text_(std:
   }
   const pugi::xml_parse_result result = document_.load_buffer_inplace(text_.data(), text_.size());
   if (result.status == pugi::status_out_of_memory) {
-    throw XmlTooLarge("its " + std::to_string(tags) + " tags take more memory than is allowed");
+    throw XmlTooLarge("its " + std::to_string(tags) + " tags need more memory than is allowed");
   }
   if (!result) {
     std::string cause = result.description();

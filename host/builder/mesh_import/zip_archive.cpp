@@ -160,16 +160,16 @@ std::string ZipArchive::read(std::string_view path) const {
   const std::uint64_t local = member->header;
   if (local > bytes_.size() ||
       !bytes_.substr(static_cast<std::size_t>(local)).starts_with(kLocal)) {
-    fail("\"" + member->path + "\" is not where its directory says");
+    fail("\"" + member->path + "\" is not at the position that its directory states");
   }
   const std::uint64_t begin = local + kLocalBytes + number(local + 26, 2) + number(local + 28, 2);
   if (begin > bytes_.size() || member->packed > bytes_.size() - begin) {
-    fail("\"" + member->path + "\" ends after its last byte");
+    fail("\"" + member->path + "\" extends beyond the end of the file");
   }
   const std::string_view packed =
       bytes_.substr(static_cast<std::size_t>(begin), static_cast<std::size_t>(member->packed));
   if (member->method != 0 && member->method != 8) {
-    throw ImportError("\"" + member->path + "\" is packed in a form that is not supported");
+    throw ImportError("\"" + member->path + "\" is compressed with a method that is not supported");
   }
   std::string bytes =
       member->method == 8 ? inflated(packed, member->unpacked, member->path) : std::string(packed);

@@ -51,7 +51,7 @@ class Pipeline {
     progress_.begin("cleaning");
     input_ = clean(std::move(scans), options_, report_);
     advise_on_unit();
-    progress_.begin("checking the outside");
+    progress_.begin("checking the orientation");
     check_given();
     model_.profile = options_.profile;
     model_.name = options_.name;
@@ -161,7 +161,7 @@ class Pipeline {
     orient(choice, given, normals);
     if (!all) {
       report_.notes.push_back(fmt::format(
-          "{} of {} normals are estimated; the surface has {} connected piece{}",
+          "{} of {} normals are estimated; the surface has {} connected component{}",
           points.size() - count, points.size(), report_.pieces, report_.pieces == 1 ? "" : "s"));
     }
     choice.points.set_normals(std::move(normals));

@@ -26,15 +26,16 @@ core::wire::ControlRequest control_request(ControlCode code, std::uint32_t token
 const char* remedy_for(WireStatus status) {
   switch (status) {
     case WireStatus::kBusy:
-      return " (tactree stop, then again)";
+      return " (run tactree stop, then try again)";
     case WireStatus::kNoSession:
       return " (the board was reset, or another program opened a session)";
     case WireStatus::kTooLarge:
       return " (build it with a larger --spacing or with --flash-budget)";
     case WireStatus::kBadSignature:
-      return " (tactree sign, with the key that belongs to the board)";
+      return " (sign it with tactree sign and the key that belongs to the board)";
     case WireStatus::kInUse:
-      return " (roll back first; where the image's model fills both slots, program a smaller one)";
+      return " (roll back first; if the model in the image fills both slots, program an image with "
+             "a smaller one)";
     case WireStatus::kOldCounter:
       return " (sign it with a larger --counter)";
     default:
@@ -91,7 +92,8 @@ Board::~Board() {
 // The old connection ends first, because a serial port can be opened only once.
 void Board::reconnect() {
   if (port_.empty()) {
-    throw LinkError(connection().name() + ": was not opened by its name, so cannot be again");
+    throw LinkError(connection().name() +
+                    ": cannot be reopened, because it was not opened by name");
   }
   connection_.reset();
   auto fresh = std::make_unique<Connection>(open_port(port_, options_.baud));
@@ -104,7 +106,7 @@ void Board::reconnect() {
 
 Connection& Board::connection() const {
   if (!connection_) {
-    throw LinkError(port_ + ": the board is gone");
+    throw LinkError(port_ + ": the board is disconnected");
   }
   return *connection_;
 }
@@ -129,7 +131,7 @@ Response Board::demand(MessageKind kind, std::span<const std::byte> payload, con
   Response response = connection().call(kind, payload);
   const std::string where = connection().name() + ": " + what + ": ";
   if (response.timed_out) {
-    throw LinkError(where + (connection().connected() ? "no answer" : "the board is gone"));
+    throw LinkError(where + (connection().connected() ? "no answer" : "the board is disconnected"));
   }
   if (!response.ok()) {
     throw LinkError(where + core::wire::describe(response.status) + details(response) +
@@ -198,8 +200,9 @@ bool Board::go_on_arming() {
 }
 
 const char* Board::who_confirms() const {
-  return hand_confirms_ ? "let the dead-man control go, then hold it, outside of the object"
-                        : "hold the probe outside of the object";
+  return hand_confirms_
+             ? "release the dead-man control, then press it with the probe outside the object"
+             : "hold the probe outside the object";
 }
 
 void Board::arm(std::chrono::milliseconds patience) {
@@ -208,7 +211,7 @@ void Board::arm(std::chrono::milliseconds patience) {
   while (!go_on_arming()) {
     if (connection().now() > deadline) {
       stop();
-      throw LinkError(connection().name() + ": arm: nobody confirms (" + who_confirms() + ")");
+      throw LinkError(connection().name() + ": arm: not confirmed (" + who_confirms() + ")");
     }
     connection().sleep(std::chrono::milliseconds(20));
   }

@@ -16,16 +16,16 @@ namespace {
 
 std::string remedy_for(int error) {
   if (error == EACCES || error == EPERM) {
-    return "the user has to be in the group of the controller";
+    return "the user must be in the group of the controller";
   }
-  return "is tactree-controller running, and is this the socket of its file?";
+  return "is tactree-controller running, and is this the socket in its file?";
 }
 
 int connect_to(const std::string& path) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   if (path.empty() || path.size() >= sizeof(address.sun_path)) {
-    throw LinkError(path + ": not the path of a socket (give that of the controller's file)");
+    throw LinkError(path + ": not the path of a socket (give the path in the controller's file)");
   }
   path.copy(address.sun_path, path.size());
   const int descriptor = ::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);

@@ -30,8 +30,8 @@ sockaddr_un address_of(const std::string& path) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   if (path.empty() || path.size() >= sizeof(address.sun_path)) {
-    throw LinkError(path +
-                    ": not the path of a socket (give what tactree simulate --serve printed)");
+    throw LinkError(
+        path + ": not the path of a socket (give the path that tactree simulate --serve printed)");
   }
   path.copy(address.sun_path, path.size());
   return address;

@@ -33,7 +33,7 @@ speed_t speed_code(const std::string& path, unsigned baud) {
     }
   }
   throw LinkError(path + ": " + std::to_string(baud) +
-                  " baud is not a usual speed (the default is " + std::to_string(kUsualBaud) +
+                  " baud is not a supported speed (the default is " + std::to_string(kUsualBaud) +
                   "; others are 115200, 921600 and 2000000)");
 }
 
@@ -43,12 +43,12 @@ speed_t speed_code(const std::string& path, unsigned baud) {
 
 std::string remedy_for(int error) {
   if (error == EACCES) {
-    return "the user has to be in the group dialout, or a udev rule has to allow it";
+    return "the user must be in the group dialout, or a udev rule must permit access";
   }
   if (error == EBUSY) {
     return "another program uses it";
   }
-  return "is the board plugged in? tactree devices lists what there is";
+  return "is the board plugged in? tactree devices lists the ports found";
 }
 
 void make_raw(int descriptor, speed_t speed) {
@@ -100,7 +100,7 @@ class SerialPort : public Transport {
     }
     if (::isatty(descriptor_) == 0) {
       ::close(descriptor_);
-      throw LinkError(path_ + ": not a serial port (tactree devices lists what there is)");
+      throw LinkError(path_ + ": not a serial port (tactree devices lists the ports found)");
     }
     // Two programs on one port would each receive only a part of the replies.
     if (::ioctl(descriptor_, TIOCEXCL) != 0) {
@@ -155,7 +155,7 @@ std::vector<std::string> serial_ports() {
 PseudoTerminal::PseudoTerminal() {
   ours_ = ::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
   if (ours_ < 0 || ::grantpt(ours_) != 0 || ::unlockpt(ours_) != 0) {
-    fail("/dev/ptmx", "the system has no pseudo-terminal left");
+    fail("/dev/ptmx", "the system has no free pseudo-terminal");
   }
   path_ = ::ptsname(ours_);
   theirs_ = ::open(path_.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);

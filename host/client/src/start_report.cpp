@@ -24,7 +24,7 @@ constexpr PartName kParts[] = {
     {StartPart::kWatchdog, "watchdog"},
     {StartPart::kReceiver, "receiver of the link"},
     {StartPart::kCrystal, "crystal"},
-    {StartPart::kCrystalFrequency, "crystal (of another frequency)"},
+    {StartPart::kCrystalFrequency, "crystal (of a wrong frequency)"},
     {StartPart::kWaitStates, "wait states of the flash"},
     {StartPart::kPll, "clock multiplier"},
     {StartPart::kClockSwitch, "switch to the full clock"},
@@ -40,7 +40,7 @@ std::string missing_parts(std::uint32_t missing) {
     }
   }
   if (missing != 0U) {
-    names += std::string(names.empty() ? "" : ", ") + "a part that this program does not know";
+    names += std::string(names.empty() ? "" : ", ") + "a component that this program does not know";
   }
   return names;
 }
@@ -69,8 +69,8 @@ std::string no_model(const core::wire::ReadStartReply& start) {
 std::string last_fault(const core::wire::ReadStartReply& start) {
   char text[160];
   std::snprintf(text, sizeof text,
-                "its last run died: exception %u at 0x%08x, called from 0x%08x, status 0x%08x, "
-                "address 0x%08x",
+                "its last run ended with exception %u at 0x%08x, called from 0x%08x, status "
+                "0x%08x, address 0x%08x",
                 start.fault_cause, start.fault_pc, start.fault_lr, start.fault_status,
                 start.fault_address);
   return text;
@@ -84,11 +84,11 @@ std::vector<std::string> complaints(const core::wire::ReadStartReply& start) {
     all.push_back("at its start: " + text);
   }
   if (start.missing != 0U) {
-    all.push_back("no force, did not start: " + missing_parts(start.missing) +
-                  " (see where to measure in its README)");
+    all.push_back("motors disabled; did not start: " + missing_parts(start.missing) +
+                  " (its README states where to measure)");
   }
   if (start.by_watchdog != 0U) {
-    all.emplace_back("the watchdog reset it: a tick hung, or took too long");
+    all.emplace_back("the watchdog reset the board: a tick hung or took too long");
   }
   if (start.fault_cause != 0U) {
     all.push_back(last_fault(start));

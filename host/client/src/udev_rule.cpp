@@ -10,10 +10,10 @@ namespace tactree::client {
 
 std::string udev_rule() {
   // The property lists class, subclass and protocol of each interface; one must be the link's.
-  return "# Tactree: whoever sits at this computer may use haptic controllers.\n"
+  return "# Tactree: local users may access haptic controllers.\n"
          "SUBSYSTEM==\"usb\", ENV{DEVTYPE}==\"usb_device\", "
-         "ENV{ID_USB_INTERFACES}==\"*:ff5401:*\", "
-         "MODE=\"0660\", GROUP=\"plugdev\", TAG+=\"uaccess\"\n";
+         "ENV{ID_USB_INTERFACES}==\"*:ff5401:*\", MODE=\"0660\", GROUP=\"plugdev\", "
+         "TAG+=\"uaccess\"\n";
 }
 
 std::string install_udev_rule(const std::string& root) {
@@ -26,7 +26,7 @@ std::string install_udev_rule(const std::string& root) {
   out.close();
   if (!out) {
     throw LinkError(file.string() + ": " + std::strerror(errno) +
-                    " (remedy: run it as root, or put the rule there by hand)");
+                    " (hint: run it as root, or write the rule to this file manually)");
   }
   return file.string();
 }

@@ -54,15 +54,14 @@ std::vector<UsbDeviceInfo> list_devices(libusb_context* context) {
 
 std::string remedy(int error) {
   if (error == LIBUSB_ERROR_ACCESS) {
-    return " (remedy: as root, `tactree devices --install-udev`, then plug it in again; or put "
-           "this "
-           "into /etc/udev/rules.d/70-tactree.rules:\n" +
+    return " (hint: run `tactree devices --install-udev` as root, then plug the board in again; or "
+           "write this to /etc/udev/rules.d/70-tactree.rules:\n" +
            udev_rule() + ")";
   }
   if (error == LIBUSB_ERROR_BUSY) {
-    return " (remedy: end the other program that uses it)";
+    return " (hint: end the other program that uses it)";
   }
-  return " (remedy: plug it in again)";
+  return " (hint: plug it in again)";
 }
 
 }  // namespace
@@ -72,7 +71,7 @@ Context make_context() {
   const int error = libusb_init(&context);
   if (error != LIBUSB_SUCCESS) {
     throw LinkError(std::string("usb: ") + libusb_strerror(error) +
-                    " (remedy: is /dev/bus/usb there?)");
+                    " (hint: check that /dev/bus/usb exists)");
   }
   return Context(context);
 }

@@ -272,12 +272,12 @@ std::unique_ptr<UsbTransport> open_usb(const std::string& which) {
     return std::make_unique<UsbTransport>(chosen.front());
   }
   if (devices.empty()) {
-    throw LinkError("usb: no board is plugged in (remedy: `tactree devices` lists the boards)");
+    throw LinkError("usb: no board is plugged in (hint: `tactree devices` lists the boards)");
   }
   throw LinkError("usb: " +
                   std::string(chosen.empty() ? "no board is '" + which + "'"
                                              : "several boards are plugged in") +
-                  " (remedy: name one by serial number or path)" + there);
+                  " (hint: name one by serial number or path)" + there);
 }
 
 }  // namespace tactree::client

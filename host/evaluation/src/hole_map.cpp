@@ -136,7 +136,7 @@ std::string holes_markdown(const Result& result) {
         "![Openings of {}]({})\n",
         scan.name, 1e3 * scan.support_m, scan.openings.size(), scan.name, map_name(i));
     if (!scan.openings.empty()) {
-      page += "\n| opening | width, mm | middle x, y, z, mm |\n|---|---|---|\n";
+      page += "\n| opening | width, mm | centre x, y, z, mm |\n|---|---|---|\n";
     }
     for (std::size_t k = 0; k < std::min(kListed, scan.openings.size()); ++k) {
       const Opening& o = scan.openings[k];

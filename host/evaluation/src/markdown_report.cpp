@@ -79,11 +79,15 @@ void add_distances(Page& page, const Result& result) {
   page.add(
       "## Table 2 of the paper: distance to the surface\n"
       "Probes from 50 mm below to 10 mm above the sheet, h = 2.5 mm; difference of the distance "
-      "from brute force.\n\n| | mean | largest |\n|---|---|---|\n"
+      "from brute force.\n"
+      "\n"
+      "| | mean | max |\n"
+      "|---|---|---|\n"
       "| printed in the paper | 1.97 um | 34.2 um |\n"
       "| paper mode, detection octant remembered, flat top | {} um | {} um |\n"
       "| exact nearest point, within reach | - | {} um |\n"
-      "| surface mode, proxy, against the true surface | {} um | {} um |\n\n",
+      "| surface mode, proxy, against the true surface | {} um | {} um |\n"
+      "\n",
       figure(d.paper_mean_m, 1e6), figure(d.paper_max_m, 1e6), figure(d.nearest_max_m, 1e6),
       figure(d.surface_mean_m, 1e6), figure(d.surface_max_m, 1e6));
   page.add(
@@ -100,10 +104,12 @@ void add_geometry(Page& page, const Result& result, const std::string& pictures)
   page.add(
       "## Accuracy of the surface\n"
       "h = 1 mm unless stated otherwise; probes up to h above and below. *Off the surface*: "
-      "distance "
-      "of the computed point (rms /\nlargest); *distance*: error of the computed distance, rms; "
-      "*normal*: error, rms; *answered*: share of the probes with a result.\nPaper mode returns "
-      "points of the cloud, which are on the surface but not necessarily the nearest.\n\n"
+      "distance of the computed point (rms /\n"
+      "max); *distance*: error of the computed distance, rms; *normal*: error, rms; *answered*: "
+      "percentage of probes with a result.\n"
+      "Paper mode returns points of the cloud, which are on the surface but not necessarily the "
+      "nearest.\n"
+      "\n"
       "| shape | mode | off the surface, um | distance, um | normal, deg | answered |\n"
       "|---|---|---|---|---|---|\n");
   for (const ShapeResult& shape : result.shapes) {
@@ -124,14 +130,17 @@ void add_forces(Page& page, const Result& result, const std::string& pictures) {
   page.add(
       "## Contact force\n"
       "Sliding 1 mm deep at 0.1 m/s, 1 N/mm, 1 kHz, without friction: error of the force of 1 N, "
-      "largest step between ticks\n(0.0033 N are due to the turning of the force on the sphere), "
-      "ticks without contact. *Pulled in*: share of probes 1 mm\noutside with a force towards the "
-      "surface. *Missed*: undetected crossings of the surface at 0.05 to 6 m/s and up to 60 "
-      "degrees\nfrom the normal. *Friction*: ratio of tangential to normal force while slipping; "
-      "coefficient 0.3.\n\n"
+      "largest step between ticks\n"
+      "(0.0033 N are due to the turning of the force on the sphere), ticks without contact. "
+      "*Pulled in*: percentage of probes 1 mm\n"
+      "outside with a force towards the surface. *Missed*: undetected crossings of the surface at "
+      "0.05 to 6 m/s and up to 60 degrees\n"
+      "from the normal. *Friction*: ratio of tangential to normal force while slipping; "
+      "coefficient 0.3.\n"
+      "\n"
       "| shape | mode | error, N rms | step, N | lost, of ticks | pulled in | missed, of | "
-      "friction "
-      "|\n|---|---|---|---|---|---|---|---|\n");
+      "friction |\n"
+      "|---|---|---|---|---|---|---|---|\n");
   for (const ShapeResult& shape : result.shapes) {
     for (const Mode mode : {kSurface, kPaper}) {
       const Scores& s = shape.modes[mode];
@@ -156,15 +165,17 @@ void add_forces(Page& page, const Result& result, const std::string& pictures) {
 void add_creases(Page& page, const Result& result) {
   page.add(
       "## Creases\n"
-      "Edges of exact bodies, turned any way. Grooves: the hand presses 4 mm beyond the bottom, "
-      "stays, slides along and aside.\nRidges: it slides along and across, 0.6 mm below the top. "
-      "1 N/mm, no friction; the worst of 1 kHz at 0.02 and 0.1 m/s,\n2 kHz at 0.1 m/s, 4 kHz at "
-      "0.1 and 0.5 m/s. *Lost*: ticks without contact while the hand is deeper than an encoder\n"
+      "Edges of exact bodies in arbitrary orientation. Grooves: the hand presses 4 mm beyond the "
+      "bottom, stays, slides along and aside.\n"
+      "Ridges: it slides along and across, 0.6 mm below the top. 1 N/mm, no friction; the worst of "
+      "1 kHz at 0.02 and 0.1 m/s,\n"
+      "2 kHz at 0.1 m/s, 4 kHz at 0.1 and 0.5 m/s. *Lost*: ticks without contact while the hand is "
+      "deeper than an encoder\n"
       "count (20 um). *Noticed at*: depth at which contact began. *Off*: distance of the proxy "
-      "from "
-      "the bottom line.\n*Step*: of the force between two ticks in contact, beyond the hand's own "
-      "movement, without the "
-      "fastest.\n\n"
+      "from the bottom line.\n"
+      "*Step*: of the force between two ticks in contact, beyond the hand's own movement, "
+      "excluding the runs at 0.5 m/s.\n"
+      "\n"
       "| crease | lost, of ticks | noticed at, mm | at 0.5 m/s | off, um | step, N |\n"
       "|---|---|---|---|---|---|\n");
   for (const CreaseResult& row : result.creases) {
@@ -178,11 +189,14 @@ void add_creases(Page& page, const Result& result) {
 void add_inside(Page& page, const Result& result) {
   page.add(
       "## Starts inside\n"
-      "Hands that are inside a body when the force begins: at random places, out on straight lines "
-      "in random directions, and\nback; 1, 2 and 4 kHz, 0.1 and 0.8 m/s. *Shown*: as inside, "
-      "before the hand moves. *Force*: the largest until the hand\nis 1 mm outside. *Felt*: the "
-      "body, when the hand returns.\n\n"
-      "| body | starts | shown | force, N | felt |\n|---|---|---|---|---|\n");
+      "Hands that are inside a body when the force begins: at random positions, out on straight "
+      "lines in random directions, and\n"
+      "back; 1, 2 and 4 kHz, 0.1 and 0.8 m/s. *Shown*: as inside, before the hand moves. *Force*: "
+      "the largest until the hand\n"
+      "is 1 mm outside. *Felt*: the body, when the hand returns.\n"
+      "\n"
+      "| body | starts | shown | force, N | felt |\n"
+      "|---|---|---|---|---|\n");
   for (const InsideResult& row : result.inside) {
     page.add("| {} | {} | {} | {} | {} |\n", row.name, row.starts, row.shown, figure(row.force_N),
              row.felt);
@@ -230,11 +244,15 @@ void add_scans(Page& page, const Result& result) {
   page.add(
       "## Real scans\n"
       "Built with the default options and compared with a double precision APSS over all decoded "
-      "points, projected until\nconvergence; probes within a spacing of the surface; lengths in "
-      "thousandths of the spacing h. *Smooth*: no two normals in\nthe support differ by more than "
-      "47 degrees. Elsewhere surface mode preserves edges that the reference rounds.\n\n"
-      "| scan | points | smooth | point, rms / largest | normal, deg rms | all: point, rms / "
-      "largest | normal, deg rms | answered |\n|---|---|---|---|---|---|---|---|\n");
+      "points, projected until\n"
+      "convergence; probes within a spacing of the surface; lengths in thousandths of the spacing "
+      "h. *Smooth*: no two normals in\n"
+      "the support differ by more than 47 degrees. Elsewhere surface mode preserves edges that the "
+      "reference rounds.\n"
+      "\n"
+      "| scan | points | smooth | point, rms / max | normal, deg rms | all: point, rms / max | "
+      "normal, deg rms | answered |\n"
+      "|---|---|---|---|---|---|---|---|\n");
   for (const ScanResult& scan : result.scans) {
     if (!scan.error.empty()) {
       page.add("| {} | not evaluated: {} | | | | | | |\n", scan.name, scan.error);

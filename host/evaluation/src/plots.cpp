@@ -124,7 +124,7 @@ std::string score_plot(const Result& result, const std::string& score, const std
 
 std::map<std::string, std::string> plots(const Result& result) {
   return {{"force.svg", force_plot(result.trace)},
-          {"depth.svg", score_plot(result, "depth_rms_m", "Error of the distance answered, rms",
+          {"depth.svg", score_plot(result, "depth_rms_m", "Error of the computed distance, rms",
                                    1e-7, 1e-3, "&#181;m", 1e6)},
           {"normal.svg", score_plot(result, "normal_rms_deg", "Error of the normal, rms", 1e-3, 1e2,
                                     "&#176;", 1.0)},

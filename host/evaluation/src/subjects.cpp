@@ -285,7 +285,7 @@ std::vector<Subject> make_subjects(std::uint32_t seed, int lines) {
   all.push_back(thin_plate());
   all.push_back(two_sided_sheet());
   add_cos("irregular", "cosine sheet, points moved by up to 0.4 h", uneven(0.4, 0.0, 1.0), lines);
-  add_cos("thinned", "the same, 60 % of the points taken out", uneven(0.4, 0.0, 0.4), lines);
+  add_cos("thinned", "the same, 60 % of the points removed", uneven(0.4, 0.0, 0.4), lines);
   add_cos("noisy", "cosine sheet, points off by 5 % of h rms", uneven(0.0, 0.05, 1.0), few);
   add_cos("cos_coarse", "cosine sheet, h = 2.5 mm", cos_sheet(CosSheet{}, 0.05, coarse), few);
   add_sphere("sphere_coarse", "sphere, r = 30 mm, h = 2.5 mm", coarse);

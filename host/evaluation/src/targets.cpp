@@ -48,8 +48,8 @@ void add_limits(const LoopResult& loop, Checker& check) {
     highest = std::max(highest, c.measured_N_m / c.formula_N_m);
     gain = c.hand_Ns_m > 0.0 ? std::min(gain, c.passive_N_m / c.measured_N_m) : gain;
   }
-  check.add({"loop.stiffness over formula, least", lowest, 0.9, 1.1, ""});
-  check.add({"loop.stiffness over formula, most", highest, 0.9, 1.1, ""});
+  check.add({"loop.stiffness over formula, min", lowest, 0.9, 1.1, ""});
+  check.add({"loop.stiffness over formula, max", highest, 0.9, 1.1, ""});
   check.add({"loop.stiffness gained by passivity", gain, 1.7, 1e3, ""});
 }
 

@@ -109,8 +109,8 @@ Json read_json(const std::string& file) {
   const std::uintmax_t bytes = std::filesystem::file_size(file, error);
   if (error) {
     throw UserError(
-        fmt::format("--device: '{}' is neither a device nor a readable file "
-                    "(devices: {}; or write one with --dump-device)",
+        fmt::format("--device: '{}' is neither a device nor a readable file (devices: {}; or write "
+                    "a file with --dump-device)",
                     file, listed(device_names())));
   }
   if (bytes > kMaxBytes) {

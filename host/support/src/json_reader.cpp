@@ -74,7 +74,7 @@ std::uint32_t JsonReader::whole(const char* key, std::uint32_t low, std::uint32_
   const Json& value = get(key);
   const double figure = number(key, value, low, high);
   if (figure != std::floor(figure)) {
-    refuse(key, fmt::format("{:.6g} is not a whole number", figure), "round it");
+    refuse(key, fmt::format("{:.6g} is not an integer", figure), "round it");
   }
   return static_cast<std::uint32_t>(figure);
 }
@@ -90,7 +90,7 @@ bool JsonReader::flag(const char* key) {
 std::string JsonReader::text(const char* key) {
   const Json& value = get(key);
   if (!value.is_string()) {
-    refuse(key, "is not a text", "write it in quotes");
+    refuse(key, "is not a string", "write it in quotes");
   }
   return value.get<std::string>();
 }
@@ -109,7 +109,7 @@ JsonReader JsonReader::object(const char* key) { return {file_, get(key), remedi
 std::vector<JsonReader> JsonReader::objects(const char* key, std::size_t low, std::size_t high) {
   const Json& array = get(key);
   if (!array.is_array() || array.size() < low || array.size() > high) {
-    refuse(key, "is not a list of so many",
+    refuse(key, "is not a list of the required length",
            low == high ? fmt::format("give {}", low) : fmt::format("give {} to {}", low, high));
   }
   std::vector<JsonReader> readers;

@@ -129,7 +129,7 @@ std::optional<std::string> BoardSession::command(const json& command) {
           throw no_such_setting(key);
         }
       }
-    } else if (name == "hand" || name == "inject" || name == "mend") {
+    } else if (name == "hand" || name == "inject" || name == "clear_injections") {
       return fmt::format(
           "'{}': not available with a board (use a simulation: tactree view without --port)", name);
     } else if (name != "arm" && name != "clear" && name != "connect") {
@@ -164,9 +164,8 @@ std::optional<std::string> BoardSession::post_stop() {
   stop_wanted_ = true;
   const std::unique_lock lock(connecting_, std::try_to_lock);
   if (!lock.owns_lock() || !board_->connected()) {
-    return "stop: no connection to the board; it ends the force by its own timeout (or use the "
-           "emergency "
-           "stop)";
+    return "stop: no connection to the board, which stops after its link timeout (or use the "
+           "emergency stop)";
   }
   board_->post_stop();
   return std::nullopt;

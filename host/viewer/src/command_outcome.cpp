@@ -68,7 +68,7 @@ std::optional<std::string> CommandOutcome::update(const core::Status& status, do
 }
 
 std::string CommandOutcome::remedy() const {
-  return injected_.empty() ? "End the cause (see Explanation), then Clear."
+  return injected_.empty() ? "Remove the cause (see Explanation), then use Clear."
                            : fmt::format("Injected: {}. Use Clear all injections, then Clear.",
                                          fmt::join(injected_, ", "));
 }
@@ -90,9 +90,9 @@ std::optional<std::string> CommandOutcome::not_armed(const core::Status& status)
                          remedy());
     case core::State::kArmed:
       return (status.limits & core::limit_bit(core::Limit::kWaiting)) != 0U
-                 ? "Armed, no force yet: the probe is inside the object (bring the hand back), or "
-                   "the amplifiers have no power."
-                 : fmt::format("Armed, no force yet: the dead-man control is not pressed. {}",
+                 ? "Armed, but not active yet: the probe is inside the object (bring the hand "
+                   "back), or the amplifiers have no power."
+                 : fmt::format("Armed, but not active yet: the dead-man control is not pressed. {}",
                                injected_.empty() ? "" : remedy());
     default:
       return fmt::format("Not armed: the controller is {}. {}", core::name_of(status.state),
@@ -110,8 +110,8 @@ std::optional<std::string> CommandOutcome::without_effect(const core::Status& st
       return false;
     }
     const bool is_off = status.state == core::State::kIdle;
-    report = fmt::format("{} is injected, without a visible effect yet: {}.{}", one.fault,
-                         one.shows, is_off ? " The controller is idle; Arm it first." : "");
+    report = fmt::format("{} is injected, but has no visible effect yet: {}.{}", one.fault,
+                         one.shows, is_off ? " The controller is idle; arm it first." : "");
     return true;
   });
   return report;

@@ -58,7 +58,7 @@ Eigen::Vector3d place_of(const std::string& name, const json& value) {
 std::vector<Eigen::Vector3d> path_of(const json& command) {
   const json via = command.value("via_m", json::array());
   if (!via.is_array() || via.size() > kMaxVia) {
-    throw SessionRefused(fmt::format("via_m: not an array of at most {} places", kMaxVia));
+    throw SessionRefused(fmt::format("via_m: not an array of at most {} positions", kMaxVia));
   }
   std::vector<Eigen::Vector3d> path;
   for (const json& place : via) {
@@ -284,9 +284,10 @@ std::optional<std::string> LiveSession::command(const json& command) {
       (void)speed_of(command);
     } else if (name == "inject") {
       (void)simulation::parse_injection(command.value("fault", "") + "@0");
-    } else if (name != "arm" && name != "stop" && name != "clear" && name != "mend") {
+    } else if (name != "arm" && name != "stop" && name != "clear" && name != "clear_injections") {
       return fmt::format(
-          "'{}': unknown command (a simulation has hand, arm, stop, clear, set, inject, mend)",
+          "'{}': unknown command (a simulation has hand, arm, stop, clear, set, inject, "
+          "clear_injections)",
           name);
     }
     enqueue(command);
@@ -389,7 +390,7 @@ void LiveSession::execute(const json& command) {
   } else if (name == "clear") {
     outcome_->cleared(now_s);
     for_each_run(&Run::clear);
-  } else if (name == "mend") {
+  } else if (name == "clear_injections") {
     outcome_->mended();
     for_each_run(&Run::mend);
   } else if (name == "inject") {

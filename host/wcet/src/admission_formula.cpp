@@ -63,7 +63,8 @@ void cover(core::TickCost& cost, const CostFormula& formula, double base, double
   const auto raise = [bodies](auto& to, double share) {
     const double each = std::ceil(share / bodies);
     if (each > std::numeric_limits<std::decay_t<decltype(to)>>::max()) {
-      throw BoundError("a price of a tick's costs does not fit its 16 bits (widen core::TickCost)");
+      throw BoundError(
+          "a coefficient of the tick's cost does not fit in 16 bits (widen core::TickCost)");
     }
     to = std::max(to, static_cast<std::decay_t<decltype(to)>>(std::max(each, 0.0)));
   };

@@ -55,11 +55,11 @@ Parameters call_arguments(const Analysis& analysis, const NameValues& values, st
   for (const auto& [name, number] : callee.arguments) {
     const auto value = value_of(name, number);
     if (!value) {
-      throw BoundError(fmt::format(
-          "{}: calls {} with an argument '{}' that is no constant (pass a constant, or add "
-          "`with: {} <= ...` beside the call)",
-          describe_place(analysis.image, address), demangled(callee.flow.function.name), name,
-          name));
+      throw BoundError(
+          fmt::format("{}: calls {} with an argument '{}' that is not a constant (pass a constant, "
+                      "or add `with: {} <= ...` beside the call)",
+                      describe_place(analysis.image, address), demangled(callee.flow.function.name),
+                      name, name));
     }
     arguments[name] = *value;
   }

@@ -25,8 +25,8 @@ class PathProgram {
   [[nodiscard]] WorstPath worst_path() const {
     if (!limits_.open().empty()) {
       throw BoundError(limits_.open()[0].where +
-                       ": a limit of the model in a function whose bounds name arguments (use the "
-                       "arguments only)");
+                       ": uses a limit of the model in a function whose bounds depend on arguments "
+                       "(use only the arguments)");
     }
     return read(solution());
   }

@@ -50,7 +50,7 @@ class Matcher {
     bound.source = outermost(number, heads);
     if (!bound.source->bound) {
       throw BoundError(
-          fmt::format("{}:{}: a loop without a bound (write `// bound: ...` beside it)",
+          fmt::format("{}:{}: a loop that has no bound (write `// bound: ...` beside it)",
                       bound.source->file, bound.source->line));
     }
     bound.shape = shape_of(number, *bound.source);
@@ -180,16 +180,16 @@ class Matcher {
         describe_place(image_, flow_.instructions[flow_.blocks[loop.header].first].address);
     if (found.empty()) {
       throw BoundError(where +
-                       ": a loop without a loop in the source (write it as one loop, with "
-                       "a bound beside its head)");
+                       ": a loop that matches no loop in the source (write it as one loop, with a "
+                       "bound beside its head)");
     }
     std::string names;
     for (const SourceLoop* candidate : found) {
       names += fmt::format(" {}:{}", candidate->file, candidate->line);
     }
     throw BoundError(
-        fmt::format("{}: a loop with several candidates in the source:{} (separate "
-                    "them, e.g. by gnu::noinline)",
+        fmt::format("{}: a loop that matches several loops in the source:{} (separate them, e.g. "
+                    "by gnu::noinline)",
                     where, names));
   }
 

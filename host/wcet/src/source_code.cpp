@@ -239,7 +239,7 @@ class Reader {
       const auto end_of_number = weight.data() + weight.size();
       if (std::from_chars(weight.data(), end_of_number, total.weight).ptr != end_of_number) {
         throw BoundError(
-            fmt::format("{}: '{}' is not a weight (write a whole number)", place(line), weight));
+            fmt::format("{}: '{}' is not a weight (write an integer)", place(line), weight));
       }
     }
     return total;

@@ -53,7 +53,7 @@ void arm(const ArmOptions& options, int& exit_code) {
     board.home();
   }
   board.arm(milliseconds(options.patience_s));
-  fmt::print("active; ends with this program\n");
+  fmt::print("active until this program ends\n");
   std::fflush(stdout);
   stay(board, options.seconds, exit_code);
   board.stop();
@@ -69,12 +69,12 @@ void add_arm_command(CLI::App& app, int& exit_code) {
   verb->add_option("--seconds", options->seconds, "stop after this time, s (default: on Ctrl-C)")
       ->check(is_positive);
   verb->add_option("--patience", options->patience_s,
-                   "longest wait for the dead-man control or the probe, s")
+                   "maximum wait for the dead-man control or the probe, s")
       ->check(CLI::Range(0.1, 3600.0))
       ->capture_default_str();
   add_link_timeout_option(*verb, options->link_timeout_ms);
-  verb->add_flag("--clear", options->clear, "first clear faults whose cause is gone");
-  verb->add_flag("--home", options->home, "home: the device is in its home pose now");
+  verb->add_flag("--clear", options->clear, "first clear faults whose cause is no longer present");
+  verb->add_flag("--home", options->home, "home the device, which must be in its home pose");
   verb->callback([options, &exit_code] { arm(*options, exit_code); });
 }
 

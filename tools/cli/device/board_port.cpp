@@ -16,7 +16,7 @@ void add_port_options(CLI::App& verb, BoardPort& options) {
 CLI::Option* add_link_timeout_option(CLI::App& verb, int& milliseconds) {
   return verb
       .add_option("--link-timeout", milliseconds,
-                  "force ends after this time without a heartbeat of this program, ms")
+                  "the board stops if it receives no heartbeat from this program for this time, ms")
       ->check(CLI::Range(5, 100))
       ->capture_default_str();
 }

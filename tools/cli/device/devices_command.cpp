@@ -112,8 +112,8 @@ void add_devices_command(CLI::App& app, int& exit_code) {
   CLI::App* verb =
       app.add_subcommand("devices", "Lists the connected boards; exit code 1: none answers");
   add_port_options(*verb, options->port);
-  CLI::Option* watch = verb->add_flag("--watch", options->watch,
-                                      "report boards on USB as they are plugged in and out");
+  CLI::Option* watch = verb->add_flag(
+      "--watch", options->watch, "report boards on USB as they are connected and disconnected");
   verb->add_option("--seconds", options->seconds, "time to watch, s (default: until Ctrl-C)")
       ->check(is_positive)
       ->needs(watch);

@@ -80,7 +80,7 @@ void write_model(client::Board& board, const std::string& file) {
     model.signature = signature->signature;
   }
   board.flash(model, show_progress);
-  fmt::print("{}: {} bytes are in the board and in use\n", file, blob.bytes().size());
+  fmt::print("{}: {} bytes written to the board and in use\n", file, blob.bytes().size());
 }
 
 void flash(const FlashOptions& options) {
@@ -107,10 +107,11 @@ void flash(const FlashOptions& options) {
 void add_flash_command(CLI::App& app, int&) {
   auto options = std::make_shared<FlashOptions>();
   CLI::App* verb = app.add_subcommand(
-      "flash", "Writes a model, with its signature if there is one, into a board and uses it");
+      "flash", "Writes a model, with its signature if there is one, to a board and activates it");
   CLI::Option* blob = verb->add_option("BLOB", options->blob, "the blob to write");
   CLI::Option* back =
-      verb->add_flag("--roll-back", options->roll_back, "use the previous model")->excludes(blob);
+      verb->add_flag("--roll-back", options->roll_back, "activate the previous model")
+          ->excludes(blob);
   CLI::Option* erase =
       verb->add_option("--erase", options->erase, "erase this slot; it must not be in use")
           ->check(CLI::Range(0, 1))

@@ -83,10 +83,10 @@ std::string to_text(const View& view) {
       "force    {:7.3f} N [{}{}] {:.3g} N\n"
       "probe    {:9.4f} {:9.4f} {:9.4f} m   speed {:.3f} m/s\n"
       "contact  {}\n"
-      "ticks    {:.0f} a second, load {:.1f} %{}{}, overruns {}, telemetry dropped {}\n"
+      "ticks    {:.0f} per second, load {:.1f} %{}{}, overruns {}, telemetry dropped {}\n"
       "faults   {}\n",
       core::name_of(static_cast<core::State>(t.state)),
-      limits.empty() ? "" : " (held back: " + limits + ")", force,
+      limits.empty() ? "" : " (limited by: " + limits + ")", force,
       std::string(static_cast<std::size_t>(filled), '#'),
       std::string(static_cast<std::size_t>(kBarWidth - filled), ' '), view.force_max_N,
       t.probe_m[0], t.probe_m[1], t.probe_m[2], length(t.velocity_m_s),

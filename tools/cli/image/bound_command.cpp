@@ -94,7 +94,7 @@ void print(const wcet::Bound& bound) {
     const wcet::FunctionOnPath& f = bound.functions[i];
     fmt::print("  {:8.0f} {:7.0f} x  {}\n", f.instructions, f.calls, f.name);
   }
-  fmt::print("loops              passes each time, in the worst tick\n");
+  fmt::print("loops              passes per entry, passes in the worst-case tick\n");
   for (const wcet::LoopOnPath& loop : bound.loops) {
     fmt::print("  {:6} {:8.0f}  {}:{}: {}\n", loop.passes, loop.total, loop.file, loop.line,
                loop.bound);
@@ -108,10 +108,11 @@ void print_timing(const BoundCommandOptions& options, const wcet::BoardTiming& t
              1e6 * static_cast<double>(bound.cycles) / timing.clock_hz, 1e6 / options.rate_hz,
              1e-6 * timing.clock_hz, timing.source);
   if (work_tier > core::work_tier_of(static_cast<float>(options.rate_hz))) {
-    fmt::print("work               reduced to that of rates above {:.0f} Hz, to end in time\n",
-               core::kWorkTierRates[work_tier]);
+    fmt::print(
+        "work               reduced to that of rates above {:.0f} Hz, to meet the deadline\n",
+        core::kWorkTierRates[work_tier]);
   }
-  fmt::print("highest rate       {:.0f} Hz, and every lower one\n", highest_rate_hz);
+  fmt::print("highest rate       {:.0f} Hz, and every lower rate\n", highest_rate_hz);
 }
 
 /// Throws UserError if the board cannot keep the rate.
@@ -119,9 +120,9 @@ void check_rate(const BoundCommandOptions& options, const wcet::BoardTiming& tim
                 const wcet::Bound& bound, double highest) {
   if (static_cast<double>(bound.cycles) * options.rate_hz > timing.clock_hz) {
     throw support::UserError(fmt::format(
-        "--rate: {} keeps up to {:.0f} Hz with this model, not {:.0f}: a tick takes up to {} "
-        "cycles "
-        "of {:.0f} (lower --rate, or build a model with fewer points in a ball)",
+        "--rate: {} runs this model at up to {:.0f} Hz, not at {:.0f} Hz: a tick takes up to {} "
+        "cycles, the period has {:.0f} (lower --rate, or build a model with fewer points in a "
+        "ball)",
         timing.board, highest, options.rate_hz, bound.cycles, timing.clock_hz / options.rate_hz));
   }
 }
@@ -184,10 +185,10 @@ void add_bound_command(CLI::App& app, int&) {
   auto options = std::make_shared<BoundCommandOptions>();
   CLI::App* verb = app.add_subcommand(
       "bound",
-      "Proves the largest number of instructions and cycles of a tick from a board's image");
+      "Proves the maximum number of instructions and cycles of a tick from a board's image");
   verb->add_option("IMAGE", options->image, "the image: <board>.elf")->required();
   CLI::Option* board = verb->add_option(
-      "--board", options->board, "name of the board: prints cycles and the highest rate, too");
+      "--board", options->board, "name of the board: also prints cycles and the highest rate");
   CLI::Option* embed =
       verb->add_flag(
               "--embed", options->embed,
@@ -195,20 +196,23 @@ void add_bound_command(CLI::App& app, int&) {
               "controller then refuses models that are too slow (run scripts/seal-image on it)")
           ->needs(board);
   verb->add_flag("--quiet", options->quiet, "with --embed: print nothing")->needs(embed);
-  CLI::Option* rate = verb->add_option("--rate", options->rate_hz,
-                                       "ticks per second, Hz; a tick does more work at a low rate. "
-                                       "With --board: exit code 1 if the board cannot keep it")
-                          ->default_str("1000")
-                          ->check(CLI::Range(1.0, 1e6));
+  CLI::Option* rate =
+      verb->add_option("--rate", options->rate_hz,
+                       "ticks per second, Hz; a tick does more work at a low rate. With --board: "
+                       "exit code 1 if the board cannot run at this rate")
+          ->default_str("1000")
+          ->check(CLI::Range(1.0, 1e6));
   verb->add_option(
       "--blob", options->blob,
       "the model on the board; default: the worst of all models that a controller accepts");
   verb->add_option("--mode", options->mode, "surface or paper")
       ->check(CLI::IsMember({"surface", "paper"}));
-  verb->add_option("--bodies", options->bodies, "models within reach of the probe at a time")
+  verb->add_option("--bodies", options->bodies,
+                   "number of models within reach of the probe at the same time")
       ->check(CLI::Range(1U, core::kMaxReachableBodies));
-  verb->add_option("--device", options->device,
-                   "name or file of the device; default: the kind that takes most cycles");
+  verb->add_option(
+      "--device", options->device,
+      "name or file of the device; default: the kind whose tick takes the most cycles");
   verb->add_option("--sources", options->sources,
                    "folder of the sources from which the image was built");
   verb->add_option("--json", options->json, "write the result to this file");

@@ -41,11 +41,11 @@ class Reader {
       fail(fmt::format("cannot be read: {}", error ? error.message() : std::strerror(errno)), "");
     }
     if (size > kLargestImage) {
-      fail(fmt::format("{} bytes: larger than any image", size), kRemedy);
+      fail(fmt::format("too large for an image: {} bytes", size), kRemedy);
     }
     bytes_.resize(static_cast<std::size_t>(size));
     if (!in.read(reinterpret_cast<char*>(bytes_.data()), static_cast<std::streamsize>(size))) {
-      fail("ended while it was read", "");
+      fail("truncated while it was being read", "");
     }
   }
 
@@ -65,7 +65,7 @@ class Reader {
   std::span<const std::byte> part(std::uint32_t offset, std::uint32_t size,
                                   const char* what) const {
     if (offset > bytes_.size() || size > bytes_.size() - offset) {
-      fail(fmt::format("cut: its {} ends at byte {}, the file has {}", what,
+      fail(fmt::format("truncated: its {} ends at byte {}, the file has {} bytes", what,
                        std::uint64_t{offset} + size, bytes_.size()),
            kRemedy);
     }
@@ -128,8 +128,8 @@ Identity find_identity(const Reader& reader, const std::vector<Segment>& segment
   }
   if (found != 1 || identity.board[sizeof identity.board - 1] != '\0') {
     reader.fail(found == 0
-                    ? "it has no identity with the name of its board: not an image of Tactree"
-                    : "it has several identities, or one with a malformed name of the board",
+                    ? "not an image of Tactree: it does not name its board"
+                    : "it has several identification records, or one with a malformed board name",
                 Reader::kRemedy);
   }
   return identity;
@@ -154,7 +154,7 @@ void check_checksum(const Reader& reader, const Identity& identity,
 void check_ranges(const Reader& reader, const FirmwareImage& image) {
   if (image.code_begin >= image.code_end || image.blob_begin >= image.blob_end ||
       image.blob_begin % 4U != 0U) {
-    reader.fail("its ranges of code and blob are impossible: damaged", Reader::kRemedy);
+    reader.fail("damaged: its address ranges of code and blob are invalid", Reader::kRemedy);
   }
   for (const Segment& segment : image.segments) {
     const std::uint64_t end = std::uint64_t{segment.address} + segment.bytes.size();

@@ -16,7 +16,8 @@ void add_keygen_command(CLI::App& app, int&) {
   verb->add_option("KEY", *file, "file for the secret key; it must not exist")->required();
   verb->callback([file] {
     const PublicKey key = generate_key(*file);
-    fmt::print("{}: secret; {}.pub: {}\n", *file, *file, to_hex(key));
+    fmt::print("wrote {}, the secret key, and {}.pub, the public key {}\n", *file, *file,
+               to_hex(key));
   });
 }
 

@@ -23,7 +23,7 @@ constexpr const char* kPublicMark = "tactree public key ";
 void prepare_sodium() {
   if (sodium_init() < 0) {
     throw support::UserError(
-        "libsodium does not start (check the source of random numbers, /dev/urandom)");
+        "libsodium cannot be initialised (check the source of random numbers, /dev/urandom)");
   }
 }
 

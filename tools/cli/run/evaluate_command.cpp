@@ -94,12 +94,14 @@ std::string html_report(const evaluation::Result& result) {
     const auto found = pictures.find(std::string(file.substr(file.rfind('/') + 1)));
     return found == pictures.end() ? std::string() : found->second;
   };
-  const std::string text =
-      evaluation::to_markdown(result, "pictures") +
-      "\n## Z-width\nLargest stable stiffness of a wall without a hand, by the "
-      "damping of the wall and the rate.\n\n"
-      "![Z-width](z_width.svg)\n" +
-      evaluation::holes_markdown(result);
+  const std::string text = evaluation::to_markdown(result, "pictures") +
+                           "\n"
+                           "## Z-width\n"
+                           "Largest stable stiffness of a wall without a hand, as a function of "
+                           "the wall's damping and the rate.\n"
+                           "\n"
+                           "![Z-width](z_width.svg)\n" +
+                           evaluation::holes_markdown(result);
   return viewer::html_page("Evaluation results", viewer::markdown_html(text, targets));
 }
 

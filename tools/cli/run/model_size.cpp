@@ -34,12 +34,13 @@ std::optional<std::string> oversize_warning(const std::string& file, const core:
   const std::string place = fmt::format("{}: the model is {}", file, builder::size_text(size));
   const double longest_m = simulation::largest_scale(device, size).value_or(0.0) * size.maxCoeff();
   if (!(longest_m > 0.0)) {
-    return fmt::format("{}: {} does not reach the places around its origin (correct the device)",
+    return fmt::format("{}; the origin of {} is not inside its workspace (correct the device)",
                        place, device_name);
   }
   return fmt::format(
-      "{}: larger than {} reaches; of that shape up to {} (build it with --fit device:{})", place,
-      device_name, builder::length_text(two_digits(longest_m), 2), device_name);
+      "{}, more than {} reaches; it fits with a longest edge of up to {} (build it with --fit "
+      "device:{})",
+      place, device_name, builder::length_text(two_digits(longest_m), 2), device_name);
 }
 
 std::optional<std::string> size_warning(const std::string& file, const core::BlobHeader& model) {

@@ -37,14 +37,15 @@ void require_keys(const json& object, const std::string& place,
 
 double number(const json& value, const std::string& place) {
   if (!value.is_number() || !std::isfinite(value.get<double>())) {
-    support::refuse(place, "is not a number", "give one, without quotes");
+    support::refuse(place, "is not a number", "write a number, without quotes");
   }
   return value.get<double>();
 }
 
 std::vector<double> numbers(const json& value, const std::string& place, std::size_t count) {
   if (!value.is_array() || value.size() != count) {
-    support::refuse(place, fmt::format("is not a list of {} numbers", count), "give as many");
+    support::refuse(place, fmt::format("is not a list of {} numbers", count),
+                    "write that many numbers");
   }
   std::vector<double> list;
   for (std::size_t i = 0; i < count; ++i) {
@@ -95,7 +96,7 @@ simulation::BodyPath path(const json& body, const std::string& place) {
         body.contains("angular_velocity_rad_s")) {
       support::refuse(
           place + ".keyframes", "is not a list, or combined with a pose or velocity",
-          "write [{\"t_s\": 0, \"pose\": [...]}, ...], without other keys of the motion");
+          "write [{\"t_s\": 0, \"pose\": [...]}, ...], without other keys for the motion");
     }
     std::vector<simulation::Keyframe> keyframes;
     for (std::size_t i = 0; i < list.size(); ++i) {
@@ -150,7 +151,7 @@ class SceneReader {
       return json::parse(in);
     } catch (const json::exception& error) {
       support::refuse(file_.string(), fmt::format("is not JSON: {}", error.what()),
-                      "correct it at that place");
+                      "correct the file there");
     }
   }
 

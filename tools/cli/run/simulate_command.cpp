@@ -47,9 +47,9 @@ void simulate(SimulateOptions& options, int& exit_code) {
     return;
   }
   if (!options.record.empty() && !options.board.empty() && options.board != "host") {
-    refuse(fmt::format("--record: the inputs of {} are assembled in the emulator, out of reach",
+    refuse(fmt::format("--record: not possible with {}, which assembles its inputs in the emulator",
                        options.board),
-           "leave --board out: the host computes the same ticks bit for bit");
+           "omit --board; the ticks on the host are bit-identical");
   }
   const SceneFile scene = read_scene(options.scene, options.blobs);
   options.blob = scene.names[0];
@@ -67,9 +67,9 @@ void simulate(SimulateOptions& options, int& exit_code) {
   exit_code = outcome.summary.faults.empty() ? kExitOk : kExitFailed;
   if (exit_code == kExitOk && outcome.summary.contact_ticks == 0 && !options.allow_no_contact) {
     refuse(fmt::format("{}: the probe never touched the model", options.blob),
-           oversize ? "make it smaller: see the warning"
-                    : "choose a --script or --path that meets its surface, or its --origin; "
-                      "--allow-no-contact accepts it");
+           oversize ? "make the model smaller, as the warning says"
+                    : "choose a --script, --path or --origin with which the hand meets its "
+                      "surface, or accept the run with --allow-no-contact");
   }
 }
 

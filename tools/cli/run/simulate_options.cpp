@@ -41,7 +41,7 @@ void add_controller_options(CLI::App& verb, SimulateOptions& options) {
   verb.add_flag("!--no-materials", c.use_materials,
                 "ignore the materials of the blob: use the options above everywhere");
   options.force_max = verb.add_option("--force-max", c.limits.force_max_N,
-                                      "largest force, N (default: the device's)")
+                                      "maximum force, N (default: the device's)")
                           ->check(CLI::Range(0.01, 1000.0));
 }
 
@@ -105,11 +105,11 @@ void add_device_options(CLI::App& verb, SimulateOptions& options) {
   verb.add_option("--device", options.device, names + ", or a JSON file that describes another")
       ->capture_default_str();
   verb.add_flag("--dump-device", options.dump_device,
-                "print the device as a JSON file, as a template, and exit");
+                "print the device as a JSON file that can serve as a template, and exit");
   verb.add_option("--origin", options.origin_m,
-                  "where the model's origin is in the device's frame (x to the user, y right, z "
-                  "up), m; default: the model's middle at the device's origin, "
-                  "with a device of one or two axes the middle of its top")
+                  "position of the model's origin in the device's frame (x to the user, y right, z "
+                  "up), m; default: the model's centre is at the device's origin; with a device of "
+                  "one or two axes, the centre of the model's top")
       ->expected(3)
       ->check(CLI::Range(-10.0, 10.0));
 }
@@ -121,8 +121,8 @@ void add_output_options(CLI::App& verb, SimulateOptions& options) {
                       "configuration on: for --replay");
   verb.add_option("--replay", options.replay,
                   "replay this recording, with its blobs as BLOB, on a new controller and compare "
-                  "each tick bit for bit; a difference gives exit code 1 and its first tick. "
-                  "Device, hand and controller options have no effect")
+                  "each tick bit for bit; if they differ, print the first such tick and exit with "
+                  "code 1. Device, hand and controller options have no effect")
       ->check(CLI::ExistingFile)
       ->excludes(record);
   verb.add_option("--trace", options.trace, "write every tick to this CSV file");
@@ -144,7 +144,7 @@ void add_session_options(CLI::App& verb, SimulateOptions& options) {
   verb.add_option("--firmware", options.firmware,
                   "folder with the images of the emulated boards (default: $TACTREE_FIRMWARE, the "
                   "installation, or the build tree)");
-  verb.add_option("--mode", options.mode, "how contact is rendered")
+  verb.add_option("--mode", options.mode, "method that renders contact")
       ->check(CLI::IsMember({"surface", "paper"}))
       ->capture_default_str();
   options.seconds_given = verb.add_option("--seconds", options.seconds, "length of the run, s")
@@ -153,24 +153,23 @@ void add_session_options(CLI::App& verb, SimulateOptions& options) {
 }
 
 void add_serve_options(CLI::App& verb, SimulateOptions& options) {
-  CLI::Option* serve = verb.add_flag(
-      "--serve", options.serve,
-      "run in real time and accept programs at a printed port; without --seconds until "
-      "interrupted");
+  CLI::Option* serve = verb.add_flag("--serve", options.serve,
+                                     "run in real time and accept connections at a port that is "
+                                     "printed; without --seconds, until interrupted");
   verb.add_option(
           "--require-key", options.key,
           "with --serve: public key (tactree keygen) that must verify the signature of a model")
       ->needs(serve)
       ->check(CLI::ExistingFile);
-  CLI::Option* lock_step = verb.add_flag("--lock-step", options.lock_step,
-                                         "with --serve: at a port step:PATH; time passes only "
-                                         "while a program is connected and runs, so that it may "
-                                         "be slow or held in a debugger");
+  CLI::Option* lock_step =
+      verb.add_flag("--lock-step", options.lock_step,
+                    "with --serve: use a port step:PATH; time passes only while a program is "
+                    "connected and runs, so that the program may be slow or stopped in a debugger");
   lock_step->needs(serve);
-  CLI::Option* usb = verb.add_flag(
-      "--usb", options.on_usb,
-      "with --serve: act as a USB device of this computer (needs root and the module vhci-hcd); "
-      "SIGUSR1 unplugs the cable, and plugs it in again");
+  CLI::Option* usb =
+      verb.add_flag("--usb", options.on_usb,
+                    "with --serve: act as a USB device of this computer (needs root and the module "
+                    "vhci-hcd); SIGUSR1 disconnects and reconnects the cable");
   usb->needs(serve)->excludes(lock_step);
   verb.add_option("--usb-gadget", options.usb_port,
                   "with --serve: act as a USB device at this computer's device port, one of "
@@ -180,7 +179,7 @@ void add_serve_options(CLI::App& verb, SimulateOptions& options) {
       ->needs(serve)
       ->excludes(usb)
       ->excludes(lock_step);
-  verb.add_option("--serial", options.serial, "with --serve: last digits of the serial number")
+  verb.add_option("--serial", options.serial, "with --serve: last part of the serial number")
       ->needs(serve);
 }
 
@@ -191,7 +190,7 @@ void add_hand_options(CLI::App& verb, SimulateOptions& options) {
   verb.add_option("--path", options.path, "CSV file with the hand's path: t_s,x,y,z (s, m)")
       ->excludes(script);
   verb.add_flag("--allow-no-contact", options.allow_no_contact,
-                "exit with 0 if the probe never touches the model");
+                "exit with code 0 even if the probe never touches the model");
 }
 }  // namespace
 

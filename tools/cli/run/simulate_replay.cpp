@@ -39,7 +39,8 @@ std::vector<std::byte> read_recording(const std::string& file) {
     bytes.resize(static_cast<std::size_t>(end));
     if (!in.read(reinterpret_cast<char*>(bytes.data()) + begin,
                  static_cast<std::streamsize>(bytes.size() - begin))) {
-      refuse(fmt::format("{}: ended while it was read", file), "wait until it is written");
+      refuse(fmt::format("{}: truncated while it was being read", file),
+             "wait until the recording is complete");
     }
   };
   read_to(std::min<std::uintmax_t>(size, simulation::kRecordingHeaderBytes));
@@ -59,10 +60,11 @@ std::vector<core::BlobView> find_models(const SimulateOptions& options,
       found = simulation::digest_of(file->bytes()) == wanted ? file : found;
     }
     if (found == nullptr) {
-      refuse(fmt::format("{}: model {} of {} bytes, SHA-512 {:02x}..., is none of the blobs given",
-                         options.replay, models.size(), wanted.bytes,
-                         fmt::join(wanted.hash.begin(), wanted.hash.begin() + 4, "")),
-             "give every blob of the recorded session as BLOB");
+      refuse(
+          fmt::format("{}: model {} of {} bytes, SHA-512 {:02x}..., is not one of the given blobs",
+                      options.replay, models.size(), wanted.bytes,
+                      fmt::join(wanted.hash.begin(), wanted.hash.begin() + 4, "")),
+          "give every blob of the recorded session as BLOB");
     }
     models.push_back(found->view());
   }
@@ -85,10 +87,10 @@ void print_result(const simulation::ReplayResult& result) {
              result.summary.ticks);
   fmt::print("trace checksum     {:08x}\n", result.summary.trace_crc32);
   if (result.same()) {
-    fmt::print("same               every tick as recorded\n");
+    fmt::print("result             every tick is identical to the recording\n");
   } else {
-    fmt::print("differs            at tick {}: {}\n", result.difference->tick,
-               result.difference->cause);
+    fmt::print("result             differs from the recording at tick {}: {}\n",
+               result.difference->tick, result.difference->cause);
   }
 }
 

@@ -88,13 +88,13 @@ nlohmann::json to_json(const SimulateOptions& options, const SceneFile& scene,
 
 void print_instructions(const emulation::InstructionCounts& counts,
                         const std::optional<TickBound>& bound) {
-  fmt::print("instructions       {:.0f} per tick on average, {} at most{}, {} before the first\n",
-             counts.mean(), counts.max,
-             bound ? fmt::format(" (bound {})", bound->instructions) : "", counts.start);
+  fmt::print(
+      "instructions       {:.0f} per tick on average, {} at most{}, {} before the first tick\n",
+      counts.mean(), counts.max, bound ? fmt::format(" (bound {})", bound->instructions) : "",
+      counts.start);
   if (bound && bound->work_is_reduced) {
     fmt::print(
-        "work               reduced, to end each tick in time: the surface may follow with a "
-        "delay\n");
+        "work               reduced, to meet each deadline: the surface may follow with a delay\n");
   }
   for (std::size_t i = 0; i < std::min(kReportedFunctions, counts.functions.size()); ++i) {
     const emulation::FunctionCount& f = counts.functions[i];
@@ -110,7 +110,7 @@ void print_bodies(const SceneFile& scene, const simulation::Summary& s) {
                scene.names[i], body.contact_ticks, body.force_max_N, body.torque_max_Nm);
   }
   if (s.crowded_ticks > 0) {
-    fmt::print("crowded            {} ticks: more than {} bodies within reach, some not felt\n",
+    fmt::print("crowded            {} ticks: more than {} bodies within reach, some not rendered\n",
                s.crowded_ticks, core::kMaxReachableBodies);
   }
 }
@@ -123,7 +123,7 @@ void print_harm(const SimulateOptions& options, const Harm& harm) {
     fmt::print("detected           no fault was latched\n");
   }
   fmt::print("largest force      {:.4f} N after it\n", harm.force_max_N);
-  fmt::print("moved the tip      up to {:.2f} mm from its path without faults\n",
+  fmt::print("tip displaced      by up to {:.2f} mm from its path without faults\n",
              1e3 * harm.moved_m);
 }
 
@@ -184,7 +184,7 @@ void print_summary(const SimulateOptions& options, const SceneFile& scene, const
              100.0 * static_cast<double>(s.contact_ticks) / static_cast<double>(s.ticks));
   fmt::print("largest force      {:.4f} N\n", s.force_max_N);
   fmt::print("largest step       {:.4f} N per tick\n", s.force_step_max_N);
-  fmt::print("deepest            {:.4f} mm\n", 1e3 * s.penetration_max_m);
+  fmt::print("deepest contact    {:.4f} mm\n", 1e3 * s.penetration_max_m);
   fmt::print("overruns           {}\n", s.overruns);
   fmt::print("trace checksum     {:08x}\n", s.trace_crc32);
   if (is_scene(options)) {

@@ -55,7 +55,7 @@ ChosenTarget board_target(const emulation::BoardDescription& board, const Simula
   if (scene.bodies.size() > 1) {
     refuse(fmt::format("--board {}: a board has one blob in its flash, the scene has {} bodies",
                        board.name, scene.bodies.size()),
-           "use --board host, or leave one body");
+           "use --board host, or a scene of one body");
   }
   auto target = boot_board(board, options, setup, *scene.files[0]);
   const emulation::EmulatedTarget* const emulated = target.get();
@@ -145,8 +145,7 @@ std::uint64_t ticks_of(const SimulateOptions& options, const simulation::Setup& 
   const double most = keep ? kMaxTracedTicks : kMaxTicks;
   if (!(count >= 1.0 && count <= most)) {
     refuse(fmt::format("--seconds: {:.6g} ticks are outside 1 .. {:.0f}", count, most),
-           keep ? "shorten it, or leave --trace, --plot and --record out"
-                : "choose another --seconds");
+           keep ? "reduce it, or omit --trace, --plot and --record" : "choose another --seconds");
   }
   return static_cast<std::uint64_t>(count);
 }
@@ -193,7 +192,7 @@ Outcome run(const SimulateOptions& options, const SceneFile& scene) {
   check_start(scene.names[refused], scene.files[refused]->view(), setup, sim.start_result(),
               options);
   if (!sim.arm()) {
-    refuse(fmt::format("the controller did not become active, it is in state {}",
+    refuse(fmt::format("the controller did not become active; its state is {}",
                        core::name_of(sim.state())),
            "begin the path outside the object");
   }

@@ -100,13 +100,13 @@ void serve_at(const SimulateOptions& options, const SceneFile& scene, client::Tr
 void serve(const SimulateOptions& options, const SceneFile& scene) {
   if ((options.on_usb || options.usb_port) && options.board != "host") {
     refuse(fmt::format("--board {}: an emulated board has no USB port", options.board),
-           "use --board host, or leave --usb out");
+           "use --board host, or omit --usb");
   }
   const emulation::BoardDescription* const board = emulation::find_board(options.board);
   if (board != nullptr && !board->serves) {
-    refuse(fmt::format("--board {}: its image is too small for an application to talk to",
+    refuse(fmt::format("--board {}: its image does not include the link to an application",
                        options.board),
-           "choose another board, or leave --serve out");
+           "choose another board, or omit --serve");
   }
   core::usb::Identity identity;
   identity.name = "Simulated controller";

@@ -24,8 +24,9 @@ void choose_device(const SimulateOptions& options, simulation::Setup& setup) {
   if (setup.controller.device.kind != core::DeviceKind::kCartesian) {
     for (const CLI::Option* option : options.cartesian_only) {
       if (option->count() != 0) {
-        refuse(fmt::format("{}: the device '{}' is not cartesian", option->get_name(), device.name),
-               "change its file: --dump-device writes one");
+        refuse(fmt::format("{}: applies only to a cartesian device, which '{}' is not",
+                           option->get_name(), device.name),
+               "change the values in a device file, which --dump-device writes");
       }
     }
     return;
@@ -72,7 +73,7 @@ core::Vec3 place_model(const SimulateOptions& options, const SceneFile& scene,
       fmt::format("{}: refused: a tick with it may take {:.0f} cycles on {}, {:.1f} us of {:.1f}",
                   file, cycles, board, 1e6 * cycles / costs.timing.clock_hz,
                   1e6 / static_cast<double>(controller.rate_hz)),
-      fmt::format("--rate: up to {:.0f}; or build it with --board {} --rate {:.0f}",
+      fmt::format("use --rate {:.0f} or less, or build the model with --board {} --rate {:.0f}",
                   std::floor(costs.highest_rate(view.header(), controller)), board,
                   controller.rate_hz));
 }
@@ -128,7 +129,7 @@ void check_start(const std::string& file, const core::BlobView& view,
            "lower --stiffness, or raise --rate or --damping");
   }
   if (start.image != hal::ImageStatus::kOk) {
-    refuse(fmt::format("the board: {}", describe(start)),
+    refuse(fmt::format("the board does not start: {}", describe(start)),
            start.image == hal::ImageStatus::kBadMemory ? "replace the board"
                                                        : "build the image again");
   }

@@ -60,7 +60,7 @@ std::vector<viewer::NamedDevice> devices(const std::string& chosen) {
 
 std::unique_ptr<viewer::Source> board_source(const ViewOptions& options, const SceneFile& scene) {
   if (scene.files.size() != 1) {
-    throw support::UserError("--port: a board has one model (give one BLOB)");
+    throw support::UserError("--port: a board has only one model (give one BLOB)");
   }
   const support::BlobFile& shown = *scene.files[0];
   viewer::BoardSettings settings;
@@ -131,7 +131,7 @@ void view(ViewOptions& options) {
 }
 
 void add_server_options(CLI::App& verb, ViewOptions& options) {
-  verb.add_option("--page-port", options.server.port, "TCP port of the page; 0: any free one")
+  verb.add_option("--page-port", options.server.port, "TCP port of the page; 0: any free port")
       ->capture_default_str();
   verb.add_option(
           "--address", options.server.address,
@@ -147,8 +147,10 @@ void add_board_options(CLI::App& verb, ViewOptions& options) {
                       fmt::format("show the board at this port: {}", kPortForms))
           ->check([](const std::string& name) {
             const bool is_number = name.find_first_not_of("0123456789") == std::string::npos;
-            return is_number ? "it is a board's port (the page's is --page-port " + name + ")"
-                             : std::string();
+            return is_number
+                       ? "this is the port of a board (for the port of the page, use --page-port " +
+                             name + ")"
+                       : std::string();
           });
   for (const char* other : {"--scene", "--trace", "--mode", "--rate", "--stiffness", "--damping"}) {
     port->excludes(other);
@@ -163,10 +165,9 @@ void add_board_options(CLI::App& verb, ViewOptions& options) {
 }
 
 void add_session_options(CLI::App& verb, ViewOptions& options) {
-  verb.add_option(
-          "--device", options.settings.device,
-          "name of a device, or a JSON file that describes one: see simulate. With --port: the "
-          "device to draw")
+  verb.add_option("--device", options.settings.device,
+                  "name of a device, or a JSON file that describes it: see simulate. With --port: "
+                  "the device to draw")
       ->capture_default_str();
   verb.add_option("--mode", options.mode, "surface, paper, or both side by side")
       ->check(CLI::IsMember({"surface", "paper", "both"}))

@@ -111,7 +111,7 @@ core::BlobView view_of(const BuildResult& result) {
   core::BlobView view;
   if (core::open_blob(result.blob.bytes, view) != core::BlobStatus::kOk) {
     throw support::UserError(
-        "internal error: the written blob is not valid (report it with the input file)");
+        "internal error: the written blob is not valid (report this with the input file)");
   }
   return view;
 }
@@ -143,9 +143,9 @@ BuildResult build_for_board(std::span<const fs::path> inputs, const builder::Bui
   if (!found) {
     check.refuse(first);
   }
-  found->report.notes.push_back(
-      fmt::format("{} holds {} points of this scan, but renders only a coarser model at {:.6g} Hz",
-                  request.board, first.report.output_points, request.rate_hz));
+  found->report.notes.push_back(fmt::format(
+      "{} has room for {} points of this scan, but at {:.6g} Hz it renders only a coarser model",
+      request.board, first.report.output_points, request.rate_hz));
   return std::move(*found);
 }
 

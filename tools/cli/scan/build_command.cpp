@@ -114,7 +114,7 @@ Eigen::Vector3d to_position(const std::string& option, const std::string& text) 
   for (int axis = 0; axis < 3; ++axis) {
     const std::size_t end = axis < 2 ? text.find(',', begin) : text.size();
     if (end == std::string::npos) {
-      misuse(option, "'" + text + "' is not X,Y,Z");
+      misuse(option, "'" + text + "' is not of the form X,Y,Z");
     }
     position[axis] = to_number(option, text.substr(begin, end - begin));
     begin = end + 1;
@@ -128,7 +128,7 @@ void complete(BuildArguments& arguments) {
   }
   BuildOptions& build = arguments.build;
   if (std::count(arguments.inputs.begin(), arguments.inputs.end(), support::kStandardInput) > 1) {
-    misuse("INPUT", "'-' (standard input) can be read once");
+    misuse("INPUT", "'-' (standard input) can be given only once");
   }
   require_positive("--scale", build.scale);
   if (!arguments.columns.empty()) {
@@ -221,7 +221,7 @@ void build(BuildArguments& arguments) {
 
 void add_frame_options(CLI::App& verb, BuildArguments& arguments) {
   BuildOptions& build = arguments.build;
-  constexpr const char* kGroup = "Size and place";
+  constexpr const char* kGroup = "Size and position";
   verb.add_option("--unit", build.unit_m,
                   "unit of the coordinates: m, cm, mm, um, in, ft (default: as the file states, "
                   "else m)")
@@ -230,12 +230,12 @@ void add_frame_options(CLI::App& verb, BuildArguments& arguments) {
   CLI::Option* scale =
       verb.add_option("--scale", build.scale, "additional scale factor")->group(kGroup);
   verb.add_option("--fit", arguments.fit,
-                  "scale the longest edge to this many metres, or to what a device reaches: "
-                  "device:NAME or device:FILE, device: premium; and centre")
+                  "scale the longest edge to this length in metres, or to the workspace of a "
+                  "device: device:NAME or device:FILE, device: premium; and centre")
       ->excludes(scale)
       ->group(kGroup);
   verb.add_flag("--center,--centre", build.centre,
-                "move the origin to the middle of the bounding box")
+                "move the origin to the centre of the bounding box")
       ->group(kGroup);
   verb.add_option("--axis", build.up, "axis of the file that points up; it becomes z")
       ->transform(CLI::CheckedTransformer(kAxes).description("x|y|z"))
@@ -252,7 +252,7 @@ void add_quality_options(CLI::App& verb, BuildArguments& arguments) {
   BuildOptions& build = arguments.build;
   constexpr const char* kGroup = "Density and surface";
   verb.add_option("--spacing", arguments.spacing,
-                  "metres between points (default: as in a cloud; size of a mesh / 200; 0: "
+                  "metres between points (default: that of a cloud; size of a mesh / 200; 0: as "
                   "--no-resample)")
       ->group(kGroup);
   verb.add_option("--flash-budget", arguments.budget,
@@ -262,13 +262,12 @@ void add_quality_options(CLI::App& verb, BuildArguments& arguments) {
       ->group(kGroup);
   CLI::Option* board =
       verb.add_option("--board", arguments.board.board,
-                      "build for this board: the finest model that fits its flash, unless "
-                      "--spacing or --flash-budget is given")
+                      "build for this board: the model with the finest spacing that fits its "
+                      "flash, unless --spacing or --flash-budget is given")
           ->check(CLI::IsMember(boards_with_timing()));
-  verb.add_option(
-          "--rate", arguments.board.rate_hz,
-          "the finest model that the board also renders at this rate, Hz; with a --spacing or "
-          "--flash-budget that is too fine for it: refuse")
+  verb.add_option("--rate", arguments.board.rate_hz,
+                  "build the model with the finest spacing that the board also renders at this "
+                  "rate, Hz; refuse a --spacing or --flash-budget that is too fine for the rate")
       ->needs(board)
       ->group(kGroup);
   verb.add_option("--device", arguments.board.device,
@@ -288,16 +287,16 @@ void add_quality_options(CLI::App& verb, BuildArguments& arguments) {
 
 void add_surface_options(CLI::App& verb, BuildArguments& arguments) {
   BuildOptions& build = arguments.build;
-  constexpr const char* kGroup = "Points and their outside";
+  constexpr const char* kGroup = "Points and orientation";
   verb.add_option("--outliers", arguments.outliers,
                   "drop points that are off the surface by more than this many times the noise of "
                   "the scan; off: keep all (default: 3)")
       ->group(kGroup);
-  CLI::Option* largest =
-      verb.add_flag("--keep-largest", build.keep_largest, "keep the largest connected piece only")
-          ->group(kGroup);
+  CLI::Option* largest = verb.add_flag("--keep-largest", build.keep_largest,
+                                       "keep only the largest connected component")
+                             ->group(kGroup);
   verb.add_option("--min-piece", build.min_piece,
-                  "drop connected pieces of fewer points than this; of a mesh: corners")
+                  "drop connected components with fewer points than this; of a mesh: vertices")
       ->excludes(largest)
       ->group(kGroup);
   verb.add_option("--orient", build.orient,
@@ -315,8 +314,7 @@ void add_surface_options(CLI::App& verb, BuildArguments& arguments) {
                   "the scan is a sheet: build a body of this thickness in metres, which can be "
                   "touched from both sides")
       ->group(kGroup);
-  verb.add_flag("--flip-normals", build.flip_normals, "reverse all normals in the end")
-      ->group(kGroup);
+  verb.add_flag("--flip-normals", build.flip_normals, "finally reverse all normals")->group(kGroup);
 }
 
 }  // namespace
@@ -331,7 +329,7 @@ void add_build_command(CLI::App& app, int&) {
           "content. -: standard input, copied to a file in TMPDIR first")
       ->required();
   verb->add_option("--format", arguments->build.format,
-                   "format of the inputs, where their content does not tell it")
+                   "format of the inputs, if it cannot be recognised by their content")
       ->check(CLI::IsMember(builder::scan_formats(), CLI::ignore_case));
   verb->add_option("-o,--output", arguments->output, "blob to write")->required();
   verb->add_option("--columns", arguments->columns,

@@ -102,8 +102,7 @@ void print_gaps(const BuildReport& report) {
     if (printed++ == kOpeningsPrinted) {
       break;
     }
-    fmt::print("          {} of {} around {}\n",
-               o.kind == Opening::Kind::kHole ? "hole" : "boundary",
+    fmt::print("          {} of {} at {}\n", o.kind == Opening::Kind::kHole ? "hole" : "boundary",
                builder::length_text(o.diameter_m), builder::place_text(o.centre));
   }
 }
@@ -112,7 +111,7 @@ void print_orientation(const builder::OrientationReport& orientation) {
   if (!orientation.checked || orientation.pieces.empty()) {
     return;
   }
-  fmt::print("outside   confidence {:.0f} %; {} piece{}, the largest {}\n",
+  fmt::print("outside   confidence {:.0f} %; {} component{}, the largest {}\n",
              std::floor(100.0 * orientation.confidence), orientation.pieces.size(),
              orientation.pieces.size() == 1 ? "" : "s",
              builder::describe(orientation.pieces.front().basis));
@@ -123,7 +122,7 @@ void print_interior(const BuildReport& report, const BuildOptions& build) {
     return;
   }
   if (report.backed_share == 0.0) {
-    fmt::print("inside    none: a sheet, which a hand feels from both sides\n");
+    fmt::print("inside    none: the model is a sheet, which a hand feels from both sides\n");
     return;
   }
   fmt::print("inside    behind {:.0f} % of the surface", 100.0 * report.backed_share);

@@ -22,14 +22,15 @@ void fit_to_device(const std::string& name, builder::BuildOptions& build) {
   const core::DeviceModel device = support::load_device(name).preset.model;
   if (core::axes_of(device.kind) != core::kAxes) {
     support::refuse("--fit device:" + name,
-                    "a device of one or two axes touches a section of a model of any size",
+                    "not possible for a device of one or two axes, which touches a section of a "
+                    "model of any size",
                     "give a length in metres");
   }
   build.fit_edge_m = [device, name](const Eigen::Vector3d& size) {
     const double scale = simulation::largest_scale(device, size).value_or(0.0);
     if (!(scale > 0.0)) {
-      support::refuse("--fit device:" + name, "it does not reach the places around its origin",
-                      "correct the device");
+      support::refuse("--fit device:" + name,
+                      "the origin of the device is not inside its workspace", "correct the device");
     }
     return kShare * scale * size.maxCoeff();
   };

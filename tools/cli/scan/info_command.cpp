@@ -243,9 +243,10 @@ void write_points(const BlobView& view, const std::string& file) {
 void print_costs(const core::BlobHeader& header, const std::string& name,
                  const std::string& device) {
   const BoardCosts board = costs_of_board(name);
-  fmt::print("\non {} ({}): {}{}\n", name, board.image,
-             board.embedded ? "costs stored in the image" : "analysed now, no costs in the image",
-             board.timing.is_estimate ? "; an estimate" : "");
+  fmt::print(
+      "\non {} ({}): {}{}\n", name, board.image,
+      board.embedded ? "costs stored in the image" : "analysed now, because the image has no costs",
+      board.timing.is_estimate ? "; an estimate" : "");
   core::Configuration configuration;
   configuration.device = slowest_or(device);
   for (const core::RenderMode mode : {core::RenderMode::kSurface, core::RenderMode::kPaper}) {
@@ -255,7 +256,7 @@ void print_costs(const core::BlobHeader& header, const std::string& name,
     core::TickLoad load;
     load.add(header, configuration);
     const core::TickCost& cost = core::worst_row(board.costs, load);
-    fmt::print("{:<8}  up to {:.0f} Hz: at most {:.0f} cycles a tick at {:.0f} MHz\n",
+    fmt::print("{:<8}  up to {:.0f} Hz: at most {:.0f} cycles per tick at {:.0f} MHz\n",
                mode == core::RenderMode::kPaper ? "paper" : "surface", highest,
                board.cycles(header, configuration), 1e-6 * board.timing.clock_hz);
     fmt::print("          = {}",
@@ -337,10 +338,9 @@ void add_info_command(CLI::App& app, int&) {
   verb->add_option("--board", options->board,
                    "also print the cost of a tick with this model on the board")
       ->check(CLI::IsMember(boards_with_timing()));
-  verb->add_option(
-      "--device", options->device,
-      "device, by name or file: also say whether it reaches the model; and for --board "
-      "(default: the kind with the longest tick)");
+  verb->add_option("--device", options->device,
+                   "name or file of a device: also report whether it reaches the model; used by "
+                   "--board, too (default: the kind with the longest tick)");
   verb->add_option("--json", options->json, "write the values as JSON to this file");
   verb->add_option("--points", options->points,
                    "write all points to this CSV file: index,x,y,z,nx,ny,nz (m)");

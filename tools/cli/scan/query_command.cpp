@@ -178,7 +178,7 @@ Totals answer_all(Query& query, const std::vector<std::array<double, 3>>& rows) 
 
 void query(const QueryOptions& options) {
   if (options.blob == support::kStandardInput && options.points == support::kStandardInput) {
-    throw CLI::ValidationError("--points", "'-' (standard input) is the blob");
+    throw CLI::ValidationError("--points", "'-' (standard input) is already used for the blob");
   }
   support::check_outputs({options.json}, {options.blob, options.points});
   const support::BlobFile blob = support::BlobFile::named(options.blob);
@@ -213,8 +213,8 @@ void add_query_command(CLI::App& app, int&) {
   CLI::App* verb = app.add_subcommand(
       "query",
       "Prints contact, nearest point and surface for positions as CSV:\n"
-      "x,y,z,contact_paper,contact,nearest,distance_m,surface_{x,y,z},normal_{x,y,z},"
-      "signed_distance_m,inside (1: in the material; empty: the blob does not tell)");
+      "x,y,z,contact_paper,contact,nearest,distance_m,surface_{x,y,z},normal_{x,y,z},signed_"
+      "distance_m,inside (1: in the material; empty: the blob does not state it)");
   verb->add_option("BLOB", options->blob, "blob to query; -: standard input")->required();
   verb->add_option("--points", options->points,
                    "CSV file with rows x,y,z (m, model frame); -: standard input")

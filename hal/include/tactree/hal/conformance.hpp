@@ -72,10 +72,10 @@ void check_ticker(B& board, const ConformanceSetup& setup, ConformanceReport& re
   }
   const std::uint32_t expected = kTicks * setup.period_us;
   const std::uint32_t elapsed = last - begin;
-  report.check(forward, "the clock went back");
+  report.check(forward, "the clock ran backwards");
   report.check(overruns == 0U, "an empty loop missed a deadline");
   report.check(elapsed >= expected - expected / 50U && elapsed <= expected + expected / 50U,
-               "100 ticks took more or less than 100 periods by the clock, 2 % allowed");
+               "the time of 100 ticks differs from 100 periods by more than 2 %");
 }
 
 template <Board B>
@@ -95,7 +95,7 @@ void check_encoders(B& board, const ConformanceSetup& setup, ConformanceReport& 
     }
   }
   report.check(valid, "an encoder at rest is not valid");
-  report.check(still, "an encoder at rest counts");
+  report.check(still, "an encoder at rest changes its count");
 }
 
 template <Board B>

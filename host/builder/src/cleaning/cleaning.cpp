@@ -374,8 +374,8 @@ class Cleaner {
         points_on_surfaces(input_.points, input_.points_spacing, options_.outlier_sigma);
     if (found.undecided) {
       report_.warnings.push_back(
-          "more than an eighth of the points lie on no surface: all are kept (check the scan; the "
-          "model is a surface through its points)");
+          "more than an eighth of the points lie on no surface, so all points are kept (check the "
+          "scan; the model is a surface through its points)");
     }
     drop("stray", input_.points.size() - found.kept.size());
     if (found.kept.size() < input_.points.size()) {
@@ -407,7 +407,7 @@ class Cleaner {
     for (const auto& [cause, count] : report_.dropped) {
       causes += fmt::format("{}{} {}", causes.empty() ? "" : ", ", count, cause);
     }
-    return fmt::format("no usable point is left of {}; dropped: {} (check {})",
+    return fmt::format("none of the {} points is usable; dropped: {} (check {})",
                        report_.input_points, causes.empty() ? "none" : causes,
                        report_.dropped.contains("out_of_range")  ? "--unit, --scale and the file"
                        : report_.dropped.contains("small_piece") ? "--min-piece"
@@ -465,10 +465,10 @@ class Cleaner {
       frame.fit = edge_m / extent;
     } else if (far && !options_.centre) {
       const Eigen::Vector3d origin = frame.source_origin();
-      report_.notes.push_back(fmt::format(
-          "the scan lies far from its origin: the origin of the model is moved to its middle, "
-          "({:.12g}, {:.12g}, {:.12g}) in the source",
-          origin.x(), origin.y(), origin.z()));
+      report_.notes.push_back(
+          fmt::format("the scan lies far from its origin; the origin of the model is moved to its "
+                      "centre, ({:.12g}, {:.12g}, {:.12g}) in the source",
+                      origin.x(), origin.y(), origin.z()));
     }
     require_size(frame.fit * extent);
     move_all();
@@ -479,8 +479,8 @@ class Cleaner {
   static void require_size(double extent_m) {
     if (extent_m != 0.0 && !(extent_m >= kSmallestModel_m && extent_m <= kLargestModel_m)) {
       throw std::runtime_error(
-          fmt::format("the model would be {} wide; a model is 1 um to 1000 km wide (check "
-                      "--unit, --scale and --fit)",
+          fmt::format("the model would be {} wide; the limits are 1 um and 1000 km (check --unit, "
+                      "--scale and --fit)",
                       length_text(extent_m)));
     }
   }

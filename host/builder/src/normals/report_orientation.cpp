@@ -36,9 +36,9 @@ void note_scanners(const OrientationReport& orientation, double all, BuildReport
       count > 1 ? fmt::format(" and {} more position{}", count - 1, count > 2 ? "s" : "") : "");
   const double share = points_by(orientation, OrientationBasis::kViewpoint) / all;
   if (share < kNoteworthy) {
-    report.notes.push_back(
-        fmt::format("the position of the scanner that the file states, {}, decides no side: {}",
-                    place, "no piece of the surface clearly faces it"));
+    report.notes.push_back(fmt::format(
+        "the position of the scanner that the file states, {}, determines no orientation: {}",
+        place, "no component of the surface clearly faces it"));
     return;
   }
   report.notes.push_back(
@@ -74,7 +74,7 @@ void warn_of_doubt(const OrientationReport& orientation, double all, BuildReport
   const bool sheet =
       worst->basis == OrientationBasis::kUp || worst->basis == OrientationBasis::kConvex;
   report.warnings.push_back(
-      fmt::format("the outside of {:.0f} % of the surface is doubtful: {} (look at --preview; {})",
+      fmt::format("the orientation of {:.0f} % of the surface is ambiguous: {} (see --preview; {})",
                   100.0 * share,
                   sheet ? fmt::format("it is {}", describe(worst->basis))
                         : "it is too thin or too noisy for its spacing",
@@ -100,26 +100,24 @@ void report_orientation(const CloudOrientation& orientation, std::uint64_t rever
   note_scanners(to, all, report);
   warn_of_doubt(to, all, report);
   if (reversed_normals > 0) {
-    report.warnings.push_back(
-        fmt::format("{} normals of the file pointed inside and were reversed (--orient given keeps "
-                    "them)",
-                    reversed_normals));
+    report.warnings.push_back(fmt::format(
+        "{} normals of the file pointed inwards and were reversed (--orient given keeps them)",
+        reversed_normals));
   }
 }
 
 void report_windings(const WindingRepair& repair, std::uint64_t faces, BuildReport& report) {
   report.orientation.reversed_faces = repair.reversed_faces;
   if (repair.reversed_faces > 0) {
-    report.warnings.push_back(
-        fmt::format("{} of {} faces were wound inside out and were reversed (--orient given keeps "
-                    "them)",
-                    repair.reversed_faces, faces));
+    report.warnings.push_back(fmt::format(
+        "{} of {} faces had inward windings and were reversed (--orient given keeps them)",
+        repair.reversed_faces, faces));
   }
   if (repair.undecided_share >= kNoteworthy) {
-    report.warnings.push_back(fmt::format(
-        "the outside of {:.0f} % of the faces is doubtful: they are open sheets with the side of "
-        "their windings (look at --preview; {})",
-        100.0 * repair.undecided_share, kSheetRemedy));
+    report.warnings.push_back(
+        fmt::format("the orientation of {:.0f} % of the faces is ambiguous: they form open sheets "
+                    "and keep the orientation of their windings (see --preview; {})",
+                    100.0 * repair.undecided_share, kSheetRemedy));
   }
 }
 

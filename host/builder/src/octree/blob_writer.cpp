@@ -358,7 +358,8 @@ void check_model(const Model& model) {
         "write_blob: the number of material indices differs from that of positions");
   }
   if (!model.doubtful.empty() && model.doubtful.size() != model.positions.size()) {
-    throw std::invalid_argument("write_blob: not one doubt per position");
+    throw std::invalid_argument(
+        "write_blob: the number of orientation flags differs from that of positions");
   }
   if (!(model.spacing_m > 0.0) || !(model.reach_m >= 0.0)) {
     throw std::invalid_argument("write_blob: the spacing must be positive");

@@ -78,7 +78,8 @@ class IndexParser {
       const Eigen::Quaterniond rotation(content(child_of(turn, "w")), content(child_of(turn, "x")),
                                         content(child_of(turn, "y")), content(child_of(turn, "z")));
       const double norm = rotation.norm();
-      if (!(norm > 0.0) || !std::isfinite(norm)) fail("the rotation of its pose is no quaternion");
+      if (!(norm > 0.0) || !std::isfinite(norm))
+        fail("the rotation of its pose is not a quaternion");
       pose.linear() = rotation.normalized().toRotationMatrix();
     }
     const pugi::xml_node shift = child_of(element, "translation");
@@ -172,8 +173,8 @@ class IndexParser {
 
   [[noreturn]] void fail_attribute(pugi::xml_node element, const char* attribute,
                                    std::string_view text) const {
-    fail(fmt::format("the {} of \"{}\" is \"{}\"", attribute, printable(local_name(element)),
-                     printable(text)));
+    fail(fmt::format("the {} of \"{}\" has the invalid value \"{}\"", attribute,
+                     printable(local_name(element)), printable(text)));
   }
   [[noreturn]] void fail(const std::string& cause) const {
     throw ReadError(file_, place_, cause, kExportE57Again);

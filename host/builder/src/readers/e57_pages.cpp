@@ -19,11 +19,11 @@ using Crc32c = boost::crc_optimal<32, 0x1EDC6F41, 0xFFFFFFFF, 0xFFFFFFFF, true, 
 std::uint64_t E57Pages::to_logical(std::uint64_t physical, const std::string& what) const {
   const std::uint64_t in_page = physical % kPageBytes;
   if (in_page >= kDataBytes || physical / kPageBytes >= file_.size() / kPageBytes) {
-    throw ReadError(file_.name(), "",
-                    fmt::format("{} are said to begin at byte {}, where the file of {} bytes has "
-                                "no data",
-                                what, physical, file_.size()),
-                    kCopyAgain);
+    throw ReadError(
+        file_.name(), "",
+        fmt::format("{} are declared to begin at byte {}, where the file of {} bytes has no data",
+                    what, physical, file_.size()),
+        kCopyAgain);
   }
   return physical / kPageBytes * kDataBytes + in_page;
 }

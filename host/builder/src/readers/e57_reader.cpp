@@ -123,7 +123,7 @@ class E57Reader {
                   "export the scan again, or as PLY");
     }
     if (word(16) > file_.size()) {
-      fail_header(fmt::format("the file ends too early: {} bytes are declared, {} are there",
+      fail_header(fmt::format("the file ends too early: {} bytes are declared, {} are present",
                               word(16), file_.size()),
                   kCopyAgain);
     }
@@ -158,8 +158,8 @@ class E57Reader {
     if (has_colours_) builder_.use_colours(ColourRange::kByte);
     const auto warn = [&](std::size_t count, const char* what) {
       if (count > 0 && count < scans.size()) {
-        builder_.warn(fmt::format("Only {} of {} scans have {}; they were left out.", count,
-                                  scans.size(), what));
+        builder_.warn(fmt::format("Only {} of {} scans have {}, which were therefore ignored.",
+                                  count, scans.size(), what));
       }
     };
     warn(normals, "normals");

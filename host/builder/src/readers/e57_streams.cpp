@@ -50,7 +50,8 @@ void E57Streams::read_header() {
   const std::uint64_t first = load_bits<std::uint64_t, false>(header.data() + 16);
   if (header[0] != kPointSection) fail("its points do not begin with the header of a section");
   if (length < kSectionHeaderBytes || length > pages_.size() - begin) {
-    fail(fmt::format("its points take {} bytes, only {} are there", length, pages_.size() - begin));
+    fail(fmt::format("its points take {} bytes, only {} are present", length,
+                     pages_.size() - begin));
   }
   end_ = begin + length;
   data_ = pages_.to_logical(first, "the points of " + scan_.place);
@@ -84,7 +85,7 @@ void E57Streams::read(const std::function<void(const std::vector<double>& values
     discard_read();
     left -= points;
     if (left > 0 && !read_packet()) {
-      fail(fmt::format("{} points are declared, only {} are there", scan_.count,
+      fail(fmt::format("{} points are declared, only {} are present", scan_.count,
                        scan_.count - left));
     }
   }
@@ -98,7 +99,7 @@ bool E57Streams::read_packet() {
   pages_.read(header.data(), header.size());
   const std::uint64_t bytes = load_bits<std::uint16_t, false>(header.data() + 2) + std::uint64_t{1};
   if (bytes < 4 || bytes % 4 != 0 || bytes > end_ - data_) {
-    fail(fmt::format("a packet of its points has {} bytes, at most {} are there", bytes,
+    fail(fmt::format("a packet of its points has {} bytes, at most {} are present", bytes,
                      end_ - data_));
   }
   switch (header[0]) {
@@ -137,8 +138,9 @@ void E57Streams::read_data_packet(std::uint64_t bytes) {
     if (scan_.fields[k].type != E57Field::Type::kText) {
       std::vector<char>& to = streams_[k].bytes;
       if (to.size() + length > kMaxWaiting) {
-        fail(fmt::format("the numbers of \"{}\" are too far from the others of their points",
-                         scan_.fields[k].name));
+        fail(
+            fmt::format("the values of \"{}\" are too far from the other values of the same points",
+                        scan_.fields[k].name));
       }
       to.insert(to.end() - kPadding, packet_.begin() + static_cast<std::ptrdiff_t>(at),
                 packet_.begin() + static_cast<std::ptrdiff_t>(at + length));

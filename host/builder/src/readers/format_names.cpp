@@ -71,7 +71,7 @@ Recognition recognise_as(std::string_view extension, std::string_view head,
       kFormats.begin(), kFormats.end(),
       [&](const NamedFormat& known) { return equal_ignoring_case(known.extension, extension); });
   if (format == kFormats.end()) {
-    return {FileKind::kUnsupported, fmt::format("of no format that has a reader: {}", extension),
+    return {FileKind::kUnsupported, fmt::format("of a format that has no reader: {}", extension),
             fmt::format("the formats are {}", fmt::join(scan_formats(), ", ")), ""};
   }
   Recognition found = recognise(head, file_size);
@@ -82,8 +82,8 @@ Recognition recognise_as(std::string_view extension, std::string_view head,
   const bool as_table = format->kind == FileKind::kText && text;
   if (is_definite(found) && !as_table) {
     return {FileKind::kUnsupported,
-            fmt::format("{} by its content, not {}", found.name, format->shown),
-            "leave --format out", ""};
+            fmt::format("{} by its content, not {}", found.name, format->shown), "omit --format",
+            ""};
   }
   // LAZ is compressed LAS. Its own error message names a program that unpacks it.
   const bool packed = format->kind == FileKind::kLas && head.starts_with("LASF");

@@ -22,7 +22,7 @@ constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
     throw ReadError(name, "", "there is no such file", "check the path");
   }
   if (error == EACCES || error == EPERM) {
-    throw ReadError(name, "", "the file may not be read: permission denied",
+    throw ReadError(name, "", "the file cannot be read: permission denied",
                     "give yourself read permission, for example with chmod u+r");
   }
   throw ReadError(name, "", fmt::format("the file cannot be opened: {}", std::strerror(error)), "");
@@ -148,8 +148,9 @@ bool InputFile::next_line(std::string_view& line) {
   const bool ended = length != std::string_view::npos;
   if (!ended) length = text.size();
   if (length > kMaxLineBytes) {
-    throw ReadError(name_, line_place(), "the line is longer than 1 MiB",
-                    "the file is damaged, or not in the text format it begins like");
+    throw ReadError(
+        name_, line_place(), "the line is longer than 1 MiB",
+        "the file is damaged, or is not in the text format that its beginning suggests");
   }
   line = text.substr(0, length);
   consume(ended ? length + 1 : length);

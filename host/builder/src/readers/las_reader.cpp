@@ -97,11 +97,11 @@ class LasReader {
   }
 
   [[noreturn]] void fail_truncated(std::uint64_t points_there) const {
-    throw ReadError(file_.name(), fmt::format("byte {}", file_.size()),
-                    fmt::format("the file ends too early: its header declares {} points, only {} "
-                                "are there",
-                                header_.points, points_there),
-                    kCopyAgain);
+    throw ReadError(
+        file_.name(), fmt::format("byte {}", file_.size()),
+        fmt::format("the file ends too early: its header declares {} points, only {} are present",
+                    header_.points, points_there),
+        kCopyAgain);
   }
 
   InputFile& file_;

@@ -95,7 +95,7 @@ class OffBinaryReader {
     const std::uint64_t place = file_.offset();
     const std::uint64_t corners = read_count("corners");
     if (corners > file_.remaining() / kNumberBytes) {
-      fail(fmt::format("a face of {} corners is declared, there is room for {}", corners,
+      fail(fmt::format("a face of {} vertices is declared, there is room for {}", corners,
                        file_.remaining() / kNumberBytes));
     }
     corners_.clear();

@@ -119,7 +119,7 @@ class OffReader {
       const std::string_view word = take_word(row);
       std::int64_t corner = 0;
       if (!parse_corner(word, corner)) {
-        fail(fmt::format("corner {} of {} is not a number", i + 1, corners));
+        fail(fmt::format("vertex {} of {} of the face is not a number", i + 1, corners));
       }
       corners_.push_back(corner);
     }

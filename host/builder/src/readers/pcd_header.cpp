@@ -80,7 +80,7 @@ class HeaderParser {
     } else if (keyword == "VIEWPOINT") {
       read_viewpoint(rest);
     } else if (keyword != "VERSION") {
-      fail(fmt::format("\"{}\" is not a word of a PCD header", printable(keyword)));
+      fail(fmt::format("\"{}\" is not a keyword of a PCD header", printable(keyword)));
     }
   }
 

@@ -132,11 +132,11 @@ class PcdReader {
   }
 
   [[noreturn]] void throw_truncated(std::uint64_t points_there) const {
-    throw ReadError(file_.name(), fmt::format("byte {}", file_.size()),
-                    fmt::format("the file ends too early: its header declares {} points, only {} "
-                                "are there",
-                                header_.points, points_there),
-                    kCopyAgain);
+    throw ReadError(
+        file_.name(), fmt::format("byte {}", file_.size()),
+        fmt::format("the file ends too early: its header declares {} points, only {} are present",
+                    header_.points, points_there),
+        kCopyAgain);
   }
 
   void load(const UsedField& used, const char* at, PointRow& row) const {
@@ -232,7 +232,7 @@ class PcdReader {
     if (packed > file_.remaining()) {
       throw ReadError(file_.name(), fmt::format("byte {}", file_.size()),
                       fmt::format("the file ends too early: {} bytes of compressed data for {} "
-                                  "points are declared, only {} are there",
+                                  "points are declared, only {} are present",
                                   packed, header_.points, file_.remaining()),
                       kCopyAgain);
     }

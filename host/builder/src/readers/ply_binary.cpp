@@ -113,7 +113,7 @@ class BinaryBody {
   void read_face(const PlyProperty& property) {
     const std::uint64_t place = file_.offset();
     const std::uint64_t count = list_length(property);
-    if (count > kMaxCorners) fail(place, fmt::format("a face has {} corners", count));
+    if (count > kMaxCorners) fail(place, fmt::format("a face has {} vertices", count));
     const std::size_t bytes = size_of(property.type);
     const char* at = need(static_cast<std::size_t>(count) * bytes);
     corners_.clear();

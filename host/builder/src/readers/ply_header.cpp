@@ -67,7 +67,7 @@ class HeaderParser {
         std::any_of(first.begin(), first.end(), [](char c) { return c < ' ' || c > '~'; });
     if (binary) fail("the data begins without the line end_header before it");
     if (describes_data(rest)) {
-      fail(fmt::format("\"{}\" is not a word of a PLY header", printable(keyword)));
+      fail(fmt::format("\"{}\" is not a keyword of a PLY header", printable(keyword)));
     }
     if (header_.unknown_lines++ == 0) {
       header_.unknown_line = fmt::format("{}, \"{}\"", file_.line_place(), printable(keyword));

@@ -150,11 +150,11 @@ std::vector<PlyField> vertex_fields(const PlyElement& vertex) {
 void throw_truncated(const InputFile& file, const PlyElement& element, std::uint64_t rows_there,
                      bool at_most) {
   const std::string rows = rows_of(element);
-  throw ReadError(file.name(), fmt::format("byte {}", file.size()),
-                  fmt::format("the file ends too early: its header declares {} {}, only {}{} are "
-                              "there",
-                              element.count, rows, at_most ? "at most " : "", rows_there),
-                  "it was cut off, or its header is damaged; copy or export it again");
+  throw ReadError(
+      file.name(), fmt::format("byte {}", file.size()),
+      fmt::format("the file ends too early: its header declares {} {}, only {}{} are present",
+                  element.count, rows, at_most ? "at most " : "", rows_there),
+      "it was cut off, or its header is damaged; copy or export it again");
 }
 
 void StripReader::add(std::int64_t index) {

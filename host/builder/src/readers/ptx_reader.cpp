@@ -82,7 +82,7 @@ class PtxReader {
     const bool affine =
         (matrix.row(3) - Eigen::RowVector4d(0, 0, 0, 1)).cwiseAbs().maxCoeff() < kAffine;
     if (!matrix.allFinite() || !affine || matrix.topLeftCorner<3, 3>().determinant() == 0.0) {
-      fail_line("the matrix of the scanner is not that of a turn and a shift");
+      fail_line("the matrix of the scanner is not a rotation and a translation");
     }
     return Eigen::Affine3d(matrix);
   }
@@ -168,8 +168,9 @@ class PtxReader {
   }
 
   [[noreturn]] void fail_truncated(std::uint64_t there, std::uint64_t declared) const {
-    fail_line(fmt::format("the file ends too early: scan {} declares {} points, only {} are there",
-                          scans_, declared, there));
+    fail_line(
+        fmt::format("the file ends too early: scan {} declares {} points, only {} are present",
+                    scans_, declared, there));
   }
   [[noreturn]] void fail_line(const std::string& cause) const {
     throw ReadError(file_.name(), file_.line_place(), cause, kCopyAgain);

@@ -52,8 +52,8 @@ Recognition recognise_for(InputFile& file, const ReadOptions& options) {
     return {FileKind::kText, "text", "", ""};
   }
   throw ReadError(file.name(), "",
-                  "columns are named, but this is no text file of points: " + found.name,
-                  "leave --columns out");
+                  "columns are named, but this is not a text file of points: " + found.name,
+                  "omit --columns");
 }
 
 }  // namespace

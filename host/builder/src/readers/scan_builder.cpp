@@ -345,7 +345,7 @@ void ScanBuilder::cut_polygons() {
     if (!any) count_bad_face(kDegenerateFace, 0);
   }
   if (cutter.gave_up()) {
-    warn("Some of the polygons with very many corners were cut as fans.");
+    warn("Some of the polygons with very many vertices were triangulated as fans.");
   }
   polygons_ = {};
 }
@@ -365,13 +365,11 @@ void ScanBuilder::check_points_left() const {
 void ScanBuilder::check_faces_left() const {
   if (bad_faces_ == 0 || !scan_.triangles.empty()) return;
   const bool placed = first_bad_place_ != 0;
-  throw ReadError(
-      file_, placed ? fmt::format("{} {}", place_unit_, first_bad_place_) : "",
-      fmt::format(
-          "none of the {} faces is usable: they refer to points that the file does not have, "
-          "or have fewer than three distinct corners",
-          faces_read_),
-      "export the mesh again, or delete the faces to use only the points");
+  throw ReadError(file_, placed ? fmt::format("{} {}", place_unit_, first_bad_place_) : "",
+                  fmt::format("none of the {} faces is usable: they refer to points that the file "
+                              "does not have, or have fewer than three distinct vertices",
+                              faces_read_),
+                  "export the mesh again, or delete the faces to use only the points");
 }
 
 void ScanBuilder::warn_of_damage() {
@@ -390,10 +388,10 @@ void ScanBuilder::warn_of_damage() {
     const std::string first =
         first_bad_place_ == 0 ? ""
                               : fmt::format(" (the first at {} {})", place_unit_, first_bad_place_);
-    warn(fmt::format(
-        "{} of {} faces were dropped: they refer to points that the file does not have, "
-        "or have fewer than three distinct corners{}.",
-        bad_faces_, faces_read_, first));
+    warn(
+        fmt::format("{} of {} faces were dropped: they refer to points that the file does not "
+                    "have, or have fewer than three distinct vertices{}.",
+                    bad_faces_, faces_read_, first));
   }
 }
 

@@ -128,7 +128,7 @@ class AsciiReader {
     } else if (is("color")) {
       rest = {};
     } else if (!is("outer") && !is("loop") && !is("endloop") && !is("end")) {
-      fail(fmt::format("\"{}\" is not a word of an STL file", printable(word)));
+      fail(fmt::format("\"{}\" is not a keyword of an STL file", printable(word)));
     }
     after_end_ = is("end");
   }
@@ -158,7 +158,7 @@ class AsciiReader {
 
   void begin_corner() {
     if (!in_facet_) fail("a vertex outside a triangle");
-    if (corners_ == 3) fail("the triangle has more than three corners");
+    if (corners_ == 3) fail("the triangle has more than three vertices");
     corner_numbers_ = 0;
   }
 
@@ -171,7 +171,7 @@ class AsciiReader {
 
   void end_facet() {
     if (!in_facet_ || corners_ != 3) {
-      fail(fmt::format("the triangle has {} corners", in_facet_ ? corners_ : 0));
+      fail(fmt::format("the triangle has {} vertices", in_facet_ ? corners_ : 0));
     }
     in_facet_ = false;
     ++facets_;

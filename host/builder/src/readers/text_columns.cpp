@@ -144,8 +144,8 @@ class Guess {
     if (first.values.size() != columns_ && first.numbers == first.values.size() &&
         std::all_of(first.values.begin(), first.values.end(), is_whole) && rows_.size() > 2) {
       guess_.doubt =
-          "the first row has whole numbers and another length than the rows after it, "
-          "like the counts of a mesh or a grid";
+          "the first row has integers and differs in length from the rows after it, like the "
+          "counts of a mesh or a grid";
       return;
     }
     std::size_t other = 0;
@@ -175,7 +175,7 @@ class Guess {
     if (counts && rest.size() >= kRowsToCount && columns_ > kMinColumns && consecutive &&
         first[0] + 1.0 != numbers.first) {
       guess_.doubt =
-          "column 1 numbers the rows from the second one on, as after the counts of a mesh";
+          "column 1 numbers the rows from the second row on, as after the counts of a mesh";
     }
   }
 
@@ -211,8 +211,9 @@ class Guess {
     for (std::size_t i = 1; i < columns_; ++i) {
       if (!column_of(rows_left_, i).whole) return;
     }
-    guess_.doubt = fmt::format("every row is {} and whole numbers, like the faces of a mesh",
-                               static_cast<int>(first.first));
+    guess_.doubt =
+        fmt::format("every row consists of {} and other integers, like the faces of a mesh",
+                    static_cast<int>(first.first));
   }
 
   /// Assigns x y z, then normals and colours as recognised by their values.

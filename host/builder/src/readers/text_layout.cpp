@@ -273,7 +273,7 @@ class LayoutFinder {
 
   [[noreturn]] void refuse_guess(std::uint64_t line, const std::string& doubt) const {
     throw ReadError(file_.name(), fmt::format("line {}", line),
-                    "the rows of numbers cannot be taken for points: " + doubt, kNameColumns);
+                    "the rows of numbers cannot be interpreted as points: " + doubt, kNameColumns);
   }
 
   InputFile& file_;

@@ -62,8 +62,7 @@ class TextReader {
       counter = fmt::format("; column {} numbers the points", *layout_.counter + 1);
       if (layout_.slots.size() == 4) {
         counter +=
-            " (where northing comes before easting, give --columns x=3,y=2,z=4: this mirrors the "
-            "scan)";
+            " (if northing comes before easting, the scan is mirrored; give --columns x=3,y=2,z=4)";
       }
     }
     builder_.note(fmt::format("{}: columns {}, {}{}", file_.name(), describe_columns(layout_.slots),
@@ -101,11 +100,12 @@ class TextReader {
 
   void check_counter() const {
     if (uncounted_ * 100 <= builder_.points_read()) return;
-    throw ReadError(file_.name(), fmt::format("line {}", first_uncounted_line_),
-                    fmt::format("column 1 numbers the first rows and does not go on to do so in "
-                                "{} of {} rows: it may be a coordinate",
-                                uncounted_, builder_.points_read()),
-                    "name the columns, as in --columns x=1,y=2,z=3 or --columns x=2,y=3,z=4");
+    throw ReadError(
+        file_.name(), fmt::format("line {}", first_uncounted_line_),
+        fmt::format(
+            "column 1 numbers the first rows, but not {} of {} rows; it may be a coordinate",
+            uncounted_, builder_.points_read()),
+        "name the columns, as in --columns x=1,y=2,z=3 or --columns x=2,y=3,z=4");
   }
 
   void check_bad_rows() {

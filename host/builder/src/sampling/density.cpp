@@ -78,8 +78,7 @@ class DensityChooser {
     if (options_.spacing_m) {
       if (!(*options_.spacing_m >= kFinestSpacing_m && *options_.spacing_m <= kCoarsestSpacing_m)) {
         throw std::runtime_error(fmt::format(
-            "--spacing {:.6g}: a spacing lies between 1 nm and 1000 km (it is in metres)",
-            *options_.spacing_m));
+            "--spacing {:.6g}: outside 1 nm .. 1000 km (give it in metres)", *options_.spacing_m));
       }
       return *options_.spacing_m;
     }

@@ -193,7 +193,7 @@ class EmulatedTarget::Session {
       report = read_to_end(counts_.read_end.get());
     }
     if (!process_->wait(kEndLimit)) {
-      throw EmulationError(fmt::format("board {}: the emulator does not end", board_.name));
+      throw EmulationError(fmt::format("board {}: the emulator does not terminate", board_.name));
     }
     if (!process_->succeeded()) {
       throw EmulationError(ended());
@@ -221,12 +221,13 @@ class EmulatedTarget::Session {
     if (hello.version != link::kVersion ||
         hello.configuration_bytes != sizeof(core::Configuration) ||
         hello.status_bytes != sizeof(core::Status)) {
-      throw EmulationError(fmt::format("board {}: its image is of another version of Tactree ({})",
-                                       board_.name, how_to_build(board_)));
+      throw EmulationError(
+          fmt::format("board {}: its image was built with a different version of Tactree ({})",
+                      board_.name, how_to_build(board_)));
     }
     if (name != board_.name || hello.blob_address != board_.blob_address ||
         hello.blob_bytes_max != board_.blob_bytes_max) {
-      throw EmulationError(fmt::format("board {}: the image is one for {} ({})", board_.name, name,
+      throw EmulationError(fmt::format("board {}: the image is for {} ({})", board_.name, name,
                                        how_to_build(board_)));
     }
   }
@@ -246,9 +247,9 @@ class EmulatedTarget::Session {
       report_restart(limit);
     }
     if (message.kind != expected) {
-      throw EmulationError(fmt::format(
-          "board {}: it sent a message out of turn, of kind {:#x}, not {:#x}", board_.name,
-          static_cast<std::uint32_t>(message.kind), static_cast<std::uint32_t>(expected)));
+      throw EmulationError(fmt::format("board {}: unexpected message {:#x}, expected {:#x}",
+                                       board_.name, static_cast<std::uint32_t>(message.kind),
+                                       static_cast<std::uint32_t>(expected)));
     }
     receive_bytes(bytes.subspan(sizeof expected), limit);
     return message;
@@ -259,14 +260,14 @@ class EmulatedTarget::Session {
     link::Hello hello;
     receive_bytes(std::as_writable_bytes(std::span(&hello, 1)).subspan(sizeof hello.kind), limit);
     throw EmulationError(fmt::format(
-        "board {}: it restarted: {}", board_.name,
+        "board {}: restarted unexpectedly: {}", board_.name,
         hello.last_fault.present() ? describe(hello.last_fault) : "no fault was recorded"));
   }
 
   void receive_bytes(std::span<std::byte> bytes, milliseconds limit) {
     while (!bytes.empty()) {
       if (!readable(from_board_.read_end.get(), limit)) {
-        throw EmulationError(fmt::format("board {}: silent for {} s", board_.name,
+        throw EmulationError(fmt::format("board {}: no message for {} s", board_.name,
                                          static_cast<double>(limit.count()) / 1e3));
       }
       const ssize_t count = ::read(from_board_.read_end.get(), bytes.data(), bytes.size());
@@ -287,7 +288,7 @@ class EmulatedTarget::Session {
     while (!log.empty() && log.back() == '\n') {
       log.pop_back();
     }
-    return fmt::format("board {}: the emulator ended too early: {}{}{}", board_.name, how,
+    return fmt::format("board {}: the emulator terminated unexpectedly: {}{}{}", board_.name, how,
                        log.empty() ? "" : ": ", log);
   }
 

@@ -27,44 +27,45 @@ struct KindEntry {
 
 constexpr std::array<KindEntry, 17> kKinds = {{
     {"encoder", "stuck", InjectedKind::kEncoderStuck, true, Takes::kNothing,
-     "the count does not change", "it shows when the axis moves while its motor pushes"},
+     "the count does not change", "it becomes visible when the axis moves while its motor pushes"},
     {"encoder", "disconnected", InjectedKind::kEncoderDisconnected, true, Takes::kNothing,
-     "the reading is not valid", "it shows while the device is homed"},
+     "the reading is not valid", "it becomes visible while the device is homed"},
     {"encoder", "jump", InjectedKind::kEncoderJump, true, Takes::kCounts,
      "=COUNTS: permanent offset of the count",
-     "it shows as an offset of the probe; a larger one is a fault (encoder-jump)"},
-    {"motor", "dead", InjectedKind::kMotorDead, true, Takes::kNothing, "no effort",
-     "it shows in contact, as a force in the wrong direction"},
-    {"motor", "stuck", InjectedKind::kMotorStuck, true, Takes::kNothing, "keeps its effort",
-     "it shows when the force of a contact changes"},
-    {"motor", "reversed", InjectedKind::kMotorReversed, true, Takes::kNothing, "the wrong sign",
-     "it shows in contact, as a force that pulls into the surface"},
+     "it becomes visible as an offset of the probe; a larger offset is a fault (encoder-jump)"},
+    {"motor", "dead", InjectedKind::kMotorDead, true, Takes::kNothing, "the motor gives no effort",
+     "it becomes visible in contact, as a force in the wrong direction"},
+    {"motor", "stuck", InjectedKind::kMotorStuck, true, Takes::kNothing,
+     "the effort does not change", "it becomes visible when the force of a contact changes"},
+    {"motor", "reversed", InjectedKind::kMotorReversed, true, Takes::kNothing,
+     "the effort has the wrong sign",
+     "it becomes visible in contact, as a force that pulls into the surface"},
     {"motor", "weak", InjectedKind::kMotorWeak, false, Takes::kEffort,
      "=EFFORT: saturation of all motors, N or Nm",
-     "it shows in contact, when the force needs more effort than that"},
+     "it becomes visible in contact, when the force needs more effort"},
     {"motor", "failure", InjectedKind::kMotorFailure, false, Takes::kNothing,
-     "the amplifiers report a failure", "it shows at once"},
+     "the amplifiers report a failure", "it becomes visible immediately"},
     {"estop", "pressed", InjectedKind::kEmergencyStop, false, Takes::kNothing,
-     "the emergency stop is pressed", "it shows at once"},
+     "the emergency stop is pressed", "it becomes visible immediately"},
     {"deadman", "released", InjectedKind::kDeadManReleased, false, Takes::kNothing,
-     "the dead-man control is released", "it shows while active"},
+     "the dead-man control is released", "it becomes visible while active"},
     {"enable", "off", InjectedKind::kEnableOff, false, Takes::kNothing,
      "the amplifiers lose their power", "it shows while armed"},
     {"enable", "on", InjectedKind::kEnableOn, false, Takes::kNothing,
      "the relay sticks: power independent of the line",
-     "it shows when the controller switches the power off (Stop)"},
+     "it becomes visible when the controller switches the power off (Stop)"},
     {"link", "dead", InjectedKind::kLinkDead, false, Takes::kNothing, "no message arrives",
      "this simulation requires no link; a board with --link-timeout reports link-lost"},
     {"link", "arm", InjectedKind::kLinkArm, false, Takes::kNothing,
-     "every message is an arm command: duplicated, or an attack",
-     "it shows when the controller is not armed (Stop), as a start that nobody wanted"},
+     "every message is an arm command, as by duplication or an attack",
+     "it becomes visible when the controller is not armed (Stop), as an unintended start"},
     {"supply", "sag", InjectedKind::kSupplySag, false, Takes::kVolts,
      "=VOLTS: supply of the amplifiers",
-     "it shows while armed, below the lowest supply of the device"},
+     "it becomes visible while armed, below the minimum supply voltage of the device"},
     {"loop", "overrun", InjectedKind::kLoopOverrun, false, Takes::kDeadlines,
-     "=N: deadlines missed in one tick", "it shows in the number of deadlines missed"},
+     "=N: deadlines missed in one tick", "it becomes visible in the number of deadlines missed"},
     {"clock", "drift", InjectedKind::kClockDrift, false, Takes::kMillionths,
-     "=PPM: excess of the board's second, millionths", "it shows in the times of a trace only"},
+     "=PPM: excess of the board's second, ppm", "it is visible only in the times of a trace"},
 }};
 
 [[noreturn]] void refuse(std::string_view text, const std::string& what) {
@@ -187,7 +188,7 @@ InjectedFault parse_injection(std::string_view text) {
   const KindEntry& entry = find_kind(text, part.substr(0, letters), kind);
   if (!axis.empty() && (!entry.per_axis || axis < "1" || axis > "3" || axis.size() != 1)) {
     refuse(text, entry.per_axis ? "the axis is 1, 2 or 3"
-                                : fmt::format("{}:{} has no axis", entry.part, entry.kind));
+                                : fmt::format("{}:{} takes no axis", entry.part, entry.kind));
   }
   for (std::uint32_t i = 0; i < core::kAxes; ++i) {
     if (axis.empty() || axis[0] == static_cast<char>('1' + i)) {

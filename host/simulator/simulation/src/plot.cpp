@@ -280,7 +280,7 @@ std::string plot_modes_svg(std::span<const Sample> surface, std::span<const Samp
   const double middle = 0.5 * (whole.t_min + whole.t_max);
   const Samples near_surface = cut(surface, middle, middle + kZoomS);
   const Samples near_paper = cut(paper, middle, middle + kZoomS);
-  draw_panel(svg, panel_over(near_surface, 360.0, 580.0, "force / N, a moment of it"),
+  draw_panel(svg, panel_over(near_surface, 360.0, 580.0, "force / N, detail"),
              mode_curves(near_surface, near_paper), true);
   svg += "</svg>\n";
   return svg;

@@ -148,10 +148,11 @@ void check_recording_header(std::span<const std::byte> header, std::uint64_t fil
   }
   const auto size = take.take<std::uint64_t>();
   if (size != file_bytes) {
-    refuse(std::min(size, file_bytes),
-           fmt::format("the file has {} bytes instead of {}: it is truncated or was added to",
-                       file_bytes, size),
-           "copy it again, or " + std::string(kRecordAgain));
+    refuse(
+        std::min(size, file_bytes),
+        fmt::format("the file has {} bytes instead of {}: it is truncated or bytes were appended",
+                    file_bytes, size),
+        "copy it again, or " + std::string(kRecordAgain));
   }
 }
 
@@ -167,7 +168,7 @@ void Recording::check_whole() {
   place = bytes_.size() - kEndBytes;
   Taker last(bytes_, place);
   if (last.take<std::uint8_t>() != static_cast<std::uint8_t>(EventKind::kEnd)) {
-    refuse(bytes_.size() - kEndBytes, "no end of the recording", kRecordAgain);
+    refuse(bytes_.size() - kEndBytes, "the end of the recording is missing", kRecordAgain);
   }
   last(ticks_);
   last(trace_crc32_);

@@ -41,7 +41,7 @@ export class Panel {
     device.addEventListener('change', () => this.set('device', device.value));
     const materials = find<HTMLInputElement>('use_materials');
     materials.addEventListener('change', () => this.set('use_materials', materials.checked));
-    find('mend').addEventListener('click', () => say({ do: 'mend' }));
+    find('clear-injections').addEventListener('click', () => say({ do: 'clear_injections' }));
   }
 
   hello(hello: Hello): void {

@@ -157,7 +157,7 @@ std::string caption(const core::BlobHeader& h, std::span<const Mark> marks) {
   const auto holes =
       std::count_if(marks.begin(), marks.end(), [](const Mark& m) { return m.is_hole; });
   const auto boundaries = static_cast<std::ptrdiff_t>(marks.size()) - holes;
-  return fmt::format("{} points, {} apart, {} hole{}, {} open boundar{}", h.point_count,
+  return fmt::format("{} points, spacing {}, {} hole{}, {} open boundar{}", h.point_count,
                      length_text(h.spacing_m), holes, holes == 1 ? "" : "s", boundaries,
                      boundaries == 1 ? "y" : "ies");
 }
@@ -178,7 +178,7 @@ void draw_key(Raster& raster, int& top, const Colour& colour, const std::string&
 void draw_legend(Raster& raster, std::span<const Mark> drawn, std::size_t all, bool doubtful) {
   int top = kMargin / 2;
   if (doubtful) {
-    draw_key(raster, top, kDoubtful, "outside is doubtful");
+    draw_key(raster, top, kDoubtful, "ambiguous orientation");
   }
   for (const bool hole : {true, false}) {
     const auto count = std::count_if(drawn.begin(), drawn.end(),
@@ -188,7 +188,8 @@ void draw_legend(Raster& raster, std::span<const Mark> drawn, std::size_t all, b
     }
   }
   if (drawn.size() < all) {
-    raster.text(kMargin, top, fmt::format("the {} widest of {}", drawn.size(), all), 2, kInk);
+    raster.text(kMargin, top, fmt::format("the {} widest openings of {}", drawn.size(), all), 2,
+                kInk);
   }
 }
 

@@ -36,7 +36,7 @@ TEST(Connection, NamesDefaultForUnusualSpeed) {
   } catch (const client::LinkError& error) {
     EXPECT_STREQ(
         error.what(),
-        "/dev/null: 0 baud is not a usual speed (the default is 1000000; others are 115200, "
+        "/dev/null: 0 baud is not a supported speed (the default is 1000000; others are 115200, "
         "921600 and 2000000)");
   }
 }

@@ -29,7 +29,7 @@ TEST(StartReport, NamesEachMissingPart) {
     core::wire::ReadStartReply start;
     start.missing = static_cast<std::uint32_t>(part);
     const auto all = complaints(start);
-    EXPECT_TRUE(has(all, "no force"));
+    EXPECT_TRUE(has(all, "motors disabled"));
     EXPECT_FALSE(has(all, "does not know")) << start.missing;
     different.insert(all.front());
   }

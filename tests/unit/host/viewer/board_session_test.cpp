@@ -233,7 +233,7 @@ TEST_F(BoardSessionTest, AppliesParametersAndReportsRefusals) {
 TEST_F(BoardSessionTest, RefusesUnknownCommandsAndSettings) {
   plug_in();
   begin();
-  for (const char* command : {"hand", "inject", "mend"}) {
+  for (const char* command : {"hand", "inject", "clear_injections"}) {
     EXPECT_NE(refusal({{"do", command}}).find("not available with a board"), std::string::npos);
   }
   EXPECT_NE(refusal({{"do", "fly"}}).find("unknown command"), std::string::npos);

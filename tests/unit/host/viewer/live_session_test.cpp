@@ -83,7 +83,7 @@ TEST_F(LiveSessionTest, ClearsFaultOnceCauseEnds) {
   say({{"do", "inject"}, {"fault", "estop:pressed"}});
   const json frame = wait_for_state("fault");
   EXPECT_EQ(frame["runs"][0]["faults"][0]["name"], "emergency-stop");
-  say({{"do", "mend"}});
+  say({{"do", "clear_injections"}});
   say({{"do", "clear"}});
   wait_for_state("idle");
   say({{"do", "arm"}});

@@ -11,7 +11,7 @@
 //    "dynamic_friction": 0.3, "rate_hz": 1000, "mode": "surface" | "paper" | "both",
 //    "device": NAME, "use_materials": true}  any subset; restarts the session
 //   {"do": "inject", "fault": "encoder1:stuck"}  like --inject without a time; acts at once
-//   {"do": "mend"}                          removes all injected faults
+//   {"do": "clear_injections"}              removes all injected faults
 // If a command has no visible result, later frames contain a notice with the cause:
 // {"news": {"number": 1, "text": ...}}.
 

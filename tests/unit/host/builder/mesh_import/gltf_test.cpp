@@ -116,10 +116,10 @@ TEST_F(GltfTest, RefusesInvalidSkins) {
   expect_parts(refusal_of(gltf.glb()), "more joints than inverseBindMatrices");
   gltf = skinned();
   gltf.root["skins"][0]["joints"] = {2, 99};
-  expect_parts(refusal_of(gltf.glb()), "a joint of a skin is no node");
+  expect_parts(refusal_of(gltf.glb()), "a joint of a skin is not one of its nodes");
   gltf = skinned();
   gltf.root["accessors"][3]["count"] = 3;
-  expect_parts(refusal_of(gltf.glb()), "another number of weights");
+  expect_parts(refusal_of(gltf.glb()), "different numbers of weights and points");
 }
 
 TEST_F(GltfTest, AppliesStoredMorphWeights) {
@@ -236,7 +236,8 @@ TEST_F(GltfTest, RefusesImpossibleStructures) {
   refuse([](Json& root) { root["accessors"][0]["count"] = -1; }, "\"count\"");
   refuse([](Json& root) { root["accessors"][0]["byteOffset"] = 4; }, "accessor 0 ends after");
   refuse([](Json& root) { root["accessors"][0]["componentType"] = 5124; }, "component type 5124");
-  refuse([](Json& root) { root["accessors"][0]["type"] = "VEC2"; }, "another type");
+  refuse([](Json& root) { root["accessors"][0]["type"] = "VEC2"; },
+         "a type that does not fit its use");
   refuse([](Json& root) { root["bufferViews"][0]["byteLength"] = 1'000'000; }, "of its buffer");
   refuse([](Json& root) { root["bufferViews"][0]["byteStride"] = 8; }, "byteStride");
   refuse([](Json& root) { root["bufferViews"][0]["buffer"] = 7; }, "entry 7 of \"buffers\"");

@@ -72,7 +72,7 @@ TEST(XmlDocument, LimitsSizeTagsAndDepth) {
   EXPECT_EQ(refusal_of(many + "<b/></a>"), "its 101 tags are more than the 100 that are read");
   EXPECT_EQ(refusal_of(nested(8)), "");
   EXPECT_EQ(refusal_of("<r><a/><a><a/></a></r>"), "");
-  EXPECT_EQ(refusal_of(nested(9)), "byte 25: elements in elements, more than 8 deep");
+  EXPECT_EQ(refusal_of(nested(9)), "byte 25: elements are nested more than 8 deep");
   std::string side_by_side = "<a>";
   for (int i = 0; i < 20; ++i) side_by_side += "<b><c/></b>";
   EXPECT_EQ(refusal_of(side_by_side + "</a>"), "");

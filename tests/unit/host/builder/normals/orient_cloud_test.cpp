@@ -67,7 +67,7 @@ TEST(Orientation, FacesUpOnDoubtfulSheet) {
   const KnownCloud relief = bench::open_relief(kBodyPoints, 1);
   const BuildResult built = built_from(bench::scan_of(relief));
   EXPECT_LE(bench::wrong_share(relief, built), 0.005);
-  EXPECT_TRUE(warns(built, "doubtful"));
+  EXPECT_TRUE(warns(built, "ambiguous"));
   EXPECT_EQ(built.report.orientation.doubtful_points, built.report.output_points);
 }
 
@@ -83,7 +83,7 @@ TEST(Orientation, FollowsViewpointOnTurnedTerrain) {
   options.viewpoints = {{0.0, -0.5, 0.0}};
   const BuildResult seen = built_from(bench::scan_of(terrain), options);
   EXPECT_GE(bench::wrong_share(terrain, seen), 0.995);
-  EXPECT_FALSE(warns(seen, "doubtful"));
+  EXPECT_FALSE(warns(seen, "ambiguous"));
   EXPECT_EQ(seen.report.orientation.pieces[0].basis, OrientationBasis::kViewpoint);
 }
 
@@ -114,7 +114,7 @@ TEST(Orientation, FacesPoseInFile) {
   const SeenValley below(-0.5);
   const BuildResult built = built_from(below.scan);
   EXPECT_LE(bench::wrong_share(below.cloud, built), 0.005);
-  EXPECT_FALSE(warns(built, "doubtful"));
+  EXPECT_FALSE(warns(built, "ambiguous"));
   EXPECT_EQ(built.report.orientation.pieces[0].basis, OrientationBasis::kViewpoint);
   BuildOptions by_pose;
   by_pose.orient = OrientationRule::kViewpoint;
@@ -153,7 +153,7 @@ TEST(Orientation, DoubtsSheetSeenEdgeOn) {
   Scan scan = cloud_scan(plane_grid(60, 1e-3));
   for (const bool sure : {true, false}) {
     scan.poses = {{Eigen::Vector3d(0.5, 0.03, 0.0), 0, sure}};
-    EXPECT_TRUE(warns(built_from(scan), "doubtful")) << sure;
+    EXPECT_TRUE(warns(built_from(scan), "ambiguous")) << sure;
   }
 }
 
@@ -167,13 +167,13 @@ TEST(Orientation, NotesScannerOnlyIfDecisive) {
   };
   const BuildResult seen = built_from(SeenValley(-0.5).scan);
   EXPECT_TRUE(says(seen, "the surface faces the scanner at (0, 0, -0.5)"));
-  EXPECT_FALSE(says(seen, "decides no side"));
+  EXPECT_FALSE(says(seen, "determines no orientation"));
   Scan scan = cloud_scan(plane_grid(12, 5e-3));
   scan.poses = {{Eigen::Vector3d(0.5, 0.03, 0.0), 0, true}};
   const BuildResult edge_on = built_from(scan);
   ASSERT_EQ(edge_on.report.orientation.pieces.at(0).basis, OrientationBasis::kUp);
   EXPECT_FALSE(says(edge_on, "faces the scanner"));
-  EXPECT_TRUE(says(edge_on, "(0.5, 0.03, 0), decides no side"));
+  EXPECT_TRUE(says(edge_on, "(0.5, 0.03, 0), determines no orientation"));
 }
 
 TEST(Orientation, AsksForMissingViewpointOnly) {
@@ -182,7 +182,7 @@ TEST(Orientation, AsksForMissingViewpointOnly) {
     found.pieces = {{1000, Eigen::Vector3d::Zero(), basis, 0.5}};
     BuildResult built;
     report_orientation(found, 0, built.report);
-    EXPECT_TRUE(warns(built, "doubtful"));
+    EXPECT_TRUE(warns(built, "ambiguous"));
     EXPECT_EQ(warns(built, "give --viewpoint"), basis == OrientationBasis::kOutside);
   }
 }

@@ -249,7 +249,7 @@ TEST_F(E57Test, RefusesTruncatedFile) {
 TEST_F(E57Test, ChecksDeclaredCounts) {
   E57TestScan scan = points_on_line(3);
   scan.count = "4";
-  expect_parts(refusal_of_scans({scan}), "scan 1", "4 points are declared", "only 3 are there");
+  expect_parts(refusal_of_scans({scan}), "scan 1", "4 points are declared", "only 3 are present");
   scan.count = "4294967296";
   expect_parts(refusal_of_scans({scan}), "scan 1", "4294967296 points", "there is room for");
   scan.count = "9223372036854775807";

@@ -48,7 +48,7 @@ TEST_F(OffTest, ChecksDeclaredCounts) {
 
 TEST_F(OffTest, NamesLineOfDamage) {
   expect_parts(refusal_of("OFF\n3 1 0\n0 0 0\n1 0\n0 1 0\n3 0 1 2\n"), "line 4", "fewer than 3");
-  expect_parts(refusal_of("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1\n"), "line 6", "corner 3 of 3");
+  expect_parts(refusal_of("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1\n"), "line 6", "vertex 3 of 3");
   expect_parts(refusal_of("OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"), "1 of 2 faces");
   expect_parts(refusal_of("OFF\n4 1 0\n0 0 0\n1 0 0\n0 1 0 #####\n"), "3 of 4 points");
   expect_parts(refusal_of("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n"), "none of the 1 faces",
@@ -93,7 +93,7 @@ TEST_F(OffTest, ChecksBinaryCounts) {
   expect_parts(refused(big_endian(0, 0, 0)), "no point");
   expect_parts(refused(big_endian(1, 5, 0) + points), "5 faces", "room for 0");
   expect_parts(refused(big_endian(1, 1, 0) + points + big_endian(2147483647, 0)),
-               "2147483647 corners");
+               "2147483647 vertices");
   expect_parts(refused(big_endian(1, 1, 0) + points + big_endian(1, 0)), "too early");
   expect_parts(refused(big_endian(1, 1, 0) + points + big_endian(0, 9)), "too early");
   expect_parts(refused(big_endian(1, 0)), "too early");

@@ -286,8 +286,8 @@ TEST_F(PlyTest, ChecksDeclaredCounts) {
   const std::string rows = bytes_of(1.0F) + bytes_of(2.0F) + bytes_of(3.0F);
   for (const std::string count : {"4294967295", "9223372036854775807", "1000000000000"}) {
     expect_parts(refusal_of(header_with("binary_little_endian", count) + rows), count,
-                 "only 1 are there", "byte ");
-    expect_parts(refusal_of(header_with("ascii", count) + "1 2 3\n"), count, "only 1 are there");
+                 "only 1 are present", "byte ");
+    expect_parts(refusal_of(header_with("ascii", count) + "1 2 3\n"), count, "only 1 are present");
   }
   expect_parts(refusal_of(header_with("ascii", "-3") + "1 2 3\n"), "negative", "line 3");
   expect_parts(refusal_of(header_with("ascii", "99999999999999999999") + "1 2 3\n"), "not a count");

@@ -100,7 +100,7 @@ TEST_F(StlTest, NamesLineOfDamage) {
                "inside a triangle", "1 complete", "line 11");
   expect_parts(refusal_of(solid + "facet normal 0 0 1\nvertex 0 0\n"), "line 10", "not a number");
   expect_parts(refusal_of(solid + "facet normal 0 0 1\nvertex 0 0 0\nendfacet\n"), "line 11",
-               "1 corners");
+               "1 vertices");
   expect_parts(refusal_of(solid + "vertex 0 0 0\n"), "outside a triangle");
   expect_parts(refusal_of(solid + "and so on\n"), "line 9", "\"and\"");
   expect_parts(refusal_of("solid empty\nendsolid empty\n"), "no triangle");

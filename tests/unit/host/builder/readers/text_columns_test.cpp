@@ -50,7 +50,7 @@ TEST_F(TextColumnsTest, AcceptsGapsInPointNumbers) {
 TEST_F(TextColumnsTest, RefusesCountsLikeNumberedRows) {
   const auto number = [](int i) { return std::to_string(7 + i) + " "; };
   expect_parts(refusal_of("830 3 0 0\n" + table(50, number, nothing)), "line 1",
-               "column 1 numbers the rows from the second one on");
+               "column 1 numbers the rows from the second row on");
   EXPECT_EQ(read("6 0 1 0\n" + table(50, number, nothing)).positions.size(), 51U);
   EXPECT_EQ(read("2 0.5 0.25 0.125\n" + table(50, number, nothing)).positions.size(), 51U);
 }
@@ -91,7 +91,8 @@ TEST_F(TextColumnsTest, RefusesFaces) {
   for (int i = 0; i < 30; ++i) {
     faces += "3 " + std::to_string(i * 5 % 13) + " " + std::to_string(i * 3 % 11) + " 7\n";
   }
-  expect_parts(refusal_of(faces), "every row is 3 and whole numbers, like the faces of a mesh");
+  expect_parts(refusal_of(faces),
+               "every row consists of 3 and other integers, like the faces of a mesh");
 }
 
 TEST_F(TextColumnsTest, RefusesHeightGrids) {
@@ -118,7 +119,7 @@ TEST_F(TextColumnsTest, RefusesRowsOfDifferentLength) {
   });
   expect_parts(refusal_of(ragged), "the rows differ in their number of columns", "--columns");
   expect_parts(refusal_of("12 40 7 1 2\n" + table(100, nothing, nothing)), "line 1",
-               "the first row has whole numbers and another length");
+               "the first row has integers and differs in length");
   expect_parts(refusal_of("100 3\n" + table(100, nothing, nothing)), "line 1", "\"100 3\"",
                "the counts of a mesh");
 }

@@ -12,7 +12,7 @@
 
 namespace tactree::hal::linux_gpio {
 
-/// Message: "line 'encoder0-a': cause (remedy: ...)"
+/// Message: "line 'encoder0-a': cause (hint: ...)"
 class GpioError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -5,7 +5,7 @@
 
 namespace tactree::hal::linux_gpio {
 
-/// Message: "PWM chip '48300200.pwm': cause (remedy: ...)"
+/// Message: "PWM chip '48300200.pwm': cause (hint: ...)"
 class SysfsError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
