@@ -55,7 +55,7 @@ class References(unittest.TestCase):
                 self.assertTrue((ROOT / name).is_file(), name)
 
     def test_every_folder_of_the_product_is_described(self):
-        table = (ROOT / "docs/CONTRIBUTING.md").read_text().split("## Where what lives")[1].split("**From")[0]
+        table = (ROOT / "docs/CONTRIBUTING.md").read_text().split("## Source tree")[1].split("**From")[0]
         layers = (ROOT / "scripts/check-layers").read_text().split('"""')[3]
         folders = re.findall(r"(?m)^((?:core|hal|host|tools|firmware)[\w/]*) ", layers)
         self.assertGreater(len(folders), 12)
