@@ -7,8 +7,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <limits>
 #include <memory>
@@ -17,6 +15,7 @@
 #include <vector>
 
 #include "leaf_set.hpp"
+#include "memory_file.hpp"
 #include "tactree/builder/model.hpp"
 #include "tactree/core/contact/paper_mode.hpp"
 #include "tactree/core/contact/renderer.hpp"
@@ -29,14 +28,7 @@
 namespace {
 
 using namespace tactree::core;
-
-// std::abort() in every build type, unlike an assertion.
-void require(bool good, const char* sentence) {
-  if (!good) {
-    std::fprintf(stderr, "finding: %s\n", sentence);
-    std::abort();
-  }
-}
+using tactree::fuzz::require;
 
 /// A copy of the bytes in memory of exactly that size, for AddressSanitizer.
 class ExactCopy {
