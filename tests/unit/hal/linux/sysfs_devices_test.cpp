@@ -8,7 +8,7 @@
 #include <fstream>
 #include <limits>
 
-#include "motor_command.hpp"
+#include "open_gate.hpp"
 #include "tactree/hal/linux/converter_motors.hpp"
 #include "tactree/hal/linux/counter_encoders.hpp"
 
