@@ -20,6 +20,7 @@
 #include <string>
 #include <vector>
 
+#include "bytes_of.hpp"
 #include "e57_writer.hpp"
 #include "las_writer.hpp"
 #include "tactree/builder/model.hpp"
@@ -36,6 +37,7 @@ using tactree::builder::Model;
 using tactree::core::BlobHeader;
 using tactree::core::BlobMaterial;
 using tactree::core::Profile;
+using tactree::test::bytes_of;
 using Bytes = std::vector<std::byte>;
 
 void write(const fs::path& path, std::span<const std::byte> bytes) {
@@ -186,15 +188,6 @@ void write_broken_blobs(const fs::path& folder) {
   write(folder / "kTooShort.nothing", Bytes{});
 }
 
-template <typename T>
-void append(std::string& out, T value, bool swap = false) {
-  char bytes[sizeof value];
-  std::memcpy(bytes, &value, sizeof value);
-  for (std::size_t i = 0; i < sizeof value; ++i) {
-    out += bytes[swap ? sizeof value - 1 - i : i];
-  }
-}
-
 std::string ply_binary(bool big_endian) {
   std::string out = std::string("ply\nformat ") +
                     (big_endian ? "binary_big_endian" : "binary_little_endian") +
@@ -203,15 +196,15 @@ std::string ply_binary(bool big_endian) {
                     "property list uchar int vertex_indices\nend_header\n";
   for (const auto& [x, y, z] : {std::array{0.0F, 0.0F, 0.0F}, std::array{1.0F, 0.0F, 0.0F},
                                 std::array{1.0F, 1.0F, 0.0F}, std::array{0.0F, 1.0F, 0.5F}}) {
-    append(out, x, big_endian);
-    append(out, y, big_endian);
-    append(out, z, big_endian);
+    out += bytes_of(x, big_endian);
+    out += bytes_of(y, big_endian);
+    out += bytes_of(z, big_endian);
     out += static_cast<char>(200);
   }
   for (const auto& corners : {std::array{0, 1, 2}, std::array{0, 2, 3}}) {
     out += static_cast<char>(3);
     for (const std::int32_t corner : corners) {
-      append(out, corner, big_endian);
+      out += bytes_of(corner, big_endian);
     }
   }
   return out;
@@ -221,29 +214,29 @@ std::string ply_binary(bool big_endian) {
 std::string off_binary() {
   std::string out = "CNOFF BINARY\n";
   for (const std::int32_t count : {3, 1, 0}) {
-    append(out, count, true);
+    out += bytes_of(count, true);
   }
   for (const auto& [x, y] :
        {std::array{0.0F, 0.0F}, std::array{1.0F, 0.0F}, std::array{0.0F, 1.0F}}) {
     for (const float value : {x, y, 0.0F, 0.0F, 0.0F, 1.0F, 1.0F, 0.5F, 0.0F, 1.0F}) {
-      append(out, value, true);
+      out += bytes_of(value, true);
     }
   }
   for (const std::int32_t corner :
        {3, 0, 1, 2, 0}) {  // the first is the count, the last of colours
-    append(out, corner, true);
+    out += bytes_of(corner, true);
   }
   return out;
 }
 
 std::string stl_binary() {
   std::string out(80, ' ');
-  append(out, std::uint32_t{2});
+  out += bytes_of(std::uint32_t{2});
   for (int triangle = 0; triangle < 2; ++triangle) {
     for (int i = 0; i < 12; ++i) {
-      append(out, static_cast<float>((triangle + i * i) % 5));
+      out += bytes_of(static_cast<float>((triangle + i * i) % 5));
     }
-    append(out, std::uint16_t{0});
+    out += bytes_of(std::uint16_t{0});
   }
   return out;
 }
@@ -288,17 +281,17 @@ void write_laser_scans(const fs::path& folder) {
 void write_scans(const fs::path& folder) {
   std::string floats;
   for (int i = 0; i < 9; ++i) {
-    append(floats, 0.25F * static_cast<float>(i));
+    floats += bytes_of(0.25F * static_cast<float>(i));
   }
   // A compressed body of LZF literal runs only.
   std::string runs;
-  append(runs, static_cast<std::uint8_t>(31));
+  runs += bytes_of(static_cast<std::uint8_t>(31));
   runs += floats.substr(0, 32);
-  append(runs, static_cast<std::uint8_t>(3));
+  runs += bytes_of(static_cast<std::uint8_t>(3));
   runs += floats.substr(32);
   std::string compressed;
-  append(compressed, static_cast<std::uint32_t>(runs.size()));
-  append(compressed, static_cast<std::uint32_t>(floats.size()));
+  compressed += bytes_of(static_cast<std::uint32_t>(runs.size()));
+  compressed += bytes_of(static_cast<std::uint32_t>(floats.size()));
   compressed += runs;
 
   write(
@@ -342,9 +335,9 @@ void write_firmware(const fs::path& folder) {
   std::string code(256, '\x42');
   code += std::string("TACTIMG\0", 8) + "board" + std::string(19, '\0');
   for (const std::uint32_t word : {kCode, kCode + 0x10000, kCode + 0x20000, kCode + 0x40000, 0U}) {
-    append(code, word);
+    code += bytes_of(word);
   }
-  append(code, tactree::core::crc32(std::as_bytes(std::span(code))));
+  code += bytes_of(tactree::core::crc32(std::as_bytes(std::span(code))));
   for (const int machine : {EM_ARM, EM_RISCV}) {
     Elf32_Ehdr header{};
     std::memcpy(header.e_ident, ELFMAG, SELFMAG);
@@ -361,8 +354,8 @@ void write_firmware(const fs::path& folder) {
     segment.p_paddr = kCode;
     segment.p_filesz = static_cast<Elf32_Word>(code.size());
     std::string file;
-    append(file, header);
-    append(file, segment);
+    file += bytes_of(header);
+    file += bytes_of(segment);
     write(folder / (machine == EM_ARM ? "arm" : "riscv"), file + code);
   }
 }

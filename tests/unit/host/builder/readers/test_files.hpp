@@ -3,13 +3,13 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
+#include <array>
 #include <cstdint>
-#include <cstring>
 #include <filesystem>
 #include <string>
 #include <string_view>
 
+#include "bytes_of.hpp"
 #include "folder_test.hpp"
 #include "message_of.hpp"
 #include "tactree/builder/read_scan.hpp"
@@ -48,13 +48,14 @@ void expect_parts(const std::string& text, const Parts&... parts) {
   }
 }
 
-/// The bytes of a number, in the other byte order when `swap`.
-template <typename Number>
-std::string bytes_of(Number number, bool swap = false) {
-  std::string bytes(sizeof number, '\0');
-  std::memcpy(bytes.data(), &number, sizeof number);
-  if (swap) std::reverse(bytes.begin(), bytes.end());
-  return bytes;
+using test::bytes_of;
+
+using Corner = std::array<float, 3>;
+/// A facet of a binary STL file.
+inline std::string facet(const std::array<Corner, 3>& corners) {
+  std::string bytes = bytes_of(Corner{0, 0, 1});
+  for (const Corner& corner : corners) bytes += bytes_of(corner);
+  return bytes + std::string(2, '\0');
 }
 
 inline std::uint64_t dropped(const Scan& scan, const std::string& cause) {
