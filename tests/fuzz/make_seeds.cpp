@@ -188,26 +188,30 @@ void write_broken_blobs(const fs::path& folder) {
   write(folder / "kTooShort.nothing", Bytes{});
 }
 
+std::string ply_with_lists(const std::string& format, const std::string& body) {
+  return "ply\nformat " + format +
+         " 1.0\nelement vertex 4\nproperty float x\nproperty double y\nproperty short z\n"
+         "property list uchar int tags\nproperty uchar red\nproperty uchar green\n"
+         "property uchar blue\nelement face 2\nproperty list uchar int "
+         "vertex_indices\nend_header\n" +
+         body;
+}
+
 std::string ply_binary(bool big_endian) {
-  std::string out = std::string("ply\nformat ") +
-                    (big_endian ? "binary_big_endian" : "binary_little_endian") +
-                    " 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
-                    "property uchar red\nelement face 2\n"
-                    "property list uchar int vertex_indices\nend_header\n";
-  for (const auto& [x, y, z] : {std::array{0.0F, 0.0F, 0.0F}, std::array{1.0F, 0.0F, 0.0F},
-                                std::array{1.0F, 1.0F, 0.0F}, std::array{0.0F, 1.0F, 0.5F}}) {
-    out += bytes_of(x, big_endian);
-    out += bytes_of(y, big_endian);
-    out += bytes_of(z, big_endian);
-    out += static_cast<char>(200);
+  std::string body;
+  for (int i = 0; i < 4; ++i) {
+    body += bytes_of(static_cast<float>(i), big_endian) + bytes_of(1.0 * i * i, big_endian) +
+            bytes_of(std::int16_t{5}, big_endian) + '\x01' + bytes_of(7, big_endian) + "rgb";
   }
-  for (const auto& corners : {std::array{0, 1, 2}, std::array{0, 2, 3}}) {
-    out += static_cast<char>(3);
-    for (const std::int32_t corner : corners) {
-      out += bytes_of(corner, big_endian);
-    }
+  body += '\x04';
+  for (const int corner : {0, 1, 2, 3}) {
+    body += bytes_of(corner, big_endian);
   }
-  return out;
+  body += '\x03';
+  for (const int corner : {0, 1, 2}) {
+    body += bytes_of(corner, big_endian);
+  }
+  return ply_with_lists(big_endian ? "binary_big_endian" : "binary_little_endian", body);
 }
 
 /// Three corners with normals and colours, and the triangle between them.
@@ -300,6 +304,9 @@ void write_scans(const fs::path& folder) {
       "property float z\nproperty float nx\nproperty float ny\nproperty float nz\nelement face 1\n"
       "property list uchar int vertex_indices\nend_header\n0 0 0 0 0 1\n1 0 0 0 0 1\n"
       "0 1 0 0 0 1\n3 0 1 2\n");
+  write(folder / "ply_lists", ply_with_lists("ascii",
+                                             "0 0 0 0 1 2 3\n1 0 0 1 9 1 2 3\n1 1 0 2 9 9 1 2 3\n"
+                                             "0 1 0 0 1 2 3\n4 0 1 2 3\n3 0 1 2\n"));
   write(folder / "ply_little_endian", ply_binary(false));
   write(folder / "ply_big_endian", ply_binary(true));
   write(folder / "pcd_ascii", pcd("ascii", "0 0 0\n1 0 0\nnan nan nan\n"));
@@ -308,9 +315,15 @@ void write_scans(const fs::path& folder) {
   write(folder / "xyz", "0 0 0\n1 0 0\n0 1 0\n1 1 0.5\n");
   write(folder / "pts", "3\n0 0 0 12 255 0 0\n1 0 0 12 0 255 0\n0 1 0 12 0 0 255\n");
   write(folder / "csv", "x,y,z,red,green,blue\n0,0,0,1,2,3\n1,0,0,1,2,3\n0,1,0,1,2,3\n");
+  std::string normals = "//X,Y,Z,Nx,Ny,Nz\n3\n";
+  for (int i = 0; i < 20; ++i) {
+    normals += std::to_string(i) + ",2,-3e2,0,0,1\n";
+  }
+  write(folder / "csv_normals", normals);
   write(folder / "csv_semicolon", "\"X\";\"Y\";\"Z\"\r\n0,5;1,5;2,5\r\n1,5;1,5;2,5\r\n2,5;1;2\r\n");
   write(folder / "obj",
-        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\nf -4 -2 -1\n");
+        "mtllib a.mtl\nv 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 1 1 0 1 0 0\nv 0 1 0 1 0 0\nvn 0 0 1\n"
+        "f 1//1 2//1 3//1 4//1\nf -1 -2 \\\n-3\n");
   write(folder / "ptx",
         "2\n2\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n0 1 0 0\n-1 0 0 0\n0 0 1 0\n10 20 30 1\n"
         "2 1 1 0.5 9 8 7\n2 1 0 0.5 9 8 7\n2 0 1 0.5 9 8 7\n0 0 0 0.5 0 0 0\n");
