@@ -11,6 +11,7 @@
 #include <set>
 
 #include "analytic_shapes.hpp"
+#include "errors.hpp"
 #include "tactree/core/contact/surface.hpp"
 
 namespace tactree::test {
@@ -18,19 +19,6 @@ namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr int kProbes = 20'000;
-
-/// Root mean square and largest of a series of errors.
-struct Errors {
-  double sum_squared = 0.0;
-  double largest = 0.0;
-  int count = 0;
-  void add(double error) {
-    sum_squared += error * error;
-    largest = std::max(largest, std::abs(error));
-    ++count;
-  }
-  [[nodiscard]] double rms() const { return std::sqrt(sum_squared / count); }
-};
 
 double angle_deg(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b)) * kDegrees;
