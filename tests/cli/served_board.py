@@ -4,9 +4,9 @@ import subprocess
 from tool_folder import ball, csv
 
 
-def build_ball(tactree, folder, name="ball", *options):
+def build_ball(tactree, folder, name="ball", *options, points=3000, radius=0.03):
     scan, blob = folder / "ball.csv", folder / f"{name}.blob"
-    scan.write_text(csv(ball(3000, 0.03)))
+    scan.write_text(csv(ball(points, radius)))
     subprocess.run([tactree, "build", scan, "--unit", "m", "-o", blob, *options], check=True,
                    capture_output=True)
     return blob
