@@ -67,7 +67,7 @@ TEST(Edge, StaysSharpOnBox) {
   for (const Shape& shape : {box(kHalf), irregular_box(1), irregular_box(2)}) {
     const Errors errors = measure_box(shape, false);
     EXPECT_LE(errors.rms(), 5e-6);
-    EXPECT_LE(errors.largest, 20e-6);
+    EXPECT_LE(errors.largest(), 20e-6);
   }
 }
 
@@ -75,7 +75,7 @@ TEST(Edge, StaysAlmostSharpAtCorners) {
   for (const Shape& shape : {box(kHalf), irregular_box(1)}) {
     const Errors errors = measure_box(shape, true);
     EXPECT_LE(errors.rms(), 25e-6);
-    EXPECT_LE(errors.largest, 300e-6);
+    EXPECT_LE(errors.largest(), 300e-6);
   }
 }
 
@@ -94,7 +94,7 @@ TEST(Edge, StaysSharpIfConcave) {
                std::max(0.0, -at.z()));
   }
   EXPECT_LE(errors.rms(), 5e-6);
-  EXPECT_LE(errors.largest, 20e-6);
+  EXPECT_LE(errors.largest(), 20e-6);
 }
 
 /// A hand that goes from place to place at 0.1 m/s.
