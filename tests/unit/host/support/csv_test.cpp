@@ -33,7 +33,7 @@ TEST(SplitCsv, SplitsAnySeparatorOnRequest) {
 
 TEST_F(CsvFile, ReadsNumbersByColumnName) {
   support::CsvReader table(write("# trace\nt_s,state,x_m\n\n0.5,ready,+1e-3\r\n1,armed,2\n"), {});
-  const std::size_t x = table.require_column("x_m");
+  const std::size_t x = table.find_column("x_m").value();
   EXPECT_EQ(table.find_column("state"), 1U);
   EXPECT_EQ(table.find_column("y_m"), std::nullopt);
   ASSERT_TRUE(table.next_row());
@@ -60,7 +60,7 @@ TEST_F(CsvFile, AcceptsMissingOptionalHeader) {
 }
 
 TEST_F(CsvFile, ReportsFileLineAndColumn) {
-  const fs::path file = write("a,b\n1,2\n3,four\n");
+  const std::filesystem::path file = write("a,b\n1,2\n3,four\n");
   support::CsvReader table(file, {});
   ASSERT_TRUE(table.next_row() && table.next_row());
   EXPECT_EQ(test::message_of<CsvError>([&] { (void)table.number(1); }),
@@ -69,8 +69,6 @@ TEST_F(CsvFile, ReportsFileLineAndColumn) {
             file.string() + ": line 3: has no column 3");
   EXPECT_EQ(test::message_of<CsvError>([&] { table.refuse("time descends", "sort the rows"); }),
             file.string() + ": line 3: time descends (sort the rows)");
-  EXPECT_EQ(test::message_of<CsvError>([&] { (void)table.require_column("c"); }),
-            file.string() + ": the header has no column c");
 }
 
 TEST_F(CsvFile, RefusesNonFiniteNumbers) {
@@ -82,7 +80,7 @@ TEST_F(CsvFile, RefusesNonFiniteNumbers) {
 }
 
 TEST_F(CsvFile, RefusesRowsUnlikeHeader) {
-  const fs::path file = write("a,b\n1,2,3\n");
+  const std::filesystem::path file = write("a,b\n1,2,3\n");
   support::CsvReader table(file, {});
   EXPECT_EQ(test::message_of<CsvError>([&] { (void)table.next_row(); }),
             file.string() + ": line 2: 3 values, the header has 2");
