@@ -35,6 +35,25 @@ function(tactree_target target)
   endif()
 endfunction()
 
+# tactree_library(<name> [FREESTANDING] <source>...)
+#   The static library tactree_<name>, which is tactree::<name> in this build and, if it is installed,
+#   in other projects. Its public headers are below include/ of the calling folder.
+function(tactree_library name)
+  cmake_parse_arguments(arg "FREESTANDING" "" "" ${ARGN})
+  set(options)
+  if(arg_FREESTANDING)
+    set(options FREESTANDING)
+  endif()
+  set(target tactree_${name})
+  add_library(${target} STATIC ${arg_UNPARSED_ARGUMENTS})
+  add_library(tactree::${name} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
+  target_include_directories(${target} PUBLIC
+    $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>
+    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  tactree_target(${target} ${options})
+endfunction()
+
 # tactree_merge_sources(<target>)
 #   With TACTREE_MERGE_SOURCES, eight source files are compiled as one: a full build then reads each
 #   large header, and generates its inline functions, an eighth as often. Unlike CMake's unity builds,

@@ -283,17 +283,11 @@ TEST_F(Bounding, RefusesMalformedBound) {
 
 TEST_F(Bounding, RefusesOtherFiles) {
   const auto refused = [&](const std::filesystem::path& file) {
-    try {
-      (void)bound_of_image(file);
-      return std::string();
-    } catch (const wcet::BoundError& error) {
-      return std::string(error.what());
-    }
+    return message_of<wcet::BoundError>([&] { (void)bound_of_image(file); });
   };
   EXPECT_NE(refused(folder_ / "missing.elf").find("cannot be read"), std::string::npos);
   EXPECT_NE(refused("/bin/sh").find("not a linked image of an Arm core"), std::string::npos);
-  std::ofstream(folder_ / "text.elf") << "hello";
-  EXPECT_NE(refused(folder_ / "text.elf").find("not a linked image"), std::string::npos);
+  EXPECT_NE(refused(write("text.elf", "hello")).find("not a linked image"), std::string::npos);
 }
 
 // 1 kHz and 2 kHz end the first two tiers.

@@ -8,28 +8,26 @@
 #include <fstream>
 #include <string>
 
+#include "folder_test.hpp"
+#include "message_of.hpp"
 #include "tactree/wcet/bound.hpp"
 #include "tactree/wcet/bound_error.hpp"
 
 namespace tactree::test {
 
 /// Skipped if the cross compiler is missing.
-class SampleImage : public testing::Test {
+class SampleImage : public FolderTest {
  protected:
   void SetUp() override {
     if (std::system("arm-none-eabi-g++ --version >/dev/null 2>&1") != 0) {
       GTEST_SKIP() << "no arm-none-eabi-g++";
     }
-    folder_ = std::filesystem::path(testing::TempDir()) /
-              testing::UnitTest::GetInstance()->current_test_info()->name();
-    std::filesystem::create_directories(folder_);
   }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
 
   /// The bound of tick() in a program; with `timing` also in cycles.
   wcet::Bound bound_of(const std::string& code, const wcet::Parameters& parameters = {},
                        const wcet::BoardTiming* timing = nullptr) {
-    std::ofstream(folder_ / "sample.cpp") << code;
+    write("sample.cpp", code);
     const std::string command =
         "cd '" + folder_.string() +
         "' && arm-none-eabi-g++ -std=c++20 -mthumb -mcpu=cortex-m4 -mfpu=fpv4-sp-d16 "
@@ -57,15 +55,8 @@ class SampleImage : public testing::Test {
 
   /// Message of the refusal; "": not refused.
   std::string refusal(const std::string& code) {
-    try {
-      (void)bound_of(code);
-      return "";
-    } catch (const wcet::BoundError& error) {
-      return error.what();
-    }
+    return message_of<wcet::BoundError>([&] { (void)bound_of(code); });
   }
-
-  std::filesystem::path folder_;
 };
 
 }  // namespace tactree::test

@@ -2,7 +2,6 @@
 
 usage: advice_test.py TACTREE
 """
-import json
 import pathlib
 import resource
 import sys
@@ -39,7 +38,7 @@ class Sizes(Folder):
             self.assertEqual(done.returncode, 0)
             self.assertIn("tactree: warning: s.blob: the model is", done.stderr)
             self.assertIn(words, done.stderr)
-            self.assertIn(words, json.loads((self.path / "i.json").read_text())["warnings"][0])
+            self.assertIn(words, self.read("i.json")["warnings"][0])
         self.build("--scale", "5")
         self.assertEqual(self.run_tool("info", "s.blob").stderr, "")
         done = self.run_tool("info", "s.blob", "--device", "falcon")

@@ -35,20 +35,20 @@ class Columns(Folder):
     def test_the_report_states_the_columns_in_use(self):
         rows = (self.path / "s.xyz").read_text().splitlines()
         numbered = "".join(f"{1000 + i},{row.replace(' ', ',')}\n" for i, row in enumerate(rows))
-        (self.path / "n.csv").write_text(numbered)
+        self.write("n.csv", numbered)
         done = self.run_tool("build", "n.csv", "-o", "n.blob", "--report", "n.json")
         self.assertEqual(done.returncode, 0, done.stderr)
         note = [line for line in done.stdout.splitlines() if "columns" in line]
         self.assertEqual(len(note), 1, done.stdout)
         self.assertIn("n.csv: columns x=2, y=3, z=4", note[0])
         self.assertIn("column 1 numbers the points", note[0])
-        report = json.loads((self.path / "n.json").read_text())
+        report = self.read("n.json")
         self.assertIn("columns x=2, y=3, z=4", "".join(report["notes"]))
 
     def test_columns_are_named(self):
         rows = (self.path / "s.xyz").read_text().splitlines()
         swapped = "".join(" ".join(["a", *reversed(row.split())]) + "\n" for row in rows)
-        (self.path / "t.txt").write_text(swapped)
+        self.write("t.txt", swapped)
         self.assertIn("--columns x=2,y=3,z=4", self.refused("build", "t.txt", "-o", "t.blob"))
         done = self.run_tool("build", "t.txt", "-o", "t.blob", "--columns", "x=4,y=3,z=2")
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -64,7 +64,7 @@ class Columns(Folder):
             done = self.run_tool("build", "s.xyz", "-o", "y", "--columns", columns)
             self.assertEqual(done.returncode, 2, done.stderr)
             self.assertIn("--columns", done.stderr)
-        (self.path / "m.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+        self.write("m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
         done = self.run_tool("build", "m.obj", "-o", "y", "--columns", "x=1,y=2,z=3")
         self.assertEqual(done.returncode, 1, done.stderr)
         self.assertIn("m.obj", done.stderr)
@@ -100,7 +100,7 @@ class Outputs(Folder):
 
     def test_rows_that_cannot_be_printed_are_an_error(self):
         self.build()
-        (self.path / "many.xyz").write_text(sphere(20000, 0.05))
+        self.write("many.xyz", sphere(20000, 0.05))
         with open("/dev/full", "w", encoding="ascii") as full:
             done = self.run_tool("query", "s.blob", "--points", "many.xyz", capture_output=False,
                                  stdout=full, stderr=subprocess.PIPE)
@@ -129,9 +129,9 @@ class Numbers(Folder):
         with open(self.path / "s.xyz", "a", encoding="ascii") as file:
             file.write("1e300 0 0\n0 -1e150 0\n")
         self.build("--report", "r.json")
-        report = json.loads((self.path / "r.json").read_text())
+        report = self.read("r.json")
         self.assertEqual(report["dropped"], {"out_of_range": 2})
-        (self.path / "huge.xyz").write_text(sphere(500, 1e300))
+        self.write("huge.xyz", sphere(500, 1e300))
         self.assertIn("500 out_of_range", self.refused("build", "huge.xyz", "-o", "y"))
 
     def test_an_empty_number_is_refused(self):
@@ -158,7 +158,7 @@ class Formats(Folder):
         lines = sphere(500, 0.05).splitlines()
         head = ["ply", "format ascii 1.0", line, f"element vertex {len(lines)}",
                 "property float x", "property float y", "property float z", "end_header"]
-        (self.path / "a.ply").write_text("\n".join(head + lines) + "\n")
+        self.write("a.ply", "\n".join(head + lines) + "\n")
 
     def test_unknown_lines_of_a_ply_header_are_left_out_with_a_warning(self):
         self.write_ply("scanner_serial 1234 rev B")
@@ -187,7 +187,7 @@ class Formats(Folder):
             write_3mf(self.path / "a.3mf", "3D/3dmodel.model", unit=unit)
             done = self.run_tool("build", "a.3mf", "-o", "y", "--report", "r.json", *options)
             self.assertEqual(done.returncode, 0, done.stderr)
-            report = json.loads((self.path / "r.json").read_text())
+            report = self.read("r.json")
             self.assertAlmostEqual(report["source_scale"], metres)
             self.assertEqual("unit of the file" in done.stdout, not options)
 
@@ -225,7 +225,7 @@ Connections:  {{
 """)
         done = self.run_tool("build", "a.fbx", "-o", "y", "--report", "r.json")
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertAlmostEqual(json.loads((self.path / "r.json").read_text())["source_scale"],
+        self.assertAlmostEqual(self.read("r.json")["source_scale"],
                                0.0254)
 
     def test_a_compressed_gltf_is_refused_by_the_name_of_its_compression(self):

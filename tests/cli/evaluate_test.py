@@ -2,38 +2,31 @@
 
 usage: evaluate_test.py TACTREE CLASS      CLASS: Report or Seeds
 """
-import json
 import math
 import pathlib
 import re
-import subprocess
 import sys
-import tempfile
 import unittest
 
 sys.dont_write_bytecode = True
-from served_board import write_ball  # noqa: E402
+from tool_folder import SharedFolder, ball, csv  # noqa: E402
 
 TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
 RATES = {"1000", "4000", "10000"}
 
 
-class InAFolder(unittest.TestCase):
+class InAFolder(SharedFolder):
+    tool = TACTREE
+
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(folder.cleanup)
-        cls.path = pathlib.Path(folder.name)
+        super().setUpClass()
         cls.first = cls.evaluate("first", "--require-targets", "--html", "first.html")
 
     @classmethod
     def evaluate(cls, name, *options):
-        return subprocess.run(
-            [TACTREE, "evaluate", "--quick", "--no-scans", "--json", f"{name}.json", "--report",
-             f"{name}.md", *options], cwd=cls.path, capture_output=True, text=True, check=False)
-
-    def read(self, name):
-        return json.loads((self.path / name).read_text())
+        return cls.run_tool("evaluate", "--quick", "--no-scans", "--json", f"{name}.json", "--report", f"{name}.md",
+                            *options)
 
 
 class Report(InAFolder):
@@ -78,13 +71,12 @@ class Report(InAFolder):
         self.assertNotRegex(page.replace("http://www.w3.org/2000/svg", ""), r"(src|href)=|https?://|@import")
 
     def test_the_page_for_a_browser_maps_the_holes_of_a_scan(self):
-        write_ball(self.path / "ball.csv", points=20000)
-        rows = (self.path / "ball.csv").read_text().splitlines()
+        points = list(ball(20000, 0.03))
+        self.write("ball.csv", csv(points))
         # A cap of 0.5 rad of the ball of 30 mm: a hole of about 29 mm.
-        cut = [rows[0], *(row for row in rows[1:] if float(row.split(",")[2]) < 0.03 * math.cos(0.5))]
-        (self.path / "cut.csv").write_text("\n".join(cut) + "\n")
-        subprocess.run([TACTREE, "evaluate", "--quick", "--scan", "ball.csv", "--scan", "cut.csv", "--html",
-                        "holes.html"], cwd=self.path, capture_output=True, check=True)
+        self.write("cut.csv", csv(point for point in points if point[0][2] < 0.03 * math.cos(0.5)))
+        self.run_tool("evaluate", "--quick", "--scan", "ball.csv", "--scan", "cut.csv", "--html", "holes.html",
+                      check=True)
         whole, holed = (self.path / "holes.html").read_text().split(">Openings of ball.csv</h")[1].split(
             ">Openings of cut.csv</h")
         self.assertNotIn("<circle", whole)

@@ -3,47 +3,40 @@
 
 usage: link_test.py TACTREE [BOARD]      BOARD: where the controller runs, default host
 """
-import json
 import pathlib
-import subprocess
 import sys
-import tempfile
 import unittest
 
 sys.dont_write_bytecode = True
 from served_board import ServedBoard, build_ball  # noqa: E402
+from tool_folder import SharedFolder  # noqa: E402
 
 BOARD = sys.argv.pop(2) if len(sys.argv) > 2 else "host"
 TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
 
 
-class Link(unittest.TestCase):
+class Link(SharedFolder):
+    tool = TACTREE
+
     @classmethod
     def setUpClass(cls):
-        cls.holder = tempfile.TemporaryDirectory()
-        cls.folder = pathlib.Path(cls.holder.name)
-        cls.blob = build_ball(TACTREE, cls.folder)
+        super().setUpClass()
+        cls.blob = build_ball(TACTREE, cls.path)
         if BOARD != "host":
-            run = subprocess.run([TACTREE, "simulate", cls.blob, "--board", BOARD, "--seconds", "0.01"],
-                                 capture_output=True, text=True, timeout=120)
+            run = cls.run_tool("simulate", cls.blob, "--board", BOARD, "--seconds", "0.01")
             if run.returncode != 0 and "image" in run.stderr:
                 raise unittest.SkipTest(run.stderr)
-        cls.coarse = build_ball(TACTREE, cls.folder, "coarse", "--spacing", "0.003")
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.holder.cleanup()
+        cls.coarse = build_ball(TACTREE, cls.path, "coarse", "--spacing", "0.003")
 
     def run_verb(self, *arguments, code=0):
-        run = subprocess.run([TACTREE, *map(str, arguments)], capture_output=True, text=True, timeout=180)
+        run = self.run_tool(*arguments)
         self.assertEqual(run.returncode, code, (arguments, run.stdout, run.stderr))
         return run.stdout + run.stderr
 
     def read_json(self, *arguments, code=0):
-        path = self.folder / "result.json"
-        path.unlink(missing_ok=True)
-        self.run_verb(*arguments, "--json", path, code=code)
-        return json.loads(path.read_text())
+        (self.path / "result.json").unlink(missing_ok=True)
+        self.run_verb(*arguments, "--json", "result.json", code=code)
+        return self.read("result.json")
 
     def test_session_from_the_shell(self):
         with ServedBoard(TACTREE, self.blob, "--board", BOARD) as port:
@@ -61,7 +54,7 @@ class Link(unittest.TestCase):
 
     def test_writes_and_rolls_back_a_model(self):
         with ServedBoard(TACTREE, self.blob, "--board", BOARD) as port:
-            points = json.loads(self.info(self.coarse))["points"]
+            points = self.info(self.coarse)["points"]
             for _ in range(2):
                 slots = self.read_json("flash", self.coarse, "--port", port)["slots"]
             self.assertEqual([s["state"] for s in slots], ["ready", "in use"])
@@ -74,9 +67,8 @@ class Link(unittest.TestCase):
             self.run_verb("flash", "--port", port, code=2)
 
     def info(self, blob):
-        path = self.folder / "info.json"
-        self.run_verb("info", blob, "--json", path)
-        return path.read_text()
+        self.run_verb("info", blob, "--json", "info.json")
+        return self.read("info.json")
 
     def test_parameters(self):
         with ServedBoard(TACTREE, self.blob, "--board", BOARD) as port:
@@ -93,7 +85,7 @@ class Link(unittest.TestCase):
 
     @unittest.skipIf(BOARD != "host", "the images of emulated boards have no key")
     def test_board_with_a_key_refuses_unsigned_models(self):
-        key, other = self.folder / "key", self.folder / "other"
+        key, other = self.path / "key", self.path / "other"
         for name in (key, other):
             self.run_verb("keygen", name)
         self.assertEqual(key.stat().st_mode & 0o77, 0)
@@ -111,13 +103,13 @@ class Link(unittest.TestCase):
             self.run_verb("sign", self.coarse, "--key", key, "--counter", 4)
             self.assertIn("older", self.run_verb("flash", self.coarse, "--port", port, code=1))
         self.assertIn("valid", self.run_verb("check", self.coarse, "--key", f"{key}.pub"))
-        self.assertTrue(json.loads(self.info(self.coarse))["signature"]["valid"])
+        self.assertTrue(self.info(self.coarse)["signature"]["valid"])
         self.run_verb("check", self.coarse, "--key", f"{other}.pub", code=1)
         signature = pathlib.Path(f"{self.coarse}.sig")
         text = signature.read_text()
         signature.write_text(text.replace('"counter": 4', '"counter": 5'))
         self.assertIn("not a valid signature of this blob", self.run_verb("check", self.coarse, code=1))
-        self.assertFalse(json.loads(self.info(self.coarse))["signature"]["valid"])
+        self.assertFalse(self.info(self.coarse)["signature"]["valid"])
         signature.write_text("{}")
         self.assertIn("not a signature of a model", self.run_verb("check", self.coarse, code=1))
         signature.unlink()

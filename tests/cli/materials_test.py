@@ -2,12 +2,12 @@
 
 usage: materials_test.py TACTREE
 """
-import json
 import pathlib
-import subprocess
 import sys
-import tempfile
 import unittest
+
+sys.dont_write_bytecode = True
+from tool_folder import SharedFolder  # noqa: E402
 
 TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
 RED, BLUE = (250, 10, 5), (20, 30, 240)
@@ -43,20 +43,8 @@ def scan(suffix):
     return "\n".join(head + body) + "\n"
 
 
-class Materials(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.addCleanup(self.folder.cleanup)
-        self.path = pathlib.Path(self.folder.name)
-
-    def write(self, name, content):
-        text = content if isinstance(content, str) else json.dumps(content)
-        (self.path / name).write_text(text)
-        return name
-
-    def run_tool(self, *arguments):
-        return subprocess.run([TACTREE, *arguments], cwd=self.path, capture_output=True, text=True,
-                              check=False)
+class Materials(SharedFolder):
+    tool = TACTREE
 
     def ok(self, *arguments):
         done = self.run_tool(*arguments)
@@ -68,7 +56,7 @@ class Materials(unittest.TestCase):
         self.ok("build", "scan." + suffix, "--material", material, "-o", blob, "--progress", "off",
                 "--report", "report.json")
         self.ok("info", blob, "--json", "info.json")
-        return json.loads((self.path / "info.json").read_text())
+        return self.read("info.json")
 
     def two_colours(self):
         return self.write("map.json", {
@@ -87,7 +75,7 @@ class Materials(unittest.TestCase):
                 self.assertEqual((base["static_friction"], felt["static_friction"]), (0, 0.2))
                 self.assertEqual(base["points"] + felt["points"], info["points"])
                 self.assertAlmostEqual(felt["points"] / info["points"], 60 / 121, delta=0.02)
-                report = json.loads((self.path / "report.json").read_text())
+                report = self.read("report.json")
                 self.assertEqual([(m["name"], m["points"]) for m in report["materials"]],
                                  [("default", base["points"]), ("felt", felt["points"])])
 
@@ -96,7 +84,7 @@ class Materials(unittest.TestCase):
         self.write("path.csv", f"t_s,x,y,z\n0,{x},0,0.005\n0.2,{x},0,-0.002\n1,{x},0,-0.002\n")
         self.ok("simulate", "model.blob", "--path", "path.csv", "--seconds", "1", "--device",
                 "cartesian", "--device-friction", "0", "--json", "run.json", *options)
-        return json.loads((self.path / "run.json").read_text())
+        return self.read("run.json")
 
     def test_each_side_has_its_own_stiffness(self):
         self.build(self.two_colours())

@@ -4,40 +4,24 @@ usage: model_size_test.py TACTREE
 """
 import pathlib
 import re
-import subprocess
 import sys
-import tempfile
 import unittest
+
+sys.dont_write_bytecode = True
+from tool_folder import SharedFolder, sheet  # noqa: E402
 
 TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
 
 
-def sheet(half_m):
-    """A square sheet of 41 x 41 points, normals up."""
-    steps = [half_m * i / 20 for i in range(-20, 21)]
-    return "x,y,z,nx,ny,nz\n" + "".join(f"{x},{y},0,0,0,1\n" for x in steps for y in steps)
+class ModelSize(SharedFolder):
+    tool = TACTREE
 
-
-class ModelSize(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(folder.cleanup)
-        cls.folder = pathlib.Path(folder.name)
-        for name, half_m in (("small", 0.03), ("large", 0.6)):
-            (cls.folder / f"{name}.csv").write_text(sheet(half_m))
-            cls.build(name)
-        (cls.folder / "above.csv").write_text("t_s,x,y,z\n0,0,0,0.02\n1,0.01,0,0.02\n")
-
-    @classmethod
-    def build(cls, name, *options):
-        done = cls.run_tool("build", f"{name}.csv", "-o", f"{name}.blob", "--unit", "m", *options)
-        assert done.returncode == 0, done.stderr
-
-    @classmethod
-    def run_tool(cls, *arguments):
-        return subprocess.run([TACTREE, *map(str, arguments)], cwd=cls.folder, capture_output=True,
-                              text=True, check=False)
+        super().setUpClass()
+        cls.build_points("small", sheet(0.03, 0.0015), "--unit", "m")
+        cls.build_points("large", sheet(0.6, 0.03), "--unit", "m")
+        cls.write("above.csv", "t_s,x,y,z\n0,0,0,0.02\n1,0.01,0,0.02\n")
 
     def test_a_model_that_fits_gets_no_warning(self):
         done = self.run_tool("simulate", "small.blob", "--seconds", 1)
@@ -48,7 +32,7 @@ class ModelSize(unittest.TestCase):
         self.assertIn("warning: large.blob: the model is 1.2 x 1.2 x 0", done.stderr)
         self.assertIn(" m, more than falcon reaches", done.stderr)
         remedy = re.search(r"--fit (\S+)\)", done.stderr)
-        self.build("large", "--fit", remedy[1])
+        self.run_tool("build", "large.csv", "-o", "large.blob", "--unit", "m", "--fit", remedy[1])
         done = self.run_tool("simulate", "large.blob", "--device", "falcon", "--seconds", 1)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
 
@@ -59,7 +43,7 @@ class ModelSize(unittest.TestCase):
             done = self.run_tool("build", "large.csv", "-o", "fit.blob", "--fit", fit)
             self.assertEqual(done.returncode, code, fit)
             self.assertIn(words, done.stderr)
-            self.assertFalse((self.folder / "fit.blob").exists())
+            self.assertFalse((self.path / "fit.blob").exists())
 
     def test_a_session_without_contact_fails_unless_it_is_allowed(self):
         session = ("simulate", "small.blob", "--path", "above.csv", "--seconds", 1)

@@ -5,26 +5,19 @@ usage: preview_test.py TACTREE
 import math
 import pathlib
 import struct
-import subprocess
 import sys
-import tempfile
 import unittest
 import zlib
+
+sys.dont_write_bytecode = True
+from tool_folder import SharedFolder, ball, csv  # noqa: E402
 
 TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
 
 
 def shell(hole):
     """Points of a sphere of 4 cm, with normals, except those within `hole` (in radii) of the +x axis."""
-    rows = []
-    count = 20000
-    for i in range(count):
-        z, turn = 1 - (2 * i + 1) / count, i * math.pi * (3 - math.sqrt(5))
-        level = math.sqrt(1 - z * z)
-        n = (level * math.cos(turn), level * math.sin(turn), z)
-        if math.dist(n, (1, 0, 0)) > hole:
-            rows.append(" ".join(f"{v:.7f}" for v in (*(0.04 * c for c in n), *n)))
-    return "\n".join(rows) + "\n"
+    return csv((p, n) for p, n in ball(20000, 0.04) if math.dist(n, (1, 0, 0)) > hole)
 
 
 def add_left(line, _):
@@ -87,22 +80,16 @@ def purples(rows):
             if b > 1.25 * r > 1.5 * g]
 
 
-class Preview(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.addCleanup(self.folder.cleanup)
-        self.path = pathlib.Path(self.folder.name)
-
-    def run_verb(self, *arguments):
-        return subprocess.run([TACTREE, *arguments], cwd=self.path, capture_output=True, text=True, check=False)
+class Preview(SharedFolder):
+    tool = TACTREE
 
     def build(self, hole, *options):
-        (self.path / "ball.xyz").write_text(shell(hole))
-        return self.run_verb("build", "ball.xyz", "-o", "ball.blob", "--preview", "built.png", *options)
+        (self.path / "ball.csv").write_text(shell(hole))
+        return self.run_tool("build", "ball.csv", "-o", "ball.blob", "--preview", "built.png", *options)
 
     def test_a_hole_is_marked_in_the_front_view(self):
         self.assertEqual(self.build(0.25).returncode, 0)
-        self.assertEqual(self.run_verb("info", "ball.blob", "--preview", "known.png").returncode, 0)
+        self.assertEqual(self.run_tool("info", "ball.blob", "--preview", "known.png").returncode, 0)
         for name in ("built.png", "known.png"):
             width, height, rows = pixels(self.path / name)
             self.assertEqual((width, height), (1280, 720))
@@ -129,7 +116,7 @@ class Preview(unittest.TestCase):
         rows = [f"{0.001 * i} {0.001 * j} {0.002 * math.sin(0.1 * i)}" for i in range(60) for j in range(60)]
         (self.path / "sheet.xyz").write_text("\n".join(rows) + "\n")
         for options, doubtful in (((), True), (("--viewpoint", "0,0,1"), False)):
-            done = self.run_verb("build", "sheet.xyz", "-o", "y", "--preview", "y.png", *options)
+            done = self.run_tool("build", "sheet.xyz", "-o", "y", "--preview", "y.png", *options)
             self.assertEqual("ambiguous" in done.stderr, doubtful, done.stderr)
             _, _, picture = pixels(self.path / "y.png")
             corner = [picture[y][x] for y in range(21, 33) for x in range(41, 53)]
@@ -138,9 +125,9 @@ class Preview(unittest.TestCase):
 
     def test_a_scan_is_not_overwritten(self):
         before = shell(0.0)
-        done = self.build(0.0, "--preview", "ball.xyz")
+        done = self.build(0.0, "--preview", "ball.csv")
         self.assertNotEqual(done.returncode, 0)
-        self.assertEqual((self.path / "ball.xyz").read_text(), before)
+        self.assertEqual((self.path / "ball.csv").read_text(), before)
 
 
 if __name__ == "__main__":

@@ -2,12 +2,12 @@
 
 usage: replay_test.py TACTREE
 """
-import json
 import pathlib
-import subprocess
 import sys
-import tempfile
 import unittest
+
+sys.dont_write_bytecode = True
+from tool_folder import SharedFolder, sheet  # noqa: E402
 
 TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
 MOVING = {"bodies": [
@@ -16,30 +16,16 @@ MOVING = {"bodies": [
      "angular_velocity_rad_s": [0, 0, 0.3]}]}
 
 
-def sheet(height_m):
-    """6 cm wide, normals up."""
-    steps = [i * 1e-3 for i in range(-30, 31)]
-    return "x,y,z,nx,ny,nz\n" + "".join(f"{x},{y},{height_m},0,0,1\n" for x in steps for y in steps)
+class Replay(SharedFolder):
+    tool = TACTREE
 
-
-class Replay(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(folder.cleanup)
-        cls.folder = pathlib.Path(folder.name)
+        super().setUpClass()
         for name, height_m in (("low", 0.0), ("high", 0.001), ("other", 0.002)):
-            (cls.folder / f"{name}.csv").write_text(sheet(height_m))
-            done = cls.run_tool("build", f"{name}.csv", "-o", f"{name}.blob", "--spacing", 0.001,
-                                "--progress", "off")
-            assert done.returncode == 0, done.stderr
-        (cls.folder / "press.csv").write_text("t_s,x,y,z\n0,0,0,0.01\n0.2,0,0,-0.002\n1,0.01,0,-0.002\n")
-        (cls.folder / "moving.json").write_text(json.dumps(MOVING))
-
-    @classmethod
-    def run_tool(cls, *arguments):
-        return subprocess.run([TACTREE, *map(str, arguments)], cwd=cls.folder, capture_output=True,
-                              text=True, check=False)
+            cls.build_points(name, sheet(0.03, 0.001, height_m), "--spacing", 0.001)
+        cls.write("press.csv", "t_s,x,y,z\n0,0,0,0.01\n0.2,0,0,-0.002\n1,0.01,0,-0.002\n")
+        cls.write("moving.json", MOVING)
 
     def record(self, *arguments, codes=(0,)):
         """The checksum of a recorded session's trace; the recording is session.rec."""
@@ -47,12 +33,12 @@ class Replay(unittest.TestCase):
                              "press.csv", "--device", "cartesian", "--seconds", 1, "--json", "run.json",
                              "--record", "session.rec", *arguments)
         self.assertIn(done.returncode, codes, done.stderr)
-        run = json.loads((self.folder / "run.json").read_text())
+        run = self.read("run.json")
         self.assertGreater(run["contact_ticks"], 50)
         return run["trace_crc32"]
 
     def replay(self, *blobs, name="session.rec"):
-        (self.folder / "replay.json").unlink(missing_ok=True)
+        (self.path / "replay.json").unlink(missing_ok=True)
         return self.run_tool("simulate", *blobs, "--replay", name, "--json", "replay.json")
 
     def refuses(self, words, *blobs, name="session.rec"):
@@ -60,12 +46,12 @@ class Replay(unittest.TestCase):
         self.assertEqual(done.returncode, 1, done.stdout)
         for word in (name, *words):
             self.assertIn(word, done.stderr)
-        self.assertFalse((self.folder / "replay.json").exists())
+        self.assertFalse((self.path / "replay.json").exists())
 
     def expect_same(self, checksum, *blobs):
         done = self.replay(*blobs)
         self.assertEqual(done.returncode, 0, done.stderr + done.stdout)
-        self.assertEqual(json.loads((self.folder / "replay.json").read_text())["trace_crc32"], checksum)
+        self.assertEqual(self.read("replay.json")["trace_crc32"], checksum)
 
     def test_a_session_with_moving_bodies_replays_bit_for_bit(self):
         self.expect_same(self.record(), "low.blob", "high.blob")
@@ -86,24 +72,24 @@ class Replay(unittest.TestCase):
 
     def test_a_damaged_recording_is_refused(self):
         self.record()
-        data = bytearray((self.folder / "session.rec").read_bytes())
+        data = bytearray((self.path / "session.rec").read_bytes())
         data[len(data) // 2] ^= 4
-        (self.folder / "damaged.rec").write_bytes(data)
+        (self.path / "damaged.rec").write_bytes(data)
         self.refuses(["checksum"], "low.blob", "high.blob", name="damaged.rec")
 
     def test_a_truncated_or_foreign_recording_is_refused(self):
         self.record()
-        data = (self.folder / "session.rec").read_bytes()
+        data = (self.path / "session.rec").read_bytes()
         for size in (0, 3, 40, len(data) // 2, len(data) - 1):
-            (self.folder / "cut.rec").write_bytes(data[:size])
+            (self.path / "cut.rec").write_bytes(data[:size])
             self.refuses([], "low.blob", "high.blob", name="cut.rec")
         self.refuses([], "low.blob", "high.blob", name="low.blob")
 
     def test_a_huge_file_is_refused_by_its_header(self):
         self.record()
-        header = (self.folder / "session.rec").read_bytes()[:20]
+        header = (self.path / "session.rec").read_bytes()[:20]
         for begin, words in ((b"", "not a recording"), (header, "truncated or bytes were appended")):
-            with open(self.folder / "huge.rec", "wb") as huge:
+            with open(self.path / "huge.rec", "wb") as huge:
                 huge.write(begin)
                 huge.truncate(1 << 40)
             self.refuses([words], "low.blob", "high.blob", name="huge.rec")
@@ -112,7 +98,7 @@ class Replay(unittest.TestCase):
         done = self.run_tool("simulate", "low.blob", "--board", "mps2-an386", "--record", "board.rec")
         self.assertEqual(done.returncode, 1)
         self.assertIn("omit --board", done.stderr)
-        self.assertFalse((self.folder / "board.rec").exists())
+        self.assertFalse((self.path / "board.rec").exists())
 
     def test_record_and_replay_exclude_each_other(self):
         self.record()

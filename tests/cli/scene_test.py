@@ -2,13 +2,13 @@
 
 usage: scene_test.py TACTREE
 """
-import json
 import math
 import pathlib
-import subprocess
 import sys
-import tempfile
 import unittest
+
+sys.dont_write_bytecode = True
+from tool_folder import SharedFolder, ball, sheet  # noqa: E402
 
 TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
 IDENTITY = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]
@@ -20,60 +20,29 @@ def at(x, y, z):
     return pose
 
 
-def sheet():
-    """6 cm wide, z = 0, normals up."""
-    steps = [i * 1e-3 for i in range(-30, 31)]
-    return "x,y,z,nx,ny,nz\n" + "".join(f"{x},{y},0,0,0,1\n" for x in steps for y in steps)
+class Scenes(SharedFolder):
+    tool = TACTREE
 
-
-def ball():
-    """Of 2 cm radius, around the origin."""
-    count, radius = 5000, 0.02
-    rows = ["x,y,z,nx,ny,nz"]
-    for i in range(count):
-        z = 1 - (2 * i + 1) / count
-        r, turn = math.sqrt(1 - z * z), i * math.pi * (3 - math.sqrt(5))
-        n = (r * math.cos(turn), r * math.sin(turn), z)
-        rows.append(",".join(str(v) for v in [radius * c for c in n] + list(n)))
-    return "\n".join(rows) + "\n"
-
-
-def run_tool(folder, *arguments):
-    return subprocess.run([TACTREE, *map(str, arguments)], cwd=folder, capture_output=True, text=True,
-                          check=False)
-
-
-class Scenes(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(cls.folder.cleanup)
-        cls.path = pathlib.Path(cls.folder.name)
-        for name, points in (("sheet", sheet()), ("ball", ball())):
-            (cls.path / f"{name}.csv").write_text(points)
-            done = run_tool(cls.path, "build", f"{name}.csv", "-o", f"{name}.blob", "--spacing", 0.001,
-                            "--progress", "off")
-            assert done.returncode == 0, done.stderr
+        super().setUpClass()
+        cls.build_points("sheet", sheet(0.03, 0.001), "--spacing", 0.001)
+        cls.build_points("ball", ball(5000, 0.02), "--spacing", 0.001)
         # Rests 2 mm below z = 0.
-        (cls.path / "press.csv").write_text("t_s,x,y,z\n0,0,0,0.01\n0.2,0,0,-0.002\n1,0,0,-0.002\n")
-        (cls.path / "still.csv").write_text("t_s,x,y,z\n0,0,0,0.002\n1,0,0,0.002\n")
-
-    def write(self, name, content):
-        text = content if isinstance(content, str) else json.dumps(content)
-        (self.path / name).write_text(text)
-        return name
+        cls.write("press.csv", "t_s,x,y,z\n0,0,0,0.01\n0.2,0,0,-0.002\n1,0,0,-0.002\n")
+        cls.write("still.csv", "t_s,x,y,z\n0,0,0,0.002\n1,0,0,0.002\n")
 
     def run_scene(self, bodies, *arguments, path="press.csv", blobs=("sheet.blob", "ball.blob")):
         scene = self.write("scene.json", bodies if isinstance(bodies, str) else {"bodies": bodies})
         (self.path / "run.json").unlink(missing_ok=True)
-        return run_tool(self.path, "simulate", *blobs, "--scene", scene, "--path", path, "--seconds", 1,
-                        "--device", "cartesian", "--device-friction", 0, "--json", "run.json",
-                        *arguments)
+        return self.run_tool("simulate", *blobs, "--scene", scene, "--path", path, "--seconds", 1,
+                             "--device", "cartesian", "--device-friction", 0, "--json", "run.json",
+                             *arguments)
 
     def report(self, *arguments, **options):
         done = self.run_scene(*arguments, **options)
         self.assertEqual(done.returncode, 0, done.stderr)
-        return json.loads((self.path / "run.json").read_text()), done.stdout
+        return self.read("run.json"), done.stdout
 
     def test_each_body_is_reported(self):
         # Down onto the sheet, and along it into the ball, which is sunk in it by a half.
@@ -94,10 +63,10 @@ class Scenes(unittest.TestCase):
         self.assertIn("body 1             ball.blob: in contact", text)
 
     def test_blobs_without_a_scene_are_bodies_at_the_origin(self):
-        done = run_tool(self.path, "simulate", "sheet.blob", "sheet.blob", "--path", "press.csv",
-                        "--seconds", 1, "--json", "run.json")
+        done = self.run_tool("simulate", "sheet.blob", "sheet.blob", "--path", "press.csv",
+                             "--seconds", 1, "--json", "run.json")
         self.assertEqual(done.returncode, 0, done.stderr)
-        run = json.loads((self.path / "run.json").read_text())
+        run = self.read("run.json")
         self.assertEqual(len(run["bodies"]), 2)
         self.assertGreater(run["force_max_N"], 0.1)
         # In the same place they are one: as stiff as one of them.
@@ -110,10 +79,10 @@ class Scenes(unittest.TestCase):
 
     def test_a_body_at_rest_equals_a_run_without_a_scene(self):
         in_a_scene, _ = self.report([{"blob": "sheet.blob"}], blobs=())
-        done = run_tool(self.path, "simulate", "sheet.blob", "--path", "press.csv", "--seconds", 1,
-                        "--device", "cartesian", "--device-friction", 0, "--json", "plain.json")
+        done = self.run_tool("simulate", "sheet.blob", "--path", "press.csv", "--seconds", 1,
+                             "--device", "cartesian", "--device-friction", 0, "--json", "plain.json")
         self.assertEqual(done.returncode, 0, done.stderr)
-        plain = json.loads((self.path / "plain.json").read_text())
+        plain = self.read("plain.json")
         self.assertEqual(in_a_scene["trace_crc32"], plain["trace_crc32"])
         self.assertEqual(in_a_scene["contact_ticks"], plain["contact_ticks"])
 
@@ -198,15 +167,15 @@ class Scenes(unittest.TestCase):
         self.refused([{"blob": 0}] * 9, "scene.json: bodies: 9 bodies are outside 1 .. 8")
 
     def test_a_body_that_cannot_be_rendered_is_named(self):
-        done = run_tool(self.path, "build", "ball.csv", "-o", "paper.blob", "--profile", "paper",
-                        "--progress", "off")
+        done = self.run_tool("build", "ball.csv", "-o", "paper.blob", "--profile", "paper",
+                             "--progress", "off")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.refused([{"blob": 0}, {"blob": "paper.blob"}], "paper.blob: the blob was built without")
         (self.path / "broken.blob").write_bytes((self.path / "ball.blob").read_bytes()[:-8])
         self.refused([{"blob": 0}, {"blob": "broken.blob"}], "broken.blob: ")
 
     def test_reports_usage_errors(self):
-        done = run_tool(self.path, "simulate", "--scene", "none.json")
+        done = self.run_tool("simulate", "--scene", "none.json")
         self.assertEqual(done.returncode, 2, done.stderr)
         self.assertIn("none.json", done.stderr)
         self.refused([{"blob": 0}, {"blob": 1}], "--board mps2-an386: a board has one blob in its flash, "

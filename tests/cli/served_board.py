@@ -1,22 +1,12 @@
 """A simulated board in a separate process, for tests of the commands that use a board."""
-import math
 import subprocess
 
-
-def write_ball(path, points=3000):
-    """A ball of 3 cm radius, with normals."""
-    rows = ["x,y,z,nx,ny,nz"]
-    for i in range(points):
-        z = 1 - 2 * (i + 0.5) / points
-        r, a = math.sqrt(1 - z * z), 2.399963 * i
-        n = (r * math.cos(a), r * math.sin(a), z)
-        rows.append(",".join(f"{v:.9g}" for v in (*(0.03 * c for c in n), *n)))
-    path.write_text("\n".join(rows) + "\n")
+from tool_folder import ball, csv
 
 
-def build_ball(tactree, folder, name="ball", *options):
+def build_ball(tactree, folder, name="ball", *options, points=3000, radius=0.03):
     scan, blob = folder / "ball.csv", folder / f"{name}.blob"
-    write_ball(scan)
+    scan.write_text(csv(ball(points, radius)))
     subprocess.run([tactree, "build", scan, "--unit", "m", "-o", blob, *options], check=True,
                    capture_output=True)
     return blob

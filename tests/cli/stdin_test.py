@@ -2,18 +2,15 @@
 
 usage: stdin_test.py TACTREE
 """
-import json
 import os
 import pathlib
 import resource
 import struct
-import subprocess
 import sys
-import tempfile
 import unittest
 
 sys.dont_write_bytecode = True
-from tool_folder import sphere, write_3mf  # noqa: E402
+from tool_folder import SharedFolder, sphere, write_3mf  # noqa: E402
 
 TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
 
@@ -22,12 +19,12 @@ def small_files():
     resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))
 
 
-class Folder(unittest.TestCase):
+class Folder(SharedFolder):
+    tool = TACTREE
+
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(folder.cleanup)
-        cls.path = pathlib.Path(folder.name)
+        super().setUpClass()
         cls.spool = cls.path / "spool"
         cls.spool.mkdir()
         cls.scan = sphere(1500, 0.05).encode()
@@ -37,9 +34,8 @@ class Folder(unittest.TestCase):
 
     @classmethod
     def run_tool(cls, *arguments, stdin=b"", **options):
-        done = subprocess.run([TACTREE, *arguments], cwd=cls.path, check=False, input=stdin,
-                              capture_output=True, timeout=60,
-                              env={**os.environ, "TMPDIR": str(cls.spool)}, **options)
+        done = super().run_tool(*arguments, text=False, input=stdin,
+                                env={**os.environ, "TMPDIR": str(cls.spool)}, **options)
         done.stdout, done.stderr = done.stdout.decode(), done.stderr.decode()
         return done
 
@@ -48,7 +44,7 @@ class Folder(unittest.TestCase):
                              stdin=stdin)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(os.listdir(self.spool), [])
-        return json.loads((self.path / "r.json").read_text())
+        return self.read("r.json")
 
     def refused(self, stdin, *arguments, **options):
         done = self.run_tool(*arguments, stdin=stdin, **options)

@@ -1,4 +1,5 @@
 """A folder with a scan in which tests run the tool, and small scans in files."""
+import json
 import math
 import pathlib
 import subprocess
@@ -12,16 +13,28 @@ FACES = [(0, 2, 1), (1, 2, 3), (4, 5, 6), (5, 7, 6), (0, 1, 4), (1, 5, 4),
          (2, 6, 3), (3, 6, 7), (0, 4, 2), (2, 4, 6), (1, 3, 5), (3, 7, 5)]
 
 
-def sphere(count, radius):
-    """Evenly spread points, one text line each."""
-    golden = math.pi * (3 - math.sqrt(5))
-    lines = []
+def ball(count, radius):
+    """Evenly spread points of a ball around the origin: its coordinates and its normal, of each."""
     for i in range(count):
-        z = 1 - (2 * i + 1) / count
+        z, turn = 1 - (2 * i + 1) / count, i * math.pi * (3 - math.sqrt(5))
         ring = math.sqrt(1 - z * z)
-        lines.append(f"{radius * ring * math.cos(golden * i)} "
-                     f"{radius * ring * math.sin(golden * i)} {radius * z}")
-    return "\n".join(lines) + "\n"
+        normal = (ring * math.cos(turn), ring * math.sin(turn), z)
+        yield [radius * c for c in normal], normal
+
+
+def sheet(half_m, step_m, height_m=0.0):
+    """Points of a square sheet, normals up."""
+    steps = [step_m * i for i in range(-round(half_m / step_m), round(half_m / step_m) + 1)]
+    return [((x, y, height_m), (0, 0, 1)) for x in steps for y in steps]
+
+
+def csv(points):
+    return "x,y,z,nx,ny,nz\n" + "".join(",".join(f"{v:.9g}" for v in (*p, *n)) + "\n" for p, n in points)
+
+
+def sphere(count, radius):
+    """Points of a ball, one text line each."""
+    return "".join(f"{p[0]} {p[1]} {p[2]}\n" for p, _ in ball(count, radius))
 
 
 def write_3mf(path, target="3D/a.model", *pictures, unit="millimeter"):
@@ -43,20 +56,44 @@ def write_3mf(path, target="3D/a.model", *pictures, unit="millimeter"):
                          '<item objectid="1"/></build></model>')
 
 
-class ToolFolder(unittest.TestCase):
-    """Each test has a folder of its own, with `points` points of a ball in s.xyz."""
+class SharedFolder(unittest.TestCase):
+    """Runs the tool in a folder that all tests of a class share."""
     tool: pathlib.Path
+
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.path = pathlib.Path(folder.name)
+
+    @classmethod
+    def run_tool(cls, *arguments, **options):
+        options = {"capture_output": True, "text": True, "check": False, **options}
+        return subprocess.run([cls.tool, *map(str, arguments)], cwd=cls.path, **options)
+
+    @classmethod
+    def build_points(cls, name, points, *options):
+        """NAME.csv and NAME.blob."""
+        cls.write(f"{name}.csv", csv(points))
+        done = cls.run_tool("build", f"{name}.csv", "-o", f"{name}.blob", "--progress", "off", *options)
+        assert done.returncode == 0, done.stderr
+
+    @classmethod
+    def write(cls, name, content):
+        (cls.path / name).write_text(content if isinstance(content, str) else json.dumps(content))
+        return name
+
+    def read(self, name):
+        return json.loads((self.path / name).read_text())
+
+
+class ToolFolder(SharedFolder):
+    """Each test has a folder of its own, with `points` points of a ball in s.xyz."""
     points = 2000
 
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.path = pathlib.Path(folder.name)
-        (self.path / "s.xyz").write_text(sphere(self.points, 0.05))
-
-    def run_tool(self, *arguments, **options):
-        options = {"capture_output": True, "text": True, "timeout": 60, **options}
-        return subprocess.run([self.tool, *arguments], cwd=self.path, check=False, **options)
+        type(self).setUpClass()
+        self.write("s.xyz", sphere(self.points, 0.05))
 
     def build(self, *arguments):
         done = self.run_tool("build", "s.xyz", "-o", "s.blob", *arguments)

@@ -4,10 +4,10 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
-#include <functional>
 #include <memory>
 
 #include "boards_for_test.hpp"
+#include "message_of.hpp"
 
 namespace tactree::test {
 namespace {
@@ -19,16 +19,6 @@ using Bytes = std::vector<std::byte>;
 Bytes good_blob() {
   const std::span<const std::byte> bytes = touched_shape().bytes();
   return {bytes.begin(), bytes.end()};
-}
-
-/// Message of the error that the action throws.
-std::string error_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const EmulationError& error) {
-    return error.what();
-  }
-  return "no error";
 }
 
 void expect_in(const std::string& words, const std::string& text) {
@@ -91,7 +81,8 @@ TEST_P(BlobOnBoard, OversizedIsRefusedBeforeBoot) {
   const std::size_t size = board().blob_bytes_max + std::size_t{1};
   const std::unique_ptr<std::byte[]> untouched(new std::byte[size]);
   const std::span<const std::byte> blob(untouched.get(), size);
-  const std::string error = error_of([&] { EmulatedTarget(board(), blob, options()); });
+  const std::string error =
+      message_of<EmulationError>([&] { EmulatedTarget(board(), blob, options()); });
   expect_in(board().name, error);
   expect_in(std::to_string(blob.size()) + " bytes", error);
   expect_in("--flash-budget " + std::to_string(board().blob_bytes_max), error);
@@ -127,7 +118,7 @@ TACTREE_ON_EVERY_BOARD(Failure);
 TEST_P(Failure, ReportsFaultingImage) {
   emulation::EmulationOptions faulty = options();
   faulty.image = built(board(), "tests/on_target", std::string("faulty-") + board().name);
-  const std::string error = error_of([&] {
+  const std::string error = message_of<EmulationError>([&] {
     hal::sim::SimBoard device({}, {});
     EmulatedTarget target(board(), good_blob(), faulty);
     (void)target.start(device, {});
@@ -143,7 +134,8 @@ TEST_P(Failure, ReportsSilentBoard) {
   emulation::EmulationOptions silent = options();
   silent.image = built(board(), "tests/on_target", std::string("silent-") + board().name);
   silent.start_limit = std::chrono::milliseconds(500);
-  const std::string error = error_of([&] { EmulatedTarget(board(), good_blob(), silent); });
+  const std::string error =
+      message_of<EmulationError>([&] { EmulatedTarget(board(), good_blob(), silent); });
   expect_in("no message for 0.5 s", error);
 }
 
@@ -156,14 +148,15 @@ TEST_P(Failure, RefusesImageOfAnotherBoard) {
     wrong.image = built(other, "firmware", other.name);
     // It may not start on this board.
     wrong.start_limit = std::chrono::milliseconds(2000);
-    EXPECT_NE(error_of([&] { EmulatedTarget(board(), good_blob(), wrong); }), "no error");
+    EXPECT_NE(message_of<EmulationError>([&] { EmulatedTarget(board(), good_blob(), wrong); }), "");
   }
 }
 
 TEST_P(Failure, ReportsEarlyEmulatorEnd) {
   emulation::EmulationOptions wrong = options();
   wrong.image = source_folder() / "build/does-not-exist.elf";
-  const std::string error = error_of([&] { EmulatedTarget(board(), good_blob(), wrong); });
+  const std::string error =
+      message_of<EmulationError>([&] { EmulatedTarget(board(), good_blob(), wrong); });
   expect_in("the emulator terminated unexpectedly", error);
   expect_in("does-not-exist", error);
 }
@@ -171,13 +164,15 @@ TEST_P(Failure, ReportsEarlyEmulatorEnd) {
 TEST_P(Failure, NamesMissingEmulatorPackage) {
   const std::string path = std::getenv("PATH");
   ::setenv("PATH", "/nonexistent", 1);
-  const std::string error = error_of([&] { EmulatedTarget(board(), good_blob(), options()); });
+  const std::string error =
+      message_of<EmulationError>([&] { EmulatedTarget(board(), good_blob(), options()); });
   ::setenv("PATH", path.c_str(), 1);
   expect_in(std::string("apt-get install ") + board().package, error);
 }
 
 TEST_P(Failure, NamesMissingImageBuildCommands) {
-  const std::string error = error_of([&] { (void)emulation::find_image(board(), "/nonexistent"); });
+  const std::string error =
+      message_of<EmulationError>([&] { (void)emulation::find_image(board(), "/nonexistent"); });
   expect_in(std::string(board().name) + ".elf", error);
   expect_in(std::string("cmake --build --preset ") + board().toolchain, error);
 }

@@ -7,8 +7,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <limits>
 #include <memory>
@@ -17,6 +15,7 @@
 #include <vector>
 
 #include "leaf_set.hpp"
+#include "memory_file.hpp"
 #include "tactree/builder/model.hpp"
 #include "tactree/core/contact/paper_mode.hpp"
 #include "tactree/core/contact/renderer.hpp"
@@ -29,14 +28,7 @@
 namespace {
 
 using namespace tactree::core;
-
-// std::abort() in every build type, unlike an assertion.
-void require(bool good, const char* sentence) {
-  if (!good) {
-    std::fprintf(stderr, "finding: %s\n", sentence);
-    std::abort();
-  }
-}
+using tactree::fuzz::require;
 
 /// A copy of the bytes in memory of exactly that size, for AddressSanitizer.
 class ExactCopy {
@@ -185,39 +177,27 @@ class Examination {
 
   void ask(Vec3 probe, float r) {
     const NearestPoint nearest = nearest_within(view_, probe, r);
-    std::vector<std::uint32_t> around(view_.header().points_per_query_max);
-    const PointsWithin within = points_within(view_, probe, r, around);
-    require(within.count <= around.size(), "more points than the buffer holds");
-    require(nearest.found() == (within.count > 0), "nearest and all points within r disagree");
     if (!is_finite(probe)) {
       require(!nearest.found(), "a point near a probe that is nowhere");
       return;
     }
-    compare_with_all_points(probe, r, nearest, {around.data(), within.count}, within.complete);
+    compare_with_all_points(probe, r, nearest);
     const bool boxed = in_any_vertex_box(view_, probe);
     const float half = 0.5F * view_.header().aabb_edge_m;
     require(!boxed || half <= view_.reach_m(), "a vertex box beyond the reach");
   }
 
-  void compare_with_all_points(Vec3 probe, float r, const NearestPoint& nearest,
-                               std::span<const std::uint32_t> around, bool complete) {
+  void compare_with_all_points(Vec3 probe, float r, const NearestPoint& nearest) {
     const double slack = tolerance(probe);
     const double limit = static_cast<double>(r);
     double best = std::numeric_limits<double>::infinity();
-    std::size_t surely = 0;
     for (const PlacedPoint& p : points_) {
-      const double d = distance(p, probe);
-      best = std::min(best, d);
-      surely += d < limit - slack ? 1U : 0U;
+      best = std::min(best, distance(p, probe));
     }
     require(nearest.found() || best > limit - slack, "the nearest point was missed");
-    require(!complete || around.size() >= surely, "points within r were missed");
-    for (const std::uint32_t index : around) {
-      require(index < points_.size(), "points_within() names a point that does not exist");
-      require(distance(points_[index], probe) < limit + slack, "a point beyond r");
-    }
     if (nearest.found()) {
       require(nearest.index < points_.size(), "nearest_within() names a point that does not exist");
+      require(distance(points_[nearest.index], probe) < limit + slack, "a point beyond r");
       require(distance(points_[nearest.index], probe) < best + slack, "a nearer point was missed");
     }
   }
@@ -233,9 +213,7 @@ class Examination {
   }
 
   void refuse_radius(float r) {
-    std::uint32_t room[4];
     require(!nearest_within(view_, make_probe(0), r).found(), "an answer beyond the reach");
-    require(points_within(view_, make_probe(0), r, room).count == 0, "points beyond the reach");
   }
 
   // The steps of the controller with an accepted model.

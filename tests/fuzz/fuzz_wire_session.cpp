@@ -6,11 +6,10 @@
 // has a model store on simulated flash that counts incorrect accesses. The input does not know the
 // token for arming, so the board must never become active.
 
-#include <cstdio>
-#include <cstdlib>
 #include <span>
 #include <vector>
 
+#include "memory_file.hpp"
 #include "session_rig.hpp"
 #include "tactree/hal/sim/flash.hpp"
 #include "tactree/store/model_store.hpp"
@@ -18,19 +17,12 @@
 namespace {
 
 using namespace tactree;
+using fuzz::require;
 using Bytes = std::vector<std::byte>;
 using Store = store::ModelStore<hal::sim::SimFlash>;
 
 constexpr std::uint8_t kRaw = 0xFF;
 constexpr std::size_t kMaxMessages = 64;
-
-// std::abort() in every build type, unlike an assertion.
-void require(bool good, const char* sentence) {
-  if (!good) {
-    std::fprintf(stderr, "finding: %s\n", sentence);
-    std::abort();
-  }
-}
 
 Bytes sealed(std::uint8_t kind, std::uint16_t session, std::uint16_t sequence,
              std::span<const std::byte> payload) {

@@ -20,6 +20,7 @@
 #include <string>
 #include <vector>
 
+#include "bytes_of.hpp"
 #include "e57_writer.hpp"
 #include "las_writer.hpp"
 #include "tactree/builder/model.hpp"
@@ -36,6 +37,7 @@ using tactree::builder::Model;
 using tactree::core::BlobHeader;
 using tactree::core::BlobMaterial;
 using tactree::core::Profile;
+using tactree::test::bytes_of;
 using Bytes = std::vector<std::byte>;
 
 void write(const fs::path& path, std::span<const std::byte> bytes) {
@@ -186,64 +188,59 @@ void write_broken_blobs(const fs::path& folder) {
   write(folder / "kTooShort.nothing", Bytes{});
 }
 
-template <typename T>
-void append(std::string& out, T value, bool swap = false) {
-  char bytes[sizeof value];
-  std::memcpy(bytes, &value, sizeof value);
-  for (std::size_t i = 0; i < sizeof value; ++i) {
-    out += bytes[swap ? sizeof value - 1 - i : i];
-  }
+std::string ply_with_lists(const std::string& format, const std::string& body) {
+  return "ply\nformat " + format +
+         " 1.0\nelement vertex 4\nproperty float x\nproperty double y\nproperty short z\n"
+         "property list uchar int tags\nproperty uchar red\nproperty uchar green\n"
+         "property uchar blue\nelement face 2\nproperty list uchar int "
+         "vertex_indices\nend_header\n" +
+         body;
 }
 
 std::string ply_binary(bool big_endian) {
-  std::string out = std::string("ply\nformat ") +
-                    (big_endian ? "binary_big_endian" : "binary_little_endian") +
-                    " 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
-                    "property uchar red\nelement face 2\n"
-                    "property list uchar int vertex_indices\nend_header\n";
-  for (const auto& [x, y, z] : {std::array{0.0F, 0.0F, 0.0F}, std::array{1.0F, 0.0F, 0.0F},
-                                std::array{1.0F, 1.0F, 0.0F}, std::array{0.0F, 1.0F, 0.5F}}) {
-    append(out, x, big_endian);
-    append(out, y, big_endian);
-    append(out, z, big_endian);
-    out += static_cast<char>(200);
+  std::string body;
+  for (int i = 0; i < 4; ++i) {
+    body += bytes_of(static_cast<float>(i), big_endian) + bytes_of(1.0 * i * i, big_endian) +
+            bytes_of(std::int16_t{5}, big_endian) + '\x01' + bytes_of(7, big_endian) + "rgb";
   }
-  for (const auto& corners : {std::array{0, 1, 2}, std::array{0, 2, 3}}) {
-    out += static_cast<char>(3);
-    for (const std::int32_t corner : corners) {
-      append(out, corner, big_endian);
-    }
+  body += '\x04';
+  for (const int corner : {0, 1, 2, 3}) {
+    body += bytes_of(corner, big_endian);
   }
-  return out;
+  body += '\x03';
+  for (const int corner : {0, 1, 2}) {
+    body += bytes_of(corner, big_endian);
+  }
+  return ply_with_lists(big_endian ? "binary_big_endian" : "binary_little_endian", body);
 }
 
 /// Three corners with normals and colours, and the triangle between them.
 std::string off_binary() {
   std::string out = "CNOFF BINARY\n";
   for (const std::int32_t count : {3, 1, 0}) {
-    append(out, count, true);
+    out += bytes_of(count, true);
   }
   for (const auto& [x, y] :
        {std::array{0.0F, 0.0F}, std::array{1.0F, 0.0F}, std::array{0.0F, 1.0F}}) {
     for (const float value : {x, y, 0.0F, 0.0F, 0.0F, 1.0F, 1.0F, 0.5F, 0.0F, 1.0F}) {
-      append(out, value, true);
+      out += bytes_of(value, true);
     }
   }
   for (const std::int32_t corner :
        {3, 0, 1, 2, 0}) {  // the first is the count, the last of colours
-    append(out, corner, true);
+    out += bytes_of(corner, true);
   }
   return out;
 }
 
 std::string stl_binary() {
   std::string out(80, ' ');
-  append(out, std::uint32_t{2});
+  out += bytes_of(std::uint32_t{2});
   for (int triangle = 0; triangle < 2; ++triangle) {
     for (int i = 0; i < 12; ++i) {
-      append(out, static_cast<float>((triangle + i * i) % 5));
+      out += bytes_of(static_cast<float>((triangle + i * i) % 5));
     }
-    append(out, std::uint16_t{0});
+    out += bytes_of(std::uint16_t{0});
   }
   return out;
 }
@@ -288,17 +285,17 @@ void write_laser_scans(const fs::path& folder) {
 void write_scans(const fs::path& folder) {
   std::string floats;
   for (int i = 0; i < 9; ++i) {
-    append(floats, 0.25F * static_cast<float>(i));
+    floats += bytes_of(0.25F * static_cast<float>(i));
   }
   // A compressed body of LZF literal runs only.
   std::string runs;
-  append(runs, static_cast<std::uint8_t>(31));
+  runs += bytes_of(static_cast<std::uint8_t>(31));
   runs += floats.substr(0, 32);
-  append(runs, static_cast<std::uint8_t>(3));
+  runs += bytes_of(static_cast<std::uint8_t>(3));
   runs += floats.substr(32);
   std::string compressed;
-  append(compressed, static_cast<std::uint32_t>(runs.size()));
-  append(compressed, static_cast<std::uint32_t>(floats.size()));
+  compressed += bytes_of(static_cast<std::uint32_t>(runs.size()));
+  compressed += bytes_of(static_cast<std::uint32_t>(floats.size()));
   compressed += runs;
 
   write(
@@ -307,6 +304,9 @@ void write_scans(const fs::path& folder) {
       "property float z\nproperty float nx\nproperty float ny\nproperty float nz\nelement face 1\n"
       "property list uchar int vertex_indices\nend_header\n0 0 0 0 0 1\n1 0 0 0 0 1\n"
       "0 1 0 0 0 1\n3 0 1 2\n");
+  write(folder / "ply_lists", ply_with_lists("ascii",
+                                             "0 0 0 0 1 2 3\n1 0 0 1 9 1 2 3\n1 1 0 2 9 9 1 2 3\n"
+                                             "0 1 0 0 1 2 3\n4 0 1 2 3\n3 0 1 2\n"));
   write(folder / "ply_little_endian", ply_binary(false));
   write(folder / "ply_big_endian", ply_binary(true));
   write(folder / "pcd_ascii", pcd("ascii", "0 0 0\n1 0 0\nnan nan nan\n"));
@@ -315,9 +315,15 @@ void write_scans(const fs::path& folder) {
   write(folder / "xyz", "0 0 0\n1 0 0\n0 1 0\n1 1 0.5\n");
   write(folder / "pts", "3\n0 0 0 12 255 0 0\n1 0 0 12 0 255 0\n0 1 0 12 0 0 255\n");
   write(folder / "csv", "x,y,z,red,green,blue\n0,0,0,1,2,3\n1,0,0,1,2,3\n0,1,0,1,2,3\n");
+  std::string normals = "//X,Y,Z,Nx,Ny,Nz\n3\n";
+  for (int i = 0; i < 20; ++i) {
+    normals += std::to_string(i) + ",2,-3e2,0,0,1\n";
+  }
+  write(folder / "csv_normals", normals);
   write(folder / "csv_semicolon", "\"X\";\"Y\";\"Z\"\r\n0,5;1,5;2,5\r\n1,5;1,5;2,5\r\n2,5;1;2\r\n");
   write(folder / "obj",
-        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\nf -4 -2 -1\n");
+        "mtllib a.mtl\nv 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 1 1 0 1 0 0\nv 0 1 0 1 0 0\nvn 0 0 1\n"
+        "f 1//1 2//1 3//1 4//1\nf -1 -2 \\\n-3\n");
   write(folder / "ptx",
         "2\n2\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n0 1 0 0\n-1 0 0 0\n0 0 1 0\n10 20 30 1\n"
         "2 1 1 0.5 9 8 7\n2 1 0 0.5 9 8 7\n2 0 1 0.5 9 8 7\n0 0 0 0.5 0 0 0\n");
@@ -342,9 +348,9 @@ void write_firmware(const fs::path& folder) {
   std::string code(256, '\x42');
   code += std::string("TACTIMG\0", 8) + "board" + std::string(19, '\0');
   for (const std::uint32_t word : {kCode, kCode + 0x10000, kCode + 0x20000, kCode + 0x40000, 0U}) {
-    append(code, word);
+    code += bytes_of(word);
   }
-  append(code, tactree::core::crc32(std::as_bytes(std::span(code))));
+  code += bytes_of(tactree::core::crc32(std::as_bytes(std::span(code))));
   for (const int machine : {EM_ARM, EM_RISCV}) {
     Elf32_Ehdr header{};
     std::memcpy(header.e_ident, ELFMAG, SELFMAG);
@@ -361,8 +367,8 @@ void write_firmware(const fs::path& folder) {
     segment.p_paddr = kCode;
     segment.p_filesz = static_cast<Elf32_Word>(code.size());
     std::string file;
-    append(file, header);
-    append(file, segment);
+    file += bytes_of(header);
+    file += bytes_of(segment);
     write(folder / (machine == EM_ARM ? "arm" : "riscv"), file + code);
   }
 }

@@ -237,11 +237,16 @@ class Controller : public testing::Test {
         << report();
   }
 
-  /// Serves, homes, arms and presses.
-  void hold() {
+  /// Serves, homes and arms.
+  void activate() {
     serve();
     home();
     arm();
+  }
+
+  /// Serves, homes, arms and presses.
+  void hold() {
+    activate();
     press();
     ASSERT_FALSE(HasFatalFailure());
     ASSERT_TRUE(is_enabled());

@@ -60,11 +60,7 @@ TEST_F(Controller, HomesArmsRendersAndStops) {
 TEST_F(Controller, RendersBunny) {
   file_["model"] = bunny;
   above_m_ = 0.1;
-  serve();
-  ASSERT_FALSE(HasFatalFailure());
-  home();
-  ASSERT_FALSE(HasFatalFailure());
-  arm();
+  activate();
   ASSERT_FALSE(HasFatalFailure());
   const auto push_N = [&] {
     return std::hypot(hands().effort_N[0], hands().effort_N[1], hands().effort_N[2]);
@@ -96,11 +92,7 @@ TEST_F(Controller, FaultsOnEdgeQueueOverflow) {
   EXPECT_EQ(run({"--version"}), 0);
   const int fits = holds(output(), "libgpiod 1.") ? 6 : 200;
   file_["real_time"]["guard_ms"] = 1000;
-  serve();
-  ASSERT_FALSE(HasFatalFailure());
-  home();
-  ASSERT_FALSE(HasFatalFailure());
-  arm();
+  activate();
   ASSERT_FALSE(HasFatalFailure());
   hands().flips = fits;
   std::this_thread::sleep_for(100ms);

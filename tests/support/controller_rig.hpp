@@ -39,6 +39,15 @@ class ControllerRig {
     return output;
   }
 
+  /// The output of the last of these ticks.
+  core::Output rest(int ticks) {
+    core::Output output = step();
+    for (int i = 1; i < ticks; ++i) {
+      output = step();
+    }
+    return output;
+  }
+
   void move(double x, double y, double z) {
     const double position[core::kAxes] = {x, y, z};
     const core::DeviceModel& device = controller.configuration().device;

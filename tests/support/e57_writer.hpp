@@ -3,10 +3,11 @@
 
 #include <bit>
 #include <cstdint>
-#include <cstring>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "bytes_of.hpp"
 
 namespace tactree::test {
 
@@ -74,13 +75,6 @@ inline std::string e57_pose(const std::string& quaternion_wxyz,
 
 namespace e57 {
 
-template <typename T>
-std::string bytes(T value) {
-  std::string text(sizeof value, '\0');
-  std::memcpy(text.data(), &value, sizeof value);
-  return text;
-}
-
 inline std::string packed(const E57Column& column) {
   std::string stream;
   std::size_t bit = 0;
@@ -102,14 +96,14 @@ inline std::string data_packet(const std::vector<std::string>& parts) {
   std::string lengths;
   std::string content;
   for (const std::string& part : parts) {
-    lengths += bytes(static_cast<std::uint16_t>(part.size()));
+    lengths += bytes_of(static_cast<std::uint16_t>(part.size()));
     content += part;
   }
   std::size_t size = 6 + lengths.size() + content.size();
   content.append((4 - size % 4) % 4, '\0');
   size = 6 + lengths.size() + content.size();
-  return std::string("\1\0", 2) + bytes(static_cast<std::uint16_t>(size - 1)) +
-         bytes(static_cast<std::uint16_t>(parts.size())) + lengths + content;
+  return std::string("\1\0", 2) + bytes_of(static_cast<std::uint16_t>(size - 1)) +
+         bytes_of(static_cast<std::uint16_t>(parts.size())) + lengths + content;
 }
 
 /// An index packet, an empty one, then the data; begins at the logical offset `begin`.
@@ -128,8 +122,8 @@ inline std::string section(const E57TestScan& scan, std::uint64_t begin) {
     }
     packets += data_packet(parts);
   }
-  return std::string("\1\0\0\0\0\0\0\0", 8) + bytes<std::uint64_t>(32 + packets.size()) +
-         bytes(physical(begin + 32)) + bytes(std::uint64_t{0}) + packets;
+  return std::string("\1\0\0\0\0\0\0\0", 8) + bytes_of<std::uint64_t>(32 + packets.size()) +
+         bytes_of(physical(begin + 32)) + bytes_of(std::uint64_t{0}) + packets;
 }
 
 }  // namespace e57
@@ -145,7 +139,7 @@ inline std::string e57_pages(std::string logical) {
       for (int bit = 0; bit < 8; ++bit) crc = crc >> 1 ^ ((crc & 1U) != 0 ? 0x82f63b78U : 0);
     }
     const std::uint32_t stored = __builtin_bswap32(~crc);
-    file += logical.substr(at, 1020) + e57::bytes(stored);
+    file += logical.substr(at, 1020) + bytes_of(stored);
   }
   return file;
 }
@@ -182,10 +176,10 @@ inline std::string e57_file(const std::vector<E57TestScan>& scans) {
   xml += "</data3D></e57Root>";
   const std::uint64_t xml_at = logical.size();
   const std::uint64_t pages = (xml_at + xml.size() + 1019) / 1020;
-  const std::string header =
-      "ASTM-E57" + e57::bytes(1U) + e57::bytes(0U) + e57::bytes<std::uint64_t>(1024 * pages) +
-      e57::bytes(e57::physical(xml_at)) + e57::bytes<std::uint64_t>(xml.size()) +
-      e57::bytes(std::uint64_t{1024});
+  const std::string header = "ASTM-E57" + bytes_of(1U) + bytes_of(0U) +
+                             bytes_of<std::uint64_t>(1024 * pages) +
+                             bytes_of(e57::physical(xml_at)) + bytes_of<std::uint64_t>(xml.size()) +
+                             bytes_of(std::uint64_t{1024});
   return e57_pages(logical.replace(0, 48, header) + xml);
 }
 

@@ -3,9 +3,10 @@
 
 #include <array>
 #include <cstdint>
-#include <cstring>
 #include <string>
 #include <vector>
+
+#include "bytes_of.hpp"
 
 namespace tactree::test {
 
@@ -27,25 +28,18 @@ struct LasFile {
   std::size_t extra_bytes = 0;  ///< behind each point
 };
 
-template <typename T>
-std::string las_bytes(T value) {
-  std::string text(sizeof value, '\0');
-  std::memcpy(text.data(), &value, sizeof value);
-  return text;
-}
-
 inline std::string las_record(const std::string& user, std::uint16_t id,
                               const std::string& content) {
-  return las_bytes(std::uint16_t{0}) + user + std::string(16 - user.size(), '\0') + las_bytes(id) +
-         las_bytes(static_cast<std::uint16_t>(content.size())) + std::string(32, '\0') + content;
+  return bytes_of(std::uint16_t{0}) + user + std::string(16 - user.size(), '\0') + bytes_of(id) +
+         bytes_of(static_cast<std::uint16_t>(content.size())) + std::string(32, '\0') + content;
 }
 
 /// Keys of a coordinate system, each with the code of its value.
 inline std::string las_geo_keys(const std::vector<std::array<std::uint16_t, 2>>& keys) {
   std::string directory =
-      las_bytes(std::array<std::uint16_t, 4>{1, 1, 0, static_cast<std::uint16_t>(keys.size())});
+      bytes_of(std::array<std::uint16_t, 4>{1, 1, 0, static_cast<std::uint16_t>(keys.size())});
   for (const auto& [key, value] : keys) {
-    directory += las_bytes(std::array<std::uint16_t, 4>{key, 0, 1, value});
+    directory += bytes_of(std::array<std::uint16_t, 4>{key, 0, 1, value});
   }
   return las_record("LASF_Projection", 34735, directory);
 }
@@ -54,12 +48,12 @@ inline std::string las_point(const LasPoint& point, int format, std::size_t extr
   constexpr std::array<std::size_t, 11> kBytes = {20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
   constexpr std::array<std::size_t, 11> kColour = {0, 0, 20, 28, 0, 28, 0, 30, 30, 0, 30};
   const auto kind = static_cast<std::size_t>(format);
-  std::string record = las_bytes(point.position);
+  std::string record = bytes_of(point.position);
   record.resize(kBytes[kind] + extra_bytes, '\x55');
   const int flags = format < 6 ? (point.synthetic ? 0x20 : 0) | (point.withheld ? 0x80 : 0) | 2
                                : (point.synthetic ? 0x01 : 0) | (point.withheld ? 0x04 : 0) | 0xf8;
   record[15] = static_cast<char>(flags);
-  if (kColour[kind] != 0) record.replace(kColour[kind], 6, las_bytes(point.colour));
+  if (kColour[kind] != 0) record.replace(kColour[kind], 6, bytes_of(point.colour));
   return record;
 }
 
@@ -71,16 +65,16 @@ inline std::string las_file(const LasFile& file) {
     header.replace(at, bytes.size(), bytes);
   };
   const std::string record = las_point({}, file.point_format, file.extra_bytes);
-  put(94, las_bytes(static_cast<std::uint16_t>(header_bytes)));
-  put(96, las_bytes(static_cast<std::uint32_t>(header_bytes + file.records.size())));
-  put(100, las_bytes(file.record_count));
+  put(94, bytes_of(static_cast<std::uint16_t>(header_bytes)));
+  put(96, bytes_of(static_cast<std::uint32_t>(header_bytes + file.records.size())));
+  put(100, bytes_of(file.record_count));
   put(104, std::string(1, static_cast<char>(file.point_format)));
-  put(105, las_bytes(static_cast<std::uint16_t>(record.size())));
+  put(105, bytes_of(static_cast<std::uint16_t>(record.size())));
   // From format 6 on the narrow count is zero.
-  if (file.point_format < 6) put(107, las_bytes(static_cast<std::uint32_t>(file.points.size())));
-  put(131, las_bytes(file.scale));
-  put(155, las_bytes(file.offset));
-  if (file.minor == 4) put(247, las_bytes(static_cast<std::uint64_t>(file.points.size())));
+  if (file.point_format < 6) put(107, bytes_of(static_cast<std::uint32_t>(file.points.size())));
+  put(131, bytes_of(file.scale));
+  put(155, bytes_of(file.offset));
+  if (file.minor == 4) put(247, bytes_of(static_cast<std::uint64_t>(file.points.size())));
   std::string bytes = header + file.records;
   for (const LasPoint& point : file.points) {
     bytes += las_point(point, file.point_format, file.extra_bytes);

@@ -18,23 +18,12 @@ import unittest
 import urllib.error
 import urllib.request
 
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
+from served_board import build_ball  # noqa: E402
+
 TACTREE = sys.argv.pop(1)
 SKIPPED = 77
-
-
-def make_blob(folder):
-    """A sphere of 4 cm."""
-    rows = []
-    count = 8000
-    for i in range(count):
-        v = math.acos(1 - 2 * (i + 0.5) / count)
-        u = i * math.pi * (3 - math.sqrt(5))
-        n = (math.cos(u) * math.sin(v), math.sin(u) * math.sin(v), math.cos(v))
-        rows.append(" ".join(f"{x:.7f}" for x in (*(0.04 * c for c in n), *n)))
-    scan, blob = folder / "ball.xyz", folder / "ball.blob"
-    scan.write_text("\n".join(rows) + "\n")
-    subprocess.run([TACTREE, "build", scan, "--unit", "m", "-o", blob], check=True, capture_output=True)
-    return blob
 
 
 class Server:
@@ -151,7 +140,7 @@ class ServerTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
-        cls.blob = make_blob(pathlib.Path(cls.folder.name))
+        cls.blob = build_ball(TACTREE, pathlib.Path(cls.folder.name), points=8000, radius=0.04)
         # Half the default rate: with sanitizers the simulation takes most of a processor.
         cls.server = Server(cls.blob, "--rate", "500")
 
@@ -365,7 +354,7 @@ class ServerTest(unittest.TestCase):
 
 if __name__ == "__main__":
     with tempfile.TemporaryDirectory() as place:
-        probe = subprocess.run([TACTREE, "view", make_blob(pathlib.Path(place)), "--address", "nowhere"],
+        probe = subprocess.run([TACTREE, "view", build_ball(TACTREE, pathlib.Path(place)), "--address", "nowhere"],
                                capture_output=True, text=True)
     if "built without its page" in probe.stderr:
         print("skipped: the page was not built (scripts/install-deps view)")

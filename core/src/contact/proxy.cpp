@@ -141,10 +141,10 @@ bool Proxy::prepare_fit(const BlobView& view, Vec3 x) {
   return true;
 }
 
-SurfaceFit Proxy::evaluate(const BlobView& view, Vec3 x, Vec3 reference) {
+SurfaceFit Proxy::evaluate(const BlobView& view, Vec3 x) {
   // at most: fits per Scene::update together evaluations
   const SurfaceFit fit =
-      fit_surface(candidates_, x, view.support_radius_m(), reference, side_, near_);
+      fit_surface(candidates_, x, view.support_radius_m(), reference_, side_, near_);
   budget_.spend_passes(fit.passes);
   return fit;
 }
@@ -201,7 +201,7 @@ void Proxy::visit(const BlobView& view, Vec3 x) {
     return;
   }
   const bool was_smooth = near_.count == 0U;
-  const SurfaceFit fit = evaluate(view, x, reference_);
+  const SurfaceFit fit = evaluate(view, x);
   if (is_contradicted(fit)) {
     reference_ = -reference_;
     near_.count = 0;
@@ -339,7 +339,7 @@ PlaneMove Proxy::move_of(Vec3 probe) {
 // surface is not supported there.
 bool Proxy::settle(const BlobView& view, float& moved) {
   const bool was_smooth = near_.count == 0U;
-  const SurfaceFit fit = evaluate(view, position_, reference_);
+  const SurfaceFit fit = evaluate(view, position_);
   if (!fit.supported) {
     return false;
   }

@@ -79,7 +79,6 @@ Rendering Renderer::render_proxy(const BlobView& view, const Configuration& c, V
   Rendering r;
   r.proxy = proxy_.position();
   r.complete = proxy_.complete();
-  r.lost = proxy_.lost_contact();
   r.inside = proxy_.inside();
   if (!proxy_.in_contact()) {
     return r;

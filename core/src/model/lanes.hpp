@@ -67,8 +67,6 @@ inline std::int32_t smallest(Integers v) {
   const std::int32_t high = v[2] < v[3] ? v[2] : v[3];
   return low < high ? low : high;
 }
-inline float lane(Floats v, std::uint32_t k) { return v[k]; }
-inline std::int32_t lane(Integers v, std::uint32_t k) { return v[k]; }
 
 #else
 
@@ -107,8 +105,6 @@ inline Integers select(Mask mask, Integers a, Integers b) { return mask ? a : b;
 
 inline Floats smallest(Floats v) { return v; }
 inline Integers smallest(Integers v) { return v; }
-inline float lane(Floats v, std::uint32_t) { return v; }
-inline std::int32_t lane(Integers v, std::uint32_t) { return v; }
 
 #endif
 

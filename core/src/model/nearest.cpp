@@ -69,31 +69,6 @@ NearestPoint nearest_within(const BlobView& view, Vec3 probe, float r) {
   return {index, best.squared, view.position(corners.leaf(number, corner), index), number};
 }
 
-PointsWithin points_within(const BlobView& view, Vec3 probe, float r,
-                           std::span<std::uint32_t> out) {
-  PointsWithin result;
-  const float limit = r * r;
-  CornerLeaves(view, probe, r).each(limit, [&](const NearLeaf& leaf) {
-    auto next = static_cast<std::int32_t>(leaf.first_point);
-    LeafScan(view, leaf).each_block([&](Floats squared, Integers index) {
-      for (std::uint32_t k = 0; k < kLanes; ++k) {  // bound: 4
-        const std::int32_t point = lane(index, k);
-        if (point < next || lane(squared, k) > limit) {
-          continue;
-        }
-        next = point + 1;
-        if (result.count == out.size()) {
-          result.complete = false;
-          continue;
-        }
-        out[result.count++] = static_cast<std::uint32_t>(point);
-      }
-    });
-    return result.complete ? limit : -1.0F;
-  });
-  return result;
-}
-
 bool in_any_vertex_box(const BlobView& view, Vec3 probe) {
   if (view.empty()) {
     return false;

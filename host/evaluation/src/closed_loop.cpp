@@ -1,10 +1,9 @@
-#include "closed_loop.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
 #include "errors.hpp"
+#include "measurements.hpp"
 #include "tactree/core/contact/renderer.hpp"
 #include "tactree/evaluation/shapes.hpp"
 #include "tactree/plant/plant.hpp"

@@ -1,11 +1,10 @@
-#include "crease_scores.hpp"
-
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <functional>
 
+#include "measurements.hpp"
 #include "tactree/evaluation/creases.hpp"
 #include "touch.hpp"
 

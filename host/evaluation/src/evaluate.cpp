@@ -1,16 +1,9 @@
 #include <algorithm>
 #include <limits>
 
-#include "closed_loop.hpp"
-#include "crease_scores.hpp"
 #include "errors.hpp"
-#include "inside_scores.hpp"
-#include "paper_tables.hpp"
-#include "scan_scores.hpp"
-#include "shape_scores.hpp"
-#include "subjects.hpp"
+#include "measurements.hpp"
 #include "tactree/evaluation/evaluation.hpp"
-#include "targets.hpp"
 
 namespace tactree::evaluation {
 

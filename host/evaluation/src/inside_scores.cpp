@@ -1,10 +1,9 @@
-#include "inside_scores.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <random>
 
+#include "measurements.hpp"
 #include "tactree/evaluation/creases.hpp"
 #include "touch.hpp"
 

@@ -1,9 +1,8 @@
-#include "paper_tables.hpp"
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <random>
 
+#include "measurements.hpp"
 #include "tactree/core/contact/paper_mode.hpp"
 #include "tactree/core/contact/surface.hpp"
 #include "tactree/core/model/nearest.hpp"

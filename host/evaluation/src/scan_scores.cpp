@@ -1,9 +1,8 @@
-#include "scan_scores.hpp"
-
 #include <random>
 
 #include "errors.hpp"
 #include "hole_map.hpp"
+#include "measurements.hpp"
 #include "reference_surface.hpp"
 #include "tactree/builder/build_model.hpp"
 #include "tactree/core/contact/surface.hpp"

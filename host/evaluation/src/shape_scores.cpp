@@ -1,8 +1,7 @@
-#include "shape_scores.hpp"
-
 #include <algorithm>
 
 #include "errors.hpp"
+#include "measurements.hpp"
 #include "tactree/core/contact/paper_mode.hpp"
 #include "tactree/core/contact/surface.hpp"
 #include "touch.hpp"

@@ -1,8 +1,8 @@
-#include "targets.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "measurements.hpp"
 
 namespace tactree::evaluation {
 namespace {

@@ -79,14 +79,6 @@ std::optional<std::size_t> CsvReader::find_column(std::string_view name) const {
   return static_cast<std::size_t>(found - columns_.begin());
 }
 
-std::size_t CsvReader::require_column(std::string_view name) const {
-  const std::optional<std::size_t> column = find_column(name);
-  if (!column) {
-    throw CsvError(fmt::format("{}: the header has no column {}", name_, name));
-  }
-  return *column;
-}
-
 bool CsvReader::next_row() {
   if (pending_) {
     pending_ = false;

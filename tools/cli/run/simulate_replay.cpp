@@ -1,5 +1,3 @@
-#include "run/simulate_replay.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "run/scene_file.hpp"
+#include "run/simulate_run.hpp"
 #include "run/simulate_setup.hpp"
 #include "tactree/simulation/recording.hpp"
 #include "tactree/simulation/replay.hpp"

@@ -1,10 +1,9 @@
-#include "run/simulate_report.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "run/simulate_run.hpp"
 #include "tactree/simulation/trace.hpp"
 #include "tactree/support/json_text.hpp"
 #include "tactree/support/output_file.hpp"

@@ -1,5 +1,5 @@
 #pragma once
-// Run of `tactree simulate`: a session without user input at the full speed of the computer.
+// What `tactree simulate` does with its options.
 
 #include <cstdint>
 #include <optional>
@@ -33,7 +33,22 @@ struct Outcome {
   std::vector<simulation::Sample> samples;                   ///< for --trace and --plot
 };
 
-/// Runs the session and records it for --record. Throws UserError.
+/// Runs a session without user input at the full speed of the computer, and records it for
+/// --record. Throws UserError.
 [[nodiscard]] Outcome run(const SimulateOptions& options, const SceneFile& scene);
+
+/// Writes the files of --trace, --plot and --json. Throws UserError.
+void write_results(const SimulateOptions& options, const SceneFile& scene, const Outcome& outcome);
+
+void print_summary(const SimulateOptions& options, const SceneFile& scene, const Outcome& outcome);
+
+/// --serve: a simulated board in real time, at a pseudo terminal or as a USB device. Returns when
+/// the time is up or on a signal. Throws UserError.
+void serve(const SimulateOptions& options, const SceneFile& scene);
+
+/// --replay: replays a recorded session on a new controller and prints the result. Returns true if
+/// the outcome of every tick is bit-identical to the recorded outcome. Throws UserError if the
+/// recording or a blob is not usable.
+[[nodiscard]] bool replay_session(const SimulateOptions& options);
 
 }  // namespace tactree::cli

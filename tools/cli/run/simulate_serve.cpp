@@ -1,5 +1,3 @@
-#include "run/simulate_serve.hpp"
-
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -9,6 +7,7 @@
 #include "image/model_signature.hpp"
 #include "interruption.hpp"
 #include "run/serve_session.hpp"
+#include "run/simulate_run.hpp"
 #include "run/simulate_setup.hpp"
 #include "run/usb_port.hpp"
 #include "tactree/client/lock_step.hpp"

@@ -73,9 +73,7 @@ TEST(Configuration, LimitsForceForUnusualFloats) {
       field(c) = odd;
       ControllerRig session(c);
       session.activate();
-      for (int i = 0; i < 30; ++i) {
-        session.step();
-      }
+      session.rest(30);
       const core::Output output = session.press(2e-3);
       ASSERT_TRUE(std::isfinite(output.motors.effort(2)));
       if (session.status == ConfigurationStatus::kOk) {

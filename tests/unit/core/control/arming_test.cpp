@@ -32,9 +32,7 @@ TEST(Arming, RequiresFreshDeadManPress) {
   ControllerRig session;
   session.input.dead_man = true;
   session.step(Command::kArm);
-  for (int i = 0; i < 20; ++i) {
-    session.step();
-  }
+  session.rest(20);
   EXPECT_EQ(session.state(), State::kArmed);
   session.input.dead_man = false;
   session.step();
@@ -66,9 +64,7 @@ TEST(Arming, ForgetsEarlierRelease) {
 TEST(Arming, EndsAddedForceOnStop) {
   ControllerRig session;
   session.activate();
-  for (int i = 0; i < 300; ++i) {
-    session.step();
-  }
+  session.rest(300);
   session.input.added_force = {{1.0F, 0.0F, 0.0F}, 1'000'000U};
   ASSERT_FALSE(session.step().motors.is_zero());
   session.step(Command::kStop);
@@ -85,9 +81,7 @@ TEST(Arming, RequiresConfirmationWithoutDeadMan) {
   configuration.supervision.dead_man_required = false;
   ControllerRig session(configuration);
   session.step(Command::kArm);
-  for (int i = 0; i < 40; ++i) {
-    session.step();
-  }
+  session.rest(40);
   EXPECT_EQ(session.state(), State::kArmed);
   session.step(Command::kArm);
   EXPECT_EQ(session.state(), State::kActive);
@@ -98,7 +92,7 @@ TEST(Arming, WaitsForEnableLine) {
   session.enable_follows = false;
   session.step(Command::kArm);
   const auto waits = [](const core::Output& output) {
-    return (output.status.limits & core::limit_bit(core::Limit::kWaiting)) != 0U;
+    return has_limit(output, core::Limit::kWaiting);
   };
   EXPECT_FALSE(waits(session.step()));  // for nothing but a hand
   session.input.dead_man = true;
@@ -227,9 +221,7 @@ TEST(Arming, CommandsZeroUnlessActive) {
 TEST(Arming, EndsForceWithinSameTick) {
   ControllerRig session;
   session.activate();
-  for (int i = 0; i < 300; ++i) {
-    session.step();
-  }
+  session.rest(300);
   EXPECT_GT(session.press(1e-3).motors.effort(2), 0.3F);
   session.input.dead_man = false;
   EXPECT_TRUE(session.step().motors.is_zero());
@@ -239,9 +231,7 @@ TEST(Arming, EndsForceWithinSameTick) {
 
   ControllerRig other;
   other.activate();
-  for (int i = 0; i < 300; ++i) {
-    other.step();
-  }
+  other.rest(300);
   EXPECT_GT(other.press(1e-3).motors.effort(2), 0.3F);
   const core::Output output = other.step(Command::kStop);
   EXPECT_TRUE(output.motors.is_zero());
@@ -257,9 +247,7 @@ TEST(Arming, RestartsAfterClearStopArm) {
   session.step(Command::kClearFault);  // the cause is still there
   EXPECT_TRUE(core::has_fault(session.controller.faults(), Fault::kEmergencyStop));
   session.input.emergency_stop = false;
-  for (int i = 0; i < 10; ++i) {
-    session.step();
-  }
+  session.rest(10);
   EXPECT_EQ(session.state(), State::kFault);  // latched
   session.step(Command::kStop);
   EXPECT_EQ(session.state(), State::kFault);  // not cleared

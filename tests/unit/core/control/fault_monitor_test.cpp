@@ -41,9 +41,7 @@ const std::vector<InState>& states() {
       {"active", State::kActive,
        [](ControllerRig& s) {
          s.activate();
-         for (int i = 0; i < 300; ++i) {
-           s.step();
-         }
+         s.rest(300);
          s.press(1e-3);
        }},
       {"fault", State::kFault, [](ControllerRig& s) { s.step(static_cast<Command>(77)); }},
@@ -200,9 +198,7 @@ TEST(Faults, ReportsLinkLossOnceArmed) {
   configuration.link.required = true;
   ControllerRig session(configuration);
   session.input.link_alive = false;
-  for (int i = 0; i < 1000; ++i) {
-    session.step();
-  }
+  session.rest(1000);
   EXPECT_EQ(session.state(), State::kIdle);
   session.step(Command::kArm);
   session.step();
@@ -224,9 +220,7 @@ TEST(Faults, DetectsEnableLineMismatch) {
   ControllerRig welded;  // power although nobody asked for it
   welded.enable_follows = false;
   welded.input.enable_read_back = true;
-  for (int i = 0; i < 60; ++i) {
-    welded.step();
-  }
+  welded.rest(60);
   EXPECT_TRUE(core::has_fault(welded.controller.faults(), Fault::kEnableMismatch));
 }
 
@@ -442,17 +436,13 @@ TEST(Faults, RespectsConfiguredStuckTime) {
 }
 
 TEST(Faults, NamesEveryCodeUniquely) {
-  std::vector<std::string> names;
+  std::set<std::string> names;
   for (std::uint32_t code = 0; code < core::kFaultCodes; ++code) {
-    names.emplace_back(core::name_of(static_cast<Fault>(code)));
+    names.insert(core::name_of(static_cast<Fault>(code)));
   }
-  EXPECT_EQ(names[1], "emergency-stop");
-  EXPECT_EQ(names[10], "model-incomplete");
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    for (std::size_t k = i + 1; k < names.size(); ++k) {
-      EXPECT_NE(names[i], names[k]);
-    }
-  }
+  EXPECT_EQ(names.size(), core::kFaultCodes);
+  EXPECT_STREQ(core::name_of(static_cast<Fault>(1)), "emergency-stop");
+  EXPECT_STREQ(core::name_of(static_cast<Fault>(10)), "model-incomplete");
   EXPECT_EQ(std::string(core::name_of(static_cast<Fault>(99))), "unknown");
 }
 

@@ -19,9 +19,7 @@ using core::FlightRecorder;
 TEST(FlightRecorder, KeepsLastTicksRounded) {
   ControllerRig session;
   session.activate();
-  for (int i = 0; i < 1000; ++i) {
-    session.step();
-  }
+  session.rest(1000);
   const core::Output pressed = session.press(1e-3);
   const FlightRecorder& recorder = session.controller.recorder();
   ASSERT_EQ(recorder.count(), FlightRecorder::kTicks);
@@ -43,9 +41,7 @@ TEST(FlightRecorder, StopsAtFaultWithSnapshot) {
   const core::Output pressed = session.press(1e-3);
   session.input.motors_ok = false;
   const core::Output faulty = session.step();
-  for (int i = 0; i < 5000; ++i) {
-    session.step();
-  }
+  session.rest(5000);
   const FlightRecorder& recorder = session.controller.recorder();
   const core::FaultSnapshot& snapshot = recorder.snapshot();
   EXPECT_EQ(snapshot.faults, core::fault_bit(Fault::kMotorFault));
@@ -59,9 +55,7 @@ TEST(FlightRecorder, StopsAtFaultWithSnapshot) {
 TEST(FlightRecorder, ContinuesAfterClearedFault) {
   ControllerRig session;
   session.step(static_cast<Command>(77));
-  for (int i = 0; i < 100; ++i) {
-    session.step();
-  }
+  session.rest(100);
   session.step(Command::kClearFault);
   const core::Output output = session.step(Command::kStop);
   EXPECT_EQ(session.controller.recorder().snapshot().faults, 0U);

@@ -145,9 +145,7 @@ TEST(Homing, AllowsNoForceUntilDone) {
   EXPECT_TRUE(session.controller.homed());
   session.activate();
   EXPECT_EQ(session.state(), State::kActive);
-  for (int i = 0; i < 20; ++i) {
-    output = session.step();
-  }
+  output = session.rest(20);
   EXPECT_FALSE(output.motors.is_zero());  // holds the arm's weight
   EXPECT_EQ(output.status.force, core::Vec3{});
 }

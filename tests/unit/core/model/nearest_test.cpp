@@ -135,37 +135,6 @@ TEST(Nearest, PrefersLowestIndexOnTie) {
   EXPECT_GT(across_leaves, 100U);
 }
 
-TEST(Nearest, ReturnsExactlyPointsWithinReach) {
-  for (const Case& c : cases()) {
-    const TestBlob blob(c.model);
-    Probes probes(blob, 6);
-    std::vector<std::uint32_t> buffer(blob.view().header().points_per_ball_max);
-    for (int i = 0; i < 1500; ++i) {
-      const Vec3 probe = probes.next();
-      const float r = blob.view().reach_m() * (i % 2 == 0 ? 1.0F : 0.4F);
-      const PointsWithin answer = points_within(blob.view(), probe, r, buffer);
-      ASSERT_TRUE(answer.complete) << "the declared bound must be enough";
-      const std::set<std::uint32_t> found(buffer.begin(), buffer.begin() + answer.count);
-      ASSERT_EQ(found.size(), answer.count);
-      const double limit = static_cast<double>(r) * static_cast<double>(r);
-      for (std::uint32_t p = 0; p < blob.points().size(); ++p) {
-        const double squared = distance_squared(blob.points()[p], probe);
-        if (std::abs(squared - limit) < 1e-6 * limit) continue;
-        ASSERT_EQ(found.contains(p), squared <= limit) << c.name;
-      }
-    }
-  }
-}
-
-TEST(Nearest, ReportsTooSmallBuffer) {
-  const TestBlob blob(test::sphere(0.03, 0.001));
-  std::uint32_t buffer[3];
-  const PointsWithin answer =
-      points_within(blob.view(), blob.points()[0], blob.view().reach_m(), buffer);
-  EXPECT_EQ(answer.count, 3U);
-  EXPECT_FALSE(answer.complete);
-}
-
 TEST(Nearest, MatchesBruteForceVertexBoxes) {
   for (const Case& c : cases()) {
     const TestBlob blob(c.model);
@@ -193,9 +162,7 @@ TEST(Nearest, MatchesBruteForceVertexBoxes) {
 }
 
 TEST(Nearest, FindsNothingInEmptyModel) {
-  std::uint32_t buffer[4];
   EXPECT_FALSE(nearest_within({}, {}, 1.0F).found());
-  EXPECT_EQ(points_within({}, {}, 1.0F, buffer).count, 0U);
   EXPECT_FALSE(in_any_vertex_box({}, {}));
 }
 

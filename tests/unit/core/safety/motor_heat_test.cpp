@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tactree/core/safety/safety_gate.hpp"
+#include "open_gate.hpp"
 
 namespace tactree::test {
 namespace {
@@ -63,8 +63,6 @@ core::GateLimits quick_to_warm() {
   return limits;
 }
 
-core::Mat3 identity() { return {{{1.0F, 0.0F, 0.0F}, {0.0F, 1.0F, 0.0F}, {0.0F, 0.0F, 1.0F}}}; }
-
 TEST(MotorHeat, LimitsGateToContinuousEffort) {
   core::SafetyGate gate;
   const core::GateLimits limits = quick_to_warm();
@@ -72,7 +70,7 @@ TEST(MotorHeat, LimitsGateToContinuousEffort) {
   core::LimitMask seen = 0;
   float last = 0.0F;
   for (int i = 0; i < 20000; ++i) {
-    const core::SafetyGate::Result r = gate.command({0.0F, 0.0F, 8.0F}, identity());
+    const core::SafetyGate::Result r = gate.command({0.0F, 0.0F, 8.0F}, kIdentity);
     seen = r.limits;
     last = r.command.effort(2);
     ASSERT_LE(gate.heat().heat(2), 1.01F);
@@ -85,7 +83,7 @@ TEST(MotorHeat, CoolsWithoutForce) {
   core::SafetyGate gate;
   ASSERT_TRUE(gate.configure(quick_to_warm()));
   for (int i = 0; i < 2000; ++i) {
-    (void)gate.command({0.0F, 0.0F, 8.0F}, identity());
+    (void)gate.command({0.0F, 0.0F, 8.0F}, kIdentity);
   }
   const float warm = gate.heat().heat(2);
   for (int i = 0; i < 2000; ++i) {
@@ -98,7 +96,7 @@ TEST(MotorHeat, KeepsHeatAcrossConfiguration) {
   core::SafetyGate gate;
   ASSERT_TRUE(gate.configure(quick_to_warm()));
   for (int i = 0; i < 2000; ++i) {
-    (void)gate.command({0.0F, 0.0F, 8.0F}, identity());
+    (void)gate.command({0.0F, 0.0F, 8.0F}, kIdentity);
   }
   const float warm = gate.heat().heat(2);
   ASSERT_TRUE(gate.configure(quick_to_warm()));

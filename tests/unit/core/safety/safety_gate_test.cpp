@@ -10,6 +10,7 @@
 #include <type_traits>
 
 #include "odd_floats.hpp"
+#include "open_gate.hpp"
 
 namespace tactree::test {
 namespace {
@@ -18,7 +19,6 @@ using core::Mat3;
 using core::SafetyGate;
 using core::Vec3;
 
-constexpr Mat3 kIdentity{{{1.0F, 0.0F, 0.0F}, {0.0F, 1.0F, 0.0F}, {0.0F, 0.0F, 1.0F}}};
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 static_assert(!std::is_default_constructible_v<core::MotorCommand>);
@@ -286,16 +286,11 @@ TEST(SafetyGate, KeepsDirectionUnderGravitySaturation) {
 }
 
 TEST(SafetyGate, SlewsAllAxesTogether) {
-  core::GateLimits limits;
-  limits.ramp_ticks = 2;
-  limits.slew_N_per_tick = 16.0F;
+  core::GateLimits limits = roomy();
   for (float& slew : limits.effort_slew_per_tick) {
     slew = 0.5F;
   }
-  SafetyGate gate;
-  ASSERT_TRUE(gate.configure(limits));
-  gate.command({}, kIdentity);
-  gate.command({}, kIdentity);
+  SafetyGate gate = ramped(limits);
   const SafetyGate::Result result = gate.command({4.0F, -2.0F, 1.0F}, kIdentity);
   EXPECT_NEAR(result.command.effort(0), 0.5F, 1e-4F);
   EXPECT_NEAR(result.command.effort(1), -0.25F, 1e-4F);

@@ -2,13 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <vector>
 
 #include "fake_parts.hpp"
+#include "open_gate.hpp"
 #include "stm32f4/lines.hpp"
 #include "stm32f4/pwm_motors.hpp"
 #include "stm32f4/quadrature_encoders.hpp"
@@ -117,26 +117,6 @@ TEST(Encoders, RefusesStartWithoutClock) {
 }
 
 // ---- motors
-
-core::MotorCommand command_of(const std::array<float, 3>& effort) {
-  core::SafetyGate gate;
-  core::GateLimits limits;
-  limits.force_max_N = 100.0F;
-  limits.slew_N_per_tick = 200.0F;
-  for (std::uint32_t i = 0; i < 3; ++i) {
-    limits.effort_max[i] = 100.0F;
-    limits.effort_slew_per_tick[i] = 200.0F;
-  }
-  limits.ramp_ticks = 2;
-  EXPECT_TRUE(gate.configure(limits));
-  core::Mat3 identity{};
-  identity.row[0].x = identity.row[1].y = identity.row[2].z = 1.0F;
-  core::SafetyGate::Result result = gate.release();
-  for (int i = 0; i < 4; ++i) {
-    result = gate.command({effort[0], effort[1], effort[2]}, identity);
-  }
-  return result.command;
-}
 
 struct MotorBench {
   FakeTimer timer{0xFFFF};

@@ -8,7 +8,8 @@
 #include <fstream>
 #include <limits>
 
-#include "motor_command.hpp"
+#include "message_of.hpp"
+#include "open_gate.hpp"
 #include "tactree/hal/linux/converter_motors.hpp"
 #include "tactree/hal/linux/counter_encoders.hpp"
 
@@ -52,16 +53,6 @@ class SysfsDevices : public testing::Test {
   }
   [[nodiscard]] CounterSettings counters(std::vector<CounterAxis> axes) const {
     return {(root_ / "bus").string(), std::move(axes)};
-  }
-  /// Message of a refusal.
-  template <class Make>
-  static std::string refusal(Make make) {
-    try {
-      make();
-    } catch (const SysfsError& error) {
-      return error.what();
-    }
-    return "";
   }
 
   fs::path root_;
@@ -137,7 +128,7 @@ TEST_F(SysfsDevices, InvalidatesRemovedCounter) {
 
 TEST_F(SysfsDevices, RefusesUnusableCounter) {
   const auto make = [this](std::vector<CounterAxis> axes) {
-    return refusal([&] { const CounterEncoderBank bank(counters(axes)); });
+    return test::message_of<SysfsError>([&] { const CounterEncoderBank bank(counters(axes)); });
   };
   EXPECT_TRUE(holds(make({{"1000.counter", 0}}), "counter '1000.counter': no such device in"));
   add_counter("1000.counter");
@@ -156,7 +147,7 @@ TEST_F(SysfsDevices, RefusesCounterWithoutRange) {
   add_counter("1000.counter");
   fs::remove(root_ / (folder_ + "ceiling"));
   fs::create_directories(root_ / (folder_ + "ceiling"));
-  EXPECT_FALSE(refusal([&] {
+  EXPECT_FALSE(test::message_of<SysfsError>([&] {
                  const CounterEncoderBank bank(counters({{"1000.counter", 0}}));
                }).empty());
 }
@@ -212,7 +203,8 @@ TEST_F(Converters, NamesMissingDevices) {
   ConverterAxis axis = bipolar();
   axis.device = "spi0.1";
   const auto make = [&] {
-    return refusal([&] { const ConverterMotors motors(settings(axis), "test"); });
+    return test::message_of<SysfsError>(
+        [&] { const ConverterMotors motors(settings(axis), "test"); });
   };
   EXPECT_TRUE(holds(make(), "converter 'spi0.1': no such device in"));
   EXPECT_TRUE(holds(make(), "use one of: spi0.0"));

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "motor_command.hpp"
+#include "open_gate.hpp"
 #include "tactree/hal/sim/board.hpp"
 
 namespace tactree::test {

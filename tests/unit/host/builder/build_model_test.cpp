@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <fstream>
 
+#include "folder_test.hpp"
 #include "shapes.hpp"
 #include "tactree/core/model/blob.hpp"
 
@@ -156,15 +156,8 @@ TEST(BuildModel, RefusesEmptyInputs) {
   EXPECT_THROW((void)build_model(std::span<const std::filesystem::path>(), {}, quiet), BuildError);
 }
 
-class BuildFromFiles : public testing::Test {
+class BuildFromFiles : public test::FolderTest {
  protected:
-  BuildFromFiles()
-      : folder_(std::filesystem::temp_directory_path() /
-                ("tactree_build_test_" + std::to_string(::getpid()))) {
-    std::filesystem::create_directory(folder_);
-  }
-  ~BuildFromFiles() override { std::filesystem::remove_all(folder_); }
-
   std::filesystem::path write(const std::string& name, const Cloud& cloud) {
     std::ofstream out(folder_ / name);
     out.precision(17);
@@ -184,8 +177,6 @@ class BuildFromFiles : public testing::Test {
     }
     return folder_ / name;
   }
-
-  std::filesystem::path folder_;
 };
 
 TEST_F(BuildFromFiles, JoinsFilesAndDigestsBytes) {

@@ -10,6 +10,7 @@
 #include <iterator>
 #include <optional>
 
+#include "message_of.hpp"
 #include "tactree/client/link_error.hpp"
 
 namespace tactree::test {
@@ -46,12 +47,7 @@ class TemporaryFolder {
 
 std::string refusal_in(const fs::path& folder) {
   const TemporaryFolder set(folder);
-  try {
-    const client::LockStepServer server;
-    return "no error";
-  } catch (const client::LinkError& error) {
-    return error.what();
-  }
+  return message_of<client::LinkError>([] { const client::LockStepServer server; });
 }
 
 TEST(LockStep, FailedServerLeavesNothingBehind) {

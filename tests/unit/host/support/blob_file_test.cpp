@@ -2,13 +2,14 @@
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <fstream>
 #include <iterator>
 #include <string>
 
+#include "folder_test.hpp"
 #include "folders.hpp"
+#include "message_of.hpp"
 #include "tactree/support/user_error.hpp"
 
 namespace tactree::cli {
@@ -16,11 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class BlobFileTest : public testing::Test {
+class BlobFileTest : public test::FolderTest {
  protected:
-  void SetUp() override { fs::create_directories(folder_); }
-  void TearDown() override { fs::remove_all(folder_); }
-
   static std::string valid_blob() {
     std::ifstream in(test::source_folder() / "tests/golden/surface-1.0.blob", std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
@@ -28,22 +26,14 @@ class BlobFileTest : public testing::Test {
 
   /// A file that begins with `text` and has `size` bytes, of which the rest takes no space.
   fs::path write(const std::string& text, std::uintmax_t size) const {
-    const fs::path file = folder_ / "a.blob";
-    std::ofstream(file, std::ios::binary) << text;
+    const fs::path file = FolderTest::write("a.blob", text);
     fs::resize_file(file, size);
     return file;
   }
 
   static std::string refusal_of(const fs::path& file) {
-    try {
-      const support::BlobFile blob(file);
-    } catch (const support::UserError& error) {
-      return error.what();
-    }
-    return "";
+    return test::message_of<support::UserError>([&] { const support::BlobFile blob(file); });
   }
-
-  fs::path folder_ = fs::temp_directory_path() / ("tactree_blob_" + std::to_string(::getpid()));
 };
 
 constexpr std::uintmax_t kTerabyte = std::uintmax_t{1} << 40;

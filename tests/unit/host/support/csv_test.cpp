@@ -1,39 +1,20 @@
 #include "tactree/support/csv.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <filesystem>
-#include <fstream>
-#include <functional>
+#include "folder_test.hpp"
+#include "message_of.hpp"
 
 namespace tactree::support {
 namespace {
 
-namespace fs = std::filesystem;
 using Cells = std::vector<std::string_view>;
 
-class CsvFile : public testing::Test {
+class CsvFile : public test::FolderTest {
  protected:
-  void SetUp() override { fs::create_directories(folder_); }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  fs::path write(const std::string& text) {
-    const fs::path file = folder_ / "table.csv";
-    std::ofstream(file) << text;
-    return file;
+  std::filesystem::path write(const std::string& text) const {
+    return FolderTest::write("table.csv", text);
   }
-
-  static std::string error_of(const std::function<void()>& read) {
-    try {
-      read();
-    } catch (const support::CsvError& error) {
-      return error.what();
-    }
-    return "";
-  }
-
-  fs::path folder_ = fs::temp_directory_path() / ("tactree_csv_" + std::to_string(::getpid()));
 };
 
 TEST(SplitCsv, SplitsCommasAndTrimsBlanks) {
@@ -52,7 +33,7 @@ TEST(SplitCsv, SplitsAnySeparatorOnRequest) {
 
 TEST_F(CsvFile, ReadsNumbersByColumnName) {
   support::CsvReader table(write("# trace\nt_s,state,x_m\n\n0.5,ready,+1e-3\r\n1,armed,2\n"), {});
-  const std::size_t x = table.require_column("x_m");
+  const std::size_t x = table.find_column("x_m").value();
   EXPECT_EQ(table.find_column("state"), 1U);
   EXPECT_EQ(table.find_column("y_m"), std::nullopt);
   ASSERT_TRUE(table.next_row());
@@ -79,16 +60,15 @@ TEST_F(CsvFile, AcceptsMissingOptionalHeader) {
 }
 
 TEST_F(CsvFile, ReportsFileLineAndColumn) {
-  const fs::path file = write("a,b\n1,2\n3,four\n");
+  const std::filesystem::path file = write("a,b\n1,2\n3,four\n");
   support::CsvReader table(file, {});
   ASSERT_TRUE(table.next_row() && table.next_row());
-  EXPECT_EQ(error_of([&] { (void)table.number(1); }),
+  EXPECT_EQ(test::message_of<CsvError>([&] { (void)table.number(1); }),
             file.string() + ": line 3: column 2 (b) is not a number: 'four'");
-  EXPECT_EQ(error_of([&] { (void)table.number(2); }), file.string() + ": line 3: has no column 3");
-  EXPECT_EQ(error_of([&] { table.refuse("time descends", "sort the rows"); }),
+  EXPECT_EQ(test::message_of<CsvError>([&] { (void)table.number(2); }),
+            file.string() + ": line 3: has no column 3");
+  EXPECT_EQ(test::message_of<CsvError>([&] { table.refuse("time descends", "sort the rows"); }),
             file.string() + ": line 3: time descends (sort the rows)");
-  EXPECT_EQ(error_of([&] { (void)table.require_column("c"); }),
-            file.string() + ": the header has no column c");
 }
 
 TEST_F(CsvFile, RefusesNonFiniteNumbers) {
@@ -100,16 +80,19 @@ TEST_F(CsvFile, RefusesNonFiniteNumbers) {
 }
 
 TEST_F(CsvFile, RefusesRowsUnlikeHeader) {
-  const fs::path file = write("a,b\n1,2,3\n");
+  const std::filesystem::path file = write("a,b\n1,2,3\n");
   support::CsvReader table(file, {});
-  EXPECT_EQ(error_of([&] { (void)table.next_row(); }),
+  EXPECT_EQ(test::message_of<CsvError>([&] { (void)table.next_row(); }),
             file.string() + ": line 2: 3 values, the header has 2");
 }
 
 TEST_F(CsvFile, RefusesFoldersAndMissingFiles) {
-  EXPECT_NE(error_of([&] { support::CsvReader(folder_, {}); }).find("is a folder"),
-            std::string::npos);
-  EXPECT_NE(error_of([&] { support::CsvReader(folder_ / "none", {}); }).find("cannot be read: "),
+  EXPECT_NE(
+      test::message_of<CsvError>([&] { support::CsvReader(folder_, {}); }).find("is a folder"),
+      std::string::npos);
+  EXPECT_NE(test::message_of<CsvError>([&] {
+              support::CsvReader(folder_ / "none", {});
+            }).find("cannot be read: "),
             std::string::npos);
 }
 

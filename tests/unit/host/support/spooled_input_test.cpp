@@ -7,6 +7,7 @@
 #include <iterator>
 #include <thread>
 
+#include "folder_test.hpp"
 #include "tactree/support/user_error.hpp"
 
 namespace tactree::cli {
@@ -14,11 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class SpooledInputTest : public testing::Test {
+class SpooledInputTest : public test::FolderTest {
  protected:
-  void SetUp() override { fs::create_directories(folder_); }
-  void TearDown() override { fs::remove_all(folder_); }
-
   /// The text of the copy of what another thread writes into a pipe.
   std::string copy_of(const std::string& text,
                       const support::FreeSpace& space = support::free_space) const {
@@ -52,8 +50,6 @@ class SpooledInputTest : public testing::Test {
     ::close(ends[0]);
     return copy;
   }
-
-  fs::path folder_ = fs::temp_directory_path() / ("tactree_spool_" + std::to_string(::getpid()));
 };
 
 TEST_F(SpooledInputTest, CopiesPipeLeavingNoFile) {

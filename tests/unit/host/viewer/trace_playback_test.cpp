@@ -4,10 +4,10 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "folder_test.hpp"
+#include "message_of.hpp"
 #include "tactree/simulation/trace.hpp"
 
 namespace tactree::test {
@@ -15,27 +15,14 @@ namespace {
 
 using simulation::Sample;
 
-class TracePlaybackTest : public testing::Test {
+class TracePlaybackTest : public FolderTest {
  protected:
-  ~TracePlaybackTest() override { std::filesystem::remove(file_); }
-
-  std::vector<Sample> read(const std::string& text) {
-    std::ofstream(file_, std::ios::binary) << text;
-    return viewer::read_trace(file_);
+  std::vector<Sample> read(const std::string& text) const {
+    return viewer::read_trace(write("trace.csv", text));
   }
-  std::string refusal(const std::string& text) {
-    try {
-      (void)read(text);
-    } catch (const std::runtime_error& error) {
-      return error.what();
-    }
-    return "accepted";
+  std::string refusal(const std::string& text) const {
+    return message_of<std::runtime_error>([&] { (void)read(text); });
   }
-
-  std::filesystem::path file_ =
-      std::filesystem::temp_directory_path() /
-      ("tactree-trace-" + std::to_string(testing::UnitTest::GetInstance()->random_seed()) +
-       testing::UnitTest::GetInstance()->current_test_info()->name() + ".csv");
 };
 
 std::vector<Sample> some_samples() {

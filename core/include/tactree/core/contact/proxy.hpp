@@ -134,7 +134,7 @@ class Proxy {
   [[nodiscard]] bool is_tracking() const { return state_ >= State::kTracking; }
   [[nodiscard]] bool gather(const BlobView& view, Vec3 x);
   [[nodiscard]] bool prepare_fit(const BlobView& view, Vec3 x);
-  [[nodiscard]] SurfaceFit evaluate(const BlobView& view, Vec3 x, Vec3 reference);
+  [[nodiscard]] SurfaceFit evaluate(const BlobView& view, Vec3 x);
   void look_around(const BlobView& view);
   void look_behind(const BlobView& view);
   void sweep(const BlobView& view, Vec3 probe);

@@ -18,7 +18,6 @@ struct Rendering {
   bool in_contact = false;
   bool slipping = false;
   bool complete = true;          ///< false: the model holds more points than it declares
-  bool lost = false;             ///< the contact of the last tick ended at the surface's boundary
   bool inside = false;           ///< in the material, without force until the probe has left it
   Vec3 proxy{};                  ///< m; the probe when free
   Vec3 normal{};                 ///< outward; zero when free

@@ -4,7 +4,6 @@
 // Interrupt safety: pure functions.
 
 #include <cstdint>
-#include <span>
 
 #include "tactree/core/model/blob.hpp"
 
@@ -24,17 +23,6 @@ struct NearestPoint {
 /// lowest index is returned. Nothing is found unless 0 <= r <= view.reach_m().
 /// Cost: at most 8 leaves with header().points_per_query_max points.
 [[nodiscard]] NearestPoint nearest_within(const BlobView& view, Vec3 probe, float r);
-
-struct PointsWithin {
-  std::uint32_t count = 0;  ///< indices written
-  bool complete = true;     ///< false if the buffer was too small for all of them
-};
-
-/// Writes the indices of all points within distance r (m) of `probe` to `out`, in no particular
-/// order. A buffer of header().points_per_ball_max entries is sufficient for r <= reach_m().
-/// Range of r and cost: as for nearest_within().
-[[nodiscard]] PointsWithin points_within(const BlobView& view, Vec3 probe, float r,
-                                         std::span<std::uint32_t> out);
 
 /// True if `probe` is in the axis-aligned box, with edge header().aabb_edge_m, around any point.
 /// Exact; the boxes are closed. Returns false if aabb_edge_m / 2 > reach_m(), which open_blob()

@@ -2,7 +2,7 @@
 // Tables of comma-separated values: traces, lists of points.
 //
 //   CsvReader table(file, {.header = CsvHeader::kRequired});
-//   const std::size_t time = table.require_column("t_s");
+//   const std::size_t time = table.find_column("t_s").value();
 //   while (table.next_row()) {
 //     samples.push_back(table.number(time));
 //   }
@@ -58,7 +58,6 @@ class CsvReader {
   [[nodiscard]] const std::vector<std::string>& columns() const { return columns_; }
   /// Index of the named column; nullopt if the header does not have it.
   [[nodiscard]] std::optional<std::size_t> find_column(std::string_view name) const;
-  [[nodiscard]] std::size_t require_column(std::string_view name) const;
 
   /// Advances to the next row. Returns false at the end of the file. With a required header, a row
   /// must have as many cells as the header.

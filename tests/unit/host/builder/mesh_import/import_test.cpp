@@ -64,10 +64,7 @@ constexpr const char* kDae =
 
 class ImportTest : public TestFiles {
  protected:
-  void TearDown() override {
-    ::unsetenv(kVariable);
-    TestFiles::TearDown();
-  }
+  void TearDown() override { ::unsetenv(kVariable); }
 
   /// Replaces the import program by a shell script.
   void replace_importer(const std::string& script) {

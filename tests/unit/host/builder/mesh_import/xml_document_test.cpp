@@ -12,12 +12,7 @@ namespace {
 constexpr XmlLimits kLimits{4096, 100, 8};
 
 std::string refusal_of(std::string text) {
-  try {
-    const XmlDocument document(std::move(text), kLimits);
-  } catch (const XmlError& error) {
-    return error.what();
-  }
-  return "";
+  return test::message_of<XmlError>([&] { const XmlDocument document(std::move(text), kLimits); });
 }
 
 std::string nested(unsigned depth) {

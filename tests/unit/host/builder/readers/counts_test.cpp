@@ -7,8 +7,6 @@
 namespace tactree::builder {
 namespace {
 
-using Corner = std::array<float, 3>;
-
 class CountsTest : public TestFiles {
  protected:
   /// The only warning of a file, which must be read.
@@ -118,12 +116,6 @@ TEST_F(CountsTest, ReportsExtraPcdPoints) {
   const std::string packed = bytes_of(13U) + bytes_of(12U) + "\x0b" + binary_points(1);
   expect_no_warning(pcd("binary_compressed", 1) + packed);
   expect_parts(warning_of(pcd("binary_compressed", 1) + packed + packed), "21 bytes", "1 points");
-}
-
-std::string facet(const std::array<Corner, 3>& corners) {
-  std::string bytes = bytes_of(Corner{0, 0, 1});
-  for (const Corner& corner : corners) bytes += bytes_of(corner);
-  return bytes + std::string(2, '\0');
 }
 
 std::string flat_facets(int count) {

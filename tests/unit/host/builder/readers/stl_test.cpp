@@ -4,15 +4,8 @@ namespace tactree::builder {
 namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;
-using Corner = std::array<float, 3>;
 
 class StlTest : public TestFiles {};
-
-std::string facet(const std::array<Corner, 3>& corners) {
-  std::string bytes = bytes_of(Corner{0, 0, 1});
-  for (const Corner& corner : corners) bytes += bytes_of(corner);
-  return bytes + std::string(2, '\0');
-}
 
 std::string binary(std::uint32_t count, const std::string& facets,
                    const std::string& comment = "made for a test") {

@@ -2,52 +2,32 @@
 // Files for the tests of the readers, in a temporary folder.
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <algorithm>
+#include <array>
 #include <cstdint>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <string_view>
 
+#include "bytes_of.hpp"
+#include "folder_test.hpp"
+#include "message_of.hpp"
 #include "tactree/builder/read_scan.hpp"
 
 namespace tactree::builder {
 
-class TestFiles : public testing::Test {
+class TestFiles : public test::FolderTest {
  protected:
-  void SetUp() override {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::temp_directory_path() /
-              ("tactree_readers_" + std::to_string(::getpid()) + "_" + test->name());
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  std::filesystem::path write(const std::string& name, std::string_view bytes) {
-    const std::filesystem::path path = folder_ / name;
-    // Some file systems wait for the disk when a file is overwritten.
-    std::filesystem::remove(path);
-    std::ofstream out(path, std::ios::binary | std::ios::trunc);
-    out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    return path;
-  }
-
   Scan read(std::string_view bytes, const std::string& name = "scan") {
     return read_scan(write(name, bytes));
   }
 
   /// The message of the refusal; a test failure and "" without one.
   std::string refusal(const std::filesystem::path& path, const ReadOptions& options = {}) {
-    try {
+    return test::message_of<ReadError>([&] {
       const Scan scan = read_scan(path, options);
       ADD_FAILURE() << path << " was read: " << scan.positions.size() << " points";
-    } catch (const ReadError& error) {
-      return error.what();
-    }
-    return "";
+    });
   }
   /// With columns as named by the user.
   static ReadOptions columns(std::string_view text) {
@@ -58,8 +38,6 @@ class TestFiles : public testing::Test {
   std::string refusal_of(std::string_view bytes, const std::string& name = "scan") {
     return refusal(write(name, bytes));
   }
-
-  std::filesystem::path folder_;
 };
 
 /// Expects `text` to contain each of the parts.
@@ -70,13 +48,14 @@ void expect_parts(const std::string& text, const Parts&... parts) {
   }
 }
 
-/// The bytes of a number, in the other byte order when `swap`.
-template <typename Number>
-std::string bytes_of(Number number, bool swap = false) {
-  std::string bytes(sizeof number, '\0');
-  std::memcpy(bytes.data(), &number, sizeof number);
-  if (swap) std::reverse(bytes.begin(), bytes.end());
-  return bytes;
+using test::bytes_of;
+
+using Corner = std::array<float, 3>;
+/// A facet of a binary STL file.
+inline std::string facet(const std::array<Corner, 3>& corners) {
+  std::string bytes = bytes_of(Corner{0, 0, 1});
+  for (const Corner& corner : corners) bytes += bytes_of(corner);
+  return bytes + std::string(2, '\0');
 }
 
 inline std::uint64_t dropped(const Scan& scan, const std::string& cause) {

@@ -1,13 +1,13 @@
 #include "tactree/simulation/hand_path.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <fstream>
 #include <stdexcept>
 #include <string>
 
 #include "analytic_shapes.hpp"
+#include "folder_test.hpp"
+#include "message_of.hpp"
 #include "tactree/simulation/hand_script.hpp"
 
 namespace tactree::test {
@@ -15,28 +15,15 @@ namespace {
 
 using simulation::HandPath;
 
-class PathFile : public ::testing::Test {
+class PathFile : public FolderTest {
  protected:
-  void SetUp() override {
-    file_ = std::filesystem::path(::testing::TempDir()) /
-            ("hand_path_" + std::to_string(::getpid()) + ".csv");
+  HandPath read(const std::string& text) const {
+    return simulation::read_hand_path(write("path.csv", text));
   }
-  void TearDown() override { std::filesystem::remove(file_); }
-
-  HandPath read(const std::string& text) {
-    std::ofstream(file_, std::ios::binary) << text;
-    return simulation::read_hand_path(file_);
+  std::string refusal(const std::string& text) const {
+    return message_of<std::runtime_error>([&] { read(text); })
+        .substr((folder_ / "path.csv").string().size());
   }
-  std::string refusal(const std::string& text) {
-    try {
-      read(text);
-    } catch (const std::runtime_error& error) {
-      return std::string(error.what()).substr(file_.string().size());
-    }
-    return "accepted";
-  }
-
-  std::filesystem::path file_;
 };
 
 TEST_F(PathFile, ReadsHeadingsAndComments) {

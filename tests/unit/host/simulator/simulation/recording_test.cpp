@@ -7,6 +7,7 @@
 #include <cstring>
 #include <random>
 
+#include "message_of.hpp"
 #include "recorded_session.hpp"
 
 namespace tactree::test {
@@ -22,12 +23,7 @@ const std::vector<std::byte>& sound() {
 }
 
 std::string refusal(std::vector<std::byte> bytes) {
-  try {
-    const Recording recording(bytes);
-  } catch (const RecordingError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return message_of<RecordingError>([&] { const Recording recording(bytes); });
 }
 
 void seal(std::vector<std::byte>& bytes) {
@@ -102,7 +98,7 @@ TEST(Recording, RefusesEveryDamagedByte) {
   for (std::size_t i = 0; i < sound().size(); i += i < 200 ? 1 : 101) {
     std::vector<std::byte> bytes = sound();
     bytes[i] ^= std::byte{0x10};
-    EXPECT_NE(refusal(bytes), "accepted") << i;
+    EXPECT_NE(refusal(bytes), "") << i;
   }
 }
 
