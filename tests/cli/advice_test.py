@@ -38,7 +38,7 @@ class Sizes(Folder):
         self.build("--scale", "5")
         self.assertEqual(self.run_tool("info", "s.blob").stderr, "")
         done = self.run_tool("info", "s.blob", "--device", "falcon")
-        self.assertIn("larger than falcon reaches", done.stderr)
+        self.assertIn("more than falcon reaches", done.stderr)
 
     def test_a_huge_file_that_is_no_blob_is_refused_by_its_header(self):
         with open(self.path / "large.ply", "wb") as file:
