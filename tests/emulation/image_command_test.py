@@ -211,7 +211,7 @@ class Image(unittest.TestCase):
     def test_refuses_an_image_truncated_at_any_byte(self):
         whole = firmware()
         for size in [*range(0, 130), len(whole) // 2, len(whole) - 1]:
-            self.refused("firmware.elf", "cut", elf=whole[:size])
+            self.refused("firmware.elf", "truncated", elf=whole[:size])
 
     def test_refuses_an_image_with_a_flipped_bit_in_its_program(self):
         whole = firmware()
