@@ -56,15 +56,19 @@ def write_3mf(path, target="3D/a.model", *pictures, unit="millimeter"):
                          '<item objectid="1"/></build></model>')
 
 
+def new_folder(add_cleanup):
+    folder = tempfile.TemporaryDirectory()
+    add_cleanup(folder.cleanup)
+    return pathlib.Path(folder.name)
+
+
 class SharedFolder(unittest.TestCase):
     """Runs the tool in a folder that all tests of a class share."""
     tool: pathlib.Path
 
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(folder.cleanup)
-        cls.path = pathlib.Path(folder.name)
+        cls.path = new_folder(cls.addClassCleanup)
 
     @classmethod
     def run_tool(cls, *arguments, **options):
@@ -92,7 +96,7 @@ class ToolFolder(SharedFolder):
     points = 2000
 
     def setUp(self):
-        type(self).setUpClass()
+        type(self).path = new_folder(self.addCleanup)
         self.write("s.xyz", sphere(self.points, 0.05))
 
     def build(self, *arguments):

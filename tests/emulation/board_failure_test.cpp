@@ -1,5 +1,5 @@
 // A board with an invalid blob boots, reports it, and applies no force. An emulated session that
-// cannot continue ends with an error that names the board, the cause and the remedy.
+// cannot continue ends with an error that names the board, the cause and the hint.
 
 #include <cstdlib>
 #include <cstring>

@@ -21,7 +21,7 @@ inline void require(bool good, const char* sentence) {
   }
 }
 
-/// Requires the form "file: cause (remedy)".
+/// Requires the form "file: cause (hint)".
 inline void require_reason(std::string_view text, std::string_view file) {
   if (text.size() <= file.size() + 10 || text.substr(0, file.size()) != file) {
     std::fprintf(stderr, "%.*s\n", static_cast<int>(text.size()), text.data());

@@ -34,7 +34,7 @@ struct ControllerFile {
 };
 
 /// Paths in the file are relative to its folder. Throws support::UserError with the text "file:
-/// location: cause (remedy)".
+/// location: cause (hint)".
 [[nodiscard]] ControllerFile read_controller_file(const std::filesystem::path& file);
 
 }  // namespace tactree::controller

@@ -14,7 +14,7 @@ struct Finding {
   std::string which;  ///< its name in the file
   bool good = true;
   bool matters = true;  ///< false: only a warning if it is not good
-  std::string detail;   ///< location, or cause and remedy
+  std::string detail;   ///< location, or cause and hint
 };
 
 [[nodiscard]] std::vector<Finding> examine(const ControllerFile& file);

@@ -10,7 +10,7 @@
 namespace tactree::controller {
 
 /// Sets the priority of the calling thread, locks the memory of the process, and touches the
-/// thread's stack. Returns one sentence with a remedy for each step that failed.
+/// thread's stack. Returns one sentence with a hint for each step that failed.
 [[nodiscard]] std::vector<std::string> enter_real_time(const RealTimeSettings& settings);
 
 /// What enter_real_time() would return. Has no lasting effect.

@@ -23,7 +23,7 @@ using Handle = std::unique_ptr<libusb_device_handle, FreeHandle>;
 
 [[nodiscard]] Context make_context();
 
-/// Throws LinkError with the message "usb 1209:0001 3-1.2: cause (remedy: ...)".
+/// Throws LinkError with the message "usb 1209:0001 3-1.2: cause (hint: ...)".
 [[noreturn]] void fail(const std::string& label, int error);
 
 /// Calls `visit(device, descriptor, path)` for each device with a link interface.

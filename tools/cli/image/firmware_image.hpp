@@ -29,7 +29,7 @@ struct FirmwareImage {
 
 /// Reads and checks a file. It must be a complete 32-bit little-endian ELF program with one
 /// identity, all bytes in the range for code, and a valid checksum. Throws UserError with file,
-/// cause and remedy.
+/// cause and hint.
 [[nodiscard]] FirmwareImage read_firmware(const std::filesystem::path& file);
 
 }  // namespace tactree::cli

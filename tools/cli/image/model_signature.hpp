@@ -25,7 +25,7 @@ struct ModelSignature {
 /// them exists.
 PublicKey generate_key(const std::filesystem::path& file);
 
-/// Both throw UserError with the file, the cause and the remedy.
+/// Both throw UserError with the file, the cause and the hint.
 [[nodiscard]] PublicKey read_public_key(const std::filesystem::path& file);
 [[nodiscard]] SecretKey read_secret_key(const std::filesystem::path& file);
 

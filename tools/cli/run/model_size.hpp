@@ -9,7 +9,7 @@
 
 namespace tactree::cli {
 
-/// A warning with a remedy if the device cannot reach all faces of the model's bounding box,
+/// A warning with a hint if the device cannot reach all faces of the model's bounding box,
 /// centred at the device's origin. Empty if it can, and for a device of one or two axes. Cost: some
 /// tenths of a second.
 [[nodiscard]] std::optional<std::string> oversize_warning(const std::string& file,

@@ -29,7 +29,7 @@ struct SceneFile {
 };
 
 /// Reads `scene`. If it is empty, each of `blobs` is a body at rest at the origin. Throws UserError
-/// with file, key, cause and remedy.
+/// with file, key, cause and hint.
 [[nodiscard]] SceneFile read_scene(const std::filesystem::path& scene,
                                    const std::vector<std::string>& blobs);
 

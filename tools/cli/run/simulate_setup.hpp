@@ -10,7 +10,7 @@
 
 namespace tactree::cli {
 
-/// Throws UserError with the text "what (remedy)", where `what` states what was refused.
+/// Throws UserError with the text "what (hint)", where `what` states what was refused.
 [[noreturn]] void refuse(const std::string& what, const std::string& remedy);
 
 /// Device, controller and mechanics. Throws UserError.

@@ -15,7 +15,7 @@ inline constexpr double kMaxCandidates = 20e6;
 /// Samples one point per (kCandidateDistance * spacing)^2 of area on average, in a low-discrepancy
 /// pattern that depends only on the index of the triangle. Each point lies on its face, up to
 /// rounding; its normal follows from the order of the vertices (counter-clockwise seen from
-/// outside). Throws std::runtime_error, with the count and a remedy, above kMaxCandidates.
+/// outside). Throws std::runtime_error, with the count and a hint, above kMaxCandidates.
 [[nodiscard]] Cloud sample_faces(const Mesh& mesh, double spacing);
 
 }  // namespace tactree::builder

@@ -127,7 +127,7 @@ struct BuildResult {
   std::vector<std::uint8_t> doubtful;  ///< per point of the blob: 1 if its orientation is ambiguous
 };
 
-/// The build failed. what() names file, cause and remedy.
+/// The build failed. what() names file, cause and hint.
 class BuildError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

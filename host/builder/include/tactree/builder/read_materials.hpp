@@ -20,7 +20,7 @@
 namespace tactree::builder {
 
 /// Reads a list of properties if `source` contains '=' and no file of that name exists, otherwise
-/// the file `source`. Throws ReadError with file, key, cause and remedy.
+/// the file `source`. Throws ReadError with file, key, cause and hint.
 [[nodiscard]] MaterialMap read_materials(const std::string& source);
 
 }  // namespace tactree::builder

@@ -40,7 +40,7 @@ struct Scan {
   [[nodiscard]] bool is_mesh() const { return !triangles.empty(); }
 };
 
-/// A file was refused. what() is "file: place: cause (remedy)".
+/// A file was refused. what() is "file: place: cause (hint)".
 class ReadError : public std::runtime_error {
  public:
   /// `place` is "line 12", "byte 400", "header" or empty; `remedy` is an action for the user.

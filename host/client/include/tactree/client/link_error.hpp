@@ -3,7 +3,7 @@
 
 namespace tactree::client {
 
-/// Error of a port or board. Message: "where: what (remedy)".
+/// Error of a port or board. Message: "where: what (hint)".
 class LinkError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -1,5 +1,5 @@
 #pragma once
-// The start of a board as text: failures and remedies.
+// The start of a board as text: failures and hints.
 
 #include <string>
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace tactree::client {
 
-/// Returns one sentence per problem, with the remedy if there is one; empty if there are no
+/// Returns one sentence per problem, with the hint if there is one; empty if there are no
 /// problems.
 [[nodiscard]] std::vector<std::string> complaints(const core::wire::ReadStartReply& start);
 

@@ -18,7 +18,7 @@ struct UsbDeviceInfo {
   std::string serial;  ///< empty if it could not be read
   std::string maker;
   std::string name;
-  std::string problem;  ///< cause and remedy if it cannot be opened; empty otherwise
+  std::string problem;  ///< cause and hint if it cannot be opened; empty otherwise
 
   /// E.g. "usb 1209:0001 3-1.2".
   [[nodiscard]] std::string label() const;
@@ -61,7 +61,7 @@ class UsbWatch {
 
 /// The udev rule that allows the user logged in locally, and the group plugdev, to open boards.
 [[nodiscard]] std::string udev_rule();
-/// Writes the rule below `root` and returns the path of the file. Throws LinkError with a remedy.
+/// Writes the rule below `root` and returns the path of the file. Throws LinkError with a hint.
 std::string install_udev_rule(const std::string& root = "/");
 
 }  // namespace tactree::client

@@ -14,7 +14,7 @@ namespace tactree::client {
 class UsbTransport : public Transport {
  public:
   /// Opens the board and claims its link, which takes some milliseconds. Throws LinkError with
-  /// cause and remedy if the board is gone, permission is missing or another program uses the
+  /// cause and hint if the board is gone, permission is missing or another program uses the
   /// board.
   explicit UsbTransport(const UsbDeviceInfo& device);
   ~UsbTransport() override;

@@ -17,7 +17,7 @@ namespace tactree::support {
 class BlobFile {
  public:
   /// Reads and checks the blob, its header first. Throws UserError that names the file, the cause
-  /// and the remedy.
+  /// and the hint.
   explicit BlobFile(const std::filesystem::path& file);
 
   /// Reads the blob that a command line names, where "-" is standard input. Throws UserError.

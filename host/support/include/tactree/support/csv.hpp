@@ -23,7 +23,7 @@
 
 namespace tactree::support {
 
-/// The text is "FILE: line N: cause (remedy)".
+/// The text is "FILE: line N: cause (hint)".
 class CsvError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -19,7 +19,7 @@ struct Device {
 [[nodiscard]] std::vector<std::string> device_names();
 
 /// Returns the preset of this name or, if there is none, the device in the file of this name.
-/// Throws UserError with the text "file: key: cause (remedy)".
+/// Throws UserError with the text "file: key: cause (hint)".
 [[nodiscard]] Device load_device(const std::string& name_or_file);
 
 /// Returns the device as the text of a device file.

@@ -1,6 +1,6 @@
 #pragma once
 // Reads values of a JSON object and checks each against its range. Every error names file, key,
-// cause and remedy. A key that is not read is an error.
+// cause and hint. A key that is not read is an error.
 
 #include <cstddef>
 #include <cstdint>

@@ -6,7 +6,7 @@
 
 namespace tactree::support {
 
-/// The text is "file: place: cause (remedy)", without the parts that do not apply.
+/// The text is "file: place: cause (hint)", without the parts that do not apply.
 class UserError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

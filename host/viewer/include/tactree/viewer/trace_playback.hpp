@@ -15,7 +15,7 @@
 namespace tactree::viewer {
 
 /// The ticks of a trace. The columns t_s, probe and force are required; the values of other missing
-/// columns are 0. Throws support::CsvError with the text "file: line n: cause (remedy)".
+/// columns are 0. Throws support::CsvError with the text "file: line n: cause (hint)".
 [[nodiscard]] std::vector<simulation::Sample> read_trace(const std::filesystem::path& file);
 
 class TracePlayback : public Source {

@@ -13,7 +13,7 @@
 //
 // Costs: worst_case() solves a few linear programs, about 1 s; tick_costs() some dozens, about 20
 // s. All functions may be called from several threads. Errors are BoundError with the text
-// "location: cause (remedy)".
+// "location: cause (hint)".
 
 #include <array>
 #include <cstdint>

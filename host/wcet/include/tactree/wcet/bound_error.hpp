@@ -5,7 +5,7 @@
 namespace tactree::wcet {
 
 /// The analysis cannot prove a bound, or cannot read its input. The text is "location: cause
-/// (remedy)".
+/// (hint)".
 class BoundError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

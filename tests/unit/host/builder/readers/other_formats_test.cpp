@@ -1,4 +1,4 @@
-// Meshes, grids and tables of other programs: each is named and refused with a remedy, and none of
+// Meshes, grids and tables of other programs: each is named and refused with a hint, and none of
 // its numbers becomes a point.
 
 #include <string>

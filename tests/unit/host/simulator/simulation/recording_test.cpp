@@ -1,4 +1,4 @@
-// Only a complete, undamaged recording is read; the message states place, cause and remedy.
+// Only a complete, undamaged recording is read; the message states place, cause and hint.
 
 #include "tactree/simulation/recording.hpp"
 

@@ -25,7 +25,7 @@ class FunctionFsController : public UsbPort {
   FunctionFsController(const core::usb::Identity& identity, std::string udc, bool with_dfu = true);
   ~FunctionFsController() override;
 
-  /// Creates the gadget and connects it. Throws std::runtime_error with file, cause and remedy.
+  /// Creates the gadget and connects it. Throws std::runtime_error with file, cause and hint.
   void plug_in() override;
   void unplug() override;
   [[nodiscard]] bool plugged_in() const override;

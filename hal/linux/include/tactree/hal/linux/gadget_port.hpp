@@ -16,7 +16,7 @@ namespace tactree::hal {
 class GadgetPort {
  public:
   /// `udc`: an entry of /sys/class/udc; empty: the only one. Throws std::runtime_error with file,
-  /// cause and remedy.
+  /// cause and hint.
   GadgetPort(const core::usb::Identity& identity, const std::string& udc);
 
   /// Call once per tick: handles requests of the host and reports changes. Cost: some system calls.

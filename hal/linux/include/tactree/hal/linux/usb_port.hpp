@@ -14,7 +14,7 @@ class UsbPort {
   UsbPort& operator=(const UsbPort&) = delete;
   virtual ~UsbPort() = default;
 
-  /// Connects the device to the bus. Throws std::runtime_error with cause and remedy.
+  /// Connects the device to the bus. Throws std::runtime_error with cause and hint.
   virtual void plug_in() = 0;
   virtual void unplug() = 0;
   [[nodiscard]] virtual bool plugged_in() const = 0;

@@ -19,7 +19,7 @@ class WatchdogError : public std::runtime_error {
 class WatchdogDevice {
  public:
   /// Starts the watchdog. `timeout_s` >= 1; the driver may round it. Throws WatchdogError with
-  /// file, cause and remedy.
+  /// file, cause and hint.
   WatchdogDevice(const std::string& file, std::uint32_t timeout_s);
   /// Stops the watchdog if the driver allows it.
   ~WatchdogDevice();

@@ -4,7 +4,7 @@
 
 namespace tactree::emulation {
 
-/// The emulated session cannot start or continue. The text is "location: cause (remedy)".
+/// The emulated session cannot start or continue. The text is "location: cause (hint)".
 class EmulationError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -31,7 +31,7 @@ class HandPath {
 };
 
 /// Reads rows `t_s,x,y,z` (s, m). A first row without numbers is a heading; empty rows and rows
-/// that start with # are ignored. Throws std::runtime_error with "file: line n: cause (remedy)".
+/// that start with # are ignored. Throws std::runtime_error with "file: line n: cause (hint)".
 [[nodiscard]] HandPath read_hand_path(const std::filesystem::path& file);
 
 }  // namespace tactree::simulation

@@ -112,7 +112,7 @@ struct RecordedTick {
 using RecordedEvent = std::variant<core::Configuration, core::Adjustment, LoadModel, AddBody,
                                    RemoveBody, UnloadModel, BeginTrace, RecordedTick>;
 
-/// A recording is incomplete or damaged. The message contains the byte offset, cause and remedy,
+/// A recording is incomplete or damaged. The message contains the byte offset, cause and hint,
 /// but not the name of the file.
 class RecordingError : public std::runtime_error {
  public:
