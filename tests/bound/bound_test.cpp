@@ -295,7 +295,10 @@ TEST(HighestRate, SeparatesTimelyFromLateTicks) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> cycles(1e3, 1e5);
   for (int board = 0; board < 1000; ++board) {
-    const wcet::WorkTierCycles tiers{cycles(random), cycles(random), cycles(random)};
+    wcet::WorkTierCycles tiers{};
+    for (double& of_tier : tiers) {
+      of_tier = cycles(random);
+    }
     constexpr double kClock = 5e7;
     const double highest = wcet::highest_rate(kClock, tiers);
     for (double rate_hz = 50.0; rate_hz < 60000.0; rate_hz *= 1.07) {

@@ -14,6 +14,8 @@ namespace {
 constexpr float kCountsPerMetre = 1e7F;
 constexpr std::size_t kEpisode = 24;  // ticks
 constexpr std::size_t kEpisodes = 30;
+constexpr float kPatch_m = 0.05e-3F;  // of the expensive models
+constexpr float kDrift_m = 4e-6F;     // per tick; below their slack
 
 double as_double(float v) { return static_cast<double>(v); }
 
@@ -60,6 +62,16 @@ class Climber {
     return path;
   }
 
+  /// A straight path in steps so small that candidates are gathered ahead.
+  ProbePath drifting_episode() {
+    ProbePath path = {place(kPatch_m)};
+    const core::Vec3 step = place(kDrift_m);
+    for (std::size_t i = 1; i < kEpisode; ++i) {
+      path.push_back(path.back() + step);
+    }
+    return path;
+  }
+
   /// Moves some positions, most by a small step.
   ProbePath changed(const ProbePath& path) {
     ProbePath result = path;
@@ -93,7 +105,7 @@ class Climber {
 
 builder::Model expensive_model(ExpensiveModel kind) {
   constexpr double kSupport = 0.5e-3;
-  constexpr double kPatch = 0.05e-3;
+  constexpr double kPatch = static_cast<double>(kPatch_m);
   builder::Model model;
   std::mt19937 random(7);
   std::uniform_real_distribution<double> place(-1.0, 1.0);
@@ -160,8 +172,11 @@ Found seek_worst(const emulation::BoardDescription& board,
   for (int run = 0; run < runs; ++run) {
     ProbePath path;
     for (std::size_t i = 0; i < kEpisodes; ++i) {
-      const bool fresh = found.path.empty() || climber.uniform() < 0.1F;
-      const ProbePath episode = fresh ? climber.random_episode() : climber.changed(found.path);
+      const bool fresh = found.path.empty() || climber.uniform() < 0.2F;
+      const bool drifts = fresh && climber.uniform() < 0.5F;
+      const ProbePath episode = drifts  ? climber.drifting_episode()
+                                : fresh ? climber.random_episode()
+                                        : climber.changed(found.path);
       path.insert(path.end(), episode.begin(), episode.end());
     }
     const emulation::InstructionCounts counts = follow(board, counted, blob, path, mode, rate_hz);

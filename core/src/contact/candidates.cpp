@@ -11,12 +11,10 @@
 namespace tactree::core {
 namespace {
 
-// In units of the slack: distance of a new centre ahead of the query, below 1 so that the set
-// covers the query; and the maximum stride of a query that predicts the next one. A query that goes
-// straight on leaves the set after 1.7, one that turns back after 0.3. A slow query begins the next
-// gather at a stride just above 1; a longer stride is a jump or a step of a sweep, which is 2.5
-// with a support radius of 2.5 and a reach of 3 spacings.
-constexpr float kAhead = 0.7F;
+// Maximum stride of a query that predicts the next one, in slacks. A query that goes straight on
+// leaves a set after 1.7, one that turns back after 0.3. A slow query begins the next gather at a
+// stride just above 1; a longer stride is a jump or a step of a sweep, which is 2.5 with a support
+// radius of 2.5 and a reach of 3 spacings.
 constexpr float kStride = 1.5F;
 
 // Rounding a centre to integers moves it by less than kRounding. In total, a gather loses less than
@@ -99,15 +97,20 @@ float CandidateSet::slack_of(const BlobView& view) {
   return view.reach_m() - view.support_radius_m() - kLostToRounding * view.step_m();
 }
 
-// A centre ahead of a moving query stays valid 1 + kAhead times as long as one at the query.
-void CandidateSet::begin_for(const BlobView& view, Vec3 x) {
+// A centre ahead of a moving query stays valid 1 + kCentreAhead times as long as one at the query.
+Vec3 CandidateSet::centre_for(const BlobView& view, Vec3 x) const {
   const float slack = slack_of(view);
   const Vec3 stride = x - centre_;
   const float squared = length_squared(stride);
   const bool predictable =
       state_ == State::kValid && squared > 0.0F && squared <= kStride * slack * (kStride * slack);
+  return predictable ? x + (kCentreAhead * slack / square_root(squared)) * stride : x;
+}
+
+void CandidateSet::begin(const BlobView& view, Vec3 centre) {
+  const float slack = slack_of(view);
   slack_squared_ = slack * slack;
-  centre_ = predictable ? x + (kAhead * slack / square_root(squared)) * stride : x;
+  centre_ = centre;
   state_ = State::kGathering;
   count_ = 0;
   hidden_ = 0;
@@ -127,6 +130,7 @@ void CandidateSet::begin_for(const BlobView& view, Vec3 x) {
   }
   const NearLeaf leaf = corners.find(corner_);
   complete_ = complete_ && !leaf.damaged;
+  // at most: slice_corners per Proxy::update
   return leaf.empty() || gather_leaf(view, leaf, corners.min_of(leaf), left);
 }
 
@@ -153,7 +157,7 @@ void CandidateSet::cover(const BlobView& view, Vec3 x) {
     count_ = 0;
     hidden_ = 0;
   } else if (!covers(x)) {
-    begin_for(view, x);
+    begin(view, centre_for(view, x));
     GatherSlice all;
     (void)gather(view, all);
   }
@@ -245,8 +249,8 @@ void CandidateSet::begin_leaf(const BlobView& view, const NearLeaf& leaf,
 }
 
 // Returns false if the slice is exhausted within the leaf.
-bool CandidateSet::gather_leaf(const BlobView& view, const NearLeaf& leaf, Int3 leaf_min,
-                               GatherSlice& left) {
+[[gnu::noinline]] bool CandidateSet::gather_leaf(const BlobView& view, const NearLeaf& leaf,
+                                                 Int3 leaf_min, GatherSlice& left) {
   const LeafBall ball(view, leaf, leaf_min);
   if (!in_leaf_) {
     begin_leaf(view, leaf, ball.first_word());

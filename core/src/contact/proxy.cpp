@@ -79,6 +79,8 @@ void Proxy::update(const BlobView& view, Vec3 probe, const Friction& friction,
     return;
   }
   budget_.begin(work);
+  candidates_.use_both(work.gathers_ahead());  // memory: flash
+  const Vec3 begin = position_;
   lost_contact_ = false;
   blocked_ = false;
   gives_way_ = false;
@@ -90,6 +92,9 @@ void Proxy::update(const BlobView& view, Vec3 probe, const Friction& friction,
   }
   if (!in_contact()) {
     sweep(view, is_led() ? neighbour->proxy : probe);
+  }
+  if (candidates_.uses_both()) {
+    gather_ahead(view, probe, begin);  // at most: ahead per Proxy::update
   }
   neighbour_ = nullptr;
 }
@@ -104,18 +109,21 @@ void Proxy::update(const BlobView& view, Vec3 probe, const Friction& friction,
 // both sides of it.
 [[gnu::noinline]] void Proxy::look_behind(const BlobView& view) {
   budget_.spend_passes(1U);
-  inside_ = interior_at(view, candidates_[0].position).behind;
+  inside_ = interior_at(view, candidates_.in_use()[0].position).behind;
   asks_ = false;
 }
 
-bool Proxy::gather(const BlobView& view, Vec3 x) {
-  GatherSlice& slice = budget_.spend_gather();
-  if (!candidates_.is_gathering()) {
-    candidates_.begin_for(view, x);
+/// True if a set covers `x`; that set is then in use.
+[[gnu::noinline]] bool Proxy::covers(Vec3 x) {
+  if (candidates_.in_use().covers(x)) {
+    return true;
   }
-  // at most: gathers per Scene::update
+  // at most: ahead * max(1, 2 * fits_of_one - 1) per Proxy::update
+  if (!candidates_.uses_both() || !candidates_.take_other(x)) {
+    return false;
+  }
   must_hide_ = neighbour_ != nullptr;
-  return candidates_.gather(view, slice);
+  return true;
 }
 
 // Provides candidates for a fit at x. Returns false if no fit is possible in this tick; has_next_
@@ -124,13 +132,14 @@ bool Proxy::prepare_fit(const BlobView& view, Vec3 x) {
   if (!budget_.allows_fit()) {
     return false;
   }
-  if (!candidates_.covers(x)) {
+  // at most: max(1, 2 * fits_of_one - 1) per Proxy::update
+  if (!covers(x)) {
     if (!budget_.allows_gather()) {
       return false;
     }
     has_next_ = !gather(view, x) || !budget_.allows_fit();
     next_ = x;
-    if (has_next_ || !candidates_.covers(x)) {
+    if (has_next_ || !candidates_.in_use().covers(x)) {
       return false;
     }
   }
@@ -144,7 +153,7 @@ bool Proxy::prepare_fit(const BlobView& view, Vec3 x) {
 SurfaceFit Proxy::evaluate(const BlobView& view, Vec3 x) {
   // at most: fits per Scene::update together evaluations
   const SurfaceFit fit =
-      fit_surface(candidates_, x, view.support_radius_m(), reference_, side_, near_);
+      fit_surface(candidates_.in_use(), x, view.support_radius_m(), reference_, side_, near_);
   budget_.spend_passes(fit.passes);
   return fit;
 }
@@ -174,7 +183,8 @@ void Proxy::sweep(const BlobView& view, Vec3 probe) {
 // Returns false if no point is within reach, or if there is no reference and all points in the
 // support are hidden.
 bool Proxy::has_reference(const BlobView& view, Vec3 x) {
-  if (candidates_.count() + candidates_.hidden() == 0U) {
+  const CandidateSet& points = candidates_.in_use();
+  if (points.count() + points.hidden() == 0U) {
     lose_support();
     return false;
   }
@@ -183,7 +193,7 @@ bool Proxy::has_reference(const BlobView& view, Vec3 x) {
   }
   budget_.spend_passes(1U);
   // at most: passes per Scene::update together passes
-  const Candidate* const nearest = nearest_candidate(candidates_, x, view.support_radius_m());
+  const Candidate* const nearest = nearest_candidate(points, x, view.support_radius_m());
   if (nearest == nullptr) {
     return false;
   }
@@ -281,7 +291,7 @@ bool Proxy::passes_by(const SurfaceFit& fit, Vec3 step) const {
 bool Proxy::is_contradicted(const SurfaceFit& fit) const {
   const bool crossed = is_tracking() && fit.firm() && side_ * fit.distance < 0.0F;
   return !crossed && state_ != State::kReferenced && fit.facing < kContradicted &&
-         candidates_.hidden() == 0U;
+         candidates_.in_use().hidden() == 0U;
 }
 
 void Proxy::begin_contact(const BlobView& view) {
@@ -455,7 +465,7 @@ void Proxy::slide(const BlobView& view, Vec3 probe, const Friction& friction) {
     const Footing before = footing();
     // at most: fits per Scene::update together fits
     if (!slip_by(view, slip)) {
-      if (candidates_.hidden() != 0U) {  // the surface ends inside the neighbour
+      if (candidates_.in_use().hidden() != 0U) {  // the surface ends inside the neighbour
         restore(before);
         gives_way_ = true;
         return;
@@ -545,7 +555,7 @@ void Proxy::lose_support() {
 // While the neighbour hides points, the side is kept: the points of the surface that appear next
 // are seen from the same side.
 void Proxy::lose_face(const SurfaceFit& fit) {
-  if (!is_tracking() || candidates_.hidden() == 0U) {
+  if (!is_tracking() || candidates_.in_use().hidden() == 0U) {
     lose_support();
     return;
   }

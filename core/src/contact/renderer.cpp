@@ -85,7 +85,7 @@ Rendering Renderer::render_proxy(const BlobView& view, const Configuration& c, V
   }
   const Vec3 normal = proxy_.normal();
   const Vec3 displacement = r.proxy - probe;
-  if (!proxy_.candidates().is_gathering()) {
+  if (!proxy_.is_waiting()) {
     blend_materials(view, c, proxy_.candidates(), r.proxy, proxy_.stored_normal(), materials_);
   }
   const ContactParameters parameters = contact_parameters_of(view, c, materials_);

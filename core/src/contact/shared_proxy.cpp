@@ -152,7 +152,7 @@ void Proxy::aim(Vec3 probe) {
 }
 
 bool Proxy::belongs_to(const Proxy& follower, const Neighbour& neighbour, Vec3 probe) const {
-  if (!neighbour.holds || follower.candidates_.is_gathering() || !(follower.strength_ > 0.0F)) {
+  if (!neighbour.holds || follower.is_waiting() || !(follower.strength_ > 0.0F)) {
     return false;
   }
   const NeighbourFace& face = neighbour.face[0];

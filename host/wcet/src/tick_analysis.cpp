@@ -47,6 +47,19 @@ Bound to_bound(WorstPath path) {
   return bound;
 }
 
+// Annotations limit the sum of the slices of all bodies, by a slice of each.
+core::GatherSlice slice_of_each(const core::SurfaceWork& work, const Division& division) {
+  if (division.ahead == 0) {
+    return work.slice;
+  }
+  const std::uint32_t all = division.gathers + division.ahead;
+  const auto mean = [&](std::uint32_t on_demand, std::uint32_t ahead) {
+    return (division.gathers * on_demand + division.ahead * ahead + all - 1) / all;
+  };
+  return {mean(work.slice.corners, work.ahead.corners), mean(work.slice.points, work.ahead.points),
+          mean(work.slice.candidates, work.ahead.candidates)};
+}
+
 }  // namespace
 
 TickAnalysis::TickAnalysis(const BoundOptions& options)
@@ -116,8 +129,10 @@ double TickAnalysis::interrupt_cycles(const BoardTiming& timing) const {
 }
 
 Parameters divided(Parameters parameters, std::uint32_t work_tier, const Division& division) {
-  const core::GatherSlice& slice = core::kWorkPerTick[work_tier].slice;
-  parameters["gathers"] = division.gathers;
+  const core::SurfaceWork& work = core::kWorkPerTick[work_tier];
+  const core::GatherSlice slice = slice_of_each(work, division);
+  parameters["gathers"] = division.gathers + division.ahead;
+  parameters["ahead"] = work.gathers_ahead() ? 1 : 0;
   parameters["passes"] = division.passes;
   parameters["fits"] = division.fits;
   parameters["fits_of_one"] = division.fits_of_one;

@@ -53,6 +53,11 @@ std::vector<Division> divisions(std::uint32_t work_tier, std::uint32_t bodies) {
     }
     all = std::move(more);
   }
+  if (work.gathers_ahead()) {
+    for (Division& division : all) {
+      division.ahead = bodies - division.gathers;
+    }
+  }
   return all;
 }
 

@@ -106,13 +106,13 @@ TEST(Admission, UsesMostExpensiveRow) {
   }
 }
 
-/// Costs whose tiers take 1000, 800 and 600 cycles for any model.
+/// Costs whose tiers take 1000, 900, 800, 700 and 600 cycles for any model.
 core::TickCosts costs_that_fall() {
   core::TickCosts costs;
   costs.known = core::kTickCostsKnown;
   for (std::uint32_t tier = 0; tier < core::kWorkTiers; ++tier) {
     for (std::uint32_t bodies = 1; bodies <= core::kMaxReachableBodies; ++bodies) {
-      costs.surface[0][core::first_row(tier, bodies)].base = 1000U - 200U * tier;
+      costs.surface[0][core::first_row(tier, bodies)].base = 1000U - 100U * tier;
     }
   }
   return costs;

@@ -2,6 +2,8 @@
 // The candidate set: decoded points around a centre, gathered in slices that fit into a tick.
 //
 // Interrupt safety: no shared state; one context owns a set.
+// Loop and memory annotations: docs/BOUND.md.
+// memory: RAM
 
 #include <cstdint>
 
@@ -23,6 +25,10 @@ inline constexpr std::uint32_t kMaxCandidates = 128;
 /// blob with a leaf of 2^kLeafHalvings points or more. A leaf 6 spacings wide holds about 36 points
 /// of a plane. Every step adds to the bound of a tick, in each leaf of a gather.
 inline constexpr std::uint32_t kLeafHalvings = 8;
+
+/// Distance of the centre of a set ahead of a query, in slacks. Below 1, so that the set covers the
+/// query.
+inline constexpr float kCentreAhead = 0.7F;
 
 /// A decoded point.
 struct Candidate {
@@ -50,8 +56,11 @@ class CandidateSet {
   [[nodiscard]] bool will_cover(Vec3 x) const { return state_ != State::kEmpty && is_near(x); }
   /// True during a gather; the candidates must not be used then.
   [[nodiscard]] bool is_gathering() const { return state_ == State::kGathering; }
-  /// Begins a gather around a centre ahead of `x`, in the direction of motion of the query.
-  void begin_for(const BlobView& view, Vec3 x);
+  /// The centre of a gather for a query at `x`: ahead of it, in the direction in which the query
+  /// has moved away from the centre of this set.
+  [[nodiscard]] Vec3 centre_for(const BlobView& view, Vec3 x) const;
+  /// Begins a gather around `centre`.
+  void begin(const BlobView& view, Vec3 centre);
   /// Continues the gather and reduces `left` by the work done. Returns true when it has ended.
   /// Cost: at most `left`. A complete gather visits 8 leaves with points_per_query_max points,
   /// compares points_per_slab_max and decodes points_per_ball_max of them.
@@ -71,6 +80,8 @@ class CandidateSet {
   }
   [[nodiscard]] std::uint32_t hidden() const { return hidden_; }
 
+  /// Centre of the last gather, m.
+  [[nodiscard]] Vec3 centre() const { return centre_; }
   /// Number of points that are not hidden. Index and iterators cover only these.
   [[nodiscard]] std::uint32_t count() const { return count_; }
   /// False after a gather that omitted points because the blob holds more than it declares or than

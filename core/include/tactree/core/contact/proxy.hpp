@@ -25,15 +25,19 @@
 // and finds the faces of its body there. It takes the lead where the surface is that of its body.
 //
 // A step takes at most one gather. With work_per_tick() and a support radius of 2.5 mm the proxy
-// keeps up with a probe at 5 m/s at 1 kHz, 2.5 m/s at 2 kHz and 1.2 m/s at 4 kHz. It follows a
-// faster probe with a delay and never loses it. If the budget is exhausted between gather and fit,
-// the fit follows in the next tick; until then a proxy in contact moves along the tangent plane.
+// keeps up with a probe at 5 m/s at 1 kHz and 2.5 m/s at 2 kHz. Above 2 kHz candidates are gathered
+// ahead of the proxy (candidate_sets.hpp), so that most ticks fit the surface where it is. It
+// follows a faster probe with a delay and never loses it. If the budget is exhausted between gather
+// and fit, the fit follows in the next tick; until then a proxy in contact moves along the tangent
+// plane.
 //
 // Interrupt safety: no shared state; one context owns a proxy.
+// Loop and memory annotations: docs/BOUND.md.
+// memory: RAM
 
 #include <cstdint>
 
-#include "tactree/core/contact/candidates.hpp"
+#include "tactree/core/contact/candidate_sets.hpp"
 #include "tactree/core/contact/constraint_planes.hpp"
 #include "tactree/core/contact/neighbour.hpp"
 #include "tactree/core/contact/surface.hpp"
@@ -93,8 +97,10 @@ class Proxy {
   /// In contact: unit normal of the surface on the side of the points' normals; where several faces
   /// hold the proxy, that of the main face.
   [[nodiscard]] Vec3 stored_normal() const { return reference_; }
-  /// The points around position().
-  [[nodiscard]] const CandidateSet& candidates() const { return candidates_; }
+  /// The points around position(), unless is_waiting().
+  [[nodiscard]] const CandidateSet& candidates() const { return candidates_.in_use(); }
+  /// True if the next fit waits for its candidates.
+  [[nodiscard]] bool is_waiting() const { return candidates_.is_waiting(); }
   /// Scale factor of the contact force; below 1 at the boundary of the surface.
   [[nodiscard]] float strength() const { return strength_; }
   /// True in a tick in which the contact ended at the boundary of the surface, not by the probe
@@ -133,6 +139,8 @@ class Proxy {
 
   [[nodiscard]] bool is_tracking() const { return state_ >= State::kTracking; }
   [[nodiscard]] bool gather(const BlobView& view, Vec3 x);
+  void gather_ahead(const BlobView& view, Vec3 probe, Vec3 begin);
+  [[nodiscard]] bool covers(Vec3 x);
   [[nodiscard]] bool prepare_fit(const BlobView& view, Vec3 x);
   [[nodiscard]] SurfaceFit evaluate(const BlobView& view, Vec3 x);
   void look_around(const BlobView& view);
@@ -172,7 +180,7 @@ class Proxy {
   void lose_face(const SurfaceFit& fit);
   void lose_support();
 
-  CandidateSet candidates_;
+  // Large members last: the offsets of the others fit into the immediate of a load or store.
   Vec3 position_{};
   Vec3 reference_{};           // normal of the last fit, on the side of the points' normals
   NearFaces near_{};           // other faces around the last fit
@@ -198,6 +206,7 @@ class Proxy {
   bool must_hide_ = false;  // hide_points() is pending
   bool blocked_ = false;    // the leading proxy is behind this surface
   bool gives_way_ = false;  // in contact: the neighbour's faces alone hold the probe
+  CandidateSets candidates_;
 };
 
 }  // namespace tactree::core

@@ -28,7 +28,7 @@ struct Rendering {
   std::uint32_t body = kNoBody;  ///< in a Scene: number of the body in contact
 };
 
-/// Interrupt safety: no shared state; one context owns a renderer. RAM: about 4 KiB, mostly the
+/// Interrupt safety: no shared state; one context owns a renderer. RAM: about 8 KiB, mostly the
 /// proxy's candidates.
 class Renderer {
  public:
@@ -66,9 +66,9 @@ class Renderer {
   [[nodiscard]] const Proxy& proxy() const { return proxy_; }
 
  private:
-  Proxy proxy_;
   Friction friction_{};        // of the contact in the last tick
   MaterialBlend materials_{};  // of the contact, blended when its candidates were last valid
+  Proxy proxy_;
 };
 
 }  // namespace tactree::core

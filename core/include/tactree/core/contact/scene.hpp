@@ -132,8 +132,8 @@ class Scene {
   /// A renderer and the body it is assigned to.
   struct Slot {
     std::uint32_t body = kNoBody;
-    Renderer renderer{};
     bool in_contact = false;
+    Renderer renderer{};
   };
 
   [[nodiscard]] bool exists(std::uint32_t number) const;
@@ -159,16 +159,17 @@ class Scene {
   void move_on(float period_s);
   void list_bodies();
 
-  Body bodies_[kMaxBodies]{};
+  // Large members last: the offsets of the others fit into the immediate of a load or store.
   std::uint8_t listed_[kMaxBodies]{};  // numbers of the bodies, ascending
   std::uint32_t count_ = 0;            // number of bodies
-  Slot slots_[kMaxReachableBodies]{};
   SceneRendering rendering_{};
   Neighbour neighbour_{};  // of the body that is tracked
   Vec3 force_{};           // of the contacts in the last tick
   ForceFade fade_{};
   bool ended_ = false;           // a contact ended, but not because the probe left: its force fades
   std::uint32_t work_tier_ = 0;  // minimum at any rate
+  Body bodies_[kMaxBodies]{};
+  Slot slots_[kMaxReachableBodies]{};
 };
 
 }  // namespace tactree::core

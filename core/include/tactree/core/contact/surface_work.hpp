@@ -3,9 +3,11 @@
 //
 // A gather decodes the candidate points around a position. A pass visits each decoded point once; a
 // fit at a crease costs two passes. The work of a tick is a fraction of the work allowed per second
-// and decreases as the rate rises. The last tier still allows a slice of a gather or one fit at a
-// crease, but not both. A board that is too slow for the tier of its rate uses a later tier, so
-// that it keeps every rate below its maximum: Admission::work_tier().
+// and decreases as the rate rises. Above 2 kHz it is one fit, also at a crease, and beside it a
+// slice of a gather ahead of the proxy; or, where candidates for a fit are missing, most of a
+// gather. A board that is too slow for the tier of its rate uses a later tier, so that it keeps
+// every rate below its maximum: Admission::work_tier(). In the last two tiers a tick with a fit
+// gathers nothing.
 //
 // Interrupt safety: constants and pure functions.
 // Loop and memory annotations: docs/BOUND.md.
@@ -26,21 +28,31 @@ struct SurfaceWork {
   std::uint32_t gathers = 0;  ///< calls of CandidateSet::gather()
   std::uint32_t passes = 0;   ///< 1 per fit, 2 at a crease; 1 per search for the nearest candidate
   std::uint32_t all = 0;      ///< gathers and passes, a gather counted as kGatherWork passes
-  GatherSlice slice{};
+  GatherSlice slice{};        ///< of gathers on demand
+  /// Of a gather ahead of the proxy, which costs neither passes nor `all`. A gather on demand that
+  /// takes no more than this counts as one ahead. Without corners: no gathers ahead.
+  GatherSlice ahead{};
+
+  [[nodiscard]] constexpr bool gathers_ahead() const { return ahead.corners != 0U; }
 };
 /// A whole gather takes about 6000 instructions on a Cortex-M, a pass about 2400.
 inline constexpr std::uint32_t kGatherWork = 2;
 
-inline constexpr std::uint32_t kWorkTiers = 3;
-/// With a whole gather and two fits at a crease in one tick of the last tier, the bound of a tick
-/// at 4 kHz was 40 755 instructions (Stanford bunny, 0.5 mm) instead of 16 549; a period of an
-/// STM32F405 has 42 000 cycles. With three corners per tick, a gather takes three ticks.
-inline constexpr SurfaceWork kWorkPerTick[kWorkTiers] = {
-    {4, 10, 13, {24, 288, 104}}, {2, 4, 4, {16, 160, 56}}, {1, 2, 2, {3, 48, 16}}};
-/// A tier applies to rates above its entry, Hz.
-inline constexpr float kWorkTierRates[kWorkTiers] = {0.0F, 1000.0F, 2000.0F};
+inline constexpr std::uint32_t kWorkTiers = 5;
+inline constexpr GatherSlice kNoSlice{0, 0, 0};
+/// With a whole gather and two fits at a crease in one tick of the third tier, the bound of a tick
+/// at 4 kHz was 40 755 instructions (Stanford bunny, 0.5 mm); a period of an STM32F405 has 42 000
+/// cycles. In the last tier a gather takes three ticks.
+inline constexpr SurfaceWork kWorkPerTick[kWorkTiers] = {{4, 10, 13, {24, 288, 104}, kNoSlice},
+                                                         {2, 4, 4, {16, 160, 56}, kNoSlice},
+                                                         {1, 2, 2, {8, 112, 32}, {1, 32, 10}},
+                                                         {1, 2, 2, {6, 92, 28}, kNoSlice},
+                                                         {1, 2, 2, {3, 48, 16}, kNoSlice}};
+/// A tier applies to rates above its entry, Hz. The last two apply to no rate.
+inline constexpr float kNoRate = 3.4e38F;
+inline constexpr float kWorkTierRates[kWorkTiers] = {0.0F, 1000.0F, 2000.0F, kNoRate, kNoRate};
 
-/// Tier of a rate in Hz: 0 .. kWorkTiers - 1.
+/// Tier of a rate in Hz: 0, 1 or 2.
 [[nodiscard]] constexpr std::uint32_t work_tier_of(float rate_hz) {
   return rate_hz > kWorkTierRates[2] ? 2U : (rate_hz > kWorkTierRates[1] ? 1U : 0U);
 }

@@ -44,9 +44,10 @@ using Parameters = std::map<std::string, std::int64_t>;
 /// Limits that no model exceeds: full leaves and balls at the maximum depth.
 [[nodiscard]] core::ModelLimits largest_model_limits();
 
-/// A division of a tick's work, summed over all bodies. More gathers leave fewer passes.
+/// A division of a tick's work, summed over all bodies. More gathers on demand leave fewer passes.
 struct Division {
-  std::uint32_t gathers = 0;
+  std::uint32_t gathers = 0;      ///< on demand
+  std::uint32_t ahead = 0;        ///< further gathers, beside fits
   std::uint32_t passes = 0;       ///< over the candidates
   std::uint32_t fits = 0;         ///< positions with a fit; the first of a body takes two passes
   std::uint32_t fits_of_one = 0;  ///< maximum of `fits` for one body
