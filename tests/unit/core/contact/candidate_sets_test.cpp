@@ -60,7 +60,7 @@ class TwoSets : public testing::Test {
 
 TEST_F(TwoSets, WaitOnlyAtFirst) {
   Vec3 x = {-0.02F, 0.001F, 0.0F};
-  const Vec3 travel = {0.06e-3F, 0.02e-3F, 0.0F};  // 0.25 m/s at 4 kHz
+  const Vec3 travel = {0.04e-3F, 0.013e-3F, 0.0F};  // 0.17 m/s at 4 kHz
   int last_wait = 0;
   for (int tick = 0; tick < 300; ++tick) {
     if (!cover(x)) {
@@ -76,7 +76,7 @@ TEST_F(TwoSets, WaitOnlyAtFirst) {
   }
   EXPECT_GT(last_wait, 2);
   EXPECT_LE(last_wait, 20);
-  EXPECT_GT(x.x, -0.005F);
+  EXPECT_GT(x.x, -0.009F);
 }
 
 TEST_F(TwoSets, GatherNothingAtRest) {
@@ -108,13 +108,13 @@ TEST_F(TwoSets, AbandonGatherAheadElsewhere) {
 
 TEST_F(TwoSets, ContinueGatherAheadOnDemand) {
   const int whole = gather_at({});
-  for (int i = 0; i < 2; ++i) {
+  for (int i = 0; i < 6; ++i) {
     gather_ahead({}, {0.2e-3F, 0.0F, 0.0F});
   }
   const Vec3 next = {1.2F * slack_, 0.0F, 0.0F};
   EXPECT_TRUE(sets_.will_cover(next));
   EXPECT_FALSE(sets_.is_waiting());
-  EXPECT_EQ(gather_at(next), whole - 2);
+  EXPECT_LT(gather_at(next), whole - 3);
 }
 
 TEST_F(TwoSets, WaitUntilGatherOnDemandEnds) {
