@@ -113,43 +113,6 @@ void Proxy::update(const BlobView& view, Vec3 probe, const Friction& friction,
   asks_ = false;
 }
 
-/// True if a set covers `x`; that set is then in use.
-[[gnu::noinline]] bool Proxy::covers(Vec3 x) {
-  if (candidates_.in_use().covers(x)) {
-    return true;
-  }
-  // at most: ahead * max(1, 2 * fits_of_one - 1) per Proxy::update
-  if (!candidates_.uses_both() || !candidates_.take_other(x)) {
-    return false;
-  }
-  must_hide_ = neighbour_ != nullptr;
-  return true;
-}
-
-// Provides candidates for a fit at x. Returns false if no fit is possible in this tick; has_next_
-// is then true if the fit at x has to wait for its candidates.
-bool Proxy::prepare_fit(const BlobView& view, Vec3 x) {
-  if (!budget_.allows_fit()) {
-    return false;
-  }
-  // at most: max(1, 2 * fits_of_one - 1) per Proxy::update
-  if (!covers(x)) {
-    if (!budget_.allows_gather()) {
-      return false;
-    }
-    has_next_ = !gather(view, x) || !budget_.allows_fit();
-    next_ = x;
-    if (has_next_ || !candidates_.in_use().covers(x)) {
-      return false;
-    }
-  }
-  if (must_hide_) {
-    // at most: min(bodies, 2) / 2 * fits per Scene::update
-    hide_points(view.support_radius_m());
-  }
-  return true;
-}
-
 SurfaceFit Proxy::evaluate(const BlobView& view, Vec3 x) {
   // at most: fits per Scene::update together evaluations
   const SurfaceFit fit =
