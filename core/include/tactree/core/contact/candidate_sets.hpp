@@ -69,9 +69,9 @@ class CandidateSets {
   void hide(const Neighbour& neighbour, float side) { sets_[used_].hide(neighbour, side); }
   void show_all() { sets_[used_].show_all(); }
 
-  /// A gather ahead begins if the query leaves the set in use within this number of ticks: as many
-  /// as a gather of most models takes, and some in reserve.
-  static constexpr float kTicksAhead = 12.0F;
+  /// A gather ahead begins if the query leaves the set in use within this number of ticks. A gather
+  /// of a plane takes up to 13 slices; with 12 ticks, a slow query waited for some of them.
+  static constexpr float kTicksAhead = 16.0F;
 
  private:
   [[nodiscard]] bool other_will_cover(Vec3 x) const;
