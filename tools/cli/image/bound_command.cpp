@@ -108,8 +108,8 @@ void print_timing(const BoundCommandOptions& options, const wcet::BoardTiming& t
              1e6 * static_cast<double>(bound.cycles) / timing.clock_hz, 1e6 / options.rate_hz,
              1e-6 * timing.clock_hz, timing.source);
   if (work_tier > core::work_tier_of(static_cast<float>(options.rate_hz))) {
-    fmt::print("work               reduced to tier {} of {}, to meet the deadline\n", work_tier + 1U,
-               core::kWorkTiers);
+    fmt::print("work               reduced to tier {} of {}, to meet the deadline\n",
+               work_tier + 1U, core::kWorkTiers);
   }
   fmt::print("highest rate       {:.0f} Hz, and every lower rate\n", highest_rate_hz);
 }
