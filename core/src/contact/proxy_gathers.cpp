@@ -5,6 +5,18 @@
 #include "tactree/core/contact/proxy.hpp"
 
 namespace tactree::core {
+namespace {
+
+constexpr bool fits_once_with_both_sets() {
+  for (const SurfaceWork& work : kWorkPerTick) {  // bound: kWorkTiers
+    if (work.gathers_ahead() && work.passes > 2U) {
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
 
 /// Gathers candidates for a fit at `x`. Returns true if the gather has ended.
 [[gnu::noinline]] bool Proxy::gather(const BlobView& view, Vec3 x) {
@@ -19,17 +31,15 @@ namespace tactree::core {
   return has_ended;
 }
 
-/// True if a set covers `x`; that set is then in use.
+/// True if a set covers `x`; that set is then in use. A second set is taken before the only fit of
+/// a tick: the neighbour has not hidden points yet.
+static_assert(fits_once_with_both_sets());
 [[gnu::noinline]] bool Proxy::covers(Vec3 x) {
   if (candidates_.in_use().covers(x)) {
     return true;
   }
   // at most: ahead * max(1, 2 * fits_of_one - 1) per Proxy::update
-  if (!candidates_.uses_both() || !candidates_.take_other(x)) {
-    return false;
-  }
-  must_hide_ = neighbour_ != nullptr;
-  return true;
+  return candidates_.uses_both() && candidates_.take_other(x);
 }
 
 // Provides candidates for a fit at x. Returns false if no fit is possible in this tick; has_next_
