@@ -94,7 +94,7 @@ void Proxy::update(const BlobView& view, Vec3 probe, const Friction& friction,
     sweep(view, is_led() ? neighbour->proxy : probe);
   }
   if (candidates_.uses_both()) {
-    gather_ahead(view, probe, begin);  // at most: ahead per Proxy::update
+    gather_ahead(view, begin);  // at most: ahead per Proxy::update
   }
   neighbour_ = nullptr;
 }

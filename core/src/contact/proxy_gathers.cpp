@@ -67,19 +67,13 @@ bool Proxy::prepare_fit(const BlobView& view, Vec3 x) {
 }
 
 /// Gathers with what the fits have left, ahead of a proxy that was at `begin` before this tick.
-[[gnu::noinline]] void Proxy::gather_ahead(const BlobView& view, Vec3 probe, Vec3 begin) {
+[[gnu::noinline]] void Proxy::gather_ahead(const BlobView& view, Vec3 begin) {
   GatherSlice slice;
   if (!budget_.spend_ahead(slice)) {
     return;
   }
-  // A free proxy that has not caught up with the probe goes on by a step.
-  const Vec3 path = (is_led() ? neighbour_->proxy : probe) - position_;
-  const float step = 0.5F * view.support_radius_m();
-  const float distance = length(path);
-  const bool is_late = !in_contact() && distance > step;
-  const Vec3 travel = is_late ? (step / distance) * path : position_ - begin;
   // at most: gathers per Scene::update together begins
-  if (candidates_.begin_ahead(view, position_, travel)) {
+  if (candidates_.begin_ahead(view, position_, position_ - begin)) {
     // at most: gathers per Scene::update together gathers
     (void)candidates_.continue_gather(view, slice);
   }

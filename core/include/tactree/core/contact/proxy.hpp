@@ -139,7 +139,7 @@ class Proxy {
 
   [[nodiscard]] bool is_tracking() const { return state_ >= State::kTracking; }
   [[nodiscard]] bool gather(const BlobView& view, Vec3 x);
-  void gather_ahead(const BlobView& view, Vec3 probe, Vec3 begin);
+  void gather_ahead(const BlobView& view, Vec3 begin);
   [[nodiscard]] bool covers(Vec3 x);
   [[nodiscard]] bool prepare_fit(const BlobView& view, Vec3 x);
   [[nodiscard]] SurfaceFit evaluate(const BlobView& view, Vec3 x);

@@ -40,11 +40,13 @@ class TickBudget {
   }
   /// After a gather on demand that took no more than one ahead may: allows the fits that it cost.
   [[gnu::noinline]] void refund_small_gather() {
-    const GatherSlice whole = limits_->slice;  // memory: flash
-    const GatherSlice small = limits_->ahead;  // memory: flash
-    if (whole.corners - slice_.corners <= small.corners &&
-        whole.points - slice_.points <= small.points &&
-        whole.candidates - slice_.candidates <= small.candidates) {
+    const GatherSlice& whole = limits_->slice;
+    const GatherSlice& small = limits_->ahead;
+    const bool is_small =
+        whole.corners - slice_.corners <= small.corners &&         // memory: flash
+        whole.points - slice_.points <= small.points &&            // memory: flash
+        whole.candidates - slice_.candidates <= small.candidates;  // memory: flash
+    if (is_small) {
       all_ += kGatherWork;
     }
   }
