@@ -60,6 +60,13 @@ void copy(const std::string& from, char (&to)[N]) {
   std::memcpy(to, from.data(), std::min(from.size(), N - 1));
 }
 
+std::unique_ptr<Connection> connect(std::unique_ptr<Transport> transport,
+                                    const BoardOptions& options) {
+  ConnectionOptions connection;
+  connection.stream_capacity = options.stream_capacity;
+  return std::make_unique<Connection>(std::move(transport), connection);
+}
+
 }  // namespace
 
 std::string names_of(core::FaultMask faults) {
@@ -79,7 +86,7 @@ Board::Board(const std::string& port, const BoardOptions& options)
 }
 
 Board::Board(std::unique_ptr<Transport> transport, const BoardOptions& options)
-    : options_(options), connection_(std::make_unique<Connection>(std::move(transport))) {
+    : options_(options), connection_(connect(std::move(transport), options)) {
   connection_->open(options.link_timeout_ms);
 }
 
@@ -96,7 +103,7 @@ void Board::reconnect() {
                     ": cannot be reopened, because it was not opened by name");
   }
   connection_.reset();
-  auto fresh = std::make_unique<Connection>(open_port(port_, options_.baud));
+  auto fresh = connect(open_port(port_, options_.baud), options_);
   fresh->open(options_.link_timeout_ms);
   connection_ = std::move(fresh);
   if (subscription_) {

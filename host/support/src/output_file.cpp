@@ -7,6 +7,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
 #include "tactree/support/user_error.hpp"
 
@@ -18,13 +19,6 @@ namespace fs = std::filesystem;
 [[noreturn]] void fail(const fs::path& file) {
   throw UserError(fmt::format("{}: cannot be written: {} (check the path and its permissions)",
                               file.string(), std::strerror(errno)));
-}
-
-// A device or pipe, such as /dev/stdout, must not be replaced by a regular file.
-bool is_written_in_place(const fs::path& file) {
-  std::error_code ignored;
-  const fs::file_status status = fs::status(file, ignored);
-  return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
 }
 
 void require_writable(const fs::path& file) {
@@ -52,7 +46,7 @@ bool is_same_file(const fs::path& a, const fs::path& b) {
          (!real.empty() && real == fs::weakly_canonical(fs::absolute(b, ignored), ignored));
 }
 
-bool write_all(int descriptor, std::span<const std::byte> bytes) {
+bool write_bytes(int descriptor, std::span<const std::byte> bytes) {
   while (!bytes.empty()) {
     const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
     if (written < 0 && errno != EINTR) {
@@ -60,7 +54,25 @@ bool write_all(int descriptor, std::span<const std::byte> bytes) {
     }
     bytes = bytes.subspan(written < 0 ? 0 : static_cast<std::size_t>(written));
   }
+  return true;
+}
+
+bool flush(int descriptor) {
   return ::fsync(descriptor) == 0 || errno == EINVAL;  // EINVAL: a pipe or device
+}
+
+bool write_all(int descriptor, std::span<const std::byte> bytes) {
+  return write_bytes(descriptor, bytes) && flush(descriptor);
+}
+
+/// Gives the temporary file the permissions and the name of `file` and closes it. Returns false if
+/// it fails or was not written; errno has the cause.
+bool publish(int descriptor, bool written, const std::string& temporary, const fs::path& file) {
+  const mode_t mask = ::umask(0);
+  ::umask(mask);
+  written = written && ::fchmod(descriptor, 0666 & ~mask) == 0;
+  written = ::close(descriptor) == 0 && written;
+  return written && ::rename(temporary.c_str(), file.c_str()) == 0;
 }
 
 void write_in_place(const fs::path& file, std::span<const std::byte> bytes) {
@@ -72,6 +84,12 @@ void write_in_place(const fs::path& file, std::span<const std::byte> bytes) {
 }
 
 }  // namespace
+
+bool is_written_in_place(const fs::path& file) {
+  std::error_code ignored;
+  const fs::file_status status = fs::status(file, ignored);
+  return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
+}
 
 void check_outputs(const std::vector<fs::path>& outputs, const std::vector<fs::path>& inputs) {
   for (std::size_t i = 0; i < outputs.size(); ++i) {
@@ -103,11 +121,7 @@ void write_file(const fs::path& file, std::span<const std::byte> bytes) {
   if (descriptor < 0) {
     fail(file);
   }
-  const mode_t mask = ::umask(0);
-  ::umask(mask);
-  bool written = write_all(descriptor, bytes) && ::fchmod(descriptor, 0666 & ~mask) == 0;
-  written = ::close(descriptor) == 0 && written;
-  if (!written || ::rename(temporary.c_str(), file.c_str()) != 0) {
+  if (!publish(descriptor, write_all(descriptor, bytes), temporary, file)) {
     const int cause = errno;
     ::unlink(temporary.c_str());
     errno = cause;
@@ -117,6 +131,65 @@ void write_file(const fs::path& file, std::span<const std::byte> bytes) {
 
 void write_file(const fs::path& file, std::string_view text) {
   write_file(file, std::as_bytes(std::span(text)));
+}
+
+GrowingFile::GrowingFile(fs::path file) : file_(std::move(file)) {
+  if (is_written_in_place(file_)) {
+    descriptor_ = ::open(file_.c_str(), O_WRONLY | O_CLOEXEC);
+  } else {
+    temporary_ = file_.string() + ".incomplete";
+    descriptor_ = ::open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+  }
+  if (descriptor_ < 0 && errno == EEXIST) {
+    throw UserError(temporary_ +
+                    ": exists; it holds the data of a program that was cut off (rename or delete "
+                    "it)");
+  }
+  if (descriptor_ < 0) {
+    fail(file_);
+  }
+}
+
+GrowingFile::~GrowingFile() {
+  if (descriptor_ < 0) {
+    return;
+  }
+  ::close(descriptor_);
+  if (bytes_ == 0U && !temporary_.empty()) {
+    ::unlink(temporary_.c_str());
+  }
+}
+
+void GrowingFile::append(std::string_view text) {
+  if (!write_bytes(descriptor_, std::as_bytes(std::span(text)))) {
+    const int error = errno;
+    const auto size = static_cast<off_t>(bytes_);
+    // A pipe cannot be truncated; its reader has received the bytes.
+    if (::ftruncate(descriptor_, size) == 0) {
+      (void)::lseek(descriptor_, size, SEEK_SET);
+    }
+    fail_with_remains(error);
+  }
+  bytes_ += text.size();
+}
+
+int GrowingFile::reserve(std::uint64_t bytes) const {
+  return ::posix_fallocate(descriptor_, 0, static_cast<off_t>(bytes));
+}
+
+void GrowingFile::finish() {
+  const int descriptor = std::exchange(descriptor_, -1);
+  const bool written = flush(descriptor);
+  if (temporary_.empty() ? ::close(descriptor) != 0 || !written
+                         : !publish(descriptor, written, temporary_, file_)) {
+    fail_with_remains(errno);
+  }
+}
+
+void GrowingFile::fail_with_remains(int error) const {
+  throw UserError(fmt::format(
+      "{}: cannot be written: {} (check the disk{})", file_.string(), std::strerror(error),
+      temporary_.empty() || bytes_ == 0U ? "" : "; the preceding data are in " + temporary_));
 }
 
 }  // namespace tactree::support

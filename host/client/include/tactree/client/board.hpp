@@ -36,6 +36,8 @@ struct BoardOptions {
   unsigned baud = kUsualBaud;  ///< of a serial port
   /// 5 .. 100: the force ends if this program does not run for that long. 0: the force continues.
   std::uint16_t link_timeout_ms = 0;
+  /// Maximum number of telemetry messages that wait for take_stream(), see ConnectionOptions.
+  std::size_t stream_capacity = ConnectionOptions{}.stream_capacity;
 };
 
 struct Subscription {

@@ -1,0 +1,192 @@
+"""tactree record with a simulated board: each tick, gaps, link loss, Ctrl-C, a killed program, a full disk.
+
+usage: record_test.py TACTREE CLASS       CLASS: Record, or Hour: an hour at 1 kHz
+"""
+import ast
+import csv
+import os
+import pathlib
+import re
+import resource
+import signal
+import struct
+import subprocess
+import sys
+import unittest
+import zipfile
+
+sys.dont_write_bytecode = True
+from served_board import ServedBoard, build_ball  # noqa: E402
+from tool_folder import SharedFolder  # noqa: E402
+
+TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
+
+
+def read_npz(path):
+    """{array: values}, by the format that numpy documents."""
+    arrays = {}
+    with zipfile.ZipFile(path) as archive:
+        assert archive.testzip() is None
+        for name in archive.namelist():
+            data = archive.read(name)
+            begin = 10 + int.from_bytes(data[8:10], "little")
+            header = ast.literal_eval(data[10:begin].decode())
+            kind, = re.fullmatch("[<|]([a-zA-Z][0-9]+)", header["descr"]).groups()
+            if kind[0] == "U":
+                text, width = data[begin:].decode("utf-32-le"), int(kind[1:])
+                values = [text[i:i + width].rstrip("\0") for i in range(0, len(text), width)]
+            else:
+                code = {"f8": "d", "f4": "f", "u4": "I", "i4": "i", "u1": "B"}[kind]
+                values = list(struct.unpack(f"<{header['shape'][0]}{code}", data[begin:]))
+            arrays[name.removesuffix(".npy")] = values
+    return arrays
+
+
+class Recorded(SharedFolder):
+    tool = TACTREE
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.blob = build_ball(TACTREE, cls.path)
+
+    def record(self, port, name, *arguments, code=0, **options):
+        run = self.run_tool("record", "--port", port, "-o", name, *arguments, **options)
+        self.assertEqual(run.returncode, code, run.stderr)
+        return run.stderr
+
+    def start(self, port, name):
+        """Returns once the program records."""
+        program = subprocess.Popen([TACTREE, "record", "--port", port, "-o", name], cwd=self.path,
+                                   stderr=subprocess.PIPE, text=True)
+        self.addCleanup(program.stderr.close)
+        self.assertIn("recording until Ctrl-C", program.stderr.readline())
+        return program
+
+    def rows(self, name):
+        with (self.path / name).open() as file:
+            rows = list(csv.DictReader(file))
+        for row in rows:
+            self.assertNotIn(None, [*row, *row.values()], "each row has all cells")
+        return rows
+
+    def expect_no_gap(self, rows):
+        ticks = [int(row["tick"]) for row in rows]
+        self.assertEqual(ticks, list(range(ticks[0], ticks[0] + len(ticks))))
+        self.assertEqual({row["missing_ticks"] for row in rows}, {"0"})
+
+
+class Record(Recorded):
+    def test_records_each_tick_of_an_armed_board(self):
+        with ServedBoard(TACTREE, self.blob) as port:
+            said = self.record(port, "armed.csv", "--seconds", "1.5", "--arm")
+            self.assertRegex(self.run_tool("monitor", "--once", "--port", port).stdout, "^state +idle")
+        self.assertIn("armed.csv: 1500 ticks in 1.499 s, none missing", said)
+        rows = self.rows("armed.csv")
+        self.assertEqual(len(rows), 1500)
+        self.expect_no_gap(rows)
+        self.assertEqual({row["state"] for row in rows}, {"active"})
+        self.assertEqual(float(rows[-1]["t_s"]), 1.499)
+        self.assertGreater(max(abs(float(row["force_z_N"])) for row in rows), 0.1)
+
+    def test_both_formats_have_the_same_columns(self):
+        with ServedBoard(TACTREE, self.blob) as port:
+            for name in ("same.csv", "same.npz"):
+                self.record(port, name, "--seconds", "0.2")
+        arrays, rows = read_npz(self.path / "same.npz"), self.rows("same.csv")
+        self.assertEqual([*arrays], [*rows[0]][:4] + ["state_names"] + [*rows[0]][4:])
+        self.assertEqual({arrays["state_names"][i] for i in arrays["state"]}, {"idle"})
+        self.assertEqual(len(arrays["tick"]), 200)
+        self.assertEqual(arrays["t_s"], [float(row["t_s"]) for row in rows])
+
+    def test_one_tick_of_many(self):
+        with ServedBoard(TACTREE, self.blob) as port:
+            said = self.record(port, "tenth.csv", "--seconds", "1", "--every", "10")
+        self.assertIn("100 ticks in 0.990 s, none missing", said)
+
+    def test_a_lost_board_loses_no_row(self):
+        for name in ("lost.csv", "lost.npz"):
+            with ServedBoard(TACTREE, self.blob, "--seconds", "1") as port:
+                said = self.record(port, name, "--seconds", "60", code=1)
+            self.assertIn(f"{port}: the recording ended early: the board is disconnected", said)
+            # The board ran 1000 ticks, of which a few passed before the subscription.
+            count = int(re.search(rf"{name}: (\d+) ticks", said)[1])
+            self.assertGreater(count, 900)
+        self.expect_no_gap(self.rows("lost.csv"))
+        self.assertEqual(len(read_npz(self.path / "lost.npz")["tick"]), count)
+
+    def test_ctrl_c_completes_the_file(self):
+        for name in ("ended.csv", "ended.npz"):
+            with ServedBoard(TACTREE, self.blob) as port:
+                program = self.start(port, name)
+                program.send_signal(signal.SIGINT)
+                said = program.communicate()[1]
+            self.assertEqual(program.returncode, 0, said)
+            rows = self.rows(name) if name.endswith("csv") else read_npz(self.path / name)["tick"]
+            self.assertIn(f"{name}: {len(rows)} ticks", said)
+        self.assertEqual(list(self.path.glob("ended*.*.*")), [])
+
+    def test_a_pipe_gets_rows_until_ctrl_c(self):
+        os.mkfifo(self.path / "pipe")
+        with ServedBoard(TACTREE, self.blob) as port:
+            program = subprocess.Popen([TACTREE, "record", "--port", port, "-o", "pipe"], cwd=self.path,
+                                       stderr=subprocess.DEVNULL)
+            with (self.path / "pipe").open() as pipe:
+                lines = [pipe.readline() for _ in range(100)]
+                program.send_signal(signal.SIGINT)
+                lines += pipe.readlines()
+            self.assertEqual(program.wait(), 0)
+        self.assertEqual({line.count(",") for line in lines}, {lines[0].count(",")})
+        self.assertTrue(lines[-1].endswith("\n"))
+
+    def test_a_killed_program_leaves_a_file_that_says_so(self):
+        with ServedBoard(TACTREE, self.blob) as port:
+            program = self.start(port, "killed.csv")
+            part = self.path / "killed.csv.incomplete"
+            while not part.exists() or part.stat().st_size < 20000:
+                self.assertIsNone(program.poll())
+                os.sched_yield()
+            program.kill()
+            program.wait()
+            self.assertFalse((self.path / "killed.csv").exists())
+            size = part.stat().st_size
+            self.assertIn("killed.csv.incomplete: exists", self.record(port, "killed.csv", code=1))
+            self.assertEqual(part.stat().st_size, size)
+            program = self.start(port, "killed.npz")
+            program.kill()
+            program.wait()
+            self.assertFalse((self.path / "killed.npz").exists())
+
+    def test_a_full_disk_ends_the_recording_and_keeps_its_rows(self):
+        def limit():
+            resource.setrlimit(resource.RLIMIT_FSIZE, (100000, 100000))
+        with ServedBoard(TACTREE, self.blob) as port:
+            said = self.record(port, "full.csv", "--seconds", "5", code=1, preexec_fn=limit)
+        self.assertIn("the recording ended early: full.csv: cannot be written: File too large", said)
+        rows = self.rows("full.csv")
+        self.assertGreater(len(rows), 100)
+        self.assertIn(f"full.csv: {len(rows)} ticks", said)
+        self.expect_no_gap(rows)
+
+    def test_refuses_outputs_and_ports(self):
+        for name, words in (("a.txt", "neither .csv nor .npz"), ("a.rec", "simulate --record writes a .rec"),
+                            ("no/a.csv", "No such file")):
+            self.assertIn(words, self.record("/dev/no-such-port", name, code=1))
+        self.assertIn("/dev/no-such-port", self.record("/dev/no-such-port", "a.csv", code=1))
+        self.assertEqual(list(self.path.glob("a.*")), [])
+
+
+class Hour(Recorded):
+    def test_an_hour_at_1_khz_has_no_gap(self):
+        with ServedBoard(TACTREE, self.blob) as port:
+            said = self.record(port, "hour.npz", "--seconds", "3600", "--arm")
+        self.assertIn("hour.npz: 3600000 ticks in 3599.999 s, none missing", said)
+        with zipfile.ZipFile(self.path / "hour.npz") as archive:
+            data = archive.read("tick.npy")
+        ticks = memoryview(data)[10 + int.from_bytes(data[8:10], "little"):].cast("I")
+        self.assertEqual(len(ticks), 3600000)
+        self.assertTrue(all(tick == ticks[0] + i for i, tick in enumerate(ticks)))
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
