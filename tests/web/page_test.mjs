@@ -196,7 +196,19 @@ test('settings: two pages agree, both methods side by side, refusals are reporte
   const other = await openPage(browser, server.url);
   await page.locator('#mode').selectOption('both');
   await other.waitForFunction(() => document.body.dataset.mode === 'both');
+  const restart = async (id, value) => {
+    await page.locator(`#${id}`).selectOption(value);
+    await page.locator('#ask-restart').click();
+  };
+  const time_s = () => number(other, 't_s');
+  const asked_s = await time_s();
   await page.locator('#rate_hz').selectOption('500');
+  assert.match(await page.locator('#ask-text').textContent(), /^Rate 500 Hz: .* recorded ticks are lost\.$/);
+  await page.locator('#ask-cancel').click();
+  await page.waitForTimeout(500);
+  assert.equal(await other.locator('#rate_hz').inputValue(), '1000');
+  assert.ok(await time_s() > asked_s, 'it restarted without being told to');
+  await restart('rate_hz', '500');
   await other.waitForFunction(() => document.getElementById('rate_hz').value === '500');
   await page.locator('#stiffness_N_m').evaluate((slider) => {
     slider.value = '3000';
@@ -206,10 +218,10 @@ test('settings: two pages agree, both methods side by side, refusals are reporte
   assert.match(await page.locator('#note').textContent(), /stability limit/);
   assert.equal(await other.locator('#stiffness_N_m').inputValue(), '500');
   await page.locator('#mode').selectOption('surface');
-  await page.locator('#rate_hz').selectOption('1000');
+  await restart('rate_hz', '1000');
   await other.waitForFunction(() => document.getElementById('rate_hz').value === '1000');
   for (const device of ['falcon', 'pantograph', 'hapkit', 'cartesian', 'premium']) {
-    await page.locator('#device').selectOption(device);
+    await restart('device', device);
     await other.waitForFunction((name) => document.getElementById('device').value === name, device);
   }
   assert.deepEqual([...page.troubles, ...other.troubles], []);

@@ -148,6 +148,32 @@ test('the wheel changes the depth while pressed, and zooms otherwise', async (t)
   await untilCovered(page, (now) => now.share < 0.7 * before.share, `no smaller than ${before.share}`);
 });
 
+test('a slider changes the force under the pressing hand, without a jump or a lost tick', async (t) => {
+  const page = await openSession(t);
+  await pressAt(page, 0, 0.1);
+  const deep = await depthAtRest(page);
+  const [begin_s, ...before] = await until(page, ['t_s', ...FORCE], () => true, '');
+  await page.locator('#stiffness_N_m').focus();
+  for (let i = 0; i < 30; ++i) await page.keyboard.press('ArrowRight');
+  await until(page, ['penetration_m', ...FORCE], (now, ...force) =>
+    now > 0 && now < 0.9 * deep && length(force) > 1.05 * length(before), 'the change is not felt');
+  assert.equal(await page.locator('#stiffness_N_m').inputValue(), '800');
+  const [end_s] = await until(page, ['t_s'], (t_s) => t_s > begin_s + 1, 'the session does not go on');
+  await page.waitForTimeout(1000); // the last ticks are missing in a trace
+  const csv = await (await fetch(`${server.url}trace.csv`)).text();
+  const [heading, ...rows] = csv.trim().split('\n').map((row) => row.split(','));
+  const column = (row, name) => Number(row[heading.indexOf(name)]);
+  assert.equal(column(rows[0], 't_s'), 0, 'recorded ticks are lost');
+  const felt = rows.filter((row) => column(row, 't_s') > begin_s && column(row, 't_s') < end_s);
+  assert.ok(felt.length > 500, `${felt.length} ticks`);
+  const forces = felt.map((row) => length(FORCE.map((name) => column(row, name))));
+  const steps = forces.slice(1).map((force, i) => Math.abs(force - forces[i]));
+  assert.ok(felt.every((row) => column(row, 'in_contact') === 1), 'the hand lost the surface');
+  assert.ok(Math.max(...steps) < 0.1 * length(before), `a jump of ${Math.max(...steps)} N`);
+  await page.mouse.up();
+  assert.deepEqual(page.troubles, []);
+});
+
 test('the far side is touched after turning the view, and the hand comes back around the object', async (t) => {
   const page = await openSession(t);
   const start = await until(page, PROBE, () => true, '');

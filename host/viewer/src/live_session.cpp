@@ -10,6 +10,7 @@
 
 #include "command_outcome.hpp"
 #include "contact_parameters.hpp"
+#include "live_run.hpp"
 #include "steered_hand.hpp"
 #include "tactree/core/safety/faults.hpp"
 #include "tactree/plant/vectors.hpp"
@@ -101,6 +102,14 @@ json injections_json() {
   return list;
 }
 
+/// Applies the maximum force of the page. The slew must fit to it: see ForceLimits.
+void limit_force(const Settings& settings, core::Configuration& c) {
+  if (settings.force_max_N) {
+    c.limits.force_max_N = *settings.force_max_N;
+    c.limits.slew_N_s = std::min(c.limits.slew_N_s, 2.0F * *settings.force_max_N * c.rate_hz);
+  }
+}
+
 std::string refusal(const core::BlobView& view, const simulation::Setup& setup,
                     const hal::StartResult& start) {
   const core::Configuration& c = setup.controller;
@@ -126,50 +135,6 @@ Modes modes_of(const std::string& name) {
   }
   throw SessionRefused(fmt::format("mode: '{}' is unknown (use surface, paper or both)", name));
 }
-
-/// A controller with its simulated device and hand.
-struct LiveSession::Run {
-  Run(const Bodies& bodies, const simulation::Setup& its_setup, const Eigen::Vector3d& hand_m)
-      : setup(its_setup),
-        sim(bodies.bodies[0].blob, its_setup, simulation::HandPath({{0.0, hand_m}}),
-            std::make_unique<simulation::SceneTarget>(bodies.bodies, 0)) {}
-
-  void arm() {
-    sim.board().safety_inputs().hold_dead_man(false);
-    sim.post(core::Command::kArm);
-    hold_at_s = sim.time_s() + 0.08;
-  }
-  void stop() {
-    sim.board().safety_inputs().hold_dead_man(false);
-    sim.post(core::Command::kStop);
-    hold_at_s = -1.0;
-  }
-  void clear() {
-    sim.post(core::Command::kClearFault);
-    stop_next = true;
-  }
-  void mend() { sim.injector().mend(sim.time_s()); }
-
-  void step(const plant::HandTarget& hand) {
-    if (hold_at_s >= 0.0 && sim.time_s() >= hold_at_s) {
-      sim.board().safety_inputs().hold_dead_man(true);
-      hold_at_s = -1.0;
-    }
-    sim.steer(hand);
-    last = sim.step();
-    strip.add(last.status);
-    if (std::exchange(stop_next, false)) {
-      stop();  // the controller leaves the fault state only on a stop after the clear
-    }
-  }
-
-  simulation::Setup setup;
-  simulation::Simulation sim;
-  simulation::Sample last{};
-  Strip strip;
-  double hold_at_s = -1.0;  // time at which the hand presses the dead-man control; negative: never
-  bool stop_next = false;
-};
 
 LiveSession::LiveSession(Bodies bodies, std::vector<NamedDevice> devices, const Settings& settings)
     : bodies_(std::move(bodies)), devices_(std::move(devices)), settings_(settings) {
@@ -200,25 +165,32 @@ simulation::Setup LiveSession::make_setup(const Settings& settings, core::Render
       bodies_.views[0].header(), bodies_.bodies[0].path.first(), setup.controller.device.kind);
   setup.controller.supervision.supply_monitored = true;
   core::limit_to_rate(setup.controller);
+  limit_force(settings, setup.controller);
   return setup;
+}
+
+std::vector<simulation::Setup> LiveSession::make_setups(const Settings& settings) const {
+  std::vector<simulation::Setup> setups;
+  for (const core::RenderMode mode : {core::RenderMode::kSurface, core::RenderMode::kPaper}) {
+    if (settings.modes != Modes::kBoth &&
+        (settings.modes == Modes::kPaper) != (mode == core::RenderMode::kPaper)) {
+      continue;
+    }
+    setups.push_back(make_setup(settings, mode));
+    const core::ConfigurationStatus status = core::check(setups.back().controller);
+    if (status != core::ConfigurationStatus::kOk) {  // a simulation requires a valid configuration
+      throw SessionRefused(refusal(bodies_.views[0], setups.back(), {.configuration = status}));
+    }
+  }
+  return setups;
 }
 
 LiveSession::Runs LiveSession::make_runs(const Settings& settings) const {
   Runs runs;
-  for (const core::RenderMode mode : {core::RenderMode::kSurface, core::RenderMode::kPaper}) {
-    const bool wanted = settings.modes == Modes::kBoth ||
-                        (settings.modes == Modes::kPaper) == (mode == core::RenderMode::kPaper);
-    if (!wanted) {
-      continue;
-    }
-    const simulation::Setup setup = make_setup(settings, mode);
-    const core::ConfigurationStatus status = core::check(setup.controller);
-    if (status != core::ConfigurationStatus::kOk) {  // a simulation requires a valid configuration
-      throw SessionRefused(refusal(bodies_.views[0], setup, {.configuration = status}));
-    }
-    auto run = std::make_unique<Run>(bodies_, setup, start_m_);
-    if (!run->sim.start_result().ok()) {
-      throw SessionRefused(refusal(bodies_.views[0], setup, run->sim.start_result()));
+  for (const simulation::Setup& setup : make_setups(settings)) {
+    auto run = std::make_unique<LiveRun>(bodies_, setup, start_m_, 0);
+    if (!run->simulation().start_result().ok()) {
+      throw SessionRefused(refusal(bodies_.views[0], setup, run->simulation().start_result()));
     }
     run->arm();  // a simulated device needs no confirmation
     runs.push_back(std::move(run));
@@ -234,29 +206,56 @@ Settings LiveSession::changed(const json& wanted) const {
     if (set_contact_parameters(settings.controller, key, value)) {
       continue;
     }
-    if (key == "rate_hz") {
+    if (key == "force_max_N") {
+      settings.force_max_N = number_of(key, value);
+    } else if (key == "rate_hz") {
       settings.controller.rate_hz = number_of(key, value);
     } else if (key == "mode" && value.is_string()) {
       settings.modes = modes_of(value.get<std::string>());
     } else if (key == "device" && value.is_string()) {
       settings.device = device(value.get<std::string>()).name;
-    } else if (key != "do") {
+    } else if (key != "do" && !(key == "restart" && value.is_boolean())) {
       throw no_such_setting(key);
     }
+  }
+  const float limit_N = device(settings.device).preset.drive.force_max_N;
+  if (settings.device != settings_.device) {
+    settings.force_max_N.reset();
+  }
+  if (settings.force_max_N && !(*settings.force_max_N <= limit_N)) {
+    throw SessionRefused(
+        fmt::format("force_max_N: above {:.6g} N, the limit of {}", limit_N, settings.device));
   }
   return settings;
 }
 
-void LiveSession::restart(const json& wanted) {
+void LiveSession::set(const json& wanted) {
+  Settings before;
   Settings settings;
   {
     const std::lock_guard lock(mutex_);
+    before = settings_;
     settings = changed(wanted);
   }
-  Runs runs = make_runs(settings);  // slow; not locked, so that the session continues
+  (void)make_setups(settings);  // throws
+  const bool restarts = wanted.value("restart", false);
+  if (!restarts && (settings.controller.rate_hz != before.controller.rate_hz ||
+                    settings.device != before.device)) {
+    throw SessionRefused(
+        "a change of rate or device restarts the simulation without its recorded ticks (add "
+        "\"restart\": true)");
+  }
+  const bool may_refuse_model =
+      restarts || settings.modes != before.modes ||
+      settings.controller.use_materials != before.controller.use_materials;
+  // Slow; not locked, so that the session continues.
+  Runs runs = may_refuse_model ? make_runs(settings) : Runs();
   const std::lock_guard lock(mutex_);
   settings_ = settings;
-  next_runs_ = std::move(runs);
+  is_changed_ = true;
+  if (restarts) {
+    next_runs_ = std::move(runs);
+  }
 }
 
 void LiveSession::enqueue(const json& command) {
@@ -276,7 +275,7 @@ std::optional<std::string> LiveSession::command(const json& command) {
   try {
     const std::string name = command.value("do", "");
     if (name == "set") {
-      restart(command);
+      set(command);
       return std::nullopt;
     }
     if (name == "hand") {
@@ -321,7 +320,8 @@ json LiveSession::settings_json() const {
                    {"mode", name_of(settings_.modes)},
                    {"device", settings_.device},
                    {"stiffness_limit_N_m", core::stability_limit(c).with_hand_N_m},
-                   {"force_max_N", c.limits.force_max_N}});
+                   {"force_max_N", c.limits.force_max_N},
+                   {"force_limit_N", device(settings_.device).preset.drive.force_max_N}});
   return settings;
 }
 
@@ -359,10 +359,14 @@ void LiveSession::turn(double elapsed_s) {
 void LiveSession::apply_commands() {
   std::deque<json> commands;
   Runs next;
+  std::optional<Settings> changed;
   {
     const std::lock_guard lock(mutex_);
     commands.swap(commands_);
     next.swap(next_runs_);
+    if (std::exchange(is_changed_, false)) {
+      changed = settings_;
+    }
   }
   if (!next.empty()) {
     runs_ = std::move(next);
@@ -371,58 +375,83 @@ void LiveSession::apply_commands() {
     ticks_due_ = 0.0;
     log_.clear();
   }
+  if (changed) {
+    change_runs(*changed);
+  }
   for (const json& command : commands) {
     execute(command);
   }
 }
 
+void LiveSession::change_runs(const Settings& settings) {
+  LiveRun& now = *runs_[0];
+  Runs next;
+  bool arms_again = false;
+  for (const simulation::Setup& setup : make_setups(settings)) {
+    const auto same = std::find_if(runs_.begin(), runs_.end(), [&](const auto& run) {
+      return run != nullptr && run->configuration().mode == setup.controller.mode;
+    });
+    if (same != runs_.end()) {
+      arms_again = (*same)->change(setup.controller) || arms_again;
+      next.push_back(std::move(*same));
+      continue;
+    }
+    next.push_back(
+        std::make_unique<LiveRun>(bodies_, setup, now.tip_m(), now.simulation().next_tick()));
+    arms_again = next.back()->continue_from(now) || arms_again;
+  }
+  if (arms_again) {
+    outcome_->armed(now.simulation().time_s());
+  }
+  runs_ = std::move(next);
+}
+
 void LiveSession::execute(const json& command) {
   const std::string name = command["do"];
-  const double now_s = runs_[0]->sim.time_s();
+  const double now_s = runs_[0]->simulation().time_s();
   if (name == "hand") {
     hand_->go(path_of(command), speed_of(command));
   } else if (name == "arm") {
     outcome_->armed(now_s);
-    for_each_run(&Run::arm);
+    for_each_run(&LiveRun::arm);
   } else if (name == "stop") {
     outcome_->stopped();
-    for_each_run(&Run::stop);
+    for_each_run(&LiveRun::stop);
   } else if (name == "clear") {
     outcome_->cleared(now_s);
-    for_each_run(&Run::clear);
+    for_each_run(&LiveRun::clear);
   } else if (name == "clear_injections") {
     outcome_->mended();
-    for_each_run(&Run::mend);
+    for_each_run(&LiveRun::mend);
   } else if (name == "inject") {
     inject(command["fault"]);
   }
 }
 
-void LiveSession::for_each_run(void (Run::*act)()) {
+void LiveSession::for_each_run(void (LiveRun::*act)()) {
   for (const auto& run : runs_) {
     (run.get()->*act)();
   }
 }
 
 void LiveSession::inject(const std::string& text) {
-  simulation::InjectedFault fault = simulation::parse_injection(text + "@0");
-  outcome_->injected(text, std::string(simulation::shows_when(fault.kind)), runs_[0]->last.status,
-                     runs_[0]->sim.time_s());
+  const simulation::InjectedFault fault = simulation::parse_injection(text + "@0");
+  outcome_->injected(text, std::string(simulation::shows_when(fault.kind)), runs_[0]->last().status,
+                     runs_[0]->simulation().time_s());
   for (const auto& run : runs_) {
-    fault.from_s = run->sim.time_s();
-    run->sim.injector().add(fault);
+    run->inject(fault);
   }
 }
 
 void LiveSession::advance(double seconds) {
-  const double rate_hz = static_cast<double>(runs_[0]->setup.controller.rate_hz);
+  const double rate_hz = static_cast<double>(runs_[0]->configuration().rate_hz);
   ticks_due_ += seconds * rate_hz;
   for (; ticks_due_ >= 1.0; ticks_due_ -= 1.0) {
     const plant::HandTarget& hand = hand_->advance(1.0 / rate_hz);
     for (const auto& run : runs_) {
       run->step(hand);
     }
-    const simulation::Sample& last = runs_[0]->last;
+    const simulation::Sample& last = runs_[0]->last();
     log_.add(last);
     if (std::optional<std::string> news = outcome_->update(last.status, last.t_s)) {
       ++news_number_;
@@ -434,10 +463,10 @@ void LiveSession::advance(double seconds) {
 std::string LiveSession::frame() {
   json runs = json::array();
   for (const auto& run : runs_) {
-    json one = run_json(run->last, name_of(run->setup.controller.mode),
-                        run->setup.controller.device, run->setup.controller.model_origin_m,
-                        run->sim.plant().joints(), bodies_, scratch_);
-    one["strip"] = run->strip.take();
+    const core::Configuration& c = run->configuration();
+    json one = run_json(run->last(), name_of(c.mode), c.device, c.model_origin_m,
+                        run->simulation().plant().joints(), bodies_, scratch_);
+    one["strip"] = run->strip().take();
     runs.push_back(std::move(one));
   }
   const Eigen::Vector3d& hand = hand_->position_m();
@@ -446,7 +475,7 @@ std::string LiveSession::frame() {
     const std::lock_guard lock(mutex_);
     settings = settings_json();
   }
-  const double t_s = runs_[0]->last.t_s;
+  const double t_s = runs_[0]->last().t_s;
   const json frame = {{"type", "frame"},
                       {"frame", frames_++},
                       {"t_s", t_s},

@@ -213,6 +213,17 @@ Injector::Injector(std::vector<InjectedFault> faults) {
   }
 }
 
+Injector Injector::on_other_board() const {
+  Injector other;
+  for (const Entry& entry : entries_) {
+    if (entry.fault.kind != InjectedKind::kEncoderJump &&
+        entry.fault.kind != InjectedKind::kLoopOverrun) {
+      other.add(entry.fault);
+    }
+  }
+  return other;
+}
+
 void Injector::mend(double t_s) {
   for (Entry& entry : entries_) {
     entry.fault.until_s = std::min(entry.fault.until_s, t_s);

@@ -50,6 +50,12 @@ core::Status SceneTarget::tick(hal::sim::SimBoard& board) {
   return hal::Loop(board, controller_).tick().status;
 }
 
+core::ConfigurationStatus SceneTarget::adjust(hal::sim::SimBoard& board,
+                                              const core::Adjustment& adjustment) {
+  core::Uninterrupted between_ticks(board);
+  return core::BetweenTicks(controller_, between_ticks).adjust(adjustment);
+}
+
 void SceneTarget::move_bodies(hal::sim::SimBoard& board, double t_s) {
   updates_.clear();
   for (std::size_t i = 0; i < numbers_.size(); ++i) {

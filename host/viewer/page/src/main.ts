@@ -116,6 +116,7 @@ function showTiming(frame: Frame, run: Run): void {
 }
 
 function pushStrips(frame: Frame): void {
+  for (const strip of Object.values(strips)) strip.keep(Math.max(frame.runs.length, 1));
   frame.runs.forEach((run, i) => {
     if (!run.strip || run.strip.ticks === 0) return;
     strips.force.push(i, frame.t_s, run.strip.force_N);

@@ -26,25 +26,40 @@ export function outputOf(id: string): HTMLOutputElement {
 
 export class Panel {
   private edited: Partial<Settings> = {};
+  private isSimulated = false;
+  private asked: Partial<Settings> | undefined; // what a restart would change
 
   constructor(private readonly say: Say) {
     for (const id of SLIDERS) {
       const slider = find<HTMLInputElement>(id);
-      slider.addEventListener('input', () => this.label(slider));
-      slider.addEventListener('change', () => this.set(id, Number(slider.value)));
+      slider.addEventListener('input', () => {
+        this.label(slider);
+        if (this.isSimulated && id !== 'force_max_N') this.set(id, Number(slider.value));
+      });
+      slider.addEventListener('change', () => {
+        this.edited = {};
+        this.set(id, Number(slider.value));
+      });
     }
     const mode = find<HTMLSelectElement>('mode');
     mode.addEventListener('change', () => this.set('mode', mode.value));
     const rate = find<HTMLSelectElement>('rate_hz');
-    rate.addEventListener('change', () => this.set('rate_hz', Number(rate.value)));
+    rate.addEventListener('change', () => this.ask('Rate', rate, { rate_hz: Number(rate.value) }));
     const device = find<HTMLSelectElement>('device');
-    device.addEventListener('change', () => this.set('device', device.value));
+    device.addEventListener('change', () => this.ask('Device', device, { device: device.value }));
+    find('ask-restart').addEventListener('click', () => {
+      this.say({ do: 'set', ...this.asked, restart: true });
+      this.answered();
+    });
+    find('ask-cancel').addEventListener('click', () => this.answered());
     const materials = find<HTMLInputElement>('use_materials');
     materials.addEventListener('change', () => this.set('use_materials', materials.checked));
     find('clear-injections').addEventListener('click', () => say({ do: 'clear_injections' }));
   }
 
   hello(hello: Hello): void {
+    this.isSimulated = hello.source === 'simulation';
+    this.answered();
     find<HTMLSelectElement>('device').replaceChildren(
       ...(hello.devices ?? []).map((device) => {
         const option = new Option(device.name, device.name);
@@ -93,8 +108,20 @@ export class Panel {
     select.value = value;
   }
 
+  /** The page shows the present value until the restart is confirmed. */
+  private ask(name: string, select: HTMLSelectElement, change: Partial<Settings>): void {
+    this.asked = change;
+    find('ask-text').textContent =
+      `${name} ${select.selectedOptions[0]?.text}: the simulation restarts, and its recorded ticks are lost.`;
+    find('ask').hidden = false;
+    select.blur();
+  }
+  private answered(): void {
+    this.asked = undefined;
+    find('ask').hidden = true;
+  }
+
   private set(key: keyof Settings, value: unknown): void {
-    this.edited = {};
     const friction: Record<string, unknown> = {};
     // The dynamic coefficient must not exceed the static one.
     if (key === 'static_friction' || key === 'dynamic_friction') {

@@ -49,6 +49,10 @@ export class Strip {
     this.span = undefined;
     this.marked_s = undefined;
   }
+  /** Drops the lines from this one on. */
+  keep(lines: number): void {
+    for (const line of this.lines.slice(lines)) line.values = [];
+  }
   push(line: number, t_s: number, range: Range): void {
     const { values } = this.lines[line];
     const last = values[values.length - 1];

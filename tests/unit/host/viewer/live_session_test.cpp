@@ -4,7 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "frames.hpp"
 #include "tactree/simulation/injection.hpp"
@@ -19,6 +25,7 @@ using viewer::LiveSession;
 class LiveSessionTest : public testing::Test {
  protected:
   static constexpr double kRadius_m = 0.04;
+  static constexpr double kPressed_m = kRadius_m - 0.01;
 
   static std::vector<viewer::NamedDevice> devices() {
     std::vector<viewer::NamedDevice> list;
@@ -53,6 +60,36 @@ class LiveSessionTest : public testing::Test {
       return f["news"]["text"].get<std::string>().find(text) != std::string::npos;
     });
     return frame["news"]["text"];
+  }
+  static double force_of(const json& frame) {
+    const json& f = frame["runs"][0]["force_N"];
+    return Eigen::Vector3d(f[0], f[1], f[2]).norm();
+  }
+  void press() { say({{"do", "hand"}, {"target_m", {0.0, 0.0, kPressed_m}}}); }
+  /// The frame after 1 s, in which the device comes to rest.
+  json settled() {
+    const double begin_s = json::parse(session_.step())["t_s"];
+    return wait_for([&](const json& f) { return f["t_s"] > begin_s + 1.0; });
+  }
+  struct Tick {
+    double t_s;
+    double force_N;
+  };
+  /// The ticks of the trace; the last 500 may be missing.
+  std::vector<Tick> recorded() {
+    std::vector<Tick> ticks;
+    std::istringstream csv(session_.trace_csv());
+    std::string line;
+    std::getline(csv, line);
+    while (std::getline(csv, line)) {
+      std::vector<double> row;
+      std::istringstream cells(line);
+      for (std::string cell; row.size() < 10 && std::getline(cells, cell, ',');) {
+        row.push_back(std::stod(cell));
+      }
+      ticks.push_back({row.at(0), Eigen::Vector3d(row.at(7), row.at(8), row.at(9)).norm()});
+    }
+    return ticks;
   }
   std::string refusal(const json& command) {
     return session_.command(command).value_or("accepted");
@@ -116,7 +153,7 @@ TEST_F(LiveSessionTest, InjectionsShowEffectOrReason) {
   const json injections = json::parse(session_.hello())["injections"];
   EXPECT_EQ(injections.size(), simulation::injection_kinds().size());
   for (const json& one : injections) {
-    say({{"do", "set"}, {"damping_Ns_m", 0.5}});  // a new session
+    say({{"do", "set"}, {"restart", true}});
     wait_for([](const json& f) { return f["t_s"] < 0.2; });
     const json before =
         wait_for([](const json& f) { return f["runs"][0]["state"] == "active" && f["t_s"] > 0.4; });
@@ -155,15 +192,141 @@ TEST_F(LiveSessionTest, RunsBothModesTogether) {
   EXPECT_EQ(frame["runs"][1]["mode"], "paper");
 }
 
-TEST_F(LiveSessionTest, ChangedSettingsRestartOutsideObject) {
+TEST_F(LiveSessionTest, StiffnessChangesUnderPressingHand) {
   wait_for_state("active");
-  say({{"do", "hand"}, {"target_m", {0.0, 0.0, kRadius_m - 0.01}}});
-  wait_for([](const json& f) { return f["runs"][0]["force_N"][2].get<double>() > 0.5; });
-  say({{"do", "set"}, {"damping_Ns_m", 1.0}});
-  const json frame = wait_for(
-      [](const json& f) { return f["settings"]["damping_Ns_m"] == 1.0 && f["t_s"] > 0.0; });
-  EXPECT_EQ(frame["runs"][0]["penetration_m"], 0.0);
+  press();
+  const json before = settled();
+  say({{"do", "set"}, {"stiffness_N_m", 1000}});
+  const json after = settled();
+  EXPECT_EQ(after["settings"]["stiffness_N_m"], 1000.0);
+  EXPECT_GT(force_of(after), 1.15 * force_of(before));
+  EXPECT_LT(after["runs"][0]["penetration_m"].get<double>(),
+            0.75 * before["runs"][0]["penetration_m"].get<double>());
+  EXPECT_NEAR(after["hand_m"][2].get<double>(), kPressed_m, 1e-6);
+  const std::vector<Tick> ticks = recorded();
+  EXPECT_EQ(ticks.front().t_s, 0.0);
+  double step_max_N = 0.0;
+  for (std::size_t i = 1; i < ticks.size(); ++i) {
+    ASSERT_NEAR(ticks[i].t_s - ticks[i - 1].t_s, 1e-3, 1e-6);
+    if (ticks[i].t_s >= before["t_s"]) {
+      ASSERT_GT(ticks[i].force_N, 0.9 * force_of(before)) << ticks[i].t_s;
+      step_max_N = std::max(step_max_N, std::abs(ticks[i].force_N - ticks[i - 1].force_N));
+    }
+  }
+  EXPECT_LT(step_max_N, 0.05);
+}
+
+TEST_F(LiveSessionTest, EverySettingButRateAndDeviceKeepsSession) {
   wait_for_state("active");
+  say({{"do", "hand"}, {"target_m", {0.0, 0.0, 2.0 * kRadius_m}}});
+  json before = wait_for([](const json& f) { return f["t_s"] > 0.6; });
+  const std::vector<std::pair<std::string, json>> changes = {
+      {"damping_Ns_m", 1.0}, {"static_friction", 0.75}, {"dynamic_friction", 0.5},
+      {"force_max_N", 0.5},  {"use_materials", false},  {"mode", "both"},
+      {"mode", "paper"},     {"mode", "surface"}};
+  for (const auto& [name, value] : changes) {
+    say({{"do", "set"}, {name, value}});
+    const double begin_s = before["t_s"];
+    before = wait_for([&](const json& f) {
+      EXPECT_GE(f["t_s"], begin_s) << name;
+      EXPECT_NEAR(f["hand_m"][2].get<double>(), 2.0 * kRadius_m, 1e-6) << name;
+      const double tip_m = f["runs"][0]["tip_m"][2];
+      EXPECT_GT(tip_m, 1.9 * kRadius_m) << name;
+      return f["t_s"] > begin_s + 0.2 && f["runs"][0]["state"] == "active";
+    });
+    EXPECT_EQ(before["settings"][name], value);
+  }
+  EXPECT_EQ(recorded().front().t_s, 0.0);
+}
+
+TEST_F(LiveSessionTest, MaximumForceActsAfterChange) {
+  wait_for_state("active");
+  say({{"do", "set"}, {"force_max_N", 0.5}});
+  wait_for([](const json& f) { return f["t_s"] > 1.0 && f["runs"][0]["state"] == "active"; });
+  press();
+  EXPECT_NEAR(force_of(settled()), 0.5, 1e-3);
+  EXPECT_NE(refusal({{"do", "set"}, {"force_max_N", 80}}).find("the limit of premium"),
+            std::string::npos);
+}
+
+TEST_F(LiveSessionTest, LimitChangedInContactWaitsForFreeSpace) {
+  wait_for_state("active");
+  press();
+  settled();
+  say({{"do", "set"}, {"force_max_N", 4.0}});
+  wait_for_news("the probe is inside the object");
+  say({{"do", "hand"}, {"target_m", {0.0, 0.0, 2.0 * kRadius_m}}});
+  wait_for_state("active");
+}
+
+TEST_F(LiveSessionTest, MaterialsActAfterChange) {
+  builder::Model soft = sphere(kRadius_m, 0.001);
+  core::BlobMaterial material{};
+  material.stiffness_N_m = 100.0F;
+  soft.materials = {material};
+  const TestBlob blob(soft);
+  simulation::SceneBody body;
+  body.blob = blob.written().bytes;
+  LiveSession session({{blob.view()}, {body}}, devices(), {});
+  const auto force_N = [&](bool use_materials) {
+    EXPECT_FALSE(session.command({{"do", "set"}, {"use_materials", use_materials}}));
+    EXPECT_FALSE(session.command({{"do", "hand"}, {"target_m", {0.0, 0.0, 2.0 * kRadius_m}}}));
+    json frame;
+    for (int i = 0; i < 60; ++i) {
+      frame = json::parse(session.step());
+    }
+    EXPECT_EQ(frame["runs"][0]["state"], "active");
+    EXPECT_FALSE(session.command({{"do", "hand"}, {"target_m", {0.0, 0.0, kPressed_m}}}));
+    for (int i = 0; i < 60; ++i) {
+      frame = json::parse(session.step());
+    }
+    return force_of(frame);
+  };
+  const double with_N = force_N(true);
+  EXPECT_GT(force_N(false), 1.5 * with_N);
+  EXPECT_NEAR(force_N(true), with_N, 0.02 * with_N);
+}
+
+TEST_F(LiveSessionTest, StopEndsChangeDisarmed) {
+  wait_for_state("active");
+  say({{"do", "set"}, {"force_max_N", 4.0}});
+  say({{"do", "stop"}});
+  const double begin_s = wait_for_state("idle")["t_s"];
+  wait_for([&](const json& f) {
+    EXPECT_EQ(f["runs"][0]["state"], "idle");
+    return f["t_s"] > begin_s + 1.0;
+  });
+  say({{"do", "set"}, {"mode", "paper"}});
+  const json frame = wait_for([&](const json& f) { return f["t_s"] > begin_s + 2.0; });
+  EXPECT_EQ(frame["runs"][0]["mode"], "paper");
+  EXPECT_EQ(frame["runs"][0]["state"], "idle");
+}
+
+TEST_F(LiveSessionTest, InjectedFaultSurvivesChangeOfMode) {
+  wait_for_state("active");
+  say({{"do", "inject"}, {"fault", "estop:pressed"}});
+  wait_for_state("fault");
+  say({{"do", "set"}, {"mode", "paper"}});
+  wait_for([](const json& f) {
+    return f["runs"][0]["mode"] == "paper" && f["runs"][0]["state"] == "fault";
+  });
+}
+
+TEST_F(LiveSessionTest, RateAndDeviceRestartOnlyWhenAsked) {
+  wait_for([](const json& f) { return f["t_s"] > 0.6; });
+  EXPECT_NE(refusal({{"do", "set"}, {"rate_hz", 2000}}).find("\"restart\": true"),
+            std::string::npos);
+  EXPECT_NE(refusal({{"do", "set"}, {"device", "falcon"}}).find("\"restart\": true"),
+            std::string::npos);
+  const json same = json::parse(session_.step());
+  EXPECT_GT(same["t_s"], 0.6);
+  EXPECT_EQ(same["settings"]["rate_hz"], 1000.0);
+  say({{"do", "set"}, {"rate_hz", 2000}, {"restart", true}});
+  say({{"do", "set"}, {"damping_Ns_m", 2.0}});
+  const json other = json::parse(session_.step());
+  EXPECT_LT(other["t_s"], 0.1);
+  EXPECT_EQ(other["settings"]["rate_hz"], 2000.0);
+  EXPECT_EQ(other["settings"]["damping_Ns_m"], 2.0);
 }
 
 TEST_F(LiveSessionTest, RefusedCommandsChangeNothing) {

@@ -9,7 +9,12 @@
 //   {"do": "arm"} {"do": "stop"} {"do": "clear"}
 //   {"do": "set", "stiffness_N_m": 400, "damping_Ns_m": 0.5, "static_friction": 0.4,
 //    "dynamic_friction": 0.3, "rate_hz": 1000, "mode": "surface" | "paper" | "both",
-//    "device": NAME, "use_materials": true}  any subset; restarts the session
+//    "device": NAME, "use_materials": true, "force_max_N": 4, "restart": true}
+//                           any subset. The session continues, with its hand and its ticks. An
+//                           active controller is stopped and armed again if force_max_N or
+//                           use_materials changes; a controller of another mode starts where the
+//                           device is. "restart" begins a new session; a change of rate or
+//                           device is refused without it
 //   {"do": "inject", "fault": "encoder1:stuck"}  like --inject without a time; acts at once
 //   {"do": "clear_injections"}              removes all injected faults
 // If a command has no visible result, later frames contain a notice with the cause:
@@ -20,6 +25,7 @@
 #include <memory>
 #include <mutex>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,7 +42,8 @@ enum class Modes { kSurface, kPaper, kBoth };
 
 /// Settings that a page may change.
 struct Settings {
-  core::Configuration controller{};  ///< contact and rate; the session sets the other fields
+  core::Configuration controller{};    ///< contact and rate; the session sets the other fields
+  std::optional<float> force_max_N{};  ///< default: that of the device
   Modes modes = Modes::kSurface;
   std::string device = "premium";
 };
@@ -48,6 +55,7 @@ struct NamedDevice {
 };
 
 class CommandOutcome;
+class LiveRun;
 class SteeredHand;
 
 class LiveSession : public Source {
@@ -66,21 +74,23 @@ class LiveSession : public Source {
   [[nodiscard]] std::string trace_csv() const override;
 
  private:
-  struct Run;
-  using Runs = std::vector<std::unique_ptr<Run>>;
+  using Runs = std::vector<std::unique_ptr<LiveRun>>;
 
   [[nodiscard]] Runs make_runs(const Settings& settings) const;
   [[nodiscard]] simulation::Setup make_setup(const Settings& settings, core::RenderMode mode) const;
+  /// One for each wanted mode. Throws SessionRefused.
+  [[nodiscard]] std::vector<simulation::Setup> make_setups(const Settings& settings) const;
   [[nodiscard]] const NamedDevice& device(const std::string& name) const;
   [[nodiscard]] Settings changed(const nlohmann::json& wanted) const;
   [[nodiscard]] nlohmann::json settings_json() const;
-  void restart(const nlohmann::json& wanted);
+  void set(const nlohmann::json& wanted);
   void enqueue(const nlohmann::json& command);
   void run(const Publish& publish) override;
   void turn(double elapsed_s);
   void apply_commands();
+  void change_runs(const Settings& settings);
   void execute(const nlohmann::json& command);
-  void for_each_run(void (Run::*act)());
+  void for_each_run(void (LiveRun::*act)());
   void inject(const std::string& text);
   void advance(double seconds);
   [[nodiscard]] std::string frame();
@@ -100,9 +110,10 @@ class LiveSession : public Source {
   std::uint64_t news_number_ = 0;
   std::string news_;
 
-  mutable std::mutex mutex_;  // guards settings_, next_runs_ and commands_
+  mutable std::mutex mutex_;  // guards settings_, is_changed_, next_runs_ and commands_
   Settings settings_;
-  Runs next_runs_;  // with changed settings; empty if they have not changed
+  bool is_changed_ = false;  // settings_ differ from those of runs_
+  Runs next_runs_;           // of a new session; empty if the present one continues
   std::deque<nlohmann::json> commands_;
 
   TickLog log_;

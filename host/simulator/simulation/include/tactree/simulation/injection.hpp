@@ -71,6 +71,8 @@ class Injector {
   explicit Injector(std::vector<InjectedFault> faults);
 
   void add(InjectedFault fault) { entries_.push_back({std::move(fault), false}); }
+  /// The lasting faults, for a board that has none of them yet.
+  [[nodiscard]] Injector on_other_board() const;
   /// Ends all faults at `t_s` at the latest.
   void mend(double t_s);
 

@@ -36,6 +36,12 @@ class SceneTarget : public Target {
                          const core::Configuration& configuration) override;
   core::Status tick(hal::sim::SimBoard& board) override;
 
+  /// Changes the running controller between two ticks; see Controller::adjust().
+  [[nodiscard]] core::ConfigurationStatus adjust(hal::sim::SimBoard& board,
+                                                 const core::Adjustment& adjustment);
+  /// The next tick is this one of the bodies' paths, counted from time 0.
+  void go_to(std::uint64_t tick) { tick_ = static_cast<double>(tick); }
+
   [[nodiscard]] std::size_t refused_body() const { return refused_body_; }
   [[nodiscard]] core::Controller& controller() { return controller_; }
 

@@ -87,9 +87,14 @@ class Simulation {
   /// Sets the faults; their times are those of the samples. Call it before the first step().
   void inject(Injector injector) { injector_ = std::move(injector); }
   [[nodiscard]] Injector& injector() { return injector_; }
+  [[nodiscard]] const Injector& injector() const { return injector_; }
 
   /// Replaces the path by a fixed target of the hand, model frame.
   void steer(const plant::HandTarget& target) { steered_ = target; }
+
+  /// Number of the next sample; time_s() continues from it.
+  [[nodiscard]] std::uint64_t next_tick() const { return ticks_; }
+  void go_to(std::uint64_t tick) { ticks_ = tick; }
 
   /// Sends a command of the application in the next step().
   void post(core::Command command) { command_ = command; }
