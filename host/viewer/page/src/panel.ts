@@ -25,7 +25,7 @@ export function outputOf(id: string): HTMLOutputElement {
 }
 
 export class Panel {
-  private edited: Partial<Settings> = {};
+  private edited: Partial<Settings> = {}; // what the user has set and the server has not reported yet
   private isSimulated = false;
   private asked: Partial<Settings> | undefined; // what a restart would change
 
@@ -33,13 +33,11 @@ export class Panel {
     for (const id of SLIDERS) {
       const slider = find<HTMLInputElement>(id);
       slider.addEventListener('input', () => {
+        this.edited[id] = Number(slider.value);
         this.label(slider);
         if (this.isSimulated && id !== 'force_max_N') this.set(id, Number(slider.value));
       });
-      slider.addEventListener('change', () => {
-        this.edited = {};
-        this.set(id, Number(slider.value));
-      });
+      slider.addEventListener('change', () => this.set(id, Number(slider.value)));
     }
     const mode = find<HTMLSelectElement>('mode');
     mode.addEventListener('change', () => this.set('mode', mode.value));
@@ -82,7 +80,10 @@ export class Panel {
     if (settings.force_limit_N) find<HTMLInputElement>('force_max_N').max = String(settings.force_limit_N);
     for (const id of SLIDERS) {
       const slider = find<HTMLInputElement>(id);
-      if (document.activeElement !== slider || this.edited[id] === undefined) {
+      const edited = this.edited[id] ?? settings[id];
+      const isReported = Math.abs(settings[id] - edited) < 0.5 * Number(slider.step);
+      if (isReported || document.activeElement !== slider) {
+        delete this.edited[id];
         slider.value = String(settings[id]);
         this.label(slider);
       }
@@ -134,7 +135,6 @@ export class Panel {
   }
 
   private label(slider: HTMLInputElement): void {
-    if (document.activeElement === slider) this.edited[slider.id as Slider] = Number(slider.value);
     outputOf(slider.id).value = `${Number(slider.value)} ${slider.dataset.unit ?? ''}`;
   }
 
