@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <memory>
 #include <optional>
 #include <string>
@@ -98,7 +99,7 @@ class ProgressLine {
  public:
   ~ProgressLine() {
     if (shown_) {
-      fmt::print(stderr, "\n");
+      (void)std::fputc('\n', stderr);
     }
   }
   ProgressLine() = default;
