@@ -31,9 +31,9 @@ constexpr bool fits_once_with_both_sets() {
   return has_ended;
 }
 
-/// True if a set covers `x`; that set is then in use. A second set is taken before the only fit of
-/// a tick: the neighbour has not hidden points yet.
+// A second set is taken before the only fit of a tick: the neighbour has not hidden points yet.
 static_assert(fits_once_with_both_sets());
+/// True if a set covers `x`; that set is then in use.
 [[gnu::noinline]] bool Proxy::covers(Vec3 x) {
   if (candidates_.in_use().covers(x)) {
     return true;

@@ -47,7 +47,8 @@ Bound to_bound(WorstPath path) {
   return bound;
 }
 
-// Annotations limit the sum of the slices of all bodies, by a slice of each.
+// Annotations limit the sum over the bodies by a number for each of them. With gathers of two
+// kinds that number is the mean, rounded up.
 core::GatherSlice slice_of_each(const core::SurfaceWork& work, const Division& division) {
   if (division.ahead == 0) {
     return work.slice;
