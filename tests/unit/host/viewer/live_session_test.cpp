@@ -224,8 +224,9 @@ TEST_F(LiveSessionTest, EverySettingButRateAndDeviceKeepsSession) {
       {"damping_Ns_m", 1.0}, {"static_friction", 0.75}, {"dynamic_friction", 0.5},
       {"force_max_N", 0.5},  {"use_materials", false},  {"mode", "both"},
       {"mode", "paper"},     {"mode", "surface"}};
-  for (const auto& [name, value] : changes) {
-    say({{"do", "set"}, {name, value}});
+  for (const auto& change : changes) {
+    const std::string& name = change.first;
+    say({{"do", "set"}, {name, change.second}});
     const double begin_s = before["t_s"];
     before = wait_for([&](const json& f) {
       EXPECT_GE(f["t_s"], begin_s) << name;
@@ -234,7 +235,7 @@ TEST_F(LiveSessionTest, EverySettingButRateAndDeviceKeepsSession) {
       EXPECT_GT(tip_m, 1.9 * kRadius_m) << name;
       return f["t_s"] > begin_s + 0.2 && f["runs"][0]["state"] == "active";
     });
-    EXPECT_EQ(before["settings"][name], value);
+    EXPECT_EQ(before["settings"][name], change.second);
   }
   EXPECT_EQ(recorded().front().t_s, 0.0);
 }
