@@ -8,7 +8,7 @@ import sys
 import unittest
 
 sys.dont_write_bytecode = True
-from tool_folder import SharedFolder, sheet  # noqa: E402
+from tool_folder import SharedFolder, ball, sheet  # noqa: E402
 
 TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
 
@@ -35,6 +35,13 @@ class ModelSize(SharedFolder):
         self.run_tool("build", "large.csv", "-o", "large.blob", "--unit", "m", "--fit", remedy[1])
         done = self.run_tool("simulate", "large.blob", "--device", "falcon", "--seconds", 1)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
+
+    def test_a_start_of_the_hand_beyond_reach_is_told(self):
+        self.build_points("ball", ball(3000, 0.5), "--unit", "m")
+        done = self.run_tool("simulate", "ball.blob", "--seconds", 1)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("premium does not reach the start of the hand, and the probe is in the object (scale the "
+                      "model with build --fit device:premium", done.stderr)
 
     def test_a_fit_that_cannot_be_is_refused(self):
         for fit, code, words in (("far", 2, "'far' is neither a length in metres nor device:NAME"),

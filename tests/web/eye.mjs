@@ -53,7 +53,7 @@ export async function pixelOf(page, place) {
 
 /** Share of the canvas that is not background, and the middle of that part, in shares of the canvas. */
 export async function covered(page) {
-  const hide = await page.addStyleTag({ content: '#legend, #alerts, #notes { visibility: hidden !important; }' });
+  const hide = await page.addStyleTag({ content: '#legend, #alerts { visibility: hidden !important; }' });
   const png = await page.locator('#view').screenshot();
   await hide.evaluate((style) => style.remove());
   return page.evaluate(async (text) => {

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <fstream>
 #include <iostream>
+#include <sstream>
 
 #include "tactree/support/spooled_input.hpp"
 #include "tactree/support/user_error.hpp"
@@ -72,6 +73,13 @@ BlobFile BlobFile::named(const std::string& name) {
   }
   BlobFile blob;
   blob.read_all(std::cin, kStandardInputName, std::nullopt);
+  return blob;
+}
+
+BlobFile BlobFile::copy_of(std::span<const std::byte> bytes, const std::string& name) {
+  std::istringstream in(std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+  BlobFile blob;
+  blob.read_all(in, name, bytes.size());
   return blob;
 }
 

@@ -10,6 +10,7 @@
 
 #include "command_outcome.hpp"
 #include "contact_parameters.hpp"
+#include "hand_command.hpp"
 #include "live_run.hpp"
 #include "steered_hand.hpp"
 #include "tactree/core/safety/faults.hpp"
@@ -17,6 +18,7 @@
 #include "tactree/simulation/hand_script.hpp"
 #include "tactree/simulation/injection.hpp"
 #include "tactree/simulation/placement.hpp"
+#include "tactree/simulation/workspace.hpp"
 
 namespace tactree::viewer {
 namespace {
@@ -30,7 +32,6 @@ constexpr int kTurnsPerFrame = 4;
 // A simulation that is further behind real time skips the excess; the frame reports the lost time.
 constexpr double kMaxBehind_s = 0.1;
 constexpr std::size_t kMaxCommands = 256;
-constexpr std::size_t kMaxVia = 64;
 
 const char* name_of(Modes modes) {
   return modes == Modes::kSurface ? "surface" : modes == Modes::kPaper ? "paper" : "both";
@@ -38,46 +39,6 @@ const char* name_of(Modes modes) {
 
 const char* name_of(core::RenderMode mode) {
   return mode == core::RenderMode::kPaper ? "paper" : "surface";
-}
-
-Eigen::Vector3d place_of(const std::string& name, const json& value) {
-  constexpr double kFurthest_m = 10.0;
-  if (!value.is_array() || value.size() != 3) {
-    throw SessionRefused(name + ": not an array of three numbers");
-  }
-  Eigen::Vector3d place;
-  for (std::size_t i = 0; i < 3; ++i) {
-    place[static_cast<Eigen::Index>(i)] = static_cast<double>(number_of(name, value[i]));
-  }
-  if (!place.allFinite() || place.cwiseAbs().maxCoeff() > kFurthest_m) {
-    throw SessionRefused(fmt::format("{}: outside +-{} m", name, kFurthest_m));
-  }
-  return place;
-}
-
-/// The path of a "hand" command.
-std::vector<Eigen::Vector3d> path_of(const json& command) {
-  const json via = command.value("via_m", json::array());
-  if (!via.is_array() || via.size() > kMaxVia) {
-    throw SessionRefused(fmt::format("via_m: not an array of at most {} positions", kMaxVia));
-  }
-  std::vector<Eigen::Vector3d> path;
-  for (const json& place : via) {
-    path.push_back(place_of("via_m", place));
-  }
-  path.push_back(place_of("target_m", command.value("target_m", json())));
-  return path;
-}
-
-double speed_of(const json& command) {
-  if (!command.contains("speed_m_s")) {
-    return SteeredHand::kFastest_m_s;
-  }
-  const auto speed = static_cast<double>(number_of("speed_m_s", command["speed_m_s"]));
-  if (!(speed > 0.0 && speed <= SteeredHand::kFastest_m_s)) {
-    throw SessionRefused(fmt::format("speed_m_s: outside 0 .. {}", SteeredHand::kFastest_m_s));
-  }
-  return speed;
 }
 
 /// One injection of each kind, with an example value.
@@ -136,13 +97,18 @@ Modes modes_of(const std::string& name) {
   throw SessionRefused(fmt::format("mode: '{}' is unknown (use surface, paper or both)", name));
 }
 
-LiveSession::LiveSession(Bodies bodies, std::vector<NamedDevice> devices, const Settings& settings)
-    : bodies_(std::move(bodies)), devices_(std::move(devices)), settings_(settings) {
+LiveSession::LiveSession(Bodies bodies, std::vector<NamedDevice> devices, const Settings& settings,
+                         Fitting fitting)
+    : bodies_(std::move(bodies)),
+      devices_(std::move(devices)),
+      fitting_(std::move(fitting)),
+      settings_(settings) {
   const simulation::HandPath path = simulation::make_script("press", bodies_.views[0], 1.0);
   start_m_ = bodies_.bodies[0].path.first() * path.waypoints().front().position_m;
   hand_ = std::make_unique<SteeredHand>(start_m_);
   outcome_ = std::make_unique<CommandOutcome>();
   runs_ = make_runs(settings_);
+  fit_warning_ = check_fit(settings_, is_oversize_);
 }
 
 LiveSession::~LiveSession() { stop(); }
@@ -198,7 +164,46 @@ LiveSession::Runs LiveSession::make_runs(const Settings& settings) const {
   return runs;
 }
 
+std::string LiveSession::check_fit(const Settings& settings, bool& is_oversize) const {
+  const NamedDevice& used = device(settings.device);
+  std::optional<std::string> oversize;
+  if (fitting_.warning) {
+    oversize = fitting_.warning(used);
+  }
+  is_oversize = oversize.has_value();
+  const core::Configuration c = make_setup(settings, core::RenderMode::kSurface).controller;
+  const Eigen::Vector3d start = start_m_ + plant::widen(c.model_origin_m);
+  const bool reaches_start =
+      core::axes_of(c.device.kind) != core::kAxes || simulation::reaches(c.device, start);
+  std::string text = oversize.value_or("");
+  if (!reaches_start) {
+    text += text.empty() ? "" : "; ";
+    text += used.name + " does not reach the start of the hand: the probe may begin in the object";
+  }
+  return text;
+}
+
 // Commands of a page; may be called from any thread.
+
+Settings LiveSession::settings() const {
+  const std::lock_guard lock(mutex_);
+  return settings_;
+}
+
+std::string LiveSession::warning() const {
+  const std::lock_guard lock(mutex_);
+  return fit_warning_;
+}
+
+void LiveSession::report(const std::string& text) { enqueue({{"do", "report"}, {"text", text}}); }
+
+void LiveSession::fit() const {
+  const std::lock_guard lock(mutex_);
+  if (!is_oversize_ || !fitting_.scale) {
+    throw SessionRefused("fit: the device reaches this model already, or it cannot be scaled");
+  }
+  fitting_.scale(device(settings_.device));
+}
 
 Settings LiveSession::changed(const json& wanted) const {
   Settings settings = settings_;
@@ -250,11 +255,15 @@ void LiveSession::set(const json& wanted) {
       settings.controller.use_materials != before.controller.use_materials;
   // Slow; not locked, so that the session continues.
   Runs runs = may_refuse_model ? make_runs(settings) : Runs();
+  bool is_oversize = false;
+  const std::string fit_warning = restarts ? check_fit(settings, is_oversize) : "";
   const std::lock_guard lock(mutex_);
   settings_ = settings;
   is_changed_ = true;
   if (restarts) {
     next_runs_ = std::move(runs);
+    fit_warning_ = fit_warning;
+    is_oversize_ = is_oversize;
   }
 }
 
@@ -278,6 +287,10 @@ std::optional<std::string> LiveSession::command(const json& command) {
       set(command);
       return std::nullopt;
     }
+    if (name == "fit") {
+      fit();
+      return std::nullopt;
+    }
     if (name == "hand") {
       (void)path_of(command);
       (void)speed_of(command);
@@ -286,7 +299,7 @@ std::optional<std::string> LiveSession::command(const json& command) {
     } else if (name != "arm" && name != "stop" && name != "clear" && name != "clear_injections") {
       return fmt::format(
           "'{}': unknown command (a simulation has hand, arm, stop, clear, set, inject, "
-          "clear_injections)",
+          "clear_injections, fit)",
           name);
     }
     enqueue(command);
@@ -373,6 +386,7 @@ void LiveSession::apply_commands() {
     hand_ = std::make_unique<SteeredHand>(start_m_);
     outcome_ = std::make_unique<CommandOutcome>();
     ticks_due_ = 0.0;
+    lost_s_ = 0.0;
     log_.clear();
   }
   if (changed) {
@@ -425,6 +439,9 @@ void LiveSession::execute(const json& command) {
     for_each_run(&LiveRun::mend);
   } else if (name == "inject") {
     inject(command["fault"]);
+  } else if (name == "report") {
+    ++news_number_;
+    news_ = command["text"];
   }
 }
 
@@ -471,9 +488,12 @@ std::string LiveSession::frame() {
   }
   const Eigen::Vector3d& hand = hand_->position_m();
   json settings;
+  json fit;
   {
     const std::lock_guard lock(mutex_);
     settings = settings_json();
+    fit = {{"warning", fit_warning_},
+           {"can_scale", is_oversize_ && static_cast<bool>(fitting_.scale)}};
   }
   const double t_s = runs_[0]->last().t_s;
   const json frame = {{"type", "frame"},
@@ -483,6 +503,7 @@ std::string LiveSession::frame() {
                       {"hand_m", json::array({hand.x(), hand.y(), hand.z()})},
                       {"bodies", poses_json(bodies_, t_s)},
                       {"lost_s", lost_s_},
+                      {"fit", fit},
                       {"news", {{"number", news_number_}, {"text", news_}}},
                       {"work", unknown_work("Not counted in this simulation (use tactree simulate "
                                             "--board).")},

@@ -99,6 +99,8 @@ Server::~Server() = default;
 
 const std::string& Server::address() const { return parts_->address; }
 
+std::uint16_t Server::port() const { return parts_->acceptor->local_endpoint().port(); }
+
 void Server::run() {
   Parts& p = *parts_;
   asio::signal_set signals(*p.context, SIGINT, SIGTERM);

@@ -12,9 +12,9 @@
 namespace tactree::cli {
 namespace {
 
-Eigen::Vector3d size_of(const core::BlobHeader& model) {
-  return (Eigen::Vector3f(model.bounds_max_m) - Eigen::Vector3f(model.bounds_min_m)).cast<double>();
-}
+// Ratio of the size to the maximum size that the device reaches; leaves room for the probe around
+// the model.
+constexpr double kShare = 0.95;
 
 /// Rounds a length down to two significant digits.
 double two_digits(double length_m) {
@@ -23,6 +23,16 @@ double two_digits(double length_m) {
 }
 
 }  // namespace
+
+Eigen::Vector3d size_of(const core::BlobHeader& model) {
+  return (Eigen::Vector3f(model.bounds_max_m) - Eigen::Vector3f(model.bounds_min_m)).cast<double>();
+}
+
+std::optional<double> fitting_scale(const core::DeviceModel& device,
+                                    const Eigen::Vector3d& size_m) {
+  const double scale = simulation::largest_scale(device, size_m).value_or(0.0);
+  return scale > 0.0 ? std::optional(kShare * scale) : std::nullopt;
+}
 
 std::optional<std::string> oversize_warning(const std::string& file, const core::BlobHeader& model,
                                             const std::string& device_name,

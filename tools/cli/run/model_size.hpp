@@ -1,6 +1,7 @@
 #pragma once
 // Compares the size of a model with the workspace of a device.
 
+#include <Eigen/Core>
 #include <optional>
 #include <string>
 
@@ -16,6 +17,12 @@ namespace tactree::cli {
                                                           const core::BlobHeader& model,
                                                           const std::string& device_name,
                                                           const core::DeviceModel& device);
+
+/// Factor that scales a model of this size to the workspace of a device of three axes, with room
+/// for the probe around it. Empty if the origin of the device is not inside its workspace.
+[[nodiscard]] std::optional<double> fitting_scale(const core::DeviceModel& device,
+                                                  const Eigen::Vector3d& size_m);
+[[nodiscard]] Eigen::Vector3d size_of(const core::BlobHeader& model);
 
 /// The advice of the builder on models that no device reaches or that are too small to feel, with
 /// the name of the file. Empty for other models.

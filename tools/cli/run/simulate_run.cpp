@@ -10,7 +10,9 @@
 #include "image/board_costs.hpp"
 #include "run/simulate_setup.hpp"
 #include "tactree/emulation/emulated_target.hpp"
+#include "tactree/plant/vectors.hpp"
 #include "tactree/simulation/recording.hpp"
+#include "tactree/simulation/workspace.hpp"
 #include "tactree/support/output_file.hpp"
 #include "tactree/wcet/bound.hpp"
 #include "tactree/wcet/bound_error.hpp"
@@ -178,6 +180,23 @@ Outcome run_ticks(simulation::Simulation& sim, std::uint64_t ticks, const Simula
   return outcome;
 }
 
+/// The controller does not become active, most often because the hand begins in the object.
+[[noreturn]] void refuse_start(const SimulateOptions& options, const simulation::Setup& setup,
+                               const simulation::Simulation& sim) {
+  const core::DeviceModel& device = setup.controller.device;
+  const Eigen::Vector3d start =
+      sim.path().at(0.0).position_m + plant::widen(setup.controller.model_origin_m);
+  if (core::axes_of(device.kind) == core::kAxes && !simulation::reaches(device, start)) {
+    refuse(fmt::format("{} does not reach the start of the hand, and the probe is in the object",
+                       options.device),
+           "scale the model with build --fit device:" + options.device +
+               ", or begin the path within the workspace");
+  }
+  refuse(fmt::format("the controller did not become active; its state is {}",
+                     core::name_of(sim.state())),
+         "begin the path outside the object");
+}
+
 }  // namespace
 
 Outcome run(const SimulateOptions& options, const SceneFile& scene) {
@@ -192,9 +211,7 @@ Outcome run(const SimulateOptions& options, const SceneFile& scene) {
   check_start(scene.names[refused], scene.files[refused]->view(), setup, sim.start_result(),
               options);
   if (!sim.arm()) {
-    refuse(fmt::format("the controller did not become active; its state is {}",
-                       core::name_of(sim.state())),
-           "begin the path outside the object");
+    refuse_start(options, setup, sim);
   }
   writer.begin_trace();
   Outcome outcome = run_ticks(sim, ticks, options, scene);

@@ -1,6 +1,12 @@
 #include <fmt/core.h>
 
+#include <atomic>
+#include <chrono>
+#include <exception>
+#include <future>
 #include <memory>
+#include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +17,7 @@
 #include "run/scene_file.hpp"
 #include "run/wall_options.hpp"
 #include "scan/board_work.hpp"
+#include "tactree/builder/scaled_model.hpp"
 #include "tactree/simulation/placement.hpp"
 #include "tactree/support/device_file.hpp"
 #include "tactree/support/user_error.hpp"
@@ -79,10 +86,6 @@ std::unique_ptr<viewer::Source> make_source(const ViewOptions& options, const Sc
   if (!options.board.port.empty()) {
     return board_source(options, scene);
   }
-  if (options.trace.empty()) {
-    return std::make_unique<viewer::LiveSession>(bodies_of(scene), devices(options.settings.device),
-                                                 options.settings);
-  }
   const core::DeviceModel device = support::load_device(options.settings.device).preset.model;
   const core::Vec3 origin_m = simulation::middle_at_origin(
       scene.files[0]->view().header(), scene.bodies[0].path.first(), device.kind);
@@ -90,24 +93,105 @@ std::unique_ptr<viewer::Source> make_source(const ViewOptions& options, const Sc
                                                  bodies_of(scene), device, origin_m);
 }
 
-void warn_of_size(const ViewOptions& options, const SceneFile& scene) {
-  if (!options.scene.empty() || scene.files.size() != 1) {
-    return;
+bool is_single(const ViewOptions& options, const SceneFile& scene) {
+  return options.scene.empty() && scene.files.size() == 1;
+}
+
+void warn(const std::string& text) { fmt::print(stderr, "tactree: warning: {}\n", text); }
+
+void warn_of_size(const SceneFile& scene) {
+  if (const auto warning = size_warning(scene.names[0], scene.files[0]->view().header())) {
+    warn(*warning);
   }
-  const core::BlobHeader& model = scene.files[0]->view().header();
-  const std::string& device = options.settings.device;
-  const bool simulated = options.trace.empty() && options.board.port.empty();
-  std::optional<std::string> warning;
-  if (simulated) {
-    warning =
-        oversize_warning(scene.names[0], model, device, support::load_device(device).preset.model);
+}
+
+/// A simulation, and the scaling of its model on demand of the page.
+class Simulated {
+ public:
+  Simulated(const ViewOptions& options, SceneFile& scene)
+      : scene_(scene),
+        session_(bodies_of(scene), devices(options.settings.device), options.settings,
+                 is_single(options, scene) ? fitting() : viewer::Fitting{}) {
+    if (!session_.warning().empty()) {
+      warn(session_.warning());
+    } else if (is_single(options, scene)) {
+      warn_of_size(scene);
+    }
   }
-  if (!warning) {
-    warning = size_warning(scene.names[0], model);
+
+  [[nodiscard]] viewer::LiveSession& session() { return session_; }
+  /// Call it before run(); `server` is stopped when the model is scaled.
+  void stops(viewer::Server& server) { server_ = &server; }
+  /// After run(): replaces the model of the scene if it was scaled. Returns false if not.
+  bool scale_scene() {
+    const bool was_scaled = is_scaled_;  // otherwise the user ended the server
+    if (scaling_.valid()) {
+      scaling_.wait();  // its task uses the server
+    }
+    if (!was_scaled) {
+      return false;
+    }
+    scene_.files[0] = scaled_.get();
+    scene_.bodies[0].blob = scaled_->bytes();
+    scene_.blobs.push_back(std::move(scaled_));
+    return true;
   }
-  if (warning) {
-    fmt::print(stderr, "tactree: warning: {}\n", *warning);
+
+ private:
+  viewer::Fitting fitting() {
+    return {[this](const viewer::NamedDevice& device) {
+              return oversize_warning(scene_.names[0], header(), device.name, device.preset.model);
+            },
+            [this](const viewer::NamedDevice& device) {
+              using std::chrono_literals::operator""s;
+              if (!scaling_.valid() || scaling_.wait_for(0s) == std::future_status::ready) {
+                scaling_ = std::async(std::launch::async, [this, device] { scale(device); });
+              }
+            }};
   }
+  [[nodiscard]] const core::BlobHeader& header() const { return scene_.files[0]->view().header(); }
+
+  void scale(const viewer::NamedDevice& device) {
+    session_.report("The model is being scaled; the page starts again with it.");
+    try {
+      const std::optional<double> scale = fitting_scale(device.preset.model, size_of(header()));
+      if (!scale) {
+        throw std::runtime_error("the origin of the device is not inside its workspace");
+      }
+      const builder::WrittenBlob scaled = builder::scaled_model(scene_.files[0]->view(), *scale);
+      scaled_ = std::make_unique<support::BlobFile>(
+          support::BlobFile::copy_of(scaled.bytes, scene_.names[0]));
+      is_scaled_ = true;
+      server_->stop();
+    } catch (const std::exception& error) {
+      session_.report(fmt::format("The model cannot be scaled: {}", error.what()));
+    }
+  }
+
+  SceneFile& scene_;
+  viewer::LiveSession session_;
+  viewer::Server* server_ = nullptr;
+  std::unique_ptr<support::BlobFile> scaled_;
+  std::atomic<bool> is_scaled_{false};
+  std::future<void> scaling_;  // its task uses the members above
+};
+
+void announce(const viewer::Server& server) {
+  fmt::print("open {} in a browser; Ctrl+C ends it\n", server.address());
+  std::fflush(stdout);
+}
+
+/// Serves the simulation. Returns true if it must be served again, with a scaled model.
+bool serve_simulation(ViewOptions& options, SceneFile& scene) {
+  Simulated simulated(options, scene);
+  const viewer::Site site(bodies_of(scene).views, simulated.session());
+  viewer::Server server(options.server, site, simulated.session());
+  simulated.stops(server);
+  announce(server);
+  server.run();
+  options.server.port = server.port();
+  options.settings = simulated.session().settings();
+  return simulated.scale_scene();
 }
 
 void view(ViewOptions& options) {
@@ -120,13 +204,19 @@ void view(ViewOptions& options) {
     throw CLI::RequiredError("BLOB");
   }
   options.settings.modes = viewer::modes_of(options.mode);
-  const SceneFile scene = read_scene(options.scene, options.blobs);
-  warn_of_size(options, scene);
+  SceneFile scene = read_scene(options.scene, options.blobs);
+  if (options.board.port.empty() && options.trace.empty()) {
+    while (serve_simulation(options, scene)) {
+    }
+    return;
+  }
+  if (is_single(options, scene)) {
+    warn_of_size(scene);
+  }
   const std::unique_ptr<viewer::Source> source = make_source(options, scene);
   const viewer::Site site(bodies_of(scene).views, *source);
   viewer::Server server(options.server, site, *source);
-  fmt::print("open {} in a browser; Ctrl+C ends it\n", server.address());
-  std::fflush(stdout);
+  announce(server);
   server.run();
 }
 

@@ -6,7 +6,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "tactree/simulation/workspace.hpp"
+#include "run/model_size.hpp"
 #include "tactree/support/device_file.hpp"
 #include "tactree/support/user_error.hpp"
 
@@ -14,9 +14,6 @@ namespace tactree::cli {
 namespace {
 
 constexpr char kDevice[] = "device";
-// Ratio of the size to the maximum size that the device reaches; leaves room for the probe around
-// the model.
-constexpr double kShare = 0.95;
 
 void fit_to_device(const std::string& name, builder::BuildOptions& build) {
   const core::DeviceModel device = support::load_device(name).preset.model;
@@ -27,12 +24,12 @@ void fit_to_device(const std::string& name, builder::BuildOptions& build) {
                     "give a length in metres");
   }
   build.fit_edge_m = [device, name](const Eigen::Vector3d& size) {
-    const double scale = simulation::largest_scale(device, size).value_or(0.0);
-    if (!(scale > 0.0)) {
+    const std::optional<double> scale = fitting_scale(device, size);
+    if (!scale) {
       support::refuse("--fit device:" + name,
                       "the origin of the device is not inside its workspace", "correct the device");
     }
-    return kShare * scale * size.maxCoeff();
+    return *scale * size.maxCoeff();
   };
 }
 

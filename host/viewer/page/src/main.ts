@@ -12,8 +12,7 @@ import { find, outputOf, Panel } from './panel';
 import { Player } from './player';
 import { Strip } from './strips';
 import { View } from './view';
-
-const LOST_SHOWN_MS = 3000;
+import { Why } from './why';
 
 const view = new View(find<HTMLCanvasElement>('view'));
 const strips = {
@@ -26,6 +25,7 @@ const panel = new Panel(say);
 const player = new Player(say, strips.force, strips.penetration);
 const board = new BoardView();
 const news = new News();
+const why = new Why();
 const hand = new Hand(view, (target_m, via_m, speed_m_s) => say({ do: 'hand', target_m, via_m, speed_m_s }));
 const gestures = new Gestures(view, hand);
 const connection = new Connection({ hello, frame, refused, connected });
@@ -94,22 +94,14 @@ function showLimits(names: string[]): void {
   );
 }
 
-let lost = { s: 0, at_ms: -Infinity };
-
-/** True for some seconds after the simulation fell behind real time. */
-function isLosing(frame: Frame): boolean {
-  const now_s = frame.lost_s ?? 0;
-  if (now_s > lost.s) lost = { s: now_s, at_ms: performance.now() };
-  if (now_s < lost.s) lost = { s: now_s, at_ms: -Infinity }; // a new session
-  return performance.now() - lost.at_ms < LOST_SHOWN_MS;
-}
-
 function showTiming(frame: Frame, run: Run): void {
   const rate = frame.settings ? `${frame.settings.rate_hz} ticks/s` : '';
-  const slow = isLosing(frame) ? 'too slow for real time' : '';
+  // The deadlines of a simulation are those of the simulated board: it misses none by being skipped.
+  const missed = frame.board ? 'deadlines missed' : 'deadlines missed by the simulated board';
+  const slow = frame.lost_s ? `this computer is too slow: ${frame.lost_s.toFixed(1)} s skipped` : '';
   const load = frame.board ? `load ${(100 * frame.board.load).toFixed(0)} %` : '';
   const lost = frame.board?.dropped ? `${frame.board.dropped} messages lost` : '';
-  const parts = [rate, `${run.overruns} deadlines missed`, load, lost, slow].filter((part) => part !== '');
+  const parts = [rate, `${run.overruns} ${missed}`, load, lost, slow].filter((part) => part !== '');
   const text = parts.join(' · ');
   const line = find('timing');
   if (line.textContent !== text) line.textContent = text;
@@ -129,6 +121,7 @@ function pushStrips(frame: Frame): void {
 /** Work per tick against the proven bound, or the reason why it is not available. */
 function showWork(frame: Frame, run: Run): void {
   const { unit, bound, why } = frame.work;
+  find('work').hidden = unit === '' && !frame.board;
   find('strip-work').hidden = unit === '';
   find('work-name').textContent = unit === '' ? 'Instructions' : unit[0].toUpperCase() + unit.slice(1);
   find('work-why').textContent = why;
@@ -162,6 +155,7 @@ function refresh(): void {
   touchMovedBodies(message);
   document.body.dataset.mode = message.settings?.mode ?? '';
   board.show(message);
+  why.show(message);
   if (news.follow(message) && message.board) panel.refused();
   if (message.settings) panel.follow(message.settings);
   const run = message.runs[0];
@@ -189,13 +183,14 @@ function showRun(message: Frame, run: Run): void {
   player.show(message);
 }
 
-/** How far the probe is from the surface, or how deep the hand presses. */
+/** The signed distance of the probe from the surface, or how deep the hand presses. */
 function showDistance(run: Run): void {
   const millimetres = (metres: number) => `${(1e3 * metres).toFixed(1)} mm`;
   const under = view.under[0];
   const depth = hand.touch.pressed ? ` · hand ${millimetres(hand.touch.depth_m)} deep` : '';
-  const height = under ? `${millimetres(Math.max(0, under.height))} to the surface` : '';
-  find<HTMLOutputElement>('distance').value = (run.in_contact ? 'in contact' : height) + depth;
+  const height = under ? `${millimetres(under.height)} to the surface` : '';
+  find<HTMLOutputElement>('distance').value =
+    (run.in_contact && run.state === 'active' ? 'in contact' : height) + depth;
 }
 
 /** Clears all values, so that no old one looks current. */
@@ -248,6 +243,10 @@ window.addEventListener('keydown', (event) => {
   }
 });
 
+find('view').addEventListener('pointerdown', () => {
+  if (why.reason !== '') news.show(why.reason);
+});
+find('scale').addEventListener('click', () => say({ do: 'fit' }));
 find('stop').addEventListener('click', stop);
 find('arm').addEventListener('click', () => say({ do: 'arm' }));
 find('connect').addEventListener('click', () => say({ do: 'connect' }));

@@ -85,6 +85,7 @@ export interface Frame {
   // of a simulation
   hand_m?: Triple;
   lost_s?: number;
+  fit?: { warning: string; can_scale: boolean };
   settings?: Settings;
   // of a simulation or a board: a result that the other values do not show
   news?: { number: number; text: string };

@@ -71,8 +71,6 @@ export class Panel {
       '.simulated button, .simulated select',
     ))
       control.disabled = hello.source === 'board';
-    // Boards do not report these.
-    if (hello.source === 'board') for (const id of ['mode', 'device']) find<HTMLSelectElement>(id).value = '';
   }
 
   /** Shows the server's settings, except in the control that the user is changing. */

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -351,6 +352,38 @@ TEST_F(LiveSessionTest, RefusedCommandsChangeNothing) {
   const json hello = json::parse(session_.hello());
   EXPECT_EQ(hello["settings"]["stiffness_N_m"], 500.0);
   EXPECT_EQ(hello["settings"]["rate_hz"], 1000.0);
+}
+
+TEST_F(LiveSessionTest, ReportsAndScalesModelBeyondReach) {
+  simulation::SceneBody body;
+  body.blob = blob_.written().bytes;
+  std::string scaled_for;
+  const auto warning = [](const viewer::NamedDevice& device) {
+    return device.name == "falcon" ? std::optional<std::string>("too large") : std::nullopt;
+  };
+  const auto scale = [&](const viewer::NamedDevice& device) { scaled_for = device.name; };
+  LiveSession session({{blob_.view()}, {body}}, devices(), {}, {warning, scale});
+  EXPECT_EQ(json::parse(session.step())["fit"], json({{"warning", ""}, {"can_scale", false}}));
+  EXPECT_TRUE(session.command({{"do", "fit"}}));
+  EXPECT_FALSE(session.command({{"do", "set"}, {"device", "falcon"}, {"restart", true}}));
+  const json fit = json::parse(session.step())["fit"];
+  EXPECT_TRUE(fit["warning"].get<std::string>().starts_with("too large")) << fit;
+  EXPECT_TRUE(fit["can_scale"]);
+  EXPECT_EQ(session.settings().device, "falcon");
+  EXPECT_FALSE(session.command({{"do", "fit"}}));
+  EXPECT_EQ(scaled_for, "falcon");
+  session.report("The model is being scaled.");
+  EXPECT_EQ(json::parse(session.step())["news"]["text"], "The model is being scaled.");
+}
+
+TEST_F(LiveSessionTest, ReportsUnreachableStartOfHand) {
+  EXPECT_EQ(session_.warning(), "");
+  const TestBlob large(sphere(0.5, 0.02));
+  simulation::SceneBody body;
+  body.blob = large.written().bytes;
+  const LiveSession session({{large.view()}, {body}}, devices(), {});
+  EXPECT_EQ(session.warning(),
+            "premium does not reach the start of the hand: the probe may begin in the object");
 }
 
 TEST_F(LiveSessionTest, RecordsTrace) {

@@ -23,6 +23,9 @@ class BlobFile {
   /// Reads the blob that a command line names, where "-" is standard input. Throws UserError.
   [[nodiscard]] static BlobFile named(const std::string& name);
 
+  /// Copies and checks a blob; `name` is that of messages. Throws UserError.
+  [[nodiscard]] static BlobFile copy_of(std::span<const std::byte> bytes, const std::string& name);
+
   [[nodiscard]] const core::BlobView& view() const { return view_; }
   [[nodiscard]] std::span<const std::byte> bytes() const {
     return std::as_bytes(std::span(words_)).first(size_);

@@ -17,11 +17,15 @@
 //                           device is refused without it
 //   {"do": "inject", "fault": "encoder1:stuck"}  like --inject without a time; acts at once
 //   {"do": "clear_injections"}              removes all injected faults
+//   {"do": "fit"}          scales the model to the workspace of the device: see Fitting
+// Frames contain the text for a model that does not fit: {"fit": {"warning": ..., "can_scale":
+// false}}; "" if there is none.
 // If a command has no visible result, later frames contain a notice with the cause:
 // {"news": {"number": 1, "text": ...}}.
 
 #include <Eigen/Core>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <nlohmann/json_fwd.hpp>
@@ -54,6 +58,14 @@ struct NamedDevice {
   core::DevicePreset preset{};
 };
 
+/// What a program adds for models that the device does not reach.
+struct Fitting {
+  /// The text for such a model, none if the device reaches it. Default: never told.
+  std::function<std::optional<std::string>(const NamedDevice&)> warning{};
+  /// Begins to scale the model for a device; must not block.
+  std::function<void(const NamedDevice&)> scale{};
+};
+
 class CommandOutcome;
 class LiveRun;
 class SteeredHand;
@@ -62,12 +74,19 @@ class LiveSession : public Source {
  public:
   /// The blobs of `bodies` must outlive the session. `devices` are the choices of the page. Throws
   /// SessionRefused.
-  LiveSession(Bodies bodies, std::vector<NamedDevice> devices, const Settings& settings);
+  LiveSession(Bodies bodies, std::vector<NamedDevice> devices, const Settings& settings,
+              Fitting fitting = {});
   ~LiveSession() override;
 
   /// Replaces start() in programs with their own time base: executes waiting commands, simulates
   /// the time of one frame as fast as possible, and returns the frame.
   [[nodiscard]] std::string step();
+
+  /// Shows a text on the pages. May be called from any thread, as settings() and warning().
+  void report(const std::string& text);
+  [[nodiscard]] Settings settings() const;
+  /// States that the device does not reach the model or the start of the hand; empty if it does.
+  [[nodiscard]] std::string warning() const;
 
   [[nodiscard]] std::string hello() const override;
   [[nodiscard]] std::optional<std::string> command(const nlohmann::json& command) override;
@@ -84,6 +103,8 @@ class LiveSession : public Source {
   [[nodiscard]] Settings changed(const nlohmann::json& wanted) const;
   [[nodiscard]] nlohmann::json settings_json() const;
   void set(const nlohmann::json& wanted);
+  [[nodiscard]] std::string check_fit(const Settings& settings, bool& is_oversize) const;
+  void fit() const;
   void enqueue(const nlohmann::json& command);
   void run(const Publish& publish) override;
   void turn(double elapsed_s);
@@ -97,6 +118,7 @@ class LiveSession : public Source {
 
   Bodies bodies_;
   std::vector<NamedDevice> devices_;
+  Fitting fitting_;
   Eigen::Vector3d start_m_;  // start of the hand, outside the object
 
   // Used by the session's thread only.
@@ -110,10 +132,12 @@ class LiveSession : public Source {
   std::uint64_t news_number_ = 0;
   std::string news_;
 
-  mutable std::mutex mutex_;  // guards settings_, is_changed_, next_runs_ and commands_
+  mutable std::mutex mutex_;  // guards the members up to commands_
   Settings settings_;
   bool is_changed_ = false;  // settings_ differ from those of runs_
-  Runs next_runs_;           // of a new session; empty if the present one continues
+  std::string fit_warning_;
+  bool is_oversize_ = false;
+  Runs next_runs_;  // of a new session; empty if the present one continues
   std::deque<nlohmann::json> commands_;
 
   TickLog log_;

@@ -37,9 +37,10 @@ class Server {
 
   /// "http://127.0.0.1:8023/"
   [[nodiscard]] const std::string& address() const;
+  [[nodiscard]] std::uint16_t port() const;
   /// Starts the source and serves until SIGINT, SIGTERM or stop().
   void run();
-  void stop();
+  void stop();  ///< may be called from any thread
 
  private:
   struct Parts;

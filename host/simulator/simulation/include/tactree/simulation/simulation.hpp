@@ -76,6 +76,7 @@ class Simulation {
   /// Number of ticks that arm() executes.
   [[nodiscard]] static std::uint64_t arming_ticks(const Setup& setup);
 
+  [[nodiscard]] const HandPath& path() const { return path_; }
   /// Result of the start. If it is not ok(), the force stays zero.
   [[nodiscard]] const hal::StartResult& start_result() const { return start_; }
 

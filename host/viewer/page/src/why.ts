@@ -1,0 +1,37 @@
+// Why the hand feels no force.
+
+import type { Frame } from './messages';
+import { find } from './panel';
+
+/** The reason; '' if there may be a force, and for a recorded trace. */
+function reasonOf(frame: Frame): string {
+  const [run] = frame.runs;
+  if (!run || frame.tick !== undefined) return '';
+  const isWaiting = run.limits.includes('waiting');
+  if (run.state === 'fault') return 'No force until the fault is cleared: press Clear, then Arm';
+  if (run.state === 'idle') return 'stopped: press Arm';
+  if (isWaiting) return 'No force until the hand has left the object';
+  if (run.state === 'armed') return 'armed: waits for the dead-man control';
+  return run.state === 'active' ? '' : `No force: the controller is in state ${run.state}`;
+}
+
+/** Shows the reason beside the state, and what does not fit to the device. */
+export class Why {
+  reason = '';
+
+  show(frame: Frame): void {
+    this.reason = reasonOf(frame);
+    set('why', this.reason);
+    const run = frame.runs[0];
+    find('inside').hidden = !run?.limits.includes('waiting');
+    const warning = frame.fit?.warning ?? '';
+    find('fit').hidden = warning === '';
+    find('scale').hidden = !frame.fit?.can_scale;
+    set('fit-warning', warning);
+  }
+}
+
+function set(id: string, text: string): void {
+  const element = find(id);
+  if (element.textContent !== text) element.textContent = text;
+}
