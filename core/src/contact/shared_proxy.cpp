@@ -13,6 +13,11 @@ namespace {
 // crease are further apart.
 constexpr float kFlush = kApart;
 
+// After a yield by less than this fraction of the tolerance, a hundredth of the support radius, the
+// own surface needs no other fit. Where the faces of two bodies meet, their fits differ by some
+// nanometres in every tick. A proxy that settled each time would never go beyond its candidates.
+constexpr float kSettled = 0.25F;
+
 // The lead changes to the other body if the weight of its points is larger by this factor. The
 // hysteresis prevents the lead from alternating.
 constexpr float kMuchMore = 1.2F;
@@ -131,7 +136,8 @@ void Proxy::yield_to(const Neighbour& neighbour) {
   if (step != Vec3{}) {
     position_ += step;
     planes_.step_by(step);
-    unsettled_ = true;
+    const float enough = kSettled * neighbour.tolerance_m;
+    unsettled_ = unsettled_ || length_squared(step) > enough * enough;
   }
 }
 

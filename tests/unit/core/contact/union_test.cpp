@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <random>
 #include <vector>
 
 #include "scene_rig.hpp"
@@ -233,6 +234,41 @@ TEST(Union, StopsAtOtherBodyWalls) {
       {"sunk in it", {-20.0, 20.0, -20.0, 0.0}, {0.0, 10.0, -5.0, 10.0}, 3.0, corner(0.0), 0.01});
   expect_slides(
       {"beside it", {-20.0, 0.0, -20.0, 0.0}, {0.0, 10.0, -20.0, 10.0}, 3.0, corner(0.0), 0.01});
+}
+
+// In the crease of two bodies, whose fits differ a little in every tick, a hand turns back.
+TEST(Union, FollowsHandThatTurnsBackInCrease) {
+  std::mt19937_64 random(1);
+  for (int turns = 0; turns < 6; ++turns) {
+    const Eigen::Matrix3d turn = evaluation::any_turn(random);
+    Prism plate{{{-0.02, -0.02}, {0.02, -0.02}, {0.02, 0.0}, {-0.02, 0.0}}, 0.02, turn};
+    Prism wall{{{0.0, -0.005}, {0.01, -0.005}, {0.01, 0.01}, {0.0, 0.01}}, 0.02, turn};
+    const Shape shapes[] = {sampled(plate, 0.5e-3, 0.3, 0.0, 1),
+                            sampled(wall, 0.5e-3, 0.3, 0.0, 2)};
+    for (const float rate_hz : {1000.0F, 4000.0F}) {
+      SCOPED_TRACE(testing::Message() << rate_hz << " Hz, turn " << turns);
+      SceneRig rig;
+      rig.configuration.rate_hz = rate_hz;
+      rig.add(shapes[0]);
+      rig.add(shapes[1]);
+      Vector3d at(-1e-3, -6e-3, 5e-3);
+      double behind = 0.0;
+      const auto go = [&](const Vector3d& to) {
+        const Vector3d begin = at;
+        const auto ticks = std::lround((to - begin).norm() / 0.1 * static_cast<double>(rate_hz));
+        for (long i = 1; i <= ticks; ++i) {
+          at = begin + static_cast<double>(i) / static_cast<double>(ticks) * (to - begin);
+          rig.tick(turn * at);
+          const Vector3d proxy = turn.transpose() * widen(rig.last.contact.proxy);
+          behind = std::max(behind, std::abs(proxy.y() - at.y()));
+        }
+      };
+      go({2e-3, -6e-3, -2e-3});
+      go({2e-3, 6e-3, -2e-3});
+      go({1e-3, -6e-3, -2e-3});
+      EXPECT_LT(behind, 0.2e-3);
+    }
+  }
 }
 
 // Where the other body is lower, the proxy falls to it.
