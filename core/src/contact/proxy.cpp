@@ -427,7 +427,7 @@ void Proxy::slide(const BlobView& view, Vec3 probe, const Friction& friction) {
     const bool was_settled = !unsettled_;
     const Footing before = footing();
     // at most: fits per Scene::update together fits
-    if (!slip_by(view, slip)) {
+    if (!slip_by(view, slip, probe)) {
       if (candidates_.in_use().hidden() != 0U) {  // the surface ends inside the neighbour
         restore(before);
         gives_way_ = true;
@@ -476,7 +476,14 @@ void Proxy::glide_by(Vec3 step) {
   has_next_ = false;
 }
 
-bool Proxy::slip_by(const BlobView& view, Vec3 step) {
+/// True if one face holds the proxy, and the probe is in front of it.
+bool Proxy::is_free(Vec3 probe) const {
+  return planes_.count == 1U && dot(probe - position_, normal()) > 0.0F;
+}
+
+// A slip around an edge ends on the face of which the probe is in front. A second step would start
+// at the edge itself, where either face may be the surface.
+bool Proxy::slip_by(const BlobView& view, Vec3 step, Vec3 probe) {
   const Vec3 position_before = position_;
   const float strength_before = strength_;
   position_ += step;
@@ -488,7 +495,7 @@ bool Proxy::slip_by(const BlobView& view, Vec3 step) {
   }
   unsettled_ = moved > kOneStepIsEnough * radius;
   // at most: fits per Scene::update together settles
-  if (unsettled_ && prepare_fit(view, position_) && !settle(view, moved)) {
+  if (unsettled_ && !is_free(probe) && prepare_fit(view, position_) && !settle(view, moved)) {
     return false;
   }
   const float change = kStrengthPerRadius * length(position_ - position_before) / radius;

@@ -54,6 +54,7 @@ class Hand {
     }
   }
 
+  [[nodiscard]] const Vector3d& at() const { return at_; }
   [[nodiscard]] bool feels() const { return proxy_.in_contact(); }
   [[nodiscard]] Vector3d place() const { return turn_.transpose() * widen(proxy_.position()); }
   /// N, in the frame of the body.
@@ -204,6 +205,26 @@ TEST(Crease, RendersNothingBesideRidge) {
         EXPECT_GT(side * hand.force().x(), 0.05) << angle;
         EXPECT_FALSE(hand.proxy().from_behind());
       }
+    }
+  }
+}
+
+// The hand slides off a block, 0.5 mm below its top, and is then in front of its side.
+TEST(Crease, LetsHandSlideOffEdge) {
+  std::mt19937_64 random(1);
+  for (int turns = 0; turns < 12; ++turns) {
+    Prism block;
+    block.profile = {{-0.02, -0.02}, {0.0, -0.02}, {0.0, 0.0}, {-0.02, 0.0}};
+    block.turn = any_turn(random);
+    const Shape shape = sampled(block, 2.0 * kH, 0.3, 0.0, static_cast<unsigned>(turns));
+    for (const float rate : {1000.0F, 2000.0F, 4000.0F}) {
+      Hand hand(shape, block.turn, {-4e-3, -6e-3, 4e-3}, rate);
+      hand.move_to({-4e-3, -6e-3, -0.5e-3}, 0.1);
+      hand.move_to({-0.05e-3, -3e-3, -0.5e-3}, 0.1, [&] { EXPECT_TRUE(hand.feels()); });
+      double held = 0.0;  // m, behind the edge
+      hand.move_to({4e-3, 0.0, -0.5e-3}, 0.1,
+                   [&] { held = hand.feels() ? std::max(held, hand.at().x()) : held; });
+      EXPECT_LT(held, 0.15e-3) << rate << " Hz, turn " << turns;
     }
   }
 }

@@ -166,7 +166,8 @@ class Proxy {
   [[nodiscard]] Vec3 next_slip(const Pull& pull, float excess, float step, bool& last) const;
   void end_slip(float distance, float cone);
   void glide_by(Vec3 step);
-  [[nodiscard]] bool slip_by(const BlobView& view, Vec3 step);
+  [[nodiscard]] bool slip_by(const BlobView& view, Vec3 step, Vec3 probe);
+  [[nodiscard]] bool is_free(Vec3 probe) const;
   [[nodiscard]] bool settle(const BlobView& view, float& moved);
   void refer_to(const SurfaceFit& fit, bool was_smooth);
   void make_main(std::uint32_t plane);
