@@ -1,6 +1,9 @@
 #pragma once
 // Linear fade of the force of a contact that ended without the probe leaving the surface, for
 // example at a surface boundary. Interrupt safe: no shared state.
+//
+// Loop and memory annotations: docs/BOUND.md.
+// memory: RAM
 
 #include <cstdint>
 

@@ -4,6 +4,8 @@
 // ignored.
 //
 // Interrupt safety: pure functions.
+// Loop and memory annotations: docs/BOUND.md.
+// memory: RAM
 
 #include <cstdint>
 

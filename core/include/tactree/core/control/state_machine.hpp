@@ -4,6 +4,7 @@
 // then clear-fault and stop were received.
 // Interrupt safe: pure functions. Cost: constant.
 // Loop and memory annotations: docs/BOUND.md.
+// memory: RAM
 
 #include <cstdint>
 

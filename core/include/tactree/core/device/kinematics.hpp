@@ -3,6 +3,8 @@
 // the effort of each axis.
 //
 // Interrupt safety: pure functions.
+// Loop and memory annotations: docs/BOUND.md.
+// memory: RAM
 
 #include <cstdint>
 

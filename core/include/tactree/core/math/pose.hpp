@@ -2,6 +2,8 @@
 // Pose and motion of a rigid body in the scene frame.
 //
 // Interrupt safety: pure functions.
+// Loop and memory annotations: docs/BOUND.md.
+// memory: RAM
 
 #include <cstdint>
 

@@ -7,6 +7,9 @@
 //
 // Interrupt safe under these conditions: one core; the tick interrupts the session, never the
 // reverse. The tick takes only complete values and never waits. Cost of each function: constant.
+//
+// Loop and memory annotations: docs/BOUND.md.
+// memory: RAM
 
 #include <cstdint>
 #include <span>
@@ -168,7 +171,9 @@ struct MailboxLink {
   TickMailbox& mailbox;
   Ticker& ticker;
   [[nodiscard]] hal::LinkInput receive() noexcept { return mailbox.receive(); }
-  void send(const core::Status& status) noexcept { mailbox.send(status, ticker.now_us()); }
+  void send(const core::Status& status) noexcept {
+    mailbox.send(status, ticker.now_us());  // memory: flash (a register may be as slow)
+  }
 };
 
 }  // namespace tactree::session
