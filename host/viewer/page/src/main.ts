@@ -98,7 +98,8 @@ function showTiming(frame: Frame, run: Run): void {
   const rate = frame.settings ? `${frame.settings.rate_hz} ticks/s` : '';
   // The deadlines of a simulation are those of the simulated board: it misses none by being skipped.
   const missed = frame.board ? 'deadlines missed' : 'deadlines missed by the simulated board';
-  const slow = frame.lost_s ? `this computer is too slow: ${frame.lost_s.toFixed(1)} s skipped` : '';
+  const lost_s = frame.lost_s ?? 0;
+  const slow = lost_s >= 0.1 ? `this computer is too slow: ${lost_s.toFixed(1)} s skipped` : '';
   const load = frame.board ? `load ${(100 * frame.board.load).toFixed(0)} %` : '';
   const lost = frame.board?.dropped ? `${frame.board.dropped} messages lost` : '';
   const parts = [rate, `${run.overruns} ${missed}`, load, lost, slow].filter((part) => part !== '');
