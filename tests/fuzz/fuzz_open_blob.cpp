@@ -18,7 +18,7 @@
 #include "memory_file.hpp"
 #include "tactree/builder/model.hpp"
 #include "tactree/core/contact/paper_mode.hpp"
-#include "tactree/core/contact/renderer.hpp"
+#include "tactree/core/contact/scene.hpp"
 #include "tactree/core/contact/surface.hpp"
 #include "tactree/core/math/crc32.hpp"
 #include "tactree/core/model/blob.hpp"
@@ -221,11 +221,13 @@ class Examination {
     Configuration configuration;
     const bool surface = surface_support(view_) == SurfaceSupport::kOk;
     configuration.mode = surface ? RenderMode::kSurface : RenderMode::kPaper;
-    Renderer renderer;
+    Scene scene;
+    std::uint32_t number = 0;
+    require(scene.add(view_, {}, number) == ModelStatus::kOk, "an accepted model is no body");
     Vec3 probe = make_probe(0);
-    renderer.reset(probe);
+    scene.reset(probe);
     for (int tick = 0; tick < 6; ++tick) {
-      const Rendering rendering = renderer.update(view_, configuration, probe, {});
+      const Rendering rendering = scene.update(configuration, probe, {}).contact;
       require(!rendering.in_contact || is_finite(rendering.proxy), "a proxy is nowhere");
       probe = make_probe(tick == 3 ? 2 : 5);
     }

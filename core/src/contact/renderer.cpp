@@ -65,15 +65,6 @@ float spring_energy(float stiffness_N_m, float length_m, float force_max_N) {
   return r;
 }
 
-Rendering Renderer::update(const BlobView& view, const Configuration& configuration, Vec3 probe,
-                           Vec3 velocity, std::uint32_t least_tier) {
-  if (configuration.mode == RenderMode::kPaper) {
-    return render_paper(view, configuration, probe);
-  }
-  track(view, configuration, probe, least_tier, nullptr);
-  return render_proxy(view, configuration, probe, velocity);
-}
-
 Rendering Renderer::render_proxy(const BlobView& view, const Configuration& c, Vec3 probe,
                                  Vec3 velocity) {
   Rendering r;

@@ -4,7 +4,7 @@
 
 #include "errors.hpp"
 #include "measurements.hpp"
-#include "tactree/core/contact/renderer.hpp"
+#include "tactree/core/contact/scene.hpp"
 #include "tactree/evaluation/shapes.hpp"
 #include "tactree/plant/plant.hpp"
 #include "tactree/simulation/simulation.hpp"
@@ -117,12 +117,15 @@ bool is_stable(const Shape& wall, Mode mode, double rate_hz, double stiffness) {
   configuration.mode = render_mode(mode);
   configuration.contact.stiffness_N_m = static_cast<float>(stiffness);
   configuration.contact.damping_Ns_m = 0.0F;
-  core::Renderer renderer;
-  renderer.reset(narrow({kGrid, kGrid, 1e-3}));
+  core::Scene scene;
+  std::uint32_t number = 0;
+  if (scene.add(wall.view(), {}, number) != core::ModelStatus::kOk) {
+    return false;
+  }
   const double depth = kPush / stiffness;
   const Vector3d begin(kGrid, kGrid, -1.1 * depth);
   for (const double z : {5e-4, 1e-6, begin.z()}) {
-    (void)renderer.update(wall.view(), configuration, narrow({kGrid, kGrid, z}), {});
+    (void)scene.update(configuration, narrow({kGrid, kGrid, z}), {});
   }
   plant::PlantParameters parameters;
   parameters.device = {0.075, kDamping, 0.0};
@@ -135,8 +138,7 @@ bool is_stable(const Shape& wall, Mode mode, double rate_hz, double stiffness) {
   double early = 0.0;
   double late = 0.0;
   for (double i = 0.0; i < ticks; i += 1.0) {
-    const core::Rendering r =
-        renderer.update(wall.view(), configuration, narrow(device.position_m()), {});
+    const core::Rendering r = scene.update(configuration, narrow(device.position_m()), {}).contact;
     if (!r.in_contact) {
       return false;  // the device left the wall or passed through it
     }

@@ -1,99 +1,42 @@
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
-#include <algorithm>
-#include <functional>
+#include <cmath>
+#include <random>
+#include <utility>
 
+#include "hand_path.hpp"
 #include "measurements.hpp"
 #include "tactree/evaluation/creases.hpp"
-#include "touch.hpp"
 
 namespace tactree::evaluation {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kBeyond = 4e-3;    // m, depth of the hand below the bottom of a concave crease
-constexpr double kBelow = 0.6e-3;   // m, depth of the hand below the top of a ridge
-constexpr double kStart = 6e-3;     // m, height above the crease at which the hand starts
-constexpr double kAlong = 10e-3;    // m, slide along the crease to both sides of the centre
-constexpr double kStayS = 0.1;      // rest, after which the proxy must be on the crease
-constexpr double kNoticed = 20e-6;  // m, an encoder count; contact is not required above this depth
-
-struct Pace {
-  double rate_hz;
-  double speed_m_s;
-};
-constexpr Pace kPaces[] = {
-    {1000.0, 0.02}, {1000.0, 0.1}, {2000.0, 0.1}, {4000.0, 0.1}, {4000.0, 0.5}};
-constexpr double kFast = 0.2;  // m/s; a hand that is faster has a separate score
-
-/// Positions of the hand, one per tick, in the frame of the crease, m.
-using Hand = std::vector<Vector3d>;
-
-void move_to(Hand& hand, const Vector3d& end, double step) {
-  const Vector3d begin = hand.back();
-  const auto ticks = std::max(1L, std::lround((end - begin).norm() / step));
-  for (long i = 1; i <= ticks; ++i) {
-    hand.emplace_back(begin + (static_cast<double>(i) / double(ticks)) * (end - begin));
-  }
-}
+constexpr double kBeyond = 4e-3;   // m, depth of the hand below the bottom of a concave crease
+constexpr double kBelow = 0.6e-3;  // m, depth of the hand below the top of a ridge
+constexpr double kStart = 6e-3;    // m, height above the crease at which the hand starts
+constexpr double kAlong = 10e-3;   // m, slide along the crease to both sides of the centre
 
 /// Presses into a concave crease, rests, slides along the crease, to the side and back, and leaves.
-Hand into(double step, double rate_hz) {
-  Hand hand{{0.3e-3, -kAlong, kStart}};
-  move_to(hand, {0.3e-3, -kAlong, -kBeyond}, step);
-  for (double stay = 0.0; stay < kStayS * rate_hz; stay += 1.0) {
-    hand.push_back(hand.back());
-  }
-  move_to(hand, {0.3e-3, kAlong, -kBeyond}, step);
-  move_to(hand, {1.5e-3, kAlong, -0.7 * kBeyond}, step);
-  move_to(hand, {-1e-3, -kAlong, -0.7 * kBeyond}, step);
-  move_to(hand, {0.0, -kAlong, kStart}, step);
+HandPath into(const Pace& pace) {
+  HandPath hand({0.3e-3, -kAlong, kStart}, pace);
+  hand.move_to({0.3e-3, -kAlong, -kBeyond});
+  hand.stay();
+  hand.move_to({0.3e-3, kAlong, -kBeyond});
+  hand.move_to({1.5e-3, kAlong, -0.7 * kBeyond});
+  hand.move_to({-1e-3, -kAlong, -0.7 * kBeyond});
+  hand.move_to({0.0, -kAlong, kStart});
   return hand;
 }
 
 /// Slides along a ridge, then across it.
-Hand over(double step, double) {
-  Hand hand{{-0.1e-3, -kAlong, kStart}};
-  move_to(hand, {-0.1e-3, -kAlong, -kBelow}, step);
-  move_to(hand, {-0.1e-3, kAlong, -kBelow}, step);
-  move_to(hand, {6e-3, kAlong, -kBelow}, step);
+HandPath over(const Pace& pace) {
+  HandPath hand({-0.1e-3, -kAlong, kStart}, pace);
+  hand.move_to({-0.1e-3, -kAlong, -kBelow});
+  hand.move_to({-0.1e-3, kAlong, -kBelow});
+  hand.move_to({6e-3, kAlong, -kBelow});
   return hand;
-}
-
-void score(const core::BlobView& view, const Hand& hand, const Eigen::Matrix3d& turn,
-           const std::function<double(const Vector3d&)>& distance,
-           const std::function<double(const Vector3d&)>& off_crease, const Pace& pace,
-           CreaseResult& row) {
-  const double rate_hz = pace.rate_hz;
-  const bool is_fast = pace.speed_m_s > kFast;
-  Touch touch(view, core::RenderMode::kSurface, turn * hand.front(), {}, rate_hz);
-  Vector3d last = Vector3d::Zero();
-  bool felt = false;
-  double stays_s = 0.0;
-  for (std::size_t i = 0; i < hand.size(); ++i) {
-    const Vector3d probe = turn * hand[i];
-    const Touched touched = touch.to(probe);
-    const double depth = -distance(probe);
-    const double travel = i == 0 ? 0.0 : (hand[i] - hand[i - 1]).norm();
-    ++row.ticks;
-    if (depth > kNoticed && !touched.in_contact) {
-      row.lost += felt ? 1 : 0;
-      double& late_m = is_fast ? row.fast_late_m : row.late_m;
-      late_m = felt ? late_m : std::max(late_m, depth);
-    }
-    const bool was_felt = felt;
-    felt = (felt && depth > 0.0) || touched.in_contact;
-    if (was_felt && touched.in_contact && !is_fast) {
-      row.step_N = std::max(row.step_N, (touched.force - last).norm() - kStiffness_N_m * travel);
-    }
-    stays_s = i != 0 && travel == 0.0 ? stays_s + 1.0 / rate_hz : 0.0;
-    if (stays_s > 0.9 * kStayS) {
-      row.off_m = std::max(row.off_m, off_crease(turn.transpose() * touched.proxy));
-    }
-    last = touched.force;
-  }
 }
 
 double off_line(const Vector3d& p) { return std::hypot(p.x(), p.z()); }
@@ -115,11 +58,12 @@ std::vector<CreaseResult> measure_creases(bool quick, std::uint32_t seed) {
         prism.turn = any_turn(random);
       }
       const Shape shape = sampled(prism, spacing, 0.3, noise, seed + static_cast<unsigned>(turns));
+      const Surroundings around{{shape.view()},
+                                prism.turn,
+                                [&](const Vector3d& p) { return prism.distance(prism.turn * p); },
+                                off_line};
       for (const Pace& pace : kPaces) {
-        const double step = pace.speed_m_s / pace.rate_hz;
-        score(
-            shape.view(), (concave ? into : over)(step, pace.rate_hz), prism.turn,
-            [&](const Vector3d& p) { return prism.distance(p); }, off_line, pace, row);
+        follow(concave ? into(pace) : over(pace), around, row);
       }
     }
     rows.push_back(std::move(row));

@@ -58,6 +58,8 @@ Result evaluate(const Options& options, builder::Progress& progress) {
   evaluate_shapes(options, progress, result);
   progress.begin("creases");
   result.creases = measure_creases(options.quick, options.seed);
+  progress.begin("stairs, rooms and bodies together");
+  measure_courses(options.quick, options.seed, result);
   progress.begin("starts inside");
   result.inside = measure_inside(options.quick, options.seed);
   progress.begin("the closed loop");

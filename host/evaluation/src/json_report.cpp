@@ -89,9 +89,9 @@ Json loop(const LoopResult& l) {
   return json;
 }
 
-Json creases(const Result& result) {
+Json creases(const std::vector<CreaseResult>& rows) {
   Json json = Json::object();
-  for (const CreaseResult& row : result.creases) {
+  for (const CreaseResult& row : rows) {
     json[row.name] = {{"ticks", row.ticks},
                       {"lost", row.lost},
                       {"late_m", row.late_m},
@@ -143,7 +143,10 @@ std::string to_json(const Result& result) {
                      {"seed", result.options.seed},
                      {"tables", tables(result)},
                      {"shapes", shapes},
-                     {"creases", creases(result)},
+                     {"creases", creases(result.creases)},
+                     {"stairs", creases(result.stairs)},
+                     {"corners", creases(result.corners)},
+                     {"unions", creases(result.unions)},
                      {"inside", inside(result)},
                      {"loop", loop(result.loop)},
                      {"scans", scans(result)},

@@ -55,6 +55,9 @@ struct Effort {
 /// Contact of hands that press into creases, slide along them, and cross them.
 [[nodiscard]] std::vector<CreaseResult> measure_creases(bool quick, std::uint32_t seed);
 
+/// Contact of hands on stairs, in and on corners, and on two bodies that form one surface.
+void measure_courses(bool quick, std::uint32_t seed, Result& result);
+
 /// Hands that start inside a body.
 [[nodiscard]] std::vector<InsideResult> measure_inside(bool quick, std::uint32_t seed);
 

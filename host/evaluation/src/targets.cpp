@@ -53,7 +53,8 @@ void add_limits(const LoopResult& loop, Checker& check) {
   check.add({"loop.stiffness gained by passivity", gain, 1.7, 1e3, ""});
 }
 
-void add_creases(const std::vector<CreaseResult>& creases, Checker& check) {
+void add_creases(const std::string& name, const std::vector<CreaseResult>& creases,
+                 Checker& check) {
   double lost = 0.0;
   double late = 0.0;
   double off = 0.0;
@@ -66,10 +67,10 @@ void add_creases(const std::vector<CreaseResult>& creases, Checker& check) {
       step = std::max(step, row.step_N);
     }
   }
-  check.add({"creases.contact_lost", lost, 0.0, 0.0, ""});
-  check.add({"creases.noticed_at_m", late, 0.0, 1e-3, "m"});
-  check.add({"creases.off_m", off, 0.0, 5e-6, "m"});
-  check.add({"creases.step_N", step, 0.0, 0.1, "N"});
+  check.add({name + ".contact_lost", lost, 0.0, 0.0, ""});
+  check.add({name + ".noticed_at_m", late, 0.0, 1e-3, "m"});
+  check.add({name + ".off_m", off, 0.0, 5e-6, "m"});
+  check.add({name + ".step_N", step, 0.0, 0.1, "N"});
 }
 
 void add_inside(const std::vector<InsideResult>& inside, Checker& check) {
@@ -117,7 +118,10 @@ std::vector<Target> check_targets(const Result& result) {
   check.at_most("cos", "friction_max", 0.32, "");
   check.at_most("sphere", "friction_max", 0.32, "");
   check.add({"loop.vibration_m_s2", result.loop.vibration_m_s2[kSurface], 0.0, 0.06, "m/s2"});
-  add_creases(result.creases, check);
+  add_creases("creases", result.creases, check);
+  add_creases("stairs", result.stairs, check);
+  add_creases("corners", result.corners, check);
+  add_creases("unions", result.unions, check);
   add_inside(result.inside, check);
   add_limits(result.loop, check);
   return check.take();

@@ -1,10 +1,12 @@
 #pragma once
-// A probe that touches a blob in one mode, with one update of the renderer per tick.
+// A probe that touches bodies at rest in one mode, with one update of the scene per tick.
 
 #include <Eigen/Core>
+#include <span>
+#include <stdexcept>
 
 #include "tactree/core/configuration/configuration.hpp"
-#include "tactree/core/contact/renderer.hpp"
+#include "tactree/core/contact/scene.hpp"
 #include "tactree/evaluation/shapes.hpp"
 
 namespace tactree::evaluation {
@@ -22,28 +24,37 @@ struct Touched {
 
 class Touch {
  public:
-  /// Starts in free space at `probe`. `view` must outlive the object.
-  Touch(const core::BlobView& view, core::RenderMode mode, const Eigen::Vector3d& probe,
-        const core::Friction& friction = {}, double rate_hz = 1.0 / kPeriodS)
-      : view_(view) {
+  /// Starts at `probe`. The blobs must outlive the object.
+  Touch(std::span<const core::BlobView> bodies, core::RenderMode mode, const Eigen::Vector3d& probe,
+        const core::Friction& friction = {}, double rate_hz = 1.0 / kPeriodS) {
     configuration_.rate_hz = static_cast<float>(rate_hz);
     configuration_.mode = mode;
     configuration_.contact.stiffness_N_m = static_cast<float>(kStiffness_N_m);
     configuration_.contact.damping_Ns_m = 0.0F;
     configuration_.contact.static_friction = friction.static_coefficient;
     configuration_.contact.dynamic_friction = friction.dynamic_coefficient;
-    renderer_.reset(narrow(probe));
+    for (const core::BlobView& body : bodies) {
+      std::uint32_t number = 0;
+      const core::ModelStatus status = scene_.add(body, {}, number);
+      if (status != core::ModelStatus::kOk) {
+        throw std::logic_error(core::describe(status));
+      }
+    }
+    scene_.reset(narrow(probe));
   }
+  Touch(const core::BlobView& body, core::RenderMode mode, const Eigen::Vector3d& probe,
+        const core::Friction& friction = {}, double rate_hz = 1.0 / kPeriodS)
+      : Touch(std::span(&body, 1), mode, probe, friction, rate_hz) {}
 
   Touched to(const Eigen::Vector3d& probe) {
-    const core::Rendering r = renderer_.update(view_, configuration_, narrow(probe), {});
-    return {r.in_contact, r.slipping, r.inside, widen(r.force), widen(r.proxy)};
+    const core::SceneRendering& scene = scene_.update(configuration_, narrow(probe), {});
+    const core::Rendering& r = scene.contact;
+    return {r.in_contact, r.slipping, scene.inside, widen(r.force), widen(r.proxy)};
   }
 
  private:
-  const core::BlobView& view_;
   core::Configuration configuration_{};
-  core::Renderer renderer_{};
+  core::Scene scene_{};
 };
 
 }  // namespace tactree::evaluation

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "analytic_shapes.hpp"
-#include "tactree/core/contact/renderer.hpp"
+#include "scene_rig.hpp"
 #include "tactree/core/control/controller.hpp"
 
 namespace tactree::test {
@@ -48,15 +48,14 @@ struct Ride {
 
 Ride ride(const Shape& shape, double from, double to, double depth, double step,
           const Configuration& configuration = {}) {
-  core::Renderer renderer;
-  renderer.reset(narrow({from, 0.0, 1e-3}));
+  SceneRig rig(configuration);
+  rig.add(shape);
   Ride result;
   for (double z = 1e-3; z > -depth; z -= 1e-4) {
-    (void)renderer.update(shape.view(), configuration, narrow({from, 0.0, z}), {});
+    rig.scene.update(configuration, narrow({from, 0.0, z}), {});
   }
   for (double x = from; x <= to; x += step) {
-    const core::Rendering r =
-        renderer.update(shape.view(), configuration, narrow({x, 0.0, -depth}), {});
+    const core::Rendering r = rig.scene.update(configuration, narrow({x, 0.0, -depth}), {}).contact;
     EXPECT_TRUE(r.in_contact);
     result.x.push_back(static_cast<double>(r.proxy.x));
     result.force.push_back(r.force);
@@ -191,12 +190,11 @@ TEST(Texture, HasConfiguredAmplitudeAndWavelength) {
 TEST(Texture, NeverExceedsMaterialStiffness) {
   const Shape shape = one_material(textured(0.2e-3F, 3e-3F));
   for (double x = -1.5e-3; x <= 1.5e-3; x += 0.25e-3) {
-    core::Renderer renderer;
-    renderer.reset(narrow({x, 0.0, 1e-3}));
+    SceneRig rig{Configuration{}};
+    rig.add(shape);
     double last = 0.0;
     for (double z = 1e-3; z > -1e-3; z -= 1e-5) {
-      const core::Rendering r =
-          renderer.update(shape.view(), Configuration{}, narrow({x, 0.0, z}), {});
+      const core::Rendering r = rig.scene.update({}, narrow({x, 0.0, z}), {}).contact;
       const double force = static_cast<double>(r.force.z);
       ASSERT_GE(force, 0.0);
       ASSERT_LE(force - last, 1000.0 * 1e-5 * 1.01) << "x " << x << " z " << z;

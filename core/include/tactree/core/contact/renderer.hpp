@@ -42,15 +42,12 @@ class Renderer {
     }
   }
 
-  /// Renders one tick; `probe` in m, `velocity` in m/s. The surface mode works at the tier of the
-  /// rate, or at `least_tier` if that is later. Preconditions: check(configuration) is kOk, `probe`
-  /// is finite. Cost: Proxy::update() in surface mode, paper_collision() and paper_nearest() in
-  /// paper mode.
-  Rendering update(const BlobView& view, const Configuration& configuration, Vec3 probe,
-                   Vec3 velocity, std::uint32_t least_tier = 0);
+  // One tick; `probe` in m, `velocity` in m/s. Preconditions: check(configuration) is kOk, `probe`
+  // is finite.
 
-  /// The two steps of an update in surface mode: track() moves the proxy, render_proxy() computes
-  /// the force. With a neighbour, render only the proxy that leads: see proxy.hpp.
+  /// Surface mode: track() moves the proxy, render_proxy() computes the force. The work is that of
+  /// the tier of the rate, or of `least_tier` if that is later. With a neighbour, render only the
+  /// proxy that leads: see proxy.hpp. Cost: Proxy::update().
   void track(const BlobView& view, const Configuration& configuration, Vec3 probe,
              std::uint32_t least_tier, const Neighbour* neighbour) {
     proxy_.update(view, probe, friction_, work_per_tick(configuration.rate_hz, least_tier),

@@ -109,8 +109,8 @@ class Scene {
   void limit_work(std::uint32_t work_tier) { work_tier_ = work_tier; }
   [[nodiscard]] std::uint32_t work_tier() const { return work_tier_; }
 
-  /// Renders one tick; `probe` (m) and `velocity` (m/s) in the scene's frame. Preconditions: those
-  /// of Renderer::update().
+  /// Renders one tick; `probe` (m) and `velocity` (m/s) in the scene's frame. Preconditions:
+  /// check(configuration) is kOk, `probe` is finite.
   /// Cost: kMaxReachableBodies times Proxy::update(), one force, kMaxBodies times about 100
   /// operations.
   const SceneRendering& update(const Configuration& configuration, Vec3 probe, Vec3 velocity);

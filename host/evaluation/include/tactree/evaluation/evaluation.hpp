@@ -156,6 +156,9 @@ struct Result {
   DistanceTable distances;
   std::vector<ShapeResult> shapes;
   std::vector<CreaseResult> creases;
+  std::vector<CreaseResult> stairs;
+  std::vector<CreaseResult> corners;  ///< inside of a room, outside of a cube
+  std::vector<CreaseResult> unions;   ///< two bodies that form one surface
   std::vector<InsideResult> inside;
   LoopResult loop;
   std::vector<ScanResult> scans;
