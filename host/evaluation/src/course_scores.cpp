@@ -247,7 +247,7 @@ std::vector<CreaseResult> measure(const std::vector<Course>& courses, bool quick
       for (const Shape& shape : shapes) {
         around.bodies.push_back(shape.view());
       }
-      for (const Pace& pace : kPaces) {
+      for (const Pace& pace : paces(quick)) {
         follow(course.path(pace), around, row);
       }
     }

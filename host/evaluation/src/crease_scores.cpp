@@ -62,7 +62,7 @@ std::vector<CreaseResult> measure_creases(bool quick, std::uint32_t seed) {
                                 prism.turn,
                                 [&](const Vector3d& p) { return prism.distance(prism.turn * p); },
                                 off_line};
-      for (const Pace& pace : kPaces) {
+      for (const Pace& pace : paces(quick)) {
         follow(concave ? into(pace) : over(pace), around, row);
       }
     }
