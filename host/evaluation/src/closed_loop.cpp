@@ -9,6 +9,7 @@
 #include "tactree/plant/plant.hpp"
 #include "tactree/simulation/simulation.hpp"
 #include "tactree/simulation/stability.hpp"
+#include "touch.hpp"
 
 namespace tactree::evaluation {
 namespace {
@@ -118,10 +119,7 @@ bool is_stable(const Shape& wall, Mode mode, double rate_hz, double stiffness) {
   configuration.contact.stiffness_N_m = static_cast<float>(stiffness);
   configuration.contact.damping_Ns_m = 0.0F;
   core::Scene scene;
-  std::uint32_t number = 0;
-  if (scene.add(wall.view(), {}, number) != core::ModelStatus::kOk) {
-    return false;
-  }
+  add_at_rest(scene, wall.view());
   const double depth = kPush / stiffness;
   const Vector3d begin(kGrid, kGrid, -1.1 * depth);
   for (const double z : {5e-4, 1e-6, begin.z()}) {

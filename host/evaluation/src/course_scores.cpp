@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "hand_path.hpp"
+#include "edge_path.hpp"
 #include "measurements.hpp"
 #include "tactree/evaluation/creases.hpp"
 
@@ -33,7 +33,7 @@ struct Course {
   std::function<std::vector<Shape>(const Eigen::Matrix3d& turn, unsigned seed)> bodies;
   std::function<double(const Vector3d&)> distance;  // in the frame of the path
   std::function<double(const Vector3d&)> off;
-  std::function<HandPath(const Pace&)> path;
+  std::function<EdgePath(const Pace&)> path;
 };
 
 Profile block(double x_min, double x_max, double z_min, double z_max) {
@@ -84,9 +84,9 @@ Profile stairs(double rise) {
 
 /// Slides on the upper stair and off its edge, presses into the foot of the riser, rests, slides
 /// along the foot, up the riser, and away.
-HandPath down_stairs(double rise, const Pace& pace) {
+EdgePath down_stairs(double rise, const Pace& pace) {
   const double deep = std::min(2e-3, 0.7 * rise);
-  HandPath hand({0.5 * kRun, -kAlong, rise + kAbove}, pace);
+  EdgePath hand({0.5 * kRun, -kAlong, rise + kAbove}, pace);
   hand.move_to({0.5 * kRun, -kAlong, rise - 0.5e-3});
   hand.move_to({-0.5 * kRun, -0.5 * kAlong, rise - 0.5e-3});
   hand.move_to({-0.5 * kRun, -0.5 * kAlong, -deep});
@@ -99,8 +99,8 @@ HandPath down_stairs(double rise, const Pace& pace) {
 }
 
 /// Presses into the crease at the origin, which opens upwards, rests, slides along it and leaves.
-HandPath into_crease(const Pace& pace) {
-  HandPath hand({0.3e-3, -kAlong, kAbove}, pace);
+EdgePath into_crease(const Pace& pace) {
+  EdgePath hand({0.3e-3, -kAlong, kAbove}, pace);
   hand.move_to({0.3e-3, -kAlong, -3e-3});
   hand.stay();
   hand.move_to({0.3e-3, kAlong, -3e-3});
@@ -110,8 +110,8 @@ HandPath into_crease(const Pace& pace) {
 }
 
 /// Slides across a seam, rests on it, and slides along it.
-HandPath over_seam(const Pace& pace) {
-  HandPath hand({-8e-3, -kAlong, kAbove}, pace);
+EdgePath over_seam(const Pace& pace) {
+  EdgePath hand({-8e-3, -kAlong, kAbove}, pace);
   hand.move_to({-8e-3, -kAlong, -2e-3});
   hand.move_to({8e-3, 0.0, -2e-3});
   hand.move_to({0.1e-3, kAlong, -2e-3});
@@ -122,9 +122,9 @@ HandPath over_seam(const Pace& pace) {
 }
 
 /// Presses against a wall, along it into an edge, along that into a corner, rests, and returns.
-HandPath into_corner(const Pace& pace) {
+EdgePath into_corner(const Pace& pace) {
   const double beyond = kRoom + 2e-3;
-  HandPath hand({0.0, 0.2e-3, -0.3e-3}, pace);
+  EdgePath hand({0.0, 0.2e-3, -0.3e-3}, pace);
   hand.move_to({beyond, 0.4e-3, 0.2e-3});
   hand.move_to({beyond, kRoom + 1.5e-3, 0.2e-3});
   hand.move_to({beyond, kRoom + 1.5e-3, kRoom + 1e-3});
@@ -136,9 +136,9 @@ HandPath into_corner(const Pace& pace) {
 }
 
 /// Slides over the top of a cube and across one of its corners, 0.5 mm deep.
-HandPath over_corner(const Pace& pace) {
+EdgePath over_corner(const Pace& pace) {
   const double top = kRoom - 0.5e-3;
-  HandPath hand({0.0, 0.1e-3, kRoom + kAbove}, pace);
+  EdgePath hand({0.0, 0.1e-3, kRoom + kAbove}, pace);
   hand.move_to({0.0, 0.1e-3, top});
   hand.move_to({kRoom - 0.5e-3, kRoom - 0.5e-3, top});
   hand.move_to({kRoom - 0.5e-3, 0.0, top});
@@ -179,7 +179,7 @@ std::vector<Course> corner_courses() {
   course.rests = false;
   course.bodies = [](const Eigen::Matrix3d& turn, unsigned seed) {
     std::vector<Shape> shapes;
-    shapes.push_back(cube(kRoom, kFine, 0.3, seed, turn));
+    shapes.push_back(box(kRoom, 0.3, seed, kFine, turn));
     return shapes;
   };
   course.distance = [](const Vector3d& p) { return p.cwiseAbs().maxCoeff() - kRoom; };
@@ -237,9 +237,9 @@ std::vector<CreaseResult> measure(const std::vector<Course>& courses, bool quick
   for (const Course& course : courses) {
     CreaseResult row;
     row.name = course.name;
-    row.concave = course.rests;
+    row.rests = course.rests;
     for (unsigned turns = 0; turns < (quick ? 2U : 4U); ++turns) {
-      Surroundings around{{}, Eigen::Matrix3d::Identity(), course.distance, course.off};
+      EdgeScene around{{}, Eigen::Matrix3d::Identity(), course.distance, course.off};
       if (turns != 0) {
         around.turn = any_turn(random);
       }

@@ -4,7 +4,7 @@
 #include <random>
 #include <utility>
 
-#include "hand_path.hpp"
+#include "edge_path.hpp"
 #include "measurements.hpp"
 #include "tactree/evaluation/creases.hpp"
 
@@ -19,8 +19,8 @@ constexpr double kStart = 6e-3;    // m, height above the crease at which the ha
 constexpr double kAlong = 10e-3;   // m, slide along the crease to both sides of the centre
 
 /// Presses into a concave crease, rests, slides along the crease, to the side and back, and leaves.
-HandPath into(const Pace& pace) {
-  HandPath hand({0.3e-3, -kAlong, kStart}, pace);
+EdgePath into(const Pace& pace) {
+  EdgePath hand({0.3e-3, -kAlong, kStart}, pace);
   hand.move_to({0.3e-3, -kAlong, -kBeyond});
   hand.stay();
   hand.move_to({0.3e-3, kAlong, -kBeyond});
@@ -31,8 +31,8 @@ HandPath into(const Pace& pace) {
 }
 
 /// Slides along a ridge, then across it.
-HandPath over(const Pace& pace) {
-  HandPath hand({-0.1e-3, -kAlong, kStart}, pace);
+EdgePath over(const Pace& pace) {
+  EdgePath hand({-0.1e-3, -kAlong, kStart}, pace);
   hand.move_to({-0.1e-3, -kAlong, -kBelow});
   hand.move_to({-0.1e-3, kAlong, -kBelow});
   hand.move_to({6e-3, kAlong, -kBelow});
@@ -50,7 +50,7 @@ std::vector<CreaseResult> measure_creases(bool quick, std::uint32_t seed) {
                            double spacing, double noise) {
     CreaseResult row;
     row.name = name;
-    row.concave = concave;
+    row.rests = concave;
     row.noisy = noise > 0.0;
     for (int turns = 0; turns < (quick ? 2 : 4); ++turns) {
       Prism prism = upright;
@@ -58,10 +58,10 @@ std::vector<CreaseResult> measure_creases(bool quick, std::uint32_t seed) {
         prism.turn = any_turn(random);
       }
       const Shape shape = sampled(prism, spacing, 0.3, noise, seed + static_cast<unsigned>(turns));
-      const Surroundings around{{shape.view()},
-                                prism.turn,
-                                [&](const Vector3d& p) { return prism.distance(prism.turn * p); },
-                                off_line};
+      const EdgeScene around{{shape.view()},
+                             prism.turn,
+                             [&](const Vector3d& p) { return prism.distance(prism.turn * p); },
+                             off_line};
       for (const Pace& pace : paces(quick)) {
         follow(concave ? into(pace) : over(pace), around, row);
       }

@@ -55,23 +55,6 @@ class Sampler {
   std::normal_distribution<double> error_;
 };
 
-/// The faces of a cube; `out` is 1 if they face away from its centre, -1 if they face it.
-Shape cube_faces(double half_m, double spacing_m, double shift, unsigned seed, const Matrix3d& turn,
-                 double out) {
-  Sampler sampler(spacing_m, shift, 0.0, seed);
-  for (int axis = 0; axis < 3; ++axis) {
-    for (const double side : {-1.0, 1.0}) {
-      Face face;
-      face.u = 2.0 * half_m * Vector3d::Unit((axis + 1) % 3);
-      face.v = 2.0 * half_m * Vector3d::Unit((axis + 2) % 3);
-      face.corner = side * half_m * Vector3d::Unit(axis) - 0.5 * (face.u + face.v);
-      face.normal = out * side * Vector3d::Unit(axis);
-      sampler.add(face, turn);
-    }
-  }
-  return sampler.take();
-}
-
 double cross2(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 }  // namespace
@@ -144,11 +127,18 @@ Shape sampled(const Prism& prism, double spacing_m, double shift, double noise, 
 }
 
 Shape room(double half_m, double spacing_m, double shift, unsigned seed, const Matrix3d& turn) {
-  return cube_faces(half_m, spacing_m, shift, seed, turn, -1.0);
-}
-
-Shape cube(double half_m, double spacing_m, double shift, unsigned seed, const Matrix3d& turn) {
-  return cube_faces(half_m, spacing_m, shift, seed, turn, 1.0);
+  Sampler sampler(spacing_m, shift, 0.0, seed);
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double side : {-1.0, 1.0}) {
+      Face face;
+      face.u = 2.0 * half_m * Vector3d::Unit((axis + 1) % 3);
+      face.v = 2.0 * half_m * Vector3d::Unit((axis + 2) % 3);
+      face.corner = side * half_m * Vector3d::Unit(axis) - 0.5 * (face.u + face.v);
+      face.normal = -side * Vector3d::Unit(axis);
+      sampler.add(face, turn);
+    }
+  }
+  return sampler.take();
 }
 
 Matrix3d any_turn(std::mt19937_64& random) {

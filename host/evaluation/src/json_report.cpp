@@ -96,7 +96,7 @@ Json creases(const std::vector<CreaseResult>& rows) {
                       {"lost", row.lost},
                       {"late_m", row.late_m},
                       {"fast_late_m", row.fast_late_m},
-                      {"off_m", row.concave ? number(row.off_m) : nullptr},
+                      {"off_m", row.rests ? number(row.off_m) : nullptr},
                       {"step_N", row.step_N}};
   }
   return json;

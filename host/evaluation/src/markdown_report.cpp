@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <initializer_list>
 #include <iterator>
 
 #include "tactree/evaluation/evaluation.hpp"
@@ -162,19 +163,20 @@ void add_forces(Page& page, const Result& result, const std::string& pictures) {
   add_picture(page, pictures, "force_error.svg", "Error of the force");
 }
 
-void begin_creases(Page& page, const char* name) {
+void add_crease_table(Page& page, const char* name,
+                      std::initializer_list<const std::vector<CreaseResult>*> results) {
   page.add(
       "| {} | lost, of ticks | noticed at, mm | at 0.5 m/s | off, um | step, N |\n"
       "|---|---|---|---|---|---|\n",
       name);
-}
-
-void add_crease_rows(Page& page, const std::vector<CreaseResult>& rows) {
-  for (const CreaseResult& row : rows) {
-    page.add("| {} | {} of {} | {} | {} | {} | {} |\n", row.name, row.lost, row.ticks,
-             figure(row.late_m, 1e3), figure(row.fast_late_m, 1e3),
-             row.concave ? figure(row.off_m, 1e6) : "-", figure(row.step_N));
+  for (const std::vector<CreaseResult>* rows : results) {
+    for (const CreaseResult& row : *rows) {
+      page.add("| {} | {} of {} | {} | {} | {} | {} |\n", row.name, row.lost, row.ticks,
+               figure(row.late_m, 1e3), figure(row.fast_late_m, 1e3),
+               row.rests ? figure(row.off_m, 1e6) : "-", figure(row.step_N));
+    }
   }
+  page.add("\n");
 }
 
 void add_creases(Page& page, const Result& result) {
@@ -190,29 +192,21 @@ void add_creases(Page& page, const Result& result) {
       "from the bottom line.\n"
       "*Step*: of the force between two ticks in contact, beyond the hand's own movement, "
       "excluding the runs at 0.5 m/s.\n"
-      "\n"
       "\n");
-  begin_creases(page, "crease");
-  add_crease_rows(page, result.creases);
-  page.add("\n");
+  add_crease_table(page, "crease", {&result.creases});
 }
 
 void add_courses(Page& page, const Result& result) {
   page.add(
       "## Stairs, rooms and bodies together\n"
       "Likewise, with stairs (pressed into the foot of a riser, along it, over the edge), the "
-      "inside "
-      "of a cube of 20 mm (into an\n"
-      "edge and a corner, 2 mm beyond the walls), the outside of a cube (over its edges and a "
-      "corner), and two bodies whose\n"
-      "union is the surface. *Off*: distance of the proxy from the foot, the corner or the surface "
-      "of the union.\n"
+      "inside of a cube of 20 mm\n"
+      "(into an edge and a corner, 2 mm beyond the walls), the outside of a cube (over its edges "
+      "and a corner), and two\n"
+      "bodies whose union is the surface. *Off*: distance of the proxy from the foot, the corner "
+      "or the surface of the union.\n"
       "\n");
-  begin_creases(page, "surface");
-  add_crease_rows(page, result.stairs);
-  add_crease_rows(page, result.corners);
-  add_crease_rows(page, result.unions);
-  page.add("\n");
+  add_crease_table(page, "surface", {&result.stairs, &result.corners, &result.unions});
 }
 
 void add_inside(Page& page, const Result& result) {

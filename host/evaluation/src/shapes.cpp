@@ -98,8 +98,9 @@ Shape cos_sheet(const CosSheet& sheet, double half_m, double spacing_m) {
   return shape;
 }
 
-Shape box(double half_m, double shift, unsigned seed) {
-  Shape shape;
+Shape box(double half_m, double shift, unsigned seed, double spacing_m,
+          const Eigen::Matrix3d& turn) {
+  Shape shape(spacing_m);
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
   const auto place = [&](int i, double h) { return (i + 0.5 + shift * unit(random)) * h - half_m; };
@@ -115,7 +116,7 @@ Shape box(double half_m, double shift, unsigned seed) {
           p[(axis + 2) % 3] = place(j, h);
           Eigen::Vector3d normal = Eigen::Vector3d::Zero();
           normal[axis] = side;
-          shape.add(p, normal);
+          shape.add(turn * p, turn * normal);
         }
       }
     }

@@ -62,7 +62,7 @@ void add_creases(const std::string& name, const std::vector<CreaseResult>& creas
   for (const CreaseResult& row : creases) {
     lost += row.lost;
     late = std::max({late, row.late_m, row.fast_late_m});
-    if (row.concave && !row.noisy) {
+    if (row.rests && !row.noisy) {
       off = std::max(off, row.off_m);
       step = std::max(step, row.step_N);
     }

@@ -22,6 +22,15 @@ struct Touched {
   Eigen::Vector3d proxy = Eigen::Vector3d::Zero();  // m
 };
 
+/// Throws std::logic_error if the scene refuses the body.
+inline void add_at_rest(core::Scene& scene, const core::BlobView& body) {
+  std::uint32_t number = 0;
+  const core::ModelStatus status = scene.add(body, {}, number);
+  if (status != core::ModelStatus::kOk) {
+    throw std::logic_error(core::describe(status));
+  }
+}
+
 class Touch {
  public:
   /// Starts at `probe`. The blobs must outlive the object.
@@ -34,11 +43,7 @@ class Touch {
     configuration_.contact.static_friction = friction.static_coefficient;
     configuration_.contact.dynamic_friction = friction.dynamic_coefficient;
     for (const core::BlobView& body : bodies) {
-      std::uint32_t number = 0;
-      const core::ModelStatus status = scene_.add(body, {}, number);
-      if (status != core::ModelStatus::kOk) {
-        throw std::logic_error(core::describe(status));
-      }
+      add_at_rest(scene_, body);
     }
     scene_.reset(narrow(probe));
   }

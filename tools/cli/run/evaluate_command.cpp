@@ -131,12 +131,13 @@ void add_evaluate_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<EvaluateOptions>();
   CLI::App* verb = app.add_subcommand(
       "evaluate",
-      "Measures the accuracy of both modes: the paper's Tables 1 and 2, distance, normal and "
+      "Measures the accuracy of both modes: the paper's Tables 1 and 2; distance, normal and "
       "force\n"
-      "on shapes with known geometry, creases, the closed loop, and real scans against a double\n"
-      "precision reference. Deterministic; some minutes, or seconds with --quick. Prints the "
-      "tables and\n"
-      "targets.");
+      "on shapes with known geometry; contact in creases, on stairs, in rooms and on two bodies; "
+      "the\n"
+      "closed loop; and real scans against a double precision reference. Deterministic; some "
+      "minutes,\n"
+      "or seconds with --quick. Prints the tables and targets.");
   verb->add_flag("--quick", options->evaluation.quick, "fewer probes: faster, less precise");
   verb->add_option("--seed", options->evaluation.seed, "seed of the random numbers")
       ->capture_default_str();

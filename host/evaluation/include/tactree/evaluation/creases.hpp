@@ -1,5 +1,5 @@
 #pragma once
-// Bodies with sharp edges (grooves, ridges, slots, rooms, cubes), sampled like exact meshes.
+// Bodies with sharp edges (grooves, ridges, slots, rooms), sampled like exact meshes.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -39,9 +39,6 @@ struct Prism {
 
 /// The inside of a cube of this half width, centred at the origin: its walls face the centre.
 [[nodiscard]] Shape room(double half_m, double spacing_m, double shift, unsigned seed,
-                         const Eigen::Matrix3d& turn = Eigen::Matrix3d::Identity());
-/// A cube of this half width, centred at the origin.
-[[nodiscard]] Shape cube(double half_m, double spacing_m, double shift, unsigned seed,
                          const Eigen::Matrix3d& turn = Eigen::Matrix3d::Identity());
 
 /// A random rotation, uniformly distributed.

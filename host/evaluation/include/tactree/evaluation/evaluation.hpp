@@ -107,18 +107,18 @@ struct ScanResult {
   Scores scores;
 };
 
-/// Contact of a hand at an edge. The hand presses 4 mm deep into concave edges and slides along
-/// them, or it slides along a ridge and across it. Each value is
-/// the worst of several turns of the body, rates and speeds.
+/// Contact of a hand at an edge. The hand presses into a concave edge and slides along it, or it
+/// slides along a ridge and across it. Each value is the worst of several turns of the body, rates
+/// and speeds.
 struct CreaseResult {
   std::string name;
-  bool concave = true;
+  bool rests = true;  ///< in the crease for a while: off_m is measured
   bool noisy = false;
   int ticks = 0;
   int lost = 0;         ///< ticks in which contact was lost deeper than an encoder count (20 um)
   double late_m = 0.0;  ///< maximum depth reached before contact began, except fast_late_m
   double fast_late_m = 0.0;  ///< likewise at 4 kHz and 0.5 m/s
-  double off_m = 0.0;        ///< concave: distance of the proxy from the crease of a resting hand
+  double off_m = 0.0;        ///< distance of the proxy from the crease of a resting hand
   /// Maximum change of the force between two ticks in contact, less the change that is due to the
   /// movement of the hand; not at 0.5 m/s.
   double step_N = 0.0;

@@ -81,6 +81,8 @@ struct CosSheet {
 
 /// Cube with sharp edges, centred at the origin. Its points are on the faces, half a spacing from
 /// the edges, each displaced along its face by up to `shift` spacings at random.
-[[nodiscard]] Shape box(double half_m, double shift = 0.0, unsigned seed = 1);
+[[nodiscard]] Shape box(double half_m, double shift = 0.0, unsigned seed = 1,
+                        double spacing_m = kSpacing,
+                        const Eigen::Matrix3d& turn = Eigen::Matrix3d::Identity());
 
 }  // namespace tactree::evaluation

@@ -22,9 +22,9 @@ inline constexpr Pace kPaces[] = {
 inline std::span<const Pace> paces(bool quick) { return std::span(kPaces).subspan(quick ? 1 : 0); }
 
 /// Positions of a hand, one per tick, m.
-class HandPath {
+class EdgePath {
  public:
-  HandPath(const Eigen::Vector3d& begin, const Pace& pace) : pace_(pace), places_{begin} {}
+  EdgePath(const Eigen::Vector3d& begin, const Pace& pace) : pace_(pace), places_{begin} {}
 
   /// On a straight line.
   void move_to(const Eigen::Vector3d& end);
@@ -40,7 +40,7 @@ class HandPath {
 };
 
 /// Bodies at rest, which form one surface.
-struct Surroundings {
+struct EdgeScene {
   std::vector<core::BlobView> bodies;
   /// From the frame of the path to that of the bodies.
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
@@ -51,6 +51,6 @@ struct Surroundings {
 };
 
 /// Moves a hand along the path, and adds the result to `row`.
-void follow(const HandPath& path, const Surroundings& around, CreaseResult& row);
+void follow(const EdgePath& path, const EdgeScene& around, CreaseResult& row);
 
 }  // namespace tactree::evaluation

@@ -1,4 +1,4 @@
-#include "hand_path.hpp"
+#include "edge_path.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +16,7 @@ constexpr double kFast = 0.2;       // m/s; a hand that is faster has a separate
 
 }  // namespace
 
-void HandPath::move_to(const Vector3d& end) {
+void EdgePath::move_to(const Vector3d& end) {
   const Vector3d begin = places_.back();
   const double step = pace_.speed_m_s / pace_.rate_hz;
   const auto ticks = std::max(1L, std::lround((end - begin).norm() / step));
@@ -25,12 +25,12 @@ void HandPath::move_to(const Vector3d& end) {
   }
 }
 
-void HandPath::stay() {
+void EdgePath::stay() {
   const auto ticks = static_cast<std::size_t>(std::lround(kStayS * pace_.rate_hz));
   places_.insert(places_.end(), ticks, Vector3d(places_.back()));
 }
 
-void follow(const HandPath& path, const Surroundings& around, CreaseResult& row) {
+void follow(const EdgePath& path, const EdgeScene& around, CreaseResult& row) {
   const double rate_hz = path.pace().rate_hz;
   const bool is_fast = path.pace().speed_m_s > kFast;
   Touch touch(around.bodies, core::RenderMode::kSurface, around.turn * path.places().front(), {},
