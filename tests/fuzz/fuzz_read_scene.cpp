@@ -6,7 +6,7 @@
 
 #include "folders.hpp"
 #include "memory_file.hpp"
-#include "run/scene_file.hpp"
+#include "tactree/setup/scene_file.hpp"
 #include "tactree/support/user_error.hpp"
 
 namespace {
@@ -34,7 +34,7 @@ class Folder {
   fs::path path_;
 };
 
-void examine(const cli::SceneFile& scene) {
+void examine(const setup::SceneFile& scene) {
   fuzz::require(!scene.bodies.empty() && scene.bodies.size() <= core::kMaxBodies,
                 "no or too many bodies");
   fuzz::require(
@@ -55,7 +55,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::ofstream(file, std::ios::binary | std::ios::trunc)
       .write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
   try {
-    examine(cli::read_scene(file, {(folder.path() / "a.blob").string()}));
+    examine(setup::read_scene(file, {(folder.path() / "a.blob").string()}));
   } catch (const support::UserError& error) {
     fuzz::require_reason(error.what(), folder.path().string());
   }

@@ -12,11 +12,11 @@
 
 #include "folders.hpp"
 #include "image/firmware_image.hpp"
-#include "run/scene_file.hpp"
 #include "scan/read_points.hpp"
 #include "tactree/builder/read_materials.hpp"
 #include "tactree/builder/read_scan.hpp"
 #include "tactree/core/model/blob.hpp"
+#include "tactree/setup/scene_file.hpp"
 #include "tactree/simulation/injection.hpp"
 #include "tactree/support/device_file.hpp"
 
@@ -76,7 +76,7 @@ TEST(Seeds, ReadsCommandLineFiles) {
   }
   const fs::path scenes = tactree::test::seeds_folder() / "read_scene";
   const std::string blob = tactree::test::seeds_folder() / "open_blob/kOk.surface";
-  EXPECT_EQ(tactree::cli::read_scene(scenes / "moving", {blob}).bodies.size(), 1U);
+  EXPECT_EQ(tactree::setup::read_scene(scenes / "moving", {blob}).bodies.size(), 1U);
   EXPECT_EQ(tactree::cli::read_points(tactree::test::seeds_folder() / "read_rows/points").size(),
             2U);
   EXPECT_GE(seeds_of("read_rows").size(), 2U + tactree::simulation::injection_kinds().size());

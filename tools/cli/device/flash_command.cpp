@@ -7,7 +7,7 @@
 #include "commands.hpp"
 #include "device/board_port.hpp"
 #include "image/model_signature.hpp"
-#include "run/model_size.hpp"
+#include "tactree/setup/model_size.hpp"
 #include "tactree/support/blob_file.hpp"
 #include "tactree/support/output_file.hpp"
 #include "tactree/support/user_error.hpp"
@@ -68,7 +68,7 @@ void show_progress(std::size_t done, std::size_t all) {
 
 void write_model(client::Board& board, const std::string& file) {
   const support::BlobFile blob(file);
-  if (const auto warning = size_warning(file, blob.view().header())) {
+  if (const auto warning = setup::size_warning(file, blob.view().header())) {
     fmt::print(stderr, "tactree: warning: {}\n", *warning);
   }
   client::ModelFile model;

@@ -7,11 +7,11 @@
 
 #include "commands.hpp"
 #include "exit_codes.hpp"
-#include "run/model_size.hpp"
-#include "run/scene_file.hpp"
 #include "run/simulate_options.hpp"
 #include "run/simulate_run.hpp"
 #include "run/simulate_setup.hpp"
+#include "tactree/setup/model_size.hpp"
+#include "tactree/setup/scene_file.hpp"
 #include "tactree/support/device_file.hpp"
 #include "tactree/support/output_file.hpp"
 
@@ -20,12 +20,13 @@ namespace {
 
 /// No warning for a model that --origin or a scene has placed: the user may want the device to
 /// reach only a part of it.
-std::optional<std::string> reach_warning(const SimulateOptions& options, const SceneFile& scene) {
+std::optional<std::string> reach_warning(const SimulateOptions& options,
+                                         const setup::SceneFile& scene) {
   if (is_scene(options) || !options.origin_m.empty()) {
     return std::nullopt;
   }
-  return oversize_warning(options.blob, scene.files[0]->view().header(), options.device,
-                          support::load_device(options.device).preset.model);
+  return setup::oversize_warning(options.blob, scene.files[0]->view().header(), options.device,
+                                 support::load_device(options.device).preset.model);
 }
 
 void simulate(SimulateOptions& options, int& exit_code) {
@@ -48,7 +49,7 @@ void simulate(SimulateOptions& options, int& exit_code) {
                        options.board),
            "omit --board; the ticks on the host are bit-identical");
   }
-  const SceneFile scene = read_scene(options.scene, options.blobs);
+  const setup::SceneFile scene = setup::read_scene(options.scene, options.blobs);
   options.blob = scene.names[0];
   if (options.serve) {
     serve(options, scene);

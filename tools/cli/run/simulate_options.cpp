@@ -40,9 +40,8 @@ void add_controller_options(CLI::App& verb, SimulateOptions& options) {
       ->capture_default_str();
   verb.add_flag("!--no-materials", c.use_materials,
                 "ignore the materials of the blob: use the options above everywhere");
-  options.force_max = verb.add_option("--force-max", c.limits.force_max_N,
-                                      "maximum force, N (default: the device's)")
-                          ->check(CLI::Range(0.01, 1000.0));
+  verb.add_option("--force-max", options.force_max_N, "maximum force, N (default: the device's)")
+      ->check(CLI::Range(0.01, 1000.0));
 }
 
 std::string injection_help() {

@@ -7,22 +7,17 @@
 #include <string>
 #include <vector>
 
-#include "tactree/simulation/simulation.hpp"
+#include "tactree/setup/session.hpp"
 
 namespace tactree::cli {
 
-struct SimulateOptions {
+struct SimulateOptions : setup::SessionOptions {
   std::vector<std::string> blobs;
   std::string scene;
   std::string blob;  // of the first body
   std::string board = "host";
   std::string firmware;
-  std::string device = "premium";
   bool dump_device = false;
-  std::vector<double> origin_m;  // of the model, device frame; empty: its centre at the origin
-  std::string script = "rub";
-  std::string path;
-  std::string mode = "surface";
   std::string record;
   std::string replay;
   std::string trace;
@@ -38,12 +33,7 @@ struct SimulateOptions {
   CLI::Option* seconds_given = nullptr;
   std::vector<std::string> injections;
   bool allow_no_contact = false;
-  double seconds = 10.0;
-  double latency_ticks = 0.0;
-  double encoder_step_m = 30e-6;
   std::vector<CLI::Option*> cartesian_only;
-  CLI::Option* force_max = nullptr;
-  simulation::Setup setup;
 };
 
 /// True for several bodies, or one placed by a scene file.

@@ -8,9 +8,9 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "run/scene_file.hpp"
 #include "run/simulate_run.hpp"
 #include "run/simulate_setup.hpp"
+#include "tactree/setup/scene_file.hpp"
 #include "tactree/simulation/recording.hpp"
 #include "tactree/simulation/replay.hpp"
 #include "tactree/support/blob_file.hpp"
@@ -51,7 +51,7 @@ std::vector<std::byte> read_recording(const std::string& file) {
 /// The blobs of the command line, in the order of the recording's models.
 std::vector<core::BlobView> find_models(const SimulateOptions& options,
                                         const simulation::Recording& recording,
-                                        const SceneFile& scene) {
+                                        const setup::SceneFile& scene) {
   std::vector<core::BlobView> models;
   for (const simulation::ModelDigest& wanted : recording.models()) {
     const support::BlobFile* found = nullptr;
@@ -96,7 +96,7 @@ void print_result(const simulation::ReplayResult& result) {
 }  // namespace
 
 bool replay_session(const SimulateOptions& options) {
-  const SceneFile scene = read_scene(options.scene, options.blobs);
+  const setup::SceneFile scene = setup::read_scene(options.scene, options.blobs);
   try {
     const std::vector<std::byte> bytes = read_recording(options.replay);
     simulation::Recording recording(bytes);

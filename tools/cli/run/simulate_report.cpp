@@ -46,7 +46,7 @@ nlohmann::json to_json(const std::vector<std::string>& injections, const Harm& h
           {"moved_m", harm.moved_m}};
 }
 
-nlohmann::json to_json(const SceneFile& scene, const simulation::Summary& s) {
+nlohmann::json to_json(const setup::SceneFile& scene, const simulation::Summary& s) {
   nlohmann::json bodies = nlohmann::json::array();
   for (std::size_t i = 0; i < scene.names.size(); ++i) {
     bodies.push_back({{"blob", scene.names[i]},
@@ -57,32 +57,19 @@ nlohmann::json to_json(const SceneFile& scene, const simulation::Summary& s) {
   return bodies;
 }
 
-nlohmann::json to_json(const SimulateOptions& options, const SceneFile& scene,
+nlohmann::json to_json(const SimulateOptions& options, const setup::SceneFile& scene,
                        const Outcome& outcome) {
   const simulation::Summary& s = outcome.summary;
-  nlohmann::json faults = nlohmann::json::array();
-  for (const simulation::FaultEvent& event : s.faults) {
-    faults.push_back({{"code", static_cast<int>(event.fault)},
-                      {"name", core::name_of(event.fault)},
-                      {"tick", event.tick}});
-  }
-  return {
-      {"board", options.board},
-      {"device", options.device},
-      {"mode", options.mode},
-      {"rate_hz", options.setup.controller.rate_hz},
-      {"ticks", s.ticks},
-      {"contact_ticks", s.contact_ticks},
-      {"overruns", s.overruns},
-      {"force_max_N", s.force_max_N},
-      {"force_step_max_N", s.force_step_max_N},
-      {"penetration_max_m", s.penetration_max_m},
-      {"trace_crc32", s.trace_crc32},
-      {"faults", faults},
-      {"bodies", to_json(scene, s)},
-      {"crowded_ticks", s.crowded_ticks},
-      {"injected", outcome.harm ? to_json(options.injections, *outcome.harm) : nlohmann::json()},
-      {"instructions", instructions_json(outcome)}};
+  nlohmann::json json = setup::summary_json(s);
+  json.update(
+      {{"board", options.board},
+       {"device", options.device},
+       {"mode", options.mode},
+       {"rate_hz", options.setup.controller.rate_hz},
+       {"bodies", to_json(scene, s)},
+       {"injected", outcome.harm ? to_json(options.injections, *outcome.harm) : nlohmann::json()},
+       {"instructions", instructions_json(outcome)}});
+  return json;
 }
 
 void print_instructions(const emulation::InstructionCounts& counts,
@@ -102,7 +89,7 @@ void print_instructions(const emulation::InstructionCounts& counts,
   }
 }
 
-void print_bodies(const SceneFile& scene, const simulation::Summary& s) {
+void print_bodies(const setup::SceneFile& scene, const simulation::Summary& s) {
   for (std::size_t i = 0; i < scene.names.size(); ++i) {
     const simulation::BodySummary& body = s.bodies[i];
     fmt::print("body {:<14}{}: in contact {}, largest force {:.4f} N, torque {:.4g} Nm\n", i,
@@ -139,7 +126,8 @@ simulation::Histogram histogram(const Outcome& outcome) {
   return h;
 }
 
-void write_plot(const SimulateOptions& options, const SceneFile& scene, const Outcome& outcome) {
+void write_plot(const SimulateOptions& options, const setup::SceneFile& scene,
+                const Outcome& outcome) {
   const double rate_hz = static_cast<double>(options.setup.controller.rate_hz);
   if (!options.compare) {
     const std::string title = fmt::format("{}: {}, {} mode, {:.6g} Hz", options.blob,
@@ -162,7 +150,8 @@ void write_plot(const SimulateOptions& options, const SceneFile& scene, const Ou
 
 }  // namespace
 
-void write_results(const SimulateOptions& options, const SceneFile& scene, const Outcome& outcome) {
+void write_results(const SimulateOptions& options, const setup::SceneFile& scene,
+                   const Outcome& outcome) {
   if (!options.trace.empty()) {
     write_trace(options.trace, outcome.samples);
   }
@@ -174,7 +163,8 @@ void write_results(const SimulateOptions& options, const SceneFile& scene, const
   }
 }
 
-void print_summary(const SimulateOptions& options, const SceneFile& scene, const Outcome& outcome) {
+void print_summary(const SimulateOptions& options, const setup::SceneFile& scene,
+                   const Outcome& outcome) {
   const simulation::Summary& s = outcome.summary;
   fmt::print("board {}, device {}, mode {}, {:.6g} Hz\n", options.board, options.device,
              options.mode, options.setup.controller.rate_hz);

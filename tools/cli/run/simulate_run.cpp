@@ -10,9 +10,8 @@
 #include "image/board_costs.hpp"
 #include "run/simulate_setup.hpp"
 #include "tactree/emulation/emulated_target.hpp"
-#include "tactree/plant/vectors.hpp"
+#include "tactree/setup/session.hpp"
 #include "tactree/simulation/recording.hpp"
-#include "tactree/simulation/workspace.hpp"
 #include "tactree/support/output_file.hpp"
 #include "tactree/wcet/bound.hpp"
 #include "tactree/wcet/bound_error.hpp"
@@ -42,7 +41,7 @@ struct ChosenTarget {
 };
 
 ChosenTarget host_target(const SimulateOptions& options, const simulation::Setup& setup,
-                         const SceneFile& scene) {
+                         const setup::SceneFile& scene) {
   if (!is_scene(options)) {
     return {std::make_unique<simulation::HostTarget>()};
   }
@@ -53,7 +52,7 @@ ChosenTarget host_target(const SimulateOptions& options, const simulation::Setup
 }
 
 ChosenTarget board_target(const emulation::BoardDescription& board, const SimulateOptions& options,
-                          const simulation::Setup& setup, const SceneFile& scene) {
+                          const simulation::Setup& setup, const setup::SceneFile& scene) {
   if (scene.bodies.size() > 1) {
     refuse(fmt::format("--board {}: a board has one blob in its flash, the scene has {} bodies",
                        board.name, scene.bodies.size()),
@@ -70,7 +69,7 @@ ChosenTarget board_target(const emulation::BoardDescription& board, const Simula
 }
 
 ChosenTarget choose_target(const SimulateOptions& options, const simulation::Setup& setup,
-                           const SceneFile& scene) {
+                           const setup::SceneFile& scene) {
   const emulation::BoardDescription* board = emulation::find_board(options.board);
   return board == nullptr ? host_target(options, setup, scene)
                           : board_target(*board, options, setup, scene);
@@ -79,8 +78,8 @@ ChosenTarget choose_target(const SimulateOptions& options, const simulation::Set
 /// Runs the same session without faults in lockstep and measures the differences.
 class Comparison {
  public:
-  Comparison(const SimulateOptions& options, const SceneFile& scene, const simulation::Setup& setup,
-             const std::vector<simulation::InjectedFault>& faults)
+  Comparison(const SimulateOptions& options, const setup::SceneFile& scene,
+             const simulation::Setup& setup, const std::vector<simulation::InjectedFault>& faults)
       : sound_(scene.files[0]->bytes(), setup, hand_path(options, scene),
                std::make_unique<simulation::SceneTarget>(
                    scene.bodies, simulation::Simulation::arming_ticks(setup))) {
@@ -114,7 +113,7 @@ class Comparison {
 /// Work tier of the controller in the image, which is later than that of the rate if its costs
 /// require it.
 std::uint32_t tier_of_board(const SimulateOptions& options, const wcet::BoundOptions& analysis,
-                            const SceneFile& scene, const core::Configuration& controller) {
+                            const setup::SceneFile& scene, const core::Configuration& controller) {
   const bool has_costs = wcet::embedded(analysis.image).known == core::kTickCostsKnown;
   return has_costs ? costs_of_board(options.board, options.firmware)
                          .work_tier(scene.files[0]->view().header(), controller)
@@ -122,7 +121,8 @@ std::uint32_t tier_of_board(const SimulateOptions& options, const wcet::BoundOpt
 }
 
 /// Empty for a board whose code cannot be analysed.
-std::optional<TickBound> bound_of_tick(const SimulateOptions& options, const SceneFile& scene,
+std::optional<TickBound> bound_of_tick(const SimulateOptions& options,
+                                       const setup::SceneFile& scene,
                                        const core::Configuration& controller) {
   wcet::BoundOptions analysis =
       analysis_of(*emulation::find_board(options.board), options.firmware);
@@ -154,7 +154,7 @@ std::uint64_t ticks_of(const SimulateOptions& options, const simulation::Setup& 
 
 /// Runs the ticks after arming, and those of a fault-free session if faults are injected.
 Outcome run_ticks(simulation::Simulation& sim, std::uint64_t ticks, const SimulateOptions& options,
-                  const SceneFile& scene) {
+                  const setup::SceneFile& scene) {
   const std::vector<simulation::InjectedFault> faults = injections(options);
   sim.inject(simulation::Injector(faults));
   std::optional<Comparison> comparison;
@@ -180,26 +180,9 @@ Outcome run_ticks(simulation::Simulation& sim, std::uint64_t ticks, const Simula
   return outcome;
 }
 
-/// The controller does not become active, most often because the hand begins in the object.
-[[noreturn]] void refuse_start(const SimulateOptions& options, const simulation::Setup& setup,
-                               const simulation::Simulation& sim) {
-  const core::DeviceModel& device = setup.controller.device;
-  const Eigen::Vector3d start =
-      sim.path().at(0.0).position_m + plant::widen(setup.controller.model_origin_m);
-  if (core::axes_of(device.kind) == core::kAxes && !simulation::reaches(device, start)) {
-    refuse(fmt::format("{} does not reach the start of the hand, and the probe is in the object",
-                       options.device),
-           "scale the model with build --fit device:" + options.device +
-               ", or begin the path within the workspace");
-  }
-  refuse(fmt::format("the controller did not become active; its state is {}",
-                     core::name_of(sim.state())),
-         "begin the path outside the object");
-}
-
 }  // namespace
 
-Outcome run(const SimulateOptions& options, const SceneFile& scene) {
+Outcome run(const SimulateOptions& options, const setup::SceneFile& scene) {
   simulation::Setup setup = make_setup(options, scene);
   const std::uint64_t ticks = ticks_of(options, setup);
   simulation::SessionWriter writer;
@@ -211,7 +194,7 @@ Outcome run(const SimulateOptions& options, const SceneFile& scene) {
   check_start(scene.names[refused], scene.files[refused]->view(), setup, sim.start_result(),
               options);
   if (!sim.arm()) {
-    refuse_start(options, setup, sim);
+    setup::refuse_inactive(options.device, setup, sim);
   }
   writer.begin_trace();
   Outcome outcome = run_ticks(sim, ticks, options, scene);

@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include "run/scene_file.hpp"
 #include "run/simulate_options.hpp"
 #include "tactree/emulation/instruction_counts.hpp"
+#include "tactree/setup/scene_file.hpp"
 #include "tactree/simulation/simulation.hpp"
 
 namespace tactree::cli {
@@ -35,16 +35,18 @@ struct Outcome {
 
 /// Runs a session without user input at the full speed of the computer, and records it for
 /// --record. Throws UserError.
-[[nodiscard]] Outcome run(const SimulateOptions& options, const SceneFile& scene);
+[[nodiscard]] Outcome run(const SimulateOptions& options, const setup::SceneFile& scene);
 
 /// Writes the files of --trace, --plot and --json. Throws UserError.
-void write_results(const SimulateOptions& options, const SceneFile& scene, const Outcome& outcome);
+void write_results(const SimulateOptions& options, const setup::SceneFile& scene,
+                   const Outcome& outcome);
 
-void print_summary(const SimulateOptions& options, const SceneFile& scene, const Outcome& outcome);
+void print_summary(const SimulateOptions& options, const setup::SceneFile& scene,
+                   const Outcome& outcome);
 
 /// --serve: a simulated board in real time, at a pseudo terminal or as a USB device. Returns when
 /// the time is up or on a signal. Throws UserError.
-void serve(const SimulateOptions& options, const SceneFile& scene);
+void serve(const SimulateOptions& options, const setup::SceneFile& scene);
 
 /// --replay: replays a recorded session on a new controller and prints the result. Returns true if
 /// the outcome of every tick is bit-identical to the recorded outcome. Throws UserError if the

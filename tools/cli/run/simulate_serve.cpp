@@ -35,7 +35,7 @@ serve::ServeOptions serve_options(const SimulateOptions& options) {
 }
 
 std::unique_ptr<simulation::Target> served_target(const SimulateOptions& options,
-                                                  const SceneFile& scene,
+                                                  const setup::SceneFile& scene,
                                                   client::Transport& terminal) {
   const support::BlobFile& blob = *scene.files[0];
   const serve::ServeOptions serving = serve_options(options);
@@ -54,7 +54,7 @@ std::unique_ptr<simulation::Target> served_target(const SimulateOptions& options
   return std::make_unique<emulation::EmulatedTarget>(*board, blob.bytes(), emulation);
 }
 
-void serve_target(const SimulateOptions& options, const SceneFile& scene,
+void serve_target(const SimulateOptions& options, const setup::SceneFile& scene,
                   std::unique_ptr<simulation::Target> target, ServeSchedule schedule) {
   simulation::Setup setup = make_setup(options, scene);
   simulation::SessionWriter writer;
@@ -72,7 +72,7 @@ void serve_target(const SimulateOptions& options, const SceneFile& scene,
   }
 }
 
-void serve_on_usb(const SimulateOptions& options, const SceneFile& scene,
+void serve_on_usb(const SimulateOptions& options, const setup::SceneFile& scene,
                   const core::usb::Identity& identity, UsbPort& port) {
   auto target = std::make_unique<serve::UsbTarget<UsbPort>>(port, identity, scene.files[0]->bytes(),
                                                             serve_options(options));
@@ -86,8 +86,8 @@ void serve_on_usb(const SimulateOptions& options, const SceneFile& scene,
   port.unplug();
 }
 
-void serve_at(const SimulateOptions& options, const SceneFile& scene, client::Transport& port,
-              const ServeSchedule& schedule) {
+void serve_at(const SimulateOptions& options, const setup::SceneFile& scene,
+              client::Transport& port, const ServeSchedule& schedule) {
   auto target = served_target(options, scene, port);
   fmt::print("serving at {}\n", port.name());
   std::fflush(stdout);
@@ -96,7 +96,7 @@ void serve_at(const SimulateOptions& options, const SceneFile& scene, client::Tr
 
 }  // namespace
 
-void serve(const SimulateOptions& options, const SceneFile& scene) {
+void serve(const SimulateOptions& options, const setup::SceneFile& scene) {
   if ((options.on_usb || options.usb_port) && options.board != "host") {
     refuse(fmt::format("--board {}: an emulated board has no USB port", options.board),
            "use --board host, or omit --usb");

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "run/scene_file.hpp"
 #include "run/simulate_options.hpp"
+#include "tactree/setup/scene_file.hpp"
 #include "tactree/simulation/injection.hpp"
 
 namespace tactree::cli {
@@ -14,11 +14,12 @@ namespace tactree::cli {
 [[noreturn]] void refuse(const std::string& what, const std::string& remedy);
 
 /// Device, controller and mechanics. Throws UserError.
-[[nodiscard]] simulation::Setup make_setup(const SimulateOptions& options, const SceneFile& scene);
+[[nodiscard]] simulation::Setup make_setup(const SimulateOptions& options,
+                                           const setup::SceneFile& scene);
 
 /// Path of the hand. A script touches the first body at its first pose. Throws UserError.
 [[nodiscard]] simulation::HandPath hand_path(const SimulateOptions& options,
-                                             const SceneFile& scene);
+                                             const setup::SceneFile& scene);
 
 [[nodiscard]] std::vector<simulation::InjectedFault> injections(const SimulateOptions& options);
 

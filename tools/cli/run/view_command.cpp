@@ -13,11 +13,11 @@
 
 #include "commands.hpp"
 #include "device/board_port.hpp"
-#include "run/model_size.hpp"
-#include "run/scene_file.hpp"
 #include "run/wall_options.hpp"
 #include "scan/board_work.hpp"
 #include "tactree/builder/scaled_model.hpp"
+#include "tactree/setup/model_size.hpp"
+#include "tactree/setup/scene_file.hpp"
 #include "tactree/simulation/placement.hpp"
 #include "tactree/support/device_file.hpp"
 #include "tactree/support/user_error.hpp"
@@ -41,7 +41,7 @@ struct ViewOptions {
   viewer::ServerOptions server{.address = "127.0.0.1", .port = 8023};
 };
 
-viewer::Bodies bodies_of(const SceneFile& scene) {
+viewer::Bodies bodies_of(const setup::SceneFile& scene) {
   viewer::Bodies bodies;
   bodies.bodies = scene.bodies;
   for (const support::BlobFile* const file : scene.files) {
@@ -65,7 +65,8 @@ std::vector<viewer::NamedDevice> devices(const std::string& chosen) {
   return list;
 }
 
-std::unique_ptr<viewer::Source> board_source(const ViewOptions& options, const SceneFile& scene) {
+std::unique_ptr<viewer::Source> board_source(const ViewOptions& options,
+                                             const setup::SceneFile& scene) {
   if (scene.files.size() != 1) {
     throw support::UserError("--port: a board has only one model (give one BLOB)");
   }
@@ -82,7 +83,8 @@ std::unique_ptr<viewer::Source> board_source(const ViewOptions& options, const S
   return std::make_unique<viewer::BoardSession>(bodies_of(scene), std::move(settings));
 }
 
-std::unique_ptr<viewer::Source> make_source(const ViewOptions& options, const SceneFile& scene) {
+std::unique_ptr<viewer::Source> make_source(const ViewOptions& options,
+                                            const setup::SceneFile& scene) {
   if (!options.board.port.empty()) {
     return board_source(options, scene);
   }
@@ -93,14 +95,14 @@ std::unique_ptr<viewer::Source> make_source(const ViewOptions& options, const Sc
                                                  bodies_of(scene), device, origin_m);
 }
 
-bool is_single(const ViewOptions& options, const SceneFile& scene) {
+bool is_single(const ViewOptions& options, const setup::SceneFile& scene) {
   return options.scene.empty() && scene.files.size() == 1;
 }
 
 void warn(const std::string& text) { fmt::print(stderr, "tactree: warning: {}\n", text); }
 
-void warn_of_size(const SceneFile& scene) {
-  if (const auto warning = size_warning(scene.names[0], scene.files[0]->view().header())) {
+void warn_of_size(const setup::SceneFile& scene) {
+  if (const auto warning = setup::size_warning(scene.names[0], scene.files[0]->view().header())) {
     warn(*warning);
   }
 }
@@ -108,7 +110,7 @@ void warn_of_size(const SceneFile& scene) {
 /// A simulation, and the scaling of its model on demand of the page.
 class Simulated {
  public:
-  Simulated(const ViewOptions& options, SceneFile& scene)
+  Simulated(const ViewOptions& options, setup::SceneFile& scene)
       : scene_(scene),
         session_(bodies_of(scene), devices(options.settings.device), options.settings,
                  is_single(options, scene) ? fitting() : viewer::Fitting{}) {
@@ -140,7 +142,8 @@ class Simulated {
  private:
   viewer::Fitting fitting() {
     return {[this](const viewer::NamedDevice& device) {
-              return oversize_warning(scene_.names[0], header(), device.name, device.preset.model);
+              return setup::oversize_warning(scene_.names[0], header(), device.name,
+                                             device.preset.model);
             },
             [this](const viewer::NamedDevice& device) {
               using std::chrono_literals::operator""s;
@@ -154,7 +157,8 @@ class Simulated {
   void scale(const viewer::NamedDevice& device) {
     session_.report("The model is being scaled; the page starts again with it.");
     try {
-      const std::optional<double> scale = fitting_scale(device.preset.model, size_of(header()));
+      const std::optional<double> scale =
+          setup::fitting_scale(device.preset.model, setup::size_of(header()));
       if (!scale) {
         throw std::runtime_error("the origin of the device is not inside its workspace");
       }
@@ -168,7 +172,7 @@ class Simulated {
     }
   }
 
-  SceneFile& scene_;
+  setup::SceneFile& scene_;
   viewer::LiveSession session_;
   viewer::Server* server_ = nullptr;
   std::unique_ptr<support::BlobFile> scaled_;
@@ -182,7 +186,7 @@ void announce(const viewer::Server& server) {
 }
 
 /// Serves the simulation. Returns true if it must be served again, with a scaled model.
-bool serve_simulation(ViewOptions& options, SceneFile& scene) {
+bool serve_simulation(ViewOptions& options, setup::SceneFile& scene) {
   Simulated simulated(options, scene);
   const viewer::Site site(bodies_of(scene).views, simulated.session());
   viewer::Server server(options.server, site, simulated.session());
@@ -204,7 +208,7 @@ void view(ViewOptions& options) {
     throw CLI::RequiredError("BLOB");
   }
   options.settings.modes = viewer::modes_of(options.mode);
-  SceneFile scene = read_scene(options.scene, options.blobs);
+  setup::SceneFile scene = setup::read_scene(options.scene, options.blobs);
   if (options.board.port.empty() && options.trace.empty()) {
     while (serve_simulation(options, scene)) {
     }

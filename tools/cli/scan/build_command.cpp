@@ -16,8 +16,9 @@
 #include "scan/fit_option.hpp"
 #include "scan/preview.hpp"
 #include "tactree/builder/build_model.hpp"
+#include "tactree/builder/option_names.hpp"
 #include "tactree/builder/read_materials.hpp"
-#include "tactree/support/json_text.hpp"
+#include "tactree/builder/report_json.hpp"
 #include "tactree/support/output_file.hpp"
 #include "tactree/support/spooled_input.hpp"
 #include "tactree/support/user_error.hpp"
@@ -28,18 +29,6 @@ namespace {
 namespace fs = std::filesystem;
 using builder::BuildOptions;
 
-const std::map<std::string, double> kUnits = {{"m", 1.0},   {"cm", 1e-2},   {"mm", 1e-3},
-                                              {"um", 1e-6}, {"in", 0.0254}, {"ft", 0.3048}};
-const std::map<std::string, builder::UpAxis> kAxes = {
-    {"x", builder::UpAxis::kX}, {"y", builder::UpAxis::kY}, {"z", builder::UpAxis::kZ}};
-const std::map<std::string, builder::OrientationRule> kOrientations = {
-    {"auto", builder::OrientationRule::kAuto},
-    {"outward", builder::OrientationRule::kOutward},
-    {"viewpoint", builder::OrientationRule::kViewpoint},
-    {"up", builder::OrientationRule::kUp},
-    {"given", builder::OrientationRule::kGiven}};
-const std::map<std::string, core::Profile> kProfiles = {{"surface", core::Profile::kSurface},
-                                                        {"paper", core::Profile::kPaper}};
 const std::map<std::string, builder::ProgressStyle> kProgressStyles = {
     {"auto", builder::ProgressStyle::kAuto},
     {"plain", builder::ProgressStyle::kPlain},
@@ -102,12 +91,6 @@ std::uint64_t to_bytes(const std::string& text) {
   return static_cast<std::uint64_t>(bytes);
 }
 
-void require_positive(const std::string& option, const std::optional<double>& value) {
-  if (value && !(*value > 0.0 && std::isfinite(*value))) {
-    misuse(option, "must be positive");
-  }
-}
-
 Eigen::Vector3d to_position(const std::string& option, const std::string& text) {
   Eigen::Vector3d position;
   std::size_t begin = 0;
@@ -130,7 +113,6 @@ void complete(BuildArguments& arguments) {
   if (std::count(arguments.inputs.begin(), arguments.inputs.end(), support::kStandardInput) > 1) {
     misuse("INPUT", "'-' (standard input) can be given only once");
   }
-  require_positive("--scale", build.scale);
   if (!arguments.columns.empty()) {
     try {
       build.columns = builder::parse_columns(arguments.columns);
@@ -141,12 +123,8 @@ void complete(BuildArguments& arguments) {
   if (arguments.fit) {
     set_fit(*arguments.fit, build);
   }
-  require_positive("--two-sided", build.two_sided_m);
   if (!arguments.crop.empty()) {
     const auto& c = arguments.crop;
-    if (!(c[0] < c[3] && c[1] < c[4] && c[2] < c[5])) {
-      misuse("--crop", "requires xmin,ymin,zmin,xmax,ymax,zmax with min < max");
-    }
     build.crop =
         Eigen::AlignedBox3d(Eigen::Vector3d(c[0], c[1], c[2]), Eigen::Vector3d(c[3], c[4], c[5]));
   }
@@ -167,15 +145,16 @@ void complete(BuildArguments& arguments) {
   }
   if (arguments.budget) {
     build.flash_budget_bytes = to_bytes(*arguments.budget);
-    if (!build.resample || build.spacing_m) {
-      misuse("--flash-budget",
-             "cannot be combined with --spacing or --no-resample, because it chooses the spacing");
-    }
   }
   build.outlier_sigma =
       arguments.outliers == "off" ? 0.0 : to_number("--outliers", arguments.outliers);
   if (build.outlier_sigma < 1.0 && arguments.outliers != "off") {
     misuse("--outliers", "'" + arguments.outliers + "' is neither off nor a number of at least 1");
+  }
+  try {
+    builder::check_options(build);
+  } catch (const builder::OptionError& error) {
+    misuse("--" + error.option(), error.what());
   }
   limit_to_board(arguments.board, build);
   if (!arguments.material.empty()) {
@@ -204,7 +183,7 @@ void build(BuildArguments& arguments) {
     throw;
   }
   support::write_file(arguments.output, std::span<const std::byte>(result.blob.bytes));
-  const std::string json = support::json_text(report_json(result.report, arguments.build));
+  const std::string json = builder::report_json(result.report, arguments.build);
   for (const std::string& file : {arguments.report, arguments.json}) {
     if (!file.empty()) {
       support::write_file(file, json);
@@ -225,7 +204,7 @@ void add_frame_options(CLI::App& verb, BuildArguments& arguments) {
   verb.add_option("--unit", build.unit_m,
                   "unit of the coordinates: m, cm, mm, um, in, ft (default: as the file states, "
                   "else m)")
-      ->transform(CLI::CheckedTransformer(kUnits).description("m|cm|mm|um|in|ft"))
+      ->transform(CLI::CheckedTransformer(builder::unit_names()).description("m|cm|mm|um|in|ft"))
       ->group(kGroup);
   CLI::Option* scale =
       verb.add_option("--scale", build.scale, "additional scale factor")->group(kGroup);
@@ -238,7 +217,7 @@ void add_frame_options(CLI::App& verb, BuildArguments& arguments) {
                 "move the origin to the centre of the bounding box")
       ->group(kGroup);
   verb.add_option("--axis", build.up, "axis of the file that points up; it becomes z")
-      ->transform(CLI::CheckedTransformer(kAxes).description("x|y|z"))
+      ->transform(CLI::CheckedTransformer(builder::axis_names()).description("x|y|z"))
       ->default_str("z")
       ->group(kGroup);
   verb.add_option("--crop", arguments.crop,
@@ -275,7 +254,7 @@ void add_quality_options(CLI::App& verb, BuildArguments& arguments) {
       ->needs(board)
       ->group(kGroup);
   verb.add_option("--profile", build.profile, "surface: fitted surface; paper: method of the paper")
-      ->transform(CLI::CheckedTransformer(kProfiles).description("surface|paper"))
+      ->transform(CLI::CheckedTransformer(builder::profile_names()).description("surface|paper"))
       ->default_str("surface")
       ->group(kGroup);
   verb.add_option("--material", arguments.material,
@@ -303,8 +282,8 @@ void add_surface_options(CLI::App& verb, BuildArguments& arguments) {
                   "side of the surface that is outside: outward: away from the body; viewpoint: "
                   "towards the scanner; up: towards +z; given: as the file says, unchecked; auto: "
                   "by viewpoints if there are any, else outward, and sheets up")
-      ->transform(
-          CLI::CheckedTransformer(kOrientations).description("auto|outward|viewpoint|up|given"))
+      ->transform(CLI::CheckedTransformer(builder::orientation_names())
+                      .description("auto|outward|viewpoint|up|given"))
       ->default_str("auto")
       ->group(kGroup);
   verb.add_option("--viewpoint", arguments.viewpoints,

@@ -88,6 +88,7 @@ void Simulation::sample_device() {
     const double displacement = plant_.joints()[i] - static_cast<double>(device.home_position[i]);
     counts[i] = displacement * static_cast<double>(core::counts_per_unit(device, i)) +
                 static_cast<double>(device.home_count[i]);
+    counts[i] = held_counts_ ? (*held_counts_)[i] : counts[i];
   }
   board_.sample(counts);
 }
@@ -123,6 +124,9 @@ Sample Simulation::step_with_hand_at(double path_t_s) {
   sample.t_s = t_s;
   sample.tip_m = plant_.position_m() - widen(setup_.controller.model_origin_m);
   sample.status = tick(path_t_s);
+  if (held_counts_) {
+    sample.tip_m = widen(sample.status.probe);
+  }
   ++ticks_;
   return sample;
 }
@@ -131,6 +135,9 @@ core::Status Simulation::tick(double path_t_s) {
   sample_device();
   const core::Status status = target_->tick(board_);
   state_ = status.state;
+  if (held_counts_) {
+    return status;
+  }
   plant::HandTarget target = steered_ ? *steered_ : path_.at(path_t_s);
   target.position_m += widen(setup_.controller.model_origin_m);
   plant_.advance({board_.effort(0), board_.effort(1), board_.effort(2)}, target,

@@ -7,33 +7,84 @@
 namespace tactree::simulation {
 namespace {
 
-void append(std::string& csv, core::Vec3 v) {
-  fmt::format_to(std::back_inserter(csv), ",{:.9g},{:.9g},{:.9g}", v.x, v.y, v.z);
+/// Calls `visit(name, type, value)` for each column. The only list of the columns.
+template <class Visit>
+void visit_columns(const Sample& sample, Visit visit) {
+  using enum TraceType;
+  const core::Status& s = sample.status;
+  const core::Rendering& r = s.rendering;
+  const auto vector = [&](const std::string& name, const char* unit, core::Vec3 v) {
+    visit(name + "_x" + unit, kFloat32, static_cast<double>(v.x));
+    visit(name + "_y" + unit, kFloat32, static_cast<double>(v.y));
+    visit(name + "_z" + unit, kFloat32, static_cast<double>(v.z));
+  };
+  visit("t_s", kFloat64, sample.t_s);
+  vector("probe", "_m", s.probe);
+  vector("proxy", "_m", r.in_contact ? r.proxy : s.probe);
+  vector("force", "_N", s.force);
+  visit("in_contact", kFlag, r.in_contact ? 1.0 : 0.0);
+  visit("state", kState, static_cast<double>(s.state));
+  vector("normal", "", r.normal);
+  visit("penetration_m", kFloat32, static_cast<double>(r.penetration_m));
+  vector("velocity", "_m_s", s.velocity);
+  visit("tip_x_m", kFloat64, sample.tip_m.x());
+  visit("tip_y_m", kFloat64, sample.tip_m.y());
+  visit("tip_z_m", kFloat64, sample.tip_m.z());
+  visit("slipping", kFlag, r.slipping ? 1.0 : 0.0);
+  visit("strength", kFloat32, static_cast<double>(r.strength));
+  visit("limits", kUint32, static_cast<double>(s.limits));
+  visit("faults", kUint32, static_cast<double>(s.faults));
+  visit("body", kInt32, r.in_contact ? static_cast<double>(r.body) : -1.0);
+}
+
+void append_value(std::string& csv, TraceType type, double value) {
+  auto to = std::back_inserter(csv);
+  if (type == TraceType::kFloat64 || type == TraceType::kFloat32) {
+    fmt::format_to(to, "{:.9g}", value);
+  } else if (type == TraceType::kState) {
+    fmt::format_to(to, "{}", core::name_of(static_cast<core::State>(value)));
+  } else {
+    fmt::format_to(to, "{}", static_cast<std::int64_t>(value));
+  }
 }
 
 }  // namespace
 
+const std::vector<TraceColumn>& trace_columns() {
+  static const std::vector<TraceColumn> columns = [] {
+    std::vector<TraceColumn> list;
+    visit_columns(Sample{}, [&](const std::string& name, TraceType type, double) {
+      list.push_back({name, type});
+    });
+    return list;
+  }();
+  return columns;
+}
+
+void trace_values(const Sample& sample, std::vector<double>& values) {
+  values.clear();
+  visit_columns(sample,
+                [&](const std::string&, TraceType, double value) { values.push_back(value); });
+}
+
 std::string trace_heading() {
-  return "t_s,probe_x_m,probe_y_m,probe_z_m,proxy_x_m,proxy_y_m,proxy_z_m,"
-         "force_x_N,force_y_N,force_z_N,in_contact,state,"
-         "normal_x,normal_y,normal_z,penetration_m,velocity_x_m_s,velocity_y_m_s,velocity_z_m_s,"
-         "tip_x_m,tip_y_m,tip_z_m,slipping,strength,limits,faults,body\n";
+  std::string csv;
+  for (const TraceColumn& column : trace_columns()) {
+    csv += (csv.empty() ? "" : ",") + column.name;
+  }
+  return csv + "\n";
 }
 
 void append_trace(std::string& csv, const Sample& sample) {
-  const core::Status& s = sample.status;
-  const core::Rendering& r = s.rendering;
-  fmt::format_to(std::back_inserter(csv), "{:.9g}", sample.t_s);
-  append(csv, s.probe);
-  append(csv, r.in_contact ? r.proxy : s.probe);
-  append(csv, s.force);
-  fmt::format_to(std::back_inserter(csv), ",{:d},{}", r.in_contact, core::name_of(s.state));
-  append(csv, r.normal);
-  fmt::format_to(std::back_inserter(csv), ",{:.9g}", r.penetration_m);
-  append(csv, s.velocity);
-  fmt::format_to(std::back_inserter(csv), ",{:.9g},{:.9g},{:.9g},{:d},{:.9g},{},{},{}\n",
-                 sample.tip_m.x(), sample.tip_m.y(), sample.tip_m.z(), r.slipping, r.strength,
-                 s.limits, s.faults, r.in_contact ? static_cast<std::int64_t>(r.body) : -1);
+  bool first = true;
+  visit_columns(sample, [&](const std::string&, TraceType type, double value) {
+    if (!first) {
+      csv += ',';
+    }
+    first = false;
+    append_value(csv, type, value);
+  });
+  csv += '\n';
 }
 
 }  // namespace tactree::simulation

@@ -93,6 +93,10 @@ class Simulation {
   /// Replaces the path by a fixed target of the hand, model frame.
   void steer(const plant::HandTarget& target) { steered_ = target; }
 
+  /// Replaces the simulated device and hand: from now on the encoders read these counts, also
+  /// during arm(), and efforts move nothing. The tip of a sample is then the probe.
+  void hold_counts(const std::array<double, core::kAxes>& counts) { held_counts_ = counts; }
+
   /// Number of the next sample; time_s() continues from it.
   [[nodiscard]] std::uint64_t next_tick() const { return ticks_; }
   void go_to(std::uint64_t tick) { ticks_ = tick; }
@@ -123,6 +127,7 @@ class Simulation {
   Setup setup_;
   HandPath path_;
   std::optional<plant::HandTarget> steered_;
+  std::optional<std::array<double, core::kAxes>> held_counts_;
   core::Command command_ = core::Command::kNone;
   double period_s_;
   hal::sim::SimBoard board_;

@@ -1,6 +1,7 @@
 #pragma once
 // Results of a simulation as a CSV table and as SVG plots.
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -8,6 +9,20 @@
 #include "tactree/simulation/simulation.hpp"
 
 namespace tactree::simulation {
+
+enum class TraceType : std::uint8_t { kFloat64, kFloat32, kFlag, kState, kUint32, kInt32 };
+
+struct TraceColumn {
+  std::string name;  ///< with the unit
+  TraceType type = TraceType::kFloat32;
+};
+
+/// The columns of a trace.
+[[nodiscard]] const std::vector<TraceColumn>& trace_columns();
+
+/// Writes the values of a sample, in the order of trace_columns(). A double holds each of them
+/// exactly; that of a state is its number.
+void trace_values(const Sample& sample, std::vector<double>& values);
 
 /// First row of a trace: the names of its columns with units.
 [[nodiscard]] std::string trace_heading();

@@ -19,7 +19,7 @@
 #include "tactree/simulation/scene_target.hpp"
 #include "tactree/support/blob_file.hpp"
 
-namespace tactree::cli {
+namespace tactree::setup {
 
 struct SceneFile {
   std::vector<std::unique_ptr<support::BlobFile>> blobs;
@@ -33,4 +33,4 @@ struct SceneFile {
 [[nodiscard]] SceneFile read_scene(const std::filesystem::path& scene,
                                    const std::vector<std::string>& blobs);
 
-}  // namespace tactree::cli
+}  // namespace tactree::setup

@@ -8,7 +8,7 @@
 #include "tactree/core/device/device_model.hpp"
 #include "tactree/core/model/blob_format.hpp"
 
-namespace tactree::cli {
+namespace tactree::setup {
 
 /// A warning with a hint if the device cannot reach all faces of the model's bounding box,
 /// centred at the device's origin. Empty if it can, and for a device of one or two axes. Cost: some
@@ -29,4 +29,4 @@ namespace tactree::cli {
 [[nodiscard]] std::optional<std::string> size_warning(const std::string& file,
                                                       const core::BlobHeader& model);
 
-}  // namespace tactree::cli
+}  // namespace tactree::setup

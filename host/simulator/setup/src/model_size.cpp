@@ -1,4 +1,4 @@
-#include "run/model_size.hpp"
+#include "tactree/setup/model_size.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include "tactree/builder/size_advice.hpp"
 #include "tactree/simulation/workspace.hpp"
 
-namespace tactree::cli {
+namespace tactree::setup {
 namespace {
 
 // Ratio of the size to the maximum size that the device reaches; leaves room for the probe around
@@ -58,4 +58,4 @@ std::optional<std::string> size_warning(const std::string& file, const core::Blo
   return advice ? std::optional(file + ": " + *advice) : std::nullopt;
 }
 
-}  // namespace tactree::cli
+}  // namespace tactree::setup

@@ -1,4 +1,4 @@
-#include "run/scene_file.hpp"
+#include "tactree/setup/scene_file.hpp"
 
 #include <fmt/core.h>
 
@@ -10,7 +10,7 @@
 
 #include "tactree/support/user_error.hpp"
 
-namespace tactree::cli {
+namespace tactree::setup {
 namespace {
 
 using nlohmann::json;
@@ -224,4 +224,4 @@ SceneFile read_scene(const std::filesystem::path& scene, const std::vector<std::
   return scene.empty() ? reader.all_at_rest() : reader.read();
 }
 
-}  // namespace tactree::cli
+}  // namespace tactree::setup

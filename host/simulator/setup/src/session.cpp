@@ -1,0 +1,172 @@
+#include "tactree/setup/session.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "tactree/plant/vectors.hpp"
+#include "tactree/setup/model_size.hpp"
+#include "tactree/simulation/hand_script.hpp"
+#include "tactree/simulation/placement.hpp"
+#include "tactree/simulation/workspace.hpp"
+#include "tactree/support/device_file.hpp"
+#include "tactree/support/user_error.hpp"
+
+namespace tactree::setup {
+namespace {
+
+[[noreturn]] void refuse(const std::string& what, const std::string& remedy) {
+  throw support::UserError(fmt::format("{} ({})", what, remedy));
+}
+
+/// Sets the device for controller and mechanics. Options take precedence over the device.
+void choose_device(const SessionOptions& options, simulation::Setup& setup) {
+  const support::Device device = support::load_device(options.device);
+  simulation::use_device(device.preset, setup);
+  if (options.force_max_N) {
+    setup.controller.limits.force_max_N = *options.force_max_N;
+  }
+  if (setup.controller.device.kind != core::DeviceKind::kCartesian) {
+    return;
+  }
+  for (float& counts : setup.controller.device.counts_per_m) {
+    counts = static_cast<float>(1.0 / options.encoder_step_m);
+  }
+  if (device.name == "cartesian") {
+    setup.dynamics.reset();  // uses mass and friction of the options
+  }
+}
+
+/// Origin of the model: that of the options, else the one of simulation::middle_at_origin().
+core::Vec3 place_model(const SessionOptions& options, const FirstBody& body,
+                       core::DeviceKind kind) {
+  if (!options.origin_m.empty()) {
+    return {static_cast<float>(options.origin_m[0]), static_cast<float>(options.origin_m[1]),
+            static_cast<float>(options.origin_m[2])};
+  }
+  return simulation::middle_at_origin(body.view.header(), body.pose, kind);
+}
+
+[[noreturn]] void refuse_material(const std::string& file, const core::BlobView& view,
+                                  const core::Configuration& controller) {
+  const std::uint32_t index = core::find_unstable_material(view, controller);
+  const core::BlobMaterial& material = view.material(index);
+  refuse(fmt::format("{}: material {}: its stiffness of {:.6g} N/m is beyond the stability limit "
+                     "of {:.6g} N/m with a hand at {:.6g} Hz",
+                     file, index, material.stiffness_N_m,
+                     core::material_limit(controller, material), controller.rate_hz),
+         "build the blob with a softer or more damped --material, raise --rate, or simulate with "
+         "--no-materials");
+}
+
+}  // namespace
+
+simulation::HandPath hand_path(const SessionOptions& options, const FirstBody& body) {
+  if (!options.path.empty()) {
+    return simulation::read_hand_path(options.path);
+  }
+  std::vector<simulation::Waypoint> waypoints =
+      simulation::make_script(options.script, body.view, options.seconds).waypoints();
+  for (simulation::Waypoint& waypoint : waypoints) {
+    waypoint.position_m = body.pose * waypoint.position_m;
+  }
+  return simulation::HandPath(std::move(waypoints));
+}
+
+simulation::Setup make_setup(const SessionOptions& options, const FirstBody& body) {
+  simulation::Setup setup = options.setup;
+  core::Configuration& controller = setup.controller;
+  controller.mode = options.mode == "paper" ? core::RenderMode::kPaper : core::RenderMode::kSurface;
+  choose_device(options, setup);
+  controller.model_origin_m = place_model(options, body, controller.device.kind);
+  setup.board.encoders.latency_ticks = static_cast<std::uint32_t>(options.latency_ticks);
+  controller.supervision.supply_monitored = true;
+  controller.delay_s = static_cast<float>(options.latency_ticks) / controller.rate_hz;
+  core::limit_to_rate(controller);
+  return setup;
+}
+
+void check_start(const std::string& file, const core::BlobView& view,
+                 const simulation::Setup& setup, const hal::StartResult& start) {
+  if (start.configuration == core::ConfigurationStatus::kUnstable) {
+    const core::StabilityLimit limit = core::stability_limit(setup.controller);
+    refuse(fmt::format("--stiffness: {:.6g} N/m is beyond the stability limit of {:.6g} N/m with a "
+                       "hand at {:.6g} Hz",
+                       setup.controller.contact.stiffness_N_m, limit.with_hand_N_m,
+                       setup.controller.rate_hz),
+           "lower --stiffness, or raise --rate or --damping");
+  }
+  if (start.image != hal::ImageStatus::kOk) {
+    refuse(fmt::format("the board does not start: {}", describe(start)),
+           start.image == hal::ImageStatus::kBadMemory ? "replace the board"
+                                                       : "build the image again");
+  }
+  if (start.configuration != core::ConfigurationStatus::kOk) {
+    refuse(fmt::format("configuration: {}", describe(start)), "give a value in that range");
+  }
+  if (start.blob != core::BlobStatus::kOk) {
+    refuse(fmt::format("{}: refused: {}", file, describe(start)), "build it again from the scan");
+  }
+  if (start.model == core::ModelStatus::kTooStiff) {
+    refuse_material(file, view, setup.controller);
+  }
+  if (start.model != core::ModelStatus::kOk) {
+    refuse(fmt::format("{}: {}", file, describe(start)),
+           "build it with --profile surface, or use --mode paper");
+  }
+}
+
+void refuse_inactive(const std::string& device, const simulation::Setup& setup,
+                     const simulation::Simulation& simulation) {
+  const Eigen::Vector3d start =
+      simulation.path().at(0.0).position_m + plant::widen(setup.controller.model_origin_m);
+  if (core::axes_of(setup.controller.device.kind) == core::kAxes &&
+      !simulation::reaches(setup.controller.device, start)) {
+    refuse(fmt::format("{} does not reach the start of the hand, and the probe is in the object",
+                       device),
+           "scale the model with build --fit device:" + device +
+               ", or begin the path within the workspace");
+  }
+  refuse(fmt::format("the controller did not become active; its state is {}",
+                     core::name_of(simulation.state())),
+         "begin the path outside the object");
+}
+
+nlohmann::json summary_json(const simulation::Summary& summary) {
+  nlohmann::json faults = nlohmann::json::array();
+  for (const simulation::FaultEvent& event : summary.faults) {
+    faults.push_back({{"code", static_cast<int>(event.fault)},
+                      {"name", core::name_of(event.fault)},
+                      {"tick", event.tick}});
+  }
+  return {{"ticks", summary.ticks},
+          {"contact_ticks", summary.contact_ticks},
+          {"overruns", summary.overruns},
+          {"force_max_N", summary.force_max_N},
+          {"force_step_max_N", summary.force_step_max_N},
+          {"penetration_max_m", summary.penetration_max_m},
+          {"trace_crc32", summary.trace_crc32},
+          {"faults", faults},
+          {"crowded_ticks", summary.crowded_ticks}};
+}
+
+std::function<double(const Eigen::Vector3d&)> fit_to_device(const std::string& name) {
+  const core::DeviceModel device = support::load_device(name).preset.model;
+  if (core::axes_of(device.kind) != core::kAxes) {
+    support::refuse("--fit device:" + name,
+                    "not possible for a device of one or two axes, which touches a section of a "
+                    "model of any size",
+                    "give a length in metres");
+  }
+  return [device, name](const Eigen::Vector3d& size) {
+    const std::optional<double> scale = fitting_scale(device, size);
+    if (!scale) {
+      support::refuse("--fit device:" + name,
+                      "the origin of the device is not inside its workspace", "correct the device");
+    }
+    return *scale * size.maxCoeff();
+  };
+}
+
+}  // namespace tactree::setup

@@ -1,0 +1,218 @@
+"""tactree.Board with a simulated board, whose time passes only while the test waits for it.
+
+usage: board_test.py TACTREE
+"""
+import asyncio
+import json
+import pathlib
+import sys
+import unittest
+
+import numpy as np
+import tactree
+
+from clouds import ServedBoard, SharedFolder, build_ball, runs_beside, signal_during, tool_error
+
+TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
+
+
+class Folder(SharedFolder):
+    tool = TACTREE
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.blob = build_ball(TACTREE, cls.path)
+
+    def tool_json(self, *arguments):
+        done = self.run_tool(*arguments, "--json", "tool.json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return json.loads((self.path / "tool.json").read_text())
+
+
+class Control(Folder):
+    def test_arm_stop_and_context(self):
+        with ServedBoard(TACTREE, self.blob) as port:
+            with tactree.Board(port) as board:
+                self.assertTrue(board.is_open)
+                self.assertEqual(board.status["state"], "idle")
+                board.arm()
+                self.assertEqual(board.status["state"], "active")
+                board.stop()
+                self.assertEqual(board.status["state"], "idle")
+                board.arm()
+                board.post_stop()
+                board.wait(0.1)
+                status = board.status
+                self.assertEqual((status["state"], status["faults"], status["fault_names"]), ("idle", 0, ""))
+                self.assertEqual(len(status["probe_m"]), 3)
+                board.arm()
+            self.assertFalse(board.is_open)
+            with self.assertRaisesRegex(tactree.BoardError, "closed"):
+                board.stop()
+            with tactree.Board(port) as board:  # the end of the block has stopped it
+                self.assertEqual(board.status["state"], "idle")
+
+    def test_an_exception_in_the_block_stops_the_board(self):
+        with ServedBoard(TACTREE, self.blob) as port:
+            with self.assertRaises(ZeroDivisionError), tactree.Board(port) as board:
+                board.arm()
+                raise ZeroDivisionError
+            self.assertEqual(self.tool_json("monitor", "--once", "--port", port)["state"], "idle")
+
+    def test_replies_are_those_of_the_tool(self):
+        with ServedBoard(TACTREE, self.blob) as port:
+            with tactree.Board(port) as board:
+                parameters, identity, features = board.parameters, board.identity, board.capabilities
+                self.assertIsNone(board.first_fault)
+            self.assertEqual(parameters, self.tool_json("params", "--port", port))
+            devices = self.run_tool("devices", "--port", port).stdout
+            self.assertIn(identity["board"], devices)
+            self.assertIn(identity["firmware"], devices)
+            self.assertEqual(features["rate_hz"], 1000)
+            self.assertFalse(features["signature_required"])
+
+    def test_settings(self):
+        with ServedBoard(TACTREE, self.blob) as port, tactree.Board(port) as board:
+            board.set_parameter("delay_s", 0.0005)
+            self.assertAlmostEqual(board.parameters["delay_s"]["value"], 0.0005)
+            board.set_limits(1.5, 100, 0.2)
+            self.assertEqual(board.capabilities["force_max_N"], 1.5)
+            board.set_material(250)
+            self.assertEqual(board.capabilities["stiffness_N_m"], 250)
+            for call, words in ((lambda: board.set_parameter("nonsense", 1), "no parameter 'nonsense'"),
+                                (lambda: board.set_limits(-1, 0, 0), "set limits: "),
+                                (lambda: board.set_material(1e6), "set material: ")):
+                with self.assertRaises(tactree.BoardError) as refused:
+                    call()
+                self.assertIn(words, str(refused.exception))
+
+    def test_faults(self):
+        with ServedBoard(TACTREE, self.blob, "--inject", "encoder1:disconnected@0s..0.3s") as port:
+            with tactree.Board(port) as board:
+                try:
+                    board.arm()
+                except tactree.BoardError as error:
+                    self.assertIn("arm: ", str(error))
+                board.wait(0.5)
+                status = board.status
+                self.assertEqual(status["state"], "fault")
+                self.assertIn("encoder", status["fault_names"])
+                self.assertEqual(board.first_fault["faults"], status["faults"])
+                self.assertEqual(", ".join(tactree.fault_names(status["faults"])), status["fault_names"])
+                board.clear_faults()
+                self.assertEqual(board.status["state"], "idle")
+
+    def test_flash_and_roll_back(self):
+        coarse = tactree.build_file(self.path / "ball.csv", spacing_m=0.004, unit="m")
+        done = []
+        with ServedBoard(TACTREE, self.blob) as port:
+            with tactree.Board(port) as board:
+                board.flash(coarse, done.append)
+            slots = self.tool_json("flash", "--list", "--port", port)["slots"]
+            active = [slot for slot in slots if slot["state"] in ("active", "in use")] or slots
+            self.assertIn(len(coarse), [slot["points"] for slot in active])
+            with tactree.Board(port) as board:
+                board.roll_back()
+        self.assertEqual(done[-1], 1)
+        self.assertEqual(done, sorted(done))
+
+    def test_missing_port_has_the_sentence_of_the_tool(self):
+        run = self.run_tool("stop", "--port", "/dev/no-such-port")
+        with self.assertRaises(tactree.BoardError) as refused:
+            tactree.Board("/dev/no-such-port")
+        self.assertEqual(str(refused.exception), tool_error(run))
+        self.assertIsInstance(tactree.ports(), list)
+
+    def test_ctrl_c_ends_a_wait_and_stops(self):
+        with ServedBoard(TACTREE, self.blob) as port:
+            with self.assertRaises(KeyboardInterrupt), tactree.Board(port) as board:
+                board.arm()
+                with signal_during("wait"):
+                    board.wait(1e5)
+            self.assertEqual(self.tool_json("monitor", "--once", "--port", port)["state"], "idle")
+
+    def test_ctrl_c_ends_arming(self):
+        # Of this board nobody holds the dead-man control.
+        with ServedBoard(TACTREE, self.blob, "--inject", "deadman:released@0s") as port, tactree.Board(port) as board:
+            with self.assertRaises(KeyboardInterrupt), signal_during("arm"):
+                board.arm(patience_s=1e5)
+            board.wait(0.1)
+            self.assertEqual(board.status["state"], "idle")
+
+    def test_other_threads_run_meanwhile(self):
+        with ServedBoard(TACTREE, self.blob) as port, tactree.Board(port) as board:
+            self.assertTrue(runs_beside(lambda: board.wait(1)))
+
+
+class Stream(Folder):
+    def test_blocks_have_every_tick(self):
+        with ServedBoard(TACTREE, self.blob) as port, tactree.Board(port) as board:
+            board.arm()
+            telemetry = board.telemetry(every_ticks=1)
+            blocks = []
+            for block in telemetry:
+                blocks.append(block)
+                if sum(map(len, blocks)) >= 500:
+                    break
+            table = np.concatenate(blocks)
+            self.assertEqual(table.dtype.names[:6], ("t_s", "tick", "missing_ticks", "state", "faults", "limits"))
+            np.testing.assert_array_equal(np.diff(table["tick"]), 1)
+            self.assertEqual(table["missing_ticks"].sum(), 0)
+            self.assertEqual({tactree.STATES[state] for state in table["state"]}, {"active"})
+            self.assertEqual(telemetry.dropped, 0)
+            self.assertEqual(tactree.vectors(table, "force").shape, (len(table), 3))
+
+    def test_async_for(self):
+        async def watch(board):
+            others = 0
+
+            async def count():
+                nonlocal others
+                while True:
+                    others += 1
+                    await asyncio.sleep(0)
+            counter = asyncio.ensure_future(count())
+            rows = 0
+            async for block in board.telemetry(every_ticks=10):
+                self.assertTrue((np.diff(block["tick"]) == 10).all())
+                rows += len(block)
+                if rows >= 100:
+                    break
+            counter.cancel()
+            return others
+        with ServedBoard(TACTREE, self.blob) as port, tactree.Board(port) as board:
+            self.assertGreater(asyncio.run(watch(board)), 0)
+
+    def test_no_telemetry_and_end_of_the_subscription(self):
+        with ServedBoard(TACTREE, self.blob) as port, tactree.Board(port) as board:
+            telemetry = board.telemetry(every_ticks=1, timeout_s=0.2)
+            self.assertGreater(len(telemetry.read()), 0)
+            telemetry.stop()
+            with self.assertRaisesRegex(tactree.BoardError, "no telemetry for 0.2 s"):
+                for _ in range(2):
+                    telemetry.read()
+
+    def test_a_lost_board_ends_the_blocks(self):
+        with ServedBoard(TACTREE, self.blob, "--seconds", "1") as port:
+            board = tactree.Board(port)
+            rows = 0
+            with self.assertRaisesRegex(tactree.BoardError, "the board is disconnected"):
+                for block in board.telemetry(every_ticks=1):
+                    rows += len(block)
+            self.assertGreater(rows, 900)
+            self.assertFalse(board.is_open)
+            board.close()
+
+    def test_a_session_of_another_program_ends_the_blocks(self):
+        with ServedBoard(TACTREE, self.blob) as port, tactree.Board(port) as board:
+            telemetry = board.telemetry(every_ticks=1)
+            telemetry.read()
+            with tactree.Board(port):
+                with self.assertRaisesRegex(tactree.BoardError, "ended the session"):
+                    while True:
+                        telemetry.read()
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

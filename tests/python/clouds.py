@@ -1,0 +1,81 @@
+"""What the tests of the package share: the tool in a folder, and points of a ball."""
+import contextlib
+import os
+import pathlib
+import signal
+import sys
+import threading
+
+import numpy as np
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
+from served_board import ServedBoard, build_ball  # noqa: E402
+from tool_folder import SharedFolder, ball  # noqa: E402
+
+__all__ = ["ServedBoard", "SharedFolder", "ball", "ball_arrays", "build_ball", "probes", "runs_beside",
+           "signal_during", "tool_error", "write_rows"]
+
+
+def ball_arrays(count=2000, radius=0.03):
+    """Points and normals (N, 3)."""
+    points, normals = zip(*ball(count, radius))
+    return np.array(points), np.array(normals)
+
+
+def probes(count=500, radius=0.035, seed=1):
+    """Positions in and around a ball."""
+    return np.random.default_rng(seed).uniform(-radius, radius, (count, 3))
+
+
+def tool_error(run):
+    """The sentence that the tool prints."""
+    return run.stderr.strip().removeprefix("tactree: error: ")
+
+
+def write_rows(path, heading, rows):
+    path.write_text(heading + "\n" + "".join(",".join(repr(float(v)) for v in row) + "\n" for row in rows))
+
+
+@contextlib.contextmanager
+def no_forced_switches():
+    """A thread runs until it releases the interpreter's lock by itself."""
+    interval = sys.getswitchinterval()
+    sys.setswitchinterval(1000)
+    try:
+        yield
+    finally:
+        sys.setswitchinterval(interval)
+
+
+def runs_beside(call):
+    """True if this thread runs while another one is in `call`."""
+    order = []
+
+    def work():
+        order.append("begin")
+        call()
+        order.append("end")
+    with no_forced_switches():
+        thread = threading.Thread(target=work)
+        thread.start()  # waits for the lock, which `work` has until it releases it
+        order.append("beside")
+        thread.join()
+    return order == ["begin", "beside", "end"]
+
+
+@contextlib.contextmanager
+def signal_during(name):
+    """Interrupts a function of the package with Ctrl-C while it has released the interpreter's lock."""
+    main = threading.main_thread().ident
+
+    def press():
+        while sys._current_frames()[main].f_code.co_name != name:
+            os.sched_yield()
+        signal.pthread_kill(main, signal.SIGINT)
+    with no_forced_switches():
+        thread = threading.Thread(target=press)
+        thread.start()
+        try:
+            yield
+        finally:
+            thread.join()
