@@ -58,7 +58,7 @@ class Files(Folder):
         self.assertIn("reversed", " ".join(model.report["warnings"]))
 
     def test_every_option_has_the_effect_of_the_tool(self):
-        points, _ = ball_arrays(4000)
+        points, _ = ball_arrays(800)
         np.savetxt(self.path / "o.xyz", points)
         for options, values in (
                 (["--scale", "2"], {"scale": 2}), (["--fit", "0.05"], {"fit_m": 0.05}),
@@ -167,10 +167,10 @@ class Arrays(Folder):
 
     def test_ctrl_c_ends_a_build(self):
         with self.assertRaises(KeyboardInterrupt), signal_during("build"):
-            tactree.build(*ball_arrays(50_000))
+            tactree.build(*ball_arrays(5000))
 
     def test_other_threads_run_meanwhile(self):
-        points, normals = ball_arrays(20_000)
+        points, normals = ball_arrays(3000)
         self.assertTrue(runs_beside(lambda: tactree.build(points, normals)))
 
 

@@ -29,7 +29,7 @@ def read_recording(path: str | os.PathLike[str]) -> npt.NDArray[Any]:
     if not str(os.fspath(path)).endswith(".npz"):
         return _native.read_ticks(path)
     try:
-        with np.load(path, allow_pickle=False) as arrays:
+        with open(path, "rb") as file, np.load(file, allow_pickle=False) as arrays:
             return _assemble(os.fspath(path), {name: arrays[name] for name in arrays.files})
     except (OSError, ValueError, zipfile.BadZipFile) as error:
         raise _native.FileError(f"{os.fspath(path)}: cannot be read: {error} ({_REMEDY})") from error
