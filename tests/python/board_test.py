@@ -133,8 +133,11 @@ class Control(Folder):
         with ServedBoard(TACTREE, self.blob) as port:
             with self.assertRaises(KeyboardInterrupt), tactree.Board(port) as board:
                 board.arm()
-                with signal_during("wait"):
-                    board.wait(1e5)
+                try:
+                    with signal_during("wait"):
+                        board.wait(20)
+                finally:
+                    self.assertLess(board.status["board_time_us"], 15e6)
             self.assertEqual(self.tool_json("monitor", "--once", "--port", port)["state"], "idle")
 
     def test_ctrl_c_ends_arming(self):

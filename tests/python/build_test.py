@@ -166,8 +166,13 @@ class Arrays(Folder):
             tactree.build(*ball_arrays(), progress=fail)
 
     def test_ctrl_c_ends_a_build(self):
+        points, normals = ball_arrays(5000)
+        steps = {}  # whose method runs no Python code, in which a signal would be handled
         with self.assertRaises(KeyboardInterrupt), signal_during("build"):
-            tactree.build(*ball_arrays(5000))
+            tactree.build(points, normals, progress=steps.setdefault)
+        self.assertNotIn("finding gaps", steps)
+        tactree.build(points, normals, progress=steps.setdefault)
+        self.assertIn("finding gaps", steps)
 
     def test_other_threads_run_meanwhile(self):
         points, normals = ball_arrays(3000)
