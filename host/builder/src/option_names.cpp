@@ -23,31 +23,31 @@ void check_crop(const Eigen::AlignedBox3d& crop) {
 }  // namespace
 
 const std::map<std::string, double>& unit_names() {
-  static const std::map<std::string, double> names{{"m", 1.0},   {"cm", 1e-2},   {"mm", 1e-3},
-                                                   {"um", 1e-6}, {"in", 0.0254}, {"ft", 0.3048}};
-  return names;
+  static const std::map<std::string, double> kNames{{"m", 1.0},   {"cm", 1e-2},   {"mm", 1e-3},
+                                                    {"um", 1e-6}, {"in", 0.0254}, {"ft", 0.3048}};
+  return kNames;
 }
 
 const std::map<std::string, UpAxis>& axis_names() {
-  static const std::map<std::string, UpAxis> names{
+  static const std::map<std::string, UpAxis> kNames{
       {"x", UpAxis::kX}, {"y", UpAxis::kY}, {"z", UpAxis::kZ}};
-  return names;
+  return kNames;
 }
 
 const std::map<std::string, OrientationRule>& orientation_names() {
-  static const std::map<std::string, OrientationRule> names{
+  static const std::map<std::string, OrientationRule> kNames{
       {"auto", OrientationRule::kAuto},
       {"outward", OrientationRule::kOutward},
       {"viewpoint", OrientationRule::kViewpoint},
       {"up", OrientationRule::kUp},
       {"given", OrientationRule::kGiven}};
-  return names;
+  return kNames;
 }
 
 const std::map<std::string, core::Profile>& profile_names() {
-  static const std::map<std::string, core::Profile> names{{"surface", core::Profile::kSurface},
-                                                          {"paper", core::Profile::kPaper}};
-  return names;
+  static const std::map<std::string, core::Profile> kNames{{"surface", core::Profile::kSurface},
+                                                           {"paper", core::Profile::kPaper}};
+  return kNames;
 }
 
 void check_options(const BuildOptions& options) {

@@ -125,13 +125,13 @@ std::string shape_text(const py::array& array) {
 }  // namespace
 
 const std::vector<Field>& trace_fields() {
-  static const std::vector<Field> fields = fields_of(simulation::trace_columns());
-  return fields;
+  static const std::vector<Field> kFields = fields_of(simulation::trace_columns());
+  return kFields;
 }
 
 const std::vector<Field>& tick_fields() {
-  static const std::vector<Field> fields = fields_of(telemetry::columns());
-  return fields;
+  static const std::vector<Field> kFields = fields_of(telemetry::columns());
+  return kFields;
 }
 
 py::dtype dtype_of(const std::vector<Field>& fields) {

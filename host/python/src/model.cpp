@@ -26,15 +26,15 @@ constexpr std::size_t kBatch = 4096;
 /// The columns of `tactree query`.
 const std::vector<Field>& answer_fields() {
   using enum FieldType;
-  static const std::vector<Field> fields{{"x", kFloat32},          {"y", kFloat32},
-                                         {"z", kFloat32},          {"contact_paper", kFlag},
-                                         {"contact", kFlag},       {"nearest", kInt32},
-                                         {"distance_m", kFloat64}, {"surface_x", kFloat32},
-                                         {"surface_y", kFloat32},  {"surface_z", kFloat32},
-                                         {"normal_x", kFloat32},   {"normal_y", kFloat32},
-                                         {"normal_z", kFloat32},   {"signed_distance_m", kFloat32},
-                                         {"inside", kInt8}};
-  return fields;
+  static const std::vector<Field> kFields{{"x", kFloat32},          {"y", kFloat32},
+                                          {"z", kFloat32},          {"contact_paper", kFlag},
+                                          {"contact", kFlag},       {"nearest", kInt32},
+                                          {"distance_m", kFloat64}, {"surface_x", kFloat32},
+                                          {"surface_y", kFloat32},  {"surface_z", kFloat32},
+                                          {"normal_x", kFloat32},   {"normal_y", kFloat32},
+                                          {"normal_z", kFloat32},   {"signed_distance_m", kFloat32},
+                                          {"inside", kInt8}};
+  return kFields;
 }
 
 core::Vec3 narrow(std::span<const double> row) {

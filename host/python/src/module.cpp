@@ -4,6 +4,7 @@
 #include <pybind11/stl.h>
 
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "bindings.hpp"
 #include "errors.hpp"
@@ -50,7 +51,7 @@ std::string option_sentence(const builder::OptionError& error) {
 
 void translate(std::exception_ptr thrown) {
   try {
-    std::rethrow_exception(thrown);
+    std::rethrow_exception(std::move(thrown));
   } catch (const py::builtin_exception&) {
     throw;
   } catch (const builder::OptionError& error) {

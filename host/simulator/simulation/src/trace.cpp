@@ -51,14 +51,14 @@ void append_value(std::string& csv, TraceType type, double value) {
 }  // namespace
 
 const std::vector<TraceColumn>& trace_columns() {
-  static const std::vector<TraceColumn> columns = [] {
+  static const std::vector<TraceColumn> kColumns = [] {
     std::vector<TraceColumn> list;
     visit_columns(Sample{}, [&](const std::string& name, TraceType type, double) {
       list.push_back({name, type});
     });
     return list;
   }();
-  return columns;
+  return kColumns;
 }
 
 void trace_values(const Sample& sample, std::vector<double>& values) {
