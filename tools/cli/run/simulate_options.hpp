@@ -32,6 +32,8 @@ struct SimulateOptions {
   bool serve = false;
   std::string key;  // public key for the models of the served board
   bool lock_step = false;
+  bool unhomed = false;
+  bool first_force = false;
   bool on_usb = false;
   std::optional<std::string> usb_port;  // USB device port of this computer; "": the only one
   std::uint32_t serial = 1;

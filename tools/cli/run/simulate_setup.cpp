@@ -8,6 +8,7 @@
 #include "tactree/simulation/hand_script.hpp"
 #include "tactree/simulation/placement.hpp"
 #include "tactree/support/device_file.hpp"
+#include "tactree/support/explain.hpp"
 #include "tactree/support/user_error.hpp"
 
 namespace tactree::cli {
@@ -19,7 +20,7 @@ void choose_device(const SimulateOptions& options, simulation::Setup& setup) {
   const float force_max_N = setup.controller.limits.force_max_N;
   simulation::use_device(device.preset, setup);
   if (options.force_max->count() != 0) {
-    setup.controller.limits.force_max_N = force_max_N;
+    core::limit_force(setup.controller, force_max_N);
   }
   if (setup.controller.device.kind != core::DeviceKind::kCartesian) {
     for (const CLI::Option* option : options.cartesian_only) {
@@ -106,6 +107,10 @@ simulation::Setup make_setup(const SimulateOptions& options, const SceneFile& sc
   controller.supervision.supply_monitored = true;
   controller.delay_s = static_cast<float>(options.latency_ticks) / controller.rate_hz;
   core::limit_to_rate(controller);
+  if (options.first_force && core::check(controller) == core::ConfigurationStatus::kOk) {
+    controller = core::first_force(controller);
+  }
+  setup.homed = !options.unhomed;
   return setup;
 }
 
@@ -134,7 +139,8 @@ void check_start(const std::string& file, const core::BlobView& view,
                                                        : "build the image again");
   }
   if (start.configuration != core::ConfigurationStatus::kOk) {
-    refuse(fmt::format("configuration: {}", describe(start)), "give a value in that range");
+    refuse(fmt::format("configuration: {}", support::explain(core::refusal_of(setup.controller))),
+           "give a value in that range");
   }
   if (start.blob != core::BlobStatus::kOk) {
     refuse(fmt::format("{}: refused: {}", file, describe(start)), "build it again from the scan");
