@@ -64,8 +64,9 @@ void* memset(void* to, int value, std::size_t bytes) {
   const auto byte = static_cast<unsigned char>(value);
   const std::uint32_t word = byte * 0x01010101U;
   // The compiler may clear the tail of a structure from an unaligned address. The bytes before the
-  // first word and after the last word then add up to bytes % 4 or bytes % 4 + 4.
-  // total: bytes % 4 + 4 per memset together bytes
+  // first word and after the last word then add up to bytes % 4 or bytes % 4 + 4. A size of whole
+  // words is cleared from a word's address.
+  // total: min(bytes % 4, 1) * (bytes % 4 + 4) per memset together bytes
   for (; bytes > 0 && !aligned(target, nullptr); --bytes) {  // bound: min(bytes, 3)
     *target++ = byte;
   }
@@ -76,7 +77,7 @@ void* memset(void* to, int value, std::size_t bytes) {
   for (; bytes >= 4; bytes -= 4, target += 4) {  // bound: min(bytes / 4, 3)
     *reinterpret_cast<Word*>(target) = word;
   }
-  // total: bytes % 4 + 4 per memset together bytes
+  // total: min(bytes % 4, 1) * (bytes % 4 + 4) per memset together bytes
   for (; bytes > 0; --bytes) {  // bound: min(bytes, 3)
     *target++ = byte;
   }

@@ -1,6 +1,8 @@
 #pragma once
-// Safety lines: enable line with read-back, emergency stop, dead-man control. A broken wire reads
-// as the safe state.
+// Lines of the user and of safety: enable line with read-back, emergency stop, dead-man control,
+// push button. A broken wire reads as the safe state.
+// Loop and memory annotations: docs/BOUND.md.
+// memory: RAM
 
 #include "stm32f4/pins.hpp"
 #include "stm32f4/pwm_motors.hpp"
@@ -59,6 +61,26 @@ class SafetyInputs {
  private:
   Pin<Word> stop_;
   Pin<Word> dead_man_;
+  bool trusted_ = false;
+};
+
+/// A push button that connects to ground. A broken wire reads as released.
+template <class Word>
+class Button {
+ public:
+  explicit Button(const Pin<Word>& pin) : pin_(pin) {}
+
+  /// Returns false if the port did not accept its settings. The button then reads as released until
+  /// the next reset.
+  [[nodiscard]] bool start() {
+    pin_.make_input(Pull::kUp);
+    trusted_ = pin_.pulls(Pull::kUp);
+    return trusted_;
+  }
+  [[nodiscard]] bool is_pressed() noexcept { return trusted_ && !pin_.is_high(); }
+
+ private:
+  Pin<Word> pin_;
   bool trusted_ = false;
 };
 

@@ -1,5 +1,7 @@
 #pragma once
 // Pins as inputs, outputs and alternate functions (RM0090, sections 8.3 and 8.4).
+// Loop and memory annotations: docs/BOUND.md. A register may be as slow as flash.
+// memory: RAM
 
 #include <cstdint>
 
@@ -39,16 +41,19 @@ class Pin {
   /// Changes no other pin: in BSRR, the upper half clears pins and the lower half sets them.
   void drive(bool high) { port_->bsrr = high ? 1U << number_ : 1U << (number_ + 16U); }
 
+  // memory: flash
   [[nodiscard]] bool is_high() const { return has(port_->idr, 1U << number_); }
 
   /// Reads the mode back. A port without a clock ignores writes and reads as zero.
   [[nodiscard]] bool is(PinMode mode) const {
+    // memory: flash
     return ((read(port_->moder) >> (2U * number_)) & 0x3U) == static_cast<std::uint32_t>(mode);
   }
 
   /// Reads the pull back. Use this for inputs: the mode of an input is zero, which a port without a
   /// clock reads too.
   [[nodiscard]] bool pulls(Pull pull) const {
+    // memory: flash
     return ((read(port_->pupdr) >> (2U * number_)) & 0x3U) == static_cast<std::uint32_t>(pull);
   }
 
@@ -56,6 +61,7 @@ class Pin {
   void set_mode(PinMode mode) { set_field(port_->moder, static_cast<std::uint32_t>(mode)); }
   void set_pull(Pull pull) { set_field(port_->pupdr, static_cast<std::uint32_t>(pull)); }
   void set_field(Word& word, std::uint32_t bits) {
+    // memory: flash
     change(word, 0x3U << (2U * number_), bits << (2U * number_));
   }
 

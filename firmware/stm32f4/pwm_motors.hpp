@@ -4,6 +4,8 @@
 // with the next period of the timer, the direction immediately. After a change of sign the old
 // width therefore acts in the new direction for up to one period, 50 us. The slew limit of the
 // safety gate bounds this effort.
+// Loop and memory annotations: docs/BOUND.md.
+// memory: RAM
 
 #include <cstdint>
 
@@ -77,13 +79,16 @@ class PwmMotors {
   /// not start.
   void connect(bool on) {
     connected_ = on && started_;
+    // memory: flash
     change(timer_.bdtr, pwm::kOutputsOn, connected_ ? pwm::kOutputsOn : 0U);
   }
 
   /// True if no amplifier reports a failure and the timer's registers hold the values written.
   [[nodiscard]] bool healthy() noexcept {
+    // memory: flash
     const bool delivered = read(timer_.ccr1) == compare_[0] && read(timer_.ccr2) == compare_[1] &&
                            read(timer_.ccr3) == compare_[2];
+    // memory: flash
     return started_ && delivered && has(timer_.bdtr, pwm::kOutputsOn) == connected_ &&
            good_.is_high();
   }

@@ -11,6 +11,7 @@ sys.dont_write_bytecode = True
 from served_board import ServedBoard, build_ball  # noqa: E402
 from tool_folder import SharedFolder  # noqa: E402
 
+NOT_HOMED = 1 << 7
 BOARD = sys.argv.pop(2) if len(sys.argv) > 2 else "host"
 TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
 
@@ -51,6 +52,20 @@ class Link(SharedFolder):
             ticks = [int(line.split(",")[0]) for line in trace if line[:1].isdigit()]
             self.assertEqual(ticks, list(range(ticks[0], ticks[0] + len(ticks))), "none is missing")
             self.assertGreater(len(ticks), 32)
+
+    @unittest.skipIf(BOARD != "host", "the images of emulated boards are homed")
+    def test_first_power_on(self):
+        with ServedBoard(TACTREE, self.blob, "--unhomed", "--first-force") as port:
+            seen = self.read_json("monitor", "--once", "--port", port)
+            self.assertEqual((seen["state"], seen["limits"]), ("idle", NOT_HOMED))
+            self.assertIn("not homed", self.run_verb("arm", "--port", port, code=1))
+            self.assertIn("active", self.run_verb("arm", "--home", "--port", port, "--seconds", "2"))
+            trace = self.run_verb("trace", "--port", port)
+            self.assertIn(",active,", trace)
+            seen = self.read_json("monitor", "--once", "--port", port)
+            self.assertEqual((seen["state"], seen["limits"]), ("idle", 0))
+            self.assertEqual(seen["motor_force_N"], [0.0, 0.0, 0.0])
+            self.assertRegex(self.run_verb("monitor", "--once", "--port", port), "motors +0.000 N .*gravity")
 
     def test_writes_and_rolls_back_a_model(self):
         with ServedBoard(TACTREE, self.blob, "--board", BOARD) as port:

@@ -145,6 +145,7 @@ void activate(const core::SurfacePoint& point) {
 /// Every start is a hand that presses into the object and holds the dead-man control.
 bool prepare() {
   core::Configuration configuration;
+  configuration.device.homing = core::HomingMethod::kAbsolute;
   configuration.limits.ramp_s = 0.002F;  // as soon as can be: a mistake is to show
   if (!expect(loop.start(configuration).ok(), "the model is loaded")) {
     return false;

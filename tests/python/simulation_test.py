@@ -65,6 +65,7 @@ class SameAsTheTool(Folder):
                 ({"damping_Ns_m": 1}, ["--damping", "1"]), ({"passivity_Ns_m": 0}, ["--passivity", "0"]),
                 ({"static_friction": 0.5, "dynamic_friction": 0.4}, ["--static-friction", "0.5", "--dynamic-friction", "0.4"]),
                 ({"use_materials": False}, ["--no-materials"]), ({"force_max_N": 2}, ["--force-max", "2"]),
+                ({"first_force": True}, ["--first-force"]),
                 ({"origin_m": [0, 0, 0.002]}, ["--origin", "0", "0", "0.002"]), ({"latency_ticks": 1}, ["--latency-ticks", "1"]),
                 ({"device": "cartesian", "encoder_step_m": 1e-5, "device_mass_kg": 0.2, "device_friction_N": 0.1},
                  ["--device", "cartesian", "--encoder-step", "1e-5", "--device-mass", "0.2", "--device-friction", "0.1"]),

@@ -97,6 +97,15 @@ class Recording(Folder):
             for name in table.dtype.names:
                 np.testing.assert_array_equal(table[name], arrays[name])
 
+    def test_columns_that_an_older_version_did_not_write(self):
+        self.spoil("board.csv", "added_force_x_N", "other")
+        with np.load(self.path / "board.npz") as arrays:
+            np.savez(self.path / "older.npz", **{name: arrays[name] for name in arrays.files if name != "added_force_x_N"})
+        for name in ("spoilt.csv", "older.npz"):
+            table = tactree.read_recording(self.path / name)
+            self.assertTrue(np.isnan(table["added_force_x_N"]).all())
+            self.assertFalse(np.isnan(table["added_force_y_N"]).any())
+
     def test_refuses_other_files(self):
         read = tactree.read_recording
         self.expect_refusal(read, "missing.npz", "give a file written by tactree record")

@@ -20,7 +20,9 @@ inline bool has_limit(const core::Output& output, core::Limit limit) {
 
 class ControllerRig {
  public:
-  explicit ControllerRig(const core::Configuration& configuration = {}) {
+  explicit ControllerRig(core::Configuration configuration = {},
+                         core::HomingMethod homing = core::HomingMethod::kAbsolute) {
+    configuration.device.homing = homing;
     status = controller.configure(configuration);
     model_status = controller.load_model(shared_plane().view());
     move(0.0, 0.0, 0.01);

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "tactree/support/explain.hpp"
 #include "tactree/support/json_reader.hpp"
 #include "tactree/support/user_error.hpp"
 
@@ -14,7 +15,6 @@ namespace tactree::controller {
 namespace {
 
 using support::JsonReader;
-using support::UserError;
 
 constexpr std::uintmax_t kMaxBytes = 1U << 20U;
 constexpr support::JsonRemedies kRemedies = {"is unknown", "docs/LINUX-BOARD.md lists the keys",
@@ -237,7 +237,8 @@ void check_together(const support::JsonReader& reader, const core::Configuration
                   "lower it, or raise rate_hz or damping_Ns_m");
   }
   if (status != core::ConfigurationStatus::kOk) {
-    reader.refuse("limits", core::describe(status), "give a value in that range");
+    reader.refuse("limits", support::explain(core::refusal_of(configuration)),
+                  "give a value in that range");
   }
 }
 
@@ -321,6 +322,7 @@ ControllerFile read_controller_file(const std::filesystem::path& file) {
     slew_given = limits.has("slew_N_s");
     read_limits(std::move(limits), result.configuration);
   }
+  const bool first_force = reader.has("first_force") && reader.flag("first_force");
   const core::DeviceModel& device = result.device.preset.model;
   read_encoders(reader.object("encoders"), device, result.board);
   read_motors(reader.object("motors"), core::axes_of(device.kind), result.board);
@@ -337,6 +339,9 @@ ControllerFile read_controller_file(const std::filesystem::path& file) {
   reader.finish();
   result.board.guard.priority = result.real_time.priority == 0 ? 0 : result.real_time.priority + 1;
   check_together(reader, result.configuration);
+  if (first_force) {
+    result.configuration = core::first_force(result.configuration);
+  }
   return result;
 }
 

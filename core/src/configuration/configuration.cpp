@@ -5,62 +5,89 @@
 namespace tactree::core {
 namespace {
 
-constexpr bool in_range(float value, float low, float high) {
+constexpr float kMinEffort = 1e-4F;  // N or Nm, of GateLimits
+
+constexpr bool in_bounds(float value, float low, float high) {
   return value >= low && value <= high;
 }
 
-constexpr bool in_range(Vec3 v, float limit) {
-  return in_range(v.x, -limit, limit) && in_range(v.y, -limit, limit) &&
-         in_range(v.z, -limit, limit);
+/// Keeps the first value that is out of range.
+class Checks {
+ public:
+  void range(ConfigurationStatus status, const char* field, float value, float min, float max) {
+    refuse(!in_bounds(value, min, max), {status, field, value, min, max});
+  }
+  void refuse(bool refused, const Refusal& refusal) {
+    if (first_.status == ConfigurationStatus::kOk && refused) {
+      first_ = refusal;
+    }
+  }
+  [[nodiscard]] const Refusal& first() const { return first_; }
+
+ private:
+  Refusal first_{};
+};
+
+void check_rendering(const Configuration& c, Checks& checks) {
+  using enum ConfigurationStatus;
+  const ContactParameters& k = c.contact;
+  checks.range(kBadStiffness, "contact.stiffness_N_m", k.stiffness_N_m, 0.0F, 1e5F);
+  checks.range(kBadDamping, "contact.damping_Ns_m", k.damping_Ns_m, 0.0F, 1e3F);
+  checks.range(kBadDamping, "device_damping_Ns_m", c.device_damping_Ns_m, 0.0F, 1e3F);
+  checks.range(kBadDamping, "hand_damping_Ns_m", c.hand_damping_Ns_m, 0.0F, 1e3F);
+  checks.range(kBadDamping, "passivity_Ns_m", c.passivity_Ns_m, 0.0F, 100.0F);
+  checks.range(kBadFriction, "contact.static_friction", k.static_friction, 0.0F, 2.0F);
+  checks.range(kBadFriction, "contact.dynamic_friction", k.dynamic_friction, 0.0F,
+               k.static_friction);
+  checks.range(kBadFilter, "velocity_cutoff_hz", c.velocity_cutoff_hz, 1.0F, 0.5F * c.rate_hz);
+  const float longest = static_cast<float>(kMaxDelayTicks) / c.rate_hz;
+  checks.range(kBadTimeout, "delay_s", c.delay_s, 0.0F, longest < 0.1F ? longest : 0.1F);
+  const float stiffest = stability_limit(c).with_hand_N_m;
+  checks.refuse(!(k.stiffness_N_m <= stiffest),
+                {kUnstable, "contact.stiffness_N_m", k.stiffness_N_m, 0.0F, stiffest});
 }
 
-ConfigurationStatus check_rendering(const Configuration& c) {
-  if (!in_range(c.contact.stiffness_N_m, 0.0F, 1e5F)) {
-    return ConfigurationStatus::kBadStiffness;
-  }
-  if (!in_range(c.contact.damping_Ns_m, 0.0F, 1e3F) ||
-      !in_range(c.device_damping_Ns_m, 0.0F, 1e3F) || !in_range(c.hand_damping_Ns_m, 0.0F, 1e3F) ||
-      !in_range(c.passivity_Ns_m, 0.0F, 100.0F)) {
-    return ConfigurationStatus::kBadDamping;
-  }
-  if (!in_range(c.contact.static_friction, 0.0F, 2.0F) ||
-      !in_range(c.contact.dynamic_friction, 0.0F, c.contact.static_friction)) {
-    return ConfigurationStatus::kBadFriction;
-  }
-  if (!in_range(c.velocity_cutoff_hz, 1.0F, 0.5F * c.rate_hz)) {
-    return ConfigurationStatus::kBadFilter;
-  }
-  if (!in_range(c.delay_s, 0.0F, 0.1F)) {
-    return ConfigurationStatus::kBadTimeout;
-  }
-  if (!(c.contact.stiffness_N_m <= stability_limit(c).with_hand_N_m)) {
-    return ConfigurationStatus::kUnstable;
-  }
-  return ConfigurationStatus::kOk;
-}
-
-ConfigurationStatus check_safety(const Configuration& c) {
-  if (!in_range(c.limits.ramp_s, 2.0F / c.rate_hz, 10.0F)) {
-    return ConfigurationStatus::kBadRamp;
-  }
+// The gate itself decides; the ranges are those of GateLimits, converted to seconds.
+void check_gate(const Configuration& c, Checks& checks) {
   SafetyGate gate;
-  if (!gate.configure(gate_limits(c))) {
-    return ConfigurationStatus::kBadLimit;
+  if (gate.configure(gate_limits(c))) {
+    return;
   }
-  if (!in_range(c.supervision.speed_max_m_s, 0.1F, 100.0F)) {
-    return ConfigurationStatus::kBadSpeed;
+  constexpr const char* kEffort[kAxes] = {"motors.effort_max[0]", "motors.effort_max[1]",
+                                          "motors.effort_max[2]"};
+  constexpr const char* kSlew[kAxes] = {"motors.effort_slew_s[0]", "motors.effort_slew_s[1]",
+                                        "motors.effort_slew_s[2]"};
+  const ConfigurationStatus bad = ConfigurationStatus::kBadLimit;
+  const auto slew = [&](const char* field, float value, float most) {
+    checks.range(bad, field, value, 1e-4F * most * c.rate_hz, 2.0F * most * c.rate_hz);
+  };
+  checks.range(bad, "limits.force_max_N", c.limits.force_max_N, 0.01F, 1000.0F);
+  slew("limits.slew_N_s", c.limits.slew_N_s, c.limits.force_max_N);
+  for (std::uint32_t i = 0; i < kAxes; ++i) {  // bound: kAxes
+    checks.range(bad, kEffort[i], c.motors.effort_max[i], 1e-4F, 1000.0F);
+    slew(kSlew[i], c.motors.effort_slew_s[i], c.motors.effort_max[i]);
   }
-  if (!in_range(c.link.timeout_s, 0.005F, 0.1F) ||
-      !in_range(c.supervision.enable_timeout_s, 0.001F, 1.0F)) {
-    return ConfigurationStatus::kBadTimeout;
+  checks.range(bad, "motors.continuous_share", c.motors.continuous_share, 0.05F, 1.0F);
+  checks.range(bad, "motors.thermal_time_s", c.motors.thermal_time_s, 1.0F, 1000.0F);
+  checks.refuse(true, {bad, "", 0.0F, 0.0F, 0.0F});  // a rounding error at the end of a range
+}
+
+void check_safety(const Configuration& c, Checks& checks) {
+  using enum ConfigurationStatus;
+  const Supervision& s = c.supervision;
+  checks.range(kBadRamp, "limits.ramp_s", c.limits.ramp_s, 2.0F / c.rate_hz, 10.0F);
+  if (checks.first().status == kOk) {  // gate_limits() requires a valid ramp_s
+    check_gate(c, checks);
   }
-  if (!in_range(c.supervision.stuck_s, 0.01F, 1.0F)) {
-    return ConfigurationStatus::kBadTimeout;
+  checks.range(kBadSpeed, "supervision.speed_max_m_s", s.speed_max_m_s, 0.1F, 100.0F);
+  checks.range(kBadTimeout, "link.timeout_s", c.link.timeout_s, 0.005F, 0.1F);
+  checks.refuse(c.link.required && !c.link.may_command, {kBadLink});
+  checks.range(kBadTimeout, "supervision.enable_timeout_s", s.enable_timeout_s, 0.001F, 1.0F);
+  checks.range(kBadTimeout, "supervision.stuck_s", s.stuck_s, 0.01F, 1.0F);
+  if (s.supply_monitored) {
+    checks.range(kBadSupply, "supervision.supply_min_V", s.supply_min_V, 1.0F, 1000.0F);
+    checks.range(kBadSupply, "supervision.supply_max_V", s.supply_max_V, s.supply_min_V, 1000.0F);
   }
-  const bool supply = in_range(c.supervision.supply_min_V, 1.0F, 1000.0F) &&
-                      in_range(c.supervision.supply_max_V, c.supervision.supply_min_V, 1000.0F);
-  return c.supervision.supply_monitored && !supply ? ConfigurationStatus::kBadSupply
-                                                   : ConfigurationStatus::kOk;
 }
 
 constexpr const char* kWords[] = {
@@ -80,6 +107,7 @@ constexpr const char* kWords[] = {
     "a timeout or delay is outside its range",
     "supply_min_V or supply_max_V is outside its range",
     "stiffness_N_m is beyond the stability limit of device, hand and rate",
+    "a link that is required may only watch",
 };
 constexpr std::uint32_t kWordCount = sizeof(kWords) / sizeof(kWords[0]);
 
@@ -90,21 +118,37 @@ const char* describe(ConfigurationStatus status) {
   return index < kWordCount ? kWords[index] : "unknown status";
 }
 
-ConfigurationStatus check(const Configuration& c) {
-  if (!in_range(c.rate_hz, 100.0F, 20000.0F)) {
-    return ConfigurationStatus::kBadRate;
+Refusal refusal_of(const Configuration& c) {
+  using enum ConfigurationStatus;
+  Checks checks;
+  checks.range(kBadRate, "rate_hz", c.rate_hz, 100.0F, 20000.0F);
+  checks.refuse(c.mode != RenderMode::kSurface && c.mode != RenderMode::kPaper, {kBadMode});
+  checks.refuse(!is_valid(c.device), {kBadDevice});
+  checks.range(kBadOrigin, "model_origin_m.x", c.model_origin_m.x, -10.0F, 10.0F);
+  checks.range(kBadOrigin, "model_origin_m.y", c.model_origin_m.y, -10.0F, 10.0F);
+  checks.range(kBadOrigin, "model_origin_m.z", c.model_origin_m.z, -10.0F, 10.0F);
+  if (checks.first().status == kOk) {  // the further checks require a valid rate
+    check_rendering(c, checks);
+    check_safety(c, checks);
   }
-  if (c.mode != RenderMode::kSurface && c.mode != RenderMode::kPaper) {
-    return ConfigurationStatus::kBadMode;
+  return checks.first();
+}
+
+Configuration first_force(const Configuration& configuration) {
+  Configuration c = configuration;
+  const float most = c.limits.force_max_N;
+  const float share = most > kFirstForce_N ? kFirstForce_N / most : 1.0F;
+  c.limits.force_max_N = share * most;
+  c.limits.slew_N_s *= share;
+  for (std::uint32_t i = 0; i < kAxes; ++i) {  // bound: kAxes
+    const float effort = c.motors.effort_max[i];
+    const float reduced = share * effort > kMinEffort ? share * effort : kMinEffort;
+    c.motors.effort_slew_s[i] *= reduced / effort;
+    c.motors.effort_max[i] = reduced;
   }
-  if (!is_valid(c.device)) {
-    return ConfigurationStatus::kBadDevice;
-  }
-  if (!in_range(c.model_origin_m, 10.0F)) {
-    return ConfigurationStatus::kBadOrigin;
-  }
-  const ConfigurationStatus rendering = check_rendering(c);
-  return rendering != ConfigurationStatus::kOk ? rendering : check_safety(c);
+  c.compensate_gravity = false;
+  c.motors.signs_proven = false;
+  return c;
 }
 
 StabilityLimit stability_limit(const Configuration& c) {
@@ -125,6 +169,7 @@ GateLimits gate_limits(const Configuration& c) {
   limits.continuous_share = c.motors.continuous_share;
   limits.heat_share_per_tick = period_s / c.motors.thermal_time_s;
   limits.ramp_ticks = static_cast<std::uint32_t>(c.limits.ramp_s * c.rate_hz);
+  limits.signs_proven = c.motors.signs_proven;
   return limits;
 }
 

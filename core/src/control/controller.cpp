@@ -63,7 +63,10 @@ void Controller::execute_command(const Input& input, FaultMask present) {
     return;
   }
   if (input.command == Command::kArm) {
-    handle_event(Event::kArm);
+    // Without known joint positions the proxy and the efforts would be wrong.
+    if (sensor_.homed()) {
+      handle_event(Event::kArm);
+    }
   } else if (input.command == Command::kStop) {
     if (state_ == State::kFault && latched_ == 0U) {
       recover();
@@ -194,6 +197,9 @@ void Controller::report(const Input& input, const SafetyGate::Result& gated) {
   status.velocity = sensor_.velocity();
   status.rendering = contact;
   status.force = gated.force;
+  status.added_force = force_stage_.added_force();
+  status.gravity_force = gated.gravity_force;
+  status.motor_force = gated.motor_force;
   status.load = input.load;
   report_reactions(gated.force - force_stage_.added_force());
   recorder_.add({status.state, status.faults, status.tick, status.probe, status.velocity,

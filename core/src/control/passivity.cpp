@@ -6,7 +6,7 @@
 namespace tactree::core {
 
 void PassivityController::configure(float period_s, float damping_max_Ns_m, float delay_s) {
-  constexpr float kMax = static_cast<float>(kHistory) - 1.001F;
+  constexpr float kMax = static_cast<float>(kMaxDelayTicks);
   period_s_ = period_s;
   damping_max_ = damping_max_Ns_m;
   delay_s_ = delay_s;

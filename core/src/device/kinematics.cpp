@@ -77,6 +77,21 @@ KindPose locate_kind(const DeviceModel& device, Vec3 joints) {
 
 }  // namespace
 
+Mat3 force_per_effort(const Mat3& effort_per_force) {
+  const Vec3 first = effort_per_force.row[0];
+  const Vec3 second = effort_per_force.row[1];
+  const Vec3 third = effort_per_force.row[2];
+  const bool planar = third == Vec3{};
+  if (planar && second == Vec3{}) {
+    return {{(1.0F / length_squared(first)) * first, {}, {}}};
+  }
+  const Vec3 normal = cross(first, second);
+  const Vec3 last = planar ? normal : third;
+  const Vec3 across = cross(second, last);
+  const float scale = 1.0F / dot(first, across);
+  return {{scale * across, scale * cross(last, first), planar ? Vec3{} : scale * normal}};
+}
+
 Vec3 joints_of(const DeviceModel& device, const std::int32_t (&counts)[kAxes]) {
   const std::uint32_t axes = axes_of(device.kind);
   return {joint_of(device, 0, counts[0]), axes > 1 ? joint_of(device, 1, counts[1]) : 0.0F,

@@ -1,7 +1,9 @@
 #pragma once
 // A board with an STM32F405, three encoders and three amplifiers. README.md in this folder lists
 // the pins and the tests that were run. `Word` is the type of a register (stm32f4/registers.hpp);
-// the tests run the whole board on simulated registers. Loop and memory annotations: docs/BOUND.md.
+// the tests run the whole board on simulated registers.
+// Loop and memory annotations: docs/BOUND.md.
+// memory: RAM
 
 #include <cstdint>
 
@@ -17,6 +19,7 @@
 #include "stm32f4/store_flash.hpp"
 #include "stm32f4/watchdog.hpp"
 #include "tactree/hal/board.hpp"
+#include "tactree/hal/panel.hpp"
 #include "tactree/session/session.hpp"
 #include "tactree/store/model_store.hpp"
 #include "wiring.hpp"
@@ -106,10 +109,32 @@ class Stm32f405Board {
     Stm32f405Board& board_;
   };
 
+  /// The link of an application, with the button and the lamp of the board. A stop of either has
+  /// priority over the other's command.
+  class Link {
+   public:
+    explicit Link(Stm32f405Board& board) : board_(board), mailbox_{board.mailbox_, board.ticker_} {}
+    [[nodiscard]] hal::LinkInput receive() noexcept {
+      hal::LinkInput input = mailbox_.receive();
+      const core::Command pressed = board_.panel_.command(board_.arm_button_.is_pressed());
+      if (input.command == core::Command::kNone || pressed == core::Command::kStop) {
+        input.command = pressed;
+      }
+      return input;
+    }
+    void send(const core::Status& status) noexcept {
+      mailbox_.send(status);
+      board_.lamp_.drive(board_.panel_.lamp(status));
+    }
+
+   private:
+    Stm32f405Board& board_;
+    session::MailboxLink<Ticker> mailbox_;
+  };
+
   using Flash = stm32f4::StoreFlash<Word, Cell, Standstill>;
   using Store = store::ModelStore<Flash>;
   using Session = session::Session<stm32f4::SerialPort<Word>, Store, SessionPlatform>;
-  using Link = session::MailboxLink<Ticker>;
 
   /// `clocks` is the result of prepare_chip().
   Stm32f405Board(const stm32f4::Chip<Word>& chip, const stm32f4::FlashCells<Cell>& cells,
@@ -122,6 +147,8 @@ class Stm32f405Board {
         pwm_(chip.tim8, {pin_c(0), pin_c(1), pin_c(2)}, pin_b(14), wiring::kEffortAtFullWidth),
         enable_line_(pin_c(4), pin_c(5), pwm_),
         safety_inputs_(pin_b(12), pin_b(13)),
+        arm_button_(pin_b(15)),
+        lamp_(pin_c(3)),
         port_(chip.usart1, chip.dma2, ring_),
         watchdog_(chip.watchdog),
         standstill_(*this),
@@ -130,7 +157,7 @@ class Stm32f405Board {
         store_(slot_flash_, record_flash_, {identity_.board, nullptr, {}}),
         motors_(*this),
         ticker_(*this),
-        link_{mailbox_, ticker_} {
+        link_(*this) {
     if (!full_speed_) {
       report_.miss(part_of(clocks));
     }
@@ -144,6 +171,8 @@ class Stm32f405Board {
     report_.last_fault = last_fault;
     note(enable_line_.start(), Part::kEnableLine);
     note(safety_inputs_.start(), Part::kSafetyInputs);
+    note(arm_button_.start(), Part::kSafetyInputs);
+    lamp_.make_output();
     prepare_encoder_pins();
     note(encoders_.start(), Part::kEncoders);
     prepare_motor_pins();
@@ -156,6 +185,7 @@ class Stm32f405Board {
     (void)store_.mount();
     core::Configuration configuration = wiring::configuration();
     store::apply_saved_parameters(store_.parameters(), configuration);
+    panel_.configure(configuration.rate_hz);
     return configuration;
   }
 
@@ -232,6 +262,8 @@ class Stm32f405Board {
   stm32f4::PwmMotors<Word> pwm_;
   stm32f4::EnableLine<Word> enable_line_;
   stm32f4::SafetyInputs<Word> safety_inputs_;
+  stm32f4::Button<Word> arm_button_;
+  stm32f4::Pin<Word> lamp_;
   stm32f4::Ring ring_{};
   stm32f4::SerialPort<Word> port_;
   stm32f4::Watchdog<Word> watchdog_;
@@ -241,6 +273,7 @@ class Stm32f405Board {
   Store store_;
   SessionPlatform platform_;
   session::TickMailbox mailbox_;
+  hal::Panel panel_;
   Motors motors_;
   Ticker ticker_;
   Link link_;

@@ -30,13 +30,21 @@ inline constexpr std::uint32_t kUsart1Function = 7;
 /// Effort of an axis at a duty cycle of 1, N or Nm.
 inline constexpr float kEffortAtFullWidth[core::kAxes] = {1.9F, 1.8F, 1.5F};
 
-/// Configuration of the device. The device is homed by hand (HomingMethod::kGivenPose). The link of
-/// the application is required because the application stops the device over it.
-inline core::Configuration configuration() {
+/// What an application at the port is for.
+enum class LinkUse : std::uint8_t {
+  kOperates,  ///< it arms, and the force ends without it; the button arms as well
+  kWatches,   ///< the board stands alone: button and dead-man control operate it, the link may come
+              ///< and go; an application may watch and stop
+};
+inline constexpr LinkUse kLinkUse = LinkUse::kOperates;
+
+/// Configuration of the device. The device is homed by hand (HomingMethod::kGivenPose).
+inline core::Configuration configuration(LinkUse use = kLinkUse) {
   core::Configuration configuration;
   core::use_device(core::presets::premium(), configuration);
   configuration.rate_hz = 1000.0F;  // the watchdog requires at least this rate
-  configuration.link.required = true;
+  configuration.link.required = use == LinkUse::kOperates;
+  configuration.link.may_command = use == LinkUse::kOperates;
   configuration.link.timeout_s = 0.1F;
   return configuration;
 }

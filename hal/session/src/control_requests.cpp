@@ -69,6 +69,9 @@ WireStatus ControlRequests::arm(const Moment& moment, core::Command& command) {
   if (state != core::State::kIdle) {
     return WireStatus::kNotNow;
   }
+  if (!controller_.homed()) {
+    return WireStatus::kNotHomed;
+  }
   if (moment.flash_busy) {
     return WireStatus::kBusy;
   }

@@ -47,6 +47,15 @@ core::wire::OpenReply RequestFilter::opening(std::uint32_t now_us) const {
   return {core::wire::kProtocolMajor, minor_, session_, nonce_, now_us};
 }
 
+WireStatus RequestFilter::known(WireStatus status) const {
+  if (minor_ > 0U) {
+    return status;
+  }
+  return status == WireStatus::kNotHomed    ? WireStatus::kNotNow
+         : status == WireStatus::kWatchOnly ? WireStatus::kUnsupported
+                                            : status;
+}
+
 core::Adjustment with_link(core::Adjustment adjustment, const core::Configuration& base,
                            std::uint32_t timeout_ms) {
   adjustment.link.required = base.link.required;
@@ -58,6 +67,24 @@ core::Adjustment with_link(core::Adjustment adjustment, const core::Configuratio
     adjustment.link.timeout_s = shorter ? timeout_s : base.link.timeout_s;
   }
   return adjustment;
+}
+
+bool is_watching(core::wire::MessageKind kind) {
+  using Kind = core::wire::MessageKind;
+  switch (kind) {
+    case Kind::kClose:
+    case Kind::kHeartbeat:
+    case Kind::kCapabilities:
+    case Kind::kState:
+    case Kind::kSubscribe:
+    case Kind::kListModels:
+    case Kind::kReadTrace:
+    case Kind::kReadFault:
+    case Kind::kGetParameter:
+      return true;
+    default:
+      return false;
+  }
 }
 
 WireStatus to_wire(core::ConfigurationStatus status) {

@@ -244,8 +244,9 @@ void Board::set_material(const core::wire::SetMaterialRequest& material) {
 
 void Board::subscribe(const Subscription& subscription) {
   subscription_ = subscription;
+  const std::uint32_t known = core::wire::telemetry_fields_of(connection().protocol_minor());
   (void)demand(MessageKind::kSubscribe,
-               core::wire::SubscribeRequest{subscription.fields, subscription.every_ticks},
+               core::wire::SubscribeRequest{subscription.fields & known, subscription.every_ticks},
                "subscribe");
 }
 

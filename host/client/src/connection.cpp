@@ -228,6 +228,8 @@ void Connection::open(std::uint16_t link_timeout_ms) {
   if (!response.ok()) {
     throw LinkError(name() + ": " + core::wire::describe(response.status));
   }
+  core::wire::OpenReply reply;
+  protocol_minor_ = response.read(reply) ? reply.version_minor : std::uint8_t{0};
 }
 
 Response Connection::call(MessageKind kind, std::span<const std::byte> payload) {

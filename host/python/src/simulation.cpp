@@ -67,6 +67,7 @@ setup::SessionOptions read_options(const py::dict& values) {
   read(values, "dynamic_friction", c.contact.dynamic_friction);
   read(values, "passivity_Ns_m", c.passivity_Ns_m);
   read(values, "use_materials", c.use_materials);
+  read(values, "first_force", options.first_force);
   read(values, "origin_m", options.origin_m);
   read_plant(values, options);
   if (values.contains("force_max_N")) {

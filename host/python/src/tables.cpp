@@ -5,6 +5,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -21,7 +22,8 @@ namespace {
 // Rows between two checks for Ctrl-C; some hundredths of a second.
 constexpr std::size_t kBatch = 10000;
 
-/// Reads a CSV file with these columns, in any order; further columns are ignored.
+/// Reads a CSV file with these columns, in any order. Further columns are ignored. Float32 columns
+/// that an older version did not write are NaN.
 class TableReader {
  public:
   TableReader(const std::filesystem::path& file, const std::vector<Field>& fields,
@@ -29,10 +31,10 @@ class TableReader {
       : table_(file, {.header = support::CsvHeader::kRequired}), fields_(fields), remedy_(remedy) {
     for (const Field& field : fields) {
       const std::optional<std::size_t> column = table_.find_column(field.name);
-      if (!column) {
+      if (!column && field.type != FieldType::kFloat32) {
         table_.refuse("the header has no column " + field.name, remedy_);
       }
-      columns_.push_back(*column);
+      columns_.push_back(column);
     }
   }
 
@@ -40,7 +42,11 @@ class TableReader {
     std::vector<double> values(fields_.size());
     while (table_.next_row()) {
       for (std::size_t i = 0; i < values.size(); ++i) {
-        values[i] = fields_[i].name == "state" ? state(columns_[i]) : number(i);
+        if (!columns_[i]) {
+          values[i] = std::numeric_limits<double>::quiet_NaN();
+        } else {
+          values[i] = fields_[i].name == "state" ? state(*columns_[i]) : number(i);
+        }
       }
       rows.append(values);
       if (rows.rows() % kBatch == 0) {
@@ -52,7 +58,7 @@ class TableReader {
  private:
   /// A number that its type holds. NaN and infinity are not accepted.
   [[nodiscard]] double number(std::size_t field) const {
-    const double value = table_.number(columns_[field]);
+    const double value = table_.number(*columns_[field]);
     const auto [low, high] = range_of(fields_[field].type);
     if (!(value >= low && value <= high)) {
       table_.refuse(
@@ -93,7 +99,7 @@ class TableReader {
   support::CsvReader table_;
   const std::vector<Field>& fields_;
   const char* remedy_;
-  std::vector<std::size_t> columns_;
+  std::vector<std::optional<std::size_t>> columns_;
 };
 
 py::array read_table(const std::filesystem::path& file, const std::vector<Field>& fields,

@@ -22,7 +22,7 @@ class Simulation:
                  stiffness_N_m: float | None = None, damping_Ns_m: float | None = None,
                  static_friction: float | None = None, dynamic_friction: float | None = None,
                  use_materials: bool | None = None, passivity_Ns_m: float | None = None,
-                 force_max_N: float | None = None, origin_m: Sequence[float] | None = None,
+                 force_max_N: float | None = None, first_force: bool | None = None, origin_m: Sequence[float] | None = None,
                  latency_ticks: float | None = None, encoder_step_m: float | None = None,
                  device_mass_kg: float | None = None, device_friction_N: float | None = None,
                  hand_stiffness_N_m: float | None = None, hand_damping_Ns_m: float | None = None,
@@ -41,7 +41,7 @@ class Simulation:
         options = {
             "device": device, "rate_hz": rate_hz, "mode": mode, "stiffness_N_m": stiffness_N_m,
             "damping_Ns_m": damping_Ns_m, "static_friction": static_friction, "dynamic_friction": dynamic_friction,
-            "use_materials": use_materials, "passivity_Ns_m": passivity_Ns_m, "force_max_N": force_max_N,
+            "use_materials": use_materials, "passivity_Ns_m": passivity_Ns_m, "force_max_N": force_max_N, "first_force": first_force,
             "origin_m": origin_m, "latency_ticks": latency_ticks, "encoder_step_m": encoder_step_m,
             "device_mass_kg": device_mass_kg, "device_friction_N": device_friction_N,
             "hand_stiffness_N_m": hand_stiffness_N_m, "hand_damping_Ns_m": hand_damping_Ns_m,

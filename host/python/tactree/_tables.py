@@ -24,7 +24,8 @@ def read_trace(path: str | os.PathLike[str]) -> npt.NDArray[Any]:
 def read_recording(path: str | os.PathLike[str]) -> npt.NDArray[Any]:
     """Reads a file of `tactree record`, CSV or npz: a structured array with the columns of the recording.
 
-    `state` is an index of STATES. Raises FileError with the place, the cause and a hint.
+    `state` is an index of STATES. Columns that an older version did not record are NaN. Raises FileError with the place,
+    the cause and a hint.
     """
     if not str(os.fspath(path)).endswith(".npz"):
         return _native.read_ticks(path)
@@ -38,16 +39,17 @@ def read_recording(path: str | os.PathLike[str]) -> npt.NDArray[Any]:
 def _assemble(file: str, arrays: dict[str, npt.NDArray[Any]]) -> npt.NDArray[Any]:
     dtype = _native.tick_dtype()
     for name in (*dtype.names, "state_names"):
-        if name not in arrays:
+        optional = name != "state_names" and dtype[name] == np.float32
+        if name not in arrays and not optional:
             raise _native.FileError(f"{file}: has no array {name} ({_REMEDY})")
     if tuple(arrays["state_names"]) != _native.STATES:
         raise _native.FileError(f"{file}: state_names: other states than those of this version ({_REMEDY})")
-    lengths = {len(arrays[name]) for name in dtype.names}
+    lengths = {len(arrays[name]) for name in dtype.names if name in arrays}
     if len(lengths) != 1:
         raise _native.FileError(f"{file}: the arrays differ in length ({_REMEDY})")
     table = np.empty(lengths.pop(), dtype)
     for name in dtype.names:
-        table[name] = arrays[name]
+        table[name] = arrays.get(name, np.nan)
     return table
 
 

@@ -43,6 +43,9 @@ void visit_columns(const Tick& tick, Visit visit) {
   vector("velocity", "_m_s", t.velocity_m_s);
   vector("force", "_N", t.force_N);
   vector("wanted_force", "_N", t.wanted_N);
+  vector("gravity_force", "_N", t.gravity_N);
+  vector("added_force", "_N", t.added_N);
+  vector("motor_force", "_N", t.motors_N);
   visit("in_contact", kUint8, in_contact ? 1.0 : 0.0);
   visit("body", kInt32, in_contact ? static_cast<double>(t.body) : -1.0);
   vector("proxy", "_m", in_contact ? t.proxy_m : t.probe_m);

@@ -26,9 +26,10 @@ constexpr std::chrono::milliseconds kMinPause{1};    // between frames, on a slo
 constexpr std::chrono::seconds kConfirmTimeout{30};  // the default of tactree arm
 
 // All fields except the reactions of bodies.
-constexpr std::uint32_t kFields = 0x1FF;
+constexpr std::uint32_t kFields =
+    core::wire::kAllTelemetry & ~static_cast<std::uint32_t>(core::wire::TelemetryField::kReactions);
 // Size of a message with these fields, including header and framing.
-constexpr unsigned kMessageBytes = 140;
+constexpr unsigned kMessageBytes = 176;
 
 core::Vec3 vec3(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
 
@@ -43,6 +44,9 @@ core::Status status_of(const client::Telemetry& t) {
   s.probe = vec3(t.probe_m);
   s.velocity = vec3(t.velocity_m_s);
   s.force = vec3(t.force_N);
+  s.added_force = vec3(t.added_N);
+  s.gravity_force = vec3(t.gravity_N);
+  s.motor_force = vec3(t.motors_N);
   core::Rendering& r = s.rendering;
   r.in_contact = t.body != core::kNoBody;
   r.body = t.body;
@@ -132,8 +136,8 @@ std::optional<std::string> BoardSession::command(const json& command) {
     } else if (name == "hand" || name == "inject" || name == "clear_injections") {
       return fmt::format(
           "'{}': not available with a board (use a simulation: tactree view without --port)", name);
-    } else if (name != "arm" && name != "clear" && name != "connect") {
-      return fmt::format("'{}': unknown command (a board has arm, stop, clear, set, connect)",
+    } else if (name != "arm" && name != "clear" && name != "connect" && name != "home") {
+      return fmt::format("'{}': unknown command (a board has arm, stop, clear, home, set, connect)",
                          name);
     }
     if (name != "connect" && link_ != Link::kConnected) {
@@ -240,6 +244,8 @@ void BoardSession::execute(const json& command) {
   } else if (name == "clear") {
     board_->clear_faults();
     outcome_->cleared(last_ ? last_->t_s : 0.0);
+  } else if (name == "home") {
+    board_->home();
   } else if (!arming_until_) {
     board_->begin_arming();
     arming_until_ = board_->connection().now() + kConfirmTimeout;
@@ -301,6 +307,8 @@ void BoardSession::add(const client::Telemetry& telemetry) {
   }
   last_time_us_ = telemetry.header.board_time_us;
   sample.status = status_of(telemetry);
+  sample.has_parts = (telemetry.header.fields &
+                      static_cast<std::uint32_t>(core::wire::TelemetryField::kParts)) != 0U;
   sample.tip_m = {static_cast<double>(telemetry.probe_m[0]),
                   static_cast<double>(telemetry.probe_m[1]),
                   static_cast<double>(telemetry.probe_m[2])};

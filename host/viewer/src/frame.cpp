@@ -129,6 +129,11 @@ json run_json(const simulation::Sample& sample, const char* mode, const core::De
               {"tip_m", json::array({sample.tip_m.x(), sample.tip_m.y(), sample.tip_m.z()})},
               {"linkage", linkage_json(device, model_origin_m, sample.tip_m, joints)},
               {"candidates", json::array()}};
+  if (sample.has_parts) {
+    run["motor_force_N"] = exact(s.motor_force);
+    run["gravity_force_N"] = exact(s.gravity_force);
+    run["added_force_N"] = exact(s.added_force);
+  }
   if (r.in_contact && r.body < bodies.views.size()) {
     const core::Pose pose = bodies.bodies[r.body].path.at(sample.t_s).pose;
     run["candidates"] = candidates_json(r, bodies, pose, scratch);

@@ -19,6 +19,7 @@
 #include "tactree/simulation/injection.hpp"
 #include "tactree/simulation/placement.hpp"
 #include "tactree/simulation/workspace.hpp"
+#include "tactree/support/explain.hpp"
 
 namespace tactree::viewer {
 namespace {
@@ -63,14 +64,6 @@ json injections_json() {
   return list;
 }
 
-/// Applies the maximum force of the page. The slew must fit to it: see ForceLimits.
-void limit_force(const Settings& settings, core::Configuration& c) {
-  if (settings.force_max_N) {
-    c.limits.force_max_N = *settings.force_max_N;
-    c.limits.slew_N_s = std::min(c.limits.slew_N_s, 2.0F * *settings.force_max_N * c.rate_hz);
-  }
-}
-
 std::string refusal(const core::BlobView& view, const simulation::Setup& setup,
                     const hal::StartResult& start) {
   const core::Configuration& c = setup.controller;
@@ -81,7 +74,7 @@ std::string refusal(const core::BlobView& view, const simulation::Setup& setup,
         c.contact.stiffness_N_m, core::stability_limit(c).with_hand_N_m, c.rate_hz);
   }
   if (start.configuration != core::ConfigurationStatus::kOk) {
-    return describe(start);
+    return support::explain(core::refusal_of(c));
   }
   return fmt::format("{}: {}", view.header().name, describe(start));
 }
@@ -131,7 +124,9 @@ simulation::Setup LiveSession::make_setup(const Settings& settings, core::Render
       bodies_.views[0].header(), bodies_.bodies[0].path.first(), setup.controller.device.kind);
   setup.controller.supervision.supply_monitored = true;
   core::limit_to_rate(setup.controller);
-  limit_force(settings, setup.controller);
+  if (settings.force_max_N) {
+    core::limit_force(setup.controller, *settings.force_max_N);
+  }
   return setup;
 }
 

@@ -103,6 +103,7 @@ core::State state_of(std::string_view name) {
 
 Sample read_sample(const Row& row, const Columns& columns) {
   Sample sample;
+  sample.has_parts = false;
   sample.t_s = row.number(columns.t_s);
   // Boards do not report the true position of the tip; the probe is used instead.
   sample.tip_m = row.wide_vector(columns.tip.axes[0] ? columns.tip : columns.probe);

@@ -21,6 +21,12 @@ class LoopTest : public ::testing::Test {
     board_.sample({0.0, 0.0, z});
     return loop_.tick();
   }
+  /// With absolute encoders.
+  static core::Configuration homed() {
+    core::Configuration configuration;
+    configuration.device.homing = core::HomingMethod::kAbsolute;
+    return configuration;
+  }
   void activate() {
     board_.link().post(core::Command::kArm);
     for (int i = 0; i < 10; ++i) {
@@ -39,7 +45,7 @@ class LoopTest : public ::testing::Test {
 };
 
 TEST_F(LoopTest, WritesModelForceToMotors) {
-  ASSERT_TRUE(loop_.start({}).ok());
+  ASSERT_TRUE(loop_.start(homed()).ok());
   activate();
   ASSERT_EQ(controller_.state(), State::kActive);
   core::Output output = tick();
@@ -53,7 +59,7 @@ TEST_F(LoopTest, WritesModelForceToMotors) {
 }
 
 TEST_F(LoopTest, PassesBodyUpdatesToController) {
-  ASSERT_TRUE(loop_.start({}).ok());
+  ASSERT_TRUE(loop_.start(homed()).ok());
   activate();
   for (double z = 0.01; z > -1e-3; z -= 1e-4) {
     tick(z);
@@ -73,7 +79,7 @@ TEST_F(LoopTest, PassesBodyUpdatesToController) {
 
 // Updates of a missing body or with an invalid pose: the session continues.
 TEST_F(LoopTest, IgnoresRefusedBodyUpdate) {
-  ASSERT_TRUE(loop_.start({}).ok());
+  ASSERT_TRUE(loop_.start(homed()).ok());
   activate();
   for (double z = 0.01; z > -1e-3; z -= 1e-4) {
     tick(z);
@@ -92,7 +98,7 @@ TEST_F(LoopTest, IgnoresRefusedBodyUpdate) {
 }
 
 TEST_F(LoopTest, PowersNothingBeforeArming) {
-  ASSERT_TRUE(loop_.start({}).ok());
+  ASSERT_TRUE(loop_.start(homed()).ok());
   for (double z = 0.01; z > -2e-3; z -= 1e-4) {
     tick(z);
     ASSERT_FALSE(board_.enable_line().read_back());
@@ -104,7 +110,7 @@ TEST_F(LoopTest, ForwardsEverySwitchAndFailure) {
   const auto fault_after = [this](auto&& happen) {
     core::Controller fresh;
     hal::Loop<SimBoard> loop(board_, fresh);
-    EXPECT_TRUE(loop.start({}).ok());
+    EXPECT_TRUE(loop.start(homed()).ok());
     board_.sample({0.0, 0.0, 0.01});
     loop.tick();
     EXPECT_EQ(fresh.faults(), 0U);

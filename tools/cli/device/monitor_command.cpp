@@ -81,6 +81,7 @@ std::string to_text(const View& view) {
   return fmt::format(
       "state    {}{}\n"
       "force    {:7.3f} N [{}{}] {:.3g} N\n"
+      "motors   {:7.3f} N at the probe: with {:.3f} N of gravity compensation, {:.3f} N added\n"
       "probe    {:9.4f} {:9.4f} {:9.4f} m   speed {:.3f} m/s\n"
       "contact  {}\n"
       "ticks    {:.0f} per second, load {:.1f} %{}{}, overruns {}, telemetry dropped {}\n"
@@ -89,7 +90,8 @@ std::string to_text(const View& view) {
       limits.empty() ? "" : " (limited by: " + limits + ")", force,
       std::string(static_cast<std::size_t>(filled), '#'),
       std::string(static_cast<std::size_t>(kBarWidth - filled), ' '), view.force_max_N,
-      t.probe_m[0], t.probe_m[1], t.probe_m[2], length(t.velocity_m_s),
+      length(t.motors_N), length(t.gravity_N), length(t.added_N), t.probe_m[0], t.probe_m[1],
+      t.probe_m[2], length(t.velocity_m_s),
       t.body == core::kNoBody ? "none"
                               : fmt::format("body {}, {:.3f} mm deep", t.body,
                                             1e3 * static_cast<double>(t.penetration_m)),
@@ -106,6 +108,9 @@ nlohmann::json to_json(const View& view) {
           {"fault_names", client::names_of(t.faults)},
           {"limits", t.limits},
           {"force_N", t.force_N},
+          {"motor_force_N", t.motors_N},
+          {"gravity_force_N", t.gravity_N},
+          {"added_force_N", t.added_N},
           {"probe_m", t.probe_m},
           {"velocity_m_s", t.velocity_m_s},
           {"in_contact", t.body != core::kNoBody},
@@ -122,6 +127,9 @@ class NoTelemetry : public support::UserError {
   using support::UserError::UserError;
 };
 
+constexpr std::uint32_t kFields =
+    core::wire::kAllTelemetry & ~static_cast<std::uint32_t>(core::wire::TelemetryField::kReactions);
+
 class Monitor {
  public:
   explicit Monitor(client::Board& board) : board_(board) {
@@ -132,7 +140,7 @@ class Monitor {
         (can.flags & static_cast<std::uint32_t>(core::wire::BoardFlag::kWorkReduced)) != 0U;
     // Fifty messages per second are readable and leave bandwidth on a serial port.
     const auto every = static_cast<std::uint32_t>(std::max(1.0F, can.rate_hz / 50.0F));
-    board_.subscribe({0x1FF, every});
+    board_.subscribe({kFields, every});
   }
 
   /// Throws NoTelemetry if no telemetry arrives.
@@ -182,7 +190,7 @@ void print_view(const std::string& text, bool first) {
   if (isatty(STDOUT_FILENO) == 0) {
     fmt::print("{}{}", first ? "" : "\n", text);
   } else {
-    fmt::print("{}", first ? "" : "\x1b[6A");
+    fmt::print("{}", first ? "" : "\x1b[7A");
     for (std::size_t at = 0; at < text.size();) {
       const std::size_t line_end = text.find('\n', at);
       fmt::print("\x1b[2K{}\n", text.substr(at, line_end - at));

@@ -32,7 +32,7 @@ struct RecordOptions {
 };
 
 // Bytes of a frame with the recorded fields.
-constexpr double kFrameBytes = 140.0;
+constexpr double kFrameBytes = 176.0;
 // Messages that wait while the disk is slow: 16 s at 4 kHz, about 12 MB.
 constexpr std::size_t kStreamCapacity = 65536;
 constexpr std::chrono::milliseconds kBatch{50};

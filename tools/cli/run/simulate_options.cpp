@@ -42,6 +42,11 @@ void add_controller_options(CLI::App& verb, SimulateOptions& options) {
                 "ignore the materials of the blob: use the options above everywhere");
   verb.add_option("--force-max", options.force_max_N, "maximum force, N (default: the device's)")
       ->check(CLI::Range(0.01, 1000.0));
+  verb.add_flag("--first-force", options.first_force,
+                fmt::format("limits for the first force of a new device: at most {} N at the probe "
+                            "even with a wrong sign of a motor, reduced slew rates and efforts, "
+                            "and no gravity compensation",
+                            core::kFirstForce_N));
 }
 
 std::string injection_help() {
@@ -178,6 +183,10 @@ void add_serve_options(CLI::App& verb, SimulateOptions& options) {
       ->needs(serve)
       ->excludes(usb)
       ->excludes(lock_step);
+  verb.add_flag("--unhomed", options.unhomed,
+                "with --serve: start as after power-up, with unknown joint positions; the user "
+                "holds the device in its home pose until a program homes it (tactree arm --home)")
+      ->needs(serve);
   verb.add_option("--serial", options.serial, "with --serve: last part of the serial number")
       ->needs(serve);
 }

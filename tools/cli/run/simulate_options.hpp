@@ -27,6 +27,7 @@ struct SimulateOptions : setup::SessionOptions {
   bool serve = false;
   std::string key;  // public key for the models of the served board
   bool lock_step = false;
+  bool unhomed = false;
   bool on_usb = false;
   std::optional<std::string> usb_port;  // USB device port of this computer; "": the only one
   std::uint32_t serial = 1;

@@ -57,7 +57,9 @@ simulation::HandPath hand_path(const SimulateOptions& options, const setup::Scen
 
 simulation::Setup make_setup(const SimulateOptions& options, const setup::SceneFile& scene) {
   check_cartesian_options(options);
-  return setup::make_setup(options, first_body(scene));
+  simulation::Setup setup = setup::make_setup(options, first_body(scene));
+  setup.homed = !options.unhomed;
+  return setup;
 }
 
 std::vector<simulation::InjectedFault> injections(const SimulateOptions& options) {

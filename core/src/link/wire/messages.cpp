@@ -29,6 +29,8 @@ constexpr const char* kWords[kWireStatuses] = {
     "the slot holds the model in use",
     "writing the flash failed",
     "too many requests at once",
+    "the device is not homed: home it first",
+    "the board is operated by its button; an application may watch and stop only",
 };
 
 }  // namespace

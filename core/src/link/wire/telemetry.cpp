@@ -18,7 +18,8 @@ static_assert(offsetof(Telemetry, state) == 16 && offsetof(Telemetry, probe_m) =
               offsetof(Telemetry, velocity_m_s) == 40 && offsetof(Telemetry, force_N) == 52 &&
               offsetof(Telemetry, proxy_m) == 64 && offsetof(Telemetry, normal) == 76 &&
               offsetof(Telemetry, penetration_m) == 88 && offsetof(Telemetry, wanted_N) == 100 &&
-              offsetof(Telemetry, overruns) == 112 && offsetof(Telemetry, reactions) == 120);
+              offsetof(Telemetry, overruns) == 112 && offsetof(Telemetry, reactions) == 120 &&
+              offsetof(Telemetry, gravity_N) == 176);
 
 void copy(Vec3 from, float (&to)[3]) {
   to[0] = from.x;
@@ -68,6 +69,9 @@ Telemetry to_telemetry(const TelemetryHeader& header, const Status& status) {
     copy(status.reactions[i].force_N, t.reactions[i].force_N);
     copy(status.reactions[i].torque_Nm, t.reactions[i].torque_Nm);
   }
+  copy(status.gravity_force, t.gravity_N);
+  copy(status.added_force, t.added_N);
+  copy(status.motor_force, t.motors_N);
   return t;
 }
 

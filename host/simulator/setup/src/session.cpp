@@ -11,6 +11,7 @@
 #include "tactree/simulation/placement.hpp"
 #include "tactree/simulation/workspace.hpp"
 #include "tactree/support/device_file.hpp"
+#include "tactree/support/explain.hpp"
 #include "tactree/support/user_error.hpp"
 
 namespace tactree::setup {
@@ -25,7 +26,7 @@ void choose_device(const SessionOptions& options, simulation::Setup& setup) {
   const support::Device device = support::load_device(options.device);
   simulation::use_device(device.preset, setup);
   if (options.force_max_N) {
-    setup.controller.limits.force_max_N = *options.force_max_N;
+    core::limit_force(setup.controller, *options.force_max_N);
   }
   if (setup.controller.device.kind != core::DeviceKind::kCartesian) {
     return;
@@ -84,6 +85,9 @@ simulation::Setup make_setup(const SessionOptions& options, const FirstBody& bod
   controller.supervision.supply_monitored = true;
   controller.delay_s = static_cast<float>(options.latency_ticks) / controller.rate_hz;
   core::limit_to_rate(controller);
+  if (options.first_force && core::check(controller) == core::ConfigurationStatus::kOk) {
+    controller = core::first_force(controller);
+  }
   return setup;
 }
 
@@ -103,7 +107,8 @@ void check_start(const std::string& file, const core::BlobView& view,
                                                        : "build the image again");
   }
   if (start.configuration != core::ConfigurationStatus::kOk) {
-    refuse(fmt::format("configuration: {}", describe(start)), "give a value in that range");
+    refuse(fmt::format("configuration: {}", support::explain(core::refusal_of(setup.controller))),
+           "give a value in that range");
   }
   if (start.blob != core::BlobStatus::kOk) {
     refuse(fmt::format("{}: refused: {}", file, describe(start)), "build it again from the scan");

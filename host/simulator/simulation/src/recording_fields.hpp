@@ -98,6 +98,7 @@ void visit(Fields& fields, core::MotorLimits& l) {
   visit(fields, l.effort_slew_s);
   fields(l.continuous_share);
   fields(l.thermal_time_s);
+  fields(l.signs_proven);
 }
 
 template <class Fields>
@@ -115,6 +116,7 @@ template <class Fields>
 void visit(Fields& fields, core::LinkSupervision& l) {
   fields(l.required);
   fields(l.timeout_s);
+  fields(l.may_command);
 }
 
 template <class Fields>
@@ -146,7 +148,7 @@ void visit(Fields& fields, core::Adjustment& a) {
 }
 
 // If this fails, add the new field to the lists above and increase kRecordingVersion.
-static_assert(sizeof(core::Configuration) == 360 && sizeof(core::Adjustment) == 40);
+static_assert(sizeof(core::Configuration) == 368 && sizeof(core::Adjustment) == 44);
 
 /// First bytes of the file.
 inline constexpr char kRecordingMagic[8] = {'T', 'A', 'C', 'T', 'R', 'R', 'E', 'C'};

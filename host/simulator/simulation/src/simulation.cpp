@@ -30,9 +30,21 @@ hal::sim::BoardParameters counting(hal::sim::BoardParameters board, float rate_h
   return board;
 }
 
-Setup homed(Setup setup) {
-  setup.controller.device.homing = core::HomingMethod::kAbsolute;
+// Counts of an axis in the home pose at power-up, if the device is not homed.
+constexpr std::int32_t kCountsAtPowerUp = 1234;
+// Speed at which the user moves from the home pose to the start of the path.
+constexpr double kApproach_m_s = 0.1;
+
+Setup with_homing(Setup setup) {
+  setup.controller.device.homing =
+      setup.homed ? core::HomingMethod::kAbsolute : core::HomingMethod::kGivenPose;
   return setup;
+}
+
+/// Position of the probe in the home pose, device frame.
+Eigen::Vector3d home_of(const core::DeviceModel& device) {
+  const float(&home)[core::kAxes] = device.home_position;
+  return widen(core::locate_joints(device, {home[0], home[1], home[2]}).probe);
 }
 
 bool has_mass(const core::DeviceModel& model) {
@@ -68,13 +80,15 @@ void use_device(const core::DevicePreset& device, Setup& setup) {
 
 Simulation::Simulation(std::span<const std::byte> blob, const Setup& setup, HandPath path,
                        std::unique_ptr<Target> target)
-    : setup_(homed(setup)),
+    : setup_(with_homing(setup)),
       path_(std::move(path)),
+      at_home_m_(setup.homed ? std::nullopt : std::optional(home_of(setup.controller.device))),
       period_s_(1.0 / static_cast<double>(setup.controller.rate_hz)),
       board_(counting(setup.board, setup.controller.rate_hz), blob),
       target_(std::move(target)),
       start_(target_->start(board_, setup_.controller)),
-      plant_(mechanics(setup), path_.at(0.0).position_m + widen(setup.controller.model_origin_m)) {
+      plant_(mechanics(setup), at_home_m_.value_or(path_.at(0.0).position_m +
+                                                   widen(setup.controller.model_origin_m))) {
   // Fills the latency line with readings of the device at rest.
   for (std::uint32_t i = 0; i <= hal::sim::kMaxLatencyTicks; ++i) {
     sample_device();
@@ -87,7 +101,8 @@ void Simulation::sample_device() {
   for (std::uint32_t i = 0; i < core::axes_of(device.kind); ++i) {
     const double displacement = plant_.joints()[i] - static_cast<double>(device.home_position[i]);
     counts[i] = displacement * static_cast<double>(core::counts_per_unit(device, i)) +
-                static_cast<double>(device.home_count[i]);
+                static_cast<double>(device.home_count[i]) +
+                (setup_.homed ? 0.0 : static_cast<double>(kCountsAtPowerUp));
     counts[i] = held_counts_ ? (*held_counts_)[i] : counts[i];
   }
   board_.sample(counts);
@@ -138,11 +153,27 @@ core::Status Simulation::tick(double path_t_s) {
   if (held_counts_) {
     return status;
   }
-  plant::HandTarget target = steered_ ? *steered_ : path_.at(path_t_s);
-  target.position_m += widen(setup_.controller.model_origin_m);
+  const bool is_homed = (status.limits & core::limit_bit(core::Limit::kNotHomed)) == 0U;
+  const plant::HandTarget target = hand_at(path_t_s, is_homed);
   plant_.advance({board_.effort(0), board_.effort(1), board_.effort(2)}, target,
                  period_s_ * injector_.clock_ratio(time_s()));
   return status;
+}
+
+plant::HandTarget Simulation::hand_at(double path_t_s, bool is_homed) {
+  plant::HandTarget target = steered_ ? *steered_ : path_.at(path_t_s);
+  target.position_m += widen(setup_.controller.model_origin_m);
+  if (!at_home_m_) {
+    return target;
+  }
+  const Eigen::Vector3d way = target.position_m - *at_home_m_;
+  const double step = is_homed ? kApproach_m_s * period_s_ : 0.0;
+  if (way.norm() <= step) {
+    at_home_m_.reset();
+    return target;
+  }
+  *at_home_m_ += step / way.norm() * way;
+  return {.position_m = *at_home_m_};
 }
 
 void Recorder::add(const Sample& sample) {

@@ -249,6 +249,7 @@ find('view').addEventListener('pointerdown', () => {
 });
 find('scale').addEventListener('click', () => say({ do: 'fit' }));
 find('stop').addEventListener('click', stop);
+find('home').addEventListener('click', () => say({ do: 'home' }));
 find('arm').addEventListener('click', () => say({ do: 'arm' }));
 find('connect').addEventListener('click', () => say({ do: 'connect' }));
 find('clear').addEventListener('click', () => say({ do: 'clear' }));

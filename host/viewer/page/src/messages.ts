@@ -51,6 +51,9 @@ export interface Run {
   proxy_m: Triple;
   normal: Triple;
   force_N: Triple;
+  motor_force_N?: Triple; // everything that the motors are told; missing: unknown
+  gravity_force_N?: Triple;
+  added_force_N?: Triple;
   velocity_m_s: Triple;
   penetration_m: number;
   in_contact: boolean;

@@ -9,6 +9,7 @@ function reasonOf(frame: Frame): string {
   if (!run || frame.tick !== undefined) return '';
   const isWaiting = run.limits.includes('waiting');
   if (run.state === 'fault') return 'No force until the fault is cleared: press Clear, then Arm';
+  if (run.limits.includes('not-homed')) return 'not homed: hold the device in its home pose and press Home';
   if (run.state === 'idle') return 'stopped: press Arm';
   if (isWaiting) return 'No force until the hand has left the object';
   if (run.state === 'armed') return 'armed: waits for the dead-man control';
@@ -23,6 +24,7 @@ export class Why {
     this.reason = reasonOf(frame);
     set('why', this.reason);
     const run = frame.runs[0];
+    find('home').hidden = !run?.limits.includes('not-homed');
     find('inside').hidden = !run?.limits.includes('waiting');
     const warning = frame.fit?.warning ?? '';
     find('fit').hidden = warning === '';

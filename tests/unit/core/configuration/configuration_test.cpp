@@ -11,6 +11,7 @@
 
 #include "controller_rig.hpp"
 #include "odd_floats.hpp"
+#include "tactree/core/configuration/device_presets.hpp"
 
 namespace tactree::test {
 namespace {
@@ -139,6 +140,83 @@ TEST(Configuration, RefusesStiffnessAboveStabilityLimit) {
   c.rate_hz = 4000.0F;
   c.delay_s = 0.0F;
   EXPECT_NEAR(core::stability_limit(c).with_hand_N_m, 8800.0F, 4.0F);
+}
+
+TEST(Configuration, NamesRefusedFieldWithItsRange) {
+  Configuration c;
+  c.limits.force_max_N = 0.5F;  // the default slew of 2 N per tick is then too fast
+  core::Refusal refusal = core::refusal_of(c);
+  EXPECT_EQ(refusal.status, ConfigurationStatus::kBadLimit);
+  EXPECT_STREQ(refusal.field, "limits.slew_N_s");
+  EXPECT_EQ(refusal.value, 2000.0F);
+  EXPECT_NEAR(refusal.min, 0.05F, 1e-6F);
+  EXPECT_NEAR(refusal.max, 1000.0F, 1e-3F);
+  core::limit_force(c, 0.5F);
+  EXPECT_EQ(core::refusal_of(c).status, ConfigurationStatus::kOk);
+  for (const auto& [field, status] : fields()) {
+    Configuration bad;
+    field(bad) = -1.0F;
+    refusal = core::refusal_of(bad);
+    EXPECT_NE(std::string(refusal.field), "") << core::describe(status);
+    EXPECT_EQ(refusal.value, -1.0F) << refusal.field;
+    EXPECT_LT(refusal.value, refusal.min) << refusal.field;
+    field(bad) = refusal.min;
+    EXPECT_NE(core::refusal_of(bad).field, std::string(refusal.field));
+  }
+}
+
+TEST(Configuration, RefusesDelayBeyondObservation) {
+  Configuration c;
+  c.contact.stiffness_N_m = 10.0F;
+  c.delay_s = 0.015F;
+  EXPECT_EQ(core::check(c), ConfigurationStatus::kOk);
+  c.delay_s = 0.0151F;
+  EXPECT_EQ(core::check(c), ConfigurationStatus::kBadTimeout);
+  c.rate_hz = 100.0F;
+  c.velocity_cutoff_hz = 50.0F;
+  c.delay_s = 0.1F;
+  EXPECT_NE(core::check(c), ConfigurationStatus::kBadTimeout);
+}
+
+TEST(FirstForce, IsValidForEveryDeviceAndRate) {
+  for (const core::DevicePreset& preset : core::kDevicePresets) {
+    for (const float rate_hz : {500.0F, 1000.0F, 4000.0F, 10000.0F}) {
+      Configuration c;
+      core::use_device(preset, c);
+      c.rate_hz = rate_hz;
+      core::limit_to_rate(c);
+      core::limit_force(c, c.limits.force_max_N);
+      ASSERT_EQ(core::check(c), ConfigurationStatus::kOk) << preset.name << " " << rate_hz;
+      const Configuration first = core::first_force(c);
+      EXPECT_EQ(core::check(first), ConfigurationStatus::kOk) << preset.name << " " << rate_hz;
+      EXPECT_EQ(first.limits.force_max_N, core::kFirstForce_N);
+      EXPECT_FALSE(first.compensate_gravity);
+      EXPECT_FALSE(first.motors.signs_proven);
+      const float share = core::kFirstForce_N / c.limits.force_max_N;
+      EXPECT_FLOAT_EQ(first.limits.slew_N_s, share * c.limits.slew_N_s);
+      EXPECT_FLOAT_EQ(first.motors.effort_max[0], share * c.motors.effort_max[0]);
+      EXPECT_FLOAT_EQ(first.motors.effort_slew_s[0], share * c.motors.effort_slew_s[0]);
+    }
+  }
+}
+
+TEST(FirstForce, KeepsSmallerForce) {
+  Configuration c;
+  core::limit_force(c, 0.2F);
+  EXPECT_EQ(core::first_force(c).limits.force_max_N, 0.2F);
+}
+
+// The smallest effort that the gate accepts is kept.
+TEST(FirstForce, KeepsMinimumEffort) {
+  Configuration c;
+  for (std::uint32_t axis = 0; axis < core::kAxes; ++axis) {
+    c.motors.effort_max[axis] = 2e-4F;
+    c.motors.effort_slew_s[axis] = 0.05F;
+  }
+  ASSERT_EQ(core::check(c), ConfigurationStatus::kOk);
+  const Configuration first = core::first_force(c);
+  EXPECT_EQ(core::check(first), ConfigurationStatus::kOk);
+  EXPECT_EQ(first.motors.effort_max[2], 1e-4F);
 }
 
 TEST(Configuration, DescribesEveryStatusUniquely) {

@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "controller_rig.hpp"
+#include "motor_signs.hpp"
+#include "tactree/core/configuration/device_presets.hpp"
 
 namespace tactree::test {
 namespace {
@@ -261,6 +263,59 @@ TEST(AnyInput, FaultsOnNaNMaterial) {
   const core::Output output = session.step();
   EXPECT_EQ(output.status.faults, core::fault_bit(core::Fault::kNotFinite));
   EXPECT_TRUE(output.motors.is_zero());
+}
+
+/// Moves the joints at random about a position in the middle of their ranges.
+class WildJoints {
+ public:
+  explicit WildJoints(const core::DeviceModel& device) : device_(device) {}
+  void move(core::EncoderReading& encoders, std::mt19937& random) {
+    for (std::uint32_t axis = 0; axis < core::axes_of(device_.kind); ++axis) {
+      const float reach = 0.02F * (device_.joint_max[axis] - device_.joint_min[axis]);
+      offset_[axis] = std::clamp(offset_[axis] + 0.02F * reach * unit_(random), -reach, reach);
+      const float counts = core::counts_per_unit(device_, axis) * offset_[axis];
+      encoders.counts[axis] = static_cast<std::int32_t>(counts);
+    }
+  }
+
+ private:
+  core::DeviceModel device_;
+  float offset_[core::kAxes] = {0.0F, 0.0F, 0.0F};
+  std::uniform_real_distribution<float> unit_{-1.0F, 1.0F};
+};
+
+// The first power-on of a new arm: gravity compensation and an added force on top, every motor
+// possibly reversed.
+TEST(AnyInput, KeepsFirstForceWithAnySigns) {
+  for (const core::DevicePreset& preset : core::kDevicePresets) {
+    SCOPED_TRACE(preset.name);
+    core::Configuration configuration;
+    core::use_device(preset, configuration);
+    configuration.limits.ramp_s = 0.01F;
+    configuration = core::first_force(configuration);
+    configuration.compensate_gravity = true;
+    configuration.model_origin_m = core::locate(preset.model, {0, 0, 0}).probe;
+    configuration.supervision.stuck_s = 1.0F;
+    ControllerRig session(configuration);
+    ASSERT_EQ(session.status, core::ConfigurationStatus::kOk);
+    WildJoints joints(session.controller.configuration().device);
+    std::mt19937 random(14);
+    double largest = 0.0;
+    std::uint32_t in_contact = 0;
+    for (std::uint32_t i = 0; i < 30'000U; ++i) {
+      joints.move(session.input.encoders, random);
+      session.input.dead_man = has_hand(i);
+      session.input.added_force = {{0.3F, -0.3F, 0.3F}, 50U};
+      const core::Output output = session.step(command_of(i));
+      const core::DevicePose pose =
+          core::locate(session.controller.configuration().device, session.input.encoders.counts);
+      largest = std::max(largest, largest_probe_force(pose, output.motors));
+      in_contact += output.status.rendering.in_contact && !output.motors.is_zero() ? 1U : 0U;
+    }
+    EXPECT_LE(largest, 1.00001 * static_cast<double>(core::kFirstForce_N));
+    EXPECT_GE(largest, 0.8 * static_cast<double>(core::kFirstForce_N));
+    EXPECT_GT(in_contact, 1000U);
+  }
 }
 
 TEST(AnyInput, KeepsLimitsUnderPaperCorruption) {

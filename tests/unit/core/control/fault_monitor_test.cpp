@@ -342,7 +342,7 @@ TEST(Faults, AcceptsSupplyAtRangeEnds) {
 class StuckEncoder {
  public:
   explicit StuckEncoder(const core::Configuration& configuration = StuckEncoder::configuration())
-      : session_(configuration) {
+      : session_(configuration, core::HomingMethod::kGivenPose) {
     session_.step(Command::kHome);
     session_.activate();
     for (std::uint32_t tick = 0; tick < 100; ++tick) {
@@ -371,7 +371,6 @@ class StuckEncoder {
     core::Configuration configuration;
     configuration.supervision.stuck_s = 0.1F;
     configuration.limits.ramp_s = 0.01F;
-    configuration.device.homing = core::HomingMethod::kGivenPose;
     return configuration;
   }
   static constexpr float kForce_N = core::ForceLimits{}.force_max_N;

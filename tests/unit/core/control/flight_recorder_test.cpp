@@ -74,11 +74,11 @@ TEST(FlightRecorder, KeepsFirstSnapshot) {
 
 TEST(FlightRecorder, AcceptsEveryFloat) {
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  constexpr float kEndless = std::numeric_limits<float>::infinity();
   FlightRecorder recorder;
   core::Rendering rendering;
-  rendering.proxy = {kInfinity, 0.0F, 0.0F};
-  for (const float load : {kNan, kInfinity, 3.0F}) {
+  rendering.proxy = {kEndless, 0.0F, 0.0F};
+  for (const float load : {kNan, kEndless, 3.0F}) {
     recorder.add({core::State::kIdle,
                   0U,
                   1U,

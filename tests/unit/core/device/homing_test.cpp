@@ -122,8 +122,10 @@ core::Configuration premium_to_be_homed() {
   return configuration;
 }
 
+TEST(Homing, IsRequiredByDefault) { EXPECT_NE(DeviceModel{}.homing, HomingMethod::kAbsolute); }
+
 TEST(Homing, AllowsNoForceUntilDone) {
-  ControllerRig session(premium_to_be_homed());
+  ControllerRig session(premium_to_be_homed(), HomingMethod::kGivenPose);
   ASSERT_EQ(session.status, core::ConfigurationStatus::kOk);
   for (std::int32_t& count : session.input.encoders.counts) {
     count = 123456;  // anywhere
@@ -134,12 +136,11 @@ TEST(Homing, AllowsNoForceUntilDone) {
   for (int i = 0; i < 20; ++i) {
     output = session.step();
     ASSERT_TRUE(output.motors.is_zero());
+    ASSERT_FALSE(output.enable);
   }
-  EXPECT_EQ(session.state(), State::kArmed);
-  EXPECT_NE(output.status.limits & core::limit_bit(core::Limit::kWaiting), 0U);
+  EXPECT_EQ(session.state(), State::kIdle);
   EXPECT_EQ(session.controller.faults(), 0U);
 
-  session.step(Command::kStop);
   session.input.dead_man = false;
   session.step(Command::kHome);
   EXPECT_TRUE(session.controller.homed());
@@ -151,7 +152,7 @@ TEST(Homing, AllowsNoForceUntilDone) {
 }
 
 TEST(Homing, RefusesCommandWhilePowered) {
-  ControllerRig session(premium_to_be_homed());
+  ControllerRig session(premium_to_be_homed(), HomingMethod::kGivenPose);
   session.step(Command::kHome);
   session.activate();
   ASSERT_EQ(session.state(), State::kActive);
@@ -161,7 +162,7 @@ TEST(Homing, RefusesCommandWhilePowered) {
 }
 
 TEST(Homing, ForgetsHomeOnLostCounter) {
-  ControllerRig session(premium_to_be_homed());
+  ControllerRig session(premium_to_be_homed(), HomingMethod::kGivenPose);
   session.step(Command::kHome);
   ASSERT_TRUE(session.controller.homed());
   session.input.encoders.valid[1] = false;
@@ -174,7 +175,7 @@ TEST(Homing, ForgetsHomeOnLostCounter) {
 }
 
 TEST(Homing, ForgetsHomeOnCounterJump) {
-  ControllerRig session(premium_to_be_homed());
+  ControllerRig session(premium_to_be_homed(), HomingMethod::kGivenPose);
   session.step(Command::kHome);
   session.input.encoders.counts[1] += 2000;  // 0.27 rad in one tick
   const core::Output output = session.step();

@@ -57,6 +57,7 @@ class FakeChip {
   /// A switch of the device.
   void press_stop(bool pressed) { press(12, !pressed); }
   void hold_dead_man(bool held) { press(13, held); }
+  void press_button(bool pressed) { press(15, pressed); }
   void turn(std::int32_t x, std::int32_t y, std::int32_t z) {
     tim2.turn(x);
     tim5.turn(y);

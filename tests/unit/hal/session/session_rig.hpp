@@ -96,6 +96,7 @@ class SessionRig {
 
   static core::Configuration configuration() {
     core::Configuration c;
+    c.device.homing = core::HomingMethod::kAbsolute;
     c.supervision.dead_man_required = false;
     c.supervision.stuck_s = 1.0F;  // nothing moves here, whatever the motors do
     return c;

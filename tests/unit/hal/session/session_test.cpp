@@ -80,6 +80,29 @@ TEST_F(SessionTest, ChecksMajorVersionOnly) {
   EXPECT_EQ(reply.version_minor, core::wire::kProtocolMinor);
 }
 
+class UnhomedSessionTest : public SessionTest {
+ protected:
+  static core::Configuration configuration() {
+    core::Configuration c = SessionRig<>::configuration();
+    c.device.homing = core::HomingMethod::kGivenPose;
+    return c;
+  }
+  SessionRig<> rig_{no_store(), configuration(), blob().written().bytes};
+};
+
+TEST_F(UnhomedSessionTest, RefusesArmUntilHomed) {
+  core::wire::OpenRequest older;  // the rig's client has neither session nor nonce yet
+  older.version_minor = 0;
+  ASSERT_TRUE(rig_.ask(MessageKind::kOpen, older).ok());
+  EXPECT_EQ(rig_.control(ControlCode::kArm).status, WireStatus::kNotNow);
+  ASSERT_TRUE(rig_.open().ok());
+  EXPECT_EQ(rig_.control(ControlCode::kArm).status, WireStatus::kNotHomed);
+  EXPECT_EQ(rig_.state(), State::kIdle);
+  EXPECT_TRUE(rig_.control(ControlCode::kHome).ok());
+  EXPECT_TRUE(rig_.control(ControlCode::kArm).ok());
+  EXPECT_EQ(rig_.state(), State::kArmed);
+}
+
 TEST_F(SessionTest, ReportsCapabilitiesAndState) {
   ASSERT_TRUE(rig.open().ok());
   core::wire::CapabilitiesReply can;
@@ -246,7 +269,9 @@ TEST_F(SessionTest, SendsRequestedTelemetryFields) {
   ASSERT_TRUE(rig.open().ok());
   std::vector<client::Telemetry> got;
   rig.client().on_telemetry([&](const client::Telemetry& t) { got.push_back(t); });
-  ASSERT_TRUE(rig.ask(MessageKind::kSubscribe, core::wire::SubscribeRequest{0x3FF, 5}).ok());
+  ASSERT_TRUE(
+      rig.ask(MessageKind::kSubscribe, core::wire::SubscribeRequest{core::wire::kAllTelemetry, 5})
+          .ok());
   rig.settle(101);
   ASSERT_GE(got.size(), 20U);
   EXPECT_LE(got.size(), 21U);
@@ -261,14 +286,18 @@ TEST_F(SessionTest, SendsRequestedTelemetryFields) {
   got.clear();
   rig.settle(50);
   EXPECT_TRUE(got.empty());
-  EXPECT_EQ(rig.ask(MessageKind::kSubscribe, core::wire::SubscribeRequest{0x400, 1}).status,
+  EXPECT_EQ(rig.ask(MessageKind::kSubscribe,
+                    core::wire::SubscribeRequest{core::wire::kAllTelemetry + 1U, 1})
+                .status,
             WireStatus::kBadValue);
 }
 
 // USB full speed carries 1 MB/s.
 TEST_F(SessionTest, FitsTelemetryIntoFullSpeed) {
   ASSERT_TRUE(rig.open().ok());
-  ASSERT_TRUE(rig.ask(MessageKind::kSubscribe, core::wire::SubscribeRequest{0x3FF, 1}).ok());
+  ASSERT_TRUE(
+      rig.ask(MessageKind::kSubscribe, core::wire::SubscribeRequest{core::wire::kAllTelemetry, 1})
+          .ok());
   rig.settle(10);
   EXPECT_LE(4000U * rig.to_host().sent().back().size(), 1'000'000U);
   EXPECT_GE(rig.to_host().sent().back().size(), 160U);

@@ -27,7 +27,7 @@ struct ContactParameters {
 
 /// Limits of the force at the probe.
 struct ForceLimits {
-  float force_max_N = 8.0F;  ///< 0.01 .. 1000
+  float force_max_N = 8.0F;  ///< of everything that the motors are told: 0.01 .. 1000
   float slew_N_s = 2000.0F;  ///< per tick: force_max_N * (1e-4 .. 2)
   float ramp_s = 0.25F;      ///< from 0 to full force: 2 ticks .. 10 s
   bool operator==(const ForceLimits&) const = default;
@@ -39,12 +39,16 @@ struct MotorLimits {
   float effort_slew_s[kAxes] = {2000.0F, 2000.0F, 2000.0F};  ///< N/s or Nm/s, as slew_N_s
   float continuous_share = 0.35F;  ///< continuous effort / effort_max: 0.05 .. 1
   float thermal_time_s = 50.0F;    ///< time constant of the windings: 1 .. 1000
+  bool signs_proven = true;        ///< false: force_max_N holds even if motors turn the wrong way
 };
 
 /// Supervision of the link to an application.
 struct LinkSupervision {
   bool required = false;    ///< true: a lost link is a fault
   float timeout_s = 0.02F;  ///< 0.005 .. 0.1; cannot be disabled
+  /// False: an application may watch and stop, and nothing else; the device is operated by a panel
+  /// (hal/panel.hpp). Requires `required` to be false.
+  bool may_command = true;
   bool operator==(const LinkSupervision&) const = default;
 };
 
@@ -78,7 +82,8 @@ struct Configuration {
   // The device and the hand, for the stability limit.
   float device_damping_Ns_m = 0.05F;  ///< 0 .. 1000
   float hand_damping_Ns_m = 1.0F;     ///< 0 .. 1000: a light hand
-  float delay_s = 0.0F;               ///< from encoder to force, beyond the sampling: 0 .. 0.1
+  /// From encoder to force, beyond the sampling: 0 .. 0.1, and at most kMaxDelayTicks ticks.
+  float delay_s = 0.0F;
 
   ForceLimits limits{};
   MotorLimits motors{};
@@ -103,7 +108,12 @@ enum class ConfigurationStatus : std::uint8_t {
   kBadTimeout,
   kBadSupply,
   kUnstable,  ///< stiffness above the stability limit with a hand
+  kBadLink,   ///< a link that is required must be able to command
 };
+
+/// Maximum of delay_s in ticks: the passivity controller observes no longer delay (passivity.hpp).
+/// With it, the stability limit is already 1/31 of that without delay: 100 N/m by default at 1 kHz.
+inline constexpr std::uint32_t kMaxDelayTicks = 15;
 
 /// Lowers what the rate limits, after rate_hz was changed: velocity_cutoff_hz to rate_hz / 2.
 constexpr void limit_to_rate(Configuration& configuration) {
@@ -113,12 +123,42 @@ constexpr void limit_to_rate(Configuration& configuration) {
   }
 }
 
+/// Sets force_max_N, and lowers slew_N_s to the largest value that a tick may then have.
+constexpr void limit_force(Configuration& configuration, float force_max_N) {
+  const float slew_N_s = 2.0F * force_max_N * configuration.rate_hz;
+  configuration.limits.force_max_N = force_max_N;
+  if (configuration.limits.slew_N_s > slew_N_s) {
+    configuration.limits.slew_N_s = slew_N_s;
+  }
+}
+
 /// Description of the status: "rate_hz is outside 100 .. 20000", ...
 [[nodiscard]] const char* describe(ConfigurationStatus status);
 
-/// Checks that each value is finite, within its range and consistent with the others. Returns the
-/// first violation. Cost: constant.
-[[nodiscard]] ConfigurationStatus check(const Configuration& configuration);
+/// The first value that is not finite, out of its range, or not consistent with the others.
+struct Refusal {
+  ConfigurationStatus status = ConfigurationStatus::kOk;
+  const char* field = "";  ///< as in Configuration: "limits.slew_N_s"; may be empty
+  float value = 0.0F;
+  float min = 0.0F;  ///< with the other values as they are
+  float max = 0.0F;
+};
+
+/// Checks all values. Cost: constant.
+[[nodiscard]] Refusal refusal_of(const Configuration& configuration);
+[[nodiscard]] inline ConfigurationStatus check(const Configuration& configuration) {
+  return refusal_of(configuration).status;
+}
+
+/// Maximum of first_force(), N: a force that the hand notices and overcomes without effort.
+inline constexpr float kFirstForce_N = 0.5F;
+
+/// The configuration for the first force of a new device, amplifier or wiring: at most
+/// kFirstForce_N, with the slew rates and efforts reduced in proportion, without gravity
+/// compensation, and with no trust in the signs of the motors (MotorLimits::signs_proven). A
+/// configuration whose maximum is below kFirstForce_N keeps it. Precondition: check() accepts the
+/// configuration; it then accepts the result.
+[[nodiscard]] Configuration first_force(const Configuration& configuration);
 
 /// Stiffest stable wall, N/m: (b + B + b_hand) / (T / 2 + t_d), after Colgate and Brown, "Factors
 /// affecting the Z-width of a haptic display", ICRA 1994, with the delay and the hand. Within 1 %

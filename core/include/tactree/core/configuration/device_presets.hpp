@@ -47,6 +47,7 @@ constexpr DevicePreset cartesian() {
   DevicePreset p;
   p.name = "cartesian";
   p.about = "three linear axes: the textbook case";
+  p.model.homing = HomingMethod::kAbsolute;
   set(p.model.joint_min, -0.5F, -0.5F, -0.5F);
   set(p.model.joint_max, 0.5F, 0.5F, 0.5F);
   set(p.model.joint_margin, 0.01F, 0.01F, 0.01F);

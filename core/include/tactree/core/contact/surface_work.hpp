@@ -41,10 +41,9 @@ inline constexpr std::uint32_t kGatherWork = 2;
 inline constexpr std::uint32_t kWorkTiers = 5;
 inline constexpr GatherSlice kNoSlice{0, 0, 0};
 /// The third tier fits into the 42 000 cycles of a period of an STM32F405 at 4 kHz (docs/BOUND.md).
-/// With {2, 28, 8} for the slice ahead, or with a whole gather and two fits at a crease in one
-/// tick, the admission formula exceeds them. The 8 corners of a gather on demand take one tick in
-/// the third tier if the points and candidates of the slice suffice, two in the fourth and three in
-/// the last.
+/// With a whole gather and two fits at a crease in one tick, the admission formula exceeds them.
+/// The 8 corners of a gather on demand take one tick in the third tier if the points and candidates
+/// of the slice suffice, two in the fourth and three in the last.
 inline constexpr SurfaceWork kWorkPerTick[kWorkTiers] = {{4, 10, 13, {24, 288, 104}, kNoSlice},
                                                          {2, 4, 4, {16, 160, 56}, kNoSlice},
                                                          {1, 2, 2, {8, 112, 32}, {1, 32, 10}},

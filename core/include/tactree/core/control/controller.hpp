@@ -60,8 +60,13 @@ struct Status {
   Vec3 probe{};                ///< m
   Vec3 velocity{};             ///< m/s
   Rendering rendering{};       ///< contact, proxy, normal, force before the limits
-  Vec3 force{};                ///< N, output of the gate
-  float load = 0.0F;           ///< duration of the last tick / period
+  Vec3 force{};                ///< N, output of the gate: contact and added force
+  Vec3 added_force{};          ///< N, the application's component of it
+  Vec3 gravity_force{};        ///< N at the probe, of the gravity compensation
+  /// N at the probe, of everything that the motors are told: force and gravity compensation after
+  /// the limits of the axes.
+  Vec3 motor_force{};
+  float load = 0.0F;  ///< duration of the last tick / period
   /// Reactions to `force` on the bodies in contact.
   Reaction reactions[kMaxReachableBodies]{};
   /// True if a fault is latched or a limit is active.

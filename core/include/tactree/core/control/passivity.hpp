@@ -11,6 +11,7 @@
 
 #include <cstdint>
 
+#include "tactree/core/configuration/configuration.hpp"
 #include "tactree/core/math/vec3.hpp"
 
 namespace tactree::core {
@@ -25,7 +26,7 @@ struct WallMotion {
 class PassivityController {
  public:
   /// period_s > 0: period of a tick. damping_max_Ns_m >= 0: maximum added damping. delay_s >= 0:
-  /// from a reading to its force at the hand, beyond the sampling; limited to kHistory - 1 ticks.
+  /// from a reading to its force at the hand, beyond the sampling; limited to kMaxDelayTicks.
   void configure(float period_s, float damping_max_Ns_m, float delay_s);
 
   /// Clears all energies. Call it while there is no contact.
@@ -51,10 +52,9 @@ class PassivityController {
   /// Absorbed minus stored energy since contact began, J, <= 0: earlier losses are not credited.
   [[nodiscard]] float observed_energy() const { return observed_energy_; }
 
-  /// Forces in transit, ticks. A delay of more than 15 ticks would be observed too short; with 15,
-  /// the stability limit is already 1/31 of that without delay: 100 N/m by default at 1 kHz. Each
-  /// tick takes 12 bytes. A power of two: the index wraps without a division.
-  static constexpr std::uint32_t kHistory = 16;
+  /// Forces in transit, ticks. Each takes 12 bytes. A power of two: the index wraps without a
+  /// division.
+  static constexpr std::uint32_t kHistory = kMaxDelayTicks + 1U;
 
  private:
   [[nodiscard]] Vec3 acted() const;

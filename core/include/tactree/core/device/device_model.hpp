@@ -72,7 +72,9 @@ struct FiveBarGeometry {
 /// kCartesian.
 struct DeviceModel {
   DeviceKind kind = DeviceKind::kCartesian;
-  HomingMethod homing = HomingMethod::kAbsolute;
+  /// A controller arms only after homing. kAbsolute is a statement about the encoders: with others,
+  /// the position at power-up would be taken for home_position.
+  HomingMethod homing = HomingMethod::kGivenPose;
 
   // joint = home_position + (count - home_count) / counts_per_unit()
   /// kCartesian: encoder counts per metre of travel: 1 .. 1e9.

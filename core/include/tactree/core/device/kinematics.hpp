@@ -26,6 +26,13 @@ constexpr Vec3 transposed_times(const Mat3& m, Vec3 v) {
   return v.x * m.row[0] + v.y * m.row[1] + v.z * m.row[2];
 }
 
+/// Force at the probe per effort of one axis, N per N or Nm: row i is that of axis i while the hand
+/// holds the probe still. `effort_per_force`: the transposed Jacobian, of which this is the
+/// inverse. Unused axes, rows of zeros at the end, have no force; for fewer than three axes it is
+/// the force in the line or plane of the others. Not finite in a singular pose. Cost: constant,
+/// about 50 operations.
+[[nodiscard]] Mat3 force_per_effort(const Mat3& effort_per_force);
+
 /// Pose of the device.
 struct DevicePose {
   bool valid = false;  ///< finite, within the joints' ranges, and reachable

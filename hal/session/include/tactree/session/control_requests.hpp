@@ -53,8 +53,8 @@ class ControlRequests {
   /// Posts a stop, ahead of any other command.
   void stop();
   /// Posts the requested command. A command that the state does not allow is refused here, because
-  /// the controller would latch a fault. Errors: kBadLength, kBadValue, kBusy, kNotNow, kBadToken,
-  /// kQueueFull.
+  /// the controller would latch a fault. Errors: kBadLength, kBadValue, kBusy, kNotNow, kNotHomed,
+  /// kBadToken, kQueueFull.
   [[nodiscard]] core::wire::WireStatus post(std::span<const std::byte> payload,
                                             const Moment& moment);
   /// Writes the reply, with the status of a tick after the command.

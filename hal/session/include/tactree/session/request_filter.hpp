@@ -36,6 +36,8 @@ class RequestFilter {
 
   /// Returns 0 if no session is open.
   [[nodiscard]] std::uint16_t session() const { return session_; }
+  /// The status as the session's version of the protocol names it.
+  [[nodiscard]] core::wire::WireStatus known(core::wire::WireStatus status) const;
 
  private:
   [[nodiscard]] bool is_newer(std::uint16_t sequence) const;
@@ -51,6 +53,10 @@ class RequestFilter {
 /// `base`, the configuration at the start. If `base` requires a link, the shorter timeout applies.
 [[nodiscard]] core::Adjustment with_link(core::Adjustment adjustment,
                                          const core::Configuration& base, std::uint32_t timeout_ms);
+
+/// True if the request changes nothing: an application may send it that may only watch. A stop is
+/// admitted before.
+[[nodiscard]] bool is_watching(core::wire::MessageKind kind);
 
 /// Converts the result of Controller::adjust() and configure() to a wire status.
 [[nodiscard]] core::wire::WireStatus to_wire(core::ConfigurationStatus status);

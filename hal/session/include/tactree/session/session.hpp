@@ -100,6 +100,8 @@ class Session {
 
   [[nodiscard]] const core::Controller& controller() const { return changes_.controller(); }
 
+  [[nodiscard]] bool may_command() const { return controller().configuration().link.may_command; }
+
   // ---- frames in and out
 
   // Handles one request at a time: the bytes that follow it stay in piece_ and in the port.
@@ -191,6 +193,9 @@ class Session {
   }
 
   Outcome handle(Kind kind) {
+    if (!may_command() && !is_watching(kind)) {
+      return answer(filter_.known(WireStatus::kWatchOnly));
+    }
     switch (kind) {
       case Kind::kClose:
         return close();
@@ -269,7 +274,8 @@ class Session {
   // ---- opening and closing a session
 
   // No other session is opened while armed or active: a repeated or late message must not end the
-  // session.
+  // session. One that may only watch is opened at any time, and its link is not required: it comes
+  // and goes without effect on the force.
   WireStatus open() {
     core::wire::OpenRequest request;
     if (!core::wire::decode_message(decoder_.payload(), request)) {
@@ -289,12 +295,14 @@ class Session {
   }
 
   WireStatus begin_session(const core::wire::OpenRequest& request) {
-    if (!controller().motors_off()) {
-      return WireStatus::kBusy;
-    }
-    const WireStatus status = require_link(request.link_timeout_ms);
-    if (status != WireStatus::kOk) {
-      return status;
+    if (may_command()) {
+      if (!controller().motors_off()) {
+        return WireStatus::kBusy;
+      }
+      const WireStatus status = require_link(request.link_timeout_ms);
+      if (status != WireStatus::kOk) {
+        return status;
+      }
     }
     telemetry_.unsubscribe();
     models_.release();
@@ -309,10 +317,12 @@ class Session {
   }
 
   Outcome close() {
-    mailbox_.post_stop();
+    if (may_command()) {
+      mailbox_.post_stop();
+      closing_ = true;
+    }
     telemetry_.unsubscribe();
     filter_.close();
-    closing_ = true;
     models_.release();
     return Outcome::kAnswer;
   }
@@ -380,7 +390,7 @@ class Session {
       const WireStatus status = control_.post(
           decoder_.payload(), {platform_.now_us(), filter_.session(), models_.is_writing()});
       if (status != WireStatus::kOk) {
-        return answer(status);
+        return answer(filter_.known(status));
       }
     }
     return finish_command();

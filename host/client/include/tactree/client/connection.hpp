@@ -33,6 +33,9 @@ class Connection {
   /// protocol version, or is busy.
   void open(std::uint16_t link_timeout_ms);
 
+  /// Minor version of the protocol in this session: the smaller one of board and client.
+  [[nodiscard]] std::uint8_t protocol_minor() const { return protocol_minor_; }
+
   /// Sends a request and waits for its response, at most for the client's timeout.
   [[nodiscard]] Response call(core::wire::MessageKind kind,
                               std::span<const std::byte> payload = {});
@@ -79,6 +82,7 @@ class Connection {
  private:
   class Worker;
   std::unique_ptr<Worker> worker_;
+  std::uint8_t protocol_minor_ = 0;
 };
 
 }  // namespace tactree::client

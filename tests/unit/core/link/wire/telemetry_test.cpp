@@ -32,6 +32,9 @@ core::Status some_status() {
   s.rendering.strength = 0.75F;
   s.rendering.force = {13.0F, 14.0F, 15.0F};
   s.reactions[0] = {1, {16.0F, 17.0F, 18.0F}, {19.0F, 20.0F, 21.0F}};
+  s.gravity_force = {22.0F, 23.0F, 24.0F};
+  s.added_force = {25.0F, 26.0F, 27.0F};
+  s.motor_force = {28.0F, 29.0F, 30.0F};
   return s;
 }
 
@@ -74,7 +77,9 @@ TEST(Telemetry, EncodesEachFieldAsDocumented) {
       {bits(0.25F), 1, bits(0.75F)},
       three(13.0F, 14.0F, 15.0F),
       {7, bits(0.5F)},
-      reactions};
+      reactions,
+      {bits(22.0F), bits(23.0F), bits(24.0F), bits(25.0F), bits(26.0F), bits(27.0F), bits(28.0F),
+       bits(29.0F), bits(30.0F)}};
   ASSERT_EQ(expected.size(), wire::kTelemetryFields);
   std::vector<std::uint32_t> all = {1, 2000, wire::kAllTelemetry, 5};
   for (std::uint32_t i = 0; i < wire::kTelemetryFields; ++i) {

@@ -43,6 +43,7 @@ class BoardRig {
     const auto clocks = firmware::prepare_chip(chip().chip());
     board_ = std::make_unique<Board>(chip().chip(), chip().flash.whole(), clocks, kIdentity);
     configuration_ = board_->connect(last_fault);
+    configuration_.link = firmware::wiring::configuration(link_use).link;
     chip().flash.pass = [this](double us) { pass_us(us); };
     chip().serial.give_ring(&board_->ring());  // an address in M0AR has too few bits for the host's
     controller_ = std::make_unique<core::Controller>();
@@ -168,6 +169,23 @@ class BoardRig {
     return chip().tim8.duty(0) + chip().tim8.duty(1) + chip().tim8.duty(2);
   }
 
+  /// Presses the button for this long, and releases it.
+  void press_button(int ticks) {
+    chip().press_button(true);
+    run(ticks);
+    chip().press_button(false);
+    run(50);
+  }
+  /// Homed and armed by the button, the hand at the dead-man control: to active.
+  bool arm_by_button() {
+    press_button(1100);
+    press_button(1100);
+    chip().hold_dead_man(true);
+    run(500);
+    return status_.state == core::State::kActive;
+  }
+
+  firmware::wiring::LinkUse link_use = firmware::wiring::kLinkUse;
   bool application_runs = true;
   bool ticks_run = true;
 

@@ -231,6 +231,63 @@ TEST_F(Stm32f405, CompensatesWeightUntilEmergencyStop) {
   EXPECT_FALSE(rig.chip().gpio_c.level(4)) << "the amplifiers keep their power";
 }
 
+// Power-up, home, arm, touch, stop, with the button and the dead-man control alone.
+TEST_F(Stm32f405, GivesForceWithoutApplication) {
+  rig.link_use = firmware::wiring::LinkUse::kWatches;
+  rig.application_runs = false;
+  rig.boot();
+  rig.run(100);
+  ASSERT_TRUE(rig.arm_by_button()) << "faults " << rig.status().faults;
+  EXPECT_GT(rig.duty(), 0.0);
+  EXPECT_TRUE(rig.chip().gpio_c.level(3)) << "the lamp is off";
+  rig.press_button(30);
+  EXPECT_EQ(rig.status().state, core::State::kIdle);
+  EXPECT_EQ(rig.duty(), 0.0);
+  ASSERT_TRUE(rig.status().faults == 0U);
+  rig.chip().hold_dead_man(false);
+  rig.press_button(1100);
+  rig.chip().hold_dead_man(true);
+  rig.run(500);
+  EXPECT_EQ(rig.status().state, core::State::kActive);
+  rig.chip().press_stop(true);
+  rig.run(2);
+  EXPECT_EQ(rig.duty(), 0.0);
+  EXPECT_EQ(rig.status().state, core::State::kFault);
+  EXPECT_FALSE(rig.chip().gpio_c.level(4)) << "the amplifiers keep their power";
+}
+
+TEST_F(Stm32f405, LetsWatchingApplicationComeAndGo) {
+  rig.link_use = firmware::wiring::LinkUse::kWatches;
+  rig.boot();
+  rig.run(100);
+  ASSERT_TRUE(rig.arm_by_button());
+  ASSERT_TRUE(rig.open(50).ok()) << "while active";
+  ASSERT_TRUE(rig.ask(MessageKind::kSubscribe, core::wire::SubscribeRequest{0x3FF, 100}).ok());
+  EXPECT_EQ(rig.control(ControlCode::kArm).status, WireStatus::kWatchOnly);
+  EXPECT_EQ(rig.ask(MessageKind::kSetLimits, core::wire::SetLimitsRequest{}).status,
+            WireStatus::kWatchOnly);
+  EXPECT_EQ(rig.flash(other_model().bytes()).status, WireStatus::kWatchOnly);
+  EXPECT_EQ(rig.status().state, core::State::kActive);
+  rig.application_runs = false;
+  rig.run(2000);
+  EXPECT_EQ(rig.status().state, core::State::kActive) << "faults " << rig.status().faults;
+  EXPECT_GT(rig.duty(), 0.0);
+  rig.application_runs = true;
+  ASSERT_TRUE(rig.open(50).ok());
+  ASSERT_TRUE(rig.ask(MessageKind::kClose).ok());
+  EXPECT_EQ(rig.status().state, core::State::kActive);
+  ASSERT_TRUE(rig.control(ControlCode::kStop).ok());
+  EXPECT_EQ(rig.status().state, core::State::kIdle);
+  EXPECT_EQ(rig.duty(), 0.0);
+}
+
+TEST_F(Stm32f405, RefusesForceWithBrokenButtonPort) {
+  rig.chip().gpio_b.gate_by([] { return false; });
+  rig.boot();
+  rig.run(100);
+  EXPECT_FALSE(rig.arm_by_button());
+}
+
 TEST_F(Stm32f405, StopsOnRequest) {
   rig.boot();
   ASSERT_TRUE(rig.arm());

@@ -97,6 +97,7 @@ class RandomSession {
  private:
   static core::Configuration configuration() {
     core::Configuration c;
+    c.device.homing = core::HomingMethod::kAbsolute;
     c.limits.ramp_s = 0.01F;
     c.use_materials = false;
     return c;

@@ -17,7 +17,7 @@
 namespace tactree::core::wire {
 
 inline constexpr std::uint8_t kProtocolMajor = 1;
-inline constexpr std::uint8_t kProtocolMinor = 0;
+inline constexpr std::uint8_t kProtocolMinor = 1;
 inline constexpr std::uint8_t kReplyBit = 0x80;
 
 enum class MessageKind : std::uint8_t {
@@ -75,8 +75,10 @@ enum class WireStatus : std::uint8_t {
   kInUse = 22,          ///< the slot holds the model in use
   kStorageFailed = 23,  ///< the flash reported an error
   kQueueFull = 24,      ///< too many pending requests: wait for replies
+  kNotHomed = 25,       ///< arm: home the device first; since 1.1, before: kNotNow
+  kWatchOnly = 26,      ///< this board is operated by its button; since 1.1, before: kUnsupported
 };
-inline constexpr std::uint32_t kWireStatuses = 25;
+inline constexpr std::uint32_t kWireStatuses = 27;
 
 /// Text for people, static storage: "the board does not know this message", ...
 [[nodiscard]] const char* describe(WireStatus status);
@@ -227,12 +229,20 @@ enum class TelemetryField : std::uint32_t {
   kWanted = 1U << 7,     ///< f32[3] N, before the gate
   kTiming = 1U << 8,     ///< u32 overruns, f32 share of the period used by the last tick
   kReactions = 1U << 9,  ///< twice: u32 body, f32[3] force N, f32[3] torque Nm
+  /// f32[3] N each, at the probe: gravity compensation, added force, all motors; since 1.1
+  kParts = 1U << 10,
 };
-inline constexpr std::uint32_t kTelemetryFields = 10;
+inline constexpr std::uint32_t kTelemetryFields = 11;
+
+/// The fields that exist in version 1.`minor` of the protocol.
+[[nodiscard]] constexpr std::uint32_t telemetry_fields_of(std::uint8_t minor) {
+  const std::uint32_t all = (1U << kTelemetryFields) - 1U;
+  return minor == 0U ? all & ~static_cast<std::uint32_t>(TelemetryField::kParts) : all;
+}
 
 /// Bytes of each field, in the order above.
-inline constexpr std::uint32_t kTelemetryFieldBytes[kTelemetryFields] = {12, 12, 12, 12, 12,
-                                                                         12, 12, 12, 8,  56};
+inline constexpr std::uint32_t kTelemetryFieldBytes[kTelemetryFields] = {12, 12, 12, 12, 12, 12,
+                                                                         12, 12, 8,  56, 36};
 
 struct SubscribeRequest {
   std::uint32_t fields = 0;      ///< TelemetryField, or of them

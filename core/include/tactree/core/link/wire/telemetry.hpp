@@ -36,12 +36,15 @@ struct Telemetry {
     float force_N[3] = {};
     float torque_Nm[3] = {};
   } reactions[2]{};
+  float gravity_N[3] = {};  ///< at the probe, of the gravity compensation
+  float added_N[3] = {};    ///< of the application; part of force_N
+  float motors_N[3] = {};   ///< at the probe, of everything that the motors are told
 };
 
 /// All fields of TelemetryField.
 inline constexpr std::uint32_t kAllTelemetry = (1U << kTelemetryFields) - 1U;
 /// Bytes of a message with all fields.
-inline constexpr std::uint32_t kMaxTelemetry = 176;
+inline constexpr std::uint32_t kMaxTelemetry = 212;
 static_assert(kMaxTelemetry == sizeof(Telemetry) && kMaxTelemetry <= kMaxPayload);
 
 /// Converts all fields of a tick's status. Cost: constant.

@@ -20,6 +20,7 @@ struct SessionOptions {
   std::string path;                ///< file with the path of the hand; empty: the script
   std::string mode = "surface";    ///< or "paper"
   std::optional<float> force_max_N;  ///< default: that of the device
+  bool first_force = false;          ///< limits for the first force of a new device
   double seconds = 10.0;             ///< length of the script
   double latency_ticks = 0.0;        ///< age of an encoder reading
   double encoder_step_m = 30e-6;     ///< of a cartesian device: travel of one count

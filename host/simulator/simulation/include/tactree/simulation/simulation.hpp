@@ -28,6 +28,9 @@ struct Setup {
   plant::PlantParameters plant{};     ///< hand and sub-step; the device if `dynamics` is empty
   /// Dynamics of the joints of controller.device. If empty, each axis is plant.device.
   std::optional<core::DeviceDynamics> dynamics{};
+  /// False: the counters start at arbitrary counts, and the controller needs Command::kHome. The
+  /// user holds the device in its home pose until then, and moves to the path's start afterwards.
+  bool homed = true;
 };
 
 /// Sets a device for the controller and for the simulated mechanics.
@@ -38,6 +41,7 @@ struct Sample {
   double t_s = 0.0;                                 ///< 0 is the first tick after arming
   Eigen::Vector3d tip_m = Eigen::Vector3d::Zero();  ///< true position of the device, model frame
   core::Status status{};
+  bool has_parts = true;  ///< false: the source does not tell gravity_force and motor_force
 };
 
 struct FaultEvent {
@@ -65,7 +69,8 @@ struct Summary {
   std::uint64_t crowded_ticks = 0;  ///< with more bodies within reach than are rendered
 };
 
-/// A session with a homed device: power-up, arming, then ticks along the hand's path.
+/// A session with a device that is homed unless the setup says otherwise: power-up, arming, then
+/// ticks along the hand's path.
 class Simulation {
  public:
   /// `blob` must be 4-byte aligned and outlive the simulation. Throws std::invalid_argument if
@@ -123,11 +128,13 @@ class Simulation {
  private:
   void sample_device();
   core::Status tick(double path_t_s);
+  [[nodiscard]] plant::HandTarget hand_at(double path_t_s, bool is_homed);
 
   Setup setup_;
   HandPath path_;
   std::optional<plant::HandTarget> steered_;
   std::optional<std::array<double, core::kAxes>> held_counts_;
+  std::optional<Eigen::Vector3d> at_home_m_;  // of the hand, device frame, until it is on its path
   core::Command command_ = core::Command::kNone;
   double period_s_;
   hal::sim::SimBoard board_;

@@ -1,0 +1,132 @@
+#pragma once
+// Operation at the device, without an application: one button and one lamp. For a board whose link
+// is optional. The dead-man control and the emergency stop are separate (hal::SafetyInputs).
+//
+// The button commands, depending on the state:
+//   idle, not homed      held for 1 s: home. The device is in its home pose.
+//   idle, homed          held for 1 s: arm. The dead-man control then confirms.
+//   armed, active        pressed: stop
+//   fault                held for 1 s: clear the fault and return to idle
+// It commands once for each press. A button that is pressed at power-up has no effect until it was
+// released. Configuration::supervision.dead_man_required must be true: the button does not confirm.
+//
+// The lamp shows the state, in slots of 0.1 s:
+//   boot, no model       two flashes every 2 s
+//   idle, not homed      1 s period, half on
+//   idle, homed          a flash every second: ready to arm
+//   armed                0.2 s period: waits for the dead-man control
+//   active               on
+//   fault                as many flashes as the code of the fault, then a pause of 1 s
+//
+// Interrupt safety: no shared state; called by the tick only. Cost of each function: constant,
+// about 40 instructions.
+// Loop and memory annotations: docs/BOUND.md.
+// memory: RAM
+
+#include <cstdint>
+
+#include "tactree/core/control/controller.hpp"
+
+namespace tactree::hal {
+
+class Panel {
+ public:
+  /// Precondition: 100 <= rate_hz <= 20000.
+  void configure(float rate_hz) {
+    slot_ticks_ = static_cast<std::uint32_t>(kSlot_s * rate_hz);
+    debounce_ticks_ = static_cast<std::uint32_t>(kDebounce_s * rate_hz);
+    hold_ticks_ = static_cast<std::uint32_t>(kHold_s * rate_hz);
+  }
+
+  /// Call once per tick, with the state of the button; returns its command.
+  [[nodiscard]] core::Command command(bool pressed) {
+    if (follow_up_ != core::Command::kNone) {
+      const core::Command command = follow_up_;
+      follow_up_ = core::Command::kNone;
+      return command;
+    }
+    if (!pressed) {
+      pressed_ticks_ = 0;
+      released_ticks_ += released_ticks_ < debounce_ticks_ ? 1U : 0U;
+      ready_ = ready_ || released_ticks_ >= debounce_ticks_;
+      return core::Command::kNone;
+    }
+    released_ticks_ = 0;
+    pressed_ticks_ += pressed_ticks_ < hold_ticks_ ? 1U : 0U;
+    const bool powered = state_ == core::State::kArmed || state_ == core::State::kActive;
+    if (!ready_ || pressed_ticks_ < (powered ? debounce_ticks_ : hold_ticks_)) {
+      return core::Command::kNone;
+    }
+    ready_ = false;
+    return command_of_press(powered);
+  }
+
+  /// Call once per tick with its status; returns whether the lamp is on.
+  [[nodiscard]] bool lamp(const core::Status& status) {
+    const bool homed = (status.limits & core::limit_bit(core::Limit::kNotHomed)) == 0U;
+    if (status.state != state_ || homed != homed_) {
+      slot_ = 0;
+      ticks_in_slot_ = 0;
+    }
+    state_ = status.state;
+    homed_ = homed;
+    if (++ticks_in_slot_ > slot_ticks_) {
+      ticks_in_slot_ = 1;
+      ++slot_;
+    }
+    return is_lit(status.faults);
+  }
+
+ private:
+  static constexpr float kSlot_s = 0.1F;
+  static constexpr float kDebounce_s = 0.02F;  // contacts of a switch bounce for up to 10 ms
+  static constexpr float kHold_s = 1.0F;       // longer than any accidental touch
+  static constexpr std::uint32_t kPauseSlots = 10;
+
+  [[nodiscard]] core::Command command_of_press(bool powered) {
+    if (powered) {
+      return core::Command::kStop;
+    }
+    if (state_ == core::State::kFault) {
+      follow_up_ = core::Command::kStop;
+      return core::Command::kClearFault;
+    }
+    if (state_ != core::State::kIdle) {
+      return core::Command::kNone;
+    }
+    return homed_ ? core::Command::kArm : core::Command::kHome;
+  }
+
+  [[nodiscard]] bool is_lit(core::FaultMask faults) const {
+    if (state_ == core::State::kActive) {
+      return true;
+    }
+    if (state_ == core::State::kArmed) {
+      return slot_ % 2U == 0U;
+    }
+    if (state_ == core::State::kIdle) {
+      return slot_ % 10U < (homed_ ? 1U : 5U);
+    }
+    if (state_ == core::State::kFault && faults != 0U) {
+      const auto code = static_cast<std::uint32_t>(__builtin_ctz(faults));  // the lowest
+      const std::uint32_t slot = slot_ % (2U * code + kPauseSlots);
+      return slot < 2U * code && slot % 2U == 0U;
+    }
+    const std::uint32_t slot = slot_ % 20U;
+    return slot == 0U || slot == 2U;
+  }
+
+  std::uint32_t slot_ticks_ = 100;
+  std::uint32_t debounce_ticks_ = 20;
+  std::uint32_t hold_ticks_ = 1000;
+  std::uint32_t pressed_ticks_ = 0;   // up to hold_ticks_
+  std::uint32_t released_ticks_ = 0;  // up to debounce_ticks_
+  std::uint32_t ticks_in_slot_ = 0;
+  std::uint32_t slot_ = 0;
+  core::State state_ = core::State::kBoot;
+  core::Command follow_up_ = core::Command::kNone;
+  bool homed_ = false;
+  bool ready_ = false;  // released since the last command
+};
+
+}  // namespace tactree::hal
