@@ -138,6 +138,9 @@ void complete(BuildArguments& arguments) {
       misuse("--columns", error.what());
     }
   }
+  if (!std::isfinite(build.turn_deg)) {  // CLI::Range accepts NaN
+    misuse("--turn", "must be a finite angle");
+  }
   if (arguments.fit) {
     set_fit(*arguments.fit, build);
   }
@@ -240,6 +243,12 @@ void add_frame_options(CLI::App& verb, BuildArguments& arguments) {
   verb.add_option("--axis", build.up, "axis of the file that points up; it becomes z")
       ->transform(CLI::CheckedTransformer(kAxes).description("x|y|z"))
       ->default_str("z")
+      ->group(kGroup);
+  verb.add_option("--turn", build.turn_deg,
+                  "then turn the model about z by this angle, degrees, counterclockwise seen from "
+                  "above; its front is the side of +x, which faces the user of the device")
+      ->check(CLI::Range(-360.0, 360.0))
+      ->capture_default_str()
       ->group(kGroup);
   verb.add_option("--crop", arguments.crop,
                   "keep only this box: xmin,ymin,zmin,xmax,ymax,zmax in the unit of the file")

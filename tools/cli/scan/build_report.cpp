@@ -71,6 +71,10 @@ ordered_json materials_json(const BuildReport& report, const BuildOptions& build
   return list;
 }
 
+std::string axis_name(const BuildOptions& build) {
+  return {"xyz"[static_cast<std::size_t>(build.up.value_or(builder::UpAxis::kZ))]};
+}
+
 void print_input(const BuildReport& report) {
   for (const builder::InputReport& input : report.inputs) {
     const std::string triangles =
@@ -162,6 +166,8 @@ ordered_json report_json(const BuildReport& report, const BuildOptions& build) {
           {"materials", materials_json(report, build)},
           {"bounds_min_m", triple(report.bounds.min())},
           {"bounds_max_m", triple(report.bounds.max())},
+          {"axis", axis_name(build)},
+          {"turn_deg", build.turn_deg},
           {"source_scale", report.source_scale},
           {"source_origin", triple(report.source_origin)},
           {"bytes", report.bytes},
