@@ -18,6 +18,7 @@
 #include "run/wall_options.hpp"
 #include "scan/board_work.hpp"
 #include "tactree/builder/scaled_model.hpp"
+#include "tactree/builder/up_advice.hpp"
 #include "tactree/simulation/placement.hpp"
 #include "tactree/support/device_file.hpp"
 #include "tactree/support/user_error.hpp"
@@ -46,6 +47,14 @@ viewer::Bodies bodies_of(const SceneFile& scene) {
   bodies.bodies = scene.bodies;
   for (const support::BlobFile* const file : scene.files) {
     bodies.views.push_back(file->view());
+  }
+  return bodies;
+}
+
+viewer::Bodies noted_bodies_of(const SceneFile& scene) {
+  viewer::Bodies bodies = bodies_of(scene);
+  for (const core::BlobView& view : bodies.views) {
+    bodies.notes.push_back(builder::up_advice(view).value_or(""));
   }
   return bodies;
 }
@@ -79,7 +88,7 @@ std::unique_ptr<viewer::Source> board_source(const ViewOptions& options, const S
                                                         const core::wire::CapabilitiesReply& can) {
     return work_of_board(board, can, shown.view().header(), firmware);
   };
-  return std::make_unique<viewer::BoardSession>(bodies_of(scene), std::move(settings));
+  return std::make_unique<viewer::BoardSession>(noted_bodies_of(scene), std::move(settings));
 }
 
 std::unique_ptr<viewer::Source> make_source(const ViewOptions& options, const SceneFile& scene) {
@@ -90,7 +99,7 @@ std::unique_ptr<viewer::Source> make_source(const ViewOptions& options, const Sc
   const core::Vec3 origin_m = simulation::middle_at_origin(
       scene.files[0]->view().header(), scene.bodies[0].path.first(), device.kind);
   return std::make_unique<viewer::TracePlayback>(viewer::read_trace(options.trace),
-                                                 bodies_of(scene), device, origin_m);
+                                                 noted_bodies_of(scene), device, origin_m);
 }
 
 bool is_single(const ViewOptions& options, const SceneFile& scene) {
@@ -110,7 +119,7 @@ class Simulated {
  public:
   Simulated(const ViewOptions& options, SceneFile& scene)
       : scene_(scene),
-        session_(bodies_of(scene), devices(options.settings.device), options.settings,
+        session_(noted_bodies_of(scene), devices(options.settings.device), options.settings,
                  is_single(options, scene) ? fitting() : viewer::Fitting{}) {
     if (!session_.warning().empty()) {
       warn(session_.warning());

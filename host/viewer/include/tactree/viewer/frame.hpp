@@ -43,6 +43,7 @@ class Strip {
 /// The bodies of the scene and their models, in the same order.
 struct Bodies {
   std::vector<core::BlobView> views;
+  std::vector<std::string> notes;  ///< about each model, for the page; may be shorter
   std::vector<simulation::SceneBody> bodies;
 };
 
