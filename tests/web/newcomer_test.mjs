@@ -102,6 +102,7 @@ test('a model that lies on its side is announced until it is dismissed', async (
   assert.match(await text(page, 'posture-note'), /lying: the model seems to lie on its side.*lowest y.*--axis y/);
   await page.locator('#posture-close').click();
   assert.ok(await page.locator('#posture').isHidden());
+  await page.close();
   const upright = await openSession(t, [buildModel('upright', lyingDome(), ['--unit', 'm', '--axis', 'y'])]);
   assert.ok(await upright.locator('#posture').isHidden());
   assert.deepEqual([...page.troubles, ...upright.troubles], []);
