@@ -43,8 +43,8 @@ class Strip {
 /// The bodies of the scene and their models, in the same order.
 struct Bodies {
   std::vector<core::BlobView> views;
-  std::vector<std::string> notes;  ///< about each model, for the page; may be shorter
   std::vector<simulation::SceneBody> bodies;
+  std::vector<std::string> notes = {};  ///< about each model, for the page; may be shorter
 };
 
 /// A tick of one controller. `joints` are the joint positions of the device; if empty, they are
