@@ -92,7 +92,8 @@ class Link(SharedFolder):
     @unittest.skipIf(BOARD != "host", "the messages do not depend on the board")
     def test_a_fault_is_named_with_its_remedy(self):
         with ServedBoard(TACTREE, self.blob, "--board", BOARD, "--inject", "estop:pressed@0.02..0.05") as port:
-            self.run_tool("arm", "--port", port, "--seconds", "1")
+            # Of the board's time: when it ends, the switch is released.
+            self.run_verb("record", "--port", port, "--seconds", "1", "-o", "passed.csv")
             refused = self.run_verb("arm", "--port", port, "--seconds", "0.1", code=1)
             self.assertIn("fault emergency-stop", refused)
             self.assertIn("tactree arm --clear", refused)

@@ -108,6 +108,13 @@ void require_positive(const std::string& option, const std::optional<double>& va
   }
 }
 
+// CLI::Range accepts NaN.
+void require_finite(const std::string& option, double value) {
+  if (!std::isfinite(value)) {
+    misuse(option, "must be a finite number");
+  }
+}
+
 Eigen::Vector3d to_position(const std::string& option, const std::string& text) {
   Eigen::Vector3d position;
   std::size_t begin = 0;
@@ -138,9 +145,7 @@ void complete(BuildArguments& arguments) {
       misuse("--columns", error.what());
     }
   }
-  if (!std::isfinite(build.turn_deg)) {  // CLI::Range accepts NaN
-    misuse("--turn", "must be a finite angle");
-  }
+  require_finite("--turn", build.turn_deg);
   if (arguments.fit) {
     set_fit(*arguments.fit, build);
   }
