@@ -70,6 +70,32 @@ class Columns(Folder):
         self.assertIn("m.obj", done.stderr)
 
 
+class Turn(Folder):
+    def middle(self, *options):
+        """Of a ball whose middle is at z = 0.1 in the file."""
+        rows = [row.split() for row in sphere(2000, 0.05).splitlines()]
+        self.write("s.xyz", "".join(f"{x} {y} {float(z) + 0.1}\n" for x, y, z in rows))
+        done = self.run_tool("build", "s.xyz", "-o", "t.blob", "--unit", "m", "--report", "r.json", *options)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        report = self.read("r.json")
+        return [round((low + high) / 2, 2) + 0.0
+                for low, high in zip(report["bounds_min_m"], report["bounds_max_m"])]
+
+    def test_turns_about_the_vertical_after_the_axis(self):
+        self.assertEqual(self.middle("--turn", "90"), [0, 0, 0.1])
+        self.assertEqual(self.middle("--axis", "y"), [0, -0.1, 0])
+        self.assertEqual(self.middle("--axis", "y", "--turn", "90"), [0.1, 0, 0])
+        self.assertEqual(self.middle("--axis", "y", "--turn", "-30"), [-0.05, -0.09, 0])
+        report = self.read("r.json")
+        self.assertEqual((report["axis"], report["turn_deg"]), ("y", -30))
+
+    def test_an_angle_must_be_a_number(self):
+        for angle in ("x", "nan", "inf", "361"):
+            done = self.run_tool("build", "s.xyz", "-o", "y", "--turn", angle)
+            self.assertEqual(done.returncode, 2, angle)
+            self.assertIn("--turn", done.stderr)
+
+
 class Outputs(Folder):
     def test_an_input_is_not_overwritten(self):
         self.build()

@@ -1,6 +1,6 @@
 """tactree evaluate: every target is met, reproducibly, and reported as table, JSON and page.
 
-usage: evaluate_test.py TACTREE CLASS      CLASS: Report or Seeds
+usage: evaluate_test.py TACTREE CLASS      CLASS: Report, Scan or Seeds
 """
 import math
 import pathlib
@@ -88,6 +88,50 @@ class Report(InAFolder):
         # To scale: the ball of 60 mm fills the square of 290.
         for radius in re.findall(r'<circle [^>]* r="([\d.]+)"', holed):
             self.assertAlmostEqual(2 * float(radius), width / 60 * 290, delta=3)
+
+
+class Scan(SharedFolder):
+    """A report about scans only, in seconds."""
+    tool = TACTREE
+
+    def test_reports_about_the_named_scan(self):
+        points = list(ball(20000, 0.03))
+        stray = [((0.0, 0.0, 0.045), (0.0, 0.0, 1.0))]
+        self.write("cut.csv", csv([p for p in points if p[0][2] < 0.03 * math.cos(0.5)] + stray))
+        done = self.run_tool("evaluate", "--quick", "--scan", "cut.csv", "--json", "cut.json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        for part in ("## cut.csv", "kept; dropped: 1 ", "holes: 1, open boundaries: 0", "contact lost in 0;"):
+            self.assertIn(part, done.stdout)
+        report = self.read("cut.json")
+        self.assertEqual(list(report), ["quick", "seed", "scans"])
+        scan = report["scans"]["cut.csv"]
+        self.assertEqual(scan["input_points"] - scan["kept_points"], 1)
+        self.assertEqual(len(scan["openings"]), 1)
+        self.assertGreater(scan["orientation"]["confidence"], 0.9)
+        slides = scan["slides"]
+        self.assertGreater(slides["ticks"], 1000)
+        self.assertLess(slides["force_error_rms_N"], 0.05 * slides["expected_N"])
+        self.assertLess(slides["force_step_N"], 0.1 * slides["expected_N"])
+
+    def test_a_rough_scan_is_felt_in_the_slides(self):
+        even = list(ball(20000, 0.03))
+        self.write("even.csv", csv(even))
+        self.write("rough.csv", csv([([c * (1 + 0.005 * (i % 2)) for c in p], n) for i, (p, n) in enumerate(even)]))
+        done = self.run_tool("evaluate", "--quick", "--scan", "even.csv", "--scan", "rough.csv", "--json", "r.json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        even, rough = (self.read("r.json")["scans"][name]["slides"] for name in ("even.csv", "rough.csv"))
+        self.assertLess(even["force_error_rms_N"], 1e-3)
+        self.assertGreater(rough["force_error_rms_N"], 5 * even["force_error_rms_N"])
+
+    def test_refuses_what_is_not_a_scan(self):
+        self.write("note.txt", "Dear reader, this is a letter.\n")
+        self.write("ball.csv", csv(ball(2000, 0.03)))
+        (self.path / "folder").mkdir()
+        for name in ("note.txt", "folder", "absent.ply"):
+            done = self.run_tool("evaluate", "--quick", "--scan", "ball.csv", "--scan", name, "--json", "n.json")
+            self.assertEqual(done.returncode, 1, name)
+            self.assertRegex(done.stderr, f"error: {name}: .+")
+            self.assertFalse((self.path / "n.json").exists())
 
 
 class Seeds(InAFolder):

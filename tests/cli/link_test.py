@@ -3,6 +3,7 @@
 
 usage: link_test.py TACTREE [BOARD]      BOARD: where the controller runs, default host
 """
+import os
 import pathlib
 import sys
 import unittest
@@ -92,6 +93,26 @@ class Link(SharedFolder):
             self.assertIn("no parameter 'nonsense'", self.run_verb("params", "nonsense=1", "--port", port, code=1))
             self.assertIn("NAME=NUMBER", self.run_verb("params", "delay_s=x", "--port", port, code=1))
             self.run_verb("params", "delay_s=7", "--port", port, code=1)
+
+    def test_lists_a_simulated_board(self):
+        runtime = self.path / "runtime"
+        runtime.mkdir()
+        mine = {**os.environ, "XDG_RUNTIME_DIR": str(runtime)}
+        with ServedBoard(TACTREE, self.blob, "--board", BOARD, env=mine) as port:
+            done = self.run_tool("devices", env=mine)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn(f"{port}: simulated board {BOARD}, model {self.blob}", done.stdout)
+        self.assertNotIn(port, self.run_tool("devices", env=mine).stdout)
+
+    @unittest.skipIf(BOARD != "host", "the messages do not depend on the board")
+    def test_a_fault_is_named_with_its_remedy(self):
+        with ServedBoard(TACTREE, self.blob, "--board", BOARD, "--inject", "estop:pressed@0.02..0.05") as port:
+            # Of the board's time: when it ends, the switch is released.
+            self.run_verb("record", "--port", port, "--seconds", "1", "-o", "passed.csv")
+            refused = self.run_verb("arm", "--port", port, "--seconds", "0.1", code=1)
+            self.assertIn("fault emergency-stop", refused)
+            self.assertIn("tactree arm --clear", refused)
+            self.run_verb("arm", "--port", port, "--seconds", "0.1", "--clear")
 
     def test_reports_a_missing_board(self):
         for verb in (["monitor", "--once"], ["stop"], ["trace"], ["params"], ["flash", "--list"], ["arm"]):

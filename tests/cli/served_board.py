@@ -15,11 +15,12 @@ def build_ball(tactree, folder, name="ball", *options, points=3000, radius=0.03)
 class ServedBoard:
     """with ServedBoard(tactree, blob) as port: ...      Its time passes only while a program lets it."""
 
-    def __init__(self, tactree, blob, *options):
+    def __init__(self, tactree, blob, *options, env=None):
+        self.env = env
         self.command = [tactree, "simulate", blob, "--serve", "--lock-step", *options]
 
     def __enter__(self):
-        self.process = subprocess.Popen(self.command, stdout=subprocess.PIPE, text=True)
+        self.process = subprocess.Popen(self.command, stdout=subprocess.PIPE, text=True, env=self.env)
         line = self.process.stdout.readline()
         assert line.startswith("serving at "), line
         return line.removeprefix("serving at ").strip()

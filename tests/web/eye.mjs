@@ -3,7 +3,7 @@
 
 const FIELD = (35 * Math.PI) / 180;
 const CLOSE = 1.05; // of the distance at which the ball around the model fills the picture
-const START = { yaw: 0.5, pitch: 0.35 };
+const START = { yaw: 0, pitch: 0.35 };
 
 const add = (a, b, factor = 1) => a.map((x, i) => x + factor * b[i]);
 const dot = (a, b) => a.reduce((sum, x, i) => sum + x * b[i], 0);

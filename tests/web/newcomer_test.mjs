@@ -80,6 +80,47 @@ test('a model beyond reach is announced, scaled on demand, and then touched', as
   await page.mouse.up();
 });
 
+/** A half ball, flat side at the lowest z, turned so that its z points along y: rows x y z. */
+function lyingDome() {
+  const rows = [];
+  const turn = Math.PI * (3 - Math.sqrt(5));
+  for (let i = 0; i < 12000; ++i) {
+    const z = (i + 0.5) / 12000;
+    const r = Math.sqrt(1 - z * z);
+    rows.push([0.04 * r * Math.cos(i * turn), 0.04 * z, -0.04 * r * Math.sin(i * turn)]);
+  }
+  for (let i = 0; i < 6000; ++i) {
+    const r = 0.04 * Math.sqrt((i + 0.5) / 6000);
+    rows.push([r * Math.cos(i * turn), 0, -r * Math.sin(i * turn)]);
+  }
+  return `${rows.map((row) => row.map((v) => v.toFixed(6)).join(' ')).join('\n')}\n`;
+}
+
+test('a model that lies on its side is announced until it is dismissed', async (t) => {
+  const page = await openSession(t, [buildModel('lying', lyingDome(), ['--unit', 'm'])]);
+  await page.locator('#posture').waitFor();
+  assert.match(await text(page, 'posture-note'), /lying: the model seems to lie on its side.*lowest y.*--axis y/);
+  await page.locator('#posture-close').click();
+  assert.ok(await page.locator('#posture').isHidden());
+  await page.close();
+  const upright = await openSession(t, [buildModel('upright', lyingDome(), ['--unit', 'm', '--axis', 'y'])]);
+  assert.ok(await upright.locator('#posture').isHidden());
+  assert.deepEqual([...page.troubles, ...upright.troubles], []);
+});
+
+test('the page opens with the front of the model, the side of +x, towards the viewer', async (t) => {
+  const page = await openSession(t);
+  await state(page, 'active');
+  const box = await page.locator('#view').boundingBox();
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+  await page.mouse.down();
+  await until(page, FORCE, (...force) => length(force) > 0.1, 'no force');
+  // The camera looks down by 0.35 rad at the middle of the ball.
+  const [x, y, z] = await until(page, PROBE, () => true, '');
+  await page.mouse.up();
+  assert.ok(x > 0.85 * RADIUS && Math.abs(y) < 0.1 * RADIUS && z > 0, `touched at ${x}, ${y}, ${z}`);
+});
+
 test('the distance has a sign: outside, inside, and behind a sheet', async (t) => {
   const shown = async (page) => parseFloat(await text(page, 'distance'));
   const check = async (page, z_m, heightOf) => {
@@ -118,7 +159,8 @@ test('no message covers Clear, Arm or another message', async (t) => {
     const covered = await page.evaluate(() => {
       const boxOf = (element) => element.getBoundingClientRect();
       const meet = (a, b) => a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
-      const all = ['banner', 'model-warning', 'board-gone', 'offline', 'fit', 'inside', 'confirm', 'note', 'panel']
+      const all = ['banner', 'model-warning', 'board-gone', 'offline', 'fit', 'posture', 'inside', 'confirm', 'note',
+        'panel']
         .map((id) => document.getElementById(id)).filter((one) => one.offsetParent);
       return ['clear', 'arm'].flatMap((id) => {
         const button = document.getElementById(id);

@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "cleaning/cleaning.hpp"
+#include "cleaning/turn.hpp"
 #include "normals/given_normals.hpp"
 #include "normals/mesh_windings.hpp"
 #include "normals/normals.hpp"
@@ -27,10 +28,6 @@
 
 namespace tactree::builder {
 namespace {
-
-// Below this ratio of points with material behind them, a body is so open that its flat base may be
-// the only part that was scanned.
-constexpr double kBodyShare = 0.9;
 
 std::uint64_t peak_rss_bytes() {
   rusage usage{};
@@ -93,19 +90,24 @@ class Pipeline {
     }
   }
 
-  // Only if the shape indicates an axis and the user has not stated which axis points up.
+  // Only if the shape indicates an axis and the user has not stated which axis points up. In the
+  // axes of the file, to which --axis refers.
   void hint_at_axis() {
     if (options_.up || report_.backed_share < kBodyShare) {
       return;
     }
-    const std::optional<FlatBase> base =
-        flat_base(model_.positions, model_.normals, model_.spacing_m);
+    const Eigen::Matrix3d back = turn_about_z(-options_.turn_deg);
+    std::vector<Eigen::Vector3d> positions = model_.positions;
+    std::vector<Eigen::Vector3f> normals = model_.normals;
+    for (std::size_t i = 0; i < positions.size() && options_.turn_deg != 0.0; ++i) {
+      positions[i] = back * positions[i];
+      normals[i] = back.cast<float>() * normals[i];
+    }
+    const std::optional<FlatBase> base = flat_base(positions, normals, model_.spacing_m);
     if (base && base->up != UpAxis::kZ) {
-      const char axis = base->up == UpAxis::kX ? 'x' : 'y';
-      report_.notes.push_back(
-          fmt::format("the model seems to lie on its side: its flat base, {:.0f} % of the surface, "
-                      "is at its lowest {} (--axis {} turns it; --axis z keeps it as it is)",
-                      100.0 * base->share, axis, axis));
+      const char axis = letter_of(base->up);
+      report_.notes.push_back(fmt::format("{} (--axis {} turns it; --axis z keeps it as it is)",
+                                          describe_lying(*base), axis));
     }
   }
 

@@ -60,6 +60,10 @@ std::string material_name(const BuildOptions& build, std::size_t index) {
   return index == 0 ? "default" : build.materials->colours[index - 1].name;
 }
 
+std::string axis_name(const BuildOptions& build) {
+  return {"xyz"[static_cast<std::size_t>(build.up.value_or(UpAxis::kZ))]};
+}
+
 double bytes_per_point(const BuildReport& report) {
   return static_cast<double>(report.bytes) / static_cast<double>(report.output_points);
 }
@@ -94,6 +98,8 @@ std::string report_json(const BuildReport& report, const BuildOptions& build) {
       {"materials", materials_json(report, build)},
       {"bounds_min_m", triple(report.bounds.min())},
       {"bounds_max_m", triple(report.bounds.max())},
+      {"axis", axis_name(build)},
+      {"turn_deg", build.turn_deg},
       {"source_scale", report.source_scale},
       {"source_origin", triple(report.source_origin)},
       {"bytes", report.bytes},

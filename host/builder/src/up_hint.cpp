@@ -1,5 +1,7 @@
 #include "up_hint.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 
@@ -47,6 +49,16 @@ std::optional<FlatBase> flat_base(std::span<const Eigen::Vector3d> positions,
   }
   constexpr std::array<UpAxis, 3> kAxes = {UpAxis::kX, UpAxis::kY, UpAxis::kZ};
   return FlatBase{kAxes[best], share};
+}
+
+char letter_of(UpAxis axis) { return "xyz"[static_cast<std::size_t>(axis)]; }
+
+std::string describe_lying(const FlatBase& base) {
+  return fmt::format(
+      "the model seems to lie on its side: its flat base, {:.0f} % of the surface, is at its "
+      "lowest "
+      "{}",
+      100.0 * base.share, letter_of(base.up));
 }
 
 }  // namespace tactree::builder

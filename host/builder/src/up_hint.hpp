@@ -4,10 +4,15 @@
 #include <Eigen/Core>
 #include <optional>
 #include <span>
+#include <string>
 
 #include "tactree/builder/build_model.hpp"
 
 namespace tactree::builder {
+
+/// Below this ratio of points with material behind them, a body is so open that its flat base may
+/// be the only part that was scanned.
+inline constexpr double kBodyShare = 0.9;
 
 struct FlatBase {
   UpAxis up = UpAxis::kZ;  ///< the base is at the low end of this axis
@@ -22,5 +27,10 @@ struct FlatBase {
 [[nodiscard]] std::optional<FlatBase> flat_base(std::span<const Eigen::Vector3d> positions,
                                                 std::span<const Eigen::Vector3f> normals,
                                                 double spacing);
+
+[[nodiscard]] char letter_of(UpAxis axis);
+
+/// States that a body lies on its side, for a base that is not at the low end of z.
+[[nodiscard]] std::string describe_lying(const FlatBase& base);
 
 }  // namespace tactree::builder

@@ -43,6 +43,13 @@ const char* remedy_for(WireStatus status) {
   }
 }
 
+bool is_too_stiff(const Response& response) {
+  core::wire::FinishModelReply reply;
+  return response.status == WireStatus::kUnstable ||
+         (response.status == WireStatus::kBadModel && response.read(reply) &&
+          static_cast<core::ModelStatus>(reply.model) == core::ModelStatus::kTooStiff);
+}
+
 /// Returns the cause in the reply for a refused model.
 std::string details(const Response& response) {
   core::wire::FinishModelReply reply;
@@ -78,6 +85,33 @@ std::string names_of(core::FaultMask faults) {
     }
   }
   return names;
+}
+
+std::string Board::explain(core::FaultMask faults) const {
+  const std::string names = names_of(faults);
+  if (!core::has_fault(faults, core::Fault::kLinkLost) || options_.link_timeout_ms == 0U) {
+    return names;
+  }
+  return names + " (no heartbeat arrived for " + std::to_string(options_.link_timeout_ms) +
+         " ms: the cable is disconnected, or this computer is too busy; end other programs, or "
+         "give "
+         "a longer --link-timeout)";
+}
+
+std::string Board::loss() const {
+  if (!connection_) {
+    return port_ + ": the board is disconnected";
+  }
+  const std::string name = connection_->name();
+  if (!connection_->connected()) {
+    return name +
+           ": the board is disconnected: it was unplugged, lost its power, or its program "
+           "ended (connect it, then reconnect)";
+  }
+  return connection_->in_session() ? ""
+                                   : name +
+                                         ": the session has ended: the board was reset, or "
+                                         "another program opened a session (reconnect)";
 }
 
 Board::Board(const std::string& port, const BoardOptions& options)
@@ -142,9 +176,20 @@ Response Board::demand(MessageKind kind, std::span<const std::byte> payload, con
   }
   if (!response.ok()) {
     throw LinkError(where + core::wire::describe(response.status) + details(response) +
-                    remedy_for(response.status));
+                    stiffness_limit(response) + remedy_for(response.status));
   }
   return response;
+}
+
+/// The limit of the board, if the refusal is for a larger stiffness. Rounded down, so that the
+/// board accepts the stated value.
+std::string Board::stiffness_limit(const Response& refusal) const {
+  core::wire::CapabilitiesReply can;
+  if (!is_too_stiff(refusal) || !connection().call(MessageKind::kCapabilities).read(can)) {
+    return "";
+  }
+  return "; with the present damping the limit is " +
+         std::to_string(static_cast<std::uint32_t>(can.stiffness_limit_N_m)) + " N/m";
 }
 
 template <core::wire::Message Reply>
@@ -181,9 +226,19 @@ void Board::begin_arming() {
   using core::wire::BoardFlag;
   hand_confirms_ =
       (capabilities().flags & static_cast<std::uint32_t>(BoardFlag::kDeadManRequired)) != 0U;
+  require_no_fault();
   core::wire::ControlReply armed;
   (void)control(ControlCode::kArm, 0, "arm").read(armed);
   arm_token_ = armed.token;
+}
+
+void Board::require_no_fault() {
+  const core::wire::StateReply now = state();
+  if (static_cast<core::State>(now.state) == core::State::kFault) {
+    throw LinkError(connection().name() + ": arm: the board has stopped with the fault " +
+                    explain(now.faults) +
+                    " (remove the cause, then clear the fault: tactree arm --clear)");
+  }
 }
 
 bool Board::go_on_arming() {
@@ -193,7 +248,7 @@ bool Board::go_on_arming() {
     return true;
   }
   if (now != core::State::kArmed) {
-    const std::string faults = names_of(reply.faults);
+    const std::string faults = explain(reply.faults);
     throw LinkError(connection().name() + ": arm: the controller is in state " +
                     core::name_of(now) + (faults.empty() ? "" : ": " + faults));
   }

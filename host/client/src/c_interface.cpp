@@ -16,11 +16,15 @@ struct tactree_board {
   tactree::client::Board board;
   std::deque<tactree::client::Telemetry> waiting;  // taken from the stream, not yet by the caller
   std::string error;
+  bool failed_since_loss = false;  // `error` is of a call after the loss
+  mutable std::string loss;
 };
 
 namespace {
 
+using tactree::client::Board;
 using tactree::client::Telemetry;
+using tactree::core::wire::BoardFlag;
 
 thread_local std::string error_of_open;  // NOLINT: C has no other place for it
 
@@ -34,6 +38,13 @@ int guarded(std::string& error, Action action) {
     error = problem.what();
     return -1;
   }
+}
+
+template <class Action>
+int guarded(tactree_board& board, Action action) {
+  const int result = guarded(board.error, [&] { action(board.board); });
+  board.failed_since_loss = !board.board.loss().empty() && (result != 0 || board.failed_since_loss);
+  return result;
 }
 
 void copy(const float (&from)[3], float (&to)[3]) {
@@ -68,9 +79,9 @@ tactree_board* tactree_open(const char* port, unsigned baud, unsigned link_timeo
 }
 
 int tactree_reconnect(tactree_board* board) {
-  return guarded(board->error, [&] {
+  return guarded(*board, [&](Board& it) {
     board->waiting.clear();
-    board->board.reconnect();
+    it.reconnect();
   });
 }
 
@@ -79,33 +90,50 @@ int tactree_connected(const tactree_board* board) { return board->board.connecte
 void tactree_close(tactree_board* board) { delete board; }
 
 const char* tactree_error(const tactree_board* board) {
-  return board == nullptr ? error_of_open.c_str() : board->error.c_str();
+  if (board == nullptr) {
+    return error_of_open.c_str();
+  }
+  board->loss = board->board.loss();
+  return board->loss.empty() || board->failed_since_loss ? board->error.c_str()
+                                                         : board->loss.c_str();
 }
 
 int tactree_arm(tactree_board* board, unsigned patience_ms) {
-  return guarded(board->error, [&] { board->board.arm(std::chrono::milliseconds(patience_ms)); });
+  return guarded(*board, [&](Board& it) { it.arm(std::chrono::milliseconds(patience_ms)); });
 }
 
 int tactree_stop(tactree_board* board) {
-  return guarded(board->error, [&] { board->board.stop(); });
+  return guarded(*board, [](Board& it) { it.stop(); });
 }
 
 int tactree_clear_faults(tactree_board* board) {
-  return guarded(board->error, [&] { board->board.clear_faults(); });
+  return guarded(*board, [](Board& it) { it.clear_faults(); });
 }
 
 int tactree_home(tactree_board* board) {
-  return guarded(board->error, [&] { board->board.home(); });
+  return guarded(*board, [](Board& it) { it.home(); });
 }
 
 int tactree_subscribe(tactree_board* board, unsigned every_ticks) {
-  return guarded(board->error, [&] { board->board.subscribe({0xFF, every_ticks}); });
+  return guarded(*board, [&](Board& it) { it.subscribe({0xFF, every_ticks}); });
 }
 
 int tactree_set_material(tactree_board* board, float stiffness_N_m, float damping_Ns_m,
                          float static_friction, float dynamic_friction) {
-  return guarded(board->error, [&] {
-    board->board.set_material({stiffness_N_m, damping_Ns_m, static_friction, dynamic_friction, 0});
+  return guarded(*board, [&](Board& it) {
+    it.set_material({stiffness_N_m, damping_Ns_m, static_friction, dynamic_friction, 0});
+  });
+}
+
+int tactree_capabilities(tactree_board* board, tactree_limits* limits) {
+  return guarded(*board, [&](Board& it) {
+    const tactree::core::wire::CapabilitiesReply can = it.capabilities();
+    const auto has = [&](BoardFlag flag) {
+      return (can.flags & static_cast<std::uint32_t>(flag)) != 0U ? 1 : 0;
+    };
+    *limits = {can.rate_hz,          can.force_max_N,        can.force_limit_N,
+               can.host_force_max_N, can.stiffness_N_m,      can.stiffness_limit_N_m,
+               can.bodies,           has(BoardFlag::kHomed), has(BoardFlag::kDeadManRequired)};
   });
 }
 

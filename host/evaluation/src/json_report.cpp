@@ -111,11 +111,41 @@ Json inside(const Result& result) {
   return json;
 }
 
+Json slides(const SlideScores& s) {
+  return {{"slides", s.slides},
+          {"ticks", s.ticks},
+          {"contact_lost", s.lost},
+          {"expected_N", s.expected_N},
+          {"force_error_rms_N", number(s.force_error_rms_N)},
+          {"force_max_N", s.force_max_N},
+          {"force_step_N", s.force_step_N}};
+}
+
+Json openings(const ScanResult& scan) {
+  Json list = Json::array();
+  for (const builder::Opening& o : scan.openings) {
+    list.push_back({{"kind", o.kind == builder::Opening::Kind::kHole ? "hole" : "boundary"},
+                    {"diameter_m", o.diameter_m},
+                    {"centre_m", {o.centre.x(), o.centre.y(), o.centre.z()}}});
+  }
+  return list;
+}
+
 Json scans(const Result& result) {
   Json json = Json::object();
   for (const ScanResult& scan : result.scans) {
     Json entry = scores_json(scan.scores);
+    entry["input_points"] = scan.input_points;
+    entry["kept_points"] = scan.kept_points;
+    entry["dropped"] = scan.dropped;
     entry["points"] = scan.points;
+    entry["orientation"] = {{"checked", scan.orientation_checked},
+                            {"confidence", scan.orientation_confidence},
+                            {"doubtful_points", scan.doubtful_points},
+                            {"components", scan.pieces}};
+    entry["openings"] = openings(scan);
+    entry["slides"] = slides(scan.slides);
+    entry["warnings"] = scan.warnings;
     entry["spacing_m"] = scan.spacing_m;
     json[scan.name] = scan.error.empty() ? entry : Json{{"error", scan.error}};
   }
@@ -125,6 +155,11 @@ Json scans(const Result& result) {
 }  // namespace
 
 std::string to_json(const Result& result) {
+  if (result.options.scans_only) {
+    const Json json = {
+        {"quick", result.options.quick}, {"seed", result.options.seed}, {"scans", scans(result)}};
+    return json.dump(2) + "\n";
+  }
   Json shapes = Json::object();
   for (const ShapeResult& shape : result.shapes) {
     for (const Mode mode : {kSurface, kPaper}) {

@@ -4,6 +4,7 @@
 #include <initializer_list>
 #include <iterator>
 
+#include "scan_report.hpp"
 #include "tactree/evaluation/evaluation.hpp"
 
 namespace tactree::evaluation {
@@ -309,6 +310,9 @@ void add_targets(Page& page, const Result& result) {
 }  // namespace
 
 std::string to_markdown(const Result& result, const std::string& pictures) {
+  if (result.options.scans_only) {
+    return scan_report(result);
+  }
   Page page;
   page.add(
       "# Evaluation results\n\nAll values come from `tactree evaluate`{}, seed {}, and are "

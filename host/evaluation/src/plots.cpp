@@ -123,6 +123,9 @@ std::string score_plot(const Result& result, const std::string& score, const std
 }  // namespace
 
 std::map<std::string, std::string> plots(const Result& result) {
+  if (result.options.scans_only) {
+    return {};
+  }
   return {{"force.svg", force_plot(result.trace)},
           {"depth.svg", score_plot(result, "depth_rms_m", "Error of the computed distance, rms",
                                    1e-7, 1e-3, "&#181;m", 1e6)},

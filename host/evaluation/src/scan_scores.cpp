@@ -4,6 +4,7 @@
 #include "hole_map.hpp"
 #include "measurements.hpp"
 #include "reference_surface.hpp"
+#include "scan_slides.hpp"
 #include "tactree/builder/build_model.hpp"
 #include "tactree/core/contact/surface.hpp"
 #include "tactree/evaluation/shapes.hpp"
@@ -12,6 +13,8 @@ namespace tactree::evaluation {
 namespace {
 
 using Eigen::Vector3d;
+
+constexpr int kProbesPerSlide = 25;
 
 struct Comparison {
   Errors distance;
@@ -32,8 +35,8 @@ struct Comparison {
   }
 };
 
-void compare(const core::BlobView& view, int probes, std::uint32_t seed, Scores& scores) {
-  const ReferenceSurface reference(view);
+void compare(const core::BlobView& view, const ReferenceSurface& reference, int probes,
+             std::uint32_t seed, Scores& scores) {
   const auto spacing = static_cast<double>(view.header().spacing_m);
   std::mt19937_64 random(seed);
   std::uniform_int_distribution<std::size_t> pick(0, reference.positions().size() - 1);
@@ -78,14 +81,26 @@ ScanResult score_scan(const std::filesystem::path& file, int probes, std::uint32
     core::BlobView view;
     if (core::open_blob(built.blob.bytes, view) != core::BlobStatus::kOk ||
         core::surface_support(view) != core::SurfaceSupport::kOk) {
-      throw std::runtime_error("surface mode cannot render this scan");
+      throw std::runtime_error(file.string() +
+                               ": surface mode cannot render this scan (it has too few points)");
     }
+    const builder::BuildReport& report = built.report;
+    result.input_points = report.input_points;
+    result.kept_points = report.kept_points;
+    result.dropped = report.dropped;
+    result.orientation_checked = report.orientation.checked;
+    result.orientation_confidence = report.orientation.confidence;
+    result.doubtful_points = report.orientation.doubtful_points;
+    result.pieces = report.orientation.pieces.size();
+    result.warnings = report.warnings;
     result.points = view.point_count();
     result.spacing_m = built.report.spacing_m;
     result.support_m = static_cast<double>(view.header().support_radius_m);
     result.openings = built.report.openings;
     result.hole_map = hole_map_svg(view, result.openings);
-    compare(view, probes, seed, result.scores);
+    const ReferenceSurface reference(view);
+    compare(view, reference, probes, seed, result.scores);
+    result.slides = slide_over(view, reference.positions(), probes / kProbesPerSlide, seed);
   } catch (const std::exception& error) {
     result.error = error.what();
   }

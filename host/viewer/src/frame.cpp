@@ -151,7 +151,10 @@ json unknown_work(const std::string& why) { return work_json({{}, 0.0, std::null
 json models_json(const Bodies& bodies) {
   json models = json::array();
   for (const core::BlobView& view : bodies.views) {
-    models.push_back({{"name", view.header().name}, {"points", view.point_count()}});
+    const std::size_t index = models.size();
+    models.push_back({{"name", view.header().name},
+                      {"points", view.point_count()},
+                      {"note", index < bodies.notes.size() ? bodies.notes[index] : ""}});
   }
   return models;
 }

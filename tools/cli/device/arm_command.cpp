@@ -33,8 +33,10 @@ void stay(client::Board& board, double seconds, int& exit_code) {
     connection.sleep(std::chrono::milliseconds(50));
     const core::wire::StateReply state = board.state();
     if (static_cast<core::State>(state.state) != core::State::kActive) {
-      fmt::print("the board is in state {}\n",
-                 core::name_of(static_cast<core::State>(state.state)));
+      const std::string faults = board.explain(state.faults);
+      fmt::print("the board is in state {}{}{}\n",
+                 core::name_of(static_cast<core::State>(state.state)), faults.empty() ? "" : ": ",
+                 faults);
       exit_code = kExitFailed;
       return;
     }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "tactree/client/announcement.hpp"
 #include "tactree/client/ports.hpp"
 #include "tactree/support/user_error.hpp"
 
@@ -27,7 +28,11 @@ std::string chosen_port(const BoardPort& options) {
   }
   const std::vector<std::string> ports = client::list_ports();
   if (ports.empty()) {
-    throw support::UserError("no board found (plug one in, or give its --port)");
+    const auto simulated = client::announced_ports();
+    throw support::UserError(
+        simulated.empty() ? "no board found (plug one in, or give its --port)"
+                          : fmt::format("no board found except simulated ones (give --port {})",
+                                        simulated.front().port));
   }
   if (ports.size() > 1) {
     throw support::UserError(fmt::format("there are {} ports: {} (choose with --port)",

@@ -10,6 +10,7 @@
 #include "device/board_port.hpp"
 #include "exit_codes.hpp"
 #include "option_checks.hpp"
+#include "tactree/client/announcement.hpp"
 #include "tactree/client/link_error.hpp"
 #include "tactree/client/ports.hpp"
 #include "tactree/client/usb_devices.hpp"
@@ -68,7 +69,14 @@ void list_devices(const DevicesOptions& options, int& exit_code) {
     found = found || !devices.back().contains("error");
     print(devices.back());
   }
-  if (ports.empty()) {
+  if (options.port.port.empty()) {
+    for (const client::AnnouncedPort& announced : client::announced_ports()) {
+      devices.push_back({{"port", announced.port}, {"simulated", announced.about}});
+      found = true;
+      fmt::print("{}: {}\n", announced.port, announced.about);
+    }
+  }
+  if (devices.empty()) {
     fmt::print("no port found where a board may be connected (plug one in, or give its --port)\n");
   }
   if (!options.json.empty()) {
@@ -109,8 +117,9 @@ void devices(const DevicesOptions& options, int& exit_code) {
 
 void add_devices_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<DevicesOptions>();
-  CLI::App* verb =
-      app.add_subcommand("devices", "Lists the connected boards; exit code 1: none answers");
+  CLI::App* verb = app.add_subcommand("devices",
+                                      "Lists the connected boards, and those that tactree simulate "
+                                      "--serve simulates; exit code 1: there is none");
   add_port_options(*verb, options->port);
   CLI::Option* watch = verb->add_flag(
       "--watch", options->watch, "report boards on USB as they are connected and disconnected");

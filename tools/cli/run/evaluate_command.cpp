@@ -68,17 +68,29 @@ std::vector<fs::path> scans_of(const EvaluateOptions& options) {
   return scans;
 }
 
+/// A file that the user named must be a scan; among those of a folder, others are listed.
+void require_scans(const evaluation::Result& result) {
+  for (const evaluation::ScanResult& scan : result.scans) {
+    if (!scan.error.empty()) {
+      throw support::UserError(scan.error);
+    }
+  }
+}
+
 /// Writes the page, and its pictures to a folder with the same name.
 void write_report(const fs::path& file, const evaluation::Result& result) {
   const fs::path pictures = file.stem();
   const fs::path folder = file.parent_path() / pictures;
+  const std::map<std::string, std::string> plots = evaluation::plots(result);
   std::error_code error;
-  fs::create_directories(folder, error);
+  if (!plots.empty()) {
+    fs::create_directories(folder, error);
+  }
   if (error) {
     throw support::UserError(
         fmt::format("{}: cannot create the folder: {}", folder.string(), error.message()));
   }
-  for (const auto& [name, svg] : evaluation::plots(result)) {
+  for (const auto& [name, svg] : plots) {
     support::write_file(folder / name, svg);
   }
   support::write_file(file, evaluation::to_markdown(result, pictures.string()));
@@ -88,19 +100,23 @@ void write_report(const fs::path& file, const evaluation::Result& result) {
 std::string html_report(const evaluation::Result& result) {
   std::map<std::string, std::string> pictures = evaluation::plots(result);
   pictures.merge(evaluation::hole_maps(result));
-  pictures["z_width.svg"] = evaluation::z_width_svg(result.options.quick);
+  if (!result.options.scans_only) {
+    pictures["z_width.svg"] = evaluation::z_width_svg(result.options.quick);
+  }
   viewer::MarkdownTargets targets;
   targets.picture = [&pictures](std::string_view file) {
     const auto found = pictures.find(std::string(file.substr(file.rfind('/') + 1)));
     return found == pictures.end() ? std::string() : found->second;
   };
+  const char* const z_width =
+      "\n"
+      "## Z-width\n"
+      "Largest stable stiffness of a wall without a hand, as a function of "
+      "the wall's damping and the rate.\n"
+      "\n"
+      "![Z-width](z_width.svg)\n";
   const std::string text = evaluation::to_markdown(result, "pictures") +
-                           "\n"
-                           "## Z-width\n"
-                           "Largest stable stiffness of a wall without a hand, as a function of "
-                           "the wall's damping and the rate.\n"
-                           "\n"
-                           "![Z-width](z_width.svg)\n" +
+                           (result.options.scans_only ? "" : z_width) +
                            evaluation::holes_markdown(result);
   return viewer::html_page("Evaluation results", viewer::markdown_html(text, targets));
 }
@@ -111,7 +127,11 @@ void evaluate(EvaluateOptions& options, int& exit_code) {
                                      options.evaluation.scans.end());
   support::check_outputs({options.json, options.html}, inputs);
   const auto progress = builder::make_progress(builder::ProgressStyle::kAuto, stderr);
+  options.evaluation.scans_only = !options.scans.empty();
   const evaluation::Result result = evaluation::evaluate(options.evaluation, *progress);
+  if (options.evaluation.scans_only) {
+    require_scans(result);
+  }
   if (!options.json.empty()) {
     support::write_file(options.json, evaluation::to_json(result));
   }
@@ -141,12 +161,17 @@ void add_evaluate_command(CLI::App& app, int& exit_code) {
   verb->add_flag("--quick", options->evaluation.quick, "fewer probes: faster, less precise");
   verb->add_option("--seed", options->evaluation.seed, "seed of the random numbers")
       ->capture_default_str();
-  verb->add_option("--scan", options->scans,
-                   fmt::format("scans to compare (default: {}, if present)", kDefaultScan));
-  verb->add_option("--scans", options->folder, "compare every readable scan below this folder");
-  verb->add_flag("--no-scans", options->no_scans, "omit the default scan");
-  verb->add_flag("--require-targets", options->require_targets,
-                 "exit code 1 if a target is missed");
+  CLI::Option* scan = verb->add_option(
+      "--scan", options->scans,
+      "report only about these scans: points kept, outside, holes, force of slides; "
+      "seconds. A file that is not a scan is refused");
+  verb->add_option("--scans", options->folder, "compare every readable scan below this folder")
+      ->excludes(scan);
+  verb->add_flag("--no-scans", options->no_scans,
+                 fmt::format("compare no scan (default: {}, if present)", kDefaultScan))
+      ->excludes(scan);
+  verb->add_flag("--require-targets", options->require_targets, "exit code 1 if a target is missed")
+      ->excludes(scan);
   verb->add_option("--json", options->json, "write all values to this file");
   verb->add_option("--report", options->report,
                    "write a Markdown page to this file, its plots to a folder of the same name");

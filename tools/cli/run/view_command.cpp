@@ -16,6 +16,7 @@
 #include "run/wall_options.hpp"
 #include "scan/board_work.hpp"
 #include "tactree/builder/scaled_model.hpp"
+#include "tactree/builder/up_advice.hpp"
 #include "tactree/setup/model_size.hpp"
 #include "tactree/setup/scene_file.hpp"
 #include "tactree/simulation/placement.hpp"
@@ -50,6 +51,14 @@ viewer::Bodies bodies_of(const setup::SceneFile& scene) {
   return bodies;
 }
 
+viewer::Bodies noted_bodies_of(const setup::SceneFile& scene) {
+  viewer::Bodies bodies = bodies_of(scene);
+  for (const core::BlobView& view : bodies.views) {
+    bodies.notes.push_back(builder::up_advice(view).value_or(""));
+  }
+  return bodies;
+}
+
 /// The built-in devices, and the chosen one if it is a file.
 std::vector<viewer::NamedDevice> devices(const std::string& chosen) {
   std::vector<viewer::NamedDevice> list;
@@ -80,7 +89,7 @@ std::unique_ptr<viewer::Source> board_source(const ViewOptions& options,
                                                         const core::wire::CapabilitiesReply& can) {
     return work_of_board(board, can, shown.view().header(), firmware);
   };
-  return std::make_unique<viewer::BoardSession>(bodies_of(scene), std::move(settings));
+  return std::make_unique<viewer::BoardSession>(noted_bodies_of(scene), std::move(settings));
 }
 
 std::unique_ptr<viewer::Source> make_source(const ViewOptions& options,
@@ -92,7 +101,7 @@ std::unique_ptr<viewer::Source> make_source(const ViewOptions& options,
   const core::Vec3 origin_m = simulation::middle_at_origin(
       scene.files[0]->view().header(), scene.bodies[0].path.first(), device.kind);
   return std::make_unique<viewer::TracePlayback>(viewer::read_trace(options.trace),
-                                                 bodies_of(scene), device, origin_m);
+                                                 noted_bodies_of(scene), device, origin_m);
 }
 
 bool is_single(const ViewOptions& options, const setup::SceneFile& scene) {
@@ -112,7 +121,7 @@ class Simulated {
  public:
   Simulated(const ViewOptions& options, setup::SceneFile& scene)
       : scene_(scene),
-        session_(bodies_of(scene), devices(options.settings.device), options.settings,
+        session_(noted_bodies_of(scene), devices(options.settings.device), options.settings,
                  is_single(options, scene) ? fitting() : viewer::Fitting{}) {
     if (!session_.warning().empty()) {
       warn(session_.warning());

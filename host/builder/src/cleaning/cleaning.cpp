@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 
@@ -10,6 +11,7 @@
 #include "cleaning/pieces.hpp"
 #include "cleaning/scanner_poses.hpp"
 #include "cleaning/stray_points.hpp"
+#include "cleaning/turn.hpp"
 #include "geometry/spacing.hpp"
 #include "tactree/builder/length_text.hpp"
 
@@ -41,20 +43,10 @@ bool is_in_range(const Eigen::Vector3d& position_m) {
   return position_m.cwiseAbs().maxCoeff() <= kLargestCoordinate_m;
 }
 
-Eigen::Matrix3d turn_up(UpAxis up) {
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-  if (up == UpAxis::kY) {
-    turn << 1, 0, 0, 0, 0, -1, 0, 1, 0;  // y -> z, z -> -y
-  } else if (up == UpAxis::kX) {
-    turn << 0, 1, 0, 0, 0, 1, 1, 0, 0;  // x -> z, y -> x, z -> y
-  }
-  return turn;
-}
-
 class Cleaner {
  public:
   Cleaner(const BuildOptions& options, BuildReport& report) : options_(options), report_(report) {
-    input_.frame.turn = turn_up(options.up.value_or(UpAxis::kZ));
+    input_.frame.turn = turn_about_z(options.turn_deg) * turn_up(options.up.value_or(UpAxis::kZ));
   }
 
   CleanInput run(std::vector<Scan> scans) {
@@ -106,10 +98,10 @@ class Cleaner {
           fmt::format("the unit of the file is {} (--unit overrides it)", length_text(unit_m)));
     }
     if (options_.crop) {
-      for (int corner = 0; corner < 8; ++corner) {
-        input_.crop.extend(input_.frame.turned(
-            options_.crop->corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner))));
-      }
+      const double unit = input_.frame.unit;
+      input_.crop = {
+          Box((unit * options_.crop->min()).eval(), (unit * options_.crop->max()).eval()),
+          input_.frame.turn};
     }
   }
 
@@ -253,13 +245,15 @@ class Cleaner {
     mesh_corners_ = static_cast<std::uint64_t>(std::count(keep.begin(), keep.end(), true));
     crop_mesh();
     drop_small_shells();
-    for (const auto& triangle : mesh.triangles) {
-      for (const std::uint32_t corner : triangle) {
-        input_.bounds.extend(mesh.positions[corner]);
+    for (const auto& [i, j, k] : mesh.triangles) {
+      const std::array corners{mesh.positions[i], mesh.positions[j], mesh.positions[k]};
+      if (options_.crop) {
+        input_.bounds.extend(cropped_bounds(corners, input_.crop));
+        continue;
       }
-    }
-    if (options_.crop && !mesh.triangles.empty()) {
-      input_.bounds = input_.bounds.intersection(input_.crop);
+      for (const Eigen::Vector3d& corner : corners) {
+        input_.bounds.extend(corner);
+      }
     }
   }
 
@@ -304,11 +298,9 @@ class Cleaner {
     Mesh& mesh = input_.mesh;
     const std::size_t before = mesh.triangles.size();
     std::erase_if(mesh.triangles, [&](const std::array<std::uint32_t, 3>& triangle) {
-      Box box;
-      for (const std::uint32_t corner : triangle) {
-        box.extend(mesh.positions[corner]);
-      }
-      return !input_.crop.intersects(box);
+      const auto& [i, j, k] = triangle;
+      return cropped_bounds({mesh.positions[i], mesh.positions[j], mesh.positions[k]}, input_.crop)
+          .isEmpty();
     });
     drop("face_outside_crop", before - mesh.triangles.size());
   }
@@ -490,10 +482,10 @@ class Cleaner {
     if (frame.shift.isZero(0.0) && frame.fit == 1.0) {
       return;
     }
-    const auto moved = [&](const Box& box) {
+    const auto moved = [&](const Box& box, const Eigen::Vector3d& shift) {
       return box.isEmpty() ? box
-                           : Box((frame.fit * (box.min() - frame.shift)).eval(),
-                                 (frame.fit * (box.max() - frame.shift)).eval());
+                           : Box((frame.fit * (box.min() - shift)).eval(),
+                                 (frame.fit * (box.max() - shift)).eval());
     };
     if (input_.points.size() > 0) {
       input_.points.transform(frame.shift, frame.fit);
@@ -502,8 +494,8 @@ class Cleaner {
       p = frame.fit * (p - frame.shift);
     }
     input_.points_spacing *= frame.fit;
-    input_.crop = moved(input_.crop);
-    input_.bounds = moved(input_.bounds);
+    input_.crop.box = moved(input_.crop.box, frame.turn.transpose() * frame.shift);
+    input_.bounds = moved(input_.bounds, frame.shift);
   }
 
   const BuildOptions& options_;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "cleaning/crop.hpp"
 #include "geometry/mesh.hpp"
 #include "geometry/z_order.hpp"
 #include "tactree/builder/build_model.hpp"
@@ -36,7 +37,7 @@ struct CleanInput {
   ZOrderedCloud points;         ///< of clouds
   double points_spacing = 0.0;  ///< median spacing; 0 for fewer than two points
   Mesh mesh;                    ///< of meshes
-  Box crop;                     ///< model frame; empty: none. Faces may extend beyond it
+  Crop crop;                    ///< of meshes: faces may extend beyond it
   ModelFrame frame;
   Box bounds;  ///< of the part inside the crop
 };

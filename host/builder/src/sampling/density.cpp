@@ -101,7 +101,7 @@ class DensityChooser {
     }
     dense_ = ZOrderedCloud();
     Cloud samples = sample_faces(input_.mesh, spacing);
-    if (!input_.crop.isEmpty()) {
+    if (input_.crop.is_set()) {
       std::vector<std::uint32_t> inside;
       for (std::uint32_t i = 0; i < samples.size(); ++i) {
         if (input_.crop.contains(samples.positions[i])) {

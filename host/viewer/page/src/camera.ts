@@ -1,9 +1,10 @@
-// A camera on an orbit around a point. At first z is up and x points to the user, as in the device
-// frame; every orientation can be reached.
+// A camera on an orbit around a point. At first it looks at the front of the model, the side of +x,
+// slightly from above: z is up and x points to the user, as in the device frame, so that y is to the
+// right in the picture and at the device. Every orientation can be reached.
 
 import * as THREE from 'three';
 
-const START = { yaw: 0.5, pitch: 0.35 };
+const START = { yaw: 0, pitch: 0.35 };
 const Z = new THREE.Vector3(0, 0, 1);
 
 export class Orbit {

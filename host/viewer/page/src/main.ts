@@ -53,6 +53,7 @@ function hello(message: Hello): void {
   const port = message.port ? ` · board at ${message.port}` : '';
   find('model-name').textContent = `${names} · ${points.toLocaleString('en')} points${port}`;
   document.title = `${names} – Tactree`;
+  showNotes(message);
   hand.hello(message.hand_start_m);
   for (const strip of Object.values(strips)) strip.clear();
   panel.hello(message);
@@ -63,6 +64,19 @@ function hello(message: Hello): void {
     .then(() => (find<HTMLInputElement>('octant-level').max = String(view.deepest)))
     .catch((error: Error) => news.show(`The model could not be loaded: ${error.message}`));
 }
+
+/** Doubts about the models, such as one that lies on its side. A dismissed note does not return. */
+let dismissed = '';
+function showNotes(message: Hello): void {
+  const notes = message.models.filter((model) => model.note !== '');
+  const text = notes.map((model) => `${model.name || 'model'}: ${model.note}`).join('; ');
+  find('posture-note').textContent = text;
+  find('posture').hidden = text === '' || text === dismissed;
+}
+find('posture-close').addEventListener('click', () => {
+  dismissed = find('posture-note').textContent ?? '';
+  find('posture').hidden = true;
+});
 
 function setState(state: string): void {
   const pill = find('state');

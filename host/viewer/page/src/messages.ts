@@ -23,7 +23,7 @@ export interface Settings {
 export interface Hello {
   type: 'hello';
   source: 'simulation' | 'trace' | 'board';
-  models: { name: string; points: number }[];
+  models: { name: string; points: number; note: string }[]; // note: a doubt about it, or ''
   // of a simulation
   devices?: { name: string; about: string }[];
   injections?: { fault: string; about: string }[];

@@ -240,6 +240,23 @@ TEST_F(SessionTest, MovesBody) {
   EXPECT_EQ(rig.ask(MessageKind::kMoveBody, request).status, WireStatus::kBadValue);
 }
 
+// docs/PROTOCOL.md: what a session sets stays, and a body goes on with its velocity.
+TEST_F(SessionTest, KeepsBodiesAcrossSessions) {
+  ASSERT_TRUE(rig.open().ok());
+  core::wire::MoveBodyRequest request;
+  request.translation_m[0] = 0.019F;  // its surface is 1 mm before the probe
+  request.linear_m_s[0] = 0.05F;
+  ASSERT_TRUE(rig.ask(MessageKind::kMoveBody, request).ok());
+  ASSERT_TRUE(rig.ask(MessageKind::kClose).ok());
+  EXPECT_FALSE(rig.status().rendering.in_contact);
+  rig.settle(40);
+  ASSERT_TRUE(rig.open().ok());
+  EXPECT_TRUE(rig.status().rendering.in_contact);
+  ASSERT_TRUE(rig.ask(MessageKind::kMoveBody, core::wire::MoveBodyRequest{.enabled = 1}).ok());
+  rig.settle(5);
+  EXPECT_FALSE(rig.status().rendering.in_contact);
+}
+
 TEST_F(SessionTest, LimitsAndExpiresExternalForce) {
   ASSERT_TRUE(rig.open().ok());
   const core::wire::AddForceRequest push{{0.0F, 0.0F, 1.5F}, 50};

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "shapes.hpp"
+#include "tactree/builder/up_advice.hpp"
 
 namespace tactree::builder {
 namespace {
@@ -60,9 +61,10 @@ Scan laid(Mesh mesh, UpAxis up, bool upside_down = false) {
   return mesh_scan(std::move(mesh));
 }
 
-std::string hint_of(Scan scan, std::optional<UpAxis> given = {}) {
+std::string hint_of(Scan scan, std::optional<UpAxis> given = {}, double turn_deg = 0.0) {
   BuildOptions options;
   options.up = given;
+  options.turn_deg = turn_deg;
   options.spacing_m = 0.001;
   std::vector<Scan> scans;
   scans.push_back(std::move(scan));
@@ -90,6 +92,44 @@ TEST(UpHint, IsOmittedWhenUnneeded) {
   for (const auto& outline : {dome(), kMug, kCone}) {
     EXPECT_EQ(hint_of(laid(turned(outline), UpAxis::kZ)), "");
   }
+}
+
+// --axis refers to the axes of the file, whatever --turn does after it.
+TEST(UpHint, NamesTheAxisOfTheFileOfATurnedModel) {
+  for (const double degrees : {90.0, 30.0}) {
+    EXPECT_NE(hint_of(laid(turned(dome()), UpAxis::kY), {}, degrees).find("(--axis y turns it"),
+              std::string::npos);
+  }
+}
+
+std::optional<std::string> advice_on(Scan scan, const BuildOptions& options) {
+  std::vector<Scan> scans;
+  scans.push_back(std::move(scan));
+  Progress quiet;
+  const BuildResult result = build_model(std::move(scans), options, quiet);
+  core::BlobView view;
+  EXPECT_EQ(core::open_blob(result.blob.bytes, view), core::BlobStatus::kOk);
+  return up_advice(view);
+}
+
+TEST(UpAdvice, RecognisesLyingBodyFromItsBlob) {
+  BuildOptions options;
+  options.spacing_m = 0.001;
+  const auto advice = advice_on(laid(turned(dome()), UpAxis::kY), options);
+  ASSERT_TRUE(advice);
+  EXPECT_NE(advice->find("at its lowest y (build --axis y turns"), std::string::npos) << *advice;
+  EXPECT_FALSE(advice_on(laid(turned(dome()), UpAxis::kZ), options));
+  EXPECT_FALSE(advice_on(cloud_scan(even_sphere(20000, 0.03)), options));
+  options.up = UpAxis::kY;
+  EXPECT_FALSE(advice_on(laid(turned(dome()), UpAxis::kY), options));
+}
+
+// Without the interior, an open shell cannot be distinguished from a body.
+TEST(UpAdvice, IsOmittedForBlobWithoutInterior) {
+  BuildOptions options;
+  options.spacing_m = 0.001;
+  options.profile = core::Profile::kPaper;
+  EXPECT_FALSE(advice_on(laid(turned(dome()), UpAxis::kY), options));
 }
 
 TEST(UpHint, IsOmittedForAmbiguousShape) {

@@ -119,6 +119,40 @@ TEST(Connection, ReconnectsReturningBoardUnarmed) {
   std::filesystem::remove(link);
 }
 
+std::string refusal_to_arm(client::Board& board) {
+  try {
+    board.arm(std::chrono::milliseconds(100));
+  } catch (const client::LinkError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Connection, NamesLatchedFaultAndItsRemedy) {
+  RunningBoard running;
+  client::Board board(running.port());
+  running.press_emergency_stop(true);
+  ASSERT_TRUE(comes_true(board.connection(), [&] { return board.state().faults != 0U; }));
+  running.press_emergency_stop(false);
+  const std::string refusal = refusal_to_arm(board);
+  EXPECT_NE(refusal.find("fault emergency-stop"), std::string::npos) << refusal;
+  EXPECT_NE(refusal.find("tactree arm --clear"), std::string::npos) << refusal;
+  board.clear_faults();
+  board.arm();
+}
+
+// The program is too busy to send heartbeats.
+TEST(Connection, NamesLinkTimeoutOfLostLink) {
+  const RunningBoard running;
+  client::Board board(running.port(), {.link_timeout_ms = 35});
+  const std::string lost = board.explain(core::fault_bit(core::Fault::kLinkLost));
+  EXPECT_NE(lost.find("for 35 ms"), std::string::npos) << lost;
+  EXPECT_NE(lost.find("--link-timeout"), std::string::npos) << lost;
+  EXPECT_EQ(board.explain(core::fault_bit(core::Fault::kEmergencyStop)), "emergency-stop");
+  EXPECT_EQ(client::Board(running.port()).explain(core::fault_bit(core::Fault::kLinkLost)),
+            "link-lost");
+}
+
 TEST(Connection, RefusesNamelessReconnect) {
   const RunningBoard running;
   client::Board board(client::open_port(running.port(), 0), {});

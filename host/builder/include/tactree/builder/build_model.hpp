@@ -47,6 +47,7 @@ struct BuildOptions {
   std::function<double(const Eigen::Vector3d&)> fit_edge_m;
   bool centre = false;                      ///< the centre of the bounding box becomes the origin
   std::optional<UpAxis> up;                 ///< source axis that becomes the model's z; default: z
+  double turn_deg = 0.0;                    ///< then about z, counterclockwise seen from above
   std::optional<Eigen::AlignedBox3d> crop;  ///< source units and axes: points outside are dropped
 
   double outlier_sigma = 3.0;  ///< drops points that are off a surface by more than this many times

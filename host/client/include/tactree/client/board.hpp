@@ -86,6 +86,9 @@ class Board {
   /// Returns false once the connection is lost, e.g. because the cable was unplugged.
   [[nodiscard]] bool connected() const { return connection_ && connection_->connected(); }
 
+  /// Why there is no session, as text; empty while there is one.
+  [[nodiscard]] std::string loss() const;
+
   /// Returns identity and start of a board without a session, so another client is not disturbed.
   /// Waits.
   [[nodiscard]] static Introduction introduce(std::unique_ptr<Transport> transport);
@@ -98,13 +101,15 @@ class Board {
   /// must hold it. After `patience`, stops the board and throws LinkError.
   void arm(std::chrono::milliseconds patience = std::chrono::seconds(30));
   /// Arms the board and does not wait for the user: go_on_arming() completes it. Throws LinkError
-  /// if the state does not allow it.
+  /// if the state does not allow it; the message names the faults.
   void begin_arming();
   /// Call repeatedly after begin_arming(): returns true once the board is active. Confirms if the
   /// board has no dead-man control. Throws LinkError if the board is no longer armed.
   [[nodiscard]] bool go_on_arming();
   /// The action required from the user before the board becomes active, as text.
   [[nodiscard]] const char* who_confirms() const;
+  /// Names of the faults, and for link-lost what the user can do about this program's link.
+  [[nodiscard]] std::string explain(core::FaultMask faults) const;
   void stop();
   void clear_faults();  ///< also stops the board, which makes it ready again
   void home();          ///< precondition: the device is in its home pose
@@ -130,6 +135,7 @@ class Board {
   /// Sends a stop, which may be lost; stop() waits for the reply. May be called while another
   /// thread uses the board, except in reconnect().
   void post_stop();
+  /// The body goes on with `motion` until the next call, also after the end of the session.
   void move_body(std::uint32_t body, const core::Pose& pose, const core::Motion& motion = {},
                  bool enabled = true);
   void add_force(const std::array<float, 3>& force_N, std::uint32_t duration_ms);
@@ -155,6 +161,8 @@ class Board {
   }
   template <core::wire::Message Reply>
   [[nodiscard]] Reply fetch(core::wire::MessageKind kind, const char* what);
+  [[nodiscard]] std::string stiffness_limit(const Response& refusal) const;
+  void require_no_fault();
   Response control(core::wire::ControlCode code, std::uint32_t token, const char* what);
   void write_pieces(std::span<const std::byte> bytes, const Progress& progress);
 

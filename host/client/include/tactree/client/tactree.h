@@ -34,6 +34,19 @@ typedef struct {
   uint32_t body; /* in contact; 0xFFFFFFFF: none */
 } tactree_sample;
 
+/* What a board can do, and its present settings. */
+typedef struct {
+  float rate_hz;
+  float force_max_N;         /* present setting */
+  float force_limit_N;       /* largest setting */
+  float added_force_max_N;   /* of tactree_add_force(): longer ones are scaled down */
+  float stiffness_N_m;       /* present setting */
+  float stiffness_limit_N_m; /* with the present damping; more is refused as unstable */
+  uint32_t bodies;           /* bit n: there is a body n, which tactree_move_body() can move */
+  int is_homed;              /* 0: tactree_home() is needed before tactree_arm() */
+  int dead_man_required;     /* 1: the user must press a dead-man control to complete arming */
+} tactree_limits;
+
 /* Opens a port and a session; waits. baud: speed of a serial port, usually TACTREE_USUAL_BAUD.
    link_timeout_ms: 5 to 100, the force ends if this program does not run for that long; 0: the
    force continues. Returns NULL on failure; tactree_error(NULL) then returns the message. */
@@ -45,8 +58,10 @@ int tactree_reconnect(tactree_board* board);
 int tactree_connected(const tactree_board* board);
 /* Stops the board and closes the port; waits. NULL is allowed. */
 void tactree_close(tactree_board* board);
-/* Message of the last function that failed for this board, or with NULL that of the last
-   tactree_open() that failed in this thread. */
+/* Message of the last function that failed for this board. If the connection or the session was
+   lost since then, the message states the loss instead, also if no function failed. With NULL:
+   message of the last tactree_open() that failed in this thread. Valid until the next call with
+   this board. */
 const char* tactree_error(const tactree_board* board);
 
 int tactree_arm(tactree_board* board, unsigned patience_ms); /* waits, also for the user */
@@ -55,6 +70,8 @@ int tactree_clear_faults(tactree_board* board);              /* waits */
 int tactree_home(tactree_board* board);                      /* waits */
 /* Subscribes to telemetry of one in every_ticks ticks; 0 ends the subscription; waits. */
 int tactree_subscribe(tactree_board* board, unsigned every_ticks);
+/* Reads limits and settings of the board; waits. */
+int tactree_capabilities(tactree_board* board, tactree_limits* limits);
 /* Sets stiffness, damping, static and dynamic friction; waits. */
 int tactree_set_material(tactree_board* board, float stiffness_N_m, float damping_Ns_m,
                          float static_friction, float dynamic_friction);
@@ -69,7 +86,8 @@ void tactree_latest(const tactree_board* board, tactree_sample* sample);
 size_t tactree_take(tactree_board* board, tactree_sample* samples, size_t most);
 /* Number of samples that were lost here or on the board because there was no room. */
 uint64_t tactree_dropped(const tactree_board* board);
-/* Moves a body. The rotation is a unit quaternion w, x, y, z. */
+/* Moves a body. The rotation is a unit quaternion w, x, y, z. The body goes on with this velocity
+   until the next call, also after the end of the session. */
 void tactree_move_body(tactree_board* board, uint32_t body, const float rotation_wxyz[4],
                        const float translation_m[3], const float velocity_m_s[3]);
 /* Adds a force for duration_ms, 1 to 100. The next force replaces it. */

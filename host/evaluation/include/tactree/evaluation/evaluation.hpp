@@ -21,6 +21,7 @@ struct Options {
   bool quick = false;      ///< fewer probes and lines: seconds instead of minutes, for tests
   std::uint32_t seed = 1;  ///< of the random numbers
   std::vector<std::filesystem::path> scans;
+  bool scans_only = false;  ///< omit everything but the scans, also in the reports
 };
 
 /// The two modes. The elements of all arrays below are in this order.
@@ -96,10 +97,31 @@ struct LoopResult {
   std::vector<Limit> limits;
 };
 
+/// Forces of a hand that slides over a scan at a constant depth.
+struct SlideScores {
+  int slides = 0;
+  int ticks = 0;
+  int lost = 0;             ///< ticks without contact
+  double expected_N = 0.0;  ///< stiffness times depth
+  double force_error_rms_N = 0.0;
+  double force_max_N = 0.0;
+  /// Maximum change between two ticks, less the change that is due to the movement of the hand.
+  double force_step_N = 0.0;
+};
+
 struct ScanResult {
   std::string name;
   std::string error;  ///< reason why the scan was not evaluated; empty if it was
-  std::uint64_t points = 0;
+  std::uint64_t input_points = 0;
+  std::uint64_t kept_points = 0;                 ///< after cleaning
+  std::map<std::string, std::uint64_t> dropped;  ///< cause -> count
+  std::uint64_t points = 0;                      ///< of the model
+  bool orientation_checked = false;
+  double orientation_confidence = 0.0;
+  std::uint64_t doubtful_points = 0;
+  std::size_t pieces = 0;
+  SlideScores slides;
+  std::vector<std::string> warnings;  ///< of the build
   double spacing_m = 0.0;
   double support_m = 0.0;                  ///< maximum radius that the surface fit bridges
   std::vector<builder::Opening> openings;  ///< wider than support_m, in descending order of width

@@ -44,6 +44,7 @@ class Strip {
 struct Bodies {
   std::vector<core::BlobView> views;
   std::vector<simulation::SceneBody> bodies;
+  std::vector<std::string> notes = {};  ///< about each model, for the page; may be shorter
 };
 
 /// A tick of one controller. `joints` are the joint positions of the device; if empty, they are

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "shapes.hpp"
 
@@ -57,6 +60,8 @@ TEST(ModelFrame, IsRecordedForAllOptions) {
   options.fit_m = 0.2;
   options.up = UpAxis::kX;
   expect_recorded(options, {100.0, 2.0, 3.0});
+  options.turn_deg = 25.0;
+  expect_recorded(options, {100.0, 2.0, 3.0});
 }
 
 TEST(ModelFrame, KeepsScanNearOrigin) {
@@ -97,6 +102,29 @@ TEST(ModelFrame, RotationKeepsHandednessAndNormals) {
     const Eigen::Vector3d source_up = Eigen::Vector3d::Unit(static_cast<int>(up));
     EXPECT_NEAR(cleaned.input.frame.turn.determinant(), 1.0, 1e-15);
     EXPECT_EQ(Eigen::Vector3d(cleaned.input.frame.turn * source_up), Eigen::Vector3d(0, 0, 1));
+    for (std::size_t i = 0; i < cleaned.input.points.size(); ++i) {
+      ASSERT_GT(
+          cleaned.input.points.normals()[i].cast<double>().dot(cleaned.input.points.positions()[i]),
+          0.999);
+    }
+  }
+}
+
+TEST(ModelFrame, TurnsAboutTheVerticalAfterTheAxis) {
+  BuildOptions options;
+  options.up = UpAxis::kY;
+  options.turn_deg = 90.0;
+  const Eigen::Matrix3d quarter =
+      clean_one(cloud_scan(even_sphere(300, 1.0)), options).input.frame.turn;
+  EXPECT_EQ(Eigen::Vector3d(quarter * Eigen::Vector3d(0, 1, 0)), Eigen::Vector3d(0, 0, 1));
+  EXPECT_EQ(Eigen::Vector3d(quarter * Eigen::Vector3d(0, 0, 1)), Eigen::Vector3d(1, 0, 0));
+  for (const double degrees : {-200.0, -90.0, 30.0, 180.0, 300.0, 360.0}) {
+    options.turn_deg = degrees;
+    const Cleaned cleaned = clean_one(cloud_scan(even_sphere(300, 1.0)), options);
+    const Eigen::Vector3d x = cleaned.input.frame.turn * Eigen::Vector3d(1, 0, 0);
+    const double angle = degrees * std::numbers::pi / 180.0;
+    EXPECT_LT((x - Eigen::Vector3d(std::cos(angle), std::sin(angle), 0.0)).norm(), 1e-15);
+    EXPECT_NEAR(cleaned.input.frame.turn.determinant(), 1.0, 1e-15);
     for (std::size_t i = 0; i < cleaned.input.points.size(); ++i) {
       ASSERT_GT(
           cleaned.input.points.normals()[i].cast<double>().dot(cleaned.input.points.positions()[i]),
@@ -158,6 +186,23 @@ TEST(Cleaning, CropsInSourceUnits) {
   EXPECT_NEAR(mesh.input.bounds.sizes().x(), 0.030, 1e-12);
   options.crop = Eigen::AlignedBox3d(Eigen::Vector3d(90, 90, 90), Eigen::Vector3d(99, 99, 99));
   EXPECT_THROW((void)clean_one(cloud_scan(random_sphere(2000, 10.0)), options), std::runtime_error);
+}
+
+TEST(Cleaning, CropsAlongTheAxesOfTheSourceOfATurnedModel) {
+  BuildOptions options;
+  options.turn_deg = 45.0;
+  options.crop = Eigen::AlignedBox3d(Eigen::Vector3d(-1, -1, -1), Eigen::Vector3d(1, 1, 1));
+  const Cleaned mesh = clean_one(mesh_scan(box_mesh({-3, -3, -3}, {1, 1, 1})), options);
+  // The corner of the box in the crop: a cube with an edge of 2, on its edge.
+  EXPECT_NEAR(mesh.input.bounds.sizes().x(), 2.0 * std::numbers::sqrt2, 1e-12);
+  EXPECT_NEAR(mesh.input.bounds.sizes().z(), 2.0, 1e-12);
+  EXPECT_TRUE(mesh.input.crop.contains({1.3, 0.0, 0.0}));
+  EXPECT_FALSE(mesh.input.crop.contains({0.9, 0.9, 0.0}));
+  options.fit_m = 0.1;
+  const Cleaned fitted = clean_one(mesh_scan(box_mesh({-3, -3, -3}, {1, 1, 1})), options);
+  EXPECT_NEAR(fitted.input.bounds.sizes().x(), 0.1, 1e-12);
+  EXPECT_TRUE(fitted.input.crop.contains({0.049, 0.0, 0.0}));
+  EXPECT_FALSE(fitted.input.crop.contains({0.03, 0.03, 0.0}));
 }
 
 TEST(Cleaning, CountsEveryDroppedPoint) {
