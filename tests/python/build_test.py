@@ -63,7 +63,8 @@ class Files(Folder):
         for options, values in (
                 (["--scale", "2"], {"scale": 2}), (["--fit", "0.05"], {"fit_m": 0.05}),
                 (["--fit", "device:falcon"], {"fit_device": "falcon"}), (["--centre"], {"centre": True}),
-                (["--axis", "x"], {"axis": "x"}), (["--spacing", "0.003"], {"spacing_m": 0.003}),
+                (["--axis", "x"], {"axis": "x"}), (["--turn", "-30"], {"turn_deg": -30}),
+                (["--spacing", "0.003"], {"spacing_m": 0.003}),
                 (["--crop", "-1,-1,-0.01,1,1,1"], {"crop": [-1, -1, -0.01, 1, 1, 1]}),
                 (["--flash-budget", "30000"], {"flash_budget": 30000}), (["--no-resample"], {"resample": False}),
                 (["--profile", "paper"], {"profile": "paper"}),
@@ -144,6 +145,7 @@ class Arrays(Folder):
                 ((CORNERS, None, None, FACES + 1), {}, "there is no point 4"),
                 ((points,), {"unit": "mile"}, "unit: 'mile' is unknown (one of: cm, ft, in, m, mm, um)"),
                 ((points,), {"scale": -1}, "scale: must be positive"),
+                ((points,), {"turn_deg": float("nan")}, "turn: nan degrees is outside -360 .. 360"),
                 ((points,), {"scale": "big"}, "scale: 'big' cannot be used"),
                 ((points,), {"outliers": 0.5}, "outliers: '0.5' is neither off nor a number of at least 1"),
                 ((points,), {"crop": [1, 1, 1, 0, 0, 0]}, "crop: requires"),

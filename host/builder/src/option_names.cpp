@@ -56,6 +56,9 @@ void check_options(const BuildOptions& options) {
   require_positive("fit", options.fit_m);
   require_positive("two-sided", options.two_sided_m);
   require_positive("spacing", options.spacing_m);
+  if (!(std::abs(options.turn_deg) <= 360.0)) {
+    throw OptionError("turn", fmt::format("{} degrees is outside -360 .. 360", options.turn_deg));
+  }
   if (options.crop) {
     check_crop(*options.crop);
   }

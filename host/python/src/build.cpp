@@ -105,6 +105,7 @@ class Options {
 void read_frame(const Options& options, BuildOptions& build) {
   options.choose("unit", builder::unit_names(), build.unit_m);
   options.choose("axis", builder::axis_names(), build.up);
+  options.read("turn_deg", build.turn_deg);
   options.read("scale", build.scale);
   options.read("centre", build.centre);
   options.read("fit_m", build.fit_m);

@@ -38,12 +38,12 @@ def _given(options: dict[str, Any]) -> dict[str, Any]:
 def build(points: npt.ArrayLike, normals: npt.ArrayLike | None = None, colors: npt.ArrayLike | None = None,
           triangles: npt.ArrayLike | None = None, *, unit: str | None = "m", scale: float | None = None,
           fit_m: float | None = None, fit_device: str | None = None, centre: bool | None = None,
-          axis: str | None = None, crop: npt.ArrayLike | None = None, spacing_m: float | None = None,
-          flash_budget: int | None = None, resample: bool | None = None, profile: str | None = None,
-          material: str | None = None, outliers: float | str | None = None, keep_largest: bool | None = None,
-          min_piece: int | None = None, orient: str | None = None, viewpoints: npt.ArrayLike | None = None,
-          two_sided_m: float | None = None, flip_normals: bool | None = None, name: str = "array",
-          threads: int | None = None, progress: Progress | None = None) -> Model:
+          axis: str | None = None, turn_deg: float | None = None, crop: npt.ArrayLike | None = None,
+          spacing_m: float | None = None, flash_budget: int | None = None, resample: bool | None = None,
+          profile: str | None = None, material: str | None = None, outliers: float | str | None = None,
+          keep_largest: bool | None = None, min_piece: int | None = None, orient: str | None = None,
+          viewpoints: npt.ArrayLike | None = None, two_sided_m: float | None = None, flip_normals: bool | None = None,
+          name: str = "array", threads: int | None = None, progress: Progress | None = None) -> Model:
     """Builds a model from points (N, 3), or from a mesh over them.
 
     normals    (N, 3), of any length; NaN or zero: unknown
@@ -58,6 +58,7 @@ def build(points: npt.ArrayLike, normals: npt.ArrayLike | None = None, colors: n
     fit_m        length of the longest edge; fit_device: scales to the reach of that device
     centre       True: the centre of the bounding box becomes the origin
     axis         x, y or z: the axis that points up and becomes z
+    turn_deg     then turns the model about z, counterclockwise seen from above
     crop         xmin, ymin, zmin, xmax, ymax, zmax in the unit of the points
     spacing_m    distance of the points; resample=False keeps all points
     flash_budget largest size of the blob, bytes: chooses the finest spacing
@@ -79,20 +80,20 @@ def build(points: npt.ArrayLike, normals: npt.ArrayLike | None = None, colors: n
     """
     options = _given({
         "unit": unit, "scale": scale, "fit_m": fit_m, "fit_device": fit_device, "centre": centre, "axis": axis,
-        "crop": crop, "spacing_m": spacing_m, "flash_budget": flash_budget, "resample": resample, "profile": profile,
-        "material": material, "outliers": outliers, "keep_largest": keep_largest, "min_piece": min_piece,
-        "orient": orient, "viewpoints": viewpoints, "two_sided_m": two_sided_m, "flip_normals": flip_normals,
-        "name": name, "threads": threads})
+        "turn_deg": turn_deg, "crop": crop, "spacing_m": spacing_m, "flash_budget": flash_budget, "resample": resample,
+        "profile": profile, "material": material, "outliers": outliers, "keep_largest": keep_largest,
+        "min_piece": min_piece, "orient": orient, "viewpoints": viewpoints, "two_sided_m": two_sided_m,
+        "flip_normals": flip_normals, "name": name, "threads": threads})
     return _finish(_native.build_arrays(points, normals, colors, triangles, options, progress))
 
 
 def build_file(path: str | os.PathLike[str] | Iterable[str | os.PathLike[str]], *, unit: str | None = None,
                scale: float | None = None, fit_m: float | None = None, fit_device: str | None = None,
-               centre: bool | None = None, axis: str | None = None, crop: npt.ArrayLike | None = None,
-               spacing_m: float | None = None, flash_budget: int | None = None, resample: bool | None = None,
-               profile: str | None = None, material: str | None = None, outliers: float | str | None = None,
-               keep_largest: bool | None = None, min_piece: int | None = None, orient: str | None = None,
-               viewpoints: npt.ArrayLike | None = None, two_sided_m: float | None = None,
+               centre: bool | None = None, axis: str | None = None, turn_deg: float | None = None,
+               crop: npt.ArrayLike | None = None, spacing_m: float | None = None, flash_budget: int | None = None,
+               resample: bool | None = None, profile: str | None = None, material: str | None = None,
+               outliers: float | str | None = None, keep_largest: bool | None = None, min_piece: int | None = None,
+               orient: str | None = None, viewpoints: npt.ArrayLike | None = None, two_sided_m: float | None = None,
                flip_normals: bool | None = None, name: str | None = None, threads: int | None = None,
                columns: str | None = None, format: str | None = None, progress: Progress | None = None) -> Model:
     """Builds a model from a file, or from several, in any format that `tactree build` reads.
@@ -108,10 +109,10 @@ def build_file(path: str | os.PathLike[str] | Iterable[str | os.PathLike[str]], 
     paths = [path] if isinstance(path, (str, os.PathLike)) else list(path)
     options = _given({
         "unit": unit, "scale": scale, "fit_m": fit_m, "fit_device": fit_device, "centre": centre, "axis": axis,
-        "crop": crop, "spacing_m": spacing_m, "flash_budget": flash_budget, "resample": resample, "profile": profile,
-        "material": material, "outliers": outliers, "keep_largest": keep_largest, "min_piece": min_piece,
-        "orient": orient, "viewpoints": viewpoints, "two_sided_m": two_sided_m, "flip_normals": flip_normals,
-        "name": name, "threads": threads, "columns": columns, "format": format})
+        "turn_deg": turn_deg, "crop": crop, "spacing_m": spacing_m, "flash_budget": flash_budget, "resample": resample,
+        "profile": profile, "material": material, "outliers": outliers, "keep_largest": keep_largest,
+        "min_piece": min_piece, "orient": orient, "viewpoints": viewpoints, "two_sided_m": two_sided_m,
+        "flip_normals": flip_normals, "name": name, "threads": threads, "columns": columns, "format": format})
     _find_import_program()
     return _finish(_native.build_files([os.fspath(p) for p in paths], options, progress))
 

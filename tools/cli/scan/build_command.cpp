@@ -91,13 +91,6 @@ std::uint64_t to_bytes(const std::string& text) {
   return static_cast<std::uint64_t>(bytes);
 }
 
-// CLI::Range accepts NaN.
-void require_finite(const std::string& option, double value) {
-  if (!std::isfinite(value)) {
-    misuse(option, "must be a finite number");
-  }
-}
-
 Eigen::Vector3d to_position(const std::string& option, const std::string& text) {
   Eigen::Vector3d position;
   std::size_t begin = 0;
@@ -127,7 +120,6 @@ void complete(BuildArguments& arguments) {
       misuse("--columns", error.what());
     }
   }
-  require_finite("--turn", build.turn_deg);
   if (arguments.fit) {
     set_fit(*arguments.fit, build);
   }
@@ -231,7 +223,6 @@ void add_frame_options(CLI::App& verb, BuildArguments& arguments) {
   verb.add_option("--turn", build.turn_deg,
                   "then turn the model about z by this angle, degrees, counterclockwise seen from "
                   "above; its front is the side of +x, which faces the user of the device")
-      ->check(CLI::Range(-360.0, 360.0))
       ->capture_default_str()
       ->group(kGroup);
   verb.add_option("--crop", arguments.crop,
