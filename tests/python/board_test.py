@@ -11,18 +11,13 @@ import unittest
 import numpy as np
 import tactree
 
-from clouds import ServedBoard, SharedFolder, build_ball, runs_beside, signal_during, tool_error
+from clouds import BallFolder, ServedBoard, runs_beside, signal_during, tool_error
 
 TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
 
 
-class Folder(SharedFolder):
+class Folder(BallFolder):
     tool = TACTREE
-
-    @classmethod
-    def setUpClass(cls):
-        super().setUpClass()
-        cls.blob = build_ball(TACTREE, cls.path)
 
     def tool_json(self, *arguments):
         done = self.run_tool(*arguments, "--json", "tool.json")

@@ -12,8 +12,17 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
 from served_board import ServedBoard, build_ball  # noqa: E402
 from tool_folder import SharedFolder, ball  # noqa: E402
 
-__all__ = ["ServedBoard", "SharedFolder", "ball", "ball_arrays", "build_ball", "probes", "runs_beside",
+__all__ = ["BallFolder", "ServedBoard", "SharedFolder", "ball", "ball_arrays", "probes", "runs_beside",
            "signal_during", "tool_error", "write_rows"]
+
+
+class BallFolder(SharedFolder):
+    """With the blob of a ball, which `tool` builds."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.blob = build_ball(cls.tool, cls.path)
 
 
 def ball_arrays(count=2000, radius=0.03):

@@ -11,19 +11,18 @@ import unittest
 import numpy as np
 import tactree
 
-from clouds import SharedFolder, build_ball, probes, runs_beside, signal_during, tool_error, write_rows
+from clouds import BallFolder, probes, runs_beside, signal_during, tool_error, write_rows
 
 TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
 FLOATS = ("distance_m", "surface_x", "surface_y", "surface_z", "normal_x", "normal_y", "normal_z", "signed_distance_m")
 
 
-class Folder(SharedFolder):
+class Folder(BallFolder):
     tool = TACTREE
 
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        cls.blob = build_ball(TACTREE, cls.path)
         cls.model = tactree.load(cls.blob)
 
     def tool_answers(self, positions, *options):

@@ -10,20 +10,19 @@ import unittest
 import numpy as np
 import tactree
 
-from clouds import SharedFolder, build_ball, runs_beside, signal_during, tool_error, write_rows
+from clouds import BallFolder, runs_beside, signal_during, tool_error, write_rows
 
 TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
 SUMMARY = ("ticks", "contact_ticks", "overruns", "force_max_N", "force_step_max_N", "penetration_max_m", "trace_crc32",
            "faults", "crowded_ticks")
 
 
-class Folder(SharedFolder):
+class Folder(BallFolder):
     tool = TACTREE
 
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        cls.blob = build_ball(TACTREE, cls.path)
         cls.model = tactree.load(cls.blob)
 
     def tool_run(self, *options, code=0):

@@ -11,18 +11,13 @@ import zipfile
 import numpy as np
 import tactree
 
-from clouds import ServedBoard, SharedFolder, build_ball
+from clouds import BallFolder, ServedBoard
 
 TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
 
 
-class Folder(SharedFolder):
+class Folder(BallFolder):
     tool = TACTREE
-
-    @classmethod
-    def setUpClass(cls):
-        super().setUpClass()
-        cls.blob = build_ball(TACTREE, cls.path)
 
     def expect_refusal(self, read, name, *words):
         with self.assertRaises(tactree.FileError) as refused:
