@@ -91,7 +91,8 @@ void serve_on_usb(const SimulateOptions& options, const setup::SceneFile& scene,
 
 /// For `tactree devices`. The board is served in any case.
 std::unique_ptr<client::Announcement> announce(const SimulateOptions& options,
-                                               const setup::SceneFile& scene, const std::string& port) {
+                                               const setup::SceneFile& scene,
+                                               const std::string& port) {
   try {
     return std::make_unique<client::Announcement>(client::AnnouncedPort{
         port, fmt::format("simulated board {}, model {} (tactree simulate --serve, process {})",
