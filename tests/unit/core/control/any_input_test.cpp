@@ -299,10 +299,10 @@ TEST(AnyInput, KeepsFirstForceWithAnySigns) {
     ControllerRig session(configuration);
     ASSERT_EQ(session.status, core::ConfigurationStatus::kOk);
     WildJoints joints(session.controller.configuration().device);
-    std::mt19937 random(14);
+    std::mt19937 random(1);
     double largest = 0.0;
     std::uint32_t in_contact = 0;
-    for (std::uint32_t i = 0; i < 30'000U; ++i) {
+    for (std::uint32_t i = 0; i < 10'000U; ++i) {
       joints.move(session.input.encoders, random);
       session.input.dead_man = has_hand(i);
       session.input.added_force = {{0.3F, -0.3F, 0.3F}, 50U};
@@ -314,7 +314,7 @@ TEST(AnyInput, KeepsFirstForceWithAnySigns) {
     }
     EXPECT_LE(largest, 1.00001 * static_cast<double>(core::kFirstForce_N));
     EXPECT_GE(largest, 0.8 * static_cast<double>(core::kFirstForce_N));
-    EXPECT_GT(in_contact, 1000U);
+    EXPECT_GT(in_contact, 500U);
   }
 }
 
