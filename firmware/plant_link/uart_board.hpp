@@ -56,7 +56,12 @@ class UartBoard : public PlantLinkBoard {
     return is_served() ? store_.active() : PlantLinkBoard::storage().active();
   }
   [[nodiscard]] hal::LinkInput receive() noexcept {
-    return is_served() ? mailbox_.receive() : PlantLinkBoard::receive();
+    if (!is_served()) {
+      return PlantLinkBoard::receive();
+    }
+    hal::LinkInput received = mailbox_.receive();
+    operate(received);
+    return received;
   }
   void send(const core::Status& status) noexcept {
     PlantLinkBoard::send(status);

@@ -26,6 +26,7 @@
 #include <cstdint>
 
 #include "tactree/core/control/controller.hpp"
+#include "tactree/hal/board.hpp"
 
 namespace tactree::hal {
 
@@ -59,6 +60,15 @@ class Panel {
     }
     ready_ = false;
     return command_of_press(powered);
+  }
+
+  /// Call once per tick, with the state of the button: adds its command to the input of the board's
+  /// link. A stop of either has priority over the other's command.
+  void operate(bool pressed, LinkInput& input) {
+    const core::Command own = command(pressed);
+    if (input.command == core::Command::kNone || own == core::Command::kStop) {
+      input.command = own;
+    }
   }
 
   /// Call once per tick with its status; returns whether the lamp is on.
