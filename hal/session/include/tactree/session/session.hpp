@@ -170,6 +170,9 @@ class Session {
       put_start(start_, start_report_ == nullptr ? hal::StartReport{} : *start_report_, reply_);
       return Outcome::kAnswer;
     }
+    if (kind == Kind::kCapabilities && header.session == 0U) {
+      return capabilities();
+    }
     if (kind == Kind::kOpen) {
       return answer(open());
     }
