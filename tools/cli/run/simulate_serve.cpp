@@ -68,6 +68,7 @@ void serve_target(const SimulateOptions& options, const setup::SceneFile& scene,
   sim.inject(simulation::Injector(injections(options)));
   schedule.rate_hz = static_cast<double>(setup.controller.rate_hz);
   schedule.path_s = options.seconds;
+  schedule.presses = presses(options);
   schedule.seconds_max = options.seconds_given->count() != 0 ? options.seconds : 0.0;
   serve_session(sim, schedule);
   if (!options.record.empty()) {
@@ -91,7 +92,8 @@ void serve_on_usb(const SimulateOptions& options, const setup::SceneFile& scene,
 
 /// For `tactree devices`. The board is served in any case.
 std::unique_ptr<client::Announcement> announce(const SimulateOptions& options,
-                                               const setup::SceneFile& scene, const std::string& port) {
+                                               const setup::SceneFile& scene,
+                                               const std::string& port) {
   try {
     return std::make_unique<client::Announcement>(client::AnnouncedPort{
         port, fmt::format("simulated board {}, model {} (tactree simulate --serve, process {})",
