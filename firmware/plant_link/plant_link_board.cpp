@@ -85,14 +85,17 @@ void PlantLinkBoard::write(const core::MotorCommand& command) noexcept {
   }
 }
 
-hal::LinkInput PlantLinkBoard::receive() noexcept {
+hal::LinkInput PlantLinkBoard::take_message() noexcept {
   const std::size_t bodies = input_.body.body != core::kNoBody ? 1U : 0U;
-  hal::LinkInput received{
+  const hal::LinkInput received{
       input_.input.link_alive, input_.input.command, 0, {&input_.body, bodies}, {}, false};
   input_.input.link_alive = false;
   input_.input.command = core::Command::kNone;
-  operate(received);
   return received;
+}
+
+void PlantLinkBoard::operate(hal::LinkInput& input) noexcept {
+  panel_.operate(input_.arm_button, input);
 }
 
 void PlantLinkBoard::send(const core::Status& status) noexcept {

@@ -57,12 +57,18 @@ class PlantLinkBoard {
   [[nodiscard]] bool read_back() noexcept { return input_.input.enable_read_back; }
   [[nodiscard]] bool emergency_stop() noexcept { return input_.input.emergency_stop; }
   [[nodiscard]] bool dead_man() noexcept { return input_.input.dead_man; }
-  [[nodiscard]] hal::LinkInput receive() noexcept;
+  [[nodiscard]] hal::LinkInput receive() noexcept {
+    hal::LinkInput input = take_message();
+    operate(input);
+    return input;
+  }
   void send(const core::Status& status) noexcept;
 
  protected:
+  /// The message of the host's application.
+  [[nodiscard]] hal::LinkInput take_message() noexcept;
   /// Adds the command of the button to the input of a link.
-  void operate(hal::LinkInput& input) noexcept { panel_.operate(input_.arm_button, input); }
+  void operate(hal::LinkInput& input) noexcept;
 
  private:
   void exchange();

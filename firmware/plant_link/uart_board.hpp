@@ -56,12 +56,9 @@ class UartBoard : public PlantLinkBoard {
     return is_served() ? store_.active() : PlantLinkBoard::storage().active();
   }
   [[nodiscard]] hal::LinkInput receive() noexcept {
-    if (!is_served()) {
-      return PlantLinkBoard::receive();
-    }
-    hal::LinkInput received = mailbox_.receive();
-    operate(received);
-    return received;
+    hal::LinkInput input = is_served() ? mailbox_.receive() : take_message();
+    operate(input);
+    return input;
   }
   void send(const core::Status& status) noexcept {
     PlantLinkBoard::send(status);

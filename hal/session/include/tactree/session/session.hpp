@@ -353,7 +353,7 @@ class Session {
     return WireStatus::kOk;
   }
 
-  Outcome capabilities() {
+  [[gnu::noinline]] Outcome capabilities() {
     put_capabilities(controller(), base_,
                      {Store::kSlots, store_.slot_bytes(), store_.signature_required()},
                      identity_.cycles_per_second, reply_);
