@@ -52,6 +52,7 @@ core::Configuration PlantLinkBoard::connect(const hal::CapturedFault& last_fault
   link::SessionSetup session;
   receive_message(from_host_, session);
   served_ = session.served != 0U;
+  panel_.configure(session.configuration.rate_hz);
   return session.configuration;
 }
 
@@ -84,13 +85,22 @@ void PlantLinkBoard::write(const core::MotorCommand& command) noexcept {
   }
 }
 
-hal::LinkInput PlantLinkBoard::receive() noexcept {
+hal::LinkInput PlantLinkBoard::take_message() noexcept {
   const std::size_t bodies = input_.body.body != core::kNoBody ? 1U : 0U;
   const hal::LinkInput received{
       input_.input.link_alive, input_.input.command, 0, {&input_.body, bodies}, {}, false};
   input_.input.link_alive = false;
   input_.input.command = core::Command::kNone;
   return received;
+}
+
+void PlantLinkBoard::operate(hal::LinkInput& input) noexcept {
+  panel_.operate(input_.arm_button, input);
+}
+
+void PlantLinkBoard::send(const core::Status& status) noexcept {
+  output_.status = status;
+  output_.lamp = panel_.lamp(status);
 }
 
 }  // namespace tactree::firmware

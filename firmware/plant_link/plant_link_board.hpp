@@ -1,12 +1,13 @@
 #pragma once
-// A board in an emulator. The host simulates encoders, motors, lines and the link of the
-// application over the plant link; timer, flash and core are emulated. An exchange takes no
+// A board in an emulator. The host simulates encoders, motors, lines, button, lamp and the link of
+// the application over the plant link; timer, flash and core are emulated. An exchange takes no
 // emulated time.
 
 #include "platform.hpp"
 #include "runtime/blob_area.hpp"
 #include "runtime/deadline_wait.hpp"
 #include "tactree/hal/board.hpp"
+#include "tactree/hal/panel.hpp"
 #include "tactree/hal/plant_link.hpp"
 
 namespace tactree::firmware {
@@ -56,14 +57,25 @@ class PlantLinkBoard {
   [[nodiscard]] bool read_back() noexcept { return input_.input.enable_read_back; }
   [[nodiscard]] bool emergency_stop() noexcept { return input_.input.emergency_stop; }
   [[nodiscard]] bool dead_man() noexcept { return input_.input.dead_man; }
-  [[nodiscard]] hal::LinkInput receive() noexcept;
-  void send(const core::Status& status) noexcept { output_.status = status; }
+  [[nodiscard]] hal::LinkInput receive() noexcept {
+    hal::LinkInput input = take_message();
+    operate(input);
+    return input;
+  }
+  void send(const core::Status& status) noexcept;
+
+ protected:
+  /// The message of the host's application.
+  [[nodiscard]] hal::LinkInput take_message() noexcept;
+  /// Adds the command of the button to the input of a link.
+  void operate(hal::LinkInput& input) noexcept;
 
  private:
   void exchange();
 
   Ticker ticker_;
   BlobArea storage_;
+  hal::Panel panel_;
   int from_host_ = -1;
   int to_host_ = -1;
   bool served_ = false;

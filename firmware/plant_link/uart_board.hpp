@@ -56,7 +56,9 @@ class UartBoard : public PlantLinkBoard {
     return is_served() ? store_.active() : PlantLinkBoard::storage().active();
   }
   [[nodiscard]] hal::LinkInput receive() noexcept {
-    return is_served() ? mailbox_.receive() : PlantLinkBoard::receive();
+    hal::LinkInput input = is_served() ? mailbox_.receive() : take_message();
+    operate(input);
+    return input;
   }
   void send(const core::Status& status) noexcept {
     PlantLinkBoard::send(status);

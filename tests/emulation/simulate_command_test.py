@@ -80,6 +80,25 @@ class SimulateOnABoard(unittest.TestCase):
         self.assertIn("body 0", printed)
         self.assertGreater(board["instructions"]["mean"], 500)
 
+    def test_the_panel_operates_it_as_on_the_host(self):
+        common = ("--panel", "--press", "0.1s..1.2s", "--press", "2.5s..3.6s", "--press", "5s..5.1s",
+                  "--seconds", 6, "--inject", "estop:pressed@5.3s")
+        reports = []
+        for board in ("host", BOARD):
+            file, trace = self.folder / "panel.json", self.folder / f"{board}.csv"
+            done = tactree(BLOB, *common, "--board", board, "--json", file, "--trace", trace)
+            self.assertEqual(done.returncode, 1, done.stderr)  # of the fault
+            reports.append(json.loads(file.read_text()))
+            self.assertIn("s: idle, not homed", done.stdout)
+        self.assertEqual([event["state"] for event in reports[1]["panel"]],
+                         ["idle", "idle", "armed", "active", "idle", "fault"])
+        self.assertEqual(reports[1]["panel"], reports[0]["panel"])
+        self.assertEqual(reports[1]["trace_crc32"], reports[0]["trace_crc32"])
+        self.assertGreater(reports[1]["contact_ticks"], 100)
+        traces = [(self.folder / f"{board}.csv").read_text() for board in ("host", BOARD)]
+        self.assertEqual(traces[0], traces[1])
+        self.assertTrue(traces[0].splitlines()[0].endswith(",button,lamp"))
+
     def test_more_than_one_body_is_refused(self):
         done = tactree(BLOB, BLOB, "--board", BOARD)
         self.assertEqual(done.returncode, 1)

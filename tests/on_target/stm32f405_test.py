@@ -127,7 +127,7 @@ class Stm32f405(unittest.TestCase):
                 self.assertIn("motor-fault", json.loads(result.read_text())["fault_names"])
                 self.assertIn("delay_s", run("params"))
                 self.assertIn("empty", run("flash", "--list"))
-                self.assertIn("does not allow it", run("arm", code=1))
+                self.assertIn("the fault emergency-stop", run("arm", code=1))
                 self.assertIn("tick,state,contact", run("trace"))
                 self.assertIn("stopped", run("stop"))
                 self.assertIn("writing the flash failed", run("flash", BLOB, code=1))

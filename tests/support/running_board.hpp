@@ -18,8 +18,9 @@ namespace tactree::test {
 /// Its model is a sphere of 3 cm radius; the simulated hand moves to `height_m` above the centre.
 class RunningBoard {
  public:
-  /// Returns when the port is open.
-  explicit RunningBoard(double height_m = 0.04) : thread_([this, height_m] { run(height_m); }) {
+  /// Returns when the port is open. `may_command`: see core::LinkSupervision.
+  explicit RunningBoard(double height_m = 0.04, bool may_command = true)
+      : thread_([this, height_m, may_command] { run(height_m, may_command); }) {
     listening_.wait();
   }
   ~RunningBoard() {
@@ -42,10 +43,11 @@ class RunningBoard {
   }
 
  private:
-  void run(double height_m) {
+  void run(double height_m, bool may_command) {
     const std::span<const std::byte> blob = model().written().bytes;
     simulation::Setup setup;
     setup.controller.supervision.dead_man_required = false;
+    setup.controller.link.may_command = may_command;
     simulation::HandPath path({{0.0, {0.0, 0.0, 0.04}}, {1.0, {0.0, 0.0, height_m}}});
     simulation::Simulation simulation(
         blob, setup, path,

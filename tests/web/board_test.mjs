@@ -70,6 +70,45 @@ test('shows the force of the board; a stop from any page ends it', async (t) => 
   await second.close();
 });
 
+test('homes a board, which then arms', async (t) => {
+  await plugIn(t, '--unhomed');
+  const server = await watch(t);
+  const page = await openPage(browser, server.url, small);
+  await state(page, 'idle');
+  await page.locator('#home').waitFor();
+  assert.equal(await page.locator('#why').textContent(),
+    'not homed: hold the device in its home pose and press Home');
+  await page.locator('#arm').click();
+  await page.locator('#note', { hasText: 'home it first' }).waitFor();
+  assert.equal(await page.locator('#state').textContent(), 'idle');
+  await page.locator('#home').click();
+  await page.locator('#home').waitFor({ state: 'hidden' });
+  assert.equal(await page.locator('#why').textContent(), 'stopped: press Arm');
+  await hidePicture(page);
+  await whileLinked(page, () => arm(page));
+  assert.deepEqual(page.troubles, []);
+  await page.close();
+});
+
+test('says that a board is operated by its button; may watch and stop it', async (t) => {
+  await plugIn(t, '--panel', '--press', '0.2..1.4', '--press', '20..21.2');
+  const server = await watch(t);
+  const page = await openPage(browser, server.url);
+  await hidePicture(page);
+  await page.getByText('The board is operated by its button.').waitFor();
+  for (const control of ['#arm', '#clear', '#stiffness_N_m', '#force_max_N']) {
+    assert.ok(await page.locator(control).isDisabled(), control);
+  }
+  assert.ok(await page.locator('#home').isHidden());
+  await state(page, 'idle');
+  assert.match(await page.locator('#why').textContent(), /hold the button of the board for 1 s$/);
+  await state(page, 'active');
+  await page.locator('#stop').click();
+  await state(page, 'idle');
+  assert.deepEqual(page.troubles, []);
+  await page.close();
+});
+
 test('disables what a board does not support, with the reason; applies the other settings', async (t) => {
   await plugIn(t);
   const server = await watch(t);

@@ -109,17 +109,13 @@ class Stm32f405Board {
     Stm32f405Board& board_;
   };
 
-  /// The link of an application, with the button and the lamp of the board. A stop of either has
-  /// priority over the other's command.
+  /// The link of an application, with the button and the lamp of the board.
   class Link {
    public:
     explicit Link(Stm32f405Board& board) : board_(board), mailbox_{board.mailbox_, board.ticker_} {}
     [[nodiscard]] hal::LinkInput receive() noexcept {
       hal::LinkInput input = mailbox_.receive();
-      const core::Command pressed = board_.panel_.command(board_.arm_button_.is_pressed());
-      if (input.command == core::Command::kNone || pressed == core::Command::kStop) {
-        input.command = pressed;
-      }
+      board_.panel_.operate(board_.arm_button_.is_pressed(), input);
       return input;
     }
     void send(const core::Status& status) noexcept {

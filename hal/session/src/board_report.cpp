@@ -18,7 +18,8 @@ std::uint32_t board_flags(const core::Controller& controller, const StoreFacts& 
          flag(c.supervision.dead_man_required, BoardFlag::kDeadManRequired) |
          flag(c.link.required, BoardFlag::kLinkRequired) |
          flag(controller.homed(), BoardFlag::kHomed) |
-         flag(controller.work_is_reduced(), BoardFlag::kWorkReduced);
+         flag(controller.work_is_reduced(), BoardFlag::kWorkReduced) |
+         flag(!c.link.may_command, BoardFlag::kWatchOnly);
 }
 
 }  // namespace

@@ -23,6 +23,8 @@ core::wire::ControlRequest control_request(ControlCode code, std::uint32_t token
   return {static_cast<std::uint8_t>(code), {}, token};
 }
 
+constexpr char kHowToOperate[] = " (hold its button for 1 s to home, arm or clear a fault)";
+
 const char* remedy_for(WireStatus status) {
   switch (status) {
     case WireStatus::kBusy:
@@ -38,6 +40,8 @@ const char* remedy_for(WireStatus status) {
              "a smaller one)";
     case WireStatus::kOldCounter:
       return " (sign it with a larger --counter)";
+    case WireStatus::kWatchOnly:
+      return kHowToOperate;
     default:
       return "";
   }
@@ -165,6 +169,11 @@ Introduction Board::introduce(std::unique_ptr<Transport> transport) {
   if (started.ok() && started.read(start)) {
     introduction.start = start;
   }
+  core::wire::CapabilitiesReply can;
+  const Response described = connection.call(MessageKind::kCapabilities);
+  if (described.ok() && described.read(can)) {
+    introduction.watch_only = has_flag(can, core::wire::BoardFlag::kWatchOnly);
+  }
   return introduction;
 }
 
@@ -222,10 +231,19 @@ Response Board::control(ControlCode code, std::uint32_t token, const char* what)
   return demand(MessageKind::kControl, control_request(code, token), what);
 }
 
+void Board::require_command(const char* what) { require_command(capabilities(), what); }
+
+void Board::require_command(const core::wire::CapabilitiesReply& can, const char* what) const {
+  if (has_flag(can, core::wire::BoardFlag::kWatchOnly)) {
+    throw LinkError(connection().name() + ": " + what + ": " +
+                    core::wire::describe(WireStatus::kWatchOnly) + kHowToOperate);
+  }
+}
+
 void Board::begin_arming() {
-  using core::wire::BoardFlag;
-  hand_confirms_ =
-      (capabilities().flags & static_cast<std::uint32_t>(BoardFlag::kDeadManRequired)) != 0U;
+  const core::wire::CapabilitiesReply can = capabilities();
+  require_command(can, "arm");
+  hand_confirms_ = has_flag(can, core::wire::BoardFlag::kDeadManRequired);
   require_no_fault();
   core::wire::ControlReply armed;
   (void)control(ControlCode::kArm, 0, "arm").read(armed);

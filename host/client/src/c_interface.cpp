@@ -128,12 +128,17 @@ int tactree_set_material(tactree_board* board, float stiffness_N_m, float dampin
 int tactree_capabilities(tactree_board* board, tactree_limits* limits) {
   return guarded(*board, [&](Board& it) {
     const tactree::core::wire::CapabilitiesReply can = it.capabilities();
-    const auto has = [&](BoardFlag flag) {
-      return (can.flags & static_cast<std::uint32_t>(flag)) != 0U ? 1 : 0;
-    };
-    *limits = {can.rate_hz,          can.force_max_N,        can.force_limit_N,
-               can.host_force_max_N, can.stiffness_N_m,      can.stiffness_limit_N_m,
-               can.bodies,           has(BoardFlag::kHomed), has(BoardFlag::kDeadManRequired)};
+    const auto has = [&](BoardFlag flag) { return has_flag(can, flag) ? 1 : 0; };
+    *limits = {can.rate_hz,
+               can.force_max_N,
+               can.force_limit_N,
+               can.host_force_max_N,
+               can.stiffness_N_m,
+               can.stiffness_limit_N_m,
+               can.bodies,
+               has(BoardFlag::kHomed),
+               has(BoardFlag::kDeadManRequired),
+               has(BoardFlag::kWatchOnly)};
   });
 }
 

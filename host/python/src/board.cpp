@@ -145,9 +145,7 @@ json identity(const core::wire::IdentifyReply& r) {
 }
 
 json capabilities(const core::wire::CapabilitiesReply& r) {
-  const auto has = [&](core::wire::BoardFlag flag) {
-    return (r.flags & static_cast<std::uint32_t>(flag)) != 0U;
-  };
+  const auto has = [&](core::wire::BoardFlag flag) { return has_flag(r, flag); };
   using enum core::wire::BoardFlag;
   return {{"rate_hz", r.rate_hz},
           {"force_max_N", r.force_max_N},
@@ -166,7 +164,8 @@ json capabilities(const core::wire::CapabilitiesReply& r) {
           {"dead_man_required", has(kDeadManRequired)},
           {"link_required", has(kLinkRequired)},
           {"homed", has(kHomed)},
-          {"work_is_reduced", has(kWorkReduced)}};
+          {"work_is_reduced", has(kWorkReduced)},
+          {"watch_only", has(kWatchOnly)}};
 }
 
 json status(const core::wire::StateReply& r) {

@@ -415,6 +415,7 @@ json BoardSession::board_json() const {
                    : link == Link::kLost    ? "gone"
                                             : "taken"},
           {"why", link == Link::kConnected ? "" : why_lost_},
+          {"watch_only", has_flag(facts_->can, core::wire::BoardFlag::kWatchOnly)},
           {"model", model == BoardFacts::Model::kSame    ? "same"
                     : model == BoardFacts::Model::kOther ? "other"
                                                          : "unknown"},

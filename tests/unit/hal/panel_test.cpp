@@ -124,6 +124,30 @@ TEST(Panel, IgnoresBouncingContacts) {
   EXPECT_EQ(rig.state(), State::kArmed);
 }
 
+/// The commands that replace that of the link while the button is held.
+std::vector<Command> replacements(State state, Command of_link) {
+  hal::Panel panel;
+  panel.configure(kRate_hz);
+  core::Status status;
+  status.state = state;
+  std::vector<Command> commands;
+  for (int i = 0; i < 1200; ++i) {
+    (void)panel.lamp(status);
+    hal::LinkInput input{.command = of_link};
+    panel.operate(i >= 50, input);
+    if (input.command != of_link) {
+      commands.push_back(input.command);
+    }
+  }
+  return commands;
+}
+
+TEST(Panel, GivesPriorityToStops) {
+  EXPECT_EQ(replacements(State::kIdle, Command::kNone), std::vector{Command::kArm});
+  EXPECT_EQ(replacements(State::kIdle, Command::kStop), std::vector<Command>{});
+  EXPECT_EQ(replacements(State::kActive, Command::kArm), std::vector{Command::kStop});
+}
+
 /// The lamp in slots of 0.1 s, as a text of # and .
 std::string pattern(const core::Status& status, int slots) {
   hal::Panel panel;

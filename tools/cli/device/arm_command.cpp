@@ -48,6 +48,7 @@ void arm(const ArmOptions& options, int& exit_code) {
   watch_interruption();
   client::Board board(chosen_port(options.port),
                       {options.port.baud, static_cast<std::uint16_t>(options.link_timeout_ms)});
+  board.require_command("arm");
   if (options.clear) {
     board.clear_faults();
   }

@@ -38,6 +38,7 @@ nlohmann::json probe(const std::string& port, unsigned baud) {
             {"serial",
              fmt::format("{:08x}{:08x}{:08x}", board.serial[0], board.serial[1], board.serial[2])},
             {"protocol", fmt::format("{}.{}", board.version_major, board.version_minor)},
+            {"watch_only", found.watch_only},
             {"complaints", client::complaints(found.start)}};
   } catch (const client::LinkError& error) {
     return {{"port", port}, {"error", error.what()}};
@@ -52,6 +53,9 @@ void print(const nlohmann::json& device) {
   fmt::print("{}: {}, firmware {}, serial {}, protocol {}\n", device["port"].get<std::string>(),
              device["board"].get<std::string>(), device["firmware"].get<std::string>(),
              device["serial"].get<std::string>(), device["protocol"].get<std::string>());
+  if (device["watch_only"].get<bool>()) {
+    fmt::print("  operated by its button; a program may watch and stop it\n");
+  }
   for (const auto& complaint : device["complaints"]) {
     fmt::print("  {}\n", complaint.get<std::string>());
   }

@@ -59,6 +59,7 @@ struct View {
   double force_max_N = 0.0;
   std::uint32_t cycles_per_tick = 0;
   bool work_is_reduced = false;
+  bool watch_only = false;
   std::uint64_t dropped = 0;
 };
 
@@ -79,7 +80,7 @@ std::string to_text(const View& view) {
   const std::string faults = client::names_of(t.faults);
   const std::string limits = names_of_limits(t.limits);
   return fmt::format(
-      "state    {}{}\n"
+      "state    {}{}{}\n"
       "force    {:7.3f} N [{}{}] {:.3g} N\n"
       "motors   {:7.3f} N at the probe: with {:.3f} N of gravity compensation, {:.3f} N added\n"
       "probe    {:9.4f} {:9.4f} {:9.4f} m   speed {:.3f} m/s\n"
@@ -87,7 +88,8 @@ std::string to_text(const View& view) {
       "ticks    {:.0f} per second, load {:.1f} %{}{}, overruns {}, telemetry dropped {}\n"
       "faults   {}\n",
       core::name_of(static_cast<core::State>(t.state)),
-      limits.empty() ? "" : " (limited by: " + limits + ")", force,
+      limits.empty() ? "" : " (limited by: " + limits + ")",
+      view.watch_only ? ", operated by its button: a program may watch and stop" : "", force,
       std::string(static_cast<std::size_t>(filled), '#'),
       std::string(static_cast<std::size_t>(kBarWidth - filled), ' '), view.force_max_N,
       length(t.motors_N), length(t.gravity_N), length(t.added_N), t.probe_m[0], t.probe_m[1],
@@ -119,6 +121,7 @@ nlohmann::json to_json(const View& view) {
           {"load", t.load},
           {"overruns", t.overruns},
           {"work_is_reduced", view.work_is_reduced},
+          {"watch_only", view.watch_only},
           {"dropped", view.dropped}};
 }
 
@@ -136,8 +139,8 @@ class Monitor {
     const core::wire::CapabilitiesReply can = board_.capabilities();
     view_.force_max_N = static_cast<double>(can.force_max_N);
     view_.cycles_per_tick = can.cycles_per_tick;
-    view_.work_is_reduced =
-        (can.flags & static_cast<std::uint32_t>(core::wire::BoardFlag::kWorkReduced)) != 0U;
+    view_.work_is_reduced = has_flag(can, core::wire::BoardFlag::kWorkReduced);
+    view_.watch_only = has_flag(can, core::wire::BoardFlag::kWatchOnly);
     // Fifty messages per second are readable and leave bandwidth on a serial port.
     const auto every = static_cast<std::uint32_t>(std::max(1.0F, can.rate_hz / 50.0F));
     board_.subscribe({kFields, every});

@@ -29,6 +29,18 @@ std::optional<std::string> reach_warning(const SimulateOptions& options,
                                  support::load_device(options.device).preset.model);
 }
 
+const char* remedy_for_no_contact(const SimulateOptions& options, bool oversize) {
+  if (oversize) {
+    return "make the model smaller, as the warning says";
+  }
+  if (options.panel) {
+    return "home and arm the board by its button, e.g. --press 0.5s..1.7s --press 3s..4.2s, with "
+           "--seconds to touch afterwards, or accept the run with --allow-no-contact";
+  }
+  return "choose a --script, --path or --origin with which the hand meets its surface, or accept "
+         "the run with --allow-no-contact";
+}
+
 void simulate(SimulateOptions& options, int& exit_code) {
   if (options.dump_device) {
     fmt::print("{}", support::device_json(support::load_device(options.device)));
@@ -49,6 +61,7 @@ void simulate(SimulateOptions& options, int& exit_code) {
                        options.board),
            "omit --board; the ticks on the host are bit-identical");
   }
+  check_panel(options);
   const setup::SceneFile scene = setup::read_scene(options.scene, options.blobs);
   options.blob = scene.names[0];
   if (options.serve) {
@@ -65,9 +78,7 @@ void simulate(SimulateOptions& options, int& exit_code) {
   exit_code = outcome.summary.faults.empty() ? kExitOk : kExitFailed;
   if (exit_code == kExitOk && outcome.summary.contact_ticks == 0 && !options.allow_no_contact) {
     refuse(fmt::format("{}: the probe never touched the model", options.blob),
-           oversize ? "make the model smaller, as the warning says"
-                    : "choose a --script, --path or --origin with which the hand meets its "
-                      "surface, or accept the run with --allow-no-contact");
+           remedy_for_no_contact(options, oversize.has_value()));
   }
 }
 

@@ -9,6 +9,7 @@
 #include "tactree/emulation/board_description.hpp"
 #include "tactree/simulation/hand_script.hpp"
 #include "tactree/simulation/injection.hpp"
+#include "tactree/simulation/user.hpp"
 #include "tactree/support/device_file.hpp"
 
 namespace tactree::cli {
@@ -51,27 +52,51 @@ void add_controller_options(CLI::App& verb, SimulateOptions& options) {
 
 std::string injection_help() {
   std::string text =
-      "inject a fault: PART:KIND[=VALUE]@FROM[..TO], seconds after arming; repeatable";
+      "inject a fault: PART:KIND[=VALUE]@FROM[..TO], seconds after arming (--panel: after "
+      "power-up); repeatable";
   for (const simulation::InjectionHelp& kind : simulation::injection_kinds()) {
     text += fmt::format("\n  {:<22} {}", kind.name, kind.about);
   }
   return text;
 }
 
-void add_injection_option(CLI::App& verb, SimulateOptions& options) {
-  verb.add_option("--inject", options.injections, injection_help())
-      ->check(CLI::Validator(
-          [](const std::string& text) -> std::string {
+/// Accepts the texts that `parse` does not refuse.
+template <class Parse>
+CLI::Validator parsed_by(Parse parse, const char* what) {
+  return {[parse](const std::string& text) -> std::string {
             try {
-              (void)simulation::parse_injection(text);
+              (void)parse(text);
               return {};
             } catch (const std::invalid_argument& error) {
               return error.what();
             }
           },
-          "FAULT"))
+          what};
+}
+
+void add_injection_option(CLI::App& verb, SimulateOptions& options) {
+  verb.add_option("--inject", options.injections, injection_help())
+      ->check(parsed_by(simulation::parse_injection, "FAULT"))
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+void add_panel_options(CLI::App& verb, SimulateOptions& options) {
+  CLI::Option* panel = verb.add_flag(
+      "--panel", options.panel,
+      "the board stands alone, operated by its button: --press. Time 0 is its power-up, and it is "
+      "not homed; a program (--serve) may only watch and stop it. --trace has its button and lamp");
+  // The model and the parameters can also be written over USB, outside of the session that refuses
+  // commands.
+  panel->excludes(verb.get_option("--usb"))->excludes(verb.get_option("--usb-gadget"));
+  verb.add_option(
+          "--press", options.presses,
+          "press the button, which homes and arms the board after 1 s, stops it at once and "
+          "clears a fault after 1 s: FROM..TO, seconds after power-up; repeatable")
+      ->check(parsed_by(simulation::parse_press, "PRESS"))
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->needs(panel);
 }
 
 void add_plant_options(CLI::App& verb, SimulateOptions& options) {
@@ -210,6 +235,7 @@ void add_simulate_options(CLI::App& verb, SimulateOptions& options) {
   add_session_options(verb, options);
   add_device_options(verb, options);
   add_serve_options(verb, options);
+  add_panel_options(verb, options);
   add_hand_options(verb, options);
   add_controller_options(verb, options);
   add_plant_options(verb, options);

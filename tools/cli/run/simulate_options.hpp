@@ -28,6 +28,8 @@ struct SimulateOptions : setup::SessionOptions {
   std::string key;  // public key for the models of the served board
   bool lock_step = false;
   bool unhomed = false;
+  bool panel = false;                // the board stands alone
+  std::vector<std::string> presses;  // of its button
   bool on_usb = false;
   std::optional<std::string> usb_port;  // USB device port of this computer; "": the only one
   std::uint32_t serial = 1;

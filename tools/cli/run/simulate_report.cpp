@@ -14,12 +14,12 @@ namespace {
 // Number of functions listed in the summary of instructions.
 constexpr std::size_t kReportedFunctions = 10;
 
-void write_trace(const std::string& file, const std::vector<simulation::Sample>& samples) {
-  std::string csv = simulation::trace_heading();
+void write_trace(const SimulateOptions& options, const std::vector<simulation::Sample>& samples) {
+  std::string csv = simulation::trace_heading(options.panel);
   for (const simulation::Sample& sample : samples) {
-    simulation::append_trace(csv, sample);
+    simulation::append_trace(csv, sample, options.panel);
   }
-  support::write_file(file, csv);
+  support::write_file(options.trace, csv);
 }
 
 nlohmann::json instructions_json(const Outcome& outcome) {
@@ -57,6 +57,15 @@ nlohmann::json to_json(const setup::SceneFile& scene, const simulation::Summary&
   return bodies;
 }
 
+nlohmann::json to_json(const std::vector<PanelEvent>& events) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const PanelEvent& event : events) {
+    list.push_back(
+        {{"t_s", event.t_s}, {"state", core::name_of(event.state)}, {"homed", event.homed}});
+  }
+  return list;
+}
+
 nlohmann::json to_json(const SimulateOptions& options, const setup::SceneFile& scene,
                        const Outcome& outcome) {
   const simulation::Summary& s = outcome.summary;
@@ -69,6 +78,9 @@ nlohmann::json to_json(const SimulateOptions& options, const setup::SceneFile& s
        {"bodies", to_json(scene, s)},
        {"injected", outcome.harm ? to_json(options.injections, *outcome.harm) : nlohmann::json()},
        {"instructions", instructions_json(outcome)}});
+  if (options.panel) {
+    json["panel"] = to_json(outcome.panel);
+  }
   return json;
 }
 
@@ -98,6 +110,15 @@ void print_bodies(const setup::SceneFile& scene, const simulation::Summary& s) {
   if (s.crowded_ticks > 0) {
     fmt::print("crowded            {} ticks: more than {} bodies within reach, some not rendered\n",
                s.crowded_ticks, core::kMaxReachableBodies);
+  }
+}
+
+void print_panel(const std::vector<PanelEvent>& events) {
+  const char* title = "panel";
+  for (const PanelEvent& event : events) {
+    fmt::print("{:<18} {:.3f} s: {}{}\n", title, event.t_s, core::name_of(event.state),
+               event.homed ? "" : ", not homed");
+    title = "";
   }
 }
 
@@ -153,7 +174,7 @@ void write_plot(const SimulateOptions& options, const setup::SceneFile& scene,
 void write_results(const SimulateOptions& options, const setup::SceneFile& scene,
                    const Outcome& outcome) {
   if (!options.trace.empty()) {
-    write_trace(options.trace, outcome.samples);
+    write_trace(options, outcome.samples);
   }
   if (!options.plot.empty()) {
     write_plot(options, scene, outcome);
@@ -183,6 +204,7 @@ void print_summary(const SimulateOptions& options, const setup::SceneFile& scene
     fmt::print("fault {:2} {} at tick {}\n", static_cast<int>(event.fault),
                core::name_of(event.fault), event.tick);
   }
+  print_panel(outcome.panel);
   if (outcome.harm) {
     print_harm(options, *outcome.harm);
   }

@@ -12,6 +12,7 @@
 #include "tactree/emulation/emulated_target.hpp"
 #include "tactree/setup/session.hpp"
 #include "tactree/simulation/recording.hpp"
+#include "tactree/simulation/user.hpp"
 #include "tactree/support/output_file.hpp"
 #include "tactree/wcet/bound.hpp"
 #include "tactree/wcet/bound_error.hpp"
@@ -23,13 +24,38 @@ constexpr double kMaxTicks = 1e8;
 // Limit for a trace, plot or recording, which keeps every tick in memory.
 constexpr double kMaxTracedTicks = 5e6;
 
+/// Ticks before time 0. A board that stands alone is not armed before.
+std::uint64_t ticks_before(const SimulateOptions& options, const simulation::Setup& setup) {
+  return options.panel ? 0U : simulation::Simulation::arming_ticks(setup);
+}
+
+/// How the board is operated: armed before time 0, or by a user with its panel.
+class Operation {
+ public:
+  Operation(const SimulateOptions& options, const simulation::Setup& setup) {
+    if (options.panel) {
+      user_.emplace(static_cast<double>(setup.controller.rate_hz), options.seconds,
+                    presses(options));
+    }
+  }
+
+  /// Returns false if the board is not active although it was armed.
+  [[nodiscard]] bool begin(simulation::Simulation& sim) const { return user_ || sim.arm(); }
+  simulation::Sample step(simulation::Simulation& sim) {
+    return user_ ? user_->step(sim) : sim.step();
+  }
+
+ private:
+  std::optional<simulation::User> user_;
+};
+
 std::unique_ptr<emulation::EmulatedTarget> boot_board(const emulation::BoardDescription& board,
                                                       const SimulateOptions& options,
                                                       const simulation::Setup& setup,
                                                       const support::BlobFile& blob) {
   emulation::EmulationOptions emulation;
   emulation.image = emulation::find_image(board, options.firmware);
-  emulation.uncounted_ticks = simulation::Simulation::arming_ticks(setup);
+  emulation.uncounted_ticks = ticks_before(options, setup);
   return std::make_unique<emulation::EmulatedTarget>(board, blob.bytes(), emulation);
 }
 
@@ -45,8 +71,8 @@ ChosenTarget host_target(const SimulateOptions& options, const simulation::Setup
   if (!is_scene(options)) {
     return {std::make_unique<simulation::HostTarget>()};
   }
-  auto target = std::make_unique<simulation::SceneTarget>(
-      scene.bodies, simulation::Simulation::arming_ticks(setup));
+  auto target =
+      std::make_unique<simulation::SceneTarget>(scene.bodies, ticks_before(options, setup));
   const simulation::SceneTarget* const bodies = target.get();
   return {std::move(target), bodies};
 }
@@ -63,8 +89,8 @@ ChosenTarget board_target(const emulation::BoardDescription& board, const Simula
   if (!is_scene(options)) {
     return {std::move(target), nullptr, emulated};
   }
-  return {std::make_unique<simulation::LinkedBodyTarget>(
-              std::move(target), scene.bodies[0], simulation::Simulation::arming_ticks(setup)),
+  return {std::make_unique<simulation::LinkedBodyTarget>(std::move(target), scene.bodies[0],
+                                                         ticks_before(options, setup)),
           nullptr, emulated};
 }
 
@@ -80,10 +106,11 @@ class Comparison {
  public:
   Comparison(const SimulateOptions& options, const setup::SceneFile& scene,
              const simulation::Setup& setup, const std::vector<simulation::InjectedFault>& faults)
-      : sound_(scene.files[0]->bytes(), setup, hand_path(options, scene),
-               std::make_unique<simulation::SceneTarget>(
-                   scene.bodies, simulation::Simulation::arming_ticks(setup))) {
-    (void)sound_.arm();
+      : sound_(
+            scene.files[0]->bytes(), setup, hand_path(options, scene),
+            std::make_unique<simulation::SceneTarget>(scene.bodies, ticks_before(options, setup))),
+        operation_(options, setup) {
+    (void)operation_.begin(sound_);
     harm_.from_s = faults.front().from_s;
     for (const simulation::InjectedFault& fault : faults) {
       harm_.from_s = std::min(harm_.from_s, fault.from_s);
@@ -91,7 +118,7 @@ class Comparison {
   }
 
   void add(const simulation::Sample& sample) {
-    const simulation::Sample sound = sound_.step();
+    const simulation::Sample sound = operation_.step(sound_);
     if (sample.t_s < harm_.from_s) {
       return;
     }
@@ -107,6 +134,7 @@ class Comparison {
 
  private:
   simulation::Simulation sound_;
+  Operation operation_;
   Harm harm_;
 };
 
@@ -152,9 +180,17 @@ std::uint64_t ticks_of(const SimulateOptions& options, const simulation::Setup& 
   return static_cast<std::uint64_t>(count);
 }
 
-/// Runs the ticks after arming, and those of a fault-free session if faults are injected.
-Outcome run_ticks(simulation::Simulation& sim, std::uint64_t ticks, const SimulateOptions& options,
-                  const setup::SceneFile& scene) {
+void note_event(const simulation::Sample& sample, std::vector<PanelEvent>& events) {
+  const bool homed = (sample.status.limits & core::limit_bit(core::Limit::kNotHomed)) == 0U;
+  if (events.empty() || events.back().state != sample.status.state ||
+      events.back().homed != homed) {
+    events.push_back({sample.t_s, sample.status.state, homed});
+  }
+}
+
+/// Runs the ticks from time 0 on, and those of a fault-free session if faults are injected.
+Outcome run_ticks(simulation::Simulation& sim, Operation& operation, std::uint64_t ticks,
+                  const SimulateOptions& options, const setup::SceneFile& scene) {
   const std::vector<simulation::InjectedFault> faults = injections(options);
   sim.inject(simulation::Injector(faults));
   std::optional<Comparison> comparison;
@@ -164,10 +200,13 @@ Outcome run_ticks(simulation::Simulation& sim, std::uint64_t ticks, const Simula
   Outcome outcome;
   simulation::Recorder recorder;
   for (std::uint64_t i = 0; i < ticks; ++i) {
-    const simulation::Sample sample = sim.step();
+    const simulation::Sample sample = operation.step(sim);
     recorder.add(sample);
     if (comparison) {
       comparison->add(sample);
+    }
+    if (options.panel) {
+      note_event(sample, outcome.panel);
     }
     if (keeps_samples(options)) {
       outcome.samples.push_back(sample);
@@ -193,11 +232,12 @@ Outcome run(const SimulateOptions& options, const setup::SceneFile& scene) {
   const std::size_t refused = chosen.scene == nullptr ? 0 : chosen.scene->refused_body();
   check_start(scene.names[refused], scene.files[refused]->view(), setup, sim.start_result(),
               options);
-  if (!sim.arm()) {
+  Operation operation(options, setup);
+  if (!operation.begin(sim)) {
     setup::refuse_inactive(options.device, setup, sim);
   }
   writer.begin_trace();
-  Outcome outcome = run_ticks(sim, ticks, options, scene);
+  Outcome outcome = run_ticks(sim, operation, ticks, options, scene);
   sim.finish();
   if (!options.record.empty()) {
     support::write_file(options.record, writer.finish());

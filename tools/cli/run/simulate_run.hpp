@@ -25,11 +25,19 @@ struct TickBound {
   bool work_is_reduced = false;  ///< see core::Controller::work_is_reduced()
 };
 
+/// Change of the state of a board that stands alone.
+struct PanelEvent {
+  double t_s = 0.0;
+  core::State state = core::State::kBoot;
+  bool homed = false;
+};
+
 struct Outcome {
   simulation::Summary summary;
   std::optional<Harm> harm;
   std::optional<emulation::InstructionCounts> instructions;  ///< of an emulated board
   std::optional<TickBound> bound;                            ///< if the image can be analysed
+  std::vector<PanelEvent> panel;                             ///< of --panel
   std::vector<simulation::Sample> samples;                   ///< for --trace and --plot
 };
 

@@ -68,6 +68,7 @@ void serve_target(const SimulateOptions& options, const setup::SceneFile& scene,
   sim.inject(simulation::Injector(injections(options)));
   schedule.rate_hz = static_cast<double>(setup.controller.rate_hz);
   schedule.path_s = options.seconds;
+  schedule.presses = presses(options);
   schedule.seconds_max = options.seconds_given->count() != 0 ? options.seconds : 0.0;
   serve_session(sim, schedule);
   if (!options.record.empty()) {

@@ -58,7 +58,11 @@ simulation::HandPath hand_path(const SimulateOptions& options, const setup::Scen
 simulation::Setup make_setup(const SimulateOptions& options, const setup::SceneFile& scene) {
   check_cartesian_options(options);
   simulation::Setup setup = setup::make_setup(options, first_body(scene));
-  setup.homed = !options.unhomed;
+  setup.homed = !options.unhomed && !options.panel;
+  if (options.panel) {
+    setup.controller.link.required = false;
+    setup.controller.link.may_command = false;
+  }
   return setup;
 }
 
@@ -68,6 +72,30 @@ std::vector<simulation::InjectedFault> injections(const SimulateOptions& options
     faults.push_back(simulation::parse_injection(text));
   }
   return faults;
+}
+
+std::vector<simulation::Press> presses(const SimulateOptions& options) {
+  std::vector<simulation::Press> all;
+  for (const std::string& text : options.presses) {
+    all.push_back(simulation::parse_press(text));
+  }
+  return all;
+}
+
+void check_panel(const SimulateOptions& options) {
+  if (!options.panel) {
+    return;
+  }
+  if (is_scene(options)) {
+    refuse("--panel: no application is connected that moves the bodies of a scene",
+           "give one BLOB, without --scene");
+  }
+  for (const simulation::InjectedFault& fault : injections(options)) {
+    if (fault.kind == simulation::InjectedKind::kLinkDead ||
+        fault.kind == simulation::InjectedKind::kLinkArm) {
+      refuse("--panel: no application is connected whose link may fail", "omit --inject link:...");
+    }
+  }
 }
 
 void check_start(const std::string& file, const core::BlobView& view,

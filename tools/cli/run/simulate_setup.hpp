@@ -7,6 +7,7 @@
 #include "run/simulate_options.hpp"
 #include "tactree/setup/scene_file.hpp"
 #include "tactree/simulation/injection.hpp"
+#include "tactree/simulation/user.hpp"
 
 namespace tactree::cli {
 
@@ -22,6 +23,12 @@ namespace tactree::cli {
                                              const setup::SceneFile& scene);
 
 [[nodiscard]] std::vector<simulation::InjectedFault> injections(const SimulateOptions& options);
+
+/// The presses of the button (--panel).
+[[nodiscard]] std::vector<simulation::Press> presses(const SimulateOptions& options);
+
+/// Throws UserError if an option needs an application, which a board with --panel does not have.
+void check_panel(const SimulateOptions& options);
 
 /// Throws UserError unless `start` is ok(). `file` and `view` are those of the refused body.
 void check_start(const std::string& file, const core::BlobView& view,

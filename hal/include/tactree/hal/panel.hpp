@@ -26,6 +26,7 @@
 #include <cstdint>
 
 #include "tactree/core/control/controller.hpp"
+#include "tactree/hal/board.hpp"
 
 namespace tactree::hal {
 
@@ -34,8 +35,8 @@ class Panel {
   /// Precondition: 100 <= rate_hz <= 20000.
   void configure(float rate_hz) {
     slot_ticks_ = static_cast<std::uint32_t>(kSlot_s * rate_hz);
-    debounce_ticks_ = static_cast<std::uint32_t>(kDebounce_s * rate_hz);
-    hold_ticks_ = static_cast<std::uint32_t>(kHold_s * rate_hz);
+    debounce_ticks_ = slot_ticks_ / kDebouncesPerSlot;
+    hold_ticks_ = kHoldSlots * slot_ticks_;
   }
 
   /// Call once per tick, with the state of the button; returns its command.
@@ -61,6 +62,15 @@ class Panel {
     return command_of_press(powered);
   }
 
+  /// Call once per tick, with the state of the button: adds its command to the input of the board's
+  /// link. A stop of either has priority over the other's command.
+  void operate(bool pressed, LinkInput& input) {
+    const core::Command own = command(pressed);
+    if (input.command == core::Command::kNone || own == core::Command::kStop) {
+      input.command = own;
+    }
+  }
+
   /// Call once per tick with its status; returns whether the lamp is on.
   [[nodiscard]] bool lamp(const core::Status& status) {
     const bool homed = (status.limits & core::limit_bit(core::Limit::kNotHomed)) == 0U;
@@ -79,8 +89,8 @@ class Panel {
 
  private:
   static constexpr float kSlot_s = 0.1F;
-  static constexpr float kDebounce_s = 0.02F;  // contacts of a switch bounce for up to 10 ms
-  static constexpr float kHold_s = 1.0F;       // longer than any accidental touch
+  static constexpr std::uint32_t kDebouncesPerSlot = 5;  // contacts bounce for up to 10 ms
+  static constexpr std::uint32_t kHoldSlots = 10;        // longer than any accidental touch
   static constexpr std::uint32_t kPauseSlots = 10;
 
   [[nodiscard]] core::Command command_of_press(bool powered) {
@@ -98,22 +108,26 @@ class Panel {
   }
 
   [[nodiscard]] bool is_lit(core::FaultMask faults) const {
+    std::uint32_t flashes = 2;  // boot, no model
+    std::uint32_t period = 20;
     if (state_ == core::State::kActive) {
       return true;
     }
     if (state_ == core::State::kArmed) {
-      return slot_ % 2U == 0U;
+      flashes = 1;
+      period = 2;
+    } else if (state_ == core::State::kIdle) {
+      flashes = 1;
+      period = 10;
+    } else if (state_ == core::State::kFault && faults != 0U) {
+      flashes = static_cast<std::uint32_t>(__builtin_ctz(faults));  // the lowest code
+      period = 2U * flashes + kPauseSlots;
     }
-    if (state_ == core::State::kIdle) {
-      return slot_ % 10U < (homed_ ? 1U : 5U);
+    const std::uint32_t slot = slot_ % period;
+    if (state_ == core::State::kIdle && !homed_) {
+      return slot < period / 2U;
     }
-    if (state_ == core::State::kFault && faults != 0U) {
-      const auto code = static_cast<std::uint32_t>(__builtin_ctz(faults));  // the lowest
-      const std::uint32_t slot = slot_ % (2U * code + kPauseSlots);
-      return slot < 2U * code && slot % 2U == 0U;
-    }
-    const std::uint32_t slot = slot_ % 20U;
-    return slot == 0U || slot == 2U;
+    return slot < 2U * flashes && slot % 2U == 0U;
   }
 
   std::uint32_t slot_ticks_ = 100;

@@ -22,7 +22,7 @@
 namespace tactree::hal::plant_link {
 
 /// Incremented with every change of these messages or of the structs in them.
-inline constexpr std::uint32_t kVersion = 4;
+inline constexpr std::uint32_t kVersion = 5;
 
 enum class Kind : std::uint32_t {
   kHello = 0x54414331,  ///< unlikely at the start of other data
@@ -64,12 +64,14 @@ struct TickInput {
   Kind kind = Kind::kTickInput;
   core::Readings input{};
   BodyUpdate body{};
+  bool arm_button = false;  ///< true: pressed, see hal::Panel
 };
 
 struct TickOutput {
   Kind kind = Kind::kTickOutput;
   float effort[core::kAxes] = {};  ///< N or Nm
   bool enable = false;
+  bool lamp = false;  ///< on, see hal::Panel
   core::Status status{};
 };
 
@@ -79,6 +81,6 @@ static_assert(std::is_trivially_copyable_v<core::Configuration> &&
               std::is_trivially_copyable_v<BodyUpdate> &&
               std::is_trivially_copyable_v<core::Status>);
 static_assert(alignof(SessionSetup) == 4 && alignof(TickInput) == 4 && alignof(TickOutput) == 4);
-static_assert(sizeof(Hello) == 124 && sizeof(Started) == 8 && sizeof(TickInput) == 120);
+static_assert(sizeof(Hello) == 124 && sizeof(Started) == 8 && sizeof(TickInput) == 124);
 
 }  // namespace tactree::hal::plant_link

@@ -173,10 +173,7 @@ class EmulatedTarget::Session {
     return receive<link::Started>(link::Kind::kStarted, options_.start_limit).result;
   }
 
-  link::TickOutput exchange(const core::Readings& input, const hal::BodyUpdate& body) {
-    link::TickInput message;
-    message.input = input;
-    message.body = body;
+  link::TickOutput exchange(const link::TickInput& message) {
     if (bridge_) {
       bridge_->move();
     }
@@ -317,16 +314,18 @@ hal::StartResult EmulatedTarget::start(hal::sim::SimBoard& board,
 
 // The counterpart of hal::Loop::tick(), with the controller at the other end of the link.
 core::Status EmulatedTarget::tick(hal::sim::SimBoard& board) {
-  core::Input input = hal::read_inputs(board);
-  const hal::LinkInput received = board.link().receive();
-  input.link_alive = received.alive;
-  input.command = received.command;
+  link::TickInput message;
+  message.input = hal::read_inputs(board);
+  const hal::LinkInput received = board.link().take_message();
+  message.input.link_alive = received.alive;
+  message.input.command = received.command;
+  message.body = received.bodies.empty() ? hal::BodyUpdate{} : received.bodies.front();
+  message.arm_button = board.panel().is_pressed();
 
-  const link::TickOutput output = session_->exchange(
-      input, received.bodies.empty() ? hal::BodyUpdate{} : received.bodies.front());
+  const link::TickOutput output = session_->exchange(message);
   board.motors().hold(output.effort);
   board.enable_line().set(output.enable);
-  board.link().send(output.status);
+  board.panel().light(output.lamp);
   return output.status;
 }
 

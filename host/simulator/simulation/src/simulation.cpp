@@ -20,6 +20,7 @@ constexpr double kSettleS = 0.05;
 
 hal::sim::BoardParameters with_rate(hal::sim::BoardParameters board, float rate_hz) {
   board.period_us = static_cast<std::uint32_t>(std::lround(1e6 / static_cast<double>(rate_hz)));
+  board.rate_hz = rate_hz;
   return board;
 }
 
@@ -133,12 +134,16 @@ Sample Simulation::step() { return step_with_hand_at(time_s()); }
 
 Sample Simulation::step_with_hand_at(double path_t_s) {
   const double t_s = time_s();
-  board_.link().post(std::exchange(command_, core::Command::kNone));
+  if (setup_.controller.link.may_command) {  // otherwise there is no application
+    board_.link().post(std::exchange(command_, core::Command::kNone));
+  }
   injector_.apply(board_, t_s);
   Sample sample;
   sample.t_s = t_s;
   sample.tip_m = plant_.position_m() - widen(setup_.controller.model_origin_m);
+  sample.button = board_.panel().is_pressed();
   sample.status = tick(path_t_s);
+  sample.lamp = board_.panel().is_lit();
   if (held_counts_) {
     sample.tip_m = widen(sample.status.probe);
   }

@@ -67,15 +67,15 @@ void trace_values(const Sample& sample, std::vector<double>& values) {
                 [&](const std::string&, TraceType, double value) { values.push_back(value); });
 }
 
-std::string trace_heading() {
+std::string trace_heading(bool with_panel) {
   std::string csv;
   for (const TraceColumn& column : trace_columns()) {
     csv += (csv.empty() ? "" : ",") + column.name;
   }
-  return csv + "\n";
+  return csv + (with_panel ? ",button,lamp\n" : "\n");
 }
 
-void append_trace(std::string& csv, const Sample& sample) {
+void append_trace(std::string& csv, const Sample& sample, bool with_panel) {
   bool first = true;
   visit_columns(sample, [&](const std::string&, TraceType type, double value) {
     if (!first) {
@@ -84,6 +84,9 @@ void append_trace(std::string& csv, const Sample& sample) {
     first = false;
     append_value(csv, type, value);
   });
+  if (with_panel) {
+    fmt::format_to(std::back_inserter(csv), ",{:d},{:d}", sample.button, sample.lamp);
+  }
   csv += '\n';
 }
 

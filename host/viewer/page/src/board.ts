@@ -9,7 +9,11 @@ export class BoardView {
     find('board-gone').hidden = !board || board.link === 'here';
     find('model-warning').hidden = board?.model !== 'other';
     find('confirm').hidden = !board?.confirm;
-    find<HTMLButtonElement>('arm').disabled = board !== undefined && board.link !== 'here';
+    const isOnlyWatched = board?.watch_only ?? false;
+    find<HTMLButtonElement>('arm').disabled = isOnlyWatched || (board !== undefined && board.link !== 'here');
+    find<HTMLButtonElement>('clear').disabled = isOnlyWatched;
+    find<HTMLFieldSetElement>('contact').disabled = isOnlyWatched;
+    find('watch-only').hidden = !isOnlyWatched;
     if (board) this.describe(board);
   }
 

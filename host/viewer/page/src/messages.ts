@@ -71,6 +71,7 @@ export interface Board {
   firmware: string;
   link: 'here' | 'gone' | 'taken';
   why: string; // cause of a lost connection
+  watch_only: boolean; // operated by its button: the page may watch and stop
   model: 'same' | 'other' | 'unknown';
   about_model: string;
   confirm: string; // action required at the device to finish arming; empty: none

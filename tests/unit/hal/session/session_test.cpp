@@ -62,10 +62,17 @@ TEST_F(SessionTest, IdentifiesItselfWithoutSession) {
 
 TEST_F(SessionTest, RefusesOtherMessagesWithoutSession) {
   for (const MessageKind kind :
-       {MessageKind::kCapabilities, MessageKind::kState, MessageKind::kHeartbeat,
-        MessageKind::kSetLimits, MessageKind::kBeginModel, MessageKind::kReadTrace}) {
+       {MessageKind::kState, MessageKind::kHeartbeat, MessageKind::kSetLimits,
+        MessageKind::kBeginModel, MessageKind::kReadTrace}) {
     EXPECT_EQ(rig.ask(kind).status, WireStatus::kNoSession);
   }
+}
+
+TEST_F(SessionTest, ReportsCapabilitiesWithoutSession) {
+  core::wire::CapabilitiesReply can;
+  ASSERT_TRUE(rig.ask(MessageKind::kCapabilities).read(can));
+  EXPECT_EQ(can.rate_hz, 1000.0F);
+  EXPECT_FALSE(has_flag(can, core::wire::BoardFlag::kWatchOnly));
 }
 
 TEST_F(SessionTest, ChecksMajorVersionOnly) {

@@ -131,7 +131,8 @@ TEST(SimTicker, CountsMissedDeadlines) {
 }
 
 TEST(SimLink, ReturnsEachMessageOnce) {
-  SimLink link;
+  SimPanel panel(1000.0F);
+  SimLink link(panel);
   EXPECT_FALSE(link.receive().alive);
   link.post(core::Command::kStop);
   const hal::LinkInput input = link.receive();
@@ -142,7 +143,8 @@ TEST(SimLink, ReturnsEachMessageOnce) {
 }
 
 TEST(SimLink, DropsUpdatesOfLostMessage) {
-  SimLink link;
+  SimPanel panel(1000.0F);
+  SimLink link(panel);
   const hal::BodyUpdate gone{.body = 3, .enabled = false};
   link.post(core::Command::kStop);
   link.attach(gone);

@@ -40,6 +40,7 @@ TEST(CInterface, ReadsCapabilities) {
   EXPECT_EQ(limits.force_max_N, c.limits.force_max_N);
   EXPECT_EQ(limits.bodies, 1U);
   EXPECT_EQ(limits.dead_man_required, 0);
+  EXPECT_EQ(limits.watch_only, 0);
   EXPECT_GT(limits.stiffness_limit_N_m, limits.stiffness_N_m);
   EXPECT_EQ(tactree_set_material(board, limits.stiffness_limit_N_m - 1.0F, c.contact.damping_Ns_m,
                                  0.0F, 0.0F),
@@ -51,6 +52,20 @@ TEST(CInterface, ReadsCapabilities) {
   const std::string limit =
       std::to_string(static_cast<unsigned>(limits.stiffness_limit_N_m)) + " N/m";
   EXPECT_NE(std::strstr(tactree_error(board), limit.c_str()), nullptr) << tactree_error(board);
+  tactree_close(board);
+}
+
+TEST(CInterface, MayWatchAndStopBoardThatStandsAlone) {
+  const RunningBoard running(0.04, false);
+  tactree_board* const board = tactree_open(running.port().c_str(), 115200, 0);
+  ASSERT_NE(board, nullptr);
+  tactree_limits limits;
+  ASSERT_EQ(tactree_capabilities(board, &limits), 0) << tactree_error(board);
+  EXPECT_EQ(limits.watch_only, 1);
+  EXPECT_NE(tactree_arm(board, 100), 0);
+  EXPECT_NE(std::strstr(tactree_error(board), "arm: the board is operated by its button"), nullptr)
+      << tactree_error(board);
+  EXPECT_EQ(tactree_stop(board), 0) << tactree_error(board);
   tactree_close(board);
 }
 

@@ -7,6 +7,10 @@
 #include <array>
 #include <chrono>
 #include <filesystem>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "running_board.hpp"
 #include "tactree/client/board.hpp"
@@ -151,6 +155,29 @@ TEST(Connection, NamesLinkTimeoutOfLostLink) {
   EXPECT_EQ(board.explain(core::fault_bit(core::Fault::kEmergencyStop)), "emergency-stop");
   EXPECT_EQ(client::Board(running.port()).explain(core::fault_bit(core::Fault::kLinkLost)),
             "link-lost");
+}
+
+TEST(Connection, TellsBoardThatStandsAloneBeforeCommands) {
+  const RunningBoard operated;
+  EXPECT_FALSE(client::Board::introduce(client::open_port(operated.port(), 0)).watch_only);
+  client::Board(operated.port()).require_command("arm");
+  const RunningBoard watched(0.04, false);
+  EXPECT_TRUE(client::Board::introduce(client::open_port(watched.port(), 0)).watch_only);
+  client::Board board(watched.port());
+  const std::string who = ": the board is operated by its button";
+  for (const auto& [what, command] : std::vector<std::pair<std::string, std::function<void()>>>{
+           {"flash", [&] { board.require_command("flash"); }},
+           {"arm", [&] { board.begin_arming(); }},
+           {"home", [&] { board.home(); }}}) {
+    try {
+      command();
+      ADD_FAILURE() << what;
+    } catch (const client::LinkError& error) {
+      EXPECT_NE(std::string(error.what()).find(what + who), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find("hold its button for 1 s"), std::string::npos);
+    }
+  }
+  board.stop();
 }
 
 TEST(Connection, RefusesNamelessReconnect) {

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "tactree/hal/board.hpp"
+#include "tactree/hal/panel.hpp"
 #include "tactree/hal/sim/encoder_bank.hpp"
 #include "tactree/hal/sim/motor_bank.hpp"
 #include "tactree/hal/sim/session_recorder.hpp"
@@ -18,6 +19,7 @@ struct BoardParameters {
   EncoderParameters encoders{};
   MotorParameters motors{};
   std::uint32_t period_us = 1000;        ///< tick period: 1 .. 1e6
+  float rate_hz = 1000.0F;               ///< of the panel's times: that of the configuration
   std::uint32_t enable_delay_ticks = 5;  ///< delay until amplifier power and read-back follow
   SessionRecorder* recorder = nullptr;   ///< records the session; must outlive the board
 };
@@ -80,15 +82,47 @@ class SimTicker {
   std::uint32_t overruns_ = 0;
 };
 
-/// Link to a simulated application.
+/// Button and lamp of the board.
+class SimPanel {
+ public:
+  explicit SimPanel(float rate_hz) { panel_.configure(rate_hz); }
+  [[nodiscard]] bool is_pressed() const { return pressed_; }
+  [[nodiscard]] bool is_lit() const { return lit_; }
+  void press(bool pressed) { pressed_ = pressed; }
+  /// Of a board in an emulator, which operates the lamp.
+  void light(bool lit) { lit_ = lit; }
+
+  // Call each once per tick: hal::Panel.
+  void operate(LinkInput& input) noexcept { panel_.operate(pressed_, input); }
+  void show(const core::Status& status) noexcept { lit_ = panel_.lamp(status); }
+
+ private:
+  Panel panel_;
+  bool pressed_ = false;
+  bool lit_ = false;
+};
+
+/// Link to a simulated application, with the commands of the panel.
 class SimLink {
  public:
+  /// `panel` must outlive the link.
+  explicit SimLink(SimPanel& panel) : panel_(panel) {}
   [[nodiscard]] LinkInput receive() noexcept {
+    LinkInput input = take_message();
+    panel_.operate(input);
+    return input;
+  }
+  void send(const core::Status& status) noexcept {
+    last_ = status;
+    panel_.show(status);
+  }
+
+  /// receive() without the panel, for a board in an emulator, which reads the button.
+  [[nodiscard]] LinkInput take_message() noexcept {
     const LinkInput input = next_;
     next_ = {};
     return input;
   }
-  void send(const core::Status& status) noexcept { last_ = status; }
 
   /// The next receive() returns a message with this command (kNone: keep-alive).
   void post(core::Command command) { next_ = {true, command, {}}; }
@@ -107,6 +141,7 @@ class SimLink {
   [[nodiscard]] const core::Status& last() const { return last_; }
 
  private:
+  SimPanel& panel_;
   LinkInput next_{};
   BodyUpdate body_{};
   core::Status last_{};
@@ -128,7 +163,9 @@ class SimBoard {
       : encoders_(parameters.encoders),
         motors_(parameters.motors),
         enable_line_(parameters.enable_delay_ticks),
+        panel_(parameters.rate_hz),
         ticker_(parameters.period_us, enable_line_),
+        link_(panel_),
         storage_(blob),
         recorder_(parameters.recorder) {}
 
@@ -139,6 +176,7 @@ class SimBoard {
   [[nodiscard]] SimMotorBank& motors() noexcept { return motors_; }
   [[nodiscard]] SimEnableLine& enable_line() noexcept { return enable_line_; }
   [[nodiscard]] SimSafetyInputs& safety_inputs() noexcept { return inputs_; }
+  [[nodiscard]] SimPanel& panel() noexcept { return panel_; }
   [[nodiscard]] SimTicker& ticker() noexcept { return ticker_; }
   [[nodiscard]] SimLink& link() noexcept { return link_; }
   [[nodiscard]] SimStorage& storage() noexcept { return storage_; }
@@ -157,6 +195,7 @@ class SimBoard {
   SimMotorBank motors_;
   SimEnableLine enable_line_;
   SimSafetyInputs inputs_;
+  SimPanel panel_;
   SimTicker ticker_;
   SimLink link_;
   SimStorage storage_;

@@ -170,6 +170,9 @@ class Session {
       put_start(start_, start_report_ == nullptr ? hal::StartReport{} : *start_report_, reply_);
       return Outcome::kAnswer;
     }
+    if (kind == Kind::kCapabilities && header.session == 0U) {
+      return capabilities();
+    }
     if (kind == Kind::kOpen) {
       return answer(open());
     }
@@ -350,7 +353,7 @@ class Session {
     return WireStatus::kOk;
   }
 
-  Outcome capabilities() {
+  [[gnu::noinline]] Outcome capabilities() {
     put_capabilities(controller(), base_,
                      {Store::kSlots, store_.slot_bytes(), store_.signature_required()},
                      identity_.cycles_per_second, reply_);

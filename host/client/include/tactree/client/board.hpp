@@ -66,6 +66,7 @@ struct TracedTick {
 struct Introduction {
   core::wire::IdentifyReply board{};
   core::wire::ReadStartReply start{};  ///< without complaints if the board does not send it
+  bool watch_only = false;             ///< see Board::require_command(); false on older boards
 };
 
 class Board {
@@ -110,6 +111,10 @@ class Board {
   [[nodiscard]] const char* who_confirms() const;
   /// Names of the faults, and for link-lost what the user can do about this program's link.
   [[nodiscard]] std::string explain(core::FaultMask faults) const;
+  /// Throws LinkError if the board is operated by its panel alone: an application may then watch
+  /// and stop (BoardFlag::kWatchOnly), and functions that change something throw. `what`: the
+  /// intended command, for the message.
+  void require_command(const char* what);
   void stop();
   void clear_faults();  ///< also stops the board, which makes it ready again
   void home();          ///< precondition: the device is in its home pose
@@ -163,6 +168,7 @@ class Board {
   [[nodiscard]] Reply fetch(core::wire::MessageKind kind, const char* what);
   [[nodiscard]] std::string stiffness_limit(const Response& refusal) const;
   void require_no_fault();
+  void require_command(const core::wire::CapabilitiesReply& can, const char* what) const;
   Response control(core::wire::ControlCode code, std::uint32_t token, const char* what);
   void write_pieces(std::span<const std::byte> bytes, const Progress& progress);
 

@@ -261,6 +261,10 @@ TEST_F(Stm32f405, LetsWatchingApplicationComeAndGo) {
   rig.boot();
   rig.run(100);
   ASSERT_TRUE(rig.arm_by_button());
+  core::wire::CapabilitiesReply can;
+  ASSERT_TRUE(rig.ask(MessageKind::kCapabilities).read(can));
+  EXPECT_TRUE(has_flag(can, core::wire::BoardFlag::kWatchOnly));
+  EXPECT_EQ(rig.status().state, core::State::kActive);
   ASSERT_TRUE(rig.open(50).ok()) << "while active";
   ASSERT_TRUE(rig.ask(MessageKind::kSubscribe, core::wire::SubscribeRequest{0x3FF, 100}).ok());
   EXPECT_EQ(rig.control(ControlCode::kArm).status, WireStatus::kWatchOnly);

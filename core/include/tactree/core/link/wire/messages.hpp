@@ -25,7 +25,7 @@ enum class MessageKind : std::uint8_t {
   kOpen = 0x02,            ///< begins a session, ends the one before
   kClose = 0x03,           ///< ends the session, and stops
   kHeartbeat = 0x04,       ///< the only message that keeps a required link alive
-  kCapabilities = 0x05,    ///< features of the board, and its limits
+  kCapabilities = 0x05,    ///< features and limits of the board; since 1.1 also without session
   kState = 0x06,           ///< state and faults
   kControl = 0x07,         ///< arm, stop ...; stop needs no session
   kSetLimits = 0x08,       ///< limits of the force
@@ -148,7 +148,13 @@ enum class BoardFlag : std::uint32_t {
   kLinkRequired = 1U << 2,       ///< this session ends with its link
   kHomed = 1U << 3,
   kWorkReduced = 1U << 4,  ///< Controller::work_is_reduced()
+  /// Operated by its panel alone: an application may watch and stop; since 1.1.
+  kWatchOnly = 1U << 5,
 };
+
+[[nodiscard]] constexpr bool has_flag(const CapabilitiesReply& board, BoardFlag flag) {
+  return (board.flags & static_cast<std::uint32_t>(flag)) != 0U;
+}
 
 struct StateReply {
   std::uint32_t tick = 0;

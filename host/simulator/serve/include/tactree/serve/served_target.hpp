@@ -20,11 +20,29 @@ namespace tactree::serve {
 /// A simulated board with a session as its link and a model store as its storage.
 class ServedSimBoard {
  public:
-  using Link = session::MailboxLink<hal::sim::SimTicker>;
+  /// The link of an application, with the panel of the board.
+  class Link {
+   public:
+    Link(session::TickMailbox& mailbox, hal::sim::SimBoard& board)
+        : mailbox_{mailbox, board.ticker()}, panel_(board.panel()) {}
+    [[nodiscard]] hal::LinkInput receive() noexcept {
+      hal::LinkInput input = mailbox_.receive();
+      panel_.operate(input);
+      return input;
+    }
+    void send(const core::Status& status) noexcept {
+      mailbox_.send(status);
+      panel_.show(status);
+    }
+
+   private:
+    session::MailboxLink<hal::sim::SimTicker> mailbox_;
+    hal::sim::SimPanel& panel_;
+  };
   using Store = store::ModelStore<hal::sim::SimFlash>;
 
   ServedSimBoard(hal::sim::SimBoard& board, session::TickMailbox& mailbox, const Store& store)
-      : board_(board), link_{mailbox, board.ticker()}, store_(store) {}
+      : board_(board), link_(mailbox, board), store_(store) {}
 
   [[nodiscard]] hal::sim::SimEncoderBank& encoders() noexcept { return board_.encoders(); }
   [[nodiscard]] hal::sim::SimMotorBank& motors() noexcept { return board_.motors(); }

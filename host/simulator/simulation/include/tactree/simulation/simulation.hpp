@@ -24,7 +24,7 @@ namespace tactree::simulation {
 
 struct Setup {
   core::Configuration controller{};
-  hal::sim::BoardParameters board{};  ///< period_us follows controller.rate_hz
+  hal::sim::BoardParameters board{};  ///< period_us and rate_hz follow controller.rate_hz
   plant::PlantParameters plant{};     ///< hand and sub-step; the device if `dynamics` is empty
   /// Dynamics of the joints of controller.device. If empty, each axis is plant.device.
   std::optional<core::DeviceDynamics> dynamics{};
@@ -41,6 +41,8 @@ struct Sample {
   double t_s = 0.0;                                 ///< 0 is the first tick after arming
   Eigen::Vector3d tip_m = Eigen::Vector3d::Zero();  ///< true position of the device, model frame
   core::Status status{};
+  bool button = false;    ///< of the board's panel: pressed
+  bool lamp = false;      ///< of the board's panel: on
   bool has_parts = true;  ///< false: the source does not tell gravity_force and motor_force
 };
 
@@ -106,7 +108,8 @@ class Simulation {
   [[nodiscard]] std::uint64_t next_tick() const { return ticks_; }
   void go_to(std::uint64_t tick) { ticks_ = tick; }
 
-  /// Sends a command of the application in the next step().
+  /// Sends a command of the application in the next step(). There is none if the configuration
+  /// does not let it command.
   void post(core::Command command) { command_ = command; }
 
   /// Executes one tick.

@@ -24,11 +24,12 @@ struct TraceColumn {
 /// exactly; that of a state is its number.
 void trace_values(const Sample& sample, std::vector<double>& values);
 
-/// First row of a trace: the names of its columns with units.
-[[nodiscard]] std::string trace_heading();
+/// First row of a trace: the names of its columns with units. With the panel of the board, `button`
+/// and `lamp` follow.
+[[nodiscard]] std::string trace_heading(bool with_panel = false);
 
 /// Appends the row of a sample. A float32 that is read back is bit-identical.
-void append_trace(std::string& csv, const Sample& sample);
+void append_trace(std::string& csv, const Sample& sample, bool with_panel = false);
 
 /// Distribution of a value over the ticks, with its proven upper bound `bound`, 0 if unknown.
 struct Histogram {

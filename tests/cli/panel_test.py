@@ -1,0 +1,105 @@
+"""A board that stands alone (simulate --panel): operated by its button, watched by programs.
+
+usage: panel_test.py TACTREE
+"""
+import csv
+import pathlib
+import sys
+import unittest
+
+sys.dont_write_bytecode = True
+from served_board import ServedBoard, build_ball  # noqa: E402
+from tool_folder import SharedFolder  # noqa: E402
+
+TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
+HOME_AND_ARM = ("--press", "0.2s..1.4s", "--press", "3s..4.2s")
+
+
+class Panel(SharedFolder):
+    tool = TACTREE
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.blob = build_ball(TACTREE, cls.path)
+
+    def simulate(self, *arguments, code=0):
+        done = self.run_tool("simulate", self.blob, "--panel", *arguments)
+        self.assertEqual(done.returncode, code, done.stderr)
+        return done.stdout + done.stderr
+
+    def test_power_up_to_touch_and_stop(self):
+        printed = self.simulate(*HOME_AND_ARM, "--press", "6..6.1", "--seconds", 7, "--trace", "run.csv",
+                                "--json", "run.json", "--record", "run.rec")
+        events = self.read("run.json")["panel"]
+        self.assertEqual([(event["state"], event["homed"]) for event in events],
+                         [("idle", False), ("idle", True), ("armed", True), ("active", True), ("idle", True)])
+        self.assertAlmostEqual(events[1]["t_s"], 1.2, delta=0.01)
+        self.assertAlmostEqual(events[2]["t_s"], 4.0, delta=0.01)
+        self.assertAlmostEqual(events[4]["t_s"], 6.02, delta=0.01)
+        self.assertIn("panel              0.000 s: idle, not homed\n", printed)
+        self.assertRegex(printed, r"\n {19}6\.0\d\d s: idle\n")
+        with open(self.path / "run.csv", newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual({row["lamp"] for row in rows if row["state"] == "active"}, {"1"})
+        self.assertEqual({row["lamp"] for row in rows if row["state"] == "idle"}, {"0", "1"})
+        pressed = [float(row["t_s"]) for row in rows if row["button"] == "1"]
+        self.assertAlmostEqual(pressed[0], 0.2, delta=0.001)
+        self.assertAlmostEqual(pressed[-1], 6.1, delta=0.002)
+        self.assertTrue(any(float(row["force_x_N"]) for row in rows))
+        self.assertIn("identical", self.run_tool("simulate", self.blob, "--replay", "run.rec").stdout)
+
+    def test_a_fault_is_shown_and_cleared(self):
+        self.simulate("--inject", "estop:pressed@0.5..1", "--press", "2..3.1", "--seconds", 4, "--allow-no-contact",
+                      "--json", "run.json", code=1)
+        run = self.read("run.json")
+        self.assertEqual([event["state"] for event in run["panel"]], ["idle", "fault", "idle"])
+        self.assertAlmostEqual(run["injected"]["detected_s"], 0, delta=0.01)
+
+    def test_refusals(self):
+        refused = self.simulate("--seconds", 1, code=1)
+        self.assertIn("never touched the model (home and arm the board by its button, e.g. --press", refused)
+        self.assertIn("--panel: no application is connected that moves", self.simulate(self.blob, code=1))
+        self.assertIn("--panel: no application is connected whose link",
+                      self.simulate("--inject", "link:arm@1", code=1))
+        self.assertIn("'3..1': the end is not after the start (FROM..TO in seconds",
+                      self.simulate("--press", "3..1", code=2))
+        self.assertIn("--usb", self.simulate("--serve", "--usb", code=2))
+        done = self.run_tool("simulate", self.blob, "--press", "1..2")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("--panel", done.stderr)
+
+    def verb(self, *arguments, code=0):
+        done = self.run_tool(*arguments)
+        self.assertEqual(done.returncode, code, (arguments, done.stdout, done.stderr))
+        return done.stdout + done.stderr
+
+    def test_a_program_is_told_that_it_may_only_watch(self):
+        with ServedBoard(TACTREE, self.blob, "--panel", *HOME_AND_ARM) as port:
+            said = "operated by its button"
+            self.assertIn(f"  {said}; a program may watch and stop it\n",
+                          self.verb("devices", "--port", port, "--json", "devices.json"))
+            self.assertTrue(self.read("devices.json")["devices"][0]["watch_only"])
+            self.assertRegex(self.verb("monitor", "--once", "--port", port), f"state +idle .*{said}")
+            for options in ((), ("--home",), ("--clear",)):
+                self.assertIn("arm: the board is operated by its button; an application may watch and stop only "
+                              "(hold its button for 1 s", self.verb("arm", *options, "--port", port, code=1))
+            self.assertIn("hold its button for 1 s", self.verb("params", "delay_s=0.0005", "--port", port, code=1))
+            self.verb("record", "--port", port, "--seconds", 6, "-o", "watched.csv")
+            with open(self.path / "watched.csv", newline="") as file:
+                states = [row["state"] for row in csv.DictReader(file)]
+            self.assertEqual(list(dict.fromkeys(states)), ["idle", "armed", "active"])
+            self.assertEqual(states[-1], "active")
+            self.verb("monitor", "--once", "--port", port, "--json", "view.json")
+            view = self.read("view.json")
+            self.assertEqual((view["state"], view["watch_only"]), ("active", True))
+            self.assertIn("stopped", self.verb("stop", "--port", port))
+            self.verb("monitor", "--once", "--port", port, "--json", "view.json")
+            self.assertEqual(self.read("view.json")["state"], "idle")
+        with ServedBoard(TACTREE, self.blob) as port:
+            self.assertNotIn(said, self.verb("devices", "--port", port))
+            self.assertNotIn(said, self.verb("monitor", "--once", "--port", port))
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
