@@ -118,6 +118,7 @@ void CandidateSet::begin(const BlobView& view, Vec3 centre) {
   in_leaf_ = false;
   const BlobHeader& header = view.header();
   most_ = lower(header.points_per_ball_max, kMaxCandidates);  // memory: flash
+  most_in_support_ = points_per_support_max(header);          // memory: flash
   unseen_ = header.points_per_query_max;                      // memory: flash
   untested_ = header.points_per_slab_max;                     // memory: flash
 }

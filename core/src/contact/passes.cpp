@@ -48,9 +48,9 @@ float quarter_of(Vec3 a, Vec3 b) {
 [[gnu::noinline]] Face sum_face(const CandidateSet& points, Vec3 x, float radius,
                                 const std::uint8_t* indices, std::uint32_t count) {
   const float inverse_squared = 1.0F / (radius * radius);
-  Moments sums{};  // locals, as in look_around()
+  Moments sums{};  // locals, which a compiler keeps in registers, not members of the result
   float between = 0.0F;
-  // bound: points_per_ball_max, total points_per_ball_max per sum_faces
+  // bound: points_per_support_max, total points_per_support_max per fit_surface
   for (std::uint32_t k = 0; k < count; ++k) {
     const std::uint32_t index = indices[k];
     const Candidate& candidate = points[index & ~std::uint32_t{Division::kBetween}];
@@ -65,24 +65,34 @@ float quarter_of(Vec3 a, Vec3 b) {
 
 }  // namespace
 
-// The sums are locals, not members of the result: a compiler keeps locals in registers.
+// A point outside the support costs little. The bound limits the others by their stores, which all
+// points in the support reach.
 [[gnu::noinline]] Surroundings look_around(const CandidateSet& points, Vec3 x, float radius,
                                            Vec3 reference) {
   const float radius_squared = radius * radius;
   const float inverse_squared = 1.0F / radius_squared;
-  Moments face{};
   float averted = 0.0F;
   std::uint32_t aligned = 0;
   Nearest crease{radius_squared};
   Nearest mild{radius_squared};
   Nearest opposite{radius_squared};
-  for (const Candidate& candidate : points) {  // bound: points_per_ball_max
-    const Vec3 q = candidate.position - x;
-    const float qq = length_squared(q);
+  std::uint8_t facing[kMaxCandidates];
+  std::uint32_t count = 0;
+  std::uint32_t room = points.most_in_support();
+  bool complete = true;
+  const std::uint32_t all = points.count();
+  for (std::uint32_t i = 0; i < all; ++i) {  // bound: points_per_ball_max
+    const Candidate& candidate = points[i];
+    const float qq = length_squared(candidate.position - x);
     if (!(qq < radius_squared)) {
       continue;
     }
-    const float weight = weight_of(qq, inverse_squared);
+    if (room-- == 0U) {
+      complete = false;
+      break;
+    }
+    // at most: points_per_support_max per look_around
+    facing[count] = static_cast<std::uint8_t>(i);  // an averted point is overwritten
     const float cosine = dot(candidate.normal, reference);
     if (cosine < kMildCosine) {
       if (cosine > kCreaseCosine) {
@@ -93,15 +103,17 @@ float quarter_of(Vec3 a, Vec3 b) {
         opposite.offer(candidate, qq);
       }
       if (!(cosine > 0.0F)) {
-        averted += weight;
+        averted += weight_of(qq, inverse_squared);
         continue;
       }
     } else {
       ++aligned;
     }
-    face.add(q, qq, candidate.normal, weight);
+    ++count;
   }
-  return {face, averted, aligned, crease.point, mild.point, opposite.point};
+  const Face face = sum_face(points, x, radius, facing, count);
+  return {face.sums,    complete,   averted,       aligned,
+          crease.point, mild.point, opposite.point};
 }
 
 [[gnu::noinline]] void divide(const CandidateSet& points, Vec3 x, float radius, const Seeds& seeds,
@@ -119,12 +131,18 @@ float quarter_of(Vec3 a, Vec3 b) {
     division.facing[i] = 0;
     division.averted[i] = 0;
   }
+  std::uint32_t room = points.most_in_support();
+  division.complete = true;
   const std::uint32_t all = points.count();
   for (std::uint32_t i = 0; i < all; ++i) {  // bound: points_per_ball_max
     const Candidate& candidate = points[i];
     const float qq = length_squared(candidate.position - x);
     if (!(qq < radius_squared)) {
       continue;
+    }
+    if (room-- == 0U) {
+      division.complete = false;
+      break;
     }
     const float to_first = dot(candidate.normal, seed);
     const float to_second = dot(candidate.normal, second_seed);
@@ -142,17 +160,19 @@ float quarter_of(Vec3 a, Vec3 b) {
     if (closer < kCreaseCosine) {
       (to_first > kOppositeCosine ? stray : opposite).offer(candidate, qq);
       if (!(closer > kFaceCosine)) {
-        if (to_first > 0.0F) {
-          division.point[0][kMaxCandidates - ++division.averted[0]] = static_cast<std::uint8_t>(i);
-        }
+        // A point that does not face the reference, either, is overwritten.
+        const std::uint32_t place =
+            to_first > 0.0F ? kMaxCandidates - ++division.averted[0] : division.facing[0];
+        // at most: points_per_support_max per divide together support
+        division.point[0][place] = static_cast<std::uint8_t>(i);
         continue;
       }
     }
-    const bool is_between = closer < between;
+    const std::uint32_t flag = closer < between ? Division::kBetween : 0U;
     const std::uint32_t place =
         to_first > 0.0F ? division.facing[face]++ : kMaxCandidates - ++division.averted[face];
-    division.point[face][place] =
-        static_cast<std::uint8_t>(i | (is_between ? Division::kBetween : 0U));
+    // at most: points_per_support_max per divide together support
+    division.point[face][place] = static_cast<std::uint8_t>(i | flag);
   }
   division.stray = stray.point;
   division.opposite = opposite.point;

@@ -8,6 +8,7 @@ namespace tactree::core {
 /// The points in the support, relative to one face.
 struct Surroundings {
   Moments face;               // points that face the reference
+  bool complete;              // false: more points than the blob declares
   float averted;              // weight of the other points
   std::uint32_t aligned;      // points of the reference's own face
   const Candidate* crease;    // nearest point of another face; null: none, here and below
@@ -26,6 +27,7 @@ struct Division {
   std::uint8_t point[kMaxFaces][kMaxCandidates];
   std::uint32_t facing[kMaxFaces];
   std::uint32_t averted[kMaxFaces];
+  bool complete;              // false: more points than the blob declares
   const Candidate* stray;     // nearest point at 47 degrees or more from all faces; null: none
   const Candidate* opposite;  // as above, but opposite to the first face
 };

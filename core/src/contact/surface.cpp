@@ -61,6 +61,7 @@ const Candidate* nearest_other(const Candidate* crease, const Candidate* opposit
   divide(points, x, radius, seeds, division);
   const DividedSums sums = sum_faces(points, x, radius, division);
   result.passes = 2;
+  result.complete = division.complete;
   const bool joined = join_faces(sums.faces, seeds, radius, side, near, result);
   if (!joined) {
     set_to(result, fit_face(sums.facing, radius));
@@ -77,6 +78,7 @@ const Candidate* nearest_other(const Candidate* crease, const Candidate* opposit
                                   float side, NearFaces& near, SurfaceFit& result) {
   const Surroundings around = look_around(points, x, radius, reference);
   set_to(result, fit_face(around.face, radius));
+  result.complete = around.complete;
   const float all = around.face.w + around.averted;
   result.facing = all > 0.0F ? around.face.w / all : 1.0F;
   const Candidate* const crease = around.crease != nullptr ? around.crease : around.mild;
@@ -93,8 +95,8 @@ const Candidate* nearest_other(const Candidate* crease, const Candidate* opposit
 
 }  // namespace
 
-SurfaceFit fit_surface(const CandidateSet& points, Vec3 x, float radius, Vec3 reference, float side,
-                       NearFaces& near) {
+[[gnu::noinline]] SurfaceFit fit_surface(const CandidateSet& points, Vec3 x, float radius,
+                                         Vec3 reference, float side, NearFaces& near) {
   SurfaceFit result;  // memory: flash
   if (near.count != 0U) {
     const Seeds seeds{{reference, near.normal[0], near.normal[1]}, 1U + near.count};
