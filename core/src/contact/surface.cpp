@@ -59,12 +59,12 @@ const Candidate* nearest_other(const Candidate* crease, const Candidate* opposit
                                  SurfaceFit& result) {
   Division division;
   divide(points, x, radius, seeds, division);
-  const DividedSums sums = sum_faces(points, x, radius, division);
+  const DividedSums sums = sum_faces(points, x, radius, seeds, division);
   result.passes = 2;
   result.complete = division.complete;
   const bool joined = join_faces(sums.faces, seeds, radius, side, near, result);
   if (!joined) {
-    set_to(result, fit_face(sums.facing, radius));
+    set_to(result, fit_face(sums.facing.sums, radius));
   }
   const Candidate* const other =
       nearest_other(division.stray, division.opposite, x, radius, side, result);
@@ -79,13 +79,12 @@ const Candidate* nearest_other(const Candidate* crease, const Candidate* opposit
   const Surroundings around = look_around(points, x, radius, reference);
   set_to(result, fit_face(around.face, radius));
   result.complete = around.complete;
-  const float all = around.face.w + around.averted;
-  result.facing = all > 0.0F ? around.face.w / all : 1.0F;
+  result.facing = around.facing;
   const Candidate* const crease = around.crease != nullptr ? around.crease : around.mild;
   const Candidate* const other = nearest_other(crease, around.opposite, x, radius, side, result);
   if (other != nullptr) {
     // If several faces came near at once, the smooth surface lies between them.
-    if (around.aligned == 0U) {
+    if (!around.aligned) {
       result.next_reference = other->normal;
     } else {
       near.normal[near.count++] = other->normal;

@@ -219,9 +219,9 @@ void set_lengths(core::BlobHeader& header, const Model& model, const Lattice& la
 std::uint32_t support_bound(const core::BlobHeader& header,
                             const std::vector<Eigen::Vector3d>& decoded) {
   const auto radius = static_cast<double>(header.support_radius_m);
-  return radius > 0.0 ? std::clamp(max_points_in_ball(decoded, radius), 1U,
-                                   header.points_per_ball_max)
-                      : 0U;
+  return radius > 0.0
+             ? std::clamp(max_points_in_ball(decoded, radius), 1U, header.points_per_ball_max)
+             : 0U;
 }
 
 core::BlobHeader make_header(const Model& model, const Octree& tree) {

@@ -112,8 +112,8 @@ class CandidateSet {
 
   Candidate candidates_[kMaxCandidates];
   std::uint32_t count_ = 0;
-  std::uint32_t hidden_ = 0;    // stored after the others
-  std::uint32_t most_ = 0;      // limit of count_: declared by the blob, at most kMaxCandidates
+  std::uint32_t hidden_ = 0;  // stored after the others
+  std::uint32_t most_ = 0;    // limit of count_: declared by the blob, at most kMaxCandidates
   std::uint32_t most_in_support_ = 0;
   std::uint32_t unseen_ = 0;    // remainder of points_per_query_max
   std::uint32_t untested_ = 0;  // remainder of points_per_slab_max
