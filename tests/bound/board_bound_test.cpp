@@ -203,9 +203,10 @@ core::ModelLimits random_limits(std::mt19937& random) {
   const auto any = [&](std::uint32_t largest) {
     return std::uniform_int_distribution<std::uint32_t>(0, largest)(random);
   };
-  return {
-      any(most.points_per_ball_max), any(most.points_per_leaf_max), any(most.depth),
-      any(most.levels_below),        any(most.blended_points),      any(most.blended_materials)};
+  return {any(most.points_per_ball_max), any(most.points_per_support_max),
+          any(most.points_per_leaf_max), any(most.depth),
+          any(most.levels_below),        any(most.blended_points),
+          any(most.blended_materials)};
 }
 
 TEST_P(Proof, FormulaNeverUndercutsBound) {
@@ -233,7 +234,7 @@ TEST_P(Proof, FormulaNeverUndercutsBound) {
 // The limits of the Stanford bunny, 10 cm long with a point every 0.5 mm.
 TEST_P(Proof, FormulaStaysWithinSixPercent) {
   core::TickLoad load;
-  load.limits = {46, 51, 6, 3, 0, 0};
+  load.limits = {46, 35, 51, 6, 3, 0, 0};
   load.bodies = 1;
   wcet::BoundOptions options = in_cycles(board());
   const core::TickCosts costs = wcet::tick_costs(options);
@@ -247,6 +248,20 @@ TEST_P(Proof, FormulaStaysWithinSixPercent) {
     EXPECT_GE(formula, exact);
     EXPECT_LE(formula, 1.06 * exact) << "work_tier " << load.work_tier;
   }
+}
+
+// A gather covers more than the support of a fit: the other points cost less.
+TEST_P(Proof, CountsFullPriceInSupportOnly) {
+  wcet::BoundOptions options = in_cycles(board());
+  options.work_tier = core::work_tier_of(4000.0F);
+  const auto cycles_with = [&](std::uint32_t in_ball, std::uint32_t in_support) {
+    options.parameters = wcet::parameters_of({in_ball, in_support, 51, 6, 3, 0, 0},
+                                             core::TickKind::kSurface, 1, false);
+    return wcet::worst_case(options).cycles;
+  };
+  const auto all = cycles_with(46, 46);
+  EXPECT_LT(cycles_with(46, 34), all - 12 * 60);
+  EXPECT_LT(cycles_with(34, 34), cycles_with(46, 34));
 }
 
 /// Answer of a board, whose image has its costs, to a start at this rate.
@@ -311,11 +326,12 @@ TEST_P(Proof, SearchExceedsUndersizedBound) {
   }
   const std::filesystem::path file = folder / "core/src/contact/passes.cpp";
   std::string text = read_text(file);
-  const std::string correct = "points_per_ball_max";
-  const std::string too_small = "points_per_ball_max / 3";
-  for (std::size_t at = 0; (at = text.find(correct, at)) != std::string::npos;
-       at += too_small.size()) {
-    text.replace(at, correct.size(), too_small);
+  for (const std::string correct : {"points_per_ball_max", "points_per_support_max"}) {
+    const std::string too_small = correct + " / 3";
+    for (std::size_t at = 0; (at = text.find(correct, at)) != std::string::npos;
+         at += too_small.size()) {
+      text.replace(at, correct.size(), too_small);
+    }
   }
   std::ofstream(file) << text;
 

@@ -194,8 +194,8 @@ class Pages(Planted):
         for page, name, old, new in (
                 ("PROTOCOL", "docs/PROTOCOL.md", "| 4 | 4 | u32 | `nonce`", "| 5 | 4 | u32 | `nonce`"),
                 ("FORMAT", "docs/FORMAT.md", "| 7 | `kBadHeader` |", "| 7 | `kBadHeaders` |"),
-                ("FORMAT", f"{headers}/model/blob_format.hpp", "std::uint32_t reserved[4];",
-                 "std::uint32_t colour; std::uint32_t reserved[3];"),
+                ("FORMAT", f"{headers}/model/blob_format.hpp", "std::uint32_t reserved[3];",
+                 "std::uint32_t colour; std::uint32_t reserved[2];"),
                 ("FORMAT", f"{headers}/model/blob_format.hpp", "kMaxMaterials = 255", "kMaxMaterials = 254"),
                 ("SAFETY", f"{headers}/configuration/configuration.hpp", "force_max_N = 8.0F", "force_max_N = 9.0F"),
                 ("SAFETY", "docs/SAFETY.md", "| **idle** | idle", "| **idle** | armed")):

@@ -117,9 +117,10 @@ void CandidateSet::begin(const BlobView& view, Vec3 centre) {
   corner_ = 0;
   in_leaf_ = false;
   const BlobHeader& header = view.header();
-  most_ = lower(header.points_per_ball_max, kMaxCandidates);  // memory: flash
-  unseen_ = header.points_per_query_max;                      // memory: flash
-  untested_ = header.points_per_slab_max;                     // memory: flash
+  most_ = lower(header.points_per_ball_max, kMaxCandidates);                 // memory: flash
+  most_in_support_ = lower(points_per_support_max(header), kMaxCandidates);  // memory: flash
+  unseen_ = header.points_per_query_max;                                     // memory: flash
+  untested_ = header.points_per_slab_max;                                    // memory: flash
 }
 
 [[gnu::always_inline]] inline bool CandidateSet::gather_corner(const BlobView& view,

@@ -24,19 +24,6 @@ float weight_of(float qq, float inverse_squared) {
   return u2 * u2;
 }
 
-/// The nearest of the offered points.
-struct Nearest {
-  float squared;  // m^2, distance of the point; initially the support radius
-  const Candidate* point = nullptr;
-
-  void offer(const Candidate& candidate, float its_squared) {
-    if (its_squared < squared) {
-      squared = its_squared;
-      point = &candidate;
-    }
-  }
-};
-
 float larger_of(float a, float b) { return a > b ? a : b; }
 
 /// Cosine of a quarter of the angle between two faces, if it is below 60 degrees; else 0.
@@ -45,44 +32,75 @@ float quarter_of(Vec3 a, Vec3 b) {
   return cosine > kFaceCosine ? 1.0F - (1.0F - cosine) * (1.0F / 16.0F) : 0.0F;
 }
 
-[[gnu::noinline]] Face sum_face(const CandidateSet& points, Vec3 x, float radius,
-                                const std::uint8_t* indices, std::uint32_t count) {
+// The level of a point relative to a face is the sum of two heights above the query: along the
+// point's own normal and along that of the face. On a sphere through the query with the face's
+// normal there, it is 0 everywhere. The levels of parallel faces differ by twice their distance. A
+// face has the points whose level differs from that of its nearest point by less than kLevel
+// support radii. Stairs of one spacing differ by 0.8, with a support of 2.5 spacings; noise of 5 %
+// of the spacing, by 0.06 rms. Behind a bend of 47 degrees, levels differ by more than 0.6 only
+// beyond 0.82 support radii, where the weights are below 0.012.
+constexpr float kLevel = 0.6F;
+
+}  // namespace
+
+[[gnu::noinline]] void add_to_face(const CandidateSet& points, Vec3 x, float radius,
+                                   const std::uint8_t* indices, std::uint32_t count, Level level,
+                                   const Face& before, Face& after) {
+  const float tolerance_squared = kLevel * kLevel * (radius * radius);
   const float inverse_squared = 1.0F / (radius * radius);
-  Moments sums{};  // locals, as in look_around()
-  float between = 0.0F;
-  // bound: points_per_ball_max, total points_per_ball_max per sum_faces
+  Moments sums = before.sums;  // locals, which a compiler keeps in registers
+  float between = before.between;
+  std::uint32_t omitted = 0;
+  // bound: points_per_support_max, total points_per_support_max per fit_surface
   for (std::uint32_t k = 0; k < count; ++k) {
     const std::uint32_t index = indices[k];
     const Candidate& candidate = points[index & ~std::uint32_t{Division::kBetween}];
     const Vec3 q = candidate.position - x;
+    const float difference = dot(q, candidate.normal) + dot(q, level.normal) - level.value;
+    if (difference * difference > tolerance_squared) {
+      ++omitted;
+      continue;
+    }
     const float qq = length_squared(q);
     const float weight = weight_of(qq, inverse_squared);
     sums.add(q, qq, candidate.normal, weight);
     between += (index & Division::kBetween) != 0U ? weight : 0.0F;
   }
-  return {sums, count, between};
+  after = {sums, before.points + count - omitted, between};
 }
 
-}  // namespace
-
-// The sums are locals, not members of the result: a compiler keeps locals in registers.
+// A point outside the support costs little. The bound limits the others by their stores, which all
+// points in the support reach.
 [[gnu::noinline]] Surroundings look_around(const CandidateSet& points, Vec3 x, float radius,
                                            Vec3 reference) {
   const float radius_squared = radius * radius;
   const float inverse_squared = 1.0F / radius_squared;
-  Moments face{};
+  float all_weights = 0.0F;
   float averted = 0.0F;
-  std::uint32_t aligned = 0;
-  Nearest crease{radius_squared};
-  Nearest mild{radius_squared};
-  Nearest opposite{radius_squared};
-  for (const Candidate& candidate : points) {  // bound: points_per_ball_max
-    const Vec3 q = candidate.position - x;
-    const float qq = length_squared(q);
+  Nearest aligned{radius_squared, nullptr};
+  Nearest crease{radius_squared, nullptr};
+  Nearest mild{radius_squared, nullptr};
+  Nearest opposite{radius_squared, nullptr};
+  std::uint8_t facing[kMaxCandidates];
+  facing[0] = 0;  // else a compiler warns where no point is in the support
+  std::uint32_t count = 0;
+  auto room = static_cast<std::int32_t>(points.most_in_support());
+  bool complete = true;
+  const std::uint32_t all = points.count();
+  for (std::uint32_t i = 0; i < all; ++i) {  // bound: points_per_ball_max
+    const Candidate& candidate = points[i];
+    const float qq = length_squared(candidate.position - x);
     if (!(qq < radius_squared)) {
       continue;
     }
+    if (--room < 0) {
+      complete = false;
+      break;
+    }
+    // at most: points_per_support_max per look_around
+    facing[count] = static_cast<std::uint8_t>(i);  // an averted point is overwritten
     const float weight = weight_of(qq, inverse_squared);
+    all_weights += weight;
     const float cosine = dot(candidate.normal, reference);
     if (cosine < kMildCosine) {
       if (cosine > kCreaseCosine) {
@@ -97,11 +115,17 @@ float quarter_of(Vec3 a, Vec3 b) {
         continue;
       }
     } else {
-      ++aligned;
+      aligned.offer(candidate, qq);
     }
-    face.add(q, qq, candidate.normal, weight);
+    ++count;
   }
-  return {face, averted, aligned, crease.point, mild.point, opposite.point};
+  const Level level = level_of(aligned.point, x, reference);
+  const Face none{};
+  Face face;
+  add_to_face(points, x, radius, facing, count, level, none, face);
+  const float share = all_weights > 0.0F ? 1.0F - averted / all_weights : 1.0F;
+  return {face.sums,    complete,   share,         aligned.point != nullptr,
+          crease.point, mild.point, opposite.point};
 }
 
 [[gnu::noinline]] void divide(const CandidateSet& points, Vec3 x, float radius, const Seeds& seeds,
@@ -113,18 +137,25 @@ float quarter_of(Vec3 a, Vec3 b) {
       larger_of(larger_of(kBetweenCosine, quarter_of(seed, second_seed)),
                 larger_of(quarter_of(second_seed, third_seed), quarter_of(third_seed, seed)));
   const float radius_squared = radius * radius;
-  Nearest stray{radius_squared};
-  Nearest opposite{radius_squared};
+  Nearest stray{radius_squared, nullptr};
+  Nearest opposite{radius_squared, nullptr};
   for (std::uint32_t i = 0; i < kMaxFaces; ++i) {  // bound: kMaxFaces
     division.facing[i] = 0;
     division.averted[i] = 0;
+    division.nearest[i] = {radius_squared, nullptr};
   }
+  auto room = static_cast<std::int32_t>(points.most_in_support());
+  division.complete = true;
   const std::uint32_t all = points.count();
   for (std::uint32_t i = 0; i < all; ++i) {  // bound: points_per_ball_max
     const Candidate& candidate = points[i];
     const float qq = length_squared(candidate.position - x);
     if (!(qq < radius_squared)) {
       continue;
+    }
+    if (--room < 0) {
+      division.complete = false;
+      break;
     }
     const float to_first = dot(candidate.normal, seed);
     const float to_second = dot(candidate.normal, second_seed);
@@ -142,36 +173,26 @@ float quarter_of(Vec3 a, Vec3 b) {
     if (closer < kCreaseCosine) {
       (to_first > kOppositeCosine ? stray : opposite).offer(candidate, qq);
       if (!(closer > kFaceCosine)) {
-        if (to_first > 0.0F) {
-          division.point[0][kMaxCandidates - ++division.averted[0]] = static_cast<std::uint8_t>(i);
-        }
+        // A point that does not face the reference, either, is overwritten.
+        const std::uint32_t place =
+            to_first > 0.0F ? kMaxCandidates - ++division.averted[0] : division.facing[0];
+        // at most: points_per_support_max per divide together support
+        division.point[0][place] = static_cast<std::uint8_t>(i);
         continue;
       }
     }
-    const bool is_between = closer < between;
+    std::uint32_t flag = Division::kBetween;
+    if (!(closer < between)) {
+      flag = 0U;
+      division.nearest[face].offer(candidate, qq);
+    }
     const std::uint32_t place =
         to_first > 0.0F ? division.facing[face]++ : kMaxCandidates - ++division.averted[face];
-    division.point[face][place] =
-        static_cast<std::uint8_t>(i | (is_between ? Division::kBetween : 0U));
+    // at most: points_per_support_max per divide together support
+    division.point[face][place] = static_cast<std::uint8_t>(i | flag);
   }
   division.stray = stray.point;
   division.opposite = opposite.point;
-}
-
-[[gnu::noinline]] DividedSums sum_faces(const CandidateSet& points, Vec3 x, float radius,
-                                        const Division& division) {
-  const auto front = [&](std::uint32_t i) {
-    return sum_face(points, x, radius, division.point[i], division.facing[i]);
-  };
-  const auto back = [&](std::uint32_t i) {
-    const std::uint32_t count = division.averted[i];
-    return sum_face(points, x, radius, division.point[i] + (kMaxCandidates - count), count);
-  };
-  const Face first = front(0);
-  const Face second = front(1);
-  const Face third = front(2);
-  const Moments facing = first.sums + second.sums + third.sums + back(0).sums;
-  return {{{first, second + back(1), third + back(2)}}, facing};
 }
 
 }  // namespace tactree::core

@@ -5,17 +5,44 @@
 
 namespace tactree::core {
 
+/// Level of the points of a face.
+struct Level {
+  Vec3 normal;  // of the face
+  float value;  // m; NaN: any
+};
+
+/// Level of the face with this normal at its nearest point; any level without one.
+[[nodiscard]] Level level_of(const Candidate* nearest, Vec3 x, Vec3 normal);
+
+/// Adds those of the indexed points that are at this level. `after` may be `before`.
+void add_to_face(const CandidateSet& points, Vec3 x, float radius, const std::uint8_t* indices,
+                 std::uint32_t count, Level level, const Face& before, Face& after);
+
 /// The points in the support, relative to one face.
 struct Surroundings {
   Moments face;               // points that face the reference
-  float averted;              // weight of the other points
-  std::uint32_t aligned;      // points of the reference's own face
+  bool complete;              // false: more points than the blob declares
+  float facing;               // fraction of the weight of all points that face the reference
+  bool aligned;               // a point has the reference's own normal
   const Candidate* crease;    // nearest point of another face; null: none, here and below
   const Candidate* mild;      // nearest point of a face at 18 to 47 degrees
   const Candidate* opposite;  // nearest point of an opposite face
 };
 [[nodiscard]] Surroundings look_around(const CandidateSet& points, Vec3 x, float radius,
                                        Vec3 reference);
+
+/// The nearest of the offered points.
+struct Nearest {
+  float squared;           // m^2, distance of the point; initially that of the support
+  const Candidate* point;  // null: none
+
+  void offer(const Candidate& candidate, float its_squared) {
+    if (its_squared < squared) {
+      squared = its_squared;
+      point = &candidate;
+    }
+  }
+};
 
 /// The points in the support, each with the face whose normal is closest to its own. A row holds
 /// the points that face the reference from its front and the averted ones from its end. In the
@@ -26,8 +53,10 @@ struct Division {
   std::uint8_t point[kMaxFaces][kMaxCandidates];
   std::uint32_t facing[kMaxFaces];
   std::uint32_t averted[kMaxFaces];
-  const Candidate* stray;     // nearest point at 47 degrees or more from all faces; null: none
-  const Candidate* opposite;  // as above, but opposite to the first face
+  bool complete;               // false: more points than the blob declares
+  Nearest nearest[kMaxFaces];  // point of each face that is not between faces
+  const Candidate* stray;      // nearest point at 47 degrees or more from all faces; null: none
+  const Candidate* opposite;   // as above, but opposite to the first face
 };
 static_assert(kMaxCandidates <= Division::kBetween);
 
@@ -37,9 +66,9 @@ void divide(const CandidateSet& points, Vec3 x, float radius, const Seeds& seeds
 
 struct DividedSums {
   Faces faces;
-  Moments facing;  // of all points that face the reference
+  Face facing;  // all points that face the reference
 };
 [[nodiscard]] DividedSums sum_faces(const CandidateSet& points, Vec3 x, float radius,
-                                    const Division& division);
+                                    const Seeds& seeds, const Division& division);
 
 }  // namespace tactree::core

@@ -118,6 +118,9 @@ SurfaceFit Proxy::evaluate(const BlobView& view, Vec3 x) {
   const SurfaceFit fit =
       fit_surface(candidates_.in_use(), x, view.support_radius_m(), reference_, side_, near_);
   budget_.spend_passes(fit.passes);
+  if (!fit.complete) {
+    candidates_.report_omission();
+  }
   return fit;
 }
 

@@ -59,11 +59,12 @@ const Candidate* nearest_other(const Candidate* crease, const Candidate* opposit
                                  SurfaceFit& result) {
   Division division;
   divide(points, x, radius, seeds, division);
-  const DividedSums sums = sum_faces(points, x, radius, division);
+  const DividedSums sums = sum_faces(points, x, radius, seeds, division);
   result.passes = 2;
+  result.complete = division.complete;
   const bool joined = join_faces(sums.faces, seeds, radius, side, near, result);
   if (!joined) {
-    set_to(result, fit_face(sums.facing, radius));
+    set_to(result, fit_face(sums.facing.sums, radius));
   }
   const Candidate* const other =
       nearest_other(division.stray, division.opposite, x, radius, side, result);
@@ -77,13 +78,13 @@ const Candidate* nearest_other(const Candidate* crease, const Candidate* opposit
                                   float side, NearFaces& near, SurfaceFit& result) {
   const Surroundings around = look_around(points, x, radius, reference);
   set_to(result, fit_face(around.face, radius));
-  const float all = around.face.w + around.averted;
-  result.facing = all > 0.0F ? around.face.w / all : 1.0F;
+  result.complete = around.complete;
+  result.facing = around.facing;
   const Candidate* const crease = around.crease != nullptr ? around.crease : around.mild;
   const Candidate* const other = nearest_other(crease, around.opposite, x, radius, side, result);
   if (other != nullptr) {
     // If several faces came near at once, the smooth surface lies between them.
-    if (around.aligned == 0U) {
+    if (!around.aligned) {
       result.next_reference = other->normal;
     } else {
       near.normal[near.count++] = other->normal;
@@ -93,8 +94,8 @@ const Candidate* nearest_other(const Candidate* crease, const Candidate* opposit
 
 }  // namespace
 
-SurfaceFit fit_surface(const CandidateSet& points, Vec3 x, float radius, Vec3 reference, float side,
-                       NearFaces& near) {
+[[gnu::noinline]] SurfaceFit fit_surface(const CandidateSet& points, Vec3 x, float radius,
+                                         Vec3 reference, float side, NearFaces& near) {
   SurfaceFit result;  // memory: flash
   if (near.count != 0U) {
     const Seeds seeds{{reference, near.normal[0], near.normal[1]}, 1U + near.count};

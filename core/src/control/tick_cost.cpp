@@ -7,12 +7,11 @@
 namespace tactree::core {
 namespace {
 
-constexpr std::uint32_t ModelLimits::*kLimitMembers[] = {&ModelLimits::points_per_ball_max,
-                                                         &ModelLimits::points_per_leaf_max,
-                                                         &ModelLimits::depth,
-                                                         &ModelLimits::levels_below,
-                                                         &ModelLimits::blended_points,
-                                                         &ModelLimits::blended_materials};
+constexpr std::uint32_t ModelLimits::*kLimitMembers[] = {
+    &ModelLimits::points_per_ball_max, &ModelLimits::points_per_support_max,
+    &ModelLimits::points_per_leaf_max, &ModelLimits::depth,
+    &ModelLimits::levels_below,        &ModelLimits::blended_points,
+    &ModelLimits::blended_materials};
 static_assert(sizeof(kLimitMembers) / sizeof(kLimitMembers[0]) == kModelLimits);
 
 constexpr std::uint32_t smaller_of(std::uint32_t a, std::uint32_t b) { return a < b ? a : b; }
@@ -22,6 +21,7 @@ constexpr std::uint32_t smaller_of(std::uint32_t a, std::uint32_t b) { return a 
 ModelLimits model_limits(const BlobHeader& h) {
   ModelLimits limits;
   limits.points_per_ball_max = h.points_per_ball_max;
+  limits.points_per_support_max = points_per_support_max(h);
   limits.points_per_leaf_max = h.points_per_leaf_max;
   limits.depth = h.depth;
   limits.levels_below = h.depth - h.directory_level;

@@ -94,7 +94,7 @@ class BlobValidator {
     if (!counts_are_sane()) return false;
     if (h.leaves_per_query_max != kLeavesPerQuery) return false;
     if (h.leaf_group_shift > kMaxLeafGroupShift || !directory_level_is_sane()) return false;
-    for (const std::uint32_t word : h.reserved) {  // bound: 4
+    for (const std::uint32_t word : h.reserved) {  // bound: 3
       if (word != 0) return false;
     }
     return is_terminated(h.name, sizeof h.name) &&
@@ -108,6 +108,7 @@ class BlobValidator {
     if (h.leaf_count > h.point_count || h.material_count > kMaxMaterials) return false;
     if (h.points_per_leaf_max == 0 || h.points_per_leaf_max > h.point_count) return false;
     if (h.points_per_ball_max == 0 || h.points_per_ball_max > h.point_count) return false;
+    if (h.points_per_support_max > h.points_per_ball_max) return false;
     if (h.points_per_query_max < h.points_per_leaf_max) return false;
     if (h.points_per_query_max > h.point_count) return false;
     return h.points_per_slab_max != 0 && h.points_per_slab_max <= h.points_per_query_max;

@@ -115,6 +115,7 @@ nlohmann::json blob_facts(const BlobView& view) {
       {"quantisation_step_m", 2.0 * shortest_double(h.step_m)},
       {"points_per_leaf_max", h.points_per_leaf_max},
       {"points_per_ball_max", h.points_per_ball_max},
+      {"points_per_support_max", core::points_per_support_max(h)},
       {"points_per_query_max", h.points_per_query_max},
       {"leaves_per_query_max", h.leaves_per_query_max},
       {"bounds_min_m", triple(h.bounds_min_m)},

@@ -14,7 +14,7 @@ namespace tactree::wcet {
 namespace {
 
 /// Limits of a typical model of a scan, near which the formula is tight.
-core::ModelLimits typical_model_limits() { return {46, 50, 7, 3, 46, 4}; }
+core::ModelLimits typical_model_limits() { return {46, 33, 50, 7, 3, 46, 4}; }
 
 Parameters open_parameters() {
   Parameters open{{"delta", 1}, {"listed", core::kMaxBodies}};

@@ -8,6 +8,7 @@ namespace tactree::wcet {
 Parameters parameters_of(const core::ModelLimits& limits, core::TickKind kind, std::uint32_t bodies,
                          bool delta) {
   return {{"points_per_ball_max", limits.points_per_ball_max},
+          {"points_per_support_max", limits.points_per_support_max},
           {"points_per_leaf_max", limits.points_per_leaf_max},
           {"points_per_query_max", core::kLeavesPerQuery * kLargestLeaf},
           {"points_per_slab_max", core::kLeavesPerQuery * kLargestLeaf},

@@ -104,9 +104,10 @@ void print(const BlobView& view) {
   fmt::print("support       {}; exact queries up to {}; leaf edge {}\n", length(h.support_radius_m),
              length(h.reach_m), length(h.leaf_edge_min_m));
   fmt::print(
-      "limits        {} points per leaf, {} in a ball of {}, {} leaves and {} points per query\n",
-      h.points_per_leaf_max, h.points_per_ball_max, length(h.reach_m), h.leaves_per_query_max,
-      h.points_per_query_max);
+      "limits        {} points per leaf, {} in a ball of {}, {} in the support of a fit, {} leaves "
+      "and {} points per query\n",
+      h.points_per_leaf_max, h.points_per_ball_max, length(h.reach_m),
+      core::points_per_support_max(h), h.leaves_per_query_max, h.points_per_query_max);
   if (view.interior() != nullptr) {
     fmt::print("interior      material behind {:.0f} % of the points\n",
                100.0 * support::backed_share(view));

@@ -215,6 +215,15 @@ void set_lengths(core::BlobHeader& header, const Model& model, const Lattice& la
   header.largest_gap_m = static_cast<float>(model.largest_gap_m);
 }
 
+// Maximum points in the support of a fit, which gathers no point beyond the reach; 0 without one.
+std::uint32_t support_bound(const core::BlobHeader& header,
+                            const std::vector<Eigen::Vector3d>& decoded) {
+  const auto radius = static_cast<double>(header.support_radius_m);
+  return radius > 0.0
+             ? std::clamp(max_points_in_ball(decoded, radius), 1U, header.points_per_ball_max)
+             : 0U;
+}
+
 core::BlobHeader make_header(const Model& model, const Octree& tree) {
   core::BlobHeader header{};
   std::memcpy(header.magic, core::kBlobMagic, sizeof header.magic);
@@ -237,6 +246,7 @@ core::BlobHeader make_header(const Model& model, const Octree& tree) {
   header.points_per_ball_max =
       std::min(header.points_per_query_max,
                std::max(1U, max_points_in_ball(decoded, static_cast<double>(header.reach_m))));
+  header.points_per_support_max = support_bound(header, decoded);
   header.leaves_per_query_max = core::kLeavesPerQuery;
   header.source_scale = to_words(model.source_scale);
   for (int axis = 0; axis < 3; ++axis) {

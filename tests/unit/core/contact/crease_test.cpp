@@ -162,6 +162,45 @@ TEST(Crease, HoldsHandInCorner) {
   }
 }
 
+/// Two treads. The foot of the riser is at the origin, and the lower tread is at z = 0.
+Prism stair(double rise) {
+  constexpr double kRun = 6e-3;
+  return {.profile = {
+              {-kRun, -0.01}, {kRun, -0.01}, {kRun, rise}, {0.0, rise}, {0.0, 0.0}, {-kRun, 0.0}}};
+}
+
+// The treads have the same normal. The surface of both together would lie between them.
+TEST(Crease, TouchesStairsExactly) {
+  for (const double rise : {kH, 2.0 * kH}) {
+    const double deep = 0.6 * rise;
+    for (const Matrix3d& turn : turns(6)) {
+      Prism prism = stair(rise);
+      prism.turn = turn;
+      const Shape shape = sampled(prism, kH, 0.3, 0.0, 10);
+      for (const float rate : {1000.0F, 4000.0F}) {
+        Hand hand(shape, turn, {3e-3, -4e-3, rise + 2e-3}, rate);
+        int lost = 0;
+        double off = 0.0;
+        const auto expect_contact = [&] {
+          lost += hand.feels() ? 0 : 1;
+          off = std::max(off, std::abs(prism.distance(turn * hand.place())));
+        };
+        hand.move_to({3e-3, -4e-3, rise - deep}, 0.05);
+        hand.move_to({0.2 * kH, -4e-3, rise - deep}, 0.05, expect_contact);
+        hand.move_to({-3e-3, -2e-3, rise - 0.1 * kH}, 0.05);
+        hand.move_to({-3e-3, -2e-3, -deep}, 0.05);
+        hand.move_to({0.3 * deep, -2e-3, -deep}, 0.05, expect_contact);
+        hand.stay(60);
+        const Vector3d foot = hand.place();
+        EXPECT_LT(std::hypot(foot.x(), foot.z()), 5e-6) << rise << " m, " << rate << " Hz";
+        hand.move_to({0.3 * deep, 4e-3, -deep}, 0.05, expect_contact);
+        EXPECT_EQ(lost, 0) << rise << " m, " << rate << " Hz";
+        EXPECT_LT(off, 5e-6) << rise << " m, " << rate << " Hz";
+      }
+    }
+  }
+}
+
 TEST(Crease, KeepsFaceFrictionInGroove) {
   const Shape shape = sampled(groove(90.0), kH, 0.3, 0.0, 10);
   Hand hand(shape, Matrix3d::Identity(), {0.0, -8e-3, 3e-3}, 1000.0F, {0.4F, 0.3F});

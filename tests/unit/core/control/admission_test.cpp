@@ -205,13 +205,16 @@ TEST(Admission, UsesLargestLimitsOfModels) {
   core::TickLoad load;
   core::BlobHeader header{};
   header.points_per_ball_max = 7;
+  header.points_per_support_max = 4;
   header.depth = 3;
   load.add(header, {});
   header.points_per_ball_max = 5;
+  header.points_per_support_max = 0;  // not known: those of the ball
   header.depth = 4;
   header.profile = static_cast<std::uint32_t>(core::Profile::kPaper);
   load.add(header, {});
   EXPECT_EQ(load.limits.points_per_ball_max, 7U);
+  EXPECT_EQ(load.limits.points_per_support_max, 5U);
   EXPECT_EQ(load.limits.depth, 4U);
   EXPECT_EQ(load.kind, core::TickKind::kMixed);
   EXPECT_EQ(load.bodies, 2U);

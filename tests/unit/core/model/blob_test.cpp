@@ -132,9 +132,9 @@ TEST(Blob, LimitsPointsPerPaperLeaf) {
   EXPECT_TRUE(blob.view().has_neighbours());
 }
 
-TEST(Blob, DeclaresTightBallBound) {
-  const TestBlob blob(test::sphere(0.03, 0.001));
-  const double r = static_cast<double>(blob.view().reach_m());
+/// Maximum points in a ball of this radius around a point.
+std::size_t most_around_point(const TestBlob& blob, float radius) {
+  const double r = static_cast<double>(radius);
   std::size_t most = 0;
   for (std::size_t c = 0; c < blob.points().size(); c += 7) {
     std::size_t inside = 0;
@@ -143,8 +143,30 @@ TEST(Blob, DeclaresTightBallBound) {
     }
     most = std::max(most, inside);
   }
+  return most;
+}
+
+TEST(Blob, DeclaresTightBallBound) {
+  const TestBlob blob(test::sphere(0.03, 0.001));
+  const std::size_t most = most_around_point(blob, blob.view().reach_m());
   EXPECT_GE(blob.view().header().points_per_ball_max, most);
   EXPECT_LE(blob.view().header().points_per_ball_max, most + most / 3);
+}
+
+TEST(Blob, DeclaresTightSupportBound) {
+  const TestBlob blob(test::sphere(0.03, 0.001));
+  const std::size_t most = most_around_point(blob, blob.view().support_radius_m());
+  EXPECT_GE(blob.view().header().points_per_support_max, most);
+  EXPECT_LE(blob.view().header().points_per_support_max, most + most / 3);
+  EXPECT_LT(blob.view().header().points_per_support_max, blob.view().header().points_per_ball_max);
+}
+
+TEST(Blob, CountsBallWhereSupportIsUnknown) {
+  core::BlobHeader header{};
+  header.points_per_ball_max = 9;
+  EXPECT_EQ(core::points_per_support_max(header), 9U);
+  header.points_per_support_max = 6;
+  EXPECT_EQ(core::points_per_support_max(header), 6U);
 }
 
 TEST(Blob, WritesBitIdenticalBytes) {

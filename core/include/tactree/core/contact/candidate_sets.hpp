@@ -62,8 +62,9 @@ class CandidateSets {
 
   /// True during a gather on demand.
   [[nodiscard]] bool is_waiting() const { return !is_ahead_ && gathered().is_gathering(); }
-  /// False after a gather that omitted points; clear() makes it true.
+  /// False after a gather or a fit that omitted points; clear() makes it true.
   [[nodiscard]] bool complete() const { return sets_[0].complete() && sets_[1].complete(); }
+  void report_omission() { sets_[used_].report_omission(); }
 
   /// Of the set in use: see CandidateSet.
   void hide(const Neighbour& neighbour, float side) { sets_[used_].hide(neighbour, side); }

@@ -84,9 +84,13 @@ class CandidateSet {
   [[nodiscard]] Vec3 centre() const { return centre_; }
   /// Number of points that are not hidden. Index and iterators cover only these.
   [[nodiscard]] std::uint32_t count() const { return count_; }
-  /// False after a gather that omitted points because the blob holds more than it declares or than
-  /// kMaxCandidates; clear() makes it true.
+  /// Limit of the points in the support of a fit, declared by the blob.
+  [[nodiscard]] std::uint32_t most_in_support() const { return most_in_support_; }
+  /// False after a gather or a fit that omitted points because the blob holds more than it declares
+  /// or than kMaxCandidates; clear() makes it true.
   [[nodiscard]] bool complete() const { return complete_; }
+  /// To be called after a fit that omitted points.
+  void report_omission() { complete_ = false; }
   [[nodiscard]] const Candidate& operator[](std::uint32_t i) const { return candidates_[i]; }
   [[nodiscard]] const Candidate* begin() const { return candidates_; }
   [[nodiscard]] const Candidate* end() const { return candidates_ + count_; }
@@ -108,8 +112,9 @@ class CandidateSet {
 
   Candidate candidates_[kMaxCandidates];
   std::uint32_t count_ = 0;
-  std::uint32_t hidden_ = 0;    // stored after the others
-  std::uint32_t most_ = 0;      // limit of count_: declared by the blob, at most kMaxCandidates
+  std::uint32_t hidden_ = 0;  // stored after the others
+  std::uint32_t most_ = 0;    // limit of count_: declared by the blob, at most kMaxCandidates
+  std::uint32_t most_in_support_ = 0;
   std::uint32_t unseen_ = 0;    // remainder of points_per_query_max
   std::uint32_t untested_ = 0;  // remainder of points_per_slab_max
   std::uint32_t corner_ = 0;

@@ -21,6 +21,7 @@ struct NearFaces {
 /// The fitted surface near one query position.
 struct SurfaceFit {
   bool supported = false;  ///< false: no usable points; normal and strength are zero
+  bool complete = true;    ///< false: there are more points in the support than the blob declares
   float distance = 0.0F;   ///< m, signed, positive along the normals
   Vec3 normal{};           ///< unit length
   /// 1 inside the surface, falling smoothly to 0 at its boundary. Depends on the distance between

@@ -19,6 +19,7 @@ namespace tactree::core {
 /// them by name.
 struct ModelLimits {
   std::uint32_t points_per_ball_max = 0;
+  std::uint32_t points_per_support_max = 0;
   std::uint32_t points_per_leaf_max = 0;
   std::uint32_t depth = 0;
   std::uint32_t levels_below = 0;       ///< between the directory and the leaves
@@ -27,8 +28,8 @@ struct ModelLimits {
 };
 inline constexpr std::uint32_t kModelLimits = sizeof(ModelLimits) / sizeof(std::uint32_t);
 inline constexpr const char* kModelLimitNames[kModelLimits] = {
-    "points_per_ball_max", "points_per_leaf_max", "depth",
-    "levels_below",        "blended_points",      "blended_materials"};
+    "points_per_ball_max", "points_per_support_max", "points_per_leaf_max", "depth",
+    "levels_below",        "blended_points",         "blended_materials"};
 
 [[nodiscard]] ModelLimits model_limits(const BlobHeader& header);
 
@@ -36,6 +37,7 @@ inline constexpr const char* kModelLimitNames[kModelLimits] = {
 struct TickCost {
   std::uint32_t base = 0;
   std::uint16_t per_limit[kModelLimits] = {};
+  std::uint16_t reserved = 0;
 };
 [[nodiscard]] std::uint64_t cycles_of(const TickCost& cost, const ModelLimits& limits);
 
@@ -99,7 +101,7 @@ struct TickCosts {
 /// Most expensive row for the bodies of `load`. Precondition: load.bodies > 0.
 [[nodiscard]] const TickCost& worst_row(const TickCosts& costs, const TickLoad& load);
 
-static_assert(sizeof(TickCost) == 4 + 2 * kModelLimits);
+static_assert(sizeof(TickCost) == 4 + 2 * kModelLimits + 2);
 static_assert(sizeof(TickCosts) == 16 + sizeof(TickCost) * (2 * kTickRows + 1));
 
 }  // namespace tactree::core

@@ -24,7 +24,7 @@ static_assert(std::endian::native == std::endian::little, "blobs are read in pla
 
 inline constexpr std::uint8_t kBlobMagic[8] = {'T', 'A', 'C', 'T', 'R', 'E', 'E', 0};
 inline constexpr std::uint16_t kBlobMajor = 1;
-inline constexpr std::uint16_t kBlobMinor = 1;
+inline constexpr std::uint16_t kBlobMinor = 2;
 
 /// The root cube is then 2^22 lattice units wide, so that it is within kMaxCoordinate wherever the
 /// origin lies in it. With leaves of 6 spacings, its edge is 2048 leaves or 12 288 spacings.
@@ -117,8 +117,17 @@ struct BlobHeader {
   char tool_version[16];              ///< zero-padded, zero-terminated
   std::uint32_t points_per_slab_max;  ///< in any slab of these leaves that is 2 reach_m thick along
                                       ///< z; proven by the builder
-  std::uint32_t reserved[4];          ///< 0
+  /// In any ball of radius support_radius_m; proven by the builder. 0: not known, at most
+  /// points_per_ball_max. See points_per_support_max().
+  std::uint32_t points_per_support_max;
+  std::uint32_t reserved[3];  ///< 0
 };
+
+/// Limit of the points in the support of a fit.
+[[nodiscard]] constexpr std::uint32_t points_per_support_max(const BlobHeader& header) {
+  const std::uint32_t known = header.points_per_support_max;
+  return known == 0 ? header.points_per_ball_max : known;
+}
 
 /// Follows the header if version_minor >= 1 and header_bytes is large enough.
 struct BlobExtension {
