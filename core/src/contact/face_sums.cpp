@@ -10,10 +10,10 @@ namespace tactree::core {
 
 [[gnu::noinline]] Level level_of(const Candidate* nearest, Vec3 x, Vec3 normal) {
   if (nearest == nullptr) {
-    return {normal, std::numeric_limits<float>::quiet_NaN()};
+    return {normal, 0.0F, std::numeric_limits<float>::quiet_NaN()};
   }
   const Vec3 q = nearest->position - x;
-  return {normal, dot(q, nearest->normal) + dot(q, normal)};
+  return {normal, dot(q, normal), dot(q, nearest->normal)};
 }
 
 [[gnu::noinline]] DividedSums sum_faces(const CandidateSet& points, Vec3 x, float radius,
@@ -22,13 +22,16 @@ namespace tactree::core {
   Face first;
   Face second;
   Face third;
-  const Level of_first = level_of(division.nearest[0].point, x, seeds.normal[0]);
-  const Level of_second = level_of(division.nearest[1].point, x, seeds.normal[1]);
-  const Level of_third = level_of(division.nearest[2].point, x, seeds.normal[2]);
-  const auto add_front = [&](std::uint32_t i, Level level, Face& face) {
+  const auto level_at = [&](const Nearest& nearest, Vec3 normal) {
+    return level_of(division.has_levels ? nearest.point : nullptr, x, normal);
+  };
+  const Level of_first = level_at(division.nearest[0], seeds.normal[0]);
+  const Level of_second = level_at(division.nearest[1], seeds.normal[1]);
+  const Level of_third = level_at(division.nearest[2], seeds.normal[2]);
+  const auto add_front = [&](std::uint32_t i, const Level& level, Face& face) {
     add_to_face(points, x, radius, division.point[i], division.facing[i], level, none, face);
   };
-  const auto add_back = [&](std::uint32_t i, Level level, Face& face) {
+  const auto add_back = [&](std::uint32_t i, const Level& level, Face& face) {
     const std::uint32_t count = division.averted[i];
     add_to_face(points, x, radius, division.point[i] + (kMaxCandidates - count), count, level, face,
                 face);

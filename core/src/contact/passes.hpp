@@ -5,10 +5,11 @@
 
 namespace tactree::core {
 
-/// Level of the points of a face.
+/// Level of the points of a face: heights of its nearest point above the query.
 struct Level {
-  Vec3 normal;  // of the face
-  float value;  // m; NaN: any
+  Vec3 normal;   // of the face
+  float common;  // m, along that normal
+  float own;     // m, along the normal of the point; NaN: any level
 };
 
 /// Level of the face with this normal at its nearest point; any level without one.
@@ -16,14 +17,13 @@ struct Level {
 
 /// Adds those of the indexed points that are at this level. `after` may be `before`.
 void add_to_face(const CandidateSet& points, Vec3 x, float radius, const std::uint8_t* indices,
-                 std::uint32_t count, Level level, const Face& before, Face& after);
+                 std::uint32_t count, const Level& of_face, const Face& before, Face& after);
 
 /// The points in the support, relative to one face.
 struct Surroundings {
   Moments face;               // points that face the reference
-  bool complete;              // false: more points than the blob declares
-  float facing;               // fraction of the weight of all points that face the reference
-  bool aligned;               // a point has the reference's own normal
+  float averted;              // weight of the other points
+  std::uint32_t aligned;      // points of the reference's own face
   const Candidate* crease;    // nearest point of another face; null: none, here and below
   const Candidate* mild;      // nearest point of a face at 18 to 47 degrees
   const Candidate* opposite;  // nearest point of an opposite face
@@ -54,6 +54,7 @@ struct Division {
   std::uint32_t facing[kMaxFaces];
   std::uint32_t averted[kMaxFaces];
   bool complete;               // false: more points than the blob declares
+  bool has_levels;             // few points lie between faces
   Nearest nearest[kMaxFaces];  // point of each face that is not between faces
   const Candidate* stray;      // nearest point at 47 degrees or more from all faces; null: none
   const Candidate* opposite;   // as above, but opposite to the first face

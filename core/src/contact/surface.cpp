@@ -78,13 +78,13 @@ const Candidate* nearest_other(const Candidate* crease, const Candidate* opposit
                                   float side, NearFaces& near, SurfaceFit& result) {
   const Surroundings around = look_around(points, x, radius, reference);
   set_to(result, fit_face(around.face, radius));
-  result.complete = around.complete;
-  result.facing = around.facing;
+  const float all = around.face.w + around.averted;
+  result.facing = all > 0.0F ? around.face.w / all : 1.0F;
   const Candidate* const crease = around.crease != nullptr ? around.crease : around.mild;
   const Candidate* const other = nearest_other(crease, around.opposite, x, radius, side, result);
   if (other != nullptr) {
     // If several faces came near at once, the smooth surface lies between them.
-    if (!around.aligned) {
+    if (around.aligned == 0U) {
       result.next_reference = other->normal;
     } else {
       near.normal[near.count++] = other->normal;
@@ -94,8 +94,8 @@ const Candidate* nearest_other(const Candidate* crease, const Candidate* opposit
 
 }  // namespace
 
-[[gnu::noinline]] SurfaceFit fit_surface(const CandidateSet& points, Vec3 x, float radius,
-                                         Vec3 reference, float side, NearFaces& near) {
+SurfaceFit fit_surface(const CandidateSet& points, Vec3 x, float radius, Vec3 reference, float side,
+                       NearFaces& near) {
   SurfaceFit result;  // memory: flash
   if (near.count != 0U) {
     const Seeds seeds{{reference, near.normal[0], near.normal[1]}, 1U + near.count};

@@ -6,9 +6,12 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <random>
+#include <span>
 #include <vector>
 
+#include "tactree/builder/model.hpp"
 #include "tactree/core/contact/proxy.hpp"
 #include "tactree/core/contact/surface.hpp"
 #include "tactree/evaluation/creases.hpp"
@@ -198,6 +201,27 @@ TEST(Crease, TouchesStairsExactly) {
         EXPECT_LT(off, 5e-6) << rise << " m, " << rate << " Hz";
       }
     }
+  }
+}
+
+// The bound of a tick counts only the declared points.
+TEST(Crease, ReportsMorePointsThanDeclared) {
+  const Shape shape = sampled(groove(90.0), kH, 0.3, 0.0, 7);
+  for (const bool is_sound : {true, false}) {
+    std::vector<std::uint32_t> words(shape.bytes().size() / 4U);
+    std::memcpy(words.data(), shape.bytes().data(), shape.bytes().size());
+    if (!is_sound) {
+      words[offsetof(core::BlobHeader, points_per_support_max) / 4U] = 5;
+      builder::seal(std::as_writable_bytes(std::span(words)));
+    }
+    core::BlobView view;
+    ASSERT_EQ(core::open_blob(std::as_bytes(std::span(words)), view), core::BlobStatus::kOk);
+    core::Proxy proxy;
+    proxy.reset(narrow({0.1e-3, 0.0, 3e-3}));
+    for (double z = 3e-3; z > -1e-3; z -= 20e-6) {
+      proxy.update(view, narrow({0.1e-3, 0.0, z}), kNoFriction, core::work_per_tick(1000.0F));
+    }
+    EXPECT_EQ(proxy.complete(), is_sound);
   }
 }
 
