@@ -203,9 +203,13 @@ core::ModelLimits random_limits(std::mt19937& random) {
   const auto any = [&](std::uint32_t largest) {
     return std::uniform_int_distribution<std::uint32_t>(0, largest)(random);
   };
-  return {any(most.points_per_ball_max), any(most.points_per_support_max),
-          any(most.points_per_leaf_max), any(most.depth),
-          any(most.levels_below),        any(most.blended_points),
+  const std::uint32_t in_ball = any(most.points_per_ball_max);
+  return {in_ball,
+          any(in_ball),
+          any(most.points_per_leaf_max),
+          any(most.depth),
+          any(most.levels_below),
+          any(most.blended_points),
           any(most.blended_materials)};
 }
 

@@ -13,6 +13,10 @@
 namespace tactree::wcet {
 namespace {
 
+// Of core::kModelLimitNames.
+constexpr std::uint32_t kBall = 0;
+constexpr std::uint32_t kSupport = 1;
+
 /// Limits of a typical model of a scan, near which the formula is tight.
 core::ModelLimits typical_model_limits() { return {46, 33, 50, 7, 3, 46, 4}; }
 
@@ -60,20 +64,30 @@ class TickFormulas {
 /// Raises `cost` to the cost of one of `bodies` bodies in the formula.
 void cover(core::TickCost& cost, const CostFormula& formula, double base, double listed,
            std::uint32_t bodies) {
-  const auto raise = [bodies](auto& to, double share) {
-    const double each = std::ceil(share / bodies);
+  const auto raise = [](auto& to, double share) {
+    const double each = std::ceil(std::max(share, 0.0));
     if (each > std::numeric_limits<std::decay_t<decltype(to)>>::max()) {
       throw BoundError(
           "a coefficient of the tick's cost does not fit in 16 bits (widen core::TickCost)");
     }
-    to = std::max(to, static_cast<std::decay_t<decltype(to)>>(std::max(each, 0.0)));
+    to = std::max(to, static_cast<std::decay_t<decltype(to)>>(each));
+  };
+  const auto share_of = [&](std::uint32_t limit) {
+    const auto found = formula.per.find(core::kModelLimitNames[limit]);
+    return found == formula.per.end() ? 0.0 : found->second / bodies;
   };
   // Each body is charged with `listed`, which may exceed its price in this formula; the base is
   // lower by the difference.
-  raise(cost.base, formula.base - base - bodies * (listed - formula.per.at("listed")));
-  for (std::uint32_t i = 0; i < core::kModelLimits; ++i) {
-    const auto found = formula.per.find(core::kModelLimitNames[i]);
-    raise(cost.per_limit[i], found == formula.per.end() ? 0.0 : found->second);
+  raise(cost.base, (formula.base - base) / bodies - (listed - formula.per.at("listed")));
+  // The points in the support are part of those in the ball. A point there has the price of both:
+  // one path may be the most expensive in the ball, and another one in the support.
+  std::uint16_t& of_ball = cost.per_limit[kBall];
+  auto in_support = static_cast<std::uint16_t>(of_ball + cost.per_limit[kSupport]);
+  raise(of_ball, share_of(kBall));
+  raise(in_support, share_of(kBall) + share_of(kSupport));
+  cost.per_limit[kSupport] = static_cast<std::uint16_t>(std::max(in_support, of_ball) - of_ball);
+  for (std::uint32_t i = kSupport + 1U; i < core::kModelLimits; ++i) {
+    raise(cost.per_limit[i], share_of(i));
   }
 }
 

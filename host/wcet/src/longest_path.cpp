@@ -11,6 +11,10 @@
 namespace tactree::wcet {
 namespace {
 
+// The points in the support are part of those in the ball.
+constexpr const char* kPointsInBall = "points_per_ball_max";
+constexpr const char* kPointsInSupport = "points_per_support_max";
+
 class PathProgram {
  public:
   PathProgram(const Analysis& analysis, const Entries& entries, const Parameters& arguments)
@@ -58,9 +62,19 @@ class PathProgram {
     }
     CostFormula formula;
     formula.base = largest(gains);
+    // A point in the support has the price of the ball, too. Both on one path cost less than each
+    // on its most expensive path.
+    std::vector<double>& in_support = grants[kPointsInSupport];
+    in_support.resize(gains.size());
+    const std::vector<double>& in_ball = grants[kPointsInBall];
+    for (std::size_t i = 0; i < in_ball.size(); ++i) {
+      in_support[i] += in_ball[i];
+    }
     for (auto& [name, grant] : grants) {
+      grant.resize(gains.size());
       formula.per[name] = largest(std::move(grant));
     }
+    formula.per[kPointsInSupport] -= formula.per[kPointsInBall];
     return formula;
   }
 
