@@ -76,23 +76,37 @@ constexpr std::uint32_t kSharpRatio = 4;
   after = {sums, before.points + count - omitted, between};
 }
 
-// The sums are locals, not members of the result: a compiler keeps locals in registers.
+// The sums are locals, not members of the result: a compiler keeps locals in registers. The first
+// loop selects, so that a point outside the support costs little.
 [[gnu::noinline]] Surroundings look_around(const CandidateSet& points, Vec3 x, float radius,
                                            Vec3 reference) {
   const float radius_squared = radius * radius;
   const float inverse_squared = 1.0F / radius_squared;
+  std::uint8_t in_support[kMaxCandidates];
+  std::uint32_t count = 0;
+  bool complete = true;
+  const std::uint32_t most = points.most_in_support();
+  const std::uint32_t all = points.count();
+  for (std::uint32_t i = 0; i < all; ++i) {  // bound: points_per_ball_max
+    if (!(length_squared(points[i].position - x) < radius_squared)) {
+      continue;
+    }
+    if (count == most) {
+      complete = false;
+      break;
+    }
+    in_support[count++] = static_cast<std::uint8_t>(i);
+  }
   Moments face{};
   float averted = 0.0F;
   std::uint32_t aligned = 0;
   Nearest crease{radius_squared, nullptr};
   Nearest mild{radius_squared, nullptr};
   Nearest opposite{radius_squared, nullptr};
-  for (const Candidate& candidate : points) {  // bound: points_per_ball_max
+  for (std::uint32_t k = 0; k < count; ++k) {  // bound: points_per_support_max
+    const Candidate& candidate = points[in_support[k]];
     const Vec3 q = candidate.position - x;
     const float qq = length_squared(q);
-    if (!(qq < radius_squared)) {
-      continue;
-    }
     const float weight = weight_of(qq, inverse_squared);
     const float cosine = dot(candidate.normal, reference);
     if (cosine < kMildCosine) {
@@ -112,7 +126,7 @@ constexpr std::uint32_t kSharpRatio = 4;
     }
     face.add(q, qq, candidate.normal, weight);
   }
-  return {face, averted, aligned, crease.point, mild.point, opposite.point};
+  return {face, complete, averted, aligned, crease.point, mild.point, opposite.point};
 }
 
 // A point outside the support costs little. The bound limits the others by their stores, which all

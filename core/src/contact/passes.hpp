@@ -22,6 +22,7 @@ void add_to_face(const CandidateSet& points, Vec3 x, float radius, const std::ui
 /// The points in the support, relative to one face.
 struct Surroundings {
   Moments face;               // points that face the reference
+  bool complete;              // false: more points than the blob declares
   float averted;              // weight of the other points
   std::uint32_t aligned;      // points of the reference's own face
   const Candidate* crease;    // nearest point of another face; null: none, here and below

@@ -78,6 +78,7 @@ const Candidate* nearest_other(const Candidate* crease, const Candidate* opposit
                                   float side, NearFaces& near, SurfaceFit& result) {
   const Surroundings around = look_around(points, x, radius, reference);
   set_to(result, fit_face(around.face, radius));
+  result.complete = around.complete;
   const float all = around.face.w + around.averted;
   result.facing = all > 0.0F ? around.face.w / all : 1.0F;
   const Candidate* const crease = around.crease != nullptr ? around.crease : around.mild;

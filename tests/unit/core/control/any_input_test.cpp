@@ -250,6 +250,20 @@ TEST(AnyInput, FaultsOnIndexOutsideModel) {
   }
 }
 
+// Also a support with more points than declared, by which the bound of a tick counts.
+TEST(AnyInput, FaultsOnCrowdedSupport) {
+  constexpr std::size_t kAt = offsetof(core::BlobHeader, points_per_support_max) / 4U;
+  FailingModel model(shared_plane().bytes());
+  for (const std::uint32_t declared : {1U, model.view().header().points_per_support_max}) {
+    model.words_of({0, sizeof(core::BlobHeader)})[kAt] = declared;
+    ControllerRig session;
+    ASSERT_EQ(session.controller.load_model(model.view()), core::ModelStatus::kOk);
+    session.activate();
+    EXPECT_EQ(session.press(2e-3).status.faults,
+              declared == 1U ? core::fault_bit(core::Fault::kModelIncomplete) : 0U);
+  }
+}
+
 TEST(AnyInput, FaultsOnNaNMaterial) {
   const Shape shape = textured_plane();
   FailingModel model(shape.bytes());
