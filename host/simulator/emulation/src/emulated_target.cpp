@@ -315,7 +315,9 @@ hal::StartResult EmulatedTarget::start(hal::sim::SimBoard& board,
 // The counterpart of hal::Loop::tick(), with the controller at the other end of the link.
 core::Status EmulatedTarget::tick(hal::sim::SimBoard& board) {
   link::TickInput message;
-  message.input = hal::read_inputs(board);
+  const core::Input input = hal::read_inputs(board);
+  const core::Readings& readings = input;  // without what the link adds
+  message.input = readings;
   const hal::LinkInput received = board.link().take_message();
   message.input.link_alive = received.alive;
   message.input.command = received.command;
