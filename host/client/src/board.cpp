@@ -98,8 +98,7 @@ std::string Board::explain(core::FaultMask faults) const {
   }
   return names + " (no heartbeat arrived for " + std::to_string(options_.link_timeout_ms) +
          " ms: the cable is disconnected, or this computer is too busy; end other programs, or "
-         "give "
-         "a longer --link-timeout)";
+         "give a longer --link-timeout)";
 }
 
 std::string Board::loss() const {

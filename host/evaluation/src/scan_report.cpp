@@ -31,10 +31,9 @@ std::string openings_text(const ScanResult& scan) {
                                                length_text(scan.openings[0].diameter_m, 3),
                                                builder::place_text(scan.openings[0].centre));
   return fmt::format(
-      "holes: {}, open boundaries: {}, wider than the {} that the surface fit "
-      "bridges{}",
-      holes, static_cast<std::ptrdiff_t>(scan.openings.size()) - holes,
-      length_text(scan.support_m, 3), widest);
+      "holes: {}, open boundaries: {}, wider than the {} that the surface fit bridges{}", holes,
+      static_cast<std::ptrdiff_t>(scan.openings.size()) - holes, length_text(scan.support_m, 3),
+      widest);
 }
 
 std::string orientation_text(const ScanResult& scan) {
@@ -61,13 +60,11 @@ std::string slides_text(const SlideScores& s) {
 std::string scan_report(const Result& result) {
   std::string page = fmt::format(
       "# Evaluation of scans\n\nEach scan was built with the default options of `tactree build`. "
-      "The "
-      "hand slides over the model in random directions, at a constant depth and with a stiffness "
-      "of "
-      "1 N/mm: where the surface is smooth, its force is constant. It fades at holes and at the "
-      "edges of sheets. A jump is the change between "
-      "two ticks, less the change that is due to the movement of the hand. The values come from "
-      "`tactree evaluate{} --scan`, seed {}.\n",
+      "The hand slides over the model in random directions, at a constant depth and with a "
+      "stiffness of 1 N/mm: where the surface is smooth, its force is constant. It fades at holes "
+      "and at the edges of sheets. A jump is the change between two ticks, less the change that is "
+      "due to the movement of the hand. The values come from `tactree evaluate{} --scan`, seed "
+      "{}.\n",
       result.options.quick ? " --quick" : "", result.options.seed);
   for (const ScanResult& scan : result.scans) {
     fmt::format_to(
@@ -75,9 +72,8 @@ std::string scan_report(const Result& result) {
         "\n## {}\n| | |\n|---|---|\n| points | {} of {} kept{}; {} in the model, spacing {} |\n"
         "| outside | {} |\n| openings | {} |\n| slides | {} |\n"
         "| computed surface | {:.1f} % of the probes within a spacing of the surface have a "
-        "result; "
-        "against a reference in double precision, the error of the point is {} rms, of the normal "
-        "{:.2g} degrees rms, away from creases |\n",
+        "result; against a reference in double precision, the error of the point is {} rms, of the "
+        "normal {:.2g} degrees rms, away from creases |\n",
         scan.name, scan.kept_points, scan.input_points, dropped_text(scan), scan.points,
         length_text(scan.spacing_m, 3), orientation_text(scan), openings_text(scan),
         slides_text(scan.slides), 100.0 * scan.scores.get("answered"),
