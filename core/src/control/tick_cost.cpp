@@ -45,7 +45,11 @@ void TickLoad::add(const BlobHeader& header, const Configuration& configuration)
 std::uint64_t cycles_of(const TickCost& cost, const ModelLimits& limits) {
   std::uint64_t cycles = cost.base;
   for (std::uint32_t i = 0; i < kModelLimits; ++i) {  // bound: kModelLimits
-    cycles += static_cast<std::uint64_t>(cost.per_limit[i]) * (limits.*kLimitMembers[i]);
+    const std::uint32_t limit = limits.*kLimitMembers[i];
+    const std::uint32_t least = kLeastLimits.*kLimitMembers[i];
+    if (limit > least) {
+      cycles += static_cast<std::uint64_t>(cost.per_limit[i]) * (limit - least);
+    }
   }
   return cycles;
 }

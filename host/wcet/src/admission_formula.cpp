@@ -20,14 +20,17 @@ constexpr std::uint32_t kSupport = 1;
 /// Limits of a typical model of a scan, near which the formula is tight.
 core::ModelLimits typical_model_limits() { return {46, 33, 50, 7, 3, 46, 4}; }
 
-Parameters open_parameters() {
-  Parameters open{{"delta", 1}, {"listed", core::kMaxBodies}};
+OpenParameters open_parameters() {
+  OpenParameters open{{{"delta", 0}, {"listed", 0}},
+                      {{"delta", 1}, {"listed", core::kMaxBodies}}};
+  const Parameters least = parameters_of(core::kLeastLimits, core::TickKind::kSurface, 1, false);
   const Parameters largest =
       parameters_of(largest_model_limits(), core::TickKind::kSurface, 1, true);
   for (const char* const name : core::kModelLimitNames) {
-    open[name] = largest.at(name);
+    open.least[name] = least.at(name);
+    open.largest[name] = largest.at(name);
   }
-  open["points_per_leaf_max"] = kLargestLeaf;
+  open.largest["points_per_leaf_max"] = kLargestLeaf;
   return open;
 }
 

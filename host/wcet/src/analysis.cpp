@@ -26,11 +26,11 @@ std::int64_t NameValues::value(const Expression& expression, const std::string& 
 }
 
 std::int64_t NameValues::value_with(const Expression& expression, const std::string& file,
-                                    const Parameters& open) const {
+                                    const Parameters& values) const {
   const std::int64_t value =
       expression.value([&](const std::string& name) -> std::optional<std::int64_t> {
-        if (analysis_.open.contains(name)) {
-          return open.contains(name) ? open.at(name) : 0;
+        if (analysis_.open.largest.contains(name)) {
+          return values.contains(name) ? values.at(name) : 0;
         }
         return find(name, file);
       });

@@ -17,14 +17,19 @@ namespace tactree::wcet {
 /// Number of entries of each function, by address.
 using Entries = std::map<std::uint32_t, double>;
 
+/// Parameters that a formula leaves open, with their minimum and maximum values.
+struct OpenParameters {
+  Parameters least;
+  Parameters largest;
+};
+
 struct Analysis {
   const Image& image;
   const SourceCode& sources;
   Program& program;
   const Parameters& parameters;
   std::set<std::string> inlined;  ///< symbols of functions that are inlined somewhere
-  /// Parameters that a formula leaves open, with their maximum values.
-  Parameters open;
+  OpenParameters open;
   const BoardTiming* timing;  ///< if nullptr, the cost is in instructions, otherwise in cycles
 };
 
@@ -40,9 +45,9 @@ class NameValues {
 
   /// Value of an expression in `file`, at least 0. Throws BoundError.
   [[nodiscard]] std::int64_t value(const Expression& expression, const std::string& file) const;
-  /// Value of an expression with these values of the open parameters; those not in `open` are 0.
+  /// Value of an expression with these values of the open parameters; the others are 0.
   [[nodiscard]] std::int64_t value_with(const Expression& expression, const std::string& file,
-                                        const Parameters& open) const;
+                                        const Parameters& values) const;
   /// Value of an argument of the function; nullopt if it is not constant.
   [[nodiscard]] std::optional<std::int64_t> argument(const std::string& name) const;
 

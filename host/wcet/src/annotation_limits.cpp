@@ -220,7 +220,7 @@ void AnnotationLimits::limit_to(const Terms& counted, const Expression& limit,
   add_terms(terms, entered, -static_cast<double>(values_.value(limit, file)));
   OpenLimit open{file, program_.at_most(terms, 0.0), counted, entered, 0.0, {}};
   open.fixed = static_cast<double>(values_.value_with(limit, file, {}));
-  for (const auto& [name, largest] : analysis_.open) {
+  for (const auto& [name, largest] : analysis_.open.largest) {
     if (limit.mentions(name)) {
       open.per[name] =
           static_cast<double>(values_.value_with(limit, file, {{name, 1}})) - open.fixed;
@@ -236,9 +236,9 @@ void AnnotationLimits::check_linear(const OpenLimit& open, const Expression& lim
                                     const std::string& file) const {
   double sum = open.fixed;
   for (const auto& [name, per] : open.per) {
-    sum += per * static_cast<double>(analysis_.open.at(name));
+    sum += per * static_cast<double>(analysis_.open.largest.at(name));
   }
-  if (sum != static_cast<double>(values_.value_with(limit, file, analysis_.open))) {
+  if (sum != static_cast<double>(values_.value_with(limit, file, analysis_.open.largest))) {
     throw BoundError(fmt::format(
         "{}: '{}' is not linear in the limits of the model (write a sum of multiples of them)",
         file, limit.text()));

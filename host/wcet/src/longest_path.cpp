@@ -38,40 +38,45 @@ class PathProgram {
   // An open limit, counted <= (fixed + sum of per * value) * entered, is replaced by a price: the
   // dual value of its row at the reference parameters. The counted passes cost this price, the
   // entries earn it, whatever the values of the open parameters are. By weak duality the worst case
-  // is at most the largest gain of all terms without an open parameter plus, for each open
-  // parameter, its value times the largest gain of the terms per unit of it. This holds for any
-  // prices; those of the optimum make it tight.
+  // is at most the largest gain at the minimum values plus, for each open parameter, its excess over
+  // the minimum times the largest gain of the terms per unit of it. This holds for any prices; those
+  // of the optimum make it tight.
   [[nodiscard]] CostFormula formula() {
     const LinearProgram::Solution reference = solution();
-    std::vector<double> gains = program_.gains();
+    std::vector<double> at_least = program_.gains();
     std::map<std::string, std::vector<double>> grants;
     for (const OpenLimit& limit : limits_.open()) {
       const double price = std::max(reference.price[limit.row], 0.0);
       for (const auto& [variable, coefficient] : limit.counted) {
-        gains[static_cast<std::size_t>(variable)] -= price * coefficient;
+        at_least[static_cast<std::size_t>(variable)] -= price * coefficient;
       }
       for (const auto& [variable, coefficient] : limit.entered) {
-        gains[static_cast<std::size_t>(variable)] += price * limit.fixed * coefficient;
+        at_least[static_cast<std::size_t>(variable)] += price * limit.fixed * coefficient;
         for (const auto& [name, per] : limit.per) {
           auto& grant = grants[name];
-          grant.resize(gains.size());
+          grant.resize(at_least.size());
           grant[static_cast<std::size_t>(variable)] += price * per * coefficient;
         }
       }
       widen(limit);
     }
+    std::vector<double>& in_support = grants[kPointsInSupport];
+    const std::vector<double>& in_ball = grants[kPointsInBall];
+    for (auto& [name, grant] : grants) {
+      grant.resize(at_least.size());
+      const auto least = static_cast<double>(analysis_.open.least.at(name));
+      for (std::size_t i = 0; i < grant.size(); ++i) {
+        at_least[i] += least * grant[i];
+      }
+    }
     CostFormula formula;
-    formula.base = largest(gains);
+    formula.base = largest(std::move(at_least));
     // A point in the support has the price of the ball, too. Both on one path cost less than each
     // on its most expensive path.
-    std::vector<double>& in_support = grants[kPointsInSupport];
-    in_support.resize(gains.size());
-    const std::vector<double>& in_ball = grants[kPointsInBall];
     for (std::size_t i = 0; i < in_ball.size(); ++i) {
       in_support[i] += in_ball[i];
     }
     for (auto& [name, grant] : grants) {
-      grant.resize(gains.size());
       formula.per[name] = largest(std::move(grant));
     }
     formula.per[kPointsInSupport] -= formula.per[kPointsInBall];
@@ -97,7 +102,7 @@ class PathProgram {
   void widen(const OpenLimit& limit) {
     double largest = limit.fixed;
     for (const auto& [name, per] : limit.per) {
-      largest += per * static_cast<double>(analysis_.open.at(name));
+      largest += per * static_cast<double>(analysis_.open.largest.at(name));
     }
     Terms terms = limit.counted;
     add_terms(terms, limit.entered, -largest);

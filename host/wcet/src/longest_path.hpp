@@ -23,7 +23,7 @@ struct WorstPath {
   std::set<const SourceFact*> used_facts;
 };
 
-/// base + the sum over the open parameters of per[name] * value.
+/// base + the sum over the open parameters of per[name] * (value - minimum).
 struct CostFormula {
   double base = 0.0;
   std::map<std::string, double> per;
@@ -34,7 +34,7 @@ struct CostFormula {
 [[nodiscard]] WorstPath longest_path(const Analysis& analysis, const Entries& entries,
                                      const Parameters& arguments);
 
-/// Not less than the cost of longest_path() for any values of the open parameters; tight near the
+/// Not less than the cost of longest_path() for any values in the ranges of the open parameters; tight near the
 /// values that Analysis::parameters has for them. Throws BoundError.
 [[nodiscard]] CostFormula cost_formula(const Analysis& analysis, const Entries& entries);
 

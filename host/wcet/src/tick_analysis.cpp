@@ -107,14 +107,14 @@ std::uint64_t TickAnalysis::cycles(const Parameters& parameters, const BoardTimi
   return static_cast<std::uint64_t>(std::ceil(cost + interrupt_cycles(timing)));
 }
 
-CostFormula TickAnalysis::formula(const Parameters& parameters, const Parameters& open,
+CostFormula TickAnalysis::formula(const Parameters& parameters, const OpenParameters& open,
                                   const BoardTiming& timing) {
   CostFormula formula = cost_formula(analysis(parameters, open, &timing), entries_);
   formula.base += interrupt_cycles(timing);
   return formula;
 }
 
-Analysis TickAnalysis::analysis(const Parameters& parameters, const Parameters& open,
+Analysis TickAnalysis::analysis(const Parameters& parameters, const OpenParameters& open,
                                 const BoardTiming* timing) {
   return {image_, sources_, *program_, parameters, inlined_, open, timing};
 }

@@ -20,12 +20,12 @@ class TickAnalysis {
   /// Includes interrupt entry and return, and the assumption that each entry empties the code
   /// cache.
   [[nodiscard]] std::uint64_t cycles(const Parameters& parameters, const BoardTiming& timing);
-  /// Formula of the cycles in the parameters of `open`, which contains their maximum values.
-  [[nodiscard]] CostFormula formula(const Parameters& parameters, const Parameters& open,
+  /// Formula of the cycles in the parameters of `open`.
+  [[nodiscard]] CostFormula formula(const Parameters& parameters, const OpenParameters& open,
                                     const BoardTiming& timing);
 
  private:
-  [[nodiscard]] Analysis analysis(const Parameters& parameters, const Parameters& open,
+  [[nodiscard]] Analysis analysis(const Parameters& parameters, const OpenParameters& open,
                                   const BoardTiming* timing);
   [[nodiscard]] double interrupt_cycles(const BoardTiming& timing) const;
 

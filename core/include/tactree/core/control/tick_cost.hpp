@@ -33,7 +33,11 @@ inline constexpr const char* kModelLimitNames[kModelLimits] = {
 
 [[nodiscard]] ModelLimits model_limits(const BlobHeader& header);
 
-/// Cost of one body: cycles = base + sum of per_limit[i] * limit i.
+/// A model whose limits are lower costs as much as one with these: near the limits of usual models,
+/// the formula is then closer to the bound. The first two must be equal.
+inline constexpr ModelLimits kLeastLimits = {32, 32, 32, 4, 2, 0, 0};
+
+/// Cost of one body: cycles = base + sum of per_limit[i] * (limit i - kLeastLimits i).
 struct TickCost {
   std::uint32_t base = 0;
   std::uint16_t per_limit[kModelLimits] = {};
@@ -79,7 +83,7 @@ struct TickLoad {
 }
 inline constexpr std::uint32_t kTickRows = first_row(kWorkTiers, kMaxReachableBodies);
 
-inline constexpr std::uint32_t kTickCostsKnown = 0x4B434954;  // "TICK"
+inline constexpr std::uint32_t kTickCostsKnown = 0x32434954;  // "TIC2"
 
 /// Costs of an image: cycles = base + delta (delta device only) + listed for each body of the scene
 /// + most expensive row for each rendered body. Rows of several bodies hold the cost of one of
