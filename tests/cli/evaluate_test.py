@@ -71,23 +71,6 @@ class Report(InAFolder):
         self.assertGreater(page.count("<tr>"), 30)
         self.assertNotRegex(page.replace("http://www.w3.org/2000/svg", ""), r"(src|href)=|https?://|@import")
 
-    def test_the_page_for_a_browser_maps_the_holes_of_a_scan(self):
-        points = list(ball(20000, 0.03))
-        self.write("ball.csv", csv(points))
-        # A cap of 0.5 rad of the ball of 30 mm: a hole of about 29 mm.
-        self.write("cut.csv", csv(point for point in points if point[0][2] < 0.03 * math.cos(0.5)))
-        self.run_tool("evaluate", "--quick", "--scan", "ball.csv", "--scan", "cut.csv", "--html", "holes.html",
-                      check=True)
-        whole, holed = (self.path / "holes.html").read_text().split(">Openings of ball.csv</h")[1].split(
-            ">Openings of cut.csv</h")
-        self.assertNotIn("<circle", whole)
-        self.assertEqual(holed.count("<circle"), 3)  # from three sides
-        width = float(re.search(r"<td>hole</td>\s*<td>([\d.]+)</td>", holed)[1])
-        self.assertAlmostEqual(width, 2 * 30 * math.sin(0.5), delta=1.5)
-        # To scale: the ball of 60 mm fills the square of 290.
-        for radius in re.findall(r'<circle [^>]* r="([\d.]+)"', holed):
-            self.assertAlmostEqual(2 * float(radius), width / 60 * 290, delta=3)
-
 
 class Scan(SharedFolder):
     """A report about scans only, in seconds."""
@@ -111,6 +94,23 @@ class Scan(SharedFolder):
         self.assertGreater(slides["ticks"], 1000)
         self.assertLess(slides["force_error_rms_N"], 0.05 * slides["expected_N"])
         self.assertLess(slides["force_step_N"], 0.1 * slides["expected_N"])
+
+    def test_the_page_for_a_browser_maps_the_holes_of_a_scan(self):
+        points = list(ball(20000, 0.03))
+        self.write("ball.csv", csv(points))
+        # A cap of 0.5 rad of the ball of 30 mm: a hole of about 29 mm.
+        self.write("cut.csv", csv(point for point in points if point[0][2] < 0.03 * math.cos(0.5)))
+        self.run_tool("evaluate", "--quick", "--scan", "ball.csv", "--scan", "cut.csv", "--html", "holes.html",
+                      check=True)
+        whole, holed = (self.path / "holes.html").read_text().split(">Openings of ball.csv</h")[1].split(
+            ">Openings of cut.csv</h")
+        self.assertNotIn("<circle", whole)
+        self.assertEqual(holed.count("<circle"), 3)  # from three sides
+        width = float(re.search(r"<td>hole</td>\s*<td>([\d.]+)</td>", holed)[1])
+        self.assertAlmostEqual(width, 2 * 30 * math.sin(0.5), delta=1.5)
+        # To scale: the ball of 60 mm fills the square of 290.
+        for radius in re.findall(r'<circle [^>]* r="([\d.]+)"', holed):
+            self.assertAlmostEqual(2 * float(radius), width / 60 * 290, delta=3)
 
     def test_a_rough_scan_is_felt_in_the_slides(self):
         even = list(ball(20000, 0.03))

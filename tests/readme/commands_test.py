@@ -59,8 +59,9 @@ class InAFolder(unittest.TestCase):
         (cls.path / "bin" / "tactree").symlink_to(TACTREE)
         cls.environment = {**os.environ, "PATH": f"{cls.path / 'bin'}:{os.environ['PATH']}"}
 
-    def run_line(self, line):
-        return subprocess.run(["bash", "-c", line], cwd=self.path, env=self.environment, capture_output=True,
+    @classmethod
+    def run_line(cls, line):
+        return subprocess.run(["bash", "-c", line], cwd=cls.path, env=cls.environment, capture_output=True,
                               text=True, check=False, timeout=120)
 
     def succeeds(self, line):
@@ -91,12 +92,16 @@ class Commands(InAFolder):
 
 
 class ServedCommands(InAFolder):
-    def setUp(self):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
         # The models and recordings that the commands name.
         for block in blocks("sh"):
             for line in block.splitlines():
                 if line.startswith(("tactree build", "tactree simulate")):
-                    self.succeeds(line)
+                    done = cls.run_line(line)
+                    if done.returncode != 0:
+                        raise AssertionError(f"{line}\n{done.stdout}{done.stderr}")
 
     def start(self, line, expected):
         """A command that runs until it is ended; its first line of output matches `expected`."""

@@ -21,8 +21,7 @@ constexpr std::uint32_t kSupport = 1;
 core::ModelLimits typical_model_limits() { return {46, 33, 50, 7, 3, 46, 4}; }
 
 OpenParameters open_parameters() {
-  OpenParameters open{{{"delta", 0}, {"listed", 0}},
-                      {{"delta", 1}, {"listed", core::kMaxBodies}}};
+  OpenParameters open{{{"delta", 0}, {"listed", 0}}, {{"delta", 1}, {"listed", core::kMaxBodies}}};
   const Parameters least = parameters_of(core::kLeastLimits, core::TickKind::kSurface, 1, false);
   const Parameters largest =
       parameters_of(largest_model_limits(), core::TickKind::kSurface, 1, true);

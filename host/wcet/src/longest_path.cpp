@@ -38,9 +38,9 @@ class PathProgram {
   // An open limit, counted <= (fixed + sum of per * value) * entered, is replaced by a price: the
   // dual value of its row at the reference parameters. The counted passes cost this price, the
   // entries earn it, whatever the values of the open parameters are. By weak duality the worst case
-  // is at most the largest gain at the minimum values plus, for each open parameter, its excess over
-  // the minimum times the largest gain of the terms per unit of it. This holds for any prices; those
-  // of the optimum make it tight.
+  // is at most the largest gain at the minimum values plus, for each open parameter, its excess
+  // over the minimum times the largest gain of the terms per unit of it. This holds for any prices;
+  // those of the optimum make it tight.
   [[nodiscard]] CostFormula formula() {
     const LinearProgram::Solution reference = solution();
     std::vector<double> at_least = program_.gains();

@@ -34,8 +34,8 @@ struct CostFormula {
 [[nodiscard]] WorstPath longest_path(const Analysis& analysis, const Entries& entries,
                                      const Parameters& arguments);
 
-/// Not less than the cost of longest_path() for any values in the ranges of the open parameters; tight near the
-/// values that Analysis::parameters has for them. Throws BoundError.
+/// Not less than the cost of longest_path() for any values in the ranges of the open parameters;
+/// tight near the values that Analysis::parameters has for them. Throws BoundError.
 [[nodiscard]] CostFormula cost_formula(const Analysis& analysis, const Entries& entries);
 
 }  // namespace tactree::wcet

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::uint32_t kBase = 200U;
 
-/// Costs of 800 cycles per body and 10 per point of a ball, in the row without gathers.
+/// Costs of 800 cycles per body and 10 per further point of a ball, in the row without gathers.
 core::TickCosts some_costs() {
   core::TickCosts costs;
   costs.known = core::kTickCostsKnown;
@@ -30,7 +30,8 @@ core::TickCosts some_costs() {
 }
 
 std::uint32_t needed_by_body() {
-  return 800U + 10U * shared_plane().view().header().points_per_ball_max;
+  return 800U + 10U * (shared_plane().view().header().points_per_ball_max -
+                       core::kLeastLimits.points_per_ball_max);
 }
 std::uint32_t needed() { return kBase + needed_by_body(); }
 
@@ -57,6 +58,21 @@ TEST(Admission, RefusesOneExcessCycle) {
   core::Input input;
   input.command = core::Command::kArm;
   EXPECT_FALSE(controller.step(input).enable);
+}
+
+TEST(Admission, CountsAtLeastTheLeastLimits) {
+  core::TickCost cost;
+  cost.base = 700U;
+  for (std::uint16_t& price : cost.per_limit) {
+    price = 10U;
+  }
+  EXPECT_EQ(core::cycles_of(cost, core::ModelLimits{}), 700U);
+  core::ModelLimits limits = core::kLeastLimits;
+  EXPECT_EQ(core::cycles_of(cost, limits), 700U);
+  ++limits.points_per_ball_max;
+  ++limits.blended_materials;
+  limits.depth = 0;
+  EXPECT_EQ(core::cycles_of(cost, limits), 720U);
 }
 
 TEST(Admission, LoadsModelWithUnknownCosts) {
