@@ -32,6 +32,28 @@ float quarter_of(Vec3 a, Vec3 b) {
   return cosine > kFaceCosine ? 1.0F - (1.0F - cosine) * (1.0F / 16.0F) : 0.0F;
 }
 
+struct ClosestSeed {
+  float to_first;  // cosine of the angle to the first seed
+  float cosine;    // to the closest one
+  std::uint32_t number;
+};
+[[gnu::always_inline]] inline ClosestSeed closest_seed(Vec3 normal, Vec3 first, Vec3 second,
+                                                       Vec3 third) {
+  const float to_first = dot(normal, first);
+  const float to_second = dot(normal, second);
+  const float to_third = dot(normal, third);
+  ClosestSeed closest{to_first, to_first, 0};
+  if (to_second > closest.cosine) {
+    closest.cosine = to_second;
+    closest.number = 1;
+  }
+  if (to_third > closest.cosine) {
+    closest.cosine = to_third;
+    closest.number = 2;
+  }
+  return closest;
+}
+
 // A face has one level. A point has two heights above the query: along its own normal and along
 // that of the face. Compared with the nearest point of the face, both differ by the distance
 // between parallel faces, in the same direction. On a curved face and behind a bend they differ in
@@ -45,6 +67,15 @@ constexpr float kOtherLevel = 0.3F;
 // surface is rough or round, and faces keep all their points: on a scan of rough ground whose
 // points were omitted, the force jumped by 0.18 N.
 constexpr std::uint32_t kSharpRatio = 4;
+
+/// Without those that do not face the reference of the first face.
+[[gnu::always_inline]] inline std::uint32_t points_of_faces(const Division& division) {
+  std::uint32_t points = division.facing[0];
+  for (std::uint32_t i = 1; i < kMaxFaces; ++i) {  // bound: kMaxFaces
+    points += division.facing[i] + division.averted[i];
+  }
+  return points;
+}
 
 }  // namespace
 
@@ -161,19 +192,8 @@ constexpr std::uint32_t kSharpRatio = 4;
       division.complete = false;
       break;
     }
-    const float to_first = dot(candidate.normal, seed);
-    const float to_second = dot(candidate.normal, second_seed);
-    const float to_third = dot(candidate.normal, third_seed);
-    float closer = to_first;
-    std::uint32_t face = 0;
-    if (to_second > closer) {
-      closer = to_second;
-      face = 1;
-    }
-    if (to_third > closer) {
-      closer = to_third;
-      face = 2;
-    }
+    const auto [to_first, closer, face] =
+        closest_seed(candidate.normal, seed, second_seed, third_seed);
     if (closer < kCreaseCosine) {
       (to_first > kOppositeCosine ? stray : opposite).offer(candidate, qq);
       if (!(closer > kFaceCosine)) {
@@ -197,11 +217,7 @@ constexpr std::uint32_t kSharpRatio = 4;
     // at most: points_per_support_max per divide together support
     division.point[face][place] = static_cast<std::uint8_t>(i | flag);
   }
-  std::uint32_t divided = division.facing[0];
-  for (std::uint32_t i = 1; i < kMaxFaces; ++i) {  // bound: kMaxFaces
-    divided += division.facing[i] + division.averted[i];
-  }
-  division.has_levels = round * kSharpRatio <= divided;
+  division.has_levels = round * kSharpRatio <= points_of_faces(division);
   division.stray = stray.point;
   division.opposite = opposite.point;
 }

@@ -138,7 +138,7 @@ void print_costs(const core::BlobHeader& header, const std::string& name,
       "\non {} ({}): {}{}\n", name, board.image,
       board.embedded ? "costs stored in the image" : "analysed now, because the image has no costs",
       board.timing.is_estimate ? "; an estimate" : "");
-  constexpr auto least =
+  constexpr auto kLeast =
       std::bit_cast<std::array<std::uint32_t, core::kModelLimits>>(core::kLeastLimits);
   core::Configuration configuration;
   configuration.device = slowest_or(device);
@@ -156,7 +156,7 @@ void print_costs(const core::BlobHeader& header, const std::string& name,
                board.costs.base + (load.delta ? board.costs.delta : 0) + cost.base);
     for (std::uint32_t i = 0; i < core::kModelLimits; ++i) {
       if (cost.per_limit[i] != 0) {
-        fmt::print(" + {} ({} - {})", cost.per_limit[i], core::kModelLimitNames[i], least[i]);
+        fmt::print(" + {} ({} - {})", cost.per_limit[i], core::kModelLimitNames[i], kLeast[i]);
       }
     }
     fmt::print("\n");
