@@ -70,8 +70,19 @@ class BoundCommand(unittest.TestCase):
         run = tactree("info", BLOB, "--board", BOARD)
         self.assertEqual(run.returncode, 0, run.stderr)
         self.assertIn("costs stored in the image", run.stdout)
-        self.assertRegex(run.stdout, r"cycles per tick at 168 MHz\n +=.* \+ \d+ depth")
-        self.assertRegex(run.stdout, r" \+ \d+ points_per_leaf_max")
+        shown = re.findall(r"at most (\d+) cycles per tick at 168 MHz\n +=(.*)\n", run.stdout)
+        self.assertEqual(len(shown), 2)
+        limits = self.limits_of(BLOB)
+        for cycles, terms in shown:
+            self.assertEqual(eval(terms, {"__builtins__": {}}, limits), int(cycles), terms)
+        self.assertIn("(points_per_leaf_max - 32)", shown[1][1])
+
+    def limits_of(self, blob):
+        """The limits that determine the cycles of a tick; the model has one material."""
+        file = self.folder / "facts.json"
+        self.assertEqual(tactree("info", blob, "--json", file).returncode, 0)
+        facts = json.loads(file.read_text())
+        return {**{name: facts[name] for name in facts if name.startswith("points_per")}, "depth": facts["depth"]}
 
     def test_build(self):
         points = self.folder / "plane.xyz"

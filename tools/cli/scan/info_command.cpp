@@ -131,6 +131,21 @@ void write_points(const BlobView& view, const std::string& file) {
   support::write_file(file, text);
 }
 
+/// The cycles as a sum; without the limits that count as kLeastLimits.
+void print_sum(const core::TickCosts& costs, const core::TickLoad& load) {
+  using Limits = std::array<std::uint32_t, core::kModelLimits>;
+  const auto limits = std::bit_cast<Limits>(load.limits);
+  const auto least = std::bit_cast<Limits>(core::kLeastLimits);
+  const core::TickCost& cost = core::worst_row(costs, load);
+  fmt::print("          = {}",
+             costs.base + (load.delta ? costs.delta : 0U) + costs.listed + cost.base);
+  for (std::uint32_t i = 0; i < core::kModelLimits; ++i) {
+    if (cost.per_limit[i] != 0 && limits[i] > least[i]) {
+      fmt::print(" + {} * ({} - {})", cost.per_limit[i], core::kModelLimitNames[i], least[i]);
+    }
+  }
+}
+
 void print_costs(const core::BlobHeader& header, const std::string& name,
                  const std::string& device) {
   const BoardCosts board = costs_of_board(name);
@@ -138,8 +153,6 @@ void print_costs(const core::BlobHeader& header, const std::string& name,
       "\non {} ({}): {}{}\n", name, board.image,
       board.embedded ? "costs stored in the image" : "analysed now, because the image has no costs",
       board.timing.is_estimate ? "; an estimate" : "");
-  constexpr auto kLeast =
-      std::bit_cast<std::array<std::uint32_t, core::kModelLimits>>(core::kLeastLimits);
   core::Configuration configuration;
   configuration.device = slowest_or(device);
   for (const core::RenderMode mode : {core::RenderMode::kSurface, core::RenderMode::kPaper}) {
@@ -148,17 +161,11 @@ void print_costs(const core::BlobHeader& header, const std::string& name,
     configuration.rate_hz = static_cast<float>(highest);
     core::TickLoad load;
     load.add(header, configuration);
-    const core::TickCost& cost = core::worst_row(board.costs, load);
+    load.work_tier = board.work_tier(header, configuration);
     fmt::print("{:<8}  up to {:.0f} Hz: at most {:.0f} cycles per tick at {:.0f} MHz\n",
                mode == core::RenderMode::kPaper ? "paper" : "surface", highest,
                board.cycles(header, configuration), 1e-6 * board.timing.clock_hz);
-    fmt::print("          = {}",
-               board.costs.base + (load.delta ? board.costs.delta : 0) + cost.base);
-    for (std::uint32_t i = 0; i < core::kModelLimits; ++i) {
-      if (cost.per_limit[i] != 0) {
-        fmt::print(" + {} ({} - {})", cost.per_limit[i], core::kModelLimitNames[i], kLeast[i]);
-      }
-    }
+    print_sum(board.costs, load);
     fmt::print("\n");
   }
 }
