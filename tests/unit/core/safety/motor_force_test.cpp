@@ -99,6 +99,19 @@ TEST(MotorForce, GivesPriorityToGravity) {
   EXPECT_TRUE(is_limited(heavy));
 }
 
+TEST(MotorForce, KeepsDirectionOfHeavyWeight) {
+  for (const Vec3 weight : {Vec3{9.0F, 9.0F, 9.0F}, Vec3{-3.0F, 9.0F, 6.0F}}) {
+    SafetyGate gate = ramped();
+    const SafetyGate::Result result = gate.command({}, kIdentity, weight);
+    const Vec3 expected = (8.0F / core::length(weight)) * weight;
+    const Vec3 efforts = {result.command.effort(0), result.command.effort(1),
+                          result.command.effort(2)};
+    EXPECT_NEAR(core::length(efforts - expected), 0.0F, 1e-4F);
+    EXPECT_NEAR(core::length(result.gravity_force - expected), 0.0F, 1e-4F);
+    EXPECT_TRUE(is_limited(result));
+  }
+}
+
 // The share of the force changes by no more than the force does: it has no step at the limit.
 TEST(MotorForce, ReachesLimitWithoutStep) {
   const Vec3 weight = {3.0F, 0.0F, 4.0F};
@@ -119,9 +132,19 @@ TEST(MotorForce, IsZeroInSingularPose) {
     const SafetyGate::Result result = gate.command({1.0F, 1.0F, 1.0F}, kFlat, weight);
     EXPECT_TRUE(result.command.is_zero());
     EXPECT_EQ(result.motor_force, Vec3{});
+    EXPECT_EQ(result.gravity_force, Vec3{});
     EXPECT_FALSE(result.not_finite);
     EXPECT_TRUE(is_limited(result));
   }
+}
+
+TEST(MotorForce, ReportsOtherLimitsToo) {
+  constexpr Mat3 kFlat{{{1.0F, 0.0F, 0.0F}, {1.0F, 0.0F, 0.0F}, {0.0F, 0.0F, 1.0F}}};
+  SafetyGate gate;
+  ASSERT_TRUE(gate.configure(roomy()));
+  const SafetyGate::Result result = gate.command({1.0F, 1.0F, 1.0F}, kFlat);
+  EXPECT_TRUE(is_limited(result));
+  EXPECT_NE(result.limits & core::limit_bit(core::Limit::kRamp), 0U);
 }
 
 // The slew limit starts from efforts whose force was within the limit in the last pose.
