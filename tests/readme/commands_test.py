@@ -64,9 +64,11 @@ class InAFolder(unittest.TestCase):
         return subprocess.run(["bash", "-c", line], cwd=cls.path, env=cls.environment, capture_output=True,
                               text=True, check=False, timeout=120)
 
-    def succeeds(self, line):
-        done = self.run_line(line)
-        self.assertEqual(done.returncode, 0, f"{line}\n{done.stdout}{done.stderr}")
+    @classmethod
+    def succeeds(cls, line):
+        done = cls.run_line(line)
+        if done.returncode != 0:
+            raise AssertionError(f"{line}\n{done.stdout}{done.stderr}")
         return done.stdout
 
     def read(self, name):
@@ -99,9 +101,7 @@ class ServedCommands(InAFolder):
         for block in blocks("sh"):
             for line in block.splitlines():
                 if line.startswith(("tactree build", "tactree simulate")):
-                    done = cls.run_line(line)
-                    if done.returncode != 0:
-                        raise AssertionError(f"{line}\n{done.stdout}{done.stderr}")
+                    cls.succeeds(line)
 
     def start(self, line, expected):
         """A command that runs until it is ended; its first line of output matches `expected`."""

@@ -34,8 +34,11 @@ inline constexpr const char* kModelLimitNames[kModelLimits] = {
 [[nodiscard]] ModelLimits model_limits(const BlobHeader& header);
 
 /// A model whose limits are lower costs as much as one with these: near the limits of usual models,
-/// the formula is then closer to the bound. The first two must be equal.
+/// the formula is then closer to the bound.
 inline constexpr ModelLimits kLeastLimits = {32, 32, 32, 4, 2, 0, 0};
+// The formula has the price of a support for points that are also in the ball. Their excess must
+// not exceed that of the ball.
+static_assert(kLeastLimits.points_per_support_max == kLeastLimits.points_per_ball_max);
 
 /// Cost of one body: cycles = base + sum of per_limit[i] * (limit i - kLeastLimits i).
 struct TickCost {
