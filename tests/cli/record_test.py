@@ -1,6 +1,6 @@
 """tactree record with a simulated board: each tick, gaps, link loss, Ctrl-C, a killed program, a full disk.
 
-usage: record_test.py TACTREE CLASS       CLASS: Record, or Hour: an hour at 1 kHz
+usage: record_test.py TACTREE CLASS       CLASS: Record, Gaps in real time, or Hour: an hour at 1 kHz
 """
 import ast
 import csv
@@ -12,8 +12,10 @@ import signal
 import struct
 import subprocess
 import sys
+import time
 import unittest
 import zipfile
+import zlib
 
 sys.dont_write_bytecode = True
 from served_board import ServedBoard, build_ball  # noqa: E402
@@ -168,12 +170,82 @@ class Record(Recorded):
         self.assertIn(f"full.csv: {len(rows)} ticks", said)
         self.expect_no_gap(rows)
 
+    def test_has_the_forces_of_the_session(self):
+        """The checksum of every force is that of a replay of what reached the controller."""
+        with ServedBoard(TACTREE, self.blob, "--seconds", "3", "--inject", "estop:pressed@2", "--record",
+                         self.path / "session.rec") as port:
+            said = self.record(port, "session.csv", "--arm", code=1)
+        self.assertIn("none missing", said)
+        rows = self.rows("session.csv")
+        self.expect_no_gap(rows)
+        self.assertEqual({row["state"] for row in rows[-500:]}, {"fault"})
+        done = self.run_tool("simulate", self.blob, "--replay", "session.rec", "--json", "replay.json")
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        replay = self.read("replay.json")
+        forces = [struct.pack("<3f", *(float(row[f"force_{axis}_N"]) for axis in "xyz")) for row in rows]
+        no_force = struct.pack("<3f", 0, 0, 0)
+        self.assertGreater(sum(force != no_force for force in forces), 500)
+        # Before the recording the board is idle, after it stopped.
+        before = int(rows[0]["tick"]) - 1
+        after = replay["ticks"] - before - len(rows)
+        self.assertLess(after, 5)
+        self.assertEqual(zlib.crc32(no_force * before + b"".join(forces) + no_force * after), replay["trace_crc32"])
+
+    def test_watching_does_not_arm_and_a_recording_is_not_replayed(self):
+        with ServedBoard(TACTREE, self.blob) as port:
+            for name in ("watched.csv", "watched.npz"):
+                self.record(port, name, "--seconds", "0.3")
+        self.assertEqual({row["state"] for row in self.rows("watched.csv")}, {"idle"})
+        for name in ("watched.csv", "watched.npz"):
+            done = self.run_tool("simulate", self.blob, "--replay", name)
+            self.assertEqual(done.returncode, 1)
+            self.assertIn(f"{name}: a trace, or the recording of a board, cannot be replayed", done.stderr)
+            self.assertIn(f"tactree view BLOB --trace {name} shows it", done.stderr)
+
     def test_refuses_outputs_and_ports(self):
         for name, words in (("a.txt", "neither .csv nor .npz"), ("a.rec", "simulate --record writes a .rec"),
                             ("no/a.csv", "No such file")):
             self.assertIn(words, self.record("/dev/no-such-port", name, code=1))
         self.assertIn("/dev/no-such-port", self.record("/dev/no-such-port", "a.csv", code=1))
         self.assertEqual(list(self.path.glob("a.*")), [])
+
+
+class Gaps(Recorded):
+    def test_counts_what_the_board_omits_while_the_program_stands_still(self):
+        with RealTimeBoard(self.blob) as port:
+            program = self.start(port, "gaps.csv")
+            time.sleep(0.5)
+            program.send_signal(signal.SIGSTOP)
+            time.sleep(5)  # more than the terminal holds
+            program.send_signal(signal.SIGCONT)
+            time.sleep(0.5)
+            program.send_signal(signal.SIGINT)
+            said = program.communicate()[1]
+        self.assertEqual(program.returncode, 0, said)
+        counts = re.search(r": (\d+) ticks in .*, (\d+) missing in (\d+) gaps, (\d+) of them omitted by the board", said)
+        ticks, missing, gaps, omitted = map(int, counts.groups())
+        rows = self.rows("gaps.csv")
+        self.assertEqual(len(rows), ticks)
+        lost = [int(row["missing_ticks"]) for row in rows]
+        self.assertEqual((sum(lost), sum(count > 0 for count in lost)), (missing, gaps))
+        numbers = [int(row["tick"]) for row in rows]
+        self.assertEqual([b - a - 1 for a, b in zip(numbers, numbers[1:])], lost[1:])
+        self.assertGreater(missing, 100)
+        self.assertGreater(omitted, 0.9 * missing)
+        self.assertIn("the port was too slow", said)
+
+    def test_keeps_every_tick_of_a_board_in_real_time(self):
+        with RealTimeBoard(self.blob) as port:
+            said = self.record(port, "live.npz", "--seconds", "5", "--arm")
+        self.assertIn("live.npz: 5000 ticks in 4.999 s, none missing", said)
+
+
+class RealTimeBoard(ServedBoard):
+    """At a pseudo-terminal: the board does not wait for the program."""
+
+    def __init__(self, blob, *options):
+        super().__init__(TACTREE, blob, *options)
+        self.command.remove("--lock-step")
 
 
 class Hour(Recorded):

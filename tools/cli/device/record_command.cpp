@@ -34,7 +34,8 @@ struct RecordOptions {
 // Messages that wait while the disk is slow: 16 s at 4 kHz, about 12 MB.
 constexpr std::size_t kStreamCapacity = 65536;
 constexpr std::chrono::milliseconds kBatch{50};
-constexpr std::chrono::seconds kMaxSilence{2};
+// Passes without telemetry, 2 s. Not counted in time, because this program may have stood still.
+constexpr int kMaxSilentPasses = 40;
 
 /// One line on a terminal, once a second.
 class ProgressLine {
@@ -97,7 +98,7 @@ std::string reason_of_end(const client::Board& board) {
 std::string copy_telemetry(client::Board& board, telemetry::TickRecorder& recorder) {
   const client::Connection& connection = board.connection();
   ProgressLine progress;
-  auto silent_since = connection.now();
+  int silent_passes = 0;
   while (true) {
     // Sampled before the telemetry is taken, so the last pass takes all that was received.
     const bool ends = interrupted();
@@ -109,8 +110,8 @@ std::string copy_telemetry(client::Board& board, telemetry::TickRecorder& record
     if (lost) {
       return reason_of_end(board);
     }
-    silent_since = news.empty() ? silent_since : connection.now();
-    if (connection.now() - silent_since > kMaxSilence) {
+    silent_passes = news.empty() ? silent_passes + 1 : 0;
+    if (silent_passes > kMaxSilentPasses) {
       return "no telemetry for 2 s (is the board still running?)";
     }
     progress.show(recorder.counts(), connection.now());
