@@ -81,9 +81,12 @@ class Recorded(SharedFolder):
 class Record(Recorded):
     def test_records_each_tick_of_an_armed_board(self):
         with ServedBoard(TACTREE, self.blob) as port:
-            said = self.record(port, "armed.csv", "--seconds", "1.5", "--arm")
+            said = self.record(port, "armed.csv", "--seconds", "1.5", "--arm", "--json", "armed.json")
             self.assertRegex(self.run_tool("monitor", "--once", "--port", port).stdout, "^state +idle")
         self.assertIn("armed.csv: 1500 ticks in 1.499 s, none missing", said)
+        self.assertEqual(self.read("armed.json"), {
+            "output": "armed.csv", "ticks": 1500, "seconds": 1.499, "every_ticks": 1, "missing_ticks": 0, "gaps": 0,
+            "omitted_by_board": 0, "problem": None})
         rows = self.rows("armed.csv")
         self.assertEqual(len(rows), 1500)
         self.expect_no_gap(rows)
@@ -109,8 +112,9 @@ class Record(Recorded):
     def test_a_lost_board_loses_no_row(self):
         for name in ("lost.csv", "lost.npz"):
             with ServedBoard(TACTREE, self.blob, "--seconds", "1") as port:
-                said = self.record(port, name, "--seconds", "60", code=1)
+                said = self.record(port, name, "--seconds", "60", "--json", "lost.json", code=1)
             self.assertIn(f"{port}: the recording ended early: the board is disconnected", said)
+            self.assertIn("the board is disconnected", self.read("lost.json")["problem"])
             # The board ran 1000 ticks, of which a few passed before the subscription.
             count = int(re.search(rf"{name}: (\d+) ticks", said)[1])
             self.assertGreater(count, 900)

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "interruption.hpp"
 #include "option_checks.hpp"
 #include "tactree/client/ports.hpp"
+#include "tactree/support/json_text.hpp"
 #include "tactree/support/output_file.hpp"
 #include "tactree/support/user_error.hpp"
 #include "tactree/telemetry/tick_recorder.hpp"
@@ -25,14 +27,13 @@ namespace {
 struct RecordOptions {
   BoardPort port;
   std::string output;
+  std::string json;
   double seconds = 0.0;
   std::uint32_t every_ticks = 1;
   bool arm = false;
   int link_timeout_ms = 50;
 };
 
-// Messages that wait while the disk is slow: 16 s at 4 kHz, about 12 MB.
-constexpr std::size_t kStreamCapacity = 65536;
 constexpr std::chrono::milliseconds kBatch{50};
 // Passes without telemetry, 2 s. Not counted in time, because this program may have stood still.
 constexpr int kMaxSilentPasses = 40;
@@ -128,14 +129,26 @@ std::string record_telemetry(client::Board& board, telemetry::TickRecorder& reco
   }
 }
 
+nlohmann::json to_json(const RecordOptions& options, const telemetry::RecordingCounts& counts,
+                       const std::string& problem) {
+  return {{"output", options.output},
+          {"ticks", counts.rows},
+          {"seconds", static_cast<double>(counts.time_us) / 1e6},
+          {"every_ticks", options.every_ticks},
+          {"missing_ticks", counts.missing},
+          {"gaps", counts.gaps},
+          {"omitted_by_board", counts.omitted},
+          {"problem", problem.empty() ? nlohmann::json() : nlohmann::json(problem)}};
+}
+
 void record(const RecordOptions& options, int& exit_code) {
   watch_interruption();
   telemetry::check_tick_file(options.output);
-  support::check_outputs({options.output});
+  support::check_outputs({options.output, options.json});
   const std::string port = chosen_port(options.port);
   const int link_timeout_ms = options.arm ? options.link_timeout_ms : 0;
-  client::Board board(
-      port, {options.port.baud, static_cast<std::uint16_t>(link_timeout_ms), kStreamCapacity});
+  client::Board board(port, {options.port.baud, static_cast<std::uint16_t>(link_timeout_ms),
+                             telemetry::kStreamCapacity});
   warn_of_slow_wire(options, port, static_cast<double>(board.capabilities().rate_hz));
   if (options.arm) {
     board.arm();
@@ -153,6 +166,10 @@ void record(const RecordOptions& options, int& exit_code) {
   recorder.finish();
   fmt::print(stderr, "{}: {}\n", options.output, telemetry::summary_of(recorder.counts()));
   warn_of_gaps(options.output, recorder.counts());
+  if (!options.json.empty()) {
+    support::write_file(options.json,
+                        support::json_text(to_json(options, recorder.counts(), problem)));
+  }
   if (!problem.empty()) {
     fmt::print(stderr, "tactree: error: {}: the recording ended early: {}\n", port, problem);
     exit_code = kExitFailed;
@@ -164,7 +181,10 @@ void record(const RecordOptions& options, int& exit_code) {
 void add_record_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<RecordOptions>();
   CLI::App* verb =
-      app.add_subcommand("record", "Records the telemetry of a board, every tick, into a file");
+      app.add_subcommand("record",
+                         "Records the telemetry of a board, every tick, into a file. The exit code "
+                         "is 1 if the board was lost or the disk is full; the file then has the "
+                         "rows up to there");
   add_port_options(*verb, options->port);
   verb->add_option("-o,--output", options->output,
                    "FILE.csv, or FILE.npz for NumPy; complete at the end, FILE.incomplete before")
@@ -175,8 +195,9 @@ void add_record_command(CLI::App& app, int& exit_code) {
   verb->add_option("--every", options->every_ticks, "record one tick of this many")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
-  CLI::Option* arm =
-      verb->add_flag("--arm", options->arm, "arm the board first; stop it at the end");
+  verb->add_option("--json", options->json, "write the counts of the recording to this file");
+  CLI::Option* arm = verb->add_flag(
+      "--arm", options->arm, "arm the board first; stop it at the end (default: only watch it)");
   add_link_timeout_option(*verb, options->link_timeout_ms)->needs(arm);
   verb->callback([options, &exit_code] { record(*options, exit_code); });
 }

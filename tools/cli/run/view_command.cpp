@@ -24,7 +24,7 @@
 #include "tactree/support/device_file.hpp"
 #include "tactree/support/output_file.hpp"
 #include "tactree/support/user_error.hpp"
-#include "tactree/telemetry/tick_file.hpp"
+#include "tactree/telemetry/tick_recorder.hpp"
 #include "tactree/viewer/board_session.hpp"
 #include "tactree/viewer/live_session.hpp"
 #include "tactree/viewer/server.hpp"
@@ -32,9 +32,6 @@
 
 namespace tactree::cli {
 namespace {
-
-// Messages that wait while the disk is slow: 16 s at 4 kHz, about 12 MB.
-constexpr std::size_t kStreamCapacity = 65536;
 
 struct ViewOptions {
   std::vector<std::string> blobs;
@@ -105,7 +102,7 @@ std::unique_ptr<viewer::Source> board_source(const ViewOptions& options,
   viewer::BoardSettings settings;
   settings.port = options.board.port;
   settings.link = {options.board.baud, static_cast<std::uint16_t>(options.link_timeout_ms),
-                   kStreamCapacity};
+                   telemetry::kStreamCapacity};
   settings.device = support::load_device(options.settings.device).preset.model;
   settings.model = shown.bytes();
   settings.recording = {options.recording, print_line};

@@ -6,6 +6,7 @@
 //   while (recorder.add(board.take_stream())) { ... }
 //   recorder.finish();
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -16,6 +17,10 @@
 #include "tactree/telemetry/tick_table.hpp"
 
 namespace tactree::telemetry {
+
+/// Messages that a program which records lets wait while the disk is slow (BoardOptions): 16 s at
+/// 4 kHz, about 14 MB.
+inline constexpr std::size_t kStreamCapacity = 65536;
 
 struct RecordingOptions {
   std::uint32_t fields = kRecordedFields;  ///< of the messages
