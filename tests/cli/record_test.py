@@ -254,9 +254,15 @@ class RealTimeBoard(ServedBoard):
 
 class Hour(Recorded):
     def test_an_hour_at_1_khz_has_no_gap(self):
-        with ServedBoard(TACTREE, self.blob) as port:
-            said = self.record(port, "hour.npz", "--seconds", "3600", "--arm")
+        with ServedBoard(TACTREE, self.blob) as port, (self.path / "said").open("w") as said:
+            program = subprocess.Popen([TACTREE, "record", "--port", port, "-o", "hour.npz", "--seconds", "3600", "--arm"],
+                                       cwd=self.path, stderr=said)
+            _, status, usage = os.wait4(program.pid, 0)
+            program.returncode = os.waitstatus_to_exitcode(status)
+        said = (self.path / "said").read_text()
+        self.assertEqual(program.returncode, 0, said)
         self.assertIn("hour.npz: 3600000 ticks in 3599.999 s, none missing", said)
+        self.assertLess(usage.ru_maxrss, 100_000, "KiB: memory does not grow with the duration")
         with zipfile.ZipFile(self.path / "hour.npz") as archive:
             data = archive.read("tick.npy")
         ticks = memoryview(data)[10 + int.from_bytes(data[8:10], "little"):].cast("I")

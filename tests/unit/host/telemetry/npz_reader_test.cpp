@@ -67,6 +67,18 @@ TEST_F(NpzReaderTest, RefusesDamage) {
   EXPECT_NE(refusal(damaged).find("other.npz: t_s: the archive is damaged"), std::string::npos);
 }
 
+// Sizes, types and names included: such an archive is refused, or read, but not beyond its bytes.
+TEST_F(NpzReaderTest, SurvivesDamageOfEveryByte) {
+  const std::string good = bytes();
+  std::size_t refused = 0;
+  for (std::size_t i = 0; i < good.size(); ++i) {
+    std::string damaged = good;
+    damaged[i] = static_cast<char>(damaged[i] ^ (i % 2 == 0 ? 0x81 : 0x7F));
+    refused += refusal(damaged).empty() ? 0U : 1U;
+  }
+  EXPECT_GT(refused, good.size() / 2);
+}
+
 TEST_F(NpzReaderTest, RefusesMissingLongAndOtherArrays) {
   const auto message = [&](const auto& act) { return test::message_of<support::UserError>(act); };
   const NpzReader reader(file_, 3);
