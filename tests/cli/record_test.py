@@ -211,6 +211,10 @@ class Record(Recorded):
                             ("no/a.csv", "No such file")):
             self.assertIn(words, self.record("/dev/no-such-port", name, code=1))
         self.assertIn("/dev/no-such-port", self.record("/dev/no-such-port", "a.csv", code=1))
+        for result in ("--trace", "--plot", "--json"):
+            done = self.run_tool("simulate", self.blob, "--serve", result, "a.out")
+            self.assertEqual(done.returncode, 1)
+            self.assertIn(f"{result}: not written with --serve (record the board with tactree record", done.stderr)
         self.assertEqual(list(self.path.glob("a.*")), [])
 
 
@@ -226,7 +230,7 @@ class Gaps(Recorded):
             program.send_signal(signal.SIGINT)
             said = program.communicate()[1]
         self.assertEqual(program.returncode, 0, said)
-        counts = re.search(r": (\d+) ticks in .*, (\d+) missing in (\d+) gaps, (\d+) of them omitted by the board", said)
+        counts = re.search(r": (\d+) ticks in .*, (\d+) missing in (\d+) gaps, (\d+) of them omitted", said)
         ticks, missing, gaps, omitted = map(int, counts.groups())
         rows = self.rows("gaps.csv")
         self.assertEqual(len(rows), ticks)
@@ -255,8 +259,8 @@ class RealTimeBoard(ServedBoard):
 class Hour(Recorded):
     def test_an_hour_at_1_khz_has_no_gap(self):
         with ServedBoard(TACTREE, self.blob) as port, (self.path / "said").open("w") as said:
-            program = subprocess.Popen([TACTREE, "record", "--port", port, "-o", "hour.npz", "--seconds", "3600", "--arm"],
-                                       cwd=self.path, stderr=said)
+            command = [TACTREE, "record", "--port", port, "-o", "hour.npz", "--seconds", "3600", "--arm"]
+            program = subprocess.Popen(command, cwd=self.path, stderr=said)
             _, status, usage = os.wait4(program.pid, 0)
             program.returncode = os.waitstatus_to_exitcode(status)
         said = (self.path / "said").read_text()
