@@ -3,9 +3,11 @@
 usage: record_test.py TACTREE CLASS       CLASS: Record, Gaps in real time, or Hour: an hour at 1 kHz
 """
 import ast
+import contextlib
 import csv
 import os
 import pathlib
+import pty
 import re
 import resource
 import signal
@@ -131,6 +133,21 @@ class Record(Recorded):
             rows = self.rows(name) if name.endswith("csv") else read_npz(self.path / name)["tick"]
             self.assertIn(f"{name}: {len(rows)} ticks", said)
         self.assertEqual(list(self.path.glob("ended*.*.*")), [])
+
+    def test_states_its_progress_on_a_terminal_only(self):
+        with ServedBoard(TACTREE, self.blob) as port:
+            self.assertNotIn("\r", self.record(port, "quiet.csv", "--seconds", "2.5"))
+            terminal, end = pty.openpty()
+            program = subprocess.Popen([TACTREE, "record", "--port", port, "-o", "shown.csv", "--seconds", "2.5"],
+                                       cwd=self.path, stderr=end)
+            os.close(end)
+            said = b""
+            with contextlib.suppress(OSError):  # the other end was closed
+                while chunk := os.read(terminal, 4096):
+                    said += chunk
+            os.close(terminal)
+            self.assertEqual(program.wait(), 0)
+        self.assertRegex(said.decode(), r"\r\x1b\[2K\d+ ticks in \d\.\d{3} s, none missing\r")
 
     def test_a_pipe_gets_rows_until_ctrl_c(self):
         os.mkfifo(self.path / "pipe")
