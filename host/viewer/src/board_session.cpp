@@ -85,8 +85,7 @@ void BoardSession::begin_session() {
 }
 
 void BoardSession::subscribe() {
-  subscription_ = {telemetry::kRecordedFields &
-                       core::wire::telemetry_fields_of(board_->connection().protocol_minor()),
+  subscription_ = {telemetry::recorded_fields(board_->connection().protocol_minor()),
                    ticks_per_message(*facts_)};
   board_->subscribe(subscription_);
 }

@@ -153,8 +153,7 @@ void record(const RecordOptions& options, int& exit_code) {
   if (options.arm) {
     board.arm();
   }
-  const std::uint32_t fields = telemetry::kRecordedFields &
-                               core::wire::telemetry_fields_of(board.connection().protocol_minor());
+  const std::uint32_t fields = telemetry::recorded_fields(board.connection().protocol_minor());
   telemetry::TickRecorder recorder(options.output, {fields, options.every_ticks, options.seconds});
   board.subscribe({fields, options.every_ticks});
   fmt::print(stderr, "recording until {}Ctrl-C\n",

@@ -47,7 +47,7 @@ TEST_F(TickFileTest, CsvKeepsEveryValue) {
 }
 
 TEST_F(TickFileTest, HasOnlyColumnsOfTheFields) {
-  constexpr std::uint32_t kFields = kRecordedFields & core::wire::telemetry_fields_of(0);
+  constexpr std::uint32_t kFields = recorded_fields(0);
   const Tick tick = tick_with_values();
   const auto path = folder_ / "older.csv";
   const auto file = open_tick_file(path, kFields);

@@ -67,7 +67,7 @@ TEST(TickColumns, HaveAValueAndAName) {
 
 // Zeros would look like measured forces.
 TEST(TickColumns, OmitForcesThatOlderBoardsDoNotSend) {
-  constexpr std::uint32_t kFields = kRecordedFields & core::wire::telemetry_fields_of(0);
+  constexpr std::uint32_t kFields = recorded_fields(0);
   const std::set<std::string> names = names_of(columns_of(kFields));
   EXPECT_EQ(names.size() + 9, columns().size());
   EXPECT_FALSE(names.contains("motor_force_x_N"));

@@ -16,6 +16,11 @@ namespace tactree::telemetry {
 inline constexpr std::uint32_t kRecordedFields =
     core::wire::kAllTelemetry & ~static_cast<std::uint32_t>(core::wire::TelemetryField::kReactions);
 
+/// Those that exist in version 1.`minor` of the protocol.
+[[nodiscard]] constexpr std::uint32_t recorded_fields(std::uint8_t minor) {
+  return kRecordedFields & core::wire::telemetry_fields_of(minor);
+}
+
 /// Bytes on the wire of a message with these fields, including header, checksum and framing.
 [[nodiscard]] std::size_t frame_bytes(std::uint32_t fields = kRecordedFields);
 
