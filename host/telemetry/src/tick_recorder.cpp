@@ -16,6 +16,9 @@ std::string summary_of(const RecordingCounts& counts) {
   if (counts.omitted != 0U) {
     missing += fmt::format(", {} of them omitted by the board", counts.omitted);
   }
+  if (counts.every_ticks > 1U) {
+    missing += fmt::format(" (one tick of {})", counts.every_ticks);
+  }
   return fmt::format("{} ticks in {:.3f} s, {}", counts.rows,
                      1e-6 * static_cast<double>(counts.time_us), missing);
 }
@@ -23,7 +26,9 @@ std::string summary_of(const RecordingCounts& counts) {
 TickRecorder::TickRecorder(const std::filesystem::path& file, const RecordingOptions& options)
     : file_(open_tick_file(file, options.fields)),
       sequence_(options.every_ticks),
-      end_us_(1e6 * options.seconds) {}
+      end_us_(1e6 * options.seconds) {
+  counts_.every_ticks = options.every_ticks;
+}
 
 bool TickRecorder::add(std::span<const core::wire::Telemetry> messages) {
   std::vector<Tick> rows;

@@ -38,7 +38,6 @@ void PageRecording::begin(const telemetry::RecordingOptions& options) {
   }
   file_ = free_name(fs::absolute(target_.file));
   recorder_ = std::make_unique<telemetry::TickRecorder>(file_, options);
-  every_ticks_ = options.every_ticks;
   tell("recording to " + file_.string());
 }
 
@@ -98,8 +97,7 @@ std::string PageRecording::text() const {
   if (recorder_ == nullptr) {
     return last_;
   }
-  const std::string every = every_ticks_ > 1 ? fmt::format(", one of {}", every_ticks_) : "";
-  return fmt::format("{}: {}{}", file_.string(), telemetry::summary_of(recorder_->counts()), every);
+  return fmt::format("{}: {}", file_.string(), telemetry::summary_of(recorder_->counts()));
 }
 
 nlohmann::json PageRecording::to_json() const {

@@ -48,7 +48,6 @@ class PageRecording {
 
   RecordingTarget target_;
   std::filesystem::path file_;
-  std::uint32_t every_ticks_ = 1;
   std::unique_ptr<telemetry::TickRecorder> recorder_;  // while it records
   std::future<Outcome> completion_;                    // while the file is completed
   std::string last_;                                   // text of the last recording

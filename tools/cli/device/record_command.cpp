@@ -134,7 +134,7 @@ nlohmann::json to_json(const RecordOptions& options, const telemetry::RecordingC
   return {{"output", options.output},
           {"ticks", counts.rows},
           {"seconds", static_cast<double>(counts.time_us) / 1e6},
-          {"every_ticks", options.every_ticks},
+          {"every_ticks", counts.every_ticks},
           {"missing_ticks", counts.missing},
           {"gaps", counts.gaps},
           {"omitted_by_board", counts.omitted},

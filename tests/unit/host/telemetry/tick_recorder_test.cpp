@@ -49,7 +49,8 @@ TEST_F(TickRecorderTest, CountsMissingMessagesOfADecimation) {
   TickRecorder recorder(file_, {.every_ticks = 10});
   const std::vector<core::wire::Telemetry> messages = {message(10), message(20), message(50)};
   EXPECT_TRUE(recorder.add(messages));
-  EXPECT_EQ(summary_of(recorder.counts()), "3 ticks in 0.040 s, 2 missing in 1 gaps");
+  EXPECT_EQ(summary_of(recorder.counts()),
+            "3 ticks in 0.040 s, 2 missing in 1 gaps (one tick of 10)");
 }
 
 TEST_F(TickRecorderTest, EndsAfterDurationOfTheBoard) {

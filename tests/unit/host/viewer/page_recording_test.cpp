@@ -86,7 +86,8 @@ TEST_F(PageRecordingTest, ReplacesNoFile) {
 TEST_F(PageRecordingTest, StatesDecimation) {
   recording_.begin({.every_ticks = 4});
   recording_.add(messages(4, 1));
-  EXPECT_NE(text().find("1 ticks in 0.000 s, none missing, one of 4"), std::string::npos) << text();
+  EXPECT_NE(text().find("1 ticks in 0.000 s, none missing (one tick of 4)"), std::string::npos)
+      << text();
 }
 
 TEST_F(PageRecordingTest, StatesWhyItEndedEarly) {

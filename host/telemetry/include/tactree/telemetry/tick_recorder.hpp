@@ -30,14 +30,15 @@ struct RecordingOptions {
 
 struct RecordingCounts {
   std::uint64_t rows = 0;
-  std::uint64_t missing = 0;  ///< messages that are missing between the rows
-  std::uint64_t gaps = 0;     ///< number of positions at which they are missing
-  std::uint64_t omitted = 0;  ///< of the missing ones, those that the board had no room to send
-  std::uint64_t time_us = 0;  ///< board time from the first row to the last one
+  std::uint64_t missing = 0;      ///< messages that are missing between the rows
+  std::uint64_t gaps = 0;         ///< number of positions at which they are missing
+  std::uint64_t omitted = 0;      ///< of the missing ones, those that the board had no room to send
+  std::uint64_t time_us = 0;      ///< board time from the first row to the last one
+  std::uint32_t every_ticks = 1;  ///< decimation
 };
 
 /// For example "1500 ticks in 1.499 s, none missing", or "..., 12 missing in 3 gaps, 9 of them
-/// omitted by the board".
+/// omitted by the board (one tick of 10)".
 [[nodiscard]] std::string summary_of(const RecordingCounts& counts);
 
 class TickRecorder {
