@@ -1,6 +1,6 @@
 """tactree record with a simulated board: each tick, gaps, link loss, Ctrl-C, a killed program, a full disk.
 
-usage: record_test.py TACTREE CLASS       CLASS: Record, Gaps in real time, or Hour: an hour at 1 kHz
+usage: record_test.py TACTREE CLASS       CLASS: Record, Session, Gaps in real time, or Hour: an hour at 1 kHz
 """
 import ast
 import contextlib
@@ -134,21 +134,6 @@ class Record(Recorded):
             self.assertIn(f"{name}: {len(rows)} ticks", said)
         self.assertEqual(list(self.path.glob("ended*.*.*")), [])
 
-    def test_states_its_progress_on_a_terminal_only(self):
-        with ServedBoard(TACTREE, self.blob) as port:
-            self.assertNotIn("\r", self.record(port, "quiet.csv", "--seconds", "2.5"))
-            terminal, end = pty.openpty()
-            program = subprocess.Popen([TACTREE, "record", "--port", port, "-o", "shown.csv", "--seconds", "2.5"],
-                                       cwd=self.path, stderr=end)
-            os.close(end)
-            said = b""
-            with contextlib.suppress(OSError):  # the other end was closed
-                while chunk := os.read(terminal, 4096):
-                    said += chunk
-            os.close(terminal)
-            self.assertEqual(program.wait(), 0)
-        self.assertRegex(said.decode(), r"\r\x1b\[2K\d+ ticks in \d\.\d{3} s, none missing\r")
-
     def test_a_pipe_gets_rows_until_ctrl_c(self):
         os.mkfifo(self.path / "pipe")
         with ServedBoard(TACTREE, self.blob) as port:
@@ -191,6 +176,34 @@ class Record(Recorded):
         self.assertIn(f"full.csv: {len(rows)} ticks", said)
         self.expect_no_gap(rows)
 
+    def test_refuses_outputs_and_ports(self):
+        for name, words in (("a.txt", "neither .csv nor .npz"), ("a.rec", "simulate --record writes a .rec"),
+                            ("no/a.csv", "No such file")):
+            self.assertIn(words, self.record("/dev/no-such-port", name, code=1))
+        self.assertIn("/dev/no-such-port", self.record("/dev/no-such-port", "a.csv", code=1))
+        for result in ("--trace", "--plot", "--json"):
+            done = self.run_tool("simulate", self.blob, "--serve", result, "a.out")
+            self.assertEqual(done.returncode, 1)
+            self.assertIn(f"{result}: not written with --serve (record the board with tactree record", done.stderr)
+        self.assertEqual(list(self.path.glob("a.*")), [])
+
+
+class Session(Recorded):
+    def test_states_its_progress_on_a_terminal_only(self):
+        with ServedBoard(TACTREE, self.blob) as port:
+            self.assertNotIn("\r", self.record(port, "quiet.csv", "--seconds", "2.5"))
+            terminal, end = pty.openpty()
+            program = subprocess.Popen([TACTREE, "record", "--port", port, "-o", "shown.csv", "--seconds", "2.5"],
+                                       cwd=self.path, stderr=end)
+            os.close(end)
+            said = b""
+            with contextlib.suppress(OSError):  # the other end was closed
+                while chunk := os.read(terminal, 4096):
+                    said += chunk
+            os.close(terminal)
+            self.assertEqual(program.wait(), 0)
+        self.assertRegex(said.decode(), r"\r\x1b\[2K\d+ ticks in \d\.\d{3} s, none missing\r")
+
     def test_has_the_forces_of_the_session(self):
         """The checksum of every force is that of a replay of what reached the controller."""
         with ServedBoard(TACTREE, self.blob, "--seconds", "3", "--inject", "estop:pressed@2", "--record",
@@ -222,17 +235,6 @@ class Record(Recorded):
             self.assertEqual(done.returncode, 1)
             self.assertIn(f"{name}: a trace, or the recording of a board, cannot be replayed", done.stderr)
             self.assertIn(f"tactree view BLOB --trace {name} shows it", done.stderr)
-
-    def test_refuses_outputs_and_ports(self):
-        for name, words in (("a.txt", "neither .csv nor .npz"), ("a.rec", "simulate --record writes a .rec"),
-                            ("no/a.csv", "No such file")):
-            self.assertIn(words, self.record("/dev/no-such-port", name, code=1))
-        self.assertIn("/dev/no-such-port", self.record("/dev/no-such-port", "a.csv", code=1))
-        for result in ("--trace", "--plot", "--json"):
-            done = self.run_tool("simulate", self.blob, "--serve", result, "a.out")
-            self.assertEqual(done.returncode, 1)
-            self.assertIn(f"{result}: not written with --serve (record the board with tactree record", done.stderr)
-        self.assertEqual(list(self.path.glob("a.*")), [])
 
 
 class Gaps(Recorded):

@@ -61,7 +61,7 @@ TEST_F(NpzReaderTest, RefusesDamage) {
   const std::string good = bytes();
   EXPECT_EQ(refusal(good), "");
   EXPECT_NE(refusal("PK").find("other.npz: not an archive of NumPy"), std::string::npos);
-  EXPECT_NE(refusal(good.substr(0, good.size() - 1)), "");
+  EXPECT_NE(refusal(good.substr(0, good.size() / 2)), "");
   std::string damaged = good;
   damaged[good.find("\x93NUMPY") + 128] ^= 1;
   EXPECT_NE(refusal(damaged).find("other.npz: t_s: the archive is damaged"), std::string::npos);
