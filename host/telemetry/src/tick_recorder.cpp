@@ -52,11 +52,9 @@ bool TickRecorder::add(std::span<const core::wire::Telemetry> messages) {
 }
 
 void TickRecorder::count(const Tick& row) {
-  // What the board omitted before the first row is not missing in the recording.
+  // At most what is missing: the board may have omitted ticks before the first row.
   const std::uint32_t omitted = row.telemetry.header.dropped;
-  if (counts_.rows != 0U) {
-    counts_.omitted += std::min(omitted - omitted_before_, row.missing_ticks);
-  }
+  counts_.omitted += std::min(omitted - omitted_before_, row.missing_ticks);
   omitted_before_ = omitted;
   ++counts_.rows;
   counts_.missing += row.missing_ticks;
