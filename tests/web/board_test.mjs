@@ -185,7 +185,7 @@ function recorded(name) {
 test('records into a file, without arming; the file of a lost board is complete', async (t) => {
   const board = await plugIn(t);
   const server = await watch(t, '--recording', join(folder, 'page.csv'));
-  const page = await openPage(browser, server.url, small);
+  const page = await openPage(browser, server.url);
   await hidePicture(page);
   await state(page, 'idle');
   const button = page.locator('#record');
