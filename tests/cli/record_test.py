@@ -1,19 +1,23 @@
 """tactree record with a simulated board: each tick, gaps, link loss, Ctrl-C, a killed program, a full disk.
 
-usage: record_test.py TACTREE CLASS       CLASS: Record, or Hour: an hour at 1 kHz
+usage: record_test.py TACTREE CLASS       CLASS: Record, Session, Gaps in real time, or Hour: an hour at 1 kHz
 """
 import ast
+import contextlib
 import csv
 import os
 import pathlib
+import pty
 import re
 import resource
 import signal
 import struct
 import subprocess
 import sys
+import time
 import unittest
 import zipfile
+import zlib
 
 sys.dont_write_bytecode = True
 from served_board import ServedBoard, build_ball  # noqa: E402
@@ -79,9 +83,12 @@ class Recorded(SharedFolder):
 class Record(Recorded):
     def test_records_each_tick_of_an_armed_board(self):
         with ServedBoard(TACTREE, self.blob) as port:
-            said = self.record(port, "armed.csv", "--seconds", "1.5", "--arm")
+            said = self.record(port, "armed.csv", "--seconds", "1.5", "--arm", "--json", "armed.json")
             self.assertRegex(self.run_tool("monitor", "--once", "--port", port).stdout, "^state +idle")
         self.assertIn("armed.csv: 1500 ticks in 1.499 s, none missing", said)
+        self.assertEqual(self.read("armed.json"), {
+            "output": "armed.csv", "ticks": 1500, "seconds": 1.499, "every_ticks": 1, "missing_ticks": 0, "gaps": 0,
+            "omitted_by_board": 0, "problem": None})
         rows = self.rows("armed.csv")
         self.assertEqual(len(rows), 1500)
         self.expect_no_gap(rows)
@@ -107,8 +114,9 @@ class Record(Recorded):
     def test_a_lost_board_loses_no_row(self):
         for name in ("lost.csv", "lost.npz"):
             with ServedBoard(TACTREE, self.blob, "--seconds", "1") as port:
-                said = self.record(port, name, "--seconds", "60", code=1)
+                said = self.record(port, name, "--seconds", "60", "--json", "lost.json", code=1)
             self.assertIn(f"{port}: the recording ended early: the board is disconnected", said)
+            self.assertIn("the board is disconnected", self.read("lost.json")["problem"])
             # The board ran 1000 ticks, of which a few passed before the subscription.
             count = int(re.search(rf"{name}: (\d+) ticks", said)[1])
             self.assertGreater(count, 900)
@@ -173,14 +181,111 @@ class Record(Recorded):
                             ("no/a.csv", "No such file")):
             self.assertIn(words, self.record("/dev/no-such-port", name, code=1))
         self.assertIn("/dev/no-such-port", self.record("/dev/no-such-port", "a.csv", code=1))
+        for result in ("--trace", "--plot", "--json"):
+            done = self.run_tool("simulate", self.blob, "--serve", result, "a.out")
+            self.assertEqual(done.returncode, 1)
+            self.assertIn(f"{result}: not written with --serve (record the board with tactree record", done.stderr)
         self.assertEqual(list(self.path.glob("a.*")), [])
+
+
+class Session(Recorded):
+    def test_states_its_progress_on_a_terminal_only(self):
+        with ServedBoard(TACTREE, self.blob) as port:
+            self.assertNotIn("\r", self.record(port, "quiet.csv", "--seconds", "2.5"))
+            terminal, end = pty.openpty()
+            program = subprocess.Popen([TACTREE, "record", "--port", port, "-o", "shown.csv", "--seconds", "2.5"],
+                                       cwd=self.path, stderr=end)
+            os.close(end)
+            said = b""
+            with contextlib.suppress(OSError):  # the other end was closed
+                while chunk := os.read(terminal, 4096):
+                    said += chunk
+            os.close(terminal)
+            self.assertEqual(program.wait(), 0)
+        self.assertRegex(said.decode(), r"\r\x1b\[2K\d+ ticks in \d\.\d{3} s, none missing\r")
+
+    def test_has_the_forces_of_the_session(self):
+        """The checksum of every force is that of a replay of what reached the controller."""
+        with ServedBoard(TACTREE, self.blob, "--seconds", "3", "--inject", "estop:pressed@2", "--record",
+                         self.path / "session.rec") as port:
+            said = self.record(port, "session.csv", "--arm", code=1)
+        self.assertIn("none missing", said)
+        rows = self.rows("session.csv")
+        self.expect_no_gap(rows)
+        self.assertEqual({row["state"] for row in rows[-500:]}, {"fault"})
+        done = self.run_tool("simulate", self.blob, "--replay", "session.rec", "--json", "replay.json")
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        replay = self.read("replay.json")
+        forces = [struct.pack("<3f", *(float(row[f"force_{axis}_N"]) for axis in "xyz")) for row in rows]
+        no_force = struct.pack("<3f", 0, 0, 0)
+        self.assertGreater(sum(force != no_force for force in forces), 500)
+        # Before the recording the board is idle, after it stopped.
+        before = int(rows[0]["tick"]) - 1
+        after = replay["ticks"] - before - len(rows)
+        self.assertLess(after, 5)
+        self.assertEqual(zlib.crc32(no_force * before + b"".join(forces) + no_force * after), replay["trace_crc32"])
+
+    def test_watching_does_not_arm_and_a_recording_is_not_replayed(self):
+        with ServedBoard(TACTREE, self.blob) as port:
+            for name in ("watched.csv", "watched.npz"):
+                self.record(port, name, "--seconds", "0.3")
+        self.assertEqual({row["state"] for row in self.rows("watched.csv")}, {"idle"})
+        for name in ("watched.csv", "watched.npz"):
+            done = self.run_tool("simulate", self.blob, "--replay", name)
+            self.assertEqual(done.returncode, 1)
+            self.assertIn(f"{name}: a trace, or the recording of a board, cannot be replayed", done.stderr)
+            self.assertIn(f"tactree view BLOB --trace {name} shows it", done.stderr)
+
+
+class Gaps(Recorded):
+    def test_counts_what_the_board_omits_while_the_program_stands_still(self):
+        with RealTimeBoard(self.blob) as port:
+            program = self.start(port, "gaps.csv")
+            time.sleep(0.5)
+            program.send_signal(signal.SIGSTOP)
+            time.sleep(5)  # more than the terminal holds
+            program.send_signal(signal.SIGCONT)
+            time.sleep(0.5)
+            program.send_signal(signal.SIGINT)
+            said = program.communicate()[1]
+        self.assertEqual(program.returncode, 0, said)
+        counts = re.search(r": (\d+) ticks in .*, (\d+) missing in (\d+) gaps, (\d+) of them omitted", said)
+        ticks, missing, gaps, omitted = map(int, counts.groups())
+        rows = self.rows("gaps.csv")
+        self.assertEqual(len(rows), ticks)
+        lost = [int(row["missing_ticks"]) for row in rows]
+        self.assertEqual((sum(lost), sum(count > 0 for count in lost)), (missing, gaps))
+        numbers = [int(row["tick"]) for row in rows]
+        self.assertEqual([b - a - 1 for a, b in zip(numbers, numbers[1:])], lost[1:])
+        self.assertGreater(missing, 100)
+        self.assertGreater(omitted, 0.9 * missing)
+        self.assertIn("the port was too slow", said)
+
+    def test_keeps_every_tick_of_a_board_in_real_time(self):
+        with RealTimeBoard(self.blob) as port:
+            said = self.record(port, "live.npz", "--seconds", "5", "--arm")
+        self.assertIn("live.npz: 5000 ticks in 4.999 s, none missing", said)
+
+
+class RealTimeBoard(ServedBoard):
+    """At a pseudo-terminal: the board does not wait for the program."""
+
+    def __init__(self, blob, *options):
+        super().__init__(TACTREE, blob, *options)
+        self.command.remove("--lock-step")
 
 
 class Hour(Recorded):
     def test_an_hour_at_1_khz_has_no_gap(self):
-        with ServedBoard(TACTREE, self.blob) as port:
-            said = self.record(port, "hour.npz", "--seconds", "3600", "--arm")
+        with ServedBoard(TACTREE, self.blob) as port, (self.path / "said").open("w") as said:
+            command = [TACTREE, "record", "--port", port, "-o", "hour.npz", "--seconds", "3600", "--arm"]
+            program = subprocess.Popen(command, cwd=self.path, stderr=said)
+            _, status, usage = os.wait4(program.pid, 0)
+            program.returncode = os.waitstatus_to_exitcode(status)
+        said = (self.path / "said").read_text()
+        self.assertEqual(program.returncode, 0, said)
         self.assertIn("hour.npz: 3600000 ticks in 3599.999 s, none missing", said)
+        self.assertLess(usage.ru_maxrss, 100_000, "KiB: memory does not grow with the duration")
         with zipfile.ZipFile(self.path / "hour.npz") as archive:
             data = archive.read("tick.npy")
         ticks = memoryview(data)[10 + int.from_bytes(data[8:10], "little"):].cast("I")

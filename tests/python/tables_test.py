@@ -74,6 +74,11 @@ class Recording(Folder):
             self.assertEqual(float(table["t_s"][-1]), 0.499)
             self.assertGreater(np.abs(tactree.vectors(table, "force")).max(), 0.1)
 
+    def test_a_csv_that_was_cut_off_ends_with_its_last_whole_row(self):
+        text = (self.path / "board.csv").read_text()
+        name = self.write("board.csv.incomplete", text[:-10])
+        self.assertEqual(len(tactree.read_recording(self.path / name)), 499)
+
     def test_every_value_of_the_csv(self):
         table = tactree.read_recording(self.path / "board.csv")
         with (self.path / "board.csv").open() as file:

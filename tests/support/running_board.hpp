@@ -3,9 +3,11 @@
 
 #include <atomic>
 #include <chrono>
+#include <functional>
 #include <latch>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "tactree/client/connection.hpp"
 #include "tactree/client/lock_step.hpp"
@@ -18,9 +20,13 @@ namespace tactree::test {
 /// Its model is a sphere of 3 cm radius; the simulated hand moves to `height_m` above the centre.
 class RunningBoard {
  public:
+  /// Called from the thread of the board after each tick.
+  using Observer = std::function<void(const simulation::Sample&)>;
+
   /// Returns when the port is open. `may_command`: see core::LinkSupervision.
-  explicit RunningBoard(double height_m = 0.04, bool may_command = true)
-      : thread_([this, height_m, may_command] { run(height_m, may_command); }) {
+  explicit RunningBoard(double height_m = 0.04, bool may_command = true, Observer observer = {})
+      : observer_(std::move(observer)),
+        thread_([this, height_m, may_command] { run(height_m, may_command); }) {
     listening_.wait();
   }
   ~RunningBoard() {
@@ -58,12 +64,16 @@ class RunningBoard {
       if (!frozen_) {
         simulation.board().safety_inputs().press_emergency_stop(emergency_stop_);
         hand_s = simulation.state() == core::State::kActive ? hand_s + 0.001 : 0.0;
-        (void)simulation.step_with_hand_at(hand_s);
+        const simulation::Sample sample = simulation.step_with_hand_at(hand_s);
+        if (observer_) {
+          observer_(sample);
+        }
       }
       server_.pass(std::chrono::milliseconds(1), [this] { return ending_.load(); });
     }
   }
 
+  Observer observer_;
   client::LockStepServer server_;
   std::latch listening_{1};
   std::atomic<bool> ending_ = false;

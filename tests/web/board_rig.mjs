@@ -19,8 +19,8 @@ export async function plugIn(t, ...options) {
 }
 
 // The maximum: the computer of a test may be busy.
-export async function watch(t) {
-  const server = await startServer([blob, '--port', cable, '--link-timeout', '100']);
+export async function watch(t, ...options) {
+  const server = await startServer([blob, '--port', cable, '--link-timeout', '100', ...options]);
   t.after(server.stop);
   return server;
 }

@@ -1,9 +1,11 @@
 // The page of `tactree view --port` with a simulated board: display, commands, stop.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
+import { readFileSync } from 'node:fs';
+import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { blob, cable, plugIn, RADIUS, small, watch } from './board_rig.mjs';
-import { buildModel, bumpySphere, launch, openPage, state, tactree, until } from './setup.mjs';
+import { buildModel, bumpySphere, folder, launch, openPage, state, tactree, until } from './setup.mjs';
 
 const other = buildModel('smaller', bumpySphere(6000, 0.02, 0), ['--unit', 'm']);
 const FORCE = ['force_x_N', 'force_y_N', 'force_z_N'];
@@ -170,6 +172,48 @@ test('reports a fault of the board with a link to its page, and that its cause p
   assert.equal(await page.locator('#fault-page').getAttribute('href'), '/faults/emergency-stop');
   await page.locator('#clear').click();
   await page.locator('#note', { hasText: 'Not cleared: the cause of emergency-stop persists' }).waitFor();
+  await page.close();
+});
+
+/** The rows of a recording: { column: cell }. */
+function recorded(name) {
+  const [heading, ...rows] = readFileSync(join(folder, name), 'utf8').trimEnd().split('\n');
+  const columns = heading.split(',');
+  return rows.map((row) => Object.fromEntries(row.split(',').map((cell, i) => [columns[i], cell])));
+}
+
+test('records into a file, without arming; the file of a lost board is complete', async (t) => {
+  const board = await plugIn(t);
+  const server = await watch(t, '--recording', join(folder, 'page.csv'));
+  const page = await openPage(browser, server.url);
+  await hidePicture(page);
+  await state(page, 'idle');
+  const button = page.locator('#record');
+  const shown = page.locator('#recording');
+  await button.click();
+  await page.locator('#record', { hasText: 'End recording' }).waitFor();
+  await page.waitForFunction(() => / [0-9]{4,} ticks in /.test(document.getElementById('recording').textContent));
+  await button.click();
+  await page.locator('#record', { hasText: /^Record$/ }).waitFor();
+  await page.waitForFunction(() => !document.getElementById('record').disabled);
+  // What the page states is in the file.
+  const text = await shown.textContent();
+  const rows = recorded('page.csv');
+  assert.ok(text.startsWith(join(folder, 'page.csv')), text);
+  assert.ok(text.includes(`: ${rows.length} ticks in `), text);
+  const missing = rows.reduce((sum, row) => sum + Number(row.missing_ticks), 0);
+  assert.match(text, missing === 0 ? /none missing/ : new RegExp(`, ${missing} missing in`));
+  assert.equal(Number(rows.at(-1).tick) - Number(rows[0].tick) + 1, rows.length + missing);
+  assert.deepEqual([...new Set(rows.map((row) => row.state))], ['idle']);
+
+  await button.click(); // another file
+  await page.locator('#recording', { hasText: /page-2.csv: [0-9]{3,} ticks/ }).waitFor();
+  await board.stop();
+  await page.locator('#note', { hasText: 'the recording ended early. The board is' }).waitFor();
+  await page.locator('#board-gone').waitFor();
+  assert.ok(await button.isDisabled());
+  assert.ok(recorded('page-2.csv').length > 99);
+  assert.deepEqual(page.troubles, []);
   await page.close();
 });
 

@@ -17,10 +17,11 @@ import tempfile
 import unittest
 import urllib.error
 import urllib.request
+import zipfile
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
-from served_board import build_ball  # noqa: E402
+from served_board import ServedBoard, build_ball  # noqa: E402
 
 TACTREE = sys.argv.pop(1)
 SKIPPED = 77
@@ -340,6 +341,8 @@ class ServerTest(unittest.TestCase):
                                  ((self.blob, "--trace", folder / "none.csv"), "cannot be read"),
                                  ((folder / "none.blob",), "none.blob"),
                                  ((self.blob, "--port", "/dev/no-such-port"), "/dev/no-such-port"),
+                                 ((self.blob, "--port", "none", "--recording", "a.rec"), "a.rec: a .rec holds"),
+                                 ((self.blob, "--port", "none", "--recording", "/dev/null"), "records to a file"),
                                  ((self.blob, self.blob, "--port", "/dev/no-such-port"), "give one BLOB")):
             code, text = run(*arguments)
             self.assertEqual(code, 1, arguments)
@@ -350,6 +353,39 @@ class ServerTest(unittest.TestCase):
             code, text = run(self.blob, *arguments)
             self.assertEqual(code, 2, arguments)
             self.assertIn(words, text)
+
+
+class BoardRecording(unittest.TestCase):
+    def test_records_as_the_command_and_shows_the_file(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            blob = build_ball(TACTREE, folder)
+            with ServedBoard(TACTREE, blob) as port:
+                server = Server(blob, "--port", port, "--recording", folder / "page.npz")
+                self.record(Page(server))
+                self.assertEqual(server.stop(), 0)
+                command = subprocess.run([TACTREE, "record", "--port", port, "--seconds", "0.1", "-o",
+                                          folder / "command.npz"], capture_output=True, text=True)
+                self.assertEqual(command.returncode, 0, command.stderr)
+            with zipfile.ZipFile(folder / "page.npz") as page, zipfile.ZipFile(folder / "command.npz") as other:
+                self.assertEqual(page.namelist(), other.namelist())
+            server = Server(blob, "--trace", folder / "page.npz")
+            rows = server.get("/trace.csv")[1].decode().splitlines()
+            server.stop()
+            self.assertGreater(len(rows), 500)
+
+    def record(self, page):
+        page.wait_for("hello")
+        page.say(do="record")
+        ticks = 0
+        while ticks < 500:
+            recording = page.wait_for("frame")["recording"]
+            ticks = int((re.search(r": (\d+) ticks", recording["text"]) or [0, 0])[1])
+        self.assertIn("none missing", recording["text"])
+        page.say(do="end_recording")
+        while page.wait_for("frame")["recording"]["state"] != "off":
+            pass
+        page.close()
 
 
 if __name__ == "__main__":

@@ -9,6 +9,8 @@
 #include <cstring>
 #include <iostream>
 
+#include "tactree/support/output_file.hpp"
+
 namespace tactree::support {
 namespace {
 
@@ -56,7 +58,8 @@ std::vector<std::string_view> split_csv(std::string_view line, CsvSeparator sepa
 CsvReader::CsvReader(const std::filesystem::path& file, CsvFormat format)
     : name_(file == "-" ? "standard input" : file.string()),
       format_(format),
-      in_(file == "-" ? std::cin : file_) {
+      in_(file == "-" ? std::cin : file_),
+      is_incomplete_(file.extension() == kIncomplete) {
   if (file != "-") {
     std::error_code error;
     if (std::filesystem::is_directory(file, error)) {
@@ -116,6 +119,9 @@ void CsvReader::refuse(const std::string& cause, const std::string& remedy) cons
 bool CsvReader::read_line() {
   while (std::getline(in_, text_)) {
     ++line_;
+    if (is_incomplete_ && in_.eof()) {
+      return false;
+    }
     const std::string_view text = trim(text_);
     if (!text.empty() && text.front() != '#') {
       cells_ = split_csv(text, format_.separator);

@@ -137,7 +137,7 @@ GrowingFile::GrowingFile(fs::path file) : file_(std::move(file)) {
   if (is_written_in_place(file_)) {
     descriptor_ = ::open(file_.c_str(), O_WRONLY | O_CLOEXEC);
   } else {
-    temporary_ = file_.string() + ".incomplete";
+    temporary_ = file_.string() + kIncomplete;
     descriptor_ = ::open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
   }
   if (descriptor_ < 0 && errno == EEXIST) {

@@ -17,9 +17,10 @@ namespace fs = std::filesystem;
 
 class CsvFile final : public TickFile {
  public:
-  explicit CsvFile(const fs::path& file) : file_(file) {
+  CsvFile(const fs::path& file, std::uint32_t fields)
+      : fields_(fields), columns_(columns_of(fields)), file_(file) {
     std::string heading;
-    for (const Column& column : columns()) {
+    for (const Column& column : columns_) {
       heading += (heading.empty() ? "" : ",") + column.name;
     }
     file_.append(heading + "\n");
@@ -36,10 +37,10 @@ class CsvFile final : public TickFile {
 
  private:
   void append_row(const Tick& tick, std::string& rows) {
-    values_of(tick, values_);
+    values_of(tick, values_, fields_);
     for (std::size_t i = 0; i < values_.size(); ++i) {
       rows += i == 0 ? "" : ",";
-      append_cell(columns()[i], values_[i], rows);
+      append_cell(columns_[i], values_[i], rows);
     }
     rows += '\n';
   }
@@ -57,23 +58,27 @@ class CsvFile final : public TickFile {
     }
   }
 
+  std::uint32_t fields_;
+  std::vector<Column> columns_;
   support::GrowingFile file_;
   std::vector<double> values_;
 };
 
 class NpzFile final : public TickFile {
  public:
-  explicit NpzFile(const fs::path& file) : file_(file, columns()) {}
+  NpzFile(const fs::path& file, std::uint32_t fields)
+      : fields_(fields), file_(file, columns_of(fields)) {}
 
   void append(std::span<const Tick> ticks) override {
     for (const Tick& tick : ticks) {
-      values_of(tick, values_);
+      values_of(tick, values_, fields_);
       file_.append(values_);
     }
   }
   void finish() override { file_.finish(); }
 
  private:
+  std::uint32_t fields_;
   NpzWriter file_;
   std::vector<double> values_;
 };
@@ -98,12 +103,12 @@ void check_tick_file(const fs::path& file) {
   }
 }
 
-std::unique_ptr<TickFile> open_tick_file(const fs::path& file) {
+std::unique_ptr<TickFile> open_tick_file(const fs::path& file, std::uint32_t fields) {
   check_tick_file(file);
   if (file.extension() == ".npz") {
-    return std::make_unique<NpzFile>(file);
+    return std::make_unique<NpzFile>(file, fields);
   }
-  return std::make_unique<CsvFile>(file);
+  return std::make_unique<CsvFile>(file, fields);
 }
 
 }  // namespace tactree::telemetry

@@ -2,14 +2,17 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 #include "tactree/core/control/controller.hpp"
+#include "tactree/core/link/wire/frame.hpp"
 
 namespace tactree::telemetry {
 namespace {
 
 // Differences of the board's clock beyond this are negative.
 constexpr std::uint32_t kHalf = 0x80000000U;
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 std::vector<std::string> state_names() {
   std::vector<std::string> names;
@@ -19,9 +22,13 @@ std::vector<std::string> state_names() {
   return names;
 }
 
+bool has_parts(std::uint32_t fields) {
+  return (fields & static_cast<std::uint32_t>(core::wire::TelemetryField::kParts)) != 0U;
+}
+
 /// Calls `visit(name, type, value)` for each column. The only list of the columns.
 template <class Visit>
-void visit_columns(const Tick& tick, Visit visit) {
+void visit_columns(const Tick& tick, std::uint32_t fields, Visit visit) {
   using enum ColumnType;
   const core::wire::Telemetry& t = tick.telemetry;
   const bool in_contact = t.body != core::kNoBody;
@@ -43,9 +50,15 @@ void visit_columns(const Tick& tick, Visit visit) {
   vector("velocity", "_m_s", t.velocity_m_s);
   vector("force", "_N", t.force_N);
   vector("wanted_force", "_N", t.wanted_N);
-  vector("gravity_force", "_N", t.gravity_N);
-  vector("added_force", "_N", t.added_N);
-  vector("motor_force", "_N", t.motors_N);
+  const auto part = [&](const std::string& name, const float(&v)[3]) {
+    constexpr float kUnknown[3] = {kNan, kNan, kNan};
+    if (has_parts(fields)) {
+      vector(name, "_N", has_parts(t.header.fields) ? v : kUnknown);
+    }
+  };
+  part("gravity_force", t.gravity_N);
+  part("added_force", t.added_N);
+  part("motor_force", t.motors_N);
   visit("in_contact", kUint8, in_contact ? 1.0 : 0.0);
   visit("body", kInt32, in_contact ? static_cast<double>(t.body) : -1.0);
   vector("proxy", "_m", in_contact ? t.proxy_m : t.probe_m);
@@ -81,20 +94,31 @@ std::size_t bytes_of(ColumnType type) {
   return kBytes[static_cast<std::size_t>(type)];
 }
 
+std::size_t frame_bytes(std::uint32_t fields) {
+  std::size_t bytes = sizeof(core::wire::FrameHeader) + sizeof(core::wire::TelemetryHeader) +
+                      core::wire::kFrameChecksumBytes;
+  for (std::uint32_t i = 0; i < core::wire::kTelemetryFields; ++i) {
+    bytes += (fields >> i & 1U) * core::wire::kTelemetryFieldBytes[i];
+  }
+  return bytes + 1 + bytes / 254 + 1;  // COBS, and the delimiter
+}
+
+std::vector<Column> columns_of(std::uint32_t fields) {
+  std::vector<Column> list;
+  visit_columns({}, fields, [&](const std::string& name, ColumnType type, double) {
+    list.push_back({name, type, name == "state" ? state_names() : std::vector<std::string>{}});
+  });
+  return list;
+}
+
 const std::vector<Column>& columns() {
-  static const std::vector<Column> kColumns = [] {
-    std::vector<Column> list;
-    visit_columns({}, [&](const std::string& name, ColumnType type, double) {
-      list.push_back({name, type, name == "state" ? state_names() : std::vector<std::string>{}});
-    });
-    return list;
-  }();
+  static const std::vector<Column> kColumns = columns_of(kRecordedFields);
   return kColumns;
 }
 
-void values_of(const Tick& tick, std::vector<double>& values) {
+void values_of(const Tick& tick, std::vector<double>& values, std::uint32_t fields) {
   values.clear();
-  visit_columns(tick,
+  visit_columns(tick, fields,
                 [&](const std::string&, ColumnType, double value) { values.push_back(value); });
 }
 

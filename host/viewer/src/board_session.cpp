@@ -10,8 +10,11 @@
 #include "board_facts.hpp"
 #include "command_outcome.hpp"
 #include "contact_parameters.hpp"
+#include "page_recording.hpp"
 #include "tactree/client/link_error.hpp"
 #include "tactree/client/ports.hpp"
+#include "tactree/support/user_error.hpp"
+#include "tactree/telemetry/tick_table.hpp"
 #include "trace_columns.hpp"
 
 namespace tactree::viewer {
@@ -21,15 +24,11 @@ using nlohmann::json;
 
 constexpr std::size_t kMaxQueued = 64;
 constexpr std::chrono::seconds kMaxSilence{2};
+// Counts as silence in one pass at most: this program may have stood still, not the board.
+constexpr std::chrono::microseconds kMaxCounted{100'000};
 constexpr std::chrono::milliseconds kRetryInterval{200};
 constexpr std::chrono::milliseconds kMinPause{1};    // between frames, on a slow computer
 constexpr std::chrono::seconds kConfirmTimeout{30};  // the default of tactree arm
-
-// All fields except the reactions of bodies.
-constexpr std::uint32_t kFields =
-    core::wire::kAllTelemetry & ~static_cast<std::uint32_t>(core::wire::TelemetryField::kReactions);
-// Size of a message with these fields, including header and framing.
-constexpr unsigned kMessageBytes = 176;
 
 core::Vec3 vec3(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
 
@@ -64,7 +63,8 @@ BoardSession::BoardSession(Bodies bodies, BoardSettings settings)
     : bodies_(std::move(bodies)),
       settings_(std::move(settings)),
       board_(std::make_unique<client::Board>(settings_.port, settings_.link)),
-      outcome_(std::make_unique<CommandOutcome>()) {
+      outcome_(std::make_unique<CommandOutcome>()),
+      recording_(std::make_unique<PageRecording>(settings_.recording)) {
   begin_session();
 }
 
@@ -74,13 +74,20 @@ void BoardSession::begin_session() {
   auto facts = std::make_unique<BoardFacts>(ask_board(*board_, settings_.model));
   work_ = work_of(*facts);
   sent_.contact.stiffness_N_m = facts->can.stiffness_N_m;
-  board_->subscribe({kFields, ticks_per_message(*facts)});
   facts_ = std::move(facts);
-  last_telemetry_ = board_->connection().now();
+  subscribe();
+  last_pass_ = board_->connection().now();
+  silence_ = {};
   last_.reset();
   outcome_->stopped();
   strip_ = {};
   log_.clear();
+}
+
+void BoardSession::subscribe() {
+  subscription_ = {telemetry::recorded_fields(board_->connection().protocol_minor()),
+                   ticks_per_message(*facts_)};
+  board_->subscribe(subscription_);
 }
 
 Work BoardSession::work_of(const BoardFacts& facts) const {
@@ -102,7 +109,8 @@ std::uint32_t BoardSession::ticks_per_message(const BoardFacts& facts) const {
   if (!bytes_s) {
     return 1U;
   }
-  const double messages_s = std::max(1.0, 0.5 * *bytes_s / kMessageBytes);
+  const double messages_s =
+      std::max(1.0, 0.5 * *bytes_s / static_cast<double>(telemetry::frame_bytes()));
   return static_cast<std::uint32_t>(
       std::max(1.0, std::ceil(static_cast<double>(facts.can.rate_hz) / messages_s)));
 }
@@ -136,11 +144,14 @@ std::optional<std::string> BoardSession::command(const json& command) {
     } else if (name == "hand" || name == "inject" || name == "clear_injections") {
       return fmt::format(
           "'{}': not available with a board (use a simulation: tactree view without --port)", name);
-    } else if (name != "arm" && name != "clear" && name != "connect" && name != "home") {
-      return fmt::format("'{}': unknown command (a board has arm, stop, clear, home, set, connect)",
-                         name);
+    } else if (name != "arm" && name != "clear" && name != "connect" && name != "home" &&
+               name != "record" && name != "end_recording") {
+      return fmt::format(
+          "'{}': unknown command (a board has arm, stop, clear, home, set, connect, record, "
+          "end_recording)",
+          name);
     }
-    if (name != "connect" && link_ != Link::kConnected) {
+    if (name != "connect" && name != "end_recording" && link_ != Link::kConnected) {
       return "the board is not connected";
     }
     enqueue(command);
@@ -163,7 +174,10 @@ void BoardSession::enqueue(const json& command) {
 std::optional<std::string> BoardSession::post_stop() {
   {
     const std::lock_guard lock(mutex_);
-    commands_.clear();  // no earlier command may start the board again
+    // No earlier command may start the board again. A recording goes on or ends as wanted.
+    std::erase_if(commands_, [](const json& command) {
+      return command["do"] != "record" && command["do"] != "end_recording";
+    });
   }
   stop_wanted_ = true;
   const std::unique_lock lock(connecting_, std::try_to_lock);
@@ -197,6 +211,7 @@ void BoardSession::run(const Publish& publish) {
       std::this_thread::sleep_for(left);
     }
   }
+  recording_->finish();
 }
 
 void BoardSession::update_board() {
@@ -218,6 +233,9 @@ void BoardSession::update_board() {
     read_telemetry();
   }
   check_link();
+  if (const std::optional<std::string> problem = recording_->update()) {
+    report(*problem);
+  }
 }
 
 void BoardSession::stop_if_wanted() {
@@ -246,9 +264,21 @@ void BoardSession::execute(const json& command) {
     outcome_->cleared(last_ ? last_->t_s : 0.0);
   } else if (name == "home") {
     board_->home();
+  } else if (name == "record") {
+    begin_recording();
+  } else if (name == "end_recording") {
+    recording_->end();
   } else if (!arming_until_) {
     board_->begin_arming();
     arming_until_ = board_->connection().now() + kConfirmTimeout;
+  }
+}
+
+void BoardSession::begin_recording() {
+  try {
+    recording_->begin({subscription_.fields, subscription_.every_ticks, 0.0});
+  } catch (const support::UserError& error) {
+    report(error.what());
   }
 }
 
@@ -291,7 +321,9 @@ void BoardSession::continue_arming() {
 }
 
 void BoardSession::read_telemetry() {
-  for (const client::Telemetry& telemetry : board_->take_stream()) {
+  const std::vector<client::Telemetry> messages = board_->take_stream();
+  recording_->add(messages);
+  for (const client::Telemetry& telemetry : messages) {
     add(telemetry);
   }
 }
@@ -321,7 +353,7 @@ void BoardSession::add(const client::Telemetry& telemetry) {
     report(*news);
   }
   last_ = sample;
-  last_telemetry_ = board_->connection().now();
+  silence_ = {};
 }
 
 void BoardSession::check_link() {
@@ -331,14 +363,19 @@ void BoardSession::check_link() {
   if (link_ != Link::kConnected) {
     return;
   }
+  const std::chrono::microseconds now = board_->connection().now();
+  silence_ += std::min(now - last_pass_, kMaxCounted);
+  last_pass_ = now;
   if (!board_->in_session()) {
     set_lost(Link::kTaken, "Another program uses the board, or the board was reset.");
-  } else if (board_->connection().now() - last_telemetry_ > kMaxSilence) {
+  } else if (silence_ > kMaxSilence) {
     set_lost(Link::kLost, "The board sends no telemetry.");
   }
 }
 
 void BoardSession::set_lost(Link link, const std::string& why) {
+  read_telemetry();  // what arrived before the loss
+  recording_->end(why);
   link_ = link;
   why_lost_ = why;
   arming_until_.reset();
@@ -379,6 +416,7 @@ std::string BoardSession::frame() {
                       {"work", work_json(work_)},
                       {"settings", settings_json()},
                       {"board", board_json()},
+                      {"recording", recording_->to_json()},
                       {"news", {{"number", news_number_}, {"text", news_}}}};
   return frame.dump(-1, ' ', false, json::error_handler_t::replace);
 }

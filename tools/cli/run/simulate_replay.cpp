@@ -7,6 +7,7 @@
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "run/simulate_run.hpp"
 #include "run/simulate_setup.hpp"
@@ -20,6 +21,21 @@
 
 namespace tactree::cli {
 namespace {
+
+/// Refuses traces and recordings of boards, which tell what a controller did. A replay needs what
+/// reached it.
+void refuse_tables(const std::string& file, const std::vector<std::byte>& header) {
+  const std::string_view begin(reinterpret_cast<const char*>(header.data()), header.size());
+  if (begin.starts_with("t_s,") || begin.starts_with("PK\x03\x04")) {
+    refuse(fmt::format("{}: a trace, or the recording of a board, cannot be replayed: it has "
+                       "positions and forces, but neither the configuration of the controller nor "
+                       "the encoder counts and requests of its ticks",
+                       file),
+           fmt::format("tactree view BLOB --trace {} shows it; simulate --record writes a file for "
+                       "--replay, also with --serve",
+                       file));
+  }
+}
 
 /// Checks the header before it reads the rest, because a file may have any size. Throws
 /// simulation::RecordingError.
@@ -43,6 +59,7 @@ std::vector<std::byte> read_recording(const std::string& file) {
     }
   };
   read_to(std::min<std::uintmax_t>(size, simulation::kRecordingHeaderBytes));
+  refuse_tables(file, bytes);
   simulation::check_recording_header(bytes, size);
   read_to(size);
   return bytes;

@@ -114,9 +114,22 @@ void serve_at(const SimulateOptions& options, const setup::SceneFile& scene,
   serve_target(options, scene, std::move(target), schedule);
 }
 
+/// Results that are held in memory until the end of a run, which a served board does not have.
+void refuse_results(const SimulateOptions& options) {
+  const std::pair<const char*, const std::string*> results[] = {
+      {"--trace", &options.trace}, {"--plot", &options.plot}, {"--json", &options.json}};
+  for (const auto& [name, file] : results) {
+    if (!file->empty()) {
+      refuse(fmt::format("{}: not written with --serve", name),
+             "record the board with tactree record, or the inputs of its controller with --record");
+    }
+  }
+}
+
 }  // namespace
 
 void serve(const SimulateOptions& options, const setup::SceneFile& scene) {
+  refuse_results(options);
   if ((options.on_usb || options.usb_port) && options.board != "host") {
     refuse(fmt::format("--board {}: an emulated board has no USB port", options.board),
            "use --board host, or omit --usb");

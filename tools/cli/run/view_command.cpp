@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <cstdio>
 #include <exception>
 #include <future>
 #include <memory>
@@ -21,7 +22,9 @@
 #include "tactree/setup/scene_file.hpp"
 #include "tactree/simulation/placement.hpp"
 #include "tactree/support/device_file.hpp"
+#include "tactree/support/output_file.hpp"
 #include "tactree/support/user_error.hpp"
+#include "tactree/telemetry/tick_recorder.hpp"
 #include "tactree/viewer/board_session.hpp"
 #include "tactree/viewer/live_session.hpp"
 #include "tactree/viewer/server.hpp"
@@ -37,6 +40,7 @@ struct ViewOptions {
   BoardPort board;
   int link_timeout_ms = 50;
   std::string firmware;
+  std::string recording = "recording.csv";
   std::string mode = "surface";
   viewer::Settings settings;
   viewer::ServerOptions server{.address = "127.0.0.1", .port = 8023};
@@ -74,17 +78,34 @@ std::vector<viewer::NamedDevice> devices(const std::string& chosen) {
   return list;
 }
 
+/// For the session's thread, therefore without exceptions.
+void print_line(const std::string& text) {
+  (void)std::fputs((text + "\n").c_str(), stdout);
+  (void)std::fflush(stdout);
+}
+
+/// The page numbers the names of its recordings, and a device or pipe has no such names.
+void check_recording(const std::string& file) {
+  telemetry::check_tick_file(file);
+  if (support::is_written_in_place(file)) {
+    support::refuse(file, "a page records to a file", "give the name of a .csv or .npz");
+  }
+}
+
 std::unique_ptr<viewer::Source> board_source(const ViewOptions& options,
                                              const setup::SceneFile& scene) {
   if (scene.files.size() != 1) {
     throw support::UserError("--port: a board has only one model (give one BLOB)");
   }
+  check_recording(options.recording);
   const support::BlobFile& shown = *scene.files[0];
   viewer::BoardSettings settings;
   settings.port = options.board.port;
-  settings.link = {options.board.baud, static_cast<std::uint16_t>(options.link_timeout_ms)};
+  settings.link = {options.board.baud, static_cast<std::uint16_t>(options.link_timeout_ms),
+                   telemetry::kStreamCapacity};
   settings.device = support::load_device(options.settings.device).preset.model;
   settings.model = shown.bytes();
+  settings.recording = {options.recording, print_line};
   settings.work = [&shown, firmware = options.firmware](const std::string& board,
                                                         const core::wire::CapabilitiesReply& can) {
     return work_of_board(board, can, shown.view().header(), firmware);
@@ -239,7 +260,7 @@ void add_server_options(CLI::App& verb, ViewOptions& options) {
   verb.add_option(
           "--address", options.server.address,
           "address to listen on; with an address other than loopback, others on the network can "
-          "move the simulated hand or arm the board")
+          "move the simulated hand, arm the board and record it on the disk of this computer")
       ->capture_default_str();
 }
 
@@ -265,6 +286,12 @@ void add_board_options(CLI::App& verb, ViewOptions& options) {
   verb.add_option("--firmware", options.firmware,
                   "folder with the board's image, for the bound of a tick (default: as simulate)")
       ->needs(port);
+  verb.add_option(
+          "--recording", options.recording,
+          "file of the page's button Record, as of tactree record: FILE.csv, or FILE.npz for "
+          "NumPy; if it exists, the name is numbered")
+      ->capture_default_str()
+      ->needs(port);
 }
 
 void add_session_options(CLI::App& verb, ViewOptions& options) {
@@ -289,8 +316,10 @@ void add_view_command(CLI::App& app, int&) {
   verb->add_option("--scene", options->scene,
                    "JSON file with the positions of the bodies: see simulate")
       ->check(CLI::ExistingFile);
-  verb->add_option("--trace", options->trace,
-                   "play back this trace of simulate --trace instead of a simulation");
+  verb->add_option(
+      "--trace", options->trace,
+      "play back this trace of simulate --trace, or recording of a board (.csv, .npz), "
+      "instead of a simulation");
   add_session_options(*verb, *options);
   add_board_options(*verb, *options);
   add_server_options(*verb, *options);

@@ -1,9 +1,16 @@
-// State of a board apart from its ticks: connection and model.
+// State of a board apart from its ticks: connection, model and recording.
 
-import type { Board, Frame } from './messages';
+import type { Board, Command, Frame, Recording } from './messages';
 import { find } from './panel';
 
 export class BoardView {
+  private readonly record = find<HTMLButtonElement>('record');
+  private isRecording = false;
+
+  constructor(say: (command: Command) => void) {
+    this.record.addEventListener('click', () => say({ do: this.isRecording ? 'end_recording' : 'record' }));
+  }
+
   show(frame: Frame): void {
     const { board } = frame;
     find('board-gone').hidden = !board || board.link === 'here';
@@ -15,6 +22,14 @@ export class BoardView {
     find<HTMLFieldSetElement>('contact').disabled = isOnlyWatched;
     find('watch-only').hidden = !isOnlyWatched;
     if (board) this.describe(board);
+    if (board && frame.recording) this.showRecording(frame.recording, board.link === 'here');
+  }
+
+  private showRecording(recording: Recording, isConnected: boolean): void {
+    this.isRecording = recording.state === 'on';
+    this.record.disabled = recording.state === 'completing' || (!this.isRecording && !isConnected);
+    set('record', this.isRecording ? 'End recording' : 'Record');
+    set('recording', recording.text);
   }
 
   private describe(board: Board): void {

@@ -23,7 +23,7 @@ const strips = {
 const numbers = new Numbers();
 const panel = new Panel(say);
 const player = new Player(say, strips.force, strips.penetration);
-const board = new BoardView();
+const board = new BoardView(say);
 const news = new News();
 const why = new Why();
 const hand = new Hand(view, (target_m, via_m, speed_m_s) => say({ do: 'hand', target_m, via_m, speed_m_s }));

@@ -79,6 +79,12 @@ export interface Board {
   dropped: number;
 }
 
+/** A recording of the board in a file, as of `tactree record`. */
+export interface Recording {
+  state: 'off' | 'on' | 'completing';
+  text: string; // file and counts of this or the last recording
+}
+
 export interface Frame {
   type: 'frame';
   t_s: number;
@@ -95,6 +101,7 @@ export interface Frame {
   news?: { number: number; text: string };
   // of a board, with settings
   board?: Board;
+  recording?: Recording;
   // of a trace
   tick?: number;
   playing?: number;

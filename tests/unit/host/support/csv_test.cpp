@@ -4,6 +4,7 @@
 
 #include "folder_test.hpp"
 #include "message_of.hpp"
+#include "tactree/support/output_file.hpp"
 
 namespace tactree::support {
 namespace {
@@ -77,6 +78,18 @@ TEST_F(CsvFile, RefusesNonFiniteNumbers) {
     ASSERT_TRUE(table.next_row());
     EXPECT_THROW((void)table.number(1), support::CsvError) << number;
   }
+}
+
+TEST_F(CsvFile, IgnoresCutEndOfIncompleteFile) {
+  const std::filesystem::path file = write("a,b\n1,2\n3");
+  support::CsvReader whole(file, {});
+  EXPECT_TRUE(whole.next_row());
+  EXPECT_THROW((void)whole.next_row(), CsvError);
+  const std::filesystem::path incomplete = file.string() + support::kIncomplete;
+  std::filesystem::copy_file(file, incomplete);
+  support::CsvReader cut(incomplete, {});
+  EXPECT_TRUE(cut.next_row());
+  EXPECT_FALSE(cut.next_row());
 }
 
 TEST_F(CsvFile, RefusesRowsUnlikeHeader) {

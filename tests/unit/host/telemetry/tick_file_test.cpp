@@ -46,6 +46,18 @@ TEST_F(TickFileTest, CsvKeepsEveryValue) {
   EXPECT_FALSE(table.next_row());
 }
 
+TEST_F(TickFileTest, HasOnlyColumnsOfTheFields) {
+  constexpr std::uint32_t kFields = recorded_fields(0);
+  const Tick tick = tick_with_values();
+  const auto path = folder_ / "older.csv";
+  const auto file = open_tick_file(path, kFields);
+  file->append(std::span(&tick, 1));
+  file->finish();
+  support::CsvReader table(path, {});
+  EXPECT_EQ(table.columns().size(), columns_of(kFields).size());
+  EXPECT_TRUE(table.next_row());
+}
+
 TEST_F(TickFileTest, WithoutFinishCsvIsIncompleteByName) {
   const auto path = folder_ / "ticks.csv";
   const Tick tick = tick_with_values();

@@ -2,7 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
 #include <set>
+#include <span>
+
+#include "tactree/core/link/wire/frame.hpp"
 
 namespace tactree::telemetry {
 namespace {
@@ -45,15 +50,50 @@ TEST(TickSequence, DropsOldMessages) {
   EXPECT_EQ(sequence.next(message(8, 8000))->missing_ticks, 0U);
 }
 
+std::set<std::string> names_of(const std::vector<Column>& columns) {
+  std::set<std::string> names;
+  for (const Column& column : columns) {
+    names.insert(column.name);
+  }
+  return names;
+}
+
 TEST(TickColumns, HaveAValueAndAName) {
   std::vector<double> values;
   values_of({}, values);
   EXPECT_EQ(values.size(), columns().size());
-  std::set<std::string> names;
-  for (const Column& column : columns()) {
-    names.insert(column.name);
+  EXPECT_EQ(names_of(columns()).size(), columns().size());
+}
+
+// Zeros would look like measured forces.
+TEST(TickColumns, OmitForcesThatOlderBoardsDoNotSend) {
+  constexpr std::uint32_t kFields = recorded_fields(0);
+  const std::set<std::string> names = names_of(columns_of(kFields));
+  EXPECT_EQ(names.size() + 9, columns().size());
+  EXPECT_FALSE(names.contains("motor_force_x_N"));
+  EXPECT_TRUE(names.contains("wanted_force_x_N"));
+  Tick tick;
+  tick.telemetry.header.fields = kFields;
+  std::vector<double> values;
+  values_of(tick, values, kFields);
+  EXPECT_EQ(values.size(), names.size());
+  values_of(tick, values);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    EXPECT_EQ(std::isnan(values[i]), !names.contains(columns()[i].name)) << columns()[i].name;
   }
-  EXPECT_EQ(names.size(), columns().size());
+}
+
+TEST(FrameBytes, AreThoseOfAnEncodedFrame) {
+  for (const std::uint32_t fields : {kRecordedFields, core::wire::kAllTelemetry, 1U}) {
+    core::wire::Telemetry telemetry;
+    telemetry.header.fields = fields;
+    std::array<std::byte, core::wire::kMaxTelemetry> payload{};
+    const std::size_t size = core::wire::encode_telemetry(telemetry, payload);
+    std::array<std::byte, core::wire::kMaxEncodedFrame> frame{};
+    EXPECT_EQ(frame_bytes(fields),
+              core::wire::encode_frame({}, std::span(payload).first(size), frame))
+        << fields;
+  }
 }
 
 }  // namespace

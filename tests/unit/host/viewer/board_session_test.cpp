@@ -6,11 +6,13 @@
 
 #include <filesystem>
 
+#include "folder_test.hpp"
 #include "frames.hpp"
 #include "running_board.hpp"
 #include "tactree/client/link_error.hpp"
 #include "tactree/client/ports.hpp"
 #include "tactree/core/configuration/device_presets.hpp"
+#include "tactree/support/csv.hpp"
 
 namespace tactree::test {
 namespace {
@@ -37,7 +39,7 @@ class Cable {
                                 ("tactree-board-session-" + std::to_string(::getpid()));
 };
 
-class BoardSessionTest : public testing::Test {
+class BoardSessionTest : public FolderTest {
  protected:
   static viewer::Bodies bodies() {
     simulation::SceneBody body;
@@ -62,7 +64,10 @@ class BoardSessionTest : public testing::Test {
     cable_.plug_in(*running_);
   }
   void begin() {
-    session_ = std::make_unique<BoardSession>(bodies(), settings(cable_.name()));
+    viewer::BoardSettings chosen = settings(cable_.name());
+    chosen.link.stream_capacity = 65536;
+    chosen.recording.file = folder_ / "ticks.csv";
+    session_ = std::make_unique<BoardSession>(bodies(), std::move(chosen));
     session_->start(frames_.taker());
   }
   /// Keeps the board armed until `holds`; rearms after a link loss on a busy computer.
@@ -77,6 +82,19 @@ class BoardSessionTest : public testing::Test {
     });
   }
   void arm() { (void)while_armed(is_active); }
+  static bool is_recording(const json& frame) {
+    const std::string text = frame["recording"]["text"];
+    return frame["recording"]["state"] == "on" && text.find(": 0 ticks") == std::string::npos;
+  }
+  [[nodiscard]] std::vector<std::uint32_t> recorded_ticks() const {
+    support::CsvReader table(folder_ / "ticks.csv", {});
+    const std::size_t column = table.find_column("tick").value();
+    std::vector<std::uint32_t> ticks;
+    while (table.next_row()) {
+      ticks.push_back(static_cast<std::uint32_t>(table.number(column)));
+    }
+    return ticks;
+  }
   static bool is_active(const json& frame) {
     return is_here(frame) && frame["runs"][0]["state"] == "active";
   }
@@ -259,6 +277,52 @@ TEST_F(BoardSessionTest, TracesEveryTickAsReported) {
                        std::find(csv.begin() + static_cast<std::ptrdiff_t>(heading.size()) + 1,
                                  csv.end(), '\n'),
                        ','));
+}
+
+TEST_F(BoardSessionTest, RecordsEveryTick) {
+  plug_in();
+  begin();
+  frames_.wait_for(is_here);
+  say({{"do", "record"}});
+  const double begin_s = frames_.wait_for(is_recording)["t_s"];
+  frames_.wait_for([&](const json& f) { return f["t_s"].get<double>() > begin_s + 0.5; });
+  EXPECT_EQ(refusal({{"do", "record"}}), "accepted");  // refused by the session's thread
+  say({{"do", "end_recording"}});
+  const json done =
+      frames_.wait_for([](const json& f) { return f["recording"]["state"] == "off"; });
+  const std::vector<std::uint32_t> ticks = recorded_ticks();
+  EXPECT_GT(ticks.size(), 400U);
+  EXPECT_EQ(ticks.back() - ticks.front() + 1U, ticks.size());
+  const std::string text = done["recording"]["text"];
+  EXPECT_TRUE(text.starts_with(folder_.string())) << text;
+  EXPECT_NE(text.find(std::to_string(ticks.size()) + " ticks in"), std::string::npos) << text;
+  EXPECT_NE(text.find("none missing"), std::string::npos) << text;
+}
+
+TEST_F(BoardSessionTest, CompletesRecordingOfLostBoard) {
+  plug_in();
+  begin();
+  frames_.wait_for(is_here);
+  say({{"do", "record"}});
+  const double begin_s = frames_.wait_for(is_recording)["t_s"];
+  frames_.wait_for([&](const json& f) { return f["t_s"].get<double>() > begin_s + 0.2; });
+  running_.reset();
+  frames_.wait_for([](const json& f) {
+    return f["news"]["text"].get<std::string>().find("the recording ended early. The board") !=
+           std::string::npos;
+  });
+  EXPECT_GT(recorded_ticks().size(), 150U);
+  EXPECT_NE(refusal({{"do", "record"}}), "accepted");
+}
+
+TEST_F(BoardSessionTest, CompletesRecordingAtItsEnd) {
+  plug_in();
+  begin();
+  frames_.wait_for(is_here);
+  say({{"do", "record"}});
+  frames_.wait_for(is_recording);
+  session_.reset();
+  EXPECT_GT(recorded_ticks().size(), 0U);
 }
 
 TEST_F(BoardSessionTest, RefusesPortWithoutBoard) {

@@ -4,11 +4,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "folder_test.hpp"
 #include "message_of.hpp"
+#include "tactree/core/link/wire/telemetry.hpp"
 #include "tactree/simulation/trace.hpp"
+#include "tactree/telemetry/tick_file.hpp"
 
 namespace tactree::test {
 namespace {
@@ -84,6 +87,52 @@ TEST_F(TracePlaybackTest, RefusesInvalidFilesWithLine) {
   word.replace(word.find("\n0,") + 1, 1, "zero");
   EXPECT_NE(refusal(word).find("line 2: column 1 (t_s) is not a number: 'zero'"),
             std::string::npos);
+}
+
+/// The ticks of a board with the states of the samples.
+std::vector<telemetry::Tick> ticks_of(const std::vector<Sample>& samples) {
+  std::vector<telemetry::Tick> ticks;
+  for (const Sample& sample : samples) {
+    telemetry::Tick tick;
+    tick.time_us = 1000 * ticks.size();
+    core::Status status = sample.status;
+    status.motor_force = {1.0F, 0.1F, -2.0F};
+    tick.telemetry = core::wire::to_telemetry({0, 0, telemetry::kRecordedFields, 0}, status);
+    ticks.push_back(tick);
+  }
+  return ticks;
+}
+
+TEST_F(TracePlaybackTest, ShowsRecordingsOfBoard) {
+  const std::vector<telemetry::Tick> ticks = ticks_of(some_samples());
+  std::vector<std::string> shown;
+  for (const char* name : {"board.csv", "board.npz"}) {
+    const auto file = telemetry::open_tick_file(folder_ / name);
+    file->append(ticks);
+    file->finish();
+    const std::vector<Sample> samples = viewer::read_trace(folder_ / name);
+    EXPECT_TRUE(samples[0].has_parts);
+    EXPECT_EQ(samples[0].status.motor_force, (core::Vec3{1.0F, 0.1F, -2.0F}));
+    EXPECT_EQ(samples[4].status.state, core::State::kFault);
+    shown.push_back(csv_of(samples));
+  }
+  EXPECT_EQ(shown[0], shown[1]);
+  EXPECT_EQ(std::count(shown[0].begin(), shown[0].end(), '\n'), 6);
+}
+
+TEST_F(TracePlaybackTest, RefusesArchivesOfOtherPrograms) {
+  EXPECT_NE(message_of<std::runtime_error>([&] {
+              (void)viewer::read_trace(write("other.npz", "t_s,probe_x_m\n"));
+            }).find("other.npz: not an archive of NumPy"),
+            std::string::npos);
+}
+
+TEST_F(TracePlaybackTest, ShowsCutRecordingUpToLastRow) {
+  const std::vector<telemetry::Tick> ticks = ticks_of(some_samples());
+  telemetry::open_tick_file(folder_ / "cut.csv")->append(ticks);
+  const auto file = folder_ / "cut.csv.incomplete";
+  std::filesystem::resize_file(file, std::filesystem::file_size(file) - 10);
+  EXPECT_EQ(viewer::read_trace(file).size(), ticks.size() - 1);
 }
 
 TEST_F(TracePlaybackTest, CommandsStayWithinTrace) {

@@ -8,7 +8,8 @@
 //   }
 //
 // A cell holds no comma, quote or line break. Blanks around a cell, empty lines, lines that start
-// with '#' and a carriage return at the end of a line are ignored.
+// with '#' and a carriage return at the end of a line are ignored, and the end of a file of a
+// program that was cut off (GrowingFile): in FILE.incomplete, a last line without a line break.
 
 #include <cstddef>
 #include <filesystem>
@@ -80,6 +81,7 @@ class CsvReader {
   CsvFormat format_;
   std::ifstream file_;
   std::istream& in_;
+  bool is_incomplete_;
   std::size_t line_ = 0;
   std::string text_;
   bool pending_ = false;  // the current row was read together with the header

@@ -25,6 +25,9 @@ void write_file(const std::filesystem::path& file, std::string_view text);
 /// True for a device or pipe, such as /dev/stdout, which is not replaced by a regular file.
 [[nodiscard]] bool is_written_in_place(const std::filesystem::path& file);
 
+/// End of the name of a GrowingFile that is not finished.
+inline constexpr const char* kIncomplete = ".incomplete";
+
 /// A file that grows for a long time. The bytes are in FILE.incomplete until finish() gives it its
 /// name; a device or pipe is written in place. All members but reserve() throw UserError.
 class GrowingFile {

@@ -34,6 +34,9 @@ void check_tick_file(const std::filesystem::path& file);
 /// NPZ: an archive for numpy.load() with an array for each column, and the array state_names, whose
 /// elements `state` counts. Until finish(), the rows are in a file without a name, so nothing
 /// remains if the program is killed.
-[[nodiscard]] std::unique_ptr<TickFile> open_tick_file(const std::filesystem::path& file);
+///
+/// The columns are those of messages with `fields`.
+[[nodiscard]] std::unique_ptr<TickFile> open_tick_file(const std::filesystem::path& file,
+                                                       std::uint32_t fields = kRecordedFields);
 
 }  // namespace tactree::telemetry

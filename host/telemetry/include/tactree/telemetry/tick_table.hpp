@@ -16,6 +16,14 @@ namespace tactree::telemetry {
 inline constexpr std::uint32_t kRecordedFields =
     core::wire::kAllTelemetry & ~static_cast<std::uint32_t>(core::wire::TelemetryField::kReactions);
 
+/// Those that exist in version 1.`minor` of the protocol.
+[[nodiscard]] constexpr std::uint32_t recorded_fields(std::uint8_t minor) {
+  return kRecordedFields & core::wire::telemetry_fields_of(minor);
+}
+
+/// Bytes on the wire of a message with these fields, including header, checksum and framing.
+[[nodiscard]] std::size_t frame_bytes(std::uint32_t fields = kRecordedFields);
+
 struct Tick {
   std::uint64_t time_us = 0;        ///< board time since the first tick; does not wrap
   std::uint32_t missing_ticks = 0;  ///< messages missing between the previous tick and this one
@@ -51,7 +59,13 @@ struct Column {
 /// The columns of a recording. Names that a trace of `tactree simulate` also has mean the same.
 [[nodiscard]] const std::vector<Column>& columns();
 
-/// Writes the values of a tick, in the order of columns(). A double holds each of them exactly.
-void values_of(const Tick& tick, std::vector<double>& values);
+/// The columns of a recording of messages with these fields: without gravity_force, added_force and
+/// motor_force if kParts, which boards of protocol 1.0 do not send, is not among them.
+[[nodiscard]] std::vector<Column> columns_of(std::uint32_t fields);
+
+/// Writes the values of a tick, in the order of columns_of(fields). A double holds each of them
+/// exactly. The forces of kParts are NaN if the message does not contain them.
+void values_of(const Tick& tick, std::vector<double>& values,
+               std::uint32_t fields = kRecordedFields);
 
 }  // namespace tactree::telemetry

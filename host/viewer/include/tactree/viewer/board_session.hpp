@@ -8,12 +8,17 @@
 //   {"do": "set", "stiffness_N_m": 400, "damping_Ns_m": 0.5, "static_friction": 0.4,
 //    "dynamic_friction": 0.3, "use_materials": true, "force_max_N": 3}  any subset
 //   {"do": "connect"}                      after another program has taken over the board
+//   {"do": "record"} {"do": "end_recording"}  as tactree record: every tick received, in a file of
+//                                          this computer. The recording goes on when all pages are
+//                                          closed, and ends at the loss of the board
+// Frames state the recording: {"recording": {"state": "on", "text": ...}}.
 // If the board refuses a command, later frames contain a notice:
 // {"news": {"number": 1, "text": ...}}.
 
 #include <atomic>
 #include <chrono>
 #include <deque>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -31,6 +36,16 @@ namespace tactree::viewer {
 
 struct BoardFacts;
 class CommandOutcome;
+class PageRecording;
+
+/// Where a page records to.
+struct RecordingTarget {
+  /// Ends with .csv or .npz. If it exists, the name is numbered: recording-2.csv.
+  std::filesystem::path file = "recording.csv";
+  /// States on the terminal where a recording is, and its counts. Called from the session's thread;
+  /// must not throw. May be empty.
+  std::function<void(const std::string&)> tell{};
+};
 
 struct BoardSettings {
   std::string port;
@@ -40,6 +55,7 @@ struct BoardSettings {
   /// Returns the work per tick of the named board with the displayed model. If empty, the work is
   /// unknown.
   std::function<Work(const std::string& board, const core::wire::CapabilitiesReply& can)> work;
+  RecordingTarget recording{};
 };
 
 class BoardSession : public Source {
@@ -61,10 +77,12 @@ class BoardSession : public Source {
   void begin_session();
   [[nodiscard]] Work work_of(const BoardFacts& facts) const;
   [[nodiscard]] std::uint32_t ticks_per_message(const BoardFacts& facts) const;
+  void subscribe();
   void run(const Publish& publish) override;
   void update_board();
   void stop_if_wanted();
   void execute(const nlohmann::json& command);
+  void begin_recording();
   void set(const nlohmann::json& wanted);
   void continue_arming();
   void read_telemetry();
@@ -94,9 +112,12 @@ class BoardSession : public Source {
   std::string why_lost_;
   Clock::time_point next_try_{};
   std::optional<std::chrono::microseconds> arming_until_;  // time of the connection
-  std::chrono::microseconds last_telemetry_{};             // time of the connection
+  std::chrono::microseconds last_pass_{};                  // time of the connection
+  std::chrono::microseconds silence_{};                    // without telemetry
   std::optional<simulation::Sample> last_;
   std::unique_ptr<CommandOutcome> outcome_;
+  std::unique_ptr<PageRecording> recording_;
+  client::Subscription subscription_{};
   std::uint32_t last_time_us_ = 0;
   Strip strip_;
   core::CandidateSet scratch_;

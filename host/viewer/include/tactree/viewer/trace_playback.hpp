@@ -1,5 +1,5 @@
 #pragma once
-// Playback of a trace that `tactree simulate` or a page has written.
+// Playback of a trace that `tactree simulate` or a page has written, or of a recording of a board.
 //
 // Commands of a page:
 //   {"do": "seek", "tick": 120}   {"do": "step", "ticks": -1}
@@ -14,8 +14,9 @@
 
 namespace tactree::viewer {
 
-/// The ticks of a trace. The columns t_s, probe and force are required; the values of other missing
-/// columns are 0. Throws support::CsvError with the text "file: line n: cause (hint)".
+/// The ticks of a trace, CSV or .npz. The columns t_s, probe and force are required; the values of
+/// other missing columns are 0. Throws support::CsvError or support::UserError with the text "file:
+/// place: cause (hint)".
 [[nodiscard]] std::vector<simulation::Sample> read_trace(const std::filesystem::path& file);
 
 class TracePlayback : public Source {
