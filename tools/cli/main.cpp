@@ -48,6 +48,7 @@ int run(int argc, char** argv) {
   add_image_command(app, exit_code);
   add_simulate_command(app, exit_code);
   add_evaluate_command(app, exit_code);
+  add_device_command(app, exit_code);
   add_devices_command(app, exit_code);
   add_monitor_command(app, exit_code);
   add_record_command(app, exit_code);
