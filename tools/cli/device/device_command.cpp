@@ -86,6 +86,10 @@ void add_device_command(CLI::App& app, int& exit_code) {
       ->required();
   check_verb->add_option("--json", options->json, "write the result as JSON to this file");
   check_verb->callback([options, &exit_code] { check(*options, exit_code); });
+
+  CLI::App* schema_verb =
+      verb->add_subcommand("schema", "Prints the JSON schema of device files, for editors");
+  schema_verb->callback([] { fmt::print("{}", support::device_schema()); });
 }
 
 }  // namespace tactree::cli

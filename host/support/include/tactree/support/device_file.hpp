@@ -59,4 +59,8 @@ struct DeviceReading {
 /// Returns the device as the text of a device file. It states every value.
 [[nodiscard]] std::string device_json(const Device& device);
 
+/// Returns the JSON schema (draft 7) of device files. It has the keys, types, ranges and defaults;
+/// relations between values are checked by read_device() only.
+[[nodiscard]] std::string device_schema();
+
 }  // namespace tactree::support
