@@ -1,4 +1,4 @@
-"""Device files: tactree device check and schema; what other commands say of their defaults.
+"""Device files: tactree device check, schema and to-header; what other commands say of their defaults.
 
 usage: device_test.py TACTREE SCHEMA      SCHEMA: the file in the repository, which is installed
 """
@@ -191,6 +191,20 @@ class DeviceFiles(SharedFolder):
         self.assertIn("note: own.json: defaults: tip_mass_kg = 0 (", done.stderr)
         done = self.run_tool("simulate", "sheet.blob", "--device", "cartesian", "--seconds", "0.01", "--allow-no-contact")
         self.assertNotIn("defaults", done.stderr)
+
+    def test_a_header_is_written_for_valid_devices_only(self):
+        self.write("own.json", self.device())
+        done = self.run_tool("device", "to-header", "own.json", "-o", "own.hpp")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("DevicePreset kDevice = ", (self.path / "own.hpp").read_text())
+        self.write("own.json", {"kind": "arm"})
+        before = (self.path / "own.hpp").read_text()
+        self.assertEqual(self.run_tool("device", "to-header", "own.json", "-o", "own.hpp").returncode, 1)
+        self.assertEqual((self.path / "own.hpp").read_text(), before)
+        for name in ("2a", "a-b", ""):
+            done = self.run_tool("device", "to-header", "premium", "-o", "own.hpp", "--name", name)
+            self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertEqual(self.run_tool("device", "to-header", "own.json", "-o", "own.json").returncode, 1)
 
     def test_a_preset_is_valid(self):
         done = self.run_tool("device", "check", "hapkit")

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -17,6 +18,8 @@ namespace {
 
 struct DeviceOptions {
   std::string file;
+  std::string output;
+  std::string variable = "kDevice";
   std::string json;
 };
 
@@ -72,11 +75,33 @@ void check(const DeviceOptions& options, int& exit_code) {
   print_defaults(reading.device);
 }
 
+void write_header(const DeviceOptions& options) {
+  support::check_outputs({options.output}, {options.file});
+  const support::Device device = support::load_device(options.file);
+  support::write_file(options.output, support::device_header(
+                                          device, options.variable,
+                                          std::filesystem::path(options.file).filename().string()));
+  fmt::print("wrote     {}: {} as {}\n", options.output, device.name, options.variable);
+  print_defaults(device);
+}
+
+/// Empty if `name` can name a variable, else the error. The compiler refuses keywords.
+std::string is_identifier(const std::string& name) {
+  const auto is_letter = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+  };
+  const bool good = !name.empty() && is_letter(name[0]) &&
+                    std::all_of(name.begin(), name.end(),
+                                [&](char c) { return is_letter(c) || (c >= '0' && c <= '9'); });
+  return good ? "" : fmt::format("'{}' is not a C++ name (use letters, digits and _)", name);
+}
+
 }  // namespace
 
 void add_device_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<DeviceOptions>();
-  CLI::App* verb = app.add_subcommand("device", "Checks the file of your own device");
+  CLI::App* verb = app.add_subcommand(
+      "device", "Checks the file of your own device, turns it into a C++ header for firmware");
   verb->require_subcommand(1);
   verb->footer("`tactree simulate --device NAME --dump-device` prints a file to begin with.");
 
@@ -86,6 +111,15 @@ void add_device_command(CLI::App& app, int& exit_code) {
       ->required();
   check_verb->add_option("--json", options->json, "write the result as JSON to this file");
   check_verb->callback([options, &exit_code] { check(*options, exit_code); });
+
+  CLI::App* header_verb = verb->add_subcommand(
+      "to-header", "Writes a C++ header with the device as a core::DevicePreset for firmware");
+  header_verb->add_option("FILE", options->file, "device file, or name of a device")->required();
+  header_verb->add_option("-o,--output", options->output, "header to write")->required();
+  header_verb->add_option("--name", options->variable, "name of the variable")
+      ->check(is_identifier)
+      ->capture_default_str();
+  header_verb->callback([options] { write_header(*options); });
 
   CLI::App* schema_verb =
       verb->add_subcommand("schema", "Prints the JSON schema of device files, for editors");

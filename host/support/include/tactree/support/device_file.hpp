@@ -63,4 +63,9 @@ struct DeviceReading {
 /// relations between values are checked by read_device() only.
 [[nodiscard]] std::string device_schema();
 
+/// Returns a C++ header that defines the device as a constexpr core::DevicePreset named `variable`.
+/// Each float has the same bits as in `device`. `source`: the name of its file, for a comment.
+[[nodiscard]] std::string device_header(const Device& device, const std::string& variable,
+                                        const std::string& source);
+
 }  // namespace tactree::support
