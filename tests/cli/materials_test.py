@@ -2,6 +2,7 @@
 
 usage: materials_test.py TACTREE
 """
+import json
 import pathlib
 import sys
 import unittest
@@ -78,6 +79,34 @@ class Materials(SharedFolder):
                 report = self.read("report.json")
                 self.assertEqual([(m["name"], m["points"]) for m in report["materials"]],
                                  [("default", base["points"]), ("felt", felt["points"])])
+
+    def warning_of(self, *colours):
+        self.write("scan.ply", scan("ply"))
+        self.write("map.json", {"default": {"stiffness_N_m": 800},
+                                "colours": [{"name": name, "rgb": rgb, "tolerance": tolerance}
+                                            for name, rgb, tolerance in colours]})
+        done = self.run_tool("build", "scan.ply", "--material", "map.json", "-o", "model.blob", "--progress", "off",
+                             "--report", "report.json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done.stderr
+
+    def test_a_colour_without_points_is_answered_with_those_that_exist(self):
+        error = self.warning_of(("green", [20, 200, 40], 30), ("red", RED, 30))
+        self.assertIn("the material 'green': the nearest to [20, 200, 40] is [20, 30, 240], at a distance of 263", error)
+        self.assertIn("the scan has [20, 30, 240] 7381 points, [250, 10, 5] 7260 points)", error)
+        self.assertEqual(error.count("no point has"), 1)
+        report = self.read("report.json")
+        self.assertEqual(report["colours"], [{"rgb": list(BLUE), "points": 7381}, {"rgb": list(RED), "points": 7260}])
+        self.assertEqual(report["materials"][1]["rgb"], [20, 200, 40])
+
+    def test_the_distance_is_the_tolerance_that_is_missing(self):
+        self.assertIn("at a distance of 11 (raise its tolerance of 10", self.warning_of(("red", [240, 10, 1], 10)))
+        self.assertNotIn("no point", self.warning_of(("red", [240, 10, 1], 11)))
+
+    def test_points_nearer_to_another_colour_are_no_reason_for_more_tolerance(self):
+        error = self.warning_of(("red", RED, 30), ("almost red", [240, 10, 1], 30))
+        self.assertIn("'almost red': the points within 30 of its colour are nearer to that of another", error)
+        self.assertNotIn("raise its tolerance", error)
 
     def force_at(self, x, *options):
         """Held 2 mm below the surface by a spring of 300 N/m."""
