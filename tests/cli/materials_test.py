@@ -80,6 +80,26 @@ class Materials(SharedFolder):
                 self.assertEqual([(m["name"], m["points"]) for m in report["materials"]],
                                  [("default", base["points"]), ("felt", felt["points"])])
 
+    def test_info_names_materials_by_the_file_of_the_build(self):
+        self.build(self.two_colours())
+        text = self.ok("info", "model.blob", "--material", "map.json", "--json", "named.json")
+        self.assertRegex(text, r"material 0 +default, all other colours: \d+ points: 800 N/m")
+        self.assertRegex(text, r"material 1 +felt, colours within 30 of \[255, 0, 0\]: \d+ points: 200 N/m")
+        base, felt = self.read("named.json")["material_list"]
+        self.assertEqual((base["name"], felt["name"], felt["rgb"]), ("default", "felt", [255, 0, 0]))
+        self.assertIn("--material FILE", self.ok("info", "model.blob"))
+
+    def test_info_refuses_the_materials_of_another_build(self):
+        self.build(self.two_colours())
+        other = json.loads((self.path / "map.json").read_text())
+        other["colours"][0]["static_friction"] = 0.3
+        for name, content, cause in (("values.json", other, "the material 'felt' has other values than material 1"),
+                                     ("one.json", {"stiffness_N_m": 800}, "describes 1 materials, model.blob has 2")):
+            done = self.run_tool("info", "model.blob", "--material", self.write(name, content))
+            self.assertEqual(done.returncode, 1)
+            self.assertIn(f"{name}: {cause}", done.stderr)
+            self.assertIn("(give the file with which the model was built)", done.stderr)
+
     def warning_of(self, *colours):
         self.write("scan.ply", scan("ply"))
         self.write("map.json", {"default": {"stiffness_N_m": 800},
