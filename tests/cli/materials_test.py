@@ -2,6 +2,7 @@
 
 usage: materials_test.py TACTREE
 """
+import json
 import pathlib
 import sys
 import unittest
@@ -78,6 +79,54 @@ class Materials(SharedFolder):
                 report = self.read("report.json")
                 self.assertEqual([(m["name"], m["points"]) for m in report["materials"]],
                                  [("default", base["points"]), ("felt", felt["points"])])
+
+    def test_info_names_materials_by_the_file_of_the_build(self):
+        self.build(self.two_colours())
+        text = self.ok("info", "model.blob", "--material", "map.json", "--json", "named.json")
+        self.assertRegex(text, r"material 0 +default, all other colours: \d+ points: 800 N/m")
+        self.assertRegex(text, r"material 1 +felt, colours within 30 of \[255, 0, 0\]: \d+ points: 200 N/m")
+        base, felt = self.read("named.json")["material_list"]
+        self.assertEqual((base["name"], felt["name"], felt["rgb"]), ("default", "felt", [255, 0, 0]))
+        self.assertIn("--material FILE", self.ok("info", "model.blob"))
+
+    def test_info_refuses_the_materials_of_another_build(self):
+        self.build(self.two_colours())
+        other = json.loads((self.path / "map.json").read_text())
+        other["colours"][0]["static_friction"] = 0.3
+        for name, content, cause in (("values.json", other, "the material 'felt' has other values than material 1"),
+                                     ("one.json", {"stiffness_N_m": 800}, "describes 1 materials, model.blob has 2")):
+            done = self.run_tool("info", "model.blob", "--material", self.write(name, content))
+            self.assertEqual(done.returncode, 1)
+            self.assertIn(f"{name}: {cause}", done.stderr)
+            self.assertIn("(give the file with which the model was built)", done.stderr)
+
+    def warning_of(self, *colours):
+        self.write("scan.ply", scan("ply"))
+        self.write("map.json", {"default": {"stiffness_N_m": 800},
+                                "colours": [{"name": name, "rgb": rgb, "tolerance": tolerance}
+                                            for name, rgb, tolerance in colours]})
+        done = self.run_tool("build", "scan.ply", "--material", "map.json", "-o", "model.blob", "--progress", "off",
+                             "--report", "report.json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done.stderr
+
+    def test_a_colour_without_points_is_answered_with_those_that_exist(self):
+        error = self.warning_of(("green", [20, 200, 40], 30), ("red", RED, 30))
+        self.assertIn("the material 'green': the nearest to [20, 200, 40] is [20, 30, 240], at a distance of 263", error)
+        self.assertIn("the scan has [20, 30, 240] 7381 points, [250, 10, 5] 7260 points)", error)
+        self.assertEqual(error.count("no point has"), 1)
+        report = self.read("report.json")
+        self.assertEqual(report["colours"], [{"rgb": list(BLUE), "points": 7381}, {"rgb": list(RED), "points": 7260}])
+        self.assertEqual(report["materials"][1]["rgb"], [20, 200, 40])
+
+    def test_the_distance_is_the_tolerance_that_is_missing(self):
+        self.assertIn("at a distance of 11 (raise its tolerance of 10", self.warning_of(("red", [240, 10, 1], 10)))
+        self.assertNotIn("no point", self.warning_of(("red", [240, 10, 1], 11)))
+
+    def test_points_nearer_to_another_colour_are_no_reason_for_more_tolerance(self):
+        error = self.warning_of(("red", RED, 30), ("almost red", [240, 10, 1], 30))
+        self.assertIn("'almost red': the points within 30 of its colour are nearer to that of another", error)
+        self.assertNotIn("raise its tolerance", error)
 
     def force_at(self, x, *options):
         """Held 2 mm below the surface by a spring of 300 N/m."""

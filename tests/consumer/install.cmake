@@ -5,6 +5,7 @@ execute_process(COMMAND ${CMAKE_COMMAND} --install ${BUILD} --prefix ${PREFIX}
 foreach(file
     bin/tactree
     libexec/tactree/tactree-import-mesh
+    share/tactree/device.schema.json
     include/tactree/core/model/blob.hpp
     include/tactree/hal/board.hpp
     include/tactree/session/session.hpp

@@ -11,6 +11,7 @@ namespace tactree::cli {
 
 // device/
 void add_arm_command(CLI::App& app, int& exit_code);
+void add_device_command(CLI::App& app, int& exit_code);
 void add_devices_command(CLI::App& app, int& exit_code);
 void add_flash_command(CLI::App& app, int& exit_code);
 void add_monitor_command(CLI::App& app, int& exit_code);

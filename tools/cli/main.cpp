@@ -10,48 +10,24 @@
 
 #include "commands.hpp"
 #include "exit_codes.hpp"
+#include "tactree/support/nearest_name.hpp"
 
 namespace tactree::cli {
 namespace {
-
-/// Minimum number of insertions, deletions, replacements and swaps of adjacent characters that turn
-/// one word into the other (optimal string alignment).
-std::size_t edits(const std::string& from, const std::string& to) {
-  std::vector<std::vector<std::size_t>> fewest(from.size() + 1U,
-                                               std::vector<std::size_t>(to.size() + 1U));
-  for (std::size_t i = 0; i <= from.size(); ++i) {
-    for (std::size_t j = 0; j <= to.size(); ++j) {
-      if (i == 0 || j == 0) {
-        fewest[i][j] = i + j;
-        continue;
-      }
-      const std::size_t replaced = fewest[i - 1][j - 1] + (from[i - 1] == to[j - 1] ? 0U : 1U);
-      fewest[i][j] = std::min({fewest[i - 1][j] + 1U, fewest[i][j - 1] + 1U, replaced});
-      if (i > 1 && j > 1 && from[i - 1] == to[j - 2] && from[i - 2] == to[j - 1]) {
-        fewest[i][j] = std::min(fewest[i][j], fewest[i - 2][j - 2] + 1U);
-      }
-    }
-  }
-  return fewest.back().back();
-}
 
 /// Error message for a first argument that is not a command; empty if it is a command or an option.
 std::string unknown_verb(const CLI::App& app, const std::string& word) {
   if (word.empty() || word[0] == '-') {
     return "";
   }
-  std::string nearest;
-  std::size_t fewest = std::max<std::size_t>(3, word.size() / 2U + 1U);
+  std::vector<std::string> names;
   for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) {
-    const std::string name = verb->get_name();
-    if (name == word) {
-      return "";
-    }
-    if (const std::size_t count = edits(word, name); count < fewest) {
-      fewest = count;
-      nearest = name;
-    }
+    names.push_back(verb->get_name());
   }
+  if (std::find(names.begin(), names.end(), word) != names.end()) {
+    return "";
+  }
+  const std::string nearest = support::nearest_name(word, names);
   return fmt::format("unknown command '{}' ({}tactree --help lists the commands)", word,
                      nearest.empty() ? "" : "did you mean '" + nearest + "'? ");
 }
@@ -72,6 +48,7 @@ int run(int argc, char** argv) {
   add_image_command(app, exit_code);
   add_simulate_command(app, exit_code);
   add_evaluate_command(app, exit_code);
+  add_device_command(app, exit_code);
   add_devices_command(app, exit_code);
   add_monitor_command(app, exit_code);
   add_record_command(app, exit_code);

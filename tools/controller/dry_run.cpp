@@ -225,12 +225,17 @@ const char* verdict(const Finding& finding) {
   return finding.matters ? "WRONG" : "warning";
 }
 
+std::string describe(const support::Device& device) {
+  const std::string used = support::defaults_text(device);
+  return used.empty() ? device.about : fmt::format("{}; defaults: {}", device.about, used);
+}
+
 }  // namespace
 
 std::vector<Finding> examine(const ControllerFile& file) {
   std::vector<Finding> findings;
   findings.push_back({"configuration", file.file, true, true, "limits are valid"});
-  findings.push_back({"device", file.device.name, true, true, file.device.about});
+  findings.push_back({"device", file.device.name, true, true, describe(file.device)});
   examine_model(file, findings);
   examine_names(file.board, findings);
   examine_lines(file.board, findings);

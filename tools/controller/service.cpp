@@ -184,6 +184,9 @@ class Runner {
     const Attendant attendant(board_, progress_);
     tell_missing(file_, enter_real_time(file_.real_time));
     fmt::print("tactree-controller: serving {} at {}\n", file_.device.name, where);
+    if (const std::string used = support::defaults_text(file_.device); !used.empty()) {
+      fmt::print("tactree-controller: defaults of the device: {}\n", used);
+    }
     std::fflush(stdout);
     const Disturbances before = disturbances();
     while (!progress_.ending.load(std::memory_order_relaxed)) {

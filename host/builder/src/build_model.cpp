@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "cleaning/cleaning.hpp"
+#include "cleaning/colour_census.hpp"
 #include "cleaning/turn.hpp"
 #include "normals/given_normals.hpp"
 #include "normals/mesh_windings.hpp"
@@ -276,9 +277,8 @@ class Pipeline {
     }
     for (std::size_t i = 1; i < report_.material_points.size(); ++i) {
       if (report_.material_points[i] == 0) {
-        report_.warnings.push_back(
-            fmt::format("no point has the colour of the material '{}' (raise its tolerance)",
-                        options_.materials->colours[i - 1].name));
+        report_.warnings.push_back(unused_colour(options_.materials->colours[i - 1],
+                                                 report_.colour_matches[i - 1], report_.colours));
       }
     }
   }

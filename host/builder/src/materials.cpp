@@ -1,5 +1,8 @@
 #include "tactree/builder/materials.hpp"
 
+#include <fmt/core.h>
+
+#include <cmath>
 #include <cstddef>
 
 namespace tactree::builder {
@@ -15,6 +18,10 @@ double squared_distance(const Colour& a, const Colour& b) {
 }
 
 }  // namespace
+
+double colour_distance(const Colour& a, const Colour& b) {
+  return std::sqrt(squared_distance(a, b));
+}
 
 std::uint8_t MaterialMap::index_of(const Colour& colour) const {
   std::size_t best = 0;
@@ -36,6 +43,23 @@ std::vector<core::BlobMaterial> MaterialMap::list() const {
     all.push_back(entry.material);
   }
   return all;
+}
+
+std::string colour_text(const Colour& colour) {
+  return fmt::format("[{}, {}, {}]", colour[0], colour[1], colour[2]);
+}
+
+std::string material_name(const MaterialMap& map, std::size_t index) {
+  return index == 0 ? "default" : map.colours[index - 1].name;
+}
+
+std::string describe_material(const MaterialMap& map, std::size_t index) {
+  if (index == 0) {
+    return map.by_colour() ? "default, all other colours" : "default";
+  }
+  const ColourMaterial& entry = map.colours[index - 1];
+  return fmt::format("{}, colours within {:.6g} of {}", entry.name, entry.tolerance,
+                     colour_text(entry.colour));
 }
 
 }  // namespace tactree::builder

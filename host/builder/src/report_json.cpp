@@ -49,16 +49,25 @@ ordered_json orientation_json(const OrientationReport& orientation) {
 ordered_json materials_json(const BuildReport& report, const BuildOptions& build) {
   ordered_json list = ordered_json::array();
   for (std::size_t i = 0; i < report.material_points.size(); ++i) {
-    list.push_back({{"name", material_name(build, i)}, {"points", report.material_points[i]}});
+    list.push_back(
+        {{"name", material_name(*build.materials, i)}, {"points", report.material_points[i]}});
+    if (i > 0) {
+      list.back()["rgb"] = build.materials->colours[i - 1].colour;
+      list.back()["tolerance"] = build.materials->colours[i - 1].tolerance;
+    }
+  }
+  return list;
+}
+
+ordered_json colours_json(const BuildReport& report) {
+  ordered_json list = ordered_json::array();
+  for (const ColourCount& count : report.colours) {
+    list.push_back({{"rgb", count.colour}, {"points", count.points}});
   }
   return list;
 }
 
 }  // namespace
-
-std::string material_name(const BuildOptions& build, std::size_t index) {
-  return index == 0 ? "default" : build.materials->colours[index - 1].name;
-}
 
 std::string axis_name(const BuildOptions& build) {
   return {"xyz"[static_cast<std::size_t>(build.up.value_or(UpAxis::kZ))]};
@@ -96,6 +105,7 @@ std::string report_json(const BuildReport& report, const BuildOptions& build) {
       {"pieces", report.pieces},
       {"orientation", orientation_json(report.orientation)},
       {"materials", materials_json(report, build)},
+      {"colours", colours_json(report)},
       {"bounds_min_m", triple(report.bounds.min())},
       {"bounds_max_m", triple(report.bounds.max())},
       {"axis", axis_name(build)},

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "commands.hpp"
+#include "device/device_defaults.hpp"
 #include "exit_codes.hpp"
 #include "run/simulate_options.hpp"
 #include "run/simulate_run.hpp"
@@ -64,6 +65,7 @@ void simulate(SimulateOptions& options, int& exit_code) {
   check_panel(options);
   const setup::SceneFile scene = setup::read_scene(options.scene, options.blobs);
   options.blob = scene.names[0];
+  note_defaults(options.device, support::load_device(options.device));
   if (options.serve) {
     serve(options, scene);
     return;

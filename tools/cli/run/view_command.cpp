@@ -14,6 +14,7 @@
 
 #include "commands.hpp"
 #include "device/board_port.hpp"
+#include "device/device_defaults.hpp"
 #include "run/wall_options.hpp"
 #include "scan/board_work.hpp"
 #include "tactree/builder/scaled_model.hpp"
@@ -73,6 +74,7 @@ std::vector<viewer::NamedDevice> devices(const std::string& chosen) {
   }
   if (!known) {
     const support::Device own = support::load_device(chosen);
+    note_defaults(chosen, own);
     list.push_back({chosen, own.about, own.preset});
   }
   return list;

@@ -85,7 +85,7 @@ void print_report(const BuildReport& report, const BuildOptions& build, const st
   print_interior(report, build);
   print_gaps(report);
   for (std::size_t i = 0; i < report.material_points.size(); ++i) {
-    fmt::print("material  {}: {} points\n", builder::material_name(build, i),
+    fmt::print("material  {}: {} points\n", builder::describe_material(*build.materials, i),
                report.material_points[i]);
   }
   for (const std::string& note : report.notes) {

@@ -17,13 +17,16 @@
 #include "image/model_signature.hpp"
 #include "scan/preview.hpp"
 #include "tactree/builder/length_text.hpp"
+#include "tactree/builder/materials.hpp"
 #include "tactree/builder/openings.hpp"
+#include "tactree/builder/read_materials.hpp"
 #include "tactree/setup/model_size.hpp"
 #include "tactree/support/blob_facts.hpp"
 #include "tactree/support/blob_file.hpp"
 #include "tactree/support/device_file.hpp"
 #include "tactree/support/json_text.hpp"
 #include "tactree/support/output_file.hpp"
+#include "tactree/support/user_error.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -35,6 +38,7 @@ struct InfoOptions {
   std::string blob;
   std::string device;
   std::string board;
+  std::string material;
   std::string json;
   std::string points;
   std::string preview;
@@ -65,17 +69,67 @@ void print_sizes(const BlobView& view) {
   row("interior", support::interior_bytes(view));
 }
 
-void print_materials(const BlobView& view) {
+/// A blob has no names. `named`: the materials of the build, if the user gives them.
+void print_materials(const BlobView& view, const std::optional<builder::MaterialMap>& named) {
   const std::vector<std::uint32_t> points = support::points_of_materials(view);
   for (std::uint32_t i = 0; i < view.material_count(); ++i) {
     const core::BlobMaterial& m = view.material(i);
-    fmt::print("material {:<4} {} points: {:.6g} N/m, {:.6g} Ns/m, friction {:.6g} / {:.6g}", i,
-               points[i], m.stiffness_N_m, m.damping_Ns_m, m.static_friction, m.dynamic_friction);
+    const std::string name = named ? builder::describe_material(*named, i) + ": " : "";
+    fmt::print("material {:<4} {}{} points: {:.6g} N/m, {:.6g} Ns/m, friction {:.6g} / {:.6g}", i,
+               name, points[i], m.stiffness_N_m, m.damping_Ns_m, m.static_friction,
+               m.dynamic_friction);
     if (m.texture_height_m > 0.0F) {
       fmt::print(", texture {} every {}", length(m.texture_height_m),
                  length(m.texture_wavelength_m));
     }
     fmt::print("\n");
+  }
+  if (view.material_count() > 1 && !named) {
+    fmt::print("              (--material FILE, the file of the build, names them)\n");
+  }
+}
+
+bool is_same(const core::BlobMaterial& a, const core::BlobMaterial& b) {
+  return a.stiffness_N_m == b.stiffness_N_m && a.damping_Ns_m == b.damping_Ns_m &&
+         a.static_friction == b.static_friction && a.dynamic_friction == b.dynamic_friction &&
+         a.texture_height_m == b.texture_height_m &&
+         a.texture_wavelength_m == b.texture_wavelength_m;
+}
+
+/// Reads the materials of the build; throws UserError if they are not those of the blob.
+std::optional<builder::MaterialMap> named_materials(const InfoOptions& options,
+                                                    const BlobView& view) {
+  if (options.material.empty()) {
+    return std::nullopt;
+  }
+  builder::MaterialMap map = builder::read_materials(options.material);
+  const std::vector<core::BlobMaterial> list = map.list();
+  const std::string remedy = "give the file with which the model was built";
+  if (list.size() != view.material_count()) {
+    support::refuse(options.material,
+                    fmt::format("describes {} materials, {} has {}", list.size(), options.blob,
+                                view.material_count()),
+                    remedy);
+  }
+  for (std::uint32_t i = 0; i < list.size(); ++i) {
+    if (!is_same(list[i], view.material(i))) {
+      support::refuse(options.material,
+                      fmt::format("the material '{}' has other values than material {} of {}",
+                                  builder::material_name(map, i), i, options.blob),
+                      remedy);
+    }
+  }
+  return map;
+}
+
+/// Adds names and colours to the list of materials.
+void add_names(const builder::MaterialMap& map, nlohmann::json& list) {
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    list[i]["name"] = builder::material_name(map, i);
+    if (i > 0) {
+      list[i]["rgb"] = map.colours[i - 1].colour;
+      list[i]["tolerance"] = map.colours[i - 1].tolerance;
+    }
   }
 }
 
@@ -94,7 +148,7 @@ void print_bounds(const BlobHeader& h) {
   fmt::print(" {}\n", unit.name);
 }
 
-void print(const BlobView& view) {
+void print(const BlobView& view, const std::optional<builder::MaterialMap>& named) {
   const BlobHeader& h = view.header();
   fmt::print("model         {} ({} profile, format {}.{}, {})\n", h.name, support::profile_name(h),
              h.version_major, h.version_minor, h.tool_version);
@@ -115,7 +169,7 @@ void print(const BlobView& view) {
     fmt::print("interior      material behind {:.0f} % of the points\n",
                100.0 * support::backed_share(view));
   }
-  print_materials(view);
+  print_materials(view, named);
   print_sizes(view);
 }
 
@@ -200,9 +254,11 @@ std::optional<std::string> size_warning_of(const InfoOptions& options, const Blo
 }
 
 void info(const InfoOptions& options) {
-  support::check_outputs({options.json, options.points, options.preview}, {options.blob});
+  support::check_outputs({options.json, options.points, options.preview},
+                         {options.blob, options.material});
   const support::BlobFile blob = support::BlobFile::named(options.blob);
-  print(blob.view());
+  const std::optional<builder::MaterialMap> named = named_materials(options, blob.view());
+  print(blob.view(), named);
   print_signature(options.blob, blob);
   if (!options.board.empty()) {
     print_costs(blob.view().header(), options.board, options.device);
@@ -213,6 +269,9 @@ void info(const InfoOptions& options) {
   }
   if (!options.json.empty()) {
     nlohmann::json json = support::blob_facts(blob.view());
+    if (named) {
+      add_names(*named, json["material_list"]);
+    }
     json["warnings"] = nlohmann::json::array();
     if (warning) {
       json["warnings"].push_back(*warning);
@@ -241,6 +300,9 @@ void add_info_command(CLI::App& app, int&) {
   verb->add_option("--device", options->device,
                    "name or file of a device: also report whether it reaches the model; used by "
                    "--board, too (default: the kind with the longest tick)");
+  verb->add_option("--material", options->material,
+                   "file of the option --material of the build: names the materials and their "
+                   "colours");
   verb->add_option("--json", options->json, "write the values as JSON to this file");
   verb->add_option("--points", options->points,
                    "write all points to this CSV file: index,x,y,z,nx,ny,nz (m)");

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "cleaning/colour_census.hpp"
 #include "cleaning/outliers.hpp"
 #include "cleaning/pieces.hpp"
 #include "cleaning/scanner_poses.hpp"
@@ -35,6 +36,7 @@ constexpr double kLargestCoordinate_m = 1e12;
 // Range of extents that the lattice of a blob can represent at a useful spacing.
 constexpr double kSmallestModel_m = 1e-6;
 constexpr double kLargestModel_m = 1e6;
+constexpr std::size_t kColoursReported = 5;
 
 // Returns false for NaN.
 bool is_float(double value) { return static_cast<double>(static_cast<float>(value)) == value; }
@@ -73,6 +75,8 @@ class Cleaner {
     }
     place();
     warn_of_float_steps();
+    report_.colours = census_.most_frequent(kColoursReported);
+    report_.colour_matches = census_.matches();
     return std::move(input_);
   }
 
@@ -138,9 +142,9 @@ class Cleaner {
   }
 
   /// Points of a scan without colours get the base material.
-  [[nodiscard]] std::uint8_t material_of(const Scan& scan, std::size_t point) const {
+  [[nodiscard]] std::uint8_t material_of(const Scan& scan, std::size_t point) {
     return scan.colours.empty() ? std::uint8_t{0}
-                                : options_.materials->index_of(scan.colours[point]);
+                                : census_.take(scan.colours[point], *options_.materials);
   }
 
   [[nodiscard]] bool uses_poses() const {
@@ -502,6 +506,7 @@ class Cleaner {
   BuildReport& report_;
   CleanInput input_;
   Cloud cloud_;
+  ColourCensus census_;
   double float_step_ = 0.0;    // step of float32 coordinates far from the origin, source units
   bool cloud_sights_ = false;  // some points were seen from a known position
   std::uint64_t mesh_corners_ = 0;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <vector>
 
 namespace tactree::picture {
 namespace {
@@ -31,13 +32,35 @@ struct Eye {
   Vec3 forward;  ///< from the eye to the model
 };
 
-/// A view slightly from above; z is up.
-Eye eye_from(float yaw_rad) {
-  constexpr float kPitch_rad = 0.35F;
-  const float level = std::cos(kPitch_rad);
-  const Vec3 towards{level * std::cos(yaw_rad), level * std::sin(yaw_rad), std::sin(kPitch_rad)};
+/// Direction of a view, from the model to the eye; z is up.
+struct Direction {
+  float yaw_rad;
+  float pitch_rad;
+};
+
+Eye eye_from(Direction direction) {
+  const float yaw_rad = direction.yaw_rad;
+  const float level = std::cos(direction.pitch_rad);
+  const Vec3 towards{level * std::cos(yaw_rad), level * std::sin(yaw_rad),
+                     std::sin(direction.pitch_rad)};
   const Vec3 right{-std::sin(yaw_rad), std::cos(yaw_rad), 0.0F};
   return {right, core::cross(towards, right), -towards};
+}
+
+/// The first view, slightly from above and beside the front, +x. The outside of a surface that
+/// faces one side as a whole, such as a relief or a sheet, is seen in it.
+Direction first_view(const core::BlobView& view) {
+  constexpr float kBeside_rad = 0.5F;
+  constexpr float kPitch_rad = 0.35F;
+  constexpr float kFacing = 0.5F;  // minimum mean of the normals; that of a closed body is 0
+  Vec3 mean{};
+  core::for_each_point(view, [&](const core::Leaf& leaf, std::uint32_t index) {
+    mean = mean + view.surface_point(leaf, index).normal;
+  });
+  mean = (1.0F / static_cast<float>(view.point_count())) * mean;
+  const float sideways = std::hypot(mean.x, mean.y);
+  return {kBeside_rad + (sideways > kFacing ? std::atan2(mean.y, mean.x) : 0.0F),
+          mean.z < -kFacing ? -kPitch_rad : kPitch_rad};
 }
 
 Vec3 vector(const std::array<float, 3>& v) { return {v[0], v[1], v[2]}; }
@@ -73,12 +96,28 @@ class Panel {
     });
   }
 
-  void draw_mark(const Mark& mark) {
+  /// Ratio of the points whose inside is seen, not counting those near the silhouette. After
+  /// draw_points().
+  [[nodiscard]] float inside_share() const {
+    constexpr float kClear = 0.2F;
+    const float tolerance_m = view_.header().spacing_m;
+    std::uint32_t count = 0;
+    core::for_each_point(view_, [&](const core::Leaf& leaf, std::uint32_t index) {
+      const core::SurfacePoint p = view_.surface_point(leaf, index);
+      const bool away = core::dot(p.normal, eye_.forward) > kClear;
+      count += away && !is_hidden(seen(p.position), tolerance_m) ? 1U : 0U;
+    });
+    return static_cast<float>(count) / static_cast<float>(view_.point_count());
+  }
+
+  [[nodiscard]] bool hides(const Mark& mark) const {
+    return is_hidden(seen(vector(mark.centre_m)), mark.diameter_m);
+  }
+
+  void draw_mark(const Mark& mark, float opacity) {
     const Vec3 at = seen(vector(mark.centre_m));
     const float radius = std::max(0.5F * mark.diameter_m * scale_, 8.0F);
-    const bool hidden = is_hidden(at, mark.diameter_m);
-    raster_.circle(at.x, at.y, radius + 6.0F, 5.0F, mark.is_hole ? kHole : kBoundary,
-                   hidden ? 0.3F : 1.0F);
+    raster_.circle(at.x, at.y, radius + 6.0F, 5.0F, mark.is_hole ? kHole : kBoundary, opacity);
   }
 
  private:
@@ -130,6 +169,20 @@ class Panel {
   float y_ = 0.0F;
 };
 
+/// Draws a mark where the surface does not hide it; faintly in all views if it is hidden in each.
+void draw_marks(std::vector<Panel>& panels, std::span<const Mark> marks) {
+  constexpr float kFaint = 0.3F;
+  for (const Mark& mark : marks) {
+    const bool hidden = std::all_of(panels.begin(), panels.end(),
+                                    [&](const Panel& panel) { return panel.hides(mark); });
+    for (Panel& panel : panels) {
+      if (hidden || !panel.hides(mark)) {
+        panel.draw_mark(mark, hidden ? kFaint : 1.0F);
+      }
+    }
+  }
+}
+
 std::string length_text(float metres) {
   return metres >= 1.0F    ? fmt::format("{:g} m", metres)
          : metres >= 1e-3F ? fmt::format("{:g} mm", std::round(1e4F * metres) * 0.1F)
@@ -174,8 +227,10 @@ void draw_key(Raster& raster, int& top, const Colour& colour, const std::string&
   top += 22;
 }
 
-/// Legend of the colours in use, in the upper left corner.
-void draw_legend(Raster& raster, std::span<const Mark> drawn, std::size_t all, bool doubtful) {
+/// Legend of the colours in use, in the upper left corner. `sides`: both sides of the surface are
+/// seen.
+void draw_legend(Raster& raster, std::span<const Mark> drawn, std::size_t all, bool doubtful,
+                 bool sides) {
   int top = kMargin / 2;
   if (doubtful) {
     draw_key(raster, top, kDoubtful, "ambiguous orientation");
@@ -187,6 +242,10 @@ void draw_legend(Raster& raster, std::span<const Mark> drawn, std::size_t all, b
       draw_key(raster, top, hole ? kHole : kBoundary, hole ? "hole" : "open boundary");
     }
   }
+  if (sides) {
+    draw_key(raster, top, kOutside, "outside");
+    draw_key(raster, top, kInside, "inside");
+  }
   if (drawn.size() < all) {
     raster.text(kMargin, top, fmt::format("the {} widest openings of {}", drawn.size(), all), 2,
                 kInk);
@@ -197,26 +256,27 @@ void draw_legend(Raster& raster, std::span<const Mark> drawn, std::size_t all, b
 
 Raster draw_model(const core::BlobView& view, std::span<const Mark> marks,
                   std::span<const std::uint8_t> doubtful) {
-  constexpr float kFrontYaw_rad = 0.5F;
   constexpr float kHalfTurn_rad = 3.14159265F;
+  constexpr float kInsideShare = 0.02F;  // less is seen through holes
+  const Direction first = first_view(view);
   Raster large(kOver * kPictureWidth, kOver * kPictureHeight, kPaper);
   const int width = kOver * kPictureWidth / 2;
-  float pixels_per_metre = 1.0F;
   const std::span<const Mark> drawn = marks.first(std::min(marks.size(), kDrawnMarks));
+  std::vector<Panel> panels;
   for (int side = 0; side < 2; ++side) {
-    const Eye eye = eye_from(kFrontYaw_rad + static_cast<float>(side) * kHalfTurn_rad);
-    Panel panel(large, view, eye, side * width, width);
-    panel.draw_points(doubtful);
-    for (const Mark& mark : drawn) {
-      panel.draw_mark(mark);
-    }
-    pixels_per_metre = panel.pixels_per_metre() / static_cast<float>(kOver);
+    const float yaw_rad = first.yaw_rad + static_cast<float>(side) * kHalfTurn_rad;
+    panels.emplace_back(large, view, eye_from({yaw_rad, first.pitch_rad}), side * width, width);
+    panels.back().draw_points(doubtful);
   }
+  draw_marks(panels, drawn);
+  const bool sides = std::any_of(panels.begin(), panels.end(), [](const Panel& panel) {
+    return panel.inside_share() > kInsideShare;
+  });
   Raster picture = large.halved();
-  draw_scale(picture, pixels_per_metre);
+  draw_scale(picture, panels.back().pixels_per_metre() / static_cast<float>(kOver));
   draw_caption(picture, view.header(), marks);
   draw_legend(picture, drawn, marks.size(),
-              std::find(doubtful.begin(), doubtful.end(), 1) != doubtful.end());
+              std::find(doubtful.begin(), doubtful.end(), 1) != doubtful.end(), sides);
   return picture;
 }
 

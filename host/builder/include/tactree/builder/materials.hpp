@@ -2,6 +2,7 @@
 // Materials of a model, and the assignment of the points of a coloured scan to them.
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -11,6 +12,22 @@
 namespace tactree::builder {
 
 using Colour = std::array<std::uint8_t, 3>;  ///< R, G, B
+
+/// Distance in R, G, B: 0 to 441.7.
+[[nodiscard]] double colour_distance(const Colour& a, const Colour& b);
+
+/// A colour of a scan, and the number of points that have it or a similar one.
+struct ColourCount {
+  Colour colour{};
+  std::uint64_t points = 0;
+};
+
+/// Points of a scan for the colour of a material.
+struct ColourMatch {
+  std::uint64_t points = 0;  ///< that have the material
+  Colour nearest{};          ///< colour of a point
+  double distance = 1e3;     ///< of `nearest`
+};
 
 struct ColourMaterial {
   std::string name;
@@ -30,5 +47,13 @@ struct MaterialMap {
   /// All materials in index order.
   [[nodiscard]] std::vector<core::BlobMaterial> list() const;
 };
+
+/// "[255, 0, 0]", as in the file of materials.
+[[nodiscard]] std::string colour_text(const Colour& colour);
+
+/// Name of material `index`: "default", or that of its colour.
+[[nodiscard]] std::string material_name(const MaterialMap& map, std::size_t index);
+/// The same with the colour: "felt, colours within 30 of [255, 0, 0]".
+[[nodiscard]] std::string describe_material(const MaterialMap& map, std::size_t index);
 
 }  // namespace tactree::builder

@@ -7,9 +7,6 @@
 
 namespace tactree::builder {
 
-/// Name of material `index` of the blob: "default" or that of a colour of the options.
-[[nodiscard]] std::string material_name(const BuildOptions& options, std::size_t index);
-
 [[nodiscard]] double bytes_per_point(const BuildReport& report);
 
 /// The text of `tactree build --report`. `options` are those of the build.

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "tactree/picture/model_picture.hpp"
@@ -84,6 +85,85 @@ TEST(ModelPicture, MarksHoleAtItsPosition) {
   // An open boundary is not as bad as a hole: another colour.
   const picture::Mark boundary{{0.04F, 0.02F, 0.02F}, 0.01F, false};
   EXPECT_EQ(reds(picture::draw_model(blob.view(), std::span(&boundary, 1))), 0);
+}
+
+TEST(ModelPicture, DrawsMarkWhereSurfaceDoesNotHideIt) {
+  const TestBlob blob(sphere(0.05, 0.001));
+  const auto marked = [&blob](std::array<float, 3> centre_m) {
+    const picture::Mark mark{centre_m, 0.01F, true};
+    const Raster with = picture::draw_model(blob.view(), std::span(&mark, 1));
+    const Raster without = picture::draw_model(blob.view(), {});
+    std::array<int, 2> changed{};
+    for (int y = 100; y < with.height() - 100; ++y) {
+      for (int x = 0; x < with.width(); ++x) {
+        changed[x < with.width() / 2 ? 0 : 1] +=
+            with.pixel(x, y).red != without.pixel(x, y).red ? 1 : 0;
+      }
+    }
+    return changed;
+  };
+  EXPECT_GT(marked({0.04F, 0.02F, 0.02F})[0], 100);
+  EXPECT_EQ(marked({0.04F, 0.02F, 0.02F})[1], 0);
+  EXPECT_EQ(marked({-0.04F, -0.02F, 0.02F})[0], 0);
+  EXPECT_GT(marked({-0.04F, -0.02F, 0.02F})[1], 100);
+  // In the body, where no view sees it.
+  EXPECT_GT(marked({0.0F, 0.0F, 0.0F})[0], 100);
+  EXPECT_GT(marked({0.0F, 0.0F, 0.0F})[1], 100);
+}
+
+/// A sheet of 6 cm in the plane y = 0 whose outside is towards -y, or +y.
+builder::Model upright_sheet(bool outside_at_negative_y) {
+  builder::Model model = cos_sheet(0.03, 0.001, core::Profile::kSurface);
+  const float sign = outside_at_negative_y ? -1.0F : 1.0F;
+  for (std::size_t i = 0; i < model.positions.size(); ++i) {
+    const Eigen::Vector3d p = model.positions[i];
+    const Eigen::Vector3f n = model.normals[i];
+    model.positions[i] = {p.x(), -p.z(), p.y()};
+    model.normals[i] = sign * Eigen::Vector3f(n.x(), n.z(), n.y());
+  }
+  return model;
+}
+
+/// Pixels of the half of the picture that are warmer than grey, as the outside is, minus the colder
+/// ones. The legend is not counted.
+int warmth(const Raster& raster, int half) {
+  int count = 0;
+  for (int y = 100; y < raster.height() - 100; ++y) {
+    for (int x = half * raster.width() / 2; x < (half + 1) * raster.width() / 2; ++x) {
+      const Colour c = raster.pixel(x, y);
+      count += c.red > c.blue + 0.03F ? 1 : c.blue > c.red + 0.03F ? -1 : 0;
+    }
+  }
+  return count;
+}
+
+TEST(ModelPicture, ShowsOutsideOfSheetFirst) {
+  for (const bool negative : {true, false}) {
+    const TestBlob blob(upright_sheet(negative));
+    const Raster raster = picture::draw_model(blob.view(), {});
+    EXPECT_GT(warmth(raster, 0), 20000) << negative;
+    EXPECT_LT(warmth(raster, 1), -20000) << negative;
+  }
+}
+
+TEST(ModelPicture, ShowsOutsideThatFacesDown) {
+  builder::Model model = cos_sheet(0.03, 0.001, core::Profile::kSurface);
+  for (Eigen::Vector3f& normal : model.normals) {
+    normal = -normal;
+  }
+  const TestBlob blob(model);
+  EXPECT_GT(warmth(picture::draw_model(blob.view(), {}), 0), 10000);
+}
+
+TEST(ModelPicture, NamesSidesOnlyIfBothAreSeen) {
+  const auto legend = [](const TestBlob& blob) {
+    const Raster raster = picture::draw_model(blob.view(), {});
+    // The second key, below that of the outside.
+    return raster.pixel(45, 45).red != raster.pixel(0, 0).red;
+  };
+  EXPECT_TRUE(legend(TestBlob(upright_sheet(true))));
+  EXPECT_FALSE(legend(TestBlob(sphere(0.05, 0.001))));
+  EXPECT_FALSE(legend(TestBlob(cos_sheet(0.03, 0.001, core::Profile::kSurface))));
 }
 
 }  // namespace

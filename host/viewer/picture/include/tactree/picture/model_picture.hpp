@@ -1,6 +1,8 @@
 #pragma once
 // Picture of a model from front and back, with the points as discs shaded by their normals, a
-// scale, and marks at holes and open boundaries of the surface.
+// scale, and marks at holes and open boundaries of the surface. The front of a surface that faces
+// one side as a whole, such as a relief, is its outside; of others it is +x. If both sides of the
+// surface are seen, a legend names their colours.
 
 #include <array>
 #include <cstdint>
@@ -21,10 +23,11 @@ struct Mark {
 inline constexpr int kPictureWidth = 1280;
 inline constexpr int kPictureHeight = 720;
 
-/// `marks` are in descending order of diameter; the first eight are drawn, with a legend. Marks
-/// behind the surface are drawn faintly. `doubtful` is empty, or has one element per point of the
-/// blob: 1 if its orientation is ambiguous. Such points have a separate colour, with a legend.
-/// Precondition: !view.empty(). Cost: about 0.1 us per point.
+/// `marks` are in descending order of diameter; the first eight are drawn, with a legend. A mark
+/// that the surface hides is drawn in the other view only, or faintly in both if it is hidden in
+/// both. `doubtful` is empty, or has one element per point of the blob: 1 if its orientation is
+/// ambiguous. Such points have a separate colour, with a legend. Precondition: !view.empty(). Cost:
+/// about 0.1 us per point.
 [[nodiscard]] Raster draw_model(const core::BlobView& view, std::span<const Mark> marks,
                                 std::span<const std::uint8_t> doubtful = {});
 
