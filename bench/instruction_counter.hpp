@@ -43,8 +43,8 @@ inline std::uint64_t step_to_marker(pid_t child) {
 
 }  // namespace detail
 
-/// Instructions of call(0), ..., call(calls - 1), less those of an empty call. Empty when this
-/// machine does not let a process step another.
+/// Instructions of call(0), ..., call(calls - 1), less those of an empty call. Empty if a process
+/// may not step another one here, or if the copy was stopped or killed in between.
 inline std::vector<std::uint64_t> count_instructions(std::size_t calls,
                                                      const std::function<void(std::size_t)>& call) {
   const pid_t child = fork();

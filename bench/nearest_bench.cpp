@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <nanoflann.hpp>
 #include <random>
@@ -296,8 +297,12 @@ Pair count_both(const Ours& ours, const Nanoflann& peer, const std::vector<Vec3>
   const auto count = [&](const auto& query) {
     const auto counts = tactree::bench::count_instructions(
         probes.size(), [&](std::size_t i) { sink = query(probes[i]).index; });
-    return counts.empty() ? Distribution{}
-                          : distribution_of(std::vector<double>(counts.begin(), counts.end()));
+    if (counts.empty()) {
+      fmt::print(stderr,
+                 "nearest_bench: the instructions of a query were not counted; try again\n");
+      std::exit(1);
+    }
+    return distribution_of(std::vector<double>(counts.begin(), counts.end()));
   };
   return {count(ours), count(peer)};
 }
@@ -307,11 +312,9 @@ void print_row(const char* name, double ours, double peer) {
 }
 
 void print_rows(const std::string& name, const Pair& pair) {
-  if (pair.peer.median > 0.0) {
-    print_row((name + ", median").c_str(), pair.ours.median, pair.peer.median);
-    print_row((name + ", 99.9 %").c_str(), pair.ours.permille_999, pair.peer.permille_999);
-    print_row((name + ", worst").c_str(), pair.ours.worst, pair.peer.worst);
-  }
+  print_row((name + ", median").c_str(), pair.ours.median, pair.peer.median);
+  print_row((name + ", 99.9 %").c_str(), pair.ours.permille_999, pair.peer.permille_999);
+  print_row((name + ", worst").c_str(), pair.ours.worst, pair.peer.worst);
 }
 
 Options read_options(int argc, char** argv) {
