@@ -36,7 +36,7 @@ struct SourceLoop {
   std::vector<std::uint32_t> head;
   bool tests_last = false;  ///< do {} while ()
   /// The condition is one comparison, which is one branch in the machine code.
-  bool simple = false;
+  bool one_comparison = false;
   std::optional<Expression> bound;
   std::vector<Total> totals;
 };
