@@ -28,7 +28,7 @@ struct Streams {
   int output = -1;  ///< standard output; -1 discards it
   int error = -1;   ///< standard error; -1 discards it
   /// Pairs {number in this process, number in the child}. Numbers in the child are 3 ..
-  /// FileDescriptor::kLowest - 1, and numbers in this process are at least FileDescriptor::kLowest,
+  /// HighDescriptor::kLowest - 1, and numbers in this process are at least HighDescriptor::kLowest,
   /// so no descriptor is overwritten before it is passed.
   std::vector<std::pair<int, int>> inherited;
 };
