@@ -7,6 +7,7 @@ import sys
 import threading
 
 import numpy as np
+import tactree
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
 from served_board import ServedBoard, build_ball  # noqa: E402
@@ -17,12 +18,13 @@ __all__ = ["BallFolder", "ServedBoard", "SharedFolder", "ball", "ball_arrays", "
 
 
 class BallFolder(SharedFolder):
-    """With the blob of a ball, which `tool` builds."""
+    """With the blob of a ball, which `tool` builds, and the model in it."""
 
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
         cls.blob = build_ball(cls.tool, cls.path)
+        cls.model = tactree.load(cls.blob)
 
 
 def ball_arrays(count=2000, radius=0.03):

@@ -20,11 +20,6 @@ FLOATS = ("distance_m", "surface_x", "surface_y", "surface_z", "normal_x", "norm
 class Folder(BallFolder):
     tool = TACTREE
 
-    @classmethod
-    def setUpClass(cls):
-        super().setUpClass()
-        cls.model = tactree.load(cls.blob)
-
     def tool_answers(self, positions, *options):
         write_rows(self.path / "probes.csv", "x,y,z", positions)
         done = self.run_tool("query", self.blob, "--points", "probes.csv", *options)

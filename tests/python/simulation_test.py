@@ -20,11 +20,6 @@ SUMMARY = ("ticks", "contact_ticks", "overruns", "force_max_N", "force_step_max_
 class Folder(BallFolder):
     tool = TACTREE
 
-    @classmethod
-    def setUpClass(cls):
-        super().setUpClass()
-        cls.model = tactree.load(cls.blob)
-
     def tool_run(self, *options, code=0):
         """Rows of the trace and the summary."""
         done = self.run_tool("simulate", self.blob, "--trace", "tool.csv", "--json", "tool.json", "--allow-no-contact",

@@ -37,7 +37,7 @@ class Trace(Folder):
 
     def test_is_the_table_of_a_run(self):
         trace = tactree.read_trace(self.path / "run.csv")
-        run = tactree.Simulation(tactree.load(self.blob)).run(seconds=0.3)
+        run = tactree.Simulation(self.model).run(seconds=0.3)
         self.assertEqual(trace.dtype, run.dtype)
         for name in run.dtype.names:
             if run.dtype[name] == np.float64:  # nine digits
