@@ -3,9 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
-
 #include "number.hpp"
 #include "readers.hpp"
 #include "scalar.hpp"

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <utility>
 
 #include "ply_body.hpp"
 #include "ply_header.hpp"

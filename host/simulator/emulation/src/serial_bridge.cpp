@@ -6,7 +6,6 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
-#include <span>
 #include <string>
 
 #include "tactree/emulation/emulation_error.hpp"

@@ -1,7 +1,6 @@
 #include <sys/stat.h>
 
 #include <cstdlib>
-#include <vector>
 
 #include "mesh_import/wire.hpp"
 #include "test_files.hpp"

@@ -2,7 +2,6 @@
 
 #include <bit>
 #include <limits>
-#include <vector>
 
 #include "test_files.hpp"
 

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cmath>
 
 #include "tactree/picture/model_picture.hpp"
 #include "test_models.hpp"
