@@ -76,7 +76,7 @@ class Layers(Planted):
         self.refuses_line("core links Eigen3::Eigen", "core/CMakeLists.txt",
                           "target_link_libraries(tactree_core PUBLIC Eigen3::Eigen)")
 
-    def test_builder_takes_include_folder_of_host(self):
+    def test_builder_uses_foreign_include_folder(self):
         self.refuses_line("of plant", "host/builder/CMakeLists.txt",
                           "target_include_directories(tactree_builder PRIVATE\n"
                           "  ${CMAKE_CURRENT_SOURCE_DIR}/../simulator/plant/include)")
@@ -223,14 +223,14 @@ class Style(Planted):
         self.refuses("host/support/bad.cpp:1:5", *self.build_of([good, bad]))
         self.accepts(*self.build_of([good, bad]), good)
 
-    def test_files_that_cannot_be_merged(self):
+    def test_unmergeable_files(self):
         one, two = (self.write(f"host/support/{name}.cpp", f"namespace {{\nint f() {{ return 1; }}\n}}\n"
                                f"int {name}() {{ return f(); }}\n") for name in ("one", "two"))
         self.accepts(*self.build_of(one, two))
         two.write_text(two.read_text() + self.BAD)
         self.refuses("host/support/two.cpp:5:5", *self.build_of(one, two))
 
-    def test_firmware_is_checked_in_cross_builds_only(self):
+    def test_firmware_of_host_build(self):
         self.write("firmware/bad.cpp", self.BAD)
         code, output = check(*self.build_of(self.folder / "firmware/bad.cpp"))
         self.assertEqual(code, 1)

@@ -14,7 +14,7 @@ class Stalls(unittest.TestCase):
         return subprocess.Popen([SCRIPT, *options, "sh", "-c", script], start_new_session=True, text=True,
                                 stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
 
-    def test_a_failure_beside_a_stop_of_a_second_is_skipped(self):
+    def test_skips_failure_beside_long_stop(self):
         with self.start("echo ready; read line; exit 3") as process:
             self.assertEqual(process.stdout.readline(), "ready\n")
             os.killpg(process.pid, signal.SIGSTOP)
@@ -25,7 +25,7 @@ class Stalls(unittest.TestCase):
         stood_ms = int(said.rpartition("stalled for ")[2].split()[0])
         self.assertGreater(stood_ms, 900)
 
-    def test_a_command_that_does_not_end_is_ended_with_all_it_started(self):
+    def test_time_limit_ends_all_processes(self):
         # All of them have the output open; one ignores the request to end.
         with self.start("sleep 600 & sh -c 'trap \"\" TERM; while :; do sleep 600; done'; wait",
                         "--time-limit", "1") as process:

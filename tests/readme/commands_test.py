@@ -128,13 +128,13 @@ class ServedCommands(InAFolder):
             self.assertEqual(error.code, 404)
         self.end(process, line)
 
-    def test_every_page_is_served(self):
+    def test_serves_every_page(self):
         lines = [line for block in blocks("console") if "--serve" not in block for line in prompt_lines(block)]
         self.assertEqual(len(lines), 3)
         for line in lines:
             self.shows_page(line)
 
-    def test_a_served_board_answers_every_command(self):
+    def test_served_board_answers_every_command(self):
         (block,) = [block for block in blocks("console") if "--serve" in block]
         shown = re.search(r"^serving at (\S+)$", block, re.MULTILINE)[1]
         serve, *lines = prompt_lines(block)
