@@ -17,7 +17,6 @@
 #include "device_fields.hpp"
 #include "json_positions.hpp"
 #include "tactree/support/device_file.hpp"
-#include "tactree/support/json_reader.hpp"
 #include "tactree/support/nearest_name.hpp"
 #include "tactree/support/user_error.hpp"
 
@@ -30,6 +29,10 @@ constexpr std::size_t kKeyCharacters = 60;  // of a key in a message
 
 std::string range_text(const DeviceField& field) {
   return fmt::format("{:.6g} .. {:.6g}", field.low, field.high);
+}
+
+std::string listed(const std::vector<std::string>& names) {
+  return fmt::format("{}", fmt::join(names, ", "));
 }
 
 std::string quoted(const std::string& name) {
