@@ -75,11 +75,6 @@ Wedge widest_wedge(std::vector<double>& directions) {
   return widest;
 }
 
-struct BorderPoint {
-  std::uint32_t index;
-  Eigen::Vector3d away;  // unit vector in the tangent plane towards the missing surface
-};
-
 // Classification of single points.
 class PointProbe {
  public:
