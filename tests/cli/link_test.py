@@ -9,21 +9,19 @@ import sys
 import unittest
 
 sys.dont_write_bytecode = True
-from served_board import ServedBoard, build_ball  # noqa: E402
-from tool_folder import SharedFolder  # noqa: E402
+from served_board import BallFolder, ServedBoard, build_ball  # noqa: E402
 
 NOT_HOMED = 1 << 7
 BOARD = sys.argv.pop(2) if len(sys.argv) > 2 else "host"
 TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
 
 
-class Link(SharedFolder):
+class Link(BallFolder):
     tool = TACTREE
 
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        cls.blob = build_ball(TACTREE, cls.path)
         if BOARD != "host":
             run = cls.run_tool("simulate", cls.blob, "--board", BOARD, "--seconds", "0.01")
             if run.returncode != 0 and "image" in run.stderr:

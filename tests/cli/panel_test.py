@@ -8,20 +8,14 @@ import sys
 import unittest
 
 sys.dont_write_bytecode = True
-from served_board import ServedBoard, build_ball  # noqa: E402
-from tool_folder import SharedFolder  # noqa: E402
+from served_board import BallFolder, ServedBoard  # noqa: E402
 
 TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
 HOME_AND_ARM = ("--press", "0.2s..1.4s", "--press", "3s..4.2s")
 
 
-class Panel(SharedFolder):
+class Panel(BallFolder):
     tool = TACTREE
-
-    @classmethod
-    def setUpClass(cls):
-        super().setUpClass()
-        cls.blob = build_ball(TACTREE, cls.path)
 
     def simulate(self, *arguments, code=0):
         done = self.run_tool("simulate", self.blob, "--panel", *arguments)

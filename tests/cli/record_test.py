@@ -20,8 +20,7 @@ import zipfile
 import zlib
 
 sys.dont_write_bytecode = True
-from served_board import ServedBoard, build_ball  # noqa: E402
-from tool_folder import SharedFolder  # noqa: E402
+from served_board import BallFolder, ServedBoard  # noqa: E402
 
 TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
 
@@ -46,13 +45,8 @@ def read_npz(path):
     return arrays
 
 
-class Recorded(SharedFolder):
+class Recorded(BallFolder):
     tool = TACTREE
-
-    @classmethod
-    def setUpClass(cls):
-        super().setUpClass()
-        cls.blob = build_ball(TACTREE, cls.path)
 
     def record(self, port, name, *arguments, code=0, **options):
         run = self.run_tool("record", "--port", port, "-o", name, *arguments, **options)

@@ -11,12 +11,12 @@ import unittest
 import numpy as np
 import tactree
 
-from clouds import BallFolder, ServedBoard, runs_beside, signal_during, tool_error
+from clouds import ModelFolder, ServedBoard, runs_beside, signal_during, tool_error
 
 TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
 
 
-class Folder(BallFolder):
+class Folder(ModelFolder):
     tool = TACTREE
 
     def tool_json(self, *arguments):

@@ -10,20 +10,19 @@ import numpy as np
 import tactree
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
-from served_board import ServedBoard, build_ball  # noqa: E402
+from served_board import BallFolder, ServedBoard  # noqa: E402
 from tool_folder import SharedFolder, ball  # noqa: E402
 
-__all__ = ["BallFolder", "ServedBoard", "SharedFolder", "ball", "ball_arrays", "probes", "runs_beside",
+__all__ = ["ModelFolder", "ServedBoard", "SharedFolder", "ball", "ball_arrays", "probes", "runs_beside",
            "signal_during", "tool_error", "write_rows"]
 
 
-class BallFolder(SharedFolder):
-    """With the blob of a ball, which `tool` builds, and the model in it."""
+class ModelFolder(BallFolder):
+    """And with the model in that blob."""
 
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        cls.blob = build_ball(cls.tool, cls.path)
         cls.model = tactree.load(cls.blob)
 
 

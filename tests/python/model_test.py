@@ -11,13 +11,13 @@ import unittest
 import numpy as np
 import tactree
 
-from clouds import BallFolder, probes, runs_beside, signal_during, tool_error, write_rows
+from clouds import ModelFolder, probes, runs_beside, signal_during, tool_error, write_rows
 
 TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
 FLOATS = ("distance_m", "surface_x", "surface_y", "surface_z", "normal_x", "normal_y", "normal_z", "signed_distance_m")
 
 
-class Folder(BallFolder):
+class Folder(ModelFolder):
     tool = TACTREE
 
     def tool_answers(self, positions, *options):

@@ -10,14 +10,14 @@ import unittest
 import numpy as np
 import tactree
 
-from clouds import BallFolder, runs_beside, signal_during, tool_error, write_rows
+from clouds import ModelFolder, runs_beside, signal_during, tool_error, write_rows
 
 TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
 SUMMARY = ("ticks", "contact_ticks", "overruns", "force_max_N", "force_step_max_N", "penetration_max_m", "trace_crc32",
            "faults", "crowded_ticks")
 
 
-class Folder(BallFolder):
+class Folder(ModelFolder):
     tool = TACTREE
 
     def tool_run(self, *options, code=0):

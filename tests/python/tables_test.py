@@ -11,12 +11,12 @@ import zipfile
 import numpy as np
 import tactree
 
-from clouds import BallFolder, ServedBoard
+from clouds import ModelFolder, ServedBoard
 
 TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
 
 
-class Folder(BallFolder):
+class Folder(ModelFolder):
     tool = TACTREE
 
     def expect_refusal(self, read, name, *words):
