@@ -94,7 +94,7 @@ class Board {
   /// Waits.
   [[nodiscard]] static Introduction introduce(std::unique_ptr<Transport> transport);
 
-  // ---- these wait
+  // ---- blocking calls
   [[nodiscard]] core::wire::IdentifyReply identify();
   [[nodiscard]] core::wire::CapabilitiesReply capabilities();
   [[nodiscard]] core::wire::StateReply state();
@@ -127,7 +127,7 @@ class Board {
   void set_parameter(const std::string& name, float value);
   void save_parameters();
 
-  // ---- models; these wait, for as long as the flash takes
+  // ---- models: blocking calls, for as long as the flash is written
   using Progress = std::function<void(std::size_t done, std::size_t all)>;
   [[nodiscard]] core::wire::ListModelsReply models();
   /// Writes a model, has the board check it, and activates it. The preceding model stays in the
@@ -136,7 +136,7 @@ class Board {
   void roll_back();
   void erase_model(std::uint32_t slot);
 
-  // ---- these do not wait
+  // ---- calls that do not block
   /// Sends a stop, which may be lost; stop() waits for the reply. May be called while another
   /// thread uses the board, except in reconnect().
   void post_stop();

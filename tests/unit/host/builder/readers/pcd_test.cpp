@@ -168,7 +168,7 @@ TEST_F(PcdTest, ChecksDeclaredCounts) {
                "only 1");
   expect_parts(refusal_of(with_points("4294967295", "ascii") + "1 2 3\n"), "only 1");
   expect_parts(refusal_of(with_points("-1", "binary") + point), "not a count");
-  expect_parts(refusal_of(with_points("0", "binary") + point), "holds no point");
+  expect_parts(refusal_of(with_points("0", "binary") + point), "contains no points");
   // A number of points whose size in bytes wraps around in 64 bits to the true size.
   expect_parts(
       refusal_of(with_points("4611686018427387905", "binary_compressed") + compressed(point)),

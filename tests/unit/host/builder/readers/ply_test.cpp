@@ -285,7 +285,7 @@ TEST_F(PlyTest, ChecksDeclaredCounts) {
   expect_parts(refusal_of(header_with("ascii", "-3") + "1 2 3\n"), "negative", "line 3");
   expect_parts(refusal_of(header_with("ascii", "99999999999999999999") + "1 2 3\n"), "not a count");
   expect_parts(refusal_of(header_with("ascii", "many") + "1 2 3\n"), "many", "not a count");
-  expect_parts(refusal_of(header_with("ascii", "0")), "holds no point");
+  expect_parts(refusal_of(header_with("ascii", "0")), "contains no points");
 }
 
 TEST_F(PlyTest, RefusesHugeCountsAndLists) {
