@@ -38,7 +38,7 @@ def probes(count=500, radius=0.035, seed=1):
 
 
 def tool_error(run):
-    """The sentence that the tool prints."""
+    """The error message that the tool prints."""
     return run.stderr.strip().removeprefix("tactree: error: ")
 
 
@@ -48,7 +48,7 @@ def write_rows(path, heading, rows):
 
 @contextlib.contextmanager
 def no_forced_switches():
-    """A thread runs until it releases the interpreter's lock by itself."""
+    """A thread runs until it releases the interpreter's lock explicitly."""
     interval = sys.getswitchinterval()
     sys.setswitchinterval(1000)
     try:
