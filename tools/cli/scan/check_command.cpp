@@ -74,7 +74,7 @@ void check(const CheckOptions& options) {
 void add_check_command(CLI::App& app, int&) {
   auto options = std::make_shared<CheckOptions>();
   CLI::App* verb = app.add_subcommand(
-      "check", "Validates a blob with the checks of the controller; exit code 0: valid");
+      "check", "Validates a blob with the checks of the controller; exit code 0 if it is valid");
   verb->add_option("BLOB", options->blob, "blob to check; -: standard input")->required();
   verb->add_option("--key", options->key, "require a signature by this public key")
       ->check(CLI::ExistingFile);
