@@ -245,10 +245,10 @@ class DeviceReader {
       add_value(path, "is not a number", fmt::format("give {}, without quotes", range_text(field)));
       return std::nullopt;
     }
-    constexpr auto kLargest = static_cast<double>(std::numeric_limits<float>::max());
+    constexpr auto kMaxFloat = static_cast<double>(std::numeric_limits<float>::max());
     const auto figure = value.get<double>();
     // As floats, in which the file may have been computed, and which the controller compares.
-    const auto result = static_cast<float>(std::clamp(figure, -kLargest, kLargest));
+    const auto result = static_cast<float>(std::clamp(figure, -kMaxFloat, kMaxFloat));
     if (!(result >= field.low && result <= field.high)) {
       add_value(path, fmt::format("{:.6g} is out of range", figure), "give " + range_text(field));
       return std::nullopt;

@@ -19,17 +19,17 @@ namespace tactree::support {
 class HighDescriptor {
  public:
   /// Lowest number of an owned descriptor. A child process may receive descriptors below it.
-  static constexpr int kLowest = 10;
+  static constexpr int kMinNumber = 10;
 
   HighDescriptor() = default;
-  /// Takes ownership of `descriptor` and moves it to a number >= kLowest. Throws std::system_error
-  /// for errno if `descriptor` is negative, because the call that returned it failed, or if no
-  /// number is free.
+  /// Takes ownership of `descriptor` and moves it to a number >= kMinNumber. Throws
+  /// std::system_error for errno if `descriptor` is negative, because the call that returned it
+  /// failed, or if no number is free.
   explicit HighDescriptor(int descriptor) {
     if (descriptor < 0) {
       fail_with_errno("file descriptor");
     }
-    descriptor_ = ::fcntl(descriptor, F_DUPFD_CLOEXEC, kLowest);
+    descriptor_ = ::fcntl(descriptor, F_DUPFD_CLOEXEC, kMinNumber);
     const int cause = errno;
     ::close(descriptor);
     if (descriptor_ < 0) {
