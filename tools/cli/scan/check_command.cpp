@@ -40,7 +40,7 @@ void check_signature(const CheckOptions& options, const support::BlobFile& blob)
   const std::string file = signature_path(options.blob).string();
   if (!is_valid(*signature, blob.bytes())) {
     throw support::UserError(
-        fmt::format("{}: is not a valid signature of this blob (sign it again with "
+        fmt::format("{}: not a valid signature of this blob (sign it again with "
                     "`tactree sign`)",
                     file));
   }
