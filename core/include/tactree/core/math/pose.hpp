@@ -5,8 +5,6 @@
 // Loop and memory annotations: docs/BOUND.md.
 // memory: RAM
 
-#include <cstdint>
-
 #include "tactree/core/math/vec3.hpp"
 
 namespace tactree::core {

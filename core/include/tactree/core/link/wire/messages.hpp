@@ -9,7 +9,6 @@
 //
 // Interrupt safety: plain data and pure functions.
 
-#include <cstddef>
 #include <cstdint>
 
 #include "tactree/core/link/wire/frame.hpp"
