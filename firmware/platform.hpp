@@ -15,7 +15,8 @@ namespace tactree::firmware {
 void start_ticks(float rate_hz);
 /// Number of deadlines since start_ticks(), modulo 2^32. Safe in the tick and outside it.
 [[nodiscard]] std::uint32_t deadlines();
-/// Microseconds since start_ticks(), modulo 2^32.
+/// Microseconds since start_ticks(), modulo 2^32. Do not call while ticks are held: a deadline that
+/// passes then is not counted on a Cortex-M, so the time would step back by one period.
 [[nodiscard]] std::uint32_t now_us();
 /// While ticks are held, none begins; a tick that became due begins when they are released. Hold
 /// ticks only briefly.

@@ -53,7 +53,7 @@ class BoundCommand(unittest.TestCase):
         self.assertEqual(refused.returncode, 1)
         self.assertIn(f"at up to {highest:.0f} Hz", refused.stderr)
 
-    def test_a_board_admits_a_rate_that_it_keeps(self):
+    def test_board_admits_sustainable_rate(self):
         run = ["simulate", BLOB, "--board", BOARD, "--seconds", 0.02, "--allow-no-contact", "--rate"]
         self.assertEqual(tactree(*run, 1000).returncode, 0)
         refused = tactree(*run, 10000)
@@ -103,7 +103,7 @@ class BoundCommand(unittest.TestCase):
         self.assertEqual(run.returncode, 0, run.stderr)
         return [int(rate) for rate in re.findall(r"up to (\d+) Hz", run.stdout)]
 
-    def test_the_board_with_real_parts_is_known(self):
+    def test_knows_board_with_real_parts(self):
         points = self.folder / "plane.xyz"
         points.write_text("".join(f"{x} {y} 0\n" for x in range(40) for y in range(40)))
         blob = self.folder / "plane.blob"
@@ -115,7 +115,7 @@ class BoundCommand(unittest.TestCase):
         self.assertNotEqual(refused.returncode, 0)
         self.assertIn("netduinoplus2", refused.stderr)
 
-    def test_a_board_too_slow_for_its_finest_model_gets_a_coarser_one(self):
+    def test_slow_board_gets_coarser_model(self):
         # One half is eight times as dense as the other: at a fine spacing, more points in a ball there.
         places = [(0.25 * i, 0.5 * j) for i in range(240) for j in range(240)]
         places += [(60 + 2 * i, 2 * j) for i in range(30) for j in range(60)]
@@ -136,7 +136,7 @@ class BoundCommand(unittest.TestCase):
         self.assertLess(between.stat().st_size, fine.stat().st_size)
         self.assertGreater(between.stat().st_size, coarse.stat().st_size)
 
-    def test_a_rate_that_is_kept_implies_every_lower_one(self):
+    def test_sustained_rate_implies_lower_rates(self):
         highest = self.bound("--board", BOARD)["rate_max_hz"]
         base = ["bound", IMAGE, "--blob", BLOB, "--board", BOARD, "--rate"]
         for share in (0.1, 0.3, 0.5, 0.7, 0.9, 0.99):

@@ -72,15 +72,11 @@ class Layers(Planted):
         self.refuses_line("<vector>, which is not freestanding", "core/src/model/octree.cpp",
                           "#  include <vector>")
 
-    def test_core_includes_builder_by_name(self):
-        self.refuses_line("model includes lattice.hpp of builder", "core/src/model/octree.cpp",
-                          '#include "lattice.hpp"')
-
     def test_core_links_library(self):
         self.refuses_line("core links Eigen3::Eigen", "core/CMakeLists.txt",
                           "target_link_libraries(tactree_core PUBLIC Eigen3::Eigen)")
 
-    def test_builder_takes_include_folder_of_host(self):
+    def test_builder_uses_foreign_include_folder(self):
         self.refuses_line("of plant", "host/builder/CMakeLists.txt",
                           "target_include_directories(tactree_builder PRIVATE\n"
                           "  ${CMAKE_CURRENT_SOURCE_DIR}/../simulator/plant/include)")
@@ -92,10 +88,6 @@ class Layers(Planted):
 class Loops(Planted):
     REFERENCE = "// Loop and memory annotations: docs/BOUND.md.\n"
 
-    def accepts_code(self, code):
-        self.write("a.cpp", self.REFERENCE + code)
-        self.accepts("check-loops", self.folder)
-
     def refuses_code(self, code, line):
         self.write("a.cpp", self.REFERENCE + code)
         self.refuses(f"a.cpp:{line + 1}:", "check-loops", self.folder)
@@ -105,21 +97,6 @@ class Loops(Planted):
         for text, line in ((code, 2), (code + self.REFERENCE, 2), ("// memory: RAM\n" + self.REFERENCE + code, 1)):
             self.write("a.cpp", text)
             self.refuses(f"a.cpp:{line}: annotation", "check-loops", self.folder)
-        self.accepts_code(code)
-
-    def test_bounded(self):
-        self.accepts_code("void f(int n) {\n"
-                          "  for (int i = 0; i < 8; ++i) {  // bound: 8\n"
-                          "    while (n > (i + 1)) --n;  // bound: n\n"
-                          "  }\n"
-                          "  do {  // bound: 3\n"
-                          "    ++n;\n"
-                          "  } while (n < 3);\n"
-                          "  for (int i = 0; i < 8 &&\n"
-                          "       n > i;\n"
-                          "       ++i) {  // bound: 8\n"
-                          "  }\n"
-                          "}\n")
 
     def test_while(self):
         self.refuses_code("void f(int n) {\n  while (n > 0) {\n    --n;\n  }\n}\n", 2)
@@ -143,12 +120,6 @@ class Symbols(Planted):
 
     def refuses_code(self, words, code, *flags):
         self.refuses(words, "check-symbols", self.archive(code, *flags))
-
-    def test_clean(self):
-        self.accepts("check-symbols", self.archive(
-            "#include <cstring>\nextern const float kTable[4];\nconst float kTable[4] = {1, 2, 3, 4};\n"
-            "float f(float a, float b, int n) { return __builtin_sqrtf(a * b + kTable[n & 3]); }\n"
-            "void g(void* a, const void* b, unsigned n) { std::memcpy(a, b, n); }\n"))
 
     def test_heap(self):
         self.refuses_code("needs _Zna", "int* f(unsigned n) { return new int[n]; }\n")
@@ -186,9 +157,6 @@ class Pages(Planted):
                             ignore=shutil.ignore_patterns("corpus", "golden", "node_modules"))
         subprocess.run(["git", "init", "-q"], cwd=self.folder, check=True)
 
-    def test_untouched(self):
-        self.accepts("generate", "--check", "--quick", "--root", self.folder, "FORMAT", "PROTOCOL", "SAFETY")
-
     def test_stale(self):
         headers = "core/include/tactree/core"
         for page, name, old, new in (
@@ -224,10 +192,6 @@ class Style(Planted):
         self.refuses("clang-format-violations", "check-style", "format",
                      self.write("a.cpp", "int  f( int a ){return a;}\n"))
 
-    def test_clean_code(self):
-        self.accepts(*self.tidy("constexpr int kMax = 3;\nint at_most(int value) {\n"
-                                "  return value < kMax ? value : kMax;\n}\n"))
-
     def test_complex_function(self):
         body = "".join(f"{'  ' * d}if (a > {d}) {{\n" for d in range(1, 9)) + "a = 0;\n" + "}" * 8
         self.refuses("readability-function-cognitive-complexity",
@@ -253,25 +217,20 @@ class Style(Planted):
     GOOD = "int good(int value) { return value + 1; }\n"
     BAD = "int BadName(int value) { return value + 1; }\n"
 
-    def test_host_file(self):
-        good = self.write("host/support/good.cpp", self.GOOD)
-        self.accepts(*self.build_of(good))
-        self.refuses("host/support/bad.cpp:1:5", *self.build_of(good, self.write("host/support/bad.cpp", self.BAD)))
-
     def test_merged_host_file(self):
         good = self.write("host/support/good.cpp", self.GOOD)
         bad = self.write("host/support/bad.cpp", self.BAD)
         self.refuses("host/support/bad.cpp:1:5", *self.build_of([good, bad]))
         self.accepts(*self.build_of([good, bad]), good)
 
-    def test_files_that_cannot_be_merged(self):
+    def test_unmergeable_files(self):
         one, two = (self.write(f"host/support/{name}.cpp", f"namespace {{\nint f() {{ return 1; }}\n}}\n"
                                f"int {name}() {{ return f(); }}\n") for name in ("one", "two"))
         self.accepts(*self.build_of(one, two))
         two.write_text(two.read_text() + self.BAD)
         self.refuses("host/support/two.cpp:5:5", *self.build_of(one, two))
 
-    def test_firmware_is_checked_in_cross_builds_only(self):
+    def test_firmware_of_host_build(self):
         self.write("firmware/bad.cpp", self.BAD)
         code, output = check(*self.build_of(self.folder / "firmware/bad.cpp"))
         self.assertEqual(code, 1)
@@ -289,10 +248,6 @@ class Page(Planted):
         self.write(name, code)
         self.refuses(rule, "check-page", self.BUILD, self.folder)
         self.refuses(name, "check-page", self.BUILD, self.folder)
-
-    def test_clean(self):
-        self.write("a.ts", "export const twice = (value: number): number => 2 * value;\n")
-        self.accepts("check-page", self.BUILD, self.folder)
 
     def test_any(self):
         self.refuses_code("noExplicitAny", "export const same = (value: any): any => value;\n")
@@ -336,11 +291,6 @@ class Scripts(Planted):
         self.accepts("check-scripts", "python", self.write("a.py", "import sys\nprint(sys.argv)\n"))
         self.refuses("undefined name 'argv'", "check-scripts", "python", self.write("a.py", "print(argv)\n"))
         self.refuses("imported but unused", "check-scripts", "python", self.write("a.py", "import sys\n"))
-
-    def test_syntax(self):
-        self.refuses("a:2:", "check-scripts", "shell", self.write("a", "#!/bin/sh\nif true; then\n"))
-        self.refuses("a.py:1:", "check-scripts", "python", self.write("a.py", "def f(:\n"))
-
 
 if __name__ == "__main__":
     if sys.argv[1:] == ["Page"] and not (Page.BUILD / "node_modules/.bin/biome").exists():

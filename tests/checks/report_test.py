@@ -41,11 +41,11 @@ class TestReport(unittest.TestCase):
         self.assertEqual(done.returncode, code, done.stdout + done.stderr)
         return done.stdout
 
-    def test_counts_passed_failed_and_skipped_tests(self):
+    def test_counts_outcomes(self):
         self.assertEqual(self.report("count", self.folder / "host.xml"), "3 2 4\n")
         self.assertEqual(self.report("count", self.folder / "absent.xml"), "0 0 0\n")
 
-    def test_prints_the_output_of_failures(self):
+    def test_prints_output_of_failures(self):
         failures = self.report("failures", self.folder / "host.xml")
         self.assertIn("a.cpp:7: Failure", failures)
         self.assertIn("not.built Unable to find executable", failures)
@@ -56,12 +56,12 @@ class TestReport(unittest.TestCase):
             "Gate.NeedsRoot (not as root)", "cli.link: test_key (no key)",
             "web.board (inconclusive: the machine stalled for 512 ms while it ran)", "web.page (chromium is missing)"])
 
-    def test_lists_the_slowest(self):
+    def test_lists_slowest(self):
         lines = self.report("slowest", self.folder).splitlines()
         self.assertEqual(lines[1].split(), ["300.0", "s", "build"])
         self.assertEqual(lines[lines.index("slowest tests:") + 1].split(), ["2.0", "s", "host:", "cli.link"])
 
-    def test_a_missing_test_fails_the_gate(self):
+    def test_missing_test_fails_gate(self):
         self.report("list", self.folder, self.list)
         self.assertIn("host Gate 2\nhost cli.link 1\n", self.list.read_text())
         said = self.report("gate", self.folder, self.list, code=1)  # for what was skipped

@@ -14,34 +14,18 @@ class Stalls(unittest.TestCase):
         return subprocess.Popen([SCRIPT, *options, "sh", "-c", script], start_new_session=True, text=True,
                                 stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
 
-    def stopped_for_a_second(self, ending):
-        with self.start(f"echo ready; read line; {ending}") as process:
+    def test_skips_failure_beside_long_stop(self):
+        with self.start("echo ready; read line; exit 3") as process:
             self.assertEqual(process.stdout.readline(), "ready\n")
             os.killpg(process.pid, signal.SIGSTOP)
             time.sleep(1.0)
             os.killpg(process.pid, signal.SIGCONT)
             said, _ = process.communicate("go on\n")
-        return process.returncode, said
-
-    def test_a_failure_beside_a_stop_of_a_second_is_skipped(self):
-        code, said = self.stopped_for_a_second("exit 3")
-        self.assertEqual(code, 77, said)
+        self.assertEqual(process.returncode, 77, said)
         stood_ms = int(said.rpartition("stalled for ")[2].split()[0])
         self.assertGreater(stood_ms, 900)
 
-    def test_a_test_that_passes_beside_a_stop_has_passed(self):
-        self.assertEqual(self.stopped_for_a_second("echo fine"), (0, "fine\n"))
-
-    def test_a_failure_without_a_stop_is_a_failure(self):
-        for _ in range(5):  # the machine itself may stand still in any of them
-            with self.start("exit 3") as process:
-                said, _ = process.communicate()
-            if process.returncode == 3:
-                break
-        self.assertEqual(process.returncode, 3, said)
-        self.assertIn("the largest stall while it ran was", said)
-
-    def test_a_command_that_does_not_end_is_ended_with_all_it_started(self):
+    def test_time_limit_ends_all_processes(self):
         # All of them have the output open; one ignores the request to end.
         with self.start("sleep 600 & sh -c 'trap \"\" TERM; while :; do sleep 600; done'; wait",
                         "--time-limit", "1") as process:

@@ -19,7 +19,7 @@ class Folder(ToolFolder):
 
 
 class Sizes(Folder):
-    def test_a_size_has_a_unit_that_fits(self):
+    def test_size_has_fitting_unit(self):
         self.assertRegex(self.build("--scale", "4e6").stdout,
                          r"model     [\d.]+ x [\d.]+ x [\d.]+ km, ")
         self.assertRegex(self.run_tool("info", "s.blob").stdout,
@@ -27,7 +27,7 @@ class Sizes(Folder):
         self.assertRegex(self.build("--scale", "0.1").stdout,
                          r"model     [\d.]+ x [\d.]+ x [\d.]+ mm, ")
 
-    def test_info_warns_of_a_size_that_no_hand_can_feel(self):
+    def test_info_warns_of_implausible_size(self):
         for scale, words in (("30", "but a haptic device reaches"), ("0.01", "too small to feel")):
             self.build("--scale", scale)
             done = self.run_tool("info", "s.blob", "--json", "i.json")
@@ -40,7 +40,7 @@ class Sizes(Folder):
         done = self.run_tool("info", "s.blob", "--device", "falcon")
         self.assertIn("more than falcon reaches", done.stderr)
 
-    def test_a_huge_file_that_is_no_blob_is_refused_by_its_header(self):
+    def test_refuses_huge_foreign_file_by_header(self):
         with open(self.path / "large.ply", "wb") as file:
             file.write(b"ply\nformat ascii 1.0\n")
             file.truncate(3 << 30)

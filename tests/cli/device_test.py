@@ -1,6 +1,6 @@
 """Device files: tactree device check, schema and to-header; what other commands say of their defaults.
 
-usage: device_test.py TACTREE SCHEMA      SCHEMA: the file in the repository, which is installed
+usage: device_test.py TACTREE
 """
 import json
 import pathlib
@@ -13,8 +13,7 @@ import jsonschema
 sys.dont_write_bytecode = True
 from tool_folder import SharedFolder  # noqa: E402
 
-TACTREE, SCHEMA = (pathlib.Path(argument).resolve() for argument in sys.argv[1:3])
-del sys.argv[1:3]
+TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
 KINDS = {"cartesian": "cartesian", "arm": "premium", "delta": "falcon", "five-bar": "pantograph", "paddle": "hapkit"}
 
 
@@ -60,7 +59,9 @@ class DeviceFiles(SharedFolder):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        cls.schema = jsonschema.Draft7Validator(json.loads(SCHEMA.read_text()))
+        schema = json.loads(cls.run_tool("device", "schema").stdout)
+        jsonschema.Draft7Validator.check_schema(schema)
+        cls.schema = jsonschema.Draft7Validator(schema)
 
     def device(self, name="premium"):
         done = self.run_tool("simulate", "--device", name, "--dump-device")
@@ -76,12 +77,7 @@ class DeviceFiles(SharedFolder):
         self.assertEqual(report["valid"], not report["mistakes"])
         return done, report
 
-    def test_the_schema_in_the_repository_is_that_of_the_tool(self):
-        done = self.run_tool("device", "schema")
-        self.assertEqual(done.stdout, SCHEMA.read_text(), "tactree device schema > host/support/device.schema.json")
-        jsonschema.Draft7Validator.check_schema(json.loads(done.stdout))
-
-    def test_the_schema_has_what_the_check_demands(self):
+    def test_schema_agrees_with_check(self):
         for change, field, message, seen_by_schema in MISTAKES:
             device = self.device()
             change(device)
@@ -100,7 +96,7 @@ class DeviceFiles(SharedFolder):
                     self.assertIn(f'"{key}"', context)
                 self.assertEqual(self.schema.is_valid(device), not seen_by_schema)
 
-    def test_all_mistakes_are_named_at_once(self):
+    def test_names_all_mistakes_at_once(self):
         device = self.device()
         for change, field, *_ in MISTAKES:
             if field in ("ratoi", "counts_per_m", "joint_min", "arm_m", "homing"):
@@ -143,7 +139,7 @@ class DeviceFiles(SharedFolder):
                 device[key] = device[key][:i] + [value] + device[key][i + 1:]
         return device
 
-    def test_the_ends_of_all_ranges_are_the_same(self):
+    def test_range_ends_agree(self):
         relations = re.compile(r"(joint_min|home_position|joint_margin)\[")
         for kind in KINDS:
             for end in (0, 1):
@@ -161,7 +157,7 @@ class DeviceFiles(SharedFolder):
                     self.assertEqual({mistake["field"] for mistake in report["mistakes"]}, expected - {""})
                     self.assertEqual(len(report["mistakes"]), len(list(self.limits(kind))))
 
-    def test_defaults_are_those_of_the_schema_and_are_stated(self):
+    def test_states_defaults_of_schema(self):
         for kind, preset in KINDS.items():
             with self.subTest(kind):
                 [branch] = [entry["then"] for entry in self.schema.schema["allOf"]
@@ -180,7 +176,7 @@ class DeviceFiles(SharedFolder):
                 for key in branch["required"]:
                     self.assertEqual(completed[key], full[key])
 
-    def test_a_simulation_states_the_defaults(self):
+    def test_simulation_states_defaults(self):
         device = self.device("cartesian")
         del device["tip_mass_kg"]
         self.write("own.json", device)
@@ -192,7 +188,7 @@ class DeviceFiles(SharedFolder):
         done = self.run_tool("simulate", "sheet.blob", "--device", "cartesian", "--seconds", "0.01", "--allow-no-contact")
         self.assertNotIn("defaults", done.stderr)
 
-    def test_a_header_is_written_for_valid_devices_only(self):
+    def test_writes_header_of_valid_devices_only(self):
         self.write("own.json", self.device())
         done = self.run_tool("device", "to-header", "own.json", "-o", "own.hpp")
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -206,11 +202,11 @@ class DeviceFiles(SharedFolder):
             self.assertEqual(done.returncode, 2, done.stderr)
         self.assertEqual(self.run_tool("device", "to-header", "own.json", "-o", "own.json").returncode, 1)
 
-    def test_a_preset_is_valid(self):
+    def test_presets_are_valid(self):
         done = self.run_tool("device", "check", "hapkit")
         self.assertEqual((done.returncode, done.stdout), (0, "hapkit: valid: hapkit, 1 axis\n"), done.stderr)
 
-    def test_a_file_that_cannot_be_read_is_named(self):
+    def test_names_unreadable_file(self):
         done = self.run_tool("device", "check", "none.json")
         self.assertEqual(done.returncode, 1)
         self.assertIn("'none.json' is neither a device nor a readable file", done.stderr)

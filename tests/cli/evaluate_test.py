@@ -30,7 +30,7 @@ class InAFolder(SharedFolder):
 
 
 class Report(InAFolder):
-    def test_misses_no_target_but_those_known(self):
+    def test_misses_known_targets_only(self):
         """An error of a face moves the bottom of a groove of 20 degrees by six times as much."""
         report = self.read("first.json")
         missed = {target["name"] for target in report["targets"] if not target["met"]}
@@ -41,7 +41,7 @@ class Report(InAFolder):
         for name in missed:
             self.assertRegex(self.first.stdout, rf"{name} .*\*\*missed\*\*")
 
-    def test_no_crease_lets_a_hand_through(self):
+    def test_creases_stop_hand(self):
         report = self.read("first.json")
         creases = report["creases"] | report["stairs"] | report["corners"] | report["unions"]
         self.assertGreater(len(creases), 30)
@@ -49,7 +49,7 @@ class Report(InAFolder):
             self.assertEqual(crease["lost"], 0, name)
             self.assertGreater(crease["ticks"], 5000, name)
 
-    def test_reports_both_tables_of_the_paper_and_the_closed_loop(self):
+    def test_reports_paper_tables_and_closed_loop(self):
         report = self.read("first.json")
         self.assertEqual(len(report["tables"]["1"]), 6)
         self.assertIn("2", report["tables"])
@@ -57,14 +57,14 @@ class Report(InAFolder):
         for limit in report["loop"]["limits"]:
             self.assertAlmostEqual(limit["measured_N_m"] / limit["formula_N_m"], 1.0, delta=0.1)
 
-    def test_the_page_shows_its_plots(self):
+    def test_page_shows_plots(self):
         page = (self.path / "first.md").read_text()
         pictures = list((self.path / "first").glob("*.svg"))
         self.assertGreaterEqual(len(pictures), 4)
         for picture in pictures:
             self.assertIn(f"(first/{picture.name})", page)
 
-    def test_the_page_for_a_browser_needs_no_other_file(self):
+    def test_html_page_is_self_contained(self):
         page = (self.path / "first.html").read_text()
         self.assertGreaterEqual(page.count("<svg"), 5)
         self.assertIn("damping of the wall", page)
@@ -76,7 +76,7 @@ class Scan(SharedFolder):
     """A report about scans only, in seconds."""
     tool = TACTREE
 
-    def test_reports_about_the_named_scan(self):
+    def test_reports_named_scan(self):
         points = list(ball(20000, 0.03))
         stray = [((0.0, 0.0, 0.045), (0.0, 0.0, 1.0))]
         self.write("cut.csv", csv([p for p in points if p[0][2] < 0.03 * math.cos(0.5)] + stray))
@@ -95,7 +95,7 @@ class Scan(SharedFolder):
         self.assertLess(slides["force_error_rms_N"], 0.05 * slides["expected_N"])
         self.assertLess(slides["force_step_N"], 0.1 * slides["expected_N"])
 
-    def test_the_page_for_a_browser_maps_the_holes_of_a_scan(self):
+    def test_html_page_maps_holes(self):
         points = list(ball(20000, 0.03))
         self.write("ball.csv", csv(points))
         # A cap of 0.5 rad of the ball of 30 mm: a hole of about 29 mm.
@@ -112,7 +112,7 @@ class Scan(SharedFolder):
         for radius in re.findall(r'<circle [^>]* r="([\d.]+)"', holed):
             self.assertAlmostEqual(2 * float(radius), width / 60 * 290, delta=3)
 
-    def test_a_rough_scan_is_felt_in_the_slides(self):
+    def test_slides_show_roughness(self):
         even = list(ball(20000, 0.03))
         self.write("even.csv", csv(even))
         self.write("rough.csv", csv([([c * (1 + 0.005 * (i % 2)) for c in p], n) for i, (p, n) in enumerate(even)]))
@@ -122,7 +122,7 @@ class Scan(SharedFolder):
         self.assertLess(even["force_error_rms_N"], 1e-3)
         self.assertGreater(rough["force_error_rms_N"], 5 * even["force_error_rms_N"])
 
-    def test_refuses_what_is_not_a_scan(self):
+    def test_refuses_other_files(self):
         self.write("note.txt", "Dear reader, this is a letter.\n")
         self.write("ball.csv", csv(ball(2000, 0.03)))
         (self.path / "folder").mkdir()
@@ -134,7 +134,7 @@ class Scan(SharedFolder):
 
 
 class Seeds(InAFolder):
-    def test_result_is_reproducible(self):
+    def test_reproduces_results(self):
         self.assertEqual(self.evaluate("second").returncode, 0)
         self.assertEqual(self.read("second.json"), self.read("first.json"))
 

@@ -9,21 +9,19 @@ import sys
 import unittest
 
 sys.dont_write_bytecode = True
-from served_board import ServedBoard, build_ball  # noqa: E402
-from tool_folder import SharedFolder  # noqa: E402
+from served_board import BallFolder, ServedBoard, build_ball  # noqa: E402
 
 NOT_HOMED = 1 << 7
 BOARD = sys.argv.pop(2) if len(sys.argv) > 2 else "host"
 TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
 
 
-class Link(SharedFolder):
+class Link(BallFolder):
     tool = TACTREE
 
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        cls.blob = build_ball(TACTREE, cls.path)
         if BOARD != "host":
             run = cls.run_tool("simulate", cls.blob, "--board", BOARD, "--seconds", "0.01")
             if run.returncode != 0 and "image" in run.stderr:
@@ -40,7 +38,7 @@ class Link(SharedFolder):
         self.run_verb(*arguments, "--json", "result.json", code=code)
         return self.read("result.json")
 
-    def test_session_from_the_shell(self):
+    def test_runs_session_from_shell(self):
         with ServedBoard(TACTREE, self.blob, "--board", BOARD) as port:
             devices = self.read_json("devices", "--port", port)["devices"]
             self.assertEqual(devices[0]["board"], BOARD)
@@ -68,7 +66,7 @@ class Link(SharedFolder):
             self.assertEqual(seen["motor_force_N"], [0.0, 0.0, 0.0])
             self.assertRegex(self.run_verb("monitor", "--once", "--port", port), "motors +0.000 N .*gravity")
 
-    def test_writes_and_rolls_back_a_model(self):
+    def test_writes_and_rolls_back_model(self):
         with ServedBoard(TACTREE, self.blob, "--board", BOARD) as port:
             points = self.info(self.coarse)["points"]
             for _ in range(2):
@@ -94,7 +92,7 @@ class Link(SharedFolder):
             self.assertIn("NAME=NUMBER", self.run_verb("params", "delay_s=x", "--port", port, code=1))
             self.run_verb("params", "delay_s=7", "--port", port, code=1)
 
-    def test_lists_a_simulated_board(self):
+    def test_lists_simulated_board(self):
         runtime = self.path / "runtime"
         runtime.mkdir()
         mine = {**os.environ, "XDG_RUNTIME_DIR": str(runtime)}
@@ -105,7 +103,7 @@ class Link(SharedFolder):
         self.assertNotIn(port, self.run_tool("devices", env=mine).stdout)
 
     @unittest.skipIf(BOARD != "host", "the messages do not depend on the board")
-    def test_a_fault_is_named_with_its_remedy(self):
+    def test_names_fault_and_hint(self):
         with ServedBoard(TACTREE, self.blob, "--board", BOARD, "--inject", "estop:pressed@0.02..0.05") as port:
             # Of the board's time: when it ends, the switch is released.
             self.run_verb("record", "--port", port, "--seconds", "1", "-o", "passed.csv")
@@ -114,13 +112,13 @@ class Link(SharedFolder):
             self.assertIn("tactree arm --clear", refused)
             self.run_verb("arm", "--port", port, "--seconds", "0.1", "--clear")
 
-    def test_reports_a_missing_board(self):
+    def test_reports_missing_board(self):
         for verb in (["monitor", "--once"], ["stop"], ["trace"], ["params"], ["flash", "--list"], ["arm"]):
             self.assertIn("/dev/no-such-port", self.run_verb(*verb, "--port", "/dev/no-such-port", code=1))
         self.run_verb("devices", "--port", "/dev/no-such-port", code=1)
 
     @unittest.skipIf(BOARD != "host", "the images of emulated boards have no key")
-    def test_board_with_a_key_refuses_unsigned_models(self):
+    def test_board_with_key_refuses_unsigned_models(self):
         key, other = self.path / "key", self.path / "other"
         for name in (key, other):
             self.run_verb("keygen", name)

@@ -65,7 +65,7 @@ class Materials(SharedFolder):
             "colours": [{"name": "felt", "rgb": [255, 0, 0], "tolerance": 30,
                          "stiffness_N_m": 200, "static_friction": 0.2}]})
 
-    def test_colours_of_every_format_become_materials(self):
+    def test_colours_of_all_formats_become_materials(self):
         for suffix in FORMATS:
             with self.subTest(suffix):
                 info = self.build(self.two_colours(), suffix)
@@ -80,7 +80,7 @@ class Materials(SharedFolder):
                 self.assertEqual([(m["name"], m["points"]) for m in report["materials"]],
                                  [("default", base["points"]), ("felt", felt["points"])])
 
-    def test_info_names_materials_by_the_file_of_the_build(self):
+    def test_info_names_materials_of_file(self):
         self.build(self.two_colours())
         text = self.ok("info", "model.blob", "--material", "map.json", "--json", "named.json")
         self.assertRegex(text, r"material 0 +default, all other colours: \d+ points: 800 N/m")
@@ -89,7 +89,7 @@ class Materials(SharedFolder):
         self.assertEqual((base["name"], felt["name"], felt["rgb"]), ("default", "felt", [255, 0, 0]))
         self.assertIn("--material FILE", self.ok("info", "model.blob"))
 
-    def test_info_refuses_the_materials_of_another_build(self):
+    def test_info_refuses_foreign_materials(self):
         self.build(self.two_colours())
         other = json.loads((self.path / "map.json").read_text())
         other["colours"][0]["static_friction"] = 0.3
@@ -110,7 +110,7 @@ class Materials(SharedFolder):
         self.assertEqual(done.returncode, 0, done.stderr)
         return done.stderr
 
-    def test_a_colour_without_points_is_answered_with_those_that_exist(self):
+    def test_unused_colour_lists_existing_colours(self):
         error = self.warning_of(("green", [20, 200, 40], 30), ("red", RED, 30))
         self.assertIn("the material 'green': the nearest to [20, 200, 40] is [20, 30, 240], at a distance of 263", error)
         self.assertIn("the scan has [20, 30, 240] 7381 points, [250, 10, 5] 7260 points)", error)
@@ -119,11 +119,11 @@ class Materials(SharedFolder):
         self.assertEqual(report["colours"], [{"rgb": list(BLUE), "points": 7381}, {"rgb": list(RED), "points": 7260}])
         self.assertEqual(report["materials"][1]["rgb"], [20, 200, 40])
 
-    def test_the_distance_is_the_tolerance_that_is_missing(self):
+    def test_states_missing_tolerance(self):
         self.assertIn("at a distance of 11 (raise its tolerance of 10", self.warning_of(("red", [240, 10, 1], 10)))
         self.assertNotIn("no point", self.warning_of(("red", [240, 10, 1], 11)))
 
-    def test_points_nearer_to_another_colour_are_no_reason_for_more_tolerance(self):
+    def test_ignores_points_of_nearer_colours(self):
         error = self.warning_of(("red", RED, 30), ("almost red", [240, 10, 1], 30))
         self.assertIn("'almost red': the points within 30 of its colour are nearer to that of another", error)
         self.assertNotIn("raise its tolerance", error)
@@ -135,7 +135,7 @@ class Materials(SharedFolder):
                 "cartesian", "--device-friction", "0", "--json", "run.json", *options)
         return self.read("run.json")
 
-    def test_each_side_has_its_own_stiffness(self):
+    def test_sides_differ_in_stiffness(self):
         self.build(self.two_colours())
         for x, stiffness in ((-0.015, 800), (0.015, 200)):
             depth = self.force_at(x)["penetration_max_m"]
@@ -144,19 +144,19 @@ class Materials(SharedFolder):
         soft = self.force_at(-0.015, "--no-materials", "--stiffness", "100")
         self.assertGreater(soft["penetration_max_m"], 0.00142)
 
-    def test_one_material_for_the_whole_model(self):
+    def test_accepts_single_material(self):
         for option in (self.write("one.json", {"stiffness_N_m": 321}), "stiffness=321"):
             info = self.build(option)
             self.assertEqual([m["stiffness_N_m"] for m in info["material_list"]], [321])
 
-    def test_refuses_a_stiffness_above_the_limit_of_the_device(self):
+    def test_refuses_stiffness_above_device_limit(self):
         self.build("stiffness=20000")
         done = self.run_tool("simulate", "model.blob", "--seconds", "1")
         self.assertEqual(done.returncode, 1)
         self.assertRegex(done.stderr, r"material 0.*20000 N/m.*limit of \d+.* N/m.*1000 Hz")
         self.ok("simulate", "model.blob", "--seconds", "1", "--no-materials")
 
-    def test_refuses_invalid_files_with_place_and_remedy(self):
+    def test_refuses_invalid_files_with_hint(self):
         self.write("scan.ply", scan("ply"))
         cases = [
             ('{"stiffness_N_m": 1e9}', "stiffness_N_m: 1e+09 is outside"),

@@ -23,11 +23,11 @@ class ModelSize(SharedFolder):
         cls.build_points("large", sheet(0.6, 0.03), "--unit", "m")
         cls.write("above.csv", "t_s,x,y,z\n0,0,0,0.02\n1,0.01,0,0.02\n")
 
-    def test_a_model_that_fits_gets_no_warning(self):
+    def test_accepts_fitting_model_silently(self):
         done = self.run_tool("simulate", "small.blob", "--seconds", 1)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
 
-    def test_a_model_beyond_reach_gets_a_warning_whose_remedy_works(self):
+    def test_hint_scales_model_into_reach(self):
         done = self.run_tool("simulate", "large.blob", "--device", "falcon", "--seconds", 1)
         self.assertIn("warning: large.blob: the model is 1.2 x 1.2 x 0", done.stderr)
         self.assertIn(" m, more than falcon reaches", done.stderr)
@@ -36,14 +36,14 @@ class ModelSize(SharedFolder):
         done = self.run_tool("simulate", "large.blob", "--device", "falcon", "--seconds", 1)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
 
-    def test_a_start_of_the_hand_beyond_reach_is_told(self):
+    def test_reports_unreachable_start(self):
         self.build_points("ball", ball(3000, 0.5), "--unit", "m")
         done = self.run_tool("simulate", "ball.blob", "--seconds", 1)
         self.assertEqual(done.returncode, 1)
         self.assertIn("premium does not reach the start of the hand, and the probe is in the object (scale the "
                       "model with build --fit device:premium", done.stderr)
 
-    def test_a_fit_that_cannot_be_is_refused(self):
+    def test_refuses_impossible_fit(self):
         for fit, code, words in (("far", 2, "'far' is neither a length in metres nor device:NAME"),
                                  ("-1", 2, "neither a length"), ("device:none", 1, "none"),
                                  ("device:hapkit", 1, "touches a section of a model of any size")):
@@ -52,7 +52,7 @@ class ModelSize(SharedFolder):
             self.assertIn(words, done.stderr)
             self.assertFalse((self.path / "fit.blob").exists())
 
-    def test_a_session_without_contact_fails_unless_it_is_allowed(self):
+    def test_fails_without_contact_unless_allowed(self):
         session = ("simulate", "small.blob", "--path", "above.csv", "--seconds", 1)
         done = self.run_tool(*session)
         self.assertEqual(done.returncode, 1)

@@ -8,27 +8,21 @@ import sys
 import unittest
 
 sys.dont_write_bytecode = True
-from served_board import ServedBoard, build_ball  # noqa: E402
-from tool_folder import SharedFolder  # noqa: E402
+from served_board import BallFolder, ServedBoard  # noqa: E402
 
 TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
 HOME_AND_ARM = ("--press", "0.2s..1.4s", "--press", "3s..4.2s")
 
 
-class Panel(SharedFolder):
+class Panel(BallFolder):
     tool = TACTREE
-
-    @classmethod
-    def setUpClass(cls):
-        super().setUpClass()
-        cls.blob = build_ball(TACTREE, cls.path)
 
     def simulate(self, *arguments, code=0):
         done = self.run_tool("simulate", self.blob, "--panel", *arguments)
         self.assertEqual(done.returncode, code, done.stderr)
         return done.stdout + done.stderr
 
-    def test_power_up_to_touch_and_stop(self):
+    def test_runs_from_power_up_to_stop(self):
         printed = self.simulate(*HOME_AND_ARM, "--press", "6..6.1", "--seconds", 7, "--trace", "run.csv",
                                 "--json", "run.json", "--record", "run.rec")
         events = self.read("run.json")["panel"]
@@ -49,7 +43,7 @@ class Panel(SharedFolder):
         self.assertTrue(any(float(row["force_x_N"]) for row in rows))
         self.assertIn("identical", self.run_tool("simulate", self.blob, "--replay", "run.rec").stdout)
 
-    def test_a_fault_is_shown_and_cleared(self):
+    def test_shows_and_clears_fault(self):
         self.simulate("--inject", "estop:pressed@0.5..1", "--press", "2..3.1", "--seconds", 4, "--allow-no-contact",
                       "--json", "run.json", code=1)
         run = self.read("run.json")
@@ -74,7 +68,7 @@ class Panel(SharedFolder):
         self.assertEqual(done.returncode, code, (arguments, done.stdout, done.stderr))
         return done.stdout + done.stderr
 
-    def test_a_program_is_told_that_it_may_only_watch(self):
+    def test_program_may_only_watch(self):
         with ServedBoard(TACTREE, self.blob, "--panel", *HOME_AND_ARM) as port:
             said = "operated by its button"
             self.assertIn(f"  {said}; a program may watch and stop it\n",

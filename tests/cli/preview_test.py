@@ -87,7 +87,7 @@ class Preview(SharedFolder):
         (self.path / "ball.csv").write_text(shell(hole))
         return self.run_tool("build", "ball.csv", "-o", "ball.blob", "--preview", "built.png", *options)
 
-    def test_a_hole_is_marked_in_the_front_view(self):
+    def test_marks_hole_in_front_view(self):
         self.assertEqual(self.build(0.25).returncode, 0)
         self.assertEqual(self.run_tool("info", "ball.blob", "--preview", "known.png").returncode, 0)
         for name in ("built.png", "known.png"):
@@ -98,21 +98,21 @@ class Preview(SharedFolder):
             # The left half shows the model from +x; behind the model, the mark is faint.
             self.assertLess(max(x for x, _ in marked), width // 2, name)
 
-    def test_a_legend_names_the_colour_of_the_marks(self):
+    def test_legend_shows_mark_colour(self):
         self.assertEqual(self.build(0.25).returncode, 0)
         _, _, rows = pixels(self.path / "built.png")
         corner = [rows[y][x] for y in range(20, 34) for x in range(40, 54)]
         self.assertEqual(len(set(corner)), 1)
         self.assertTrue(reds([corner]))
 
-    def test_a_closed_surface_has_no_mark(self):
+    def test_closed_surface_has_no_mark(self):
         self.assertEqual(self.build(0.0).returncode, 0)
         _, _, rows = pixels(self.path / "built.png")
         self.assertEqual(reds(rows), [])
         shades = {pixel for row in rows[::7] for pixel in row[::7]}
         self.assertGreater(len(shades), 100)
 
-    def test_points_of_doubtful_side_have_a_colour_of_their_own(self):
+    def test_colours_points_of_ambiguous_orientation(self):
         rows = [f"{0.001 * i} {0.001 * j} {0.002 * math.sin(0.1 * i)}" for i in range(60) for j in range(60)]
         (self.path / "sheet.xyz").write_text("\n".join(rows) + "\n")
         for options, doubtful in (((), True), (("--viewpoint", "0,0,1"), False)):
@@ -123,7 +123,7 @@ class Preview(SharedFolder):
             self.assertEqual(len(purples([corner])), len(corner) if doubtful else 0)
             self.assertEqual(len(purples(picture)) > 20000, doubtful)
 
-    def test_a_scan_is_not_overwritten(self):
+    def test_never_overwrites_scan(self):
         before = shell(0.0)
         done = self.build(0.0, "--preview", "ball.csv")
         self.assertNotEqual(done.returncode, 0)

@@ -20,8 +20,7 @@ import zipfile
 import zlib
 
 sys.dont_write_bytecode = True
-from served_board import ServedBoard, build_ball  # noqa: E402
-from tool_folder import SharedFolder  # noqa: E402
+from served_board import BallFolder, ServedBoard  # noqa: E402
 
 TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
 
@@ -46,13 +45,8 @@ def read_npz(path):
     return arrays
 
 
-class Recorded(SharedFolder):
+class Recorded(BallFolder):
     tool = TACTREE
-
-    @classmethod
-    def setUpClass(cls):
-        super().setUpClass()
-        cls.blob = build_ball(TACTREE, cls.path)
 
     def record(self, port, name, *arguments, code=0, **options):
         run = self.run_tool("record", "--port", port, "-o", name, *arguments, **options)
@@ -81,7 +75,7 @@ class Recorded(SharedFolder):
 
 
 class Record(Recorded):
-    def test_records_each_tick_of_an_armed_board(self):
+    def test_records_each_armed_tick(self):
         with ServedBoard(TACTREE, self.blob) as port:
             said = self.record(port, "armed.csv", "--seconds", "1.5", "--arm", "--json", "armed.json")
             self.assertRegex(self.run_tool("monitor", "--once", "--port", port).stdout, "^state +idle")
@@ -96,7 +90,7 @@ class Record(Recorded):
         self.assertEqual(float(rows[-1]["t_s"]), 1.499)
         self.assertGreater(max(abs(float(row["force_z_N"])) for row in rows), 0.1)
 
-    def test_both_formats_have_the_same_columns(self):
+    def test_formats_have_same_columns(self):
         with ServedBoard(TACTREE, self.blob) as port:
             for name in ("same.csv", "same.npz"):
                 self.record(port, name, "--seconds", "0.2")
@@ -111,7 +105,7 @@ class Record(Recorded):
             said = self.record(port, "tenth.csv", "--seconds", "1", "--every", "10")
         self.assertIn("100 ticks in 0.990 s, none missing", said)
 
-    def test_a_lost_board_loses_no_row(self):
+    def test_lost_board_loses_no_row(self):
         for name in ("lost.csv", "lost.npz"):
             with ServedBoard(TACTREE, self.blob, "--seconds", "1") as port:
                 said = self.record(port, name, "--seconds", "60", "--json", "lost.json", code=1)
@@ -123,7 +117,7 @@ class Record(Recorded):
         self.expect_no_gap(self.rows("lost.csv"))
         self.assertEqual(len(read_npz(self.path / "lost.npz")["tick"]), count)
 
-    def test_ctrl_c_completes_the_file(self):
+    def test_ctrl_c_completes_file(self):
         for name in ("ended.csv", "ended.npz"):
             with ServedBoard(TACTREE, self.blob) as port:
                 program = self.start(port, name)
@@ -134,7 +128,7 @@ class Record(Recorded):
             self.assertIn(f"{name}: {len(rows)} ticks", said)
         self.assertEqual(list(self.path.glob("ended*.*.*")), [])
 
-    def test_a_pipe_gets_rows_until_ctrl_c(self):
+    def test_pipe_gets_rows_until_ctrl_c(self):
         os.mkfifo(self.path / "pipe")
         with ServedBoard(TACTREE, self.blob) as port:
             program = subprocess.Popen([TACTREE, "record", "--port", port, "-o", "pipe"], cwd=self.path,
@@ -147,7 +141,7 @@ class Record(Recorded):
         self.assertEqual({line.count(",") for line in lines}, {lines[0].count(",")})
         self.assertTrue(lines[-1].endswith("\n"))
 
-    def test_a_killed_program_leaves_a_file_that_says_so(self):
+    def test_kill_leaves_file_marked_incomplete(self):
         with ServedBoard(TACTREE, self.blob) as port:
             program = self.start(port, "killed.csv")
             part = self.path / "killed.csv.incomplete"
@@ -165,7 +159,7 @@ class Record(Recorded):
             program.wait()
             self.assertFalse((self.path / "killed.npz").exists())
 
-    def test_a_full_disk_ends_the_recording_and_keeps_its_rows(self):
+    def test_full_disk_keeps_rows(self):
         def limit():
             resource.setrlimit(resource.RLIMIT_FSIZE, (100000, 100000))
         with ServedBoard(TACTREE, self.blob) as port:
@@ -189,7 +183,7 @@ class Record(Recorded):
 
 
 class Session(Recorded):
-    def test_states_its_progress_on_a_terminal_only(self):
+    def test_shows_progress_on_terminals_only(self):
         with ServedBoard(TACTREE, self.blob) as port:
             self.assertNotIn("\r", self.record(port, "quiet.csv", "--seconds", "2.5"))
             terminal, end = pty.openpty()
@@ -204,7 +198,7 @@ class Session(Recorded):
             self.assertEqual(program.wait(), 0)
         self.assertRegex(said.decode(), r"\r\x1b\[2K\d+ ticks in \d\.\d{3} s, none missing\r")
 
-    def test_has_the_forces_of_the_session(self):
+    def test_records_forces_of_session(self):
         """The checksum of every force is that of a replay of what reached the controller."""
         with ServedBoard(TACTREE, self.blob, "--seconds", "3", "--inject", "estop:pressed@2", "--record",
                          self.path / "session.rec") as port:
@@ -225,7 +219,7 @@ class Session(Recorded):
         self.assertLess(after, 5)
         self.assertEqual(zlib.crc32(no_force * before + b"".join(forces) + no_force * after), replay["trace_crc32"])
 
-    def test_watching_does_not_arm_and_a_recording_is_not_replayed(self):
+    def test_watches_without_arming(self):
         with ServedBoard(TACTREE, self.blob) as port:
             for name in ("watched.csv", "watched.npz"):
                 self.record(port, name, "--seconds", "0.3")
@@ -238,7 +232,7 @@ class Session(Recorded):
 
 
 class Gaps(Recorded):
-    def test_counts_what_the_board_omits_while_the_program_stands_still(self):
+    def test_counts_ticks_omitted_by_board(self):
         with RealTimeBoard(self.blob) as port:
             program = self.start(port, "gaps.csv")
             time.sleep(0.5)
@@ -261,7 +255,7 @@ class Gaps(Recorded):
         self.assertGreater(omitted, 0.9 * missing)
         self.assertIn("the port was too slow", said)
 
-    def test_keeps_every_tick_of_a_board_in_real_time(self):
+    def test_keeps_every_tick_in_real_time(self):
         with RealTimeBoard(self.blob) as port:
             said = self.record(port, "live.npz", "--seconds", "5", "--arm")
         self.assertIn("live.npz: 5000 ticks in 4.999 s, none missing", said)
@@ -276,7 +270,7 @@ class RealTimeBoard(ServedBoard):
 
 
 class Hour(Recorded):
-    def test_an_hour_at_1_khz_has_no_gap(self):
+    def test_hour_at_1_khz_has_no_gap(self):
         with ServedBoard(TACTREE, self.blob) as port, (self.path / "said").open("w") as said:
             command = [TACTREE, "record", "--port", port, "-o", "hour.npz", "--seconds", "3600", "--arm"]
             program = subprocess.Popen(command, cwd=self.path, stderr=said)

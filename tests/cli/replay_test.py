@@ -53,31 +53,31 @@ class Replay(SharedFolder):
         self.assertEqual(done.returncode, 0, done.stderr + done.stdout)
         self.assertEqual(self.read("replay.json")["trace_crc32"], checksum)
 
-    def test_a_session_with_moving_bodies_replays_bit_for_bit(self):
+    def test_replays_moving_bodies_identically(self):
         self.expect_same(self.record(), "low.blob", "high.blob")
 
-    def test_the_order_of_the_blobs_does_not_matter(self):
+    def test_accepts_blobs_in_any_order(self):
         self.expect_same(self.record(), "high.blob", "low.blob")
 
-    def test_a_session_with_a_fault_replays_bit_for_bit(self):
+    def test_replays_fault_identically(self):
         self.expect_same(self.record("--inject", "encoder1:disconnected@0.5s", codes=(1,)),
                          "low.blob", "high.blob")
 
-    def test_a_session_at_4_khz_in_paper_mode_replays_bit_for_bit(self):
+    def test_replays_paper_mode_at_4_khz(self):
         self.expect_same(self.record("--rate", 4000, "--mode", "paper"), "low.blob", "high.blob")
 
-    def test_a_replay_without_a_blob_of_the_session_is_refused(self):
+    def test_refuses_replay_without_all_blobs(self):
         self.record()
         self.refuses(["not one of the given blobs"], "low.blob", "other.blob")
 
-    def test_a_damaged_recording_is_refused(self):
+    def test_refuses_damaged_recording(self):
         self.record()
         data = bytearray((self.path / "session.rec").read_bytes())
         data[len(data) // 2] ^= 4
         (self.path / "damaged.rec").write_bytes(data)
         self.refuses(["checksum"], "low.blob", "high.blob", name="damaged.rec")
 
-    def test_a_truncated_or_foreign_recording_is_refused(self):
+    def test_refuses_truncated_or_foreign_recording(self):
         self.record()
         data = (self.path / "session.rec").read_bytes()
         for size in (0, 3, 40, len(data) // 2, len(data) - 1):
@@ -85,7 +85,7 @@ class Replay(SharedFolder):
             self.refuses([], "low.blob", "high.blob", name="cut.rec")
         self.refuses([], "low.blob", "high.blob", name="low.blob")
 
-    def test_a_huge_file_is_refused_by_its_header(self):
+    def test_refuses_huge_file_by_header(self):
         self.record()
         header = (self.path / "session.rec").read_bytes()[:20]
         for begin, words in ((b"", "not a recording"), (header, "truncated or bytes were appended")):
@@ -94,13 +94,13 @@ class Replay(SharedFolder):
                 huge.truncate(1 << 40)
             self.refuses([words], "low.blob", "high.blob", name="huge.rec")
 
-    def test_an_emulated_board_does_not_record(self):
+    def test_emulated_board_refuses_recording(self):
         done = self.run_tool("simulate", "low.blob", "--board", "mps2-an386", "--record", "board.rec")
         self.assertEqual(done.returncode, 1)
         self.assertIn("omit --board", done.stderr)
         self.assertFalse((self.path / "board.rec").exists())
 
-    def test_record_and_replay_exclude_each_other(self):
+    def test_record_excludes_replay(self):
         self.record()
         done = self.run_tool("simulate", "low.blob", "--record", "x.rec", "--replay", "session.rec")
         self.assertEqual(done.returncode, 2)

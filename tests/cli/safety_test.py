@@ -22,17 +22,17 @@ class Safety(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             cls.rows = Campaign(TACTREE, folder, 2).rows()
 
-    def test_every_fault_was_injected_in_every_situation(self):
+    def test_injects_every_fault_everywhere(self):
         self.assertEqual({r["situation"] for r in self.rows}, {"free", "contact", "full force"})
         self.assertGreaterEqual(len({r["what"] for r in self.rows}), 17)
         full = [r["force_max_N"] for r in self.rows if r["situation"] == "full force"]
         self.assertGreater(max(full), 0.99 * FORCE_MAX_N)
 
-    def test_no_fault_exceeds_the_force_limit(self):
+    def test_keeps_force_limit_under_faults(self):
         for row in self.rows:
             self.assertLessEqual(row["force_max_N"], FORCE_MAX_N, row)
 
-    def test_required_detections_are_immediate_and_end_the_force(self):
+    def test_required_detections_end_force(self):
         promised = [r for r in self.rows if r["promised"]]
         self.assertGreaterEqual(len(promised), 21)
         for row in promised:
@@ -41,7 +41,7 @@ class Safety(unittest.TestCase):
             self.assertLessEqual(row["detected_s"], 2 * TICK_S, row)
             self.assertEqual(row["force_max_N"], 0.0, row)
 
-    def test_no_other_fault_is_reported(self):
+    def test_reports_no_other_fault(self):
         for row in self.rows:
             if not row["promised"]:
                 self.assertLessEqual(set(row["faults"]), {"encoder-stuck"}, row)

@@ -44,7 +44,7 @@ class Scenes(SharedFolder):
         self.assertEqual(done.returncode, 0, done.stderr)
         return self.read("run.json"), done.stdout
 
-    def test_each_body_is_reported(self):
+    def test_reports_each_body(self):
         # Down onto the sheet, and along it into the ball, which is sunk in it by a half.
         self.write("corner.csv", "t_s,x,y,z\n0,0,0,0.01\n0.2,0,0,-0.002\n0.4,0.004,0,-0.002\n1,0.004,0,-0.002\n")
         run, text = self.report([{"blob": 0}, {"blob": 1, "pose": at(0.022, 0, 0)},
@@ -62,7 +62,7 @@ class Scenes(SharedFolder):
         self.assertEqual(run["crowded_ticks"], 0)
         self.assertIn("body 1             ball.blob: in contact", text)
 
-    def test_blobs_without_a_scene_are_bodies_at_the_origin(self):
+    def test_places_blobs_at_origin_without_scene(self):
         done = self.run_tool("simulate", "sheet.blob", "sheet.blob", "--path", "press.csv",
                              "--seconds", 1, "--json", "run.json")
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -73,11 +73,11 @@ class Scenes(SharedFolder):
         self.assertAlmostEqual(max(body["force_max_N"] for body in run["bodies"]),
                                run["force_max_N"], delta=0.01)
 
-    def test_a_blob_given_twice_is_identified_by_its_index(self):
+    def test_identifies_repeated_blob_by_index(self):
         run, _ = self.report([{"blob": 2, "pose": at(0, 0, -0.02)}, {"blob": 1}], blobs=("sheet.blob", "sheet.blob", "ball.blob"))
         self.assertEqual([b["blob"] for b in run["bodies"]], ["ball.blob", "sheet.blob"])
 
-    def test_a_body_at_rest_equals_a_run_without_a_scene(self):
+    def test_resting_body_equals_plain_model(self):
         in_a_scene, _ = self.report([{"blob": "sheet.blob"}], blobs=())
         done = self.run_tool("simulate", "sheet.blob", "--path", "press.csv", "--seconds", 1,
                              "--device", "cartesian", "--device-friction", 0, "--json", "plain.json")
@@ -86,7 +86,7 @@ class Scenes(SharedFolder):
         self.assertEqual(in_a_scene["trace_crc32"], plain["trace_crc32"])
         self.assertEqual(in_a_scene["contact_ticks"], plain["contact_ticks"])
 
-    def test_moving_bodies_push_a_resting_hand(self):
+    def test_moving_bodies_push_resting_hand(self):
         keyframes = [{"t_s": 0, "pose": at(0, 0, -0.01)}, {"t_s": 0.5, "pose": at(0, 0, 0.005)}]
         for body in ({"blob": 0, "pose": at(0, 0, -0.01), "linear_velocity_m_s": [0, 0, 0.015]},
                      {"blob": 0, "keyframes": keyframes},
@@ -98,7 +98,7 @@ class Scenes(SharedFolder):
             still, _ = self.report([{**body, "until_s": 0.1}], "--allow-no-contact", path="still.csv")
             self.assertEqual(still["force_max_N"], 0)
 
-    def test_a_rotating_ball_drags_the_hand(self):
+    def test_rotating_ball_drags_hand(self):
         turning = {"blob": 1, "pose": at(0, 0, -0.02), "angular_velocity_rad_s": [2, 0, 0]}
         self.report([turning], "--trace", "trace.csv")
         heading, *_, last = (self.path / "trace.csv").read_text().splitlines()
@@ -106,7 +106,7 @@ class Scenes(SharedFolder):
         force_y = next(float(row[k]) for k in row if k.startswith("force") and k.rstrip("_N").endswith("y"))
         self.assertLess(force_y, -0.05)
 
-    def test_too_many_bodies_within_reach_are_reported(self):
+    def test_reports_too_many_reachable_bodies(self):
         run, text = self.report([{"blob": 0}] * 3)
         self.assertGreater(run["crowded_ticks"], 100)
         self.assertEqual(run["bodies"][2]["contact_ticks"], 0)
@@ -120,7 +120,7 @@ class Scenes(SharedFolder):
             self.assertRegex(done.stderr, r"\(.+\)\n?$")  # the remedy
             self.assertFalse((self.path / "run.json").exists())
 
-    def test_refuses_invalid_scenes_with_place_cause_and_remedy(self):
+    def test_refuses_invalid_scenes_with_hint(self):
         mirrored = [-1, *IDENTITY[1:]]
         scaled = [2, *IDENTITY[1:]]
         column = [*IDENTITY[:12], 0.1, 0, 0, 1]
@@ -166,7 +166,7 @@ class Scenes(SharedFolder):
         self.refused([], "scene.json: bodies: 0 bodies are outside 1 .. 8")
         self.refused([{"blob": 0}] * 9, "scene.json: bodies: 9 bodies are outside 1 .. 8")
 
-    def test_a_body_that_cannot_be_rendered_is_named(self):
+    def test_names_body_that_cannot_be_rendered(self):
         done = self.run_tool("build", "ball.csv", "-o", "paper.blob", "--profile", "paper",
                              "--progress", "off")
         self.assertEqual(done.returncode, 0, done.stderr)

@@ -1,7 +1,7 @@
 """A simulated board in a separate process, for tests of the commands that use a board."""
 import subprocess
 
-from tool_folder import ball, csv
+from tool_folder import SharedFolder, ball, csv
 
 
 def build_ball(tactree, folder, name="ball", *options, points=3000, radius=0.03):
@@ -10,6 +10,15 @@ def build_ball(tactree, folder, name="ball", *options, points=3000, radius=0.03)
     subprocess.run([tactree, "build", scan, "--unit", "m", "-o", blob, *options], check=True,
                    capture_output=True)
     return blob
+
+
+class BallFolder(SharedFolder):
+    """With the blob of a ball, which `tool` builds."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.blob = build_ball(cls.tool, cls.path)
 
 
 class ServedBoard:

@@ -54,7 +54,7 @@ class Folder(SharedFolder):
 
 
 class Scans(Folder):
-    def test_the_blob_is_that_of_the_file(self):
+    def test_pipe_and_file_give_same_blob(self):
         report = self.build(self.scan, "--name", "s")
         self.assertEqual(report["inputs"], [{"file": "standard input", "format": "text, separated by spaces",
                                              "points": 1500, "triangles": 0}])
@@ -62,7 +62,7 @@ class Scans(Folder):
         self.build(self.scan)
         self.assertIn("model         stdin ", self.run_tool("info", "y.blob").stdout)
 
-    def test_binary_and_packed_formats_are_recognised(self):
+    def test_recognises_binary_and_packed_formats(self):
         points = [tuple(map(float, line.split())) for line in self.scan.decode().splitlines()]
         head = ("ply\nformat binary_little_endian 1.0\nelement vertex 1500\nproperty float x\n"
                 "property float y\nproperty float z\nend_header\n")
@@ -83,22 +83,22 @@ class Scans(Folder):
             self.assertNotIn(str(self.spool), message)
         self.assertFalse((self.path / "no.blob").exists())
 
-    def test_it_is_read_once_and_beside_files(self):
+    def test_reads_standard_input_once(self):
         self.assertIn("given only once", self.refused(b"", "build", "-", "-", "-o", "no.blob"))
         done = self.run_tool("build", "s.xyz", "-", "-o", "y.blob", stdin=b"0 0 0.2\n" * 3)
         self.assertIn("read      standard input: text, separated by spaces, 3 points", done.stdout)
 
-    def test_a_full_folder_is_named(self):
+    def test_names_full_folder(self):
         message = self.refused(self.scan, "build", "-", "-o", "no.blob", preexec_fn=small_files)
         self.assertIn(f"it cannot be stored in {self.spool}: File too large (set TMPDIR", message)
 
 
 class Formats(Folder):
-    def test_what_is_not_recognised_names_the_option(self):
+    def test_unrecognised_format_names_option(self):
         message = self.refused(bytes(range(1, 200)), "build", "-", "-o", "no.blob")
         self.assertIn("name its format with --format", message)
 
-    def test_a_named_format_is_used_where_the_content_does_not_tell(self):
+    def test_uses_named_format_if_ambiguous(self):
         for name in ("xyz", "XYZ", "csv"):
             self.assertEqual(self.build(self.scan, "--format", name)["inputs"][0]["points"], 1500)
         # 80 bytes that begin like a picture, and one triangle fewer than the header says.
@@ -107,7 +107,7 @@ class Formats(Folder):
         self.assertIn("GIF picture", self.refused(stl, "build", "-", "-o", "no.blob"))
         self.assertEqual(self.build(stl, "--format", "stl")["inputs"][0]["triangles"], 4)
 
-    def test_a_named_format_that_the_content_contradicts_is_refused(self):
+    def test_refuses_contradicted_format_name(self):
         ply = b"ply\nformat ascii 1.0\nelement vertex 0\nend_header\n"
         for name, shown in (("stl", "STL"), ("obj", "OBJ"), ("dae", "COLLADA")):
             message = self.refused(ply, "build", "-", "-o", "no.blob", "--format", name)
@@ -118,7 +118,7 @@ class Formats(Folder):
 
 
 class Blobs(Folder):
-    def test_a_blob_is_read_from_standard_input(self):
+    def test_reads_blob_from_standard_input(self):
         (self.path / "p.csv").write_text("0,0,0.05\n")
         for verb in (("info",), ("check",), ("query", "--points", "p.csv")):
             piped = self.run_tool(verb[0], "-", *verb[1:], stdin=self.blob)
@@ -126,7 +126,7 @@ class Blobs(Folder):
             self.assertEqual(piped.returncode, 0, piped.stderr)
             self.assertEqual(piped.stdout.replace("-: valid", "s.blob: valid"), named.stdout)
 
-    def test_other_bytes_are_refused(self):
+    def test_refuses_other_bytes(self):
         for bytes_, cause in ((self.blob[:-4], f"the file has {len(self.blob) - 4}"),
                               (self.blob + b"x", f"has {len(self.blob)} and more"),
                               (b"", "shorter than"), (self.scan, "not a Tactree blob")):

@@ -16,20 +16,20 @@ class Usage(unittest.TestCase):
         self.assertLess(max(map(len, done.stderr.splitlines())), 120, done.stderr)
         return done.stderr
 
-    def test_unknown_command_names_the_nearest(self):
+    def test_unknown_command_names_nearest(self):
         self.assertIn("unknown command 'biuld' (did you mean 'build'? tactree --help lists the commands)",
                       self.refused("biuld", "x.ply"))
         error = self.refused("frobnicate")
         self.assertIn("unknown command 'frobnicate' (tactree --help", error)
 
-    def test_numbers_out_of_range_are_quoted(self):
+    def test_quotes_numbers_out_of_range(self):
         for value in ("-1", "0", "nan", "inf", "ten", "1e999"):
             error = self.refused("simulate", "model.blob", f"--seconds={value}")
             self.assertIn(f"'{value}' is not a number above 0", error)
         self.assertIn("'-1' is not a number from 0 upwards",
                       self.refused("query", "model.blob", "--points", "-", "--radius=-1"))
 
-    def test_help_names_all_kinds_of_ports(self):
+    def test_help_names_all_port_kinds(self):
         ports = "a serial port, usb:SERIAL, unix:PATH (the socket of tactree-controller), or the one that tactree "\
             "simulate --serve prints (with --lock-step: step:PATH)"
         for verb in ("devices", "flash", "monitor", "arm", "stop", "trace", "params", "record", "view"):

@@ -20,12 +20,12 @@ class CompilerFlags(unittest.TestCase):
     def test_cpp20_compiles(self):
         self.assertEqual(self.compile("-std=c++20"), (0, ""))
 
-    def test_cpp17_is_refused_with_the_flag_to_set(self):
+    def test_refuses_cpp17_with_hint(self):
         code, text = self.compile("-std=c++17")
         self.assertNotEqual(code, 0)
         self.assertIn("compile as C++20 (-std=c++20)", text)
 
-    def test_fast_math_is_refused(self):
+    def test_refuses_fast_math(self):
         for flags in (["-ffast-math"], ["-Ofast"]):
             code, text = self.compile("-std=c++20", *flags)
             self.assertNotEqual(code, 0)

@@ -27,7 +27,7 @@ class EmbedCosts(unittest.TestCase):
     def commands(self, toolchain):
         return (WORK / toolchain / "build.ninja").read_text()
 
-    def test_a_board_with_timing_needs_the_tool(self):
+    def test_board_with_timing_needs_tool(self):
         code, message = self.configure("cortex-m4f", f"-DTACTREE_HOST_TOOL={MISSING}")
         self.assertEqual(code, 1)
         self.assertIn(f"netduinoplus2: the costs of a tick cannot be written into the image: {MISSING} "
@@ -41,7 +41,7 @@ class EmbedCosts(unittest.TestCase):
         self.assertEqual(code, 0, message)
         self.assertNotIn("--embed", self.commands("cortex-m4f"))
 
-    def test_the_image_depends_on_the_tool(self):
+    def test_image_depends_on_tool(self):
         tool = WORK / "tactree"
         tool.write_text("#!/bin/sh\n")
         tool.chmod(0o755)
@@ -53,7 +53,7 @@ class EmbedCosts(unittest.TestCase):
                                    capture_output=True, text=True, check=True).stdout
             self.assertIn(str(tool), needs)
 
-    def test_a_board_without_timing_needs_no_tool(self):
+    def test_board_without_timing_needs_none(self):
         code, message = self.configure("cortex-m7", f"-DTACTREE_HOST_TOOL={MISSING}")
         self.assertEqual(code, 0, message)
 

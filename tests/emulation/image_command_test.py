@@ -169,7 +169,7 @@ class Image(unittest.TestCase):
     def test_writes_elf(self):
         self.assertEqual(from_elf(self.make("elf")), self.expected())
 
-    def test_writes_the_firmware_alone(self):
+    def test_writes_firmware_without_blob(self):
         self.assertEqual(self.make("elf", blob=None), firmware())
         self.assertEqual(from_hex(self.make("hex", blob=None)), from_elf(firmware()))
 
@@ -182,7 +182,7 @@ class Image(unittest.TestCase):
         elf = firmware(bytes(range(256)) * 300, address=CODE + 4)
         self.assertEqual(from_hex(self.make("hex", elf=elf)), self.expected(elf))
 
-    def test_selects_the_format_by_option_and_reports_it(self):
+    def test_selects_format_by_option(self):
         data = self.make("image", "--format", "uf2", "--json", self.folder / "r.json", "--board", "stm32f405")
         from_uf2(data, FAMILY)
         report = json.loads((self.folder / "r.json").read_text())
@@ -192,28 +192,28 @@ class Image(unittest.TestCase):
 
     # ---- refused before there is a file to flash
 
-    def test_refuses_an_image_of_another_board(self):
+    def test_refuses_image_of_other_board(self):
         self.refused("wrong board", "for stm32f405, not for mps2-an500", arguments=("--board", "mps2-an500"))
 
-    def test_refuses_a_blob_that_is_too_large(self):
+    def test_refuses_too_large_blob(self):
         room = len(GOOD_BLOB) - 1
         small = firmware(place=(PLACE, PLACE + room))
         self.refused("too large for stm32f405", f"--flash-budget {room}", elf=small)
         self.make("hex", elf=firmware(place=(PLACE, PLACE + len(GOOD_BLOB))))
 
-    def test_refuses_a_truncated_or_corrupt_blob(self):
+    def test_refuses_truncated_or_corrupt_blob(self):
         self.refused("refused", "shorter than a blob's header", blob=GOOD_BLOB[:16])
         self.refused("refused", blob=GOOD_BLOB[:-1])
         self.refused("refused", blob=GOOD_BLOB + b"\0")
         self.refused("refused", "checksum", blob=GOOD_BLOB[:-5] + bytes([GOOD_BLOB[-5] ^ 1]) + GOOD_BLOB[-4:])
         self.refused("refused", "tactree build", blob=b"ply\nformat ascii 1.0\n" * 100)
 
-    def test_refuses_an_image_truncated_at_any_byte(self):
+    def test_refuses_image_truncated_anywhere(self):
         whole = firmware()
         for size in [*range(0, 130), len(whole) // 2, len(whole) - 1]:
             self.refused("firmware.elf", "truncated", elf=whole[:size])
 
-    def test_refuses_an_image_with_a_flipped_bit_in_its_program(self):
+    def test_refuses_image_with_flipped_bit(self):
         whole = firmware()
         for at in range(148, len(whole), 7):
             wrong = bytearray(whole)
@@ -223,7 +223,7 @@ class Image(unittest.TestCase):
         wrong[200] ^= 1
         self.refused("damaged: its checksum does not match", elf=wrong)
 
-    def test_refuses_a_file_that_is_not_an_image(self):
+    def test_refuses_other_files(self):
         self.refused("not an ELF file", elf=b"\x7fELG" + firmware()[4:])
         self.refused("not a program for", elf=firmware(machine=62))
         self.refused("it does not name its board", elf=firmware(mark=b"TACTICS"))
@@ -233,7 +233,7 @@ class Image(unittest.TestCase):
         self.refused("outside the board's code", elf=firmware(address=CODE - 4))
         self.refused("outside the board's code", elf=firmware(bytes(0x20000)))
 
-    def test_refuses_a_gap_too_large_for_a_flat_file(self):
+    def test_refuses_gap_in_flat_file(self):
         far = firmware(place=(0x60000000, 0x61000000))
         for ending in ("bin", "dfu"):
             self.refused("use .elf, .hex or .uf2", elf=far, ending=ending)
@@ -254,7 +254,7 @@ class Image(unittest.TestCase):
                 return image.read_bytes()
         return self.skipTest(f"{image} is not built")
 
-    def test_merges_an_image_for_every_board(self):
+    def test_merges_image_for_every_board(self):
         boards = sorted(BUILD.glob("*/firmware/*.elf"))
         if not boards:
             self.skipTest("no firmware is built")
@@ -273,7 +273,7 @@ class Image(unittest.TestCase):
             self.assertEqual(sections.pop(".blob"), from_bin(GOOD_BLOB, place))
             self.assertEqual(sections, from_elf(elf, sections=True))
 
-    def test_a_merged_image_boots_with_its_model(self):
+    def test_merged_image_boots_with_model(self):
         elf = self.real("cortex-m4f", "stm32f405")
         for ending in ("elf", "hex"):
             self.make(ending, elf=elf)

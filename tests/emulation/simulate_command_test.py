@@ -45,7 +45,7 @@ class SimulateOnABoard(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         return json.loads(file.read_text()), done.stdout
 
-    def test_report_and_trace_equal_the_host(self):
+    def test_report_and_trace_equal_host(self):
         for mode in ("surface", "paper"):
             common = ("--mode", mode, "--rate", 2000, "--stiffness", 345.6, "--static-friction", 0.5)
             host, _ = self.report(*common, "--trace", self.folder / "host.csv")
@@ -65,7 +65,7 @@ class SimulateOnABoard(unittest.TestCase):
             self.assertIn(f"{counts['max']} at most", printed)
             self.assertIn("tactree::core::", counts["functions"][0]["name"])
 
-    def test_a_moving_body_is_rendered_as_on_the_host(self):
+    def test_moving_body_equals_host(self):
         scene = self.folder / "scene.json"
         scene.write_text(json.dumps({"bodies": [
             {"blob": 0, "angular_velocity_rad_s": [0.2, 0.1, 1.5], "linear_velocity_m_s": [0, 0, 0.004],
@@ -80,7 +80,7 @@ class SimulateOnABoard(unittest.TestCase):
         self.assertIn("body 0", printed)
         self.assertGreater(board["instructions"]["mean"], 500)
 
-    def test_the_panel_operates_it_as_on_the_host(self):
+    def test_panel_operation_equals_host(self):
         common = ("--panel", "--press", "0.1s..1.2s", "--press", "2.5s..3.6s", "--press", "5s..5.1s",
                   "--seconds", 6, "--inject", "estop:pressed@5.3s")
         reports = []
@@ -99,13 +99,13 @@ class SimulateOnABoard(unittest.TestCase):
         self.assertEqual(traces[0], traces[1])
         self.assertTrue(traces[0].splitlines()[0].endswith(",button,lamp"))
 
-    def test_more_than_one_body_is_refused(self):
+    def test_refuses_several_bodies(self):
         done = tactree(BLOB, BLOB, "--board", BOARD)
         self.assertEqual(done.returncode, 1)
         self.assertIn(f"--board {BOARD}: a board has one blob in its flash, the scene has 2 bodies "
                       "(use --board host", done.stderr)
 
-    def test_reports_a_missing_image(self):
+    def test_reports_missing_image(self):
         done = tactree(BLOB, "--board", BOARD, "--firmware", self.folder)
         self.assertEqual(done.returncode, 1)
         self.assertIn("cmake --build --preset cortex-m7", done.stderr)
@@ -114,17 +114,17 @@ class SimulateOnABoard(unittest.TestCase):
         self.assertEqual(done.returncode, 1)
         self.assertIn(str(self.folder), done.stderr)
 
-    def test_reports_a_missing_emulator(self):
+    def test_reports_missing_emulator(self):
         done = tactree(BLOB, "--board", BOARD, env={**os.environ, "PATH": str(self.folder)})
         self.assertEqual(done.returncode, 1)
         self.assertIn("apt-get install qemu-system-arm", done.stderr)
 
-    def test_unknown_board_is_bad_usage(self):
+    def test_unknown_board_fails_as_usage(self):
         done = tactree(BLOB, "--board", "abacus")
         self.assertEqual(done.returncode, 2)
         self.assertIn(BOARD, done.stderr)
 
-    def test_refuses_the_configurations_the_host_refuses(self):
+    def test_refuses_same_configurations_as_host(self):
         arguments = (BLOB, "--seconds", 1, "--stiffness", 50000)
         host = tactree(*arguments)
         board = tactree(*arguments, "--board", BOARD)
@@ -132,7 +132,7 @@ class SimulateOnABoard(unittest.TestCase):
         self.assertIn("stability limit", board.stderr)
         self.assertEqual(board.stderr, host.stderr)
 
-    def test_the_emulator_ends_with_a_killed_program(self):
+    def test_emulator_ends_with_killed_program(self):
         with subprocess.Popen([TACTREE, "simulate", BLOB, "--seconds", "3000", "--board", BOARD],
                               stdout=subprocess.DEVNULL) as process:
             children = []

@@ -3,7 +3,6 @@
 //
 // The mutator recomputes the checksum of every other result: a wrong one ends the checks early.
 
-#include <algorithm>
 #include <cstring>
 #include <random>
 

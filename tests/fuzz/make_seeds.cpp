@@ -8,7 +8,6 @@
 #include <elf.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdio>
 #include <cstring>

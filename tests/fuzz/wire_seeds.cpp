@@ -4,7 +4,6 @@
 #include <cstring>
 #include <fstream>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "tactree/core/link/wire/messages.hpp"

@@ -13,7 +13,6 @@
 #include <chrono>
 #include <cstdio>
 #include <cstring>
-#include <ctime>
 #include <memory>
 #include <random>
 #include <stop_token>
@@ -29,7 +28,7 @@ bool is_long = false;  // NOLINT: set by main()
 
 /// Edges that libgpiod 1.6 queues for a line, and libgpiod 2.x for all lines.
 constexpr int kSmallestQueue = 16;
-constexpr int kLargestQueue = 1024;
+constexpr int kMaxQueue = 1024;
 /// The kernel's interrupt threads have 50.
 constexpr int kAboveInterrupts = 90;
 
@@ -152,7 +151,7 @@ TEST_F(Edges, AreCountedDuringSlowStart) {
 int Edges::ramp(GpioEncoderBank& bank) {
   const bool starves = random_() % 3U == 0U;
   int counted = 0;
-  for (int burst = 1 + static_cast<int>(random_() % 8U); burst < 4 * kLargestQueue;
+  for (int burst = 1 + static_cast<int>(random_() % 8U); burst < 4 * kMaxQueue;
        burst += 1 + burst / 2 + static_cast<int>(random_() % 4U)) {
     // In some bursts the threads of the interrupts do not run, and the kernel merges edges.
     const bool starve = starves && random_() % 4U == 0U;
@@ -180,7 +179,7 @@ int Edges::ramp(GpioEncoderBank& bank) {
 
 TEST_F(Edges, AreExactUnlessAxisInvalid) {
   const unsigned runs = is_long ? 1000 : 25;
-  int least = 4 * kLargestQueue;
+  int least = 4 * kMaxQueue;
   int most = 0;
   for (unsigned run = 0; run < runs && !HasFailure(); ++run) {
     random_.seed(run);
@@ -203,11 +202,11 @@ TEST_F(Edges, AreExactUnlessAxisInvalid) {
 /// Without reads the kernel's queue overflows.
 TEST_F(Edges, LostInOverflowExceedTolerance) {
   GpioEncoderBank bank(kAxes, "tactree", 4);
-  for (int i = 0; i < 3 * kLargestQueue; ++i) {
+  for (int i = 0; i < 3 * kMaxQueue; ++i) {
     chip_.pull(kA0, i % 2 == 0);
   }
   EXPECT_FALSE(read_at_rest(bank).valid[0]);
-  EXPECT_GT(bank.lost(), 2U * kLargestQueue - 10U);
+  EXPECT_GT(bank.lost(), 2U * kMaxQueue - 10U);
   EXPECT_FALSE(bank.read().valid[0]) << "it stays so";
 }
 

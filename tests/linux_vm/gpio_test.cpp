@@ -8,26 +8,18 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
-#include <functional>
 #include <thread>
 
 #include "encoder_wires.hpp"
+#include "message_of.hpp"
 
 namespace tactree::vm_test {
 namespace {
 
 using namespace hal::linux_gpio;
+using test::message_of;
 
 using Gpio = EncoderWires;
-
-std::string refusal(const std::function<void()>& act) {
-  try {
-    act();
-  } catch (const GpioError& error) {
-    return error.what();
-  }
-  return "not refused";
-}
 
 bool holds(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
@@ -114,16 +106,19 @@ TEST_F(Gpio, KilledProgramReleasesEnableLine) {
 
 TEST_F(Gpio, RefusalsNameLineAndRemedy) {
   const GpioLines held = GpioLines::outputs({"enable"}, "somebody", false);
-  const std::string used = refusal([] { GpioEnableLine("enable", "read-back", "tactree"); });
+  const std::string used =
+      message_of<GpioError>([] { GpioEnableLine("enable", "read-back", "tactree"); });
   EXPECT_TRUE(holds(used, "line 'enable': in use by 'somebody'")) << used;
-  const std::string wrong = refusal([] { GpioEnableLine("enabel", "read-back", "tactree"); });
+  const std::string wrong =
+      message_of<GpioError>([] { GpioEnableLine("enabel", "read-back", "tactree"); });
   EXPECT_TRUE(holds(wrong, "line 'enabel': no chip has a line of that name")) << wrong;
   const GpioSim other("other", {"far-away", "dead-man"});
-  const std::string apart = refusal([] {
+  const std::string apart = message_of<GpioError>([] {
     GpioEncoderBank({{"encoder0-a", "far-away"}}, "tactree", 0);
   });
   EXPECT_TRUE(holds(apart, "use lines of one chip")) << apart;
-  const std::string twice = refusal([] { GpioSafetyInputs("e-stop", "dead-man", "tactree"); });
+  const std::string twice =
+      message_of<GpioError>([] { GpioSafetyInputs("e-stop", "dead-man", "tactree"); });
   EXPECT_TRUE(holds(twice, "line 'dead-man'") && holds(twice, "have a line of that name")) << twice;
   EXPECT_EQ(find_line(chip_.label() + ":dead-man").chip, "/dev/" + chip_.chip());
   EXPECT_EQ(find_line(other.label() + ":dead-man").chip, "/dev/" + other.chip());
@@ -133,7 +128,8 @@ TEST_F(Gpio, NamesMissingPermission) {
   const pid_t child = fork();
   if (child == 0) {
     const bool other = setgid(65534) == 0 && setuid(65534) == 0;
-    const std::string text = refusal([] { GpioEnableLine("enable", "read-back", "tactree"); });
+    const std::string text =
+        message_of<GpioError>([] { GpioEnableLine("enable", "read-back", "tactree"); });
     _exit(other && holds(text, "permission denied") ? 0 : 1);
   }
   int status = 1;
@@ -155,7 +151,8 @@ TEST_F(Gpio, GpioinfoShowsLineConsumer) {
 }
 
 TEST(GpioNoChip, IsNamed) {
-  const std::string text = refusal([] { GpioEnableLine("enable", "read-back", "tactree"); });
+  const std::string text =
+      message_of<GpioError>([] { GpioEnableLine("enable", "read-back", "tactree"); });
   EXPECT_TRUE(holds(text, "there is no GPIO chip")) << text;
 }
 

@@ -32,12 +32,12 @@ class CheckImage(unittest.TestCase):
         self.assertEqual(code, 1, output)
         self.assertIn(words, output)
 
-    def test_accepts_the_image(self):
+    def test_accepts_image(self):
         code, output = check()
         self.assertEqual(code, 0, output)
         print(output.splitlines()[-1])
 
-    def test_refuses_an_image_one_over_its_budget(self):
+    def test_refuses_image_one_above_budget(self):
         report = self.folder / "report.json"
         report.write_text(json.dumps({"instructions": {"max": 1234}}))
         budgets = self.folder / "budgets.toml"
@@ -59,7 +59,7 @@ class CheckImage(unittest.TestCase):
         (self.folder / "planted.ci").write_text("\n".join(lines) + "\n")
         return [self.folder]
 
-    def test_refuses_calls_that_cannot_be_followed(self):
+    def test_refuses_unbounded_calls(self):
         tick = 'edge: { sourcename: "tactree_tick" targetname: "%s" label: "" }'
         self.refuses("calls itself", folders=self.plant(tick % "tactree_tick"))
         self.refuses("frame is unknown", folders=self.plant(tick % "printf"))

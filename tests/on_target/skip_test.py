@@ -87,7 +87,7 @@ def campaign(found):
 
 
 class Skip(unittest.TestCase):
-    def test_skipping_any_instruction_gives_no_force_while_stopped(self):
+    def test_skipped_instructions_give_no_force(self):
         found = instructions()
         functions = {f for _, _, f in found}
         for needed in NEEDED:

@@ -53,7 +53,7 @@ class Stm32f405(unittest.TestCase):
             self.assertEqual(start["fault_cause"], 0)
             self.assertEqual(self.no_force(board), 1 << 1 | 1 << 9)  # emergency stop, motors
 
-    def test_erases_nothing_if_the_watchdog_cannot_be_extended(self):
+    def test_erases_nothing_without_extended_watchdog(self):
         blob = pathlib.Path(BLOB).read_bytes()
         with Emulator(["-kernel", IMAGE], blob) as board:
             board.open()
@@ -61,13 +61,13 @@ class Stm32f405(unittest.TestCase):
             self.assertEqual(board.ask(BEGIN_MODEL, begin)["status"], STORAGE_FAILED)
 
     @unittest.skipUnless(BARE.exists(), "the image does not know what a tick costs")
-    def test_accepts_the_model_without_embedded_costs(self):
+    def test_accepts_model_without_embedded_costs(self):
         with Emulator(["-kernel", BARE], pathlib.Path(BLOB).read_bytes()) as board:
             start = board.start()
             self.assertEqual([start["blob"], start["model"], start["image"]], [BLOB_OK, MODEL_OK, IMAGE_OK])
             self.no_force(board)
 
-    def test_reports_an_invalid_blob(self):
+    def test_reports_invalid_blob(self):
         good = pathlib.Path(BLOB).read_bytes()
         flipped = bytearray(good)
         flipped[-5] ^= 4
@@ -83,7 +83,7 @@ class Stm32f405(unittest.TestCase):
                 self.no_force(board)
         self.assertEqual(len(refusals), 4)  # too short, magic, checksum, size
 
-    def test_reports_a_damaged_image(self):
+    def test_reports_damaged_image(self):
         image = pathlib.Path(IMAGE).read_bytes()
         (table,) = struct.unpack_from("<I", image, 28)
         (vectors,) = struct.unpack_from("<I", image, table + 4)

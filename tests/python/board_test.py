@@ -11,12 +11,12 @@ import unittest
 import numpy as np
 import tactree
 
-from clouds import BallFolder, ServedBoard, runs_beside, signal_during, tool_error
+from clouds import ModelFolder, ServedBoard, runs_beside, signal_during, tool_error
 
 TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
 
 
-class Folder(BallFolder):
+class Folder(ModelFolder):
     tool = TACTREE
 
     def tool_json(self, *arguments):
@@ -48,14 +48,14 @@ class Control(Folder):
             with tactree.Board(port) as board:  # the end of the block has stopped it
                 self.assertEqual(board.status["state"], "idle")
 
-    def test_an_exception_in_the_block_stops_the_board(self):
+    def test_exception_stops_board(self):
         with ServedBoard(TACTREE, self.blob) as port:
             with self.assertRaises(ZeroDivisionError), tactree.Board(port) as board:
                 board.arm()
                 raise ZeroDivisionError
             self.assertEqual(self.tool_json("monitor", "--once", "--port", port)["state"], "idle")
 
-    def test_replies_are_those_of_the_tool(self):
+    def test_replies_equal_tool(self):
         with ServedBoard(TACTREE, self.blob) as port:
             with tactree.Board(port) as board:
                 parameters, identity, features = board.parameters, board.identity, board.capabilities
@@ -117,14 +117,14 @@ class Control(Folder):
         self.assertEqual(done.count(1), 2)
         self.assertTrue(all(0 < fraction <= 1 for fraction in done))
 
-    def test_missing_port_has_the_sentence_of_the_tool(self):
+    def test_missing_port_error_equals_tool(self):
         run = self.run_tool("stop", "--port", "/dev/no-such-port")
         with self.assertRaises(tactree.BoardError) as refused:
             tactree.Board("/dev/no-such-port")
         self.assertEqual(str(refused.exception), tool_error(run))
         self.assertIsInstance(tactree.ports(), list)
 
-    def test_ctrl_c_ends_a_wait_and_stops(self):
+    def test_ctrl_c_ends_wait_and_stops(self):
         with ServedBoard(TACTREE, self.blob) as port:
             with self.assertRaises(KeyboardInterrupt), tactree.Board(port) as board:
                 board.arm()
@@ -187,7 +187,7 @@ class Stream(Folder):
         with ServedBoard(TACTREE, self.blob) as port, tactree.Board(port) as board:
             self.assertGreater(asyncio.run(watch(board)), 0)
 
-    def test_no_telemetry_and_end_of_the_subscription(self):
+    def test_ends_subscription(self):
         with ServedBoard(TACTREE, self.blob) as port, tactree.Board(port) as board:
             telemetry = board.telemetry(every_ticks=1, timeout_s=0.2)
             self.assertGreater(len(telemetry.read()), 0)
@@ -196,7 +196,7 @@ class Stream(Folder):
                 for _ in range(2):
                     telemetry.read()
 
-    def test_a_lost_board_ends_the_blocks(self):
+    def test_lost_board_ends_blocks(self):
         with ServedBoard(TACTREE, self.blob, "--seconds", "1") as port:
             board = tactree.Board(port)
             rows = 0
@@ -207,7 +207,7 @@ class Stream(Folder):
             self.assertFalse(board.is_open)
             board.close()
 
-    def test_a_session_of_another_program_ends_the_blocks(self):
+    def test_other_session_ends_blocks(self):
         with ServedBoard(TACTREE, self.blob) as port, tactree.Board(port) as board:
             telemetry = board.telemetry(every_ticks=1)
             telemetry.read()

@@ -57,7 +57,7 @@ class Files(Folder):
         model = self.build_both("inward.xyz", [])
         self.assertIn("reversed", " ".join(model.report["warnings"]))
 
-    def test_every_option_has_the_effect_of_the_tool(self):
+    def test_options_have_effect_of_tool(self):
         points, _ = ball_arrays(800)
         np.savetxt(self.path / "o.xyz", points)
         for options, values in (
@@ -78,7 +78,7 @@ class Files(Folder):
             with self.subTest(options=options):
                 self.build_both("o.xyz", options, **values)
 
-    def test_refusals_are_those_of_the_tool(self):
+    def test_refusals_equal_tool(self):
         self.write("bad.xyz", "1 2\n")
         self.write("empty.xyz", "")
         for name in ("bad.xyz", "empty.xyz", "missing.xyz"):
@@ -95,7 +95,7 @@ class Files(Folder):
 
 
 class Arrays(Folder):
-    def test_points_are_those_of_a_file(self):
+    def test_arrays_equal_file(self):
         points, normals = ball_arrays()
         for given in (None, normals):
             np.savetxt(self.path / "s.xyz", points if given is None else np.hstack([points, given]), fmt="%.17g")
@@ -121,14 +121,14 @@ class Arrays(Folder):
         self.assertTrue((model.points[felt, 0] > -0.002).all())
         self.assertTrue((model.points[~felt, 0] < 0.002).all())
 
-    def test_a_mesh_is_sampled(self):
+    def test_samples_mesh(self):
         model = tactree.build(CORNERS, triangles=FACES, unit="mm")
         np.testing.assert_allclose(model.bounds_m, [[0, 0, 0], [0.04, 0.04, 0.04]], atol=1e-3)
         self.assertGreater(len(model), 1000)
         self.assertGreater(model.report["backed_share"], 0.9)
         self.assertEqual(model.query([[0.005, 0.005, 0.0005]])["inside"][0], 1)
 
-    def test_points_that_are_not_finite_are_dropped_and_counted(self):
+    def test_drops_and_counts_non_finite_points(self):
         points, normals = ball_arrays()
         spoiled = np.vstack([[[np.nan, 0, 0], [np.inf, 0, 0]], points])
         model = tactree.build(spoiled, np.vstack([normals[:2], normals]))
@@ -156,7 +156,7 @@ class Arrays(Folder):
                 tactree.build(*arguments, **options)
             self.assertIn(words, str(refused.exception))
 
-    def test_progress_and_its_exceptions(self):
+    def test_reports_progress_and_its_exceptions(self):
         steps = []
         tactree.build(*ball_arrays(), progress=lambda step, fraction: steps.append((step, fraction)))
         self.assertIn("resampling", {step for step, _ in steps})
@@ -167,7 +167,7 @@ class Arrays(Folder):
         with self.assertRaisesRegex(RuntimeError, "cleaning"):
             tactree.build(*ball_arrays(), progress=fail)
 
-    def test_ctrl_c_ends_a_build(self):
+    def test_ctrl_c_ends_build(self):
         points, normals = ball_arrays(5000)
         steps = {}  # whose method runs no Python code, in which a signal would be handled
         with self.assertRaises(KeyboardInterrupt), signal_during("build"):

@@ -7,22 +7,23 @@ import sys
 import threading
 
 import numpy as np
+import tactree
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
-from served_board import ServedBoard, build_ball  # noqa: E402
+from served_board import BallFolder, ServedBoard  # noqa: E402
 from tool_folder import SharedFolder, ball  # noqa: E402
 
-__all__ = ["BallFolder", "ServedBoard", "SharedFolder", "ball", "ball_arrays", "probes", "runs_beside",
+__all__ = ["ModelFolder", "ServedBoard", "SharedFolder", "ball", "ball_arrays", "probes", "runs_beside",
            "signal_during", "tool_error", "write_rows"]
 
 
-class BallFolder(SharedFolder):
-    """With the blob of a ball, which `tool` builds."""
+class ModelFolder(BallFolder):
+    """And with the model in that blob."""
 
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        cls.blob = build_ball(cls.tool, cls.path)
+        cls.model = tactree.load(cls.blob)
 
 
 def ball_arrays(count=2000, radius=0.03):
@@ -37,7 +38,7 @@ def probes(count=500, radius=0.035, seed=1):
 
 
 def tool_error(run):
-    """The sentence that the tool prints."""
+    """The error message that the tool prints."""
     return run.stderr.strip().removeprefix("tactree: error: ")
 
 
@@ -47,7 +48,7 @@ def write_rows(path, heading, rows):
 
 @contextlib.contextmanager
 def no_forced_switches():
-    """A thread runs until it releases the interpreter's lock by itself."""
+    """A thread runs until it releases the interpreter's lock explicitly."""
     interval = sys.getswitchinterval()
     sys.setswitchinterval(1000)
     try:

@@ -30,7 +30,7 @@ class Example(unittest.TestCase):
         return subprocess.run([sys.executable, *start, *map(str, arguments)], cwd=self.path, capture_output=True, text=True,
                               check=False)
 
-    def test_without_matplotlib_it_prints_and_names_the_package(self):
+    def test_names_missing_matplotlib(self):
         done = self.run_example("ball.blob", "--seconds", "0.5", "--plot", "ball.png", hide=True)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertRegex(done.stdout, r"(?m)^in contact for \d+ of 500 ms, largest force \d+\.\d+ N$")

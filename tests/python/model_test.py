@@ -11,19 +11,14 @@ import unittest
 import numpy as np
 import tactree
 
-from clouds import BallFolder, probes, runs_beside, signal_during, tool_error, write_rows
+from clouds import ModelFolder, probes, runs_beside, signal_during, tool_error, write_rows
 
 TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
 FLOATS = ("distance_m", "surface_x", "surface_y", "surface_z", "normal_x", "normal_y", "normal_z", "signed_distance_m")
 
 
-class Folder(BallFolder):
+class Folder(ModelFolder):
     tool = TACTREE
-
-    @classmethod
-    def setUpClass(cls):
-        super().setUpClass()
-        cls.model = tactree.load(cls.blob)
 
     def tool_answers(self, positions, *options):
         write_rows(self.path / "probes.csv", "x,y,z", positions)
@@ -46,7 +41,7 @@ class Folder(BallFolder):
 
 
 class Query(Folder):
-    def test_equals_the_tool(self):
+    def test_equals_tool(self):
         positions = np.vstack([probes(), [[1, 1, 1], [0, 0, 0]]])
         rows = self.tool_answers(positions)
         self.expect_same(self.model.query(positions), rows)
@@ -54,20 +49,20 @@ class Query(Folder):
         self.assertEqual({row["inside"] for row in rows}, {"0", "1"})
         self.assertEqual({row["surface_x"] == "" for row in rows}, {False, True})
 
-    def test_radius_equals_the_tool(self):
+    def test_radius_equals_tool(self):
         positions = probes(50)
         for radius in (0.0005, 0.02):  # below the reach, and above, where all points are searched
             self.expect_same(self.model.query(positions, radius_m=radius),
                              self.tool_answers(positions, "--radius", radius))
 
-    def test_nearest_is_the_nearest_of_all_points(self):
+    def test_nearest_equals_exhaustive_search(self):
         positions = probes(50).astype(np.float32)
         index, distance = self.model.nearest(positions, radius_m=1.0)
         gaps = np.linalg.norm(self.model.points[None] - positions[:, None], axis=2)
         np.testing.assert_allclose(distance, gaps.min(axis=1), rtol=1e-5)
         np.testing.assert_allclose(gaps[np.arange(50), index], gaps.min(axis=1), rtol=1e-5)
 
-    def test_lists_single_positions_and_other_types(self):
+    def test_accepts_lists_and_single_positions(self):
         one = self.model.query([0, 0, 0.031])
         self.assertEqual(one.shape, (1,))
         self.assertAlmostEqual(float(one["signed_distance_m"][0]), 0.001, places=4)
@@ -90,14 +85,14 @@ class Query(Folder):
         self.assertTrue(runs_beside(lambda: self.model.query(positions)))
         self.assertFalse(runs_beside(lambda: None))
 
-    def test_ctrl_c_ends_a_query(self):
+    def test_ctrl_c_ends_query(self):
         positions = np.tile(probes(1000), (1000, 1))
         with self.assertRaises(KeyboardInterrupt), signal_during("query"):
             self.model.query(positions)
 
 
 class Info(Folder):
-    def test_equals_the_tool(self):
+    def test_equals_tool(self):
         self.run_tool("info", self.blob, "--json", "info.json")
         wanted = self.read("info.json")
         del wanted["signature"]
@@ -106,20 +101,20 @@ class Info(Folder):
         self.assertEqual(self.model.name, wanted["name"])
         np.testing.assert_array_equal(self.model.bounds_m, [wanted["bounds_min_m"], wanted["bounds_max_m"]])
 
-    def test_a_size_that_no_hand_feels_has_the_warning_of_the_tool(self):
+    def test_size_warning_equals_tool(self):
         self.run_tool("build", "ball.csv", "--unit", "mm", "-o", "tiny.blob")
         said = self.run_tool("info", "tiny.blob").stderr
         warnings = tactree.load(self.path / "tiny.blob").info["warnings"]
         self.assertEqual(len(warnings), 1)
         self.assertIn(warnings[0].removeprefix(str(self.path) + "/"), said)
 
-    def test_points_equal_the_tool(self):
+    def test_points_equal_tool(self):
         self.run_tool("info", self.blob, "--points", "points.csv")
         table = np.loadtxt(self.path / "points.csv", delimiter=",", skiprows=1).astype(np.float32)
         np.testing.assert_array_equal(self.model.points, table[:, 1:4])
         np.testing.assert_array_equal(self.model.normals, table[:, 4:7])
 
-    def test_arrays_are_shared_read_only_and_outlive_the_model(self):
+    def test_arrays_outlive_model_read_only(self):
         model = tactree.load(self.blob)
         self.assertTrue(np.shares_memory(model.points, model.points))
         self.assertTrue(np.shares_memory(model.data, model.data))
@@ -142,7 +137,7 @@ class Info(Folder):
 
 
 class Refusals(Folder):
-    def test_sentences_are_those_of_the_tool(self):
+    def test_errors_equal_tool(self):
         damaged = bytearray(self.blob.read_bytes())
         damaged[len(damaged) // 2] ^= 1
         (self.path / "damaged.blob").write_bytes(damaged)

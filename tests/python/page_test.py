@@ -57,7 +57,7 @@ class Page(unittest.TestCase):
                     self.assertEqual(out.getvalue(), shown, code)
         self.assertGreater(printed, 5)
 
-    def test_every_public_name_is_mentioned(self):
+    def test_mentions_every_public_name(self):
         text = PAGE.read_text()
         for name in tactree.__all__:
             if not name.startswith("_"):

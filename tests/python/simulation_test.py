@@ -10,20 +10,15 @@ import unittest
 import numpy as np
 import tactree
 
-from clouds import BallFolder, runs_beside, signal_during, tool_error, write_rows
+from clouds import ModelFolder, runs_beside, signal_during, tool_error, write_rows
 
 TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
 SUMMARY = ("ticks", "contact_ticks", "overruns", "force_max_N", "force_step_max_N", "penetration_max_m", "trace_crc32",
            "faults", "crowded_ticks")
 
 
-class Folder(BallFolder):
+class Folder(ModelFolder):
     tool = TACTREE
-
-    @classmethod
-    def setUpClass(cls):
-        super().setUpClass()
-        cls.model = tactree.load(cls.blob)
 
     def tool_run(self, *options, code=0):
         """Rows of the trace and the summary."""
@@ -57,7 +52,7 @@ class SameAsTheTool(Folder):
         self.assertTrue(trace["in_contact"].any())
         self.expect_same(simulation, trace, self.tool_run("--seconds", "0.5"))
 
-    def test_every_option_has_the_effect_of_the_tool(self):
+    def test_options_have_effect_of_tool(self):
         for values, options in (
                 ({"device": "falcon"}, ["--device", "falcon"]), ({"rate_hz": 2000}, ["--rate", "2000"]),
                 ({"mode": "paper"}, ["--mode", "paper"]), ({"stiffness_N_m": 300}, ["--stiffness", "300"]),
@@ -75,7 +70,7 @@ class SameAsTheTool(Folder):
                 trace = simulation.run(seconds=0.1, script="press")
                 self.expect_same(simulation, trace, self.tool_run("--seconds", "0.1", "--script", "press", *options))
 
-    def test_a_device_file(self):
+    def test_accepts_device_file(self):
         self.write("mine.json", self.run_tool("simulate", "--device", "falcon", "--dump-device").stdout)
         simulation = tactree.Simulation(self.model, device=str(self.path / "mine.json"))
         trace = simulation.run(seconds=0.1)
@@ -89,7 +84,7 @@ class SameAsTheTool(Folder):
         self.assertTrue(trace["in_contact"].any())
         self.expect_same(simulation, trace, self.tool_run("--path", "path.csv", "--seconds", "0.3"))
 
-    def test_a_row_per_tick(self):
+    def test_returns_row_per_tick(self):
         heights = np.linspace(0.04, 0.027, 200)
         path = np.stack([0 * heights, 0 * heights, heights], axis=1)
         write_rows(self.path / "rows.csv", "t_s,x,y,z", np.hstack([np.arange(200)[:, None] / 1000, path]))
@@ -106,7 +101,7 @@ class SameAsTheTool(Folder):
 
 
 class Steps(Folder):
-    def test_steps_press_on_the_surface(self):
+    def test_steps_press_on_surface(self):
         simulation = tactree.Simulation(self.model)
         for _ in range(300):
             tick = simulation.step([0, 0, 0.04])
@@ -125,7 +120,7 @@ class Steps(Folder):
         self.assertAlmostEqual(simulation.time_s, 0.6)
         self.assertAlmostEqual(tick.time_s, 0.599)
 
-    def test_a_run_in_parts_continues(self):
+    def test_run_continues_in_parts(self):
         whole, parts = tactree.Simulation(self.model), tactree.Simulation(self.model)
         rest = np.tile([0, 0, 0.0285], (50, 1))
         trace = whole.run(np.tile([0.0, 0, 0.035], (50, 1)))
@@ -140,7 +135,7 @@ class Steps(Folder):
         self.assertEqual(len(whole.run(rest + [0, 0, 0.01])), 50)
         self.assertEqual(whole.summary["ticks"], 50)
 
-    def test_encoders_move_the_probe(self):
+    def test_encoders_move_probe(self):
         simulation = tactree.Simulation(self.model, device="cartesian", encoder_step_m=1e-5)
         # Home is the origin of the device, which is the centre of the ball; counts are of 10 um.
         for _ in range(100):
@@ -166,7 +161,7 @@ class Steps(Folder):
         simulation = tactree.Simulation(self.model)
         self.assertTrue(runs_beside(lambda: simulation.run(seconds=5)))
 
-    def test_ctrl_c_ends_a_run(self):
+    def test_ctrl_c_ends_run(self):
         simulation = tactree.Simulation(self.model)
         with self.assertRaises(KeyboardInterrupt), signal_during("run"):
             simulation.run(seconds=100)
@@ -175,7 +170,7 @@ class Steps(Folder):
 
 
 class Refusals(Folder):
-    def test_sentences_are_those_of_the_tool(self):
+    def test_errors_equal_tool(self):
         self.run_tool("build", "ball.csv", "-o", "stiff.blob", "--material", "stiffness=90000")
         for blob, values, options in (
                 (self.blob, {"stiffness_N_m": 90000}, ["--stiffness", "90000"]),
@@ -187,7 +182,7 @@ class Refusals(Folder):
                 tactree.Simulation(tactree.load(blob), **values)
             self.assertEqual(str(refused.exception), tool_error(run).splitlines()[-1].removeprefix("tactree: error: "))
 
-    def test_a_hand_in_the_object(self):
+    def test_refuses_hand_inside_object(self):
         write_rows(self.path / "inside.csv", "t_s,x,y,z", [[0, 0, 0, 0]])
         run = self.run_tool("simulate", self.blob, "--path", "inside.csv", "--seconds", "0.01")
         with self.assertRaises(tactree.Error) as refused:

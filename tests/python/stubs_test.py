@@ -90,7 +90,7 @@ class Public(unittest.TestCase):
                     if not member.startswith("_") or member == "__init__":
                         yield f"{name}.{member}", getattr(inner, "__func__", inner)
 
-    def test_everything_has_a_docstring(self):
+    def test_everything_has_docstring(self):
         count = 0
         for name, value in self.members():
             if callable(value) or isinstance(value, property):
@@ -110,7 +110,7 @@ class Public(unittest.TestCase):
                 if not name.endswith("__init__"):
                     self.assertIsNot(signature.return_annotation, signature.empty, name)
 
-    def test_the_package_is_typed_and_exports_what_it_lists(self):
+    def test_package_exports_listed_names(self):
         self.assertTrue((pathlib.Path(tactree.__file__).parent / "py.typed").exists())
         exported = {name for name in vars(tactree) if not name.startswith("_")}
         self.assertEqual(exported - {"annotations"}, public(tactree.__all__))

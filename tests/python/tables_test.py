@@ -11,12 +11,12 @@ import zipfile
 import numpy as np
 import tactree
 
-from clouds import BallFolder, ServedBoard
+from clouds import ModelFolder, ServedBoard
 
 TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
 
 
-class Folder(BallFolder):
+class Folder(ModelFolder):
     tool = TACTREE
 
     def expect_refusal(self, read, name, *words):
@@ -35,9 +35,9 @@ class Trace(Folder):
     def setUp(self):
         self.run_tool("simulate", self.blob, "--seconds", "0.3", "--trace", "run.csv")
 
-    def test_is_the_table_of_a_run(self):
+    def test_equals_table_of_run(self):
         trace = tactree.read_trace(self.path / "run.csv")
-        run = tactree.Simulation(tactree.load(self.blob)).run(seconds=0.3)
+        run = tactree.Simulation(self.model).run(seconds=0.3)
         self.assertEqual(trace.dtype, run.dtype)
         for name in run.dtype.names:
             if run.dtype[name] == np.float64:  # nine digits
@@ -74,12 +74,12 @@ class Recording(Folder):
             self.assertEqual(float(table["t_s"][-1]), 0.499)
             self.assertGreater(np.abs(tactree.vectors(table, "force")).max(), 0.1)
 
-    def test_a_csv_that_was_cut_off_ends_with_its_last_whole_row(self):
+    def test_cut_csv_ends_with_whole_row(self):
         text = (self.path / "board.csv").read_text()
         name = self.write("board.csv.incomplete", text[:-10])
         self.assertEqual(len(tactree.read_recording(self.path / name)), 499)
 
-    def test_every_value_of_the_csv(self):
+    def test_reads_every_csv_value(self):
         table = tactree.read_recording(self.path / "board.csv")
         with (self.path / "board.csv").open() as file:
             rows = list(csv.DictReader(file))
@@ -90,14 +90,14 @@ class Recording(Folder):
                 column = [tactree.STATES.index(value) for value in column]
             np.testing.assert_array_equal(table[name], np.array(column, float).astype(table.dtype[name]))
 
-    def test_every_array_of_the_npz(self):
+    def test_reads_every_npz_array(self):
         table = tactree.read_recording(self.path / "board.npz")
         with np.load(self.path / "board.npz") as arrays:
             self.assertEqual({*arrays.files}, {*table.dtype.names, "state_names"})
             for name in table.dtype.names:
                 np.testing.assert_array_equal(table[name], arrays[name])
 
-    def test_columns_that_an_older_version_did_not_write(self):
+    def test_reads_files_without_newer_columns(self):
         self.spoil("board.csv", "added_force_x_N", "other")
         with np.load(self.path / "board.npz") as arrays:
             np.savez(self.path / "older.npz", **{name: arrays[name] for name in arrays.files if name != "added_force_x_N"})
@@ -127,7 +127,7 @@ class Recording(Folder):
         self.expect_refusal(read, "pickle.npz")
         self.assertTrue(zipfile.is_zipfile(self.path / "pickle.npz"))
 
-    def test_vectors_names_the_columns_that_there_are(self):
+    def test_vectors_names_existing_columns(self):
         table = tactree.read_recording(self.path / "board.csv")
         with self.assertRaisesRegex(tactree.Error, "no columns torque_x.*the columns are t_s, tick"):
             tactree.vectors(table, "torque")

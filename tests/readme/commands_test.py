@@ -107,15 +107,16 @@ class ServedCommands(InAFolder):
         """A command that runs until it is ended; its first line of output matches `expected`."""
         process = subprocess.Popen(shlex.split(line, comments=True), cwd=self.path, env=self.environment,
                                    stdout=subprocess.PIPE, text=True)
+        self.addCleanup(process.stdout.close)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)  # cleanups run in reverse order, also if the test fails
         first = process.stdout.readline()
         self.assertRegex(first, expected, line)
         return process, first
 
     def end(self, process, line):
         process.send_signal(signal.SIGTERM)
-        code = process.wait(timeout=60)
-        process.stdout.close()
-        self.assertEqual(code, 0, line)
+        self.assertEqual(process.wait(timeout=60), 0, line)
 
     def shows_page(self, line):
         line = re.sub(r"(tactree view \S+)", r"\1 --page-port 0", line)
@@ -127,13 +128,13 @@ class ServedCommands(InAFolder):
             self.assertEqual(error.code, 404)
         self.end(process, line)
 
-    def test_every_page_is_served(self):
+    def test_serves_every_page(self):
         lines = [line for block in blocks("console") if "--serve" not in block for line in prompt_lines(block)]
         self.assertEqual(len(lines), 3)
         for line in lines:
             self.shows_page(line)
 
-    def test_a_served_board_answers_every_command(self):
+    def test_served_board_answers_every_command(self):
         (block,) = [block for block in blocks("console") if "--serve" in block]
         shown = re.search(r"^serving at (\S+)$", block, re.MULTILINE)[1]
         serve, *lines = prompt_lines(block)

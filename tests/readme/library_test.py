@@ -38,7 +38,7 @@ class Project(unittest.TestCase):
     def run_program(self, name, *arguments):
         return subprocess.run([self.build / name, *arguments], capture_output=True, text=True, check=False, timeout=60)
 
-    def test_every_file_is_there(self):
+    def test_page_has_every_file(self):
         self.assertEqual([name for name, _ in FILES], ["CMakeLists.txt", "surface.cpp", "watch.cpp"])
 
     def test_surface(self):

@@ -35,7 +35,7 @@ class References(unittest.TestCase):
         found = [f"{page.relative_to(ROOT)}: {name}" for page in pages for name in missing(page)]
         self.assertEqual(found, [])
 
-    def test_introduction_fits_on_a_screen(self):
+    def test_introduction_fits_on_screen(self):
         text = (ROOT / "README.md").read_text()
         self.assertLessEqual(len(text.splitlines()), 60)
         introduction = text.split("\n## ")[0]
@@ -43,7 +43,7 @@ class References(unittest.TestCase):
         for part in ("./demo", "./test", "Debian 12", "docs/images/"):
             self.assertIn(part, introduction)
 
-    def test_paths_of_the_contributors_page(self):
+    def test_contributor_page_names_existing_paths(self):
         text = (ROOT / "docs/CONTRIBUTING.md").read_text()
         paths = re.findall(r"\n\*\*From .*\*\*\n\n((?:\d+\. .*\n(?:   .*\n)*)+)", text)
         self.assertEqual(len(paths), 3)
@@ -54,7 +54,7 @@ class References(unittest.TestCase):
             for name in steps:
                 self.assertTrue((ROOT / name).is_file(), name)
 
-    def test_every_folder_of_the_product_is_described(self):
+    def test_describes_every_product_folder(self):
         table = (ROOT / "docs/CONTRIBUTING.md").read_text().split("## Source tree")[1].split("**From")[0]
         layers = (ROOT / "scripts/check-layers").read_text().split('"""')[3]
         folders = re.findall(r"(?m)^((?:core|hal|host|tools|firmware)[\w/]*) ", layers)
@@ -62,7 +62,7 @@ class References(unittest.TestCase):
         for name in [part for folder in folders for part in folder.split("/")]:
             self.assertRegex(table, rf"\b{name}\b")
 
-    def test_finds_what_is_missing(self):
+    def test_finds_missing_paths(self):
         with tempfile.TemporaryDirectory() as folder:
             page = pathlib.Path(folder, "page.md")
             page.write_text("[a](no.md) [b](page.md#top) `core/src/no.cpp` `core/src` `scripts/check-*` `core/link/wire/frame.hpp`")

@@ -7,26 +7,21 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "json_reader.hpp"
 #include "tactree/support/explain.hpp"
-#include "tactree/support/json_reader.hpp"
 #include "tactree/support/user_error.hpp"
 
 namespace tactree::controller {
 namespace {
 
-using support::JsonReader;
-
 constexpr std::uintmax_t kMaxBytes = 1U << 20U;
-constexpr support::JsonRemedies kRemedies = {"is unknown", "docs/LINUX-BOARD.md lists the keys",
-                                             "see docs/LINUX-BOARD.md",
-                                             "one number for each axis, in [brackets]"};
 
 // Minimum time-out of the guard in ticks. A shorter time-out would treat one late tick as a dead
 // loop.
 constexpr std::uint64_t kGuardTicks = 5;
 constexpr std::uint64_t kNsPerMs = 1'000'000;
 
-support::JsonReader::Json read_json(const std::filesystem::path& file) {
+JsonReader::Json read_json(const std::filesystem::path& file) {
   std::error_code error;
   const std::uintmax_t bytes = std::filesystem::file_size(file, error);
   if (error) {
@@ -40,7 +35,7 @@ support::JsonReader::Json read_json(const std::filesystem::path& file) {
   }
   std::ifstream stream(file);
   try {
-    return support::JsonReader::Json::parse(stream);
+    return JsonReader::Json::parse(stream);
   } catch (const nlohmann::json::parse_error& cause) {
     throw support::UserError(
         fmt::format("{}: byte {}: not valid JSON (correct it there)", file.string(), cause.byte));
@@ -52,7 +47,7 @@ std::string from_folder(const std::filesystem::path& file, const std::string& pa
   return (file.parent_path() / path).string();
 }
 
-std::string device_of(const std::filesystem::path& file, support::JsonReader& reader) {
+std::string device_of(const std::filesystem::path& file, JsonReader& reader) {
   const std::string name = reader.text("device");
   const std::vector<std::string> known = support::device_names();
   return std::find(known.begin(), known.end(), name) != known.end() ? name
@@ -60,7 +55,7 @@ std::string device_of(const std::filesystem::path& file, support::JsonReader& re
 }
 
 /// Keys that are missing leave their value unchanged.
-void read_limits(support::JsonReader limits, core::Configuration& c) {
+void read_limits(JsonReader limits, core::Configuration& c) {
   const auto maybe = [&limits](const char* key, float& value, double low, double high) {
     if (limits.has(key)) {
       limits.one(key, value, low, high);
@@ -86,14 +81,14 @@ void read_limits(support::JsonReader limits, core::Configuration& c) {
   limits.finish();
 }
 
-std::string maybe_text(support::JsonReader& reader, const char* key) {
+std::string maybe_text(JsonReader& reader, const char* key) {
   return reader.has(key) ? reader.text(key) : "";
 }
 
 /// Returns true if all axes have `key` and false if none has it; refuses a mixture.
-bool are_of_kind(const std::vector<support::JsonReader>& axes, const char* key) {
+bool are_of_kind(const std::vector<JsonReader>& axes, const char* key) {
   const bool first = axes.front().has(key);
-  for (const support::JsonReader& axis : axes) {
+  for (const JsonReader& axis : axes) {
     if (axis.has(key) != first) {
       axis.refuse(key, "is given for some axes only", "connect all axes in the same way");
     }
@@ -101,18 +96,17 @@ bool are_of_kind(const std::vector<support::JsonReader>& axes, const char* key) 
   return first;
 }
 
-void read_counters(std::vector<support::JsonReader>& axes,
-                   hal::linux_gpio::CounterSettings& counters) {
-  for (support::JsonReader& axis : axes) {
+void read_counters(std::vector<JsonReader>& axes, hal::linux_gpio::CounterSettings& counters) {
+  for (JsonReader& axis : axes) {
     counters.axes.push_back({axis.text("counter"), axis.whole("count", 0, 1000)});
     axis.finish();
   }
 }
 
-void read_encoders(support::JsonReader encoders, const core::DeviceModel& device,
+void read_encoders(JsonReader encoders, const core::DeviceModel& device,
                    hal::linux_gpio::ControllerBoardSettings& board) {
   const std::size_t count = core::axes_of(device.kind);
-  std::vector<support::JsonReader> axes = encoders.objects("axes", count, count);
+  std::vector<JsonReader> axes = encoders.objects("axes", count, count);
   const bool at_index = device.homing == core::HomingMethod::kIndex;
   if (are_of_kind(axes, "counter")) {
     if (at_index) {
@@ -129,7 +123,7 @@ void read_encoders(support::JsonReader encoders, const core::DeviceModel& device
   if (encoders.has("faults_max")) {
     board.encoder_faults_max = encoders.whole("faults_max", 0, 1'000'000);
   }
-  for (support::JsonReader& axis : axes) {
+  for (JsonReader& axis : axes) {
     board.encoders.push_back({axis.text("a"), axis.text("b"),
                               at_index ? axis.text("index") : maybe_text(axis, "index")});
     axis.finish();
@@ -137,14 +131,14 @@ void read_encoders(support::JsonReader encoders, const core::DeviceModel& device
   encoders.finish();
 }
 
-void read_pwm(support::JsonReader& motors, std::vector<support::JsonReader>& axes,
+void read_pwm(JsonReader& motors, std::vector<JsonReader>& axes,
               hal::linux_gpio::MotorSettings& settings) {
   if (motors.has("pwm_root")) {
     settings.pwm_root = motors.text("pwm_root");
   }
   settings.period_ns = motors.whole("period_ns", 1000, 1'000'000'000);
   settings.good = maybe_text(motors, "good");
-  for (support::JsonReader& axis : axes) {
+  for (JsonReader& axis : axes) {
     hal::linux_gpio::MotorLines lines;
     lines.chip = axis.text("chip");
     lines.channel = axis.whole("channel", 0, 1000);
@@ -155,14 +149,14 @@ void read_pwm(support::JsonReader& motors, std::vector<support::JsonReader>& axe
   }
 }
 
-void read_converters(support::JsonReader& motors, std::vector<support::JsonReader>& axes,
+void read_converters(JsonReader& motors, std::vector<JsonReader>& axes,
                      hal::linux_gpio::ConverterSettings& settings) {
   constexpr std::uint32_t kCodeMax = 0xFFFFFF;  // 24 bits, the finest resolution available
   if (motors.has("converter_root")) {
     settings.root = motors.text("converter_root");
   }
   settings.good = maybe_text(motors, "good");
-  for (support::JsonReader& axis : axes) {
+  for (JsonReader& axis : axes) {
     hal::linux_gpio::ConverterAxis output;
     output.device = axis.text("converter");
     output.channel = axis.whole("channel", 0, 1000);
@@ -181,9 +175,9 @@ void read_converters(support::JsonReader& motors, std::vector<support::JsonReade
   }
 }
 
-void read_motors(support::JsonReader motors, std::size_t count,
+void read_motors(JsonReader motors, std::size_t count,
                  hal::linux_gpio::ControllerBoardSettings& board) {
-  std::vector<support::JsonReader> axes = motors.objects("axes", count, count);
+  std::vector<JsonReader> axes = motors.objects("axes", count, count);
   if (are_of_kind(axes, "converter")) {
     read_converters(motors, axes, board.converters);
   } else {
@@ -192,7 +186,7 @@ void read_motors(support::JsonReader motors, std::size_t count,
   motors.finish();
 }
 
-void read_lines(support::JsonReader lines, hal::linux_gpio::ControllerBoardSettings& board) {
+void read_lines(JsonReader lines, hal::linux_gpio::ControllerBoardSettings& board) {
   board.enable = lines.text("enable");
   board.enable_read_back = lines.text("enable_read_back");
   board.emergency_stop = lines.text("emergency_stop");
@@ -202,13 +196,13 @@ void read_lines(support::JsonReader lines, hal::linux_gpio::ControllerBoardSetti
   lines.finish();
 }
 
-void read_watchdog(support::JsonReader watchdog, hal::linux_gpio::ControllerBoardSettings& board) {
+void read_watchdog(JsonReader watchdog, hal::linux_gpio::ControllerBoardSettings& board) {
   board.watchdog = watchdog.text("device");
   board.watchdog_timeout_s = watchdog.whole("timeout_s", 1, 600);
   watchdog.finish();
 }
 
-void read_real_time(support::JsonReader reader, ControllerFile& result) {
+void read_real_time(JsonReader reader, ControllerFile& result) {
   if (reader.has("priority")) {
     result.real_time.priority = static_cast<int>(reader.whole("priority", 0, 98));
   }
@@ -227,7 +221,7 @@ void read_real_time(support::JsonReader reader, ControllerFile& result) {
 }
 
 /// Checks that involve several values.
-void check_together(const support::JsonReader& reader, const core::Configuration& configuration) {
+void check_together(const JsonReader& reader, const core::Configuration& configuration) {
   const core::ConfigurationStatus status = core::check(configuration);
   if (status == core::ConfigurationStatus::kUnstable) {
     reader.refuse("limits.stiffness_N_m",
@@ -242,8 +236,7 @@ void check_together(const support::JsonReader& reader, const core::Configuration
   }
 }
 
-core::Configuration begin_configuration(support::JsonReader& reader,
-                                        const support::Device& device) {
+core::Configuration begin_configuration(JsonReader& reader, const support::Device& device) {
   core::Configuration configuration;
   core::use_device(device.preset, configuration);
   reader.one("rate_hz", configuration.rate_hz, 100.0, 20000.0);
@@ -283,7 +276,7 @@ void fit_slews(bool given, core::Configuration& c) {
   }
 }
 
-LinkSettings read_link(support::JsonReader& reader) {
+LinkSettings read_link(JsonReader& reader) {
   LinkSettings link;
   if (reader.has("socket") == reader.has("usb")) {
     reader.refuse("socket", "exactly one of socket and usb is required",
@@ -293,7 +286,7 @@ LinkSettings read_link(support::JsonReader& reader) {
     link.socket = reader.text("socket");
     return link;
   }
-  support::JsonReader usb = reader.object("usb");
+  JsonReader usb = reader.object("usb");
   link.usb_port = maybe_text(usb, "port");
   link.usb_serial = usb.has("serial") ? usb.whole("serial", 0, 0xFFFFFFFF) : 0U;
   usb.finish();
@@ -303,8 +296,8 @@ LinkSettings read_link(support::JsonReader& reader) {
 }  // namespace
 
 ControllerFile read_controller_file(const std::filesystem::path& file) {
-  const support::JsonReader::Json json = read_json(file);
-  support::JsonReader reader(file.string(), json, kRemedies);
+  const JsonReader::Json json = read_json(file);
+  JsonReader reader(file.string(), json);
   if (reader.has("about")) {
     (void)reader.text("about");
   }
@@ -318,7 +311,7 @@ ControllerFile read_controller_file(const std::filesystem::path& file) {
   result.board.guard.silence_ns = std::max(10 * kNsPerMs, kGuardTicks * result.board.period_ns);
   bool slew_given = false;
   if (reader.has("limits")) {
-    support::JsonReader limits = reader.object("limits");
+    JsonReader limits = reader.object("limits");
     slew_given = limits.has("slew_N_s");
     read_limits(std::move(limits), result.configuration);
   }

@@ -32,7 +32,7 @@ int run(int argc, char** argv) {
   app.add_option("file", file, "wiring, device and model of the controller (JSON)")->required();
   auto* const dry = app.add_flag("--dry-run", dry_run,
                                  "check whether the controller would run here, without using any "
-                                 "line; exit code 1: it would not");
+                                 "line; exit code 1 if it would not");
   app.add_flag("--off", off, "switch the enable line off and exit, for use after a crash")
       ->excludes(dry);
   try {

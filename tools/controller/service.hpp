@@ -1,8 +1,6 @@
 #pragma once
 // The control loop of a Linux board, and the application's session between its ticks.
 
-#include <vector>
-
 #include "controller_file.hpp"
 
 namespace tactree::controller {

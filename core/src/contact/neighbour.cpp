@@ -6,7 +6,8 @@
 namespace tactree::core {
 namespace {
 
-// Normals of faces that continue each other differ by less than 8 degrees.
+// Normals of faces that continue each other differ by less than 8 degrees. Without this limit,
+// flush faces of two bodies would hold the proxy by two nearly parallel planes.
 constexpr float kContinuing = 0.99F;
 
 }  // namespace

@@ -36,6 +36,8 @@ class AsyncContext {
   [[nodiscard]] bool submit(std::uint16_t what, int file, std::span<const std::byte> bytes,
                             std::uint64_t tag);
 
+  /// Maximum number of pending operations; the kernel refuses more. FunctionFsController has at
+  /// most 12, four for each endpoint.
   static constexpr unsigned kOperationsMax = 64;
 
   aio_context_t context_ = 0;

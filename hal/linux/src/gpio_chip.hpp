@@ -3,7 +3,6 @@
 // libgpiod, libgpiod_1.cpp and libgpiod_2.cpp.
 
 #include <cstdint>
-#include <memory>
 #include <string>
 #include <vector>
 

@@ -14,7 +14,9 @@
 namespace tactree::hal::linux_gpio {
 namespace {
 
-constexpr std::uint64_t kPatience_ns = 1'000'000'000;  // maximum wait for lines that do not rest
+// Maximum wait for lines that do not rest. A device that moves would otherwise delay the start of
+// the program indefinitely, without a message.
+constexpr std::uint64_t kPatience_ns = 1'000'000'000;
 
 std::string quoted(const std::string& name) { return "line '" + name + "'"; }
 

@@ -24,10 +24,12 @@ constexpr std::uint32_t kUnlink = 2;
 constexpr std::uint32_t kSubmitReply = 3;
 constexpr std::uint32_t kUnlinkReply = 4;
 constexpr std::size_t kHeaderBytes = 48;
-constexpr std::size_t kWords = 10;               // of a header before the setup packet
-constexpr std::size_t kTransferMax = 1U << 20U;  // bytes; longer requests end the connection
-constexpr std::size_t kOutgoingMax = 4096;       // bytes; limited as in a hardware controller
-constexpr int kHighSpeed = 3;                    // USB_SPEED_HIGH
+constexpr std::size_t kWords = 10;  // of a header before the setup packet
+// Bytes. A longer request ends the connection: its length is not that of a message, and its bytes
+// would be awaited indefinitely.
+constexpr std::size_t kTransferMax = 1U << 20U;
+constexpr std::size_t kOutgoingMax = 4096;  // bytes; limited as in a hardware controller
+constexpr int kHighSpeed = 3;               // USB_SPEED_HIGH
 constexpr char kHostController[] = "/sys/devices/platform/vhci_hcd.0/";
 
 using Words = std::array<std::uint32_t, kWords>;

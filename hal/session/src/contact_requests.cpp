@@ -72,8 +72,9 @@ WireStatus add_force(std::span<const std::byte> payload, const core::Controller&
     return WireStatus::kBadLength;
   }
   const core::Vec3 force = vector(request.force_N);
-  constexpr auto kLongestMs = static_cast<std::uint32_t>(1e3F * core::kAddedForceSeconds);
-  if (!core::is_finite(force) || request.duration_ms == 0U || request.duration_ms > kLongestMs) {
+  constexpr auto kMaxDurationMs = static_cast<std::uint32_t>(1e3F * core::kAddedForceSeconds);
+  if (!core::is_finite(force) || request.duration_ms == 0U ||
+      request.duration_ms > kMaxDurationMs) {
     return WireStatus::kBadValue;
   }
   if (controller.state() != core::State::kActive) {

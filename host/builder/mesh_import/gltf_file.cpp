@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <assimp/IOStream.hpp>
-#include <cmath>
 #include <cstring>
 #include <limits>
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -463,7 +462,7 @@ ImportedMesh read_gltf(GltfFile& file) {
   try {
     ImportedMesh mesh = GltfScene(file).read();
     if (mesh.positions.empty()) {
-      throw ImportError("it holds no point and no face");
+      throw ImportError("it contains no points and no faces");
     }
     return mesh;
   } catch (const json::exception&) {

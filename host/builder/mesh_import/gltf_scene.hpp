@@ -2,8 +2,6 @@
 // Reads a glTF 2 file as one mesh, in the pose that the file states: its nodes, meshes, quantized
 // positions, morph targets and skins.
 
-#include <string>
-
 #include "mesh_import/contained_files.hpp"
 #include "mesh_import/gltf_file.hpp"
 #include "mesh_import/imported_mesh.hpp"

@@ -96,7 +96,7 @@ bool import_file(const char* file, const char* hint, int output) {
   }
   std::FILE* to = ::fdopen(output, "wb");
   SceneWriter writer(*scene, unit_of_file(*scene, file, hint), to);
-  return writer.write() || refuse(output, "it holds no point and no face");
+  return writer.write() || refuse(output, "it contains no points and no faces");
 }
 
 void write_status(int output, WireStatus status, const char* text) {

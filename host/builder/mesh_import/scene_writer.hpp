@@ -7,7 +7,6 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <cstdio>
-#include <string>
 #include <vector>
 
 #include "mesh_import/unit_of_file.hpp"

@@ -6,7 +6,6 @@
 #include <charconv>
 #include <limits>
 #include <map>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -205,7 +204,7 @@ class Assembly {
       add(item, Transform::Identity(), 0);
     }
     if (mesh_.positions.empty()) {
-      throw ImportError("it holds no point and no face");
+      throw ImportError("it contains no points and no faces");
     }
     if (bad_triangles_ > 0) {
       mesh_.warning = std::to_string(bad_triangles_) +

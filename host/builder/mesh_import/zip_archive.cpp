@@ -75,7 +75,7 @@ ZipArchive::ZipArchive(std::string_view bytes) : bytes_(bytes) {
     at = read_member(at);
   }
   if (members_.empty()) {
-    fail("it holds no file");
+    fail("it contains no files");
   }
 }
 

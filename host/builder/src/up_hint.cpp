@@ -10,19 +10,19 @@
 namespace tactree::builder {
 namespace {
 
-constexpr float kLevelCosine = 0.996F;      // 5 degrees
-constexpr double kDepthSpacings = 1.5;      // maximum distance from the end of the box
-constexpr double kDepthOfEdge = 0.005;      // or this, in lengths of its longest edge
-constexpr double kMinShare = 0.04;          // minimum ratio of the points that lie on the base
-constexpr double kMaxShare = 0.6;           // above: a plate, whose base is no evidence
-constexpr double kTimesTheNext = 3.0;       // the base / the flat part at any other end
-constexpr std::size_t kFewestPoints = 500;  // of fewer points, 4 % are noise
+constexpr float kLevelCosine = 0.996F;       // 5 degrees
+constexpr double kDepthSpacings = 1.5;       // maximum distance from the end of the box
+constexpr double kDepthOfEdge = 0.005;       // or this, in lengths of its longest edge
+constexpr double kMinShare = 0.04;           // minimum ratio of the points that lie on the base
+constexpr double kMaxShare = 0.6;            // above: a plate, whose base is no evidence
+constexpr double kTimesTheNext = 3.0;        // the base / the flat part at any other end
+constexpr std::size_t kMinHintPoints = 500;  // of fewer points, 4 % are noise
 
 }  // namespace
 
 std::optional<FlatBase> flat_base(std::span<const Eigen::Vector3d> positions,
                                   std::span<const Eigen::Vector3f> normals, double spacing) {
-  if (positions.size() < kFewestPoints || normals.size() != positions.size()) {
+  if (positions.size() < kMinHintPoints || normals.size() != positions.size()) {
     return std::nullopt;
   }
   const Box box = bounds_of(positions);

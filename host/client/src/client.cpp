@@ -1,6 +1,5 @@
 #include "tactree/client/client.hpp"
 
-#include <algorithm>
 #include <array>
 
 namespace tactree::client {

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <limits>
 
 #include "errors.hpp"
 #include "measurements.hpp"

@@ -15,11 +15,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kDeepest_m = 1e-3;   // of the hand below the surface, at most a spacing
-constexpr double kFastest_m = 1e-4;   // movement per tick, at most a fifth of a spacing
-constexpr double kStepsOfDepth = 20;  // of the descent to that depth
-constexpr int kTicks = 300;           // per slide
-constexpr int kTriesPerSlide = 20;    // for a start at which the surface fit is valid
+constexpr double kMaxSlideDepth_m = 1e-3;  // of the hand below the surface, at most a spacing
+constexpr double kFastest_m = 1e-4;        // movement per tick, at most a fifth of a spacing
+constexpr double kStepsOfDepth = 20;       // of the descent to that depth
+constexpr int kTicks = 300;                // per slide
+constexpr int kTriesPerSlide = 20;         // for a start at which the surface fit is valid
 
 struct Spot {
   Vector3d point;
@@ -86,7 +86,7 @@ SlideScores slide_over(const core::BlobView& view, std::span<const Vector3d> poi
                        std::uint32_t seed) {
   SlideScores scores;
   const auto spacing = static_cast<double>(view.header().spacing_m);
-  const double depth_m = std::min(kDeepest_m, spacing);
+  const double depth_m = std::min(kMaxSlideDepth_m, spacing);
   const double step_m = std::min(kFastest_m, 0.2 * spacing);
   scores.expected_N = kStiffness_N_m * depth_m;
   std::mt19937_64 random(seed);

@@ -2,7 +2,6 @@
 // Errors that become exceptions of the package.
 
 #include <stdexcept>
-#include <string>
 
 namespace tactree::python {
 

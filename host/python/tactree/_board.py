@@ -38,7 +38,7 @@ class Telemetry:
 
     @property
     def dropped(self) -> int:
-        """Messages that were dropped on the board, or here because nobody read them."""
+        """Messages that were dropped on the board, or here because they were not read in time."""
         return self._native.dropped()
 
     def stop(self) -> None:
@@ -59,7 +59,7 @@ class Telemetry:
 
 
 class Board:
-    """A session with a board. It stops when the session ends, at the latest at the end of a `with` block.
+    """A session with a board, which stops when the session ends, at the latest at the end of a `with` block.
 
         with tactree.Board("/dev/ttyACM0") as board:
             board.arm()
@@ -67,13 +67,13 @@ class Board:
                 ...
 
     A method waits for the reply of the board, at most for one second unless stated otherwise, and raises BoardError with
-    the sentence of the tool if the board refuses, does not reply or is gone. Other threads run meanwhile, and Ctrl-C ends
-    the long waits. Only post_stop() may be called while another thread uses the board.
+    the message of the tool if the board refuses, does not reply or is lost. Other threads run meanwhile, and Ctrl-C ends
+    long waits. Only post_stop() may be called while another thread uses the board.
     """
 
     def __init__(self, port: str, *, baud: int = _native.USUAL_BAUD, link_timeout_ms: int = 50,
                  stream_capacity: int = 65536):
-        """Opens a port, see ports(), and a session.
+        """Opens a port (see ports()) and a session.
 
         port             a serial port, "usb:SERIAL", "unix:PATH", or the port that `tactree simulate --serve` prints
         baud             of a serial port
@@ -127,7 +127,7 @@ class Board:
         self._native.home()
 
     def wait(self, seconds: float) -> None:
-        """Waits, in the time of the board; that of a board in lock-step passes only in such waits."""
+        """Waits for a time on the clock of the board. In lock-step, this clock advances only during such waits."""
         self._native.wait(seconds)
 
     def reconnect(self) -> None:
@@ -168,7 +168,7 @@ class Board:
         self._native.save_parameters()
 
     def set_limits(self, force_max_N: float, slew_N_s: float, ramp_s: float) -> None:
-        """Sets the largest force, its largest change per second, and the duration of its ramp after arming."""
+        """Sets the maximum force, its maximum change per second, and the duration of its ramp after arming."""
         self._native.set_limits(force_max_N, slew_N_s, ramp_s)
 
     def set_material(self, stiffness_N_m: float, damping_Ns_m: float = 0.0, static_friction: float = 0.0,
@@ -177,7 +177,7 @@ class Board:
         self._native.set_material(stiffness_N_m, damping_Ns_m, static_friction, dynamic_friction, use_materials)
 
     def flash(self, model: Model, progress: Callable[[float], object] | None = None) -> None:
-        """Writes a model into the board, has it checked and activates it, which takes as long as the flash does.
+        """Writes a model to the board, which checks and activates it. Waits until the flash is written.
 
         The preceding model is kept, see roll_back(). Signed models are written by `tactree flash`.
         """
@@ -188,10 +188,10 @@ class Board:
         self._native.roll_back()
 
     def telemetry(self, every_ticks: int = 10, timeout_s: float = 2.0) -> Telemetry:
-        """Subscribes to one tick of `every_ticks`. The blocks end with a BoardError if none arrives for `timeout_s`."""
+        """Subscribes to one tick in `every_ticks`. The blocks end with a BoardError if none arrives for `timeout_s`."""
         return Telemetry(self, every_ticks, timeout_s)
 
 
 def ports() -> list[str]:
-    """Ports that may have a board. Opens none of them."""
+    """Ports to which a board may be connected. Opens none of them."""
     return _native.ports()

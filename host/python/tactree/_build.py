@@ -16,7 +16,7 @@ Progress = Callable[[str, float], object]
 
 
 class BuildWarning(UserWarning):
-    """A warning of the report of a build, with the sentence of `tactree build`."""
+    """A warning of a build, with the text of `tactree build`."""
 
 
 def _finish(native: _native.Model) -> Model:

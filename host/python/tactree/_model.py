@@ -19,12 +19,12 @@ class Model:
 
     @classmethod
     def from_bytes(cls, data: bytes, name: str = "blob") -> Model:
-        """Checks and copies the bytes of a blob. `name` is that of messages."""
+        """Checks and copies the bytes of a blob. Messages state `name`."""
         return cls(_native.from_bytes(data, name))
 
     @property
     def info(self) -> dict[str, Any]:
-        """The facts of `tactree info --json`, without the signature, which is in a file of its own."""
+        """The values of `tactree info --json`, without the signature, which is in a separate file."""
         return self._native.info()
 
     @property
@@ -35,7 +35,7 @@ class Model:
 
     @property
     def file(self) -> str:
-        """The name of the model in messages: its file, if it has one."""
+        """The name that messages state: the file of the model, if it has one."""
         return self._native.file()
 
     @property
@@ -59,7 +59,7 @@ class Model:
 
     @property
     def normals(self) -> npt.NDArray[np.float32]:
-        """Unit normals of the points, (N, 3), read-only. A copy, as `points`."""
+        """Unit normals of the points, (N, 3), read-only. A copy, like `points`."""
         return self._native.normals()
 
     @property
@@ -111,5 +111,5 @@ class Model:
 
 
 def load(path: str | os.PathLike[str]) -> Model:
-    """Reads a blob and checks it as the controller does. Raises FileError with the sentence of the tool."""
+    """Reads a blob and checks it as the controller does. Raises FileError with the message of the tool."""
     return Model(_native.load(path))

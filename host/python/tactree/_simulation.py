@@ -12,7 +12,7 @@ from ._model import Model
 
 
 class Simulation:
-    """A session of the controller, with the code of `tactree simulate`: the same inputs give the same forces to the bit.
+    """A session of the controller, with the code of `tactree simulate`. The same inputs give bit-identical forces.
 
     The first tick powers up the controller and arms it with the hand at rest at its first position, outside the object.
     Positions are those of the model's frame. One thread at a time may use a simulation.
@@ -27,7 +27,7 @@ class Simulation:
                  device_mass_kg: float | None = None, device_friction_N: float | None = None,
                  hand_stiffness_N_m: float | None = None, hand_damping_Ns_m: float | None = None,
                  hand_mass_kg: float | None = None, faults: Sequence[str] = ()):
-        """Checks the model and the configuration as the controller does; raises Error with the sentence of the tool.
+        """Checks the model and the configuration as the controller does; raises Error with the message of the tool.
 
         device     name of a preset, see device_names(), or a device file of `tactree simulate --dump-device`
         mode       surface, or paper

@@ -8,7 +8,7 @@
 #include <sstream>
 #include <thread>
 
-#include "tactree/support/file_descriptor.hpp"
+#include "tactree/support/high_descriptor.hpp"
 
 namespace tactree::support {
 namespace {

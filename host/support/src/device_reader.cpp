@@ -17,7 +17,6 @@
 #include "device_fields.hpp"
 #include "json_positions.hpp"
 #include "tactree/support/device_file.hpp"
-#include "tactree/support/json_reader.hpp"
 #include "tactree/support/nearest_name.hpp"
 #include "tactree/support/user_error.hpp"
 
@@ -30,6 +29,10 @@ constexpr std::size_t kKeyCharacters = 60;  // of a key in a message
 
 std::string range_text(const DeviceField& field) {
   return fmt::format("{:.6g} .. {:.6g}", field.low, field.high);
+}
+
+std::string listed(const std::vector<std::string>& names) {
+  return fmt::format("{}", fmt::join(names, ", "));
 }
 
 std::string quoted(const std::string& name) {
@@ -242,10 +245,10 @@ class DeviceReader {
       add_value(path, "is not a number", fmt::format("give {}, without quotes", range_text(field)));
       return std::nullopt;
     }
-    constexpr auto kLargest = static_cast<double>(std::numeric_limits<float>::max());
+    constexpr auto kMaxFloat = static_cast<double>(std::numeric_limits<float>::max());
     const auto figure = value.get<double>();
     // As floats, in which the file may have been computed, and which the controller compares.
-    const auto result = static_cast<float>(std::clamp(figure, -kLargest, kLargest));
+    const auto result = static_cast<float>(std::clamp(figure, -kMaxFloat, kMaxFloat));
     if (!(result >= field.low && result <= field.high)) {
       add_value(path, fmt::format("{:.6g} is out of range", figure), "give " + range_text(field));
       return std::nullopt;

@@ -61,16 +61,21 @@ Schema schema_of(const DeviceField& field, core::DeviceKind kind) {
   return schema;
 }
 
-/// All keys of a device of this kind.
-Schema schema_of(core::DeviceKind kind) {
-  Schema required = Schema::array();
-  Schema properties = Schema::object();
+/// Adds the keys that every kind has.
+void add_texts(Schema& required, Schema& properties) {
   for (const DeviceText& text : device_texts()) {
     properties[text.key] = schema_of(text);
     if (text.required) {
       required.push_back(text.key);
     }
   }
+}
+
+/// All keys of a device of this kind.
+Schema schema_of(core::DeviceKind kind) {
+  Schema required = Schema::array();
+  Schema properties = Schema::object();
+  add_texts(required, properties);
   for (const DeviceField& field : device_fields()) {
     if (!field.belongs_to(kind)) {
       continue;
@@ -95,12 +100,7 @@ std::string device_schema() {
   }
   Schema required = Schema::array();
   Schema properties = Schema::object();
-  for (const DeviceText& text : device_texts()) {
-    properties[text.key] = schema_of(text);
-    if (text.required) {
-      required.push_back(text.key);
-    }
-  }
+  add_texts(required, properties);
   const Schema schema{
       {"$schema", "http://json-schema.org/draft-07/schema#"},
       {"title", "Haptic device"},

@@ -17,7 +17,7 @@ using nlohmann::json;
 constexpr std::size_t kMaxVia = 64;
 
 Eigen::Vector3d place_of(const std::string& name, const json& value) {
-  constexpr double kFurthest_m = 10.0;
+  constexpr double kMaxDistance_m = 10.0;
   if (!value.is_array() || value.size() != 3) {
     throw SessionRefused(name + ": not an array of three numbers");
   }
@@ -25,8 +25,8 @@ Eigen::Vector3d place_of(const std::string& name, const json& value) {
   for (std::size_t i = 0; i < 3; ++i) {
     place[static_cast<Eigen::Index>(i)] = static_cast<double>(number_of(name, value[i]));
   }
-  if (!place.allFinite() || place.cwiseAbs().maxCoeff() > kFurthest_m) {
-    throw SessionRefused(fmt::format("{}: outside +-{} m", name, kFurthest_m));
+  if (!place.allFinite() || place.cwiseAbs().maxCoeff() > kMaxDistance_m) {
+    throw SessionRefused(fmt::format("{}: outside +-{} m", name, kMaxDistance_m));
   }
   return place;
 }

@@ -19,9 +19,9 @@ namespace http = beast::http;
 using Request = HttpConnection::Request;
 using Response = http::response<http::string_body>;
 
-constexpr std::uint32_t kLongestHeader = 8192;
-constexpr std::uint64_t kLongestBody = 0;  // the page sends no bodies
-constexpr std::chrono::seconds kSlowest(30);
+constexpr std::uint32_t kMaxRequestHeaderBytes = 8192;
+constexpr std::uint64_t kMaxRequestBodyBytes = 0;  // the page sends no bodies
+constexpr std::chrono::seconds kMaxTransferTime(30);
 
 // Scripts, styles, pictures and connections from this server only; no embedding in other pages.
 constexpr const char* kPolicy =
@@ -45,9 +45,9 @@ HttpConnection::~HttpConnection() { --service_.connections; }
 
 void HttpConnection::read() {
   parser_.emplace();
-  parser_->header_limit(kLongestHeader);
-  parser_->body_limit(kLongestBody);
-  stream_.expires_after(kSlowest);
+  parser_->header_limit(kMaxRequestHeaderBytes);
+  parser_->body_limit(kMaxRequestBodyBytes);
+  stream_.expires_after(kMaxTransferTime);
   http::async_read(
       stream_, buffer_, *parser_,
       [self = shared_from_this()](beast::error_code error, std::size_t) {
@@ -156,7 +156,7 @@ void HttpConnection::send(HttpResponse answer, const Request& request) {
     response->body() = std::move(answer.body);
   }
   response->content_length(size);
-  stream_.expires_after(kSlowest);
+  stream_.expires_after(kMaxTransferTime);
   http::async_write(stream_, *response,
                     [self = shared_from_this(), response](beast::error_code error, std::size_t) {
                       if (!error && response->keep_alive()) {

@@ -1,7 +1,6 @@
 #pragma once
 // Answers a client's HTTP requests in order; a request for /live becomes a LiveConnection.
 
-#include <atomic>
 #include <boost/asio/thread_pool.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/core/tcp_stream.hpp>

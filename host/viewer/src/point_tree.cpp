@@ -104,7 +104,7 @@ class PointTree::Build {
   /// rest to the children.
   void divide(Task& task) {
     const std::size_t all = task.points.size();
-    const bool last = all <= kPointsPerNode || task.level == kDeepestNode;
+    const bool last = all <= kPointsPerNode || task.level == kMaxNodeLevel;
     const double stride = last ? 1.0 : static_cast<double>(all) / kPointsPerNode;
     PointNode& node = tree_.nodes_[task.node];
     node.first_point = static_cast<std::uint32_t>(tree_.points_.size());

@@ -29,7 +29,7 @@ OpenParameters open_parameters() {
     open.least[name] = least.at(name);
     open.largest[name] = largest.at(name);
   }
-  open.largest["points_per_leaf_max"] = kLargestLeaf;
+  open.largest["points_per_leaf_max"] = kMaxLeafPoints;
   return open;
 }
 

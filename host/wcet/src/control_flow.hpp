@@ -2,7 +2,6 @@
 // Control flow graph of a function's machine code: basic blocks, edges and loops.
 
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <set>
 #include <string>

@@ -150,7 +150,7 @@ class Reader {
     for (std::uint32_t line = loop.line; line <= line_of(head_end); ++line) {
       loop.head.push_back(line);
     }
-    loop.simple = is_simple(code_.substr(begin, head_end - begin), is_for);
+    loop.one_comparison = is_one_comparison(code_.substr(begin, head_end - begin), is_for);
     read_bound(loop, {loop.line, line_of(head_end), loop.line - 1});
     file_.loops.push_back(std::move(loop));
   }
@@ -164,7 +164,7 @@ class Reader {
   }
 
   /// True for `for (x : y)` and for a condition without &&, || and ?:.
-  static bool is_simple(const std::string& head, bool is_for) {
+  static bool is_one_comparison(const std::string& head, bool is_for) {
     std::string condition = head.substr(head.find('(') + 1);
     if (is_for && condition.find(';') != std::string::npos) {
       condition = condition.substr(condition.find(';') + 1);

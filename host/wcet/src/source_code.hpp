@@ -1,10 +1,10 @@
 #pragma once
 // The annotations of the sources, by file. docs/BOUND.md, "Annotations", defines the language:
 //   for (...) {  // bound: EXPRESSION [, total TOTAL]
-//   // total: TOTAL      on a line of its own above a loop with a bound
+//   // total: TOTAL      on a separate line above a loop with a bound
 //   call(...);   // at most: TOTAL
 //   call(...);   // with: ARGUMENT <= EXPRESSION
-//   // memory: RAM       on a line of its own: for the file
+//   // memory: RAM       on a separate line: for the file
 //   value = table[i];    // memory: flash
 // TOTAL is EXPRESSION per FUNCTION [together NAME [as WEIGHT]]. A remark may follow in parentheses
 // or after a semicolon.
@@ -36,7 +36,7 @@ struct SourceLoop {
   std::vector<std::uint32_t> head;
   bool tests_last = false;  ///< do {} while ()
   /// The condition is one comparison, which is one branch in the machine code.
-  bool simple = false;
+  bool one_comparison = false;
   std::optional<Expression> bound;
   std::vector<Total> totals;
 };

@@ -4,8 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
-
 #include "analytic_shapes.hpp"
 #include "tactree/hal/sim/board.hpp"
 

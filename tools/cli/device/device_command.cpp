@@ -101,12 +101,13 @@ std::string is_identifier(const std::string& name) {
 void add_device_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<DeviceOptions>();
   CLI::App* verb = app.add_subcommand(
-      "device", "Checks the file of your own device, turns it into a C++ header for firmware");
+      "device", "Checks a device file, or converts it to a C++ header for firmware");
   verb->require_subcommand(1);
   verb->footer("`tactree simulate --device NAME --dump-device` prints a file to begin with.");
 
   CLI::App* check_verb = verb->add_subcommand(
-      "check", "Names all mistakes of a device file, and the defaults in use; exit code 0: valid");
+      "check",
+      "Names all mistakes of a device file, and the defaults in use; exit code 0 if it is valid");
   check_verb->add_option("FILE", options->file, "device file to check, or name of a device")
       ->required();
   check_verb->add_option("--json", options->json, "write the result as JSON to this file");

@@ -123,7 +123,7 @@ void add_devices_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<DevicesOptions>();
   CLI::App* verb = app.add_subcommand("devices",
                                       "Lists the connected boards, and those that tactree simulate "
-                                      "--serve simulates; exit code 1: there is none");
+                                      "--serve simulates; exit code 1 if there is none");
   add_port_options(*verb, options->port);
   CLI::Option* watch = verb->add_flag(
       "--watch", options->watch, "report boards on USB as they are connected and disconnected");

@@ -250,9 +250,9 @@ void add_monitor_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<MonitorOptions>();
   CLI::App* verb = app.add_subcommand("monitor", "Shows state, force and faults of a board, live");
   add_port_options(*verb, options->port);
-  CLI::Option* once =
-      verb->add_flag("--once", options->once, "print one view; exit code 1: a fault is latched");
-  verb->add_option("--json", options->json, "write the view to this file")->needs(once);
+  CLI::Option* once = verb->add_flag("--once", options->once,
+                                     "print the values once; exit code 1 if a fault is latched");
+  verb->add_option("--json", options->json, "write the values to this file")->needs(once);
   verb->add_option("--seconds", options->seconds, "end after this time, s (default: on Ctrl-C)")
       ->check(is_positive);
   verb->callback([options, &exit_code] { show(*options, exit_code); });

@@ -182,16 +182,16 @@ void add_record_command(CLI::App& app, int& exit_code) {
   CLI::App* verb =
       app.add_subcommand("record",
                          "Records the telemetry of a board, every tick, into a file. The exit code "
-                         "is 1 if the board was lost or the disk is full; the file then has the "
-                         "rows up to there");
+                         "is 1 if the board was lost or the disk is full; the file then contains "
+                         "the rows recorded so far");
   add_port_options(*verb, options->port);
   verb->add_option("-o,--output", options->output,
                    "FILE.csv, or FILE.npz for NumPy; complete at the end, FILE.incomplete before")
       ->required();
   verb->add_option("--seconds", options->seconds,
-                   "end after this time of the board, s (default: on Ctrl-C)")
+                   "end after this time on the clock of the board, s (default: on Ctrl-C)")
       ->check(is_positive);
-  verb->add_option("--every", options->every_ticks, "record one tick of this many")
+  verb->add_option("--every", options->every_ticks, "record one tick in this many")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
   verb->add_option("--json", options->json, "write the counts of the recording to this file");

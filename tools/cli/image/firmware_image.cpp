@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cstring>
 #include <fstream>
-#include <iterator>
 #include <span>
 
 #include "tactree/core/math/crc32.hpp"
@@ -29,7 +28,7 @@ struct Identity {
 static_assert(sizeof(Identity) == 56);
 constexpr char kMark[8] = "TACTIMG";
 
-constexpr std::uintmax_t kLargestImage = 256U << 20;
+constexpr std::uintmax_t kMaxImageBytes = 256U << 20;
 
 class Reader {
  public:
@@ -40,7 +39,7 @@ class Reader {
     if (error || !in) {
       fail(fmt::format("cannot be read: {}", error ? error.message() : std::strerror(errno)), "");
     }
-    if (size > kLargestImage) {
+    if (size > kMaxImageBytes) {
       fail(fmt::format("too large for an image: {} bytes", size), kRemedy);
     }
     bytes_.resize(static_cast<std::size_t>(size));

@@ -66,7 +66,7 @@ std::string format_of(const ImageOptions& options) {
 void require_small_gap(const ImageOptions& options, const std::vector<Segment>& segments) {
   const std::uint64_t span = std::uint64_t{segments.back().address} + segments.back().bytes.size() -
                              segments.front().address;
-  if (span > kLargestBin) {
+  if (span > kMaxBinBytes) {
     throw support::UserError(fmt::format(
         "{}: {} bytes lie between the first and the last byte of this image, and the format has no "
         "addresses (use .elf, .hex or .uf2)",
@@ -142,7 +142,8 @@ void add_image_command(CLI::App& app, int&) {
   CLI::App* verb = app.add_subcommand(
       "image", "Puts firmware and blob into one file for a programmer or boot loader");
   verb->add_option("FIRMWARE", options->firmware, "image of a board, an ELF file")->required();
-  verb->add_option("BLOB", options->blob, "the model; default: the firmware alone");
+  verb->add_option("BLOB", options->blob,
+                   "the model (default: write the firmware without a model)");
   verb->add_option("-o,--output", options->output, "file to write")->required();
   verb->add_option("--board", options->board, "refuse an image of another board");
   verb->add_option("--format", options->format, "default: by the extension of the output")

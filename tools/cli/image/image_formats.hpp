@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "image/firmware_image.hpp"
@@ -11,10 +10,10 @@
 namespace tactree::cli {
 
 /// Maximum result of to_bin(), bytes. Needs a limit because to_bin() fills gaps.
-inline constexpr std::uint64_t kLargestBin = 64U << 20;
+inline constexpr std::uint64_t kMaxBinBytes = 64U << 20;
 
 /// The bytes from the first to the last segment; gaps are 0xFF, like erased flash. Precondition:
-/// the segments are sorted by address and do not overlap, and end - begin <= kLargestBin.
+/// the segments are sorted by address and do not overlap, and end - begin <= kMaxBinBytes.
 [[nodiscard]] std::vector<std::byte> to_bin(std::span<const Segment> segments);
 
 /// Intel HEX with 32-bit addresses and the entry point.

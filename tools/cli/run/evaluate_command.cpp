@@ -163,12 +163,12 @@ void add_evaluate_command(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   CLI::Option* scan = verb->add_option(
       "--scan", options->scans,
-      "report only about these scans: points kept, outside, holes, force of slides; "
-      "seconds. A file that is not a scan is refused");
+      "report only on these scans: points kept, orientation, holes, force during slides; takes "
+      "seconds. Refuses files that are not scans");
   verb->add_option("--scans", options->folder, "compare every readable scan below this folder")
       ->excludes(scan);
   verb->add_flag("--no-scans", options->no_scans,
-                 fmt::format("compare no scan (default: {}, if present)", kDefaultScan))
+                 fmt::format("compare no scans (default: {}, if present)", kDefaultScan))
       ->excludes(scan);
   verb->add_flag("--require-targets", options->require_targets, "exit code 1 if a target is missed")
       ->excludes(scan);

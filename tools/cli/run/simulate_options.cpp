@@ -84,8 +84,9 @@ void add_injection_option(CLI::App& verb, SimulateOptions& options) {
 void add_panel_options(CLI::App& verb, SimulateOptions& options) {
   CLI::Option* panel = verb.add_flag(
       "--panel", options.panel,
-      "the board stands alone, operated by its button: --press. Time 0 is its power-up, and it is "
-      "not homed; a program (--serve) may only watch and stop it. --trace has its button and lamp");
+      "the board stands alone and is operated by its button (--press). At time 0 it powers up and "
+      "is not homed. A program (--serve) may only watch and stop it. --trace includes button and "
+      "lamp");
   // The model and the parameters can also be written over USB, outside of the session that refuses
   // commands.
   panel->excludes(verb.get_option("--usb"))->excludes(verb.get_option("--usb-gadget"));

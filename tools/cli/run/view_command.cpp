@@ -290,8 +290,8 @@ void add_board_options(CLI::App& verb, ViewOptions& options) {
       ->needs(port);
   verb.add_option(
           "--recording", options.recording,
-          "file of the page's button Record, as of tactree record: FILE.csv, or FILE.npz for "
-          "NumPy; if it exists, the name is numbered")
+          "file that the button Record of the page writes, as tactree record does: FILE.csv, or "
+          "FILE.npz for NumPy; if it exists, a number is added to the name")
       ->capture_default_str()
       ->needs(port);
 }

@@ -298,7 +298,8 @@ void add_surface_options(CLI::App& verb, BuildArguments& arguments) {
                   "the scan is a sheet: build a body of this thickness in metres, which can be "
                   "touched from both sides")
       ->group(kGroup);
-  verb.add_flag("--flip-normals", build.flip_normals, "finally reverse all normals")->group(kGroup);
+  verb.add_flag("--flip-normals", build.flip_normals, "reverse all normals, as the last step")
+      ->group(kGroup);
 }
 
 }  // namespace

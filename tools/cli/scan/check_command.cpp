@@ -40,7 +40,7 @@ void check_signature(const CheckOptions& options, const support::BlobFile& blob)
   const std::string file = signature_path(options.blob).string();
   if (!is_valid(*signature, blob.bytes())) {
     throw support::UserError(
-        fmt::format("{}: is not a valid signature of this blob (sign it again with "
+        fmt::format("{}: not a valid signature of this blob (sign it again with "
                     "`tactree sign`)",
                     file));
   }
@@ -74,7 +74,7 @@ void check(const CheckOptions& options) {
 void add_check_command(CLI::App& app, int&) {
   auto options = std::make_shared<CheckOptions>();
   CLI::App* verb = app.add_subcommand(
-      "check", "Validates a blob with the checks of the controller; exit code 0: valid");
+      "check", "Validates a blob with the checks of the controller; exit code 0 if it is valid");
   verb->add_option("BLOB", options->blob, "blob to check; -: standard input")->required();
   verb->add_option("--key", options->key, "require a signature by this public key")
       ->check(CLI::ExistingFile);

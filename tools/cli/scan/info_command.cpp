@@ -298,11 +298,11 @@ void add_info_command(CLI::App& app, int&) {
                    "also print the cost of a tick with this model on the board")
       ->check(CLI::IsMember(boards_with_timing()));
   verb->add_option("--device", options->device,
-                   "name or file of a device: also report whether it reaches the model; used by "
-                   "--board, too (default: the kind with the longest tick)");
+                   "name or file of a device: also report whether it reaches the model; --board "
+                   "uses it, too (default: the kind with the longest tick)");
   verb->add_option("--material", options->material,
-                   "file of the option --material of the build: names the materials and their "
-                   "colours");
+                   "the file that the build used for --material, which names the materials and "
+                   "their colours");
   verb->add_option("--json", options->json, "write the values as JSON to this file");
   verb->add_option("--points", options->points,
                    "write all points to this CSV file: index,x,y,z,nx,ny,nz (m)");

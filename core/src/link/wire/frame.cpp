@@ -5,7 +5,7 @@
 namespace tactree::core::wire {
 namespace {
 
-constexpr std::uint8_t kLongestRun = 0xFF;  // code of 254 bytes without a zero after them
+constexpr std::uint8_t kMaxRunCode = 0xFF;  // code of 254 bytes without a zero after them
 
 /// COBS encoder. The code of a run is written when the run ends.
 class CobsWriter {
@@ -28,7 +28,7 @@ class CobsWriter {
  private:
   void put(std::byte byte) {
     // A full run ends only if a byte follows.
-    if (code_ == kLongestRun) {
+    if (code_ == kMaxRunCode) {
       end_run();
     }
     if (byte == std::byte{0}) {
@@ -112,7 +112,7 @@ FrameDecoder::Result FrameDecoder::push(std::byte byte) {
   }
   const auto code = static_cast<std::uint8_t>(byte);
   left_ = static_cast<std::uint8_t>(code - 1U);
-  zero_is_due_ = code != kLongestRun;
+  zero_is_due_ = code != kMaxRunCode;
   return Result::kNone;
 }
 

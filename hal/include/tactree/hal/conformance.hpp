@@ -22,6 +22,7 @@ struct ConformanceSetup {
 };
 
 struct ConformanceReport {
+  /// Failures with a sentence; further ones are only counted, because a board has no heap.
   static constexpr std::uint32_t kMaxFailures = 16;
   std::uint32_t checks = 0;
   std::uint32_t failures = 0;

@@ -91,6 +91,8 @@ class Panel {
   static constexpr float kSlot_s = 0.1F;
   static constexpr std::uint32_t kDebouncesPerSlot = 5;  // contacts bounce for up to 10 ms
   static constexpr std::uint32_t kHoldSlots = 10;        // longer than any accidental touch
+  /// Pause after the flashes of a fault code: ten times the gap between two flashes, so that two
+  /// codes are not read as one.
   static constexpr std::uint32_t kPauseSlots = 10;
 
   [[nodiscard]] core::Command command_of_press(bool powered) {

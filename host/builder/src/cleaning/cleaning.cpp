@@ -32,17 +32,17 @@ constexpr double kIslandSpacings = 2.5;
 constexpr double kMaxStepPerDetail = 0.05;
 constexpr double kDetailsPerExtent = 200.0;  // the default spacing of a mesh is its extent / 200
 // Larger coordinates are treated as damage. Squares of distances would overflow only far beyond.
-constexpr double kLargestCoordinate_m = 1e12;
+constexpr double kMaxCoordinate_m = 1e12;
 // Range of extents that the lattice of a blob can represent at a useful spacing.
-constexpr double kSmallestModel_m = 1e-6;
-constexpr double kLargestModel_m = 1e6;
+constexpr double kMinModel_m = 1e-6;
+constexpr double kMaxModel_m = 1e6;
 constexpr std::size_t kColoursReported = 5;
 
 // Returns false for NaN.
 bool is_float(double value) { return static_cast<double>(static_cast<float>(value)) == value; }
 
 bool is_in_range(const Eigen::Vector3d& position_m) {
-  return position_m.cwiseAbs().maxCoeff() <= kLargestCoordinate_m;
+  return position_m.cwiseAbs().maxCoeff() <= kMaxCoordinate_m;
 }
 
 class Cleaner {
@@ -473,7 +473,7 @@ class Cleaner {
   }
 
   static void require_size(double extent_m) {
-    if (extent_m != 0.0 && !(extent_m >= kSmallestModel_m && extent_m <= kLargestModel_m)) {
+    if (extent_m != 0.0 && !(extent_m >= kMinModel_m && extent_m <= kMaxModel_m)) {
       throw std::runtime_error(
           fmt::format("the model would be {} wide; the limits are 1 um and 1000 km (check --unit, "
                       "--scale and --fit)",

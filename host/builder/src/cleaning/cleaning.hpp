@@ -2,8 +2,6 @@
 // Input cleaning: joins the scans, drops unusable points and faces, and moves the rest to the model
 // frame.
 
-#include <map>
-#include <string>
 #include <vector>
 
 #include "cleaning/crop.hpp"

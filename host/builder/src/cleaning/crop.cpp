@@ -1,6 +1,5 @@
 #include "cleaning/crop.hpp"
 
-#include <utility>
 #include <vector>
 
 namespace tactree::builder {

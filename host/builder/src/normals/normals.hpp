@@ -1,7 +1,6 @@
 #pragma once
 // Estimation of normals. Their signs are determined in normals/orient_cloud.hpp.
 
-#include <cstdint>
 #include <vector>
 
 #include "geometry/z_order.hpp"

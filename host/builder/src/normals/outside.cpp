@@ -1,6 +1,5 @@
 #include "normals/outside.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 

@@ -14,7 +14,7 @@ constexpr std::size_t kGraphNeighbours = 10;
 constexpr double kFarthestEdgeSpacings = 3.0;
 // A steeper chord than across an edge of 90 degrees passes through the body instead of along its
 // surface.
-constexpr float kSteepestChord = 0.75F;
+constexpr float kMaxChordSlope = 0.75F;
 // Below this agreement the relative sign is unknown.
 constexpr float kLeastAgreement = 0.5F;
 // Two sets are not joined if both have more evidence than this and it is contradictory.
@@ -27,7 +27,7 @@ float weight_of(const ZOrderedCloud& points, std::span<const Eigen::Vector3f> no
       (points.positions()[to] - points.positions()[from]).normalized().cast<float>();
   const float rise_from = normals[from].dot(chord);
   const float rise_to = normals[to].dot(chord);
-  if (std::abs(rise_from) > kSteepestChord || std::abs(rise_to) > kSteepestChord) {
+  if (std::abs(rise_from) > kMaxChordSlope || std::abs(rise_to) > kMaxChordSlope) {
     return 0.0F;
   }
   const float agreement = normals[to].dot(normals[from] - 2.0F * rise_from * chord);

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numbers>
 
@@ -75,11 +74,6 @@ Wedge widest_wedge(std::vector<double>& directions) {
   }
   return widest;
 }
-
-struct BorderPoint {
-  std::uint32_t index;
-  Eigen::Vector3d away;  // unit vector in the tangent plane towards the missing surface
-};
 
 // Classification of single points.
 class PointProbe {

@@ -1,7 +1,6 @@
 #pragma once
 // Finds holes and open edges of a sampled surface.
 
-#include <span>
 #include <vector>
 
 #include "geometry/z_order.hpp"

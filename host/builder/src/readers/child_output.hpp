@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "tactree/support/child_process.hpp"
-#include "tactree/support/file_descriptor.hpp"
+#include "tactree/support/high_descriptor.hpp"
 
 namespace tactree::builder {
 

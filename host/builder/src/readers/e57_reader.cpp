@@ -83,8 +83,8 @@ class E57Reader {
       throw ReadError(
           file_.name(), "",
           declared == 0
-              ? "the file holds no point: it declares no scan"
-              : fmt::format("the file holds no point: all scans ({}) are empty", declared),
+              ? "the file contains no points: it declares no scan"
+              : fmt::format("the file contains no points: all scans ({}) are empty", declared),
           "check the export, and export it again");
     }
     choose_columns(scans);

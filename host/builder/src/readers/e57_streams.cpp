@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
-#include <limits>
 
 #include "readers.hpp"
 #include "scalar.hpp"

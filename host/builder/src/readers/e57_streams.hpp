@@ -1,7 +1,6 @@
 #pragma once
 // The points of one scan of an E57 file: packets, each with a chunk of the stream of every field.
 
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <string>

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <optional>
 
 #include "las_header.hpp"
 #include "readers.hpp"
@@ -25,7 +24,7 @@ class LasReader {
   Scan read() {
     if (header_.points == 0) {
       throw ReadError(file_.name(), "header",
-                      "the file holds no point: its header declares 0 points",
+                      "the file contains no points: its header declares 0 points",
                       "check the export, and export it again");
     }
     set_units();

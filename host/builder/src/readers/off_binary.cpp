@@ -3,9 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
-
 #include "number.hpp"
 #include "readers.hpp"
 #include "scalar.hpp"
@@ -63,7 +60,7 @@ class OffBinaryReader {
   }
 
   void check_room(std::uint64_t points, std::uint64_t faces) const {
-    if (points == 0) fail("the file holds no point: its header declares 0 points");
+    if (points == 0) fail("the file contains no points: its header declares 0 points");
     const std::uint64_t room = file_.remaining() / point_bytes();
     if (points > room) {
       fail(fmt::format("{} points are declared, the file has room for {}", points, room));

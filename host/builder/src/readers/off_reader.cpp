@@ -69,7 +69,7 @@ class OffReader {
     if (points_ > room) {
       fail(fmt::format("{} points are declared, the file has room for at most {}", points_, room));
     }
-    if (points_ == 0) fail("the file holds no point: its header declares 0 points");
+    if (points_ == 0) fail("the file contains no points: its header declares 0 points");
     const std::uint64_t face_room = (file_.remaining() + 1) / 2;  // "0\n"
     if (faces_ > face_room) {
       fail(fmt::format("{} faces are declared, the file has room for at most {}", faces_,

@@ -131,7 +131,7 @@ constexpr Keyword kElements[] = {
     {"<GIFTI", "a GIFTI surface", kMeshToPly},
     {"<LandXML", "a LandXML file", kSurfaceToPly},
     {"CityModel", "a CityGML model", kSurfaceToPly},
-    {"<MeshLabProject", "a MeshLab project, which names scans but holds none",
+    {"<MeshLabProject", "a MeshLab project, which names scans but contains none",
      "give the files that it names"},
     {"<kml", "a KML file", kNotAScan},
     {"<gpx", "a GPX file", kNotAScan},

@@ -87,7 +87,7 @@ class PcdReader {
   Scan read() {
     if (header_.points == 0) {
       throw ReadError(file_.name(), "header",
-                      "the file holds no point: its header declares 0 points",
+                      "the file contains no points: its header declares 0 points",
                       "check the export, and export it again");
     }
     for (const std::string& warning : header_.warnings) builder_.warn(warning);

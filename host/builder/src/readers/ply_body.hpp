@@ -2,7 +2,6 @@
 // Common to the readers of ASCII and binary PLY data: the elements and vertex properties in use.
 
 #include <span>
-#include <string>
 #include <vector>
 
 #include "input_file.hpp"

@@ -2,7 +2,6 @@
 // The header of a PLY file.
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 

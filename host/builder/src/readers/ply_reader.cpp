@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <utility>
 
 #include "ply_body.hpp"
 #include "ply_header.hpp"
@@ -32,7 +31,7 @@ const PlyElement& vertex_element(const InputFile& file, const PlyHeader& header)
   }
   if (vertex->count == 0) {
     throw ReadError(file.name(), "header",
-                    "the file holds no point: its header declares 0 vertices",
+                    "the file contains no points: its header declares 0 vertices",
                     "check the export, and export it again");
   }
   return *vertex;

@@ -2,7 +2,6 @@
 // Position of the scanner that recorded an image of points, row by row.
 
 #include <Eigen/Core>
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>

@@ -352,7 +352,8 @@ void ScanBuilder::cut_polygons() {
 
 void ScanBuilder::check_points_left() const {
   if (points_read_ == 0) {
-    throw ReadError(file_, "", "the file holds no point", "check the export, and export it again");
+    throw ReadError(file_, "", "the file contains no points",
+                    "check the export, and export it again");
   }
   if (scan_.positions.empty()) {
     throw ReadError(

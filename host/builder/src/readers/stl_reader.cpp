@@ -92,7 +92,7 @@ class AsciiReader {
     if (in_facet_) {
       fail(fmt::format("the file ends inside a triangle, after {} complete ones", facets_));
     }
-    if (facets_ == 0) fail("the STL file holds no triangle");
+    if (facets_ == 0) fail("the STL file contains no triangles");
     if (in_solid_) {
       triangles_.builder().warn("The file ends without endsolid; it may be truncated.");
     }
@@ -206,7 +206,7 @@ void check_count(const InputFile& file, std::uint64_t declared) {
   }
   if (declared == 0) {
     throw ReadError(file.name(), fmt::format("byte {}", kStlCountByte),
-                    "the STL file holds no triangle: its count is 0", kExportAgain);
+                    "the STL file contains no triangles: its count is 0", kExportAgain);
   }
 }
 

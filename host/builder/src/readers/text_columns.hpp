@@ -2,7 +2,6 @@
 // Determines the columns of a text file of points: by the names of a header line, by --columns, or
 // by the numbers in them. Columns that do not look like points are never guessed.
 
-#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>

@@ -215,7 +215,7 @@ class LayoutFinder {
   /// Throws ReadError, because there is no row of numbers.
   [[noreturn]] void refuse() const {
     if (first_other_line_ == 0) {
-      throw ReadError(file_.name(), "", "the text holds no point, only comments or blank lines",
+      throw ReadError(file_.name(), "", "the text contains no points, only comments or blank lines",
                       "check the export, and export it again");
     }
     const std::string place = fmt::format("line {}", first_other_line_);

@@ -12,7 +12,7 @@
 #include "serial_bridge.hpp"
 #include "tactree/hal/plant_link.hpp"
 #include "tactree/support/child_process.hpp"
-#include "tactree/support/file_descriptor.hpp"
+#include "tactree/support/high_descriptor.hpp"
 
 namespace tactree::emulation {
 namespace {
@@ -20,7 +20,7 @@ namespace {
 namespace link = hal::plant_link;
 using std::chrono::milliseconds;
 using support::ChildProcess;
-using support::FileDescriptor;
+using support::HighDescriptor;
 using support::Pipe;
 
 // Descriptor numbers in the emulator; the first two are those of plant_link.hpp.
@@ -44,12 +44,12 @@ Pipe make_pipe() {
   }
 }
 
-FileDescriptor make_memory_file(const char* name) {
+HighDescriptor make_memory_file(const char* name) {
   const int descriptor = ::memfd_create(name, MFD_CLOEXEC);
   if (descriptor < 0) {
     fail_with_errno(std::string("emulation: memory for the ") + name);
   }
-  return FileDescriptor(descriptor);
+  return HighDescriptor(descriptor);
 }
 
 void write_all(int descriptor, std::span<const std::byte> bytes, const std::string& what) {
@@ -294,8 +294,8 @@ class EmulatedTarget::Session {
   Pipe to_board_ = make_pipe();
   Pipe from_board_ = make_pipe();
   Pipe counts_ = make_pipe();
-  FileDescriptor blob_ = make_memory_file("blob");
-  FileDescriptor log_ = make_memory_file("log");
+  HighDescriptor blob_ = make_memory_file("blob");
+  HighDescriptor log_ = make_memory_file("log");
   std::optional<SerialBridge> bridge_;
   std::optional<ChildProcess> process_;
 };

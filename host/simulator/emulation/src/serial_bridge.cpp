@@ -6,7 +6,6 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
-#include <span>
 #include <string>
 
 #include "tactree/emulation/emulation_error.hpp"
@@ -26,8 +25,8 @@ SerialBridge::SerialBridge(client::Transport& programs) : programs_(programs) {
     throw EmulationError(std::string("socket for the board's serial port: ") +
                          std::strerror(errno));
   }
-  ours_ = support::FileDescriptor(ends[0]);
-  board_ = support::FileDescriptor(ends[1]);
+  ours_ = support::HighDescriptor(ends[0]);
+  board_ = support::HighDescriptor(ends[1]);
 }
 
 void SerialBridge::move() {

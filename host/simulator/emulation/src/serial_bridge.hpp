@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "tactree/client/transport.hpp"
-#include "tactree/support/file_descriptor.hpp"
+#include "tactree/support/high_descriptor.hpp"
 
 namespace tactree::emulation {
 
@@ -22,8 +22,8 @@ class SerialBridge {
   void flush();
 
   client::Transport& programs_;
-  support::FileDescriptor ours_;
-  support::FileDescriptor board_;
+  support::HighDescriptor ours_;
+  support::HighDescriptor board_;
   // Bytes that could not be written yet.
   std::vector<std::byte> to_board_;
   std::vector<std::byte> to_programs_;

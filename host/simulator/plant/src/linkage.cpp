@@ -226,8 +226,8 @@ Vector3d Linkage::joints_near(const Vector3d& tip_m) const {
     normal.diagonal().array() += kDamping * normal.trace();
     Vector3d change = normal.inverse() * (jacobian.transpose() * (tip_m - here->tip_m));
     const double largest = change.cwiseAbs().maxCoeff();
-    constexpr double kLongest = 0.2;  // rad or m; after a longer step the linkage may not close
-    change *= largest > kLongest ? kLongest / largest : 1.0;
+    constexpr double kMaxStep = 0.2;  // rad or m; after a longer step the linkage may not close
+    change *= largest > kMaxStep ? kMaxStep / largest : 1.0;
     const Vector3d before = q;
     for (Eigen::Index i = 0; i < axes(); ++i) {
       q[i] = std::clamp(q[i] + change[i], static_cast<double>(model_.joint_min[i]),

@@ -17,9 +17,7 @@
 namespace tactree::setup {
 namespace {
 
-[[noreturn]] void refuse(const std::string& what, const std::string& remedy) {
-  throw support::UserError(fmt::format("{} ({})", what, remedy));
-}
+using support::refuse;
 
 /// Sets the device for controller and mechanics. Options take precedence over the device.
 void choose_device(const SessionOptions& options, simulation::Setup& setup) {
@@ -53,12 +51,14 @@ core::Vec3 place_model(const SessionOptions& options, const FirstBody& body,
                                   const core::Configuration& controller) {
   const std::uint32_t index = core::find_unstable_material(view, controller);
   const core::BlobMaterial& material = view.material(index);
-  refuse(fmt::format("{}: material {}: its stiffness of {:.6g} N/m is beyond the stability limit "
-                     "of {:.6g} N/m with a hand at {:.6g} Hz",
-                     file, index, material.stiffness_N_m,
-                     core::material_limit(controller, material), controller.rate_hz),
-         "build the blob with a softer or more damped --material, raise --rate, or simulate with "
-         "--no-materials");
+  refuse(
+      fmt::format("{}: material {}", file, index),
+      fmt::format("its stiffness of {:.6g} N/m is beyond the stability limit of {:.6g} N/m with a "
+                  "hand at {:.6g} Hz",
+                  material.stiffness_N_m, core::material_limit(controller, material),
+                  controller.rate_hz),
+      "build the blob with a softer or more damped --material, raise --rate, or simulate with "
+      "--no-materials");
 }
 
 }  // namespace
@@ -95,30 +95,30 @@ void check_start(const std::string& file, const core::BlobView& view,
                  const simulation::Setup& setup, const hal::StartResult& start) {
   if (start.configuration == core::ConfigurationStatus::kUnstable) {
     const core::StabilityLimit limit = core::stability_limit(setup.controller);
-    refuse(fmt::format("--stiffness: {:.6g} N/m is beyond the stability limit of {:.6g} N/m with a "
-                       "hand at {:.6g} Hz",
+    refuse("--stiffness",
+           fmt::format("{:.6g} N/m is beyond the stability limit of {:.6g} N/m with a hand at "
+                       "{:.6g} Hz",
                        setup.controller.contact.stiffness_N_m, limit.with_hand_N_m,
                        setup.controller.rate_hz),
            "lower --stiffness, or raise --rate or --damping");
   }
   if (start.image != hal::ImageStatus::kOk) {
-    refuse(fmt::format("the board does not start: {}", describe(start)),
+    refuse("the board does not start", describe(start),
            start.image == hal::ImageStatus::kBadMemory ? "replace the board"
                                                        : "build the image again");
   }
   if (start.configuration != core::ConfigurationStatus::kOk) {
-    refuse(fmt::format("configuration: {}", support::explain(core::refusal_of(setup.controller))),
+    refuse("configuration", support::explain(core::refusal_of(setup.controller)),
            "give a value in that range");
   }
   if (start.blob != core::BlobStatus::kOk) {
-    refuse(fmt::format("{}: refused: {}", file, describe(start)), "build it again from the scan");
+    refuse(file, fmt::format("refused: {}", describe(start)), "build it again from the scan");
   }
   if (start.model == core::ModelStatus::kTooStiff) {
     refuse_material(file, view, setup.controller);
   }
   if (start.model != core::ModelStatus::kOk) {
-    refuse(fmt::format("{}: {}", file, describe(start)),
-           "build it with --profile surface, or use --mode paper");
+    refuse(file, describe(start), "build it with --profile surface, or use --mode paper");
   }
 }
 
@@ -128,14 +128,15 @@ void refuse_inactive(const std::string& device, const simulation::Setup& setup,
       simulation.path().at(0.0).position_m + plant::widen(setup.controller.model_origin_m);
   if (core::axes_of(setup.controller.device.kind) == core::kAxes &&
       !simulation::reaches(setup.controller.device, start)) {
-    refuse(fmt::format("{} does not reach the start of the hand, and the probe is in the object",
-                       device),
-           "scale the model with build --fit device:" + device +
-               ", or begin the path within the workspace");
+    throw support::UserError(fmt::format(
+        "{0} does not reach the start of the hand, and the probe is in the object (scale "
+        "the model with build --fit device:{0}, or begin the path within the workspace)",
+        device));
   }
-  refuse(fmt::format("the controller did not become active; its state is {}",
-                     core::name_of(simulation.state())),
-         "begin the path outside the object");
+  throw support::UserError(fmt::format(
+      "the controller did not become active; its state is {} (begin the path outside the "
+      "object)",
+      core::name_of(simulation.state())));
 }
 
 nlohmann::json summary_json(const simulation::Summary& summary) {
@@ -159,16 +160,16 @@ nlohmann::json summary_json(const simulation::Summary& summary) {
 std::function<double(const Eigen::Vector3d&)> fit_to_device(const std::string& name) {
   const core::DeviceModel device = support::load_device(name).preset.model;
   if (core::axes_of(device.kind) != core::kAxes) {
-    support::refuse("--fit device:" + name,
-                    "not possible for a device of one or two axes, which touches a section of a "
-                    "model of any size",
-                    "give a length in metres");
+    refuse("--fit device:" + name,
+           "not possible for a device of one or two axes, which touches a section of a "
+           "model of any size",
+           "give a length in metres");
   }
   return [device, name](const Eigen::Vector3d& size) {
     const std::optional<double> scale = fitting_scale(device, size);
     if (!scale) {
-      support::refuse("--fit device:" + name,
-                      "the origin of the device is not inside its workspace", "correct the device");
+      refuse("--fit device:" + name, "the origin of the device is not inside its workspace",
+             "correct the device");
     }
     return *scale * size.maxCoeff();
   };

@@ -1,7 +1,6 @@
 #include "tactree/simulation/simulation.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <iterator>
 #include <utility>

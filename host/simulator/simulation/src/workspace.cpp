@@ -66,7 +66,7 @@ std::optional<double> largest_scale(const core::DeviceModel& device,
   if (!fits(low)) {
     return 0.0;
   }
-  while (low < kLargestScale && fits(2.0 * low)) {
+  while (low < kMaxScale && fits(2.0 * low)) {
     low *= 2.0;
   }
   double high = 2.0 * low;
@@ -74,7 +74,7 @@ std::optional<double> largest_scale(const core::DeviceModel& device,
     const double middle = 0.5 * (low + high);
     (fits(middle) ? low : high) = middle;
   }
-  return std::min(low, kLargestScale);
+  return std::min(low, kMaxScale);
 }
 
 }  // namespace tactree::simulation

@@ -142,7 +142,7 @@ TEST(Configuration, RefusesStiffnessAboveStabilityLimit) {
   EXPECT_NEAR(core::stability_limit(c).with_hand_N_m, 8800.0F, 4.0F);
 }
 
-TEST(Configuration, NamesRefusedFieldWithItsRange) {
+TEST(Configuration, NamesRefusedFieldAndRange) {
   Configuration c;
   c.limits.force_max_N = 0.5F;  // the default slew of 2 N per tick is then too fast
   core::Refusal refusal = core::refusal_of(c);

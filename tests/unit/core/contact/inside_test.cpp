@@ -2,10 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <functional>
-#include <numbers>
 #include <random>
-#include <string>
 
 #include "analytic_shapes.hpp"
 #include "tactree/core/contact/proxy.hpp"

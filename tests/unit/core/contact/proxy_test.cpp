@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <functional>
 #include <random>
-#include <vector>
 
 #include "analytic_shapes.hpp"
 

@@ -237,7 +237,7 @@ TEST(Union, StopsAtOtherBodyWalls) {
 }
 
 // In the crease of two bodies, whose fits differ a little in every tick, a hand turns back.
-TEST(Union, FollowsHandThatTurnsBackInCrease) {
+TEST(Union, FollowsHandTurningInCrease) {
   std::mt19937_64 random(1);
   for (int turns = 0; turns < 6; ++turns) {
     const Eigen::Matrix3d turn = evaluation::any_turn(random);

@@ -60,7 +60,7 @@ TEST(Admission, RefusesOneExcessCycle) {
   EXPECT_FALSE(controller.step(input).enable);
 }
 
-TEST(Admission, CountsAtLeastTheLeastLimits) {
+TEST(Admission, CountsMinimumLimits) {
   core::TickCost cost;
   cost.base = 700U;
   for (std::uint16_t& price : cost.per_limit) {

@@ -116,16 +116,6 @@ TEST(Tick, RecoversWithoutModel) {
   EXPECT_EQ(controller.state(), State::kNoModel);
 }
 
-TEST(Tick, RemovesLastBodyWhileActive) {
-  ControllerRig session;
-  session.activate();
-  ASSERT_EQ(session.controller.remove_body(0), core::ModelStatus::kOk);
-  session.step();
-  EXPECT_EQ(session.state(), State::kActive);
-  session.step(Command::kStop);
-  EXPECT_EQ(session.state(), State::kNoModel);
-}
-
 TEST(Tick, ReportsWaitingForEnableLine) {
   ControllerRig session;
   session.step(Command::kArm);

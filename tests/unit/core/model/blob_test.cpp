@@ -161,7 +161,7 @@ TEST(Blob, DeclaresTightSupportBound) {
   EXPECT_LT(blob.view().header().points_per_support_max, blob.view().header().points_per_ball_max);
 }
 
-TEST(Blob, CountsBallWhereSupportIsUnknown) {
+TEST(Blob, CountsBallWithoutSupport) {
   core::BlobHeader header{};
   header.points_per_ball_max = 9;
   EXPECT_EQ(core::points_per_support_max(header), 9U);

@@ -165,7 +165,7 @@ TEST(MotorForce, FallsWithChangedPose) {
   EXPECT_TRUE(is_limited(result));
 }
 
-TEST(MotorForce, AddsSingleMotorsWithoutProvenSigns) {
+TEST(MotorForce, AddsSingleMotorsIfSignsUnproven) {
   core::GateLimits limits = roomy();
   limits.signs_proven = false;
   SafetyGate gate = ramped(limits);

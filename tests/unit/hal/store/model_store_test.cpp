@@ -7,7 +7,6 @@
 
 #include <array>
 #include <cstring>
-#include <optional>
 
 #include "tactree/hal/sim/flash.hpp"
 #include "test_models.hpp"

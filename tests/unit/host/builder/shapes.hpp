@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <numbers>
-#include <vector>
 
 #include "geometry/cloud.hpp"
 #include "sampling/mesh_sampling.hpp"

@@ -95,7 +95,7 @@ TEST(UpHint, IsOmittedWhenUnneeded) {
 }
 
 // --axis refers to the axes of the file, whatever --turn does after it.
-TEST(UpHint, NamesTheAxisOfTheFileOfATurnedModel) {
+TEST(UpHint, NamesFileAxisOfTurnedModel) {
   for (const double degrees : {90.0, 30.0}) {
     EXPECT_NE(hint_of(laid(turned(dome()), UpAxis::kY), {}, degrees).find("(--axis y turns it"),
               std::string::npos);

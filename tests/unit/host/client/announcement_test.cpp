@@ -40,7 +40,7 @@ TEST_F(AnnouncementTest, RemovesFileOfKilledProgram) {
   EXPECT_FALSE(std::filesystem::exists(left));
 }
 
-TEST_F(AnnouncementTest, RefusesFolderThatOthersCanChange) {
+TEST_F(AnnouncementTest, RefusesFolderWritableByOthers) {
   ASSERT_EQ(::mkdir((folder_ / "tactree").c_str(), 0700), 0);
   ASSERT_EQ(::chmod((folder_ / "tactree").c_str(), 0777), 0);
   const client::AnnouncedPort port{"/dev/pts/7", "one"};

@@ -55,7 +55,7 @@ TEST(CInterface, ReadsCapabilities) {
   tactree_close(board);
 }
 
-TEST(CInterface, MayWatchAndStopBoardThatStandsAlone) {
+TEST(CInterface, WatchesAndStopsStandAloneBoard) {
   const RunningBoard running(0.04, false);
   tactree_board* const board = tactree_open(running.port().c_str(), 115200, 0);
   ASSERT_NE(board, nullptr);
@@ -70,7 +70,7 @@ TEST(CInterface, MayWatchAndStopBoardThatStandsAlone) {
 }
 
 // The functions that do not wait cannot fail: without a request, only tactree_connected() shows it.
-TEST(CInterface, NamesTheLossOfTheBoard) {
+TEST(CInterface, NamesLossOfBoard) {
   auto running = std::make_unique<RunningBoard>();
   const std::string port = running->port();
   tactree_board* const board = tactree_open(port.c_str(), 115200, 0);
@@ -88,7 +88,7 @@ TEST(CInterface, NamesTheLossOfTheBoard) {
   tactree_close(board);
 }
 
-TEST(CInterface, NamesTheEndOfTheSession) {
+TEST(CInterface, NamesEndOfSession) {
   const RunningBoard running;
   tactree_board* const first = tactree_open(running.port().c_str(), 115200, 0);
   ASSERT_NE(first, nullptr);

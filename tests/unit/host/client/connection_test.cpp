@@ -132,7 +132,7 @@ std::string refusal_to_arm(client::Board& board) {
   return "";
 }
 
-TEST(Connection, NamesLatchedFaultAndItsRemedy) {
+TEST(Connection, NamesLatchedFaultAndHint) {
   RunningBoard running;
   client::Board board(running.port());
   running.press_emergency_stop(true);
@@ -157,7 +157,7 @@ TEST(Connection, NamesLinkTimeoutOfLostLink) {
             "link-lost");
 }
 
-TEST(Connection, TellsBoardThatStandsAloneBeforeCommands) {
+TEST(Connection, ReportsStandAloneBoardBeforeCommands) {
   const RunningBoard operated;
   EXPECT_FALSE(client::Board::introduce(client::open_port(operated.port(), 0)).watch_only);
   client::Board(operated.port()).require_command("arm");

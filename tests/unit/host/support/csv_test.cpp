@@ -80,7 +80,7 @@ TEST_F(CsvFile, RefusesNonFiniteNumbers) {
   }
 }
 
-TEST_F(CsvFile, IgnoresCutEndOfIncompleteFile) {
+TEST_F(CsvFile, IgnoresCutLastRow) {
   const std::filesystem::path file = write("a,b\n1,2\n3");
   support::CsvReader whole(file, {});
   EXPECT_TRUE(whole.next_row());

@@ -37,7 +37,7 @@ class DeviceReaderTest : public test::FolderTest {
 
 using Places = std::vector<std::string>;
 
-TEST_F(DeviceReaderTest, NamesAllMistakesWithTheirPlaces) {
+TEST_F(DeviceReaderTest, NamesAllMistakesWithPositions) {
   const DeviceReading reading = read(
       "{\n"
       "  \"name\": \"own\", \"kind\": \"paddle\",\n"
@@ -101,7 +101,7 @@ TEST_F(DeviceReaderTest, CountsColumnsInCharacters) {
   EXPECT_EQ(reading.mistakes[1].cause, "is stated in line 1, too");
 }
 
-TEST_F(DeviceReaderTest, IgnoresByteOrderMarkAndNestedValues) {
+TEST_F(DeviceReaderTest, IgnoresBomAndNestedValues) {
   ordered_json json = paddle();
   json["ratio"] = {13.0, 1.0, 1.0};
   json["extra"] = {{"ratio", {{"ratio", 1}}}, {"list", {1, {2, {3}}}}};

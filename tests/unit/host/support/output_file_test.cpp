@@ -20,7 +20,7 @@ class GrowingFileTest : public test::FolderTest {
   }
 };
 
-TEST_F(GrowingFileTest, AppearsAtTheEnd) {
+TEST_F(GrowingFileTest, AppearsOnCompletion) {
   GrowingFile file(folder_ / "a");
   file.append("one ");
   file.append("two");
@@ -31,7 +31,7 @@ TEST_F(GrowingFileTest, AppearsAtTheEnd) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "a.incomplete"));
 }
 
-TEST_F(GrowingFileTest, KeepsIncompleteDataOfAnotherProgram) {
+TEST_F(GrowingFileTest, KeepsIncompleteDataOfOtherProgram) {
   write("a.incomplete", "rows");
   EXPECT_THROW(GrowingFile(folder_ / "a"), UserError);
   EXPECT_EQ(content("a.incomplete"), "rows");
@@ -43,7 +43,7 @@ TEST_F(GrowingFileTest, LeavesNoEmptyFile) {
 }
 
 // The limit on the size of a file stands for a full disk.
-TEST_F(GrowingFileTest, KeepsWholeAppendsOnAFullDisk) {
+TEST_F(GrowingFileTest, KeepsWholeAppendsOnFullDisk) {
   struct rlimit before {};
   ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
   const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);

@@ -79,7 +79,7 @@ TEST_F(NpzReaderTest, SurvivesDamageOfEveryByte) {
   EXPECT_GT(refused, good.size() / 2);
 }
 
-TEST_F(NpzReaderTest, RefusesMissingLongAndOtherArrays) {
+TEST_F(NpzReaderTest, RefusesMissingOrInvalidArrays) {
   const auto message = [&](const auto& act) { return test::message_of<support::UserError>(act); };
   const NpzReader reader(file_, 3);
   EXPECT_NE(message([&] { (void)reader.values("load"); }).find("rows.npz: load: is missing"),

@@ -46,7 +46,7 @@ TEST_F(TickFileTest, CsvKeepsEveryValue) {
   EXPECT_FALSE(table.next_row());
 }
 
-TEST_F(TickFileTest, HasOnlyColumnsOfTheFields) {
+TEST_F(TickFileTest, HasColumnsOfFieldsOnly) {
   constexpr std::uint32_t kFields = recorded_fields(0);
   const Tick tick = tick_with_values();
   const auto path = folder_ / "older.csv";
@@ -58,7 +58,7 @@ TEST_F(TickFileTest, HasOnlyColumnsOfTheFields) {
   EXPECT_TRUE(table.next_row());
 }
 
-TEST_F(TickFileTest, WithoutFinishCsvIsIncompleteByName) {
+TEST_F(TickFileTest, UnfinishedCsvHasIncompleteName) {
   const auto path = folder_ / "ticks.csv";
   const Tick tick = tick_with_values();
   open_tick_file(path)->append(std::span(&tick, 1));

@@ -28,7 +28,7 @@ class TickRecorderTest : public test::FolderTest {
   std::filesystem::path file_ = folder_ / "ticks.csv";
 };
 
-TEST_F(TickRecorderTest, CountsGapsAndWhatTheBoardOmitted) {
+TEST_F(TickRecorderTest, CountsGapsAndOmittedTicks) {
   TickRecorder recorder(file_, {});
   // The board omitted seven ticks before the first row, then 12 and 13; 16 was lost on the way.
   const std::vector<core::wire::Telemetry> first = {message(10, 7), message(11, 7), message(14, 9)};
@@ -45,7 +45,7 @@ TEST_F(TickRecorderTest, CountsGapsAndWhatTheBoardOmitted) {
   EXPECT_EQ(column("missing_ticks"), (std::vector<double>{0, 0, 2, 0, 1}));
 }
 
-TEST_F(TickRecorderTest, CountsMissingMessagesOfADecimation) {
+TEST_F(TickRecorderTest, CountsMissingDecimatedMessages) {
   TickRecorder recorder(file_, {.every_ticks = 10});
   const std::vector<core::wire::Telemetry> messages = {message(10), message(20), message(50)};
   EXPECT_TRUE(recorder.add(messages));
@@ -53,7 +53,7 @@ TEST_F(TickRecorderTest, CountsMissingMessagesOfADecimation) {
             "3 ticks in 0.040 s, 2 missing in 1 gaps (one tick of 10)");
 }
 
-TEST_F(TickRecorderTest, EndsAfterDurationOfTheBoard) {
+TEST_F(TickRecorderTest, EndsAfterDurationOnBoardClock) {
   TickRecorder recorder(file_, {.seconds = 0.003});
   const std::vector<core::wire::Telemetry> messages = {message(1), message(2), message(3),
                                                        message(4), message(5)};

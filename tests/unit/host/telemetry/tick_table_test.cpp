@@ -27,7 +27,7 @@ TEST(TickSequence, CountsMissingTicks) {
   EXPECT_EQ(sequence.next(message(10, 10000))->missing_ticks, 0U);
 }
 
-TEST(TickSequence, CountsMissingMessagesOfADecimation) {
+TEST(TickSequence, CountsMissingDecimatedMessages) {
   TickSequence sequence(10);
   EXPECT_EQ(sequence.next(message(20, 20000))->missing_ticks, 0U);
   EXPECT_EQ(sequence.next(message(30, 30000))->missing_ticks, 0U);
@@ -58,7 +58,7 @@ std::set<std::string> names_of(const std::vector<Column>& columns) {
   return names;
 }
 
-TEST(TickColumns, HaveAValueAndAName) {
+TEST(TickColumns, HaveValueAndName) {
   std::vector<double> values;
   values_of({}, values);
   EXPECT_EQ(values.size(), columns().size());
@@ -66,7 +66,7 @@ TEST(TickColumns, HaveAValueAndAName) {
 }
 
 // Zeros would look like measured forces.
-TEST(TickColumns, OmitForcesThatOlderBoardsDoNotSend) {
+TEST(TickColumns, OmitForcesMissingFromOlderBoards) {
   constexpr std::uint32_t kFields = recorded_fields(0);
   const std::set<std::string> names = names_of(columns_of(kFields));
   EXPECT_EQ(names.size() + 9, columns().size());
@@ -83,7 +83,7 @@ TEST(TickColumns, OmitForcesThatOlderBoardsDoNotSend) {
   }
 }
 
-TEST(FrameBytes, AreThoseOfAnEncodedFrame) {
+TEST(FrameBytes, EqualEncodedFrame) {
   for (const std::uint32_t fields : {kRecordedFields, core::wire::kAllTelemetry, 1U}) {
     core::wire::Telemetry telemetry;
     telemetry.header.fields = fields;

@@ -217,7 +217,7 @@ TEST_F(LiveSessionTest, StiffnessChangesUnderPressingHand) {
   EXPECT_LT(step_max_N, 0.05);
 }
 
-TEST_F(LiveSessionTest, EverySettingButRateAndDeviceKeepsSession) {
+TEST_F(LiveSessionTest, KeepsSessionUnlessRateOrDeviceChanges) {
   wait_for_state("active");
   say({{"do", "hand"}, {"target_m", {0.0, 0.0, 2.0 * kRadius_m}}});
   json before = wait_for([](const json& f) { return f["t_s"] > 0.6; });
@@ -251,7 +251,7 @@ TEST_F(LiveSessionTest, MaximumForceActsAfterChange) {
             std::string::npos);
 }
 
-TEST_F(LiveSessionTest, LimitChangedInContactWaitsForFreeSpace) {
+TEST_F(LiveSessionTest, LimitChangeWaitsForFreeSpace) {
   wait_for_state("active");
   press();
   settled();
@@ -304,7 +304,7 @@ TEST_F(LiveSessionTest, StopEndsChangeDisarmed) {
   EXPECT_EQ(frame["runs"][0]["state"], "idle");
 }
 
-TEST_F(LiveSessionTest, InjectedFaultSurvivesChangeOfMode) {
+TEST_F(LiveSessionTest, InjectedFaultSurvivesModeChange) {
   wait_for_state("active");
   say({{"do", "inject"}, {"fault", "estop:pressed"}});
   wait_for_state("fault");
@@ -314,7 +314,7 @@ TEST_F(LiveSessionTest, InjectedFaultSurvivesChangeOfMode) {
   });
 }
 
-TEST_F(LiveSessionTest, RateAndDeviceRestartOnlyWhenAsked) {
+TEST_F(LiveSessionTest, RateAndDeviceRestartOnRequestOnly) {
   wait_for([](const json& f) { return f["t_s"] > 0.6; });
   EXPECT_NE(refusal({{"do", "set"}, {"rate_hz", 2000}}).find("\"restart\": true"),
             std::string::npos);
@@ -354,7 +354,7 @@ TEST_F(LiveSessionTest, RefusedCommandsChangeNothing) {
   EXPECT_EQ(hello["settings"]["rate_hz"], 1000.0);
 }
 
-TEST_F(LiveSessionTest, ReportsAndScalesModelBeyondReach) {
+TEST_F(LiveSessionTest, ReportsAndScalesUnreachableModel) {
   simulation::SceneBody body;
   body.blob = blob_.written().bytes;
   std::string scaled_for;

@@ -3,7 +3,7 @@
 // second set that is gathered meanwhile.
 //
 //   on demand   a query has left the set in use and waits for the second set
-//   ahead       nobody waits: the second set is gathered around the position at which the query
+//   ahead       no query waits: the second set is gathered around the position at which the query
 //               will leave the set in use
 //
 // At other rates one set is enough. It is gathered on demand, in place.
@@ -82,7 +82,7 @@ class CandidateSets {
 
   std::uint32_t used_ = 0;
   bool both_ = false;
-  bool is_ahead_ = false;  // nobody waits for the gather in progress
+  bool is_ahead_ = false;  // no query waits for the gather in progress
   CandidateSet sets_[2];
 };
 

@@ -23,8 +23,8 @@ struct NeighbourFace {
   [[nodiscard]] float height_of(Vec3 x) const { return dot(normal, x) - offset_m; }
 };
 
-/// A neighbour, in the frame of the body whose proxy it affects. "Its proxy" is that of the
-/// neighbour.
+/// The other body near a proxy, in the frame of the body whose proxy it affects. "Its proxy" below
+/// means the proxy of this other body.
 struct Neighbour {
   /// First the `holding` faces, then the `ending` faces, whose planes bound the others. All normals
   /// point to the side of its proxy.

@@ -5,8 +5,6 @@
 //
 // Interrupt safety: pure functions.
 
-#include <cstdint>
-
 #include "tactree/core/model/blob.hpp"
 #include "tactree/core/model/nearest.hpp"
 

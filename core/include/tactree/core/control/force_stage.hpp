@@ -50,9 +50,9 @@ class ForceStage {
   /// The zero command, for a tick that is not active. Ends the force of the application.
   [[nodiscard]] SafetyGate::Result release();
 
-  /// N, of the last active tick.
+  /// Force applied in the last active tick, N.
   [[nodiscard]] Vec3 applied_force() const { return applied_force_; }
-  /// N, the application's component of it.
+  /// Component of applied_force() that the application added, N.
   [[nodiscard]] Vec3 added_force() const { return added_force_; }
 
  private:

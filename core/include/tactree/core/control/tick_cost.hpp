@@ -89,8 +89,8 @@ inline constexpr std::uint32_t kTickRows = first_row(kWorkTiers, kMaxReachableBo
 inline constexpr std::uint32_t kTickCostsKnown = 0x32434954;  // "TIC2"
 
 /// Costs of an image: cycles = base + delta (delta device only) + listed for each body of the scene
-/// + most expensive row for each rendered body. Rows of several bodies hold the cost of one of
-/// them. In an image as compiled, all are zero: unknown.
+/// + most expensive row for each rendered body. A row for several bodies states the cost per body.
+/// All values are zero, which means unknown, until they are written into the image.
 struct TickCosts {
   std::uint32_t known = 0;
   std::uint32_t base = 0;

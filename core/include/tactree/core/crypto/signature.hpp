@@ -1,5 +1,5 @@
 #pragma once
-// Verification of Ed25519 signatures (RFC 8032, sections 5.1 and 6). A board holds no secret key,
+// Verification of Ed25519 signatures (RFC 8032, section 5.1.7). A board holds no secret key,
 // so constant time is not required.
 //
 // The verification is strict: it rejects an S that is not below the group order, an R or key that

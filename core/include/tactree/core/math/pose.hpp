@@ -5,8 +5,6 @@
 // Loop and memory annotations: docs/BOUND.md.
 // memory: RAM
 
-#include <cstdint>
-
 #include "tactree/core/math/vec3.hpp"
 
 namespace tactree::core {
@@ -81,9 +79,6 @@ inline constexpr float kQuaternionTolerance = 1.0e-3F;
 }
 [[nodiscard]] inline Vec3 direction_to_body(const Pose& pose, Vec3 direction) {
   return is_origin(pose) ? direction : rotate_back(pose.rotation, direction);
-}
-[[nodiscard]] inline Vec3 direction_to_scene(const Pose& pose, Vec3 direction) {
-  return is_origin(pose) ? direction : rotate(pose.rotation, direction);
 }
 
 /// Velocity, relative to the body, of a point at `position` that moves with `velocity`. All vectors

@@ -89,10 +89,10 @@ class SimPanel {
   [[nodiscard]] bool is_pressed() const { return pressed_; }
   [[nodiscard]] bool is_lit() const { return lit_; }
   void press(bool pressed) { pressed_ = pressed; }
-  /// Of a board in an emulator, which operates the lamp.
+  /// For a board in an emulator, which operates the lamp.
   void light(bool lit) { lit_ = lit; }
 
-  // Call each once per tick: hal::Panel.
+  // Call each of these once per tick, as those of hal::Panel.
   void operate(LinkInput& input) noexcept { panel_.operate(pressed_, input); }
   void show(const core::Status& status) noexcept { lit_ = panel_.lamp(status); }
 

@@ -6,6 +6,8 @@
 
 namespace tactree::hal::sim {
 
+/// More than the controller compensates (core::kMaxDelayTicks). A power of two less one: the index
+/// wraps without a division.
 inline constexpr std::uint32_t kMaxLatencyTicks = 63;
 
 /// Call push() once per tick. value() returns the value that was pushed latency_ticks pushes before

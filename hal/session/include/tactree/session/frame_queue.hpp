@@ -2,7 +2,6 @@
 // Queue of encoded frames that wait for the port. Not interrupt safe: called between ticks only.
 
 #include <cstddef>
-#include <cstdint>
 #include <span>
 
 #include "tactree/core/link/wire/frame.hpp"

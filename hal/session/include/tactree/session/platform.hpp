@@ -7,7 +7,8 @@
 namespace tactree::session {
 
 /// Requirements of a session in addition to port and store.
-///   now_us()          returns the time of the Ticker, us; wraps at 2^32
+///   now_us()          returns the time of the Ticker, us; wraps at 2^32. Never called while ticks
+///                     are held, because the clock may depend on the tick interrupt
 ///   hold_ticks(hold)  true: no tick starts; false: ticks that became due run immediately. Held
 ///                     for one call of the controller, at most the time to load a model
 template <class T>

@@ -2,9 +2,7 @@
 // The record of a ModelStore: the slot in use, the contents of the slots, the saved parameters. The
 // layout is that in flash. docs/PROTOCOL.md explains why power may be lost at any time.
 
-#include <cstddef>
 #include <cstdint>
-#include <span>
 
 #include "tactree/core/configuration/parameters.hpp"
 

@@ -149,7 +149,7 @@ class ModelStore {
     const bool fits = offset == next_offset_ && !bytes.empty() &&
                       bytes.size() <= announced_.bytes - next_offset_ &&
                       bytes.size() <= core::wire::kMaxPiece;
-    if (!fits || (bytes.size() % kLargestPiece != 0U && !last)) {
+    if (!fits || (bytes.size() % kMaxProgramBytes != 0U && !last)) {
       return WireStatus::kOutOfOrder;
     }
     if (!program(bytes)) {
@@ -250,7 +250,7 @@ class ModelStore {
   }
 
  private:
-  static constexpr std::uint32_t kLargestPiece = 32;  // maximum of FlashGeometry::program_bytes
+  static constexpr std::uint32_t kMaxProgramBytes = 32;  // maximum of FlashGeometry::program_bytes
 
   [[nodiscard]] std::uint32_t sectors_per_slot() const {
     return (flash_.geometry().sectors - first_slot_sector_) / kSlots;

@@ -44,7 +44,7 @@ struct ReadOptions {
   std::function<void(double fraction)> progress;
 };
 
-/// Reads `file`. Throws ReadError if it is not a scan, is damaged beyond use or holds no point.
+/// Reads `file`. Throws ReadError if it is not a scan, is damaged beyond use or contains no points.
 /// Damage that leaves a usable scan is counted in Scan::dropped and described in Scan::warnings:
 ///   "not_measured"           points that the file itself marks as invalid (PTX, E57)
 ///   "withheld"               points of a LAS file that are marked as deleted

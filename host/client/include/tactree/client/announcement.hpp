@@ -27,8 +27,8 @@ class Announcement {
   int descriptor_ = -1;
 };
 
-/// The ports of all programs that run, sorted by port. Removes the files of programs that were
-/// killed. Opens none of the ports, so no connected program is disturbed.
+/// The ports that running programs have announced, sorted by port. Removes the announcements of
+/// programs that were killed. Opens no port, so no connected program is disturbed.
 [[nodiscard]] std::vector<AnnouncedPort> announced_ports();
 
 }  // namespace tactree::client

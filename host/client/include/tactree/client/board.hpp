@@ -5,14 +5,13 @@
 //   board.subscribe({.every_ticks = 10});
 //   board.arm();                                     // waits for the dead-man control
 //   while (running) {
-//     board.move_body(0, pose_of_my_object());       // none of these wait
+//     board.move_body(0, pose_of_my_object());       // none of these block
 //     draw(board.latest());
 //   }
 //   board.stop();
 //
-// A function marked "waits" waits for the board's reply, at most one second unless stated
-// otherwise, and throws LinkError if the board refuses, does not reply or is gone. All others
-// return immediately.
+// A blocking function waits for the board's reply, at most one second unless stated otherwise, and
+// throws LinkError if the board refuses, does not reply or is lost. All others return immediately.
 
 #include <array>
 #include <chrono>
@@ -71,7 +70,7 @@ struct Introduction {
 
 class Board {
  public:
-  /// Opens a port by its name (ports.hpp), and a session; waits.
+  /// Opens a port by its name (ports.hpp), and a session. Blocks.
   explicit Board(const std::string& port, const BoardOptions& options = {});
   Board(std::unique_ptr<Transport> transport, const BoardOptions& options);
   /// Closes the session: the board stops.
@@ -82,7 +81,7 @@ class Board {
   /// Call after the connection was lost: opens the port and a new session, and renews the
   /// subscription. The board is not armed. Throws LinkError while the board is absent; try again
   /// then. Only for boards opened by port name, and not while another thread uses this object.
-  /// Waits.
+  /// Blocks.
   void reconnect();
   /// Returns false once the connection is lost, e.g. because the cable was unplugged.
   [[nodiscard]] bool connected() const { return connection_ && connection_->connected(); }
@@ -91,10 +90,10 @@ class Board {
   [[nodiscard]] std::string loss() const;
 
   /// Returns identity and start of a board without a session, so another client is not disturbed.
-  /// Waits.
+  /// Blocks.
   [[nodiscard]] static Introduction introduce(std::unique_ptr<Transport> transport);
 
-  // ---- these wait
+  // ---- blocking functions
   [[nodiscard]] core::wire::IdentifyReply identify();
   [[nodiscard]] core::wire::CapabilitiesReply capabilities();
   [[nodiscard]] core::wire::StateReply state();
@@ -127,7 +126,7 @@ class Board {
   void set_parameter(const std::string& name, float value);
   void save_parameters();
 
-  // ---- models; these wait, for as long as the flash takes
+  // ---- models: blocking functions, for as long as the flash is written
   using Progress = std::function<void(std::size_t done, std::size_t all)>;
   [[nodiscard]] core::wire::ListModelsReply models();
   /// Writes a model, has the board check it, and activates it. The preceding model stays in the
@@ -136,11 +135,11 @@ class Board {
   void roll_back();
   void erase_model(std::uint32_t slot);
 
-  // ---- these do not wait
+  // ---- functions that do not block
   /// Sends a stop, which may be lost; stop() waits for the reply. May be called while another
   /// thread uses the board, except in reconnect().
   void post_stop();
-  /// The body goes on with `motion` until the next call, also after the end of the session.
+  /// The body continues with `motion` until the next call, also after the end of the session.
   void move_body(std::uint32_t body, const core::Pose& pose, const core::Motion& motion = {},
                  bool enabled = true);
   void add_force(const std::array<float, 3>& force_N, std::uint32_t duration_ms);

@@ -10,7 +10,7 @@
 
 namespace tactree::client {
 
-/// Ports that may have a board. Opens none of them.
+/// Ports to which a board may be connected. Opens none of them.
 [[nodiscard]] std::vector<std::string> list_ports();
 
 /// Opens a port. `name`: a name of list_ports(); "usb:" and a serial number; "unix:" or "step:"

@@ -31,7 +31,7 @@ class PseudoTerminal : public Transport {
   [[nodiscard]] std::size_t read(std::span<std::byte> bytes) override;
   [[nodiscard]] std::size_t write(std::span<const std::byte> bytes) override;
   void wait(std::chrono::microseconds timeout) override;
-  /// Always true, because programs come and go.
+  /// Always true, because a program may connect at any time.
   [[nodiscard]] bool connected() const override { return true; }
   [[nodiscard]] std::string name() const override { return path_; }
 

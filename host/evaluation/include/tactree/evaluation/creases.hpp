@@ -2,9 +2,7 @@
 // Bodies with sharp edges (grooves, ridges, slots, rooms), sampled like exact meshes.
 
 #include <Eigen/Core>
-#include <cstdint>
 #include <random>
-#include <string>
 #include <vector>
 
 #include "tactree/evaluation/shapes.hpp"

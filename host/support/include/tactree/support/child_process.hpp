@@ -28,8 +28,8 @@ struct Streams {
   int output = -1;  ///< standard output; -1 discards it
   int error = -1;   ///< standard error; -1 discards it
   /// Pairs {number in this process, number in the child}. Numbers in the child are 3 ..
-  /// FileDescriptor::kLowest - 1, and numbers in this process are at least FileDescriptor::kLowest,
-  /// so no descriptor is overwritten before it is passed.
+  /// HighDescriptor::kMinNumber - 1, and numbers in this process are at least
+  /// HighDescriptor::kMinNumber, so no descriptor is overwritten before it is passed.
   std::vector<std::pair<int, int>> inherited;
 };
 

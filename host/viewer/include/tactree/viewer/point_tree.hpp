@@ -15,7 +15,7 @@ namespace tactree::viewer {
 
 /// Points per node; nodes on the deepest level hold all remaining points.
 inline constexpr std::uint32_t kPointsPerNode = 8192;
-inline constexpr std::uint32_t kDeepestNode = 12;  ///< levels below the root
+inline constexpr std::uint32_t kMaxNodeLevel = 12;  ///< levels below the root
 
 /// A point as it is transmitted, little-endian: x, y, z from the node's lower corner in units of
 /// 1/65535 of its edge, then the normal in octahedral encoding with 8 bits per axis.

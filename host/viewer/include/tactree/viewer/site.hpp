@@ -2,7 +2,6 @@
 // The paths of the server and their content. The page and the fault pages are embedded in the
 // program; the rest is generated from the models and the session. No file is read.
 
-#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>

@@ -256,7 +256,7 @@ TEST_F(Stm32f405, GivesForceWithoutApplication) {
   EXPECT_FALSE(rig.chip().gpio_c.level(4)) << "the amplifiers keep their power";
 }
 
-TEST_F(Stm32f405, LetsWatchingApplicationComeAndGo) {
+TEST_F(Stm32f405, WatchingApplicationMayReconnect) {
   rig.link_use = firmware::wiring::LinkUse::kWatches;
   rig.boot();
   rig.run(100);

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -110,7 +109,7 @@ TEST(ModelFrame, RotationKeepsHandednessAndNormals) {
   }
 }
 
-TEST(ModelFrame, TurnsAboutTheVerticalAfterTheAxis) {
+TEST(ModelFrame, TurnsAboutVerticalAfterAxis) {
   BuildOptions options;
   options.up = UpAxis::kY;
   options.turn_deg = 90.0;
@@ -188,7 +187,7 @@ TEST(Cleaning, CropsInSourceUnits) {
   EXPECT_THROW((void)clean_one(cloud_scan(random_sphere(2000, 10.0)), options), std::runtime_error);
 }
 
-TEST(Cleaning, CropsAlongTheAxesOfTheSourceOfATurnedModel) {
+TEST(Cleaning, CropsTurnedModelInSourceAxes) {
   BuildOptions options;
   options.turn_deg = 45.0;
   options.crop = Eigen::AlignedBox3d(Eigen::Vector3d(-1, -1, -1), Eigen::Vector3d(1, 1, 1));

@@ -1,6 +1,5 @@
 // glTF 2: quantized positions, skins, morph targets, sparse accessors, required extensions.
 
-#include <cmath>
 #include <random>
 
 #include "mesh_writers.hpp"

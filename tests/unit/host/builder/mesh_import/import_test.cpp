@@ -1,7 +1,6 @@
 #include <sys/stat.h>
 
 #include <cstdlib>
-#include <vector>
 
 #include "mesh_import/wire.hpp"
 #include "test_files.hpp"
@@ -233,7 +232,7 @@ TEST_F(ImportTest, RefusesInvalidAnswers) {
   importer_answers(wire_header(3, 1) + three + bytes_of(Triangle{0, 1, 3}) + wire_end());
   expect_parts(refusal(model()), "none of the 1 faces");
   importer_answers(wire_header(0, 0) + wire_end());
-  expect_parts(refusal(model()), "holds no point");
+  expect_parts(refusal(model()), "contains no points");
   WireHeader long_text;
   long_text.text_bytes = 0xffff'ffff;
   importer_answers(bytes_of(long_text));

@@ -100,7 +100,7 @@ TEST_F(ThreeMfTest, NamesOtherRequiredExtensions) {
 TEST_F(ThreeMfTest, RefusesDamage) {
   const std::string item = R"(<item objectid="1"/>)";
   expect_parts(refusal_of(package(model(object("1", kMesh), ""))), "its build refers to no object");
-  expect_parts(refusal_of(package(model(object("1", ""), item))), "no point and no face");
+  expect_parts(refusal_of(package(model(object("1", ""), item))), "no points and no faces");
   expect_parts(refusal_of(package(model(object("1", kMesh), R"(<item objectid="4"/>)"))),
                "has no object \"4\"");
   const std::string loop =

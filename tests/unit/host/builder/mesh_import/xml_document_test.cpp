@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
-
 #include "test_files.hpp"
 
 namespace tactree::builder {

@@ -1,7 +1,5 @@
 // Files whose header states another number than the file holds, and other dialects of the counts.
 
-#include <limits>
-
 #include "test_files.hpp"
 
 namespace tactree::builder {

@@ -42,7 +42,7 @@ TEST_F(OffTest, ChecksDeclaredCounts) {
                "353535235358 points", "room");
   expect_parts(refusal_of("OFF\n1 99999999999 0\n0 0 0\n"), "line 2", "99999999999 faces");
   expect_parts(refusal_of("OFF\n-1 6 0\n0 0 0\n"), "line 2", "\"-1\"");
-  expect_parts(refusal_of("OFF\n0 0 0\n"), "holds no point");
+  expect_parts(refusal_of("OFF\n0 0 0\n"), "contains no points");
   expect_parts(refusal_of("OFF\n"), "before its counts");
 }
 

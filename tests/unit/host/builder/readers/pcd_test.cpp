@@ -2,7 +2,6 @@
 
 #include <bit>
 #include <limits>
-#include <vector>
 
 #include "test_files.hpp"
 
@@ -169,7 +168,7 @@ TEST_F(PcdTest, ChecksDeclaredCounts) {
                "only 1");
   expect_parts(refusal_of(with_points("4294967295", "ascii") + "1 2 3\n"), "only 1");
   expect_parts(refusal_of(with_points("-1", "binary") + point), "not a count");
-  expect_parts(refusal_of(with_points("0", "binary") + point), "holds no point");
+  expect_parts(refusal_of(with_points("0", "binary") + point), "contains no points");
   // A number of points whose size in bytes wraps around in 64 bits to the true size.
   expect_parts(
       refusal_of(with_points("4611686018427387905", "binary_compressed") + compressed(point)),
@@ -212,9 +211,6 @@ TEST_F(PcdTest, AsciiRowsMustFit) {
   expect_parts(refusal_of(xyz_header(2, "ascii") + "1 2 3\n1 2\n"), "line 13", "fewer");
   expect_parts(refusal_of(xyz_header(2, "ascii") + "1 2 3\n1 2 x\n"), "line 13", "\"x\"");
   expect_parts(refusal_of(xyz_header(2, "ascii") + "1 2 3\n1 2 3 4\n"), "line 13", "more");
-  const Scan more = read(xyz_header(1, "ascii") + "1 2 3\n4 5 6\n");
-  EXPECT_EQ(more.positions.size(), 1U);
-  EXPECT_EQ(more.warnings.size(), 1U);
 }
 
 }  // namespace

@@ -1,4 +1,3 @@
-#include <cmath>
 
 #include "test_files.hpp"
 

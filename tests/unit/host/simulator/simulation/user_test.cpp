@@ -23,7 +23,7 @@ TEST(User, ParsesPresses) {
   }
 }
 
-TEST(User, OperatesBoardThatStandsAlone) {
+TEST(User, OperatesStandAloneBoard) {
   const Shape shape = cos_sheet();
   for (const float rate_hz : {1000.0F, 3000.0F}) {
     simulation::Setup setup = standing_alone({});
@@ -35,7 +35,7 @@ TEST(User, OperatesBoardThatStandsAlone) {
 }
 
 // The simulated application sends a message in each tick, unless the board stands alone.
-TEST(User, HasNoApplicationOnBoardThatStandsAlone) {
+TEST(User, HasNoApplicationOnStandAloneBoard) {
   const Shape shape = cos_sheet();
   simulation::Setup setup = standing_alone({});
   setup.homed = true;

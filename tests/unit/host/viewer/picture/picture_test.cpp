@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cmath>
 
 #include "tactree/picture/model_picture.hpp"
 #include "test_models.hpp"
@@ -87,7 +86,7 @@ TEST(ModelPicture, MarksHoleAtItsPosition) {
   EXPECT_EQ(reds(picture::draw_model(blob.view(), std::span(&boundary, 1))), 0);
 }
 
-TEST(ModelPicture, DrawsMarkWhereSurfaceDoesNotHideIt) {
+TEST(ModelPicture, DrawsMarkUnlessHidden) {
   const TestBlob blob(sphere(0.05, 0.001));
   const auto marked = [&blob](std::array<float, 3> centre_m) {
     const picture::Mark mark{centre_m, 0.01F, true};
@@ -146,7 +145,7 @@ TEST(ModelPicture, ShowsOutsideOfSheetFirst) {
   }
 }
 
-TEST(ModelPicture, ShowsOutsideThatFacesDown) {
+TEST(ModelPicture, ShowsOutsideFacingDown) {
   builder::Model model = cos_sheet(0.03, 0.001, core::Profile::kSurface);
   for (Eigen::Vector3f& normal : model.normals) {
     normal = -normal;
@@ -155,7 +154,7 @@ TEST(ModelPicture, ShowsOutsideThatFacesDown) {
   EXPECT_GT(warmth(picture::draw_model(blob.view(), {}), 0), 10000);
 }
 
-TEST(ModelPicture, NamesSidesOnlyIfBothAreSeen) {
+TEST(ModelPicture, NamesSidesOnlyIfBothVisible) {
   const auto legend = [](const TestBlob& blob) {
     const Raster raster = picture::draw_model(blob.view(), {});
     // The second key, below that of the outside.

@@ -9,7 +9,6 @@
 //
 // Interrupt safety: plain data and pure functions.
 
-#include <cstddef>
 #include <cstdint>
 
 #include "tactree/core/link/wire/frame.hpp"
@@ -251,14 +250,14 @@ inline constexpr std::uint32_t kTelemetryFieldBytes[kTelemetryFields] = {12, 12,
                                                                          12, 12, 8,  56, 36};
 
 struct SubscribeRequest {
-  std::uint32_t fields = 0;      ///< TelemetryField, or of them
+  std::uint32_t fields = 0;      ///< TelemetryField flags of the fields
   std::uint32_t decimation = 0;  ///< ticks per message; 0: no messages
 };
 
 struct TelemetryHeader {
   std::uint32_t tick = 0;
   std::uint32_t board_time_us = 0;
-  std::uint32_t fields = 0;   ///< TelemetryField, or of them
+  std::uint32_t fields = 0;   ///< TelemetryField flags of the fields
   std::uint32_t dropped = 0;  ///< messages dropped since the subscription
 };
 
@@ -383,7 +382,7 @@ struct ReadStartReply {
   std::uint8_t blob = 0;           ///< BlobStatus
   std::uint8_t model = 0;          ///< ModelStatus
   std::uint8_t image = 0;          ///< 1: checksum of the program is wrong; 2: RAM self-test failed
-  std::uint32_t missing = 0;       ///< StartPart, or of them
+  std::uint32_t missing = 0;       ///< StartPart flags of the parts that failed
   std::uint32_t by_watchdog = 0;   ///< 1: the watchdog caused the last reset
   std::uint32_t fault_cause = 0;   ///< cause of the last crash; 0: none; see CapturedFault
   std::uint32_t fault_status = 0;  ///< Arm: CFSR; RISC-V: mstatus

@@ -6,7 +6,6 @@
 #include <sys/types.h>
 
 #include <cstdint>
-#include <stdexcept>
 
 #include "tactree/hal/linux/gpio_lines.hpp"
 

@@ -9,7 +9,6 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <string>
 
 #include "tactree/client/transport.hpp"
 #include "tactree/emulation/board_description.hpp"

@@ -3,7 +3,6 @@
 // same inputs give the same motion: double precision, fixed sub-steps, no randomness.
 
 #include <Eigen/Core>
-#include <cstdint>
 
 namespace tactree::plant {
 

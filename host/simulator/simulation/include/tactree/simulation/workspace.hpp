@@ -18,9 +18,9 @@ namespace tactree::simulation {
 /// Precondition: core::is_valid(device).
 [[nodiscard]] bool reaches_box(const core::DeviceModel& device, const Eigen::Vector3d& size_m);
 
-inline constexpr double kLargestScale = 1e6;
+inline constexpr double kMaxScale = 1e6;
 
-/// Maximum factor, up to kLargestScale, by which the box of reaches_box() can be scaled so that the
+/// Maximum factor, up to kMaxScale, by which the box of reaches_box() can be scaled so that the
 /// probe still reaches it, accurate to 0.1 %. Empty for a device of one or two axes and for an
 /// empty box. Precondition: core::is_valid(device).
 [[nodiscard]] std::optional<double> largest_scale(const core::DeviceModel& device,

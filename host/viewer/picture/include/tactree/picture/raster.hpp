@@ -2,7 +2,6 @@
 // A picture in memory, drawn without a display or GPU and encoded as PNG.
 
 #include <cstddef>
-#include <cstdint>
 #include <string_view>
 #include <vector>
 

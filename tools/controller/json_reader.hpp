@@ -1,6 +1,6 @@
 #pragma once
-// Reads values of a JSON object and checks each against its range. Every error names file, key,
-// cause and hint. A key that is not read is an error.
+// Reads values of a JSON object in the controller's file and checks each against its range. Every
+// error names file, key, cause and hint. A key that is not read is an error.
 
 #include <cstddef>
 #include <cstdint>
@@ -10,25 +10,15 @@
 
 #include "tactree/core/device/device_model.hpp"
 
-namespace tactree::support {
-
-/// Texts of error messages that depend on the kind of file.
-struct JsonRemedies {
-  const char* unknown = "is unknown";  ///< cause, for a key that is not read
-  const char* keys = "leave it out";   ///< remedy for such a key
-  const char* missing = "add it";      ///< remedy for a missing key
-  const char* list =
-      "one for each axis, in [brackets]";  ///< remedy for a value that is not a list of numbers
-};
+namespace tactree::controller {
 
 class JsonReader {
  public:
   using Json = nlohmann::ordered_json;
 
-  /// Keeps a reference to `json`. All functions throw UserError; the constructor throws it if
-  /// `json` is not an object.
-  JsonReader(std::string file, const Json& json, const JsonRemedies& remedies,
-             std::string place = "");
+  /// Keeps a reference to `json`. All functions throw support::UserError; the constructor throws it
+  /// if `json` is not an object.
+  JsonReader(std::string file, const Json& json, std::string place = "");
 
   [[noreturn]] void refuse(const std::string& key, const std::string& cause,
                            const std::string& remedy) const;
@@ -40,10 +30,6 @@ class JsonReader {
   [[nodiscard]] std::uint32_t whole(const char* key, std::uint32_t low, std::uint32_t high);
   [[nodiscard]] bool flag(const char* key);
   [[nodiscard]] std::string text(const char* key);
-  template <std::size_t N>
-  [[nodiscard]] std::uint8_t choice(const char* key, const char* const (&names)[N]) {
-    return choice_of(key, std::vector<std::string>(names, names + N));
-  }
   [[nodiscard]] JsonReader object(const char* key);
   /// Returns the objects of a list, `low` to `high` in number.
   [[nodiscard]] std::vector<JsonReader> objects(const char* key, std::size_t low, std::size_t high);
@@ -56,16 +42,11 @@ class JsonReader {
   [[nodiscard]] std::string path(const std::string& key) const;
   [[nodiscard]] double number(const std::string& key, const Json& value, double low,
                               double high) const;
-  [[nodiscard]] std::uint8_t choice_of(const char* key, const std::vector<std::string>& names);
 
   std::string file_;
   const Json& json_;
-  JsonRemedies remedies_;
   std::string place_;  // path of the object, such as "motors"; "" for the whole file
   std::vector<std::string> known_;
 };
 
-/// Joins names: "a, b, c".
-[[nodiscard]] std::string listed(const std::vector<std::string>& names);
-
-}  // namespace tactree::support
+}  // namespace tactree::controller

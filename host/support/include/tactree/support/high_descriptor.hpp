@@ -16,20 +16,20 @@ namespace tactree::support {
   throw std::system_error(errno, std::generic_category(), what);
 }
 
-class FileDescriptor {
+class HighDescriptor {
  public:
   /// Lowest number of an owned descriptor. A child process may receive descriptors below it.
-  static constexpr int kLowest = 10;
+  static constexpr int kMinNumber = 10;
 
-  FileDescriptor() = default;
-  /// Takes ownership of `descriptor` and moves it to a number >= kLowest. Throws std::system_error
-  /// for errno if `descriptor` is negative, because the call that returned it failed, or if no
-  /// number is free.
-  explicit FileDescriptor(int descriptor) {
+  HighDescriptor() = default;
+  /// Takes ownership of `descriptor` and moves it to a number >= kMinNumber. Throws
+  /// std::system_error for errno if `descriptor` is negative, because the call that returned it
+  /// failed, or if no number is free.
+  explicit HighDescriptor(int descriptor) {
     if (descriptor < 0) {
       fail_with_errno("file descriptor");
     }
-    descriptor_ = ::fcntl(descriptor, F_DUPFD_CLOEXEC, kLowest);
+    descriptor_ = ::fcntl(descriptor, F_DUPFD_CLOEXEC, kMinNumber);
     const int cause = errno;
     ::close(descriptor);
     if (descriptor_ < 0) {
@@ -37,15 +37,15 @@ class FileDescriptor {
       fail_with_errno("file descriptor");
     }
   }
-  FileDescriptor(FileDescriptor&& other) noexcept
+  HighDescriptor(HighDescriptor&& other) noexcept
       : descriptor_(std::exchange(other.descriptor_, -1)) {}
-  FileDescriptor& operator=(FileDescriptor&& other) noexcept {
+  HighDescriptor& operator=(HighDescriptor&& other) noexcept {
     std::swap(descriptor_, other.descriptor_);
     return *this;
   }
-  FileDescriptor(const FileDescriptor&) = delete;
-  FileDescriptor& operator=(const FileDescriptor&) = delete;
-  ~FileDescriptor() { close(); }
+  HighDescriptor(const HighDescriptor&) = delete;
+  HighDescriptor& operator=(const HighDescriptor&) = delete;
+  ~HighDescriptor() { close(); }
 
   /// Returns -1 if no descriptor is owned.
   [[nodiscard]] int get() const { return descriptor_; }
@@ -60,8 +60,8 @@ class FileDescriptor {
 };
 
 struct Pipe {
-  FileDescriptor read_end;
-  FileDescriptor write_end;
+  HighDescriptor read_end;
+  HighDescriptor write_end;
 };
 
 /// Throws std::system_error.
@@ -71,8 +71,8 @@ struct Pipe {
     fail_with_errno("pipe");
   }
   Pipe pipe;
-  pipe.read_end = FileDescriptor(ends[0]);
-  pipe.write_end = FileDescriptor(ends[1]);
+  pipe.read_end = HighDescriptor(ends[0]);
+  pipe.write_end = HighDescriptor(ends[1]);
   return pipe;
 }
 

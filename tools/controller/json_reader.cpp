@@ -1,6 +1,6 @@
-#include "tactree/support/json_reader.hpp"
+#include "json_reader.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -8,18 +8,13 @@
 
 #include "tactree/support/user_error.hpp"
 
-namespace tactree::support {
+namespace tactree::controller {
 
-std::string listed(const std::vector<std::string>& names) {
-  return fmt::format("{}", fmt::join(names, ", "));
-}
-
-JsonReader::JsonReader(std::string file, const Json& json, const JsonRemedies& remedies,
-                       std::string place)
-    : file_(std::move(file)), json_(json), remedies_(remedies), place_(std::move(place)) {
+JsonReader::JsonReader(std::string file, const Json& json, std::string place)
+    : file_(std::move(file)), json_(json), place_(std::move(place)) {
   if (!json.is_object()) {
-    throw UserError(fmt::format("{}: {} is not an object (write it in braces)", file_,
-                                place_.empty() ? "it" : place_));
+    throw support::UserError(fmt::format("{}: {} is not an object (write it in braces)", file_,
+                                         place_.empty() ? "it" : place_));
   }
 }
 
@@ -29,14 +24,14 @@ std::string JsonReader::path(const std::string& key) const {
 
 void JsonReader::refuse(const std::string& key, const std::string& cause,
                         const std::string& remedy) const {
-  throw UserError(fmt::format("{}: {}: {} ({})", file_, path(key), cause, remedy));
+  throw support::UserError(fmt::format("{}: {}: {} ({})", file_, path(key), cause, remedy));
 }
 
 const JsonReader::Json& JsonReader::get(const char* key) {
   known_.emplace_back(key);
   const auto found = json_.find(key);
   if (found == json_.end()) {
-    refuse(key, "is missing", remedies_.missing);
+    refuse(key, "is missing", "see docs/LINUX-BOARD.md");
   }
   return *found;
 }
@@ -63,7 +58,7 @@ void JsonReader::one(const char* key, float& value, double low, double high) {
 void JsonReader::each(const char* key, float (&values)[core::kAxes], double low, double high) {
   const Json& array = get(key);
   if (!array.is_array() || array.size() != core::kAxes) {
-    refuse(key, "is not a list of three numbers", remedies_.list);
+    refuse(key, "is not a list of three numbers", "one number for each axis, in [brackets]");
   }
   for (std::size_t i = 0; i < core::kAxes; ++i) {
     values[i] = static_cast<float>(number(fmt::format("{}[{}]", key, i), array[i], low, high));
@@ -95,16 +90,7 @@ std::string JsonReader::text(const char* key) {
   return value.get<std::string>();
 }
 
-std::uint8_t JsonReader::choice_of(const char* key, const std::vector<std::string>& names) {
-  const std::string name = text(key);
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) {
-    refuse(key, fmt::format("'{}' is unknown", name), "one of: " + listed(names));
-  }
-  return static_cast<std::uint8_t>(found - names.begin());
-}
-
-JsonReader JsonReader::object(const char* key) { return {file_, get(key), remedies_, path(key)}; }
+JsonReader JsonReader::object(const char* key) { return {file_, get(key), path(key)}; }
 
 std::vector<JsonReader> JsonReader::objects(const char* key, std::size_t low, std::size_t high) {
   const Json& array = get(key);
@@ -114,7 +100,7 @@ std::vector<JsonReader> JsonReader::objects(const char* key, std::size_t low, st
   }
   std::vector<JsonReader> readers;
   for (std::size_t i = 0; i < array.size(); ++i) {
-    readers.emplace_back(file_, array[i], remedies_, fmt::format("{}[{}]", path(key), i));
+    readers.emplace_back(file_, array[i], fmt::format("{}[{}]", path(key), i));
   }
   return readers;
 }
@@ -122,9 +108,9 @@ std::vector<JsonReader> JsonReader::objects(const char* key, std::size_t low, st
 void JsonReader::finish() const {
   for (const auto& [key, value] : json_.items()) {
     if (std::find(known_.begin(), known_.end(), key) == known_.end()) {
-      refuse(key, remedies_.unknown, remedies_.keys);
+      refuse(key, "is unknown", "docs/LINUX-BOARD.md lists the keys");
     }
   }
 }
 
-}  // namespace tactree::support
+}  // namespace tactree::controller
