@@ -1,4 +1,4 @@
-"""Pose files: where a model is in the frame of a device, for simulate and scenes.
+"""Pose files: where a model is in the frame of a device, for build, simulate and scenes.
 
 usage: pose_test.py TACTREE
 """
@@ -99,6 +99,25 @@ class Poses(SharedFolder):
         done = self.run_tool("simulate", "sheet.blob", "--pose", "far.json", "--seconds", 1)
         self.assertIn("warning: sheet.blob: premium does not reach all of the model where it is placed (move it",
                       done.stderr)
+
+    def test_a_built_pose_is_touched_in_the_frame_of_the_device(self):
+        self.write("edge.json", {"pose": moved(ON_ITS_EDGE, 0.1, 0, 0.02), "scale": 2})
+        self.press("onto.csv", (0.11, 0, 0.07), (0.098, 0, 0.07))  # above the sheet at scale 1
+        done = self.run_tool("build", "sheet.csv", "-o", "placed.blob", "--spacing", 0.002, "--pose", "edge.json",
+                             "--report", "report.json", "--progress", "off")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("--origin 0 0 0", done.stdout)
+        report = self.read("report.json")
+        self.assertEqual((report["pose"], report["pose_scale"]), (moved(ON_ITS_EDGE, 0.1, 0, 0.02), 2))
+        self.assertAlmostEqual(report["bounds_max_m"][0], 0.1, delta=1e-4)
+        self.assertAlmostEqual(report["bounds_max_m"][2], 0.08, delta=1e-4)
+        self.assertAlmostEqual(report["spacing_m"], 0.002)
+        built, _ = self.simulate("placed.blob", "--origin", 0, 0, 0, "--path", "onto.csv")
+        posed, _ = self.simulate("sheet.blob", "--pose", "edge.json", "--path", "onto.csv")
+        self.assertGreater(built[0], 0.3)
+        for a, b in zip(built, posed):
+            self.assertAlmostEqual(a, b, delta=0.02)
+        self.assertNotIn("pose", self.run_tool("build", "sheet.csv", "-o", "plain.blob").stdout)
 
     def refused(self, cause, *arguments, code=1):
         with self.subTest(cause):

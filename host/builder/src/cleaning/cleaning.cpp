@@ -466,10 +466,13 @@ class Cleaner {
                       "centre, ({:.12g}, {:.12g}, {:.12g}) in the source",
                       origin.x(), origin.y(), origin.z()));
     }
+    frame.fit *= options_.placed_scale;
     require_size(frame.fit * extent);
     move_all();
     report_.source_scale = frame.source_scale();
-    report_.source_origin = frame.source_origin();
+    report_.source_origin =
+        options_.pose ? frame.source_of(options_.pose->inverse() * Eigen::Vector3d::Zero())
+                      : frame.source_origin();
   }
 
   static void require_size(double extent_m) {
