@@ -17,6 +17,7 @@ constexpr std::size_t kMaxOctants = 20000;
 constexpr std::string_view kFaults = "/faults/";
 constexpr std::string_view kModel = "/model/";
 constexpr std::string_view kTrace = "/trace.csv";
+constexpr std::string_view kReach = "/reach.json";
 
 HttpResponse not_found() { return {404, "text/plain; charset=utf-8", "unknown page\n", {}}; }
 
@@ -86,12 +87,16 @@ Site::Site(std::vector<core::BlobView> models, const Source& source)
 }
 
 bool Site::is_slow(std::string_view path) {
-  return path == kTrace || (path.starts_with(kModel) && path.find("/octants/") != path.npos);
+  return path == kTrace || path == kReach ||
+         (path.starts_with(kModel) && path.find("/octants/") != path.npos);
 }
 
 HttpResponse Site::answer(std::string_view path) const {
   if (path == kTrace) {
     return {200, "text/csv; charset=utf-8", source_.trace_csv(), "trace.csv"};
+  }
+  if (path == kReach) {
+    return {200, "application/json", source_.reach_json(), {}};
   }
   if (path.starts_with(kModel)) {
     return answer_model(path.substr(kModel.size()));

@@ -50,6 +50,7 @@ class Site {
   ///   /model/I/points/NODE   PackedPoints
   ///   /model/I/octants/LEVEL level and edge, then corners: little-endian u32, float32s
   ///   /trace.csv             the ticks so far
+  ///   /reach.json            the border of the device's workspace
   [[nodiscard]] HttpResponse answer(std::string_view path) const;
   [[nodiscard]] static bool is_slow(std::string_view path);
 
