@@ -13,6 +13,7 @@
 
 #include "commands.hpp"
 #include "device/board_port.hpp"
+#include "device/board_pose.hpp"
 #include "device/device_defaults.hpp"
 #include "run/wall_options.hpp"
 #include "scan/board_work.hpp"
@@ -108,6 +109,9 @@ std::unique_ptr<viewer::Source> board_source(const ViewOptions& options,
   settings.device = support::load_device(options.settings.device).preset.model;
   settings.model = shown.bytes();
   settings.recording = {options.recording, print_line};
+  if (!options.pose.empty()) {
+    settings.pose = read_board_pose(options.pose).pose;
+  }
   settings.work = [&shown, firmware = options.firmware](const std::string& board,
                                                         const core::wire::CapabilitiesReply& can) {
     return work_of_board(board, can, shown.view().header(), firmware);

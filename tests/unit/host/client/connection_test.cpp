@@ -63,6 +63,30 @@ TEST(Connection, TimePassesOnlyOnRequest) {
   EXPECT_EQ(static_cast<core::State>(board.state().state), core::State::kActive);
 }
 
+TEST(Connection, PlacedBodyIsNotTouchedWhereItWas) {
+  const RunningBoard running(0.0295);  // the hand presses 0.5 mm deep
+  client::Board board(running.port());
+  const auto is_touched = [&] {
+    board.arm();
+    board.subscribe({static_cast<std::uint32_t>(core::wire::TelemetryField::kContact), 1});
+    board.connection().sleep(std::chrono::seconds(2));
+    const bool touched = board.latest().body != core::kNoBody;
+    board.stop();
+    return touched;
+  };
+  EXPECT_TRUE(is_touched());
+  core::Pose below{};
+  below.translation_m.z = -0.02F;
+  board.place_body(0, below);
+  EXPECT_FALSE(is_touched());
+  board.place_body(0, core::Pose{});
+  EXPECT_TRUE(is_touched());
+  EXPECT_THROW(board.place_body(7, below), client::LinkError);
+  below.translation_m.z = 11.0F;
+  EXPECT_THROW(board.place_body(0, below), client::LinkError);
+  EXPECT_EQ(core::length(board.model_origin_m()), 0.0F);
+}
+
 TEST(Connection, ReadsAndWritesSerialPort) {
   client::PseudoTerminal board;
   const std::unique_ptr<client::Transport> port =
