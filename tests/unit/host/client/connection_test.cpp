@@ -8,6 +8,7 @@
 #include <chrono>
 #include <filesystem>
 #include <functional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -49,6 +50,15 @@ TEST(Connection, RefusesSilentPort) {
   RunningBoard silent;
   silent.freeze(true);
   EXPECT_THROW(client::Board board(silent.port()), client::LinkError);
+}
+
+TEST(Connection, FirstRequestBehindStrayBytesIsAnswered) {
+  const RunningBoard running;
+  std::unique_ptr<client::Transport> port = client::open_port(running.port(), client::kUsualBaud);
+  const std::string stray = "AT\r\n";  // of a modem manager
+  ASSERT_EQ(port->write(std::as_bytes(std::span(stray))), stray.size());
+  const client::Introduction found = client::Board::introduce(std::move(port));
+  EXPECT_GT(std::string(found.board.board).size(), 0U);
 }
 
 TEST(Connection, TimePassesOnlyOnRequest) {
