@@ -79,8 +79,9 @@ std::string fault_html(std::string_view title, std::string_view markdown) {
                               "<p><a href=\"/faults/\">All faults and limits</a></p>\n");
 }
 
-Site::Site(std::vector<core::BlobView> models, const Source& source)
-    : models_(std::move(models)), source_(source) {
+Site::Site(std::vector<core::BlobView> models, const Source& source,
+           std::vector<MaterialLabel> labels)
+    : models_(std::move(models)), labels_(std::move(labels)), source_(source) {
   for (const core::BlobView& view : models_) {
     trees_.emplace_back(view);
   }
@@ -124,12 +125,17 @@ HttpResponse Site::answer_model(std::string_view path) const {
   }
   const PointTree& tree = trees_[*number];
   if (path.empty()) {
-    return {200, "application/json", tree_json(tree, models_[*number]), {}};
+    const std::vector<MaterialLabel> none;
+    return {200,
+            "application/json",
+            tree_json(tree, models_[*number], *number == 0 ? labels_ : none),
+            {}};
   }
   const bool wants_points = take_word(path, "points/");
   const bool wants_octants = !wants_points && take_word(path, "octants/");
+  const bool wants_materials = !wants_points && !wants_octants && take_word(path, "materials/");
   const auto which = take_number(path);
-  if (!which || !path.empty() || (!wants_points && !wants_octants)) {
+  if (!which || !path.empty() || (!wants_points && !wants_octants && !wants_materials)) {
     return not_found();
   }
   if (wants_octants) {
@@ -137,6 +143,10 @@ HttpResponse Site::answer_model(std::string_view path) const {
   }
   if (*which >= tree.nodes().size()) {
     return not_found();
+  }
+  if (wants_materials) {
+    const auto materials = tree.materials(*which);
+    return binary(materials.data(), materials.size_bytes());
   }
   const auto points = tree.points(*which);
   return binary(points.data(), points.size_bytes());

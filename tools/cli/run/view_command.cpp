@@ -17,6 +17,7 @@
 #include "device/device_defaults.hpp"
 #include "run/wall_options.hpp"
 #include "scan/board_work.hpp"
+#include "scan/named_materials.hpp"
 #include "tactree/builder/up_advice.hpp"
 #include "tactree/setup/model_size.hpp"
 #include "tactree/setup/scene_file.hpp"
@@ -39,6 +40,7 @@ struct ViewOptions {
   std::string pose;
   std::vector<double> origin_m;
   std::string trace;
+  std::string material;
   BoardPort board;
   int link_timeout_ms = 50;
   std::string firmware;
@@ -144,6 +146,21 @@ std::unique_ptr<viewer::Source> make_source(const ViewOptions& options,
                                                  scene.bodies[0].path.first(), device.kind));
   return std::make_unique<viewer::TracePlayback>(viewer::read_trace(options.trace),
                                                  noted_bodies_of(scene), device, origin_m);
+}
+
+/// Those of the first model, for the legend of the page.
+std::vector<viewer::MaterialLabel> material_labels(const ViewOptions& options,
+                                                   const setup::SceneFile& scene) {
+  const std::optional<builder::MaterialMap> map =
+      named_materials(options.material, scene.names[0], scene.files[0]->view());
+  std::vector<viewer::MaterialLabel> labels;
+  for (std::size_t i = 0; map && i <= map->colours.size(); ++i) {
+    labels.push_back({builder::material_name(*map, i)});
+    if (i > 0) {
+      labels.back().colour = map->colours[i - 1].colour;
+    }
+  }
+  return labels;
 }
 
 bool is_single(const ViewOptions& options, const setup::SceneFile& scene) {
@@ -262,7 +279,8 @@ void announce(const viewer::Server& server) {
 /// Serves the simulation. Returns true if it must be served again, with a model of another size.
 bool serve_simulation(ViewOptions& options, setup::SceneFile& scene) {
   Simulated simulated(options, scene);
-  const viewer::Site site(bodies_of(scene).views, simulated.session());
+  const viewer::Site site(bodies_of(scene).views, simulated.session(),
+                          material_labels(options, scene));
   viewer::Server server(options.server, site, simulated.session());
   simulated.stops(server);
   announce(server);
@@ -299,7 +317,7 @@ void view(ViewOptions& options) {
     warn_of_size(scene);
   }
   const std::unique_ptr<viewer::Source> source = make_source(options, scene);
-  const viewer::Site site(bodies_of(scene).views, *source);
+  const viewer::Site site(bodies_of(scene).views, *source, material_labels(options, scene));
   viewer::Server server(options.server, site, *source);
   announce(server);
   server.run();
@@ -387,6 +405,9 @@ void add_view_command(CLI::App& app, int&) {
       "--trace", options->trace,
       "play back this trace of simulate --trace, or recording of a board (.csv, .npz), "
       "instead of a simulation");
+  verb->add_option("--material", options->material,
+                   "file of the option --material of the build: names the materials of the first "
+                   "model on the page");
   add_session_options(*verb, *options);
   add_board_options(*verb, *options);
   add_server_options(*verb, *options);

@@ -5,6 +5,7 @@ import { BoardView } from './board';
 import { Connection } from './connection';
 import { Gestures } from './gestures';
 import { Hand } from './hand';
+import { showLegend } from './materials';
 import { type Command, type Frame, type Hello, length, type Run } from './messages';
 import { News } from './news';
 import { Numbers } from './numbers';
@@ -66,8 +67,15 @@ function hello(message: Hello): void {
   player.hello(message);
   view
     .load(message.models.length)
-    .then(() => (find<HTMLInputElement>('octant-level').max = String(view.deepest)))
+    .then(loaded)
     .catch((error: Error) => news.show(`The model could not be loaded: ${error.message}`));
+}
+
+function loaded(): void {
+  find<HTMLInputElement>('octant-level').max = String(view.deepest);
+  find('show-materials-row').hidden = view.materials.length < 2;
+  showLegend(view.materials);
+  showMaterials();
 }
 
 /** Doubts about the models, such as one that lies on its side. A dismissed note does not return. */
@@ -292,6 +300,13 @@ const shown = () =>
   });
 find('show-device').addEventListener('change', shown);
 find('show-patch').addEventListener('change', shown);
+
+function showMaterials(): void {
+  const isShown = find<HTMLInputElement>('show-materials').checked && view.materials.length > 1;
+  find('material-list').hidden = !isShown;
+  view.showMaterials(isShown);
+}
+find('show-materials').addEventListener('change', showMaterials);
 
 const octants = find<HTMLInputElement>('show-octants');
 const level = find<HTMLInputElement>('octant-level');

@@ -3,7 +3,7 @@
 
 import * as THREE from 'three';
 import { Orbit } from './camera';
-import { Cloud, loadOctants } from './cloud';
+import { Cloud, loadOctants, type Material } from './cloud';
 import { COLOURS, Markers } from './markers';
 import type { Frame, Run } from './messages';
 import type { Obstacles } from './route';
@@ -225,6 +225,15 @@ export class View implements Obstacles {
       this.clouds[i]?.group.add(line);
     });
     this.octants = lines;
+    this.changed();
+  }
+
+  /** Of the first model. */
+  get materials(): Material[] {
+    return this.clouds[0]?.tree.materials ?? [];
+  }
+  showMaterials(shown: boolean): void {
+    for (const cloud of this.clouds) cloud.showMaterials(shown);
     this.changed();
   }
 

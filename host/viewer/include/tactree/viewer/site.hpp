@@ -40,7 +40,9 @@ struct Asset {
 class Site {
  public:
   /// The views' bytes and the source must outlive the site.
-  Site(std::vector<core::BlobView> models, const Source& source);
+  /// `labels` are those of the materials of the first model, or empty.
+  Site(std::vector<core::BlobView> models, const Source& source,
+       std::vector<MaterialLabel> labels = {});
 
   /// The content of a path without query; 404 if the path is unknown. Slow for is_slow() paths. May
   /// be called from any thread.
@@ -48,6 +50,7 @@ class Site {
   ///   /faults/ /faults/NAME  explanation of faults and limits
   ///   /model/I               the nodes of model I, JSON
   ///   /model/I/points/NODE   PackedPoints
+  ///   /model/I/materials/NODE  PointTree::materials()
   ///   /model/I/octants/LEVEL level and edge, then corners: little-endian u32, float32s
   ///   /trace.csv             the ticks so far
   ///   /reach.json            the border of the device's workspace
@@ -59,6 +62,7 @@ class Site {
 
   std::vector<core::BlobView> models_;
   std::vector<PointTree> trees_;
+  std::vector<MaterialLabel> labels_;
   const Source& source_;
 };
 
