@@ -1,8 +1,8 @@
-// The materials of a model on the page: an overlay with a legend.
+// The materials of a model on the page: an overlay with a legend, and rules from the colours of the scan.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { execFileSync } from 'node:child_process';
-import { writeFileSync } from 'node:fs';
+import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { folder, launch, openPage, startServer, state, tactree } from './setup.mjs';
 
@@ -10,6 +10,8 @@ const RADIUS = 0.03;
 let browser;
 let blob;
 let rules;
+let scan;
+let report;
 
 /** A ball, PLY, whose side of +x is red. */
 function colouredBall(count) {
@@ -29,7 +31,8 @@ function colouredBall(count) {
 
 before(async () => {
   browser = await launch();
-  const scan = join(folder, 'red.ply');
+  scan = join(folder, 'red.ply');
+  report = join(folder, 'red.json');
   rules = join(folder, 'rules.json');
   blob = join(folder, 'red.blob');
   writeFileSync(scan, colouredBall(20000));
@@ -37,7 +40,8 @@ before(async () => {
     default: { stiffness_N_m: 800, static_friction: 0.3, dynamic_friction: 0.2 },
     colours: [{ name: 'felt', rgb: [255, 0, 0], tolerance: 30, stiffness_N_m: 200 }],
   }));
-  execFileSync(tactree, ['build', scan, '-o', blob, '--unit', 'm', '--material', rules], { stdio: 'pipe' });
+  execFileSync(tactree, ['build', scan, '-o', blob, '--unit', 'm', '--material', rules, '--report', report],
+    { stdio: 'pipe' });
 });
 after(async () => {
   await browser?.close();
@@ -94,4 +98,46 @@ test('without the file of the build materials have numbers, and other files are 
   writeFileSync(other, JSON.stringify({ default: { stiffness_N_m: 700 } }));
   assert.throws(() => execFileSync(tactree, ['view', blob, '--page-port', '0', '--material', other],
     { stdio: 'pipe', timeout: 60000 }), /describes 1 materials/);
+});
+
+test('a click on a colour of the scan makes a material of the sliders', async (t) => {
+  const page = await openSession(t, [blob, '--report', report]);
+  const { colours } = JSON.parse(readFileSync(report, 'utf8'));
+  assert.equal(colours.length, 2);
+  await page.locator('#rules summary').click();
+  const buttons = page.locator('#rule-list li button:first-child');
+  assert.equal(await buttons.count(), 2);
+  assert.ok(await page.locator('#rules-save').isDisabled());
+  await page.locator('#stiffness_N_m').evaluate((slider) => {
+    slider.value = '300';
+    slider.dispatchEvent(new Event('input'));
+    slider.dispatchEvent(new Event('change'));
+  });
+  await buttons.nth(1).click();
+  assert.match(await buttons.nth(1).textContent(), /^300 N\/m, friction/);
+  await buttons.nth(0).click();
+  await page.locator('#rule-list .quiet').first().click(); // takes it back
+  const [download] = await Promise.all([page.waitForEvent('download'), page.locator('#rules-save').click()]);
+  const file = join(folder, 'materials.json');
+  await download.saveAs(file);
+  const made = JSON.parse(readFileSync(file, 'utf8'));
+  assert.equal(made.colours.length, 1);
+  assert.deepEqual(made.colours[0].rgb, colours[1].rgb);
+  assert.equal(made.colours[0].stiffness_N_m, 300);
+  const again = join(folder, 'again.blob');
+  execFileSync(tactree, ['build', scan, '-o', again, '--unit', 'm', '--material', file], { stdio: 'pipe' });
+  const facts = join(folder, 'again.json');
+  execFileSync(tactree, ['info', again, '--material', file, '--json', facts], { stdio: 'pipe' });
+  assert.equal(JSON.parse(readFileSync(facts, 'utf8')).material_list.length, 2);
+  assert.deepEqual(page.troubles, []);
+});
+
+test('a report without colours, and another file, are refused', () => {
+  const empty = join(folder, 'empty.json');
+  for (const [content, why] of [['{"colours": []}', /the scan of this report has no colours/],
+    ['{}', /is not the report of a build/], ['text', /is not the report of a build/]]) {
+    writeFileSync(empty, content);
+    assert.throws(() => execFileSync(tactree, ['view', blob, '--page-port', '0', '--report', empty],
+      { stdio: 'pipe', timeout: 60000 }), why);
+  }
 });

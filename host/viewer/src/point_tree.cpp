@@ -212,8 +212,11 @@ nlohmann::json materials_json(const core::BlobView& view,
 
 }  // namespace
 
-std::string tree_json(const PointTree& tree, const core::BlobView& view,
-                      const std::vector<MaterialLabel>& labels) {
+std::string tree_json(const PointTree& tree, const core::BlobView& view, const ScanFacts& scan) {
+  nlohmann::json colours = nlohmann::json::array();
+  for (const ScanColour& colour : scan.colours) {
+    colours.push_back({{"rgb", colour.rgb}, {"points", colour.points}});
+  }
   nlohmann::json nodes = nlohmann::json::array();
   for (const PointNode& node : tree.nodes()) {
     nodes.push_back({{"min_m", node.min_m},
@@ -229,7 +232,8 @@ std::string tree_json(const PointTree& tree, const core::BlobView& view,
                                {"depth", h.depth},
                                {"bounds_min_m", std::to_array(h.bounds_min_m)},
                                {"bounds_max_m", std::to_array(h.bounds_max_m)},
-                               {"materials", materials_json(view, labels)},
+                               {"materials", materials_json(view, scan.labels)},
+                               {"colours", colours},
                                {"nodes", nodes}};
   return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }

@@ -79,9 +79,8 @@ std::string fault_html(std::string_view title, std::string_view markdown) {
                               "<p><a href=\"/faults/\">All faults and limits</a></p>\n");
 }
 
-Site::Site(std::vector<core::BlobView> models, const Source& source,
-           std::vector<MaterialLabel> labels)
-    : models_(std::move(models)), labels_(std::move(labels)), source_(source) {
+Site::Site(std::vector<core::BlobView> models, const Source& source, ScanFacts scan)
+    : models_(std::move(models)), scan_(std::move(scan)), source_(source) {
   for (const core::BlobView& view : models_) {
     trees_.emplace_back(view);
   }
@@ -125,10 +124,10 @@ HttpResponse Site::answer_model(std::string_view path) const {
   }
   const PointTree& tree = trees_[*number];
   if (path.empty()) {
-    const std::vector<MaterialLabel> none;
+    const ScanFacts none;
     return {200,
             "application/json",
-            tree_json(tree, models_[*number], *number == 0 ? labels_ : none),
+            tree_json(tree, models_[*number], *number == 0 ? scan_ : none),
             {}};
   }
   const bool wants_points = take_word(path, "points/");

@@ -18,6 +18,7 @@
 #include "run/wall_options.hpp"
 #include "scan/board_work.hpp"
 #include "scan/named_materials.hpp"
+#include "scan/report_colours.hpp"
 #include "tactree/builder/up_advice.hpp"
 #include "tactree/setup/model_size.hpp"
 #include "tactree/setup/scene_file.hpp"
@@ -41,6 +42,7 @@ struct ViewOptions {
   std::vector<double> origin_m;
   std::string trace;
   std::string material;
+  std::string report;
   BoardPort board;
   int link_timeout_ms = 50;
   std::string firmware;
@@ -148,19 +150,19 @@ std::unique_ptr<viewer::Source> make_source(const ViewOptions& options,
                                                  noted_bodies_of(scene), device, origin_m);
 }
 
-/// Those of the first model, for the legend of the page.
-std::vector<viewer::MaterialLabel> material_labels(const ViewOptions& options,
-                                                   const setup::SceneFile& scene) {
+/// Of the first model, for the legend of the page and its rules.
+viewer::ScanFacts scan_facts(const ViewOptions& options, const setup::SceneFile& scene) {
   const std::optional<builder::MaterialMap> map =
       named_materials(options.material, scene.names[0], scene.files[0]->view());
-  std::vector<viewer::MaterialLabel> labels;
+  viewer::ScanFacts facts;
   for (std::size_t i = 0; map && i <= map->colours.size(); ++i) {
-    labels.push_back({builder::material_name(*map, i)});
+    facts.labels.push_back({builder::material_name(*map, i)});
     if (i > 0) {
-      labels.back().colour = map->colours[i - 1].colour;
+      facts.labels.back().colour = map->colours[i - 1].colour;
     }
   }
-  return labels;
+  facts.colours = report_colours(options.report);
+  return facts;
 }
 
 bool is_single(const ViewOptions& options, const setup::SceneFile& scene) {
@@ -279,8 +281,7 @@ void announce(const viewer::Server& server) {
 /// Serves the simulation. Returns true if it must be served again, with a model of another size.
 bool serve_simulation(ViewOptions& options, setup::SceneFile& scene) {
   Simulated simulated(options, scene);
-  const viewer::Site site(bodies_of(scene).views, simulated.session(),
-                          material_labels(options, scene));
+  const viewer::Site site(bodies_of(scene).views, simulated.session(), scan_facts(options, scene));
   viewer::Server server(options.server, site, simulated.session());
   simulated.stops(server);
   announce(server);
@@ -317,7 +318,7 @@ void view(ViewOptions& options) {
     warn_of_size(scene);
   }
   const std::unique_ptr<viewer::Source> source = make_source(options, scene);
-  const viewer::Site site(bodies_of(scene).views, *source, material_labels(options, scene));
+  const viewer::Site site(bodies_of(scene).views, *source, scan_facts(options, scene));
   viewer::Server server(options.server, site, *source);
   announce(server);
   server.run();
@@ -408,6 +409,10 @@ void add_view_command(CLI::App& app, int&) {
   verb->add_option("--material", options->material,
                    "file of the option --material of the build: names the materials of the first "
                    "model on the page");
+  verb->add_option("--report", options->report,
+                   "file of the option --report of the build: the page lists the colours of the "
+                   "scan, and makes a file of materials from them")
+      ->check(CLI::ExistingFile);
   add_session_options(*verb, *options);
   add_board_options(*verb, *options);
   add_server_options(*verb, *options);

@@ -59,6 +59,7 @@ class Cleaner {
     }
     for (Scan& scan : scans) {
       count_input(scan);
+      count_colours(scan);
       note_float_steps(scan);
       if (scan.is_mesh()) {
         add_mesh(std::move(scan));
@@ -145,6 +146,17 @@ class Cleaner {
   [[nodiscard]] std::uint8_t material_of(const Scan& scan, std::size_t point) {
     return scan.colours.empty() ? std::uint8_t{0}
                                 : census_.take(scan.colours[point], *options_.materials);
+  }
+
+  /// Without materials, the report still states the colours for which a user may want some.
+  void count_colours(const Scan& scan) {
+    if (by_colour()) {
+      return;  // material_of() counts
+    }
+    const MaterialMap none;
+    for (const Colour& colour : scan.colours) {
+      (void)census_.take(colour, none);
+    }
   }
 
   [[nodiscard]] bool uses_poses() const {

@@ -15,6 +15,12 @@ export interface Material {
   texture_height_m: number;
 }
 
+/** A frequent colour of the scan. */
+export interface ScanColour {
+  rgb: [number, number, number];
+  points: number;
+}
+
 interface Tree {
   name: string;
   points: number;
@@ -23,6 +29,7 @@ interface Tree {
   bounds_min_m: [number, number, number];
   bounds_max_m: [number, number, number];
   materials: Material[];
+  colours: ScanColour[];
   nodes: NodeInfo[];
 }
 

@@ -12,6 +12,7 @@ import { Numbers } from './numbers';
 import { find, outputOf, Panel } from './panel';
 import { PlaceView } from './place';
 import { Player } from './player';
+import { Rules } from './rules';
 import { Strip } from './strips';
 import { View } from './view';
 import { Why } from './why';
@@ -32,6 +33,7 @@ const hand = new Hand(view, (target_m, via_m, speed_m_s) => say({ do: 'hand', ta
 // Before the gestures: the handles take a pointer first.
 const place = new PlaceView(view, say, (text) => news.show(text));
 const gestures = new Gestures(view, hand, () => place.isHeld);
+const rules = new Rules();
 const connection = new Connection({ hello, frame, refused, connected });
 let source: Hello['source'] = 'simulation';
 
@@ -75,6 +77,7 @@ function loaded(): void {
   find<HTMLInputElement>('octant-level').max = String(view.deepest);
   find('show-materials-row').hidden = view.materials.length < 2;
   showLegend(view.materials);
+  rules.show(view.colours);
   showMaterials();
 }
 

@@ -3,7 +3,7 @@
 
 import * as THREE from 'three';
 import { Orbit } from './camera';
-import { Cloud, loadOctants, type Material } from './cloud';
+import { Cloud, loadOctants, type Material, type ScanColour } from './cloud';
 import { COLOURS, Markers } from './markers';
 import type { Frame, Run } from './messages';
 import type { Obstacles } from './route';
@@ -231,6 +231,10 @@ export class View implements Obstacles {
   /** Of the first model. */
   get materials(): Material[] {
     return this.clouds[0]?.tree.materials ?? [];
+  }
+  /** Of the scan of the first model, if they are known. */
+  get colours(): ScanColour[] {
+    return this.clouds[0]?.tree.colours ?? [];
   }
   showMaterials(shown: boolean): void {
     for (const cloud of this.clouds) cloud.showMaterials(shown);

@@ -187,6 +187,18 @@ TEST(BuildModel, PoseIsAppliedLastToSamePoints) {
   }
 }
 
+TEST(BuildModel, ReportsColoursWithoutMaterials) {
+  Scan scan = cloud_scan(random_sphere(1000, 0.03));
+  for (std::size_t i = 0; i < scan.positions.size(); ++i) {
+    scan.colours.push_back(i < 700 ? Colour{250, 10, 5} : Colour{120, 120, 120});
+  }
+  const BuildReport report = build(std::move(scan)).report;
+  ASSERT_EQ(report.colours.size(), 2U);
+  EXPECT_EQ(report.colours[0].colour, (Colour{250, 10, 5}));
+  EXPECT_EQ(report.colours[0].points, 700U);
+  EXPECT_TRUE(report.colour_matches.empty());
+}
+
 TEST(BuildModel, SourceOriginIsThatOfPlacedFrame) {
   BuildOptions options;
   options.unit_m = 0.001;

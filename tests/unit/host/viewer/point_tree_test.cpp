@@ -149,9 +149,10 @@ TEST_F(PointTreeTest, TellsMaterialsWithTheirLabels) {
   EXPECT_EQ(plain[0]["points"].get<std::uint32_t>() + plain[1]["points"].get<std::uint32_t>(),
             blob.view().point_count());
   EXPECT_FALSE(plain[1].contains("name"));
-  const std::vector<viewer::MaterialLabel> labels = {{"default"}, {"felt", {{{250, 10, 5}}}}};
-  const auto named =
-      nlohmann::json::parse(viewer::tree_json(tree, blob.view(), labels))["materials"];
+  const viewer::ScanFacts scan = {{{"default"}, {"felt", {{{250, 10, 5}}}}}, {{{9, 8, 7}, 1234}}};
+  const auto told = nlohmann::json::parse(viewer::tree_json(tree, blob.view(), scan));
+  EXPECT_EQ(told["colours"], nlohmann::json::parse(R"([{"rgb": [9, 8, 7], "points": 1234}])"));
+  const auto& named = told["materials"];
   EXPECT_EQ(named[1]["name"], "felt");
   EXPECT_EQ(named[1]["rgb"], nlohmann::json({250, 10, 5}));
   EXPECT_FALSE(named[0].contains("rgb"));

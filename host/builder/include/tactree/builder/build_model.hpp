@@ -111,9 +111,8 @@ struct BuildReport {
   OrientationReport orientation;
 
   std::vector<std::uint64_t> material_points;  ///< points per material in the blob
-  // Only if the materials depend on colour:
-  std::vector<ColourCount> colours;         ///< the most frequent ones of the input points
-  std::vector<ColourMatch> colour_matches;  ///< one per colour of the materials
+  std::vector<ColourCount> colours;            ///< the most frequent ones of the input points
+  std::vector<ColourMatch> colour_matches;     ///< one per colour of the materials
 
   bool unit_known = false;    ///< given by the user or stated by the source
   double source_scale = 1.0;  ///< model metres per source unit

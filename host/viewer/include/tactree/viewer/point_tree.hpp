@@ -57,10 +57,22 @@ struct MaterialLabel {
   std::optional<std::array<std::uint8_t, 3>> colour{};  ///< R, G, B of its points in the scan
 };
 
-/// The nodes without their points, and the materials with their numbers of points, as JSON.
-/// `labels` are those of the materials, or empty.
+/// A frequent colour of the scan.
+struct ScanColour {
+  std::array<std::uint8_t, 3> rgb{};
+  std::uint64_t points = 0;
+};
+
+/// What a blob does not store, for the page.
+struct ScanFacts {
+  std::vector<MaterialLabel> labels{};  ///< one per material, or empty
+  std::vector<ScanColour> colours{};
+};
+
+/// The nodes without their points, the materials with their numbers of points, and the colours of
+/// the scan, as JSON.
 [[nodiscard]] std::string tree_json(const PointTree& tree, const core::BlobView& view,
-                                    const std::vector<MaterialLabel>& labels = {});
+                                    const ScanFacts& scan = {});
 
 /// Cubes of a blob's octree on one level, by their lower corners, m.
 struct OctantBoxes {

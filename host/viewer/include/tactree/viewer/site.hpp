@@ -40,9 +40,8 @@ struct Asset {
 class Site {
  public:
   /// The views' bytes and the source must outlive the site.
-  /// `labels` are those of the materials of the first model, or empty.
-  Site(std::vector<core::BlobView> models, const Source& source,
-       std::vector<MaterialLabel> labels = {});
+  /// `scan` is that of the first model.
+  Site(std::vector<core::BlobView> models, const Source& source, ScanFacts scan = {});
 
   /// The content of a path without query; 404 if the path is unknown. Slow for is_slow() paths. May
   /// be called from any thread.
@@ -62,7 +61,7 @@ class Site {
 
   std::vector<core::BlobView> models_;
   std::vector<PointTree> trees_;
-  std::vector<MaterialLabel> labels_;
+  ScanFacts scan_;
   const Source& source_;
 };
 
