@@ -199,7 +199,8 @@ void build(BuildArguments& arguments) {
     }
   }
   if (!arguments.preview.empty()) {
-    write_preview(arguments.preview, view_of(result), result.report.openings, result.doubtful);
+    write_preview(arguments.preview, view_of(result), result.report.openings, result.doubtful,
+                  arguments.build.materials);
   }
   print_report(result.report, arguments.build, arguments.output);
   for (const std::string& warning : result.report.warnings) {

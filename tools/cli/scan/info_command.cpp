@@ -251,7 +251,7 @@ void info(const InfoOptions& options) {
     write_points(blob.view(), options.points);
   }
   if (!options.preview.empty()) {
-    write_preview(options.preview, blob.view(), builder::find_openings(blob.view()));
+    write_preview(options.preview, blob.view(), builder::find_openings(blob.view()), {}, named);
   }
 }
 
