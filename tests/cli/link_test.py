@@ -112,6 +112,30 @@ class Link(BallFolder):
             self.assertIn("tactree arm --clear", refused)
             self.run_verb("arm", "--port", port, "--seconds", "0.1", "--clear")
 
+    @unittest.skipIf(BOARD != "host", "the pose does not depend on the board")
+    def test_sends_pose_that_stays_on_board(self):
+        def flat(z):
+            return [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, z, 0, 0, 0, 1]
+
+        def touched(port, *options):
+            self.run_verb("record", "--arm", "--port", port, "--seconds", "2", "-o", "touch.csv", *options)
+            heading, *rows = (self.path / "touch.csv").read_text().splitlines()
+            column = heading.split(",").index("in_contact")
+            return sum(row.split(",")[column] == "1" for row in rows)
+
+        self.write("below.json", {"pose": flat(-0.05)})
+        self.write("here.json", {"pose": flat(0)})
+        self.write("large.json", {"pose": flat(0), "scale": 2})
+        with ServedBoard(TACTREE, self.blob) as port:
+            self.assertGreater(touched(port), 100)
+            self.assertEqual(touched(port, "--pose", "below.json"), 0)
+            self.assertEqual(touched(port), 0)
+            self.assertIn("active", self.run_verb("arm", "--port", port, "--seconds", "0.1", "--pose", "here.json"))
+            self.assertGreater(touched(port), 100)
+            self.assertIn("large.json.scale: 2: a board cannot change the size of its model (build the model with",
+                          self.run_verb("arm", "--port", port, "--pose", "large.json", code=1))
+            self.run_verb("record", "--port", port, "-o", "x.csv", "--pose", "here.json", code=2)
+
     def test_reports_missing_board(self):
         for verb in (["monitor", "--once"], ["stop"], ["trace"], ["params"], ["flash", "--list"], ["arm"]):
             self.assertIn("/dev/no-such-port", self.run_verb(*verb, "--port", "/dev/no-such-port", code=1))

@@ -60,10 +60,13 @@ class Files(Folder):
     def test_options_have_effect_of_tool(self):
         points, _ = ball_arrays(800)
         np.savetxt(self.path / "o.xyz", points)
+        pose = self.path / "pose.json"
+        pose.write_text('{"pose": [0,0,1,0.1, 1,0,0,0, 0,1,0,0, 0,0,0,1], "scale": 2}')
         for options, values in (
                 (["--scale", "2"], {"scale": 2}), (["--fit", "0.05"], {"fit_m": 0.05}),
                 (["--fit", "device:falcon"], {"fit_device": "falcon"}), (["--centre"], {"centre": True}),
                 (["--axis", "x"], {"axis": "x"}), (["--turn", "-30"], {"turn_deg": -30}),
+                (["--pose", pose], {"pose": pose}),
                 (["--spacing", "0.003"], {"spacing_m": 0.003}),
                 (["--crop", "-1,-1,-0.01,1,1,1"], {"crop": [-1, -1, -0.01, 1, 1, 1]}),
                 (["--flash-budget", "30000"], {"flash_budget": 30000}), (["--no-resample"], {"resample": False}),

@@ -77,6 +77,11 @@ class Pipeline {
     Gaps gaps = find_gaps(choice.points, model_.spacing_m, model_.support_radius_m, watertight_);
     model_.largest_gap_m = gaps.largest_m;
     report_.openings = std::move(gaps.openings);
+    model_.positions = choice.points.positions();
+    model_.normals = choice.points.normals();
+    if (options_.pose) {
+      place(*options_.pose);
+    }
     WrittenBlob blob = write(choice);
     hint_at_axis();
     return blob;
@@ -84,7 +89,7 @@ class Pipeline {
 
  private:
   void advise_on_unit() {
-    const bool stated = options_.unit_m || options_.fit_m || options_.fit_edge_m;
+    const bool stated = options_.unit_m || options_.fit_m || options_.fit_edge_m || options_.pose;
     const std::optional<std::string> advice = size_advice(largest_edge(input_.bounds));
     if (advice && !stated) {
       report_.warnings.push_back(*advice);
@@ -97,10 +102,14 @@ class Pipeline {
     if (options_.up || report_.backed_share < kBodyShare) {
       return;
     }
-    const Eigen::Matrix3d back = turn_about_z(-options_.turn_deg);
+    Eigen::Matrix3d back = turn_about_z(-options_.turn_deg);
+    if (options_.pose) {
+      back = back * options_.pose->linear().transpose();
+    }
+    const bool is_turned = options_.turn_deg != 0.0 || options_.pose;
     std::vector<Eigen::Vector3d> positions = model_.positions;
     std::vector<Eigen::Vector3f> normals = model_.normals;
-    for (std::size_t i = 0; i < positions.size() && options_.turn_deg != 0.0; ++i) {
+    for (std::size_t i = 0; i < positions.size() && is_turned; ++i) {
       positions[i] = back * positions[i];
       normals[i] = back.cast<float>() * normals[i];
     }
@@ -224,14 +233,32 @@ class Pipeline {
                     length_text(thickness), choice.points.size() - body.at_edge, body.at_edge));
   }
 
+  /// The last step, after all that depends on the axes of the model before: the same points.
+  void place(const Eigen::Isometry3d& pose) {
+    for (Eigen::Vector3d& position : model_.positions) {
+      position = pose * position;
+    }
+    const Eigen::Matrix3f turn = pose.linear().cast<float>();
+    for (Eigen::Vector3f& normal : model_.normals) {
+      normal = (turn * normal).normalized();
+    }
+    for (Opening& opening : report_.openings) {
+      opening.centre = pose * opening.centre;
+    }
+    for (OrientedPiece& piece : report_.orientation.pieces) {
+      piece.centre = pose * piece.centre;
+    }
+    report_.notes.emplace_back(
+        "the model is placed in the frame of the device (simulate and view it with --origin 0 0 "
+        "0)");
+  }
+
   static double input_spacing(const DensityChoice& choice) {
     return choice.dense_spacing_m > 0.0 ? choice.dense_spacing_m : choice.spacing_m;
   }
 
   WrittenBlob write(const DensityChoice& choice) {
     progress_.begin("writing the octree");
-    model_.positions = choice.points.positions();
-    model_.normals = choice.points.normals();
     model_.material_indices = choice.points.cloud().materials;
     model_.tells_interior = true;
     model_.doubtful = doubts_of(choice);
@@ -239,8 +266,10 @@ class Pipeline {
     check(blob);
     if (options_.flash_budget_bytes && blob.bytes.size() > *options_.flash_budget_bytes) {
       throw std::runtime_error(fmt::format(
-          "the two-sided sheet takes {} bytes, more than the flash budget of {} (raise --spacing)",
-          blob.bytes.size(), *options_.flash_budget_bytes));
+          "the {} takes {} bytes, more than the flash budget of {} ({})",
+          options_.pose ? "turned model" : "two-sided sheet", blob.bytes.size(),
+          *options_.flash_budget_bytes,
+          options_.pose ? "lower --flash-budget by the difference" : "raise --spacing"));
     }
     count_materials(blob);
     collect_doubtful(blob);

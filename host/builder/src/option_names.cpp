@@ -53,6 +53,7 @@ const std::map<std::string, core::Profile>& profile_names() {
 void check_options(const BuildOptions& options) {
   require_positive("unit", options.unit_m);
   require_positive("scale", options.scale);
+  require_positive("pose", options.placed_scale);
   require_positive("fit", options.fit_m);
   require_positive("two-sided", options.two_sided_m);
   require_positive("spacing", options.spacing_m);

@@ -59,6 +59,15 @@ ordered_json materials_json(const BuildReport& report, const BuildOptions& build
   return list;
 }
 
+/// Row by row; null if there is none.
+ordered_json pose_json(const BuildOptions& build) {
+  ordered_json rows;
+  for (Eigen::Index i = 0; i < 16 && build.pose; ++i) {
+    rows.push_back(build.pose->matrix()(i / 4, i % 4));
+  }
+  return rows;
+}
+
 ordered_json colours_json(const BuildReport& report) {
   ordered_json list = ordered_json::array();
   for (const ColourCount& count : report.colours) {
@@ -110,6 +119,8 @@ std::string report_json(const BuildReport& report, const BuildOptions& build) {
       {"bounds_max_m", triple(report.bounds.max())},
       {"axis", axis_name(build)},
       {"turn_deg", build.turn_deg},
+      {"pose", pose_json(build)},
+      {"pose_scale", build.placed_scale},
       {"source_scale", report.source_scale},
       {"source_origin", triple(report.source_origin)},
       {"bytes", report.bytes},

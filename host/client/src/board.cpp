@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 #include "tactree/client/link_error.hpp"
 #include "tactree/client/ports.hpp"
@@ -76,6 +77,20 @@ std::unique_ptr<Connection> connect(std::unique_ptr<Transport> transport,
   ConnectionOptions connection;
   connection.stream_capacity = options.stream_capacity;
   return std::make_unique<Connection>(std::move(transport), connection);
+}
+
+core::wire::MoveBodyRequest move_request(std::uint32_t body, const core::Pose& pose,
+                                         const core::Motion& motion, bool enabled) {
+  const core::Quaternion& q = pose.rotation;
+  const core::Vec3& t = pose.translation_m;
+  const core::Vec3& v = motion.linear_m_s;
+  const core::Vec3& w = motion.angular_rad_s;
+  return {body,
+          enabled ? 1U : 0U,
+          {q.w, q.v.x, q.v.y, q.v.z},
+          {t.x, t.y, t.z},
+          {v.x, v.y, v.z},
+          {w.x, w.y, w.z}};
 }
 
 }  // namespace
@@ -379,6 +394,20 @@ void Board::set_parameter(const std::string& name, float value) {
                   "' (tactree params lists them)");
 }
 
+core::Vec3 Board::model_origin_m() {
+  core::Vec3 origin{};
+  for (const core::wire::ParameterReply& parameter : parameters()) {
+    const std::string name(parameter.name, ::strnlen(parameter.name, sizeof parameter.name));
+    for (const auto& [axis, value] :
+         {std::pair{"x", &origin.x}, std::pair{"y", &origin.y}, std::pair{"z", &origin.z}}) {
+      if (name == std::string("model_origin_m.") + axis) {
+        *value = parameter.value;
+      }
+    }
+  }
+  return origin;
+}
+
 void Board::save_parameters() {
   (void)demand(MessageKind::kSaveParameters, std::span<const std::byte>(), "save parameters");
 }
@@ -452,16 +481,11 @@ void Board::post_stop() {
 
 void Board::move_body(std::uint32_t body, const core::Pose& pose, const core::Motion& motion,
                       bool enabled) {
-  const core::Quaternion& q = pose.rotation;
-  const core::Vec3& t = pose.translation_m;
-  const core::Vec3& v = motion.linear_m_s;
-  const core::Vec3& w = motion.angular_rad_s;
-  connection().post(MessageKind::kMoveBody, core::wire::MoveBodyRequest{body,
-                                                                        enabled ? 1U : 0U,
-                                                                        {q.w, q.v.x, q.v.y, q.v.z},
-                                                                        {t.x, t.y, t.z},
-                                                                        {v.x, v.y, v.z},
-                                                                        {w.x, w.y, w.z}});
+  connection().post(MessageKind::kMoveBody, move_request(body, pose, motion, enabled));
+}
+
+void Board::place_body(std::uint32_t body, const core::Pose& pose) {
+  (void)demand(MessageKind::kMoveBody, move_request(body, pose, {}, true), "place model");
 }
 
 void Board::add_force(const std::array<float, 3>& force_N, std::uint32_t duration_ms) {

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "tactree/client/link_error.hpp"
+#include "thread_priority.hpp"
 
 namespace tactree::client {
 namespace {
@@ -41,6 +42,9 @@ class Connection::Worker {
   Worker& operator=(const Worker&) = delete;
 
   Response open(std::uint16_t link_timeout_ms) {
+    // The heartbeats of a required link must not wait for other programs of this computer. Time in
+    // lock-step does not pass meanwhile.
+    wants_priority_ = link_timeout_ms != 0U && !transport_->in_lock_step();
     std::unique_lock lock(mutex_);
     return await(lock, client_.open(link_timeout_ms, std::random_device{}(), now_us()));
   }
@@ -131,6 +135,9 @@ class Connection::Worker {
 
   void run() {
     while (!ending_) {
+      if (wants_priority_.exchange(false)) {
+        (void)prefer_this_thread();
+      }
       {
         const std::lock_guard lock(mutex_);
         exchange();
@@ -207,6 +214,7 @@ class Connection::Worker {
   std::uint64_t dropped_ = 0;
   std::uint64_t refusals_ = 0;
   std::atomic<bool> ending_ = false;
+  std::atomic<bool> wants_priority_ = false;
   std::atomic<int> waiting_ = 0;
   std::thread thread_;
 };

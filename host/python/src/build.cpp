@@ -18,6 +18,7 @@
 #include "tactree/builder/option_names.hpp"
 #include "tactree/builder/read_materials.hpp"
 #include "tactree/builder/report_json.hpp"
+#include "tactree/setup/pose_file.hpp"
 #include "tactree/setup/session.hpp"
 #include "tactree/support/user_error.hpp"
 
@@ -106,6 +107,12 @@ void read_frame(const Options& options, BuildOptions& build) {
   options.choose("unit", builder::unit_names(), build.unit_m);
   options.choose("axis", builder::axis_names(), build.up);
   options.read("turn_deg", build.turn_deg);
+  if (options.has("pose")) {
+    const simulation::Placement placement =
+        setup::read_pose_file(options.cast<std::string>("pose"));
+    build.pose = placement.pose;
+    build.placed_scale = placement.scale;
+  }
   options.read("scale", build.scale);
   options.read("centre", build.centre);
   options.read("fit_m", build.fit_m);

@@ -35,11 +35,16 @@ def _given(options: dict[str, Any]) -> dict[str, Any]:
     return given
 
 
+def _path(file: str | os.PathLike[str] | None) -> str | None:
+    return None if file is None else os.fspath(file)
+
+
 def build(points: npt.ArrayLike, normals: npt.ArrayLike | None = None, colors: npt.ArrayLike | None = None,
           triangles: npt.ArrayLike | None = None, *, unit: str | None = "m", scale: float | None = None,
           fit_m: float | None = None, fit_device: str | None = None, centre: bool | None = None,
-          axis: str | None = None, turn_deg: float | None = None, crop: npt.ArrayLike | None = None,
-          spacing_m: float | None = None, flash_budget: int | None = None, resample: bool | None = None,
+          axis: str | None = None, turn_deg: float | None = None, pose: str | os.PathLike[str] | None = None,
+          crop: npt.ArrayLike | None = None, spacing_m: float | None = None, flash_budget: int | None = None,
+          resample: bool | None = None,
           profile: str | None = None, material: str | None = None, outliers: float | str | None = None,
           keep_largest: bool | None = None, min_piece: int | None = None, orient: str | None = None,
           viewpoints: npt.ArrayLike | None = None, two_sided_m: float | None = None, flip_normals: bool | None = None,
@@ -59,6 +64,7 @@ def build(points: npt.ArrayLike, normals: npt.ArrayLike | None = None, colors: n
     centre       True: the centre of the bounding box becomes the origin
     axis         x, y or z: the axis that points up and becomes z
     turn_deg     then turns the model about z, counterclockwise seen from above
+    pose         pose file, applied last: the coordinates are then those of the device's frame
     crop         xmin, ymin, zmin, xmax, ymax, zmax in the unit of the points
     spacing_m    distance of the points; resample=False keeps all points
     flash_budget largest size of the blob, bytes: chooses the finest spacing
@@ -80,7 +86,8 @@ def build(points: npt.ArrayLike, normals: npt.ArrayLike | None = None, colors: n
     """
     options = _given({
         "unit": unit, "scale": scale, "fit_m": fit_m, "fit_device": fit_device, "centre": centre, "axis": axis,
-        "turn_deg": turn_deg, "crop": crop, "spacing_m": spacing_m, "flash_budget": flash_budget, "resample": resample,
+        "turn_deg": turn_deg, "pose": _path(pose), "crop": crop, "spacing_m": spacing_m,
+        "flash_budget": flash_budget, "resample": resample,
         "profile": profile, "material": material, "outliers": outliers, "keep_largest": keep_largest,
         "min_piece": min_piece, "orient": orient, "viewpoints": viewpoints, "two_sided_m": two_sided_m,
         "flip_normals": flip_normals, "name": name, "threads": threads})
@@ -90,7 +97,8 @@ def build(points: npt.ArrayLike, normals: npt.ArrayLike | None = None, colors: n
 def build_file(path: str | os.PathLike[str] | Iterable[str | os.PathLike[str]], *, unit: str | None = None,
                scale: float | None = None, fit_m: float | None = None, fit_device: str | None = None,
                centre: bool | None = None, axis: str | None = None, turn_deg: float | None = None,
-               crop: npt.ArrayLike | None = None, spacing_m: float | None = None, flash_budget: int | None = None,
+               pose: str | os.PathLike[str] | None = None, crop: npt.ArrayLike | None = None,
+               spacing_m: float | None = None, flash_budget: int | None = None,
                resample: bool | None = None, profile: str | None = None, material: str | None = None,
                outliers: float | str | None = None, keep_largest: bool | None = None, min_piece: int | None = None,
                orient: str | None = None, viewpoints: npt.ArrayLike | None = None, two_sided_m: float | None = None,
@@ -109,7 +117,8 @@ def build_file(path: str | os.PathLike[str] | Iterable[str | os.PathLike[str]], 
     paths = [path] if isinstance(path, (str, os.PathLike)) else list(path)
     options = _given({
         "unit": unit, "scale": scale, "fit_m": fit_m, "fit_device": fit_device, "centre": centre, "axis": axis,
-        "turn_deg": turn_deg, "crop": crop, "spacing_m": spacing_m, "flash_budget": flash_budget, "resample": resample,
+        "turn_deg": turn_deg, "pose": _path(pose), "crop": crop, "spacing_m": spacing_m,
+        "flash_budget": flash_budget, "resample": resample,
         "profile": profile, "material": material, "outliers": outliers, "keep_largest": keep_largest,
         "min_piece": min_piece, "orient": orient, "viewpoints": viewpoints, "two_sided_m": two_sided_m,
         "flip_normals": flip_normals, "name": name, "threads": threads, "columns": columns, "format": format})

@@ -19,16 +19,6 @@ std::string text_of(const char (&field)[N]) {
   return {field, ::strnlen(field, N)};
 }
 
-core::Vec3 origin_of(const std::vector<core::wire::ParameterReply>& parameters) {
-  const auto value = [&](const char* name) {
-    const auto found =
-        std::find_if(parameters.begin(), parameters.end(),
-                     [&](const auto& parameter) { return text_of(parameter.name) == name; });
-    return found == parameters.end() ? 0.0F : found->value;
-  };
-  return {value("model_origin_m.x"), value("model_origin_m.y"), value("model_origin_m.z")};
-}
-
 void compare(const ModelSlot& in_use, std::span<const std::byte> shown, BoardFacts& facts) {
   if (in_use.bytes == shown.size() && in_use.checksum == core::crc32(shown)) {
     facts.model = BoardFacts::Model::kSame;
@@ -69,7 +59,7 @@ BoardFacts ask_board(client::Board& board, std::span<const std::byte> shown) {
   facts.name = text_of(identity.board);
   facts.firmware = text_of(identity.firmware);
   facts.can = board.capabilities();
-  facts.model_origin_m = origin_of(board.parameters());
+  facts.model_origin_m = board.model_origin_m();
   compare_models(board, shown, facts);
   return facts;
 }

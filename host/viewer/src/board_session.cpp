@@ -11,6 +11,7 @@
 #include "command_outcome.hpp"
 #include "contact_parameters.hpp"
 #include "page_recording.hpp"
+#include "place_command.hpp"
 #include "tactree/client/link_error.hpp"
 #include "tactree/client/ports.hpp"
 #include "tactree/support/user_error.hpp"
@@ -75,6 +76,7 @@ void BoardSession::begin_session() {
   work_ = work_of(*facts);
   sent_.contact.stiffness_N_m = facts->can.stiffness_N_m;
   facts_ = std::move(facts);
+  send_pose();
   subscribe();
   last_pass_ = board_->connection().now();
   silence_ = {};
@@ -82,6 +84,15 @@ void BoardSession::begin_session() {
   outcome_->stopped();
   strip_ = {};
   log_.clear();
+}
+
+void BoardSession::send_pose() {
+  if (!settings_.pose) {
+    return;
+  }
+  const simulation::BodyPath rest(simulation::in_scene(*settings_.pose, facts_->model_origin_m));
+  board_->place_body(0, rest.at(0.0).pose);
+  bodies_.bodies[0].path = rest;
 }
 
 void BoardSession::subscribe() {
@@ -141,13 +152,18 @@ std::optional<std::string> BoardSession::command(const json& command) {
           throw no_such_setting(key);
         }
       }
+    } else if (name == "place") {
+      if (!is_same_scale(placement_of(command).scale, 1.0)) {
+        return "place: a board cannot change the size of its model (build the model with --scale, "
+               "and write it with tactree flash)";
+      }
     } else if (name == "hand" || name == "inject" || name == "clear_injections") {
       return fmt::format(
           "'{}': not available with a board (use a simulation: tactree view without --port)", name);
     } else if (name != "arm" && name != "clear" && name != "connect" && name != "home" &&
                name != "record" && name != "end_recording") {
       return fmt::format(
-          "'{}': unknown command (a board has arm, stop, clear, home, set, connect, record, "
+          "'{}': unknown command (a board has arm, stop, clear, home, set, place, connect, record, "
           "end_recording)",
           name);
     }
@@ -192,6 +208,8 @@ std::optional<std::string> BoardSession::post_stop() {
 std::string BoardSession::trace_csv() const {
   return without_columns(log_.csv(), {"tip_x_m", "tip_y_m", "tip_z_m", "slipping"});
 }
+
+std::string BoardSession::reach_json() const { return viewer::reach_json(settings_.device); }
 
 // The session's thread
 
@@ -259,6 +277,8 @@ void BoardSession::execute(const json& command) {
     }
   } else if (name == "set") {
     set(command);
+  } else if (name == "place") {
+    place(command);
   } else if (name == "clear") {
     board_->clear_faults();
     outcome_->cleared(last_ ? last_->t_s : 0.0);
@@ -299,6 +319,18 @@ void BoardSession::set(const json& wanted) {
                        sent_.limits.ramp_s);
   }
   facts_->can = board_->capabilities();
+}
+
+void BoardSession::place(const json& command) {
+  const core::State state = last_ ? last_->status.state : core::State::kIdle;
+  if (arming_until_ || state == core::State::kArmed || state == core::State::kActive) {
+    report(
+        "place: the board is armed or active, and a model that jumps would strike the hand (stop "
+        "the board first)");
+    return;
+  }
+  settings_.pose = placement_of(command).pose;
+  send_pose();
 }
 
 void BoardSession::continue_arming() {
@@ -408,17 +440,28 @@ void BoardSession::report(const std::string& news) {
 
 std::string BoardSession::frame() {
   const bool has_run = link_ == Link::kConnected && last_;
-  const json frame = {{"type", "frame"},
-                      {"frame", frames_++},
-                      {"t_s", last_ ? last_->t_s : 0.0},
-                      {"runs", has_run ? json::array({run_of_last_tick()}) : json::array()},
-                      {"bodies", poses_json(bodies_, 0.0)},
-                      {"work", work_json(work_)},
-                      {"settings", settings_json()},
-                      {"board", board_json()},
-                      {"recording", recording_->to_json()},
-                      {"news", {{"number", news_number_}, {"text", news_}}}};
+  json frame = {{"type", "frame"},
+                {"frame", frames_++},
+                {"t_s", last_ ? last_->t_s : 0.0},
+                {"runs", has_run ? json::array({run_of_last_tick()}) : json::array()},
+                {"bodies", poses_json(bodies_, 0.0)},
+                {"work", work_json(work_)},
+                {"settings", settings_json()},
+                {"board", board_json()},
+                {"recording", recording_->to_json()},
+                {"news", {{"number", news_number_}, {"text", news_}}}};
+  if (!has_flag(facts_->can, core::wire::BoardFlag::kWatchOnly)) {
+    frame["place"] = place_json();
+  }
   return frame.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+json BoardSession::place_json() const {
+  const core::Vec3& origin = facts_->model_origin_m;
+  const Eigen::Isometry3d pose = bodies_.bodies[0].path.first();
+  return {{"pose", simulation::rows_of(simulation::in_device(pose, origin))},
+          {"scale", 1.0},
+          {"origin_m", {origin.x, origin.y, origin.z}}};
 }
 
 json BoardSession::run_of_last_tick() {

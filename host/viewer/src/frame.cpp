@@ -7,6 +7,7 @@
 #include "tactree/plant/linkage.hpp"
 #include "tactree/plant/linkage_shape.hpp"
 #include "tactree/plant/vectors.hpp"
+#include "tactree/simulation/workspace.hpp"
 
 namespace tactree::viewer {
 namespace {
@@ -180,6 +181,18 @@ json poses_json(const Bodies& bodies, double t_s) {
     poses.push_back(std::move(rows));
   }
   return poses;
+}
+
+std::string reach_json(const core::DeviceModel& device) {
+  using simulation::ReachShape;
+  json points = json::array();
+  for (const Eigen::Vector3d& point : simulation::reach_shape(device).points_m) {
+    points.push_back(drawn(point));
+  }
+  const json shape = {{"rows", ReachShape::kRows},
+                      {"columns", ReachShape::kColumns},
+                      {"points_m", std::move(points)}};
+  return shape.dump();
 }
 
 }  // namespace tactree::viewer

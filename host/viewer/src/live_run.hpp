@@ -33,6 +33,9 @@ class LiveRun {
   /// Precondition: `wanted` passes check() and differs in these groups only.
   bool change(const core::Configuration& wanted);
 
+  /// Puts the first body at rest at `pose`; see SceneTarget::place().
+  void place(const Eigen::Isometry3d& pose) { target_.place(0, pose); }
+
   /// Executes one tick.
   void step(const plant::HandTarget& hand);
 

@@ -16,8 +16,6 @@
 #include "tactree/plant/vectors.hpp"
 #include "tactree/simulation/hand_script.hpp"
 #include "tactree/simulation/injection.hpp"
-#include "tactree/simulation/placement.hpp"
-#include "tactree/simulation/workspace.hpp"
 #include "tactree/support/explain.hpp"
 
 namespace tactree::viewer {
@@ -90,17 +88,18 @@ Modes modes_of(const std::string& name) {
 }
 
 LiveSession::LiveSession(Bodies bodies, std::vector<NamedDevice> devices, const Settings& settings,
-                         Fitting fitting)
-    : bodies_(std::move(bodies)),
-      devices_(std::move(devices)),
-      fitting_(std::move(fitting)),
+                         Placing placing)
+    : devices_(std::move(devices)),
+      placing_(std::move(placing)),
+      first_pose_(bodies.bodies[0].path.first()),
+      bodies_(std::move(bodies)),
       settings_(settings) {
   const simulation::HandPath path = simulation::make_script("press", bodies_.views[0], 1.0);
-  start_m_ = bodies_.bodies[0].path.first() * path.waypoints().front().position_m;
-  hand_ = std::make_unique<SteeredHand>(start_m_);
+  above_m_ = path.waypoints().front().position_m;
+  hand_ = std::make_unique<SteeredHand>(start_of(placed_));
   outcome_ = std::make_unique<CommandOutcome>();
-  runs_ = make_runs(settings_);
-  fit_warning_ = check_fit(settings_, is_oversize_);
+  runs_ = make_runs(settings_, placed_);
+  fit_ = check_fit(settings_, placed_);
 }
 
 LiveSession::~LiveSession() { stop(); }
@@ -119,8 +118,7 @@ simulation::Setup LiveSession::make_setup(const Settings& settings, core::Render
   setup.controller = settings.controller;
   setup.controller.mode = mode;
   simulation::use_device(device(settings.device).preset, setup);
-  setup.controller.model_origin_m = simulation::middle_at_origin(
-      bodies_.views[0].header(), bodies_.bodies[0].path.first(), setup.controller.device.kind);
+  setup.controller.model_origin_m = origin_of(settings);
   setup.controller.supervision.supply_monitored = true;
   core::limit_to_rate(setup.controller);
   if (settings.force_max_N) {
@@ -145,10 +143,18 @@ std::vector<simulation::Setup> LiveSession::make_setups(const Settings& settings
   return setups;
 }
 
-LiveSession::Runs LiveSession::make_runs(const Settings& settings) const {
+LiveSession::Runs LiveSession::make_runs(const Settings& settings, const Pose& placed) const {
+  Bodies bodies;
+  {
+    const std::lock_guard lock(mutex_);
+    bodies = bodies_;
+  }
+  if (placed) {
+    bodies.bodies[0].path = simulation::BodyPath(*placed);
+  }
   Runs runs;
   for (const simulation::Setup& setup : make_setups(settings)) {
-    auto run = std::make_unique<LiveRun>(bodies_, setup, start_m_, 0);
+    auto run = std::make_unique<LiveRun>(bodies, setup, start_of(placed), 0);
     if (!run->simulation().start_result().ok()) {
       throw SessionRefused(refusal(bodies_.views[0], setup, run->simulation().start_result()));
     }
@@ -158,25 +164,6 @@ LiveSession::Runs LiveSession::make_runs(const Settings& settings) const {
   return runs;
 }
 
-std::string LiveSession::check_fit(const Settings& settings, bool& is_oversize) const {
-  const NamedDevice& used = device(settings.device);
-  std::optional<std::string> oversize;
-  if (fitting_.warning) {
-    oversize = fitting_.warning(used);
-  }
-  is_oversize = oversize.has_value();
-  const core::Configuration c = make_setup(settings, core::RenderMode::kSurface).controller;
-  const Eigen::Vector3d start = start_m_ + plant::widen(c.model_origin_m);
-  const bool reaches_start =
-      core::axes_of(c.device.kind) != core::kAxes || simulation::reaches(c.device, start);
-  std::string text = oversize.value_or("");
-  if (!reaches_start) {
-    text += text.empty() ? "" : "; ";
-    text += used.name + " does not reach the start of the hand: the probe may begin in the object";
-  }
-  return text;
-}
-
 // Commands of a page; may be called from any thread.
 
 Settings LiveSession::settings() const {
@@ -184,20 +171,7 @@ Settings LiveSession::settings() const {
   return settings_;
 }
 
-std::string LiveSession::warning() const {
-  const std::lock_guard lock(mutex_);
-  return fit_warning_;
-}
-
 void LiveSession::report(const std::string& text) { enqueue({{"do", "report"}, {"text", text}}); }
-
-void LiveSession::fit() const {
-  const std::lock_guard lock(mutex_);
-  if (!is_oversize_ || !fitting_.scale) {
-    throw SessionRefused("fit: the device reaches this model already, or it cannot be scaled");
-  }
-  fitting_.scale(device(settings_.device));
-}
 
 Settings LiveSession::changed(const json& wanted) const {
   Settings settings = settings_;
@@ -231,10 +205,12 @@ Settings LiveSession::changed(const json& wanted) const {
 void LiveSession::set(const json& wanted) {
   Settings before;
   Settings settings;
+  Pose placed;
   {
     const std::lock_guard lock(mutex_);
     before = settings_;
     settings = changed(wanted);
+    placed = placed_;
   }
   (void)make_setups(settings);  // throws
   const bool restarts = wanted.value("restart", false);
@@ -248,16 +224,15 @@ void LiveSession::set(const json& wanted) {
       restarts || settings.modes != before.modes ||
       settings.controller.use_materials != before.controller.use_materials;
   // Slow; not locked, so that the session continues.
-  Runs runs = may_refuse_model ? make_runs(settings) : Runs();
-  bool is_oversize = false;
-  const std::string fit_warning = restarts ? check_fit(settings, is_oversize) : "";
+  Runs runs = may_refuse_model ? make_runs(settings, placed) : Runs();
+  Fit fit = restarts ? check_fit(settings, placed) : Fit();
   const std::lock_guard lock(mutex_);
   settings_ = settings;
   is_changed_ = true;
   if (restarts) {
     next_runs_ = std::move(runs);
-    fit_warning_ = fit_warning;
-    is_oversize_ = is_oversize;
+    fit_ = std::move(fit);
+    is_moved_ = placed_.has_value();  // perhaps meanwhile
   }
 }
 
@@ -281,8 +256,8 @@ std::optional<std::string> LiveSession::command(const json& command) {
       set(command);
       return std::nullopt;
     }
-    if (name == "fit") {
-      fit();
+    if (name == "fit" || name == "place") {
+      name == "fit" ? fit() : place(command);
       return std::nullopt;
     }
     if (name == "hand") {
@@ -293,7 +268,7 @@ std::optional<std::string> LiveSession::command(const json& command) {
     } else if (name != "arm" && name != "stop" && name != "clear" && name != "clear_injections") {
       return fmt::format(
           "'{}': unknown command (a simulation has hand, arm, stop, clear, set, inject, "
-          "clear_injections, fit)",
+          "clear_injections, place, fit)",
           name);
     }
     enqueue(command);
@@ -309,13 +284,14 @@ std::string LiveSession::hello() const {
     devices.push_back({{"name", one.name}, {"about", one.about}});
   }
   const std::lock_guard lock(mutex_);
+  const Eigen::Vector3d start_m = start_of(placed_);
   const json hello = {{"type", "hello"},
                       {"source", "simulation"},
                       {"models", models_json(bodies_)},
                       {"devices", devices},
                       {"has_materials", has_materials(bodies_)},
                       {"injections", injections_json()},
-                      {"hand_start_m", {start_m_.x(), start_m_.y(), start_m_.z()}},
+                      {"hand_start_m", {start_m.x(), start_m.y(), start_m.z()}},
                       {"settings", settings_json()}};
   return hello.dump();
 }
@@ -367,6 +343,8 @@ void LiveSession::apply_commands() {
   std::deque<json> commands;
   Runs next;
   std::optional<Settings> changed;
+  Pose moved;
+  Eigen::Vector3d start_m;
   {
     const std::lock_guard lock(mutex_);
     commands.swap(commands_);
@@ -374,14 +352,24 @@ void LiveSession::apply_commands() {
     if (std::exchange(is_changed_, false)) {
       changed = settings_;
     }
+    if (std::exchange(is_moved_, false)) {
+      moved = placed_;
+      bodies_.bodies[0].path = simulation::BodyPath(*placed_);
+    }
+    start_m = start_of(placed_);
   }
   if (!next.empty()) {
     runs_ = std::move(next);
-    hand_ = std::make_unique<SteeredHand>(start_m_);
+    hand_ = std::make_unique<SteeredHand>(start_m);
     outcome_ = std::make_unique<CommandOutcome>();
     ticks_due_ = 0.0;
     lost_s_ = 0.0;
     log_.clear();
+  }
+  if (moved) {
+    for (const auto& run : runs_) {
+      run->place(*moved);
+    }
   }
   if (changed) {
     change_runs(*changed);
@@ -483,25 +471,32 @@ std::string LiveSession::frame() {
   const Eigen::Vector3d& hand = hand_->position_m();
   json settings;
   json fit;
+  json place;
   {
     const std::lock_guard lock(mutex_);
     settings = settings_json();
-    fit = {{"warning", fit_warning_},
-           {"can_scale", is_oversize_ && static_cast<bool>(fitting_.scale)}};
+    fit = {{"warning", fit_.warning},
+           {"can_scale", fit_.is_oversize && static_cast<bool>(placing_.fit)}};
+    if (placing_.renew) {
+      place = place_json();
+    }
   }
   const double t_s = runs_[0]->last().t_s;
-  const json frame = {{"type", "frame"},
-                      {"frame", frames_++},
-                      {"t_s", t_s},
-                      {"runs", runs},
-                      {"hand_m", json::array({hand.x(), hand.y(), hand.z()})},
-                      {"bodies", poses_json(bodies_, t_s)},
-                      {"lost_s", lost_s_},
-                      {"fit", fit},
-                      {"news", {{"number", news_number_}, {"text", news_}}},
-                      {"work", unknown_work("Not counted in this simulation (use tactree simulate "
-                                            "--board).")},
-                      {"settings", settings}};
+  json frame = {{"type", "frame"},
+                {"frame", frames_++},
+                {"t_s", t_s},
+                {"runs", runs},
+                {"hand_m", json::array({hand.x(), hand.y(), hand.z()})},
+                {"bodies", poses_json(bodies_, t_s)},
+                {"lost_s", lost_s_},
+                {"fit", fit},
+                {"news", {{"number", news_number_}, {"text", news_}}},
+                {"work", unknown_work("Not counted in this simulation (use tactree simulate "
+                                      "--board).")},
+                {"settings", settings}};
+  if (!place.is_null()) {
+    frame["place"] = std::move(place);
+  }
   return frame.dump();
 }
 

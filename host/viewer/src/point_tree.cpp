@@ -4,6 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <utility>
+
+#include "tactree/support/blob_facts.hpp"
 
 namespace tactree::viewer {
 namespace {
@@ -17,6 +20,17 @@ std::vector<SurfacePoint> decode(const core::BlobView& view) {
     points.push_back(view.surface_point(leaf, index));
   });
   return points;
+}
+
+/// In the order of decode(); empty for a model with fewer than two materials.
+std::vector<std::uint8_t> materials_of(const core::BlobView& view) {
+  std::vector<std::uint8_t> materials;
+  if (view.material_count() > 1) {
+    core::for_each_point(view, [&](const core::Leaf&, std::uint32_t index) {
+      materials.push_back(static_cast<std::uint8_t>(view.material_of(index)));
+    });
+  }
+  return materials;
 }
 
 std::uint16_t to_share(float value, float low, float edge) {
@@ -80,7 +94,10 @@ struct PointTree::Task {
 class PointTree::Build {
  public:
   Build(PointTree& tree, const core::BlobView& view)
-      : tree_(tree), points_(decode(view)), spacing_m_(view.header().spacing_m) {
+      : tree_(tree),
+        points_(decode(view)),
+        materials_(materials_of(view)),
+        spacing_m_(view.header().spacing_m) {
     Task root;
     root.points.resize(points_.size());
     for (std::uint32_t i = 0; i < root.points.size(); ++i) {
@@ -114,7 +131,7 @@ class PointTree::Build {
     for (std::size_t i = 0; i < all; ++i) {
       const std::uint32_t index = task.points[i];
       if (static_cast<double>(i) >= next) {
-        keep(node, points_[index]);
+        keep(node, index);
         next += stride;
       } else {
         below[octant_of(points_[index].position, node)].push_back(index);
@@ -124,7 +141,11 @@ class PointTree::Build {
     descend(task, below);
   }
 
-  void keep(const PointNode& node, const SurfacePoint& point) {
+  void keep(const PointNode& node, std::uint32_t index) {
+    const SurfacePoint& point = points_[index];
+    if (!materials_.empty()) {
+      tree_.materials_.push_back(materials_[index]);
+    }
     tree_.points_.push_back({to_share(point.position.x, node.min_m[0], node.edge_m),
                              to_share(point.position.y, node.min_m[1], node.edge_m),
                              to_share(point.position.z, node.min_m[2], node.edge_m),
@@ -146,6 +167,7 @@ class PointTree::Build {
 
   PointTree& tree_;
   std::vector<SurfacePoint> points_;
+  std::vector<std::uint8_t> materials_;
   float spacing_m_;
   std::vector<Task> open_;
 };
@@ -156,7 +178,45 @@ std::span<const PackedPoint> PointTree::points(std::size_t node) const {
   return std::span(points_).subspan(nodes_[node].first_point, nodes_[node].point_count);
 }
 
-std::string tree_json(const PointTree& tree, const core::BlobView& view) {
+std::span<const std::uint8_t> PointTree::materials(std::size_t node) const {
+  return materials_.empty()
+             ? std::span<const std::uint8_t>()
+             : std::span(materials_).subspan(nodes_[node].first_point, nodes_[node].point_count);
+}
+
+namespace {
+
+nlohmann::json materials_json(const core::BlobView& view,
+                              const std::vector<MaterialLabel>& labels) {
+  const std::vector<std::uint32_t> points = support::points_of_materials(view);
+  nlohmann::json list = nlohmann::json::array();
+  for (std::uint32_t i = 0; i < view.material_count(); ++i) {
+    const core::BlobMaterial& m = view.material(i);
+    nlohmann::json material = {{"points", points[i]},
+                               {"stiffness_N_m", m.stiffness_N_m},
+                               {"damping_Ns_m", m.damping_Ns_m},
+                               {"static_friction", m.static_friction},
+                               {"dynamic_friction", m.dynamic_friction},
+                               {"texture_height_m", m.texture_height_m},
+                               {"texture_wavelength_m", m.texture_wavelength_m}};
+    if (i < labels.size()) {
+      material["name"] = labels[i].name;
+      if (labels[i].colour) {
+        material["rgb"] = *labels[i].colour;
+      }
+    }
+    list.push_back(std::move(material));
+  }
+  return list;
+}
+
+}  // namespace
+
+std::string tree_json(const PointTree& tree, const core::BlobView& view, const ScanFacts& scan) {
+  nlohmann::json colours = nlohmann::json::array();
+  for (const ScanColour& colour : scan.colours) {
+    colours.push_back({{"rgb", colour.rgb}, {"points", colour.points}});
+  }
   nlohmann::json nodes = nlohmann::json::array();
   for (const PointNode& node : tree.nodes()) {
     nodes.push_back({{"min_m", node.min_m},
@@ -172,8 +232,10 @@ std::string tree_json(const PointTree& tree, const core::BlobView& view) {
                                {"depth", h.depth},
                                {"bounds_min_m", std::to_array(h.bounds_min_m)},
                                {"bounds_max_m", std::to_array(h.bounds_max_m)},
+                               {"materials", materials_json(view, scan.labels)},
+                               {"colours", colours},
                                {"nodes", nodes}};
-  return json.dump();
+  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 namespace {

@@ -17,6 +17,7 @@ constexpr std::size_t kMaxOctants = 20000;
 constexpr std::string_view kFaults = "/faults/";
 constexpr std::string_view kModel = "/model/";
 constexpr std::string_view kTrace = "/trace.csv";
+constexpr std::string_view kReach = "/reach.json";
 
 HttpResponse not_found() { return {404, "text/plain; charset=utf-8", "unknown page\n", {}}; }
 
@@ -78,20 +79,24 @@ std::string fault_html(std::string_view title, std::string_view markdown) {
                               "<p><a href=\"/faults/\">All faults and limits</a></p>\n");
 }
 
-Site::Site(std::vector<core::BlobView> models, const Source& source)
-    : models_(std::move(models)), source_(source) {
+Site::Site(std::vector<core::BlobView> models, const Source& source, ScanFacts scan)
+    : models_(std::move(models)), scan_(std::move(scan)), source_(source) {
   for (const core::BlobView& view : models_) {
     trees_.emplace_back(view);
   }
 }
 
 bool Site::is_slow(std::string_view path) {
-  return path == kTrace || (path.starts_with(kModel) && path.find("/octants/") != path.npos);
+  return path == kTrace || path == kReach ||
+         (path.starts_with(kModel) && path.find("/octants/") != path.npos);
 }
 
 HttpResponse Site::answer(std::string_view path) const {
   if (path == kTrace) {
     return {200, "text/csv; charset=utf-8", source_.trace_csv(), "trace.csv"};
+  }
+  if (path == kReach) {
+    return {200, "application/json", source_.reach_json(), {}};
   }
   if (path.starts_with(kModel)) {
     return answer_model(path.substr(kModel.size()));
@@ -119,12 +124,17 @@ HttpResponse Site::answer_model(std::string_view path) const {
   }
   const PointTree& tree = trees_[*number];
   if (path.empty()) {
-    return {200, "application/json", tree_json(tree, models_[*number]), {}};
+    const ScanFacts none;
+    return {200,
+            "application/json",
+            tree_json(tree, models_[*number], *number == 0 ? scan_ : none),
+            {}};
   }
   const bool wants_points = take_word(path, "points/");
   const bool wants_octants = !wants_points && take_word(path, "octants/");
+  const bool wants_materials = !wants_points && !wants_octants && take_word(path, "materials/");
   const auto which = take_number(path);
-  if (!which || !path.empty() || (!wants_points && !wants_octants)) {
+  if (!which || !path.empty() || (!wants_points && !wants_octants && !wants_materials)) {
     return not_found();
   }
   if (wants_octants) {
@@ -132,6 +142,10 @@ HttpResponse Site::answer_model(std::string_view path) const {
   }
   if (*which >= tree.nodes().size()) {
     return not_found();
+  }
+  if (wants_materials) {
+    const auto materials = tree.materials(*which);
+    return binary(materials.data(), materials.size_bytes());
   }
   const auto points = tree.points(*which);
   return binary(points.data(), points.size_bytes());

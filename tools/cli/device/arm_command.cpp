@@ -4,6 +4,7 @@
 
 #include "commands.hpp"
 #include "device/board_port.hpp"
+#include "device/board_pose.hpp"
 #include "exit_codes.hpp"
 #include "interruption.hpp"
 #include "option_checks.hpp"
@@ -17,6 +18,7 @@ struct ArmOptions {
   double patience_s = 30.0;
   double seconds = 0.0;
   int link_timeout_ms = 50;
+  std::string pose;
   bool clear = false;
   bool home = false;
 };
@@ -55,6 +57,7 @@ void arm(const ArmOptions& options, int& exit_code) {
   if (options.home) {
     board.home();
   }
+  send_pose(board, options.pose);
   board.arm(milliseconds(options.patience_s));
   fmt::print("active until this program ends\n");
   std::fflush(stdout);
@@ -76,6 +79,7 @@ void add_arm_command(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(0.1, 3600.0))
       ->capture_default_str();
   add_link_timeout_option(*verb, options->link_timeout_ms);
+  add_pose_option(*verb, options->pose);
   verb->add_flag("--clear", options->clear, "first clear faults whose cause is no longer present");
   verb->add_flag("--home", options->home, "home the device, which must be in its home pose");
   verb->callback([options, &exit_code] { arm(*options, exit_code); });

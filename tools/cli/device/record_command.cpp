@@ -12,6 +12,7 @@
 
 #include "commands.hpp"
 #include "device/board_port.hpp"
+#include "device/board_pose.hpp"
 #include "exit_codes.hpp"
 #include "interruption.hpp"
 #include "option_checks.hpp"
@@ -31,6 +32,7 @@ struct RecordOptions {
   double seconds = 0.0;
   std::uint32_t every_ticks = 1;
   bool arm = false;
+  std::string pose;
   int link_timeout_ms = 50;
 };
 
@@ -151,6 +153,7 @@ void record(const RecordOptions& options, int& exit_code) {
                              telemetry::kStreamCapacity});
   warn_of_slow_wire(options, port, static_cast<double>(board.capabilities().rate_hz));
   if (options.arm) {
+    send_pose(board, options.pose);
     board.arm();
   }
   const std::uint32_t fields = telemetry::recorded_fields(board.connection().protocol_minor());
@@ -198,6 +201,7 @@ void add_record_command(CLI::App& app, int& exit_code) {
   CLI::Option* arm = verb->add_flag(
       "--arm", options->arm, "arm the board first; stop it at the end (default: only watch it)");
   add_link_timeout_option(*verb, options->link_timeout_ms)->needs(arm);
+  add_pose_option(*verb, options->pose)->needs(arm);
   verb->callback([options, &exit_code] { record(*options, exit_code); });
 }
 

@@ -23,6 +23,11 @@ namespace {
 /// reach only a part of it.
 std::optional<std::string> reach_warning(const SimulateOptions& options,
                                          const setup::SceneFile& scene) {
+  if (!options.pose.empty()) {
+    return setup::misplaced_warning(options.blob, scene.files[0]->view().header(), options.device,
+                                    support::load_device(options.device).preset.model,
+                                    scene.bodies[0].path.first());
+  }
   if (is_scene(options) || !options.origin_m.empty()) {
     return std::nullopt;
   }
@@ -51,7 +56,7 @@ void simulate(SimulateOptions& options, int& exit_code) {
     throw CLI::RequiredError("BLOB");
   }
   std::vector<std::filesystem::path> inputs(options.blobs.begin(), options.blobs.end());
-  inputs.insert(inputs.end(), {options.scene, options.path, options.replay});
+  inputs.insert(inputs.end(), {options.scene, options.pose, options.path, options.replay});
   support::check_outputs({options.record, options.trace, options.plot, options.json}, inputs);
   if (!options.replay.empty()) {
     exit_code = replay_session(options) ? kExitOk : kExitFailed;
@@ -63,7 +68,7 @@ void simulate(SimulateOptions& options, int& exit_code) {
            "omit --board; the ticks on the host are bit-identical");
   }
   check_panel(options);
-  const setup::SceneFile scene = setup::read_scene(options.scene, options.blobs);
+  const setup::SceneFile scene = setup::read_scene(options.scene, options.blobs, options.pose);
   options.blob = scene.names[0];
   note_defaults(options.device, support::load_device(options.device));
   if (options.serve) {

@@ -136,12 +136,20 @@ void add_device_options(CLI::App& verb, SimulateOptions& options) {
       ->capture_default_str();
   verb.add_flag("--dump-device", options.dump_device,
                 "print the device as a JSON file that can serve as a template, and exit");
-  verb.add_option("--origin", options.origin_m,
-                  "position of the model's origin in the device's frame (x to the user, y right, z "
-                  "up), m; default: the model's centre is at the device's origin; with a device of "
-                  "one or two axes, the centre of the model's top")
-      ->expected(3)
-      ->check(CLI::Range(-10.0, 10.0));
+  CLI::Option* origin =
+      verb.add_option(
+              "--origin", options.origin_m,
+              "position of the model's origin in the device's frame (x to the user, y right, z "
+              "up), m; default: the model's centre is at the device's origin; with a device of "
+              "one or two axes, the centre of the model's top")
+          ->expected(3)
+          ->check(CLI::Range(-10.0, 10.0));
+  verb.add_option("--pose", options.pose,
+                  "pose file, as the page of view saves it: where the model is in the device's "
+                  "frame, and its size")
+      ->check(CLI::ExistingFile)
+      ->excludes(origin)
+      ->excludes(verb.get_option("--scene"));
 }
 
 void add_output_options(CLI::App& verb, SimulateOptions& options) {
@@ -229,7 +237,7 @@ void add_hand_options(CLI::App& verb, SimulateOptions& options) {
 }  // namespace
 
 bool is_scene(const SimulateOptions& options) {
-  return !options.scene.empty() || options.blobs.size() > 1;
+  return !options.scene.empty() || !options.pose.empty() || options.blobs.size() > 1;
 }
 
 void add_simulate_options(CLI::App& verb, SimulateOptions& options) {

@@ -14,6 +14,7 @@ namespace tactree::cli {
 struct SimulateOptions : setup::SessionOptions {
   std::vector<std::string> blobs;
   std::string scene;
+  std::string pose;  // pose file of the only model
   std::string blob;  // of the first body
   std::string board = "host";
   std::string firmware;
@@ -39,7 +40,7 @@ struct SimulateOptions : setup::SessionOptions {
   std::vector<CLI::Option*> cartesian_only;
 };
 
-/// True for several bodies, or one placed by a scene file.
+/// True for several bodies, or one placed by a scene or pose file.
 [[nodiscard]] bool is_scene(const SimulateOptions& options);
 
 /// Adds all options to the command. `options` must outlive it.

@@ -113,7 +113,7 @@ void print_result(const simulation::ReplayResult& result) {
 }  // namespace
 
 bool replay_session(const SimulateOptions& options) {
-  const setup::SceneFile scene = setup::read_scene(options.scene, options.blobs);
+  const setup::SceneFile scene = setup::read_scene(options.scene, options.blobs, options.pose);
   try {
     const std::vector<std::byte> bytes = read_recording(options.replay);
     simulation::Recording recording(bytes);

@@ -130,6 +130,11 @@ void refuse_results(const SimulateOptions& options) {
 
 void serve(const SimulateOptions& options, const setup::SceneFile& scene) {
   refuse_results(options);
+  if (!options.pose.empty()) {
+    refuse("--pose: a board gets the pose of its model from its application",
+           "tactree arm --pose, record --arm --pose and view --port --pose send it; build --pose "
+           "places the model itself");
+  }
   if ((options.on_usb || options.usb_port) && options.board != "host") {
     refuse(fmt::format("--board {}: an emulated board has no USB port", options.board),
            "use --board host, or omit --usb");

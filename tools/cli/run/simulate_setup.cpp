@@ -27,7 +27,7 @@ void check_cartesian_options(const SimulateOptions& options) {
 }
 
 setup::FirstBody first_body(const setup::SceneFile& scene) {
-  return {scene.files[0]->view(), scene.bodies[0].path.first()};
+  return {scene.files[0]->view(), scene.bodies[0].path.first(), scene.in_device_frame};
 }
 
 [[noreturn]] void refuse_slow_model(const std::string& file, const core::BlobView& view,
@@ -87,8 +87,8 @@ void check_panel(const SimulateOptions& options) {
     return;
   }
   if (is_scene(options)) {
-    refuse("--panel: no application is connected that moves the bodies of a scene",
-           "give one BLOB, without --scene");
+    refuse("--panel: no application is connected that places or moves bodies",
+           "give one BLOB, without --scene and --pose; build --pose places the model itself");
   }
   for (const simulation::InjectedFault& fault : injections(options)) {
     if (fault.kind == simulation::InjectedKind::kLinkDead ||

@@ -7,17 +7,18 @@
 #include <future>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "commands.hpp"
 #include "device/board_port.hpp"
+#include "device/board_pose.hpp"
 #include "device/device_defaults.hpp"
 #include "run/wall_options.hpp"
 #include "scan/board_work.hpp"
-#include "tactree/builder/scaled_model.hpp"
+#include "scan/named_materials.hpp"
+#include "scan/report_colours.hpp"
 #include "tactree/builder/up_advice.hpp"
 #include "tactree/setup/model_size.hpp"
 #include "tactree/setup/scene_file.hpp"
@@ -37,7 +38,11 @@ namespace {
 struct ViewOptions {
   std::vector<std::string> blobs;
   std::string scene;
+  std::string pose;
+  std::vector<double> origin_m;
   std::string trace;
+  std::string material;
+  std::string report;
   BoardPort board;
   int link_timeout_ms = 50;
   std::string firmware;
@@ -108,11 +113,27 @@ std::unique_ptr<viewer::Source> board_source(const ViewOptions& options,
   settings.device = support::load_device(options.settings.device).preset.model;
   settings.model = shown.bytes();
   settings.recording = {options.recording, print_line};
+  if (!options.pose.empty()) {
+    settings.pose = read_board_pose(options.pose).pose;
+  }
   settings.work = [&shown, firmware = options.firmware](const std::string& board,
                                                         const core::wire::CapabilitiesReply& can) {
     return work_of_board(board, can, shown.view().header(), firmware);
   };
   return std::make_unique<viewer::BoardSession>(noted_bodies_of(scene), std::move(settings));
+}
+
+/// The origin of the scene that the user has stated, in the device frame.
+std::optional<core::Vec3> stated_origin(const ViewOptions& options, const setup::SceneFile& scene) {
+  if (scene.in_device_frame) {
+    return core::Vec3{};
+  }
+  if (options.origin_m.empty()) {
+    return std::nullopt;
+  }
+  return core::Vec3{static_cast<float>(options.origin_m[0]),
+                    static_cast<float>(options.origin_m[1]),
+                    static_cast<float>(options.origin_m[2])};
 }
 
 std::unique_ptr<viewer::Source> make_source(const ViewOptions& options,
@@ -121,10 +142,27 @@ std::unique_ptr<viewer::Source> make_source(const ViewOptions& options,
     return board_source(options, scene);
   }
   const core::DeviceModel device = support::load_device(options.settings.device).preset.model;
-  const core::Vec3 origin_m = simulation::middle_at_origin(
-      scene.files[0]->view().header(), scene.bodies[0].path.first(), device.kind);
+  const core::Vec3 origin_m =
+      stated_origin(options, scene)
+          .value_or(simulation::middle_at_origin(scene.files[0]->view().header(),
+                                                 scene.bodies[0].path.first(), device.kind));
   return std::make_unique<viewer::TracePlayback>(viewer::read_trace(options.trace),
                                                  noted_bodies_of(scene), device, origin_m);
+}
+
+/// Of the first model, for the legend of the page and its rules.
+viewer::ScanFacts scan_facts(const ViewOptions& options, const setup::SceneFile& scene) {
+  const std::optional<builder::MaterialMap> map =
+      named_materials(options.material, scene.names[0], scene.files[0]->view());
+  viewer::ScanFacts facts;
+  for (std::size_t i = 0; map && i <= map->colours.size(); ++i) {
+    facts.labels.push_back({builder::material_name(*map, i)});
+    if (i > 0) {
+      facts.labels.back().colour = map->colours[i - 1].colour;
+    }
+  }
+  facts.colours = report_colours(options.report);
+  return facts;
 }
 
 bool is_single(const ViewOptions& options, const setup::SceneFile& scene) {
@@ -139,13 +177,13 @@ void warn_of_size(const setup::SceneFile& scene) {
   }
 }
 
-/// A simulation, and the scaling of its model on demand of the page.
+/// A simulation, and the change of its model's size on demand of the page.
 class Simulated {
  public:
   Simulated(const ViewOptions& options, setup::SceneFile& scene)
       : scene_(scene),
         session_(noted_bodies_of(scene), devices(options.settings.device), options.settings,
-                 is_single(options, scene) ? fitting() : viewer::Fitting{}) {
+                 is_single(options, scene) ? placing() : viewer::Placing{}) {
     if (!session_.warning().empty()) {
       warn(session_.warning());
     } else if (is_single(options, scene)) {
@@ -154,50 +192,72 @@ class Simulated {
   }
 
   [[nodiscard]] viewer::LiveSession& session() { return session_; }
-  /// Call it before run(); `server` is stopped when the model is scaled.
+  /// Call it before run(); `server` is stopped when the model has another size.
   void stops(viewer::Server& server) { server_ = &server; }
-  /// After run(): replaces the model of the scene if it was scaled. Returns false if not.
-  bool scale_scene() {
-    const bool was_scaled = is_scaled_;  // otherwise the user ended the server
+  /// After run(): replaces the model of the scene if its size was changed. Returns the new
+  /// placement, empty if the user ended the server.
+  std::optional<simulation::Placement> renew_scene() {
+    const bool was_renewed = is_renewed_;
     if (scaling_.valid()) {
       scaling_.wait();  // its task uses the server
     }
-    if (!was_scaled) {
-      return false;
+    if (!was_renewed) {
+      return std::nullopt;
     }
     scene_.files[0] = scaled_.get();
     scene_.bodies[0].blob = scaled_->bytes();
-    scene_.blobs.push_back(std::move(scaled_));
-    return true;
+    scene_.bodies[0].path = simulation::BodyPath(placement_.pose);
+    scene_.in_device_frame = true;
+    scene_.scaled.push_back(std::move(scaled_));
+    return placement_;
   }
 
  private:
-  viewer::Fitting fitting() {
-    return {[this](const viewer::NamedDevice& device) {
-              return setup::oversize_warning(scene_.names[0], header(), device.name,
-                                             device.preset.model);
-            },
-            [this](const viewer::NamedDevice& device) {
-              using std::chrono_literals::operator""s;
-              if (!scaling_.valid() || scaling_.wait_for(0s) == std::future_status::ready) {
-                scaling_ = std::async(std::launch::async, [this, device] { scale(device); });
-              }
-            }};
+  viewer::Placing placing() {
+    return {
+        [this](const viewer::NamedDevice& device,
+               const std::optional<simulation::Placement>& placement) {
+          return placement ? setup::misplaced_warning(scene_.names[0], header(), device.name,
+                                                      device.preset.model, placement->pose)
+                           : setup::oversize_warning(scene_.names[0], header(), device.name,
+                                                     device.preset.model);
+        },
+        [this](const simulation::Placement& wanted) { begin([this, wanted] { renew(wanted); }); },
+        [this](const viewer::NamedDevice& device, const simulation::Placement& now) {
+          begin([this, device, now] { fit(device, now); });
+        }};
   }
+  /// Of the model as it is shown.
   [[nodiscard]] const core::BlobHeader& header() const { return scene_.files[0]->view().header(); }
+  /// As the user gave it: the size of a model does not depend on the sizes that it had before.
+  [[nodiscard]] const support::BlobFile& given() const { return *scene_.blobs[0]; }
 
-  void scale(const viewer::NamedDevice& device) {
+  /// One task at a time.
+  template <class Task>
+  void begin(Task task) {
+    using std::chrono_literals::operator""s;
+    if (!scaling_.valid() || scaling_.wait_for(0s) == std::future_status::ready) {
+      scaling_ = std::async(std::launch::async, std::move(task));
+    }
+  }
+
+  void fit(const viewer::NamedDevice& device, const simulation::Placement& now) {
+    const std::optional<simulation::Placement> fitted =
+        setup::fitted_placement(device.preset.model, given().view().header(), now);
+    if (fitted) {
+      renew(*fitted);
+    } else {
+      session_.report(
+          "The model cannot be scaled: the origin of the device is not inside its workspace");
+    }
+  }
+
+  void renew(const simulation::Placement& wanted) {
     session_.report("The model is being scaled; the page starts again with it.");
     try {
-      const std::optional<double> scale =
-          setup::fitting_scale(device.preset.model, setup::size_of(header()));
-      if (!scale) {
-        throw std::runtime_error("the origin of the device is not inside its workspace");
-      }
-      const builder::WrittenBlob scaled = builder::scaled_model(scene_.files[0]->view(), *scale);
-      scaled_ = std::make_unique<support::BlobFile>(
-          support::BlobFile::copy_of(scaled.bytes, scene_.names[0]));
-      is_scaled_ = true;
+      scaled_ = setup::scaled_blob(given(), scene_.names[0], wanted.scale);
+      placement_ = wanted;
+      is_renewed_ = true;
       server_->stop();
     } catch (const std::exception& error) {
       session_.report(fmt::format("The model cannot be scaled: {}", error.what()));
@@ -208,7 +268,8 @@ class Simulated {
   viewer::LiveSession session_;
   viewer::Server* server_ = nullptr;
   std::unique_ptr<support::BlobFile> scaled_;
-  std::atomic<bool> is_scaled_{false};
+  simulation::Placement placement_;
+  std::atomic<bool> is_renewed_{false};
   std::future<void> scaling_;  // its task uses the members above
 };
 
@@ -217,17 +278,22 @@ void announce(const viewer::Server& server) {
   std::fflush(stdout);
 }
 
-/// Serves the simulation. Returns true if it must be served again, with a scaled model.
+/// Serves the simulation. Returns true if it must be served again, with a model of another size.
 bool serve_simulation(ViewOptions& options, setup::SceneFile& scene) {
   Simulated simulated(options, scene);
-  const viewer::Site site(bodies_of(scene).views, simulated.session());
+  const viewer::Site site(bodies_of(scene).views, simulated.session(), scan_facts(options, scene));
   viewer::Server server(options.server, site, simulated.session());
   simulated.stops(server);
   announce(server);
   server.run();
   options.server.port = server.port();
   options.settings = simulated.session().settings();
-  return simulated.scale_scene();
+  const std::optional<simulation::Placement> renewed = simulated.renew_scene();
+  if (renewed) {
+    options.settings.origin_m = core::Vec3{};
+    options.settings.scale = renewed->scale;
+  }
+  return renewed.has_value();
 }
 
 void view(ViewOptions& options) {
@@ -240,7 +306,9 @@ void view(ViewOptions& options) {
     throw CLI::RequiredError("BLOB");
   }
   options.settings.modes = viewer::modes_of(options.mode);
-  setup::SceneFile scene = setup::read_scene(options.scene, options.blobs);
+  setup::SceneFile scene = setup::read_scene(options.scene, options.blobs, options.pose);
+  options.settings.origin_m = stated_origin(options, scene);
+  options.settings.scale = scene.scales[0];
   if (options.board.port.empty() && options.trace.empty()) {
     while (serve_simulation(options, scene)) {
     }
@@ -250,7 +318,7 @@ void view(ViewOptions& options) {
     warn_of_size(scene);
   }
   const std::unique_ptr<viewer::Source> source = make_source(options, scene);
-  const viewer::Site site(bodies_of(scene).views, *source);
+  const viewer::Site site(bodies_of(scene).views, *source, scan_facts(options, scene));
   viewer::Server server(options.server, site, *source);
   announce(server);
   server.run();
@@ -278,7 +346,8 @@ void add_board_options(CLI::App& verb, ViewOptions& options) {
                              name + ")"
                        : std::string();
           });
-  for (const char* other : {"--scene", "--trace", "--mode", "--rate", "--stiffness", "--damping"}) {
+  for (const char* other :
+       {"--scene", "--trace", "--mode", "--rate", "--stiffness", "--damping", "--origin"}) {
     port->excludes(other);
   }
   verb.add_option("--baud", options.board.baud, "speed of a serial port")
@@ -294,6 +363,20 @@ void add_board_options(CLI::App& verb, ViewOptions& options) {
           "FILE.npz for NumPy; if it exists, a number is added to the name")
       ->capture_default_str()
       ->needs(port);
+}
+
+void add_place_options(CLI::App& verb, ViewOptions& options) {
+  CLI::Option* origin =
+      verb.add_option("--origin", options.origin_m,
+                      "position of the model's origin in the device's frame: see simulate")
+          ->expected(3)
+          ->check(CLI::Range(-10.0, 10.0));
+  verb.add_option("--pose", options.pose,
+                  "pose file, as the page saves it: where the model is in the device's frame, and "
+                  "its size. With --port: sent to the board, which cannot change the size")
+      ->check(CLI::ExistingFile)
+      ->excludes(origin)
+      ->excludes(verb.get_option("--scene"));
 }
 
 void add_session_options(CLI::App& verb, ViewOptions& options) {
@@ -318,10 +401,18 @@ void add_view_command(CLI::App& app, int&) {
   verb->add_option("--scene", options->scene,
                    "JSON file with the positions of the bodies: see simulate")
       ->check(CLI::ExistingFile);
+  add_place_options(*verb, *options);
   verb->add_option(
       "--trace", options->trace,
       "play back this trace of simulate --trace, or recording of a board (.csv, .npz), "
       "instead of a simulation");
+  verb->add_option("--material", options->material,
+                   "file of the option --material of the build: names the materials of the first "
+                   "model on the page");
+  verb->add_option("--report", options->report,
+                   "file of the option --report of the build: the page lists the colours of the "
+                   "scan, and makes a file of materials from them")
+      ->check(CLI::ExistingFile);
   add_session_options(*verb, *options);
   add_board_options(*verb, *options);
   add_server_options(*verb, *options);

@@ -19,6 +19,7 @@
 #include "tactree/builder/option_names.hpp"
 #include "tactree/builder/read_materials.hpp"
 #include "tactree/builder/report_json.hpp"
+#include "tactree/setup/pose_file.hpp"
 #include "tactree/support/output_file.hpp"
 #include "tactree/support/spooled_input.hpp"
 #include "tactree/support/user_error.hpp"
@@ -42,6 +43,7 @@ struct BuildArguments {
   std::string preview;
   std::string json;
   std::optional<std::string> fit;
+  std::string pose;
   std::vector<double> crop;
   std::vector<std::string> viewpoints;
   std::optional<std::string> spacing;
@@ -123,6 +125,11 @@ void complete(BuildArguments& arguments) {
   if (arguments.fit) {
     set_fit(*arguments.fit, build);
   }
+  if (!arguments.pose.empty()) {
+    const simulation::Placement placement = setup::read_pose_file(arguments.pose);
+    build.pose = placement.pose;
+    build.placed_scale = placement.scale;
+  }
   if (!arguments.crop.empty()) {
     const auto& c = arguments.crop;
     build.crop =
@@ -166,8 +173,10 @@ void build(BuildArguments& arguments) {
   const std::vector<fs::path> inputs(arguments.inputs.begin(), arguments.inputs.end());
   std::vector<fs::path> files = inputs;
   std::erase(files, support::kStandardInput);
+  std::vector<fs::path> read = files;
+  read.emplace_back(arguments.pose);
   support::check_outputs({arguments.output, arguments.report, arguments.json, arguments.preview},
-                         files);
+                         read);
   const std::unique_ptr<builder::Progress> progress =
       builder::make_progress(arguments.progress, stderr);
   builder::BuildResult result;
@@ -190,7 +199,8 @@ void build(BuildArguments& arguments) {
     }
   }
   if (!arguments.preview.empty()) {
-    write_preview(arguments.preview, view_of(result), result.report.openings, result.doubtful);
+    write_preview(arguments.preview, view_of(result), result.report.openings, result.doubtful,
+                  arguments.build.materials);
   }
   print_report(result.report, arguments.build, arguments.output);
   for (const std::string& warning : result.report.warnings) {
@@ -224,6 +234,11 @@ void add_frame_options(CLI::App& verb, BuildArguments& arguments) {
                   "then turn the model about z by this angle, degrees, counterclockwise seen from "
                   "above; its front is the side of +x, which faces the user of the device")
       ->capture_default_str()
+      ->group(kGroup);
+  verb.add_option("--pose", arguments.pose,
+                  "pose file, as the page of view saves it, applied last: the coordinates of the "
+                  "model are then those of the device's frame (simulate and view: --origin 0 0 0)")
+      ->check(CLI::ExistingFile)
       ->group(kGroup);
   verb.add_option("--crop", arguments.crop,
                   "keep only this box: xmin,ymin,zmin,xmax,ymax,zmax in the unit of the file")

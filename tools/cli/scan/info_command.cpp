@@ -15,11 +15,11 @@
 #include "commands.hpp"
 #include "image/board_costs.hpp"
 #include "image/model_signature.hpp"
+#include "scan/named_materials.hpp"
 #include "scan/preview.hpp"
 #include "tactree/builder/length_text.hpp"
 #include "tactree/builder/materials.hpp"
 #include "tactree/builder/openings.hpp"
-#include "tactree/builder/read_materials.hpp"
 #include "tactree/setup/model_size.hpp"
 #include "tactree/support/blob_facts.hpp"
 #include "tactree/support/blob_file.hpp"
@@ -87,39 +87,6 @@ void print_materials(const BlobView& view, const std::optional<builder::Material
   if (view.material_count() > 1 && !named) {
     fmt::print("              (--material FILE, the file of the build, names them)\n");
   }
-}
-
-bool is_same(const core::BlobMaterial& a, const core::BlobMaterial& b) {
-  return a.stiffness_N_m == b.stiffness_N_m && a.damping_Ns_m == b.damping_Ns_m &&
-         a.static_friction == b.static_friction && a.dynamic_friction == b.dynamic_friction &&
-         a.texture_height_m == b.texture_height_m &&
-         a.texture_wavelength_m == b.texture_wavelength_m;
-}
-
-/// Reads the materials of the build; throws UserError if they are not those of the blob.
-std::optional<builder::MaterialMap> named_materials(const InfoOptions& options,
-                                                    const BlobView& view) {
-  if (options.material.empty()) {
-    return std::nullopt;
-  }
-  builder::MaterialMap map = builder::read_materials(options.material);
-  const std::vector<core::BlobMaterial> list = map.list();
-  const std::string remedy = "give the file with which the model was built";
-  if (list.size() != view.material_count()) {
-    support::refuse(options.material,
-                    fmt::format("describes {} materials, {} has {}", list.size(), options.blob,
-                                view.material_count()),
-                    remedy);
-  }
-  for (std::uint32_t i = 0; i < list.size(); ++i) {
-    if (!is_same(list[i], view.material(i))) {
-      support::refuse(options.material,
-                      fmt::format("the material '{}' has other values than material {} of {}",
-                                  builder::material_name(map, i), i, options.blob),
-                      remedy);
-    }
-  }
-  return map;
 }
 
 /// Adds names and colours to the list of materials.
@@ -257,7 +224,8 @@ void info(const InfoOptions& options) {
   support::check_outputs({options.json, options.points, options.preview},
                          {options.blob, options.material});
   const support::BlobFile blob = support::BlobFile::named(options.blob);
-  const std::optional<builder::MaterialMap> named = named_materials(options, blob.view());
+  const std::optional<builder::MaterialMap> named =
+      named_materials(options.material, options.blob, blob.view());
   print(blob.view(), named);
   print_signature(options.blob, blob);
   if (!options.board.empty()) {
@@ -283,7 +251,7 @@ void info(const InfoOptions& options) {
     write_points(blob.view(), options.points);
   }
   if (!options.preview.empty()) {
-    write_preview(options.preview, blob.view(), builder::find_openings(blob.view()));
+    write_preview(options.preview, blob.view(), builder::find_openings(blob.view()), {}, named);
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 
 #include "tactree/builder/build_model.hpp"
@@ -11,9 +12,11 @@
 namespace tactree::cli {
 
 /// Writes the picture. `doubtful` is empty, or 1 for each point with an ambiguous orientation.
-/// Throws UserError if the file cannot be written.
+/// `named` are the materials of the build, if they are known: a model with several is drawn in
+/// their colours. Throws UserError if the file cannot be written.
 void write_preview(const std::filesystem::path& file, const core::BlobView& view,
                    std::span<const builder::Opening> openings,
-                   std::span<const std::uint8_t> doubtful = {});
+                   std::span<const std::uint8_t> doubtful,
+                   const std::optional<builder::MaterialMap>& named);
 
 }  // namespace tactree::cli

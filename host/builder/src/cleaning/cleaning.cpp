@@ -59,6 +59,7 @@ class Cleaner {
     }
     for (Scan& scan : scans) {
       count_input(scan);
+      count_colours(scan);
       note_float_steps(scan);
       if (scan.is_mesh()) {
         add_mesh(std::move(scan));
@@ -145,6 +146,17 @@ class Cleaner {
   [[nodiscard]] std::uint8_t material_of(const Scan& scan, std::size_t point) {
     return scan.colours.empty() ? std::uint8_t{0}
                                 : census_.take(scan.colours[point], *options_.materials);
+  }
+
+  /// Without materials, the report still states the colours for which a user may want some.
+  void count_colours(const Scan& scan) {
+    if (by_colour()) {
+      return;  // material_of() counts
+    }
+    const MaterialMap none;
+    for (const Colour& colour : scan.colours) {
+      (void)census_.take(colour, none);
+    }
   }
 
   [[nodiscard]] bool uses_poses() const {
@@ -466,10 +478,13 @@ class Cleaner {
                       "centre, ({:.12g}, {:.12g}, {:.12g}) in the source",
                       origin.x(), origin.y(), origin.z()));
     }
+    frame.fit *= options_.placed_scale;
     require_size(frame.fit * extent);
     move_all();
     report_.source_scale = frame.source_scale();
-    report_.source_origin = frame.source_origin();
+    report_.source_origin =
+        options_.pose ? frame.source_of(options_.pose->inverse() * Eigen::Vector3d::Zero())
+                      : frame.source_origin();
   }
 
   static void require_size(double extent_m) {

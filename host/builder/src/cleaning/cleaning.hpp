@@ -28,6 +28,10 @@ struct ModelFrame {
   [[nodiscard]] double source_scale() const { return fit * unit; }
   /// The model's origin, in source coordinates.
   [[nodiscard]] Eigen::Vector3d source_origin() const { return turn.transpose() * shift / unit; }
+  /// A position of the model, in source coordinates.
+  [[nodiscard]] Eigen::Vector3d source_of(const Eigen::Vector3d& model) const {
+    return turn.transpose() * (model / fit + shift) / unit;
+  }
 };
 
 /// All inputs, joined and cleaned, in the model frame. Points or mesh may be empty, but not both.

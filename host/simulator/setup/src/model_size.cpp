@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 
 #include "tactree/builder/length_text.hpp"
@@ -20,6 +21,11 @@ constexpr double kShare = 0.95;
 double two_digits(double length_m) {
   const double unit = std::pow(10.0, std::floor(std::log10(length_m)) - 1.0);
   return unit * std::floor(length_m / unit);
+}
+
+Eigen::Vector3d centre_of(const core::BlobHeader& model) {
+  return 0.5 *
+         (Eigen::Vector3f(model.bounds_max_m) + Eigen::Vector3f(model.bounds_min_m)).cast<double>();
 }
 
 }  // namespace
@@ -51,6 +57,35 @@ std::optional<std::string> oversize_warning(const std::string& file, const core:
       "{}, more than {} reaches; it fits with a longest edge of up to {} (build it with --fit "
       "device:{})",
       place, device_name, builder::length_text(two_digits(longest_m), 2), device_name);
+}
+
+std::optional<std::string> misplaced_warning(const std::string& file, const core::BlobHeader& model,
+                                             const std::string& device_name,
+                                             const core::DeviceModel& device,
+                                             const Eigen::Isometry3d& pose) {
+  const Eigen::Isometry3d box = pose * Eigen::Translation3d(centre_of(model));
+  if (simulation::reaches_box(device, box, size_of(model))) {
+    return std::nullopt;
+  }
+  return fmt::format(
+      "{}: {} does not reach all of the model where it is placed (move it on the page of tactree "
+      "view, or build it with --fit device:{})",
+      file, device_name, device_name);
+}
+
+std::optional<simulation::Placement> fitted_placement(const core::DeviceModel& device,
+                                                      const core::BlobHeader& model,
+                                                      const simulation::Placement& now) {
+  // The box around the turned box of the model.
+  const Eigen::Vector3d size = now.pose.linear().cwiseAbs() * size_of(model);
+  const std::optional<double> largest = fitting_scale(device, size);
+  if (!largest) {
+    return std::nullopt;
+  }
+  simulation::Placement fitted = now;
+  fitted.scale = std::min(now.scale, *largest);
+  fitted.pose.translation() = now.pose.linear() * (-fitted.scale * centre_of(model));
+  return fitted;
 }
 
 std::optional<std::string> size_warning(const std::string& file, const core::BlobHeader& model) {

@@ -3,11 +3,12 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "json_values.hpp"
+#include "tactree/builder/scaled_model.hpp"
+#include "tactree/setup/pose_file.hpp"
 #include "tactree/support/user_error.hpp"
 
 namespace tactree::setup {
@@ -15,80 +16,42 @@ namespace {
 
 using nlohmann::json;
 
-// Deviation of a rotation's rows from unit length and right angles that is accepted, because files
-// are written by hand.
-constexpr double kRotationTolerance = 1e-3;
+/// Places a body whose pose is a matrix, or a file next to the scene file.
+struct PoseReader {
+  std::filesystem::path folder;
 
-void require_keys(const json& object, const std::string& place,
-                  std::initializer_list<const char*> known) {
-  if (!object.is_object()) {
-    support::refuse(place, "is not an object", "write it in braces");
+  [[nodiscard]] bool names_file(const json& object) const {
+    return object.contains("pose") && object["pose"].is_string();
   }
-  for (const auto& [key, value] : object.items()) {
-    if (std::find(known.begin(), known.end(), key) == known.end()) {
-      std::string keys;
-      for (const char* name : known) {
-        keys += fmt::format("{}{}", keys.empty() ? "" : ", ", name);
-      }
-      support::refuse(place + "." + key, "is an unknown key", "remove it, or use one of " + keys);
+  [[nodiscard]] simulation::Placement operator()(const json& object,
+                                                 const std::string& place) const {
+    if (names_file(object)) {
+      return read_pose_file(folder / object["pose"].get<std::string>());
     }
+    return {object.contains("pose") ? pose(object["pose"], place + ".pose")
+                                    : Eigen::Isometry3d::Identity(),
+            1.0};
   }
+};
+
+/// Of a keyframe, between which a body keeps its size.
+Eigen::Isometry3d rigid_pose(const json& object, const std::string& place, const PoseReader& read) {
+  const simulation::Placement placement = read(object, place);
+  if (placement.scale != 1.0) {
+    support::refuse(place + ".pose",
+                    fmt::format("its file has the scale {:.6g}, and a body keeps its size while it "
+                                "moves",
+                                placement.scale),
+                    "remove \"scale\" from the file, and build the model with --scale");
+  }
+  return placement.pose;
 }
 
-double number(const json& value, const std::string& place) {
-  if (!value.is_number() || !std::isfinite(value.get<double>())) {
-    support::refuse(place, "is not a number", "write a number, without quotes");
-  }
-  return value.get<double>();
-}
-
-std::vector<double> numbers(const json& value, const std::string& place, std::size_t count) {
-  if (!value.is_array() || value.size() != count) {
-    support::refuse(place, fmt::format("is not a list of {} numbers", count),
-                    "write that many numbers");
-  }
-  std::vector<double> list;
-  for (std::size_t i = 0; i < count; ++i) {
-    list.push_back(number(value[i], fmt::format("{}[{}]", place, i)));
-  }
-  return list;
-}
-
-Eigen::Vector3d vector(const json& object, const char* key, const std::string& place) {
-  if (!object.contains(key)) {
-    return Eigen::Vector3d::Zero();
-  }
-  const std::vector<double> v = numbers(object[key], place + "." + key, 3);
-  return {v[0], v[1], v[2]};
-}
-
-Eigen::Isometry3d pose(const json& object, const std::string& at) {
-  if (!object.contains("pose")) {
-    return Eigen::Isometry3d::Identity();
-  }
-  const std::string place = at + ".pose";
-  const std::vector<double> m = numbers(object["pose"], place, 16);
-  const Eigen::Matrix4d matrix =
-      Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(m.data());
-  const Eigen::Matrix3d rotation = matrix.topLeftCorner<3, 3>();
-  const Eigen::Matrix3d off = rotation * rotation.transpose() - Eigen::Matrix3d::Identity();
-  if (!(off.cwiseAbs().maxCoeff() <= kRotationTolerance) || !(rotation.determinant() > 0.0)) {
-    support::refuse(place, "its upper left 3x3 part is not a rotation",
-                    "remove scale, shear and mirroring; scale with `tactree build --scale`");
-  }
-  if (matrix.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
-    support::refuse(place, "its last row is not 0, 0, 0, 1", "write the matrix row by row");
-  }
-  Eigen::Isometry3d result;
-  result.linear() = Eigen::Quaterniond(rotation).normalized().toRotationMatrix();
-  result.translation() = matrix.topRightCorner<3, 1>();
-  return result;
-}
-
-simulation::BodyPath path(const json& body, const std::string& place) {
+simulation::BodyPath path(const json& body, const std::string& place,
+                          const Eigen::Isometry3d& first, const PoseReader& read) {
   try {
     if (!body.contains("keyframes")) {
-      return {pose(body, place), vector(body, "linear_velocity_m_s", place),
+      return {first, vector(body, "linear_velocity_m_s", place),
               vector(body, "angular_velocity_rad_s", place)};
     }
     const json& list = body["keyframes"];
@@ -102,7 +65,8 @@ simulation::BodyPath path(const json& body, const std::string& place) {
     for (std::size_t i = 0; i < list.size(); ++i) {
       const std::string at = fmt::format("{}.keyframes[{}]", place, i);
       require_keys(list[i], at, {"t_s", "pose"});
-      keyframes.push_back({number(list[i].value("t_s", json()), at + ".t_s"), pose(list[i], at)});
+      keyframes.push_back(
+          {number(list[i].value("t_s", json()), at + ".t_s"), rigid_pose(list[i], at, read)});
     }
     return simulation::BodyPath(std::move(keyframes));
   } catch (const std::invalid_argument& error) {
@@ -113,7 +77,7 @@ simulation::BodyPath path(const json& body, const std::string& place) {
 class SceneReader {
  public:
   SceneReader(const std::filesystem::path& file, const std::vector<std::string>& blobs)
-      : file_(file) {
+      : file_(file), read_pose_{file.parent_path()} {
     for (const std::string& blob : blobs) {
       given_.push_back(open(blob));
     }
@@ -121,14 +85,25 @@ class SceneReader {
 
   SceneFile all_at_rest() {
     for (const std::size_t blob : given_) {
-      add(blob, {});
+      add(blob, {}, 1.0);
     }
     return finish(fmt::format("{} blobs", given_.size()));
   }
 
+  SceneFile placed(const std::string& pose_file) {
+    if (given_.size() != 1) {
+      support::refuse("--pose", fmt::format("it places one model, and {} are given", given_.size()),
+                      "give one BLOB, or write the file as \"pose\" of each body of a --scene");
+    }
+    const simulation::Placement placement = read_pose_file(pose_file);
+    add(given_[0], simulation::BodyPath(placement.pose), placement.scale);
+    scene_.in_device_frame = true;
+    return finish("1 blob");
+  }
+
   SceneFile read() {
     const std::string name = file_.string();
-    const json root = parse();
+    const json root = parse_file(file_);
     require_keys(root, name, {"bodies"});
     const json bodies = root.value("bodies", json());
     if (!bodies.is_array()) {
@@ -142,19 +117,6 @@ class SceneReader {
   }
 
  private:
-  json parse() const {
-    std::ifstream in(file_, std::ios::binary);
-    if (!in || std::filesystem::is_directory(file_)) {
-      support::refuse(file_.string(), "cannot be read", "give a JSON file");
-    }
-    try {
-      return json::parse(in);
-    } catch (const json::exception& error) {
-      support::refuse(file_.string(), fmt::format("is not JSON: {}", error.what()),
-                      "correct the file there");
-    }
-  }
-
   std::size_t open(const std::string& file) {
     const auto known = std::find(files_.begin(), files_.end(), file);
     if (known != files_.end()) {
@@ -183,7 +145,11 @@ class SceneReader {
     require_keys(body, place,
                  {"blob", "pose", "linear_velocity_m_s", "angular_velocity_rad_s", "keyframes",
                   "from_s", "until_s"});
-    simulation::SceneBody& added = add(blob_of(body, place), path(body, place));
+    const simulation::Placement first = read_pose_(body, place);
+    simulation::SceneBody& added =
+        add(blob_of(body, place), path(body, place, first.pose, read_pose_), first.scale);
+    scene_.in_device_frame =
+        scene_.in_device_frame || (scene_.bodies.size() == 1 && read_pose_.names_file(body));
     if (body.contains("from_s")) {
       added.from_s = number(body["from_s"], place + ".from_s");
     }
@@ -192,13 +158,20 @@ class SceneReader {
     }
   }
 
-  simulation::SceneBody& add(std::size_t blob, simulation::BodyPath path) {
+  simulation::SceneBody& add(std::size_t blob, simulation::BodyPath path, double scale) {
     scene_.names.push_back(files_[blob]);
-    scene_.files.push_back(scene_.blobs[blob].get());
+    scene_.files.push_back(scaled(blob, scale));
+    scene_.scales.push_back(scale);
     simulation::SceneBody& body = scene_.bodies.emplace_back();
-    body.blob = scene_.blobs[blob]->bytes();
+    body.blob = scene_.files.back()->bytes();
     body.path = std::move(path);
     return body;
+  }
+
+  const support::BlobFile* scaled(std::size_t blob, double scale) {
+    const support::BlobFile& given = *scene_.blobs[blob];
+    return scale == 1.0 ? &given
+                        : scene_.scaled.emplace_back(scaled_blob(given, files_[blob], scale)).get();
   }
 
   SceneFile finish(const std::string& place) {
@@ -212,15 +185,32 @@ class SceneReader {
   }
 
   std::filesystem::path file_;
-  std::vector<std::string> files_;  // one per blob
+  PoseReader read_pose_;
+  std::vector<std::string> files_;  // one per blob of the user
   std::vector<std::size_t> given_;  // index of each argument of the command line
   SceneFile scene_;
 };
 
 }  // namespace
 
-SceneFile read_scene(const std::filesystem::path& scene, const std::vector<std::string>& blobs) {
+std::unique_ptr<support::BlobFile> scaled_blob(const support::BlobFile& given,
+                                               const std::string& name, double scale) {
+  builder::WrittenBlob scaled;
+  try {
+    scaled = builder::scaled_model(given.view(), scale);
+  } catch (const std::runtime_error& error) {
+    support::refuse(name, fmt::format("cannot be scaled by {:.6g}: {}", scale, error.what()),
+                    "choose another scale");
+  }
+  return std::make_unique<support::BlobFile>(support::BlobFile::copy_of(scaled.bytes, name));
+}
+
+SceneFile read_scene(const std::filesystem::path& scene, const std::vector<std::string>& blobs,
+                     const std::string& pose_file) {
   SceneReader reader(scene, blobs);
+  if (!pose_file.empty()) {
+    return reader.placed(pose_file);
+  }
   return scene.empty() ? reader.all_at_rest() : reader.read();
 }
 

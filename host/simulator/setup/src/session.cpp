@@ -37,14 +37,14 @@ void choose_device(const SessionOptions& options, simulation::Setup& setup) {
   }
 }
 
-/// Origin of the model: that of the options, else the one of simulation::middle_at_origin().
 core::Vec3 place_model(const SessionOptions& options, const FirstBody& body,
                        core::DeviceKind kind) {
   if (!options.origin_m.empty()) {
     return {static_cast<float>(options.origin_m[0]), static_cast<float>(options.origin_m[1]),
             static_cast<float>(options.origin_m[2])};
   }
-  return simulation::middle_at_origin(body.view.header(), body.pose, kind);
+  return body.in_device_frame ? core::Vec3{}
+                              : simulation::middle_at_origin(body.view.header(), body.pose, kind);
 }
 
 [[noreturn]] void refuse_material(const std::string& file, const core::BlobView& view,

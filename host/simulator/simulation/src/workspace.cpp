@@ -1,6 +1,8 @@
 #include "tactree/simulation/workspace.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "tactree/core/device/kinematics.hpp"
@@ -12,6 +14,11 @@ namespace {
 constexpr double kMeets_m = 1e-5;   // maximum distance of the tip from a position that it reaches
 constexpr int kPerEdge = 5;         // points: 5^3 - 3^3 = 98 on the faces
 constexpr double kAccuracy = 1e-3;  // relative, of largest_scale()
+
+// Of reach_shape(): small against a workspace, so that the first border on the way is found.
+constexpr double kStep_m = 0.02;
+constexpr double kFarthest_m = 2.0;
+constexpr double kBorder_m = 1e-3;
 
 /// Points on the faces of the cube from -1 to 1.
 std::vector<Eigen::Vector3d> face_points() {
@@ -30,6 +37,20 @@ std::vector<Eigen::Vector3d> face_points() {
   return points;
 }
 
+/// Distance of the border of the workspace from the origin. Precondition: the origin is reached.
+double border_along(const core::DeviceModel& device, const Eigen::Vector3d& direction) {
+  double low = 0.0;
+  while (low < kFarthest_m && reaches(device, (low + kStep_m) * direction)) {
+    low += kStep_m;
+  }
+  double high = low + kStep_m;
+  while (high - low > kBorder_m) {
+    const double middle = 0.5 * (low + high);
+    (reaches(device, middle * direction) ? low : high) = middle;
+  }
+  return low;
+}
+
 }  // namespace
 
 bool reaches(const core::DeviceModel& device, const Eigen::Vector3d& place_m) {
@@ -45,12 +66,17 @@ bool reaches(const core::DeviceModel& device, const Eigen::Vector3d& place_m) {
 }
 
 bool reaches_box(const core::DeviceModel& device, const Eigen::Vector3d& size_m) {
+  return reaches_box(device, Eigen::Isometry3d::Identity(), size_m);
+}
+
+bool reaches_box(const core::DeviceModel& device, const Eigen::Isometry3d& pose,
+                 const Eigen::Vector3d& size_m) {
   if (core::axes_of(device.kind) != core::kAxes) {
     return true;
   }
   const std::vector<Eigen::Vector3d> points = face_points();
   return std::all_of(points.begin(), points.end(), [&](const Eigen::Vector3d& point) {
-    return reaches(device, 0.5 * point.cwiseProduct(size_m));
+    return reaches(device, pose * (0.5 * point.cwiseProduct(size_m)));
   });
 }
 
@@ -75,6 +101,24 @@ std::optional<double> largest_scale(const core::DeviceModel& device,
     (fits(middle) ? low : high) = middle;
   }
   return std::min(low, kMaxScale);
+}
+
+ReachShape reach_shape(const core::DeviceModel& device) {
+  ReachShape shape;
+  if (core::axes_of(device.kind) != core::kAxes || !reaches(device, Eigen::Vector3d::Zero())) {
+    return shape;
+  }
+  for (int row = 0; row < ReachShape::kRows; ++row) {
+    const double height =
+        std::numbers::pi * (static_cast<double>(row) / (ReachShape::kRows - 1) - 0.5);
+    for (int column = 0; column < ReachShape::kColumns; ++column) {
+      const double turn = 2.0 * std::numbers::pi * column / ReachShape::kColumns;
+      const Eigen::Vector3d direction(std::cos(height) * std::cos(turn),
+                                      std::cos(height) * std::sin(turn), std::sin(height));
+      shape.points_m.emplace_back(border_along(device, direction) * direction);
+    }
+  }
+  return shape;
 }
 
 }  // namespace tactree::simulation

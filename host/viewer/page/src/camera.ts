@@ -29,9 +29,6 @@ export class Orbit {
     this.distance = (1.05 * sphere.radius) / Math.sin(half) / narrow;
     this.place();
   }
-  reset(): void {
-    this.fit(this.fitted);
-  }
 
   /** Turns the camera around the scene's vertical, and over the scene. */
   turn(yaw: number, pitch: number): void {

@@ -2,7 +2,24 @@
 // fetched; a point budget limits how many are drawn.
 
 import * as THREE from 'three';
+import { paletteOf } from './materials';
 import { type Hit, type Nearest, type NodeInfo, Search, SearchNode, UNITS } from './search';
+
+export interface Material {
+  name?: string;
+  rgb?: [number, number, number]; // of its points in the scan
+  points: number;
+  stiffness_N_m: number;
+  static_friction: number;
+  dynamic_friction: number;
+  texture_height_m: number;
+}
+
+/** A frequent colour of the scan. */
+export interface ScanColour {
+  rgb: [number, number, number];
+  points: number;
+}
 
 interface Tree {
   name: string;
@@ -11,6 +28,8 @@ interface Tree {
   depth: number;
   bounds_min_m: [number, number, number];
   bounds_max_m: [number, number, number];
+  materials: Material[];
+  colours: ScanColour[];
   nodes: NodeInfo[];
 }
 
@@ -31,8 +50,13 @@ uniform mat4 modelViewMatrix, projectionMatrix;
 uniform mat3 normalMatrix;
 uniform float diameter;  // of a point, m
 uniform float scale;     // pixels of a metre at a distance of 1 m
+uniform vec3 colour;
+uniform bool overlay;            // shows the materials
+uniform sampler2D palette;
 in vec4 position;        // x, y, z in 1/65535 of the node's edge; the normal on an octahedron
+in float material;
 out vec3 vNormal;
+out vec3 vColour;
 vec3 unpack(float word) {
   vec2 f = vec2(floor(word / 256.0), mod(word, 256.0)) / 127.5 - 1.0;
   vec3 n = vec3(f, 1.0 - abs(f.x) - abs(f.y));
@@ -42,20 +66,22 @@ vec3 unpack(float word) {
 void main() {
   vec4 eye = modelViewMatrix * vec4(position.xyz, 1.0);
   vNormal = normalize(normalMatrix * unpack(position.w));
+  vColour = overlay ? texelFetch(palette, ivec2(int(material + 0.5), 0), 0).rgb : colour;
   gl_Position = projectionMatrix * eye;
   gl_PointSize = clamp(diameter * scale / max(-eye.z, 1e-6), 1.5, 48.0);
 }`;
 
 const FRAGMENT = `
 precision mediump float;
-uniform vec3 colour, inner;
+uniform vec3 inner;
 in vec3 vNormal;
+in vec3 vColour;
 out vec4 result;
 void main() {
   vec2 offset = gl_PointCoord - 0.5;
   if (dot(offset, offset) > 0.25) discard;
   vec3 n = normalize(vNormal);
-  vec3 base = n.z >= 0.0 ? colour : inner;
+  vec3 base = n.z >= 0.0 ? vColour : inner;
   n *= sign(n.z);
   float key = max(dot(n, normalize(vec3(-0.45, 0.6, 0.65))), 0.0);
   float fill = 0.5 + 0.5 * n.y;
@@ -66,6 +92,7 @@ void main() {
 class CloudNode extends SearchNode {
   object: THREE.Points | undefined;
   requested = false;
+  asksMaterials = false;
   chosen = false;
 }
 
@@ -108,6 +135,8 @@ export class Cloud {
       scale: { value: 1 },
       colour: { value: new THREE.Color(0.83, 0.77, 0.69) },
       inner: { value: new THREE.Color(0.42, 0.47, 0.55) },
+      overlay: { value: false },
+      palette: { value: new THREE.Texture() as THREE.Texture },
     },
   });
 
@@ -119,6 +148,7 @@ export class Cloud {
     this.nodes = tree.nodes.map((info) => new CloudNode(info));
     this.search = new Search(this.nodes);
     this.group.matrixAutoUpdate = false;
+    this.material.uniforms.palette.value = paletteOf(tree.materials.length);
   }
 
   /** Calls `changed` whenever more points have arrived. */
@@ -161,8 +191,29 @@ export class Cloud {
     return place;
   }
 
+  /** With fewer than two materials there is nothing to show. */
+  get hasMaterials(): boolean {
+    return this.tree.materials.length > 1;
+  }
+  showMaterials(shown: boolean): void {
+    this.material.uniforms.overlay.value = shown && this.hasMaterials;
+    if (!shown || !this.hasMaterials) return;
+    for (const node of this.nodes) if (node.object) this.requestMaterials(node);
+  }
+  private requestMaterials(node: CloudNode): void {
+    const geometry = node.object?.geometry;
+    if (!geometry || geometry.hasAttribute('material') || node.asksMaterials) return;
+    node.asksMaterials = true;
+    fetch(`/model/${this.number}/materials/${this.nodes.indexOf(node)}`)
+      .then((answer) => (answer.ok ? answer.arrayBuffer() : Promise.reject(new Error('refused'))))
+      .then((bytes) => geometry.setAttribute('material', new THREE.BufferAttribute(new Uint8Array(bytes), 1)))
+      .catch(() => setTimeout(() => (node.asksMaterials = false), 1000))
+      .finally(() => this.changed());
+  }
+
   dispose(): void {
     for (const node of this.nodes) node.object?.geometry.dispose();
+    (this.material.uniforms.palette.value as THREE.Texture).dispose();
     this.material.dispose();
   }
 
@@ -255,6 +306,7 @@ export class Cloud {
     };
     node.object = object;
     this.group.add(object);
+    if (this.material.uniforms.overlay.value) this.requestMaterials(node);
   }
 }
 

@@ -26,7 +26,7 @@ function notches({ deltaY, deltaMode, ctrlKey }: WheelEvent): number {
 }
 
 /** What a pressed button or finger moves. */
-type Grip = 'surface' | 'depth' | 'hand' | 'turn' | 'pan' | 'roll' | 'camera' | 'nothing';
+type Grip = 'surface' | 'depth' | 'hand' | 'handle' | 'turn' | 'pan' | 'roll' | 'camera' | 'nothing';
 
 interface Pointer {
   x: number;
@@ -41,6 +41,8 @@ export class Gestures {
   constructor(
     private readonly view: View,
     private readonly hand: Hand,
+    /** True: a handle of the model has just taken the pointer. */
+    private readonly isTaken: () => boolean,
   ) {
     const { canvas } = view;
     canvas.addEventListener('pointerdown', (event) => this.down(event));
@@ -63,6 +65,7 @@ export class Gestures {
   }
 
   private firstGrip(event: PointerEvent): Grip {
+    if (this.isTaken()) return 'handle';
     if (event.button === 1 || event.shiftKey) return 'pan';
     if (event.ctrlKey) return 'roll';
     const at = this.pixel(event);
@@ -73,7 +76,7 @@ export class Gestures {
 
   // The times of the events, not of their handling: a busy page handles them late.
   private secondGrip(first: Pointer, event: PointerEvent): Grip {
-    if (this.pointers.size > 1) return 'nothing';
+    if (this.pointers.size > 1 || first.grip === 'handle') return 'nothing';
     if (first.grip === 'surface' && event.timeStamp - first.since_ms > TOGETHER_MS) return 'depth';
     this.hand.touch.end();
     first.grip = 'camera';
@@ -164,7 +167,7 @@ export class Gestures {
   }
 
   reset(): void {
-    this.view.orbit.reset();
+    this.view.showAll();
     this.moved();
   }
   private turn(yaw: number, pitch: number): void {

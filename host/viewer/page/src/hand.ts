@@ -37,6 +37,11 @@ export class Hand {
     this.start = start_m && new THREE.Vector3(...start_m);
   }
 
+  /** The start has moved with the model. */
+  setStart(start_m: Triple): void {
+    this.start?.set(...start_m);
+  }
+
   get isMovable(): boolean {
     return this.start !== undefined;
   }

@@ -5,11 +5,14 @@ import { BoardView } from './board';
 import { Connection } from './connection';
 import { Gestures } from './gestures';
 import { Hand } from './hand';
+import { showLegend } from './materials';
 import { type Command, type Frame, type Hello, length, type Run } from './messages';
 import { News } from './news';
 import { Numbers } from './numbers';
 import { find, outputOf, Panel } from './panel';
+import { PlaceView } from './place';
 import { Player } from './player';
+import { Rules } from './rules';
 import { Strip } from './strips';
 import { View } from './view';
 import { Why } from './why';
@@ -27,7 +30,10 @@ const board = new BoardView(say);
 const news = new News();
 const why = new Why();
 const hand = new Hand(view, (target_m, via_m, speed_m_s) => say({ do: 'hand', target_m, via_m, speed_m_s }));
-const gestures = new Gestures(view, hand);
+// Before the gestures: the handles take a pointer first.
+const place = new PlaceView(view, say, (text) => news.show(text));
+const gestures = new Gestures(view, hand, () => place.isHeld);
+const rules = new Rules();
 const connection = new Connection({ hello, frame, refused, connected });
 let source: Hello['source'] = 'simulation';
 
@@ -42,6 +48,7 @@ function connected(is: boolean): void {
 
 function refused(why: string): void {
   panel.refused();
+  place.release();
   news.show(why);
 }
 
@@ -55,14 +62,23 @@ function hello(message: Hello): void {
   document.title = `${names} – Tactree`;
   showNotes(message);
   hand.hello(message.hand_start_m);
+  place.release();
   for (const strip of Object.values(strips)) strip.clear();
   panel.hello(message);
   news.hello();
   player.hello(message);
   view
     .load(message.models.length)
-    .then(() => (find<HTMLInputElement>('octant-level').max = String(view.deepest)))
+    .then(loaded)
     .catch((error: Error) => news.show(`The model could not be loaded: ${error.message}`));
+}
+
+function loaded(): void {
+  find<HTMLInputElement>('octant-level').max = String(view.deepest);
+  find('show-materials-row').hidden = view.materials.length < 2;
+  showLegend(view.materials);
+  rules.show(view.colours);
+  showMaterials();
 }
 
 /** Doubts about the models, such as one that lies on its side. A dismissed note does not return. */
@@ -167,11 +183,16 @@ function refresh(): void {
   if (!message) return;
   latest = undefined;
   view.show(message);
+  place.show(message);
+  if (message.place?.hand_start_m) hand.setStart(message.place.hand_start_m);
   touchMovedBodies(message);
   document.body.dataset.mode = message.settings?.mode ?? '';
   board.show(message);
   why.show(message);
-  if (news.follow(message) && message.board) panel.refused();
+  if (news.follow(message) && message.board) {
+    panel.refused();
+    place.release();
+  }
   if (message.settings) panel.follow(message.settings);
   const run = message.runs[0];
   if (run) showRun(message, run);
@@ -249,8 +270,13 @@ window.addEventListener(
   },
   { capture: true },
 );
+/** True where a letter belongs to a value. */
+function isTyped(target: EventTarget | null): boolean {
+  const isNumber = target instanceof HTMLInputElement && target.type === 'number';
+  return isNumber || target instanceof HTMLSelectElement;
+}
 window.addEventListener('keydown', (event) => {
-  if (event.target instanceof HTMLSelectElement || event.ctrlKey || event.metaKey || event.altKey) return;
+  if (isTyped(event.target) || event.ctrlKey || event.metaKey || event.altKey) return;
   if (event.key === 'a' && source !== 'trace') say({ do: 'arm' });
   if (source === 'trace' && document.activeElement?.id === 'view') {
     if (event.key === 'ArrowRight' && !event.shiftKey) player.step(1);
@@ -277,6 +303,13 @@ const shown = () =>
   });
 find('show-device').addEventListener('change', shown);
 find('show-patch').addEventListener('change', shown);
+
+function showMaterials(): void {
+  const isShown = find<HTMLInputElement>('show-materials').checked && view.materials.length > 1;
+  find('material-list').hidden = !isShown;
+  view.showMaterials(isShown);
+}
+find('show-materials').addEventListener('change', showMaterials);
 
 const octants = find<HTMLInputElement>('show-octants');
 const level = find<HTMLInputElement>('octant-level');

@@ -85,6 +85,16 @@ export interface Recording {
   text: string; // file and counts of this or the last recording
 }
 
+/** The model in the frame of the device: device = pose * (scale * model), as in a pose file. */
+export interface Placement {
+  pose: number[]; // a 4x4 matrix, row by row
+  scale: number;
+}
+export interface Place extends Placement {
+  origin_m: Triple; // of the scene, in the frame of the device
+  hand_start_m?: Triple; // of a simulation
+}
+
 export interface Frame {
   type: 'frame';
   t_s: number;
@@ -97,6 +107,8 @@ export interface Frame {
   lost_s?: number;
   fit?: { warning: string; can_scale: boolean };
   settings?: Settings;
+  // of a single model that can be placed
+  place?: Place;
   // of a simulation or a board: a result that the other values do not show
   news?: { number: number; text: string };
   // of a board, with settings

@@ -3,7 +3,7 @@
 
 import * as THREE from 'three';
 import { Orbit } from './camera';
-import { Cloud, loadOctants } from './cloud';
+import { Cloud, loadOctants, type Material, type ScanColour } from './cloud';
 import { COLOURS, Markers } from './markers';
 import type { Frame, Run } from './messages';
 import type { Obstacles } from './route';
@@ -41,6 +41,8 @@ export class View implements Obstacles {
   /** Of each controller: the surface nearest to its probe. */
   under: (Nearest | undefined)[] = [];
   private shown = { device: true, patch: true };
+  private held: THREE.Matrix4 | undefined;
+  private isPlaced = true; // the models are where the last frame says
 
   constructor(readonly canvas: HTMLCanvasElement) {
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: !isSoftware(), alpha: true });
@@ -69,18 +71,40 @@ export class View implements Obstacles {
     this.clouds = await Promise.all(
       Array.from({ length: count }, (_, i) => Cloud.load(i, () => this.changed())),
     );
-    const box = new THREE.Box3();
-    for (const cloud of this.clouds) {
-      this.scene.add(cloud.group);
-      box.union(cloud.box);
-    }
-    const sphere = box.getBoundingSphere(new THREE.Sphere());
-    this.size = 2 * sphere.radius;
+    for (const cloud of this.clouds) this.scene.add(cloud.group);
+    this.size = 2 * this.around().radius;
     for (const markers of this.markers) this.scene.remove(markers.group);
     this.markers = [];
     this.hand.scale.setScalar(0.022 * this.size);
     this.resize();
-    this.orbit.fit(sphere);
+    this.showAll();
+    this.isPlaced = false;
+  }
+
+  /** The ball around all models, where they are. */
+  private around(): THREE.Sphere {
+    const box = new THREE.Box3();
+    for (const cloud of this.clouds) box.union(cloud.box.applyMatrix4(cloud.group.matrix));
+    return box.getBoundingSphere(new THREE.Sphere());
+  }
+  /** Looks at the front of all models, as a new page does. */
+  showAll(): void {
+    this.orbit.fit(this.around());
+    this.changed();
+  }
+
+  /** Adds an object that stays when the models change. */
+  add(object: THREE.Object3D): void {
+    this.scene.add(object);
+  }
+  /** The centre of the first model, in its own frame. */
+  get centre(): THREE.Vector3 {
+    return this.clouds[0]?.box.getCenter(new THREE.Vector3()) ?? new THREE.Vector3();
+  }
+  /** Shows the first model with this matrix instead of the pose of the frames; undefined: as they say. */
+  hold(matrix: THREE.Matrix4 | undefined): void {
+    this.held = matrix;
+    if (matrix) this.clouds[0]?.group.matrix.copy(matrix);
     this.changed();
   }
 
@@ -106,7 +130,8 @@ export class View implements Obstacles {
       0.5 * (1 - seen.y) * clientHeight,
     );
   }
-  private get sides(): number {
+  /** Number of pictures side by side. */
+  get sides(): number {
     return Math.max(1, this.markers.length);
   }
 
@@ -152,6 +177,11 @@ export class View implements Obstacles {
         1,
       );
     });
+    if (this.held) this.clouds[0]?.group.matrix.copy(this.held);
+    if (!this.isPlaced && this.clouds.length > 0) {
+      this.isPlaced = true;
+      this.showAll();
+    }
     while (this.markers.length < frame.runs.length && this.clouds.length > 0) {
       const markers = new Markers(this.size);
       this.markers.push(markers);
@@ -195,6 +225,19 @@ export class View implements Obstacles {
       this.clouds[i]?.group.add(line);
     });
     this.octants = lines;
+    this.changed();
+  }
+
+  /** Of the first model. */
+  get materials(): Material[] {
+    return this.clouds[0]?.tree.materials ?? [];
+  }
+  /** Of the scan of the first model, if they are known. */
+  get colours(): ScanColour[] {
+    return this.clouds[0]?.tree.colours ?? [];
+  }
+  showMaterials(shown: boolean): void {
+    for (const cloud of this.clouds) cloud.showMaterials(shown);
     this.changed();
   }
 

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -85,14 +87,19 @@ class Panel {
 
   [[nodiscard]] float pixels_per_metre() const { return scale_; }
 
-  /// `doubtful` is empty, or 1 for each point with an ambiguous orientation.
-  void draw_points(std::span<const std::uint8_t> doubtful) {
+  /// `doubtful` is empty, or 1 for each point with an ambiguous orientation; `materials` is empty,
+  /// or has one element per material.
+  void draw_points(std::span<const std::uint8_t> doubtful, std::span<const MaterialKey> materials) {
     const float radius = std::max(0.9F * view_.header().spacing_m * scale_, 1.0F);
     core::for_each_point(view_, [&](const core::Leaf& leaf, std::uint32_t index) {
       const core::SurfacePoint p = view_.surface_point(leaf, index);
       const Vec3 at = seen(p.position);
-      raster_.disc(at.x, at.y, radius, at.z,
-                   shade(p.normal, !doubtful.empty() && doubtful[index] != 0));
+      const bool is_doubtful = !doubtful.empty() && doubtful[index] != 0;
+      const Colour& outside =
+          materials.empty() ? kOutside : materials[view_.material_of(index)].colour;
+      raster_.disc(
+          at.x, at.y, radius, at.z,
+          shade(p.normal, is_doubtful ? kDoubtful : outside, is_doubtful ? kDoubtful : kInside));
     });
   }
 
@@ -145,7 +152,7 @@ class Panel {
            raster_.depth(x, y) < at.z - tolerance_m;
   }
 
-  [[nodiscard]] Colour shade(Vec3 normal, bool doubtful) const {
+  [[nodiscard]] Colour shade(Vec3 normal, const Colour& front, const Colour& back) const {
     Vec3 n{core::dot(normal, eye_.right), core::dot(normal, eye_.up),
            -core::dot(normal, eye_.forward)};
     const bool outside = n.z >= 0.0F;
@@ -156,7 +163,7 @@ class Panel {
     const float fill = 0.5F + 0.5F * n.y;
     const float shine = 0.1F * std::pow(std::max(core::dot(n, kShine), 0.0F), 24.0F);
     const float light = 0.28F + 0.22F * fill + 0.6F * key;
-    const Colour base = doubtful ? kDoubtful : outside ? kOutside : kInside;
+    const Colour base = outside ? front : back;
     return {light * base.red + shine, light * base.green + shine, light * base.blue + shine};
   }
 
@@ -227,11 +234,27 @@ void draw_key(Raster& raster, int& top, const Colour& colour, const std::string&
   top += 22;
 }
 
+void draw_material_keys(Raster& raster, int& top, std::span<const MaterialKey> materials) {
+  constexpr std::size_t kNamed = 8;
+  for (const MaterialKey& material : materials.first(std::min(materials.size(), kNamed))) {
+    std::string name = material.name;
+    std::transform(name.begin(), name.end(), name.begin(),
+                   [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+    draw_key(raster, top, material.colour, name);
+  }
+  if (materials.size() > kNamed) {
+    raster.text(kMargin, top, fmt::format("the first {} materials of {}", kNamed, materials.size()),
+                2, kInk);
+    top += 22;
+  }
+}
+
 /// Legend of the colours in use, in the upper left corner. `sides`: both sides of the surface are
 /// seen.
 void draw_legend(Raster& raster, std::span<const Mark> drawn, std::size_t all, bool doubtful,
-                 bool sides) {
+                 bool sides, std::span<const MaterialKey> materials) {
   int top = kMargin / 2;
+  draw_material_keys(raster, top, materials);
   if (doubtful) {
     draw_key(raster, top, kDoubtful, "ambiguous orientation");
   }
@@ -243,7 +266,9 @@ void draw_legend(Raster& raster, std::span<const Mark> drawn, std::size_t all, b
     }
   }
   if (sides) {
-    draw_key(raster, top, kOutside, "outside");
+    if (materials.empty()) {
+      draw_key(raster, top, kOutside, "outside");
+    }
     draw_key(raster, top, kInside, "inside");
   }
   if (drawn.size() < all) {
@@ -254,8 +279,15 @@ void draw_legend(Raster& raster, std::span<const Mark> drawn, std::size_t all, b
 
 }  // namespace
 
+Colour false_colour(std::size_t material) {
+  constexpr Colour kColours[] = {
+      {0.83F, 0.77F, 0.69F}, {0.86F, 0.37F, 0.34F}, {0.35F, 0.62F, 0.85F}, {0.47F, 0.73F, 0.38F},
+      {0.89F, 0.72F, 0.30F}, {0.65F, 0.49F, 0.80F}, {0.30F, 0.70F, 0.67F}, {0.87F, 0.53F, 0.72F}};
+  return kColours[material % std::size(kColours)];
+}
+
 Raster draw_model(const core::BlobView& view, std::span<const Mark> marks,
-                  std::span<const std::uint8_t> doubtful) {
+                  std::span<const std::uint8_t> doubtful, std::span<const MaterialKey> materials) {
   constexpr float kHalfTurn_rad = 3.14159265F;
   constexpr float kInsideShare = 0.02F;  // less is seen through holes
   const Direction first = first_view(view);
@@ -266,7 +298,7 @@ Raster draw_model(const core::BlobView& view, std::span<const Mark> marks,
   for (int side = 0; side < 2; ++side) {
     const float yaw_rad = first.yaw_rad + static_cast<float>(side) * kHalfTurn_rad;
     panels.emplace_back(large, view, eye_from({yaw_rad, first.pitch_rad}), side * width, width);
-    panels.back().draw_points(doubtful);
+    panels.back().draw_points(doubtful, materials);
   }
   draw_marks(panels, drawn);
   const bool sides = std::any_of(panels.begin(), panels.end(), [](const Panel& panel) {
@@ -276,7 +308,7 @@ Raster draw_model(const core::BlobView& view, std::span<const Mark> marks,
   draw_scale(picture, panels.back().pixels_per_metre() / static_cast<float>(kOver));
   draw_caption(picture, view.header(), marks);
   draw_legend(picture, drawn, marks.size(),
-              std::find(doubtful.begin(), doubtful.end(), 1) != doubtful.end(), sides);
+              std::find(doubtful.begin(), doubtful.end(), 1) != doubtful.end(), sides, materials);
   return picture;
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 
 #include "folder_test.hpp"
@@ -148,6 +149,66 @@ TEST(BuildModel, RecordsSourceAndTool) {
   core::BlobView view;
   ASSERT_EQ(core::open_blob(result.blob.bytes, view), core::BlobStatus::kOk);
   EXPECT_STREQ(view.header().name, "ball");
+}
+
+TEST(BuildModel, PoseIsAppliedLastToSamePoints) {
+  Cloud cloud = random_sphere(20000, 0.03);
+  for (Eigen::Vector3d& p : cloud.positions) {
+    p.x() *= 1.5;
+    p += Eigen::Vector3d(0.6, 0.0, 0.0);  // far from the origin, which the builder moves
+  }
+  BuildOptions options;
+  options.turn_deg = 30.0;
+  const BuildResult plain = build(cloud_scan(without_normals(cloud)), options);
+  options.placed_scale = 0.5;
+  options.pose = Eigen::Isometry3d::Identity();
+  options.pose->linear() =
+      Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
+  options.pose->translation() = Eigen::Vector3d(0.05, -0.02, 0.01);
+  const BuildResult placed = build(cloud_scan(without_normals(cloud)), options);
+  ASSERT_EQ(placed.report.output_points, plain.report.output_points);
+  EXPECT_NEAR(placed.report.spacing_m, 0.5 * plain.report.spacing_m, 1e-12);
+  EXPECT_NEAR(placed.report.source_scale, 0.5 * plain.report.source_scale, 1e-15);
+  const Eigen::Vector3d centre = *options.pose * (0.5 * plain.report.orientation.pieces[0].centre);
+  EXPECT_LT((placed.report.orientation.pieces[0].centre - centre).norm(), 1e-9);
+
+  std::vector<DecodedPoint> wanted = decode(plain);
+  for (DecodedPoint& point : wanted) {
+    point.position = *options.pose * (0.5 * point.position);
+    point.normal = options.pose->linear() * point.normal;
+  }
+  for (const DecodedPoint& point : decode(placed)) {
+    const auto nearest = std::min_element(
+        wanted.begin(), wanted.end(), [&](const DecodedPoint& a, const DecodedPoint& b) {
+          return (a.position - point.position).norm() < (b.position - point.position).norm();
+        });
+    ASSERT_LT((nearest->position - point.position).norm(), 0.05 * placed.report.spacing_m);
+    ASSERT_GT(nearest->normal.dot(point.normal), 0.999);
+  }
+}
+
+TEST(BuildModel, ReportsColoursWithoutMaterials) {
+  Scan scan = cloud_scan(random_sphere(1000, 0.03));
+  for (std::size_t i = 0; i < scan.positions.size(); ++i) {
+    scan.colours.push_back(i < 700 ? Colour{250, 10, 5} : Colour{120, 120, 120});
+  }
+  const BuildReport report = build(std::move(scan)).report;
+  ASSERT_EQ(report.colours.size(), 2U);
+  EXPECT_EQ(report.colours[0].colour, (Colour{250, 10, 5}));
+  EXPECT_EQ(report.colours[0].points, 700U);
+  EXPECT_TRUE(report.colour_matches.empty());
+}
+
+TEST(BuildModel, SourceOriginIsThatOfPlacedFrame) {
+  BuildOptions options;
+  options.unit_m = 0.001;
+  options.up = UpAxis::kY;  // y -> z, z -> -y
+  options.pose = Eigen::Isometry3d::Identity();
+  options.pose->translation() = Eigen::Vector3d(0.01, 0.02, 0.03);
+  const BuildResult result = build(cloud_scan(random_sphere(5000, 30.0)), options);
+  const Eigen::Vector3d origin(-10.0, -30.0, 20.0);
+  EXPECT_LT((result.report.source_origin - origin).norm(), 1e-9)
+      << result.report.source_origin.transpose();
 }
 
 TEST(BuildModel, RefusesEmptyInputs) {

@@ -8,6 +8,8 @@
 #include <chrono>
 #include <filesystem>
 #include <functional>
+#include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -51,6 +53,15 @@ TEST(Connection, RefusesSilentPort) {
   EXPECT_THROW(client::Board board(silent.port()), client::LinkError);
 }
 
+TEST(Connection, FirstRequestBehindStrayBytesIsAnswered) {
+  const RunningBoard running;
+  std::unique_ptr<client::Transport> port = client::open_port(running.port(), client::kUsualBaud);
+  const std::string stray = "AT\r\n";  // of a modem manager
+  ASSERT_EQ(port->write(std::as_bytes(std::span(stray))), stray.size());
+  const client::Introduction found = client::Board::introduce(std::move(port));
+  EXPECT_GT(std::string(found.board.board).size(), 0U);
+}
+
 TEST(Connection, TimePassesOnlyOnRequest) {
   const RunningBoard running;
   client::Board board(running.port(), {.link_timeout_ms = 5});
@@ -61,6 +72,30 @@ TEST(Connection, TimePassesOnlyOnRequest) {
   board.arm();  // the link has not been lost
   board.connection().sleep(std::chrono::seconds(10));
   EXPECT_EQ(static_cast<core::State>(board.state().state), core::State::kActive);
+}
+
+TEST(Connection, PlacedBodyIsNotTouchedWhereItWas) {
+  const RunningBoard running(0.0295);  // the hand presses 0.5 mm deep
+  client::Board board(running.port());
+  const auto is_touched = [&] {
+    board.arm();
+    board.subscribe({static_cast<std::uint32_t>(core::wire::TelemetryField::kContact), 1});
+    board.connection().sleep(std::chrono::seconds(2));
+    const bool touched = board.latest().body != core::kNoBody;
+    board.stop();
+    return touched;
+  };
+  EXPECT_TRUE(is_touched());
+  core::Pose below{};
+  below.translation_m.z = -0.02F;
+  board.place_body(0, below);
+  EXPECT_FALSE(is_touched());
+  board.place_body(0, core::Pose{});
+  EXPECT_TRUE(is_touched());
+  EXPECT_THROW(board.place_body(7, below), client::LinkError);
+  below.translation_m.z = 11.0F;
+  EXPECT_THROW(board.place_body(0, below), client::LinkError);
+  EXPECT_EQ(core::length(board.model_origin_m()), 0.0F);
 }
 
 TEST(Connection, ReadsAndWritesSerialPort) {

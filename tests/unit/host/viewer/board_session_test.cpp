@@ -248,6 +248,32 @@ TEST_F(BoardSessionTest, AppliesParametersAndReportsRefusals) {
   EXPECT_EQ(refused["settings"]["stiffness_N_m"], 300.0);
 }
 
+TEST_F(BoardSessionTest, SendsPoseToStoppedBoard) {
+  plug_in();
+  begin();
+  const json pose = {1, 0, 0, 0.01, 0, 1, 0, 0, 0, 0, 1, -0.02, 0, 0, 0, 1};
+  const auto is_placed = [](const json& frame) {
+    return is_here(frame) && std::abs(frame["place"]["pose"][11].get<double>() + 0.02) < 1e-6;
+  };
+  arm();
+  EXPECT_FALSE(session_->command({{"do", "place"}, {"pose", pose}}));
+  (void)while_armed([](const json& frame) {
+    return frame["news"]["text"].get<std::string>().starts_with("place: the board is armed");
+  });
+  EXPECT_FALSE(session_->command({{"do", "stop"}}));
+  (void)frames_.wait_for(is_idle);
+  EXPECT_FALSE(session_->command({{"do", "place"}, {"pose", pose}}));
+  const json placed = frames_.wait_for(is_placed);
+  EXPECT_NEAR(placed["bodies"][0][3].get<double>(), 0.01, 1e-6);
+  EXPECT_EQ(placed["place"]["scale"], 1.0);
+  // The hand presses where the model was.
+  const json active = while_armed(is_active);
+  EXPECT_FALSE(active["runs"][0]["in_contact"]);
+  const json scaled = {{"do", "place"}, {"pose", pose}, {"scale", 2.0}};
+  EXPECT_NE(session_->command(scaled).value_or("").find("cannot change the size"),
+            std::string::npos);
+}
+
 TEST_F(BoardSessionTest, RefusesUnknownCommandsAndSettings) {
   plug_in();
   begin();

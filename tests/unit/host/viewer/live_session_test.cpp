@@ -355,14 +355,18 @@ TEST_F(LiveSessionTest, RefusedCommandsChangeNothing) {
 }
 
 TEST_F(LiveSessionTest, ReportsAndScalesUnreachableModel) {
-  simulation::SceneBody body;
-  body.blob = blob_.written().bytes;
   std::string scaled_for;
-  const auto warning = [](const viewer::NamedDevice& device) {
-    return device.name == "falcon" ? std::optional<std::string>("too large") : std::nullopt;
-  };
-  const auto scale = [&](const viewer::NamedDevice& device) { scaled_for = device.name; };
-  LiveSession session({{blob_.view()}, {body}}, devices(), {}, {warning, scale});
+  const viewer::Placing placing = {
+      [](const viewer::NamedDevice& device, const std::optional<simulation::Placement>& placement) {
+        EXPECT_FALSE(placement);
+        return device.name == "falcon" ? std::optional<std::string>("too large") : std::nullopt;
+      },
+      [](const simulation::Placement&) {},
+      [&](const viewer::NamedDevice& device, const simulation::Placement& now) {
+        scaled_for = device.name;
+        EXPECT_EQ(now.scale, 1.0);
+      }};
+  LiveSession session(bodies(), devices(), {}, placing);
   EXPECT_EQ(json::parse(session.step())["fit"], json({{"warning", ""}, {"can_scale", false}}));
   EXPECT_TRUE(session.command({{"do", "fit"}}));
   EXPECT_FALSE(session.command({{"do", "set"}, {"device", "falcon"}, {"restart", true}}));
@@ -374,6 +378,154 @@ TEST_F(LiveSessionTest, ReportsAndScalesUnreachableModel) {
   EXPECT_EQ(scaled_for, "falcon");
   session.report("The model is being scaled.");
   EXPECT_EQ(json::parse(session.step())["news"]["text"], "The model is being scaled.");
+}
+
+/// A session whose only model can be placed.
+class PlacedSessionTest : public LiveSessionTest {
+ protected:
+  viewer::Placing placing() {
+    return {[this](const viewer::NamedDevice&, const auto& placement) {
+              told_ = placement;
+              return std::optional<std::string>();
+            },
+            [this](const simulation::Placement& wanted) { renewed_ = wanted; },
+            {}};
+  }
+  static json turned_about_x(double x, double y, double z) {
+    return {1, 0, 0, x, 0, 0, -1, y, 0, 1, 0, z, 0, 0, 0, 1};
+  }
+  json step() { return json::parse(placed_.step()); }
+  json settle() {
+    const double begin_s = step()["t_s"];
+    json frame;
+    do {
+      frame = step();
+    } while (frame["t_s"] < begin_s + 1.0);
+    return frame;
+  }
+  std::string answer(const json& command) { return placed_.command(command).value_or(""); }
+
+  std::optional<simulation::Placement> told_;
+  std::optional<simulation::Placement> renewed_;
+  LiveSession placed_{bodies(), devices(), {}, placing()};
+};
+
+TEST_F(PlacedSessionTest, ModelMovesUnderRunningSession) {
+  settle();
+  EXPECT_EQ(answer({{"do", "hand"}, {"target_m", {0.0, 0.0, kRadius_m + 0.02}}}), "");
+  const json before = settle();
+  EXPECT_EQ(force_of(before), 0.0);
+  EXPECT_FALSE(told_);
+  // Over the hand, which is then 4 mm inside.
+  EXPECT_EQ(answer({{"do", "place"}, {"pose", turned_about_x(0.0, 0.0, 0.024)}}), "");
+  ASSERT_TRUE(told_);
+  EXPECT_NEAR(told_->pose.translation().z(), 0.024, 1e-9);
+  const json moved = step();
+  EXPECT_NEAR(moved["bodies"][0][11].get<double>(), 0.024, 1e-7);
+  EXPECT_NEAR(moved["bodies"][0][9].get<double>(), 1.0, 1e-7);
+  const json pose = turned_about_x(0.0, 0.0, 0.024);
+  for (std::size_t i = 0; i < pose.size(); ++i) {
+    EXPECT_NEAR(moved["place"]["pose"][i].get<double>(), pose[i].get<double>(), 1e-9) << i;
+  }
+  EXPECT_EQ(moved["place"]["scale"], 1.0);
+  EXPECT_GT(moved["t_s"], before["t_s"]);
+  EXPECT_NEAR(moved["hand_m"][2].get<double>(), kRadius_m + 0.02, 1e-6);
+  EXPECT_EQ(moved["runs"][0]["state"], "active");
+}
+
+TEST_F(PlacedSessionTest, PlacedModelIsTouchedWhereItIs) {
+  settle();
+  EXPECT_EQ(answer({{"do", "place"}, {"pose", turned_about_x(0.03, 0.0, 0.0)}}), "");
+  EXPECT_EQ(answer({{"do", "hand"}, {"target_m", {0.03, 0.0, 2.0 * kRadius_m}}}), "");
+  settle();
+  EXPECT_EQ(answer({{"do", "hand"}, {"target_m", {0.03, 0.0, kPressed_m}}}), "");
+  const json frame = settle();
+  const json& force = frame["runs"][0]["force_N"];
+  EXPECT_GT(force[2].get<double>(), 0.5);
+  EXPECT_LT(std::abs(force[0].get<double>()), 0.1);
+}
+
+TEST_F(PlacedSessionTest, PlaceStaysAfterRestartAndChangeOfMode) {
+  settle();
+  EXPECT_EQ(answer({{"do", "place"}, {"pose", turned_about_x(0.03, 0.0, 0.0)}}), "");
+  EXPECT_EQ(answer({{"do", "set"}, {"mode", "both"}}), "");
+  step();
+  EXPECT_EQ(answer({{"do", "set"}, {"rate_hz", 2000}, {"restart", true}}), "");
+  const json frame = step();
+  EXPECT_NEAR(frame["bodies"][0][3].get<double>(), 0.03, 1e-7);
+  const json hello = json::parse(placed_.hello());
+  EXPECT_EQ(hello["hand_start_m"], frame["place"]["hand_start_m"]);
+  const json& hand = frame["hand_m"];
+  const json& start = frame["place"]["hand_start_m"];
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    EXPECT_NEAR(hand[axis].get<double>(), start[axis].get<double>(), 1e-3);
+  }
+  // The start is over the model: along its z, which is -y of the device.
+  EXPECT_NEAR(start[0].get<double>(), 0.03, 3e-3);
+  EXPECT_LT(start[1].get<double>(), -kRadius_m);
+}
+
+TEST_F(PlacedSessionTest, OtherSizeRestartsOnlyWhenAsked) {
+  const json pose = turned_about_x(0.0, 0.0, 0.01);
+  const json command = {{"do", "place"}, {"pose", pose}, {"scale", 1.5}};
+  EXPECT_NE(answer(command).find("\"restart\": true"), std::string::npos);
+  EXPECT_FALSE(renewed_);
+  json confirmed = command;
+  confirmed["restart"] = true;
+  EXPECT_EQ(answer(confirmed), "");
+  ASSERT_TRUE(renewed_);
+  EXPECT_EQ(renewed_->scale, 1.5);
+  EXPECT_EQ(renewed_->pose.translation().z(), 0.01);
+  EXPECT_EQ(step()["place"]["scale"], 1.0) << "the program begins the new session";
+}
+
+TEST_F(PlacedSessionTest, RefusedPlacesChangeNothing) {
+  const json before = step()["place"];
+  json scaled = turned_about_x(0, 0, 0);
+  scaled[0] = 2.0;
+  json far = turned_about_x(0, 0, 6.0);
+  json text = turned_about_x(0, 0, 0);
+  text[3] = "far";
+  for (const json& pose : {scaled, far, text, json(3), json::array({1, 2})}) {
+    EXPECT_NE(answer({{"do", "place"}, {"pose", pose}}).find("pose: "), std::string::npos) << pose;
+  }
+  EXPECT_NE(answer({{"do", "place"}}).find("pose: "), std::string::npos);
+  for (const json& scale : {json(0), json(-1), json("large"), json(1e9)}) {
+    const json command = {{"do", "place"}, {"pose", turned_about_x(0, 0, 0)}, {"scale", scale}};
+    EXPECT_NE(answer(command).find("scale: "), std::string::npos) << scale;
+  }
+  EXPECT_EQ(step()["place"], before);
+}
+
+TEST_F(PlacedSessionTest, OriginOfSettingsIsFrameOfDevice) {
+  viewer::Settings settings;
+  settings.origin_m = core::Vec3{0.0F, 0.0F, 0.0F};
+  settings.scale = 0.5;
+  viewer::Bodies placed = bodies();
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.translation() = Eigen::Vector3d(0.02, 0.01, 0.0);
+  placed.bodies[0].path = simulation::BodyPath(pose);
+  LiveSession session(std::move(placed), devices(), settings, placing());
+  const json place = json::parse(session.step())["place"];
+  EXPECT_EQ(place["pose"], json(simulation::rows_of(pose)));
+  EXPECT_EQ(place["scale"], 0.5);
+  EXPECT_EQ(place["origin_m"], json({0.0, 0.0, 0.0}));
+  ASSERT_TRUE(told_);
+  EXPECT_EQ(told_->scale, 0.5);
+}
+
+TEST_F(PlacedSessionTest, ReachIsDrawnAroundDevice) {
+  const json reach = json::parse(placed_.reach_json());
+  ASSERT_EQ(reach["points_m"].size(),
+            reach["rows"].get<std::size_t>() * reach["columns"].get<std::size_t>());
+  EXPECT_GT(reach["points_m"].back()[2].get<double>(), 0.02);
+}
+
+TEST_F(LiveSessionTest, SceneCannotBePlaced) {
+  EXPECT_NE(refusal({{"do", "place"}, {"pose", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}}})
+                .find("single model"),
+            std::string::npos);
+  EXPECT_FALSE(json::parse(session_.step()).contains("place"));
 }
 
 TEST_F(LiveSessionTest, ReportsUnreachableStartOfHand) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "test_models.hpp"
 
@@ -104,6 +105,57 @@ TEST_F(PointTreeTest, OctantsMatchBlob) {
   const viewer::OctantBoxes few = viewer::octant_boxes(blob_.view(), blob_.view().depth(), 500);
   EXPECT_LE(few.corners_m.size(), 500U);
   EXPECT_LT(few.level, blob_.view().depth());
+}
+
+/// A sphere whose points with positive x have the second of two materials.
+builder::Model two_materials() {
+  builder::Model model = sphere(0.05, 0.0008);
+  core::BlobMaterial material{};
+  material.stiffness_N_m = 800.0F;
+  model.materials = {material, material};
+  model.materials[1].stiffness_N_m = 200.0F;
+  for (const Eigen::Vector3d& position : model.positions) {
+    model.material_indices.push_back(position.x() > 0.0 ? 1 : 0);
+  }
+  return model;
+}
+
+TEST_F(PointTreeTest, MaterialsBelongToTheirPoints) {
+  const TestBlob blob(two_materials());
+  const PointTree tree(blob.view());
+  std::size_t checked = 0;
+  for (std::size_t i = 0; i < tree.nodes().size(); ++i) {
+    const auto points = tree.points(i);
+    const auto materials = tree.materials(i);
+    ASSERT_EQ(materials.size(), points.size());
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      const double x = place(tree.nodes()[i], points[k]).x();
+      if (std::abs(x) > 1e-4) {  // not on the border
+        ASSERT_EQ(materials[k], x > 0.0 ? 1 : 0) << x;
+        ++checked;
+      }
+    }
+  }
+  EXPECT_GT(checked, 0.9 * blob.view().point_count());
+  EXPECT_TRUE(tree_.materials(0).empty()) << "of a model without materials";
+}
+
+TEST_F(PointTreeTest, TellsMaterialsWithTheirLabels) {
+  const TestBlob blob(two_materials());
+  const PointTree tree(blob.view());
+  const auto plain = nlohmann::json::parse(viewer::tree_json(tree, blob.view()))["materials"];
+  ASSERT_EQ(plain.size(), 2U);
+  EXPECT_EQ(plain[1]["stiffness_N_m"], 200.0);
+  EXPECT_EQ(plain[0]["points"].get<std::uint32_t>() + plain[1]["points"].get<std::uint32_t>(),
+            blob.view().point_count());
+  EXPECT_FALSE(plain[1].contains("name"));
+  const viewer::ScanFacts scan = {{{"default"}, {"felt", {{{250, 10, 5}}}}}, {{{9, 8, 7}, 1234}}};
+  const auto told = nlohmann::json::parse(viewer::tree_json(tree, blob.view(), scan));
+  EXPECT_EQ(told["colours"], nlohmann::json::parse(R"([{"rgb": [9, 8, 7], "points": 1234}])"));
+  const auto& named = told["materials"];
+  EXPECT_EQ(named[1]["name"], "felt");
+  EXPECT_EQ(named[1]["rgb"], nlohmann::json({250, 10, 5}));
+  EXPECT_FALSE(named[0].contains("rgb"));
 }
 
 }  // namespace

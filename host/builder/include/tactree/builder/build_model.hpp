@@ -48,6 +48,8 @@ struct BuildOptions {
   bool centre = false;                      ///< the centre of the bounding box becomes the origin
   std::optional<UpAxis> up;                 ///< source axis that becomes the model's z; default: z
   double turn_deg = 0.0;                    ///< then about z, counterclockwise seen from above
+  double placed_scale = 1.0;                ///< then about the origin of the model
+  std::optional<Eigen::Isometry3d> pose;    ///< then turned and moved: the last step
   std::optional<Eigen::AlignedBox3d> crop;  ///< source units and axes: points outside are dropped
 
   double outlier_sigma = 3.0;  ///< drops points that are off a surface by more than this many times
@@ -109,9 +111,8 @@ struct BuildReport {
   OrientationReport orientation;
 
   std::vector<std::uint64_t> material_points;  ///< points per material in the blob
-  // Only if the materials depend on colour:
-  std::vector<ColourCount> colours;         ///< the most frequent ones of the input points
-  std::vector<ColourMatch> colour_matches;  ///< one per colour of the materials
+  std::vector<ColourCount> colours;            ///< the most frequent ones of the input points
+  std::vector<ColourMatch> colour_matches;     ///< one per colour of the materials
 
   bool unit_known = false;    ///< given by the user or stated by the source
   double source_scale = 1.0;  ///< model metres per source unit

@@ -124,6 +124,11 @@ class Board {
   [[nodiscard]] core::wire::ReadFaultReply first_fault();
   [[nodiscard]] std::vector<core::wire::ParameterReply> parameters();
   void set_parameter(const std::string& name, float value);
+  /// Origin of the model frame in the frame of the device, a parameter of the board.
+  [[nodiscard]] core::Vec3 model_origin_m();
+  /// Puts a body at rest at a pose of the model frame. As move_body(), but a board that refuses it
+  /// is an error.
+  void place_body(std::uint32_t body, const core::Pose& pose);
   void save_parameters();
 
   // ---- models: blocking functions, for as long as the flash is written

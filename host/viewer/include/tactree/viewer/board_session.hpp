@@ -7,14 +7,19 @@
 //   {"do": "arm"} {"do": "stop"} {"do": "clear"}     like tactree arm, stop, arm --clear
 //   {"do": "set", "stiffness_N_m": 400, "damping_Ns_m": 0.5, "static_friction": 0.4,
 //    "dynamic_friction": 0.3, "use_materials": true, "force_max_N": 3}  any subset
+//   {"do": "place", "pose": [16 numbers]}  places the model in the frame of the device, while the
+//   board
+//                                          is stopped
 //   {"do": "connect"}                      after another program has taken over the board
 //   {"do": "record"} {"do": "end_recording"}  as tactree record: every tick received, in a file of
 //                                          this computer. The recording goes on when all pages are
 //                                          closed, and ends at the loss of the board
-// Frames state the recording: {"recording": {"state": "on", "text": ...}}.
-// If the board refuses a command, later frames contain a notice:
+// Frames contain the place of the model as those of a simulation. A board does not report it: it is
+// the one that was sent, or that of the model frame. Frames state the recording: {"recording":
+// {"state": "on", "text": ...}}. If the board refuses a command, later frames contain a notice:
 // {"news": {"number": 1, "text": ...}}.
 
+#include <Eigen/Geometry>
 #include <atomic>
 #include <chrono>
 #include <deque>
@@ -56,6 +61,8 @@ struct BoardSettings {
   /// unknown.
   std::function<Work(const std::string& board, const core::wire::CapabilitiesReply& can)> work;
   RecordingTarget recording{};
+  /// Of the model, frame of the device; sent in each session. Empty: not sent.
+  std::optional<Eigen::Isometry3d> pose{};
 };
 
 class BoardSession : public Source {
@@ -69,6 +76,7 @@ class BoardSession : public Source {
   [[nodiscard]] std::optional<std::string> command(const nlohmann::json& command) override;
   /// Without the columns that boards do not report: true position of the tip, slipping.
   [[nodiscard]] std::string trace_csv() const override;
+  [[nodiscard]] std::string reach_json() const override;
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -84,6 +92,8 @@ class BoardSession : public Source {
   void execute(const nlohmann::json& command);
   void begin_recording();
   void set(const nlohmann::json& wanted);
+  void place(const nlohmann::json& command);
+  void send_pose();
   void continue_arming();
   void read_telemetry();
   void add(const client::Telemetry& telemetry);
@@ -95,6 +105,7 @@ class BoardSession : public Source {
   [[nodiscard]] nlohmann::json run_of_last_tick();
   [[nodiscard]] nlohmann::json settings_json() const;
   [[nodiscard]] nlohmann::json board_json() const;
+  [[nodiscard]] nlohmann::json place_json() const;
   [[nodiscard]] std::optional<std::string> post_stop();
   void enqueue(const nlohmann::json& command);
 

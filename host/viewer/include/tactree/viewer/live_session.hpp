@@ -17,13 +17,19 @@
 //                           device is refused without it
 //   {"do": "inject", "fault": "encoder1:stuck"}  like --inject without a time; acts at once
 //   {"do": "clear_injections"}              removes all injected faults
-//   {"do": "fit"}          scales the model to the workspace of the device: see Fitting
+//   {"do": "place", "pose": [16 numbers], "scale": 1.2, "restart": true}
+//                           places the only model in the frame of the device, as a pose file does.
+//                           The session continues, unless the scale changes: this begins a new
+//                           session and is refused without "restart"
+//   {"do": "fit"}          scales and moves the model to the workspace of the device: see Placing
 // Frames contain the text for a model that does not fit: {"fit": {"warning": ..., "can_scale":
-// false}}; "" if there is none.
+// false}}; "" if there is none. If the model can be placed, they contain its place: {"place":
+// {"pose": [16 numbers], "scale": 1, "origin_m": [x, y, z], "hand_start_m": [x, y, z]}}. The origin
+// is that of the model frame in the device frame.
 // If a command has no visible result, later frames contain a notice with the cause:
 // {"news": {"number": 1, "text": ...}}.
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <deque>
 #include <functional>
 #include <memory>
@@ -34,6 +40,7 @@
 #include <vector>
 
 #include "tactree/core/configuration/device_presets.hpp"
+#include "tactree/simulation/placement.hpp"
 #include "tactree/viewer/frame.hpp"
 #include "tactree/viewer/source.hpp"
 #include "tactree/viewer/tick_log.hpp"
@@ -50,6 +57,9 @@ struct Settings {
   std::optional<float> force_max_N{};  ///< default: that of the device
   Modes modes = Modes::kSurface;
   std::string device = "premium";
+  /// Position of the scene's origin in the device frame. Default: simulation::middle_at_origin().
+  std::optional<core::Vec3> origin_m{};
+  double scale = 1.0;  ///< of the first body, relative to the blob of the user
 };
 
 struct NamedDevice {
@@ -58,12 +68,18 @@ struct NamedDevice {
   core::DevicePreset preset{};
 };
 
-/// What a program adds for models that the device does not reach.
-struct Fitting {
-  /// The text for such a model, none if the device reaches it. Default: never told.
-  std::function<std::optional<std::string>(const NamedDevice&)> warning{};
-  /// Begins to scale the model for a device; must not block.
-  std::function<void(const NamedDevice&)> scale{};
+/// What a program adds for the place of the only model; without `renew`, it cannot be placed.
+struct Placing {
+  /// The text for a model that the device does not reach, none if it does. The placement is empty
+  /// if nobody has placed the model. Default: never told.
+  std::function<std::optional<std::string>(const NamedDevice&,
+                                           const std::optional<simulation::Placement>&)>
+      warning{};
+  /// Begins to make the model in the size of a placement, and a new session with it; must not
+  /// block.
+  std::function<void(const simulation::Placement&)> renew{};
+  /// Likewise at a placement that the device reaches; the present one is given.
+  std::function<void(const NamedDevice&, const simulation::Placement&)> fit{};
 };
 
 class CommandOutcome;
@@ -75,7 +91,7 @@ class LiveSession : public Source {
   /// The blobs of `bodies` must outlive the session. `devices` are the choices of the page. Throws
   /// SessionRefused.
   LiveSession(Bodies bodies, std::vector<NamedDevice> devices, const Settings& settings,
-              Fitting fitting = {});
+              Placing placing = {});
   ~LiveSession() override;
 
   /// Replaces start() in programs with their own time base: executes waiting commands, simulates
@@ -91,11 +107,15 @@ class LiveSession : public Source {
   [[nodiscard]] std::string hello() const override;
   [[nodiscard]] std::optional<std::string> command(const nlohmann::json& command) override;
   [[nodiscard]] std::string trace_csv() const override;
+  [[nodiscard]] std::string reach_json() const override;
 
  private:
   using Runs = std::vector<std::unique_ptr<LiveRun>>;
+  using Pose = std::optional<Eigen::Isometry3d>;  // of the first body; empty: as at the start
 
-  [[nodiscard]] Runs make_runs(const Settings& settings) const;
+  [[nodiscard]] Runs make_runs(const Settings& settings, const Pose& placed) const;
+  [[nodiscard]] core::Vec3 origin_of(const Settings& settings) const;
+  [[nodiscard]] Eigen::Vector3d start_of(const Pose& placed) const;
   [[nodiscard]] simulation::Setup make_setup(const Settings& settings, core::RenderMode mode) const;
   /// One for each wanted mode. Throws SessionRefused.
   [[nodiscard]] std::vector<simulation::Setup> make_setups(const Settings& settings) const;
@@ -103,7 +123,14 @@ class LiveSession : public Source {
   [[nodiscard]] Settings changed(const nlohmann::json& wanted) const;
   [[nodiscard]] nlohmann::json settings_json() const;
   void set(const nlohmann::json& wanted);
-  [[nodiscard]] std::string check_fit(const Settings& settings, bool& is_oversize) const;
+  struct Fit {
+    std::string warning;
+    bool is_oversize = false;
+  };
+  [[nodiscard]] Fit check_fit(const Settings& settings, const Pose& placed) const;
+  [[nodiscard]] simulation::Placement placement(const Settings& settings, const Pose& placed) const;
+  [[nodiscard]] nlohmann::json place_json() const;
+  void place(const nlohmann::json& command);
   void fit() const;
   void enqueue(const nlohmann::json& command);
   void run(const Publish& publish) override;
@@ -116,12 +143,14 @@ class LiveSession : public Source {
   void advance(double seconds);
   [[nodiscard]] std::string frame();
 
-  Bodies bodies_;
   std::vector<NamedDevice> devices_;
-  Fitting fitting_;
-  Eigen::Vector3d start_m_;  // start of the hand, outside the object
+  Placing placing_;
+  Eigen::Vector3d above_m_;       // start of the hand, outside the object; frame of the first body
+  Eigen::Isometry3d first_pose_;  // of the first body, before anybody places it
 
-  // Used by the session's thread only.
+  // Used by the session's thread only, except that others read bodies_ with mutex_ locked, and its
+  // models, which stay.
+  Bodies bodies_;
   Runs runs_;
   std::unique_ptr<SteeredHand> hand_;
   std::unique_ptr<CommandOutcome> outcome_;
@@ -135,8 +164,9 @@ class LiveSession : public Source {
   mutable std::mutex mutex_;  // guards the members up to commands_
   Settings settings_;
   bool is_changed_ = false;  // settings_ differ from those of runs_
-  std::string fit_warning_;
-  bool is_oversize_ = false;
+  Pose placed_;              // by the page
+  bool is_moved_ = false;    // placed_ differs from the pose in bodies_
+  Fit fit_;
   Runs next_runs_;  // of a new session; empty if the present one continues
   std::deque<nlohmann::json> commands_;
 

@@ -39,7 +39,8 @@ struct Asset {
 class Site {
  public:
   /// The views' bytes and the source must outlive the site.
-  Site(std::vector<core::BlobView> models, const Source& source);
+  /// `scan` is that of the first model.
+  Site(std::vector<core::BlobView> models, const Source& source, ScanFacts scan = {});
 
   /// The content of a path without query; 404 if the path is unknown. Slow for is_slow() paths. May
   /// be called from any thread.
@@ -47,8 +48,10 @@ class Site {
   ///   /faults/ /faults/NAME  explanation of faults and limits
   ///   /model/I               the nodes of model I, JSON
   ///   /model/I/points/NODE   PackedPoints
+  ///   /model/I/materials/NODE  PointTree::materials()
   ///   /model/I/octants/LEVEL level and edge, then corners: little-endian u32, float32s
   ///   /trace.csv             the ticks so far
+  ///   /reach.json            the border of the device's workspace
   [[nodiscard]] HttpResponse answer(std::string_view path) const;
   [[nodiscard]] static bool is_slow(std::string_view path);
 
@@ -57,6 +60,7 @@ class Site {
 
   std::vector<core::BlobView> models_;
   std::vector<PointTree> trees_;
+  ScanFacts scan_;
   const Source& source_;
 };
 

@@ -57,6 +57,8 @@ class Source {
   [[nodiscard]] virtual std::optional<std::string> command(const nlohmann::json& command) = 0;
   /// The ticks so far, in the format of simulation::append_trace().
   [[nodiscard]] virtual std::string trace_csv() const = 0;
+  /// The border of the device's workspace as reach_json() writes it; "{}" if it is unknown. Slow.
+  [[nodiscard]] virtual std::string reach_json() const { return "{}"; }
 
  protected:
   [[nodiscard]] bool running() const { return running_; }

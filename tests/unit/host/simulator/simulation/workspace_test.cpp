@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "print_preset.hpp"
 
 namespace tactree::simulation {
@@ -50,6 +52,38 @@ TEST(Workspace, HoldsFlatNotEmptyBox) {
   EXPECT_FALSE(largest_scale(cartesian().model, {0.0, 0.0, 0.0}));
   EXPECT_TRUE(reaches_box(cartesian().model, {0.9, 0.9, 0.0}));
   EXPECT_FALSE(reaches_box(cartesian().model, {0.9, 1.1, 0.0}));
+}
+
+TEST(Workspace, HoldsBoxWhereItIsPlaced) {
+  const core::DeviceModel device = cartesian().model;  // 0.49 m to either side
+  const Vector3d size(0.9, 0.1, 0.1);
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  EXPECT_TRUE(reaches_box(device, pose, size));
+  pose.translation().x() = 0.03;
+  EXPECT_TRUE(reaches_box(device, pose, size));
+  pose.translation().x() = 0.05;
+  EXPECT_FALSE(reaches_box(device, pose, size));
+  pose.linear() = Eigen::AngleAxisd(0.5 * std::numbers::pi, Vector3d::UnitZ()).toRotationMatrix();
+  EXPECT_TRUE(reaches_box(device, pose, size));
+  pose.translation().y() = -0.05;
+  EXPECT_FALSE(reaches_box(device, pose, size));
+}
+
+TEST(Workspace, ShapeIsBorderOfReach) {
+  const core::DeviceModel device = cartesian().model;
+  const ReachShape shape = reach_shape(device);
+  ASSERT_EQ(shape.points_m.size(),
+            static_cast<std::size_t>(ReachShape::kRows * ReachShape::kColumns));
+  for (const Vector3d& point : shape.points_m) {
+    ASSERT_TRUE(reaches(device, point)) << point.transpose();
+    ASSERT_NEAR(point.cwiseAbs().maxCoeff(), 0.49, 2e-3) << point.transpose();
+  }
+  EXPECT_NEAR(shape.points_m.front().z(), -0.49, 2e-3);
+  EXPECT_NEAR(shape.points_m.back().z(), 0.49, 2e-3);
+}
+
+TEST(Workspace, ShapeIsEmptyForPlanarDevices) {
+  EXPECT_TRUE(reach_shape(core::presets::pantograph().model).points_m.empty());
 }
 
 TEST(Workspace, HoldsAnyBoxWithoutLimits) {

@@ -165,5 +165,28 @@ TEST(ModelPicture, NamesSidesOnlyIfBothVisible) {
   EXPECT_FALSE(legend(TestBlob(cos_sheet(0.03, 0.001, core::Profile::kSurface))));
 }
 
+TEST(ModelPicture, ShowsMaterialsInTheirColours) {
+  builder::Model model = sphere(0.05, 0.001);
+  core::BlobMaterial material{};
+  material.stiffness_N_m = 500.0F;
+  model.materials = {material, material};
+  for (const Eigen::Vector3d& position : model.positions) {
+    model.material_indices.push_back(position.z() > 0.0 ? 1 : 0);
+  }
+  const TestBlob blob(model);
+  const picture::MaterialKey keys[] = {{{0.2F, 0.3F, 0.9F}, "default"},
+                                       {{0.9F, 0.1F, 0.1F}, "Felt"}};
+  const Raster raster = picture::draw_model(blob.view(), {}, {}, keys);
+  const int width = raster.width();
+  const Colour top = raster.pixel(width / 4, raster.height() / 3);
+  EXPECT_GT(top.red, 2.0F * top.blue);
+  const Colour bottom = raster.pixel(width / 4, 2 * raster.height() / 3);
+  EXPECT_GT(bottom.blue, 2.0F * bottom.red);
+  // Its key is the second one.
+  const Colour key = raster.pixel(45, 45);
+  EXPECT_GT(key.red, 2.0F * key.blue);
+  EXPECT_LT(reds(picture::draw_model(blob.view(), {})), 10);
+}
+
 }  // namespace
 }  // namespace tactree::test

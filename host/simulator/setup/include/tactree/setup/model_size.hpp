@@ -1,12 +1,13 @@
 #pragma once
 // Compares the size of a model with the workspace of a device.
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <optional>
 #include <string>
 
 #include "tactree/core/device/device_model.hpp"
 #include "tactree/core/model/blob_format.hpp"
+#include "tactree/simulation/placement.hpp"
 
 namespace tactree::setup {
 
@@ -17,6 +18,21 @@ namespace tactree::setup {
                                                           const core::BlobHeader& model,
                                                           const std::string& device_name,
                                                           const core::DeviceModel& device);
+
+/// A warning with a hint if the device cannot reach all faces of the model's bounding box where
+/// `pose` (device frame) places it. Empty if it can, and for a device of one or two axes.
+[[nodiscard]] std::optional<std::string> misplaced_warning(const std::string& file,
+                                                           const core::BlobHeader& model,
+                                                           const std::string& device_name,
+                                                           const core::DeviceModel& device,
+                                                           const Eigen::Isometry3d& pose);
+
+/// The placement at which the device reaches the model, turned as in `now`: in the largest size
+/// with room for the probe, or in the present one if that is smaller, with its centre at the
+/// device's origin. `model` is the model at scale 1. Empty as for fitting_scale().
+[[nodiscard]] std::optional<simulation::Placement> fitted_placement(
+    const core::DeviceModel& device, const core::BlobHeader& model,
+    const simulation::Placement& now);
 
 /// Factor that scales a model of this size to the workspace of a device of three axes, with room
 /// for the probe around it. Empty if the origin of the device is not inside its workspace.

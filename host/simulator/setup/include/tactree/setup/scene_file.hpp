@@ -8,8 +8,10 @@
 //      "from_s": 1, "until_s": 3}]}
 //
 // "blob": index of a blob on the command line, from 0, or a file next to the scene file. "pose": a
-// 4x4 matrix, row by row, in metres; default: the scene's origin. Time 0 is the first tick after
-// arming. A body without "from_s" and "until_s" is always enabled.
+// 4x4 matrix, row by row, in metres, or the name of a pose file next to the scene file; default:
+// the scene's origin. If the first body has a pose file, the origin of the scene is that of the
+// device. Time 0 is the first tick after arming. A body without "from_s" and "until_s" is always
+// enabled.
 
 #include <filesystem>
 #include <memory>
@@ -22,15 +24,23 @@
 namespace tactree::setup {
 
 struct SceneFile {
-  std::vector<std::unique_ptr<support::BlobFile>> blobs;
-  std::vector<std::string> names;               ///< of each body's blob
-  std::vector<const support::BlobFile*> files;  ///< each body's blob
+  std::vector<std::unique_ptr<support::BlobFile>> blobs;   ///< of the user
+  std::vector<std::unique_ptr<support::BlobFile>> scaled;  ///< those of bodies in another size
+  std::vector<std::string> names;                          ///< of each body's blob
+  std::vector<const support::BlobFile*> files;             ///< each body's blob
+  std::vector<double> scales;  ///< of each body, relative to the blob of the user
   std::vector<simulation::SceneBody> bodies;
+  bool in_device_frame = false;  ///< the origin of the scene is that of the device
 };
 
-/// Reads `scene`. If it is empty, each of `blobs` is a body at rest at the origin. Throws UserError
-/// with file, key, cause and hint.
+/// Reads `scene`. If it is empty, each of `blobs` is a body at rest at the origin, or the only one
+/// is placed by `pose_file`. Throws UserError with file, key, cause and hint.
 [[nodiscard]] SceneFile read_scene(const std::filesystem::path& scene,
-                                   const std::vector<std::string>& blobs);
+                                   const std::vector<std::string>& blobs,
+                                   const std::string& pose_file = "");
+
+/// The model at `scale` times its size. `name` is that of messages. Throws UserError.
+[[nodiscard]] std::unique_ptr<support::BlobFile> scaled_blob(const support::BlobFile& given,
+                                                             const std::string& name, double scale);
 
 }  // namespace tactree::setup

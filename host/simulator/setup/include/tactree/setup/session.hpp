@@ -14,11 +14,11 @@
 namespace tactree::setup {
 
 struct SessionOptions {
-  std::string device = "premium";  ///< name of a preset, or file
-  std::vector<double> origin_m;    ///< of the model, device frame; empty: its centre at the origin
-  std::string script = "rub";      ///< motion of the hand
-  std::string path;                ///< file with the path of the hand; empty: the script
-  std::string mode = "surface";    ///< or "paper"
+  std::string device = "premium";    ///< name of a preset, or file
+  std::vector<double> origin_m;      ///< of the model, device frame; empty: see make_setup()
+  std::string script = "rub";        ///< motion of the hand
+  std::string path;                  ///< file with the path of the hand; empty: the script
+  std::string mode = "surface";      ///< or "paper"
   std::optional<float> force_max_N;  ///< default: that of the device
   bool first_force = false;          ///< limits for the first force of a new device
   double seconds = 10.0;             ///< length of the script
@@ -31,9 +31,12 @@ struct SessionOptions {
 struct FirstBody {
   const core::BlobView& view;
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  bool in_device_frame = false;  ///< the pose is one in the frame of the device
 };
 
-/// Device, controller and mechanics. Options take precedence over the device. Throws UserError.
+/// Device, controller and mechanics. Options take precedence over the device. If they do not state
+/// the origin, it is that of the device for a pose in its frame, else the one of
+/// simulation::middle_at_origin(). Throws UserError.
 [[nodiscard]] simulation::Setup make_setup(const SessionOptions& options, const FirstBody& body);
 
 /// Path of the hand. A script touches the body at its first pose. Throws std::runtime_error with

@@ -39,6 +39,11 @@ class SceneTarget : public Target {
   /// Changes the running controller between two ticks; see Controller::adjust().
   [[nodiscard]] core::ConfigurationStatus adjust(hal::sim::SimBoard& board,
                                                  const core::Adjustment& adjustment);
+  /// From the next tick on, a body is at rest at `pose`, which core::is_valid() accepts.
+  /// Precondition: body is the index of one of the bodies.
+  void place(std::size_t body, const Eigen::Isometry3d& pose) {
+    bodies_[body].path = BodyPath(pose);
+  }
   /// The next tick is this one of the bodies' paths, counted from time 0.
   void go_to(std::uint64_t tick) { tick_ = static_cast<double>(tick); }
 

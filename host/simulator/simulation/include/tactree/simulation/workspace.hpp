@@ -1,8 +1,9 @@
 #pragma once
 // Workspace: the positions that the probe of a device reaches.
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <optional>
+#include <vector>
 
 #include "tactree/core/device/device_model.hpp"
 
@@ -17,6 +18,9 @@ namespace tactree::simulation {
 /// origin. Also true for a device of one or two axes, which touches only a section of a model.
 /// Precondition: core::is_valid(device).
 [[nodiscard]] bool reaches_box(const core::DeviceModel& device, const Eigen::Vector3d& size_m);
+/// The same for a box whose centre and axes are those of `pose` in the device frame.
+[[nodiscard]] bool reaches_box(const core::DeviceModel& device, const Eigen::Isometry3d& pose,
+                               const Eigen::Vector3d& size_m);
 
 inline constexpr double kMaxScale = 1e6;
 
@@ -25,5 +29,18 @@ inline constexpr double kMaxScale = 1e6;
 /// empty box. Precondition: core::is_valid(device).
 [[nodiscard]] std::optional<double> largest_scale(const core::DeviceModel& device,
                                                   const Eigen::Vector3d& size_m);
+
+/// The border of the workspace, for drawings: a grid of directions from the device's origin, from
+/// -z to +z, whose rows go around z.
+struct ReachShape {
+  static constexpr int kRows = 11;
+  static constexpr int kColumns = 24;
+  std::vector<Eigen::Vector3d> points_m;  ///< row by row, device frame; empty: not drawn
+};
+
+/// In each direction, the first position that is not reached, to a millimetre; a device without
+/// limits is drawn up to 2 m. Empty for a device of one or two axes, and if the origin is not
+/// reached. Precondition: core::is_valid(device). Cost: some tenths of a second.
+[[nodiscard]] ReachShape reach_shape(const core::DeviceModel& device);
 
 }  // namespace tactree::simulation

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <string>
 
 #include "tactree/core/model/blob.hpp"
 #include "tactree/picture/raster.hpp"
@@ -20,15 +21,26 @@ struct Mark {
   bool is_hole = true;  ///< false: an open boundary
 };
 
+/// A material in the picture. Its name is drawn in lower case.
+struct MaterialKey {
+  Colour colour{};
+  std::string name;
+};
+/// Distinct from the colours of its neighbours in the list.
+[[nodiscard]] Colour false_colour(std::size_t material);
+
 inline constexpr int kPictureWidth = 1280;
 inline constexpr int kPictureHeight = 720;
 
 /// `marks` are in descending order of diameter; the first eight are drawn, with a legend. A mark
 /// that the surface hides is drawn in the other view only, or faintly in both if it is hidden in
 /// both. `doubtful` is empty, or has one element per point of the blob: 1 if its orientation is
-/// ambiguous. Such points have a separate colour, with a legend. Precondition: !view.empty(). Cost:
+/// ambiguous. Such points have a separate colour, with a legend. `materials` is empty, or has one
+/// element per material of the blob: the outside of their points is drawn in these colours, and a
+/// legend names the first eight. Precondition: !view.empty(). Cost:
 /// about 0.1 us per point.
 [[nodiscard]] Raster draw_model(const core::BlobView& view, std::span<const Mark> marks,
-                                std::span<const std::uint8_t> doubtful = {});
+                                std::span<const std::uint8_t> doubtful = {},
+                                std::span<const MaterialKey> materials = {});
 
 }  // namespace tactree::picture
