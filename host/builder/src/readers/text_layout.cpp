@@ -189,8 +189,10 @@ class LayoutFinder {
   }
 
   [[nodiscard]] bool is_count(const TextRow& row) const {
-    return !layout_.declared && row.values.size() == 1 && row.numbers == 1 && row.values[0] >= 0 &&
-           row.values[0] == std::floor(row.values[0]) && row.values[0] < 1e15;
+    // A title may contain other counts.
+    return !layout_.declared && first_other_line_ == 0 && row.values.size() == 1 &&
+           row.numbers == 1 && row.values[0] >= 0 && row.values[0] == std::floor(row.values[0]) &&
+           row.values[0] < 1e15;
   }
 
   bool take_names(std::string_view text) {
@@ -268,6 +270,7 @@ class LayoutFinder {
     layout_.slots = std::move(guess.slots);
     layout_.counter = guess.counter;
     layout_.warnings = std::move(guess.warnings);
+    layout_.remark = std::move(guess.remark);
     layout_.source = "without names, by their numbers";
   }
 

@@ -24,6 +24,7 @@ struct TextLayout {
   std::uint64_t first_row_line = 0;
   double row_bytes = 0;  ///< average
   std::vector<std::string> warnings;
+  std::string remark;  ///< a choice to be reported; may be empty
   std::string source;  ///< origin of the columns, for messages: "named by line 1"
 
   [[nodiscard]] bool has(Slot slot) const;
