@@ -34,6 +34,9 @@ void configure(Assimp::Importer& importer) {
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
 }
 
+/// The formats of 3ds Max have z up; the library turns them so that y is up.
+bool is_turned(std::string_view hint) { return hint == "3ds" || hint == "ase"; }
+
 /// Reads and checks the scene; null on failure.
 const aiScene* read_scene(Assimp::Importer& importer, const std::string& file) {
   constexpr unsigned kSteps = aiProcess_ValidateDataStructure | aiProcess_RemoveComponent |
@@ -100,7 +103,7 @@ bool import_file(const char* file, const char* hint, int output) {
     return refuse(output, reason.c_str());
   }
   std::FILE* to = ::fdopen(output, "wb");
-  SceneWriter writer(*scene, unit_of_file(*scene, file, hint), to);
+  SceneWriter writer(*scene, unit_of_file(*scene, file, hint), is_turned(hint), to);
   return writer.write() || refuse(output, "it holds no point and no face");
 }
 
