@@ -30,7 +30,8 @@ struct TextLayout {
   [[nodiscard]] bool has(Slot slot) const;
 };
 
-/// Returns the data of a line, without comments ('#', "//") and the spaces around it.
+/// Returns the data of a line, without comments ('#', "//", and '%' or '!' at its beginning) and
+/// the spaces around it.
 [[nodiscard]] std::string_view text_of_line(std::string_view line);
 
 /// Removes the next field from the front of `rest`, without quotes and spaces around it. Returns

@@ -55,6 +55,10 @@ class TextReader {
       return;
     }
     if (layout_.declared && is_count(text)) return;
+    if (file_.line_number() < layout_.first_row_line) {
+      if (head_lines_++ == 0) first_head_line_ = file_.line_number();
+      return;
+    }
     if (bad_rows_++ == 0) first_bad_line_ = file_.line_number();
     if (bad_rows_ >= 1000 && bad_rows_ > builder_.points_read()) refuse();
   }
@@ -148,6 +152,11 @@ class TextReader {
   }
 
   void check_bad_rows() {
+    if (head_lines_ > 0) {
+      builder_.warn(fmt::format("{} before the first row {} skipped, the first at line {}.",
+                                head_lines_ == 1 ? "1 line" : fmt::format("{} lines", head_lines_),
+                                head_lines_ == 1 ? "was" : "were", first_head_line_));
+    }
     if (bad_rows_ == 0) return;
     if (bad_rows_ * 100 > bad_rows_ + builder_.points_read()) refuse();
     builder_.count_dropped("bad_row", bad_rows_);
@@ -190,6 +199,8 @@ class TextReader {
   std::int64_t last_number_ = std::numeric_limits<std::int64_t>::min();
   std::uint64_t uncounted_ = 0;
   std::uint64_t first_uncounted_line_ = 0;
+  std::uint64_t head_lines_ = 0;  // text before the first row
+  std::uint64_t first_head_line_ = 0;
   std::uint64_t integers_ = 0;        // rows of three different integers from 0
   std::uint64_t other_integers_ = 0;  // other rows of integers
   std::uint64_t last_integers_ = 0;   // of integers_, without another row after them

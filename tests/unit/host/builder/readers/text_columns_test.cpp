@@ -303,11 +303,22 @@ TEST_F(TextColumnsTest, ReportsColoursThatMayBeOthers) {
   expect_parts(note_of(intensity), "red=5, green=6, blue=7", "column 4 is taken for an intensity");
 }
 
+TEST_F(TextColumnsTest, ReadsCommentsOfOtherPrograms) {
+  for (const std::string sign : {"%", "!"}) {
+    std::string text;
+    for (int i = 0; i < 30; ++i) text += sign + " a comment, of 30\n";
+    const Scan scan = read(text + sign + " z, x, y\n" + table(100, nothing, nothing, ","));
+    EXPECT_EQ(scan.positions.size(), 100U);
+    EXPECT_TRUE(scan.warnings.empty());
+    expect_parts(note_of(scan), "x=2, y=3, z=1");
+  }
+}
+
 TEST_F(TextColumnsTest, TakesNoCountAfterTitle) {
-  const Scan scan = read("a title\n3\nx of it\n" + table(400, nothing, nothing));
-  EXPECT_EQ(scan.positions.size(), 400U);
+  const Scan scan = read("a title\n3\nx of it\n" + table(100, nothing, nothing));
+  EXPECT_EQ(scan.positions.size(), 100U);
   ASSERT_EQ(scan.warnings.size(), 1U);
-  expect_parts(scan.warnings[0], "3 rows were dropped");
+  expect_parts(scan.warnings[0], "3 lines before the first row were skipped");
 }
 
 std::string refusal_of_columns(const char* text) {
