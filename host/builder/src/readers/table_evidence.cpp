@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace tactree::builder {
@@ -85,20 +86,13 @@ std::vector<std::size_t> corner_columns(const GuessedTable& table) {
   return columns;
 }
 
-/// In a mesh, two triangles share each edge, and two tetrahedra each side. Whole numbers that are
-/// coordinates repeat less often, or more often.
-std::string doubt_of_connectivity(const GuessedTable& table) {
-  if (table.rows.size() < kSomeRows) return "";
-  const std::vector<std::size_t> columns = corner_columns(table);
-  if (columns.size() < 3) return "";
+/// Pairs and triples of neighbouring corners.
+struct CornerKeys {
   std::vector<Key> edges;
-  std::vector<Key> sides;
-  std::size_t faces = 0;
-  for (const TextRow& row : table.rows) {
-    std::vector<std::int64_t> corners;
-    for (const std::size_t at : columns) {
-      corners.push_back(static_cast<std::int64_t>(row.values[at]));
-    }
+  std::vector<Key> sides;  ///< of tetrahedra
+  std::size_t faces = 0;   ///< rows of different corners from 0
+
+  void add(std::vector<std::int64_t> corners) {
     const std::size_t count = corners.size();
     for (std::size_t i = 0; i < count; ++i) {
       const auto [low, high] = std::minmax(corners[i], corners[(i + 1) % count]);
@@ -107,17 +101,31 @@ std::string doubt_of_connectivity(const GuessedTable& table) {
     std::sort(corners.begin(), corners.end());
     const bool distinct = std::adjacent_find(corners.begin(), corners.end()) == corners.end();
     if (distinct && corners.front() >= 0) ++faces;
-    for (std::size_t left_out = 0; count == 4 && left_out < count; ++left_out) {
-      Key side{};
-      for (std::size_t i = 0, k = 0; i < count; ++i) {
-        if (i != left_out) side[k++] = corners[i];
-      }
-      sides.push_back(side);
+    if (count != 4) return;
+    sides.push_back({corners[1], corners[2], corners[3]});
+    sides.push_back({corners[0], corners[2], corners[3]});
+    sides.push_back({corners[0], corners[1], corners[3]});
+    sides.push_back({corners[0], corners[1], corners[2]});
+  }
+};
+
+/// In a mesh, two triangles share each edge, and two tetrahedra each side. Whole numbers that are
+/// coordinates repeat less often, or more often.
+std::string doubt_of_connectivity(const GuessedTable& table) {
+  if (table.rows.size() < kSomeRows) return "";
+  const std::vector<std::size_t> columns = corner_columns(table);
+  if (columns.size() < 3) return "";
+  CornerKeys keys;
+  for (const TextRow& row : table.rows) {
+    std::vector<std::int64_t> corners;
+    for (const std::size_t at : columns) {
+      corners.push_back(static_cast<std::int64_t>(row.values[at]));
     }
+    keys.add(std::move(corners));
   }
   constexpr double kShared = 0.25;
-  if (100 * faces < 99 * table.rows.size()) return "";
-  if (share_of_pairs(edges) < kShared && share_of_pairs(sides) < kShared) return "";
+  if (100 * keys.faces < 99 * table.rows.size()) return "";
+  if (share_of_pairs(keys.edges) < kShared && share_of_pairs(keys.sides) < kShared) return "";
   return "the rows consist of integers that repeat like the corners of the faces of a mesh";
 }
 
