@@ -134,6 +134,9 @@ bool is_nmea(std::string_view line) {
          std::all_of(line.begin() + 1, line.begin() + 6, is_letter);
 }
 
+/// A GXF grid: this keyword alone, then heights.
+bool is_gxf(std::string_view line) { return equal_ignoring_case(line, "#grid"); }
+
 /// Point(1) = {0, 0, 0};
 bool is_gmsh_script(std::string_view line) {
   return starts_with_ignoring_case(line, "point(") && line.find("= {") != std::string_view::npos;
@@ -279,6 +282,7 @@ constexpr LineTest kAnyLine[] = {
     {is_tecplot_zone, "a Tecplot file", kMeshToPly},
     {is_gcode, "a machine program (G-code)", "give the model from which it was made"},
     {is_pdb_atom, "a molecule (PDB)", kNotAScan},
+    {is_gxf, "a GXF grid", kGridToXyz},
     {is_nmea, "a log of positions (NMEA)", kNotAScan},
 };
 

@@ -224,7 +224,10 @@ constexpr Signature kAnyLine[] = {
     {0, "begin nodes"sv, "a Kratos mesh (.mdpa)", kMeshToPly},
     {0, "*gridpoints"sv, "a FLAC3D grid", kMeshToPly},
     {0, "* gridpoints"sv, "a FLAC3D grid", kMeshToPly},
-    {0, "node id "sv, "an EnSight geometry", kMeshToPly},
+    {0, "node id off"sv, "an EnSight geometry", kMeshToPly},
+    {0, "node id given"sv, "an EnSight geometry", kMeshToPly},
+    {0, "node id assign"sv, "an EnSight geometry", kMeshToPly},
+    {0, "node id ignore"sv, "an EnSight geometry", kMeshToPly},
     {0, "nblock,"sv, "an Ansys file (.cdb)", kMeshToPly},
     {0, "/com,"sv, "an Ansys file (.cdb)", kMeshToPly},
     {0, "/prep7"sv, "an Ansys file (.cdb)", kMeshToPly},
@@ -240,7 +243,6 @@ constexpr Signature kAnyLine[] = {
     {0, "xllcenter"sv, "an ESRI grid (.asc)", kGridToXyz},
     {0, "north:"sv, "a GRASS grid", kGridToXyz},
     {0, "@grid file"sv, "a ZMap grid", kGridToXyz},
-    {0, "#grid"sv, "a GXF grid", kGridToXyz},
     {0, "_atom_site"sv, "a molecule (CIF)", kNotAScan},
 };
 

@@ -228,6 +228,8 @@ TEST_F(OtherFormatsTest, ReadsSimilarPointTables) {
       "10 0 0\n0 5 5\n1 5 5\n2 5 5\n3 5 5\n",
       "7 5 5 5 5 5 5\n8 5 5 5 5 5 5\n3 5 5 5 5 5 5\n",
       "999\n" + xyz,
+      "#grid of 5 mm\n" + xyz,
+      "node id x y z\n1 7 0.1 0.2 0.3\n2 7 0.4 0.5 0.6\n",
       "n,e,z\n1,2,3\n2,3,4\n",
       "x,y,z,code\n1,2,3,AC1032\n2,3,4,PAR1\n",
   };
