@@ -161,7 +161,8 @@ bool MeshExtractor::take_tag(std::string_view tag) {
   if (name.empty() || inner.find('<') != std::string_view::npos) return false;
   if (inside_ == Inside::kDocument) {
     rest_ += tag;
-    return closes || begin_block(name, empty);
+    if (!closes && !empty) begin_block(name);
+    return true;
   }
   if (closes && element_open_) {
     element_open_ = false;
@@ -177,20 +178,19 @@ bool MeshExtractor::take_tag(std::string_view tag) {
 }
 
 /// Begins a block if the start tag of one was read.
-bool MeshExtractor::begin_block(std::string_view name, bool empty) {
-  if (empty) return true;
-  if (std::find(std::begin(kUnusedResources), std::end(kUnusedResources), name) !=
-      std::end(kUnusedResources)) {
-    inside_ = Inside::kUnused;
-    block_name_ = name;
-    return true;
-  }
-  if (name != "vertices" && name != "triangles") return true;
-  inside_ = name == "vertices" ? Inside::kVertices : Inside::kTriangles;
+void MeshExtractor::begin_block(std::string_view name) {
+  const bool unused = std::find(std::begin(kUnusedResources), std::end(kUnusedResources), name) !=
+                      std::end(kUnusedResources);
+  const bool mesh = name == "vertices" || name == "triangles";
+  if (!unused && !mesh) return;
   block_name_ = name;
+  if (unused) {
+    inside_ = Inside::kUnused;
+    return;
+  }
+  inside_ = name == "vertices" ? Inside::kVertices : Inside::kTriangles;
   rest_ += std::to_string(blocks_.size());
   blocks_.emplace_back();
-  return true;
 }
 
 bool MeshExtractor::take_element(std::string_view name, std::string_view attributes, bool empty) {

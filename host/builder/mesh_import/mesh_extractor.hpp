@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace tactree::builder {
@@ -46,7 +47,7 @@ class MeshExtractor {
   bool take_text(std::string_view text);
   bool take_markup(std::string_view markup);
   bool take_tag(std::string_view tag);
-  bool begin_block(std::string_view name, bool empty);
+  void begin_block(std::string_view name);
   bool take_element(std::string_view name, std::string_view attributes, bool empty);
   bool add_vertex(std::string_view attributes);
   bool add_triangle(std::string_view attributes);
