@@ -1,6 +1,7 @@
 // Reads arbitrary bytes as a scan: read_scan() returns a usable scan or throws ReadError, within
 // its memory limit. Meshes for the import process are excluded: a process per input is too slow.
-// The checksums of E57 pages are corrected, which a fuzzer cannot guess.
+// The checksums of E57 pages are corrected, which a fuzzer cannot guess. If TACTREE_FUZZ_FORMAT is
+// defined, the format is named, so that damage at the beginning reaches its reader, too.
 
 #include <algorithm>
 #include <string>
@@ -10,6 +11,10 @@
 #include "memory_file.hpp"
 #include "recognise.hpp"
 #include "tactree/builder/read_scan.hpp"
+
+#ifndef TACTREE_FUZZ_FORMAT
+#define TACTREE_FUZZ_FORMAT ""
+#endif
 
 namespace {
 
@@ -41,7 +46,9 @@ void examine(const Scan& scan) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view head(reinterpret_cast<const char*>(data), std::min(size, kHeadBytes));
-  const FileKind kind = recognise(head, size).kind;
+  const std::string format = TACTREE_FUZZ_FORMAT;
+  const FileKind kind =
+      format.empty() ? recognise(head, size).kind : recognise_as(format, head, size).kind;
   if (kind == FileKind::kImportedMesh) {
     return 0;
   }
@@ -54,6 +61,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const MemoryFile file(data, size);
   ReadOptions options;
   options.scan_memory_bytes = std::uint64_t{1} << 26;
+  options.format = format;
   try {
     examine(read_scan(file.path(), options));
   } catch (const ReadError& error) {

@@ -185,6 +185,7 @@ GltfFile::GltfFile(const std::string& file, ContainedFiles& files)
     if (version_ == 1) {
       return;
     }
+    undeclared_bytes_ = text.size() - total;
     const std::size_t length = std::min<std::size_t>(word_at(text, kGlbHeader), text.size());
     const std::string_view rest = text.substr(std::min(text.size(), kGlbHeader + kChunkHeader));
     read_binary(rest.substr(std::min(length, rest.size())));

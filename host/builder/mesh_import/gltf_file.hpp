@@ -31,6 +31,8 @@ class GltfFile {
   [[nodiscard]] std::vector<double> numbers(std::size_t accessor, std::size_t width);
   /// Returns the numbers of an accessor of indices.
   [[nodiscard]] std::vector<std::uint32_t> indices(std::size_t accessor);
+  /// Number of bytes after those that the header of a GLB declares.
+  [[nodiscard]] std::size_t undeclared_bytes() const { return undeclared_bytes_; }
   /// Numbers per element of an accessor.
   [[nodiscard]] std::size_t width(std::size_t accessor) const;
 
@@ -56,6 +58,7 @@ class GltfFile {
   std::string bytes_;  // the whole file
   nlohmann::json root_;
   int version_ = 2;
+  std::size_t undeclared_bytes_ = 0;
   std::string_view chunk_;  // binary chunk of a GLB
   std::vector<std::string> buffers_;
   std::vector<bool> is_read_;

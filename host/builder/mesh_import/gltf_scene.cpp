@@ -412,6 +412,11 @@ class GltfScene {
         " triangles were dropped: they refer to points that the file does not have.");
     add(lines_, " sets of lines were left out.");
     add(loose_points_, " points of a skin refer to no joint.");
+    constexpr std::size_t kPadding = 3;
+    if (file_.undeclared_bytes() > kPadding) {
+      add(file_.undeclared_bytes(),
+          " bytes follow the size that the header declares (is this two joined files?).");
+    }
   }
 
   GltfFile& file_;

@@ -10,7 +10,6 @@
 #include <cstdio>
 #include <cstring>
 #include <fstream>
-#include <iterator>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -35,6 +34,9 @@ void configure(Assimp::Importer& importer) {
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
 }
 
+/// The formats of 3ds Max have z up; the library turns them so that y is up.
+bool is_turned(std::string_view hint) { return hint == "3ds" || hint == "ase"; }
+
 /// Reads and checks the scene; null on failure.
 const aiScene* read_scene(Assimp::Importer& importer, const std::string& file) {
   constexpr unsigned kSteps = aiProcess_ValidateDataStructure | aiProcess_RemoveComponent |
@@ -42,9 +44,15 @@ const aiScene* read_scene(Assimp::Importer& importer, const std::string& file) {
   return importer.ReadFile(file, kSteps);
 }
 
+/// Without a copy, which would count towards the memory limit of the process.
 std::string read_file(const char* file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
+  std::ifstream in(file, std::ios::binary | std::ios::ate);
+  const std::streamoff size = in.tellg();
+  std::string bytes(static_cast<std::size_t>(std::max<std::streamoff>(size, 0)), '\0');
+  in.seekg(0);
+  in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(in.gcount()));
+  return bytes;
 }
 
 /// Reads a file for which there is a reader in this folder. Returns nullopt if the library must
@@ -95,7 +103,7 @@ bool import_file(const char* file, const char* hint, int output) {
     return refuse(output, reason.c_str());
   }
   std::FILE* to = ::fdopen(output, "wb");
-  SceneWriter writer(*scene, unit_of_file(*scene, file, hint), to);
+  SceneWriter writer(*scene, unit_of_file(*scene, file, hint), is_turned(hint), to);
   return writer.write() || refuse(output, "it contains no points and no faces");
 }
 

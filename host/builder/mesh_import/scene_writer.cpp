@@ -34,16 +34,18 @@ std::uint8_t to_byte(float value) {
 
 }  // namespace
 
-SceneWriter::SceneWriter(const aiScene& scene, const FileUnit& unit, std::FILE* to)
-    : scene_(scene), unit_(unit), to_(to) {}
+SceneWriter::SceneWriter(const aiScene& scene, const FileUnit& unit, bool turned, std::FILE* to)
+    : scene_(scene), unit_(unit), turned_(turned), to_(to) {}
 
 void SceneWriter::place_meshes() {
   struct Node {
     const aiNode* node;
     Eigen::Matrix4d parent;
   };
+  Eigen::Matrix4d frame = Eigen::Matrix4d::Identity();
+  if (turned_) frame.topLeftCorner<3, 3>() << 1, 0, 0, 0, 0, -1, 0, 1, 0;
   std::vector<Node> open;
-  if (scene_.mRootNode != nullptr) open.push_back({scene_.mRootNode, Eigen::Matrix4d::Identity()});
+  if (scene_.mRootNode != nullptr) open.push_back({scene_.mRootNode, frame});
   while (!open.empty()) {
     const Node current = open.back();
     open.pop_back();

@@ -15,8 +15,9 @@ namespace tactree::builder {
 
 class SceneWriter {
  public:
-  /// The positions are written in units of the file.
-  SceneWriter(const aiScene& scene, const FileUnit& unit, std::FILE* to);
+  /// The positions are written in units of the file. `turned` means that the library has turned the
+  /// z axis of the file to its y axis; the writer turns it back.
+  SceneWriter(const aiScene& scene, const FileUnit& unit, bool turned, std::FILE* to);
 
   /// Returns false if the scene has no point or writing fails.
   [[nodiscard]] bool write();
@@ -36,6 +37,7 @@ class SceneWriter {
 
   const aiScene& scene_;
   FileUnit unit_;
+  bool turned_;
   std::FILE* to_;
   bool failed_ = false;
   std::vector<Placed> placed_;

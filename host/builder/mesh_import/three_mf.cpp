@@ -3,13 +3,13 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
-#include <charconv>
 #include <limits>
 #include <map>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "mesh_import/mesh_extractor.hpp"
 #include "mesh_import/xml_document.hpp"
 #include "mesh_import/zip_archive.hpp"
 
@@ -20,7 +20,8 @@ using Transform = Eigen::Affine3d;
 
 constexpr unsigned kMaxDepth = 32;                // nesting of components
 constexpr std::size_t kMaxInstances = 1'000'000;  // of objects
-// Larger documents would exceed the memory limit of the import process.
+// Of a document without the meshes that MeshExtractor takes. Larger ones would exceed the memory
+// limit of the import process.
 constexpr XmlLimits kXmlLimits{std::size_t{1} << 30, 16'000'000};
 constexpr const char* kRelations = "_rels/.rels";
 
@@ -49,26 +50,6 @@ std::string canonical(std::string_view path) {
     name.erase(0, 1);
   }
   return name;
-}
-
-double number_of(std::string_view text, const char* what) {
-  while (!text.empty() && (text.front() == ' ' || text.front() == '+')) {
-    text.remove_prefix(1);
-  }
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end == text.data()) {
-    throw ImportError(std::string("\"") + std::string(text.substr(0, 20)) + "\" is not a " + what);
-  }
-  return value;
-}
-
-/// Parses an index. Invalid text becomes the maximum, so that the triangle is dropped.
-std::uint32_t index_of(std::string_view text) {
-  std::uint32_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  (void)end;
-  return error == std::errc{} ? value : std::numeric_limits<std::uint32_t>::max();
 }
 
 /// Parses twelve numbers, the rows of a matrix that multiplies row vectors.
@@ -130,8 +111,9 @@ void check_extensions(pugi::xml_node model) {
 /// Reads one model part.
 class ModelReader {
  public:
-  ModelReader(const XmlDocument& document, std::string part)
-      : root_(child_of(document.root(), "model")), part_(std::move(part)) {}
+  /// `blocks` are those of a MeshExtractor, or null if the document has all elements.
+  ModelReader(const XmlDocument& document, std::string part, std::vector<MeshBlock>* blocks)
+      : root_(child_of(document.root(), "model")), part_(std::move(part)), blocks_(blocks) {}
 
   Model read() {
     if (root_.empty()) {
@@ -159,20 +141,39 @@ class ModelReader {
     });
   }
 
-  static void read_mesh(pugi::xml_node mesh, Object& object) {
+  void read_mesh(pugi::xml_node mesh, Object& object) const {
     for_children(mesh, "vertices", [&](pugi::xml_node vertices) {
+      if (MeshBlock* const block = block_of(vertices)) append(block->vertices, object.vertices);
       for_children(vertices, "vertex", [&](pugi::xml_node vertex) {
         object.vertices.emplace_back(coordinate(vertex, "x"), coordinate(vertex, "y"),
                                      coordinate(vertex, "z"));
       });
     });
     for_children(mesh, "triangles", [&](pugi::xml_node triangles) {
+      if (MeshBlock* const block = block_of(triangles)) append(block->triangles, object.triangles);
       for_children(triangles, "triangle", [&](pugi::xml_node triangle) {
         object.triangles.push_back({index_of(attribute_of(triangle, "v1")),
                                     index_of(attribute_of(triangle, "v2")),
                                     index_of(attribute_of(triangle, "v3"))});
       });
     });
+  }
+
+  /// The block whose index is the content of the element, or null.
+  [[nodiscard]] MeshBlock* block_of(pugi::xml_node element) const {
+    if (blocks_ == nullptr || element.child_value()[0] == '\0') return nullptr;
+    const std::uint32_t index = index_of(element.child_value());
+    return index < blocks_->size() ? &(*blocks_)[index] : nullptr;
+  }
+
+  template <typename Entry>
+  static void append(std::vector<Entry>& from, std::vector<Entry>& to) {
+    if (to.empty()) {
+      to = std::move(from);
+    } else {
+      to.insert(to.end(), from.begin(), from.end());
+    }
+    from = {};
   }
 
   static double coordinate(pugi::xml_node vertex, const char* axis) {
@@ -187,6 +188,7 @@ class ModelReader {
 
   pugi::xml_node root_;
   std::string part_;
+  std::vector<MeshBlock>* blocks_;
   Model model_;
 };
 
@@ -250,8 +252,25 @@ class Assembly {
     if (found != models_.end()) {
       return found->second;
     }
+    return models_.emplace(part, read_part(part)).first->second;
+  }
+
+  [[nodiscard]] Model read_part(const std::string& part) const {
+    MeshExtractor extractor;
+    const bool extracted = archive_.unpack(part, [&](std::string_view bytes) {
+      return extractor.feed(bytes);
+    }) && extractor.is_complete();
+    if (extracted && !extractor.error().empty()) throw ImportError(extractor.error());
+    if (extracted) {
+      try {
+        const XmlDocument document(extractor.take_rest(), kXmlLimits);
+        return ModelReader(document, part, &extractor.blocks()).read();
+      } catch (const XmlError&) {
+        // The whole document is parsed below, so that the message states its position.
+      }
+    }
     const XmlDocument document = parsed(part);
-    return models_.emplace(part, ModelReader(document, part).read()).first->second;
+    return ModelReader(document, part, nullptr).read();
   }
 
   void add(const Component& component, const Transform& outer, unsigned depth) {
@@ -279,6 +298,8 @@ class Assembly {
       throw ImportError("it has more than 2^32 points");
     }
     const auto first = static_cast<std::uint32_t>(mesh_.positions.size());
+    make_room(mesh_.positions, object.vertices.size());
+    make_room(mesh_.triangles, object.triangles.size());
     for (const Eigen::Vector3d& vertex : object.vertices) {
       mesh_.positions.push_back(transform * (scale * vertex));
     }
@@ -293,6 +314,13 @@ class Assembly {
       for (std::uint32_t& corner : triangle) corner += first;
       mesh_.triangles.push_back(triangle);
     }
+  }
+
+  /// Grows no further than needed, because large meshes approach the memory limit.
+  template <typename Entry>
+  static void make_room(std::vector<Entry>& list, std::size_t more) {
+    const std::size_t needed = list.size() + more;
+    if (needed > list.capacity()) list.reserve(std::max(needed, list.size() + list.size() / 2));
   }
 
   ZipArchive archive_;

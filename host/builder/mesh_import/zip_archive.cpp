@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <memory>
+#include <new>
 
 #include "mesh_import/imported_mesh.hpp"
 
@@ -31,27 +33,52 @@ bool equal(std::string_view a, std::string_view b) {
   });
 }
 
-std::string inflated(std::string_view packed, std::uint64_t size, const std::string& path) {
+using Take = std::function<bool(std::string_view)>;
+
+constexpr std::size_t kPieceBytes = std::size_t{1} << 20;
+
+/// Returns false if `take` did, like inflate().
+bool pass_on(std::string_view bytes, const Take& take) {
+  for (; !bytes.empty(); bytes.remove_prefix(std::min(kPieceBytes, bytes.size()))) {
+    if (!take(bytes.substr(0, kPieceBytes))) return false;
+  }
+  return true;
+}
+
+/// Unpacks piece by piece. Returns false if `take` did.
+bool inflate(std::string_view packed, std::uint64_t size, const std::string& path,
+             const Take& take) {
   if (size / kMaxRatio > packed.size()) {
     fail("\"" + path + "\" states a size that its bytes cannot have");
   }
-  std::string bytes(static_cast<std::size_t>(size), '\0');
+  std::string piece(kPieceBytes, '\0');
   z_stream stream{};
   if (::inflateInit2(&stream, -MAX_WBITS) != Z_OK) {
     throw std::bad_alloc();
   }
-  stream.next_in =
-      reinterpret_cast<Bytef*>(const_cast<char*>(packed.data()));  // NOLINT: not written
-  stream.avail_in = static_cast<uInt>(packed.size());
-  stream.next_out = reinterpret_cast<Bytef*>(bytes.data());
-  stream.avail_out = static_cast<uInt>(bytes.size());
-  const int result = ::inflate(&stream, Z_FINISH);
-  const std::uint64_t written = stream.total_out;
-  ::inflateEnd(&stream);
+  const std::unique_ptr<z_stream, int (*)(z_streamp)> end(&stream, ::inflateEnd);
+  std::uint64_t written = 0;
+  int result = Z_OK;
+  while (result == Z_OK) {
+    if (stream.avail_in == 0) {  // its length may exceed the type of avail_in
+      const std::string_view next = packed.substr(0, std::size_t{1} << 30);
+      packed.remove_prefix(next.size());
+      stream.next_in =
+          reinterpret_cast<Bytef*>(const_cast<char*>(next.data()));  // NOLINT: not written
+      stream.avail_in = static_cast<uInt>(next.size());
+    }
+    stream.next_out = reinterpret_cast<Bytef*>(piece.data());
+    stream.avail_out = static_cast<uInt>(piece.size());
+    result = ::inflate(&stream, Z_NO_FLUSH);
+    const std::size_t bytes = piece.size() - stream.avail_out;
+    written += bytes;
+    if (written > size) break;
+    if (bytes > 0 && !take(std::string_view(piece).substr(0, bytes))) return false;
+  }
   if (result != Z_STREAM_END || written != size) {
     fail("\"" + path + "\" cannot be unpacked");
   }
-  return bytes;
+  return true;
 }
 
 }  // namespace
@@ -152,32 +179,59 @@ std::string ZipArchive::first_with_ending(std::string_view ending) const {
   return {};
 }
 
-std::string ZipArchive::read(std::string_view path) const {
-  const Member* member = find(path);
-  if (member == nullptr) {
+const ZipArchive::Member& ZipArchive::member(std::string_view path) const {
+  const Member* const found = find(path);
+  if (found == nullptr) {
     throw ImportError("its part \"" + std::string(path.substr(0, 100)) + "\" is missing");
   }
-  const std::uint64_t local = member->header;
+  if (found->method != 0 && found->method != 8) {
+    throw ImportError("\"" + found->path + "\" is compressed with a method that is not supported");
+  }
+  return *found;
+}
+
+std::string_view ZipArchive::packed_bytes(const Member& member) const {
+  const std::uint64_t local = member.header;
   if (local > bytes_.size() ||
       !bytes_.substr(static_cast<std::size_t>(local)).starts_with(kLocal)) {
-    fail("\"" + member->path + "\" is not at the position that its directory states");
+    fail("\"" + member.path + "\" is not at the position that its directory states");
   }
   const std::uint64_t begin = local + kLocalBytes + number(local + 26, 2) + number(local + 28, 2);
-  if (begin > bytes_.size() || member->packed > bytes_.size() - begin) {
-    fail("\"" + member->path + "\" extends beyond the end of the file");
+  if (begin > bytes_.size() || member.packed > bytes_.size() - begin) {
+    fail("\"" + member.path + "\" extends beyond the end of the file");
   }
-  const std::string_view packed =
-      bytes_.substr(static_cast<std::size_t>(begin), static_cast<std::size_t>(member->packed));
-  if (member->method != 0 && member->method != 8) {
-    throw ImportError("\"" + member->path + "\" is compressed with a method that is not supported");
+  return bytes_.substr(static_cast<std::size_t>(begin), static_cast<std::size_t>(member.packed));
+}
+
+bool ZipArchive::unpack(std::string_view path, const Take& take) const {
+  const Member& found = member(path);
+  const std::string_view packed = packed_bytes(found);
+  uLong checksum = ::crc32_z(0, nullptr, 0);
+  const Take count = [&](std::string_view bytes) {
+    checksum = ::crc32_z(checksum, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
+    return take(bytes);
+  };
+  const bool all = found.method == 8 ? inflate(packed, found.unpacked, found.path, count)
+                                     : pass_on(packed, count);
+  if (all && checksum != found.checksum) {
+    fail("the checksum of \"" + found.path + "\" is wrong");
   }
-  std::string bytes =
-      member->method == 8 ? inflated(packed, member->unpacked, member->path) : std::string(packed);
-  const auto checksum = ::crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
-  if (checksum != member->checksum) {
-    fail("the checksum of \"" + member->path + "\" is wrong");
+  return all;
+}
+
+std::string ZipArchive::read(std::string_view path) const {
+  const Member& found = member(path);
+  const std::string_view packed = packed_bytes(found);
+  if (found.unpacked / kMaxRatio <= packed.size()) {
+    std::string bytes;
+    bytes.reserve(static_cast<std::size_t>(found.unpacked));
+    (void)unpack(path, [&](std::string_view piece) {
+      bytes += piece;
+      return true;
+    });
+    return bytes;
   }
-  return bytes;
+  fail("\"" + found.path + "\" states a size that its bytes cannot have");
 }
 
 }  // namespace tactree::builder

@@ -2,6 +2,7 @@
 // The members of a zip archive. Sizes are checked against the archive before memory is allocated.
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,6 +18,10 @@ class ZipArchive {
   [[nodiscard]] bool contains(std::string_view path) const;
   /// Returns the unpacked member. Throws ImportError if it is missing or damaged.
   [[nodiscard]] std::string read(std::string_view path) const;
+  /// Passes the unpacked member piece by piece to `take` until it returns false. Returns true if it
+  /// took all pieces. Throws like read().
+  [[nodiscard]] bool unpack(std::string_view path,
+                            const std::function<bool(std::string_view)>& take) const;
   /// Path of the first member with this ending; empty if there is none.
   [[nodiscard]] std::string first_with_ending(std::string_view ending) const;
 
@@ -33,6 +38,8 @@ class ZipArchive {
   [[nodiscard]] std::uint64_t read_member(std::uint64_t at);
   void read_long_sizes(Member& member, std::uint64_t at, std::uint64_t end) const;
   [[nodiscard]] const Member* find(std::string_view path) const;
+  [[nodiscard]] const Member& member(std::string_view path) const;
+  [[nodiscard]] std::string_view packed_bytes(const Member& member) const;
 
   std::string_view bytes_;
   std::vector<Member> members_;

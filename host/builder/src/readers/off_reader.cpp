@@ -49,10 +49,14 @@ class OffReader {
     builder_.warn_of_more(mesh ? "faces" : "points", declared, declared + more);
   }
 
-  /// Returns the rest of the line after the keyword.
+  /// Returns the rest of the line after the keyword. The counts may follow it without a space, and
+  /// it is missing in some files.
   std::string_view read_keyword() {
     std::string_view row;
     if (!next_row(row)) fail("the file ends before its counts");
+    const std::size_t digit = std::min(row.find_first_of("0123456789"), row.size());
+    if (digit == 0) return row;
+    if (row.starts_with("OFF") && digit == 3) return row.substr(3);
     const std::string_view keyword = take_word(row);
     has_normals_ = keyword.find('N') != std::string_view::npos;
     // Texture coordinates are last, in the columns that would hold the colour.

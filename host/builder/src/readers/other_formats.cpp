@@ -5,11 +5,10 @@
 #include <vector>
 
 #include "number.hpp"
+#include "signatures.hpp"
 
 namespace tactree::builder {
 namespace {
-
-using namespace std::string_view_literals;
 
 constexpr const char* kMeshToPly =
     "convert it with `meshio convert FILE scan.ply`, or open it in ParaView or Gmsh and save its "
@@ -18,131 +17,17 @@ constexpr const char* kSurfaceToPly = "open it in CloudCompare or MeshLab and sa
 constexpr const char* kGridToXyz =
     "convert it to points with `gdal_translate -of XYZ FILE scan.xyz`";
 constexpr const char* kCadToStl = "export it from the CAD program as STL or PLY";
-constexpr const char* kPointsToPly = "convert it with `pdal translate FILE scan.ply`";
-constexpr const char* kArrayToPly = "write its points as rows x y z, or as PLY";
-constexpr const char* kVolumeToPly = "extract its surface, for example in ParaView or 3D Slicer";
 constexpr const char* kNotAScan = "give the scan file";
 
-struct Beginning {
-  std::string_view bytes;
-  const char* name;
-  const char* remedy;
-};
-
-/// First bytes of the file.
-constexpr Beginning kBeginnings[] = {
-    {"# vtk DataFile"sv, "a VTK file (legacy .vtk)", kMeshToPly},
-    {"$MeshFormat"sv, "a Gmsh mesh (.msh)", kMeshToPly},
-    {"$NOD"sv, "a Gmsh mesh (.msh)", kMeshToPly},
-    {"$ENTER"sv, "a PERMAS mesh", kMeshToPly},
-    {"MeshVersionFormatted"sv, "a Medit mesh (.mesh)", kMeshToPly},
-    {"\1\0\0\0\2\0\0\0\3\0\0\0"sv, "a Medit mesh (.meshb)", kMeshToPly},
-    {"mesh3d"sv, "a Netgen mesh (.vol)", kMeshToPly},
-    {"* FLAC3D"sv, "a FLAC3D grid", kMeshToPly},
-    {"*GRIDPOINTS"sv, "a FLAC3D grid", kMeshToPly},
-    {"Begin ModelPart"sv, "a Kratos mesh (.mdpa)", kMeshToPly},
-    {"Begin Nodes"sv, "a Kratos mesh (.mdpa)", kMeshToPly},
-    {"# AVS"sv, "an AVS file", kMeshToPly},
-    {"# Created by COMSOL"sv, "a COMSOL mesh (.mphtxt)", kMeshToPly},
-    {"/PREP7"sv, "an Ansys file (.cdb)", kMeshToPly},
-    {"/COM"sv, "an Ansys file (.cdb)", kMeshToPly},
-    {"FoamFile"sv, "an OpenFOAM file", kMeshToPly},
-    {"#!ascii version of"sv, "a FreeSurfer surface", kMeshToPly},
-    {"\xff\xff\xfe"sv, "a FreeSurfer surface", kMeshToPly},
-    {"# AmiraMesh"sv, "an Amira mesh", kSurfaceToPly},
-    {"# HyperSurface"sv, "an Amira surface", kSurfaceToPly},
-    {"GOCAD "sv, "a GOCAD surface", kSurfaceToPly},
-    {"#Inventor"sv, "an Open Inventor scene (.iv)", kSurfaceToPly},
-    {"//Maya ASCII"sv, "a Maya scene", kSurfaceToPly},
-    {"#usda"sv, "a USD scene", kSurfaceToPly},
-    {"PXR-USDC"sv, "a USD scene", kSurfaceToPly},
-    {"Ogawa"sv, "an Alembic scene", kSurfaceToPly},
-    {"OCTM"sv, "an OpenCTM mesh", kSurfaceToPly},
-    {"U3D\0"sv, "a U3D scene", kSurfaceToPly},
-    {"CCB2"sv, "a CloudCompare file (.bin)", "open it in CloudCompare and save it as PLY"},
-    {"[SBF]"sv, "the header of a CloudCompare cloud (.sbf)", kSurfaceToPly},
-    {"# Bundle file"sv, "a Bundler reconstruction (.out)", kSurfaceToPly},
-    {"NVM_V3"sv, "a VisualSFM reconstruction (.nvm)", kSurfaceToPly},
-    {"\0\0\x27\x0a"sv, "a shapefile", kSurfaceToPly},
-    {"BPF!"sv, "a BPF point cloud", kPointsToPly},
-    {"DSAA"sv, "a Surfer grid (.grd)", kGridToXyz},
-    {"DSBB"sv, "a Surfer grid (.grd)", kGridToXyz},
-    {"DSRB"sv, "a Surfer grid (.grd)", kGridToXyz},
-    {"FSASCI"sv, "a CPS-3 grid", kGridToXyz},
-    {"binterr"sv, "a terrain file (.bt)", kGridToXyz},
-    {"3D Geometry File Format"sv, "a Rhino file (.3dm)", kCadToStl},
-    {"AutoCAD Binary DXF"sv, "a DXF drawing", kCadToStl},
-    {"AC10"sv, "a DWG drawing", kCadToStl},
-    {"\xff\xfe\xff\x0e"sv, "a SketchUp model (.skp)", kCadToStl},
-    {"DBRep_DrawableShape"sv, "an OpenCASCADE shape (.brep)", kCadToStl},
-    {"CASCADE Topology"sv, "an OpenCASCADE shape (.brep)", kCadToStl},
-    {"\x89HDF\r\n\x1a\n"sv, "an HDF5 file (CGNS, MED, XDMF data, MATLAB 7.3, ...)", kMeshToPly},
-    {"CDF\1"sv, "a NetCDF file (Exodus, a grid, ...)", kMeshToPly},
-    {"CDF\2"sv, "a NetCDF file (Exodus, a grid, ...)", kMeshToPly},
-    {"\x93NUMPY"sv, "a NumPy array (.npy)", kArrayToPly},
-    {"MATLAB 5.0"sv, "a MATLAB file (.mat)", kArrayToPly},
-    {"PAR1"sv, "a Parquet table", kArrayToPly},
-    {"NRRD000"sv, "a volume (NRRD)", kVolumeToPly},
-    {"ObjectType ="sv, "a volume (MetaImage)", kVolumeToPly},
-    {" BDV"sv, "a volume (OpenVDB)", kVolumeToPly},
-    {"$GP"sv, "a log of positions (NMEA)", kNotAScan},
-    {"$GN"sv, "a log of positions (NMEA)", kNotAScan},
-};
-
-/// A keyword at the beginning of a line, in any case.
-struct Keyword {
-  std::string_view word;  // matches whole words if it ends with a letter
-  const char* name;
-  const char* remedy;
-};
-
-/// The keyword begins the first line.
-constexpr Keyword kFirstLines[] = {
-    {"ncols", "an ESRI grid (.asc)", kGridToXyz},
-    {"nrows", "an ESRI grid (.asc)", kGridToXyz},
-    {"north:", "a GRASS grid", kGridToXyz},
-    {"title=", "a Tecplot file", kMeshToPly},
-};
-
-/// The keyword begins one of the first lines.
-constexpr Keyword kAnyLines[] = {
-    {"*node", "an Abaqus or LS-DYNA file", kMeshToPly},
-    {"*keyword", "an LS-DYNA file", kMeshToPly},
-    {"begin bulk", "a Nastran file", kMeshToPly},
-    {"cend", "a Nastran file", kMeshToPly},
-    {"grid*", "a Nastran file", kMeshToPly},
-    {"grid,", "a Nastran file", kMeshToPly},
-    {"$nodes", "a Gmsh mesh (.msh)", kMeshToPly},
-    {"ndime=", "an SU2 mesh", kMeshToPly},
-    {"type: ensight", "an EnSight case", kMeshToPly},
-    {"node id ", "an EnSight geometry", kMeshToPly},
-    {"nblock,", "an Ansys file (.cdb)", kMeshToPly},
-    {"foamfile", "an OpenFOAM file", kMeshToPly},
-    {"g0 x", "a machine program (G-code)", "give the model from which it was made"},
-    {"g1 x", "a machine program (G-code)", "give the model from which it was made"},
-    {"variables=", "a Tecplot file", kMeshToPly},
-};
-
-/// Elements of XML files.
-constexpr Keyword kElements[] = {
-    {"<VTKFile", "a VTK file (.vtu, .vtp, ...)", kMeshToPly},
-    {"<Xdmf", "an XDMF file", kMeshToPly},
-    {"<dolfin", "a DOLFIN mesh", kMeshToPly},
-    {"<GIFTI", "a GIFTI surface", kMeshToPly},
-    {"<LandXML", "a LandXML file", kSurfaceToPly},
-    {"CityModel", "a CityGML model", kSurfaceToPly},
-    {"<MeshLabProject", "a MeshLab project, which names scans but contains none",
-     "give the files that it names"},
-    {"<kml", "a KML file", kNotAScan},
-    {"<gpx", "a GPX file", kNotAScan},
-    {"<svg", "a drawing (SVG)", "give the scan, not a picture of it"},
-};
-
-constexpr std::size_t kKeywordLines = 400;
+constexpr std::size_t kLines = 20000;  // of the beginning of a file; many may be comments
 constexpr std::size_t kMaxLineChars = 512;
 
 Recognition refused(const char* name, const char* remedy) {
   return {FileKind::kUnsupported, std::string(name) + ", which has no reader", remedy, ""};
+}
+
+Recognition refused(const Signature& signature) {
+  return refused(signature.name, signature.remedy);
 }
 
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
@@ -192,14 +77,76 @@ std::vector<std::int64_t> counts_of(std::string_view line) {
   return counts;
 }
 
-/// Fixed columns, or numbers separated by white space, after the word GRID.
-bool is_nastran_grid(std::string_view line) {
-  return line.size() > 8 && starts_with_ignoring_case(line, "grid    ") &&
-         line.find_first_of("0123456789") != std::string_view::npos;
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/// Fixed columns, or fields separated by commas, after a keyword of nodes or elements.
+bool is_nastran_card(std::string_view line) {
+  constexpr std::string_view kCards[] = {"grid",   "ctria3", "ctria6", "cquad4", "cquad8",
+                                         "ctetra", "chexa",  "cpenta", "cbar",   "cbeam"};
+  const bool known = std::any_of(std::begin(kCards), std::end(kCards), [&](auto card) {
+    return starts_with_ignoring_case(line, card) && line.size() > card.size() &&
+           (line[card.size()] == ' ' || line[card.size()] == ',' || line[card.size()] == '*');
+  });
+  // The first field has eight characters, filled with spaces, or ends with a comma.
+  const bool field = line.find(',') < 8 || (line.size() > 8 && line[7] == ' ');
+  return known && field && std::any_of(line.begin(), line.end(), is_digit);
+}
+
+/// N,1,0.5,0.25,0 and then N,2,...: the nodes of an Ansys script.
+bool are_ansys_nodes(std::span<const std::string_view> lines) {
+  const auto number = [](std::string_view line) {
+    std::int64_t value = -1;
+    if (!starts_with_ignoring_case(line, "n,")) return value;
+    line.remove_prefix(2);
+    (void)parse_integer(trim(line.substr(0, line.find(','))), value);
+    return value;
+  };
+  for (std::size_t i = 0; i + 1 < lines.size(); ++i) {
+    const std::int64_t first = number(lines[i]);
+    if (first > 0 && number(lines[i + 1]) == first + 1) return true;
+  }
+  return false;
+}
+
+/// ZONE T="a", N=100, ...
+bool is_tecplot_zone(std::string_view line) {
+  return equal_ignoring_case(take_word(line), "zone") && line.find('=') != std::string_view::npos;
+}
+
+/// type: ensight gold
+bool is_ensight_case(std::string_view line) {
+  return starts_with_ignoring_case(line, "type:") &&
+         starts_with_ignoring_case(trim(line.substr(5)), "ensight");
+}
+
+/// G1 X10 Y2, also after the number of a block: N20 G1 X10.
+bool is_gcode(std::string_view line) {
+  std::string_view word = take_word(line);
+  if (word.size() > 1 && word[0] == 'N' && is_digit(word[1])) word = take_word(line);
+  const std::string_view axis = take_word(line);
+  return word.size() == 2 && (word[0] == 'G' || word[0] == 'g') && word[1] >= '0' &&
+         word[1] <= '1' && axis.size() > 1 && (axis[0] == 'X' || axis[0] == 'x');
+}
+
+/// $GPGGA,123519,...
+bool is_nmea(std::string_view line) {
+  return line.size() > 6 && line.starts_with("$G") && line[6] == ',' &&
+         std::all_of(line.begin() + 1, line.begin() + 6, is_letter);
+}
+
+/// A GXF grid: this keyword alone, then heights.
+bool is_gxf(std::string_view line) { return equal_ignoring_case(line, "#grid"); }
+
+/// Point(1) = {0, 0, 0};
+bool is_gmsh_script(std::string_view line) {
+  return starts_with_ignoring_case(line, "point(") && line.find("= {") != std::string_view::npos;
 }
 
 /// Well-known text: TIN (((0 0 0, ..., MULTIPOINT Z ((1 2 3), ...
 bool is_wkt(std::string_view line) {
+  if (starts_with_ignoring_case(line, "srid=")) {
+    line.remove_prefix(std::min(line.find(';') + 1, line.size()));
+  }
   constexpr std::string_view kShapes[] = {"tin",          "multipoint", "polyhedralsurface",
                                           "multipolygon", "polygon",    "linestring"};
   const std::size_t open = line.find('(');
@@ -216,14 +163,59 @@ bool is_pdb_atom(std::string_view line) {
   return line.size() >= 54 && (line.starts_with("ATOM  ") || line.starts_with("HETATM"));
 }
 
+/// A dataset of an I-DEAS file: -1, then its number.
 bool is_universal(std::span<const std::string_view> lines) {
-  constexpr std::string_view kDatasets[] = {"15", "151", "164", "2411", "2412", "2420", "781"};
-  return lines.size() > 1 && lines[0] == "-1" &&
-         std::find(std::begin(kDatasets), std::end(kDatasets), lines[1]) != std::end(kDatasets);
+  return lines.size() > 1 && lines[0] == "-1" && lines[1].size() <= 4 &&
+         std::all_of(lines[1].begin(), lines[1].end(), is_digit);
 }
 
+/// CalculiX: the records 1C and 1U.
+bool is_calculix(std::span<const std::string_view> lines) {
+  return lines.size() > 1 && lines[0].starts_with("1C") && lines[1].starts_with("1U");
+}
+
+/// The points of an OpenFOAM mesh without its header: a count, and rows in parentheses.
+bool is_foam_list(std::span<const std::string_view> lines) {
+  return lines.size() > 2 && counts_of(lines[0]).size() == 1 && lines[1] == "(" &&
+         lines[2].starts_with('(');
+}
+
+/// A picture or a grid of floats: P2 or Pf, and the width and the height.
+bool is_netpbm(std::span<const std::string_view> lines) {
+  const bool magic = lines[0].size() == 2 && (lines[0][0] == 'P' || lines[0][0] == 'p') &&
+                     (is_digit(lines[0][1]) || lines[0] == "Pf" || lines[0] == "PF");
+  std::size_t next = 1;
+  while (next < lines.size() && lines[next].starts_with('#')) ++next;
+  return magic && next < lines.size() && counts_of(lines[next]).size() == 2;
+}
+
+/// Rows "G 1 0.5 0.25 0" of grid points.
+bool is_flac(std::span<const std::string_view> lines) {
+  constexpr std::size_t kRows = 4;
+  if (lines.size() < kRows) return false;
+  return std::all_of(lines.begin(), lines.begin() + kRows, [](std::string_view line) {
+    return take_word(line) == "G" && numbers_of(line).size() == 4;
+  });
+}
+
+/// An Irap grid: -996, the number of rows, two steps, then 19 numbers.
+bool is_irap(std::span<const std::string_view> lines) {
+  const std::vector<double> first = numbers_of(lines[0]);
+  return first.size() == 4 && first[0] == -996.0 && lines.size() > 1 &&
+         numbers_of(lines[1]).size() == 4;
+}
+
+/// The counts of a GTS surface may be followed by the names of its classes.
+bool is_gts(std::string_view line) {
+  return line.find("GtsSurface") != std::string_view::npos ||
+         line.find("GtsVertex") != std::string_view::npos;
+}
+
+/// Comments with the code 999 may come first.
 bool is_dxf(std::span<const std::string_view> lines) {
-  return lines.size() > 1 && ((lines[0] == "0" && lines[1] == "SECTION") || lines[0] == "999");
+  std::size_t at = 0;
+  while (at + 3 < lines.size() && lines[at] == "999") at += 2;
+  return at + 1 < lines.size() && lines[at] == "0" && lines[at + 1] == "SECTION";
 }
 
 /// IGES: lines of 80 characters with a letter in column 73 and a number after it.
@@ -278,45 +270,97 @@ bool is_numbered(std::span<const std::string_view> lines, std::int64_t count) {
   return has_number(whole - 1);
 }
 
+struct LineTest {
+  bool (*matches)(std::string_view line);
+  const char* name;
+  const char* remedy;
+};
+
+constexpr LineTest kAnyLine[] = {
+    {is_nastran_card, "a Nastran file", kMeshToPly},
+    {is_ensight_case, "an EnSight case", kMeshToPly},
+    {is_tecplot_zone, "a Tecplot file", kMeshToPly},
+    {is_gcode, "a machine program (G-code)", "give the model from which it was made"},
+    {is_pdb_atom, "a molecule (PDB)", kNotAScan},
+    {is_gxf, "a GXF grid", kGridToXyz},
+    {is_nmea, "a log of positions (NMEA)", kNotAScan},
+};
+
+constexpr LineTest kFirstLine[] = {
+    {is_fluent, "a Fluent mesh (.msh)", kMeshToPly},
+    {is_wkt, "a WKT geometry", kSurfaceToPly},
+    {is_gts, "a GTS surface", kSurfaceToPly},
+    {is_gmsh_script, "a Gmsh script (.geo)", kMeshToPly},
+};
+
+struct FileTest {
+  bool (*matches)(std::span<const std::string_view> lines);
+  const char* name;
+  const char* remedy;
+};
+
+constexpr FileTest kFiles[] = {
+    {is_universal, "an I-DEAS universal file (.unv)", kMeshToPly},
+    {is_calculix, "a CalculiX result (.frd)", kMeshToPly},
+    {is_dxf, "a DXF drawing", kCadToStl},
+    {is_foam_list, "an OpenFOAM file", kMeshToPly},
+    {is_netpbm, "a picture", "give the scan, not a picture of it"},
+    {is_flac, "a FLAC3D grid", kMeshToPly},
+    {is_irap, "an Irap grid", kGridToXyz},
+    {are_ansys_nodes, "an Ansys file", kMeshToPly},
+    {is_molecule, "a molecule (XYZ of chemistry)", kNotAScan},
+};
+
 std::optional<Recognition> recognise_structure(std::string_view head,
                                                std::span<const std::string_view> lines) {
-  if (is_universal(lines)) return refused("an I-DEAS universal file (.unv)", kMeshToPly);
-  if (is_dxf(lines)) return refused("a DXF drawing", kCadToStl);
-  if (is_iges(head)) return refused("an IGES file", kCadToStl);
-  if (is_fluent(lines.front())) return refused("a Fluent mesh (.msh)", kMeshToPly);
-  if (is_wkt(lines.front())) return refused("a WKT geometry", kSurfaceToPly);
-  if (std::any_of(lines.begin(), lines.end(), is_pdb_atom)) {
-    return refused("a molecule (PDB)", kNotAScan);
+  for (const FileTest& test : kFiles) {
+    if (test.matches(lines)) return refused(test.name, test.remedy);
   }
-  if (is_molecule(lines)) return refused("a molecule (XYZ of chemistry)", kNotAScan);
+  for (const LineTest& test : kFirstLine) {
+    if (test.matches(lines.front())) return refused(test.name, test.remedy);
+  }
+  if (is_iges(head)) return refused("an IGES file", kCadToStl);
   return std::nullopt;
+}
+
+/// True for a comment in any of the formats.
+bool is_comment(std::string_view line) {
+  constexpr std::string_view kBegin = "#%!$*/;|";
+  return kBegin.find(line.front()) != std::string_view::npos || line.starts_with("--");
 }
 
 }  // namespace
 
-std::optional<Recognition> recognise_other_format(std::string_view head) {
-  for (const Beginning& known : kBeginnings) {
-    if (head.starts_with(known.bytes)) return refused(known.name, known.remedy);
+std::optional<Recognition> recognise_by_signature(std::string_view head, bool text) {
+  for (const Signature& known : binary_signatures()) {
+    const bool there = head.size() >= known.at + known.bytes.size() &&
+                       head.substr(known.at, known.bytes.size()) == known.bytes;
+    if (!text && there) return refused(known);
   }
-  if (head.size() > 132 && head.substr(128, 4) == "DICM") {
-    return refused("a volume (DICOM)", kVolumeToPly);
+  for (const std::string_view line : raw_lines(head, kLines)) {
+    for (const Signature& known : first_line_signatures()) {
+      if (begins_with(line, known.bytes)) return refused(known);
+    }
+    if (!is_comment(line)) break;
   }
-  const std::vector<std::string_view> lines = raw_lines(head, kKeywordLines);
+  const std::size_t begin = head.find_first_not_of(" \t\r\n");
+  if (begin == std::string_view::npos || head[begin] != '<') return std::nullopt;
+  for (const Signature& known : xml_signatures()) {
+    if (head.find(known.bytes) != head.npos) return refused(known);
+  }
+  return std::nullopt;
+}
+
+std::optional<Recognition> recognise_by_lines(std::string_view head) {
+  const std::vector<std::string_view> lines = raw_lines(head, kLines);
   if (lines.empty()) return std::nullopt;
-  if (lines.front().starts_with('<')) {
-    for (const Keyword& element : kElements) {
-      if (head.find(element.word) != head.npos) return refused(element.name, element.remedy);
-    }
-    return std::nullopt;
-  }
-  for (const Keyword& known : kFirstLines) {
-    if (begins_with(lines.front(), known.word)) return refused(known.name, known.remedy);
-  }
   for (const std::string_view line : lines) {
-    for (const Keyword& known : kAnyLines) {
-      if (begins_with(line, known.word)) return refused(known.name, known.remedy);
+    for (const Signature& known : line_signatures()) {
+      if (begins_with(line, known.bytes)) return refused(known);
     }
-    if (is_nastran_grid(line)) return refused("a Nastran file", kMeshToPly);
+    for (const LineTest& test : kAnyLine) {
+      if (test.matches(line)) return refused(test.name, test.remedy);
+    }
   }
   return recognise_structure(head, lines);
 }
@@ -324,21 +368,29 @@ std::optional<Recognition> recognise_other_format(std::string_view head) {
 std::optional<Recognition> recognise_counted_format(std::span<const std::string_view> lines) {
   if (lines.size() < 4) return std::nullopt;
   const std::vector<std::int64_t> counts = counts_of(lines[0]);
+  if (counts.size() == 9 && counts[0] == 25) return refused("a Patran file", kMeshToPly);
   if (counts.size() < 2 || *std::min_element(counts.begin(), counts.end()) < 0) return std::nullopt;
   if (counts.size() <= 5 && is_numbered(lines, counts[0])) {
     return counts.size() == 5
                ? refused("an AVS-UCD mesh", kMeshToPly)
                : refused("a TetGen or Triangle file (.node, .ele, .face)", kMeshToPly);
   }
+  if (counts.size() == 4 && counts[0] == 0 && counts[1] == 3) {
+    return refused("a TetGen file (.poly, .smesh)", kMeshToPly);
+  }
   if (counts.size() == 7 && numbers_of(lines[1]).size() == 3) {
     return refused("a UGRID mesh", kMeshToPly);
   }
   const auto rows = static_cast<std::int64_t>(lines.size() - 1);
-  if (counts.size() == 3 && counts[0] > 2 && counts[0] < rows && counts[1] < rows &&
-      counts[2] < rows && counts[0] + counts[1] + counts[2] == rows) {
-    return refused("a FreeFem mesh (.msh)", kMeshToPly);
-  }
-  return std::nullopt;
+  const bool fits = counts.size() == 3 && counts[0] > 2 && counts[0] < rows && counts[1] < rows &&
+                    counts[2] < rows && counts[0] + counts[1] + counts[2] == rows;
+  if (!fits) return std::nullopt;
+  // Rows such as "3 0 1 2" after the points are the faces of an OFF file.
+  const std::vector<std::int64_t> last = counts_of(lines.back());
+  const bool faces = !last.empty() && last.front() + 1 == static_cast<std::int64_t>(last.size());
+  if (!faces) return refused("a FreeFem mesh (.msh)", kMeshToPly);
+  return Recognition{FileKind::kUnsupported, "an OFF file without the line OFF at its beginning",
+                     "read it with --format off", ""};
 }
 
 }  // namespace tactree::builder

@@ -10,12 +10,17 @@
 
 namespace tactree::builder {
 
-/// Returns the format of a file that begins with `head`, if it is known and has no reader.
-[[nodiscard]] std::optional<Recognition> recognise_other_format(std::string_view head);
+/// Returns the format of a file by its first bytes, if it is known and has no reader. `text` is
+/// is_text(head): some signatures are so short that text may begin with them.
+[[nodiscard]] std::optional<Recognition> recognise_by_signature(std::string_view head, bool text);
 
-/// Like recognise_other_format(), for formats with rows of numbers after a line of counts: TetGen,
-/// AVS-UCD, UGRID, FreeFem. `lines` are the first lines of the file, without blank lines and
-/// comments.
+/// Returns the format of a file by the keywords and the structure of its lines, if it is known and
+/// has no reader. Files of a format that has a reader may contain these keywords.
+[[nodiscard]] std::optional<Recognition> recognise_by_lines(std::string_view head);
+
+/// Like recognise_by_lines(), for formats with rows of numbers after a line of counts: TetGen,
+/// AVS-UCD, UGRID, FreeFem, OFF without its keyword. `lines` are the first lines of the file,
+/// without blank lines and comments.
 [[nodiscard]] std::optional<Recognition> recognise_counted_format(
     std::span<const std::string_view> lines);
 

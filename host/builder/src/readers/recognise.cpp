@@ -15,50 +15,8 @@ namespace {
 
 using namespace std::string_view_literals;
 
-constexpr const char* kPictureRemedy = "give the scan, not a picture of it";
 constexpr const char* kUnpackRemedy = "unpack it and give the scan inside";
 constexpr const char* kMeshRemedy = "open it in Blender or MeshLab and save it as PLY";
-
-struct Magic {
-  std::size_t at;
-  std::string_view bytes;
-  const char* name;
-  const char* remedy;
-};
-
-constexpr Magic kUnsupportedMagics[] = {
-    {0, "DRACO"sv, "a Draco file (.drc), which is not supported yet",
-     "decode it with draco_decoder -i FILE -o scan.ply"},
-    {0, "\x89PNG\r\n\x1a\n"sv, "a PNG picture", kPictureRemedy},
-    {0, "\x89PNG"sv, "a PNG picture", kPictureRemedy},
-    {0, "\xff\xd8\xff"sv, "a JPEG picture", kPictureRemedy},
-    {0, "GIF8"sv, "a GIF picture", kPictureRemedy},
-    {0, "II*\0"sv, "a TIFF picture", kPictureRemedy},
-    {0, "MM\0*"sv, "a TIFF picture", kPictureRemedy},
-    {8, "WEBP"sv, "a WebP picture", kPictureRemedy},
-    {0, "%PDF"sv, "a PDF document", "give the scan file"},
-    {0, "\x1f\x8b"sv, "a gzip archive", "unpack it with gunzip and give the result"},
-    {0, "BZh"sv, "a bzip2 archive", "unpack it with bunzip2 and give the result"},
-    {0,
-     "\xfd"
-     "7zXZ\0"sv,
-     "an xz archive", "unpack it with unxz and give the result"},
-    {0, "\x28\xb5\x2f\xfd"sv, "a Zstandard archive", "unpack it with unzstd and give the result"},
-    {0, "7z\xbc\xaf\x27\x1c"sv, "a 7-Zip archive", kUnpackRemedy},
-    {0, "Rar!\x1a\x07"sv, "a RAR archive", kUnpackRemedy},
-    {257, "ustar"sv, "a tar archive", kUnpackRemedy},
-    {0,
-     "\x7f"
-     "ELF"sv,
-     "a program", "give the scan file"},
-    {0, "ISO-10303-21"sv, "a CAD file (STEP or IFC)",
-     "export it from the CAD program as STL or PLY"},
-    {0, "SQLite format 3"sv, "a database", "give the scan file"},
-    {0, "version https://git-lfs"sv, "a Git LFS pointer, not the file itself",
-     "fetch the file with git lfs pull"},
-    {0, "\xff\xfe"sv, "text in UTF-16", "save it as UTF-8"},
-    {0, "\xfe\xff"sv, "text in UTF-16", "save it as UTF-8"},
-};
 
 struct ImportMagic {
   std::size_t at;
@@ -138,6 +96,17 @@ std::optional<Recognition> recognise_zip(std::string_view head) {
                        contains("Metadata/");
   const bool office = contains("word/") || contains("xl/") || contains("ppt/");
   if (package && !office) return imported("3MF", "3mf");
+  if (contains(".usdc") || contains(".usda")) {
+    return unsupported("a USD scene (.usdz), which has no reader",
+                       "open it in Blender and save it as glTF or PLY");
+  }
+  if (contains(".npy")) {
+    return unsupported("a NumPy archive (.npz), which has no reader",
+                       "write its points as rows x y z, or as PLY");
+  }
+  if (contains(".brp")) {
+    return unsupported("a FreeCAD document, which has no reader", "export it as STL or PLY");
+  }
   return unsupported("a zip archive", kUnpackRemedy);
 }
 
@@ -154,9 +123,19 @@ std::optional<Recognition> recognise_markup(std::string_view head) {
   const std::string_view text =
       trim(head.substr(std::min(head.find_first_not_of("\n\r \t"), head.size())));
   const auto contains = [&](std::string_view word) { return head.find(word) != head.npos; };
+  if (text.starts_with('{') && contains("\"geometricError\"")) {
+    return unsupported("the index of 3D Tiles, which has no reader",
+                       "export the model as glTF or PLY from the program that made the tiles");
+  }
+  if (text.starts_with('{') && contains("\"CityJSON\"")) {
+    return unsupported("a CityJSON model, which has no reader",
+                       "convert it to glTF, for example in Blender");
+  }
   if (text.starts_with('{') && contains("\"asset\"")) return imported("glTF", "gltf");
   if (text.starts_with('{') && contains("\"buffers\"")) return imported("glTF", "gltf");
-  if (text.starts_with('{')) return unsupported("a JSON file", "give the scan file");
+  if (text.starts_with('{') || text.starts_with('[')) {
+    return unsupported("a JSON file", "give the scan file, or write its points as rows x y z");
+  }
   if (starts_with_ignoring_case(text, "<!doctype html") ||
       starts_with_ignoring_case(text, "<html")) {
     return unsupported("an HTML page, perhaps the error page of a download",
@@ -177,6 +156,13 @@ bool is_off_keyword(std::string_view word) {
   return std::find(std::begin(kKeywords), std::end(kKeywords), word) != std::end(kKeywords);
 }
 
+/// "OFF", or "OFF490 518 0", as in the collection ModelNet.
+bool begins_off(std::string_view word) {
+  if (is_off_keyword(word)) return true;
+  return word.size() > 3 && word.starts_with("OFF") &&
+         word.find_first_not_of("0123456789", 3) == std::string_view::npos;
+}
+
 bool is_binary_off(std::string_view head) {
   std::string_view first = head.substr(0, head.find('\n'));
   return is_off_keyword(take_word(first)) && take_word(first) == "BINARY";
@@ -189,9 +175,17 @@ bool is_obj(const std::vector<std::string_view>& lines) {
       std::end(kKeywords)) {
     return false;
   }
-  return std::any_of(lines.begin(), lines.end(), [](std::string_view line) {
+  const auto is_keyword = [&](std::string_view line) {
+    return std::find(std::begin(kKeywords), std::end(kKeywords), first_word(line)) !=
+           std::end(kKeywords);
+  };
+  // The normals of a large mesh may come before its points.
+  constexpr std::size_t kManyLines = 1000;
+  const bool vertices = std::any_of(lines.begin(), lines.end(), [](std::string_view line) {
     return take_word(line) == "v" && begins_with_number(line);
   });
+  return vertices || (lines.size() > kManyLines &&
+                      std::all_of(lines.begin(), lines.begin() + kManyLines, is_keyword));
 }
 
 /// The keywords of an STL may share a line.
@@ -234,7 +228,7 @@ Recognition recognise_text(std::string_view head) {
   const std::vector<std::string_view> lines = first_lines(head, kManyLines);
   if (lines.empty()) return {FileKind::kText, "text", "", ""};
   const std::string_view word = first_word(lines.front());
-  if (is_off_keyword(word)) return {FileKind::kOff, "OFF", "", ""};
+  if (begins_off(word)) return {FileKind::kOff, "OFF", "", ""};
   if (word == "4OFF" || word == "nOFF" || word == "4nOFF") {
     return unsupported("an OFF file whose points are not three-dimensional", kMeshRemedy);
   }
@@ -243,14 +237,12 @@ Recognition recognise_text(std::string_view head) {
   }
   if (is_obj(lines)) return {FileKind::kObj, "OBJ", "", ""};
   if (is_ptx(lines)) return {FileKind::kPtx, "PTX", "", ""};
+  if (auto other = recognise_by_lines(head)) return *other;
   if (auto counted = recognise_counted_format(lines)) return *counted;
   return {FileKind::kText, "text", "", ""};
 }
 
-std::optional<Recognition> recognise_magic(std::string_view head) {
-  for (const Magic& magic : kUnsupportedMagics) {
-    if (has_magic(head, magic.at, magic.bytes)) return unsupported(magic.name, magic.remedy);
-  }
+std::optional<Recognition> recognise_imported(std::string_view head) {
   for (const ImportMagic& magic : kImportMagics) {
     if (has_magic(head, magic.at, magic.bytes)) return imported(magic.name, magic.hint);
   }
@@ -280,11 +272,12 @@ Recognition recognise(std::string_view head, std::uint64_t file_size) {
   if (head.starts_with("LASF")) return recognise_las(head);
   if (auto zip = recognise_zip(head)) return *zip;
   if (auto mesh = recognise_3ds(head, file_size)) return *mesh;
-  if (auto other = recognise_other_format(head)) return *other;
-  if (auto magic = recognise_magic(head)) return *magic;
+  const bool text = is_text(head);
+  if (auto other = recognise_by_signature(head, text)) return *other;
+  if (auto scene = recognise_imported(head)) return *scene;
   if (is_pcd(head, first_lines(head.substr(0, 4096), 32))) return {FileKind::kPcd, "PCD", "", ""};
   if (is_binary_off(head)) return {FileKind::kOffBinary, "OFF binary", "", ""};
-  if (is_text(head)) {
+  if (text) {
     if (auto markup = recognise_markup(head)) return *markup;
     return recognise_text(head);
   }

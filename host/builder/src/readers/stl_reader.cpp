@@ -135,10 +135,11 @@ class AsciiReader {
 
   /// The name of a solid may have any words; a facet may follow on the same line.
   static void skip_name(std::string_view& rest) {
+    double value = 0;
     while (!rest.empty()) {
       std::string_view next = rest;
       if (equal_ignoring_case(take_word(next), "facet") &&
-          equal_ignoring_case(take_word(next), "normal")) {
+          equal_ignoring_case(take_word(next), "normal") && parse_number(take_word(next), value)) {
         return;
       }
       (void)take_word(rest);

@@ -8,65 +8,16 @@
 #include <stdexcept>
 
 #include "number.hpp"
+#include "table_evidence.hpp"
 
 namespace tactree::builder {
 namespace {
 
 constexpr std::size_t kMinColumns = 3;
 constexpr std::size_t kMaxColumnNumber = 4096;
-constexpr std::size_t kTooManyColumns = 9;  // columns of unknown meaning; points have fewer
-constexpr std::size_t kRowsToCount = 4;     // minimum number of rows to judge a column
+constexpr std::size_t kRowsToCount = 4;  // minimum number of rows to judge a column
 constexpr std::array<const char*, kSlots> kNames = {"x",  "y",   "z",     "nx",  "ny",
                                                     "nz", "red", "green", "blue"};
-
-bool is_whole(double value) { return value == std::floor(value) && std::abs(value) < 1e15; }
-
-/// Statistics of a column.
-struct Column {
-  bool numbers = true;    ///< a number in every row
-  bool whole = true;      ///< only whole numbers
-  bool constant = true;   ///< one value
-  bool rises = true;      ///< each value is above the previous one
-  std::size_t steps = 0;  ///< values that are one above the previous one
-  double first = 0.0;
-};
-
-Column column_of(std::span<const TextRow> rows, std::size_t at) {
-  Column column;
-  column.first = rows.front().values[at];
-  double last = column.first;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const double value = rows[i].values[at];
-    column.numbers = column.numbers && at < rows[i].numbers;
-    column.whole = column.whole && is_whole(value);
-    column.constant = column.constant && value == column.first;
-    if (i > 0 && !(value > last)) column.rises = false;
-    if (i > 0 && value == last + 1.0) ++column.steps;
-    last = value;
-  }
-  return column;
-}
-
-/// True if nearly all rows have a unit (or missing) vector at this column.
-bool are_normals(std::span<const TextRow> rows, std::size_t column) {
-  std::size_t unit = 0;
-  std::size_t missing = 0;
-  for (const TextRow& row : rows) {
-    const double length =
-        std::hypot(row.values[column], row.values[column + 1], row.values[column + 2]);
-    if (std::abs(length - 1.0) < 0.02) ++unit;
-    if (length == 0.0 || std::isnan(length)) ++missing;
-  }
-  return unit > 0 && 20 * (unit + missing) >= 19 * rows.size() && 2 * unit >= rows.size();
-}
-
-bool are_bytes(std::span<const TextRow> rows, std::size_t column) {
-  return std::all_of(rows.begin(), rows.end(), [&](const TextRow& row) {
-    const auto first = row.values.begin() + static_cast<std::ptrdiff_t>(column);
-    return std::all_of(first, first + 3,
-                       [](double value) { return value >= 0 && value <= 255 && is_whole(value); });
-  });
-}
 
 /// For four columns of bytes: true for an intensity before the colour, false for an opacity after
 /// it.
@@ -81,25 +32,6 @@ bool begins_with_intensity(std::span<const TextRow> rows, std::size_t at) {
          !first.constant;
 }
 
-/// True for heights in rows: neighbours in a row differ far less than the numbers of the table.
-bool is_grid(std::span<const TextRow> rows, std::size_t columns) {
-  double sum = 0.0;
-  double squares = 0.0;
-  double steps = 0.0;
-  for (const TextRow& row : rows) {
-    for (std::size_t i = 0; i < columns; ++i) {
-      sum += row.values[i];
-      squares += row.values[i] * row.values[i];
-      if (i > 0) steps += std::abs(row.values[i] - row.values[i - 1]);
-    }
-  }
-  const double count = static_cast<double>(rows.size() * columns);
-  const double spread = std::sqrt(std::max(0.0, squares / count - sum * sum / (count * count)));
-  constexpr double kSmooth = 0.25;
-  const double pairs = static_cast<double>(rows.size() * (columns - 1));
-  return spread > 0.0 && steps / pairs < kSmooth * spread;
-}
-
 class Guess {
  public:
   Guess(std::span<const TextRow> rows, bool counted) : rows_(rows), counted_(counted) {}
@@ -112,9 +44,11 @@ class Guess {
       if (row.values.size() >= columns_) rows_left_.push_back(row);
     }
     if (guess_.doubt.empty()) check_counter();
-    if (guess_.doubt.empty()) check_corners();
     place();
-    if (guess_.doubt.empty()) check_rest();
+    if (guess_.doubt.empty() && columns_ >= kMinColumns) {
+      guess_.doubt = doubt_of_positions({rows_left_, columns_, guess_.slots, guess_.counter});
+    }
+    warn_of_rest();
     return std::move(guess_);
   }
 
@@ -202,19 +136,6 @@ class Guess {
     }
   }
 
-  /// Rows such as "3 0 1 2" are faces.
-  void check_corners() {
-    if (guess_.counter || columns_ < 4 || rows_left_.size() < kRowsToCount) return;
-    const Column first = column_of(rows_left_, 0);
-    if (!first.constant || !first.whole || first.first < 3 || first.first > 8) return;
-    for (std::size_t i = 1; i < columns_; ++i) {
-      if (!column_of(rows_left_, i).whole) return;
-    }
-    guess_.doubt =
-        fmt::format("every row consists of {} and other integers, like the faces of a mesh",
-                    static_cast<int>(first.first));
-  }
-
   /// Assigns x y z, then normals and colours as recognised by their values.
   void place() {
     guess_.slots.assign(columns_, kNoSlot);
@@ -224,17 +145,7 @@ class Guess {
     // PTS: x y z intensity r g b.
     std::size_t at = first + (counted_ && columns_ >= 7 ? 4 : 3);
     while (at + 3 <= columns_) {
-      Slot slot = kNoSlot;
-      if (!normals_ && are_normals(rows_left_, at)) {
-        slot = kNx;
-        normals_ = true;
-      } else if (!colours_ && are_bytes(rows_left_, at)) {
-        const bool four = at + 4 <= columns_ && are_bytes(rows_left_, at + 1) &&
-                          !(at + 6 <= columns_ && are_normals(rows_left_, at + 3));
-        if (four && begins_with_intensity(rows_left_, at)) ++at;
-        slot = kRed;
-        colours_ = true;
-      }
+      const Slot slot = slot_at(at);
       if (slot == kNoSlot) {
         ++at;
         continue;
@@ -246,16 +157,35 @@ class Guess {
     }
   }
 
-  void check_rest() {
-    if (normals_ || colours_) return;
-    if (columns_ >= kTooManyColumns) {
-      guess_.doubt = fmt::format(
-          "{} columns are neither normals nor colours, as in a grid of "
-          "heights or several points per row",
-          columns_ - kMinColumns);
-    } else if (columns_ > 4 && rows_left_.size() >= kRowsToCount && is_grid(rows_left_, columns_)) {
-      guess_.doubt = "the numbers of a row hardly differ, as in a grid of heights";
-    } else if (columns_ >= 6) {
+  /// Normals or colours in the columns from `at`. Moves `at` past columns that are neither.
+  Slot slot_at(std::size_t& at) {
+    if (!normals_ && are_normals(rows_left_, at)) {
+      normals_ = true;
+      return kNx;
+    }
+    if (colours_ || small_ || !are_bytes(rows_left_, at)) return kNoSlot;
+    if (are_small(rows_left_, at)) {
+      small_ = at;
+      at += 2;
+      return kNoSlot;
+    }
+    const bool four = at + 4 <= columns_ && are_bytes(rows_left_, at + 1) &&
+                      !(at + 6 <= columns_ && are_normals(rows_left_, at + 3));
+    if (four && begins_with_intensity(rows_left_, at)) {
+      ++at;
+      guess_.remark = fmt::format("column {} is taken for an intensity", at);
+    }
+    colours_ = true;
+    return kRed;
+  }
+
+  void warn_of_rest() {
+    if (small_ && !colours_) {
+      guess_.warnings.push_back(fmt::format(
+          "Columns {0} to {1} were ignored: as colours they would be nearly black, so they may be "
+          "classes or counts (--columns ...,red={0},green={2},blue={1} takes them as colours).",
+          *small_ + 1, *small_ + 3, *small_ + 2));
+    } else if (!normals_ && !colours_ && columns_ >= 6) {
       guess_.warnings.push_back(
           fmt::format("Columns {} to {} were ignored: they are neither unit normals nor colours of "
                       "0 to 255, and there is no line of column names.",
@@ -270,6 +200,7 @@ class Guess {
   std::vector<TextRow> rows_left_;  // rows with at least the common number of columns
   bool normals_ = false;
   bool colours_ = false;
+  std::optional<std::size_t> small_;  // first of three columns of small bytes
 };
 
 /// Names of coordinates in survey files, for columns that have no other name.

@@ -23,6 +23,7 @@ struct ColumnGuess {
   std::vector<Slot> slots;             ///< per column
   std::optional<std::size_t> counter;  ///< column that numbers the points
   std::string doubt;                   ///< why the rows may not be points; empty if they are
+  std::string remark;                  ///< a choice to be reported; may be empty
   std::vector<std::string> warnings;
 };
 

@@ -76,16 +76,19 @@ bool parse_row(std::string_view line, const TextLayout& layout, TextRow& row) {
   return true;
 }
 
+std::string_view without_comment_signs(std::string_view text) {
+  text.remove_prefix(std::min(text.find_first_not_of("/#%! \t"), text.size()));
+  return text;
+}
+
 /// Returns the name without its unit: "x [m]" or "//x" -> "x".
 std::string_view bare_name(std::string_view field) {
-  while (field.starts_with('/') || field.starts_with('#')) field.remove_prefix(1);
+  field = without_comment_signs(field);
   return trim(field.substr(0, field.find_first_of("[(")));
 }
 
 bool read_column_names(std::string_view line, TextLayout& layout) {
-  line = trim(line);
-  while (line.starts_with('/') || line.starts_with('#')) line.remove_prefix(1);
-  line = trim(line);
+  line = trim(without_comment_signs(line));
   char separator = ' ';
   if (line.find(',') != std::string_view::npos) separator = ',';
   if (line.find(';') != std::string_view::npos) separator = ';';
@@ -160,7 +163,7 @@ class LayoutFinder {
   void look_at(std::string_view line) {
     const std::string_view text = text_of_line(line);
     if (text.empty()) {
-      // CloudCompare writes the column names after "//".
+      // CloudCompare writes the column names after "//", others after '%' or '!'.
       if (rows_.empty() && layout_.slots.empty()) (void)take_names(trim(line));
       return;
     }
@@ -189,8 +192,10 @@ class LayoutFinder {
   }
 
   [[nodiscard]] bool is_count(const TextRow& row) const {
-    return !layout_.declared && row.values.size() == 1 && row.numbers == 1 && row.values[0] >= 0 &&
-           row.values[0] == std::floor(row.values[0]) && row.values[0] < 1e15;
+    // A title may contain other counts.
+    return !layout_.declared && first_other_line_ == 0 && row.values.size() == 1 &&
+           row.numbers == 1 && row.values[0] >= 0 && row.values[0] == std::floor(row.values[0]) &&
+           row.values[0] < 1e15;
   }
 
   bool take_names(std::string_view text) {
@@ -268,6 +273,7 @@ class LayoutFinder {
     layout_.slots = std::move(guess.slots);
     layout_.counter = guess.counter;
     layout_.warnings = std::move(guess.warnings);
+    layout_.remark = std::move(guess.remark);
     layout_.source = "without names, by their numbers";
   }
 
@@ -296,6 +302,8 @@ bool TextLayout::has(Slot slot) const {
 }
 
 std::string_view text_of_line(std::string_view line) {
+  line = trim(line);
+  if (line.starts_with('%') || line.starts_with('!')) return {};
   std::size_t end = line.find('#');
   // "1.#QNAN" is a number.
   while (end != std::string_view::npos && end > 0 && line[end - 1] == '.') {

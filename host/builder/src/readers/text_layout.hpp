@@ -24,12 +24,14 @@ struct TextLayout {
   std::uint64_t first_row_line = 0;
   double row_bytes = 0;  ///< average
   std::vector<std::string> warnings;
+  std::string remark;  ///< a choice to be reported; may be empty
   std::string source;  ///< origin of the columns, for messages: "named by line 1"
 
   [[nodiscard]] bool has(Slot slot) const;
 };
 
-/// Returns the data of a line, without comments ('#', "//") and the spaces around it.
+/// Returns the data of a line, without comments ('#', "//", and '%' or '!' at its beginning) and
+/// the spaces around it.
 [[nodiscard]] std::string_view text_of_line(std::string_view line);
 
 /// Removes the next field from the front of `rest`, without quotes and spaces around it. Returns

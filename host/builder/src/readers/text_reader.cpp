@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <cmath>
 #include <limits>
 
 #include "number.hpp"
@@ -32,6 +33,7 @@ class TextReader {
     while (file_.next_line(line)) read_line(line);
     check_bad_rows();
     check_counter();
+    check_faces();
     if (layout_.declared && declared_ != builder_.points_read()) {
       builder_.warn(fmt::format("The file declares {} points and holds {}.", declared_,
                                 builder_.points_read()));
@@ -48,10 +50,15 @@ class TextReader {
     if (text.empty()) return;
     PointRow row{};
     if (parse(text, row)) {
+      count_integers(row);
       builder_.add_point(row);
       return;
     }
     if (layout_.declared && is_count(text)) return;
+    if (file_.line_number() < layout_.first_row_line) {
+      if (head_lines_++ == 0) first_head_line_ = file_.line_number();
+      return;
+    }
     if (bad_rows_++ == 0) first_bad_line_ = file_.line_number();
     if (bad_rows_ >= 1000 && bad_rows_ > builder_.points_read()) refuse();
   }
@@ -65,8 +72,9 @@ class TextReader {
             " (if northing comes before easting, the scan is mirrored; give --columns x=3,y=2,z=4)";
       }
     }
-    builder_.note(fmt::format("{}: columns {}, {}{}", file_.name(), describe_columns(layout_.slots),
-                              layout_.source, counter));
+    const std::string remark = layout_.remark.empty() ? "" : "; " + layout_.remark;
+    builder_.note(fmt::format("{}: columns {}, {}{}{}", file_.name(),
+                              describe_columns(layout_.slots), layout_.source, counter, remark));
   }
 
   bool parse(std::string_view rest, PointRow& row) {
@@ -108,12 +116,55 @@ class TextReader {
         "name the columns, as in --columns x=1,y=2,z=3 or --columns x=2,y=3,z=4");
   }
 
+  /// Counts the last rows if they consist of three different integers, which may be faces.
+  void count_integers(const PointRow& row) {
+    const double x = row[kX];
+    const double y = row[kY];
+    const double z = row[kZ];
+    const bool whole = x == std::floor(x) && y == std::floor(y) && z == std::floor(z);
+    if (!whole) {
+      last_integers_ = 0;
+      return;
+    }
+    const bool corners = x >= 0.0 && y >= 0.0 && z >= 0.0 && x != y && y != z && z != x;
+    if (!corners) {
+      last_integers_ = 0;
+      ++other_integers_;
+      return;
+    }
+    if (last_integers_++ == 0) first_integer_line_ = file_.line_number();
+    ++integers_;
+  }
+
+  /// Faces may follow the points without a word between them.
+  void check_faces() const {
+    if (columns_named_) return;
+    const std::uint64_t before = builder_.points_read() - last_integers_;
+    const std::uint64_t integers_before = integers_ - last_integers_ + other_integers_;
+    const bool many = last_integers_ >= 4 && 100 * last_integers_ > builder_.points_read();
+    if (!many || before < 3 || 100 * integers_before > before) return;
+    throw ReadError(file_.name(), fmt::format("line {}", first_integer_line_),
+                    fmt::format("the last {} rows consist of whole numbers, unlike the {} rows "
+                                "before them; they may be the faces of a mesh",
+                                last_integers_, before),
+                    "remove these rows, or save the mesh as PLY; if they are points, name the "
+                    "columns, as in --columns x=1,y=2,z=3");
+  }
+
   void check_bad_rows() {
+    if (head_lines_ > 0) {
+      builder_.warn(fmt::format("{} before the first row {} skipped, the first at line {}.",
+                                head_lines_ == 1 ? "1 line" : fmt::format("{} lines", head_lines_),
+                                head_lines_ == 1 ? "was" : "were", first_head_line_));
+    }
     if (bad_rows_ == 0) return;
     if (bad_rows_ * 100 > bad_rows_ + builder_.points_read()) refuse();
     builder_.count_dropped("bad_row", bad_rows_);
-    builder_.warn(fmt::format("{} rows were dropped: they are not points (the first at line {}).",
-                              bad_rows_, first_bad_line_));
+    builder_.warn(
+        bad_rows_ == 1
+            ? fmt::format("1 row was dropped: line {} is not a point.", first_bad_line_)
+            : fmt::format("{} rows were dropped: they are not points (the first at line {}).",
+                          bad_rows_, first_bad_line_));
   }
 
   [[noreturn]] void refuse() const {
@@ -148,6 +199,12 @@ class TextReader {
   std::int64_t last_number_ = std::numeric_limits<std::int64_t>::min();
   std::uint64_t uncounted_ = 0;
   std::uint64_t first_uncounted_line_ = 0;
+  std::uint64_t head_lines_ = 0;  // text before the first row
+  std::uint64_t first_head_line_ = 0;
+  std::uint64_t integers_ = 0;        // rows of three different integers from 0
+  std::uint64_t other_integers_ = 0;  // other rows of integers
+  std::uint64_t last_integers_ = 0;   // of integers_, without another row after them
+  std::uint64_t first_integer_line_ = 0;
 };
 
 }  // namespace

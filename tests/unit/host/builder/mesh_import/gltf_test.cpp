@@ -260,6 +260,16 @@ TEST_F(GltfTest, CutFilesNameBothSizes) {
                "holds " + std::to_string(whole.size() - 4));
 }
 
+TEST_F(GltfTest, ReportsBytesAfterDeclaredSize) {
+  const std::string one = floats().glb();
+  EXPECT_TRUE(read(one).warnings.empty());
+  EXPECT_TRUE(read(one + std::string(3, '\0')).warnings.empty());
+  const Scan joined = read(one + one);
+  EXPECT_EQ(joined.triangles.size(), 4U);
+  ASSERT_EQ(joined.warnings.size(), 1U);
+  expect_parts(joined.warnings[0], std::to_string(one.size()) + " bytes follow the size");
+}
+
 TEST_F(GltfTest, ReadsOrRefusesDamage) {
   const std::string whole = skinned().glb();
   std::mt19937 random(7);

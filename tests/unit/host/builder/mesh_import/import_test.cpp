@@ -8,6 +8,7 @@
 namespace tactree::builder {
 namespace {
 
+using namespace std::string_literals;
 using Colour = std::array<std::uint8_t, 3>;
 using Triangle = std::array<std::uint32_t, 3>;
 
@@ -131,6 +132,42 @@ TEST_F(ImportTest, ReadsFormatOrFileUnit) {
   EXPECT_NEAR(scan.positions.at(1).x(), 1.0, 1e-6);  // positions stay in units of the file
   EXPECT_NEAR(scan.positions.at(1).z(), 7.0, 1e-6);
   EXPECT_FALSE(read("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unit_m.has_value());
+}
+
+TEST_F(ImportTest, ReadsUnitOfAmf) {
+  const auto amf = [this](const std::string& attributes) {
+    return read("<?xml version=\"1.0\"?><amf" + attributes +
+                "><object id=\"1\"><mesh><vertices>"
+                "<vertex><coordinates><x>0</x><y>0</y><z>0</z></coordinates></vertex>"
+                "<vertex><coordinates><x>1</x><y>0</y><z>0</z></coordinates></vertex>"
+                "<vertex><coordinates><x>0</x><y>1</y><z>2</z></coordinates></vertex>"
+                "</vertices><volume><triangle><v1>0</v1><v2>1</v2><v3>2</v3></triangle></volume>"
+                "</mesh></object></amf>")
+        .unit_m;
+  };
+  EXPECT_EQ(amf(""), 1e-3);
+  EXPECT_EQ(amf(" unit=\"millimeter\" version=\"1.1\""), 1e-3);
+  EXPECT_EQ(amf(" version=\"1.1\" unit=\"inch\""), 0.0254);
+  EXPECT_EQ(amf(" unit=\"meter\""), 1.0);
+}
+
+/// The axes are those of the file, in which z is up.
+TEST_F(ImportTest, KeepsAxesOf3ds) {
+  const auto chunk = [](std::uint16_t id, const std::string& content) {
+    return bytes_of(id) + bytes_of(static_cast<std::uint32_t>(6 + content.size())) + content;
+  };
+  std::string points = bytes_of(std::uint16_t{3});
+  for (const Corner& corner : {Corner{1, 2, 3}, Corner{4, 2, 3}, Corner{1, 5, 7}}) {
+    points += bytes_of(corner);
+  }
+  const std::string faces = bytes_of(std::array<std::uint16_t, 5>{1, 0, 1, 2, 7});
+  const std::string object = "a\0"s + chunk(0x4100, chunk(0x4110, points) + chunk(0x4120, faces));
+  const Scan scan = read(chunk(
+      0x4d4d, chunk(0x0002, bytes_of(std::uint32_t{3})) + chunk(0x3d3d, chunk(0x4000, object))));
+  EXPECT_EQ(scan.format, "3DS");
+  ASSERT_EQ(scan.positions.size(), 3U);
+  EXPECT_LT((scan.positions[0] - Eigen::Vector3d(1, 2, 3)).norm(), 1e-6);
+  EXPECT_LT((scan.positions[2] - Eigen::Vector3d(1, 5, 7)).norm(), 1e-6);
 }
 
 TEST_F(ImportTest, ReadsGltfWithExternalBuffer) {

@@ -159,6 +159,86 @@ TEST_F(ThreeMfTest, ReadsPrefixesAndEscapedPaths) {
   EXPECT_EQ(read(bytes).positions.size(), 4U);
 }
 
+/// Documents that are read while they are unpacked, and others that are read as a whole.
+TEST_F(ThreeMfTest, ReadsMeshesInAllForms) {
+  const std::string item = R"(<item objectid="1"/>)";
+  const auto with = [&](const std::string& from, const std::string& to) {
+    std::string root = model(object("1", kMesh), item);
+    for (std::size_t at = root.find(from); at != std::string::npos;
+         at = root.find(from, at + to.size())) {
+      root.replace(at, from.size(), to);
+    }
+    return root;
+  };
+  const std::string forms[] = {
+      with("<vertex ", "\r\n\t<vertex\n"),
+      with("/><triangle", "></triangle><!-- <vertex/> > --><triangle"),
+      with("<vertex ", "<v:vertex w='>' v:w=\"\" "),
+      with("<triangle ", "<?pi > ?><other a='1'/><triangle "),
+      with("<mesh>", "<mesh><metadata><vertices/></metadata>"),
+      with("<resources>",
+           "<resources><m:colorgroup id=\"7\"><m:color color=\"#000\"/>"
+           "</m:colorgroup><![CDATA[<vertices>]]>"),
+      with("<model ", "<!DOCTYPE model [<!ENTITY e 'x'>]><model "),
+      with("x=\"1\"", "x=\"&#49;\""),
+      with("<vertex ", "<other><vertex/></other><vertex "),
+      with("<mesh>", "<mesh><vertices>0</vertices>"),
+  };
+  for (const std::string& form : forms) {
+    for (const bool stored : {false, true}) {
+      const Scan scan = read(package(form, stored));
+      ASSERT_EQ(scan.positions.size(), 4U) << form;
+      EXPECT_EQ(scan.positions[1], Eigen::Vector3d(1, 0, 0)) << form;
+      ASSERT_EQ(scan.triangles.size(), 4U) << form;
+      EXPECT_EQ(scan.triangles[3], (Triangle{1, 2, 3})) << form;
+    }
+  }
+  std::string wide("\xFF\xFE", 2);
+  for (const char c : model(object("1", kMesh), item)) wide += {c, '\0'};
+  EXPECT_EQ(read(package(wide)).positions.size(), 4U);
+}
+
+TEST_F(ThreeMfTest, LocatesErrorsBesideMeshes) {
+  std::string root = model(object("1", kMesh), R"(<item objectid="1"/>)");
+  const std::size_t place = root.find("</build>");
+  root.replace(place, 8, "</built>");
+  expect_parts(refusal_of(package(root)), "byte " + std::to_string(place + 2));
+  for (const char* const bad :
+       {"<vertex x='1' y='2' z='3'></vertices>", "<vertex x=1/>", "<vertex x='1' y='2' z='3'",
+        "<!-- ", "<![CDATA[ ]]> </vertex>", "<vertex x='1' y='2' z='3'/"}) {
+    std::string mesh = kMesh;
+    mesh.insert(mesh.find("<vertex "), bad);
+    const std::string document = model(object("1", mesh), R"(<item objectid="1"/>)");
+    expect_parts(refusal_of(package(document)), "part \"3D/3dmodel.model\"", "byte ");
+  }
+}
+
+#ifndef TACTREE_SANITIZED  // AddressSanitizer needs all addresses
+/// A document tree of this mesh would take three times as much.
+TEST_F(ThreeMfTest, TakesLittleMoreMemoryThanMesh) {
+  constexpr int kVertices = 200'000;
+  std::string mesh = "<mesh><vertices>";
+  for (int i = 0; i < kVertices; ++i) {
+    mesh += "<vertex x=\"" + std::to_string(i % 1000) + "\" y=\"" + std::to_string(i / 1000) +
+            "\" z=\"0\"/>";
+  }
+  mesh += "</vertices><triangles>";
+  for (int i = 0; i < 2 * kVertices; ++i) {
+    mesh += "<triangle v1=\"" + std::to_string(i % kVertices) + "\" v2=\"" +
+            std::to_string((i + 1) % kVertices) + "\" v3=\"" + std::to_string((i + 7) % kVertices) +
+            "\"/>";
+  }
+  mesh += "</triangles></mesh>";
+  ReadOptions options;
+  options.child_memory_bytes = 160ULL << 20;
+  const Scan scan = read_scan(
+      write("large.3mf", package(model(object("1", mesh), R"(<item objectid="1"/>)"), true)),
+      options);
+  EXPECT_EQ(scan.positions.size(), std::size_t{kVertices});
+  EXPECT_EQ(scan.triangles.size(), 2 * std::size_t{kVertices});
+}
+#endif
+
 TEST_F(ThreeMfTest, ReadsArchivesWithLongSizes) {
   const std::string root = model(object("1", kMesh), R"(<item objectid="1"/>)");
   const std::string bytes =

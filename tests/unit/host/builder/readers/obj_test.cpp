@@ -85,6 +85,13 @@ TEST_F(ObjTest, ReadsFacesBeforePoints) {
   expect_parts(scan.warnings[0], "line 3");
 }
 
+/// The recogniser sees only their beginning.
+TEST_F(ObjTest, ReadsManyNormalsBeforePoints) {
+  std::string text;
+  for (int i = 0; i < 30000; ++i) text += "vn 0 0 1\n";
+  EXPECT_EQ(read(text + "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").triangles.size(), 1U);
+}
+
 TEST_F(ObjTest, CountsBrokenFaces) {
   const Scan scan = read(std::string(kFour) +
                          "f 1 2 3\nf 1 2 5\nf 0 1 2\nf -5 1 2\nf 1 2\nf\nf a b c\nf 1 1 2\n");

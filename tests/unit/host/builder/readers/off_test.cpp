@@ -25,6 +25,12 @@ TEST_F(OffTest, ReadsCountsBesideKeyword) {
   EXPECT_FALSE(scan.is_mesh());
 }
 
+TEST_F(OffTest, ReadsCountsGluedToKeyword) {
+  const Scan scan = read("OFF4 1 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n3 0 1 2\n");
+  EXPECT_EQ(scan.positions.size(), 4U);
+  EXPECT_EQ(scan.triangles.size(), 1U);
+}
+
 TEST_F(OffTest, ReadsColoursAndNormals) {
   const Scan coff =
       read("COFF\n3 1 0\n0 0 0 255 128 0 255\n1 0 0 1 2 3 255\n0 1 0 0 0 0 255\n3 0 1 2\n");

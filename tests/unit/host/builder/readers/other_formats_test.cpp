@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "recognise.hpp"
 #include "test_files.hpp"
 
 namespace tactree::builder {
@@ -117,9 +118,97 @@ std::vector<ForeignFile> others() {
   };
 }
 
+/// The formats above in other forms, and formats of other programs.
+std::vector<ForeignFile> more_meshes() {
+  const std::string xyz = rows(100, "0.001 0.002 0.003");
+  const std::string card = "GRID           1       0      0.      1.      2.\n";
+  return {
+      {"\n  # VTK datafile version 3.0\nx\nASCII\n" + xyz, "VTK file (legacy .vtk)"},
+      {"ASCII\nDATASET POLYDATA\nPOINTS 100 float\n" + xyz, "VTK file (legacy .vtk)"},
+      {"\xef\xbb\xbf$MeshFormat\n4.1 0 8\n" + xyz, "Gmsh mesh"},
+      {"Point(1) = {0, 0, 0, 0.1};\n", "Gmsh script"},
+      {"View \"a\" {\nST(0,0,0,1,0,0,0,1,0){1,2,3};\n};\n", "Gmsh view"},
+      {"0 3 0 0\n7 0\n" + rows(7, "3 1 2 3"), "TetGen"},
+      {rows(900, "** a comment") + "*Node, nset=all\n" + nodes("", ", "), "Abaqus"},
+      {"*INCLUDE, INPUT=mesh.inp\n", "Abaqus"},
+      {"    1C\n    1UUSER\n" + nodes(" -1", " "), "CalculiX"},
+      {rows(900, "$ a comment") + card, "Nastran"},
+      {rows(900, "CTRIA3         1       1       1       2       3") + card, "Nastran"},
+      {"GRID, 1, , 0.0, 1.0, 2.0\n", "Nastran"},
+      {"NELEM= 7\n" + rows(7, "5 0 1 2 0") + "NDIME= 3\n" + xyz, "SU2"},
+      {"# a comment\n MeshVersionFormatted 2\nDimension\n3\nVertices\n100\n" + xyz, "Medit"},
+      {"\1\0\0\0\4\0\0\0\3\0\0\0"s + std::string(99, '\0'), "Medit"},
+      {"# a comment\nmesh3d\ndimension\n3\npoints\n100\n" + xyz, "Netgen"},
+      {"! a comment\n$ENTER COMPONENT NAME=a\n" + nodes("", " "), "PERMAS"},
+      {nodes("G ", " "), "FLAC3D"},
+      {"// a comment\nBegin ModelPartData\nEnd ModelPartData\n" + xyz, "Kratos"},
+      {"ZONE T=\"a\", N=100, E=7\n" + xyz + rows(7, "1 2 3"), "Tecplot"},
+      {"#!TDV112\1\0\0\0"s, "Tecplot"},
+      {"    -1\n    58\na title\n    -1\n" + xyz, "I-DEAS"},
+      {"        CONTROL INFO 2.4.6\n** GAMBIT NEUTRAL FILE\n" + nodes("", " "), "Gambit"},
+      {"PROSTAR_VERTEX\n4000 0 0 0 0 0 0 0\n" + nodes("", " "), "STAR-CD"},
+      {"100\n(\n" + rows(100, "(0.1 0.2 0.3)") + ")\n", "OpenFOAM"},
+      {"C Binary" + std::string(72, ' ') + std::string(99, '\0'), "EnSight"},
+      {"# a comment\nFORMAT\ntype:   ensight gold\n", "EnSight"},
+      {"N,1,0.0,0.0,0.0\nN,2,1.0,0.0,0.0\n", "Ansys"},
+      {"! a comment\n/prep7\nN,1,0,0,0\n", "Ansys"},
+      {"25 0 0 1 0 0 0 0 0\na title\n26 0 0 1 100 7 1 0 0\n" + xyz, "Patran"},
+      {"100 9 7 GtsSurface GtsFace GtsEdge GtsVertex\n" + xyz, "GTS"},
+      {"gmvinput ascii\nnodev 100\n" + xyz, "GMV"},
+      {"#RADIOSS STARTER\n/BEGIN\n/NODE\n" + nodes("", " "), "Radioss"},
+      {"*filetype(ASCII)\n*node(1,0,0,0)\n", "HyperMesh"},
+      {"TITRE\nx\nFINSF\nCOOR_3D\n" + nodes("N", " "), "Code_Aster"},
+      {"PGEOMETRY V5\nNPoints 100 NPrims 7\n" + xyz, "Houdini"},
+      {"SRID=4326;MULTIPOINT Z ((1 2 3),(4 5 6))\n", "WKT"},
+      {"CDF\5\0\0\0\0"s, "NetCDF"},
+      {"@(#)ADF Database Version A02011>" + std::string(9, '\0'), "CGNS"},
+  };
+}
+
+std::vector<ForeignFile> more_others() {
+  const std::string heights = rows(40, "0.02 0.021 0.022 0.023 0.024 0.025");
+  const std::string jt = "Version 9.5 JT  DM 6.4" + std::string(99, '\0');
+  return {
+      {"/* a comment\nncols 6\nnrows 40\n" + heights, "ESRI grid"},
+      {"xllcorner 0\nyllcorner 0\nncols 6\nnrows 40\n" + heights, "ESRI grid"},
+      {"proj: 1\nzone: 0\nnorth: 1\nsouth: 0\n" + heights, "GRASS grid"},
+      {"-996 40 0.1 0.1\n0 2 0 3\n6 0 0 0\n0 0 0 0 0 0 0\n" + heights, "Irap grid"},
+      {"! a comment\n@GRID FILE, GRID, 4\n15, -99999.0, , 4, 1\n" + heights, "ZMap grid"},
+      {"#POINTS\n6\n#ROWS\n40\n#GRID\n" + heights, "GXF grid"},
+      {"ENVI\ndescription = {x}\n", "ENVI grid"},
+      {"DatasetHeader Begin\n", "ER Mapper grid"},
+      {"P2\n# a comment\n6 40\n255\n" + rows(40, "1 2 3 4 5 6"), "picture"},
+      {"II+\0\10\0\0\0"s, "TIFF"},
+      {"NDims = 3\nDimSize = 3 3 3\n", "MetaImage"},
+      {"#binvox 1\ndim 3 3 3\ndata\n\0\33\1\4"s, "binvox"},
+      {std::string(344, '\0') + "n+1\0"s, "NIfTI"},
+      {"~Version Information\n VERS. 2.0:\n~A DEPTH GR\n" + heights, "well log"},
+      {"PROJCS[\"x\",GEOGCS[\"y\"]]\n", "coordinate system"},
+      {"PATCHES\n1\nPATCHS\n0.1 0.2 0.3 1\n", "PMVS"},
+      {"newmtl a\nKd 0.5 0.5 0.5\n", "materials of an OBJ file"},
+      {"\nCASCADE Topology V1, (c) Matra-Datavision\n", "OpenCASCADE"},
+      {"**ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz****\n", "Parasolid"},
+      {jt, "JT model"},
+      {"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"s + std::string(99, '\0'), "CAD program"},
+      {"; made for a test\nN10 G0 X1 Y2 Z3\n", "G-code"},
+      {"data_1ABC\nloop_\n_atom_site.id\n", "molecule (CIF)"},
+      {"999\nmade for a test\n999\nand more\n  0\nSECTION\n", "DXF"},
+      {"FOR4\0\0\1\0Maya"s, "Maya"},
+      {"pnts\1\0\0\0"s, "3D Tiles"},
+      {"{\"asset\":{\"version\":\"1.0\"},\"geometricError\":5}", "3D Tiles"},
+      {"{\"type\":\"CityJSON\"}", "CityJSON"},
+      {"PK\3\4........................a.usdc", "USD"},
+      {"PK\3\4........................arr_0.npy", "NumPy"},
+      {"<?xml version=\"1.0\"?>\n<document path=\"{projectname}.files/project.zip\"/>\n",
+       "Metashape project"},
+  };
+}
+
 TEST_F(OtherFormatsTest, AreNamedWithRemedy) {
   std::vector<ForeignFile> cases = meshes();
-  for (ForeignFile& other : others()) cases.push_back(std::move(other));
+  for (auto* const list : {&others, &more_meshes, &more_others}) {
+    for (ForeignFile& other : list()) cases.push_back(std::move(other));
+  }
   for (const ForeignFile& one : cases) {
     const std::string message = refusal_of(one.text, "thing.xyz");
     expect_parts(message, "thing.xyz", one.name, "which has no reader");
@@ -138,8 +227,30 @@ TEST_F(OtherFormatsTest, ReadsSimilarPointTables) {
       "50\n" + xyz,
       "10 0 0\n0 5 5\n1 5 5\n2 5 5\n3 5 5\n",
       "7 5 5 5 5 5 5\n8 5 5 5 5 5 5\n3 5 5 5 5 5 5\n",
+      "999\n" + xyz,
+      "#grid of 5 mm\n" + xyz,
+      "node id x y z\n1 7 0.1 0.2 0.3\n2 7 0.4 0.5 0.6\n",
+      "n,e,z\n1,2,3\n2,3,4\n",
+      "x,y,z,code\n1,2,3,AC1032\n2,3,4,PAR1\n",
   };
   for (const std::string& text : cases) EXPECT_GE(read(text).positions.size(), 2U) << text;
+}
+
+/// Short binary signatures, as the names of points.
+TEST_F(OtherFormatsTest, TextIsNotBinary) {
+  for (const char* const name : {"AC1032", "PAR1", "BZh", "MAP ", "IIx", "pnts", "VOX ", "PRC"}) {
+    const std::string text = name + "x 1 2 3\n4 5 6\n"s;
+    EXPECT_EQ(recognise(text, text.size()).kind, FileKind::kText) << name;
+  }
+}
+
+TEST_F(OtherFormatsTest, OffWithoutKeywordIsNamed) {
+  const std::string text = "4 2 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0.5\n3 0 1 2\n3 1 3 2\n";
+  const auto path = write("a.off", text);
+  expect_parts(refusal(path), "an OFF file without the line OFF", "--format off");
+  ReadOptions options;
+  options.format = "off";
+  EXPECT_EQ(read_scan(path, options).triangles.size(), 2U);
 }
 
 TEST_F(OtherFormatsTest, ReadsMisnumberedRowsAsPoints) {

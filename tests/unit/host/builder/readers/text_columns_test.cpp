@@ -1,5 +1,6 @@
 // The columns of text files without names: guessed only if they look like points.
 
+#include <cmath>
 #include <functional>
 #include <stdexcept>
 
@@ -176,6 +177,148 @@ TEST_F(TextColumnsTest, UsesColumnsNamedByUser) {
   expect_parts(note_of(scan), "x=3, y=2, z=4", "as named");
   expect_parts(refusal(write("b.csv", "1 2 3\n4 5 6\n"), columns("x=2,y=3,z=4")), "line 1",
                "3 values", "--columns");
+}
+
+std::string decimal(double value) { return std::to_string(value); }
+
+TEST_F(TextColumnsTest, RefusesNumbersBeforePositions) {
+  const auto refused = [this](const Field& before, const std::string& cause) {
+    expect_parts(refusal_of(table(200, before, nothing)), cause, "--columns x=1,y=2,z=3");
+  };
+  refused([](int i) { return std::to_string(500 - i) + " "; }, "column 1 falls");
+  refused([](int i) { return std::to_string(i % 40) + " "; }, "column 1 has whole numbers");
+  refused([](int) { return "7 "; }, "column 1 has whole numbers");
+  refused([](int i) { return std::to_string(i / 40) + " " + std::to_string(i % 40) + " "; },
+          "columns 1 to 2 have whole numbers");
+  refused([](int i) { return std::to_string(i % 7) + " 200 " + std::to_string(i % 40) + " "; },
+          "columns 1 to 3 have whole numbers");
+  refused([](int i) { return decimal(1.7e9 + 0.25 * i) + " "; }, "by the same step");
+  refused([](int i) { return decimal(100.125 - 0.5 * i) + " "; }, "by the same step");
+  refused([](int i) { return decimal(std::sin(i)) + " 0 " + decimal(std::cos(i)) + " "; },
+          "unit vectors, like normals before x, y and z");
+  refused([](int) { return "1 0 0 "; }, "two of the first three columns are constant");
+}
+
+/// Whole numbers and regular steps that are coordinates.
+TEST_F(TextColumnsTest, ReadsRegularCoordinates) {
+  std::string heights;
+  std::string raster;
+  std::string sphere;
+  for (int i = 0; i < 900; ++i) {
+    const std::string grid = std::to_string(i % 30) + " " + std::to_string(i / 30) + " ";
+    heights += grid + decimal(3.0 + std::sin(0.2 * i)) + "\n";
+    raster += decimal(0.001 * i) + " 0.25 " + decimal(0.01 * std::sin(0.1 * i)) + " 5\n";
+    const double z = 1.0 - (2.0 * i + 1.0) / 900.0;
+    const double r = std::sqrt(1.0 - z * z);
+    sphere += std::to_string(std::lround(100 + 90 * r * std::cos(2.4 * i))) + " " +
+              std::to_string(std::lround(100 + 90 * r * std::sin(2.4 * i))) + " " +
+              std::to_string(std::lround(100 + 90 * z)) + "\n";
+  }
+  for (const std::string& text : {heights, raster, sphere}) {
+    const Scan scan = read(text);
+    EXPECT_EQ(scan.positions.size(), 900U);
+    expect_parts(note_of(scan), "x=1, y=2, z=3");
+  }
+}
+
+/// The triangles of a grid of `size` x `size` points.
+std::string triangles(int size, const Field& before, int first) {
+  std::string text;
+  for (int i = 0, row = 0; i < size * (size - 1); ++i) {
+    if (i % size == size - 1) continue;
+    const int a = first + i;
+    const int b = a + size;
+    text += before(row++) + std::to_string(a) + " " + std::to_string(b) + " " +
+            std::to_string(b + 1) + "\n";
+    text += before(row++) + std::to_string(a) + " " + std::to_string(b + 1) + " " +
+            std::to_string(a + 1) + "\n";
+  }
+  return text;
+}
+
+TEST_F(TextColumnsTest, RefusesConnectivity) {
+  const auto number = [](int i) { return std::to_string(i + 1) + " "; };
+  for (const Field& before : {Field(nothing), Field(number)}) {
+    for (const int first : {0, 1}) {
+      expect_parts(refusal_of(triangles(20, before, first)), "like the corners of the faces");
+    }
+  }
+  // Tetrahedra around the edges of a row of cubes.
+  std::string cells;
+  for (int i = 0; i < 200; i += 4) {
+    constexpr int kCells[6][4] = {{0, 1, 3, 7}, {0, 1, 7, 5}, {0, 5, 7, 4},
+                                  {0, 3, 2, 7}, {0, 6, 4, 7}, {0, 2, 6, 7}};
+    for (const auto& cell : kCells) {
+      for (const int corner : cell) cells += std::to_string(i + corner) + " ";
+      cells += "\n";
+    }
+  }
+  expect_parts(refusal_of(cells), "like the corners of the faces");
+}
+
+TEST_F(TextColumnsTest, RefusesFacesAfterPoints) {
+  const std::string points = table(100, nothing, nothing);
+  for (const std::string between : {"", "162\n"}) {
+    expect_parts(refusal_of(points + between + triangles(10, nothing, 0)), "the last 162 rows",
+                 "may be the faces of a mesh", between.empty() ? "line 101" : "line 102");
+  }
+  EXPECT_EQ(read_scan(write("named", points + triangles(10, nothing, 0)), columns("x=1,y=2,z=3"))
+                .positions.size(),
+            262U);
+  EXPECT_EQ(read(points + "0 0 0\n0 0 0\n0 0 0\n0 0 0\n0 0 0\n").positions.size(), 105U);
+  EXPECT_EQ(read(points + "1 2 3\n").positions.size(), 101U);
+}
+
+TEST_F(TextColumnsTest, RefusesCountsOfSameWidth) {
+  expect_parts(refusal_of("10 10 1\n" + table(100, nothing, nothing)), "line 1",
+               "the first row alone consists of whole numbers");
+  EXPECT_EQ(read("0 0 0\n" + table(100, nothing, nothing)).positions.size(), 101U);
+}
+
+TEST_F(TextColumnsTest, RefusesPicturesAndNarrowGrids) {
+  const auto grid = [](int columns, double scale) {
+    std::string text;
+    for (int i = 0; i < 40 * columns; ++i) {
+      const double height = 120 + 100 * std::sin(0.1 * (i / columns)) + 2 * (i % columns);
+      text += scale == 1.0 ? std::to_string(std::lround(height)) : decimal(scale * height);
+      text += i % columns == columns - 1 ? "\n" : " ";
+    }
+    return text;
+  };
+  expect_parts(refusal_of(grid(4, 0.001)), "as in a grid of heights");
+  expect_parts(refusal_of(grid(6, 1.0)), "as in a grid of heights");
+  expect_parts(refusal_of(grid(12, 1.0)), "all 12 columns consist of whole numbers");
+}
+
+TEST_F(TextColumnsTest, ReportsColoursThatMayBeOthers) {
+  const auto text = [](const char* after) {
+    return table(100, nothing, [=](int i) { return " " + std::to_string(i % 7) + after; });
+  };
+  const Scan classes = read(text(" 1 3"));
+  EXPECT_TRUE(classes.colours.empty());
+  ASSERT_EQ(classes.warnings.size(), 1U);
+  expect_parts(classes.warnings[0], "Columns 4 to 6 were ignored", "red=4,green=5,blue=6");
+  const Scan intensity = read(text(" 200 3 90"));
+  EXPECT_EQ(intensity.colours.at(1), (Colour{200, 3, 90}));
+  expect_parts(note_of(intensity), "red=5, green=6, blue=7", "column 4 is taken for an intensity");
+}
+
+TEST_F(TextColumnsTest, ReadsCommentsOfOtherPrograms) {
+  for (const std::string sign : {"%", "!"}) {
+    std::string text;
+    for (int i = 0; i < 30; ++i) text += sign + " a comment, of 30\n";
+    const Scan scan = read(text + sign + " z, x, y\n" + table(100, nothing, nothing, ","));
+    EXPECT_EQ(scan.positions.size(), 100U);
+    EXPECT_TRUE(scan.warnings.empty());
+    expect_parts(note_of(scan), "x=2, y=3, z=1");
+  }
+}
+
+TEST_F(TextColumnsTest, TakesNoCountAfterTitle) {
+  const Scan scan = read("a title\n3\nx of it\n" + table(100, nothing, nothing));
+  EXPECT_EQ(scan.positions.size(), 100U);
+  ASSERT_EQ(scan.warnings.size(), 1U);
+  expect_parts(scan.warnings[0], "3 lines before the first row were skipped");
 }
 
 std::string refusal_of_columns(const char* text) {

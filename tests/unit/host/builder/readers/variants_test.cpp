@@ -298,8 +298,8 @@ std::string stl_binary(const std::string& header, std::optional<std::uint32_t> c
 
 TEST_F(VariantsTest, ReadsStlKeywordsAndCounts) {
   constexpr std::size_t kFaces = kPoints / 3;
-  for (const std::string first :
-       {"solid", "solid a", "solid a b 1 2 3", "SOLID A", "solid ascii\tx"}) {
+  for (const std::string first : {"solid", "solid a", "solid a b 1 2 3", "SOLID A",
+                                  "solid ascii\tx", "solid a facet normal part"}) {
     for (const std::string last :
          {"endsolid", "endsolid a", "end solid", "ENDSOLID", "end solid a b"}) {
       for (const auto& [name, text] : line_ends(stl_text(first, last))) {
