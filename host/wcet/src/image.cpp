@@ -151,13 +151,28 @@ const Function* Image::function_at(std::uint32_t address) const {
   return address < function.end ? &function : nullptr;
 }
 
-const Function* Image::find(std::string_view symbol) const {
+const Function* Image::find(std::string_view name) const {
   for (const auto& [begin, function] : functions_) {
-    if (function.name == symbol) {
+    if (function.name == name) {
       return &function;
     }
   }
-  return nullptr;
+  const Function* found = nullptr;
+  for (const auto& [begin, function] : functions_) {
+    // A '.' begins the mark of a clone, which the source does not name.
+    const std::string in_source =
+        function.name.find('.') == std::string::npos ? demangled(function.name) : std::string();
+    if (in_source != name && in_source.substr(0, in_source.find('(')) != name) {
+      continue;
+    }
+    if (found != nullptr) {
+      throw BoundError(
+          fmt::format("{}: {} and {} are both named {} (give a symbol, as nm prints it)", name_,
+                      found->name, function.name, name));
+    }
+    found = &function;
+  }
+  return found;
 }
 
 std::optional<std::uint64_t> Image::offset_of(std::string_view symbol) const {
