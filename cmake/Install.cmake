@@ -48,7 +48,7 @@ endif()
 configure_package_config_file(cmake/tactree-config.cmake.in
   ${CMAKE_CURRENT_BINARY_DIR}/tactree-config.cmake
   INSTALL_DESTINATION ${tactree_cmake_dir}
-  PATH_VARS CMAKE_INSTALL_LIBEXECDIR)
+  PATH_VARS CMAKE_INSTALL_INCLUDEDIR CMAKE_INSTALL_LIBEXECDIR)
 # Before 1.0 a minor version may change the interface.
 write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/tactree-config-version.cmake
   COMPATIBILITY SameMinorVersion)

@@ -151,6 +151,21 @@ const Function* Image::function_at(std::uint32_t address) const {
   return address < function.end ? &function : nullptr;
 }
 
+namespace {
+
+/// The symbol as in the source, without the namespaces that have no name; empty for a clone, which
+/// the source does not name.
+std::string name_in_source(const std::string& symbol) {
+  static constexpr std::string_view kUnnamed = "(anonymous namespace)::";
+  std::string name = symbol.find('.') == std::string::npos ? demangled(symbol) : std::string();
+  for (std::size_t at = name.find(kUnnamed); at != std::string::npos; at = name.find(kUnnamed)) {
+    name.erase(at, kUnnamed.size());
+  }
+  return name;
+}
+
+}  // namespace
+
 const Function* Image::find(std::string_view name) const {
   for (const auto& [begin, function] : functions_) {
     if (function.name == name) {
@@ -159,9 +174,7 @@ const Function* Image::find(std::string_view name) const {
   }
   const Function* found = nullptr;
   for (const auto& [begin, function] : functions_) {
-    // A '.' begins the mark of a clone, which the source does not name.
-    const std::string in_source =
-        function.name.find('.') == std::string::npos ? demangled(function.name) : std::string();
+    const std::string in_source = name_in_source(function.name);
     if (in_source != name && in_source.substr(0, in_source.find('(')) != name) {
       continue;
     }
