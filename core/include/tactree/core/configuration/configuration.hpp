@@ -55,7 +55,7 @@ struct LinkSupervision {
 /// Supervision of encoders, amplifiers and the hand on the device.
 struct Supervision {
   float speed_max_m_s = 10.0F;     ///< of the probe; above: encoder fault: 0.1 .. 100
-  float stuck_s = 0.1F;            ///< time without counts under a changing effort: 0.01 .. 1
+  float stuck_s = 0.5F;            ///< time without counts under a changing force: 0.01 .. 1
   float enable_timeout_s = 0.05F;  ///< delay of the enable read-back: 0.001 .. 1
   bool dead_man_required = true;   ///< false: a second arm command replaces it
   bool supply_monitored = false;   ///< the board measures the amplifiers' supply
