@@ -4,8 +4,8 @@
 
 #include <cstdint>
 
-#include "tactree/core/control/tick_cost.hpp"
-#include "tactree/hal/captured_fault.hpp"
+#include "tactree/runtime/admission.hpp"
+#include "tactree/runtime/fault_capture.hpp"
 
 namespace tactree::firmware {
 
@@ -23,18 +23,12 @@ void start_ticks(float rate_hz);
 void hold_ticks(bool hold);
 /// Sleeps until the next interrupt.
 void wait_for_interrupt();
-/// Resets the processor. RAM that start-up does not initialise keeps its content.
-[[noreturn]] void reset();
+// ---- provided by hal/runtime: record of a fault, costs of a tick
 
-// ---- provided by runtime/
-
-/// Stores the record and resets. Called by the fault handlers of the cores.
-[[noreturn]] void capture(const hal::CapturedFault& fault);
-/// Returns the processor fault that ended the last run. A second call returns an empty record.
-[[nodiscard]] hal::CapturedFault take_captured_fault();
-
-/// Upper bounds of the cost of a tick in this image.
-[[nodiscard]] const core::TickCosts& tick_costs();
+using runtime::capture;
+using runtime::reset;
+using runtime::take_captured_fault;
+using runtime::tick_costs;
 
 // ---- provided by boards/<name>/board.cpp
 

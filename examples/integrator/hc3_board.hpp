@@ -34,14 +34,14 @@ struct Registers {
 inline volatile Registers& registers() {
   return *reinterpret_cast<volatile Registers*>(0x40000000);
 }
-inline const std::byte* const kBlob = reinterpret_cast<const std::byte*>(0x08020000);
-inline constexpr std::size_t kBlobRoom = 896 * 1024;
+inline constexpr std::uint32_t kBlobAddress = 0x08020000;
+inline constexpr std::uint32_t kBlobRoom = 896 * 1024;
 
 struct Encoders {
   tactree::core::EncoderReading read() noexcept {
     registers().latch = 1;
     tactree::core::EncoderReading reading;
-    for (std::uint32_t axis = 0; axis < kAxes; ++axis) {
+    for (std::uint32_t axis = 0; axis < kAxes; ++axis) {  // bound: kAxes
       reading.counts[axis] = registers().count[axis];
       reading.valid[axis] = (registers().count_bad & (1U << axis)) == 0U;
     }
@@ -51,7 +51,7 @@ struct Encoders {
 
 struct Motors {
   void write(const tactree::core::MotorCommand& command) noexcept {
-    for (std::uint32_t axis = 0; axis < kAxes; ++axis) {
+    for (std::uint32_t axis = 0; axis < kAxes; ++axis) {  // bound: kAxes
       registers().torque_Nm[axis] = command.effort(axis);
     }
   }
@@ -70,7 +70,7 @@ struct SafetyInputs {
 
 struct Ticker {
   tactree::hal::Tick wait() noexcept {
-    while (registers().ticks == seen) {
+    while (registers().ticks == seen) {  // bound: 0 (a tick begins with its deadline)
     }
     const std::uint32_t missed = registers().ticks - seen - 1U;
     seen += missed + 1U;
@@ -99,8 +99,9 @@ struct Link {
 
 struct Storage {
   std::span<const std::byte> active() const noexcept {
-    const auto& header = *reinterpret_cast<const tactree::core::BlobHeader*>(kBlob);
-    return {kBlob, header.total_bytes < kBlobRoom ? header.total_bytes : kBlobRoom};
+    const auto* const blob = reinterpret_cast<const std::byte*>(kBlobAddress);
+    const auto& header = *reinterpret_cast<const tactree::core::BlobHeader*>(blob);
+    return {blob, header.total_bytes < kBlobRoom ? header.total_bytes : kBlobRoom};
   }
 };
 

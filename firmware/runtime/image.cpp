@@ -3,7 +3,7 @@
 #include "image.hpp"
 
 #include "platform.hpp"
-#include "runtime/memory_test.hpp"
+#include "tactree/runtime/memory_test.hpp"
 
 namespace tactree::firmware {
 namespace {
@@ -16,7 +16,7 @@ bool variables_hold() { return variables_held; }
 
 void start_image() {
   prepare_board();
-  const bool hold = holds_all_bits(image_tested_begin, image_tested_end);
+  const bool hold = runtime::holds_all_bits(image_tested_begin, image_tested_end);
   const std::uint32_t* source = image_data_source;
   for (std::uint32_t* to = image_data_begin; to < image_data_end; ++to) {  // bound: data_words
     *to = *source++;

@@ -46,7 +46,7 @@ void tactree_trap();
 }
 }
 
-void tactree::firmware::reset() {
+void tactree::runtime::reset() {
   while (true) {  // bound: for_ever
     rv32::test_device() = rv32::kTestDeviceReset;
   }

@@ -39,7 +39,7 @@ wcet::Bound bound_of(const emulation::BoardDescription& board, const core::BlobV
                      const std::filesystem::path& sources = source_folder()) {
   wcet::BoundOptions options;
   options.image = bare_firmware(board);
-  options.sources = sources;
+  options.sources = {sources};
   options.entries = wcet::tick_entries();
   options.parameters = wcet::parameters_of(view.header(), mode, 1, device);
   options.work_tier = core::work_tier_of(rate_hz);
@@ -192,7 +192,7 @@ TEST_P(Proof, HoldsForEveryDevice) {
 wcet::BoundOptions in_cycles(const emulation::BoardDescription& board) {
   wcet::BoundOptions options;
   options.image = bare_firmware(board);
-  options.sources = source_folder();
+  options.sources = {source_folder()};
   options.entries = wcet::tick_entries();
   options.timing = wcet::find_timing(board.name);
   return options;

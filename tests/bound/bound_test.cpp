@@ -1,6 +1,7 @@
 // Bounds and refusals of the analysis, on small images.
 
 #include <random>
+#include <vector>
 
 #include "sample_image.hpp"
 
@@ -288,6 +289,68 @@ TEST_F(Bounding, RefusesOtherFiles) {
   EXPECT_NE(refused(folder_ / "missing.elf").find("cannot be read"), std::string::npos);
   EXPECT_NE(refused("/bin/sh").find("not a linked image of an Arm core"), std::string::npos);
   EXPECT_NE(refused(write("text.elf", "hello")).find("not a linked image"), std::string::npos);
+}
+
+/// The bound of the last compiled image, with entries and sources of its own.
+wcet::Bound bound_from(const std::filesystem::path& folder, const std::string& entry,
+                       const std::vector<std::filesystem::path>& sources) {
+  wcet::BoundOptions options;
+  options.image = folder / "sample.elf";
+  options.sources = sources;
+  options.entries = {{entry, 1}};
+  return wcet::worst_case(options);
+}
+
+TEST_F(Bounding, ReadsSourcesOfSeveralFolders) {
+  for (const char* name : {"lib", "own", "own/lib"}) {
+    std::filesystem::create_directory(folder_ / name);
+  }
+  write("lib/part.hpp", kWork + R"(
+inline void repeat() {
+  for (unsigned i = 0; i < wanted; ++i) {  // bound: 10
+    leaf();
+  }
+})");
+  const std::uint64_t instructions =
+      bound_of("#include \"lib/part.hpp\"\nextern \"C\" void tick() { repeat(); }").instructions;
+  const auto from = [&](const std::vector<std::filesystem::path>& sources) {
+    return bound_from(folder_, "tick", sources);
+  };
+  const wcet::Bound bound = from({folder_ / "own", folder_ / "lib/", folder_ / "own"});
+  EXPECT_EQ(bound.instructions, instructions);
+  ASSERT_EQ(bound.loops.size(), 1U);
+  EXPECT_EQ(bound.loops[0].file, "lib/part.hpp");
+  EXPECT_EQ(from({folder_ / "lib"}).loops[0].file, "part.hpp");
+  EXPECT_EQ(from({folder_ / "own", folder_ / "own/lib", folder_ / "lib"}).loops[0].file,
+            (folder_ / "lib/part.hpp").lexically_normal());
+  const auto refused = [&](const std::vector<std::filesystem::path>& sources) {
+    return message_of<wcet::BoundError>([&] { (void)from(sources); });
+  };
+  EXPECT_NE(refused({folder_ / "own"}).find("matches no loop in the source"), std::string::npos);
+  EXPECT_NE(refused({folder_ / "none"}).find("is not a folder"), std::string::npos);
+}
+
+TEST_F(Bounding, FindsEntryByNameInSource) {
+  const std::uint64_t instructions = bound_of(kWork + R"(
+namespace part {
+[[gnu::used, gnu::noipa]] void step() { leaf(); }
+[[gnu::used, gnu::noipa]] void twice(int) { leaf(); }
+[[gnu::used, gnu::noipa]] void twice(char) { leaf(); }
+namespace {
+[[gnu::used, gnu::noipa]] void hidden() { leaf(); }
+}
+}
+extern "C" void tick() { leaf(); })")
+                                         .instructions;
+  for (const char* name :
+       {"tick", "part::step", "part::step()", "part::hidden", "part::twice(char)"}) {
+    EXPECT_EQ(bound_from(folder_, name, {folder_}).instructions, instructions) << name;
+  }
+  const auto refused = [&](const char* name) {
+    return message_of<wcet::BoundError>([&] { (void)bound_from(folder_, name, {folder_}); });
+  };
+  EXPECT_NE(refused("part::twice").find("are both named part::twice"), std::string::npos);
+  EXPECT_NE(refused("part").find("has no function part"), std::string::npos);
 }
 
 // 1 kHz and 2 kHz end the first two tiers.

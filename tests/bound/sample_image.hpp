@@ -47,7 +47,7 @@ class SampleImage : public FolderTest {
     wcet::BoundOptions options;
     options.timing = timing;
     options.image = image;
-    options.sources = folder_;
+    options.sources = {folder_};
     options.entries = {{"tick", 1}};
     options.parameters = parameters;
     return wcet::worst_case(options);

@@ -1,6 +1,6 @@
 """A board that stands alone (simulate --panel): operated by its button, watched by programs.
 
-usage: panel_test.py TACTREE
+usage: panel_test.py TACTREE [BOARD [TEST...]]        BOARD: an emulated board
 """
 import csv
 import pathlib
@@ -11,6 +11,7 @@ sys.dont_write_bytecode = True
 from served_board import BallFolder, ServedBoard  # noqa: E402
 
 TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
+BOARD = sys.argv.pop(1) if len(sys.argv) > 1 else "host"
 HOME_AND_ARM = ("--press", "0.2s..1.4s", "--press", "3s..4.2s")
 
 
@@ -93,6 +94,30 @@ class Panel(BallFolder):
         with ServedBoard(TACTREE, self.blob) as port:
             self.assertNotIn(said, self.verb("devices", "--port", port))
             self.assertNotIn(said, self.verb("monitor", "--once", "--port", port))
+
+
+    def states_and_forces(self, port, seconds):
+        """What a program sees that connects, watches, and goes: the states in their order, the ticks with force."""
+        self.verb("record", "--port", port, "--seconds", seconds, "-o", "seen.csv")
+        with open(self.path / "seen.csv", newline="") as file:
+            rows = list(csv.DictReader(file))
+        forces = [any(float(row[f"force_{axis}_N"]) for axis in "xyz") for row in rows]
+        for row, force in zip(rows, forces):
+            self.assertTrue(not force or row["state"] == "active", row)
+        return list(dict.fromkeys(row["state"] for row in rows)), forces
+
+    def test_links_come_and_go_until_the_emergency_stop(self):
+        with ServedBoard(TACTREE, self.blob, "--panel", "--board", BOARD, *HOME_AND_ARM, "--inject",
+                         "estop:pressed@11..12") as port:
+            states, _ = self.states_and_forces(port, 6)
+            self.assertEqual(states, ["idle", "armed", "active"])
+            for _ in range(2):  # each program opens a session and closes it; the force stays
+                states, forces = self.states_and_forces(port, 2)
+                self.assertEqual(states, ["active"])
+                self.assertGreater(sum(forces), 100)
+            states, forces = self.states_and_forces(port, 3)
+            self.assertEqual(states, ["active", "fault"])
+            self.assertFalse(any(forces[-100:]))
 
 
 if __name__ == "__main__":

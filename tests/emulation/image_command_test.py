@@ -110,6 +110,23 @@ def firmware(code=None, address=CODE, machine=40, **identities):
     return header + table + program
 
 
+# ---- a firmware outside the tree: with a record in the middle of its code, and initial values
+
+SEAL = pathlib.Path(__file__).resolve().parents[2] / "scripts/seal-image"
+
+
+def own_firmware(record=True, place=(PLACE, 0x80000), family=FAMILY, data=CODE + 0x10000):
+    code = bytes(range(256)) * 2
+    if record:
+        code += struct.pack("<8s24s4I60x", b"TACTOWN", b"hc3", 168000000, *place, family)
+    code += bytes(range(255, -1, -1))
+    program = code + b"vars"
+    header = struct.pack("<4s5B7x2H5I6H", b"\x7fELF", 1, 1, 1, 0, 0, 2, 40, 1, CODE | 1, 52, 0, 0, 52, 32, 2, 40, 0, 0)
+    table = struct.pack("<8I", 1, 116, CODE, CODE, len(code), len(code), 5, 4)
+    table += struct.pack("<8I", 1, 116 + len(code), 0x20000000, data, 4, 4, 6, 4)
+    return header + table + program
+
+
 class Image(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -243,6 +260,71 @@ class Image(unittest.TestCase):
         self.refused("cannot infer the format from the extension", ending="img", code=2)
         self.refused("--usb", arguments=("--usb", "0483df11"), code=2)
         self.refused("--usb", arguments=("--usb", "04:3:df11"), code=2)
+
+    # ---- a firmware outside the tree
+
+    def sealed(self, **facts):
+        elf = self.file("own.elf", own_firmware(**facts))
+        subprocess.run([sys.executable, SEAL, elf], check=True)
+        return elf.read_bytes()
+
+    def test_own_firmware_with_a_record_states_its_room(self):
+        elf = self.sealed()
+        self.assertEqual(from_hex(self.make("hex", elf=elf)), self.expected(elf))
+        self.make("hex", "--board", "hc3", elf=elf)
+        from_uf2(self.make("uf2", elf=elf), FAMILY)
+        self.refused("for hc3, not for stm32f405", elf=elf, arguments=("--board", "stm32f405"))
+        self.refused("states the room of its blob itself", elf=elf,
+                     arguments=("--blob-at", "0x08020000", "--room", "896K"))
+        self.refused("too large for hc3", elf=self.sealed(place=(PLACE, 64)))
+        self.refused("states no room", "--blob-at", elf=self.sealed(place=(0, 0)))
+
+    def test_own_firmware_must_be_sealed_after_its_last_change(self):
+        self.refused("is not sealed", "seal-image", elf=own_firmware())
+        whole = self.sealed()
+        for at in range(116, len(whole), 5):
+            wrong = bytearray(whole)
+            wrong[at] ^= 1 << at % 8
+            self.refused("firmware.elf", elf=wrong)
+
+    def test_own_firmware_without_a_record_needs_a_place(self):
+        elf = own_firmware(record=False)
+        place = ("--blob-at", hex(PLACE), "--room", "896K")
+        self.assertEqual(from_hex(self.make("hex", *place, elf=elf)), self.expected(elf))
+        self.refused("does not name its board", "--blob-at", elf=elf)
+        self.refused("--room", elf=elf, arguments=place[:2], code=2)
+        self.refused("--blob-at", elf=elf, arguments=place[2:], code=2)
+        self.refused("is not a number", elf=elf, arguments=("--blob-at", "here", "--room", "1K"))
+        for at, room in ((PLACE + 1, "1K"), (PLACE, "0"), (0xFFFFFFFC, "8")):
+            self.refused("are no room for a blob", elf=elf, arguments=("--blob-at", hex(at), "--room", room))
+        for at, room in ((CODE - 16, "20"), (CODE + 0x10000, "1M"), (CODE, "1M")):
+            self.refused("lie in the room of the blob", elf=elf, arguments=("--blob-at", hex(at), "--room", room))
+        self.refused("segments overlap", elf=own_firmware(record=False, data=CODE + 8), arguments=place)
+
+    def test_uf2_of_an_own_firmware_needs_the_family_of_the_chip(self):
+        elf = own_firmware(record=False)
+        place = ("--blob-at", hex(PLACE), "--room", "896K")
+        self.refused("UF2 family", "--uf2-family", elf=elf, arguments=place, ending="uf2")
+        from_uf2(self.make("uf2", *place, "--uf2-family", "0xE48BFF59", elf=elf), 0xE48BFF59)
+        self.refused("UF2 family", elf=self.sealed(family=0), ending="uf2")
+
+    def test_a_file_describes_the_board(self):
+        board = {"name": "hc3", "blob": {"at": hex(PLACE), "room": "896K"}, "uf2_family": hex(FAMILY)}
+        file = self.file("hc3.json", json.dumps(board).encode())
+        elf = own_firmware(record=False)
+        from_uf2(self.make("uf2", "--board", file, elf=elf), FAMILY)
+        report = self.folder / "r.json"
+        self.make("hex", "--board", file, "--json", report, elf=elf)
+        self.assertEqual(json.loads(report.read_text())["board"], "hc3")
+        self.make("hex", "--board", file, elf=self.sealed())
+        self.refused("for stm32f405, not for hc3", arguments=("--board", file))
+        for key, value, cause in (("name", "", "characters"), ("blob", {"at": "0"}, "blob.room: is missing"),
+                                  ("blob", {"at": "8 MB", "room": "1"}, "is not a number"),
+                                  ("toaster", 1, "is unknown")):
+            self.file("hc3.json", json.dumps({**board, key: value}).encode())
+            self.refused("hc3.json", cause, elf=elf, arguments=("--board", file))
+        self.file("hc3.json", b"{")
+        self.refused("not valid JSON", elf=elf, arguments=("--board", file))
 
     # ---- the boards' own images
 

@@ -15,6 +15,8 @@ namespace {
 
 using namespace tactree;
 
+const cli::Unstated kPlace{"own", cli::BlobPlace{0x08020000, 0x20000}};
+
 void examine(const cli::FirmwareImage& image) {
   fuzz::require(image.board.size() < 24, "a board without a name's end");
   fuzz::require(image.code_begin < image.code_end && image.blob_begin < image.blob_end,
@@ -33,10 +35,12 @@ void examine(const cli::FirmwareImage& image) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const fuzz::MemoryFile file(data, size);
-  try {
-    examine(cli::read_firmware(file.path()));
-  } catch (const support::UserError& error) {
-    fuzz::require_reason(error.what(), file.path().string());
+  for (const cli::Unstated& unstated : {cli::Unstated{}, kPlace}) {
+    try {
+      examine(cli::read_firmware(file.path(), unstated));
+    } catch (const support::UserError& error) {
+      fuzz::require_reason(error.what(), file.path().string());
+    }
   }
   return 0;
 }

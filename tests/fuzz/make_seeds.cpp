@@ -25,6 +25,7 @@
 #include "tactree/builder/model.hpp"
 #include "tactree/core/math/crc32.hpp"
 #include "tactree/core/model/blob.hpp"
+#include "tactree/runtime/image_record.hpp"
 #include "tactree/simulation/injection.hpp"
 #include "tactree/support/device_file.hpp"
 #include "wire_seeds.hpp"
@@ -341,35 +342,52 @@ void write_devices(const fs::path& folder) {
   }
 }
 
-// One segment after the headers, which ends with the identity (firmware/runtime/identity.hpp).
+constexpr std::uint32_t kCode = 0x08000000;
+
+/// An image with one segment after the headers.
+std::string image_of(int machine, const std::string& code) {
+  Elf32_Ehdr header{};
+  std::memcpy(header.e_ident, ELFMAG, SELFMAG);
+  header.e_ident[EI_CLASS] = ELFCLASS32;
+  header.e_ident[EI_DATA] = ELFDATA2LSB;
+  header.e_type = ET_EXEC;
+  header.e_machine = static_cast<Elf32_Half>(machine);
+  header.e_phoff = sizeof header;
+  header.e_phentsize = sizeof(Elf32_Phdr);
+  header.e_phnum = 1;
+  Elf32_Phdr segment{};
+  segment.p_type = PT_LOAD;
+  segment.p_offset = sizeof header + sizeof segment;
+  segment.p_paddr = kCode;
+  segment.p_filesz = static_cast<Elf32_Word>(code.size());
+  return bytes_of(header) + bytes_of(segment) + code;
+}
+
+/// Code that ends with the sealed record of a firmware outside this tree, and so with its checksum.
+std::string code_with_record() {
+  std::string code(256, '\x42');
+  auto record = tactree::runtime::image_record(
+      "board", {.clock_hz = 150'000'000, .blob_at = kCode + 0x20000, .blob_room = 0x20000});
+  record.count = 1;
+  record.ranges[0] = {kCode, static_cast<std::uint32_t>(code.size() + sizeof record)};
+  record.checksum_at = kCode + static_cast<std::uint32_t>(code.size()) +
+                       offsetof(tactree::runtime::ImageRecord, checksum);
+  code += bytes_of(record);
+  code.resize(code.size() - sizeof record.checksum);
+  return code + bytes_of(tactree::core::crc32(std::as_bytes(std::span(code))));
+}
+
+// The code ends with the identity (firmware/runtime/identity.hpp).
 void write_firmware(const fs::path& folder) {
-  constexpr std::uint32_t kCode = 0x08000000;
   std::string code(256, '\x42');
   code += std::string("TACTIMG\0", 8) + "board" + std::string(19, '\0');
   for (const std::uint32_t word : {kCode, kCode + 0x10000, kCode + 0x20000, kCode + 0x40000, 0U}) {
     code += bytes_of(word);
   }
   code += bytes_of(tactree::core::crc32(std::as_bytes(std::span(code))));
-  for (const int machine : {EM_ARM, EM_RISCV}) {
-    Elf32_Ehdr header{};
-    std::memcpy(header.e_ident, ELFMAG, SELFMAG);
-    header.e_ident[EI_CLASS] = ELFCLASS32;
-    header.e_ident[EI_DATA] = ELFDATA2LSB;
-    header.e_type = ET_EXEC;
-    header.e_machine = static_cast<Elf32_Half>(machine);
-    header.e_phoff = sizeof header;
-    header.e_phentsize = sizeof(Elf32_Phdr);
-    header.e_phnum = 1;
-    Elf32_Phdr segment{};
-    segment.p_type = PT_LOAD;
-    segment.p_offset = sizeof header + sizeof segment;
-    segment.p_paddr = kCode;
-    segment.p_filesz = static_cast<Elf32_Word>(code.size());
-    std::string file;
-    file += bytes_of(header);
-    file += bytes_of(segment);
-    write(folder / (machine == EM_ARM ? "arm" : "riscv"), file + code);
-  }
+  write(folder / "arm", image_of(EM_ARM, code));
+  write(folder / "riscv", image_of(EM_RISCV, code));
+  write(folder / "own", image_of(EM_ARM, code_with_record()));
 }
 
 void write_materials(const fs::path& folder) {

@@ -82,6 +82,7 @@ void check_safety(const Configuration& c, Checks& checks) {
   checks.range(kBadSpeed, "supervision.speed_max_m_s", s.speed_max_m_s, 0.1F, 100.0F);
   checks.range(kBadTimeout, "link.timeout_s", c.link.timeout_s, 0.005F, 0.1F);
   checks.refuse(c.link.required && !c.link.may_command, {kBadLink});
+  checks.refuse(c.compensate_gravity && !c.motors.signs_proven, {kUnprovenSigns});
   checks.range(kBadTimeout, "supervision.enable_timeout_s", s.enable_timeout_s, 0.001F, 1.0F);
   checks.range(kBadTimeout, "supervision.stuck_s", s.stuck_s, 0.01F, 1.0F);
   if (s.supply_monitored) {
@@ -108,6 +109,7 @@ constexpr const char* kWords[] = {
     "supply_min_V or supply_max_V is outside its range",
     "stiffness_N_m is beyond the stability limit of device, hand and rate",
     "a link that is required may only watch",
+    "compensate_gravity requires signs_proven",
 };
 constexpr std::uint32_t kWordCount = sizeof(kWords) / sizeof(kWords[0]);
 

@@ -45,13 +45,15 @@ FaultMask Controller::sense(const Input& input) {
   return faults | watch_encoders(input);
 }
 
+// Near the end of a joint's range its stop may hold the axis, whatever its motor does.
 FaultMask Controller::watch_encoders(const Input& input) {
-  if (state_ != State::kActive || !sensor_.located()) {
+  if (state_ != State::kActive || !sensor_.located() || sensor_.pose().reach < 1.0F) {
     monitor_.reset_encoders();
     return 0U;
   }
-  const Vec3 effort = sensor_.pose().effort_per_force * force_stage_.applied_force();
-  const FaultMask stuck = monitor_.update_encoders(input.encoders, configuration_, effort);
+  const FaultMask stuck =
+      monitor_.update_encoders(input.encoders, configuration_, sensor_.pose().effort_per_force,
+                               force_stage_.applied_force());
   if (stuck != 0U) {
     sensor_.lose_position(configuration_.device);
   }

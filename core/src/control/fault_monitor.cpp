@@ -49,6 +49,23 @@ FaultMask FaultMonitor::update(const Readings& readings, const Configuration& co
   return faults;
 }
 
+// The hand yields in the direction of the force. This moves an axis by the force along the gradient
+// of its joint, which is not the effort of its motor: that may hold what the other axes carry. Row
+// i of force_per_effort() is the gradient of joint i.
+FaultMask FaultMonitor::update_encoders(const EncoderReading& encoders,
+                                        const Configuration& configuration,
+                                        const Mat3& effort_per_force, Vec3 force) {
+  const Mat3 gradients = force_per_effort(effort_per_force);
+  float share[kAxes];
+  for (std::uint32_t i = 0; i < kAxes; ++i) {  // bound: kAxes
+    const Vec3 gradient = gradients.row[i];
+    const float most = length_squared(gradient) * configuration.motors.effort_max[i];
+    share[i] = most > 0.0F ? dot(gradient, force) / most : 0.0F;
+  }
+  const bool moves = encoders_.update(encoders.counts, share, axes_of(configuration.device.kind));
+  return moves ? 0U : fault_bit(Fault::kEncoderStuck);
+}
+
 FaultMask FaultMonitor::check_overruns(const Readings& readings, bool motors_on) {
   ticks_since_overrun_ = add_saturating(ticks_since_overrun_, 1);
   if (readings.overruns == 0U || (readings.storage_busy && !motors_on)) {

@@ -173,7 +173,7 @@ class Session {
   /// Sends a command in the next tick; none before the first one.
   void post(core::Command command) {
     if (simulation_) {
-      simulation_->post(command);
+      (void)simulation_->post(command);  // no option of a session makes its link watch only
     }
   }
 

@@ -41,10 +41,13 @@ LiveRun::LiveRun(const Bodies& bodies, const simulation::Setup& setup, const Eig
   last_.status.probe = plant::narrow(at_m);
 }
 
+// The page has no option by which its simulated application may only watch.
+void LiveRun::post(core::Command command) { (void)sim_.post(command); }
+
 void LiveRun::arm() {
   is_wanted_ = true;
   sim_.board().safety_inputs().hold_dead_man(false);
-  sim_.post(core::Command::kArm);
+  post(core::Command::kArm);
   hold_at_s_ = sim_.time_s() + kHoldAfter_s;
 }
 
@@ -52,12 +55,12 @@ void LiveRun::stop() {
   is_wanted_ = false;
   arms_after_change_ = false;
   sim_.board().safety_inputs().hold_dead_man(false);
-  sim_.post(core::Command::kStop);
+  post(core::Command::kStop);
   hold_at_s_ = -1.0;
 }
 
 void LiveRun::clear() {
-  sim_.post(core::Command::kClearFault);
+  post(core::Command::kClearFault);
   stop_next_ = true;
 }
 

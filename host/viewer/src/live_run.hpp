@@ -49,6 +49,7 @@ class LiveRun {
  private:
   LiveRun(const Bodies& bodies, const simulation::Setup& setup, const Eigen::Vector3d& at_m,
           std::uint64_t tick, std::unique_ptr<simulation::SceneTarget> target);
+  void post(core::Command command);
   void adjust();
   [[nodiscard]] core::ContactParameters next_contact();
 

@@ -151,13 +151,41 @@ const Function* Image::function_at(std::uint32_t address) const {
   return address < function.end ? &function : nullptr;
 }
 
-const Function* Image::find(std::string_view symbol) const {
+namespace {
+
+/// The symbol as in the source, without the namespaces that have no name; empty for a clone, which
+/// the source does not name.
+std::string name_in_source(const std::string& symbol) {
+  static constexpr std::string_view kUnnamed = "(anonymous namespace)::";
+  std::string name = symbol.find('.') == std::string::npos ? demangled(symbol) : std::string();
+  for (std::size_t at = name.find(kUnnamed); at != std::string::npos; at = name.find(kUnnamed)) {
+    name.erase(at, kUnnamed.size());
+  }
+  return name;
+}
+
+}  // namespace
+
+const Function* Image::find(std::string_view name) const {
   for (const auto& [begin, function] : functions_) {
-    if (function.name == symbol) {
+    if (function.name == name) {
       return &function;
     }
   }
-  return nullptr;
+  const Function* found = nullptr;
+  for (const auto& [begin, function] : functions_) {
+    const std::string in_source = name_in_source(function.name);
+    if (in_source != name && in_source.substr(0, in_source.find('(')) != name) {
+      continue;
+    }
+    if (found != nullptr) {
+      throw BoundError(
+          fmt::format("{}: {} and {} are both named {} (give a symbol, as nm prints it)", name_,
+                      found->name, function.name, name));
+    }
+    found = &function;
+  }
+  return found;
 }
 
 std::optional<std::uint64_t> Image::offset_of(std::string_view symbol) const {

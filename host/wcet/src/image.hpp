@@ -37,8 +37,9 @@ class Image {
   [[nodiscard]] const std::map<std::uint32_t, Function>& functions() const { return functions_; }
   /// The function that contains the address; nullptr if there is none.
   [[nodiscard]] const Function* function_at(std::uint32_t address) const;
-  /// The function with this symbol; nullptr if there is none.
-  [[nodiscard]] const Function* find(std::string_view symbol) const;
+  /// The function with this symbol or, if there is none, with this name in the source, with or
+  /// without its arguments; nullptr if there is none. Throws BoundError if there are several.
+  [[nodiscard]] const Function* find(std::string_view name) const;
   /// Bytes from `address` to the end of its section; empty if it is not in the image.
   [[nodiscard]] std::span<const std::uint8_t> bytes_at(std::uint32_t address) const;
   /// Returns false for data between instructions, such as a literal pool.

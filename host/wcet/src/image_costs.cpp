@@ -15,36 +15,53 @@ namespace {
 
 constexpr const char* kCostsSymbol = "tactree_tick_costs";
 
-std::streamoff costs_offset(const std::filesystem::path& image) {
+std::optional<std::streamoff> costs_offset(const std::filesystem::path& image) {
   const std::optional<std::uint64_t> offset = Image(image).offset_of(kCostsSymbol);
-  if (!offset) {
-    throw BoundError(
-        fmt::format("{}: has no {} (give an image of Tactree)", image.string(), kCostsSymbol));
-  }
-  return static_cast<std::streamoff>(*offset);
+  return offset ? std::optional(static_cast<std::streamoff>(*offset)) : std::nullopt;
+}
+
+[[noreturn]] void refuse_without_costs(const std::filesystem::path& image) {
+  throw BoundError(
+      fmt::format("{}: has no {} (link tactree::runtime and pass its tick_costs() to the "
+                  "controller)",
+                  image.string(), kCostsSymbol));
 }
 
 }  // namespace
 
 void embed(const std::filesystem::path& image, const core::TickCosts& costs) {
-  const std::streamoff offset = costs_offset(image);
+  const std::optional<std::streamoff> offset = costs_offset(image);
+  if (!offset) {
+    refuse_without_costs(image);
+  }
   std::fstream file(image, std::ios::in | std::ios::out | std::ios::binary);
-  file.seekp(offset);
+  file.seekp(*offset);
   file.write(reinterpret_cast<const char*>(&costs), sizeof costs);
   if (!file.flush()) {
     throw BoundError(image.string() + ": cannot be written (check the file's permissions)");
   }
 }
 
-core::TickCosts embedded(const std::filesystem::path& image) {
-  const std::streamoff offset = costs_offset(image);
+std::optional<core::TickCosts> find_embedded(const std::filesystem::path& image) {
+  const std::optional<std::streamoff> offset = costs_offset(image);
+  if (!offset) {
+    return std::nullopt;
+  }
   std::ifstream file(image, std::ios::binary);
   core::TickCosts costs;
-  file.seekg(offset);
+  file.seekg(*offset);
   if (!file.read(reinterpret_cast<char*>(&costs), sizeof costs)) {
     throw BoundError(image.string() + ": cannot be read (it is truncated; build it again)");
   }
   return costs;
+}
+
+core::TickCosts embedded(const std::filesystem::path& image) {
+  const std::optional<core::TickCosts> costs = find_embedded(image);
+  if (!costs) {
+    refuse_without_costs(image);
+  }
+  return *costs;
 }
 
 }  // namespace tactree::wcet

@@ -368,34 +368,91 @@ SourceFile read_source(const std::string& name, const std::string& text) {
   return Reader(name, text).read();
 }
 
-SourceCode::SourceCode(const std::filesystem::path& root)
-    : root_(std::filesystem::absolute(root).lexically_normal()) {}
+namespace {
 
-// The names in an image are relative to the root of the sources, or to a folder of the build below
-// it.
+namespace fs = std::filesystem;
+
+/// The path without its first part.
+fs::path shortened(const fs::path& path) {
+  const fs::path rest = path.lexically_relative(*path.begin());
+  return rest == "." ? fs::path() : rest;
+}
+
+}  // namespace
+
+SourceCode::SourceCode(const std::vector<fs::path>& roots) {
+  for (const fs::path& given : roots) {
+    fs::path folder = fs::absolute(given).lexically_normal();
+    folder = folder.has_filename() ? folder : folder.parent_path();
+    if (!fs::is_directory(folder)) {
+      throw BoundError(
+          fmt::format("{}: is not a folder (name a folder of the sources)", given.string()));
+    }
+    const bool is_new = std::none_of(roots_.begin(), roots_.end(),
+                                     [&](const Root& root) { return root.folder == folder; });
+    const bool is_named = std::any_of(roots_.begin(), roots_.end(), [&](const Root& root) {
+      return root.label == folder.filename();
+    });
+    if (is_new) {
+      const fs::path label = is_named ? folder : folder.filename();
+      roots_.push_back({folder, roots_.empty() ? fs::path() : label});
+    }
+  }
+}
+
+// A name that the compiler wrote relative to a folder of the build below the root has further parts
+// before that of the file.
+SourceCode::Found SourceCode::find_absolute(const fs::path& path) const {
+  for (const Root& root : roots_) {
+    fs::path file = path.lexically_relative(root.folder);
+    if (file.empty() || *file.begin() == "..") {
+      continue;
+    }
+    while (!file.empty() && !fs::is_regular_file(root.folder / file)) {
+      file = shortened(file);
+    }
+    if (!file.empty()) {
+      return {&root, file};
+    }
+  }
+  return {};
+}
+
+SourceCode::Found SourceCode::find_relative(const fs::path& path) const {
+  for (fs::path file = path; !file.empty(); file = shortened(file)) {
+    Found found;
+    for (const Root& root : roots_) {
+      if (!fs::is_regular_file(root.folder / file)) {
+        continue;
+      }
+      if (found.root != nullptr) {
+        throw BoundError(
+            fmt::format("{}: is in {} and in {} (compile your sources with their absolute paths)",
+                        file.string(), found.root->folder.string(), root.folder.string()));
+      }
+      found = {&root, file};
+    }
+    if (found.root != nullptr) {
+      return found;
+    }
+  }
+  return {};
+}
+
 std::string SourceCode::name_of(const std::string& compiled_name) {
   const auto known = names_.find(compiled_name);
   if (known != names_.end()) {
     return known->second;
   }
+  const fs::path path = fs::path(compiled_name).lexically_normal();
+  const Found found = path.is_absolute() ? find_absolute(path) : find_relative(path);
   std::string& name = names_[compiled_name];
-  std::filesystem::path path = std::filesystem::path(compiled_name).lexically_normal();
-  if (path.is_absolute()) {
-    path = path.lexically_relative(root_);
-    if (path.empty() || *path.begin() == "..") {
-      return name;
-    }
-  }
-  while (!path.empty() && !std::filesystem::is_regular_file(root_ / path)) {
-    path = path.lexically_relative(*path.begin());
-    path = path == "." ? std::filesystem::path() : path;
-  }
-  if (path.empty()) {
+  if (found.root == nullptr) {
     return name;
   }
-  name = path.generic_string();
+  name = (found.root->label / found.file).generic_string();
   if (!files_.contains(name)) {
-    std::ifstream stream(root_ / path);
+    std::ifstream stream(found.root->folder / found.file);
     const std::string text{std::istreambuf_iterator<char>(stream), {}};
     files_.emplace(name, read_source(name, text));
   }

@@ -70,15 +70,17 @@ struct SourceFile {
 /// Throws BoundError on an annotation it cannot read.
 [[nodiscard]] SourceFile read_source(const std::string& name, const std::string& text);
 
-/// Sources below one folder, each read when first named.
+/// Sources below several folders, each read when first named.
 class SourceCode {
  public:
-  explicit SourceCode(const std::filesystem::path& root);
+  /// Throws BoundError if one of them is not a folder.
+  explicit SourceCode(const std::vector<std::filesystem::path>& roots);
 
-  /// Converts a name in the debug information to a name relative to the root; empty if the file is
-  /// outside the root.
+  /// Converts a name in the debug information to a name relative to its root, which begins with the
+  /// name of the root unless that is the first one; empty if the file is in none of them. Throws
+  /// BoundError if a relative name may mean a file of two roots.
   [[nodiscard]] std::string name_of(const std::string& compiled_name);
-  /// Returns nullptr for a file that is not below the root.
+  /// Returns nullptr for a file that is in none of the roots.
   [[nodiscard]] const SourceFile* find(const std::string& name) const;
   [[nodiscard]] const std::map<std::string, SourceFile>& files() const { return files_; }
   /// Value of a constexpr integer of `file`, or else of any file. Throws BoundError if files
@@ -87,10 +89,20 @@ class SourceCode {
                                                      const std::string& name) const;
 
  private:
+  struct Root {
+    std::filesystem::path folder;
+    std::filesystem::path label;  ///< before the names of its files
+  };
+  struct Found {
+    const Root* root = nullptr;
+    std::filesystem::path file;  ///< relative to the root
+  };
+  [[nodiscard]] Found find_absolute(const std::filesystem::path& path) const;
+  [[nodiscard]] Found find_relative(const std::filesystem::path& path) const;
   [[nodiscard]] std::optional<std::int64_t> constant_in(const std::string& file,
                                                         const std::string& name) const;
 
-  std::filesystem::path root_;
+  std::vector<Root> roots_;
   std::map<std::string, std::string> names_;
   std::map<std::string, SourceFile> files_;
 };

@@ -72,8 +72,10 @@ TickAnalysis::TickAnalysis(const BoundOptions& options)
   for (const EntryPoint& entry : options.entries) {
     const Function* const function = image_.find(entry.function);
     if (function == nullptr) {
-      throw BoundError(fmt::format("{}: has no function {} (give an image of Tactree)",
-                                   image_.name(), entry.function));
+      throw BoundError(
+          fmt::format("{}: has no function {} (name the functions that the tick enters with "
+                      "--entry; one that the compiler inlines everywhere is none)",
+                      image_.name(), entry.function));
     }
     addresses.push_back(function->begin);
     entries_[function->begin] += entry.times;

@@ -2,6 +2,9 @@
 
 #include <fmt/core.h>
 
+#include <optional>
+
+#include "image/own_board.hpp"
 #include "tactree/support/device_file.hpp"
 #include "tactree/support/user_error.hpp"
 
@@ -40,10 +43,27 @@ wcet::BoundOptions analysis_of(const emulation::BoardDescription& board,
                                const std::string& firmware) {
   wcet::BoundOptions options;
   options.image = emulation::find_image(board, firmware);
-  options.sources = source_folder();
+  options.sources = {source_folder()};
   options.entries = wcet::tick_entries();
   return options;
 }
+
+namespace {
+
+/// The costs in the image, or those of an analysis.
+BoardCosts costs_of(const wcet::BoundOptions& options, const wcet::BoardTiming& timing,
+                    const std::optional<core::TickCosts>& stored) {
+  BoardCosts result{timing, stored.value_or(core::TickCosts{}), options.image.string(), true};
+  if (result.costs.known != core::kTickCostsKnown) {
+    wcet::BoundOptions timed = options;
+    timed.timing = &timing;
+    result.costs = wcet::tick_costs(timed);
+    result.embedded = false;
+  }
+  return result;
+}
+
+}  // namespace
 
 BoardCosts costs_of_board(const std::string& name, const std::string& firmware) {
   const emulation::BoardDescription* const board = emulation::find_board(name);
@@ -54,14 +74,37 @@ BoardCosts costs_of_board(const std::string& name, const std::string& firmware) 
                     "the option out)",
                     name));
   }
-  wcet::BoundOptions options = analysis_of(*board, firmware);
-  options.timing = timing;
-  BoardCosts result{*timing, wcet::embedded(options.image), options.image.string(), true};
-  if (result.costs.known != core::kTickCostsKnown) {
-    result.costs = wcet::tick_costs(options);
-    result.embedded = false;
+  const wcet::BoundOptions options = analysis_of(*board, firmware);
+  return costs_of(options, *timing, wcet::embedded(options.image));
+}
+
+BoardCosts costs_of_image(const std::string& file, const FirmwareImage& image,
+                          const std::string& board) {
+  wcet::BoundOptions options;
+  options.image = file;
+  options.sources = {source_folder()};
+  options.entries = wcet::tick_entries();
+  const std::optional<core::TickCosts> stored = wcet::find_embedded(file);
+  const bool has_costs = stored && stored->known == core::kTickCostsKnown;
+  if (!board.empty() && (has_costs || !is_board_file(board))) {
+    return costs_of(options, timing_of(board), stored);
   }
-  return result;
+  const wcet::BoardTiming* const known = board.empty() ? wcet::find_timing(image.board) : nullptr;
+  if (known != nullptr) {
+    return costs_of(options, *known, stored);
+  }
+  if (image.clock_hz == 0U || !has_costs) {
+    throw support::UserError(fmt::format(
+        "{}: the cycles of a tick are unknown (write them into the image with tactree bound "
+        "--embed, and state its clock in its record or with --board FILE.json)",
+        file));
+  }
+  wcet::BoardTiming timing;
+  timing.board = image.board;
+  timing.clock_hz = image.clock_hz;
+  timing.is_estimate = false;
+  timing.source = "as the image states";
+  return costs_of(options, timing, stored);
 }
 
 core::DeviceModel slowest_or(const std::string& device) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "image/firmware_image.hpp"
 #include "tactree/core/control/tick_cost.hpp"
 #include "tactree/emulation/emulated_target.hpp"
 #include "tactree/wcet/bound.hpp"
@@ -46,6 +47,12 @@ struct BoardCosts {
 
 /// The device of this name or file. If empty, a device of the kind that takes the maximum cycles.
 [[nodiscard]] core::DeviceModel slowest_or(const std::string& device);
+
+/// Costs of the image of a firmware: those stored in it at the clock that it states, or of a board
+/// with a known timing. `board`: name or JSON file; if empty, the name in the image. Throws
+/// UserError if neither is known, wcet::BoundError.
+[[nodiscard]] BoardCosts costs_of_image(const std::string& file, const FirmwareImage& image,
+                                        const std::string& board);
 
 /// Boards with a known timing.
 [[nodiscard]] std::vector<std::string> boards_with_timing();

@@ -8,6 +8,7 @@
 
 #include "commands.hpp"
 #include "image/board_costs.hpp"
+#include "image/own_board.hpp"
 #include "tactree/core/contact/scene.hpp"
 #include "tactree/support/blob_file.hpp"
 #include "tactree/support/json_text.hpp"
@@ -29,7 +30,8 @@ struct BoundCommandOptions {
   bool must_keep_rate = false;
   bool embed = false;
   bool quiet = false;
-  std::string sources = source_folder();
+  std::vector<std::string> sources;
+  std::vector<std::string> entries;
   std::string json;
   std::string mode = "surface";
   std::uint32_t bodies = 1;
@@ -47,6 +49,37 @@ wcet::Parameters parameters(const BoundCommandOptions& options) {
       mode == core::RenderMode::kPaper ? core::TickKind::kPaper : core::TickKind::kMixed;
   return wcet::parameters_of(wcet::largest_model_limits(), kind, options.bodies,
                              device == core::DeviceKind::kDelta);
+}
+
+/// Parses NAME or NAME=TIMES.
+wcet::EntryPoint entry_of(const std::string& text) {
+  const std::size_t sign = text.rfind('=');
+  if (sign == std::string::npos || sign + 1 == text.size() ||
+      text.find_first_not_of("0123456789", sign + 1) != std::string::npos) {
+    return {text, 1};
+  }
+  const std::uint32_t times = number_of("--entry", text.substr(sign + 1));
+  if (times == 0U || times > 1000U) {
+    throw CLI::ValidationError("--entry", "'" + text + "': a function is entered 1 .. 1000 times");
+  }
+  return {text.substr(0, sign), times};
+}
+
+/// Image, sources and entry points.
+wcet::BoundOptions analysed_image(const BoundCommandOptions& options) {
+  wcet::BoundOptions analysis;
+  analysis.image = options.image;
+  analysis.sources.assign(options.sources.begin(), options.sources.end());
+  if (analysis.sources.empty()) {
+    analysis.sources.emplace_back(source_folder());
+  }
+  for (const std::string& entry : options.entries) {
+    analysis.entries.push_back(entry_of(entry));
+  }
+  if (analysis.entries.empty()) {
+    analysis.entries = wcet::tick_entries();
+  }
+  return analysis;
 }
 
 nlohmann::json to_json(const BoundCommandOptions& options, const wcet::BoundOptions& analysis,
@@ -143,17 +176,12 @@ wcet::Bound worst_case(wcet::BoundOptions& analysis, double rate_hz) {
 
 void bound_tick(const BoundCommandOptions& options) {
   support::check_outputs({options.json}, {options.image, options.blob});
-  wcet::BoundOptions analysis;
-  analysis.image = options.image;
-  analysis.sources = options.sources;
-  analysis.entries = wcet::tick_entries();
+  wcet::BoundOptions analysis = analysed_image(options);
   analysis.parameters = parameters(options);
-  analysis.timing = options.board.empty() ? nullptr : wcet::find_timing(options.board);
-  if (!options.board.empty() && analysis.timing == nullptr) {
-    throw support::UserError(
-        fmt::format("--board: the timing of {} is unknown (leave the option out: the "
-                    "bound is then in instructions)",
-                    options.board));
+  wcet::BoardTiming timing;
+  if (!options.board.empty()) {
+    timing = timing_of(options.board);
+    analysis.timing = &timing;
   }
   if (options.embed) {
     wcet::embed(options.image, wcet::tick_costs(analysis));
@@ -184,9 +212,10 @@ void add_bound_command(CLI::App& app, int&) {
   CLI::App* verb = app.add_subcommand(
       "bound",
       "Proves the maximum number of instructions and cycles of a tick from a board's image");
-  verb->add_option("IMAGE", options->image, "the image: <board>.elf")->required();
+  verb->add_option("IMAGE", options->image, "the linked image, with line numbers")->required();
   CLI::Option* board = verb->add_option(
-      "--board", options->board, "name of the board: also prints cycles and the highest rate");
+      "--board", options->board,
+      "name of the board, or a JSON file with its timing: also prints cycles and the highest rate");
   CLI::Option* embed =
       verb->add_flag(
               "--embed", options->embed,
@@ -211,8 +240,19 @@ void add_bound_command(CLI::App& app, int&) {
   verb->add_option(
       "--device", options->device,
       "name or file of the device; default: the kind whose tick takes the most cycles");
-  verb->add_option("--sources", options->sources,
-                   "folder of the sources from which the image was built");
+  verb->add_option(
+          "--sources", options->sources,
+          "folder of the sources from which the image was built; repeat it for each folder "
+          "(default: that of this program)")
+      ->type_size(1)
+      ->allow_extra_args(false);
+  verb->add_option(
+          "--entry", options->entries,
+          "function that a tick enters: its symbol, or its name in the source; NAME=TIMES "
+          "for several times in a tick; repeat it for each function (default: those of the "
+          "boards of Tactree)")
+      ->type_size(1)
+      ->allow_extra_args(false);
   verb->add_option("--json", options->json, "write the result to this file");
   verb->callback([options, rate] {
     options->must_keep_rate = rate->count() > 0;

@@ -4,11 +4,14 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <cstring>
 #include <fstream>
 #include <span>
+#include <utility>
 
 #include "tactree/core/math/crc32.hpp"
+#include "tactree/runtime/image_record.hpp"
 #include "tactree/support/user_error.hpp"
 
 namespace tactree::cli {
@@ -114,24 +117,28 @@ std::vector<Segment> read_segments(const Reader& reader, const Elf32_Ehdr& heade
   return segments;
 }
 
-Identity find_identity(const Reader& reader, const std::vector<Segment>& segments) {
-  Identity identity{};
-  int found = 0;
+/// Copies the structures that begin with the mark.
+template <class T>
+std::vector<std::pair<T, std::uint32_t>> find_marked(const std::vector<Segment>& segments,
+                                                     const char (&mark)[8]) {
+  std::vector<std::pair<T, std::uint32_t>> found;
   for (const Segment& segment : segments) {
-    for (std::size_t i = 0; i + sizeof identity <= segment.bytes.size(); i += 4) {
-      if (std::memcmp(segment.bytes.data() + i, kMark, sizeof kMark) == 0) {
-        std::memcpy(&identity, segment.bytes.data() + i, sizeof identity);
-        ++found;
+    for (std::size_t i = 0; i + sizeof(T) <= segment.bytes.size(); i += 4) {
+      if (std::memcmp(segment.bytes.data() + i, mark, sizeof mark) == 0) {
+        T& value = found.emplace_back(T{}, segment.address + static_cast<std::uint32_t>(i)).first;
+        std::memcpy(&value, segment.bytes.data() + i, sizeof(T));
       }
     }
   }
-  if (found != 1 || identity.board[sizeof identity.board - 1] != '\0') {
-    reader.fail(found == 0
-                    ? "not an image of Tactree: it does not name its board"
-                    : "it has several identification records, or one with a malformed board name",
+  return found;
+}
+
+template <std::size_t N>
+void require_name(const Reader& reader, const char (&board)[N], std::size_t found) {
+  if (found > 1 || board[0] == '\0' || board[N - 1] != '\0') {
+    reader.fail("it has several identification records, or one with a malformed board name",
                 Reader::kRemedy);
   }
-  return identity;
 }
 
 // The identity is at the end of the code and is followed by the initial values of variables.
@@ -166,16 +173,113 @@ void check_ranges(const Reader& reader, const FirmwareImage& image) {
   }
 }
 
-}  // namespace
+// ---- a firmware outside this tree
 
-FirmwareImage read_firmware(const std::filesystem::path& file) {
-  Reader reader(file);
-  const Elf32_Ehdr header = read_header(reader);
-  FirmwareImage image;
-  image.entry = header.e_entry;
-  image.segments = read_segments(reader, header);
-  const Identity identity = find_identity(reader, image.segments);
+constexpr const char* kSealIt = "run seal-image on it, after every change of the file";
+
+/// The segments as ranges, adjacent ones as one.
+std::vector<runtime::ByteRange> ranges_of(const std::vector<Segment>& segments) {
+  std::vector<runtime::ByteRange> ranges;
+  for (const Segment& segment : segments) {
+    const auto bytes = static_cast<std::uint32_t>(segment.bytes.size());
+    if (!ranges.empty() && ranges.back().address + ranges.back().bytes == segment.address) {
+      ranges.back().bytes += bytes;
+    } else {
+      ranges.push_back({segment.address, bytes});
+    }
+  }
+  return ranges;
+}
+
+void check_seal(const Reader& reader, const runtime::ImageRecord& record, std::uint32_t at,
+                const std::vector<Segment>& segments) {
+  if (record.count == 0U) {
+    reader.fail("is not sealed", kSealIt);
+  }
+  const std::uint32_t checksum_at = at + offsetof(runtime::ImageRecord, checksum);
+  const std::vector<runtime::ByteRange> ranges = ranges_of(segments);
+  const bool same = record.checksum_at == checksum_at && record.count == ranges.size() &&
+                    std::equal(ranges.begin(), ranges.end(), record.ranges);
+  core::Crc32 checksum;
+  for (const Segment& segment : segments) {
+    const std::span<const std::byte> bytes(segment.bytes);
+    if (checksum_at < segment.address || checksum_at - segment.address >= bytes.size()) {
+      checksum.update(bytes);
+      continue;
+    }
+    const std::size_t before = checksum_at - segment.address;
+    checksum.update(bytes.first(before));
+    checksum.update(bytes.subspan(before + sizeof record.checksum));
+  }
+  if (!same || checksum.value() != record.checksum) {
+    reader.fail("damaged: its checksum does not match", kSealIt);
+  }
+}
+
+void require_place(const Reader& reader, bool has_record, const Unstated& unstated) {
+  if (!unstated.place) {
+    reader.fail(has_record ? "its record states no room for a blob"
+                           : "not an image of Tactree: it does not name its board",
+                "state --blob-at ADDRESS and --room BYTES for a firmware of your own, or give the "
+                "image that `cmake --build --preset <core>` made: "
+                "build/<core>/firmware/<board>.elf");
+  }
+}
+
+void set_place(const Reader& reader, const BlobPlace& place, FirmwareImage& image) {
+  const std::uint64_t end = std::uint64_t{place.address} + place.room;
+  if (place.room == 0U || place.address % 4U != 0U || end > UINT32_MAX) {
+    reader.fail(
+        fmt::format("{} bytes from {:#010x} are no room for a blob", place.room, place.address),
+        "give an address that is a multiple of 4, of memory that the blob has to itself");
+  }
+  std::uint64_t behind = 0;
+  for (const Segment& segment : image.segments) {
+    const std::uint64_t segment_end = std::uint64_t{segment.address} + segment.bytes.size();
+    if (segment.address < behind || segment_end > UINT32_MAX) {
+      reader.fail("damaged: its segments overlap", "link it again");
+    }
+    behind = segment_end;
+    if (segment.address < end && segment_end > place.address) {
+      reader.fail(fmt::format("its bytes {:#010x} .. {:#010x} lie in the room of the blob, "
+                              "{:#010x} .. {:#010x}",
+                              segment.address, segment_end, place.address, end),
+                  "keep that memory free in the linker script, or give the blob another place");
+    }
+  }
+  image.code_begin = image.segments.front().address;
+  image.code_end = static_cast<std::uint32_t>(behind);
+  image.blob_begin = place.address;
+  image.blob_end = static_cast<std::uint32_t>(end);
+}
+
+void read_own(const Reader& reader, const std::string& name, const Unstated& unstated,
+              FirmwareImage& image) {
+  const auto records = find_marked<runtime::ImageRecord>(image.segments, runtime::kImageMark);
+  if (records.empty()) {
+    require_place(reader, false, unstated);
+    image.board = unstated.board.empty() ? name : unstated.board;
+    set_place(reader, *unstated.place, image);
+    return;
+  }
+  const auto& [record, at] = records.front();
+  require_name(reader, record.board, records.size());
+  check_seal(reader, record, at, image.segments);
+  image.states_room = record.blob_room != 0U;
+  if (!image.states_room) {
+    require_place(reader, true, unstated);
+  }
+  image.board = record.board;
+  image.clock_hz = record.clock_hz;
+  image.uf2_family = record.uf2_family;
+  set_place(reader,
+            image.states_room ? BlobPlace{record.blob_at, record.blob_room} : *unstated.place,
+            image);
+}
+
+void read_ours(const Reader& reader, const Identity& identity, FirmwareImage& image) {
   image.board = identity.board;
+  image.states_room = true;
   image.code_begin = identity.code_begin;
   image.code_end = identity.code_end;
   image.blob_begin = identity.blob_begin;
@@ -183,6 +287,25 @@ FirmwareImage read_firmware(const std::filesystem::path& file) {
   image.uf2_family = identity.uf2_family;
   check_ranges(reader, image);
   check_checksum(reader, identity, image.segments);
+}
+
+}  // namespace
+
+FirmwareImage read_firmware(const std::filesystem::path& file, const Unstated& unstated) {
+  Reader reader(file);
+  const Elf32_Ehdr header = read_header(reader);
+  FirmwareImage image;
+  image.entry = header.e_entry;
+  image.segments = read_segments(reader, header);
+  const auto identities = find_marked<Identity>(image.segments, kMark);
+  if (!identities.empty()) {
+    require_name(reader, identities.front().first.board, identities.size());
+    read_ours(reader, identities.front().first, image);
+  } else if (!image.segments.empty()) {
+    read_own(reader, file.stem().string(), unstated, image);
+  } else {
+    reader.fail("has no bytes to load", Reader::kRemedy);
+  }
   image.file = reader.take();
   return image;
 }

@@ -8,6 +8,8 @@
 #include "commands.hpp"
 #include "image/firmware_image.hpp"
 #include "image/image_formats.hpp"
+#include "image/own_board.hpp"
+#include "tactree/emulation/board_description.hpp"
 #include "tactree/support/blob_file.hpp"
 #include "tactree/support/json_text.hpp"
 #include "tactree/support/output_file.hpp"
@@ -20,18 +22,50 @@ struct ImageOptions {
   std::string firmware;
   std::string blob;
   std::string output;
-  std::string board;
+  std::string board;  ///< name, or JSON file of a board outside this tree
+  std::string blob_at;
+  std::string room;
+  std::string uf2_family;
   std::string format;
   std::string usb = "ffff:ffff";
   std::string json;
 };
 
-void require_board(const ImageOptions& options, const FirmwareImage& image) {
-  if (!options.board.empty() && options.board != image.board) {
+void require_board(const ImageOptions& options, const std::string& name,
+                   const FirmwareImage& image) {
+  if (!name.empty() && name != image.board) {
     throw support::UserError(fmt::format(
         "{}: wrong board: this image is for {}, not for {} (give the image that was built for {})",
-        options.firmware, image.board, options.board, options.board));
+        options.firmware, image.board, name, name));
   }
+}
+
+/// Reads the firmware. The options state what it does not: room of the blob, family of the chip.
+FirmwareImage read_image(const ImageOptions& options) {
+  OwnBoard board;
+  if (is_board_file(options.board)) {
+    board = read_board_file(options.board);
+  } else {
+    board.name = options.board;
+  }
+  Unstated unstated{board.name, board.blob};
+  if (!options.blob_at.empty()) {
+    unstated.place = {number_of("--blob-at", options.blob_at), number_of("--room", options.room)};
+  }
+  FirmwareImage image = read_firmware(options.firmware, unstated);
+  require_board(options, board.name, image);
+  if (image.states_room && !options.blob_at.empty()) {
+    throw support::UserError(
+        fmt::format("{}: states the room of its blob itself, {} bytes from {:#010x} (leave "
+                    "--blob-at and --room out)",
+                    options.firmware, image.blob_end - image.blob_begin, image.blob_begin));
+  }
+  if (!options.uf2_family.empty()) {
+    image.uf2_family = number_of("--uf2-family", options.uf2_family);
+  } else if (image.uf2_family == 0U) {
+    image.uf2_family = board.uf2_family;
+  }
+  return image;
 }
 
 /// The blob at the address where the image expects it.
@@ -74,6 +108,18 @@ void require_small_gap(const ImageOptions& options, const std::vector<Segment>& 
   }
 }
 
+/// Without a family, a boot loader cannot tell an image for another chip. The boards of this tree
+/// that have none are emulated.
+void require_family(const ImageOptions& options, const FirmwareImage& image) {
+  if (image.uf2_family == 0U && emulation::find_board(image.board) == nullptr) {
+    throw support::UserError(fmt::format(
+        "{}: the UF2 family of {} is unknown (state it in the image's record, in the board's file, "
+        "or by --uf2-family, such as 0xE48BFF59 for an RP2350; "
+        "github.com/microsoft/uf2 lists all)",
+        options.firmware, image.board));
+  }
+}
+
 std::uint16_t usb_number(const std::string& text) {
   return static_cast<std::uint16_t>(std::stoul(text, nullptr, 16));
 }
@@ -98,6 +144,7 @@ std::vector<std::byte> encode(const ImageOptions& options, const FirmwareImage& 
     return to_hex(segments, image.entry);
   }
   if (format == "uf2") {
+    require_family(options, image);
     return to_uf2(segments, image.uf2_family);
   }
   require_small_gap(options, segments);
@@ -108,8 +155,7 @@ std::vector<std::byte> encode(const ImageOptions& options, const FirmwareImage& 
 
 void make_image(const ImageOptions& options) {
   support::check_outputs({options.output, options.json}, {options.firmware, options.blob});
-  const FirmwareImage image = read_firmware(options.firmware);
-  require_board(options, image);
+  const FirmwareImage image = read_image(options);
   std::size_t code_bytes = 0;
   for (const Segment& segment : image.segments) {
     code_bytes += segment.bytes.size();
@@ -145,7 +191,17 @@ void add_image_command(CLI::App& app, int&) {
   verb->add_option("BLOB", options->blob,
                    "the model (default: write the firmware without a model)");
   verb->add_option("-o,--output", options->output, "file to write")->required();
-  verb->add_option("--board", options->board, "refuse an image of another board");
+  verb->add_option("--board", options->board,
+                   "refuse an image of another board; a JSON file describes a board of your own");
+  CLI::Option* at = verb->add_option(
+      "--blob-at", options->blob_at,
+      "address of the blob, for a firmware of your own that does not state it: 0x08020000");
+  CLI::Option* room =
+      verb->add_option("--room", options->room, "room for the blob at that address: 917504, 896K");
+  at->needs(room);
+  room->needs(at);
+  verb->add_option("--uf2-family", options->uf2_family,
+                   "ID of the chip in a UF2 file, for a board of your own: 0xE48BFF59");
   verb->add_option("--format", options->format, "default: by the extension of the output")
       ->check(CLI::IsMember({"elf", "hex", "bin", "uf2", "dfu"}));
   verb->add_option("--usb", options->usb, "VENDOR:PRODUCT in the dfu suffix, hexadecimal")

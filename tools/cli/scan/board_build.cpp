@@ -8,6 +8,9 @@
 #include <utility>
 
 #include "image/board_costs.hpp"
+#include "image/firmware_image.hpp"
+#include "image/own_board.hpp"
+#include "tactree/emulation/board_description.hpp"
 #include "tactree/support/user_error.hpp"
 
 namespace tactree::cli {
@@ -22,11 +25,31 @@ constexpr int kHalvings = 6;
 // they differ by a factor of 2.
 constexpr int kRefinements = 3;
 
+[[nodiscard]] BoardCosts costs_of(const BoardRequest& request) {
+  if (request.firmware.empty()) {
+    return costs_of_board(request.board);
+  }
+  return costs_of_image(request.firmware,
+                        read_firmware(request.firmware, unstated_by(request.board)), request.board);
+}
+
+/// Room for the blob, bytes; nullopt if any size will do.
+std::optional<std::uint64_t> room_of(const BoardRequest& request) {
+  if (!request.firmware.empty()) {
+    const FirmwareImage image = read_firmware(request.firmware, unstated_by(request.board));
+    return image.blob_end - image.blob_begin;
+  }
+  if (const std::optional<BlobPlace> place = unstated_by(request.board).place) {
+    return place->room;
+  }
+  const emulation::BoardDescription* const board = emulation::find_board(request.board);
+  return board == nullptr ? std::nullopt : std::optional<std::uint64_t>(board->blob_bytes_max);
+}
+
 /// Checks whether a board keeps the requested rate with a model.
 class RateCheck {
  public:
-  explicit RateCheck(const BoardRequest& request)
-      : request_(request), board_(costs_of_board(request.board)) {
+  explicit RateCheck(const BoardRequest& request) : request_(request), board_(costs_of(request)) {
     configuration_.rate_hz = static_cast<float>(request.rate_hz);
     configuration_.device = slowest_or(request.device);
   }
@@ -37,6 +60,8 @@ class RateCheck {
     return board_.highest_rate(view.header(), configuration_) >= request_.rate_hz;
   }
 
+  [[nodiscard]] const std::string& board() const { return board_.timing.board; }
+
   [[noreturn]] void refuse(const BuildResult& result) {
     const core::BlobView view = view_of(result);
     choose_mode(view);
@@ -44,7 +69,7 @@ class RateCheck {
         "--rate: {} renders this model at up to {:.0f} Hz, not at {:.6g} Hz: a tick takes up to "
         "{:.0f} cycles, the period has {:.0f} (lower --rate, choose a faster board{}: {} points in "
         "a ball dominate the cost)",
-        request_.board, std::floor(board_.highest_rate(view.header(), configuration_)),
+        board_.timing.board, std::floor(board_.highest_rate(view.header(), configuration_)),
         request_.rate_hz, board_.cycles(view.header(), configuration_),
         board_.timing.clock_hz / request_.rate_hz,
         request_.chooses_size ? "; a model with fewer points is no faster"
@@ -117,18 +142,18 @@ core::BlobView view_of(const BuildResult& result) {
 }
 
 void limit_to_board(BoardRequest& request, builder::BuildOptions& build) {
-  const emulation::BoardDescription* const board = emulation::find_board(request.board);
+  const std::optional<std::uint64_t> room = room_of(request);
   request.chooses_size =
-      board != nullptr && build.resample && !build.spacing_m && !build.flash_budget_bytes;
+      room.has_value() && build.resample && !build.spacing_m && !build.flash_budget_bytes;
   if (request.chooses_size) {
-    build.flash_budget_bytes = board->blob_bytes_max;
+    build.flash_budget_bytes = room;
   }
 }
 
 BuildResult build_for_board(std::span<const fs::path> inputs, const builder::BuildOptions& build,
                             const BoardRequest& request, builder::Progress& progress) {
   BuildResult first = builder::build_model(inputs, build, progress);
-  if (request.board.empty() || request.rate_hz <= 0.0) {
+  if (request.is_any() || request.rate_hz <= 0.0) {
     return first;
   }
   RateCheck check(request);
@@ -145,7 +170,7 @@ BuildResult build_for_board(std::span<const fs::path> inputs, const builder::Bui
   }
   found->report.notes.push_back(fmt::format(
       "{} has room for {} points of this scan, but at {:.6g} Hz it renders only a coarser model",
-      request.board, first.report.output_points, request.rate_hz));
+      check.board(), first.report.output_points, request.rate_hz));
   return std::move(*found);
 }
 

@@ -11,6 +11,7 @@
 
 #include "commands.hpp"
 #include "image/board_costs.hpp"
+#include "image/own_board.hpp"
 #include "scan/board_build.hpp"
 #include "scan/build_report.hpp"
 #include "scan/fit_option.hpp"
@@ -19,6 +20,7 @@
 #include "tactree/builder/option_names.hpp"
 #include "tactree/builder/read_materials.hpp"
 #include "tactree/builder/report_json.hpp"
+#include "tactree/emulation/board_description.hpp"
 #include "tactree/setup/pose_file.hpp"
 #include "tactree/support/output_file.hpp"
 #include "tactree/support/spooled_input.hpp"
@@ -107,6 +109,19 @@ Eigen::Vector3d to_position(const std::string& option, const std::string& text) 
   return position;
 }
 
+void check_board(const BoardRequest& request) {
+  const bool is_file = is_board_file(request.board);
+  if (!request.board.empty() && !is_file && emulation::find_board(request.board) == nullptr) {
+    misuse("--board", "'" + request.board + "' is neither a board nor a file that ends in .json");
+  }
+  if (request.is_any() && (request.rate_hz > 0.0 || !request.device.empty())) {
+    misuse(request.rate_hz > 0.0 ? "--rate" : "--device", "requires --board or --for");
+  }
+  if (is_file && request.firmware.empty() && request.rate_hz > 0.0) {
+    misuse("--rate", "the file of a board states no cycles: give the image with --for");
+  }
+}
+
 void complete(BuildArguments& arguments) {
   if (arguments.output.empty()) {
     misuse("--output", "'' is not the name of a file");
@@ -163,6 +178,7 @@ void complete(BuildArguments& arguments) {
   } catch (const builder::OptionError& error) {
     misuse("--" + error.option(), error.what());
   }
+  check_board(arguments.board);
   limit_to_board(arguments.board, build);
   if (!arguments.material.empty()) {
     build.materials = builder::read_materials(arguments.material);
@@ -259,19 +275,20 @@ void add_quality_options(CLI::App& verb, BuildArguments& arguments) {
       ->group(kGroup);
   verb.add_flag("--no-resample", arguments.no_resample, "keep every distinct point of a cloud")
       ->group(kGroup);
-  CLI::Option* board =
-      verb.add_option("--board", arguments.board.board,
-                      "build for this board: the model with the finest spacing that fits its "
-                      "flash, unless --spacing or --flash-budget is given")
-          ->check(CLI::IsMember(boards_with_timing()));
+  verb.add_option("--board", arguments.board.board,
+                  "build for this board, or for that of a JSON file: the model with the finest "
+                  "spacing that fits its flash, unless --spacing or --flash-budget is given")
+      ->check(CLI::IsMember(boards_with_timing()) | CLI::ExistingFile);
+  verb.add_option("--for", arguments.board.firmware,
+                  "build for this firmware image, an ELF file: the model with the finest spacing "
+                  "that fits the room in it; --rate uses the cycles of a tick that it states")
+      ->check(CLI::ExistingFile);
   verb.add_option("--rate", arguments.board.rate_hz,
                   "build the model with the finest spacing that the board also renders at this "
                   "rate, Hz; refuse a --spacing or --flash-budget that is too fine for the rate")
-      ->needs(board)
       ->group(kGroup);
   verb.add_option("--device", arguments.board.device,
                   "device for --rate, by name or file (default: the kind with the longest tick)")
-      ->needs(board)
       ->group(kGroup);
   verb.add_option("--profile", build.profile, "surface: fitted surface; paper: method of the paper")
       ->transform(CLI::CheckedTransformer(builder::profile_names()).description("surface|paper"))

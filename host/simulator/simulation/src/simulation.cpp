@@ -129,12 +129,22 @@ bool Simulation::arm() {
   return state_ == core::State::kActive;
 }
 
+bool Simulation::post(core::Command command) {
+  if (!setup_.controller.link.may_command && command != core::Command::kStop) {
+    return false;
+  }
+  command_ = command;
+  return true;
+}
+
 Sample Simulation::step() { return step_with_hand_at(time_s()); }
 
 Sample Simulation::step_with_hand_at(double path_t_s) {
   const double t_s = time_s();
-  if (setup_.controller.link.may_command) {  // otherwise there is no application
-    board_.link().post(std::exchange(command_, core::Command::kNone));
+  const core::Command command = std::exchange(command_, core::Command::kNone);
+  // An application that may only watch sends no other messages than a stop.
+  if (setup_.controller.link.may_command || command != core::Command::kNone) {
+    board_.link().post(command);
   }
   injector_.apply(board_, t_s);
   Sample sample;

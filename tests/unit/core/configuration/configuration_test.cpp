@@ -219,9 +219,24 @@ TEST(FirstForce, KeepsMinimumEffort) {
   EXPECT_EQ(first.motors.effort_max[2], 1e-4F);
 }
 
+// A motor with the wrong sign would add the weight that it should carry.
+TEST(Configuration, RefusesGravityCompensationWithoutProvenSigns) {
+  for (const bool compensate : {false, true}) {
+    for (const bool proven : {false, true}) {
+      Configuration c;
+      c.compensate_gravity = compensate;
+      c.motors.signs_proven = proven;
+      EXPECT_EQ(core::check(c), compensate && !proven ? ConfigurationStatus::kUnprovenSigns
+                                                      : ConfigurationStatus::kOk);
+    }
+  }
+}
+
 TEST(Configuration, DescribesEveryStatusUniquely) {
-  for (int i = 0; i <= static_cast<int>(ConfigurationStatus::kUnstable); ++i) {
-    for (int k = i + 1; k <= static_cast<int>(ConfigurationStatus::kUnstable); ++k) {
+  constexpr int kLast = static_cast<int>(ConfigurationStatus::kUnprovenSigns);
+  for (int i = 0; i <= kLast; ++i) {
+    EXPECT_NE(std::string(core::describe(static_cast<ConfigurationStatus>(i))), "unknown status");
+    for (int k = i + 1; k <= kLast; ++k) {
       EXPECT_NE(std::string(core::describe(static_cast<ConfigurationStatus>(i))),
                 core::describe(static_cast<ConfigurationStatus>(k)));
     }

@@ -298,37 +298,65 @@ class WildJoints {
   std::uniform_real_distribution<float> unit_{-1.0F, 1.0F};
 };
 
-// The first power-on of a new arm: gravity compensation and an added force on top, every motor
-// possibly reversed.
+/// Largest force of the motors at the probe, and ticks in contact with force.
+struct Largest {
+  double force_N = 0.0;
+  std::uint32_t in_contact = 0;
+};
+
+/// Random joints, contacts, arming and added forces on one device. `any_signs`: every motor may
+/// turn the wrong way.
+Largest largest_of_session(const core::DevicePreset& preset, core::Configuration configuration,
+                           bool any_signs) {
+  configuration.limits.ramp_s = 0.01F;
+  configuration.model_origin_m = core::locate(preset.model, {0, 0, 0}).probe;
+  configuration.supervision.stuck_s = 1.0F;
+  ControllerRig session(configuration);
+  EXPECT_EQ(session.status, core::ConfigurationStatus::kOk);
+  WildJoints joints(session.controller.configuration().device);
+  std::mt19937 random(1);
+  Largest largest;
+  for (std::uint32_t i = 0; i < 10'000U; ++i) {
+    joints.move(session.input.encoders, random);
+    session.input.dead_man = has_hand(i);
+    session.input.added_force = {{0.3F, -0.3F, 0.3F}, 50U};
+    const core::Output output = session.step(command_of(i));
+    const core::DevicePose pose =
+        core::locate(session.controller.configuration().device, session.input.encoders.counts);
+    const double force_N =
+        any_signs ? largest_probe_force(pose, output.motors) : probe_force(pose, output.motors, 0U);
+    largest.force_N = std::max(largest.force_N, force_N);
+    largest.in_contact += output.status.rendering.in_contact && !output.motors.is_zero() ? 1U : 0U;
+  }
+  return largest;
+}
+
+void expect_within(const Largest& largest, float force_max_N) {
+  EXPECT_LE(largest.force_N, 1.00001 * static_cast<double>(force_max_N));
+  EXPECT_GE(largest.force_N, 0.8 * static_cast<double>(force_max_N));
+  EXPECT_GT(largest.in_contact, 500U);
+}
+
+// The first power-on of a new arm: an added force on top, every motor possibly reversed.
 TEST(AnyInput, KeepsFirstForceWithAnySigns) {
   for (const core::DevicePreset& preset : core::kDevicePresets) {
     SCOPED_TRACE(preset.name);
     core::Configuration configuration;
     core::use_device(preset, configuration);
-    configuration.limits.ramp_s = 0.01F;
-    configuration = core::first_force(configuration);
-    configuration.compensate_gravity = true;
-    configuration.model_origin_m = core::locate(preset.model, {0, 0, 0}).probe;
-    configuration.supervision.stuck_s = 1.0F;
-    ControllerRig session(configuration);
-    ASSERT_EQ(session.status, core::ConfigurationStatus::kOk);
-    WildJoints joints(session.controller.configuration().device);
-    std::mt19937 random(1);
-    double largest = 0.0;
-    std::uint32_t in_contact = 0;
-    for (std::uint32_t i = 0; i < 10'000U; ++i) {
-      joints.move(session.input.encoders, random);
-      session.input.dead_man = has_hand(i);
-      session.input.added_force = {{0.3F, -0.3F, 0.3F}, 50U};
-      const core::Output output = session.step(command_of(i));
-      const core::DevicePose pose =
-          core::locate(session.controller.configuration().device, session.input.encoders.counts);
-      largest = std::max(largest, largest_probe_force(pose, output.motors));
-      in_contact += output.status.rendering.in_contact && !output.motors.is_zero() ? 1U : 0U;
-    }
-    EXPECT_LE(largest, 1.00001 * static_cast<double>(core::kFirstForce_N));
-    EXPECT_GE(largest, 0.8 * static_cast<double>(core::kFirstForce_N));
-    EXPECT_GT(in_contact, 500U);
+    expect_within(largest_of_session(preset, core::first_force(configuration), true),
+                  core::kFirstForce_N);
+  }
+}
+
+// An arm whose signs are proven: gravity compensation and an added force on top.
+TEST(AnyInput, KeepsSmallLimitWithGravityAndAddedForce) {
+  for (const core::DevicePreset& preset : core::kDevicePresets) {
+    SCOPED_TRACE(preset.name);
+    core::Configuration configuration;
+    core::use_device(preset, configuration);
+    core::limit_force(configuration, 0.5F);
+    ASSERT_TRUE(configuration.compensate_gravity);
+    expect_within(largest_of_session(preset, configuration, false), 0.5F);
   }
 }
 

@@ -434,6 +434,45 @@ TEST(Faults, RespectsConfiguredStuckTime) {
   EXPECT_LE(*ticks, 252U);
 }
 
+/// The monitor's answer to axis 1 of a device at rest under a force of changing size, N.
+bool is_stuck_under(const core::DevicePose& pose, core::Vec3 direction) {
+  core::Configuration configuration = StuckEncoder::configuration();
+  configuration.motors.effort_max[1] = 1.0F;
+  core::FaultMonitor monitor;
+  monitor.configure(configuration);
+  core::EncoderReading reading;
+  bool stuck = false;
+  for (std::int32_t tick = 0; tick < 400; ++tick) {
+    reading.counts[0] = reading.counts[2] = tick;
+    const float size = 0.1F * static_cast<float>(tick);
+    stuck = stuck || monitor.update_encoders(reading, configuration, pose.effort_per_force,
+                                             size * direction) != 0U;
+  }
+  return stuck;
+}
+
+// The motor of an axis may carry a force that moves other axes only.
+TEST(Faults, WatchesForceThatMovesAxis) {
+  core::DevicePose pose;
+  pose.effort_per_force = {{{1.0F, 0.0F, 0.0F}, {0.0F, 0.2F, 0.2F}, {0.0F, 0.0F, 0.2F}}};
+  const core::Vec3 up = {0.0F, 0.0F, 1.0F};
+  EXPECT_GT((pose.effort_per_force * up).y, 0.1F) << "its motor carries a part";
+  EXPECT_FALSE(is_stuck_under(pose, up)) << "which axis 2 alone yields to";
+  EXPECT_TRUE(is_stuck_under(pose, {0.0F, 1.0F, 0.0F}));
+  EXPECT_FALSE(is_stuck_under(pose, {1.0F, 0.0F, 0.0F}));
+}
+
+TEST(Faults, WatchesNoEncoderAtEndOfRange) {
+  for (const bool at_end : {false, true}) {
+    core::Configuration configuration = StuckEncoder::configuration();
+    core::DeviceModel& device = configuration.device;
+    device.home_position[0] = device.joint_max[0] - (at_end ? 0.5F : 2.0F) * device.joint_margin[0];
+    StuckEncoder stuck(configuration);
+    ASSERT_EQ(stuck.session().state(), State::kActive);
+    EXPECT_EQ(stuck.ticks_to_fault(0, 0, 3U * StuckEncoder::kTicks).has_value(), !at_end);
+  }
+}
+
 TEST(Faults, NamesEveryCodeUniquely) {
   std::set<std::string> names;
   for (std::uint32_t code = 0; code < core::kFaultCodes; ++code) {

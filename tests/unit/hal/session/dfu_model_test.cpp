@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "tactree/core/link/usb/parameter_storage.hpp"
 #include "tactree/hal/sim/flash.hpp"
 #include "tactree/store/model_store.hpp"
 #include "test_models.hpp"
@@ -40,10 +41,12 @@ Bytes bytes_of_sphere(double spacing_m) {
 class DfuRig {
  public:
   explicit DfuRig(SimFlash& flash, std::span<const std::byte> factory = {},
-                  const std::uint8_t* key = nullptr)
+                  const std::uint8_t* key = nullptr, bool may_command = true)
       : store_(flash, {"test", key, factory}) {
     (void)store_.mount();
-    EXPECT_EQ(controller_.configure({}), core::ConfigurationStatus::kOk);
+    core::Configuration configuration;
+    configuration.link.may_command = may_command;
+    EXPECT_EQ(controller_.configure(configuration), core::ConfigurationStatus::kOk);
   }
 
   /// The status that the transfer ended with.
@@ -172,6 +175,43 @@ TEST(DfuModel, RefusesWritesWithoutRequiredSignature) {
   const std::uint64_t before = flash.operations();
   EXPECT_EQ(rig.download(bytes_of_sphere(0.006)), DfuStatus::kTarget);
   EXPECT_EQ(flash.operations(), before);
+}
+
+TEST(DfuModel, RefusesWritesOverLinkThatMayOnlyWatch) {
+  SimFlash flash = make_flash();
+  const Bytes factory = bytes_of_sphere(0.006);
+  DfuRig rig(flash, factory, nullptr, false);
+  const std::uint64_t before = flash.operations();
+  EXPECT_EQ(rig.download(bytes_of_sphere(0.005)), DfuStatus::kTarget);
+  EXPECT_EQ(flash.operations(), before);
+  EXPECT_EQ(rig.upload(), factory) << "it may read";
+}
+
+// Also without begin(), which the states of DFU call first.
+void expect_parameter_download(bool may_command, DfuStatus expected) {
+  core::Controller controller;
+  core::Configuration configuration;
+  configuration.link.may_command = may_command;
+  ASSERT_EQ(controller.configure(configuration), core::ConfigurationStatus::kOk);
+  Platform platform;
+  core::usb::ParameterStorage<Platform> storage(controller, platform);
+  core::usb::ParameterFile file;
+  const auto bytes = std::as_writable_bytes(std::span(&file, 1));
+  std::size_t count = 0;
+  EXPECT_EQ(storage.read(0, bytes, count), DfuStatus::kOk);
+  EXPECT_EQ(count, sizeof file);
+  file.values[0] = 7.0F;
+  file.checksum = core::usb::checksum_of(file);
+  EXPECT_EQ(storage.begin(), expected);
+  EXPECT_EQ(storage.write(0, bytes), DfuStatus::kOk);
+  EXPECT_EQ(storage.finish(), expected);
+  EXPECT_EQ(core::parameter_of(controller.configuration(), 0),
+            expected == DfuStatus::kOk ? 7.0F : 0.0F);
+}
+
+TEST(DfuParameters, AreRefusedOverLinkThatMayOnlyWatch) {
+  expect_parameter_download(true, DfuStatus::kOk);
+  expect_parameter_download(false, DfuStatus::kTarget);
 }
 
 TEST(DfuModel, LeavesOtherWriterUndisturbed) {

@@ -55,7 +55,7 @@ struct LinkSupervision {
 /// Supervision of encoders, amplifiers and the hand on the device.
 struct Supervision {
   float speed_max_m_s = 10.0F;     ///< of the probe; above: encoder fault: 0.1 .. 100
-  float stuck_s = 0.1F;            ///< time without counts under a changing effort: 0.01 .. 1
+  float stuck_s = 0.5F;            ///< time without counts under a changing force: 0.01 .. 1
   float enable_timeout_s = 0.05F;  ///< delay of the enable read-back: 0.001 .. 1
   bool dead_man_required = true;   ///< false: a second arm command replaces it
   bool supply_monitored = false;   ///< the board measures the amplifiers' supply
@@ -74,7 +74,9 @@ struct Configuration {
   /// Use the materials of the blob, if present; each must be below the stability limit.
   bool use_materials = true;
 
-  bool compensate_gravity = true;     ///< the motors compensate the weight of the device
+  /// The motors compensate the weight of the device. Requires motors.signs_proven: with the wrong
+  /// sign a motor would double the weight instead of carrying it.
+  bool compensate_gravity = true;
   float velocity_cutoff_hz = 200.0F;  ///< low-pass filter of the velocity: 1 .. rate_hz / 2
   /// Maximum damping that the passivity controller adds: 0 .. 100; 0: off.
   float passivity_Ns_m = 2.0F;
@@ -107,8 +109,9 @@ enum class ConfigurationStatus : std::uint8_t {
   kBadSpeed,
   kBadTimeout,
   kBadSupply,
-  kUnstable,  ///< stiffness above the stability limit with a hand
-  kBadLink,   ///< a link that is required must be able to command
+  kUnstable,       ///< stiffness above the stability limit with a hand
+  kBadLink,        ///< a link that is required must be able to command
+  kUnprovenSigns,  ///< gravity compensation by motors whose signs are not proven
 };
 
 /// Maximum of delay_s in ticks: the passivity controller observes no longer delay (passivity.hpp).

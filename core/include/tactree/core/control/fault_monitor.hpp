@@ -27,17 +27,12 @@ class FaultMonitor {
   [[nodiscard]] FaultMask update(const Readings& readings, const Configuration& configuration,
                                  State state, bool enable);
 
-  /// Call once per tick while active. `effort`: of the contact force, N or Nm per axis. Returns
-  /// kEncoderStuck or 0.
+  /// Call once per tick while active, at a pose with the full reach. `force`: of the contact, N at
+  /// the probe. Returns kEncoderStuck or 0. Cost: constant, about 200 instructions.
   [[nodiscard]] FaultMask update_encoders(const EncoderReading& encoders,
-                                          const Configuration& configuration, Vec3 effort) {
-    const float share[kAxes] = {effort.x / configuration.motors.effort_max[0],
-                                effort.y / configuration.motors.effort_max[1],
-                                effort.z / configuration.motors.effort_max[2]};
-    const bool moves = encoders_.update(encoders.counts, share, axes_of(configuration.device.kind));
-    return moves ? 0U : fault_bit(Fault::kEncoderStuck);
-  }
-  /// Call while not active.
+                                          const Configuration& configuration,
+                                          const Mat3& effort_per_force, Vec3 force);
+  /// Call while not active, and near the end of a joint's range.
   void reset_encoders() { encoders_.reset(); }
 
   /// Deadlines missed since the start; stays at its maximum.

@@ -18,7 +18,7 @@ enum class Fault : std::uint8_t {
   kUnexpectedEvent = 8,   ///< a command that the state does not allow
   kMotorFault = 9,        ///< the motor bank reports a failure
   kModelIncomplete = 10,  ///< the model exceeds its declared limits or has an invalid index
-  kEncoderStuck = 11,     ///< the effort of an axis changes, but its count does not
+  kEncoderStuck = 11,     ///< the force that moves an axis changes, its count does not
   kSupply = 12,           ///< the amplifiers' supply is outside supply_min_V .. supply_max_V
 };
 inline constexpr std::uint32_t kFaultCodes = 13;

@@ -1,7 +1,8 @@
 #pragma once
 // Model download and upload over DFU: the blocks of a blob are written to the store's spare slot;
 // the model is used once it is complete and the controller accepts it. A DFU file contains neither
-// board name nor signature, so a board that requires signatures refuses the download.
+// board name nor signature, so a board that requires signatures refuses the download. A board whose
+// link may only watch (LinkSupervision::may_command) refuses it, too; an upload changes nothing.
 //
 // The first block contains the blob's header, which gives the length to erase. progress() erases
 // and programs in bounded steps while the host polls. Not for use in a tick; call from one context.
@@ -32,7 +33,7 @@ class DfuModel {
 
   [[nodiscard]] DfuStatus begin() {
     abort();
-    if (!changes_.controller().motors_off() || store_.signature_required()) {
+    if (!may_change() || store_.signature_required()) {
       return DfuStatus::kTarget;
     }
     begun_ = true;
@@ -44,7 +45,7 @@ class DfuModel {
     if (!begun_ || programmed_ != waiting_ || bytes.size() > sizeof block_) {
       return DfuStatus::kAddress;
     }
-    if (!changes_.controller().motors_off()) {
+    if (!may_change()) {
       return DfuStatus::kTarget;
     }
     if (offset == 0U) {
@@ -124,6 +125,11 @@ class DfuModel {
   /// Wait of the host before its next status request, which continues the work: the shortest that
   /// DFU can express.
   static constexpr std::uint32_t kWaitMs = 1;
+
+  [[nodiscard]] bool may_change() const {
+    const core::Controller& controller = changes_.controller();
+    return controller.motors_off() && controller.configuration().link.may_command;
+  }
 
   [[nodiscard]] DfuStatus announce(std::span<const std::byte> bytes) {
     core::BlobHeader header;

@@ -2,7 +2,7 @@
 // Worst-case bound of a tick: the maximum number of instructions and cycles of one tick of a linked
 // image. docs/BOUND.md describes the method, its assumptions and the annotations.
 //
-//   BoundOptions options{image, sources, tick_entries(), parameters_of(header, mode, 1, device)};
+//   BoundOptions options{image, {sources}, tick_entries(), parameters_of(header, mode, 1, device)};
 //   options.work_tier = core::work_tier_of(rate_hz);
 //   const Bound bound = worst_case(options);
 //
@@ -19,6 +19,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -55,9 +56,9 @@ struct Division {
 /// All divisions at this work tier (core::work_tier_of()), indexed by their gathers.
 [[nodiscard]] std::vector<Division> divisions(std::uint32_t work_tier, std::uint32_t bodies);
 
-/// A function that the processor enters by an interrupt.
+/// A function that the processor enters by an interrupt, or that main() calls in its loop.
 struct EntryPoint {
-  std::string function;     ///< symbol
+  std::string function;     ///< symbol, or name in the source with or without its arguments
   std::uint32_t times = 1;  ///< in one tick
 };
 
@@ -67,17 +68,17 @@ struct EntryPoint {
 
 /// Wait states of a board's memories.
 struct BoardTiming {
-  const char* board;
-  double clock_hz;
-  std::uint32_t fetch_wait;    ///< cycles for each code line that is not in the cache
-  std::uint32_t line_bytes;    ///< of a code line
-  std::uint32_t cache_lines;   ///< of a code cache with LRU replacement; 0: none
-  bool prefetches;             ///< the next line is fetched while the current one executes
-  std::uint32_t ram_wait;      ///< cycles for each word in RAM, except on the stack
-  std::uint32_t data_wait;     ///< cycles for each other word
-  std::uint32_t ram_code_end;  ///< code below this address is in RAM; its lines have no wait
-  bool is_estimate;  ///< the core is not a Cortex-M4, or the wait states are not published
-  const char* source;
+  std::string board;
+  double clock_hz = 0.0;
+  std::uint32_t fetch_wait = 0;    ///< cycles for each code line that is not in the cache
+  std::uint32_t line_bytes = 16;   ///< of a code line
+  std::uint32_t cache_lines = 0;   ///< of a code cache with LRU replacement; 0: none
+  bool prefetches = false;         ///< the next line is fetched while the current one executes
+  std::uint32_t ram_wait = 0;      ///< cycles for each word in RAM, except on the stack
+  std::uint32_t data_wait = 0;     ///< cycles for each other word
+  std::uint32_t ram_code_end = 0;  ///< code below this address is in RAM; its lines have no wait
+  bool is_estimate = true;  ///< the core is not a Cortex-M4, or the wait states are not published
+  std::string source;
 };
 /// Returns nullptr if the timing of this board is unknown.
 [[nodiscard]] const BoardTiming* find_timing(const std::string& board);
@@ -85,8 +86,9 @@ struct BoardTiming {
 struct BoundOptions {
   /// A linked ELF image with symbols and line numbers.
   std::filesystem::path image;
-  /// The folder of the sources from which the image was built, unchanged since.
-  std::filesystem::path sources;
+  /// Folders of the sources from which the image was built, unchanged since: those of Tactree, of
+  /// its installed headers, and of the firmware around it.
+  std::vector<std::filesystem::path> sources;
   std::vector<EntryPoint> entries;
   Parameters parameters;
   /// core::work_tier_of() of the rate; the bound is the worst of divisions() at this tier.
@@ -160,5 +162,7 @@ struct Bound {
 void embed(const std::filesystem::path& image, const core::TickCosts& costs);
 /// The costs in an image. They are all zero in an image that was only linked.
 [[nodiscard]] core::TickCosts embedded(const std::filesystem::path& image);
+/// As embedded(); nullopt if the image has no room for costs.
+[[nodiscard]] std::optional<core::TickCosts> find_embedded(const std::filesystem::path& image);
 
 }  // namespace tactree::wcet

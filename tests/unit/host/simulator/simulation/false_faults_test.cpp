@@ -72,6 +72,17 @@ TEST_P(SoundDevice, StaysFaultlessInRandomHands) {
   }
 }
 
+// The force grows along a line on which some joint stands still: its motor carries a part of the
+// force, but the hand yields by the other joints.
+TEST_P(SoundDevice, StaysFaultlessPushedStraightDown) {
+  for (const double x : {-0.03, -0.01, 0.01, 0.03}) {
+    for (const double y : {-0.02, -0.005, 0.005, 0.02}) {
+      const HandPath path({{0.0, {x, y, 0.06}}, {1.0, {x, y, -0.06}}, {1.6, {x, y, -0.06}}});
+      EXPECT_EQ(faults_along(GetParam(), path, 1.6, 1000.0F), "") << x << ", " << y;
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(FalseFaults, SoundDevice, testing::ValuesIn(core::kDevicePresets));
 
 }  // namespace

@@ -41,9 +41,26 @@ TEST(User, HasNoApplicationOnStandAloneBoard) {
   setup.homed = true;
   simulation::Simulation sim(shape.bytes(), setup,
                              simulation::make_script("rub", shape.view(), 2.0));
-  sim.post(core::Command::kArm);
+  for (const core::Command command :
+       {core::Command::kArm, core::Command::kHome, core::Command::kClearFault}) {
+    EXPECT_FALSE(sim.post(command));
+  }
   (void)sim.step();
   (void)sim.step();
+  EXPECT_EQ(sim.state(), core::State::kIdle);
+}
+
+TEST(User, MayStopBoardThatStandsAlone) {
+  const Shape shape = cos_sheet();
+  simulation::Simulation sim(shape.bytes(), standing_alone({}),
+                             simulation::make_script("rub", shape.view(), 2.0));
+  simulation::User user(1000.0, 2.0, {{0.1, 1.2}, {1.8, 2.9}});
+  while (sim.time_s() < 4.0) {
+    (void)user.step(sim);
+  }
+  ASSERT_EQ(sim.state(), core::State::kActive);
+  EXPECT_TRUE(sim.post(core::Command::kStop));
+  EXPECT_EQ(user.step(sim).status.force, core::Vec3{});
   EXPECT_EQ(sim.state(), core::State::kIdle);
 }
 

@@ -2,7 +2,8 @@
 // The parameters (parameters.hpp) as a file for DFU, little-endian:
 //   u32 "TTPR", u16 version, u16 count, f32[count] in the order of their numbers, u32 CRC-32 of all
 //   before it
-// A file sets all parameters or none, and only while the motors are off.
+// A file sets all parameters or none, and only while the motors are off and if the link may command
+// (LinkSupervision::may_command).
 //
 // Interrupt safety: no shared state except the controller's; call outside the tick.
 // Loop and memory annotations: docs/BOUND.md.
@@ -43,7 +44,7 @@ class ParameterStorage {
 
   [[nodiscard]] DfuStatus begin() {
     received_ = 0;
-    return changes_.controller().motors_off() ? DfuStatus::kOk : DfuStatus::kTarget;
+    return may_change() ? DfuStatus::kOk : DfuStatus::kTarget;
   }
 
   [[nodiscard]] DfuStatus write(std::uint32_t offset, std::span<const std::byte> bytes) {
@@ -58,6 +59,9 @@ class ParameterStorage {
   [[nodiscard]] DfuStatus finish() {
     if (received_ != sizeof(file_)) {
       return DfuStatus::kNotDone;
+    }
+    if (!may_change()) {
+      return DfuStatus::kTarget;
     }
     if (file_.checksum != checksum_of(file_)) {
       return DfuStatus::kVerify;
@@ -90,6 +94,11 @@ class ParameterStorage {
   }
 
  private:
+  [[nodiscard]] bool may_change() const {
+    const Controller& controller = changes_.controller();
+    return controller.motors_off() && controller.configuration().link.may_command;
+  }
+
   [[nodiscard]] bool is_ours() const {
     return file_.magic == ParameterFile::kMagic && file_.version == ParameterFile::kVersion &&
            file_.count == kParameters;

@@ -108,9 +108,9 @@ class Simulation {
   [[nodiscard]] std::uint64_t next_tick() const { return ticks_; }
   void go_to(std::uint64_t tick) { ticks_ = tick; }
 
-  /// Sends a command of the application in the next step(). There is none if the configuration
-  /// does not let it command.
-  void post(core::Command command) { command_ = command; }
+  /// Sends a command of the application in the next step(). Returns false, and sends nothing, if
+  /// the configuration does not let it command; it may always stop.
+  [[nodiscard]] bool post(core::Command command);
 
   /// Executes one tick.
   Sample step();

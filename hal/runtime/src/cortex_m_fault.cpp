@@ -2,10 +2,10 @@
 // reset.
 // Loop and memory annotations: docs/BOUND.md.
 
-#include "cortex_m/registers.hpp"
-#include "platform.hpp"
+#include "fault_registers.hpp"
+#include "tactree/runtime/fault_capture.hpp"
 
-namespace tactree::firmware {
+namespace tactree::runtime {
 namespace {
 
 // Registers that the core pushes on exception entry.
@@ -24,25 +24,25 @@ std::uint32_t exception_number() {
 }
 
 std::uint32_t faulting_address(std::uint32_t status) {
-  if ((status & cortex_m::kBusAddressValid) != 0U) {
-    return cortex_m::bus_fault_address();
+  if ((status & kBusAddressValid) != 0U) {
+    return bus_fault_address();
   }
-  return (status & cortex_m::kMemoryAddressValid) != 0U ? cortex_m::memory_fault_address() : 0U;
+  return (status & kMemoryAddressValid) != 0U ? memory_fault_address() : 0U;
 }
 
 }  // namespace
-}  // namespace tactree::firmware
+}  // namespace tactree::runtime
 
 extern "C" {
 
 // `frame` is null if the stack was full, because the core could not push its registers then.
 [[noreturn, gnu::used]] void tactree_capture_fault(const std::uint32_t* r4_to_r11,
-                                                   const tactree::firmware::ExceptionFrame* frame,
+                                                   const tactree::runtime::ExceptionFrame* frame,
                                                    std::uint32_t sp) {
   tactree::hal::CapturedFault fault;
-  fault.cause = tactree::firmware::exception_number();
-  fault.status = tactree::firmware::cortex_m::fault_status();
-  fault.address = tactree::firmware::faulting_address(fault.status);
+  fault.cause = tactree::runtime::exception_number();
+  fault.status = tactree::runtime::fault_status();
+  fault.address = tactree::runtime::faulting_address(fault.status);
   fault.sp = sp;
   for (std::uint32_t i = 0; i < 8; ++i) {  // bound: 8
     fault.registers[4 + i] = r4_to_r11[i];
@@ -55,14 +55,17 @@ extern "C" {
     }
     fault.registers[12] = frame->r12;
   }
-  tactree::firmware::capture(fault);
+  tactree::runtime::capture(fault);
 }
 
 // Entry of all faults. Passes the main stack pointer, the only one in use, before compiled code
 // changes it. If less than 256 bytes of stack are left for the record, the handler continues at the
-// top of the stack; it may overwrite the stack because it never returns.
+// top of the stack; it may overwrite the stack because it never returns. Both ends of the stack are
+// 0 in a firmware that does not define them.
 [[gnu::naked]] void tactree_fault() {
   __asm volatile(
+      ".weak image_stack_bottom\n\t"
+      ".weak image_stack_top\n\t"
       "mov r2, sp\n\t"
       "mov r1, sp\n\t"
       "ldr r3, =image_stack_bottom\n\t"
@@ -82,10 +85,10 @@ extern "C" {
 }
 }
 
-void tactree::firmware::reset() {
-  cortex_m::synchronise();
-  cortex_m::reset_control() = cortex_m::kResetKeyAndRequest;
+void tactree::runtime::reset() {
+  synchronise();
+  reset_control() = kResetKeyAndRequest;
   while (true) {  // bound: for_ever
-    cortex_m::synchronise();
+    synchronise();
   }
 }

@@ -1,6 +1,6 @@
 // The RAM test at start-up, on memories with every kind of fault that a march test detects.
 
-#include "runtime/memory_test.hpp"
+#include "tactree/runtime/memory_test.hpp"
 
 #include <gtest/gtest.h>
 
@@ -42,7 +42,7 @@ struct Word {
 };
 Word Word::all[kWords];
 
-bool holds() { return firmware::holds_all_bits(Word::all, Word::all + kWords); }
+bool holds() { return runtime::holds_all_bits(Word::all, Word::all + kWords); }
 
 class RamTest : public testing::Test {
  protected:
@@ -106,7 +106,7 @@ TEST_F(RamTest, DetectsAddressDecoderFaults) {
   }
 }
 
-TEST_F(RamTest, PassesEmptyRange) { EXPECT_TRUE(firmware::holds_all_bits(Word::all, Word::all)); }
+TEST_F(RamTest, PassesEmptyRange) { EXPECT_TRUE(runtime::holds_all_bits(Word::all, Word::all)); }
 
 }  // namespace
 }  // namespace tactree::test

@@ -4,10 +4,10 @@
 #include <cstddef>
 #include <span>
 
-#include "platform.hpp"
 #include "tactree/core/math/crc32.hpp"
+#include "tactree/runtime/fault_capture.hpp"
 
-namespace tactree::firmware {
+namespace tactree::runtime {
 namespace {
 
 struct Kept {
@@ -41,4 +41,4 @@ hal::CapturedFault take_captured_fault() {
   return fault;
 }
 
-}  // namespace tactree::firmware
+}  // namespace tactree::runtime

@@ -1,11 +1,11 @@
 #pragma once
-// A test of RAM at start-up.
+// A test of RAM at start-up, before its first use: of all variables, not of the stack in use.
 // Loop and memory annotations: docs/BOUND.md.
 
 #include <cstddef>
 #include <cstdint>
 
-namespace tactree::firmware {
+namespace tactree::runtime {
 
 /// March C- with one word and its complement (van de Goor, "Using march tests to test SRAMs", IEEE
 /// Design & Test 1993). Detects stuck-at and transition faults of each bit, coupling faults between
@@ -33,4 +33,4 @@ template <class Word>
   return wrong == 0U;
 }
 
-}  // namespace tactree::firmware
+}  // namespace tactree::runtime

@@ -1,0 +1,35 @@
+#pragma once
+// Values that depend on the wiring of the board: pins, amplifiers and device. Adapt this file.
+
+#include "tactree/core/configuration/configuration.hpp"
+#include "tactree/core/configuration/device_presets.hpp"
+
+namespace tactree::firmware::wiring {
+
+inline constexpr std::uint32_t kTrackA[core::kAxes] = {2, 4, 6};  ///< track B at the next pin
+/// Each on channel A of another slice: even numbers.
+inline constexpr std::uint32_t kWidth[core::kAxes] = {8, 10, 12};
+inline constexpr std::uint32_t kDirection[core::kAxes] = {9, 11, 13};
+inline constexpr std::uint32_t kEnable = 14;
+inline constexpr std::uint32_t kEnableSense = 15;
+inline constexpr std::uint32_t kEmergencyStop = 16;
+inline constexpr std::uint32_t kDeadMan = 17;
+inline constexpr std::uint32_t kAmplifiersGood = 18;
+inline constexpr std::uint32_t kButton = 19;
+inline constexpr std::uint32_t kLamp = 25;  ///< of a Pico 2
+
+/// Effort of an axis at a duty cycle of 1, N or Nm.
+inline constexpr float kEffortAtFullWidth[core::kAxes] = {1.9F, 1.8F, 1.5F};
+
+/// Configuration of the device. The device is homed by hand (HomingMethod::kGivenPose).
+inline core::Configuration configuration() {
+  core::Configuration configuration;
+  core::use_device(core::presets::premium(), configuration);
+  configuration.rate_hz = 1000.0F;  // the watchdog requires at least this rate
+  configuration.link.required = false;
+  configuration.link.may_command = false;
+  configuration.supervision.dead_man_required = true;
+  return configuration;
+}
+
+}  // namespace tactree::firmware::wiring

@@ -1,0 +1,110 @@
+// A board that stands alone, on the faked chip of the stm32f405, whose pins, timers and watchdog it
+// has: from power-up to force and the emergency stop, by button, dead-man control and lamp.
+
+#include "stm32f4/stand_alone_board.hpp"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "../boards/stm32f405/board_rig.hpp"
+#include "analytic_shapes.hpp"
+#include "tactree/hal/conformance.hpp"
+
+namespace tactree::test {
+namespace {
+
+using AloneBoard = firmware::stm32f4::StandAloneBoard<FakeWord>;
+static_assert(hal::Board<AloneBoard>);
+
+class StandAloneBoard : public testing::Test {
+ protected:
+  StandAloneBoard() : shape_(cos_sheet()) {
+    chip_in_use = {&chip_};
+    chip_.flash.put(BoardRig::kBlobBegin, shape_.bytes());
+  }
+  ~StandAloneBoard() override { chip_in_use = {}; }
+
+  /// From reset to the first tick, as main.cpp does it.
+  void boot(bool with_clocks = true) {
+    if (with_clocks) {
+      (void)firmware::prepare_chip(chip_.chip());
+    }
+    board_ = std::make_unique<AloneBoard>(
+        firmware::stm32f4::StandAloneChip<FakeWord>{
+            chip_.gpio_a.block, chip_.gpio_b.block, chip_.gpio_c.block, chip_.tim2.block,
+            chip_.tim4.block, chip_.tim5.block, chip_.tim8.block, chip_.watchdog.block},
+        firmware::wiring::kEffortAtFullWidth);
+    const core::Configuration configuration = board_->start(firmware::wiring::configuration());
+    EXPECT_FALSE(configuration.link.may_command);
+    loop_.emplace(*board_, controller_);
+    start_ = loop_->start(configuration);
+    board_->report(start_);
+  }
+
+  core::State run(int ticks) {
+    core::State state = core::State::kBoot;
+    for (int i = 0; i < ticks; ++i) {
+      state = loop_->tick().status.state;  // waits until the chip's next deadline
+    }
+    return state;
+  }
+  void press_button() {
+    chip_.press_button(true);
+    run(1100);
+    chip_.press_button(false);
+    run(50);
+  }
+  [[nodiscard]] double duty() {
+    return chip_.tim8.duty(0) + chip_.tim8.duty(1) + chip_.tim8.duty(2);
+  }
+
+  Shape shape_;
+  FakeChip chip_;
+  core::Controller controller_;
+  std::unique_ptr<AloneBoard> board_;
+  std::optional<hal::Loop<AloneBoard>> loop_;
+  hal::StartResult start_;
+};
+
+TEST_F(StandAloneBoard, PassesConformanceProgram) {
+  boot();
+  EXPECT_TRUE(start_.ok());
+  const hal::ConformanceReport report = hal::run_conformance(*board_);
+  std::string failed;
+  for (std::uint32_t i = 0; i < report.failures; ++i) {
+    failed += std::string(report.failed[i]) + "; ";
+  }
+  EXPECT_EQ(failed, "");
+  EXPECT_TRUE(chip_.watchdog.runs());
+  EXPECT_FALSE(chip_.watchdog.bitten());
+}
+
+TEST_F(StandAloneBoard, IsOperatedByItsButtonUntilEmergencyStop) {
+  boot();
+  ASSERT_TRUE(start_.ok());
+  EXPECT_EQ(run(50), core::State::kIdle);
+  press_button();  // homes
+  press_button();  // arms
+  EXPECT_TRUE(chip_.gpio_c.level(4)) << "the amplifiers have power";
+  chip_.hold_dead_man(true);
+  EXPECT_EQ(run(500), core::State::kActive);
+  EXPECT_TRUE(chip_.gpio_c.level(3)) << "the lamp is on";
+  chip_.press_stop(true);
+  EXPECT_EQ(run(2), core::State::kFault);
+  EXPECT_FALSE(chip_.gpio_c.level(4));
+  run(1);
+  EXPECT_EQ(duty(), 0.0);
+}
+
+TEST_F(StandAloneBoard, KeepsMotorsOffWithoutClocks) {
+  boot(false);
+  EXPECT_FALSE(board_->motors().healthy());
+  EXPECT_TRUE(board_->safety_inputs().emergency_stop());
+  EXPECT_FALSE(board_->safety_inputs().dead_man());
+}
+
+}  // namespace
+}  // namespace tactree::test
