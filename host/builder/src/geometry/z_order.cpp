@@ -6,6 +6,7 @@
 
 #include <bit>
 #include <cmath>
+#include <numeric>
 
 #include "geometry/morton.hpp"
 
@@ -55,6 +56,25 @@ ZOrderedCloud::ZOrderedCloud(Cloud cloud) {
   }
   entries = {};
   cloud_ = select(cloud, order);
+  index();
+}
+
+void ZOrderedCloud::index() {
+  // At most one cell for two points.
+  constexpr int kMostLevels = 8;
+  coarse_level_ = 0;
+  while (coarse_level_ < kMostLevels && std::size_t{16} << 3 * coarse_level_ <= codes_.size()) {
+    ++coarse_level_;
+  }
+  const std::size_t cells = std::size_t{1} << 3 * coarse_level_;
+  const int shift = 3 * (kFinestLevel - coarse_level_);
+  coarse_.clear();
+  coarse_.reserve(cells + 1);
+  for (std::size_t i = 0; i < codes_.size(); ++i) {
+    coarse_.resize(std::max(coarse_.size(), (codes_[i] >> shift) + 1),
+                   static_cast<std::uint32_t>(i));
+  }
+  coarse_.resize(cells + 1, static_cast<std::uint32_t>(codes_.size()));
 }
 
 ZOrderedCloud ZOrderedCloud::subset(std::span<const std::uint32_t> indices) const {
@@ -66,6 +86,7 @@ ZOrderedCloud ZOrderedCloud::subset(std::span<const std::uint32_t> indices) cons
   for (const std::uint32_t i : indices) {
     chosen.codes_.push_back(codes_[i]);
   }
+  chosen.index();
   return chosen;
 }
 
@@ -109,35 +130,35 @@ CellRange ZOrderedCloud::find(const Eigen::Vector3i& cell, int level) const {
   const int shift = 3 * (kFinestLevel - level);
   const std::uint64_t low = morton_code(cell) << shift;
   const std::uint64_t high = low | ((std::uint64_t{1} << shift) - 1);
-  const auto first = std::lower_bound(codes_.begin(), codes_.end(), low);
-  if (first == codes_.end() || *first > high) {
-    return {};
-  }
+  const int coarse_shift = 3 * (kFinestLevel - coarse_level_);
+  const auto at = [&](std::size_t i) { return codes_.begin() + static_cast<std::ptrdiff_t>(i); };
+  const auto end_of = [&](std::uint64_t code) { return at(coarse_[(code >> coarse_shift) + 1]); };
+  const auto first = std::lower_bound(at(coarse_[low >> coarse_shift]), end_of(low), low);
   // Cells are small relative to the cloud, so their end is found by exponential search.
+  const auto end = end_of(high);
+  const auto left = static_cast<std::size_t>(end - first);
   std::size_t step = 1;
-  const auto left = static_cast<std::size_t>(codes_.end() - first);
-  while (step < left && first[static_cast<std::ptrdiff_t>(step)] <= high) {
+  while (step <= left && first[static_cast<std::ptrdiff_t>(step - 1)] <= high) {
     step *= 2;
   }
   const auto last =
       std::upper_bound(first + static_cast<std::ptrdiff_t>(step / 2),
-                       first + static_cast<std::ptrdiff_t>(std::min(step, left)), high);
+                       first + static_cast<std::ptrdiff_t>(std::min(step - 1, left)), high);
   return {static_cast<std::uint32_t>(first - codes_.begin()),
           static_cast<std::uint32_t>(last - codes_.begin())};
 }
 
 std::vector<std::size_t> ZOrderedCloud::count_cells() const {
-  std::vector<std::size_t> counts(kFinestLevel + 1, codes_.empty() ? 0 : 1);
+  // By the coarsest level at which a point begins a cell; it then begins one at all finer levels.
+  std::vector<std::size_t> counts(kFinestLevel + 1, 0);
   for (std::size_t i = 1; i < codes_.size(); ++i) {
     const std::uint64_t differing = codes_[i] ^ codes_[i - 1];
-    if (differing == 0) {
-      continue;
-    }
-    const int coarsest = kFinestLevel - (63 - std::countl_zero(differing)) / 3;
-    for (int level = coarsest; level <= kFinestLevel; ++level) {
-      ++counts[static_cast<std::size_t>(level)];
+    if (differing != 0) {
+      ++counts[static_cast<std::size_t>(kFinestLevel - (63 - std::countl_zero(differing)) / 3)];
     }
   }
+  counts[0] += codes_.empty() ? 0 : 1;
+  std::partial_sum(counts.begin(), counts.end(), counts.begin());
   return counts;
 }
 
@@ -158,8 +179,11 @@ void ZOrderedCloud::find_nearest(const Eigen::Vector3d& centre, std::size_t coun
   }
   count = std::min(count, found.size());
   const auto last = found.begin() + static_cast<std::ptrdiff_t>(count);
-  std::partial_sort(found.begin(), last, found.end());
-  found.resize(count);
+  if (last != found.end()) {
+    std::nth_element(found.begin(), last, found.end());
+    found.resize(count);
+  }
+  std::sort(found.begin(), found.end());
 }
 
 Eigen::Vector3i ZOrderedCloud::finest_cell(const Eigen::Vector3d& position) const {

@@ -75,13 +75,14 @@ class ZOrderedCloud {
     const int shift = kFinestLevel - level;
     const Eigen::Vector3i low = finest_cell(centre.array() - radius);
     const Eigen::Vector3i high = finest_cell(centre.array() + radius);
+    const double squared_radius = radius * radius;
     for (int z = low.z() >> shift; z <= high.z() >> shift; ++z) {
       for (int y = low.y() >> shift; y <= high.y() >> shift; ++y) {
         for (int x = low.x() >> shift; x <= high.x() >> shift; ++x) {
           const CellRange range = find({x, y, z}, level);
           for (std::uint32_t i = range.first; i < range.last; ++i) {
             const double squared = (cloud_.positions[i] - centre).squaredNorm();
-            if (squared <= radius * radius) {
+            if (squared <= squared_radius) {
               visit(i, squared);
             }
           }
@@ -97,11 +98,15 @@ class ZOrderedCloud {
 
  private:
   [[nodiscard]] Eigen::Vector3i finest_cell(const Eigen::Vector3d& position) const;
+  void index();
 
   Cloud cloud_;
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
   double edge_ = 1.0;  // of level 0
   std::vector<std::uint64_t> codes_;
+  // The first point of each cell of a coarse level, occupied or not, and the number of points.
+  std::vector<std::uint32_t> coarse_ = {0, 0};
+  int coarse_level_ = 0;
 };
 
 /// Keeps one of several points with equal coordinates, if possible one with a normal.
