@@ -164,6 +164,12 @@ std::vector<std::size_t> ZOrderedCloud::count_cells() const {
 
 void ZOrderedCloud::find_nearest(const Eigen::Vector3d& centre, std::size_t count, double guess,
                                  std::vector<Neighbour>& found) const {
+  find_nearest_unsorted(centre, count, guess, found);
+  std::sort(found.begin(), found.end());
+}
+
+void ZOrderedCloud::find_nearest_unsorted(const Eigen::Vector3d& centre, std::size_t count,
+                                          double guess, std::vector<Neighbour>& found) const {
   const double everywhere = 4.0 * edge_ + 2.0 * (centre - origin_).norm();
   double radius = guess > 0.0 ? std::min(guess, everywhere) : everywhere;
   count = std::min(count, size());
@@ -183,7 +189,6 @@ void ZOrderedCloud::find_nearest(const Eigen::Vector3d& centre, std::size_t coun
     std::nth_element(found.begin(), last, found.end());
     found.resize(count);
   }
-  std::sort(found.begin(), found.end());
 }
 
 Eigen::Vector3i ZOrderedCloud::finest_cell(const Eigen::Vector3d& position) const {

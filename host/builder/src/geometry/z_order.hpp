@@ -95,6 +95,9 @@ class ZOrderedCloud {
   /// `guess` is the estimated distance of the last one and influences the time only.
   void find_nearest(const Eigen::Vector3d& centre, std::size_t count, double guess,
                     std::vector<Neighbour>& found) const;
+  /// The same points in any order.
+  void find_nearest_unsorted(const Eigen::Vector3d& centre, std::size_t count, double guess,
+                             std::vector<Neighbour>& found) const;
 
  private:
   [[nodiscard]] Eigen::Vector3i finest_cell(const Eigen::Vector3d& position) const;
