@@ -29,6 +29,26 @@ bool lexicographically_less(const Eigen::Vector3d& a, const Eigen::Vector3d& b) 
 
 }  // namespace
 
+void keep_nearest(std::size_t count, std::vector<Neighbour>& found) {
+  if (count == 0 || count >= found.size()) {
+    found.resize(std::min(count, found.size()));
+    return;
+  }
+  thread_local std::vector<double> distances;
+  distances.clear();
+  for (const Neighbour& n : found) {
+    distances.push_back(n.squared_distance);
+  }
+  const auto last = distances.begin() + static_cast<std::ptrdiff_t>(count - 1);
+  std::nth_element(distances.begin(), last, distances.end());
+  std::erase_if(found,
+                [farthest = *last](const Neighbour& n) { return n.squared_distance > farthest; });
+  if (found.size() > count) {  // several at that distance
+    std::sort(found.begin(), found.end());
+    found.resize(count);
+  }
+}
+
 ZOrderedCloud::ZOrderedCloud(Cloud cloud) {
   const Box box = bounds_of(cloud.positions);
   origin_ = box.isEmpty() ? Eigen::Vector3d::Zero() : Eigen::Vector3d(box.min());
@@ -183,12 +203,7 @@ void ZOrderedCloud::find_nearest_unsorted(const Eigen::Vector3d& centre, std::si
     }
     radius = std::min(2.0 * radius, everywhere);
   }
-  count = std::min(count, found.size());
-  const auto last = found.begin() + static_cast<std::ptrdiff_t>(count);
-  if (last != found.end()) {
-    std::nth_element(found.begin(), last, found.end());
-    found.resize(count);
-  }
+  keep_nearest(count, found);
 }
 
 Eigen::Vector3i ZOrderedCloud::finest_cell(const Eigen::Vector3d& position) const {

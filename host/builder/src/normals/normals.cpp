@@ -1,12 +1,11 @@
 #include "normals/normals.hpp"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "geometry/local_points.hpp"
 
 namespace tactree::builder {
 namespace {
@@ -22,12 +21,12 @@ Eigen::Vector3f fit_normal(const ZOrderedCloud& dense, const Eigen::Vector3d& ce
   for (const Neighbour& n : neighbours) {
     farthest = std::max(farthest, n.squared_distance);
   }
-  const double radius_squared = 1.2 * farthest + 1e-300;
+  const double per_squared_radius = 1.0 / (1.2 * farthest + 1e-300);
   double weight_sum = 0.0;
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   for (const Neighbour& n : neighbours) {
-    const double weight = 1.0 - n.squared_distance / radius_squared;
+    const double weight = 1.0 - n.squared_distance * per_squared_radius;
     const Eigen::Vector3d d = dense.positions()[n.index] - centre;
     const Eigen::Vector3d weighted = weight * d;
     weight_sum += weight;
@@ -56,13 +55,11 @@ std::vector<Eigen::Vector3f> estimate_normals(const ZOrderedCloud& points,
       1.3 * dense_spacing * std::sqrt(static_cast<double>(fitted) / std::numbers::pi);
   std::vector<Eigen::Vector3f> normals = points.normals();
   normals.resize(points.size(), Eigen::Vector3f::Zero());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points.size(), 256), [&](auto range) {
-    std::vector<Neighbour> found;
-    for (std::size_t i = range.begin(); i < range.end(); ++i) {
-      if (normals[i].isZero()) {
-        dense.find_nearest_unsorted(points.positions()[i], fitted, guess, found);
-        normals[i] = fit_normal(dense, points.positions()[i], found);
-      }
+  for_each_with_local(points, dense, guess, [&](LocalPoints& local, std::uint32_t i) {
+    if (normals[i].isZero()) {
+      thread_local std::vector<Neighbour> found;
+      local.find_nearest_unsorted(points.positions()[i], fitted, found);
+      normals[i] = fit_normal(dense, points.positions()[i], found);
     }
   });
   return normals;

@@ -1,17 +1,17 @@
 #include "normals/signed_graph.hpp"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
+
+#include "geometry/local_points.hpp"
 
 namespace tactree::builder {
 namespace {
 
 constexpr std::size_t kGraphNeighbours = 10;
 constexpr double kFarthestEdgeSpacings = 3.0;
+constexpr double kUsualReachSpacings = 2.3;  // a disc of this radius holds these neighbours
 // A steeper chord than across an edge of 90 degrees passes through the body instead of along its
 // surface.
 constexpr float kSteepestChord = 0.75F;
@@ -41,19 +41,17 @@ using Nearest = std::array<std::uint32_t, kGraphNeighbours>;
 std::vector<Nearest> nearest_neighbours(const ZOrderedCloud& points, double spacing) {
   const double farthest = kFarthestEdgeSpacings * spacing;
   std::vector<Nearest> nearest(points.size());
-  tbb::parallel_for(
-      tbb::blocked_range<std::uint32_t>(0, static_cast<std::uint32_t>(points.size()), 256),
-      [&](auto range) {
-        std::vector<Neighbour> found;
-        for (std::uint32_t i = range.begin(); i < range.end(); ++i) {
-          points.find_nearest(points.positions()[i], kGraphNeighbours + 1, 2.3 * spacing, found);
-          nearest[i].fill(i);
-          std::size_t count = 0;
-          for (const Neighbour& n : found) {
-            if (n.index != i && count < kGraphNeighbours &&
-                n.squared_distance <= farthest * farthest) {
-              nearest[i][count++] = n.index;
-            }
+  for_each_with_local(
+      points, points, kUsualReachSpacings * spacing, [&](LocalPoints& local, std::uint32_t i) {
+        thread_local std::vector<Neighbour> found;
+        local.find_nearest_unsorted(points.positions()[i], kGraphNeighbours + 1, found);
+        std::sort(found.begin(), found.end());
+        nearest[i].fill(i);
+        std::size_t count = 0;
+        for (const Neighbour& n : found) {
+          if (n.index != i && count < kGraphNeighbours &&
+              n.squared_distance <= farthest * farthest) {
+            nearest[i][count++] = n.index;
           }
         }
       });
