@@ -37,7 +37,8 @@ class Pipeline {
   /// Per point of the blob, after run(): 1 if its orientation is ambiguous.
   [[nodiscard]] std::vector<std::uint8_t>& doubtful() { return doubtful_of_blob_; }
 
-  WrittenBlob run(std::vector<Scan> scans, const Sha256Digest& digest) {
+  /// `digest` is called as late as possible, because it may wait for another thread.
+  WrittenBlob run(std::vector<Scan> scans, const std::function<Sha256Digest()>& digest) {
     stages_.begin("cleaning");
     input_ = clean(std::move(scans), options_, report_);
     stages_.set_points(report_.input_points);
@@ -47,7 +48,6 @@ class Pipeline {
     check_given();
     model_.profile = options_.profile;
     model_.name = options_.name;
-    model_.source_digest = digest;
     model_.source_scale = report_.source_scale;
     model_.source_origin = report_.source_origin;
     if (options_.materials) {
@@ -72,6 +72,7 @@ class Pipeline {
     Gaps gaps = find_gaps(choice.points, model_.spacing_m, model_.support_radius_m, watertight_);
     model_.largest_gap_m = gaps.largest_m;
     report_.openings = std::move(gaps.openings);
+    model_.source_digest = digest();
     WrittenBlob blob = write(choice);
     hint_at_axis();
     return blob;
@@ -326,8 +327,9 @@ std::unique_ptr<tbb::global_control> limit_threads(unsigned threads) {
                             tbb::global_control::max_allowed_parallelism, threads);
 }
 
-BuildResult finish(Pipeline& pipeline, std::vector<Scan> scans, const Sha256Digest& digest,
-                   const std::string& label, StageTimes& stages) {
+BuildResult finish(Pipeline& pipeline, std::vector<Scan> scans,
+                   const std::function<Sha256Digest()>& digest, const std::string& label,
+                   StageTimes& stages) {
   try {
     BuildResult result;
     result.blob = pipeline.run(std::move(scans), digest);
@@ -397,14 +399,16 @@ BuildResult build_model(std::span<const std::filesystem::path> inputs, const Bui
     pipeline.report().inputs.push_back(
         {label, scan.format, scan.positions.size(), scan.triangles.size()});
   }
-  return finish(pipeline, std::move(scans), digest.get(), label_of(inputs, options), stages);
+  return finish(
+      pipeline, std::move(scans), [&] { return digest.get(); }, label_of(inputs, options), stages);
 }
 
 BuildResult build_model(std::vector<Scan> scans, const BuildOptions& options, Progress& progress) {
   StageTimes stages(progress);
   const auto limit = limit_threads(options.threads);
   Pipeline pipeline(options, stages);
-  return finish(pipeline, std::move(scans), {}, "", stages);
+  return finish(
+      pipeline, std::move(scans), [] { return Sha256Digest{}; }, "", stages);
 }
 
 }  // namespace tactree::builder
