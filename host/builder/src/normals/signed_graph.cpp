@@ -58,6 +58,23 @@ std::vector<Nearest> nearest_neighbours(const ZOrderedCloud& points, double spac
   return nearest;
 }
 
+void add_edges_of(std::uint32_t i, const ZOrderedCloud& points,
+                  std::span<const Eigen::Vector3f> normals, const std::vector<Nearest>& nearest,
+                  std::vector<SignedEdge>& edges) {
+  for (const std::uint32_t j : nearest[i]) {
+    // If both ends list the edge, the lower one adds it.
+    const bool listed_by_lower =
+        j < i && std::find(nearest[j].begin(), nearest[j].end(), i) != nearest[j].end();
+    if (j == i || listed_by_lower) {
+      continue;
+    }
+    const float weight = weight_of(points, normals, i, j);
+    if (weight != 0.0F) {
+      edges.push_back({std::min(i, j), std::max(i, j), weight});
+    }
+  }
+}
+
 // Union-find that stores the sign of each member relative to the root.
 class SignedSets {
  public:
@@ -124,21 +141,25 @@ class SignedSets {
 std::vector<SignedEdge> signed_graph(const ZOrderedCloud& points,
                                      std::span<const Eigen::Vector3f> normals, double spacing) {
   const std::vector<Nearest> nearest = nearest_neighbours(points, spacing);
-  std::vector<SignedEdge> edges;
-  edges.reserve(points.size() * 6);
-  for (std::uint32_t i = 0; i < points.size(); ++i) {
-    for (const std::uint32_t j : nearest[i]) {
-      // If both ends list the edge, the lower one adds it.
-      const bool listed_by_lower =
-          j < i && std::find(nearest[j].begin(), nearest[j].end(), i) != nearest[j].end();
-      if (j == i || listed_by_lower) {
-        continue;
-      }
-      const float weight = weight_of(points, normals, i, j);
-      if (weight != 0.0F) {
-        edges.push_back({std::min(i, j), std::max(i, j), weight});
-      }
+  // Each part of the points has a list of its own, so that their order does not depend on threads.
+  constexpr std::size_t kPart = 8192;
+  std::vector<std::vector<SignedEdge>> parts((points.size() + kPart - 1) / kPart);
+  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
+    const auto end = static_cast<std::uint32_t>(std::min(points.size(), (part + 1) * kPart));
+    parts[part].reserve(6 * kPart);
+    for (auto i = static_cast<std::uint32_t>(part * kPart); i < end; ++i) {
+      add_edges_of(i, points, normals, nearest, parts[part]);
     }
+  });
+  std::size_t count = 0;
+  for (const std::vector<SignedEdge>& part : parts) {
+    count += part.size();
+  }
+  std::vector<SignedEdge> edges;
+  edges.reserve(count);
+  for (std::vector<SignedEdge>& part : parts) {
+    edges.insert(edges.end(), part.begin(), part.end());
+    part = {};
   }
   return edges;
 }
