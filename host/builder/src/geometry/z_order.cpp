@@ -177,7 +177,7 @@ std::vector<std::size_t> ZOrderedCloud::count_cells() const {
       ++counts[static_cast<std::size_t>(kFinestLevel - (63 - std::countl_zero(differing)) / 3)];
     }
   }
-  counts[0] += codes_.empty() ? 0 : 1;
+  counts[0] += codes_.empty() ? 0U : 1U;
   std::partial_sum(counts.begin(), counts.end(), counts.begin());
   return counts;
 }
@@ -208,11 +208,7 @@ void ZOrderedCloud::find_nearest_unsorted(const Eigen::Vector3d& centre, std::si
 
 Eigen::Vector3i ZOrderedCloud::finest_cell(const Eigen::Vector3d& position) const {
   constexpr double kCells = 1 << kFinestLevel;
-  return ((position - origin_).array() * (kCells / edge_))
-      .floor()
-      .max(0.0)
-      .min(kCells - 1.0)
-      .cast<int>();
+  return ((position - origin_).array() * (kCells / edge_)).max(0.0).min(kCells - 1.0).cast<int>();
 }
 
 std::uint64_t drop_duplicates(ZOrderedCloud& points) {
