@@ -45,6 +45,16 @@ class Columns(Folder):
         report = self.read("n.json")
         self.assertIn("columns x=2, y=3, z=4", "".join(report["notes"]))
 
+    def test_measures_steps(self):
+        (self.path / "steps.xyz").write_text("".join(f"{x} {y} {x * y / 50}\n" for x in range(50) for y in range(50)))
+        done = self.run_tool("build", "steps.xyz", "-o", "y", "--report", "r.json", "--verbose")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        stages = self.read("r.json")["stages"]
+        self.assertEqual([stage["name"] for stage in stages][:2], ["reading steps.xyz", "cleaning"])
+        for stage in stages:
+            self.assertEqual(set(stage), {"name", "seconds", "cpu_seconds", "points", "peak_rss_bytes"})
+            self.assertIn(f"s  {stage['name']}: {stage['points']} points, peak", done.stdout)
+
     def test_uses_named_columns(self):
         rows = (self.path / "s.xyz").read_text().splitlines()
         swapped = "".join(" ".join(["a", *reversed(row.split())]) + "\n" for row in rows)

@@ -14,7 +14,7 @@ from clouds import SharedFolder, ball_arrays, runs_beside, signal_during, tool_e
 
 TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
 # Of the report: what differs between two runs.
-MEASURED = ("seconds", "points_per_second", "peak_rss_bytes")
+MEASURED = ("stages", "seconds", "points_per_second", "peak_rss_bytes")
 # A tetrahedron of 40 mm.
 CORNERS = np.array([(0, 0, 0), (40, 0, 0), (0, 40, 0), (0, 0, 40)])
 FACES = np.array([(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)])

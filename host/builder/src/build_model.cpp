@@ -1,11 +1,9 @@
 #include "tactree/builder/build_model.hpp"
 
 #include <fmt/core.h>
-#include <sys/resource.h>
 #include <tbb/global_control.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "cleaning/cleaning.hpp"
@@ -21,6 +19,7 @@
 #include "sampling/ball_bound.hpp"
 #include "sampling/density.hpp"
 #include "source_digest.hpp"
+#include "stage_times.hpp"
 #include "tactree/builder/length_text.hpp"
 #include "tactree/builder/read_scan.hpp"
 #include "tactree/builder/size_advice.hpp"
@@ -30,37 +29,33 @@
 namespace tactree::builder {
 namespace {
 
-std::uint64_t peak_rss_bytes() {
-  rusage usage{};
-  ::getrusage(RUSAGE_SELF, &usage);
-  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024U;
-}
-
 class Pipeline {
  public:
-  Pipeline(const BuildOptions& options, Progress& progress)
-      : options_(options), progress_(progress) {}
+  Pipeline(const BuildOptions& options, StageTimes& stages) : options_(options), stages_(stages) {}
 
   [[nodiscard]] BuildReport& report() { return report_; }
   /// Per point of the blob, after run(): 1 if its orientation is ambiguous.
   [[nodiscard]] std::vector<std::uint8_t>& doubtful() { return doubtful_of_blob_; }
 
-  WrittenBlob run(std::vector<Scan> scans, const Sha256Digest& digest) {
-    progress_.begin("cleaning");
+  /// `digest` is called as late as possible, because it may wait for another thread.
+  WrittenBlob run(std::vector<Scan> scans, const std::function<Sha256Digest()>& digest) {
+    stages_.begin("cleaning");
     input_ = clean(std::move(scans), options_, report_);
+    stages_.set_points(report_.input_points);
     advise_on_unit();
-    progress_.begin("checking the orientation");
+    stages_.begin("checking the orientation");
+    stages_.set_points(report_.kept_points);
     check_given();
     model_.profile = options_.profile;
     model_.name = options_.name;
-    model_.source_digest = digest;
     model_.source_scale = report_.source_scale;
     model_.source_origin = report_.source_origin;
     if (options_.materials) {
       model_.materials = options_.materials->list();
     }
-    progress_.begin("resampling");
-    DensityChoice choice = choose_density(input_, options_, progress_, report_);
+    stages_.begin("resampling");
+    DensityChoice choice = choose_density(input_, options_, stages_, report_);
+    stages_.set_points(choice.dense.size());
     model_.spacing_m = choice.spacing_m;
     model_.support_radius_m = kSupportSpacings * choice.spacing_m;
     model_.reach_m = kReachSpacings * choice.spacing_m;
@@ -73,10 +68,11 @@ class Pipeline {
     if (options_.two_sided_m) {
       make_two_sided(choice, *options_.two_sided_m);
     }
-    progress_.begin("finding gaps");
+    begin_stage("finding gaps", choice);
     Gaps gaps = find_gaps(choice.points, model_.spacing_m, model_.support_radius_m, watertight_);
     model_.largest_gap_m = gaps.largest_m;
     report_.openings = std::move(gaps.openings);
+    model_.source_digest = digest();
     model_.positions = choice.points.positions();
     model_.normals = choice.points.normals();
     if (options_.pose) {
@@ -88,6 +84,11 @@ class Pipeline {
   }
 
  private:
+  void begin_stage(std::string_view name, const DensityChoice& choice) {
+    stages_.begin(name);
+    stages_.set_points(choice.points.size());
+  }
+
   void advise_on_unit() {
     const bool stated = options_.unit_m || options_.fit_m || options_.fit_edge_m || options_.pose;
     const std::optional<std::string> advice = size_advice(largest_edge(input_.bounds));
@@ -166,10 +167,12 @@ class Pipeline {
     if (all && (mesh_ || options_.orient == OrientationRule::kGiven)) {
       return;
     }
-    progress_.begin(all ? "checking normals" : "estimating normals");
-    std::vector<Eigen::Vector3f> normals =
-        all ? points.normals()
-            : estimate_normals(points, choice.dense, model_.spacing_m, input_spacing(choice));
+    std::vector<Eigen::Vector3f> normals = points.normals();
+    if (!all) {
+      begin_stage("estimating normals", choice);
+      normals = estimate_normals(points, choice.dense, model_.spacing_m, input_spacing(choice));
+    }
+    begin_stage("orienting normals", choice);
     orient(choice, given, normals);
     if (!all) {
       report_.notes.push_back(fmt::format(
@@ -258,7 +261,7 @@ class Pipeline {
   }
 
   WrittenBlob write(const DensityChoice& choice) {
-    progress_.begin("writing the octree");
+    begin_stage("writing the octree", choice);
     model_.material_indices = choice.points.cloud().materials;
     model_.tells_interior = true;
     model_.doubtful = doubts_of(choice);
@@ -336,7 +339,7 @@ class Pipeline {
   }
 
   const BuildOptions& options_;
-  Progress& progress_;
+  StageTimes& stages_;
   BuildReport report_;
   CleanInput input_;
   bool mesh_ = false;                        // some points lie on faces
@@ -347,32 +350,24 @@ class Pipeline {
   std::vector<std::uint8_t> doubtful_of_blob_;
 };
 
-class Stopwatch {
- public:
-  [[nodiscard]] double seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
 std::unique_ptr<tbb::global_control> limit_threads(unsigned threads) {
   return threads == 0 ? nullptr
                       : std::make_unique<tbb::global_control>(
                             tbb::global_control::max_allowed_parallelism, threads);
 }
 
-BuildResult finish(Pipeline& pipeline, std::vector<Scan> scans, const Sha256Digest& digest,
-                   const std::string& label, const Stopwatch& stopwatch, Progress& progress) {
+BuildResult finish(Pipeline& pipeline, std::vector<Scan> scans,
+                   const std::function<Sha256Digest()>& digest, const std::string& label,
+                   StageTimes& stages) {
   try {
     BuildResult result;
     result.blob = pipeline.run(std::move(scans), digest);
     result.report = std::move(pipeline.report());
     result.doubtful = std::move(pipeline.doubtful());
-    result.report.seconds = stopwatch.seconds();
-    result.report.peak_rss_bytes = peak_rss_bytes();
-    progress.end();
+    stages.end();
+    result.report.stages = stages.stages();
+    result.report.seconds = stages.seconds();
+    result.report.peak_rss_bytes = usage_of_process().peak_rss_bytes;
     return result;
   } catch (const std::runtime_error& error) {
     throw BuildError(label.empty() ? error.what() : label + ": " + error.what());
@@ -409,7 +404,7 @@ BuildResult build_model(std::span<const std::filesystem::path> inputs, const Bui
   if (inputs.empty()) {
     throw BuildError("no input file");
   }
-  const Stopwatch stopwatch;
+  StageTimes stages(progress);
   const auto limit = limit_threads(options.threads);
   const std::vector<std::filesystem::path> places = places_of(inputs, options);
   SourceDigest digest(places, options.threads != 1);
@@ -417,30 +412,32 @@ BuildResult build_model(std::span<const std::filesystem::path> inputs, const Bui
   if (named.name.empty()) {
     named.name = is_standard_input(inputs[0], options) ? "stdin" : inputs[0].stem().string();
   }
-  Pipeline pipeline(named, progress);
+  Pipeline pipeline(named, stages);
   std::vector<Scan> scans;
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     const std::string label = label_of(inputs[i], options);
-    progress.begin("reading " + std::filesystem::path(label).filename().string());
+    stages.begin("reading " + std::filesystem::path(label).filename().string());
     ReadOptions reading;
     reading.format = options.format;
     reading.label = label;
-    reading.progress = [&](double fraction) { progress.advance(fraction); };
+    reading.progress = [&](double fraction) { stages.advance(fraction); };
     reading.columns = options.columns;
     scans.push_back(read_scan(places[i], reading));
     const Scan& scan = scans.back();
+    stages.set_points(scan.positions.size());
     pipeline.report().inputs.push_back(
         {label, scan.format, scan.positions.size(), scan.triangles.size()});
   }
-  return finish(pipeline, std::move(scans), digest.get(), label_of(inputs, options), stopwatch,
-                progress);
+  return finish(
+      pipeline, std::move(scans), [&] { return digest.get(); }, label_of(inputs, options), stages);
 }
 
 BuildResult build_model(std::vector<Scan> scans, const BuildOptions& options, Progress& progress) {
-  const Stopwatch stopwatch;
+  StageTimes stages(progress);
   const auto limit = limit_threads(options.threads);
-  Pipeline pipeline(options, progress);
-  return finish(pipeline, std::move(scans), {}, "", stopwatch, progress);
+  Pipeline pipeline(options, stages);
+  return finish(
+      pipeline, std::move(scans), [] { return Sha256Digest{}; }, "", stages);
 }
 
 }  // namespace tactree::builder

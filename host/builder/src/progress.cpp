@@ -1,6 +1,9 @@
 #include "tactree/builder/progress.hpp"
 
+#include <fmt/core.h>
 #include <unistd.h>
+
+#include <cmath>
 
 namespace tactree::builder {
 namespace {
@@ -17,25 +20,22 @@ class TerminalProgress : public Progress {
   ~TerminalProgress() override { wipe(); }
   void begin(std::string_view name) override {
     name_ = name;
+    begin_ = Clock::now();
     show_after_s_ = 0.0;
-    show(-1);
+    show(-1.0);
   }
-  void advance(double fraction) override { show(static_cast<int>(100.0 * fraction)); }
+  void advance(double fraction) override { show(fraction); }
   void end() override { wipe(); }
 
  private:
-  void show(int percent) {
-    const double now_s = seconds_since(start_);
-    if (now_s < show_after_s_) {
+  void show(double fraction) {
+    const double elapsed_s = seconds_since(begin_);
+    if (elapsed_s < show_after_s_) {
       return;
     }
-    show_after_s_ = now_s + 0.1;
+    show_after_s_ = elapsed_s + 0.1;
     dirty_ = true;
-    if (percent < 0) {
-      std::fprintf(stream_, "\r\033[K%s ...", name_.c_str());
-    } else {
-      std::fprintf(stream_, "\r\033[K%s %d %%", name_.c_str(), percent);
-    }
+    std::fprintf(stream_, "\r\033[K%s", progress_line(name_, fraction, elapsed_s).c_str());
     std::fflush(stream_);
   }
   void wipe() {
@@ -48,8 +48,8 @@ class TerminalProgress : public Progress {
 
   std::FILE* stream_;
   std::string name_;
-  Clock::time_point start_ = Clock::now();
-  double show_after_s_ = 0.0;
+  Clock::time_point begin_ = Clock::now();  // of the step
+  double show_after_s_ = 0.0;               // of the step
   bool dirty_ = false;
 };
 
@@ -118,6 +118,18 @@ class JsonProgress : public Progress {
 void Progress::begin(std::string_view) {}
 void Progress::advance(double) {}
 void Progress::end() {}
+
+std::string progress_line(std::string_view name, double fraction, double elapsed_s) {
+  constexpr double kEstimateAfter_s = 1.0;
+  if (!(fraction >= 0.0)) {
+    return fmt::format("{} ...", name);
+  }
+  std::string line = fmt::format("{} {:.0f} %", name, std::floor(100.0 * fraction));
+  if (elapsed_s >= kEstimateAfter_s && fraction > 0.0 && fraction < 1.0) {
+    line += fmt::format(", {:.0f} s left", std::ceil(elapsed_s * (1.0 - fraction) / fraction));
+  }
+  return line;
+}
 
 std::unique_ptr<Progress> make_progress(ProgressStyle style, std::FILE* stream) {
   switch (style) {

@@ -68,6 +68,18 @@ ordered_json pose_json(const BuildOptions& build) {
   return rows;
 }
 
+ordered_json stages_json(const BuildReport& report) {
+  ordered_json list = ordered_json::array();
+  for (const StageReport& stage : report.stages) {
+    list.push_back({{"name", stage.name},
+                    {"seconds", stage.seconds},
+                    {"cpu_seconds", stage.cpu_seconds},
+                    {"points", stage.points},
+                    {"peak_rss_bytes", stage.peak_rss_bytes}});
+  }
+  return list;
+}
+
 ordered_json colours_json(const BuildReport& report) {
   ordered_json list = ordered_json::array();
   for (const ColourCount& count : report.colours) {
@@ -125,6 +137,7 @@ std::string report_json(const BuildReport& report, const BuildOptions& build) {
       {"source_origin", triple(report.source_origin)},
       {"bytes", report.bytes},
       {"bytes_per_point", bytes_per_point(report)},
+      {"stages", stages_json(report)},
       {"seconds", report.seconds},
       {"points_per_second", static_cast<double>(report.input_points) / report.seconds},
       {"peak_rss_bytes", report.peak_rss_bytes},

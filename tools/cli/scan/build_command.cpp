@@ -55,6 +55,7 @@ struct BuildArguments {
   BoardRequest board;
   std::string material;
   bool no_resample = false;
+  bool verbose = false;
   builder::ProgressStyle progress = builder::ProgressStyle::kAuto;
   BuildOptions build;
 };
@@ -219,6 +220,9 @@ void build(BuildArguments& arguments) {
                   arguments.build.materials);
   }
   print_report(result.report, arguments.build, arguments.output);
+  if (arguments.verbose) {
+    print_stages(result.report);
+  }
   for (const std::string& warning : result.report.warnings) {
     fmt::print(stderr, "tactree: warning: {}\n", warning);
   }
@@ -365,6 +369,8 @@ void add_build_command(CLI::App& app, int&) {
                    "progress on standard error: one line, lines, JSON, none")
       ->transform(CLI::CheckedTransformer(kProgressStyles).description("auto|plain|json|off"))
       ->default_str("auto");
+  verb->add_flag("--verbose", arguments->verbose,
+                 "also print time, CPU time, points and peak memory of each step");
   verb->add_option("--report", arguments->report,
                    "write a report of the build as JSON to this file");
   verb->add_option("--json", arguments->json, "same as --report");

@@ -77,6 +77,17 @@ void print_interior(const BuildReport& report, const BuildOptions& build) {
 
 }  // namespace
 
+void print_stages(const BuildReport& report) {
+  for (const builder::StageReport& stage : report.stages) {
+    fmt::print("time      {:8.2f} s, CPU {:8.2f} s  {}", stage.seconds, stage.cpu_seconds,
+               stage.name);
+    if (stage.points > 0) {
+      fmt::print(": {} points", stage.points);
+    }
+    fmt::print(", peak {} MiB\n", stage.peak_rss_bytes >> 20U);
+  }
+}
+
 void print_report(const BuildReport& report, const BuildOptions& build, const std::string& output) {
   print_input(report);
   fmt::print("model     {}, {} points, spacing {}\n", builder::size_text(report.bounds.sizes()),

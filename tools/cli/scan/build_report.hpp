@@ -11,4 +11,7 @@ namespace tactree::cli {
 void print_report(const builder::BuildReport& report, const builder::BuildOptions& build,
                   const std::string& output);
 
+/// Prints time, CPU time, points and memory of each step.
+void print_stages(const builder::BuildReport& report);
+
 }  // namespace tactree::cli

@@ -67,15 +67,13 @@ struct CellPlane {
   }
 };
 
-CellPlane plane_through(const ZOrderedCloud& points, const std::vector<std::uint32_t>& members,
-                        std::uint64_t trial) {
+using Triple = std::array<std::size_t, 3>;
+
+// Numbers of three of `n` members, of which the first two differ.
+Triple random_triple(std::uint64_t trial, std::size_t n) {
   const std::uint64_t random = hash64(trial);
-  const std::size_t n = members.size();
   const std::size_t a = random % n;
-  const std::size_t b = (a + 1 + (random >> 20) % (n - 1)) % n;
-  const std::size_t c = (random >> 40) % n;
-  const std::vector<Eigen::Vector3d>& p = points.positions();
-  return CellPlane::through(p[members[a]], p[members[b]], p[members[c]]);
+  return {a, (a + 1 + (random >> 20) % (n - 1)) % n, (random >> 40) % n};
 }
 
 // The plane through three of the members that has the minimum distance to the `held` members
@@ -85,18 +83,28 @@ struct FlatPlane {
   double farthest = std::numeric_limits<double>::infinity();  // maximum distance of these members
 };
 
-FlatPlane flattest_plane(const ZOrderedCloud& points, const std::vector<std::uint32_t>& members,
-                         std::size_t held) {
+using NoiseMembers = std::array<Eigen::Vector3d, kNoiseNeighbours>;
+
+FlatPlane flattest_plane(const NoiseMembers& members, std::size_t held) {
+  static const std::array<Triple, kPlaneTrials> triples = [] {
+    std::array<Triple, kPlaneTrials> all{};
+    for (std::uint64_t trial = 0; trial < kPlaneTrials; ++trial) {
+      all[trial] = random_triple(trial, kNoiseNeighbours);
+    }
+    return all;
+  }();
   FlatPlane flattest;
   std::array<double, kNoiseNeighbours> off{};
-  for (std::uint64_t trial = 0; trial < kPlaneTrials; ++trial) {
-    const CellPlane plane = plane_through(points, members, trial);
+  for (const auto& [a, b, c] : triples) {
+    const CellPlane plane = CellPlane::through(members[a], members[b], members[c]);
+    std::size_t nearer = 0;
     for (std::size_t k = 0; k < members.size(); ++k) {
-      off[k] = plane.distance(points.positions()[members[k]]);
+      off[k] = plane.distance(members[k]);
+      nearer += off[k] < flattest.farthest ? 1U : 0U;
     }
-    const auto last = off.begin() + static_cast<std::ptrdiff_t>(std::min(held, members.size()) - 1);
-    std::nth_element(off.begin(), last, off.begin() + static_cast<std::ptrdiff_t>(members.size()));
-    if (*last < flattest.farthest) {
+    if (nearer >= held) {
+      const auto last = off.begin() + static_cast<std::ptrdiff_t>(held - 1);
+      std::nth_element(off.begin(), last, off.end());
       flattest = {plane, *last};
     }
   }
@@ -133,28 +141,31 @@ class SurfaceTest {
     return narrowest;
   }
 
-  // Number of nearest neighbours that lie on a common surface with the point: the flattest plane
-  // through the neighbours of the neighbour passes near both.
-  std::size_t surfaces_through(std::uint32_t i, const std::vector<Neighbour>& near) const {
+  // True if at least `wanted` of the nearest neighbours lie on a common surface with the point: the
+  // flattest plane through the neighbours of the neighbour passes near both.
+  bool has_surfaces(std::uint32_t i, const std::vector<Neighbour>& near, std::size_t wanted) const {
     const Eigen::Vector3d& p = points_.positions()[i];
     const double tolerance = sigma_ * std::max(noise_, least_noise_ * local_spacing(near));
     std::size_t surfaces = 0;
     std::vector<Neighbour> found;
-    std::vector<std::uint32_t> members;
-    for (std::size_t k = 1; k <= kAsked; ++k) {
+    NoiseMembers members;
+    for (std::size_t k = 1; k <= kAsked && surfaces + kAsked + 1 - k >= wanted; ++k) {
       const Eigen::Vector3d& q = points_.positions()[near[k].index];
       points_.find_nearest(q, kNoiseNeighbours + 1, 0.7 * reach_, found);
-      members.clear();
+      std::size_t count = 0;
       for (const Neighbour& n : found) {
-        if (n.index != i && members.size() < kNoiseNeighbours) {
-          members.push_back(n.index);
+        if (n.index != i && count < kNoiseNeighbours) {
+          members[count++] = points_.positions()[n.index];
         }
       }
-      const CellPlane plane = flattest_plane(points_, members, kSurfaceHeld).plane;
+      const CellPlane plane = flattest_plane(members, kSurfaceHeld).plane;
       surfaces +=
           plane.distance(p) <= kTilt * tolerance && plane.distance(q) <= tolerance ? 1U : 0U;
+      if (surfaces == wanted) {
+        return true;
+      }
     }
-    return surfaces;
+    return false;
   }
 
   // Compares the distance of the sixth neighbour with the median of this distance at three
@@ -283,12 +294,21 @@ class StrayFinder {
       std::vector<Neighbour> near;
       for (std::size_t s = range.begin(); s < range.end(); ++s) {
         const double gap = test.narrowest_gap(suspects[s], near);
-        const bool dense = test.is_as_dense_as_others(near);
-        const bool inside = gap <= kInsideAngle || (gap <= kBorderAngle && dense);
-        const std::size_t wanted = inside ? kConfirm : dense ? kRescue : kRescueSparse;
-        stray[suspects[s]] = test.surfaces_through(suspects[s], near) >= wanted ? 0 : 1;
+        const std::size_t wanted = surfaces_wanted(test, gap, near);
+        stray[suspects[s]] = test.has_surfaces(suspects[s], near, wanted) ? 0 : 1;
       }
     });
+  }
+
+  static std::size_t surfaces_wanted(const SurfaceTest& test, double gap,
+                                     const std::vector<Neighbour>& near) {
+    if (gap <= kInsideAngle) {
+      return kConfirm;
+    }
+    if (!test.is_as_dense_as_others(near)) {
+      return kRescueSparse;
+    }
+    return gap <= kBorderAngle ? kConfirm : kRescue;
   }
 
   static std::uint32_t count32(const ZOrderedCloud& cloud) {
@@ -361,7 +381,9 @@ class StrayFinder {
     CellPlane best;
     std::size_t most = 0;
     for (std::uint64_t trial = 0; trial < kPlaneTrials && 10 * most < 9 * members.size(); ++trial) {
-      const CellPlane plane = plane_through(points_, members, trial);
+      const auto [a, b, c] = random_triple(trial, members.size());
+      const std::vector<Eigen::Vector3d>& p = points_.positions();
+      const CellPlane plane = CellPlane::through(p[members[a]], p[members[b]], p[members[c]]);
       const auto held = static_cast<std::size_t>(std::count_if(
           members.begin(), members.end(),
           [&](std::uint32_t i) { return plane.distance(points_.positions()[i]) <= tolerance; }));
@@ -380,15 +402,13 @@ class StrayFinder {
     std::vector<double> noise((points_.size() + stride - 1) / stride);
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, noise.size(), 64), [&](auto range) {
       std::vector<Neighbour> near;
-      std::vector<std::uint32_t> members;
+      NoiseMembers members;
       for (std::size_t s = range.begin(); s < range.end(); ++s) {
         points_.find_nearest(points_.positions()[s * stride], kNoiseNeighbours, 2.0 * spacing_,
                              near);
-        members.clear();
-        for (const Neighbour& n : near) {
-          members.push_back(n.index);
-        }
-        noise[s] = kDeviationPerMedian * flattest_plane(points_, members, kNoiseHeld).farthest;
+        std::transform(near.begin(), near.end(), members.begin(),
+                       [&](const Neighbour& n) { return points_.positions()[n.index]; });
+        noise[s] = kDeviationPerMedian * flattest_plane(members, kNoiseHeld).farthest;
       }
     });
     const auto middle = noise.begin() + static_cast<std::ptrdiff_t>(noise.size() / 2);

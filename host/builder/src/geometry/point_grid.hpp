@@ -27,8 +27,9 @@ class PointGrid {
   /// All points, cell by cell.
   [[nodiscard]] std::span<const std::uint32_t> order() const { return order_; }
 
+  /// Precondition: in the bounds of the points, so that the conversion rounds down.
   [[nodiscard]] Eigen::Vector3i cell_at(const Eigen::Vector3d& position) const {
-    return ((position - origin_) / edge_).array().floor().cast<int>();
+    return ((position - origin_) / edge_).cast<int>();
   }
   [[nodiscard]] Eigen::Vector3i cell_coordinates(std::size_t cell) const {
     return morton_cell(codes_[cell]);

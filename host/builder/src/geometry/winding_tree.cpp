@@ -1,5 +1,7 @@
 #include "geometry/winding_tree.hpp"
 
+#include <tbb/parallel_invoke.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,6 +18,25 @@ constexpr std::uint32_t kLeafSize = 8;
 // Size of the stack: twice the height of a balanced tree over 2^31 elements.
 constexpr std::size_t kMaxOpen = 64;
 
+constexpr std::uint32_t kWorthThread = 4096;  // elements
+
+// Number of nodes of a tree over some elements, and of one over one element more.
+struct NodeCounts {
+  std::uint32_t of_this;
+  std::uint32_t of_next;
+};
+
+NodeCounts nodes_over(std::uint32_t elements) {
+  if (elements < kLeafSize) {
+    return {1, 1};
+  }
+  const NodeCounts half = nodes_over(elements / 2);
+  const std::uint32_t mixed = 1 + half.of_this + half.of_next;
+  const bool even = elements % 2 == 0;
+  const std::uint32_t split = even ? 1 + 2 * half.of_this : mixed;
+  return {elements == kLeafSize ? 1 : split, even ? mixed : 1 + 2 * half.of_next};
+}
+
 double solid_angle(const SurfaceElement& element, const Eigen::Vector3d& d) {
   const double squared = d.squaredNorm();
   return squared > 0.0 ? element.area.dot(d) / (squared * std::sqrt(squared)) : 0.0;
@@ -25,7 +46,9 @@ double solid_angle(const SurfaceElement& element, const Eigen::Vector3d& d) {
 
 WindingTree::WindingTree(std::vector<SurfaceElement> elements) : elements_(std::move(elements)) {
   if (!elements_.empty()) {
-    add_node(0, static_cast<std::uint32_t>(elements_.size()));
+    const auto count = static_cast<std::uint32_t>(elements_.size());
+    nodes_.resize(nodes_over(count).of_this);
+    set_node(0, 0, count);
   }
 }
 
@@ -52,7 +75,7 @@ double WindingTree::angle(const Eigen::Vector3d& at) const {
   return sum;
 }
 
-void WindingTree::add_node(std::uint32_t first, std::uint32_t last) {
+void WindingTree::set_node(std::uint32_t index, std::uint32_t first, std::uint32_t last) {
   Box box;
   SurfaceElement sum{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   double weight = 0.0;
@@ -64,12 +87,11 @@ void WindingTree::add_node(std::uint32_t first, std::uint32_t last) {
     weight += own;
   }
   sum.centre = weight > 0.0 ? (sum.centre / weight).eval() : box.center();
-  const std::size_t index = nodes_.size();
-  nodes_.push_back({sum, 0.0, first, last, 0});
+  double squared_radius = 0.0;
   for (std::uint32_t k = first; k < last; ++k) {
-    nodes_[index].radius =
-        std::max(nodes_[index].radius, (elements_[k].centre - sum.centre).norm());
+    squared_radius = std::max(squared_radius, (elements_[k].centre - sum.centre).squaredNorm());
   }
+  nodes_[index] = {sum, std::sqrt(squared_radius), first, last, 0};
   if (last - first <= kLeafSize) {
     return;
   }
@@ -80,9 +102,15 @@ void WindingTree::add_node(std::uint32_t first, std::uint32_t last) {
                    [axis](const SurfaceElement& a, const SurfaceElement& b) {
                      return a.centre[axis] < b.centre[axis];
                    });
-  add_node(first, middle);
-  nodes_[index].right = static_cast<std::uint32_t>(nodes_.size());
-  add_node(middle, last);
+  const std::uint32_t right = index + 1 + nodes_over(middle - first).of_this;
+  nodes_[index].right = right;
+  if (last - first < kWorthThread) {
+    set_node(index + 1, first, middle);
+    set_node(right, middle, last);
+    return;
+  }
+  tbb::parallel_invoke([&] { set_node(index + 1, first, middle); },
+                       [&] { set_node(right, middle, last); });
 }
 
 }  // namespace tactree::builder

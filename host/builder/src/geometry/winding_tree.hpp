@@ -33,7 +33,8 @@ class WindingTree {
     std::uint32_t last = 0;
     std::uint32_t right = 0;  // the left child follows its parent; 0: no children
   };
-  void add_node(std::uint32_t first, std::uint32_t last);
+  // Also sets the nodes below.
+  void set_node(std::uint32_t index, std::uint32_t first, std::uint32_t last);
 
   std::vector<SurfaceElement> elements_;
   std::vector<Node> nodes_;

@@ -6,6 +6,7 @@
 
 #include <bit>
 #include <cmath>
+#include <numeric>
 
 #include "geometry/morton.hpp"
 
@@ -27,6 +28,26 @@ bool lexicographically_less(const Eigen::Vector3d& a, const Eigen::Vector3d& b) 
 }
 
 }  // namespace
+
+void keep_nearest(std::size_t count, std::vector<Neighbour>& found) {
+  if (count == 0 || count >= found.size()) {
+    found.resize(std::min(count, found.size()));
+    return;
+  }
+  thread_local std::vector<double> distances;
+  distances.clear();
+  for (const Neighbour& n : found) {
+    distances.push_back(n.squared_distance);
+  }
+  const auto last = distances.begin() + static_cast<std::ptrdiff_t>(count - 1);
+  std::nth_element(distances.begin(), last, distances.end());
+  std::erase_if(found,
+                [farthest = *last](const Neighbour& n) { return n.squared_distance > farthest; });
+  if (found.size() > count) {  // several at that distance
+    std::sort(found.begin(), found.end());
+    found.resize(count);
+  }
+}
 
 ZOrderedCloud::ZOrderedCloud(Cloud cloud) {
   const Box box = bounds_of(cloud.positions);
@@ -55,6 +76,25 @@ ZOrderedCloud::ZOrderedCloud(Cloud cloud) {
   }
   entries = {};
   cloud_ = select(cloud, order);
+  index();
+}
+
+void ZOrderedCloud::index() {
+  // At most one cell for two points.
+  constexpr int kMostLevels = 8;
+  coarse_level_ = 0;
+  while (coarse_level_ < kMostLevels && std::size_t{16} << 3 * coarse_level_ <= codes_.size()) {
+    ++coarse_level_;
+  }
+  const std::size_t cells = std::size_t{1} << 3 * coarse_level_;
+  const int shift = 3 * (kFinestLevel - coarse_level_);
+  coarse_.clear();
+  coarse_.reserve(cells + 1);
+  for (std::size_t i = 0; i < codes_.size(); ++i) {
+    coarse_.resize(std::max(coarse_.size(), (codes_[i] >> shift) + 1),
+                   static_cast<std::uint32_t>(i));
+  }
+  coarse_.resize(cells + 1, static_cast<std::uint32_t>(codes_.size()));
 }
 
 ZOrderedCloud ZOrderedCloud::subset(std::span<const std::uint32_t> indices) const {
@@ -66,6 +106,7 @@ ZOrderedCloud ZOrderedCloud::subset(std::span<const std::uint32_t> indices) cons
   for (const std::uint32_t i : indices) {
     chosen.codes_.push_back(codes_[i]);
   }
+  chosen.index();
   return chosen;
 }
 
@@ -109,40 +150,46 @@ CellRange ZOrderedCloud::find(const Eigen::Vector3i& cell, int level) const {
   const int shift = 3 * (kFinestLevel - level);
   const std::uint64_t low = morton_code(cell) << shift;
   const std::uint64_t high = low | ((std::uint64_t{1} << shift) - 1);
-  const auto first = std::lower_bound(codes_.begin(), codes_.end(), low);
-  if (first == codes_.end() || *first > high) {
-    return {};
-  }
+  const int coarse_shift = 3 * (kFinestLevel - coarse_level_);
+  const auto at = [&](std::size_t i) { return codes_.begin() + static_cast<std::ptrdiff_t>(i); };
+  const auto end_of = [&](std::uint64_t code) { return at(coarse_[(code >> coarse_shift) + 1]); };
+  const auto first = std::lower_bound(at(coarse_[low >> coarse_shift]), end_of(low), low);
   // Cells are small relative to the cloud, so their end is found by exponential search.
+  const auto end = end_of(high);
+  const auto left = static_cast<std::size_t>(end - first);
   std::size_t step = 1;
-  const auto left = static_cast<std::size_t>(codes_.end() - first);
-  while (step < left && first[static_cast<std::ptrdiff_t>(step)] <= high) {
+  while (step <= left && first[static_cast<std::ptrdiff_t>(step - 1)] <= high) {
     step *= 2;
   }
   const auto last =
       std::upper_bound(first + static_cast<std::ptrdiff_t>(step / 2),
-                       first + static_cast<std::ptrdiff_t>(std::min(step, left)), high);
+                       first + static_cast<std::ptrdiff_t>(std::min(step - 1, left)), high);
   return {static_cast<std::uint32_t>(first - codes_.begin()),
           static_cast<std::uint32_t>(last - codes_.begin())};
 }
 
 std::vector<std::size_t> ZOrderedCloud::count_cells() const {
-  std::vector<std::size_t> counts(kFinestLevel + 1, codes_.empty() ? 0 : 1);
+  // By the coarsest level at which a point begins a cell; it then begins one at all finer levels.
+  std::vector<std::size_t> counts(kFinestLevel + 1, 0);
   for (std::size_t i = 1; i < codes_.size(); ++i) {
     const std::uint64_t differing = codes_[i] ^ codes_[i - 1];
-    if (differing == 0) {
-      continue;
-    }
-    const int coarsest = kFinestLevel - (63 - std::countl_zero(differing)) / 3;
-    for (int level = coarsest; level <= kFinestLevel; ++level) {
-      ++counts[static_cast<std::size_t>(level)];
+    if (differing != 0) {
+      ++counts[static_cast<std::size_t>(kFinestLevel - (63 - std::countl_zero(differing)) / 3)];
     }
   }
+  counts[0] += codes_.empty() ? 0U : 1U;
+  std::partial_sum(counts.begin(), counts.end(), counts.begin());
   return counts;
 }
 
 void ZOrderedCloud::find_nearest(const Eigen::Vector3d& centre, std::size_t count, double guess,
                                  std::vector<Neighbour>& found) const {
+  find_nearest_unsorted(centre, count, guess, found);
+  std::sort(found.begin(), found.end());
+}
+
+void ZOrderedCloud::find_nearest_unsorted(const Eigen::Vector3d& centre, std::size_t count,
+                                          double guess, std::vector<Neighbour>& found) const {
   const double everywhere = 4.0 * edge_ + 2.0 * (centre - origin_).norm();
   double radius = guess > 0.0 ? std::min(guess, everywhere) : everywhere;
   count = std::min(count, size());
@@ -156,19 +203,12 @@ void ZOrderedCloud::find_nearest(const Eigen::Vector3d& centre, std::size_t coun
     }
     radius = std::min(2.0 * radius, everywhere);
   }
-  count = std::min(count, found.size());
-  const auto last = found.begin() + static_cast<std::ptrdiff_t>(count);
-  std::partial_sort(found.begin(), last, found.end());
-  found.resize(count);
+  keep_nearest(count, found);
 }
 
 Eigen::Vector3i ZOrderedCloud::finest_cell(const Eigen::Vector3d& position) const {
   constexpr double kCells = 1 << kFinestLevel;
-  return ((position - origin_).array() * (kCells / edge_))
-      .floor()
-      .max(0.0)
-      .min(kCells - 1.0)
-      .cast<int>();
+  return ((position - origin_).array() * (kCells / edge_)).max(0.0).min(kCells - 1.0).cast<int>();
 }
 
 std::uint64_t drop_duplicates(ZOrderedCloud& points) {

@@ -29,6 +29,10 @@ struct Neighbour {
   }
 };
 
+/// Keeps the `count` nearest (or all, if there are fewer) in any order; of equal distances those of
+/// the lowest indices.
+void keep_nearest(std::size_t count, std::vector<Neighbour>& found);
+
 /// A cloud in Z order. Preconditions: finite positions, at most 2^32 - 2 of them. Only transform()
 /// and set_normals() modify it.
 class ZOrderedCloud {
@@ -66,42 +70,58 @@ class ZOrderedCloud {
   /// Number of occupied cells of each level. Cost: one pass.
   [[nodiscard]] std::vector<std::size_t> count_cells() const;
 
+  /// Calls visit(range) for the cells of a level that the box [low, high] touches, x fastest.
+  template <typename Visit>
+  void visit_cells(const Eigen::Vector3d& low, const Eigen::Vector3d& high, int level,
+                   Visit&& visit) const {
+    const int shift = kFinestLevel - level;
+    const Eigen::Vector3i first = finest_cell(low);
+    const Eigen::Vector3i last = finest_cell(high);
+    for (int z = first.z() >> shift; z <= last.z() >> shift; ++z) {
+      for (int y = first.y() >> shift; y <= last.y() >> shift; ++y) {
+        for (int x = first.x() >> shift; x <= last.x() >> shift; ++x) {
+          visit(find({x, y, z}, level));
+        }
+      }
+    }
+  }
+
   /// Calls visit(index, squared_distance) for every point within `radius` of `centre`, in a fixed
   /// order.
   template <typename Visit>
   void visit_within(const Eigen::Vector3d& centre, double radius, Visit&& visit) const {
     // At this level, few cells must be searched and few of their points lie outside the radius.
     const int level = level_for_edge(2.0 * radius);
-    const int shift = kFinestLevel - level;
-    const Eigen::Vector3i low = finest_cell(centre.array() - radius);
-    const Eigen::Vector3i high = finest_cell(centre.array() + radius);
-    for (int z = low.z() >> shift; z <= high.z() >> shift; ++z) {
-      for (int y = low.y() >> shift; y <= high.y() >> shift; ++y) {
-        for (int x = low.x() >> shift; x <= high.x() >> shift; ++x) {
-          const CellRange range = find({x, y, z}, level);
-          for (std::uint32_t i = range.first; i < range.last; ++i) {
-            const double squared = (cloud_.positions[i] - centre).squaredNorm();
-            if (squared <= radius * radius) {
-              visit(i, squared);
-            }
-          }
+    const double squared_radius = radius * radius;
+    visit_cells(centre.array() - radius, centre.array() + radius, level, [&](CellRange range) {
+      for (std::uint32_t i = range.first; i < range.last; ++i) {
+        const double squared = (cloud_.positions[i] - centre).squaredNorm();
+        if (squared <= squared_radius) {
+          visit(i, squared);
         }
       }
-    }
+    });
   }
 
   /// Returns the `count` nearest points (or all, if there are fewer), nearest first, ties by index.
   /// `guess` is the estimated distance of the last one and influences the time only.
   void find_nearest(const Eigen::Vector3d& centre, std::size_t count, double guess,
                     std::vector<Neighbour>& found) const;
+  /// The same points in any order.
+  void find_nearest_unsorted(const Eigen::Vector3d& centre, std::size_t count, double guess,
+                             std::vector<Neighbour>& found) const;
 
  private:
   [[nodiscard]] Eigen::Vector3i finest_cell(const Eigen::Vector3d& position) const;
+  void index();
 
   Cloud cloud_;
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
   double edge_ = 1.0;  // of level 0
   std::vector<std::uint64_t> codes_;
+  // The first point of each cell of a coarse level, occupied or not, and the number of points.
+  std::vector<std::uint32_t> coarse_ = {0, 0};
+  int coarse_level_ = 0;
 };
 
 /// Keeps one of several points with equal coordinates, if possible one with a normal.

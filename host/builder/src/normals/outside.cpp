@@ -1,5 +1,10 @@
 #include "normals/outside.hpp"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <numbers>
 
@@ -102,45 +107,84 @@ void Outside::lay_out(std::span<const Eigen::Vector3d> positions) {
   far_reached_.assign(near_.size(), 0);
 }
 
-void Outside::block_around(std::span<const Eigen::Vector3d> positions) {
-  Bits all;
-  all.fill(~std::uint64_t{0});
-  const double squared = radius_ * radius_;
-  Eigen::Vector3i last = Eigen::Vector3i::Constant(-1);
-  for (const Eigen::Vector3d& p : positions) {
-    // Consecutive points in the same half cell are skipped, because one of them is enough.
-    const Eigen::Vector3i half = (2.0 * (p - origin_) / edge_).array().floor().cast<int>();
-    if (half == last) {
-      continue;
+// Blocks the cells `first` to `last` of a row. In a block, a row is one byte of a layer.
+void Outside::block_row(int first, int last, int y, int z) {
+  for (int x = first; x <= last; x = (x | 7) + 1) {
+    Bits& free = free_[near_[block_of(x >> 3, y >> 3, z >> 3)] - 1];
+    const int end = std::min(last, x | 7);
+    const std::uint64_t cells = (2U << (end & 7)) - (1U << (x & 7));
+    const std::atomic_ref layer(free[static_cast<std::size_t>(z & 7)]);
+    if ((layer.load(std::memory_order_relaxed) & cells << (8 * (y & 7))) != 0) {
+      layer.fetch_and(~(cells << (8 * (y & 7))), std::memory_order_relaxed);
     }
-    last = half;
-    const Eigen::Vector3i low = cell_at(p.array() - radius_);
-    const Eigen::Vector3i high = cell_at(p.array() + radius_);
-    for (int z = low.z(); z <= high.z(); ++z) {
-      const double dz = origin_.z() + edge_ * (z + 0.5) - p.z();
-      for (int y = low.y(); y <= high.y(); ++y) {
-        const double dy = origin_.y() + edge_ * (y + 0.5) - p.y();
-        const double left = squared - dz * dz - dy * dy;
-        if (left < 0.0) {
-          continue;
-        }
-        const double half_row = std::sqrt(left);
-        const double middle = (p.x() - origin_.x()) / edge_ - 0.5;
-        const int first = static_cast<int>(std::ceil(middle - half_row / edge_));
-        const int end = static_cast<int>(std::floor(middle + half_row / edge_));
-        for (int x = first; x <= end; ++x) {
-          std::uint32_t& slot = near_[block_of(x >> 3, y >> 3, z >> 3)];
-          if (slot == kFar) {
-            free_.push_back(all);
-            slot = static_cast<std::uint32_t>(free_.size());
-          }
-          free_[slot - 1][static_cast<std::size_t>(z & 7)] &=
-              ~(std::uint64_t{1} << (8 * (y & 7) + (x & 7)));
-        }
+  }
+}
+
+// Blocks the cells within the radius of a point.
+void Outside::block_ball(const Eigen::Vector3d& p) {
+  const double squared = radius_ * radius_;
+  const double middle = (p.x() - origin_.x()) / edge_ - 0.5;
+  const Eigen::Vector3i low = cell_at(p.array() - radius_);
+  const Eigen::Vector3i high = cell_at(p.array() + radius_);
+  for (int z = low.z(); z <= high.z(); ++z) {
+    const double dz = origin_.z() + edge_ * (z + 0.5) - p.z();
+    for (int y = low.y(); y <= high.y(); ++y) {
+      const double dy = origin_.y() + edge_ * (y + 0.5) - p.y();
+      const double left = squared - dz * dz - dy * dy;
+      if (left < 0.0) {
+        continue;
+      }
+      const double half_row = std::sqrt(left) / edge_;
+      // Both ends are positive because of the margin; a conversion rounds them down.
+      const auto before = static_cast<int>(middle - half_row);
+      const bool at_centre = static_cast<double>(before) == middle - half_row;
+      block_row(at_centre ? before : before + 1, static_cast<int>(middle + half_row), y, z);
+    }
+  }
+}
+
+// Gives a bitmap to each block that the ball around a point may touch.
+void Outside::mark_blocks(const Eigen::Vector3d& p) {
+  // By rounding, a position may seem to touch the outermost layer of blocks.
+  const Eigen::Vector3i low = cell_at(p.array() - radius_).array().max(kBlock);
+  const Eigen::Vector3i high = cell_at(p.array() + radius_);
+  for (int z = low.z() >> 3; z <= high.z() >> 3; ++z) {
+    for (int y = low.y() >> 3; y <= high.y() >> 3; ++y) {
+      for (int x = low.x() >> 3; x <= high.x() >> 3; ++x) {
+        std::atomic_ref(near_[block_of(x, y, z)]).store(1, std::memory_order_relaxed);
       }
     }
   }
-  reached_.assign(free_.size(), Bits{});
+}
+
+void Outside::block_around(std::span<const Eigen::Vector3d> positions) {
+  const auto half_cell = [&](std::size_t i) -> Eigen::Vector3i {
+    return (2.0 * (positions[i] - origin_) / edge_).cast<int>();
+  };
+  const auto for_each = [&](auto&& work) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, positions.size(), 4096), [&](auto range) {
+      // Consecutive points in the same half cell are skipped, because one of them is enough.
+      Eigen::Vector3i last = Eigen::Vector3i::Constant(-1);
+      for (std::size_t i = range.begin(); i < range.end(); ++i) {
+        const Eigen::Vector3i half = half_cell(i);
+        const bool repeats = i == range.begin() ? i > 0 && half == half_cell(i - 1) : half == last;
+        last = half;
+        if (!repeats) {
+          work(positions[i]);
+        }
+      }
+    });
+  };
+  for_each([&](const Eigen::Vector3d& p) { mark_blocks(p); });
+  std::uint32_t count = 0;
+  for (std::uint32_t& slot : near_) {
+    slot = slot == kFar ? kFar : ++count;
+  }
+  Bits all;
+  all.fill(~std::uint64_t{0});
+  free_.assign(count, all);
+  for_each([&](const Eigen::Vector3d& p) { block_ball(p); });
+  reached_.assign(count, Bits{});
 }
 
 Outside::Bits Outside::reached_bits(std::size_t block) const {

@@ -30,10 +30,11 @@ class Outside {
 
  private:
   using Bits = std::array<std::uint64_t, 8>;  // one word per layer z; bit 8 y + x
-  static constexpr std::uint32_t kFar = 0;    // a block without a blocked cell
+  static constexpr std::uint32_t kFar = 0;    // a block without a bitmap, which has no blocked cell
 
+  /// Precondition: in the grid, so that the conversion rounds down.
   [[nodiscard]] Eigen::Vector3i cell_at(const Eigen::Vector3d& position) const {
-    return ((position - origin_) / edge_).array().floor().cast<int>();
+    return ((position - origin_) / edge_).cast<int>();
   }
   [[nodiscard]] bool reached_cell(const Eigen::Vector3f& in_cells) const;
   [[nodiscard]] std::size_t block_of(int x, int y, int z) const {
@@ -43,6 +44,9 @@ class Outside {
            static_cast<std::size_t>(x);
   }
   void lay_out(std::span<const Eigen::Vector3d> positions);
+  void mark_blocks(const Eigen::Vector3d& p);
+  void block_row(int first, int last, int y, int z);
+  void block_ball(const Eigen::Vector3d& p);
   void block_around(std::span<const Eigen::Vector3d> positions);
   void reach_border();
   void flood();

@@ -1,17 +1,17 @@
 #include "normals/signed_graph.hpp"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
+
+#include "geometry/local_points.hpp"
 
 namespace tactree::builder {
 namespace {
 
 constexpr std::size_t kGraphNeighbours = 10;
 constexpr double kFarthestEdgeSpacings = 3.0;
+constexpr double kUsualReachSpacings = 2.3;  // a disc of this radius holds these neighbours
 // A steeper chord than across an edge of 90 degrees passes through the body instead of along its
 // surface.
 constexpr float kMaxChordSlope = 0.75F;
@@ -41,23 +41,38 @@ using Nearest = std::array<std::uint32_t, kGraphNeighbours>;
 std::vector<Nearest> nearest_neighbours(const ZOrderedCloud& points, double spacing) {
   const double farthest = kFarthestEdgeSpacings * spacing;
   std::vector<Nearest> nearest(points.size());
-  tbb::parallel_for(
-      tbb::blocked_range<std::uint32_t>(0, static_cast<std::uint32_t>(points.size()), 256),
-      [&](auto range) {
-        std::vector<Neighbour> found;
-        for (std::uint32_t i = range.begin(); i < range.end(); ++i) {
-          points.find_nearest(points.positions()[i], kGraphNeighbours + 1, 2.3 * spacing, found);
-          nearest[i].fill(i);
-          std::size_t count = 0;
-          for (const Neighbour& n : found) {
-            if (n.index != i && count < kGraphNeighbours &&
-                n.squared_distance <= farthest * farthest) {
-              nearest[i][count++] = n.index;
-            }
+  for_each_with_local(
+      points, points, kUsualReachSpacings * spacing, [&](LocalPoints& local, std::uint32_t i) {
+        thread_local std::vector<Neighbour> found;
+        local.find_nearest_unsorted(points.positions()[i], kGraphNeighbours + 1, found);
+        std::sort(found.begin(), found.end());
+        nearest[i].fill(i);
+        std::size_t count = 0;
+        for (const Neighbour& n : found) {
+          if (n.index != i && count < kGraphNeighbours &&
+              n.squared_distance <= farthest * farthest) {
+            nearest[i][count++] = n.index;
           }
         }
       });
   return nearest;
+}
+
+void add_edges_of(std::uint32_t i, const ZOrderedCloud& points,
+                  std::span<const Eigen::Vector3f> normals, const std::vector<Nearest>& nearest,
+                  std::vector<SignedEdge>& edges) {
+  for (const std::uint32_t j : nearest[i]) {
+    // If both ends list the edge, the lower one adds it.
+    const bool listed_by_lower =
+        j < i && std::find(nearest[j].begin(), nearest[j].end(), i) != nearest[j].end();
+    if (j == i || listed_by_lower) {
+      continue;
+    }
+    const float weight = weight_of(points, normals, i, j);
+    if (weight != 0.0F) {
+      edges.push_back({std::min(i, j), std::max(i, j), weight});
+    }
+  }
 }
 
 // Union-find that stores the sign of each member relative to the root.
@@ -126,21 +141,25 @@ class SignedSets {
 std::vector<SignedEdge> signed_graph(const ZOrderedCloud& points,
                                      std::span<const Eigen::Vector3f> normals, double spacing) {
   const std::vector<Nearest> nearest = nearest_neighbours(points, spacing);
-  std::vector<SignedEdge> edges;
-  edges.reserve(points.size() * 6);
-  for (std::uint32_t i = 0; i < points.size(); ++i) {
-    for (const std::uint32_t j : nearest[i]) {
-      // If both ends list the edge, the lower one adds it.
-      const bool listed_by_lower =
-          j < i && std::find(nearest[j].begin(), nearest[j].end(), i) != nearest[j].end();
-      if (j == i || listed_by_lower) {
-        continue;
-      }
-      const float weight = weight_of(points, normals, i, j);
-      if (weight != 0.0F) {
-        edges.push_back({std::min(i, j), std::max(i, j), weight});
-      }
+  // Each part of the points has a list of its own, so that their order does not depend on threads.
+  constexpr std::size_t kPart = 8192;
+  std::vector<std::vector<SignedEdge>> parts((points.size() + kPart - 1) / kPart);
+  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
+    const auto end = static_cast<std::uint32_t>(std::min(points.size(), (part + 1) * kPart));
+    parts[part].reserve(6 * kPart);
+    for (auto i = static_cast<std::uint32_t>(part * kPart); i < end; ++i) {
+      add_edges_of(i, points, normals, nearest, parts[part]);
     }
+  });
+  std::size_t count = 0;
+  for (const std::vector<SignedEdge>& part : parts) {
+    count += part.size();
+  }
+  std::vector<SignedEdge> edges;
+  edges.reserve(count);
+  for (std::vector<SignedEdge>& part : parts) {
+    edges.insert(edges.end(), part.begin(), part.end());
+    part = {};
   }
   return edges;
 }

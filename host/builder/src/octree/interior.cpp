@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "geometry/disjoint_sets.hpp"
+#include "geometry/local_points.hpp"
 #include "geometry/point_grid.hpp"
 #include "octree/octree_builder.hpp"
 #include "tactree/core/model/octree.hpp"
@@ -17,6 +18,8 @@ namespace {
 
 // Radius of the neighbourhood of a point, in spacings.
 constexpr double kNear = 2.0;
+// Edge of the blocks of points that are searched together, in such radii.
+constexpr double kBlock = 2.0;
 // Maximum area of a point, in squared spacings, because a point at a border has half the
 // neighbours.
 constexpr double kMaxArea = 2.0;
@@ -35,23 +38,39 @@ struct Neighbourhood {
 Neighbourhood look_at_neighbours(const OrientedPoints& points) {
   const auto count = static_cast<std::uint32_t>(points.positions.size());
   const double radius = kNear * points.spacing;
-  const PointGrid grid(points.positions, radius);
+  const PointGrid grid(points.positions, kBlock * radius);
   Neighbourhood result;
   result.areas.resize(count);
   DisjointSets sets(count);
-  for (std::uint32_t i = 0; i < count; ++i) {
+  const auto look_from = [&](LocalPoints& local, std::uint32_t i) {
     int near = 0;
-    grid.visit_near(points.positions[i], radius, [&](std::uint32_t other) {
-      const bool agrees = points.normals[i].dot(points.normals[other]) > 0.0F;
-      if (agrees &&
-          (points.positions[other] - points.positions[i]).squaredNorm() <= radius * radius) {
+    local.visit_within(points.positions[i], radius, [&](std::uint32_t other, double) {
+      if (points.normals[i].dot(points.normals[other]) > 0.0F) {
         ++near;
-        sets.join(i, other);
+        if (other < i) {
+          sets.join(i, other);
+        }
       }
     });
     result.areas[i] = std::min(std::numbers::pi * radius * radius / std::max(near, 1),
                                kMaxArea * points.spacing * points.spacing);
-  }
+  };
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, grid.cell_count(), 16), [&](auto range) {
+    LocalPoints local;
+    for (std::size_t cell = range.begin(); cell < range.end(); ++cell) {
+      Box box;
+      for (const std::uint32_t i : grid.points_of(cell)) {
+        box.extend(points.positions[i]);
+      }
+      local.gather_from(box, radius, [&](auto&& visit) {
+        grid.visit_near(box.center(), radius + 0.5 * largest_edge(box),
+                        [&](std::uint32_t i) { visit(points.positions[i], i); });
+      });
+      for (const std::uint32_t i : grid.points_of(cell)) {
+        look_from(local, i);
+      }
+    }
+  });
   result.piece_of.resize(count);
   for (std::uint32_t i = 0; i < count; ++i) {
     result.piece_of[i] = sets.find(i);

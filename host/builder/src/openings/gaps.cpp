@@ -1,7 +1,6 @@
 #include "openings/gaps.hpp"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
+#include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +8,7 @@
 #include <numbers>
 
 #include "geometry/disjoint_sets.hpp"
+#include "geometry/local_points.hpp"
 
 namespace tactree::builder {
 namespace {
@@ -25,6 +25,8 @@ constexpr float kBentCosine = 0.75F;
 constexpr double kBentAwayCosine = 0.5;
 constexpr double kBehindSpacings = 0.3;
 constexpr double kGoesOnSpacings = 1.0;
+// Distance of an empty ball from the point beside it.
+constexpr double kBesideSpacings = 0.85;
 // Average distance of border points from the edge of a hole, summed over both sides.
 constexpr double kStandBackSpacings = 0.5;
 // Border points belong to one opening if they are close to each other and their `away` directions
@@ -81,8 +83,15 @@ class PointProbe {
   PointProbe(const ZOrderedCloud& points, double spacing, double radius)
       : points_(points), spacing_(spacing), radius_(radius) {}
 
+  /// Distance up to which a probe looks.
+  [[nodiscard]] double reach() const {
+    return std::max(kNeighbourSpacings * spacing_, radius_ + kBesideSpacings * spacing_);
+  }
+
   // True for a border point. Otherwise `gap` is the diameter of an empty ball beside the point.
-  bool is_border(std::uint32_t i, Eigen::Vector3d& away, double& gap) {
+  // `local` holds the points within reach of the point.
+  bool is_border(LocalPoints& local, std::uint32_t i, Eigen::Vector3d& away, double& gap) {
+    local_ = &local;
     const Eigen::Vector3d& p = points_.positions()[i];
     gather(i);
     // In the plane of the mean normal both faces of an edge are visible.
@@ -98,7 +107,7 @@ class PointProbe {
       gap = 0.0;
       return !turns_at(i, away);
     }
-    gap = empty_ball(p + 0.85 * spacing_ * away);
+    gap = empty_ball(p + kBesideSpacings * spacing_ * away);
     return false;
   }
 
@@ -108,7 +117,7 @@ class PointProbe {
     const Eigen::Vector3f& normal = points_.normals()[i];
     Eigen::Vector3f sum = normal;
     near_.clear();
-    points_.visit_within(points_.positions()[i], kNeighbourSpacings * spacing_,
+    local_->visit_within(points_.positions()[i], kNeighbourSpacings * spacing_,
                          [&](std::uint32_t j, double) {
                            if (j != i && normal.dot(points_.normals()[j]) > kOtherSideCosine) {
                              near_.push_back(j);
@@ -121,7 +130,7 @@ class PointProbe {
   [[nodiscard]] bool wedge_holds_point(std::uint32_t i, const Eigen::Vector3d& away) const {
     const Eigen::Vector3d& p = points_.positions()[i];
     bool found = false;
-    points_.visit_within(p, radius_, [&](std::uint32_t j, double squared) {
+    local_->visit_within(p, radius_, [&](std::uint32_t j, double squared) {
       const double along = (points_.positions()[j] - p).dot(away);
       found = found || (along > 0.0 && along * along > kWedgeCosine * kWedgeCosine * squared &&
                         points_.normals()[i].dot(points_.normals()[j]) > kOtherSideCosine);
@@ -137,7 +146,7 @@ class PointProbe {
     bool bends = false;
     bool other_side = false;
     bool other_side_goes_on = false;
-    points_.visit_within(p, radius_, [&](std::uint32_t j, double) {
+    local_->visit_within(p, radius_, [&](std::uint32_t j, double) {
       const Eigen::Vector3f& other = points_.normals()[j];
       const float cosine = normal.dot(other);
       const double along = (points_.positions()[j] - p).dot(away);
@@ -153,7 +162,7 @@ class PointProbe {
 
   [[nodiscard]] double empty_ball(const Eigen::Vector3d& centre) const {
     double least = radius_ * radius_;
-    points_.visit_within(centre, radius_,
+    local_->visit_within(centre, radius_,
                          [&](std::uint32_t, double squared) { least = std::min(least, squared); });
     return 2.0 * std::sqrt(least);
   }
@@ -161,6 +170,7 @@ class PointProbe {
   const ZOrderedCloud& points_;
   double spacing_;
   double radius_;
+  LocalPoints* local_ = nullptr;
   std::vector<std::uint32_t> near_;
   Eigen::Vector3d mean_normal_ = Eigen::Vector3d::UnitZ();
   std::vector<double> directions_;
@@ -248,16 +258,15 @@ Probed probe_all(const ZOrderedCloud& points, double spacing, double radius) {
   const auto count = static_cast<std::uint32_t>(points.size());
   Probed probed{std::vector<Eigen::Vector3f>(count, Eigen::Vector3f::Zero()),
                 std::vector<float>(count, 0.0F)};
-  tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, count, 256), [&](auto range) {
-    PointProbe probe(points, spacing, radius);
-    for (std::uint32_t i = range.begin(); i < range.end(); ++i) {
-      Eigen::Vector3d direction;
-      double width = 0.0;
-      if (probe.is_border(i, direction, width)) {
-        probed.away[i] = direction.cast<float>();
-      }
-      probed.gap[i] = static_cast<float>(width);
+  const PointProbe blank(points, spacing, radius);
+  tbb::enumerable_thread_specific<PointProbe> probes(blank);
+  for_each_with_local(points, points, blank.reach(), [&](LocalPoints& local, std::uint32_t i) {
+    Eigen::Vector3d direction;
+    double width = 0.0;
+    if (probes.local().is_border(local, i, direction, width)) {
+      probed.away[i] = direction.cast<float>();
     }
+    probed.gap[i] = static_cast<float>(width);
   });
   return probed;
 }

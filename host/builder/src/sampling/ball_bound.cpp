@@ -6,7 +6,10 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cmath>
 #include <cstddef>
+#include <cstring>
 #include <utility>
 
 #include "geometry/morton.hpp"
@@ -111,51 +114,54 @@ std::vector<Eigen::Vector3i> cells_of_centres(const PointGrid& grid) {
 using Floats = float __attribute__((vector_size(16)));
 using Integers = std::int32_t __attribute__((vector_size(16)));
 
-// Points relative to the centre of a cube of the grid, four at a time.
+// Points relative to the centre of a cube of the grid, compared four at a time.
 class Candidates {
  public:
   [[nodiscard]] std::uint32_t size() const { return size_; }
-  [[nodiscard]] std::uint32_t index(std::uint32_t i) const { return blocks_[i / 4].index[i % 4]; }
-  [[nodiscard]] Eigen::Vector3f position(std::uint32_t i) const {
-    const Block& block = blocks_[i / 4];
-    return {block.x[i % 4], block.y[i % 4], block.z[i % 4]};
-  }
+  [[nodiscard]] std::uint32_t index(std::uint32_t i) const { return index_[i]; }
+  [[nodiscard]] Eigen::Vector3f position(std::uint32_t i) const { return {x_[i], y_[i], z_[i]}; }
 
-  void clear() {
-    blocks_.clear();
-    size_ = 0;
-  }
+  void clear() { size_ = 0; }
   void add(const Eigen::Vector3f& position, std::uint32_t index) {
-    const std::uint32_t lane = size_++ % 4;
-    if (lane == 0) {
-      const Floats away = {kAway, kAway, kAway, kAway};
-      blocks_.push_back({away, away, away, {}});
+    make_room(size_ + 1);
+    x_[size_] = position.x();
+    y_[size_] = position.y();
+    z_[size_] = position.z();
+    index_[size_++] = index;
+  }
+  // Fills the last group of four. Required between add() and any comparison.
+  void finish() {
+    make_room(size_);
+    for (std::uint32_t i = size_; i % 4 != 0; ++i) {
+      x_[i] = y_[i] = z_[i] = kAway;
     }
-    Block& block = blocks_.back();
-    block.x[lane] = position.x();
-    block.y[lane] = position.y();
-    block.z[lane] = position.z();
-    block.index[lane] = index;
   }
 
   // Number of points within a distance of 1 from the cube centre +- half_edge.
   [[nodiscard]] std::uint32_t count_near(const Eigen::Vector3f& centre, float half_edge) const {
     Integers count = {0, 0, 0, 0};
-    for (const Block& block : blocks_) {
-      count -= near(block, centre, half_edge);  // true is -1
+    for (std::uint32_t i = 0; i < size_; i += 4) {
+      count -= near(i, centre, half_edge);  // true is -1
     }
     return static_cast<std::uint32_t>(count[0] + count[1] + count[2] + count[3]);
   }
-  // Appends these points to `found`.
+  // Replaces `found` by these points.
   void filter(const Eigen::Vector3f& centre, float half_edge, Candidates& found) const {
-    for (std::uint32_t b = 0; b < blocks_.size(); ++b) {
-      const Integers is_near = near(blocks_[b], centre, half_edge);
+    found.make_room(size_);
+    std::uint32_t count = 0;
+    for (std::uint32_t i = 0; i < size_; i += 4) {
+      const Integers is_near = near(i, centre, half_edge);
       for (std::uint32_t lane = 0; lane < 4; ++lane) {
-        if (is_near[lane] != 0) {
-          found.add(position(4 * b + lane), index(4 * b + lane));
-        }
+        // Without a branch: the next point overwrites one that is not near.
+        found.x_[count] = x_[i + lane];
+        found.y_[count] = y_[i + lane];
+        found.z_[count] = z_[i + lane];
+        found.index_[count] = index_[i + lane];
+        count -= static_cast<std::uint32_t>(is_near[lane]);
       }
     }
+    found.size_ = count;
+    found.finish();
   }
   // True if all points lie beyond the plane at the distance `margin` from `centre` towards their
   // mean.
@@ -178,29 +184,42 @@ class Candidates {
   }
 
  private:
-  struct Block {
-    Floats x;
-    Floats y;
-    Floats z;
-    std::array<std::uint32_t, 4> index;
-  };
   static constexpr float kAway = 1e30F;  // its square is infinite, so it is within no radius
 
-  // Distance of the coordinates from the interval centre +- half_edge; 0 inside.
-  static Floats beyond(const Floats& coordinates, float centre, float half_edge) {
-    const Floats zero = {0.0F, 0.0F, 0.0F, 0.0F};
-    const Floats offset = coordinates - centre;
-    const Floats distance = (offset < zero ? -offset : offset) - half_edge;
-    return distance < zero ? zero : distance;
+  // For `count` points, the rest of the last group, and one that filter() overwrites.
+  void make_room(std::uint32_t count) {
+    if (x_.size() < count + 4) {
+      const std::size_t room = 2 * (std::size_t{count} + 4);
+      x_.resize(room);
+      y_.resize(room);
+      z_.resize(room);
+      index_.resize(room);
+    }
   }
-  static Integers near(const Block& block, const Eigen::Vector3f& centre, float half_edge) {
-    const Floats x = beyond(block.x, centre.x(), half_edge);
-    const Floats y = beyond(block.y, centre.y(), half_edge);
-    const Floats z = beyond(block.z, centre.z(), half_edge);
+
+  // Distance of the coordinates from the interval centre +- half_edge; 0 inside.
+  static Floats beyond(const float* coordinates, float centre, float half_edge) {
+    Floats offset;
+    std::memcpy(&offset, coordinates, sizeof offset);
+    offset -= centre;
+    const Integers magnitude = std::bit_cast<Integers>(offset) & 0x7FFFFFFF;
+    const Floats distance = std::bit_cast<Floats>(magnitude) - half_edge;
+    const Integers positive =
+        std::bit_cast<Integers>(distance) & (distance > Floats{0.0F, 0.0F, 0.0F, 0.0F});
+    return std::bit_cast<Floats>(positive);
+  }
+  [[nodiscard]] Integers near(std::uint32_t i, const Eigen::Vector3f& centre,
+                              float half_edge) const {
+    const Floats x = beyond(&x_[i], centre.x(), half_edge);
+    const Floats y = beyond(&y_[i], centre.y(), half_edge);
+    const Floats z = beyond(&z_[i], centre.z(), half_edge);
     return x * x + y * y + z * z <= kRadiusMargin * kRadiusMargin;
   }
 
-  std::vector<Block> blocks_;
+  std::vector<float> x_;
+  std::vector<float> y_;
+  std::vector<float> z_;
+  std::vector<std::uint32_t> index_;
   std::uint32_t size_ = 0;
 };
 
@@ -217,16 +236,19 @@ class CandidateLists {
   Cube gather(const Eigen::Vector3i& cell) {
     const Eigen::Vector3d centre = grid_.cell_centre(cell);
     const Cube cube{Eigen::Vector3f::Zero(), static_cast<float>(grid_.cell_edge() / radius_)};
+    const double reach = radius_ + 0.50001 * grid_.cell_edge();
     gathered_.clear();
-    grid_.visit_near(centre, radius_ + 0.50001 * grid_.cell_edge(), [&](std::uint32_t i) {
-      gathered_.add(((positions_[i] - centre) / radius_).cast<float>(), i);
+    grid_.visit_near(centre, reach, [&](std::uint32_t i) {
+      const Eigen::Vector3d offset = positions_[i] - centre;
+      if (offset.cwiseAbs().maxCoeff() <= reach) {
+        gathered_.add((offset / radius_).cast<float>(), i);
+      }
     });
-    lists_[0].clear();
+    gathered_.finish();
     gathered_.filter(cube.centre, cube.half_edge(), lists_[0]);
     return cube;
   }
   void filter(const Cube& cube, std::uint32_t level) {
-    lists_[level].clear();
     lists_[level - 1].filter(cube.centre, cube.half_edge(), lists_[level]);
   }
 

@@ -24,7 +24,8 @@ constexpr double kLeastMeshPoints = 20'000.0;  // minimum for a long, thin objec
 constexpr double kSparser = 1.15;
 // Maximum unevenness of a cloud without voids that the fit could not bridge at its own spacing.
 constexpr double kMaxCloudUnevenness = 1.25;
-constexpr int kDistanceTrials = 8;
+constexpr int kInterpolations = 4;           // then the search bisects, which always ends
+constexpr int kDistanceSteps = 128;          // between all points and an even selection
 constexpr double kMaxUneven = 1.5;           // spacing after resampling over that of the scan
 constexpr double kSameSpacing = 0.02;        // maximum relative difference
 constexpr double kFallbackSpacing_m = 1e-3;  // for a single point
@@ -159,7 +160,7 @@ class DensityChooser {
     }
     double own = is_mesh() ? 0.0 : estimate_spacing(choice.points).mean_m;
     if (own > (1.0 + kSameSpacing) * wanted && keeps_its_points()) {
-      own = keep_more(wanted, choice);
+      own = keep_more(wanted, own, choice);
     }
     if (own > kSparser * wanted) {
       choice.spacing_m = own;
@@ -175,28 +176,35 @@ class DensityChooser {
            estimate_spacing(dense_).unevenness <= kMaxCloudUnevenness;
   }
 
-  /// Reduces the minimum distance until the points that are kept have the wanted spacing. Returns
-  /// the spacing reached.
-  double keep_more(double wanted, DensityChoice& choice) const {
-    double low = 0.0;
-    double high = kDistanceOverSpacing * wanted;
-    double own = 0.0;
-    for (int trial = 0; trial < kDistanceTrials; ++trial) {
-      const double distance = trial == 0 ? low : 0.5 * (low + high);
-      ZOrderedCloud kept =
-          distance > 0.0 ? dense_.subset(select_poisson_disk(dense_, distance)) : dense_;
-      const double spacing = estimate_spacing(kept).mean_m;
-      const bool enough = spacing <= wanted;
-      if (enough || trial == 0) {  // the largest distance that leaves enough points
-        choice.points = std::move(kept);
-        own = spacing;
-      }
-      if (trial == 0 && !enough) {
-        break;  // the cloud has no more points
-      }
-      (enough ? low : high) = distance;
+  /// Reduces the minimum distance until the points that are kept have the wanted spacing. `own` is
+  /// their spacing at the full distance. Returns the spacing reached.
+  double keep_more(double wanted, double own, DensityChoice& choice) const {
+    double reached = estimate_spacing(dense_).mean_m;
+    if (reached > wanted) {  // the cloud has no more points
+      choice.points = dense_;
+      return reached;
     }
-    return own;
+    int low = 0;  // in steps: the largest distance found that leaves enough points
+    int high = kDistanceSteps;
+    double too_wide = own;  // spacing at `high`
+    ZOrderedCloud kept;
+    for (int count = 0; high - low > 1; ++count) {
+      const double part = count < kInterpolations ? (wanted - reached) / (too_wide - reached) : 0.5;
+      const int step = std::clamp(low + static_cast<int>(part * (high - low)), low + 1, high - 1);
+      ZOrderedCloud trial = dense_.subset(
+          select_poisson_disk(dense_, step * (kDistanceOverSpacing * wanted) / kDistanceSteps));
+      const double spacing = estimate_spacing(trial).mean_m;
+      if (spacing > wanted) {
+        high = step;
+        too_wide = spacing;
+      } else {
+        low = step;
+        reached = spacing;
+        kept = std::move(trial);
+      }
+    }
+    choice.points = low > 0 ? std::move(kept) : dense_;
+    return reached;
   }
 
   void thin(DensityChoice& choice) {

@@ -73,7 +73,7 @@ class LocalGrid {
   };
 
   [[nodiscard]] Eigen::Vector3i cell_of(const Eigen::Vector3d& p) const {
-    return ((p - corner_).array() * scale_).floor().cast<int>().max(0).min(per_axis_ - 1);
+    return ((p - corner_).array() * scale_).cast<int>().max(0).min(per_axis_ - 1);
   }
   [[nodiscard]] std::size_t flat(const Eigen::Vector3i& c) const {
     const int cell = (c.z() * per_axis_ + c.y()) * per_axis_ + c.x();

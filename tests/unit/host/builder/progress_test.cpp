@@ -50,5 +50,13 @@ TEST(Progress, PrintsJsonObjectPerLine) {
   EXPECT_NE(text.find("\"fraction\": 1.00"), std::string::npos);
 }
 
+TEST(Progress, EstimatesTimeLeft) {
+  EXPECT_EQ(progress_line("reading", -1.0, 5.0), "reading ...");
+  EXPECT_EQ(progress_line("reading", 0.0, 5.0), "reading 0 %");
+  EXPECT_EQ(progress_line("reading", 0.5, 0.9), "reading 50 %");
+  EXPECT_EQ(progress_line("reading", 0.25, 2.0), "reading 25 %, 6 s left");
+  EXPECT_EQ(progress_line("reading", 1.0, 2.0), "reading 100 %");
+}
+
 }  // namespace
 }  // namespace tactree::builder

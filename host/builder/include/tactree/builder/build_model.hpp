@@ -92,6 +92,15 @@ struct InputReport {
   std::uint64_t triangles = 0;
 };
 
+/// A step of a build, in the order of their beginning.
+struct StageReport {
+  std::string name;  ///< as the progress names it
+  double seconds = 0.0;
+  double cpu_seconds = 0.0;          ///< of all threads
+  std::uint64_t points = 0;          ///< that the step processes; 0: unknown
+  std::uint64_t peak_rss_bytes = 0;  ///< of the process, up to the end of the step
+};
+
 struct BuildReport {
   std::vector<InputReport> inputs;
   std::uint64_t input_points = 0;  ///< in the files: kept_points + dropped points
@@ -120,6 +129,7 @@ struct BuildReport {
   Eigen::AlignedBox3d bounds;  ///< of the model
 
   std::uint64_t bytes = 0;
+  std::vector<StageReport> stages;
   double seconds = 0.0;
   std::uint64_t peak_rss_bytes = 0;
   std::vector<std::string> notes;     ///< decisions, one sentence each

@@ -28,6 +28,10 @@ enum class ProgressStyle : std::uint8_t {
   kOff,
 };
 
+/// The line of a terminal for a step that began `elapsed_s` ago: "reading 25 %, 6 s left".
+/// `fraction` is negative if unknown. Without an estimate during the first second.
+[[nodiscard]] std::string progress_line(std::string_view name, double fraction, double elapsed_s);
+
 /// A Progress that writes to `stream`.
 [[nodiscard]] std::unique_ptr<Progress> make_progress(ProgressStyle style, std::FILE* stream);
 
