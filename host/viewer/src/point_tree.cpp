@@ -226,16 +226,16 @@ std::string tree_json(const PointTree& tree, const core::BlobView& view, const S
                      {"children", node.children}});
   }
   const core::BlobHeader& h = view.header();
-  const nlohmann::json json = {{"name", h.name},
-                               {"points", h.point_count},
-                               {"spacing_m", h.spacing_m},
-                               {"depth", h.depth},
-                               {"bounds_min_m", std::to_array(h.bounds_min_m)},
-                               {"bounds_max_m", std::to_array(h.bounds_max_m)},
-                               {"materials", materials_json(view, scan.labels)},
-                               {"colours", colours},
-                               {"nodes", nodes}};
-  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  const nlohmann::json tree_object = {{"name", h.name},
+                                      {"points", h.point_count},
+                                      {"spacing_m", h.spacing_m},
+                                      {"depth", h.depth},
+                                      {"bounds_min_m", std::to_array(h.bounds_min_m)},
+                                      {"bounds_max_m", std::to_array(h.bounds_max_m)},
+                                      {"materials", materials_json(view, scan.labels)},
+                                      {"colours", colours},
+                                      {"nodes", nodes}};
+  return tree_object.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 namespace {
