@@ -111,13 +111,11 @@ Sample blank_sample(bool has_parts) {
   return sample;
 }
 
-/// Boards do not report the true position of the tip; the probe is used instead.
-void complete(Sample& sample, bool has_tip) {
-  if (!has_tip) {
-    const core::Vec3& probe = sample.status.probe;
-    sample.tip_m = {static_cast<double>(probe.x), static_cast<double>(probe.y),
-                    static_cast<double>(probe.z)};
-  }
+/// For boards, which do not report the true position of the tip.
+void use_probe_as_tip(Sample& sample) {
+  const core::Vec3& probe = sample.status.probe;
+  sample.tip_m = {static_cast<double>(probe.x), static_cast<double>(probe.y),
+                  static_cast<double>(probe.z)};
 }
 
 std::vector<Sample> read_csv(const std::filesystem::path& file) {
@@ -146,7 +144,9 @@ std::vector<Sample> read_csv(const std::filesystem::path& file) {
       member.set(sample, table.number(column));
     }
     sample.status.state = state ? state_of(table.cells()[*state]) : core::State::kBoot;
-    complete(sample, has_tip);
+    if (!has_tip) {
+      use_probe_as_tip(sample);
+    }
     if (!samples.empty() && !(sample.t_s > samples.back().t_s)) {
       table.refuse("t_s does not increase", kRemedy);
     }
@@ -209,7 +209,9 @@ std::vector<Sample> read_archive(const std::filesystem::path& file) {
   }
   const bool has_tip = archive.has("tip_x_m");
   for (std::size_t i = 0; i < rows; ++i) {
-    complete(samples[i], has_tip);
+    if (!has_tip) {
+      use_probe_as_tip(samples[i]);
+    }
     if (i > 0 && !(samples[i].t_s > samples[i - 1].t_s)) {
       archive.refuse("t_s", fmt::format("row {} is not later than the preceding one", i), kRemedy);
     }
