@@ -44,7 +44,8 @@ inline std::uint64_t step_to_marker(pid_t child) {
 }  // namespace detail
 
 /// Instructions of call(0), ..., call(calls - 1), less those of an empty call. Empty if a process
-/// may not step another one here, or if the copy was stopped or killed in between.
+/// may not step another one here, or if a count is wrong: the copy was stopped or killed, or a call
+/// seems to take no instruction.
 inline std::vector<std::uint64_t> count_instructions(std::size_t calls,
                                                      const std::function<void(std::size_t)>& call) {
   const pid_t child = fork();
@@ -67,8 +68,10 @@ inline std::vector<std::uint64_t> count_instructions(std::size_t calls,
     const std::uint64_t steps = detail::step_to_marker(child);
     if (i == 0) {
       empty_call = steps;
+    } else if (steps > empty_call) {
+      counts.push_back(steps - empty_call);
     } else {
-      counts.push_back(steps > empty_call ? steps - empty_call : 0);
+      break;
     }
   }
   kill(child, SIGKILL);

@@ -137,11 +137,11 @@ test('a saved pose places the model in every command', async (t) => {
 
 test('the reach of the device is drawn while the model is placed', async (t) => {
   const page = await openPlaced(t);
-  assert.ok(await page.locator('#legend-reach').isVisible());
+  await page.locator('#legend-reach').waitFor();
   const reach = await page.evaluate(async () => (await fetch('/reach.json')).json());
   assert.equal(reach.points_m.length, reach.rows * reach.columns);
   await page.locator('#place summary').click();
-  assert.ok(await page.locator('#legend-reach').isHidden());
+  await page.locator('#legend-reach').waitFor({ state: 'hidden' });
   assert.deepEqual(page.troubles, []);
 });
 

@@ -166,7 +166,7 @@ bool MeshExtractor::take_tag(std::string_view tag) {
   }
   if (closes && element_open_) {
     element_open_ = false;
-    return true;
+    return name == (inside_ == Inside::kVertices ? "vertex" : "triangle");
   }
   if (closes && name == block_name_) {
     inside_ = Inside::kDocument;

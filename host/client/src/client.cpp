@@ -26,8 +26,6 @@ std::uint16_t Client::open(std::uint16_t link_timeout_ms, std::uint32_t nonce,
   nonce_ = nonce;
   knows_time_ = false;
   beat_every_us_ = 1000U * static_cast<Microseconds>(link_timeout_ms) / kBeatsPerTimeout;
-  // Ends an older frame that the board may have received partially.
-  to_send_.push_back(static_cast<std::byte>(core::wire::kDelimiter));
   const core::wire::OpenRequest request{core::wire::kProtocolMajor, core::wire::kProtocolMinor,
                                         link_timeout_ms, nonce};
   return send(MessageKind::kOpen, request, now_us);
@@ -41,6 +39,10 @@ std::uint16_t Client::send(MessageKind kind, std::span<const std::byte> payload,
 std::uint16_t Client::enqueue(MessageKind kind, std::span<const std::byte> payload, bool own,
                               Microseconds now_us) {
   ++sequence_;
+  if (session_ == 0U) {
+    // Ends an older frame or stray bytes that the board may have received before.
+    to_send_.push_back(static_cast<std::byte>(core::wire::kDelimiter));
+  }
   std::array<std::byte, core::wire::kMaxEncodedFrame> frame{};
   const std::size_t size = core::wire::encode_frame(
       {static_cast<std::uint8_t>(kind), 0, sequence_, session_, 0}, payload, frame);

@@ -13,8 +13,9 @@ std::vector<viewer::ScanColour> report_colours(const std::string& file) {
   }
   std::ifstream in(file, std::ios::binary);
   try {
+    const nlohmann::json report = nlohmann::json::parse(in);
     std::vector<viewer::ScanColour> colours;
-    for (const nlohmann::json& colour : nlohmann::json::parse(in).at("colours")) {
+    for (const nlohmann::json& colour : report.at("colours")) {
       colours.push_back({colour.at("rgb").get<std::array<std::uint8_t, 3>>(),
                          colour.at("points").get<std::uint64_t>()});
     }
