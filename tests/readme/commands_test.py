@@ -97,11 +97,15 @@ class ServedCommands(InAFolder):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        # The models and recordings that the commands name.
-        for block in blocks("sh"):
-            for line in block.splitlines():
-                if line.startswith(("tactree build", "tactree simulate")):
-                    cls.succeeds(line)
+        # The commands that write the files named by the served ones, or by a later one of these.
+        named = {word for block in blocks("console") for line in prompt_lines(block) for word in line.split()}
+        writers = []
+        for line in reversed([line for block in blocks("sh") for line in block.splitlines()]):
+            if named.intersection(re.findall(r"(?:-o|--trace|--record|>) (\S+)", line)):
+                writers.append(line)
+                named.update(line.split())
+        for line in reversed(writers):
+            cls.succeeds(line)
 
     def start(self, line, expected):
         """A command that runs until it is ended; its first line of output matches `expected`."""
