@@ -48,6 +48,6 @@ void tactree_trap();
 
 void tactree::runtime::reset() {
   while (true) {  // bound: for_ever
-    rv32::test_device() = rv32::kTestDeviceReset;
+    firmware::rv32::test_device() = firmware::rv32::kTestDeviceReset;
   }
 }
