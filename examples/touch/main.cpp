@@ -21,25 +21,29 @@ void draw(const tactree::client::Telemetry& t) {
   std::printf("%8.3f N |%s\n", force, std::string(length, '=').c_str());
 }
 
-// Moves the object by the board's time: it does not jump if this program or the link is late.
+// Sends a pose with each telemetry message, for the board's time in it: a pause of this program or
+// the link makes the object late, and the motion that the board continues still fits the pose.
 void touch(tactree::client::Board& board, double seconds) {
   board.subscribe({.every_ticks = 20});
   board.arm();
   std::optional<std::uint32_t> begin_us;
+  std::uint32_t last_tick = 0;
   double t_s = 0.0;
   while (t_s < seconds && board.in_session()) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
     const tactree::client::Telemetry latest = board.latest();
-    if (latest.header.tick != 0U) {  // 0: none has arrived
-      begin_us = begin_us.value_or(latest.header.board_time_us);
-      t_s = 1e-6 * (latest.header.board_time_us - *begin_us);
-      tactree::core::Pose pose;  // 2 mm up and down, once in two seconds
-      pose.translation_m.z = static_cast<float>(0.002 * std::sin(3.14159 * t_s));
-      tactree::core::Motion motion;
-      motion.linear_m_s.z = static_cast<float>(0.002 * 3.14159 * std::cos(3.14159 * t_s));
-      board.move_body(0, pose, motion);
-      draw(latest);
+    if (latest.header.tick == last_tick) {
+      continue;
     }
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    last_tick = latest.header.tick;
+    begin_us = begin_us.value_or(latest.header.board_time_us);
+    t_s = 1e-6 * (latest.header.board_time_us - *begin_us);
+    tactree::core::Pose pose;  // 2 mm up and down, once in two seconds
+    pose.translation_m.z = static_cast<float>(0.002 * std::sin(3.14159 * t_s));
+    tactree::core::Motion motion;
+    motion.linear_m_s.z = static_cast<float>(0.002 * 3.14159 * std::cos(3.14159 * t_s));
+    board.move_body(0, pose, motion);
+    draw(latest);
   }
   board.stop();
 }

@@ -56,14 +56,13 @@ def run_emulator(folder, tried):
     pathlib.Path(folder, "instructions").write_bytes(data)
     with subprocess.Popen([*EMULATOR, "-kernel", IMAGE], cwd=folder, stdout=subprocess.PIPE,
                           stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL) as emulator:
-        output, ended = b"", False
+        output = b""
         while select.select([emulator.stdout], [], [], SILENCE_S)[0]:
             part = os.read(emulator.stdout.fileno(), 65536)
-            ended = not part
-            if ended:
+            if not part:
                 break
             output += part
-        if not ended:
+        else:  # silent
             emulator.kill()
     lines = re.findall(r"^(\d+) (?:(same|other|command|force)?$|qemu: )", output.decode(errors="replace"), re.M)
     return lines, emulator.returncode == 0

@@ -133,7 +133,7 @@ TEST(Density, AcceptsMeshOfLargeArea) {
   for (int k = 0; k < 11; ++k) {
     stack.triangles.insert(stack.triangles.end(), faces.begin(), faces.end());
   }
-  BuildOptions options;  // one corner is enough: more samples than allowed are refused before
+  BuildOptions options;  // the samples are counted before the crop, which only saves time
   options.crop = Eigen::AlignedBox3d(Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(0.1, 0.1, 0.1));
   const Chosen chosen = choose(mesh_scan(stack), options);
   EXPECT_GT(chosen.choice.spacing_m, 0.1 / 200.0);
