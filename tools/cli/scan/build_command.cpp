@@ -123,6 +123,22 @@ void check_board(const BoardRequest& request) {
   }
 }
 
+void set_spacing(const BuildArguments& arguments, BuildOptions& build) {
+  build.resample = !arguments.no_resample;
+  if (!arguments.spacing) {
+    return;
+  }
+  const double spacing = to_number("--spacing", *arguments.spacing);
+  if (spacing < 0.0) {
+    misuse("--spacing", "must not be negative");
+  }
+  if (spacing > 0.0) {
+    build.spacing_m = spacing;
+  } else {
+    build.resample = false;
+  }
+}
+
 void complete(BuildArguments& arguments) {
   if (arguments.output.empty()) {
     misuse("--output", "'' is not the name of a file");
@@ -154,18 +170,7 @@ void complete(BuildArguments& arguments) {
   for (const std::string& viewpoint : arguments.viewpoints) {
     build.viewpoints.push_back(to_position("--viewpoint", viewpoint));
   }
-  build.resample = !arguments.no_resample;
-  if (arguments.spacing) {
-    const double spacing = to_number("--spacing", *arguments.spacing);
-    if (spacing < 0.0) {
-      misuse("--spacing", "must not be negative");
-    }
-    if (spacing > 0.0) {
-      build.spacing_m = spacing;
-    } else {
-      build.resample = false;
-    }
-  }
+  set_spacing(arguments, build);
   if (arguments.budget) {
     build.flash_budget_bytes = to_bytes(*arguments.budget);
   }

@@ -86,7 +86,7 @@ struct FlatPlane {
 using NoiseMembers = std::array<Eigen::Vector3d, kNoiseNeighbours>;
 
 FlatPlane flattest_plane(const NoiseMembers& members, std::size_t held) {
-  static const std::array<Triple, kPlaneTrials> triples = [] {
+  static const std::array<Triple, kPlaneTrials> kTriples = [] {
     std::array<Triple, kPlaneTrials> all{};
     for (std::uint64_t trial = 0; trial < kPlaneTrials; ++trial) {
       all[trial] = random_triple(trial, kNoiseNeighbours);
@@ -95,7 +95,7 @@ FlatPlane flattest_plane(const NoiseMembers& members, std::size_t held) {
   }();
   FlatPlane flattest;
   std::array<double, kNoiseNeighbours> off{};
-  for (const auto& [a, b, c] : triples) {
+  for (const auto& [a, b, c] : kTriples) {
     const CellPlane plane = CellPlane::through(members[a], members[b], members[c]);
     std::size_t nearer = 0;
     for (std::size_t k = 0; k < members.size(); ++k) {

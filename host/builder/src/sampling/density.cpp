@@ -203,7 +203,11 @@ class DensityChooser {
         kept = std::move(trial);
       }
     }
-    choice.points = low > 0 ? std::move(kept) : dense_;
+    if (low > 0) {
+      choice.points = std::move(kept);
+    } else {
+      choice.points = dense_;
+    }
     return reached;
   }
 
