@@ -10,7 +10,7 @@ CASES = """<testsuite>
 <testcase name="Gate.Holds" time="0.5" status="run"><system-out>fine</system-out></testcase>
 <testcase name="Gate.Limits" time="1.5" status="run"/>
 <testcase name="Gate.Fails" time="0" status="fail"><failure message=""/><system-out>a.cpp:7: Failure</system-out></testcase>
-<testcase name="Gate.NeedsRoot" time="0" status="notrun"><skipped message="SKIP_REGULAR_EXPRESSION_MATCHED"/>
+<testcase name="Gate.NeedsRoot  # GetParam() = 0x55d0a1" time="0" status="notrun"><skipped message="SKIP_REGULAR_EXPRESSION_MATCHED"/>
 <system-out>/a.cpp:9: Skipped
 not as root
 </system-out></testcase>
