@@ -13,7 +13,7 @@ namespace {
 
 bool is_zero(const std::array<float, 3>& force_N) {
   return std::all_of(force_N.begin(), force_N.end(),
-                     [](float component) { return std::abs(component) == 0.0F; });
+                     [](float component) { return component == 0.0F; });
 }
 
 core::State state_in(const Snapshot& snapshot) {
@@ -126,7 +126,7 @@ void Clients::set_force(unsigned number, const std::array<float, 3>& force_N) {
           newest_.link != Link::kHere
               ? "set_cursor_force: the board is not connected"
               : fmt::format("set_cursor_force: the board is in state {}, without force (send "
-                            "{{\"tactree\": {{\"arm\": true}}}}, or start tactree serve with --arm)",
+                            "{{\"tactree\": {{\"arm\": true}}}}, or start tactree serve --arm)",
                             core::name_of(state_in(newest_)));
     }
     return;

@@ -4,6 +4,7 @@
 // are those of the board.
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -91,7 +92,7 @@ class Clients {
 
   Snapshot newest_{};
   std::uint64_t states_ = 0;  // offered so far
-  Message text_;              // of the newest state, for those that know the board; nullptr: not yet
+  Message text_;              // of the newest state; nullptr: not yet written
   Message first_text_;        // with the description of the board
 };
 
