@@ -32,7 +32,7 @@ class Usage(unittest.TestCase):
     def test_help_names_all_port_kinds(self):
         ports = "a serial port, usb:SERIAL, unix:PATH (the socket of tactree-controller), or the one that tactree "\
             "simulate --serve prints (with --lock-step: step:PATH)"
-        for verb in ("devices", "flash", "monitor", "arm", "stop", "trace", "params", "record", "view"):
+        for verb in ("devices", "flash", "monitor", "arm", "stop", "trace", "params", "record", "serve", "view"):
             self.assertIn(ports, " ".join(self.help_of(verb).split()), verb)
         self.assertIn("--serve: use a port step:PATH", " ".join(self.help_of("simulate").split()))
 

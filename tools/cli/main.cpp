@@ -52,6 +52,7 @@ int run(int argc, char** argv) {
   add_devices_command(app, exit_code);
   add_monitor_command(app, exit_code);
   add_record_command(app, exit_code);
+  add_serve_command(app, exit_code);
   add_arm_command(app, exit_code);
   add_stop_command(app, exit_code);
   add_flash_command(app, exit_code);

@@ -118,6 +118,13 @@ class Connection::Worker {
     arrived_.wait(lock, [&] { return now() >= end; });
   }
 
+  /// The thread of run() looks at least every kWait, also after a loss of the board.
+  void wait_for_stream(microseconds duration) {
+    std::unique_lock lock(mutex_);
+    const microseconds end = now() + duration;
+    arrived_.wait(lock, [&] { return !stream_.empty() || now() >= end; });
+  }
+
  private:
   /// Counts the threads that wait for the board or its time.
   class Waiting {
@@ -255,6 +262,9 @@ std::vector<Telemetry> Connection::take_stream() { return worker_->take_stream()
 std::uint64_t Connection::dropped() const { return worker_->dropped(); }
 std::chrono::microseconds Connection::now() const { return worker_->now(); }
 void Connection::sleep(std::chrono::microseconds duration) const { worker_->sleep(duration); }
+void Connection::wait_for_stream(std::chrono::microseconds duration) const {
+  worker_->wait_for_stream(duration);
+}
 bool Connection::connected() const { return worker_->connected(); }
 bool Connection::in_session() const { return worker_->in_session(); }
 std::string Connection::name() const { return worker_->name(); }

@@ -239,6 +239,21 @@ TEST(Connection, DeliversStreamAndCountsGaps) {
   EXPECT_LE(missing, board.dropped());
 }
 
+TEST(Connection, WaitsForStream) {
+  const RunningBoard running;
+  client::Board board(running.port());
+  const client::Connection& connection = board.connection();
+  const auto begin = connection.now();
+  connection.wait_for_stream(std::chrono::milliseconds(20));  // nothing is subscribed
+  EXPECT_GE(connection.now() - begin, std::chrono::milliseconds(20));
+  board.subscribe({0x003, 1});
+  for (int i = 0; i < 10; ++i) {
+    connection.wait_for_stream(std::chrono::seconds(100));
+    EXPECT_FALSE(board.take_stream().empty());
+  }
+  EXPECT_LT(connection.now() - begin, std::chrono::seconds(100));
+}
+
 TEST(Connection, LimitsUnreadStream) {
   const RunningBoard running;
   client::ConnectionOptions options;

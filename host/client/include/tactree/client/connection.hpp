@@ -71,6 +71,9 @@ class Connection {
   [[nodiscard]] std::chrono::microseconds now() const;
   /// Waits until now() has advanced by `duration`, even if the board is lost meanwhile.
   void sleep(std::chrono::microseconds duration) const;
+  /// Waits until take_stream() has a message, at most until now() has advanced by `duration`. In
+  /// lock-step, time meanwhile passes not faster than real time.
+  void wait_for_stream(std::chrono::microseconds duration) const;
 
   /// Returns false if the board was unplugged or the other side closed the connection.
   [[nodiscard]] bool connected() const;

@@ -1,31 +1,22 @@
 #pragma once
 // The server of the page: HTTP for static data, a WebSocket (/live) for frames and commands.
 //
-// Made for one machine: it listens on the loopback interface by default, answers only requests for
-// the address on which it listens (which defeats DNS rebinding), and accepts WebSockets only from
-// its own page. Memory per client is bounded. A page that does not read loses frames, which are
-// counted; it never delays the source.
+// The listener (tactree/web/listener.hpp) refuses foreign requests. WebSockets are accepted only
+// from the server's own page. A page that does not read loses frames, which are counted; it never
+// delays the source.
 
 #include <cstdint>
 #include <memory>
-#include <stdexcept>
 #include <string>
 
 #include "tactree/viewer/site.hpp"
 #include "tactree/viewer/source.hpp"
+#include "tactree/web/types.hpp"
 
 namespace tactree::viewer {
 
-struct ServerOptions {
-  std::string address = "127.0.0.1";
-  std::uint16_t port = 0;  ///< 0: any free port
-};
-
-/// The address is invalid or in use.
-class ServerError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
+using web::ServerError;
+using web::ServerOptions;
 
 class Server {
  public:

@@ -9,15 +9,11 @@
 
 #include "tactree/viewer/point_tree.hpp"
 #include "tactree/viewer/source.hpp"
+#include "tactree/web/types.hpp"
 
 namespace tactree::viewer {
 
-struct HttpResponse {
-  unsigned status = 200;
-  std::string type = "text/plain; charset=utf-8";
-  std::string body;
-  std::string file_name;  ///< if not empty, the body is downloaded under this name
-};
+using web::HttpResponse;
 
 /// A text file embedded in the program.
 struct Asset {

@@ -1,5 +1,5 @@
 #pragma once
-// Answers a client's HTTP requests in order; a request for /live becomes a LiveConnection.
+// Answers a client's HTTP requests in order; a request for a WebSocket goes to the content.
 
 #include <boost/asio/thread_pool.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
@@ -9,21 +9,16 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 
-#include "hub.hpp"
-#include "tactree/viewer/site.hpp"
-#include "tactree/viewer/source.hpp"
+#include "tactree/web/listener.hpp"
 
-namespace tactree::viewer {
+namespace tactree::web {
 
 /// Data shared by the connections of a server.
 struct Service {
   static constexpr int kMaxConnections = 64;
 
-  const Site& site;
-  Source& source;
-  Hub& hub;
+  Content& content;
   boost::asio::thread_pool& worker;  // for slow answers
   std::string host;                  // "127.0.0.1:8023"
   std::string local_host;            // "localhost:8023" if listening on loopback, else empty
@@ -33,8 +28,6 @@ struct Service {
 
 class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
  public:
-  using Request = boost::beast::http::request<boost::beast::http::string_body>;
-
   HttpConnection(boost::asio::ip::tcp::socket socket, Service& service);
   ~HttpConnection();
   HttpConnection(const HttpConnection&) = delete;
@@ -55,4 +48,4 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   std::optional<boost::beast::http::request_parser<boost::beast::http::string_body>> parser_;
 };
 
-}  // namespace tactree::viewer
+}  // namespace tactree::web

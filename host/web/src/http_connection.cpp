@@ -6,17 +6,15 @@
 #include <boost/beast/http/read.hpp>
 #include <boost/beast/http/write.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
+#include <chrono>
 #include <utility>
 
-#include "live_connection.hpp"
-
-namespace tactree::viewer {
+namespace tactree::web {
 namespace {
 
 namespace asio = boost::asio;
 namespace beast = boost::beast;
 namespace http = beast::http;
-using Request = HttpConnection::Request;
 using Response = http::response<http::string_body>;
 
 constexpr std::uint32_t kMaxRequestHeaderBytes = 8192;
@@ -91,12 +89,14 @@ std::optional<HttpResponse> HttpConnection::refusal(const Request& request) cons
     return plain(400, "a path starts with /\n");
   }
   // Pages of other sites have another origin. Programs send no origin. They may read; a WebSocket,
-  // however, can move the device and requires the origin of this server's page.
+  // however, can move the device, and the content decides whether programs may open one.
   const beast::string_view origin = request[http::field::origin];
   const bool from_here =
       origin.starts_with("http://") && origin.substr(7) == request[http::field::host];
-  const bool upgrade = beast::websocket::is_upgrade(request);
-  if ((!origin.empty() || upgrade) && !from_here) {
+  const bool admitted = origin.empty() ? service_.content.admits_programs() ||
+                                             !beast::websocket::is_upgrade(request)
+                                       : from_here;
+  if (!admitted) {
     return plain(403, "not from http://" + service_.host + "\n");
   }
   return std::nullopt;
@@ -109,30 +109,25 @@ void HttpConnection::handle(const Request& request) {
   }
   const beast::string_view target = request.target();
   const std::string path = text_of(target.substr(0, target.find('?')));
-  if (path == "/live") {
+  if (service_.content.is_socket(path)) {
     if (!beast::websocket::is_upgrade(request)) {
       send(plain(426, "this is a WebSocket\n"), request);
       return;
     }
-    std::make_shared<LiveConnection>(std::move(stream_), service_.hub, service_.source)
-        ->accept(request);
+    service_.content.open_socket(std::move(stream_), request);
     return;
   }
   look_up(path, request);
 }
 
 void HttpConnection::look_up(std::string path, const Request& request) {
-  if (path == "/status.json") {
-    send({200, "application/json", service_.hub.status_json(), {}}, request);
-    return;
-  }
-  if (!Site::is_slow(path)) {
-    send(service_.site.answer(path), request);
+  if (!service_.content.is_slow(path)) {
+    send(service_.content.answer(path), request);
     return;
   }
   const auto kept = std::make_shared<const Request>(request);
   asio::post(service_.worker, [self = shared_from_this(), path = std::move(path), kept] {
-    const auto answer = std::make_shared<HttpResponse>(self->service_.site.answer(path));
+    const auto answer = std::make_shared<HttpResponse>(self->service_.content.answer(path));
     asio::dispatch(self->stream_.get_executor(),
                    [self, answer, kept] { self->send(std::move(*answer), *kept); });
   });
@@ -169,4 +164,4 @@ void HttpConnection::send(HttpResponse answer, const Request& request) {
                     });
 }
 
-}  // namespace tactree::viewer
+}  // namespace tactree::web

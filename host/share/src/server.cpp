@@ -1,0 +1,115 @@
+#include "tactree/share/server.hpp"
+
+#include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <chrono>
+#include <mutex>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "client_socket.hpp"
+#include "tactree/web/listener.hpp"
+
+namespace tactree::share {
+namespace {
+
+namespace asio = boost::asio;
+
+// Snapshots that wait for the server's thread: more than any client may wait for.
+constexpr std::size_t kMaxSnapshots = kMaxQueue;
+constexpr std::chrono::seconds kStallInterval{1};
+
+}  // namespace
+
+struct Server::Parts final : web::Content {
+  Parts(const ServerSettings& settings, SharedBoard& its_board)
+      : board(its_board),
+        room{Clients(its_board, settings.grip), settings.tell},
+        listener(settings.server, *this) {
+    timer.emplace(listener.context());
+  }
+  // The open connections refer to the room.
+  ~Parts() override {
+    timer.reset();
+    listener.close();
+  }
+  Parts(const Parts&) = delete;
+  Parts& operator=(const Parts&) = delete;
+
+  [[nodiscard]] web::HttpResponse answer(std::string_view) const override {
+    return {404, "text/plain; charset=utf-8", "this server has only a WebSocket, at /\n", {}};
+  }
+  [[nodiscard]] bool is_slow(std::string_view) const override { return false; }
+  [[nodiscard]] bool is_socket(std::string_view path) const override { return path == "/"; }
+  [[nodiscard]] bool admits_programs() const override { return true; }
+  void open_socket(boost::beast::tcp_stream stream, const web::Request& request) override {
+    std::make_shared<ClientSocket>(std::move(stream), room)->accept(request);
+  }
+
+  /// Called from the board's thread.
+  void give(const std::vector<Snapshot>& snapshots) {
+    const std::lock_guard lock(mutex);
+    const bool idle = waiting.empty();
+    waiting.insert(waiting.end(), snapshots.begin(), snapshots.end());
+    if (waiting.size() > kMaxSnapshots) {
+      waiting.erase(waiting.begin(),
+                    waiting.end() - static_cast<std::ptrdiff_t>(kMaxSnapshots));
+    }
+    if (idle) {
+      asio::post(listener.context(), [this] { take(); });
+    }
+  }
+
+  void take() {
+    std::vector<Snapshot> snapshots;
+    {
+      const std::lock_guard lock(mutex);
+      snapshots.swap(waiting);
+    }
+    for (const Snapshot& snapshot : snapshots) {
+      room.clients.offer(snapshot);
+    }
+    for (ClientSocket* const socket : room.sockets) {
+      socket->write_next();  // sends later
+    }
+  }
+
+  void watch_stalls() {
+    timer->expires_after(kStallInterval);
+    timer->async_wait([this](boost::system::error_code error) {
+      if (error) {
+        return;
+      }
+      const std::vector<ClientSocket*> sockets(room.sockets.begin(), room.sockets.end());
+      for (ClientSocket* const socket : sockets) {
+        socket->check_stall(ClientSocket::Clock::now());  // its handlers keep it alive
+      }
+      watch_stalls();
+    });
+  }
+
+  SharedBoard& board;
+  Room room;
+  web::Listener listener;
+  std::optional<asio::steady_timer> timer;
+  std::mutex mutex;  // guards waiting
+  std::vector<Snapshot> waiting;
+};
+
+Server::Server(const ServerSettings& settings, SharedBoard& board)
+    : parts_(std::make_unique<Parts>(settings, board)) {}
+
+Server::~Server() = default;
+
+std::string Server::address() const { return "ws://" + parts_->listener.host() + "/"; }
+
+void Server::run() {
+  Parts& p = *parts_;
+  p.watch_stalls();
+  p.board.start([&p](const std::vector<Snapshot>& snapshots) { p.give(snapshots); });
+  p.listener.run();
+  p.board.end();
+}
+
+}  // namespace tactree::share

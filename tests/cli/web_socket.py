@@ -1,0 +1,52 @@
+"""A WebSocket client (RFC 6455) of texts."""
+import base64
+import json
+import os
+import socket
+import struct
+
+
+class WebSocket:
+    def __init__(self, port, origin=None):
+        self.socket = socket.create_connection(("127.0.0.1", port), timeout=20)
+        key = base64.b64encode(os.urandom(16)).decode()
+        lines = ["GET / HTTP/1.1", f"Host: localhost:{port}", "Upgrade: websocket", "Connection: Upgrade",
+                 f"Sec-WebSocket-Key: {key}", "Sec-WebSocket-Version: 13"]
+        if origin:
+            lines.append(f"Origin: {origin}")
+        self.socket.sendall(("\r\n".join(lines) + "\r\n\r\n").encode())
+        answer = b""
+        while b"\r\n\r\n" not in answer:
+            answer += self.take(1)
+        self.status = int(answer.split(b" ")[1])
+
+    def take(self, count):
+        data = b""
+        while len(data) < count:
+            part = self.socket.recv(count - len(data))
+            if not part:
+                raise ConnectionError("ended")
+            data += part
+        return data
+
+    def send(self, message, opcode=1):
+        data = message if isinstance(message, bytes) else json.dumps(message).encode()
+        size = struct.pack("!B", 0x80 | len(data)) if len(data) < 126 else struct.pack("!BH", 0xFE, len(data))
+        self.socket.sendall(bytes([0x80 | opcode]) + size + bytes(4) + data)  # a mask of zeros
+
+    def receive(self):
+        while True:
+            head = self.take(2)
+            size = head[1] & 0x7F
+            if size == 126:
+                size, = struct.unpack("!H", self.take(2))
+            data = self.take(size)
+            if head[0] & 0xF == 9:
+                self.send(data, opcode=10)
+            elif head[0] & 0xF == 8:
+                raise ConnectionError("closed")
+            else:
+                return json.loads(data)
+
+    def close(self):
+        self.socket.close()
