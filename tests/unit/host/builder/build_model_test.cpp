@@ -199,6 +199,36 @@ TEST(BuildModel, ReportsColoursWithoutMaterials) {
   EXPECT_TRUE(report.colour_matches.empty());
 }
 
+TEST(BuildModel, KeepsColoursOfPointsOnDemand) {
+  Scan scan = cloud_scan(random_sphere(60000, 0.03));
+  for (const Eigen::Vector3d& position : scan.positions) {
+    scan.colours.push_back(position.z() > 0.0 ? Colour{250, 10, 5} : Colour{20, 30, 240});
+  }
+  BuildOptions options;
+  options.spacing_m = 1e-3;
+  EXPECT_TRUE(build(scan, options).colours.empty());
+  options.keep_colours = KeepColours::kIfAny;
+  const BuildResult result = build(scan, options);
+  core::BlobView view;
+  ASSERT_EQ(core::open_blob(result.blob.bytes, view), core::BlobStatus::kOk);
+  ASSERT_EQ(result.colours.size(), view.point_count());
+  core::for_each_point(view, [&](const core::Leaf& leaf, std::uint32_t index) {
+    const float z = view.position(leaf, index).z;
+    if (std::abs(z) > 1e-5F) {  // not on the border
+      ASSERT_EQ(result.colours[index], z > 0.0F ? (Colour{250, 10, 5}) : (Colour{20, 30, 240}));
+    }
+  });
+}
+
+TEST(BuildModel, RequiresColoursOnDemand) {
+  const Scan scan = cloud_scan(random_sphere(1000, 0.03));
+  BuildOptions options;
+  options.keep_colours = KeepColours::kIfAny;
+  EXPECT_TRUE(build(scan, options).colours.empty());
+  options.keep_colours = KeepColours::kRequire;
+  EXPECT_THROW((void)build(scan, options), BuildError);
+}
+
 TEST(BuildModel, SourceOriginIsThatOfPlacedFrame) {
   BuildOptions options;
   options.unit_m = 0.001;

@@ -14,6 +14,9 @@ namespace tactree::builder {
 
 using Colour = std::array<std::uint8_t, 3>;  ///< R, G, B
 
+/// Of the points of a scan without colours where another scan has some.
+inline constexpr Colour kNoColour = {212, 196, 176};
+
 /// A colour of a scan, and the number of points that have it or a similar one.
 struct ColourCount {
   Colour colour{};
