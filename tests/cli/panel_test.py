@@ -54,7 +54,8 @@ class Panel(BallFolder):
     def test_refusals(self):
         refused = self.simulate("--seconds", 1, code=1)
         self.assertIn("never touched the model (home and arm the board by its button, e.g. --press", refused)
-        self.assertIn("--panel: no application is connected that places or moves bodies", self.simulate(self.blob, code=1))
+        self.assertIn("--panel: no application is connected that places or moves bodies",
+                      self.simulate(self.blob, code=1))
         self.assertIn("--panel: no application is connected whose link",
                       self.simulate("--inject", "link:arm@1", code=1))
         self.assertIn("'3..1': the end is not after the start (FROM..TO in seconds",

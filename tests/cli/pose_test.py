@@ -56,7 +56,7 @@ class Poses(SharedFolder):
         plain, _ = self.simulate("sheet.blob", "--path", "down.csv", "--origin", 0, 0, 0)
         self.write("same.json", {"pose": flat(0, 0, 0), "scale": 1})
         posed, _ = self.simulate("sheet.blob", "--path", "down.csv", "--pose", "same.json")
-        for a, b in zip(plain, posed):
+        for a, b in zip(plain, posed, strict=True):
             self.assertAlmostEqual(a, b, places=6)
 
     def test_a_scale_makes_the_model_larger_about_its_origin(self):
@@ -109,7 +109,7 @@ class Poses(SharedFolder):
         self.assertIn("--origin 0 0 0", done.stdout)
         report = self.read("report.json")
         self.assertEqual(report["pose_scale"], 2)
-        for a, b in zip(report["pose"], moved(ON_ITS_EDGE, 0.1, 0, 0.02)):
+        for a, b in zip(report["pose"], moved(ON_ITS_EDGE, 0.1, 0, 0.02), strict=True):
             self.assertAlmostEqual(a, b, places=12)
         self.assertAlmostEqual(report["bounds_max_m"][0], 0.1, delta=1e-4)
         self.assertAlmostEqual(report["bounds_max_m"][2], 0.08, delta=1e-4)

@@ -36,5 +36,5 @@ class ServedBoard:
 
     def __exit__(self, *_):
         self.process.terminate()
-        assert self.process.wait(timeout=60) == 0
+        assert self.process.wait() == 0
         self.process.stdout.close()

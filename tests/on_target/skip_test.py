@@ -49,7 +49,8 @@ def instructions():
 
 
 def run_emulator(folder, tried):
-    """The output up to the emulator's end, and whether that came by itself."""
+    """The lines ADDRESS OUTCOME up to the emulator's end, and whether that was a reset: not if the program hangs,
+    nor if the processor locks up, of which the emulator prints a report instead."""
     data = struct.pack("<I", len(tried))
     data += b"".join(struct.pack("<II", address, size) for address, size, _ in tried)
     pathlib.Path(folder, "instructions").write_bytes(data)
@@ -62,8 +63,10 @@ def run_emulator(folder, tried):
             if ended:
                 break
             output += part
-        emulator.kill()
-    return output.decode(errors="replace"), ended
+        if not ended:
+            emulator.kill()
+    lines = re.findall(r"^(\d+) (?:(same|other|command|force)?$|qemu: )", output.decode(errors="replace"), re.M)
+    return lines, emulator.returncode == 0
 
 
 def campaign(found):
@@ -73,16 +76,17 @@ def campaign(found):
       command  the motors got a command but had no power: the enable line was off
       force    both
       reset    a fault, or the watchdog of the tick
-      hang     only a watchdog outside of the program helps"""
+      hang     or lockup: only a watchdog outside of the program helps"""
     outcomes = {}
     with tempfile.TemporaryDirectory() as folder:
         while len(outcomes) < len(found):
-            output, ended = run_emulator(folder, found[len(outcomes):])
-            lines = re.findall(r"(\d+) (same|other|command|force)?", output)
-            if not lines:
-                raise AssertionError(f"the campaign does not begin: {output}")
+            tried = found[len(outcomes):]
+            lines, is_reset = run_emulator(folder, tried)
+            addresses = [int(address) for address, _ in lines]
+            if not lines or addresses != [address for address, _, _ in tried[:len(lines)]]:
+                raise AssertionError(f"not the instructions from {tried[0][0]} on: {addresses}")
             for address, outcome in lines:
-                outcomes[int(address)] = outcome or ("reset" if ended else "hang")
+                outcomes[int(address)] = outcome or ("reset" if is_reset else "hang")
     return outcomes
 
 

@@ -108,7 +108,7 @@ class Stm32f405(unittest.TestCase):
 
             def call(*arguments):
                 return subprocess.run([TACTREE, *map(str, arguments), "--port", port], capture_output=True,
-                                      text=True, check=False, timeout=60)
+                                      text=True, check=False)
 
             def run(*arguments, code=0):
                 done = call(*arguments)
@@ -137,7 +137,7 @@ class Stm32f405(unittest.TestCase):
     def test_conformance_program_reports_missing_parts(self):
         done = subprocess.run([*EMULATOR, "-semihosting-config", "enable=on,target=native", "-serial",
                                "null", "-kernel", CONFORMANCE], stdin=subprocess.DEVNULL,
-                              capture_output=True, text=True, check=False, timeout=100)
+                              capture_output=True, text=True, check=False)
         self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
         found = (done.stdout + done.stderr).splitlines()
         self.assertEqual(found, [

@@ -62,7 +62,7 @@ class InAFolder(unittest.TestCase):
     @classmethod
     def run_line(cls, line):
         return subprocess.run(["bash", "-c", line], cwd=cls.path, env=cls.environment, capture_output=True,
-                              text=True, check=False, timeout=120)
+                              text=True, check=False)
 
     @classmethod
     def succeeds(cls, line):
@@ -97,11 +97,15 @@ class ServedCommands(InAFolder):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        # The models and recordings that the commands name.
-        for block in blocks("sh"):
-            for line in block.splitlines():
-                if line.startswith(("tactree build", "tactree simulate")):
-                    cls.succeeds(line)
+        # The commands that write the files named by the served ones, or by a later one of these.
+        named = {word for block in blocks("console") for line in prompt_lines(block) for word in line.split()}
+        writers = []
+        for line in reversed([line for block in blocks("sh") for line in block.splitlines()]):
+            if named.intersection(re.findall(r"(?:-o|--trace|--record|>) (\S+)", line)):
+                writers.append(line)
+                named.update(line.split())
+        for line in reversed(writers):
+            cls.succeeds(line)
 
     def start(self, line, expected):
         """A command that runs until it is ended; its first line of output matches `expected`."""
@@ -116,13 +120,13 @@ class ServedCommands(InAFolder):
 
     def end(self, process, line):
         process.send_signal(signal.SIGTERM)
-        self.assertEqual(process.wait(timeout=60), 0, line)
+        self.assertEqual(process.wait(), 0, line)
 
     def shows_page(self, line):
         line = re.sub(r"(tactree view \S+)", r"\1 --page-port 0", line)
         process, first = self.start(line, r"http://\S+:\d+/")
         try:
-            with urllib.request.urlopen(re.search(r"http://\S+:\d+/", first)[0], timeout=30) as answer:
+            with urllib.request.urlopen(re.search(r"http://\S+:\d+/", first)[0]) as answer:
                 self.assertEqual(answer.status, 200)
         except urllib.error.HTTPError as error:  # a program that was built without npm has no page
             self.assertEqual(error.code, 404)

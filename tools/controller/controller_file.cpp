@@ -4,43 +4,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <nlohmann/json.hpp>
 
-#include "json_reader.hpp"
 #include "tactree/support/explain.hpp"
+#include "tactree/support/json_reader.hpp"
 #include "tactree/support/user_error.hpp"
 
 namespace tactree::controller {
 namespace {
 
-constexpr std::uintmax_t kMaxBytes = 1U << 20U;
+using support::JsonReader;
 
 // Minimum time-out of the guard in ticks. A shorter time-out would treat one late tick as a dead
 // loop.
 constexpr std::uint64_t kGuardTicks = 5;
 constexpr std::uint64_t kNsPerMs = 1'000'000;
-
-JsonReader::Json read_json(const std::filesystem::path& file) {
-  std::error_code error;
-  const std::uintmax_t bytes = std::filesystem::file_size(file, error);
-  if (error) {
-    throw support::UserError(
-        fmt::format("{}: cannot be read: {} (check the path and its permissions)", file.string(),
-                    error.message()));
-  }
-  if (bytes > kMaxBytes) {
-    throw support::UserError(
-        fmt::format("{}: is too large for a controller's file (at most 1 MiB)", file.string()));
-  }
-  std::ifstream stream(file);
-  try {
-    return JsonReader::Json::parse(stream);
-  } catch (const nlohmann::json::parse_error& cause) {
-    throw support::UserError(
-        fmt::format("{}: byte {}: not valid JSON (correct it there)", file.string(), cause.byte));
-  }
-}
 
 /// Converts a path relative to the file's folder.
 std::string from_folder(const std::filesystem::path& file, const std::string& path) {
@@ -296,8 +273,8 @@ LinkSettings read_link(JsonReader& reader) {
 }  // namespace
 
 ControllerFile read_controller_file(const std::filesystem::path& file) {
-  const JsonReader::Json json = read_json(file);
-  JsonReader reader(file.string(), json);
+  const JsonReader::Json json = support::read_json(file);
+  JsonReader reader(file.string(), json, "docs/LINUX-BOARD.md");
   if (reader.has("about")) {
     (void)reader.text("about");
   }

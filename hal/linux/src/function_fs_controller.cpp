@@ -25,7 +25,9 @@ namespace tactree::hal::linux_usb {
 namespace {
 
 constexpr std::size_t kPieceBytes = 2048;  // a multiple of every packet size
-constexpr std::size_t kPieces = 4;         // pending operations per endpoint
+// Pending operations per endpoint: the kernel always has one to continue with while the others are
+// processed, up to 8 KiB later.
+constexpr std::size_t kPieces = 4;
 constexpr std::size_t kEndpoints = 3;
 constexpr std::size_t kCameMax = 2 * kPieces * kPieceBytes;  // received, and pending
 constexpr std::size_t kEventsMax = 8;  // four from the kernel, and those added here

@@ -166,7 +166,7 @@ bool MeshExtractor::take_tag(std::string_view tag) {
   }
   if (closes && element_open_) {
     element_open_ = false;
-    return name == (inside_ == Inside::kVertices ? "vertex" : "triangle");
+    return name == element_name();
   }
   if (closes && name == block_name_) {
     inside_ = Inside::kDocument;
@@ -193,14 +193,16 @@ void MeshExtractor::begin_block(std::string_view name) {
   blocks_.emplace_back();
 }
 
+std::string_view MeshExtractor::element_name() const {
+  return inside_ == Inside::kVertices ? "vertex" : "triangle";
+}
+
 bool MeshExtractor::take_element(std::string_view name, std::string_view attributes, bool empty) {
   if (!error_.empty()) return true;
-  const bool vertex = inside_ == Inside::kVertices && name == "vertex";
-  const bool triangle = inside_ == Inside::kTriangles && name == "triangle";
-  if (!vertex && !triangle) return empty;  // of another extension
+  if (name != element_name()) return empty;  // of another extension
   element_open_ = !empty;
   try {
-    return vertex ? add_vertex(attributes) : add_triangle(attributes);
+    return inside_ == Inside::kVertices ? add_vertex(attributes) : add_triangle(attributes);
   } catch (const ImportError& error) {
     // The checksum of the archive has not been checked yet, so that this may be a consequence.
     error_ = error.what();

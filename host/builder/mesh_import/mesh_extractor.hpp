@@ -48,6 +48,8 @@ class MeshExtractor {
   bool take_markup(std::string_view markup);
   bool take_tag(std::string_view tag);
   void begin_block(std::string_view name);
+  /// Of the elements in the present block of a mesh.
+  [[nodiscard]] std::string_view element_name() const;
   bool take_element(std::string_view name, std::string_view attributes, bool empty);
   bool add_vertex(std::string_view attributes);
   bool add_triangle(std::string_view attributes);

@@ -3,38 +3,12 @@
 #include <fmt/core.h>
 
 #include <charconv>
-#include <fstream>
 
 #include "tactree/support/json_reader.hpp"
 #include "tactree/support/user_error.hpp"
 
 namespace tactree::cli {
 namespace {
-
-constexpr std::uintmax_t kMaxBytes = 1U << 20;
-constexpr support::JsonRemedies kRemedies = {"is unknown", "docs/PORTING.md lists the keys",
-                                             "see docs/PORTING.md", "see docs/PORTING.md"};
-
-support::JsonReader::Json read_json(const std::filesystem::path& file) {
-  std::error_code error;
-  const std::uintmax_t bytes = std::filesystem::file_size(file, error);
-  if (error) {
-    throw support::UserError(
-        fmt::format("{}: cannot be read: {} (check the path and its permissions)", file.string(),
-                    error.message()));
-  }
-  if (bytes > kMaxBytes) {
-    throw support::UserError(
-        fmt::format("{}: is too large for a board's file (at most 1 MiB)", file.string()));
-  }
-  std::ifstream stream(file);
-  try {
-    return support::JsonReader::Json::parse(stream);
-  } catch (const nlohmann::json::parse_error& cause) {
-    throw support::UserError(
-        fmt::format("{}: byte {}: not valid JSON (correct it there)", file.string(), cause.byte));
-  }
-}
 
 wcet::BoardTiming read_timing(support::JsonReader reader, const std::string& board) {
   constexpr std::uint32_t kMaxWait = 1000;
@@ -83,8 +57,8 @@ std::uint32_t number_of(const std::string& what, const std::string& text) {
 bool is_board_file(const std::string& board) { return board.ends_with(".json"); }
 
 OwnBoard read_board_file(const std::filesystem::path& file) {
-  const support::JsonReader::Json json = read_json(file);
-  support::JsonReader reader(file.string(), json, kRemedies);
+  const support::JsonReader::Json json = support::read_json(file);
+  support::JsonReader reader(file.string(), json, "docs/PORTING.md");
   if (reader.has("about")) {
     (void)reader.text("about");
   }

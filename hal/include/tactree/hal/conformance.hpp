@@ -44,6 +44,8 @@ struct ConformanceReport {
 
 namespace conformance {
 
+/// Ticks per check: the tolerance of the clock, 2 %, is then two ticks, more than the jitter of the
+/// first and the last.
 inline constexpr std::uint32_t kTicks = 100;
 
 /// Returns the ticks until the read-back agrees; more than `limit` means a timeout.

@@ -88,6 +88,7 @@ class Panel {
   }
 
  private:
+  // Flashes of 0.1 s, not more than 5 in a second, so that a person can count them.
   static constexpr float kSlot_s = 0.1F;
   static constexpr std::uint32_t kDebouncesPerSlot = 5;  // contacts bounce for up to 10 ms
   static constexpr std::uint32_t kHoldSlots = 10;        // longer than any accidental touch

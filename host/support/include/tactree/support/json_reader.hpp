@@ -1,24 +1,25 @@
 #pragma once
-// Reads values of a JSON object in the controller's file and checks each against its range. Every
-// error names file, key, cause and hint. A key that is not read is an error.
+// Reads values of a JSON object in a file and checks each against its range. Every error names
+// file, key, cause and hint. A key that is not read is an error.
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "tactree/core/device/device_model.hpp"
 
-namespace tactree::controller {
+namespace tactree::support {
 
 class JsonReader {
  public:
   using Json = nlohmann::ordered_json;
 
-  /// Keeps a reference to `json`. All functions throw support::UserError; the constructor throws it
-  /// if `json` is not an object.
-  JsonReader(std::string file, const Json& json, std::string place = "");
+  /// Keeps a reference to `json`. `page`: the document that describes the keys, for the hints. All
+  /// functions throw UserError; the constructor throws it if `json` is not an object.
+  JsonReader(std::string file, const Json& json, std::string page, std::string place = "");
 
   [[noreturn]] void refuse(const std::string& key, const std::string& cause,
                            const std::string& remedy) const;
@@ -45,8 +46,12 @@ class JsonReader {
 
   std::string file_;
   const Json& json_;
+  std::string page_;
   std::string place_;  // path of the object, such as "motors"; "" for the whole file
   std::vector<std::string> known_;
 };
 
-}  // namespace tactree::controller
+/// Reads a file of at most 1 MiB. Throws UserError if it cannot be read or is not JSON.
+[[nodiscard]] JsonReader::Json read_json(const std::filesystem::path& file);
+
+}  // namespace tactree::support

@@ -1,20 +1,26 @@
-#include "json_reader.hpp"
+#include "tactree/support/json_reader.hpp"
 
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <utility>
 
 #include "tactree/support/user_error.hpp"
 
-namespace tactree::controller {
+namespace tactree::support {
+namespace {
 
-JsonReader::JsonReader(std::string file, const Json& json, std::string place)
-    : file_(std::move(file)), json_(json), place_(std::move(place)) {
+constexpr std::uintmax_t kMaxBytes = 1U << 20U;
+
+}  // namespace
+
+JsonReader::JsonReader(std::string file, const Json& json, std::string page, std::string place)
+    : file_(std::move(file)), json_(json), page_(std::move(page)), place_(std::move(place)) {
   if (!json.is_object()) {
-    throw support::UserError(fmt::format("{}: {} is not an object (write it in braces)", file_,
-                                         place_.empty() ? "it" : place_));
+    throw UserError(fmt::format("{}: {} is not an object (write it in braces)", file_,
+                                place_.empty() ? "it" : place_));
   }
 }
 
@@ -24,14 +30,14 @@ std::string JsonReader::path(const std::string& key) const {
 
 void JsonReader::refuse(const std::string& key, const std::string& cause,
                         const std::string& remedy) const {
-  throw support::UserError(fmt::format("{}: {}: {} ({})", file_, path(key), cause, remedy));
+  throw UserError(fmt::format("{}: {}: {} ({})", file_, path(key), cause, remedy));
 }
 
 const JsonReader::Json& JsonReader::get(const char* key) {
   known_.emplace_back(key);
   const auto found = json_.find(key);
   if (found == json_.end()) {
-    refuse(key, "is missing", "see docs/LINUX-BOARD.md");
+    refuse(key, "is missing", "see " + page_);
   }
   return *found;
 }
@@ -90,7 +96,7 @@ std::string JsonReader::text(const char* key) {
   return value.get<std::string>();
 }
 
-JsonReader JsonReader::object(const char* key) { return {file_, get(key), path(key)}; }
+JsonReader JsonReader::object(const char* key) { return {file_, get(key), page_, path(key)}; }
 
 std::vector<JsonReader> JsonReader::objects(const char* key, std::size_t low, std::size_t high) {
   const Json& array = get(key);
@@ -100,7 +106,7 @@ std::vector<JsonReader> JsonReader::objects(const char* key, std::size_t low, st
   }
   std::vector<JsonReader> readers;
   for (std::size_t i = 0; i < array.size(); ++i) {
-    readers.emplace_back(file_, array[i], fmt::format("{}[{}]", path(key), i));
+    readers.emplace_back(file_, array[i], page_, fmt::format("{}[{}]", path(key), i));
   }
   return readers;
 }
@@ -108,9 +114,28 @@ std::vector<JsonReader> JsonReader::objects(const char* key, std::size_t low, st
 void JsonReader::finish() const {
   for (const auto& [key, value] : json_.items()) {
     if (std::find(known_.begin(), known_.end(), key) == known_.end()) {
-      refuse(key, "is unknown", "docs/LINUX-BOARD.md lists the keys");
+      refuse(key, "is unknown", page_ + " lists the keys");
     }
   }
 }
 
-}  // namespace tactree::controller
+JsonReader::Json read_json(const std::filesystem::path& file) {
+  std::error_code error;
+  const std::uintmax_t bytes = std::filesystem::file_size(file, error);
+  if (error) {
+    throw UserError(fmt::format("{}: cannot be read: {} (check the path and its permissions)",
+                                file.string(), error.message()));
+  }
+  if (bytes > kMaxBytes) {
+    throw UserError(fmt::format("{}: is too large (at most 1 MiB)", file.string()));
+  }
+  std::ifstream stream(file);
+  try {
+    return JsonReader::Json::parse(stream);
+  } catch (const nlohmann::json::parse_error& cause) {
+    throw UserError(
+        fmt::format("{}: byte {}: not valid JSON (correct it there)", file.string(), cause.byte));
+  }
+}
+
+}  // namespace tactree::support
