@@ -123,6 +123,51 @@ class Preview(SharedFolder):
             self.assertEqual(len(purples([corner])), len(corner) if doubtful else 0)
             self.assertEqual(len(purples(picture)) > 20000, doubtful)
 
+    def painted(self, *options):
+        """A ball that is blue where z > 0 and green elsewhere."""
+        rows = [f"{p[0]} {p[1]} {p[2]} {'20 30 240' if n[2] > 0 else '20 200 30'}" for p, n in ball(20000, 0.04)]
+        (self.path / "painted.csv").write_text("x y z red green blue\n" + "\n".join(rows) + "\n")
+        return self.run_tool("build", "painted.csv", "-o", "painted.blob", "--preview", "painted.png", *options)
+
+    def assert_painted(self, name):
+        width, height, rows = pixels(self.path / name)
+        red, green, blue = rows[height // 4][width // 4]
+        self.assertGreater(blue, 2 * max(red, green), name)
+        red, green, blue = rows[2 * height // 3][width // 4]
+        self.assertGreater(green, 2 * max(red, blue), name)
+
+    def test_draws_colours_of_scan(self):
+        done = self.painted("--colours", "painted.colours")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assert_painted("painted.png")
+        done = self.run_tool("info", "painted.blob", "--colours", "painted.colours", "--preview", "known.png")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assert_painted("known.png")
+        header = (self.path / "painted.colours").read_bytes()
+        self.assertEqual(header[:12], b"TACTCOL\0" + struct.pack("<I", 1))
+        points = struct.unpack("<I", header[12:16])[0]
+        self.assertEqual(len(header), 80 + 3 * points)
+
+    def test_refuses_foreign_and_damaged_colours(self):
+        self.assertEqual(self.painted("--colours", "painted.colours").returncode, 0)
+        self.assertEqual(self.build(0.0).returncode, 0)
+        good = (self.path / "painted.colours").read_bytes()
+        for blob, content, cause in (
+                ("ball.blob", good, "belongs to another blob than ball.blob"),
+                ("painted.blob", good[:-1], "its size is not that of the colours"),
+                ("painted.blob", good + b"0", "its size is not that of the colours"),
+                ("painted.blob", good[:40], "is not a file of colours"),
+                ("painted.blob", good[:8] + b"\2" + good[9:], "has version 2")):
+            (self.path / "bad.colours").write_bytes(content)
+            done = self.run_tool("info", blob, "--colours", "bad.colours", "--preview", "bad.png")
+            self.assertEqual(done.returncode, 1, cause)
+            self.assertIn("bad.colours: " + cause, done.stderr)
+            self.assertFalse((self.path / "bad.png").exists())
+        done = self.build(0.0, "--colours", "none.colours")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("no input has colours at its points", done.stderr)
+        self.assertFalse((self.path / "none.colours").exists())
+
     def test_never_overwrites_scan(self):
         before = shell(0.0)
         done = self.build(0.0, "--preview", "ball.csv")

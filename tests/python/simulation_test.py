@@ -3,6 +3,7 @@
 usage: simulation_test.py TACTREE
 """
 import csv
+import json
 import pathlib
 import sys
 import unittest
@@ -51,6 +52,23 @@ class SameAsTheTool(Folder):
         self.assertEqual(len(trace), 500)
         self.assertTrue(trace["in_contact"].any())
         self.expect_same(simulation, trace, self.tool_run("--seconds", "0.5"))
+
+    def test_pose_is_that_of_tool(self):
+        pose = np.eye(4)
+        pose[:3, :3] = [[0, -1, 0], [1, 0, 0], [0, 0, 1]]
+        pose[:3, 3] = [0.01, 0.0, -0.005]
+        (self.path / "pose.json").write_text(json.dumps({"pose": pose.ravel().tolist(), "scale": 0.9}))
+        tool = self.tool_run("--seconds", "0.5", "--pose", "pose.json")
+        for values in ({"pose": self.path / "pose.json"}, {"pose": pose, "scale": 0.9}):
+            simulation = tactree.Simulation(self.model, **values)
+            trace = simulation.run(script="rub", seconds=0.5)
+            self.assertTrue(trace["in_contact"].any())
+            self.expect_same(simulation, trace, tool)
+        for values, cause in (({"pose": 2 * pose}, "rotation"), ({"pose": pose[:3]}, "16 numbers"),
+                              ({"pose": pose, "origin_m": (0, 0, 0)}, "both place"),
+                              ({"scale": 2}, "belongs to the matrix")):
+            with self.assertRaisesRegex(tactree.Error, cause):
+                tactree.Simulation(self.model, **values)
 
     def test_options_have_effect_of_tool(self):
         for values, options in (

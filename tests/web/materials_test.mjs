@@ -132,6 +132,24 @@ test('a click on a colour of the scan makes a material of the sliders', async (t
   assert.deepEqual(page.troubles, []);
 });
 
+test('a model is shown in the colours of its scan', async (t) => {
+  const plain = join(folder, 'plain.blob');
+  const colours = join(folder, 'plain.colours');
+  execFileSync(tactree, ['build', scan, '-o', plain, '--unit', 'm', '--colours', colours], { stdio: 'pipe' });
+  const page = await openSession(t, [plain, '--colours', colours]);
+  assert.ok(await page.locator('#show-colours').isChecked());
+  await page.waitForTimeout(2000); // the colours of all nodes
+  const [red, green] = await middle(page);
+  assert.ok(red > 2 * green, `${red}, ${green}`);
+  await page.locator('#show-colours').uncheck();
+  await page.waitForTimeout(1000);
+  const [plain_red, plain_green] = await middle(page);
+  assert.ok(plain_red < 1.5 * plain_green, `${plain_red}, ${plain_green}`);
+  assert.deepEqual(page.troubles, []);
+  assert.throws(() => execFileSync(tactree, ['view', blob, '--page-port', '0', '--colours', colours],
+    { stdio: 'pipe', timeout: 60000 }), /belongs to another blob/);
+});
+
 test('a report without colours, and another file, are refused', () => {
   const empty = join(folder, 'empty.json');
   for (const [content, why] of [['{"colours": []}', /the scan of this report has no colours/],

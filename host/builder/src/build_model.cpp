@@ -36,6 +36,8 @@ class Pipeline {
   [[nodiscard]] BuildReport& report() { return report_; }
   /// Per point of the blob, after run(): 1 if its orientation is ambiguous.
   [[nodiscard]] std::vector<std::uint8_t>& doubtful() { return doubtful_of_blob_; }
+  /// Per point of the blob, after run(), if they are kept.
+  [[nodiscard]] std::vector<Colour>& colours() { return colours_of_blob_; }
 
   /// `digest` is called as late as possible, because it may wait for another thread.
   WrittenBlob run(std::vector<Scan> scans, const std::function<Sha256Digest()>& digest) {
@@ -276,6 +278,7 @@ class Pipeline {
     }
     count_materials(blob);
     collect_doubtful(blob);
+    collect_colours(blob, choice.points.cloud());
     report_.spacing_m = model_.spacing_m;
     report_.largest_gap_m = model_.largest_gap_m;
     report_.merged = blob.merged;
@@ -295,6 +298,16 @@ class Pipeline {
     doubtful_of_blob_.assign(blob.source_index.size(), 0);
     for (std::size_t i = 0; i < doubtful_of_blob_.size() && !doubtful.empty(); ++i) {
       doubtful_of_blob_[i] = doubtful[blob.source_index[i]];
+    }
+  }
+
+  void collect_colours(const WrittenBlob& blob, const Cloud& cloud) {
+    if (!cloud.has_colours()) {
+      return;
+    }
+    colours_of_blob_.reserve(blob.source_index.size());
+    for (const std::uint32_t source : blob.source_index) {
+      colours_of_blob_.push_back(cloud.colours[source]);
     }
   }
 
@@ -348,6 +361,7 @@ class Pipeline {
   Model model_;
   std::vector<std::uint8_t> doubtful_;  // per point of the model; empty: none
   std::vector<std::uint8_t> doubtful_of_blob_;
+  std::vector<Colour> colours_of_blob_;
 };
 
 std::unique_ptr<tbb::global_control> limit_threads(unsigned threads) {
@@ -364,6 +378,7 @@ BuildResult finish(Pipeline& pipeline, std::vector<Scan> scans,
     result.blob = pipeline.run(std::move(scans), digest);
     result.report = std::move(pipeline.report());
     result.doubtful = std::move(pipeline.doubtful());
+    result.colours = std::move(pipeline.colours());
     stages.end();
     result.report.stages = stages.stages();
     result.report.seconds = stages.seconds();

@@ -2,7 +2,6 @@
 
 #include <fmt/core.h>
 
-#include <cmath>
 #include <cstddef>
 
 namespace tactree::builder {
@@ -19,11 +18,7 @@ double squared_distance(const Colour& a, const Colour& b) {
 
 }  // namespace
 
-double colour_distance(const Colour& a, const Colour& b) {
-  return std::sqrt(squared_distance(a, b));
-}
-
-std::uint8_t MaterialMap::index_of(const Colour& colour) const {
+std::uint8_t MaterialMap::index_of(const Colour& colour, std::span<ColourMatch> matches) const {
   std::size_t best = 0;
   double best_squared = 0.0;
   for (std::size_t i = 0; i < colours.size(); ++i) {
@@ -33,6 +28,13 @@ std::uint8_t MaterialMap::index_of(const Colour& colour) const {
       best = i + 1;
       best_squared = squared;
     }
+    if (!matches.empty() && squared < matches[i].squared_distance) {
+      matches[i].squared_distance = squared;
+      matches[i].nearest = colour;
+    }
+  }
+  if (!matches.empty() && best != 0) {
+    ++matches[best - 1].points;
   }
   return static_cast<std::uint8_t>(best);
 }

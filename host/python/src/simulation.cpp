@@ -14,9 +14,12 @@
 #include "bindings.hpp"
 #include "model.hpp"
 #include "tactree/plant/vectors.hpp"
+#include "tactree/setup/pose_file.hpp"
+#include "tactree/setup/scene_file.hpp"
 #include "tactree/setup/session.hpp"
 #include "tactree/simulation/hand_script.hpp"
 #include "tactree/simulation/injection.hpp"
+#include "tactree/simulation/scene_target.hpp"
 #include "tactree/support/device_file.hpp"
 #include "tactree/support/user_error.hpp"
 
@@ -89,6 +92,23 @@ setup::SessionOptions read_options(const py::dict& values) {
   return options;
 }
 
+/// Where the user has placed the model: a file, or the rows of a matrix and a scale.
+std::optional<simulation::Placement> read_placement(const py::dict& values) {
+  if (values.contains("pose_file")) {
+    std::string file;
+    read(values, "pose_file", file);
+    return setup::read_pose_file(file);
+  }
+  if (!values.contains("pose")) {
+    return std::nullopt;
+  }
+  std::vector<double> rows;
+  double scale = 1.0;
+  read(values, "pose", rows);
+  read(values, "scale", scale);
+  return setup::placement_of({{"pose", rows}, {"scale", scale}}, "Simulation");
+}
+
 std::vector<simulation::InjectedFault> read_faults(const std::vector<std::string>& texts) {
   std::vector<simulation::InjectedFault> faults;
   for (const std::string& text : texts) {
@@ -104,14 +124,14 @@ std::array<double, 3> widened(core::Vec3 v) {
 class Session {
  public:
   Session(const Model& model, const py::dict& values, const std::vector<std::string>& faults)
-      : blob_(model.blob()),
-        file_(model.file()),
+      : file_(model.file()),
+        placement_(read_placement(values)),
+        blob_(sized(model)),
         options_(read_options(values)),
         setup_(setup::make_setup(options_, body())),
         faults_(read_faults(faults)) {
     // A refusal of the model or the configuration does not wait for the first tick.
-    const simulation::Simulation trial(blob_->bytes(), setup_, resting(Eigen::Vector3d::Zero()));
-    check(trial);
+    check(*make(resting(Eigen::Vector3d::Zero())));
   }
 
   /// Ends the run; the next tick begins another.
@@ -178,7 +198,30 @@ class Session {
   }
 
  private:
-  [[nodiscard]] setup::FirstBody body() const { return {blob_->view()}; }
+  /// The model in the size of its placement.
+  [[nodiscard]] std::shared_ptr<const support::BlobFile> sized(const Model& model) const {
+    if (!placement_ || placement_->scale == 1.0) {
+      return model.blob();
+    }
+    return setup::scaled_blob(*model.blob(), model.file(), placement_->scale).file;
+  }
+  [[nodiscard]] setup::FirstBody body() const {
+    return {blob_->view(), placement_ ? placement_->pose : Eigen::Isometry3d::Identity(),
+            placement_.has_value()};
+  }
+  [[nodiscard]] std::unique_ptr<simulation::Simulation> make(
+      const simulation::HandPath& path) const {
+    if (!placement_) {
+      return std::make_unique<simulation::Simulation>(blob_->bytes(), setup_, path);
+    }
+    simulation::SceneBody placed;
+    placed.blob = blob_->bytes();
+    placed.path = simulation::BodyPath(placement_->pose);
+    return std::make_unique<simulation::Simulation>(
+        blob_->bytes(), setup_, path,
+        std::make_unique<simulation::SceneTarget>(std::vector<simulation::SceneBody>{placed},
+                                                  simulation::Simulation::arming_ticks(setup_)));
+  }
   [[nodiscard]] static simulation::HandPath resting(const Eigen::Vector3d& position) {
     return simulation::HandPath(std::vector<simulation::Waypoint>{{0.0, position}});
   }
@@ -187,7 +230,7 @@ class Session {
   }
 
   void begin(const simulation::HandPath& path, const std::optional<Counts>& counts) {
-    auto fresh = std::make_unique<simulation::Simulation>(blob_->bytes(), setup_, path);
+    auto fresh = make(path);
     check(*fresh);
     if (counts) {
       fresh->hold_counts(*counts);
@@ -206,8 +249,9 @@ class Session {
     return sample;
   }
 
-  std::shared_ptr<const support::BlobFile> blob_;
   std::string file_;
+  std::optional<simulation::Placement> placement_;
+  std::shared_ptr<const support::BlobFile> blob_;  // in the size of the placement
   setup::SessionOptions options_;
   simulation::Setup setup_;
   std::vector<simulation::InjectedFault> faults_;

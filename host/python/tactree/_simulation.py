@@ -1,6 +1,7 @@
 """The controller of the firmware with a simulated device and hand: `tactree simulate`."""
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from typing import Any
 
@@ -15,7 +16,7 @@ class Simulation:
     """A session of the controller, with the code of `tactree simulate`. The same inputs give bit-identical forces.
 
     The first tick powers up the controller and arms it with the hand at rest at its first position, outside the object.
-    Positions are those of the model's frame. One thread at a time may use a simulation.
+    Positions are those of the model's frame, or with a pose those of the device. One thread at a time may use a simulation.
     """
 
     def __init__(self, model: Model, device: str = "premium", rate_hz: float = 1000.0, *, mode: str = "surface",
@@ -26,19 +27,30 @@ class Simulation:
                  latency_ticks: float | None = None, encoder_step_m: float | None = None,
                  device_mass_kg: float | None = None, device_friction_N: float | None = None,
                  hand_stiffness_N_m: float | None = None, hand_damping_Ns_m: float | None = None,
-                 hand_mass_kg: float | None = None, faults: Sequence[str] = ()):
+                 hand_mass_kg: float | None = None,
+                 pose: str | os.PathLike[str] | npt.ArrayLike | None = None, scale: float | None = None,
+                 faults: Sequence[str] = ()):
         """Checks the model and the configuration as the controller does; raises Error with the message of the tool.
 
         device     name of a preset, see device_names(), or a device file of `tactree simulate --dump-device`
         mode       surface, or paper
         origin_m   position of the model's origin in the device's frame; default: the model's centre is at the device's
                    origin
+        pose       where the model is in the device's frame: a pose file, or a 4x4 matrix in metres
+        scale      with a matrix: the size of the model, which is scaled about its origin first
         faults     faults to inject, such as "encoder1:stuck@2.5s", times in seconds after arming
 
         The other options are those of `tactree simulate`, with its defaults. encoder_step_m, device_mass_kg and
         device_friction_N have an effect on the device cartesian only.
         """
+        if pose is not None and origin_m is not None:
+            raise _native.Error("Simulation: pose and origin_m both place the model (give one of them)")
+        is_file = isinstance(pose, (str, os.PathLike))
+        if scale is not None and (pose is None or is_file):
+            raise _native.Error("Simulation: scale belongs to the matrix of a pose (a pose file has its own)")
+        rows = None if pose is None or is_file else np.asarray(pose, dtype=float).ravel().tolist()
         options = {
+            "pose_file": os.fspath(pose) if is_file else None, "pose": rows, "scale": scale,
             "device": device, "rate_hz": rate_hz, "mode": mode, "stiffness_N_m": stiffness_N_m,
             "damping_Ns_m": damping_Ns_m, "static_friction": static_friction, "dynamic_friction": dynamic_friction,
             "use_materials": use_materials, "passivity_Ns_m": passivity_Ns_m, "force_max_N": force_max_N, "first_force": first_force,

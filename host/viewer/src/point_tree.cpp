@@ -93,10 +93,11 @@ struct PointTree::Task {
 
 class PointTree::Build {
  public:
-  Build(PointTree& tree, const core::BlobView& view)
+  Build(PointTree& tree, const core::BlobView& view, std::span<const Rgb> colours)
       : tree_(tree),
         points_(decode(view)),
         materials_(materials_of(view)),
+        colours_(colours),
         spacing_m_(view.header().spacing_m) {
     Task root;
     root.points.resize(points_.size());
@@ -146,6 +147,9 @@ class PointTree::Build {
     if (!materials_.empty()) {
       tree_.materials_.push_back(materials_[index]);
     }
+    if (!colours_.empty()) {
+      tree_.colours_.push_back(colours_[index]);
+    }
     tree_.points_.push_back({to_share(point.position.x, node.min_m[0], node.edge_m),
                              to_share(point.position.y, node.min_m[1], node.edge_m),
                              to_share(point.position.z, node.min_m[2], node.edge_m),
@@ -168,11 +172,14 @@ class PointTree::Build {
   PointTree& tree_;
   std::vector<SurfacePoint> points_;
   std::vector<std::uint8_t> materials_;
+  std::span<const Rgb> colours_;
   float spacing_m_;
   std::vector<Task> open_;
 };
 
-PointTree::PointTree(const core::BlobView& view) { Build(*this, view).run(); }
+PointTree::PointTree(const core::BlobView& view, std::span<const Rgb> colours) {
+  Build(*this, view, colours).run();
+}
 
 std::span<const PackedPoint> PointTree::points(std::size_t node) const {
   return std::span(points_).subspan(nodes_[node].first_point, nodes_[node].point_count);
@@ -182,6 +189,12 @@ std::span<const std::uint8_t> PointTree::materials(std::size_t node) const {
   return materials_.empty()
              ? std::span<const std::uint8_t>()
              : std::span(materials_).subspan(nodes_[node].first_point, nodes_[node].point_count);
+}
+
+std::span<const Rgb> PointTree::colours(std::size_t node) const {
+  return colours_.empty()
+             ? std::span<const Rgb>()
+             : std::span(colours_).subspan(nodes_[node].first_point, nodes_[node].point_count);
 }
 
 namespace {
@@ -234,6 +247,7 @@ std::string tree_json(const PointTree& tree, const core::BlobView& view, const S
                                       {"bounds_max_m", std::to_array(h.bounds_max_m)},
                                       {"materials", materials_json(view, scan.labels)},
                                       {"colours", colours},
+                                      {"is_coloured", tree.has_colours()},
                                       {"nodes", nodes}};
   return tree_object.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }

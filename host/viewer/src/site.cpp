@@ -82,7 +82,8 @@ std::string fault_html(std::string_view title, std::string_view markdown) {
 Site::Site(std::vector<core::BlobView> models, const Source& source, ScanFacts scan)
     : models_(std::move(models)), scan_(std::move(scan)), source_(source) {
   for (const core::BlobView& view : models_) {
-    trees_.emplace_back(view);
+    trees_.emplace_back(view, std::span<const Rgb>(scan_.point_colours));
+    scan_.point_colours = std::vector<Rgb>();  // those of the first model only
   }
 }
 
@@ -133,8 +134,11 @@ HttpResponse Site::answer_model(std::string_view path) const {
   const bool wants_points = take_word(path, "points/");
   const bool wants_octants = !wants_points && take_word(path, "octants/");
   const bool wants_materials = !wants_points && !wants_octants && take_word(path, "materials/");
+  const bool wants_colours =
+      !wants_points && !wants_octants && !wants_materials && take_word(path, "colours/");
+  const bool is_known = wants_points || wants_octants || wants_materials || wants_colours;
   const auto which = take_number(path);
-  if (!which || !path.empty() || (!wants_points && !wants_octants && !wants_materials)) {
+  if (!which || !path.empty() || !is_known) {
     return not_found();
   }
   if (wants_octants) {
@@ -146,6 +150,10 @@ HttpResponse Site::answer_model(std::string_view path) const {
   if (wants_materials) {
     const auto materials = tree.materials(*which);
     return binary(materials.data(), materials.size_bytes());
+  }
+  if (wants_colours) {
+    const auto colours = tree.colours(*which);
+    return binary(colours.data(), colours.size_bytes());
   }
   const auto points = tree.points(*which);
   return binary(points.data(), points.size_bytes());

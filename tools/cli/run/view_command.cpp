@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <cstdint>
 #include <cstdio>
 #include <exception>
 #include <future>
@@ -23,6 +24,7 @@
 #include "tactree/setup/model_size.hpp"
 #include "tactree/setup/scene_file.hpp"
 #include "tactree/simulation/placement.hpp"
+#include "tactree/support/colour_file.hpp"
 #include "tactree/support/device_file.hpp"
 #include "tactree/support/output_file.hpp"
 #include "tactree/support/user_error.hpp"
@@ -43,6 +45,7 @@ struct ViewOptions {
   std::string trace;
   std::string material;
   std::string report;
+  std::string colours;
   BoardPort board;
   int link_timeout_ms = 50;
   std::string firmware;
@@ -150,6 +153,23 @@ std::unique_ptr<viewer::Source> make_source(const ViewOptions& options,
                                                  noted_bodies_of(scene), device, origin_m);
 }
 
+/// Of the points of the first model in its present size; empty if they are not given.
+std::vector<viewer::Rgb> point_colours(const ViewOptions& options, const setup::SceneFile& scene) {
+  if (options.colours.empty()) {
+    return {};
+  }
+  std::vector<viewer::Rgb> given =
+      support::read_colours(options.colours, *scene.given[0], scene.names[0]);
+  if (scene.sources[0].empty()) {
+    return given;
+  }
+  std::vector<viewer::Rgb> shown;
+  for (const std::uint32_t source : scene.sources[0]) {
+    shown.push_back(given[source]);
+  }
+  return shown;
+}
+
 /// Of the first model, for the legend of the page and its rules.
 viewer::ScanFacts scan_facts(const ViewOptions& options, const setup::SceneFile& scene) {
   const std::optional<builder::MaterialMap> map =
@@ -162,6 +182,7 @@ viewer::ScanFacts scan_facts(const ViewOptions& options, const setup::SceneFile&
     }
   }
   facts.colours = report_colours(options.report);
+  facts.point_colours = point_colours(options, scene);
   return facts;
 }
 
@@ -204,11 +225,12 @@ class Simulated {
     if (!was_renewed) {
       return std::nullopt;
     }
-    scene_.files[0] = scaled_.get();
-    scene_.bodies[0].blob = scaled_->bytes();
+    scene_.files[0] = scaled_.file.get();
+    scene_.sources[0] = std::move(scaled_.sources);
+    scene_.bodies[0].blob = scaled_.file->bytes();
     scene_.bodies[0].path = simulation::BodyPath(placement_.pose);
     scene_.in_device_frame = true;
-    scene_.scaled.push_back(std::move(scaled_));
+    scene_.scaled.push_back(std::move(scaled_.file));
     return placement_;
   }
 
@@ -267,7 +289,7 @@ class Simulated {
   setup::SceneFile& scene_;
   viewer::LiveSession session_;
   viewer::Server* server_ = nullptr;
-  std::unique_ptr<support::BlobFile> scaled_;
+  setup::ScaledBlob scaled_;
   simulation::Placement placement_;
   std::atomic<bool> is_renewed_{false};
   std::future<void> scaling_;  // its task uses the members above
@@ -412,6 +434,10 @@ void add_view_command(CLI::App& app, int&) {
   verb->add_option("--report", options->report,
                    "file of the option --report of the build: the page lists the colours of the "
                    "scan, and makes a file of materials from them")
+      ->check(CLI::ExistingFile);
+  verb->add_option("--colours,--colors", options->colours,
+                   "file of the option --colours of the build: the page shows the first model in "
+                   "the colours of its scan")
       ->check(CLI::ExistingFile);
   add_session_options(*verb, *options);
   add_board_options(*verb, *options);

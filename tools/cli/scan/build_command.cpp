@@ -22,6 +22,7 @@
 #include "tactree/builder/report_json.hpp"
 #include "tactree/emulation/board_description.hpp"
 #include "tactree/setup/pose_file.hpp"
+#include "tactree/support/colour_file.hpp"
 #include "tactree/support/output_file.hpp"
 #include "tactree/support/spooled_input.hpp"
 #include "tactree/support/user_error.hpp"
@@ -43,6 +44,7 @@ struct BuildArguments {
   std::string output;
   std::string report;
   std::string preview;
+  std::string colours;
   std::string json;
   std::optional<std::string> fit;
   std::string pose;
@@ -170,6 +172,10 @@ void complete(BuildArguments& arguments) {
   for (const std::string& viewpoint : arguments.viewpoints) {
     build.viewpoints.push_back(to_position("--viewpoint", viewpoint));
   }
+  if (!arguments.colours.empty() || !arguments.preview.empty()) {
+    build.keep_colours = arguments.colours.empty() ? builder::KeepColours::kIfAny
+                                                   : builder::KeepColours::kRequire;
+  }
   set_spacing(arguments, build);
   if (arguments.budget) {
     build.flash_budget_bytes = to_bytes(*arguments.budget);
@@ -197,7 +203,8 @@ void build(BuildArguments& arguments) {
   std::erase(files, support::kStandardInput);
   std::vector<fs::path> read = files;
   read.emplace_back(arguments.pose);
-  support::check_outputs({arguments.output, arguments.report, arguments.json, arguments.preview},
+  support::check_outputs({arguments.output, arguments.report, arguments.json, arguments.preview,
+                          arguments.colours},
                          read);
   const std::unique_ptr<builder::Progress> progress =
       builder::make_progress(arguments.progress, stderr);
@@ -222,7 +229,10 @@ void build(BuildArguments& arguments) {
   }
   if (!arguments.preview.empty()) {
     write_preview(arguments.preview, view_of(result), result.report.openings, result.doubtful,
-                  arguments.build.materials);
+                  arguments.build.materials, result.colours);
+  }
+  if (!arguments.colours.empty()) {
+    support::write_colours(arguments.colours, result.blob.bytes, result.colours);
   }
   print_report(result.report, arguments.build, arguments.output);
   if (arguments.verbose) {
@@ -382,6 +392,9 @@ void add_build_command(CLI::App& app, int&) {
   verb->add_option(
       "--preview", arguments->preview,
       "write a picture of the model to this PNG file, with a scale and marked openings");
+  verb->add_option("--colours,--colors", arguments->colours,
+                   "write the colours of the scan to this file, for view --colours; a blob has "
+                   "none");
   verb->callback([arguments] {
     complete(*arguments);
     build(*arguments);

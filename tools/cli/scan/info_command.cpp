@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "commands.hpp"
 #include "image/board_costs.hpp"
@@ -23,6 +24,7 @@
 #include "tactree/setup/model_size.hpp"
 #include "tactree/support/blob_facts.hpp"
 #include "tactree/support/blob_file.hpp"
+#include "tactree/support/colour_file.hpp"
 #include "tactree/support/device_file.hpp"
 #include "tactree/support/json_text.hpp"
 #include "tactree/support/output_file.hpp"
@@ -42,6 +44,7 @@ struct InfoOptions {
   std::string json;
   std::string points;
   std::string preview;
+  std::string colours;
 };
 
 std::string length(float metres) {
@@ -222,7 +225,7 @@ std::optional<std::string> size_warning_of(const InfoOptions& options, const Blo
 
 void info(const InfoOptions& options) {
   support::check_outputs({options.json, options.points, options.preview},
-                         {options.blob, options.material});
+                         {options.blob, options.material, options.colours});
   const support::BlobFile blob = support::BlobFile::named(options.blob);
   const std::optional<builder::MaterialMap> named =
       named_materials(options.material, options.blob, blob.view());
@@ -251,7 +254,12 @@ void info(const InfoOptions& options) {
     write_points(blob.view(), options.points);
   }
   if (!options.preview.empty()) {
-    write_preview(options.preview, blob.view(), builder::find_openings(blob.view()), {}, named);
+    std::vector<support::PointColour> colours;
+    if (!options.colours.empty()) {
+      colours = support::read_colours(options.colours, blob, options.blob);
+    }
+    write_preview(options.preview, blob.view(), builder::find_openings(blob.view()), {}, named,
+                  colours);
   }
 }
 
@@ -274,9 +282,12 @@ void add_info_command(CLI::App& app, int&) {
   verb->add_option("--json", options->json, "write the values as JSON to this file");
   verb->add_option("--points", options->points,
                    "write all points to this CSV file: index,x,y,z,nx,ny,nz (m)");
-  verb->add_option(
+  CLI::Option* preview = verb->add_option(
       "--preview", options->preview,
       "write a picture of the model to this PNG file, with a scale and marked openings");
+  verb->add_option("--colours,--colors", options->colours,
+                   "the file of build --colours: --preview draws the colours of the scan")
+      ->needs(preview);
   verb->callback([options] { info(*options); });
 }
 

@@ -36,7 +36,8 @@ std::vector<picture::MaterialKey> material_keys(const core::BlobView& view,
 void write_preview(const std::filesystem::path& file, const core::BlobView& view,
                    std::span<const builder::Opening> openings,
                    std::span<const std::uint8_t> doubtful,
-                   const std::optional<builder::MaterialMap>& named) {
+                   const std::optional<builder::MaterialMap>& named,
+                   std::span<const builder::Colour> colours) {
   std::vector<picture::Mark> marks;
   for (const builder::Opening& opening : openings) {
     const Eigen::Vector3f centre = opening.centre.cast<float>();
@@ -45,7 +46,7 @@ void write_preview(const std::filesystem::path& file, const core::BlobView& view
                      opening.kind == builder::Opening::Kind::kHole});
   }
   const std::vector<std::byte> png =
-      picture::draw_model(view, marks, doubtful, material_keys(view, named)).png();
+      picture::draw_model(view, marks, doubtful, material_keys(view, named), colours).png();
   support::write_file(file, std::span<const std::byte>(png));
 }
 

@@ -132,7 +132,7 @@ class Cleaner {
     return options_.materials && options_.materials->by_colour();
   }
 
-  void require_colours(const std::vector<Scan>& scans) const {
+  void require_colours(const std::vector<Scan>& scans) {
     const bool coloured = std::any_of(scans.begin(), scans.end(),
                                       [](const Scan& scan) { return !scan.colours.empty(); });
     if (by_colour() && !coloured) {
@@ -140,6 +140,16 @@ class Cleaner {
           "the materials depend on colour, but no input has colours at its points (export the scan "
           "with vertex colours, or give one material for the whole model)");
     }
+    if (options_.keep_colours == KeepColours::kRequire && !coloured) {
+      throw std::runtime_error(
+          "--colours: no input has colours at its points (export the scan with vertex colours, or "
+          "omit the option)");
+    }
+    keeps_colours_ = options_.keep_colours != KeepColours::kNo && coloured;
+  }
+
+  static const Colour& colour_of(const Scan& scan, std::size_t point) {
+    return scan.colours.empty() ? kNoColour : scan.colours[point];
   }
 
   /// Points of a scan without colours get the base material.
@@ -208,6 +218,9 @@ class Cleaner {
         if (by_colour()) {
           cloud_.materials.push_back(material_of(scan, i));
         }
+        if (keeps_colours_) {
+          cloud_.colours.push_back(colour_of(scan, i));
+        }
         if (normals) {
           cloud_.normals.push_back(usable_normal(scan.normals[i]));
         } else if (cloud_.has_normals()) {
@@ -235,6 +248,9 @@ class Cleaner {
       input_.mesh.positions.push_back(input_.frame.turned(scan.positions[i]));
       if (by_colour()) {
         input_.mesh.materials.push_back(material_of(scan, i));
+      }
+      if (keeps_colours_) {
+        input_.mesh.colours.push_back(colour_of(scan, i));
       }
     }
     for (const auto& [i, j, k] : scan.triangles) {
@@ -524,6 +540,7 @@ class Cleaner {
   ColourCensus census_;
   double float_step_ = 0.0;    // step of float32 coordinates far from the origin, source units
   bool cloud_sights_ = false;  // some points were seen from a known position
+  bool keeps_colours_ = false;
   std::uint64_t mesh_corners_ = 0;
 };
 

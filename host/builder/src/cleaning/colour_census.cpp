@@ -8,7 +8,6 @@
 namespace tactree::builder {
 
 std::uint8_t ColourCensus::take(const Colour& colour, const MaterialMap& map) {
-  const std::uint8_t material = map.index_of(colour);
   Cell& cell =
       cells_[(colour[0] / kLevels * kLevels + colour[1] / kLevels) * kLevels + colour[2] / kLevels];
   ++cell.points;
@@ -16,16 +15,7 @@ std::uint8_t ColourCensus::take(const Colour& colour, const MaterialMap& map) {
     cell.sum[k] += colour[k];
   }
   matches_.resize(map.colours.size());
-  for (std::size_t i = 0; i < matches_.size(); ++i) {
-    ColourMatch& match = matches_[i];
-    match.points += material == i + 1 ? 1U : 0U;
-    const double distance = colour_distance(colour, map.colours[i].colour);
-    if (distance < match.distance) {
-      match.distance = distance;
-      match.nearest = colour;
-    }
-  }
-  return material;
+  return map.index_of(colour, matches_);
 }
 
 std::vector<ColourCount> ColourCensus::most_frequent(std::size_t limit) const {
@@ -55,7 +45,8 @@ std::string unused_colour(const ColourMaterial& material, const ColourMatch& mat
         "colour were dropped (lower --spacing, or see the dropped points of the report)",
         material.name, match.points);
   }
-  if (match.distance <= material.tolerance) {
+  const double distance = std::sqrt(match.squared_distance);
+  if (distance <= material.tolerance) {
     return fmt::format(
         "no point has the material '{}': the points within {:.6g} of its colour are nearer to that "
         "of another material (correct the rgb of one of them)",
@@ -70,7 +61,7 @@ std::string unused_colour(const ColourMaterial& material, const ColourMatch& mat
       "no point has the colour of the material '{}': the nearest to {} is {}, at a distance of "
       "{:.0f} (raise its tolerance of {:.6g}, or give another rgb; the scan has {})",
       material.name, colour_text(material.colour), colour_text(match.nearest),
-      std::ceil(match.distance), material.tolerance, colours);
+      std::ceil(distance), material.tolerance, colours);
 }
 
 }  // namespace tactree::builder

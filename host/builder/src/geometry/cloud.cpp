@@ -19,6 +19,7 @@ Cloud select(const Cloud& cloud, std::span<const std::uint32_t> order) {
   chosen.materials.reserve(cloud.has_materials() ? order.size() : 0);
   chosen.doubtful.reserve(cloud.doubtful.empty() ? 0 : order.size());
   chosen.sights.reserve(cloud.has_sights() ? order.size() : 0);
+  chosen.colours.reserve(cloud.has_colours() ? order.size() : 0);
   for (const std::uint32_t i : order) {
     chosen.positions.push_back(cloud.positions[i]);
     if (cloud.has_normals()) {
@@ -32,6 +33,9 @@ Cloud select(const Cloud& cloud, std::span<const std::uint32_t> order) {
     }
     if (cloud.has_sights()) {
       chosen.sights.push_back(cloud.sights[i]);
+    }
+    if (cloud.has_colours()) {
+      chosen.colours.push_back(cloud.colours[i]);
     }
   }
   return chosen;

@@ -1,8 +1,9 @@
 #pragma once
-// A set of points with normals and materials, as passed between the steps of a build.
+// A set of points with normals, materials and colours, as passed between the steps of a build.
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -24,11 +25,14 @@ struct Cloud {
   std::vector<std::uint8_t> materials;   ///< empty, or one per position: index in the material map
   std::vector<std::uint8_t> doubtful{};  ///< empty, or one per position; 1: ambiguous orientation
   std::vector<Sight> sights{};           ///< empty, or one per position
+  /// Empty, or one per position (R, G, B).
+  std::vector<std::array<std::uint8_t, 3>> colours{};
 
   [[nodiscard]] std::size_t size() const { return positions.size(); }
   [[nodiscard]] bool has_normals() const { return !normals.empty(); }
   [[nodiscard]] bool has_materials() const { return !materials.empty(); }
   [[nodiscard]] bool has_sights() const { return !sights.empty(); }
+  [[nodiscard]] bool has_colours() const { return !colours.empty(); }
 };
 
 [[nodiscard]] Box bounds_of(std::span<const Eigen::Vector3d> positions);

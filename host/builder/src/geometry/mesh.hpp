@@ -14,6 +14,8 @@ struct Mesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices into positions, all valid
   std::vector<std::uint8_t> materials;  ///< empty, or one per position, as in a Cloud
   std::vector<std::uint8_t> doubtful;   ///< empty, or one per triangle; 1: ambiguous orientation
+  /// Empty, or one per position (R, G, B).
+  std::vector<std::array<std::uint8_t, 3>> colours{};
 };
 
 struct Corners {

@@ -47,6 +47,9 @@ class Thickener {
     if (sheet_.cloud().has_materials()) {
       cloud_.materials.push_back(sheet_.cloud().materials[i]);
     }
+    if (sheet_.cloud().has_colours()) {
+      cloud_.colours.push_back(sheet_.cloud().colours[i]);
+    }
   }
 
   const ZOrderedCloud& sheet_;

@@ -119,6 +119,7 @@ class DensityChooser {
     samples.normals.resize(samples.size(), Eigen::Vector3f::Zero());
     samples.materials.insert(samples.materials.end(), points.materials.begin(),
                              points.materials.end());
+    samples.colours.insert(samples.colours.end(), points.colours.begin(), points.colours.end());
     if (!samples.doubtful.empty()) {
       samples.doubtful.resize(samples.positions.size());
     }

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <vector>
 
 #include "tactree/builder/length_text.hpp"
 
@@ -39,6 +40,15 @@ std::uint32_t nearest_corner(const std::array<std::uint32_t, 3>& triangle,
   return at.x() >= at.y() ? triangle[1] : triangle[2];
 }
 
+/// Gives a sample the value of a vertex, if the mesh has such values.
+template <class T>
+void take_value(const std::vector<T>& of_vertices, std::uint32_t vertex, std::vector<T>& of_samples,
+                std::uint64_t sample) {
+  if (!of_vertices.empty()) {
+    of_samples[sample] = of_vertices[vertex];
+  }
+}
+
 }  // namespace
 
 Cloud sample_faces(const Mesh& mesh, double spacing) {
@@ -60,6 +70,7 @@ Cloud sample_faces(const Mesh& mesh, double spacing) {
   cloud.positions.resize(first.back());
   cloud.normals.resize(first.back());
   cloud.materials.resize(mesh.materials.empty() ? 0 : first.back());
+  cloud.colours.resize(mesh.colours.empty() ? 0 : first.back());
   cloud.doubtful.resize(mesh.doubtful.empty() ? 0 : first.back());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mesh.triangles.size(), 64), [&](auto range) {
     for (std::size_t t = range.begin(); t < range.end(); ++t) {
@@ -75,9 +86,9 @@ Cloud sample_faces(const Mesh& mesh, double spacing) {
         if (!mesh.doubtful.empty()) {
           cloud.doubtful[i] = mesh.doubtful[t];
         }
-        if (!mesh.materials.empty()) {
-          cloud.materials[i] = mesh.materials[nearest_corner(mesh.triangles[t], at)];
-        }
+        const std::uint32_t corner = nearest_corner(mesh.triangles[t], at);
+        take_value(mesh.materials, corner, cloud.materials, i);
+        take_value(mesh.colours, corner, cloud.colours, i);
       }
     }
   });

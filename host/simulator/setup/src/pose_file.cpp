@@ -15,8 +15,10 @@ constexpr double kFarthest_m = 10.0;  // as core::is_valid(Pose)
 }  // namespace
 
 simulation::Placement read_pose_file(const std::filesystem::path& file) {
-  const std::string name = file.string();
-  const nlohmann::json root = parse_file(file);
+  return placement_of(parse_file(file), file.string());
+}
+
+simulation::Placement placement_of(const nlohmann::json& root, const std::string& name) {
   require_keys(root, name, {"pose", "scale"});
   if (!root.contains("pose")) {
     support::refuse(name + ".pose", "is missing",

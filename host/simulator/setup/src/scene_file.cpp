@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <utility>
 
 #include "json_values.hpp"
 #include "tactree/builder/scaled_model.hpp"
@@ -160,6 +161,8 @@ class SceneReader {
 
   simulation::SceneBody& add(std::size_t blob, simulation::BodyPath path, double scale) {
     scene_.names.push_back(files_[blob]);
+    scene_.given.push_back(scene_.blobs[blob].get());
+    scene_.sources.emplace_back();
     scene_.files.push_back(scaled(blob, scale));
     scene_.scales.push_back(scale);
     simulation::SceneBody& body = scene_.bodies.emplace_back();
@@ -170,8 +173,12 @@ class SceneReader {
 
   const support::BlobFile* scaled(std::size_t blob, double scale) {
     const support::BlobFile& given = *scene_.blobs[blob];
-    return scale == 1.0 ? &given
-                        : scene_.scaled.emplace_back(scaled_blob(given, files_[blob], scale)).get();
+    if (scale == 1.0) {
+      return &given;
+    }
+    ScaledBlob made = scaled_blob(given, files_[blob], scale);
+    scene_.sources.back() = std::move(made.sources);
+    return scene_.scaled.emplace_back(std::move(made.file)).get();
   }
 
   SceneFile finish(const std::string& place) {
@@ -193,8 +200,7 @@ class SceneReader {
 
 }  // namespace
 
-std::unique_ptr<support::BlobFile> scaled_blob(const support::BlobFile& given,
-                                               const std::string& name, double scale) {
+ScaledBlob scaled_blob(const support::BlobFile& given, const std::string& name, double scale) {
   builder::WrittenBlob scaled;
   try {
     scaled = builder::scaled_model(given.view(), scale);
@@ -202,7 +208,8 @@ std::unique_ptr<support::BlobFile> scaled_blob(const support::BlobFile& given,
     support::refuse(name, fmt::format("cannot be scaled by {:.6g}: {}", scale, error.what()),
                     "choose another scale");
   }
-  return std::make_unique<support::BlobFile>(support::BlobFile::copy_of(scaled.bytes, name));
+  return {std::make_unique<support::BlobFile>(support::BlobFile::copy_of(scaled.bytes, name)),
+          std::move(scaled.source_index)};
 }
 
 SceneFile read_scene(const std::filesystem::path& scene, const std::vector<std::string>& blobs,

@@ -30,8 +30,12 @@ interface Tree {
   bounds_max_m: [number, number, number];
   materials: Material[];
   colours: ScanColour[];
+  is_coloured: boolean; // the colour of each point in the scan is known
   nodes: NodeInfo[];
 }
+
+/** What the colours of the points tell. */
+export type Overlay = 'none' | 'materials' | 'colours';
 
 /** Camera and height of the picture: the scale of the screen. */
 export interface Eye {
@@ -51,10 +55,11 @@ uniform mat3 normalMatrix;
 uniform float diameter;  // of a point, m
 uniform float scale;     // pixels of a metre at a distance of 1 m
 uniform vec3 colour;
-uniform bool overlay;            // shows the materials
+uniform int overlay;             // 1: shows the materials, 2: the colours of the scan
 uniform sampler2D palette;
 in vec4 position;        // x, y, z in 1/65535 of the node's edge; the normal on an octahedron
 in float material;
+in vec3 rgb;
 out vec3 vNormal;
 out vec3 vColour;
 vec3 unpack(float word) {
@@ -66,7 +71,9 @@ vec3 unpack(float word) {
 void main() {
   vec4 eye = modelViewMatrix * vec4(position.xyz, 1.0);
   vNormal = normalize(normalMatrix * unpack(position.w));
-  vColour = overlay ? texelFetch(palette, ivec2(int(material + 0.5), 0), 0).rgb : colour;
+  vColour = colour;
+  if (overlay == 1) vColour = texelFetch(palette, ivec2(int(material + 0.5), 0), 0).rgb;
+  if (overlay == 2) vColour = rgb;
   gl_Position = projectionMatrix * eye;
   gl_PointSize = clamp(diameter * scale / max(-eye.z, 1e-6), 1.5, 48.0);
 }`;
@@ -92,7 +99,7 @@ void main() {
 class CloudNode extends SearchNode {
   object: THREE.Points | undefined;
   requested = false;
-  asksMaterials = false;
+  readonly asks = new Set<Overlay>();
   chosen = false;
 }
 
@@ -126,6 +133,7 @@ export class Cloud {
   private readonly nodes: CloudNode[];
   private readonly search: Search;
   private requests = 0;
+  private overlay: Overlay = 'none';
   private readonly material = new THREE.RawShaderMaterial({
     glslVersion: THREE.GLSL3,
     vertexShader: VERTEX,
@@ -135,7 +143,7 @@ export class Cloud {
       scale: { value: 1 },
       colour: { value: new THREE.Color(0.83, 0.77, 0.69) },
       inner: { value: new THREE.Color(0.42, 0.47, 0.55) },
-      overlay: { value: false },
+      overlay: { value: 0 },
       palette: { value: new THREE.Texture() as THREE.Texture },
     },
   });
@@ -192,23 +200,32 @@ export class Cloud {
   }
 
   /** With fewer than two materials there is nothing to show. */
-  get hasMaterials(): boolean {
-    return this.tree.materials.length > 1;
+  private has(overlay: Overlay): boolean {
+    return overlay === 'materials' ? this.tree.materials.length > 1 : this.tree.is_coloured;
   }
-  showMaterials(shown: boolean): void {
-    this.material.uniforms.overlay.value = shown && this.hasMaterials;
-    if (!shown || !this.hasMaterials) return;
-    for (const node of this.nodes) if (node.object) this.requestMaterials(node);
+  showOverlay(overlay: Overlay): void {
+    this.overlay = this.has(overlay) ? overlay : 'none';
+    for (const node of this.nodes) if (node.object) this.requestOverlay(node);
   }
-  private requestMaterials(node: CloudNode): void {
+  private requestOverlay(node: CloudNode): void {
+    const { overlay } = this;
     const geometry = node.object?.geometry;
-    if (!geometry || geometry.hasAttribute('material') || node.asksMaterials) return;
-    node.asksMaterials = true;
-    fetch(`/model/${this.number}/materials/${this.nodes.indexOf(node)}`)
+    if (overlay === 'none' || !geometry || node.asks.has(overlay)) return;
+    node.asks.add(overlay);
+    fetch(`/model/${this.number}/${overlay}/${this.nodes.indexOf(node)}`)
       .then((answer) => (answer.ok ? answer.arrayBuffer() : Promise.reject(new Error('refused'))))
-      .then((bytes) => geometry.setAttribute('material', new THREE.BufferAttribute(new Uint8Array(bytes), 1)))
-      .catch(() => setTimeout(() => (node.asksMaterials = false), 1000))
+      .then((bytes) => {
+        const values = new Uint8Array(bytes);
+        if (overlay === 'materials') geometry.setAttribute('material', new THREE.BufferAttribute(values, 1));
+        else geometry.setAttribute('rgb', new THREE.BufferAttribute(values, 3, true));
+      })
+      .catch(() => setTimeout(() => node.asks.delete(overlay), 1000))
       .finally(() => this.changed());
+  }
+  /** Of a node: its points have the usual colour until their values have arrived. */
+  private overlayOf(geometry: THREE.BufferGeometry): number {
+    if (this.overlay === 'materials' && geometry.hasAttribute('material')) return 1;
+    return this.overlay === 'colours' && geometry.hasAttribute('rgb') ? 2 : 0;
   }
 
   dispose(): void {
@@ -302,11 +319,12 @@ export class Cloud {
     object.userData.spacing = node.info.spacing_m;
     object.onBeforeRender = () => {
       this.material.uniforms.diameter.value = OVERLAP * (object.userData.spacing as number);
+      this.material.uniforms.overlay.value = this.overlayOf(geometry);
       this.material.uniformsNeedUpdate = true;
     };
     node.object = object;
     this.group.add(object);
-    if (this.material.uniforms.overlay.value) this.requestMaterials(node);
+    this.requestOverlay(node);
   }
 }
 

@@ -76,9 +76,10 @@ function hello(message: Hello): void {
 function loaded(): void {
   find<HTMLInputElement>('octant-level').max = String(view.deepest);
   find('show-materials-row').hidden = view.materials.length < 2;
+  find('show-colours-row').hidden = !view.isColoured;
   showLegend(view.materials);
   rules.show(view.colours);
-  showMaterials();
+  showOverlay();
 }
 
 /** Doubts about the models, such as one that lies on its side. A dismissed note does not return. */
@@ -304,12 +305,23 @@ const shown = () =>
 find('show-device').addEventListener('change', shown);
 find('show-patch').addEventListener('change', shown);
 
-function showMaterials(): void {
-  const isShown = find<HTMLInputElement>('show-materials').checked && view.materials.length > 1;
+const showsMaterials = find<HTMLInputElement>('show-materials');
+const showsColours = find<HTMLInputElement>('show-colours');
+function showOverlay(): void {
+  const isShown = showsMaterials.checked && view.materials.length > 1;
   find('material-list').hidden = !isShown;
-  view.showMaterials(isShown);
+  if (isShown) view.showOverlay('materials');
+  else view.showOverlay(showsColours.checked ? 'colours' : 'none');
 }
-find('show-materials').addEventListener('change', showMaterials);
+// One of the two at a time.
+showsMaterials.addEventListener('change', () => {
+  if (showsMaterials.checked) showsColours.checked = false;
+  showOverlay();
+});
+showsColours.addEventListener('change', () => {
+  if (showsColours.checked) showsMaterials.checked = false;
+  showOverlay();
+});
 
 const octants = find<HTMLInputElement>('show-octants');
 const level = find<HTMLInputElement>('octant-level');

@@ -3,7 +3,7 @@
 
 import * as THREE from 'three';
 import { Orbit } from './camera';
-import { Cloud, loadOctants, type Material, type ScanColour } from './cloud';
+import { Cloud, loadOctants, type Material, type Overlay, type ScanColour } from './cloud';
 import { COLOURS, Markers } from './markers';
 import type { Frame, Run } from './messages';
 import type { Obstacles } from './route';
@@ -236,8 +236,12 @@ export class View implements Obstacles {
   get colours(): ScanColour[] {
     return this.clouds[0]?.tree.colours ?? [];
   }
-  showMaterials(shown: boolean): void {
-    for (const cloud of this.clouds) cloud.showMaterials(shown);
+  /** The colours of the points of the first model are known. */
+  get isColoured(): boolean {
+    return this.clouds[0]?.tree.is_coloured ?? false;
+  }
+  showOverlay(overlay: Overlay): void {
+    for (const cloud of this.clouds) cloud.showOverlay(overlay);
     this.changed();
   }
 

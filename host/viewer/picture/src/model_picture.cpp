@@ -65,6 +65,30 @@ Direction first_view(const core::BlobView& view) {
           mean.z < -kFacing ? -kPitch_rad : kPitch_rad};
 }
 
+/// What the colours of the points tell; see draw_model().
+struct Dress {
+  std::span<const std::uint8_t> doubtful;
+  std::span<const MaterialKey> materials;
+  std::span<const std::array<std::uint8_t, 3>> colours;
+
+  [[nodiscard]] bool is_plain() const { return materials.empty() && colours.empty(); }
+  [[nodiscard]] bool has_doubts() const {
+    return std::find(doubtful.begin(), doubtful.end(), 1) != doubtful.end();
+  }
+  /// The outside of a point.
+  [[nodiscard]] Colour outside(const core::BlobView& view, std::uint32_t index) const {
+    if (!materials.empty()) {
+      return materials[view.material_of(index)].colour;
+    }
+    if (colours.empty()) {
+      return kOutside;
+    }
+    const auto& [red, green, blue] = colours[index];
+    return {static_cast<float>(red) / 255.0F, static_cast<float>(green) / 255.0F,
+            static_cast<float>(blue) / 255.0F};
+  }
+};
+
 Vec3 vector(const std::array<float, 3>& v) { return {v[0], v[1], v[2]}; }
 
 Vec3 unit(Vec3 v) { return (1.0F / core::length(v)) * v; }
@@ -87,19 +111,15 @@ class Panel {
 
   [[nodiscard]] float pixels_per_metre() const { return scale_; }
 
-  /// `doubtful` is empty, or 1 for each point with an ambiguous orientation; `materials` is empty,
-  /// or has one element per material.
-  void draw_points(std::span<const std::uint8_t> doubtful, std::span<const MaterialKey> materials) {
+  void draw_points(const Dress& dress) {
     const float radius = std::max(0.9F * view_.header().spacing_m * scale_, 1.0F);
     core::for_each_point(view_, [&](const core::Leaf& leaf, std::uint32_t index) {
       const core::SurfacePoint p = view_.surface_point(leaf, index);
       const Vec3 at = seen(p.position);
-      const bool is_doubtful = !doubtful.empty() && doubtful[index] != 0;
-      const Colour& outside =
-          materials.empty() ? kOutside : materials[view_.material_of(index)].colour;
-      raster_.disc(
-          at.x, at.y, radius, at.z,
-          shade(p.normal, is_doubtful ? kDoubtful : outside, is_doubtful ? kDoubtful : kInside));
+      const bool is_doubtful = !dress.doubtful.empty() && dress.doubtful[index] != 0;
+      const Colour outside = is_doubtful ? kDoubtful : dress.outside(view_, index);
+      raster_.disc(at.x, at.y, radius, at.z,
+                   shade(p.normal, outside, is_doubtful ? kDoubtful : kInside));
     });
   }
 
@@ -251,11 +271,11 @@ void draw_material_keys(Raster& raster, int& top, std::span<const MaterialKey> m
 
 /// Legend of the colours in use, in the upper left corner. `sides`: both sides of the surface are
 /// seen.
-void draw_legend(Raster& raster, std::span<const Mark> drawn, std::size_t all, bool doubtful,
-                 bool sides, std::span<const MaterialKey> materials) {
+void draw_legend(Raster& raster, std::span<const Mark> drawn, std::size_t all, const Dress& dress,
+                 bool sides) {
   int top = kMargin / 2;
-  draw_material_keys(raster, top, materials);
-  if (doubtful) {
+  draw_material_keys(raster, top, dress.materials);
+  if (dress.has_doubts()) {
     draw_key(raster, top, kDoubtful, "ambiguous orientation");
   }
   for (const bool hole : {true, false}) {
@@ -266,7 +286,7 @@ void draw_legend(Raster& raster, std::span<const Mark> drawn, std::size_t all, b
     }
   }
   if (sides) {
-    if (materials.empty()) {
+    if (dress.is_plain()) {
       draw_key(raster, top, kOutside, "outside");
     }
     draw_key(raster, top, kInside, "inside");
@@ -287,9 +307,11 @@ Colour false_colour(std::size_t material) {
 }
 
 Raster draw_model(const core::BlobView& view, std::span<const Mark> marks,
-                  std::span<const std::uint8_t> doubtful, std::span<const MaterialKey> materials) {
+                  std::span<const std::uint8_t> doubtful, std::span<const MaterialKey> materials,
+                  std::span<const std::array<std::uint8_t, 3>> colours) {
   constexpr float kHalfTurn_rad = 3.14159265F;
   constexpr float kInsideShare = 0.02F;  // less is seen through holes
+  const Dress dress{doubtful, materials, colours};
   const Direction first = first_view(view);
   Raster large(kOver * kPictureWidth, kOver * kPictureHeight, kPaper);
   const int width = kOver * kPictureWidth / 2;
@@ -298,7 +320,7 @@ Raster draw_model(const core::BlobView& view, std::span<const Mark> marks,
   for (int side = 0; side < 2; ++side) {
     const float yaw_rad = first.yaw_rad + static_cast<float>(side) * kHalfTurn_rad;
     panels.emplace_back(large, view, eye_from({yaw_rad, first.pitch_rad}), side * width, width);
-    panels.back().draw_points(doubtful, materials);
+    panels.back().draw_points(dress);
   }
   draw_marks(panels, drawn);
   const bool sides = std::any_of(panels.begin(), panels.end(), [](const Panel& panel) {
@@ -307,8 +329,7 @@ Raster draw_model(const core::BlobView& view, std::span<const Mark> marks,
   Raster picture = large.halved();
   draw_scale(picture, panels.back().pixels_per_metre() / static_cast<float>(kOver));
   draw_caption(picture, view.header(), marks);
-  draw_legend(picture, drawn, marks.size(),
-              std::find(doubtful.begin(), doubtful.end(), 1) != doubtful.end(), sides, materials);
+  draw_legend(picture, drawn, marks.size(), dress, sides);
   return picture;
 }
 

@@ -199,6 +199,83 @@ TEST(BuildModel, ReportsColoursWithoutMaterials) {
   EXPECT_TRUE(report.colour_matches.empty());
 }
 
+TEST(BuildModel, KeepsColoursOfPointsOnDemand) {
+  Scan scan = cloud_scan(random_sphere(60000, 0.03));
+  for (const Eigen::Vector3d& position : scan.positions) {
+    scan.colours.push_back(position.z() > 0.0 ? Colour{250, 10, 5} : Colour{20, 30, 240});
+  }
+  BuildOptions options;
+  options.spacing_m = 1e-3;
+  EXPECT_TRUE(build(scan, options).colours.empty());
+  options.keep_colours = KeepColours::kIfAny;
+  const BuildResult result = build(scan, options);
+  core::BlobView view;
+  ASSERT_EQ(core::open_blob(result.blob.bytes, view), core::BlobStatus::kOk);
+  ASSERT_EQ(result.colours.size(), view.point_count());
+  core::for_each_point(view, [&](const core::Leaf& leaf, std::uint32_t index) {
+    const float z = view.position(leaf, index).z;
+    if (std::abs(z) > 1e-5F) {  // not on the border
+      ASSERT_EQ(result.colours[index], z > 0.0F ? (Colour{250, 10, 5}) : (Colour{20, 30, 240}));
+    }
+  });
+}
+
+TEST(BuildModel, RequiresColoursOnDemand) {
+  const Scan scan = cloud_scan(random_sphere(1000, 0.03));
+  BuildOptions options;
+  options.keep_colours = KeepColours::kIfAny;
+  EXPECT_TRUE(build(scan, options).colours.empty());
+  options.keep_colours = KeepColours::kRequire;
+  EXPECT_THROW((void)build(scan, options), BuildError);
+}
+
+TEST(BuildModel, ScanWithoutColoursGetsNeutralOne) {
+  const Colour red = {250, 10, 5};
+  std::vector<Scan> scans;
+  for (const double x : {-0.05, 0.05}) {
+    Scan& scan = scans.emplace_back(cloud_scan(random_sphere(20000, 0.03)));
+    for (Eigen::Vector3d& position : scan.positions) {
+      position.x() += x;
+    }
+  }
+  scans[0].colours.assign(scans[0].positions.size(), red);
+  BuildOptions options;
+  options.spacing_m = 1e-3;
+  options.keep_colours = KeepColours::kRequire;
+  Progress quiet;
+  const BuildResult result = build_model(std::move(scans), options, quiet);
+  const std::vector<DecodedPoint> points = decode(result);
+  ASSERT_EQ(result.colours.size(), points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    ASSERT_EQ(result.colours[i], points[i].position.x() < 0.0 ? red : kNoColour);
+  }
+}
+
+TEST(BuildModel, BothSidesOfSheetHaveItsColours) {
+  const Colour red = {250, 10, 5};
+  const Colour blue = {20, 30, 240};
+  Scan scan;
+  for (const Eigen::Vector3d& position : random_sphere(40000, 0.03).positions) {
+    if (position.z() > 0.0) {
+      scan.positions.push_back(position);
+      scan.colours.push_back(position.x() > 0.0 ? red : blue);
+    }
+  }
+  BuildOptions options;
+  options.spacing_m = 1e-3;
+  options.keep_colours = KeepColours::kRequire;
+  options.two_sided_m = 3e-3;
+  const BuildResult result = build(std::move(scan), options);
+  const std::vector<DecodedPoint> points = decode(result);
+  ASSERT_EQ(result.colours.size(), points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double x = points[i].position.x();
+    if (std::abs(x) > 3e-3) {  // not on the border, from which the thickness moves points
+      ASSERT_EQ(result.colours[i], x > 0.0 ? red : blue);
+    }
+  }
+}
+
 TEST(BuildModel, SourceOriginIsThatOfPlacedFrame) {
   BuildOptions options;
   options.unit_m = 0.001;

@@ -140,6 +140,27 @@ TEST_F(PointTreeTest, MaterialsBelongToTheirPoints) {
   EXPECT_TRUE(tree_.materials(0).empty()) << "of a model without materials";
 }
 
+TEST_F(PointTreeTest, ColoursBelongToTheirPoints) {
+  std::vector<viewer::Rgb> colours;
+  for (const core::Vec3 point : blob_.points()) {
+    colours.push_back(point.x > 0.0F ? viewer::Rgb{250, 10, 5} : viewer::Rgb{20, 30, 240});
+  }
+  const PointTree tree(blob_.view(), colours);
+  EXPECT_TRUE(tree.has_colours());
+  for (std::size_t i = 0; i < tree.nodes().size(); ++i) {
+    const auto points = tree.points(i);
+    ASSERT_EQ(tree.colours(i).size(), points.size());
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      const double x = place(tree.nodes()[i], points[k]).x();
+      if (std::abs(x) > 1e-4) {  // not on the border
+        ASSERT_EQ(tree.colours(i)[k][0], x > 0.0 ? 250 : 20) << x;
+      }
+    }
+  }
+  EXPECT_FALSE(tree_.has_colours());
+  EXPECT_TRUE(tree_.colours(0).empty());
+}
+
 TEST_F(PointTreeTest, TellsMaterialsWithTheirLabels) {
   const TestBlob blob(two_materials());
   const PointTree tree(blob.view());

@@ -35,6 +35,13 @@ inline constexpr double kReachSpacings = 3.0;
 
 enum class UpAxis : std::uint8_t { kX, kY, kZ };
 
+/// Whether the colours of the scans go to BuildResult::colours.
+enum class KeepColours : std::uint8_t {
+  kNo,
+  kIfAny,    ///< if a scan has some
+  kRequire,  ///< the build fails without colours
+};
+
 struct BuildOptions {
   ColumnMap columns;   ///< columns of text files of points; empty: detected in each file
   std::string format;  ///< format of all files, one of scan_formats(); empty: detected by content
@@ -69,8 +76,9 @@ struct BuildOptions {
 
   core::Profile profile = core::Profile::kSurface;
   std::optional<MaterialMap> materials;  ///< none: from the controller's configuration
-  std::string name;                      ///< default: name of the first input file
-  unsigned threads = 0;                  ///< 0: one per core
+  KeepColours keep_colours = KeepColours::kNo;
+  std::string name;      ///< default: name of the first input file
+  unsigned threads = 0;  ///< 0: one per core
 };
 
 /// A hole or open edge of the surface.
@@ -140,6 +148,9 @@ struct BuildResult {
   WrittenBlob blob;
   BuildReport report;
   std::vector<std::uint8_t> doubtful;  ///< per point of the blob: 1 if its orientation is ambiguous
+  /// Per point of the blob: the colour of the scan there, that of the nearest corner of a mesh.
+  /// Empty if it is not kept.
+  std::vector<Colour> colours;
 };
 
 /// The build failed. what() names file, cause and hint.

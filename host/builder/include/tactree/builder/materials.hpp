@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -13,8 +14,8 @@ namespace tactree::builder {
 
 using Colour = std::array<std::uint8_t, 3>;  ///< R, G, B
 
-/// Distance in R, G, B: 0 to 441.7.
-[[nodiscard]] double colour_distance(const Colour& a, const Colour& b);
+/// Of the points of a scan without colours where another scan has some.
+inline constexpr Colour kNoColour = {212, 196, 176};
 
 /// A colour of a scan, and the number of points that have it or a similar one.
 struct ColourCount {
@@ -24,9 +25,9 @@ struct ColourCount {
 
 /// Points of a scan for the colour of a material.
 struct ColourMatch {
-  std::uint64_t points = 0;  ///< that have the material
-  Colour nearest{};          ///< colour of a point
-  double distance = 1e3;     ///< of `nearest`
+  std::uint64_t points = 0;       ///< that have the material
+  Colour nearest{};               ///< colour of a point
+  double squared_distance = 1e6;  ///< of `nearest`, in R, G, B
 };
 
 struct ColourMaterial {
@@ -42,8 +43,10 @@ struct MaterialMap {
 
   [[nodiscard]] bool by_colour() const { return !colours.empty(); }
   /// Index of the material for a colour: i + 1 for the nearest colours[i] within its tolerance (the
-  /// first of equally near ones), or 0 for `base`.
-  [[nodiscard]] std::uint8_t index_of(const Colour& colour) const;
+  /// first of equally near ones), or 0 for `base`. Counts it in `matches`, which is empty, or has
+  /// one element per element of `colours`.
+  [[nodiscard]] std::uint8_t index_of(const Colour& colour,
+                                      std::span<ColourMatch> matches = {}) const;
   /// All materials in index order.
   [[nodiscard]] std::vector<core::BlobMaterial> list() const;
 };

@@ -22,6 +22,8 @@ inline constexpr std::uint32_t kMaxNodeLevel = 12;  ///< levels below the root
 /// 1/65535 of its edge, then the normal in octahedral encoding with 8 bits per axis.
 using PackedPoint = std::array<std::uint16_t, 4>;
 
+using Rgb = std::array<std::uint8_t, 3>;
+
 struct PointNode {
   std::array<float, 3> min_m{};  ///< lower corner
   float edge_m = 0.0F;
@@ -33,14 +35,18 @@ struct PointNode {
 
 class PointTree {
  public:
-  /// Cost: about 0.2 us and 8 bytes per point, 9 with materials.
-  explicit PointTree(const core::BlobView& view);
+  /// `colours` is empty, or has one element per point of the blob. Cost: about 0.2 us and 8 bytes
+  /// per point, 1 more with materials and 3 more with colours.
+  explicit PointTree(const core::BlobView& view, std::span<const Rgb> colours = {});
 
   [[nodiscard]] const std::vector<PointNode>& nodes() const { return nodes_; }
   /// Precondition: node < nodes().size().
   [[nodiscard]] std::span<const PackedPoint> points(std::size_t node) const;
   /// The index of the material of each of these points; empty for a model with fewer than two.
   [[nodiscard]] std::span<const std::uint8_t> materials(std::size_t node) const;
+  /// The colour of each of these points in the scan; empty if it is unknown.
+  [[nodiscard]] std::span<const Rgb> colours(std::size_t node) const;
+  [[nodiscard]] bool has_colours() const { return !colours_.empty(); }
 
  private:
   struct Task;
@@ -49,6 +55,7 @@ class PointTree {
   std::vector<PointNode> nodes_;
   std::vector<PackedPoint> points_;
   std::vector<std::uint8_t> materials_;  // empty, or one per point
+  std::vector<Rgb> colours_;             // empty, or one per point
 };
 
 /// Name and colour of a material, which a blob does not store.
@@ -67,6 +74,7 @@ struct ScanColour {
 struct ScanFacts {
   std::vector<MaterialLabel> labels{};  ///< one per material, or empty
   std::vector<ScanColour> colours{};
+  std::vector<Rgb> point_colours{};  ///< one per point of the blob, or empty
 };
 
 /// The nodes without their points, the materials with their numbers of points, and the colours of

@@ -45,6 +45,7 @@ class Site {
   ///   /model/I               the nodes of model I, JSON
   ///   /model/I/points/NODE   PackedPoints
   ///   /model/I/materials/NODE  PointTree::materials()
+  ///   /model/I/colours/NODE  PointTree::colours()
   ///   /model/I/octants/LEVEL level and edge, then corners: little-endian u32, float32s
   ///   /trace.csv             the ticks so far
   ///   /reach.json            the border of the device's workspace

@@ -43,9 +43,9 @@ TEST(ColourCensus, KeepsNearestColourOfEachMaterial) {
   ASSERT_EQ(census.matches().size(), 2U);
   EXPECT_EQ(census.matches()[0].points, 2U);
   EXPECT_EQ(census.matches()[0].nearest, (Colour{255, 0, 3}));
-  EXPECT_DOUBLE_EQ(census.matches()[0].distance, 3.0);
+  EXPECT_DOUBLE_EQ(census.matches()[0].squared_distance, 9.0);
   EXPECT_EQ(census.matches()[1].points, 0U);
-  EXPECT_DOUBLE_EQ(census.matches()[1].distance, 255.0);
+  EXPECT_DOUBLE_EQ(census.matches()[1].squared_distance, 65025.0);
 }
 
 std::vector<std::string> warnings_of(const Scan& scan, const BuildOptions& options) {

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cstdint>
+#include <vector>
 
 #include "tactree/picture/model_picture.hpp"
 #include "test_models.hpp"
@@ -186,6 +188,21 @@ TEST(ModelPicture, ShowsMaterialsInTheirColours) {
   const Colour key = raster.pixel(45, 45);
   EXPECT_GT(key.red, 2.0F * key.blue);
   EXPECT_LT(reds(picture::draw_model(blob.view(), {})), 10);
+}
+
+TEST(ModelPicture, ShowsColoursOfScanWithoutMaterials) {
+  const TestBlob blob(sphere(0.05, 0.001));
+  std::vector<std::array<std::uint8_t, 3>> colours;
+  for (const core::Vec3 point : blob.points()) {
+    colours.push_back(point.z > 0.0F ? std::array<std::uint8_t, 3>{230, 25, 25}
+                                     : std::array<std::uint8_t, 3>{50, 75, 230});
+  }
+  const Raster raster = picture::draw_model(blob.view(), {}, {}, {}, colours);
+  const int width = raster.width();
+  const Colour top = raster.pixel(width / 4, raster.height() / 3);
+  EXPECT_GT(top.red, 2.0F * top.blue);
+  const Colour bottom = raster.pixel(width / 4, 2 * raster.height() / 3);
+  EXPECT_GT(bottom.blue, 2.0F * bottom.red);
 }
 
 }  // namespace

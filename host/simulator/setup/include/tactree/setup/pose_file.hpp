@@ -8,6 +8,8 @@
 // it is turned and moved by `pose`, a 4x4 matrix, row by row, in metres. "scale" may be omitted: 1.
 
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
 
 #include "tactree/simulation/placement.hpp"
 
@@ -15,5 +17,9 @@ namespace tactree::setup {
 
 /// Throws UserError with file, key, cause and hint.
 [[nodiscard]] simulation::Placement read_pose_file(const std::filesystem::path& file);
+
+/// The same for the content of such a file; `name` is that of messages.
+[[nodiscard]] simulation::Placement placement_of(const nlohmann::json& root,
+                                                 const std::string& name);
 
 }  // namespace tactree::setup

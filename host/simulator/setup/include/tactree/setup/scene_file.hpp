@@ -13,6 +13,7 @@
 // device. Time 0 is the first tick after arming. A body without "from_s" and "until_s" is always
 // enabled.
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -28,6 +29,9 @@ struct SceneFile {
   std::vector<std::unique_ptr<support::BlobFile>> scaled;  ///< those of bodies in another size
   std::vector<std::string> names;                          ///< of each body's blob
   std::vector<const support::BlobFile*> files;             ///< each body's blob
+  std::vector<const support::BlobFile*> given;  ///< each body's blob as the user gave it
+  /// Of each body in another size: the index of each point in the blob of the user. Else empty.
+  std::vector<std::vector<std::uint32_t>> sources;
   std::vector<double> scales;  ///< of each body, relative to the blob of the user
   std::vector<simulation::SceneBody> bodies;
   bool in_device_frame = false;  ///< the origin of the scene is that of the device
@@ -39,8 +43,13 @@ struct SceneFile {
                                    const std::vector<std::string>& blobs,
                                    const std::string& pose_file = "");
 
+struct ScaledBlob {
+  std::unique_ptr<support::BlobFile> file;
+  std::vector<std::uint32_t> sources;  ///< index of each point in the blob that was scaled
+};
+
 /// The model at `scale` times its size. `name` is that of messages. Throws UserError.
-[[nodiscard]] std::unique_ptr<support::BlobFile> scaled_blob(const support::BlobFile& given,
-                                                             const std::string& name, double scale);
+[[nodiscard]] ScaledBlob scaled_blob(const support::BlobFile& given, const std::string& name,
+                                     double scale);
 
 }  // namespace tactree::setup

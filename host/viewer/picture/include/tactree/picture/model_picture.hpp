@@ -37,10 +37,12 @@ inline constexpr int kPictureHeight = 720;
 /// both. `doubtful` is empty, or has one element per point of the blob: 1 if its orientation is
 /// ambiguous. Such points have a separate colour, with a legend. `materials` is empty, or has one
 /// element per material of the blob: the outside of their points is drawn in these colours, and a
-/// legend names the first eight. Precondition: !view.empty(). Cost:
-/// about 0.1 us per point.
+/// legend names the first eight. `colours` is empty, or has one element (R, G, B) per point of the
+/// blob: without `materials`, the outside is drawn in these colours. Precondition: !view.empty().
+/// Cost: about 0.1 us per point.
 [[nodiscard]] Raster draw_model(const core::BlobView& view, std::span<const Mark> marks,
                                 std::span<const std::uint8_t> doubtful = {},
-                                std::span<const MaterialKey> materials = {});
+                                std::span<const MaterialKey> materials = {},
+                                std::span<const std::array<std::uint8_t, 3>> colours = {});
 
 }  // namespace tactree::picture
