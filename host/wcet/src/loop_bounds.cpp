@@ -179,9 +179,11 @@ class Matcher {
     const std::string where =
         describe_place(image_, flow_.instructions[flow_.blocks[loop.header].first].address);
     if (found.empty()) {
-      throw BoundError(where +
-                       ": a loop that matches no loop in the source (write it as one loop, with a "
-                       "bound beside its head)");
+      throw BoundError(
+          where +
+          ": a loop that matches no loop in the source (write it as one loop, with a "
+          "bound beside its head; if it is part of a constructor, construct the object "
+          "before the tick)");
     }
     std::string names;
     for (const SourceLoop* candidate : found) {
