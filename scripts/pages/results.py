@@ -1,4 +1,4 @@
-"""docs/RESULTS.md with its plots (docs/RESULTS/), and docs/FIGURES.md."""
+"""docs/RESULTS.md with its plots (docs/RESULTS/), docs/FIGURES.md, and the figures of docs/COLLECTIONS.md."""
 import os
 import pathlib
 import subprocess
@@ -28,13 +28,16 @@ def results(build):
                         "## Stray points", output_of(build / "bench/stray_bench")])
 
 
+def cpu_name():
+    return next((line.split(": ", 1)[1] for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines()
+                 if line.startswith("model name")), "unknown")
+
+
 def figures(build):
-    cpu = next((line.split(": ", 1)[1] for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines()
-                if line.startswith("model name")), "unknown")
     compiler = output_of(os.environ.get("CXX", "g++"), "--version").splitlines()[0]
     nearest = build / "bench/nearest_bench"
     return "\n\n".join([
-        f"Machine: {cpu}, {os.cpu_count()} cores. Compiler: {compiler}, `-O2` for both.",
+        f"Machine: {cpu_name()}, {os.cpu_count()} cores. Compiler: {compiler}, `-O2` for both.",
         "## Nearest point within two spacings, compared with nanoflann",
         "Surface z = cos x + cos y, 5 m x 5 m. The path of the hand follows the surface and hovers above it; random probes\n"
         "are near it. nanoflann searches the same float32 points, at most 10 in a leaf. Below a ratio of 1, Tactree is "
@@ -43,3 +46,8 @@ def figures(build):
         "## From a scan to a blob",
         output_of(ROOT / "bench/build_bench", "--points", POINTS, "--tactree", build / "tools/cli/tactree"),
         "## Encoders of a Linux board", output_of(ROOT / "bench/edge_rates")])
+
+
+def collections(build):
+    return "\n\n".join([f"Machine: {cpu_name()}, {os.cpu_count()} cores.",
+                        output_of(ROOT / "bench/collection_bench", "--tactree", build / "tools/cli/tactree")])

@@ -9,7 +9,10 @@
 #include <string>
 #include <vector>
 
+#include "collection/build_collection.hpp"
+#include "collection/digest.hpp"
 #include "commands.hpp"
+#include "exit_codes.hpp"
 #include "image/board_costs.hpp"
 #include "image/own_board.hpp"
 #include "scan/board_build.hpp"
@@ -59,6 +62,7 @@ struct BuildArguments {
   bool no_resample = false;
   bool verbose = false;
   builder::ProgressStyle progress = builder::ProgressStyle::kAuto;
+  CollectionRequest collection;
   BuildOptions build;
 };
 
@@ -145,6 +149,9 @@ void complete(BuildArguments& arguments) {
   if (arguments.output.empty()) {
     misuse("--output", "'' is not the name of a file");
   }
+  if (arguments.inputs.empty() && arguments.collection.collection.empty()) {
+    throw CLI::RequiredError("INPUT");
+  }
   BuildOptions& build = arguments.build;
   if (std::count(arguments.inputs.begin(), arguments.inputs.end(), support::kStandardInput) > 1) {
     misuse("INPUT", "'-' (standard input) can be given only once");
@@ -172,7 +179,9 @@ void complete(BuildArguments& arguments) {
   for (const std::string& viewpoint : arguments.viewpoints) {
     build.viewpoints.push_back(to_position("--viewpoint", viewpoint));
   }
-  if (!arguments.colours.empty() || !arguments.preview.empty()) {
+  // Each object of a collection has a preview.
+  const bool draws = !arguments.preview.empty() || !arguments.collection.collection.empty();
+  if (!arguments.colours.empty() || draws) {
     build.keep_colours = arguments.colours.empty() ? builder::KeepColours::kIfAny
                                                    : builder::KeepColours::kRequire;
   }
@@ -353,21 +362,47 @@ void add_surface_options(CLI::App& verb, BuildArguments& arguments) {
       ->group(kGroup);
 }
 
+/// After all other options.
+void add_collection_options(CLI::App& verb, BuildArguments& arguments) {
+  constexpr const char* kGroup = "Collections";
+  CollectionRequest& collection = arguments.collection;
+  CLI::Option* place =
+      verb.add_option("--collection", collection.collection,
+                      "build a blob of each scan that this text file lists, one path per line, or "
+                      "that is below this folder; skip those that are up to date")
+          ->check(CLI::ExistingPath)
+          ->group(kGroup);
+  for (const char* const single : {"INPUT", "--report", "--preview", "--colours", "--verbose"}) {
+    place->excludes(verb.get_option(single));
+  }
+  CLI::Option* part =
+      verb.add_option("--part", collection.part,
+                      "K/N: build only the K-th of N parts (default: as the environment of a Slurm "
+                      "array job, of Open MPI or of PMI states, else 1/1)")
+          ->needs(place)
+          ->group(kGroup);
+  verb.add_flag("--collect", collection.collect,
+                "build nothing, write manifest.csv and index.html after the last part")
+      ->needs(place)
+      ->excludes(part)
+      ->group(kGroup);
+}
+
 }  // namespace
 
-void add_build_command(CLI::App& app, int&) {
+void add_build_command(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<BuildArguments>();
   CLI::App* verb = app.add_subcommand(
       "build", "Builds a blob from one or several scans: point clouds or meshes");
-  verb->add_option(
-          "INPUT", arguments->inputs,
-          "PLY, PCD, PTX, E57, LAS, XYZ/PTS/CSV, OBJ, STL, OFF, glTF, 3MF, ...; recognised by "
-          "content. -: standard input, copied to a file in TMPDIR first")
-      ->required();
+  verb->add_option("INPUT", arguments->inputs,
+                   "PLY, PCD, PTX, E57, LAS, XYZ/PTS/CSV, OBJ, STL, OFF, glTF, 3MF, ...; "
+                   "recognised by content. -: standard input, copied to a file in TMPDIR first");
   verb->add_option("--format", arguments->build.format,
                    "format of the inputs, if it cannot be recognised by their content")
       ->check(CLI::IsMember(builder::scan_formats(), CLI::ignore_case));
-  verb->add_option("-o,--output", arguments->output, "blob to write")->required();
+  verb->add_option("-o,--output", arguments->output,
+                   "blob to write; with --collection the folder of the blobs")
+      ->required();
   verb->add_option("--columns", arguments->columns,
                    "columns of text files, from 1: x=2,y=3,z=4, also nx, ny, nz, red, green, blue "
                    "(default: by their names, or by their numbers)");
@@ -388,16 +423,28 @@ void add_build_command(CLI::App& app, int&) {
                  "also print time, CPU time, points and peak memory of each step");
   verb->add_option("--report", arguments->report,
                    "write a report of the build as JSON to this file");
-  verb->add_option("--json", arguments->json, "same as --report");
+  verb->add_option("--json", arguments->json,
+                   "same as --report; with --collection results and failures");
   verb->add_option(
       "--preview", arguments->preview,
       "write a picture of the model to this PNG file, with a scale and marked openings");
   verb->add_option("--colours,--colors", arguments->colours,
                    "write the colours of the scan to this file, for view --colours; a blob has "
                    "none");
-  verb->callback([arguments] {
+  add_collection_options(*verb, *arguments);
+  verb->callback([verb, arguments, &exit_code] {
     complete(*arguments);
-    build(*arguments);
+    CollectionRequest& collection = arguments->collection;
+    if (collection.collection.empty()) {
+      build(*arguments);
+      return;
+    }
+    collection.output = arguments->output;
+    collection.json = arguments->json;
+    collection.options_digest = digest_of_options(*verb);
+    const bool is_complete =
+        build_collection(collection, arguments->build, arguments->board, arguments->progress);
+    exit_code = is_complete ? kExitOk : kExitFailed;
   });
 }
 
