@@ -84,8 +84,8 @@ void ClientSocket::read() {
     if (error == websocket::error::closed) {
       self->end("has left");
     } else if (error == websocket::error::message_too_big) {
-      self->end(fmt::format("disconnected, because a message has more than {} bytes",
-                            kMaxMessageBytes));
+      self->end(
+          fmt::format("disconnected, because a message has more than {} bytes", kMaxMessageBytes));
     } else if (error) {
       self->end("disconnected: " + error.message());
     }

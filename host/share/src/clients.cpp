@@ -125,9 +125,10 @@ void Clients::set_force(unsigned number, const std::array<float, 3>& force_N) {
       clients_.at(number).refusal =
           newest_.link != Link::kHere
               ? "set_cursor_force: the board is not connected"
-              : fmt::format("set_cursor_force: the board is in state {}, without force (send "
-                            "{{\"tactree\": {{\"arm\": true}}}}, or start tactree serve --arm)",
-                            core::name_of(state_in(newest_)));
+              : fmt::format(
+                    "set_cursor_force: the board is in state {}, without force (send "
+                    "{{\"tactree\": {{\"arm\": true}}}}, or start tactree serve --arm)",
+                    core::name_of(state_in(newest_)));
     }
     return;
   }
@@ -152,11 +153,11 @@ bool Clients::take_command(unsigned number, const char* what) {
   if (is_in_command(number)) {
     return true;
   }
-  clients_.at(number).refusal =
-      fmt::format("{}: client {}, {}, has command since {} s (end it, or have it send "
-                  "release_command)",
-                  what, commander_.client, commander_.address,
-                  (newest_.time_us - commander_since_us_) / 1'000'000U);
+  clients_.at(number).refusal = fmt::format(
+      "{}: client {}, {}, has command since {} s (end it, or have it send "
+      "release_command)",
+      what, commander_.client, commander_.address,
+      (newest_.time_us - commander_since_us_) / 1'000'000U);
   return false;
 }
 

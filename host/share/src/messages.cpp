@@ -223,12 +223,12 @@ bool wants(const json& own, const char* name) {
 }
 
 void check_names(const json& own) {
-  constexpr std::array kNames = {"stop",      "arm",          "home",           "clear", "connect",
-                                 "subscribe", "take_command", "release_command"};
+  constexpr std::array kNames = {"stop",    "arm",       "home",         "clear",
+                                 "connect", "subscribe", "take_command", "release_command"};
   for (const auto& [name, value] : own.items()) {
     if (std::find(kNames.begin(), kNames.end(), name) == kNames.end()) {
-      throw NotUnderstood(fmt::format("'{}': unknown request (there are {})", name,
-                                      fmt::join(kNames, ", ")));
+      throw NotUnderstood(
+          fmt::format("'{}': unknown request (there are {})", name, fmt::join(kNames, ", ")));
     }
   }
 }

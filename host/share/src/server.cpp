@@ -53,8 +53,7 @@ struct Server::Parts final : web::Content {
     const bool idle = waiting.empty();
     waiting.insert(waiting.end(), snapshots.begin(), snapshots.end());
     if (waiting.size() > kMaxSnapshots) {
-      waiting.erase(waiting.begin(),
-                    waiting.end() - static_cast<std::ptrdiff_t>(kMaxSnapshots));
+      waiting.erase(waiting.begin(), waiting.end() - static_cast<std::ptrdiff_t>(kMaxSnapshots));
     }
     if (idle) {
       asio::post(listener.context(), [this] { take(); });

@@ -30,15 +30,14 @@ constexpr std::chrono::milliseconds kRetryInterval{200};
 constexpr std::chrono::milliseconds kLookInterval{20};
 constexpr std::chrono::seconds kConfirmTimeout{30};  // the default of tactree arm
 
-constexpr std::uint32_t kFields =
-    static_cast<std::uint32_t>(TelemetryField::kState) |
-    static_cast<std::uint32_t>(TelemetryField::kProbe) |
-    static_cast<std::uint32_t>(TelemetryField::kVelocity) |
-    static_cast<std::uint32_t>(TelemetryField::kForce) |
-    static_cast<std::uint32_t>(TelemetryField::kProxy) |
-    static_cast<std::uint32_t>(TelemetryField::kNormal) |
-    static_cast<std::uint32_t>(TelemetryField::kContact) |
-    static_cast<std::uint32_t>(TelemetryField::kTiming);
+constexpr std::uint32_t kFields = static_cast<std::uint32_t>(TelemetryField::kState) |
+                                  static_cast<std::uint32_t>(TelemetryField::kProbe) |
+                                  static_cast<std::uint32_t>(TelemetryField::kVelocity) |
+                                  static_cast<std::uint32_t>(TelemetryField::kForce) |
+                                  static_cast<std::uint32_t>(TelemetryField::kProxy) |
+                                  static_cast<std::uint32_t>(TelemetryField::kNormal) |
+                                  static_cast<std::uint32_t>(TelemetryField::kContact) |
+                                  static_cast<std::uint32_t>(TelemetryField::kTiming);
 
 template <std::size_t N>
 std::string field_text(const char (&field)[N]) {

@@ -93,9 +93,9 @@ std::optional<HttpResponse> HttpConnection::refusal(const Request& request) cons
   const beast::string_view origin = request[http::field::origin];
   const bool from_here =
       origin.starts_with("http://") && origin.substr(7) == request[http::field::host];
-  const bool admitted = origin.empty() ? service_.content.admits_programs() ||
-                                             !beast::websocket::is_upgrade(request)
-                                       : from_here;
+  const bool admitted =
+      origin.empty() ? service_.content.admits_programs() || !beast::websocket::is_upgrade(request)
+                     : from_here;
   if (!admitted) {
     return plain(403, "not from http://" + service_.host + "\n");
   }

@@ -146,8 +146,7 @@ class CollectionBuild {
   [[nodiscard]] std::string build_object(const CollectionObject& object, const std::string& digest,
                                          const ObjectFiles& files) const {
     try {
-      const std::unique_ptr<builder::Progress> progress =
-          builder::make_progress(progress_, stderr);
+      const std::unique_ptr<builder::Progress> progress = builder::make_progress(progress_, stderr);
       const std::array inputs = {object.input};
       const builder::BuildResult result = build_for_board(inputs, build_, board_, *progress);
       progress->end();
@@ -221,8 +220,7 @@ bool report_rows(const std::vector<ObjectRow>& rows, const fs::path& json) {
   }
   fmt::print("\n");
   if (!json.empty()) {
-    const ObjectRow summary{
-        {"objects", rows.size()}, {"results", results}, {"failures", failures}};
+    const ObjectRow summary{{"objects", rows.size()}, {"results", results}, {"failures", failures}};
     support::write_file(json, support::json_text(summary));
   }
   if (failures.empty()) {

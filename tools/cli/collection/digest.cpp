@@ -20,13 +20,7 @@ namespace fs = std::filesystem;
 // They choose the objects, the outputs or the messages, not the bytes of a blob.
 const std::set<std::string>& other_options() {
   static const std::set<std::string> kNames = {
-      "--collection",
-      "--part",
-      "--collect",
-      "--output",
-      "--threads",
-      "--progress",
-      "--json",
+      "--collection", "--part", "--collect", "--output", "--threads", "--progress", "--json",
   };
   return kNames;
 }

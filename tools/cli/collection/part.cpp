@@ -30,8 +30,7 @@ std::size_t count_of(const char* variable, std::optional<std::size_t> missing = 
   const std::optional<std::size_t> value = text == nullptr ? missing : to_count(text);
   if (!value) {
     support::refuse(
-        variable,
-        text == nullptr ? "is not set" : fmt::format("'{}' is not a whole number", text),
+        variable, text == nullptr ? "is not set" : fmt::format("'{}' is not a whole number", text),
         kPartRemedy);
   }
   return *value;

@@ -20,8 +20,7 @@ struct SharingOptions {
   std::string blob;
   BoardPort port;
   share::ServerSettings server{
-      .server = {.address = "127.0.0.1", .port = 10001, .port_option = "--tcp-port"},
-      .tell = {}};
+      .server = {.address = "127.0.0.1", .port = 10001, .port_option = "--tcp-port"}, .tell = {}};
   std::string grip = "neutral";
   int link_timeout_ms = 50;
   bool arm = false;

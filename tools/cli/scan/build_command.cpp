@@ -182,8 +182,8 @@ void complete(BuildArguments& arguments) {
   // Each object of a collection has a preview.
   const bool draws = !arguments.preview.empty() || !arguments.collection.collection.empty();
   if (!arguments.colours.empty() || draws) {
-    build.keep_colours = arguments.colours.empty() ? builder::KeepColours::kIfAny
-                                                   : builder::KeepColours::kRequire;
+    build.keep_colours =
+        arguments.colours.empty() ? builder::KeepColours::kIfAny : builder::KeepColours::kRequire;
   }
   set_spacing(arguments, build);
   if (arguments.budget) {
@@ -212,9 +212,9 @@ void build(BuildArguments& arguments) {
   std::erase(files, support::kStandardInput);
   std::vector<fs::path> read = files;
   read.emplace_back(arguments.pose);
-  support::check_outputs({arguments.output, arguments.report, arguments.json, arguments.preview,
-                          arguments.colours},
-                         read);
+  support::check_outputs(
+      {arguments.output, arguments.report, arguments.json, arguments.preview, arguments.colours},
+      read);
   const std::unique_ptr<builder::Progress> progress =
       builder::make_progress(arguments.progress, stderr);
   builder::BuildResult result;

@@ -60,8 +60,8 @@ std::string unused_colour(const ColourMaterial& material, const ColourMatch& mat
   return fmt::format(
       "no point has the colour of the material '{}': the nearest to {} is {}, at a distance of "
       "{:.0f} (raise its tolerance of {:.6g}, or give another rgb; the scan has {})",
-      material.name, colour_text(material.colour), colour_text(match.nearest),
-      std::ceil(distance), material.tolerance, colours);
+      material.name, colour_text(material.colour), colour_text(match.nearest), std::ceil(distance),
+      material.tolerance, colours);
 }
 
 }  // namespace tactree::builder

@@ -117,8 +117,8 @@ TEST(ShareMessages, ReadsRequestsInOrderOfExecution) {
   const share::ClientMessage message = read(
       R"({"tactree":{"arm":true,"home":true,"clear":true,"subscribe":{"rate_hz":60,"queue":8}}})");
   EXPECT_EQ(message.refusal, "");
-  EXPECT_EQ(message.requests, (std::vector{BoardRequest::kClear, BoardRequest::kHome,
-                                           BoardRequest::kArm}));
+  EXPECT_EQ(message.requests,
+            (std::vector{BoardRequest::kClear, BoardRequest::kHome, BoardRequest::kArm}));
   ASSERT_TRUE(message.subscription);
   EXPECT_EQ(message.subscription->rate_hz, 60.0);
   EXPECT_EQ(message.subscription->queue, 8U);

@@ -29,7 +29,7 @@ struct SceneFile {
   std::vector<std::unique_ptr<support::BlobFile>> scaled;  ///< those of bodies in another size
   std::vector<std::string> names;                          ///< of each body's blob
   std::vector<const support::BlobFile*> files;             ///< each body's blob
-  std::vector<const support::BlobFile*> given;  ///< each body's blob as the user gave it
+  std::vector<const support::BlobFile*> given;             ///< each body's blob as the user gave it
   /// Of each body in another size: the index of each point in the blob of the user. Else empty.
   std::vector<std::vector<std::uint32_t>> sources;
   std::vector<double> scales;  ///< of each body, relative to the blob of the user
