@@ -17,7 +17,7 @@ using simulation::Simulation;
 using simulation::Waypoint;
 
 const Shape& ball() {
-  static const Shape shape = sphere();
+  static const Shape shape = evaluation::sphere();
   return shape;
 }
 
