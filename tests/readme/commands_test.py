@@ -101,7 +101,7 @@ class ServedCommands(InAFolder):
         named = {word for block in blocks("console") for line in prompt_lines(block) for word in line.split()}
         writers = []
         for line in reversed([line for block in blocks("sh") for line in block.splitlines()]):
-            if named.intersection(re.findall(r"(?:-o|--trace|--record|>) (\S+)", line)):
+            if named.intersection(re.findall(r"(?:-o|--colours|--trace|--record|>) (\S+)", line)):
                 writers.append(line)
                 named.update(line.split())
         for line in reversed(writers):
@@ -134,7 +134,7 @@ class ServedCommands(InAFolder):
 
     def test_serves_every_page(self):
         lines = [line for block in blocks("console") if "--serve" not in block for line in prompt_lines(block)]
-        self.assertEqual(len(lines), 4)
+        self.assertEqual(len(lines), 5)
         for line in lines:
             self.shows_page(line)
 
