@@ -18,7 +18,7 @@ class SceneFileTest : public test::FolderTest {
     const auto bytes = blob_.written().bytes;
     const std::string blob(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     const std::string pose =
-        R"({"scale": )" + scale + R"(, "pose": [[1,0,0,0], [0,1,0,0], [0,0,1,0], [0,0,0,1]]})";
+        R"({"scale": )" + scale + R"(, "pose": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]})";
     return read_scene("", {write("sphere.blob", blob).string()}, write("pose.json", pose).string());
   }
 
