@@ -1,6 +1,6 @@
 """`tactree build --collection`: one blob per scan, in parts, and again after a change or a crash.
 
-usage: collection_test.py TACTREE
+usage: collection_test.py TACTREE [CLASS]
 """
 import csv
 import json
@@ -30,8 +30,9 @@ def sheet():
     return "".join(f"{0.001 * i} {0.001 * j} {0.002 * math.sin(0.1 * i)}\n" for i in range(60) for j in range(60))
 
 
-def one_second():
-    resource.setrlimit(resource.RLIMIT_CPU, (1, 1))
+def files_of_200_kB():
+    """A process that writes a larger one is ended by SIGXFSZ."""
+    resource.setrlimit(resource.RLIMIT_FSIZE, (200_000, 200_000))
 
 
 class Folder(ToolFolder):
@@ -193,8 +194,8 @@ class Restart(Folder):
         self.assertEqual(len(self.built()), 6)
 
     def test_crash_ends_one_object(self):
-        self.write_scan("large.xyz", sphere(100000, 0.05))  # takes more than a second
-        found = self.collect(code=1, preexec_fn=one_second)
+        self.write_scan("large.xyz", sphere(40000, 0.05))
+        found = self.collect(code=1, preexec_fn=files_of_200_kB)
         self.assertEqual(found, {"a.xyz": "ok", "large.xyz": "failed", "sub/a.xyz": "ok"})
         self.assertRegex(self.done.stderr, r"scans/large\.xyz: the build was ended by signal \d+ \(")
 
