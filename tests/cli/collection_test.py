@@ -7,8 +7,8 @@ import json
 import math
 import os
 import pathlib
-import resource
 import shutil
+import signal
 import struct
 import subprocess
 import sys
@@ -30,9 +30,10 @@ def sheet():
     return "".join(f"{0.001 * i} {0.001 * j} {0.002 * math.sin(0.1 * i)}\n" for i in range(60) for j in range(60))
 
 
-def files_of_200_kB():
-    """A process that writes a larger one is ended by SIGXFSZ."""
-    resource.setrlimit(resource.RLIMIT_FSIZE, (200_000, 200_000))
+def child_of(process):
+    """The process identifier of the only child."""
+    (child,) = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text(encoding="ascii").split()
+    return int(child)
 
 
 class Folder(ToolFolder):
@@ -194,10 +195,18 @@ class Restart(Folder):
         self.assertEqual(len(self.built()), 6)
 
     def test_crash_ends_one_object(self):
-        self.write_scan("large.xyz", sphere(40000, 0.05))
-        found = self.collect(code=1, preexec_fn=files_of_200_kB)
-        self.assertEqual(found, {"a.xyz": "ok", "large.xyz": "failed", "sub/a.xyz": "ok"})
-        self.assertRegex(self.done.stderr, r"scans/large\.xyz: the build was ended by signal \d+ \(")
+        os.mkfifo(self.path / "scans/crash.xyz")
+        self.write("scans/list.txt", "a.xyz\ncrash.xyz\nsub/a.xyz\n")
+        command = [TACTREE, "build", "--collection", "scans/list.txt", "-o", "out"]
+        with subprocess.Popen(command, cwd=self.path, env=ENVIRONMENT, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                              text=True) as process:
+            with open(self.path / "scans/crash.xyz", "w", encoding="ascii"):  # the build has opened it, and waits
+                os.kill(child_of(process), signal.SIGSEGV)
+            _, errors = process.communicate()
+        self.assertEqual(process.returncode, 1)
+        self.assertIn("scans/crash.xyz: the build was ended by signal 11 (", errors)
+        self.assertEqual({name: row["result"] for name, row in self.manifest().items()},
+                         {"a.xyz": "ok", "crash.xyz": "failed", "sub/a.xyz": "ok"})
 
 
 class Parts(Folder):
