@@ -6,6 +6,8 @@
 #include <cstring>
 #include <limits>
 
+#include "mesh_import/meshopt_view.hpp"
+
 namespace tactree::builder {
 namespace {
 
@@ -244,8 +246,7 @@ std::string_view GltfFile::buffer(std::size_t number) {
   return buffers_[number];
 }
 
-std::span<const unsigned char> GltfFile::view(std::size_t number, const std::string& who) {
-  const json& names = at("bufferViews", number);
+std::span<const unsigned char> GltfFile::stored(const json& names, const std::string& who) {
   const std::string_view bytes = buffer(gltf_count(names, "buffer", kNone));
   const std::size_t offset = gltf_count(names, "byteOffset");
   const std::size_t length = gltf_count(names, "byteLength");
@@ -254,6 +255,20 @@ std::span<const unsigned char> GltfFile::view(std::size_t number, const std::str
                       " bytes of its buffer");
   }
   return {reinterpret_cast<const unsigned char*>(bytes.data()) + offset, length};
+}
+
+std::span<const unsigned char> GltfFile::view(std::size_t number, const std::string& who) {
+  const json& names = at("bufferViews", number);
+  const json* const compressed = meshopt_of(names);
+  if (compressed == nullptr) {
+    return stored(names, who);
+  }
+  auto found = decoded_.find(number);
+  if (found == decoded_.end()) {
+    const std::span<const unsigned char> packed = stored(*compressed, who);
+    found = decoded_.emplace(number, decoded_meshopt(names, packed, who)).first;
+  }
+  return found->second;
 }
 
 GltfFile::Elements GltfFile::elements(const json& names, std::size_t count, std::size_t component,

@@ -3,6 +3,7 @@
 // is checked against the actual bytes of the file before memory is allocated for it.
 
 #include <cstdint>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
@@ -47,6 +48,10 @@ class GltfFile {
   void read_binary(std::string_view chunks);
   [[nodiscard]] std::string_view buffer(std::size_t number);
   [[nodiscard]] std::string read_buffer(std::size_t number) const;
+  /// `names` is an object with buffer, byteOffset and byteLength.
+  [[nodiscard]] std::span<const unsigned char> stored(const nlohmann::json& names,
+                                                      const std::string& who);
+  /// Bytes of a buffer view, decompressed.
   [[nodiscard]] std::span<const unsigned char> view(std::size_t number, const std::string& who);
   /// `names` is an object with bufferView and byteOffset.
   [[nodiscard]] Elements elements(const nlohmann::json& names, std::size_t count,
@@ -62,6 +67,7 @@ class GltfFile {
   std::string_view chunk_;  // binary chunk of a GLB
   std::vector<std::string> buffers_;
   std::vector<bool> is_read_;
+  std::map<std::size_t, std::vector<unsigned char>> decoded_;  // compressed buffer views
 };
 
 /// Reads a count or an index from the JSON; `missing` if it is absent. Throws ImportError if it is

@@ -9,6 +9,8 @@
 #include <string_view>
 #include <utility>
 
+#include "mesh_import/meshopt_view.hpp"
+
 namespace tactree::builder {
 namespace {
 
@@ -23,10 +25,9 @@ constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 /// True for required extensions that do not change the shape or that this reader supports.
 bool is_supported(const std::string& extension) {
   constexpr std::string_view kKnown[] = {
-      "KHR_mesh_quantization", "KHR_texture_transform", "KHR_texture_basisu",
-      "EXT_texture_webp",      "EXT_texture_avif",      "MSFT_texture_dds",
-      "KHR_lights_punctual",   "KHR_xmp_json_ld",       "KHR_xmp",
-      "KHR_animation_pointer"};
+      "KHR_mesh_quantization", kMeshopt,           "KHR_texture_transform", "KHR_texture_basisu",
+      "EXT_texture_webp",      "EXT_texture_avif", "MSFT_texture_dds",      "KHR_lights_punctual",
+      "KHR_xmp_json_ld",       "KHR_xmp",          "KHR_animation_pointer"};
   return extension.starts_with("KHR_materials_") ||
          std::find(std::begin(kKnown), std::end(kKnown), extension) != std::end(kKnown);
 }
@@ -451,10 +452,18 @@ bool is_draco_gltf(const GltfFile& file) {
       return false;
     }
     check_extensions(root, kDraco);
+    const auto refuse_with = [](const std::string& what) {
+      throw ImportError("it has " + what + " and data compressed with " + kDraco +
+                        ", which are not supported together");
+    };
     for (const json& node : root.value("nodes", json::array())) {
       if (node.contains("skin")) {
-        throw ImportError(std::string("it has a skin and data compressed with ") + kDraco +
-                          ", which are not supported together");
+        refuse_with("a skin");
+      }
+    }
+    for (const json& view : root.value("bufferViews", json::array())) {
+      if (meshopt_of(view) != nullptr) {
+        refuse_with(std::string("data compressed with ") + kMeshopt);
       }
     }
     return true;

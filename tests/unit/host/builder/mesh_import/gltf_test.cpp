@@ -1,5 +1,9 @@
 // glTF 2: quantized positions, skins, morph targets, sparse accessors, required extensions.
 
+#include <meshoptimizer.h>
+
+#include <algorithm>
+#include <cstring>
 #include <random>
 
 #include "mesh_writers.hpp"
@@ -180,8 +184,8 @@ TEST_F(GltfTest, NamesUnknownRequiredExtensions) {
     expect_parts(refusal_of(gltf.glb(), "a.glb"), "a.glb", "requires the extension", name,
                  "save it as PLY");
   }
-  gltf.root["extensionsRequired"] = {"EXT_meshopt_compression"};
-  expect_parts(refusal_of(gltf.glb()), "compressed with EXT_meshopt_compression");
+  gltf.root["extensionsRequired"] = {"ACME_compression"};
+  expect_parts(refusal_of(gltf.glb()), "compressed with ACME_compression");
   // The library decodes Draco, and would place its skins wrong.
   GltfWriter draco = skinned();
   draco.root["meshes"][0]["primitives"][0]["extensions"] = {
@@ -190,6 +194,135 @@ TEST_F(GltfTest, NamesUnknownRequiredExtensions) {
   expect_parts(refusal_of(draco.glb()), "a skin and data compressed with KHR_draco");
   draco.root["extensionsRequired"] = {"KHR_draco_mesh_compression", "ACME_shape"};
   expect_parts(refusal_of(draco.glb()), "requires the extension ACME_shape");
+}
+
+/// The words or bytes of the buffer view of an accessor.
+template <typename Word>
+std::vector<Word> words_of(const GltfWriter& gltf, std::size_t view) {
+  const Json& names = gltf.root["bufferViews"][view];
+  const auto bytes = gltf.data.substr(names["byteOffset"], names["byteLength"]);
+  std::vector<Word> words(bytes.size() / sizeof(Word));
+  std::memcpy(words.data(), bytes.data(), words.size() * sizeof(Word));
+  return words;
+}
+
+/// Compresses a buffer view as EXT_meshopt_compression states; a buffer without bytes replaces it.
+void compress(GltfWriter& gltf, std::size_t view, std::size_t stride, const std::string& mode,
+              const std::string& filter = "NONE") {
+  const auto bytes = words_of<unsigned char>(gltf, view);
+  const std::size_t count = bytes.size() / stride;
+  std::array<unsigned char, 4096> packed{};
+  std::size_t length = 0;
+  if (mode == "ATTRIBUTES") {
+    length = meshopt_encodeVertexBuffer(packed.data(), packed.size(), bytes.data(), count, stride);
+  } else {
+    const auto words = words_of<std::uint16_t>(gltf, view);
+    const std::vector<unsigned> indices(words.begin(), words.end());
+    length = mode == "TRIANGLES"
+                 ? meshopt_encodeIndexBuffer(packed.data(), packed.size(), indices.data(), count)
+                 : meshopt_encodeIndexSequence(packed.data(), packed.size(), indices.data(), count);
+  }
+  Json extension = {{"buffer", 0},          {"byteOffset", gltf.data.size()},
+                    {"byteLength", length}, {"byteStride", stride},
+                    {"mode", mode},         {"count", count}};
+  if (filter != "NONE") extension["filter"] = filter;
+  gltf.data.append(reinterpret_cast<const char*>(packed.data()), length);
+  Json& names = gltf.root["bufferViews"][view];
+  names["buffer"] = 1;
+  names["byteOffset"] = 0;
+  names["extensions"]["EXT_meshopt_compression"] = extension;
+  gltf.root["buffers"] = {{{"byteLength", gltf.data.size()}}, {{"byteLength", bytes.size()}}};
+  gltf.root["extensionsRequired"] = {"EXT_meshopt_compression", "KHR_mesh_quantization"};
+}
+
+/// Integer positions and the faces, both compressed.
+GltfWriter compressed(const std::string& mode = "TRIANGLES") {
+  GltfWriter gltf = tetrahedron(
+      std::vector<std::uint16_t>{0, 0, 0, 16383, 0, 0, 0, 10922, 0, 0, 0, 65535}, kUShort, 8);
+  compress(gltf, 0, 8, "ATTRIBUTES");
+  compress(gltf, 1, 2, mode);
+  return gltf;
+}
+
+Json& extension_of(GltfWriter& gltf, std::size_t view) {
+  return gltf.root["bufferViews"][view]["extensions"]["EXT_meshopt_compression"];
+}
+
+TEST_F(GltfTest, ReadsMeshoptCompression) {
+  for (const char* mode : {"TRIANGLES", "INDICES"}) {
+    const Scan scan = read(compressed(mode).glb());
+    ASSERT_EQ(scan.triangles.size(), 4U) << mode;
+    expect_point(scan, 1, 16383, 0, 0);
+    expect_point(scan, 3, 0, 0, 65535);
+    for (std::size_t face = 0; face < 4; ++face) {  // the codec may turn a triangle
+      Triangle corners = scan.triangles[face];
+      Triangle expected = {kFaces[3 * face], kFaces[3 * face + 1], kFaces[3 * face + 2]};
+      std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+      std::rotate(expected.begin(), std::min_element(expected.begin(), expected.end()),
+                  expected.end());
+      EXPECT_EQ(corners, expected) << mode;
+    }
+  }
+}
+
+TEST_F(GltfTest, DecodesFiltersOfMeshopt) {
+  const std::vector<float> positions = {0, 0, 0, 1.5, 0, 0, 0, -2.25, 0, 0, 0, 1000};
+  std::vector<std::uint32_t> powers(positions.size());
+  meshopt_encodeFilterExp(powers.data(), 4, 12, 15, positions.data());
+  GltfWriter gltf = tetrahedron(powers, kFloat, 12);
+  compress(gltf, 0, 12, "ATTRIBUTES", "EXPONENTIAL");
+  const std::vector<float> normals = {0.6F, 0.8F, 0, 0, 0, 0, -1, 0, 1, 0, 0, 0, 0, -1, 0, 0};
+  std::vector<std::int8_t> octahedral(16);
+  meshopt_encodeFilterOct(octahedral.data(), 4, 4, 8, normals.data());
+  std::vector<std::int8_t> stored;  // the reader takes three of four
+  for (std::size_t i = 0; i < 16; ++i) {
+    if (i % 4 != 3) stored.push_back(octahedral[i]);
+  }
+  const std::size_t at = gltf.add(stored, kByte, "VEC3", 3, 4);
+  gltf.root["accessors"][at]["normalized"] = true;
+  attributes(gltf)["NORMAL"] = at;
+  compress(gltf, at, 4, "ATTRIBUTES", "OCTAHEDRAL");
+  const Scan scan = read(gltf.glb());
+  expect_point(scan, 1, 1.5, 0, 0);
+  expect_point(scan, 2, 0, -2.25, 0);
+  expect_point(scan, 3, 0, 0, 1000);
+  ASSERT_EQ(scan.normals.size(), 4U);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Eigen::Vector3f normal(normals[4 * i], normals[4 * i + 1], normals[4 * i + 2]);
+    EXPECT_GT(scan.normals[i].normalized().dot(normal), 0.9995F) << i;
+  }
+}
+
+TEST_F(GltfTest, RefusesInvalidMeshoptCompression) {
+  const auto refuse = [&](std::size_t view, const char* name, Json value,
+                          const std::string& cause) {
+    GltfWriter gltf = compressed();
+    extension_of(gltf, view)[name] = std::move(value);
+    expect_parts(refusal_of(gltf.glb(), "a.glb"), "a.glb", cause);
+  };
+  refuse(0, "mode", "LINES", "accessor 0 has an invalid layout of EXT_meshopt_compression");
+  refuse(0, "byteStride", 6, "invalid layout");
+  refuse(0, "byteStride", 0, "invalid layout");
+  refuse(0, "byteStride", 512, "invalid layout");
+  refuse(0, "filter", "QUATERNION", "invalid layout");  // of animations, not of a shape
+  refuse(1, "count", 11, "invalid layout");
+  refuse(1, "byteStride", 1, "invalid layout");
+  refuse(1, "filter", "EXPONENTIAL", "invalid layout");
+  refuse(0, "count", 1'000'000'000'000, "which its compressed bytes cannot hold");
+  refuse(0, "count", 40, "another byteLength than its compressed bytes");
+  refuse(0, "byteLength", 40, "the compressed bytes of accessor 0 are damaged");
+  refuse(1, "mode", "INDICES", "the compressed bytes of accessor 1 are damaged");
+  refuse(0, "byteLength", 1'000'000, "ends after the");
+  refuse(0, "buffer", 5, "entry 5 of \"buffers\"");
+  GltfWriter gltf = compressed();
+  gltf.root["bufferViews"][1].erase("extensions");  // only the buffer without bytes is left
+  expect_parts(refusal_of(gltf.glb()), "ends after the 0 bytes of its buffer");
+  gltf = compressed();
+  gltf.root["meshes"][0]["primitives"][0]["extensions"] = {
+      {"KHR_draco_mesh_compression", Json::object()}};
+  gltf.root["extensionsRequired"].push_back("KHR_draco_mesh_compression");
+  expect_parts(refusal_of(gltf.glb()),
+               "EXT_meshopt_compression and data compressed with KHR_draco");
 }
 
 TEST_F(GltfTest, CountsTrianglesWithoutPoints) {
@@ -271,11 +404,11 @@ TEST_F(GltfTest, ReportsBytesAfterDeclaredSize) {
 }
 
 TEST_F(GltfTest, ReadsOrRefusesDamage) {
-  const std::string whole = skinned().glb();
+  const std::array<std::string, 2> files = {skinned().glb(), compressed().glb()};
   std::mt19937 random(7);
   unsigned refused = 0;
-  for (unsigned round = 0; round < 40; ++round) {
-    std::string bytes = whole;
+  for (unsigned round = 0; round < 80; ++round) {
+    std::string bytes = files[round % 2];
     for (int change = 0; change < 3; ++change) {
       bytes[20 + random() % (bytes.size() - 20)] = static_cast<char>(random());
     }
@@ -287,7 +420,7 @@ TEST_F(GltfTest, ReadsOrRefusesDamage) {
       ++refused;
     }
   }
-  EXPECT_GT(refused, 10U);
+  EXPECT_GT(refused, 20U);
 }
 
 }  // namespace
