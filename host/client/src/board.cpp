@@ -8,6 +8,7 @@
 #include "tactree/client/ports.hpp"
 #include "tactree/core/control/controller.hpp"
 #include "tactree/core/math/crc32.hpp"
+#include "trace_reader.hpp"
 
 namespace tactree::client {
 namespace {
@@ -338,37 +339,19 @@ void Board::subscribe(const Subscription& subscription) {
 }
 
 std::vector<TracedTick> Board::trace() {
-  std::vector<TracedTick> ticks;
-  std::uint32_t age = 0;
-  while (true) {
-    const Response response =
-        demand(MessageKind::kReadTrace,
-               core::wire::ReadTraceRequest{age, core::wire::kMaxTraceRecords}, "trace");
-    core::wire::ReadTraceReply reply;
-    if (!response.read(reply) ||
-        response.payload.size() < sizeof reply + reply.count * sizeof(core::FlightRecord)) {
+  return read_trace([this](const core::wire::ReadTraceRequest& request) {
+    const Response response = demand(MessageKind::kReadTrace, request, "trace");
+    TraceReply reply;
+    if (!response.read(reply.header) ||
+        response.payload.size() <
+            sizeof reply.header + reply.header.count * sizeof(core::FlightRecord)) {
       throw LinkError(connection().name() + ": trace: the reply is too short");
     }
-    for (std::uint32_t i = 0; i < reply.count; ++i) {
-      TracedTick tick{reply.last_tick - reply.age - i, {}};
-      std::memcpy(&tick.record, response.payload.data() + sizeof reply + i * sizeof tick.record,
-                  sizeof tick.record);
-      ticks.push_back(tick);
-    }
-    age += reply.count;
-    if (reply.count == 0U || age >= reply.total) {
-      break;
-    }
-  }
-  // Recording may continue while it is read, so some ticks are read twice.
-  std::sort(ticks.begin(), ticks.end(), [](const TracedTick& a, const TracedTick& b) {
-    return static_cast<std::int32_t>(a.tick - b.tick) < 0;
+    reply.records.resize(reply.header.count);
+    std::memcpy(reply.records.data(), response.payload.data() + sizeof reply.header,
+                reply.records.size() * sizeof(core::FlightRecord));
+    return reply;
   });
-  ticks.erase(
-      std::unique(ticks.begin(), ticks.end(),
-                  [](const TracedTick& a, const TracedTick& b) { return a.tick == b.tick; }),
-      ticks.end());
-  return ticks;
 }
 
 std::vector<core::wire::ParameterReply> Board::parameters() {

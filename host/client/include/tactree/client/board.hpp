@@ -120,7 +120,9 @@ class Board {
   void set_limits(float force_max_N, float slew_N_s, float ramp_s);
   void set_material(const core::wire::SetMaterialRequest& material);
   void subscribe(const Subscription& subscription);
-  [[nodiscard]] std::vector<TracedTick> trace();  ///< oldest first
+  /// Records of consecutive ticks, oldest first. The board records further ones meanwhile, so that
+  /// a slow link reads fewer than the board has at first.
+  [[nodiscard]] std::vector<TracedTick> trace();
   [[nodiscard]] core::wire::ReadFaultReply first_fault();
   [[nodiscard]] std::vector<core::wire::ParameterReply> parameters();
   void set_parameter(const std::string& name, float value);
