@@ -55,7 +55,7 @@ class NpzTest : public test::FolderTest {
     for (std::size_t at = begin; at + sizeof(T) <= bytes.size(); at += sizeof(T)) {
       T value;
       std::memcpy(&value, bytes.data() + at, sizeof value);
-      all.push_back(value);
+      all.push_back(static_cast<double>(value));
     }
     EXPECT_NE(bytes.find("'shape': (" + std::to_string(all.size()) + ",)"), std::string::npos);
     return all;
