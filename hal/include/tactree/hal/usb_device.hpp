@@ -26,7 +26,6 @@ struct UsbEvent {
     kUnconfigured,  ///< the controller left the configuration itself (Linux)
     kSetup,         ///< `setup` was received; this ends an older control transfer
     kData,          ///< data stage to the device is complete: see control_data()
-    kStatusDone,    ///< the control transfer is complete
   };
   Kind kind = Kind::kNone;
   core::usb::Speed speed = core::usb::Speed::kFull;
@@ -42,7 +41,9 @@ struct UsbEvent {
 ///   control_data()            returns the data of that stage
 ///   control_acknowledge()     performs the status stage
 ///   control_stall()           refuses the control transfer by a stall
-///   set_address(address)      sets the address immediately
+/// The next three precede the status stage of the request that caused them, because the host may
+/// use the endpoints directly after it:
+///   set_address(address)      sets the address that is valid after the status stage
 ///   configure(open)           opens the endpoints with cleared data toggles, or closes them
 ///   halt(endpoint, on)        stalls the endpoint, or ends the stall and clears the data toggle
 ///   read(endpoint, bytes)     copies received bytes; returns their number
@@ -121,7 +122,7 @@ class UsbDevice {
   [[nodiscard]] const core::usb::Dfu<Parameters>& parameters() const { return parameters_; }
 
  private:
-  static constexpr std::uint32_t kEventsPerTick = 4;  // a control transfer has up to three
+  static constexpr std::uint32_t kEventsPerTick = 4;  // a control transfer has up to two
 
   [[nodiscard]] bool may_move(std::uint8_t endpoint) const {
     return standard_.configured() && !standard_.is_halted(endpoint);
@@ -142,14 +143,11 @@ class UsbDevice {
       answer(judge(setup_));
     } else if (event.kind == Kind::kData) {
       answer(judge_data());
-    } else if (event.kind == Kind::kStatusDone) {
-      carry_out();
     }
   }
 
   /// Aborts a transfer in progress.
   void leave() {
-    pending_ = {};
     model_.reset();
     parameters_.reset();
   }
@@ -175,29 +173,26 @@ class UsbDevice {
 
   void answer(const core::usb::ControlResponse& answer) {
     using Kind = core::usb::ControlResponse::Kind;
-    pending_ = answer;
     if (answer.kind == Kind::kSend) {
       controller_.control_send(answer.data, answer.data.size() < setup_.wLength);
     } else if (answer.kind == Kind::kReceive) {
       controller_.control_receive(setup_.wLength);
     } else if (answer.kind == Kind::kAcknowledge) {
+      carry_out(answer);
       controller_.control_acknowledge();
     } else {
       controller_.control_stall();
     }
   }
 
-  /// A new address takes effect after the status stage of its request (USB 2.0, 9.4.6).
-  void carry_out() {
+  void carry_out(const core::usb::ControlResponse& answer) {
     using Effect = core::usb::ControlResponse::Effect;
-    const core::usb::ControlResponse done = pending_;
-    pending_ = {};
-    if (done.effect == Effect::kTakeAddress) {
-      controller_.set_address(done.value);
-    } else if (done.effect == Effect::kConfigure) {
-      controller_.configure(done.value != 0);
-    } else if (done.effect == Effect::kHalt || done.effect == Effect::kClearHalt) {
-      controller_.halt(done.value, done.effect == Effect::kHalt);
+    if (answer.effect == Effect::kTakeAddress) {
+      controller_.set_address(answer.value);
+    } else if (answer.effect == Effect::kConfigure) {
+      controller_.configure(answer.value != 0);
+    } else if (answer.effect == Effect::kHalt || answer.effect == Effect::kClearHalt) {
+      controller_.halt(answer.value, answer.effect == Effect::kHalt);
     }
   }
 
@@ -206,7 +201,6 @@ class UsbDevice {
   core::usb::Dfu<Model> model_;
   core::usb::Dfu<Parameters> parameters_;
   core::usb::SetupPacket setup_{};
-  core::usb::ControlResponse pending_{};
   core::usb::NewsPacket last_sent_{};
 };
 
