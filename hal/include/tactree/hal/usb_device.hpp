@@ -107,8 +107,10 @@ class UsbDevice {
 
   /// Call once per tick: sends a notice if state or faults have changed since the last notice.
   void send_changes(const core::Status& status) {
-    const core::usb::NewsPacket news{status.tick, static_cast<std::uint32_t>(status.state),
-                                     status.faults, status.limits};
+    send_changes(core::usb::NewsPacket{status.tick, static_cast<std::uint32_t>(status.state),
+                                       status.faults, status.limits});
+  }
+  void send_changes(const core::usb::NewsPacket& news) {
     const bool same = news.state == last_sent_.state && news.faults == last_sent_.faults;
     if (!same && send_news(news)) {
       last_sent_ = news;
