@@ -22,7 +22,8 @@ struct UsbEvent {
     kNone = 0,
     kReset,         ///< bus reset by the host; `speed` is valid; all endpoints except 0 are closed
     kDisconnected,  ///< cable unplugged, or bus suspended
-    kConfigured,    ///< the controller accepted a configuration itself (Linux); endpoints are open
+    kConfigured,    ///< endpoints are open without a request of the host: the controller accepted
+                    ///< its configuration itself (Linux), or a suspended bus was resumed
     kUnconfigured,  ///< the controller left the configuration itself (Linux)
     kSetup,         ///< `setup` was received; this ends an older control transfer
     kData,          ///< data stage to the device is complete: see control_data()
@@ -77,8 +78,8 @@ class UsbDevice {
         model_(model),
         parameters_(parameters) {}
 
-  /// Call once per tick, after the tick's work. Handles at most kEventsPerTick events, which bounds
-  /// the cost whatever the host sends.
+  /// Call once per tick, after the tick's work, or more often between the ticks. Handles at most
+  /// kEventsPerTick events, which bounds the cost whatever the host sends.
   void poll(std::uint32_t now_us) {
     model_.advance(now_us);
     parameters_.advance(now_us);
