@@ -76,6 +76,12 @@ class SerialPort {
     return count;
   }
 
+  /// Forgets the bytes that have arrived.
+  void discard() noexcept {
+    advance();
+    next_ = by_dma_ ? written() : 0U;
+  }
+
   /// Accepts nothing while a transfer is in progress.
   std::size_t write(std::span<const std::byte> bytes) noexcept {
     advance();
@@ -104,13 +110,16 @@ class SerialPort {
       byte = came ? static_cast<std::byte>(stm32f4::read(usart_.dr)) : std::byte{};
       return came;
     }
-    const std::uint32_t written = (kRingBytes - stm32f4::read(dma_.stream[2].ndtr)) % kRingBytes;
-    if (next_ == written) {
+    if (next_ == written()) {
       return false;
     }
     byte = static_cast<std::byte>(ring_.byte[next_]);
     next_ = (next_ + 1U) % kRingBytes;
     return true;
+  }
+
+  [[nodiscard]] std::uint32_t written() const {
+    return (kRingBytes - stm32f4::read(dma_.stream[2].ndtr)) % kRingBytes;
   }
 
   template <class T>

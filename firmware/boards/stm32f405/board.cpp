@@ -22,4 +22,13 @@ Board::Board()
     : Stm32f405Board(stm32f4::this_chip(), stm32f4::flash_cells(), clock_failure,
                      {kIdentity.board, TACTREE_FIRMWARE_VERSION, {}, timer_clock_hz()}) {}
 
+core::Configuration Board::connect(const hal::CapturedFault& last_fault) {
+  return Stm32f405Board::connect(last_fault);
+}
+
+void Board::serve(core::Controller& controller, const hal::StartResult& started,
+                  const core::Configuration& configuration) {
+  Stm32f405Board::serve(controller, started, configuration);
+}
+
 }  // namespace tactree::firmware

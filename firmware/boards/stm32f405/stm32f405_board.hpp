@@ -13,13 +13,18 @@
 #include "runtime/deadline_wait.hpp"
 #include "stm32f4/clocks.hpp"
 #include "stm32f4/lines.hpp"
+#include "stm32f4/link_port.hpp"
 #include "stm32f4/pwm_motors.hpp"
 #include "stm32f4/quadrature_encoders.hpp"
 #include "stm32f4/serial_port.hpp"
 #include "stm32f4/store_flash.hpp"
+#include "stm32f4/usb_otg_fs.hpp"
 #include "stm32f4/watchdog.hpp"
+#include "tactree/core/link/usb/parameter_storage.hpp"
 #include "tactree/hal/board.hpp"
 #include "tactree/hal/panel.hpp"
+#include "tactree/hal/usb_device.hpp"
+#include "tactree/session/dfu_model.hpp"
 #include "tactree/session/session.hpp"
 #include "tactree/store/model_store.hpp"
 #include "wiring.hpp"
@@ -33,6 +38,7 @@ template <class Word>
   const stm32f4::ClockFailure failure =
       stm32f4::start_clocks(chip.rcc, chip.flash, chip.tim11, wiring::kCrystalMHz);
   stm32f4::set(chip.rcc.ahb1enr, wiring::kAhb1Clocks);
+  stm32f4::set(chip.rcc.ahb2enr, wiring::kAhb2Clocks);
   stm32f4::set(chip.rcc.apb1enr, wiring::kApb1Clocks);
   stm32f4::set(chip.rcc.apb2enr, wiring::kApb2Clocks);
   (void)stm32f4::read(chip.rcc.apb2enr);  // usable two cycles after the clock is enabled
@@ -129,8 +135,49 @@ class Stm32f405Board {
   };
 
   using Flash = stm32f4::StoreFlash<Word, Cell, Standstill>;
-  using Store = store::ModelStore<Flash>;
-  using Session = session::Session<stm32f4::SerialPort<Word>, Store, SessionPlatform>;
+  using Store = store::ModelStore<Flash, Flash, wiring::kModelKey != nullptr>;
+
+  /// Serves an application between the ticks: the session at either port, and the requests of a USB
+  /// host.
+  class Application {
+   public:
+    using Model = session::DfuModel<Store, SessionPlatform>;
+    using Parameters = core::usb::ParameterStorage<SessionPlatform>;
+    using Usb = hal::UsbDevice<stm32f4::UsbOtgFs<Word>, Model, Parameters>;
+    using Port = stm32f4::LinkPort<Usb, stm32f4::SerialPort<Word>>;
+
+    /// Keeps both references. Precondition: connect() was called.
+    Application(Stm32f405Board& board, core::Controller& controller)
+        : board_(board),
+          controller_(controller),
+          model_(board.store_, controller, board.mailbox_, board.platform_),
+          parameters_(controller, board.platform_),
+          usb_(board.otg_, board.usb_identity(), false, model_, parameters_),
+          port_(usb_, board.port_),
+          session_({port_, board.store_, board.platform_, controller, board.mailbox_,
+                    board.identity_}) {}
+
+    /// Call before work(): Session::started().
+    void started(const hal::StartResult& result, const core::Configuration& configuration) {
+      session_.started(result, configuration, &board_.report_);
+    }
+    /// A bounded piece of work: UsbDevice::poll() and Session::work().
+    void work() {
+      usb_.poll(board_.platform_.now_us());
+      (void)session_.work();
+      usb_.send_changes({controller_.tick(), static_cast<std::uint32_t>(controller_.state()),
+                         controller_.faults(), controller_.limits()});
+    }
+
+   private:
+    Stm32f405Board& board_;
+    core::Controller& controller_;
+    Model model_;
+    Parameters parameters_;
+    Usb usb_;
+    Port port_;
+    session::Session<Port, Store, SessionPlatform> session_;
+  };
 
   /// `clocks` is the result of prepare_chip().
   Stm32f405Board(const stm32f4::Chip<Word>& chip, const stm32f4::FlashCells<Cell>& cells,
@@ -146,11 +193,12 @@ class Stm32f405Board {
         arm_button_(pin_b(15)),
         lamp_(pin_c(3)),
         port_(chip.usart1, chip.dma2, ring_),
+        otg_(chip.otg_fs),
         watchdog_(chip.watchdog),
         standstill_(*this),
         record_flash_(chip.flash, cells, kRecordSectors, standstill_),
         slot_flash_(chip.flash, cells, kSlotSectors, standstill_),
-        store_(slot_flash_, record_flash_, {identity_.board, nullptr, {}}),
+        store_(slot_flash_, record_flash_, {identity_.board, wiring::kModelKey, {}}),
         motors_(*this),
         ticker_(*this),
         link_(*this) {
@@ -177,6 +225,9 @@ class Stm32f405Board {
     pin_a(10).make_alternate(wiring::kUsart1Function, stm32f4::Pull::kUp);
     note(port_.start(full_speed_ ? stm32f4::kApb2Hz : stm32f4::kInternalClockHz, wiring::kBaud),
          Part::kReceiver);
+    if (full_speed_) {
+      start_usb();
+    }
     store_.set_factory(BlobArea().active());
     (void)store_.mount();
     core::Configuration configuration = wiring::configuration();
@@ -189,17 +240,14 @@ class Stm32f405Board {
   /// follows, would exceed its timeout. serve() reports `result` over the link.
   void report(const hal::StartResult& /*result*/) { note(watchdog_.start(), Part::kWatchdog); }
 
-  /// Serves an application on the serial port between the ticks. Does not return.
+  /// Serves an application between the ticks. Does not return.
   void serve(core::Controller& controller, const hal::StartResult& started,
              const core::Configuration& configuration) {
-    static Session session(session_parts(controller));
-    session.started(started, configuration, &report_);
+    static Application application(*this, controller);
+    application.started(started, configuration);
     while (true) {  // bound: for_ever
-      (void)session.work();
+      application.work();
     }
-  }
-  [[nodiscard]] typename Session::Parts session_parts(core::Controller& controller) {
-    return {port_, store_, platform_, controller, mailbox_, identity_};
   }
 
   [[nodiscard]] stm32f4::QuadratureEncoders<Word>& encoders() noexcept { return encoders_; }
@@ -242,6 +290,24 @@ class Stm32f405Board {
     pin_b(14).make_input(stm32f4::Pull::kDown);
   }
 
+  // Without the crystal there are no 48 MHz. The serial number is read only from a chip that has
+  // the core: an emulator has neither.
+  void start_usb() {
+    pin_a(11).make_alternate(wiring::kOtgFsFunction, stm32f4::Pull::kNone);
+    pin_a(12).make_alternate(wiring::kOtgFsFunction, stm32f4::Pull::kNone);
+    const bool started = otg_.start();
+    note(started, Part::kUsb);
+    for (std::uint32_t i = 0; started && i < 3U; ++i) {  // bound: 3
+      identity_.serial[i] = stm32f4::read(chip_.unique_id.word[i]);
+    }
+  }
+
+  [[nodiscard]] core::usb::Identity usb_identity() const {
+    core::usb::Identity usb;
+    usb.serial = {identity_.serial[0], identity_.serial[1], identity_.serial[2]};
+    return usb;
+  }
+
   [[nodiscard]] bool started() const { return report_.missing == 0U; }
 
   void note(bool good, Part part) {
@@ -262,6 +328,7 @@ class Stm32f405Board {
   stm32f4::Pin<Word> lamp_;
   stm32f4::Ring ring_{};
   stm32f4::SerialPort<Word> port_;
+  stm32f4::UsbOtgFs<Word> otg_;
   stm32f4::Watchdog<Word> watchdog_;
   Standstill standstill_;
   Flash record_flash_;

@@ -15,8 +15,9 @@ inline constexpr std::uint32_t kCrystalMHz = 25;  ///< 4 .. 26
 /// replies.
 inline constexpr std::uint32_t kBaud = 1000000;
 
-// GPIO A, B, C and DMA2 in AHB1ENR (RM0090, section 7.3.10).
+// GPIO A, B, C and DMA2 in AHB1ENR, OTG FS in AHB2ENR (RM0090, sections 7.3.10 and 7.3.11).
 inline constexpr std::uint32_t kAhb1Clocks = (1U << 0) | (1U << 1) | (1U << 2) | (1U << 22);
+inline constexpr std::uint32_t kAhb2Clocks = 1U << 7;
 inline constexpr std::uint32_t kApb1Clocks = (1U << 0) | (1U << 2) | (1U << 3);  // TIM2, 4, 5
 inline constexpr std::uint32_t kApb2Clocks = (1U << 1) | (1U << 4);              // TIM8, USART1
 
@@ -26,9 +27,14 @@ inline constexpr std::uint32_t kTim4Function = 2;
 inline constexpr std::uint32_t kTim5Function = 2;
 inline constexpr std::uint32_t kTim8Function = 3;
 inline constexpr std::uint32_t kUsart1Function = 7;
+inline constexpr std::uint32_t kOtgFsFunction = 10;
 
 /// Effort of an axis at a duty cycle of 1, N or Nm.
 inline constexpr float kEffortAtFullWidth[core::kAxes] = {1.9F, 1.8F, 1.5F};
+
+/// Ed25519 public key of 32 bytes whose signature a model needs; nullptr: none. With a key the
+/// program is larger than its sectors: README.md.
+inline constexpr const std::uint8_t* kModelKey = nullptr;
 
 /// What an application at the port is for.
 enum class LinkUse : std::uint8_t {

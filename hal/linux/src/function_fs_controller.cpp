@@ -263,7 +263,6 @@ UsbEvent FunctionFsController::next_event() {
 
 void FunctionFsController::control_send(std::span<const std::byte> data, bool) {
   (void)!::write(impl_->plugged->control, data.data(), data.size());
-  impl_->events.push_back({UsbEvent::Kind::kStatusDone, {}, {}});
 }
 
 void FunctionFsController::control_receive(std::uint16_t bytes) {
@@ -281,7 +280,6 @@ void FunctionFsController::control_acknowledge() {
   if (impl_->setup.wLength == 0) {
     (void)!::read(impl_->plugged->control, nullptr, 0);
   }
-  impl_->events.push_back({UsbEvent::Kind::kStatusDone, {}, {}});
 }
 
 /// FunctionFS stalls endpoint 0 when it is accessed in the direction opposite to the request.

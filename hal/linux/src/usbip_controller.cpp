@@ -298,7 +298,6 @@ UsbEvent UsbIpController::next_event() {
 void UsbIpController::control_send(std::span<const std::byte> data, bool) {
   impl_->finish(*impl_->control, 0, data.size(), data);
   impl_->control.reset();
-  impl_->events.push_back({UsbEvent::Kind::kStatusDone, {}, {}});
 }
 
 void UsbIpController::control_receive(std::uint16_t) {
@@ -313,7 +312,6 @@ std::span<const std::byte> UsbIpController::control_data() const {
 void UsbIpController::control_acknowledge() {
   impl_->finish(*impl_->control, 0, impl_->control->data.size());
   impl_->control.reset();
-  impl_->events.push_back({UsbEvent::Kind::kStatusDone, {}, {}});
 }
 
 void UsbIpController::control_stall() {

@@ -28,11 +28,10 @@ bool is_for_board(const char (&name)[24], const char* board) {
   return false;
 }
 
+}  // namespace
+
 bool is_authentic(const SlotEntry& entry, std::span<const std::byte> bytes,
                   const std::uint8_t* key) {
-  if (key == nullptr) {
-    return true;
-  }
   core::wire::ModelManifest manifest;
   __builtin_memcpy(manifest.board, entry.board, sizeof manifest.board);
   manifest.counter = entry.counter;
@@ -42,8 +41,6 @@ bool is_authentic(const SlotEntry& entry, std::span<const std::byte> bytes,
                             core::SignatureView(entry.signature),
                             std::as_bytes(std::span(&manifest, 1)), bytes);
 }
-
-}  // namespace
 
 WireStatus check_announcement(const core::wire::BeginModelRequest& request,
                               std::uint32_t slot_bytes, std::uint32_t counter_min,
@@ -61,23 +58,16 @@ WireStatus check_announcement(const core::wire::BeginModelRequest& request,
   return old ? WireStatus::kOldCounter : WireStatus::kOk;
 }
 
-WireStatus check_model(const SlotEntry& entry, std::span<const std::byte> bytes,
-                       std::uint32_t counter_min, const StoreSetup& setup, core::BlobView& view,
-                       core::BlobStatus& blob) {
+WireStatus check_entry(const SlotEntry& entry, std::span<const std::byte> bytes,
+                       std::uint32_t counter_min, const StoreSetup& setup) {
   if (core::crc32(bytes) != entry.checksum) {
     return WireStatus::kBadChecksum;
   }
   if (!is_for_board(entry.board, setup.board)) {
     return WireStatus::kWrongBoard;
   }
-  if (setup.key != nullptr && entry.counter < counter_min) {
-    return WireStatus::kOldCounter;
-  }
-  if (!is_authentic(entry, bytes, setup.key)) {
-    return WireStatus::kBadSignature;
-  }
-  blob = core::open_blob(bytes, view);
-  return blob == core::BlobStatus::kOk ? WireStatus::kOk : WireStatus::kBadModel;
+  const bool old = setup.key != nullptr && entry.counter < counter_min;
+  return old ? WireStatus::kOldCounter : WireStatus::kOk;
 }
 
 bool holds_factory_model(std::span<const std::byte> slot, const StoreSetup& setup) {

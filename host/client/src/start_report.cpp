@@ -23,6 +23,7 @@ constexpr PartName kParts[] = {
     {StartPart::kSafetyInputs, "emergency stop and dead-man control"},
     {StartPart::kWatchdog, "watchdog"},
     {StartPart::kReceiver, "receiver of the link"},
+    {StartPart::kUsb, "USB controller"},
     {StartPart::kCrystal, "crystal"},
     {StartPart::kCrystalFrequency, "crystal (of a wrong frequency)"},
     {StartPart::kWaitStates, "wait states of the flash"},

@@ -28,7 +28,7 @@ class Writer {
     for (std::size_t i = 0; i + 1 < kCount; ++i) {  // bound: kCount
       u16(static_cast<std::uint8_t>(text[i]));
     }
-    for (std::uint32_t i = 0; i < zeros; ++i) {  // bound: zeros, 2 at most
+    for (std::uint32_t i = 0; i < zeros; ++i) {  // bound: zeros (2 or fewer)
       u16(0);
     }
     return *this;
@@ -75,11 +75,11 @@ constexpr void add_dfu(Writer<kSize>& writer, std::uint32_t number, StringIndex 
   writer.u16(kDfuTransferBytes).u16(kDfuVersion);
 }
 
-constexpr Writer<kConfigurationBytes> write_configuration(Speed speed, std::uint8_t type) {
+constexpr Writer<kConfigurationBytes> write_configuration(Speed speed) {
   const bool high = speed == Speed::kHigh;
   const std::uint32_t packet = high ? kBulkPacketBytesHigh : kBulkPacketBytesFull;
   Writer<kConfigurationBytes> writer;
-  writer.u8(9).u8(type).u16(kConfigurationBytes).u8(kInterfaces).u8(1).u8(0);
+  writer.u8(9).u8(2).u16(kConfigurationBytes).u8(kInterfaces).u8(1).u8(0);
   writer.u8(kSelfPowered).u8(kCurrentMax);
   add_interface(writer, kLinkInterface, 3, kLinkClass, kLinkSubclass, kLinkProtocol,
                 StringIndex::kLink);
@@ -91,7 +91,10 @@ constexpr Writer<kConfigurationBytes> write_configuration(Speed speed, std::uint
   add_dfu(writer, kParameterInterface, StringIndex::kParameters);
   return writer;
 }
-static_assert(write_configuration(Speed::kFull, 2).is_full());
+static_assert(write_configuration(Speed::kFull).is_full());
+// Smaller than the code that writes them.
+constexpr auto kFullConfiguration = write_configuration(Speed::kFull).done();
+constexpr auto kHighConfiguration = write_configuration(Speed::kHigh).done();
 
 constexpr std::uint32_t kWindows81 = 0x06030000;  // the first version that reads these descriptors
 
@@ -177,7 +180,9 @@ std::array<std::byte, kQualifierBytes> qualifier_descriptor() {
 
 std::array<std::byte, kConfigurationBytes> configuration_descriptor(Speed speed,
                                                                     std::uint8_t type) {
-  return write_configuration(speed, type).done();
+  auto bytes = speed == Speed::kHigh ? kHighConfiguration : kFullConfiguration;
+  bytes[1] = std::byte{type};
+  return bytes;
 }
 
 std::span<const std::byte, kBosBytes> bos_descriptor() { return kBos; }

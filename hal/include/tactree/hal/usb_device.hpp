@@ -22,11 +22,11 @@ struct UsbEvent {
     kNone = 0,
     kReset,         ///< bus reset by the host; `speed` is valid; all endpoints except 0 are closed
     kDisconnected,  ///< cable unplugged, or bus suspended
-    kConfigured,    ///< the controller accepted a configuration itself (Linux); endpoints are open
+    kConfigured,    ///< endpoints are open without a request of the host: the controller accepted
+                    ///< its configuration itself (Linux), or a suspended bus was resumed
     kUnconfigured,  ///< the controller left the configuration itself (Linux)
     kSetup,         ///< `setup` was received; this ends an older control transfer
     kData,          ///< data stage to the device is complete: see control_data()
-    kStatusDone,    ///< the control transfer is complete
   };
   Kind kind = Kind::kNone;
   core::usb::Speed speed = core::usb::Speed::kFull;
@@ -42,7 +42,9 @@ struct UsbEvent {
 ///   control_data()            returns the data of that stage
 ///   control_acknowledge()     performs the status stage
 ///   control_stall()           refuses the control transfer by a stall
-///   set_address(address)      sets the address immediately
+/// The next three precede the status stage of the request that caused them, because the host may
+/// use the endpoints directly after it:
+///   set_address(address)      sets the address that is valid after the status stage
 ///   configure(open)           opens the endpoints with cleared data toggles, or closes them
 ///   halt(endpoint, on)        stalls the endpoint, or ends the stall and clears the data toggle
 ///   read(endpoint, bytes)     copies received bytes; returns their number
@@ -76,8 +78,8 @@ class UsbDevice {
         model_(model),
         parameters_(parameters) {}
 
-  /// Call once per tick, after the tick's work. Handles at most kEventsPerTick events, which bounds
-  /// the cost whatever the host sends.
+  /// Call once per tick, after the tick's work, or more often between the ticks. Handles at most
+  /// kEventsPerTick events, which bounds the cost whatever the host sends.
   void poll(std::uint32_t now_us) {
     model_.advance(now_us);
     parameters_.advance(now_us);
@@ -106,8 +108,10 @@ class UsbDevice {
 
   /// Call once per tick: sends a notice if state or faults have changed since the last notice.
   void send_changes(const core::Status& status) {
-    const core::usb::NewsPacket news{status.tick, static_cast<std::uint32_t>(status.state),
-                                     status.faults, status.limits};
+    send_changes(core::usb::NewsPacket{status.tick, static_cast<std::uint32_t>(status.state),
+                                       status.faults, status.limits});
+  }
+  void send_changes(const core::usb::NewsPacket& news) {
     const bool same = news.state == last_sent_.state && news.faults == last_sent_.faults;
     if (!same && send_news(news)) {
       last_sent_ = news;
@@ -121,7 +125,7 @@ class UsbDevice {
   [[nodiscard]] const core::usb::Dfu<Parameters>& parameters() const { return parameters_; }
 
  private:
-  static constexpr std::uint32_t kEventsPerTick = 4;  // a control transfer has up to three
+  static constexpr std::uint32_t kEventsPerTick = 4;  // a control transfer has up to two
 
   [[nodiscard]] bool may_move(std::uint8_t endpoint) const {
     return standard_.configured() && !standard_.is_halted(endpoint);
@@ -142,14 +146,11 @@ class UsbDevice {
       answer(judge(setup_));
     } else if (event.kind == Kind::kData) {
       answer(judge_data());
-    } else if (event.kind == Kind::kStatusDone) {
-      carry_out();
     }
   }
 
   /// Aborts a transfer in progress.
   void leave() {
-    pending_ = {};
     model_.reset();
     parameters_.reset();
   }
@@ -175,29 +176,26 @@ class UsbDevice {
 
   void answer(const core::usb::ControlResponse& answer) {
     using Kind = core::usb::ControlResponse::Kind;
-    pending_ = answer;
     if (answer.kind == Kind::kSend) {
       controller_.control_send(answer.data, answer.data.size() < setup_.wLength);
     } else if (answer.kind == Kind::kReceive) {
       controller_.control_receive(setup_.wLength);
     } else if (answer.kind == Kind::kAcknowledge) {
+      carry_out(answer);
       controller_.control_acknowledge();
     } else {
       controller_.control_stall();
     }
   }
 
-  /// A new address takes effect after the status stage of its request (USB 2.0, 9.4.6).
-  void carry_out() {
+  void carry_out(const core::usb::ControlResponse& answer) {
     using Effect = core::usb::ControlResponse::Effect;
-    const core::usb::ControlResponse done = pending_;
-    pending_ = {};
-    if (done.effect == Effect::kTakeAddress) {
-      controller_.set_address(done.value);
-    } else if (done.effect == Effect::kConfigure) {
-      controller_.configure(done.value != 0);
-    } else if (done.effect == Effect::kHalt || done.effect == Effect::kClearHalt) {
-      controller_.halt(done.value, done.effect == Effect::kHalt);
+    if (answer.effect == Effect::kTakeAddress) {
+      controller_.set_address(answer.value);
+    } else if (answer.effect == Effect::kConfigure) {
+      controller_.configure(answer.value != 0);
+    } else if (answer.effect == Effect::kHalt || answer.effect == Effect::kClearHalt) {
+      controller_.halt(answer.value, answer.effect == Effect::kHalt);
     }
   }
 
@@ -206,7 +204,6 @@ class UsbDevice {
   core::usb::Dfu<Model> model_;
   core::usb::Dfu<Parameters> parameters_;
   core::usb::SetupPacket setup_{};
-  core::usb::ControlResponse pending_{};
   core::usb::NewsPacket last_sent_{};
 };
 

@@ -7,6 +7,7 @@
 #include "fake_clocks.hpp"
 #include "fake_flash.hpp"
 #include "fake_parts.hpp"
+#include "fake_usb_otg.hpp"
 
 namespace tactree::test {
 
@@ -24,6 +25,7 @@ class FakeChip {
     tim5.gate_by(clocked(clocks.rcc.apb1enr, 3));
     tim8.gate_by(clocked(clocks.rcc.apb2enr, 1));
     serial.gate_by(clocked(clocks.rcc.apb2enr, 4), clocked(clocks.rcc.ahb1enr, 22));
+    usb.gate_by(clocked(clocks.rcc.ahb2enr, 7));
     gpio_b.wire(12, false);  // emergency stop: closed to ground
     gpio_b.wire(14, true);   // amplifiers are good
     gpio_c.wire(5, false);   // amplifiers have no power
@@ -31,9 +33,9 @@ class FakeChip {
   }
 
   [[nodiscard]] firmware::stm32f4::Chip<FakeWord> chip() {
-    return {clocks.rcc,   flash.block, gpio_a.block,  gpio_b.block, gpio_c.block,
-            tim2.block,   tim4.block,  tim5.block,    tim8.block,   clocks.tim11,
-            serial.usart, serial.dma,  watchdog.block};
+    return {clocks.rcc,   flash.block, gpio_a.block,   gpio_b.block, gpio_c.block,
+            tim2.block,   tim4.block,  tim5.block,     tim8.block,   clocks.tim11,
+            serial.usart, serial.dma,  watchdog.block, usb.block,    unique_id};
   }
 
   void tick() {
@@ -70,6 +72,8 @@ class FakeChip {
   FakeTimer tim2{0xFFFFFFFFU}, tim4{0xFFFFU}, tim5{0xFFFFFFFFU}, tim8{0xFFFFU};
   FakeSerial serial;
   FakeWatchdog watchdog;
+  FakeUsbOtg usb;
+  firmware::stm32f4::UniqueIdBlock<FakeWord> unique_id;
   std::uint32_t ticks = 0;
   bool power_follows = true;
 

@@ -298,6 +298,22 @@ TEST_F(StoreTest, RefusesUnsignedAndOlderModels) {
   EXPECT_TRUE(other_key.active().empty());
 }
 
+// Built without the code that verifies signatures: a key then refuses everything.
+TEST_F(StoreTest, RefusesSignedModelsItCannotVerify) {
+  using Unable = store::ModelStore<SimFlash, SimFlash, false>;
+  setup.key = key().open.data();
+  Store store(flash, setup);
+  ASSERT_TRUE(store.mount());
+  ASSERT_EQ(update(store, {bytes_of_model(0), "here", 5, true}), WireStatus::kOk);
+  Unable with_key(flash, setup);
+  ASSERT_TRUE(with_key.mount());
+  EXPECT_TRUE(with_key.active().empty());
+  setup.key = nullptr;
+  Unable without_key(flash, setup);
+  ASSERT_TRUE(without_key.mount());
+  EXPECT_TRUE(is_model(without_key.active(), 0));
+}
+
 TEST_F(StoreTest, RefusesCorruptModelsAndRecords) {
   Store store(flash, setup);
   ASSERT_TRUE(store.mount());

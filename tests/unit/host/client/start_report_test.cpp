@@ -24,7 +24,7 @@ TEST(StartReport, NamesEachMissingPart) {
   std::set<std::string> different;
   for (const StartPart part : {StartPart::kEncoders, StartPart::kMotors, StartPart::kEnableLine,
                                StartPart::kSafetyInputs, StartPart::kWatchdog, StartPart::kReceiver,
-                               StartPart::kCrystal, StartPart::kCrystalFrequency,
+                               StartPart::kUsb, StartPart::kCrystal, StartPart::kCrystalFrequency,
                                StartPart::kWaitStates, StartPart::kPll, StartPart::kClockSwitch}) {
     core::wire::ReadStartReply start;
     start.missing = static_cast<std::uint32_t>(part);
@@ -33,7 +33,7 @@ TEST(StartReport, NamesEachMissingPart) {
     EXPECT_FALSE(has(all, "does not know")) << start.missing;
     different.insert(all.front());
   }
-  EXPECT_EQ(different.size(), 11U);
+  EXPECT_EQ(different.size(), 12U);
   core::wire::ReadStartReply start;
   start.missing = 1U << 31U;
   EXPECT_TRUE(has(complaints(start), "does not know"));

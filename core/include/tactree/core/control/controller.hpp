@@ -9,8 +9,8 @@
 //
 // Interrupt safety: one context owns a Controller. Another context must hold the ticks
 // (between_ticks.hpp) during each call other than state(), motors_off(), homed(), faults(),
-// has_body() and configuration(). One call of step() is one tick of 1 / rate_hz. RAM:
-// sizeof(Controller), at most 28 KiB.
+// limits(), tick(), has_body() and configuration(). One call of step() is one tick of 1 / rate_hz.
+// RAM: sizeof(Controller), at most 28 KiB.
 
 #include <cstdint>
 #include <span>
@@ -140,6 +140,10 @@ class Controller {
     return state_ == State::kActive && inverse_ == inverse_of(State::kActive);
   }
   [[nodiscard]] FaultMask faults() const { return latched_; }
+  /// Limits that were active in the last tick.
+  [[nodiscard]] LimitMask limits() const { return output_.status.limits; }
+  /// Number of the last tick.
+  [[nodiscard]] std::uint32_t tick() const { return tick_; }
   /// True if neither armed nor active.
   [[nodiscard]] bool motors_off() const {
     return state_ != State::kArmed && state_ != State::kActive;

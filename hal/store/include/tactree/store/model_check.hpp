@@ -24,13 +24,17 @@ struct StoreSetup {
     const core::wire::BeginModelRequest& request, std::uint32_t slot_bytes,
     std::uint32_t counter_min, const StoreSetup& setup);
 
-/// Checks the bytes of a slot against its entry (checksum, board, counter, signature) and opens the
-/// blob. Errors: kBadChecksum, kWrongBoard, kOldCounter, kBadSignature; kBadModel with the cause in
-/// `blob`. Cost: checksum, signature and validation of all bytes.
-[[nodiscard]] core::wire::WireStatus check_model(const SlotEntry& entry,
+/// Checks the bytes of a slot against its entry, without the signature. Errors: kBadChecksum,
+/// kWrongBoard, kOldCounter. Cost: checksum of all bytes.
+[[nodiscard]] core::wire::WireStatus check_entry(const SlotEntry& entry,
                                                  std::span<const std::byte> bytes,
-                                                 std::uint32_t counter_min, const StoreSetup& setup,
-                                                 core::BlobView& view, core::BlobStatus& blob);
+                                                 std::uint32_t counter_min,
+                                                 const StoreSetup& setup);
+
+/// True if the entry has a valid signature of these bytes by the owner of `key`. Cost: two passes
+/// over all bytes.
+[[nodiscard]] bool is_authentic(const SlotEntry& entry, std::span<const std::byte> bytes,
+                                const std::uint8_t* key);
 
 /// Returns true if the model in the image overlaps these bytes and is valid. Cost: validates the
 /// model.

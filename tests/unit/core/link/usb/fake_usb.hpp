@@ -5,6 +5,7 @@
 #include <cstring>
 #include <deque>
 #include <optional>
+#include <tuple>
 #include <vector>
 
 #include "tactree/hal/usb_device.hpp"
@@ -30,7 +31,10 @@ class FakeController {
   }
   void control_receive(std::uint16_t bytes) { wanted = bytes; }
   std::span<const std::byte> control_data() { return std::as_bytes(std::span(received)); }
-  void control_acknowledge() { acknowledged = true; }
+  void control_acknowledge() {
+    acknowledged = true;
+    at_status = {address, open, halted};
+  }
   void control_stall() { stalled = true; }
   void set_address(std::uint8_t value) { address = value; }
   void configure(bool on) {
@@ -64,6 +68,8 @@ class FakeController {
   bool open = false;
   int configurations = 0;
   std::optional<std::uint8_t> halted;
+  /// Address, open, halted, when the last status stage began.
+  std::tuple<int, bool, std::optional<std::uint8_t>> at_status;
   Bytes incoming, outgoing, news;
 };
 static_assert(hal::UsbController<FakeController>);
@@ -153,7 +159,6 @@ class Bus {
       return std::nullopt;
     }
     EXPECT_TRUE(controller.sent.has_value() != controller.acknowledged);
-    happen(hal::UsbEvent::Kind::kStatusDone);
     return controller.sent.value_or(Bytes{});
   }
   Reply in(std::uint8_t type, std::uint8_t request, std::uint16_t value, std::uint16_t index,

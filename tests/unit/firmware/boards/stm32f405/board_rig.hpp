@@ -1,7 +1,8 @@
 #pragma once
 // The board of firmware/boards/stm32f405 on the faked chip, and an application's client at the
-// other end of its serial port, in steps of a tick. Between two ticks the session works, as serve()
-// of the board does, and bytes take their time on the wire.
+// other end of its serial port or, while the cable is plugged in, of USB, in steps of a tick.
+// Between two ticks the board serves the application, as serve() does, and bytes take their time on
+// the wire.
 
 #include <deque>
 #include <functional>
@@ -15,6 +16,7 @@
 #include "fake_chip.hpp"
 #include "tactree/client/client.hpp"
 #include "tactree/hal/loop.hpp"
+#include "usb_host.hpp"
 
 namespace tactree::test {
 
@@ -50,16 +52,17 @@ class BoardRig {
     loop_.emplace(*board_, *controller_);
     start_ = loop_->start(configuration_);
     board_->report(start_);
-    session_ = std::make_unique<Board::Session>(board_->session_parts(*controller_));
-    session_->started(start_, configuration_, &board_->start_report());
+    served_ = std::make_unique<Board::Application>(*board_, *controller_);
+    served_->started(start_, configuration_);
   }
 
   /// Power cycle; the flash keeps its content.
   void restart() {
     const std::vector<std::uint32_t> kept = chip().flash.content();
     loop_.reset();
-    session_.reset();
+    served_.reset();
     board_.reset();
+    usb_.reset();
     chip_ = std::make_unique<FakeChip>();
     chip_in_use = {chip_.get()};
     chip_->flash.restore(kept);
@@ -72,7 +75,7 @@ class BoardRig {
   const core::Status& tick() {
     const std::uint32_t before = ticks_;
     while (ticks_ == before) {
-      (void)session_->work();
+      served_->work();
       if (!to_board_.empty()) {
         chip().serial.arrive(to_board_.front());
         to_board_.pop_front();
@@ -153,10 +156,46 @@ class BoardRig {
     return ask(Kind::kActivateModel, core::wire::SlotRequest{finished.slot});
   }
 
+  // ---- USB
+
+  /// Plugs the cable in. A host enumerates the board and opens its link, which the application uses
+  /// from then on, unless it `stays` at the serial port. Returns false if a request fails.
+  bool plug_usb(bool stays = false) {
+    usb_.emplace(chip().usb);
+    chip().usb.suspend(false);
+    usb_->begin_reset();
+    run(10);
+    usb_->end_reset();
+    run(10);
+    bool good = usb_request({0x00, core::usb::kSetAddress, 5, 0, 0});
+    usb_->address = 5;
+    good = usb_request({0x00, core::usb::kSetConfiguration, 1, 0, 0}) && good;
+    usb_->open();
+    good = usb_request({0x01, core::usb::kSetInterface, 0, core::usb::kLinkInterface, 0}) && good;
+    usb_->open();
+    over_usb_ = good && !stays;
+    return good;
+  }
+  void unplug_usb() {
+    usb_.reset();
+    over_usb_ = false;
+    chip().usb.suspend(true);
+  }
+  bool usb_request(const core::usb::SetupPacket& setup, const UsbBytes& data = {},
+                   int ticks_max = 5000) {
+    usb_->submit(setup, data);
+    for (int i = 0; i < ticks_max && usb_->result() == UsbHost::Result::kPending; ++i) {
+      tick();
+    }
+    return usb_->result() == UsbHost::Result::kDone;
+  }
+  [[nodiscard]] UsbHost& usb() { return *usb_; }
+
   /// Bytes between the application and the wire: for a client that is not ours.
   std::deque<std::uint8_t>& to_board() { return to_board_; }
   std::vector<std::uint8_t> take_sent() { return std::exchange(chip().serial.sent, {}); }
 
+  [[nodiscard]] client::Client& client() { return client_; }
   [[nodiscard]] FakeChip& chip() { return *chip_; }
   [[nodiscard]] Board& board() { return *board_; }
   [[nodiscard]] core::Controller& controller() { return *controller_; }
@@ -192,6 +231,11 @@ class BoardRig {
   /// Runs a tick as an interrupt. While ticks are held, due ticks are merged into one.
   void pass_us(double us) {
     chip().pass_us(us);
+    if (usb_.has_value()) {
+      for (token_due_us_ += us; token_due_us_ >= kTokenUs; token_due_us_ -= kTokenUs) {
+        (void)usb_->step();
+      }
+    }
     since_tick_us_ += us;
     if (since_tick_us_ < 1000.0 || chip_in_use.ticks_held) {
       return;
@@ -205,23 +249,30 @@ class BoardRig {
   }
 
  private:
+  static constexpr double kTokenUs = 50.0;  // 64 bytes at 12 Mbit/s
   static constexpr session::BoardIdentity kIdentity{"stm32f405", "1.2.3", {}, 168000000};
 
   void talk() {
-    const std::vector<std::uint8_t> sent = take_sent();
+    const std::vector<std::uint8_t> sent = over_usb_ ? usb_->take_read() : take_sent();
     client_.receive(std::as_bytes(std::span(sent)), now_us());
     client_.advance(now_us());
+    std::vector<std::uint8_t> bytes;
     for (const std::byte byte : client_.to_send()) {
-      to_board_.push_back(static_cast<std::uint8_t>(byte));
+      bytes.push_back(static_cast<std::uint8_t>(byte));
     }
-    client_.sent(client_.to_send().size());
+    if (over_usb_) {
+      usb_->write(bytes);
+    } else {
+      to_board_.insert(to_board_.end(), bytes.begin(), bytes.end());
+    }
+    client_.sent(bytes.size());
   }
 
   std::unique_ptr<FakeChip> chip_ = std::make_unique<FakeChip>();
   std::unique_ptr<Board> board_;
   std::unique_ptr<core::Controller> controller_;
   std::optional<hal::Loop<Board>> loop_;
-  std::unique_ptr<Board::Session> session_;
+  std::unique_ptr<Board::Application> served_;
   core::Configuration configuration_;
   hal::StartResult start_;
   core::Status status_;
@@ -229,6 +280,9 @@ class BoardRig {
   std::uint32_t ticks_ = 0;
   client::Client client_;
   std::deque<std::uint8_t> to_board_;
+  std::optional<UsbHost> usb_;
+  double token_due_us_ = 0.0;
+  bool over_usb_ = false;
 };
 
 }  // namespace tactree::test

@@ -180,7 +180,7 @@ class Dfu {
     return state_ == DfuState::kIdle || state_ == DfuState::kUploadIdle;
   }
 
-  ControlResponse fail(DfuStatus status) {
+  [[gnu::noinline]] ControlResponse fail(DfuStatus status) {
     storage_.abort();
     state_ = DfuState::kError;
     status_ = status;

@@ -52,10 +52,10 @@ struct ControlResponse {
     kSend,         ///< send `data` to the host
     kReceive,      ///< receive wLength bytes, which decide the result
   };
-  /// Action of the device controller after the status stage.
+  /// Action of the device controller, before the status stage.
   enum class Effect : std::uint8_t {
     kNone = 0,
-    kTakeAddress,  ///< use address `value`
+    kTakeAddress,  ///< use address `value` after the status stage (USB 2.0, 9.4.6)
     kConfigure,    ///< use configuration `value`; 0: none
     kHalt,         ///< halt the endpoint with address `value`
     kClearHalt,    ///< clear the halt and the data toggle of endpoint `value`

@@ -369,6 +369,7 @@ enum class StartPart : std::uint32_t {
   kSafetyInputs = 1U << 3,
   kWatchdog = 1U << 4,          ///< or its timeout was not restored after an erase of the flash
   kReceiver = 1U << 5,          ///< receiver of the link: bytes at full speed are lost
+  kUsb = 1U << 6,               ///< USB controller
   kCrystal = 1U << 8,           ///< no oscillation: the core is slow
   kCrystalFrequency = 1U << 9,  ///< another crystal than the board's
   kWaitStates = 1U << 10,       ///< wait states of the flash
