@@ -262,12 +262,12 @@ Connections:  {{
                                0.0254)
 
     def test_refusal_names_gltf_compression(self):
-        buffer = {"byteLength": 99, "extensions": {"EXT_meshopt_compression": {"fallback": True}}}
+        buffer = {"byteLength": 99, "extensions": {"KHR_meshopt_compression": {"fallback": True}}}
         (self.path / "a.gltf").write_text(json.dumps(
             {"asset": {"version": "2.0"}, "buffers": [buffer],
-             "extensionsRequired": ["EXT_meshopt_compression"]}))
+             "extensionsRequired": ["KHR_meshopt_compression"]}))
         message = self.refused("build", "a.gltf", "-o", "y")
-        self.assertIn("compressed with EXT_meshopt_compression", message)
+        self.assertIn("compressed with KHR_meshopt_compression", message)
         self.assertNotIn("uri", message)
 
     def test_refuses_damaged_collada_briefly(self):
