@@ -6,16 +6,17 @@ All programs run on this machine, Slurm with a configuration, ports and state of
 """
 import contextlib
 import getpass
-import math
 import os
 import pathlib
 import shutil
 import socket
 import subprocess
 import sys
-import tempfile
 import time
 import unittest
+
+sys.dont_write_bytecode = True
+from tool_folder import SharedFolder, sphere  # noqa: E402
 
 TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
 OBJECTS = 24
@@ -25,16 +26,6 @@ KILLED_PART, BEFORE_LARGE = 2, 5
 LIMIT_S = 300
 LAUNCHERS = ("SLURM", "OMPI_", "PMI_")
 ENVIRONMENT = {name: value for name, value in os.environ.items() if not name.startswith(LAUNCHERS)}
-
-
-def ball(count, radius):
-    """Points of a ball with a dent, one text line each."""
-    lines = []
-    for i in range(count):
-        z, turn = 1 - (2 * i + 1) / count, i * math.pi * (3 - math.sqrt(5))
-        ring, r = math.sqrt(1 - z * z), radius * (1 - 0.2 * max(0.0, z) ** 8)
-        lines.append(f"{r * ring * math.cos(turn):.9g} {r * ring * math.sin(turn):.9g} {r * z:.9g}\n")
-    return "".join(lines)
 
 
 def wait_for(condition, what):
@@ -53,16 +44,13 @@ def free_ports(count):
         return [each.getsockname()[1] for each in sockets]
 
 
-class Engines(unittest.TestCase):
+class Engines(SharedFolder):
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(folder.cleanup)
-        cls.path = pathlib.Path(folder.name)
+        super().setUpClass()
         (cls.path / "scans").mkdir()
         for i in range(OBJECTS):
-            count = 300000 if i == LARGE else 1000 + 50 * i
-            (cls.path / f"scans/o{i:02}.xyz").write_text(ball(count, 0.03 + 0.001 * i))
+            cls.write(f"scans/o{i:02}.xyz", sphere(300000 if i == LARGE else 1000 + 50 * i, 0.03 + 0.001 * i))
         cls.command = [str(TACTREE), "build", "--collection", "scans", "--threads", "1", "--progress", "off"]
         cls.run_command([*cls.command, "-o", "one"])
         cls.reference = cls.results("one")
