@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "mesh_import/meshopt_view.hpp"
+#include "tactree/support/uri.hpp"
 
 namespace tactree::builder {
 namespace {
@@ -68,22 +69,6 @@ std::string from_base64(std::string_view text) {
     }
   }
   return bytes;
-}
-
-/// Decodes percent-encoding: "a%20b" -> "a b".
-std::string from_uri(const std::string& uri) {
-  std::string name;
-  for (std::size_t i = 0; i < uri.size(); ++i) {
-    const std::string digits = uri.substr(i + 1, 2);
-    if (uri[i] == '%' && digits.size() == 2 &&
-        digits.find_first_not_of("0123456789abcdefABCDEF") == std::string::npos) {
-      name.push_back(static_cast<char>(std::stoi(digits, nullptr, 16)));
-      i += 2;
-    } else {
-      name.push_back(uri[i]);
-    }
-  }
-  return name;
 }
 
 std::size_t size_of_component(std::size_t component, const std::string& who) {
@@ -226,7 +211,7 @@ std::string GltfFile::read_buffer(std::size_t number) const {
   const json& described = at("buffers", number);
   const auto uri = described.value("uri", std::string());
   if (!uri.starts_with("data:")) {
-    return read_all(files_, from_uri(uri));
+    return read_all(files_, support::decoded_uri(uri));
   }
   const std::size_t comma = uri.find(";base64,");
   if (comma == std::string::npos) {

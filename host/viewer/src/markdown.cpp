@@ -137,9 +137,13 @@ std::string markdown_html(std::string_view markdown, const MarkdownTargets& targ
   return render(document.get(), cmark_parser_get_syntax_extensions(parser.get()));
 }
 
+std::string escaped_html(std::string_view text) {
+  const Document document(text_node(std::string(text)));
+  return render(document.get(), nullptr);
+}
+
 std::string html_page(std::string_view title, std::string_view body) {
-  const Document text(text_node(std::string(title)));
-  return fmt::format(fmt::runtime(kPage), render(text.get(), nullptr), body);
+  return fmt::format(fmt::runtime(kPage), escaped_html(title), body);
 }
 
 }  // namespace tactree::viewer

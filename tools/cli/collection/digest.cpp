@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "image/model_signature.hpp"
+#include "tactree/support/uri.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -47,22 +48,6 @@ class Sha256 {
   crypto_hash_sha256_state state_{};
 };
 
-/// Decodes percent-encoding: "a%20b" -> "a b".
-std::string decoded_uri(const std::string& uri) {
-  std::string name;
-  for (std::size_t i = 0; i < uri.size(); ++i) {
-    const std::string digits = uri[i] == '%' ? uri.substr(i + 1, 2) : "";
-    if (digits.size() == 2 &&
-        digits.find_first_not_of("0123456789abcdefABCDEF") == std::string::npos) {
-      name.push_back(static_cast<char>(std::stoi(digits, nullptr, 16)));
-      i += 2;
-    } else {
-      name.push_back(uri[i]);
-    }
-  }
-  return name;
-}
-
 /// The files that hold the buffers of a glTF. Empty for any other scan.
 std::vector<fs::path> buffer_files(const fs::path& scan) {
   std::error_code ignored;
@@ -80,7 +65,7 @@ std::vector<fs::path> buffer_files(const fs::path& scan) {
   }
   for (const nlohmann::json& buffer : document["buffers"]) {
     if (buffer.is_object() && buffer.contains("uri") && buffer["uri"].is_string()) {
-      files.push_back(scan.parent_path() / decoded_uri(buffer["uri"].get<std::string>()));
+      files.push_back(scan.parent_path() / support::decoded_uri(buffer["uri"].get<std::string>()));
     }
   }
   return files;

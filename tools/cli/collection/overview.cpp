@@ -5,9 +5,9 @@
 #include <array>
 #include <map>
 #include <string>
-#include <string_view>
 
 #include "tactree/support/output_file.hpp"
+#include "tactree/support/uri.hpp"
 #include "tactree/viewer/markdown.hpp"
 
 namespace tactree::cli {
@@ -121,44 +121,22 @@ std::string manifest_csv(std::span<const ObjectRow> rows) {
   return text;
 }
 
-std::string escaped_html(const std::string& text) {
-  static const std::map<char, std::string> kEntities = {
-      {'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}};
-  std::string escaped;
-  for (const char c : text) {
-    const auto entity = kEntities.find(c);
-    escaped += entity == kEntities.end() ? std::string(1, c) : entity->second;
-  }
-  return escaped;
-}
-
-/// A relative address, percent-encoded.
-std::string address_of(const std::string& path) {
-  std::string address = "./";
-  for (const char c : path) {
-    const bool plain = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') ||
-                       std::string_view("/-._~").find(c) != std::string_view::npos;
-    address += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
-  }
-  return address;
-}
-
 std::string page_row(const ObjectRow& row) {
   const std::string name = text_of(row, "name");
   const bool is_built = row.contains("blob_digest") && text_of(row, "result") != kResultMissing;
   std::string cells =
       is_built
           ? fmt::format(R"(<td><a href="{0}.png"><img loading="lazy" src="{0}.png" alt=""></a>)",
-                        address_of(name))
+                        "./" + support::encoded_uri(name))
           : "<td>";
   for (const PageColumn& column : kPageColumns) {
     const auto value = row.find(column.key);
     cells += "<td>" + (value != row.end() && value->is_number_float()
                            ? fmt::format("{:.4g}", value->get<double>())
-                           : escaped_html(cell_text(row, column.key)));
+                           : viewer::escaped_html(cell_text(row, column.key)));
   }
-  return fmt::format("<tr>{}<td>{}{}\n", cells, escaped_html(cell_text(row, "warnings")),
-                     escaped_html(cell_text(row, "error")));
+  return fmt::format("<tr>{}<td>{}{}\n", cells, viewer::escaped_html(cell_text(row, "warnings")),
+                     viewer::escaped_html(cell_text(row, "error")));
 }
 
 std::string index_page(std::span<const ObjectRow> rows) {
@@ -170,7 +148,7 @@ std::string index_page(std::span<const ObjectRow> rows) {
   }
   std::string sums = fmt::format("{} objects", rows.size());
   for (const auto& [result, count] : counts) {
-    sums += fmt::format(", {} {}", count, escaped_html(result));
+    sums += fmt::format(", {} {}", count, viewer::escaped_html(result));
   }
   std::string head = "<th>preview";
   for (const PageColumn& column : kPageColumns) {

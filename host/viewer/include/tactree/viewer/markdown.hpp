@@ -20,6 +20,9 @@ struct MarkdownTargets {
 /// The body of a page.
 [[nodiscard]] std::string markdown_html(std::string_view markdown, const MarkdownTargets& targets);
 
+/// A text as HTML shows it, also within an attribute.
+[[nodiscard]] std::string escaped_html(std::string_view text);
+
 /// A complete page around `body`. It loads no external resources and follows the browser's dark
 /// mode. `title` is escaped, `body` is not.
 [[nodiscard]] std::string html_page(std::string_view title, std::string_view body);
