@@ -32,7 +32,9 @@ class Serve(BallFolder):
             program = subprocess.Popen([TACTREE, "serve", self.blob, "--port", port, "--tcp-port", "0", *options],
                                        stdout=subprocess.PIPE, text=True)
             try:
-                yield int(re.search(r"ws://127\.0\.0\.1:(\d+)/", program.stdout.readline())[1])
+                tcp_port = int(re.search(r"ws://127\.0\.0\.1:(\d+)/", program.stdout.readline())[1])
+                self.watch_port = re.search(r"unix:\S+", program.stdout.readline())[0]
+                yield tcp_port
             finally:
                 program.send_signal(signal.SIGTERM)
                 self.said = program.communicate(timeout=30)[0]
@@ -84,6 +86,35 @@ class Serve(BallFolder):
                 self.fail("not stopped")
             first.close()
             second.close()
+
+    def test_tools_watch_and_stop_beside_the_program_in_command(self):
+        with self.served("--arm") as port:
+            program = WebSocket(port)
+            program.receive()
+            table = self.path / "session.csv"
+            recorded = self.run_tool("record", "--port", self.watch_port, "--seconds", "1", "-o", table)
+            self.assertEqual(recorded.returncode, 0, recorded.stderr)
+            rows = [line for line in table.read_text().splitlines() if line[:1].isdigit()]
+            self.assertGreater(len(rows), 900, recorded.stderr)
+            watched = self.run_tool("monitor", "--port", self.watch_port, "--once")
+            self.assertIn("shared by tactree serve: this program may watch and stop", watched.stdout)
+            self.assertIn(self.watch_port, self.run_tool("devices").stdout)
+            refused = self.run_tool("arm", "--port", self.watch_port)
+            self.assertEqual(refused.returncode, 1)
+            self.assertIn("shared by tactree serve", refused.stderr)
+            program.send({})
+            self.assertEqual(program.receive()["tactree"]["state"], "active")
+            stopped = self.run_tool("stop", "--port", self.watch_port)
+            self.assertEqual(stopped.returncode, 0, stopped.stderr)
+            for _ in range(500):
+                program.send({})
+                if program.receive()["tactree"]["state"] == "idle":
+                    break
+            else:
+                self.fail("not stopped")
+            program.close()
+        self.assertIn("watching program 1: has left", self.said)
+        self.assertFalse(pathlib.Path(self.watch_port[5:]).exists())
 
     def test_refuses_pages_of_other_servers(self):
         with self.served() as port:

@@ -26,6 +26,9 @@ core::wire::ControlRequest control_request(ControlCode code, std::uint32_t token
 }
 
 constexpr char kHowToOperate[] = " (hold its button for 1 s to home, arm or clear a fault)";
+constexpr char kShared[] =
+    "the board is shared by tactree serve; this program may watch and stop (command the board by "
+    "the WebSocket of tactree serve, or end it)";
 
 const char* remedy_for(WireStatus status) {
   switch (status) {
@@ -42,11 +45,15 @@ const char* remedy_for(WireStatus status) {
              "a smaller one)";
     case WireStatus::kOldCounter:
       return " (sign it with a larger --counter)";
-    case WireStatus::kWatchOnly:
-      return kHowToOperate;
     default:
       return "";
   }
+}
+
+std::string why_only_watched(const core::wire::CapabilitiesReply& can) {
+  return has_flag(can, core::wire::BoardFlag::kShared)
+             ? kShared
+             : std::string(core::wire::describe(WireStatus::kWatchOnly)) + kHowToOperate;
 }
 
 bool is_too_stiff(const Response& response) {
@@ -198,6 +205,11 @@ Response Board::demand(MessageKind kind, std::span<const std::byte> payload, con
   if (response.timed_out) {
     throw LinkError(where + (connection().connected() ? "no answer" : "the board is disconnected"));
   }
+  core::wire::CapabilitiesReply can;
+  if (response.status == WireStatus::kWatchOnly &&
+      connection().call(MessageKind::kCapabilities).read(can)) {
+    throw LinkError(where + why_only_watched(can));
+  }
   if (!response.ok()) {
     throw LinkError(where + core::wire::describe(response.status) + details(response) +
                     stiffness_limit(response) + remedy_for(response.status));
@@ -250,8 +262,7 @@ void Board::require_command(const char* what) { require_command(capabilities(), 
 
 void Board::require_command(const core::wire::CapabilitiesReply& can, const char* what) const {
   if (has_flag(can, core::wire::BoardFlag::kWatchOnly)) {
-    throw LinkError(connection().name() + ": " + what + ": " +
-                    core::wire::describe(WireStatus::kWatchOnly) + kHowToOperate);
+    throw LinkError(connection().name() + ": " + what + ": " + why_only_watched(can));
   }
 }
 

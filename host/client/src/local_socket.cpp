@@ -18,7 +18,7 @@ std::string remedy_for(int error) {
   if (error == EACCES || error == EPERM) {
     return "the user must be in the group of the controller";
   }
-  return "is tactree-controller running, and is this the socket in its file?";
+  return "is tactree-controller or tactree serve running, and is this its socket?";
 }
 
 int connect_to(const std::string& path) {

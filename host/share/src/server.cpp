@@ -10,6 +10,7 @@
 
 #include "client_socket.hpp"
 #include "tactree/web/listener.hpp"
+#include "watch_port.hpp"
 
 namespace tactree::share {
 namespace {
@@ -26,12 +27,14 @@ struct Server::Parts final : web::Content {
   Parts(const ServerSettings& settings, SharedBoard& its_board)
       : board(its_board),
         room{Clients(its_board, settings.grip), settings.tell},
-        listener(settings.server, *this) {
+        listener(settings.server, *this),
+        watch_port(listener.context(), its_board, settings.watch_socket, settings.tell) {
     timer.emplace(listener.context());
   }
-  // The open connections refer to the room.
+  // The open connections refer to the room and to the port.
   ~Parts() override {
     timer.reset();
+    watch_port.close();
     listener.close();
   }
   Parts(const Parts&) = delete;
@@ -68,7 +71,9 @@ struct Server::Parts final : web::Content {
     }
     for (const Snapshot& snapshot : snapshots) {
       room.clients.offer(snapshot);
+      watch_port.offer(snapshot);
     }
+    watch_port.write();
     for (ClientSocket* const socket : room.sockets) {
       socket->write_next();  // sends later
     }
@@ -91,6 +96,7 @@ struct Server::Parts final : web::Content {
   SharedBoard& board;
   Room room;
   web::Listener listener;
+  WatchPort watch_port;
   std::optional<asio::steady_timer> timer;
   std::mutex mutex;  // guards waiting
   std::vector<Snapshot> waiting;
@@ -102,6 +108,8 @@ Server::Server(const ServerSettings& settings, SharedBoard& board)
 Server::~Server() = default;
 
 std::string Server::address() const { return "ws://" + parts_->listener.host() + "/"; }
+
+std::string Server::watch_port() const { return parts_->watch_port.port(); }
 
 void Server::run() {
   Parts& p = *parts_;

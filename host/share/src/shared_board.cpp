@@ -21,6 +21,8 @@ using std::chrono::microseconds;
 
 constexpr std::size_t kMaxRequests = 64;
 constexpr auto kForceDuration_ms = static_cast<std::uint32_t>(1e3F * core::kAddedForceSeconds);
+// More than all watching programs may have.
+constexpr std::size_t kMaxBoardQuestions = 256;
 // A request waits for this long at most; new telemetry ends the wait.
 constexpr std::chrono::milliseconds kMaxWait{10};
 constexpr std::chrono::seconds kMaxSilence{2};
@@ -30,6 +32,7 @@ constexpr std::chrono::milliseconds kRetryInterval{200};
 constexpr std::chrono::milliseconds kLookInterval{20};
 constexpr std::chrono::seconds kConfirmTimeout{30};  // the default of tactree arm
 
+// What the messages of the WebSocket have.
 constexpr std::uint32_t kFields = static_cast<std::uint32_t>(TelemetryField::kState) |
                                   static_cast<std::uint32_t>(TelemetryField::kProbe) |
                                   static_cast<std::uint32_t>(TelemetryField::kVelocity) |
@@ -66,7 +69,7 @@ SharedBoard::~SharedBoard() { end(); }
 
 void SharedBoard::begin_session() {
   const auto description = std::make_shared<const Description>(describe());
-  board_.subscribe({kFields, every_ticks(*description)});
+  board_.subscribe(subscription(*description));
   snapshot_.board = description;
   snapshot_.link = Link::kHere;
   snapshot_.why.clear();
@@ -114,16 +117,17 @@ void SharedBoard::add_model(Description& description) {
   description.model_points = known.points;
 }
 
-/// Every tick, or as many as fill half of the capacity of a serial line.
-std::uint32_t SharedBoard::every_ticks(const Description& description) const {
+/// Every tick with all fields; at a serial line what the WebSocket needs, as often as fills half of
+/// its capacity.
+client::Subscription SharedBoard::subscription(const Description& description) const {
   const std::optional<unsigned> bytes_s = client::wire_speed(settings_.port, settings_.link.baud);
   if (!bytes_s) {
-    return 1U;
+    return {core::wire::telemetry_fields_of(board_.connection().protocol_minor()), 1U};
   }
   const double messages_s =
       std::max(1.0, 0.5 * *bytes_s / static_cast<double>(telemetry::frame_bytes(kFields)));
-  return static_cast<std::uint32_t>(
-      std::max(1.0, std::ceil(static_cast<double>(description.can.rate_hz) / messages_s)));
+  return {kFields, static_cast<std::uint32_t>(std::max(
+                       1.0, std::ceil(static_cast<double>(description.can.rate_hz) / messages_s)))};
 }
 
 void SharedBoard::start(Publish publish) {
@@ -169,6 +173,20 @@ void SharedBoard::request(BoardRequest request) {
   }
 }
 
+void SharedBoard::ask(core::wire::MessageKind kind, std::vector<std::byte> payload, Answer answer) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (questions_.size() < kMaxBoardQuestions) {
+      questions_.push_back({kind, std::move(payload), std::move(answer)});
+      return;
+    }
+  }
+  client::Response none;
+  none.kind = kind;
+  none.timed_out = true;
+  answer(none);
+}
+
 // The board's thread
 
 void SharedBoard::run() {
@@ -186,6 +204,7 @@ void SharedBoard::pass() {
     stop_if_wanted();
     execute_requests();
     continue_arming();
+    ask_questions();
   } catch (const client::LinkError& error) {
     report(error.what());
   }
@@ -223,6 +242,22 @@ void SharedBoard::execute_requests() {
     } catch (const client::LinkError& error) {
       report(error.what());
     }
+  }
+}
+
+void SharedBoard::ask_questions() {
+  std::deque<Question> questions;
+  {
+    const std::lock_guard lock(mutex_);
+    questions.swap(questions_);
+  }
+  for (const Question& question : questions) {
+    client::Response none;
+    none.kind = question.kind;
+    none.timed_out = true;
+    question.answer(snapshot_.link == Link::kHere && board_.connected()
+                        ? board_.connection().call(question.kind, question.payload)
+                        : none);
   }
 }
 
@@ -307,6 +342,7 @@ void SharedBoard::wait_for_board() {
   publish_({snapshot_});
   std::this_thread::sleep_for(kRetryInterval);
   execute_requests();
+  ask_questions();
   if (snapshot_.link == Link::kLost || std::exchange(connect_wanted_, false)) {
     reconnect();
   }

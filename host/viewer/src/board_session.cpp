@@ -497,6 +497,7 @@ json BoardSession::board_json() const {
                                             : "taken"},
           {"why", link == Link::kConnected ? "" : why_lost_},
           {"watch_only", has_flag(facts_->can, core::wire::BoardFlag::kWatchOnly)},
+          {"shared", has_flag(facts_->can, core::wire::BoardFlag::kShared)},
           {"model", model == BoardFacts::Model::kSame    ? "same"
                     : model == BoardFacts::Model::kOther ? "other"
                                                          : "unknown"},

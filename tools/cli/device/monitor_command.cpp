@@ -60,6 +60,7 @@ struct View {
   std::uint32_t cycles_per_tick = 0;
   bool work_is_reduced = false;
   bool watch_only = false;
+  bool shared = false;
   std::uint64_t dropped = 0;
 };
 
@@ -89,7 +90,10 @@ std::string to_text(const View& view) {
       "faults   {}\n",
       core::name_of(static_cast<core::State>(t.state)),
       limits.empty() ? "" : " (limited by: " + limits + ")",
-      view.watch_only ? ", operated by its button: a program may watch and stop" : "", force,
+      view.shared       ? ", shared by tactree serve: this program may watch and stop"
+      : view.watch_only ? ", operated by its button: a program may watch and stop"
+                        : "",
+      force,
       std::string(static_cast<std::size_t>(filled), '#'),
       std::string(static_cast<std::size_t>(kBarWidth - filled), ' '), view.force_max_N,
       length(t.motors_N), length(t.gravity_N), length(t.added_N), t.probe_m[0], t.probe_m[1],
@@ -122,6 +126,7 @@ nlohmann::json to_json(const View& view) {
           {"overruns", t.overruns},
           {"work_is_reduced", view.work_is_reduced},
           {"watch_only", view.watch_only},
+          {"shared", view.shared},
           {"dropped", view.dropped}};
 }
 
@@ -141,6 +146,7 @@ class Monitor {
     view_.cycles_per_tick = can.cycles_per_tick;
     view_.work_is_reduced = has_flag(can, core::wire::BoardFlag::kWorkReduced);
     view_.watch_only = has_flag(can, core::wire::BoardFlag::kWatchOnly);
+    view_.shared = has_flag(can, core::wire::BoardFlag::kShared);
     // Fifty messages per second are readable and leave bandwidth on a serial port.
     const auto every = static_cast<std::uint32_t>(std::max(1.0F, can.rate_hz / 50.0F));
     board_.subscribe({kFields, every});

@@ -8,6 +8,8 @@
 
 #include "commands.hpp"
 #include "device/board_port.hpp"
+#include "tactree/client/announcement.hpp"
+#include "tactree/client/link_error.hpp"
 #include "tactree/core/math/crc32.hpp"
 #include "tactree/share/server.hpp"
 #include "tactree/share/shared_board.hpp"
@@ -42,6 +44,17 @@ std::optional<share::KnownModel> known_model(const std::string& blob) {
                            file.bytes().size(), core::crc32(file.bytes())};
 }
 
+/// For tactree devices. Without it, the port can be used nevertheless.
+std::unique_ptr<client::Announcement> announce(const std::string& port, const std::string& board) {
+  try {
+    return std::make_unique<client::Announcement>(client::AnnouncedPort{
+        port, fmt::format("board {}, shared by tactree serve: to watch and stop", board)});
+  } catch (const client::LinkError& error) {
+    tell_terminal(fmt::format("warning: tactree devices will not list this port: {}", error.what()));
+    return nullptr;
+  }
+}
+
 void share_board(const SharingOptions& options) {
   share::BoardSettings settings;
   settings.model = known_model(options.blob);
@@ -57,6 +70,9 @@ void share_board(const SharingOptions& options) {
   share::Server server(serving, board);
   tell_terminal(
       fmt::format("board {} is shared at {}; Ctrl+C ends it", board.name(), server.address()));
+  tell_terminal(
+      fmt::format("to watch: tactree monitor, record or view --port {}", server.watch_port()));
+  const auto announcement = announce(server.watch_port(), board.name());
   server.run();
 }
 
@@ -77,6 +93,9 @@ void add_serve_command(CLI::App& app, int&) {
                    "address to listen on; with an address other than loopback, others on the "
                    "network can arm the board and send forces to it")
       ->capture_default_str();
+  verb->add_option("--watch-socket", options->server.watch_socket,
+                   "path of the socket at which tactree monitor, record and view watch the board "
+                   "(default: a new one, which tactree devices lists)");
   verb->add_option("--grip", options->grip,
                    "neutral: messages contain a grip at rest, for programs that need one; none")
       ->check(CLI::IsMember({"neutral", "none"}))

@@ -21,6 +21,10 @@ export class BoardView {
     find<HTMLButtonElement>('clear').disabled = isOnlyWatched;
     find<HTMLFieldSetElement>('contact').disabled = isOnlyWatched;
     find('watch-only').hidden = !isOnlyWatched;
+    set(
+      'watch-only',
+      `The board is ${board?.shared ? 'shared by tactree serve' : 'operated by its button'}. This page may watch and stop it.`,
+    );
     if (board) this.describe(board);
     if (board && frame.recording) this.showRecording(frame.recording, board.link === 'here');
   }

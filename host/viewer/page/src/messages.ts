@@ -71,7 +71,8 @@ export interface Board {
   firmware: string;
   link: 'here' | 'gone' | 'taken';
   why: string; // cause of a lost connection
-  watch_only: boolean; // operated by its button: the page may watch and stop
+  watch_only: boolean; // operated by its button, or shared: the page may watch and stop
+  shared: boolean; // by tactree serve, whose programs command it
   model: 'same' | 'other' | 'unknown';
   about_model: string;
   confirm: string; // action required at the device to finish arming; empty: none

@@ -3,8 +3,9 @@
 import type { Frame } from './messages';
 import { find } from './panel';
 
-/** What to do: on the page, or at a board that is operated by its button. */
+/** What to do: on the page, at a board that is operated by its button, or in another program. */
 function act(frame: Frame, onPage: string): string {
+  if (frame.board?.shared) return 'a program in command of tactree serve has to do this';
   return frame.board?.watch_only ? 'hold the button of the board for 1 s' : onPage;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
-// Connection to a controller on this computer, tactree-controller, over a Unix domain socket.
+// Connection to a controller on this computer, tactree-controller, or to a board that tactree serve
+// shares, over a Unix domain socket.
 
 #include <memory>
 #include <string>

@@ -1,6 +1,7 @@
 #pragma once
-// The server of a shared board: a WebSocket at the path /, docs/SHARE.md. A client that does not
-// read delays neither the board nor other clients.
+// The server of a shared board: a WebSocket at the path /, and a socket at which programs watch with
+// the protocol of boards; docs/SHARE.md. A client that does not read delays neither the board nor
+// other clients.
 
 #include <functional>
 #include <memory>
@@ -14,6 +15,7 @@ namespace tactree::share {
 
 struct ServerSettings {
   web::ServerOptions server{};
+  std::string watch_socket{};  ///< path; empty: in a new folder
   Grip grip = Grip::kNeutral;
   /// Prints a line on the terminal; must not throw.
   std::function<void(const std::string&)> tell;
@@ -29,6 +31,8 @@ class Server {
 
   /// "ws://127.0.0.1:10001/"
   [[nodiscard]] std::string address() const;
+  /// "unix:/tmp/tactree-x1y2z3/board", for programs that watch.
+  [[nodiscard]] std::string watch_port() const;
   /// Starts the board's thread and serves until SIGINT or SIGTERM.
   void run();
 

@@ -58,6 +58,10 @@ class SharedBoard : public BoardCommands {
   void add_force(const std::array<float, 3>& force_N) override;
   void stop() override;
   void request(BoardRequest request) override;
+  /// Sends a request that changes nothing. `answer` is called from the board's thread, and must not
+  /// block; timed_out if the board is not connected.
+  using Answer = std::function<void(const client::Response&)>;
+  void ask(core::wire::MessageKind kind, std::vector<std::byte> payload, Answer answer);
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -65,10 +69,11 @@ class SharedBoard : public BoardCommands {
   void begin_session();
   [[nodiscard]] Description describe();
   void add_model(Description& description);
-  [[nodiscard]] std::uint32_t every_ticks(const Description& description) const;
+  [[nodiscard]] client::Subscription subscription(const Description& description) const;
   void run();
   void pass();
   void execute_requests();
+  void ask_questions();
   void execute(BoardRequest request);
   void stop_if_wanted();
   void continue_arming();
@@ -97,8 +102,14 @@ class SharedBoard : public BoardCommands {
   std::chrono::microseconds silence_{};  // without telemetry
   bool connect_wanted_ = false;
 
-  std::mutex mutex_;  // guards requests_
+  struct Question {
+    core::wire::MessageKind kind{};
+    std::vector<std::byte> payload;
+    Answer answer;
+  };
+  std::mutex mutex_;  // guards requests_ and questions_
   std::deque<BoardRequest> requests_;
+  std::deque<Question> questions_;
   std::thread thread_;
 };
 

@@ -149,6 +149,8 @@ enum class BoardFlag : std::uint32_t {
   kWorkReduced = 1U << 4,  ///< Controller::work_is_reduced()
   /// Operated by its panel alone: an application may watch and stop; since 1.1.
   kWatchOnly = 1U << 5,
+  /// With kWatchOnly: the port of a server that shares the board; since 1.1.
+  kShared = 1U << 6,
 };
 
 [[nodiscard]] constexpr bool has_flag(const CapabilitiesReply& board, BoardFlag flag) {
