@@ -13,29 +13,29 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kBeyond = 4e-3;   // m, depth of the hand below the bottom of a concave crease
-constexpr double kBelow = 0.6e-3;  // m, depth of the hand below the top of a ridge
-constexpr double kStart = 6e-3;    // m, height above the crease at which the hand starts
-constexpr double kAlong = 10e-3;   // m, slide along the crease to both sides of the centre
+constexpr double kBeyond = 4e-3;        // m, depth of the hand below the bottom of a concave crease
+constexpr double kBelow = 0.6e-3;       // m, depth of the hand below the top of a ridge
+constexpr double kStart = 6e-3;         // m, height above the crease at which the hand starts
+constexpr double kAlongCrease = 10e-3;  // m, slide along the crease to both sides of the centre
 
 /// Presses into a concave crease, rests, slides along the crease, to the side and back, and leaves.
 EdgePath into(const Pace& pace) {
-  EdgePath hand({0.3e-3, -kAlong, kStart}, pace);
-  hand.move_to({0.3e-3, -kAlong, -kBeyond});
+  EdgePath hand({0.3e-3, -kAlongCrease, kStart}, pace);
+  hand.move_to({0.3e-3, -kAlongCrease, -kBeyond});
   hand.stay();
-  hand.move_to({0.3e-3, kAlong, -kBeyond});
-  hand.move_to({1.5e-3, kAlong, -0.7 * kBeyond});
-  hand.move_to({-1e-3, -kAlong, -0.7 * kBeyond});
-  hand.move_to({0.0, -kAlong, kStart});
+  hand.move_to({0.3e-3, kAlongCrease, -kBeyond});
+  hand.move_to({1.5e-3, kAlongCrease, -0.7 * kBeyond});
+  hand.move_to({-1e-3, -kAlongCrease, -0.7 * kBeyond});
+  hand.move_to({0.0, -kAlongCrease, kStart});
   return hand;
 }
 
 /// Slides along a ridge, then across it.
 EdgePath over(const Pace& pace) {
-  EdgePath hand({-0.1e-3, -kAlong, kStart}, pace);
-  hand.move_to({-0.1e-3, -kAlong, -kBelow});
-  hand.move_to({-0.1e-3, kAlong, -kBelow});
-  hand.move_to({6e-3, kAlong, -kBelow});
+  EdgePath hand({-0.1e-3, -kAlongCrease, kStart}, pace);
+  hand.move_to({-0.1e-3, -kAlongCrease, -kBelow});
+  hand.move_to({-0.1e-3, kAlongCrease, -kBelow});
+  hand.move_to({6e-3, kAlongCrease, -kBelow});
   return hand;
 }
 

@@ -21,21 +21,21 @@ constexpr double kStepsOfDepth = 20;       // of the descent to that depth
 constexpr int kTicks = 300;                // per slide
 constexpr int kTriesPerSlide = 20;         // for a start at which the surface fit is valid
 
-struct Spot {
+struct ScanSpot {
   Vector3d point;
   Vector3d normal;
 };
 
-std::optional<Spot> surface_at(const core::BlobView& view, const Vector3d& near) {
+std::optional<ScanSpot> surface_at(const core::BlobView& view, const Vector3d& near) {
   const core::SurfaceProjection found = core::project_to_surface(view, narrow(near));
-  return found.supported ? std::optional<Spot>({widen(found.point), widen(found.normal)})
+  return found.supported ? std::optional<ScanSpot>({widen(found.point), widen(found.normal)})
                          : std::nullopt;
 }
 
 /// The hand on its way over the surface.
 class Slide {
  public:
-  Slide(const core::BlobView& view, const Spot& begin, double depth_m)
+  Slide(const core::BlobView& view, const ScanSpot& begin, double depth_m)
       : view_(view),
         at_(begin),
         depth_m_(depth_m),
@@ -49,7 +49,7 @@ class Slide {
 
   /// One tick. Returns false at the end of the surface: at a hole, an edge of a sheet, or a fold.
   bool go_on(Vector3d& direction, double step_m, SlideScores& scores) {
-    const std::optional<Spot> next = surface_at(view_, at_.point + step_m * direction);
+    const std::optional<ScanSpot> next = surface_at(view_, at_.point + step_m * direction);
     if (!next || (next->point - at_.point).norm() > 3.0 * step_m) {
       return false;
     }
@@ -72,7 +72,7 @@ class Slide {
 
  private:
   const core::BlobView& view_;
-  Spot at_;
+  ScanSpot at_;
   double depth_m_;
   Vector3d hand_;
   Touch touch_;
@@ -94,7 +94,7 @@ SlideScores slide_over(const core::BlobView& view, std::span<const Vector3d> poi
   std::normal_distribution<double> any;
   double sum_squared = 0.0;
   for (int tries = 0; tries < kTriesPerSlide * slides && scores.slides < slides; ++tries) {
-    const std::optional<Spot> begin = surface_at(view, points[pick(random)]);
+    const std::optional<ScanSpot> begin = surface_at(view, points[pick(random)]);
     const double x = any(random);
     const double y = any(random);
     const Vector3d aim(x, y, any(random));

@@ -9,7 +9,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kDepth = 1e-3;  // of all slides, m
+constexpr double kSubjectDepth = 1e-3;  // of all slides, m
 constexpr double kBoxHalf = 0.02;
 constexpr double kBoxShift = 0.3;            // spacings; leaves no row parallel to an edge
 constexpr double kBoxZone = 2.5 * kSpacing;  // support radius, within which an edge has influence
@@ -176,7 +176,7 @@ Subject on_box(std::string name, std::string title,
 
 /// A path on the top face that ends where the probe is as near to the adjacent face as to the top.
 Path to_the_edge(const Vector3d& direction, double y) {
-  const double inside = kBoxHalf - kDepth;
+  const double inside = kBoxHalf - kSubjectDepth;
   constexpr double kLength = 0.008;
   return {[=](double s) {
             const Vector3d end(inside, direction.y() == 0.0 ? y : inside, kBoxHalf);

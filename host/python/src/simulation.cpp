@@ -30,7 +30,7 @@ using simulation::Sample;
 using Counts = std::array<double, core::kAxes>;
 
 // Ticks between two checks for Ctrl-C; some hundredths of a second.
-constexpr std::uint64_t kBatch = 1000;
+constexpr std::uint64_t kTicksPerBatch = 1000;
 // As for a trace of the tool, which also keeps every tick in memory.
 constexpr double kMaxTicks = 5e6;
 
@@ -59,7 +59,7 @@ void read_plant(const py::dict& values, setup::SessionOptions& options) {
   read(values, "hand_mass_kg", plant.hand.mass_kg);
 }
 
-setup::SessionOptions read_options(const py::dict& values) {
+setup::SessionOptions session_options_of(const py::dict& values) {
   setup::SessionOptions options;
   core::Configuration& c = options.setup.controller;
   read(values, "device", options.device);
@@ -127,7 +127,7 @@ class Session {
       : file_(model.file()),
         placement_(read_placement(values)),
         blob_(sized(model)),
-        options_(read_options(values)),
+        options_(session_options_of(values)),
         setup_(setup::make_setup(options_, body())),
         faults_(read_faults(faults)) {
     // A refusal of the model or the configuration does not wait for the first tick.
@@ -164,7 +164,7 @@ class Session {
     const double begin_s = simulation_->time_s();
     std::vector<double> values;
     for (std::uint64_t i = 0; i < ticks; ++i) {
-      if (i % kBatch == kBatch - 1) {
+      if (i % kTicksPerBatch == kTicksPerBatch - 1) {
         check_signals();
       }
       simulation_->steer(path.at(simulation_->time_s() - begin_s));

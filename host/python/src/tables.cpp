@@ -19,7 +19,7 @@ namespace tactree::python {
 namespace {
 
 // Rows between two checks for Ctrl-C; some hundredths of a second.
-constexpr std::size_t kBatch = 10000;
+constexpr std::size_t kRowsPerBatch = 10000;
 
 /// Reads a CSV file with these columns, in any order. Further columns are ignored. Float32 columns
 /// that an older version did not write are NaN.
@@ -48,7 +48,7 @@ class TableReader {
         }
       }
       rows.append(values);
-      if (rows.rows() % kBatch == 0) {
+      if (rows.rows() % kRowsPerBatch == 0) {
         check_signals();
       }
     }

@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t kLeastPoints = 2000;
 // Suspects are points with few others in the 27 cells around them (edge 1.5 to 3 spacings) ...
 constexpr double kSparseCellSpacings = 1.5;
-constexpr std::size_t kCompany = 8;
+constexpr std::size_t kStrayCompany = 8;
 // ... and points off the planes that explain the others of their cell (edge 2.5 to 5 spacings).
 constexpr double kPlaneCellSpacings = 2.5;
 constexpr std::size_t kMaxPlanes = 4;
@@ -319,7 +319,7 @@ class StrayFinder {
     const std::vector<CellRange> cells = points_.cells(level);
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, cells.size(), 256), [&](auto range) {
       for (std::size_t c = range.begin(); c < range.end(); ++c) {
-        if (cells[c].count() <= kCompany && count_around(cells[c], level) <= kCompany) {
+        if (cells[c].count() <= kStrayCompany && count_around(cells[c], level) <= kStrayCompany) {
           std::fill(suspect_.begin() + cells[c].first, suspect_.begin() + cells[c].last, 1);
         }
       }
@@ -330,7 +330,7 @@ class StrayFinder {
     const Eigen::Vector3i cell = points_.cell_of(range.first, level);
     const int cells = 1 << level;
     std::size_t count = range.count();
-    for (int k = 0; k < 27 && count <= kCompany; ++k) {
+    for (int k = 0; k < 27 && count <= kStrayCompany; ++k) {
       const Eigen::Vector3i at = cell + Eigen::Vector3i(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
       if (k != 13 && (at.array() >= 0).all() && (at.array() < cells).all()) {
         count += points_.find(at, level).count();

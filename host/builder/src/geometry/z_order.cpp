@@ -13,7 +13,7 @@
 namespace tactree::builder {
 namespace {
 
-struct Entry {
+struct KeyedPoint {
   std::uint64_t code;
   std::uint32_t index;
 };
@@ -54,13 +54,13 @@ ZOrderedCloud::ZOrderedCloud(Cloud cloud) {
   origin_ = box.isEmpty() ? Eigen::Vector3d::Zero() : Eigen::Vector3d(box.min());
   edge_ = largest_edge(box);
   edge_ = edge_ > 0.0 ? edge_ * (1.0 + 1e-9) : 1.0;
-  std::vector<Entry> entries(cloud.size());
+  std::vector<KeyedPoint> entries(cloud.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, cloud.size(), 4096), [&](auto range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
       entries[i] = {morton_code(finest_cell(cloud.positions[i])), static_cast<std::uint32_t>(i)};
     }
   });
-  tbb::parallel_sort(entries.begin(), entries.end(), [&](const Entry& a, const Entry& b) {
+  tbb::parallel_sort(entries.begin(), entries.end(), [&](const KeyedPoint& a, const KeyedPoint& b) {
     if (a.code != b.code) {
       return a.code < b.code;
     }

@@ -9,12 +9,12 @@
 
 #include "number.hpp"
 #include "readers.hpp"
+#include "remedies.hpp"
 #include "scan_builder.hpp"
 
 namespace tactree::builder {
 namespace {
 
-constexpr const char* kExportAgain = "the file is damaged; copy or export it again";
 constexpr std::int64_t kNoIndex = -1;
 constexpr float kSameDirection = 0.9998F;  // cosine of about one degree
 constexpr std::size_t kMaxForwardFaces = 4096;
@@ -238,7 +238,7 @@ class ObjReader {
   }
 
   [[noreturn]] void fail(const std::string& cause) const {
-    throw ReadError(file_.name(), file_.line_place(), cause, kExportAgain);
+    throw ReadError(file_.name(), file_.line_place(), cause, kCopyDamaged);
   }
 
   struct ForwardFace {

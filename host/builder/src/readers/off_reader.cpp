@@ -7,12 +7,11 @@
 
 #include "number.hpp"
 #include "readers.hpp"
+#include "remedies.hpp"
 #include "scan_builder.hpp"
 
 namespace tactree::builder {
 namespace {
-
-constexpr const char* kExportAgain = "the file is damaged; copy or export it again";
 
 class OffReader {
  public:
@@ -131,7 +130,7 @@ class OffReader {
   }
 
   [[noreturn]] void fail(const std::string& cause) const {
-    throw ReadError(file_.name(), file_.line_place(), cause, kExportAgain);
+    throw ReadError(file_.name(), file_.line_place(), cause, kCopyDamaged);
   }
 
   InputFile& file_;

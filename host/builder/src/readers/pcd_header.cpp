@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "number.hpp"
+#include "remedies.hpp"
 #include "tactree/builder/scan.hpp"
 
 namespace tactree::builder {
@@ -15,7 +16,6 @@ namespace {
 constexpr std::uint64_t kMaxHeaderBytes = std::uint64_t{1} << 20;
 constexpr std::uint64_t kMaxPointBytes = std::uint64_t{1} << 20;
 constexpr std::uint64_t kNotGiven = std::numeric_limits<std::uint64_t>::max();
-constexpr const char* kExportAgain = "export the scan again";
 
 std::optional<ScalarType> scalar_type(char kind, std::uint64_t size) {
   const bool floating = kind == 'F';
@@ -39,9 +39,9 @@ std::optional<ScalarType> scalar_type(char kind, std::uint64_t size) {
   }
 }
 
-class HeaderParser {
+class PcdHeaderParser {
  public:
-  explicit HeaderParser(InputFile& file) : file_(file) {}
+  explicit PcdHeaderParser(InputFile& file) : file_(file) {}
 
   PcdHeader parse() {
     std::string_view line;
@@ -205,6 +205,6 @@ std::uint64_t PcdHeader::columns() const {
   return columns;
 }
 
-PcdHeader read_pcd_header(InputFile& file) { return HeaderParser(file).parse(); }
+PcdHeader read_pcd_header(InputFile& file) { return PcdHeaderParser(file).parse(); }
 
 }  // namespace tactree::builder

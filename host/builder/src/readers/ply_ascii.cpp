@@ -2,11 +2,10 @@
 
 #include "number.hpp"
 #include "ply_body.hpp"
+#include "remedies.hpp"
 
 namespace tactree::builder {
 namespace {
-
-constexpr const char* kExportAgain = "the file is damaged; copy or export it again";
 
 class AsciiBody {
  public:
@@ -111,7 +110,7 @@ class AsciiBody {
   }
 
   [[noreturn]] void fail(const std::string& cause) const {
-    throw ReadError(file_.name(), file_.line_place(), cause, kExportAgain);
+    throw ReadError(file_.name(), file_.line_place(), cause, kCopyDamaged);
   }
 
   InputFile& file_;

@@ -7,7 +7,7 @@
 namespace tactree::builder {
 namespace {
 
-constexpr std::size_t kBlockBytes = std::size_t{1} << 16;
+constexpr std::size_t kPlyBlockBytes = std::size_t{1} << 16;
 constexpr std::uint64_t kMaxCorners = std::uint64_t{1} << 20;
 constexpr double kIndexEnd = 4294967296.0;
 
@@ -46,7 +46,7 @@ class BinaryBody {
     const auto row_bytes = static_cast<std::size_t>(element_->min_row_bytes());
     PointRow row{};
     while (row_ < element_->count) {
-      const std::string_view block = file_.peek(std::max(row_bytes, kBlockBytes));
+      const std::string_view block = file_.peek(std::max(row_bytes, kPlyBlockBytes));
       const std::uint64_t rows =
           std::min<std::uint64_t>(element_->count - row_, block.size() / row_bytes);
       if (rows == 0) throw_truncated(file_, *element_, row_);

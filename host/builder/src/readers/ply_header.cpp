@@ -5,13 +5,13 @@
 #include <algorithm>
 
 #include "number.hpp"
+#include "remedies.hpp"
 #include "tactree/builder/scan.hpp"
 
 namespace tactree::builder {
 namespace {
 
-constexpr std::uint64_t kMaxHeaderBytes = std::uint64_t{1} << 20;
-constexpr const char* kExportAgain = "export the scan again";
+constexpr std::uint64_t kMaxPlyHeaderBytes = std::uint64_t{1} << 20;
 
 std::optional<ScalarType> scalar_type(std::string_view name) {
   struct Alias {
@@ -35,9 +35,9 @@ std::optional<ScalarType> scalar_type(std::string_view name) {
   return std::nullopt;
 }
 
-class HeaderParser {
+class PlyHeaderParser {
  public:
-  explicit HeaderParser(InputFile& file) : file_(file) {}
+  explicit PlyHeaderParser(InputFile& file) : file_(file) {}
 
   PlyHeader parse() {
     std::string_view line;
@@ -52,7 +52,7 @@ class HeaderParser {
 
  private:
   bool next_line(std::string_view& line) {
-    if (file_.offset() > kMaxHeaderBytes) fail("the header is longer than 1 MiB");
+    if (file_.offset() > kMaxPlyHeaderBytes) fail("the header is longer than 1 MiB");
     return file_.next_line(line);
   }
 
@@ -169,6 +169,6 @@ bool PlyElement::has_list() const {
                      [](const PlyProperty& property) { return property.is_list; });
 }
 
-PlyHeader read_ply_header(InputFile& file) { return HeaderParser(file).parse(); }
+PlyHeader read_ply_header(InputFile& file) { return PlyHeaderParser(file).parse(); }
 
 }  // namespace tactree::builder

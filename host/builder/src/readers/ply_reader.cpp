@@ -6,12 +6,11 @@
 #include "ply_body.hpp"
 #include "ply_header.hpp"
 #include "readers.hpp"
+#include "remedies.hpp"
 #include "scan_builder.hpp"
 
 namespace tactree::builder {
 namespace {
-
-constexpr const char* kExportAgain = "export the scan again";
 
 std::string rows_of(const PlyElement& element) {
   return element.name == "vertex" ? "vertices" : fmt::format("rows of \"{}\"", element.name);

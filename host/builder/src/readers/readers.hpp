@@ -3,13 +3,10 @@
 
 #include "input_file.hpp"
 #include "recognise.hpp"
+#include "remedies.hpp"
 #include "tactree/builder/read_scan.hpp"
 
 namespace tactree::builder {
-
-/// Remedy in messages about missing or wrong bytes.
-inline constexpr const char* kCopyAgain =
-    "the file was cut off or is damaged; copy or export it again";
 
 [[nodiscard]] Scan read_ply(InputFile& file, const ReadOptions& options);
 [[nodiscard]] Scan read_pcd(InputFile& file, const ReadOptions& options);

@@ -17,7 +17,7 @@
 namespace tactree::builder {
 namespace {
 
-constexpr const char* kExportAgain = "copy or export it again";
+constexpr const char* kCopyOrExportAgain = "copy or export it again";
 constexpr std::size_t kStlSampleBytes = 1024;
 
 std::uint32_t count_in(std::string_view head) {
@@ -180,7 +180,7 @@ class AsciiReader {
   }
 
   [[noreturn]] void fail(const std::string& cause) const {
-    throw ReadError(file_.name(), file_.line_place(), cause, kExportAgain);
+    throw ReadError(file_.name(), file_.line_place(), cause, kCopyOrExportAgain);
   }
 
   InputFile& file_;
@@ -207,7 +207,7 @@ void check_count(const InputFile& file, std::uint64_t declared) {
   }
   if (declared == 0) {
     throw ReadError(file.name(), fmt::format("byte {}", kStlCountByte),
-                    "the STL file contains no triangles: its count is 0", kExportAgain);
+                    "the STL file contains no triangles: its count is 0", kCopyOrExportAgain);
   }
 }
 

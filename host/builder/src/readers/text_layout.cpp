@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kSampleRows = 1000;
 constexpr std::size_t kSampleLines = 4000;  // of the sample, including those before the rows
 constexpr std::size_t kMaxColumns = 4096;
-constexpr std::size_t kMinColumns = 3;
+constexpr std::size_t kMinTableColumns = 3;
 constexpr const char* kNotPoints =
     "a text file of points has rows of numbers, x y z first or under a line of column names; "
     "otherwise name them, as in --columns x=2,y=3,z=4";
@@ -37,7 +37,7 @@ bool has_decimal_commas(std::string_view line) {
     if (comma == 0 || comma + 1 >= word.size()) return false;
     if (!is_digit(word[comma - 1]) || !is_digit(word[comma + 1])) return false;
   }
-  return words >= kMinColumns;
+  return words >= kMinTableColumns;
 }
 
 void find_separator(std::string_view line, TextLayout& layout) {
@@ -63,7 +63,7 @@ bool parse_row(std::string_view line, const TextLayout& layout, TextRow& row) {
   while (row.values.size() < kMaxColumns && take_field(line, layout.separator, field)) {
     const std::size_t column = row.values.size();
     const bool named = column < layout.slots.size() && layout.slots[column] != kNoSlot;
-    const bool needed = layout.slots.empty() ? column < kMinColumns : named;
+    const bool needed = layout.slots.empty() ? column < kMinTableColumns : named;
     double value = 0;
     if (!parse_field(field, layout.decimal_comma, value)) {
       if (needed) return false;
@@ -124,7 +124,7 @@ class SplitDecimals {
       // A field with a leading zero is not a whole number, so it is a fraction.
       seen_ = seen_ || (fraction && field.size() > 1 && field.starts_with('0'));
     }
-    possible_ = possible_ && fields % 2 == 0 && fields >= 2 * kMinColumns;
+    possible_ = possible_ && fields % 2 == 0 && fields >= 2 * kMinTableColumns;
     seen_ = seen_ || (names > 0 && fields >= 2 * names);
   }
   [[nodiscard]] bool are_likely() const { return possible_ && seen_; }
@@ -177,7 +177,7 @@ class LayoutFinder {
     const bool unnamed = rows_.empty() && layout_.slots.empty();
     // The '#' of "Point#, X, Y, Z" does not begin a comment.
     if (!numbers && unnamed && (take_names(text) || take_names(trim(line)))) return;
-    if (numbers && row.values.size() >= std::max(kMinColumns, layout_.slots.size())) {
+    if (numbers && row.values.size() >= std::max(kMinTableColumns, layout_.slots.size())) {
       if (layout_.separator == ',') split_.look_at(text, layout_.slots.size());
       if (rows_.empty()) layout_.first_row_line = file_.line_number();
       row_bytes_ += line.size() + 1;

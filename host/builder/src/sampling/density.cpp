@@ -21,7 +21,7 @@ constexpr double kMeshSpacingsPerExtent = 200.0;
 constexpr double kLeastMeshPoints = 20'000.0;  // minimum for a long, thin object
 // The points of a cloud are uneven, so their spacing after resampling is larger than requested. The
 // requested spacing is kept up to this factor.
-constexpr double kSparser = 1.15;
+constexpr double kSparserThanWanted = 1.15;
 // Maximum unevenness of a cloud without voids that the fit could not bridge at its own spacing.
 constexpr double kMaxCloudUnevenness = 1.25;
 constexpr int kInterpolations = 4;           // then the search bisects, which always ends
@@ -148,7 +148,7 @@ class DensityChooser {
   }
 
   DensityChoice choose_at(double wanted) {
-    if (!is_mesh() && dense_spacing_ > kSparser * wanted) {
+    if (!is_mesh() && dense_spacing_ > kSparserThanWanted * wanted) {
       wanted = dense_spacing_;  // the scan has no more points
     }
     sample(wanted);
@@ -163,7 +163,7 @@ class DensityChooser {
     if (own > (1.0 + kSameSpacing) * wanted && keeps_its_points()) {
       own = keep_more(wanted, own, choice);
     }
-    if (own > kSparser * wanted) {
+    if (own > kSparserThanWanted * wanted) {
       choice.spacing_m = own;
     }
     thin(choice);
