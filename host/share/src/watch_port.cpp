@@ -160,8 +160,8 @@ WatchPort::WatchPort(asio::io_context& context, SharedBoard& board, const std::s
     if (!folder_.empty()) {
       std::filesystem::remove_all(folder_, ignored);
     }
-    throw web::ServerError(fmt::format("{}: {} (choose another --watch-socket)", path_,
-                                       error.code().message()));
+    throw web::ServerError(
+        fmt::format("{}: {} (choose another --watch-socket)", path_, error.code().message()));
   }
   accept();
 }

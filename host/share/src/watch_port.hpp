@@ -21,7 +21,8 @@ class WatchPort {
  public:
   static constexpr std::size_t kMaxPrograms = 32;
 
-  /// Creates the socket, for this user only. `path` empty: in a new folder. Throws web::ServerError.
+  /// Creates the socket, for this user only. `path` empty: in a new folder. Throws
+  /// web::ServerError.
   WatchPort(boost::asio::io_context& context, SharedBoard& board, const std::string& path,
             std::function<void(const std::string&)> tell);
   WatchPort(const WatchPort&) = delete;

@@ -160,9 +160,9 @@ void Watcher::ask(MessageKind kind) {
   ++unanswered_;
   const auto payload = decoder_.payload();
   const bool own = kind == static_cast<MessageKind>(decoder_.header().kind);
-  questions_.push_back({decoder_.header(), kind,
-                        own ? std::vector<std::byte>(payload.begin(), payload.end())
-                            : std::vector<std::byte>()});
+  questions_.push_back(
+      {decoder_.header(), kind,
+       own ? std::vector<std::byte>(payload.begin(), payload.end()) : std::vector<std::byte>()});
 }
 
 void Watcher::answer(const Question& question, const client::Response& response) {
@@ -200,7 +200,8 @@ void Watcher::send_reply(const FrameHeader& asked, WireStatus status,
 void Watcher::send(const FrameHeader& header, std::span<const std::byte> payload) {
   std::array<std::byte, core::wire::kMaxEncodedFrame> frame;
   const std::size_t bytes = encode_frame(header, payload, frame);
-  to_send_.insert(to_send_.end(), frame.begin(), frame.begin() + static_cast<std::ptrdiff_t>(bytes));
+  to_send_.insert(to_send_.end(), frame.begin(),
+                  frame.begin() + static_cast<std::ptrdiff_t>(bytes));
 }
 
 void Watcher::sent(std::size_t bytes) {

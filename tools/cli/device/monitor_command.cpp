@@ -93,8 +93,7 @@ std::string to_text(const View& view) {
       view.shared       ? ", shared by tactree serve: this program may watch and stop"
       : view.watch_only ? ", operated by its button: a program may watch and stop"
                         : "",
-      force,
-      std::string(static_cast<std::size_t>(filled), '#'),
+      force, std::string(static_cast<std::size_t>(filled), '#'),
       std::string(static_cast<std::size_t>(kBarWidth - filled), ' '), view.force_max_N,
       length(t.motors_N), length(t.gravity_N), length(t.added_N), t.probe_m[0], t.probe_m[1],
       t.probe_m[2], length(t.velocity_m_s),

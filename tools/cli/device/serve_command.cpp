@@ -50,7 +50,8 @@ std::unique_ptr<client::Announcement> announce(const std::string& port, const st
     return std::make_unique<client::Announcement>(client::AnnouncedPort{
         port, fmt::format("board {}, shared by tactree serve: to watch and stop", board)});
   } catch (const client::LinkError& error) {
-    tell_terminal(fmt::format("warning: tactree devices will not list this port: {}", error.what()));
+    tell_terminal(
+        fmt::format("warning: tactree devices will not list this port: {}", error.what()));
     return nullptr;
   }
 }

@@ -18,7 +18,7 @@ using share::Watcher;
 constexpr auto kProbe = static_cast<std::uint32_t>(TelemetryField::kProbe);
 constexpr auto kForce = static_cast<std::uint32_t>(TelemetryField::kForce);
 
-class WatcherTest : public ::testing::Test {
+class ShareWatcher : public ::testing::Test {
  protected:
   void SetUp() override {
     program.on_telemetry([this](const client::Telemetry& tick) { seen.push_back(tick); });
@@ -79,7 +79,7 @@ class WatcherTest : public ::testing::Test {
   std::vector<client::Telemetry> seen;
 };
 
-TEST_F(WatcherTest, SendsSubscribedFieldsOfEveryNthTick) {
+TEST_F(ShareWatcher, SendsSubscribedFieldsOfEveryNthTick) {
   open();
   tick(1);
   pass_bytes();
@@ -97,7 +97,7 @@ TEST_F(WatcherTest, SendsSubscribedFieldsOfEveryNthTick) {
   EXPECT_EQ(seen[1].force_N[2], 0.0F);
 }
 
-TEST_F(WatcherTest, SendsNoTelemetryAfterTheSessionOrTheSubscription) {
+TEST_F(ShareWatcher, SendsNoTelemetryAfterTheSessionOrTheSubscription) {
   open();
   (void)call(MessageKind::kSubscribe, core::wire::SubscribeRequest{kProbe, 1});
   (void)call(MessageKind::kSubscribe, core::wire::SubscribeRequest{kProbe, 0});
@@ -108,7 +108,7 @@ TEST_F(WatcherTest, SendsNoTelemetryAfterTheSessionOrTheSubscription) {
   EXPECT_TRUE(watcher.to_send().empty());
 }
 
-TEST_F(WatcherTest, DropsAndCountsTelemetryOfProgramThatDoesNotRead) {
+TEST_F(ShareWatcher, DropsAndCountsTelemetryOfProgramThatDoesNotRead) {
   open();
   (void)call(MessageKind::kSubscribe, core::wire::SubscribeRequest{kProbe, 1});
   std::uint32_t number = 0;
@@ -128,7 +128,7 @@ TEST_F(WatcherTest, DropsAndCountsTelemetryOfProgramThatDoesNotRead) {
   EXPECT_EQ(seen.size(), number - 2U);
 }
 
-TEST_F(WatcherTest, RefusesEveryCommand) {
+TEST_F(ShareWatcher, RefusesEveryCommand) {
   open();
   for (const MessageKind kind :
        {MessageKind::kSetLimits, MessageKind::kSetMaterial, MessageKind::kMoveBody,
@@ -147,13 +147,13 @@ TEST_F(WatcherTest, RefusesEveryCommand) {
   EXPECT_FALSE(watcher.take_stop());
 }
 
-TEST_F(WatcherTest, AsksTheBoardWhatChangesNothing) {
+TEST_F(ShareWatcher, AsksTheBoardWhatChangesNothing) {
   open();
   board.status = WireStatus::kBadValue;
-  for (const MessageKind kind : {MessageKind::kState, MessageKind::kListModels,
-                                 MessageKind::kReadTrace, MessageKind::kReadFault,
-                                 MessageKind::kReadStart, MessageKind::kGetParameter,
-                                 MessageKind::kIdentify}) {
+  for (const MessageKind kind :
+       {MessageKind::kState, MessageKind::kListModels, MessageKind::kReadTrace,
+        MessageKind::kReadFault, MessageKind::kReadStart, MessageKind::kGetParameter,
+        MessageKind::kIdentify}) {
     const std::array payload = {std::byte{3}, std::byte{4}};
     EXPECT_EQ(call(kind, payload).status, WireStatus::kBadValue);
     EXPECT_EQ(asked.back().kind, kind);
@@ -161,7 +161,7 @@ TEST_F(WatcherTest, AsksTheBoardWhatChangesNothing) {
   }
 }
 
-TEST_F(WatcherTest, SaysThatTheBoardIsShared) {
+TEST_F(ShareWatcher, SaysThatTheBoardIsShared) {
   core::wire::CapabilitiesReply can;
   can.rate_hz = 4000.0F;
   let_board_answer(can);
@@ -172,7 +172,7 @@ TEST_F(WatcherTest, SaysThatTheBoardIsShared) {
   EXPECT_TRUE(has_flag(got, core::wire::BoardFlag::kShared));
 }
 
-TEST_F(WatcherTest, StopsWithoutSession) {
+TEST_F(ShareWatcher, StopsWithoutSession) {
   core::wire::StateReply state;
   state.state = 2;
   state.faults = 5;
@@ -188,7 +188,7 @@ TEST_F(WatcherTest, StopsWithoutSession) {
   EXPECT_EQ(reply.faults, 5U);
 }
 
-TEST_F(WatcherTest, NeedsASessionOfItsOwn) {
+TEST_F(ShareWatcher, NeedsASessionOfItsOwn) {
   EXPECT_EQ(call(MessageKind::kState).status, WireStatus::kNoSession);
   open();
   const std::uint16_t first = program.session();
@@ -197,14 +197,14 @@ TEST_F(WatcherTest, NeedsASessionOfItsOwn) {
   EXPECT_TRUE(call(MessageKind::kState).ok());
 }
 
-TEST_F(WatcherTest, RefusesAnotherMajorVersion) {
+TEST_F(ShareWatcher, RefusesAnotherMajorVersion) {
   core::wire::OpenRequest request;
   request.version_major = core::wire::kProtocolMajor + 1;
   EXPECT_EQ(call(MessageKind::kOpen, request).status, WireStatus::kBadVersion);
   EXPECT_EQ(call(MessageKind::kOpen).status, WireStatus::kBadLength);
 }
 
-TEST_F(WatcherTest, LimitsRequestsThatWaitForTheBoard) {
+TEST_F(ShareWatcher, LimitsRequestsThatWaitForTheBoard) {
   open();
   for (std::size_t i = 0; i <= Watcher::kMaxQuestions; ++i) {
     program.send(MessageKind::kState, std::span<const std::byte>(), 0);
@@ -221,7 +221,7 @@ TEST_F(WatcherTest, LimitsRequestsThatWaitForTheBoard) {
   EXPECT_TRUE(call(MessageKind::kState).ok());
 }
 
-TEST_F(WatcherTest, DoesNotReplyForABoardThatDoesNot) {
+TEST_F(ShareWatcher, DoesNotReplyForABoardThatDoesNot) {
   open();
   board.timed_out = true;
   EXPECT_TRUE(call(MessageKind::kState).timed_out);

@@ -1,7 +1,7 @@
 #pragma once
-// The server of a shared board: a WebSocket at the path /, and a socket at which programs watch with
-// the protocol of boards; docs/SHARE.md. A client that does not read delays neither the board nor
-// other clients.
+// The server of a shared board: a WebSocket at the path /, and a socket at which programs watch
+// with the protocol of boards; docs/SHARE.md. A client that does not read delays neither the board
+// nor other clients.
 
 #include <functional>
 #include <memory>
