@@ -30,9 +30,10 @@ class Serve(BallFolder):
         """The TCP port; self.said is the output of the program at the end."""
         with ServedBoard(TACTREE, self.blob) as port:
             program = subprocess.Popen([TACTREE, "serve", self.blob, "--port", port, "--tcp-port", "0", *options],
-                                       stdout=subprocess.PIPE, text=True)
+                                       stdout=subprocess.PIPE, text=True, cwd=self.path)
             try:
-                tcp_port = int(re.search(r"ws://127\.0\.0\.1:(\d+)/", program.stdout.readline())[1])
+                self.address = re.search(r"ws://[\d.]+:(\d+)/[^;]*", program.stdout.readline())
+                tcp_port = int(self.address[1])
                 self.watch_port = re.search(r"unix:\S+", program.stdout.readline())[0]
                 yield tcp_port
             finally:
@@ -119,6 +120,27 @@ class Serve(BallFolder):
     def test_refuses_pages_of_other_servers(self):
         with self.served() as port:
             self.assertEqual(WebSocket(port, "http://evil.example").status, 403)
+
+    def test_demands_a_token_of_programs_on_the_network(self):
+        with self.served("--address", "0.0.0.0") as port:
+            token = re.search(r"\?token=([0-9a-f]{32})$", self.address[0])[1]
+            for path in ("/", "/?token=", f"/?token={token[:-1]}", f"/?token={token}0", f"/?broken={token}"):
+                self.assertEqual(WebSocket(port, path=path, host="127.0.0.1").status, 401, path)
+            self.assertEqual(WebSocket(port, host="127.0.0.1", token=token[::-1]).status, 401)
+            for program in (WebSocket(port, path=f"/?x=1&token={token}", host="127.0.0.1"),
+                            WebSocket(port, host="127.0.0.1", token=token)):
+                self.assertIn("state", program.receive()["tactree"])
+                program.close()
+
+    def test_takes_the_token_of_a_file(self):
+        (self.path / "token").write_text("a_token-of-16letters\n")
+        with self.served("--token-file", "token") as port:
+            self.assertEqual(WebSocket(port).status, 401)
+            WebSocket(port, token="a_token-of-16letters").close()
+        (self.path / "token").write_text("short\n")
+        done = self.run_tool("serve", "--port", "step:/nowhere", "--token-file", "token")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("token: no token (write a line of at least 16", done.stderr)
 
     def test_reports_cause_and_remedy(self):
         with self.served() as port, ServedBoard(TACTREE, self.blob) as other:

@@ -1,10 +1,12 @@
 #include "tactree/share/server.hpp"
 
+#include <algorithm>
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <chrono>
 #include <mutex>
 #include <optional>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -21,11 +23,41 @@ namespace asio = boost::asio;
 constexpr std::size_t kMaxSnapshots = kMaxQueue;
 constexpr std::chrono::seconds kStallInterval{1};
 
+/// Takes the same time wherever two texts of the same length differ.
+bool is_equal(std::string_view a, std::string_view b) {
+  unsigned differences = a.size() == b.size() ? 0U : 1U;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
+    differences |= static_cast<unsigned char>(a[i]) ^ static_cast<unsigned char>(b[i]);
+  }
+  return differences == 0U;
+}
+
+std::string_view text_of(boost::beast::string_view text) { return {text.data(), text.size()}; }
+
+bool has_token(const web::Request& request, const std::string& token) {
+  constexpr std::string_view kBearer = "Bearer ";
+  constexpr std::string_view kQuery = "token=";
+  const std::string_view header = text_of(request[boost::beast::http::field::authorization]);
+  if (header.starts_with(kBearer) && is_equal(header.substr(kBearer.size()), token)) {
+    return true;
+  }
+  std::string_view target = text_of(request.target());
+  for (std::size_t at = target.find('?'); at != std::string_view::npos; at = target.find('&')) {
+    target.remove_prefix(at + 1U);
+    if (target.starts_with(kQuery) &&
+        is_equal(target.substr(0, target.find('&')).substr(kQuery.size()), token)) {
+      return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 struct Server::Parts final : web::Content {
   Parts(const ServerSettings& settings, SharedBoard& its_board)
       : board(its_board),
+        token(settings.token),
         room{Clients(its_board, settings.grip), settings.tell},
         listener(settings.server, *this),
         watch_port(listener.context(), its_board, settings.watch_socket, settings.tell) {
@@ -46,6 +78,9 @@ struct Server::Parts final : web::Content {
   [[nodiscard]] bool is_slow(std::string_view) const override { return false; }
   [[nodiscard]] bool is_socket(std::string_view path) const override { return path == "/"; }
   [[nodiscard]] bool admits_programs() const override { return true; }
+  [[nodiscard]] bool permits(const web::Request& request) const override {
+    return token.empty() || has_token(request, token);
+  }
   void open_socket(boost::beast::tcp_stream stream, const web::Request& request) override {
     std::make_shared<ClientSocket>(std::move(stream), room)->accept(request);
   }
@@ -94,6 +129,7 @@ struct Server::Parts final : web::Content {
   }
 
   SharedBoard& board;
+  std::string token;
   Room room;
   web::Listener listener;
   WatchPort watch_port;
@@ -107,7 +143,10 @@ Server::Server(const ServerSettings& settings, SharedBoard& board)
 
 Server::~Server() = default;
 
-std::string Server::address() const { return "ws://" + parts_->listener.host() + "/"; }
+std::string Server::address() const {
+  return "ws://" + parts_->listener.host() + "/" +
+         (parts_->token.empty() ? "" : "?token=" + parts_->token);
+}
 
 std::string Server::watch_port() const { return parts_->watch_port.port(); }
 

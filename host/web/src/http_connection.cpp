@@ -114,6 +114,11 @@ void HttpConnection::handle(const Request& request) {
       send(plain(426, "this is a WebSocket\n"), request);
       return;
     }
+    if (!service_.content.permits(request)) {
+      send(plain(401, "a token is needed, as in ws://" + service_.host + path + "?token=TOKEN\n"),
+           request);
+      return;
+    }
     service_.content.open_socket(std::move(stream_), request);
     return;
   }

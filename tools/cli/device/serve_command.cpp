@@ -8,6 +8,7 @@
 
 #include "commands.hpp"
 #include "device/board_port.hpp"
+#include "device/share_token.hpp"
 #include "tactree/client/announcement.hpp"
 #include "tactree/client/link_error.hpp"
 #include "tactree/core/math/crc32.hpp"
@@ -23,6 +24,7 @@ struct SharingOptions {
   BoardPort port;
   share::ServerSettings server{
       .server = {.address = "127.0.0.1", .port = 10001, .port_option = "--tcp-port"}, .tell = {}};
+  std::string token_file;
   std::string grip = "neutral";
   int link_timeout_ms = 50;
   bool arm = false;
@@ -67,6 +69,7 @@ void share_board(const SharingOptions& options) {
   share::ServerSettings serving = options.server;
   serving.grip = options.grip == "none" ? share::Grip::kNone : share::Grip::kNeutral;
   serving.tell = tell_terminal;
+  serving.token = share_token(options.token_file, options.server.server.address);
   share::SharedBoard board(std::move(settings));
   share::Server server(serving, board);
   tell_terminal(
@@ -92,8 +95,11 @@ void add_serve_command(CLI::App& app, int&) {
       ->capture_default_str();
   verb->add_option("--address", options->server.server.address,
                    "address to listen on; with an address other than loopback, others on the "
-                   "network can arm the board and send forces to it")
+                   "network who know the token can arm the board and send forces to it")
       ->capture_default_str();
+  verb->add_option("--token-file", options->token_file,
+                   "file with the token that programs must send (default: none on loopback; "
+                   "elsewhere a new one, which is printed)");
   verb->add_option("--watch-socket", options->server.watch_socket,
                    "path of the socket at which tactree monitor, record and view watch the board "
                    "(default: a new one, which tactree devices lists)");

@@ -15,6 +15,8 @@ namespace tactree::share {
 
 struct ServerSettings {
   web::ServerOptions server{};
+  /// Programs must send it: "?token=..." or "Authorization: Bearer ..."; empty: none is needed.
+  std::string token{};
   std::string watch_socket{};  ///< path; empty: in a new folder
   Grip grip = Grip::kNeutral;
   /// Prints a line on the terminal; must not throw.
@@ -29,7 +31,7 @@ class Server {
   Server& operator=(const Server&) = delete;
   ~Server();
 
-  /// "ws://127.0.0.1:10001/"
+  /// "ws://127.0.0.1:10001/", with the token if there is one
   [[nodiscard]] std::string address() const;
   /// "unix:/tmp/tactree-x1y2z3/board", for programs that watch.
   [[nodiscard]] std::string watch_port() const;

@@ -37,6 +37,8 @@ class Content {
   /// Programs, which send no origin, may open a WebSocket. Otherwise only the server's own page
   /// may.
   [[nodiscard]] virtual bool admits_programs() const = 0;
+  /// The request for a WebSocket has the token that the server demands, if it demands one.
+  [[nodiscard]] virtual bool permits(const Request&) const { return true; }
   /// Takes over a connection that requests a WebSocket.
   virtual void open_socket(boost::beast::tcp_stream stream, const Request& request) = 0;
 };
