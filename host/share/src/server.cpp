@@ -27,7 +27,7 @@ constexpr std::chrono::seconds kStallInterval{1};
 bool is_equal(std::string_view a, std::string_view b) {
   unsigned differences = a.size() == b.size() ? 0U : 1U;
   for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
-    differences |= static_cast<unsigned char>(a[i]) ^ static_cast<unsigned char>(b[i]);
+    differences |= static_cast<unsigned>(a[i] != b[i]);
   }
   return differences == 0U;
 }

@@ -47,9 +47,8 @@ std::string share_token(const std::string& file, const std::string& address) {
   std::string token;
   if (!std::getline(text, token) || token.size() < kMinLetters ||
       !std::all_of(token.begin(), token.end(), is_token_letter)) {
-    throw support::UserError(
-        fmt::format("{}: no token (write a line of at least {} letters, digits, - and _)", file,
-                    kMinLetters));
+    throw support::UserError(fmt::format(
+        "{}: no token (write a line of at least {} letters, digits, - and _)", file, kMinLetters));
   }
   return token;
 }
