@@ -51,15 +51,15 @@ class Serve(BallFolder):
             for _ in range(2000):
                 program.send(force(state, 0.5))
                 state = program.receive()
-                if state["tactree"]["force_N"]["x"] > 0.2:
+                if state["tactree"]["added_N"]["x"] > 0.2:
                     break
-            self.assertGreater(state["tactree"]["force_N"]["x"], 0.2)
+            self.assertGreater(state["tactree"]["added_N"]["x"], 0.2)
             for _ in range(2000):  # of forces of zero, the last force ends
                 program.send({})
                 state = program.receive()
-                if state["tactree"]["force_N"]["x"] == 0:
+                if state["tactree"]["added_N"]["x"] == 0:
                     break
-            self.assertEqual(state["tactree"]["force_N"]["x"], 0)
+            self.assertEqual(state["tactree"]["added_N"]["x"], 0)
             program.close()
         self.assertIn("client 1, 127.0.0.1:", self.said)
 

@@ -21,6 +21,8 @@ class WebSocket:
         while b"\r\n\r\n" not in answer:
             answer += self.take(1)
         self.status = int(answer.split(b" ")[1])
+        if self.status != 101:  # refused
+            self.close()
 
     def take(self, count):
         data = b""

@@ -114,6 +114,9 @@ json tactree_json(const Snapshot& snapshot, const Commander& commander, bool fir
               {"dropped_ticks", snapshot.dropped},
               {"command", nullptr},
               {"news", {{"number", snapshot.news.number}, {"text", snapshot.news.text}}}};
+  if ((tick.header.fields & static_cast<std::uint32_t>(core::wire::TelemetryField::kParts)) != 0U) {
+    own["added_N"] = vector_json(tick.added_N);
+  }
   if (commander.client != 0U) {
     own["command"] = {{"client", commander.client}, {"address", commander.address}};
   }

@@ -44,6 +44,14 @@ std::string force_text(const std::string& values) {
          "}}}]}";
 }
 
+TEST(ShareMessages, StatesAddedForceWhereTelemetryHasIt) {
+  share::Snapshot s = snapshot();
+  s.tick.added_N[2] = 0.5F;
+  EXPECT_FALSE(written(s, share::Grip::kNone, false)["tactree"].contains("added_N"));
+  s.tick.header.fields = static_cast<std::uint32_t>(core::wire::TelemetryField::kParts);
+  EXPECT_EQ(written(s, share::Grip::kNone, false)["tactree"]["added_N"]["z"], 0.5);
+}
+
 TEST(ShareMessages, StatesPositionInFrameOfDevice) {
   const json state = written(snapshot(), share::Grip::kNeutral, false);
   const json& device = state["inverse3"][0];
