@@ -204,7 +204,7 @@ void SharedBoard::pass() {
     stop_if_wanted();
     execute_requests();
     continue_arming();
-    ask_questions();
+    ask_question();
   } catch (const client::LinkError& error) {
     report(error.what());
   }
@@ -245,20 +245,24 @@ void SharedBoard::execute_requests() {
   }
 }
 
-void SharedBoard::ask_questions() {
-  std::deque<Question> questions;
+/// One in a pass, so that telemetry does not wait for those of many programs.
+void SharedBoard::ask_question() {
+  Question question;
   {
     const std::lock_guard lock(mutex_);
-    questions.swap(questions_);
+    if (questions_.empty()) {
+      return;
+    }
+    question = std::move(questions_.front());
+    questions_.pop_front();
   }
-  for (const Question& question : questions) {
-    client::Response none;
-    none.kind = question.kind;
-    none.timed_out = true;
-    question.answer(snapshot_.link == Link::kHere && board_.connected()
-                        ? board_.connection().call(question.kind, question.payload)
-                        : none);
+  client::Response response;
+  response.kind = question.kind;
+  response.timed_out = true;
+  if (snapshot_.link == Link::kHere && board_.connected()) {
+    response = board_.connection().call(question.kind, question.payload);
   }
+  question.answer(response);
 }
 
 void SharedBoard::execute(BoardRequest request) {
@@ -342,7 +346,7 @@ void SharedBoard::wait_for_board() {
   publish_({snapshot_});
   std::this_thread::sleep_for(kRetryInterval);
   execute_requests();
-  ask_questions();
+  ask_question();
   if (snapshot_.link == Link::kLost || std::exchange(connect_wanted_, false)) {
     reconnect();
   }

@@ -69,6 +69,9 @@ class WatchingProgram : public std::enable_shared_from_this<WatchingProgram> {
           if (error) {
             return self->end("has left");
           }
+          if (self->port_ == nullptr) {
+            return;  // ended meanwhile
+          }
           self->watcher_.receive(std::span(self->incoming_).first(bytes));
           self->pass_on();
           self->write();
@@ -194,6 +197,10 @@ void WatchPort::accept() {
     }
     if (!error) {
       welcome(std::move(socket));
+    } else if (error != asio::error::connection_aborted) {
+      tell_(fmt::format("{}: {} (start tactree serve again to let programs watch)", path_,
+                        error.message()));
+      return;
     }
     accept();
   });

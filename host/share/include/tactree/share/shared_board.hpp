@@ -73,7 +73,7 @@ class SharedBoard : public BoardCommands {
   void run();
   void pass();
   void execute_requests();
-  void ask_questions();
+  void ask_question();
   void execute(BoardRequest request);
   void stop_if_wanted();
   void continue_arming();
