@@ -103,9 +103,17 @@ TEST_F(ShareWatcher, SendsNoTelemetryAfterTheSessionOrTheSubscription) {
   (void)call(MessageKind::kSubscribe, core::wire::SubscribeRequest{kProbe, 0});
   tick(1);
   (void)call(MessageKind::kSubscribe, core::wire::SubscribeRequest{kProbe, 1});
+  const std::uint16_t session = program.session();
   EXPECT_TRUE(call(MessageKind::kClose).ok());
   tick(2);
   EXPECT_TRUE(watcher.to_send().empty());
+  // A program that goes on with the number of the session that it has closed.
+  std::array<std::byte, core::wire::kMaxEncodedFrame> frame;
+  core::wire::FrameHeader header;
+  header.kind = static_cast<std::uint8_t>(MessageKind::kState);
+  header.session = session;
+  watcher.receive(std::span(frame).first(encode_frame(header, {}, frame)));
+  EXPECT_TRUE(watcher.take_questions().empty());
 }
 
 TEST_F(ShareWatcher, DropsAndCountsTelemetryOfProgramThatDoesNotRead) {
@@ -126,6 +134,10 @@ TEST_F(ShareWatcher, DropsAndCountsTelemetryOfProgramThatDoesNotRead) {
   EXPECT_EQ(seen.back().header.tick, number);
   EXPECT_EQ(seen.back().header.dropped, 2U);
   EXPECT_EQ(seen.size(), number - 2U);
+  (void)call(MessageKind::kSubscribe, core::wire::SubscribeRequest{kProbe, 1});
+  tick(++number);
+  pass_bytes();
+  EXPECT_EQ(seen.back().header.dropped, 0U);
 }
 
 TEST_F(ShareWatcher, RefusesEveryCommand) {
@@ -217,6 +229,10 @@ TEST_F(ShareWatcher, LimitsRequestsThatWaitForTheBoard) {
   ASSERT_EQ(questions.size(), Watcher::kMaxQuestions);
   for (const Watcher::Question& question : questions) {
     watcher.answer(question, board);
+  }
+  pass_bytes();
+  while (program.take(response)) {
+    EXPECT_TRUE(response.ok());
   }
   EXPECT_TRUE(call(MessageKind::kState).ok());
 }
