@@ -30,7 +30,7 @@ class Usage(unittest.TestCase):
                       self.refused("query", "model.blob", "--points", "-", "--radius=-1"))
 
     def test_help_names_all_port_kinds(self):
-        ports = "a serial port, usb:SERIAL, unix:PATH (the socket of tactree-controller), or the one that tactree "\
+        ports = "a serial port, usb:SERIAL, unix:PATH (of tactree-controller or tactree serve), or the one that tactree "\
             "simulate --serve prints (with --lock-step: step:PATH)"
         for verb in ("devices", "flash", "monitor", "arm", "stop", "trace", "params", "record", "serve", "view"):
             self.assertIn(ports, " ".join(self.help_of(verb).split()), verb)

@@ -54,6 +54,13 @@ std::string id_of(const core::wire::IdentifyReply& identity) {
                     : field_text(identity.board);
 }
 
+client::Response no_reply(core::wire::MessageKind kind) {
+  client::Response response;
+  response.kind = kind;
+  response.timed_out = true;
+  return response;
+}
+
 }  // namespace
 
 SharedBoard::SharedBoard(BoardSettings settings)
@@ -181,10 +188,7 @@ void SharedBoard::ask(core::wire::MessageKind kind, std::vector<std::byte> paylo
       return;
     }
   }
-  client::Response none;
-  none.kind = kind;
-  none.timed_out = true;
-  answer(none);
+  answer(no_reply(kind));
 }
 
 // The board's thread
@@ -256,13 +260,9 @@ void SharedBoard::ask_question() {
     question = std::move(questions_.front());
     questions_.pop_front();
   }
-  client::Response response;
-  response.kind = question.kind;
-  response.timed_out = true;
-  if (snapshot_.link == Link::kHere && board_.connected()) {
-    response = board_.connection().call(question.kind, question.payload);
-  }
-  question.answer(response);
+  question.answer(snapshot_.link == Link::kHere && board_.connected()
+                      ? board_.connection().call(question.kind, question.payload)
+                      : no_reply(question.kind));
 }
 
 void SharedBoard::execute(BoardRequest request) {

@@ -12,7 +12,8 @@ namespace tactree::cli {
 
 /// Forms of a port's name, for the help text.
 inline constexpr const char* kPortForms =
-    "a serial port, usb:SERIAL, unix:PATH (the socket of tactree-controller), or the one that "
+    "a serial port, usb:SERIAL, unix:PATH (of tactree-controller or tactree serve), or the one "
+    "that "
     "tactree simulate --serve prints (with --lock-step: step:PATH)";
 
 struct BoardPort {

@@ -54,7 +54,7 @@ void print(const nlohmann::json& device) {
              device["board"].get<std::string>(), device["firmware"].get<std::string>(),
              device["serial"].get<std::string>(), device["protocol"].get<std::string>());
   if (device["watch_only"].get<bool>()) {
-    fmt::print("  operated by its button; a program may watch and stop it\n");
+    fmt::print("  a program may only watch and stop it\n");
   }
   for (const auto& complaint : device["complaints"]) {
     fmt::print("  {}\n", complaint.get<std::string>());

@@ -110,7 +110,7 @@ class Board {
   [[nodiscard]] const char* who_confirms() const;
   /// Names of the faults, and for link-lost what the user can do about this program's link.
   [[nodiscard]] std::string explain(core::FaultMask faults) const;
-  /// Throws LinkError if the board is operated by its panel alone: an application may then watch
+  /// Throws LinkError if the board is operated by its panel alone, or shared: one may then watch
   /// and stop (BoardFlag::kWatchOnly), and functions that change something throw. `what`: the
   /// intended command, for the message.
   void require_command(const char* what);

@@ -45,7 +45,7 @@ typedef struct {
   uint32_t bodies;           /* bit n: there is a body n, which tactree_move_body() can move */
   int is_homed;              /* 0: tactree_home() is needed before tactree_arm() */
   int dead_man_required;     /* 1: the user must press a dead-man control to complete arming */
-  int watch_only; /* 1: operated by the button of the board; only watching and tactree_stop() */
+  int watch_only; /* 1: shared, or operated by its button; only watching and tactree_stop() */
 } tactree_limits;
 
 /* Opens a port and a session; waits. baud: speed of a serial port, usually TACTREE_USUAL_BAUD.
