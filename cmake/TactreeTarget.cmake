@@ -51,6 +51,11 @@ function(tactree_library name)
   target_include_directories(${target} PUBLIC
     $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>
     $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  # A program may link the libraries of a host into a shared object of its own. Calls within one stay direct.
+  if(NOT CMAKE_SYSTEM_NAME STREQUAL Generic)
+    set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+    target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fno-semantic-interposition>)
+  endif()
   tactree_target(${target} ${options})
 endfunction()
 
