@@ -25,10 +25,52 @@
 
 namespace {
 
+// A number that the emulator increments, in version 2 of its interface in its own memory.
+class Count {
+ public:
+  Count() {
+    static Block block;
+    if (block.used == kNumbers) {
+      block = Block{};
+      block.used = 0;
+      if (qemu_plugin_scoreboard_new != nullptr) {
+        block.score = qemu_plugin_scoreboard_new(kNumbers * sizeof(std::uint64_t));
+        block.numbers = static_cast<std::uint64_t*>(qemu_plugin_scoreboard_find(block.score, 0));
+      } else {
+        block.numbers = new std::uint64_t[kNumbers]();
+      }
+    }
+    place_ = {block.score, block.used * sizeof(std::uint64_t)};
+    value_ = block.numbers + block.used;
+    ++block.used;
+  }
+  [[nodiscard]] std::uint64_t value() const { return *value_; }
+  /// From now on counts how often the instruction is executed.
+  void add_each(qemu_plugin_insn* instruction) const {
+    if (place_.score != nullptr) {
+      qemu_plugin_register_vcpu_insn_exec_inline_per_vcpu(instruction, QEMU_PLUGIN_INLINE_ADD_U64,
+                                                          place_, 1);
+    } else {
+      qemu_plugin_register_vcpu_insn_exec_inline(instruction, QEMU_PLUGIN_INLINE_ADD_U64, value_,
+                                                 1);
+    }
+  }
+
+ private:
+  static constexpr std::size_t kNumbers = 512;  // in a block
+  struct Block {
+    qemu_plugin_scoreboard* score = nullptr;
+    std::uint64_t* numbers = nullptr;
+    std::size_t used = kNumbers;
+  };
+  qemu_plugin_u64 place_{};
+  std::uint64_t* value_ = nullptr;
+};
+
 struct Function {
   std::string name;
-  std::uint64_t executed = 0;  // incremented by the emulator
-  std::uint64_t before = 0;    // value of `executed` when the tick began
+  Count executed;
+  std::uint64_t before = 0;  // value of `executed` when the tick began
   std::uint64_t max = 0;
   std::uint64_t total = 0;
 };
@@ -36,7 +78,7 @@ struct Function {
 struct Instruction {
   std::uint64_t begin = 0;
   std::uint64_t end = 0;
-  std::uint64_t executed = 0;    // incremented by the emulator
+  Count executed;
   std::uint64_t before = 0;      // value of `executed` at the first tick
   std::uint64_t lowest = ~0ULL;  // range of the addresses that it accesses in ticks
   std::uint64_t highest = 0;
@@ -60,7 +102,7 @@ constexpr std::uint64_t kBucket = 128;  // instructions; equal to emulation::kBu
 
 // Needs no locks, because a board with one core runs in one thread.
 struct Counter {
-  std::deque<Function> functions;  // a deque, because the emulator stores addresses of elements
+  std::deque<Function> functions;  // a deque, because `by_name` has addresses of elements
   std::unordered_map<std::string, Function*> by_name;
   std::deque<Instruction> instructions;
   bool notes_code = false;
@@ -91,7 +133,7 @@ struct Counter {
       end_tick();  // the previous tick was late: the board was not idle since
     } else if (seen == 0) {
       for (Instruction& instruction : instructions) {
-        instruction.before = instruction.executed;
+        instruction.before = instruction.executed.value();
       }
     }
     in_tick = true;
@@ -110,8 +152,8 @@ struct Counter {
   // Discards the instructions executed outside ticks.
   void forget() {
     for (Function& f : functions) {
-      start += seen == 0 ? f.executed - f.before : 0U;
-      f.before = f.executed;
+      start += seen == 0 ? f.executed.value() - f.before : 0U;
+      f.before = f.executed.value();
     }
   }
 
@@ -120,8 +162,8 @@ struct Counter {
     ++seen;
     std::uint64_t sum = 0;
     for (Function& f : functions) {
-      const std::uint64_t own = f.executed - f.before;
-      f.before = f.executed;
+      const std::uint64_t own = f.executed.value() - f.before;
+      f.before = f.executed.value();
       f.max = counts && own > f.max ? own : f.max;
       f.total += counts ? own : 0U;
       sum += own;
@@ -150,9 +192,8 @@ void note_data(unsigned, qemu_plugin_meminfo_t, std::uint64_t address, void* dat
 
 void note(qemu_plugin_insn* instruction) {
   const std::uint64_t begin = qemu_plugin_insn_vaddr(instruction);
-  counter.instructions.push_back({begin, begin + qemu_plugin_insn_size(instruction)});
-  qemu_plugin_register_vcpu_insn_exec_inline(instruction, QEMU_PLUGIN_INLINE_ADD_U64,
-                                             &counter.instructions.back().executed, 1);
+  counter.instructions.push_back({begin, begin + qemu_plugin_insn_size(instruction), {}});
+  counter.instructions.back().executed.add_each(instruction);
   qemu_plugin_register_vcpu_mem_cb(instruction, note_data, QEMU_PLUGIN_CB_NO_REGS,
                                    QEMU_PLUGIN_MEM_RW, &counter.instructions.back());
 }
@@ -178,8 +219,7 @@ void translated(qemu_plugin_id_t, qemu_plugin_tb* block) {
           instruction, [](unsigned, void*) { counter.begin_tick(); }, QEMU_PLUGIN_CB_NO_REGS,
           nullptr);
     }
-    qemu_plugin_register_vcpu_insn_exec_inline(instruction, QEMU_PLUGIN_INLINE_ADD_U64,
-                                               &function.executed, 1);
+    function.executed.add_each(instruction);
     if (counter.notes_code) {
       note(instruction);
     }
@@ -190,7 +230,7 @@ void translated(qemu_plugin_id_t, qemu_plugin_tb* block) {
 void write_code(std::FILE* file) {
   std::map<std::uint64_t, std::uint64_t> executed;
   for (const Instruction& instruction : counter.instructions) {
-    if (instruction.executed > instruction.before) {
+    if (instruction.executed.value() > instruction.before) {
       executed[instruction.begin] = instruction.end;
     }
   }
@@ -245,6 +285,13 @@ void write_report(qemu_plugin_id_t, void*) {
 }  // namespace
 
 int qemu_plugin_version = 1;
+
+namespace {
+// When the emulator has loaded the plugin and before it reads the version.
+[[gnu::constructor]] void select_version() {
+  qemu_plugin_version = qemu_plugin_scoreboard_new != nullptr ? 2 : 1;
+}
+}  // namespace
 
 int qemu_plugin_install(qemu_plugin_id_t id, const qemu_info_t*, int count, char** arguments) {
   for (int i = 0; i < count; ++i) {

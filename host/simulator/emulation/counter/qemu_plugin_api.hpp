@@ -1,6 +1,7 @@
 #pragma once
-// Subset of QEMU's plugin interface, version 1 (QEMU 4.2 .. 8), that the counter uses. QEMU
-// documents it in "QEMU TCG Plugins"; Debian does not package its header.
+// Subset of QEMU's plugin interface, versions 1 (QEMU 4.2 .. 8) and 2 (from 9 on), that the counter
+// uses. QEMU documents it in "QEMU TCG Plugins"; Debian does not package its header. What only one
+// of the versions has is weak: nullptr in the other.
 
 #include <cstddef>
 #include <cstdint>
@@ -35,8 +36,21 @@ const char* qemu_plugin_insn_symbol(const qemu_plugin_insn* instruction);
 void qemu_plugin_register_vcpu_insn_exec_cb(qemu_plugin_insn* instruction,
                                             void (*executed)(unsigned vcpu, void* user),
                                             qemu_plugin_cb_flags flags, void* user);
-void qemu_plugin_register_vcpu_insn_exec_inline(qemu_plugin_insn* instruction, qemu_plugin_op op,
-                                                void* counter, std::uint64_t amount);
+// Version 1: any address.
+[[gnu::weak]] void qemu_plugin_register_vcpu_insn_exec_inline(qemu_plugin_insn* instruction,
+                                                              qemu_plugin_op op, void* counter,
+                                                              std::uint64_t amount);
+// Version 2: a place in an element that the emulator has for each core, at first of zeros. With few
+// cores an element stays at its address.
+struct qemu_plugin_scoreboard;
+struct qemu_plugin_u64 {
+  qemu_plugin_scoreboard* score;
+  std::size_t offset;
+};
+[[gnu::weak]] qemu_plugin_scoreboard* qemu_plugin_scoreboard_new(std::size_t element_size);
+[[gnu::weak]] void* qemu_plugin_scoreboard_find(qemu_plugin_scoreboard* score, unsigned vcpu);
+[[gnu::weak]] void qemu_plugin_register_vcpu_insn_exec_inline_per_vcpu(
+    qemu_plugin_insn* instruction, qemu_plugin_op op, qemu_plugin_u64 entry, std::uint64_t amount);
 
 void qemu_plugin_register_vcpu_mem_cb(qemu_plugin_insn* instruction,
                                       void (*accessed)(unsigned vcpu, qemu_plugin_meminfo_t info,
