@@ -56,7 +56,8 @@ void add_params_command(CLI::App& app, int&) {
   auto options = std::make_shared<ParamsOptions>();
   CLI::App* verb =
       app.add_subcommand("params", "Lists and sets a board's calibration: names, values, ranges");
-  verb->add_option("NAME=NUMBER", options->settings, "a value to set until the board's next reset");
+  verb->add_option("SETTING", options->settings,
+                   "NAME=NUMBER: a value to set until the board's next reset");
   verb->add_flag("--save", options->save, "save all values permanently in the board");
   add_port_options(*verb, options->port);
   verb->add_option("--json", options->json, "write the list to this file");
