@@ -61,6 +61,7 @@ int run(int argc, char** argv) {
   add_keygen_command(app, exit_code);
   add_sign_command(app, exit_code);
   add_view_command(app, exit_code);
+  add_completion_command(app, exit_code);
   if (const std::string error = unknown_verb(app, argc > 1 ? argv[1] : ""); !error.empty()) {
     fmt::print(stderr, "tactree: error: {}\n", error);
     return kExitUsage;
