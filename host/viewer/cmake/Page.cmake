@@ -2,13 +2,31 @@
 #   AUTO  built where npm is there and gets its packages; else the program does without
 #   ON    built, or an error
 #   OFF   not built
-set(TACTREE_PAGE AUTO CACHE STRING "The page of tactree view: AUTO, ON or OFF")
+#   a folder: that of a page built before (page-dist of another build), for a machine without npm
+set(TACTREE_PAGE AUTO CACHE STRING "The page of tactree view: AUTO, ON, OFF or the folder of a built page")
 set_property(CACHE TACTREE_PAGE PROPERTY STRINGS AUTO ON OFF)
 
 set(page_source ${CMAKE_CURRENT_SOURCE_DIR}/page)
 set(page_build ${CMAKE_CURRENT_BINARY_DIR}/page)
 set(page_dist ${CMAKE_CURRENT_BINARY_DIR}/page-dist)
+set(page_is_built OFF)
+if(NOT TACTREE_PAGE MATCHES "^(AUTO|ON|OFF)$")
+  set(page_is_built ON)
+  cmake_path(ABSOLUTE_PATH TACTREE_PAGE BASE_DIRECTORY ${PROJECT_SOURCE_DIR} OUTPUT_VARIABLE page_dist)
+endif()
 set(page_files ${page_dist}/index.html ${page_dist}/assets/page.js ${page_dist}/assets/page.css)
+set(tactree_page_assets
+  / text/html ${page_dist}/index.html
+  /assets/page.js text/javascript ${page_dist}/assets/page.js
+  /assets/page.css text/css ${page_dist}/assets/page.css)
+if(page_is_built)
+  foreach(file IN LISTS page_files)
+    if(NOT EXISTS ${file})
+      message(FATAL_ERROR "TACTREE_PAGE=${TACTREE_PAGE}: there is no ${file} (AUTO, ON, OFF, or the folder of a built page)")
+    endif()
+  endforeach()
+  return()
+endif()
 
 set(page_wanted ${TACTREE_PAGE})
 find_program(TACTREE_NPM npm)
@@ -31,7 +49,3 @@ add_custom_command(OUTPUT ${page_files}
   DEPENDS ${page_sources} ${CMAKE_CURRENT_SOURCE_DIR}/cmake/build_page.cmake
   COMMENT "Building the page of tactree view"
   VERBATIM)
-set(tactree_page_assets
-  / text/html ${page_dist}/index.html
-  /assets/page.js text/javascript ${page_dist}/assets/page.js
-  /assets/page.css text/css ${page_dist}/assets/page.css)

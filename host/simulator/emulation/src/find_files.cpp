@@ -14,12 +14,11 @@ namespace fs = std::filesystem;
 
 constexpr char kCounter[] = "tactree_instruction_counter.so";
 
-/// Folder lib/tactree of the installation that contains this program; empty if /proc is not
-/// available.
-fs::path installed() {
+/// A folder of the installation that contains this program; empty if /proc is not available.
+fs::path installed(const fs::path& folder) {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  return error ? fs::path() : program.parent_path().parent_path() / TACTREE_LIBRARY_FOLDER;
+  return error ? fs::path() : program.parent_path().parent_path() / folder;
 }
 
 fs::path first_existing(const std::vector<fs::path>& candidates) {
@@ -35,8 +34,8 @@ fs::path first_existing(const std::vector<fs::path>& candidates) {
 }  // namespace
 
 fs::path find_counter() {
-  const fs::path found =
-      first_existing({installed() / kCounter, fs::path(TACTREE_COUNTER_BUILT) / kCounter});
+  const fs::path found = first_existing(
+      {installed(TACTREE_LIBRARY_FOLDER) / kCounter, fs::path(TACTREE_COUNTER_BUILT) / kCounter});
   if (found.empty()) {
     throw EmulationError(fmt::format("{} is missing (install or build Tactree again)", kCounter));
   }
@@ -59,7 +58,7 @@ fs::path find_image(const BoardDescription& board, const fs::path& folder) {
   } else if (named != nullptr) {
     found = first_existing({fs::path(named) / file});
   } else {
-    found = first_existing({installed() / "firmware" / file, built / file});
+    found = first_existing({installed("lib/tactree/firmware") / file, built / file});
   }
   if (!found.empty()) {
     return found;
