@@ -75,6 +75,8 @@ class PkgConfig(unittest.TestCase):
         symbols = output("nm", "--dynamic", "--defined-only", self.folder.parent / LIBRARY)
         exported = {line.split()[2] for line in symbols.splitlines()} - {"TACTREE_CLIENT_0"}
         self.assertEqual(exported, {f"{name}@@TACTREE_CLIENT_0" for name in declared})
+        packaged = (SOURCES / "debian/libtactree-client0.symbols").read_text()
+        self.assertEqual(set(re.findall(r"^ (tactree_\w+)@", packaged, re.M)), declared)
 
     def test_components_are_installed_alone(self):
         for component, wanted, unwanted in (("client-library", f"{LIBRARY}.0", LIBRARY),

@@ -38,7 +38,7 @@ void add_check_command(CLI::App& app, int& exit_code);
 void add_info_command(CLI::App& app, int& exit_code);
 void add_query_command(CLI::App& app, int& exit_code);
 
-/// Last, as it prints the names of the others.
+/// Prints the names of the others and of their options.
 void add_completion_command(CLI::App& app, int& exit_code);
 
 }  // namespace tactree::cli
