@@ -8,12 +8,14 @@
 #include <thread>
 
 #include "await_response.hpp"
+#include "stm32f4/usb_otg_fs.hpp"
 #include "tactree/client/client.hpp"
 #include "tactree/client/usb_transport.hpp"
 #include "tactree/hal/linux/usbip_controller.hpp"
 #include "tactree/serve/usb_target.hpp"
 #include "tactree/simulation/simulation.hpp"
 #include "test_models.hpp"
+#include "vhci_host.hpp"
 
 namespace tactree::vm_test {
 
@@ -33,11 +35,60 @@ template <class Condition>
   return true;
 }
 
+/// A high-speed device by USB/IP.
+class UsbIpPort {
+ public:
+  static constexpr bool kHighSpeed = true;
+  using Controller = hal::linux_usb::UsbIpController;
+
+  [[nodiscard]] Controller& controller() { return usb_; }
+  void plug_in() { usb_.plug_in(); }
+  void unplug() { usb_.unplug(); }
+  [[nodiscard]] bool plugged_in() const { return usb_.plugged_in(); }
+  void turn() {}
+
+ private:
+  Controller usb_;
+};
+
+/// The driver of the OTG FS core of a chip, on a model of the core: what the kernel submits becomes
+/// transactions on its bus.
+class OtgPort {
+ public:
+  static constexpr bool kHighSpeed = false;
+  using Controller = firmware::stm32f4::UsbOtgFs<test::FakeWord>;
+
+  OtgPort() { EXPECT_TRUE(driver_.start()); }
+  ~OtgPort() { EXPECT_EQ(core_.violation, ""); }
+
+  [[nodiscard]] Controller& controller() { return driver_; }
+  void plug_in() {
+    core_.suspend(false);
+    kernel_.plug_in();
+  }
+  void unplug() {
+    kernel_.unplug();
+    core_.suspend(true);  // without a host the bus is idle
+  }
+  [[nodiscard]] bool plugged_in() const { return kernel_.plugged_in(); }
+  void turn() { kernel_.turn(kTokens); }
+  void record(test::UsbRecording& recording) { kernel_.recording = &recording; }
+
+ private:
+  static constexpr int kTokens = 19;  // packets of 64 bytes in a frame (USB 2.0, table 5-9)
+  test::FakeUsbOtg core_;
+  test::UsbHost host_{core_};
+  Controller driver_{core_.block};
+  VhciHost kernel_{host_};
+};
+
+template <class Port>
 class BoardOnUsb {
  public:
   /// period: of a tick; 0: as fast as it goes.
-  explicit BoardOnUsb(std::chrono::microseconds period = std::chrono::milliseconds(1))
-      : period_(period), thread_([this] { run(); }) {}
+  explicit BoardOnUsb(std::chrono::microseconds period = std::chrono::milliseconds(1),
+                      test::UsbRecording* recording = nullptr)
+      : period_(period), recording_(recording), thread_([this] { run(); }) {}
   ~BoardOnUsb() {
     end_ = true;
     thread_.join();
@@ -56,7 +107,7 @@ class BoardOnUsb {
   [[nodiscard]] std::uint64_t ticks() const { return ticks_; }
 
  private:
-  using Target = serve::UsbTarget<hal::linux_usb::UsbIpController>;
+  using Target = serve::UsbTarget<typename Port::Controller>;
 
   static simulation::Setup setup() {
     simulation::Setup setup;
@@ -70,8 +121,14 @@ class BoardOnUsb {
     identity.serial = {0x11111111, 0x22222222, 0x33333333};
     serve::ServeOptions options;
     options.slot_bytes = 1U << 20U;
-    hal::linux_usb::UsbIpController usb;
-    auto owned = std::make_unique<Target>(usb, identity, bytes, options);
+    const auto port = std::make_unique<Port>();
+    if constexpr (!Port::kHighSpeed) {
+      if (recording_ != nullptr) {
+        port->record(*recording_);
+      }
+    }
+    auto owned =
+        std::make_unique<Target>(port->controller(), identity, bytes, options, Port::kHighSpeed);
     Target& target = *owned;
     simulation::Simulation sim(bytes, setup(), simulation::HandPath({{0.0, {0.05, 0.0, 0.0}}}),
                                std::move(owned));
@@ -81,28 +138,31 @@ class BoardOnUsb {
       ++ticks_;
       next = std::max(next + period_, Clock::now());
       do {
-        move_cable(usb);
+        move_cable(*port);
         target.serve();
+        port->turn();
         model_state_ = target.device().model().state();
         if (period_.count() > 0) {
           std::this_thread::sleep_for(std::chrono::microseconds(50));
         }
       } while (Clock::now() < next && !end_);
     }
+    port->unplug();
   }
 
-  void move_cable(hal::linux_usb::UsbIpController& usb) {
-    if (wanted_ != usb.plugged_in()) {
+  void move_cable(Port& port) {
+    if (wanted_ != port.plugged_in()) {
       if (wanted_) {
-        usb.plug_in();
+        port.plug_in();
       } else {
-        usb.unplug();
+        port.unplug();
       }
     }
-    plugged_ = usb.plugged_in();
+    plugged_ = port.plugged_in();
   }
 
   std::chrono::microseconds period_;
+  test::UsbRecording* recording_;
   std::atomic<bool> end_ = false;
   std::atomic<bool> wanted_ = true;
   std::atomic<bool> plugged_ = false;

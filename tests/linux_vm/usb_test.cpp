@@ -6,8 +6,12 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <cstdlib>
+#include <fstream>
+#include <iostream>
 #include <random>
+#include <sstream>
 
 #include "board_on_usb.hpp"
 
@@ -16,13 +20,13 @@ namespace {
 
 using core::wire::MessageKind;
 
-std::uint64_t packets_wanted() {
-  const char* const text = std::getenv("TACTREE_TELEMETRY_PACKETS");
-  return text == nullptr ? 1'000'000 : std::strtoull(text, nullptr, 10);
-}
+template <class Port>
+class Usb : public testing::Test {};
+using Ports = testing::Types<UsbIpPort, OtgPort>;
+TYPED_TEST_SUITE(Usb, Ports);
 
-TEST(Usb, ListsNameAndSerialNumber) {
-  const BoardOnUsb board;
+TYPED_TEST(Usb, ListsNameAndSerialNumber) {
+  const BoardOnUsb<TypeParam> board;
   std::vector<client::UsbDeviceInfo> devices;
   ASSERT_TRUE(eventually([&] {
     devices = client::list_usb_devices();
@@ -34,8 +38,8 @@ TEST(Usb, ListsNameAndSerialNumber) {
   EXPECT_EQ(devices[0].problem, "");
 }
 
-TEST(Usb, WindowsFindsItsDescriptors) {
-  const BoardOnUsb board;
+TYPED_TEST(Usb, WindowsFindsItsDescriptors) {
+  const BoardOnUsb<TypeParam> board;
   const auto opened = open_board();
   ASSERT_TRUE(opened);
   libusb_context* context = nullptr;
@@ -58,8 +62,8 @@ TEST(Usb, WindowsFindsItsDescriptors) {
   libusb_exit(context);
 }
 
-TEST(Usb, HaltedEndpointResumesWhenCleared) {
-  const BoardOnUsb board;
+TYPED_TEST(Usb, HaltedEndpointResumesWhenCleared) {
+  const BoardOnUsb<TypeParam> board;
   auto transport = open_board();
   ASSERT_TRUE(transport);
   transport.reset();
@@ -82,8 +86,8 @@ TEST(Usb, HaltedEndpointResumesWhenCleared) {
   libusb_exit(context);
 }
 
-TEST(Usb, RefusesSecondProgram) {
-  const BoardOnUsb board;
+TYPED_TEST(Usb, RefusesSecondProgram) {
+  const BoardOnUsb<TypeParam> board;
   const auto first = open_board();
   ASSERT_TRUE(first);
   try {
@@ -95,8 +99,8 @@ TEST(Usb, RefusesSecondProgram) {
   }
 }
 
-TEST(Usb, MissingPermissionNamesUdevRule) {
-  const BoardOnUsb board;
+TYPED_TEST(Usb, MissingPermissionNamesUdevRule) {
+  const BoardOnUsb<TypeParam> board;
   ASSERT_TRUE(open_board());
   const pid_t child = fork();
   if (child == 0) {
@@ -111,7 +115,7 @@ TEST(Usb, MissingPermissionNamesUdevRule) {
   EXPECT_EQ(status, 0);
 }
 
-TEST(Usb, NamesMissingBoard) {
+TEST(NoUsb, NamesMissingBoard) {
   try {
     (void)client::open_usb("ABCD");
     FAIL() << "opened what is not there";
@@ -120,8 +124,8 @@ TEST(Usb, NamesMissingBoard) {
   }
 }
 
-TEST(Usb, MeasuresRoundTrip) {
-  const BoardOnUsb board;
+TYPED_TEST(Usb, MeasuresRoundTrip) {
+  const BoardOnUsb<TypeParam> board;
   Application application(open_board());
   ASSERT_TRUE(application.open().ok());
   std::vector<double> took_ms;
@@ -136,8 +140,8 @@ TEST(Usb, MeasuresRoundTrip) {
 }
 
 /// Each tick has a message; one that does not come was counted by the board.
-TEST(Usb, CountsLostTelemetry) {
-  const BoardOnUsb board(std::chrono::microseconds(0));
+TYPED_TEST(Usb, CountsLostTelemetry) {
+  const BoardOnUsb<TypeParam> board(std::chrono::microseconds(0));
   Application application(open_board());
   ASSERT_TRUE(application.open().ok());
   std::uint64_t received = 0;
@@ -157,15 +161,15 @@ TEST(Usb, CountsLostTelemetry) {
   ASSERT_TRUE(
       application.ask(MessageKind::kSubscribe, core::wire::SubscribeRequest{0x3FF, 1}).ok());
   constexpr std::uint64_t kPacketBytes = 64;  // bulk, at full speed
-  const std::uint64_t wanted = packets_wanted();
+  constexpr std::uint64_t kWanted = TypeParam::kHighSpeed ? 1'000'000 : 100'000;  // a slow model
   const Clock::time_point begin = Clock::now();
   Clock::time_point progress = begin;
-  while (application.received() < kPacketBytes * wanted && Clock::now() - progress < kPatience) {
+  while (application.received() < kPacketBytes * kWanted && Clock::now() - progress < kPatience) {
     const std::uint64_t before = received;
     application.turn();
     progress = received != before ? Clock::now() : progress;
   }
-  EXPECT_GE(application.received(), kPacketBytes * wanted);
+  EXPECT_GE(application.received(), kPacketBytes * kWanted);
   EXPECT_EQ(unnoticed, 0U);
   EXPECT_EQ(application.client().damaged(), 0U);
   std::printf(
@@ -176,8 +180,8 @@ TEST(Usb, CountsLostTelemetry) {
       std::chrono::duration<double>(Clock::now() - begin).count());
 }
 
-TEST(Usb, NotifiesOfStateChanges) {
-  const BoardOnUsb board;
+TYPED_TEST(Usb, NotifiesOfStateChanges) {
+  const BoardOnUsb<TypeParam> board;
   Application application(open_board());
   ASSERT_TRUE(application.open().ok());
   std::vector<std::uint32_t> states;
@@ -206,8 +210,8 @@ TEST(Usb, NotifiesOfStateChanges) {
 }
 
 /// Unplugs the board when idle, during a request, telemetry, a half-written request.
-TEST(Usb, SurvivesUnplugAtAnyMoment) {
-  BoardOnUsb board;
+TYPED_TEST(Usb, SurvivesUnplugAtAnyMoment) {
+  BoardOnUsb<TypeParam> board;
   std::mt19937 random(1);
   for (int round = 0; round < 24; ++round) {
     board.plug(true);
@@ -243,8 +247,8 @@ TEST(Usb, SurvivesUnplugAtAnyMoment) {
   }
 }
 
-TEST(Usb, ReportsHotplugWithoutUdev) {
-  BoardOnUsb board;
+TYPED_TEST(Usb, ReportsHotplugWithoutUdev) {
+  BoardOnUsb<TypeParam> board;
   client::UsbWatch watch(std::chrono::milliseconds(20));
   const auto wait_for = [&](bool arrived) {
     return eventually([&] {
@@ -263,9 +267,9 @@ TEST(Usb, ReportsHotplugWithoutUdev) {
 }
 
 /// A program that ends in the middle of a DFU transfer, and a cable that is pulled there.
-TEST(Usb, InterruptedDfuTransferKeepsModel) {
-  BoardOnUsb board;
-  const auto& model = BoardOnUsb::blob().written().bytes;
+TYPED_TEST(Usb, InterruptedDfuTransferKeepsModel) {
+  BoardOnUsb<TypeParam> board;
+  const auto& model = BoardOnUsb<TypeParam>::blob().written().bytes;
   const auto* const bytes = reinterpret_cast<const unsigned char*>(model.data());
   const std::vector<unsigned char> first_block(bytes, bytes + 512);
   for (const bool pull : {false, true}) {
@@ -308,6 +312,72 @@ TEST(Usb, InterruptedDfuTransferKeepsModel) {
     ASSERT_TRUE(state.read(reply));
     EXPECT_EQ(reply.state, static_cast<std::uint8_t>(core::State::kIdle)) << "the model is there";
   }
+}
+
+int run(const std::string& command) { return std::system((command + " >&2").c_str()); }
+
+test::UsbBytes contents(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+void exchange_models_by_dfu_util(const test::UsbBytes& model, int times) {
+  const std::string tool = "dfu-util -d 1209:0001 -a model ";
+  const std::string file = "/run/uploaded";
+  for (int i = 0; i < times; ++i) {
+    std::remove(file.c_str());
+    ASSERT_EQ(run(tool + "-U " + file), 0);
+    EXPECT_EQ(contents(file), model);
+    ASSERT_EQ(run(tool + "-D " + file), 0);
+  }
+}
+
+template <class Port>
+test::UsbBytes model_of_board() {
+  const auto& model = BoardOnUsb<Port>::blob().written().bytes;
+  const auto* const bytes = reinterpret_cast<const std::uint8_t*>(model.data());
+  return {bytes, bytes + model.size()};
+}
+
+TYPED_TEST(Usb, ServesDfuUtil) {
+  const BoardOnUsb<TypeParam> board;
+  ASSERT_TRUE(open_board());
+  exchange_models_by_dfu_util(model_of_board<TypeParam>(), 2);
+}
+
+/// Prints what this kernel, libusb, lsusb and dfu-util submit: scripts/record-usb-host.
+TEST(UsbRecording, DISABLED_OfLinuxHost) {
+  std::ostringstream text;
+  test::UsbRecording recording(text);
+  {
+    const BoardOnUsb<OtgPort> board(std::chrono::milliseconds(1), &recording);
+    {
+      Application application(open_board());
+      ASSERT_TRUE(application.open().ok());
+      ASSERT_TRUE(application.ask(MessageKind::kIdentify).ok());
+      int messages = 0;
+      application.client().on_telemetry([&](const client::Telemetry&) { ++messages; });
+      ASSERT_TRUE(
+          application.ask(MessageKind::kSubscribe, core::wire::SubscribeRequest{0x3FF, 1}).ok());
+      while (messages < 10) {
+        application.turn();
+      }
+      ASSERT_TRUE(
+          application.ask(MessageKind::kSubscribe, core::wire::SubscribeRequest{0, 1}).ok());
+      using core::wire::ControlCode;
+      for (const ControlCode code : {ControlCode::kArm, ControlCode::kStop}) {
+        const core::wire::ControlRequest request{static_cast<std::uint8_t>(code), {}, 0};
+        ASSERT_TRUE(application.ask(MessageKind::kControl, request).ok());
+        ASSERT_TRUE(eventually([&] {
+          application.turn();
+          return application.transport().take_news().has_value();
+        }));
+      }
+    }
+    ASSERT_EQ(run("lsusb -v -d 1209:0001"), 0);
+    exchange_models_by_dfu_util(model_of_board<OtgPort>(), 1);
+  }
+  std::cout << "recording begins\n" << text.str() << "recording ends\n";
 }
 
 }  // namespace

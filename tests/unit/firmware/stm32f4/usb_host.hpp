@@ -9,6 +9,7 @@
 #include <deque>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "fake_usb_otg.hpp"
@@ -17,15 +18,30 @@
 
 namespace tactree::test {
 
+/// A transfer at a bulk or interrupt endpoint.
+struct UsbTransfer {
+  std::uint32_t id = 0;       ///< 0: of the host itself
+  std::uint8_t endpoint = 0;  ///< with bit 7: to the host; ends with a short packet, or full
+  std::size_t size = 0;       ///< bytes at most
+  UsbBytes bytes;             ///< to the device, or received up to now
+  std::size_t sent = 0;
+
+  [[nodiscard]] bool to_host() const { return (endpoint & 0x80U) != 0U; }
+};
+
 class UsbHost {
  public:
   using SetupPacket = core::usb::SetupPacket;
   enum class Result : std::uint8_t { kPending, kDone, kStalled, kFailed };
+  struct Ended {
+    UsbTransfer transfer;
+    Result result = Result::kDone;
+  };
 
   explicit UsbHost(FakeUsbOtg& core) : core_(core) {}
 
   // Behaviour.
-  bool reads = true;          ///< asks for bulk data
+  bool reads = true;          ///< asks for bulk data and news by itself
   bool loses = false;         ///< every eighth handshake or so
   std::uint32_t address = 0;  ///< of the device
 
@@ -33,7 +49,7 @@ class UsbHost {
   void begin_reset() {
     control_ = {};
     control_.result = Result::kFailed;
-    out_.clear();
+    pipes_ = make_pipes();
     configured_ = false;
     address = 0;
     core_.begin_bus_reset();
@@ -48,37 +64,51 @@ class UsbHost {
   [[nodiscard]] Result result() const { return control_.result; }
   [[nodiscard]] const UsbBytes& answer() const { return control_.in; }
 
-  /// After SET_CONFIGURATION or SET_INTERFACE: both sides begin with DATA0.
+  void submit(UsbTransfer transfer) {
+    pipe(transfer.endpoint).queue.push_back(std::move(transfer));
+  }
+  /// False: there is no such transfer any more.
+  bool cancel(std::uint32_t id) {
+    std::size_t cancelled = 0;
+    for (Pipe& pipe : pipes_) {
+      cancelled += std::erase_if(pipe.queue, [&](const auto& t) { return t.id == id; });
+    }
+    return cancelled != 0U;
+  }
+  std::deque<Ended> take_ended() { return std::exchange(ended_, {}); }
+
+  /// Both sides begin with DATA0.
   void open() {
     configured_ = true;
-    toggles_ = {};
-    read_.clear();
-    news_read_.clear();
+    for (Pipe& pipe : pipes_) {
+      pipe.toggle = 0;
+      std::erase_if(pipe.queue, [](const auto& t) { return t.id == 0U && t.to_host(); });
+    }
   }
-  void clear_toggle(std::uint8_t endpoint) { toggle_of(endpoint) = 0; }
-  void write(const UsbBytes& bytes) { out_.insert(out_.end(), bytes.begin(), bytes.end()); }
-  [[nodiscard]] std::size_t unwritten() const { return out_.size(); }
-  /// Of bulk reads that have ended: with a short packet, or full.
-  UsbBytes take_read() { return std::exchange(done_, {}); }
+  void write(const UsbBytes& bytes) { submit({0, core::usb::kBulkOut, bytes.size(), bytes, 0}); }
+  [[nodiscard]] std::size_t unwritten() const {
+    std::size_t bytes = 0;
+    for (const UsbTransfer& transfer : pipes_[1].queue) {
+      bytes += transfer.size - transfer.sent;
+    }
+    return bytes;
+  }
+  /// Of bulk reads that have ended.
+  UsbBytes take_read() { return std::exchange(read_, {}); }
   UsbBytes take_news() { return std::exchange(news_, {}); }
 
   /// Returns false if nothing is to do.
   bool step() {
     for (int i = 0; i < 4; ++i) {
       next_ = (next_ + 1) % 4;
-      const bool acted = next_ == 0   ? step_control()
-                         : next_ == 1 ? step_read(1, done_, read_, kReadBytes, reads)
-                         : next_ == 2
-                             ? step_write()
-                             : step_read(2, news_, news_read_, sizeof(core::usb::NewsPacket), true);
-      if (acted) {
+      if (next_ == 3 ? step_control() : step_pipe(pipes_[static_cast<std::size_t>(next_)])) {
         return true;
       }
     }
     return false;
   }
 
-  std::string error;  ///< of a bulk or interrupt pipe: the host would give up
+  std::string error;  ///< of a pipe without a transfer that could end with it
   std::uint64_t naks = 0;
 
  private:
@@ -94,6 +124,14 @@ class UsbHost {
     std::size_t sent = 0;
     int errors = 0;
     Result result = Result::kPending;
+  };
+  struct Pipe {
+    std::uint8_t endpoint;
+    std::size_t packet;
+    std::size_t read_bytes;  // of a transfer of the host itself
+    int toggle = 0;
+    int silent = 0;
+    std::deque<UsbTransfer> queue{};
   };
 
   bool lost() { return loses && random_() % 8U == 0U; }
@@ -111,7 +149,19 @@ class UsbHost {
     } else if (handshake == Handshake::kAck) {
       control_.errors = 0;
     }
+    if (control_.result == Result::kDone) {
+      clear_toggles(control_.setup);
+    }
     return true;
+  }
+  void clear_toggles(const SetupPacket& setup) {
+    using namespace core::usb;
+    if ((setup.bmRequestType == 0x00 && setup.bRequest == kSetConfiguration) ||
+        (setup.bmRequestType == 0x01 && setup.bRequest == kSetInterface)) {
+      open();
+    } else if (setup.bmRequestType == 0x02 && setup.bRequest == kClearFeature) {
+      pipe(static_cast<std::uint8_t>(setup.wIndex)).toggle = 0;
+    }
   }
 
   Handshake transact_control() {
@@ -170,67 +220,87 @@ class UsbHost {
     return reply.handshake;
   }
 
-  bool step_read(std::uint32_t n, UsbBytes& done, UsbBytes& under_way, std::size_t size,
-                 bool asks) {
-    if (!configured_ || !asks || !error.empty()) {
+  bool step_pipe(Pipe& pipe) {
+    if (!configured_ || !error.empty()) {
       return false;
     }
-    int& toggle = toggle_of(static_cast<std::uint8_t>(n | 0x80U));
-    const FakeUsbOtg::InReply reply = core_.in(address, n, !lost());
-    naks += reply.handshake == Handshake::kNak ? 1U : 0U;
-    note(n, reply.handshake);
-    if (reply.handshake == Handshake::kAck && reply.toggle == toggle) {
-      toggle ^= 1;
-      under_way.insert(under_way.end(), reply.data.begin(), reply.data.end());
-      const std::size_t packet = n == 1U ? kPacket : 16U;
-      if (reply.data.size() < packet || under_way.size() >= size) {
-        done.insert(done.end(), under_way.begin(), under_way.end());
-        under_way.clear();
-      }
+    if (pipe.queue.empty() && pipe.read_bytes != 0U && reads) {
+      pipe.queue.push_back({0, pipe.endpoint, pipe.read_bytes, {}, 0});
     }
-    return true;
-  }
-
-  bool step_write() {
-    if (!configured_ || out_.empty() || !error.empty()) {
+    if (pipe.queue.empty()) {
       return false;
     }
-    int& toggle = toggle_of(core::usb::kBulkOut);
-    const auto size = static_cast<long>(std::min(kPacket, out_.size()));
+    UsbTransfer& transfer = pipe.queue.front();
+    if (transfer.id == 0U && transfer.to_host() && !reads) {
+      return false;
+    }
+    bool ended = false;
     const Handshake handshake =
-        core_.out(address, 1, toggle, UsbBytes(out_.begin(), out_.begin() + size));
+        transfer.to_host() ? step_in(pipe, transfer, ended) : step_out(pipe, transfer, ended);
     naks += handshake == Handshake::kNak ? 1U : 0U;
-    note(1, handshake);
-    if (handshake == Handshake::kAck && !lost()) {
-      toggle ^= 1;
-      out_.erase(out_.begin(), out_.begin() + size);
+    pipe.silent = handshake == Handshake::kNone ? pipe.silent + 1 : 0;
+    if (ended) {
+      end(pipe, Result::kDone);
+    } else if (handshake == Handshake::kStall) {
+      end(pipe, Result::kStalled);
+    } else if (pipe.silent == 3) {
+      end(pipe, Result::kFailed);
     }
     return true;
   }
-
-  void note(std::uint32_t n, Handshake handshake) {
-    silent_ = handshake == Handshake::kNone ? silent_ + 1 : 0;
-    if (handshake == Handshake::kStall) {
-      error = "endpoint " + std::to_string(n) + " stalls";
-    } else if (silent_ == 3) {
-      error = "endpoint " + std::to_string(n) + " does not answer";
+  Handshake step_in(Pipe& pipe, UsbTransfer& transfer, bool& ended) {
+    const std::uint32_t number = pipe.endpoint & 0xFU;
+    const FakeUsbOtg::InReply reply = core_.in(address, number, !lost());
+    if (reply.handshake == Handshake::kAck && reply.toggle == pipe.toggle) {
+      pipe.toggle ^= 1;
+      transfer.bytes.insert(transfer.bytes.end(), reply.data.begin(), reply.data.end());
+      ended = reply.data.size() < pipe.packet || transfer.bytes.size() >= transfer.size;
     }
+    return reply.handshake;
+  }
+  Handshake step_out(Pipe& pipe, UsbTransfer& transfer, bool& ended) {
+    const auto begin = transfer.bytes.begin() + static_cast<long>(transfer.sent);
+    const std::size_t size = std::min(kPacket, transfer.size - transfer.sent);
+    const Handshake handshake = core_.out(address, pipe.endpoint, pipe.toggle,
+                                          UsbBytes(begin, begin + static_cast<long>(size)));
+    if (handshake == Handshake::kAck && !lost()) {
+      pipe.toggle ^= 1;
+      transfer.sent += size;
+      ended = transfer.sent == transfer.size;
+    }
+    return handshake;
+  }
+  void end(Pipe& pipe, Result result) {
+    UsbTransfer& transfer = pipe.queue.front();
+    if (transfer.id != 0U) {
+      ended_.push_back({std::move(transfer), result});
+    } else if (result != Result::kDone) {
+      error = "endpoint " + std::to_string(pipe.endpoint & 0xFU) +
+              (result == Result::kStalled ? " stalls" : " does not answer");
+      return;
+    } else if (transfer.to_host()) {
+      UsbBytes& to = pipe.endpoint == core::usb::kBulkIn ? read_ : news_;
+      to.insert(to.end(), transfer.bytes.begin(), transfer.bytes.end());
+    }
+    pipe.queue.pop_front();
   }
 
-  int& toggle_of(std::uint8_t endpoint) {
-    return toggles_[endpoint == core::usb::kBulkIn    ? 0U
-                    : endpoint == core::usb::kBulkOut ? 1U
-                                                      : 2U];
+  Pipe& pipe(std::uint8_t endpoint) {
+    return pipes_[endpoint == core::usb::kBulkIn ? 0U : endpoint == core::usb::kBulkOut ? 1U : 2U];
+  }
+  static std::array<Pipe, 3> make_pipes() {
+    return {{{core::usb::kBulkIn, kPacket, kReadBytes},
+             {core::usb::kBulkOut, kPacket, 0},
+             {core::usb::kNewsIn, sizeof(core::usb::NewsPacket), sizeof(core::usb::NewsPacket)}}};
   }
 
   FakeUsbOtg& core_;
   Control control_{.result = Result::kFailed};
-  std::array<int, 3> toggles_{};
-  std::deque<std::uint8_t> out_;
-  UsbBytes read_, done_, news_read_, news_;
+  std::array<Pipe, 3> pipes_ = make_pipes();
+  std::deque<Ended> ended_;
+  UsbBytes read_, news_;
   bool configured_ = false;
   int next_ = 0;
-  int silent_ = 0;
   std::minstd_rand random_{7};
 };
 

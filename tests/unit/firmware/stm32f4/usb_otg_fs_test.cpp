@@ -168,7 +168,6 @@ TEST_F(UsbOtg, StallsAndRecovers) {
     }
     EXPECT_NE(host.error.find("stalls"), std::string::npos);
     ASSERT_EQ(control({kToEndpoint, core::usb::kClearFeature, 0, endpoint, 0}), Result::kDone);
-    host.clear_toggle(endpoint);
     host.error = "";
     for (int i = 0; i < 10; ++i) {
       turn();

@@ -33,6 +33,8 @@ inline UsbBytes counting(std::size_t size, std::uint8_t first = 0) {
 
 class UsbOtg : public testing::Test {
  protected:
+  explicit UsbOtg(const core::usb::Identity& of = {.serial = {0x01234567, 0x89ABCDEF, 0x00C0FFEE}})
+      : identity(of) {}
   ~UsbOtg() override { EXPECT_EQ(core->violation, ""); }
 
   /// The device works, then the host.
@@ -69,7 +71,6 @@ class UsbOtg : public testing::Test {
   }
   void set_configuration() {
     ASSERT_EQ(control({kOut, core::usb::kSetConfiguration, 1, 0, 0}), Result::kDone);
-    host.open();
   }
   /// The requests of Linux 6.1 to a full-speed device.
   void enumerate() {
@@ -111,7 +112,6 @@ class UsbOtg : public testing::Test {
   void claim_link() {
     ASSERT_EQ(control({kToInterface, core::usb::kSetInterface, 0, core::usb::kLinkInterface, 0}),
               Result::kDone);
-    host.open();
   }
 
   /// Bytes that the session sends; those that the port did not take stay.
@@ -167,7 +167,7 @@ class UsbOtg : public testing::Test {
   int tokens_per_turn = 3;
   std::function<void()> at_each_turn = [] {};
   std::uint32_t now_us = 0;
-  core::usb::Identity identity{.serial = {0x01234567, 0x89ABCDEF, 0x00C0FFEE}};
+  core::usb::Identity identity;
   std::unique_ptr<FakeUsbOtg> core = std::make_unique<FakeUsbOtg>();
   UsbHost host{*core};
   Driver driver{core->block};

@@ -20,11 +20,11 @@ class UsbTarget : public ServedTarget {
   using Device = hal::UsbDevice<Controller, Model, Parameters>;
 
   UsbTarget(Controller& usb, const core::usb::Identity& identity, std::span<const std::byte> model,
-            const ServeOptions& options)
+            const ServeOptions& options, bool has_high_speed = true)
       : ServedTarget(port_, model, options),
         model_(store(), controller(), mailbox(), platform()),
         parameters_(controller(), platform()),
-        device_(usb, identity, true, model_, parameters_),
+        device_(usb, identity, has_high_speed, model_, parameters_),
         port_(device_) {}
 
   core::Status tick(hal::sim::SimBoard& board) override {
