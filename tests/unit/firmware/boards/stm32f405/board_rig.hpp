@@ -170,9 +170,7 @@ class BoardRig {
     bool good = usb_request({0x00, core::usb::kSetAddress, 5, 0, 0});
     usb_->address = 5;
     good = usb_request({0x00, core::usb::kSetConfiguration, 1, 0, 0}) && good;
-    usb_->open();
     good = usb_request({0x01, core::usb::kSetInterface, 0, core::usb::kLinkInterface, 0}) && good;
-    usb_->open();
     over_usb_ = good && !stays;
     return good;
   }

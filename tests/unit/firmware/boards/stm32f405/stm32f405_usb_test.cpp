@@ -8,6 +8,7 @@
 
 #include "analytic_shapes.hpp"
 #include "board_rig.hpp"
+#include "tactree/core/link/wire/frame.hpp"
 
 namespace tactree::test {
 namespace {
@@ -186,7 +187,30 @@ TEST_F(Stm32f405Usb, CableDoesNotDisturbSerialPort) {
   EXPECT_EQ(rig.status().state, core::State::kActive) << rig.status().faults;
 }
 
-// What arrives at the serial port is forgotten while an application uses USB.
+// While an application uses USB: a request at the serial port is not answered later.
+TEST_F(Stm32f405Usb, ForgetsWhatSerialPortReceivesMeanwhile) {
+  rig.boot();
+  ASSERT_TRUE(rig.plug_usb());
+  ASSERT_TRUE(rig.open().ok()) << "over USB";
+  rig.application_runs = false;
+  const auto kind = static_cast<std::uint8_t>(core::wire::MessageKind::kIdentify);
+  std::array<std::byte, core::wire::kMaxEncodedFrame> frame{};
+  const std::size_t size = core::wire::encode_frame({kind, 0, 1, 0, 0}, {}, frame);
+  const auto request = [&] {
+    for (const std::byte byte : std::span(frame).first(size)) {
+      rig.to_board().push_back(static_cast<std::uint8_t>(byte));
+    }
+    rig.run(10);
+  };
+  (void)rig.take_sent();
+  request();
+  rig.unplug_usb();
+  rig.run(60);
+  EXPECT_TRUE(rig.take_sent().empty());
+  request();
+  EXPECT_FALSE(rig.take_sent().empty()) << "it is answered now";
+}
+
 TEST_F(Stm32f405Usb, ReturnsToSerialPort) {
   rig.boot();
   ASSERT_TRUE(rig.open().ok());
