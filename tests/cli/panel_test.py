@@ -73,7 +73,7 @@ class Panel(BallFolder):
     def test_program_may_only_watch(self):
         with ServedBoard(TACTREE, self.blob, "--panel", *HOME_AND_ARM) as port:
             said = "operated by its button"
-            self.assertIn("  a program may only watch and stop it\n",
+            self.assertIn("  a program may only watch and stop it: it is operated by its button\n",
                           self.verb("devices", "--port", port, "--json", "devices.json"))
             self.assertTrue(self.read("devices.json")["devices"][0]["watch_only"])
             self.assertRegex(self.verb("monitor", "--once", "--port", port), f"state +idle .*{said}")

@@ -101,7 +101,7 @@ class Serve(BallFolder):
             self.assertIn("shared by tactree serve: this program may watch and stop", watched.stdout)
             self.assertIn(self.watch_port, self.run_tool("devices").stdout)
             probed = self.run_tool("devices", "--port", self.watch_port).stdout
-            self.assertIn("a program may only watch and stop it", probed)
+            self.assertIn("a program may only watch and stop it: another program shares it", probed)
             self.assertNotIn("button", probed)
             refused = self.run_tool("arm", "--port", self.watch_port)
             self.assertEqual(refused.returncode, 1)

@@ -194,7 +194,7 @@ Introduction Board::introduce(std::unique_ptr<Transport> transport) {
   core::wire::CapabilitiesReply can;
   const Response described = connection.call(MessageKind::kCapabilities);
   if (described.ok() && described.read(can)) {
-    introduction.watch_only = has_flag(can, core::wire::BoardFlag::kWatchOnly);
+    introduction.can = can;
   }
   return introduction;
 }

@@ -165,7 +165,8 @@ json capabilities(const core::wire::CapabilitiesReply& r) {
           {"link_required", has(kLinkRequired)},
           {"homed", has(kHomed)},
           {"work_is_reduced", has(kWorkReduced)},
-          {"watch_only", has(kWatchOnly)}};
+          {"watch_only", has(kWatchOnly)},
+          {"shared", has(kShared)}};
 }
 
 json status(const core::wire::StateReply& r) {

@@ -38,7 +38,8 @@ nlohmann::json probe(const std::string& port, unsigned baud) {
             {"serial",
              fmt::format("{:08x}{:08x}{:08x}", board.serial[0], board.serial[1], board.serial[2])},
             {"protocol", fmt::format("{}.{}", board.version_major, board.version_minor)},
-            {"watch_only", found.watch_only},
+            {"watch_only", has_flag(found.can, core::wire::BoardFlag::kWatchOnly)},
+            {"shared", has_flag(found.can, core::wire::BoardFlag::kShared)},
             {"complaints", client::complaints(found.start)}};
   } catch (const client::LinkError& error) {
     return {{"port", port}, {"error", error.what()}};
@@ -54,7 +55,9 @@ void print(const nlohmann::json& device) {
              device["board"].get<std::string>(), device["firmware"].get<std::string>(),
              device["serial"].get<std::string>(), device["protocol"].get<std::string>());
   if (device["watch_only"].get<bool>()) {
-    fmt::print("  a program may only watch and stop it\n");
+    fmt::print("  a program may only watch and stop it: {}\n",
+               device["shared"].get<bool>() ? "another program shares it"
+                                            : "it is operated by its button");
   }
   for (const auto& complaint : device["complaints"]) {
     fmt::print("  {}\n", complaint.get<std::string>());

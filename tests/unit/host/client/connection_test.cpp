@@ -192,12 +192,17 @@ TEST(Connection, NamesLinkTimeoutOfLostLink) {
             "link-lost");
 }
 
+bool watch_only(const std::string& port) {
+  return has_flag(client::Board::introduce(client::open_port(port, 0)).can,
+                  core::wire::BoardFlag::kWatchOnly);
+}
+
 TEST(Connection, ReportsStandAloneBoardBeforeCommands) {
   const RunningBoard operated;
-  EXPECT_FALSE(client::Board::introduce(client::open_port(operated.port(), 0)).watch_only);
+  EXPECT_FALSE(watch_only(operated.port()));
   client::Board(operated.port()).require_command("arm");
   const RunningBoard watched(0.04, false);
-  EXPECT_TRUE(client::Board::introduce(client::open_port(watched.port(), 0)).watch_only);
+  EXPECT_TRUE(watch_only(watched.port()));
   client::Board board(watched.port());
   const std::string who = ": the board is operated by its button";
   for (const auto& [what, command] : std::vector<std::pair<std::string, std::function<void()>>>{

@@ -64,8 +64,8 @@ struct TracedTick {
 /// Identity of a board and the result of its start, see complaints() (start_report.hpp).
 struct Introduction {
   core::wire::IdentifyReply board{};
-  core::wire::ReadStartReply start{};  ///< without complaints if the board does not send it
-  bool watch_only = false;             ///< see Board::require_command(); false on older boards
+  core::wire::ReadStartReply start{};   ///< without complaints if the board does not send it
+  core::wire::CapabilitiesReply can{};  ///< zeros on older boards
 };
 
 class Board {
