@@ -201,10 +201,10 @@ class Restart(Folder):
         with subprocess.Popen(command, cwd=self.path, env=ENVIRONMENT, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                               text=True) as process:
             with open(self.path / "scans/crash.xyz", "w", encoding="ascii"):  # the build has opened it, and waits
-                os.kill(child_of(process), signal.SIGABRT)  # which no sanitizer catches
+                os.kill(child_of(process), signal.SIGSEGV)
             _, errors = process.communicate()
         self.assertEqual(process.returncode, 1)
-        self.assertIn("scans/crash.xyz: the build was ended by signal 6 (", errors)
+        self.assertIn("scans/crash.xyz: the build was ended by signal 11 (", errors)
         self.assertEqual({name: row["result"] for name, row in self.manifest().items()},
                          {"a.xyz": "ok", "crash.xyz": "failed", "sub/a.xyz": "ok"})
 
