@@ -2,6 +2,7 @@
 
 usage: collection_test.py TACTREE [CLASS]
 """
+import contextlib
 import csv
 import json
 import math
@@ -30,10 +31,14 @@ def sheet():
     return "".join(f"{0.001 * i} {0.001 * j} {0.002 * math.sin(0.1 * i)}\n" for i in range(60) for j in range(60))
 
 
-def child_of(process):
-    """The process identifier of the only child."""
-    (child,) = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text(encoding="ascii").split()
-    return int(child)
+def kill_child_of(process):
+    """Its only child, as soon as there is one."""
+    children = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children")
+    while process.poll() is None:
+        if child := children.read_text(encoding="ascii"):
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(int(child), signal.SIGKILL)
+            break
 
 
 class Folder(ToolFolder):
@@ -194,19 +199,28 @@ class Restart(Folder):
         self.assertEqual(set(self.collect().values()), {"unchanged"})
         self.assertEqual(len(self.built()), 6)
 
-    def test_crash_ends_one_object(self):
-        os.mkfifo(self.path / "scans/crash.xyz")
-        self.write("scans/list.txt", "a.xyz\ncrash.xyz\nsub/a.xyz\n")
-        command = [TACTREE, "build", "--collection", "scans/list.txt", "-o", "out"]
+    def crash_second_object(self):
+        shutil.rmtree(self.path / "out", ignore_errors=True)
+        command = [TACTREE, "build", "--collection", "scans", "-o", "out"]
         with subprocess.Popen(command, cwd=self.path, env=ENVIRONMENT, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                               text=True) as process:
-            with open(self.path / "scans/crash.xyz", "w", encoding="ascii"):  # the build has opened it, and waits
-                os.kill(child_of(process), signal.SIGSEGV)
+            for line in process.stdout:
+                if " 1/3 a.xyz" in line:
+                    break
+            kill_child_of(process)
             _, errors = process.communicate()
-        self.assertEqual(process.returncode, 1)
-        self.assertIn("scans/crash.xyz: the build was ended by signal 11 (", errors)
+        return process.returncode, errors
+
+    def test_crash_ends_one_object(self):
+        self.write_scan("large.xyz", sphere(40000, 0.05))
+        for _ in range(10):  # this process may be too late
+            code, errors = self.crash_second_object()
+            if "scans/large.xyz: the build was ended by signal 9 (" in errors:
+                break
+        self.assertIn("scans/large.xyz: the build was ended by signal 9 (", errors)
+        self.assertEqual(code, 1)
         self.assertEqual({name: row["result"] for name, row in self.manifest().items()},
-                         {"a.xyz": "ok", "crash.xyz": "failed", "sub/a.xyz": "ok"})
+                         {"a.xyz": "ok", "large.xyz": "failed", "sub/a.xyz": "ok"})
 
 
 class Parts(Folder):
