@@ -102,6 +102,11 @@ class Link(BallFolder):
             self.assertIn(f"{port}: simulated board {BOARD}, model {self.blob}", done.stdout)
         self.assertNotIn(port, self.run_tool("devices", env=mine).stdout)
 
+    def test_ends_at_once(self):
+        for _ in range(5):
+            with ServedBoard(TACTREE, self.blob, "--board", BOARD):
+                pass
+
     @unittest.skipIf(BOARD != "host", "the messages do not depend on the board")
     def test_names_fault_and_hint(self):
         with ServedBoard(TACTREE, self.blob, "--board", BOARD, "--inject", "estop:pressed@0.02..0.05") as port:

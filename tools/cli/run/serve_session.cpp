@@ -35,7 +35,6 @@ class Pacer {
 }  // namespace
 
 void serve_session(simulation::Simulation& simulation, const ServeSchedule& schedule) {
-  watch_interruption();
   const double period_s = 1.0 / schedule.rate_hz;
   simulation::User user(schedule.rate_hz, schedule.path_s, schedule.presses);
   Pacer pacer(period_s);

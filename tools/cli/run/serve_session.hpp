@@ -21,7 +21,7 @@ struct ServeSchedule {
       wait;
 };
 
-/// Runs until the time is up or SIGINT or SIGTERM arrives, with a simulation::User at the device.
+/// Runs until the time is up or interrupted() is true, with a simulation::User at the device.
 void serve_session(simulation::Simulation& simulation, const ServeSchedule& schedule);
 
 }  // namespace tactree::cli

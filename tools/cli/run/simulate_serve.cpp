@@ -129,6 +129,7 @@ void refuse_results(const SimulateOptions& options) {
 }  // namespace
 
 void serve(const SimulateOptions& options, const setup::SceneFile& scene) {
+  watch_interruption();  // before a program finds the port: it may stop the board at once
   refuse_results(options);
   if (!options.pose.empty()) {
     refuse("--pose: a board gets the pose of its model from its application",
