@@ -41,6 +41,16 @@ class Serve(BallFolder):
                 self.said = program.communicate(timeout=30)[0]
             self.assertEqual(program.returncode, 0)
 
+    def test_ends_at_once(self):
+        with ServedBoard(TACTREE, self.blob) as port:
+            for _ in range(5):
+                program = subprocess.Popen([TACTREE, "serve", self.blob, "--port", port, "--tcp-port", "0"],
+                                           stdout=subprocess.PIPE, text=True, cwd=self.path)
+                program.stdout.readline()
+                program.terminate()
+                program.communicate(timeout=30)
+                self.assertEqual(program.returncode, 0)
+
     def test_program_pushes_as_long_as_it_answers(self):
         with self.served("--arm") as port:
             program = WebSocket(port)

@@ -317,6 +317,10 @@ class ServerTest(unittest.TestCase):
         page.close()
         server.stop()
 
+    def test_stops_right_after_its_start(self):
+        for _ in range(5):
+            self.assertEqual(Server(self.blob).stop(), 0)
+
     def test_stops_on_a_signal(self):
         server = Server(self.blob)
         page = Page(server)

@@ -47,6 +47,7 @@ std::string host_of(const tcp::endpoint& endpoint) {
 struct Listener::Parts {
   Parts(const ServerOptions& options, Content& content)
       : context(std::make_unique<asio::io_context>(1)),
+        signals(std::in_place, *context, SIGINT, SIGTERM),
         acceptor(listen(*context, options)),
         service{content, worker, host_of(acceptor->local_endpoint()), {}, {}} {
     const tcp::endpoint own = acceptor->local_endpoint();
@@ -63,6 +64,7 @@ struct Listener::Parts {
   // The context destroys the open connections, which refer to the service.
   void close() {
     acceptor.reset();
+    signals.reset();
     context.reset();
   }
 
@@ -80,6 +82,7 @@ struct Listener::Parts {
 
   asio::thread_pool worker{1};
   std::unique_ptr<asio::io_context> context;
+  std::optional<asio::signal_set> signals;  // caught before a program can find the port
   std::optional<tcp::acceptor> acceptor;
   Service service;
 };
@@ -97,8 +100,7 @@ asio::io_context& Listener::context() { return *parts_->context; }
 
 void Listener::run() {
   Parts& p = *parts_;
-  asio::signal_set signals(*p.context, SIGINT, SIGTERM);
-  signals.async_wait([this](boost::system::error_code error, int) {
+  p.signals->async_wait([this](boost::system::error_code error, int) {
     if (!error) {
       stop();
     }
