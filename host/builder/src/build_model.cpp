@@ -14,6 +14,7 @@
 #include "normals/normals.hpp"
 #include "normals/orient_cloud.hpp"
 #include "normals/report_orientation.hpp"
+#include "octree/rounding.hpp"
 #include "openings/gaps.hpp"
 #include "openings/two_sided.hpp"
 #include "sampling/ball_bound.hpp"
@@ -342,9 +343,10 @@ class Pipeline {
                                     static_cast<double>(p.z));
       const double off =
           (decoded - model_.positions[blob.source_index[index]]).cwiseAbs().maxCoeff();
-      const double cell = std::ldexp(static_cast<double>(view.step_m()),
+      const double site = std::ldexp(static_cast<double>(2.0F * view.step_m()),
                                      static_cast<int>(view.depth() - leaf.level));
-      if (!(off <= 1.0001 * cell)) {
+      const double reach = options_.profile == core::Profile::kSurface ? kSiteReach : 0.5;
+      if (!(off <= 1.0001 * reach * site)) {
         throw std::logic_error(fmt::format(
             "internal error: point {} of the written blob is displaced by {} m", index, off));
       }

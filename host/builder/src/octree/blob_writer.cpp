@@ -1,4 +1,5 @@
 #include <fmt/core.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <bit>
@@ -8,9 +9,9 @@
 
 #include "octree/interior.hpp"
 #include "octree/lattice.hpp"
-#include "octree/normal_code.hpp"
 #include "octree/octree_builder.hpp"
 #include "octree/query_bound.hpp"
+#include "octree/rounding.hpp"
 #include "sampling/ball_bound.hpp"
 #include "tactree/builder/model.hpp"
 #include "tactree/builder/version.hpp"
@@ -25,10 +26,14 @@ namespace {
 // and the edge of a leaf.
 constexpr double kReachUnits = core::kLeafUnits / 2 - 4;
 
+// Distance over which errors of normals compensate each other: to the points beside and diagonally
+// across on a grid, and well within the support of a fit.
+constexpr double kDiffusionSpacings = 1.6;
+
 Octree build_surface_octree(const Model& model, const Eigen::Vector3d& low,
                             const Eigen::Vector3d& high) {
   const double leaf_edge = model.reach_m * core::kLeafUnits / kReachUnits;
-  return build_octree(model.positions, choose_lattice(low, high, leaf_edge), 0);
+  return build_octree(model.positions, model.normals, choose_lattice(low, high, leaf_edge), 0);
 }
 
 std::uint32_t deepest(const Octree& tree) {
@@ -60,12 +65,12 @@ Octree build_paper_octree(const Model& model, Eigen::Vector3d low, Eigen::Vector
          std::ldexp(extent, -static_cast<int>(depth)) > model.spacing_m) {
     ++depth;
   }
-  Octree tree = build_octree(model.positions, bounding_lattice(low, high, depth),
+  Octree tree = build_octree(model.positions, {}, bounding_lattice(low, high, depth),
                              model.points_per_leaf_wanted);
   // If no leaf needs the finest level, a coarser lattice gives the same leaves.
   for (std::uint32_t used = deepest(tree); used < depth; used = deepest(tree)) {
     depth = used;
-    tree = build_octree(model.positions, bounding_lattice(low, high, depth),
+    tree = build_octree(model.positions, {}, bounding_lattice(low, high, depth),
                         model.points_per_leaf_wanted);
   }
   return tree;
@@ -295,14 +300,33 @@ void append_leaves(Serialiser& out, core::BlobHeader& header, const Octree& tree
   header.leaf_offsets = out.append(offsets);
 }
 
+// The codes of the points of a leaf depend on each other.
+std::vector<std::uint32_t> normal_codes(const Model& model, const Octree& tree) {
+  const double radius =
+      model.profile == core::Profile::kSurface ? kDiffusionSpacings * model.spacing_m : 0.0;
+  std::vector<std::uint32_t> codes(tree.order.size());
+  const auto encode = [&](std::size_t number) {
+    const BuiltLeaf& leaf = tree.leaves[number];
+    std::vector<Eigen::Vector3d> positions(leaf.count);
+    std::vector<Eigen::Vector3f> normals(leaf.count);
+    for (std::uint32_t i = 0; i < leaf.count; ++i) {
+      positions[i] = decode(tree, leaf, tree.words[leaf.first + i]);
+      normals[i] = model.normals[tree.order[leaf.first + i]];
+    }
+    encode_normals(positions, normals, radius, std::span(codes).subspan(leaf.first, leaf.count));
+  };
+  tbb::parallel_for(std::size_t{0}, tree.leaves.size(), encode);
+  return codes;
+}
+
 void append_points(Serialiser& out, core::BlobHeader& header, const Model& model,
                    const Octree& tree) {
+  const std::vector<std::uint32_t> codes = normal_codes(model, tree);
   std::vector<std::uint32_t> words = tree.words;
   std::vector<std::uint16_t> normals(words.size());
   for (std::size_t i = 0; i < words.size(); ++i) {
-    const std::uint32_t code = encode_normal(model.normals[tree.order[i]]);
-    words[i] |= code >> 16;
-    normals[i] = static_cast<std::uint16_t>(code);
+    words[i] |= codes[i] >> 16;
+    normals[i] = static_cast<std::uint16_t>(codes[i]);
   }
   header.points = out.append(words);
   header.normals = out.append(normals);

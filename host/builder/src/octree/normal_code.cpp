@@ -17,9 +17,8 @@ Eigen::Vector3d decode_normal(std::uint32_t code) {
   return n.normalized();
 }
 
-std::uint32_t encode_normal(const Eigen::Vector3f& normal) {
-  Eigen::Vector3d n = normal.cast<double>();
-  n /= n.lpNorm<1>();
+std::uint32_t encode_normal(const Eigen::Vector3d& normal) {
+  const Eigen::Vector3d n = normal / normal.lpNorm<1>();
   double u = n.x();
   double v = n.y();
   if (n.z() < 0.0) {
@@ -38,7 +37,7 @@ std::uint32_t encode_normal(const Eigen::Vector3f& normal) {
     const auto cv =
         static_cast<std::uint32_t>(std::clamp(fv + (corner >> 1), -255.0, 255.0) + 255.0);
     const std::uint32_t code = cu | cv << 9;
-    const double alignment = decode_normal(code).dot(normal.cast<double>());
+    const double alignment = decode_normal(code).dot(normal);
     if (alignment > best_dot) {
       best_dot = alignment;
       best = code;

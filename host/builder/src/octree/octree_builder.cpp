@@ -1,11 +1,13 @@
 #include "octree/octree_builder.hpp"
 
+#include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "geometry/morton.hpp"
+#include "octree/rounding.hpp"
 #include "tactree/core/model/octree.hpp"
 
 namespace tactree::builder {
@@ -13,7 +15,7 @@ namespace {
 
 using core::Int3;
 
-// Morton code of a point's cell of two lattice units, counted from the root. Sorting by it sorts by
+// Morton code of a point's site at the finest level, counted from the root. Sorting by it sorts by
 // octant at every level.
 struct Keyed {
   std::uint64_t key;
@@ -23,24 +25,18 @@ struct Keyed {
   }
 };
 
-int cell_on_axis(double v, double step, std::int32_t root, std::uint32_t depth) {
-  const double units = std::floor(v / step) - root;
-  const double last = static_cast<double>((std::int64_t{core::kLeafUnits} << depth) - 1);
-  return static_cast<int>(std::clamp(units, 0.0, last)) >> 1;
-}
-
-std::vector<Keyed> sorted_keys(const std::vector<Eigen::Vector3d>& positions,
-                               const Lattice& lattice) {
+std::vector<Keyed> sorted_keys(std::span<const Eigen::Vector3d> positions,
+                               std::span<const Eigen::Vector3f> normals, const Lattice& lattice) {
+  const Eigen::Vector3d root(lattice.root_min.x, lattice.root_min.y, lattice.root_min.z);
+  const auto last = static_cast<int>((std::int64_t{core::kLeafUnits / 2} << lattice.depth) - 1);
   std::vector<Keyed> keys(positions.size());
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    const auto& p = positions[i];
-    const auto axis = [&](double v, std::int32_t root) {
-      return cell_on_axis(v, lattice.step_m, root, lattice.depth);
-    };
-    const Eigen::Vector3i cell(axis(p.x(), lattice.root_min.x), axis(p.y(), lattice.root_min.y),
-                               axis(p.z(), lattice.root_min.z));
-    keys[i] = {morton_code(cell), static_cast<std::uint32_t>(i)};
-  }
+  const auto set_key = [&](std::size_t i) {
+    const Eigen::Vector3d at = 0.5 * (positions[i] / lattice.step_m - root);
+    const Eigen::Vector3d normal =
+        normals.empty() ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : normals[i].cast<double>();
+    keys[i] = {morton_code(site_on_plane(at, normal, last)), static_cast<std::uint32_t>(i)};
+  };
+  tbb::parallel_for(std::size_t{0}, keys.size(), set_key);
   tbb::parallel_sort(keys.begin(), keys.end());
   return keys;
 }
@@ -175,9 +171,10 @@ std::uint32_t find_cell(const Octree& tree, Int3 corner, std::uint32_t level) {
 
 }  // namespace
 
-Octree build_octree(const std::vector<Eigen::Vector3d>& positions, const Lattice& lattice,
+Octree build_octree(std::span<const Eigen::Vector3d> positions,
+                    std::span<const Eigen::Vector3f> normals, const Lattice& lattice,
                     std::uint32_t leaf_points) {
-  return OctreeBuilder(sorted_keys(positions, lattice), lattice, leaf_points).run();
+  return OctreeBuilder(sorted_keys(positions, normals, lattice), lattice, leaf_points).run();
 }
 
 std::vector<std::uint32_t> neighbour_table(const Octree& tree) {

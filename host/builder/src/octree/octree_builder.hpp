@@ -1,7 +1,9 @@
 #pragma once
 // Quantised points in depth-first leaf order, and the octree over them.
 
+#include <Eigen/Core>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "octree/lattice.hpp"
@@ -26,9 +28,11 @@ struct Octree {
 
 /// Splits the root until a leaf holds at most `leaf_points` points or has the finest edge of the
 /// lattice; 0 splits every leaf down to the finest edge. Keeps the first of several points at one
-/// lattice site.
-[[nodiscard]] Octree build_octree(const std::vector<Eigen::Vector3d>& positions,
-                                  const Lattice& lattice, std::uint32_t leaf_points);
+/// lattice site. With one unit normal per position, a position is rounded to a site near its
+/// tangent plane (rounding.hpp); without, to the site that contains it.
+[[nodiscard]] Octree build_octree(std::span<const Eigen::Vector3d> positions,
+                                  std::span<const Eigen::Vector3f> normals, const Lattice& lattice,
+                                  std::uint32_t leaf_points);
 
 /// The neighbours of the leaves, six entries per leaf; encoding: blob_format.hpp.
 [[nodiscard]] std::vector<std::uint32_t> neighbour_table(const Octree& tree);

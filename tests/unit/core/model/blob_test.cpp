@@ -23,7 +23,10 @@ class BlobContents : public testing::TestWithParam<Profile> {};
 INSTANTIATE_TEST_SUITE_P(Profiles, BlobContents,
                          testing::Values(Profile::kSurface, Profile::kPaper));
 
-TEST_P(BlobContents, KeepsPositionsWithinHalfStep) {
+// The surface profile moves points along the surface, by up to two sites, to reduce their distance
+// from it.
+TEST_P(BlobContents, KeepsPositionsWithinReachOfSite) {
+  const double reach = GetParam() == Profile::kSurface ? 2.5 : 0.5;
   for (const builder::Model& model : {test::cos_sheet(0.25, 0.0025, GetParam()),
                                       test::random_cloud(20000, 1.0, 0.01, GetParam(), 7)}) {
     const TestBlob blob(model);
@@ -38,8 +41,8 @@ TEST_P(BlobContents, KeepsPositionsWithinHalfStep) {
                          error.cwiseAbs().maxCoeff() / quantisation_step(blob.view(), leaf.level));
       }
     }
-    EXPECT_LE(worst, 0.5 + 1e-6);
-    EXPECT_GT(worst, 0.45);  // else the step is not what it claims to be
+    EXPECT_LE(worst, reach + 1e-6);
+    EXPECT_GT(worst, 0.9 * reach);  // else the step is not what it claims to be
   }
 }
 
@@ -54,7 +57,8 @@ TEST_P(BlobContents, ContainsEveryPointOnce) {
   }
 }
 
-TEST_P(BlobContents, KeepsNormalsWithinThirdDegree) {
+// In the surface profile, the codes of neighbours compensate each other's errors.
+TEST_P(BlobContents, KeepsDirectionsOfNormals) {
   const builder::Model model = test::random_cloud(20000, 1.0, 0.01, GetParam(), 3);
   const TestBlob blob(model);
   double smallest = 1.0;
@@ -67,7 +71,7 @@ TEST_P(BlobContents, KeepsNormalsWithinThirdDegree) {
                                .dot(model.normals[blob.written().source_index[p]].cast<double>()));
   }
   const double degrees = std::acos(smallest) * 180.0 / M_PI;
-  EXPECT_LE(degrees, 0.34);
+  EXPECT_LE(degrees, GetParam() == Profile::kSurface ? 0.7 : 0.34);
   EXPECT_GE(degrees, 0.2);
 }
 
