@@ -27,30 +27,30 @@ KindPose locate_five_bar(const DeviceModel& device, Vec3 joints) {
   const Vec3 elbow0 = in_plane(-0.5F * g.base_m, 0.0F) + arm0;
   const Vec3 elbow1 = in_plane(0.5F * g.base_m, 0.0F) + arm1;
 
-  KindPose pose;
   const Vec3 half = 0.5F * (elbow1 - elbow0);
   const float half_squared = length_squared(half);
   const float rise_squared = g.forearm_m * g.forearm_m - half_squared;
   if (!(rise_squared > 0.0F && half_squared > 1e-12F)) {
-    return pose;  // the elbows are too far apart, or coincide
+    return {};  // the elbows are too far apart, or coincide
   }
   const Vec3 rise = square_root(rise_squared / half_squared) * turned(half);
-  pose.probe = elbow0 + half + rise;
+  const Vec3 probe = elbow0 + half + rise;
 
-  const Vec3 n0 = pose.probe - elbow0;
-  const Vec3 n1 = pose.probe - elbow1;
+  const Vec3 n0 = probe - elbow0;
+  const Vec3 n1 = probe - elbow1;
   const float area = dot(turned(n0), n1);
-  pose.openness = absolute(area) / (g.forearm_m * g.forearm_m);
-  pose.valid = pose.openness > 1e-4F;
-  if (!pose.valid) {
-    return pose;
+  const float openness = absolute(area) / (g.forearm_m * g.forearm_m);
+  if (!(openness > 1e-4F)) {
+    return {};
   }
-  pose.effort_per_force.row[0] = (-dot(n0, turned(arm0)) / area) * turned(n1);
-  pose.effort_per_force.row[1] = (dot(n1, turned(arm1)) / area) * turned(n0);
-  pose.link_effort = {kGravity * device.link_mass_kg[0] * device.link_centre_m[0] * first.cosine,
-                      kGravity * device.link_mass_kg[1] * device.link_centre_m[1] * second.cosine,
-                      0.0F};
-  return pose;
+  return {true,
+          probe,
+          {{(-dot(n0, turned(arm0)) / area) * turned(n1),
+            (dot(n1, turned(arm1)) / area) * turned(n0),
+            {}}},
+          {kGravity * device.link_mass_kg[0] * device.link_centre_m[0] * first.cosine,
+           kGravity * device.link_mass_kg[1] * device.link_centre_m[1] * second.cosine, 0.0F},
+          openness};
 }
 
 }  // namespace tactree::core
