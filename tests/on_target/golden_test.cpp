@@ -132,7 +132,7 @@ void test_golden_blobs() {
   const BlobView surface = open(Golden::kSurface);
   TACTREE_CHECK(core::surface_support(surface) == core::SurfaceSupport::kOk);
   TACTREE_CHECK_ANSWER(exact_queries(surface), 0xF51F10ECU);
-  TACTREE_CHECK_ANSWER(projections(surface), 0xEEEBFD0AU);
+  TACTREE_CHECK_ANSWER(projections(surface), 0x12EA0C18U);
   const BlobView paper = open(Golden::kPaper);
   TACTREE_CHECK_ANSWER(exact_queries(paper), 0x338C3B01U);
   TACTREE_CHECK_ANSWER(paper_contacts(paper), 0x9B41F5B0U);

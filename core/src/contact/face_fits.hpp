@@ -38,8 +38,8 @@ struct FaceFit {
   [[nodiscard]] bool firm() const { return supported && strength > 0.0F; }
 };
 
-/// The algebraic sphere through weighted points and normals.
-[[nodiscard]] FaceFit fit_face(const Moments& sums, float radius);
+/// The algebraic sphere through weighted points and normals. `inverse_radius`: of the support, 1/m.
+[[nodiscard]] FaceFit fit_face(const Moments& sums, float inverse_radius);
 
 /// The points of one of several faces: those whose normal is closest to the face's.
 struct Face {
@@ -62,12 +62,13 @@ struct Seeds {
   std::uint32_t count;
 };
 
-/// The normals of two faces differ by at least 47 degrees, those of opposite faces by at least 120.
+/// The normals of two faces differ by at least 47 degrees, those of opposite faces by at least 117.
 /// With 60 degrees, the proxy stays 85 to 130 um above the bottom of a groove of 120 degrees. With
 /// 35 degrees, bends of scans are divided: the largest force step on a statue rose from 0.9 to 1.9
-/// N. Convex faces that differ by more than 120 degrees are the two sides of a plate.
+/// N. Convex faces that differ by more than 117 degrees are the two sides of a plate; with 120,
+/// errors of the normals would decide what a ridge of 60 degrees is.
 inline constexpr float kCreaseCosine = 0.68F;
-inline constexpr float kOppositeCosine = -0.5F;
+inline constexpr float kOppositeCosine = -0.45F;
 /// A crease requires that the centroid of each face has at least this distance, in support radii,
 /// from the plane of the other face. A stray normal within a face then makes no crease. Between
 /// faces whose normals differ by an angle a, it is 0.24 sin(a): 0.07 at 18 degrees, the smallest

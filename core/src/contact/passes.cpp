@@ -79,12 +79,11 @@ constexpr std::uint32_t kSharpRatio = 4;
 
 }  // namespace
 
-[[gnu::noinline]] void add_to_face(const CandidateSet& points, Vec3 x, float radius,
+[[gnu::noinline]] void add_to_face(const CandidateSet& points, Vec3 x, SupportSquare radius,
                                    const std::uint8_t* indices, std::uint32_t count,
                                    const Level& of_face, const Face& before, Face& after) {
-  const float other_level = kOtherLevel * kOtherLevel * (radius * radius);
+  const float other_level = kOtherLevel * kOtherLevel * radius.squared;
   const Level level = of_face;
-  const float inverse_squared = 1.0F / (radius * radius);
   Moments sums = before.sums;  // locals, which a compiler keeps in registers
   float between = before.between;
   std::uint32_t omitted = 0;
@@ -100,7 +99,7 @@ constexpr std::uint32_t kSharpRatio = 4;
       continue;
     }
     const float qq = length_squared(q);
-    const float weight = weight_of(qq, inverse_squared);
+    const float weight = weight_of(qq, radius.inverse);
     sums.add(q, qq, candidate.normal, weight);
     between += (index & Division::kBetween) != 0U ? weight : 0.0F;
   }
@@ -130,7 +129,8 @@ constexpr std::uint32_t kSharpRatio = 4;
   }
   Moments face{};
   float averted = 0.0F;
-  std::uint32_t aligned = 0;
+  float closest = 0.0F;
+  Nearest own{radius_squared, nullptr};
   Nearest crease{radius_squared, nullptr};
   Nearest mild{radius_squared, nullptr};
   Nearest opposite{radius_squared, nullptr};
@@ -153,11 +153,12 @@ constexpr std::uint32_t kSharpRatio = 4;
         continue;
       }
     } else {
-      ++aligned;
+      own.offer(candidate, qq);
+      closest = larger_of(closest, cosine);
     }
     face.add(q, qq, candidate.normal, weight);
   }
-  return {face, complete, averted, aligned, crease.point, mild.point, opposite.point};
+  return {face, complete, averted, own.point, closest, crease.point, mild.point, opposite.point};
 }
 
 // A point outside the support costs little. The bound limits the others by their stores, which all

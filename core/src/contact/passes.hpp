@@ -15,16 +15,24 @@ struct Level {
 /// Level of the face with this normal at its nearest point; any level without one.
 [[nodiscard]] Level level_of(const Candidate* nearest, Vec3 x, Vec3 normal);
 
+/// The square of the support radius, m^2, and its inverse.
+struct SupportSquare {
+  float squared;
+  float inverse;
+};
+
 /// Adds those of the indexed points that are at this level. `after` may be `before`.
-void add_to_face(const CandidateSet& points, Vec3 x, float radius, const std::uint8_t* indices,
-                 std::uint32_t count, const Level& of_face, const Face& before, Face& after);
+void add_to_face(const CandidateSet& points, Vec3 x, SupportSquare radius,
+                 const std::uint8_t* indices, std::uint32_t count, const Level& of_face,
+                 const Face& before, Face& after);
 
 /// The points in the support, relative to one face.
 struct Surroundings {
   Moments face;               // points that face the reference
   bool complete;              // false: more points than the blob declares
   float averted;              // weight of the other points
-  std::uint32_t aligned;      // points of the reference's own face
+  const Candidate* own;       // nearest point of the reference's own face; null: none
+  float closest;              // cosine of the least angle between its normals and the reference
   const Candidate* crease;    // nearest point of another face; null: none, here and below
   const Candidate* mild;      // nearest point of a face at 18 to 47 degrees
   const Candidate* opposite;  // nearest point of an opposite face

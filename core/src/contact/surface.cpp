@@ -10,6 +10,10 @@
 namespace tactree::core {
 namespace {
 
+// If no normal is within 12 degrees of the reference, the reference lies between two faces, both
+// too close to it to look like another one: in a groove of 150 degrees, 15 degrees from both.
+constexpr float kBetweenFaces = 0.977F;
+
 Plane seen_from(float side, const Plane& plane) {
   return {side * plane.normal, side * plane.distance};
 }
@@ -53,6 +57,12 @@ const Candidate* nearest_other(const Candidate* crease, const Candidate* opposit
   return crease;
 }
 
+/// True if each point is in front of the plane of the other by more than `apart`.
+bool is_concave(const Candidate& a, const Candidate& b, float side, float apart) {
+  const Vec3 a_to_b = b.position - a.position;
+  return side * dot(a_to_b, a.normal) > apart && -side * dot(a_to_b, b.normal) > apart;
+}
+
 /// The fit at a crease that the last fit has found.
 [[gnu::noinline]] void fit_faces(const CandidateSet& points, Vec3 x, float radius,
                                  const Seeds& seeds, float side, NearFaces& near,
@@ -64,7 +74,7 @@ const Candidate* nearest_other(const Candidate* crease, const Candidate* opposit
   result.complete = division.complete;
   const bool joined = join_faces(sums.faces, seeds, radius, side, near, result);
   if (!joined) {
-    set_to(result, fit_face(sums.facing.sums, radius));
+    set_to(result, fit_face(sums.facing.sums, 1.0F / radius));
   }
   const Candidate* const other =
       nearest_other(division.stray, division.opposite, x, radius, side, result);
@@ -77,7 +87,7 @@ const Candidate* nearest_other(const Candidate* crease, const Candidate* opposit
 [[gnu::noinline]] void fit_smooth(const CandidateSet& points, Vec3 x, float radius, Vec3 reference,
                                   float side, NearFaces& near, SurfaceFit& result) {
   const Surroundings around = look_around(points, x, radius, reference);
-  set_to(result, fit_face(around.face, radius));
+  set_to(result, fit_face(around.face, 1.0F / radius));
   result.complete = around.complete;
   const float all = around.face.w + around.averted;
   result.facing = all > 0.0F ? around.face.w / all : 1.0F;
@@ -85,11 +95,15 @@ const Candidate* nearest_other(const Candidate* crease, const Candidate* opposit
   const Candidate* const other = nearest_other(crease, around.opposite, x, radius, side, result);
   if (other != nullptr) {
     // If several faces came near at once, the smooth surface lies between them.
-    if (around.aligned == 0U) {
+    if (around.own == nullptr) {
       result.next_reference = other->normal;
     } else {
+      near.own =
+          is_concave(*around.own, *other, side, kApart * radius) ? around.own->normal : Vec3{};
       near.normal[near.count++] = other->normal;
     }
+  } else if (around.own != nullptr && around.closest < kBetweenFaces) {
+    result.next_reference = around.own->normal;
   }
 }
 
@@ -99,7 +113,9 @@ SurfaceFit fit_surface(const CandidateSet& points, Vec3 x, float radius, Vec3 re
                        NearFaces& near) {
   SurfaceFit result;  // memory: flash
   if (near.count != 0U) {
-    const Seeds seeds{{reference, near.normal[0], near.normal[1]}, 1U + near.count};
+    const Vec3 first = near.own != Vec3{} ? near.own : reference;
+    const Seeds seeds{{first, near.normal[0], near.normal[1]}, 1U + near.count};
+    near.own = {};
     // at most: passes per Scene::update together passes as 2
     fit_faces(points, x, radius, seeds, side, near, result);
   } else {

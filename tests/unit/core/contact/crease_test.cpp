@@ -119,6 +119,68 @@ TEST(Crease, HoldsHandAtGrooveBottom) {
   }
 }
 
+// The positions of the points and the codes of their normals are rounded differently in each turn.
+TEST(Crease, HoldsHandAtGrooveBottomInAnyTurn) {
+  std::mt19937_64 random(5);
+  for (const double angle : {30.0, 60.0, 90.0, 120.0, 145.0, 150.0}) {
+    double worst = 0.0;
+    for (unsigned i = 0; i < 6; ++i) {
+      Prism prism = groove(angle);
+      prism.turn = any_turn(random);
+      const Shape shape = sampled(prism, 2.0 * kH, 0.3, 0.0, i);
+      Hand hand(shape, prism.turn, {0.2e-3, -4e-3, 6e-3}, 1000.0F);
+      hand.move_to({0.2e-3, -4e-3, -4e-3}, 0.02);
+      hand.stay(100);
+      worst = std::max(worst, std::hypot(hand.place().x(), hand.place().z()));
+    }
+    EXPECT_LT(worst, 0.01 * (2.0 * kH)) << angle << " degrees";
+  }
+}
+
+core::SurfaceFit smooth_fit(const Shape& shape, const Vector3d& x, const Vector3d& reference,
+                            core::NearFaces& near) {
+  core::CandidateSet points;
+  points.clear();
+  points.cover(shape.view(), narrow(x));
+  return core::fit_surface(points, narrow(x), shape.view().support_radius_m(), narrow(reference),
+                           1.0F, near);
+}
+
+// In a groove of 150 degrees, the mean of the two normals is so close to both that neither looks
+// like that of another face.
+TEST(Crease, FindsFaceIfReferenceIsBetweenTwo) {
+  const Shape shape = sampled(groove(150.0), kH, 0.3, 0.0, 1);
+  const Vector3d x(0.05e-3, 0.0, 0.1e-3);
+  core::NearFaces none;
+  const core::SurfaceFit between = smooth_fit(shape, x, Vector3d::UnitZ(), none);
+  EXPECT_EQ(none.count, 0U);
+  const Vector3d face = widen(between.next_reference);
+  ASSERT_NEAR(angle_deg(face, Vector3d::UnitZ()), 15.0, 0.5);
+  core::NearFaces other;
+  EXPECT_EQ(smooth_fit(shape, x, face, other).next_reference, core::Vec3{});
+  ASSERT_EQ(other.count, 1U);
+  EXPECT_NEAR(angle_deg(widen(other.normal[0]), face), 30.0, 1.0);
+}
+
+TEST(Crease, DividesGrooveButNotRidgeByNearestPoint) {
+  const Vector3d x(0.1e-3, 0.0, 0.05e-3);
+  for (const bool is_groove : {true, false}) {
+    const Shape shape = sampled(is_groove ? groove(120.0) : ridge(120.0), kH, 0.3, 0.0, 1);
+    const double slope = is_groove ? -1.0 : 1.0;  // of the normal towards x, where x > 0
+    const Vector3d face(slope * 0.5, 0.0, std::sqrt(0.75));
+    core::NearFaces near;
+    const core::SurfaceFit fit =
+        smooth_fit(shape, x, (face + Vector3d(0.0, 0.1, 0.0)).normalized(), near);
+    EXPECT_EQ(fit.next_reference, core::Vec3{});
+    ASSERT_EQ(near.count, 1U);
+    if (is_groove) {
+      EXPECT_LT(angle_deg(widen(near.own), face), 0.5);
+    } else {
+      EXPECT_EQ(near.own, core::Vec3{});
+    }
+  }
+}
+
 TEST(Crease, HoldsHandBetweenSlotWalls) {
   for (const double width : {1e-3, 2e-3, 4e-3}) {
     for (const Matrix3d& turn : turns(4)) {
@@ -268,6 +330,23 @@ TEST(Crease, RendersNothingBesideRidge) {
         EXPECT_GT(side * hand.force().x(), 0.05) << angle;
         EXPECT_FALSE(hand.proxy().from_behind());
       }
+    }
+  }
+}
+
+// Beyond the top, the proxy moves on in the plane of the face until the force has faded. The few
+// points that are left there are far away and determine no curvature.
+TEST(Crease, FadesBeyondTopOfRidge) {
+  std::mt19937_64 random(10);
+  for (const double angle : {30.0, 45.0, 60.0}) {
+    for (unsigned i = 0; i < 10; ++i) {
+      Prism prism = ridge(angle);
+      prism.turn = any_turn(random);
+      const Shape shape = sampled(prism, kH, 0.3, 0.0, i);
+      Hand hand(shape, prism.turn, {-0.1e-3, 0.0, 6e-3}, 4000.0F);
+      hand.move_to({-0.1e-3, 0.0, -0.6e-3}, 0.1);
+      hand.move_to({6e-3, 0.0, -0.6e-3}, 0.1);
+      EXPECT_LT(hand.largest_step(), 0.35) << angle << " degrees, turn " << i;
     }
   }
 }

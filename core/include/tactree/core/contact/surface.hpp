@@ -16,6 +16,10 @@ namespace tactree::core {
 struct NearFaces {
   Vec3 normal[kMaxFaces - 1]{};  ///< unit length, on the side of the points' normals
   std::uint32_t count = 0;
+  /// Set by a smooth fit that finds the further face of a groove: normal of the nearest point of
+  /// the reference's own face. The reference itself is the normal of a surface between the two,
+  /// which would not divide the points of a groove of 145 to 150 degrees. Else zero.
+  Vec3 own{};
 };
 
 /// The fitted surface near one query position.
