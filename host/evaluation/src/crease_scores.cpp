@@ -52,7 +52,7 @@ std::vector<CreaseResult> measure_creases(bool quick, std::uint32_t seed) {
     row.name = name;
     row.rests = concave;
     row.noisy = noise > 0.0;
-    for (int turns = 0; turns < (quick ? 2 : 4); ++turns) {
+    for (int turns = 0; turns < crease_turns(quick); ++turns) {
       Prism prism = upright;
       if (turns != 0) {
         prism.turn = any_turn(random);

@@ -4,6 +4,7 @@
 #include <initializer_list>
 #include <iterator>
 
+#include "measurements.hpp"
 #include "scan_report.hpp"
 #include "tactree/evaluation/evaluation.hpp"
 
@@ -183,8 +184,9 @@ void add_crease_table(Page& page, const char* name,
 void add_creases(Page& page, const Result& result) {
   page.add(
       "## Creases\n"
-      "Edges of exact bodies in arbitrary orientation. Grooves: the hand presses 4 mm beyond the "
-      "bottom, stays, slides along and aside.\n"
+      "Edges of exact bodies, each in {} orientations, all but one arbitrary. Grooves: the hand "
+      "presses 4 mm beyond the bottom,\n"
+      "stays, slides along and aside.\n"
       "Ridges: it slides along and across, 0.6 mm below the top. 1 N/mm, no friction; the worst of "
       "1 kHz at 0.02 and 0.1 m/s,\n"
       "2 kHz at 0.1 m/s, 4 kHz at 0.1 and 0.5 m/s. *Lost*: ticks without contact while the hand is "
@@ -193,7 +195,8 @@ void add_creases(Page& page, const Result& result) {
       "from the bottom line.\n"
       "*Step*: of the force between two ticks in contact, beyond the hand's own movement, "
       "excluding the runs at 0.5 m/s.\n"
-      "\n");
+      "\n",
+      crease_turns(result.options.quick));
   add_crease_table(page, "crease", {&result.creases});
 }
 

@@ -52,6 +52,9 @@ struct Effort {
 /// Table 2, distance to the surface: probes from 50 mm below to 10 mm above it.
 [[nodiscard]] DistanceTable measure_distances(std::uint32_t seed, int probes);
 
+/// Number of orientations of each crease.
+inline int crease_turns(bool quick) { return quick ? 2 : 12; }
+
 /// Contact of hands that press into creases, slide along them, and cross them.
 [[nodiscard]] std::vector<CreaseResult> measure_creases(bool quick, std::uint32_t seed);
 
