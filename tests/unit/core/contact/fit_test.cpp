@@ -35,7 +35,7 @@ TEST(Fit, MatchesSphereWithinMicrometres) {
     normal.add(angle_deg(widen(p.normal), point));
     signed_distance.add(static_cast<double>(p.signed_distance) - (probe.norm() - kSphereRadius));
   }
-  // The quantisation to 10 bits of 6 h alone is 1.7 um rms a point: far below is a broken test.
+  // Points are rounded to sites of 6 um, mostly along the surface: far below is a broken test.
   EXPECT_LE(distance.rms(), 1.0e-6);
   EXPECT_GE(distance.rms(), 0.1e-6);
   EXPECT_LE(distance.largest(), 5e-6);
