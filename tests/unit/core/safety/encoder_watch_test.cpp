@@ -35,7 +35,7 @@ TEST(EncoderWatch, DetectsStandstillUnderRisingEffort) {
   const auto rising = [](int i) { return static_cast<float>(i) / 300.0F; };
   const int tick = first_complaint(1000, still, rising);
   EXPECT_GE(tick, static_cast<int>(kTicks));
-  EXPECT_LE(tick, 105);
+  EXPECT_LE(tick, 101 + static_cast<int>(kTicks / EncoderWatch::kSettling));
 }
 
 TEST(EncoderWatch, DetectsStandstillUnderAlternatingEffort) {
@@ -108,6 +108,20 @@ TEST(EncoderWatch, IgnoresEffortChangesDuringSettling) {
     EXPECT_EQ(step_at(settled), -1);
     EXPECT_EQ(step_at(settled + 1), static_cast<int>(kTicks));
   }
+}
+
+// An axis that rests without a force needs time to follow a force that begins.
+TEST(EncoderWatch, AxisHasTimeToFollowForce) {
+  const int settling = static_cast<int>(kTicks / EncoderWatch::kSettling);
+  const int begin = 5 * static_cast<int>(kTicks);
+  const auto step = [=](int i) { return i < begin ? 0.0F : 0.5F; };
+  const auto follows_after = [=](int delay) {
+    return first_complaint(
+        1000, [=](int i) { return i < begin + delay ? 7 : 7 + i; }, step);
+  };
+  EXPECT_EQ(follows_after(settling), -1);
+  EXPECT_EQ(follows_after(settling + 1), begin + settling);
+  EXPECT_EQ(first_complaint(1000, still, step), begin + settling);
 }
 
 TEST(EncoderWatch, RequiresMotionAboveEffortThreshold) {

@@ -20,7 +20,8 @@ class EncoderWatch {
   /// The first 1 / kSettling of a standstill is ignored: the force may still follow the motion that
   /// has just ended. The default, 125 ms, covers the window of the velocity (15 ms at 1 kHz), its
   /// filter (1 ms) and the slew limit from full effort (4 ms). If more were ignored, less of a
-  /// standstill would be checked.
+  /// standstill would be checked. An axis that has rested has the same time to follow a change of
+  /// the force.
   static constexpr std::uint32_t kSettling = 4;
 
   /// `ticks`: maximum standstill of an axis under a changing force; at least 1. A short one reports
@@ -42,6 +43,7 @@ class EncoderWatch {
   std::uint32_t still_[kAxes] = {0, 0, 0};  // ticks since the count changed
   float lowest_[kAxes] = {0.0F, 0.0F, 0.0F};
   float highest_[kAxes] = {0.0F, 0.0F, 0.0F};
+  std::uint32_t pushed_[kAxes] = {0, 0, 0};  // ticks since the share has changed by kChange
 };
 
 }  // namespace tactree::core
