@@ -48,6 +48,10 @@ def figures(build):
         "## Encoders of a Linux board", output_of(ROOT / "bench/edge_rates")])
 
 
+def page(build):
+    return output_of(ROOT / "bench/page_bench", "--tactree", build / "tools/cli/tactree")
+
+
 def collections(build):
     return "\n\n".join([f"Machine: {cpu_name()}, {os.cpu_count()} cores.",
                         output_of(ROOT / "bench/collection_bench", "--tactree", build / "tools/cli/tactree")])
