@@ -43,6 +43,7 @@ void write_each(const std::filesystem::path& folder) {
   s.add(MessageKind::kHeartbeat, wire::HeartbeatRequest{1000});
   s.add(MessageKind::kSetLimits, wire::SetLimitsRequest{3.0F, 500.0F, 0.1F});
   s.add(MessageKind::kSetMaterial, wire::SetMaterialRequest{300.0F, 0.5F, 0.2F, 0.1F, 1});
+  s.add(MessageKind::kSetTexture, wire::SetTextureRequest{1e-4F, 2e-3F});
   s.add(MessageKind::kMoveBody, wire::MoveBodyRequest{});
   s.add(MessageKind::kAddForce, wire::AddForceRequest{{1.0F, 0.0F, 0.0F}, 20});
   s.add(MessageKind::kSubscribe, wire::SubscribeRequest{0x3FF, 2});

@@ -75,9 +75,11 @@ class Control(Folder):
             self.assertEqual(board.capabilities["force_max_N"], 1.5)
             board.set_material(250)
             self.assertEqual(board.capabilities["stiffness_N_m"], 250)
+            board.set_texture(2e-4, 3e-3)
             for call, words in ((lambda: board.set_parameter("nonsense", 1), "no parameter 'nonsense'"),
                                 (lambda: board.set_limits(-1, 0, 0), "set limits: "),
-                                (lambda: board.set_material(1e6), "set material: ")):
+                                (lambda: board.set_material(1e6), "set material: "),
+                                (lambda: board.set_texture(2e-3, 3e-3), "set texture: ")):
                 with self.assertRaises(tactree.BoardError) as refused:
                     call()
                 self.assertIn(words, str(refused.exception))

@@ -76,6 +76,8 @@ class SameAsTheTool(Folder):
                 ({"mode": "paper"}, ["--mode", "paper"]), ({"stiffness_N_m": 300}, ["--stiffness", "300"]),
                 ({"damping_Ns_m": 1}, ["--damping", "1"]), ({"passivity_Ns_m": 0}, ["--passivity", "0"]),
                 ({"static_friction": 0.5, "dynamic_friction": 0.4}, ["--static-friction", "0.5", "--dynamic-friction", "0.4"]),
+                ({"texture_height_m": 2e-4, "texture_wavelength_m": 3e-3},
+                 ["--texture-height", "2e-4", "--texture-wavelength", "3e-3"]),
                 ({"use_materials": False}, ["--no-materials"]), ({"force_max_N": 2}, ["--force-max", "2"]),
                 ({"first_force": True}, ["--first-force"]),
                 ({"origin_m": [0, 0, 0.002]}, ["--origin", "0", "0", "0.002"]), ({"latency_ticks": 1}, ["--latency-ticks", "1"]),

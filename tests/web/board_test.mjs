@@ -132,6 +132,9 @@ test('disables what a board does not support, with the reason; applies the other
   await set('#force_max_N', '2');
   await page.waitForFunction(() => document.querySelector("output[for='force_max_N']").value === '2 N'
     && document.querySelector("output[for='stiffness_N_m']").value === '300 N/m');
+  await set('#texture_height_m', '0.2');
+  await page.waitForFunction(() => document.querySelector("output[for='texture_height_m']").value === '0.2 mm');
+  assert.ok(await page.locator('#note').isHidden());
   await set('#damping_Ns_m', '0');
   await set('#stiffness_N_m', '3000'); // not without damping
   await page.locator('#note').waitFor();

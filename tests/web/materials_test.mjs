@@ -113,8 +113,13 @@ test('a click on a colour of the scan makes a material of the sliders', async (t
     slider.dispatchEvent(new Event('input'));
     slider.dispatchEvent(new Event('change'));
   });
+  await page.locator('#texture_height_m').evaluate((slider) => {
+    slider.value = '0.2';
+    slider.dispatchEvent(new Event('input'));
+    slider.dispatchEvent(new Event('change'));
+  });
   await buttons.nth(1).click();
-  assert.match(await buttons.nth(1).textContent(), /^300 N\/m, friction/);
+  assert.match(await buttons.nth(1).textContent(), /^300 N\/m, friction .*, texture 0\.2 mm$/);
   await buttons.nth(0).click();
   await page.locator('#rule-list .quiet').first().click(); // takes it back
   const [download] = await Promise.all([page.waitForEvent('download'), page.locator('#rules-save').click()]);
@@ -124,6 +129,8 @@ test('a click on a colour of the scan makes a material of the sliders', async (t
   assert.equal(made.colours.length, 1);
   assert.deepEqual(made.colours[0].rgb, colours[1].rgb);
   assert.equal(made.colours[0].stiffness_N_m, 300);
+  assert.equal(made.colours[0].texture_height_m, 0.0002);
+  assert.equal(made.colours[0].texture_wavelength_m, 0.002);
   const again = join(folder, 'again.blob');
   execFileSync(tactree, ['build', scan, '-o', again, '--unit', 'm', '--material', file], { stdio: 'pipe' });
   const facts = join(folder, 'again.json');

@@ -39,6 +39,10 @@ void check_rendering(const Configuration& c, Checks& checks) {
   checks.range(kBadFriction, "contact.static_friction", k.static_friction, 0.0F, 2.0F);
   checks.range(kBadFriction, "contact.dynamic_friction", k.dynamic_friction, 0.0F,
                k.static_friction);
+  checks.range(kBadTexture, "contact.texture_wavelength_m", k.texture_wavelength_m, 1e-4F, 1.0F);
+  const float deepest = 0.5F * k.texture_wavelength_m;
+  checks.range(kBadTexture, "contact.texture_height_m", k.texture_height_m, 0.0F,
+               deepest < 0.01F ? deepest : 0.01F);
   checks.range(kBadFilter, "velocity_cutoff_hz", c.velocity_cutoff_hz, 1.0F, 0.5F * c.rate_hz);
   const float longest = static_cast<float>(kMaxDelayTicks) / c.rate_hz;
   checks.range(kBadTimeout, "delay_s", c.delay_s, 0.0F, longest < 0.1F ? longest : 0.1F);
@@ -101,6 +105,7 @@ constexpr const char* kWords[] = {
     "stiffness_N_m is outside 0 .. 1e5",
     "a damping is outside 0 .. 1000 Ns/m",
     "friction is outside 0 <= dynamic <= static <= 2",
+    "texture is outside 0 <= height <= 0.01 m, wavelength / 2; wavelength 1e-4 .. 1 m",
     "velocity_cutoff_hz is outside 1 .. rate_hz / 2",
     "force, slew or effort limit is outside its range",
     "ramp_s is outside 2 ticks .. 10 s",

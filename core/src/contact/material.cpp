@@ -60,12 +60,13 @@ float bumps(Vec3 x, float wavelength, Vec3 n) {
   return n.x * n.x * w.y * w.z + n.y * n.y * w.z * w.x + n.z * n.z * w.x * w.y;
 }
 
-float depth_of(const BlobMaterial& m, Vec3 x, Vec3 normal) {
-  if (!(m.texture_height_m > 0.0F) || !(m.texture_wavelength_m > 0.0F)) {  // memory: flash
+// Not inlined: texture_depth() calls it at two places.
+[[gnu::noinline]] float depth_of(float height_m, float wavelength_m, Vec3 x, Vec3 normal) {
+  if (!(height_m > 0.0F) || !(wavelength_m > 0.0F)) {
     return 0.0F;
   }
-  const float level = 1.0F - bumps(x, m.texture_wavelength_m, normal);  // memory: flash
-  return level > 0.0F ? m.texture_height_m * level : 0.0F;              // memory: flash
+  const float level = 1.0F - bumps(x, wavelength_m, normal);
+  return level > 0.0F ? height_m * level : 0.0F;
 }
 
 }  // namespace
@@ -117,7 +118,7 @@ ContactParameters contact_parameters_of(const BlobView& view, const Configuratio
   if (blend.count == 0U) {
     return c.contact;
   }
-  ContactParameters blended{0.0F, 0.0F, 0.0F, 0.0F};
+  ContactParameters blended{0.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F};
   for (std::uint32_t i = 0; i < blend.count; ++i) {  // bound: blended_materials
     const BlobMaterial& m = view.material(blend.material[i]);
     const float share = blend.share[i];
@@ -129,10 +130,17 @@ ContactParameters contact_parameters_of(const BlobView& view, const Configuratio
   return blended;
 }
 
-float texture_depth(const BlobView& view, const MaterialBlend& blend, Vec3 x, Vec3 normal) {
+float texture_depth(const BlobView& view, const Configuration& c, const MaterialBlend& blend,
+                    Vec3 x, Vec3 normal) {
+  if (blend.count == 0U) {
+    return depth_of(c.contact.texture_height_m, c.contact.texture_wavelength_m, x, normal);
+  }
   float depth = 0.0F;
   for (std::uint32_t i = 0; i < blend.count; ++i) {  // bound: blended_materials
-    depth += blend.share[i] * depth_of(view.material(blend.material[i]), x, normal);
+    const BlobMaterial& m = view.material(blend.material[i]);
+    const float height_m = m.texture_height_m;          // memory: flash
+    const float wavelength_m = m.texture_wavelength_m;  // memory: flash
+    depth += blend.share[i] * depth_of(height_m, wavelength_m, x, normal);
   }
   return depth;
 }

@@ -82,7 +82,8 @@ Rendering Renderer::render_proxy(const BlobView& view, const Configuration& c, V
   const ContactParameters parameters = contact_parameters_of(view, c, materials_);
   friction_ = {parameters.static_friction, parameters.dynamic_friction};
   r.penetration_m = dot(displacement, normal);
-  const float share = share_of(r.penetration_m, texture_depth(view, materials_, r.proxy, normal));
+  const float share =
+      share_of(r.penetration_m, texture_depth(view, c, materials_, r.proxy, normal));
   const Vec3 spring = (share * parameters.stiffness_N_m) * displacement;
   const Vec3 force = spring - damping(parameters.damping_Ns_m, velocity, spring);
   // Damping may cancel the push, but never pulls the hand into the object.

@@ -45,6 +45,18 @@ WireStatus material_of(std::span<const std::byte> payload, const core::Controlle
   return WireStatus::kOk;
 }
 
+WireStatus texture_of(std::span<const std::byte> payload, const core::Controller& controller,
+                      core::Adjustment& adjustment) {
+  core::wire::SetTextureRequest request;
+  if (!core::wire::decode_message(payload, request)) {
+    return WireStatus::kBadLength;
+  }
+  adjustment = controller.adjustment();
+  adjustment.contact.texture_height_m = request.height_m;
+  adjustment.contact.texture_wavelength_m = request.wavelength_m;
+  return WireStatus::kOk;
+}
+
 Outcome move_body(std::span<const std::byte> payload, const core::Controller& controller,
                   TickMailbox& mailbox, Reply& reply) {
   core::wire::MoveBodyRequest r;

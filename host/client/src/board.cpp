@@ -341,6 +341,10 @@ void Board::set_material(const core::wire::SetMaterialRequest& material) {
   (void)demand(MessageKind::kSetMaterial, material, "set material");
 }
 
+void Board::set_texture(const core::wire::SetTextureRequest& texture) {
+  (void)demand(MessageKind::kSetTexture, texture, "set texture");
+}
+
 void Board::subscribe(const Subscription& subscription) {
   subscription_ = subscription;
   const std::uint32_t known = core::wire::telemetry_fields_of(connection().protocol_minor());

@@ -125,6 +125,10 @@ int tactree_set_material(tactree_board* board, float stiffness_N_m, float dampin
   });
 }
 
+int tactree_set_texture(tactree_board* board, float height_m, float wavelength_m) {
+  return guarded(*board, [&](Board& it) { it.set_texture({height_m, wavelength_m}); });
+}
+
 int tactree_capabilities(tactree_board* board, tactree_limits* limits) {
   return guarded(*board, [&](Board& it) {
     const tactree::core::wire::CapabilitiesReply can = it.capabilities();

@@ -298,6 +298,13 @@ void add_requests(py::class_<NativeBoard>& board) {
       },
       py::arg("stiffness_N_m"), py::arg("damping_Ns_m"), py::arg("static_friction"),
       py::arg("dynamic_friction"), py::arg("use_materials"), "Sets the contact parameters.");
+  board.def(
+      "set_texture",
+      [](NativeBoard& b, float height, float wavelength) {
+        const py::gil_scoped_release unlocked;
+        b.board().set_texture({height, wavelength});
+      },
+      py::arg("height_m"), py::arg("wavelength_m"), "Sets the bumps of the surface.");
   board.def("flash", flash, py::arg("model"), py::arg("progress") = py::none(),
             "Writes and activates a model.");
 }

@@ -68,6 +68,8 @@ setup::SessionOptions session_options_of(const py::dict& values) {
   read(values, "damping_Ns_m", c.contact.damping_Ns_m);
   read(values, "static_friction", c.contact.static_friction);
   read(values, "dynamic_friction", c.contact.dynamic_friction);
+  read(values, "texture_height_m", c.contact.texture_height_m);
+  read(values, "texture_wavelength_m", c.contact.texture_wavelength_m);
   read(values, "passivity_Ns_m", c.passivity_Ns_m);
   read(values, "use_materials", c.use_materials);
   read(values, "first_force", options.first_force);

@@ -176,6 +176,10 @@ class Board:
         """Sets the contact parameters; with `use_materials`, those of the model take precedence."""
         self._native.set_material(stiffness_N_m, damping_Ns_m, static_friction, dynamic_friction, use_materials)
 
+    def set_texture(self, height_m: float, wavelength_m: float = 0.002) -> None:
+        """Sets the bumps that are cut into the surface, where no material of the model applies; a height of 0: smooth."""
+        self._native.set_texture(height_m, wavelength_m)
+
     def flash(self, model: Model, progress: Callable[[float], object] | None = None) -> None:
         """Writes a model to the board, which checks and activates it. Waits until the flash is written.
 

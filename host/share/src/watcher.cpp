@@ -82,6 +82,7 @@ void Watcher::take_request(MessageKind kind) {
     case MessageKind::kControl:
     case MessageKind::kSetLimits:
     case MessageKind::kSetMaterial:
+    case MessageKind::kSetTexture:
     case MessageKind::kMoveBody:
     case MessageKind::kAddForce:
     case MessageKind::kBeginModel:

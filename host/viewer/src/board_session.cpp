@@ -304,12 +304,20 @@ void BoardSession::begin_recording() {
 
 void BoardSession::set(const json& wanted) {
   core::Configuration next = sent_;
-  bool changed = false;
+  bool material = false;
+  bool texture = false;
   for (const auto& [key, value] : wanted.items()) {
-    changed = set_contact_parameters(next, key, value) || changed;
+    if (set_contact_parameters(next, key, value)) {
+      (key.starts_with("texture_") ? texture : material) = true;
+    }
   }
-  if (changed) {
-    const core::ContactParameters& contact = next.contact;
+  const core::ContactParameters& contact = next.contact;
+  if (texture) {
+    board_->set_texture({contact.texture_height_m, contact.texture_wavelength_m});
+    sent_.contact.texture_height_m = contact.texture_height_m;
+    sent_.contact.texture_wavelength_m = contact.texture_wavelength_m;
+  }
+  if (material) {
     board_->set_material({contact.stiffness_N_m, contact.damping_Ns_m, contact.static_friction,
                           contact.dynamic_friction, next.use_materials ? 1U : 0U});
     sent_ = next;

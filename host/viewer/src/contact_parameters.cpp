@@ -7,11 +7,13 @@ namespace tactree::viewer {
 namespace {
 
 using Parameter = std::pair<const char*, float core::ContactParameters::*>;
-constexpr std::array<Parameter, 4> kParameters = {
+constexpr std::array<Parameter, 6> kParameters = {
     {{"stiffness_N_m", &core::ContactParameters::stiffness_N_m},
      {"damping_Ns_m", &core::ContactParameters::damping_Ns_m},
      {"static_friction", &core::ContactParameters::static_friction},
-     {"dynamic_friction", &core::ContactParameters::dynamic_friction}}};
+     {"dynamic_friction", &core::ContactParameters::dynamic_friction},
+     {"texture_height_m", &core::ContactParameters::texture_height_m},
+     {"texture_wavelength_m", &core::ContactParameters::texture_wavelength_m}}};
 
 }  // namespace
 

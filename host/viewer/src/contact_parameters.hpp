@@ -1,6 +1,7 @@
 #pragma once
 // The contact parameters that a page may change, by their names in JSON: stiffness_N_m,
-// damping_Ns_m, static_friction, dynamic_friction, use_materials.
+// damping_Ns_m, static_friction, dynamic_friction, texture_height_m, texture_wavelength_m,
+// use_materials.
 
 #include <nlohmann/json.hpp>
 #include <string>

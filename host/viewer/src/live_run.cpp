@@ -14,12 +14,24 @@ constexpr double kHoldAfter_s = 0.08;
 // Long against a tick, short against a hand that moves a slider.
 constexpr double kChange_s = 0.1;
 
+/// The height fades out before another wavelength moves the bumps, and then fades in.
+float height_between(const core::ContactParameters& a, const core::ContactParameters& b,
+                     float share) {
+  if (a.texture_wavelength_m == b.texture_wavelength_m) {
+    return std::lerp(a.texture_height_m, b.texture_height_m, share);
+  }
+  return share < 0.5F ? std::lerp(a.texture_height_m, 0.0F, 2.0F * share)
+                      : std::lerp(0.0F, b.texture_height_m, 2.0F * share - 1.0F);
+}
+
 core::ContactParameters between(const core::ContactParameters& a, const core::ContactParameters& b,
                                 float share) {
   return {std::lerp(a.stiffness_N_m, b.stiffness_N_m, share),
           std::lerp(a.damping_Ns_m, b.damping_Ns_m, share),
           std::lerp(a.static_friction, b.static_friction, share),
-          std::lerp(a.dynamic_friction, b.dynamic_friction, share)};
+          std::lerp(a.dynamic_friction, b.dynamic_friction, share),
+          height_between(a, b, share),
+          share < 0.5F ? a.texture_wavelength_m : b.texture_wavelength_m};
 }
 
 }  // namespace

@@ -39,6 +39,14 @@ void add_controller_options(CLI::App& verb, SimulateOptions& options) {
                   "coefficient, at most the static one")
       ->check(CLI::Range(0.0, 2.0))
       ->capture_default_str();
+  verb.add_option("--texture-height", c.contact.texture_height_m,
+                  "depth of bumps in the surface, m: at most half of their wavelength; 0: smooth")
+      ->check(CLI::Range(0.0, 0.01))
+      ->capture_default_str();
+  verb.add_option("--texture-wavelength", c.contact.texture_wavelength_m,
+                  "distance between the bumps, m")
+      ->check(CLI::Range(1e-4, 1.0))
+      ->capture_default_str();
   verb.add_flag("!--no-materials", c.use_materials,
                 "ignore the materials of the blob: use the options above everywhere");
   verb.add_option("--force-max", options.force_max_N, "maximum force, N (default: the device's)")

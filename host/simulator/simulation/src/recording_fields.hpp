@@ -83,6 +83,8 @@ void visit(Fields& fields, core::ContactParameters& p) {
   fields(p.damping_Ns_m);
   fields(p.static_friction);
   fields(p.dynamic_friction);
+  fields(p.texture_height_m);
+  fields(p.texture_wavelength_m);
 }
 
 template <class Fields>
@@ -148,7 +150,7 @@ void visit(Fields& fields, core::Adjustment& a) {
 }
 
 // If this fails, add the new field to the lists above and increase kRecordingVersion.
-static_assert(sizeof(core::Configuration) == 368 && sizeof(core::Adjustment) == 44);
+static_assert(sizeof(core::Configuration) == 376 && sizeof(core::Adjustment) == 52);
 
 /// First bytes of the file.
 inline constexpr char kRecordingMagic[8] = {'T', 'A', 'C', 'T', 'R', 'R', 'E', 'C'};

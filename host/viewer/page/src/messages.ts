@@ -9,6 +9,8 @@ export interface Settings {
   damping_Ns_m: number;
   static_friction: number;
   dynamic_friction: number;
+  texture_height_m: number;
+  texture_wavelength_m: number;
   rate_hz: number;
   use_materials: boolean;
   stiffness_limit_N_m: number;

@@ -3,14 +3,15 @@
 import type { Command, Hello, Settings } from './messages';
 
 type Say = (command: Command) => void;
-type Slider = 'stiffness_N_m' | 'damping_Ns_m' | 'static_friction' | 'dynamic_friction' | 'force_max_N';
-const SLIDERS: Slider[] = [
+const SLIDERS = [
   'stiffness_N_m',
   'damping_Ns_m',
   'static_friction',
   'dynamic_friction',
+  'texture_height_m',
+  'texture_wavelength_m',
   'force_max_N',
-];
+] as const;
 
 export function find<T extends HTMLElement = HTMLElement>(id: string): T {
   const element = document.getElementById(id);
@@ -24,6 +25,15 @@ export function outputOf(id: string): HTMLOutputElement {
   return element;
 }
 
+/** Values of a slider's step, in the unit of its setting. */
+const scaleOf = (slider: HTMLInputElement): number => Number(slider.dataset.scale ?? 1);
+
+/** The setting that a slider shows. */
+export function settingOf(id: string): number {
+  const slider = find<HTMLInputElement>(id);
+  return Number((Number(slider.value) * scaleOf(slider)).toPrecision(6));
+}
+
 export class Panel {
   private edited: Partial<Settings> = {}; // what the user has set and the server has not reported yet
   private isSimulated = false;
@@ -33,11 +43,11 @@ export class Panel {
     for (const id of SLIDERS) {
       const slider = find<HTMLInputElement>(id);
       slider.addEventListener('input', () => {
-        this.edited[id] = Number(slider.value);
+        this.edited[id] = settingOf(id);
         this.label(slider);
-        if (this.isSimulated && id !== 'force_max_N') this.set(id, Number(slider.value));
+        if (this.isSimulated && id !== 'force_max_N') this.set(id, settingOf(id));
       });
-      slider.addEventListener('change', () => this.set(id, Number(slider.value)));
+      slider.addEventListener('change', () => this.set(id, settingOf(id)));
     }
     const mode = find<HTMLSelectElement>('mode');
     mode.addEventListener('change', () => this.set('mode', mode.value));
@@ -79,10 +89,10 @@ export class Panel {
     for (const id of SLIDERS) {
       const slider = find<HTMLInputElement>(id);
       const edited = this.edited[id] ?? settings[id];
-      const isReported = Math.abs(settings[id] - edited) < 0.5 * Number(slider.step);
+      const isReported = Math.abs(settings[id] - edited) < 0.5 * Number(slider.step) * scaleOf(slider);
       if (isReported || document.activeElement !== slider) {
         delete this.edited[id];
-        slider.value = String(settings[id]);
+        slider.value = String(settings[id] / scaleOf(slider));
         this.label(slider);
       }
     }

@@ -2,26 +2,29 @@
 // The result is a file for `tactree build --material`.
 
 import type { ScanColour } from './cloud';
-import { find } from './panel';
+import { find, settingOf } from './panel';
 
-interface Contact {
-  stiffness_N_m: number;
-  damping_Ns_m: number;
-  static_friction: number;
-  dynamic_friction: number;
-}
-const KEYS = ['stiffness_N_m', 'damping_Ns_m', 'static_friction', 'dynamic_friction'] as const;
+const KEYS = [
+  'stiffness_N_m',
+  'damping_Ns_m',
+  'static_friction',
+  'dynamic_friction',
+  'texture_height_m',
+  'texture_wavelength_m',
+] as const;
+type Contact = Record<(typeof KEYS)[number], number>;
 const TOLERANCE = 30; // the default of a file of materials
 
-function contactOfSliders(): Contact {
-  const [stiffness_N_m, damping_Ns_m, static_friction, dynamic_friction] = KEYS.map((key) =>
-    Number(find<HTMLInputElement>(key).value),
-  );
-  return { stiffness_N_m, damping_Ns_m, static_friction, dynamic_friction };
-}
+const contactOfSliders = (): Contact =>
+  Object.fromEntries(KEYS.map((key) => [key, settingOf(key)])) as Contact;
 
-const describe = (contact: Contact): string =>
-  `${contact.stiffness_N_m} N/m, friction ${contact.static_friction} / ${contact.dynamic_friction}`;
+function describe(contact: Contact): string {
+  const texture =
+    contact.texture_height_m > 0
+      ? `, texture ${Number((1e3 * contact.texture_height_m).toPrecision(3))} mm`
+      : '';
+  return `${contact.stiffness_N_m} N/m, friction ${contact.static_friction} / ${contact.dynamic_friction}${texture}`;
+}
 
 export class Rules {
   private colours: ScanColour[] = [];

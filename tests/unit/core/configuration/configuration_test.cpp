@@ -29,6 +29,8 @@ const std::vector<std::pair<Field, ConfigurationStatus>>& fields() {
       {[](Configuration& c) -> float& { return c.contact.damping_Ns_m; }, kBadDamping},
       {[](Configuration& c) -> float& { return c.contact.static_friction; }, kBadFriction},
       {[](Configuration& c) -> float& { return c.contact.dynamic_friction; }, kBadFriction},
+      {[](Configuration& c) -> float& { return c.contact.texture_height_m; }, kBadTexture},
+      {[](Configuration& c) -> float& { return c.contact.texture_wavelength_m; }, kBadTexture},
       {[](Configuration& c) -> float& { return c.velocity_cutoff_hz; }, kBadFilter},
       {[](Configuration& c) -> float& { return c.device_damping_Ns_m; }, kBadDamping},
       {[](Configuration& c) -> float& { return c.hand_damping_Ns_m; }, kBadDamping},
@@ -120,6 +122,19 @@ TEST(Configuration, RefusesDynamicAboveStaticFriction) {
   EXPECT_EQ(core::check(c), ConfigurationStatus::kBadFriction);
   c.contact.dynamic_friction = 0.2F;
   EXPECT_EQ(core::check(c), ConfigurationStatus::kOk);
+}
+
+TEST(Configuration, RefusesTextureSteeperThanHalfItsWavelength) {
+  Configuration c;
+  c.contact.texture_wavelength_m = 1e-3F;
+  c.contact.texture_height_m = 0.5e-3F;
+  EXPECT_EQ(core::check(c), ConfigurationStatus::kOk);
+  c.contact.texture_height_m = 0.51e-3F;
+  EXPECT_EQ(core::check(c), ConfigurationStatus::kBadTexture);
+  EXPECT_STREQ(core::refusal_of(c).field, "contact.texture_height_m");
+  c.contact.texture_wavelength_m = 1.0F;
+  c.contact.texture_height_m = 0.0101F;
+  EXPECT_EQ(core::check(c), ConfigurationStatus::kBadTexture);
 }
 
 // Colgate and Brown: K < (b + b_hand) / (T / 2 + t_d).

@@ -187,6 +187,35 @@ TEST(Texture, HasConfiguredAmplitudeAndWavelength) {
   EXPECT_LE(largest_step, 1000.0 * height * 2.0 * std::numbers::pi / wavelength * step * 1.1);
 }
 
+// The texture of a configuration is that of a material with the same values.
+TEST(Texture, OfConfigurationAppliesWithoutMaterials) {
+  Configuration c;
+  c.contact.static_friction = c.contact.dynamic_friction = 0.0F;
+  c.contact.damping_Ns_m = 0.0F;
+  c.contact.stiffness_N_m = 1000.0F;
+  const Ride smooth_ride = ride(plane(), -0.003, 0.003, 1e-3, 1e-4, c);
+  c.contact.texture_height_m = 0.1e-3F;
+  c.contact.texture_wavelength_m = 2e-3F;
+  const Ride of_configuration = ride(plane(), -0.003, 0.003, 1e-3, 1e-4, c);
+  Shape same = plane();
+  same.model().materials = {textured(0.1e-3F, 2e-3F)};
+  same.seal();
+  const Ride of_material = ride(same, -0.003, 0.003, 1e-3, 1e-4);
+  ASSERT_EQ(of_configuration.force.size(), of_material.force.size());
+  double deepest = 0.0;
+  for (std::size_t i = 0; i < of_material.force.size(); ++i) {
+    EXPECT_EQ(of_configuration.force[i].z, of_material.force[i].z) << i;
+    deepest =
+        std::max(deepest, static_cast<double>(smooth_ride.force[i].z - of_material.force[i].z));
+  }
+  EXPECT_NEAR(deepest, 0.2, 0.01);
+  // Materials take precedence.
+  const Ride other = ride(one_material(smooth(1000.0F)), -0.003, 0.003, 1e-3, 1e-4, c);
+  for (std::size_t i = 0; i < other.force.size(); ++i) {
+    EXPECT_NEAR(static_cast<double>(other.force[i].z), 1.0, 0.01) << i;
+  }
+}
+
 TEST(Texture, NeverExceedsMaterialStiffness) {
   const Shape shape = one_material(textured(0.2e-3F, 3e-3F));
   for (double x = -1.5e-3; x <= 1.5e-3; x += 0.25e-3) {
@@ -215,12 +244,12 @@ TEST(Texture, IsBoundedContinuousAndStateless) {
   for (int i = 0; i < 20000; ++i) {
     const Vec3 x{0.1F * random(), 0.1F * random(), 0.1F * random()};
     const Vec3 n = core::normalized_or({random(), random(), random()}, {0.0F, 0.0F, 1.0F});
-    const float depth = core::texture_depth(shape.view(), blend, x, n);
+    const float depth = core::texture_depth(shape.view(), {}, blend, x, n);
     ASSERT_GE(depth, 0.0F);
     ASSERT_LE(depth, 2.001e-3F);
-    ASSERT_EQ(depth, core::texture_depth(shape.view(), blend, x, n));
+    ASSERT_EQ(depth, core::texture_depth(shape.view(), {}, blend, x, n));
     const Vec3 beside = x + Vec3{1e-6F * random(), 1e-6F * random(), 1e-6F * random()};
-    ASSERT_NEAR(static_cast<double>(core::texture_depth(shape.view(), blend, beside, n)),
+    ASSERT_NEAR(static_cast<double>(core::texture_depth(shape.view(), {}, blend, beside, n)),
                 static_cast<double>(depth), 1e-3 * 2.0 * std::numbers::pi / 2e-3 * 3e-6);
   }
 }
@@ -232,7 +261,7 @@ TEST(Texture, KeepsDepthFinite) {
       const core::MaterialBlend blend = core::material_at(shape.view(), {}, 0);
       for (const float at : {0.0F, 1e-3F, 1.0F, -7.0F}) {
         const float depth =
-            core::texture_depth(shape.view(), blend, {at, -at, at}, {0.6F, 0.0F, 0.8F});
+            core::texture_depth(shape.view(), {}, blend, {at, -at, at}, {0.6F, 0.0F, 0.8F});
         EXPECT_TRUE(core::is_finite(depth));
         EXPECT_GE(depth, 0.0F);
         EXPECT_LE(depth, 2.0001F * height);

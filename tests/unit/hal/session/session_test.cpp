@@ -230,6 +230,26 @@ TEST_F(SessionTest, ChangesMaterialWhileActive) {
   EXPECT_EQ(rig.state(), State::kActive);
 }
 
+TEST_F(SessionTest, ChangesTextureWhileActive) {
+  ASSERT_TRUE(rig.open().ok());
+  ASSERT_TRUE(rig.arm());
+  const float stiffness_N_m = rig.controller().configuration().contact.stiffness_N_m;
+  EXPECT_TRUE(rig.ask(MessageKind::kSetTexture, core::wire::SetTextureRequest{2e-4F, 3e-3F}).ok());
+  for (const core::wire::SetTextureRequest& bad :
+       {core::wire::SetTextureRequest{2e-3F, 3e-3F}, {NAN, 3e-3F}, {1e-4F, NAN}, {1e-4F, 0.0F}}) {
+    EXPECT_EQ(rig.ask(MessageKind::kSetTexture, bad).status, WireStatus::kBadValue);
+  }
+  const core::ContactParameters& contact = rig.controller().configuration().contact;
+  EXPECT_EQ(contact.texture_height_m, 2e-4F);
+  EXPECT_EQ(contact.texture_wavelength_m, 3e-3F);
+  EXPECT_EQ(contact.stiffness_N_m, stiffness_N_m);
+  EXPECT_TRUE(rig.ask(MessageKind::kSetMaterial,
+                      core::wire::SetMaterialRequest{300.0F, 0.5F, 0.1F, 0.05F, 1})
+                  .ok());
+  EXPECT_EQ(contact.texture_height_m, 2e-4F);
+  EXPECT_EQ(rig.state(), State::kActive);
+}
+
 TEST_F(SessionTest, MovesBody) {
   ASSERT_TRUE(rig.open().ok());
   ASSERT_TRUE(rig.arm());
@@ -404,9 +424,9 @@ TEST_F(SessionTest, RefusesEveryShortMessage) {
   ASSERT_TRUE(rig.open().ok());
   for (const MessageKind kind :
        {MessageKind::kHeartbeat, MessageKind::kControl, MessageKind::kSetLimits,
-        MessageKind::kSetMaterial, MessageKind::kMoveBody, MessageKind::kAddForce,
-        MessageKind::kSubscribe, MessageKind::kReadTrace, MessageKind::kGetParameter,
-        MessageKind::kSetParameter, MessageKind::kOpen}) {
+        MessageKind::kSetMaterial, MessageKind::kSetTexture, MessageKind::kMoveBody,
+        MessageKind::kAddForce, MessageKind::kSubscribe, MessageKind::kReadTrace,
+        MessageKind::kGetParameter, MessageKind::kSetParameter, MessageKind::kOpen}) {
     const std::byte three[3] = {};
     EXPECT_EQ(rig.await(rig.client().send(kind, std::span(three), rig.now_us())).status,
               WireStatus::kBadLength);

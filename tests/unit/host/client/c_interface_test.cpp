@@ -46,6 +46,9 @@ TEST(CInterface, ReadsCapabilities) {
                                  0.0F, 0.0F),
             0)
       << tactree_error(board);
+  EXPECT_EQ(tactree_set_texture(board, 1e-4F, 1e-3F), 0) << tactree_error(board);
+  EXPECT_NE(tactree_set_texture(board, 1e-3F, 1e-3F), 0);
+  EXPECT_NE(std::strstr(tactree_error(board), "set texture"), nullptr) << tactree_error(board);
   EXPECT_NE(tactree_set_material(board, limits.stiffness_limit_N_m + 1.0F, c.contact.damping_Ns_m,
                                  0.0F, 0.0F),
             0);

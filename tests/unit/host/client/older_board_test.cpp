@@ -23,7 +23,7 @@ using core::wire::WireStatus;
 constexpr std::uint32_t kFieldsOf10 = 0x3FF;
 
 /// A board that speaks version 1.0: it opens a session, and refuses fields that it does not know.
-/// Answers every other request with success and without a payload.
+/// Has no texture. Answers every other request with success and without a payload.
 class OldBoard : public client::Transport {
  public:
   explicit OldBoard(std::uint32_t& subscribed) : subscribed_(subscribed) {}
@@ -73,6 +73,9 @@ class OldBoard : public client::Transport {
       status = (wanted.fields & ~kFieldsOf10) == 0U ? WireStatus::kOk : WireStatus::kBadValue;
       subscribed_ = wanted.fields;
     }
+    if (kind == MessageKind::kSetTexture) {
+      status = WireStatus::kUnknownKind;
+    }
     send(request, status, {});
   }
   void send(const core::wire::FrameHeader& request, WireStatus status,
@@ -99,6 +102,17 @@ TEST(OlderBoard, GetsOnlyFieldsItKnows) {
   EXPECT_EQ(board.connection().protocol_minor(), 0U);
   board.subscribe({core::wire::kAllTelemetry, 1});
   EXPECT_EQ(subscribed, kFieldsOf10);
+}
+
+TEST(OlderBoard, SaysThatItHasNoTexture) {
+  std::uint32_t subscribed = 0;
+  client::Board board(std::make_unique<OldBoard>(subscribed), {});
+  try {
+    board.set_texture({1e-4F, 2e-3F});
+    FAIL() << "accepted";
+  } catch (const client::LinkError& error) {
+    EXPECT_STREQ(error.what(), "old board: set texture: the board does not know this message");
+  }
 }
 
 }  // namespace

@@ -143,10 +143,11 @@ TEST_F(ShareWatcher, DropsAndCountsTelemetryOfProgramThatDoesNotRead) {
 TEST_F(ShareWatcher, RefusesEveryCommand) {
   open();
   for (const MessageKind kind :
-       {MessageKind::kSetLimits, MessageKind::kSetMaterial, MessageKind::kMoveBody,
-        MessageKind::kAddForce, MessageKind::kBeginModel, MessageKind::kWriteModel,
-        MessageKind::kFinishModel, MessageKind::kActivateModel, MessageKind::kRollBackModel,
-        MessageKind::kEraseModel, MessageKind::kSetParameter, MessageKind::kSaveParameters}) {
+       {MessageKind::kSetLimits, MessageKind::kSetMaterial, MessageKind::kSetTexture,
+        MessageKind::kMoveBody, MessageKind::kAddForce, MessageKind::kBeginModel,
+        MessageKind::kWriteModel, MessageKind::kFinishModel, MessageKind::kActivateModel,
+        MessageKind::kRollBackModel, MessageKind::kEraseModel, MessageKind::kSetParameter,
+        MessageKind::kSaveParameters}) {
     EXPECT_EQ(call(kind).status, WireStatus::kWatchOnly) << static_cast<int>(kind);
   }
   for (const auto code : {core::wire::ControlCode::kArm, core::wire::ControlCode::kConfirm,

@@ -236,11 +236,16 @@ TEST_F(BoardSessionTest, AppliesParametersAndReportsRefusals) {
   plug_in();
   begin();
   frames_.wait_for(is_here);
-  say({{"do", "set"}, {"stiffness_N_m", 300}, {"damping_Ns_m", 0.7}, {"force_max_N", 2}});
+  say({{"do", "set"},
+       {"stiffness_N_m", 300},
+       {"damping_Ns_m", 0.7},
+       {"texture_height_m", 2e-4},
+       {"force_max_N", 2}});
   const json frame = frames_.wait_for([](const json& f) {
     return f["settings"]["stiffness_N_m"] == 300.0 && f["settings"]["force_max_N"] == 2.0;
   });
   EXPECT_NEAR(frame["settings"]["damping_Ns_m"].get<double>(), 0.7, 1e-6);
+  EXPECT_NEAR(frame["settings"]["texture_height_m"].get<double>(), 2e-4, 1e-9);
   say({{"do", "set"}, {"stiffness_N_m", 50000}});
   const json refused = frames_.wait_for([](const json& f) { return f["news"]["number"] == 1; });
   EXPECT_NE(refused["news"]["text"].get<std::string>().find("stiff"), std::string::npos)

@@ -217,14 +217,42 @@ TEST_F(LiveSessionTest, StiffnessChangesUnderPressingHand) {
   EXPECT_LT(step_max_N, 0.05);
 }
 
+TEST_F(LiveSessionTest, TextureChangesUnderPressingHand) {
+  wait_for_state("active");
+  say({{"do", "set"}, {"static_friction", 0.0}, {"dynamic_friction", 0.0}});
+  // Between two bumps 2 mm apart.
+  say({{"do", "hand"}, {"target_m", {1e-3, 0.0, kPressed_m}}});
+  const auto depth_m = [](const json& f) { return f["runs"][0]["penetration_m"].get<double>(); };
+  const json before = settled();
+  say({{"do", "set"}, {"texture_height_m", 5e-4}});
+  const json deep = settled();
+  EXPECT_GT(depth_m(deep), depth_m(before) + 2e-4);
+  EXPECT_LT(force_of(deep), 0.98 * force_of(before));
+  EXPECT_NEAR(deep["settings"]["texture_height_m"].get<double>(), 5e-4, 1e-9);
+  say({{"do", "set"}, {"texture_wavelength_m", 5e-3}});  // now nearer to a bump
+  EXPECT_LT(depth_m(settled()), depth_m(deep) - 1e-4);
+  say({{"do", "set"}, {"texture_height_m", 0.0}});
+  EXPECT_NEAR(depth_m(settled()), depth_m(before), 5e-5);  // dry friction of the device
+  const std::vector<Tick> ticks = recorded();
+  for (std::size_t i = 1; i < ticks.size(); ++i) {
+    if (ticks[i].t_s >= before["t_s"]) {
+      ASSERT_LT(std::abs(ticks[i].force_N - ticks[i - 1].force_N), 0.05) << ticks[i].t_s;
+    }
+  }
+  EXPECT_NE(refusal({{"do", "set"}, {"texture_height_m", 0.02}}).find("texture_height_m"),
+            std::string::npos);
+}
+
 TEST_F(LiveSessionTest, KeepsSessionUnlessRateOrDeviceChanges) {
   wait_for_state("active");
   say({{"do", "hand"}, {"target_m", {0.0, 0.0, 2.0 * kRadius_m}}});
   json before = wait_for([](const json& f) { return f["t_s"] > 0.6; });
   const std::vector<std::pair<std::string, json>> changes = {
-      {"damping_Ns_m", 1.0}, {"static_friction", 0.75}, {"dynamic_friction", 0.5},
-      {"force_max_N", 0.5},  {"use_materials", false},  {"mode", "both"},
-      {"mode", "paper"},     {"mode", "surface"}};
+      {"damping_Ns_m", 1.0},     {"static_friction", 0.75},
+      {"dynamic_friction", 0.5}, {"texture_wavelength_m", 0.25},
+      {"force_max_N", 0.5},      {"use_materials", false},
+      {"mode", "both"},          {"mode", "paper"},
+      {"mode", "surface"}};
   for (const auto& change : changes) {
     const std::string& name = change.first;
     say({{"do", "set"}, {name, change.second}});

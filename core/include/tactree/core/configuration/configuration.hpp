@@ -23,6 +23,9 @@ struct ContactParameters {
   float damping_Ns_m = 0.5F;      ///< 0 .. 1000
   float static_friction = 0.4F;   ///< 0 .. 2
   float dynamic_friction = 0.3F;  ///< 0 .. static_friction
+  /// Depth of texture_depth() (material.hpp): 0 .. 0.01, at most half of the wavelength; 0: smooth.
+  float texture_height_m = 0.0F;
+  float texture_wavelength_m = 2e-3F;  ///< 1e-4 .. 1
 };
 
 /// Limits of the force at the probe.
@@ -103,6 +106,7 @@ enum class ConfigurationStatus : std::uint8_t {
   kBadStiffness,
   kBadDamping,
   kBadFriction,
+  kBadTexture,
   kBadFilter,
   kBadLimit,  ///< of ForceLimits or MotorLimits
   kBadRamp,

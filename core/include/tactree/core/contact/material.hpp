@@ -51,9 +51,10 @@ void blend_materials(const BlobView& view, const Configuration& configuration,
 /// material.
 ///   depth = height (1 - nx^2 Y Z - ny^2 Z X - nz^2 X Y),  X = cos(2 pi x / wavelength), ...
 /// The depth is 0 if the material has no height or no wavelength, and where a coordinate exceeds
-/// kTextureWaves wavelengths. Cost: three cosines per material, about 100 operations each.
-[[nodiscard]] float texture_depth(const BlobView& view, const MaterialBlend& blend, Vec3 x,
-                                  Vec3 normal);
+/// kTextureWaves wavelengths. Without a blend, the texture is that of the configuration. Cost:
+/// three cosines per material, about 100 operations each.
+[[nodiscard]] float texture_depth(const BlobView& view, const Configuration& configuration,
+                                  const MaterialBlend& blend, Vec3 x, Vec3 normal);
 
 inline constexpr float kTextureWaves = 1048576.0F;  // 2^20: float32 still resolves 1/8 wavelength
 

@@ -22,6 +22,10 @@ namespace tactree::session {
 [[nodiscard]] core::wire::WireStatus material_of(std::span<const std::byte> payload,
                                                  const core::Controller& controller,
                                                  core::Adjustment& adjustment);
+/// Sets `adjustment` to the current one with the requested texture. Errors: kBadLength.
+[[nodiscard]] core::wire::WireStatus texture_of(std::span<const std::byte> payload,
+                                                const core::Controller& controller,
+                                                core::Adjustment& adjustment);
 
 /// Returns kLater while an update of another body waits for a tick.
 [[nodiscard]] Outcome move_body(std::span<const std::byte> payload,

@@ -224,6 +224,8 @@ class Session {
         return answer(set_limits());
       case Kind::kSetMaterial:
         return answer(set_material());
+      case Kind::kSetTexture:
+        return answer(set_texture());
       case Kind::kSetParameter:
         return answer(set_parameter());
       case Kind::kReadTrace:
@@ -244,6 +246,12 @@ class Session {
   [[gnu::noinline]] WireStatus set_material() {
     core::Adjustment adjustment;
     const WireStatus status = material_of(decoder_.payload(), controller(), adjustment);
+    return adjust(status, adjustment);
+  }
+
+  [[gnu::noinline]] WireStatus set_texture() {
+    core::Adjustment adjustment;
+    const WireStatus status = texture_of(decoder_.payload(), controller(), adjustment);
     return adjust(status, adjustment);
   }
 

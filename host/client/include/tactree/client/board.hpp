@@ -119,6 +119,7 @@ class Board {
   void home();          ///< precondition: the device is in its home pose
   void set_limits(float force_max_N, float slew_N_s, float ramp_s);
   void set_material(const core::wire::SetMaterialRequest& material);
+  void set_texture(const core::wire::SetTextureRequest& texture);
   void subscribe(const Subscription& subscription);
   /// Records of consecutive ticks, oldest first. The board records further ones meanwhile, so that
   /// a slow link reads fewer than the board has at first.

@@ -76,6 +76,9 @@ int tactree_capabilities(tactree_board* board, tactree_limits* limits);
 /* Sets stiffness, damping, static and dynamic friction; waits. */
 int tactree_set_material(tactree_board* board, float stiffness_N_m, float damping_Ns_m,
                          float static_friction, float dynamic_friction);
+/* Sets the bumps of the surface, cut into it; a height of 0 m: smooth. Where the model has
+   materials that the board uses, theirs apply. A board of a protocol before 1.2 has none; waits. */
+int tactree_set_texture(tactree_board* board, float height_m, float wavelength_m);
 
 /* Waits until the time of the connection has advanced by duration_ms. Use it in polling loops: with
    a simulated board in lock-step, simulated time passes as fast as possible meanwhile. */

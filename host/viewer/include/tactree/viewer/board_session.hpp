@@ -6,7 +6,8 @@
 // Commands of a page:
 //   {"do": "arm"} {"do": "stop"} {"do": "clear"}     like tactree arm, stop, arm --clear
 //   {"do": "set", "stiffness_N_m": 400, "damping_Ns_m": 0.5, "static_friction": 0.4,
-//    "dynamic_friction": 0.3, "use_materials": true, "force_max_N": 3}  any subset
+//    "dynamic_friction": 0.3, "texture_height_m": 2e-4, "texture_wavelength_m": 2e-3,
+//    "use_materials": true, "force_max_N": 3}  any subset
 //   {"do": "place", "pose": [16 numbers]}  places the model in the frame of the device, while the
 //   board
 //                                          is stopped

@@ -8,8 +8,9 @@
 //                           at most 64, and the maximum speed of the hand
 //   {"do": "arm"} {"do": "stop"} {"do": "clear"}
 //   {"do": "set", "stiffness_N_m": 400, "damping_Ns_m": 0.5, "static_friction": 0.4,
-//    "dynamic_friction": 0.3, "rate_hz": 1000, "mode": "surface" | "paper" | "both",
-//    "device": NAME, "use_materials": true, "force_max_N": 4, "restart": true}
+//    "dynamic_friction": 0.3, "texture_height_m": 2e-4, "texture_wavelength_m": 2e-3,
+//    "rate_hz": 1000, "mode": "surface" | "paper" | "both", "device": NAME,
+//    "use_materials": true, "force_max_N": 4, "restart": true}
 //                           any subset. The session continues, with its hand and its ticks. An
 //                           active controller is stopped and armed again if force_max_N or
 //                           use_materials changes; a controller of another mode starts where the

@@ -81,7 +81,7 @@ TEST(Recording, RefusesAnotherVersion) {
   std::vector<std::byte> bytes = sound();
   bytes[8] = std::byte{1};
   EXPECT_EQ(refusal(bytes),
-            "byte 8: version 1 of the format; this program reads version 3 (replay it with the "
+            "byte 8: version 1 of the format; this program reads version 4 (replay it with the "
             "version of tactree that recorded it)");
 }
 

@@ -135,6 +135,7 @@ class RandomSession {
       core::Adjustment adjustment = controller_.adjustment();
       adjustment.contact.stiffness_N_m = 200.0F + 100.0F * static_cast<float>(below(4));
       adjustment.contact.damping_Ns_m = 0.1F * static_cast<float>(below(8));
+      adjustment.contact.texture_height_m = 1e-4F * static_cast<float>(below(3));
       adjustment.limits.force_max_N = chance(8) ? 4.0F : adjustment.limits.force_max_N;
       (void)changes_.adjust(adjustment);
     }

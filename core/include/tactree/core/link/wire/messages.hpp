@@ -16,7 +16,7 @@
 namespace tactree::core::wire {
 
 inline constexpr std::uint8_t kProtocolMajor = 1;
-inline constexpr std::uint8_t kProtocolMinor = 1;
+inline constexpr std::uint8_t kProtocolMinor = 2;
 inline constexpr std::uint8_t kReplyBit = 0x80;
 
 enum class MessageKind : std::uint8_t {
@@ -28,10 +28,11 @@ enum class MessageKind : std::uint8_t {
   kState = 0x06,           ///< state and faults
   kControl = 0x07,         ///< arm, stop ...; stop needs no session
   kSetLimits = 0x08,       ///< limits of the force
-  kSetMaterial = 0x09,     ///< parameters of a contact
+  kSetMaterial = 0x09,     ///< stiffness, damping and friction of a contact
   kMoveBody = 0x0A,        ///< pose and velocity
   kAddForce = 0x0B,        ///< a force of the application, added to the contact force
   kSubscribe = 0x0C,       ///< telemetry: fields and decimation
+  kSetTexture = 0x0D,      ///< bumps of the surface; since 1.2
   kListModels = 0x10,      ///< slots of the model store
   kBeginModel = 0x11,      ///< erases the slot that is not in use
   kWriteModel = 0x12,      ///< a piece of the model
@@ -206,6 +207,11 @@ struct SetMaterialRequest {
   float static_friction = 0.0F;
   float dynamic_friction = 0.0F;
   std::uint32_t use_materials = 1;  ///< 1: use the model's materials, if any
+};
+
+struct SetTextureRequest {
+  float height_m = 0.0F;      ///< 0 .. 0.01, at most half of the wavelength; 0: smooth
+  float wavelength_m = 0.0F;  ///< 1e-4 .. 1
 };
 
 struct MoveBodyRequest {
@@ -418,6 +424,7 @@ static_assert(sizeof(HeartbeatRequest) == 4 && sizeof(HeartbeatReply) == 8);
 static_assert(sizeof(CapabilitiesReply) == 64 && sizeof(StateReply) == 48);
 static_assert(sizeof(ControlRequest) == 8 && sizeof(ControlReply) == 12);
 static_assert(sizeof(SetLimitsRequest) == 12 && sizeof(SetMaterialRequest) == 20);
+static_assert(sizeof(SetTextureRequest) == 8);
 static_assert(sizeof(MoveBodyRequest) == 60 && sizeof(AddForceRequest) == 16);
 static_assert(sizeof(SubscribeRequest) == 8 && sizeof(TelemetryHeader) == 16);
 static_assert(sizeof(ModelSlot) == 20 && sizeof(ListModelsReply) == 48);

@@ -2,7 +2,7 @@
 // Recording of a session in a file: all inputs of a controller, and a checksum of each tick's
 // outcome. replay.hpp replays it on another controller.
 //
-// Format, version 3. Little-endian, no padding; a float is its float32 bits.
+// Format, version 4. Little-endian, no padding; a float is its float32 bits.
 //
 //   header   char[8] "TACTRREC", u32 version, u64 size of the file
 //   events   u8 kind, then
@@ -48,7 +48,7 @@
 
 namespace tactree::simulation {
 
-inline constexpr std::uint32_t kRecordingVersion = 3;
+inline constexpr std::uint32_t kRecordingVersion = 4;
 
 /// Identity of a blob: its size and the first half of its SHA-512.
 struct ModelDigest {
