@@ -353,6 +353,24 @@ extern "C" void tick() { leaf(); })")
   EXPECT_NE(refused("part").find("has no function part"), std::string::npos);
 }
 
+// The condition alone is the loop of the machine code, and is evaluated once more than the bound.
+TEST_F(Bounding, CountsConditionOfLoopWithoutBody) {
+  const auto waiting = [](const std::string& bound) {
+    return kWork + R"(
+extern "C" void tick() {
+  while (work == 7) {  // bound: )" +
+           bound + R"(
+  }
+})";
+  };
+  const wcet::Bound none = bound_of(waiting("0"));
+  ASSERT_EQ(none.loops.size(), 1U);
+  EXPECT_EQ(none.loops[0].total, 1.0);
+  const wcet::Bound three = bound_of(waiting("3"));
+  EXPECT_EQ(three.loops[0].total, 4.0);
+  EXPECT_GE(three.instructions, none.instructions + 3U * 3U);  // load, compare, branch
+}
+
 // 1 kHz and 2 kHz end the first two tiers.
 TEST(HighestRate, SeparatesTimelyFromLateTicks) {
   std::mt19937 random(3);
