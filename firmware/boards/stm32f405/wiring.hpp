@@ -44,7 +44,7 @@ inline constexpr bool kSignsProven = false;
 /// What an application at the port is for.
 enum class LinkUse : std::uint8_t {
   kMayOperate,  ///< the board needs none: button and dead-man control suffice. One that connects
-                ///< while the motors are off may operate the board, too; the force then ends with it
+                ///< with the motors off may operate the board, too; the force then ends with it
   kOperates,    ///< it arms, and the force ends without it; the button arms as well
   kWatches,     ///< button and dead-man control alone operate the board, the link may come and go;
                 ///< an application may watch and stop
