@@ -42,6 +42,8 @@ class FakeHand {
     }
   }
 
+  [[nodiscard]] core::DevicePose pose() const { return core::locate(device_, counts_); }
+
  private:
   void reach(FakeChip& chip, core::Vec3 target) {
     for (int i = 0; i < 3; ++i) {  // Newton's method

@@ -211,6 +211,18 @@ class BoardRig {
     return chip().tim8.duty(0) + chip().tim8.duty(1) + chip().tim8.duty(2);
   }
 
+  /// N at the probe, of the efforts that the pins of the motors show. The device is at rest.
+  [[nodiscard]] core::Vec3 force_at_pins() {
+    float efforts[core::kAxes];
+    for (std::uint32_t axis = 0; axis < core::kAxes; ++axis) {
+      const auto share = static_cast<float>(chip().tim8.duty(axis));
+      efforts[axis] = (chip().gpio_c.level(axis) ? -1.0F : 1.0F) * share *
+                      firmware::wiring::kEffortAtFullWidth[axis];
+    }
+    return core::transposed_times(core::force_per_effort(hand_.pose().effort_per_force),
+                                  {efforts[0], efforts[1], efforts[2]});
+  }
+
   /// Presses the button for this long, and releases it.
   void press_button(int ticks) {
     chip().press_button(true);

@@ -233,6 +233,32 @@ TEST_F(Stm32f405, CompensatesWeightUntilEmergencyStop) {
   EXPECT_FALSE(rig.chip().gpio_c.level(4)) << "the amplifiers keep their power";
 }
 
+core::Vec3 vector_of(const float (&from)[3]) { return {from[0], from[1], from[2]}; }
+
+// From the encoders to the pins of the motors, and to the telemetry of an application.
+TEST_F(Stm32f405, StatesTheForceThatItsPinsShow) {
+  rig.boot();
+  ASSERT_TRUE(rig.arm());
+  client::Telemetry told;
+  rig.client().on_telemetry([&](const client::Telemetry& t) { told = t; });
+  ASSERT_TRUE(
+      rig.ask(MessageKind::kSubscribe, core::wire::SubscribeRequest{core::wire::kAllTelemetry, 10})
+          .ok());
+  for (const bool touching : {false, true}) {
+    ASSERT_EQ(touching && rig.touch(), touching);
+    rig.run(500);
+    const core::Status& status = rig.status();
+    EXPECT_GT(core::length(status.gravity_force), 0.02F);
+    EXPECT_EQ(core::length(status.force) > 0.3F, touching);
+    // A step of the pulse width is 3 mN at the probe.
+    EXPECT_LT(core::length(rig.force_at_pins() - status.motor_force), 0.01F);
+    EXPECT_LT(core::length(status.motor_force - status.force - status.gravity_force), 1e-4F);
+    EXPECT_GT(told.header.tick + 100U, status.tick) << "telemetry has ended";
+    EXPECT_LT(core::length(vector_of(told.gravity_N) - status.gravity_force), 1e-4F);
+    EXPECT_LT(core::length(vector_of(told.motors_N) - status.motor_force), 1e-2F);
+  }
+}
+
 // Power-up, home, arm, touch, stop, with the button and the dead-man control alone.
 TEST_F(Stm32f405, GivesForceWithoutApplication) {
   rig.link_use = firmware::wiring::LinkUse::kWatches;
