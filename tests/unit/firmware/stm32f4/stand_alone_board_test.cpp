@@ -42,7 +42,10 @@ class StandAloneBoard : public testing::Test {
         board_->start(firmware::wiring::configuration(LinkUse::kOperates, signs_proven));
     EXPECT_FALSE(configuration.link.may_command);
     loop_.emplace(*board_, controller_);
-    start_ = loop_->start(configuration);
+    start_.image = image;
+    if (image == hal::ImageStatus::kOk) {
+      start_ = loop_->start(configuration);
+    }
     board_->report(start_);
   }
 
@@ -68,6 +71,7 @@ class StandAloneBoard : public testing::Test {
     return chip_.tim8.duty(0) + chip_.tim8.duty(1) + chip_.tim8.duty(2);
   }
 
+  hal::ImageStatus image = hal::ImageStatus::kOk;
   bool signs_proven = true;
   Shape shape_;
   FakeChip chip_;
@@ -122,6 +126,21 @@ TEST_F(StandAloneBoard, GivesFirstForceUntilSignsAreProven) {
   EXPECT_EQ(duty(), 0.0) << "in free space";
   EXPECT_TRUE(touch());
   EXPECT_LE(core::length(status_.motor_force), 1.0001F * core::kFirstForce_N);
+}
+
+// The lamp in slots of 0.1 s: three flashes, where a board without a model has two.
+TEST_F(StandAloneBoard, ShowsThatItsProgramIsRefused) {
+  image = hal::ImageStatus::kBadMemory;
+  boot();
+  std::string lamp;
+  for (int slot = 0; slot < 20; ++slot) {
+    run(50);
+    lamp += chip_.gpio_c.level(3) ? '#' : '.';
+    run(50);
+  }
+  EXPECT_EQ(lamp, "#.#.#...............");
+  press_button();
+  EXPECT_FALSE(chip_.gpio_c.level(4)) << "the amplifiers have power";
 }
 
 TEST_F(StandAloneBoard, KeepsMotorsOffWithoutClocks) {

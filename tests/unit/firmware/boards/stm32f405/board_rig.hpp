@@ -55,7 +55,10 @@ class BoardRig {
     chip().serial.give_ring(&board_->ring());  // an address in M0AR has too few bits for the host's
     controller_ = std::make_unique<core::Controller>();
     loop_.emplace(*board_, *controller_);
-    start_ = loop_->start(configuration_);
+    start_.image = image;
+    if (image == hal::ImageStatus::kOk) {
+      start_ = loop_->start(configuration_);
+    }
     board_->report(start_);
     served_ = std::make_unique<Board::Application>(*board_, *controller_);
     served_->started(start_, configuration_);
@@ -256,6 +259,7 @@ class BoardRig {
 
   firmware::wiring::LinkUse link_use = firmware::wiring::kLinkUse;
   bool signs_proven = true;
+  hal::ImageStatus image = hal::ImageStatus::kOk;  ///< of the self-test
   bool application_runs = true;
   bool ticks_run = true;
   std::uint64_t usb_accesses_of_ticks = 0;  ///< of the USB core; a tick has none

@@ -192,6 +192,20 @@ TEST_F(Stm32f405, ReportsInvalidModel) {
   EXPECT_FALSE(rig.arm());
 }
 
+TEST_F(Stm32f405, ReportsRefusedProgramWithItsLamp) {
+  rig.image = hal::ImageStatus::kDamaged;
+  rig.boot();
+  std::string lamp;
+  for (int slot = 0; slot < 20; ++slot) {
+    rig.run(50);
+    lamp += rig.chip().gpio_c.level(3) ? '#' : '.';
+    rig.run(50);
+  }
+  EXPECT_EQ(lamp, "#.#.#...............");
+  EXPECT_EQ(rig.ask_start().image, static_cast<std::uint8_t>(hal::ImageStatus::kDamaged));
+  EXPECT_FALSE(rig.arm_by_button());
+}
+
 TEST_F(Stm32f405, TriggersWatchdogOnBlockedLoop) {
   rig.boot();
   rig.run(100);
