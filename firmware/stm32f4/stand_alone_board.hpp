@@ -116,7 +116,12 @@ class StandAloneBoard {
   }
 
   /// Starts the watchdog after the check of the model, which takes longer than its timeout.
-  void report(const hal::StartResult& /*result*/) { started_ = watchdog_.start() && started_; }
+  void report(const hal::StartResult& result) {
+    started_ = watchdog_.start() && started_;
+    if (result.image != hal::ImageStatus::kOk) {
+      panel_.refuse_program();
+    }
+  }
 
   [[nodiscard]] QuadratureEncoders<Word>& encoders() noexcept { return encoders_; }
   [[nodiscard]] Motors& motors() noexcept { return motors_; }

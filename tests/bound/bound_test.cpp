@@ -353,6 +353,53 @@ extern "C" void tick() { leaf(); })")
   EXPECT_NE(refused("part").find("has no function part"), std::string::npos);
 }
 
+// A compiler that changes the arguments of a function keeps its body, under another symbol.
+TEST_F(Bounding, FindsEntryThatIsCloned) {
+  const std::uint64_t instructions = bound_of(kWork + R"(
+namespace part {
+[[gnu::used, gnu::noipa]] void step() asm("_ZN4part4stepEv.isra.0");
+void step() { leaf(); }
+[[gnu::used, gnu::noipa]] void given() asm("_ZN4part5givenEv.constprop.1.isra.12");
+void given() { leaf(); }
+[[gnu::used, gnu::noipa]] void cut() asm("_ZN4part3cutEv.part.0");
+void cut() { leaf(); }
+[[gnu::used, gnu::noipa]] void cut_again() asm("_ZN4part3cutEv.constprop.0.cold");
+void cut_again() { leaf(); }
+[[gnu::used, gnu::noipa]] void twice(int) { leaf(); }
+[[gnu::used, gnu::noipa]] void twice_given() asm("_ZN4part5twiceEi.constprop.0");
+void twice_given() { leaf(); }
+}
+extern "C" void tick() { leaf(); })")
+                                         .instructions;
+  for (const char* name : {"part::step", "part::step()", "part::given", "_ZN4part3cutEv.part.0"}) {
+    EXPECT_EQ(bound_from(folder_, name, {folder_}).instructions, instructions) << name;
+  }
+  const auto refused = [&](const char* name) {
+    return message_of<wcet::BoundError>([&] { (void)bound_from(folder_, name, {folder_}); });
+  };
+  EXPECT_NE(refused("part::cut").find("has no function part::cut"), std::string::npos);
+  EXPECT_NE(refused("part::twice").find("_ZN4part5twiceEi.constprop.0"), std::string::npos);
+  EXPECT_NE(refused("part::twice").find("are both named part::twice"), std::string::npos);
+}
+
+// The condition alone is the loop of the machine code, and is evaluated once more than the bound.
+TEST_F(Bounding, CountsConditionOfLoopWithoutBody) {
+  const auto waiting = [](const std::string& bound) {
+    return kWork + R"(
+extern "C" void tick() {
+  while (work == 7) {  // bound: )" +
+           bound + R"(
+  }
+})";
+  };
+  const wcet::Bound none = bound_of(waiting("0"));
+  ASSERT_EQ(none.loops.size(), 1U);
+  EXPECT_EQ(none.loops[0].total, 1.0);
+  const wcet::Bound three = bound_of(waiting("3"));
+  EXPECT_EQ(three.loops[0].total, 4.0);
+  EXPECT_GE(three.instructions, none.instructions + 3U * 3U);  // load, compare, branch
+}
+
 // 1 kHz and 2 kHz end the first two tiers.
 TEST(HighestRate, SeparatesTimelyFromLateTicks) {
   std::mt19937 random(3);

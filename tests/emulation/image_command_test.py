@@ -277,7 +277,7 @@ class Image(unittest.TestCase):
         self.refused("states the room of its blob itself", elf=elf,
                      arguments=("--blob-at", "0x08020000", "--room", "896K"))
         self.refused("too large for hc3", elf=self.sealed(place=(PLACE, 64)))
-        self.refused("states no room", "--blob-at", elf=self.sealed(place=(0, 0)))
+        self.refused("states no room", "`tactree image` by --blob-at", elf=self.sealed(place=(0, 0)))
 
     def test_own_firmware_must_be_sealed_after_its_last_change(self):
         self.refused("is not sealed", "seal-image", elf=own_firmware())
@@ -325,6 +325,29 @@ class Image(unittest.TestCase):
             self.refused("hc3.json", cause, elf=elf, arguments=("--board", file))
         self.file("hc3.json", b"{")
         self.refused("not valid JSON", elf=elf, arguments=("--board", file))
+
+    def test_a_model_is_built_for_the_room_in_the_file_of_the_board(self):
+        elf = self.file("own.elf", own_firmware(record=False))
+        scan = self.file("plane.xyz", "".join(f"{x} {y} 0\n" for x in range(60) for y in range(60)).encode())
+        model = self.folder / "plane.blob"
+
+        def build(*arguments):
+            return subprocess.run([TACTREE, "build", scan, "--unit", "mm", "--for", elf, "-o", model, "--progress",
+                                   "off", *arguments], capture_output=True, text=True, check=False)
+
+        refused = build()
+        self.assertEqual(refused.returncode, 1)
+        self.assertIn("--board FILE.json", refused.stderr)
+        self.assertEqual(build("--blob-at", hex(PLACE), "--room", "64K").returncode, 2)
+        sizes = []
+        for room in (8 << 10, 20 << 10):
+            board = {"name": "hc3", "blob": {"at": hex(PLACE), "room": f"{room >> 10}K"}}
+            done = build("--board", self.file("hc3.json", json.dumps(board).encode()))
+            self.assertEqual(done.returncode, 0, done.stderr)
+            sizes.append(model.stat().st_size)
+            self.assertLessEqual(sizes[-1], room)
+        self.assertGreater(sizes[1], sizes[0])
+        self.make("hex", "--board", self.folder / "hc3.json", elf=elf.read_bytes(), blob=model.read_bytes())
 
     # ---- the boards' own images
 

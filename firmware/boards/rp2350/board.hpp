@@ -89,8 +89,11 @@ class Board {
 
   [[nodiscard]] core::Configuration connect(const hal::CapturedFault&);
   /// Starts the watchdog after the check of the model, which takes longer than its timeout.
-  void report(const hal::StartResult& /*result*/) {
+  void report(const hal::StartResult& result) {
     started_ = rp2350::Watchdog().start() && started_;
+    if (result.image != hal::ImageStatus::kOk) {
+      panel_.refuse_program();
+    }
   }
 
   [[nodiscard]] rp2350::Encoders& encoders() noexcept { return encoders_; }

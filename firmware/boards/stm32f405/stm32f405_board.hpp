@@ -238,7 +238,12 @@ class Stm32f405Board {
 
   /// Starts the watchdog. It must not start in connect(), because the check of a large model, which
   /// follows, would exceed its timeout. serve() reports `result` over the link.
-  void report(const hal::StartResult& /*result*/) { note(watchdog_.start(), Part::kWatchdog); }
+  void report(const hal::StartResult& result) {
+    note(watchdog_.start(), Part::kWatchdog);
+    if (result.image != hal::ImageStatus::kOk) {
+      panel_.refuse_program();
+    }
+  }
 
   /// Serves an application between the ticks. Does not return.
   void serve(core::Controller& controller, const hal::StartResult& started,

@@ -36,23 +36,30 @@ inline constexpr float kEffortAtFullWidth[core::kAxes] = {1.9F, 1.8F, 1.5F};
 /// program is larger than its sectors: README.md.
 inline constexpr const std::uint8_t* kModelKey = nullptr;
 
+/// Set it after the first force has shown that every motor pushes the right way: README.md, "First
+/// power-on". Until then the board gives at most 0.5 N, and does not carry the weight of the device
+/// (core::first_force()).
+inline constexpr bool kSignsProven = false;
+
 /// What an application at the port is for.
 enum class LinkUse : std::uint8_t {
-  kOperates,  ///< it arms, and the force ends without it; the button arms as well
-  kWatches,   ///< the board stands alone: button and dead-man control operate it, the link may come
-              ///< and go; an application may watch and stop
+  kMayOperate,  ///< the board needs none: button and dead-man control suffice. One that connects
+                ///< with the motors off may operate the board, too; the force then ends with it
+  kOperates,    ///< it arms, and the force ends without it; the button arms as well
+  kWatches,     ///< button and dead-man control alone operate the board, the link may come and go;
+                ///< an application may watch and stop
 };
-inline constexpr LinkUse kLinkUse = LinkUse::kOperates;
+inline constexpr LinkUse kLinkUse = LinkUse::kMayOperate;
 
 /// Configuration of the device. The device is homed by hand (HomingMethod::kGivenPose).
-inline core::Configuration configuration(LinkUse use = kLinkUse) {
+inline core::Configuration configuration(LinkUse use = kLinkUse, bool signs_proven = kSignsProven) {
   core::Configuration configuration;
   core::use_device(core::presets::premium(), configuration);
   configuration.rate_hz = 1000.0F;  // the watchdog requires at least this rate
   configuration.link.required = use == LinkUse::kOperates;
-  configuration.link.may_command = use == LinkUse::kOperates;
+  configuration.link.may_command = use != LinkUse::kWatches;
   configuration.link.timeout_s = 0.1F;
-  return configuration;
+  return signs_proven ? configuration : core::first_force(configuration);
 }
 
 }  // namespace tactree::firmware::wiring

@@ -153,11 +153,27 @@ const Function* Image::function_at(std::uint32_t address) const {
 
 namespace {
 
-/// The symbol as in the source, without the namespaces that have no name; empty for a clone, which
-/// the source does not name.
+/// Whether a symbol is that of a whole function: as written, or with other arguments (.isra.0,
+/// .constprop.0). Every other suffix is a fragment of one (.part.0, .cold).
+bool is_whole(std::string_view symbol) {
+  std::size_t at = symbol.find('.');
+  while (at != std::string_view::npos) {
+    const std::size_t end = symbol.find('.', at + 1);
+    const std::string_view suffix = symbol.substr(at + 1, end - at - 1);
+    const bool is_number = suffix.find_first_not_of("0123456789") == std::string_view::npos;
+    if (suffix != "isra" && suffix != "constprop" && !is_number) {
+      return false;
+    }
+    at = end;
+  }
+  return true;
+}
+
+/// The symbol as in the source, without the namespaces that have no name; empty for a fragment,
+/// which the source does not name.
 std::string name_in_source(const std::string& symbol) {
   static constexpr std::string_view kUnnamed = "(anonymous namespace)::";
-  std::string name = symbol.find('.') == std::string::npos ? demangled(symbol) : std::string();
+  std::string name = is_whole(symbol) ? demangled(symbol) : std::string();
   for (std::size_t at = name.find(kUnnamed); at != std::string::npos; at = name.find(kUnnamed)) {
     name.erase(at, kUnnamed.size());
   }

@@ -207,7 +207,7 @@ class Matcher {
 
   LoopShape shape_of(std::uint32_t number, const SourceLoop& source) {
     const NaturalLoop& loop = flow_.loops[number];
-    if (!source.one_comparison || loop.irregular) {
+    if (!source.one_comparison || source.is_empty || loop.irregular) {
       return LoopShape::kUnknown;
     }
     const bool at_end = std::all_of(loop.back.begin(), loop.back.end(), [&](const Edge& back) {

@@ -146,11 +146,14 @@ class Reader {
 
   void add_loop(std::size_t begin, bool is_for) {
     const std::size_t head_end = closing(begin, '(', ')');
-    SourceLoop loop = loop_at(begin, statement_end(head_end + 1));
+    const std::size_t body_end = statement_end(head_end + 1);
+    SourceLoop loop = loop_at(begin, body_end);
     for (std::uint32_t line = loop.line; line <= line_of(head_end); ++line) {
       loop.head.push_back(line);
     }
     loop.one_comparison = is_one_comparison(code_.substr(begin, head_end - begin), is_for);
+    loop.is_empty = code_.substr(head_end + 1, body_end - head_end).find_first_not_of(" \n{};") ==
+                    std::string::npos;
     read_bound(loop, {loop.line, line_of(head_end), loop.line - 1});
     file_.loops.push_back(std::move(loop));
   }

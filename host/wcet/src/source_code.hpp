@@ -37,6 +37,8 @@ struct SourceLoop {
   bool tests_last = false;  ///< do {} while ()
   /// The condition is one comparison, which is one branch in the machine code.
   bool one_comparison = false;
+  /// Without a body: the machine code may consist of the condition alone.
+  bool is_empty = false;
   std::optional<Expression> bound;
   std::vector<Total> totals;
 };

@@ -218,11 +218,12 @@ void check_seal(const Reader& reader, const runtime::ImageRecord& record, std::u
 
 void require_place(const Reader& reader, bool has_record, const Unstated& unstated) {
   if (!unstated.place) {
-    reader.fail(has_record ? "its record states no room for a blob"
-                           : "not an image of Tactree: it does not name its board",
-                "state --blob-at ADDRESS and --room BYTES for a firmware of your own, or give the "
-                "image that `cmake --build --preset <core>` made: "
-                "build/<core>/firmware/<board>.elf");
+    reader.fail(
+        has_record ? "its record states no room for a blob"
+                   : "not an image of Tactree: it does not name its board",
+        "for a firmware of your own state it in the file of the board, --board FILE.json, or "
+        "to `tactree image` by --blob-at ADDRESS --room BYTES; or give the image that "
+        "`cmake --build --preset <core>` made: build/<core>/firmware/<board>.elf");
   }
 }
 

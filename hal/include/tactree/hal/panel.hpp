@@ -11,7 +11,7 @@
 // released. Configuration::supervision.dead_man_required must be true: the button does not confirm.
 //
 // The lamp shows the state, in slots of 0.1 s:
-//   boot, no model       two flashes every 2 s
+//   boot, no model       two flashes every 2 s; three: the program or the RAM failed its self-test
 //   idle, not homed      1 s period, half on
 //   idle, homed          a flash every second: ready to arm
 //   armed                0.2 s period: waits for the dead-man control
@@ -38,6 +38,9 @@ class Panel {
     debounce_ticks_ = slot_ticks_ / kDebouncesPerSlot;
     hold_ticks_ = kHoldSlots * slot_ticks_;
   }
+
+  /// For a program that failed its self-test: the lamp says so.
+  void refuse_program() { flashes_without_model_ = 3; }
 
   /// Call once per tick, with the state of the button; returns its command.
   [[nodiscard]] core::Command command(bool pressed) {
@@ -111,7 +114,7 @@ class Panel {
   }
 
   [[nodiscard]] bool is_lit(core::FaultMask faults) const {
-    std::uint32_t flashes = 2;  // boot, no model
+    std::uint32_t flashes = flashes_without_model_;
     std::uint32_t period = 20;
     if (state_ == core::State::kActive) {
       return true;
@@ -140,6 +143,7 @@ class Panel {
   std::uint32_t released_ticks_ = 0;  // up to debounce_ticks_
   std::uint32_t ticks_in_slot_ = 0;
   std::uint32_t slot_ = 0;
+  std::uint32_t flashes_without_model_ = 2;
   core::State state_ = core::State::kBoot;
   core::Command follow_up_ = core::Command::kNone;
   bool homed_ = false;

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <random>
+#include <string>
 
 #include "motor_signs.hpp"
 #include "open_gate.hpp"
@@ -34,19 +35,24 @@ TEST(ForcePerEffort, InvertsJacobianOfEveryDevice) {
   }
 }
 
-/// Random poses, forces and weights on one device; returns the largest force of the motors as a
-/// share of the limit.
-double largest_share(const core::DevicePreset& preset, core::Configuration configuration,
-                     bool signs_proven) {
+/// Largest forces of the motors, as shares of the limit.
+struct Largest {
+  double share = 0.0;
+  double singular_share = 0.0;  ///< next to a singular pose or at the end of a range: reach is 0
+};
+
+/// Random forces and weights in random poses, over the ranges of all joints of one device.
+Largest largest_shares(const core::DevicePreset& preset, float force_max_N, bool signs_proven) {
+  core::Configuration configuration;
   core::use_device(preset, configuration);
-  core::limit_force(configuration, 0.5F * configuration.limits.force_max_N);
+  core::limit_force(configuration, force_max_N);
   configuration.limits.ramp_s = 0.002F;
   configuration.motors.signs_proven = signs_proven;
   SafetyGate gate;
   EXPECT_TRUE(gate.configure(core::gate_limits(configuration)));
   std::mt19937 random(5);
   std::uniform_real_distribution<float> unit(-1.0F, 1.0F);
-  double largest = 0.0;
+  Largest largest;
   for (int i = 0; i < 20'000; ++i) {
     float joints[core::kAxes];
     for (std::uint32_t axis = 0; axis < core::kAxes; ++axis) {
@@ -55,7 +61,7 @@ double largest_share(const core::DevicePreset& preset, core::Configuration confi
     }
     const core::DevicePose pose =
         core::locate_joints(preset.model, {joints[0], joints[1], joints[2]});
-    if (!pose.valid || pose.reach < 1.0F) {
+    if (!pose.valid) {
       continue;
     }
     const Vec3 force = 20.0F * Vec3{unit(random), unit(random), unit(random)};
@@ -63,19 +69,37 @@ double largest_share(const core::DevicePreset& preset, core::Configuration confi
         gate.command(force, pose.effort_per_force, 3.0F * pose.gravity_effort);
     const double shown = signs_proven ? probe_force(pose, result.command, 0U)
                                       : largest_probe_force(pose, result.command);
-    largest = std::max(largest, shown / static_cast<double>(configuration.limits.force_max_N));
+    double& of_kind = pose.reach > 0.0F ? largest.share : largest.singular_share;
+    of_kind = std::max(of_kind, shown / static_cast<double>(force_max_N));
   }
   return largest;
+}
+
+// Next to a singular pose the rounding of its matrix is no longer small.
+void expect_within_limit(const Largest& largest) {
+  EXPECT_LE(largest.share, 1.00001);
+  EXPECT_GE(largest.share, 0.9);
+  EXPECT_LE(largest.singular_share, 1.01);
 }
 
 TEST(MotorForce, StaysWithinLimitOnEveryDevice) {
   for (const core::DevicePreset& preset : core::kDevicePresets) {
     for (const bool signs_proven : {true, false}) {
-      const double share = largest_share(preset, {}, signs_proven);
-      EXPECT_LE(share, 1.00001) << preset.name << " " << signs_proven;
-      EXPECT_GE(share, 0.9) << preset.name << " " << signs_proven;
+      SCOPED_TRACE(std::string(preset.name) + (signs_proven ? " proven" : ""));
+      expect_within_limit(largest_shares(preset, 0.5F * preset.drive.force_max_N, signs_proven));
     }
   }
+}
+
+TEST(MotorForce, KeepsHalfNewtonWithAnySignsInEveryPose) {
+  bool meets_singular_poses = false;
+  for (const core::DevicePreset& preset : core::kDevicePresets) {
+    SCOPED_TRACE(preset.name);
+    const Largest largest = largest_shares(preset, 0.5F, false);
+    expect_within_limit(largest);
+    meets_singular_poses = meets_singular_poses || largest.singular_share > 0.9;
+  }
+  EXPECT_TRUE(meets_singular_poses);
 }
 
 TEST(MotorForce, GivesPriorityToGravity) {

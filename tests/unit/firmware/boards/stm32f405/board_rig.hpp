@@ -14,6 +14,7 @@
 #include "await_response.hpp"
 #include "boards/stm32f405/stm32f405_board.hpp"
 #include "fake_chip.hpp"
+#include "fake_hand.hpp"
 #include "tactree/client/client.hpp"
 #include "tactree/hal/loop.hpp"
 #include "usb_host.hpp"
@@ -45,12 +46,19 @@ class BoardRig {
     const auto clocks = firmware::prepare_chip(chip().chip());
     board_ = std::make_unique<Board>(chip().chip(), chip().flash.whole(), clocks, kIdentity);
     configuration_ = board_->connect(last_fault);
-    configuration_.link = firmware::wiring::configuration(link_use).link;
+    if (link_use != firmware::wiring::kLinkUse || signs_proven != firmware::wiring::kSignsProven) {
+      // As connect() returns it with other constants in wiring.hpp.
+      configuration_ = firmware::wiring::configuration(link_use, signs_proven);
+      store::apply_saved_parameters(board_->storage().parameters(), configuration_);
+    }
     chip().flash.pass = [this](double us) { pass_us(us); };
     chip().serial.give_ring(&board_->ring());  // an address in M0AR has too few bits for the host's
     controller_ = std::make_unique<core::Controller>();
     loop_.emplace(*board_, *controller_);
-    start_ = loop_->start(configuration_);
+    start_.image = image;
+    if (image == hal::ImageStatus::kOk) {
+      start_ = loop_->start(configuration_);
+    }
     board_->report(start_);
     served_ = std::make_unique<Board::Application>(*board_, *controller_);
     served_->started(start_, configuration_);
@@ -206,6 +214,18 @@ class BoardRig {
     return chip().tim8.duty(0) + chip().tim8.duty(1) + chip().tim8.duty(2);
   }
 
+  /// N at the probe, of the efforts that the pins of the motors show. The device is at rest.
+  [[nodiscard]] core::Vec3 force_at_pins() {
+    float efforts[core::kAxes];
+    for (std::uint32_t axis = 0; axis < core::kAxes; ++axis) {
+      const auto share = static_cast<float>(chip().tim8.duty(axis));
+      efforts[axis] = (chip().gpio_c.level(axis) ? -1.0F : 1.0F) * share *
+                      firmware::wiring::kEffortAtFullWidth[axis];
+    }
+    return core::transposed_times(core::force_per_effort(hand_.pose().effort_per_force),
+                                  {efforts[0], efforts[1], efforts[2]});
+  }
+
   /// Presses the button for this long, and releases it.
   void press_button(int ticks) {
     chip().press_button(true);
@@ -213,6 +233,21 @@ class BoardRig {
     chip().press_button(false);
     run(50);
   }
+  /// The hand presses on sheet_below_hand(), and stays there; true if it feels it.
+  bool touch() {
+    hand_.move(chip(), kOnSheetBelowHand, [this] { tick(); });
+    run(300);
+    return feels();
+  }
+  /// The hand returns to the home of the device, in free space.
+  void lift() {
+    hand_.move(chip(), {}, [this] { tick(); });
+  }
+  /// True if the motors press the hand back.
+  [[nodiscard]] bool feels() {
+    return status_.rendering.in_contact && status_.force.z > 0.0F && duty() > 0.0;
+  }
+
   /// Homed and armed by the button, the hand at the dead-man control: to active.
   bool arm_by_button() {
     press_button(1100);
@@ -223,8 +258,11 @@ class BoardRig {
   }
 
   firmware::wiring::LinkUse link_use = firmware::wiring::kLinkUse;
+  bool signs_proven = true;
+  hal::ImageStatus image = hal::ImageStatus::kOk;  ///< of the self-test
   bool application_runs = true;
   bool ticks_run = true;
+  std::uint64_t usb_accesses_of_ticks = 0;  ///< of the USB core; a tick has none
 
   /// Runs a tick as an interrupt. While ticks are held, due ticks are merged into one.
   void pass_us(double us) {
@@ -242,7 +280,9 @@ class BoardRig {
     ++ticks_;
     chip().begin_tick();
     if (ticks_run) {
+      const std::uint64_t accesses = chip().usb.accesses;
       status_ = loop_->tick().status;
+      usb_accesses_of_ticks += chip().usb.accesses - accesses;
     }
   }
 
@@ -267,6 +307,7 @@ class BoardRig {
   }
 
   std::unique_ptr<FakeChip> chip_ = std::make_unique<FakeChip>();
+  FakeHand hand_{firmware::wiring::configuration().device};
   std::unique_ptr<Board> board_;
   std::unique_ptr<core::Controller> controller_;
   std::optional<hal::Loop<Board>> loop_;

@@ -47,7 +47,7 @@ static_assert(hal::Board<Board>);
 
 /// The one of the image, and the one that an application writes.
 const Shape& image_model() {
-  static const Shape shape = cos_sheet();
+  static const Shape shape = sheet_below_hand();
   return shape;
 }
 /// A ball below the hand.
@@ -192,6 +192,20 @@ TEST_F(Stm32f405, ReportsInvalidModel) {
   EXPECT_FALSE(rig.arm());
 }
 
+TEST_F(Stm32f405, ReportsRefusedProgramWithItsLamp) {
+  rig.image = hal::ImageStatus::kDamaged;
+  rig.boot();
+  std::string lamp;
+  for (int slot = 0; slot < 20; ++slot) {
+    rig.run(50);
+    lamp += rig.chip().gpio_c.level(3) ? '#' : '.';
+    rig.run(50);
+  }
+  EXPECT_EQ(lamp, "#.#.#...............");
+  EXPECT_EQ(rig.ask_start().image, static_cast<std::uint8_t>(hal::ImageStatus::kDamaged));
+  EXPECT_FALSE(rig.arm_by_button());
+}
+
 TEST_F(Stm32f405, TriggersWatchdogOnBlockedLoop) {
   rig.boot();
   rig.run(100);
@@ -214,7 +228,7 @@ TEST_F(Stm32f405, IdentifiesItself) {
   EXPECT_EQ(can.cycles_per_tick, 168000U);
 }
 
-// From power-up over homing and arming to a force; then the emergency stop.
+// From power-up over homing and arming to a touch; then the emergency stop.
 TEST_F(Stm32f405, CompensatesWeightUntilEmergencyStop) {
   rig.boot();
   ASSERT_TRUE(rig.started().ok());
@@ -222,13 +236,41 @@ TEST_F(Stm32f405, CompensatesWeightUntilEmergencyStop) {
   ASSERT_TRUE(rig.arm()) << "faults " << rig.status().faults;
   EXPECT_FALSE(rig.chip().watchdog.bitten());
 
-  // The arm's own weight alone moves the motors; then the stop.
+  // The arm's own weight alone moves the motors; then the model, and the stop.
   EXPECT_GT(rig.duty(), 0.0);
+  EXPECT_FALSE(rig.feels());
+  EXPECT_TRUE(rig.touch());
   rig.chip().press_stop(true);
   rig.run(2);
   EXPECT_EQ(rig.duty(), 0.0);
   EXPECT_EQ(rig.status().state, core::State::kFault);
   EXPECT_FALSE(rig.chip().gpio_c.level(4)) << "the amplifiers keep their power";
+}
+
+core::Vec3 vector_of(const float (&from)[3]) { return {from[0], from[1], from[2]}; }
+
+// From the encoders to the pins of the motors, and to the telemetry of an application.
+TEST_F(Stm32f405, StatesTheForceThatItsPinsShow) {
+  rig.boot();
+  ASSERT_TRUE(rig.arm());
+  client::Telemetry told;
+  rig.client().on_telemetry([&](const client::Telemetry& t) { told = t; });
+  ASSERT_TRUE(
+      rig.ask(MessageKind::kSubscribe, core::wire::SubscribeRequest{core::wire::kAllTelemetry, 10})
+          .ok());
+  for (const bool touching : {false, true}) {
+    ASSERT_EQ(touching && rig.touch(), touching);
+    rig.run(500);
+    const core::Status& status = rig.status();
+    EXPECT_GT(core::length(status.gravity_force), 0.02F);
+    EXPECT_EQ(core::length(status.force) > 0.3F, touching);
+    // A step of the pulse width is 3 mN at the probe.
+    EXPECT_LT(core::length(rig.force_at_pins() - status.motor_force), 0.01F);
+    EXPECT_LT(core::length(status.motor_force - status.force - status.gravity_force), 1e-4F);
+    EXPECT_GT(told.header.tick + 100U, status.tick) << "telemetry has ended";
+    EXPECT_LT(core::length(vector_of(told.gravity_N) - status.gravity_force), 1e-4F);
+    EXPECT_LT(core::length(vector_of(told.motors_N) - status.motor_force), 1e-2F);
+  }
 }
 
 // Power-up, home, arm, touch, stop, with the button and the dead-man control alone.
@@ -238,7 +280,8 @@ TEST_F(Stm32f405, GivesForceWithoutApplication) {
   rig.boot();
   rig.run(100);
   ASSERT_TRUE(rig.arm_by_button()) << "faults " << rig.status().faults;
-  EXPECT_GT(rig.duty(), 0.0);
+  EXPECT_FALSE(rig.feels()) << "in free space";
+  EXPECT_TRUE(rig.touch()) << "force " << rig.status().force.z;
   EXPECT_TRUE(rig.chip().gpio_c.level(3)) << "the lamp is off";
   rig.press_button(30);
   EXPECT_EQ(rig.status().state, core::State::kIdle);
@@ -248,7 +291,11 @@ TEST_F(Stm32f405, GivesForceWithoutApplication) {
   rig.press_button(1100);
   rig.chip().hold_dead_man(true);
   rig.run(500);
+  EXPECT_EQ(rig.status().state, core::State::kArmed) << "starts inside the model";
+  rig.lift();
+  rig.run(500);
   EXPECT_EQ(rig.status().state, core::State::kActive);
+  EXPECT_TRUE(rig.touch());
   rig.chip().press_stop(true);
   rig.run(2);
   EXPECT_EQ(rig.duty(), 0.0);
@@ -261,11 +308,13 @@ TEST_F(Stm32f405, WatchingApplicationMayReconnect) {
   rig.boot();
   rig.run(100);
   ASSERT_TRUE(rig.arm_by_button());
+  ASSERT_TRUE(rig.touch());
   core::wire::CapabilitiesReply can;
   ASSERT_TRUE(rig.ask(MessageKind::kCapabilities).read(can));
   EXPECT_TRUE(has_flag(can, core::wire::BoardFlag::kWatchOnly));
   EXPECT_EQ(rig.status().state, core::State::kActive);
   ASSERT_TRUE(rig.open(50).ok()) << "while active";
+  EXPECT_TRUE(rig.feels()) << "after an application has connected";
   ASSERT_TRUE(rig.ask(MessageKind::kSubscribe, core::wire::SubscribeRequest{0x3FF, 100}).ok());
   EXPECT_EQ(rig.control(ControlCode::kArm).status, WireStatus::kWatchOnly);
   EXPECT_EQ(rig.ask(MessageKind::kSetLimits, core::wire::SetLimitsRequest{}).status,
@@ -275,14 +324,74 @@ TEST_F(Stm32f405, WatchingApplicationMayReconnect) {
   rig.application_runs = false;
   rig.run(2000);
   EXPECT_EQ(rig.status().state, core::State::kActive) << "faults " << rig.status().faults;
-  EXPECT_GT(rig.duty(), 0.0);
+  EXPECT_TRUE(rig.feels()) << "after the application has fallen silent";
   rig.application_runs = true;
   ASSERT_TRUE(rig.open(50).ok());
   ASSERT_TRUE(rig.ask(MessageKind::kClose).ok());
   EXPECT_EQ(rig.status().state, core::State::kActive);
+  EXPECT_TRUE(rig.feels()) << "after the application has closed its session";
   ASSERT_TRUE(rig.control(ControlCode::kStop).ok());
   EXPECT_EQ(rig.status().state, core::State::kIdle);
   EXPECT_EQ(rig.duty(), 0.0);
+}
+
+// The image as it is built: it needs no application, and takes one.
+TEST_F(Stm32f405, NeedsNoApplicationAndTakesOne) {
+  rig.boot();
+  EXPECT_FALSE(rig.configuration().link.required);
+  rig.application_runs = false;
+  rig.run(100);
+  ASSERT_TRUE(rig.arm_by_button()) << "faults " << rig.status().faults;
+  EXPECT_TRUE(rig.touch());
+  rig.run(2000);
+  EXPECT_TRUE(rig.feels()) << "faults " << rig.status().faults;
+  rig.application_runs = true;
+  EXPECT_EQ(rig.open().status, WireStatus::kBusy) << "operated by the button";
+  EXPECT_TRUE(rig.feels());
+  rig.lift();
+  rig.press_button(30);
+  rig.chip().hold_dead_man(false);
+  ASSERT_TRUE(rig.arm()) << "by the application";
+  EXPECT_TRUE(rig.touch());
+  rig.application_runs = false;
+  rig.run(60);
+  EXPECT_EQ(rig.duty(), 0.0);
+  EXPECT_EQ(rig.status().faults, core::fault_bit(core::Fault::kLinkLost));
+}
+
+// An open session requires its link, also of the button, until it is closed or the board is reset.
+TEST_F(Stm32f405, IsOperatedByItsButtonOnceSessionIsClosed) {
+  rig.boot();
+  ASSERT_TRUE(rig.open(50).ok());
+  rig.application_runs = false;
+  rig.run(1000);
+  EXPECT_FALSE(rig.arm_by_button());
+  EXPECT_EQ(rig.status().faults, core::fault_bit(core::Fault::kLinkLost));
+  rig.chip().hold_dead_man(false);
+  rig.press_button(1100);  // clears the fault
+  rig.application_runs = true;
+  ASSERT_TRUE(rig.open(50).ok());
+  ASSERT_TRUE(rig.ask(MessageKind::kClose).ok());
+  rig.application_runs = false;
+  rig.run(100);
+  rig.press_button(1100);
+  rig.chip().hold_dead_man(true);
+  EXPECT_EQ(rig.run(500).state, core::State::kActive) << "faults " << rig.status().faults;
+  EXPECT_TRUE(rig.touch());
+}
+
+// The image as it is built: at most 0.5 N, whatever the signs are.
+TEST_F(Stm32f405, GivesFirstForceUntilSignsAreProven) {
+  rig.signs_proven = false;
+  rig.boot();
+  const core::Configuration& configuration = rig.configuration();
+  EXPECT_FALSE(configuration.motors.signs_proven);
+  EXPECT_FALSE(configuration.compensate_gravity);
+  EXPECT_EQ(configuration.limits.force_max_N, core::kFirstForce_N);
+  ASSERT_TRUE(rig.arm()) << "faults " << rig.status().faults;
+  EXPECT_EQ(rig.duty(), 0.0) << "in free space";
+  EXPECT_TRUE(rig.touch());
+  EXPECT_LE(core::length(rig.status().motor_force), 1.0001F * core::kFirstForce_N);
 }
 
 TEST_F(Stm32f405, RefusesForceWithBrokenButtonPort) {
@@ -304,11 +413,12 @@ TEST_F(Stm32f405, StopsOnRequest) {
 TEST_F(Stm32f405, EndsForceForSilentApplication) {
   rig.boot();
   ASSERT_TRUE(rig.arm());
+  ASSERT_TRUE(rig.touch());
   rig.run(1000);
   EXPECT_EQ(rig.status().state, core::State::kActive);
   rig.application_runs = false;
   rig.run(30);
-  EXPECT_GT(rig.duty(), 0.0);
+  EXPECT_TRUE(rig.feels());
   rig.run(25);
   EXPECT_EQ(rig.duty(), 0.0);
   EXPECT_EQ(rig.status().faults, core::fault_bit(core::Fault::kLinkLost));

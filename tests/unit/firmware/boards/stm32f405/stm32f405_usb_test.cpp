@@ -21,10 +21,11 @@ class Stm32f405Usb : public testing::Test {
     EXPECT_EQ(
         chip.clocks.violation + chip.serial.violation + chip.flash.violation + chip.usb.violation,
         "");
+    EXPECT_EQ(rig.usb_accesses_of_ticks, 0U) << "a tick has accessed the USB core";
   }
 
   static const Shape& sheet() {
-    static const Shape shape = cos_sheet();
+    static const Shape shape = sheet_below_hand();
     return shape;
   }
   static const Shape& small_sheet() {
@@ -120,9 +121,11 @@ TEST_F(Stm32f405Usb, GivesForceOverUsbUntilUnplugged) {
   rig.boot();
   ASSERT_TRUE(rig.plug_usb());
   ASSERT_TRUE(rig.arm()) << "faults " << rig.status().faults;
+  EXPECT_TRUE(rig.touch());
   rig.run(1000);
   EXPECT_EQ(rig.status().state, core::State::kActive);
-  EXPECT_GT(rig.duty(), 0.0);
+  EXPECT_TRUE(rig.feels());
+  EXPECT_GT(rig.chip().usb.accesses, 0U);
   rig.unplug_usb();
   rig.application_runs = false;
   rig.run(60);
@@ -137,8 +140,10 @@ TEST_F(Stm32f405Usb, KeepsForceOfBoardThatStandsAloneWhenUnplugged) {
   rig.boot();
   rig.run(100);
   ASSERT_TRUE(rig.arm_by_button());
+  ASSERT_TRUE(rig.touch());
   for (int i = 0; i < 5; ++i) {
     ASSERT_TRUE(rig.plug_usb());
+    EXPECT_TRUE(rig.feels()) << "connected";
     ASSERT_TRUE(rig.open().ok());
     ASSERT_TRUE(
         rig.ask(core::wire::MessageKind::kSubscribe, core::wire::SubscribeRequest{0x3FF, 1}).ok());
@@ -148,6 +153,7 @@ TEST_F(Stm32f405Usb, KeepsForceOfBoardThatStandsAloneWhenUnplugged) {
     rig.unplug_usb();
     rig.run(100 + i);
     ASSERT_EQ(rig.status().state, core::State::kActive) << rig.status().faults;
+    EXPECT_TRUE(rig.feels()) << "unplugged";
   }
   EXPECT_EQ(rig.status().overruns, 0U);
   EXPECT_TRUE(uses(sheet()));
