@@ -22,11 +22,11 @@ class Telemetry:
     def __init__(self, board: Board, every_ticks: int, timeout_s: float):
         self._native = board._native
         self._timeout_s = timeout_s
-        self._native.subscribe(every_ticks)
+        self._number = self._native.subscribe(every_ticks)
 
     def read(self) -> npt.NDArray[Any]:
         """The rows since the last call. Waits for at least one; raises BoardError if none arrives in time."""
-        block = self._native.take(self._timeout_s)
+        block = self._native.take(self._number, self._timeout_s)
         if len(block) == 0:
             raise _native.BoardError(f"{self._native.name()}: no telemetry for {self._timeout_s:g} s (is the board still "
                                      "running?)")
@@ -68,7 +68,7 @@ class Board:
 
     A method waits for the reply of the board, at most for one second unless stated otherwise, and raises BoardError with
     the message of the tool if the board refuses, does not reply or is lost. Other threads run meanwhile, and Ctrl-C ends
-    long waits. Only post_stop() may be called while another thread uses the board.
+    long waits. Only post_stop() and close() may be called while another thread uses the board; close() ends its waits.
     """
 
     def __init__(self, port: str, *, baud: int = _native.USUAL_BAUD, link_timeout_ms: int = 50,
