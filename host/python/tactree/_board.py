@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import AsyncIterator, Callable, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
 from types import TracebackType
 from typing import Any
 
@@ -10,6 +11,14 @@ import numpy.typing as npt
 
 from . import _native
 from ._model import Model
+
+
+def _settled(reading: Future[Any]) -> Future[None]:
+    """Done with `reading`. To cancel a wait for it does not cancel the reading."""
+    settled: Future[None] = Future()
+    settled.set_running_or_notify_cancel()
+    reading.add_done_callback(lambda _: settled.set_result(None))
+    return settled
 
 
 class Telemetry:
@@ -23,18 +32,32 @@ class Telemetry:
         self._native = board._native
         self._timeout_s = timeout_s
         self._number = self._native.subscribe(every_ticks)
+        self._thread: ThreadPoolExecutor | None = None
+        self._pending: Future[npt.NDArray[Any]] | None = None
 
-    def read(self) -> npt.NDArray[Any]:
-        """The rows since the last call. Waits for at least one; raises BoardError if none arrives in time."""
+    def _take(self) -> npt.NDArray[Any]:
         block = self._native.take(self._number, self._timeout_s)
         if len(block) == 0:
             raise _native.BoardError(f"{self._native.name()}: no telemetry for {self._timeout_s:g} s (is the board still "
                                      "running?)")
         return block
 
+    def read(self) -> npt.NDArray[Any]:
+        """The rows since the last call. Waits for at least one; raises BoardError if none arrives in time."""
+        pending, self._pending = self._pending, None
+        return self._take() if pending is None else pending.result()
+
     async def read_async(self) -> npt.NDArray[Any]:
-        """As read(), without blocking the event loop."""
-        return await asyncio.get_running_loop().run_in_executor(None, self.read)
+        """As read(), without blocking the event loop. If it is cancelled, the next call returns the rows."""
+        while True:
+            if self._pending is None:
+                self._thread = self._thread or ThreadPoolExecutor(1, "tactree-telemetry")
+                self._pending = self._thread.submit(self._take)
+            pending = self._pending
+            await asyncio.wrap_future(_settled(pending))
+            if self._pending is pending:  # otherwise another call returns it
+                self._pending = None
+                return pending.result()
 
     @property
     def dropped(self) -> int:
