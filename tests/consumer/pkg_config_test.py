@@ -75,6 +75,8 @@ class PkgConfig(unittest.TestCase):
         symbols = output("nm", "--dynamic", "--defined-only", self.folder.parent / LIBRARY)
         exported = {line.split()[2] for line in symbols.splitlines()} - {"TACTREE_CLIENT_0"}
         self.assertEqual(exported, {f"{name}@@TACTREE_CLIENT_0" for name in declared})
+        exports = (SOURCES / "host/client/exported_symbols.map").read_text()
+        self.assertNotIn("*", re.search(r"global:(.*?)local:", exports, re.S)[1])  # no later function joins by itself
         packaged = (SOURCES / "debian/libtactree-client0.symbols").read_text()
         self.assertEqual(set(re.findall(r"^ (tactree_\w+)@", packaged, re.M)), declared)
 
