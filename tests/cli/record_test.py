@@ -20,7 +20,7 @@ import zipfile
 import zlib
 
 sys.dont_write_bytecode = True
-from served_board import BallFolder, ServedBoard  # noqa: E402
+from served_board import BallFolder, RealTimeBoard, ServedBoard  # noqa: E402
 
 TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
 
@@ -233,7 +233,7 @@ class Session(Recorded):
 
 class Gaps(Recorded):
     def test_counts_ticks_omitted_by_board(self):
-        with RealTimeBoard(self.blob) as port:
+        with RealTimeBoard(TACTREE, self.blob) as port:
             program = self.start(port, "gaps.csv")
             time.sleep(0.5)
             program.send_signal(signal.SIGSTOP)
@@ -256,17 +256,9 @@ class Gaps(Recorded):
         self.assertIn("the port was too slow", said)
 
     def test_keeps_every_tick_in_real_time(self):
-        with RealTimeBoard(self.blob) as port:
+        with RealTimeBoard(TACTREE, self.blob) as port:
             said = self.record(port, "live.npz", "--seconds", "5", "--arm")
         self.assertIn("live.npz: 5000 ticks in 4.999 s, none missing", said)
-
-
-class RealTimeBoard(ServedBoard):
-    """At a pseudo-terminal: the board does not wait for the program."""
-
-    def __init__(self, blob, *options):
-        super().__init__(TACTREE, blob, *options)
-        self.command.remove("--lock-step")
 
 
 class Hour(Recorded):
