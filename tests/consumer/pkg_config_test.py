@@ -1,5 +1,5 @@
 """Programs of projects without CMake, by the .pc files of the installation: linked statically and with the shared
-library, also in a shared object, and after the installation was moved.
+library, also in a shared object, and after the installation was moved. Projects with CMake and only parts of it.
 
 usage: pkg_config_test.py C++_COMPILER PREFIX WORK SOURCES BUILD
 """
@@ -89,6 +89,24 @@ class PkgConfig(unittest.TestCase):
             names = {path.name for path in prefix.rglob("*") if not path.is_dir()}
             self.assertIn(wanted, names)
             self.assertNotIn(unwanted, names)
+
+
+    def build_client_c(self, name, prefix, *options):
+        """What the program needs, of a project that finds the library by find_package()."""
+        folder = WORK / f"build-{name}"
+        output("cmake", "-S", HERE / "client_c", "-B", folder, f"-DCMAKE_CXX_COMPILER={CXX}",
+               f"-DCMAKE_PREFIX_PATH={prefix}", *options)
+        output("cmake", "--build", folder)
+        output("ctest", "--test-dir", folder, "--output-on-failure", "--no-tests=error")
+        return output("readelf", "-d", folder / "consumer")
+
+    def test_shared_library_by_find_package(self):
+        self.assertIn(f"[{LIBRARY}.0]", self.build_client_c("shared", self.prefix))
+
+    def test_client_without_its_shared_library(self):
+        for component in ("core", "client"):
+            output("cmake", "--install", BUILD, "--component", component, "--prefix", WORK / "static")
+        self.assertNotIn(LIBRARY, self.build_client_c("static", WORK / "static", "-DWITHOUT_LIBRARY=ON"))
 
 
 if __name__ == "__main__":
