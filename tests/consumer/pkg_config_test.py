@@ -62,11 +62,7 @@ class PkgConfig(unittest.TestCase):
     def test_core_alone_in_a_shared_object(self):
         flags = self.flags("tactree-core")
         self.assertIn("-ffp-contract=off", flags)
-        source = WORK / "touch.cpp"
-        source.write_text('#include "tactree/core/model/nearest.hpp"\n'
-                          "bool touch(const tactree::core::BlobView& view) {\n"
-                          "  return nearest_within(view, {}, 1.0F).found();\n}\n")
-        output(CXX, "-shared", "-fPIC", "-Wl,-z,defs", source, "-o", WORK / "libtouch.so", *flags)
+        output(CXX, "-shared", "-fPIC", "-Wl,-z,defs", HERE / "pkg_config/touch.cpp", "-o", WORK / "libtouch.so", *flags)
 
     def test_shared_library_exports_its_interface_only(self):
         header = (SOURCES / "host/client/include/tactree/client/tactree.h").read_text()
