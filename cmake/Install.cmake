@@ -6,7 +6,7 @@
 #   runtime     tactree::runtime                      depends on nothing; only of a build for a controller
 #   builder     tactree::builder                      Eigen, fmt, TBB, liblzf, libsodium, pugixml
 #   simulation  tactree::plant, tactree::simulation   Eigen, fmt
-#   client      tactree::client, tactree::client_c    threads, libusb
+#   client      tactree::client                       threads, libusb; tactree::client_c, if client-library is there
 # Programs and files:
 #   client-library  the shared library tactree::client_c, for programs that were linked with it
 #   tools           tactree, with what it reads and starts
@@ -24,7 +24,6 @@ function(tactree_install_component component)
   cmake_parse_arguments(arg "" "" "HEADERS;TARGETS" ${ARGN})
   install(TARGETS ${arg_TARGETS} EXPORT tactree-${component}
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${component}
-    LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${component}-library NAMELINK_COMPONENT ${component}
     OBJECTS DESTINATION ${CMAKE_INSTALL_LIBDIR}/tactree COMPONENT ${component})
   install(EXPORT tactree-${component} NAMESPACE tactree:: DESTINATION ${tactree_cmake_dir}
     FILE tactree-${component}-targets.cmake COMPONENT ${component})
@@ -80,8 +79,13 @@ if(TACTREE_BUILD_TOOLS)
     DESCRIPTION "Simulated haptic devices and hands"
     LIBRARIES tactree_simulation tactree_plant REQUIRES tactree-core eigen3 fmt)
   tactree_install_component(client
-    TARGETS tactree_client tactree_client_c
+    TARGETS tactree_client
     HEADERS host/client/include)
+  # An export file of its own: find_package() includes it if the library is installed, too.
+  install(TARGETS tactree_client_c EXPORT tactree-client-c
+    LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT client-library NAMELINK_COMPONENT client)
+  install(EXPORT tactree-client-c NAMESPACE tactree:: DESTINATION ${tactree_cmake_dir}
+    FILE tactree-client-c-targets.cmake COMPONENT client)
   tactree_install_pkg_config(client
     DESCRIPTION "Connection to a haptic controller, in C++"
     FLAGS -pthread LIBRARIES tactree_client REQUIRES tactree-core libusb-1.0)
@@ -93,7 +97,7 @@ endif()
 configure_package_config_file(cmake/tactree-config.cmake.in
   ${CMAKE_CURRENT_BINARY_DIR}/tactree-config.cmake
   INSTALL_DESTINATION ${tactree_cmake_dir}
-  PATH_VARS CMAKE_INSTALL_INCLUDEDIR CMAKE_INSTALL_LIBEXECDIR)
+  PATH_VARS CMAKE_INSTALL_INCLUDEDIR CMAKE_INSTALL_LIBDIR CMAKE_INSTALL_LIBEXECDIR)
 # Before 1.0 a minor version may change the interface.
 write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/tactree-config-version.cmake
   COMPATIBILITY SameMinorVersion)

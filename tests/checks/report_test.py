@@ -56,6 +56,18 @@ class TestReport(unittest.TestCase):
             "Gate.NeedsRoot (not as root)", "cli.link: test_key (no key)",
             "web.board (inconclusive: the machine stalled for 512 ms while it ran)", "web.page (chromium is missing)"])
 
+    def test_compares_forces_of_suites(self):
+        logs = []
+        for suite, checksum in (("bookworm", 7), ("trixie", 7), ("forky", 8)):
+            logs.append(self.folder / f"{suite}.log")
+            logs[-1].write_text("Setting up clang\n" + "".join(
+                f"ok      {suite} {build}: forces {checksum}, {build} (Debian) 12\n" for build in ("g++/Debug", "clang++/Debug")))
+        self.assertEqual(self.report("same-forces", *logs[:2]), "forces 7: bookworm g++/Debug, bookworm clang++/Debug, "
+                         "trixie g++/Debug, trixie clang++/Debug\n")
+        self.assertIn("forces 8: forky g++/Debug", self.report("same-forces", *logs, code=1))
+        logs[0].write_text("FAILED  bookworm g++/Debug\n")
+        self.assertIn("no build has passed", self.report("same-forces", *logs[:2], code=1))
+
     def test_lists_slowest(self):
         lines = self.report("slowest", self.folder).splitlines()
         self.assertEqual(lines[1].split(), ["300.0", "s", "build"])

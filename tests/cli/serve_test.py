@@ -1,17 +1,19 @@
-"""tactree serve with a simulated board: programs that know the public messages only, command, stop, refusals.
+"""tactree serve with a simulated board: programs that know the public messages only, command, stop, refusals, rates,
+programs that hang or are killed.
 
-usage: serve_test.py TACTREE
+usage: serve_test.py TACTREE CLASS        CLASS: Serve, Rates or Hung
 """
 import contextlib
+import json
 import pathlib
 import re
-import signal
 import subprocess
 import sys
+import threading
 import unittest
 
 sys.dont_write_bytecode = True
-from served_board import BallFolder, ServedBoard  # noqa: E402
+from served_board import BallFolder, RealTimeBoard, ServedBoard, SharingProgram  # noqa: E402
 from web_socket import WebSocket  # noqa: E402
 
 TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
@@ -22,24 +24,20 @@ def force(state, newton):
                           "commands": {"set_cursor_force": {"values": {"x": newton, "y": 0, "z": 0}}}}]}
 
 
-class Serve(BallFolder):
+class Shared(BallFolder):
     tool = TACTREE
 
     @contextlib.contextmanager
-    def served(self, *options):
+    def served(self, *options, board=ServedBoard):
         """The TCP port; self.said is the output of the program at the end."""
-        with ServedBoard(TACTREE, self.blob) as port:
-            program = subprocess.Popen([TACTREE, "serve", self.blob, "--port", port, "--tcp-port", "0", *options],
-                                       stdout=subprocess.PIPE, text=True, cwd=self.path)
-            try:
-                self.address = re.search(r"ws://[\d.]+:(\d+)/[^;]*", program.stdout.readline())
-                tcp_port = int(self.address[1])
-                self.watch_port = re.search(r"unix:\S+", program.stdout.readline())[0]
-                yield tcp_port
-            finally:
-                program.send_signal(signal.SIGTERM)
-                self.said = program.communicate(timeout=30)[0]
-            self.assertEqual(program.returncode, 0)
+        with board(TACTREE, self.blob) as self.port:
+            with SharingProgram(TACTREE, self.blob, "--port", self.port, *options, cwd=self.path) as self.program:
+                self.address, self.watch_port = self.program.address, self.program.watch_port
+                yield self.program.tcp_port
+        self.said = self.program.said
+
+
+class Serve(Shared):
 
     def test_ends_at_once(self):
         with ServedBoard(TACTREE, self.blob) as port:
@@ -72,6 +70,27 @@ class Serve(BallFolder):
             self.assertEqual(state["tactree"]["added_N"]["x"], 0)
             program.close()
         self.assertIn("client 1, 127.0.0.1:", self.said)
+
+    def test_force_moves_the_cursor_of_a_program_that_knows_the_public_fields_only(self):
+        def mean_x(newton):
+            """Of a second, in which the simulated hand moves along its whole path."""
+            nonlocal state
+            positions = []
+            for _ in range(1000):
+                program.send(force(state, newton))
+                state = public(program.receive())
+                positions.append(state["inverse3"][0]["state"]["cursor_position"]["x"])
+            return sum(positions) / len(positions)
+
+        def public(message):
+            return {name: message[name] for name in ("inverse3", "wireless_verse_grip")}
+        with self.served("--arm") as port:
+            program = WebSocket(port)
+            state = public(program.receive())
+            self.assertEqual(state["inverse3"][0]["config"]["handedness"], "right")
+            self.assertEqual(set(state["wireless_verse_grip"][0]["state"]), {"orientation", "buttons"})
+            self.assertGreater(mean_x(2.0) - mean_x(-2.0), 0.005)
+            program.close()
 
     def test_one_is_in_command_and_all_may_stop(self):
         with self.served("--grip", "none") as port:
@@ -116,6 +135,7 @@ class Serve(BallFolder):
             refused = self.run_tool("arm", "--port", self.watch_port)
             self.assertEqual(refused.returncode, 1)
             self.assertIn("shared by tactree serve", refused.stderr)
+            self.assertIn("its terminal names the program in command", refused.stderr)
             program.send({})
             self.assertEqual(program.receive()["tactree"]["state"], "active")
             stopped = self.run_tool("stop", "--port", self.watch_port)
@@ -129,6 +149,52 @@ class Serve(BallFolder):
             program.close()
         self.assertIn("watching program 1: has left", self.said)
         self.assertFalse(pathlib.Path(self.watch_port[5:]).exists())
+
+    def test_page_watches_beside_the_program_in_command(self):
+        with self.served("--arm") as port:
+            program = WebSocket(port)
+            program.receive()
+            viewer = subprocess.Popen([TACTREE, "view", self.blob, "--port", self.watch_port, "--page-port", "0"],
+                                      stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, cwd=self.path)
+            page_port = int(re.search(r"http://127\.0\.0\.1:(\d+)/", viewer.stdout.readline())[1])
+            page = WebSocket(page_port, f"http://127.0.0.1:{page_port}", "/live", "127.0.0.1")
+            while (message := page.receive())["type"] != "frame":
+                pass
+            self.assertEqual((message["board"]["link"], message["runs"][0]["state"]), ("here", "active"))
+            page.close()
+            viewer.terminate()
+            self.assertEqual(viewer.wait(), 0)
+            viewer.stdout.close()
+            program.close()
+
+    def test_takes_binary_messages(self):
+        """As JSON libraries that write bytes send them."""
+        with self.served("--arm") as port:
+            program = WebSocket(port)
+            state = program.receive()
+            for _ in range(2000):
+                program.send(json.dumps(force(state, 0.5)).encode(), opcode=2)
+                state = program.receive()
+                if state["tactree"]["added_N"]["x"] > 0.2:
+                    break
+            self.assertGreater(state["tactree"]["added_N"]["x"], 0.2)
+            program.close()
+
+    def test_tells_programs_that_are_too_many(self):
+        with self.served() as port:
+            programs = [WebSocket(port) for _ in range(32)]
+            for program in programs:
+                program.receive()
+            refused = WebSocket(port)
+            self.assertEqual(refused.receive()["tactree"]["client"]["refused"], "there are 32 clients already (end one)")
+            with self.assertRaisesRegex(ConnectionError, "closed"):
+                refused.receive()
+            programs.pop().close()
+            self.program.wait_for("client 32, .*: disconnected")
+            programs.append(WebSocket(port))
+            programs[-1].receive()
+            for program in (*programs, refused):
+                program.close()
 
     def test_refuses_pages_of_other_servers(self):
         with self.served() as port:
@@ -160,6 +226,179 @@ class Serve(BallFolder):
             done = self.run_tool("serve", "--port", other, "--tcp-port", port)
             self.assertEqual(done.returncode, 1)
             self.assertIn("choose another --tcp-port", done.stderr)
+
+
+def subscribe(port, rate_hz, queue=1):
+    """A program that has got the first state of its subscription."""
+    program = WebSocket(port)
+    program.receive()
+    program.send({"tactree": {"subscribe": {"rate_hz": rate_hz, "queue": queue}}})
+    while program.receive()["tactree"].get("client", {}).get("every_ticks", 0) == 0:
+        pass
+    return program
+
+
+class Rates(Shared):
+    """In the time of the board, which it keeps itself."""
+
+    def expect_rate(self, program, seconds, rate_hz):
+        texts = [program.receive_text()]
+        first = last = json.loads(texts[0])["tactree"]
+        while last["time_us"] < first["time_us"] + 1e6 * seconds:
+            texts += [program.receive_text() for _ in range(20)]
+            last = json.loads(texts[-1])["tactree"]
+        self.assertGreaterEqual((len(texts) - 1) / (last["time_us"] - first["time_us"]) * 1e6, 0.99 * rate_hz)
+
+    def test_subscription_gets_each_tick(self):
+        with self.served(board=RealTimeBoard) as port:
+            program = subscribe(port, 1000, queue=64)
+            self.expect_rate(program, 2, 1000)
+            program.close()
+
+    def test_ten_programs_get_200_states_a_second(self):
+        with self.served(board=RealTimeBoard) as port:
+            programs = [subscribe(port, 200, queue=64) for _ in range(10)]
+            failures = []
+
+            def read(program):
+                try:
+                    self.expect_rate(program, 2, 200)
+                except AssertionError as error:
+                    failures.append(str(error))
+            threads = [threading.Thread(target=read, args=[program]) for program in programs]
+            for thread in threads:
+                thread.start()
+            for thread in threads:
+                thread.join()
+            for program in programs:
+                program.close()
+        self.assertEqual(failures, [])
+
+    def test_answering_program_gets_each_tick(self):
+        with self.served(board=RealTimeBoard) as port:
+            program = WebSocket(port)
+            first = last = program.receive()["tactree"]
+            states = 0
+            while last["time_us"] < first["time_us"] + 2e6:
+                for _ in range(20):
+                    program.send({})
+                    text = program.receive_text()
+                    states += 1
+                last = json.loads(text)["tactree"]
+            program.close()
+        ticks = last["tick"] - first["tick"]
+        self.assertGreaterEqual(states, 0.95 * ticks)
+        self.assertLessEqual(states, ticks)  # none twice
+
+    def test_silent_reader_delays_nobody_and_is_disconnected(self):
+        with self.served("--arm", board=RealTimeBoard) as port:
+            silent = subscribe(port, 1000, queue=1024)
+            pushing = WebSocket(port)
+            state = pushing.receive()
+            for _ in range(1000):
+                pushing.send(force(state, 0.5))
+                state = pushing.receive()
+            self.assertGreater(state["tactree"]["added_N"]["x"], 0.2)
+            watching = subscribe(port, 1000, queue=64)
+            self.expect_rate(watching, 2, 1000)
+            line = self.program.wait_for(r"(client \d+), .*because it has read nothing for 5 s; (\d+) states")
+            self.assertEqual(line[1], "client 1")
+            self.assertGreater(int(line[2]), 100)
+            for program in (silent, pushing, watching):
+                program.close()
+
+
+class Hung(Shared):
+    def pushed(self, port):
+        """A program whose force acts."""
+        program = WebSocket(port)
+        state = program.receive()
+        while state["tactree"]["added_N"]["x"] < 0.2:
+            program.send(force(state, 0.5))
+            state = program.receive()
+        return program
+
+    def test_force_of_silent_program_ends(self):
+        with self.served("--arm") as port:
+            watching = subscribe(port, 1000, queue=1024)
+            silent = self.pushed(port)
+            while watching.receive()["tactree"]["added_N"]["x"] < 0.2:
+                pass
+            acted_us = []
+            while (state := watching.receive()["tactree"])["added_N"]["x"] > 0:
+                acted_us.append(state["time_us"])
+            self.assertLess(acted_us[-1] - acted_us[0], 0.3e6)  # 0.1 s, and the pushes before
+            self.assertEqual(state["state"], "active")  # the board still renders the model
+            silent.close()
+            watching.close()
+
+    def test_silent_program_in_command_loses_it(self):
+        with self.served("--arm") as port:
+            silent = self.pushed(port)
+            watching = subscribe(port, 20)
+            self.assertIsNotNone(watching.receive()["tactree"]["command"])
+            name = self.program.wait_for(r"client (\d+), .*: has command")[1]
+            while watching.receive()["tactree"]["command"] is not None:
+                pass
+            line = self.program.wait_for("has answered nothing for 10 s")
+            self.assertIn(f"client {name}, ", line.string)
+            silent.close()
+            watching.close()
+
+    def test_answering_a_ping_keeps_command(self):
+        """A program that sends nothing else, for instance because its user thinks."""
+        with self.served() as port:
+            thinking = WebSocket(port)
+            thinking.receive()
+            thinking.send({"tactree": {"take_command": True}})
+            self.program.wait_for("has command")
+            watching = subscribe(port, 20)
+            pings = []
+
+            def answer():
+                while True:
+                    try:
+                        opcode, data = thinking.receive_frame()
+                    except OSError:
+                        return
+                    if opcode == 9:
+                        pings.append(data)
+                        thinking.send(data, opcode=10)
+            thread = threading.Thread(target=answer)
+            thread.start()
+            begin = watching.receive()["tactree"]["time_us"]
+            while (state := watching.receive()["tactree"])["time_us"] < begin + 14e6:
+                self.assertIsNotNone(state["command"])
+            thinking.end()
+            thread.join()
+            watching.close()
+        self.assertGreater(len(pings), 1)
+
+    def test_board_stops_when_the_program_is_killed(self):
+        with self.served("--arm", board=RealTimeBoard) as port:
+            pushing = self.pushed(port)
+            self.program.process.kill()
+            self.program.process.wait()
+            while "the controller is armed" in (found := self.run_tool("monitor", "--port", self.port, "--once")).stderr:
+                pass  # until the link counts as lost, 50 ms
+            self.assertRegex(found.stdout, "fault.*link-lost", found.stderr)
+            pushing.close()
+
+    def test_socket_of_a_killed_program_is_used_again(self):
+        socket = ["--watch-socket", self.path / "watch"]
+        with self.served(*socket):
+            with ServedBoard(TACTREE, self.blob) as other:
+                done = self.run_tool("serve", "--port", other, "--tcp-port", "0", *socket)
+            self.assertEqual(done.returncode, 1)
+            self.assertIn("watch: Address already in use (choose another --watch-socket)", done.stderr)
+            self.program.process.kill()
+        self.assertTrue((self.path / "watch").is_socket())
+        with self.served(*socket):
+            self.assertEqual(self.run_tool("monitor", "--once", "--port", self.watch_port).returncode, 0)
+        (self.path / "watch").write_text("a file of the user")
+        with ServedBoard(TACTREE, self.blob) as other:
+            self.assertEqual(self.run_tool("serve", "--port", other, "--tcp-port", "0", *socket).returncode, 1)
+        self.assertEqual((self.path / "watch").read_text(), "a file of the user")
 
 
 if __name__ == "__main__":

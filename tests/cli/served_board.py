@@ -1,4 +1,6 @@
 """A simulated board in a separate process, for tests of the commands that use a board."""
+import re
+import signal
 import subprocess
 
 from tool_folder import SharedFolder, ball, csv
@@ -38,3 +40,41 @@ class ServedBoard:
         self.process.terminate()
         assert self.process.wait() == 0
         self.process.stdout.close()
+
+
+class RealTimeBoard(ServedBoard):
+    """At a pseudo-terminal: the board does not wait for the program."""
+
+    def __init__(self, *arguments, **options):
+        super().__init__(*arguments, **options)
+        self.command.remove("--lock-step")
+
+
+class SharingProgram:
+    """with SharingProgram(tactree, "--port", port) as shared: ...      tactree serve; ends with exit code 0."""
+
+    def __init__(self, tactree, *arguments, cwd=None):
+        self.process = subprocess.Popen([tactree, "serve", *arguments, "--tcp-port", "0"], stdout=subprocess.PIPE,
+                                        text=True, cwd=cwd)
+        self.said = ""
+
+    def __enter__(self):
+        self.address = self.wait_for(r"ws://[\d.]+:(\d+)/[^;]*")
+        self.tcp_port = int(self.address[1])
+        self.watch_port = self.wait_for(r"unix:\S+")[0]
+        return self
+
+    def wait_for(self, pattern):
+        """The match in the next line that has one."""
+        for line in self.process.stdout:
+            self.said += line
+            if found := re.search(pattern, line):
+                return found
+        raise AssertionError(f"tactree serve has ended without {pattern}: {self.said}")
+
+    def __exit__(self, *_):
+        self.process.send_signal(signal.SIGTERM)
+        self.said += self.process.stdout.read()
+        self.process.stdout.close()
+        code = self.process.wait()
+        assert code in (0, -signal.SIGKILL), self.said

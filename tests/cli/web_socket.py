@@ -39,18 +39,31 @@ class WebSocket:
         self.socket.sendall(bytes([0x80 | opcode]) + size + bytes(4) + data)  # a mask of zeros
 
     def receive(self):
+        return json.loads(self.receive_text())
+
+    def receive_text(self):
+        """The next text. Answers pings, omits binary messages."""
         while True:
-            head = self.take(2)
-            size = head[1] & 0x7F
-            if size == 126:
-                size, = struct.unpack("!H", self.take(2))
-            data = self.take(size)
-            if head[0] & 0xF == 9:
+            opcode, data = self.receive_frame()
+            if opcode == 9:
                 self.send(data, opcode=10)
-            elif head[0] & 0xF == 8:
+            elif opcode == 8:
                 raise ConnectionError("closed")
-            else:
-                return json.loads(data)
+            elif opcode == 1:
+                return data
+
+    def receive_frame(self):
+        """(opcode, data)"""
+        head = self.take(2)
+        size = head[1] & 0x7F
+        if size > 125:
+            size, = struct.unpack(*(("!H", self.take(2)) if size == 126 else ("!Q", self.take(8))))
+        return head[0] & 0xF, self.take(size)
+
+    def end(self):
+        """Also of a thread that waits for a message, whose wait ends."""
+        self.socket.shutdown(socket.SHUT_RDWR)
+        self.socket.close()
 
     def close(self):
         self.socket.close()

@@ -1,5 +1,5 @@
 """Programs of projects without CMake, by the .pc files of the installation: linked statically and with the shared
-library, also in a shared object, and after the installation was moved.
+library, also in a shared object, and after the installation was moved. Projects with CMake and only parts of it.
 
 usage: pkg_config_test.py C++_COMPILER PREFIX WORK SOURCES BUILD
 """
@@ -62,11 +62,7 @@ class PkgConfig(unittest.TestCase):
     def test_core_alone_in_a_shared_object(self):
         flags = self.flags("tactree-core")
         self.assertIn("-ffp-contract=off", flags)
-        source = WORK / "touch.cpp"
-        source.write_text('#include "tactree/core/model/nearest.hpp"\n'
-                          "bool touch(const tactree::core::BlobView& view) {\n"
-                          "  return nearest_within(view, {}, 1.0F).found();\n}\n")
-        output(CXX, "-shared", "-fPIC", "-Wl,-z,defs", source, "-o", WORK / "libtouch.so", *flags)
+        output(CXX, "-shared", "-fPIC", "-Wl,-z,defs", HERE / "pkg_config/touch.cpp", "-o", WORK / "libtouch.so", *flags)
 
     def test_shared_library_exports_its_interface_only(self):
         header = (SOURCES / "host/client/include/tactree/client/tactree.h").read_text()
@@ -75,6 +71,8 @@ class PkgConfig(unittest.TestCase):
         symbols = output("nm", "--dynamic", "--defined-only", self.folder.parent / LIBRARY)
         exported = {line.split()[2] for line in symbols.splitlines()} - {"TACTREE_CLIENT_0"}
         self.assertEqual(exported, {f"{name}@@TACTREE_CLIENT_0" for name in declared})
+        exports = (SOURCES / "host/client/exported_symbols.map").read_text()
+        self.assertNotIn("*", re.search(r"global:(.*?)local:", exports, re.S)[1])  # no later function joins by itself
         packaged = (SOURCES / "debian/libtactree-client0.symbols").read_text()
         self.assertEqual(set(re.findall(r"^ (tactree_\w+)@", packaged, re.M)), declared)
 
@@ -87,6 +85,24 @@ class PkgConfig(unittest.TestCase):
             names = {path.name for path in prefix.rglob("*") if not path.is_dir()}
             self.assertIn(wanted, names)
             self.assertNotIn(unwanted, names)
+
+
+    def build_client_c(self, name, prefix, *options):
+        """What the program needs, of a project that finds the library by find_package()."""
+        folder = WORK / f"build-{name}"
+        output("cmake", "-S", HERE / "client_c", "-B", folder, f"-DCMAKE_CXX_COMPILER={CXX}",
+               f"-DCMAKE_PREFIX_PATH={prefix}", *options)
+        output("cmake", "--build", folder)
+        output("ctest", "--test-dir", folder, "--output-on-failure", "--no-tests=error")
+        return output("readelf", "-d", folder / "consumer")
+
+    def test_shared_library_by_find_package(self):
+        self.assertIn(f"[{LIBRARY}.0]", self.build_client_c("shared", self.prefix))
+
+    def test_client_without_its_shared_library(self):
+        for component in ("core", "client"):
+            output("cmake", "--install", BUILD, "--component", component, "--prefix", WORK / "static")
+        self.assertNotIn(LIBRARY, self.build_client_c("static", WORK / "static", "-DWITHOUT_LIBRARY=ON"))
 
 
 if __name__ == "__main__":

@@ -72,6 +72,10 @@ check "C program, shared" sh -c 'gcc -Wall -Werror consumer/pkg_config/client.c 
   ./client_c && ldd client_c | grep libtactree-client.so.0'
 check "C++ program, static" sh -c 'g++ consumer/pkg_config/client.cpp -o client_cpp $(pkg-config --cflags --libs tactree-client) &&
   ./client_cpp && ! ldd client_cpp | grep tactree'
+check "builder and simulation, static" sh -c 'g++ consumer/builder/main.cpp -o builder $(pkg-config --cflags --libs tactree-builder tactree-simulation) &&
+  ./builder sphere.blob && tactree check sphere.blob'
+check "shared library with the core" sh -c 'g++ -shared -fPIC -Wl,-z,defs consumer/pkg_config/touch.cpp -o libtouch.so $(pkg-config --cflags --libs tactree-core) &&
+  ! ldd libtouch.so | grep tactree'
 # project NAME FOLDER: by find_package
 project() {
   cmake -S "$2" -B "/use/build-$1" -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH=/usr && cmake --build "/use/build-$1" &&
@@ -80,6 +84,8 @@ project() {
 check "project with core" project core consumer/core
 check "project with builder and simulation" project builder consumer/builder
 check "project with the client" project touch examples/touch
+check "project with the shared client" project client_c consumer/client_c
+check "which needs the shared library" sh -c 'ldd build-client_c/consumer | grep libtactree-client.so.0'
 
 check "emulator" install qemu-system-arm
 check "firmware in the emulator" tactree simulate $model --board mps2-an386 --seconds 1 --trace board.csv --json board.json

@@ -3,9 +3,11 @@
 usage: board_test.py TACTREE
 """
 import asyncio
+import inspect
 import json
 import pathlib
 import sys
+import threading
 import unittest
 
 import numpy as np
@@ -23,6 +25,11 @@ class Folder(ModelFolder):
         done = self.run_tool(*arguments, "--json", "tool.json")
         self.assertEqual(done.returncode, 0, done.stderr)
         return json.loads((self.path / "tool.json").read_text())
+
+
+def another_thread_reads():
+    frames = {thread: frame for thread, frame in sys._current_frames().items() if thread != threading.get_ident()}
+    return any(frame.f_code.co_filename == inspect.getfile(tactree.Telemetry) for frame in frames.values())
 
 
 class Control(Folder):
@@ -189,11 +196,67 @@ class Stream(Folder):
         with ServedBoard(TACTREE, self.blob) as port, tactree.Board(port) as board:
             self.assertGreater(asyncio.run(watch(board)), 0)
 
+    def test_cancelled_reads_lose_no_rows(self):
+        async def watch(board):
+            telemetry = board.telemetry(every_ticks=1)
+            ticks, counted, cancelled = [], 0, 0
+            while cancelled < 20:
+                reading = asyncio.ensure_future(telemetry.read_async())
+                for _ in range(1 + cancelled):
+                    await asyncio.sleep(0)
+                if reading.cancel():
+                    cancelled += 1
+                    await asyncio.sleep(0)
+                    block = await telemetry.read_async() if cancelled % 2 else telemetry.read()
+                else:
+                    block = await reading
+                ticks += list(block["tick"])
+                counted += sum(block["missing_ticks"])
+            return ticks, counted, telemetry.dropped
+        with ServedBoard(TACTREE, self.blob) as port, tactree.Board(port) as board:
+            ticks, counted, dropped = asyncio.run(watch(board))
+            np.testing.assert_array_equal(np.diff(ticks), 1)
+            self.assertEqual((counted, dropped), (0, 0))
+
+    def test_close_ends_cancelled_read(self):
+        async def leave(port):
+            for _ in range(20):
+                with tactree.Board(port) as board:
+                    telemetry = board.telemetry(every_ticks=4_000_000_000, timeout_s=1e6)
+                    reading = asyncio.ensure_future(telemetry.read_async())
+                    while not another_thread_reads():
+                        await asyncio.sleep(0)
+                    reading.cancel()
+                with self.assertRaisesRegex(tactree.BoardError, "the board is closed"):
+                    telemetry.read()
+        with ServedBoard(TACTREE, self.blob) as port:
+            asyncio.run(leave(port))
+            self.assertEqual(self.tool_json("monitor", "--once", "--port", port)["state"], "idle")
+
+    def test_other_subscription_ends_pending_read(self):
+        async def change(board):
+            for change in (lambda telemetry: telemetry.stop(), lambda _: board.telemetry(every_ticks=1)):
+                telemetry = board.telemetry(every_ticks=4_000_000_000, timeout_s=1e6)
+                reading = asyncio.ensure_future(telemetry.read_async())
+                while not another_thread_reads():
+                    await asyncio.sleep(0)
+                change(telemetry)
+                with self.assertRaisesRegex(tactree.BoardError, "the subscription has ended"):
+                    await reading
+        with ServedBoard(TACTREE, self.blob) as port, tactree.Board(port) as board:
+            asyncio.run(change(board))
+
     def test_ends_subscription(self):
         with ServedBoard(TACTREE, self.blob) as port, tactree.Board(port) as board:
-            telemetry = board.telemetry(every_ticks=1, timeout_s=0.2)
+            telemetry = board.telemetry(every_ticks=1)
             self.assertGreater(len(telemetry.read()), 0)
             telemetry.stop()
+            with self.assertRaisesRegex(tactree.BoardError, "the subscription has ended"):
+                telemetry.read()
+
+    def test_rows_must_arrive_in_time(self):
+        with ServedBoard(TACTREE, self.blob) as port, tactree.Board(port) as board:
+            telemetry = board.telemetry(every_ticks=1000, timeout_s=0.2)
             with self.assertRaisesRegex(tactree.BoardError, "no telemetry for 0.2 s"):
                 for _ in range(2):
                     telemetry.read()

@@ -10,10 +10,10 @@ import numpy as np
 import tactree
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
-from served_board import BallFolder, ServedBoard  # noqa: E402
+from served_board import BallFolder, ServedBoard, SharingProgram  # noqa: E402
 from tool_folder import SharedFolder, ball  # noqa: E402
 
-__all__ = ["ModelFolder", "ServedBoard", "SharedFolder", "ball", "ball_arrays", "probes", "runs_beside",
+__all__ = ["ModelFolder", "ServedBoard", "SharedFolder", "SharingProgram", "ball", "ball_arrays", "probes", "runs_beside",
            "signal_during", "tool_error", "write_rows"]
 
 

@@ -28,7 +28,7 @@ core::wire::ControlRequest control_request(ControlCode code, std::uint32_t token
 constexpr char kHowToOperate[] = " (hold its button for 1 s to home, arm or clear a fault)";
 constexpr char kShared[] =
     "the board is shared by tactree serve; this program may watch and stop (command the board by "
-    "the WebSocket of tactree serve, or end it)";
+    "the WebSocket of tactree serve, or end it; its terminal names the program in command)";
 
 const char* remedy_for(WireStatus status) {
   switch (status) {

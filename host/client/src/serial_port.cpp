@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#include <sys/file.h>
 #include <sys/ioctl.h>
 #include <termios.h>
 #include <unistd.h>
@@ -46,7 +47,8 @@ std::string remedy_for(int error) {
     return "the user must be in the group dialout, or a udev rule must permit access";
   }
   if (error == EBUSY) {
-    return "another program uses it";
+    return "another program uses it; end it, or, if tactree serve shares it, use the port that "
+           "tactree devices lists";
   }
   return "is the board plugged in? tactree devices lists the ports found";
 }
@@ -102,9 +104,10 @@ class SerialPort : public Transport {
       ::close(descriptor_);
       throw LinkError(path_ + ": not a serial port (tactree devices lists the ports found)");
     }
-    // Two programs on one port would each receive only a part of the replies.
-    if (::ioctl(descriptor_, TIOCEXCL) != 0) {
-      const int error = errno;
+    // Two programs on one port would each receive only a part of the replies. The lock also keeps
+    // out a program of root, which may open a port in exclusive use.
+    if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 || ::ioctl(descriptor_, TIOCEXCL) != 0) {
+      const int error = errno == EWOULDBLOCK ? EBUSY : errno;
       ::close(descriptor_);
       errno = error;
       fail(path_, remedy_for(error));

@@ -11,8 +11,10 @@
 #include <chrono>
 #include <cmath>
 #include <memory>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <thread>
 
 #include "array_table.hpp"
 #include "bindings.hpp"
@@ -31,6 +33,8 @@ using std::chrono::milliseconds;
 
 // Interval of the checks for Ctrl-C while waiting.
 constexpr milliseconds kInterval{20};
+// Of close(), for a running call; longer than the board's time for a reply.
+constexpr milliseconds kPatience{2000};
 
 template <std::size_t N>
 std::string text_of(const char (&text)[N]) {
@@ -44,25 +48,45 @@ milliseconds milliseconds_of(double seconds, const char* name) {
   return milliseconds(std::llround(1e3 * seconds));
 }
 
-/// All calls that wait release the interpreter's lock. One call at a time, except post_stop().
+/// All calls that wait release the interpreter's lock. One call at a time, except post_stop(),
+/// is_open(), close(), and subscribe() during take().
 class NativeBoard {
  public:
   NativeBoard(const std::string& port, unsigned baud, std::uint16_t link_timeout_ms,
               std::size_t stream_capacity)
-      : board_(std::make_unique<client::Board>(
+      : board_(std::make_shared<client::Board>(
             port, client::BoardOptions{baud, link_timeout_ms, stream_capacity})) {}
 
-  [[nodiscard]] client::Board& board() const {
-    if (!board_) {
+  /// A call holds the board until it returns, so that close() in another thread does not free it.
+  [[nodiscard]] std::shared_ptr<client::Board> board() const {
+    auto held = held_board();
+    if (!held) {
       throw client::LinkError("the board is closed (open it again)");
     }
-    return *board_;
+    return held;
   }
-  void close() { board_.reset(); }
-  [[nodiscard]] bool is_open() const { return board_ && board_->in_session(); }
+
+  /// Ends the session. A call that waits ends promptly; one that writes, such as flash(), keeps the
+  /// session until it returns.
+  void close() {
+    std::shared_ptr<client::Board> last;
+    {
+      const std::lock_guard lock(mutex_);
+      last.swap(board_);
+    }
+    const auto end = std::chrono::steady_clock::now() + kPatience;
+    while (last.use_count() > 1 && std::chrono::steady_clock::now() < end) {
+      std::this_thread::sleep_for(milliseconds(1));
+    }
+  }
+  [[nodiscard]] bool is_open() const {
+    const auto held = held_board();
+    return held && held->in_session();
+  }
 
   void arm(double patience_s) {
-    client::Board& b = board();
+    const auto held = board();
+    client::Board& b = *held;
     const auto deadline = b.connection().now() + milliseconds_of(patience_s, "patience_s");
     b.begin_arming();
     try {
@@ -72,6 +96,7 @@ class NativeBoard {
                                   b.who_confirms() + ")");
         }
         check_signals();
+        require_open();
         b.connection().sleep(kInterval);
       }
     } catch (...) {
@@ -81,33 +106,46 @@ class NativeBoard {
   }
 
   void wait(double seconds) const {
-    const client::Connection& connection = board().connection();
+    const auto held = board();
+    const client::Connection& connection = held->connection();
     const auto end = connection.now() + milliseconds_of(seconds, "seconds");
     while (connection.now() < end && connection.connected()) {
       check_signals();
+      require_open();
       connection.sleep(std::min<std::chrono::microseconds>(kInterval, end - connection.now()));
     }
   }
 
-  void subscribe(std::uint32_t every_ticks) {
-    board().subscribe({telemetry::kRecordedFields, every_ticks});
-    (void)board().take_stream();
+  /// Returns the number of the subscription, for take(). Ends the preceding one.
+  std::uint64_t subscribe(std::uint32_t every_ticks) {
+    const auto held = board();
+    {
+      const std::lock_guard lock(mutex_);
+      ++subscription_;
+    }
+    held->subscribe({telemetry::kRecordedFields, every_ticks});
+    const std::lock_guard lock(mutex_);
+    (void)held->take_stream();
     sequence_ = telemetry::TickSequence(std::max(every_ticks, 1U));
+    return subscription_;
   }
 
   /// Waits until there are rows, for at most `seconds` of the board's time. Empty: there were none.
-  /// Throws LinkError once the board has ended the session and all rows have been taken.
-  void take(double seconds, ArrayTable& table) {
-    client::Board& b = board();
+  /// Throws LinkError once the subscription has ended, or the board has ended the session and all
+  /// rows have been taken.
+  void take(std::uint64_t subscription, double seconds, ArrayTable& table) {
+    const auto held = board();
+    client::Board& b = *held;
     const client::Connection& connection = b.connection();
     const auto end = connection.now() + milliseconds_of(seconds, "seconds");
     while (true) {
       // Sampled before the rows are taken, so the last pass takes all that was received.
       const bool lost = !b.in_session();
-      append(b.take_stream(), table);
+      append_stream(b, subscription, table);
       if (table.rows() > 0) {
         return;
       }
+      require_open();
       if (lost) {
         throw client::LinkError(connection.name() + ": telemetry: " +
                                 (b.connected() ? "the board ended the session: it was reset, or "
@@ -123,8 +161,20 @@ class NativeBoard {
   }
 
  private:
-  void append(const std::vector<client::Telemetry>& news, ArrayTable& table) {
-    for (const client::Telemetry& message : news) {
+  [[nodiscard]] std::shared_ptr<client::Board> held_board() const {
+    const std::lock_guard lock(mutex_);
+    return board_;
+  }
+  void require_open() const { (void)board(); }
+
+  void append_stream(client::Board& board, std::uint64_t subscription, ArrayTable& table) {
+    const std::lock_guard lock(mutex_);
+    if (subscription != subscription_) {
+      throw client::LinkError(
+          board.connection().name() +
+          ": telemetry: the subscription has ended (board.telemetry() begins one)");
+    }
+    for (const client::Telemetry& message : board.take_stream()) {
       if (const auto tick = sequence_.next(message)) {
         telemetry::values_of(*tick, values_);
         table.append(values_);
@@ -132,7 +182,9 @@ class NativeBoard {
     }
   }
 
-  std::unique_ptr<client::Board> board_;
+  mutable std::mutex mutex_;  // guards all below
+  std::shared_ptr<client::Board> board_;
+  std::uint64_t subscription_ = 0;
   telemetry::TickSequence sequence_;
   std::vector<double> values_;
 };
@@ -209,7 +261,7 @@ void add_getter(py::class_<NativeBoard>& board, const char* name, Get get, const
         json reply;
         {
           const py::gil_scoped_release unlocked;
-          reply = get(b.board());
+          reply = get(*b.board());
         }
         return to_python(reply);
       },
@@ -223,7 +275,7 @@ void add_request(py::class_<NativeBoard>& board, const char* name, Do request, c
       name,
       [request](NativeBoard& b) {
         const py::gil_scoped_release unlocked;
-        request(b.board());
+        request(*b.board());
       },
       about);
 }
@@ -232,7 +284,7 @@ void flash(NativeBoard& board, const Model& model, const py::object& progress) {
   client::ModelFile file;
   file.bytes = model.bytes();
   const py::gil_scoped_release unlocked;
-  board.board().flash(file, [&](std::size_t done, std::size_t all) {
+  board.board()->flash(file, [&](std::size_t done, std::size_t all) {
     check_signals();
     const py::gil_scoped_acquire lock;
     if (!progress.is_none()) {
@@ -278,14 +330,14 @@ void add_requests(py::class_<NativeBoard>& board) {
       "set_parameter",
       [](NativeBoard& b, const std::string& name, float value) {
         const py::gil_scoped_release unlocked;
-        b.board().set_parameter(name, value);
+        b.board()->set_parameter(name, value);
       },
       py::arg("name"), py::arg("value"), "Sets a value of the calibration.");
   board.def(
       "set_limits",
       [](NativeBoard& b, float force_max_N, float slew_N_s, float ramp_s) {
         const py::gil_scoped_release unlocked;
-        b.board().set_limits(force_max_N, slew_N_s, ramp_s);
+        b.board()->set_limits(force_max_N, slew_N_s, ramp_s);
       },
       py::arg("force_max_N"), py::arg("slew_N_s"), py::arg("ramp_s"), "Sets the force limits.");
   board.def(
@@ -293,7 +345,7 @@ void add_requests(py::class_<NativeBoard>& board) {
       [](NativeBoard& b, float stiffness, float damping, float static_friction,
          float dynamic_friction, bool use_materials) {
         const py::gil_scoped_release unlocked;
-        b.board().set_material(
+        b.board()->set_material(
             {stiffness, damping, static_friction, dynamic_friction, use_materials ? 1U : 0U});
       },
       py::arg("stiffness_N_m"), py::arg("damping_Ns_m"), py::arg("static_friction"),
@@ -309,11 +361,11 @@ void add_requests(py::class_<NativeBoard>& board) {
             "Writes and activates a model.");
 }
 
-py::array take(NativeBoard& board, double seconds) {
+py::array take(NativeBoard& board, std::uint64_t subscription, double seconds) {
   ArrayTable table(tick_fields());
   {
     const py::gil_scoped_release unlocked;
-    board.take(seconds, table);
+    board.take(subscription, seconds, table);
   }
   return std::move(table).to_array();
 }
@@ -338,14 +390,15 @@ void add_board(py::module_& module) {
   board.def("close", &NativeBoard::close, py::call_guard<py::gil_scoped_release>(),
             "Closes the session.");
   board.def(
-      "post_stop", [](NativeBoard& b) { b.board().post_stop(); }, "Stops, without waiting.");
+      "post_stop", [](NativeBoard& b) { b.board()->post_stop(); }, "Stops, without waiting.");
   board.def("subscribe", &NativeBoard::subscribe, py::arg("every_ticks"),
             py::call_guard<py::gil_scoped_release>(), "Begins or ends telemetry.");
-  board.def("take", take, py::arg("seconds"), "The rows since the last call.");
+  board.def("take", take, py::arg("subscription"), py::arg("seconds"),
+            "The rows since the last call.");
   board.def(
-      "dropped", [](NativeBoard& b) { return b.board().dropped(); }, "Dropped messages.");
+      "dropped", [](NativeBoard& b) { return b.board()->dropped(); }, "Dropped messages.");
   board.def(
-      "name", [](NativeBoard& b) { return b.board().connection().name(); }, "The port.");
+      "name", [](NativeBoard& b) { return b.board()->connection().name(); }, "The port.");
   board.def_property_readonly("is_open", &NativeBoard::is_open,
                               "False once the session has ended.");
   module.def("ports", client::list_ports, "Ports that may have a board.");

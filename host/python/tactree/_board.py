@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import AsyncIterator, Callable, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
 from types import TracebackType
 from typing import Any
 
@@ -10,6 +11,14 @@ import numpy.typing as npt
 
 from . import _native
 from ._model import Model
+
+
+def _settled(reading: Future[Any]) -> Future[None]:
+    """Done with `reading`. To cancel a wait for it does not cancel the reading."""
+    settled: Future[None] = Future()
+    settled.set_running_or_notify_cancel()
+    reading.add_done_callback(lambda _: settled.set_result(None))
+    return settled
 
 
 class Telemetry:
@@ -22,19 +31,33 @@ class Telemetry:
     def __init__(self, board: Board, every_ticks: int, timeout_s: float):
         self._native = board._native
         self._timeout_s = timeout_s
-        self._native.subscribe(every_ticks)
+        self._number = self._native.subscribe(every_ticks)
+        self._thread: ThreadPoolExecutor | None = None
+        self._pending: Future[npt.NDArray[Any]] | None = None
 
-    def read(self) -> npt.NDArray[Any]:
-        """The rows since the last call. Waits for at least one; raises BoardError if none arrives in time."""
-        block = self._native.take(self._timeout_s)
+    def _take(self) -> npt.NDArray[Any]:
+        block = self._native.take(self._number, self._timeout_s)
         if len(block) == 0:
             raise _native.BoardError(f"{self._native.name()}: no telemetry for {self._timeout_s:g} s (is the board still "
                                      "running?)")
         return block
 
+    def read(self) -> npt.NDArray[Any]:
+        """The rows since the last call. Waits for at least one; raises BoardError if none arrives in time."""
+        pending, self._pending = self._pending, None
+        return self._take() if pending is None else pending.result()
+
     async def read_async(self) -> npt.NDArray[Any]:
-        """As read(), without blocking the event loop."""
-        return await asyncio.get_running_loop().run_in_executor(None, self.read)
+        """As read(), without blocking the event loop. If it is cancelled, the next call returns the rows."""
+        while True:
+            if self._pending is None:
+                self._thread = self._thread or ThreadPoolExecutor(1, "tactree-telemetry")
+                self._pending = self._thread.submit(self._take)
+            pending = self._pending
+            await asyncio.wrap_future(_settled(pending))
+            if self._pending is pending:  # otherwise another call returns it
+                self._pending = None
+                return pending.result()
 
     @property
     def dropped(self) -> int:
@@ -68,7 +91,7 @@ class Board:
 
     A method waits for the reply of the board, at most for one second unless stated otherwise, and raises BoardError with
     the message of the tool if the board refuses, does not reply or is lost. Other threads run meanwhile, and Ctrl-C ends
-    long waits. Only post_stop() may be called while another thread uses the board.
+    long waits. Only post_stop() and close() may be called while another thread uses the board; close() ends its waits.
     """
 
     def __init__(self, port: str, *, baud: int = _native.USUAL_BAUD, link_timeout_ms: int = 50,

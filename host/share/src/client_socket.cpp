@@ -56,6 +56,8 @@ void ClientSocket::accept(const web::Request& request) {
   socket_.set_option(socket_timeouts());
   socket_.read_message_max(kMaxMessageBytes);
   socket_.text(true);
+  socket_.control_callback(
+      [this](websocket::frame_type, beast::string_view) { silent_checks_ = 0; });
   socket_.async_accept(request, [self = shared_from_this()](beast::error_code error) {
     if (!error) {
       self->begin();
@@ -69,14 +71,25 @@ void ClientSocket::begin() {
   if (number_ == 0U) {
     room_.tell(fmt::format("{}: refused, because there are {} clients (end one)", address,
                            Clients::kMaxClients));
-    beast::error_code ignored;
-    beast::get_lowest_layer(socket_).socket().close(ignored);
+    refuse(fmt::format("there are {} clients already (end one)", Clients::kMaxClients));
     return;
   }
   room_.sockets.insert(this);
   room_.tell(fmt::format("{}: connected", room_.clients.name_of(number_)));
   read();
   write_next();
+}
+
+/// The client gets one message, which has the form of a state without a device.
+void ClientSocket::refuse(const std::string& why) {
+  writing_ = std::make_shared<const std::string>(refusal_text(why));
+  socket_.async_write(asio::buffer(*writing_),
+                      [self = shared_from_this()](beast::error_code error, std::size_t) {
+                        if (!error) {
+                          self->socket_.async_close(websocket::close_code::try_again_later,
+                                                    [self](beast::error_code) {});
+                        }
+                      });
 }
 
 void ClientSocket::read() {
@@ -92,8 +105,10 @@ void ClientSocket::read() {
     if (self->number_ == 0U) {
       return;
     }
+    self->silent_checks_ = 0;
     self->room_.clients.receive(self->number_, beast::buffers_to_string(self->incoming_.data()));
     self->incoming_.consume(self->incoming_.size());
+    self->tell_command();
     self->write_next();
     self->read();
   });
@@ -119,10 +134,33 @@ void ClientSocket::write_next() {
                       });
 }
 
-void ClientSocket::check_stall(Clock::time_point now) {
+void ClientSocket::tell_command() {
+  const unsigned in_command = room_.clients.in_command();
+  if (in_command != std::exchange(room_.told_in_command, in_command) && in_command != 0U) {
+    room_.tell(fmt::format("{}: has command", room_.clients.name_of(in_command)));
+  }
+}
+
+void ClientSocket::check(Clock::time_point now) {
   if (number_ != 0U && writing_ != nullptr && now - writing_since_ > kMaxStall) {
     end(fmt::format("disconnected, because it has read nothing for {} s; {} states were dropped",
                     kMaxStall.count(), room_.clients.dropped(number_)));
+  }
+  ++silent_checks_;
+  if (number_ != 0U && room_.clients.in_command() == number_) {
+    check_answers();
+  }
+}
+
+void ClientSocket::check_answers() {
+  constexpr std::int64_t kMaxChecks = kMaxSilence / kCheckInterval;
+  if (silent_checks_ > kMaxChecks) {
+    end(fmt::format("disconnected, because it had command and has answered nothing for {} s",
+                    kMaxSilence.count()));
+  } else if (silent_checks_ > kMaxChecks / 2 && !pinging_) {
+    pinging_ = true;
+    socket_.async_ping({},
+                       [self = shared_from_this()](beast::error_code) { self->pinging_ = false; });
   }
 }
 

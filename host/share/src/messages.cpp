@@ -292,6 +292,12 @@ std::string with_facts(const std::string& state, const ClientFacts& facts,
                      text_of(client));
 }
 
+std::string refusal_text(const std::string& refusal) {
+  return text_of({{"inverse3", json::array()},
+                  {"wireless_verse_grip", json::array()},
+                  {"tactree", {{"client", {{"number", 0}, {"refused", refusal}}}}}});
+}
+
 ClientMessage read_message(const std::string& text, const std::string& device_id) {
   ClientMessage message;
   const json all = json::parse(text, nullptr, false);

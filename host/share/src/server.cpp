@@ -21,7 +21,6 @@ namespace asio = boost::asio;
 
 // Snapshots that wait for the server's thread: more than any client may wait for.
 constexpr std::size_t kMaxSnapshots = kMaxQueue;
-constexpr std::chrono::seconds kStallInterval{1};
 
 /// Takes the same time wherever two texts of the same length differ.
 bool is_equal(std::string_view a, std::string_view b) {
@@ -114,17 +113,17 @@ struct Server::Parts final : web::Content {
     }
   }
 
-  void watch_stalls() {
-    timer->expires_after(kStallInterval);
+  void watch_clients() {
+    timer->expires_after(ClientSocket::kCheckInterval);
     timer->async_wait([this](boost::system::error_code error) {
       if (error) {
         return;
       }
       const std::vector<ClientSocket*> sockets(room.sockets.begin(), room.sockets.end());
       for (ClientSocket* const socket : sockets) {
-        socket->check_stall(ClientSocket::Clock::now());  // its handlers keep it alive
+        socket->check(ClientSocket::Clock::now());  // its handlers keep it alive
       }
-      watch_stalls();
+      watch_clients();
     });
   }
 
@@ -152,7 +151,7 @@ std::string Server::watch_port() const { return parts_->watch_port.port(); }
 
 void Server::run() {
   Parts& p = *parts_;
-  p.watch_stalls();
+  p.watch_clients();
   p.board.start([&p](const std::vector<Snapshot>& snapshots) { p.give(snapshots); });
   p.listener.run();
   p.board.end();

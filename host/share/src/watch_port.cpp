@@ -36,6 +36,19 @@ std::string new_folder() {
   return folder;
 }
 
+/// A program that was killed has left its socket.
+bool is_abandoned(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::is_socket(path, error)) {
+    return false;
+  }
+  asio::io_context context;
+  Local::socket probe(context);
+  boost::system::error_code refused;
+  probe.connect(Local::endpoint(path), refused);
+  return refused == asio::error::connection_refused;
+}
+
 }  // namespace
 
 /// The connection of a program. Its handlers keep it alive.
@@ -169,8 +182,16 @@ WatchPort::WatchPort(asio::io_context& context, SharedBoard& board, const std::s
   accept();
 }
 
-/// Only this user may connect, from the beginning.
 void WatchPort::listen(asio::io_context& context) {
+  if (is_abandoned(path_)) {
+    std::error_code ignored;
+    std::filesystem::remove(path_, ignored);
+  }
+  bind(context);
+}
+
+/// Only this user may connect, from the beginning.
+void WatchPort::bind(asio::io_context& context) {
   const mode_t others = ::umask(0177);
   try {
     acceptor_.emplace(context, Local::endpoint(path_));

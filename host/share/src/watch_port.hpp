@@ -43,6 +43,7 @@ class WatchPort {
   friend class WatchingProgram;
 
   void listen(boost::asio::io_context& context);
+  void bind(boost::asio::io_context& context);
   void accept();
   void welcome(boost::asio::local::stream_protocol::socket socket);
 

@@ -112,6 +112,20 @@ TEST(Connection, ReadsAndWritesSerialPort) {
   EXPECT_EQ(port->read(received), sent.size());
 }
 
+TEST(Connection, SerialPortServesOneProgram) {
+  const client::PseudoTerminal board;
+  std::unique_ptr<client::Transport> first = client::open_port(board.name(), client::kUsualBaud);
+  try {
+    (void)client::open_port(board.name(), client::kUsualBaud);
+    ADD_FAILURE();
+  } catch (const client::LinkError& error) {
+    EXPECT_EQ(std::string(error.what()).find(board.name() + ": "), 0U) << error.what();
+    EXPECT_NE(std::string(error.what()).find("another program uses it"), std::string::npos);
+  }
+  first.reset();
+  EXPECT_NO_THROW((void)client::open_port(board.name(), client::kUsualBaud));
+}
+
 TEST(Connection, RendersContactAndStops) {
   const RunningBoard running(0.0295);
   client::Board board(running.port());

@@ -149,6 +149,7 @@ TEST_F(ShareClients, AnyoneMayStopAndOneMayArm) {
   clients_.receive(one, R"({"tactree":{"arm":true}})");
   clients_.receive(two, R"({"tactree":{"arm":true}})");
   EXPECT_EQ(board_.requests, std::vector{BoardRequest::kArm});
+  EXPECT_EQ(clients_.in_command(), one);
   EXPECT_NE(refusal(two).find("arm: client 1, here:1, has command"), std::string::npos);
   clients_.receive(two, R"({"tactree":{"stop":true}})");
   EXPECT_EQ(board_.stops, 1);

@@ -158,5 +158,11 @@ TEST(ShareMessages, RefusesWrongMessages) {
   }
 }
 
+TEST(ShareMessages, RefusalHasTheFormOfAState) {
+  const json refusal = json::parse(share::refusal_text("there are 32 clients"));
+  EXPECT_EQ(refusal["inverse3"], json::array());
+  EXPECT_EQ(refusal["tactree"]["client"]["refused"], "there are 32 clients");
+}
+
 }  // namespace
 }  // namespace tactree::test

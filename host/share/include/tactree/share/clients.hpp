@@ -50,6 +50,8 @@ class Clients {
   /// subscribed gets one state when it joins and one for each of its messages, always the newest.
   [[nodiscard]] Message next(unsigned number);
 
+  /// The client in command; 0: nobody.
+  [[nodiscard]] unsigned in_command() const { return commander_.client; }
   [[nodiscard]] std::uint64_t dropped(unsigned number) const;
   /// "client 2, 127.0.0.1:51234"
   [[nodiscard]] std::string name_of(unsigned number) const;

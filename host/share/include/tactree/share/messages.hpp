@@ -41,6 +41,9 @@ struct ClientFacts {
 [[nodiscard]] std::string with_facts(const std::string& state, const ClientFacts& facts,
                                      const std::string& refusal);
 
+/// The only message to a client that is not admitted.
+[[nodiscard]] std::string refusal_text(const std::string& refusal);
+
 /// What the board executes; in this order if one message contains several.
 enum class BoardRequest : std::uint8_t { kConnect, kClear, kHome, kArm };
 
