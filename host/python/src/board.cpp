@@ -354,7 +354,7 @@ void add_requests(py::class_<NativeBoard>& board) {
       "set_texture",
       [](NativeBoard& b, float height, float wavelength) {
         const py::gil_scoped_release unlocked;
-        b.board().set_texture({height, wavelength});
+        b.board()->set_texture({height, wavelength});
       },
       py::arg("height_m"), py::arg("wavelength_m"), "Sets the bumps of the surface.");
   board.def("flash", flash, py::arg("model"), py::arg("progress") = py::none(),
