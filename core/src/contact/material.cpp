@@ -4,9 +4,6 @@
 
 #include "tactree/core/contact/material.hpp"
 
-#include "tactree/core/math/angle.hpp"
-#include "tactree/core/math/sine.hpp"
-
 namespace tactree::core {
 namespace {
 
@@ -42,15 +39,19 @@ float weight_of(Vec3 offset, float inverse_squared, float cosine) {
   return u2 * u2 * cosine;
 }
 
-/// cos(2 pi turns); error below 1e-6.
+/// cos(2 pi turns); error below 2e-7. It is sin(2 pi u) with |u| <= 1/4: a polynomial of degree 9
+/// that agrees with it at five Chebyshev nodes of u^2.
 float wave(float turns) {
   const auto whole_turns = static_cast<std::int32_t>(turns < 0.0F ? turns - 0.5F : turns + 0.5F);
-  return sine_cosine(kTwoPi * (turns - static_cast<float>(whole_turns))).cosine;
+  const float u = 0.25F - absolute(turns - static_cast<float>(whole_turns));
+  const float s = u * u;
+  return u * (6.28318528F +
+              s * (-41.3416806F + s * (81.6024764F + s * (-76.5811726F + s * 39.7598271F))));
 }
 
 /// -1 .. 1 for a unit normal.
 float bumps(Vec3 x, float wavelength, Vec3 n) {
-  const Vec3 turns{x.x / wavelength, x.y / wavelength, x.z / wavelength};
+  const Vec3 turns = (1.0F / wavelength) * x;
   const bool near = absolute(turns.x) <= kTextureWaves && absolute(turns.y) <= kTextureWaves &&
                     absolute(turns.z) <= kTextureWaves;
   if (!near) {
