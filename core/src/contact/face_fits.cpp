@@ -60,10 +60,19 @@ bool is_sharp(const Face& a, const Face& b) {
   return a.between + b.between <= kRoundShare * lesser;
 }
 
+enum class Relation : std::uint8_t { kNone, kConvex, kConcave };
+
+/// Two faces are concave if the centroid of each is in front of the other's plane, convex if it is
+/// behind.
 Relation relation_of(const Face& a, const FaceFit& a_fit, const Face& b, const FaceFit& b_fit,
                      float side, float apart) {
   const Vec3 a_to_b = (1.0F / b.sums.w) * b.sums.p - (1.0F / a.sums.w) * a.sums.p;
-  return relation_of(a_to_b, a_fit.plane.normal, b_fit.plane.normal, side, apart);
+  const float b_above_a = side * dot(a_to_b, a_fit.plane.normal);
+  const float a_above_b = -side * dot(a_to_b, b_fit.plane.normal);
+  if (b_above_a < -apart && a_above_b < -apart) {
+    return Relation::kConvex;
+  }
+  return b_above_a > apart && a_above_b > apart ? Relation::kConcave : Relation::kNone;
 }
 
 /// Relation of a face to the first one; kNone for the other side of a plate.
@@ -84,17 +93,7 @@ Relation relation_of(const Face& a, const FaceFit& a_fit, const Face& b, const F
 
 }  // namespace
 
-[[gnu::noinline]] Relation relation_of(Vec3 a_to_b, Vec3 a_normal, Vec3 b_normal, float side,
-                                       float apart) {
-  const float b_above_a = side * dot(a_to_b, a_normal);
-  const float a_above_b = -side * dot(a_to_b, b_normal);
-  if (b_above_a < -apart && a_above_b < -apart) {
-    return Relation::kConvex;
-  }
-  return b_above_a > apart && a_above_b > apart ? Relation::kConcave : Relation::kNone;
-}
-
-[[gnu::noinline]] FaceFit fit_face(const Moments& m, const Support& support) {
+[[gnu::noinline]] FaceFit fit_face(const Moments& m, float inverse_radius) {
   if (!(m.w > 0.0F)) {
     return kUnsupported;  // memory: flash
   }
@@ -127,19 +126,21 @@ Relation relation_of(const Face& a, const FaceFit& a_fit, const Face& b, const F
   const Vec3 normal = (1.0F / l_length) * l;
 
   const Vec3 along = centroid - dot(centroid, normal) * normal;
-  const float strength = strength_of(length(along) * support.inverse);
+  const float strength = strength_of(length(along) * inverse_radius);
   if (!is_finite(distance)) {
     return kUnsupported;  // memory: flash
   }
   return {true, strength, m.w, {normal, distance}};
 }
 
-bool join_faces(const Faces& faces, const Seeds& seeds, const Support& support, float side,
-                NearFaces& near, SurfaceFit& result) {
-  const float apart = kApart * support.radius;
+bool join_faces(const Faces& faces, const Seeds& seeds, float radius, float side, NearFaces& near,
+                SurfaceFit& result) {
+  const float apart = kApart * radius;
   const Face(&face)[kMaxFaces] = faces.of;
-  const FaceFit fit[kMaxFaces] = {fit_face(face[0].sums, support), fit_face(face[1].sums, support),
-                                  fit_face(face[2].sums, support)};
+  const float inverse_radius = 1.0F / radius;
+  const FaceFit fit[kMaxFaces] = {fit_face(face[0].sums, inverse_radius),
+                                  fit_face(face[1].sums, inverse_radius),
+                                  fit_face(face[2].sums, inverse_radius)};
   near.count = 0;
   if (!fit[0].firm()) {  // past an edge, or at the boundary of the first face
     for (std::uint32_t i = 1; i < kMaxFaces; ++i) {  // bound: kMaxFaces

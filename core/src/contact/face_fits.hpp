@@ -8,18 +8,6 @@
 
 namespace tactree::core {
 
-/// The ball whose points a fit takes, with what the passes need of its radius.
-struct Support {
-  float radius;           // m
-  float squared;          // m^2
-  float inverse;          // 1/m, of the radius
-  float inverse_squared;  // 1/m^2
-};
-constexpr Support support_of(float radius) {
-  const float squared = radius * radius;
-  return {radius, squared, 1.0F / radius, 1.0F / squared};
-}
-
 /// The weighted sums of a fit; q is relative to the query position.
 struct Moments {
   float w;
@@ -50,8 +38,8 @@ struct FaceFit {
   [[nodiscard]] bool firm() const { return supported && strength > 0.0F; }
 };
 
-/// The algebraic sphere through weighted points and normals.
-[[nodiscard]] FaceFit fit_face(const Moments& sums, const Support& support);
+/// The algebraic sphere through weighted points and normals. `inverse_radius`: of the support, 1/m.
+[[nodiscard]] FaceFit fit_face(const Moments& sums, float inverse_radius);
 
 /// The points of one of several faces: those whose normal is closest to the face's.
 struct Face {
@@ -87,19 +75,12 @@ inline constexpr float kOppositeCosine = -0.45F;
 /// angle of a crease. Noise of 5 % of the spacing is 0.02.
 inline constexpr float kApart = 0.04F;
 
-enum class Relation : std::uint8_t { kNone, kConvex, kConcave };
-
-/// Two faces are concave if the centre of each is in front of the other's plane by more than
-/// `apart`, convex if it is behind. `a_to_b`: from centre to centre, m.
-[[nodiscard]] Relation relation_of(Vec3 a_to_b, Vec3 a_normal, Vec3 b_normal, float side,
-                                   float apart);
-
 /// Combines the faces of `seeds` into one surface, as seen from `side`. `near` receives the normals
 /// of the other faces that belong to it. The interior of a convex edge is the intersection of the
 /// interiors of its faces: the surface is that of the face with the maximum height at the query.
 /// The interior of a concave edge is their union: all faces hold a probe. Returns false and leaves
 /// `result` unchanged if the points do not form several faces.
-[[nodiscard]] bool join_faces(const Faces& faces, const Seeds& seeds, const Support& support,
-                              float side, NearFaces& near, SurfaceFit& result);
+[[nodiscard]] bool join_faces(const Faces& faces, const Seeds& seeds, float radius, float side,
+                              NearFaces& near, SurfaceFit& result);
 
 }  // namespace tactree::core

@@ -16,8 +16,9 @@ namespace tactree::core {
   return {normal, dot(q, normal), dot(q, nearest->normal)};
 }
 
-[[gnu::noinline]] DividedSums sum_faces(const CandidateSet& points, Vec3 x, const Support& support,
+[[gnu::noinline]] DividedSums sum_faces(const CandidateSet& points, Vec3 x, float radius,
                                         const Seeds& seeds, const Division& division) {
+  const SupportSquare square{radius * radius, 1.0F / (radius * radius)};
   const Face none{};
   Face first;
   Face second;
@@ -29,12 +30,12 @@ namespace tactree::core {
   const Level of_second = level_at(division.nearest[1], seeds.normal[1]);
   const Level of_third = level_at(division.nearest[2], seeds.normal[2]);
   const auto add_front = [&](std::uint32_t i, const Level& level, Face& face) {
-    add_to_face(points, x, support, division.point[i], division.facing[i], level, none, face);
+    add_to_face(points, x, square, division.point[i], division.facing[i], level, none, face);
   };
   const auto add_back = [&](std::uint32_t i, const Level& level, Face& face) {
     const std::uint32_t count = division.averted[i];
-    add_to_face(points, x, support, division.point[i] + (kMaxCandidates - count), count, level,
-                face, face);
+    add_to_face(points, x, square, division.point[i] + (kMaxCandidates - count), count, level, face,
+                face);
   };
   add_front(0, of_first, first);
   add_front(1, of_second, second);

@@ -79,11 +79,10 @@ constexpr std::uint32_t kSharpRatio = 4;
 
 }  // namespace
 
-[[gnu::noinline]] void add_to_face(const CandidateSet& points, Vec3 x, const Support& support,
+[[gnu::noinline]] void add_to_face(const CandidateSet& points, Vec3 x, SupportSquare radius,
                                    const std::uint8_t* indices, std::uint32_t count,
                                    const Level& of_face, const Face& before, Face& after) {
-  const float other_level = kOtherLevel * kOtherLevel * support.squared;
-  const float inverse_squared = support.inverse_squared;
+  const float other_level = kOtherLevel * kOtherLevel * radius.squared;
   const Level level = of_face;
   Moments sums = before.sums;  // locals, which a compiler keeps in registers
   float between = before.between;
@@ -100,7 +99,7 @@ constexpr std::uint32_t kSharpRatio = 4;
       continue;
     }
     const float qq = length_squared(q);
-    const float weight = weight_of(qq, inverse_squared);
+    const float weight = weight_of(qq, radius.inverse);
     sums.add(q, qq, candidate.normal, weight);
     between += (index & Division::kBetween) != 0U ? weight : 0.0F;
   }
@@ -109,10 +108,10 @@ constexpr std::uint32_t kSharpRatio = 4;
 
 // The sums are locals, not members of the result: a compiler keeps locals in registers. The first
 // loop selects, so that a point outside the support costs little.
-[[gnu::noinline]] Surroundings look_around(const CandidateSet& points, Vec3 x,
-                                           const Support& support, Vec3 reference) {
-  const float radius_squared = support.squared;
-  const float inverse_squared = support.inverse_squared;
+[[gnu::noinline]] Surroundings look_around(const CandidateSet& points, Vec3 x, float radius,
+                                           Vec3 reference) {
+  const float radius_squared = radius * radius;
+  const float inverse_squared = 1.0F / radius_squared;
   std::uint8_t in_support[kMaxCandidates];
   std::uint32_t count = 0;
   bool complete = true;
@@ -164,15 +163,15 @@ constexpr std::uint32_t kSharpRatio = 4;
 
 // A point outside the support costs little. The bound limits the others by their stores, which all
 // points in the support reach.
-[[gnu::noinline]] void divide(const CandidateSet& points, Vec3 x, const Support& support,
-                              const Seeds& seeds, Division& division) {
+[[gnu::noinline]] void divide(const CandidateSet& points, Vec3 x, float radius, const Seeds& seeds,
+                              Division& division) {
   const Vec3 seed = seeds.normal[0];
   const Vec3 second_seed = seeds.normal[1];
   const Vec3 third_seed = seeds.count == kMaxFaces ? seeds.normal[2] : Vec3{};
   const float between =
       larger_of(larger_of(kBetweenCosine, quarter_of(seed, second_seed)),
                 larger_of(quarter_of(second_seed, third_seed), quarter_of(third_seed, seed)));
-  const float radius_squared = support.squared;
+  const float radius_squared = radius * radius;
   Nearest stray{radius_squared, nullptr};
   Nearest opposite{radius_squared, nullptr};
   for (std::uint32_t i = 0; i < kMaxFaces; ++i) {  // bound: kMaxFaces

@@ -15,8 +15,14 @@ struct Level {
 /// Level of the face with this normal at its nearest point; any level without one.
 [[nodiscard]] Level level_of(const Candidate* nearest, Vec3 x, Vec3 normal);
 
+/// The square of the support radius, m^2, and its inverse.
+struct SupportSquare {
+  float squared;
+  float inverse;
+};
+
 /// Adds those of the indexed points that are at this level. `after` may be `before`.
-void add_to_face(const CandidateSet& points, Vec3 x, const Support& support,
+void add_to_face(const CandidateSet& points, Vec3 x, SupportSquare radius,
                  const std::uint8_t* indices, std::uint32_t count, const Level& of_face,
                  const Face& before, Face& after);
 
@@ -31,7 +37,7 @@ struct Surroundings {
   const Candidate* mild;      // nearest point of a face at 18 to 47 degrees
   const Candidate* opposite;  // nearest point of an opposite face
 };
-[[nodiscard]] Surroundings look_around(const CandidateSet& points, Vec3 x, const Support& support,
+[[nodiscard]] Surroundings look_around(const CandidateSet& points, Vec3 x, float radius,
                                        Vec3 reference);
 
 /// The nearest of the offered points.
@@ -65,14 +71,14 @@ struct Division {
 static_assert(kMaxCandidates <= Division::kBetween);
 
 /// Divides the points among the faces of the seeds.
-void divide(const CandidateSet& points, Vec3 x, const Support& support, const Seeds& seeds,
+void divide(const CandidateSet& points, Vec3 x, float radius, const Seeds& seeds,
             Division& division);
 
 struct DividedSums {
   Faces faces;
   Face facing;  // all points that face the reference
 };
-[[nodiscard]] DividedSums sum_faces(const CandidateSet& points, Vec3 x, const Support& support,
+[[nodiscard]] DividedSums sum_faces(const CandidateSet& points, Vec3 x, float radius,
                                     const Seeds& seeds, const Division& division);
 
 }  // namespace tactree::core

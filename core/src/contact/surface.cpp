@@ -57,46 +57,49 @@ const Candidate* nearest_other(const Candidate* crease, const Candidate* opposit
   return crease;
 }
 
+/// True if each point is in front of the plane of the other by more than `apart`.
+bool is_concave(const Candidate& a, const Candidate& b, float side, float apart) {
+  const Vec3 a_to_b = b.position - a.position;
+  return side * dot(a_to_b, a.normal) > apart && -side * dot(a_to_b, b.normal) > apart;
+}
+
 /// The fit at a crease that the last fit has found.
-[[gnu::noinline]] void fit_faces(const CandidateSet& points, Vec3 x, const Support& support,
+[[gnu::noinline]] void fit_faces(const CandidateSet& points, Vec3 x, float radius,
                                  const Seeds& seeds, float side, NearFaces& near,
                                  SurfaceFit& result) {
   Division division;
-  divide(points, x, support, seeds, division);
-  const DividedSums sums = sum_faces(points, x, support, seeds, division);
+  divide(points, x, radius, seeds, division);
+  const DividedSums sums = sum_faces(points, x, radius, seeds, division);
   result.passes = 2;
   result.complete = division.complete;
-  const bool joined = join_faces(sums.faces, seeds, support, side, near, result);
+  const bool joined = join_faces(sums.faces, seeds, radius, side, near, result);
   if (!joined) {
-    set_to(result, fit_face(sums.facing.sums, support));
+    set_to(result, fit_face(sums.facing.sums, 1.0F / radius));
   }
   const Candidate* const other =
-      nearest_other(division.stray, division.opposite, x, support.radius, side, result);
+      nearest_other(division.stray, division.opposite, x, radius, side, result);
   if (joined && other != nullptr) {
     admit(result, side, x, *other, near);
   }
 }
 
 /// The fit where the last one was smooth. A crease that comes near is left to the next fit.
-[[gnu::noinline]] void fit_smooth(const CandidateSet& points, Vec3 x, const Support& support,
-                                  Vec3 reference, float side, NearFaces& near, SurfaceFit& result) {
-  const Surroundings around = look_around(points, x, support, reference);
-  set_to(result, fit_face(around.face, support));
+[[gnu::noinline]] void fit_smooth(const CandidateSet& points, Vec3 x, float radius, Vec3 reference,
+                                  float side, NearFaces& near, SurfaceFit& result) {
+  const Surroundings around = look_around(points, x, radius, reference);
+  set_to(result, fit_face(around.face, 1.0F / radius));
   result.complete = around.complete;
   const float all = around.face.w + around.averted;
   result.facing = all > 0.0F ? around.face.w / all : 1.0F;
   const Candidate* const crease = around.crease != nullptr ? around.crease : around.mild;
-  const Candidate* const other =
-      nearest_other(crease, around.opposite, x, support.radius, side, result);
+  const Candidate* const other = nearest_other(crease, around.opposite, x, radius, side, result);
   if (other != nullptr) {
     // If several faces came near at once, the smooth surface lies between them.
     if (around.own == nullptr) {
       result.next_reference = other->normal;
     } else {
-      const Vec3 to_other = other->position - around.own->position;
-      const Relation relation =
-          relation_of(to_other, around.own->normal, other->normal, side, kApart * support.radius);
-      near.own = relation == Relation::kConcave ? around.own->normal : Vec3{};
+      near.own =
+          is_concave(*around.own, *other, side, kApart * radius) ? around.own->normal : Vec3{};
       near.normal[near.count++] = other->normal;
     }
   } else if (around.own != nullptr && around.closest < kBetweenFaces) {
@@ -109,16 +112,15 @@ const Candidate* nearest_other(const Candidate* crease, const Candidate* opposit
 SurfaceFit fit_surface(const CandidateSet& points, Vec3 x, float radius, Vec3 reference, float side,
                        NearFaces& near) {
   SurfaceFit result;  // memory: flash
-  const Support support = support_of(radius);
   if (near.count != 0U) {
     const Vec3 first = near.own != Vec3{} ? near.own : reference;
     const Seeds seeds{{first, near.normal[0], near.normal[1]}, 1U + near.count};
     near.own = {};
     // at most: passes per Scene::update together passes as 2
-    fit_faces(points, x, support, seeds, side, near, result);
+    fit_faces(points, x, radius, seeds, side, near, result);
   } else {
     // at most: passes per Scene::update together passes
-    fit_smooth(points, x, support, reference, side, near, result);
+    fit_smooth(points, x, radius, reference, side, near, result);
   }
   return result;
 }
