@@ -39,14 +39,14 @@ float weight_of(Vec3 offset, float inverse_squared, float cosine) {
   return u2 * u2 * cosine;
 }
 
-/// cos(2 pi turns); error below 2e-7. It is sin(2 pi u) with |u| <= 1/4: a polynomial of degree 9
-/// that agrees with it at five Chebyshev nodes of u^2.
-float wave(float turns) {
-  const auto whole_turns = static_cast<std::int32_t>(turns < 0.0F ? turns - 0.5F : turns + 0.5F);
-  const float u = 0.25F - absolute(turns - static_cast<float>(whole_turns));
+/// cos(2 pi turns) for |turns| <= kTextureWaves; error below 1.3e-6. It is sin(2 pi u) with
+/// |u| <= 1/4: a polynomial of degree 7 that agrees with it at four Chebyshev nodes of u^2.
+[[gnu::always_inline]] inline float wave(float turns) {
+  constexpr float kRound = 12582912.0F;  // 1.5 * 2^23: a sum with it has no fraction
+  const float whole_turns = (turns + kRound) - kRound;
+  const float u = 0.25F - absolute(turns - whole_turns);
   const float s = u * u;
-  return u * (6.28318528F +
-              s * (-41.3416806F + s * (81.6024764F + s * (-76.5811726F + s * 39.7598271F))));
+  return u * (6.28318051F + s * (-41.3392461F + s * (81.4080069F + s * -71.6076801F)));
 }
 
 /// -1 .. 1 for a unit normal.

@@ -14,7 +14,7 @@
 namespace tactree::core {
 
 /// Maximum number of materials in a blend. If a support radius contains more, the points of the
-/// excess materials are ignored. The bound of a tick counts three cosines for each material of a
+/// excess materials are ignored. The bound of a tick counts a texture for each material of a
 /// blend; a support of 2.5 spacings holds about 20 points of a plane.
 inline constexpr std::uint32_t kBlendedMaterials = 8;
 
@@ -52,7 +52,7 @@ void blend_materials(const BlobView& view, const Configuration& configuration,
 ///   depth = height (1 - nx^2 Y Z - ny^2 Z X - nz^2 X Y),  X = cos(2 pi x / wavelength), ...
 /// The depth is 0 if the material has no height or no wavelength, and where a coordinate exceeds
 /// kTextureWaves wavelengths. Without a blend, the texture is that of the configuration. Cost:
-/// three cosines per material, about 100 operations each.
+/// about 70 operations per material.
 [[nodiscard]] float texture_depth(const BlobView& view, const Configuration& configuration,
                                   const MaterialBlend& blend, Vec3 x, Vec3 normal);
 
