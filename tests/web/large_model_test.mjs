@@ -1,5 +1,5 @@
 // Five million points: the page shows a coarse picture at once and never blocks. Times are printed,
-// not asserted: they depend on the machine.
+// not asserted: they depend on the machine. bench/page_bench reads them.
 import assert from 'node:assert/strict';
 import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';

@@ -123,7 +123,8 @@ void LiveRun::adjust() {
       arm();
     }
   }
-  // Accepted: both ends of the change passed check(), whose limits are linear in the contact.
+  // Accepted: both ends of the change passed check(), whose limits are linear in the contact, and
+  // the height of a texture is at most that of the end with this wavelength.
   (void)target_.adjust(sim_.board(), wanted);
 }
 

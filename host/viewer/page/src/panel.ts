@@ -3,15 +3,16 @@
 import type { Command, Hello, Settings } from './messages';
 
 type Say = (command: Command) => void;
-const SLIDERS = [
+/** Settings of a contact with a slider each; also the keys of a material. */
+export const CONTACT = [
   'stiffness_N_m',
   'damping_Ns_m',
   'static_friction',
   'dynamic_friction',
   'texture_height_m',
   'texture_wavelength_m',
-  'force_max_N',
 ] as const;
+const SLIDERS = [...CONTACT, 'force_max_N'] as const;
 
 export function find<T extends HTMLElement = HTMLElement>(id: string): T {
   const element = document.getElementById(id);

@@ -2,21 +2,13 @@
 // The result is a file for `tactree build --material`.
 
 import type { ScanColour } from './cloud';
-import { find, settingOf } from './panel';
+import { CONTACT, find, settingOf } from './panel';
 
-const KEYS = [
-  'stiffness_N_m',
-  'damping_Ns_m',
-  'static_friction',
-  'dynamic_friction',
-  'texture_height_m',
-  'texture_wavelength_m',
-] as const;
-type Contact = Record<(typeof KEYS)[number], number>;
+type Contact = Record<(typeof CONTACT)[number], number>;
 const TOLERANCE = 30; // the default of a file of materials
 
 const contactOfSliders = (): Contact =>
-  Object.fromEntries(KEYS.map((key) => [key, settingOf(key)])) as Contact;
+  Object.fromEntries(CONTACT.map((key) => [key, settingOf(key)])) as Contact;
 
 function describe(contact: Contact): string {
   const texture =
