@@ -191,6 +191,27 @@ TEST_F(SessionTest, StopsOnClose) {
   EXPECT_FALSE(rig.controller().configuration().link.required);
 }
 
+// docs/PROTOCOL.md, 6: an application that went without a word does not keep the link required.
+TEST_F(SessionTest, EndsAfterSilenceOnceMotorsAreOff) {
+  ASSERT_TRUE(rig.open(20).ok());
+  ASSERT_TRUE(rig.arm());
+  rig.settle(12000);
+  EXPECT_EQ(rig.state(), State::kActive) << "with heartbeats";
+  rig.replace_client();
+  rig.settle(9900);
+  EXPECT_EQ(rig.controller().faults(), core::fault_bit(core::Fault::kLinkLost));
+  EXPECT_TRUE(rig.controller().configuration().link.required) << "within 10 s";
+  rig.settle(200);
+  EXPECT_FALSE(rig.controller().configuration().link.required);
+  EXPECT_TRUE(rig.open(0, 8).ok());
+}
+
+TEST_F(SessionTest, StaysInSilenceWithoutRequiredLink) {
+  ASSERT_TRUE(rig.open().ok());
+  rig.settle(12000);
+  EXPECT_TRUE(rig.ask(MessageKind::kState).ok());
+}
+
 TEST_F(SessionTest, LowersLimitsOnlyWhileStopped) {
   ASSERT_TRUE(rig.open().ok());
   EXPECT_TRUE(

@@ -17,6 +17,8 @@
 //     reply to the first. Stop is always obeyed.
 //   - Only heartbeats keep a required link alive. The age of the link is measured from the newest
 //     board time that a heartbeat contains, so old heartbeats do not keep it alive.
+//   - A session that required its link and is silent for kSilenceUs ends, once the motors are off:
+//     an unplugged application does not keep a board from being operated by its button.
 // Loop and memory annotations: docs/BOUND.md.
 
 #include <cstddef>
@@ -85,6 +87,7 @@ class Session {
   bool work() {
     queue_.flush(port_);
     const bool more = send_report();
+    end_silent_session();
     end_closed_session();
     if (waiting_) {
       return answer_request() || more;
@@ -99,6 +102,10 @@ class Session {
   // Bytes read from the port at once: a full-speed USB packet. More would only move the wait from
   // the port to here.
   static constexpr std::size_t kPiece = 64;
+
+  // A required link has a heartbeat at least every 0.1 s. The computer of an application may stand
+  // still for seconds.
+  static constexpr std::uint32_t kSilenceUs = 10'000'000;
 
   [[nodiscard]] const core::Controller& controller() const { return changes_.controller(); }
 
@@ -189,6 +196,7 @@ class Session {
       case RequestFilter::Verdict::kAdmitted:
         break;
     }
+    heard_us_ = platform_.now_us();
     return handle(kind);
   }
 
@@ -320,7 +328,9 @@ class Session {
     telemetry_.unsubscribe();
     models_.release();
     control_.reset();
-    filter_.open(request, decoder_.header().sequence, platform_.now_us());
+    heard_us_ = platform_.now_us();
+    filter_.open(request, decoder_.header().sequence, heard_us_);
+    requires_link_ = request.link_timeout_ms != 0U;
     closing_ = false;
     return WireStatus::kOk;
   }
@@ -332,12 +342,23 @@ class Session {
   Outcome close() {
     if (may_command()) {
       mailbox_.post_stop();
-      closing_ = true;
     }
+    end_session();
+    return Outcome::kAnswer;
+  }
+
+  void end_session() {
+    closing_ = may_command();
     telemetry_.unsubscribe();
     filter_.close();
     models_.release();
-    return Outcome::kAnswer;
+  }
+
+  void end_silent_session() {
+    const bool may_end = filter_.session() != 0U && requires_link_ && controller().motors_off();
+    if (may_end && platform_.now_us() - heard_us_ >= kSilenceUs) {
+      end_session();
+    }
   }
 
   // A link that a closed session required stays required until the motors are off.
@@ -441,7 +462,9 @@ class Session {
   bool waiting_ = false;    // the request in decoder_ is not finished
   std::uint32_t step_ = 0;  // calls of its handler so far
 
-  bool closing_ = false;  // the session is closed, but its link is still required
+  std::uint32_t heard_us_ = 0;  // time of the last admitted request
+  bool requires_link_ = false;  // the session asked for it
+  bool closing_ = false;        // the session has ended, but its link is still required
 };
 
 }  // namespace tactree::session

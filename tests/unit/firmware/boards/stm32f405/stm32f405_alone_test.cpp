@@ -111,8 +111,8 @@ TEST_F(Stm32f405Alone, NeedsNoApplicationAndTakesOne) {
   EXPECT_EQ(rig.status().faults, core::fault_bit(core::Fault::kLinkLost));
 }
 
-// An open session requires its link, also of the button, until it is closed or the board is reset.
-TEST_F(Stm32f405Alone, IsOperatedByItsButtonOnceSessionIsClosed) {
+// An open session requires its link, also of the button, until it is closed or silent for 10 s.
+TEST_F(Stm32f405Alone, IsOperatedByItsButtonOnceSessionHasEnded) {
   rig.boot();
   ASSERT_TRUE(rig.open(50).ok());
   rig.application_runs = false;
@@ -121,14 +121,26 @@ TEST_F(Stm32f405Alone, IsOperatedByItsButtonOnceSessionIsClosed) {
   EXPECT_EQ(rig.status().faults, core::fault_bit(core::Fault::kLinkLost));
   rig.chip().hold_dead_man(false);
   rig.press_button(1100);  // clears the fault
+  const auto arm_again = [&] {
+    rig.chip().hold_dead_man(false);
+    rig.run(100);
+    rig.press_button(1100);
+    rig.chip().hold_dead_man(true);
+    return rig.run(500).state;
+  };
   rig.application_runs = true;
   ASSERT_TRUE(rig.open(50).ok());
   ASSERT_TRUE(rig.ask(MessageKind::kClose).ok());
   rig.application_runs = false;
-  rig.run(100);
-  rig.press_button(1100);
-  rig.chip().hold_dead_man(true);
-  EXPECT_EQ(rig.run(500).state, core::State::kActive) << "faults " << rig.status().faults;
+  EXPECT_EQ(arm_again(), core::State::kActive) << "after a closed session";
+  EXPECT_TRUE(rig.touch());
+  rig.lift();
+  rig.press_button(30);
+  rig.application_runs = true;
+  ASSERT_TRUE(rig.open(50).ok());
+  rig.application_runs = false;
+  rig.run(10100);
+  EXPECT_EQ(arm_again(), core::State::kActive) << "after a silent session";
   EXPECT_TRUE(rig.touch());
 }
 
