@@ -39,6 +39,14 @@ async function type(page, name, value) {
 
 const value = async (page, name) => Number(await page.locator(`#place-${name}`).inputValue());
 
+/** The pose file that the page saves; `file`: its copy. */
+async function savedPose(page, file = join(folder, 'saved.json')) {
+  const [download] = await Promise.all([page.waitForEvent('download'), page.locator('#place-save').click()]);
+  assert.equal(download.suggestedFilename(), 'pose.json');
+  await download.saveAs(file);
+  return JSON.parse(readFileSync(file, 'utf8'));
+}
+
 /** Waits until the server says this pose. */
 const placedAt = (page, name, wanted, off = 0.02) => page.waitForFunction(([id, goal, tolerance]) => {
   const field = document.getElementById(`place-${id}`);
@@ -67,6 +75,29 @@ test('a model placed by numbers is touched there, and the session goes on', asyn
   await page.mouse.up();
   assert.ok(Math.abs(y - 0.025) < 0.01, `touched at y = ${y}`);
   assert.ok(await number(page, 't_s') > before_s);
+  assert.deepEqual(page.troubles, []);
+});
+
+test('typed angles stay as they were typed, and a size that is none is refused', async (t) => {
+  const page = await openPlaced(t);
+  await type(page, 'turn-x', 30);
+  await type(page, 'turn-y', 120); // the same turn as 180 + 30, 60, 180
+  await page.waitForTimeout(1000);
+  for (const [name, to] of [['turn-x', 30], ['turn-y', 120], ['turn-z', 0]]) {
+    assert.equal(await value(page, name), to, name);
+  }
+  const { pose } = await savedPose(page);
+  const radians = Math.PI / 180; // about x, then y: the rotated z axis
+  const axis = [Math.sin(120 * radians) * Math.cos(30 * radians), -Math.sin(30 * radians),
+    Math.cos(120 * radians) * Math.cos(30 * radians)];
+  axis.forEach((v, i) => assert.ok(Math.abs(pose[4 * i + 2] - v) < 1e-4, `${pose}`));
+  for (const size of ['-5', '']) {
+    await type(page, 'size', size);
+    await page.waitForFunction(() => /^Size: /.test(document.getElementById('note').textContent));
+    await placedAt(page, 'size', 100);
+    await page.evaluate(() => { document.getElementById('note').textContent = ''; });
+  }
+  await placedAt(page, 'turn-y', 120);
   assert.deepEqual(page.troubles, []);
 });
 
@@ -116,11 +147,8 @@ test('a saved pose places the model in every command', async (t) => {
     await type(page, name, to);
     await placedAt(page, name, to);
   }
-  const [download] = await Promise.all([page.waitForEvent('download'), page.locator('#place-save').click()]);
-  assert.equal(download.suggestedFilename(), 'pose.json');
   const file = join(folder, 'pose.json');
-  await download.saveAs(file);
-  const { pose, scale } = JSON.parse(readFileSync(file, 'utf8'));
+  const { pose, scale } = await savedPose(page, file);
   assert.equal(scale, 1);
   assert.equal(pose.length, 16);
   const trace = join(folder, 'posed.csv');

@@ -10,17 +10,29 @@ import type { View } from './view';
 
 type Mode = 'translate' | 'rotate' | 'scale';
 const AXES = ['x', 'y', 'z'] as const;
+const FIELDS = [...AXES, ...AXES.map((axis) => `turn-${axis}`), 'size'];
 // First about x, then y, then z.
 const ORDER = 'ZYX';
 const SMALLEST = 0.05; // change of the size by one drag
 const LARGEST = 20;
 const SAME_SCALE = 1e-4;
 const SAME_POSE = 1e-6;
+const SAME_ANGLE = 2e-4; // rad: of fields with two digits of a degree
 // A pose that the server has not taken by then was lost or refused.
 const PATIENCE_MS = 3000;
 
 const input = (name: string): HTMLInputElement => find<HTMLInputElement>(`place-${name}`);
 const field = (name: string): number => Number(input(name).value);
+
+function isWrong(name: string): boolean {
+  const { value, validity } = input(name);
+  return value === '' || validity.badInput || validity.rangeUnderflow;
+}
+
+function turnOfFields(): THREE.Quaternion {
+  const [x, y, z] = AXES.map((axis) => THREE.MathUtils.degToRad(field(`turn-${axis}`)));
+  return new THREE.Quaternion().setFromEuler(new THREE.Euler(x, y, z, ORDER));
+}
 
 /** Reads a pose: a matrix, row by row. */
 function matrixOf(rows: number[]): THREE.Matrix4 {
@@ -63,9 +75,7 @@ export class PlaceView {
     for (const mode of ['translate', 'rotate', 'scale'] as Mode[]) {
       input(mode).addEventListener('change', () => this.controls.setMode(mode));
     }
-    for (const name of [...AXES, ...AXES.map((axis) => `turn-${axis}`), 'size']) {
-      input(name).addEventListener('change', () => this.typed());
-    }
+    for (const name of FIELDS) input(name).addEventListener('change', () => this.typed());
     find('place-reset').addEventListener('click', () => this.reset());
     find('place-save').addEventListener('click', () => this.save());
     find('place-restart').addEventListener('click', () => this.confirm());
@@ -146,12 +156,18 @@ export class PlaceView {
   private showNumbers(): void {
     if (!this.now) return;
     const at = this.handle.position.clone().add(this.originOf(this.now));
-    const turn = new THREE.Euler().setFromQuaternion(this.handle.quaternion, ORDER);
-    for (const axis of AXES) {
-      setField(axis, 1e3 * at[axis], 2);
-      setField(`turn-${axis}`, THREE.MathUtils.radToDeg(turn[axis]), 2);
-    }
+    for (const axis of AXES) setField(axis, 1e3 * at[axis], 2);
+    this.showTurn();
     setField('size', 100 * this.now.scale * this.handle.scale.x, 2);
+  }
+
+  /** Other angles may tell the same turn: those that the user has typed stay. */
+  private showTurn(): void {
+    const { quaternion } = this.handle;
+    const isShown = AXES.every((axis) => input(`turn-${axis}`).value !== '');
+    if (isShown && turnOfFields().angleTo(quaternion) < SAME_ANGLE) return;
+    const turn = new THREE.Euler().setFromQuaternion(quaternion, ORDER);
+    for (const axis of AXES) setField(`turn-${axis}`, THREE.MathUtils.radToDeg(turn[axis]), 2);
   }
 
   private dragged(): void {
@@ -167,9 +183,10 @@ export class PlaceView {
   private typed(): void {
     if (!this.now) return;
     const place: Triple = [field('x'), field('y'), field('z')];
-    const turn = AXES.map((axis) => THREE.MathUtils.degToRad(field(`turn-${axis}`)));
     const scale = field('size') / 100 / this.now.scale;
-    if (![...place, ...turn, scale].every(Number.isFinite) || scale <= 0) {
+    const wrong = FIELDS.find(isWrong);
+    if (wrong) {
+      this.complain(wrong === 'size' ? 'Size: a percentage above 0.1' : `${wrong}: a number`);
       this.release();
       return;
     }
@@ -177,7 +194,7 @@ export class PlaceView {
       .set(...place)
       .multiplyScalar(1e-3)
       .sub(this.originOf(this.now));
-    this.handle.quaternion.setFromEuler(new THREE.Euler(turn[0], turn[1], turn[2], ORDER));
+    this.handle.quaternion.copy(turnOfFields());
     this.handle.scale.setScalar(scale);
     this.preview();
     this.send();
