@@ -55,45 +55,46 @@ uniform mat3 normalMatrix;
 uniform float diameter;  // of a point, m
 uniform float scale;     // pixels of a metre at a distance of 1 m
 uniform vec3 colour;
+uniform vec3 inner;
 uniform int overlay;             // 1: shows the materials, 2: the colours of the scan
 uniform sampler2D palette;
 in vec4 position;        // x, y, z in 1/65535 of the node's edge; the normal on an octahedron
 in float material;
 in vec3 rgb;
-out vec3 vNormal;
-out vec3 vColour;
+flat out vec3 vColour;
 vec3 unpack(float word) {
   vec2 f = vec2(floor(word / 256.0), mod(word, 256.0)) / 127.5 - 1.0;
   vec3 n = vec3(f, 1.0 - abs(f.x) - abs(f.y));
   if (n.z < 0.0) n.xy = (1.0 - abs(n.yx)) * vec2(n.x < 0.0 ? -1.0 : 1.0, n.y < 0.0 ? -1.0 : 1.0);
   return normalize(n);
 }
-void main() {
-  vec4 eye = modelViewMatrix * vec4(position.xyz, 1.0);
-  vNormal = normalize(normalMatrix * unpack(position.w));
-  vColour = colour;
-  if (overlay == 1) vColour = texelFetch(palette, ivec2(int(material + 0.5), 0), 0).rgb;
-  if (overlay == 2) vColour = rgb;
-  gl_Position = projectionMatrix * eye;
-  gl_PointSize = clamp(diameter * scale / max(-eye.z, 1e-6), 1.5, 48.0);
-}`;
-
-const FRAGMENT = `
-precision mediump float;
-uniform vec3 inner;
-in vec3 vNormal;
-in vec3 vColour;
-out vec4 result;
-void main() {
-  vec2 offset = gl_PointCoord - 0.5;
-  if (dot(offset, offset) > 0.25) discard;
-  vec3 n = normalize(vNormal);
-  vec3 base = n.z >= 0.0 ? vColour : inner;
+vec3 lit(vec3 base, vec3 n) {
   n *= sign(n.z);
   float key = max(dot(n, normalize(vec3(-0.45, 0.6, 0.65))), 0.0);
   float fill = 0.5 + 0.5 * n.y;
   float shine = pow(max(dot(n, normalize(vec3(-0.25, 0.35, 0.9))), 0.0), 24.0);
-  result = vec4(base * (0.28 + 0.22 * fill + 0.6 * key) + 0.10 * shine, 1.0);
+  return base * (0.28 + 0.22 * fill + 0.6 * key) + 0.10 * shine;
+}
+void main() {
+  vec4 eye = modelViewMatrix * vec4(position.xyz, 1.0);
+  vec3 n = normalize(normalMatrix * unpack(position.w));
+  vec3 base = colour;
+  if (overlay == 1) base = texelFetch(palette, ivec2(int(material + 0.5), 0), 0).rgb;
+  if (overlay == 2) base = rgb;
+  vColour = lit(n.z >= 0.0 ? base : inner, n);
+  gl_Position = projectionMatrix * eye;
+  gl_PointSize = clamp(diameter * scale / max(-eye.z, 1e-6), 1.5, 48.0);
+}`;
+
+// A point has one normal, and so one colour: without a GPU a picture has far more pixels than points.
+const FRAGMENT = `
+precision mediump float;
+flat in vec3 vColour;
+out vec4 result;
+void main() {
+  vec2 offset = gl_PointCoord - 0.5;
+  if (dot(offset, offset) > 0.25) discard;
+  result = vec4(vColour, 1.0);
 }`;
 
 class CloudNode extends SearchNode {
