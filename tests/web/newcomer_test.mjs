@@ -54,6 +54,10 @@ test('a stopped or faulted controller says why there is no force, also to a clic
   assert.ok(await page.locator('#note').isHidden());
   await clickPicture(page);
   assert.equal(await text(page, 'note'), 'stopped: press Arm');
+  await page.waitForTimeout(1200);
+  await page.locator('#arm').click();
+  await state(page, 'active');
+  await page.locator('#note').waitFor({ state: 'hidden', timeout: 3000 }); // it is no longer true
   await page.locator('#faults summary').click();
   await page.getByRole('button', { name: 'estop:pressed' }).click();
   await state(page, 'fault');
@@ -170,6 +174,18 @@ test('no message covers Clear, Arm or another message', async (t) => {
     });
     assert.deepEqual(covered, [], `${width} x ${height}`);
   }
+});
+
+test('on a small screen every button of many messages can be pressed', async (t) => {
+  const large = buildModel('large', bumpySphere(30000, 0.5, 0), ['--unit', 'm']);
+  const page = await openSession(t, [large], { viewport: { width: 360, height: 560 }, hasTouch: true });
+  await say(page, { do: 'inject', fault: 'estop:pressed' });
+  await state(page, 'fault');
+  await clickPicture(page);
+  await page.locator('#note').waitFor();
+  await page.locator('#fit').waitFor();
+  for (const id of ['clear', 'scale']) await page.locator(`#${id}`).click({ timeout: 5000 });
+  await page.locator('#fit').waitFor({ state: 'hidden' });
 });
 
 test('rows appear where they mean something; deadlines and a slow computer are not confused', async (t) => {
