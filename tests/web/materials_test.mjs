@@ -4,7 +4,7 @@ import { after, before, test } from 'node:test';
 import { execFileSync } from 'node:child_process';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { folder, launch, openPage, startServer, state, tactree } from './setup.mjs';
+import { buildModel, bumpySphere, folder, launch, openPage, startServer, state, tactree } from './setup.mjs';
 
 const RADIUS = 0.03;
 let browser;
@@ -88,6 +88,16 @@ test('materials are shown with a legend that names them', async (t) => {
   const after_rgb = await middle(page);
   assert.ok(Math.max(...after_rgb.map((v, i) => Math.abs(v - before_rgb[i]))) < 12);
   assert.deepEqual(page.troubles, []);
+});
+
+test('the page says when the materials of the model overrule its sliders', async (t) => {
+  const page = await openSession(t, [blob]);
+  const note = page.locator('#materials-note');
+  await note.waitFor();
+  await page.locator('#use_materials').uncheck();
+  await note.waitFor({ state: 'hidden' });
+  const plain = await openSession(t, [buildModel('plain', bumpySphere(6000, RADIUS, 0), ['--unit', 'm'])]);
+  assert.ok(await plain.locator('#materials-note').isHidden());
 });
 
 test('without the file of the build materials have numbers, and other files are refused', async (t) => {

@@ -45,7 +45,7 @@ export interface Hello {
 export interface Run {
   mode: string;
   state: string;
-  faults: { code: number; name: string }[];
+  faults: { code: number; name: string; about?: string }[];
   limits: string[];
   overruns: number;
   t_s: number;

@@ -101,6 +101,7 @@ export class Panel {
     this.choose('rate_hz', String(settings.rate_hz));
     if (settings.device) this.choose('device', settings.device);
     find<HTMLInputElement>('use_materials').checked = settings.use_materials;
+    find('materials-note').hidden = find('materials').hidden || !settings.use_materials;
     find('stability').textContent =
       `Stable up to ${Math.floor(settings.stiffness_limit_N_m)} N/m with a hand`;
   }
