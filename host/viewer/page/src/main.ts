@@ -36,6 +36,8 @@ const gestures = new Gestures(view, hand, () => place.isHeld);
 const rules = new Rules();
 const connection = new Connection({ hello, frame, refused, connected });
 let source: Hello['source'] = 'simulation';
+// Of so many pictures one comes with new numbers and curves: without a GPU these take longer than the picture.
+const PICTURES_PER_TELLING = 3;
 
 function say(command: Command): void {
   if (!connection.send(command)) news.show('Not connected: the command was not sent.');
@@ -105,6 +107,7 @@ function showFaults(run: Run): void {
   find('banner').hidden = run.faults.length === 0;
   const names = run.faults.map((fault) => fault.name);
   find('fault-names').textContent = names.join(', ');
+  find('fault-about').textContent = run.faults[0]?.about ?? '';
   find<HTMLAnchorElement>('fault-page').href = `/faults/${names[0] ?? ''}`;
   showLimits(run.limits);
 }
@@ -177,16 +180,28 @@ function frame(message: Frame): void {
   if (message.hand_m) hand.follow(message.hand_m);
 }
 
+let untold: Frame | undefined;
+let pictures = 0;
+
 /** Once per displayed picture, with the latest frame. */
 function refresh(): void {
   requestAnimationFrame(refresh);
-  const message = latest;
-  if (!message) return;
-  latest = undefined;
-  view.show(message);
-  place.show(message);
-  if (message.place?.hand_start_m) hand.setStart(message.place.hand_start_m);
-  touchMovedBodies(message);
+  if (latest) {
+    view.show(latest);
+    place.show(latest);
+    if (latest.place?.hand_start_m) hand.setStart(latest.place.hand_start_m);
+    touchMovedBodies(latest);
+    untold = latest;
+    latest = undefined;
+  }
+  pictures = (pictures + 1) % PICTURES_PER_TELLING;
+  if (!untold || pictures !== 0) return;
+  tell(untold);
+  untold = undefined;
+}
+
+/** Everything beside the picture. */
+function tell(message: Frame): void {
   document.body.dataset.mode = message.settings?.mode ?? '';
   board.show(message);
   why.show(message);

@@ -1,5 +1,5 @@
-// The picture: models, devices and markers. Drawn on changes only, with as many points as the frame
-// rate allows; drawn once more with more points when nothing moves.
+// The picture: models, devices and markers. Drawn on changes only, with as many points and pixels as
+// the frame rate allows; drawn once more with more points and all pixels when nothing moves.
 
 import * as THREE from 'three';
 import { Orbit } from './camera';
@@ -9,8 +9,11 @@ import type { Frame, Run } from './messages';
 import type { Obstacles } from './route';
 import type { Hit, Nearest } from './search';
 
-const MIN_POINTS = 60_000;
+const MIN_POINTS = 30_000;
 const MAX_POINTS = 3_000_000;
+// Share of the pixels along each side, when even MIN_POINTS take too long; all of them from SHARP_POINTS on.
+const COARSE = 0.5;
+const SHARP_POINTS = 8 * MIN_POINTS;
 const STILL_MS = 350;
 // Frame times above SLOW_MS reduce the number of points, those below FAST_MS raise it.
 const SLOW_MS = 40;
@@ -33,6 +36,7 @@ export class View implements Obstacles {
   /** Of the models: the diameter of a ball around them, m. */
   size = 0.1;
   private budget = 250_000;
+  private isCoarse = false;
   private dirty = true;
   private moved_ms = 0;
   private refined = false;
@@ -46,7 +50,6 @@ export class View implements Obstacles {
 
   constructor(readonly canvas: HTMLCanvasElement) {
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: !isSoftware(), alpha: true });
-    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     this.renderer.setScissorTest(true);
     this.scene.add(new THREE.HemisphereLight(0xffffff, 0x667080, 2.2));
     const sun = new THREE.DirectionalLight(0xffffff, 1.6);
@@ -252,7 +255,7 @@ export class View implements Obstacles {
 
   /** The picture as a PNG file. */
   picture(): Promise<Blob | null> {
-    this.draw(MAX_POINTS);
+    this.draw(MAX_POINTS, 1);
     return new Promise((done) => this.canvas.toBlob(done, 'image/png'));
   }
 
@@ -270,18 +273,31 @@ export class View implements Obstacles {
     if (this.dirty) {
       this.dirty = false;
       this.refined = false;
-      this.draw(this.budget);
-      if (took > SLOW_MS && took < 1000) this.budget = Math.max(MIN_POINTS, 0.8 * this.budget);
-      if (took < FAST_MS) this.budget = Math.min(MAX_POINTS, 1.05 * this.budget);
+      this.draw(this.budget, this.isCoarse ? COARSE : 1);
+      this.adapt(took);
     } else if (!this.refined && now - this.moved_ms > STILL_MS) {
       this.refined = true;
-      this.draw(Math.max(2 * this.budget, 500_000));
+      this.draw(Math.max(2 * this.budget, 500_000), 1);
     }
   }
 
-  private draw(budget: number): void {
+  private adapt(took_ms: number): void {
+    if (took_ms > SLOW_MS && took_ms < 1000) {
+      this.isCoarse ||= this.budget === MIN_POINTS;
+      this.budget = Math.max(MIN_POINTS, 0.8 * this.budget);
+    }
+    if (took_ms < FAST_MS) {
+      this.budget = Math.min(MAX_POINTS, 1.05 * this.budget);
+      this.isCoarse &&= this.budget < SHARP_POINTS;
+    }
+  }
+
+  /** `sharpness`: share of the screen's pixels along each side. */
+  private draw(budget: number, sharpness: number): void {
     const { clientWidth: width, clientHeight: height } = this.canvas;
     if (width === 0 || height === 0) return;
+    const ratio = sharpness * Math.min(window.devicePixelRatio, 2);
+    if (ratio !== this.renderer.getPixelRatio()) this.renderer.setPixelRatio(ratio);
     const { sides } = this;
     this.orbit.resize(width / sides, height);
     const eye = { camera: this.orbit.camera, height_px: height * this.renderer.getPixelRatio() };
