@@ -46,6 +46,7 @@ export interface Run {
   mode: string;
   state: string;
   faults: { code: number; name: string; about?: string }[];
+  note?: string; // why there is no force although the controller is active, or ''
   limits: string[];
   overruns: number;
   t_s: number;

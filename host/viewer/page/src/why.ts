@@ -21,7 +21,7 @@ function reasonOf(frame: Frame): string {
   if (run.state === 'idle') return `stopped: ${act(frame, 'press Arm')}`;
   if (isWaiting) return 'No force until the hand has left the object';
   if (run.state === 'armed') return 'armed: waits for the dead-man control';
-  return run.state === 'active' ? '' : `No force: the controller is in state ${run.state}`;
+  return run.state === 'active' ? (run.note ?? '') : `No force: the controller is in state ${run.state}`;
 }
 
 /** Shows the reason beside the state, and what does not fit to the device. */
