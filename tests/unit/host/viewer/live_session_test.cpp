@@ -121,6 +121,8 @@ TEST_F(LiveSessionTest, ClearsFaultOnceCauseEnds) {
   say({{"do", "inject"}, {"fault", "estop:pressed"}});
   const json frame = wait_for_state("fault");
   EXPECT_EQ(frame["runs"][0]["faults"][0]["name"], "emergency-stop");
+  EXPECT_TRUE(frame["runs"][0]["faults"][0]["about"].get<std::string>().starts_with(
+      "The emergency stop input is open. Make the area safe"));
   say({{"do", "clear_injections"}});
   say({{"do", "clear"}});
   wait_for_state("idle");
