@@ -36,6 +36,12 @@ class ModelSize(SharedFolder):
         done = self.run_tool("simulate", "large.blob", "--device", "falcon", "--seconds", 1)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
 
+    def test_paper_names_its_method_if_there_is_no_contact(self):
+        done = self.run_tool("simulate", "small.blob", "--path", "above.csv", "--seconds", 1, "--mode", "paper")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("the method of the paper finds a contact only within 0.73 mm of a point", done.stderr)
+        self.assertIn("use --mode surface", done.stderr)
+
     def test_reports_unreachable_start(self):
         self.build_points("ball", ball(3000, 0.5), "--unit", "m")
         done = self.run_tool("simulate", "ball.blob", "--seconds", 1)

@@ -129,6 +129,7 @@ json run_json(const simulation::Sample& sample, const char* mode, const core::De
               {"in_contact", r.in_contact},
               {"slipping", r.slipping},
               {"strength", r.strength},
+              {"note", ""},
               {"tip_m", json::array({sample.tip_m.x(), sample.tip_m.y(), sample.tip_m.z()})},
               {"linkage", linkage_json(device, model_origin_m, sample.tip_m, joints)},
               {"candidates", json::array()}};

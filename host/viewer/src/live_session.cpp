@@ -11,6 +11,7 @@
 #include "contact_parameters.hpp"
 #include "hand_command.hpp"
 #include "live_run.hpp"
+#include "paper_note.hpp"
 #include "steered_hand.hpp"
 #include "tactree/core/safety/faults.hpp"
 #include "tactree/plant/vectors.hpp"
@@ -466,6 +467,9 @@ std::string LiveSession::frame() {
     json one = run_json(run->last(), name_of(c.mode), c.device, c.model_origin_m,
                         run->simulation().plant().joints(), bodies_, scratch_);
     one["strip"] = run->strip().take();
+    if (c.mode == core::RenderMode::kPaper) {
+      one["note"] = paper_note(run->last(), bodies_);
+    }
     runs.push_back(std::move(one));
   }
   const Eigen::Vector3d& hand = hand_->position_m();

@@ -11,6 +11,7 @@
 #include "run/simulate_options.hpp"
 #include "run/simulate_run.hpp"
 #include "run/simulate_setup.hpp"
+#include "tactree/builder/length_text.hpp"
 #include "tactree/setup/model_size.hpp"
 #include "tactree/setup/scene_file.hpp"
 #include "tactree/support/device_file.hpp"
@@ -35,13 +36,22 @@ std::optional<std::string> reach_warning(const SimulateOptions& options,
                                  support::load_device(options.device).preset.model);
 }
 
-const char* remedy_for_no_contact(const SimulateOptions& options, bool oversize) {
+std::string remedy_for_no_contact(const SimulateOptions& options, const core::BlobHeader& model,
+                                  bool oversize) {
   if (oversize) {
     return "make the model smaller, as the warning says";
   }
   if (options.panel) {
     return "home and arm the board by its button, e.g. --press 0.5s..1.7s --press 3s..4.2s, with "
            "--seconds to touch afterwards, or accept the run with --allow-no-contact";
+  }
+  if (options.mode == "paper") {
+    return fmt::format(
+        "the method of the paper finds a contact only within {} of a point, and a hand that "
+        "presses "
+        "passes between and behind the points: use --mode surface, or accept the run with "
+        "--allow-no-contact",
+        builder::length_text(0.5 * static_cast<double>(model.aabb_edge_m), 2));
   }
   return "choose a --script, --path or --origin with which the hand meets its surface, or accept "
          "the run with --allow-no-contact";
@@ -85,7 +95,7 @@ void simulate(SimulateOptions& options, int& exit_code) {
   exit_code = outcome.summary.faults.empty() ? kExitOk : kExitFailed;
   if (exit_code == kExitOk && outcome.summary.contact_ticks == 0 && !options.allow_no_contact) {
     refuse(fmt::format("{}: the probe never touched the model", options.blob),
-           remedy_for_no_contact(options, oversize.has_value()));
+           remedy_for_no_contact(options, scene.files[0]->view().header(), oversize.has_value()));
   }
 }
 
