@@ -479,7 +479,7 @@ std::string LiveSession::frame() {
   {
     const std::lock_guard lock(mutex_);
     settings = settings_json();
-    fit = {{"warning", fit_.warning},
+    fit = {{"warning", named_warning()},
            {"can_scale", fit_.is_oversize && static_cast<bool>(placing_.fit)}};
     if (placing_.renew) {
       place = place_json();

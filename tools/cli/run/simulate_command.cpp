@@ -20,26 +20,38 @@
 namespace tactree::cli {
 namespace {
 
-/// No warning for a model that --origin or a scene has placed: the user may want the device to
-/// reach only a part of it.
-std::optional<std::string> reach_warning(const SimulateOptions& options,
-                                         const setup::SceneFile& scene) {
+/// "NAME: WARNING" for each body whose first pose, in the frame of the device, is beyond its reach.
+std::string misplaced(const SimulateOptions& options, const setup::SceneFile& scene) {
+  const core::DeviceModel device = support::load_device(options.device).preset.model;
+  std::string all;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const auto warning = setup::misplaced_warning(scene.files[i]->view(), options.device, device,
+                                                  scene.bodies[i].path.first());
+    if (warning) {
+      all += fmt::format("{}{}: {}", all.empty() ? "" : "; ", scene.names[i], *warning);
+    }
+  }
+  return all;
+}
+
+/// Empty for a model that --origin or a scene without a pose file has placed: the user may want the
+/// device to reach only a part of it.
+std::string reach_warning(const SimulateOptions& options, const setup::SceneFile& scene) {
   if (!options.pose.empty()) {
-    return setup::misplaced_warning(options.blob, scene.files[0]->view().header(), options.device,
-                                    support::load_device(options.device).preset.model,
-                                    scene.bodies[0].path.first());
+    return misplaced(options, scene);
   }
   if (is_scene(options) || !options.origin_m.empty()) {
-    return std::nullopt;
+    return "";
   }
-  return setup::oversize_warning(options.blob, scene.files[0]->view().header(), options.device,
-                                 support::load_device(options.device).preset.model);
+  const auto warning = setup::oversize_warning(scene.files[0]->view(), options.device,
+                                               support::load_device(options.device).preset.model);
+  return warning ? fmt::format("{}: {}", options.blob, *warning) : "";
 }
 
 std::string remedy_for_no_contact(const SimulateOptions& options, const core::BlobHeader& model,
                                   bool oversize) {
   if (oversize) {
-    return "make the model smaller, as the warning says";
+    return "make the model smaller or move it, as the warning says";
   }
   if (options.panel) {
     return "home and arm the board by its button, e.g. --press 0.5s..1.7s --press 3s..4.2s, with "
@@ -85,9 +97,9 @@ void simulate(SimulateOptions& options, int& exit_code) {
     serve(options, scene);
     return;
   }
-  const std::optional<std::string> oversize = reach_warning(options, scene);
-  if (oversize) {
-    fmt::print(stderr, "tactree: warning: {}\n", *oversize);
+  const std::string beyond = reach_warning(options, scene);
+  if (!beyond.empty()) {
+    fmt::print(stderr, "tactree: warning: {}\n", beyond);
   }
   const Outcome outcome = run(options, scene);
   write_results(options, scene, outcome);
@@ -95,7 +107,7 @@ void simulate(SimulateOptions& options, int& exit_code) {
   exit_code = outcome.summary.faults.empty() ? kExitOk : kExitFailed;
   if (exit_code == kExitOk && outcome.summary.contact_ticks == 0 && !options.allow_no_contact) {
     refuse(fmt::format("{}: the probe never touched the model", options.blob),
-           remedy_for_no_contact(options, scene.files[0]->view().header(), oversize.has_value()));
+           remedy_for_no_contact(options, scene.files[0]->view().header(), !beyond.empty()));
   }
 }
 

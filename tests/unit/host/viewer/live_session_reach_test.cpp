@@ -25,6 +25,32 @@ std::vector<viewer::NamedDevice> preset_devices() {
   return list;
 }
 
+TEST(LiveSessionReach, ReportsUnreachableStartOfPaddle) {
+  const TestBlob ball(sphere(kRadius_m, 0.002));
+  const Eigen::Vector3d aside(0.0, 0.2, 0.0);
+  simulation::SceneBody body;
+  body.blob = ball.written().bytes;
+  body.path = simulation::BodyPath(Eigen::Isometry3d(Eigen::Translation3d(aside)));
+  viewer::Settings settings;
+  settings.device = "hapkit";
+  const LiveSession near({{ball.view()}, {body}}, preset_devices(), settings);
+  EXPECT_EQ(near.warning(), "");
+  settings.origin_m = core::Vec3{};
+  const LiveSession session({{ball.view()}, {body}}, preset_devices(), settings);
+  EXPECT_EQ(session.warning(),
+            "hapkit does not reach the start of the hand: the probe may begin in the object");
+}
+
+TEST(LiveSessionReach, WarningBeginsWithNameOfModel) {
+  builder::Model model = sphere(0.5, 0.02);
+  model.name = "large";
+  const TestBlob large(model);
+  simulation::SceneBody body;
+  body.blob = large.written().bytes;
+  LiveSession session({{large.view()}, {body}}, preset_devices(), {});
+  EXPECT_EQ(json::parse(session.step())["fit"]["warning"], "large: " + session.warning());
+}
+
 TEST(LiveSessionReach, ExplainsHandBehindPointsInPaperMode) {
   builder::Model model = sphere(kRadius_m, 0.002);
   model.tells_interior = true;

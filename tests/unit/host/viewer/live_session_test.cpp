@@ -401,7 +401,7 @@ TEST_F(LiveSessionTest, ReportsAndScalesUnreachableModel) {
   EXPECT_TRUE(session.command({{"do", "fit"}}));
   EXPECT_FALSE(session.command({{"do", "set"}, {"device", "falcon"}, {"restart", true}}));
   const json fit = json::parse(session.step())["fit"];
-  EXPECT_TRUE(fit["warning"].get<std::string>().starts_with("too large")) << fit;
+  EXPECT_TRUE(fit["warning"].get<std::string>().starts_with("model: too large")) << fit;
   EXPECT_TRUE(fit["can_scale"]);
   EXPECT_EQ(session.settings().device, "falcon");
   EXPECT_FALSE(session.command({{"do", "fit"}}));
