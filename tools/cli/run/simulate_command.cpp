@@ -37,7 +37,7 @@ std::string misplaced(const SimulateOptions& options, const setup::SceneFile& sc
 /// Empty for a model that --origin or a scene without a pose file has placed: the user may want the
 /// device to reach only a part of it.
 std::string reach_warning(const SimulateOptions& options, const setup::SceneFile& scene) {
-  if (!options.pose.empty()) {
+  if (scene.in_device_frame) {
     return misplaced(options, scene);
   }
   if (is_scene(options) || !options.origin_m.empty()) {

@@ -205,6 +205,7 @@ class Simulated {
       : scene_(scene),
         session_(noted_bodies_of(scene), devices(options.settings.device), options.settings,
                  is_single(options, scene) ? placing()
+                 : scene.in_device_frame   ? viewer::Placing{reach_warning(), {}, {}}
                                            : viewer::Placing{}) {
     if (!session_.warning().empty()) {
       warn(scene.names[0] + ": " + session_.warning());
