@@ -59,8 +59,7 @@ std::string remedy_for_no_contact(const SimulateOptions& options, const core::Bl
   }
   if (options.mode == "paper") {
     return fmt::format(
-        "the method of the paper finds a contact only within {} of a point, and a hand that "
-        "presses "
+        "the method of the paper finds a contact only within {} of a point, and a pressing hand "
         "passes between and behind the points: use --mode surface, or accept the run with "
         "--allow-no-contact",
         builder::length_text(0.5 * static_cast<double>(model.aabb_edge_m), 2));
