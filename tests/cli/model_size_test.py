@@ -36,6 +36,25 @@ class ModelSize(SharedFolder):
         done = self.run_tool("simulate", "large.blob", "--device", "falcon", "--seconds", 1)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
 
+    def test_hint_scales_model_to_devices_of_fewer_axes(self):
+        self.build_points("huge", ball(3000, 0.5), "--unit", "m")
+        for device, path in (("pantograph", "in the plane"), ("hapkit", "on the arc")):
+            with self.subTest(device=device):
+                for verb in ("info", "simulate"):
+                    done = self.run_tool(verb, "huge.blob", "--device", device)
+                    self.assertRegex(done.stderr, f"warning: huge.blob: the model is .* mm, more than {device} reaches "
+                                                  f"{path} of its probe; it fits with a longest edge of up to .* mm")
+                remedy = re.search(r"--fit (\S+)\)", done.stderr)
+                self.run_tool("build", "huge.csv", "-o", "scaled.blob", "--unit", "m", "--fit", remedy[1])
+                done = self.run_tool("simulate", "scaled.blob", "--device", device, "--script", "press", "--seconds", 2)
+                self.assertEqual((done.returncode, done.stderr), (0, ""))
+
+    def test_paper_names_its_method_if_there_is_no_contact(self):
+        done = self.run_tool("simulate", "small.blob", "--path", "above.csv", "--seconds", 1, "--mode", "paper")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("the method of the paper finds a contact only within 0.73 mm of a point", done.stderr)
+        self.assertIn("use --mode surface", done.stderr)
+
     def test_reports_unreachable_start(self):
         self.build_points("ball", ball(3000, 0.5), "--unit", "m")
         done = self.run_tool("simulate", "ball.blob", "--seconds", 1)
@@ -45,8 +64,7 @@ class ModelSize(SharedFolder):
 
     def test_refuses_impossible_fit(self):
         for fit, code, words in (("far", 2, "'far' is neither a length in metres nor device:NAME"),
-                                 ("-1", 2, "neither a length"), ("device:none", 1, "none"),
-                                 ("device:hapkit", 1, "touches a section of a model of any size")):
+                                 ("-1", 2, "neither a length"), ("device:none", 1, "none")):
             done = self.run_tool("build", "large.csv", "-o", "fit.blob", "--fit", fit)
             self.assertEqual(done.returncode, code, fit)
             self.assertIn(words, done.stderr)

@@ -97,8 +97,14 @@ class Poses(SharedFolder):
     def test_a_model_that_is_placed_beyond_reach_is_told(self):
         self.write("far.json", {"pose": flat(0, 0, 2)})
         done = self.run_tool("simulate", "sheet.blob", "--pose", "far.json", "--seconds", 1)
-        self.assertIn("warning: sheet.blob: premium does not reach all of the model where it is placed (move it",
-                      done.stderr)
+        warning = "warning: sheet.blob: premium does not reach all of the model where it is placed (move it"
+        self.assertIn(warning, done.stderr)
+        self.write("scene.json", {"bodies": [{"blob": "sheet.blob", "pose": "far.json"}]})
+        done = self.run_tool("simulate", "--scene", "scene.json", "--seconds", 1)
+        self.assertIn(warning, done.stderr)
+        self.write("scene.json", {"bodies": [{"blob": "sheet.blob", "pose": flat(0, 0, 2)}]})
+        done = self.run_tool("simulate", "--scene", "scene.json", "--seconds", 1)
+        self.assertNotIn("warning", done.stderr)
 
     def test_a_built_pose_is_touched_in_the_frame_of_the_device(self):
         self.write("edge.json", {"pose": moved(ON_ITS_EDGE, 0.1, 0, 0.02), "scale": 2})

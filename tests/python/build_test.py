@@ -153,7 +153,6 @@ class Arrays(Folder):
                 ((points,), {"outliers": 0.5}, "outliers: '0.5' is neither off nor a number of at least 1"),
                 ((points,), {"crop": [1, 1, 1, 0, 0, 0]}, "crop: requires"),
                 ((points,), {"flash_budget": 9, "spacing_m": 1}, "flash_budget: cannot be combined"),
-                ((points,), {"fit_device": "pantograph"}, "not possible for a device of one or two axes"),
                 ((points,), {"material": "stiffness=x"}, "stiffness")):
             with self.subTest(words=words), self.assertRaises(tactree.Error) as refused:
                 tactree.build(*arguments, **options)

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "fault_advice.hpp"
 #include "tactree/plant/linkage.hpp"
 #include "tactree/plant/linkage_shape.hpp"
 #include "tactree/plant/vectors.hpp"
@@ -30,7 +31,8 @@ json faults_json(core::FaultMask mask) {
   for (std::uint32_t code = 1; code < core::kFaultCodes; ++code) {
     const auto fault = static_cast<core::Fault>(code);
     if (core::has_fault(mask, fault)) {
-      faults.push_back({{"code", code}, {"name", core::name_of(fault)}});
+      faults.push_back(
+          {{"code", code}, {"name", core::name_of(fault)}, {"about", fault_advice(fault)}});
     }
   }
   return faults;
@@ -127,6 +129,7 @@ json run_json(const simulation::Sample& sample, const char* mode, const core::De
               {"in_contact", r.in_contact},
               {"slipping", r.slipping},
               {"strength", r.strength},
+              {"note", ""},
               {"tip_m", json::array({sample.tip_m.x(), sample.tip_m.y(), sample.tip_m.z()})},
               {"linkage", linkage_json(device, model_origin_m, sample.tip_m, joints)},
               {"candidates", json::array()}};

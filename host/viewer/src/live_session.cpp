@@ -11,6 +11,7 @@
 #include "contact_parameters.hpp"
 #include "hand_command.hpp"
 #include "live_run.hpp"
+#include "paper_note.hpp"
 #include "steered_hand.hpp"
 #include "tactree/core/safety/faults.hpp"
 #include "tactree/plant/vectors.hpp"
@@ -466,6 +467,9 @@ std::string LiveSession::frame() {
     json one = run_json(run->last(), name_of(c.mode), c.device, c.model_origin_m,
                         run->simulation().plant().joints(), bodies_, scratch_);
     one["strip"] = run->strip().take();
+    if (c.mode == core::RenderMode::kPaper) {
+      one["note"] = paper_note(run->last(), bodies_);
+    }
     runs.push_back(std::move(one));
   }
   const Eigen::Vector3d& hand = hand_->position_m();
@@ -475,7 +479,7 @@ std::string LiveSession::frame() {
   {
     const std::lock_guard lock(mutex_);
     settings = settings_json();
-    fit = {{"warning", fit_.warning},
+    fit = {{"warning", named_warning()},
            {"can_scale", fit_.is_oversize && static_cast<bool>(placing_.fit)}};
     if (placing_.renew) {
       place = place_json();

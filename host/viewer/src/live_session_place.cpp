@@ -37,10 +37,8 @@ LiveSession::Fit LiveSession::check_fit(const Settings& settings, const Pose& pl
   if (placing_.warning) {
     oversize = placing_.warning(used, wanted);
   }
-  const core::DeviceModel& model = used.preset.model;
-  const bool reaches_start =
-      core::axes_of(model.kind) != core::kAxes ||
-      simulation::reaches(model, start_of(placed) + plant::widen(origin_of(settings)));
+  const bool reaches_start = simulation::reaches_start(
+      used.preset.model, start_of(placed) + plant::widen(origin_of(settings)));
   Fit fit = {oversize.value_or(""), oversize.has_value()};
   if (!reaches_start) {
     fit.warning += fit.warning.empty() ? "" : "; ";
@@ -48,6 +46,11 @@ LiveSession::Fit LiveSession::check_fit(const Settings& settings, const Pose& pl
         used.name + " does not reach the start of the hand: the probe may begin in the object";
   }
   return fit;
+}
+
+std::string LiveSession::named_warning() const {
+  const std::string name = bodies_.views[0].header().name;
+  return fit_.warning.empty() ? "" : (name.empty() ? "model" : name) + ": " + fit_.warning;
 }
 
 std::string LiveSession::warning() const {

@@ -128,6 +128,20 @@ void resolve(cmark_node* document, const MarkdownTargets& targets) {
   }
 }
 
+/// The words of a paragraph or heading, on one line.
+std::string text_of(cmark_node* node) {
+  std::string text;
+  for (cmark_node* const part : nodes_of(node)) {
+    const cmark_node_type type = cmark_node_get_type(part);
+    if (type == CMARK_NODE_TEXT || type == CMARK_NODE_CODE) {
+      text += cmark_node_get_literal(part);
+    } else if (type == CMARK_NODE_SOFTBREAK || type == CMARK_NODE_LINEBREAK) {
+      text += ' ';
+    }
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string markdown_html(std::string_view markdown, const MarkdownTargets& targets) {
@@ -135,6 +149,23 @@ std::string markdown_html(std::string_view markdown, const MarkdownTargets& targ
   const Document document = parse(markdown, parser);
   resolve(document.get(), targets);
   return render(document.get(), cmark_parser_get_syntax_extensions(parser.get()));
+}
+
+std::string markdown_paragraph(std::string_view markdown, std::string_view heading) {
+  const Parser parser(cmark_parser_new(CMARK_OPT_DEFAULT));
+  const Document document = parse(markdown, parser);
+  bool is_below = heading.empty();
+  for (cmark_node* node = cmark_node_first_child(document.get()); node != nullptr;
+       node = cmark_node_next(node)) {
+    if (cmark_node_get_type(node) == CMARK_NODE_PARAGRAPH && is_below) {
+      return text_of(node);
+    }
+    if (cmark_node_get_type(node) == CMARK_NODE_HEADING &&
+        cmark_node_get_heading_level(node) == 2) {
+      is_below = text_of(node) == heading;
+    }
+  }
+  return "";
 }
 
 std::string escaped_html(std::string_view text) {

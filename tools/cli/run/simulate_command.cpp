@@ -11,6 +11,7 @@
 #include "run/simulate_options.hpp"
 #include "run/simulate_run.hpp"
 #include "run/simulate_setup.hpp"
+#include "tactree/builder/length_text.hpp"
 #include "tactree/setup/model_size.hpp"
 #include "tactree/setup/scene_file.hpp"
 #include "tactree/support/device_file.hpp"
@@ -19,29 +20,49 @@
 namespace tactree::cli {
 namespace {
 
-/// No warning for a model that --origin or a scene has placed: the user may want the device to
-/// reach only a part of it.
-std::optional<std::string> reach_warning(const SimulateOptions& options,
-                                         const setup::SceneFile& scene) {
-  if (!options.pose.empty()) {
-    return setup::misplaced_warning(options.blob, scene.files[0]->view().header(), options.device,
-                                    support::load_device(options.device).preset.model,
-                                    scene.bodies[0].path.first());
+/// "NAME: WARNING" for each body whose first pose, in the frame of the device, is beyond its reach.
+std::string misplaced(const SimulateOptions& options, const setup::SceneFile& scene) {
+  const core::DeviceModel device = support::load_device(options.device).preset.model;
+  std::string all;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const auto warning = setup::misplaced_warning(scene.files[i]->view(), options.device, device,
+                                                  scene.bodies[i].path.first());
+    if (warning) {
+      all += fmt::format("{}{}: {}", all.empty() ? "" : "; ", scene.names[i], *warning);
+    }
   }
-  if (is_scene(options) || !options.origin_m.empty()) {
-    return std::nullopt;
-  }
-  return setup::oversize_warning(options.blob, scene.files[0]->view().header(), options.device,
-                                 support::load_device(options.device).preset.model);
+  return all;
 }
 
-const char* remedy_for_no_contact(const SimulateOptions& options, bool oversize) {
+/// Empty for a model that --origin or a scene without a pose file has placed: the user may want the
+/// device to reach only a part of it.
+std::string reach_warning(const SimulateOptions& options, const setup::SceneFile& scene) {
+  if (scene.in_device_frame) {
+    return misplaced(options, scene);
+  }
+  if (is_scene(options) || !options.origin_m.empty()) {
+    return "";
+  }
+  const auto warning = setup::oversize_warning(scene.files[0]->view(), options.device,
+                                               support::load_device(options.device).preset.model);
+  return warning ? fmt::format("{}: {}", options.blob, *warning) : "";
+}
+
+std::string remedy_for_no_contact(const SimulateOptions& options, const core::BlobHeader& model,
+                                  bool oversize) {
   if (oversize) {
-    return "make the model smaller, as the warning says";
+    return "make the model smaller or move it, as the warning says";
   }
   if (options.panel) {
     return "home and arm the board by its button, e.g. --press 0.5s..1.7s --press 3s..4.2s, with "
            "--seconds to touch afterwards, or accept the run with --allow-no-contact";
+  }
+  if (options.mode == "paper") {
+    return fmt::format(
+        "the method of the paper finds a contact only within {} of a point, and a pressing hand "
+        "passes between and behind the points: use --mode surface, or accept the run with "
+        "--allow-no-contact",
+        builder::length_text(0.5 * static_cast<double>(model.aabb_edge_m), 2));
   }
   return "choose a --script, --path or --origin with which the hand meets its surface, or accept "
          "the run with --allow-no-contact";
@@ -75,9 +96,9 @@ void simulate(SimulateOptions& options, int& exit_code) {
     serve(options, scene);
     return;
   }
-  const std::optional<std::string> oversize = reach_warning(options, scene);
-  if (oversize) {
-    fmt::print(stderr, "tactree: warning: {}\n", *oversize);
+  const std::string beyond = reach_warning(options, scene);
+  if (!beyond.empty()) {
+    fmt::print(stderr, "tactree: warning: {}\n", beyond);
   }
   const Outcome outcome = run(options, scene);
   write_results(options, scene, outcome);
@@ -85,7 +106,7 @@ void simulate(SimulateOptions& options, int& exit_code) {
   exit_code = outcome.summary.faults.empty() ? kExitOk : kExitFailed;
   if (exit_code == kExitOk && outcome.summary.contact_ticks == 0 && !options.allow_no_contact) {
     refuse(fmt::format("{}: the probe never touched the model", options.blob),
-           remedy_for_no_contact(options, oversize.has_value()));
+           remedy_for_no_contact(options, scene.files[0]->view().header(), !beyond.empty()));
   }
 }
 

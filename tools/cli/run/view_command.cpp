@@ -204,9 +204,11 @@ class Simulated {
   Simulated(const ViewOptions& options, setup::SceneFile& scene)
       : scene_(scene),
         session_(noted_bodies_of(scene), devices(options.settings.device), options.settings,
-                 is_single(options, scene) ? placing() : viewer::Placing{}) {
+                 is_single(options, scene) ? placing()
+                 : scene.in_device_frame   ? viewer::Placing{reach_warning(), {}, {}}
+                                           : viewer::Placing{}) {
     if (!session_.warning().empty()) {
-      warn(session_.warning());
+      warn(scene.names[0] + ": " + session_.warning());
     } else if (is_single(options, scene)) {
       warn_of_size(scene);
     }
@@ -235,22 +237,24 @@ class Simulated {
   }
 
  private:
+  decltype(viewer::Placing::warning) reach_warning() {
+    return [this](const viewer::NamedDevice& device,
+                  const std::optional<simulation::Placement>& placement) {
+      const core::DeviceModel& model = device.preset.model;
+      return placement ? setup::misplaced_warning(shown(), device.name, model, placement->pose)
+                       : setup::oversize_warning(shown(), device.name, model);
+    };
+  }
   viewer::Placing placing() {
     return {
-        [this](const viewer::NamedDevice& device,
-               const std::optional<simulation::Placement>& placement) {
-          return placement ? setup::misplaced_warning(scene_.names[0], header(), device.name,
-                                                      device.preset.model, placement->pose)
-                           : setup::oversize_warning(scene_.names[0], header(), device.name,
-                                                     device.preset.model);
-        },
+        reach_warning(),
         [this](const simulation::Placement& wanted) { begin([this, wanted] { renew(wanted); }); },
         [this](const viewer::NamedDevice& device, const simulation::Placement& now) {
           begin([this, device, now] { fit(device, now); });
         }};
   }
-  /// Of the model as it is shown.
-  [[nodiscard]] const core::BlobHeader& header() const { return scene_.files[0]->view().header(); }
+  /// The model as it is shown.
+  [[nodiscard]] const core::BlobView& shown() const { return scene_.files[0]->view(); }
   /// As the user gave it: the size of a model does not depend on the sizes that it had before.
   [[nodiscard]] const support::BlobFile& given() const { return *scene_.blobs[0]; }
 

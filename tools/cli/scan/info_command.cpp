@@ -214,13 +214,14 @@ void print_signature(const std::string& file, const support::BlobFile& blob) {
 }
 
 /// Warning for the given device if it does not reach the model, else that for any device.
-std::optional<std::string> size_warning_of(const InfoOptions& options, const BlobHeader& model) {
-  std::optional<std::string> warning;
+std::optional<std::string> size_warning_of(const InfoOptions& options, const BlobView& model) {
   if (!options.device.empty()) {
-    warning = setup::oversize_warning(options.blob, model, options.device,
-                                      support::load_device(options.device).preset.model);
+    const core::DeviceModel device = support::load_device(options.device).preset.model;
+    if (const auto warning = setup::oversize_warning(model, options.device, device)) {
+      return options.blob + ": " + *warning;
+    }
   }
-  return warning ? warning : setup::size_warning(options.blob, model);
+  return setup::size_warning(options.blob, model.header());
 }
 
 void info(const InfoOptions& options) {
@@ -234,7 +235,7 @@ void info(const InfoOptions& options) {
   if (!options.board.empty()) {
     print_costs(blob.view().header(), options.board, options.device);
   }
-  const std::optional<std::string> warning = size_warning_of(options, blob.view().header());
+  const std::optional<std::string> warning = size_warning_of(options, blob.view());
   if (warning) {
     fmt::print(stderr, "tactree: warning: {}\n", *warning);
   }

@@ -126,8 +126,7 @@ void refuse_inactive(const std::string& device, const simulation::Setup& setup,
                      const simulation::Simulation& simulation) {
   const Eigen::Vector3d start =
       simulation.path().at(0.0).position_m + plant::widen(setup.controller.model_origin_m);
-  if (core::axes_of(setup.controller.device.kind) == core::kAxes &&
-      !simulation::reaches(setup.controller.device, start)) {
+  if (!simulation::reaches_start(setup.controller.device, start)) {
     throw support::UserError(fmt::format(
         "{0} does not reach the start of the hand, and the probe is in the object (scale "
         "the model with build --fit device:{0}, or begin the path within the workspace)",
@@ -159,12 +158,6 @@ nlohmann::json summary_json(const simulation::Summary& summary) {
 
 std::function<double(const Eigen::Vector3d&)> fit_to_device(const std::string& name) {
   const core::DeviceModel device = support::load_device(name).preset.model;
-  if (core::axes_of(device.kind) != core::kAxes) {
-    refuse("--fit device:" + name,
-           "not possible for a device of one or two axes, which touches a section of a "
-           "model of any size",
-           "give a length in metres");
-  }
   return [device, name](const Eigen::Vector3d& size) {
     const std::optional<double> scale = fitting_scale(device, size);
     if (!scale) {

@@ -7,13 +7,15 @@
 
 #include "tactree/core/device/kinematics.hpp"
 #include "tactree/plant/linkage.hpp"
+#include "tactree/plant/vectors.hpp"
 
 namespace tactree::simulation {
 namespace {
 
-constexpr double kMeets_m = 1e-5;   // maximum distance of the tip from a position that it reaches
-constexpr int kPerEdge = 5;         // points: 5^3 - 3^3 = 98 on the faces
-constexpr double kAccuracy = 1e-3;  // relative, of largest_scale()
+constexpr double kMeets_m = 1e-5;  // maximum distance of the tip from a position that it reaches
+constexpr double kNearStart_m = 5e-3;  // for devices whose probe moves in a plane or on an arc
+constexpr int kPerEdge = 5;            // points: 5^3 - 3^3 = 98 on the faces
+constexpr double kAccuracy = 1e-3;     // relative, of largest_scale()
 
 // Of reach_shape(): small against a workspace, so that the first border on the way is found.
 constexpr double kStep_m = 0.02;
@@ -51,13 +53,40 @@ double border_along(const core::DeviceModel& device, const Eigen::Vector3d& dire
   return low;
 }
 
+/// Position of the probe of a device of one or two axes at this height, and for a paddle at its own
+/// y. Empty if the height is beyond the paddle.
+std::optional<Eigen::Vector3d> place_on_path(const core::DeviceModel& device, double y, double z) {
+  const Eigen::Vector3d origin = plant::widen(device.origin_m);
+  if (device.kind == core::DeviceKind::kFiveBar) {
+    return Eigen::Vector3d(-origin.x(), y, z);
+  }
+  const auto length = static_cast<double>(device.paddle_m);
+  const double height = z + origin.z();
+  if (std::abs(height) > length) {
+    return std::nullopt;
+  }
+  return Eigen::Vector3d(std::sqrt(length * length - height * height) - origin.x(), -origin.y(), z);
+}
+
+/// Of a box whose top has its centre at the origin: the edges of the section of which the probe of
+/// a device of one or two axes moves in the plane.
+bool reaches_hanging_box(const core::DeviceModel& device, const Eigen::Vector3d& size_m) {
+  const std::vector<Eigen::Vector3d> points = face_points();
+  return std::all_of(points.begin(), points.end(), [&](const Eigen::Vector3d& point) {
+    const double y = 0.5 * point.y() * size_m.y();
+    const auto place = place_on_path(device, y, 0.5 * (point.z() - 1.0) * size_m.z());
+    return point.x() != 1.0 || (place && reaches(device, *place));
+  });
+}
+
 }  // namespace
 
-bool reaches(const core::DeviceModel& device, const Eigen::Vector3d& place_m) {
+bool comes_near(const core::DeviceModel& device, const Eigen::Vector3d& place_m,
+                double distance_m) {
   const plant::Linkage linkage(device);
   const Eigen::Vector3d joints = linkage.joints_near(place_m);
   const auto pose = linkage.pose(joints);
-  if (!pose || (pose->tip_m - place_m).norm() > kMeets_m) {
+  if (!pose || (pose->tip_m - place_m).norm() > distance_m) {
     return false;
   }
   const Eigen::Vector3f q = joints.cast<float>();
@@ -65,15 +94,23 @@ bool reaches(const core::DeviceModel& device, const Eigen::Vector3d& place_m) {
   return found.valid && found.reach == 1.0F;
 }
 
+bool reaches(const core::DeviceModel& device, const Eigen::Vector3d& place_m) {
+  return comes_near(device, place_m, kMeets_m);
+}
+
+bool reaches_start(const core::DeviceModel& device, const Eigen::Vector3d& start_m) {
+  return comes_near(device, start_m,
+                    core::axes_of(device.kind) == core::kAxes ? kMeets_m : kNearStart_m);
+}
+
 bool reaches_box(const core::DeviceModel& device, const Eigen::Vector3d& size_m) {
-  return reaches_box(device, Eigen::Isometry3d::Identity(), size_m);
+  return core::axes_of(device.kind) == core::kAxes
+             ? reaches_box(device, Eigen::Isometry3d::Identity(), size_m)
+             : reaches_hanging_box(device, size_m);
 }
 
 bool reaches_box(const core::DeviceModel& device, const Eigen::Isometry3d& pose,
                  const Eigen::Vector3d& size_m) {
-  if (core::axes_of(device.kind) != core::kAxes) {
-    return true;
-  }
   const std::vector<Eigen::Vector3d> points = face_points();
   return std::all_of(points.begin(), points.end(), [&](const Eigen::Vector3d& point) {
     return reaches(device, pose * (0.5 * point.cwiseProduct(size_m)));
@@ -83,7 +120,7 @@ bool reaches_box(const core::DeviceModel& device, const Eigen::Isometry3d& pose,
 std::optional<double> largest_scale(const core::DeviceModel& device,
                                     const Eigen::Vector3d& size_m) {
   const double edge = size_m.maxCoeff();
-  if (core::axes_of(device.kind) != core::kAxes || !(edge > 0.0)) {
+  if (!(edge > 0.0)) {
     return std::nullopt;
   }
   const auto fits = [&](double scale) { return reaches_box(device, scale * size_m); };

@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <string>
+
+#include "fault_advice.hpp"
 #include "tactree/core/safety/faults.hpp"
 #include "tactree/viewer/site.hpp"
 
@@ -65,6 +69,24 @@ TEST(FaultPages, CoverEveryFaultAndLimit) {
   for (std::uint32_t bit = 0; bit < core::kLimits; ++bit) {
     EXPECT_TRUE(has(std::string("limit-") + core::name_of(static_cast<core::Limit>(1U << bit))));
   }
+}
+
+TEST(FaultAdvice, NamesCauseAndRemedyOfEveryFault) {
+  for (std::uint32_t code = 1; code < core::kFaultCodes; ++code) {
+    const std::string& advice = viewer::fault_advice(static_cast<core::Fault>(code));
+    EXPECT_GT(advice.size(), 40U) << code;
+    EXPECT_EQ(std::count(advice.begin(), advice.end(), '.') > 1, true) << advice;
+    EXPECT_EQ(advice.find_first_of("`*#\n"), std::string::npos) << advice;
+  }
+  EXPECT_EQ(viewer::fault_advice(core::Fault::kNone), "");
+  EXPECT_EQ(
+      viewer::fault_advice(core::Fault::kSupply),
+      "The supply voltage of the amplifiers left the range supply_min_V .. supply_max_V while "
+      "the device was armed or active. Add capacitance or a brake resistor, or lower "
+      "force_max_N.");
+  const std::string& lost = viewer::fault_advice(core::Fault::kLinkLost);
+  EXPECT_TRUE(contains(lost, "On a busy computer")) << lost;
+  EXPECT_TRUE(contains(lost, "--link-timeout")) << lost;
 }
 
 }  // namespace

@@ -121,6 +121,8 @@ TEST_F(LiveSessionTest, ClearsFaultOnceCauseEnds) {
   say({{"do", "inject"}, {"fault", "estop:pressed"}});
   const json frame = wait_for_state("fault");
   EXPECT_EQ(frame["runs"][0]["faults"][0]["name"], "emergency-stop");
+  EXPECT_TRUE(frame["runs"][0]["faults"][0]["about"].get<std::string>().starts_with(
+      "The emergency stop input is open. Make the area safe"));
   say({{"do", "clear_injections"}});
   say({{"do", "clear"}});
   wait_for_state("idle");
@@ -399,7 +401,7 @@ TEST_F(LiveSessionTest, ReportsAndScalesUnreachableModel) {
   EXPECT_TRUE(session.command({{"do", "fit"}}));
   EXPECT_FALSE(session.command({{"do", "set"}, {"device", "falcon"}, {"restart", true}}));
   const json fit = json::parse(session.step())["fit"];
-  EXPECT_TRUE(fit["warning"].get<std::string>().starts_with("too large")) << fit;
+  EXPECT_TRUE(fit["warning"].get<std::string>().starts_with("model: too large")) << fit;
   EXPECT_TRUE(fit["can_scale"]);
   EXPECT_EQ(session.settings().device, "falcon");
   EXPECT_FALSE(session.command({{"do", "fit"}}));

@@ -46,8 +46,9 @@ struct Bodies {
   std::vector<std::string> notes = {};  ///< about each model, for the page; may be shorter
 };
 
-/// A tick of one controller. `joints` are the joint positions of the device; if empty, they are
-/// computed from the tip. `scratch` is working memory.
+/// A tick of one controller. "about" of a fault states its cause and remedy, "note" why there is no
+/// force although the controller is active; usually empty. `joints` are the joint positions of the
+/// device; if empty, they are computed from the tip. `scratch` is working memory.
 [[nodiscard]] nlohmann::json run_json(const simulation::Sample& sample, const char* mode,
                                       const core::DeviceModel& device,
                                       const core::Vec3& model_origin_m,

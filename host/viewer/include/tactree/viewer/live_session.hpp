@@ -23,8 +23,9 @@
 //                           The session continues, unless the scale changes: this begins a new
 //                           session and is refused without "restart"
 //   {"do": "fit"}          scales and moves the model to the workspace of the device: see Placing
-// Frames contain the text for a model that does not fit: {"fit": {"warning": ..., "can_scale":
-// false}}; "" if there is none. If the model can be placed, they contain its place: {"place":
+// Frames contain the text for a model that does not fit, after its name: {"fit": {"warning": ...,
+// "can_scale": false}}; "" if there is none. If the model can be placed, they contain its place:
+// {"place":
 // {"pose": [16 numbers], "scale": 1, "origin_m": [x, y, z], "hand_start_m": [x, y, z]}}. The origin
 // is that of the model frame in the device frame.
 // If a command has no visible result, later frames contain a notice with the cause:
@@ -102,7 +103,8 @@ class LiveSession : public Source {
   /// Shows a text on the pages. May be called from any thread, as settings() and warning().
   void report(const std::string& text);
   [[nodiscard]] Settings settings() const;
-  /// States that the device does not reach the model or the start of the hand; empty if it does.
+  /// States that the device does not reach the first model or the start of the hand; empty if it
+  /// does.
   [[nodiscard]] std::string warning() const;
 
   [[nodiscard]] std::string hello() const override;
@@ -128,6 +130,8 @@ class LiveSession : public Source {
     std::string warning;
     bool is_oversize = false;
   };
+  /// Of fit_, beginning with the name of the first model, as on the page its notes do.
+  [[nodiscard]] std::string named_warning() const;
   [[nodiscard]] Fit check_fit(const Settings& settings, const Pose& placed) const;
   [[nodiscard]] simulation::Placement placement(const Settings& settings, const Pose& placed) const;
   [[nodiscard]] nlohmann::json place_json() const;

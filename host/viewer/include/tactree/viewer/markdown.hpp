@@ -20,6 +20,10 @@ struct MarkdownTargets {
 /// The body of a page.
 [[nodiscard]] std::string markdown_html(std::string_view markdown, const MarkdownTargets& targets);
 
+/// The text, without markup, of the first paragraph below the heading of the second level; of the
+/// document if `heading` is empty. Empty if there is none.
+[[nodiscard]] std::string markdown_paragraph(std::string_view markdown, std::string_view heading);
+
 /// A text as HTML shows it, also within an attribute.
 [[nodiscard]] std::string escaped_html(std::string_view text);
 

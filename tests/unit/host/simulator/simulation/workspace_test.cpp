@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
 
 #include "print_preset.hpp"
@@ -18,13 +19,14 @@ TEST_P(LargestBox, IsReachableAndMaximal) {
   const core::DeviceModel& device = GetParam().model;
   const Vector3d size(0.05, 0.03, 0.04);
   const std::optional<double> scale = largest_scale(device, size);
-  if (core::axes_of(device.kind) != core::kAxes) {
-    EXPECT_FALSE(scale);
-    return;
-  }
   ASSERT_TRUE(scale);
   EXPECT_GT(*scale * size.x(), 0.02);
   EXPECT_LT(*scale * size.x(), 2.0);
+  EXPECT_TRUE(reaches_box(device, *scale * size));
+  EXPECT_FALSE(reaches_box(device, 1.01 * *scale * size));
+  if (core::axes_of(device.kind) != core::kAxes) {
+    return;  // a section of the box, below the origin
+  }
   bool all = true;
   bool all_of_larger = true;
   for (unsigned corner = 0; corner < 8U; ++corner) {
@@ -67,6 +69,33 @@ TEST(Workspace, HoldsBoxWhereItIsPlaced) {
   EXPECT_TRUE(reaches_box(device, pose, size));
   pose.translation().y() = -0.05;
   EXPECT_FALSE(reaches_box(device, pose, size));
+}
+
+TEST(Workspace, BoxHangsFromOriginOfPlanarDevice) {
+  const core::DeviceModel device = core::presets::pantograph().model;
+  const Vector3d section = *largest_scale(device, {1e3, 1.0, 1.0}) * Vector3d(0.0, 1.0, 1.0);
+  for (const double side : {-0.5, 0.5}) {
+    EXPECT_TRUE(reaches(device, {0.0, side * section.y(), 0.0}));
+    EXPECT_TRUE(reaches(device, {0.0, side * section.y(), -section.z()}));
+    EXPECT_FALSE(reaches(device, {0.0, 0.55 * side * section.y() / 0.5, -1.1 * section.z()}));
+  }
+}
+
+TEST(Workspace, PaddleReachesHeights) {
+  const core::DeviceModel device = core::presets::hapkit().model;  // 0.6 rad to either side
+  const double lowest_m = 0.07 * std::sin(0.6);
+  EXPECT_TRUE(reaches_box(device, {9.0, 9.0, 0.99 * lowest_m}));
+  EXPECT_FALSE(reaches_box(device, {0.0, 0.0, 1.01 * lowest_m}));
+  EXPECT_FALSE(reaches_box(device, {0.0, 0.0, 1.0}));
+}
+
+TEST(Workspace, StartMayBeBesideArc) {
+  const core::DeviceModel device = core::presets::hapkit().model;
+  EXPECT_FALSE(reaches(device, {0.0, 0.0, 0.01}));
+  EXPECT_TRUE(reaches_start(device, {0.0, 0.0, 0.01}));
+  EXPECT_FALSE(reaches_start(device, {0.0, -0.02, 0.01}));
+  EXPECT_FALSE(reaches_start(device, {0.0, 0.0, 0.05}));
+  EXPECT_FALSE(reaches_start(cartesian().model, {0.495, 0.0, 0.0}));
 }
 
 TEST(Workspace, ShapeIsBorderOfReach) {

@@ -57,8 +57,7 @@ void check_start(const std::string& file, const core::BlobView& view,
 [[nodiscard]] nlohmann::json summary_json(const simulation::Summary& summary);
 
 /// Longest edge of a model that fits the device, for BuildOptions::fit_edge_m. `device` is the name
-/// of a preset, or a file. Throws UserError for a device that cannot be read or has fewer than
-/// three axes.
+/// of a preset, or a file. Throws UserError for a device that cannot be read.
 [[nodiscard]] std::function<double(const Eigen::Vector3d& size_m)> fit_to_device(
     const std::string& device);
 
