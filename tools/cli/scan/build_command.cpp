@@ -270,7 +270,10 @@ void add_frame_options(CLI::App& verb, BuildArguments& arguments) {
   verb.add_flag("--center,--centre", build.centre,
                 "move the origin to the centre of the bounding box")
       ->group(kGroup);
-  verb.add_option("--axis", build.up, "axis of the file that points up; it becomes z")
+  verb.add_option(
+          "--axis", build.up,
+          "axis of the file that points up; it becomes z. With y, z becomes x, the front, and x "
+          "becomes y")
       ->transform(CLI::CheckedTransformer(builder::axis_names()).description("x|y|z"))
       ->default_str("z")
       ->group(kGroup);
