@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "choice.hpp"
 #include "collection/build_collection.hpp"
 #include "collection/digest.hpp"
 #include "commands.hpp"
@@ -258,7 +259,7 @@ void add_frame_options(CLI::App& verb, BuildArguments& arguments) {
   verb.add_option("--unit", build.unit_m,
                   "unit of the coordinates: m, cm, mm, um, in, ft (default: as the file states, "
                   "else m)")
-      ->transform(CLI::CheckedTransformer(builder::unit_names()).description("m|cm|mm|um|in|ft"))
+      ->transform(choice(builder::unit_names(), "m|cm|mm|um|in|ft"))
       ->group(kGroup);
   CLI::Option* scale =
       verb.add_option("--scale", build.scale, "additional scale factor")->group(kGroup);
@@ -274,7 +275,7 @@ void add_frame_options(CLI::App& verb, BuildArguments& arguments) {
           "--axis", build.up,
           "axis of the file that points up; it becomes z. With y, z becomes x, the front, and x "
           "becomes y")
-      ->transform(CLI::CheckedTransformer(builder::axis_names()).description("x|y|z"))
+      ->transform(choice(builder::axis_names(), "x|y|z"))
       ->default_str("z")
       ->group(kGroup);
   verb.add_option("--turn", build.turn_deg,
@@ -322,7 +323,7 @@ void add_quality_options(CLI::App& verb, BuildArguments& arguments) {
                   "device for --rate, by name or file (default: the kind with the longest tick)")
       ->group(kGroup);
   verb.add_option("--profile", build.profile, "surface: fitted surface; paper: method of the paper")
-      ->transform(CLI::CheckedTransformer(builder::profile_names()).description("surface|paper"))
+      ->transform(choice(builder::profile_names(), "surface|paper"))
       ->default_str("surface")
       ->group(kGroup);
   verb.add_option("--material", arguments.material,
@@ -350,8 +351,7 @@ void add_surface_options(CLI::App& verb, BuildArguments& arguments) {
                   "side of the surface that is outside: outward: away from the body; viewpoint: "
                   "towards the scanner; up: towards +z; given: as the file says, unchecked; auto: "
                   "by viewpoints if there are any, else outward, and sheets up")
-      ->transform(CLI::CheckedTransformer(builder::orientation_names())
-                      .description("auto|outward|viewpoint|up|given"))
+      ->transform(choice(builder::orientation_names(), "auto|outward|viewpoint|up|given"))
       ->default_str("auto")
       ->group(kGroup);
   verb.add_option("--viewpoint", arguments.viewpoints,
@@ -420,7 +420,7 @@ void add_build_command(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(0, 1024));
   verb->add_option("--progress", arguments->progress,
                    "progress on standard error: one line, lines, JSON, none")
-      ->transform(CLI::CheckedTransformer(kProgressStyles).description("auto|plain|json|off"))
+      ->transform(choice(kProgressStyles, "auto|plain|json|off"))
       ->default_str("auto");
   verb->add_flag("--verbose", arguments->verbose,
                  "also print time, CPU time, points and peak memory of each step");
