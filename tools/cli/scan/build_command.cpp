@@ -20,6 +20,7 @@
 #include "scan/build_report.hpp"
 #include "scan/fit_option.hpp"
 #include "scan/preview.hpp"
+#include "scan/reading_options.hpp"
 #include "tactree/builder/build_model.hpp"
 #include "tactree/builder/option_names.hpp"
 #include "tactree/builder/read_materials.hpp"
@@ -157,13 +158,7 @@ void complete(BuildArguments& arguments) {
   if (std::count(arguments.inputs.begin(), arguments.inputs.end(), support::kStandardInput) > 1) {
     misuse("INPUT", "'-' (standard input) can be given only once");
   }
-  if (!arguments.columns.empty()) {
-    try {
-      build.columns = builder::parse_columns(arguments.columns);
-    } catch (const std::invalid_argument& error) {
-      misuse("--columns", error.what());
-    }
-  }
+  build.columns = columns_of(arguments.columns);
   if (arguments.fit) {
     set_fit(*arguments.fit, build);
   }
@@ -400,15 +395,11 @@ void add_build_command(CLI::App& app, int& exit_code) {
   verb->add_option("INPUT", arguments->inputs,
                    "PLY, PCD, PTX, E57, LAS, XYZ/PTS/CSV, OBJ, STL, OFF, glTF, 3MF, ...; "
                    "recognised by content. -: standard input, copied to a file in TMPDIR first");
-  verb->add_option("--format", arguments->build.format,
-                   "format of the inputs, if it cannot be recognised by their content")
-      ->check(CLI::IsMember(builder::scan_formats(), CLI::ignore_case));
+  add_format_option(*verb, arguments->build.format);
   verb->add_option("-o,--output", arguments->output,
                    "blob to write; with --collection the folder of the blobs")
       ->required();
-  verb->add_option("--columns", arguments->columns,
-                   "columns of text files, from 1: x=2,y=3,z=4, also nx, ny, nz, red, green, blue "
-                   "(default: by their names, or by their numbers)");
+  add_columns_option(*verb, arguments->columns);
   add_frame_options(*verb, *arguments);
   add_quality_options(*verb, *arguments);
   add_surface_options(*verb, *arguments);
