@@ -170,7 +170,7 @@ class ServedCommands(InAFolder):
 
     def test_serves_every_page(self):
         lines = [line for block in blocks("console") if "--serve" not in block for line in prompt_lines(block)]
-        self.assertEqual(len(lines), 6)
+        self.assertEqual(len(lines), 5)
         for line in lines:
             self.shows_page(line)
 
