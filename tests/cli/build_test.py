@@ -93,9 +93,9 @@ class Turn(Folder):
 
     def test_turns_about_vertical_after_axis(self):
         self.assertEqual(self.middle("--turn", "90"), [0, 0, 0.1])
-        self.assertEqual(self.middle("--axis", "y"), [0, -0.1, 0])
-        self.assertEqual(self.middle("--axis", "y", "--turn", "90"), [0.1, 0, 0])
-        self.assertEqual(self.middle("--axis", "y", "--turn", "-30"), [-0.05, -0.09, 0])
+        self.assertEqual(self.middle("--axis", "y"), [0.1, 0, 0])
+        self.assertEqual(self.middle("--axis", "y", "--turn", "90"), [0, 0.1, 0])
+        self.assertEqual(self.middle("--axis", "y", "--turn", "-30"), [0.09, -0.05, 0])
         report = self.read("r.json")
         self.assertEqual((report["axis"], report["turn_deg"]), ("y", -30))
 

@@ -112,6 +112,22 @@ class Scan(SharedFolder):
         for radius in re.findall(r'<circle [^>]* r="([\d.]+)"', holed):
             self.assertAlmostEqual(2 * float(radius), width / 60 * 290, delta=3)
 
+    def test_reports_as_build_does(self):
+        """A ball beside the origin, open at its lowest y, in unusual columns."""
+        rows = [(0.1 + p[0], 0.05 + p[1], 0.02 + p[2], *n) for p, n in ball(20000, 0.03) if p[1] > -0.03 * math.cos(0.7)]
+        self.write("odd.txt", "".join(f"{i} {z} {y} {x} {nx} {ny} {nz}\n" for i, (x, y, z, nx, ny, nz)
+                                      in enumerate(rows)))
+        columns = ("--columns", "z=2,y=3,x=4,nx=5,ny=6,nz=7", "--format", "txt")
+        self.run_tool("build", "odd.txt", "-o", "odd.blob", "--report", "built.json", *columns, check=True)
+        done = self.run_tool("evaluate", "--quick", "--scan", "odd.txt", "--json", "odd.json", *columns)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        built, scan = self.read("built.json"), self.read("odd.json")["scans"]["odd.txt"]
+        for shown, expected in zip(scan["openings"][0]["centre_m"], built["openings"][0]["centre_m"], strict=True):
+            self.assertAlmostEqual(shown, expected, delta=2e-3)
+        (lying,) = (note for note in built["notes"] if "on its side" in note)
+        self.assertIn("Note: " + lying, done.stdout)
+        self.assertIn(lying, scan["notes"])
+
     def test_slides_show_roughness(self):
         even = list(ball(20000, 0.03))
         self.write("even.csv", csv(even))

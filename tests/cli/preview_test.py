@@ -148,6 +148,12 @@ class Preview(SharedFolder):
         points = struct.unpack("<I", header[12:16])[0]
         self.assertEqual(len(header), 80 + 3 * points)
 
+    def test_build_names_option_for_colours(self):
+        line = "colours   the scan has some: --colours FILE keeps them"
+        self.assertIn(line, self.painted().stdout)
+        self.assertNotIn(line, self.painted("--colours", "painted.colours").stdout)
+        self.assertNotIn(line, self.build(0.0).stdout)
+
     def test_refuses_foreign_and_damaged_colours(self):
         self.assertEqual(self.painted("--colours", "painted.colours").returncode, 0)
         self.assertEqual(self.build(0.0).returncode, 0)

@@ -29,6 +29,28 @@ class Usage(unittest.TestCase):
         self.assertIn("'-1' is not a number from 0 upwards",
                       self.refused("query", "model.blob", "--points", "-", "--radius=-1"))
 
+    def test_quotes_unknown_names(self):
+        for option, expected in (("--axis", "x, y or z"), ("--unit", "m, cm, mm, um, in or ft"),
+                                 ("--profile", "surface or paper"), ("--progress", "auto, plain, json or off"),
+                                 ("--orient", "auto, outward, viewpoint, up or given")):
+            error = self.refused("build", "two.ply", "-o", "x.blob", option, "w")
+            self.assertIn(f"{option}: 'w' is not {expected}\n", error)
+            self.assertNotIn("\0", error)
+
+    def test_help_lists_names(self):
+        text = " ".join(self.help_of("build").split())
+        for option, names in (("--axis", "x|y|z"), ("--orient", "auto|outward|viewpoint|up|given"),
+                              ("--progress", "auto|plain|json|off")):
+            self.assertIn(f"{option} {names}", text.replace(" TEXT:", " ").replace(" ENUM:", " "))
+
+    def test_quotes_what_is_no_number(self):
+        for verb, value, error in (
+                (("build", "two.ply", "-o", "x"), "--turn=abc", "--turn: 'abc' is not a number\n"),
+                (("build", "two.ply", "-o", "x"), "--min-piece=1.5", "--min-piece: '1.5' is not a whole number\n"),
+                (("build", "two.ply", "-o", "x"), "--crop=1,2,x,4,5,6", "--crop: '1,2,x,4,5,6' is not a number\n"),
+                (("evaluate",), "--seed=x", "--seed: 'x' is not a whole number\n")):
+            self.assertIn(error, self.refused(*verb, value))
+
     def test_help_names_all_port_kinds(self):
         ports = "a serial port, usb:SERIAL, unix:PATH (of tactree-controller or tactree serve), or the one that tactree "\
             "simulate --serve prints (with --lock-step: step:PATH)"

@@ -1,6 +1,6 @@
 """The commands of README.md and docs/COMMANDS.md work: all of them in order, in one folder, with the files they show.
 
-usage: commands_test.py TACTREE PAGE... CLASS      CLASS: Commands or ServedCommands
+usage: commands_test.py TACTREE PAGE... CLASS      CLASS: Commands, LargeScan or ServedCommands
 """
 import json
 import math
@@ -37,6 +37,27 @@ def ball(radius, spacing=1e-3):
     return "\n".join(rows) + "\n"
 
 
+def figure(height, across=1500):
+    """A coloured half spindle that stands on its flat, lowest y, with `across` points on its base."""
+    rows = []
+    add = rows.append
+    golden = math.pi * (3 - math.sqrt(5))
+    radius = height / 3
+    for i in range(across):
+        r = radius * math.sqrt((i + 0.5) / across)
+        add((r * math.cos(i * golden), 0.0, r * math.sin(i * golden), 0, -1, 0))
+    for i in range(6 * across):
+        y = (i + 0.5) / (6 * across)
+        r = math.sqrt(1 - y * y)
+        n = (r * math.cos(i * golden) / radius, y / height, r * math.sin(i * golden) / radius)
+        add((radius * r * math.cos(i * golden), height * y, radius * r * math.sin(i * golden),
+             *(c / math.hypot(*n) for c in n)))
+    names = [f"property float {name}" for name in ("x", "y", "z", "nx", "ny", "nz")]
+    names += [f"property uchar {name}" for name in ("red", "green", "blue")]
+    lines = [" ".join(f"{v:.8g}" for v in row) + (" 250 10 5" if row[2] > 0 else " 120 120 120") for row in rows]
+    return "\n".join(["ply", "format ascii 1.0", f"element vertex {len(rows)}", *names, "end_header", *lines]) + "\n"
+
+
 def blocks(language):
     return re.findall(rf"```{language}\n(.*?)```", TEXT, re.DOTALL)
 
@@ -46,18 +67,28 @@ def prompt_lines(block):
 
 
 class InAFolder(unittest.TestCase):
+    scans = staticmethod(lambda: {name: ball(radius) for name, radius in SCANS.items()})
+
     @classmethod
     def setUpClass(cls):
         folder = tempfile.TemporaryDirectory()
         cls.addClassCleanup(folder.cleanup)
         cls.path = pathlib.Path(folder.name)
-        for name, radius in SCANS.items():
-            (cls.path / name).write_text(ball(radius))
+        for name, content in cls.scans().items():
+            (cls.path / name).write_text(content)
         for name, content in re.findall(r"`([\w.]+)`(?: [^`:]*)?:\n\n```(?:json|csv)\n(.*?)```", TEXT, re.DOTALL):
             (cls.path / name).write_text(content)
-        (cls.path / "bin").mkdir()
-        (cls.path / "bin" / "tactree").symlink_to(TACTREE)
-        cls.environment = {**os.environ, "PATH": f"{cls.path / 'bin'}:{os.environ['PATH']}"}
+        cls.environment = {**os.environ, "PATH": cls.path_of_reader()}
+
+    @classmethod
+    def path_of_reader(cls):
+        """As the README sets it in the folder of the project, whose build may have another name here."""
+        (line,) = re.findall(r"^export PATH=.*$", TEXT, re.MULTILINE)
+        project = cls.path / "project"
+        (project / "build").mkdir(parents=True)
+        (project / "build" / "host-gcc").symlink_to(TACTREE.parents[2])
+        return subprocess.run(["bash", "-c", f'{line}; printf %s "$PATH"'], cwd=project, capture_output=True, text=True,
+                              check=True).stdout
 
     @classmethod
     def run_line(cls, line):
@@ -91,6 +122,11 @@ class Commands(InAFolder):
         self.assertGreater(bodies[0]["contact_ticks"], 0)
         self.assertGreater(self.read("evaluation.json")["scans"]["statue.ply"]["slides"]["ticks"], 1000)
         self.assertEqual(len((self.path / "answers.csv").read_text().splitlines()), 3)
+
+
+class LargeScan(Commands):
+    """Of a metre, with y up: the commands suit any size."""
+    scans = staticmethod(lambda: {"statue.ply": figure(1.6), "lid.ply": figure(0.5)})
 
 
 class ServedCommands(InAFolder):

@@ -32,6 +32,30 @@ std::string unknown_verb(const CLI::App& app, const std::string& word) {
                      nearest.empty() ? "" : "did you mean '" + nearest + "'? ");
 }
 
+/// The kind of number that an option takes; any kind if the option is unknown.
+std::string number_kind(const CLI::App& app, const std::string& option) {
+  for (const CLI::App* verb : app.get_subcommands()) {
+    const CLI::Option* found = verb->get_option_no_throw(option);
+    if (found != nullptr && found->get_type_name().find("INT") != std::string::npos) {
+      return "a whole number";
+    }
+  }
+  return "a number";
+}
+
+/// States which value is no number. CLI11 only says "Could not convert: --turn = x".
+std::string not_a_number(const CLI::App& app, const CLI::ConversionError& error) {
+  const std::string message = error.what();
+  const std::size_t name = message.find(": ");
+  const std::size_t value = message.find(" = ");
+  if (name == std::string::npos || value == std::string::npos) {
+    return message;
+  }
+  const std::string option = message.substr(name + 2, value - name - 2);
+  return fmt::format("{}: '{}' is not {}", option, message.substr(value + 3),
+                     number_kind(app, option));
+}
+
 int run(int argc, char** argv) {
   // If the signal is ignored, a write beyond the limit on file sizes fails with a message and
   // leaves no temporary file.
@@ -68,6 +92,9 @@ int run(int argc, char** argv) {
   }
   try {
     app.parse(argc, argv);
+  } catch (const CLI::ConversionError& error) {
+    app.exit(CLI::ConversionError(not_a_number(app, error)));
+    return kExitUsage;
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kExitOk : kExitUsage;
   } catch (const std::bad_alloc&) {

@@ -103,7 +103,7 @@ class Pipeline {
   // Only if the shape indicates an axis and the user has not stated which axis points up. In the
   // axes of the file, to which --axis refers.
   void hint_at_axis() {
-    if (options_.up || report_.backed_share < kBodyShare) {
+    if (options_.up) {
       return;
     }
     Eigen::Matrix3d back = turn_about_z(-options_.turn_deg);
@@ -113,15 +113,19 @@ class Pipeline {
     const bool is_turned = options_.turn_deg != 0.0 || options_.pose;
     std::vector<Eigen::Vector3d> positions = model_.positions;
     std::vector<Eigen::Vector3f> normals = model_.normals;
+    std::vector<Opening> openings = report_.openings;
     for (std::size_t i = 0; i < positions.size() && is_turned; ++i) {
       positions[i] = back * positions[i];
       normals[i] = back.cast<float>() * normals[i];
     }
-    const std::optional<FlatBase> base = flat_base(positions, normals, model_.spacing_m);
-    if (base && base->up != UpAxis::kZ) {
-      const char axis = letter_of(base->up);
-      report_.notes.push_back(fmt::format("{} (--axis {} turns it; --axis z keeps it as it is)",
-                                          describe_lying(*base), axis));
+    for (std::size_t i = 0; i < openings.size() && is_turned; ++i) {
+      openings[i].centre = back * openings[i].centre;
+    }
+    const auto posture = lying_posture(positions, normals, openings, model_.spacing_m,
+                                       report_.backed_share < kBodyShare);
+    if (posture) {
+      report_.notes.push_back(fmt::format("{} ({}; --axis z keeps it as it is)",
+                                          describe_lying(*posture), describe_turn(*posture)));
     }
   }
 

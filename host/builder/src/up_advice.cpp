@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "tactree/builder/openings.hpp"
 #include "tactree/core/model/interior.hpp"
 #include "up_hint.hpp"
 
@@ -21,16 +22,14 @@ std::optional<std::string> up_advice(const core::BlobView& view) {
     backed += index == leaf.first_point && core::interior_at(view, p).behind ? leaf.point_count : 0;
   });
   const auto least = kBodyShare * static_cast<double>(positions.size());
-  if (positions.empty() || static_cast<double>(backed) < least) {
-    return std::nullopt;
-  }
-  const std::optional<FlatBase> base =
-      flat_base(positions, normals, static_cast<double>(view.header().spacing_m));
-  if (!base || base->up == UpAxis::kZ) {
+  const auto posture = lying_posture(positions, normals, find_openings(view),
+                                     static_cast<double>(view.header().spacing_m),
+                                     static_cast<double>(backed) < least);
+  if (!posture || posture->evidence == UpEvidence::kLongest) {
     return std::nullopt;
   }
   return fmt::format("{} (build --axis {} turns a model that was built without --axis)",
-                     describe_lying(*base), letter_of(base->up));
+                     describe_lying(*posture), letter_of(posture->up));
 }
 
 }  // namespace tactree::builder

@@ -41,7 +41,7 @@ void evaluate_shapes(const Options& options, builder::Progress& progress, Result
 void evaluate_scans(const Options& options, builder::Progress& progress, Result& result) {
   for (const std::filesystem::path& scan : options.scans) {
     progress.begin("scan: " + scan.filename().string());
-    result.scans.push_back(score_scan(scan, options.quick ? 500 : 5000, options.seed));
+    result.scans.push_back(score_scan(scan, options));
   }
 }
 

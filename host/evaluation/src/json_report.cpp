@@ -145,6 +145,7 @@ Json scans(const Result& result) {
                             {"components", scan.pieces}};
     entry["openings"] = openings(scan);
     entry["slides"] = slides(scan.slides);
+    entry["notes"] = scan.notes;
     entry["warnings"] = scan.warnings;
     entry["spacing_m"] = scan.spacing_m;
     json[scan.name] = scan.error.empty() ? entry : Json{{"error", scan.error}};

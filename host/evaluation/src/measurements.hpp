@@ -33,14 +33,13 @@ struct Effort {
 /// The force along the subject's first path in both modes.
 [[nodiscard]] ForceTrace trace_force(const Subject& subject);
 
-/// Builds the scan with the defaults of `tactree build` and compares `probes` results, within a
+/// Builds the scan with the defaults of `tactree build` and compares many results, within a
 /// spacing of the surface, with ReferenceSurface:
 ///   distance_rms_m, distance_max_m, normal_rms_deg, normal_max_deg, depth_rms_m  everywhere
 ///   smooth_...                             these scores away from creases
 ///   creased                                fraction of the compared probes near a crease
 ///   answered                               fraction of the probes with a result
-[[nodiscard]] ScanResult score_scan(const std::filesystem::path& file, int probes,
-                                    std::uint32_t seed);
+[[nodiscard]] ScanResult score_scan(const std::filesystem::path& file, const Options& options);
 
 // The paper's experiments on the surface z = cos x + cos y over half a metre.
 

@@ -79,6 +79,9 @@ std::string scan_report(const Result& result) {
         slides_text(scan.slides), 100.0 * scan.scores.get("answered"),
         length_text(scan.scores.get("smooth_distance_rms_m"), 3),
         scan.scores.get("smooth_normal_rms_deg"));
+    for (const std::string& note : scan.notes) {
+      page += "\nNote: " + note + "\n";
+    }
     for (const std::string& warning : scan.warnings) {
       page += "\nWarning: " + warning + "\n";
     }

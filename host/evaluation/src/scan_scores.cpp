@@ -70,14 +70,17 @@ void compare(const core::BlobView& view, const ReferenceSurface& reference, int 
 
 }  // namespace
 
-ScanResult score_scan(const std::filesystem::path& file, int probes, std::uint32_t seed) {
+ScanResult score_scan(const std::filesystem::path& file, const Options& options) {
+  const int probes = options.quick ? 500 : 5000;
   ScanResult result;
   result.name = file.filename().string();
   try {
     builder::Progress quiet;
-    builder::BuildOptions options;
-    options.centre = true;
-    const builder::BuildResult built = builder::build_model(std::span(&file, 1), options, quiet);
+    builder::BuildOptions build;
+    build.centre = true;
+    build.format = options.format;
+    build.columns = options.columns;
+    const builder::BuildResult built = builder::build_model(std::span(&file, 1), build, quiet);
     core::BlobView view;
     if (core::open_blob(built.blob.bytes, view) != core::BlobStatus::kOk ||
         core::surface_support(view) != core::SurfaceSupport::kOk) {
@@ -92,15 +95,19 @@ ScanResult score_scan(const std::filesystem::path& file, int probes, std::uint32
     result.orientation_confidence = report.orientation.confidence;
     result.doubtful_points = report.orientation.doubtful_points;
     result.pieces = report.orientation.pieces.size();
+    result.notes = report.notes;
     result.warnings = report.warnings;
     result.points = view.point_count();
     result.spacing_m = built.report.spacing_m;
     result.support_m = static_cast<double>(view.header().support_radius_m);
     result.openings = built.report.openings;
     result.hole_map = hole_map_svg(view, result.openings);
+    for (builder::Opening& opening : result.openings) {
+      opening.centre += report.source_scale * report.source_origin;
+    }
     const ReferenceSurface reference(view);
-    compare(view, reference, probes, seed, result.scores);
-    result.slides = slide_over(view, reference.positions(), probes / kProbesPerSlide, seed);
+    compare(view, reference, probes, options.seed, result.scores);
+    result.slides = slide_over(view, reference.positions(), probes / kProbesPerSlide, options.seed);
   } catch (const std::exception& error) {
     result.error = error.what();
   }

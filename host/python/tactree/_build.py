@@ -62,7 +62,7 @@ def build(points: npt.ArrayLike, normals: npt.ArrayLike | None = None, colors: n
     scale        additional factor
     fit_m        length of the longest edge; fit_device: scales to the reach of that device
     centre       True: the centre of the bounding box becomes the origin
-    axis         x, y or z: the axis that points up and becomes z
+    axis         x, y or z: the axis that points up and becomes z; the next ones in cyclic order become x and y
     turn_deg     then turns the model about z, counterclockwise seen from above
     pose         pose file, applied last: the coordinates are then those of the device's frame
     crop         xmin, ymin, zmin, xmax, ymax, zmax in the unit of the points

@@ -10,6 +10,7 @@
 
 #include "commands.hpp"
 #include "exit_codes.hpp"
+#include "scan/reading_options.hpp"
 #include "tactree/builder/progress.hpp"
 #include "tactree/evaluation/evaluation.hpp"
 #include "tactree/support/output_file.hpp"
@@ -27,6 +28,7 @@ constexpr const char* kDefaultScan = "/usr/share/glmark2/models/bunny.obj";
 struct EvaluateOptions {
   evaluation::Options evaluation;
   std::vector<std::string> scans;
+  std::string columns;
   std::string folder;
   bool no_scans = false;
   bool require_targets = false;
@@ -122,6 +124,7 @@ std::string html_report(const evaluation::Result& result) {
 }
 
 void evaluate(EvaluateOptions& options, int& exit_code) {
+  options.evaluation.columns = columns_of(options.columns);
   options.evaluation.scans = scans_of(options);
   const std::vector<fs::path> inputs(options.evaluation.scans.begin(),
                                      options.evaluation.scans.end());
@@ -165,6 +168,8 @@ void add_evaluate_command(CLI::App& app, int& exit_code) {
       "--scan", options->scans,
       "report only on these scans: points kept, orientation, holes, force during slides; takes "
       "seconds. Refuses files that are not scans");
+  add_format_option(*verb, options->evaluation.format)->needs(scan);
+  add_columns_option(*verb, options->columns)->needs(scan);
   verb->add_option("--scans", options->folder, "compare every readable scan below this folder")
       ->excludes(scan);
   verb->add_flag("--no-scans", options->no_scans,

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "choice.hpp"
 #include "collection/build_collection.hpp"
 #include "collection/digest.hpp"
 #include "commands.hpp"
@@ -19,6 +20,7 @@
 #include "scan/build_report.hpp"
 #include "scan/fit_option.hpp"
 #include "scan/preview.hpp"
+#include "scan/reading_options.hpp"
 #include "tactree/builder/build_model.hpp"
 #include "tactree/builder/option_names.hpp"
 #include "tactree/builder/read_materials.hpp"
@@ -156,13 +158,7 @@ void complete(BuildArguments& arguments) {
   if (std::count(arguments.inputs.begin(), arguments.inputs.end(), support::kStandardInput) > 1) {
     misuse("INPUT", "'-' (standard input) can be given only once");
   }
-  if (!arguments.columns.empty()) {
-    try {
-      build.columns = builder::parse_columns(arguments.columns);
-    } catch (const std::invalid_argument& error) {
-      misuse("--columns", error.what());
-    }
-  }
+  build.columns = columns_of(arguments.columns);
   if (arguments.fit) {
     set_fit(*arguments.fit, build);
   }
@@ -258,7 +254,7 @@ void add_frame_options(CLI::App& verb, BuildArguments& arguments) {
   verb.add_option("--unit", build.unit_m,
                   "unit of the coordinates: m, cm, mm, um, in, ft (default: as the file states, "
                   "else m)")
-      ->transform(CLI::CheckedTransformer(builder::unit_names()).description("m|cm|mm|um|in|ft"))
+      ->transform(choice(builder::unit_names(), "m|cm|mm|um|in|ft"))
       ->group(kGroup);
   CLI::Option* scale =
       verb.add_option("--scale", build.scale, "additional scale factor")->group(kGroup);
@@ -270,8 +266,11 @@ void add_frame_options(CLI::App& verb, BuildArguments& arguments) {
   verb.add_flag("--center,--centre", build.centre,
                 "move the origin to the centre of the bounding box")
       ->group(kGroup);
-  verb.add_option("--axis", build.up, "axis of the file that points up; it becomes z")
-      ->transform(CLI::CheckedTransformer(builder::axis_names()).description("x|y|z"))
+  verb.add_option(
+          "--axis", build.up,
+          "axis of the file that points up; it becomes z. With y, z becomes x, the front, and x "
+          "becomes y")
+      ->transform(choice(builder::axis_names(), "x|y|z"))
       ->default_str("z")
       ->group(kGroup);
   verb.add_option("--turn", build.turn_deg,
@@ -319,7 +318,7 @@ void add_quality_options(CLI::App& verb, BuildArguments& arguments) {
                   "device for --rate, by name or file (default: the kind with the longest tick)")
       ->group(kGroup);
   verb.add_option("--profile", build.profile, "surface: fitted surface; paper: method of the paper")
-      ->transform(CLI::CheckedTransformer(builder::profile_names()).description("surface|paper"))
+      ->transform(choice(builder::profile_names(), "surface|paper"))
       ->default_str("surface")
       ->group(kGroup);
   verb.add_option("--material", arguments.material,
@@ -347,8 +346,7 @@ void add_surface_options(CLI::App& verb, BuildArguments& arguments) {
                   "side of the surface that is outside: outward: away from the body; viewpoint: "
                   "towards the scanner; up: towards +z; given: as the file says, unchecked; auto: "
                   "by viewpoints if there are any, else outward, and sheets up")
-      ->transform(CLI::CheckedTransformer(builder::orientation_names())
-                      .description("auto|outward|viewpoint|up|given"))
+      ->transform(choice(builder::orientation_names(), "auto|outward|viewpoint|up|given"))
       ->default_str("auto")
       ->group(kGroup);
   verb.add_option("--viewpoint", arguments.viewpoints,
@@ -397,15 +395,11 @@ void add_build_command(CLI::App& app, int& exit_code) {
   verb->add_option("INPUT", arguments->inputs,
                    "PLY, PCD, PTX, E57, LAS, XYZ/PTS/CSV, OBJ, STL, OFF, glTF, 3MF, ...; "
                    "recognised by content. -: standard input, copied to a file in TMPDIR first");
-  verb->add_option("--format", arguments->build.format,
-                   "format of the inputs, if it cannot be recognised by their content")
-      ->check(CLI::IsMember(builder::scan_formats(), CLI::ignore_case));
+  add_format_option(*verb, arguments->build.format);
   verb->add_option("-o,--output", arguments->output,
                    "blob to write; with --collection the folder of the blobs")
       ->required();
-  verb->add_option("--columns", arguments->columns,
-                   "columns of text files, from 1: x=2,y=3,z=4, also nx, ny, nz, red, green, blue "
-                   "(default: by their names, or by their numbers)");
+  add_columns_option(*verb, arguments->columns);
   add_frame_options(*verb, *arguments);
   add_quality_options(*verb, *arguments);
   add_surface_options(*verb, *arguments);
@@ -417,7 +411,7 @@ void add_build_command(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(0, 1024));
   verb->add_option("--progress", arguments->progress,
                    "progress on standard error: one line, lines, JSON, none")
-      ->transform(CLI::CheckedTransformer(kProgressStyles).description("auto|plain|json|off"))
+      ->transform(choice(kProgressStyles, "auto|plain|json|off"))
       ->default_str("auto");
   verb->add_flag("--verbose", arguments->verbose,
                  "also print time, CPU time, points and peak memory of each step");

@@ -75,6 +75,13 @@ void print_interior(const BuildReport& report, const BuildOptions& build) {
                          : "");
 }
 
+void print_colours(const BuildReport& report, const BuildOptions& build) {
+  if (!report.colours.empty() && build.keep_colours != builder::KeepColours::kRequire) {
+    fmt::print(
+        "colours   the scan has some: --colours FILE keeps them for view and info --preview\n");
+  }
+}
+
 }  // namespace
 
 void print_stages(const BuildReport& report) {
@@ -99,6 +106,7 @@ void print_report(const BuildReport& report, const BuildOptions& build, const st
     fmt::print("material  {}: {} points\n", builder::describe_material(*build.materials, i),
                report.material_points[i]);
   }
+  print_colours(report, build);
   for (const std::string& note : report.notes) {
     fmt::print("note      {}\n", note);
   }

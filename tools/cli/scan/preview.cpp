@@ -26,7 +26,7 @@ std::vector<picture::MaterialKey> material_keys(const core::BlobView& view,
       colour = {static_cast<float>(scan[0]) / 255.0F, static_cast<float>(scan[1]) / 255.0F,
                 static_cast<float>(scan[2]) / 255.0F};
     }
-    keys.push_back({colour, fmt::format("{}, {:.6g} n/m", name, stiffness_N_m)});
+    keys.push_back({colour, fmt::format("{}, {:.6g} N/m", name, stiffness_N_m)});
   }
   return keys;
 }

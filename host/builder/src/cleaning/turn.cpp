@@ -12,7 +12,7 @@ constexpr double kRadiansPerDegree = 3.14159265358979323846 / 180.0;
 Eigen::Matrix3d turn_up(UpAxis up) {
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
   if (up == UpAxis::kY) {
-    turn << 1, 0, 0, 0, 0, -1, 0, 1, 0;  // y -> z, z -> -y
+    turn << 0, 0, 1, 1, 0, 0, 0, 1, 0;  // y -> z, z -> x, x -> y
   } else if (up == UpAxis::kX) {
     turn << 0, 1, 0, 0, 0, 1, 1, 0, 0;  // x -> z, y -> x, z -> y
   }

@@ -25,6 +25,7 @@ constexpr std::pair<char, Glyph> kGlyphs[] = {
     {'8', {0b01110, 0b10001, 0b10001, 0b01110, 0b10001, 0b10001, 0b01110}},
     {'9', {0b01110, 0b10001, 0b10001, 0b01111, 0b00001, 0b00010, 0b01100}},
     {':', {0b00000, 0b01100, 0b01100, 0b00000, 0b01100, 0b01100, 0b00000}},
+    {'N', {0b10001, 0b11001, 0b10101, 0b10101, 0b10011, 0b10001, 0b10001}},
     {'_', {0b00000, 0b00000, 0b00000, 0b00000, 0b00000, 0b00000, 0b11111}},
     {'a', {0b00000, 0b00000, 0b01110, 0b00001, 0b01111, 0b10001, 0b01111}},
     {'b', {0b10000, 0b10000, 0b11110, 0b10001, 0b10001, 0b10001, 0b11110}},
@@ -61,7 +62,7 @@ constexpr Glyph kUnknown = {0b11111, 0b10001, 0b10001, 0b10001, 0b10001, 0b10001
 const Glyph& glyph_of(char letter) {
   const char small = letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter + 32) : letter;
   for (const auto& [name, glyph] : kGlyphs) {
-    if (name == small) {
+    if (name == letter || (name == small && letter != 'N')) {
       return glyph;
     }
   }

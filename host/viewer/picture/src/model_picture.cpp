@@ -3,10 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <iterator>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace tactree::picture {
@@ -19,6 +20,12 @@ constexpr int kOver = 2;
 constexpr int kMargin = 40;
 constexpr int kCaption = 70;
 constexpr std::size_t kDrawnMarks = 8;
+constexpr int kMarkRadius = 13;
+constexpr int kLegendTop = kMargin / 2;
+constexpr int kLegendRow = 22;
+constexpr int kLegendColumn = 300;
+constexpr std::size_t kLegendRows = 4;
+constexpr int kLetter = 12;  // width of a letter of 2 pixels per dot
 constexpr Colour kPaper{0.965F, 0.969F, 0.975F};
 constexpr Colour kInk{0.16F, 0.2F, 0.25F};
 constexpr Colour kOutside{0.83F, 0.77F, 0.69F};
@@ -93,20 +100,28 @@ Vec3 vector(const std::array<float, 3>& v) { return {v[0], v[1], v[2]}; }
 
 Vec3 unit(Vec3 v) { return (1.0F / core::length(v)) * v; }
 
+/// A mark as a view shows it.
+struct NumberedMark {
+  const Mark* mark;
+  std::size_t number;
+  float opacity;
+};
+
 /// One view of the model in its part of the picture.
 class Panel {
  public:
-  Panel(Raster& raster, const core::BlobView& view, const Eye& eye, int left, int width)
-      : raster_(raster), view_(view), eye_(eye) {
+  /// `top`: above it lies the legend.
+  Panel(Raster& raster, const core::BlobView& view, const Eye& eye, int left, int width, int top)
+      : raster_(raster), view_(view), eye_(eye), left_(left), width_(width), top_(top) {
     const core::BlobHeader& h = view.header();
     const Vec3 low{h.bounds_min_m[0], h.bounds_min_m[1], h.bounds_min_m[2]};
     const Vec3 high{h.bounds_max_m[0], h.bounds_max_m[1], h.bounds_max_m[2]};
     middle_ = 0.5F * (low + high);
     const auto wide = static_cast<float>(width - 2 * kOver * kMargin);
-    const auto tall = static_cast<float>(raster.height() - kOver * (2 * kMargin + kCaption));
+    const auto tall = static_cast<float>(raster.height() - top - kOver * (2 * kMargin + kCaption));
     scale_ = std::min(wide / (2.0F * extent(eye.right)), tall / (2.0F * extent(eye.up)));
     x_ = static_cast<float>(left) + 0.5F * static_cast<float>(width);
-    y_ = 0.5F * static_cast<float>(raster.height() - kOver * kCaption);
+    y_ = 0.5F * static_cast<float>(raster.height() + top - kOver * kCaption);
   }
 
   [[nodiscard]] float pixels_per_metre() const { return scale_; }
@@ -141,13 +156,63 @@ class Panel {
     return is_hidden(seen(vector(mark.centre_m)), mark.diameter_m);
   }
 
-  void draw_mark(const Mark& mark, float opacity) {
-    const Vec3 at = seen(vector(mark.centre_m));
-    const float radius = std::max(0.5F * mark.diameter_m * scale_, 8.0F);
-    raster_.circle(at.x, at.y, radius + 6.0F, 5.0F, mark.is_hole ? kHole : kBoundary, opacity);
+  /// Draws the numbered marks in the margin, each beside its place.
+  void draw_marks(std::span<const NumberedMark> marks) {
+    std::vector<Placed> sides[2];
+    for (const NumberedMark& mark : marks) {
+      const Vec3 at = seen(vector(mark.mark->centre_m));
+      sides[at.x > x_ ? 1 : 0].push_back({&mark, at, at.y});
+    }
+    for (int side = 0; side < 2; ++side) {
+      const int inset = kOver * kMargin / 2;
+      const int x = side == 0 ? left_ + inset : left_ + width_ - inset;
+      spread(sides[side]);
+      for (const Placed& placed : sides[side]) {
+        draw_mark(placed, static_cast<float>(x));
+      }
+    }
   }
 
  private:
+  struct Placed {
+    const NumberedMark* mark;
+    Vec3 at;
+    float y;  ///< of the number
+  };
+
+  /// Moves numbers apart, and into the part of the panel.
+  void spread(std::vector<Placed>& marks) const {
+    constexpr float kStep = 2.2F * kOver * kMarkRadius;
+    const float low = static_cast<float>(top_ + kOver * kMargin);
+    const float high = static_cast<float>(raster_.height() - kOver * (kCaption + kMarkRadius));
+    std::sort(marks.begin(), marks.end(), [](const Placed& a, const Placed& b) {
+      return a.y != b.y ? a.y < b.y : a.mark->number < b.mark->number;
+    });
+    float next = low;
+    for (Placed& placed : marks) {
+      placed.y = std::max(placed.y, next);
+      next = placed.y + kStep;
+    }
+    float last = high;
+    for (auto placed = marks.rbegin(); placed != marks.rend(); ++placed) {
+      placed->y = std::min(placed->y, last);
+      last = placed->y - kStep;
+    }
+  }
+
+  void draw_mark(const Placed& placed, float x) {
+    constexpr float kRadius = kOver * kMarkRadius;
+    constexpr float kPlaceRadius = 6.0F;
+    const Colour colour = placed.mark->mark->is_hole ? kHole : kBoundary;
+    const float opacity = placed.mark->opacity;
+    raster_.line(x, placed.y, placed.at.x, placed.at.y, 3.0F, colour, opacity);
+    raster_.circle(placed.at.x, placed.at.y, 0.5F * kPlaceRadius, kPlaceRadius, colour, opacity);
+    raster_.circle(x, placed.y, 0.5F * kRadius, kRadius, colour, opacity);
+    const int dot = 2 * kOver - 1;
+    raster_.text(static_cast<int>(x) - 5 * dot / 2, static_cast<int>(placed.y) - 7 * dot / 2,
+                 fmt::format("{}", placed.mark->number), dot, kPaper);
+  }
+
   /// Maximum distance of a point from the centre along a direction, to either side.
   [[nodiscard]] float extent(Vec3 direction) const {
     float largest = view_.header().spacing_m;
@@ -190,6 +255,9 @@ class Panel {
   Raster& raster_;
   const core::BlobView& view_;
   Eye eye_;
+  int left_;
+  int width_;
+  int top_;
   Vec3 middle_{};
   float scale_ = 1.0F;
   float x_ = 0.0F;
@@ -199,14 +267,18 @@ class Panel {
 /// Draws a mark where the surface does not hide it; faintly in all views if it is hidden in each.
 void draw_marks(std::vector<Panel>& panels, std::span<const Mark> marks) {
   constexpr float kFaint = 0.3F;
-  for (const Mark& mark : marks) {
+  std::vector<std::vector<NumberedMark>> shown(panels.size());
+  for (std::size_t i = 0; i < marks.size(); ++i) {
     const bool hidden = std::all_of(panels.begin(), panels.end(),
-                                    [&](const Panel& panel) { return panel.hides(mark); });
-    for (Panel& panel : panels) {
-      if (hidden || !panel.hides(mark)) {
-        panel.draw_mark(mark, hidden ? kFaint : 1.0F);
+                                    [&](const Panel& panel) { return panel.hides(marks[i]); });
+    for (std::size_t k = 0; k < panels.size(); ++k) {
+      if (hidden || !panels[k].hides(marks[i])) {
+        shown[k].push_back({&marks[i], i + 1, hidden ? kFaint : 1.0F});
       }
     }
+  }
+  for (std::size_t k = 0; k < panels.size(); ++k) {
+    panels[k].draw_marks(shown[k]);
   }
 }
 
@@ -248,54 +320,104 @@ void draw_caption(Raster& raster, const core::BlobHeader& header, std::span<cons
   raster.text(raster.width() - kMargin - width, raster.height() - 40, line, 2, kInk);
 }
 
-void draw_key(Raster& raster, int& top, const Colour& colour, const std::string& text) {
-  raster.box(kMargin, top, kMargin + 14, top + 14, colour);
-  raster.text(kMargin + 24, top, text, 2, kInk);
-  top += 22;
-}
+/// A line of the legend.
+struct Key {
+  std::optional<Colour> colour;
+  std::string text;
+};
 
-void draw_material_keys(Raster& raster, int& top, std::span<const MaterialKey> materials) {
+void add_material_keys(std::vector<Key>& keys, const core::BlobView& view, const Dress& dress) {
   constexpr std::size_t kNamed = 8;
-  for (const MaterialKey& material : materials.first(std::min(materials.size(), kNamed))) {
-    std::string name = material.name;
-    std::transform(name.begin(), name.end(), name.begin(),
-                   [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
-    draw_key(raster, top, material.colour, name);
+  std::vector<std::uint8_t> occurs(dress.materials.size(), 0);
+  core::for_each_point(view, [&](const core::Leaf&, std::uint32_t index) {
+    if (!occurs.empty()) {
+      occurs[view.material_of(index)] = 1;
+    }
+  });
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < occurs.size(); ++i) {
+    if (occurs[i] != 0 && ++count <= kNamed) {
+      keys.push_back({dress.materials[i].colour, dress.materials[i].name});
+    }
   }
-  if (materials.size() > kNamed) {
-    raster.text(kMargin, top, fmt::format("the first {} materials of {}", kNamed, materials.size()),
-                2, kInk);
-    top += 22;
+  if (count > kNamed) {
+    keys.push_back({{}, fmt::format("and {} more materials", count - kNamed)});
   }
 }
 
-/// Legend of the colours in use, in the upper left corner. `sides`: both sides of the surface are
-/// seen.
-void draw_legend(Raster& raster, std::span<const Mark> drawn, std::size_t all, const Dress& dress,
-                 bool sides) {
-  int top = kMargin / 2;
-  draw_material_keys(raster, top, dress.materials);
+/// The colours in use. `sides`: both sides of the surface are seen.
+std::vector<Key> legend(const core::BlobView& view, std::span<const Mark> drawn, std::size_t all,
+                        const Dress& dress, bool sides) {
+  std::vector<Key> keys;
+  add_material_keys(keys, view, dress);
   if (dress.has_doubts()) {
-    draw_key(raster, top, kDoubtful, "ambiguous orientation");
+    keys.push_back({kDoubtful, "ambiguous orientation"});
   }
   for (const bool hole : {true, false}) {
-    const auto count = std::count_if(drawn.begin(), drawn.end(),
-                                     [hole](const Mark& mark) { return mark.is_hole == hole; });
-    if (count > 0) {
-      draw_key(raster, top, hole ? kHole : kBoundary, hole ? "hole" : "open boundary");
+    if (std::any_of(drawn.begin(), drawn.end(),
+                    [hole](const Mark& mark) { return mark.is_hole == hole; })) {
+      keys.push_back({hole ? kHole : kBoundary, hole ? "hole" : "open boundary"});
     }
+  }
+  if (sides && dress.is_plain()) {
+    keys.push_back({kOutside, "outside"});
   }
   if (sides) {
-    if (dress.is_plain()) {
-      draw_key(raster, top, kOutside, "outside");
-    }
-    draw_key(raster, top, kInside, "inside");
+    keys.push_back({kInside, "inside"});
   }
   if (drawn.size() < all) {
-    raster.text(kMargin, top, fmt::format("the {} widest openings of {}", drawn.size(), all), 2,
-                kInk);
+    keys.push_back({{}, fmt::format("{} widest openings of {}", drawn.size(), all)});
+  }
+  return keys;
+}
+
+/// How much lower the model is drawn, to leave room for the legend.
+int legend_room(std::size_t keys) {
+  const int rows = static_cast<int>(std::min(keys, kLegendRows));
+  return std::max(kLegendTop + kLegendRow * rows + 8 - kMargin, 0);
+}
+
+/// In columns, from the upper left corner.
+void draw_legend(Raster& raster, std::span<const Key> keys) {
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    int left = kMargin + kLegendColumn * static_cast<int>(i / kLegendRows);
+    const int top = kLegendTop + kLegendRow * static_cast<int>(i % kLegendRows);
+    const int right = left + kLegendColumn - kLetter;
+    if (keys[i].colour) {
+      raster.box(left, top, left + 14, top + 14, *keys[i].colour);
+      left += 24;
+    }
+    const auto room = static_cast<std::size_t>((right - left) / kLetter);
+    raster.text(left, top, keys[i].text.substr(0, room), 2, kInk);
   }
 }
+
+/// Both views of the model.
+struct Views {
+  Views(const core::BlobView& view, const Dress& dress, int top)
+      : raster(kOver * kPictureWidth, kOver * kPictureHeight, kPaper) {
+    constexpr float kHalfTurn_rad = 3.14159265F;
+    const Direction first = first_view(view);
+    const int width = kOver * kPictureWidth / 2;
+    for (int side = 0; side < 2; ++side) {
+      const float yaw_rad = first.yaw_rad + static_cast<float>(side) * kHalfTurn_rad;
+      panels.emplace_back(raster, view, eye_from({yaw_rad, first.pitch_rad}), side * width, width,
+                          kOver * top);
+      panels.back().draw_points(dress);
+    }
+  }
+  Views(const Views&) = delete;  // the panels refer to the raster
+  Views& operator=(const Views&) = delete;
+
+  [[nodiscard]] bool shows_inside() const {
+    constexpr float kInsideShare = 0.02F;  // less is seen through holes
+    return std::any_of(panels.begin(), panels.end(),
+                       [](const Panel& panel) { return panel.inside_share() > kInsideShare; });
+  }
+
+  Raster raster;
+  std::vector<Panel> panels;
+};
 
 }  // namespace
 
@@ -309,27 +431,19 @@ Colour false_colour(std::size_t material) {
 Raster draw_model(const core::BlobView& view, std::span<const Mark> marks,
                   std::span<const std::uint8_t> doubtful, std::span<const MaterialKey> materials,
                   std::span<const std::array<std::uint8_t, 3>> colours) {
-  constexpr float kHalfTurn_rad = 3.14159265F;
-  constexpr float kInsideShare = 0.02F;  // less is seen through holes
   const Dress dress{doubtful, materials, colours};
-  const Direction first = first_view(view);
-  Raster large(kOver * kPictureWidth, kOver * kPictureHeight, kPaper);
-  const int width = kOver * kPictureWidth / 2;
   const std::span<const Mark> drawn = marks.first(std::min(marks.size(), kDrawnMarks));
-  std::vector<Panel> panels;
-  for (int side = 0; side < 2; ++side) {
-    const float yaw_rad = first.yaw_rad + static_cast<float>(side) * kHalfTurn_rad;
-    panels.emplace_back(large, view, eye_from({yaw_rad, first.pitch_rad}), side * width, width);
-    panels.back().draw_points(dress);
+  std::vector<Key> keys = legend(view, drawn, marks.size(), dress, false);
+  std::optional<Views> views(std::in_place, view, dress, legend_room(keys.size()));
+  if (views->shows_inside()) {
+    keys = legend(view, drawn, marks.size(), dress, true);
+    views.emplace(view, dress, legend_room(keys.size()));
   }
-  draw_marks(panels, drawn);
-  const bool sides = std::any_of(panels.begin(), panels.end(), [](const Panel& panel) {
-    return panel.inside_share() > kInsideShare;
-  });
-  Raster picture = large.halved();
-  draw_scale(picture, panels.back().pixels_per_metre() / static_cast<float>(kOver));
+  draw_marks(views->panels, drawn);
+  Raster picture = views->raster.halved();
+  draw_scale(picture, views->panels.back().pixels_per_metre() / static_cast<float>(kOver));
   draw_caption(picture, view.header(), marks);
-  draw_legend(picture, drawn, marks.size(), dress, sides);
+  draw_legend(picture, keys);
   return picture;
 }
 

@@ -71,6 +71,26 @@ void Raster::circle(float x, float y, float radius, float width, Colour colour, 
   }
 }
 
+void Raster::line(float x1, float y1, float x2, float y2, float width, Colour colour,
+                  float opacity) {
+  const float length = std::max(std::hypot(x2 - x1, y2 - y1), 1e-3F);
+  const float right = (x2 - x1) / length;
+  const float down = (y2 - y1) / length;
+  const Range rows(std::min(y1, y2) - width, std::max(y1, y2) + width, height_);
+  const Range columns(std::min(x1, x2) - width, std::max(x1, x2) + width, width_);
+  for (int row = rows.first; row <= rows.last; ++row) {
+    for (int column = columns.first; column <= columns.last; ++column) {
+      const float x = static_cast<float>(column) - x1;
+      const float y = static_cast<float>(row) - y1;
+      const float along = right * x + down * y;
+      if (along >= 0.0F && along <= length && std::abs(right * y - down * x) <= 0.5F * width) {
+        Colour& pixel = pixels_[index(column, row)];
+        pixel = mix(pixel, colour, opacity);
+      }
+    }
+  }
+}
+
 void Raster::box(int left, int top, int right, int bottom, Colour colour) {
   for (int y = std::max(top, 0); y < std::min(bottom, height_); ++y) {
     for (int x = std::max(left, 0); x < std::min(right, width_); ++x) {

@@ -279,11 +279,11 @@ TEST(BuildModel, BothSidesOfSheetHaveItsColours) {
 TEST(BuildModel, SourceOriginIsThatOfPlacedFrame) {
   BuildOptions options;
   options.unit_m = 0.001;
-  options.up = UpAxis::kY;  // y -> z, z -> -y
+  options.up = UpAxis::kY;  // y -> z, z -> x, x -> y
   options.pose = Eigen::Isometry3d::Identity();
   options.pose->translation() = Eigen::Vector3d(0.01, 0.02, 0.03);
   const BuildResult result = build(cloud_scan(random_sphere(5000, 30.0)), options);
-  const Eigen::Vector3d origin(-10.0, -30.0, 20.0);
+  const Eigen::Vector3d origin(-20.0, -30.0, -10.0);
   EXPECT_LT((result.report.source_origin - origin).norm(), 1e-9)
       << result.report.source_origin.transpose();
 }

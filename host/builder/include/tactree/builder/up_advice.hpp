@@ -8,9 +8,9 @@
 
 namespace tactree::builder {
 
-/// States that the body of a blob has its flat base at its lowest x or y instead of z, and how to
-/// turn it; nullopt for other models. A blob does not store with which options it was built, so
-/// this is also stated if --axis z was given on purpose. Cost: 0.2 us per point.
+/// States that the body of a blob has its flat or open base at an end of x or y instead of z, and
+/// how to turn it; nullopt for other models. A blob does not store with which options it was built,
+/// so this is also stated if --axis z was given on purpose. Cost: about 5 us per point and core.
 [[nodiscard]] std::optional<std::string> up_advice(const core::BlobView& view);
 
 }  // namespace tactree::builder

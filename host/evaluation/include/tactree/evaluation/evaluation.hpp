@@ -21,7 +21,9 @@ struct Options {
   bool quick = false;      ///< fewer probes and lines: seconds instead of minutes, for tests
   std::uint32_t seed = 1;  ///< of the random numbers
   std::vector<std::filesystem::path> scans;
-  bool scans_only = false;  ///< omit everything but the scans, also in the reports
+  std::string format;          ///< of the scans; empty: detected by content
+  builder::ColumnMap columns;  ///< of scans that are text files; empty: detected in each
+  bool scans_only = false;     ///< omit everything but the scans, also in the reports
 };
 
 /// The two modes. The elements of all arrays below are in this order.
@@ -121,10 +123,12 @@ struct ScanResult {
   std::uint64_t doubtful_points = 0;
   std::size_t pieces = 0;
   SlideScores slides;
+  std::vector<std::string> notes;     ///< of the build
   std::vector<std::string> warnings;  ///< of the build
   double spacing_m = 0.0;
   double support_m = 0.0;                  ///< maximum radius that the surface fit bridges
-  std::vector<builder::Opening> openings;  ///< wider than support_m, in descending order of width
+  std::vector<builder::Opening> openings;  ///< wider than support_m, in descending order of width;
+                                           ///< in the frame of the file, m
   std::string hole_map;                    ///< SVG picture of the openings
   Scores scores;
 };

@@ -109,6 +109,18 @@ TEST(ModelFrame, RotationKeepsHandednessAndNormals) {
   }
 }
 
+// The front of a file with y up is the side of its z, as in a glTF.
+TEST(ModelFrame, PermutesAxesInCyclicOrder) {
+  const auto turned = [](UpAxis up, const Eigen::Vector3d& source) -> Eigen::Vector3d {
+    BuildOptions options;
+    options.up = up;
+    return clean_one(cloud_scan(even_sphere(300, 1.0)), options).input.frame.turn * source;
+  };
+  EXPECT_EQ(turned(UpAxis::kZ, {1, 2, 3}), Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(turned(UpAxis::kY, {1, 2, 3}), Eigen::Vector3d(3, 1, 2));
+  EXPECT_EQ(turned(UpAxis::kX, {1, 2, 3}), Eigen::Vector3d(2, 3, 1));
+}
+
 TEST(ModelFrame, TurnsAboutVerticalAfterAxis) {
   BuildOptions options;
   options.up = UpAxis::kY;
@@ -116,11 +128,11 @@ TEST(ModelFrame, TurnsAboutVerticalAfterAxis) {
   const Eigen::Matrix3d quarter =
       clean_one(cloud_scan(even_sphere(300, 1.0)), options).input.frame.turn;
   EXPECT_EQ(Eigen::Vector3d(quarter * Eigen::Vector3d(0, 1, 0)), Eigen::Vector3d(0, 0, 1));
-  EXPECT_EQ(Eigen::Vector3d(quarter * Eigen::Vector3d(0, 0, 1)), Eigen::Vector3d(1, 0, 0));
+  EXPECT_EQ(Eigen::Vector3d(quarter * Eigen::Vector3d(0, 0, 1)), Eigen::Vector3d(0, 1, 0));
   for (const double degrees : {-200.0, -90.0, 30.0, 180.0, 300.0, 360.0}) {
     options.turn_deg = degrees;
     const Cleaned cleaned = clean_one(cloud_scan(even_sphere(300, 1.0)), options);
-    const Eigen::Vector3d x = cleaned.input.frame.turn * Eigen::Vector3d(1, 0, 0);
+    const Eigen::Vector3d x = cleaned.input.frame.turn * Eigen::Vector3d(0, 0, 1);
     const double angle = degrees * std::numbers::pi / 180.0;
     EXPECT_LT((x - Eigen::Vector3d(std::cos(angle), std::sin(angle), 0.0)).norm(), 1e-15);
     EXPECT_NEAR(cleaned.input.frame.turn.determinant(), 1.0, 1e-15);
@@ -178,11 +190,11 @@ TEST(Cleaning, CropsInSourceUnits) {
   EXPECT_EQ(cloud.report.kept_points + cloud.report.dropped.at("outside_crop"), 2000U);
   EXPECT_NEAR(static_cast<double>(cloud.report.kept_points), 1000.0, 100.0);
   for (const Eigen::Vector3d& p : cloud.input.points.positions()) {
-    ASSERT_LE(p.y(), 0.0);  // the source's +z is the model's -y
+    ASSERT_GE(p.x(), 0.0);  // the source's +z is the model's +x
   }
   const Cleaned mesh = clean_one(mesh_scan(box_mesh({-30, -30, -30}, {10, 10, 10})), options);
-  EXPECT_NEAR(mesh.input.bounds.sizes().y(), 0.010, 1e-12);
-  EXPECT_NEAR(mesh.input.bounds.sizes().x(), 0.030, 1e-12);
+  EXPECT_NEAR(mesh.input.bounds.sizes().x(), 0.010, 1e-12);
+  EXPECT_NEAR(mesh.input.bounds.sizes().y(), 0.030, 1e-12);
   options.crop = Eigen::AlignedBox3d(Eigen::Vector3d(90, 90, 90), Eigen::Vector3d(99, 99, 99));
   EXPECT_THROW((void)clean_one(cloud_scan(random_sphere(2000, 10.0)), options), std::runtime_error);
 }

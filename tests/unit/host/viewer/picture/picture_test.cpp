@@ -93,7 +93,8 @@ TEST(ModelPicture, DrawsMarkUnlessHidden) {
   const auto marked = [&blob](std::array<float, 3> centre_m) {
     const picture::Mark mark{centre_m, 0.01F, true};
     const Raster with = picture::draw_model(blob.view(), std::span(&mark, 1));
-    const Raster without = picture::draw_model(blob.view(), {});
+    const picture::Mark other{centre_m, 0.01F, false};  // in another colour
+    const Raster without = picture::draw_model(blob.view(), std::span(&other, 1));
     std::array<int, 2> changed{};
     for (int y = 100; y < with.height() - 100; ++y) {
       for (int x = 0; x < with.width(); ++x) {
@@ -110,6 +111,75 @@ TEST(ModelPicture, DrawsMarkUnlessHidden) {
   // In the body, where no view sees it.
   EXPECT_GT(marked({0.0F, 0.0F, 0.0F})[0], 100);
   EXPECT_GT(marked({0.0F, 0.0F, 0.0F})[1], 100);
+}
+
+// Numbers lie in the margins beside the model, also of an opening as wide as it, and below the
+// legend; only a thin line and a dot lie on the model.
+TEST(ModelPicture, DrawsMarksBesideModel) {
+  const TestBlob blob(sphere(0.05, 0.001));
+  std::vector<picture::Mark> marks;
+  for (int i = 0; i < 8; ++i) {
+    marks.push_back({{0.03F, 0.03F, 0.028F}, 0.09F, true});
+  }
+  const Raster raster = picture::draw_model(blob.view(), marks);
+  const auto is_red = [&](int x, int y) {
+    const Colour c = raster.pixel(x, y);
+    return c.red > 0.7F && c.green < 0.3F;
+  };
+  std::array<int, 2> count{};  // in the margin of the left view, on its model
+  for (int y = 45; y < raster.height(); ++y) {
+    for (int x = 0; x < 640; ++x) {
+      const bool in_margin = x < 40 || x >= 600;
+      count[in_margin ? 0 : 1] += is_red(x, y) ? 1 : 0;
+    }
+    EXPECT_FALSE(is_red(0, y) || is_red(639, y)) << y;  // none is cut
+  }
+  EXPECT_GT(count[0], 8 * 300);
+  EXPECT_LT(count[1], 8 * 600);
+  EXPECT_TRUE(is_red(45, 25));  // the key
+  for (int x = 60; x < 1280; ++x) {
+    EXPECT_FALSE(is_red(x, 25));
+  }
+}
+
+TEST(ModelPicture, LegendLiesAboveModel) {
+  builder::Model model = sphere(0.05, 0.001);
+  model.materials.assign(6, core::BlobMaterial{});
+  for (core::BlobMaterial& material : model.materials) {
+    material.stiffness_N_m = 500.0F;
+  }
+  for (std::size_t i = 0; i < model.positions.size(); ++i) {
+    model.material_indices.push_back(static_cast<std::uint8_t>(i % 5));
+  }
+  const TestBlob blob(model);
+  std::vector<picture::MaterialKey> keys(6, {{0.9F, 0.1F, 0.1F}, "felt, 200 N/m"});
+  const Raster raster = picture::draw_model(blob.view(), {}, {}, keys);
+  const Colour paper = raster.pixel(0, 0);
+  for (int x = 0; x < raster.width(); ++x) {
+    EXPECT_EQ(raster.pixel(x, 20 + 4 * 22).red, paper.red);  // between the legend and the model
+  }
+  const auto has_key = [&](int x, int y) { return raster.pixel(x, y).red != paper.red; };
+  EXPECT_TRUE(has_key(45, 45));
+  EXPECT_TRUE(has_key(345, 25));   // the fifth
+  EXPECT_FALSE(has_key(345, 47));  // no point has the sixth
+}
+
+TEST(RasterTest, DistinguishesNewtonFromLowerCase) {
+  Raster newton(20, 20, kWhite);
+  newton.text(2, 2, "N", 2, kBlack);
+  Raster small(20, 20, kWhite);
+  small.text(2, 2, "n", 2, kBlack);
+  EXPECT_EQ(newton.pixel(2, 2).red, 0.0F);
+  EXPECT_EQ(small.pixel(2, 2).red, 1.0F);
+}
+
+TEST(RasterTest, DrawsLines) {
+  Raster raster(20, 20, kWhite);
+  raster.line(2.0F, 3.0F, 16.0F, 10.0F, 1.5F, kBlack);
+  EXPECT_EQ(raster.pixel(2, 3).red, 0.0F);
+  EXPECT_EQ(raster.pixel(8, 6).red, 0.0F);
+  EXPECT_EQ(raster.pixel(8, 10).red, 1.0F);
+  EXPECT_EQ(raster.pixel(19, 12).red, 1.0F);
 }
 
 /// A sheet of 6 cm in the plane y = 0 whose outside is towards -y, or +y.

@@ -21,7 +21,7 @@ struct Mark {
   bool is_hole = true;  ///< false: an open boundary
 };
 
-/// A material in the picture. Its name is drawn in lower case.
+/// A material in the picture.
 struct MaterialKey {
   Colour colour{};
   std::string name;
@@ -32,14 +32,15 @@ struct MaterialKey {
 inline constexpr int kPictureWidth = 1280;
 inline constexpr int kPictureHeight = 720;
 
-/// `marks` are in descending order of diameter; the first eight are drawn, with a legend. A mark
-/// that the surface hides is drawn in the other view only, or faintly in both if it is hidden in
-/// both. `doubtful` is empty, or has one element per point of the blob: 1 if its orientation is
-/// ambiguous. Such points have a separate colour, with a legend. `materials` is empty, or has one
-/// element per material of the blob: the outside of their points is drawn in these colours, and a
-/// legend names the first eight. `colours` is empty, or has one element (R, G, B) per point of the
-/// blob: without `materials`, the outside is drawn in these colours. Precondition: !view.empty().
-/// Cost: about 0.1 us per point.
+/// `marks` are in descending order of diameter; the first eight are drawn, with a legend: a number
+/// beside the model, and a thin line from it to the place. A mark that the surface hides is drawn
+/// in the other view only, or faintly in both if it is hidden in both. The legend lies above the
+/// model and names only what occurs. `doubtful` is empty, or has one element per point of the blob:
+/// 1 if its orientation is ambiguous. Such points have a separate colour, with a legend.
+/// `materials` is empty, or has one element per material of the blob: the outside of their points
+/// is drawn in these colours, and a legend names the first eight. `colours` is empty, or has one
+/// element (R, G, B) per point of the blob: without `materials`, the outside is drawn in these
+/// colours. Precondition: !view.empty(). Cost: about 0.1 us per point.
 [[nodiscard]] Raster draw_model(const core::BlobView& view, std::span<const Mark> marks,
                                 std::span<const std::uint8_t> doubtful = {},
                                 std::span<const MaterialKey> materials = {},

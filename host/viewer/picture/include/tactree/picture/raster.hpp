@@ -28,9 +28,12 @@ class Raster {
   void disc(float x, float y, float radius, float depth, Colour colour);
   /// Draws on top of all discs; `opacity` 0 .. 1.
   void circle(float x, float y, float radius, float width, Colour colour, float opacity = 1.0F);
+  /// A line of the given width, on top of all discs.
+  void line(float x1, float y1, float x2, float y2, float width, Colour colour,
+            float opacity = 1.0F);
   void box(int left, int top, int right, int bottom, Colour colour);
-  /// Draws text in letters of 5 x 7 dots, each `dot` pixels wide: lower-case letters, digits and
-  /// ( ) , - . / : _. Returns the width.
+  /// Draws text in letters of 5 x 7 dots, each `dot` pixels wide: lower-case letters, N (of
+  /// newton), digits and ( ) , - . / : _. Returns the width.
   int text(int x, int y, std::string_view line, int dot, Colour colour);
 
   /// The picture at half the size: each pixel is the mean of four.
