@@ -9,6 +9,12 @@
 #include "up_hint.hpp"
 
 namespace tactree::builder {
+namespace {
+
+// Of a larger model the openings take longer to find than the page to load.
+constexpr std::size_t kMaxPointsForOpenings = 1'000'000;
+
+}  // namespace
 
 std::optional<std::string> up_advice(const core::BlobView& view) {
   std::vector<Eigen::Vector3d> positions;
@@ -22,9 +28,11 @@ std::optional<std::string> up_advice(const core::BlobView& view) {
     backed += index == leaf.first_point && core::interior_at(view, p).behind ? leaf.point_count : 0;
   });
   const auto least = kBodyShare * static_cast<double>(positions.size());
-  const auto posture = lying_posture(positions, normals, find_openings(view),
-                                     static_cast<double>(view.header().spacing_m),
-                                     static_cast<double>(backed) < least);
+  const std::vector<Opening> openings =
+      positions.size() <= kMaxPointsForOpenings ? find_openings(view) : std::vector<Opening>();
+  const auto posture =
+      lying_posture(positions, normals, openings, static_cast<double>(view.header().spacing_m),
+                    static_cast<double>(backed) < least);
   if (!posture || posture->evidence == UpEvidence::kLongest) {
     return std::nullopt;
   }
