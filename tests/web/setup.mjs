@@ -87,8 +87,8 @@ export async function startBoard(args) {
 
 export const launch = () => chromium.launch({
   executablePath: process.env.CHROMIUM,
-  // Without a display or GPU; as root a browser has no sandbox.
-  args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
+  // As on a computer without a GPU: the processor draws page and picture. As root a browser has no sandbox.
+  args: ['--no-sandbox', '--disable-gpu', '--enable-unsafe-swiftshader'],
 });
 
 /** A page that shows the model, and whatever went wrong on it. */
