@@ -37,7 +37,9 @@ constexpr float kOneStepIsEnough = 0.01F;
 // A step that leads away from the probe is taken back, and the next ones are shorter: the probe is
 // deeper than the radius of the bend ahead, and the force would alternate every tick (by 0.6 N at a
 // tight bend). Factor of the step length after such a step, after any other step, and minimum of
-// the length, with which the proxy still moves; six other steps then restore the full length.
+// the length; six other steps then restore the full length. A step of the minimum length is not
+// taken back: where even that one leads away, as where two sheets meet, the proxy would never
+// leave.
 constexpr float kShorter = 0.4F;
 constexpr float kLonger = 1.5F;
 constexpr float kShortest = 0.1F;
@@ -454,7 +456,7 @@ bool Proxy::takes_back(const BlobView& view, Vec3 slip, Vec3 probe, const Footin
   const bool is_long = length(slip) > kOneStepIsEnough * view.support_radius_m();
   const bool leads_away =
       length_squared(probe - position_) > length_squared(probe - before.position);
-  if (!was_settled || !is_long || !leads_away) {
+  if (!was_settled || !is_long || !leads_away || !(stride_ > kShortest)) {
     stride_ = smaller_of(kLonger * stride_, 1.0F);
     return false;
   }

@@ -246,6 +246,70 @@ TEST(Proxy, FadesForceBeyondBoundary) {
   }
 }
 
+/// Two sheets of a scan near one another: a lower one, z = 0, which ends at x = end_m, and an upper
+/// one, which begins above x = 0.
+struct Junction {
+  double height_m;
+  double tilt_rad;  // of the upper sheet about y: it rises with x
+  double end_m;
+};
+
+Shape sheets_of(const Junction& junction, std::mt19937& random) {
+  std::uniform_real_distribution<double> unit(-0.3, 0.3);
+  const auto place = [&](int i) { return (i + 0.5 + unit(random)) * kSpacing; };
+  const Eigen::Vector3d rise(std::cos(junction.tilt_rad), 0.0, std::sin(junction.tilt_rad));
+  const Eigen::Vector3d normal(-rise.z(), 0.0, rise.x());
+  Shape shape;
+  for (int i = -24; i < 24; ++i) {
+    for (int j = -16; j < 16; ++j) {
+      const double y = place(j);
+      if (const double x = place(i); x < junction.end_m) {
+        shape.add({x, y, 0.0}, Eigen::Vector3d::UnitZ());
+      }
+      if (const double along = place(i); along > 0.0) {
+        shape.add(along * rise + Eigen::Vector3d(0.0, y, junction.height_m), normal);
+      }
+    }
+  }
+  shape.seal();
+  return shape;
+}
+
+/// Moves onto the lower sheet, to `depth_m` below it and under the upper one. Returns how far the
+/// proxy stays behind the place on the upper sheet that is closest to the probe.
+double lag_behind(const Junction& junction, const Shape& shape, double depth_m) {
+  Walk walk(shape);
+  Eigen::Vector3d probe(-0.008, 0.3e-3, 0.003);
+  for (; probe.z() > -depth_m; probe.z() -= 1e-4) {
+    walk.to(probe);
+  }
+  for (; probe.x() < 0.006; probe.x() += 1e-4) {
+    walk.to(probe);
+  }
+  for (int i = 0; i < 200; ++i) {
+    walk.to(probe);
+  }
+  EXPECT_TRUE(walk.proxy().in_contact());
+  const double along = probe.x() * std::cos(junction.tilt_rad) +
+                       (probe.z() - junction.height_m) * std::sin(junction.tilt_rad);
+  const double closest = std::max(0.0, along) * std::cos(junction.tilt_rad);
+  return closest - static_cast<double>(walk.proxy().position().x);
+}
+
+// Where a step of any length leads onto the other sheet, and away from the probe.
+TEST(Proxy, PassesFromSheetToSheet) {
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  for (int i = 0; i < 100; ++i) {
+    const Junction junction{(0.3 + 0.7 * unit(random)) * kSpacing, 0.3 * unit(random),
+                            3.0 * unit(random) * kSpacing};
+    const double depth_m = 3e-4 + 4e-3 * unit(random);
+    EXPECT_LE(lag_behind(junction, sheets_of(junction, random), depth_m), 1e-3)
+        << "height " << junction.height_m << " tilt " << junction.tilt_rad << " end "
+        << junction.end_m << " depth " << depth_m;
+  }
+}
+
 TEST(Proxy, EndsContactAtSurface) {
   const Shape shape = plane();
   Walk walk(shape);
