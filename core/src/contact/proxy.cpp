@@ -272,6 +272,7 @@ void Proxy::begin_contact(const BlobView& view) {
   if (prepare_fit(view, position_) && !settle(view, moved)) {
     lose_support();  // the step ended beyond the boundary of the surface
   }
+  common_normal_ = side_ * reference_;
 }
 
 // The first fit near a crease is smooth. Its normal lies between those of the faces and could not
@@ -347,8 +348,9 @@ bool Proxy::settle(const BlobView& view, float& moved) {
 Proxy::Pull Proxy::pull_of(const BlobView& view, Vec3 probe) {
   const Vec3 displacement = probe - position_;
   if (planes_.count <= 1U) {
-    const float height = dot(displacement, normal());
-    const Vec3 along = displacement - height * normal();
+    common_normal_ = normal();  // if further faces appear, until the next move_of()
+    const float height = dot(displacement, common_normal_);
+    const Vec3 along = displacement - height * common_normal_;
     return {height > 0.0F, along, -height, length(along)};
   }
   const PlaneMove all = move_of(probe);

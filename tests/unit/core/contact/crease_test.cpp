@@ -119,6 +119,32 @@ TEST(Crease, HoldsHandAtGrooveBottom) {
   }
 }
 
+// Also in the tick in which the other face begins to hold. A push against the normal would be taken
+// from the force.
+TEST(Crease, PushesAlongNormal) {
+  std::mt19937_64 random(9);
+  for (const double angle : {40.0, 60.0, 90.0, 120.0}) {
+    for (unsigned i = 0; i < 2; ++i) {
+      Prism prism = groove(angle);
+      prism.turn = any_turn(random);
+      const Shape shape = sampled(prism, kH, 0.3, 0.0, i);
+      Hand hand(shape, prism.turn, {3e-3, -4e-3, 9e-3}, 1000.0F);
+      double least = 1.0;  // cosine
+      const auto compare = [&] {
+        const Vector3d push = hand.force();
+        if (push.norm() > 0.5) {
+          const Vector3d normal = prism.turn.transpose() * widen(hand.proxy().normal());
+          least = std::min(least, normal.dot(push.normalized()));
+        }
+      };
+      hand.move_to({3e-3, -4e-3, -1e-3}, 0.1, compare);
+      hand.move_to({-2e-3, 4e-3, -3e-3}, 0.1, compare);
+      hand.move_to({2e-3, -4e-3, -3e-3}, 0.1, compare);
+      EXPECT_GT(least, 0.3) << angle << " degrees";
+    }
+  }
+}
+
 // The positions of the points and the codes of their normals are rounded differently in each turn.
 TEST(Crease, HoldsHandAtGrooveBottomInAnyTurn) {
   std::mt19937_64 random(5);
