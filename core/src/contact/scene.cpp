@@ -23,6 +23,9 @@ constexpr const char* kDescriptions[] = {
 };
 constexpr std::uint32_t kDescriptionCount = sizeof(kDescriptions) / sizeof(kDescriptions[0]);
 
+// Cosine of the largest angle between the forces of two ticks while the proxy falls.
+constexpr float kFallDirection = 0.5F;
+
 /// True if the path from `a` to `b` comes within `margin` of the interval.
 bool touches(float a, float b, float low, float high, float margin) {
   return (a < b ? a : b) <= high + margin && (a < b ? b : a) >= low - margin;
@@ -156,12 +159,15 @@ void Scene::reset(Vec3 probe) {
   }
   fade_.stop();
   force_ = {};
+  led_ = kMaxReachableBodies;
   ended_ = false;
   rendering_ = SceneRendering{};
 }
 
 void Scene::assign_slot(Slot& slot, std::uint32_t number, Vec3 probe) {
-  ended_ = ended_ || slot.in_contact;
+  const bool led = number_of(slot) == led_;
+  ended_ = ended_ || slot.in_contact || led;
+  led_ = led ? kMaxReachableBodies : led_;
   slot.body = number;
   slot.renderer.reset(probe);
   slot.in_contact = false;
@@ -257,9 +263,13 @@ const SceneRendering& Scene::update(const Configuration& configuration, Vec3 pro
   }
   if (leader != nullptr) {
     render(*leader, configuration, probe, velocity);  // at most: 1 - paper per Scene::update
+    led_ = number_of(*leader);
   } else {
     all.contact = Rendering{};
     all.contact.proxy = probe;
+    if (led_ != kMaxReachableBodies) {
+      fall(slots_[led_], probe);
+    }
   }
   all.contact.complete = observe();
   if (configuration.mode == RenderMode::kPaper) {
@@ -394,6 +404,7 @@ void Scene::end_contact_of_a_jump(Slot& slot, const Configuration& configuration
   }
   r.body = slot.body;
   all.contact = r;
+  reach_ = r.proxy - probe;
   all.wall_velocity = velocity - relative;
   react(slot, r.proxy, r.force - shared);
   if (shared != Vec3{}) {
@@ -402,10 +413,44 @@ void Scene::end_contact_of_a_jump(Slot& slot, const Configuration& configuration
   }
 }
 
+/// Where the proxy leaves a ridge with the probe deep below, it takes several ticks to reach the
+/// probe or the surface in between. Until then the spring between the two remains: with at most the
+/// force of the last tick, and near its direction, so that it pulls no probe back that has left the
+/// surface.
+[[gnu::noinline]] void Scene::fall(const Slot& slot, Vec3 probe) {
+  const Proxy& proxy = slot.renderer.proxy();
+  Rendering r;
+  r.proxy = proxy.position();
+  if (bodies_[slot.body].moved) {
+    r.proxy = position_to_scene(pose_of(slot), r.proxy);
+  }
+  const Vec3 displacement = r.proxy - probe;
+  const float distance = length(displacement);
+  const float reach = length(reach_);
+  if (ended_ || proxy.inside() ||
+      !(dot(displacement, reach_) > kFallDirection * distance * reach)) {
+    led_ = kMaxReachableBodies;
+    return;
+  }
+  const float spring = distance < reach ? distance : reach;
+  const float size = length(force_) * (spring / reach);
+  r.in_contact = true;
+  r.slipping = true;
+  r.strength = 1.0F;
+  r.penetration_m = distance;
+  r.normal = normalized_or(displacement, {});
+  r.force = size * r.normal;
+  r.stored_energy = 0.5F * size * spring;
+  r.body = slot.body;
+  rendering_.contact = r;
+  reach_ = spring * r.normal;
+  react(slot, r.proxy, r.force);
+}
+
 /// Stores the reaction of the body: the opposite of a force at the proxy.
 [[gnu::noinline]] void Scene::react(const Slot& slot, Vec3 proxy, Vec3 force) {
   const Vec3 arm = proxy - pose_of(slot).translation_m;
-  rendering_.reactions[&slot - slots_] = {slot.body, -force, cross(arm, -force)};
+  rendering_.reactions[number_of(slot)] = {slot.body, -force, cross(arm, -force)};
 }
 
 [[gnu::noinline]] void Scene::render_paper(const Configuration& configuration, Vec3 probe) {

@@ -16,6 +16,9 @@
 namespace tactree::test {
 namespace {
 
+constexpr double kStep = 5e-3;   // m, between the treads of high_step()
+constexpr double kDepth = 1e-3;  // m, of the hand below the lower tread
+
 using core::kMaxBodies;
 using core::kMaxReachableBodies;
 using core::kNoBody;
@@ -187,6 +190,58 @@ TEST(Scene, SharesForceAmongHoldingBodies) {
   const double energy = 0.5 * kWall * (0.001 * 0.001 + 0.002 * 0.002);
   EXPECT_NEAR(static_cast<double>(rig.last.contact.stored_energy), energy, 0.01 * energy);
   EXPECT_FALSE(rig.last.crowded);
+}
+
+/// Two treads, 5 mm apart, with the riser between them; they rise towards -x.
+Shape high_step() {
+  Shape shape;
+  const int width = 20;
+  for (int j = -width; j < width; ++j) {
+    const double y = (j + 0.5) * kSpacing;
+    for (int i = 0; i < width; ++i) {
+      const double along = (i + 0.5) * kSpacing;
+      shape.add({-along, y, kStep}, Eigen::Vector3d::UnitZ());
+      shape.add({along, y, 0.0}, Eigen::Vector3d::UnitZ());
+      if (along < kStep) {
+        shape.add({0.0, y, along}, Eigen::Vector3d::UnitX());
+      }
+    }
+  }
+  shape.seal();
+  return shape;
+}
+
+// The proxy needs two ticks from the edge to the lower tread.
+TEST(Scene, KeepsForceWhileProxyFalls) {
+  const Shape shape = high_step();
+  SceneRig rig;
+  rig.add(shape);
+  rig.go({-0.004, 0.3e-3, kStep + 2e-3});
+  rig.go({-0.004, 0.3e-3, -kDepth});
+  EXPECT_NEAR(rig.force().z(), kWall * (kStep + kDepth), 0.01);
+  for (double x = -0.004; x < 0.004; x += 1e-4) {
+    rig.tick({x, 0.3e-3, -kDepth});
+    EXPECT_GE(rig.force().norm(), kWall * kDepth - 0.01) << x;
+  }
+  EXPECT_NEAR(rig.force().z(), kWall * kDepth, 0.01);
+}
+
+// Above the lower tread, the same hand is outside: the force only decreases, and never pulls.
+TEST(Scene, EndsForceWhereProxyFallsToProbe) {
+  const Shape shape = high_step();
+  SceneRig rig;
+  rig.add(shape);
+  rig.go({-0.002, 0.3e-3, kStep + 2e-3});
+  rig.go({-0.002, 0.3e-3, 0.003});
+  double last = rig.force().norm();
+  for (double x = -0.002; x < 0.004; x += 1e-4) {
+    rig.tick({x, 0.3e-3, 0.003});
+    EXPECT_LE(rig.force().norm(), last + 0.06) << x;
+    EXPECT_GE(rig.force().z(), -1e-6) << x;
+    last = rig.force().norm();
+  }
+  EXPECT_EQ(last, 0.0);
+  EXPECT_FALSE(rig.last.contact.in_contact);
 }
 
 TEST(Scene, IgnoresBodiesOutOfReach) {

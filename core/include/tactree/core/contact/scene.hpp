@@ -144,6 +144,9 @@ class Scene {
   void locate_probe(Vec3 probe);
   [[nodiscard]] bool assign_slots();
   [[nodiscard]] Slot* leading();
+  [[nodiscard]] std::uint32_t number_of(const Slot& slot) const {
+    return static_cast<std::uint32_t>(&slot - slots_);
+  }
   [[nodiscard]] Slot& beside(const Slot& slot) { return slots_[&slot == slots_ ? 1 : 0]; }
   [[nodiscard]] const Pose& pose_of(const Slot& slot) const { return bodies_[slot.body].pose; }
   [[nodiscard]] Neighbour neighbour_of(const Slot& slot, const Slot& other) const;
@@ -153,6 +156,7 @@ class Scene {
   [[nodiscard]] Slot* share(Slot& leader);
   [[nodiscard]] bool observe();
   void render(Slot& slot, const Configuration& configuration, Vec3 probe, Vec3 velocity);
+  void fall(const Slot& slot, Vec3 probe);
   void react(const Slot& slot, Vec3 proxy, Vec3 force);
   void render_paper(const Configuration& configuration, Vec3 probe);
   void render_paper_body(Slot& slot, const Configuration& configuration, Vec3 probe);
@@ -165,6 +169,9 @@ class Scene {
   SceneRendering rendering_{};
   Neighbour neighbour_{};  // of the body that is tracked
   Vec3 force_{};           // of the contacts in the last tick
+  Vec3 reach_{};           // m, the spring of force_: from the probe to the proxy
+  // Slot that led in the last tick, or whose proxy fell; kMaxReachableBodies: none
+  std::uint32_t led_ = kMaxReachableBodies;
   ForceFade fade_{};
   bool ended_ = false;           // a contact ended, but not because the probe left: its force fades
   std::uint32_t work_tier_ = 0;  // minimum at any rate
