@@ -14,8 +14,9 @@ constexpr bool in_bounds(float value, float low, float high) {
 /// Keeps the first value that is out of range.
 class Checks {
  public:
-  void range(ConfigurationStatus status, const char* field, float value, float min, float max) {
-    refuse(!in_bounds(value, min, max), {status, field, value, min, max});
+  void range(ConfigurationStatus status, const char* field, float value, float min, float max,
+             std::int32_t axis = -1) {
+    refuse(!in_bounds(value, min, max), {status, field, value, min, max, axis});
   }
   void refuse(bool refused, const Refusal& refusal) {
     if (first_.status == ConfigurationStatus::kOk && refused) {
@@ -57,19 +58,16 @@ void check_gate(const Configuration& c, Checks& checks) {
   if (gate.configure(gate_limits(c))) {
     return;
   }
-  constexpr const char* kEffort[kAxes] = {"motors.effort_max[0]", "motors.effort_max[1]",
-                                          "motors.effort_max[2]"};
-  constexpr const char* kSlew[kAxes] = {"motors.effort_slew_s[0]", "motors.effort_slew_s[1]",
-                                        "motors.effort_slew_s[2]"};
   const ConfigurationStatus bad = ConfigurationStatus::kBadLimit;
-  const auto slew = [&](const char* field, float value, float most) {
-    checks.range(bad, field, value, 1e-4F * most * c.rate_hz, 2.0F * most * c.rate_hz);
+  const auto slew = [&](const char* field, float value, float most, std::int32_t axis = -1) {
+    checks.range(bad, field, value, 1e-4F * most * c.rate_hz, 2.0F * most * c.rate_hz, axis);
   };
   checks.range(bad, "limits.force_max_N", c.limits.force_max_N, 0.01F, 1000.0F);
   slew("limits.slew_N_s", c.limits.slew_N_s, c.limits.force_max_N);
   for (std::uint32_t i = 0; i < kAxes; ++i) {  // bound: kAxes
-    checks.range(bad, kEffort[i], c.motors.effort_max[i], 1e-4F, 1000.0F);
-    slew(kSlew[i], c.motors.effort_slew_s[i], c.motors.effort_max[i]);
+    const auto axis = static_cast<std::int32_t>(i);
+    checks.range(bad, "motors.effort_max", c.motors.effort_max[i], 1e-4F, 1000.0F, axis);
+    slew("motors.effort_slew_s", c.motors.effort_slew_s[i], c.motors.effort_max[i], axis);
   }
   checks.range(bad, "motors.continuous_share", c.motors.continuous_share, 0.05F, 1.0F);
   checks.range(bad, "motors.thermal_time_s", c.motors.thermal_time_s, 1.0F, 1000.0F);
@@ -130,7 +128,9 @@ Refusal refusal_of(const Configuration& c) {
   Checks checks;
   checks.range(kBadRate, "rate_hz", c.rate_hz, 100.0F, 20000.0F);
   checks.refuse(c.mode != RenderMode::kSurface && c.mode != RenderMode::kPaper, {kBadMode});
-  checks.refuse(!is_valid(c.device), {kBadDevice});
+  const DeviceRefusal device = refusal_of(c.device);
+  checks.refuse(device.field != nullptr,
+                {kBadDevice, device.field, device.value, device.min, device.max, device.axis});
   checks.range(kBadOrigin, "model_origin_m.x", c.model_origin_m.x, -10.0F, 10.0F);
   checks.range(kBadOrigin, "model_origin_m.y", c.model_origin_m.y, -10.0F, 10.0F);
   checks.range(kBadOrigin, "model_origin_m.z", c.model_origin_m.z, -10.0F, 10.0F);

@@ -8,7 +8,8 @@ std::string explain(const core::Refusal& refusal) {
   if (refusal.field[0] == '\0') {
     return core::describe(refusal.status);
   }
-  return fmt::format("{} is {:.6g}, outside {:.6g} .. {:.6g}", refusal.field, refusal.value,
+  const std::string axis = refusal.axis < 0 ? "" : fmt::format("[{}]", refusal.axis);
+  return fmt::format("{}{} is {:.6g}, outside {:.6g} .. {:.6g}", refusal.field, axis, refusal.value,
                      refusal.min, refusal.max);
 }
 

@@ -180,6 +180,46 @@ TEST(Configuration, NamesRefusedFieldAndRange) {
   }
 }
 
+TEST(Configuration, NamesRefusedFieldOfDevice) {
+  const auto refusal_with = [](core::DeviceKind kind, const auto& change) {
+    Configuration c;
+    for (const core::DevicePreset& preset : core::kDevicePresets) {
+      if (preset.model.kind == kind) {
+        core::use_device(preset, c);
+      }
+    }
+    EXPECT_EQ(core::refusal_of(c).status, ConfigurationStatus::kOk);
+    change(c.device);
+    const core::Refusal refusal = core::refusal_of(c);
+    EXPECT_EQ(refusal.status, ConfigurationStatus::kBadDevice);
+    return refusal;
+  };
+  using enum core::DeviceKind;
+  core::Refusal refusal = refusal_with(kArm, [](auto& d) { d.arm.forearm_m = 0.0F; });
+  EXPECT_STREQ(refusal.field, "device.arm.forearm_m");
+  EXPECT_EQ(refusal.axis, -1);
+  EXPECT_EQ(refusal.value, 0.0F);
+  EXPECT_EQ(refusal.min, 0.01F);
+  EXPECT_EQ(refusal.max, 10.0F);
+  refusal = refusal_with(kDelta, [](auto& d) { d.ratio[1] = -1e-4F; });
+  EXPECT_STREQ(refusal.field, "device.ratio");
+  EXPECT_EQ(refusal.axis, 1);
+  EXPECT_EQ(refusal.value, 1e-4F);
+  refusal = refusal_with(kDelta, [](auto& d) { d.delta.leg_rad[2] = 7.0F; });
+  EXPECT_STREQ(refusal.field, "device.delta.leg_rad");
+  EXPECT_EQ(refusal.axis, 2);
+  refusal = refusal_with(kFiveBar, [](auto& d) { d.home_position[1] = d.joint_max[1] + 0.1F; });
+  EXPECT_STREQ(refusal.field, "device.home_position");
+  EXPECT_EQ(refusal.axis, 1);
+  refusal = refusal_with(kPaddle, [](auto& d) { d.joint_max[0] = d.joint_min[0]; });
+  EXPECT_STREQ(refusal.field, "device.joint_max");
+  EXPECT_EQ(refusal.axis, 0);
+  EXPECT_EQ(refusal.value, refusal.min);
+  refusal =
+      refusal_with(kCartesian, [](auto& d) { d.homing = static_cast<core::HomingMethod>(7); });
+  EXPECT_STREQ(refusal.field, "device.homing");
+}
+
 TEST(Configuration, RefusesDelayBeyondObservation) {
   Configuration c;
   c.contact.stiffness_N_m = 10.0F;

@@ -149,6 +149,7 @@ struct Refusal {
   float value = 0.0F;
   float min = 0.0F;  ///< with the other values as they are
   float max = 0.0F;
+  std::int32_t axis = -1;  ///< of a field with one value per axis; else -1
 };
 
 /// Checks all values. Cost: constant.

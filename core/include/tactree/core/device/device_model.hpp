@@ -118,8 +118,20 @@ struct DeviceModel {
   return kind == DeviceKind::kPaddle ? 1U : (kind == DeviceKind::kFiveBar ? 2U : kAxes);
 }
 
-/// True if every parameter used by the kind is finite and within its range. Cost: constant.
-[[nodiscard]] bool is_valid(const DeviceModel& device);
+/// The first parameter used by the kind that is not finite or not within its range.
+struct DeviceRefusal {
+  const char* field = nullptr;  ///< "device.ratio"; nullptr: every parameter is valid
+  float value = 0.0F;           ///< of a ratio: its absolute value
+  float min = 0.0F;             ///< with the other values as they are
+  float max = 0.0F;
+  std::int32_t axis = -1;  ///< of a field with one value per axis; else -1
+};
+
+/// Checks every parameter used by the kind. Cost: constant.
+[[nodiscard]] DeviceRefusal refusal_of(const DeviceModel& device);
+[[nodiscard]] inline bool is_valid(const DeviceModel& device) {
+  return refusal_of(device).field == nullptr;
+}
 
 /// Encoder counts per unit of the joint (1/m or 1/rad); negative for opposite directions.
 /// Precondition: is_valid(device), axis < kAxes.
