@@ -22,6 +22,10 @@ struct [[gnu::may_alias]] Block {
   Word words[4];
 };
 
+struct [[gnu::may_alias]] Pair {
+  Word words[2];
+};
+
 }  // namespace
 
 extern "C" {
@@ -59,22 +63,32 @@ void* memmove(void* to, const void* from, std::size_t bytes) {
   return to;
 }
 
+// The compiler may clear the tail of a structure from an unaligned address. The bytes before the
+// first word and after the last word then add up to bytes % 4 or bytes % 4 + 4. A size of whole
+// words is cleared from a word's address.
 void* memset(void* to, int value, std::size_t bytes) {
   auto* target = static_cast<unsigned char*>(to);
   const auto byte = static_cast<unsigned char>(value);
   const std::uint32_t word = byte * 0x01010101U;
-  // The compiler may clear the tail of a structure from an unaligned address. The bytes before the
-  // first word and after the last word then add up to bytes % 4 or bytes % 4 + 4. A size of whole
-  // words is cleared from a word's address.
+  if (aligned(to, reinterpret_cast<const void*>(bytes))) {
+    unsigned char* const last = target + bytes / sizeof(Block) * sizeof(Block);
+    for (; target != last; target += sizeof(Block)) {  // bound: bytes / 16
+      *reinterpret_cast<Block*>(target) = {word, word, word, word};
+    }
+    if ((bytes & 8U) != 0U) {
+      *reinterpret_cast<Pair*>(target) = {word, word};
+      target += sizeof(Pair);
+    }
+    if ((bytes & 4U) != 0U) {
+      *reinterpret_cast<Word*>(target) = word;
+    }
+    return to;
+  }
   // total: min(bytes % 4, 1) * (bytes % 4 + 4) per memset together bytes
   for (; bytes > 0 && !aligned(target, nullptr); --bytes) {  // bound: min(bytes, 3)
     *target++ = byte;
   }
-  for (; bytes >= sizeof(Block);
-       bytes -= sizeof(Block), target += sizeof(Block)) {  // bound: bytes / 16
-    *reinterpret_cast<Block*>(target) = {word, word, word, word};
-  }
-  for (; bytes >= 4; bytes -= 4, target += 4) {  // bound: min(bytes / 4, 3)
+  for (; bytes >= 4; bytes -= 4, target += 4) {  // bound: min(bytes % 4, 1) * (bytes / 4)
     *reinterpret_cast<Word*>(target) = word;
   }
   // total: min(bytes % 4, 1) * (bytes % 4 + 4) per memset together bytes

@@ -16,21 +16,27 @@
 
 namespace tactree::hal {
 
+/// Supply of the amplifiers, V; 0 if the board does not measure it.
+template <Board B>
+[[nodiscard]] float supply_V(B& board) {
+  if constexpr (requires { board.motors().supply_V(); }) {
+    return board.motors().supply_V();
+  } else {
+    return 0.0F;
+  }
+}
+
 /// Waits for the tick, then reads all of its inputs except the link and the load.
 template <Board B>
 [[nodiscard]] core::Input read_inputs(B& board) {
   const Tick tick = board.ticker().wait();
-  core::Input input;
-  input.encoders = board.encoders().read();
-  input.emergency_stop = board.safety_inputs().emergency_stop();
-  input.dead_man = board.safety_inputs().dead_man();
-  input.enable_read_back = board.enable_line().read_back();
-  input.motors_ok = board.motors().healthy();
-  input.overruns = tick.overruns;
-  if constexpr (requires { board.motors().supply_V(); }) {
-    input.supply_V = board.motors().supply_V();
-  }
-  return input;
+  return {{.encoders = board.encoders().read(),
+           .emergency_stop = board.safety_inputs().emergency_stop(),
+           .dead_man = board.safety_inputs().dead_man(),
+           .enable_read_back = board.enable_line().read_back(),
+           .motors_ok = board.motors().healthy(),
+           .overruns = tick.overruns,
+           .supply_V = supply_V(board)}};
 }
 
 template <Board B>
