@@ -18,7 +18,7 @@ namespace tactree::hal {
 
 /// Supply of the amplifiers, V; 0 if the board does not measure it.
 template <Board B>
-[[nodiscard]] float supply_V(B& board) {
+[[nodiscard]] float supply_V(B& board) {  // NOLINT(readability-identifier-naming): as in Readings
   if constexpr (requires { board.motors().supply_V(); }) {
     return board.motors().supply_V();
   } else {
