@@ -40,6 +40,7 @@ export class View implements Obstacles {
   private dirty = true;
   private moved_ms = 0;
   private refined = false;
+  private refined_ms = 0;
   private last_ms = 0;
   private seen = '';
   /** Of each controller: the surface nearest to its probe. */
@@ -72,7 +73,7 @@ export class View implements Obstacles {
       cloud.dispose();
     }
     this.clouds = await Promise.all(
-      Array.from({ length: count }, (_, i) => Cloud.load(i, () => this.changed())),
+      Array.from({ length: count }, (_, i) => Cloud.load(i, () => this.arrived())),
     );
     for (const cloud of this.clouds) this.scene.add(cloud.group);
     this.size = 2 * this.around().radius;
@@ -253,6 +254,12 @@ export class View implements Obstacles {
     this.moved_ms = performance.now();
   }
 
+  /** More points are here. While nothing moves, the next picture is a fine one. */
+  private arrived(): void {
+    if (performance.now() - this.moved_ms > STILL_MS) this.refined = false;
+    else this.dirty = true;
+  }
+
   /** The picture as a PNG file. */
   picture(): Promise<Blob | null> {
     this.draw(MAX_POINTS, 1);
@@ -275,8 +282,9 @@ export class View implements Obstacles {
       this.refined = false;
       this.draw(this.budget, this.isCoarse ? COARSE : 1);
       this.adapt(took);
-    } else if (!this.refined && now - this.moved_ms > STILL_MS) {
+    } else if (!this.refined && now - Math.max(this.moved_ms, this.refined_ms) > STILL_MS) {
       this.refined = true;
+      this.refined_ms = now;
       this.draw(Math.max(2 * this.budget, 500_000), 1);
     }
   }
