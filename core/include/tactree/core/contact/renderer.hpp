@@ -15,11 +15,11 @@ inline constexpr std::uint32_t kNoBody = 0xFFFFFFFFU;
 
 /// The contact of one tick. Model frame; a Scene converts it to the scene's frame.
 struct Rendering {
-  bool in_contact = false;
+  bool in_contact = false;  ///< also while the proxy falls from one face to another
   bool slipping = false;
   bool complete = true;          ///< false: the model holds more points than it declares
   bool inside = false;           ///< in the material, without force until the probe has left it
-  Vec3 proxy{};                  ///< m; the probe when free
+  Vec3 proxy{};                  ///< m; the probe when free. Above the surface while it falls
   Vec3 normal{};                 ///< outward; zero when free
   Vec3 force{};                  ///< N
   float stored_energy = 0.0F;    ///< J, in the spring between probe and proxy
