@@ -27,6 +27,7 @@ constexpr double kFar_m = 0.3;     // beyond the range of every device with an e
 // Of a person, beyond the end of a range. A hand that pulls with 300 N throws a light device faster
 // than speed_max_m_s when it comes free.
 constexpr double kPull_N = 50.0;
+constexpr double kWeight_N = 5.0;  // of the heaviest device, at its probe
 
 /// One that the probe can touch from above, where every session begins.
 const Shape& body(std::size_t number, const core::DeviceModel& device) {
@@ -70,10 +71,12 @@ class Session {
     const HandPath hand = path();
     simulation::Simulation sim(shape_.bytes(), setup_, hand);
     EXPECT_TRUE(sim.start_result().ok()) << describe(sim.start_result());
+    sim.steer(carried(hand.at(0.0)));
     EXPECT_TRUE(sim.arm());
     std::string names;
     core::FaultMask known = 0;
     while (sim.time_s() < kSeconds && known == 0U) {
+      sim.steer(hand.at(sim.time_s()));
       const core::Status status = sim.step().status;
       ++counts.ticks;
       counts.in_contact += status.rendering.in_contact ? 1U : 0U;
@@ -100,6 +103,13 @@ class Session {
   }
   double between(double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(random_);
+  }
+
+  /// The hand that holds the device before its motors do: higher by what it gives way, so that the
+  /// probe does not rest on the body, where the controller waits.
+  plant::HandTarget carried(plant::HandTarget start) const {
+    start.position_m.z() += kWeight_N / setup_.plant.hand.stiffness_N_m;
+    return start;
   }
 
   HandPath path() {
