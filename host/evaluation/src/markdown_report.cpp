@@ -193,8 +193,9 @@ void add_creases(Page& page, const Result& result) {
       "deeper than an encoder\n"
       "count (20 um). *Noticed at*: depth at which contact began. *Off*: distance of the proxy "
       "from the bottom line.\n"
-      "*Step*: of the force between two ticks in contact, beyond the hand's own movement, "
-      "excluding the runs at 0.5 m/s.\n"
+      "*Step*: of the force between two ticks in contact, also while the proxy falls from one face "
+      "to another, beyond the\n"
+      "hand's own movement, excluding the runs at 0.5 m/s.\n"
       "\n",
       crease_turns(result.options.quick));
   add_crease_table(page, "crease", {&result.creases});
