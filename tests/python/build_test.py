@@ -80,6 +80,10 @@ class Files(Folder):
                 (["--columns", "x=3,y=2,z=1"], {"columns": "x=3,y=2,z=1"}), (["--format", "xyz"], {"format": "xyz"})):
             with self.subTest(options=options):
                 self.build_both("o.xyz", options, **values)
+        points, _ = ball_arrays(40_000)
+        np.savetxt(self.path / "large.xyz", points)
+        limited = self.build_both("large.xyz", ["--memory-limit", "32M"], memory_limit=32 << 20)
+        self.assertGreater(limited.report["dropped"]["beyond_memory_limit"], 10_000)
 
     def test_refusals_equal_tool(self):
         self.write("bad.xyz", "1 2\n")

@@ -2,9 +2,11 @@
 
 #include <fmt/core.h>
 #include <tbb/global_control.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <system_error>
 
 #include "cleaning/cleaning.hpp"
 #include "cleaning/colour_census.hpp"
@@ -370,6 +372,43 @@ class Pipeline {
   std::vector<Colour> colours_of_blob_;
 };
 
+// A build at the spacing of the cloud takes this much for each point of the scan; at wider ones it
+// takes less.
+constexpr std::uint64_t kBytesPerPoint = 280;
+constexpr std::uint64_t kProgramBytes = 24U << 20U;  // without points
+constexpr std::uint64_t kLeastPoints = 1000;
+
+std::uint64_t memory_limit(const BuildOptions& options) {
+  if (options.memory_limit_bytes != 0) {
+    return options.memory_limit_bytes;
+  }
+  const auto pages = static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES));
+  return pages / 2 * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+}
+
+// The number of points that may be read of each file: shares of the memory by the sizes of the
+// files.
+std::vector<std::uint64_t> most_points(std::span<const std::filesystem::path> files,
+                                       const BuildOptions& options) {
+  std::vector<double> sizes;
+  double all = 0.0;
+  for (const std::filesystem::path& file : files) {
+    std::error_code unreadable;  // the reader says so
+    const std::uintmax_t size = std::filesystem::file_size(file, unreadable);
+    sizes.push_back(unreadable ? 0.0 : static_cast<double>(size));
+    all += sizes.back();
+  }
+  const std::uint64_t limit = memory_limit(options);
+  const auto points =
+      static_cast<double>((limit - std::min(limit, kProgramBytes)) / kBytesPerPoint);
+  std::vector<std::uint64_t> most;
+  for (const double size : sizes) {
+    const double share = all > 0.0 ? size / all : 1.0;
+    most.push_back(std::max(kLeastPoints, static_cast<std::uint64_t>(share * points)));
+  }
+  return most;
+}
+
 std::unique_ptr<tbb::global_control> limit_threads(unsigned threads) {
   return threads == 0 ? nullptr
                       : std::make_unique<tbb::global_control>(
@@ -435,6 +474,7 @@ BuildResult build_model(std::span<const std::filesystem::path> inputs, const Bui
   }
   Pipeline pipeline(named, stages);
   std::vector<Scan> scans;
+  const std::vector<std::uint64_t> most = most_points(places, options);
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     const std::string label = label_of(inputs[i], options);
     stages.begin("reading " + std::filesystem::path(label).filename().string());
@@ -443,11 +483,14 @@ BuildResult build_model(std::span<const std::filesystem::path> inputs, const Bui
     reading.label = label;
     reading.progress = [&](double fraction) { stages.advance(fraction); };
     reading.columns = options.columns;
+    reading.most_points = most[i];
     scans.push_back(read_scan(places[i], reading));
     const Scan& scan = scans.back();
-    stages.set_points(scan.positions.size());
-    pipeline.report().inputs.push_back(
-        {label, scan.format, scan.positions.size(), scan.triangles.size()});
+    const auto thinned = scan.dropped.find(kBeyondMemoryLimit);
+    const std::uint64_t points =
+        scan.positions.size() + (thinned == scan.dropped.end() ? 0 : thinned->second);
+    stages.set_points(points);
+    pipeline.report().inputs.push_back({label, scan.format, points, scan.triangles.size()});
   }
   return finish(
       pipeline, std::move(scans), [&] { return digest.get(); }, label_of(inputs, options), stages);

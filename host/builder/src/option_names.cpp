@@ -8,6 +8,8 @@
 namespace tactree::builder {
 namespace {
 
+constexpr std::uint64_t kLeastMemoryLimit = 32U << 20U;
+
 void require_positive(const char* option, const std::optional<double>& value) {
   if (value && !(*value > 0.0 && std::isfinite(*value))) {
     throw OptionError(option, "must be positive");
@@ -67,6 +69,10 @@ void check_options(const BuildOptions& options) {
     throw OptionError(
         "flash-budget",
         "cannot be combined with --spacing or --no-resample, because it chooses the spacing");
+  }
+  if (options.memory_limit_bytes != 0 && options.memory_limit_bytes < kLeastMemoryLimit) {
+    throw OptionError("memory-limit",
+                      fmt::format("{} bytes are less than 32 MiB", options.memory_limit_bytes));
   }
   if (options.outlier_sigma != 0.0 && !(options.outlier_sigma >= 1.0)) {
     throw OptionError("outliers", fmt::format("'{}' is neither off nor a number of at least 1",

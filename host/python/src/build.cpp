@@ -138,6 +138,7 @@ void read_surface(const Options& options, BuildOptions& build) {
   options.read("spacing_m", build.spacing_m);
   options.read("resample", build.resample);
   options.read("flash_budget", build.flash_budget_bytes);
+  options.read("memory_limit", build.memory_limit_bytes);
   if (options.has("viewpoints")) {
     const auto places = options.cast<Doubles>("viewpoints");
     const std::span<const double> rows = rows_of(places, 3, "viewpoints");

@@ -103,7 +103,8 @@ def build_file(path: str | os.PathLike[str] | Iterable[str | os.PathLike[str]], 
                outliers: float | str | None = None, keep_largest: bool | None = None, min_piece: int | None = None,
                orient: str | None = None, viewpoints: npt.ArrayLike | None = None, two_sided_m: float | None = None,
                flip_normals: bool | None = None, name: str | None = None, threads: int | None = None,
-               columns: str | None = None, format: str | None = None, progress: Progress | None = None) -> Model:
+               columns: str | None = None, format: str | None = None, memory_limit: int | None = None,
+               progress: Progress | None = None) -> Model:
     """Builds a model from a file, or from several, in any format that `tactree build` reads.
 
     The options are those of build(), and:
@@ -111,6 +112,8 @@ def build_file(path: str | os.PathLike[str] | Iterable[str | os.PathLike[str]], 
     unit     default: as the file states, else metres
     columns  of text files, from 1: "x=2,y=3,z=4"
     format   of the files, if their content does not identify it: "xyz", "ply", ...
+    memory_limit  bytes that the build may take, default: half of that of the computer; larger clouds are thinned
+                  evenly while they are read
 
     Raises FileError if a file is refused, BuildError and Error as build().
     """
@@ -121,7 +124,8 @@ def build_file(path: str | os.PathLike[str] | Iterable[str | os.PathLike[str]], 
         "flash_budget": flash_budget, "resample": resample,
         "profile": profile, "material": material, "outliers": outliers, "keep_largest": keep_largest,
         "min_piece": min_piece, "orient": orient, "viewpoints": viewpoints, "two_sided_m": two_sided_m,
-        "flip_normals": flip_normals, "name": name, "threads": threads, "columns": columns, "format": format})
+        "flip_normals": flip_normals, "name": name, "threads": threads, "columns": columns, "format": format,
+        "memory_limit": memory_limit})
     _find_import_program()
     return _finish(_native.build_files([os.fspath(p) for p in paths], options, progress))
 

@@ -57,6 +57,7 @@ struct BuildArguments {
   std::vector<std::string> viewpoints;
   std::optional<std::string> spacing;
   std::optional<std::string> budget;
+  std::optional<std::string> memory_limit;
   std::string outliers = "3";
   std::string columns;
   BoardRequest board;
@@ -88,7 +89,7 @@ double to_number(const std::string& option, const std::string& text) {
 }
 
 // Parses 917504, 896K, 1M or 1G; K, M and G are powers of 1024 bytes.
-std::uint64_t to_bytes(const std::string& text) {
+std::uint64_t to_bytes(const std::string& option, const std::string& text, std::uint64_t most_GiB) {
   double factor = 1.0;
   std::string number = text;
   const std::string suffixes = "KMG";
@@ -97,9 +98,9 @@ std::uint64_t to_bytes(const std::string& text) {
     factor = std::ldexp(1.0, 10 * static_cast<int>(suffix + 1));
     number.pop_back();
   }
-  const double bytes = factor * to_number("--flash-budget", number);
-  if (!(bytes >= 1.0) || !(bytes < 4294967296.0)) {
-    misuse("--flash-budget", "'" + text + "' is not between 1 byte and 4 GiB");
+  const double bytes = factor * to_number(option, number);
+  if (!(bytes >= 1.0) || !(bytes < std::ldexp(static_cast<double>(most_GiB), 30))) {
+    misuse(option, fmt::format("'{}' is not between 1 byte and {} GiB", text, most_GiB));
   }
   return static_cast<std::uint64_t>(bytes);
 }
@@ -183,7 +184,10 @@ void complete(BuildArguments& arguments) {
   }
   set_spacing(arguments, build);
   if (arguments.budget) {
-    build.flash_budget_bytes = to_bytes(*arguments.budget);
+    build.flash_budget_bytes = to_bytes("--flash-budget", *arguments.budget, 4);
+  }
+  if (arguments.memory_limit) {
+    build.memory_limit_bytes = to_bytes("--memory-limit", *arguments.memory_limit, 1U << 20U);
   }
   build.outlier_sigma =
       arguments.outliers == "off" ? 0.0 : to_number("--outliers", arguments.outliers);
@@ -409,6 +413,10 @@ void add_build_command(CLI::App& app, int& exit_code) {
                    "number of threads, 0: one per core; does not change the result")
       ->default_str("0")
       ->check(CLI::Range(0, 1024));
+  verb->add_option(
+      "--memory-limit", arguments->memory_limit,
+      "memory that the build may take: bytes, or 800M, 8G (default: half of that of the "
+      "computer). Larger clouds are thinned evenly while they are read");
   verb->add_option("--progress", arguments->progress,
                    "progress on standard error: one line, lines, JSON, none")
       ->transform(choice(kProgressStyles, "auto|plain|json|off"))

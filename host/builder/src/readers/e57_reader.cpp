@@ -73,7 +73,7 @@ bool has(const Columns& columns, std::size_t first) {
 class E57Reader {
  public:
   E57Reader(InputFile& file, const ReadOptions& options)
-      : file_(file), pages_(file), builder_(file.name(), options.scan_memory_bytes, "byte") {}
+      : file_(file), pages_(file), builder_(file.name(), options, "byte") {}
 
   Scan read(const std::filesystem::path& path) {
     std::vector<E57Scan> scans = parse_e57_index(file_.name(), read_xml(path));
@@ -95,10 +95,6 @@ class E57Reader {
       throw ReadError(file_.name(), "",
                       fmt::format("none of the {} points is valid, as the file states", missing_),
                       "export the scan again");
-    }
-    if (std::any_of(poses_.begin(), poses_.end(),
-                    [](const ScannerPose& pose) { return pose.position.allFinite(); })) {
-      builder_.set_poses(std::move(poses_));
     }
     return builder_.finish("E57");
   }
@@ -156,6 +152,7 @@ class E57Reader {
     has_colours_ = colours == scans.size();
     if (has_normals_) builder_.use_normals();
     if (has_colours_) builder_.use_colours(ColourRange::kByte);
+    builder_.thin_large_cloud();
     const auto warn = [&](std::size_t count, const char* what) {
       if (count > 0 && count < scans.size()) {
         builder_.warn(fmt::format("Only {} of {} scans have {}, which were therefore ignored.",
@@ -176,19 +173,18 @@ class E57Reader {
     }
     E57Streams streams(pages_, scan, file_.name());
     builder_.expect_points(builder_.points_kept() + scan.count);
-    const std::size_t first_point = builder_.points_kept();
+    begin_pose(scan);
     streams.read([&](const std::vector<double>& values) { add_point(scan, values); });
-    if (builder_.points_kept() > first_point) add_pose(scan, first_point);
   }
 
   /// A scan without a pose may have been recorded by several scanners, so its pose stays unknown.
-  void add_pose(const E57Scan& scan, std::size_t first_point) {
+  void begin_pose(const E57Scan& scan) {
     const std::optional<Eigen::Vector3d> stated =
         scan.has_pose ? std::optional<Eigen::Vector3d>(scan.to_file.translation()) : std::nullopt;
-    ScannerPose pose = RangeImage(0, stated).pose().value_or(
-        ScannerPose{Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()), 0, true});
-    pose.first_point = first_point;
-    poses_.push_back(pose);
+    builder_.begin_pose();
+    if (const std::optional<ScannerPose> pose = RangeImage(0, stated).pose()) {
+      builder_.set_pose(pose->position, pose->sure);
+    }
   }
 
   [[nodiscard]] double value(const std::vector<double>& values, std::size_t role) const {
@@ -250,7 +246,6 @@ class E57Reader {
   bool has_normals_ = false;
   bool has_colours_ = false;
   std::uint64_t missing_ = 0;
-  std::vector<ScannerPose> poses_;
 };
 
 }  // namespace

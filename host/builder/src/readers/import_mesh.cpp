@@ -56,7 +56,7 @@ class MeshImport {
         name_(options.label.empty() ? path_ : options.label),
         recognition_(recognition),
         child_(arguments(file, recognition, options), options.child_seconds),
-        builder_(name_, options.scan_memory_bytes, "face") {}
+        builder_(name_, options, "face") {}
 
   Scan read() {
     const WireHeader header = read_header();

@@ -17,9 +17,7 @@ constexpr std::size_t kLasBlockBytes = std::size_t{1} << 20;
 class LasReader {
  public:
   LasReader(InputFile& file, const ReadOptions& options)
-      : file_(file),
-        header_(read_las_header(file)),
-        builder_(file.name(), options.scan_memory_bytes, "byte") {}
+      : file_(file), header_(read_las_header(file)), builder_(file.name(), options, "byte") {}
 
   Scan read() {
     if (header_.points == 0) {
@@ -57,6 +55,7 @@ class LasReader {
     const std::uint64_t there = file_.remaining() / bytes;
     if (there < header_.points) fail_truncated(there);
     if (header_.layout.colour >= 0) builder_.use_colours(ColourRange::kWordOrByte);
+    builder_.thin_large_cloud();
     builder_.reserve_points(header_.points);
     for (std::uint64_t left = header_.points; left > 0;) {
       const std::string_view block = file_.peek(kLasBlockBytes);

@@ -91,7 +91,7 @@ class ObjReader {
   ObjReader(InputFile& file, const ReadOptions& options, std::int64_t first_index)
       : file_(file),
         first_index_(first_index),
-        builder_(file.name(), options.scan_memory_bytes, "line"),
+        builder_(file.name(), options, "line"),
         normals_(builder_) {}
 
   /// Returns nullopt if the indices count from 0 and not from first_index.

@@ -17,7 +17,7 @@ constexpr std::uint64_t kLeastFaceBytes = 2 * kNumberBytes;  // no vertices, no 
 class OffBinaryReader {
  public:
   OffBinaryReader(InputFile& file, const ReadOptions& options)
-      : file_(file), builder_(file.name(), options.scan_memory_bytes, "byte") {}
+      : file_(file), builder_(file.name(), options, "byte") {}
 
   Scan read() {
     std::string_view line;

@@ -16,7 +16,7 @@ namespace {
 class OffReader {
  public:
   OffReader(InputFile& file, const ReadOptions& options)
-      : file_(file), builder_(file.name(), options.scan_memory_bytes, "line") {}
+      : file_(file), builder_(file.name(), options, "line") {}
 
   Scan read() {
     read_counts(read_keyword());

@@ -81,7 +81,7 @@ class PcdReader {
       : file_(file),
         header_(read_pcd_header(file)),
         used_(used_fields(file, header_)),
-        builder_(file.name(), options.scan_memory_bytes, "byte"),
+        builder_(file.name(), options, "byte"),
         image_(header_.width, header_.viewpoint) {}
 
   Scan read() {
@@ -95,6 +95,8 @@ class PcdReader {
       if (used.slot == kNx) builder_.use_normals();
       if (used.slot == kRed) builder_.use_colours(colour_range(used));
     }
+    builder_.thin_large_cloud();
+    builder_.begin_pose();
     switch (header_.data) {
       case PcdData::kAscii:
         read_ascii();
@@ -117,7 +119,7 @@ class PcdReader {
 
   Scan finish(const char* format) {
     if (const std::optional<ScannerPose> pose = image_.pose()) {
-      builder_.set_poses({*pose});
+      builder_.set_pose(pose->position, pose->sure);
     } else if (header_.width != 0) {
       builder_.warn(
           "The rows of the image do not fit the VIEWPOINT of the file, nor the origin; it was "

@@ -83,6 +83,13 @@ std::span<const PlyElement> elements_that_count(const PlyHeader& header) {
   return std::span(header.elements).first(end);
 }
 
+bool has_faces(std::span<const PlyElement> elements) {
+  return std::any_of(elements.begin(), elements.end(), [](const PlyElement& element) {
+    return role_of(element) != PlyRole::kVertex && role_of(element) != PlyRole::kOther &&
+           element.count > 0;
+  });
+}
+
 /// `more` is the number of rows after those of `elements`.
 void warn_of_more(const PlyHeader& header, std::span<const PlyElement> elements, std::uint64_t more,
                   ScanBuilder& builder) {
@@ -180,8 +187,9 @@ Scan read_ply(InputFile& file, const ReadOptions& options) {
   const std::span<const PlyElement> elements = elements_that_count(header);
   const bool ascii = header.encoding == PlyEncoding::kAscii;
   if (!ascii) check_counts(file, elements);
-  ScanBuilder builder(file.name(), options.scan_memory_bytes, ascii ? "line" : "byte");
+  ScanBuilder builder(file.name(), options, ascii ? "line" : "byte");
   prepare(builder, vertex, fields);
+  if (!has_faces(elements)) builder.thin_large_cloud();
   if (header.unknown_lines > 0) {
     builder.warn(fmt::format("{}: {} line{} of the header {} unknown and left out, the first at {}",
                              file.name(), header.unknown_lines,

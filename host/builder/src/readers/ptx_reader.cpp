@@ -32,7 +32,9 @@ Eigen::Vector3d unknown() {
 class PtxReader {
  public:
   PtxReader(InputFile& file, const ReadOptions& options)
-      : file_(file), builder_(file.name(), options.scan_memory_bytes, "line") {}
+      : file_(file), builder_(file.name(), options, "line") {
+    builder_.thin_large_cloud();
+  }
 
   Scan read() {
     std::string_view line;
@@ -47,7 +49,6 @@ class PtxReader {
           "was ignored (give --viewpoint X,Y,Z of the scanner).",
           unknown_, scans_));
     }
-    if (unknown_ < poses_.size()) builder_.set_poses(std::move(poses_));
     return builder_.finish("PTX");
   }
 
@@ -58,16 +59,17 @@ class PtxReader {
     check_room(columns, rows);
     const Eigen::Affine3d to_file = read_frame();
     RangeImage image(rows, to_file.translation(), true);
-    const std::size_t first_point = builder_.points_kept();
+    const std::uint64_t before = builder_.points_read();
+    builder_.begin_pose();
     for (std::uint64_t i = 0; i < columns * rows; ++i) {
       std::string_view line;
       if (!next_line(line)) fail_truncated(i, columns * rows);
       image.add(read_point(line, to_file));
     }
-    if (builder_.points_kept() > first_point) {
-      const std::optional<ScannerPose> pose = image.pose();
-      poses_.push_back({pose ? pose->position : unknown(), first_point, true});
-      unknown_ += pose ? 0U : 1U;
+    if (const std::optional<ScannerPose> pose = image.pose()) {
+      builder_.set_pose(pose->position, true);
+    } else if (builder_.points_read() > before) {
+      ++unknown_;
     }
   }
 
@@ -182,7 +184,6 @@ class PtxReader {
   std::uint64_t scans_ = 0;
   std::uint64_t missing_ = 0;
   std::uint64_t unknown_ = 0;  // scans without a pose
-  std::vector<ScannerPose> poses_;
 };
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "number.hpp"
 #include "polygon.hpp"
+#include "tactree/builder/length_text.hpp"
 
 namespace tactree::builder {
 namespace {
@@ -19,6 +20,7 @@ constexpr const char* kNonFinite = "non_finite";
 constexpr const char* kDegenerateFace = "degenerate_face";
 constexpr const char* kFaceIndexOutOfRange = "face_index_out_of_range";
 constexpr const char* kFaceNonFinite = "face_non_finite";
+constexpr std::uint64_t kThinningBytes = 17;  // per point, in GridThinning
 
 struct SlotName {
   std::string_view name;
@@ -80,9 +82,10 @@ Slot slot_of_name(std::string_view name) {
   return kNoSlot;
 }
 
-ScanBuilder::ScanBuilder(std::string file, std::uint64_t memory_bytes, std::string place_unit)
+ScanBuilder::ScanBuilder(std::string file, const ReadOptions& options, std::string place_unit)
     : file_(std::move(file)),
-      memory_bytes_(memory_bytes),
+      memory_bytes_(options.scan_memory_bytes),
+      most_points_(options.most_points),
       place_unit_(std::move(place_unit)),
       face_index_limit_(kDropped) {}
 
@@ -90,6 +93,7 @@ std::uint64_t ScanBuilder::bytes_for(std::uint64_t points, std::uint64_t triangl
   std::uint64_t per_point = sizeof(Eigen::Vector3d);
   if (has_normals_) per_point += sizeof(Eigen::Vector3f);
   if (colours_ != ColourRange::kNone) per_point += 3;
+  if (thinned_above_ != 0) per_point += kThinningBytes;
   const std::uint64_t faces = 12 * triangles + 4 * (polygons_.capacity() + dropped_.capacity());
   return per_point * points + faces + extra_bytes_;
 }
@@ -117,13 +121,20 @@ void ScanBuilder::set_point_capacity(std::uint64_t count) {
   if (colours_ != ColourRange::kNone) scan_.colours.reserve(capacity);
 }
 
+void ScanBuilder::thin_large_cloud() {
+  if (most_points_ == 0) return;
+  thinned_above_ = most_points_;  // from here on, points_that_fit() counts the memory for it
+  thinned_above_ = std::max(std::uint64_t{2}, std::min(points_that_fit(), most_points_));
+}
+
 void ScanBuilder::reserve_points(std::uint64_t count) {
-  if (count > points_that_fit()) throw_too_large(count);
-  set_point_capacity(count);
+  if (thinned_above_ == 0 && count > points_that_fit()) throw_too_large(count);
+  expect_points(count);
 }
 
 void ScanBuilder::expect_points(std::uint64_t count) {
-  set_point_capacity(std::min(count, points_that_fit()));
+  const std::uint64_t most = thinned_above_ == 0 ? kMaxEntries : thinned_above_;
+  set_point_capacity(std::min({count, most, points_that_fit()}));
 }
 
 void ScanBuilder::charge(std::uint64_t bytes) {
@@ -147,10 +158,75 @@ std::uint64_t ScanBuilder::grown_capacity(std::uint64_t size, std::uint64_t more
   return capacity;
 }
 
-void ScanBuilder::grow_points() {
+void ScanBuilder::make_room() {
   const std::uint64_t size = scan_.positions.size();
+  if (thinned_above_ != 0) {
+    if (size >= thinned_above_) {
+      thin(static_cast<std::size_t>(thinned_above_ - thinned_above_ / 4));
+    } else {
+      set_point_capacity(std::min(std::max(std::uint64_t{1024}, 2 * size), thinned_above_));
+    }
+    return;
+  }
   const std::uint64_t other = bytes_for(0, scan_.triangles.capacity());
   set_point_capacity(grown_capacity(size, 1, bytes_for(1, 0) - bytes_for(0, 0), other));
+}
+
+/// Keeps at most this many points.
+void ScanBuilder::thin(std::size_t most) {
+  const std::vector<std::uint8_t> kept = thinning_.select(scan_.positions, most);
+  std::size_t count = 0;
+  auto pose = scan_.poses.begin();
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    for (; pose != scan_.poses.end() && pose->first_point == i; ++pose) pose->first_point = count;
+    if (kept[i] == 0) continue;
+    scan_.positions[count] = scan_.positions[i];
+    if (has_normals_) scan_.normals[count] = scan_.normals[i];
+    if (colours_ != ColourRange::kNone) scan_.colours[count] = scan_.colours[i];
+    ++count;
+  }
+  for (; pose != scan_.poses.end(); ++pose) pose->first_point = count;
+  thinned_ += kept.size() - count;
+  scan_.positions.resize(count);
+  if (has_normals_) scan_.normals.resize(count);
+  if (colours_ != ColourRange::kNone) scan_.colours.resize(count);
+}
+
+void ScanBuilder::begin_pose() {
+  const Eigen::Vector3d unknown =
+      Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+  scan_.poses.push_back({unknown, scan_.positions.size(), true});
+}
+
+void ScanBuilder::set_pose(const Eigen::Vector3d& position, bool sure) {
+  scan_.poses.back().position = position;
+  scan_.poses.back().sure = sure;
+}
+
+/// Drops the poses of no points, and all if none is known.
+void ScanBuilder::drop_unused_poses() {
+  std::vector<ScannerPose>& poses = scan_.poses;
+  std::size_t end = scan_.positions.size();
+  std::vector<ScannerPose> used;
+  for (auto pose = poses.rbegin(); pose != poses.rend(); ++pose) {
+    if (pose->first_point < end) used.push_back(*pose);
+    end = pose->first_point;
+  }
+  std::reverse(used.begin(), used.end());
+  const bool known = std::any_of(used.begin(), used.end(),
+                                 [](const ScannerPose& pose) { return pose.position.allFinite(); });
+  poses = known ? std::move(used) : std::vector<ScannerPose>();
+}
+
+void ScanBuilder::note_thinning() {
+  const double edge = thinning_.edge();
+  note(fmt::format(
+      "{}: of {} points, more than the memory limit allows, the first in each cube of {} was kept "
+      "while reading: {} (--memory-limit raises it)",
+      file_, points_read_ - non_finite_,
+      scan_.unit_m ? length_text(edge * *scan_.unit_m)
+                   : fmt::format("{:.3g} (in the unit of the file)", edge),
+      scan_.positions.size()));
 }
 
 void ScanBuilder::add_point(const PointRow& row) {
@@ -158,7 +234,7 @@ void ScanBuilder::add_point(const PointRow& row) {
     drop_point();
     return;
   }
-  if (scan_.positions.size() == scan_.positions.capacity()) grow_points();
+  if (scan_.positions.size() == scan_.positions.capacity()) make_room();
   scan_.positions.emplace_back(row[kX], row[kY], row[kZ]);
   if (has_normals_) add_normal(row);
   if (colours_ != ColourRange::kNone) add_colour(row);
@@ -166,6 +242,11 @@ void ScanBuilder::add_point(const PointRow& row) {
 }
 
 void ScanBuilder::drop_point() {
+  ++non_finite_;
+  if (thinned_above_ != 0) {  // no face refers to it
+    ++points_read_;
+    return;
+  }
   if (dropped_.size() == dropped_.capacity()) {
     const std::uint64_t entry_bytes = sizeof(std::uint32_t);
     const std::uint64_t all = bytes_for(scan_.positions.capacity(), scan_.triangles.capacity());
@@ -374,9 +455,9 @@ void ScanBuilder::check_faces_left() const {
 }
 
 void ScanBuilder::warn_of_damage() {
-  if (!dropped_.empty()) {
+  if (non_finite_ > 0) {
     warn(fmt::format("{} of {} points were dropped: their coordinates are NaN or infinite.",
-                     dropped_.size(), points_read_));
+                     non_finite_, points_read_));
   }
   if (const auto lost = scan_.dropped.find(kFaceNonFinite); lost != scan_.dropped.end()) {
     warn(fmt::format("{} of {} faces were dropped with their points.", lost->second, faces_read_));
@@ -405,8 +486,14 @@ void ScanBuilder::warn_of_more(const std::string& what, std::uint64_t declared,
 }
 
 Scan ScanBuilder::finish(std::string format) {
-  count_dropped(kNonFinite, dropped_.size());
+  count_dropped(kNonFinite, non_finite_);
   check_points_left();
+  if (thinned_ > 0) {
+    thin(scan_.positions.size());  // the last points, too
+    count_dropped(kBeyondMemoryLimit, thinned_);
+    note_thinning();
+  }
+  drop_unused_poses();
   check_triangles();
   cut_polygons();
   check_faces_left();

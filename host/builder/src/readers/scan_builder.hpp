@@ -1,6 +1,7 @@
 #pragma once
 // Collects the points and faces of a reader in a Scan. Common to all formats: drops and counts
-// non-finite points, checks faces, limits memory, converts colours to bytes.
+// non-finite points, checks faces, limits memory, thins clouds that are too large for it, converts
+// colours to bytes.
 
 #include <array>
 #include <cstdint>
@@ -9,6 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "grid_thinning.hpp"
+#include "tactree/builder/read_scan.hpp"
 #include "tactree/builder/scan.hpp"
 
 namespace tactree::builder {
@@ -32,13 +35,18 @@ enum class ColourRange : std::uint8_t {
 class ScanBuilder {
  public:
   /// `place_unit` ("line", "byte", "face") is the unit of a face's position in messages.
-  ScanBuilder(std::string file, std::uint64_t memory_bytes, std::string place_unit);
+  ScanBuilder(std::string file, const ReadOptions& options, std::string place_unit);
 
   /// Call before the first point.
   void use_normals() { has_normals_ = true; }
   void use_colours(ColourRange range) { colours_ = range; }
+  /// The file has no faces: if it has more points than wanted (ReadOptions::most_points), or than
+  /// the memory allows, keeps a part of them (GridThinning) instead of refusing them. Call after
+  /// use_normals() and use_colours().
+  void thin_large_cloud();
 
-  /// Allocates memory for this many points. Throws ReadError above the limit.
+  /// Allocates memory for this many points. Throws ReadError above the limit, unless they are
+  /// thinned.
   void reserve_points(std::uint64_t count);
   /// Allocates memory for an estimated number of points, reduced to the limit.
   void expect_points(std::uint64_t count);
@@ -52,7 +60,9 @@ class ScanBuilder {
   [[nodiscard]] std::size_t points_kept() const { return scan_.positions.size(); }
 
   void set_unit(double metres) { scan_.unit_m = metres; }
-  void set_poses(std::vector<ScannerPose> poses) { scan_.poses = std::move(poses); }
+  /// Begins the points of another scanner, whose position is unknown until set_pose().
+  void begin_pose();
+  void set_pose(const Eigen::Vector3d& position, bool sure);
 
   /// Limits the indices of faces to values below `count`; default: points_read() at the end.
   void limit_face_indices(std::uint64_t count) { face_index_limit_ = count; }
@@ -86,7 +96,10 @@ class ScanBuilder {
   [[nodiscard]] std::uint64_t grown_capacity(std::uint64_t size, std::uint64_t more,
                                              std::uint64_t entry_bytes,
                                              std::uint64_t other_bytes) const;
-  void grow_points();
+  void make_room();
+  void thin(std::size_t most);
+  void note_thinning();
+  void drop_unused_poses();
   void add_normal(const PointRow& row);
   void add_colour(const PointRow& row);
   void leave_unit_colours();
@@ -106,6 +119,7 @@ class ScanBuilder {
 
   std::string file_;
   std::uint64_t memory_bytes_;
+  std::uint64_t most_points_;
   std::string place_unit_;
   Scan scan_;
   bool has_normals_ = false;
@@ -115,7 +129,11 @@ class ScanBuilder {
   std::uint64_t extra_bytes_ = 0;
   std::uint64_t points_read_ = 0;
   std::uint64_t missing_normals_ = 0;
-  std::vector<std::uint32_t> dropped_;  // indices of the non-finite points, ascending
+  std::uint64_t non_finite_ = 0;
+  std::vector<std::uint32_t> dropped_;  // of a mesh: indices of the non-finite points, ascending
+  std::uint64_t thinned_above_ = 0;     // number of points; 0: they are not thinned
+  std::uint64_t thinned_ = 0;           // points dropped
+  GridThinning thinning_;
   std::uint64_t face_index_limit_;
   std::uint64_t faces_read_ = 0;
   std::uint64_t bad_faces_ = 0;

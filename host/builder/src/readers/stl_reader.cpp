@@ -50,7 +50,7 @@ bool is_plausible_triangle(const char* from) {
 class Triangles {
  public:
   Triangles(const InputFile& file, const ReadOptions& options, const char* place_unit)
-      : builder_(file.name(), options.scan_memory_bytes, place_unit) {}
+      : builder_(file.name(), options, place_unit) {}
 
   void add(const std::array<VertexWelder::Position, 3>& corners, std::uint64_t place) {
     std::array<std::int64_t, 3> face{};

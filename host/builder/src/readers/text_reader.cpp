@@ -19,13 +19,14 @@ class TextReader {
         layout_(find_text_layout(file, options.columns)),
         columns_named_(!options.columns.empty()),
         declared_(layout_.declared.value_or(0)),
-        builder_(file.name(), options.scan_memory_bytes, "line") {}
+        builder_(file.name(), options, "line") {}
 
   Scan read() {
     for (const std::string& warning : layout_.warnings) builder_.warn(warning);
     note_columns();
     if (layout_.has(kNx)) builder_.use_normals();
     if (layout_.has(kRed)) builder_.use_colours(ColourRange::kAuto);
+    builder_.thin_large_cloud();
     builder_.expect_points(
         1024 +
         static_cast<std::uint64_t>(1.05 * static_cast<double>(file_.size()) / layout_.row_bytes));

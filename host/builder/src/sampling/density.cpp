@@ -298,10 +298,13 @@ class DensityChooser {
 
   void explain(const DensityChoice& choice) {
     if (options_.spacing_m && choice.spacing_m > (1.0 + kSameSpacing) * *options_.spacing_m) {
-      report_.warnings.push_back(fmt::format(
-          "the scan is too coarse for a spacing of {}: {}, the distance of its points, is used "
-          "(scan more finely, or build from a mesh)",
-          length_text(*options_.spacing_m), length_text(choice.spacing_m)));
+      const bool thinned = report_.dropped.contains(kBeyondMemoryLimit);
+      report_.warnings.push_back(
+          fmt::format("the scan {} too coarse for a spacing of {}: {}, the distance of its points, "
+                      "is used ({})",
+                      thinned ? "was thinned to fit in the memory, and is" : "is",
+                      length_text(*options_.spacing_m), length_text(choice.spacing_m),
+                      thinned ? "raise --memory-limit" : "scan more finely, or build from a mesh"));
     }
     if (thinned_ > 0) {
       report_.warnings.push_back(fmt::format(

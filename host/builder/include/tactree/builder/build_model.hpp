@@ -77,6 +77,10 @@ struct BuildOptions {
   core::Profile profile = core::Profile::kSurface;
   std::optional<MaterialMap> materials;  ///< none: from the controller's configuration
   KeepColours keep_colours = KeepColours::kNo;
+  /// Memory that the build may take. Of clouds with more points than fit, a part is read that is
+  /// equally dense everywhere (ReadOptions::most_points). 0: half of that of the computer; else
+  /// from 32 MiB.
+  std::uint64_t memory_limit_bytes = 0;
   std::string name;      ///< default: name of the first input file
   unsigned threads = 0;  ///< 0: one per core
 };

@@ -26,9 +26,16 @@ using ColumnMap = std::map<std::string, std::size_t>;
 /// Names of the formats that have a reader (the usual file name extensions), "ply" first.
 [[nodiscard]] std::vector<std::string> scan_formats();
 
+/// Cause in Scan::dropped of points that were thinned while they were read.
+inline constexpr const char* kBeyondMemoryLimit = "beyond_memory_limit";
+
 struct ReadOptions {
   /// Memory limit of the scan, bytes. A larger scan is refused before its memory is allocated.
   std::uint64_t scan_memory_bytes = 3ULL << 29;
+  /// A cloud with more points is thinned while it is read: of each cube of a grid the first point
+  /// is kept, with the finest grid that leaves at most this many (at least a quarter, unless the
+  /// points lie in clusters). 0: refused above the memory limit, as a mesh is.
+  std::uint64_t most_points = 0;
   /// Address space limit of the mesh import process, bytes.
   std::uint64_t child_memory_bytes = 3ULL << 29;
   /// Limit of both the processor time and the elapsed time of the mesh import process.
@@ -49,6 +56,7 @@ struct ReadOptions {
 ///   "not_measured"           points that the file itself marks as invalid (PTX, E57)
 ///   "withheld"               points of a LAS file that are marked as deleted
 ///   "non_finite"             positions with NaN or infinite coordinates
+///   "beyond_memory_limit"    points of a cloud with more than ReadOptions::most_points
 ///   "bad_row"                rows of a text file that are not a point
 ///   "degenerate_face"        faces with fewer than three distinct vertices
 ///   "face_index_out_of_range" faces with the index of a point that does not exist
