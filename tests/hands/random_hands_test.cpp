@@ -36,7 +36,8 @@ const Shape& body(std::size_t number, const core::DeviceModel& device) {
   return shapes[number % (std::size(shapes) - (reaches_all ? 0U : 1U))];
 }
 
-constexpr std::uint64_t kPlaces = 100;  // ticks for each position that is compared with the reach
+// Ticks for each position that is compared with the reach, which takes longer than many ticks.
+constexpr std::uint64_t kPlaces = 2000;
 
 /// What the hands of the sessions have done.
 struct Counts {
