@@ -89,7 +89,7 @@ double to_number(const std::string& option, const std::string& text) {
 }
 
 // Parses 917504, 896K, 1M or 1G; K, M and G are powers of 1024 bytes.
-std::uint64_t to_bytes(const std::string& option, const std::string& text, std::uint64_t most_GiB) {
+std::uint64_t to_bytes(const std::string& option, const std::string& text, std::uint64_t most_gib) {
   double factor = 1.0;
   std::string number = text;
   const std::string suffixes = "KMG";
@@ -99,8 +99,8 @@ std::uint64_t to_bytes(const std::string& option, const std::string& text, std::
     number.pop_back();
   }
   const double bytes = factor * to_number(option, number);
-  if (!(bytes >= 1.0) || !(bytes < std::ldexp(static_cast<double>(most_GiB), 30))) {
-    misuse(option, fmt::format("'{}' is not between 1 byte and {} GiB", text, most_GiB));
+  if (!(bytes >= 1.0) || !(bytes < std::ldexp(static_cast<double>(most_gib), 30))) {
+    misuse(option, fmt::format("'{}' is not between 1 byte and {} GiB", text, most_gib));
   }
   return static_cast<std::uint64_t>(bytes);
 }
