@@ -225,7 +225,7 @@ void warn_of_rest(InputFile& file, std::uint64_t count, ScanBuilder& builder) {
 }
 
 bool are_plausible(std::string_view head, std::size_t at) {
-  constexpr std::size_t kSamples = 16;  // NOLINT(clang-diagnostic-shadow): merged
+  constexpr std::size_t kSamples = 16;
   if (head.substr(at, kStlTriangleBytes).find_first_not_of('\0') == head.npos) return false;
   for (std::size_t i = 0; i < kSamples && at + kStlTriangleBytes <= head.size(); ++i) {
     if (!is_plausible_triangle(head.data() + at)) return false;
