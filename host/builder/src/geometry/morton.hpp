@@ -7,6 +7,9 @@
 
 namespace tactree::builder {
 
+/// Bits of a coordinate, and levels of the octree over the cells below its root.
+inline constexpr int kMortonLevels = 21;
+
 /// Interleaves the low 21 bits of three non-negative coordinates, x lowest.
 [[nodiscard]] std::uint64_t morton_code(const Eigen::Vector3i& cell);
 /// The inverse of morton_code().

@@ -1,11 +1,9 @@
 #include "geometry/point_grid.hpp"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_sort.h>
-
 #include <algorithm>
 #include <bit>
+
+#include "geometry/keyed_points.hpp"
 
 namespace tactree::builder {
 namespace {
@@ -18,14 +16,6 @@ std::uint64_t mix(std::uint64_t v) {
   v = (v ^ (v >> 27)) * 0x94D049BB133111EBU;
   return v ^ (v >> 31);
 }
-
-struct Entry {
-  std::uint64_t code;
-  std::uint32_t index;
-  bool operator<(const Entry& other) const {
-    return code != other.code ? code < other.code : index < other.index;
-  }
-};
 
 }  // namespace
 
@@ -42,13 +32,8 @@ PointGrid::PointGrid(std::span<const Eigen::Vector3d> positions, double cell_edg
     edge_ = std::max(edge_, (high - low).maxCoeff() / (kMaxCellsPerAxis - 2.0));
     size_ = cell_at(high).array() + 1;
   }
-  std::vector<Entry> entries(positions.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, positions.size(), 4096), [&](auto range) {
-    for (std::size_t i = range.begin(); i < range.end(); ++i) {
-      entries[i] = {morton_code(cell_at(positions[i])), static_cast<std::uint32_t>(i)};
-    }
-  });
-  tbb::parallel_sort(entries.begin(), entries.end());
+  const std::vector<KeyedPoint> entries =
+      sorted_points(positions, [&](const Eigen::Vector3d& position) { return cell_at(position); });
 
   order_.resize(entries.size());
   for (std::size_t i = 0; i < entries.size(); ++i) {

@@ -1,22 +1,13 @@
 #include "geometry/z_order.hpp"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 
-#include <bit>
 #include <cmath>
-#include <numeric>
 
-#include "geometry/morton.hpp"
+#include "geometry/keyed_points.hpp"
 
 namespace tactree::builder {
 namespace {
-
-struct KeyedPoint {
-  std::uint64_t code;
-  std::uint32_t index;
-};
 
 bool lexicographically_less(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   for (int axis = 0; axis < 3; ++axis) {
@@ -54,12 +45,8 @@ ZOrderedCloud::ZOrderedCloud(Cloud cloud) {
   origin_ = box.isEmpty() ? Eigen::Vector3d::Zero() : Eigen::Vector3d(box.min());
   edge_ = largest_edge(box);
   edge_ = edge_ > 0.0 ? edge_ * (1.0 + 1e-9) : 1.0;
-  std::vector<KeyedPoint> entries(cloud.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, cloud.size(), 4096), [&](auto range) {
-    for (std::size_t i = range.begin(); i < range.end(); ++i) {
-      entries[i] = {morton_code(finest_cell(cloud.positions[i])), static_cast<std::uint32_t>(i)};
-    }
-  });
+  std::vector<KeyedPoint> entries = keyed_points(
+      cloud.positions, [&](const Eigen::Vector3d& position) { return finest_cell(position); });
   tbb::parallel_sort(entries.begin(), entries.end(), [&](const KeyedPoint& a, const KeyedPoint& b) {
     if (a.code != b.code) {
       return a.code < b.code;
@@ -169,17 +156,7 @@ CellRange ZOrderedCloud::find(const Eigen::Vector3i& cell, int level) const {
 }
 
 std::vector<std::size_t> ZOrderedCloud::count_cells() const {
-  // By the coarsest level at which a point begins a cell; it then begins one at all finer levels.
-  std::vector<std::size_t> counts(kFinestLevel + 1, 0);
-  for (std::size_t i = 1; i < codes_.size(); ++i) {
-    const std::uint64_t differing = codes_[i] ^ codes_[i - 1];
-    if (differing != 0) {
-      ++counts[static_cast<std::size_t>(kFinestLevel - (63 - std::countl_zero(differing)) / 3)];
-    }
-  }
-  counts[0] += codes_.empty() ? 0U : 1U;
-  std::partial_sum(counts.begin(), counts.end(), counts.begin());
-  return counts;
+  return builder::count_cells(codes_.size(), [&](std::size_t i) { return codes_[i]; });
 }
 
 void ZOrderedCloud::find_nearest(const Eigen::Vector3d& centre, std::size_t count, double guess,

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "geometry/cloud.hpp"
+#include "geometry/morton.hpp"
 
 namespace tactree::builder {
 
@@ -37,7 +38,7 @@ void keep_nearest(std::size_t count, std::vector<Neighbour>& found);
 /// and set_normals() modify it.
 class ZOrderedCloud {
  public:
-  static constexpr int kFinestLevel = 21;
+  static constexpr int kFinestLevel = kMortonLevels;
 
   ZOrderedCloud() = default;
   /// Sorts the cloud. Deterministic: points of one finest cell are ordered by coordinates, then by
