@@ -20,7 +20,7 @@ constexpr const char* kNonFinite = "non_finite";
 constexpr const char* kDegenerateFace = "degenerate_face";
 constexpr const char* kFaceIndexOutOfRange = "face_index_out_of_range";
 constexpr const char* kFaceNonFinite = "face_non_finite";
-constexpr std::uint64_t kThinningBytes = 17;  // per point, in GridThinning
+constexpr std::uint64_t kLeastMost = 4;  // a list of fewer points has no room when it is thinned
 
 struct SlotName {
   std::string_view name;
@@ -93,12 +93,12 @@ std::uint64_t ScanBuilder::bytes_for(std::uint64_t points, std::uint64_t triangl
   std::uint64_t per_point = sizeof(Eigen::Vector3d);
   if (has_normals_) per_point += sizeof(Eigen::Vector3f);
   if (colours_ != ColourRange::kNone) per_point += 3;
-  if (thinned_above_ != 0) per_point += kThinningBytes;
   const std::uint64_t faces = 12 * triangles + 4 * (polygons_.capacity() + dropped_.capacity());
   return per_point * points + faces + extra_bytes_;
 }
 
 std::uint64_t ScanBuilder::points_that_fit() const {
+  if (thins_) return std::clamp(most_points_, kLeastMost, kMaxEntries);
   const std::uint64_t other = bytes_for(0, scan_.triangles.capacity());
   const std::uint64_t per_point = bytes_for(1, 0) - bytes_for(0, 0);
   const std::uint64_t fit = other >= memory_bytes_ ? 0 : (memory_bytes_ - other) / per_point;
@@ -121,20 +121,13 @@ void ScanBuilder::set_point_capacity(std::uint64_t count) {
   if (colours_ != ColourRange::kNone) scan_.colours.reserve(capacity);
 }
 
-void ScanBuilder::thin_large_cloud() {
-  if (most_points_ == 0) return;
-  thinned_above_ = most_points_;  // from here on, points_that_fit() counts the memory for it
-  thinned_above_ = std::max(std::uint64_t{2}, std::min(points_that_fit(), most_points_));
-}
-
 void ScanBuilder::reserve_points(std::uint64_t count) {
-  if (thinned_above_ == 0 && count > points_that_fit()) throw_too_large(count);
+  if (!thins_ && count > points_that_fit()) throw_too_large(count);
   expect_points(count);
 }
 
 void ScanBuilder::expect_points(std::uint64_t count) {
-  const std::uint64_t most = thinned_above_ == 0 ? kMaxEntries : thinned_above_;
-  set_point_capacity(std::min({count, most, points_that_fit()}));
+  set_point_capacity(std::min(count, points_that_fit()));
 }
 
 void ScanBuilder::charge(std::uint64_t bytes) {
@@ -160,13 +153,10 @@ std::uint64_t ScanBuilder::grown_capacity(std::uint64_t size, std::uint64_t more
 
 void ScanBuilder::make_room() {
   const std::uint64_t size = scan_.positions.size();
-  if (thinned_above_ != 0) {
-    if (size >= thinned_above_) {
-      thin(static_cast<std::size_t>(thinned_above_ - thinned_above_ / 4));
-    } else {
-      set_point_capacity(std::min(std::max(std::uint64_t{1024}, 2 * size), thinned_above_));
-    }
-    return;
+  if (thins_) {
+    const std::uint64_t most = points_that_fit();
+    if (size < most) return expect_points(std::max(std::uint64_t{1024}, 2 * size));
+    return thin(static_cast<std::size_t>(most - most / 4));
   }
   const std::uint64_t other = bytes_for(0, scan_.triangles.capacity());
   set_point_capacity(grown_capacity(size, 1, bytes_for(1, 0) - bytes_for(0, 0), other));
@@ -243,7 +233,7 @@ void ScanBuilder::add_point(const PointRow& row) {
 
 void ScanBuilder::drop_point() {
   ++non_finite_;
-  if (thinned_above_ != 0) {  // no face refers to it
+  if (thins_) {  // no face refers to it
     ++points_read_;
     return;
   }

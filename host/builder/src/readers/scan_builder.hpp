@@ -40,10 +40,9 @@ class ScanBuilder {
   /// Call before the first point.
   void use_normals() { has_normals_ = true; }
   void use_colours(ColourRange range) { colours_ = range; }
-  /// The file has no faces: if it has more points than wanted (ReadOptions::most_points), or than
-  /// the memory allows, keeps a part of them (GridThinning) instead of refusing them. Call after
-  /// use_normals() and use_colours().
-  void thin_large_cloud();
+  /// The file has no faces: ReadOptions::most_points limits its points, which are thinned
+  /// (GridThinning), instead of the memory.
+  void thin_large_cloud() { thins_ = most_points_ != 0; }
 
   /// Allocates memory for this many points. Throws ReadError above the limit, unless they are
   /// thinned.
@@ -131,8 +130,8 @@ class ScanBuilder {
   std::uint64_t missing_normals_ = 0;
   std::uint64_t non_finite_ = 0;
   std::vector<std::uint32_t> dropped_;  // of a mesh: indices of the non-finite points, ascending
-  std::uint64_t thinned_above_ = 0;     // number of points; 0: they are not thinned
-  std::uint64_t thinned_ = 0;           // points dropped
+  bool thins_ = false;
+  std::uint64_t thinned_ = 0;  // points dropped
   GridThinning thinning_;
   std::uint64_t face_index_limit_;
   std::uint64_t faces_read_ = 0;

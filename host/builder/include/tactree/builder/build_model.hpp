@@ -164,7 +164,8 @@ class BuildError : public std::runtime_error {
 };
 
 /// Reads the files and builds one model from all of them. Throws ReadError or BuildError.
-/// Cost: about 2 us and 150 bytes per input point, and 20 us per output point, on two cores.
+/// Cost: about 2 us per input point and 20 us per output point on two cores, and up to 280 bytes
+/// per input point.
 [[nodiscard]] BuildResult build_model(std::span<const std::filesystem::path> inputs,
                                       const BuildOptions& options, Progress& progress);
 

@@ -30,11 +30,12 @@ using ColumnMap = std::map<std::string, std::size_t>;
 inline constexpr const char* kBeyondMemoryLimit = "beyond_memory_limit";
 
 struct ReadOptions {
-  /// Memory limit of the scan, bytes. A larger scan is refused before its memory is allocated.
+  /// Memory limit of a scan that is not thinned, bytes. A larger scan is refused before its memory
+  /// is allocated.
   std::uint64_t scan_memory_bytes = 3ULL << 29;
   /// A cloud with more points is thinned while it is read: of each cube of a grid the first point
-  /// is kept, with the finest grid that leaves at most this many (at least a quarter, unless the
-  /// points lie in clusters). 0: refused above the memory limit, as a mesh is.
+  /// is kept, with the finest grid of edges 2^n that leaves at most this many, at least 4. A mesh
+  /// is not, and neither is a cloud if this is 0: it is refused above the memory limit.
   std::uint64_t most_points = 0;
   /// Address space limit of the mesh import process, bytes.
   std::uint64_t child_memory_bytes = 3ULL << 29;

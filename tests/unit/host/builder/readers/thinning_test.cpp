@@ -227,14 +227,17 @@ TEST_F(Thinning, RefusesLargeMeshAsBefore) {
   expect_parts(refusal(write("m.ply", file), small), "too large", "6000 points");
 }
 
-// The limit of memory counts, too, and the working memory of the thinning.
-TEST_F(Thinning, RespectsMemoryForPoints) {
-  ReadOptions options = at_most(1'000'000);
-  options.scan_memory_bytes = 41 * 1000;
-  const Scan scan = read_scan(write("a.xyz", rows(ball(6000))), options);
-  EXPECT_LE(scan.positions.size(), 1000U);
-  EXPECT_LE(scan.positions.capacity(), 1000U);
-  EXPECT_GE(scan.positions.size(), 190U);
+TEST_F(Thinning, LimitOfPointsReplacesThatOfMemory) {
+  const std::filesystem::path file = write("a.xyz", rows(ball(6000)));
+  ReadOptions options;
+  options.scan_memory_bytes = 1000;
+  expect_parts(refusal(file, options), "too large");
+  for (const std::uint64_t most : {1U, 4U, 1500U, 100'000U}) {
+    options.most_points = most;
+    const Scan scan = read_scan(file, options);
+    EXPECT_LE(scan.positions.capacity(), std::max<std::uint64_t>(most, 4));
+    EXPECT_EQ(scan.positions.size() == 6000, most > 6000);
+  }
 }
 
 TEST_F(Thinning, PosesKeepTheirPoints) {
