@@ -3,7 +3,10 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 
 #include "tactree/plant/trigonometry.hpp"
 #include "tactree/plant/vectors.hpp"
@@ -64,41 +67,65 @@ LinkagePose arm_pose(const core::ArmGeometry& g, const Vector3d& q) {
   return pose;
 }
 
-/// Closure error of each leg, m2.
-Vector3d delta_misfit(const core::DeltaGeometry& g, const Vector3d& q, const Vector3d& plate) {
-  Vector3d misfit;
-  for (Eigen::Index i = 0; i < 3; ++i) {
-    const SineCosine place = sine_cosine(static_cast<double>(g.leg_rad[i]));
-    const SineCosine arm = sine_cosine(q[i]);
+/// Closure error of each leg of a delta, m2, by the position of its plate.
+class DeltaClosure {
+ public:
+  DeltaClosure(const core::DeltaGeometry& g, const Vector3d& q) : g_(g) {
+    for (std::size_t i = 0; i < core::kAxes; ++i) {
+      places_[i] = sine_cosine(static_cast<double>(g.leg_rad[i]));
+      arms_[i] = sine_cosine(q[static_cast<Eigen::Index>(i)]);
+    }
+  }
+
+  Vector3d operator()(const Vector3d& plate) const {
+    return {misfit(0, plate), misfit(1, plate), misfit(2, plate)};
+  }
+
+ private:
+  double misfit(std::size_t leg, const Vector3d& plate) const {
+    const SineCosine& place = places_[leg];
+    const SineCosine& arm = arms_[leg];
     // Stamper's frame: x and y in the plane of the ring, z normal to it.
     const double x = plate.y();
     const double y = plate.z();
-    const double u = x * place.cosine + y * place.sine - static_cast<double>(g.r);
-    const double v = -x * place.sine + y * place.cosine - static_cast<double>(g.s);
-    const double side = v + static_cast<double>(g.f);  // b cos(theta3)
-    const double out = u - static_cast<double>(g.a) * arm.cosine + static_cast<double>(g.c);
-    const double off = plate.x() - static_cast<double>(g.a) * arm.sine;
+    const double u = x * place.cosine + y * place.sine - static_cast<double>(g_.r);
+    const double v = -x * place.sine + y * place.cosine - static_cast<double>(g_.s);
+    const double side = v + static_cast<double>(g_.f);  // b cos(theta3)
+    const double out = u - static_cast<double>(g_.a) * arm.cosine + static_cast<double>(g_.c);
+    const double off = plate.x() - static_cast<double>(g_.a) * arm.sine;
     const double along =  // b sin(theta3)
-        std::sqrt(out * out + off * off) - static_cast<double>(g.d) - static_cast<double>(g.e);
-    const double b = static_cast<double>(g.b);
-    misfit[i] = side * side + along * along - b * b;
+        std::sqrt(out * out + off * off) - static_cast<double>(g_.d) - static_cast<double>(g_.e);
+    const double b = static_cast<double>(g_.b);
+    return side * side + along * along - b * b;
   }
-  return misfit;
-}
+
+  const core::DeltaGeometry& g_;
+  std::array<SineCosine, core::kAxes> places_;  // of the legs around the base
+  std::array<SineCosine, core::kAxes> arms_;
+};
 
 Vector3d five_bar_elbow(const core::FiveBarGeometry& g, const Vector3d& q, Eigen::Index i) {
   const Vector3d motor(0.0, (i == 0 ? -0.5 : 0.5) * static_cast<double>(g.base_m), 0.0);
   return motor + static_cast<double>(g.arm_m) * elevated(Vector3d::UnitY(), q[i]);
 }
 
-Vector3d five_bar_misfit(const core::FiveBarGeometry& g, const Vector3d& q, const Vector3d& tip) {
-  const double length = static_cast<double>(g.forearm_m);
-  Vector3d misfit(0.0, 0.0, tip.x());
-  for (Eigen::Index i = 0; i < 2; ++i) {
-    misfit[i] = (tip - five_bar_elbow(g, q, i)).squaredNorm() - length * length;
+/// Closure error of both forearms of a five-bar, m2, and the distance from its plane, m, by the
+/// position of its tip.
+class FiveBarClosure {
+ public:
+  FiveBarClosure(const core::FiveBarGeometry& g, const Vector3d& q)
+      : elbows_{five_bar_elbow(g, q, 0), five_bar_elbow(g, q, 1)},
+        length_(static_cast<double>(g.forearm_m)) {}
+
+  Vector3d operator()(const Vector3d& tip) const {
+    return {(tip - elbows_[0]).squaredNorm() - length_ * length_,
+            (tip - elbows_[1]).squaredNorm() - length_ * length_, tip.x()};
   }
-  return misfit;
-}
+
+ private:
+  std::array<Vector3d, 2> elbows_;
+  double length_;
+};
 
 /// Starting point of the search, far from the elbows on the side where the forearms meet.
 Vector3d beyond_elbows(const core::FiveBarGeometry& g, const Vector3d& q) {
@@ -118,23 +145,22 @@ Matrix3d gradient(const Function& function, const Vector3d& at) {
   return result;
 }
 
-/// Tip for which misfit(joints, tip) is zero, and its Jacobian. Newton's method from the distant
-/// point `from`, which selects the solution on that side.
-template <class Misfit>
-std::optional<LinkagePose> closed_pose(const Misfit& misfit, const Vector3d& q,
-                                       const Vector3d& from) {
+/// Tip with which the Closure of a geometry and joints is zero, and its Jacobian. Newton's method
+/// from the distant point `from`, which selects the solution on that side.
+template <class Closure, class Geometry>
+std::optional<LinkagePose> closed_pose(const Geometry& g, const Vector3d& q, const Vector3d& from) {
+  const Closure misfit(g, q);
   LinkagePose pose;
   pose.tip_m = from;
-  const auto by_tip = [&](const Vector3d& tip) { return misfit(q, tip); };
   for (int i = 0; i < kNewtonSteps; ++i) {
-    const Vector3d step = gradient(by_tip, pose.tip_m).inverse() * misfit(q, pose.tip_m);
+    const Vector3d step = gradient(misfit, pose.tip_m).inverse() * misfit(pose.tip_m);
     if (!step.allFinite()) {
       return std::nullopt;
     }
     pose.tip_m -= step;
     if (step.squaredNorm() <= kConverged_m * kConverged_m) {
-      const auto by_joints = [&](const Vector3d& joints) { return misfit(joints, pose.tip_m); };
-      pose.jacobian = -gradient(by_tip, pose.tip_m).inverse() * gradient(by_joints, q);
+      const auto by_joints = [&](const Vector3d& joints) { return Closure(g, joints)(pose.tip_m); };
+      pose.jacobian = -gradient(misfit, pose.tip_m).inverse() * gradient(by_joints, q);
       return pose;
     }
   }
@@ -156,14 +182,10 @@ std::optional<LinkagePose> geometry_pose(const core::DeviceModel& m, const Vecto
       return arm_pose(m.arm, q);
     case core::DeviceKind::kDelta: {
       const double reach = static_cast<double>(m.delta.a + m.delta.b + m.delta.d + m.delta.e);
-      return closed_pose(
-          [&m](const Vector3d& j, const Vector3d& p) { return delta_misfit(m.delta, j, p); }, q,
-          reach * Vector3d::UnitX());
+      return closed_pose<DeltaClosure>(m.delta, q, reach * Vector3d::UnitX());
     }
     case core::DeviceKind::kFiveBar: {
-      auto pose = closed_pose(
-          [&m](const Vector3d& j, const Vector3d& p) { return five_bar_misfit(m.five_bar, j, p); },
-          q, beyond_elbows(m.five_bar, q));
+      auto pose = closed_pose<FiveBarClosure>(m.five_bar, q, beyond_elbows(m.five_bar, q));
       if (pose) {
         pose->jacobian.col(2).setZero();
       }
@@ -175,26 +197,27 @@ std::optional<LinkagePose> geometry_pose(const core::DeviceModel& m, const Vecto
   return std::nullopt;
 }
 
-/// Height of a link's centre of mass in the frame of the geometry.
-double centre_height(const core::DeviceModel& m, const Vector3d& q, Eigen::Index link) {
-  const double centre = static_cast<double>(m.link_centre_m[link]);
-  const double sine = sine_cosine(q[link]).sine;
-  switch (m.kind) {
-    case core::DeviceKind::kArm: {
-      const ArmPoints p = arm_points(m.arm, q);
-      const double on_arm = centre * p.elbow.z() / static_cast<double>(m.arm.arm_m);
-      return link == 0 ? 0.0 : link == 1 ? on_arm : p.elbow.z() + centre * p.forearm.z();
+/// Heights of the links' centres of mass in the frame of the geometry.
+Vector3d centre_heights(const core::DeviceModel& m, const Vector3d& q) {
+  Vector3d height = Vector3d::Zero();
+  if (m.kind == core::DeviceKind::kArm) {
+    const ArmPoints p = arm_points(m.arm, q);
+    const double elbow = p.elbow.z();
+    const double on_arm = static_cast<double>(m.link_centre_m[1]);
+    const double on_forearm = static_cast<double>(m.link_centre_m[2]);
+    height[1] = on_arm * elbow / static_cast<double>(m.arm.arm_m);
+    height[2] = elbow + on_forearm * p.forearm.z();
+  } else if (m.kind != core::DeviceKind::kCartesian) {
+    for (std::uint32_t link = 0; link < core::axes_of(m.kind); ++link) {
+      const double centre = static_cast<double>(m.link_centre_m[link]);
+      const SineCosine arm = sine_cosine(q[link]);
+      height[link] =
+          m.kind == core::DeviceKind::kDelta
+              ? centre * arm.cosine * sine_cosine(static_cast<double>(m.delta.leg_rad[link])).sine
+              : centre * arm.sine;
     }
-    case core::DeviceKind::kDelta:
-      return centre * sine_cosine(q[link]).cosine *
-             sine_cosine(static_cast<double>(m.delta.leg_rad[link])).sine;
-    case core::DeviceKind::kFiveBar:
-    case core::DeviceKind::kPaddle:
-      return centre * sine;
-    case core::DeviceKind::kCartesian:
-      return 0.0;
   }
-  return 0.0;
+  return height;
 }
 
 }  // namespace
@@ -241,10 +264,10 @@ Vector3d Linkage::joints_near(const Vector3d& tip_m) const {
 }
 
 double Linkage::links_potential_J(const Vector3d& joints) const {
+  const Vector3d heights = centre_heights(model_, joints);
   double sum = 0.0;
   for (Eigen::Index link = 0; link < axes(); ++link) {
-    sum += kGravity * static_cast<double>(model_.link_mass_kg[link]) *
-           centre_height(model_, joints, link);
+    sum += kGravity * static_cast<double>(model_.link_mass_kg[link]) * heights[link];
   }
   return sum;
 }
