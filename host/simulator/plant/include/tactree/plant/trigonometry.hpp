@@ -9,7 +9,7 @@ struct SineCosine {
   double cosine = 1.0;
 };
 
-/// The error is at most 1e-12 for |angle_rad| <= 1000.
+/// The error is at most 4e-16 for |angle_rad| <= pi, and 1e-12 for |angle_rad| <= 1000.
 [[nodiscard]] SineCosine sine_cosine(double angle_rad);
 
 }  // namespace tactree::plant
