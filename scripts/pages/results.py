@@ -1,4 +1,4 @@
-"""docs/RESULTS.md with its plots (docs/RESULTS/), docs/FIGURES.md, and the figures of docs/COLLECTIONS.md."""
+"""docs/RESULTS.md with its plots (docs/RESULTS/), docs/FIGURES.md, and the figures of docs/COLLECTIONS.md and SHARE.md."""
 import os
 import pathlib
 import subprocess
@@ -33,11 +33,15 @@ def cpu_name():
                  if line.startswith("model name")), "unknown")
 
 
+def machine():
+    return f"Machine: {cpu_name()}, {os.cpu_count()} cores."
+
+
 def figures(build):
     compiler = output_of(os.environ.get("CXX", "g++"), "--version").splitlines()[0]
     nearest = build / "bench/nearest_bench"
     return "\n\n".join([
-        f"Machine: {cpu_name()}, {os.cpu_count()} cores. Compiler: {compiler}, `-O2` for both.",
+        f"{machine()} Compiler: {compiler}, `-O2` for both.",
         "## Nearest point within two spacings, compared with nanoflann",
         "Surface z = cos x + cos y, 5 m x 5 m. The path of the hand follows the surface and hovers above it; random probes\n"
         "are near it. nanoflann searches the same float32 points, at most 10 in a leaf. Below a ratio of 1, Tactree is "
@@ -53,5 +57,8 @@ def page(build):
 
 
 def collections(build):
-    return "\n\n".join([f"Machine: {cpu_name()}, {os.cpu_count()} cores.",
-                        output_of(ROOT / "bench/collection_bench", "--tactree", build / "tools/cli/tactree")])
+    return "\n\n".join([machine(), output_of(ROOT / "bench/collection_bench", "--tactree", build / "tools/cli/tactree")])
+
+
+def rates(build):
+    return "\n\n".join([machine(), output_of(ROOT / "bench/share_bench", "--tactree", build / "tools/cli/tactree")])
