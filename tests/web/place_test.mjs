@@ -163,15 +163,18 @@ test('a saved pose places the model in every command', async (t) => {
   await placedAt(again, 'turn-y', 0);
 });
 
-test('the reach of the device is drawn while the model is placed', async (t) => {
-  const page = await openPlaced(t);
-  await page.locator('#legend-reach').waitFor();
-  const reach = await page.evaluate(async () => (await fetch('/reach.json')).json());
-  assert.equal(reach.points_m.length, reach.rows * reach.columns);
-  await page.locator('#place summary').click();
-  await page.locator('#legend-reach').waitFor({ state: 'hidden' });
-  assert.deepEqual(page.troubles, []);
-});
+for (const device of ['premium', 'pantograph', 'hapkit']) {
+  test(`the reach of a ${device} is drawn while the model is placed`, async (t) => {
+    const page = await openPlaced(t, ['--device', device]);
+    await page.locator('#legend-reach').waitFor();
+    const reach = await page.evaluate(async () => (await fetch('/reach.json')).json());
+    assert.ok(reach.columns > 0);
+    assert.equal(reach.points_m.length, reach.rows * reach.columns);
+    await page.locator('#place summary').click();
+    await page.locator('#legend-reach').waitFor({ state: 'hidden' });
+    assert.deepEqual(page.troubles, []);
+  });
+}
 
 test('a scene cannot be placed, and two pictures have no handles', async (t) => {
   const server = await startServer([blob, blob]);

@@ -187,15 +187,13 @@ json poses_json(const Bodies& bodies, double t_s) {
 }
 
 std::string reach_json(const core::DeviceModel& device) {
-  using simulation::ReachShape;
+  const simulation::ReachShape shape = simulation::reach_shape(device);
   json points = json::array();
-  for (const Eigen::Vector3d& point : simulation::reach_shape(device).points_m) {
+  for (const Eigen::Vector3d& point : shape.points_m) {
     points.push_back(drawn(point));
   }
-  const json shape = {{"rows", ReachShape::kRows},
-                      {"columns", ReachShape::kColumns},
-                      {"points_m", std::move(points)}};
-  return shape.dump();
+  return json{{"rows", shape.rows}, {"columns", shape.columns}, {"points_m", std::move(points)}}
+      .dump();
 }
 
 }  // namespace tactree::viewer

@@ -21,6 +21,8 @@ constexpr double kAccuracy = 1e-3;     // relative, of largest_scale()
 constexpr double kStep_m = 0.02;
 constexpr double kFarthest_m = 2.0;
 constexpr double kBorder_m = 1e-3;
+constexpr int kRows = 11;  // of a surface
+constexpr int kColumns = 24;
 
 /// Points on the faces of the cube from -1 to 1.
 std::vector<Eigen::Vector3d> face_points() {
@@ -39,18 +41,61 @@ std::vector<Eigen::Vector3d> face_points() {
   return points;
 }
 
-/// Distance of the border of the workspace from the origin. Precondition: the origin is reached.
-double border_along(const core::DeviceModel& device, const Eigen::Vector3d& direction) {
+/// Position on the border of the workspace. Precondition: `from` is reached.
+Eigen::Vector3d border_along(const core::DeviceModel& device, const Eigen::Vector3d& from,
+                             const Eigen::Vector3d& direction) {
+  const auto at = [&](double distance) { return (from + distance * direction).eval(); };
   double low = 0.0;
-  while (low < kFarthest_m && reaches(device, (low + kStep_m) * direction)) {
+  while (low < kFarthest_m && reaches(device, at(low + kStep_m))) {
     low += kStep_m;
   }
   double high = low + kStep_m;
   while (high - low > kBorder_m) {
     const double middle = 0.5 * (low + high);
-    (reaches(device, middle * direction) ? low : high) = middle;
+    (reaches(device, at(middle)) ? low : high) = middle;
   }
-  return low;
+  return at(low);
+}
+
+ReachShape reached_surface(const core::DeviceModel& device) {
+  ReachShape shape{kRows, kColumns, {}};
+  for (int row = 0; row < kRows; ++row) {
+    const double height = std::numbers::pi * (static_cast<double>(row) / (kRows - 1) - 0.5);
+    for (int column = 0; column < kColumns; ++column) {
+      const double turn = 2.0 * std::numbers::pi * column / kColumns;
+      const Eigen::Vector3d direction(std::cos(height) * std::cos(turn),
+                                      std::cos(height) * std::sin(turn), std::sin(height));
+      shape.points_m.push_back(border_along(device, Eigen::Vector3d::Zero(), direction));
+    }
+  }
+  return shape;
+}
+
+/// In the plane of a five-bar.
+ReachShape reached_area(const core::DeviceModel& device, const Eigen::Vector3d& middle) {
+  ReachShape shape{2, kColumns, std::vector<Eigen::Vector3d>(kColumns, middle)};
+  for (int column = 0; column < kColumns; ++column) {
+    const double turn = 2.0 * std::numbers::pi * column / kColumns;
+    shape.points_m.push_back(border_along(device, middle, {0.0, std::cos(turn), std::sin(turn)}));
+  }
+  return shape;
+}
+
+/// Of a paddle.
+ReachShape reached_arc(const core::DeviceModel& device) {
+  const auto limit = [](float joint) {
+    return std::clamp(static_cast<double>(joint), -std::numbers::pi, std::numbers::pi);
+  };
+  const double low = limit(device.joint_min[0]);
+  const double high = limit(device.joint_max[0]);
+  const plant::Linkage linkage(device);
+  ReachShape shape{1, kColumns, {}};
+  for (int column = 0; column < kColumns; ++column) {
+    const double way = 1.0 - std::abs(2.0 * column / kColumns - 1.0);
+    const auto pose = linkage.pose({low + way * (high - low), 0.0, 0.0});
+    shape.points_m.push_back(pose->tip_m);
+  }
+  return shape;
 }
 
 /// Position of the probe of a device of one or two axes at this height, and for a paddle at its own
@@ -141,21 +186,15 @@ std::optional<double> largest_scale(const core::DeviceModel& device,
 }
 
 ReachShape reach_shape(const core::DeviceModel& device) {
-  ReachShape shape;
-  if (core::axes_of(device.kind) != core::kAxes || !reaches(device, Eigen::Vector3d::Zero())) {
-    return shape;
+  const std::uint32_t axes = core::axes_of(device.kind);
+  if (axes == 1) {
+    return reached_arc(device);
   }
-  for (int row = 0; row < ReachShape::kRows; ++row) {
-    const double height =
-        std::numbers::pi * (static_cast<double>(row) / (ReachShape::kRows - 1) - 0.5);
-    for (int column = 0; column < ReachShape::kColumns; ++column) {
-      const double turn = 2.0 * std::numbers::pi * column / ReachShape::kColumns;
-      const Eigen::Vector3d direction(std::cos(height) * std::cos(turn),
-                                      std::cos(height) * std::sin(turn), std::sin(height));
-      shape.points_m.emplace_back(border_along(device, direction) * direction);
-    }
+  const auto middle = axes == 2 ? place_on_path(device, 0.0, 0.0) : Eigen::Vector3d::Zero().eval();
+  if (!reaches(device, *middle)) {
+    return {};
   }
-  return shape;
+  return axes == 2 ? reached_area(device, *middle) : reached_surface(device);
 }
 
 }  // namespace tactree::simulation

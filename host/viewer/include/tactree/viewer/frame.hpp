@@ -74,7 +74,7 @@ struct Work {
 /// The pose of each body at time t_s: 12 numbers, the upper three rows of its matrix.
 [[nodiscard]] nlohmann::json poses_json(const Bodies& bodies, double t_s);
 
-/// The border of the workspace for drawings, device frame: {"rows": 11, "columns": 24, "points_m":
+/// The border of the workspace for drawings, device frame: {"rows": n, "columns": m, "points_m":
 /// [[x, y, z], ...]}, see simulation::reach_shape(). Cost: some tenths of a second.
 [[nodiscard]] std::string reach_json(const core::DeviceModel& device);
 

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "print_preset.hpp"
+#include "tactree/plant/linkage.hpp"
 
 namespace tactree::simulation {
 namespace {
@@ -101,8 +102,7 @@ TEST(Workspace, StartMayBeBesideArc) {
 TEST(Workspace, ShapeIsBorderOfReach) {
   const core::DeviceModel device = cartesian().model;
   const ReachShape shape = reach_shape(device);
-  ASSERT_EQ(shape.points_m.size(),
-            static_cast<std::size_t>(ReachShape::kRows * ReachShape::kColumns));
+  ASSERT_EQ(shape.points_m.size(), static_cast<std::size_t>(shape.rows * shape.columns));
   for (const Vector3d& point : shape.points_m) {
     ASSERT_TRUE(reaches(device, point)) << point.transpose();
     ASSERT_NEAR(point.cwiseAbs().maxCoeff(), 0.49, 2e-3) << point.transpose();
@@ -111,8 +111,45 @@ TEST(Workspace, ShapeIsBorderOfReach) {
   EXPECT_NEAR(shape.points_m.back().z(), 0.49, 2e-3);
 }
 
-TEST(Workspace, ShapeIsEmptyForPlanarDevices) {
-  EXPECT_TRUE(reach_shape(core::presets::pantograph().model).points_m.empty());
+TEST(Workspace, ShapeOfPantographIsBorderOfItsArea) {
+  const core::DeviceModel device = core::presets::pantograph().model;
+  const ReachShape shape = reach_shape(device);
+  ASSERT_EQ(shape.rows, 2);
+  ASSERT_EQ(shape.points_m.size(), static_cast<std::size_t>(2 * shape.columns));
+  const Vector3d middle = shape.points_m.front();
+  EXPECT_TRUE(reaches(device, middle));
+  for (int column = 0; column < shape.columns; ++column) {
+    const Vector3d& border = shape.points_m[static_cast<std::size_t>(shape.columns + column)];
+    const Vector3d out = (border - middle).normalized();
+    EXPECT_EQ(shape.points_m[static_cast<std::size_t>(column)], middle);
+    EXPECT_EQ(border.x(), middle.x());
+    EXPECT_TRUE(reaches(device, border)) << border.transpose();
+    EXPECT_FALSE(reaches(device, border + 2e-3 * out)) << border.transpose();
+  }
+}
+
+TEST(Workspace, ShapeOfPaddleIsItsWayThereAndBack) {
+  const core::DeviceModel device = core::presets::hapkit().model;
+  const ReachShape shape = reach_shape(device);
+  ASSERT_EQ(shape.rows, 1);
+  ASSERT_EQ(shape.points_m.size(), static_cast<std::size_t>(shape.columns));
+  const plant::Linkage linkage(device);
+  const auto end = [&](float joint) {
+    return linkage.pose({static_cast<double>(joint), 0.0, 0.0})->tip_m;
+  };
+  const std::size_t half = shape.points_m.size() / 2;
+  EXPECT_EQ(shape.points_m[0], end(device.joint_min[0]));
+  EXPECT_EQ(shape.points_m[half], end(device.joint_max[0]));
+  for (std::size_t i = 1; i < half; ++i) {
+    EXPECT_LT((shape.points_m[i] - shape.points_m[2 * half - i]).norm(), 1e-12);
+    EXPECT_TRUE(reaches(device, shape.points_m[i]));
+  }
+}
+
+TEST(Workspace, ShapeIsEmptyIfOriginIsNotReached) {
+  core::DeviceModel device = cartesian().model;
+  device.joint_min[2] = 0.01F;
+  EXPECT_TRUE(reach_shape(device).points_m.empty());
 }
 
 TEST(Workspace, HoldsAnyBoxWithoutLimits) {

@@ -40,17 +40,18 @@ inline constexpr double kMaxScale = 1e6;
 [[nodiscard]] std::optional<double> largest_scale(const core::DeviceModel& device,
                                                   const Eigen::Vector3d& size_m);
 
-/// The border of the workspace, for drawings: a grid of directions from the device's origin, from
-/// -z to +z, whose rows go around z.
+/// The border of the workspace, for drawings: a grid of positions in the device frame, row by row,
+/// whose rows are closed. Empty if the device does not reach its origin.
 struct ReachShape {
-  static constexpr int kRows = 11;
-  static constexpr int kColumns = 24;
-  std::vector<Eigen::Vector3d> points_m;  ///< row by row, device frame; empty: not drawn
+  int rows = 0;
+  int columns = 0;
+  std::vector<Eigen::Vector3d> points_m;
 };
 
-/// In each direction, the first position that is not reached, to a millimetre; a device without
-/// limits is drawn up to 2 m. Empty for a device of one or two axes, and if the origin is not
-/// reached. Precondition: core::is_valid(device). Cost: some tenths of a second.
+/// Of a device of three axes, a surface whose rows go around z, from -z to +z; of two, an area as
+/// rows of its middle and its border; of one, the way of the probe, there and back. A border is the
+/// first position that is not reached, to a millimetre; a device without limits is drawn up to 2 m,
+/// or one turn. Precondition: core::is_valid(device). Cost: some tenths of a second.
 [[nodiscard]] ReachShape reach_shape(const core::DeviceModel& device);
 
 }  // namespace tactree::simulation
