@@ -131,8 +131,7 @@ void Proxy::sweep(const BlobView& view, Vec3 probe) {
   for (std::uint32_t i = 0; i < kSteps; ++i) {  // bound: kSteps
     const Vec3 path = probe - position_;
     const float distance = length(path);
-    const bool last = !has_next_ && !(distance > step);
-    Vec3 x = last ? probe : position_ + (step / distance) * path;
+    Vec3 x = distance > step ? position_ + (step / distance) * path : probe;
     if (has_next_) {
       x = next_;
       has_next_ = false;
@@ -142,7 +141,8 @@ void Proxy::sweep(const BlobView& view, Vec3 probe) {
       return;
     }
     visit(view, x);  // at most: fits per Scene::update together fits
-    if (in_contact() || last || asks_ || blocked_) {
+    const bool arrived = x == probe && !has_next_;
+    if (in_contact() || arrived || asks_ || blocked_) {
       return;
     }
   }

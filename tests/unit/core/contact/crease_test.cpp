@@ -377,6 +377,31 @@ TEST(Crease, FadesBeyondTopOfRidge) {
   }
 }
 
+// In one tick, a fast hand comes near an edge and behind the face beside it.
+TEST(Crease, FeelsFastHandInFirstTickBehindFace) {
+  std::mt19937_64 random(2);
+  int late = 0;
+  for (const double angle : {60.0, 90.0, 120.0}) {
+    Prism prism = ridge(angle);
+    prism.turn = any_turn(random);
+    const Shape shape = sampled(prism, kH, 0.3, 0.0, 3);
+    const double half = angle * std::numbers::pi / 360.0;
+    const Vector3d along(std::sin(half), 0.0, -std::cos(half));
+    const Vector3d out(std::cos(half), 0.0, std::sin(half));
+    for (const double beside : {0.5e-3, 0.8e-3, 1.1e-3}) {
+      for (const double depth : {0.05e-3, 0.2e-3, 0.35e-3, 0.5e-3}) {
+        const Vector3d end = beside * along - depth * out;
+        Hand hand(shape, prism.turn, end + 6e-3 * out, 1000.0F);
+        hand.move_to(end + 1e-3 * out, 1.0);
+        EXPECT_FALSE(hand.feels());
+        hand.move_to(end, 1.0);
+        late += hand.feels() ? 0 : 1;
+      }
+    }
+  }
+  EXPECT_EQ(late, 0);
+}
+
 // The hand slides off a block, 0.5 mm below its top, and is then in front of its side.
 TEST(Crease, LetsHandSlideOffEdge) {
   std::mt19937_64 random(1);
