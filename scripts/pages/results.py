@@ -18,6 +18,7 @@ def output_of(*command):
 
 def results(build):
     """The page below its title. A target that is missed is named as missed in it."""
+    output_of(ROOT / "scripts/install-deps", "models")
     with tempfile.TemporaryDirectory() as folder:
         page = pathlib.Path(folder, "RESULTS.md")
         output_of(build / "tools/cli/tactree", "evaluate", "--report", page)

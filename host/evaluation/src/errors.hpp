@@ -4,9 +4,11 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 namespace tactree::evaluation {
 
@@ -31,6 +33,17 @@ class Errors {
   double largest_ = 0.0;
   std::uint64_t count_ = 0;
 };
+
+/// The value that this part of the values does not exceed. Reorders them; 0 if there are none.
+inline double quantile(std::vector<double>& values, double part) {
+  if (values.empty()) {
+    return 0.0;
+  }
+  const double last = part * static_cast<double>(values.size() - 1);
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(std::ceil(last));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
 
 /// Angle between two directions, degrees.
 inline double angle_deg(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {

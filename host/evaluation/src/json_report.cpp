@@ -118,7 +118,11 @@ Json slides(const SlideScores& s) {
           {"expected_N", s.expected_N},
           {"force_error_rms_N", number(s.force_error_rms_N)},
           {"force_max_N", s.force_max_N},
-          {"force_step_N", s.force_step_N}};
+          {"force_step_N", s.force_step_N},
+          {"force_step_99_N", s.force_step_99_N},
+          {"force_step_999_N", s.force_step_999_N},
+          {"crossings", s.crossings},
+          {"crossings_missed", s.missed}};
 }
 
 Json openings(const ScanResult& scan) {

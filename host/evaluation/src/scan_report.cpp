@@ -51,8 +51,15 @@ std::string slides_text(const SlideScores& s) {
   }
   return fmt::format(
       "{} slides, {} ticks; contact lost in {}; force {:.3g} N expected, error {:.3g} "
-      "N rms, largest force {:.3g} N; largest jump of the force {:.3g} N",
-      s.slides, s.ticks, s.lost, s.expected_N, s.force_error_rms_N, s.force_max_N, s.force_step_N);
+      "N rms, largest force {:.3g} N; jump of the force {:.3g} N in 99 % of the ticks, {:.3g} N in "
+      "99.9 %, at most {:.3g} N",
+      s.slides, s.ticks, s.lost, s.expected_N, s.force_error_rms_N, s.force_max_N,
+      s.force_step_99_N, s.force_step_999_N, s.force_step_N);
+}
+
+std::string crossings_text(const SlideScores& s) {
+  return fmt::format("{} at 0.1, 0.5 and 1 m/s, 1000 ticks a second; not noticed within 1 mm: {}",
+                     s.crossings, s.missed);
 }
 
 }  // namespace
@@ -71,12 +78,13 @@ std::string scan_report(const Result& result) {
         std::back_inserter(page),
         "\n## {}\n| | |\n|---|---|\n| points | {} of {} kept{}; {} in the model, spacing {} |\n"
         "| outside | {} |\n| openings | {} |\n| slides | {} |\n"
+        "| crossings | {} |\n"
         "| computed surface | {:.1f} % of the probes within a spacing of the surface have a "
         "result; against a reference in double precision, the error of the point is {} rms, of the "
         "normal {:.2g} degrees rms, away from creases |\n",
         scan.name, scan.kept_points, scan.input_points, dropped_text(scan), scan.points,
         length_text(scan.spacing_m, 3), orientation_text(scan), openings_text(scan),
-        slides_text(scan.slides), 100.0 * scan.scores.get("answered"),
+        slides_text(scan.slides), crossings_text(scan.slides), 100.0 * scan.scores.get("answered"),
         length_text(scan.scores.get("smooth_distance_rms_m"), 3),
         scan.scores.get("smooth_normal_rms_deg"));
     for (const std::string& note : scan.notes) {

@@ -78,6 +78,9 @@ ScanResult score_scan(const std::filesystem::path& file, const Options& options)
     builder::Progress quiet;
     builder::BuildOptions build;
     build.centre = true;
+    if (!options.scans_only) {
+      build.fit_m = kModelEdge_m;
+    }
     build.format = options.format;
     build.columns = options.columns;
     const builder::BuildResult built = builder::build_model(std::span(&file, 1), build, quiet);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 #include <random>
+#include <vector>
 
 #include "errors.hpp"
 #include "tactree/core/contact/surface.hpp"
@@ -20,6 +21,9 @@ constexpr double kFastest_m = 1e-4;        // movement per tick, at most a fifth
 constexpr double kStepsOfDepth = 20;       // of the descent to that depth
 constexpr int kTicks = 300;                // per slide
 constexpr int kTriesPerSlide = 20;         // for a start at which the surface fit is valid
+constexpr double kCrossings_m_s[] = {0.1, 0.5, 1.0};
+constexpr double kNoticed_m = 1e-3;     // maximum depth at which a crossing is noticed
+constexpr double kSpacingsAhead = 2.0;  // of a crossing's start before the surface
 
 struct ScanSpot {
   Vector3d point;
@@ -59,8 +63,7 @@ class Slide {
     ++scores.ticks;
     scores.lost += touched.in_contact ? 0 : 1;
     scores.force_max_N = std::max(scores.force_max_N, touched.force.norm());
-    scores.force_step_N =
-        std::max(scores.force_step_N, (touched.force - last_force_).norm() - moved_N);
+    steps_.push_back(std::max(0.0, (touched.force - last_force_).norm() - moved_N));
     error_.add(touched.force.norm() - kStiffness_N_m * depth_m_);
     last_force_ = touched.force;
     hand_ = hand;
@@ -69,6 +72,7 @@ class Slide {
     return true;
   }
   [[nodiscard]] const Errors& error() const { return error_; }
+  [[nodiscard]] const std::vector<double>& steps() const { return steps_; }
 
  private:
   const core::BlobView& view_;
@@ -78,7 +82,25 @@ class Slide {
   Touch touch_;
   Vector3d last_force_ = Vector3d::Zero();
   Errors error_;
+  std::vector<double> steps_;  // change of the force in each tick, N
 };
+
+/// Moves straight through the surface by `step_m` per tick. Empty if the hand starts inside.
+std::optional<bool> notices_crossing(const core::BlobView& view, const ScanSpot& spot,
+                                     double step_m, double phase) {
+  const double ahead = kSpacingsAhead * static_cast<double>(view.header().spacing_m);
+  const auto at = [&](double depth) { return (spot.point - depth * spot.normal).eval(); };
+  Touch touch(view, core::RenderMode::kSurface, at(-ahead));
+  touch.to(at(-ahead));
+  if (touch.to(at(-ahead)).inside) {  // known from the second tick on
+    return std::nullopt;
+  }
+  bool noticed = false;
+  for (double depth = phase * step_m - ahead; depth <= kNoticed_m && !noticed; depth += step_m) {
+    noticed = touch.to(at(depth)).in_contact;
+  }
+  return noticed;
+}
 
 }  // namespace
 
@@ -92,6 +114,8 @@ SlideScores slide_over(const core::BlobView& view, std::span<const Vector3d> poi
   std::mt19937_64 random(seed);
   std::uniform_int_distribution<std::size_t> pick(0, points.size() - 1);
   std::normal_distribution<double> any;
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  std::vector<double> steps;
   double sum_squared = 0.0;
   for (int tries = 0; tries < kTriesPerSlide * slides && scores.slides < slides; ++tries) {
     const std::optional<ScanSpot> begin = surface_at(view, points[pick(random)]);
@@ -108,10 +132,19 @@ SlideScores slide_over(const core::BlobView& view, std::span<const Vector3d> poi
     if (slide.error().count() > 0) {
       ++scores.slides;
       sum_squared += std::pow(slide.error().rms(), 2) * static_cast<double>(slide.error().count());
+      steps.insert(steps.end(), slide.steps().begin(), slide.steps().end());
+    }
+    for (const double speed : kCrossings_m_s) {
+      const auto noticed = notices_crossing(view, *begin, speed * kPeriodS, unit(random));
+      scores.crossings += noticed ? 1 : 0;
+      scores.missed += noticed && !*noticed ? 1 : 0;
     }
   }
   scores.force_error_rms_N =
       scores.ticks == 0 ? kNotMeasured : std::sqrt(sum_squared / scores.ticks);
+  scores.force_step_99_N = quantile(steps, 0.99);
+  scores.force_step_999_N = quantile(steps, 0.999);
+  scores.force_step_N = quantile(steps, 1.0);
   return scores;
 }
 

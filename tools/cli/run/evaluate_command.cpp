@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <string>
@@ -22,8 +23,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// From the package glmark2-data.
-constexpr const char* kDefaultScan = "/usr/share/glmark2/models/bunny.obj";
+// From the Debian packages glmark2-data and assimp-testmodels.
+constexpr const char* kDefaultScans[] = {
+    "/usr/share/glmark2/models/bunny.obj",
+    "/usr/share/glmark2/models/horse.3ds",
+    "/usr/share/glmark2/models/cat.3ds",
+    "/usr/share/glmark2/models/asteroid-high.3ds",
+    "/usr/share/assimp/models/3DS/fels.3ds",
+    "/usr/share/assimp/models/Collada/duck.dae",
+    "/usr/share/assimp/models/MS3D/jeep1.ms3d",
+    "/usr/share/assimp/models/PLY/Wuson.ply",
+    "/usr/share/assimp/models/STL/Spider_binary.stl",
+    "/usr/share/assimp/models/glTF2/2CylinderEngine-glTF-Binary/2CylinderEngine.glb",
+};
 
 struct EvaluateOptions {
   evaluation::Options evaluation;
@@ -64,8 +76,9 @@ std::vector<fs::path> scans_of(const EvaluateOptions& options) {
     const std::vector<fs::path> found = files_below(options.folder);
     scans.insert(scans.end(), found.begin(), found.end());
   }
-  if (scans.empty() && !options.no_scans && fs::exists(kDefaultScan)) {
-    scans.emplace_back(kDefaultScan);
+  if (scans.empty() && !options.no_scans) {
+    std::copy_if(std::begin(kDefaultScans), std::end(kDefaultScans), std::back_inserter(scans),
+                 [](const fs::path& scan) { return fs::exists(scan); });
   }
   return scans;
 }
@@ -173,7 +186,8 @@ void add_evaluate_command(CLI::App& app, int& exit_code) {
   verb->add_option("--scans", options->folder, "compare every readable scan below this folder")
       ->excludes(scan);
   verb->add_flag("--no-scans", options->no_scans,
-                 fmt::format("compare no scans (default: {}, if present)", kDefaultScan))
+                 "compare no scans (default: ten models of the Debian packages glmark2-data and "
+                 "assimp-testmodels, those that are present)")
       ->excludes(scan);
   verb->add_flag("--require-targets", options->require_targets, "exit code 1 if a target is missed")
       ->excludes(scan);
