@@ -62,7 +62,10 @@ export class Panel {
     });
     find('ask-cancel').addEventListener('click', () => this.answered());
     const materials = find<HTMLInputElement>('use_materials');
-    materials.addEventListener('change', () => this.set('use_materials', materials.checked));
+    materials.addEventListener('change', () => {
+      this.edited.use_materials = materials.checked;
+      this.set('use_materials', materials.checked);
+    });
     find('clear-injections').addEventListener('click', () => say({ do: 'clear_injections' }));
   }
 
@@ -100,7 +103,12 @@ export class Panel {
     if (settings.mode) this.choose('mode', settings.mode);
     this.choose('rate_hz', String(settings.rate_hz));
     if (settings.device) this.choose('device', settings.device);
-    find<HTMLInputElement>('use_materials').checked = settings.use_materials;
+    const materials = find<HTMLInputElement>('use_materials');
+    const wanted = this.edited.use_materials ?? settings.use_materials;
+    if (wanted === settings.use_materials || document.activeElement !== materials) {
+      delete this.edited.use_materials;
+      materials.checked = settings.use_materials;
+    }
     find('materials-note').hidden = find('materials').hidden || !settings.use_materials;
     find('stability').textContent =
       `Stable up to ${Math.floor(settings.stiffness_limit_N_m)} N/m with a hand`;
