@@ -51,7 +51,10 @@ export class Panel {
       slider.addEventListener('change', () => this.set(id, settingOf(id)));
     }
     const mode = find<HTMLSelectElement>('mode');
-    mode.addEventListener('change', () => this.set('mode', mode.value));
+    mode.addEventListener('change', () => {
+      this.edited.mode = mode.value as NonNullable<Settings['mode']>;
+      this.set('mode', mode.value);
+    });
     const rate = find<HTMLSelectElement>('rate_hz');
     rate.addEventListener('change', () => this.ask('Rate', rate, { rate_hz: Number(rate.value) }));
     const device = find<HTMLSelectElement>('device');
@@ -94,21 +97,20 @@ export class Panel {
       const slider = find<HTMLInputElement>(id);
       const edited = this.edited[id] ?? settings[id];
       const isReported = Math.abs(settings[id] - edited) < 0.5 * Number(slider.step) * scaleOf(slider);
-      if (isReported || document.activeElement !== slider) {
-        delete this.edited[id];
+      if (this.follows(id, slider, isReported)) {
         slider.value = String(settings[id] / scaleOf(slider));
         this.label(slider);
       }
     }
-    if (settings.mode) this.choose('mode', settings.mode);
+    const mode = find<HTMLSelectElement>('mode');
+    if (settings.mode && this.follows('mode', mode, (this.edited.mode ?? settings.mode) === settings.mode))
+      this.choose('mode', settings.mode);
     this.choose('rate_hz', String(settings.rate_hz));
     if (settings.device) this.choose('device', settings.device);
     const materials = find<HTMLInputElement>('use_materials');
     const wanted = this.edited.use_materials ?? settings.use_materials;
-    if (wanted === settings.use_materials || document.activeElement !== materials) {
-      delete this.edited.use_materials;
+    if (this.follows('use_materials', materials, wanted === settings.use_materials))
       materials.checked = settings.use_materials;
-    }
     find('materials-note').hidden = find('materials').hidden || !settings.use_materials;
     find('stability').textContent =
       `Stable up to ${Math.floor(settings.stiffness_limit_N_m)} N/m with a hand`;
@@ -118,6 +120,13 @@ export class Panel {
   refused(): void {
     this.edited = {};
     if (document.activeElement instanceof HTMLElement) document.activeElement.blur();
+  }
+
+  /** True if a control shows the server's value: that has become the user's, or the user has left the control. */
+  private follows(id: keyof Settings, control: HTMLElement, isReported: boolean): boolean {
+    if (!isReported && document.activeElement === control) return false;
+    delete this.edited[id];
+    return true;
   }
 
   private choose(id: string, value: string): void {
