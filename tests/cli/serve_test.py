@@ -13,7 +13,7 @@ import threading
 import unittest
 
 sys.dont_write_bytecode = True
-from served_board import BallFolder, RealTimeBoard, ServedBoard, SharingProgram  # noqa: E402
+from served_board import BallFolder, RealTimeBoard, ServedBoard, SharingProgram, subscribe  # noqa: E402
 from web_socket import WebSocket  # noqa: E402
 
 TACTREE = pathlib.Path(sys.argv.pop(1)).resolve()
@@ -226,16 +226,6 @@ class Serve(Shared):
             done = self.run_tool("serve", "--port", other, "--tcp-port", port)
             self.assertEqual(done.returncode, 1)
             self.assertIn("choose another --tcp-port", done.stderr)
-
-
-def subscribe(port, rate_hz, queue=1):
-    """A program that has got the first state of its subscription."""
-    program = WebSocket(port)
-    program.receive()
-    program.send({"tactree": {"subscribe": {"rate_hz": rate_hz, "queue": queue}}})
-    while program.receive()["tactree"].get("client", {}).get("every_ticks", 0) == 0:
-        pass
-    return program
 
 
 class Rates(Shared):

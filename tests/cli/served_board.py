@@ -4,6 +4,7 @@ import signal
 import subprocess
 
 from tool_folder import SharedFolder, ball, csv
+from web_socket import WebSocket
 
 
 def build_ball(tactree, folder, name="ball", *options, points=3000, radius=0.03):
@@ -78,3 +79,13 @@ class SharingProgram:
         self.process.stdout.close()
         code = self.process.wait()
         assert code in (0, -signal.SIGKILL), self.said
+
+
+def subscribe(port, rate_hz, queue=1):
+    """A program that has got the first state of its subscription."""
+    program = WebSocket(port)
+    program.receive()
+    program.send({"tactree": {"subscribe": {"rate_hz": rate_hz, "queue": queue}}})
+    while program.receive()["tactree"].get("client", {}).get("every_ticks", 0) == 0:
+        pass
+    return program

@@ -1,6 +1,6 @@
 // No sound device gives a fault in 10^8 ticks: any script of the hand, and random hands that are
 // guided into surfaces, along axes and into the ends of the ranges, on every device. Takes half an
-// hour or more: ./test --hands.
+// hour: ./test --hands.
 
 #include <gtest/gtest.h>
 

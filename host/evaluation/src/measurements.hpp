@@ -33,8 +33,9 @@ struct Effort {
 /// The force along the subject's first path in both modes.
 [[nodiscard]] ForceTrace trace_force(const Subject& subject);
 
-/// Builds the scan with the defaults of `tactree build` and compares many results, within a
-/// spacing of the surface, with ReferenceSurface:
+/// Builds the scan with the defaults of `tactree build`, scaled to kModelEdge_m unless scans are
+/// evaluated alone. Slides over it, see slide_over(), and compares many results, within a spacing
+/// of the surface, with ReferenceSurface:
 ///   distance_rms_m, distance_max_m, normal_rms_deg, normal_max_deg, depth_rms_m  everywhere
 ///   smooth_...                             these scores away from creases
 ///   creased                                fraction of the compared probes near a crease

@@ -171,19 +171,21 @@ void add_evaluate_command(CLI::App& app, int& exit_code) {
       "force\n"
       "on shapes with known geometry; contact in creases, on stairs, in rooms and on two bodies; "
       "the\n"
-      "closed loop; and real scans against a double precision reference. Deterministic; some "
+      "closed loop; and real models: against a double precision reference, slid over and crossed. "
+      "Deterministic; some "
       "minutes,\n"
       "or seconds with --quick. Prints the tables and targets.");
   verb->add_flag("--quick", options->evaluation.quick, "fewer probes: faster, less precise");
   verb->add_option("--seed", options->evaluation.seed, "seed of the random numbers")
       ->capture_default_str();
-  CLI::Option* scan = verb->add_option(
-      "--scan", options->scans,
-      "report only on these scans: points kept, orientation, holes, force during slides; takes "
-      "seconds. Refuses files that are not scans");
+  CLI::Option* scan = verb->add_option("--scan", options->scans,
+                                       "report only on these scans: points kept, orientation, "
+                                       "holes, force during slides, crossings; takes "
+                                       "seconds. Refuses files that are not scans");
   add_format_option(*verb, options->evaluation.format)->needs(scan);
   add_columns_option(*verb, options->columns)->needs(scan);
-  verb->add_option("--scans", options->folder, "compare every readable scan below this folder")
+  verb->add_option("--scans", options->folder,
+                   "evaluate every readable scan below this folder, scaled to 100 mm")
       ->excludes(scan);
   verb->add_flag("--no-scans", options->no_scans,
                  "compare no scans (default: ten models of the Debian packages glmark2-data and "

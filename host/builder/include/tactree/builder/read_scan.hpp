@@ -34,8 +34,8 @@ struct ReadOptions {
   /// is allocated.
   std::uint64_t scan_memory_bytes = 3ULL << 29;
   /// A cloud with more points is thinned while it is read: of each cube of a grid the first point
-  /// is kept, with the finest grid of edges 2^n that leaves at most this many, at least 4. A mesh
-  /// is not, and neither is a cloud if this is 0: it is refused above the memory limit.
+  /// is kept, with the finest grid of edges 2^n that leaves at most this many (4 if it is less).
+  /// A mesh is not, nor is a cloud if this is 0: they are refused above the memory limit.
   std::uint64_t most_points = 0;
   /// Address space limit of the mesh import process, bytes.
   std::uint64_t child_memory_bytes = 3ULL << 29;
