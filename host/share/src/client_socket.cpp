@@ -2,43 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <boost/asio/ip/tcp.hpp>
-#include <boost/beast/core/buffers_to_string.hpp>
+#include <boost/beast/websocket/error.hpp>
 #include <utility>
 
 namespace tactree::share {
-namespace {
 
-namespace asio = boost::asio;
 namespace beast = boost::beast;
-namespace websocket = beast::websocket;
-
-// Limits the unread states in the kernel's buffer to a fraction of a second at 1 kHz.
-constexpr int kSendBufferBytes = 64 * 1024;
-
-websocket::stream_base::timeout socket_timeouts() {
-  websocket::stream_base::timeout t{};
-  t.handshake_timeout = std::chrono::seconds(10);
-  t.idle_timeout = std::chrono::seconds(60);  // the client vanished
-  t.keep_alive_pings = true;
-  return t;
-}
-
-std::string address_of(const asio::ip::tcp::socket& socket) {
-  beast::error_code error;
-  const asio::ip::tcp::endpoint remote = socket.remote_endpoint(error);
-  if (error) {
-    return "unknown address";
-  }
-  const std::string address = remote.address().to_string();
-  return fmt::format("{}:{}", remote.address().is_v6() ? "[" + address + "]" : address,
-                     remote.port());
-}
-
-}  // namespace
 
 ClientSocket::ClientSocket(beast::tcp_stream stream, Room& room)
-    : socket_(std::move(stream)), room_(room) {}
+    : socket_(std::move(stream), kMaxMessageBytes), room_(room) {}
 
 ClientSocket::~ClientSocket() {
   if (number_ != 0U) {
@@ -48,17 +20,8 @@ ClientSocket::~ClientSocket() {
 }
 
 void ClientSocket::accept(const web::Request& request) {
-  beast::error_code ignored;
-  beast::get_lowest_layer(socket_).expires_never();  // the WebSocket has its own timeouts
-  beast::get_lowest_layer(socket_).socket().set_option(
-      asio::socket_base::send_buffer_size(kSendBufferBytes), ignored);
-  beast::get_lowest_layer(socket_).socket().set_option(asio::ip::tcp::no_delay(true), ignored);
-  socket_.set_option(socket_timeouts());
-  socket_.read_message_max(kMaxMessageBytes);
-  socket_.text(true);
-  socket_.control_callback(
-      [this](websocket::frame_type, beast::string_view) { silent_checks_ = 0; });
-  socket_.async_accept(request, [self = shared_from_this()](beast::error_code error) {
+  socket_.on_control([this] { silent_checks_ = 0; });
+  socket_.accept(request, [self = shared_from_this()](beast::error_code error) {
     if (!error) {
       self->begin();
     }
@@ -66,7 +29,7 @@ void ClientSocket::accept(const web::Request& request) {
 }
 
 void ClientSocket::begin() {
-  const std::string address = address_of(beast::get_lowest_layer(socket_).socket());
+  const std::string address = socket_.peer();
   number_ = room_.clients.join(address);
   if (number_ == 0U) {
     room_.tell(fmt::format("{}: refused, because there are {} clients (end one)", address,
@@ -82,21 +45,19 @@ void ClientSocket::begin() {
 
 /// The client gets one message, which has the form of a state without a device.
 void ClientSocket::refuse(const std::string& why) {
-  writing_ = std::make_shared<const std::string>(refusal_text(why));
-  socket_.async_write(asio::buffer(*writing_),
-                      [self = shared_from_this()](beast::error_code error, std::size_t) {
-                        if (!error) {
-                          self->socket_.async_close(websocket::close_code::try_again_later,
-                                                    [self](beast::error_code) {});
-                        }
-                      });
+  socket_.write(std::make_shared<const std::string>(refusal_text(why)),
+                [self = shared_from_this()](beast::error_code error) {
+                  if (!error) {
+                    self->socket_.refuse([self](beast::error_code) {});
+                  }
+                });
 }
 
 void ClientSocket::read() {
-  socket_.async_read(incoming_, [self = shared_from_this()](beast::error_code error, std::size_t) {
-    if (error == websocket::error::closed) {
+  socket_.read([self = shared_from_this()](beast::error_code error, const std::string& text) {
+    if (error == beast::websocket::error::closed) {
       self->end("has left");
-    } else if (error == websocket::error::message_too_big) {
+    } else if (error == beast::websocket::error::message_too_big) {
       self->end(
           fmt::format("disconnected, because a message has more than {} bytes", kMaxMessageBytes));
     } else if (error) {
@@ -106,8 +67,7 @@ void ClientSocket::read() {
       return;
     }
     self->silent_checks_ = 0;
-    self->room_.clients.receive(self->number_, beast::buffers_to_string(self->incoming_.data()));
-    self->incoming_.consume(self->incoming_.size());
+    self->room_.clients.receive(self->number_, text);
     self->tell_command();
     self->write_next();
     self->read();
@@ -123,15 +83,14 @@ void ClientSocket::write_next() {
     return;
   }
   writing_since_ = Clock::now();
-  socket_.async_write(asio::buffer(*writing_),
-                      [self = shared_from_this()](beast::error_code error, std::size_t) {
-                        self->writing_ = nullptr;
-                        if (error) {
-                          self->end("disconnected: " + error.message());
-                          return;
-                        }
-                        self->write_next();
-                      });
+  socket_.write(writing_, [self = shared_from_this()](beast::error_code error) {
+    self->writing_ = nullptr;
+    if (error) {
+      self->end("disconnected: " + error.message());
+      return;
+    }
+    self->write_next();
+  });
 }
 
 void ClientSocket::tell_command() {
@@ -159,8 +118,7 @@ void ClientSocket::check_answers() {
                     kMaxSilence.count()));
   } else if (silent_checks_ > kMaxChecks / 2 && !pinging_) {
     pinging_ = true;
-    socket_.async_ping({},
-                       [self = shared_from_this()](beast::error_code) { self->pinging_ = false; });
+    socket_.ping([self = shared_from_this()](beast::error_code) { self->pinging_ = false; });
   }
 }
 
@@ -171,9 +129,7 @@ void ClientSocket::end(const std::string& how) {
   room_.tell(fmt::format("{}: {}", room_.clients.name_of(number_), how));
   room_.sockets.erase(this);
   room_.clients.leave(std::exchange(number_, 0U));
-  // No closing handshake, because the client may not read it.
-  beast::error_code ignored;
-  beast::get_lowest_layer(socket_).socket().close(ignored);
+  socket_.cut();
 }
 
 }  // namespace tactree::share

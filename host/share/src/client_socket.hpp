@@ -1,9 +1,7 @@
 #pragma once
 // A client's WebSocket: moves messages between it and the clients of the board.
 
-#include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/core/tcp_stream.hpp>
-#include <boost/beast/websocket/stream.hpp>
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -12,7 +10,7 @@
 #include <string>
 
 #include "tactree/share/clients.hpp"
-#include "tactree/web/listener.hpp"
+#include "tactree/web/web_socket.hpp"
 
 namespace tactree::share {
 
@@ -61,9 +59,8 @@ class ClientSocket : public std::enable_shared_from_this<ClientSocket> {
   /// `how`: for the terminal.
   void end(const std::string& how);
 
-  boost::beast::websocket::stream<boost::beast::tcp_stream> socket_;
+  web::WebSocket socket_;
   Room& room_;
-  boost::beast::flat_buffer incoming_;
   Message writing_;  // being sent
   Clock::time_point writing_since_{};
   // Checks since the client was heard: as many as pass, also if this program stood still meanwhile.

@@ -1,45 +1,19 @@
 #include "live_connection.hpp"
 
-#include <boost/beast/core/buffers_to_string.hpp>
-#include <boost/beast/websocket/rfc6455.hpp>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 namespace tactree::viewer {
-namespace {
 
-namespace asio = boost::asio;
 namespace beast = boost::beast;
-namespace websocket = beast::websocket;
-
-// Limits the unread frames in the kernel's buffer to less than one second.
-constexpr int kSendBufferBytes = 64 * 1024;
-
-websocket::stream_base::timeout timeouts() {
-  websocket::stream_base::timeout t{};
-  t.handshake_timeout = std::chrono::seconds(10);
-  t.idle_timeout = std::chrono::seconds(60);  // the page vanished or does not read
-  t.keep_alive_pings = true;
-  return t;
-}
-
-}  // namespace
 
 LiveConnection::LiveConnection(beast::tcp_stream stream, Hub& hub, Source& source)
-    : socket_(std::move(stream)), hub_(hub), source_(source) {}
+    : socket_(std::move(stream), kMaxCommandBytes), hub_(hub), source_(source) {}
 
 LiveConnection::~LiveConnection() { hub_.leave(this); }
 
-void LiveConnection::accept(const Request& request) {
-  beast::error_code ignored;
-  beast::get_lowest_layer(socket_).expires_never();  // the WebSocket has its own timeouts
-  beast::get_lowest_layer(socket_).socket().set_option(
-      asio::socket_base::send_buffer_size(kSendBufferBytes), ignored);
-  beast::get_lowest_layer(socket_).socket().set_option(asio::ip::tcp::no_delay(true), ignored);
-  socket_.set_option(timeouts());
-  socket_.read_message_max(kMaxCommandBytes);
-  socket_.text(true);
-  socket_.async_accept(request, [self = shared_from_this()](beast::error_code error) {
+void LiveConnection::accept(const web::Request& request) {
+  socket_.accept(request, [self = shared_from_this()](beast::error_code error) {
     if (error) {
       return;
     }
@@ -54,14 +28,13 @@ void LiveConnection::accept(const Request& request) {
 }
 
 void LiveConnection::read() {
-  socket_.async_read(incoming_, [self = shared_from_this()](beast::error_code error, std::size_t) {
+  socket_.read([self = shared_from_this()](beast::error_code error, const std::string& text) {
     if (error) {  // also for messages that are too long; Beast has sent the cause
       self->open_ = false;
       self->hub_.leave(self.get());
       return;
     }
-    self->execute(beast::buffers_to_string(self->incoming_.data()));
-    self->incoming_.consume(self->incoming_.size());
+    self->execute(text);
     self->read();
   });
 }
@@ -107,24 +80,21 @@ void LiveConnection::write_next() {
     writing_ = std::exchange(frame_, nullptr);
     hub_.count_sent();
   }
-  socket_.async_write(asio::buffer(*writing_),
-                      [self = shared_from_this()](beast::error_code error, std::size_t) {
-                        self->writing_ = nullptr;
-                        if (error) {
-                          self->open_ = false;
-                          self->hub_.leave(self.get());
-                          return;
-                        }
-                        self->write_next();
-                      });
+  socket_.write(writing_, [self = shared_from_this()](beast::error_code error) {
+    self->writing_ = nullptr;
+    if (error) {
+      self->open_ = false;
+      self->hub_.leave(self.get());
+      return;
+    }
+    self->write_next();
+  });
 }
 
 void LiveConnection::close() {
   open_ = false;
   hub_.leave(this);
-  // No closing handshake, because the page may not read it.
-  beast::error_code ignored;
-  beast::get_lowest_layer(socket_).socket().close(ignored);
+  socket_.cut();
 }
 
 }  // namespace tactree::viewer
