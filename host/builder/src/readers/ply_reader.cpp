@@ -77,6 +77,15 @@ void prepare(ScanBuilder& builder, const PlyElement& vertex, const std::vector<P
   builder.limit_face_indices(vertex.count);
 }
 
+/// The centres of Gaussian splats: points with a size, a turn and an opacity of their own.
+bool are_splats(const PlyElement& vertex) {
+  const auto has = [&](std::string_view name) {
+    return std::any_of(vertex.properties.begin(), vertex.properties.end(),
+                       [&](const PlyProperty& property) { return property.name == name; });
+  };
+  return has("scale_0") && has("rot_0") && has("opacity");
+}
+
 std::span<const PlyElement> elements_that_count(const PlyHeader& header) {
   std::size_t end = header.elements.size();
   while (end > 0 && role_of(header.elements[end - 1]) == PlyRole::kOther) --end;
@@ -195,6 +204,12 @@ Scan read_ply(InputFile& file, const ReadOptions& options) {
                              file.name(), header.unknown_lines,
                              header.unknown_lines == 1 ? "" : "s",
                              header.unknown_lines == 1 ? "is" : "are", header.unknown_line));
+  }
+  if (are_splats(vertex)) {
+    builder.warn(fmt::format(
+        "{}: the points are the centres of Gaussian splats, which lie about the surface, not on it "
+        "(build from the mesh or the point cloud of the same pictures instead)",
+        file.name()));
   }
   if (ascii) {
     // A value takes at least two bytes; missing rows are detected while reading.

@@ -18,6 +18,7 @@ constexpr const char* kPointsToPly = "convert it with `pdal translate FILE scan.
 constexpr const char* kArrayToPly = "write its points as rows x y z, or as PLY";
 constexpr const char* kVolumeToPly = "extract its surface, for example in ParaView or 3D Slicer";
 constexpr const char* kSplatToPly = "export it as PLY from the program that made the splats";
+constexpr const char* kPacketsToPly = "save its points as PLY or LAS in the scanner's own program";
 constexpr const char* kTilesToPly =
     "export the model as glTF or PLY from the program that made the tiles";
 constexpr const char* kNotAScan = "give the scan file";
@@ -96,6 +97,10 @@ constexpr Signature kBinary[] = {
     {0, "RIEGL LMS RDB"sv, "a RIEGL point cloud (.rdbx)", kFromProgram},
     {12, "CXYZ"sv, "a TerraScan point cloud (.bin)", kPointsToPly},
     {0, "LASX"sv, "an index of a LAS file (.lax)", "give the LAS file itself"},
+    {0, "\xd4\xc3\xb2\xa1"sv, "a recording of network packets (.pcap)", kPacketsToPly},
+    {0, "\x4d\x3c\xb2\xa1"sv, "a recording of network packets (.pcap)", kPacketsToPly},
+    {0, "\xa1\xb2\xc3\xd4"sv, "a recording of network packets (.pcap)", kPacketsToPly},
+    {8, "\x4d\x3c\x2b\x1a"sv, "a recording of network packets (.pcapng)", kPacketsToPly},
     {0, "#ROSBAG"sv, "a recording of ROS", "write one of its point clouds as PCD or PLY"},
     {0, "\x89MCAP"sv, "a recording of ROS", "write one of its point clouds as PCD or PLY"},
     // grids and volumes

@@ -115,6 +115,8 @@ std::vector<ForeignFile> others() {
       {"\x93NUMPY\1\0v\0{'descr': '<f8'}"s, "NumPy"},
       {"CCB2\0\0\0\0"s, "CloudCompare file"},
       {"NRRD0004\ntype: float\n", "NRRD"},
+      {"\xd4\xc3\xb2\xa1\2\0\4\0"s, "network packets (.pcap)"},
+      {"\n\r\r\n\x1c\0\0\0\x4d\x3c\x2b\x1a"s, "network packets (.pcapng)"},
   };
 }
 

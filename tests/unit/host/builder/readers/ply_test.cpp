@@ -362,5 +362,19 @@ TEST_F(PlyTest, ReadsOldMacLineEnds) {
   EXPECT_EQ(read(text).triangles.size(), 1U);
 }
 
+TEST_F(PlyTest, WarnsOfGaussianSplats) {
+  const auto header = [](const std::string& properties) {
+    return "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+           "property float z\n" +
+           properties + "end_header\n";
+  };
+  const std::string splats =
+      header("property float opacity\nproperty float scale_0\nproperty float rot_0\n");
+  const std::vector<std::string> warnings = read(splats + "1 2 3 1 -6 1\n").warnings;
+  ASSERT_EQ(warnings.size(), 1U);
+  expect_parts(warnings[0], "Gaussian splats", "not on it");
+  EXPECT_TRUE(read(header("property float opacity\n") + "1 2 3 1\n").warnings.empty());
+}
+
 }  // namespace
 }  // namespace tactree::builder
