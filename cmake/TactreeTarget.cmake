@@ -59,14 +59,19 @@ function(tactree_library name)
   tactree_target(${target} ${options})
 endfunction()
 
-# tactree_merge_sources(<target>)
+# tactree_merge_sources(<target> [QUICK])
 #   With TACTREE_MERGE_SOURCES, eight source files are compiled as one: a full build then reads each
 #   large header, and generates its inline functions, an eighth as often. Unlike CMake's unity builds,
 #   the merged files name their sources by relative paths, so that a compiler cache finds them again
 #   in another folder. Sources with definitions of their own stay apart.
+#   QUICK  code that does not take long to run, such as commands, files and pages: compiled with -O1,
+#          which takes the compiler a quarter less time
 function(tactree_merge_sources target)
   if(NOT TACTREE_MERGE_SOURCES)
     return()
+  endif()
+  if("QUICK" IN_LIST ARGN)
+    target_compile_options(${target} PRIVATE $<$<CONFIG:RelWithDebInfo>:-O1>)
   endif()
   get_target_property(sources ${target} SOURCES)
   set(apart)
