@@ -12,12 +12,12 @@
 namespace tactree::evaluation {
 namespace {
 
-constexpr double kWidth = 900.0;
-constexpr double kHeight = 480.0;
-constexpr double kLeft = 90.0;
-constexpr double kRight = 740.0;
-constexpr double kTop = 50.0;
-constexpr double kBottom = 420.0;
+constexpr double kPictureWidth = 900.0;
+constexpr double kPictureHeight = 480.0;
+constexpr double kPlotLeft = 90.0;
+constexpr double kPlotRight = 740.0;
+constexpr double kPlotTop = 50.0;
+constexpr double kPlotBottom = 420.0;
 constexpr double kMaxDamping_Ns_m = 4.0;
 constexpr double kSoftest_N_m = 100.0;
 constexpr double kStiffest_N_m = 100000.0;
@@ -30,14 +30,14 @@ constexpr Rate kRates[] = {
     {1000.0, "#0072b2"}, {2000.0, "#009e73"}, {4000.0, "#d55e00"}, {10000.0, "#cc79a7"}};
 
 double x_of(double damping_Ns_m) {
-  return kLeft + damping_Ns_m / kMaxDamping_Ns_m * (kRight - kLeft);
+  return kPlotLeft + damping_Ns_m / kMaxDamping_Ns_m * (kPlotRight - kPlotLeft);
 }
 
 double y_of(double stiffness_N_m) {
   const double share =
       std::log(std::clamp(stiffness_N_m, kSoftest_N_m, kStiffest_N_m) / kSoftest_N_m) /
       std::log(kStiffest_N_m / kSoftest_N_m);
-  return kBottom - share * (kBottom - kTop);
+  return kPlotBottom - share * (kPlotBottom - kPlotTop);
 }
 
 void text(std::string& svg, double x, double y, const char* anchor, const std::string& words) {
@@ -53,15 +53,16 @@ void grid(std::string& svg) {
                    y2);
   };
   for (double stiffness = kSoftest_N_m; stiffness <= 1.001 * kStiffest_N_m; stiffness *= 10.0) {
-    line(kLeft, y_of(stiffness), kRight, y_of(stiffness));
-    text(svg, kLeft - 8.0, y_of(stiffness) + 4.0, "end", fmt::format("{:g}", stiffness));
+    line(kPlotLeft, y_of(stiffness), kPlotRight, y_of(stiffness));
+    text(svg, kPlotLeft - 8.0, y_of(stiffness) + 4.0, "end", fmt::format("{:g}", stiffness));
   }
   for (double damping = 0.0; damping <= kMaxDamping_Ns_m; damping += 0.5) {
-    line(x_of(damping), kTop, x_of(damping), kBottom);
-    text(svg, x_of(damping), kBottom + 20.0, "middle", fmt::format("{:g}", damping));
+    line(x_of(damping), kPlotTop, x_of(damping), kPlotBottom);
+    text(svg, x_of(damping), kPlotBottom + 20.0, "middle", fmt::format("{:g}", damping));
   }
-  text(svg, 0.5 * (kLeft + kRight), kBottom + 44.0, "middle", "damping of the wall / (Ns/m)");
-  text(svg, kLeft - 60.0, kTop - 18.0, "start", "largest stable stiffness / (N/m)");
+  text(svg, 0.5 * (kPlotLeft + kPlotRight), kPlotBottom + 44.0, "middle",
+       "damping of the wall / (Ns/m)");
+  text(svg, kPlotLeft - 60.0, kPlotTop - 18.0, "start", "largest stable stiffness / (N/m)");
 }
 
 void curve(std::string& svg, const Rate& rate) {
@@ -83,16 +84,16 @@ void curve(std::string& svg, const Rate& rate) {
 }
 
 void legend(std::string& svg, const std::vector<Rate>& rates) {
-  double y = kTop + 20.0;
+  double y = kPlotTop + 20.0;
   for (const Rate& rate : rates) {
     fmt::format_to(std::back_inserter(svg),
                    "<path d=\"M{0:.1f} {1:.1f} h24\" stroke=\"{2}\" stroke-width=\"2\"/>\n",
-                   kRight + 14.0, y - 4.0, rate.colour);
-    text(svg, kRight + 44.0, y, "start", fmt::format("{:g} kHz", 1e-3 * rate.hz));
+                   kPlotRight + 14.0, y - 4.0, rate.colour);
+    text(svg, kPlotRight + 44.0, y, "start", fmt::format("{:g} kHz", 1e-3 * rate.hz));
     y += 22.0;
   }
-  text(svg, kRight + 14.0, y + 6.0, "start", "lines: simulated");
-  text(svg, kRight + 14.0, y + 26.0, "start", "dashes: predicted");
+  text(svg, kPlotRight + 14.0, y + 6.0, "start", "lines: simulated");
+  text(svg, kPlotRight + 14.0, y + 26.0, "start", "dashes: predicted");
 }
 
 }  // namespace
@@ -103,7 +104,7 @@ std::string z_width_svg(bool quick) {
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" "
       "viewBox=\"0 0 {0:.0f} {1:.0f}\" font-family=\"sans-serif\" font-size=\"13\">\n"
       "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n",
-      kWidth, kHeight);
+      kPictureWidth, kPictureHeight);
   grid(svg);
   for (const Rate& rate : rates) {
     curve(svg, rate);

@@ -35,7 +35,7 @@ constexpr std::size_t kSurfaceHeld = 6;  // fewer: near an edge, the others lie 
 constexpr double kLeastNoise = 0.1;
 constexpr double kLeastNoiseSparse = 0.06;
 // The test of a suspect.
-constexpr std::size_t kNeighbours = 20;
+constexpr std::size_t kTestNeighbours = 20;
 constexpr int kTrials = 32;
 constexpr std::size_t kOnSurface = 9;         // neighbours required on the plane
 constexpr std::size_t kAtBorder = 14;         // required where the surface ends
@@ -129,9 +129,9 @@ class SurfaceTest {
   // too few points.
   double narrowest_gap(std::uint32_t i, std::vector<Neighbour>& near) const {
     const Eigen::Vector3d& p = points_.positions()[i];
-    points_.find_nearest(p, kNeighbours + 1, reach_, near);
+    points_.find_nearest(p, kTestNeighbours + 1, reach_, near);
     double narrowest = 2.0 * std::numbers::pi;
-    if (near.size() <= kNeighbours) {
+    if (near.size() <= kTestNeighbours) {
       return narrowest;
     }
     const double tolerance = sigma_ * std::max(noise_, least_noise_ * local_spacing(near));
@@ -184,7 +184,7 @@ class SurfaceTest {
 
  private:
   static double local_spacing(const std::vector<Neighbour>& near) {
-    return std::sqrt(std::numbers::pi * near.back().squared_distance / (kNeighbours + 0.5));
+    return std::sqrt(std::numbers::pi * near.back().squared_distance / (kTestNeighbours + 0.5));
   }
 
   // For the plane through the point and two neighbours: the widest angle, seen from the point,
@@ -192,14 +192,14 @@ class SurfaceTest {
   double widest_gap(int trial, const Eigen::Vector3d& p, const std::vector<Neighbour>& near,
                     double tolerance) const {
     const auto random = hash64(static_cast<std::uint64_t>(trial));
-    const std::size_t a = 1 + random % kNeighbours;
-    const std::size_t b = 1 + (a + (random >> 20) % (kNeighbours - 1)) % kNeighbours;
+    const std::size_t a = 1 + random % kTestNeighbours;
+    const std::size_t b = 1 + (a + (random >> 20) % (kTestNeighbours - 1)) % kTestNeighbours;
     const Eigen::Vector3d u = (points_.positions()[near[a].index] - p).normalized();
     const Eigen::Vector3d normal = u.cross(points_.positions()[near[b].index] - p).normalized();
     const Eigen::Vector3d v = normal.cross(u);
-    std::array<double, kNeighbours> angles{};
+    std::array<double, kTestNeighbours> angles{};
     std::size_t held = 0;
-    for (std::size_t k = 1; k <= kNeighbours; ++k) {
+    for (std::size_t k = 1; k <= kTestNeighbours; ++k) {
       const Eigen::Vector3d d = points_.positions()[near[k].index] - p;
       if (std::abs(normal.dot(d)) <= tolerance) {
         angles[held++] = std::atan2(v.dot(d), u.dot(d));
@@ -275,10 +275,11 @@ class StrayFinder {
     tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, count32(cloud), 64), [&](auto range) {
       std::vector<Neighbour> near;
       for (std::uint32_t s = range.begin(); s < range.end(); ++s) {
-        points_.find_nearest(points_.positions()[sparse[s]], kNeighbours + 1, 6.0 * spacing_, near);
+        points_.find_nearest(points_.positions()[sparse[s]], kTestNeighbours + 1, 6.0 * spacing_,
+                             near);
         const auto others = std::count_if(
             near.begin(), near.end(), [&](const Neighbour& n) { return sparse_[n.index] != 0; });
-        if (static_cast<std::size_t>(others) > kNeighbours / 4) {
+        if (static_cast<std::size_t>(others) > kTestNeighbours / 4) {
           stray[sparse[s]] = test.narrowest_gap(s, near) > kBorderAngle ? 1 : 0;
           suspect_[sparse[s]] = 0;
         }

@@ -15,12 +15,12 @@ namespace {
 // control that was held before.
 constexpr double kHandAfterS = 0.08;
 
-[[noreturn]] void refuse(std::string_view text, const std::string& what) {
+[[noreturn]] void refuse_press(std::string_view text, const std::string& what) {
   throw std::invalid_argument(
       fmt::format("'{}': {} (FROM..TO in seconds, e.g. 0.5s..1.7s)", text, what));
 }
 
-double seconds(std::string_view text, std::string_view time) {
+double seconds_of(std::string_view text, std::string_view time) {
   std::string_view digits = time;
   if (!digits.empty() && digits.back() == 's') {
     digits.remove_suffix(1);
@@ -29,7 +29,7 @@ double seconds(std::string_view text, std::string_view time) {
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (error != std::errc() || end != digits.data() + digits.size() ||
       !(value >= 0.0 && value <= 1e9)) {
-    refuse(text, fmt::format("'{}' is not a time from 0 upwards", time));
+    refuse_press(text, fmt::format("'{}' is not a time from 0 upwards", time));
   }
   return value;
 }
@@ -39,12 +39,12 @@ double seconds(std::string_view text, std::string_view time) {
 Press parse_press(std::string_view text) {
   const std::size_t between = text.find("..");
   if (between == std::string_view::npos) {
-    refuse(text, "the end of the press is missing");
+    refuse_press(text, "the end of the press is missing");
   }
-  const Press press{seconds(text, text.substr(0, between)),
-                    seconds(text, text.substr(between + 2))};
+  const Press press{seconds_of(text, text.substr(0, between)),
+                    seconds_of(text, text.substr(between + 2))};
   if (!(press.until_s > press.from_s)) {
-    refuse(text, "the end is not after the start");
+    refuse_press(text, "the end is not after the start");
   }
   return press;
 }
