@@ -5,16 +5,17 @@
 #include <atomic>
 #include <boost/asio/io_context.hpp>
 #include <cstdint>
-#include <memory>
 #include <mutex>
 #include <set>
 #include <string>
+
+#include "tactree/web/types.hpp"
 
 namespace tactree::viewer {
 
 class LiveConnection;
 
-using Message = std::shared_ptr<const std::string>;
+using web::Message;
 
 class Hub {
  public:

@@ -63,7 +63,7 @@ void WebSocket::read(Received received) {
   });
 }
 
-void WebSocket::write(std::shared_ptr<const std::string> text, Done done) {
+void WebSocket::write(Message text, Done done) {
   const asio::const_buffer bytes = asio::buffer(*text);
   parts_->stream.async_write(bytes, [text = std::move(text), done = std::move(done)](
                                         beast::error_code error, std::size_t) { done(error); });

@@ -17,7 +17,9 @@ constexpr const char* kCadToStl = "export it from the CAD program as STL or PLY"
 constexpr const char* kPointsToPly = "convert it with `pdal translate FILE scan.ply`";
 constexpr const char* kArrayToPly = "write its points as rows x y z, or as PLY";
 constexpr const char* kVolumeToPly = "extract its surface, for example in ParaView or 3D Slicer";
-constexpr const char* kSplatToPly = "export it as PLY from the program that made the splats";
+constexpr const char* kSplatToMesh =
+    "give the mesh or the point cloud of the same pictures: splats lie about the surface, not on "
+    "it";
 constexpr const char* kPacketsToPly = "save its points as PLY or LAS in the scanner's own program";
 constexpr const char* kTilesToPly =
     "export the model as glTF or PLY from the program that made the tiles";
@@ -90,7 +92,7 @@ constexpr Signature kBinary[] = {
     {0, "i3dm"sv, "a tile of 3D Tiles", kTilesToPly},
     {0, "pnts"sv, "a tile of 3D Tiles", kTilesToPly},
     {0, "cmpt"sv, "a tile of 3D Tiles", kTilesToPly},
-    {0, "NGSP"sv, "Gaussian splats (.spz)", kSplatToPly},
+    {0, "NGSP"sv, "Gaussian splats (.spz)", kSplatToMesh},
     // point clouds
     {0, "CCB2"sv, "a CloudCompare file (.bin)", "open it in CloudCompare and save it as PLY"},
     {0, "BPF!"sv, "a BPF point cloud", kPointsToPly},

@@ -6,14 +6,15 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "tactree/web/types.hpp"
+
 namespace tactree::share {
 
-using Message = std::shared_ptr<const std::string>;
+using web::Message;
 
 class Outbox {
  public:

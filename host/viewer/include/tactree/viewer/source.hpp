@@ -15,6 +15,8 @@
 #include <thread>
 #include <utility>
 
+#include "tactree/web/types.hpp"
+
 namespace tactree::viewer {
 
 inline constexpr double kFrameRate_hz = 60.0;
@@ -28,7 +30,7 @@ class SessionRefused : public std::runtime_error {
 class Source {
  public:
   /// Called from the source's thread; must not block.
-  using Publish = std::function<void(std::shared_ptr<const std::string>)>;
+  using Publish = std::function<void(web::Message)>;
 
   Source() = default;
   Source(const Source&) = delete;

@@ -2,10 +2,14 @@
 // Options, errors and answers of a server.
 
 #include <cstdint>
+#include <memory>
 #include <stdexcept>
 #include <string>
 
 namespace tactree::web {
+
+/// Text of a message, which several clients may share.
+using Message = std::shared_ptr<const std::string>;
 
 struct ServerOptions {
   std::string address = "127.0.0.1";

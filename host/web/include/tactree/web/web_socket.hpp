@@ -9,6 +9,7 @@
 #include <string>
 
 #include "tactree/web/listener.hpp"
+#include "tactree/web/types.hpp"
 
 namespace tactree::web {
 
@@ -30,7 +31,7 @@ class WebSocket {
   /// Answers the request for the WebSocket.
   void accept(const Request& request, Done done);
   void read(Received received);
-  void write(std::shared_ptr<const std::string> text, Done done);
+  void write(Message text, Done done);
   void ping(Done done);
   /// Calls heard() for each ping, pong and close of the client.
   void on_control(std::function<void()> heard);

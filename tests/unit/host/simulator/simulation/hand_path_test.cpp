@@ -67,7 +67,7 @@ TEST(HandPath, NeedsFiniteWaypointsInOrder) {
 }
 
 TEST(HandScript, StartsAndEndsOutsideModel) {
-  const Shape shape = sphere();
+  const Shape shape = evaluation::sphere();
   for (const std::string& name : simulation::script_names()) {
     const HandPath path = simulation::make_script(name, shape.view(), 4.0);
     EXPECT_GE(path.at(0.0).position_m.norm(), kSphereRadius + 0.005) << name;
