@@ -7,17 +7,10 @@
 #include <vector>
 
 #include "shapes.hpp"
-#include "tactree/builder/build_model.hpp"
+#include "warnings_of.hpp"
 
 namespace tactree::builder {
 namespace {
-
-std::vector<std::string> warnings_of(Scan scan, const BuildOptions& options = {}) {
-  std::vector<Scan> scans;
-  scans.push_back(std::move(scan));
-  Progress quiet;
-  return build_model(std::move(scans), options, quiet).report.warnings;
-}
 
 Scan sphere(double radius = 0.03, std::size_t points = 5000) {
   return cloud_scan(even_sphere(points, radius));

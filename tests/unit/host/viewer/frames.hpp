@@ -18,7 +18,7 @@ namespace tactree::test {
 class Frames {
  public:
   viewer::Source::Publish taker() {
-    return [this](const std::shared_ptr<const std::string>& text) {
+    return [this](const web::Message& text) {
       nlohmann::json frame = nlohmann::json::parse(*text);
       const std::lock_guard lock(mutex_);
       unseen_.push_back(std::move(frame));

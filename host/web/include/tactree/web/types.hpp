@@ -1,5 +1,5 @@
 #pragma once
-// Options, errors and answers of a server.
+// Options, errors, answers and messages of a server.
 
 #include <cstdint>
 #include <memory>

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "shapes.hpp"
-#include "tactree/builder/build_model.hpp"
+#include "warnings_of.hpp"
 
 namespace tactree::builder {
 namespace {
@@ -48,11 +48,6 @@ TEST(ColourCensus, KeepsNearestColourOfEachMaterial) {
   EXPECT_DOUBLE_EQ(census.matches()[1].squared_distance, 65025.0);
 }
 
-std::vector<std::string> colour_warnings_of(const Scan& scan, const BuildOptions& options) {
-  Progress quiet;
-  return build_model({scan}, options, quiet).report.warnings;
-}
-
 TEST(ColourCensus, OmitsPointsOutsideCrop) {
   Scan scan;
   scan.positions = plane_grid(40, 1e-3).positions;
@@ -66,10 +61,10 @@ TEST(ColourCensus, OmitsPointsOutsideCrop) {
   BuildOptions options;
   options.materials = red_and_green();
   options.orient = OrientationRule::kUp;
-  EXPECT_TRUE(colour_warnings_of(scan, options).empty());
+  EXPECT_TRUE(warnings_of(scan, options).empty());
   options.crop =
       Eigen::AlignedBox3d(Eigen::Vector3d(-1, -1, -1), Eigen::Vector3d(most - 1e-4, 1, 1));
-  const std::vector<std::string> warnings = colour_warnings_of(scan, options);
+  const std::vector<std::string> warnings = warnings_of(scan, options);
   ASSERT_EQ(warnings.size(), 1U);
   EXPECT_EQ(warnings[0],
             "no point has the colour of the material 'green': the nearest to [0, 255, 0] is [255, "

@@ -30,7 +30,7 @@ std::string xyz_header(std::size_t points, const std::string& data) {
 }
 
 /// The data after "DATA binary_compressed": the sizes and the LZF stream.
-std::string with_sizes(const std::string& bytes) {
+std::string lzf_compressed(const std::string& bytes) {
   std::string packed(bytes.size() * 2 + 64, '\0');
   const unsigned size = ::lzf_compress(bytes.data(), static_cast<unsigned>(bytes.size()),
                                        packed.data(), static_cast<unsigned>(packed.size()));
@@ -137,7 +137,7 @@ TEST_F(PcdTest, ReadsCompressedFieldByField) {
     colours += bytes_of(static_cast<std::uint32_t>(i));
   }
   const Scan scan = read(header("x y z rgb", "4 4 4 4", "F F F U", 50, 10, "binary_compressed") +
-                         with_sizes(xs + ys + zs + colours));
+                         lzf_compressed(xs + ys + zs + colours));
   EXPECT_EQ(scan.format, "PCD binary compressed");
   ASSERT_EQ(scan.positions.size(), count - 1);
   EXPECT_EQ(dropped(scan, "non_finite"), 1U);
@@ -149,7 +149,7 @@ TEST_F(PcdTest, RefusesTruncationAtEveryByte) {
   std::string floats;
   for (int i = 0; i < 30; ++i) floats += bytes_of(static_cast<float>(i % 4));
   const std::string files[] = {xyz_header(10, "binary") + floats,
-                               xyz_header(10, "binary_compressed") + with_sizes(floats)};
+                               xyz_header(10, "binary_compressed") + lzf_compressed(floats)};
   for (const std::string& whole : files) {
     EXPECT_EQ(read(whole).positions.size(), 10U);
     for (std::size_t length = 0; length < whole.size(); ++length) {
@@ -171,7 +171,7 @@ TEST_F(PcdTest, ChecksDeclaredCounts) {
   expect_parts(refusal_of(with_points("0", "binary") + point), "contains no points");
   // A number of points whose size in bytes wraps around in 64 bits to the true size.
   expect_parts(
-      refusal_of(with_points("4611686018427387905", "binary_compressed") + with_sizes(point)),
+      refusal_of(with_points("4611686018427387905", "binary_compressed") + lzf_compressed(point)),
       "when unpacked");
   expect_parts(refusal_of("VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\n"
                           "WIDTH 9223372036854775807\nHEIGHT 9223372036854775807\nDATA ascii\n"),
