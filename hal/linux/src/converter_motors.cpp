@@ -12,15 +12,15 @@
 namespace tactree::hal::linux_gpio {
 namespace {
 
-constexpr char kKind[] = "converter";
+constexpr char kConverter[] = "converter";
 
 }  // namespace
 
 std::string find_converter(const std::string& root, const ConverterAxis& axis) {
-  const std::string folder = find_sysfs_device(root, axis.device, kKind);
+  const std::string folder = find_sysfs_device(root, axis.device, kConverter);
   std::string file = folder + "/out_voltage" + std::to_string(axis.channel) + "_raw";
   if (!std::filesystem::exists(file)) {
-    throw SysfsError(quoted(kKind, axis.device) + ": it has no output " +
+    throw SysfsError(quoted(kConverter, axis.device) + ": it has no output " +
                      std::to_string(axis.channel) +
                      " (hint: use one of the files out_voltage*_raw "
                      "in " +

@@ -13,7 +13,7 @@
 namespace tactree::hal::linux_gpio {
 namespace {
 
-constexpr char kKind[] = "counter";
+constexpr char kCounter[] = "counter";
 constexpr char kEachEdge[] = "quadrature x4";
 
 std::string function_of(const std::string& folder) {
@@ -62,10 +62,10 @@ void start(const std::string& folder) {
 }  // namespace
 
 std::string find_count(const std::string& root, const CounterAxis& axis) {
-  const std::string counter = find_sysfs_device(root, axis.device, kKind);
+  const std::string counter = find_sysfs_device(root, axis.device, kCounter);
   std::string folder = counter + "/count" + std::to_string(axis.count);
   if (!std::filesystem::exists(folder)) {
-    throw SysfsError(quoted(kKind, axis.device) + ": it has no count " +
+    throw SysfsError(quoted(kCounter, axis.device) + ": it has no count " +
                      std::to_string(axis.count) +
                      " (hint: use one of the folders count0, count1 ... in " + counter + ")");
   }

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr char kKind[] = "PWM chip";
+constexpr char kPwmChip[] = "PWM chip";
 constexpr char kRemedy[] = "use a period supported by this chip, and a free channel";
 
 std::uint32_t share_of(float effort, float full, std::uint32_t period_ns) {
@@ -43,11 +43,11 @@ std::vector<std::string> directions_of(const MotorSettings& settings) {
 }  // namespace
 
 std::string find_pwm_chip(const std::string& root, const std::string& name, std::uint32_t channel) {
-  std::string chip = find_sysfs_device(root, name, kKind);
+  std::string chip = find_sysfs_device(root, name, kPwmChip);
   std::uint32_t channels = 0;
   std::ifstream(chip + "/npwm") >> channels;
   if (channel >= channels) {
-    throw SysfsError(quoted(kKind, name) + ": it has no channel " + std::to_string(channel) +
+    throw SysfsError(quoted(kPwmChip, name) + ": it has no channel " + std::to_string(channel) +
                      " (hint: it has " + std::to_string(channels) + " channels, numbered from 0)");
   }
   return chip;

@@ -16,11 +16,10 @@ using nlohmann::json;
 
 constexpr std::size_t kMaxCount = std::size_t{1} << 40;
 constexpr std::size_t kMaxZeros = std::size_t{1} << 26;  // elements of an accessor without bytes
-constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 constexpr std::size_t kGlbHeader = 12;
 constexpr std::size_t kChunkHeader = 8;
 
-enum Component : std::size_t { kByte = 5120, kUByte, kShort, kUShort, kUInt = 5125, kFloat };
+enum ComponentType : std::size_t { kByte = 5120, kUByte, kShort, kUShort, kUInt = 5125, kFloat };
 
 std::string named(const char* kind, std::size_t number) {
   return std::string(kind) + " " + std::to_string(number);
@@ -232,7 +231,7 @@ std::string_view GltfFile::buffer(std::size_t number) {
 }
 
 std::span<const unsigned char> GltfFile::stored(const json& names, const std::string& who) {
-  const std::string_view bytes = buffer(gltf_count(names, "buffer", kNone));
+  const std::string_view bytes = buffer(gltf_count(names, "buffer", kNoIndex));
   const std::size_t offset = gltf_count(names, "byteOffset");
   const std::size_t length = gltf_count(names, "byteLength");
   if (offset > bytes.size() || length > bytes.size() - offset) {
@@ -262,7 +261,7 @@ GltfFile::Elements GltfFile::elements(const json& names, std::size_t count, std:
   found.count = count;
   found.component = component;
   const std::size_t size = width * size_of_component(component, who);
-  const std::size_t number = gltf_count(names, "bufferView", kNone);
+  const std::size_t number = gltf_count(names, "bufferView", kNoIndex);
   found.bytes = view(number, who);
   found.stride = gltf_count(at("bufferViews", number), "byteStride", size);
   const std::size_t offset = gltf_count(names, "byteOffset");

@@ -3,6 +3,7 @@
 // is checked against the actual bytes of the file before memory is allocated for it.
 
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <span>
@@ -14,6 +15,9 @@
 #include "mesh_import/imported_mesh.hpp"
 
 namespace tactree::builder {
+
+/// In place of the index of an element.
+inline constexpr std::size_t kNoIndex = std::numeric_limits<std::size_t>::max();
 
 class GltfFile {
  public:

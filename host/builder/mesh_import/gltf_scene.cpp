@@ -20,7 +20,6 @@ using nlohmann::json;
 
 constexpr const char* kDraco = "KHR_draco_mesh_compression";
 constexpr const char* kNoStructure = "its JSON does not have the structure of glTF";
-constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
 /// True for required extensions that do not change the shape or that this reader supports.
 bool is_supported(const std::string& extension) {
@@ -129,10 +128,10 @@ class GltfScene {
 
   void place_nodes() {
     const std::size_t count = root_.value("nodes", json::array()).size();
-    parents_.assign(count, kNone);
+    parents_.assign(count, kNoIndex);
     for (std::size_t i = 0; i < count; ++i) {
       for (const std::size_t child : children_of(file_.at("nodes", i))) {
-        if (child >= count || parents_[child] != kNone) {
+        if (child >= count || parents_[child] != kNoIndex) {
           throw ImportError("its nodes do not form a tree");
         }
         parents_[child] = i;
@@ -147,7 +146,7 @@ class GltfScene {
   /// Iterative, because a long chain of nodes would exhaust the stack of a recursion.
   void place(std::size_t node) {
     std::vector<std::size_t> chain;
-    for (std::size_t at = node; at != kNone && !worlds_[at]; at = parents_[at]) {
+    for (std::size_t at = node; at != kNoIndex && !worlds_[at]; at = parents_[at]) {
       chain.push_back(at);
       if (chain.size() > parents_.size()) {
         throw ImportError("its nodes do not form a tree");
@@ -157,14 +156,14 @@ class GltfScene {
       const std::size_t at = chain.back();
       chain.pop_back();
       const Matrix4d own = transform_of(file_.at("nodes", at));
-      worlds_[at] = parents_[at] == kNone ? own : Matrix4d(*worlds_[parents_[at]] * own);
+      worlds_[at] = parents_[at] == kNoIndex ? own : Matrix4d(*worlds_[parents_[at]] * own);
     }
   }
 
   static std::vector<std::size_t> children_of(const json& node, const char* list = "children") {
     std::vector<std::size_t> children;
     for (const json& child : node.value(list, json::array())) {
-      children.push_back(child.is_number_unsigned() ? child.get<std::size_t>() : kNone);
+      children.push_back(child.is_number_unsigned() ? child.get<std::size_t>() : kNoIndex);
     }
     return children;
   }
@@ -177,7 +176,7 @@ class GltfScene {
       std::reverse(open.begin(), open.end());
     } else {
       for (std::size_t i = parents_.size(); i > 0; --i) {
-        if (parents_[i - 1] == kNone) {
+        if (parents_[i - 1] == kNoIndex) {
           open.push_back(i - 1);
         }
       }
@@ -243,8 +242,8 @@ class GltfScene {
     constexpr std::size_t kTriangles = 4;
     const std::size_t mode = gltf_count(primitive, "mode", kTriangles);
     const json attributes = primitive.value("attributes", json::object());
-    const std::size_t position = gltf_count(attributes, "POSITION", kNone);
-    if (position == kNone) {
+    const std::size_t position = gltf_count(attributes, "POSITION", kNoIndex);
+    if (position == kNoIndex) {
       return;
     }
     if (mode >= 1 && mode < kTriangles) {
@@ -327,7 +326,7 @@ class GltfScene {
       const std::vector<double> indices =
           file_.numbers(gltf_count(attributes, joints_name.c_str()), 4);
       const std::vector<double> weights =
-          file_.numbers(gltf_count(attributes, weights_name.c_str(), kNone), 4);
+          file_.numbers(gltf_count(attributes, weights_name.c_str(), kNoIndex), 4);
       if (indices.size() != 4 * count || weights.size() != 4 * count) {
         throw ImportError("a skin has different numbers of weights and points");
       }

@@ -14,7 +14,7 @@
 namespace tactree::client {
 namespace {
 
-std::string remedy_for(int error) {
+std::string socket_remedy(int error) {
   if (error == EACCES || error == EPERM) {
     return "the user must be in the group of the controller";
   }
@@ -32,7 +32,7 @@ int connect_to(const std::string& path) {
   if (::connect(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0) {
     const int error = errno;
     ::close(descriptor);
-    throw LinkError(path + ": " + std::strerror(error) + " (" + remedy_for(error) + ")");
+    throw LinkError(path + ": " + std::strerror(error) + " (" + socket_remedy(error) + ")");
   }
   return descriptor;
 }

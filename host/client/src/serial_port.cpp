@@ -38,11 +38,11 @@ speed_t speed_code(const std::string& path, unsigned baud) {
                   "; others are 115200, 921600 and 2000000)");
 }
 
-[[noreturn]] void fail(const std::string& path, const std::string& remedy) {
+[[noreturn]] void fail_port(const std::string& path, const std::string& remedy) {
   throw LinkError(path + ": " + std::strerror(errno) + " (" + remedy + ")");
 }
 
-std::string remedy_for(int error) {
+std::string port_remedy(int error) {
   if (error == EACCES) {
     return "the user must be in the group dialout, or a udev rule must permit access";
   }
@@ -98,7 +98,7 @@ class SerialPort : public Transport {
     const speed_t speed = speed_code(path_, baud);
     descriptor_ = ::open(path_.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
     if (descriptor_ < 0) {
-      fail(path_, remedy_for(errno));
+      fail_port(path_, port_remedy(errno));
     }
     if (::isatty(descriptor_) == 0) {
       ::close(descriptor_);
@@ -110,7 +110,7 @@ class SerialPort : public Transport {
       const int error = errno == EWOULDBLOCK ? EBUSY : errno;
       ::close(descriptor_);
       errno = error;
-      fail(path_, remedy_for(error));
+      fail_port(path_, port_remedy(error));
     }
     make_raw(descriptor_, speed);
     ::tcflush(descriptor_, TCIOFLUSH);
@@ -158,7 +158,7 @@ std::vector<std::string> serial_ports() {
 PseudoTerminal::PseudoTerminal() {
   ours_ = ::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
   if (ours_ < 0 || ::grantpt(ours_) != 0 || ::unlockpt(ours_) != 0) {
-    fail("/dev/ptmx", "the system has no free pseudo-terminal");
+    fail_port("/dev/ptmx", "the system has no free pseudo-terminal");
   }
   path_ = ::ptsname(ours_);
   theirs_ = ::open(path_.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);

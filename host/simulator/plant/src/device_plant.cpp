@@ -13,7 +13,6 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kGravity = 9.80665;  // m/s2
 // Gauss-Seidel passes for dry friction and stops. One is not enough: the tip's mass couples the
 // joints.
 constexpr int kRubs = 12;

@@ -17,7 +17,6 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kGravity = 9.80665;  // m/s2
 constexpr double kDifference = 1e-6;  // rad or m, step of the numerical gradient of a closure
 constexpr int kNewtonSteps = 60;
 constexpr double kConverged_m = 1e-12;

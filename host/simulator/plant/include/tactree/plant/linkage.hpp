@@ -9,6 +9,8 @@
 
 namespace tactree::plant {
 
+inline constexpr double kGravity = 9.80665;  // m/s2
+
 /// Position of the tip in the device frame, and its Jacobian. Each column is the motion of the tip
 /// per motion of one joint; the column of an unused joint is zero.
 struct LinkagePose {
