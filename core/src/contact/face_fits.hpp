@@ -31,11 +31,11 @@ struct Moments {
 /// The surface through the points of one face at the query position.
 struct FaceFit {
   bool supported;
-  float strength;
-  float weight;  // sum over the points
+  float strength;  // 0 if not supported
+  float weight;    // sum over the points
   Plane plane;
 
-  [[nodiscard]] bool firm() const { return supported && strength > 0.0F; }
+  [[nodiscard]] bool firm() const { return strength > 0.0F; }
 };
 
 /// The algebraic sphere through weighted points and normals. `inverse_radius`: of the support, 1/m.

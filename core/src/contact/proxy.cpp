@@ -129,19 +129,18 @@ SurfaceFit Proxy::evaluate(const BlobView& view, Vec3 x) {
 void Proxy::sweep(const BlobView& view, Vec3 probe) {
   const float step = step_length(view);
   for (std::uint32_t i = 0; i < kSteps; ++i) {  // bound: kSteps
-    const Vec3 path = probe - position_;
-    const float distance = length(path);
-    Vec3 x = distance > step ? position_ + (step / distance) * path : probe;
-    if (has_next_) {
-      x = next_;
-      has_next_ = false;
+    if (!has_next_) {
+      const Vec3 path = probe - position_;
+      const float distance = length(path);
+      next_ = distance > step ? position_ + (step / distance) * path : probe;
     }
+    has_next_ = false;
     // at most: fits_of_one + 1 per Proxy::sweep
-    if (!prepare_fit(view, x)) {
+    if (!prepare_fit(view, next_)) {
       return;
     }
-    visit(view, x);  // at most: fits per Scene::update together fits
-    const bool arrived = x == probe && !has_next_;
+    visit(view);  // at most: fits per Scene::update together fits
+    const bool arrived = next_ == probe && !has_next_;
     if (in_contact() || arrived || asks_ || blocked_) {
       return;
     }
@@ -150,7 +149,7 @@ void Proxy::sweep(const BlobView& view, Vec3 probe) {
 
 // Returns false if no point is within reach, or if there is no reference and all points in the
 // support are hidden.
-bool Proxy::has_reference(const BlobView& view, Vec3 x) {
+bool Proxy::has_reference(const BlobView& view) {
   const CandidateSet& points = candidates_.in_use();
   if (points.count() + points.hidden() == 0U) {
     lose_support();
@@ -161,7 +160,7 @@ bool Proxy::has_reference(const BlobView& view, Vec3 x) {
   }
   budget_.spend_passes(1U);
   // at most: passes per Scene::update together passes
-  const Candidate* const nearest = nearest_candidate(points, x, view.support_radius_m());
+  const Candidate* const nearest = nearest_candidate(points, next_, view.support_radius_m());
   if (nearest == nullptr) {
     return false;
   }
@@ -169,45 +168,41 @@ bool Proxy::has_reference(const BlobView& view, Vec3 x) {
   return true;
 }
 
-void Proxy::visit(const BlobView& view, Vec3 x) {
-  const Vec3 step = x - position_;
-  position_ = x;
-  if (!has_reference(view, x)) {
+void Proxy::visit(const BlobView& view) {
+  if (!has_reference(view)) {
+    position_ = next_;
+    was_free_ = false;
     if (!is_tracking()) {
       look_around(view);  // at most: passes per Scene::update together passes
     }
     return;
   }
   const bool was_smooth = near_.count == 0U;
-  const SurfaceFit fit = evaluate(view, x);
-  if (is_contradicted(fit)) {
-    reference_ = -reference_;
-    near_.count = 0;
-    state_ = State::kReferenced;
+  const SurfaceFit fit = evaluate(view, next_);
+  if (rejects(fit, was_smooth)) {
     return;
   }
-  if (!fit.firm()) {
-    lose_face(fit);
-    return;
-  }
-  if (was_smooth && near_.count != 0U && (!is_tracking() || side_ * fit.distance < 0.0F)) {
-    position_ = x - step;
-    next_ = x;
-    has_next_ = true;  // a crease came near: separate its faces before a contact begins
-    state_ = is_tracking() ? state_ : State::kReferenced;
-    return;
-  }
+  const Vec3 step = next_ - position_;
+  position_ = next_;
   if (passes_by(fit, step)) {
     reference_ = fit.back.normal;
     near_.count = 0;
     inside_ = inside_ && side_ < 0.0F;
+    was_free_ = false;
     state_ = State::kTracking;
     return;
   }
   if (!is_tracking()) {
-    // Another body holds the leading proxy outside: up to the tolerance, a follower behind the
-    // surface counts as in front of it.
-    begin_tracking(is_led() ? fit.distance + neighbour_->tolerance_m : fit.distance);
+    // Behind a surface, look_behind() first determines in the next tick whether that is in the
+    // material. Another body holds the leading proxy outside: up to the tolerance, a follower
+    // behind the surface counts as in front of it.
+    const float height = is_led() ? fit.distance + neighbour_->tolerance_m : fit.distance;
+    const bool crosses = was_free_ && fit.distance - dot(fit.normal, step) > 0.0F;
+    was_free_ = false;
+    asks_ = height < 0.0F && !crosses;
+    inside_ = inside_ && asks_;
+    side_ = asks_ ? -1.0F : 1.0F;
+    state_ = State::kTracking;
   }
   refer_to(fit, was_smooth);
   hold(fit);
@@ -231,13 +226,38 @@ void Proxy::visit(const BlobView& view, Vec3 x) {
   begin_contact(view);
 }
 
-// Behind a surface, look_behind() first determines in the next tick whether that is in the
-// material.
-void Proxy::begin_tracking(float distance) {
-  asks_ = distance < 0.0F;
-  inside_ = inside_ && asks_;
-  side_ = asks_ ? -1.0F : 1.0F;
-  state_ = State::kTracking;
+// Returns true if a fit at next_ is not one of the surface that the proxy follows. It has then lost
+// that surface, or it repeats the step with another reference or further faces: with those near its
+// end, if it leads out of reach of the tracked face. A tracked surface that was crossed begins a
+// contact, whichever side its other points face. Where points are hidden, those that face the
+// reference may be among them.
+bool Proxy::rejects(const SurfaceFit& fit, bool was_smooth) {
+  const bool is_firm = fit.firm();
+  const bool is_behind = side_ * fit.distance < 0.0F;
+  const bool is_open = candidates_.in_use().hidden() == 0U;
+  const bool is_stray = fit.facing < kContradicted && state_ != State::kReferenced && is_open &&
+                        !(is_tracking() && is_firm && is_behind);
+  if (is_stray || !is_firm) {
+    if (is_tracking() && !inside_ && is_open) {
+      lose_support();
+      was_free_ = true;
+    } else if (is_stray) {
+      reference_ = -reference_;
+      near_.count = 0;
+      state_ = State::kReferenced;
+    } else {
+      position_ = next_;
+      lose_face(fit);
+      return true;
+    }
+  } else if (was_smooth && near_.count != 0U && (!is_tracking() || is_behind)) {
+    // A crease came near: its faces are separated before a contact begins.
+    state_ = is_tracking() ? state_ : State::kReferenced;
+  } else {
+    return false;
+  }
+  has_next_ = true;
+  return true;
 }
 
 // Returns true if the step went around the edge of a plate or over a ridge: when it fell behind the
@@ -252,14 +272,6 @@ bool Proxy::passes_by(const SurfaceFit& fit, Vec3 step) const {
   const float fall = -side_ * dot(fit.normal, step);
   const float behind = fall > -height ? -height / fall : 1.0F;  // fraction of the step
   return !is_tracking() || back_height > behind * side_ * dot(fit.back.normal, step);
-}
-
-// A tracked surface that was crossed begins a contact, whichever side its other points face. Where
-// points are hidden, those that face the reference may be among them.
-bool Proxy::is_contradicted(const SurfaceFit& fit) const {
-  const bool crossed = is_tracking() && fit.firm() && side_ * fit.distance < 0.0F;
-  return !crossed && state_ != State::kReferenced && fit.facing < kContradicted &&
-         candidates_.in_use().hidden() == 0U;
 }
 
 void Proxy::begin_contact(const BlobView& view) {
@@ -523,6 +535,7 @@ void Proxy::lose_support() {
   release();
   state_ = State::kUntracked;
   has_next_ = false;
+  was_free_ = false;
   reference_ = {};
   near_.count = 0;
   side_ = 1.0F;

@@ -21,7 +21,7 @@ constexpr std::uint64_t kLocator64Bytes = 20;
 constexpr std::uint64_t kMemberBytes = 46;
 constexpr std::uint64_t kLocalBytes = 30;
 constexpr std::uint64_t kAbsent = 0xffffffff;  // the number is in the extra field
-constexpr std::uint64_t kMaxDeflate = 1040;      // above the maximum ratio of deflate, 1032
+constexpr std::uint64_t kMaxDeflate = 1040;    // above the maximum ratio of deflate, 1032
 
 [[noreturn]] void fail(const std::string& cause) {
   throw ImportError("its zip archive is damaged or was cut off: " + cause);

@@ -422,6 +422,40 @@ TEST(Crease, LetsHandSlideOffEdge) {
   }
 }
 
+// From near one wall to behind the other, whose points come near as those of the first one leave
+// the support.
+TEST(Crease, StopsHandThatCrossesGap) {
+  std::mt19937_64 random(4);
+  int crossings = 0;
+  int missed = 0;
+  for (const double angle : {20.0, 30.0, 40.0, 50.0}) {
+    Prism prism = groove(angle);
+    prism.turn = any_turn(random);
+    const Shape shape = sampled(prism, kH, 0.3, 0.0, 5);
+    const double half = angle * std::numbers::pi / 360.0;
+    for (const double height : {2e-3, 3e-3, 4e-3, 6e-3}) {
+      const double wall = height * std::tan(half);
+      for (const double speed : {0.5, 1.0, 2.0}) {
+        for (const double off : {-0.3e-3, 0.1e-3, 0.4e-3}) {  // of the first wall
+          for (const double rise : {-1e-3, 0.0, 1e-3}) {
+            for (const float rate : {1000.0F, 4000.0F}) {
+              Hand hand(shape, prism.turn, {0.0, -2e-3, height}, rate);
+              hand.move_to({off - wall, -1e-3, height}, 0.1);
+              hand.stay(5);
+              const double there = (height + rise) * std::tan(half) + 0.8e-3;
+              hand.move_to({there, 0.0, height + rise}, speed);
+              hand.stay(40);
+              ++crossings;
+              missed += hand.feels() && hand.force().x() < 0.0 ? 0 : 1;
+            }
+          }
+        }
+      }
+    }
+  }
+  EXPECT_EQ(missed, 0) << "of " << crossings;
+}
+
 TEST(Crease, AvoidsOscillationBelowRoundBend) {
   // A trough of 3 mm radius, with the hand 6 mm below its bottom.
   constexpr double kRadius = 3e-3;

@@ -5,7 +5,9 @@
 // 2002.)
 //
 // Free:       the path of the probe is swept in steps of half a support radius, so that no surface
-//             is crossed undetected. Contact begins where the signed distance becomes negative.
+//             is crossed undetected. Contact begins where the signed distance becomes negative. A
+//             step that leaves its face, as across a narrow gap, is repeated with the face at its
+//             end.
 // In contact: the proxy sticks within the friction cone of the probe, or slips to the boundary of
 //             the cone. Where the surface is concave, up to three faces hold it: it moves to the
 //             position in front of all of them that is closest to the probe.
@@ -146,10 +148,9 @@ class Proxy {
   void look_around(const BlobView& view);
   void look_behind(const BlobView& view);
   void sweep(const BlobView& view, Vec3 probe);
-  void visit(const BlobView& view, Vec3 x);
-  [[nodiscard]] bool has_reference(const BlobView& view, Vec3 x);
-  void begin_tracking(float distance);
-  [[nodiscard]] bool is_contradicted(const SurfaceFit& fit) const;
+  void visit(const BlobView& view);
+  [[nodiscard]] bool has_reference(const BlobView& view);
+  [[nodiscard]] bool rejects(const SurfaceFit& fit, bool was_smooth);
   [[nodiscard]] bool passes_by(const SurfaceFit& fit, Vec3 step) const;
   [[nodiscard]] bool is_led() const { return neighbour_ != nullptr && neighbour_->leads; }
   void begin_beside(const Neighbour* neighbour);
@@ -196,10 +197,11 @@ class Proxy {
   std::uint32_t active_ = 0;              // bit i: plane i holds the probe; valid if count > 1
   float weight_ = 0.0F;                   // of the last fit beside a neighbour
   float stride_ = 1.0F;  // factor of the next step: < 1 after one that led away from the probe
-  Vec3 next_{};          // position of the fit that waits for its candidates; valid if has_next_
+  Vec3 next_{};  // position of the next fit, if has_next_: it waits for candidates or is repeated
   TickBudget budget_;
   State state_ = State::kUntracked;
   bool has_next_ = false;
+  bool was_free_ = false;   // not tracking: the step to next_ begins in free space
   bool unsettled_ = false;  // in contact: position_ needs another fit
   bool inside_ = false;     // never in contact
   bool asks_ = false;       // tracking, behind a surface: look_behind() is pending

@@ -36,7 +36,7 @@ struct SurfaceFit {
   float weight = 0.0F;
   /// True if enough points on all sides locate the surface. A fit that is supported but not firm,
   /// at a boundary or in a hole, still guides a proxy in contact.
-  [[nodiscard]] bool firm() const { return supported && strength > 0.0F; }
+  [[nodiscard]] bool firm() const { return strength > 0.0F; }
   /// If no face has the direction of the reference: normal of a face, for the next fit. Else zero.
   Vec3 next_reference{};
   float facing = 1.0F;       ///< fraction of the weight with normals that face the reference
