@@ -257,6 +257,12 @@ Scan read_stl_ascii(InputFile& file, const ReadOptions& options) {
 
 Scan read_stl_binary(InputFile& file, const ReadOptions& options) {
   const std::string_view head = file.peek(kStlSampleBytes);
+  if (head.size() < kStlHeaderBytes) {
+    throw ReadError(
+        file.name(), fmt::format("byte {}", head.size()),
+        fmt::format("the file ends inside the header of {} bytes of a binary STL", kStlHeaderBytes),
+        "it was cut off, or it is not an STL file; copy or export it again");
+  }
   const std::uint64_t declared = count_in(head);
   const std::size_t begin = find_stl_triangles(head, file.size()).value_or(kStlHeaderBytes);
   const std::uint64_t room = (file.size() - begin) / kStlTriangleBytes;

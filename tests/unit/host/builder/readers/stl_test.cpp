@@ -84,6 +84,18 @@ TEST_F(StlTest, ChecksDeclaredCounts) {
   expect_parts(refusal_of(binary(0, "")), "no triangle");
 }
 
+// Only a named format leads there: the content does not tell what the file is.
+TEST_F(StlTest, RefusesFileShorterThanHeader) {
+  ReadOptions options;
+  options.format = "stl";
+  const std::string whole = binary(1, two_facets().substr(0, 50));
+  for (const std::size_t size : {1U, 57U, 79U, 80U, 83U}) {
+    const std::string cut = std::string("\x03") + whole.substr(1, size - 1U);
+    expect_parts(refusal(write("cut", cut), options), "byte " + std::to_string(size), "header");
+  }
+  expect_parts(refusal(write("cut", whole.substr(0, 84)), options), "holds 0");
+}
+
 TEST_F(StlTest, NamesLineOfDamage) {
   const std::string solid = std::string("solid\n") + kFacet;
   expect_parts(refusal_of(solid + "facet normal 0 0 1\nouter loop\nvertex 0 0 0\n"),
