@@ -6,6 +6,7 @@
 #include <array>
 #include <iterator>
 
+#include "svg.hpp"
 #include "tactree/evaluation/evaluation.hpp"
 
 namespace tactree::evaluation {
@@ -15,8 +16,8 @@ using builder::Opening;
 
 constexpr double kSide = 290.0;  // of the square of a view, pixels
 constexpr double kGap = 15.0;
-constexpr double kTop = 30.0;
-constexpr double kBottom = kTop + kSide + 40.0;
+constexpr double kViewTop = 30.0;
+constexpr double kBottom = kViewTop + kSide + 40.0;
 constexpr std::uint32_t kDots = 4000;  // maximum per view; enough to recognise a model
 constexpr std::size_t kListed = 10;    // maximum rows of the table of a scan
 
@@ -54,7 +55,7 @@ class Projection {
   [[nodiscard]] Eigen::Vector2d place(const Eigen::Vector3d& at, std::size_t view) const {
     const Side& side = kSides[view];
     return {middle_of(view) + scale_ * (at[side.right] - middle_[side.right]),
-            kTop + 0.5 * kSide - scale_ * (at[side.up] - middle_[side.up])};
+            kViewTop + 0.5 * kSide - scale_ * (at[side.up] - middle_[side.up])};
   }
   [[nodiscard]] double pixels(double metres) const { return scale_ * metres; }
 
@@ -94,21 +95,15 @@ std::string circle(const Opening& opening, const Projection& frame, std::size_t 
 std::string hole_map_svg(const core::BlobView& view, std::span<const Opening> openings) {
   const Projection frame(view.header());
   const double width = 3.0 * kSide + 2.0 * kGap;
-  std::string svg = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" "
-      "viewBox=\"0 0 {0:.0f} {1:.0f}\" font-family=\"sans-serif\" font-size=\"13\">\n"
-      "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n",
-      width, kBottom);
+  std::string svg = begin_svg(width, kBottom);
   for (std::size_t side = 0; side < kSides.size(); ++side) {
-    fmt::format_to(std::back_inserter(svg),
-                   "<text x=\"{:.1f}\" y=\"18\" text-anchor=\"middle\">{}</text>\n",
-                   Projection::middle_of(side), kSides[side].name);
+    add_text(svg, Projection::middle_of(side), 18.0, "middle", kSides[side].name);
     svg += dots(view, frame, side);
     for (const Opening& opening : openings) {
       svg += circle(opening, frame, side);
     }
   }
-  return svg + "</svg>\n";
+  return svg + kSvgEnd;
 }
 
 std::map<std::string, std::string> hole_maps(const Result& result) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "svg.hpp"
 #include "tactree/evaluation/evaluation.hpp"
 
 namespace tactree::evaluation {
@@ -17,11 +18,7 @@ constexpr std::array<const char*, 2> kColours = {"#0072b2", "#d55e00"};
 class Svg {
  public:
   Svg(double height, const std::string& title) {
-    out_ = fmt::format(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" "
-        "viewBox=\"0 0 {0:.0f} {1:.0f}\" font-family=\"sans-serif\" font-size=\"13\">\n"
-        "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n",
-        kWidth, height);
+    out_ = begin_svg(kWidth, height);
     text(kLeft, 26.0, "start", title, " font-size=\"16\" font-weight=\"bold\"");
     for (const Mode mode : {kSurface, kPaper}) {
       const double x = kRight - (mode == kSurface ? 180.0 : 80.0);
@@ -31,9 +28,7 @@ class Svg {
   }
   void text(double x, double y, const char* anchor, const std::string& words,
             const char* extra = "") {
-    fmt::format_to(std::back_inserter(out_),
-                   "<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\"{}>{}</text>\n", x, y, anchor,
-                   extra, words);
+    add_text(out_, x, y, anchor, words, extra);
   }
   void bar(double x, double y, double width, Mode mode) {
     fmt::format_to(std::back_inserter(out_),
@@ -50,7 +45,7 @@ class Svg {
     out_ += fmt::format("<polyline fill=\"none\" stroke=\"{}\" points=\"{}\"/>\n", kColours[mode],
                         points);
   }
-  [[nodiscard]] std::string take() { return std::move(out_) + "</svg>\n"; }
+  [[nodiscard]] std::string take() { return std::move(out_) + kSvgEnd; }
 
  private:
   std::string out_;

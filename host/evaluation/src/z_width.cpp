@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "svg.hpp"
 #include "tactree/evaluation/evaluation.hpp"
 #include "tactree/simulation/stability.hpp"
 
@@ -40,12 +41,6 @@ double y_of(double stiffness_N_m) {
   return kPlotBottom - share * (kPlotBottom - kPlotTop);
 }
 
-void text(std::string& svg, double x, double y, const char* anchor, const std::string& words) {
-  fmt::format_to(std::back_inserter(svg),
-                 "<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">{}</text>\n", x, y, anchor,
-                 words);
-}
-
 void grid(std::string& svg) {
   const auto line = [&svg](double x1, double y1, double x2, double y2) {
     fmt::format_to(std::back_inserter(svg),
@@ -54,15 +49,15 @@ void grid(std::string& svg) {
   };
   for (double stiffness = kSoftest_N_m; stiffness <= 1.001 * kStiffest_N_m; stiffness *= 10.0) {
     line(kPlotLeft, y_of(stiffness), kPlotRight, y_of(stiffness));
-    text(svg, kPlotLeft - 8.0, y_of(stiffness) + 4.0, "end", fmt::format("{:g}", stiffness));
+    add_text(svg, kPlotLeft - 8.0, y_of(stiffness) + 4.0, "end", fmt::format("{:g}", stiffness));
   }
   for (double damping = 0.0; damping <= kMaxDamping_Ns_m; damping += 0.5) {
     line(x_of(damping), kPlotTop, x_of(damping), kPlotBottom);
-    text(svg, x_of(damping), kPlotBottom + 20.0, "middle", fmt::format("{:g}", damping));
+    add_text(svg, x_of(damping), kPlotBottom + 20.0, "middle", fmt::format("{:g}", damping));
   }
-  text(svg, 0.5 * (kPlotLeft + kPlotRight), kPlotBottom + 44.0, "middle",
-       "damping of the wall / (Ns/m)");
-  text(svg, kPlotLeft - 60.0, kPlotTop - 18.0, "start", "largest stable stiffness / (N/m)");
+  add_text(svg, 0.5 * (kPlotLeft + kPlotRight), kPlotBottom + 44.0, "middle",
+           "damping of the wall / (Ns/m)");
+  add_text(svg, kPlotLeft - 60.0, kPlotTop - 18.0, "start", "largest stable stiffness / (N/m)");
 }
 
 void curve(std::string& svg, const Rate& rate) {
@@ -89,28 +84,24 @@ void legend(std::string& svg, const std::vector<Rate>& rates) {
     fmt::format_to(std::back_inserter(svg),
                    "<path d=\"M{0:.1f} {1:.1f} h24\" stroke=\"{2}\" stroke-width=\"2\"/>\n",
                    kPlotRight + 14.0, y - 4.0, rate.colour);
-    text(svg, kPlotRight + 44.0, y, "start", fmt::format("{:g} kHz", 1e-3 * rate.hz));
+    add_text(svg, kPlotRight + 44.0, y, "start", fmt::format("{:g} kHz", 1e-3 * rate.hz));
     y += 22.0;
   }
-  text(svg, kPlotRight + 14.0, y + 6.0, "start", "lines: simulated");
-  text(svg, kPlotRight + 14.0, y + 26.0, "start", "dashes: predicted");
+  add_text(svg, kPlotRight + 14.0, y + 6.0, "start", "lines: simulated");
+  add_text(svg, kPlotRight + 14.0, y + 26.0, "start", "dashes: predicted");
 }
 
 }  // namespace
 
 std::string z_width_svg(bool quick) {
   const std::vector<Rate> rates(std::begin(kRates), quick ? kRates + 2 : std::end(kRates));
-  std::string svg = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" "
-      "viewBox=\"0 0 {0:.0f} {1:.0f}\" font-family=\"sans-serif\" font-size=\"13\">\n"
-      "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n",
-      kPictureWidth, kPictureHeight);
+  std::string svg = begin_svg(kPictureWidth, kPictureHeight);
   grid(svg);
   for (const Rate& rate : rates) {
     curve(svg, rate);
   }
   legend(svg, rates);
-  return svg + "</svg>\n";
+  return svg + kSvgEnd;
 }
 
 }  // namespace tactree::evaluation

@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+
+#include "number_text.hpp"
 
 namespace tactree::simulation {
 namespace {
@@ -28,16 +29,6 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(" \t\r") - begin + 1);
 }
 
-std::optional<double> number(std::string_view text) {
-  const std::string_view digits = trimmed(text);
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (error != std::errc{} || end != digits.data() + digits.size() || !std::isfinite(value)) {
-    return std::nullopt;
-  }
-  return value;
-}
-
 /// Waypoint of a row with four numbers; empty if the row has any other content.
 std::optional<Waypoint> waypoint(std::string_view row) {
   std::array<double, 4> values{};
@@ -46,7 +37,7 @@ std::optional<Waypoint> waypoint(std::string_view row) {
     if ((comma == std::string_view::npos) != (i + 1 == values.size())) {
       return std::nullopt;
     }
-    const std::optional<double> value = number(row.substr(0, comma));
+    const std::optional<double> value = parse_number(trimmed(row.substr(0, comma)));
     if (!value) {
       return std::nullopt;
     }

@@ -3,8 +3,9 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
+#include <optional>
+
+#include "number_text.hpp"
 
 namespace tactree::simulation {
 namespace {
@@ -73,24 +74,15 @@ constexpr std::array<KindEntry, 17> kKinds = {{
       fmt::format("'{}': {} (PART:KIND[=VALUE]@FROM[..TO], e.g. encoder1:stuck@2.5s)", text, what));
 }
 
-double number(std::string_view text, std::string_view digits, std::string_view what) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (error != std::errc() || end != digits.data() + digits.size() || !std::isfinite(value)) {
-    refuse(text, fmt::format("{} '{}' is not a number", what, digits));
-  }
-  return value;
-}
-
 double seconds(std::string_view text, std::string_view time) {
-  if (!time.empty() && time.back() == 's') {
-    time.remove_suffix(1);
+  const std::optional<double> value = parse_seconds(time);
+  if (!value) {
+    refuse(text, fmt::format("the time '{}' is not a number", time));
   }
-  const double value = number(text, time, "the time");
-  if (value < 0.0) {
+  if (*value < 0.0) {
     refuse(text, "the time is before arming");
   }
-  return value;
+  return *value;
 }
 
 /// Cuts `rest` at the first `mark` and returns the text after it; empty without a mark.
@@ -138,13 +130,16 @@ double value_of(std::string_view text, const KindEntry& kind, std::string_view d
   if (digits.empty()) {
     refuse(text, fmt::format("{}:{} needs a value: {}", kind.part, kind.kind, kind.about));
   }
-  const double value = number(text, digits, "the value");
+  const std::optional<double> value = parse_number(digits);
+  if (!value) {
+    refuse(text, fmt::format("the value '{}' is not a number", digits));
+  }
   const double low = kind.takes == Takes::kCounts || kind.takes == Takes::kMillionths ? -1e6 : 0.0;
   const double high = kind.takes == Takes::kDeadlines ? 1000.0 : 1e6;
-  if (!(value >= low && value <= high)) {
+  if (!(*value >= low && *value <= high)) {
     refuse(text, fmt::format("the value is outside {:g} .. {:g}", low, high));
   }
-  return value;
+  return *value;
 }
 
 }  // namespace

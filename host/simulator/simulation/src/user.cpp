@@ -3,10 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <stdexcept>
 #include <string>
 #include <utility>
+
+#include "number_text.hpp"
 
 namespace tactree::simulation {
 namespace {
@@ -21,14 +22,8 @@ constexpr double kHandAfterS = 0.08;
 }
 
 double seconds_of(std::string_view text, std::string_view time) {
-  std::string_view digits = time;
-  if (!digits.empty() && digits.back() == 's') {
-    digits.remove_suffix(1);
-  }
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (error != std::errc() || end != digits.data() + digits.size() ||
-      !(value >= 0.0 && value <= 1e9)) {
+  const double value = parse_seconds(time).value_or(-1.0);
+  if (!(value >= 0.0 && value <= 1e9)) {
     refuse_press(text, fmt::format("'{}' is not a time from 0 upwards", time));
   }
   return value;
