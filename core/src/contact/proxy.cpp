@@ -227,36 +227,42 @@ void Proxy::visit(const BlobView& view) {
 }
 
 // Returns true if a fit at next_ is not one of the surface that the proxy follows. It has then lost
-// that surface, or it repeats the step with another reference or further faces: with those near its
-// end, if it leads out of reach of the tracked face. A tracked surface that was crossed begins a
-// contact, whichever side its other points face. Where points are hidden, those that face the
-// reference may be among them.
+// that surface, or it looks for another one: with further faces, with the opposite reference where
+// most points face away, or with the nearest point where the tracked face is out of reach. From
+// free space, the step is repeated then. A tracked surface that was crossed begins a contact,
+// whichever side its other points face. Where points are hidden, those that face the reference may
+// be among them.
 bool Proxy::rejects(const SurfaceFit& fit, bool was_smooth) {
   const bool is_firm = fit.firm();
   const bool is_behind = side_ * fit.distance < 0.0F;
   const bool is_open = candidates_.in_use().hidden() == 0U;
   const bool is_stray = fit.facing < kContradicted && state_ != State::kReferenced && is_open &&
                         !(is_tracking() && is_firm && is_behind);
-  if (is_stray || !is_firm) {
-    if (is_tracking() && !inside_ && is_open) {
-      lose_support();
-      was_free_ = true;
-    } else if (is_stray) {
-      reference_ = -reference_;
-      near_.count = 0;
+  if (is_firm && !is_stray) {
+    // A crease that comes near: its faces are separated before a contact begins.
+    has_next_ = was_smooth && near_.count != 0U && (!is_tracking() || is_behind);
+    if (has_next_ && !is_tracking()) {
       state_ = State::kReferenced;
-    } else {
-      position_ = next_;
-      lose_face(fit);
-      return true;
     }
-  } else if (was_smooth && near_.count != 0U && (!is_tracking() || is_behind)) {
-    // A crease came near: its faces are separated before a contact begins.
-    state_ = is_tracking() ? state_ : State::kReferenced;
-  } else {
-    return false;
+    return has_next_;
   }
-  has_next_ = true;
+  const bool begins_free = is_tracking() ? !inside_ && is_open : was_free_;
+  if (is_stray) {
+    reference_ = -reference_;
+    near_.count = 0;
+    state_ = State::kReferenced;
+  } else if (is_tracking() && begins_free) {
+    lose_support();
+  } else {
+    position_ = next_;
+    lose_face(fit);
+    return true;
+  }
+  was_free_ = begins_free;
+  has_next_ = begins_free;
+  if (!begins_free) {
+    position_ = next_;
+  }
   return true;
 }
 
