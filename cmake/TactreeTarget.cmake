@@ -63,7 +63,7 @@ endfunction()
 #   With TACTREE_MERGE_SOURCES, up to sixteen source files are compiled as one, and a full build reads
 #   each large header less often. Unlike in CMake's unity builds, the sources are divided evenly, and
 #   named by relative paths, so that a compiler cache finds them again in another folder. Sources with
-#   definitions of their own stay apart.
+#   definitions of their own or SKIP_UNITY_BUILD_INCLUSION stay apart.
 #   QUICK  code that does not take long to run, such as commands, files and pages: compiled with -O1,
 #          which takes the compiler a quarter less time
 function(tactree_merge_sources target)
