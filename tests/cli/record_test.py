@@ -220,6 +220,44 @@ class Session(Recorded):
         self.assertLess(after, 5)
         self.assertEqual(zlib.crc32(no_force * before + b"".join(forces) + no_force * after), replay["trace_crc32"])
 
+    def record_taps(self, name, seconds):
+        """The columns, from the first row without contact, of a hand that touches the ball twice in a second."""
+        taps = "".join(f"{i / 4},{0.004 * (i % 8) / 8},0,{0.026 if i % 2 else 0.034}\n" for i in range(40))
+        self.write("taps.csv", "t_s,x,y,z\n" + taps)
+        with ServedBoard(TACTREE, self.blob, "--path", self.path / "taps.csv") as port:
+            self.record(port, name, "--seconds", str(seconds), "--arm")
+        rows = [] if name.endswith("npz") else self.rows(name)
+        table = {column: [row[column] for row in rows] for column in rows[0]} if rows else read_npz(self.path / name)
+        begin = [int(contact) for contact in table["in_contact"]].index(0)
+        return {column: values[begin:] for column, values in table.items()}
+
+    def test_motion_is_repeated(self):
+        """A hand follows the recorded probe, and feels nearly the recorded forces."""
+        for name in ("moved.csv", "moved.npz"):
+            recorded = self.record_taps(name, 1.5)
+            done = self.run_tool("simulate", self.blob, "--path", name, "--trace", "repeated.csv")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            repeated = self.rows("repeated.csv")
+            self.assertEqual(len(repeated), len(recorded["tick"]))
+            difference = square = 0.0
+            for axis in "xyz":
+                probes, forces = (map(float, recorded[f"{quantity}_{axis}_{unit}"])
+                                  for quantity, unit in (("probe", "m"), ("force", "N")))
+                for row, probe, force in zip(repeated, probes, forces):
+                    self.assertAlmostEqual(float(row[f"probe_{axis}_m"]), probe, delta=0.0002)
+                    difference += (float(row[f"force_{axis}_N"]) - force)**2
+                    square += force**2
+            self.assertGreater((square / len(repeated))**0.5, 0.2, "N")
+            self.assertLess((difference / square)**0.5, 0.2)
+
+    def test_repeated_motion_obeys_options(self):
+        ticks = len(self.record_taps("short.csv", 1.2)["tick"])
+        for options, expected in (((), ticks), (("--seconds", "0.25"), 250), (("--rate", "2000"), 2 * ticks - 1)):
+            done = self.run_tool("simulate", self.blob, "--path", "short.csv", "--json", "short.json",
+                                 "--allow-no-contact", *options)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertEqual(self.read("short.json")["ticks"], expected)
+
     def test_watches_without_arming(self):
         with ServedBoard(TACTREE, self.blob) as port:
             for name in ("watched.csv", "watched.npz"):
@@ -230,6 +268,10 @@ class Session(Recorded):
             self.assertEqual(done.returncode, 1)
             self.assertIn(f"{name}: a trace, or the recording of a board, cannot be replayed", done.stderr)
             self.assertIn(f"tactree view BLOB --trace {name} shows it", done.stderr)
+            self.assertIn(f"simulate BLOB --path {name} repeats its motion", done.stderr)
+            done = self.run_tool("simulate", self.blob, "--path", name)
+            self.assertEqual(done.returncode, 1)
+            self.assertIn(f"{name}: no tick is in the state active", done.stderr)
 
 
 class Gaps(Recorded):

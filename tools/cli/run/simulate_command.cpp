@@ -16,9 +16,15 @@
 #include "tactree/setup/scene_file.hpp"
 #include "tactree/support/device_file.hpp"
 #include "tactree/support/output_file.hpp"
+#include "tactree/telemetry/recorded_motion.hpp"
 
 namespace tactree::cli {
 namespace {
+
+// Of a hand that repeats a motion. A softer one lags behind the friction of the device: at 300 N/m,
+// the force differs by half of itself.
+constexpr double kFollowing_N_m = 20000.0;
+constexpr double kFollowing_Ns_m = 100.0;
 
 /// "NAME: WARNING" for each body whose first pose, in the frame of the device, is beyond its reach.
 std::string misplaced(const SimulateOptions& options, const setup::SceneFile& scene) {
@@ -68,6 +74,21 @@ std::string remedy_for_no_contact(const SimulateOptions& options, const core::Bl
          "the run with --allow-no-contact";
 }
 
+/// What the user does not state: the run is as long as the recording, and the hand so stiff that
+/// the device follows within about a count of its encoders.
+void repeat_recording(SimulateOptions& options, const setup::SceneFile& scene) {
+  if (options.seconds_given->count() == 0) {
+    options.seconds = hand_path(options, scene).waypoints().back().t_s +
+                      1.0 / static_cast<double>(options.setup.controller.rate_hz);
+  }
+  if (options.stiffness_given->count() == 0) {
+    options.setup.plant.hand.stiffness_N_m = kFollowing_N_m;
+  }
+  if (options.damping_given->count() == 0) {
+    options.setup.plant.hand.damping_Ns_m = kFollowing_Ns_m;
+  }
+}
+
 void simulate(SimulateOptions& options, int& exit_code) {
   if (options.dump_device) {
     fmt::print("{}", support::device_json(support::load_device(options.device)));
@@ -91,6 +112,9 @@ void simulate(SimulateOptions& options, int& exit_code) {
   check_panel(options);
   const setup::SceneFile scene = setup::read_scene(options.scene, options.blobs, options.pose);
   options.blob = scene.names[0];
+  if (telemetry::is_recording(options.path)) {
+    repeat_recording(options, scene);
+  }
   note_defaults(options.device, support::load_device(options.device));
   if (options.serve) {
     serve(options, scene);

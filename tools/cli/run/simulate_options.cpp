@@ -124,12 +124,14 @@ void add_plant_options(CLI::App& verb, SimulateOptions& options) {
   verb.add_option("--latency-ticks", options.latency_ticks, "age of an encoder reading, ticks")
       ->check(CLI::Range(0, static_cast<int>(hal::sim::kMaxLatencyTicks)))
       ->capture_default_str();
-  verb.add_option("--hand-stiffness", plant.hand.stiffness_N_m, "spring of the hand, N/m")
-      ->check(CLI::Range(0.0, 1e5))
-      ->capture_default_str();
-  verb.add_option("--hand-damping", plant.hand.damping_Ns_m, "damper of the hand, Ns/m")
-      ->check(CLI::Range(0.0, 1e3))
-      ->capture_default_str();
+  options.stiffness_given =
+      verb.add_option("--hand-stiffness", plant.hand.stiffness_N_m, "spring of the hand, N/m")
+          ->check(CLI::Range(0.0, 1e5))
+          ->capture_default_str();
+  options.damping_given =
+      verb.add_option("--hand-damping", plant.hand.damping_Ns_m, "damper of the hand, Ns/m")
+          ->check(CLI::Range(0.0, 1e3))
+          ->capture_default_str();
   verb.add_option("--hand-mass", plant.hand.mass_kg, "mass that moves with the device, kg")
       ->check(CLI::Range(0.0, 100.0))
       ->capture_default_str();
@@ -237,7 +239,10 @@ void add_hand_options(CLI::App& verb, SimulateOptions& options) {
   CLI::Option* script = verb.add_option("--script", options.script, "motion of the hand")
                             ->check(CLI::IsMember(simulation::script_names()))
                             ->capture_default_str();
-  verb.add_option("--path", options.path, "CSV file with the hand's path: t_s,x,y,z (s, m)")
+  verb.add_option("--path", options.path,
+                  "CSV file with the hand's path: t_s,x,y,z (s, m). Or a recording of a board "
+                  "or a trace (.csv, .npz): the hand repeats its motion, as long as it is "
+                  "unless --seconds is given")
       ->excludes(script);
   verb.add_flag("--allow-no-contact", options.allow_no_contact,
                 "exit with code 0 even if the probe never touches the model");

@@ -35,6 +35,8 @@ struct SimulateOptions : setup::SessionOptions {
   std::optional<std::string> usb_port;  // USB device port of this computer; "": the only one
   std::uint32_t serial = 1;
   CLI::Option* seconds_given = nullptr;
+  CLI::Option* stiffness_given = nullptr;  // of the hand
+  CLI::Option* damping_given = nullptr;    // of the hand
   std::vector<std::string> injections;
   bool allow_no_contact = false;
   std::vector<CLI::Option*> cartesian_only;

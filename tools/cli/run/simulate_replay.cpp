@@ -27,13 +27,14 @@ namespace {
 void refuse_tables(const std::string& file, const std::vector<std::byte>& header) {
   const std::string_view begin(reinterpret_cast<const char*>(header.data()), header.size());
   if (begin.starts_with("t_s,") || begin.starts_with("PK\x03\x04")) {
-    refuse(fmt::format("{}: a trace, or the recording of a board, cannot be replayed: it has "
-                       "positions and forces, but neither the configuration of the controller nor "
-                       "the encoder counts and requests of its ticks",
-                       file),
-           fmt::format("tactree view BLOB --trace {} shows it; simulate --record writes a file for "
-                       "--replay, also with --serve",
-                       file));
+    refuse(
+        fmt::format("{}: a trace, or the recording of a board, cannot be replayed: it has "
+                    "positions and forces, but neither the configuration of the controller nor "
+                    "the encoder counts and requests of its ticks",
+                    file),
+        fmt::format("tactree view BLOB --trace {0} shows it, simulate BLOB --path {0} repeats its "
+                    "motion; simulate --record writes a file for --replay, also with --serve",
+                    file));
   }
 }
 
