@@ -23,7 +23,23 @@ struct Tile {
   std::vector<std::uint32_t> kept;
 };
 
-// The kept points in and around one tile, in a small dense grid.
+// Cell of the middle of 27, and the others by their distance from it: most points have a competitor
+// in their own cell.
+constexpr std::array<std::array<int, 3>, 27> cells_from_the_middle() {
+  std::array<std::array<int, 3>, 27> cells{};
+  std::size_t count = 0;
+  for (int away = 0; away <= 3; ++away) {
+    for (int k = 0; k < 27; ++k) {
+      const std::array<int, 3> cell = {k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1};
+      if (cell[0] * cell[0] + cell[1] * cell[1] + cell[2] * cell[2] == away) {
+        cells[count++] = cell;
+      }
+    }
+  }
+  return cells;
+}
+
+// The kept points in and around one tile, in a small dense grid with a margin of empty cells.
 class LocalGrid {
  public:
   // Cells are at least `distance` wide, so competitors lie in the 27 cells around a point.
@@ -32,8 +48,13 @@ class LocalGrid {
     const double width = edge + 2.0 * distance;
     per_axis_ = std::clamp(static_cast<int>(width / distance), 1, kMaxCellsPerAxis);
     scale_ = per_axis_ / width;
-    const auto cells = static_cast<std::size_t>(per_axis_);
-    heads_.assign(cells * cells * cells, kEnd);
+    row_ = per_axis_ + 2;
+    const auto row = static_cast<std::size_t>(row_);
+    heads_.assign(row * row * row, kEnd);
+    constexpr auto kCells = cells_from_the_middle();
+    for (std::size_t k = 0; k < kCells.size(); ++k) {
+      offsets_[k] = (kCells[k][2] * row_ + kCells[k][1]) * row_ + kCells[k][0];
+    }
   }
 
   [[nodiscard]] bool covers(const Eigen::Vector3d& p) const {
@@ -41,24 +62,20 @@ class LocalGrid {
     return (at >= 0.0).all() && (at <= static_cast<double>(per_axis_)).all();
   }
   void add(const Eigen::Vector3d& p, std::uint32_t index) {
-    std::uint32_t& head = heads_[flat(cell_of(p))];
-    links_.push_back({index, head});
+    std::uint32_t& head = heads_[static_cast<std::size_t>(cell_of(p))];
+    links_.push_back({p, index, head});
     head = static_cast<std::uint32_t>(links_.size() - 1);
   }
-  // True if any(index) holds for a point in the 27 cells around p.
+  // True if any(position, index) holds for a point in the 27 cells around p.
   template <typename Any>
   [[nodiscard]] bool any_near(const Eigen::Vector3d& p, Any&& any) const {
-    const Eigen::Vector3i at = cell_of(p);
-    const Eigen::Vector3i low = (at.array() - 1).max(0);
-    const Eigen::Vector3i high = (at.array() + 1).min(per_axis_ - 1);
-    for (int z = low.z(); z <= high.z(); ++z) {
-      for (int y = low.y(); y <= high.y(); ++y) {
-        for (int x = low.x(); x <= high.x(); ++x) {
-          for (std::uint32_t k = heads_[flat({x, y, z})]; k != kEnd; k = links_[k].next) {
-            if (any(links_[k].index)) {
-              return true;
-            }
-          }
+    const int middle = cell_of(p);
+    for (const int offset : offsets_) {
+      const int cell = middle + offset;
+      for (std::uint32_t k = heads_[static_cast<std::size_t>(cell)]; k != kEnd;
+           k = links_[k].next) {
+        if (any(links_[k].position, links_[k].index)) {
+          return true;
         }
       }
     }
@@ -68,21 +85,22 @@ class LocalGrid {
  private:
   static constexpr std::uint32_t kEnd = ~0U;
   struct Link {
+    Eigen::Vector3d position;
     std::uint32_t index;
     std::uint32_t next;
   };
 
-  [[nodiscard]] Eigen::Vector3i cell_of(const Eigen::Vector3d& p) const {
-    return ((p - corner_).array() * scale_).cast<int>().max(0).min(per_axis_ - 1);
-  }
-  [[nodiscard]] std::size_t flat(const Eigen::Vector3i& c) const {
-    const int cell = (c.z() * per_axis_ + c.y()) * per_axis_ + c.x();
-    return static_cast<std::size_t>(cell);
+  [[nodiscard]] int cell_of(const Eigen::Vector3d& p) const {
+    const Eigen::Array3i cell =
+        ((p - corner_).array() * scale_).cast<int>().max(0).min(per_axis_ - 1) + 1;
+    return (cell.z() * row_ + cell.y()) * row_ + cell.x();
   }
 
   Eigen::Vector3d corner_;
   double scale_ = 1.0;
   int per_axis_ = 1;
+  int row_ = 3;  // cells of an axis with the margin
+  std::array<int, 27> offsets_{};
   std::vector<std::uint32_t> heads_;
   std::vector<Link> links_;
 };
@@ -127,11 +145,7 @@ class Selection {
            static_cast<std::uint64_t>(cell.z()) << 42;
   }
 
-  [[nodiscard]] bool compete(std::uint32_t a, std::uint32_t b) const {
-    const std::vector<Eigen::Vector3d>& p = points_.positions();
-    if (!((p[a] - p[b]).squaredNorm() < distance_ * distance_)) {
-      return false;
-    }
+  [[nodiscard]] bool face_the_same_side(std::uint32_t a, std::uint32_t b) const {
     if (!points_.cloud().has_normals()) {
       return true;
     }
@@ -158,15 +172,22 @@ class Selection {
   void work_on(Tile& tile) const {
     LocalGrid grid(points_.cell_corner(tile.cell, level_), points_.cell_edge(level_), distance_);
     add_neighbours(tile, grid);
+    // Copied, because the order below is random.
+    const auto& all = points_.positions();
+    const std::vector<Eigen::Vector3d> positions(all.begin() + tile.range.first,
+                                                 all.begin() + tile.range.last);
     std::vector<std::pair<std::uint64_t, std::uint32_t>> order;
-    order.reserve(tile.range.count());
+    order.reserve(positions.size());
     for (std::uint32_t i = tile.range.first; i < tile.range.last; ++i) {
       order.emplace_back(hash64(i), i);
     }
     std::sort(order.begin(), order.end());
     for (const auto& [hash, i] : order) {
-      const Eigen::Vector3d& p = points_.positions()[i];
-      if (!grid.any_near(p, [&, i = i](std::uint32_t other) { return compete(i, other); })) {
+      const Eigen::Vector3d& p = positions[i - tile.range.first];
+      const auto competes = [&, i = i](const Eigen::Vector3d& other_p, std::uint32_t other) {
+        return (p - other_p).squaredNorm() < distance_ * distance_ && face_the_same_side(i, other);
+      };
+      if (!grid.any_near(p, competes)) {
         tile.kept.push_back(i);
         grid.add(p, i);
       }
