@@ -151,7 +151,7 @@ class SurfaceTest {
     NoiseMembers members;
     for (std::size_t k = 1; k <= kAsked && surfaces + kAsked + 1 - k >= wanted; ++k) {
       const Eigen::Vector3d& q = points_.positions()[near[k].index];
-      points_.find_nearest(q, kNoiseNeighbours + 1, 0.7 * reach_, found);
+      points_.find_nearest(q, kNoiseNeighbours + 1, 0.85 * reach_, found);
       std::size_t count = 0;
       for (const Neighbour& n : found) {
         if (n.index != i && count < kNoiseNeighbours) {
@@ -174,7 +174,7 @@ class SurfaceTest {
     std::array<double, 3> others{};
     std::vector<Neighbour> found;
     for (std::size_t k = 0; k < others.size(); ++k) {
-      points_.find_nearest(points_.positions()[near[1 + 3 * k].index], kCompared + 1, 0.5 * reach_,
+      points_.find_nearest(points_.positions()[near[1 + 3 * k].index], kCompared + 1, 0.65 * reach_,
                            found);
       others[k] = found.back().squared_distance;
     }
