@@ -65,7 +65,7 @@ class LocalPoints {
 };
 
 /// Minimum edge of the blocks of points that are searched together, in radii of the search.
-inline constexpr double kBlockRadii = 2.0;
+inline constexpr double kBlockRadii = 1.0;
 
 /// Calls work(local, i) for each point i of `points`, in parallel. `local` holds the points of
 /// `cloud` within `radius` of the point, among others.

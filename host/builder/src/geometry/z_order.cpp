@@ -18,6 +18,40 @@ bool lexicographically_less(const Eigen::Vector3d& a, const Eigen::Vector3d& b) 
   return false;
 }
 
+// The n-th smallest of at least n squared distances, n > 0. Those of points on a surface are spread
+// evenly, so two interpolations leave few candidates. Reorders `values`.
+double nth_smallest(std::vector<double>& values, std::size_t n) {
+  double low = 0.0;
+  double high = *std::max_element(values.begin(), values.end());
+  std::size_t below = 0;             // values of at most `low`
+  std::size_t most = values.size();  // of at most `high`
+  const double margin = 1.0 + 0.5 * std::sqrt(static_cast<double>(values.size()));
+  for (const double aim : {margin, -margin}) {
+    const double part = (static_cast<double>(n) + aim - static_cast<double>(below)) /
+                        static_cast<double>(most - below);
+    const double middle = low + std::clamp(part, 0.0, 1.0) * (high - low);
+    std::size_t count = 0;
+    for (const double value : values) {
+      count += value <= middle ? 1U : 0U;
+    }
+    if (count >= n) {
+      high = middle;
+      most = count;
+    } else {
+      low = middle;
+      below = count;
+    }
+  }
+  std::size_t left = 0;
+  for (const double value : values) {
+    values[left] = value;
+    left += value <= high && (below == 0 || value > low) ? 1U : 0U;
+  }
+  const auto nth = values.begin() + static_cast<std::ptrdiff_t>(n - 1 - below);
+  std::nth_element(values.begin(), nth, values.begin() + static_cast<std::ptrdiff_t>(left));
+  return *nth;
+}
+
 }  // namespace
 
 void keep_nearest(std::size_t count, std::vector<Neighbour>& found) {
@@ -30,10 +64,9 @@ void keep_nearest(std::size_t count, std::vector<Neighbour>& found) {
   for (const Neighbour& n : found) {
     distances.push_back(n.squared_distance);
   }
-  const auto last = distances.begin() + static_cast<std::ptrdiff_t>(count - 1);
-  std::nth_element(distances.begin(), last, distances.end());
-  std::erase_if(found,
-                [farthest = *last](const Neighbour& n) { return n.squared_distance > farthest; });
+  std::erase_if(found, [farthest = nth_smallest(distances, count)](const Neighbour& n) {
+    return n.squared_distance > farthest;
+  });
   if (found.size() > count) {  // several at that distance
     std::sort(found.begin(), found.end());
     found.resize(count);
