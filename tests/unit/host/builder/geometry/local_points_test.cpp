@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "geometry/disjoint_sets.hpp"
 #include "shapes.hpp"
@@ -62,6 +63,42 @@ TEST(KeepNearest, PrefersLowIndicesAtEqualDistances) {
   EXPECT_EQ(found.size(), 3U);
   keep_nearest(0, found);
   EXPECT_TRUE(found.empty());
+}
+
+TEST(KeepNearest, IsExactForAnyDistances) {
+  const auto squared = [](int kind, std::uint32_t i) {
+    const double part = static_cast<double>(hash64(i) % 1000) / 1000.0;
+    switch (kind) {
+      case 0:
+        return part;  // as on a surface
+      case 1:
+        return 0.0;  // copies of one point
+      case 2:
+        return std::floor(3.0 * part);  // many at the same distances
+      case 3:
+        return std::exp(50.0 * part);  // most near, one far away
+      case 4:
+        return 1.0 - std::exp(-30.0 * part);  // most far away
+      default:
+        return i == 5 ? 1e300 : 1e-300 * part;  // beyond any interpolation
+    }
+  };
+  for (int kind = 0; kind < 6; ++kind) {
+    for (const std::uint32_t size : {1U, 2U, 7U, 100U, 1000U}) {
+      std::vector<Neighbour> all;
+      for (std::uint32_t i = 0; i < size; ++i) {
+        all.push_back({squared(kind, i), i});
+      }
+      std::vector<Neighbour> sorted = all;
+      std::sort(sorted.begin(), sorted.end());
+      for (std::uint32_t count = 1; count < size; count += 1 + size / 50) {
+        std::vector<Neighbour> found = all;
+        keep_nearest(count, found);
+        ASSERT_EQ(sorted_indices(found), sorted_indices({sorted.begin(), sorted.begin() + count}))
+            << kind << ", " << count << " of " << size;
+      }
+    }
+  }
 }
 
 TEST(DisjointSets, DoNotDependOnThreads) {
