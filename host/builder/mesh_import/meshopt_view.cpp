@@ -10,7 +10,7 @@ namespace {
 using nlohmann::json;
 
 // The codec of attributes has two bits for 16 equal bytes; those of indices pack less.
-constexpr std::size_t kMaxPacking = 64;
+constexpr std::size_t kMaxPackingRatio = 64;
 constexpr std::size_t kMaxStride = 256;
 
 struct Layout {
@@ -75,7 +75,7 @@ std::vector<unsigned char> decoded_meshopt(const json& view, std::span<const uns
   }
   // At most 2^40 elements of 256 bytes: the product does not overflow.
   const std::size_t size = layout.count * layout.stride;
-  if (size > packed.size() * kMaxPacking) {
+  if (size > packed.size() * kMaxPackingRatio) {
     throw ImportError(who + " states " + std::to_string(layout.count) +
                       " elements, which its compressed bytes cannot hold");
   }

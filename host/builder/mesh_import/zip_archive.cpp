@@ -20,8 +20,8 @@ constexpr std::uint64_t kEndBytes = 22;
 constexpr std::uint64_t kLocator64Bytes = 20;
 constexpr std::uint64_t kMemberBytes = 46;
 constexpr std::uint64_t kLocalBytes = 30;
-constexpr std::uint64_t kAbsent = 0xffffffff;  // the number is in the extra field
-constexpr std::uint64_t kMaxDeflate = 1040;    // above the maximum ratio of deflate, 1032
+constexpr std::uint64_t kAbsent = 0xffffffff;     // the number is in the extra field
+constexpr std::uint64_t kMaxDeflateRatio = 1040;  // above the maximum ratio of deflate, 1032
 
 [[noreturn]] void fail(const std::string& cause) {
   throw ImportError("its zip archive is damaged or was cut off: " + cause);
@@ -48,7 +48,7 @@ bool pass_on(std::string_view bytes, const Take& take) {
 /// Unpacks piece by piece. Returns false if `take` did.
 bool inflate(std::string_view packed, std::uint64_t size, const std::string& path,
              const Take& take) {
-  if (size / kMaxDeflate > packed.size()) {
+  if (size / kMaxDeflateRatio > packed.size()) {
     fail("\"" + path + "\" states a size that its bytes cannot have");
   }
   std::string piece(kPieceBytes, '\0');
@@ -222,7 +222,7 @@ bool ZipArchive::unpack(std::string_view path, const Take& take) const {
 std::string ZipArchive::read(std::string_view path) const {
   const Member& found = member(path);
   const std::string_view packed = packed_bytes(found);
-  if (found.unpacked / kMaxDeflate <= packed.size()) {
+  if (found.unpacked / kMaxDeflateRatio <= packed.size()) {
     std::string bytes;
     bytes.reserve(static_cast<std::size_t>(found.unpacked));
     (void)unpack(path, [&](std::string_view piece) {
