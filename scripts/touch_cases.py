@@ -7,9 +7,9 @@ usage: touch_cases.py FOLDER      writes per case CASE.list (the meshes), CASE-*
   groove   groove of 60 degrees, pressed to its bottom and below
   seam     two boxes with flush faces, the hand slides over their seam
 """
+import argparse
 import json
 import pathlib
-import sys
 
 
 def prism(outline, y_min, y_max):
@@ -39,9 +39,9 @@ CASES = {
 
 
 def main():
-    if len(sys.argv) != 2:
-        sys.exit(__doc__)
-    folder = pathlib.Path(sys.argv[1])
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("folder", type=pathlib.Path)
+    folder = parser.parse_args().folder
     for name, (meshes, path) in CASES.items():
         files = [f"{name}-{i}" for i in range(len(meshes))]
         for file, (vertices, faces) in zip(files, meshes):

@@ -292,6 +292,17 @@ class Scripts(Planted):
         self.refuses("undefined name 'argv'", "check-scripts", "python", self.write("a.py", "print(argv)\n"))
         self.refuses("imported but unused", "check-scripts", "python", self.write("a.py", "import sys\n"))
 
+    def test_help(self):
+        for text, words in (("echo usage: a", None), ("echo a", "prints no usage"), ("echo usage: a; touch b", "writes files"),
+                            ("echo usage: a; exit 2", "exit code 2")):
+            script = self.write("a", f"#!/bin/sh\n{text}\n")
+            script.chmod(0o755)
+            if words:
+                self.refuses(words, "check-scripts", "help", script)
+            else:
+                self.accepts("check-scripts", "help", script)
+
+
 if __name__ == "__main__":
     if sys.argv[1:] == ["Page"] and not (Page.BUILD / "node_modules/.bin/biome").exists():
         print(f"skipped: {Page.BUILD} has no npm packages")
