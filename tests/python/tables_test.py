@@ -69,7 +69,8 @@ class Recording(Folder):
         for name in ("board.csv", "board.npz"):
             table = tactree.read_recording(self.path / name)
             self.assertEqual(len(table), 500)
-            self.assertEqual({tactree.STATES[state] for state in table["state"]}, {"active"})
+            states = {tactree.STATES[state] for state in table["state"]}
+            self.assertEqual(states - {"armed"}, {"idle", "active"})
             np.testing.assert_array_equal(np.diff(table["tick"]), 1)
             self.assertEqual(float(table["t_s"][-1]), 0.499)
             self.assertGreater(np.abs(tactree.vectors(table, "force")).max(), 0.1)
@@ -110,7 +111,7 @@ class Recording(Folder):
         read = tactree.read_recording
         self.expect_refusal(read, "missing.npz", "give a file written by tactree record")
         self.expect_refusal(read, self.write("text.npz", "text"))
-        self.expect_refusal(read, self.spoil("board.csv", ",active,", ",asleep,"), "line 2", "'asleep'")
+        self.expect_refusal(read, self.spoil("board.csv", ",idle,", ",asleep,"), "line 2", "'asleep'")
         self.expect_refusal(read, self.spoil("board.csv", "overruns", "under"), "no column overruns")
         np.savez(self.path / "other.npz", x=np.zeros(3))
         self.expect_refusal(read, "other.npz", "has no array t_s")

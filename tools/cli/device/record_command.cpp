@@ -154,11 +154,13 @@ void record(const RecordOptions& options, int& exit_code) {
   warn_of_slow_wire(options, port, static_cast<double>(board.capabilities().rate_hz));
   if (options.arm) {
     send_pose(board, options.pose);
-    board.arm();
   }
   const std::uint32_t fields = telemetry::recorded_fields(board.connection().protocol_minor());
   telemetry::TickRecorder recorder(options.output, {fields, options.every_ticks, options.seconds});
   board.subscribe({fields, options.every_ticks});
+  if (options.arm) {
+    board.arm();  // after the subscription, so that no tick with a force is missing
+  }
   fmt::print(stderr, "recording until {}Ctrl-C\n",
              options.seconds > 0.0 ? fmt::format("{:.6g} s have passed or ", options.seconds) : "");
   const std::string problem = record_telemetry(board, recorder);
