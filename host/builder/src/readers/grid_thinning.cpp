@@ -12,16 +12,23 @@ namespace {
 
 constexpr std::size_t kSampled = 4096;  // points that determine where most of them are
 constexpr double kMargin = 10.0;        // around these, in their largest extent
+// Larger coordinates are damage; the difference of two could be infinite.
+constexpr double kLargest = 1e100;
+
+Eigen::Vector3d bounded(const Eigen::Vector3d& p) {
+  return p.cwiseMax(-kLargest).cwiseMin(kLargest);
+}
 
 // Where most of the points are, with a margin.
 Box surroundings_of(std::span<const Eigen::Vector3d> positions) {
   const std::size_t stride = 1 + (positions.size() - 1) / kSampled;
   std::vector<Eigen::Vector3d> sample;
   for (std::size_t i = 0; i < positions.size(); i += stride) {
-    sample.push_back(positions[i]);
+    sample.push_back(bounded(positions[i]));
   }
   const Box box = plausible_box(sample, kMargin);
-  return box.isEmpty() ? bounds_of(positions) : box;
+  const Box any = box.isEmpty() ? bounds_of(positions) : box;
+  return {bounded(any.min()), bounded(any.max())};
 }
 
 // The width of the surroundings; if all points lie in one place, one that coordinates resolve.
@@ -40,7 +47,7 @@ std::vector<KeyedPoint> in_cubes(std::span<const Eigen::Vector3d> positions,
   const double per_unit = std::ldexp(1.0, -exponent);
   const double last = std::ldexp(1.0, kMortonLevels) - 1.0;
   return sorted_points(positions, [&](const Eigen::Vector3d& p) -> Eigen::Vector3i {
-    return ((p.array() - origin) * per_unit).max(0.0).min(last).cast<int>();
+    return ((bounded(p).array() - origin) * per_unit).max(0.0).min(last).cast<int>();
   });
 }
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <numbers>
 #include <set>
 #include <tuple>
@@ -68,6 +69,25 @@ TEST(GridThinning, KeepsFirstOfEachCube) {
   std::set<Cube> finer;
   for (const Vector3d& p : points) finer.insert(cube_of(p, 0.5 * thinning.edge()));
   EXPECT_GT(finer.size(), 1000U) << "the grid could be finer";
+}
+
+TEST(GridThinning, AcceptsAnyFiniteCoordinates) {
+  constexpr double kHuge = std::numeric_limits<double>::max();
+  const std::vector<Vector3d> huge = {{kHuge, -kHuge, kHuge}, {-kHuge, kHuge, -kHuge}};
+  for (const int others : {0, 1, 3000}) {
+    std::vector<Vector3d> points = exact(ball(others));
+    for (int copies = 0; copies < 10; ++copies) {
+      points.insert(points.end(), huge.begin(), huge.end());
+    }
+    GridThinning thinning;
+    const std::vector<Vector3d> kept = kept_of(points, thinning.select(points, 1000));
+    EXPECT_GT(kept.size(), static_cast<std::size_t>(others / 8));
+    EXPECT_LE(kept.size(), 1000U);
+    EXPECT_TRUE(std::isfinite(thinning.edge()) && thinning.edge() > 0.0);
+    if (others == 3000) {
+      EXPECT_LT(thinning.edge(), 1.0) << "a few points far away do not enlarge the cubes";
+    }
+  }
 }
 
 TEST(GridThinning, LeavesWhatFits) {
