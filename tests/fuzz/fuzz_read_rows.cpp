@@ -1,5 +1,5 @@
-// Reads arbitrary bytes as a file of points, as a hand path, as a recorded motion and as a fault of
-// --inject: each is refused with a reason or gives finite numbers.
+// Reads arbitrary bytes as a file of points, as a hand path and as a fault of --inject: each is
+// refused with a reason or gives finite numbers.
 
 #include <cmath>
 
@@ -8,7 +8,6 @@
 #include "tactree/simulation/hand_path.hpp"
 #include "tactree/simulation/injection.hpp"
 #include "tactree/support/csv.hpp"
-#include "tactree/telemetry/recorded_motion.hpp"
 
 namespace {
 
@@ -39,20 +38,6 @@ void examine_path(const std::string& file) {
   }
 }
 
-void examine_motion(const std::string& file) {
-  try {
-    for (const telemetry::RecordedTick& tick : telemetry::read_recorded_motion(file)) {
-      fuzz::require(std::isfinite(tick.t_s) && tick.t_s >= 0.0,
-                    "a time is not one since the begin");
-      for (const double coordinate : tick.probe_m) {
-        fuzz::require(std::isfinite(coordinate), "a coordinate is not finite");
-      }
-    }
-  } catch (const std::runtime_error& error) {
-    fuzz::require_reason(error.what(), file);
-  }
-}
-
 void examine_fault(std::string_view text) {
   if (text.find('\0') != std::string_view::npos) {
     return;  // no argument holds a zero byte
@@ -73,7 +58,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const fuzz::MemoryFile file(data, size);
   examine_points(file.path().string());
   examine_path(file.path().string());
-  examine_motion(file.path().string());
   examine_fault({reinterpret_cast<const char*>(data), size});
   return 0;
 }

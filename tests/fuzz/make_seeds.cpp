@@ -405,9 +405,6 @@ void write_materials(const fs::path& folder) {
 void write_rows(const fs::path& folder) {
   write(folder / "points", "x,y,z\n# a remark\n0.1,0.2,0.3\n1e-3;2;+3\n\n");
   write(folder / "path", "t_s,x,y,z\n0,0,0,0.01\n0.2,0,0,-0.002\n1 0 0 -0.002\n");
-  write(folder / "motion",
-        "t_s,state,probe_x_m,probe_y_m,probe_z_m,in_contact\n0,idle,0,0,0,0\n1,active,0,0,1e-3,1\n"
-        "1.5,active,0,0,0.002,0\n");
   for (const auto& kind : tactree::simulation::injection_kinds()) {
     std::string text(kind.name);
     const std::size_t value = text.find('=');

@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 
 #include "commands.hpp"
@@ -14,9 +16,10 @@
 #include "tactree/builder/length_text.hpp"
 #include "tactree/setup/model_size.hpp"
 #include "tactree/setup/scene_file.hpp"
+#include "tactree/simulation/repeated_path.hpp"
 #include "tactree/support/device_file.hpp"
 #include "tactree/support/output_file.hpp"
-#include "tactree/telemetry/recorded_motion.hpp"
+#include "tactree/viewer/trace_playback.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -74,11 +77,36 @@ std::string remedy_for_no_contact(const SimulateOptions& options, const core::Bl
          "the run with --allow-no-contact";
 }
 
+/// True for a recording of a board and for a trace, by the columns of the probe. Not for a pipe,
+/// which can be read once only.
+bool is_recording(const std::filesystem::path& file) {
+  if (file.extension() == ".npz") {
+    return true;
+  }
+  std::error_code ignored;
+  std::string header;
+  if (std::filesystem::is_regular_file(file, ignored)) {
+    std::ifstream in(file);
+    std::getline(in, header);
+  }
+  return header.find("probe_x_m") != std::string::npos;
+}
+
+simulation::HandPath path_of_recording(const std::string& file) {
+  try {
+    return simulation::repeated_path(viewer::read_trace(file));
+  } catch (const std::invalid_argument& error) {
+    refuse(fmt::format("{}: {}", file, error.what()),
+           "arm the board while it is recorded: record --arm");
+  }
+}
+
 /// What the user does not state: the run is as long as the recording, and the hand so stiff that
 /// the device follows within about a count of its encoders.
-void repeat_recording(SimulateOptions& options, const setup::SceneFile& scene) {
+void repeat_recording(SimulateOptions& options) {
+  options.repeated = path_of_recording(options.path);
   if (options.seconds_given->count() == 0) {
-    options.seconds = hand_path(options, scene).waypoints().back().t_s +
+    options.seconds = options.repeated->waypoints().back().t_s +
                       1.0 / static_cast<double>(options.setup.controller.rate_hz);
   }
   if (options.stiffness_given->count() == 0) {
@@ -112,8 +140,8 @@ void simulate(SimulateOptions& options, int& exit_code) {
   check_panel(options);
   const setup::SceneFile scene = setup::read_scene(options.scene, options.blobs, options.pose);
   options.blob = scene.names[0];
-  if (telemetry::is_recording(options.path)) {
-    repeat_recording(options, scene);
+  if (is_recording(options.path)) {
+    repeat_recording(options);
   }
   note_defaults(options.device, support::load_device(options.device));
   if (options.serve) {

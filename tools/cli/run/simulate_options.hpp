@@ -34,6 +34,7 @@ struct SimulateOptions : setup::SessionOptions {
   bool on_usb = false;
   std::optional<std::string> usb_port;  // USB device port of this computer; "": the only one
   std::uint32_t serial = 1;
+  std::optional<simulation::HandPath> repeated;  // if --path is a recording or a trace
   CLI::Option* seconds_given = nullptr;
   CLI::Option* stiffness_given = nullptr;  // of the hand
   CLI::Option* damping_given = nullptr;    // of the hand

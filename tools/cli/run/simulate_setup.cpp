@@ -52,7 +52,7 @@ setup::FirstBody first_body(const setup::SceneFile& scene) {
 }
 
 simulation::HandPath hand_path(const SimulateOptions& options, const setup::SceneFile& scene) {
-  return setup::hand_path(options, first_body(scene));
+  return options.repeated ? *options.repeated : setup::hand_path(options, first_body(scene));
 }
 
 simulation::Setup make_setup(const SimulateOptions& options, const setup::SceneFile& scene) {

@@ -13,7 +13,6 @@
 #include "tactree/support/device_file.hpp"
 #include "tactree/support/explain.hpp"
 #include "tactree/support/user_error.hpp"
-#include "tactree/telemetry/recorded_motion.hpp"
 
 namespace tactree::setup {
 namespace {
@@ -62,20 +61,9 @@ core::Vec3 place_model(const SessionOptions& options, const FirstBody& body,
       "--no-materials");
 }
 
-simulation::HandPath recorded_path(const std::string& file) {
-  std::vector<simulation::Waypoint> waypoints;
-  for (const telemetry::RecordedTick& tick : telemetry::read_recorded_motion(file)) {
-    waypoints.push_back({tick.t_s, Eigen::Vector3d(tick.probe_m.data())});
-  }
-  return simulation::HandPath(std::move(waypoints));
-}
-
 }  // namespace
 
 simulation::HandPath hand_path(const SessionOptions& options, const FirstBody& body) {
-  if (telemetry::is_recording(options.path)) {
-    return recorded_path(options.path);
-  }
   if (!options.path.empty()) {
     return simulation::read_hand_path(options.path);
   }
