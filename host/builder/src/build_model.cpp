@@ -181,6 +181,9 @@ class Pipeline {
       begin_stage("estimating normals", choice);
       normals = estimate_normals(points, choice.dense, model_.spacing_m, input_spacing(choice));
     }
+    if (!needs_dense(input_spacing(choice), model_.spacing_m)) {
+      choice.dense = {};
+    }
     begin_stage("orienting normals", choice);
     orient(choice, given, normals);
     if (!all) {

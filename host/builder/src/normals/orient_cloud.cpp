@@ -216,7 +216,7 @@ class Orienter {
   }
 
   void find_outside() {
-    const bool use_dense = in_.dense.size() > 0 && in_.dense_spacing > kDenseAsOutput * in_.spacing;
+    const bool use_dense = in_.dense.size() > 0 && needs_dense(in_.dense_spacing, in_.spacing);
     const double finest =
         use_dense ? kFinestBall * in_.dense_spacing
                   : std::max(kFinestBallResampled * in_.spacing, kFinestBall * in_.dense_spacing);
@@ -495,6 +495,10 @@ std::string_view describe(OrientationBasis basis) {
       return "a sheet, turned to its convex side";
   }
   return "";
+}
+
+bool needs_dense(double dense_spacing, double spacing) {
+  return dense_spacing > kDenseAsOutput * spacing;
 }
 
 CloudOrientation orient_cloud(const OrientationInput& input, std::span<Eigen::Vector3f> normals) {

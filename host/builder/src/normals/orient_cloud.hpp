@@ -24,7 +24,8 @@ namespace tactree::builder {
 struct OrientationInput {
   const ZOrderedCloud& points;
   double spacing = 0.0;
-  const ZOrderedCloud& dense;  ///< cloud from which `points` was selected
+  /// Cloud from which `points` was selected; may be empty if needs_dense() is false.
+  const ZOrderedCloud& dense;
   double dense_spacing = 0.0;
   OrientationRule rule = OrientationRule::kAuto;
   std::span<const Eigen::Vector3d> viewpoints;  ///< positions of the scanner, model frame
@@ -36,6 +37,9 @@ struct CloudOrientation {
   std::vector<std::uint8_t> doubtful;  ///< per point: 1 if its component has a low confidence
   std::uint64_t repaired = 0;          ///< given normals that were reversed
 };
+
+/// True if orient_cloud() reads the cloud from which the points were selected.
+[[nodiscard]] bool needs_dense(double dense_spacing, double spacing);
 
 /// Gives each normal the sign that points outside. Precondition: normals of unit length.
 /// Deterministic for any number of threads. Cost: about 8 us per point and core, 1 us per point of
