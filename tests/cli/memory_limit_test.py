@@ -1,7 +1,8 @@
-"""Clouds that are too large for the memory are thinned while they are read.
+"""The memory of a build: what it takes, and clouds that are too large for it, which are thinned while they are read.
 
 usage: memory_limit_test.py TACTREE
 """
+import math
 import pathlib
 import subprocess
 import sys
@@ -17,10 +18,10 @@ class MemoryLimit(ToolFolder):
     tool = TACTREE
     LIMIT = 32 << 20
 
-    def build_large(self, *arguments):
+    def build_large(self, *arguments, limit="32M"):
         # The peak memory of a program begins with that of the process that started it: here a small one.
         command = ["sh", "-c", '"$@"; exit', "sh", TACTREE, "build", "large.xyz", "-o", "o.blob",
-                   "--memory-limit", "32M", *arguments]
+                   "--memory-limit", limit, *arguments]
         done = subprocess.run(command, cwd=self.path, capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, done.stderr)
         return done
@@ -39,6 +40,16 @@ class MemoryLimit(ToolFolder):
         one = pathlib.Path(self.path, "o.blob").read_bytes()
         self.build_large("--threads", "1")
         self.assertEqual(pathlib.Path(self.path, "o.blob").read_bytes(), one)
+
+    def test_wide_spacing_takes_a_fifth_of_the_memory(self):
+        points = 400_000
+        self.write("large.xyz", sphere(points, 0.05))
+        mean_distance = (4 * math.pi / points) ** 0.5 * 0.05
+        self.build_large("--threads", "2", "--spacing", str(3 * mean_distance), "--report", "r.json", limit="1G")
+        report = self.read("r.json")
+        self.assertLess(report["output_points"], points / 5)
+        program = 14 << 20
+        self.assertLessEqual((report["peak_rss_bytes"] - program) / points, 56)
 
     def test_names_limit_where_spacing_is_too_fine_for_it(self):
         self.write("large.xyz", sphere(100_000, 0.05))

@@ -189,6 +189,19 @@ class Cleaner {
     return range > 0.0 ? Sight{(d / range).cast<float>(), pose.sure} : Sight{};  // also for NaN
   }
 
+  // Appends the positions of the scan to those of the cloud, without a copy if they are the first.
+  // Returns the number of positions before.
+  std::size_t take_positions(Scan& scan) {
+    const std::size_t before = cloud_.size();
+    if (before == 0) {
+      cloud_.positions = std::move(scan.positions);
+    } else {
+      cloud_.positions.insert(cloud_.positions.end(), scan.positions.begin(), scan.positions.end());
+    }
+    scan.positions = {};
+    return before;
+  }
+
   void add_cloud(Scan&& scan) {
     if (cloud_sights_) {
       check_poses(scan, report_);
@@ -197,21 +210,23 @@ class Cleaner {
     std::uint64_t non_finite = 0;
     std::uint64_t out_of_range = 0;
     std::uint64_t outside = 0;
-    cloud_.positions.reserve(cloud_.size() + scan.positions.size());
+    std::size_t kept = cloud_.size();
     if (normals || cloud_.has_normals()) {
-      cloud_.normals.resize(cloud_.size(), Eigen::Vector3f::Zero());
-      cloud_.normals.reserve(cloud_.positions.capacity());
+      cloud_.normals.resize(kept, Eigen::Vector3f::Zero());
+      cloud_.normals.reserve(kept + scan.positions.size());
     }
-    for (std::size_t i = 0; i < scan.positions.size(); ++i) {
-      const Eigen::Vector3d p = input_.frame.turned(scan.positions[i]);
+    const std::size_t first = take_positions(scan);
+    for (std::size_t i = 0; first + i < cloud_.size(); ++i) {
+      const Eigen::Vector3d source = cloud_.positions[first + i];
+      const Eigen::Vector3d p = input_.frame.turned(source);
       if (!p.allFinite()) {
         ++non_finite;
       } else if (!is_in_range(p)) {
         ++out_of_range;
-      } else if (options_.crop && !options_.crop->contains(scan.positions[i])) {
+      } else if (options_.crop && !options_.crop->contains(source)) {
         ++outside;
       } else {
-        cloud_.positions.push_back(p);
+        cloud_.positions[kept++] = p;
         if (cloud_sights_) {
           cloud_.sights.push_back(sight_of(scan, i, p));
         }
@@ -228,6 +243,7 @@ class Cleaner {
         }
       }
     }
+    cloud_.positions.resize(kept);
     drop("non_finite", non_finite);
     drop("out_of_range", out_of_range);
     drop("outside_crop", outside);
@@ -365,7 +381,7 @@ class Cleaner {
         kept_points(input_.points, kIslandSpacings * input_.points_spacing, piece_rule());
     drop("small_piece", input_.points.size() - kept.size());
     if (kept.size() < input_.points.size()) {
-      input_.points = input_.points.subset(kept);
+      input_.points.keep(kept);
       input_.points_spacing = estimate_spacing(input_.points).median_m;
     }
   }
@@ -385,7 +401,7 @@ class Cleaner {
           points_in_company(input_.points, input_.points_spacing);
       drop("outlier", input_.points.size() - kept.size());
       if (kept.size() < input_.points.size()) {
-        input_.points = input_.points.subset(kept);
+        input_.points.keep(kept);
       }
       drop_stray_points();
     }
@@ -403,7 +419,7 @@ class Cleaner {
     }
     drop("stray", input_.points.size() - found.kept.size());
     if (found.kept.size() < input_.points.size()) {
-      input_.points = input_.points.subset(found.kept);
+      input_.points.keep(found.kept);
       input_.points_spacing = estimate_spacing(input_.points).median_m;
     }
   }
@@ -422,7 +438,7 @@ class Cleaner {
     }
     if (kept.size() < cloud_.size()) {
       drop("outlier", cloud_.size() - kept.size());
-      cloud_ = select(cloud_, kept);
+      keep(cloud_, kept);
     }
   }
 

@@ -40,8 +40,15 @@ struct Cloud {
 /// Longest edge of a box; 0 if it is empty.
 [[nodiscard]] double largest_edge(const Box& box);
 
-/// The points at the indices `order`, in that order.
-[[nodiscard]] Cloud select(const Cloud& cloud, std::span<const std::uint32_t> order);
+/// The points at `indices`, in that order.
+[[nodiscard]] Cloud select(const Cloud& cloud, std::span<const std::uint32_t> indices);
+
+/// Drops the points that are not at `indices`, which must ascend. Takes no memory.
+void keep(Cloud& cloud, std::span<const std::uint32_t> indices);
+
+/// Moves the points to the order of `order`, which holds each index once. Takes up to 16 bytes a
+/// point.
+void reorder(Cloud& cloud, std::span<const std::uint32_t> order);
 
 /// Hash of a 64-bit number (the finaliser of splitmix64). The only source of randomness in a build.
 [[nodiscard]] constexpr std::uint64_t hash64(std::uint64_t v) {

@@ -1,5 +1,7 @@
 #include "geometry/z_order.hpp"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 
 #include <cmath>
@@ -73,30 +75,37 @@ void keep_nearest(std::size_t count, std::vector<Neighbour>& found) {
   }
 }
 
-ZOrderedCloud::ZOrderedCloud(Cloud cloud) {
-  const Box box = bounds_of(cloud.positions);
+ZOrderedCloud::ZOrderedCloud(Cloud cloud) : cloud_(std::move(cloud)) {
+  const Box box = bounds_of(cloud_.positions);
   origin_ = box.isEmpty() ? Eigen::Vector3d::Zero() : Eigen::Vector3d(box.min());
   edge_ = largest_edge(box);
   edge_ = edge_ > 0.0 ? edge_ * (1.0 + 1e-9) : 1.0;
+  reorder(cloud_, sorted());
+  codes_.resize(size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, size(), 4096), [&](auto range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i) {
+      codes_[i] = morton_code(finest_cell(cloud_.positions[i]));
+    }
+  });
+  index();
+}
+
+std::vector<std::uint32_t> ZOrderedCloud::sorted() const {
   std::vector<KeyedPoint> entries = keyed_points(
-      cloud.positions, [&](const Eigen::Vector3d& position) { return finest_cell(position); });
+      cloud_.positions, [&](const Eigen::Vector3d& position) { return finest_cell(position); });
   tbb::parallel_sort(entries.begin(), entries.end(), [&](const KeyedPoint& a, const KeyedPoint& b) {
     if (a.code != b.code) {
       return a.code < b.code;
     }
-    const Eigen::Vector3d& p = cloud.positions[a.index];
-    const Eigen::Vector3d& q = cloud.positions[b.index];
+    const Eigen::Vector3d& p = cloud_.positions[a.index];
+    const Eigen::Vector3d& q = cloud_.positions[b.index];
     return lexicographically_less(p, q) || (a.index < b.index && !lexicographically_less(q, p));
   });
-  codes_.resize(entries.size());
   std::vector<std::uint32_t> order(entries.size());
   for (std::size_t i = 0; i < entries.size(); ++i) {
-    codes_[i] = entries[i].code;
     order[i] = entries[i].index;
   }
-  entries = {};
-  cloud_ = select(cloud, order);
-  index();
+  return order;
 }
 
 void ZOrderedCloud::index() {
@@ -128,6 +137,15 @@ ZOrderedCloud ZOrderedCloud::subset(std::span<const std::uint32_t> indices) cons
   }
   chosen.index();
   return chosen;
+}
+
+void ZOrderedCloud::keep(std::span<const std::uint32_t> indices) {
+  builder::keep(cloud_, indices);
+  for (std::size_t k = 0; k < indices.size(); ++k) {
+    codes_[k] = codes_[indices[k]];
+  }
+  codes_.resize(indices.size());
+  index();
 }
 
 void ZOrderedCloud::transform(const Eigen::Vector3d& origin, double factor) {
@@ -236,7 +254,7 @@ std::uint64_t drop_duplicates(ZOrderedCloud& points) {
   }
   const std::uint64_t dropped = points.size() - kept.size();
   if (dropped > 0) {
-    points = points.subset(kept);
+    points.keep(kept);
   }
   return dropped;
 }

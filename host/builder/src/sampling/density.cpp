@@ -109,7 +109,7 @@ class DensityChooser {
           inside.push_back(i);
         }
       }
-      samples = select(samples, inside);
+      keep(samples, inside);
     }
     report_.sampled_points = samples.size();
     const Cloud& points = input_.points.cloud();
@@ -345,7 +345,7 @@ std::uint64_t thin_to_candidates(ZOrderedCloud& points, double spacing) {
   }
   const std::uint64_t thinned = kept.size() - indices.size();
   if (thinned > 0) {
-    points = points.subset(indices);
+    points.keep(indices);
   }
   return thinned;
 }

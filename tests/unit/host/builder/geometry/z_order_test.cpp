@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <map>
 #include <set>
 
 #include "shapes.hpp"
@@ -72,6 +74,72 @@ TEST(ZOrder, FindsNearestForAnyGuess) {
   }
   points.find_nearest(Eigen::Vector3d::Zero(), 5000, 0.1, found);
   EXPECT_EQ(found.size(), points.size());
+}
+
+// A cloud whose attributes all tell the position of their point.
+Cloud telling_cloud(std::size_t n) {
+  Cloud cloud = random_sphere(n, 1.0);
+  for (std::size_t i = 0; i < n; ++i) {
+    const Eigen::Vector3f p = cloud.positions[i].cast<float>();
+    const auto step = [&](int axis) {
+      return static_cast<std::uint8_t>(100.0F * (p[axis] + 1.0F));
+    };
+    cloud.normals[i] = p;
+    cloud.materials.push_back(step(0));
+    cloud.doubtful.push_back(step(1));
+    cloud.sights.push_back({-p, p.z() > 0.0F});
+    cloud.colours.push_back({step(0), step(1), step(2)});
+  }
+  return cloud;
+}
+
+void expect_same(const Cloud& a, const Cloud& b) {
+  EXPECT_EQ(a.positions, b.positions);
+  EXPECT_EQ(a.normals, b.normals);
+  EXPECT_EQ(a.materials, b.materials);
+  EXPECT_EQ(a.doubtful, b.doubtful);
+  EXPECT_EQ(a.colours, b.colours);
+  ASSERT_EQ(a.sights.size(), b.sights.size());
+  for (std::size_t i = 0; i < a.sights.size(); ++i) {
+    EXPECT_EQ(a.sights[i].toward, b.sights[i].toward);
+    EXPECT_EQ(a.sights[i].sure, b.sights[i].sure);
+  }
+}
+
+TEST(ZOrder, SortsAllAttributesOfPoints) {
+  const Cloud cloud = telling_cloud(9000);
+  std::map<std::array<double, 3>, std::uint32_t> index;
+  for (std::uint32_t i = 0; i < cloud.size(); ++i) {
+    const Eigen::Vector3d& p = cloud.positions[i];
+    index[{p.x(), p.y(), p.z()}] = i;
+  }
+  const ZOrderedCloud points(cloud);
+  ASSERT_EQ(points.size(), cloud.size());
+  std::vector<std::uint32_t> order;
+  for (const Eigen::Vector3d& p : points.positions()) {
+    order.push_back(index.at({p.x(), p.y(), p.z()}));
+  }
+  EXPECT_NE(points.positions(), cloud.positions);
+  expect_same(points.cloud(), select(cloud, order));
+}
+
+TEST(ZOrder, KeepsTheSamePointsAsSubset) {
+  ZOrderedCloud points(telling_cloud(9000));
+  std::vector<std::uint32_t> indices;
+  for (std::uint32_t i = 0; i < points.size(); ++i) {
+    if (hash64(i) % 3 != 0) {
+      indices.push_back(i);
+    }
+  }
+  const ZOrderedCloud subset = points.subset(indices);
+  points.keep(indices);
+  ASSERT_EQ(points.size(), indices.size());
+  expect_same(points.cloud(), subset.cloud());
+  EXPECT_EQ(points.count_cells(), subset.count_cells());
+  for (std::uint32_t i = 0; i < points.size(); ++i) {
+    const CellRange found = points.find(points.cell_of(i, 20), 20);
+    ASSERT_TRUE(found.first <= i && i < found.last);
+  }
 }
 
 TEST(ZOrder, DropsDuplicatesKeepingKnownNormals) {
