@@ -218,9 +218,12 @@ bool is_ptx(const std::vector<std::string_view>& lines) {
 bool is_pcd(std::string_view head, const std::vector<std::string_view>& lines) {
   if (head.starts_with("# .PCD")) return true;
   const std::string_view word = lines.empty() ? ""sv : first_word(lines.front());
-  if (word != "VERSION" && word != "FIELDS") return false;
+  const auto names_fields = [](std::string_view first) {
+    return first == "FIELDS" || first == "COLUMNS";  // before version 0.7
+  };
+  if (word != "VERSION" && !names_fields(word)) return false;
   return std::any_of(lines.begin(), lines.end(),
-                     [](std::string_view line) { return first_word(line) == "FIELDS"; });
+                     [&](std::string_view line) { return names_fields(first_word(line)); });
 }
 
 Recognition recognise_text(std::string_view head) {

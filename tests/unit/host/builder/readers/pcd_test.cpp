@@ -158,6 +158,14 @@ TEST_F(PcdTest, RefusesTruncationAtEveryByte) {
   }
 }
 
+TEST_F(PcdTest, ReadsColumnsOfOldFiles) {
+  const Scan scan = read(
+      "VERSION .5\nCOLUMNS x y z intensity\nSIZE 4 4 4 4\nTYPE F F F F\nWIDTH 1\nHEIGHT 1\n"
+      "POINTS 1\nDATA ascii\n1 2 3 50\n");
+  ASSERT_EQ(scan.positions.size(), 1U);
+  EXPECT_EQ(scan.positions[0], Eigen::Vector3d(1.0, 2.0, 3.0));
+}
+
 TEST_F(PcdTest, ChecksDeclaredCounts) {
   const std::string point = bytes_of(1.0F) + bytes_of(2.0F) + bytes_of(3.0F);
   const auto with_points = [](const std::string& points, const std::string& data) {
