@@ -15,7 +15,7 @@
 namespace tactree::builder {
 namespace {
 
-constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
+constexpr std::size_t kReadAheadBytes = std::size_t{1} << 20;
 
 [[noreturn]] void throw_open_error(const std::string& name, int error) {
   if (error == ENOENT || error == ENOTDIR) {
@@ -48,7 +48,7 @@ InputFile::InputFile(const std::filesystem::path& path, std::function<void(doubl
   const bool usable = known && S_ISREG(status.st_mode) && status.st_size > 0;
   if (usable) {
     size_ = static_cast<std::uint64_t>(status.st_size);
-    buffer_.resize(static_cast<std::size_t>(std::min<std::uint64_t>(size_, kBufferBytes)));
+    buffer_.resize(static_cast<std::size_t>(std::min<std::uint64_t>(size_, kReadAheadBytes)));
     return;
   }
   ::close(descriptor_);
@@ -141,7 +141,7 @@ bool InputFile::next_line(std::string_view& line) {
   while (length == std::string_view::npos && text.size() < remaining()) {
     if (text.size() > kMaxLineBytes) break;
     const std::size_t searched = text.size();
-    text = peek(std::min(2 * searched, searched + kBufferBytes));
+    text = peek(std::min(2 * searched, searched + kReadAheadBytes));
     length = text.find(line_end_, searched);
     if (text.size() == searched) break;
   }

@@ -11,6 +11,8 @@ namespace tactree::builder {
   return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v';
 }
 
+[[nodiscard]] constexpr bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
 /// Removes white space at both ends.
 [[nodiscard]] std::string_view trim(std::string_view text);
 

@@ -77,8 +77,6 @@ std::vector<std::int64_t> counts_of(std::string_view line) {
   return counts;
 }
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
 /// Fixed columns, or fields separated by commas, after a keyword of nodes or elements.
 bool is_nastran_card(std::string_view line) {
   constexpr std::string_view kCards[] = {"grid",   "ctria3", "ctria6", "cquad4", "cquad8",

@@ -164,7 +164,13 @@ void ScanBuilder::make_room() {
 
 /// Keeps at most this many points.
 void ScanBuilder::thin(std::size_t most) {
-  const std::vector<std::uint8_t> kept = thinning_.select(scan_.positions, most);
+  const std::size_t before = scan_.positions.size();
+  keep_points(thinning_.select(scan_.positions, most));
+  thinned_ += before - scan_.positions.size();
+}
+
+/// Drops the points that are marked with 0.
+void ScanBuilder::keep_points(std::span<const std::uint8_t> kept) {
   std::size_t count = 0;
   auto pose = scan_.poses.begin();
   for (std::size_t i = 0; i < kept.size(); ++i) {
@@ -176,10 +182,17 @@ void ScanBuilder::thin(std::size_t most) {
     ++count;
   }
   for (; pose != scan_.poses.end(); ++pose) pose->first_point = count;
-  thinned_ += kept.size() - count;
   scan_.positions.resize(count);
   if (has_normals_) scan_.normals.resize(count);
   if (colours_ != ColourRange::kNone) scan_.colours.resize(count);
+}
+
+std::size_t ScanBuilder::drop_height(double z) {
+  std::vector<std::uint8_t> kept;
+  kept.reserve(scan_.positions.size());
+  for (const Eigen::Vector3d& p : scan_.positions) kept.push_back(p.z() == z ? 0 : 1);
+  keep_points(kept);
+  return kept.size() - scan_.positions.size();
 }
 
 void ScanBuilder::begin_pose() {

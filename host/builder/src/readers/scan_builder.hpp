@@ -53,6 +53,8 @@ class ScanBuilder {
   void charge(std::uint64_t bytes);
 
   void add_point(const PointRow& row);
+  /// Drops the points with this z, and returns their number. Precondition: a file without faces.
+  std::size_t drop_height(double z);
   /// Number of points read so far, including dropped ones.
   [[nodiscard]] std::uint64_t points_read() const { return points_read_; }
   /// Number of points kept so far, which is the index of the next point in the scan.
@@ -97,6 +99,7 @@ class ScanBuilder {
                                              std::uint64_t other_bytes) const;
   void make_room();
   void thin(std::size_t most);
+  void keep_points(std::span<const std::uint8_t> kept);
   void note_thinning();
   void drop_unused_poses();
   void add_normal(const PointRow& row);

@@ -9,6 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "geometry/cloud.hpp"
+#include "no_data.hpp"
+
 namespace tactree::builder {
 namespace {
 
@@ -129,26 +132,43 @@ std::string doubt_of_connectivity(const GuessedTable& table) {
   return "the rows consist of integers that repeat like the corners of the faces of a mesh";
 }
 
-/// A time rises in nearly equal steps.
+/// A time rises from row to row, and three coordinates follow it. Points that are sorted by x look
+/// the same if a fourth column has fractions.
 std::string doubt_of_time(const GuessedTable& table) {
   if (table.counter || table.columns < 4 || table.rows.size() < kFewRows) return "";
   const Column first = column_of(table.rows, 0);
-  if (!first.numbers || (!first.rises && !first.falls)) return "";
-  if (first.whole) return "column 1 falls from row to row, like a number";
+  if (!first.numbers || (!first.never_falls && !first.never_rises)) return "";
+  if (first.whole && first.falls) return "column 1 falls from row to row, like a number";
   // In a raster, a wide row looks the same, but its second coordinate hardly changes.
   const bool placed = table.slots[3] != kNoSlot || column_of(table.rows, 1).constant;
-  if (table.rows.size() < kSomeRows || placed) return "";
-  std::vector<double> steps;
-  for (std::size_t i = 1; i < table.rows.size(); ++i) {
-    steps.push_back(std::abs(table.rows[i].values[0] - table.rows[i - 1].values[0]));
+  if (table.rows.size() < kSomeRows || placed || first.constant) return "";
+  for (std::size_t at = 1; at < 4; ++at) {
+    if (!are_fractions(table.rows, at)) return "";
   }
-  std::sort(steps.begin(), steps.end());
-  const double middle = steps[steps.size() / 2];
-  const auto even = std::count_if(steps.begin(), steps.end(), [&](double step) {
-    return step > 0.5 * middle && step < 1.5 * middle;
-  });
-  if (10 * static_cast<std::size_t>(even) < 8 * steps.size()) return "";
-  return "column 1 changes by the same step from row to row, like a time";
+  return fmt::format(
+      "column 1 {} from row to row, like a time, and three columns of fractions follow",
+      first.never_falls ? "never falls" : "never rises");
+}
+
+/// Longitudes and latitudes before heights in metres.
+std::string doubt_of_degrees(const GuessedTable& table) {
+  if (table.rows.size() < kSomeRows) return "";
+  const std::size_t begin = table.counter ? 1 : 0;
+  Box box;
+  for (const TextRow& row : table.rows) {
+    const Eigen::Map<const Eigen::Vector3d> p(row.values.data() + begin);
+    if (p.allFinite() && !is_no_data_value(p.z())) box.extend(p);
+  }
+  if (box.isEmpty()) return "";
+  constexpr double kMostDegrees = 360.0;
+  constexpr double kFlatter = 1000.0;
+  const Eigen::Vector3d sizes = box.sizes();
+  const double wide = std::max(sizes.x(), sizes.y());
+  const bool angles = box.min().head<2>().minCoeff() >= -kMostDegrees &&
+                      box.max().head<2>().maxCoeff() <= kMostDegrees;
+  if (!angles || !(wide > 0.0) || !(kFlatter * wide < sizes.z())) return "";
+  return "x and y hardly differ, and z does, like longitude, latitude and height (project them to "
+         "metres first)";
 }
 
 /// One to three columns of whole numbers before three of fractions: the number of a scan line, a
@@ -244,6 +264,8 @@ Column column_of(std::span<const TextRow> rows, std::size_t at) {
     if (is_whole(value)) ++column.wholes;
     if (i > 0 && !(value > last)) column.rises = false;
     if (i > 0 && !(value < last)) column.falls = false;
+    if (i > 0 && !(value >= last)) column.never_falls = false;
+    if (i > 0 && !(value <= last)) column.never_rises = false;
     if (i > 0 && value == last + 1.0) ++column.steps;
     last = value;
   }
@@ -282,7 +304,8 @@ bool are_small(std::span<const TextRow> rows, std::size_t column) {
 std::string doubt_of_positions(const GuessedTable& table) {
   constexpr std::array kTests = {
       doubt_of_first_row, doubt_of_corner_counts,    doubt_of_connectivity,    doubt_of_time,
-      doubt_of_constants, doubt_of_leading_integers, doubt_of_leading_normals, doubt_of_grid};
+      doubt_of_constants, doubt_of_leading_integers, doubt_of_leading_normals, doubt_of_degrees,
+      doubt_of_grid};
   for (const auto& test : kTests) {
     if (std::string doubt = test(table); !doubt.empty()) return doubt;
   }

@@ -13,11 +13,13 @@ namespace tactree::builder {
 
 /// Statistics of a column.
 struct Column {
-  bool numbers = true;     ///< a number in every row
-  bool whole = true;       ///< only whole numbers
-  bool constant = true;    ///< one value
-  bool rises = true;       ///< each value is above the previous one
-  bool falls = true;       ///< each value is below the previous one
+  bool numbers = true;   ///< a number in every row
+  bool whole = true;     ///< only whole numbers
+  bool constant = true;  ///< one value
+  bool rises = true;     ///< each value is above the previous one
+  bool falls = true;     ///< each value is below the previous one
+  bool never_falls = true;
+  bool never_rises = true;
   std::size_t steps = 0;   ///< values that are one above the previous one
   std::size_t wholes = 0;  ///< whole numbers
   double first = 0.0;

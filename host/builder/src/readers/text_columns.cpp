@@ -37,7 +37,7 @@ class Guess {
   Guess(std::span<const TextRow> rows, bool counted) : rows_(rows), counted_(counted) {}
 
   ColumnGuess find() {
-    columns_ = common_width();
+    columns_ = most_frequent_width(rows_);
     check_rows();
     rows_left_.clear();
     for (const TextRow& row : rows_) {
@@ -53,24 +53,6 @@ class Guess {
   }
 
  private:
-  /// The most frequent number of values per row.
-  [[nodiscard]] std::size_t common_width() const {
-    std::vector<std::size_t> widths;
-    for (const TextRow& row : rows_) widths.push_back(row.values.size());
-    std::sort(widths.begin(), widths.end());
-    std::size_t best = 0;
-    std::size_t width = kMinColumns;
-    for (auto at = widths.begin(); at != widths.end();) {
-      const auto end = std::upper_bound(at, widths.end(), *at);
-      if (static_cast<std::size_t>(end - at) > best) {
-        best = static_cast<std::size_t>(end - at);
-        width = *at;
-      }
-      at = end;
-    }
-    return width;
-  }
-
   /// Rows of points have equal numbers of columns. Text at the end of a row may contain spaces.
   void check_rows() {
     const TextRow& first = rows_.front();
@@ -225,6 +207,23 @@ void take(std::vector<Slot>& slots, std::array<bool, kSlots>& filled, std::size_
 }
 
 }  // namespace
+
+std::size_t most_frequent_width(std::span<const TextRow> rows) {
+  std::vector<std::size_t> widths;
+  for (const TextRow& row : rows) widths.push_back(row.values.size());
+  std::sort(widths.begin(), widths.end());
+  std::size_t best = 0;
+  std::size_t width = kMinColumns;
+  for (auto at = widths.begin(); at != widths.end();) {
+    const auto end = std::upper_bound(at, widths.end(), *at);
+    if (static_cast<std::size_t>(end - at) > best) {
+      best = static_cast<std::size_t>(end - at);
+      width = *at;
+    }
+    at = end;
+  }
+  return width;
+}
 
 ColumnGuess guess_columns(std::span<const TextRow> rows, bool counted) {
   return Guess(rows, counted).find();

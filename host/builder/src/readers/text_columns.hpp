@@ -27,6 +27,9 @@ struct ColumnGuess {
   std::vector<std::string> warnings;
 };
 
+/// The number of values that most of the rows have; of equally frequent ones the lowest.
+[[nodiscard]] std::size_t most_frequent_width(std::span<const TextRow> rows);
+
 /// Finds x y z, and normals and colours, in rows without names. `counted` means that the number of
 /// points precedes the rows, as in a PTS file.
 [[nodiscard]] ColumnGuess guess_columns(std::span<const TextRow> rows, bool counted);

@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
 #include "number.hpp"
+#include "table_evidence.hpp"
 #include "text_columns.hpp"
+#include "text_names.hpp"
+#include "unit_names.hpp"
 
 namespace tactree::builder {
 namespace {
@@ -17,42 +19,14 @@ constexpr std::size_t kSampleRows = 1000;
 constexpr std::size_t kSampleLines = 4000;  // of the sample, including those before the rows
 constexpr std::size_t kMaxColumns = 4096;
 constexpr std::size_t kMinTableColumns = 3;
+constexpr std::size_t kFewestNumbered = 4;  // rows of which a column of numbers is recognised
 constexpr const char* kNotPoints =
     "a text file of points has rows of numbers, x y z first or under a line of column names; "
     "otherwise name them, as in --columns x=2,y=3,z=4";
+constexpr const char* kNumberColumns =
+    "give the numbers of the columns, as in --columns x=2,y=3,z=4";
 constexpr const char* kNameColumns =
     "if they are points, name the columns, as in --columns x=1,y=2,z=3; else save the scan as PLY";
-
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
-/// True for a line such as "1,5 2,5 3,5": every comma is between digits, at most one in a word, and
-/// there are three words or more.
-bool has_decimal_commas(std::string_view line) {
-  std::size_t words = 0;
-  for (auto word = take_word(line); !word.empty(); word = take_word(line)) {
-    ++words;
-    const std::size_t comma = word.find(',');
-    if (comma == std::string_view::npos) continue;
-    if (word.find(',', comma + 1) != std::string_view::npos) return false;
-    if (comma == 0 || comma + 1 >= word.size()) return false;
-    if (!is_digit(word[comma - 1]) || !is_digit(word[comma + 1])) return false;
-  }
-  return words >= kMinTableColumns;
-}
-
-void find_separator(std::string_view line, TextLayout& layout) {
-  const bool comma = line.find(',') != std::string_view::npos;
-  layout.decimal_comma = false;
-  layout.separator = ' ';
-  if (line.find(';') != std::string_view::npos) {
-    layout.separator = ';';
-    layout.decimal_comma = comma;
-  } else if (comma && has_decimal_commas(line)) {
-    layout.decimal_comma = true;
-  } else if (comma) {
-    layout.separator = ',';
-  }
-}
 
 /// Returns false if a required field is not a number: a named column, or one of the first three
 /// columns without names. Other fields that are not numbers become NaN.
@@ -60,12 +34,12 @@ bool parse_row(std::string_view line, const TextLayout& layout, TextRow& row) {
   row = {};
   std::string_view field;
   bool all_numbers = true;
-  while (row.values.size() < kMaxColumns && take_field(line, layout.separator, field)) {
+  while (row.values.size() < kMaxColumns && take_field(line, layout.style.separator, field)) {
     const std::size_t column = row.values.size();
     const bool named = column < layout.slots.size() && layout.slots[column] != kNoSlot;
     const bool needed = layout.slots.empty() ? column < kMinTableColumns : named;
     double value = 0;
-    if (!parse_field(field, layout.decimal_comma, value)) {
+    if (!parse_field(field, layout.style.decimal_comma, value)) {
       if (needed) return false;
       value = std::numeric_limits<double>::quiet_NaN();
       all_numbers = false;
@@ -74,31 +48,6 @@ bool parse_row(std::string_view line, const TextLayout& layout, TextRow& row) {
     if (all_numbers) row.numbers = row.values.size();
   }
   return true;
-}
-
-std::string_view without_comment_signs(std::string_view text) {
-  text.remove_prefix(std::min(text.find_first_not_of("/#%! \t"), text.size()));
-  return text;
-}
-
-/// Returns the name without its unit: "x [m]" or "//x" -> "x".
-std::string_view bare_name(std::string_view field) {
-  field = without_comment_signs(field);
-  return trim(field.substr(0, field.find_first_of("[(")));
-}
-
-bool read_column_names(std::string_view line, TextLayout& layout) {
-  line = trim(without_comment_signs(line));
-  char separator = ' ';
-  if (line.find(',') != std::string_view::npos) separator = ',';
-  if (line.find(';') != std::string_view::npos) separator = ';';
-  std::vector<std::string_view> names;
-  std::string_view field;
-  while (names.size() < kMaxColumns && take_field(line, separator, field)) {
-    names.push_back(bare_name(field));
-  }
-  layout.slots = slots_of_names(names);
-  return !layout.slots.empty();
 }
 
 /// True for a row such as "830 3 0": several whole numbers and nothing else.
@@ -134,6 +83,63 @@ class SplitDecimals {
   bool seen_ = false;
 };
 
+/// Detects commas between thousands: "5,280 -963 16,996". A number of three decimals would have a
+/// comma in every row, and often a zero before it.
+class Thousands {
+ public:
+  void look_at(std::string_view row, char separator) {
+    std::string_view field;
+    while (take_field(row, separator, field)) {
+      if (field.starts_with('-')) field.remove_prefix(1);
+      const std::size_t comma = field.find(',');
+      const std::string_view whole = field.substr(0, comma);
+      if (!std::all_of(whole.begin(), whole.end(), is_digit)) continue;
+      if (comma == std::string_view::npos) {
+        without_ = without_ || (whole != "0" && whole.size() <= 3);
+        possible_ = possible_ && whole.size() <= 3;
+      } else {
+        with_ = true;
+        possible_ = possible_ && field.size() == comma + 4 && whole != "0" && comma <= 3;
+      }
+    }
+  }
+  [[nodiscard]] bool are_likely() const { return possible_ && with_ && without_; }
+  [[nodiscard]] bool have_commas() const { return with_; }
+
+ private:
+  bool possible_ = true;
+  bool with_ = false;
+  bool without_ = false;
+};
+
+struct RowWidths {
+  std::size_t columns = 0;  ///< of most rows
+  std::size_t fewest = 0;   ///< columns
+  std::size_t most = 0;
+  std::size_t numbers = 0;  ///< up to the last number of any row
+  std::size_t leading = 0;  ///< of numbers at the beginning of every row
+  bool numbered = false;    ///< the first column numbers the rows
+};
+
+/// Precondition: at least one row.
+RowWidths widths_of(std::span<const TextRow> rows) {
+  RowWidths widths;
+  widths.columns = most_frequent_width(rows);
+  widths.fewest = rows.front().values.size();
+  widths.leading = rows.front().numbers;
+  for (const TextRow& row : rows) {
+    widths.fewest = std::min(widths.fewest, row.values.size());
+    widths.most = std::max(widths.most, row.values.size());
+    for (std::size_t i = widths.numbers; i < row.values.size(); ++i) {
+      if (!std::isnan(row.values[i])) widths.numbers = i + 1;
+    }
+    widths.leading = std::min(widths.leading, row.numbers);
+  }
+  const Column first = column_of(rows, 0);
+  widths.numbered = rows.size() >= kFewestNumbered && first.whole && first.steps + 1 == rows.size();
+  return widths;
+}
+
 /// Determines the layout from the first lines.
 class LayoutFinder {
  public:
@@ -152,9 +158,11 @@ class LayoutFinder {
     }
     if (rows_.empty()) refuse();
     refuse_split_decimals();
+    refuse_thousands();
     layout_.row_bytes = static_cast<double>(row_bytes_) / static_cast<double>(rows_.size());
     settle_columns();
     leave_out_unused(layout_.slots);
+    layout_.has_commas = thousands_.have_commas();
     file_.rewind();
     return std::move(layout_);
   }
@@ -164,12 +172,17 @@ class LayoutFinder {
     const std::string_view text = text_of_line(line);
     if (text.empty()) {
       // CloudCompare writes the column names after "//", others after '%' or '!'.
-      if (rows_.empty() && layout_.slots.empty()) (void)take_names(trim(line));
+      if (rows_.empty() && !(layout_.slots.empty() && take_names(trim(line)))) take_unit(line);
       return;
     }
-    if (rows_.empty()) find_separator(text, layout_);
+    if (rows_.empty()) layout_.style = style_of_row(text);
     TextRow row;
-    const bool numbers = parse_row(text, layout_, row);
+    bool numbers = parse_row(text, layout_, row);
+    // The first rows may consist of whole numbers.
+    if (!numbers && layout_.style.separator == ' ' && has_decimal_commas(text)) {
+      layout_.style.decimal_comma = true;
+      numbers = parse_row(text, layout_, row);
+    }
     if (numbers && rows_.empty() && is_count(row)) {
       layout_.declared = static_cast<std::uint64_t>(row.values[0]);
       return;
@@ -177,8 +190,10 @@ class LayoutFinder {
     const bool unnamed = rows_.empty() && layout_.slots.empty();
     // The '#' of "Point#, X, Y, Z" does not begin a comment.
     if (!numbers && unnamed && (take_names(text) || take_names(trim(line)))) return;
+    if (!numbers && rows_.empty() && take_unit(line)) return;
     if (numbers && row.values.size() >= std::max(kMinTableColumns, layout_.slots.size())) {
-      if (layout_.separator == ',') split_.look_at(text, layout_.slots.size());
+      if (layout_.style.separator == ',') split_.look_at(text, layout_.slots.size());
+      if (layout_.style.decimal_comma) thousands_.look_at(text, layout_.style.separator);
       if (rows_.empty()) layout_.first_row_line = file_.line_number();
       row_bytes_ += line.size() + 1;
       rows_.push_back(std::move(row));
@@ -199,10 +214,41 @@ class LayoutFinder {
   }
 
   bool take_names(std::string_view text) {
-    if (!read_column_names(text, layout_)) return false;
+    ColumnNames names = read_column_names(text);
+    if (names.slots.empty()) return false;
+    layout_.slots = std::move(names.slots);
+    names_ = names.count;
+    contradiction_ = std::move(names.contradiction);
+    if (names.unit_m) set_unit(*names.unit_m);
     layout_.header_line = file_.line_number();
     layout_.source = fmt::format("named by line {}", layout_.header_line);
     leave_out_unused(layout_.slots);
+    return true;
+  }
+
+  void set_unit(double metres) {
+    layout_.unit_m = metres;
+    layout_.unit_line = file_.line_number();
+  }
+
+  /// A line before the first row that states the unit.
+  bool take_unit(std::string_view line) {
+    if (layout_.header_line != 0) {
+      const auto metres = read_column_units(trim(line), layout_.style.separator, layout_.slots);
+      if (metres) {
+        set_unit(*metres);
+        return true;
+      }
+    }
+    const std::string_view unit = stated_unit(trim(line));
+    if (unit.empty()) return false;
+    if (const auto metres = metres_of_unit(unit)) {
+      set_unit(*metres);
+    } else {
+      layout_.warnings.push_back(
+          fmt::format("Line {} states the unit \"{}\", which is not known (--unit states it).",
+                      file_.line_number(), printable(unit)));
+    }
     return true;
   }
 
@@ -212,7 +258,7 @@ class LayoutFinder {
     first_other_text_ = printable(text);
     std::string_view field;
     other_fields_ = 0;
-    const char separator = text.find(',') != text.npos ? ',' : layout_.separator;
+    const char separator = text.find(',') != text.npos ? ',' : layout_.style.separator;
     while (take_field(text, separator, field)) ++other_fields_;
     other_is_numbers_ = numbers;
   }
@@ -231,7 +277,7 @@ class LayoutFinder {
                                   by_user ? "--columns names"
                                           : fmt::format("line {} names", layout_.header_line),
                                   layout_.slots.size()),
-                      by_user ? "check --columns" : "export the scan again");
+                      by_user ? "check --columns" : kNumberColumns);
     }
     if (other_is_numbers_) {
       throw ReadError(file_.name(), place,
@@ -244,14 +290,23 @@ class LayoutFinder {
         kNotPoints);
   }
 
+  void refuse_thousands() const {
+    if (!layout_.style.decimal_comma || !thousands_.are_likely()) return;
+    throw ReadError(file_.name(), fmt::format("line {}", layout_.first_row_line),
+                    "three digits follow every comma, and other numbers have none: the commas "
+                    "seem to separate thousands",
+                    "export it without them");
+  }
+
   void refuse_split_decimals() const {
-    if (layout_.separator != ',' || !split_.are_likely()) return;
+    if (layout_.style.separator != ',' || !split_.are_likely()) return;
     throw ReadError(file_.name(), fmt::format("line {}", layout_.first_row_line),
                     "its commas seem to be decimal commas as well as the separators of its columns",
                     "export it with decimal points, or with semicolons between the columns");
   }
 
   void settle_columns() {
+    if (layout_.header_line != 0) compare_names();
     if (!layout_.slots.empty()) return;
     const std::size_t columns = rows_.front().values.size();
     const bool unnamed_header = first_other_line_ != 0 && !other_is_numbers_ &&
@@ -261,8 +316,7 @@ class LayoutFinder {
       throw ReadError(
           file_.name(), fmt::format("line {}", first_other_line_),
           fmt::format("the column names \"{}\" do not include x, y and z", first_other_text_),
-          "rename these columns to x, y and z, or give their numbers, as in "
-          "--columns x=2,y=3,z=4");
+          remedy_of_names(first_other_text_));
     }
     ColumnGuess guess = guess_columns(rows_, layout_.declared.has_value());
     if (counts_line_ != 0 && counts_line_ < layout_.first_row_line) {
@@ -272,9 +326,40 @@ class LayoutFinder {
     if (!guess.doubt.empty()) refuse_guess(layout_.first_row_line, guess.doubt);
     layout_.slots = std::move(guess.slots);
     layout_.counter = guess.counter;
-    layout_.warnings = std::move(guess.warnings);
+    layout_.warnings.insert(layout_.warnings.end(), guess.warnings.begin(), guess.warnings.end());
     layout_.remark = std::move(guess.remark);
     layout_.source = "without names, by their numbers";
+  }
+
+  /// The names must fit the rows: with a name too many or too few, all columns may be shifted.
+  void compare_names() {
+    const auto fail = [&](const std::string& cause, const char* remedy) {
+      throw ReadError(file_.name(), fmt::format("line {}", layout_.header_line), cause, remedy);
+    };
+    if (layout_.unit_m == 0.0) {
+      throw ReadError(file_.name(), fmt::format("line {}", layout_.unit_line),
+                      "x, y and z have different units", "convert them to one unit");
+    }
+    if (!contradiction_.empty()) fail(contradiction_, kNumberColumns);
+    const RowWidths widths = widths_of(rows_);
+    if (widths.numbers <= names_ && names_ <= widths.columns) return;
+    if (widths.columns == names_ + 1 && widths.numbered) {
+      // R and pandas write the numbers of the rows first, without a name.
+      layout_.slots.insert(layout_.slots.begin(), kNoSlot);
+      layout_.counter = 0;
+      layout_.source += ", after the numbers of the rows";
+      return;
+    }
+    const bool first = layout_.slots.size() >= 3 && layout_.slots[0] == kX &&
+                       layout_.slots[1] == kY && layout_.slots[2] == kZ;
+    // A list at the end of the rows has one name.
+    const bool list_last = widths.fewest + 1 < widths.most && layout_.slots.size() <= widths.fewest;
+    // Words at the end of a row may be separated by spaces.
+    const bool words_last = names_ < widths.columns && layout_.slots.size() <= widths.leading &&
+                            widths.leading <= names_ && widths.leading < widths.columns;
+    if (first || list_last || words_last) return;
+    fail(fmt::format("there are {} names of columns, but the rows have {}", names_, widths.columns),
+         kNumberColumns);
   }
 
   [[noreturn]] void refuse_guess(std::uint64_t line, const std::string& doubt) const {
@@ -286,6 +371,9 @@ class LayoutFinder {
   TextLayout layout_;
   std::vector<TextRow> rows_;
   SplitDecimals split_;
+  Thousands thousands_;
+  std::size_t names_ = 0;  // of columns
+  std::string contradiction_;
   std::size_t row_bytes_ = 0;
   std::uint64_t first_other_line_ = 0;
   std::string first_other_text_;
@@ -299,45 +387,6 @@ class LayoutFinder {
 
 bool TextLayout::has(Slot slot) const {
   return std::find(slots.begin(), slots.end(), slot) != slots.end();
-}
-
-std::string_view text_of_line(std::string_view line) {
-  line = trim(line);
-  if (line.starts_with('%') || line.starts_with('!')) return {};
-  std::size_t end = line.find('#');
-  // "1.#QNAN" is a number.
-  while (end != std::string_view::npos && end > 0 && line[end - 1] == '.') {
-    end = line.find('#', end + 1);
-  }
-  line = line.substr(0, end);
-  line = line.substr(0, line.find("//"));
-  return trim(line);
-}
-
-bool take_field(std::string_view& rest, char separator, std::string_view& field) {
-  if (separator == ' ') {
-    field = take_word(rest);
-    if (field.size() >= 2 && field.front() == '"' && field.back() == '"') {
-      field = field.substr(1, field.size() - 2);
-    }
-    return !field.empty();
-  }
-  if (rest.data() == nullptr) return false;
-  const std::size_t end = rest.find(separator);
-  field = trim(rest.substr(0, end));
-  rest = end == std::string_view::npos ? std::string_view{} : rest.substr(end + 1);
-  if (field.size() >= 2 && field.front() == '"' && field.back() == '"') {
-    field = trim(field.substr(1, field.size() - 2));
-  }
-  return true;
-}
-
-bool parse_field(std::string_view field, bool decimal_comma, double& value) {
-  if (!decimal_comma) return parse_number(field, value);
-  std::array<char, 64> text{};
-  if (field.size() > text.size()) return false;
-  std::replace_copy(field.begin(), field.end(), text.begin(), ',', '.');
-  return parse_number({text.data(), field.size()}, value);
 }
 
 TextLayout find_text_layout(InputFile& file, const ColumnMap& columns) {

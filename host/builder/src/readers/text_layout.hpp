@@ -11,13 +11,16 @@
 #include "input_file.hpp"
 #include "scan_builder.hpp"
 #include "tactree/builder/read_scan.hpp"
+#include "text_fields.hpp"
 
 namespace tactree::builder {
 
 struct TextLayout {
-  char separator = ' ';                   ///< ' ' stands for any run of white space
-  bool decimal_comma = false;             ///< "1,5" means 1.5
+  FieldStyle style;
   std::vector<Slot> slots;                ///< per column, up to the last one in use
+  std::optional<double> unit_m;           ///< that the file states for x, y and z
+  std::uint64_t unit_line = 0;            ///< line of this statement
+  bool has_commas = false;                ///< some numbers have a decimal comma
   std::optional<std::size_t> counter;     ///< column that numbers the points
   std::optional<std::uint64_t> declared;  ///< the count that precedes the first point
   std::uint64_t header_line = 0;          ///< line of the column names; 0: none
@@ -29,17 +32,6 @@ struct TextLayout {
 
   [[nodiscard]] bool has(Slot slot) const;
 };
-
-/// Returns the data of a line, without comments ('#', "//", and '%' or '!' at its beginning) and
-/// the spaces around it.
-[[nodiscard]] std::string_view text_of_line(std::string_view line);
-
-/// Removes the next field from the front of `rest`, without quotes and spaces around it. Returns
-/// false at the end of the line.
-[[nodiscard]] bool take_field(std::string_view& rest, char separator, std::string_view& field);
-
-/// Like parse_number(), with the decimal separator of the layout.
-[[nodiscard]] bool parse_field(std::string_view field, bool decimal_comma, double& value);
 
 /// Reads the first rows and rewinds the file. Throws ReadError if they are not points. `columns`
 /// are those that the user has named, or empty.

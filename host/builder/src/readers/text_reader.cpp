@@ -3,11 +3,13 @@
 #include <cmath>
 #include <limits>
 
+#include "no_data.hpp"
 #include "number.hpp"
 #include "readers.hpp"
 #include "scan_builder.hpp"
 #include "text_columns.hpp"
 #include "text_layout.hpp"
+#include "text_names.hpp"
 
 namespace tactree::builder {
 namespace {
@@ -24,6 +26,7 @@ class TextReader {
   Scan read() {
     for (const std::string& warning : layout_.warnings) builder_.warn(warning);
     note_columns();
+    if (layout_.unit_m) builder_.set_unit(*layout_.unit_m);
     if (layout_.has(kNx)) builder_.use_normals();
     if (layout_.has(kRed)) builder_.use_colours(ColourRange::kAuto);
     builder_.thin_large_cloud();
@@ -35,6 +38,7 @@ class TextReader {
     check_bad_rows();
     check_counter();
     check_faces();
+    drop_no_data();
     if (layout_.declared && declared_ != builder_.points_read()) {
       builder_.warn(fmt::format("The file declares {} points and holds {}.", declared_,
                                 builder_.points_read()));
@@ -44,7 +48,8 @@ class TextReader {
 
  private:
   void read_line(std::string_view line) {
-    if (file_.line_number() == layout_.header_line) return;
+    const std::uint64_t number = file_.line_number();
+    if (number == layout_.header_line || number == layout_.unit_line) return;
     // Skips the names in a header that the user has replaced.
     if (columns_named_ && file_.line_number() < layout_.first_row_line) return;
     const std::string_view text = text_of_line(line);
@@ -52,10 +57,12 @@ class TextReader {
     PointRow row{};
     if (parse(text, row)) {
       count_integers(row);
+      heights_.add(row[kZ]);
       builder_.add_point(row);
       return;
     }
     if (layout_.declared && is_count(text)) return;
+    if (repeats_names(text)) return;
     if (file_.line_number() < layout_.first_row_line) {
       if (head_lines_++ == 0) first_head_line_ = file_.line_number();
       return;
@@ -64,16 +71,33 @@ class TextReader {
     if (bad_rows_ >= 1000 && bad_rows_ > builder_.points_read()) refuse();
   }
 
+  /// In files that were joined, the names of the columns come again.
+  bool repeats_names(std::string_view text) {
+    ColumnNames names = read_column_names(text);
+    if (names.slots.empty() || columns_named_) return false;
+    leave_out_unused(names.slots);
+    const bool counted = layout_.header_line != 0 && layout_.counter.has_value();
+    if (counted) names.slots.insert(names.slots.begin(), kNoSlot);
+    if (names.slots != layout_.slots) {
+      throw ReadError(file_.name(), fmt::format("line {}", file_.line_number()),
+                      fmt::format("it names the columns {}, but the rows before have {}",
+                                  describe_columns(names.slots), describe_columns(layout_.slots)),
+                      "split the file in two");
+    }
+    return true;
+  }
+
   void note_columns() {
     std::string counter;
-    if (layout_.counter) {
+    if (layout_.counter && layout_.header_line == 0) {
       counter = fmt::format("; column {} numbers the points", *layout_.counter + 1);
       if (layout_.slots.size() == 4) {
         counter +=
             " (if northing comes before easting, the scan is mirrored; give --columns x=3,y=2,z=4)";
       }
     }
-    const std::string remark = layout_.remark.empty() ? "" : "; " + layout_.remark;
+    std::string remark = layout_.remark.empty() ? "" : "; " + layout_.remark;
+    if (layout_.has_commas) remark += "; commas are decimal commas";
     builder_.note(fmt::format("{}: columns {}, {}{}{}", file_.name(),
                               describe_columns(layout_.slots), layout_.source, counter, remark));
   }
@@ -82,9 +106,10 @@ class TextReader {
     std::string_view field;
     for (std::size_t i = 0; i < layout_.slots.size(); ++i) {
       const Slot slot = layout_.slots[i];
-      if (!take_field(rest, layout_.separator, field)) return false;
+      if (!take_field(rest, layout_.style.separator, field)) return false;
       if (layout_.counter == i) count_row(field);
-      if (slot != kNoSlot && !parse_field(field, layout_.decimal_comma, row[slot])) return false;
+      if (slot != kNoSlot && !parse_field(field, layout_.style.decimal_comma, row[slot]))
+        return false;
     }
     return true;
   }
@@ -152,6 +177,17 @@ class TextReader {
                     "columns, as in --columns x=1,y=2,z=3");
   }
 
+  void drop_no_data() {
+    const std::optional<double> z = heights_.find();
+    if (!z) return;
+    const std::size_t count = builder_.drop_height(*z);
+    builder_.count_dropped("no_data", count);
+    builder_.warn(fmt::format(
+        "{} points with a z of {:.12g}, far from all others, were dropped: it seems to stand for "
+        "missing data.",
+        count, *z));
+  }
+
   void check_bad_rows() {
     if (head_lines_ > 0) {
       builder_.warn(fmt::format("{} before the first row {} skipped, the first at line {}.",
@@ -180,7 +216,7 @@ class TextReader {
   }
 
   std::string format_name() const {
-    switch (layout_.separator) {
+    switch (layout_.style.separator) {
       case ',':
         return "text, separated by commas";
       case ';':
@@ -195,6 +231,7 @@ class TextReader {
   bool columns_named_;  // named by the user
   std::uint64_t declared_;
   ScanBuilder builder_;
+  NoDataHeight heights_;
   std::uint64_t bad_rows_ = 0;
   std::uint64_t first_bad_line_ = 0;
   std::int64_t last_number_ = std::numeric_limits<std::int64_t>::min();

@@ -1,5 +1,7 @@
 // The columns of text files without names: guessed only if they look like points.
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <functional>
 #include <stdexcept>
@@ -60,6 +62,35 @@ TEST_F(TextColumnsTest, RefusesPossibleTimeColumn) {
   expect_parts(refusal_of(table(
                    100, [](int i) { return std::to_string(i * i) + " "; }, nothing)),
                "line 1", "column 1 rises", "--columns x=1,y=2,z=3");
+}
+
+TEST_F(TextColumnsTest, RefusesTimeOfSeveralPoints) {
+  const auto time = [](int beams, int jitter) {
+    return table(
+        200,
+        [=](int i) {
+          return std::to_string(414560.12 + 1e-4 * (i / beams) + 1e-6 * (i * i % jitter)) + " ";
+        },
+        nothing);
+  };
+  expect_parts(refusal_of(time(16, 1)), "column 1 never falls", "--columns x=1,y=2,z=3");
+  expect_parts(refusal_of(time(1, 50)), "column 1 never falls");
+  // Sorted by x, with an intensity.
+  std::string sorted;
+  for (int i = 0; i < 200; ++i) {
+    sorted += std::to_string(0.01 * (i / 10)) + " " + std::to_string(0.01 * (i % 10)) + " " +
+              std::to_string(0.001 * (i * i % 70)) + " " + std::to_string(100 + i % 30) + "\n";
+  }
+  EXPECT_EQ(read(sorted).positions.size(), 200U);
+}
+
+TEST_F(TextColumnsTest, RefusesDegrees) {
+  std::string text;
+  for (int i = 0; i < 100; ++i) {
+    text += fmt::format("{:.9f} {:.9f} {:.3f}\n", 11.5 + 1e-6 * (i % 10), 48.1 + 1e-6 * (i / 10),
+                        500.0 + 0.001 * (i * i % 70));
+  }
+  expect_parts(refusal_of(text), "longitude, latitude and height", "project them");
 }
 
 TEST_F(TextColumnsTest, RefusesAmbiguousCounterColumn) {
@@ -192,8 +223,8 @@ TEST_F(TextColumnsTest, RefusesNumbersBeforePositions) {
           "columns 1 to 2 have whole numbers");
   refused([](int i) { return std::to_string(i % 7) + " 200 " + std::to_string(i % 40) + " "; },
           "columns 1 to 3 have whole numbers");
-  refused([](int i) { return decimal(1.7e9 + 0.25 * i) + " "; }, "by the same step");
-  refused([](int i) { return decimal(100.125 - 0.5 * i) + " "; }, "by the same step");
+  refused([](int i) { return decimal(1.7e9 + 0.25 * i) + " "; }, "like a time");
+  refused([](int i) { return decimal(100.125 - 0.5 * i) + " "; }, "like a time");
   refused([](int i) { return decimal(std::sin(i)) + " 0 " + decimal(std::cos(i)) + " "; },
           "unit vectors, like normals before x, y and z");
   refused([](int) { return "1 0 0 "; }, "two of the first three columns are constant");

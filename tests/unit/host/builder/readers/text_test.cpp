@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include "test_files.hpp"
 
 namespace tactree::builder {
@@ -98,6 +100,46 @@ std::string rows(std::size_t count) {
   std::string text;
   for (std::size_t i = 0; i < count; ++i) text += std::to_string(i) + " 2 3\n";
   return text;
+}
+
+TEST_F(TextTest, ReadsDecimalCommasAfterWholeRow) {
+  for (const char* separator : {";", " ", "\t"}) {
+    std::string text = fmt::format("0{0}0{0}0\n", separator);
+    for (int i = 1; i < 50; ++i) {
+      text += fmt::format("0,{1:03}{0}-0,{2:03}{0}0,{3:03}\n", separator, i, i * i % 900, 3 * i);
+    }
+    const Scan scan = read(text);
+    ASSERT_EQ(scan.positions.size(), 50U);
+    EXPECT_EQ(scan.positions[7], Eigen::Vector3d(0.007, -0.049, 0.021));
+    expect_parts(scan.notes.at(0), "commas are decimal commas");
+  }
+}
+
+TEST_F(TextTest, RefusesCommasBetweenThousands) {
+  std::string text;
+  for (int i = 0; i < 50; ++i) text += fmt::format("{},280\t-963\t16,{}\n", 5 + i, 900 + i);
+  expect_parts(refusal_of(text), "line 1", "separate thousands");
+}
+
+TEST_F(TextTest, DropsHeightsWithoutData) {
+  const auto grid = [](const char* missing) {
+    std::string text;
+    for (int i = 0; i < 400; ++i) {
+      const std::string z = i % 20 < 5 ? missing : fmt::format("{:.2f}", 500.0 + 0.1 * (i % 20));
+      text += fmt::format("{} {} {}\n", i % 20, i / 20, z);
+    }
+    return text;
+  };
+  for (const char* missing : {"-9999", "-32768.0", "99999"}) {
+    const Scan scan = read(grid(missing));
+    EXPECT_EQ(scan.positions.size(), 300U);
+    EXPECT_EQ(scan.dropped.at("no_data"), 100U);
+    ASSERT_EQ(scan.warnings.size(), 1U);
+    expect_parts(scan.warnings[0], "100 points with a z of", "missing data");
+  }
+  EXPECT_EQ(read(grid("999")).positions.size(), 300U);
+  EXPECT_EQ(read(grid("-9998")).positions.size(), 400U);  // no such value
+  EXPECT_EQ(read(grid("499.5")).positions.size(), 400U);
 }
 
 TEST_F(TextTest, CountsFewBadRows) {
