@@ -49,13 +49,12 @@ void examine(const Scan& scan) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view head(reinterpret_cast<const char*>(data), std::min(size, kHeadBytes));
   const std::string format = TACTREE_FUZZ_FORMAT;
-  const FileKind kind =
-      format.empty() ? recognise(head, size).kind : recognise_as(format, head, size).kind;
+  const FileKind kind = format.empty() ? recognise(head, size).kind : FileKind::kText;
   if (kind == FileKind::kImportedMesh) {
     return 0;
   }
   std::string sealed;
-  if (kind == FileKind::kE57 && size >= 1024) {
+  if ((kind == FileKind::kE57 || format == "e57") && size >= 1024) {
     sealed = tactree::test::e57_resealed({reinterpret_cast<const char*>(data), size});
     data = reinterpret_cast<const std::uint8_t*>(sealed.data());
     size = sealed.size();
