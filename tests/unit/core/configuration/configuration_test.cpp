@@ -255,6 +255,26 @@ TEST(FirstForce, IsValidForEveryDeviceAndRate) {
   }
 }
 
+// The slew rate of a tick is a product, which may be rounded up.
+TEST(LimitForce, IsValidForEveryForceAndRate) {
+  for (const float rate_hz : {100.0F, 500.0F, 1000.0F, 3000.0F, 4000.0F, 7001.0F, 20000.0F}) {
+    for (int hundredths = 1; hundredths <= 500; ++hundredths) {
+      Configuration c;
+      c.rate_hz = rate_hz;
+      core::limit_to_rate(c);
+      c.contact.stiffness_N_m = 100.0F;
+      c.limits.slew_N_s = 1e9F;
+      for (std::uint32_t axis = 0; axis < core::kAxes; ++axis) {
+        c.motors.effort_slew_s[axis] = c.motors.effort_max[axis] * rate_hz;
+      }
+      core::limit_force(c, static_cast<float>(0.01 * hundredths));
+      const core::Refusal refusal = core::refusal_of(c);
+      ASSERT_EQ(refusal.status, ConfigurationStatus::kOk)
+          << refusal.field << " at " << 0.01 * hundredths << " N and " << rate_hz << " Hz";
+    }
+  }
+}
+
 TEST(FirstForce, KeepsSmallerForce) {
   Configuration c;
   core::limit_force(c, 0.2F);
