@@ -71,6 +71,7 @@ class Control(Folder):
             devices = self.run_tool("devices", "--port", port).stdout
             self.assertIn(identity["board"], devices)
             self.assertIn(identity["firmware"], devices)
+            self.assertIn(identity["serial"], devices)
             self.assertEqual(features["rate_hz"], 1000)
             self.assertFalse(features["signature_required"])
 

@@ -193,7 +193,7 @@ json identity(const core::wire::IdentifyReply& r) {
   return {{"board", text_of(r.board)},
           {"firmware", text_of(r.firmware)},
           {"protocol", fmt::format("{}.{}", r.version_major, r.version_minor)},
-          {"serial", fmt::format("{:08x}{:08x}{:08x}", r.serial[2], r.serial[1], r.serial[0])}};
+          {"serial", fmt::format("{:08x}{:08x}{:08x}", r.serial[0], r.serial[1], r.serial[2])}};
 }
 
 json capabilities(const core::wire::CapabilitiesReply& r) {

@@ -8,6 +8,7 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -26,7 +27,6 @@ namespace tactree::python {
 namespace {
 
 using builder::BuildOptions;
-using Indices = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
 
 /// Calls a function of the user, and lets Ctrl-C end the build.
 class CalledProgress final : public builder::Progress {
@@ -103,7 +103,17 @@ class Options {
   const py::dict& values_;
 };
 
+/// Refuses options of which one would have no effect.
+void refuse_both(const Options& options, const char* one, const char* other) {
+  if (options.has(one) && options.has(other)) {
+    support::refuse(one, fmt::format("excludes {}", other), "give one of them");
+  }
+}
+
 void read_frame(const Options& options, BuildOptions& build) {
+  refuse_both(options, "fit_m", "fit_device");
+  refuse_both(options, "fit_m", "scale");
+  refuse_both(options, "fit_device", "scale");
   options.choose("unit", builder::unit_names(), build.unit_m);
   options.choose("axis", builder::axis_names(), build.up);
   options.read("turn_deg", build.turn_deg);
@@ -133,6 +143,9 @@ void read_surface(const Options& options, BuildOptions& build) {
   options.read("outliers", build.outlier_sigma);
   options.read("keep_largest", build.keep_largest);
   options.read("min_piece", build.min_piece);
+  if (build.keep_largest) {
+    refuse_both(options, "keep_largest", "min_piece");
+  }
   options.read("flip_normals", build.flip_normals);
   options.read("two_sided_m", build.two_sided_m);
   options.read("spacing_m", build.spacing_m);
@@ -193,7 +206,18 @@ std::size_t same_length(std::size_t rows, std::size_t points, const char* name) 
   return rows;
 }
 
-void add_colours(const Indices& colours, builder::Scan& scan) {
+/// Throws UserError if `value`, of the named row, is not a whole number from 0 to `most`.
+std::uint32_t whole_number(double value, double most, const char* name, py::ssize_t row,
+                           const char* remedy) {
+  if (!(value >= 0.0 && value <= most) || value != std::floor(value)) {
+    support::refuse(fmt::format("{}[{}]", name, row),
+                    fmt::format("{:.6g} is not a whole number from 0 to {:.0f}", value, most),
+                    remedy);
+  }
+  return static_cast<std::uint32_t>(value);
+}
+
+void add_colours(const Doubles& colours, builder::Scan& scan) {
   if (colours.ndim() != 2 || colours.shape(1) != 3) {
     support::refuse("colors", "the shape is not (N, 3)", "give red, green and blue of each point");
   }
@@ -202,18 +226,15 @@ void add_colours(const Indices& colours, builder::Scan& scan) {
   for (py::ssize_t i = 0; i < rows.shape(0); ++i) {
     std::array<std::uint8_t, 3> colour{};
     for (py::ssize_t c = 0; c < 3; ++c) {
-      if (rows(i, c) < 0 || rows(i, c) > 255) {
-        support::refuse(fmt::format("colors[{}]", i),
-                        fmt::format("{} is outside 0 .. 255", rows(i, c)),
-                        "give colours of 8 bits");
-      }
-      colour[static_cast<std::size_t>(c)] = static_cast<std::uint8_t>(rows(i, c));
+      colour[static_cast<std::size_t>(c)] = static_cast<std::uint8_t>(
+          whole_number(rows(i, c), 255.0, "colors", i,
+                       "give colours of 8 bits; those of 0 .. 1 times 255, rounded"));
     }
     scan.colours.push_back(colour);
   }
 }
 
-void add_triangles(const Indices& triangles, builder::Scan& scan) {
+void add_triangles(const Doubles& triangles, builder::Scan& scan) {
   if (triangles.ndim() != 2 || triangles.shape(1) != 3) {
     support::refuse("triangles", "the shape is not (N, 3)",
                     "give three indices of points for each");
@@ -222,11 +243,9 @@ void add_triangles(const Indices& triangles, builder::Scan& scan) {
   for (py::ssize_t i = 0; i < rows.shape(0); ++i) {
     std::array<std::uint32_t, 3> corners{};
     for (py::ssize_t c = 0; c < 3; ++c) {
-      if (rows(i, c) < 0 || rows(i, c) >= static_cast<std::int64_t>(scan.positions.size())) {
-        support::refuse(fmt::format("triangles[{}]", i),
-                        fmt::format("there is no point {}", rows(i, c)), "count from 0");
-      }
-      corners[static_cast<std::size_t>(c)] = static_cast<std::uint32_t>(rows(i, c));
+      corners[static_cast<std::size_t>(c)] =
+          whole_number(rows(i, c), static_cast<double>(scan.positions.size()) - 1.0, "triangles", i,
+                       "give the indices of points, from 0");
     }
     scan.triangles.push_back(corners);
   }
@@ -261,8 +280,8 @@ void drop_non_finite(builder::Scan& scan) {
 }
 
 builder::Scan scan_of(const Doubles& points, const std::optional<Doubles>& normals,
-                      const std::optional<Indices>& colours,
-                      const std::optional<Indices>& triangles) {
+                      const std::optional<Doubles>& colours,
+                      const std::optional<Doubles>& triangles) {
   builder::Scan scan;
   scan.format = "arrays";
   const std::span<const double> rows = rows_of(points, 3, "points", Values::kAny);
@@ -294,7 +313,7 @@ builder::Scan scan_of(const Doubles& points, const std::optional<Doubles>& norma
 }
 
 Model build_arrays(const Doubles& points, const std::optional<Doubles>& normals,
-                   const std::optional<Indices>& colours, const std::optional<Indices>& triangles,
+                   const std::optional<Doubles>& colours, const std::optional<Doubles>& triangles,
                    const py::dict& values, py::object progress) {
   const BuildOptions options = read_options(values);
   std::vector<builder::Scan> scans;

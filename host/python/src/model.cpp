@@ -171,6 +171,9 @@ void Model::decode() {
       normals.insert(normals.end(), {p.normal.x, p.normal.y, p.normal.z});
     });
   }
+  if (points_) {
+    return;  // another thread was faster
+  }
   const auto count = static_cast<py::ssize_t>(points.size() / 3);
   points_ = to_array(std::move(points), {count, 3});
   normals_ = to_array(std::move(normals), {count, 3});
