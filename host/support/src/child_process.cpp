@@ -19,6 +19,7 @@ constexpr int kCannotStart = 127;
 // lock at the fork.
 [[noreturn]] void become(char* const* arguments, const Streams& streams, pid_t parent) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  ::setpgid(0, 0);  // Ctrl-C at the terminal is for the parent, which ends the child
   const int nothing = ::open("/dev/null", O_RDWR);
   const auto use = [nothing](int descriptor, int number) {
     return ::dup2(descriptor < 0 ? nothing : descriptor, number) == number;
