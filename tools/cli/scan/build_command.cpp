@@ -16,6 +16,7 @@
 #include "exit_codes.hpp"
 #include "image/board_costs.hpp"
 #include "image/own_board.hpp"
+#include "option_checks.hpp"
 #include "scan/board_build.hpp"
 #include "scan/build_report.hpp"
 #include "scan/fit_option.hpp"
@@ -30,6 +31,7 @@
 #include "tactree/support/colour_file.hpp"
 #include "tactree/support/output_file.hpp"
 #include "tactree/support/spooled_input.hpp"
+#include "tactree/support/standard_output.hpp"
 #include "tactree/support/user_error.hpp"
 
 namespace tactree::cli {
@@ -211,10 +213,17 @@ void build(BuildArguments& arguments) {
   std::vector<fs::path> files = inputs;
   std::erase(files, support::kStandardInput);
   std::vector<fs::path> read = files;
-  read.emplace_back(arguments.pose);
-  support::check_outputs(
-      {arguments.output, arguments.report, arguments.json, arguments.preview, arguments.colours},
-      read);
+  const std::string fit = arguments.fit.value_or("");
+  read.insert(read.end(),
+              {arguments.pose, arguments.material, arguments.board.firmware, arguments.board.board,
+               arguments.board.device, fit.substr(fit.find(':') + 1)});
+  std::optional<support::StandardOutput> standard_output;
+  if (support::is_standard_output(arguments.output)) {
+    standard_output.emplace();
+  }
+  support::check_outputs({standard_output ? "" : arguments.output, arguments.report, arguments.json,
+                          arguments.preview, arguments.colours},
+                         read);
   const std::unique_ptr<builder::Progress> progress =
       builder::make_progress(arguments.progress, stderr);
   builder::BuildResult result;
@@ -229,7 +238,11 @@ void build(BuildArguments& arguments) {
     progress->end();
     throw;
   }
-  support::write_file(arguments.output, std::span<const std::byte>(result.blob.bytes));
+  if (standard_output) {
+    standard_output->write(result.blob.bytes);
+  } else {
+    support::write_file(arguments.output, std::span<const std::byte>(result.blob.bytes));
+  }
   const std::string json = builder::report_json(result.report, arguments.build);
   for (const std::string& file : {arguments.report, arguments.json}) {
     if (!file.empty()) {
@@ -317,6 +330,7 @@ void add_quality_options(CLI::App& verb, BuildArguments& arguments) {
   verb.add_option("--rate", arguments.board.rate_hz,
                   "build the model with the finest spacing that the board also renders at this "
                   "rate, Hz; refuse a --spacing or --flash-budget that is too fine for the rate")
+      ->check(within(1.0, 1e6))
       ->group(kGroup);
   verb.add_option("--device", arguments.board.device,
                   "device for --rate, by name or file (default: the kind with the longest tick)")
@@ -428,8 +442,9 @@ void add_build_command(CLI::App& app, int& exit_code) {
   verb->add_option("--json", arguments->json,
                    "same as --report; with --collection results and failures");
   verb->add_option(
-      "--preview", arguments->preview,
-      "write a picture of the model to this PNG file, with a scale and marked openings");
+          "--preview", arguments->preview,
+          "write a picture of the model to this PNG file, with a scale and marked openings")
+      ->check(written_as(".png"));
   verb->add_option("--colours,--colors", arguments->colours,
                    "write the colours of the scan to this file, for view --colours; a blob has "
                    "none");
