@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -45,6 +46,21 @@ std::optional<Waypoint> waypoint(std::string_view row) {
     row = comma == std::string_view::npos ? std::string_view{} : row.substr(comma + 1);
   }
   return Waypoint{values[0], {values[1], values[2], values[3]}};
+}
+
+/// True for t_s,x,y,z, also as t,x_m,y_m,z_m.
+bool names_columns(std::string_view row) {
+  constexpr std::string_view kNames[4][3] = {
+      {"t_s", "t", "time_s"}, {"x", "x_m", "X"}, {"y", "y_m", "Y"}, {"z", "z_m", "Z"}};
+  for (const auto& names : kNames) {
+    const std::size_t comma = row.find(',');
+    if (std::find(std::begin(names), std::end(names), trimmed(row.substr(0, comma))) ==
+        std::end(names)) {
+      return false;
+    }
+    row = comma == std::string_view::npos ? std::string_view{} : row.substr(comma + 1);
+  }
+  return true;
 }
 
 }  // namespace
@@ -96,6 +112,10 @@ HandPath read_hand_path(const std::filesystem::path& file) {
     const std::optional<Waypoint> next = waypoint(row);
     if (!next && !heading_allowed) {
       refuse(file, number_of_line, "is not four numbers (write t_s,x,y,z in seconds and metres)");
+    }
+    if (!next && !names_columns(row)) {
+      refuse(file, number_of_line,
+             "names other columns than t_s,x,y,z in seconds and metres (write these)");
     }
     heading_allowed = false;
     if (!next) {

@@ -50,6 +50,11 @@ TEST_F(PathFile, ErrorsStatePlaceAndRemedy) {
   EXPECT_EQ(refusal("0,0,0,0\n1,0,0x1,0\n"), numbers);
   EXPECT_EQ(refusal("0,0,0,0\n1,,0,0\n"), numbers);
   EXPECT_EQ(refusal("t_s,x,y,z\nt_s,x,y,z\n0,0,0,0\n"), numbers);
+  for (const char* const names : {"t_s,z,y,x", "t_ms,x,y,z", "t_s,x_mm,y_mm,z_mm", "a,b"}) {
+    EXPECT_EQ(refusal(std::string(names) + "\n0,0,0,0\n"),
+              ": line 1: names other columns than t_s,x,y,z in seconds and metres (write these)");
+  }
+  EXPECT_EQ(read("t, x_m, y_m, z_m\n0,1,2,3\n").waypoints()[0].position_m.z(), 3.0);
   EXPECT_EQ(refusal("0,0,0,0\n0,0,0,0\n"),
             ": line 2: the time does not ascend (sort the rows by t_s)");
   EXPECT_EQ(refusal(""), ": has no waypoint (write rows t_s,x,y,z)");
