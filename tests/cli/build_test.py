@@ -7,6 +7,7 @@ import os
 import pathlib
 import resource
 import signal
+import shutil
 import subprocess
 import sys
 import unittest
@@ -120,6 +121,36 @@ class Outputs(Folder):
         self.assertIn("is an input", self.refused("simulate", "s.blob", "--trace", "s.blob"))
         self.assertEqual((self.path / "s.blob").read_bytes(), blob)
 
+    def test_guards_every_input(self):
+        self.build()
+        self.run_tool("keygen", "k")
+        self.run_tool("sign", "s.blob", "--key", "k")
+        self.write("m.json", '{"stiffness_N_m": 500}')
+        self.write("d.json", self.run_tool("simulate", "--dump-device").stdout)
+        self.write("pose.json", '{"pose": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]}')
+        self.write("scene.json", '{"bodies": [{"blob": "s.blob", "pose": "pose.json"}]}')
+        (self.path / "scans").mkdir()
+        shutil.copy(self.path / "s.xyz", self.path / "scans" / "t.xyz")
+        before = {file: file.read_bytes() for file in self.path.rglob("*") if file.is_file()}
+        for command in ("check s.blob --key k.pub --json k.pub", "check s.blob --json s.blob.sig",
+                        "evaluate --scan s.xyz --report s.xyz", "build s.xyz -o b --material m.json --report m.json",
+                        "build s.xyz -o b --fit device:d.json --report d.json",
+                        "build s.xyz -o m.json --board netduinoplus2 --rate 1000 --device m.json",
+                        "build --collection scans -o out --json scans/t.xyz", "info s.blob --device d.json --json d.json",
+                        "simulate s.blob --device d.json --json d.json", "simulate --scene scene.json --json pose.json",
+                        "simulate --scene scene.json --trace s.blob"):
+            self.assertIn("is an input", self.refused(*command.split()), command)
+        self.assertEqual({file: file.read_bytes() for file in before}, before)
+        self.assertIn("two outputs", self.refused("evaluate", "--scan", "s.xyz", "--json", "e", "--report", "e"))
+
+    def test_writes_blob_to_standard_output(self):
+        self.build()
+        for name in ("-", "/dev/stdout"):
+            done = self.run_tool("build", "s.xyz", "-o", name, text=False)
+            self.assertEqual(done.stdout, (self.path / "s.blob").read_bytes())
+            self.assertIn(b"model ", done.stderr)
+        self.assertFalse((self.path / "-").exists())
+
     def test_refuses_same_file_for_outputs(self):
         for output in ("--report", "--json", "--preview"):
             message = self.refused("build", "s.xyz", "-o", "y", output, "./y")
@@ -148,6 +179,35 @@ class Outputs(Folder):
         self.assertEqual(done.returncode, 1, done.stderr)
         self.assertIn("File too large", done.stderr)
         self.assertEqual(os.listdir(self.path), ["s.xyz"])
+
+
+class Tables(Folder):
+    def test_query_uses_names_of_columns(self):
+        self.build()
+        rows = "".join(f"{z},{y},{x},7\n" for x, y, z in ((0.06, 0, 0), (0, 0.055, 0), (0, 0, 0.04)))
+        self.write("plain.csv", "0.06,0,0\n0,0.055,0\n0,0,0.04\n")
+        plain = self.run_tool("query", "s.blob", "--points", "plain.csv")
+        self.assertEqual(plain.returncode, 0, plain.stderr)
+        for names in ("z,y,x,t\n", "z_m,y_m,x_m,t\n"):
+            self.write("named.csv", names + rows)
+            self.assertEqual(self.run_tool("query", "s.blob", "--points", "named.csv").stdout, plain.stdout)
+        self.write("other.csv", "t_s,px,py,pz\n0,0,0,0.06\n")
+        self.assertIn("other.csv: line 1: the names of the columns do not include x, y and z",
+                      self.refused("query", "s.blob", "--points", "other.csv"))
+
+    def test_path_refuses_other_columns(self):
+        self.build()
+        for names in ("t_s,z,y,x", "t_ms,x,y,z", "t_s,x_mm,y_mm,z_mm"):
+            self.write("path.csv", names + "\n0,0,0,0.1\n1,0,0,0.04\n")
+            self.assertIn("path.csv: line 1: names other columns than t_s,x,y,z",
+                          self.refused("simulate", "s.blob", "--path", "path.csv"))
+
+    def test_refuses_faults_without_effect(self):
+        self.build()
+        for fault, cause in (("encoder2:stuck@0.5", "'hapkit' has 1 axis"), ("motor3:reversed@0", "has 1 axis"),
+                             ("encoder1:stuck@5", "begins after the end of the run, which takes 1 s")):
+            self.assertIn(f"--inject {fault}: {cause}" if "hapkit" in cause or "begins" in cause else cause,
+                          self.refused("simulate", "s.blob", "--device", "hapkit", "--seconds", "1", "--inject", fault))
 
 
 class Numbers(Folder):

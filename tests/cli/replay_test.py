@@ -100,6 +100,13 @@ class Replay(SharedFolder):
         self.assertIn("omit --board", done.stderr)
         self.assertFalse((self.path / "board.rec").exists())
 
+    def test_path_refuses_recording(self):
+        self.record()
+        done = self.run_tool("simulate", "low.blob", "--path", "session.rec")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("session.rec: has the inputs of a controller, but no path of a hand (replay it with --replay",
+                      done.stderr)
+
     def test_record_excludes_replay(self):
         self.record()
         done = self.run_tool("simulate", "low.blob", "--record", "x.rec", "--replay", "session.rec")

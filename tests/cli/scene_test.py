@@ -151,6 +151,7 @@ class Scenes(SharedFolder):
                 ({"blob": 0, "linear_velocity_m_s": [0, 0, 11]}, "bodies[0]: a body moves faster"),
                 ({"blob": 0, "angular_velocity_rad_s": [0, 0, 101]}, "bodies[0]: a body moves faster"),
                 ({"blob": 0, "from_s": "1"}, "bodies[0].from_s: is not a number"),
+                ({"blob": 0, "from_s": 2, "until_s": 1}, "bodies[0]: ends (until_s) before it begins (from_s)"),
                 ({"blob": 0, "until_s": [1]}, "bodies[0].until_s: is not a number"),
                 ({"blob": 0, "keyframes": 1}, "bodies[0].keyframes: is not a list"),
                 ({"blob": 0, "keyframes": [one], "pose": IDENTITY}, "or combined with a pose"),

@@ -51,6 +51,31 @@ class Usage(unittest.TestCase):
                 (("evaluate",), "--seed=x", "--seed: 'x' is not a whole number\n")):
             self.assertIn(error, self.refused(*verb, value))
 
+    def test_refuses_numbers_that_would_wrap(self):
+        self.assertIn("'-1' is not a whole number from 0 upwards", self.refused("build", "x.ply", "-o", "x", "--min-piece=-1"))
+        self.assertIn("4294967296 is too large", self.refused("sign", "x.blob", "--key", TACTREE, "--counter", "4294967296"))
+
+    def test_refuses_numbers_that_are_not_finite(self):
+        for verb in (("bound", "x.elf"), ("build", "x.ply", "-o", "x"), ("simulate", "x.blob")):
+            for value in ("nan", "inf", "0"):
+                self.assertIn("--rate", self.refused(*verb, f"--rate={value}"))
+
+    def test_flash_does_one_thing(self):
+        for others in (("x.blob", "--list"), ("--list", "--roll-back"), ("--list", "--erase", "0"),
+                       ("--erase", "0", "--roll-back")):
+            self.assertIn("excludes", self.refused("flash", "--port", "unix:/nowhere", *others))
+
+    def test_refuses_options_without_effect(self):
+        for options in (("--trace", "t.csv"), ("--plot", "p.svg"), ("--inject", "loop:overrun=2@1s")):
+            self.assertIn("--replay excludes", self.refused("simulate", "x.blob", "--replay", TACTREE, *options)
+                          .replace(f"{options[0]} excludes --replay", "--replay excludes"))
+        self.assertIn("excludes", self.refused("simulate", "--dump-device", "--device-mass", "1"))
+
+    def test_refuses_extensions_of_other_formats(self):
+        for verb, option, file, written in (("simulate", "--trace", "x.npz", ".csv"), ("simulate", "--plot", "x.png", ".svg"),
+                                            ("build", "--preview", "x.jpg", ".png"), ("info", "--preview", "x.svg", ".png")):
+            self.assertIn(f"'{file}' is written as {written}", self.refused(verb, "x", option, file))
+
     def test_help_names_all_port_kinds(self):
         ports = "a serial port, usb:SERIAL, unix:PATH (of tactree-controller or tactree serve), or the one that tactree "\
             "simulate --serve prints (with --lock-step: step:PATH)"

@@ -43,6 +43,22 @@ std::string number_kind(const CLI::App& app, const std::string& option) {
   return "a number";
 }
 
+/// CLI11 takes -1 for the largest number of an unsigned option.
+void refuse_negative_counts(CLI::App& app) {
+  for (CLI::App* const verb : app.get_subcommands([](const CLI::App*) { return true; })) {
+    for (CLI::Option* const option : verb->get_options()) {
+      if (option->get_type_name() == "UINT") {
+        option->check([](const std::string& text) {
+          return text.starts_with('-')
+                     ? fmt::format("'{}' is not a whole number from 0 upwards", text)
+                     : "";
+        });
+      }
+    }
+    refuse_negative_counts(*verb);
+  }
+}
+
 /// States which value is no number. CLI11 only says "Could not convert: --turn = x".
 std::string not_a_number(const CLI::App& app, const CLI::ConversionError& error) {
   const std::string message = error.what();
@@ -52,8 +68,10 @@ std::string not_a_number(const CLI::App& app, const CLI::ConversionError& error)
     return message;
   }
   const std::string option = message.substr(name + 2, value - name - 2);
-  return fmt::format("{}: '{}' is not {}", option, message.substr(value + 3),
-                     number_kind(app, option));
+  const std::string text = message.substr(value + 3);
+  const bool digits = !text.empty() && text.find_first_not_of("0123456789") == text.npos;
+  return digits ? fmt::format("{}: {} is too large", option, text)
+                : fmt::format("{}: '{}' is not {}", option, text, number_kind(app, option));
 }
 
 int run(int argc, char** argv) {
@@ -86,6 +104,7 @@ int run(int argc, char** argv) {
   add_sign_command(app, exit_code);
   add_view_command(app, exit_code);
   add_completion_command(app, exit_code);
+  refuse_negative_counts(app);
   if (const std::string error = unknown_verb(app, argc > 1 ? argv[1] : ""); !error.empty()) {
     fmt::print(stderr, "tactree: error: {}\n", error);
     return kExitUsage;

@@ -76,7 +76,7 @@ void add_arm_command(CLI::App& app, int& exit_code) {
       ->check(is_positive);
   verb->add_option("--patience", options->patience_s,
                    "maximum wait for the dead-man control or the probe, s")
-      ->check(CLI::Range(0.1, 3600.0))
+      ->check(within(0.1, 3600.0))
       ->capture_default_str();
   add_link_timeout_option(*verb, options->link_timeout_ms);
   add_pose_option(*verb, options->pose);

@@ -115,8 +115,12 @@ void add_flash_command(CLI::App& app, int&) {
   CLI::Option* erase =
       verb->add_option("--erase", options->erase, "erase this slot; it must not be in use")
           ->check(CLI::Range(0, 1))
-          ->excludes(blob);
-  CLI::Option* list = verb->add_flag("--list", options->list, "only list the slots");
+          ->excludes(blob)
+          ->excludes(back);
+  CLI::Option* list = verb->add_flag("--list", options->list, "only list the slots")
+                          ->excludes(blob)
+                          ->excludes(back)
+                          ->excludes(erase);
   verb->callback([options, blob, back, erase, list] {
     if (blob->count() + back->count() + erase->count() + list->count() == 0U) {
       throw CLI::RequiredError("BLOB");

@@ -9,6 +9,7 @@
 #include "commands.hpp"
 #include "image/board_costs.hpp"
 #include "image/own_board.hpp"
+#include "option_checks.hpp"
 #include "tactree/core/contact/scene.hpp"
 #include "tactree/support/blob_file.hpp"
 #include "tactree/support/json_text.hpp"
@@ -175,7 +176,8 @@ wcet::Bound worst_case(wcet::BoundOptions& analysis, double rate_hz) {
 }
 
 void bound_tick(const BoundCommandOptions& options) {
-  support::check_outputs({options.json}, {options.image, options.blob});
+  support::check_outputs({options.json},
+                         {options.image, options.blob, options.board, options.device});
   wcet::BoundOptions analysis = analysed_image(options);
   analysis.parameters = parameters(options);
   wcet::BoardTiming timing;
@@ -228,7 +230,7 @@ void add_bound_command(CLI::App& app, int&) {
                        "ticks per second, Hz; a tick does more work at a low rate. With --board: "
                        "exit code 1 if the board cannot run at this rate")
           ->default_str("1000")
-          ->check(CLI::Range(1.0, 1e6));
+          ->check(within(1.0, 1e6));
   verb->add_option(
       "--blob", options->blob,
       "the model on the board; default: the worst of all models that a controller accepts");

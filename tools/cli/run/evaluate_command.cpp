@@ -141,7 +141,7 @@ void evaluate(EvaluateOptions& options, int& exit_code) {
   options.evaluation.scans = scans_of(options);
   const std::vector<fs::path> inputs(options.evaluation.scans.begin(),
                                      options.evaluation.scans.end());
-  support::check_outputs({options.json, options.html}, inputs);
+  support::check_outputs({options.json, options.html, options.report}, inputs);
   const auto progress = builder::make_progress(builder::ProgressStyle::kAuto, stderr);
   options.evaluation.scans_only = !options.scans.empty();
   const evaluation::Result result = evaluation::evaluate(options.evaluation, *progress);

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -16,6 +17,7 @@
 #include "tactree/builder/length_text.hpp"
 #include "tactree/setup/model_size.hpp"
 #include "tactree/setup/scene_file.hpp"
+#include "tactree/simulation/recording.hpp"
 #include "tactree/simulation/repeated_path.hpp"
 #include "tactree/support/device_file.hpp"
 #include "tactree/support/output_file.hpp"
@@ -92,6 +94,19 @@ bool is_recording(const std::filesystem::path& file) {
   return header.find("probe_x_m") != std::string::npos;
 }
 
+/// A file of simulate --record has no positions of the hand.
+void refuse_recorded_inputs(const std::string& file) {
+  std::error_code ignored;
+  std::string magic(sizeof simulation::kRecordingMagic, '\0');
+  if (std::filesystem::is_regular_file(file, ignored) &&
+      std::ifstream(file, std::ios::binary)
+          .read(magic.data(), sizeof simulation::kRecordingMagic) &&
+      std::memcmp(magic.data(), simulation::kRecordingMagic, magic.size()) == 0) {
+    refuse(fmt::format("{}: has the inputs of a controller, but no path of a hand", file),
+           "replay it with --replay; --trace and tactree record write what --path repeats");
+  }
+}
+
 simulation::HandPath path_of_recording(const std::string& file) {
   try {
     return simulation::repeated_path(viewer::read_trace(file));
@@ -126,8 +141,11 @@ void simulate(SimulateOptions& options, int& exit_code) {
     throw CLI::RequiredError("BLOB");
   }
   std::vector<std::filesystem::path> inputs(options.blobs.begin(), options.blobs.end());
-  inputs.insert(inputs.end(), {options.scene, options.pose, options.path, options.replay});
-  support::check_outputs({options.record, options.trace, options.plot, options.json}, inputs);
+  inputs.insert(inputs.end(), {options.scene, options.pose, options.path, options.replay,
+                               options.device, options.key});
+  const std::vector<std::filesystem::path> outputs{options.record, options.trace, options.plot,
+                                                   options.json};
+  support::check_outputs(outputs, inputs);
   if (!options.replay.empty()) {
     exit_code = replay_session(options) ? kExitOk : kExitFailed;
     return;
@@ -138,7 +156,9 @@ void simulate(SimulateOptions& options, int& exit_code) {
            "omit --board; the ticks on the host are bit-identical");
   }
   check_panel(options);
+  refuse_recorded_inputs(options.path);
   const setup::SceneFile scene = setup::read_scene(options.scene, options.blobs, options.pose);
+  support::check_outputs(outputs, scene.read);
   options.blob = scene.names[0];
   if (is_recording(options.path)) {
     repeat_recording(options);

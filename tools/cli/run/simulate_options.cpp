@@ -30,27 +30,27 @@ void add_controller_options(CLI::App& verb, SimulateOptions& options) {
   add_wall_options(verb, c);
   verb.add_option("--passivity", c.passivity_Ns_m,
                   "maximum damping of the passivity controller, Ns/m; 0: off")
-      ->check(CLI::Range(0.0, 100.0))
+      ->check(within(0.0, 100.0))
       ->capture_default_str();
   verb.add_option("--static-friction", c.contact.static_friction, "coefficient")
-      ->check(CLI::Range(0.0, 2.0))
+      ->check(within(0.0, 2.0))
       ->capture_default_str();
   verb.add_option("--dynamic-friction", c.contact.dynamic_friction,
                   "coefficient, at most the static one")
-      ->check(CLI::Range(0.0, 2.0))
+      ->check(within(0.0, 2.0))
       ->capture_default_str();
   verb.add_option("--texture-height", c.contact.texture_height_m,
                   "depth of bumps in the surface, m: at most half of their wavelength; 0: smooth")
-      ->check(CLI::Range(0.0, 0.01))
+      ->check(within(0.0, 0.01))
       ->capture_default_str();
   verb.add_option("--texture-wavelength", c.contact.texture_wavelength_m,
                   "distance between the bumps, m")
-      ->check(CLI::Range(1e-4, 1.0))
+      ->check(within(1e-4, 1.0))
       ->capture_default_str();
   verb.add_flag("!--no-materials", c.use_materials,
                 "ignore the materials of the blob: use the options above everywhere");
   verb.add_option("--force-max", options.force_max_N, "maximum force, N (default: the device's)")
-      ->check(CLI::Range(0.01, 1000.0));
+      ->check(within(0.01, 1000.0));
   verb.add_flag("--first-force", options.first_force,
                 fmt::format("limits for the first force of a new device: at most {} N at the probe "
                             "even with a wrong sign of a motor, reduced slew rates and efforts, "
@@ -112,28 +112,28 @@ void add_plant_options(CLI::App& verb, SimulateOptions& options) {
   plant::PlantParameters& plant = options.setup.plant;
   options.cartesian_only = {
       verb.add_option("--device-mass", plant.device.mass_kg, "cartesian: apparent mass, kg")
-          ->check(CLI::Range(1e-4, 100.0))
+          ->check(within(1e-4, 100.0))
           ->capture_default_str(),
       verb.add_option("--device-friction", plant.device.coulomb_N,
                       "cartesian: dry friction of each axis, N")
-          ->check(CLI::Range(0.0, 100.0))
+          ->check(within(0.0, 100.0))
           ->capture_default_str(),
       verb.add_option("--encoder-step", options.encoder_step_m, "cartesian: travel of one count, m")
-          ->check(CLI::Range(1e-8, 1e-2))
+          ->check(within(1e-8, 1e-2))
           ->capture_default_str()};
   verb.add_option("--latency-ticks", options.latency_ticks, "age of an encoder reading, ticks")
       ->check(CLI::Range(0, static_cast<int>(hal::sim::kMaxLatencyTicks)))
       ->capture_default_str();
   options.stiffness_given =
       verb.add_option("--hand-stiffness", plant.hand.stiffness_N_m, "spring of the hand, N/m")
-          ->check(CLI::Range(0.0, 1e5))
+          ->check(within(0.0, 1e5))
           ->capture_default_str();
   options.damping_given =
       verb.add_option("--hand-damping", plant.hand.damping_Ns_m, "damper of the hand, Ns/m")
-          ->check(CLI::Range(0.0, 1e3))
+          ->check(within(0.0, 1e3))
           ->capture_default_str();
   verb.add_option("--hand-mass", plant.hand.mass_kg, "mass that moves with the device, kg")
-      ->check(CLI::Range(0.0, 100.0))
+      ->check(within(0.0, 100.0))
       ->capture_default_str();
 }
 
@@ -153,7 +153,7 @@ void add_device_options(CLI::App& verb, SimulateOptions& options) {
               "up), m; default: the model's centre is at the device's origin; with a device of "
               "one or two axes, the centre of the model's top")
           ->expected(3)
-          ->check(CLI::Range(-10.0, 10.0));
+          ->check(within(-10.0, 10.0));
   verb.add_option("--pose", options.pose,
                   "pose file, as the page of view saves it: where the model is in the device's "
                   "frame, and its size")
@@ -167,15 +167,22 @@ void add_output_options(CLI::App& verb, SimulateOptions& options) {
       verb.add_option("--record", options.record,
                       "record all inputs of the controller in this file, from its "
                       "configuration on: for --replay");
-  verb.add_option("--replay", options.replay,
-                  "replay this recording, with its blobs as BLOB, on a new controller and compare "
-                  "each tick bit for bit; if they differ, print the first such tick and exit with "
-                  "code 1. Device, hand and controller options have no effect")
-      ->check(CLI::ExistingFile)
-      ->excludes(record);
-  verb.add_option("--trace", options.trace, "write every tick to this CSV file");
+  CLI::Option* replay =
+      verb.add_option(
+              "--replay", options.replay,
+              "replay this recording, with its blobs as BLOB, on a new controller and compare "
+              "each tick bit for bit; if they differ, print the first such tick and exit with "
+              "code 1. Device, hand and controller options have no effect")
+          ->check(CLI::ExistingFile)
+          ->excludes(record)
+          ->excludes(verb.get_option("--inject"));
+  verb.add_option("--trace", options.trace, "write every tick to this CSV file")
+      ->check(written_as(".csv"))
+      ->excludes(replay);
   CLI::Option* plot =
-      verb.add_option("--plot", options.plot, "draw force and penetration into this SVG file");
+      verb.add_option("--plot", options.plot, "draw force and penetration into this SVG file")
+          ->check(written_as(".svg"))
+          ->excludes(replay);
   verb.add_flag("--compare", options.compare,
                 "draw the force of both modes into the plot, along the same path")
       ->needs(plot);
@@ -263,6 +270,9 @@ void add_simulate_options(CLI::App& verb, SimulateOptions& options) {
   add_plant_options(verb, options);
   add_injection_option(verb, options);
   add_output_options(verb, options);
+  for (CLI::Option* const option : options.cartesian_only) {
+    verb.get_option("--dump-device")->excludes(option);
+  }
 }
 
 }  // namespace tactree::cli

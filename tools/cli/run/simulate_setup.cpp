@@ -45,6 +45,23 @@ setup::FirstBody first_body(const setup::SceneFile& scene) {
                   controller.rate_hz));
 }
 
+/// A fault without an effect would make a safety test pass.
+void require_effect(const std::string& text, const simulation::InjectedFault& fault,
+                    const SimulateOptions& options) {
+  const support::Device device = support::load_device(options.device);
+  const std::uint32_t axes = core::axes_of(device.preset.model.kind);
+  if (fault.axes.size() == 1 && fault.axes[0] >= axes) {
+    refuse(fmt::format("--inject {}: '{}' has {} {}", text, device.name, axes,
+                       axes == 1 ? "axis" : "axes"),
+           "name one of its axes, or omit the number for all");
+  }
+  if (!options.serve && fault.from_s >= options.seconds) {
+    refuse(fmt::format("--inject {}: begins after the end of the run, which takes {:.6g} s", text,
+                       options.seconds),
+           "raise --seconds");
+  }
+}
+
 }  // namespace
 
 [[noreturn]] void refuse(const std::string& what, const std::string& remedy) {
@@ -69,7 +86,8 @@ simulation::Setup make_setup(const SimulateOptions& options, const setup::SceneF
 std::vector<simulation::InjectedFault> injections(const SimulateOptions& options) {
   std::vector<simulation::InjectedFault> faults;
   for (const std::string& text : options.injections) {
-    faults.push_back(simulation::parse_injection(text));
+    const simulation::InjectedFault& fault = faults.emplace_back(simulation::parse_injection(text));
+    require_effect(text, fault, options);
   }
   return faults;
 }

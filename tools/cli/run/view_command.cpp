@@ -16,6 +16,7 @@
 #include "device/board_port.hpp"
 #include "device/board_pose.hpp"
 #include "device/device_defaults.hpp"
+#include "option_checks.hpp"
 #include "run/wall_options.hpp"
 #include "scan/board_work.hpp"
 #include "scan/named_materials.hpp"
@@ -396,7 +397,7 @@ void add_place_options(CLI::App& verb, ViewOptions& options) {
       verb.add_option("--origin", options.origin_m,
                       "position of the model's origin in the device's frame: see simulate")
           ->expected(3)
-          ->check(CLI::Range(-10.0, 10.0));
+          ->check(within(-10.0, 10.0));
   verb.add_option("--pose", options.pose,
                   "pose file, as the page saves it: where the model is in the device's frame, and "
                   "its size. With --port: sent to the board, which cannot change the size")

@@ -53,7 +53,7 @@ void check_signature(const CheckOptions& options, const support::BlobFile& blob)
 }
 
 void check(const CheckOptions& options) {
-  support::check_outputs({options.json}, {options.blob});
+  support::check_outputs({options.json}, {options.blob, options.key, signature_path(options.blob)});
   try {
     const support::BlobFile blob = support::BlobFile::named(options.blob);
     const std::string message =

@@ -16,6 +16,7 @@
 #include "commands.hpp"
 #include "image/board_costs.hpp"
 #include "image/model_signature.hpp"
+#include "option_checks.hpp"
 #include "scan/named_materials.hpp"
 #include "scan/preview.hpp"
 #include "tactree/builder/length_text.hpp"
@@ -225,8 +226,9 @@ std::optional<std::string> size_warning_of(const InfoOptions& options, const Blo
 }
 
 void info(const InfoOptions& options) {
-  support::check_outputs({options.json, options.points, options.preview},
-                         {options.blob, options.material, options.colours});
+  support::check_outputs(
+      {options.json, options.points, options.preview},
+      {options.blob, options.material, options.colours, options.device, options.board});
   const support::BlobFile blob = support::BlobFile::named(options.blob);
   const std::optional<builder::MaterialMap> named =
       named_materials(options.material, options.blob, blob.view());
@@ -283,9 +285,11 @@ void add_info_command(CLI::App& app, int&) {
   verb->add_option("--json", options->json, "write the values as JSON to this file");
   verb->add_option("--points", options->points,
                    "write all points to this CSV file: index,x,y,z,nx,ny,nz (m)");
-  CLI::Option* preview = verb->add_option(
-      "--preview", options->preview,
-      "write a picture of the model to this PNG file, with a scale and marked openings");
+  CLI::Option* preview =
+      verb->add_option(
+              "--preview", options->preview,
+              "write a picture of the model to this PNG file, with a scale and marked openings")
+          ->check(written_as(".png"));
   verb->add_option("--colours,--colors", options->colours,
                    "the file of build --colours: --preview draws the colours of the scan")
       ->needs(preview);

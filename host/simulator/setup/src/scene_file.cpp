@@ -20,6 +20,7 @@ using nlohmann::json;
 /// Places a body whose pose is a matrix, or a file next to the scene file.
 struct PoseReader {
   std::filesystem::path folder;
+  std::vector<std::filesystem::path>* files;  // that it has read
 
   [[nodiscard]] bool names_file(const json& object) const {
     return object.contains("pose") && object["pose"].is_string();
@@ -27,7 +28,8 @@ struct PoseReader {
   [[nodiscard]] simulation::Placement operator()(const json& object,
                                                  const std::string& place) const {
     if (names_file(object)) {
-      return read_pose_file(folder / object["pose"].get<std::string>());
+      files->push_back(folder / object["pose"].get<std::string>());
+      return read_pose_file(files->back());
     }
     return {object.contains("pose") ? pose(object["pose"], place + ".pose")
                                     : Eigen::Isometry3d::Identity(),
@@ -78,7 +80,7 @@ simulation::BodyPath path(const json& body, const std::string& place,
 class SceneReader {
  public:
   SceneReader(const std::filesystem::path& file, const std::vector<std::string>& blobs)
-      : file_(file), read_pose_{file.parent_path()} {
+      : file_(file), read_pose_{file.parent_path(), &scene_.read} {
     for (const std::string& blob : blobs) {
       given_.push_back(open(blob));
     }
@@ -125,6 +127,7 @@ class SceneReader {
     }
     scene_.blobs.push_back(std::make_unique<support::BlobFile>(file));
     files_.push_back(file);
+    scene_.read.emplace_back(file);
     return files_.size() - 1;
   }
 
@@ -156,6 +159,9 @@ class SceneReader {
     }
     if (body.contains("until_s")) {
       added.until_s = number(body["until_s"], place + ".until_s");
+    }
+    if (!(added.from_s < added.until_s)) {
+      support::refuse(place, "ends (until_s) before it begins (from_s)", "exchange the two times");
     }
   }
 
@@ -191,11 +197,11 @@ class SceneReader {
     return std::move(scene_);
   }
 
+  SceneFile scene_;
   std::filesystem::path file_;
   PoseReader read_pose_;
   std::vector<std::string> files_;  // one per blob of the user
   std::vector<std::size_t> given_;  // index of each argument of the command line
-  SceneFile scene_;
 };
 
 }  // namespace

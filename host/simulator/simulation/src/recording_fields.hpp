@@ -153,7 +153,6 @@ void visit(Fields& fields, core::Adjustment& a) {
 static_assert(sizeof(core::Configuration) == 376 && sizeof(core::Adjustment) == 52);
 
 /// First bytes of the file.
-inline constexpr char kRecordingMagic[8] = {'T', 'A', 'C', 'T', 'R', 'R', 'E', 'C'};
 
 /// First byte of each event.
 enum class EventKind : std::uint8_t {

@@ -32,7 +32,8 @@ struct SceneFile {
   std::vector<const support::BlobFile*> given;             ///< each body's blob as the user gave it
   /// Of each body in another size: the index of each point in the blob of the user. Else empty.
   std::vector<std::vector<std::uint32_t>> sources;
-  std::vector<double> scales;  ///< of each body, relative to the blob of the user
+  std::vector<std::filesystem::path> read;  ///< all files that the scene names
+  std::vector<double> scales;               ///< of each body, relative to the blob of the user
   std::vector<simulation::SceneBody> bodies;
   bool in_device_frame = false;  ///< the origin of the scene is that of the device
 };

@@ -119,6 +119,8 @@ class RecordingError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// The first bytes of a recording.
+inline constexpr char kRecordingMagic[8] = {'T', 'A', 'C', 'T', 'R', 'R', 'E', 'C'};
 inline constexpr std::size_t kRecordingHeaderBytes = 8 + 4 + 8;
 
 /// Checks the header: the first kRecordingHeaderBytes of a file, or all bytes of a shorter file.
