@@ -195,6 +195,19 @@ class Tables(Folder):
         self.assertIn("other.csv: line 1: the names of the columns do not include x, y and z",
                       self.refused("query", "s.blob", "--points", "other.csv"))
 
+    def test_query_refuses_numbers_beyond_float(self):
+        self.build()
+        self.write("far.csv", "1e39,0,0\n")
+        self.assertIn("far.csv: line 1: a coordinate is not a float32 number",
+                      self.refused("query", "s.blob", "--points", "far.csv"))
+
+    def test_refuses_values_that_would_be_lost(self):
+        self.assertIn("stiffness is given twice",
+                      self.refused("build", "s.xyz", "-o", "b", "--material", "stiffness=100,stiffness=200"))
+        done = self.run_tool("build", "s.xyz", "-o", "b", "--name", "n" * 32)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("--name: is longer than 31 bytes", done.stderr)
+
     def test_path_refuses_other_columns(self):
         self.build()
         for names in ("t_s,z,y,x", "t_ms,x,y,z", "t_s,x_mm,y_mm,z_mm"):

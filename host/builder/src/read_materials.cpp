@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "tactree/builder/scan.hpp"
 
@@ -188,6 +189,7 @@ json parse(const std::string& file) {
 
 MaterialMap from_text(const std::string& text) {
   MaterialMap map;
+  std::set<std::string> named;
   std::size_t from = 0;
   while (from <= text.size()) {
     const std::size_t to = std::min(text.find(',', from), text.size());
@@ -199,6 +201,9 @@ MaterialMap from_text(const std::string& text) {
     if (equals == std::string::npos || field == std::end(kFields)) {
       refuse("--material", fmt::format("'{}' is not a property of a material", item),
              "use stiffness=, damping=, static=, dynamic=, texture_height=, texture_wavelength=");
+    }
+    if (!named.insert(name).second) {
+      refuse("--material", fmt::format("{} is given twice", name), "give one value");
     }
     const json value = json::parse(item.substr(equals + 1), nullptr, false);
     map.base.*(field->member) =

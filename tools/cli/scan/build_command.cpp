@@ -265,6 +265,11 @@ void build(BuildArguments& arguments) {
   }
 }
 
+std::string fits_in_blob(const std::string& name) {
+  constexpr std::size_t kMost = sizeof(core::BlobHeader::name) - 1;
+  return name.size() <= kMost ? "" : fmt::format("is longer than {} bytes", kMost);
+}
+
 void add_frame_options(CLI::App& verb, BuildArguments& arguments) {
   BuildOptions& build = arguments.build;
   constexpr const char* kGroup = "Size and position";
@@ -422,7 +427,8 @@ void add_build_command(CLI::App& app, int& exit_code) {
   add_quality_options(*verb, *arguments);
   add_surface_options(*verb, *arguments);
   verb->add_option("--name", arguments->build.name,
-                   "name of the model (default: that of the first file)");
+                   "name of the model (default: that of the first file)")
+      ->check(fits_in_blob);
   verb->add_option("--threads", arguments->build.threads,
                    "number of threads, 0: one per core; does not change the result")
       ->default_str("0")

@@ -1,7 +1,9 @@
 #include "scan/read_points.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <limits>
 #include <optional>
 
 #include "tactree/support/csv.hpp"
@@ -42,6 +44,11 @@ std::vector<std::array<double, 3>> read_points(const std::filesystem::path& file
       table.refuse("fewer values than columns", "each row is x,y,z in metres");
     }
     points.push_back({table.number(x), table.number(y), table.number(z)});
+    for (const double coordinate : points.back()) {
+      if (std::abs(coordinate) > static_cast<double>(std::numeric_limits<float>::max())) {
+        table.refuse("a coordinate is not a float32 number", "give metres");
+      }
+    }
   }
   return points;
 }
