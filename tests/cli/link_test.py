@@ -163,6 +163,9 @@ class Link(BallFolder):
             self.run_verb("sign", self.coarse, "--key", key, "--counter", 5, "--board", "host")
             slots = self.read_json("flash", self.coarse, "--port", port)["slots"]
             self.assertTrue(slots[0]["signed"])
+            self.run_verb("sign", self.coarse, "--key", key, "--counter", 6)
+            slots = self.read_json("flash", self.coarse, "--port", port)["slots"]
+            self.assertEqual([s["state"] for s in slots], ["barred by its counter", "in use"])
             self.run_verb("sign", self.coarse, "--key", key, "--counter", 4)
             self.assertIn("older", self.run_verb("flash", self.coarse, "--port", port, code=1))
         self.assertIn("valid", self.run_verb("check", self.coarse, "--key", f"{key}.pub"))

@@ -29,10 +29,17 @@ const char* word_for(std::uint8_t state) {
   return state < std::size(kWords) ? kWords[state] : "unknown";
 }
 
+/// A model that is older than one used before fails its validation, too, but is not damaged.
+bool is_barred(const core::wire::ModelSlot& slot, std::uint32_t counter_min) {
+  return slot.state == static_cast<std::uint8_t>(core::wire::SlotState::kDamaged) &&
+         (slot.flags & 1U) != 0U && slot.counter < counter_min;
+}
+
 nlohmann::json to_json(const core::wire::ListModelsReply& models) {
   nlohmann::json slots = nlohmann::json::array();
   for (const core::wire::ModelSlot& slot : models.slot) {
-    slots.push_back({{"state", word_for(slot.state)},
+    const bool barred = is_barred(slot, models.counter_min);
+    slots.push_back({{"state", barred ? "barred by its counter" : word_for(slot.state)},
                      {"bytes", slot.bytes},
                      {"points", slot.points},
                      {"checksum", fmt::format("{:08x}", slot.checksum)},
