@@ -12,7 +12,6 @@ namespace {
 
 constexpr std::uint16_t kLeastHeaderBytes = 227;
 constexpr std::uint16_t kLongHeaderBytes = 375;  // of version 1.4, with a 64-bit count
-constexpr std::size_t kRecordHeaderBytes = 54;
 constexpr const char* kExportLasAgain = "export the scan as LAS 1.0 to 1.4, or as PLY";
 
 constexpr std::array<LasLayout, 11> kLayouts = {{{20, -1, false},
@@ -62,34 +61,56 @@ void set_frame(const InputFile& file, std::string_view head, LasHeader& header) 
   }
 }
 
-/// The variable length records lie between the header and the points.
-void read_records(InputFile& file, std::uint32_t count, LasHeader& header) {
-  LasUnits keys;
-  LasUnits text;
+/// The lengths are 16 bits wide, and 64 bits in the records behind the points.
+struct RecordForm {
+  std::size_t header_bytes;
+  bool extended;
+};
+constexpr RecordForm kRecord = {54, false};
+constexpr RecordForm kExtendedRecord = {60, true};
+constexpr std::uint64_t kMaxProjectionBytes = std::uint64_t{1} << 20;
+
+void keep_projection(std::uint16_t id, std::string_view content, LasProjection& projection) {
+  if (id == 34735) projection.keys = content;
+  if (id == 34736) projection.numbers = content;
+  if (id == 2112) projection.text = content;
+}
+
+/// Returns false if the records go beyond `end`.
+bool read_records(InputFile& file, const RecordForm& form, std::uint32_t count, std::uint64_t end,
+                  LasProjection& projection) {
   for (std::uint32_t i = 0; i < count; ++i) {
-    if (file.offset() + kRecordHeaderBytes > header.first_point) break;
-    std::string_view record = file.peek(kRecordHeaderBytes);
-    const std::size_t bytes = kRecordHeaderBytes + load<std::uint16_t>(record, 20);
-    if (file.offset() + bytes > header.first_point) break;
-    record = file.peek(bytes);
-    if (record.size() < bytes) break;
+    if (file.offset() + form.header_bytes > end) return false;
+    const std::string_view record = file.peek(form.header_bytes);
+    if (record.size() < form.header_bytes) return false;
     const auto id = load<std::uint16_t>(record, 18);
-    if (record.substr(2).starts_with("LASF_Projection")) {
-      const std::string_view content =
-          record.substr(kRecordHeaderBytes, bytes - kRecordHeaderBytes);
-      if (id == 34735) add_geo_keys(content, keys);
-      if (id == 2112) add_well_known_text(content, text);
+    const bool projects = record.substr(2).starts_with("LASF_Projection");
+    const std::uint64_t bytes =
+        form.extended ? load<std::uint64_t>(record, 20) : load<std::uint16_t>(record, 20);
+    file.consume(form.header_bytes);
+    if (bytes > end - file.offset()) return false;
+    if (projects && bytes <= kMaxProjectionBytes) {
+      const std::string_view content = file.peek(static_cast<std::size_t>(bytes));
+      keep_projection(id, content.substr(0, static_cast<std::size_t>(bytes)), projection);
     }
-    file.consume(bytes);
+    file.skip(bytes);
   }
-  header.units.horizontal = keys.horizontal ? keys.horizontal : text.horizontal;
-  header.units.vertical = keys.vertical ? keys.vertical : text.vertical;
-  header.units.degrees = keys.degrees || text.degrees;
+  return true;
+}
+
+/// From version 1.4 on, records may follow the points. Returns false if they are not in the file.
+bool read_extended_records(const InputFile& opened, const std::filesystem::path& path,
+                           std::uint64_t begin, std::uint32_t count, LasProjection& projection) {
+  if (count == 0) return true;
+  if (begin >= opened.size()) return false;
+  InputFile file(path, nullptr, opened.name());  // its progress is not that of the points
+  file.skip(begin);
+  return read_records(file, kExtendedRecord, count, file.size(), projection);
 }
 
 }  // namespace
 
-LasHeader read_las_header(InputFile& file) {
+LasHeader read_las_header(InputFile& file, const std::filesystem::path& path) {
   LasHeader header;
   const std::string_view head = file.peek(kLongHeaderBytes);
   if (head.size() < kLeastHeaderBytes) {
@@ -108,9 +129,16 @@ LasHeader read_las_header(InputFile& file) {
   const auto records = load<std::uint32_t>(head, 100);
   header.record_bytes = load<std::uint16_t>(head, 105);
   header.points = load<std::uint32_t>(head, 107);
+  std::uint64_t extended_begin = 0;
+  std::uint32_t extended = 0;
+  LasProjection projection;
+  constexpr std::uint16_t kTextRules = 0x10;
+  projection.text_rules = (load<std::uint16_t>(head, 6) & kTextRules) != 0;
   if (header.minor == 4 && header_bytes >= kLongHeaderBytes && head.size() >= kLongHeaderBytes) {
     const auto points = load<std::uint64_t>(head, 247);
     if (points != 0) header.points = points;
+    extended_begin = load<std::uint64_t>(head, 235);
+    extended = load<std::uint32_t>(head, 243);
   }
   if (header_bytes < kLeastHeaderBytes || header.first_point < header_bytes ||
       header.first_point > file.size()) {
@@ -123,7 +151,12 @@ LasHeader read_las_header(InputFile& file) {
   set_layout(file, load<std::uint8_t>(head, 104), header);
   set_frame(file, head, header);
   file.skip(header_bytes);
-  read_records(file, records, header);
+  (void)read_records(file, kRecord, records, header.first_point, projection);
+  const bool complete = read_extended_records(file, path, extended_begin, extended, projection);
+  header.units = units_of(projection);
+  if (!complete && !header.units.horizontal && header.units.unknown.empty()) {
+    header.units.unknown = "records behind its points that are not in the file";
+  }
   return header;
 }
 

@@ -3,8 +3,9 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
-#include <string_view>
+#include <string>
 
 #include "input_file.hpp"
 
@@ -21,7 +22,18 @@ struct LasLayout {
 struct LasUnits {
   std::optional<double> horizontal;
   std::optional<double> vertical;
-  bool degrees = false;  ///< x and y are longitude and latitude
+  bool degrees = false;        ///< x and y are longitude and latitude
+  bool differ = false;         ///< the two forms of the coordinate system state different units
+  std::string unknown;         ///< what is stated instead of the unit of x and y
+  std::string unknown_height;  ///< what is stated instead of the unit of z
+};
+
+/// The records that state the coordinate system.
+struct LasProjection {
+  std::string keys;         ///< directory of GeoTIFF keys
+  std::string numbers;      ///< numbers to which the keys refer
+  std::string text;         ///< well-known text
+  bool text_rules = false;  ///< by the header, the text is valid and the keys are not
 };
 
 struct LasHeader {
@@ -36,12 +48,10 @@ struct LasHeader {
   LasUnits units;
 };
 
-/// Reads the header and the records up to the points. Throws ReadError.
-[[nodiscard]] LasHeader read_las_header(InputFile& file);
+/// Reads the header and the records up to the points, and, by another opening of the file, those
+/// behind the points. Throws ReadError.
+[[nodiscard]] LasHeader read_las_header(InputFile& file, const std::filesystem::path& path);
 
-/// Adds the units that the keys of a GeoTIFF directory state.
-void add_geo_keys(std::string_view directory, LasUnits& units);
-/// Adds the units that a coordinate system in well-known text states.
-void add_well_known_text(std::string_view text, LasUnits& units);
+[[nodiscard]] LasUnits units_of(const LasProjection& projection);
 
 }  // namespace tactree::builder

@@ -16,8 +16,8 @@ constexpr std::size_t kLasBlockBytes = std::size_t{1} << 20;
 
 class LasReader {
  public:
-  LasReader(InputFile& file, const ReadOptions& options)
-      : file_(file), header_(read_las_header(file)), builder_(file.name(), options, "byte") {}
+  LasReader(InputFile& file, const std::filesystem::path& path, const ReadOptions& options)
+      : file_(file), header_(read_las_header(file, path)), builder_(file.name(), options, "byte") {}
 
   Scan read() {
     if (header_.points == 0) {
@@ -47,6 +47,36 @@ class LasReader {
     }
     if (units.horizontal) builder_.set_unit(*units.horizontal);
     if (units.horizontal && units.vertical) to_horizontal_ = *units.vertical / *units.horizontal;
+    warn_of_unknown_units();
+  }
+
+  void warn_of_unknown_units() {
+    const LasUnits& units = header_.units;
+    const std::string& file = file_.name();
+    if (!units.unknown.empty()) {
+      builder_.warn(fmt::format(
+          "{}: the unit is not known: the header states {}; all coordinates were taken as metres "
+          "unless --unit states their unit",
+          file, units.unknown));
+    } else if (!units.horizontal && !units.degrees && units.vertical.value_or(1.0) != 1.0) {
+      builder_.warn(fmt::format(
+          "{}: the header states heights in units of {} m, but no unit of x and y; all coordinates "
+          "were taken as metres unless --unit states their unit",
+          file, *units.vertical));
+    }
+    if (!units.unknown_height.empty()) {
+      builder_.warn(fmt::format(
+          "{}: the unit of the heights is not known: the header states {}; they were taken to have "
+          "the unit of x and y (if the model is too high or too flat, export the scan with heights "
+          "in this unit)",
+          file, units.unknown_height));
+    }
+    if (units.differ) {
+      builder_.warn(fmt::format(
+          "{}: its GeoTIFF keys and its well-known text state different units; the header says "
+          "which are valid (check the size, --unit states another unit)",
+          file));
+    }
   }
 
   void read_records() {
@@ -71,14 +101,20 @@ class LasReader {
     if (last && !file_.only_zeros_left()) builder_.warn_of_more("points", header_.points, there);
   }
 
-  void add_record(const char* record, const LasLayout& layout) {
+  /// In version 1.0, all bits of the flags belong to a class of the user's own.
+  bool is_dropped(const char* record, const LasLayout& layout) {
+    if (header_.minor == 0) return false;
     const auto flags = static_cast<unsigned char>(record[15]);
     const unsigned withheld = layout.extended ? 0x04 : 0x80;
-    const bool has_flags = header_.minor > 0;  // 1.0 uses all bits for the classification
-    if (has_flags && (flags & withheld) != 0) {
+    if ((flags & withheld) != 0) {
       ++withheld_;
-      return;
+      return true;
     }
+    return false;
+  }
+
+  void add_record(const char* record, const LasLayout& layout) {
+    if (is_dropped(record, layout)) return;
     PointRow row{};
     for (std::size_t k = 0; k < 3; ++k) {
       const auto axis = static_cast<Eigen::Index>(k);
@@ -111,8 +147,8 @@ class LasReader {
 
 }  // namespace
 
-Scan read_las(InputFile& file, const ReadOptions& options) {
-  return LasReader(file, options).read();
+Scan read_las(InputFile& file, const std::filesystem::path& path, const ReadOptions& options) {
+  return LasReader(file, path, options).read();
 }
 
 }  // namespace tactree::builder

@@ -21,7 +21,7 @@ Scan read_recognised(InputFile& file, const std::filesystem::path& path,
     case FileKind::kE57:
       return read_e57(file, path, options);
     case FileKind::kLas:
-      return read_las(file, options);
+      return read_las(file, path, options);
     case FileKind::kObj:
       return read_obj(file, options);
     case FileKind::kOff:

@@ -13,7 +13,9 @@ namespace tactree::builder {
 /// The file is opened again by its `path`, to read the XML section first.
 [[nodiscard]] Scan read_e57(InputFile& file, const std::filesystem::path& path,
                             const ReadOptions& options);
-[[nodiscard]] Scan read_las(InputFile& file, const ReadOptions& options);
+/// The file is opened again by its `path`, to read the records behind the points first.
+[[nodiscard]] Scan read_las(InputFile& file, const std::filesystem::path& path,
+                            const ReadOptions& options);
 [[nodiscard]] Scan read_ptx(InputFile& file, const ReadOptions& options);
 [[nodiscard]] Scan read_text(InputFile& file, const ReadOptions& options);
 [[nodiscard]] Scan read_obj(InputFile& file, const ReadOptions& options);

@@ -93,7 +93,9 @@ TEST_F(LasTest, ReadsUnitFromKeys) {
   EXPECT_EQ(scan_with({{1024, 1}, {3076, 9001}}).unit_m, 1.0);
   EXPECT_EQ(scan_with({{3076, 9002}}).unit_m, 0.3048);
   EXPECT_DOUBLE_EQ(scan_with({{3076, 9003}}).unit_m.value(), 0.3048006096012192);
-  EXPECT_FALSE(scan_with({{1024, 1}, {3072, 25833}}).unit_m.has_value());
+  EXPECT_EQ(scan_with({{3076, 1025}}).unit_m, 0.001);
+  EXPECT_EQ(scan_with({{3076, 9005}}).unit_m, 0.3047972654);
+  EXPECT_EQ(scan_with({{1024, 1}, {3072, 25833}}).unit_m, 1.0);  // UTM
   EXPECT_FALSE(scan_with({{3076, 9999}}).unit_m.has_value());
   const Scan mixed = scan_with({{3076, 9001}, {4099, 9002}});  // heights in feet
   EXPECT_EQ(mixed.unit_m, 1.0);
@@ -102,6 +104,88 @@ TEST_F(LasTest, ReadsUnitFromKeys) {
   const Scan degrees = scan_with({{1024, 2}});
   ASSERT_EQ(degrees.warnings.size(), 1U);
   expect_parts(degrees.warnings[0], "degrees");
+}
+
+TEST_F(LasTest, ReadsUnitOfItsOwnFromKeys) {
+  const auto scan_with = [&](std::uint16_t index) {
+    LasFile file = las_points(2, 0);
+    std::string keys = las_geo_keys({{3076, 32767}, {3077, index}});
+    keys.replace(54 + 16 + 2, 2, bytes_of(std::uint16_t{34736}));
+    file.records = keys + las_record("LASF_Projection", 34736, bytes_of(7.0) + bytes_of(0.25));
+    file.record_count = 2;
+    return read(las_file(file));
+  };
+  EXPECT_EQ(scan_with(1).unit_m, 0.25);
+  const Scan missing = scan_with(2);
+  EXPECT_FALSE(missing.unit_m.has_value());
+  ASSERT_EQ(missing.warnings.size(), 1U);
+  expect_parts(missing.warnings[0], "a unit of length of its own", "taken as metres", "--unit");
+}
+
+TEST_F(LasTest, WarnsOfUnitsThatItDoesNotKnow) {
+  const auto warning_of = [&](std::vector<std::array<std::uint16_t, 2>> keys) {
+    LasFile file = las_points(2, 0);
+    file.records = las_geo_keys(keys);
+    file.record_count = 1;
+    const Scan scan = read(las_file(file));
+    return scan.warnings.size() == 1 ? scan.warnings[0] : std::to_string(scan.warnings.size());
+  };
+  expect_parts(warning_of({{1024, 1}, {3072, 2263}}), "EPSG:2263", "metres", "--unit");
+  expect_parts(warning_of({{3076, 9999}}), "EPSG:9999", "metres", "--unit");
+  expect_parts(warning_of({{3072, 32767}}), "system of its own", "--unit");
+  expect_parts(warning_of({{1024, 1}, {4099, 9002}}), "heights in units of 0.3048 m", "--unit");
+  expect_parts(warning_of({{3076, 9001}, {4096, 9876}}), "EPSG:9876", "unit of x and y");
+  expect_parts(warning_of({{3076, 9001}, {4099, 9999}}), "EPSG:9999", "unit of x and y");
+  expect_parts(warning_of({{2048, 4326}}), "degrees");
+  EXPECT_EQ(warning_of({{1024, 1}, {3072, 2263}, {3076, 9003}}), "0");
+  EXPECT_EQ(warning_of({{1024, 1}, {2048, 4269}, {3072, 26910}, {4096, 5703}}), "0");
+  EXPECT_EQ(warning_of({{1024, 3}}), "0");
+}
+
+TEST_F(LasTest, ReadsUnitOfHeights) {
+  const auto height_with = [&](std::vector<std::array<std::uint16_t, 2>> keys) {
+    LasFile file = las_points(2, 0);
+    file.records = las_geo_keys(keys);
+    file.record_count = 1;
+    return read(las_file(file)).positions[0].z();
+  };
+  EXPECT_DOUBLE_EQ(height_with({{3072, 26910}, {4096, 5703}, {4099, 9003}}), 3 * 1200.0 / 3937.0);
+  EXPECT_DOUBLE_EQ(height_with({{3076, 9001}, {4096, 6360}}), 3 * 1200.0 / 3937.0);
+  EXPECT_DOUBLE_EQ(height_with({{3076, 9001}, {4096, 5703}}), 3);
+  EXPECT_DOUBLE_EQ(height_with({{3076, 9002}, {4096, 5703}}), 3 / 0.3048);
+}
+
+TEST_F(LasTest, ReadsUnitFromRecordsBehindThePoints) {
+  LasFile file = las_points(4, 6);
+  const std::string text = R"(PROJCS["p",UNIT["foot",0.3048]])";
+  file.last_records = las_extended_record("other", 2112, "text") +
+                      las_extended_record("LASF_Projection", 2112, text);
+  file.last_record_count = 2;
+  const std::string bytes = las_file(file);
+  EXPECT_EQ(read(bytes).unit_m, 0.3048);
+  for (std::size_t cut = 1; cut <= file.last_records.size(); ++cut) {
+    const Scan scan = read(std::string_view(bytes).substr(0, bytes.size() - cut));
+    EXPECT_FALSE(scan.unit_m.has_value());
+    ASSERT_EQ(scan.warnings.size(), 1U) << cut;
+    expect_parts(scan.warnings[0], "records behind its points", "--unit");
+  }
+  for (const std::uint64_t begin : {std::uint64_t{0}, std::uint64_t{1} << 40, ~std::uint64_t{0}}) {
+    EXPECT_EQ(read(patched(bytes, 235, begin)).positions.size(), 3U);
+  }
+}
+
+TEST_F(LasTest, UsesTheFormOfCoordinateSystemThatTheHeaderNames) {
+  LasFile file = las_points(4, 6);
+  file.records = las_record("LASF_Projection", 2112, R"(PROJCS["p",UNIT["foot",0.3048]])") +
+                 las_geo_keys({{3076, 9001}});
+  file.record_count = 2;
+  for (const bool text_rules : {false, true}) {
+    file.text_rules = text_rules;
+    const Scan scan = read(las_file(file));
+    EXPECT_EQ(scan.unit_m, text_rules ? 0.3048 : 1.0);
+    ASSERT_EQ(scan.warnings.size(), 1U);
+    expect_parts(scan.warnings[0], "different units");
+  }
 }
 
 TEST_F(LasTest, ReadsUnitFromWkt) {
@@ -121,6 +205,20 @@ TEST_F(LasTest, ReadsUnitFromWkt) {
   EXPECT_EQ(scan_with(R"(PROJCRS["p",CS[Cartesian,2],LENGTHUNIT["metre",1.0]])").unit_m, 1.0);
   EXPECT_EQ(scan_with(R"(LOCAL_CS["l",UNIT["mm",0.001]])").unit_m, 0.001);
   EXPECT_EQ(scan_with(degree).warnings.size(), 1U);
+  const Scan heights = scan_with(R"(PROJCS["p",)" + degree +
+                                 R"(,UNIT["Meter",1.0]],VERTCS["v",UNIT["Foot_US",0.25]])");
+  EXPECT_EQ(heights.unit_m, 1.0);
+  EXPECT_DOUBLE_EQ(heights.positions[0].z(), 3 * 0.25);
+  EXPECT_EQ(
+      scan_with("ProjCRS [\"p\",\n  BASEGEOGCRS[\"b\",ELLIPSOID[\"e\",6,3,LENGTHUNIT[\"m\",1]]],"
+                "CS[Cartesian,2],AXIS[\"x\",east,LENGTHUNIT(\"ft\", 0.3048)],USAGE[\"u\","
+                "VERTICALEXTENT[0,1,LENGTHUNIT[\"m\",1]]]]")
+          .unit_m,
+      0.3048);
+  const Scan none = scan_with(R"(PROJCS["p",)" + degree + "]");
+  EXPECT_FALSE(none.unit_m.has_value());
+  ASSERT_EQ(none.warnings.size(), 1U);
+  expect_parts(none.warnings[0], "without a unit of length", "--unit");
   for (const std::string bad : {"", "PROJCS[", "PROJCS[\"", "PROJCS[UNIT[", "PROJCS[UNIT[\"m\",]]",
                                 "PROJCS[UNIT[\"m\",-1]]", "PROJCS[UNIT[\"m\",nan]]", "]]]]"}) {
     EXPECT_FALSE(scan_with(bad).unit_m.has_value()) << bad;
