@@ -28,11 +28,7 @@ class LasReader {
     set_units();
     read_records();
     builder_.count_dropped("withheld", withheld_);
-    if (builder_.points_read() == 0) {
-      throw ReadError(file_.name(), "",
-                      fmt::format("all {} points are marked as withheld", header_.points),
-                      "remove the marks if the points are to be used");
-    }
+    drop_noise();
     return builder_.finish(
         fmt::format("LAS 1.{} point format {}", header_.minor, header_.point_format));
   }
@@ -79,6 +75,23 @@ class LasReader {
     }
   }
 
+  void drop_noise() {
+    builder_.count_dropped("noise", noise_);
+    if (builder_.points_read() == 0) {
+      throw ReadError(
+          file_.name(), "",
+          noise_ == 0
+              ? fmt::format("all {} points are marked as withheld", header_.points)
+              : fmt::format("all {} points are marked as withheld or noise", header_.points),
+          "remove the marks if the points are to be used");
+    }
+    if (noise_ == 0) return;
+    builder_.note(
+        fmt::format("{}: {} of {} points that the file classifies as noise were dropped (give them "
+                    "another class to keep them)",
+                    file_.name(), noise_, header_.points));
+  }
+
   void read_records() {
     const std::uint64_t bytes = header_.record_bytes;
     file_.skip(header_.first_point - file_.offset());
@@ -110,7 +123,12 @@ class LasReader {
       ++withheld_;
       return true;
     }
-    return false;
+    constexpr unsigned kLowNoise = 7;
+    constexpr unsigned kHighNoise = 18;  // only where a class has eight bits
+    const unsigned kind = layout.extended ? static_cast<unsigned char>(record[16]) : flags & 0x1fU;
+    const bool noise = kind == kLowNoise || (layout.extended && kind == kHighNoise);
+    noise_ += noise ? 1U : 0U;
+    return noise;
   }
 
   void add_record(const char* record, const LasLayout& layout) {
@@ -143,6 +161,7 @@ class LasReader {
   ScanBuilder builder_;
   double to_horizontal_ = 1.0;  // unit of z / unit of x and y
   std::uint64_t withheld_ = 0;
+  std::uint64_t noise_ = 0;
 };
 
 }  // namespace

@@ -56,6 +56,7 @@ struct ReadOptions {
 /// Damage that leaves a usable scan is counted in Scan::dropped and described in Scan::warnings:
 ///   "not_measured"           points that the file itself marks as invalid (PTX, E57)
 ///   "withheld"               points of a LAS file that are marked as deleted
+///   "noise"                  points that a LAS file classifies as noise
 ///   "non_finite"             positions with NaN or infinite coordinates
 ///   "beyond_memory_limit"    points of a cloud with more than ReadOptions::most_points
 ///   "bad_row"                rows of a text file that are not a point

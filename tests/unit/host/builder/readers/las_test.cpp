@@ -188,6 +188,25 @@ TEST_F(LasTest, UsesTheFormOfCoordinateSystemThatTheHeaderNames) {
   }
 }
 
+TEST_F(LasTest, OmitsNoise) {
+  for (const int format : {1, 7}) {
+    LasFile file = las_points(4, format);
+    file.points[0].kind = 7;
+    file.points[1].kind = format == 1 ? 2 : 18;
+    const Scan scan = read(las_file(file));
+    const std::size_t noise = format == 1 ? 1 : 2;
+    EXPECT_EQ(scan.positions.size(), 3 - noise);
+    EXPECT_EQ(scan.dropped.at("noise"), noise);
+    ASSERT_EQ(scan.notes.size(), 1U);
+    expect_parts(scan.notes[0], std::to_string(noise) + " of 3 points", "noise");
+    for (LasPoint& point : file.points) point.kind = 7;
+    expect_parts(refusal_of(las_file(file), "a.las"), "a.las", "all 3 points", "noise");
+  }
+  LasFile old = las_points(0, 1);  // its classes are not those of later versions
+  old.points[0].kind = 7;
+  EXPECT_EQ(read(las_file(old)).positions.size(), 3U);
+}
+
 TEST_F(LasTest, ReadsUnitFromWkt) {
   const auto scan_with = [&](const std::string& text) {
     LasFile file = las_points(4, 6);
