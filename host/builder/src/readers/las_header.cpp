@@ -108,6 +108,14 @@ bool read_extended_records(const InputFile& opened, const std::filesystem::path&
   return read_records(file, kExtendedRecord, count, file.size(), projection);
 }
 
+void set_box(std::string_view head, LasBox& box) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto axis = static_cast<Eigen::Index>(k);
+    box.most[axis] = load_scalar<false>(head.data() + 179 + 16 * k, ScalarType::kFloat64);
+    box.least[axis] = load_scalar<false>(head.data() + 187 + 16 * k, ScalarType::kFloat64);
+  }
+}
+
 }  // namespace
 
 LasHeader read_las_header(InputFile& file, const std::filesystem::path& path) {
@@ -150,6 +158,7 @@ LasHeader read_las_header(InputFile& file, const std::filesystem::path& path) {
   }
   set_layout(file, load<std::uint8_t>(head, 104), header);
   set_frame(file, head, header);
+  set_box(head, header.box);
   file.skip(header_bytes);
   (void)read_records(file, kRecord, records, header.first_point, projection);
   const bool complete = read_extended_records(file, path, extended_begin, extended, projection);

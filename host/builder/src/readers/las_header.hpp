@@ -8,6 +8,7 @@
 #include <string>
 
 #include "input_file.hpp"
+#include "las_box.hpp"
 
 namespace tactree::builder {
 
@@ -45,6 +46,7 @@ struct LasHeader {
   std::uint64_t points = 0;       ///< as declared
   Eigen::Vector3d scale = Eigen::Vector3d::Ones();
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();
+  LasBox box;
   LasUnits units;
 };
 

@@ -17,7 +17,10 @@ constexpr std::size_t kLasBlockBytes = std::size_t{1} << 20;
 class LasReader {
  public:
   LasReader(InputFile& file, const std::filesystem::path& path, const ReadOptions& options)
-      : file_(file), header_(read_las_header(file, path)), builder_(file.name(), options, "byte") {}
+      : file_(file),
+        header_(read_las_header(file, path)),
+        builder_(file.name(), options, "byte"),
+        box_(header_.box, header_.scale) {}
 
   Scan read() {
     if (header_.points == 0) {
@@ -29,6 +32,7 @@ class LasReader {
     read_records();
     builder_.count_dropped("withheld", withheld_);
     drop_noise();
+    check_box();
     return builder_.finish(
         fmt::format("LAS 1.{} point format {}", header_.minor, header_.point_format));
   }
@@ -92,6 +96,18 @@ class LasReader {
                     file_.name(), noise_, header_.points));
   }
 
+  void check_box() {
+    const std::string message = box_.message();
+    if (message.empty()) return;
+    if (box_.are_damaged()) {
+      throw ReadError(file_.name(), "", message,
+                      "the file is damaged, for example by a transfer as text; copy it again");
+    }
+    builder_.warn(fmt::format(
+        "{}: {} (check the size; the file is damaged, or its header was not brought up to date)",
+        file_.name(), message));
+  }
+
   void read_records() {
     const std::uint64_t bytes = header_.record_bytes;
     file_.skip(header_.first_point - file_.offset());
@@ -139,6 +155,7 @@ class LasReader {
       const double number = load_scalar<false>(record + 4 * k, ScalarType::kInt32);
       row[kX + k] = number * header_.scale[axis] + header_.offset[axis];
     }
+    box_.add({row[kX], row[kY], row[kZ]});
     row[kZ] *= to_horizontal_;
     if (layout.colour >= 0) {
       for (std::size_t k = 0; k < 3; ++k) {
@@ -159,6 +176,7 @@ class LasReader {
   InputFile& file_;
   LasHeader header_;
   ScanBuilder builder_;
+  LasBoxCheck box_;
   double to_horizontal_ = 1.0;  // unit of z / unit of x and y
   std::uint64_t withheld_ = 0;
   std::uint64_t noise_ = 0;

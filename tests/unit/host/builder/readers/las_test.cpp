@@ -207,6 +207,40 @@ TEST_F(LasTest, OmitsNoise) {
   EXPECT_EQ(read(las_file(old)).positions.size(), 3U);
 }
 
+LasFile boxed_points() {
+  LasFile file;
+  for (std::int32_t i = 0; i < 20; ++i) file.points.push_back({{i, 2 * i, 5}, {}});
+  file.box = {19, 0, 38, 0, 5, 5};
+  return file;
+}
+
+TEST_F(LasTest, WarnsOfPointsOutsideOfTheBoxOfTheHeader) {
+  LasFile file = boxed_points();
+  EXPECT_TRUE(read(las_file(file)).warnings.empty());
+  file.scale[0] = 100;
+  const Scan wide = read(las_file(file));
+  ASSERT_EQ(wide.warnings.size(), 1U);
+  expect_parts(wide.warnings[0], "17 of 20 points", "19 x 38 x 0", "1900 x 38 x 0");
+  file = boxed_points();
+  file.box = {20, 1, 37, 1, 5, 5};  // rounded
+  EXPECT_TRUE(read(las_file(file)).warnings.empty());
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const std::array<double, 6>& box :
+       {std::array<double, 6>{}, {-infinity, infinity, 1, 0, 1, 0}, {0, 1, 0, 1, 0, 1}}) {
+    file.box = box;  // never set
+    EXPECT_TRUE(read(las_file(file)).warnings.empty());
+  }
+}
+
+TEST_F(LasTest, RefusesPointsOfWrongBytes) {
+  LasFile file = boxed_points();
+  for (std::size_t i = 0; i < 5; ++i)
+    file.points[3 * i].position[1] = i % 2 == 0 ? -2000000000 : 2000000000;
+  expect_parts(refusal_of(las_file(file), "a.las"), "a.las", "5 of 20 points", "box", "copy it");
+  file.box = {19, 0, 2e9, -2e9, 5, 5};  // right coordinates
+  EXPECT_TRUE(read(las_file(file)).warnings.empty());
+}
+
 TEST_F(LasTest, ReadsUnitFromWkt) {
   const auto scan_with = [&](const std::string& text) {
     LasFile file = las_points(4, 6);
