@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <span>
 
 #include "number.hpp"
 #include "readers.hpp"
@@ -18,6 +19,29 @@ namespace {
 constexpr std::int64_t kNoIndex = -1;
 constexpr float kSameDirection = 0.9998F;  // cosine of about one degree
 constexpr std::size_t kMaxForwardFaces = 4096;
+
+bool is_one_of(std::string_view word, std::span<const std::string_view> words) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+bool is_free_form(std::string_view keyword) {
+  constexpr std::array<std::string_view, 7> kFreeForm = {"surf", "curv", "curv2", "bsp",
+                                                         "bzp",  "cdp",  "cdc"};
+  return is_one_of(keyword, kFreeForm);
+}
+
+/// True for a line of numbers, which a '\' at its end joins with the next line. In names and
+/// comments a '\' is a character like any other, as at the end of a path of Windows.
+bool is_of_numbers(std::string_view line) {
+  constexpr std::array<std::string_view, 12> kOfNumbers = {
+      "v", "vn", "vt", "vp", "f", "fo", "l", "p", "parm", "trim", "hole", "scrv"};
+  const std::string_view keyword = take_word(line);
+  return is_one_of(keyword, kOfNumbers) || is_free_form(keyword);
+}
+
+bool continues(std::string_view line) {
+  return line.find('#') == line.npos && trim(line).ends_with('\\');
+}
 
 /// One normal per point, if the corners of its faces agree.
 class CornerNormals {
@@ -108,6 +132,7 @@ class ObjReader {
           "though an OBJ file counts from 1.",
           highest_index_, builder_.points_read()));
     }
+    check_free_form();
     find_bad_forward_face();
     if (has_colours_ && points_without_colour_ > 0) {
       builder_.warn(
@@ -134,11 +159,10 @@ class ObjReader {
   /// Reads a line, joined with its continuations (a '\' at the end).
   bool next_line(std::string_view& line) {
     if (!file_.next_line(line)) return false;
-    if (!line.ends_with('\\')) return true;
+    if (!continues(line) || !is_of_numbers(line)) return true;
     joined_.clear();
-    while (line.ends_with('\\')) {
-      line.remove_suffix(1);
-      joined_.append(line).push_back(' ');
+    while (continues(line)) {
+      joined_.append(line.substr(0, line.rfind('\\'))).push_back(' ');
       if (joined_.size() > InputFile::kMaxLineBytes) fail("the line is longer than 1 MiB");
       if (!file_.next_line(line)) line = {};
     }
@@ -153,6 +177,21 @@ class ObjReader {
     if (keyword == "v") return read_point(line);
     if (keyword == "vn") return read_normal(line);
     if (keyword == "f" || keyword == "fo") return read_face(line);
+    if (is_free_form(keyword) && free_form_++ == 0) first_free_form_ = file_.line_place();
+  }
+
+  /// The points of curves and surfaces lie beside them.
+  void check_free_form() {
+    if (free_form_ == 0) return;
+    if (!has_faces_) {
+      throw ReadError(file_.name(), first_free_form_,
+                      "the file holds curves or surfaces (NURBS) and no faces",
+                      "tessellate it before the export: save it as a mesh");
+    }
+    builder_.warn(
+        fmt::format("{}: {} curves or surfaces (NURBS) were left out, the first at {} (tessellate "
+                    "them before the export)",
+                    file_.name(), free_form_, first_free_form_));
   }
 
   /// Parses the numbers into values_ and returns their count.
@@ -188,6 +227,7 @@ class ObjReader {
 
   /// Corners are "point", "point/texture", "point//normal" or "point/texture/normal".
   void read_face(std::string_view rest) {
+    has_faces_ = true;
     corners_.clear();
     std::int64_t highest = kNoIndex;
     for (auto word = take_word(rest); !word.empty(); word = take_word(rest)) {
@@ -253,6 +293,9 @@ class ObjReader {
   std::int64_t highest_index_ = -1;
   ScanBuilder builder_;
   CornerNormals normals_;
+  bool has_faces_ = false;
+  std::uint64_t free_form_ = 0;
+  std::string first_free_form_;
   bool has_colours_ = false;
   double white_ = 1.0;
   std::uint64_t points_without_colour_ = 0;

@@ -23,6 +23,28 @@ TEST_F(ObjTest, ReadsFacesOfAllForms) {
   EXPECT_TRUE(scan.dropped.empty());
 }
 
+TEST_F(ObjTest, JoinsOnlyLinesOfNumbers) {
+  for (const std::string name : {"# of C:\\scans\\", "mtllib C:\\scans\\", "usemtl a\\", "g a\\",
+                                 "o a\\", "s 1 # \\", "vt 0 0 # \\"}) {
+    const Scan scan = read(name + '\n' + kFour + "f 1 2 3\n");
+    EXPECT_EQ(scan.positions.size(), 4U) << name;
+    EXPECT_EQ(scan.triangles.size(), 1U) << name;
+  }
+  const Scan joined =
+      read("v 0 0 \\\n 0\nv 1 \\ \n 0 \\\n 0\nv 0 1 0\nf 1 \\\n2 3 # \\\nv 5 5 5\n");
+  EXPECT_EQ(joined.positions.size(), 4U);
+  EXPECT_EQ(joined.triangles.size(), 1U);
+}
+
+TEST_F(ObjTest, RefusesFreeFormSurfacesWithoutFaces) {
+  const std::string surface = "cstype bspline\ndeg 1 1\nsurf 0 1 0 1 1 2 3 4\nend\n";
+  expect_parts(refusal_of(kFour + surface, "a.obj"), "a.obj", "line 7", "NURBS", "tessellate");
+  const Scan scan = read(kFour + surface + "f 1 2 3\n");
+  EXPECT_EQ(scan.triangles.size(), 1U);
+  ASSERT_EQ(scan.warnings.size(), 1U);
+  expect_parts(scan.warnings[0], "1 curves or surfaces", "line 7", "tessellate");
+}
+
 TEST_F(ObjTest, LargeCoordinatesKeepTheirMicrometres) {
   EXPECT_EQ(read("v 636123.123456 851218.654321 0.000001\n").positions.at(0),
             Eigen::Vector3d(636123.123456, 851218.654321, 0.000001));
