@@ -57,7 +57,8 @@ class PlyHeaderParser {
   }
 
   void parse_line(std::string_view keyword, std::string_view rest) {
-    if (keyword == "ply" || keyword == "comment" || keyword == "obj_info" || keyword.empty())
+    if (equal_ignoring_case(keyword, "ply") || keyword == "comment" || keyword == "obj_info" ||
+        keyword.empty())
       return;
     if (keyword == "format") return parse_format(take_word(rest));
     if (keyword == "element") return parse_element(rest);

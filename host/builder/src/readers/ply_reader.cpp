@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "number.hpp"
 #include "ply_body.hpp"
 #include "ply_header.hpp"
 #include "readers.hpp"
@@ -111,16 +112,82 @@ void warn_of_more(const PlyHeader& header, std::span<const PlyElement> elements,
   builder.warn_of_more(rows_of(last), last.count, last.count + more);
 }
 
-/// Some programs use another name for the list of vertices. It is accepted if it is the only list
-/// of integers.
-std::size_t only_list(const PlyElement& element) {
-  const auto is_candidate = [](const PlyProperty& property) {
-    return property.is_list && !is_float(property.type);
-  };
+template <std::size_t N>
+bool is_one_of(std::string_view name, const std::array<std::string_view, N>& names) {
+  return std::any_of(names.begin(), names.end(),
+                     [name](std::string_view known) { return equal_ignoring_case(name, known); });
+}
+
+bool are_faces(const PlyElement& element) {
+  constexpr std::array<std::string_view, 10> kFaces = {
+      "face",      "faces",   "facet",    "facets", "triangle",
+      "triangles", "polygon", "polygons", "quad",   "quads"};
+  return is_one_of(element.name, kFaces);
+}
+
+/// True if elements of this name have corners: faces in a form without a reader, or solids.
+bool may_be_faces(const PlyElement& element) {
+  constexpr std::array<std::string_view, 7> kBegins = {"face", "tri", "poly", "quad",
+                                                       "tet",  "hex", "cell"};
+  return std::any_of(kBegins.begin(), kBegins.end(), [&](std::string_view begin) {
+    return starts_with_ignoring_case(element.name, begin);
+  });
+}
+
+bool is_list_of_integers(const PlyProperty& property) {
+  return property.is_list && !is_float(property.type);
+}
+
+/// The only list that meets the condition, or properties.size().
+template <typename Condition>
+std::size_t only_list(const PlyElement& element, Condition condition) {
   const auto& properties = element.properties;
-  const auto found = std::find_if(properties.begin(), properties.end(), is_candidate);
-  const bool only = std::count_if(properties.begin(), properties.end(), is_candidate) == 1;
+  const auto found = std::find_if(properties.begin(), properties.end(), condition);
+  const bool only = std::count_if(properties.begin(), properties.end(), condition) == 1;
   return only ? static_cast<std::size_t>(found - properties.begin()) : properties.size();
+}
+
+bool has_standard_name(const PlyProperty& property) {
+  return property.is_list && (property.name == "vertex_indices" || property.name == "vertex_index");
+}
+
+/// The names that some programs use instead.
+bool has_other_name(const PlyProperty& property) {
+  constexpr std::array<std::string_view, 8> kNames = {
+      "vertex_indices", "vertex_index", "vertex_idx", "vertex_idxs",
+      "vertex_ids",     "vertex_id",    "vertices",   "verts"};
+  return is_list_of_integers(property) && is_one_of(property.name, kNames);
+}
+
+void warn_of_unknown_faces(const InputFile& file, const PlyHeader& header, bool mesh,
+                           ScanBuilder& builder) {
+  for (const PlyElement& element : header.elements) {
+    if (element.count == 0 || role_of(element) != PlyRole::kOther || !may_be_faces(element)) {
+      continue;
+    }
+    builder.warn(fmt::format(
+        "{}: header: the {} rows of \"{}\" are not faces in a known form and were left out{} "
+        "(export the mesh again, with a list \"vertex_indices\" in the element \"face\")",
+        file.name(), element.count, printable(element.name),
+        mesh ? "" : "; the vertices were taken as a cloud of points"));
+  }
+}
+
+/// Refuses names of which it is not known which one is meant.
+void check_names(const InputFile& file, const PlyElement& vertex) {
+  const auto& properties = vertex.properties;
+  for (std::size_t i = 0; i < properties.size(); ++i) {
+    if (properties[i].is_list || slot_of_name(properties[i].name) == kNoSlot) continue;
+    for (std::size_t k = 0; k < i; ++k) {
+      if (properties[k].is_list || !equal_ignoring_case(properties[k].name, properties[i].name)) {
+        continue;
+      }
+      throw ReadError(file.name(), "header",
+                      fmt::format("the vertices have two properties \"{}\" and \"{}\"",
+                                  properties[k].name, properties[i].name),
+                      "export the scan again, with one property of each name");
+    }
+  }
 }
 
 }  // namespace
@@ -128,18 +195,18 @@ std::size_t only_list(const PlyElement& element) {
 PlyRole role_of(const PlyElement& element) {
   if (element.name == "vertex") return PlyRole::kVertex;
   if (index_property(element) == element.properties.size()) return PlyRole::kOther;
-  if (element.name == "face") return PlyRole::kFace;
+  if (are_faces(element)) return PlyRole::kFace;
   return element.name == "tristrips" ? PlyRole::kStrip : PlyRole::kOther;
 }
 
 std::size_t index_property(const PlyElement& element) {
-  const auto found = std::find_if(
-      element.properties.begin(), element.properties.end(), [](const PlyProperty& property) {
-        return property.is_list &&
-               (property.name == "vertex_indices" || property.name == "vertex_index");
-      });
-  if (found == element.properties.end() && element.name == "face") return only_list(element);
-  return static_cast<std::size_t>(found - element.properties.begin());
+  const auto& properties = element.properties;
+  const auto standard = std::find_if(properties.begin(), properties.end(), has_standard_name);
+  if (standard != properties.end() || !are_faces(element)) {
+    return static_cast<std::size_t>(standard - properties.begin());
+  }
+  const std::size_t named = only_list(element, has_other_name);
+  return named < properties.size() ? named : only_list(element, is_list_of_integers);
 }
 
 std::vector<PlyField> vertex_fields(const PlyElement& vertex) {
@@ -193,12 +260,15 @@ Scan read_ply(InputFile& file, const ReadOptions& options) {
   const PlyElement& vertex = vertex_element(file, header);
   const std::vector<PlyField> fields = vertex_fields(vertex);
   check_coordinates(file, fields);
+  check_names(file, vertex);
   const std::span<const PlyElement> elements = elements_that_count(header);
   const bool ascii = header.encoding == PlyEncoding::kAscii;
   if (!ascii) check_counts(file, elements);
   ScanBuilder builder(file.name(), options, ascii ? "line" : "byte");
   prepare(builder, vertex, fields);
-  if (!has_faces(elements)) builder.thin_large_cloud();
+  const bool mesh = has_faces(elements);
+  if (!mesh) builder.thin_large_cloud();
+  warn_of_unknown_faces(file, header, mesh, builder);
   if (header.unknown_lines > 0) {
     builder.warn(fmt::format("{}: {} line{} of the header {} unknown and left out, the first at {}",
                              file.name(), header.unknown_lines,

@@ -252,9 +252,17 @@ std::optional<Recognition> recognise_imported(std::string_view head) {
   return std::nullopt;
 }
 
+/// By the words of its header. Only "ply" in small letters at the very beginning is sure, because a
+/// table may have such a title.
 bool is_ply(std::string_view head) {
-  std::string_view first = head.substr(0, head.find('\n'));
-  return take_word(first) == "ply" && trim(first.substr(0, first.find('\r'))).empty();
+  const bool sure = head.starts_with("ply");
+  std::string_view first = sure ? head.substr(0, head.find('\n')) : ""sv;
+  if (take_word(first) == "ply" && trim(first.substr(0, first.find('\r'))).empty()) return true;
+  const std::vector<std::string_view> lines = first_lines(head.substr(0, 4096), 2);
+  if (lines.size() < 2 || !equal_ignoring_case(lines[0], "ply")) return false;
+  const std::string_view word = first_word(lines[1]);
+  return equal_ignoring_case(word, "format") || equal_ignoring_case(word, "comment") ||
+         equal_ignoring_case(word, "obj_info");
 }
 
 }  // namespace

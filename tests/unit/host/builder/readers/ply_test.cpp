@@ -161,6 +161,77 @@ TEST_F(PlyTest, AcceptsUnknownPartsAndOrder) {
   }
 }
 
+/// A tetrahedron with these lines for the element of its faces, and three of them.
+std::string tetrahedron(const std::string& faces, const std::array<const char*, 3>& rows) {
+  std::string text =
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float "
+      "z\n" +
+      faces + "end_header\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n";
+  for (const char* row : rows) text += std::string(row) + '\n';
+  return text;
+}
+
+TEST_F(PlyTest, ReadsFacesByOtherNames) {
+  const std::string list = "property list uchar int ";
+  for (const std::string& faces : {"element triangle 3\n" + list + "vertex_indices\n",
+                                   "element faces 3\n" + list + "vertex_index\n",
+                                   "element face 3\n" + list + "Vertex_Indices\n"}) {
+    const Scan scan = read(tetrahedron(faces, {"3 0 1 2", "3 0 1 3", "3 0 2 3"}));
+    EXPECT_EQ(scan.triangles.size(), 3U) << faces;
+    EXPECT_TRUE(scan.warnings.empty());
+  }
+  const Scan textured =
+      read(tetrahedron("element face 3\n" + list + "tex_idx\n" + list + "vertex_idx\n",
+                       {"3 3 3 3 3 0 1 2", "3 3 3 3 3 0 1 3", "3 3 3 3 3 0 2 3"}));
+  ASSERT_EQ(textured.triangles.size(), 3U);
+  EXPECT_EQ(textured.triangles[1], (Triangle{0, 1, 3}));
+}
+
+TEST_F(PlyTest, WarnsOfFacesThatItDoesNotUnderstand) {
+  const std::string list = "property list uchar int ";
+  const auto expect_warning = [&](const std::string& name, const std::string& properties,
+                                  const std::array<const char*, 3>& rows) {
+    const Scan scan = read(tetrahedron("element " + name + " 3\n" + properties, rows), "a.ply");
+    EXPECT_TRUE(scan.triangles.empty());
+    ASSERT_EQ(scan.warnings.size(), 1U) << properties;
+    expect_parts(scan.warnings[0], "a.ply: header: the 3 rows of \"" + name + "\"", "cloud",
+                 "\"vertex_indices\"");
+  };
+  expect_warning("face", list + "a\n" + list + "b\n",
+                 {"1 0 3 0 1 2", "1 0 3 0 1 3", "1 0 3 0 2 3"});
+  expect_warning("face", "property int v1\nproperty int v2\nproperty int v3\n",
+                 {"0 1 2", "0 1 3", "0 2 3"});
+  expect_warning("tetrahedra", list + "corners\n", {"4 0 1 2 3", "4 0 1 2 3", "4 0 1 2 3"});
+  const Scan grid = read(tetrahedron("element range_grid 3\n" + list + "vertex_indices\n",
+                                     {"1 0", "0", "1 1"}));  // of a cloud
+  EXPECT_TRUE(grid.warnings.empty());
+}
+
+TEST_F(PlyTest, RefusesTwoPropertiesOfOneName) {
+  const auto refusal_with = [&](const std::string& extra) {
+    return refusal_of("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float " +
+                          extra + "\nproperty float y\nproperty float z\nend_header\n1 2 3 4\n",
+                      "a.ply");
+  };
+  expect_parts(refusal_with("X"), "a.ply: header", "\"x\" and \"X\"", "export");
+  expect_parts(refusal_with("x"), "a.ply: header", "\"x\" and \"x\"", "export");
+}
+
+TEST_F(PlyTest, ReadsKeywordInCapitalsOrBehindBlankLines) {
+  const std::string rest =
+      "format ascii 1.0\nelement vertex 1\nproperty float a\nproperty float x\n"
+      "property float y\nproperty float z\nend_header\n9 1 2 3\n";
+  for (const std::string first : {"\nply\n", "\r\n\r\n ply \r\n", "PLY\n", "Ply\ncomment c\n"}) {
+    const Scan scan = read(first + rest);
+    EXPECT_EQ(scan.format, "PLY ascii") << first;
+    ASSERT_EQ(scan.positions.size(), 1U);
+    EXPECT_EQ(scan.positions[0], Eigen::Vector3d(1, 2, 3));
+  }
+  std::string table = "PLY\n";  // a title
+  for (int i = 0; i < 5; ++i) table += "0.5 " + std::to_string(i * i) + ".25 1.5\n";
+  EXPECT_TRUE(read(table).format.starts_with("text"));
+}
+
 TEST_F(PlyTest, ReportsEncoding) {
   EXPECT_EQ(read(tangled(Encoding::kAscii, "\n")).format, "PLY ascii");
   EXPECT_EQ(read(tangled(Encoding::kLittle, "\n")).format, "PLY binary little endian");
