@@ -174,6 +174,7 @@ class E57Reader {
     E57Streams streams(pages_, scan, file_.name());
     builder_.expect_points(builder_.points_kept() + scan.count);
     begin_pose(scan);
+    begin_colours(scan);
     streams.read([&](const std::vector<double>& values) { add_point(scan, values); });
   }
 
@@ -205,7 +206,7 @@ class E57Reader {
           Eigen::Vector3d(value(values, kNx), value(values, kNy), value(values, kNz));
       std::copy_n(normal.data(), 3, row.begin() + kNx);
     }
-    if (has_colours_ && value(values, kColourInvalid) == 0.0) set_colour(scan, values, row);
+    if (has_colours_ && value(values, kColourInvalid) == 0.0) set_colour(values, row);
     builder_.add_point(row);
   }
 
@@ -218,19 +219,45 @@ class E57Reader {
     return {level * std::cos(azimuth), level * std::sin(azimuth), range * std::sin(elevation)};
   }
 
-  void set_colour(const E57Scan& scan, const std::vector<double>& values, PointRow& row) const {
+  /// Limits of a colour that the scan states; none if they are those of a usual range, which some
+  /// programs state though the colours have another one.
+  [[nodiscard]] std::optional<std::array<double, 2>> colour_limits(const E57Scan& scan,
+                                                                   std::size_t k) const {
+    constexpr double kMost = 65535.0;
+    const E57Field& field = scan.fields[static_cast<std::size_t>(columns_[kRed + k])];
+    auto [lowest, highest] = scan.colour_limits[k];
+    if (!(highest > lowest)) {
+      lowest = field.lowest;
+      highest = field.highest;
+    }
+    const bool usual = lowest == 0.0 && (highest == 1.0 || highest == 255.0 || highest == kMost);
+    if (usual || !(highest > lowest) || lowest < -kMost || highest > kMost) return std::nullopt;
+    return std::array<double, 2>{lowest, highest};
+  }
+
+  /// Without limits, the largest value of the scan decides.
+  void begin_colours(const E57Scan& scan) {
+    if (!has_colours_) return;
+    ColourRange range = ColourRange::kByte;
     for (std::size_t k = 0; k < 3; ++k) {
+      limits_[k] = colour_limits(scan, k);
+      if (limits_[k]) continue;
       const E57Field& field = scan.fields[static_cast<std::size_t>(columns_[kRed + k])];
-      auto [lowest, highest] = scan.colour_limits[k];
-      if (!(highest > lowest)) {
-        lowest = field.lowest;
-        highest = field.highest;
+      range =
+          field.type == E57Field::Type::kInteger ? ColourRange::kWordOrByte : ColourRange::kAuto;
+    }
+    if (range != ColourRange::kByte) limits_ = {};
+    builder_.begin_colours(range);
+  }
+
+  void set_colour(const std::vector<double>& values, PointRow& row) const {
+    for (std::size_t k = 0; k < 3; ++k) {
+      double channel = value(values, kRed + k);
+      if (limits_[k]) {
+        const auto [lowest, highest] = *limits_[k];
+        channel = 255.0 * (channel - lowest) / (highest - lowest);
       }
-      if (!(highest > lowest)) {
-        lowest = 0.0;
-        highest = field.type == E57Field::Type::kInteger ? 255.0 : 1.0;
-      }
-      row[kRed + k] = 255.0 * (value(values, kRed + k) - lowest) / (highest - lowest);
+      row[kRed + k] = channel;
     }
   }
 
@@ -241,7 +268,8 @@ class E57Reader {
   InputFile& file_;
   E57Pages pages_;
   ScanBuilder builder_;
-  Columns columns_{};  // of the current scan
+  Columns columns_{};                                           // of the current scan
+  std::array<std::optional<std::array<double, 2>>, 3> limits_;  // of its colours
   bool spherical_ = false;
   bool has_normals_ = false;
   bool has_colours_ = false;

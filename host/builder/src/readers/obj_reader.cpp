@@ -213,7 +213,8 @@ class ObjReader {
       if (!coloured) ++points_without_colour_;
       for (std::size_t i = 0; i < 3; ++i) {
         row[kRed + i] = coloured ? values_[3 + i] : white;
-        if (coloured && values_[3 + i] > 1.5) white_ = 255.0;
+        if (coloured && values_[3 + i] > 1.5) white_ = std::max(white_, 255.0);
+        if (coloured && values_[3 + i] > 255.5) white_ = 65535.0;
       }
     }
     builder_.add_point(row);

@@ -66,7 +66,6 @@ void unpack_colour(std::uint32_t packed, PointRow& row) {
 
 /// In text, a packed colour is the integer itself or the float with the same bits.
 std::uint32_t packed_from_number(double value, ScalarType type) {
-  if (std::isnan(value)) return 0;
   const bool whole = std::abs(value) >= 1.0 && value == std::floor(value);
   if (!is_float(type) || whole) {
     const double bits = std::clamp(value, -2147483648.0, 4294967295.0);
@@ -93,7 +92,7 @@ class PcdReader {
     for (const std::string& warning : header_.warnings) builder_.warn(warning);
     for (const UsedField& used : used_) {
       if (used.slot == kNx) builder_.use_normals();
-      if (used.slot == kRed) builder_.use_colours(colour_range(used));
+      if (used.slot == kRed) builder_.use_colours(range_of(used));
     }
     builder_.thin_large_cloud();
     builder_.begin_pose();
@@ -128,9 +127,8 @@ class PcdReader {
     return builder_.finish(format);
   }
 
-  static ColourRange colour_range(const UsedField& used) {
-    return is_float(used.field.type) && !used.packed_colour ? ColourRange::kAuto
-                                                            : ColourRange::kByte;
+  static ColourRange range_of(const UsedField& used) {
+    return used.packed_colour ? ColourRange::kByte : colour_range(used.field.type);
   }
 
   [[noreturn]] void throw_truncated(std::uint64_t points_there) const {
@@ -273,7 +271,9 @@ class PcdReader {
       if (!parse_number(word, value)) {
         fail_line(fmt::format("\"{}\" is not a number", printable(word)));
       }
-      if (used->packed_colour) {
+      if (used->packed_colour && std::isnan(value)) {
+        row[kRed] = row[kGreen] = row[kBlue] = value;  // bits with an alpha of 255, lost in text
+      } else if (used->packed_colour) {
         unpack_colour(packed_from_number(value, used->field.type), row);
       } else {
         row[used->slot] = value;

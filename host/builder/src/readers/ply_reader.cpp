@@ -64,11 +64,6 @@ void check_counts(const InputFile& file, std::span<const PlyElement> elements) {
   }
 }
 
-ColourRange colour_range(ScalarType type) {
-  if (is_float(type)) return ColourRange::kAuto;
-  return size_of(type) == 2 ? ColourRange::kWord : ColourRange::kByte;
-}
-
 void prepare(ScanBuilder& builder, const PlyElement& vertex, const std::vector<PlyField>& fields) {
   for (const PlyField& field : fields) {
     if (field.slot == kNx) builder.use_normals();
@@ -113,7 +108,7 @@ void warn_of_more(const PlyHeader& header, std::span<const PlyElement> elements,
 }
 
 template <std::size_t N>
-bool is_one_of(std::string_view name, const std::array<std::string_view, N>& names) {
+bool is_name_in(std::string_view name, const std::array<std::string_view, N>& names) {
   return std::any_of(names.begin(), names.end(),
                      [name](std::string_view known) { return equal_ignoring_case(name, known); });
 }
@@ -122,7 +117,7 @@ bool are_faces(const PlyElement& element) {
   constexpr std::array<std::string_view, 10> kFaces = {
       "face",      "faces",   "facet",    "facets", "triangle",
       "triangles", "polygon", "polygons", "quad",   "quads"};
-  return is_one_of(element.name, kFaces);
+  return is_name_in(element.name, kFaces);
 }
 
 /// True if elements of this name have corners: faces in a form without a reader, or solids.
@@ -156,7 +151,7 @@ bool has_other_name(const PlyProperty& property) {
   constexpr std::array<std::string_view, 8> kNames = {
       "vertex_indices", "vertex_index", "vertex_idx", "vertex_idxs",
       "vertex_ids",     "vertex_id",    "vertices",   "verts"};
-  return is_list_of_integers(property) && is_one_of(property.name, kNames);
+  return is_list_of_integers(property) && is_name_in(property.name, kNames);
 }
 
 void warn_of_unknown_faces(const InputFile& file, const PlyHeader& header, bool mesh,

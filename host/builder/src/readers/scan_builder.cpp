@@ -60,11 +60,6 @@ constexpr SlotName kSlotNames[] = {
     {"diffuse_blue", kBlue},
 };
 
-std::uint8_t to_byte(double value) {
-  if (!(value > 0.0)) return 0;  // also NaN
-  return value >= 255.0 ? std::uint8_t{255} : static_cast<std::uint8_t>(std::lround(value));
-}
-
 std::string mebibytes(std::uint64_t bytes) {
   return fmt::format("{:.0f} MiB", std::ceil(static_cast<double>(bytes) / (1 << 20)));
 }
@@ -92,7 +87,7 @@ ScanBuilder::ScanBuilder(std::string file, const ReadOptions& options, std::stri
 std::uint64_t ScanBuilder::bytes_for(std::uint64_t points, std::uint64_t triangles) const {
   std::uint64_t per_point = sizeof(Eigen::Vector3d);
   if (has_normals_) per_point += sizeof(Eigen::Vector3f);
-  if (colours_ != ColourRange::kNone) per_point += 3;
+  if (has_colours()) per_point += 3;
   const std::uint64_t faces = 12 * triangles + 4 * (polygons_.capacity() + dropped_.capacity());
   return per_point * points + faces + extra_bytes_;
 }
@@ -118,7 +113,7 @@ void ScanBuilder::set_point_capacity(std::uint64_t count) {
   const auto capacity = static_cast<std::size_t>(count);
   scan_.positions.reserve(capacity);
   if (has_normals_) scan_.normals.reserve(capacity);
-  if (colours_ != ColourRange::kNone) scan_.colours.reserve(capacity);
+  if (has_colours()) scan_.colours.reserve(capacity);
 }
 
 void ScanBuilder::reserve_points(std::uint64_t count) {
@@ -173,18 +168,21 @@ void ScanBuilder::thin(std::size_t most) {
 void ScanBuilder::keep_points(std::span<const std::uint8_t> kept) {
   std::size_t count = 0;
   auto pose = scan_.poses.begin();
+  const std::size_t first_colour = colours_.first();
   for (std::size_t i = 0; i < kept.size(); ++i) {
+    if (i == first_colour) colours_.set_first(count);
     for (; pose != scan_.poses.end() && pose->first_point == i; ++pose) pose->first_point = count;
     if (kept[i] == 0) continue;
     scan_.positions[count] = scan_.positions[i];
     if (has_normals_) scan_.normals[count] = scan_.normals[i];
-    if (colours_ != ColourRange::kNone) scan_.colours[count] = scan_.colours[i];
+    if (has_colours()) scan_.colours[count] = scan_.colours[i];
     ++count;
   }
   for (; pose != scan_.poses.end(); ++pose) pose->first_point = count;
+  if (first_colour >= kept.size()) colours_.set_first(count);
   scan_.positions.resize(count);
   if (has_normals_) scan_.normals.resize(count);
-  if (colours_ != ColourRange::kNone) scan_.colours.resize(count);
+  if (has_colours()) scan_.colours.resize(count);
 }
 
 std::size_t ScanBuilder::drop_height(double z) {
@@ -240,7 +238,7 @@ void ScanBuilder::add_point(const PointRow& row) {
   if (scan_.positions.size() == scan_.positions.capacity()) make_room();
   scan_.positions.emplace_back(row[kX], row[kY], row[kZ]);
   if (has_normals_) add_normal(row);
-  if (colours_ != ColourRange::kNone) add_colour(row);
+  if (has_colours()) add_colour(row);
   ++points_read_;
 }
 
@@ -271,35 +269,32 @@ void ScanBuilder::add_normal(const PointRow& row) {
 }
 
 void ScanBuilder::add_colour(const PointRow& row) {
-  double scale = 1.0;
-  if (colours_ == ColourRange::kWord) scale = 1.0 / 257.0;
-  if (colours_ == ColourRange::kWordOrByte) {
-    const double largest = std::max({row[kRed], row[kGreen], row[kBlue]});
-    if (byte_colours_ && largest > 255.0) leave_byte_colours();
-    if (!byte_colours_) scale = 1.0 / 257.0;
-  }
-  if (colours_ == ColourRange::kAuto) {
-    const double largest = std::max({row[kRed], row[kGreen], row[kBlue]});
-    if (unit_colours_ && largest > 1.5) leave_unit_colours();
-    if (unit_colours_) scale = 255.0;
-  }
-  scan_.colours.push_back(
-      {to_byte(row[kRed] * scale), to_byte(row[kGreen] * scale), to_byte(row[kBlue] * scale)});
+  scan_.colours.push_back(colours_.to_bytes({row[kRed], row[kGreen], row[kBlue]}, scan_.colours));
 }
 
-/// Converts the colours read so far from the range 0 .. 1 to 0 .. 255.
-void ScanBuilder::leave_unit_colours() {
-  unit_colours_ = false;
-  for (auto& colour : scan_.colours) {
-    for (std::uint8_t& channel : colour) channel = to_byte(channel / 255.0);
-  }
+void ScanBuilder::drop_colours() {
+  colours_.begin(ColourRange::kNone, 0);
+  scan_.colours = {};
 }
 
-/// Converts the colours read so far from the range 0 .. 65535 to 0 .. 255.
-void ScanBuilder::leave_byte_colours() {
-  byte_colours_ = false;
-  for (auto& colour : scan_.colours) {
-    for (std::uint8_t& channel : colour) channel = to_byte(channel / 257.0);
+void ScanBuilder::check_colours() {
+  if (!has_colours()) return;
+  constexpr const char* kRemedy = "export them as whole numbers, of a PCD in binary form";
+  const std::uint64_t missing = colours_.missing();
+  const std::uint64_t all = points_read_ - non_finite_;
+  if (missing == all) {
+    drop_colours();
+    warn(fmt::format("{}: the colours were ignored: none of them is a number ({}).", file_,
+                     kRemedy));
+  } else if (missing > 0) {
+    warn(fmt::format("{}: the colours of {} of {} points are not numbers and became black ({}).",
+                     file_, missing, all, kRemedy));
+  }
+  if (colours_.is_beyond()) {
+    warn(
+        fmt::format("{}: some colours are above 65535, the largest value of a known range; they "
+                    "became white (export the colours as 0 to 255).",
+                    file_));
   }
 }
 
@@ -497,6 +492,7 @@ Scan ScanBuilder::finish(std::string format) {
     note_thinning();
   }
   drop_unused_poses();
+  check_colours();
   check_triangles();
   cut_polygons();
   check_faces_left();

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "colour_scale.hpp"
 #include "grid_thinning.hpp"
 #include "tactree/builder/read_scan.hpp"
 #include "tactree/builder/scan.hpp"
@@ -24,14 +25,6 @@ enum Slot : std::uint8_t { kX, kY, kZ, kNx, kNy, kNz, kRed, kGreen, kBlue, kSlot
 
 using PointRow = std::array<double, kSlots>;
 
-enum class ColourRange : std::uint8_t {
-  kNone,
-  kByte,        ///< 0 .. 255
-  kWord,        ///< 0 .. 65535
-  kWordOrByte,  ///< 0 .. 65535 if a value exceeds 255, else 0 .. 255
-  kAuto,        ///< 0 .. 255 if a value exceeds 1.5, else 0 .. 1
-};
-
 class ScanBuilder {
  public:
   /// `place_unit` ("line", "byte", "face") is the unit of a face's position in messages.
@@ -39,7 +32,11 @@ class ScanBuilder {
 
   /// Call before the first point.
   void use_normals() { has_normals_ = true; }
-  void use_colours(ColourRange range) { colours_ = range; }
+  void use_colours(ColourRange range) { begin_colours(range); }
+  /// The colours of the next points have a range of their own. Call use_colours() first.
+  void begin_colours(ColourRange range) { colours_.begin(range, scan_.colours.size()); }
+  /// Removes the colours, of which some points have none.
+  void drop_colours();
   /// The file has no faces: ReadOptions::most_points limits its points, which are thinned
   /// (GridThinning), instead of the memory.
   void thin_large_cloud() { thins_ = most_points_ != 0; }
@@ -87,6 +84,7 @@ class ScanBuilder {
   [[nodiscard]] Scan finish(std::string format);
 
  private:
+  [[nodiscard]] bool has_colours() const { return colours_.range() != ColourRange::kNone; }
   [[nodiscard]] std::uint64_t bytes_for(std::uint64_t points, std::uint64_t triangles) const;
   [[nodiscard]] std::uint64_t points_that_fit() const;
   /// `points` is the declared number, if it is known to be too large.
@@ -104,8 +102,7 @@ class ScanBuilder {
   void drop_unused_poses();
   void add_normal(const PointRow& row);
   void add_colour(const PointRow& row);
-  void leave_unit_colours();
-  void leave_byte_colours();
+  void check_colours();
   void drop_point();
   void add_polygon(std::span<const std::int64_t> corners);
   void add_triangle(const std::array<std::uint32_t, 3>& triangle);
@@ -125,9 +122,7 @@ class ScanBuilder {
   std::string place_unit_;
   Scan scan_;
   bool has_normals_ = false;
-  ColourRange colours_ = ColourRange::kNone;
-  bool byte_colours_ = true;  // kWordOrByte: no value above 255 so far
-  bool unit_colours_ = true;  // kAuto: no value above 1.5 so far
+  ColourScale colours_;
   std::uint64_t extra_bytes_ = 0;
   std::uint64_t points_read_ = 0;
   std::uint64_t missing_normals_ = 0;

@@ -192,6 +192,31 @@ TEST_F(E57Test, ScalesColoursOfEachRange) {
   expect_parts(mixed.warnings[0], "1 of 2 scans", "colours");
 }
 
+TEST_F(E57Test, LargestColourOfAScanDecidesItsRange) {
+  const auto coloured = [](const E57Column& column, const std::string& limit) {
+    E57TestScan scan = points_on_line(3);
+    for (const std::string name : {"colorRed", "colorGreen", "colorBlue"}) {
+      scan.columns.push_back(column);
+      scan.columns.back().name = name;
+      if (limit.empty()) continue;
+      scan.xml += "<" + name + "Maximum type=\"Float\">" + limit + "</" + name + "Maximum>";
+    }
+    if (!limit.empty()) scan.xml = "<colorLimits type=\"Structure\">" + scan.xml + "</colorLimits>";
+    return scan;
+  };
+  const E57TestScan bytes = coloured(e57_single("", {0, 128, 255}), "");
+  const E57TestScan one = coloured(e57_integer("", 0, 255, {0, 128, 255}), "1");
+  const E57TestScan narrow = coloured(e57_integer("", 0, 65535, {0, 128, 255}), "");
+  const E57TestScan words = coloured(e57_double("", {0, 32896, 65535}), "");
+  const E57TestScan unit = coloured(e57_double("", {0, 0.5, 1}), "1");
+  const Scan result = read_scans({unit, bytes, one, words, narrow, unit});
+  ASSERT_EQ(result.colours.size(), 18U);
+  for (std::size_t i = 0; i < result.colours.size(); ++i) {
+    const std::uint8_t channel = i % 3 == 0 ? 0 : i % 3 == 1 ? 128 : 255;
+    EXPECT_EQ(result.colours[i], (Colour{channel, channel, channel})) << i;
+  }
+}
+
 TEST_F(E57Test, SkipsOtherFieldsAndText) {
   E57TestScan scan = points_on_line(40);
   E57Column text{"las:note", "type=\"String\"", 8, {}};

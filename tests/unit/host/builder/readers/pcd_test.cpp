@@ -111,6 +111,19 @@ TEST_F(PcdTest, ReadsColourFromFloatBits) {
   EXPECT_EQ(whole.colours.at(0), (Colour{0x40, 0x40, 0x70}));  // 4210800
 }
 
+TEST_F(PcdTest, WarnsOfColoursThatAreLostInText) {
+  const std::string head =
+      "FIELDS x y z rgb\nSIZE 4 4 4 4\nTYPE F F F F\nWIDTH 2\nHEIGHT 1\nPOINTS 2\nDATA ascii\n";
+  const Scan lost = read(head + "0 0 0 nan\n1 0 0 nan\n");
+  EXPECT_TRUE(lost.colours.empty());
+  ASSERT_EQ(lost.warnings.size(), 1U);
+  expect_parts(lost.warnings[0], "none of them is a number", "PCD in binary form");
+  const Scan partly = read(head + "0 0 0 4210800\n1 0 0 nan\n");
+  EXPECT_EQ(partly.colours.at(0), (Colour{0x40, 0x40, 0x70}));
+  ASSERT_EQ(partly.warnings.size(), 1U);
+  expect_parts(partly.warnings[0], "1 of 2 points");
+}
+
 TEST_F(PcdTest, ReadsMixedBinaryTypes) {
   const std::string head =
       "VERSION .7\nFIELDS id z y x _ rgba\nSIZE 2 8 4 4 1 4\nTYPE U F I F U U\n"

@@ -323,6 +323,31 @@ TEST_F(PlyTest, RecognisesColourScales) {
   EXPECT_EQ(plain.colours.at(0), (Colour{0, 1, 255}));
 }
 
+TEST_F(PlyTest, LargestColourDecidesItsRange) {
+  for (const char* type : {"ushort", "uint", "int", "float", "double"}) {
+    const Scan bytes = read(with_colour_type(type, "0 0 0 1 1 0\n1 1 1 200 7 255\n"));
+    EXPECT_EQ(bytes.colours.at(0), (Colour{1, 1, 0})) << type;
+    EXPECT_EQ(bytes.colours.at(1), (Colour{200, 7, 255})) << type;
+    const Scan words = read(with_colour_type(type, "0 0 0 1 255 0\n1 1 1 65535 514 257\n"));
+    EXPECT_EQ(words.colours.at(0), (Colour{0, 1, 0})) << type;
+    EXPECT_EQ(words.colours.at(1), (Colour{255, 2, 1})) << type;
+  }
+  const Scan beyond = read(with_colour_type("float", "0 0 0 1 0 0\n1 1 1 70000 0 0\n"));
+  ASSERT_EQ(beyond.warnings.size(), 1U);
+  expect_parts(beyond.warnings[0], "above 65535", "export");
+}
+
+TEST_F(PlyTest, WarnsOfColoursThatAreNotNumbers) {
+  const Scan some = read(with_colour_type("float", "0 0 0 nan 0 0\n1 1 1 200 0 0\n"));
+  EXPECT_EQ(some.colours.at(1), (Colour{200, 0, 0}));
+  ASSERT_EQ(some.warnings.size(), 1U);
+  expect_parts(some.warnings[0], "1 of 2 points", "black");
+  const Scan none = read(with_colour_type("float", "0 0 0 nan 0 0\n1 1 1 nan 0 0\n"));
+  EXPECT_TRUE(none.colours.empty());
+  ASSERT_EQ(none.warnings.size(), 1U);
+  expect_parts(none.warnings[0], "none of them is a number");
+}
+
 TEST_F(PlyTest, IgnoresIncompleteColoursAndNormals) {
   const Scan scan = read(
       "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"

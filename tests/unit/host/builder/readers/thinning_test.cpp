@@ -307,5 +307,27 @@ TEST(ScanBuilder, ThinsNormalsAndColoursWithPoints) {
   EXPECT_EQ(dropped(scan, kBeyondMemoryLimit) + scan.positions.size(), 4999U);
 }
 
+TEST(ScanBuilder, ThinningKeepsTheRangesOfColoursApart) {
+  ReadOptions options;
+  options.most_points = 500;
+  ScanBuilder builder("scan", options, "line");
+  builder.use_colours(ColourRange::kAuto);
+  builder.thin_large_cloud();
+  builder.reserve_points(4000);
+  const std::vector<Vector3d> points = exact(ball(4000));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (i == 300) builder.begin_colours(ColourRange::kAuto);
+    const double full = i < 300 ? 1.0 : i < 3999 ? 255.0 : 65535.0;
+    builder.add_point({points[i].x(), points[i].y(), points[i].z(), 0, 0, 0, full, 0, 0});
+  }
+  const Scan scan = builder.finish("test");
+  ASSERT_EQ(scan.colours.size(), scan.positions.size());
+  for (std::size_t i = 0; i < scan.positions.size(); ++i) {
+    const auto at = std::find(points.begin(), points.end(), scan.positions[i]) - points.begin();
+    const int red = at < 300 || at == 3999 ? 255 : 1;
+    EXPECT_EQ(scan.colours[i][0], red) << at;
+  }
+}
+
 }  // namespace
 }  // namespace tactree::builder
