@@ -22,6 +22,7 @@ namespace tactree::builder {
 namespace {
 
 constexpr std::uint64_t kLeastRowBytes = 8;  // "0 0 0 0", and the end of the line
+constexpr std::size_t kPlainValues = 4;
 constexpr std::size_t kColourValues = 7;
 constexpr double kAffine = 1e-6;
 
@@ -49,6 +50,7 @@ class PtxReader {
           "was ignored (give --viewpoint X,Y,Z of the scanner).",
           unknown_, scans_));
     }
+    drop_incomplete_colours();
     return builder_.finish("PTX");
   }
 
@@ -93,17 +95,15 @@ class PtxReader {
   Eigen::Vector3d read_point(std::string_view line, const Eigen::Affine3d& to_file) {
     std::array<double, kColourValues> values{};
     const std::size_t there = parse(line, values);
-    if (builder_.points_read() + missing_ == 0 && there == kColourValues) {
-      has_colours_ = true;
-      builder_.use_colours(ColourRange::kByte);
+    if (there < kPlainValues) {
+      fail_line(fmt::format("the row has fewer than {} values", kPlainValues));
     }
-    const std::size_t wanted = has_colours_ ? kColourValues : 4;
-    if (there < wanted) fail_line(fmt::format("the row has fewer than {} values", wanted));
     const Eigen::Vector3d local(values[0], values[1], values[2]);
-    if (local.isZero(0.0)) {
+    if (local.isZero(0.0)) {  // of any number of values
       ++missing_;
       return unknown();
     }
+    count_colour(there);
     const Eigen::Vector3d at = to_file * local;
     PointRow row{};
     row[kX] = at.x();
@@ -114,6 +114,24 @@ class PtxReader {
     row[kBlue] = values[6];
     builder_.add_point(row);
     return at;
+  }
+
+  /// The first point decides whether the points have colours.
+  void count_colour(std::size_t values) {
+    if (coloured_ > 0 && values != kPlainValues && values != kColourValues) {
+      fail_line(fmt::format("the row has fewer than {} values", kColourValues));
+    }
+    if (coloured_ + plain_ == 0 && values == kColourValues) {
+      builder_.use_colours(ColourRange::kWordOrByte);
+    }
+    ++(values == kColourValues ? coloured_ : plain_);
+  }
+
+  void drop_incomplete_colours() {
+    if (coloured_ == 0 || plain_ == 0) return;
+    builder_.drop_colours();
+    builder_.warn(fmt::format("Only {} of {} points have colours, which were therefore ignored.",
+                              coloured_, coloured_ + plain_));
   }
 
   /// Parses the numbers of a line, at most as many as `values` has room for. Returns their number.
@@ -180,7 +198,8 @@ class PtxReader {
 
   InputFile& file_;
   ScanBuilder builder_;
-  bool has_colours_ = false;
+  std::uint64_t coloured_ = 0;  // measured points
+  std::uint64_t plain_ = 0;     // those without a colour
   std::uint64_t scans_ = 0;
   std::uint64_t missing_ = 0;
   std::uint64_t unknown_ = 0;  // scans without a pose

@@ -69,6 +69,36 @@ TEST_F(PtxTest, ReadsColours) {
   EXPECT_TRUE(read(header(4, 3, kIdentity) + wall(4, 3)).colours.empty());
 }
 
+TEST_F(PtxTest, IgnoresColoursOfAPart) {
+  const std::string plain = header(4, 3, kIdentity) + wall(4, 3);
+  const std::string coloured = header(4, 3, kIdentity) + wall(4, 3, false, " 0.5 255 128 0");
+  for (const std::string& text : {plain + coloured, coloured + plain}) {
+    const Scan scan = read(text);
+    EXPECT_EQ(scan.positions.size(), 24U);
+    EXPECT_TRUE(scan.colours.empty());
+    ASSERT_EQ(scan.warnings.size(), 1U);
+    expect_parts(scan.warnings[0], "Only 12 of 24 points have colours");
+  }
+  std::string cut = coloured;
+  cut.replace(cut.rfind(" 128 0"), 6, "");
+  expect_parts(refusal_of(cut), "line 22", "fewer than 7");
+}
+
+TEST_F(PtxTest, UnmeasuredPointsNeedNoColour) {
+  for (const std::string line : {"0 0 0 0.5", "0 0 0 0.5 0 0 0"}) {
+    for (const int row : {0, 5}) {
+      std::string points = wall(4, 3, false, " 0.5 255 128 0");
+      std::size_t at = 0;
+      for (int i = 0; i < row; ++i) at = points.find('\n', at) + 1;
+      points.replace(at, points.find('\n', at) - at, line);
+      const Scan scan = read(header(4, 3, kIdentity) + points);
+      ASSERT_EQ(scan.colours.size(), 11U);
+      EXPECT_EQ(scan.colours[5], (std::array<std::uint8_t, 3>{255, 128, 0}));
+      EXPECT_TRUE(scan.warnings.empty());
+    }
+  }
+}
+
 // Programs write points in the frame of the file beside a scanner at its origin.
 TEST_F(PtxTest, IgnoresContradictedScanner) {
   std::string saw;  // seen from the origin, its teeth turn this side and that
