@@ -36,6 +36,9 @@ constexpr double kMaxCoordinate_m = 1e12;
 // Range of extents that the lattice of a blob can represent at a useful spacing.
 constexpr double kMinModel_m = 1e-6;
 constexpr double kMaxModel_m = 1e6;
+// Vertices of a mesh in no face, without a warning.
+constexpr double kMaxUnusedPart = 0.1;
+constexpr std::size_t kMaxUnused = 100;
 constexpr std::size_t kColoursReported = 5;
 
 // Returns false for NaN.
@@ -274,6 +277,21 @@ class Cleaner {
     }
   }
 
+  // Some vertices that editing has left behind are usual; many may be a cloud beside the mesh.
+  void leave_out_unused(std::size_t unused) {
+    drop("not_in_a_face", unused);
+    const std::size_t all = input_.mesh.positions.size();
+    if (unused <= kMaxUnused ||
+        static_cast<double>(unused) <= kMaxUnusedPart * static_cast<double>(all)) {
+      return;
+    }
+    report_.warnings.push_back(
+        fmt::format("{} of {} vertices of the mesh are in no face and were left out (if they are a "
+                    "cloud of points beside it, export them to a file of their own and build from "
+                    "both files)",
+                    unused, all));
+  }
+
   void clean_mesh() {
     Mesh& mesh = input_.mesh;
     if (mesh.triangles.empty()) {
@@ -285,7 +303,7 @@ class Cleaner {
         used[corner] = true;
       }
     }
-    drop("not_in_a_face", static_cast<std::uint64_t>(std::count(used.begin(), used.end(), false)));
+    leave_out_unused(static_cast<std::size_t>(std::count(used.begin(), used.end(), false)));
     const std::vector<bool> keep = corners_to_keep(used);
     const auto [degenerate, far] = drop_faces(mesh, keep);
     drop("degenerate_face", degenerate);

@@ -288,6 +288,30 @@ TEST(Cleaning, DropsUnusedAndOutlyingCorners) {
   EXPECT_NEAR(cleaned.input.bounds.sizes().x(), 0.2, 1e-12);
 }
 
+TEST(Cleaning, WarnsOfManyVerticesInNoFace) {
+  const auto warnings_with = [](std::uint32_t boxes, std::size_t unused) {
+    Mesh mesh;
+    const Mesh box = box_mesh({-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1});
+    for (std::uint32_t i = 0; i < boxes; ++i) {  // of 8 vertices, beside each other
+      for (const Eigen::Vector3d& p : box.positions) {
+        mesh.positions.push_back(p + Eigen::Vector3d(0.3 * i, 0, 0));
+      }
+      for (const auto& [a, b, c] : box.triangles) {
+        mesh.triangles.push_back({8 * i + a, 8 * i + b, 8 * i + c});
+      }
+    }
+    for (std::size_t i = 0; i < unused; ++i)
+      mesh.positions.emplace_back(0.1 * static_cast<double>(i), 1, 0);
+    return clean_one(mesh_scan(std::move(mesh))).report.warnings;
+  };
+  EXPECT_TRUE(warnings_with(10, 100).empty());   // few
+  EXPECT_TRUE(warnings_with(125, 110).empty());  // a small part
+  const std::vector<std::string> warnings = warnings_with(125, 112);
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_NE(warnings[0].find("112 of 1112 vertices"), std::string::npos) << warnings[0];
+  EXPECT_NE(warnings[0].find("file of their own"), std::string::npos);
+}
+
 TEST(Cleaning, JoinsScansDespiteMissingNormals) {
   std::vector<Scan> scans;
   scans.push_back(cloud_scan(without_normals(even_sphere(500, 0.1))));
