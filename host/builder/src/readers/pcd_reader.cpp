@@ -28,6 +28,17 @@ struct UsedField {
   bool packed_colour = false;
 };
 
+/// Refuses names of which it is not known which one is meant.
+void check_names(const InputFile& file, const std::vector<UsedField>& used, const PcdField& field) {
+  for (const UsedField& earlier : used) {
+    if (!equal_ignoring_case(earlier.field.name, field.name)) continue;
+    throw ReadError(
+        file.name(), "header",
+        fmt::format("FIELDS names both \"{}\" and \"{}\"", earlier.field.name, field.name),
+        "export the scan again, with one field of each name");
+  }
+}
+
 std::vector<UsedField> used_fields(const InputFile& file, const PcdHeader& header) {
   std::vector<UsedField> used;
   std::array<bool, kSlots> filled{};
@@ -41,7 +52,9 @@ std::vector<UsedField> used_fields(const InputFile& file, const PcdHeader& heade
       continue;
     }
     const Slot slot = slot_of_name(field.name);
-    if (slot == kNoSlot || filled[slot]) continue;
+    if (slot == kNoSlot) continue;
+    check_names(file, used, field);
+    if (filled[slot]) continue;
     filled[slot] = true;
     used.push_back({field, slot, false});
   }

@@ -228,6 +228,17 @@ TEST_F(PcdTest, RefusesDamagedHeaders) {
   expect_parts(refusal_of("# .PCD v0.7\nVERSION .7\nFIELDS x y z\nSIZE 4 4 4\n"), "DATA");
 }
 
+TEST_F(PcdTest, RefusesTwoFieldsOfOneName) {
+  const auto refusal_with = [&](const std::string& extra) {
+    return refusal_of("FIELDS x " + extra +
+                          " y z\nSIZE 4 4 4 4\nTYPE F F F F\nWIDTH 1\nHEIGHT 1\nPOINTS 1\n"
+                          "DATA ascii\n1 2 3 4\n",
+                      "a.pcd");
+  };
+  expect_parts(refusal_with("X"), "a.pcd: header", "\"x\" and \"X\"", "export");
+  expect_parts(refusal_with("x"), "a.pcd: header", "\"x\" and \"x\"", "export");
+}
+
 TEST_F(PcdTest, AsciiRowsMustFit) {
   expect_parts(refusal_of(xyz_header(2, "ascii") + "1 2 3\n1 2\n"), "line 13", "fewer");
   expect_parts(refusal_of(xyz_header(2, "ascii") + "1 2 3\n1 2 x\n"), "line 13", "\"x\"");
