@@ -5,8 +5,6 @@
 #include <limits>
 #include <span>
 
-#include "mesh_import/imported_mesh.hpp"
-
 namespace tactree::builder {
 namespace {
 
@@ -20,6 +18,11 @@ constexpr std::string_view kUnusedResources[] = {"colorgroup", "texture2dgroup",
 std::string_view without_space(std::string_view text) {
   text.remove_prefix(std::min(text.find_first_not_of(kSpace), text.size()));
   return text;
+}
+
+std::string_view trimmed(std::string_view text) {
+  text = without_space(text);
+  return text.substr(0, text.find_last_not_of(kSpace) + 1);
 }
 
 bool is_name_character(char c) {
@@ -88,23 +91,27 @@ bool find_attributes(std::string_view text, std::span<const std::string_view> na
 
 }  // namespace
 
-double number_of(std::string_view text, const char* what) {
-  while (!text.empty() && (text.front() == ' ' || text.front() == '+')) {
-    text.remove_prefix(1);
-  }
+std::optional<double> number_of(std::string_view text) {
+  text = trimmed(text);
+  if (text.starts_with('+')) text.remove_prefix(1);
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end == text.data()) {
-    throw ImportError(std::string("\"") + std::string(text.substr(0, 20)) + "\" is not a " + what);
-  }
+  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
   return value;
 }
 
 std::uint32_t index_of(std::string_view text) {
+  text = trimmed(text);
   std::uint32_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  (void)end;
-  return error == std::errc{} ? value : std::numeric_limits<std::uint32_t>::max();
+  const bool whole = error == std::errc{} && end == text.data() + text.size();
+  return whole ? value : std::numeric_limits<std::uint32_t>::max();
+}
+
+ImportError not_a(std::string_view text, const std::string& what) {
+  const bool comma = text.find(',') != std::string_view::npos;
+  return ImportError("\"" + std::string(text.substr(0, 20)) + "\" is not a " + what +
+                     (comma ? ", which needs a decimal point" : ""));
 }
 
 bool MeshExtractor::feed(std::string_view bytes) {
@@ -214,9 +221,15 @@ bool MeshExtractor::add_vertex(std::string_view attributes) {
   constexpr std::array<std::string_view, 3> kAxes = {"x", "y", "z"};
   std::array<std::string_view, 3> values;
   if (!find_attributes(attributes, kAxes, values)) return false;
-  constexpr const char* kWhat = "coordinate of a vertex";
-  blocks_.back().vertices.emplace_back(number_of(values[0], kWhat), number_of(values[1], kWhat),
-                                       number_of(values[2], kWhat));
+  std::vector<Eigen::Vector3d>& vertices = blocks_.back().vertices;
+  Eigen::Vector3d vertex;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    const std::string_view text = values[static_cast<std::size_t>(axis)];
+    const std::optional<double> number = number_of(text);
+    if (!number) throw not_a(text, "coordinate of vertex " + std::to_string(vertices.size()));
+    vertex[axis] = *number;
+  }
+  vertices.push_back(vertex);
   return true;
 }
 

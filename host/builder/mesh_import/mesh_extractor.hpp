@@ -6,10 +6,13 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
+
+#include "mesh_import/imported_mesh.hpp"
 
 namespace tactree::builder {
 
@@ -19,8 +22,11 @@ struct MeshBlock {
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// Parses a number at the beginning of `text`. Throws ImportError, "... is not a WHAT".
-[[nodiscard]] double number_of(std::string_view text, const char* what);
+/// Parses a number, with space around it; nullopt if `text` is anything else.
+[[nodiscard]] std::optional<double> number_of(std::string_view text);
+
+/// The refusal of a text that is not a number: "12,7" is not a `what`.
+[[nodiscard]] ImportError not_a(std::string_view text, const std::string& what);
 
 /// Parses an index. Invalid text becomes the maximum, so that the triangle is dropped.
 [[nodiscard]] std::uint32_t index_of(std::string_view text);

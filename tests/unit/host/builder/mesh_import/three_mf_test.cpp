@@ -119,6 +119,36 @@ TEST_F(ThreeMfTest, RefusesDamage) {
   expect_parts(scan.warnings[0], "1 triangles were dropped");
 }
 
+/// A number is read whole or refused: its beginning would be another number.
+TEST_F(ThreeMfTest, RefusesTextAfterNumbers) {
+  const auto refused = [this](const std::string& from, const std::string& to, bool stored) {
+    std::string root = model(object("1", kMesh),
+                             R"(<item objectid="1" transform=" 1 0 0 0 1 0 0 0 1 12.7 0 0 "/>)");
+    root.replace(root.find(from), from.size(), to);
+    // A document type makes the reader parse the document as a whole.
+    if (stored) root.replace(root.find("<model "), 7, "<!DOCTYPE model><model ");
+    return refusal_of(package(root), "a.3mf");
+  };
+  for (const bool whole : {false, true}) {
+    const std::string comma = refused("y=\"2\"", "y=\"2,5\"", whole);
+    expect_parts(comma, "a.3mf", "part \"3D/3dmodel.model\"", "\"2,5\" is not a coordinate");
+    expect_parts(comma, "vertex 2, which needs a decimal point");
+    expect_parts(refused("x=\"1\"", "x=\"0x1\"", whole), "\"0x1\" is not a coordinate of vertex 1");
+    expect_parts(refused("12.7", "12,7", whole), "\"12,7\" is not a number of a transform");
+    expect_parts(refused("12.7", "12.7 3", whole), "a transform has 13 numbers, not 12");
+    expect_parts(refused("12.7", "", whole), "a transform has 11 numbers, not 12");
+  }
+  std::string spaced = model(object("1", kMesh), R"(<item objectid="1"/>)");
+  spaced.replace(spaced.find("x=\"1\""), 5, "x=\" 1\t\"");
+  EXPECT_EQ(read(package(spaced)).positions.at(1), Eigen::Vector3d(1, 0, 0));
+  // The index of a point is a whole number, too.
+  std::string index = model(object("1", kMesh), R"(<item objectid="1"/>)");
+  index.replace(index.find("v3=\"1\""), 6, "v3=\"1.9\"");
+  const Scan scan = read(package(index));
+  EXPECT_EQ(scan.triangles.size(), 3U);
+  expect_parts(scan.warnings.at(0), "1 triangles were dropped");
+}
+
 TEST_F(ThreeMfTest, LocatesMalformedXml) {
   std::string word = model(object("1", kMesh), R"(<item objectid="1"/>)");
   const std::size_t place = word.find("<triangle ");
