@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "mesh_import/mesh_extractor.hpp"
+#include "mesh_import/slicer_volumes.hpp"
 #include "mesh_import/three_mf_model.hpp"
 #include "mesh_import/xml_document.hpp"
 #include "mesh_import/zip_archive.hpp"
@@ -31,20 +32,27 @@ class Assembly {
   explicit Assembly(std::string_view bytes) : archive_(bytes) {}
 
   ImportedMesh read() {
-    const ModelPart& root = model(root_part());
+    ModelPart& root = model(root_part());
+    remove_volumes(root);
     mesh_.unit_m = root.unit_m;
     if (root.build.empty()) {
       throw ImportError("its build refers to no object");
     }
     for (const ModelComponent& item : root.build) {
-      add(item, Transform::Identity(), 0);
+      if (item.printed) {
+        add(item, Transform::Identity(), 0);
+      } else {
+        ++parts_.left_out["item that is not printed"];
+      }
     }
+    mesh_.warning = parts_.text();
     if (mesh_.positions.empty()) {
-      throw ImportError("it contains no points and no faces");
+      throw ImportError("it contains no points and no faces" +
+                        (mesh_.warning.empty() ? "" : ". " + mesh_.warning));
     }
     if (bad_triangles_ > 0) {
-      mesh_.warning = std::to_string(bad_triangles_) +
-                      " triangles were dropped: they refer to points that the file does not have.";
+      mesh_.warning += (mesh_.warning.empty() ? "" : " ") + std::to_string(bad_triangles_) +
+                       " triangles were dropped: they refer to points that the file does not have.";
     }
     return std::move(mesh_);
   }
@@ -81,7 +89,17 @@ class Assembly {
     return first;
   }
 
-  const ModelPart& model(const std::string& part) {
+  /// Removes what a slicer has marked as other than the body.
+  void remove_volumes(ModelPart& root) {
+    if (archive_.contains(kSlic3rVolumes)) {
+      remove_slic3r_volumes(parsed(kSlic3rVolumes), root, parts_);
+    }
+    if (archive_.contains(kOrcaVolumes)) {
+      remove_orca_volumes(parsed(kOrcaVolumes), root, parts_);
+    }
+  }
+
+  ModelPart& model(const std::string& part) {
     const auto found = models_.find(part);
     if (found != models_.end()) {
       return found->second;
@@ -121,6 +139,14 @@ class Assembly {
     }
     const Transform transform = outer * component.transform;
     const ModelObject& object = found->second;
+    const std::string_view kind = kind_of_type(object.type);
+    if (!kind.empty()) {
+      ++parts_.left_out[std::string(kind)];
+      return;
+    }
+    if (!object.type.empty() && object.type != "model") {
+      ++parts_.kept["object of the type \"" + object.type.substr(0, 40) + "\""];
+    }
     // If a part has another unit, this unit applies to its vertices.
     add_mesh(object, transform, from.unit_m / mesh_.unit_m);
     for (const ModelComponent& inner : object.components) {
@@ -162,6 +188,7 @@ class Assembly {
   ZipArchive archive_;
   std::map<std::string, ModelPart, std::less<>> models_;
   ImportedMesh mesh_;
+  NonBodyParts parts_;
   std::size_t instances_ = 0;
   std::uint64_t bad_triangles_ = 0;
 };

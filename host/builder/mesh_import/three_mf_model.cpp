@@ -70,6 +70,24 @@ void check_extensions(pugi::xml_node model) {
   }
 }
 
+/// The type of an object, as the core specification names it. Cura has a type "model" for all, and
+/// marks the others by its settings.
+std::string_view type_of(pugi::xml_node object) {
+  constexpr std::pair<std::string_view, std::string_view> kSettings[] = {
+      {"cura:support_mesh", "support"},
+      {"cura:anti_overhang_mesh", "support blocker"},
+      {"cura:infill_mesh", "modifier"},
+      {"cura:cutting_mesh", "modifier"}};
+  std::string_view type = attribute_of(object, "type");
+  for_children(child_of(object, "metadatagroup"), "metadata", [&](pugi::xml_node metadata) {
+    const std::string_view name = metadata.attribute("name").value();
+    for (const auto& [setting, meaning] : kSettings) {
+      if (name == setting && std::string_view(metadata.child_value()) == "True") type = meaning;
+    }
+  });
+  return type;
+}
+
 /// Reads one model part.
 class ModelReader {
  public:
@@ -96,6 +114,7 @@ class ModelReader {
  private:
   void read_object(pugi::xml_node element) {
     ModelObject& object = model_.objects[std::string(attribute_of(element, "id"))];
+    object.type = type_of(element);
     for_children(element, "mesh", [&](pugi::xml_node mesh) { read_mesh(mesh, object); });
     for_children(element, "components", [&](pugi::xml_node components) {
       for_children(components, "component",
@@ -148,8 +167,9 @@ class ModelReader {
 
   [[nodiscard]] ModelComponent component(pugi::xml_node element) const {
     const std::string_view path = attribute_of(element, "path");
+    const std::string_view printed = attribute_of(element, "printable");
     return {path.empty() ? part_ : part_path(path), std::string(attribute_of(element, "objectid")),
-            transform_of(attribute_of(element, "transform"))};
+            transform_of(attribute_of(element, "transform")), printed != "0" && printed != "false"};
   }
 
   pugi::xml_node root_;

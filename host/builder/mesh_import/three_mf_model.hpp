@@ -20,9 +20,11 @@ struct ModelComponent {
   std::string part;  // path of its model part
   std::string object;
   Eigen::Affine3d transform = Eigen::Affine3d::Identity();
+  bool printed = true;
 };
 
 struct ModelObject {
+  std::string type;  // "model" or empty for the body
   std::vector<Eigen::Vector3d> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<ModelComponent> components;

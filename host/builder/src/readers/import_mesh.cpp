@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 constexpr const char* kProgram = "tactree-import-mesh";
 constexpr const char* kVariable = "TACTREE_IMPORT_MESH";
 // Maximum length of a message, because some messages of the library quote the file at length.
-constexpr std::size_t kQuoted = 160;
+constexpr std::size_t kQuoted = 600;
 constexpr const char* kSaveAsPly = "open it in Blender or MeshLab and save it as PLY";
 
 bool is_program(const fs::path& path) { return ::access(path.c_str(), X_OK) == 0; }
