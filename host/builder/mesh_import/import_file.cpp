@@ -14,6 +14,7 @@
 #include <string>
 #include <string_view>
 
+#include "mesh_import/amf_file.hpp"
 #include "mesh_import/contained_files.hpp"
 #include "mesh_import/gltf_file.hpp"
 #include "mesh_import/gltf_scene.hpp"
@@ -60,6 +61,9 @@ std::string read_file(const char* file) {
 std::optional<ImportedMesh> read_mesh(const char* file, std::string_view hint) {
   if (hint == "3mf") {
     return read_3mf(read_file(file));
+  }
+  if (hint == "amf") {
+    return read_amf(read_file(file));
   }
   if (hint == "glb" || hint == "gltf") {
     ContainedFiles files(file, std::string(hint));

@@ -31,15 +31,6 @@ constexpr Kind kVolumeKinds[] = {
     {"support_blocker", "support blocker"},
 };
 
-/// Empty if the volume belongs to the body.
-std::string_view kind_of_volume(std::string_view type, NonBodyParts& parts) {
-  for (const Kind& kind : kVolumeKinds) {
-    if (kind.type == type) return kind.name;
-  }
-  ++parts.kept["volume of the type \"" + std::string(type.substr(0, 40)) + "\""];
-  return {};
-}
-
 std::string list_of(const std::map<std::string, std::size_t, std::less<>>& counts) {
   std::string text;
   for (const auto& [kind, count] : counts) {
@@ -133,6 +124,14 @@ std::string_view kind_of_type(std::string_view type) {
   if (type == "solidsupport") return "solid support";
   if (type == "other") return "object of the type \"other\"";
   return type == "modifier" || type == "support blocker" ? type : std::string_view{};
+}
+
+std::string_view kind_of_volume(std::string_view type, NonBodyParts& parts) {
+  for (const Kind& kind : kVolumeKinds) {
+    if (kind.type == type) return kind.name;
+  }
+  ++parts.kept["volume of the type \"" + std::string(type.substr(0, 40)) + "\""];
+  return {};
 }
 
 void remove_slic3r_volumes(const XmlDocument& settings, ModelPart& root, NonBodyParts& parts) {

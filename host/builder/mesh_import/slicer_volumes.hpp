@@ -1,6 +1,6 @@
 #pragma once
-// The parts of a 3MF build that are not the body: modifiers, supports and what is not printed. Core
-// files mark them by the type of an object; slicers mark them in files of their own.
+// The parts of a 3MF or AMF that are not the body: modifiers, supports and what is not printed.
+// Core files mark them by the type of an object; slicers mark them in files of their own.
 
 #include <cstddef>
 #include <map>
@@ -26,6 +26,9 @@ struct NonBodyParts {
 
 /// What a slicer calls the object of a type; empty if it is the body.
 [[nodiscard]] std::string_view kind_of_type(std::string_view type);
+
+/// The same for a volume of a slicer. An unknown type is the body, and counted in `parts`.
+[[nodiscard]] std::string_view kind_of_volume(std::string_view type, NonBodyParts& parts);
 
 /// Removes the triangles of the volumes in `settings`, the file kSlic3rVolumes of PrusaSlicer. They
 /// are ranges of the triangles of an object. Throws ImportError.

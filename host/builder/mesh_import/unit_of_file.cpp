@@ -47,24 +47,6 @@ double unit_of_collada(const std::string& file) {
   return metres > 0.0 && std::isfinite(metres) ? metres : 1.0;
 }
 
-// Returns metres per unit, or 0 if the name is not one of AMF.
-double unit_of_amf(const std::string& file) {
-  struct Unit {
-    std::string_view name;
-    double metres;
-  };
-  constexpr Unit kUnits[] = {{"", 1e-3},       {"millimeter", 1e-3}, {"inch", 0.0254},
-                             {"feet", 0.3048}, {"meter", 1.0},       {"micrometer", 1e-6},
-                             {"micron", 1e-6}, {"centimeter", 1e-2}};
-  const std::string name = attribute(read_file(file, kHeadBytes), "amf", "unit");
-  for (const Unit& unit : kUnits) {
-    if (unit.name == name) {
-      return unit.metres;
-    }
-  }
-  return 0.0;
-}
-
 // Returns metres per unit, or 0 if unknown. UnitScaleFactor is in centimetres.
 double unit_of_fbx(const aiScene& scene) {
   double wide = 0.0;
@@ -87,9 +69,6 @@ FileUnit unit_of_file(const aiScene& scene, const std::string& file, std::string
   if (hint == "fbx") {
     const double metres = unit_of_fbx(scene);
     return {metres > 0.0 && std::isfinite(metres) ? metres : 0.0, false};
-  }
-  if (hint == "amf") {
-    return {unit_of_amf(file), false};
   }
   if (hint == "dae") {
     return {unit_of_collada(file), true};

@@ -13,8 +13,8 @@ struct FileUnit {
   bool scene_scaled = false;  ///< the positions of the scene are already in metres
 };
 
-/// glTF and X3D: metres; FBX: its UnitScaleFactor; COLLADA: its <unit>, or metres; AMF: its unit,
-/// or millimetres. `hint` is the extension of the format.
+/// glTF and X3D: metres; FBX: its UnitScaleFactor; COLLADA: its <unit>, or metres. `hint` is the
+/// extension of the format.
 [[nodiscard]] FileUnit unit_of_file(const aiScene& scene, const std::string& file,
                                     std::string_view hint);
 

@@ -134,23 +134,6 @@ TEST_F(ImportTest, ReadsFormatOrFileUnit) {
   EXPECT_FALSE(read("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unit_m.has_value());
 }
 
-TEST_F(ImportTest, ReadsUnitOfAmf) {
-  const auto amf = [this](const std::string& attributes) {
-    return read("<?xml version=\"1.0\"?><amf" + attributes +
-                "><object id=\"1\"><mesh><vertices>"
-                "<vertex><coordinates><x>0</x><y>0</y><z>0</z></coordinates></vertex>"
-                "<vertex><coordinates><x>1</x><y>0</y><z>0</z></coordinates></vertex>"
-                "<vertex><coordinates><x>0</x><y>1</y><z>2</z></coordinates></vertex>"
-                "</vertices><volume><triangle><v1>0</v1><v2>1</v2><v3>2</v3></triangle></volume>"
-                "</mesh></object></amf>")
-        .unit_m;
-  };
-  EXPECT_EQ(amf(""), 1e-3);
-  EXPECT_EQ(amf(" unit=\"millimeter\" version=\"1.1\""), 1e-3);
-  EXPECT_EQ(amf(" version=\"1.1\" unit=\"inch\""), 0.0254);
-  EXPECT_EQ(amf(" unit=\"meter\""), 1.0);
-}
-
 /// The axes are those of the file, in which z is up.
 TEST_F(ImportTest, KeepsAxesOf3ds) {
   const auto chunk = [](std::uint16_t id, const std::string& content) {
