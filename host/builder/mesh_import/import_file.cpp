@@ -29,8 +29,8 @@ namespace {
 void configure(Assimp::Importer& importer) {
   importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS,
                               aiComponent_TEXCOORDS | aiComponent_TANGENTS_AND_BITANGENTS |
-                                  aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS |
-                                  aiComponent_LIGHTS | aiComponent_CAMERAS | aiComponent_MATERIALS);
+                                  aiComponent_ANIMATIONS | aiComponent_LIGHTS |
+                                  aiComponent_CAMERAS | aiComponent_MATERIALS);
   // Keeps the positions in the frame of the file.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
 }
@@ -107,7 +107,7 @@ bool import_file(const char* file, const char* hint, int output) {
     return refuse(output, reason.c_str());
   }
   std::FILE* to = ::fdopen(output, "wb");
-  SceneWriter writer(*scene, unit_of_file(*scene, file, hint), is_turned(hint), to);
+  SceneWriter writer(*scene, unit_of_file(*scene, file, hint), is_turned(hint), {}, to);
   return writer.write() || refuse(output, "it contains no points and no faces");
 }
 

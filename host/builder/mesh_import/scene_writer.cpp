@@ -5,25 +5,21 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "mesh_import/wire.hpp"
 
 namespace tactree::builder {
 namespace {
 
-Eigen::Matrix4d to_eigen(const aiMatrix4x4& matrix) {
-  Eigen::Matrix4d result;
-  for (unsigned row = 0; row < 4; ++row) {
-    for (unsigned column = 0; column < 4; ++column) {
-      result(row, column) = static_cast<double>(matrix[row][column]);
-    }
-  }
-  return result;
-}
-
 Eigen::Vector3d to_eigen(const aiVector3D& vector) {
   return {static_cast<double>(vector.x), static_cast<double>(vector.y),
           static_cast<double>(vector.z)};
+}
+
+/// Normals transform by the inverse transpose, also for a reflection.
+Eigen::Matrix3d normal_matrix(const PointTransform& transform) {
+  return transform.leftCols<3>().inverse().transpose();
 }
 
 std::uint8_t to_byte(float value) {
@@ -34,8 +30,9 @@ std::uint8_t to_byte(float value) {
 
 }  // namespace
 
-SceneWriter::SceneWriter(const aiScene& scene, const FileUnit& unit, bool turned, std::FILE* to)
-    : scene_(scene), unit_(unit), turned_(turned), to_(to) {}
+SceneWriter::SceneWriter(const aiScene& scene, const FileUnit& unit, bool turned,
+                         std::string warning, std::FILE* to)
+    : scene_(scene), unit_(unit), turned_(turned), warning_(std::move(warning)), to_(to) {}
 
 void SceneWriter::place_meshes() {
   struct Node {
@@ -50,13 +47,27 @@ void SceneWriter::place_meshes() {
     const Node current = open.back();
     open.pop_back();
     const Eigen::Matrix4d transform = current.parent * to_eigen(current.node->mTransformation);
+    nodes_.add(current.node->mName.C_Str(), transform);
     for (unsigned i = 0; i < current.node->mNumMeshes; ++i) {
       const unsigned index = current.node->mMeshes[i];
-      if (index < scene_.mNumMeshes) placed_.push_back({scene_.mMeshes[index], transform});
+      if (index < scene_.mNumMeshes) placed_.push_back({scene_.mMeshes[index], transform, {}});
     }
     for (unsigned i = current.node->mNumChildren; i > 0; --i) {
       open.push_back({current.node->mChildren[i - 1], transform});
     }
+  }
+}
+
+void SceneWriter::pose_meshes() {
+  std::string unknown_bone;
+  for (Placed& placed : placed_) {
+    placed.skin = skin_of(*placed.mesh, nodes_, placed.transform, unknown_bone);
+  }
+  if (!unknown_bone.empty()) {
+    warning_ += (warning_.empty() ? "" : " ") + std::string("The place of the bone \"") +
+                unknown_bone.substr(0, 40) +
+                "\" is not known: a mesh is read without its bones, perhaps at another place. "
+                "Apply the pose in Blender and save the file as PLY.";
   }
 }
 
@@ -74,6 +85,7 @@ void SceneWriter::count() {
 
 bool SceneWriter::write() {
   place_meshes();
+  pose_meshes();
   count();
   if (points_ == 0) return false;
   WireHeader header;
@@ -81,7 +93,10 @@ bool SceneWriter::write() {
   header.points = points_;
   header.triangles = triangles_;
   header.unit_m = unit_.metres;
+  header.text_bytes =
+      static_cast<std::uint32_t>(std::min<std::size_t>(warning_.size(), kMaxWireText));
   put(&header, sizeof header);
+  put(warning_.data(), header.text_bytes);
   for (const Placed& placed : placed_) write_points(placed);
   std::uint64_t first_point = 0;
   for (const Placed& placed : placed_) {
@@ -94,13 +109,16 @@ bool SceneWriter::write() {
 
 void SceneWriter::write_points(const Placed& placed) {
   const aiMesh& mesh = *placed.mesh;
-  const Eigen::Matrix3d linear = placed.transform.topLeftCorner<3, 3>();
-  const Eigen::Vector3d offset = placed.transform.topRightCorner<3, 1>();
   const double to_units = unit_.scene_scaled ? 1.0 / unit_.metres : 1.0;
-  // Normals transform by the inverse transpose, also for a reflection.
-  const Eigen::Matrix3d for_normals = linear.inverse().transpose();
+  PointTransform transform = placed.transform.topRows<3>();
+  Eigen::Matrix3d for_normals = normal_matrix(transform);
   for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
-    const Eigen::Vector3d position = to_units * (linear * to_eigen(mesh.mVertices[i]) + offset);
+    if (!placed.skin.empty()) {
+      transform = placed.skin[i];
+      if (normals_) for_normals = normal_matrix(transform);
+    }
+    const Eigen::Vector3d position =
+        to_units * (transform * to_eigen(mesh.mVertices[i]).homogeneous());
     put(position.data(), sizeof(double) * 3);
     if (normals_) {
       const Eigen::Vector3f normal =
@@ -118,8 +136,8 @@ void SceneWriter::write_points(const Placed& placed) {
 
 void SceneWriter::write_triangles(const Placed& placed, std::uint64_t first_point) {
   const aiMesh& mesh = *placed.mesh;
-  // A reflection reverses the winding, so two vertices are swapped.
-  const bool mirrored = placed.transform.topLeftCorner<3, 3>().determinant() < 0;
+  const auto is_mirrored = [](const auto& linear) { return linear.determinant() < 0; };
+  bool mirrored = is_mirrored(placed.transform.topLeftCorner<3, 3>());
   for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
     if (mesh.mFaces[i].mNumIndices != 3) continue;
     const unsigned* corners = mesh.mFaces[i].mIndices;
@@ -127,6 +145,8 @@ void SceneWriter::write_triangles(const Placed& placed, std::uint64_t first_poin
     for (std::size_t k = 0; k < 3; ++k) {
       triangle[k] = static_cast<std::uint32_t>(first_point + corners[k]);
     }
+    if (!placed.skin.empty()) mirrored = is_mirrored(placed.skin[corners[0]].leftCols<3>());
+    // A reflection reverses the winding, so two vertices are swapped.
     if (mirrored) std::swap(triangle[1], triangle[2]);
     put(triangle.data(), sizeof triangle);
   }

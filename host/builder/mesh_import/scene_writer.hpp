@@ -7,8 +7,10 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <cstdio>
+#include <string>
 #include <vector>
 
+#include "mesh_import/mesh_skin.hpp"
 #include "mesh_import/unit_of_file.hpp"
 
 namespace tactree::builder {
@@ -17,7 +19,9 @@ class SceneWriter {
  public:
   /// The positions are written in units of the file. `turned` means that the library has turned the
   /// z axis of the file to its y axis; the writer turns it back.
-  SceneWriter(const aiScene& scene, const FileUnit& unit, bool turned, std::FILE* to);
+  /// `warning` has sentences about the file, or is empty.
+  SceneWriter(const aiScene& scene, const FileUnit& unit, bool turned, std::string warning,
+              std::FILE* to);
 
   /// Returns false if the scene has no point or writing fails.
   [[nodiscard]] bool write();
@@ -27,9 +31,11 @@ class SceneWriter {
   struct Placed {
     const aiMesh* mesh;
     Eigen::Matrix4d transform;
+    std::vector<PointTransform> skin;  // empty without bones
   };
 
   void place_meshes();
+  void pose_meshes();
   void count();
   void write_points(const Placed& placed);
   void write_triangles(const Placed& placed, std::uint64_t first_point);
@@ -38,8 +44,10 @@ class SceneWriter {
   const aiScene& scene_;
   FileUnit unit_;
   bool turned_;
+  std::string warning_;
   std::FILE* to_;
   bool failed_ = false;
+  NodePlaces nodes_;
   std::vector<Placed> placed_;
   std::uint64_t points_ = 0;
   std::uint64_t triangles_ = 0;
