@@ -13,15 +13,18 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "mesh_import/amf_file.hpp"
 #include "mesh_import/contained_files.hpp"
 #include "mesh_import/gltf_file.hpp"
 #include "mesh_import/gltf_scene.hpp"
 #include "mesh_import/imported_mesh.hpp"
+#include "mesh_import/scene_notes.hpp"
 #include "mesh_import/scene_writer.hpp"
 #include "mesh_import/three_mf.hpp"
 #include "mesh_import/unit_of_file.hpp"
+#include "mesh_import/x3d_check.hpp"
 
 namespace tactree::builder {
 namespace {
@@ -75,6 +78,11 @@ std::optional<ImportedMesh> read_mesh(const char* file, std::string_view hint) {
   return std::nullopt;
 }
 
+/// Of a file that the library reads.
+SceneNotes notes_of_file(const char* file, std::string_view hint) {
+  return hint == "x3d" ? check_x3d(read_file(file)) : SceneNotes{};
+}
+
 bool refuse(int output, const char* text) {
   write_status(output, WireStatus::kRefused, text);
   return false;
@@ -83,10 +91,12 @@ bool refuse(int output, const char* text) {
 }  // namespace
 
 bool import_file(const char* file, const char* hint, int output) {
+  SceneNotes notes;
   try {
     if (const std::optional<ImportedMesh> mesh = read_mesh(file, hint)) {
       return write_mesh(*mesh, ::fdopen(output, "wb"));
     }
+    notes = notes_of_file(file, hint);
   } catch (const ImportError& error) {
     return refuse(output, error.what());
   }
@@ -107,7 +117,9 @@ bool import_file(const char* file, const char* hint, int output) {
     return refuse(output, reason.c_str());
   }
   std::FILE* to = ::fdopen(output, "wb");
-  SceneWriter writer(*scene, unit_of_file(*scene, file, hint), is_turned(hint), {}, to);
+  FileUnit unit = unit_of_file(*scene, file, hint);
+  if (notes.unit_m > 0.0) unit.metres = notes.unit_m;
+  SceneWriter writer(*scene, unit, is_turned(hint), std::move(notes.warning), to);
   return writer.write() || refuse(output, "it contains no points and no faces");
 }
 
