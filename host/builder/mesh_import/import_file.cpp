@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "mesh_import/amf_file.hpp"
+#include "mesh_import/collada_check.hpp"
 #include "mesh_import/contained_files.hpp"
 #include "mesh_import/gltf_file.hpp"
 #include "mesh_import/gltf_scene.hpp"
@@ -80,7 +81,8 @@ std::optional<ImportedMesh> read_mesh(const char* file, std::string_view hint) {
 
 /// Of a file that the library reads.
 SceneNotes notes_of_file(const char* file, std::string_view hint) {
-  return hint == "x3d" ? check_x3d(read_file(file)) : SceneNotes{};
+  if (hint == "x3d") return check_x3d(read_file(file));
+  return hint == "dae" ? check_collada(read_file(file)) : SceneNotes{};
 }
 
 bool refuse(int output, const char* text) {

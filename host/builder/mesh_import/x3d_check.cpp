@@ -74,7 +74,7 @@ class X3dCheck {
   SceneNotes check() {
     for_children(child_of(root_, "head"), "unit", [&](pugi::xml_node unit) { take_unit(unit); });
     const pugi::xml_node scene = child_of(root_, "Scene");
-    for (pugi::xml_node at = scene.first_child(); !at.empty(); at = next(at, scene)) {
+    for (pugi::xml_node at = scene.first_child(); !at.empty(); at = next_node(at, scene)) {
       if (at.type() == pugi::node_element) take(at);
     }
     if (texts_ > 0) {
@@ -85,13 +85,6 @@ class X3dCheck {
   }
 
  private:
-  /// The next node of the subtree in the order of the document.
-  static pugi::xml_node next(pugi::xml_node at, pugi::xml_node end) {
-    if (const pugi::xml_node child = at.first_child(); !child.empty()) return child;
-    while (at != end && at.next_sibling().empty()) at = at.parent();
-    return at == end ? pugi::xml_node{} : at.next_sibling();
-  }
-
   void take(pugi::xml_node node) {
     const std::string_view name = local_name(node);
     const bool used = !attribute_of(node, "USE").empty();

@@ -65,6 +65,12 @@ pugi::xml_node child_of(pugi::xml_node parent, std::string_view name) {
   });
 }
 
+pugi::xml_node next_node(pugi::xml_node at, pugi::xml_node root) {
+  if (const pugi::xml_node child = at.first_child(); !child.empty()) return child;
+  while (at != root && at.next_sibling().empty()) at = at.parent();
+  return at == root ? pugi::xml_node{} : at.next_sibling();
+}
+
 std::string_view attribute_of(pugi::xml_node element, std::string_view name) {
   return element
       .find_attribute([&](pugi::xml_attribute a) { return without_prefix(a.name()) == name; })

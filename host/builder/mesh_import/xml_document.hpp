@@ -51,6 +51,9 @@ class XmlDocument {
 /// The first child element with this local name, or a null node if there is none.
 [[nodiscard]] pugi::xml_node child_of(pugi::xml_node parent, std::string_view name);
 
+/// The next node of the subtree of `root`, in the order of the document, or a null node.
+[[nodiscard]] pugi::xml_node next_node(pugi::xml_node at, pugi::xml_node root);
+
 /// Value of an attribute, by its local name; empty if there is none.
 [[nodiscard]] std::string_view attribute_of(pugi::xml_node element, std::string_view name);
 

@@ -1,4 +1,4 @@
-// COLLADA: skins in the pose of the file.
+// COLLADA: skins in the pose of the file, parts that are missing.
 
 #include "test_files.hpp"
 
@@ -68,6 +68,23 @@ TEST_F(Collada, NamesBonesWithoutPlace) {
   const Scan scan = read(dae(skin(), bone("J", "") + kSkinned));
   ASSERT_EQ(scan.positions.size(), 3U);
   expect_parts(scan.warnings.at(0), "The place of the bone \"K\" is not known", "Blender");
+}
+
+TEST_F(Collada, NamesPartsThatAreNotRead) {
+  const std::string node = R"(<node id="n"><instance_geometry url="#g"/></node>)";
+  EXPECT_TRUE(read(dae("", node)).warnings.empty());
+  const Scan missing = read(dae("", node + R"(<node id="k"><instance_geometry url="#h"/></node>)"));
+  EXPECT_EQ(missing.triangles.size(), 1U);
+  expect_parts(missing.warnings.at(0), "1 (\"#h\") of its instances", "incomplete");
+  const Scan nodes = read(dae("", node + R"(<node id="k"><instance_node url="#lib"/></node>)"));
+  expect_parts(nodes.warnings.at(0), "1 (\"#lib\") of its instances");
+  expect_parts(
+      refusal_of(dae("", node + R"(<node id="k"><instance_geometry url="b.dae#g"/></node>)")),
+      "\"b.dae#g\" is in another file", "join the files");
+  const Scan spline =
+      read(dae(R"(<library_geometries><geometry id="s"><spline/></geometry></library_geometries>)",
+               node + R"(<node id="k"><instance_geometry url="#s"/></node>)"));
+  expect_parts(spline.warnings.at(0), "1 (\"s\") of its geometries are not meshes");
 }
 
 }  // namespace
