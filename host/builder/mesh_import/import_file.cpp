@@ -30,6 +30,8 @@
 namespace tactree::builder {
 namespace {
 
+constexpr std::size_t kQuotedReason = 160;  // the library may quote half of the file
+
 void configure(Assimp::Importer& importer) {
   importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS,
                               aiComponent_TEXCOORDS | aiComponent_TANGENTS_AND_BITANGENTS |
@@ -115,6 +117,10 @@ bool import_file(const char* file, const char* hint, int output) {
     const std::size_t alias = reason.find(files->alias());
     if (alias != std::string::npos) {
       reason.replace(alias, files->alias().size(), file);
+    }
+    if (reason.size() > kQuotedReason) {
+      reason.resize(kQuotedReason);
+      reason += " ...";
     }
     return refuse(output, reason.c_str());
   }
