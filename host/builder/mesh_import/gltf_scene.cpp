@@ -26,7 +26,7 @@ bool is_supported(const std::string& extension) {
   constexpr std::string_view kKnown[] = {
       "KHR_mesh_quantization", kMeshopt,           "KHR_texture_transform", "KHR_texture_basisu",
       "EXT_texture_webp",      "EXT_texture_avif", "MSFT_texture_dds",      "KHR_lights_punctual",
-      "KHR_xmp_json_ld",       "KHR_xmp",          "KHR_animation_pointer"};
+      "KHR_xmp_json_ld",       "KHR_xmp",          "KHR_animation_pointer", "KHR_node_visibility"};
   return extension.starts_with("KHR_materials_") ||
          std::find(std::begin(kKnown), std::end(kKnown), extension) != std::end(kKnown);
 }
@@ -169,7 +169,7 @@ class GltfScene {
   }
 
   /// The roots of the scene and the nodes below them, each before its children.
-  [[nodiscard]] std::vector<std::size_t> nodes_in_scene() const {
+  [[nodiscard]] std::vector<std::size_t> nodes_in_scene() {
     std::vector<std::size_t> open;
     if (root_.contains("scenes")) {
       open = children_of(file_.at("scenes", gltf_count(root_, "scene", 0)), "nodes");
@@ -190,6 +190,10 @@ class GltfScene {
       if (found[node]) {
         continue;
       }
+      if (is_hidden(file_.at("nodes", node))) {
+        ++hidden_;
+        continue;
+      }
       found[node] = true;
       nodes.push_back(node);
       open.insert(open.end(), children.rbegin(), children.rend());
@@ -197,10 +201,19 @@ class GltfScene {
     return nodes;
   }
 
+  /// Together with the nodes below it.
+  static bool is_hidden(const json& node) {
+    const json extensions = node.value("extensions", json::object());
+    return !extensions.value("KHR_node_visibility", json::object()).value("visible", true);
+  }
+
   void add_node(std::size_t number) {
     const json& node = file_.at("nodes", number);
     if (!node.contains("mesh")) {
       return;
+    }
+    if (node.value("extensions", json::object()).contains("EXT_mesh_gpu_instancing")) {
+      ++repeated_;
     }
     const json& mesh = file_.at("meshes", gltf_count(node, "mesh"));
     const std::vector<Matrix4d> joints = joints_of(node);
@@ -412,6 +425,9 @@ class GltfScene {
         " triangles were dropped: they refer to points that the file does not have.");
     add(lines_, " sets of lines were left out.");
     add(loose_points_, " points of a skin refer to no joint.");
+    add(hidden_, " hidden nodes and the nodes below them were left out (KHR_node_visibility).");
+    add(repeated_,
+        " nodes repeat their mesh (EXT_mesh_gpu_instancing), which was read once, at the node.");
     constexpr std::size_t kPadding = 3;
     if (file_.undeclared_bytes() > kPadding) {
       add(file_.undeclared_bytes(),
@@ -429,6 +445,8 @@ class GltfScene {
   std::uint64_t bad_triangles_ = 0;
   std::uint64_t lines_ = 0;
   std::uint64_t loose_points_ = 0;
+  std::uint64_t hidden_ = 0;
+  std::uint64_t repeated_ = 0;
 };
 
 bool uses_draco(const json& root) {

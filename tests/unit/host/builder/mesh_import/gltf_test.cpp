@@ -52,6 +52,29 @@ class GltfTest : public TestFiles {
   }
 };
 
+TEST_F(GltfTest, LeavesOutHiddenNodes) {
+  GltfWriter gltf = floats();
+  gltf.root["scenes"][0]["nodes"] = {0, 1};
+  gltf.root["nodes"][1] = {{"mesh", 0}, {"children", {2}}};
+  gltf.root["nodes"][2] = {{"mesh", 0}};
+  Json& visible = gltf.root["nodes"][1]["extensions"]["KHR_node_visibility"]["visible"];
+  visible = true;
+  EXPECT_EQ(read(gltf.glb()).positions.size(), 12U);
+  visible = false;
+  gltf.root["extensionsRequired"] = {"KHR_node_visibility"};
+  const Scan scan = read(gltf.glb());
+  EXPECT_EQ(scan.positions.size(), 4U);
+  expect_parts(scan.warnings.at(0), "1 hidden nodes", "left out");
+}
+
+TEST_F(GltfTest, NamesRepeatedMeshes) {
+  GltfWriter gltf = floats();
+  gltf.root["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"] = 0;
+  const Scan scan = read(gltf.glb());
+  EXPECT_EQ(scan.positions.size(), 4U);
+  expect_parts(scan.warnings.at(0), "1 nodes repeat their mesh (EXT_mesh_gpu_instancing)");
+}
+
 TEST_F(GltfTest, ReadsIntegerPositions) {
   const std::vector<std::uint16_t> words = {0, 0, 0, 16383, 0, 0, 0, 10922, 0, 0, 0, 65535};
   GltfWriter gltf = tetrahedron(words, kUShort, 8);
