@@ -116,6 +116,10 @@ std::string NonBodyParts::text() const {
     text += (text.empty() ? "" : " ") + std::string("Parts that may not belong to the body were ") +
             "read: " + list_of(kept) + ".";
   }
+  if (!unread.empty()) {
+    text += (text.empty() ? "" : " ") + std::string("Shapes that are not meshes were left out: ") +
+            list_of(unread) + ". Export the model as STL to feel them.";
+  }
   return text;
 }
 

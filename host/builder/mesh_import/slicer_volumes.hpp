@@ -18,7 +18,8 @@ inline constexpr const char* kOrcaVolumes = "Metadata/model_settings.config";
 /// Numbers of parts by their kind, such as "modifier".
 struct NonBodyParts {
   std::map<std::string, std::size_t, std::less<>> left_out;
-  std::map<std::string, std::size_t, std::less<>> kept;  ///< that may not belong to the body
+  std::map<std::string, std::size_t, std::less<>> kept;    ///< that may not belong to the body
+  std::map<std::string, std::size_t, std::less<>> unread;  ///< shapes that are not meshes
 
   /// Sentences for a warning; empty if there is nothing to tell.
   [[nodiscard]] std::string text() const;

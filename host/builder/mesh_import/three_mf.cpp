@@ -147,6 +147,7 @@ class Assembly {
     if (!object.type.empty() && object.type != "model") {
       ++parts_.kept["object of the type \"" + object.type.substr(0, 40) + "\""];
     }
+    if (!object.unread.empty()) ++parts_.unread[object.unread];
     // If a part has another unit, this unit applies to its vertices.
     add_mesh(object, transform, from.unit_m / mesh_.unit_m);
     for (const ModelComponent& inner : object.components) {

@@ -113,13 +113,35 @@ class ModelReader {
 
  private:
   void read_object(pugi::xml_node element) {
-    ModelObject& object = model_.objects[std::string(attribute_of(element, "id"))];
+    const std::string id(attribute_of(element, "id"));
+    const auto [place, added] = model_.objects.try_emplace(id);
+    if (!added) throw ImportError("it has two objects with the id \"" + id.substr(0, 40) + "\"");
+    ModelObject& object = place->second;
     object.type = type_of(element);
-    for_children(element, "mesh", [&](pugi::xml_node mesh) { read_mesh(mesh, object); });
+    find_unread(element, object);
+    bool meshed = false;
+    for_children(element, "mesh", [&](pugi::xml_node mesh) {
+      if (meshed) throw ImportError("its object \"" + id.substr(0, 40) + "\" has two meshes");
+      meshed = true;
+      read_mesh(mesh, object);
+    });
     for_children(element, "components", [&](pugi::xml_node components) {
       for_children(components, "component",
                    [&](pugi::xml_node inner) { object.components.push_back(component(inner)); });
     });
+  }
+
+  /// Shapes of other extensions.
+  static void find_unread(pugi::xml_node element, ModelObject& object) {
+    constexpr std::string_view kShapes[] = {"beamlattice", "booleanshape", "displacementmesh",
+                                            "levelset"};
+    for (const pugi::xml_node parent : {element, child_of(element, "mesh")}) {
+      for (const pugi::xml_node child : parent.children()) {
+        const auto* const shape =
+            std::find(std::begin(kShapes), std::end(kShapes), local_name(child));
+        if (shape != std::end(kShapes)) object.unread = *shape;
+      }
+    }
   }
 
   void read_mesh(pugi::xml_node mesh, ModelObject& object) const {

@@ -24,7 +24,8 @@ struct ModelComponent {
 };
 
 struct ModelObject {
-  std::string type;  // "model" or empty for the body
+  std::string type;    // "model" or empty for the body
+  std::string unread;  // element of a shape that is not a mesh
   std::vector<Eigen::Vector3d> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<ModelComponent> components;

@@ -119,6 +119,25 @@ TEST_F(ThreeMfTest, RefusesDamage) {
   expect_parts(scan.warnings[0], "1 triangles were dropped");
 }
 
+TEST_F(ThreeMfTest, RefusesObjectsThatAreMixed) {
+  const std::string item = R"(<item objectid="1"/>)";
+  expect_parts(refusal_of(package(model(object("1", kMesh) + object("1", kMesh), item))),
+               "two objects with the id \"1\"");
+  expect_parts(refusal_of(package(model(object("1", kMesh + kMesh), item))),
+               "object \"1\" has two meshes");
+}
+
+TEST_F(ThreeMfTest, NamesShapesThatAreNotMeshes) {
+  std::string lattice = kMesh;
+  lattice.replace(lattice.find("</mesh>"), 7, "<b:beamlattice radius='1'/></mesh>");
+  const std::string item = R"(<item objectid="1"/>)";
+  const Scan scan = read(package(model(object("1", lattice), item)));
+  EXPECT_EQ(scan.positions.size(), 4U);
+  expect_parts(scan.warnings.at(0), "not meshes were left out: 1 beamlattice.");
+  expect_parts(refusal_of(package(model(object("1", "<v:levelset/>"), item))), "no points",
+               "1 levelset");
+}
+
 /// A number is read whole or refused: its beginning would be another number.
 TEST_F(ThreeMfTest, RefusesTextAfterNumbers) {
   const auto refused = [this](const std::string& from, const std::string& to, bool stored) {
@@ -189,17 +208,26 @@ TEST_F(ThreeMfTest, ReadsPrefixesAndEscapedPaths) {
   EXPECT_EQ(read(bytes).positions.size(), 4U);
 }
 
+/// A model in which a text is replaced everywhere.
+std::string with(const std::string& from, const std::string& to) {
+  std::string root = model(object("1", kMesh), R"(<item objectid="1"/>)");
+  for (std::size_t at = root.find(from); at != std::string::npos;
+       at = root.find(from, at + to.size())) {
+    root.replace(at, from.size(), to);
+  }
+  return root;
+}
+
+/// Expects the points and triangles of kMesh.
+void expect_mesh(const Scan& scan, const std::string& form) {
+  EXPECT_EQ(scan.positions.size(), 4U) << form;
+  EXPECT_EQ(scan.positions.at(1), Eigen::Vector3d(1, 0, 0)) << form;
+  EXPECT_EQ(scan.triangles.size(), 4U) << form;
+  EXPECT_EQ(scan.triangles.at(3), (Triangle{1, 2, 3})) << form;
+}
+
 /// Documents that are read while they are unpacked, and others that are read as a whole.
 TEST_F(ThreeMfTest, ReadsMeshesInAllForms) {
-  const std::string item = R"(<item objectid="1"/>)";
-  const auto with = [&](const std::string& from, const std::string& to) {
-    std::string root = model(object("1", kMesh), item);
-    for (std::size_t at = root.find(from); at != std::string::npos;
-         at = root.find(from, at + to.size())) {
-      root.replace(at, from.size(), to);
-    }
-    return root;
-  };
   const std::string forms[] = {
       with("<vertex ", "\r\n\t<vertex\n"),
       with("/><triangle", "></triangle><!-- <vertex/> > --><triangle"),
@@ -215,16 +243,13 @@ TEST_F(ThreeMfTest, ReadsMeshesInAllForms) {
       with("<mesh>", "<mesh><vertices>0</vertices>"),
   };
   for (const std::string& form : forms) {
-    for (const bool stored : {false, true}) {
-      const Scan scan = read(package(form, stored));
-      ASSERT_EQ(scan.positions.size(), 4U) << form;
-      EXPECT_EQ(scan.positions[1], Eigen::Vector3d(1, 0, 0)) << form;
-      ASSERT_EQ(scan.triangles.size(), 4U) << form;
-      EXPECT_EQ(scan.triangles[3], (Triangle{1, 2, 3})) << form;
-    }
+    for (const bool stored : {false, true}) expect_mesh(read(package(form, stored)), form);
   }
+}
+
+TEST_F(ThreeMfTest, ReadsWideCharacters) {
   std::string wide("\xFF\xFE", 2);
-  for (const char c : model(object("1", kMesh), item)) wide += {c, '\0'};
+  for (const char c : model(object("1", kMesh), R"(<item objectid="1"/>)")) wide += {c, '\0'};
   EXPECT_EQ(read(package(wide)).positions.size(), 4U);
 }
 
