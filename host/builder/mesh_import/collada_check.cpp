@@ -1,11 +1,14 @@
 #include "mesh_import/collada_check.hpp"
 
+#include <cmath>
 #include <cstddef>
+#include <optional>
 #include <set>
 #include <string_view>
 #include <utility>
 
 #include "mesh_import/imported_mesh.hpp"
+#include "mesh_import/mesh_extractor.hpp"
 #include "mesh_import/xml_document.hpp"
 
 namespace tactree::builder {
@@ -29,6 +32,7 @@ class ColladaCheck {
   explicit ColladaCheck(pugi::xml_node root) : root_(root) {}
 
   SceneNotes check() {
+    check_unit();
     visit([this](pugi::xml_node node) { take_definition(node); });
     visit([this](pugi::xml_node node) { take_reference(node); });
     SceneNotes notes;
@@ -55,6 +59,15 @@ class ColladaCheck {
     }
   }
 
+  /// assimp multiplies by any number.
+  void check_unit() const {
+    const std::string_view text = attribute_of(child_of(child_of(root_, "asset"), "unit"), "meter");
+    const std::optional<double> metres = number_of(text);
+    if (metres && !(*metres > 0.0 && std::isfinite(*metres))) {
+      throw not_a(text, "unit in metres, which is more than 0");
+    }
+  }
+
   void take_definition(pugi::xml_node node) {
     const std::string_view name = local_name(node);
     if (name != "geometry" && name != "controller" && name != "node") return;
@@ -72,6 +85,9 @@ class ColladaCheck {
     } else if (name == "skin") {
       url = attribute_of(node, "source");
     } else {
+      if (name == "skew") {
+        throw ImportError("a node is skewed, which is not read; apply the transforms in Blender");
+      }
       return;
     }
     if (url.find('#') != 0 && url.find('#') != std::string_view::npos) {

@@ -92,6 +92,7 @@ class X3dCheck {
       check_groups(node);
     }
     if (name == "ExternProtoDeclare") refuse_node(name);
+    if (name == "Coordinate") check_numbers(attribute_of(node, "point"));
     if (name == "Shape") check_shape(node);
   }
 
@@ -100,6 +101,14 @@ class X3dCheck {
     for (pugi::xml_node at = node.parent(); local_name(at) != "Scene"; at = at.parent()) {
       if (!is_one_of(local_name(at), kGroups)) refuse_node(local_name(at));
     }
+  }
+
+  /// assimp reads the beginning of a word as a number.
+  static void check_numbers(std::string_view text) {
+    const std::size_t at = text.find_first_not_of("0123456789+-.eE, \t\r\n");
+    if (at == std::string_view::npos) return;
+    const std::size_t begin = text.find_last_of(", \t\r\n", at) + 1;  // 0 if there is none
+    throw not_a(text.substr(begin, 20), "coordinate of a point");
   }
 
   void check_shape(pugi::xml_node shape) {

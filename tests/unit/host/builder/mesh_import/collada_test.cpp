@@ -87,5 +87,16 @@ TEST_F(Collada, NamesPartsThatAreNotRead) {
   expect_parts(spline.warnings.at(0), "1 (\"s\") of its geometries are not meshes");
 }
 
+TEST_F(Collada, RefusesWhatIsReadWrong) {
+  const std::string instance = R"(<instance_geometry url="#g"/></node>)";
+  expect_parts(refusal_of(dae("", "<node id=\"n\"><skew>45 0 1 0 1 0 0</skew>" + instance)),
+               "a node is skewed", "apply the transforms");
+  for (const std::string bad : {"0", "-1", "nan"}) {
+    std::string unit = dae("", "<node id=\"n\">" + instance);
+    unit.replace(unit.find("0.0254"), 6, bad);
+    expect_parts(refusal_of(unit), "\"" + bad + "\" is not a unit in metres");
+  }
+}
+
 }  // namespace
 }  // namespace tactree::builder

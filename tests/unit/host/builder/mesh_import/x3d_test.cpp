@@ -71,6 +71,9 @@ TEST_F(X3d, ReadsUnitOfFile) {
 }
 
 TEST_F(X3d, RefusesDamage) {
+  std::string word = kShape;
+  word.replace(word.find("2 0\""), 3, "0x2 0");
+  expect_parts(refusal_of(x3d(word)), "\"0x2 0\" is not a coordinate of a point");
   const std::string whole = x3d(kShape);
   expect_parts(refusal_of(whole.substr(0, whole.size() / 2)), "cannot be read");
   std::string deep;
