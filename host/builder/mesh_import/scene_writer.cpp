@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string_view>
 #include <utility>
 
 #include "mesh_import/wire.hpp"
@@ -26,6 +27,18 @@ std::uint8_t to_byte(float value) {
   return std::isnan(value)
              ? std::uint8_t{0}
              : static_cast<std::uint8_t>(std::clamp(std::round(value * 255.0F), 0.0F, 255.0F));
+}
+
+/// An FBX may move the points of a node before its transform; the library has nodes for this.
+bool has_geometric_offset(const aiNode* node) {
+  for (; node != nullptr; node = node->mParent) {
+    const std::string_view name = node->mName.C_Str();
+    if (name.ends_with("$_GeometricTranslation") || name.ends_with("$_GeometricRotation") ||
+        name.ends_with("$_GeometricScaling")) {
+      return true;
+    }
+  }
+  return false;
 }
 
 }  // namespace
@@ -50,7 +63,10 @@ void SceneWriter::place_meshes() {
     nodes_.add(current.node->mName.C_Str(), transform);
     for (unsigned i = 0; i < current.node->mNumMeshes; ++i) {
       const unsigned index = current.node->mMeshes[i];
-      if (index < scene_.mNumMeshes) placed_.push_back({scene_.mMeshes[index], transform, {}});
+      if (index >= scene_.mNumMeshes) continue;
+      placed_.push_back({scene_.mMeshes[index], transform, {}});
+      moved_skins_ = moved_skins_ ||
+                     (scene_.mMeshes[index]->mNumBones > 0 && has_geometric_offset(current.node));
     }
     for (unsigned i = current.node->mNumChildren; i > 0; --i) {
       open.push_back({current.node->mChildren[i - 1], transform});
@@ -62,6 +78,12 @@ void SceneWriter::pose_meshes() {
   std::string unknown_bone;
   for (Placed& placed : placed_) {
     placed.skin = skin_of(*placed.mesh, nodes_, placed.transform, unknown_bone);
+  }
+  if (moved_skins_) {
+    warning_ += (warning_.empty() ? "" : " ") +
+                std::string(
+                    "A skin has a geometric transform, which is not applied: it may lie at "
+                    "another place. Apply the pose in Blender and save the file as PLY.");
   }
   if (!unknown_bone.empty()) {
     warning_ += (warning_.empty() ? "" : " ") + std::string("The place of the bone \"") +

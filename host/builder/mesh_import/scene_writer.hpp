@@ -47,6 +47,7 @@ class SceneWriter {
   std::string warning_;
   std::FILE* to_;
   bool failed_ = false;
+  bool moved_skins_ = false;  // by geometric transforms of an FBX
   NodePlaces nodes_;
   std::vector<Placed> placed_;
   std::uint64_t points_ = 0;
