@@ -10,7 +10,7 @@
 namespace tactree::builder {
 namespace {
 
-constexpr std::size_t kSamples = 4096;
+constexpr std::size_t kSpacingSamples = 4096;
 constexpr std::size_t kNeighbours = 16;
 constexpr double kTrusted = 0.98;  // ratio of the sample that is used; the rest may be outliers
 
@@ -32,7 +32,7 @@ SpacingEstimate estimate_spacing(const ZOrderedCloud& points) {
   const double guess = coarse_cell_edge(points);
   const bool few = points.size() < 2 * kNeighbours;
   const std::size_t neighbours = few ? 1 : kNeighbours;
-  const std::size_t stride = 1 + (points.size() - 1) / kSamples;
+  const std::size_t stride = 1 + (points.size() - 1) / kSpacingSamples;
   std::vector<double> areas((points.size() + stride - 1) / stride);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, areas.size(), 16), [&](auto range) {
     std::vector<Neighbour> found;
