@@ -198,6 +198,9 @@ class Cleaner {
     const std::size_t before = cloud_.size();
     if (before == 0) {
       cloud_.positions = std::move(scan.positions);
+      if (cloud_.positions.capacity() > 2 * cloud_.size()) {  // it was thinned while it was read
+        cloud_.positions.shrink_to_fit();
+      }
     } else {
       cloud_.positions.insert(cloud_.positions.end(), scan.positions.begin(), scan.positions.end());
     }
