@@ -47,8 +47,7 @@ setup::FirstBody first_body(const setup::SceneFile& scene) {
 
 /// A fault without an effect would make a safety test pass.
 void require_effect(const std::string& text, const simulation::InjectedFault& fault,
-                    const SimulateOptions& options) {
-  const support::Device device = support::load_device(options.device);
+                    const SimulateOptions& options, const support::Device& device) {
   const std::uint32_t axes = core::axes_of(device.preset.model.kind);
   if (fault.axes.size() == 1 && fault.axes[0] >= axes) {
     refuse(fmt::format("--inject {}: '{}' has {} {}", text, device.name, axes,
@@ -85,9 +84,10 @@ simulation::Setup make_setup(const SimulateOptions& options, const setup::SceneF
 
 std::vector<simulation::InjectedFault> injections(const SimulateOptions& options) {
   std::vector<simulation::InjectedFault> faults;
+  const support::Device device = support::load_device(options.device);
   for (const std::string& text : options.injections) {
     const simulation::InjectedFault& fault = faults.emplace_back(simulation::parse_injection(text));
-    require_effect(text, fault, options);
+    require_effect(text, fault, options, device);
   }
   return faults;
 }

@@ -420,7 +420,7 @@ void add_build_command(CLI::App& app, int& exit_code) {
                    "recognised by content. -: standard input, copied to a file in TMPDIR first");
   add_format_option(*verb, arguments->build.format);
   verb->add_option("-o,--output", arguments->output,
-                   "blob to write; with --collection the folder of the blobs")
+                   "blob to write; -: standard output; with --collection the folder of the blobs")
       ->required();
   add_columns_option(*verb, arguments->columns);
   add_frame_options(*verb, *arguments);

@@ -125,7 +125,8 @@ void add_query_command(CLI::App& app, int&) {
       "distance_m,inside (1: in the material; empty: the blob does not state it)");
   verb->add_option("BLOB", options->blob, "blob to query; -: standard input")->required();
   verb->add_option("--points", options->points,
-                   "CSV file with rows x,y,z (m, model frame); -: standard input")
+                   "CSV file with rows x,y,z, or with a line that names these columns (m, model "
+                   "frame); -: standard input")
       ->required();
   verb->add_option("--radius", options->radius_m,
                    "search radius for the nearest point, m (default: the support radius)")

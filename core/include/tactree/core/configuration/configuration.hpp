@@ -130,8 +130,8 @@ constexpr void limit_to_rate(Configuration& configuration) {
   }
 }
 
-/// Sets force_max_N, and lowers slew_N_s to the largest value that a tick may then have, less than
-/// a millionth: the slew rate of a tick may be rounded up.
+/// Sets force_max_N, and lowers slew_N_s to a millionth below the largest value that a tick may
+/// then have, because the slew rate of a tick may be rounded up.
 constexpr void limit_force(Configuration& configuration, float force_max_N) {
   const float slew_N_s = 2.0F * 0.999999F * force_max_N * configuration.rate_hz;
   configuration.limits.force_max_N = force_max_N;
