@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "option_checks.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -149,7 +150,7 @@ void print_bash_completion(const CLI::App& app) {
 void add_completion_command(CLI::App& app, int&) {
   CLI::App* verb = app.add_subcommand(
       "completion", "Prints a script by which a shell completes commands and options");
-  verb->add_option("shell", "the shell")->required()->check(CLI::IsMember({"bash"}));
+  verb->add_option("shell", "the shell")->required()->check(one_of({"bash"}));
   verb->footer(
       "For this shell: source <(tactree completion bash). For all: write it to\n"
       "/usr/share/bash-completion/completions/tactree.");

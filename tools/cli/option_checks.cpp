@@ -1,11 +1,14 @@
 #include "option_checks.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <iterator>
+
+#include "tactree/support/user_error.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -17,13 +20,46 @@ bool is_finite(const std::string& text, double& value) {
 }  // namespace
 
 CLI::Validator within(double low, double high) {
-  const CLI::Range range(low, high);
-  return {[range](std::string& text) -> std::string {
+  return {[low, high](const std::string& text) -> std::string {
             double value = 0.0;
-            return is_finite(text, value) ? range(text)
-                                          : fmt::format("'{}' is not a finite number", text);
+            if (!is_finite(text, value)) {
+              return fmt::format("'{}' is not a finite number", text);
+            }
+            return value >= low && value <= high
+                       ? ""
+                       : fmt::format("'{}' is not from {} to {}", text, low, high);
           },
-          range.get_description()};
+          fmt::format("{} .. {}", low, high)};
+}
+
+CLI::Validator one_of(const std::vector<std::string>& names) {
+  const std::string shown = fmt::format("{}", fmt::join(names, "|"));
+  return {[names, shown](std::string& text) -> std::string {
+            const std::string lower = CLI::detail::to_lower(text);
+            const auto found = std::find_if(names.begin(), names.end(), [&](const auto& name) {
+              return CLI::detail::to_lower(name) == lower;
+            });
+            if (found == names.end()) {
+              return fmt::format("'{}' is not {}", text, listed(shown));
+            }
+            text = *found;
+            return "";
+          },
+          shown};
+}
+
+CLI::Validator existing_file() {
+  return {[](const std::string& file) -> std::string {
+            const std::filesystem::file_status status = std::filesystem::status(file);
+            if (!std::filesystem::exists(status)) {
+              throw support::UserError(file + ": there is no such file (check the path)");
+            }
+            if (std::filesystem::is_directory(status)) {
+              throw support::UserError(file + ": is a folder (give the file in it)");
+            }
+            return "";
+          },
+          "FILE"};
 }
 
 CLI::Validator written_as(const std::string& extension) {
@@ -52,6 +88,17 @@ std::string is_not_negative(const std::string& text) {
   return is_finite(text, value) && value >= 0.0
              ? ""
              : fmt::format("'{}' is not a number from 0 upwards", text);
+}
+
+std::string listed(std::string names) {
+  const std::size_t last = names.rfind('|');
+  if (last != std::string::npos) {
+    names.replace(last, 1, " or ");
+  }
+  for (std::size_t at = names.find('|'); at != std::string::npos; at = names.find('|')) {
+    names.replace(at, 1, ", ");
+  }
+  return names;
 }
 
 }  // namespace tactree::cli

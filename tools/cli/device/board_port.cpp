@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "option_checks.hpp"
 #include "tactree/client/announcement.hpp"
 #include "tactree/client/ports.hpp"
 #include "tactree/support/user_error.hpp"
@@ -18,7 +19,7 @@ CLI::Option* add_link_timeout_option(CLI::App& verb, int& milliseconds) {
   return verb
       .add_option("--link-timeout", milliseconds,
                   "the board stops if it receives no heartbeat from this program for this time, ms")
-      ->check(CLI::Range(5, 100))
+      ->check(within(5, 100))
       ->capture_default_str();
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "option_checks.hpp"
 #include "tactree/setup/pose_file.hpp"
 #include "tactree/simulation/body_path.hpp"
 #include "tactree/support/user_error.hpp"
@@ -14,7 +15,7 @@ CLI::Option* add_pose_option(CLI::App& verb, std::string& file) {
                   "first send the pose of this file, as the page of view saves it: where the model "
                   "is in the frame of the device. It stays until another one, another model or a "
                   "reset")
-      ->check(CLI::ExistingFile);
+      ->check(existing_file());
 }
 
 simulation::Placement read_board_pose(const std::string& file) {

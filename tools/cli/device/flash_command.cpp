@@ -7,6 +7,7 @@
 #include "commands.hpp"
 #include "device/board_port.hpp"
 #include "image/model_signature.hpp"
+#include "option_checks.hpp"
 #include "tactree/setup/model_size.hpp"
 #include "tactree/support/blob_file.hpp"
 #include "tactree/support/output_file.hpp"
@@ -121,7 +122,7 @@ void add_flash_command(CLI::App& app, int&) {
           ->excludes(blob);
   CLI::Option* erase =
       verb->add_option("--erase", options->erase, "erase this slot; it must not be in use")
-          ->check(CLI::Range(0, 1))
+          ->check(within(0, 1))
           ->excludes(blob)
           ->excludes(back);
   CLI::Option* list = verb->add_flag("--list", options->list, "only list the slots")

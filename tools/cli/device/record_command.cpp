@@ -197,7 +197,7 @@ void add_record_command(CLI::App& app, int& exit_code) {
                    "end after this time on the clock of the board, s (default: on Ctrl-C)")
       ->check(is_positive);
   verb->add_option("--every", options->every_ticks, "record one tick in this many")
-      ->check(CLI::Range(1, 1000000))
+      ->check(within(1, 1000000))
       ->capture_default_str();
   verb->add_option("--json", options->json, "write the counts of the recording to this file");
   CLI::Option* arm = verb->add_flag(

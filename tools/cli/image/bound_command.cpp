@@ -235,10 +235,10 @@ void add_bound_command(CLI::App& app, int&) {
       "--blob", options->blob,
       "the model on the board; default: the worst of all models that a controller accepts");
   verb->add_option("--mode", options->mode, "surface or paper")
-      ->check(CLI::IsMember({"surface", "paper"}));
+      ->check(one_of({"surface", "paper"}));
   verb->add_option("--bodies", options->bodies,
                    "number of models within reach of the probe at the same time")
-      ->check(CLI::Range(1U, core::kMaxReachableBodies));
+      ->check(within(1U, core::kMaxReachableBodies));
   verb->add_option(
       "--device", options->device,
       "name or file of the device; default: the kind whose tick takes the most cycles");

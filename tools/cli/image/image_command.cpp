@@ -9,6 +9,7 @@
 #include "image/firmware_image.hpp"
 #include "image/image_formats.hpp"
 #include "image/own_board.hpp"
+#include "option_checks.hpp"
 #include "tactree/emulation/board_description.hpp"
 #include "tactree/support/blob_file.hpp"
 #include "tactree/support/json_text.hpp"
@@ -203,7 +204,7 @@ void add_image_command(CLI::App& app, int&) {
   verb->add_option("--uf2-family", options->uf2_family,
                    "ID of the chip in a UF2 file, for a board of your own: 0xE48BFF59");
   verb->add_option("--format", options->format, "default: by the extension of the output")
-      ->check(CLI::IsMember({"elf", "hex", "bin", "uf2", "dfu"}));
+      ->check(one_of({"elf", "hex", "bin", "uf2", "dfu"}));
   verb->add_option("--usb", options->usb, "VENDOR:PRODUCT in the dfu suffix, hexadecimal")
       ->capture_default_str()
       ->check([](const std::string& text) {

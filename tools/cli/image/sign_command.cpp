@@ -4,6 +4,7 @@
 
 #include "commands.hpp"
 #include "image/model_signature.hpp"
+#include "option_checks.hpp"
 #include "tactree/support/blob_file.hpp"
 #include "tactree/support/user_error.hpp"
 
@@ -36,7 +37,7 @@ void add_sign_command(CLI::App& app, int&) {
   verb->add_option("BLOB", options->blob, "the blob to sign")->required();
   verb->add_option("--key", options->key, "secret key, from tactree keygen")
       ->required()
-      ->check(CLI::ExistingFile);
+      ->check(existing_file());
   verb->add_option("--counter", options->counter,
                    "a board refuses a model with a smaller counter than it has accepted before")
       ->required();

@@ -122,7 +122,7 @@ void add_plant_options(CLI::App& verb, SimulateOptions& options) {
           ->check(within(1e-8, 1e-2))
           ->capture_default_str()};
   verb.add_option("--latency-ticks", options.latency_ticks, "age of an encoder reading, ticks")
-      ->check(CLI::Range(0, static_cast<int>(hal::sim::kMaxLatencyTicks)))
+      ->check(within(0, static_cast<int>(hal::sim::kMaxLatencyTicks)))
       ->capture_default_str();
   options.stiffness_given =
       verb.add_option("--hand-stiffness", plant.hand.stiffness_N_m, "spring of the hand, N/m")
@@ -157,7 +157,7 @@ void add_device_options(CLI::App& verb, SimulateOptions& options) {
   verb.add_option("--pose", options.pose,
                   "pose file, as the page of view saves it: where the model is in the device's "
                   "frame, and its size")
-      ->check(CLI::ExistingFile)
+      ->check(existing_file())
       ->excludes(origin)
       ->excludes(verb.get_option("--scene"));
 }
@@ -173,7 +173,7 @@ void add_output_options(CLI::App& verb, SimulateOptions& options) {
               "replay this recording, with its blobs as BLOB, on a new controller and compare "
               "each tick bit for bit; if they differ, print the first such tick and exit with "
               "code 1. Device, hand and controller options have no effect")
-          ->check(CLI::ExistingFile)
+          ->check(existing_file())
           ->excludes(record)
           ->excludes(verb.get_option("--inject"));
   verb.add_option("--trace", options.trace, "write every tick to this CSV file")
@@ -192,15 +192,15 @@ void add_output_options(CLI::App& verb, SimulateOptions& options) {
 void add_session_options(CLI::App& verb, SimulateOptions& options) {
   verb.add_option("BLOB", options.blobs, "the blob to touch, or several");
   verb.add_option("--scene", options.scene, "JSON file with the blob, pose and motion of each body")
-      ->check(CLI::ExistingFile);
+      ->check(existing_file());
   verb.add_option("--board", options.board, "where the controller runs")
-      ->check(CLI::IsMember(board_names()))
+      ->check(one_of(board_names()))
       ->capture_default_str();
   verb.add_option("--firmware", options.firmware,
                   "folder with the images of the emulated boards (default: $TACTREE_FIRMWARE, the "
                   "installation, or the build tree)");
   verb.add_option("--mode", options.mode, "method that renders contact")
-      ->check(CLI::IsMember({"surface", "paper"}))
+      ->check(one_of({"surface", "paper"}))
       ->capture_default_str();
   options.seconds_given = verb.add_option("--seconds", options.seconds, "length of the run, s")
                               ->check(is_positive)
@@ -215,7 +215,7 @@ void add_serve_options(CLI::App& verb, SimulateOptions& options) {
           "--require-key", options.key,
           "with --serve: public key (tactree keygen) that must verify the signature of a model")
       ->needs(serve)
-      ->check(CLI::ExistingFile);
+      ->check(existing_file());
   CLI::Option* lock_step =
       verb.add_flag("--lock-step", options.lock_step,
                     "with --serve: use a port step:PATH; time passes only while a program is "
@@ -244,7 +244,7 @@ void add_serve_options(CLI::App& verb, SimulateOptions& options) {
 
 void add_hand_options(CLI::App& verb, SimulateOptions& options) {
   CLI::Option* script = verb.add_option("--script", options.script, "motion of the hand")
-                            ->check(CLI::IsMember(simulation::script_names()))
+                            ->check(one_of(simulation::script_names()))
                             ->capture_default_str();
   verb.add_option("--path", options.path,
                   "CSV file with the hand's path: t_s,x,y,z (s, m). Or a recording of a board "

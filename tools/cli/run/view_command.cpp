@@ -401,7 +401,7 @@ void add_place_options(CLI::App& verb, ViewOptions& options) {
   verb.add_option("--pose", options.pose,
                   "pose file, as the page saves it: where the model is in the device's frame, and "
                   "its size. With --port: sent to the board, which cannot change the size")
-      ->check(CLI::ExistingFile)
+      ->check(existing_file())
       ->excludes(origin)
       ->excludes(verb.get_option("--scene"));
 }
@@ -412,7 +412,7 @@ void add_session_options(CLI::App& verb, ViewOptions& options) {
                   "the device to draw")
       ->capture_default_str();
   verb.add_option("--mode", options.mode, "surface, paper, or both side by side")
-      ->check(CLI::IsMember({"surface", "paper", "both"}))
+      ->check(one_of({"surface", "paper", "both"}))
       ->capture_default_str();
   add_wall_options(verb, options.settings.controller);
 }
@@ -427,7 +427,7 @@ void add_view_command(CLI::App& app, int&) {
   verb->add_option("BLOB", options->blobs, "one or more blobs");
   verb->add_option("--scene", options->scene,
                    "JSON file with the positions of the bodies: see simulate")
-      ->check(CLI::ExistingFile);
+      ->check(existing_file());
   add_place_options(*verb, *options);
   verb->add_option(
       "--trace", options->trace,
@@ -439,11 +439,11 @@ void add_view_command(CLI::App& app, int&) {
   verb->add_option("--report", options->report,
                    "file of the option --report of the build: the page lists the colours of the "
                    "scan, and makes a file of materials from them")
-      ->check(CLI::ExistingFile);
+      ->check(existing_file());
   verb->add_option("--colours,--colors", options->colours,
                    "file of the option --colours of the build: the page shows the first model in "
                    "the colours of its scan")
-      ->check(CLI::ExistingFile);
+      ->check(existing_file());
   add_session_options(*verb, *options);
   add_board_options(*verb, *options);
   add_server_options(*verb, *options);

@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "choice.hpp"
 #include "collection/build_collection.hpp"
 #include "collection/digest.hpp"
 #include "commands.hpp"
@@ -303,7 +302,7 @@ void add_frame_options(CLI::App& verb, BuildArguments& arguments) {
   verb.add_option("--pose", arguments.pose,
                   "pose file, as the page of view saves it, applied last: the coordinates of the "
                   "model are then those of the device's frame (simulate and view: --origin 0 0 0)")
-      ->check(CLI::ExistingFile)
+      ->check(existing_file())
       ->group(kGroup);
   verb.add_option("--crop", arguments.crop,
                   "keep only this box: xmin,ymin,zmin,xmax,ymax,zmax in the unit of the file")
@@ -327,11 +326,11 @@ void add_quality_options(CLI::App& verb, BuildArguments& arguments) {
   verb.add_option("--board", arguments.board.board,
                   "build for this board, or for that of a JSON file: the model with the finest "
                   "spacing that fits its flash, unless --spacing or --flash-budget is given")
-      ->check(CLI::IsMember(boards_with_timing()) | CLI::ExistingFile);
+      ->type_name(fmt::format("{}|FILE.json", fmt::join(boards_with_timing(), "|")));
   verb.add_option("--for", arguments.board.firmware,
                   "build for this firmware image, an ELF file: the model with the finest spacing "
                   "that fits the room in it; --rate uses the cycles of a tick that it states")
-      ->check(CLI::ExistingFile);
+      ->check(existing_file());
   verb.add_option("--rate", arguments.board.rate_hz,
                   "build the model with the finest spacing that the board also renders at this "
                   "rate, Hz; refuse a --spacing or --flash-budget that is too fine for the rate")
@@ -391,7 +390,6 @@ void add_collection_options(CLI::App& verb, BuildArguments& arguments) {
       verb.add_option("--collection", collection.collection,
                       "build a blob of each scan that this text file lists, one path per line, or "
                       "that is below this folder; skip those that are up to date")
-          ->check(CLI::ExistingPath)
           ->group(kGroup);
   for (const char* const single : {"INPUT", "--report", "--preview", "--colours", "--verbose"}) {
     place->excludes(verb.get_option(single));
@@ -432,7 +430,7 @@ void add_build_command(CLI::App& app, int& exit_code) {
   verb->add_option("--threads", arguments->build.threads,
                    "number of threads, 0: one per core; does not change the result")
       ->default_str("0")
-      ->check(CLI::Range(0, 1024));
+      ->check(within(0, 1024));
   verb->add_option(
       "--memory-limit", arguments->memory_limit,
       "memory that the build may take: bytes, or 800M, 8G (default: half of that of the "

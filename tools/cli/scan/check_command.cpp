@@ -5,6 +5,7 @@
 
 #include "commands.hpp"
 #include "image/model_signature.hpp"
+#include "option_checks.hpp"
 #include "tactree/support/blob_file.hpp"
 #include "tactree/support/json_text.hpp"
 #include "tactree/support/output_file.hpp"
@@ -77,7 +78,7 @@ void add_check_command(CLI::App& app, int&) {
       "check", "Validates a blob with the checks of the controller; exit code 0 if it is valid");
   verb->add_option("BLOB", options->blob, "blob to check; -: standard input")->required();
   verb->add_option("--key", options->key, "require a signature by this public key")
-      ->check(CLI::ExistingFile);
+      ->check(existing_file());
   verb->add_option("--json", options->json, "write the result as JSON to this file");
   verb->callback([options] { check(*options); });
 }

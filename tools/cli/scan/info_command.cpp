@@ -275,7 +275,7 @@ void add_info_command(CLI::App& app, int&) {
   verb->add_option("BLOB", options->blob, "blob to inspect; -: standard input")->required();
   verb->add_option("--board", options->board,
                    "also print the cost of a tick with this model on the board")
-      ->check(CLI::IsMember(boards_with_timing()));
+      ->check(one_of(boards_with_timing()));
   verb->add_option("--device", options->device,
                    "name or file of a device: also report whether it reaches the model; --board "
                    "uses it, too (default: the kind with the longest tick)");

@@ -2,13 +2,15 @@
 
 #include <stdexcept>
 
+#include "option_checks.hpp"
+
 namespace tactree::cli {
 
 CLI::Option* add_format_option(CLI::App& verb, std::string& format) {
   return verb
       .add_option("--format", format,
                   "format of the inputs, if it cannot be recognised by their content")
-      ->check(CLI::IsMember(builder::scan_formats(), CLI::ignore_case));
+      ->check(one_of(builder::scan_formats()));
 }
 
 CLI::Option* add_columns_option(CLI::App& verb, std::string& columns) {

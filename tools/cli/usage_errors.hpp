@@ -1,0 +1,16 @@
+#pragma once
+// What the program says of a command line that it refuses.
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+namespace tactree::cli {
+
+/// Error message for a first argument that is not a command; empty if it is a command or an option.
+[[nodiscard]] std::string unknown_command(const CLI::App& app, const std::string& word);
+
+/// Error message with the option, its value and a remedy, instead of the one of CLI11. `app`: the
+/// program, whose parse() has thrown `error`.
+[[nodiscard]] std::string usage_error(const CLI::App& app, const CLI::Error& error);
+
+}  // namespace tactree::cli
