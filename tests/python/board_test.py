@@ -85,9 +85,17 @@ class Control(Folder):
             self.assertEqual(board.capabilities["stiffness_N_m"], 250)
             board.set_texture(2e-4, 3e-3)
             for call, words in ((lambda: board.set_parameter("nonsense", 1), "no parameter 'nonsense'"),
-                                (lambda: board.set_limits(-1, 0, 0), "set limits: "),
-                                (lambda: board.set_material(1e6), "set material: "),
-                                (lambda: board.set_texture(2e-3, 3e-3), "set texture: ")):
+                                (lambda: board.set_parameter("delay_s", 9), "set parameter: delay_s is 9, outside 0 .. 0.1"),
+                                (lambda: board.set_parameter("delay_s", 0.09), "set parameter: "),
+                                (lambda: board.set_limits(-1, 0, 0.2), "set limits: limits.force_max_N is -1, outside 0.01"),
+                                (lambda: board.set_limits(900, 100, 0.2), "limits.force_max_N is 900, outside 0.01 .. "),
+                                (lambda: board.set_limits(1.5, 1e5, 0.2), "limits.slew_N_s is 100000, outside "),
+                                (lambda: board.set_limits(1.5, 100, 50), "limits.ramp_s is 50, outside 0.002 .. 10"),
+                                (lambda: board.set_material(1e6), "contact.stiffness_N_m is 1e+06, outside 0 .. 100000"),
+                                (lambda: board.set_material(5000), "with the present damping the limit is "),
+                                (lambda: board.set_material(250, static_friction=0.1, dynamic_friction=0.2),
+                                 "contact.dynamic_friction is 0.2, outside 0 .. 0.1"),
+                                (lambda: board.set_texture(2e-3, 3e-3), "contact.texture_height_m is 0.002, outside 0 .. 0.0015")):
                 with self.assertRaises(tactree.BoardError) as refused:
                     call()
                 self.assertIn(words, str(refused.exception))

@@ -1,6 +1,7 @@
 #include "tactree/client/board.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <cstring>
 #include <utility>
 
@@ -73,6 +74,23 @@ std::string details(const Response& response) {
   return std::string(": ") + (blob != core::BlobStatus::kOk
                                   ? core::describe(blob)
                                   : core::describe(static_cast<core::ModelStatus>(reply.model)));
+}
+
+/// "delay_s is 9, outside 0 .. 0.1"
+std::string outside(const char* field, float value, float min, float max) {
+  char text[160];
+  std::snprintf(text, sizeof text, "%s is %g, outside %g .. %g", field, static_cast<double>(value),
+                static_cast<double>(min), static_cast<double>(max));
+  return text;
+}
+
+/// Field, value and range of a setting that the board refuses, which does not state them. `tried`:
+/// what it checks. Empty if a value that only the board knows is the cause.
+std::string range_of(const core::Configuration& tried) {
+  const core::Refusal refusal = core::refusal_of(tried);
+  return refusal.field[0] == '\0' || refusal.status == core::ConfigurationStatus::kUnstable
+             ? ""
+             : outside(refusal.field, refusal.value, refusal.min, refusal.max);
 }
 
 template <std::size_t N>
@@ -199,7 +217,8 @@ Introduction Board::introduce(std::unique_ptr<Transport> transport) {
   return introduction;
 }
 
-Response Board::demand(MessageKind kind, std::span<const std::byte> payload, const char* what) {
+Response Board::demand(MessageKind kind, std::span<const std::byte> payload, const char* what,
+                       const std::string& range) {
   Response response = connection().call(kind, payload);
   const std::string where = connection().name() + ": " + what + ": ";
   if (response.timed_out) {
@@ -209,6 +228,9 @@ Response Board::demand(MessageKind kind, std::span<const std::byte> payload, con
   if (response.status == WireStatus::kWatchOnly &&
       connection().call(MessageKind::kCapabilities).read(can)) {
     throw LinkError(where + why_only_watched(can));
+  }
+  if (response.status == WireStatus::kBadValue && !range.empty()) {
+    throw LinkError(where + range);
   }
   if (!response.ok()) {
     throw LinkError(where + core::wire::describe(response.status) + details(response) +
@@ -333,16 +355,34 @@ void Board::clear_faults() {
 void Board::home() { (void)control(ControlCode::kHome, 0, "home"); }
 
 void Board::set_limits(float force_max_N, float slew_N_s, float ramp_s) {
+  const core::wire::CapabilitiesReply can = capabilities();
+  core::Configuration tried;
+  tried.rate_hz = can.rate_hz;
+  tried.limits = {force_max_N, slew_N_s, ramp_s};
+  std::string range = range_of(tried);
+  if (force_max_N > can.force_limit_N) {
+    range = outside("limits.force_max_N", force_max_N, 0.01F, can.force_limit_N);
+  } else if (range.empty() && slew_N_s > can.slew_limit_N_s) {
+    range = outside("limits.slew_N_s", slew_N_s, 0.0F, can.slew_limit_N_s);
+  }
   (void)demand(MessageKind::kSetLimits, core::wire::SetLimitsRequest{force_max_N, slew_N_s, ramp_s},
-               "set limits");
+               "set limits", range);
 }
 
 void Board::set_material(const core::wire::SetMaterialRequest& material) {
-  (void)demand(MessageKind::kSetMaterial, material, "set material");
+  core::Configuration tried;
+  tried.contact.stiffness_N_m = material.stiffness_N_m;
+  tried.contact.damping_Ns_m = material.damping_Ns_m;
+  tried.contact.static_friction = material.static_friction;
+  tried.contact.dynamic_friction = material.dynamic_friction;
+  (void)demand(MessageKind::kSetMaterial, material, "set material", range_of(tried));
 }
 
 void Board::set_texture(const core::wire::SetTextureRequest& texture) {
-  (void)demand(MessageKind::kSetTexture, texture, "set texture");
+  core::Configuration tried;
+  tried.contact.texture_height_m = texture.height_m;
+  tried.contact.texture_wavelength_m = texture.wavelength_m;
+  (void)demand(MessageKind::kSetTexture, texture, "set texture", range_of(tried));
 }
 
 void Board::subscribe(const Subscription& subscription) {
@@ -383,8 +423,11 @@ std::vector<core::wire::ParameterReply> Board::parameters() {
 void Board::set_parameter(const std::string& name, float value) {
   for (const core::wire::ParameterReply& parameter : parameters()) {
     if (name == std::string(parameter.name, ::strnlen(parameter.name, sizeof parameter.name))) {
+      // A range within, such as that of delay_s, also depends on the other values.
+      const bool inside = value >= parameter.min && value <= parameter.max;
       (void)demand(MessageKind::kSetParameter,
-                   core::wire::SetParameterRequest{parameter.number, value}, name.c_str());
+                   core::wire::SetParameterRequest{parameter.number, value}, "set parameter",
+                   inside ? "" : outside(name.c_str(), value, parameter.min, parameter.max));
       return;
     }
   }

@@ -165,11 +165,13 @@ class Board {
   [[nodiscard]] Connection& connection() const;
 
  private:
+  /// `range`: the cause of a refusal as WireStatus::kBadValue; empty: unknown.
   Response demand(core::wire::MessageKind kind, std::span<const std::byte> payload,
-                  const char* what);
+                  const char* what, const std::string& range = "");
   template <core::wire::Message T>
-  Response demand(core::wire::MessageKind kind, const T& message, const char* what) {
-    return demand(kind, std::as_bytes(std::span(&message, 1)), what);
+  Response demand(core::wire::MessageKind kind, const T& message, const char* what,
+                  const std::string& range = "") {
+    return demand(kind, std::as_bytes(std::span(&message, 1)), what, range);
   }
   template <core::wire::Message Reply>
   [[nodiscard]] Reply fetch(core::wire::MessageKind kind, const char* what);
