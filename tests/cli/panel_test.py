@@ -86,7 +86,7 @@ class Panel(BallFolder):
                 states = [row["state"] for row in csv.DictReader(file)]
             self.assertEqual(list(dict.fromkeys(states)), ["idle", "armed", "active"])
             self.assertEqual(states[-1], "active")
-            self.verb("monitor", "--once", "--port", port, "--json", "view.json")
+            self.assertIn("active", self.verb("monitor", "--once", "--port", port, "--json", "view.json"))
             view = self.read("view.json")
             self.assertEqual((view["state"], view["watch_only"]), ("active", True))
             self.assertIn("stopped", self.verb("stop", "--port", port))

@@ -166,7 +166,7 @@ class Poses(SharedFolder):
                      "sheet.blob", "--pose", "p.json", "--panel")
         self.refused("--pose", "simulate", "sheet.blob", "--pose", "p.json", "--origin", 0, 0, 0, code=2)
         self.refused("--pose", "simulate", "sheet.blob", "--pose", "p.json", "--scene", "scene.json", code=2)
-        self.refused("none.json", "simulate", "sheet.blob", "--pose", "none.json", code=2)
+        self.refused("none.json: there is no such file", "simulate", "sheet.blob", "--pose", "none.json")
 
 
 if __name__ == "__main__":

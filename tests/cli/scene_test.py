@@ -175,10 +175,10 @@ class Scenes(SharedFolder):
         (self.path / "broken.blob").write_bytes((self.path / "ball.blob").read_bytes()[:-8])
         self.refused([{"blob": 0}, {"blob": "broken.blob"}], "broken.blob: ")
 
-    def test_reports_usage_errors(self):
+    def test_refuses_missing_files_and_boards_with_several_bodies(self):
         done = self.run_tool("simulate", "--scene", "none.json")
-        self.assertEqual(done.returncode, 2, done.stderr)
-        self.assertIn("none.json", done.stderr)
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertIn("none.json: there is no such file", done.stderr)
         self.refused([{"blob": 0}, {"blob": 1}], "--board mps2-an386: a board has one blob in its flash, "
                      "the scene has 2 bodies", "--board", "mps2-an386")
 

@@ -146,6 +146,13 @@ class Arrays(Folder):
         points, normals = ball_arrays(50)
         for arguments, options, words in (
                 ((points[:, :2],), {}, "points: the shape (50, 2) is not (N, 3)"),
+                (([[1, 2, 3], [1, 2]],), {}, "points: is not an array of numbers: "),
+                (("scan.ply",), {}, "points: 'scan.ply' is not an array of numbers (read a file with build_file()"),
+                ((points, "up"), {}, "normals: 'up' is not an array of numbers"),
+                ((points, None, "red"), {}, "colors: 'red' is not an array of numbers"),
+                ((points, None, None, [[0, 1], [0]]), {}, "triangles: is not an array of numbers"),
+                ((points,), {"crop": "small"}, "crop: 'small' is not an array of numbers"),
+                ((points,), {"viewpoints": [[0, 0], [0]]}, "viewpoints: is not an array of numbers"),
                 ((np.empty((0, 3)),), {}, "points: there are none"),
                 ((points, normals[1:]), {}, "normals: 49 rows for 50 points"),
                 ((points, None, np.full((50, 3), 256)), {}, "colors[0]: 256 is not a whole number from 0 to 255"),

@@ -10,6 +10,7 @@ from typing import Any
 import numpy.typing as npt
 
 from . import _native
+from ._arrays import numbers, numbers_or_none
 from ._model import Model
 
 Progress = Callable[[str, float], object]
@@ -32,6 +33,9 @@ def _given(options: dict[str, Any]) -> dict[str, Any]:
     given = {name: value for name, value in options.items() if value is not None}
     if given.get("outliers") == "off":
         given["outliers"] = 0.0
+    for name in ("crop", "viewpoints"):
+        if name in given:
+            given[name] = numbers(name, given[name])
     return given
 
 
@@ -91,7 +95,9 @@ def build(points: npt.ArrayLike, normals: npt.ArrayLike | None = None, colors: n
         "profile": profile, "material": material, "outliers": outliers, "keep_largest": keep_largest,
         "min_piece": min_piece, "orient": orient, "viewpoints": viewpoints, "two_sided_m": two_sided_m,
         "flip_normals": flip_normals, "name": name, "threads": threads})
-    return _finish(_native.build_arrays(points, normals, colors, triangles, options, progress))
+    return _finish(_native.build_arrays(
+        numbers("points", points), numbers_or_none("normals", normals), numbers_or_none("colors", colors),
+        numbers_or_none("triangles", triangles), options, progress))
 
 
 def build_file(path: str | os.PathLike[str] | Iterable[str | os.PathLike[str]], *, unit: str | None = None,

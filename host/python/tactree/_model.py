@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _native
+from ._arrays import numbers
 
 
 class Model:
@@ -86,7 +87,7 @@ class Model:
         `radius_m` limits the search of the nearest point; default: the support radius of the model. Positions are
         rounded to float32, as in the controller. Cost: some microseconds per position; other threads run meanwhile.
         """
-        return self._native.query(positions, radius_m)
+        return self._native.query(numbers("positions", positions), radius_m)
 
     def nearest(self, positions: npt.ArrayLike,
                 radius_m: float | None = None) -> tuple[npt.NDArray[np.int32], npt.NDArray[np.float64]]:
@@ -94,7 +95,7 @@ class Model:
 
         -1 and NaN where no point is within `radius_m`, see query().
         """
-        answers = self._native.query(positions, radius_m)
+        answers = self._native.query(numbers("positions", positions), radius_m)
         return np.ascontiguousarray(answers["nearest"]), np.ascontiguousarray(answers["distance_m"])
 
     def save(self, path: str | os.PathLike[str]) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _native
+from ._arrays import numbers
 from ._model import Model
 
 
@@ -44,12 +45,14 @@ class Simulation:
         The other options are those of `tactree simulate`, with its defaults. encoder_step_m, device_mass_kg and
         device_friction_N have an effect on the device cartesian only.
         """
+        if not isinstance(model, Model):
+            raise _native.Error(f"Simulation: {model!r} is not a Model (load() reads a blob, build_file() a scan)")
         if pose is not None and origin_m is not None:
             raise _native.Error("Simulation: pose and origin_m both place the model (give one of them)")
         is_file = isinstance(pose, (str, os.PathLike))
         if scale is not None and (pose is None or is_file):
             raise _native.Error("Simulation: scale belongs to the matrix of a pose (a pose file has its own)")
-        rows = None if pose is None or is_file else np.asarray(pose, dtype=float).ravel().tolist()
+        rows = None if pose is None or is_file else numbers("pose", pose).ravel().tolist()
         options = {
             "pose_file": os.fspath(pose) if is_file else None, "pose": rows, "scale": scale,
             "device": device, "rate_hz": rate_hz, "mode": mode, "stiffness_N_m": stiffness_N_m,
@@ -74,8 +77,8 @@ class Simulation:
         if (hand_position is None) == (encoders is None):
             raise _native.Error("step: needs either hand_position or encoders (give one of them)")
         if encoders is not None:
-            return self._session.step_at(encoders)
-        return self._session.step_to(hand_position, hand_velocity)
+            return self._session.step_at(numbers("encoders", encoders))
+        return self._session.step_to(numbers("hand_position", hand_position), numbers("hand_velocity", hand_velocity))
 
     def run(self, path: npt.ArrayLike | None = None, *, seconds: float | None = None,
             script: str = "rub") -> npt.NDArray[Any]:
@@ -89,7 +92,7 @@ class Simulation:
         run meanwhile; Ctrl-C ends the run.
         """
         if path is not None:
-            return self._session.run_path(path, seconds)
+            return self._session.run_path(numbers("path", path), seconds)
         return self._session.run_script(script, 10.0 if seconds is None else seconds)
 
     def reset(self) -> None:

@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -12,6 +14,7 @@
 #include "tactree/support/device_file.hpp"
 #include "tactree/support/json_text.hpp"
 #include "tactree/support/output_file.hpp"
+#include "tactree/support/standard_output.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -76,11 +79,20 @@ void check(const DeviceOptions& options, int& exit_code) {
 }
 
 void write_header(const DeviceOptions& options) {
-  support::check_outputs({options.output}, {options.file});
+  std::optional<support::StandardOutput> standard_output;
+  if (support::is_standard_output(options.output)) {
+    standard_output.emplace();
+  } else {
+    support::check_outputs({options.output}, {options.file});
+  }
   const support::Device device = support::load_device(options.file);
-  support::write_file(options.output, support::device_header(
-                                          device, options.variable,
-                                          std::filesystem::path(options.file).filename().string()));
+  const std::string header = support::device_header(
+      device, options.variable, std::filesystem::path(options.file).filename().string());
+  if (standard_output) {
+    standard_output->write(std::as_bytes(std::span(header)));
+  } else {
+    support::write_file(options.output, header);
+  }
   fmt::print("wrote     {}: {} as {}\n", options.output, device.name, options.variable);
   print_defaults(device);
 }
@@ -116,7 +128,8 @@ void add_device_command(CLI::App& app, int& exit_code) {
   CLI::App* header_verb = verb->add_subcommand(
       "to-header", "Writes a C++ header with the device as a core::DevicePreset for firmware");
   header_verb->add_option("FILE", options->file, "device file, or name of a device")->required();
-  header_verb->add_option("-o,--output", options->output, "header to write")->required();
+  header_verb->add_option("-o,--output", options->output, "header to write; -: standard output")
+      ->required();
   header_verb->add_option("--name", options->variable, "name of the variable")
       ->check(is_identifier)
       ->capture_default_str();

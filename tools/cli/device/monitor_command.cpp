@@ -241,9 +241,8 @@ void show(const MonitorOptions& options, int& exit_code) {
     return watch(*board, monitor, options);
   }
   const View& view = monitor.look();
-  if (options.json.empty()) {
-    fmt::print("{}", to_text(view));
-  } else {
+  fmt::print("{}", to_text(view));
+  if (!options.json.empty()) {
     support::write_file(options.json, to_json(view).dump(2) + "\n");
   }
   exit_code = view.now.faults == 0U ? kExitOk : kExitFailed;
@@ -257,7 +256,7 @@ void add_monitor_command(CLI::App& app, int& exit_code) {
   add_port_options(*verb, options->port);
   CLI::Option* once = verb->add_flag("--once", options->once,
                                      "print the values once; exit code 1 if a fault is latched");
-  verb->add_option("--json", options->json, "write the values to this file")->needs(once);
+  verb->add_option("--json", options->json, "also write the values to this file")->needs(once);
   verb->add_option("--seconds", options->seconds, "end after this time, s (default: on Ctrl-C)")
       ->check(is_positive);
   verb->callback([options, &exit_code] { show(*options, exit_code); });
