@@ -2,7 +2,12 @@
 
 usage: replay_test.py TACTREE
 """
+import csv
+import os
 import pathlib
+import pty
+import signal
+import subprocess
 import sys
 import unittest
 
@@ -106,6 +111,29 @@ class Replay(SharedFolder):
         self.assertEqual(done.returncode, 1)
         self.assertIn("session.rec: has the inputs of a controller, but no path of a hand (replay it with --replay",
                       done.stderr)
+
+    def test_interrupted_run_keeps_its_ticks(self):
+        reader, terminal = pty.openpty()
+        said = b""
+        with subprocess.Popen([TACTREE, "simulate", "low.blob", "--seconds", "1000", "--trace", "part.csv", "--record",
+                               "part.rec"], cwd=self.path, stdout=subprocess.DEVNULL, stderr=terminal) as run:
+            os.close(terminal)
+            while b"simulating" not in said:  # the progress
+                said += os.read(reader, 4096)
+            run.send_signal(signal.SIGINT)
+            try:
+                while more := os.read(reader, 4096):
+                    said += more
+            except OSError:  # the program has ended
+                os.close(reader)
+        self.assertEqual(run.returncode, 1)
+        self.assertRegex(said.decode(), r"warning: interrupted after [0-9.]+ s of 1000 s; the results are those of")
+        with open(self.path / "part.csv", newline="") as file:
+            ticks = len(list(csv.reader(file))) - 1
+        self.assertLess(ticks, 1000000)
+        self.assertIn(f"interrupted after {ticks / 1000:.3f} s", said.decode())
+        done = self.replay("low.blob", name="part.rec")
+        self.assertEqual(done.returncode, 0, done.stderr)
 
     def test_record_excludes_replay(self):
         self.record()

@@ -175,6 +175,14 @@ void simulate(SimulateOptions& options, int& exit_code) {
   const Outcome outcome = run(options, scene);
   write_results(options, scene, outcome);
   print_summary(options, scene, outcome);
+  if (outcome.interrupted_s) {
+    fmt::print(stderr,
+               "tactree: warning: interrupted after {:.3f} s of {:g} s; the results are those of "
+               "the ticks until then\n",
+               *outcome.interrupted_s, options.seconds);
+    exit_code = kExitFailed;
+    return;
+  }
   exit_code = outcome.summary.faults.empty() ? kExitOk : kExitFailed;
   if (exit_code == kExitOk && outcome.summary.contact_ticks == 0 && !options.allow_no_contact) {
     refuse(fmt::format("{}: the probe never touched the model", options.blob),

@@ -8,7 +8,9 @@
 #include <utility>
 
 #include "image/board_costs.hpp"
+#include "interruption.hpp"
 #include "run/simulate_setup.hpp"
+#include "tactree/builder/progress.hpp"
 #include "tactree/emulation/emulated_target.hpp"
 #include "tactree/setup/session.hpp"
 #include "tactree/simulation/recording.hpp"
@@ -21,6 +23,7 @@ namespace tactree::cli {
 namespace {
 
 constexpr double kMaxTicks = 1e8;
+constexpr std::uint64_t kTicksPerLook = 1000;  // at the progress
 // Limit for a trace, plot or recording, which keeps every tick in memory.
 constexpr double kMaxTracedTicks = 5e6;
 
@@ -188,7 +191,8 @@ void note_event(const simulation::Sample& sample, std::vector<PanelEvent>& event
   }
 }
 
-/// Runs the ticks from time 0 on, and those of a fault-free session if faults are injected.
+/// Runs the ticks from time 0 on, and those of a fault-free session if faults are injected. Ends
+/// early on Ctrl-C.
 Outcome run_ticks(simulation::Simulation& sim, Operation& operation, std::uint64_t ticks,
                   const SimulateOptions& options, const setup::SceneFile& scene) {
   const std::vector<simulation::InjectedFault> faults = injections(options);
@@ -199,7 +203,17 @@ Outcome run_ticks(simulation::Simulation& sim, Operation& operation, std::uint64
   }
   Outcome outcome;
   simulation::Recorder recorder;
+  const auto progress = builder::make_progress(builder::ProgressStyle::kAuto, stderr);
+  progress->begin("simulating");
   for (std::uint64_t i = 0; i < ticks; ++i) {
+    if (interrupted()) {
+      outcome.interrupted_s =
+          static_cast<double>(i) / static_cast<double>(options.setup.controller.rate_hz);
+      break;
+    }
+    if (i % kTicksPerLook == 0) {
+      progress->advance(static_cast<double>(i) / static_cast<double>(ticks));
+    }
     const simulation::Sample sample = operation.step(sim);
     recorder.add(sample);
     if (comparison) {
@@ -212,6 +226,7 @@ Outcome run_ticks(simulation::Simulation& sim, Operation& operation, std::uint64
       outcome.samples.push_back(sample);
     }
   }
+  progress->end();
   outcome.summary = recorder.summary();
   if (comparison) {
     outcome.harm = comparison->harm();
@@ -224,6 +239,7 @@ Outcome run_ticks(simulation::Simulation& sim, Operation& operation, std::uint64
 Outcome run(const SimulateOptions& options, const setup::SceneFile& scene) {
   simulation::Setup setup = make_setup(options, scene);
   const std::uint64_t ticks = ticks_of(options, setup);
+  watch_interruption();
   simulation::SessionWriter writer;
   setup.board.recorder = options.record.empty() ? nullptr : &writer;
   ChosenTarget chosen = choose_target(options, setup, scene);

@@ -39,10 +39,11 @@ struct Outcome {
   std::optional<TickBound> bound;                            ///< if the image can be analysed
   std::vector<PanelEvent> panel;                             ///< of --panel
   std::vector<simulation::Sample> samples;                   ///< for --trace and --plot
+  std::optional<double> interrupted_s;                       ///< time that Ctrl-C ended the run
 };
 
 /// Runs a session without user input at the full speed of the computer, and records it for
-/// --record. Throws UserError.
+/// --record. Ctrl-C ends it after the present tick. Throws UserError.
 [[nodiscard]] Outcome run(const SimulateOptions& options, const setup::SceneFile& scene);
 
 /// Writes the files of --trace, --plot and --json. Throws UserError.
