@@ -60,7 +60,7 @@ class SharingProgram:
         self.said = ""
 
     def __enter__(self):
-        self.address = self.wait_for(r"ws://[\d.]+:(\d+)/[^;]*")
+        self.address = self.wait_for(r"ws://[\d.]+:(\d+)/\S*")
         self.tcp_port = int(self.address[1])
         self.watch_port = self.wait_for(r"unix:\S+")[0]
         return self

@@ -117,10 +117,12 @@ void Clients::set_force(unsigned number, const std::array<float, 3>& force_N) {
   if (is_zero(force_N) && !is_in_command(number)) {
     return;
   }
-  if (!take_command(number, "set_cursor_force")) {
+  const bool acts = newest_.link == Link::kHere && state_in(newest_) == core::State::kActive;
+  // Without effect, it does not take the command, so that another program can arm the board.
+  if ((acts || commander_.client != 0U) && !take_command(number, "set_cursor_force")) {
     return;
   }
-  if (newest_.link != Link::kHere || state_in(newest_) != core::State::kActive) {
+  if (!acts) {
     if (!is_zero(force_N)) {
       clients_.at(number).refusal =
           newest_.link != Link::kHere

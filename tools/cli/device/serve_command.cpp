@@ -73,7 +73,7 @@ void share_board(const SharingOptions& options) {
   share::SharedBoard board(std::move(settings));
   share::Server server(serving, board);
   tell_terminal(
-      fmt::format("board {} is shared at {}; Ctrl+C ends it", board.name(), server.address()));
+      fmt::format("board {} is shared at {} (Ctrl+C ends it)", board.name(), server.address()));
   tell_terminal(
       fmt::format("to watch: tactree monitor, record or view --port {}", server.watch_port()));
   const auto announcement = announce(server.watch_port(), board.name());

@@ -140,6 +140,13 @@ TEST_F(ShareClients, RefusesForceOfStoppedBoard) {
   push(one, 1.0);
   EXPECT_TRUE(board_.forces.empty());
   EXPECT_NE(refusal(one).find("in state idle"), std::string::npos);
+  EXPECT_EQ(clients_.in_command(), 0U);  // so that another program can arm
+  const unsigned two = clients_.join("here:2");
+  clients_.receive(two, R"({"tactree":{"arm":true}})");
+  EXPECT_EQ(board_.requests, std::vector{BoardRequest::kArm});
+  pass();
+  push(one, 1.0);
+  EXPECT_NE(refusal(one).find("client 2, here:2, has command"), std::string::npos);
 }
 
 TEST_F(ShareClients, AnyoneMayStopAndOneMayArm) {
