@@ -86,7 +86,10 @@ class Control(Folder):
             board.set_texture(2e-4, 3e-3)
             for call, words in ((lambda: board.set_parameter("nonsense", 1), "no parameter 'nonsense'"),
                                 (lambda: board.set_parameter("delay_s", 9), "set parameter: delay_s is 9, outside 0 .. 0.1"),
-                                (lambda: board.set_parameter("delay_s", 0.09), "set parameter: "),
+                                (lambda: board.set_parameter("delay_s", 0.09), "delay_s is 0.09, outside 0 .. 0.015"),
+                                (lambda: board.set_parameter("velocity_cutoff_hz", 9000),
+                                 "velocity_cutoff_hz is 9000, outside 1 .. 500"),
+                                (lambda: board.set_parameter("device.ratio[0]", 0), "device.ratio[0] is 0"),
                                 (lambda: board.set_limits(-1, 0, 0.2), "set limits: limits.force_max_N is -1, outside 0.01"),
                                 (lambda: board.set_limits(900, 100, 0.2), "limits.force_max_N is 900, outside 0.01 .. "),
                                 (lambda: board.set_limits(1.5, 1e5, 0.2), "limits.slew_N_s is 100000, outside "),

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
+#include <span>
 #include <utility>
 
 #include "tactree/client/link_error.hpp"
 #include "tactree/client/ports.hpp"
+#include "tactree/core/configuration/parameters.hpp"
 #include "tactree/core/control/controller.hpp"
 #include "tactree/core/math/crc32.hpp"
 #include "trace_reader.hpp"
@@ -88,9 +90,33 @@ std::string outside(const char* field, float value, float min, float max) {
 /// what it checks. Empty if a value that only the board knows is the cause.
 std::string range_of(const core::Configuration& tried) {
   const core::Refusal refusal = core::refusal_of(tried);
-  return refusal.field[0] == '\0' || refusal.status == core::ConfigurationStatus::kUnstable
-             ? ""
-             : outside(refusal.field, refusal.value, refusal.min, refusal.max);
+  if (refusal.field[0] == '\0' || refusal.status == core::ConfigurationStatus::kUnstable) {
+    return "";
+  }
+  const std::string axis = refusal.axis < 0 ? "" : "[" + std::to_string(refusal.axis) + "]";
+  return outside((refusal.field + axis).c_str(), refusal.value, refusal.min, refusal.max);
+}
+
+/// As range_of(), with the present values of the board, on which the range may depend.
+std::string range_of_parameter(std::span<const core::wire::ParameterReply> present,
+                               const core::wire::ParameterReply& parameter, float value,
+                               float rate_hz) {
+  if (!(value >= parameter.min && value <= parameter.max)) {
+    return outside(parameter.name, value, parameter.min, parameter.max);
+  }
+  core::Configuration tried;
+  tried.rate_hz = rate_hz;
+  const auto set = [&tried](const core::wire::ParameterReply& p, float to) {
+    const bool known = p.number < core::kParameters &&
+                       std::strncmp(p.name, core::parameter(p.number).name, sizeof p.name) == 0;
+    return known && core::set_parameter(tried, p.number, to);
+  };
+  if (!std::all_of(present.begin(), present.end(),
+                   [&](const auto& p) { return set(p, p.value); }) ||
+      !range_of(tried).empty() || !set(parameter, value)) {
+    return "";  // of another version, or with limits that the parameters do not include
+  }
+  return range_of(tried);
 }
 
 template <std::size_t N>
@@ -421,13 +447,12 @@ std::vector<core::wire::ParameterReply> Board::parameters() {
 }
 
 void Board::set_parameter(const std::string& name, float value) {
-  for (const core::wire::ParameterReply& parameter : parameters()) {
+  const std::vector<core::wire::ParameterReply> all = parameters();
+  for (const core::wire::ParameterReply& parameter : all) {
     if (name == std::string(parameter.name, ::strnlen(parameter.name, sizeof parameter.name))) {
-      // A range within, such as that of delay_s, also depends on the other values.
-      const bool inside = value >= parameter.min && value <= parameter.max;
       (void)demand(MessageKind::kSetParameter,
                    core::wire::SetParameterRequest{parameter.number, value}, "set parameter",
-                   inside ? "" : outside(name.c_str(), value, parameter.min, parameter.max));
+                   range_of_parameter(all, parameter, value, capabilities().rate_hz));
       return;
     }
   }
