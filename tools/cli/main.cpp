@@ -1,10 +1,12 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <exception>
 #include <string>
+#include <string_view>
 
 #include "commands.hpp"
 #include "exit_codes.hpp"
@@ -26,6 +28,15 @@ void refuse_negative_counts(CLI::App& app) {
       }
     }
     refuse_negative_counts(*verb);
+  }
+}
+
+/// A device file may have several mistakes, one a line.
+void print_errors(std::string_view text) {
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    fmt::print(stderr, "tactree: error: {}\n", text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
   }
 }
 
@@ -75,7 +86,7 @@ int run(int argc, char** argv) {
     fmt::print(stderr, "tactree: error: out of memory (choose a larger --spacing, or --crop)\n");
     return kExitFailed;
   } catch (const std::exception& error) {
-    fmt::print(stderr, "tactree: error: {}\n", error.what());
+    print_errors(error.what());
     return kExitFailed;
   }
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {

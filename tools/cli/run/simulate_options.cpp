@@ -39,8 +39,10 @@ void add_controller_options(CLI::App& verb, SimulateOptions& options) {
                   "coefficient, at most the static one")
       ->check(within(0.0, 2.0))
       ->capture_default_str();
-  verb.add_option("--texture-height", c.contact.texture_height_m,
-                  "depth of bumps in the surface, m: at most half of their wavelength; 0: smooth")
+  verb.add_option(
+          "--texture-height", c.contact.texture_height_m,
+          "amplitude of bumps in the surface, m: at most half of their wavelength; they are up "
+          "to twice as deep; 0: smooth")
       ->check(within(0.0, 0.01))
       ->capture_default_str();
   verb.add_option("--texture-wavelength", c.contact.texture_wavelength_m,
@@ -122,7 +124,7 @@ void add_plant_options(CLI::App& verb, SimulateOptions& options) {
           ->check(within(1e-8, 1e-2))
           ->capture_default_str()};
   verb.add_option("--latency-ticks", options.latency_ticks, "age of an encoder reading, ticks")
-      ->check(within(0, static_cast<int>(hal::sim::kMaxLatencyTicks)))
+      ->check(within(0, core::kMaxDelayTicks))
       ->capture_default_str();
   options.stiffness_given =
       verb.add_option("--hand-stiffness", plant.hand.stiffness_N_m, "spring of the hand, N/m")

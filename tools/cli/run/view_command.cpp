@@ -301,7 +301,7 @@ class Simulated {
 };
 
 void announce(const viewer::Server& server) {
-  fmt::print("open {} in a browser; Ctrl+C ends it\n", server.address());
+  fmt::print("open {} in a browser (Ctrl+C ends it)\n", server.address());
   std::fflush(stdout);
 }
 

@@ -143,6 +143,12 @@ core::BlobView view_of(const BuildResult& result) {
 
 void limit_to_board(BoardRequest& request, builder::BuildOptions& build) {
   const std::optional<std::uint64_t> room = room_of(request);
+  if (!room && is_board_file(request.board)) {
+    fmt::print(stderr,
+               "tactree: warning: {}: states no \"blob\", so that its flash does not limit the "
+               "model (docs/PORTING.md)\n",
+               request.board);
+  }
   request.chooses_size =
       room.has_value() && build.resample && !build.spacing_m && !build.flash_budget_bytes;
   if (request.chooses_size) {
