@@ -4,8 +4,9 @@
 // use; scripts/generate writes its tables from this header.
 //
 // A request has a kind of 0x01 .. 0x3F. Its reply has the same kind with kReplyBit, the request's
-// sequence number and a WireStatus; the payload is empty unless the status is kOk. An unsolicited
-// message of the board has a kind of 0x40 .. 0x7F.
+// sequence number and a WireStatus; the payload is empty unless the status is kOk, except for
+// WriteModelReply and FinishModelReply. An unsolicited message of the board has a kind of 0x40 ..
+// 0x7F.
 //
 // Interrupt safety: plain data and pure functions.
 
@@ -315,7 +316,7 @@ struct BeginModelReply {
   std::uint32_t slot = 0;
 };
 
-/// Followed by 1 .. kMaxPiece bytes, a multiple of 4 but for the last piece.
+/// Followed by 1 .. kMaxPiece bytes, a multiple of 32 but for the last piece.
 struct WriteModelRequest {
   std::uint32_t offset = 0;
 };
