@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <iterator>
+#include <system_error>
 
 #include "tactree/support/user_error.hpp"
 
@@ -50,8 +51,9 @@ CLI::Validator one_of(const std::vector<std::string>& names) {
 
 CLI::Validator existing_file() {
   return {[](const std::string& file) -> std::string {
-            const std::filesystem::file_status status = std::filesystem::status(file);
-            if (!std::filesystem::exists(status)) {
+            std::error_code other;  // than a missing file: the reader states it
+            const std::filesystem::file_status status = std::filesystem::status(file, other);
+            if (status.type() == std::filesystem::file_type::not_found) {
               throw support::UserError(file + ": there is no such file (check the path)");
             }
             if (std::filesystem::is_directory(status)) {
