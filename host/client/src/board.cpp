@@ -244,7 +244,7 @@ Introduction Board::introduce(std::unique_ptr<Transport> transport) {
 }
 
 Response Board::demand(MessageKind kind, std::span<const std::byte> payload, const char* what,
-                       const std::string& range) {
+                       const Range& range) {
   Response response = connection().call(kind, payload);
   const std::string where = connection().name() + ": " + what + ": ";
   if (response.timed_out) {
@@ -255,8 +255,9 @@ Response Board::demand(MessageKind kind, std::span<const std::byte> payload, con
       connection().call(MessageKind::kCapabilities).read(can)) {
     throw LinkError(where + why_only_watched(can));
   }
-  if (response.status == WireStatus::kBadValue && !range.empty()) {
-    throw LinkError(where + range);
+  if (const std::string cause = response.status == WireStatus::kBadValue && range ? range() : "";
+      !cause.empty()) {
+    throw LinkError(where + cause);
   }
   if (!response.ok()) {
     throw LinkError(where + core::wire::describe(response.status) + details(response) +
@@ -381,34 +382,41 @@ void Board::clear_faults() {
 void Board::home() { (void)control(ControlCode::kHome, 0, "home"); }
 
 void Board::set_limits(float force_max_N, float slew_N_s, float ramp_s) {
-  const core::wire::CapabilitiesReply can = capabilities();
-  core::Configuration tried;
-  tried.rate_hz = can.rate_hz;
-  tried.limits = {force_max_N, slew_N_s, ramp_s};
-  std::string range = range_of(tried);
-  if (force_max_N > can.force_limit_N) {
-    range = outside("limits.force_max_N", force_max_N, 0.01F, can.force_limit_N);
-  } else if (range.empty() && slew_N_s > can.slew_limit_N_s) {
-    range = outside("limits.slew_N_s", slew_N_s, 0.0F, can.slew_limit_N_s);
-  }
+  const Range range = [&]() -> std::string {
+    const core::wire::CapabilitiesReply can = capabilities();
+    if (force_max_N > can.force_limit_N) {
+      return outside("limits.force_max_N", force_max_N, 0.01F, can.force_limit_N);
+    }
+    core::Configuration tried;
+    tried.rate_hz = can.rate_hz;
+    tried.limits = {force_max_N, slew_N_s, ramp_s};
+    const std::string own = range_of(tried);
+    return own.empty() && slew_N_s > can.slew_limit_N_s
+               ? outside("limits.slew_N_s", slew_N_s, 0.0F, can.slew_limit_N_s)
+               : own;
+  };
   (void)demand(MessageKind::kSetLimits, core::wire::SetLimitsRequest{force_max_N, slew_N_s, ramp_s},
                "set limits", range);
 }
 
 void Board::set_material(const core::wire::SetMaterialRequest& material) {
-  core::Configuration tried;
-  tried.contact.stiffness_N_m = material.stiffness_N_m;
-  tried.contact.damping_Ns_m = material.damping_Ns_m;
-  tried.contact.static_friction = material.static_friction;
-  tried.contact.dynamic_friction = material.dynamic_friction;
-  (void)demand(MessageKind::kSetMaterial, material, "set material", range_of(tried));
+  (void)demand(MessageKind::kSetMaterial, material, "set material", [&] {
+    core::Configuration tried;
+    tried.contact.stiffness_N_m = material.stiffness_N_m;
+    tried.contact.damping_Ns_m = material.damping_Ns_m;
+    tried.contact.static_friction = material.static_friction;
+    tried.contact.dynamic_friction = material.dynamic_friction;
+    return range_of(tried);
+  });
 }
 
 void Board::set_texture(const core::wire::SetTextureRequest& texture) {
-  core::Configuration tried;
-  tried.contact.texture_height_m = texture.height_m;
-  tried.contact.texture_wavelength_m = texture.wavelength_m;
-  (void)demand(MessageKind::kSetTexture, texture, "set texture", range_of(tried));
+  (void)demand(MessageKind::kSetTexture, texture, "set texture", [&] {
+    core::Configuration tried;
+    tried.contact.texture_height_m = texture.height_m;
+    tried.contact.texture_wavelength_m = texture.wavelength_m;
+    return range_of(tried);
+  });
 }
 
 void Board::subscribe(const Subscription& subscription) {
@@ -451,8 +459,9 @@ void Board::set_parameter(const std::string& name, float value) {
   for (const core::wire::ParameterReply& parameter : all) {
     if (name == std::string(parameter.name, ::strnlen(parameter.name, sizeof parameter.name))) {
       (void)demand(MessageKind::kSetParameter,
-                   core::wire::SetParameterRequest{parameter.number, value}, "set parameter",
-                   range_of_parameter(all, parameter, value, capabilities().rate_hz));
+                   core::wire::SetParameterRequest{parameter.number, value}, "set parameter", [&] {
+                     return range_of_parameter(all, parameter, value, capabilities().rate_hz);
+                   });
       return;
     }
   }

@@ -165,12 +165,13 @@ class Board {
   [[nodiscard]] Connection& connection() const;
 
  private:
-  /// `range`: the cause of a refusal as WireStatus::kBadValue; empty: unknown.
+  /// Says why the board refuses a value (WireStatus::kBadValue); "" if that is unknown.
+  using Range = std::function<std::string()>;
   Response demand(core::wire::MessageKind kind, std::span<const std::byte> payload,
-                  const char* what, const std::string& range = "");
+                  const char* what, const Range& range = {});
   template <core::wire::Message T>
   Response demand(core::wire::MessageKind kind, const T& message, const char* what,
-                  const std::string& range = "") {
+                  const Range& range = {}) {
     return demand(kind, std::as_bytes(std::span(&message, 1)), what, range);
   }
   template <core::wire::Message Reply>
