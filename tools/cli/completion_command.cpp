@@ -12,22 +12,18 @@
 namespace tactree::cli {
 namespace {
 
-// The names that an option may have as its value, as the help shows them: TEXT:{a,b} or TEXT:a|b.
-// CLI11 keeps them as a check only. Capitals stand for what the user chooses.
+// The names that an option may have as its value, as the help shows them: TEXT:a|b. CLI11 keeps
+// them as a check only. Capitals stand for what the user chooses.
 std::string choices(const CLI::Option& option) {
   const std::string type = option.get_type_name();
-  std::size_t begin = type.find('{');
-  const bool in_braces = begin != std::string::npos;
-  begin = in_braces ? begin + 1 : type.rfind(':') + 1;  // 0 without a colon
-  const std::string list =
-      type.substr(begin, in_braces ? type.find('}') - begin : std::string::npos);
-  if (!in_braces && list.find('|') == std::string::npos) {
+  const std::string list = type.substr(type.rfind(':') + 1);  // all of it without a colon
+  if (list.find('|') == std::string::npos) {
     return "";
   }
   std::string names;
   std::string name;
-  for (const char character : list + ",") {
-    if (character != ',' && character != '|') {
+  for (const char character : list + "|") {
+    if (character != '|') {
       name += character;
       continue;
     }

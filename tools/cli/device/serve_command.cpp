@@ -9,6 +9,7 @@
 #include "commands.hpp"
 #include "device/board_port.hpp"
 #include "device/share_token.hpp"
+#include "option_checks.hpp"
 #include "tactree/client/announcement.hpp"
 #include "tactree/client/link_error.hpp"
 #include "tactree/core/math/crc32.hpp"
@@ -105,7 +106,7 @@ void add_serve_command(CLI::App& app, int&) {
                    "(default: a new one, which tactree devices lists)");
   verb->add_option("--grip", options->grip,
                    "neutral: messages contain a grip at rest, for programs that need one; none")
-      ->check(CLI::IsMember({"neutral", "none"}))
+      ->check(one_of({"neutral", "none"}))
       ->capture_default_str();
   add_link_timeout_option(*verb, options->link_timeout_ms);
   verb->add_flag("--arm", options->arm,
