@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -16,6 +15,7 @@
 #include "mesh_import/mesh_extractor.hpp"
 #include "mesh_import/slicer_volumes.hpp"
 #include "mesh_import/xml_document.hpp"
+#include "src/readers/number.hpp"
 
 namespace tactree::builder {
 namespace {
@@ -26,28 +26,6 @@ constexpr unsigned kMaxNesting = 32;                 // of constellations
 constexpr std::size_t kMaxAmfInstances = 1'000'000;  // of objects
 // A tree that needs more memory than the process may use is refused when it is built.
 constexpr XmlLimits kAmfLimits{std::size_t{1} << 30, std::size_t{1} << 28};
-
-bool is_same_word(std::string_view a, std::string_view b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](char left, char right) {
-    return left == right ||
-           ((left ^ right) == 0x20 && (left | 0x20) >= 'a' && (left | 0x20) <= 'z');
-  });
-}
-
-double unit_of_amf(std::string_view name) {
-  struct Unit {
-    std::string_view name;
-    double metres;
-  };
-  constexpr Unit kUnits[] = {{"", 1e-3},           {"millimeter", 1e-3}, {"mm", 1e-3},
-                             {"inch", 0.0254},     {"feet", 0.3048},     {"foot", 0.3048},
-                             {"meter", 1.0},       {"m", 1.0},           {"micron", 1e-6},
-                             {"micrometer", 1e-6}, {"centimeter", 1e-2}};
-  for (const Unit& unit : kUnits) {
-    if (is_same_word(unit.name, name)) return unit.metres;
-  }
-  throw ImportError("its unit \"" + std::string(name.substr(0, 20)) + "\" is not known");
-}
 
 struct Instance {
   std::string object;  // or a constellation
@@ -109,7 +87,7 @@ class AmfReader {
 
   ImportedMesh read() {
     if (root_.empty()) throw ImportError("it has no element \"amf\"");
-    mesh_.unit_m = unit_of_amf(attribute_of(root_, "unit"));
+    mesh_.unit_m = metres_of_print_unit(attribute_of(root_, "unit"));
     const AmfColours materials = read_materials(root_);
     for_children(root_, "object", [&](pugi::xml_node element) {
       const std::string id(attribute_of(element, "id"));

@@ -23,7 +23,7 @@ std::optional<AmfColour> colour_of(pugi::xml_node element) {
   for (std::size_t i = 0; i < 3; ++i) {
     const std::optional<double> number = number_of(child_of(colour, kChannels[i]).child_value());
     if (!number || std::isnan(*number)) return std::nullopt;
-    bytes[i] = static_cast<std::uint8_t>(std::round(255.0 * std::clamp(*number, 0.0, 1.0)));
+    bytes[i] = colour_byte(*number);
   }
   return bytes;
 }

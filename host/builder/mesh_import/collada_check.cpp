@@ -7,14 +7,13 @@
 #include <string_view>
 #include <utility>
 
+#include "mesh_import/document_notes.hpp"
 #include "mesh_import/imported_mesh.hpp"
 #include "mesh_import/mesh_extractor.hpp"
 #include "mesh_import/xml_document.hpp"
 
 namespace tactree::builder {
 namespace {
-
-constexpr XmlLimits kColladaLimits{std::size_t{1} << 30, 16'000'000, 1000};
 
 /// A number of elements, and the name of the first.
 struct Found {
@@ -107,14 +106,9 @@ class ColladaCheck {
 }  // namespace
 
 SceneNotes check_collada(std::string text) {
-  try {
-    const XmlDocument document(std::move(text), kColladaLimits);
-    return ColladaCheck(child_of(document.root(), "COLLADA")).check();
-  } catch (const XmlTooLarge& error) {
-    throw ImportError("it is too large: " + std::string(error.what()));
-  } catch (const XmlError&) {
-    return {};  // assimp names the fault
-  }
+  return notes_of_document(std::move(text), [](pugi::xml_node root) {
+    return ColladaCheck(child_of(root, "COLLADA")).check();
+  });
 }
 
 }  // namespace tactree::builder

@@ -73,11 +73,6 @@ Matrix4d transform_of(const json& node) {
   return transform.matrix();
 }
 
-std::uint8_t to_byte(double value) {
-  return value > 0.0 ? static_cast<std::uint8_t>(std::lround(std::min(value, 1.0) * 255.0))
-                     : std::uint8_t{0};
-}
-
 /// Expands a strip or fan: returns three vertices per triangle.
 std::vector<std::uint32_t> corners_of(const std::vector<std::uint32_t>& list, std::size_t mode) {
   constexpr std::size_t kStrip = 5;
@@ -384,7 +379,8 @@ class GltfScene {
       }
       if (all_colours_) {
         const double* colour = points.colours.data() + points.colour_width * i;
-        mesh_.colours.push_back({to_byte(colour[0]), to_byte(colour[1]), to_byte(colour[2])});
+        mesh_.colours.push_back(
+            {colour_byte(colour[0]), colour_byte(colour[1]), colour_byte(colour[2])});
       }
     }
   }

@@ -9,7 +9,6 @@
 #include <assimp/Importer.hpp>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -18,6 +17,7 @@
 #include "mesh_import/amf_file.hpp"
 #include "mesh_import/collada_check.hpp"
 #include "mesh_import/contained_files.hpp"
+#include "mesh_import/file_bytes.hpp"
 #include "mesh_import/gltf_file.hpp"
 #include "mesh_import/gltf_scene.hpp"
 #include "mesh_import/imported_mesh.hpp"
@@ -51,25 +51,14 @@ const aiScene* read_scene(Assimp::Importer& importer, const std::string& file) {
   return importer.ReadFile(file, kSteps);
 }
 
-/// Without a copy, which would count towards the memory limit of the process.
-std::string read_file(const char* file) {
-  std::ifstream in(file, std::ios::binary | std::ios::ate);
-  const std::streamoff size = in.tellg();
-  std::string bytes(static_cast<std::size_t>(std::max<std::streamoff>(size, 0)), '\0');
-  in.seekg(0);
-  in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  bytes.resize(static_cast<std::size_t>(in.gcount()));
-  return bytes;
-}
-
 /// Reads a file for which there is a reader in this folder. Returns nullopt if the library must
 /// read it.
 std::optional<ImportedMesh> read_mesh(const char* file, std::string_view hint) {
   if (hint == "3mf") {
-    return read_3mf(read_file(file));
+    return read_3mf(file_bytes(file));
   }
   if (hint == "amf") {
-    return read_amf(read_file(file));
+    return read_amf(file_bytes(file));
   }
   if (hint == "glb" || hint == "gltf") {
     ContainedFiles files(file, std::string(hint));
@@ -83,8 +72,8 @@ std::optional<ImportedMesh> read_mesh(const char* file, std::string_view hint) {
 
 /// Of a file that the library reads.
 SceneNotes notes_of_file(const char* file, std::string_view hint) {
-  if (hint == "x3d") return check_x3d(read_file(file));
-  return hint == "dae" ? check_collada(read_file(file)) : SceneNotes{};
+  if (hint == "x3d") return check_x3d(file_bytes(file));
+  return hint == "dae" ? check_collada(file_bytes(file)) : SceneNotes{};
 }
 
 bool refuse(int output, const char* text) {

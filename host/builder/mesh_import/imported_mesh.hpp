@@ -2,7 +2,9 @@
 // The points and triangles of a mesh file, and their output in the format of wire.hpp.
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <stdexcept>
@@ -26,6 +28,12 @@ class ImportError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
+
+/// The byte of a colour from 0 to 1; values outside, and NaN, become 0 or 255.
+[[nodiscard]] inline std::uint8_t colour_byte(double value) {
+  return value > 0.0 ? static_cast<std::uint8_t>(std::lround(255.0 * std::min(value, 1.0)))
+                     : std::uint8_t{0};
+}
 
 /// Returns false if writing fails.
 [[nodiscard]] bool write_mesh(const ImportedMesh& mesh, std::FILE* to);

@@ -5,6 +5,9 @@
 #include <limits>
 #include <span>
 
+#include "src/readers/number.hpp"
+#include "src/readers/unit_names.hpp"
+
 namespace tactree::builder {
 namespace {
 
@@ -18,11 +21,6 @@ constexpr std::string_view kUnusedResources[] = {"colorgroup", "texture2dgroup",
 std::string_view without_space(std::string_view text) {
   text.remove_prefix(std::min(text.find_first_not_of(kSpace), text.size()));
   return text;
-}
-
-std::string_view trimmed(std::string_view text) {
-  text = without_space(text);
-  return text.substr(0, text.find_last_not_of(kSpace) + 1);
 }
 
 bool is_name_character(char c) {
@@ -92,16 +90,20 @@ bool find_attributes(std::string_view text, std::span<const std::string_view> na
 }  // namespace
 
 std::optional<double> number_of(std::string_view text) {
-  text = trimmed(text);
-  if (text.starts_with('+')) text.remove_prefix(1);
   double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return value;
+  return parse_number(trim(text), value) ? std::optional(value) : std::nullopt;
+}
+
+double metres_of_print_unit(std::string_view name) {
+  const std::optional<double> metres = metres_of_unit(name.empty() ? "millimeter" : name);
+  if (!metres) {
+    throw ImportError("its unit \"" + std::string(name.substr(0, 20)) + "\" is not known");
+  }
+  return *metres;
 }
 
 std::uint32_t index_of(std::string_view text) {
-  text = trimmed(text);
+  text = trim(text);
   std::uint32_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   const bool whole = error == std::errc{} && end == text.data() + text.size();

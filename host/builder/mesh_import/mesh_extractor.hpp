@@ -28,6 +28,10 @@ struct MeshBlock {
 /// The refusal of a text that is not a number: "12,7" is not a `what`.
 [[nodiscard]] ImportError not_a(std::string_view text, const std::string& what);
 
+/// Metres per unit that a 3MF or AMF file names; millimetres if it names none. Throws ImportError
+/// for an unknown name.
+[[nodiscard]] double metres_of_print_unit(std::string_view name);
+
 /// Parses an index. Invalid text becomes the maximum, so that the triangle is dropped.
 [[nodiscard]] std::uint32_t index_of(std::string_view text);
 

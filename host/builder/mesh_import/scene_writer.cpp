@@ -23,12 +23,6 @@ Eigen::Matrix3d normal_matrix(const PointTransform& transform) {
   return transform.leftCols<3>().inverse().transpose();
 }
 
-std::uint8_t to_byte(float value) {
-  return std::isnan(value)
-             ? std::uint8_t{0}
-             : static_cast<std::uint8_t>(std::clamp(std::round(value * 255.0F), 0.0F, 255.0F));
-}
-
 /// An FBX may move the points of a node before its transform; the library has nodes for this.
 bool has_geometric_offset(const aiNode* node) {
   for (; node != nullptr; node = node->mParent) {
@@ -149,8 +143,9 @@ void SceneWriter::write_points(const Placed& placed) {
     }
     if (colours_) {
       const aiColor4D& colour = mesh.mColors[0][i];
-      const std::array<std::uint8_t, 3> bytes = {to_byte(colour.r), to_byte(colour.g),
-                                                 to_byte(colour.b)};
+      const std::array<std::uint8_t, 3> bytes = {colour_byte(static_cast<double>(colour.r)),
+                                                 colour_byte(static_cast<double>(colour.g)),
+                                                 colour_byte(static_cast<double>(colour.b))};
       put(bytes.data(), bytes.size());
     }
   }

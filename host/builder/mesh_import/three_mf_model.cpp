@@ -30,24 +30,6 @@ Eigen::Affine3d transform_of(std::string_view text) {
   return transform;
 }
 
-double unit_of(std::string_view name) {
-  struct Unit {
-    std::string_view name;
-    double metres;
-  };
-  constexpr Unit kUnits[] = {{"micron", 1e-6}, {"millimeter", 1e-3}, {"centimeter", 1e-2},
-                             {"inch", 0.0254}, {"foot", 0.3048},     {"meter", 1.0}};
-  for (const Unit& unit : kUnits) {
-    if (unit.name == name) {
-      return unit.metres;
-    }
-  }
-  if (!name.empty()) {
-    throw ImportError("its unit \"" + std::string(name.substr(0, 20)) + "\" is not known");
-  }
-  return 1e-3;
-}
-
 /// Refuses extensions that the model requires and this reader does not support.
 void check_extensions(pugi::xml_node model) {
   constexpr std::string_view kSupported[] = {"/production/", "/material/", "/trianglesets/",
@@ -100,7 +82,7 @@ class ModelReader {
       throw ImportError("it has no element \"model\"");
     }
     check_extensions(root_);
-    model_.unit_m = unit_of(attribute_of(root_, "unit"));
+    model_.unit_m = metres_of_print_unit(attribute_of(root_, "unit"));
     for_children(root_, "resources", [&](pugi::xml_node resources) {
       for_children(resources, "object", [&](pugi::xml_node object) { read_object(object); });
     });

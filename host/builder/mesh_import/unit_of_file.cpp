@@ -4,20 +4,13 @@
 
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
+
+#include "mesh_import/file_bytes.hpp"
 
 namespace tactree::builder {
 namespace {
 
 constexpr std::size_t kHeadBytes = std::size_t{1} << 20;  // of a text file; its unit comes early
-
-std::string read_file(const std::string& file, std::size_t most) {
-  std::ifstream in(file, std::ios::binary);
-  std::string text(most, '\0');
-  in.read(text.data(), static_cast<std::streamsize>(most));
-  text.resize(static_cast<std::size_t>(in.gcount()));
-  return text;
-}
 
 // Value of an attribute of the first element with this name; empty if there is none.
 std::string attribute(const std::string& text, const std::string& element,
@@ -43,7 +36,7 @@ std::string attribute(const std::string& text, const std::string& element,
 
 double unit_of_collada(const std::string& file) {
   const double metres =
-      std::strtod(attribute(read_file(file, kHeadBytes), "unit", "meter").c_str(), nullptr);
+      std::strtod(attribute(file_bytes(file, kHeadBytes), "unit", "meter").c_str(), nullptr);
   return metres > 0.0 && std::isfinite(metres) ? metres : 1.0;
 }
 

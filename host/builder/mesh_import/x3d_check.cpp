@@ -6,15 +6,15 @@
 #include <iterator>
 #include <optional>
 #include <string_view>
+#include <utility>
 
+#include "mesh_import/document_notes.hpp"
 #include "mesh_import/imported_mesh.hpp"
 #include "mesh_import/mesh_extractor.hpp"
 #include "mesh_import/xml_document.hpp"
 
 namespace tactree::builder {
 namespace {
-
-constexpr XmlLimits kX3dLimits{std::size_t{1} << 30, 16'000'000, 1000};
 
 constexpr std::string_view kGroups[] = {"Group", "StaticGroup", "Transform", "Switch", "Scene"};
 
@@ -152,14 +152,8 @@ class X3dCheck {
 }  // namespace
 
 SceneNotes check_x3d(std::string text) {
-  try {
-    const XmlDocument document(std::move(text), kX3dLimits);
-    return X3dCheck(child_of(document.root(), "X3D")).check();
-  } catch (const XmlTooLarge& error) {
-    throw ImportError("it is too large: " + std::string(error.what()));
-  } catch (const XmlError&) {
-    return {};  // assimp names the fault
-  }
+  return notes_of_document(
+      std::move(text), [](pugi::xml_node root) { return X3dCheck(child_of(root, "X3D")).check(); });
 }
 
 }  // namespace tactree::builder

@@ -3,11 +3,11 @@
 #include <zlib.h>
 
 #include <algorithm>
-#include <cctype>
 #include <memory>
 #include <new>
 
 #include "mesh_import/imported_mesh.hpp"
+#include "src/readers/number.hpp"
 
 namespace tactree::builder {
 namespace {
@@ -25,12 +25,6 @@ constexpr std::uint64_t kMaxDeflateRatio = 1040;  // above the maximum ratio of 
 
 [[noreturn]] void fail(const std::string& cause) {
   throw ImportError("its zip archive is damaged or was cut off: " + cause);
-}
-
-bool equal(std::string_view a, std::string_view b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](unsigned char x, unsigned char y) {
-    return std::tolower(x) == std::tolower(y);
-  });
 }
 
 using Take = std::function<bool(std::string_view)>;
@@ -162,8 +156,9 @@ const ZipArchive::Member* ZipArchive::find(std::string_view path) const {
   if (path.starts_with('/')) {
     path.remove_prefix(1);
   }
-  const auto found = std::find_if(members_.begin(), members_.end(),
-                                  [&](const Member& member) { return equal(member.path, path); });
+  const auto found = std::find_if(members_.begin(), members_.end(), [&](const Member& member) {
+    return equal_ignoring_case(member.path, path);
+  });
   return found == members_.end() ? nullptr : &*found;
 }
 
@@ -172,7 +167,8 @@ bool ZipArchive::contains(std::string_view path) const { return find(path) != nu
 std::string ZipArchive::first_with_ending(std::string_view ending) const {
   for (const Member& member : members_) {
     if (member.path.size() > ending.size() &&
-        equal(std::string_view(member.path).substr(member.path.size() - ending.size()), ending)) {
+        equal_ignoring_case(
+            std::string_view(member.path).substr(member.path.size() - ending.size()), ending)) {
       return member.path;
     }
   }
