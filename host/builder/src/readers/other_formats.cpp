@@ -5,19 +5,11 @@
 #include <vector>
 
 #include "number.hpp"
+#include "remedies.hpp"
 #include "signatures.hpp"
 
 namespace tactree::builder {
 namespace {
-
-constexpr const char* kMeshToPly =
-    "convert it with `meshio convert FILE scan.ply`, or open it in ParaView or Gmsh and save its "
-    "surface as PLY or STL";
-constexpr const char* kSurfaceToPly = "open it in CloudCompare or MeshLab and save it as PLY";
-constexpr const char* kGridToXyz =
-    "convert it to points with `gdal_translate -of XYZ FILE scan.xyz`";
-constexpr const char* kCadToStl = "export it from the CAD program as STL or PLY";
-constexpr const char* kNotAScan = "give the scan file";
 
 constexpr std::size_t kLines = 20000;  // of the beginning of a file; many may be comments
 constexpr std::size_t kMaxLineChars = 512;

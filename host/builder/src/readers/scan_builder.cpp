@@ -8,18 +8,13 @@
 #include <utility>
 
 #include "number.hpp"
-#include "polygon.hpp"
 #include "tactree/builder/length_text.hpp"
 
 namespace tactree::builder {
 namespace {
 
-constexpr std::uint32_t kDropped = std::numeric_limits<std::uint32_t>::max();
-constexpr std::uint64_t kMaxEntries = kDropped - 1;
+constexpr std::uint64_t kMaxEntries = std::numeric_limits<std::uint32_t>::max() - 1;
 constexpr const char* kNonFinite = "non_finite";
-constexpr const char* kDegenerateFace = "degenerate_face";
-constexpr const char* kFaceIndexOutOfRange = "face_index_out_of_range";
-constexpr const char* kFaceNonFinite = "face_non_finite";
 constexpr std::uint64_t kLeastMost = 4;  // a list of fewer points has no room when it is thinned
 
 struct SlotName {
@@ -62,10 +57,6 @@ constexpr SlotName kSlotNames[] = {
 
 std::string mebibytes(std::uint64_t bytes) {
   return fmt::format("{:.0f} MiB", std::ceil(static_cast<double>(bytes) / (1 << 20)));
-}
-
-bool has_equal_corners(std::span<const std::uint32_t> t) {
-  return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
 }
 
 }  // namespace
@@ -302,63 +293,6 @@ void ScanBuilder::count_dropped(const std::string& cause, std::uint64_t count) {
   if (count > 0) scan_.dropped[cause] += count;
 }
 
-void ScanBuilder::set_first_bad_face(std::uint64_t place) {
-  if (first_bad_place_ == 0 || place < first_bad_place_) first_bad_place_ = place;
-}
-
-void ScanBuilder::count_bad_face(const char* cause, std::uint64_t place) {
-  ++bad_faces_;
-  count_dropped(cause);
-  if (place != 0 && first_bad_place_ == 0) first_bad_place_ = place;
-}
-
-void ScanBuilder::add_face(std::span<const std::int64_t> corners, std::uint64_t place) {
-  ++faces_read_;
-  for (const std::int64_t corner : corners) {
-    if (static_cast<std::uint64_t>(corner) >= face_index_limit_) {  // negative ones as well
-      count_bad_face(kFaceIndexOutOfRange, place);
-      return;
-    }
-  }
-  if (corners.size() < 3) {
-    count_bad_face(kDegenerateFace, place);
-    return;
-  }
-  if (corners.size() == 3) {
-    const std::array<std::uint32_t, 3> triangle = {static_cast<std::uint32_t>(corners[0]),
-                                                   static_cast<std::uint32_t>(corners[1]),
-                                                   static_cast<std::uint32_t>(corners[2])};
-    if (has_equal_corners(triangle)) {
-      count_bad_face(kDegenerateFace, place);
-      return;
-    }
-    add_triangle(triangle);
-    return;
-  }
-  add_polygon(corners);
-}
-
-void ScanBuilder::add_polygon(std::span<const std::int64_t> corners) {
-  const std::size_t size = polygons_.size();
-  if (polygons_.capacity() - size <= corners.size()) {
-    const std::uint64_t entry_bytes = sizeof(std::uint32_t);
-    const std::uint64_t all = bytes_for(scan_.positions.capacity(), scan_.triangles.capacity());
-    polygons_.reserve(static_cast<std::size_t>(grown_capacity(
-        size, corners.size() + 1, entry_bytes, all - entry_bytes * polygons_.capacity())));
-  }
-  polygons_.push_back(static_cast<std::uint32_t>(corners.size()));
-  for (const std::int64_t corner : corners) polygons_.push_back(static_cast<std::uint32_t>(corner));
-}
-
-void ScanBuilder::add_triangle(const std::array<std::uint32_t, 3>& triangle) {
-  if (scan_.triangles.size() == scan_.triangles.capacity()) {
-    const std::uint64_t other = bytes_for(scan_.positions.capacity(), 0);
-    scan_.triangles.reserve(static_cast<std::size_t>(
-        grown_capacity(scan_.triangles.size(), 1, sizeof triangle, other)));
-  }
-  scan_.triangles.push_back(triangle);
-}
-
 void ScanBuilder::set_normals(std::vector<Eigen::Vector3f> normals) {
   std::size_t next_dropped = 0;
   scan_.normals.clear();
@@ -375,60 +309,6 @@ void ScanBuilder::set_normals(std::vector<Eigen::Vector3f> normals) {
   scan_.normals.resize(scan_.positions.size(), Eigen::Vector3f::Zero());
 }
 
-/// Index in the scan of a point of the file, or kDropped.
-std::uint32_t ScanBuilder::kept_index(std::uint32_t index) const {
-  const auto next = std::lower_bound(dropped_.begin(), dropped_.end(), index);
-  if (next != dropped_.end() && *next == index) return kDropped;
-  return index - static_cast<std::uint32_t>(next - dropped_.begin());
-}
-
-/// Converts vertices to indices of the scan. If a vertex is invalid, counts the face and returns
-/// false.
-bool ScanBuilder::keep_face(std::span<std::uint32_t> corners) {
-  for (const std::uint32_t corner : corners) {
-    if (corner >= points_read_) {
-      count_bad_face(kFaceIndexOutOfRange, 0);
-      return false;
-    }
-  }
-  if (dropped_.empty()) return true;
-  for (std::uint32_t& corner : corners) {
-    corner = kept_index(corner);
-    if (corner == kDropped) {
-      count_dropped(kFaceNonFinite);
-      return false;
-    }
-  }
-  return true;
-}
-
-void ScanBuilder::check_triangles() {
-  std::size_t kept = 0;
-  for (std::array<std::uint32_t, 3> triangle : scan_.triangles) {
-    if (keep_face(triangle)) scan_.triangles[kept++] = triangle;
-  }
-  scan_.triangles.resize(kept);
-}
-
-void ScanBuilder::cut_polygons() {
-  PolygonCutter cutter(scan_.positions);
-  for (std::size_t at = 0; at < polygons_.size(); at += 1 + polygons_[at]) {
-    const std::span<std::uint32_t> corners{&polygons_[at + 1], polygons_[at]};
-    if (!keep_face(corners)) continue;
-    bool any = false;
-    for (const auto& triangle : cutter.cut(corners)) {
-      if (has_equal_corners(triangle)) continue;
-      any = true;
-      add_triangle(triangle);
-    }
-    if (!any) count_bad_face(kDegenerateFace, 0);
-  }
-  if (cutter.gave_up()) {
-    warn("Some of the polygons with very many vertices were triangulated as fans.");
-  }
-  polygons_ = {};
-}
-
 void ScanBuilder::check_points_left() const {
   if (points_read_ == 0) {
     throw ReadError(file_, "", "the file contains no points",
@@ -440,16 +320,6 @@ void ScanBuilder::check_points_left() const {
         fmt::format("none of the {} positions is usable: all are NaN or infinite", points_read_),
         "export the scan again");
   }
-}
-
-void ScanBuilder::check_faces_left() const {
-  if (bad_faces_ == 0 || !scan_.triangles.empty()) return;
-  const bool placed = first_bad_place_ != 0;
-  throw ReadError(file_, placed ? fmt::format("{} {}", place_unit_, first_bad_place_) : "",
-                  fmt::format("none of the {} faces is usable: they refer to points that the file "
-                              "does not have, or have fewer than three distinct vertices",
-                              faces_read_),
-                  "export the mesh again, or delete the faces to use only the points");
 }
 
 void ScanBuilder::warn_of_damage() {

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -84,6 +85,9 @@ class ScanBuilder {
   [[nodiscard]] Scan finish(std::string format);
 
  private:
+  static constexpr std::uint32_t kDropped = std::numeric_limits<std::uint32_t>::max();
+  static constexpr const char* kFaceNonFinite = "face_non_finite";
+
   [[nodiscard]] bool has_colours() const { return colours_.range() != ColourRange::kNone; }
   [[nodiscard]] std::uint64_t bytes_for(std::uint64_t points, std::uint64_t triangles) const;
   [[nodiscard]] std::uint64_t points_that_fit() const;

@@ -1,19 +1,14 @@
 #include "signatures.hpp"
 
+#include "remedies.hpp"
+
 namespace tactree::builder {
 namespace {
 
 using namespace std::string_view_literals;
 
-constexpr const char* kMeshToPly =
-    "convert it with `meshio convert FILE scan.ply`, or open it in ParaView or Gmsh and save its "
-    "surface as PLY or STL";
-constexpr const char* kSurfaceToPly = "open it in CloudCompare or MeshLab and save it as PLY";
 constexpr const char* kSceneToPly = "open it in Blender and save it as glTF or PLY";
 constexpr const char* kFromProgram = "export it as PLY, STL or E57 from the program that wrote it";
-constexpr const char* kGridToXyz =
-    "convert it to points with `gdal_translate -of XYZ FILE scan.xyz`";
-constexpr const char* kCadToStl = "export it from the CAD program as STL or PLY";
 constexpr const char* kPointsToPly = "convert it with `pdal translate FILE scan.ply`";
 constexpr const char* kArrayToPly = "write its points as rows x y z, or as PLY";
 constexpr const char* kVolumeToPly = "extract its surface, for example in ParaView or 3D Slicer";
@@ -23,7 +18,6 @@ constexpr const char* kSplatToMesh =
 constexpr const char* kPacketsToPly = "save its points as PLY or LAS in the scanner's own program";
 constexpr const char* kTilesToPly =
     "export the model as glTF or PLY from the program that made the tiles";
-constexpr const char* kNotAScan = "give the scan file";
 constexpr const char* kNotAPicture = "give the scan, not a picture of it";
 constexpr const char* kUnpack = "unpack it and give the scan inside";
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "comma_evidence.hpp"
 #include "number.hpp"
 #include "table_evidence.hpp"
 #include "text_columns.hpp"
@@ -56,61 +57,6 @@ bool are_counts(const TextRow& row) {
          std::all_of(row.values.begin(), row.values.end(),
                      [](double value) { return value >= 0 && value == std::floor(value); });
 }
-
-/// Detects rows such as "1,5,2,25,3,0625", which may be three numbers with decimal commas,
-/// separated by commas.
-class SplitDecimals {
- public:
-  /// `names` is the number of columns that a line names, or 0.
-  void look_at(std::string_view row, std::size_t names) {
-    std::size_t fields = 0;
-    std::string_view field;
-    while (take_field(row, ',', field)) {
-      const bool fraction = ++fields % 2 == 0;
-      const std::string_view digits = field.starts_with('-') ? field.substr(1) : field;
-      const bool whole = !digits.empty() && std::all_of(digits.begin(), digits.end(), is_digit);
-      possible_ = possible_ && whole && !(fraction && field.starts_with('-'));
-      // A field with a leading zero is not a whole number, so it is a fraction.
-      seen_ = seen_ || (fraction && field.size() > 1 && field.starts_with('0'));
-    }
-    possible_ = possible_ && fields % 2 == 0 && fields >= 2 * kMinTableColumns;
-    seen_ = seen_ || (names > 0 && fields >= 2 * names);
-  }
-  [[nodiscard]] bool are_likely() const { return possible_ && seen_; }
-
- private:
-  bool possible_ = true;
-  bool seen_ = false;
-};
-
-/// Detects commas between thousands: "5,280 -963 16,996". A number of three decimals would have a
-/// comma in every row, and often a zero before it.
-class Thousands {
- public:
-  void look_at(std::string_view row, char separator) {
-    std::string_view field;
-    while (take_field(row, separator, field)) {
-      if (field.starts_with('-')) field.remove_prefix(1);
-      const std::size_t comma = field.find(',');
-      const std::string_view whole = field.substr(0, comma);
-      if (!std::all_of(whole.begin(), whole.end(), is_digit)) continue;
-      if (comma == std::string_view::npos) {
-        without_ = without_ || (whole != "0" && whole.size() <= 3);
-        possible_ = possible_ && whole.size() <= 3;
-      } else {
-        with_ = true;
-        possible_ = possible_ && field.size() == comma + 4 && whole != "0" && comma <= 3;
-      }
-    }
-  }
-  [[nodiscard]] bool are_likely() const { return possible_ && with_ && without_; }
-  [[nodiscard]] bool have_commas() const { return with_; }
-
- private:
-  bool possible_ = true;
-  bool with_ = false;
-  bool without_ = false;
-};
 
 struct RowWidths {
   std::size_t columns = 0;  ///< of most rows
