@@ -5,7 +5,7 @@
 
 #include "memory_file.hpp"
 #include "scan/read_points.hpp"
-#include "tactree/simulation/hand_path.hpp"
+#include "tactree/setup/path_file.hpp"
 #include "tactree/simulation/injection.hpp"
 #include "tactree/support/csv.hpp"
 
@@ -27,7 +27,7 @@ void examine_points(const std::string& file) {
 
 void examine_path(const std::string& file) {
   try {
-    const simulation::HandPath path = simulation::read_hand_path(file);
+    const simulation::HandPath path = setup::read_path_file(file);
     for (const simulation::Waypoint& waypoint : path.waypoints()) {
       fuzz::require(std::isfinite(waypoint.t_s) && waypoint.position_m.allFinite(),
                     "a waypoint is not finite");

@@ -82,6 +82,15 @@ std::optional<std::size_t> CsvReader::find_column(std::string_view name) const {
   return static_cast<std::size_t>(found - columns_.begin());
 }
 
+std::optional<std::size_t> CsvReader::find_column(std::span<const std::string_view> names) const {
+  for (const std::string_view name : names) {
+    if (const std::optional<std::size_t> found = find_column(name)) {
+      return found;
+    }
+  }
+  return std::nullopt;
+}
+
 bool CsvReader::next_row() {
   if (pending_) {
     pending_ = false;

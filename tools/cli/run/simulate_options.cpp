@@ -249,9 +249,9 @@ void add_hand_options(CLI::App& verb, SimulateOptions& options) {
                             ->check(one_of(simulation::script_names()))
                             ->capture_default_str();
   verb.add_option("--path", options.path,
-                  "CSV file with the hand's path: t_s,x,y,z (s, m). Or a recording of a board "
-                  "or a trace (.csv, .npz): the hand repeats its motion, as long as it is "
-                  "unless --seconds is given")
+                  "CSV file with the hand's path: t_s,x,y,z (s, m), by the names of the columns. "
+                  "Or a recording of a board or a trace (.csv, .npz): the hand repeats its motion, "
+                  "as long as it is unless --seconds is given")
       ->excludes(script);
   verb.add_flag("--allow-no-contact", options.allow_no_contact,
                 "exit with code 0 even if the probe never touches the model");

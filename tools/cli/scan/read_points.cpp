@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <limits>
 #include <optional>
+#include <string_view>
 
 #include "tactree/support/csv.hpp"
 
@@ -17,12 +18,10 @@ std::array<std::size_t, 3> columns_of(const support::CsvReader& table) {
   if (table.columns().empty()) {
     return columns;
   }
-  constexpr const char* kNames[3][3] = {{"x", "X", "x_m"}, {"y", "Y", "y_m"}, {"z", "Z", "z_m"}};
+  constexpr std::string_view kNames[3][3] = {
+      {"x", "X", "x_m"}, {"y", "Y", "y_m"}, {"z", "Z", "z_m"}};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    std::optional<std::size_t> found;
-    for (const char* const name : kNames[axis]) {
-      found = found ? found : table.find_column(name);
-    }
+    const std::optional<std::size_t> found = table.find_column(kNames[axis]);
     if (!found) {
       table.refuse("the names of the columns do not include x, y and z",
                    "name them, or omit the line of names if x,y,z come first");

@@ -7,6 +7,7 @@
 
 #include "tactree/plant/vectors.hpp"
 #include "tactree/setup/model_size.hpp"
+#include "tactree/setup/path_file.hpp"
 #include "tactree/simulation/hand_script.hpp"
 #include "tactree/simulation/placement.hpp"
 #include "tactree/simulation/workspace.hpp"
@@ -65,7 +66,7 @@ core::Vec3 place_model(const SessionOptions& options, const FirstBody& body,
 
 simulation::HandPath hand_path(const SessionOptions& options, const FirstBody& body) {
   if (!options.path.empty()) {
-    return simulation::read_hand_path(options.path);
+    return read_path_file(options.path);
   }
   std::vector<simulation::Waypoint> waypoints =
       simulation::make_script(options.script, body.view, options.seconds).waypoints();

@@ -59,6 +59,9 @@ class CsvReader {
   [[nodiscard]] const std::vector<std::string>& columns() const { return columns_; }
   /// Index of the named column; nullopt if the header does not have it.
   [[nodiscard]] std::optional<std::size_t> find_column(std::string_view name) const;
+  /// Index of the first of these names that the header has.
+  [[nodiscard]] std::optional<std::size_t> find_column(
+      std::span<const std::string_view> names) const;
 
   /// Advances to the next row. Returns false at the end of the file. With a required header, a row
   /// must have as many cells as the header.

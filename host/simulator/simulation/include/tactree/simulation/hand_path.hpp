@@ -2,7 +2,6 @@
 // Path of the hand: its target position as a function of time.
 
 #include <Eigen/Core>
-#include <filesystem>
 #include <vector>
 
 #include "tactree/plant/plant.hpp"
@@ -29,9 +28,5 @@ class HandPath {
  private:
   std::vector<Waypoint> waypoints_;
 };
-
-/// Reads rows `t_s,x,y,z` (s, m). A first row without numbers is a heading; empty rows and rows
-/// that start with # are ignored. Throws std::runtime_error with "file: line n: cause (hint)".
-[[nodiscard]] HandPath read_hand_path(const std::filesystem::path& file);
 
 }  // namespace tactree::simulation
