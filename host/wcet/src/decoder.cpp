@@ -64,7 +64,10 @@ class Decoder {
       std::size_t size = std::min<std::size_t>(bytes.size(), function.end - address);
       std::uint64_t at = address;
       if (!cs_disasm_iter(handle_, &code, &size, &at, instruction_)) {
-        refuse_at(image_, address, "unknown instruction (add it to the decoder)");
+        refuse_at(
+            image_, address,
+            "unknown instruction (the decoder knows those of Cortex-M4, M7 and M33: compile for "
+            "one of them, or add it)");
       }
       DecodedInstruction decoded = classify(address);
       count_cycles(*instruction_, decoded.instruction);
