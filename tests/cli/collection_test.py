@@ -290,6 +290,11 @@ class Environment(Folder):
         (self.path / "empty").mkdir()
         self.collect(scans="empty", code=1)
         self.assertIn("empty: has no scans", self.done.stderr)
+        for place in ("empty", "nowhere"):
+            done = self.run_tool("build", "--collection", place, "-o", "never")
+            self.assertEqual(done.returncode, 1, done.stderr)
+            self.assertIn(place, done.stderr)
+            self.assertFalse((self.path / "never").exists())
 
 
 if __name__ == "__main__":

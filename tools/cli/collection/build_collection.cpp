@@ -239,13 +239,13 @@ bool build_collection(const CollectionRequest& request, const builder::BuildOpti
                       const BoardRequest& board, builder::ProgressStyle progress) {
   const CollectionPart part = request.collect ? CollectionPart{} : choose_part(request.part);
   support::check_outputs({request.json}, {request.collection});
-  create_folder(request.output);
   const Collection collection = read_collection(request.collection, request.output);
   std::vector<std::filesystem::path> scans;
   for (const CollectionObject& object : collection.objects) {
     scans.push_back(object.input);
   }
   support::check_outputs({request.json}, scans);
+  create_folder(request.output);
   if (collection.left_out > 0) {
     fmt::print("left out  {} file{} without the extension of a scan\n", collection.left_out,
                collection.left_out == 1 ? "" : "s");
