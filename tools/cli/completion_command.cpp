@@ -8,6 +8,7 @@
 
 #include "commands.hpp"
 #include "option_checks.hpp"
+#include "usage_errors.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -61,18 +62,10 @@ std::string option_names(const CLI::App& app) {
   return fmt::format("{}", fmt::join(names, " "));
 }
 
-std::string command_names(const CLI::App& app) {
-  std::vector<std::string> names;
-  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
-    names.push_back(command->get_name());
-  }
-  return fmt::format("{}", fmt::join(names, " "));
-}
-
 // One pattern of the `case` for each command: its own commands, its options, and what has a value.
 void add_patterns(const CLI::App& app, const std::string& path, std::string& commands,
                   std::string& options, std::string& values) {
-  commands += fmt::format("    '{}') echo '{}' ;;\n", path, command_names(app));
+  commands += fmt::format("    '{}') echo '{}' ;;\n", path, fmt::join(command_names(app), " "));
   options += fmt::format("    '{}') echo '{}' ;;\n", path, option_names(app));
   for (const CLI::Option* option : options_of(app)) {
     if (option->get_items_expected_max() == 0) {

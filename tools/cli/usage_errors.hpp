@@ -3,8 +3,12 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <vector>
 
 namespace tactree::cli {
+
+/// The names of the commands directly below a program or command.
+[[nodiscard]] std::vector<std::string> command_names(const CLI::App& app);
 
 /// Error message for a first argument that is not a command; empty if it is a command or an option.
 [[nodiscard]] std::string unknown_command(const CLI::App& app, const std::string& word);

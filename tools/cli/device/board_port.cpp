@@ -4,6 +4,7 @@
 
 #include "option_checks.hpp"
 #include "tactree/client/announcement.hpp"
+#include "tactree/client/link_error.hpp"
 #include "tactree/client/ports.hpp"
 #include "tactree/support/user_error.hpp"
 
@@ -45,6 +46,17 @@ std::string chosen_port(const BoardPort& options) {
 std::unique_ptr<client::Board> connect(const BoardPort& options) {
   return std::make_unique<client::Board>(chosen_port(options),
                                          client::BoardOptions{options.baud, 0});
+}
+
+std::unique_ptr<client::Announcement> announce_port(const std::string& port,
+                                                    const std::string& about) {
+  try {
+    return std::make_unique<client::Announcement>(client::AnnouncedPort{port, about});
+  } catch (const client::LinkError& error) {
+    fmt::print(stderr, "tactree: warning: tactree devices will not list this port: {}\n",
+               error.what());
+    return nullptr;
+  }
 }
 
 }  // namespace tactree::cli

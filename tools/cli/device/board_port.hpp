@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "tactree/client/announcement.hpp"
 #include "tactree/client/board.hpp"
 
 namespace tactree::cli {
@@ -32,6 +33,11 @@ CLI::Option* add_link_timeout_option(CLI::App& verb, int& milliseconds);
 
 /// Opens a session. Throws the exceptions of chosen_port() and client::Board.
 [[nodiscard]] std::unique_ptr<client::Board> connect(const BoardPort& options);
+
+/// Makes `tactree devices` list a port that this program serves, until the result is destroyed.
+/// Warns and returns null if that is impossible: the port can be used nevertheless.
+[[nodiscard]] std::unique_ptr<client::Announcement> announce_port(const std::string& port,
+                                                                  const std::string& about);
 
 /// Text of a field, which is zero-terminated unless the text fills the field.
 template <std::size_t N>

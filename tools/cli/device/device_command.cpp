@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,8 +12,8 @@
 #include "exit_codes.hpp"
 #include "tactree/support/device_file.hpp"
 #include "tactree/support/json_text.hpp"
+#include "tactree/support/named_output.hpp"
 #include "tactree/support/output_file.hpp"
-#include "tactree/support/standard_output.hpp"
 
 namespace tactree::cli {
 namespace {
@@ -79,20 +78,12 @@ void check(const DeviceOptions& options, int& exit_code) {
 }
 
 void write_header(const DeviceOptions& options) {
-  std::optional<support::StandardOutput> standard_output;
-  if (support::is_standard_output(options.output)) {
-    standard_output.emplace();
-  } else {
-    support::check_outputs({options.output}, {options.file});
-  }
+  const support::NamedOutput output(options.output);
+  support::check_outputs({output.file()}, {options.file});
   const support::Device device = support::load_device(options.file);
   const std::string header = support::device_header(
       device, options.variable, std::filesystem::path(options.file).filename().string());
-  if (standard_output) {
-    standard_output->write(std::as_bytes(std::span(header)));
-  } else {
-    support::write_file(options.output, header);
-  }
+  output.write(std::as_bytes(std::span(header)));
   fmt::print("wrote     {}: {} as {}\n", options.output, device.name, options.variable);
   print_defaults(device);
 }

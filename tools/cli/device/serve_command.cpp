@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -10,8 +9,6 @@
 #include "device/board_port.hpp"
 #include "device/share_token.hpp"
 #include "option_checks.hpp"
-#include "tactree/client/announcement.hpp"
-#include "tactree/client/link_error.hpp"
 #include "tactree/core/math/crc32.hpp"
 #include "tactree/share/server.hpp"
 #include "tactree/share/shared_board.hpp"
@@ -47,18 +44,6 @@ std::optional<share::KnownModel> known_model(const std::string& blob) {
                            file.bytes().size(), core::crc32(file.bytes())};
 }
 
-/// For tactree devices. Without it, the port can be used nevertheless.
-std::unique_ptr<client::Announcement> announce(const std::string& port, const std::string& board) {
-  try {
-    return std::make_unique<client::Announcement>(client::AnnouncedPort{
-        port, fmt::format("board {}, shared by tactree serve: to watch and stop", board)});
-  } catch (const client::LinkError& error) {
-    tell_terminal(
-        fmt::format("warning: tactree devices will not list this port: {}", error.what()));
-    return nullptr;
-  }
-}
-
 void share_board(const SharingOptions& options) {
   share::BoardSettings settings;
   settings.model = known_model(options.blob);
@@ -77,7 +62,9 @@ void share_board(const SharingOptions& options) {
       fmt::format("board {} is shared at {} (Ctrl+C ends it)", board.name(), server.address()));
   tell_terminal(
       fmt::format("to watch: tactree monitor, record or view --port {}", server.watch_port()));
-  const auto announcement = announce(server.watch_port(), board.name());
+  const auto announcement = announce_port(
+      server.watch_port(),
+      fmt::format("board {}, shared by tactree serve: to watch and stop", board.name()));
   server.run();
 }
 

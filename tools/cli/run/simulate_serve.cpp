@@ -5,14 +5,13 @@
 #include <memory>
 #include <utility>
 
+#include "device/board_port.hpp"
 #include "image/model_signature.hpp"
 #include "interruption.hpp"
 #include "run/serve_session.hpp"
 #include "run/simulate_run.hpp"
 #include "run/simulate_setup.hpp"
 #include "run/usb_port.hpp"
-#include "tactree/client/announcement.hpp"
-#include "tactree/client/link_error.hpp"
 #include "tactree/client/lock_step.hpp"
 #include "tactree/client/serial_port.hpp"
 #include "tactree/emulation/emulated_target.hpp"
@@ -90,25 +89,13 @@ void serve_on_usb(const SimulateOptions& options, const setup::SceneFile& scene,
   port.unplug();
 }
 
-/// For `tactree devices`. The board is served in any case.
-std::unique_ptr<client::Announcement> announce(const SimulateOptions& options,
-                                               const setup::SceneFile& scene,
-                                               const std::string& port) {
-  try {
-    return std::make_unique<client::Announcement>(client::AnnouncedPort{
-        port, fmt::format("simulated board {}, model {} (tactree simulate --serve, process {})",
-                          options.board, scene.names[0], ::getpid())});
-  } catch (const client::LinkError& error) {
-    fmt::print(stderr, "tactree: warning: tactree devices will not list this board: {}\n",
-               error.what());
-    return nullptr;
-  }
-}
-
 void serve_at(const SimulateOptions& options, const setup::SceneFile& scene,
               client::Transport& port, const ServeSchedule& schedule) {
   auto target = served_target(options, scene, port);
-  const auto announcement = announce(options, scene, port.name());
+  const auto announcement = announce_port(
+      port.name(),
+      fmt::format("simulated board {}, model {} (tactree simulate --serve, process {})",
+                  options.board, scene.names[0], ::getpid()));
   fmt::print("serving at {}\n", port.name());
   std::fflush(stdout);
   serve_target(options, scene, std::move(target), schedule);

@@ -28,9 +28,9 @@
 #include "tactree/emulation/board_description.hpp"
 #include "tactree/setup/pose_file.hpp"
 #include "tactree/support/colour_file.hpp"
+#include "tactree/support/named_output.hpp"
 #include "tactree/support/output_file.hpp"
 #include "tactree/support/spooled_input.hpp"
-#include "tactree/support/standard_output.hpp"
 #include "tactree/support/user_error.hpp"
 
 namespace tactree::cli {
@@ -216,13 +216,10 @@ void build(BuildArguments& arguments) {
   read.insert(read.end(),
               {arguments.pose, arguments.material, arguments.board.firmware, arguments.board.board,
                arguments.board.device, fit.substr(fit.find(':') + 1)});
-  std::optional<support::StandardOutput> standard_output;
-  if (support::is_standard_output(arguments.output)) {
-    standard_output.emplace();
-  }
-  support::check_outputs({standard_output ? "" : arguments.output, arguments.report, arguments.json,
-                          arguments.preview, arguments.colours},
-                         read);
+  const support::NamedOutput output(arguments.output);
+  support::check_outputs(
+      {output.file(), arguments.report, arguments.json, arguments.preview, arguments.colours},
+      read);
   const std::unique_ptr<builder::Progress> progress =
       builder::make_progress(arguments.progress, stderr);
   builder::BuildResult result;
@@ -237,11 +234,7 @@ void build(BuildArguments& arguments) {
     progress->end();
     throw;
   }
-  if (standard_output) {
-    standard_output->write(result.blob.bytes);
-  } else {
-    support::write_file(arguments.output, std::span<const std::byte>(result.blob.bytes));
-  }
+  output.write(result.blob.bytes);
   const std::string json = builder::report_json(result.report, arguments.build);
   for (const std::string& file : {arguments.report, arguments.json}) {
     if (!file.empty()) {
