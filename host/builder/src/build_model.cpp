@@ -279,12 +279,8 @@ class Pipeline {
     model_.doubtful = doubts_of(choice);
     WrittenBlob blob = write_blob(model_);
     check(blob);
-    if (options_.flash_budget_bytes && blob.bytes.size() > *options_.flash_budget_bytes) {
-      throw std::runtime_error(fmt::format(
-          "the {} takes {} bytes, more than the flash budget of {} ({})",
-          options_.pose ? "turned model" : "two-sided sheet", blob.bytes.size(),
-          *options_.flash_budget_bytes,
-          options_.pose ? "lower --flash-budget by the difference" : "raise --spacing"));
+    if (options_.flash_budget_bytes) {
+      check_budget(blob.bytes.size(), *options_.flash_budget_bytes);
     }
     count_materials(blob);
     collect_doubtful(blob);
@@ -297,6 +293,21 @@ class Pipeline {
     report_.bounds = bounds_of(model_.positions);
     report_.bytes = blob.bytes.size();
     return blob;
+  }
+
+  /// The spacing was chosen before the model was turned by a pose, and its sheet thickened.
+  void check_budget(std::uint64_t bytes, std::uint64_t budget) {
+    if (bytes > budget) {
+      throw std::runtime_error(
+          fmt::format("the model takes {} bytes, more than the flash budget of {} (lower "
+                      "--flash-budget by the difference)",
+                      bytes, budget));
+    }
+    const double part = 100.0 * static_cast<double>(bytes) / static_cast<double>(budget);
+    report_.notes.push_back(fmt::format(
+        "the flash budget of {} bytes allows a spacing of {}: {} bytes, {:.1f} % of the budget{}",
+        budget, length_text(model_.spacing_m), bytes, part,
+        part < 90.0 && !mesh_ ? "; the scan has no finer detail" : ""));
   }
 
   std::vector<std::uint8_t> doubts_of(const DensityChoice& choice) const {

@@ -429,6 +429,7 @@ WrittenBlob write_blob(const Model& model) {
     interior = interior_bytes(found, tree);
     written.backed_share = found.backed_share();
   }
+  written.interior_bytes_max = paper ? 0 : interior_bytes_max(tree);
   written.bytes = serialise(model, tree, interior);
   written.source_index = tree.order;
   written.merged = tree.merged;

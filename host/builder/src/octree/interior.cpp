@@ -19,7 +19,7 @@ namespace {
 // Radius of the neighbourhood of a point, in spacings.
 constexpr double kNear = 2.0;
 // Edge of the blocks of points that are searched together, in such radii.
-constexpr double kBlock = 2.0;
+constexpr double kBlockRadii = 2.0;
 // Maximum area of a point, in squared spacings, because a point at a border has half the
 // neighbours.
 constexpr double kMaxArea = 2.0;
@@ -38,7 +38,7 @@ struct Neighbourhood {
 Neighbourhood look_at_neighbours(const OrientedPoints& points) {
   const auto count = static_cast<std::uint32_t>(points.positions.size());
   const double radius = kNear * points.spacing;
-  const PointGrid grid(points.positions, kBlock * radius);
+  const PointGrid grid(points.positions, kBlockRadii * radius);
   Neighbourhood result;
   result.areas.resize(count);
   DisjointSets sets(count);
@@ -231,6 +231,12 @@ std::vector<std::uint8_t> interior_bytes(const Interior& interior, const Octree&
     return {};
   }
   return Marker(interior, tree).run();
+}
+
+std::uint64_t interior_bytes_max(const Octree& tree) {
+  constexpr std::uint64_t kAligned = 4;
+  const std::uint64_t marks = tree.nodes.size() + tree.leaves.size();
+  return sizeof(core::BlobExtension) + (marks + kAligned - 1) / kAligned * kAligned;
 }
 
 }  // namespace tactree::builder

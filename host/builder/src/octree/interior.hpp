@@ -49,5 +49,8 @@ struct Octree;
 /// The bytes of a blob's section `interior`; empty if no point has material behind it.
 [[nodiscard]] std::vector<std::uint8_t> interior_bytes(const Interior& interior,
                                                        const Octree& tree);
+/// What a blob with this tree has more if its points have material behind them: the section, and
+/// the extension of the header.
+[[nodiscard]] std::uint64_t interior_bytes_max(const Octree& tree);
 
 }  // namespace tactree::builder

@@ -230,7 +230,9 @@ class DensityChooser {
       model.materials = options_.materials->list();
       model.material_indices.assign(model.positions.size(), 0);
     }
-    const auto bytes = static_cast<double>(write_blob(model).bytes.size());
+    // Whether it is a body is not known yet.
+    const WrittenBlob blob = write_blob(model);
+    const auto bytes = static_cast<double>(blob.bytes.size() + blob.interior_bytes_max);
     return static_cast<std::uint64_t>(options_.two_sided_m ? kBytesTwoSided * bytes : bytes);
   }
 
@@ -274,7 +276,6 @@ class DensityChooser {
       throw std::runtime_error(fmt::format(
           "no spacing gives a blob of at most {} bytes (raise --flash-budget, or --crop)", budget));
     }
-    tell_budget(best_bytes, budget, best->spacing_m);
     thinned_ = best_thinned_;
     return std::move(*best);
   }
@@ -286,14 +287,6 @@ class DensityChooser {
       return std::sqrt(too_fine * fits);
     }
     return next;
-  }
-
-  void tell_budget(std::uint64_t bytes, std::uint64_t budget, double spacing) {
-    const double part = 100.0 * static_cast<double>(bytes) / static_cast<double>(budget);
-    report_.notes.push_back(fmt::format(
-        "the flash budget of {} bytes allows a spacing of {}: {} bytes, {:.1f} % of the budget{}",
-        budget, length_text(spacing), bytes, part,
-        part < 90.0 && !is_mesh() ? "; the scan has no finer detail" : ""));
   }
 
   void explain(const DensityChoice& choice) {

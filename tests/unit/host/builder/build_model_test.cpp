@@ -123,6 +123,40 @@ TEST(BuildModel, KeepsBallsWithinBoardLimit) {
   EXPECT_GT(view.header().points_per_ball_max, 64U);
 }
 
+TEST(BuildModel, KeepsBodyWithinFlashBudget) {
+  const Scan body = box_scan({-0.03, -0.02, -0.01}, {0.03, 0.02, 0.01});
+  for (const std::uint64_t budget : {13000U, 20000U, 60000U}) {
+    BuildOptions options;
+    options.flash_budget_bytes = budget;
+    for (const bool mesh : {true, false}) {
+      const BuildResult result =
+          build(mesh ? body : cloud_scan(random_sphere(50000, 0.03)), options);
+      EXPECT_GT(result.report.backed_share, 0.9);
+      EXPECT_LE(result.report.bytes, budget);
+      EXPECT_GE(result.report.bytes, budget * 85 / 100);
+      const std::string size = fmt::format(": {} bytes, ", result.report.bytes);
+      const std::vector<std::string>& notes = result.report.notes;
+      EXPECT_EQ(std::count_if(notes.begin(), notes.end(),
+                              [&](const std::string& note) {
+                                return note.starts_with("the flash budget of ") &&
+                                       note.find(size) != std::string::npos;
+                              }),
+                1)
+          << fmt::format("{}", fmt::join(notes, "\n"));
+    }
+  }
+}
+
+TEST(BuildModel, TellsThatBudgetAllowsMoreThanScan) {
+  BuildOptions options;
+  options.flash_budget_bytes = 10'000'000;
+  const std::vector<std::string> notes =
+      build(cloud_scan(plane_grid(100, 0.0025)), options).report.notes;
+  EXPECT_TRUE(std::any_of(notes.begin(), notes.end(), [](const std::string& note) {
+    return note.ends_with("; the scan has no finer detail");
+  }));
+}
+
 TEST(BuildModel, BuildsTinyInputs) {
   const std::vector<Eigen::Vector3d> corners = box_mesh({0, 0, 0}, {0.1, 0.1, 0.1}).positions;
   for (std::size_t n = 1; n <= 8; ++n) {

@@ -40,6 +40,7 @@ struct WrittenBlob {
   std::vector<std::byte> bytes;             ///< 4-byte aligned storage
   std::vector<std::uint32_t> source_index;  ///< blob point -> model position
   std::uint64_t merged = 0;                 ///< points that shared a lattice site with another
+  std::uint64_t interior_bytes_max = 0;     ///< of the interior, which only a body has
   double backed_share = 0.0;  ///< ratio of points with material behind them, if the blob stores it
 };
 
