@@ -185,6 +185,17 @@ TEST(Density, KeepsScanWithinBudget) {
   EXPECT_EQ(chosen.choice.points.size(), 10000U);
 }
 
+TEST(Density, TellsThatRandomPointsAreThinned) {
+  BuildOptions options;
+  const Chosen random = choose(cloud_scan(random_sphere(6000, 0.03)), options);
+  EXPECT_LT(random.choice.points.size(), 4500U);
+  ASSERT_EQ(random.report.notes.size(), 1U);
+  EXPECT_NE(random.report.notes[0].find("spread unevenly"), std::string::npos);
+  options.resample = false;
+  EXPECT_TRUE(choose(cloud_scan(random_sphere(6000, 0.03)), options).report.notes.empty());
+  EXPECT_TRUE(choose(cloud_scan(plane_grid(100, 0.0025)), {}).report.notes.empty());
+}
+
 TEST(Density, RefusesBudgetBelowHeader) {
   BuildOptions options;
   options.flash_budget_bytes = 300;
