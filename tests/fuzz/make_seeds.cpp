@@ -2,6 +2,7 @@
 //   open_blob/<status>.<what>   small blobs, valid or violating one rule; all but the unsealed
 //                               ones have a valid checksum
 //   read_scan/<what>            a few points in every format that is read in-process
+//   import_mesh/<what>          a triangle in every format of the import process
 //   read_device, read_firmware, read_materials, read_rows, read_scene
 //                               accepted files, and texts of options
 
@@ -22,6 +23,7 @@
 #include "bytes_of.hpp"
 #include "e57_writer.hpp"
 #include "las_writer.hpp"
+#include "mesh_writers.hpp"
 #include "tactree/builder/model.hpp"
 #include "tactree/core/math/crc32.hpp"
 #include "tactree/core/model/blob.hpp"
@@ -425,6 +427,51 @@ void write_scenes(const fs::path& folder) {
             R"(}, {"t_s": 2, "pose": )" + pose + R"(}], "from_s": 1, "until_s": 3}]})");
 }
 
+void write_meshes(const fs::path& folder) {
+  using tactree::test::GltfWriter;
+  using tactree::test::ZipWriter;
+  const std::string mesh =
+      R"(<mesh><vertices><vertex x="0" y="0" z="0"/><vertex x="1" y="0" z="0"/><vertex x="0" y="2" z="0"/></vertices><triangles><triangle v1="0" v2="2" v3="1" pid="1" p1="0"/></triangles></mesh>)";
+  const std::string part =
+      R"(<model unit="inch"><resources><basematerials id="1"><base name="a" displaycolor="#FF8000"/></basematerials><object id="2">)" +
+      mesh +
+      R"(</object><object id="3"><components><component objectid="2" transform="0 1 0 1 0 0 0 0 1 5 6 7"/></components></object></resources><build><item objectid="3"/></build></model>)";
+  write(folder / "3mf_document", part);
+  write(
+      folder / "3mf",
+      ZipWriter()
+          .add(
+              "_rels/.rels",
+              R"(<Relationships><Relationship Target="/3D/3dmodel.model" Id="r" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>)")
+          .add("3D/3dmodel.model", part)
+          .bytes());
+  std::string vertices;
+  for (const char* const x : {"0", "1.5", "+3e0"}) {
+    vertices += std::string("<vertex><coordinates><x>") + x +
+                "</x><y>2</y><z>0</z></coordinates><color><r>1</r><g>0.5</g><b>0</b></color>"
+                "</vertex>";
+  }
+  write(
+      folder / "amf",
+      R"(<amf unit="feet"><object id="1"><mesh><vertices>)" + vertices +
+          R"(</vertices><volume><triangle><v1>0</v1><v2>1</v2><v3>2</v3></triangle></volume></mesh></object><constellation id="2"><instance objectid="1"><deltax>1</deltax><rz>90</rz></instance></constellation></amf>)");
+  write(
+      folder / "collada",
+      R"(<COLLADA><asset><unit meter="0.01"/></asset><library_geometries><geometry id="g"><mesh/></geometry></library_geometries><scene><node><instance_geometry url="#g"/></node></scene></COLLADA>)");
+  write(
+      folder / "x3d",
+      R"(<X3D><head><unit category="length" conversionFactor="0.01"/></head><Scene><Transform><Shape><IndexedFaceSet coordIndex="0 1 2 -1"><Coordinate point="0 0 0 1 0 0 0 1 0"/></IndexedFaceSet></Shape></Transform></Scene></X3D>)");
+  GltfWriter gltf;
+  const std::size_t positions = gltf.add<float>({0, 0, 0, 1, 0, 0, 0, 2, 0}, 5126, "VEC3", 3);
+  const std::size_t colours =
+      gltf.add<std::uint8_t>({255, 0, 0, 0, 255, 0, 0, 0, 255}, 5121, "VEC3", 3);
+  const std::size_t corners = gltf.add<std::uint16_t>({0, 1, 2}, 5123, "SCALAR", 1);
+  gltf.root["meshes"][0]["primitives"].push_back(
+      {{"attributes", {{"POSITION", positions}, {"COLOR_0", colours}}}, {"indices", corners}});
+  gltf.root["nodes"][0]["scale"] = {1, 2, 3};
+  write(folder / "glb", gltf.glb());
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -436,13 +483,14 @@ int main(int argc, char** argv) {
     const fs::path folder = argv[1];
     fs::remove_all(folder);
     fs::create_directories(folder / "open_blob");
-    for (const char* name : {"read_scan", "read_device", "read_firmware", "read_materials",
-                             "read_rows", "read_scene"}) {
+    for (const char* name : {"import_mesh", "read_scan", "read_device", "read_firmware",
+                             "read_materials", "read_rows", "read_scene"}) {
       fs::create_directories(folder / name);
     }
     write_valid_blobs(folder / "open_blob");
     write_broken_blobs(folder / "open_blob");
     write_scans(folder / "read_scan");
+    write_meshes(folder / "import_mesh");
     fs::create_directories(folder / "wire_session");
     write_wire_sessions(folder / "wire_session");
     write_devices(folder / "read_device");

@@ -96,4 +96,22 @@ TEST(Seeds, ReadsScans) {
   EXPECT_GE(formats.size(), 10U);
 }
 
+/// As the import process reads them, with colours where the format has them.
+TEST(Seeds, ReadsMeshes) {
+  std::set<std::string> formats;
+  for (const fs::path& file : seeds_of("import_mesh")) {
+    if (file.filename() == "3mf_document" || file.filename() == "collada") {
+      continue;  // no files by themselves
+    }
+    try {
+      const auto scan = tactree::builder::read_scan(file);
+      EXPECT_EQ(scan.triangles.size(), 1U) << file;
+      formats.insert(scan.format);
+    } catch (const tactree::builder::ReadError& error) {
+      ADD_FAILURE() << error.what();
+    }
+  }
+  EXPECT_EQ(formats.size(), 4U);
+}
+
 }  // namespace
