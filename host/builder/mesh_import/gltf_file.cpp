@@ -182,6 +182,9 @@ GltfFile::GltfFile(const std::string& file, ContainedFiles& files)
     throw ImportError("its JSON is damaged, or was cut off");
   }
   const json asset = root_.value("asset", json::object());
+  if (!asset.is_object()) {
+    throw ImportError(kNoStructure);
+  }
   const json version = asset.value("version", json("2.0"));
   if (version.is_string() && version.get<std::string>().starts_with("1")) {
     version_ = 1;

@@ -19,6 +19,9 @@ namespace tactree::builder {
 /// In place of the index of an element.
 inline constexpr std::size_t kNoIndex = std::numeric_limits<std::size_t>::max();
 
+/// Refusal of JSON that has other values than the format requires.
+inline constexpr const char* kNoStructure = "its JSON does not have the structure of glTF";
+
 class GltfFile {
  public:
   /// `files` opens the file and the buffers beside it, and must outlive this object. Throws

@@ -19,7 +19,6 @@ using Eigen::Vector3d;
 using nlohmann::json;
 
 constexpr const char* kDraco = "KHR_draco_mesh_compression";
-constexpr const char* kNoStructure = "its JSON does not have the structure of glTF";
 
 /// True for required extensions that do not change the shape or that this reader supports.
 bool is_supported(const std::string& extension) {

@@ -401,6 +401,7 @@ TEST_F(GltfTest, RefusesImpossibleStructures) {
   refuse([](Json& root) { root["nodes"][0]["children"] = {0}; }, "tree");
   refuse([](Json& root) { root["nodes"][0]["scale"] = {1, 2}; }, "\"scale\" of a node");
   refuse([](Json& root) { root["nodes"][0]["scale"] = "large"; }, "structure of glTF");
+  refuse([](Json& root) { root["asset"] = Json::array(); }, "structure of glTF");
   refuse(
       [](Json& root) {
         root["accessors"][0].erase("bufferView");
