@@ -143,14 +143,16 @@ class ObjReader {
   }
 
  private:
-  /// Searches the first lines for a point with a colour, because the builder must know at the first
-  /// point whether there are colours.
+  /// Searches the first lines for points with a colour, because the builder must know at the first
+  /// point whether there are colours, and a point without one becomes white.
   void find_colours() {
     file_.rewind();
     constexpr std::size_t kSampleLines = 10000;
     std::string_view line;
-    for (std::size_t i = 0; i < kSampleLines && !has_colours_ && file_.next_line(line); ++i) {
-      if (take_word(line) == "v" && parse_values(line) >= 6) has_colours_ = true;
+    for (std::size_t i = 0; i < kSampleLines && file_.next_line(line); ++i) {
+      if (take_word(line) != "v" || parse_values(line) < 6) continue;
+      has_colours_ = true;
+      note_white();
     }
     if (has_colours_) builder_.use_colours(ColourRange::kAuto);
     file_.rewind();
@@ -201,6 +203,13 @@ class ObjReader {
     return count;
   }
 
+  /// Raises white_ to the range of the colour in values_.
+  void note_white() {
+    const double highest = *std::max_element(values_.begin() + 3, values_.begin() + 6);
+    if (highest > 1.5) white_ = std::max(white_, 255.0);
+    if (highest > 255.5) white_ = 65535.0;
+  }
+
   void read_point(std::string_view rest) {
     const std::size_t count = parse_values(rest);
     if (count < 3) fail("the point has fewer than three numbers");
@@ -209,13 +218,12 @@ class ObjReader {
     if (has_colours_) {
       // "x y z w" has no colour, "x y z r g b" and "x y z r g b a" have.
       const bool coloured = count >= 6;
-      const double white = white_;
-      if (!coloured) ++points_without_colour_;
-      for (std::size_t i = 0; i < 3; ++i) {
-        row[kRed + i] = coloured ? values_[3 + i] : white;
-        if (coloured && values_[3 + i] > 1.5) white_ = std::max(white_, 255.0);
-        if (coloured && values_[3 + i] > 255.5) white_ = 65535.0;
+      if (coloured) {
+        note_white();
+      } else {
+        ++points_without_colour_;
       }
+      for (std::size_t i = 0; i < 3; ++i) row[kRed + i] = coloured ? values_[3 + i] : white_;
     }
     builder_.add_point(row);
   }

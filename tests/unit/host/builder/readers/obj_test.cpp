@@ -83,6 +83,8 @@ TEST_F(ObjTest, ReadsColours) {
   EXPECT_EQ(bytes.colours.at(1), (Colour{0, 0, 1}));
   const Scan partly = read("v 0 0 0\nv 1 0 0 0 0 1\n");
   EXPECT_EQ(partly.colours.at(0), (Colour{255, 255, 255}));
+  const Scan partly_bytes = read("v 0 0 0\nv 0 1 0 0 0 1\nv 1 0 0 0 200 1\n");
+  EXPECT_EQ(partly_bytes.colours.at(0), (Colour{255, 255, 255}));
   EXPECT_EQ(partly.warnings.size(), 1U);
   EXPECT_TRUE(read("v 0 0 0 1\nv 1 0 0 1\n").colours.empty());  // w
 }
