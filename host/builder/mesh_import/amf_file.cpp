@@ -15,6 +15,7 @@
 #include "mesh_import/mesh_extractor.hpp"
 #include "mesh_import/slicer_volumes.hpp"
 #include "mesh_import/xml_document.hpp"
+#include "mesh_import/zip_archive.hpp"
 #include "src/readers/number.hpp"
 
 namespace tactree::builder {
@@ -192,9 +193,23 @@ class AmfReader {
   bool all_coloured_ = true;
 };
 
+/// An AMF may be the only file of a zip archive.
+std::string unpacked(const std::string& bytes) {
+  const ZipArchive archive(bytes);
+  const std::vector<std::string> files = archive.with_ending(".amf");
+  if (files.size() != 1) {
+    throw ImportError("it is an archive of " + std::to_string(files.size()) +
+                      " AMF files, not of one");
+  }
+  return archive.read(files.front());
+}
+
 }  // namespace
 
 ImportedMesh read_amf(std::string text) {
+  if (text.starts_with("PK")) {
+    text = unpacked(text);
+  }
   try {
     const XmlDocument document(std::move(text), kAmfLimits);
     return AmfReader(child_of(document.root(), "amf")).read();

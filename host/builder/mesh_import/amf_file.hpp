@@ -8,7 +8,8 @@
 
 namespace tactree::builder {
 
-/// `text` is the whole file. Throws ImportError with the cause.
+/// `text` is the whole file, which may be a zip archive of one AMF. Throws ImportError with the
+/// cause.
 [[nodiscard]] ImportedMesh read_amf(std::string text);
 
 }  // namespace tactree::builder

@@ -82,11 +82,11 @@ class Assembly {
         return target;
       }
     }
-    const std::string first = archive_.first_with_ending(".model");
-    if (first.empty()) {
+    const std::vector<std::string> models = archive_.with_ending(".model");
+    if (models.empty()) {
       throw ImportError("it has no part with a model");
     }
-    return first;
+    return models.front();
   }
 
   /// Removes what a slicer has marked as other than the body.

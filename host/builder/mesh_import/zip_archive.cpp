@@ -164,15 +164,16 @@ const ZipArchive::Member* ZipArchive::find(std::string_view path) const {
 
 bool ZipArchive::contains(std::string_view path) const { return find(path) != nullptr; }
 
-std::string ZipArchive::first_with_ending(std::string_view ending) const {
+std::vector<std::string> ZipArchive::with_ending(std::string_view ending) const {
+  std::vector<std::string> paths;
   for (const Member& member : members_) {
     if (member.path.size() > ending.size() &&
         equal_ignoring_case(
             std::string_view(member.path).substr(member.path.size() - ending.size()), ending)) {
-      return member.path;
+      paths.push_back(member.path);
     }
   }
-  return {};
+  return paths;
 }
 
 const ZipArchive::Member& ZipArchive::member(std::string_view path) const {

@@ -22,8 +22,8 @@ class ZipArchive {
   /// took all pieces. Throws like read().
   [[nodiscard]] bool unpack(std::string_view path,
                             const std::function<bool(std::string_view)>& take) const;
-  /// Path of the first member with this ending; empty if there is none.
-  [[nodiscard]] std::string first_with_ending(std::string_view ending) const;
+  /// Paths of the members with this ending, in the order of the archive.
+  [[nodiscard]] std::vector<std::string> with_ending(std::string_view ending) const;
 
  private:
   struct Member {

@@ -96,6 +96,7 @@ std::optional<Recognition> recognise_zip(std::string_view head) {
                        contains("Metadata/");
   const bool office = contains("word/") || contains("xl/") || contains("ppt/");
   if (package && !office) return imported("3MF", "3mf");
+  if (contains(".amf") || contains(".AMF")) return imported("AMF", "amf");
   if (contains(".usdc") || contains(".usda")) {
     return unsupported("a USD scene (.usdz), which has no reader",
                        "open it in Blender and save it as glTF or PLY");

@@ -1,5 +1,6 @@
 // AMF: units, constellations, volumes that are not the body, colours.
 
+#include "mesh_writers.hpp"
 #include "test_files.hpp"
 
 namespace tactree::builder {
@@ -54,6 +55,16 @@ TEST_F(Amf, ReadsUnitInAnyCase) {
   EXPECT_EQ(unit("METER"), 1.0);
   expect_parts(refusal_of(amf(amf_object("1"), " unit=\"parsec\""), "a.amf"), "a.amf",
                "its unit \"parsec\" is not known");
+}
+
+TEST_F(Amf, ReadsFileThatIsPacked) {
+  const std::string text = amf(amf_object("1"), " unit=\"inch\"");
+  const Scan scan = read(test::ZipWriter().add("Part.AMF", text).bytes());
+  EXPECT_EQ(scan.format, "AMF");
+  EXPECT_EQ(scan.unit_m, 0.0254);
+  EXPECT_EQ(scan.positions.size(), 3U);
+  expect_parts(refusal_of(test::ZipWriter().add("a.amf", text).add("b.amf", text).bytes()),
+               "an archive of 2 AMF files, not of one");
 }
 
 TEST_F(Amf, PlacesObjectsOfConstellation) {
