@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <string_view>
 #include <utility>
 
+#include "mesh_import/gltf_nodes.hpp"
 #include "mesh_import/meshopt_view.hpp"
 
 namespace tactree::builder {
@@ -23,9 +23,10 @@ constexpr const char* kDraco = "KHR_draco_mesh_compression";
 /// True for required extensions that do not change the shape or that this reader supports.
 bool is_supported(const std::string& extension) {
   constexpr std::string_view kKnown[] = {
-      "KHR_mesh_quantization", kMeshopt,           "KHR_texture_transform", "KHR_texture_basisu",
-      "EXT_texture_webp",      "EXT_texture_avif", "MSFT_texture_dds",      "KHR_lights_punctual",
-      "KHR_xmp_json_ld",       "KHR_xmp",          "KHR_animation_pointer", "KHR_node_visibility"};
+      "KHR_mesh_quantization", kMeshopt,           kInstancing,        "KHR_texture_transform",
+      "KHR_texture_basisu",    "EXT_texture_webp", "EXT_texture_avif", "MSFT_texture_dds",
+      "KHR_lights_punctual",   "KHR_xmp_json_ld",  "KHR_xmp",          "KHR_animation_pointer",
+      "KHR_node_visibility"};
   return extension.starts_with("KHR_materials_") ||
          std::find(std::begin(kKnown), std::end(kKnown), extension) != std::end(kKnown);
 }
@@ -40,36 +41,6 @@ void check_extensions(const json& root, std::string_view also = {}) {
           extension.substr(0, 60) + ", which is not supported");
     }
   }
-}
-
-std::vector<double> numbers_of(const json& object, const char* name, std::size_t count) {
-  const auto found = object.find(name);
-  if (found == object.end()) {
-    return {};
-  }
-  const auto numbers = found->get<std::vector<double>>();
-  if (numbers.size() != count) {
-    throw ImportError(std::string("the \"") + name + "\" of a node does not have " +
-                      std::to_string(count) + " numbers");
-  }
-  return numbers;
-}
-
-Matrix4d transform_of(const json& node) {
-  if (const auto m = numbers_of(node, "matrix", 16); !m.empty()) {
-    return Eigen::Map<const Matrix4d>(m.data());
-  }
-  Eigen::Affine3d transform = Eigen::Affine3d::Identity();
-  if (const auto t = numbers_of(node, "translation", 3); !t.empty()) {
-    transform.translate(Vector3d(t[0], t[1], t[2]));
-  }
-  if (const auto r = numbers_of(node, "rotation", 4); !r.empty()) {
-    transform.rotate(Eigen::Quaterniond(r[3], r[0], r[1], r[2]).normalized());
-  }
-  if (const auto s = numbers_of(node, "scale", 3); !s.empty()) {
-    transform.scale(Vector3d(s[0], s[1], s[2]));
-  }
-  return transform.matrix();
 }
 
 /// Expands a strip or fan: returns three vertices per triangle.
@@ -91,12 +62,10 @@ std::vector<std::uint32_t> corners_of(const std::vector<std::uint32_t>& list, st
 
 class GltfScene {
  public:
-  explicit GltfScene(GltfFile& file) : file_(file), root_(file.root()) {}
+  explicit GltfScene(GltfFile& file) : file_(file), nodes_(file) {}
 
   ImportedMesh read() {
-    check_extensions(root_);
-    place_nodes();
-    for (const std::size_t node : nodes_in_scene()) {
+    for (const std::size_t node : nodes_.shown()) {
       add_node(node);
     }
     if (!all_normals_) {
@@ -120,131 +89,21 @@ class GltfScene {
     std::size_t count = 0;
   };
 
-  void place_nodes() {
-    const std::size_t count = root_.value("nodes", json::array()).size();
-    parents_.assign(count, kNoIndex);
-    for (std::size_t i = 0; i < count; ++i) {
-      for (const std::size_t child : children_of(file_.at("nodes", i))) {
-        if (child >= count || parents_[child] != kNoIndex) {
-          throw ImportError("its nodes do not form a tree");
-        }
-        parents_[child] = i;
-      }
-    }
-    worlds_.assign(count, std::nullopt);
-    for (std::size_t i = 0; i < count; ++i) {
-      place(i);
-    }
-  }
-
-  /// Iterative, because a long chain of nodes would exhaust the stack of a recursion.
-  void place(std::size_t node) {
-    std::vector<std::size_t> chain;
-    for (std::size_t at = node; at != kNoIndex && !worlds_[at]; at = parents_[at]) {
-      chain.push_back(at);
-      if (chain.size() > parents_.size()) {
-        throw ImportError("its nodes do not form a tree");
-      }
-    }
-    while (!chain.empty()) {
-      const std::size_t at = chain.back();
-      chain.pop_back();
-      const Matrix4d own = transform_of(file_.at("nodes", at));
-      worlds_[at] = parents_[at] == kNoIndex ? own : Matrix4d(*worlds_[parents_[at]] * own);
-    }
-  }
-
-  static std::vector<std::size_t> children_of(const json& node, const char* list = "children") {
-    std::vector<std::size_t> children;
-    for (const json& child : node.value(list, json::array())) {
-      children.push_back(child.is_number_unsigned() ? child.get<std::size_t>() : kNoIndex);
-    }
-    return children;
-  }
-
-  /// The roots of the scene and the nodes below them, each before its children.
-  [[nodiscard]] std::vector<std::size_t> nodes_in_scene() {
-    std::vector<std::size_t> open;
-    if (root_.contains("scenes")) {
-      open = children_of(file_.at("scenes", gltf_count(root_, "scene", 0)), "nodes");
-      std::reverse(open.begin(), open.end());
-    } else {
-      for (std::size_t i = parents_.size(); i > 0; --i) {
-        if (parents_[i - 1] == kNoIndex) {
-          open.push_back(i - 1);
-        }
-      }
-    }
-    std::vector<std::size_t> nodes;
-    std::vector<bool> found(parents_.size(), false);
-    while (!open.empty()) {
-      const std::size_t node = open.back();
-      open.pop_back();
-      std::vector<std::size_t> children = children_of(file_.at("nodes", node));
-      if (found[node]) {
-        continue;
-      }
-      if (is_hidden(file_.at("nodes", node))) {
-        ++hidden_;
-        continue;
-      }
-      found[node] = true;
-      nodes.push_back(node);
-      open.insert(open.end(), children.rbegin(), children.rend());
-    }
-    return nodes;
-  }
-
-  /// Together with the nodes below it.
-  static bool is_hidden(const json& node) {
-    const json extensions = node.value("extensions", json::object());
-    return !extensions.value("KHR_node_visibility", json::object()).value("visible", true);
-  }
-
   void add_node(std::size_t number) {
     const json& node = file_.at("nodes", number);
     if (!node.contains("mesh")) {
       return;
     }
-    if (node.value("extensions", json::object()).contains("EXT_mesh_gpu_instancing")) {
-      ++repeated_;
-    }
     const json& mesh = file_.at("meshes", gltf_count(node, "mesh"));
-    const std::vector<Matrix4d> joints = joints_of(node);
+    const std::vector<Matrix4d> places = nodes_.places(number);
+    const std::vector<Matrix4d> joints = nodes_.joints(number);
     const json weights = node.contains("weights") ? node["weights"] : mesh.value("weights", json());
     for (const json& primitive : mesh.value("primitives", json::array())) {
-      add_primitive(primitive, *worlds_[number], joints, weights);
+      add_primitive(primitive, places, joints, weights);
     }
   }
 
-  /// Transforms from the frame of the mesh to that of the scene, one per joint; empty without a
-  /// skin.
-  std::vector<Matrix4d> joints_of(const json& node) {
-    if (!node.contains("skin")) {
-      return {};
-    }
-    const json& skin = file_.at("skins", gltf_count(node, "skin"));
-    std::vector<Matrix4d> joints;
-    for (const std::size_t joint : children_of(skin, "joints")) {
-      if (joint >= worlds_.size()) {
-        throw ImportError("a joint of a skin is not one of its nodes");
-      }
-      joints.push_back(*worlds_[joint]);
-    }
-    if (!skin.contains("inverseBindMatrices")) {
-      return joints;
-    }
-    const std::vector<double> inverse = file_.numbers(gltf_count(skin, "inverseBindMatrices"), 16);
-    if (inverse.size() < 16 * joints.size()) {
-      throw ImportError("a skin has more joints than inverseBindMatrices");
-    }
-    for (std::size_t i = 0; i < joints.size(); ++i) {
-      joints[i] *= Eigen::Map<const Matrix4d>(inverse.data() + 16 * i);
-    }
-    return joints;
-  }
-
-  void add_primitive(const json& primitive, const Matrix4d& world,
+  void add_primitive(const json& primitive, const std::vector<Matrix4d>& places,
                      const std::vector<Matrix4d>& joints, const json& weights) {
     constexpr std::size_t kTriangles = 4;
     const std::size_t mode = gltf_count(primitive, "mode", kTriangles);
@@ -265,16 +124,18 @@ class GltfScene {
     if (morphed) {
       points.normals.clear();
     }
-    const std::vector<Matrix4d> placed = transforms(attributes, world, joints, points.count);
-    const auto first = static_cast<std::uint32_t>(mesh_.positions.size());
-    if (mesh_.positions.size() + points.count >= std::numeric_limits<std::uint32_t>::max()) {
-      throw ImportError("it has more than 2^32 points");
-    }
-    add_points(points, placed);
-    if (mode >= kTriangles) {
+    const std::vector<std::uint32_t> corners =
+        mode >= kTriangles ? corners_of(indices_of(primitive, points.count), mode)
+                           : std::vector<std::uint32_t>{};
+    for (const Matrix4d& place : places) {
+      const std::vector<Matrix4d> placed = transforms(attributes, place, joints, points.count);
+      if (mesh_.positions.size() + points.count >= std::numeric_limits<std::uint32_t>::max()) {
+        throw ImportError("it has more than 2^32 points");
+      }
+      const auto first = static_cast<std::uint32_t>(mesh_.positions.size());
+      add_points(points, placed);
       const bool mirrored = !placed.empty() && placed[0].topLeftCorner<3, 3>().determinant() < 0;
-      add_triangles(corners_of(indices_of(primitive, points.count), mode), first, points.count,
-                    mirrored);
+      add_triangles(corners, first, points.count, mirrored);
     }
   }
 
@@ -420,9 +281,8 @@ class GltfScene {
         " triangles were dropped: they refer to points that the file does not have.");
     add(lines_, " sets of lines were left out.");
     add(loose_points_, " points of a skin refer to no joint.");
-    add(hidden_, " hidden nodes and the nodes below them were left out (KHR_node_visibility).");
-    add(repeated_,
-        " nodes repeat their mesh (EXT_mesh_gpu_instancing), which was read once, at the node.");
+    add(nodes_.hidden(),
+        " hidden nodes and the nodes below them were left out (KHR_node_visibility).");
     constexpr std::size_t kPadding = 3;
     if (file_.undeclared_bytes() > kPadding) {
       add(file_.undeclared_bytes(),
@@ -431,17 +291,13 @@ class GltfScene {
   }
 
   GltfFile& file_;
-  const json& root_;
+  GltfNodes nodes_;
   ImportedMesh mesh_;
-  std::vector<std::size_t> parents_;
-  std::vector<std::optional<Matrix4d>> worlds_;
   bool all_normals_ = true;
   bool all_colours_ = true;
   std::uint64_t bad_triangles_ = 0;
   std::uint64_t lines_ = 0;
   std::uint64_t loose_points_ = 0;
-  std::uint64_t hidden_ = 0;
-  std::uint64_t repeated_ = 0;
 };
 
 bool uses_draco(const json& root) {
@@ -472,6 +328,9 @@ bool is_draco_gltf(const GltfFile& file) {
       if (node.contains("skin")) {
         refuse_with("a skin");
       }
+      if (node.value("extensions", json::object()).contains(kInstancing)) {
+        refuse_with(std::string("instances (") + kInstancing + ")");
+      }
     }
     for (const json& view : root.value("bufferViews", json::array())) {
       if (meshopt_of(view) != nullptr) {
@@ -486,6 +345,7 @@ bool is_draco_gltf(const GltfFile& file) {
 
 ImportedMesh read_gltf(GltfFile& file) {
   try {
+    check_extensions(file.root());
     ImportedMesh mesh = GltfScene(file).read();
     if (mesh.positions.empty()) {
       throw ImportError("it contains no points and no faces");

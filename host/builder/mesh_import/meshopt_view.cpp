@@ -27,7 +27,8 @@ bool is_valid(const Layout& layout) {
       return false;
     }
     return layout.filter == "NONE" || layout.filter == "EXPONENTIAL" ||
-           (layout.filter == "OCTAHEDRAL" && layout.stride <= 8);
+           (layout.filter == "OCTAHEDRAL" && layout.stride <= 8) ||
+           (layout.filter == "QUATERNION" && layout.stride == 8);
   }
   const bool is_list =
       layout.mode == "TRIANGLES" ? layout.count % 3 == 0 : layout.mode == "INDICES";
@@ -47,6 +48,8 @@ bool decode(const Layout& layout, std::span<const unsigned char> packed, unsigne
   }
   if (filter == "OCTAHEDRAL") {
     meshopt_decodeFilterOct(into, count, stride);
+  } else if (filter == "QUATERNION") {
+    meshopt_decodeFilterQuat(into, count, stride);
   } else if (filter == "EXPONENTIAL") {
     meshopt_decodeFilterExp(into, count, stride);
   }

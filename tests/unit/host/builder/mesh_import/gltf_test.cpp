@@ -67,12 +67,39 @@ TEST_F(GltfTest, LeavesOutHiddenNodes) {
   expect_parts(scan.warnings.at(0), "1 hidden nodes", "left out");
 }
 
-TEST_F(GltfTest, NamesRepeatedMeshes) {
+TEST_F(GltfTest, PlacesInstances) {
   GltfWriter gltf = floats();
-  gltf.root["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"] = 0;
-  const Scan scan = read(gltf.glb());
-  EXPECT_EQ(scan.positions.size(), 4U);
-  expect_parts(scan.warnings.at(0), "1 nodes repeat their mesh (EXT_mesh_gpu_instancing)");
+  const std::size_t shifts = gltf.add(std::vector<float>{1, 2, 3, 0, 0, 0}, kFloat, "VEC3", 3);
+  // None, and a quarter turn about z. As bytes, 90 and 127 / 127 are rounded.
+  const std::size_t turns =
+      gltf.add(std::vector<float>{0, 0, 0, 1, 0, 0, 0.70710678F, 0.70710678F}, kFloat, "VEC4", 4);
+  const std::size_t turns_in_bytes =
+      gltf.add(std::vector<std::int8_t>{0, 0, 0, 127, 0, 0, 90, 90}, kByte, "VEC4", 4);
+  gltf.root["accessors"][turns_in_bytes]["normalized"] = true;
+  const std::size_t scales = gltf.add(std::vector<float>{1, 1, 1, 2, 1, -1}, kFloat, "VEC3", 3);
+  gltf.root["nodes"][0]["translation"] = {10, 0, 0};
+  gltf.root["extensionsRequired"] = {"EXT_mesh_gpu_instancing"};
+  Json& placed = gltf.root["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
+  placed = {{"TRANSLATION", shifts}, {"ROTATION", turns}, {"SCALE", scales}};
+  for (const std::size_t rotation : {turns, turns_in_bytes}) {
+    placed["ROTATION"] = rotation;
+    const Scan scan = read(gltf.glb());
+    EXPECT_TRUE(scan.warnings.empty());
+    ASSERT_EQ(scan.positions.size(), 8U);
+    expect_point(scan, 1, 12, 2, 3);
+    expect_point(scan, 5, 10, 2, 0);  // scaled, then turned
+    expect_point(scan, 7, 10, 0, -1);
+    // The faces of the reflected instance are turned over.
+    ASSERT_EQ(scan.triangles.size(), 8U);
+    EXPECT_EQ(scan.triangles[0], (Triangle{0, 1, 2}));
+    EXPECT_EQ(scan.triangles[4], (Triangle{4, 6, 5}));
+  }
+  placed = {{"_NUMBER", scales}};
+  EXPECT_EQ(read(gltf.glb()).positions.size(), 4U);
+  placed = {{"TRANSLATION", shifts}, {"SCALE", 0}};
+  expect_parts(refusal_of(gltf.glb()), "do not have one entry per instance");
+  placed = {{"TRANSLATION", 99}};
+  expect_parts(refusal_of(gltf.glb()), "entry 99 of \"accessors\"");
 }
 
 TEST_F(GltfTest, ReadsIntegerPositions) {
@@ -202,11 +229,9 @@ TEST_F(GltfTest, NamesUnknownRequiredExtensions) {
   GltfWriter gltf = floats();
   gltf.root["extensionsRequired"] = {"KHR_materials_unlit", "KHR_texture_transform"};
   EXPECT_EQ(read(gltf.glb()).positions.size(), 4U);
-  for (const char* name : {"EXT_mesh_gpu_instancing", "ACME_shape"}) {
-    gltf.root["extensionsRequired"] = {"KHR_materials_unlit", name};
-    expect_parts(refusal_of(gltf.glb(), "a.glb"), "a.glb", "requires the extension", name,
-                 "save it as PLY");
-  }
+  gltf.root["extensionsRequired"] = {"KHR_materials_unlit", "ACME_shape"};
+  expect_parts(refusal_of(gltf.glb(), "a.glb"), "a.glb", "requires the extension ACME_shape",
+               "save it as PLY");
   gltf.root["extensionsRequired"] = {"ACME_compression"};
   expect_parts(refusal_of(gltf.glb()), "compressed with ACME_compression");
   // The library decodes Draco, and would place its skins wrong.
@@ -215,6 +240,9 @@ TEST_F(GltfTest, NamesUnknownRequiredExtensions) {
       {"KHR_draco_mesh_compression", Json::object()}};
   draco.root["extensionsRequired"] = {"KHR_draco_mesh_compression"};
   expect_parts(refusal_of(draco.glb()), "a skin and data compressed with KHR_draco");
+  draco.root["nodes"][0].erase("skin");
+  draco.root["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"] = Json::object();
+  expect_parts(refusal_of(draco.glb()), "instances (EXT_mesh_gpu_instancing) and data compressed");
   draco.root["extensionsRequired"] = {"KHR_draco_mesh_compression", "ACME_shape"};
   expect_parts(refusal_of(draco.glb()), "requires the extension ACME_shape");
 }
@@ -316,6 +344,24 @@ TEST_F(GltfTest, DecodesFiltersOfMeshopt) {
   }
 }
 
+TEST_F(GltfTest, DecodesTurnsOfInstances) {
+  const std::vector<float> turns = {0, 0, 0, 1, 0, 0, 0.70710678F, 0.70710678F};
+  std::vector<std::int16_t> packed(turns.size());
+  meshopt_encodeFilterQuat(packed.data(), 2, 8, 16, turns.data());
+  GltfWriter gltf = floats();
+  const std::size_t at = gltf.add(packed, kShort, "VEC4", 4);
+  gltf.root["accessors"][at]["normalized"] = true;
+  compress(gltf, at, 8, "ATTRIBUTES", "QUATERNION");
+  gltf.root["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["ROTATION"] = at;
+  const Scan scan = read(gltf.glb());
+  ASSERT_EQ(scan.positions.size(), 8U);
+  EXPECT_LT((scan.positions[1] - Eigen::Vector3d::UnitX()).norm(), 1e-4);
+  EXPECT_LT((scan.positions[5] - Eigen::Vector3d::UnitY()).norm(), 1e-4);
+  const std::size_t view = gltf.root["accessors"][at]["bufferView"];
+  gltf.root["bufferViews"][view]["extensions"]["EXT_meshopt_compression"]["byteStride"] = 4;
+  expect_parts(refusal_of(gltf.glb()), "invalid layout");
+}
+
 TEST_F(GltfTest, RefusesInvalidMeshoptCompression) {
   const auto refuse = [&](std::size_t view, const char* name, Json value,
                           const std::string& cause) {
@@ -327,7 +373,6 @@ TEST_F(GltfTest, RefusesInvalidMeshoptCompression) {
   refuse(0, "byteStride", 6, "invalid layout");
   refuse(0, "byteStride", 0, "invalid layout");
   refuse(0, "byteStride", 512, "invalid layout");
-  refuse(0, "filter", "QUATERNION", "invalid layout");  // of animations, not of a shape
   refuse(1, "count", 11, "invalid layout");
   refuse(1, "byteStride", 1, "invalid layout");
   refuse(1, "filter", "EXPONENTIAL", "invalid layout");
