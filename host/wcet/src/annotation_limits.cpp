@@ -86,7 +86,7 @@ Terms AnnotationLimits::bodies(std::uint32_t entry, std::uint32_t number) const 
 }
 
 void AnnotationLimits::limit_loop_totals(Groups& groups) {
-  std::map<const SourceLoop*, Terms> passes;
+  std::map<const SourceLoop*, Terms, SourceOrder> passes;
   for (const auto& [entry, own] : flow_.variables()) {
     const AnalysedFunction& function = flow_.function(entry);
     for (std::uint32_t i = 0; i < function.flow.loops.size(); ++i) {

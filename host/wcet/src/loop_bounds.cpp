@@ -58,7 +58,7 @@ class Matcher {
   }
 
   /// Source loops, each with the instructions of its head.
-  using Heads = std::map<const SourceLoop*, std::vector<std::uint32_t>>;
+  using Heads = std::map<const SourceLoop*, std::vector<std::uint32_t>, SourceOrder>;
 
   /// Blocks of the loop that are not in an inner loop.
   [[nodiscard]] std::set<std::uint32_t> own_blocks(std::uint32_t number) const {

@@ -43,6 +43,14 @@ struct SourceLoop {
   std::vector<Total> totals;
 };
 
+/// The order of loops in the sources. That of their addresses differs from run to run, and with the
+/// order of its rows a linear program may have another of several optimal prices.
+struct SourceOrder {
+  bool operator()(const SourceLoop* a, const SourceLoop* b) const {
+    return a->file == b->file ? a < b : a->file < b->file;  // those of a file are in one array
+  }
+};
+
 /// A statement with a limit: `at most:`.
 struct SourceFact {
   std::string file;
