@@ -28,7 +28,7 @@ Eigen::Vector3d place(const PointNode& node, const viewer::PackedPoint& point) {
 
 class PointTreeTest : public testing::Test {
  protected:
-  TestBlob blob_{sphere(0.05, 0.0008)};
+  TestBlob blob_{sphere(0.05, 0.00105)};
   PointTree tree_{blob_.view()};
 };
 
@@ -108,8 +108,8 @@ TEST_F(PointTreeTest, OctantsMatchBlob) {
 }
 
 /// A sphere whose points with positive x have the second of two materials.
-builder::Model two_materials() {
-  builder::Model model = sphere(0.05, 0.0008);
+builder::Model two_materials(double spacing_m) {
+  builder::Model model = sphere(0.05, spacing_m);
   core::BlobMaterial material{};
   material.stiffness_N_m = 800.0F;
   model.materials = {material, material};
@@ -121,7 +121,7 @@ builder::Model two_materials() {
 }
 
 TEST_F(PointTreeTest, MaterialsBelongToTheirPoints) {
-  const TestBlob blob(two_materials());
+  const TestBlob blob(two_materials(0.00105));
   const PointTree tree(blob.view());
   std::size_t checked = 0;
   for (std::size_t i = 0; i < tree.nodes().size(); ++i) {
@@ -161,8 +161,8 @@ TEST_F(PointTreeTest, ColoursBelongToTheirPoints) {
   EXPECT_TRUE(tree_.colours(0).empty());
 }
 
-TEST_F(PointTreeTest, TellsMaterialsWithTheirLabels) {
-  const TestBlob blob(two_materials());
+TEST(PointTreeJson, TellsMaterialsWithTheirLabels) {
+  const TestBlob blob(two_materials(0.004));
   const PointTree tree(blob.view());
   const auto plain = nlohmann::json::parse(viewer::tree_json(tree, blob.view()))["materials"];
   ASSERT_EQ(plain.size(), 2U);
