@@ -5,6 +5,7 @@ usage: link_test.py TACTREE [BOARD]      BOARD: where the controller runs, defau
 """
 import os
 import pathlib
+import re
 import sys
 import unittest
 
@@ -153,6 +154,11 @@ class Link(BallFolder):
             self.run_verb("keygen", name)
         self.assertEqual(key.stat().st_mode & 0o77, 0)
         self.assertIn("File exists", self.run_verb("keygen", key, code=1))
+        bytes_of_header = re.findall(r"0x([0-9a-f]{2}),", pathlib.Path(f"{key}.hpp").read_text())
+        self.assertEqual("".join(bytes_of_header), pathlib.Path(f"{key}.pub").read_text().split()[-1])
+        (self.path / "third.hpp").touch()
+        self.assertIn("third.hpp: File exists", self.run_verb("keygen", self.path / "third", code=1))
+        self.assertFalse((self.path / "third").exists())
         self.run_verb("check", self.coarse, "--key", f"{key}.pub", code=1)
         with ServedBoard(TACTREE, self.blob, "--require-key", f"{key}.pub") as port:
             self.assertIn("not signed by the key", self.run_verb("flash", self.coarse, "--port", port, code=1))

@@ -48,12 +48,36 @@ std::array<std::uint8_t, 32> read_key(const std::filesystem::path& file, const s
   return key;
 }
 
+std::filesystem::path with_suffix(std::filesystem::path path, const char* suffix) {
+  path += suffix;
+  return path;
+}
+
+/// A header with the public key of `file`, for firmware.
+std::string header_of(const PublicKey& key, const std::filesystem::path& file) {
+  std::string bytes;
+  for (std::size_t i = 0; i < key.size(); ++i) {
+    bytes += fmt::format("{}0x{:02x},", i % 8 == 0 ? "\n    " : " ", key[i]);
+  }
+  return fmt::format(
+      "// {}, a public key of `tactree keygen`: a board whose kModelKey it is accepts only models "
+      "signed\n// with the secret key.\n\n"
+      "#pragma once\n\n"
+      "#include <cstdint>\n\n"
+      "inline constexpr std::uint8_t kPublicKey[{}] = {{{}\n}};\n",
+      file.filename().string(), key.size(), bytes);
+}
+
+[[noreturn]] void refuse_key_file(const std::filesystem::path& file, int error) {
+  throw support::UserError(
+      fmt::format("{}: {} (choose another name: a lost key cannot be restored)", file.string(),
+                  std::strerror(error)));
+}
+
 void write_new_file(const std::filesystem::path& file, const std::string& text, mode_t mode) {
   const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
   if (descriptor < 0) {
-    throw support::UserError(
-        fmt::format("{}: {} (choose another name: a lost key cannot be restored)", file.string(),
-                    std::strerror(errno)));
+    refuse_key_file(file, errno);
   }
   const bool written =
       ::write(descriptor, text.data(), text.size()) == static_cast<ssize_t>(text.size());
@@ -96,16 +120,22 @@ std::string describe(const ModelSignature& signature) {
 }
 
 PublicKey generate_key(const std::filesystem::path& file) {
+  const std::filesystem::path public_file = with_suffix(file, ".pub");
+  const std::filesystem::path header_file = with_suffix(file, ".hpp");
+  for (const auto& path : {file, public_file, header_file}) {
+    if (std::filesystem::exists(path)) {
+      refuse_key_file(path, EEXIST);
+    }
+  }
   prepare_sodium();
   SecretKey seed{};
   randombytes_buf(seed.data(), seed.size());
   PublicKey key{};
   std::array<std::uint8_t, crypto_sign_SECRETKEYBYTES> expanded{};
   crypto_sign_seed_keypair(key.data(), expanded.data(), seed.data());
-  std::filesystem::path open_file = file;
-  open_file += ".pub";
   write_new_file(file, kSecretMark + to_hex(seed) + "\n", 0600);
-  write_new_file(open_file, kPublicMark + to_hex(key) + "\n", 0644);
+  write_new_file(public_file, kPublicMark + to_hex(key) + "\n", 0644);
+  write_new_file(header_file, header_of(key, public_file), 0644);
   sodium_memzero(expanded.data(), expanded.size());
   sodium_memzero(seed.data(), seed.size());
   return key;
@@ -142,9 +172,7 @@ bool is_valid(const ModelSignature& signature, std::span<const std::byte> blob) 
 }
 
 std::filesystem::path signature_path(const std::filesystem::path& blob) {
-  std::filesystem::path path = blob;
-  path += ".sig";
-  return path;
+  return with_suffix(blob, ".sig");
 }
 
 void write_signature(const std::filesystem::path& blob, const ModelSignature& signature,

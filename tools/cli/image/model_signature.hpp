@@ -21,8 +21,8 @@ struct ModelSignature {
   std::array<std::uint8_t, 64> signature{};
 };
 
-/// Writes `file`, which only its owner can read, and `file`.pub. Throws UserError, also if one of
-/// them exists.
+/// Writes `file`, which only its owner can read, `file`.pub and `file`.hpp, a header for firmware.
+/// Throws UserError, also if one of them exists.
 PublicKey generate_key(const std::filesystem::path& file);
 
 /// Both throw UserError with the file, the cause and the hint.
