@@ -44,7 +44,8 @@ int run(int argc, char** argv) {
   // If the signal is ignored, a write beyond the limit on file sizes fails with a message and
   // leaves no temporary file.
   std::signal(SIGXFSZ, SIG_IGN);
-  CLI::App app{"tactree: builds models from 3D scans and renders them on haptic devices"};
+  CLI::App app{"tactree: builds models from 3D scans and renders them on haptic devices",
+               "tactree"};
   app.set_version_flag("--version", "tactree " TACTREE_VERSION);
   app.require_subcommand(1);
   app.failure_message([](const CLI::App* program, const CLI::Error& error) {

@@ -11,6 +11,7 @@
 #include "dry_run.hpp"
 #include "exit_codes.hpp"
 #include "service.hpp"
+#include "usage_errors.hpp"
 
 namespace tactree {
 namespace {
@@ -23,9 +24,13 @@ int put_off(const controller::ControllerFile& file) {
 }
 
 int run(int argc, char** argv) {
-  CLI::App app{"tactree-controller: runs the control loop of a haptic device on a Linux board"};
+  CLI::App app{"tactree-controller: runs the control loop of a haptic device on a Linux board",
+               "tactree-controller"};
   app.set_version_flag("--version", "tactree-controller " TACTREE_VERSION " (" +
                                         hal::linux_gpio::gpio_library() + ")");
+  app.failure_message([](const CLI::App* program, const CLI::Error& error) {
+    return usage_error(*program, error);
+  });
   std::string file;
   bool dry_run = false;
   bool off = false;

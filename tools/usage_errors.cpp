@@ -6,7 +6,7 @@
 
 #include "tactree/support/nearest_name.hpp"
 
-namespace tactree::cli {
+namespace tactree {
 namespace {
 
 std::string did_you_mean(const std::string& word, const std::vector<std::string>& names) {
@@ -25,7 +25,7 @@ const CLI::App& parsed_command(const CLI::App& app) {
 
 /// "tactree device check", as it is typed.
 std::string title(const CLI::App& command) {
-  return command.get_parent() == nullptr ? "tactree"
+  return command.get_parent() == nullptr ? command.get_name()
                                          : title(*command.get_parent()) + " " + command.get_name();
 }
 
@@ -91,8 +91,8 @@ std::string unknown_command(const CLI::App& app, const std::string& word) {
       std::find(names.begin(), names.end(), word) != names.end()) {
     return "";
   }
-  return fmt::format("unknown command '{}' ({}tactree --help lists the commands)", word,
-                     did_you_mean(word, names));
+  return fmt::format("unknown command '{}' ({}{} --help lists the commands)", word,
+                     did_you_mean(word, names), app.get_name());
 }
 
 std::string usage_error(const CLI::App& app, const CLI::Error& error) {
@@ -115,7 +115,8 @@ std::string usage_error(const CLI::App& app, const CLI::Error& error) {
     remedy = (extra.empty() ? "" : did_you_mean(extra.front(), command_names(command))) + remedy;
   }
   const bool has_remedy = cause.ends_with(')');
-  return fmt::format("tactree: error: {}{}\n", cause, has_remedy ? "" : " (" + remedy + ")");
+  return fmt::format("{}: error: {}{}\n", app.get_name(), cause,
+                     has_remedy ? "" : " (" + remedy + ")");
 }
 
-}  // namespace tactree::cli
+}  // namespace tactree

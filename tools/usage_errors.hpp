@@ -1,11 +1,11 @@
 #pragma once
-// What the program says of a command line that it refuses.
+// What the programs say of a command line that they refuse.
 
 #include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
-namespace tactree::cli {
+namespace tactree {
 
 /// The names of the commands directly below a program or command.
 [[nodiscard]] std::vector<std::string> command_names(const CLI::App& app);
@@ -14,7 +14,7 @@ namespace tactree::cli {
 [[nodiscard]] std::string unknown_command(const CLI::App& app, const std::string& word);
 
 /// Error message with the option, its value and a remedy, instead of the one of CLI11. `app`: the
-/// program, whose parse() has thrown `error`.
+/// program, which has a name, and whose parse() has thrown `error`.
 [[nodiscard]] std::string usage_error(const CLI::App& app, const CLI::Error& error);
 
-}  // namespace tactree::cli
+}  // namespace tactree
